@@ -80,7 +80,7 @@ impl ViewUniforms {
     pub(crate) fn new(desc: &ContextDesc, view: &ViewFrame, held: &Held, index: usize, frame: u64) -> Self {
         let (ray_scale, offset) = view.geometry.scale_offset();
         let settings = &desc.settings;
-        let purpose = match settings.sampler {
+        let purpose = match settings.method.wrs().sampler {
             Sampler::AChao | Sampler::AChaoMean => Purpose::Select,
             Sampler::AEs => Purpose::Key,
         };

@@ -3,7 +3,7 @@
 
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::{self, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Gaze, Image, Method, Settings, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, Gaze, Image, MethodKind, Settings, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
 use afterimage_testing::holds;
 use rustix::time::{ClockId, clock_gettime};
@@ -43,8 +43,8 @@ fn h60_a_turn_costs_no_more_than_any_other_frame() {
         device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
     };
     let mut ratios = vec![];
-    for method in [Method::Wrs, Method::Smr] {
-        let settings = Settings { method, ..Settings::paper() };
+    for method in [MethodKind::Wrs, MethodKind::Smr] {
+        let settings = Settings { method: method.into(), ..Settings::paper() };
         let desc = ContextDesc { settings, ..ContextDesc::new(SIZE) };
         let mut post = Afterimage::new(&device, &desc, output.format()).unwrap();
         let mut times = [vec![], vec![]];

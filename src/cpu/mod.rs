@@ -30,9 +30,9 @@ use crate::error::{FrameError, SettingsError};
 use crate::frame::{ContextDesc, Executor, ViewFrame, check_size};
 use crate::image::Image;
 use crate::lattice::Lattices;
-use crate::method::HistoryLayout;
+use crate::method::{Algorithm, HistoryLayout, Stage};
 use crate::resize::Resize;
-use crate::settings::{Method, Settings};
+use crate::settings::Settings;
 use crate::stats::FrameStats;
 
 /// A frame whose inputs are slices with one image a view; fields are at [`Frame`](crate::Frame).
@@ -119,19 +119,19 @@ impl CpuAfterimage {
 
     /// Changes the settings from the next frame on.
     ///
-    /// History survives, unless its layout changes: with [`method`](Settings::method), [`noisy`](Settings::noisy),
-    /// [`sampler`](Settings::sampler), the scale of the [`gate`](Settings::gate), and for smr with `rate_far` and
-    /// `filter` of the [`foveation`](Settings::foveation).
+    /// History survives, unless its layout changes: with another [`method`](Settings::method), with
+    /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::Wrs::sampler) and the scale of its [`gate`](crate::Wrs::gate),
+    /// and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
     ///
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
-        let same_method = settings.method == self.desc.settings.method;
+        let same_algorithm = settings.algorithm() == self.desc.settings.algorithm();
         self.desc.settings = settings;
         if settings.history_layout() != self.history.layout() {
             self.history = History::new(&self.desc);
-        } else if !same_method {
+        } else if !same_algorithm {
             self.history.forget();
         }
         Ok(())
@@ -224,8 +224,7 @@ impl CpuAfterimage {
         check_inputs(&self.desc, frame)?;
         check_sizes(&self.desc, "output", Some(output.iter().map(Image::size)))?;
         check_sizes(&self.desc, "traces", traces.as_deref().map(|t| t.iter().map(Image::size)))?;
-        let is_sparse_smr = matches!(self.history.layout(), HistoryLayout::Kept { .. });
-        let fills = self.desc.settings.fills_sparse_frames();
+        let fills = self.desc.settings.stages().contains(&Stage::Fill);
         let filled = if fills { fill::filled(frame, self.desc.size_px) } else { vec![] };
         let filled: Vec<_> = filled.iter().collect();
         let whole = frame.with_color(if filled.is_empty() { frame.color } else { &filled });
@@ -247,13 +246,13 @@ impl CpuAfterimage {
             ),
         };
         let pass = Pass { desc: &desc, history: &mut self.history, frame: &whole, output, traces };
-        let stats = match self.desc.settings.method {
-            Method::None => none_pass::run(pass),
-            Method::Taa => surface_pass::run(pass, &taa_pass::Taa),
-            Method::Smr if is_sparse_smr => sparse_pass::run(pass),
-            Method::Smr => surface_pass::run(pass, &smr_pass::Smr::new(&self.desc.settings)),
-            Method::Wrs => wrs_pass::run(pass),
-            Method::Taau => surface_pass::run(pass, &taau_pass::Taau),
+        let stats = match self.desc.settings.algorithm() {
+            Algorithm::None => none_pass::run(pass),
+            Algorithm::Taa => surface_pass::run(pass, &taa_pass::Taa),
+            Algorithm::Taau => surface_pass::run(pass, &taau_pass::Taau),
+            Algorithm::Smr => surface_pass::run(pass, &smr_pass::Smr::new(&self.desc.settings)),
+            Algorithm::SmrSparse => sparse_pass::run(pass),
+            Algorithm::Wrs => wrs_pass::run(pass),
         };
         if self.history.layout() == HistoryLayout::Nothing {
             self.history.forget();

@@ -32,7 +32,6 @@ use crate::kernel::sparse::{
 };
 use crate::kernel::wrs::expose;
 use crate::parallel::collect;
-use crate::settings::Settings;
 use crate::stats::FrameStats;
 use crate::uniforms::{LatticeUniforms, ViewLattices};
 use glam::{Vec2, Vec3};
@@ -75,15 +74,14 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
         let inputs = Inputs::new(desc, frame, i, &held, has_history);
         let (past, next, next_noise) = history.split_surfaces(i);
         let lattices = frame.views[i].lattices.as_ref().expect("the frame was checked to have lattices");
-        let Settings { smr, .. } = desc.settings;
         let lattices = LatticeUniforms::of_view(lattices, desc.size_px);
         let view = View {
             inputs,
             words: past.words,
             noise: past.noise,
             lattices,
-            accumulate: smr.accumulate,
-            relights: crate::method::smr_relights(&desc.settings),
+            accumulate: desc.settings.method.smr().accumulate,
+            relights: crate::method::smr_sparse_relights(&desc.settings),
         };
         let observed = view.for_samples(|lattice, point| pack_observation(view.observe(lattice, point)));
         let lights = view.for_samples(|lattice, point| view.light(lattice, point, &observed));

@@ -70,6 +70,7 @@ struct Row<'a> {
 pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     let Pass { desc, history, frame, output, mut traces } = pass;
     let settings = &desc.settings;
+    let wrs = settings.method.wrs();
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
@@ -79,8 +80,8 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
             inputs: Inputs::new(desc, frame, i, &held, has_history),
             past,
             params: wrs_params(settings),
-            weight_exponent: settings.weight_exponent,
-            rate_exponent: settings.rate_exponent,
+            weight_exponent: wrs.weight_exponent,
+            rate_exponent: wrs.rate_exponent,
             has_references: has_references(settings),
             inv_density_at_fovea: inv_density_at_fovea(settings),
             frame_low: frame.index as u32,

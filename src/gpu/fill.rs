@@ -2,9 +2,9 @@
 
 use super::compute::{ComputeShader, float_texture, storage_texture, uniform};
 use super::history::array_view;
+use super::stages::{Job, Passes};
 use super::textures::batches;
-use super::uniforms::FrameUniforms;
-use super::{Frame, Textures, sparse};
+use super::{Textures, Variant};
 use crate::frame::ContextDesc;
 use crate::method::Overrides;
 use crate::shader::SHADERS;
@@ -24,9 +24,9 @@ pub(super) struct Fill {
 }
 
 impl Fill {
-    /// The pass for contexts of `desc`; `None` if their frames are not filled.
-    pub fn new(device: &Device, desc: &ContextDesc) -> Option<Self> {
-        is_needed(desc).then(|| Self::with_shader(device, desc, SHADERS.compose("fill_pass").source))
+    /// The pass for contexts of `desc`.
+    pub fn new(device: &Device, desc: &ContextDesc) -> Self {
+        Self::with_shader(device, desc, SHADERS.compose("fill_pass").source)
     }
 
     /// The pass of the WGSL text `source`.
@@ -38,41 +38,27 @@ impl Fill {
             color: color_texture(device, desc),
         }
     }
+}
 
-    /// Follows a change of the context's size.
-    pub fn resize(&mut self, device: &Device, desc: &ContextDesc) {
+impl Passes for Fill {
+    fn resize(&mut self, device: &Device, desc: &ContextDesc) {
         self.color = color_texture(device, desc);
     }
 
-    /// Compiles the pipeline.
-    pub fn prewarm(&self, device: &Device, regions: bool) {
-        self.shader.pipeline(device, &overrides(regions));
+    fn prewarm(&self, device: &Device, _: &ContextDesc, variant: Variant) {
+        self.shader.pipeline(device, &overrides(variant.regions));
     }
 
-    /// Shader and override values of each compiled pipeline.
-    pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
+    fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
         self.shader.pipelines()
     }
 
-    /// The filled color.
-    pub fn color(&self) -> Textures<'_> {
-        Textures::Layers(&self.color)
-    }
-
-    /// Records the pass for a sparse frame. `uniforms`: of this frame, before it is filled. `regions`: as of its
-    /// [`Variant`](super::Variant), so that prewarmed pipelines suffice.
-    pub fn record(
-        &self,
-        device: &Device,
-        pass: &mut ComputePass<'_>,
-        frame: &Frame<'_>,
-        uniforms: FrameUniforms,
-        regions: bool,
-    ) {
-        let lattices = sparse::lattices(device, frame, uniforms.size);
+    fn record<'a>(&'a self, device: &Device, pass: &mut ComputePass<'_>, job: &mut Job<'a>) {
+        let Some(lattices) = &job.lattices else { return };
+        let (frame, regions) = (&job.frame, job.variant.regions);
         let target = array_view(&self.color);
         for batch in batches(frame.views.len(), regions) {
-            let uniforms = uniforms.buffer(device, batch.views.start, 0);
+            let uniforms = job.uniforms.buffer(device, batch.views.start, 0);
             let color = frame.color.bind(&batch);
             let resources = [
                 uniforms.as_entire_binding(),
@@ -82,21 +68,18 @@ impl Fill {
             ];
             let group = self.shader.group(device, resources);
             let count = batch.views.len() as u32;
-            self.shader.dispatch(device, pass, &overrides(regions), &group, frame.views[0].geometry.size_px(), count);
+            self.shader.dispatch(device, pass, &overrides(regions), &group, job.desc.size_px, count);
         }
+        job.frame = job.frame.with_color(Textures::Layers(&self.color));
+        // A layer is a whole view.
+        job.uniforms.views.iter_mut().for_each(|view| view.color_origin = 0);
     }
 }
 
-/// Whether the frames of a context are filled.
-pub(super) fn is_needed(desc: &ContextDesc) -> bool {
-    desc.settings.fills_sparse_frames()
-}
-
-/// Bytes of the filled color, if the context has one.
+/// Bytes of the filled color.
 pub(super) fn memory_bytes(desc: &ContextDesc) -> u64 {
     let texels = desc.size_px.map(u64::from).iter().product::<u64>() * u64::from(desc.view_count);
-    let bytes = u64::from(FORMAT.block_copy_size(None).unwrap_or(0));
-    if is_needed(desc) { bytes * texels } else { 0 }
+    u64::from(FORMAT.block_copy_size(None).unwrap_or(0)) * texels
 }
 
 fn overrides(regions: bool) -> [(&'static str, u32); 1] {

@@ -2,15 +2,16 @@
 //! `src/cpu/fill_geometry.rs`.
 
 use super::compute::{ComputeShader, float_texture, storage_texture, uint_texture, uniform};
-use super::history::{History, array_view};
+use super::history::array_view;
 use super::method_pass::{Placeholders, input_overrides};
+use super::stages::{Job, Passes};
 use super::textures::batches;
-use super::uniforms::FrameUniforms;
-use super::{Frame, Textures, Variant, sparse};
+use super::{Textures, Variant};
 use crate::convention::DepthConvention;
 use crate::frame::ContextDesc;
 use crate::method::{HistoryLayout, Overrides};
 use crate::shader::SHADERS;
+use std::sync::OnceLock;
 use wgpu::{
     BindingResource, ComputePass, Device, Extent3d, Texture, TextureDescriptor, TextureDimension, TextureFormat,
     TextureUsages,
@@ -19,21 +20,65 @@ use wgpu::{
 /// Formats of filled distances and motion vectors.
 const FORMATS: [TextureFormat; 2] = [TextureFormat::R32Float, TextureFormat::Rg32Float];
 
+/// The stage. Its pass is made at the first frame with geometry at samples.
+#[derive(Debug)]
+pub(super) struct GeometryFill(OnceLock<GeometryPass>);
+
 /// The pass, and the filled geometry of the current frame.
 #[derive(Debug)]
-pub(super) struct GeometryFill {
+struct GeometryPass {
     shader: ComputeShader,
     absent: Placeholders,
     textures: [Texture; 2],
 }
 
 impl GeometryFill {
-    pub fn new(device: &Device, desc: &ContextDesc) -> Self {
-        Self::with_shader(device, desc, SHADERS.compose("fill_geometry_pass").source)
+    pub fn new() -> Self {
+        Self(OnceLock::new())
     }
 
     /// The pass of the WGSL text `source`.
     pub fn with_shader(device: &Device, desc: &ContextDesc, source: String) -> Self {
+        Self(GeometryPass::new(device, desc, source).into())
+    }
+
+    fn pass(&self, device: &Device, desc: &ContextDesc) -> &GeometryPass {
+        self.0.get_or_init(|| GeometryPass::new(device, desc, SHADERS.compose("fill_geometry_pass").source))
+    }
+}
+
+impl Passes for GeometryFill {
+    fn resize(&mut self, device: &Device, desc: &ContextDesc) {
+        if let Some(pass) = self.0.get_mut() {
+            pass.textures = textures(device, desc);
+        }
+    }
+
+    fn prewarm(&self, device: &Device, desc: &ContextDesc, variant: Variant) {
+        if variant.geometry_at_samples {
+            self.pass(device, desc).shader.pipeline(device, &overrides(desc, variant));
+        }
+    }
+
+    fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
+        self.0.get().map_or_else(Vec::new, |pass| pass.shader.pipelines())
+    }
+
+    fn added_bytes(&self) -> u64 {
+        self.0.get().map_or(0, GeometryPass::memory_bytes)
+    }
+
+    fn record<'a>(&'a self, device: &Device, pass: &mut ComputePass<'_>, job: &mut Job<'a>) {
+        if job.variant.geometry_at_samples {
+            let own = self.pass(device, job.desc);
+            own.record(device, pass, job);
+            own.replace(job);
+        }
+    }
+}
+
+impl GeometryPass {
+    fn new(device: &Device, desc: &ContextDesc, source: String) -> Self {
         // Numbers in `inputs`, `kept_history`, `lattices` and `fill_geometry_pass`.
         let [depth, motion] = FORMATS.map(storage_texture);
         let bindings = [
@@ -52,26 +97,11 @@ impl GeometryFill {
         }
     }
 
-    /// Follows a change of the context's size.
-    pub fn resize(&mut self, device: &Device, desc: &ContextDesc) {
-        self.textures = textures(device, desc);
-    }
-
-    /// Compiles the pipeline of a variant.
-    pub fn prewarm(&self, device: &Device, desc: &ContextDesc, variant: Variant) {
-        self.shader.pipeline(device, &overrides(desc, variant));
-    }
-
-    /// Shader and override values of each compiled pipeline.
-    pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
-        self.shader.pipelines()
-    }
-
-    /// The frame with filled geometry in place of the given one, and its uniforms.
-    pub fn filled<'a>(&'a self, frame: &Frame<'a>, mut uniforms: FrameUniforms) -> (Frame<'a>, FrameUniforms) {
+    /// Gives the filled geometry to the following stages.
+    fn replace<'a>(&'a self, job: &mut Job<'a>) {
         let map = DepthConvention::Linear.disparity_map();
-        uniforms.motion_scale = [1.0; 2];
-        for view in &mut uniforms.views {
+        job.uniforms.motion_scale = [1.0; 2];
+        for view in &mut job.uniforms.views {
             (view.disparity_a, view.disparity_b) = (map.a, map.b);
             view.disparity_flags = map.flags();
             view.motion_offset = [0.0; 2];
@@ -79,32 +109,20 @@ impl GeometryFill {
             (view.depth_origin, view.motion_origin) = (0, 0);
         }
         let [depth, motion] = &self.textures;
-        let filled = Frame {
-            depth: frame.depth.map(|_| Textures::Layers(depth)),
-            motion: frame.motion.map(|_| Textures::Layers(motion)),
-            ..*frame
-        };
-        (filled, uniforms)
+        job.frame.depth = job.frame.depth.map(|_| Textures::Layers(depth));
+        job.frame.motion = job.frame.motion.map(|_| Textures::Layers(motion));
     }
 
-    /// Records the pass. `uniforms`: of the frame, before it is filled.
-    pub fn record(
-        &self,
-        device: &Device,
-        pass: &mut ComputePass<'_>,
-        desc: &ContextDesc,
-        (frame, variant): (&Frame<'_>, Variant),
-        uniforms: FrameUniforms,
-        history: &History,
-    ) {
-        let lattices = sparse::lattices(device, frame, uniforms.size);
-        let past = history.split().0.views.first().filter(|_| sparse::is_needed(desc)).unwrap_or(&self.absent.word);
+    fn record(&self, device: &Device, pass: &mut ComputePass<'_>, job: &Job<'_>) {
+        let Job { desc, frame, variant, history, .. } = job;
+        let Some(lattices) = &job.lattices else { return };
+        let past = history.split().0.views.first().filter(|_| is_kept(desc)).unwrap_or(&self.absent.word);
         let [depth_out, motion_out] = self.textures.each_ref().map(array_view);
         for batch in batches(frame.views.len(), variant.regions) {
             let optional = |textures: Option<Textures<'_>>| {
                 textures.map_or_else(|| self.absent.float.clone(), |textures| textures.bind(&batch))
             };
-            let uniforms = uniforms.buffer(device, batch.views.start, 0);
+            let uniforms = job.uniforms.buffer(device, batch.views.start, 0);
             let (depth, motion) = (optional(frame.depth), optional(frame.motion));
             let group = self.shader.group(
                 device,
@@ -119,12 +137,12 @@ impl GeometryFill {
                 ],
             );
             let count = batch.views.len() as u32;
-            self.shader.dispatch(device, pass, &overrides(desc, variant), &group, desc.size_px, count);
+            self.shader.dispatch(device, pass, &overrides(desc, *variant), &group, desc.size_px, count);
         }
     }
 
     /// Bytes of the filled geometry.
-    pub fn memory_bytes(&self) -> u64 {
+    fn memory_bytes(&self) -> u64 {
         let bytes = |texture: &Texture| {
             let size = texture.size();
             let texels = u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers);
@@ -137,8 +155,13 @@ impl GeometryFill {
 /// Override values. The pass reads no trust mask.
 fn overrides(desc: &ContextDesc, variant: Variant) -> Overrides {
     let mut list = input_overrides(desc, Variant { trust: false, ..variant });
-    list.push(("HAS_KEPT", u32::from(sparse::is_needed(desc))));
+    list.push(("HAS_KEPT", u32::from(is_kept(desc))));
     list
+}
+
+/// Whether history has samples that kept their places.
+fn is_kept(desc: &ContextDesc) -> bool {
+    matches!(desc.settings.history_layout(), HistoryLayout::Kept { .. })
 }
 
 fn textures(device: &Device, desc: &ContextDesc) -> [Texture; 2] {

@@ -1,7 +1,7 @@
 //! State between frames: two sets of textures, the previous frame's to read and the current one's to write, which swap
 //! after each frame.
 
-use super::mip_chain::{self, CandidatePass, Candidates, MipChainPass, MipLevel};
+use super::mip_chain::{self, Candidates, MipLevel};
 use crate::frame::ContextDesc;
 use crate::kernel::foveate::level_len;
 use crate::method::HistoryLayout;
@@ -27,44 +27,26 @@ pub(super) struct Planes {
 #[derive(Debug)]
 pub(super) struct History {
     layout: HistoryLayout,
-    sets: [Planes; 2],
-    candidates: Option<Candidates>,
+    pub sets: [Planes; 2],
+    /// Mip chain of noisy candidates, if there is one.
+    pub candidates: Option<Candidates>,
     past: usize,
     filled: bool,
     pub held: Vec<Held>,
 }
 
 impl History {
-    /// Empty history. `mip_chain` and `candidates` fill the mip chains of surfaces and of candidates, if the layout has
-    /// them.
-    pub fn new(
-        device: &Device,
-        desc: &ContextDesc,
-        layout: HistoryLayout,
-        mip_chain: Option<&MipChainPass>,
-        candidates: Option<&CandidatePass>,
-    ) -> Self {
+    /// Empty history, without what stages [add](super::stages::Passes::extend).
+    pub fn new(device: &Device, desc: &ContextDesc) -> Self {
+        let layout = desc.settings.history_layout();
         let planes = || {
             let textures: Vec<_> = plan(desc, layout).iter().map(|p| p.create(device, desc)).collect();
-            let mip_levels = match (mip_chain, textures.get(1)) {
-                (Some(pass), Some(texture)) => pass.levels(device, texture, desc.size_px),
-                _ => vec![],
-            };
             let views = textures.iter().map(|t| levels_view(t, 0, None, None)).collect();
             let targets = textures.iter().map(array_view).collect();
-            Planes { textures, views, targets, mip_levels }
-        };
-        let candidates = match (candidates, candidate_plan(desc, layout)) {
-            (Some(pass), Some(plan)) => Some(pass.levels(device, desc, plan)),
-            _ => None,
+            Planes { textures, views, targets, mip_levels: vec![] }
         };
         let held = vec![Held::default(); desc.view_count as usize];
-        Self { layout, sets: [planes(), planes()], candidates, past: 0, filled: false, held }
-    }
-
-    /// Mip chain of noisy candidates.
-    pub fn candidates(&self) -> Option<&Candidates> {
-        self.candidates.as_ref()
+        Self { layout, sets: [planes(), planes()], candidates: None, past: 0, filled: false, held }
     }
 
     pub fn layout(&self) -> HistoryLayout {
@@ -98,7 +80,7 @@ impl History {
 pub(super) fn memory_bytes(desc: &ContextDesc) -> u64 {
     let layout = desc.settings.history_layout();
     let sets: u64 = plan(desc, layout).iter().map(|p| 2 * p.bytes(desc)).sum();
-    sets + candidate_plan(desc, layout).map_or(0, |p| p.bytes(desc))
+    sets + candidate_plan(desc).map_or(0, |p| p.bytes(desc))
 }
 
 /// A texture of history.
@@ -131,8 +113,8 @@ fn plan(desc: &ContextDesc, layout: HistoryLayout) -> Vec<Plan> {
 }
 
 /// Mip chain of noisy candidates, if the layout has one.
-pub(super) fn candidate_plan(desc: &ContextDesc, layout: HistoryLayout) -> Option<Plan> {
-    match layout {
+pub(super) fn candidate_plan(desc: &ContextDesc) -> Option<Plan> {
+    match desc.settings.history_layout() {
         HistoryLayout::Surfaces { levels, noisy: true } => Some(mip_chain_plan(desc, levels)),
         _ => None,
     }

@@ -5,11 +5,11 @@
 //! which a specialised shader does not read.
 
 use super::compute::{ComputeShader, float_texture, storage_buffer, storage_texture, uint_texture, uniform};
-use super::history::{History, array_view};
+use super::history::array_view;
 use super::output::DEBUG_FORMAT;
+use super::stages::{Job, Passes};
 use super::textures::{Batch, batches};
-use super::uniforms::FrameUniforms;
-use super::{Frame, Target, Textures, Variant};
+use super::{Textures, Variant};
 use crate::frame::ContextDesc;
 use crate::kernel::debug_view::DebugView;
 use crate::method::{HistoryLayout, Overrides, PassShader};
@@ -59,21 +59,6 @@ impl Placeholders {
     }
 }
 
-/// A frame to record: its description, and what follows from it.
-pub(super) struct Job<'a, 'f> {
-    pub desc: &'a ContextDesc,
-    pub frame: &'a Frame<'f>,
-    pub target: &'a Target<'a>,
-    /// View to output in place of the frame, without storing anything.
-    pub view: Option<DebugView>,
-    pub uniforms: FrameUniforms,
-    pub history: &'a History,
-    /// Lattices, if the pass reads samples.
-    pub lattices: Option<&'a Buffer>,
-    /// Gain and fit for each sample, for smr.
-    pub lights: Option<&'a TextureView>,
-}
-
 impl MethodPass {
     /// The pass of the WGSL text `source`, for outputs of format `output`.
     pub fn new(device: &Device, settings: &Settings, output: TextureFormat, source: &str) -> Self {
@@ -100,21 +85,6 @@ impl MethodPass {
         }
     }
 
-    /// Shader of the pass.
-    pub fn pass_shader(&self) -> PassShader {
-        self.pass_shader
-    }
-
-    /// Compiles the pipeline of a variant.
-    pub fn prewarm(&self, device: &Device, desc: &ContextDesc, variant: Variant) {
-        self.shader(device, variant).pipeline(device, &overrides(desc, variant, None));
-    }
-
-    /// Shader and override values of each compiled pipeline.
-    pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
-        [Some(&self.shader), self.with_view.get()].into_iter().flatten().flat_map(ComputeShader::pipelines).collect()
-    }
-
     fn shader(&self, device: &Device, variant: Variant) -> &ComputeShader {
         if variant.debug.is_none() {
             return &self.shader;
@@ -128,20 +98,8 @@ impl MethodPass {
         })
     }
 
-    /// Records the pass.
-    pub fn record(&self, device: &Device, pass: &mut ComputePass<'_>, job: &Job<'_, '_>) {
-        let variant = Variant::of(job.frame, job.target);
-        let shader = self.shader(device, variant);
-        let blocks = job.uniforms.size.map(|s| s.div_ceil(self.pass_shader.block_px));
-        let overrides = overrides(job.desc, variant, job.view);
-        for batch in batches(job.frame.views.len(), variant.regions) {
-            let group = self.group(device, shader, job, &batch);
-            shader.dispatch(device, pass, &overrides, &group, blocks, batch.views.len() as u32);
-        }
-    }
-
     /// Bind group of a batch of views.
-    fn group(&self, device: &Device, shader: &ComputeShader, job: &Job<'_, '_>, batch: &Batch) -> BindGroup {
+    fn group(&self, device: &Device, shader: &ComputeShader, job: &Job<'_>, batch: &Batch) -> BindGroup {
         let Job { frame, target, history, .. } = job;
         let uniforms = job.uniforms.buffer(device, batch.views.start, 0);
         let optional =
@@ -157,7 +115,7 @@ impl MethodPass {
         let debug = target.debug.map(|d| d.output.bind(batch));
         let (past, next) = history.split();
         let (past, next) = (&past.views, &next.targets);
-        let candidates = history.candidates().map_or(&self.absent.float, |c| &c.view);
+        let candidates = history.candidates.as_ref().map_or(&self.absent.float, |c| &c.view);
         let past_or = |i: usize, absent| past.get(i).unwrap_or(absent);
         let next_or = |i: usize| next.get(i).unwrap_or(&self.absent.out[i]);
         let history_views = match self.history {
@@ -174,7 +132,7 @@ impl MethodPass {
             HistoryLayout::Kept { .. } => vec![
                 past_or(0, &self.absent.word),
                 next_or(0),
-                job.lights.unwrap_or(&self.absent.word),
+                job.lights.as_ref().unwrap_or(&self.absent.word),
                 past_or(1, &self.absent.word),
                 next.get(1).unwrap_or(&self.absent.out[2]),
             ],
@@ -189,6 +147,7 @@ impl MethodPass {
                 next_or(2),
             ],
         };
+        let lattices = job.lattices.as_ref().filter(|_| self.pass_shader.reads_samples);
         let counters = BindingResource::Buffer(BufferBinding {
             buffer: target.counters.unwrap_or(&self.no_counters),
             offset: 0,
@@ -198,9 +157,30 @@ impl MethodPass {
             .chain(inputs.iter().map(BindingResource::TextureView))
             .chain([counters, BindingResource::TextureView(&noise)])
             .chain(history_views.into_iter().map(BindingResource::TextureView))
-            .chain(job.lattices.map(Buffer::as_entire_binding))
+            .chain(lattices.map(Buffer::as_entire_binding))
             .chain(debug.as_ref().map(BindingResource::TextureView));
         shader.group(device, resources)
+    }
+}
+
+impl Passes for MethodPass {
+    fn prewarm(&self, device: &Device, desc: &ContextDesc, variant: Variant) {
+        self.shader(device, variant).pipeline(device, &overrides(desc, variant, None));
+    }
+
+    fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
+        [Some(&self.shader), self.with_view.get()].into_iter().flatten().flat_map(ComputeShader::pipelines).collect()
+    }
+
+    fn record<'a>(&'a self, device: &Device, pass: &mut ComputePass<'_>, job: &mut Job<'a>) {
+        let variant = Variant::of(&job.frame, job.target);
+        let shader = self.shader(device, variant);
+        let blocks = job.uniforms.size.map(|s| s.div_ceil(self.pass_shader.block_px));
+        let overrides = overrides(job.desc, variant, job.view);
+        for batch in batches(job.frame.views.len(), variant.regions) {
+            let group = self.group(device, shader, job, &batch);
+            shader.dispatch(device, pass, &overrides, &group, blocks, batch.views.len() as u32);
+        }
     }
 }
 
@@ -216,7 +196,7 @@ fn overrides(desc: &ContextDesc, variant: Variant, view: Option<DebugView>) -> O
         ("KEEP_ALPHA", flag(desc.keep_alpha)),
     ]);
     list.extend(variant.debug.map(|v| ("BESIDE", v as u32)));
-    list.extend((settings.method.entry().overrides)(settings, variant.lod));
+    list.extend(settings.overrides(variant.lod));
     list
 }
 

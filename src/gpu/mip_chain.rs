@@ -1,9 +1,10 @@
 //! Mip chains of stored surfaces and of noisy candidates.
 
-use super::Frame;
+use super::Variant;
 use super::buffer::filled;
 use super::compute::{ComputeShader, WORKGROUP_WIDTH, float_texture, storage_texture, uniform};
-use super::history::{Plan, array_view, levels_view};
+use super::history::{History, array_view, candidate_plan, levels_view};
+use super::stages::{Job, Passes};
 use super::textures::batches;
 use super::uniforms::CandidateUniforms;
 use crate::frame::ContextDesc;
@@ -69,28 +70,44 @@ impl MipChainPass {
             .collect()
     }
 
-    /// Compiles the pipeline.
-    pub fn prewarm(&self, device: &Device) {
-        self.shader.pipeline(device, &self.overrides());
-    }
-
-    /// Shader and override values of each compiled pipeline.
-    pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
-        self.shader.pipelines()
-    }
-
     fn overrides(&self) -> [(&'static str, u32); 1] {
         [("CANDIDATES", u32::from(self.kind == MipChainKind::Candidates))]
     }
 
     /// Records the dispatches of `levels`.
-    pub fn record(&self, device: &Device, pass: &mut ComputePass<'_>, levels: &[MipLevel]) {
+    fn fill(&self, device: &Device, pass: &mut ComputePass<'_>, levels: &[MipLevel]) {
         pass.set_pipeline(&self.shader.pipeline(device, &self.overrides()));
         for level in levels {
             pass.set_bind_group(0, &level.group, &[]);
             let [x, y, z] = level.workgroups;
             pass.dispatch_workgroups(x, y, z);
         }
+    }
+}
+
+impl Passes for MipChainPass {
+    fn extend(&self, device: &Device, desc: &ContextDesc, history: &mut History) {
+        for planes in &mut history.sets {
+            planes.mip_levels = self.levels(device, &planes.textures[1], desc.size_px);
+        }
+    }
+
+    fn prewarm(&self, device: &Device, _: &ContextDesc, _: Variant) {
+        self.shader.pipeline(device, &self.overrides());
+    }
+
+    fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
+        self.shader.pipelines()
+    }
+
+    fn record<'a>(&'a self, device: &Device, pass: &mut ComputePass<'_>, job: &mut Job<'a>) {
+        if job.view.is_none() {
+            self.complete(device, pass, job.history);
+        }
+    }
+
+    fn complete(&self, device: &Device, pass: &mut ComputePass<'_>, history: &History) {
+        self.fill(device, pass, &history.split().1.mip_levels);
     }
 }
 
@@ -119,31 +136,33 @@ impl CandidatePass {
             rest: MipChainPass::new(device, MipChainKind::Candidates),
         }
     }
+}
 
+impl Passes for CandidatePass {
     /// An empty mip chain for each view.
-    pub fn levels(&self, device: &Device, desc: &ContextDesc, plan: Plan) -> Candidates {
-        let texture = plan.create(device, desc);
-        Candidates {
-            view: levels_view(&texture, 0, None, None),
-            target: array_view(&texture),
-            levels: self.rest.levels(device, &texture, desc.size_px),
-        }
+    fn extend(&self, device: &Device, desc: &ContextDesc, history: &mut History) {
+        history.candidates = candidate_plan(desc).map(|plan| {
+            let texture = plan.create(device, desc);
+            Candidates {
+                view: levels_view(&texture, 0, None, None),
+                target: array_view(&texture),
+                levels: self.rest.levels(device, &texture, desc.size_px),
+            }
+        });
     }
 
-    /// Compiles the pipelines.
-    pub fn prewarm(&self, device: &Device) {
+    fn prewarm(&self, device: &Device, desc: &ContextDesc, variant: Variant) {
         self.first.pipeline(device, &[]);
-        self.rest.prewarm(device);
+        self.rest.prewarm(device, desc, variant);
     }
 
-    /// Shader and override values of each compiled pipeline.
-    pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
+    fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
         [self.first.pipelines(), self.rest.pipelines()].concat()
     }
 
-    /// Records all levels of a frame's candidates; nothing for a frame without noise.
-    pub fn record(&self, device: &Device, pass: &mut ComputePass<'_>, frame: &Frame<'_>, candidates: &Candidates) {
-        let Some(noise) = frame.noise else { return };
+    fn record<'a>(&'a self, device: &Device, pass: &mut ComputePass<'_>, job: &mut Job<'a>) {
+        let frame = &job.frame;
+        let (Some(noise), Some(candidates)) = (frame.noise, &job.history.candidates) else { return };
         let size = frame.views[0].geometry.size_px();
         for batch in batches(frame.views.len(), frame.color.is_regions() || noise.is_regions()) {
             let first = batch.views.start as usize;
@@ -165,6 +184,6 @@ impl CandidatePass {
             let group = self.first.group(device, resources);
             self.first.dispatch(device, pass, &[], &group, size.map(|s| level_len(s, 1)), batch.views.len() as u32);
         }
-        self.rest.record(device, pass, &candidates.levels);
+        self.rest.fill(device, pass, &candidates.levels);
     }
 }

@@ -23,6 +23,7 @@ mod output;
 #[doc(hidden)]
 pub mod resize;
 mod sparse;
+mod stages;
 mod textures;
 // For the tests, which compare struct layouts.
 #[doc(hidden)]
@@ -40,9 +41,10 @@ pub use textures::{Region, Textures};
 pub use uniforms::MAX_VIEWS;
 
 use crate::error::{CreateError, FrameError, SettingsError};
+use crate::foveation::Filter;
 use crate::frame::{ContextDesc, Executor, check_size};
 use crate::kernel::debug_view::DebugView;
-use crate::method::HistoryLayout;
+use crate::method::{HistoryLayout, PassShader, Stage};
 use crate::resize::Resize;
 use crate::settings::Settings;
 use crate::shader::SHADERS;
@@ -51,13 +53,11 @@ use crate::uniforms::Held;
 use fill::Fill;
 use fill_geometry::GeometryFill;
 use history::History;
-use method_pass::{Job, MethodPass};
-use mip_chain::{CandidatePass, MipChainKind, MipChainPass};
 use resize::ResizePass;
 use sparse::SamplePasses;
-use std::sync::OnceLock;
+use stages::{Job, Stages};
 use uniforms::FrameUniforms;
-use wgpu::{CommandEncoder, ComputePassDescriptor, Device, Limits, Texture, TextureFormat, TextureUsages};
+use wgpu::{CommandEncoder, Device, Limits, Texture, TextureFormat, TextureUsages};
 
 /// The post-process on a GPU: a context with its settings, history and pipelines.
 ///
@@ -69,57 +69,17 @@ use wgpu::{CommandEncoder, ComputePassDescriptor, Device, Limits, Texture, Textu
 pub struct Afterimage {
     desc: ContextDesc,
     output_format: TextureFormat,
-    passes: Passes,
-    /// For sparse frames of methods that read whole ones.
-    fill: Option<Fill>,
-    /// For sparse frames of smr, which reads the samples themselves.
-    samples: Option<SamplePasses>,
-    /// For sparse frames with depth and motion at their samples only; made at the first one.
-    geometry: OnceLock<GeometryFill>,
+    pass_shader: PassShader,
+    stages: Stages,
     history: History,
+    /// Made at the first change of size that keeps history.
+    resize: Option<ResizePass>,
 }
 
 impl Executor for Afterimage {
     type Colors<'a> = Textures<'a>;
     type Scalars<'a> = Textures<'a>;
     type Vectors<'a> = Textures<'a>;
-}
-
-/// Passes of a method.
-#[derive(Debug)]
-struct Passes {
-    method: MethodPass,
-    mip_chain: Option<MipChainPass>,
-    candidates: Option<CandidatePass>,
-    /// Made at the first change of size that keeps history.
-    resize: Option<ResizePass>,
-}
-
-impl Passes {
-    fn new(device: &Device, settings: &Settings, output: TextureFormat, source: &str) -> Self {
-        Self {
-            method: MethodPass::new(device, settings, output, source),
-            mip_chain: matches!(settings.history_layout(), HistoryLayout::Surfaces { levels: 1.., .. })
-                .then(|| MipChainPass::new(device, MipChainKind::Surfaces)),
-            candidates: None,
-            resize: None,
-        }
-    }
-
-    fn resize(&mut self, device: &Device, layout: HistoryLayout) -> Option<&ResizePass> {
-        if self.resize.as_ref().is_none_or(|pass| pass.layout() != layout) {
-            self.resize = ResizePass::new(device, layout);
-        }
-        self.resize.as_ref()
-    }
-
-    fn history(&mut self, device: &Device, desc: &ContextDesc) -> History {
-        let layout = desc.settings.history_layout();
-        if matches!(layout, HistoryLayout::Surfaces { noisy: true, .. }) {
-            self.candidates.get_or_insert_with(|| CandidatePass::new(device));
-        }
-        History::new(device, desc, layout, self.mip_chain.as_ref(), self.candidates.as_ref())
-    }
 }
 
 /// Uniforms of a frame, and what else follows from its description.
@@ -158,29 +118,29 @@ impl Afterimage {
         source: &str,
     ) -> Result<Self, CreateError> {
         validate(device, desc, output_format)?;
-        let mut passes = Passes::new(device, &desc.settings, output_format, source);
-        let (fill, samples) = (Fill::new(device, desc), SamplePasses::new(device, desc));
-        let history = passes.history(device, desc);
-        Ok(Self { desc: *desc, output_format, passes, fill, samples, geometry: OnceLock::new(), history })
+        let stages = Stages::new(device, desc, output_format, source);
+        let history = stages.history(device, desc);
+        let pass_shader = desc.settings.pass_shader();
+        Ok(Self { desc: *desc, output_format, pass_shader, stages, history, resize: None })
     }
 
     /// Another shader for the pass that fills sparse frames, for tests that plant errors.
     #[doc(hidden)]
     pub fn set_fill_shader(&mut self, device: &Device, source: &str) {
-        self.fill = Some(Fill::with_shader(device, &self.desc, source.to_owned()));
+        self.stages.replace(Stage::Fill, Fill::with_shader(device, &self.desc, source.to_owned()));
     }
 
     /// Another shader for the pass that fills geometry, for tests that plant errors.
     #[doc(hidden)]
     pub fn set_geometry_shader(&mut self, device: &Device, source: &str) {
-        self.geometry = GeometryFill::with_shader(device, &self.desc, source.to_owned()).into();
+        self.stages.replace(Stage::Geometry, GeometryFill::with_shader(device, &self.desc, source.to_owned()));
     }
 
     /// Other shaders for the passes over the samples of sparse frames, for tests that plant errors.
     #[doc(hidden)]
     pub fn set_sample_shaders(&mut self, device: &Device, observe: &str, light: &str) {
         let sources = [observe, light].map(str::to_owned);
-        self.samples = Some(SamplePasses::with_shaders(device, &self.desc, sources));
+        self.stages.replace(Stage::Samples, SamplePasses::with_shaders(device, &self.desc, sources));
     }
 
     /// Limits that a device needs for a context: WebGPU's defaults, with a larger texture size for large frames.
@@ -204,29 +164,20 @@ impl Afterimage {
 
     /// Changes the settings from the next frame on.
     ///
-    /// History survives, unless its layout changes: with [`method`](Settings::method), [`noisy`](Settings::noisy),
-    /// [`sampler`](Settings::sampler), the scale of the [`gate`](Settings::gate), and for smr with `rate_far` and
-    /// `filter` of the [`foveation`](Settings::foveation).
+    /// History survives, unless its layout changes: with another [`method`](Settings::method), with
+    /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::Wrs::sampler) and the scale of its
+    /// [`gate`](crate::Wrs::gate), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
     ///
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
     pub fn set_settings(&mut self, device: &Device, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
-        let same_shader = settings.pass_shader() == self.passes.method.pass_shader();
+        let has_same_pass = settings.pass_shader() == self.pass_shader;
         let same_history = settings.history_layout() == self.history.layout();
-        self.desc.settings = settings;
-        if !same_shader {
-            let source = SHADERS.compose(settings.pass_shader().name).source;
-            self.passes = Passes::new(device, &settings, self.output_format, &source);
-        }
-        if !(same_shader && same_history) {
-            self.history = self.passes.history(device, &self.desc);
-        }
-        if self.fill.is_some() != fill::is_needed(&self.desc) {
-            self.fill = Fill::new(device, &self.desc);
-        }
-        if self.samples.is_some() != sparse::is_needed(&self.desc) {
-            self.samples = SamplePasses::new(device, &self.desc);
+        (self.desc.settings, self.pass_shader) = (settings, settings.pass_shader());
+        self.stages.update(device, &self.desc, self.output_format, has_same_pass);
+        if !(has_same_pass && same_history) {
+            self.history = self.stages.history(device, &self.desc);
         }
         Ok(())
     }
@@ -239,7 +190,7 @@ impl Afterimage {
     pub fn resize(&mut self, device: &Device, size_px: [u32; 2]) -> Result<(), FrameError> {
         check_size(size_px)?;
         self.set_size(device, size_px);
-        self.history = self.passes.history(device, &self.desc);
+        self.history = self.stages.history(device, &self.desc);
         Ok(())
     }
 
@@ -262,17 +213,18 @@ impl Afterimage {
         check_size(size_px)?;
         let resize = Resize::new(self.desc.size_px, size_px);
         self.set_size(device, size_px);
-        let mut history = self.passes.history(device, &self.desc);
+        let mut history = self.stages.history(device, &self.desc);
         history.held = self.history.held.iter().map(|held| resize.held(*held)).collect();
         if self.history.is_filled() {
-            let (past, next) = (self.history.split().0, history.split().1);
-            if let Some(pass) = self.passes.resize(device, history.layout()) {
-                pass.record(device, encoder, &resize, self.desc.view_count, [past, next]);
+            let layout = history.layout();
+            if self.resize.as_ref().is_none_or(|pass| pass.layout() != layout) {
+                self.resize = ResizePass::new(device, layout);
             }
-            if let Some(mip_chain) = &self.passes.mip_chain {
-                let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor::default());
-                mip_chain.record(device, &mut pass, &next.mip_levels);
+            if let Some(pass) = &self.resize {
+                let planes = [self.history.split().0, history.split().1];
+                pass.record(device, encoder, &resize, self.desc.view_count, planes);
             }
+            self.stages.complete(device, encoder, &history);
             history.swap();
         }
         self.history = history;
@@ -281,15 +233,7 @@ impl Afterimage {
 
     fn set_size(&mut self, device: &Device, size_px: [u32; 2]) {
         self.desc.size_px = size_px;
-        if let Some(fill) = &mut self.fill {
-            fill.resize(device, &self.desc);
-        }
-        if let Some(samples) = &mut self.samples {
-            samples.resize(device, &self.desc);
-        }
-        if let Some(geometry) = self.geometry.get_mut() {
-            geometry.resize(device, &self.desc);
-        }
+        self.stages.resize(device, &self.desc);
     }
 
     /// Discards history and held gaze positions: the next frame is processed like the first one.
@@ -306,47 +250,20 @@ impl Afterimage {
     /// force that, too.
     pub fn prewarm(&self, device: &Device, variants: impl IntoIterator<Item = Variant>) {
         for variant in variants {
-            self.passes.method.prewarm(device, &self.desc, variant);
-            if let Some(fill) = &self.fill {
-                fill.prewarm(device, variant.regions);
-            }
-            if let Some(samples) = &self.samples {
-                samples.prewarm(device, &self.desc, variant);
-            }
-            if variant.geometry_at_samples {
-                self.geometry(device).prewarm(device, &self.desc, variant);
-            }
-        }
-        if let Some(mip_chain) = &self.passes.mip_chain {
-            mip_chain.prewarm(device);
-        }
-        if let Some(candidates) = &self.passes.candidates {
-            candidates.prewarm(device);
+            self.stages.prewarm(device, &self.desc, variant);
         }
     }
 
     /// Shader module and override values of each compiled pipeline, for tests and for the count of instructions.
     #[doc(hidden)]
     pub fn pipelines(&self) -> Vec<(&'static str, Vec<(&'static str, u32)>)> {
-        let Passes { method, mip_chain, candidates, resize } = &self.passes;
-        [
-            Some(method.pipelines()),
-            mip_chain.as_ref().map(MipChainPass::pipelines),
-            candidates.as_ref().map(CandidatePass::pipelines),
-            resize.as_ref().map(ResizePass::pipelines),
-            self.fill.as_ref().map(Fill::pipelines),
-            self.samples.as_ref().map(SamplePasses::pipelines),
-            self.geometry.get().map(GeometryFill::pipelines),
-        ]
-        .into_iter()
-        .flatten()
-        .flatten()
-        .collect()
+        let resize = self.resize.as_ref().map(ResizePass::pipelines);
+        self.stages.pipelines().chain(resize.into_iter().flatten()).collect()
     }
 
     /// Size in bytes of the textures that the context holds between frames.
     pub fn memory_bytes(&self) -> u64 {
-        Self::memory_bytes_of(&self.desc) + self.geometry.get().map_or(0, GeometryFill::memory_bytes)
+        Self::memory_bytes_of(&self.desc) + self.stages.added_bytes()
     }
 
     /// Size in bytes of the textures that a context of this description would hold between frames; 12 bytes a pixel
@@ -360,7 +277,7 @@ impl Afterimage {
     /// assert_eq!(bytes / (1920 * 1080), 21);
     /// ```
     pub fn memory_bytes_of(desc: &ContextDesc) -> u64 {
-        history::memory_bytes(desc) + fill::memory_bytes(desc) + sparse::memory_bytes(desc)
+        history::memory_bytes(desc) + stages::memory_bytes_of(desc)
     }
 
     /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
@@ -449,51 +366,24 @@ impl Afterimage {
         frame: &Frame<'_>,
         target: &Target<'_>,
         view: Option<DebugView>,
-        mut uniforms: FrameUniforms,
+        uniforms: FrameUniforms,
     ) {
         if let Some(counters) = target.counters {
             encoder.clear_buffer(counters, 0, Some(COUNTERS_BYTES));
         }
-        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-            label: Some("afterimage"),
-            timestamp_writes: target.timestamps.map(|t| t.writes()),
-        });
-        if let (Some(passes), Some(candidates)) = (&self.passes.candidates, self.history.candidates()) {
-            passes.record(device, &mut pass, frame, candidates);
-        }
-        let variant = Variant::of(frame, target);
-        let color = match &self.fill {
-            Some(fill) => {
-                fill.record(device, &mut pass, frame, uniforms, variant.regions);
-                // A layer is a whole view.
-                uniforms.views.iter_mut().for_each(|view| view.color_origin = 0);
-                fill.color()
-            }
-            None => frame.color,
+        let reads_samples = self.pass_shader.reads_samples || self.desc.settings.foveation.filter == Filter::Sparse;
+        let job = Job {
+            desc: &self.desc,
+            frame: frame.with_color(frame.color),
+            target,
+            variant: Variant::of(frame, target),
+            view,
+            uniforms,
+            history: &self.history,
+            lattices: reads_samples.then(|| sparse::lattices(device, frame, uniforms.size)),
+            lights: None,
         };
-        let mut frame = frame.with_color(color);
-        if variant.geometry_at_samples {
-            let geometry = self.geometry(device);
-            geometry.record(device, &mut pass, &self.desc, (&frame, variant), uniforms, &self.history);
-            (frame, uniforms) = geometry.filled(&frame, uniforms);
-        }
-        let frame = &frame;
-        let reads_samples = self.passes.method.pass_shader().reads_samples;
-        let lattices = reads_samples.then(|| sparse::lattices(device, frame, uniforms.size));
-        let lattices = lattices.as_ref();
-        let lights = self.samples.as_ref().zip(lattices).map(|(samples, lattices)| {
-            samples.record(device, &mut pass, &self.desc, (frame, variant), (uniforms, lattices), &self.history);
-            samples.lights()
-        });
-        let job = Job { desc: &self.desc, frame, target, view, uniforms, history: &self.history, lattices, lights };
-        self.passes.method.record(device, &mut pass, &job);
-        if let (Some(mip_chain), None) = (&self.passes.mip_chain, view) {
-            mip_chain.record(device, &mut pass, &self.history.split().1.mip_levels);
-        }
-    }
-
-    fn geometry(&self, device: &Device) -> &GeometryFill {
-        self.geometry.get_or_init(|| GeometryFill::new(device, &self.desc))
+        self.stages.record(device, encoder, job);
     }
 
     fn prepare(&self, frame: &Frame<'_>, target: &Target<'_>) -> Prepared {

@@ -3,14 +3,15 @@
 
 use super::buffer::filled;
 use super::compute::{ComputeShader, float_texture, storage_texture, uint_texture, uniform};
-use super::history::{History, array_view};
+use super::history::array_view;
 use super::method_pass::{Placeholders, input_overrides};
+use super::stages::{Job, Passes};
 use super::textures::{Batch, batches};
-use super::uniforms::{FrameUniforms, LatticeUniforms, SparseUniforms, ViewLattices};
+use super::uniforms::{LatticeUniforms, SparseUniforms, ViewLattices};
 use super::{Frame, Textures, Variant};
 use crate::frame::ContextDesc;
 use crate::lattice::Lattices;
-use crate::method::{HistoryLayout, Overrides, smr_relights};
+use crate::method::{HistoryLayout, Overrides, smr_sparse_relights};
 use crate::shader::SHADERS;
 use crate::uniforms::results_size;
 use wgpu::{
@@ -38,10 +39,10 @@ pub(super) fn lattices(device: &Device, frame: &Frame<'_>, size_px: [u32; 2]) ->
 }
 
 impl SamplePasses {
-    /// The passes for contexts of `desc`; `None` if they are not for sparse frames that smr reconstructs.
-    pub fn new(device: &Device, desc: &ContextDesc) -> Option<Self> {
+    /// The passes for contexts of `desc`.
+    pub fn new(device: &Device, desc: &ContextDesc) -> Self {
         let sources = ["sparse_observe_pass", "sparse_light_pass"].map(|name| SHADERS.compose(name).source);
-        is_needed(desc).then(|| Self::with_shaders(device, desc, sources))
+        Self::with_shaders(device, desc, sources)
     }
 
     /// The passes of the WGSL texts `observe` and `light`.
@@ -65,39 +66,27 @@ impl SamplePasses {
             absent: Placeholders::new(device, HistoryLayout::Kept { noisy: false }),
         }
     }
+}
 
-    /// Follows a change of the context's size.
-    pub fn resize(&mut self, device: &Device, desc: &ContextDesc) {
+impl Passes for SamplePasses {
+    fn resize(&mut self, device: &Device, desc: &ContextDesc) {
         [self.observed, self.lights] = [(); 2].map(|()| array_view(&results(device, desc)));
     }
 
-    /// Compiles the pipelines of a variant.
-    pub fn prewarm(&self, device: &Device, desc: &ContextDesc, variant: Variant) {
+    fn prewarm(&self, device: &Device, desc: &ContextDesc, variant: Variant) {
         let [observe, light] = overrides(desc, variant);
         self.observe.pipeline(device, &observe);
         self.light.pipeline(device, &light);
     }
 
-    /// Shader and override values of each compiled pipeline.
-    pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
+    fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
         [&self.observe, &self.light].into_iter().flat_map(ComputeShader::pipelines).collect()
     }
 
-    /// Gain and fit for each sample.
-    pub fn lights(&self) -> &TextureView {
-        &self.lights
-    }
-
-    /// Records the passes for a sparse frame. `lattices`: its uniforms.
-    pub fn record(
-        &self,
-        device: &Device,
-        pass: &mut ComputePass<'_>,
-        desc: &ContextDesc,
-        (frame, variant): (&Frame<'_>, Variant),
-        (uniforms, lattices): (FrameUniforms, &Buffer),
-        history: &History,
-    ) {
+    fn record<'a>(&'a self, device: &Device, pass: &mut ComputePass<'_>, job: &mut Job<'a>) {
+        let Job { desc, frame, history, variant, uniforms, .. } = &*job;
+        let Some(lattices) = &job.lattices else { return };
+        let (desc, variant) = (*desc, *variant);
         let overrides = overrides(desc, variant);
         let past = &history.split().0.views;
         let past_noise = past.get(1).unwrap_or(&self.absent.word);
@@ -133,6 +122,7 @@ impl SamplePasses {
                 }
             }
         }
+        job.lights = Some(self.lights.clone());
     }
 }
 
@@ -153,7 +143,7 @@ fn samples(frame: &Frame<'_>, batch: &Batch, size_px: [u32; 2]) -> impl Iterator
 fn overrides(desc: &ContextDesc, variant: Variant) -> [Overrides; 2] {
     let mut observe = input_overrides(desc, variant);
     observe.push(("NOISY", u32::from(desc.settings.noisy)));
-    let relight = [("RELIGHT_ON", u32::from(smr_relights(&desc.settings)))];
+    let relight = [("RELIGHT_ON", u32::from(smr_sparse_relights(&desc.settings)))];
     let light = observe.iter().copied().chain(relight).collect();
     [observe, light]
 }
@@ -173,14 +163,8 @@ fn results(device: &Device, desc: &ContextDesc) -> Texture {
     })
 }
 
-/// Whether contexts of `desc` reconstruct sparse frames.
-pub(super) fn is_needed(desc: &ContextDesc) -> bool {
-    matches!(desc.settings.history_layout(), HistoryLayout::Kept { .. })
-}
-
-/// Bytes of the results for samples, if the context has them.
+/// Bytes of the results for samples.
 pub(super) fn memory_bytes(desc: &ContextDesc) -> u64 {
     let texels = results_size(desc.size_px).map(u64::from).iter().product::<u64>() * u64::from(desc.view_count);
-    let bytes = 2 * u64::from(FORMAT.block_copy_size(None).unwrap_or(0));
-    if is_needed(desc) { bytes * texels } else { 0 }
+    2 * u64::from(FORMAT.block_copy_size(None).unwrap_or(0)) * texels
 }

@@ -1,23 +1,25 @@
 //! Methods: name, history layout and passes of each.
 //!
-//! To add one, write a variant of [`Method`], a file here with its [`Entry`] and its arm in [`Method::entry`], its
+//! To add one, write a variant of [`Method`] and of [`MethodKind`], its arms and a file with its [`Entry`] here, its
 //! passes in `cpu/` and in `shaders/pass/`, and tests.
 
 mod none;
 mod smr;
+mod smr_sparse;
 mod taa;
 mod taau;
 mod wrs;
 
-pub(crate) use smr::{smr_params, smr_relights};
+pub(crate) use smr::smr_params;
+pub(crate) use smr_sparse::smr_sparse_relights;
 #[cfg(feature = "cpu")]
 pub(crate) use wrs::has_references;
 pub(crate) use wrs::{inv_density_at_fovea, wrs_params};
 
 use crate::foveation::Filter;
-use crate::settings::{Method, Settings};
+use crate::settings::{Method, MethodKind, Settings, Smr, Wrs};
 
-impl Method {
+impl MethodKind {
     /// All methods.
     pub const ALL: [Self; 5] = [Self::None, Self::Taa, Self::Wrs, Self::Smr, Self::Taau];
 
@@ -36,7 +38,7 @@ impl Method {
         Self::ALL.into_iter().find(|method| method.name() == name)
     }
 
-    pub(crate) fn entry(self) -> &'static Entry {
+    fn entry(self) -> &'static Entry {
         match self {
             Self::None => &none::ENTRY,
             Self::Taa => &taa::ENTRY,
@@ -47,11 +49,91 @@ impl Method {
     }
 }
 
+impl Method {
+    /// The method without its settings.
+    pub fn kind(&self) -> MethodKind {
+        match self {
+            Self::None => MethodKind::None,
+            Self::Taa => MethodKind::Taa,
+            Self::Taau => MethodKind::Taau,
+            Self::Smr(_) => MethodKind::Smr,
+            Self::Wrs(_) => MethodKind::Wrs,
+        }
+    }
+
+    /// Short name in lower case, such as `smr`.
+    pub fn name(&self) -> &'static str {
+        self.kind().name()
+    }
+
+    /// Settings of smr; of another method, the defaults, which its passes do not read.
+    pub(crate) fn smr(&self) -> Smr {
+        if let Self::Smr(smr) = *self { smr } else { Smr::default() }
+    }
+
+    /// Settings of wrs; of another method, the defaults, which its passes do not read.
+    pub(crate) fn wrs(&self) -> Wrs {
+        if let Self::Wrs(wrs) = *self { wrs } else { Wrs::default() }
+    }
+}
+
+/// A method with its default settings.
+impl From<MethodKind> for Method {
+    fn from(kind: MethodKind) -> Self {
+        match kind {
+            MethodKind::None => Self::None,
+            MethodKind::Taa => Self::Taa,
+            MethodKind::Taau => Self::Taau,
+            MethodKind::Smr => Self::Smr(Smr::default()),
+            MethodKind::Wrs => Self::Wrs(Wrs::default()),
+        }
+    }
+}
+
+/// What processes a frame: each has an entry in the table, and passes of its own on either executor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Algorithm {
+    None,
+    Taa,
+    Taau,
+    Smr,
+    SmrSparse,
+    Wrs,
+}
+
+/// A step of a frame: some passes of an executor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Stage {
+    /// Fills a mip chain of noisy candidates.
+    Candidates,
+    /// Fills the colors of a sparse frame between its samples, for an algorithm that reads whole frames.
+    Fill,
+    /// Fills depth and motion of a sparse frame that has them at its samples only.
+    Geometry,
+    /// Compares the samples of a sparse frame with history.
+    Samples,
+    /// The pass that writes the output and the history.
+    Method,
+    /// Fills the mip chain of the written history.
+    MipChain,
+}
+
+/// Stages of an algorithm that reads whole frames and keeps no mip chain.
+fn whole_frames(settings: &Settings) -> Vec<Stage> {
+    match settings.foveation.filter {
+        Filter::Sparse => vec![Stage::Fill, Stage::Geometry, Stage::Method],
+        _ => vec![Stage::Method],
+    }
+}
+
 /// Entry in the table of methods.
 #[derive(Debug)]
 pub(crate) struct Entry {
     pub name: &'static str,
     pub summary: &'static str,
+    pub algorithm: Algorithm,
+    /// Stages of a frame, in their order.
+    pub stages: fn(&Settings) -> Vec<Stage>,
     /// Layout of its history.
     pub history: fn(&Settings) -> HistoryLayout,
     /// Memory traffic of history and noise, in bytes a pixel.
@@ -107,20 +189,40 @@ pub(crate) enum HistoryLayout {
 }
 
 impl Settings {
+    /// The entry of these settings. smr on sparse frames is an algorithm of its own.
+    fn entry(&self) -> &'static Entry {
+        match self.method {
+            Method::Smr(_) if self.foveation.filter == Filter::Sparse => &smr_sparse::ENTRY,
+            method => method.kind().entry(),
+        }
+    }
+
+    /// What processes frames.
+    #[cfg(feature = "cpu")]
+    pub(crate) fn algorithm(&self) -> Algorithm {
+        self.entry().algorithm
+    }
+
+    /// Stages of a frame, in their order.
+    pub(crate) fn stages(&self) -> Vec<Stage> {
+        (self.entry().stages)(self)
+    }
+
     /// Shader of the method's pass.
     #[cfg(feature = "gpu")]
     pub(crate) fn pass_shader(&self) -> PassShader {
-        (self.method.entry().shader)(self)
+        (self.entry().shader)(self)
     }
 
-    /// Layout of the method's history.
+    /// Values of the method's own overrides. `has_lod`: whether the frame has a level-of-detail input.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn overrides(&self, has_lod: bool) -> Overrides {
+        (self.entry().overrides)(self, has_lod)
+    }
+
+    /// Layout of the history.
     pub(crate) fn history_layout(&self) -> HistoryLayout {
-        (self.method.entry().history)(self)
-    }
-
-    /// Whether sparse frames are filled between their samples first, for a method that reads whole frames.
-    pub(crate) fn fills_sparse_frames(&self) -> bool {
-        self.foveation.filter == Filter::Sparse && !matches!(self.method, Method::Smr | Method::Taau)
+        (self.entry().history)(self)
     }
 
     /// Memory traffic of a frame in bytes a pixel, read and written. `given`: whether the frame has depth, motion and
@@ -128,11 +230,11 @@ impl Settings {
     /// (4), trust (1). Taps that neighbouring pixels share are counted once.
     pub fn traffic_bytes_per_pixel(&self, given: [bool; 3]) -> u32 {
         // Samples are read, filled colors are floats, written and read.
-        let (color, output) = (if self.fills_sparse_frames() { 8 + 16 + 16 } else { 8 }, 8);
+        let (color, output) = (if self.stages().contains(&Stage::Fill) { 8 + 16 + 16 } else { 8 }, 8);
         if self.method == Method::None {
             return color + output;
         }
         let inputs: u32 = given.iter().zip([4, 4, 1]).map(|(&given, bytes)| if given { bytes } else { 0 }).sum();
-        color + inputs + (self.method.entry().history_traffic_bytes)(self) + output
+        color + inputs + (self.entry().history_traffic_bytes)(self) + output
     }
 }

@@ -2,11 +2,13 @@
 
 #[cfg(feature = "gpu")]
 use super::PassShader;
-use super::{Entry, HistoryLayout};
+use super::{Algorithm, Entry, HistoryLayout, whole_frames};
 
 pub(super) static ENTRY: Entry = Entry {
     name: "none",
     summary: "the foveated frame alone",
+    algorithm: Algorithm::None,
+    stages: whole_frames,
     history: |_| HistoryLayout::Nothing,
     history_traffic_bytes: |_| 0,
     #[cfg(feature = "gpu")]

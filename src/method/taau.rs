@@ -2,11 +2,17 @@
 
 #[cfg(feature = "gpu")]
 use super::PassShader;
-use super::{Entry, HistoryLayout};
+use super::{Algorithm, Entry, HistoryLayout, Stage};
+use crate::foveation::Filter;
 
 pub(super) static ENTRY: Entry = Entry {
     name: "taau",
     summary: "temporal upsampling of sparse frames",
+    algorithm: Algorithm::Taau,
+    stages: |settings| match settings.foveation.filter {
+        Filter::Sparse => vec![Stage::Geometry, Stage::Method],
+        _ => vec![Stage::Method],
+    },
     history: |_| HistoryLayout::Surfaces { levels: 0, noisy: false },
     history_traffic_bytes: |_| 2 * 8,
     #[cfg(feature = "gpu")]

@@ -2,7 +2,7 @@
 
 #[cfg(feature = "gpu")]
 use super::PassShader;
-use super::{Entry, HistoryLayout};
+use super::{Algorithm, Entry, HistoryLayout, whole_frames};
 #[cfg(feature = "gpu")]
 use crate::foveation::Filter;
 use crate::kernel::acuity;
@@ -13,6 +13,8 @@ use crate::settings::{Bias, GateMetric, GateScale, Sampler, Settings};
 pub(super) static ENTRY: Entry = Entry {
     name: "wrs",
     summary: "weighted reservoirs: A-Chao with Bernoulli bias",
+    algorithm: Algorithm::Wrs,
+    stages: whole_frames,
     history: |settings| HistoryLayout::Reservoirs { keys: has_keys(settings), references: has_references(settings) },
     history_traffic_bytes: |settings| {
         let extra = u32::from(has_keys(settings)) + u32::from(has_references(settings));
@@ -32,8 +34,8 @@ pub(super) static ENTRY: Entry = Entry {
             ("SAMPLER", params.sampler as u32),
             ("BIAS", params.bias as u32),
             ("GATE", params.gate as u32),
-            ("WEIGHT_EXPONENT", settings.weight_exponent),
-            ("RATE_EXPONENT", settings.rate_exponent),
+            ("WEIGHT_EXPONENT", settings.method.wrs().weight_exponent),
+            ("RATE_EXPONENT", settings.method.wrs().rate_exponent),
             ("HAS_REFERENCES", u32::from(has_references(settings))),
             ("HAS_LOD", u32::from(has_lod)),
             ("FILTER", settings.foveation.filter as u32),
@@ -43,12 +45,12 @@ pub(super) static ENTRY: Entry = Entry {
 
 /// Whether reservoirs have keys.
 fn has_keys(settings: &Settings) -> bool {
-    settings.sampler == Sampler::AEs
+    settings.method.wrs().sampler == Sampler::AEs
 }
 
 /// Whether reservoirs have references of the gate.
 pub(crate) fn has_references(settings: &Settings) -> bool {
-    settings.gate.is_some_and(|gate| gate.scale == GateScale::Candidate)
+    settings.method.wrs().gate.is_some_and(|gate| gate.scale == GateScale::Candidate)
 }
 
 /// Scale of candidate weights outside the fovea: `1 / cell_density(fovea radius)`.
@@ -58,21 +60,22 @@ pub(crate) fn inv_density_at_fovea(settings: &Settings) -> f32 {
 
 /// Parameters of the kernel from wrs' settings.
 pub(crate) fn wrs_params(settings: &Settings) -> WrsParams {
-    let (bias, exponential_survival) = match settings.bias {
+    let wrs = settings.method.wrs();
+    let (bias, exponential_survival) = match wrs.bias {
         Bias::Bernoulli => (BiasCode::Bernoulli, 1.0),
         Bias::Exponential { lambda } => (BiasCode::Exponential, reservoir::exponential_survival(lambda)),
         Bias::None => (BiasCode::None, 1.0),
     };
-    let gate = settings.gate.unwrap_or_default();
+    let gate = wrs.gate.unwrap_or_default();
     WrsParams {
-        sampler: match settings.sampler {
+        sampler: match wrs.sampler {
             Sampler::AChao => SamplerCode::AChao,
             Sampler::AEs => SamplerCode::AEs,
             Sampler::AChaoMean => SamplerCode::AChaoMean,
         },
         bias,
         exponential_survival,
-        gate: match (settings.gate, gate.metric) {
+        gate: match (wrs.gate, gate.metric) {
             (None, _) => GateCode::Off,
             (_, GateMetric::DeltaE94) => GateCode::DeltaE94,
             (_, GateMetric::Lightness) => GateCode::Lightness,

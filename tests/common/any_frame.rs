@@ -1,6 +1,8 @@
 //! Small frames of arbitrary bit patterns, for properties of whole passes on either executor.
 
-use afterimage::{Bias, Filter, Foveation, Gaze, Image, Method, Sampler, Settings, ViewFrame, ViewGeometry};
+use afterimage::{
+    Bias, Filter, Foveation, Gaze, Image, Method, MethodKind, Sampler, Settings, ViewFrame, ViewGeometry, Wrs,
+};
 use afterimage_testing::Draws;
 
 pub const SIZE: [u32; 2] = [8, 6];
@@ -19,18 +21,19 @@ pub struct AnyFrame {
 
 /// Every method, sampler, bias and filter that has a path of its own; the last one is noisy.
 pub fn all_settings() -> Vec<Settings> {
-    let of = |method| Settings { method, ..Settings::paper() };
+    let of = |method: MethodKind| Settings { method: method.into(), ..Settings::default() };
+    let keyed = Wrs { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.1 }, gate: None, ..Wrs::default() };
     let blocks = Foveation { filter: Filter::Block, ..Foveation::default() };
     vec![
-        of(Method::None),
-        of(Method::Wrs),
+        of(MethodKind::None),
+        of(MethodKind::Wrs),
         Settings::weighted(),
-        Settings { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.1 }, gate: None, ..of(Method::Wrs) },
-        of(Method::Taa),
-        of(Method::Taau),
-        of(Method::Smr),
-        Settings { foveation: blocks, ..of(Method::Smr) },
-        Settings { noisy: true, ..of(Method::Smr) },
+        Settings { method: Method::Wrs(keyed), ..Settings::default() },
+        of(MethodKind::Taa),
+        of(MethodKind::Taau),
+        of(MethodKind::Smr),
+        Settings { foveation: blocks, ..of(MethodKind::Smr) },
+        Settings { noisy: true, ..of(MethodKind::Smr) },
     ]
 }
 

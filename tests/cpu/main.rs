@@ -5,6 +5,8 @@ mod any_frame;
 #[path = "../common/images.rs"]
 mod images;
 mod pass;
+#[path = "../common/settings.rs"]
+mod settings;
 mod simulator;
 #[path = "../common/sparse_hard/mod.rs"]
 mod sparse_hard;

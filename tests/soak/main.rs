@@ -12,7 +12,7 @@ mod pictures;
 mod rig;
 mod witness;
 
-use afterimage::{ContextDesc, Exposure, Image, Method, Reset, Settings};
+use afterimage::{ContextDesc, Exposure, Image, MethodKind, Reset, Settings};
 use events::{Event, Stream};
 use pictures::Pictures;
 use rig::{Made, Rig, View};
@@ -39,8 +39,8 @@ struct Found {
 }
 
 /// Runs `frames` frames of `size` through both executors, which must agree in every bit.
-fn soak(method: Method, size: [u32; 2], frames: u64) -> Option<Found> {
-    let settings = Settings { method, foveation: pictures::FOVEATION, ..Settings::default() };
+fn soak(method: MethodKind, size: [u32; 2], frames: u64) -> Option<Found> {
+    let settings = Settings { method: method.into(), foveation: pictures::FOVEATION, ..Settings::default() };
     let mut rig = Rig::new(ContextDesc::new(size), settings)?;
     let mut stream = Stream::new(&format!("soak {method:?}"), size);
     let mut pictures = Pictures::default();
@@ -61,7 +61,7 @@ fn soak(method: Method, size: [u32; 2], frames: u64) -> Option<Found> {
         brightest = brightest.max(0.0) * event.exposure.unwrap_or(1.0);
         brightest = brightest_of(&view).max(if event.reset || event.size.is_some() { 0.0 } else { brightest });
         check(&mut found, method, &event, &view, &made, brightest);
-        if method == Method::Wrs {
+        if method == MethodKind::Wrs {
             witness.step(&mut found, stream.state().is_quiet, &event, &view, &made.words);
         }
         if frames >= 10 && index % (frames / 10) == frames / 20 {
@@ -79,15 +79,15 @@ fn brightest_of(view: &View) -> f32 {
     view.color.pixels().iter().flatten().filter(|v| v.is_finite()).fold(0.0, |a, &b| a.max(b))
 }
 
-fn check(found: &mut Found, method: Method, event: &Event, view: &View, made: &Made, brightest: f32) {
+fn check(found: &mut Found, method: MethodKind, event: &Event, view: &View, made: &Made, brightest: f32) {
     let color: &Image<[f32; 3]> = &view.color;
     for value in made.shown.iter().flatten().map(|&bits| f32::from_bits(bits)) {
         found.nonfinite += u64::from(!value.is_finite());
         // Halves round by 2^-11; an exposure step rounds once more. Relighting of smr may brighten history to the
         // candidate's level.
-        found.above += u64::from(method == Method::Wrs && value > brightest * 1.002 + 1e-6);
+        found.above += u64::from(method == MethodKind::Wrs && value > brightest * 1.002 + 1e-6);
     }
-    if method == Method::Smr && !event.is_broken {
+    if method == MethodKind::Smr && !event.is_broken {
         let (width, lods) = (color.width(), view.lod.as_ref());
         for (i, (shown, given)) in made.shown.iter().zip(color.pixels()).enumerate() {
             if lods.is_some_and(|l| l.at(i % width, i / width) == 0.0) {
@@ -97,11 +97,11 @@ fn check(found: &mut Found, method: Method, event: &Event, view: &View, made: &M
     }
 }
 
-fn assert_sound(method: Method, found: &Found) {
+fn assert_sound(method: MethodKind, found: &Found) {
     println!("{method:?}: {found:?}");
     assert!(found.events * 20 > found.frames, "too little happened");
     assert_eq!([found.nonfinite, found.above, found.not_candidate], [0; 3], "{found:?}");
-    if method == Method::Wrs {
+    if method == MethodKind::Wrs {
         assert!(found.stretches > 0 && found.drift < 1.0, "{found:?}");
     }
     // A leak of a kilobyte a frame would be 1 MiB each time; late allocations of the driver happen once.
@@ -118,7 +118,7 @@ fn frames(default: u64) -> u64 {
 
 #[test]
 fn a_short_stream_is_sound() {
-    for method in [Method::Wrs, Method::Smr] {
+    for method in [MethodKind::Wrs, MethodKind::Smr] {
         let Some(found) = soak(method, [64, 36], 600) else { return };
         assert_sound(method, &found);
     }
@@ -136,25 +136,25 @@ fn damage_is_noticed() {
         check(&mut found, method, &Event::default(), &view, &made, 0.5);
         [found.nonfinite, found.above, found.not_candidate]
     };
-    assert_eq!(checked(Method::Wrs, 0.5), [0, 0, 0]);
-    assert_eq!(checked(Method::Wrs, f32::NAN), [1, 0, 0]);
-    assert_eq!(checked(Method::Wrs, 0.6), [0, 1, 0]);
-    assert_eq!(checked(Method::Smr, 0.5_f32.next_up()), [0, 0, 1]);
+    assert_eq!(checked(MethodKind::Wrs, 0.5), [0, 0, 0]);
+    assert_eq!(checked(MethodKind::Wrs, f32::NAN), [1, 0, 0]);
+    assert_eq!(checked(MethodKind::Wrs, 0.6), [0, 1, 0]);
+    assert_eq!(checked(MethodKind::Smr, 0.5_f32.next_up()), [0, 0, 1]);
     assert!(witness::drift(14.1, 14.2, 100) > 1.0 && witness::drift(7.5, 7.5, 1) == 0.0);
 }
 
 #[test]
 #[ignore = "hours: tests/soak.sh"]
 fn wrs_for_100_000_frames() {
-    if let Some(found) = soak(Method::Wrs, SIZE, frames(100_000)) {
-        assert_sound(Method::Wrs, &found);
+    if let Some(found) = soak(MethodKind::Wrs, SIZE, frames(100_000)) {
+        assert_sound(MethodKind::Wrs, &found);
     }
 }
 
 #[test]
 #[ignore = "hours: tests/soak.sh"]
 fn smr_for_100_000_frames() {
-    if let Some(found) = soak(Method::Smr, SIZE, frames(100_000)) {
-        assert_sound(Method::Smr, &found);
+    if let Some(found) = soak(MethodKind::Smr, SIZE, frames(100_000)) {
+        assert_sound(MethodKind::Smr, &found);
     }
 }

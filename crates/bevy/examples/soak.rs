@@ -7,7 +7,7 @@ mod common;
 
 use bevy::camera::{Exposure, Hdr, Viewport};
 use bevy::prelude::*;
-use bevy_afterimage::afterimage::{DebugView, Method, Settings};
+use bevy_afterimage::afterimage::{DebugView, MethodKind, Settings};
 use bevy_afterimage::{
     Afterimage, AfterimageDebug, AfterimageStats, CameraGaze, Foveated, FoveationKind, Gaze, LatticeCamera, Preset,
 };
@@ -155,8 +155,8 @@ fn event(headless: &mut Headless, random: &mut Random, size: &mut UVec2) -> &'st
         }
         8 => {
             let preset = random.of(&[Preset::Steady, Preset::Responsive, Preset::Weighted, Preset::Paper]);
-            let method = random.of(&[Method::None, Method::Taa, Method::Taau, Method::Smr]);
-            let settings = (random.below(2) == 0).then(|| Settings { method, ..default() });
+            let method = random.of(&[MethodKind::None, MethodKind::Taa, MethodKind::Taau, MethodKind::Smr]);
+            let settings = (random.below(2) == 0).then(|| Settings { method: method.into(), ..default() });
             entity.insert(Afterimage { preset, settings, reset: random.below(2) == 0 });
             "settings"
         }

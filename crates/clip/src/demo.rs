@@ -9,7 +9,7 @@ use crate::output::Output;
 use crate::pipeline::{Cpu, RunKind};
 use crate::scanpath::{FrameGaze, GazeMap, Screen, SyntheticOptions, generate};
 use crate::source::{AnalyticSource, FrameSource};
-use afterimage::{Foveation, Method, Settings, ViewGeometry};
+use afterimage::{Foveation, MethodKind, Settings, ViewGeometry};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -49,7 +49,8 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         gaze_map: "angle",
         start_s: 0.0,
     };
-    let post_process = |method| RunKind::PostProcess(Settings { method, ..Settings::default() });
+    let post_process =
+        |method: MethodKind| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() });
     let clip = Clip {
         title: title(&source.info().name, SIZE, gaze.len(), FPS, &foveation_words(&foveation, facts.simulator)),
         geometry,
@@ -58,9 +59,9 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         quad_views: None,
         sample_order: SampleOrder::default(),
         methods: vec![
-            ("none", post_process(Method::None)),
-            ("wrs", post_process(Method::Wrs)),
-            ("smr", post_process(Method::Smr)),
+            ("none", post_process(MethodKind::None)),
+            ("wrs", post_process(MethodKind::Wrs)),
+            ("smr", post_process(MethodKind::Smr)),
             ("oracle", RunKind::Oracle),
         ],
         gaze,

@@ -4,7 +4,9 @@ use crate::Result;
 use afterimage::gpu::{Afterimage, Variant};
 use afterimage::shader::{Composer, Module, SHADERS};
 use afterimage::wgpu::{Device, DeviceDescriptor, TextureFormat};
-use afterimage::{ContextDesc, Filter, Foveation, Gaze, Method, Sampler, Settings, ViewFrame, ViewGeometry};
+use afterimage::{
+    ContextDesc, Filter, Foveation, Gaze, Method, MethodKind, Sampler, Settings, ViewFrame, ViewGeometry, Wrs,
+};
 
 /// Size of the frames of the roofline.
 pub const SIZE_PX: [u32; 2] = [3840, 2160];
@@ -41,24 +43,24 @@ pub struct Pass {
 
 /// All methods, on full frames and on sparse ones, which are the default stream.
 pub fn methods() -> Result<Vec<MethodPasses>> {
-    let full = |method| Settings { method, ..Settings::default() };
-    let sparse = |method| {
+    let full = |method: MethodKind| Settings { method: method.into(), ..Settings::default() };
+    let sparse = |method: MethodKind| {
         let foveation = Foveation { filter: Filter::Sparse, ..Foveation::default() };
-        Settings { method, foveation, ..Settings::default() }
+        Settings { method: method.into(), foveation, ..Settings::default() }
     };
     let noisy = |settings: Settings| Settings { noisy: true, ..settings };
     [
-        ("copy", full(Method::Wrs)),
-        ("none", full(Method::None)),
-        ("taa", full(Method::Taa)),
-        ("wrs", full(Method::Wrs)),
+        ("copy", full(MethodKind::Wrs)),
+        ("none", full(MethodKind::None)),
+        ("taa", full(MethodKind::Taa)),
+        ("wrs", full(MethodKind::Wrs)),
         ("wrs weighted", Settings::weighted()),
-        ("smr", full(Method::Smr)),
-        ("smr noisy", noisy(full(Method::Smr))),
-        ("sparse smr", sparse(Method::Smr)),
-        ("sparse smr noisy", noisy(sparse(Method::Smr))),
-        ("sparse taau", sparse(Method::Taau)),
-        ("sparse wrs", sparse(Method::Wrs)),
+        ("smr", full(MethodKind::Smr)),
+        ("smr noisy", noisy(full(MethodKind::Smr))),
+        ("sparse smr", sparse(MethodKind::Smr)),
+        ("sparse smr noisy", noisy(sparse(MethodKind::Smr))),
+        ("sparse taau", sparse(MethodKind::Taau)),
+        ("sparse wrs", sparse(MethodKind::Wrs)),
     ]
     .into_iter()
     .map(|(name, settings)| method(name, &settings))
@@ -119,7 +121,9 @@ fn samples_share(settings: &Settings) -> Result<f64> {
 
 fn loops(module: &str, settings: &Settings) -> &'static [&'static str] {
     match module {
-        "wrs_pass" if settings.sampler == Sampler::AChaoMean => &["slope", "guard", "resample"],
+        "wrs_pass" if matches!(settings.method, Method::Wrs(Wrs { sampler: Sampler::AChaoMean, .. })) => {
+            &["slope", "guard", "resample"]
+        }
         "wrs_pass" => &["slope"],
         "wrs_sparse_pass" => &["lattice", "slope"],
         "fill_pass" => &["lattice", "four"],

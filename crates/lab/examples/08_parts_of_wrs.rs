@@ -5,7 +5,7 @@
 //! Prints PSNR over none at several lengths of the clip: whole frame, and retained pixels (sampled at full rate
 //! earlier).
 
-use afterimage::{Bias, Foveation, Gate, GateMetric, Method, Sampler, Settings, ViewGeometry};
+use afterimage::{Bias, Foveation, Gate, GateMetric, Method, Sampler, Settings, ViewGeometry, Wrs};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
@@ -14,25 +14,26 @@ use afterimage_lab::source;
 use afterimage_lab::source::{ReadLimits, SceneOptions};
 
 fn variants() -> Vec<(&'static str, RunKind)> {
-    let paper = Settings::paper();
+    let paper = Wrs::default();
+    let wrs = |wrs| Settings { method: Method::Wrs(wrs), ..Settings::default() };
     let gate = |divisor, offset| Some(Gate { divisor, offset, ..Gate::default() });
-    let ungated = Settings { gate: None, ..paper };
+    let ungated = Wrs { gate: None, ..paper };
     let list = [
-        ("none", Settings { method: Method::None, ..paper }),
-        ("paper: gate dE/100, Bernoulli, A-Chao", paper),
-        ("gate dE/20", Settings { gate: gate(20.0, 0.0), ..paper }),
-        ("gate dE/500", Settings { gate: gate(500.0, 0.0), ..paper }),
-        ("gate (dE - 5)/30", Settings { gate: gate(30.0, 5.0), ..paper }),
-        ("gate L*/100", Settings { gate: Some(Gate { metric: GateMetric::Lightness, ..Gate::default() }), ..paper }),
-        ("no gate", ungated),
-        ("no gate, exponential 0.02", Settings { bias: Bias::Exponential { lambda: 0.02 }, ..ungated }),
-        ("no gate, exponential 0.005", Settings { bias: Bias::Exponential { lambda: 0.005 }, ..ungated }),
-        ("no gate, no bias", Settings { bias: Bias::None, ..ungated }),
-        ("weights to the third power", Settings { weight_exponent: 3, ..paper }),
-        ("no gate, weights to the third power", Settings { weight_exponent: 3, ..ungated }),
-        ("no gate, weights to the eighth power", Settings { weight_exponent: 8, ..ungated }),
+        ("none", Settings { method: Method::None, ..Settings::default() }),
+        ("paper: gate dE/100, Bernoulli, A-Chao", wrs(paper)),
+        ("gate dE/20", wrs(Wrs { gate: gate(20.0, 0.0), ..paper })),
+        ("gate dE/500", wrs(Wrs { gate: gate(500.0, 0.0), ..paper })),
+        ("gate (dE - 5)/30", wrs(Wrs { gate: gate(30.0, 5.0), ..paper })),
+        ("gate L*/100", wrs(Wrs { gate: Some(Gate { metric: GateMetric::Lightness, ..Gate::default() }), ..paper })),
+        ("no gate", wrs(ungated)),
+        ("no gate, exponential 0.02", wrs(Wrs { bias: Bias::Exponential { lambda: 0.02 }, ..ungated })),
+        ("no gate, exponential 0.005", wrs(Wrs { bias: Bias::Exponential { lambda: 0.005 }, ..ungated })),
+        ("no gate, no bias", wrs(Wrs { bias: Bias::None, ..ungated })),
+        ("weights to the third power", wrs(Wrs { weight_exponent: 3, ..paper })),
+        ("no gate, weights to the third power", wrs(Wrs { weight_exponent: 3, ..ungated })),
+        ("no gate, weights to the eighth power", wrs(Wrs { weight_exponent: 8, ..ungated })),
         ("weighted", Settings::weighted()),
-        ("paper with A-ES", Settings { sampler: Sampler::AEs, ..paper }),
+        ("paper with A-ES", wrs(Wrs { sampler: Sampler::AEs, ..paper })),
     ];
     let mut runs: Vec<_> = list.map(|(name, s)| (name, RunKind::PostProcess(s))).into();
     runs.push(("oracle: upper bound of any reuse", RunKind::Oracle));

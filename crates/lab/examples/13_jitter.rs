@@ -8,7 +8,7 @@
 
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::color::srgb_encode;
-use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, Settings, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, Foveation, Gaze, Image, MethodKind, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::source::FrameSource;
 use afterimage_lab::source::analytic::AnalyticSource;
@@ -39,9 +39,9 @@ fn foveated(frame: &Color, geometry: &ViewGeometry, gaze_px: [f32; 2], foveation
 struct Pass(CpuAfterimage);
 
 impl Pass {
-    fn new(method: Method, jittered_vectors: bool) -> Result<Self, Box<dyn std::error::Error>> {
+    fn new(method: MethodKind, jittered_vectors: bool) -> Result<Self, Box<dyn std::error::Error>> {
         let mut desc = ContextDesc::new(SIZE);
-        desc.settings = Settings { method, ..Settings::default() };
+        desc.settings = Settings { method: method.into(), ..Settings::default() };
         desc.settings.foveation = foveation();
         desc.motion.jittered = jittered_vectors;
         Ok(Self(CpuAfterimage::new(&desc)?))
@@ -81,11 +81,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let geometry = *source.view();
         let mut passes = [
             vec![],
-            vec![Pass::new(Method::Taa, false)?],
-            vec![Pass::new(Method::Smr, false)?],
-            vec![Pass::new(Method::Smr, false)?],
-            vec![Pass::new(Method::Smr, false)?, Pass::new(Method::Taa, false)?],
-            vec![Pass::new(Method::Taa, false)?, Pass::new(Method::Smr, false)?],
+            vec![Pass::new(MethodKind::Taa, false)?],
+            vec![Pass::new(MethodKind::Smr, false)?],
+            vec![Pass::new(MethodKind::Smr, false)?],
+            vec![Pass::new(MethodKind::Smr, false)?, Pass::new(MethodKind::Taa, false)?],
+            vec![Pass::new(MethodKind::Taa, false)?, Pass::new(MethodKind::Smr, false)?],
         ];
         let mut sums = [[0.0; 2]; ROWS.len()];
         let mut previous = vec![None; ROWS.len()];

@@ -5,7 +5,7 @@
 //! `afterimage run`. Scenes (`builtin:NAME`, .gltf, .glb) are rasterised, which needs an adapter; a software one is
 //! enough.
 
-use afterimage::{Filter, Foveation, FrameError, Method, Settings, ViewGeometry};
+use afterimage::{Filter, Foveation, FrameError, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::RenderedFrame;
 use afterimage_lab::metric::{Crops, encode};
@@ -20,8 +20,8 @@ const RATES: [[u32; 2]; 3] = [[2, 4], [4, 8], [8, 16]];
 /// Start of the clips in the scanpaths, in seconds.
 const START_S: f64 = 1.0;
 
-const METHODS: [(&str, Method); 4] =
-    [("taa", Method::Taa), ("taau", Method::Taau), ("wrs", Method::Wrs), ("smr", Method::Smr)];
+const METHODS: [(&str, MethodKind); 4] =
+    [("taa", MethodKind::Taa), ("taau", MethodKind::Taau), ("wrs", MethodKind::Wrs), ("smr", MethodKind::Smr)];
 
 /// A clip with a gaze and a foveation.
 struct Row {
@@ -83,8 +83,8 @@ fn open(input: &str) -> Result<Box<dyn FrameSource>, Box<dyn std::error::Error>>
 fn rows(source: &dyn FrameSource, input: &str, scanpaths: &str) -> Result<Vec<Row>, Box<dyn std::error::Error>> {
     let info = source.info();
     let geometry = ViewGeometry::flat(info.size, info.hfov_deg.unwrap_or(70.0))?;
-    let method = |method| RunKind::PostProcess(Settings { method, ..Settings::default() });
-    let kinds: Vec<_> = [Method::None].into_iter().chain(METHODS.map(|m| m.1)).map(method).collect();
+    let method = |method: MethodKind| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() });
+    let kinds: Vec<_> = [MethodKind::None].into_iter().chain(METHODS.map(|m| m.1)).map(method).collect();
     let mut rows = vec![];
     for file in scanpaths.split(',') {
         let path = read_csv(file)?;

@@ -9,7 +9,7 @@ use afterimage::gpu::{Afterimage, Frame, Target};
 use afterimage::kernel::color::srgb_encode;
 use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{
-    ContextDesc, DepthConvention, Filter, Foveation, Gaze, Lattices, Method, Settings, ViewFrame, ViewGeometry,
+    ContextDesc, DepthConvention, Filter, Foveation, Gaze, Lattices, MethodKind, Settings, ViewFrame, ViewGeometry,
 };
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::Headless;
@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 /// First frames, which compile shaders.
 const WARM_UP: u64 = 2;
-const METHODS: [Method; 4] = [Method::None, Method::Wrs, Method::Smr, Method::Taau];
+const METHODS: [MethodKind; 4] = [MethodKind::None, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau];
 
 /// Milliseconds of `work` and of what it submits.
 fn timed<T>(device: &Headless, work: impl FnOnce() -> T) -> (f64, T) {
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let foveation = Foveation { filter: Filter::Sparse, rate_mid: 4, rate_far: 8, ..Foveation::default() };
     let near = source.draw(0).near();
     let mut posts = METHODS.map(|method| {
-        let settings = Settings { method, foveation, ..Settings::default() };
+        let settings = Settings { method: method.into(), foveation, ..Settings::default() };
         let depth = DepthConvention::Reversed { near, far: f32::INFINITY };
         let desc = ContextDesc { settings, depth, ..ContextDesc::new(size) };
         Afterimage::new(&device.device, &desc, TextureFormat::Rgba16Float)
@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let output = device.texture(size, 1, TextureFormat::Rgba16Float, TextureUsages::STORAGE_BINDING);
     let mut times: Vec<(&str, Vec<f64>)> = ["full rate", "foveated", "foveated, in place"]
         .into_iter()
-        .chain(METHODS.map(Method::name))
+        .chain(METHODS.map(MethodKind::name))
         .map(|n| (n, vec![]))
         .collect();
     let mut samples = 0;

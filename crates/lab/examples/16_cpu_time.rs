@@ -3,7 +3,7 @@
 //! the time of one core.
 
 use afterimage::kernel::color::srgb_decode;
-use afterimage::{Foveation, Image, Method, Settings, ViewGeometry};
+use afterimage::{Foveation, Image, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::{RenderedFrame, SourceFrame};
@@ -40,8 +40,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn measure(mut frame: RenderedFrame, frames: u64) -> Result<(), Box<dyn Error>> {
     let size = frame.reference.color.size();
     let geometry = ViewGeometry::flat(size, 70.0)?;
-    let methods = [Method::None, Method::Taa, Method::Wrs, Method::Smr, Method::Taau];
-    let kinds = methods.map(|method| RunKind::PostProcess(Settings { method, ..Settings::default() }));
+    let methods = [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau];
+    let kinds = methods.map(|method| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() }));
     let mut pipeline = Pipeline::new(geometry, Foveation::default(), &kinds, true, &[], &Backend::Cpu)?;
     let mut references = References::with_flip(Flip::for_view(&geometry));
     let mut scorers = methods.map(|_| Scorer::default());

@@ -8,7 +8,7 @@ use crate::error::InputError;
 use crate::pipeline::{Pipeline, RunKind};
 use crate::source::{AnalyticSource, FrameSource};
 use afterimage::kernel::pack::{half_bits, half_value};
-use afterimage::{CreateError, Filter, Foveation, Image, Method, Settings};
+use afterimage::{CreateError, Filter, Foveation, Image, MethodKind, Settings};
 use std::sync::Arc;
 use wgpu::{BufferUsages, TextureFormat, TextureUsages};
 
@@ -69,7 +69,7 @@ type Ask<'a> = &'a dyn Fn(Question, &[[f32; 3]]) -> Vec<u32>;
 pub fn self_test(gpu: &Arc<Headless>) -> Result<Vec<Finding>, SelfTestError> {
     let mut findings = arithmetic(&|question, rows| ask(gpu, question, rows));
     findings.push(formats(gpu));
-    for method in Method::ALL.into_iter().filter(|&method| method != Method::None) {
+    for method in MethodKind::ALL.into_iter().filter(|&method| method != MethodKind::None) {
         findings.push(twins(gpu, method)?);
     }
     Ok(findings)
@@ -183,10 +183,10 @@ fn formats(gpu: &Headless) -> Finding {
 }
 
 /// Compares a method's output on the device with that on the CPU, for a few frames of a moving scene.
-fn twins(gpu: &Arc<Headless>, method: Method) -> Result<Finding, SelfTestError> {
+fn twins(gpu: &Arc<Headless>, method: MethodKind) -> Result<Finding, SelfTestError> {
     let mut source = AnalyticSource::new("lateral", SIZE, 70.0, 60.0)?;
     let foveation = Foveation { rate_mid: 4, rate_far: 8, filter: Filter::Mip, ..Foveation::default() };
-    let settings = Settings { method, ..Settings::default() };
+    let settings = Settings { method: method.into(), ..Settings::default() };
     let pipeline = |backend: &Backend| {
         Pipeline::new(*source.view(), foveation, &[RunKind::PostProcess(settings)], false, &[], backend)
     };

@@ -1,7 +1,7 @@
 //! Every part that can be left out of the passes is there, and leaving it out changes what is shown.
 
 use afterimage::wgpu::naga;
-use afterimage::{Foveation, Image, Method, Settings, ViewGeometry};
+use afterimage::{Foveation, Image, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::pipeline::ablation::{PARTS, find, shader_without};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
@@ -48,8 +48,8 @@ fn leaving_a_part_out_changes_what_is_shown() {
         return;
     }
     let backend = Backend::Gpu(Headless::find(true).expect("there is an adapter"));
-    for method in [Method::Taa, Method::Wrs, Method::Smr, Method::Taau] {
-        let settings = Settings { method, ..Settings::default() };
+    for method in [MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau] {
+        let settings = Settings { method: method.into(), ..Settings::default() };
         let whole = shown(&backend, RunKind::PostProcess(settings));
         let broken = |frames: &[Image<[f32; 3]>]| {
             let pixels = frames.iter().flat_map(|f| f.pixels());

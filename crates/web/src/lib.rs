@@ -82,7 +82,7 @@ impl Demo {
         rate_mid: u32,
         rate_far: u32,
     ) -> Result<()> {
-        let method = Method::ALL.into_iter().find(|m| m.name() == method).ok_or_else(|| JsError::new(method))?;
+        let method = MethodKind::from_name(method).ok_or_else(|| JsError::new(method))?;
         let filter = Filter::ALL.into_iter().find(|f| f.name() == filter).ok_or_else(|| JsError::new(filter))?;
         let foveation = Foveation { filter, fovea_deg, mid_deg, rate_mid, rate_far, ..Foveation::default() };
         self.stage.configure(&self.gpu, Settings { method, foveation, ..Settings::default() })

@@ -123,7 +123,7 @@ pub fn foveation() -> Foveation {
 
 /// A context of one view for `smr`.
 pub fn smr(size: [u32; 2]) -> ContextDesc {
-    let settings = Settings { method: Method::Smr, foveation: foveation(), ..Settings::default() };
+    let settings = Settings { foveation: foveation(), ..Settings::steady() };
     ContextDesc { settings, ..ContextDesc::new(size) }
 }
 

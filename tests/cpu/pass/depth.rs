@@ -9,7 +9,7 @@ fn two_walls(split: u32, near: f32, far: f32) -> Image<f32> {
 
 #[test]
 fn a_disoccluded_wall_is_rejected_and_only_it() {
-    let mut post = context(Settings { gate: None, ..Settings::paper() });
+    let mut post = context(ungated());
     let first = Input { depth: Some(two_walls(32, 1.0, 5.0)), ..Input::still(noise(SIZE, "x")) };
     one(&mut post, 0, &first);
     // The near wall steps back by 8 px: columns 24..32 now show the far wall.
@@ -141,7 +141,7 @@ fn h47_a_nan_depth_rejects_its_pixel_alone() {
             let (b, stats, b_trace) = one(&mut hurt, index, &broken);
             rejected.push(stats.rejected());
             // A pixel without history affects its neighbours through smr's mip chain a frame later.
-            let unchanged = |i: usize| i == hurt_at || method == Method::Smr && index > 1;
+            let unchanged = |i: usize| i == hurt_at || method == MethodKind::Smr && index > 1;
             for i in (0..64 * 48).filter(|&i| !unchanged(i)) {
                 assert_eq!(a.pixels()[i], b.pixels()[i], "{method:?}, frame {index}: a neighbour changed");
                 assert_eq!(a_trace.pixels()[i], b_trace.pixels()[i]);
@@ -165,7 +165,7 @@ fn h48_history_outlives_a_change_of_planes() {
     };
     let make = |near, far| {
         let desc = ContextDesc { depth: planes(near, far), ..ContextDesc::new(SIZE) };
-        CpuAfterimage::new(&ContextDesc { settings: Settings { gate: None, ..Settings::paper() }, ..desc }).unwrap()
+        CpuAfterimage::new(&ContextDesc { settings: ungated(), ..desc }).unwrap()
     };
     let mut before = make(0.1, 1000.0);
     one(&mut before, 0, &frame(0.1, 1000.0));
@@ -194,9 +194,11 @@ fn h41_h49_sky_and_orthographic_depth_go_through_the_pass() {
             (DepthConvention::Orthographic { near: 0.0, far: 100.0 }, 1.0, 0.05),
         ] {
             let desc = ContextDesc { depth, ..ContextDesc::new(SIZE) };
-            let mut post =
-                CpuAfterimage::new(&ContextDesc { settings: Settings { method, ..Settings::paper() }, ..desc })
-                    .unwrap();
+            let mut post = CpuAfterimage::new(&ContextDesc {
+                settings: Settings { method: method.into(), ..Settings::paper() },
+                ..desc
+            })
+            .unwrap();
             let frame = |split| Input { depth: Some(two_walls(split, wall, sky)), ..Input::still(noise(SIZE, "sky")) };
             // The wall's edge moves to the left and back: sky replaces wall, then wall replaces sky.
             for (index, split, rejected) in [(0, 32, 0), (1, 32, 0), (2, 30, 2 * 48), (3, 32, 2 * 48), (4, 32, 0)] {
@@ -215,7 +217,7 @@ fn h41_h49_sky_and_orthographic_depth_go_through_the_pass() {
 #[test]
 fn h58_nothing_bleeds_over_a_depth_edge() {
     // A bright near square moves right by 1.5 px a frame over a dark wall; vectors are right at each pixel.
-    let mut post = context(Settings { gate: None, ..Settings::paper() });
+    let mut post = context(ungated());
     for index in 0..30_u64 {
         let left = 4.0 + 1.5 * index as f32;
         let inside = |x: u32, y: u32| (left..left + 10.0).contains(&(x as f32)) && (10..30).contains(&y);

@@ -11,7 +11,7 @@ fn run(post: &mut CpuAfterimage, frames: std::ops::Range<u64>) -> Vec<Color> {
 fn h29_the_same_bytes_whatever_the_number_of_threads() {
     for settings in [
         Settings::paper(),
-        Settings { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.05 }, ..Settings::paper() },
+        wrs(Wrs { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.05 }, ..Wrs::default() }),
     ] {
         let with = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -31,7 +31,7 @@ fn h29_the_same_bytes_whatever_the_number_of_threads() {
 
 #[test]
 fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
-    let settings = Settings { gate: None, ..Settings::paper() };
+    let settings = ungated();
     let fresh = run(&mut context(settings), 20..30);
     let mut used = context(settings);
     run(&mut used, 0..20);
@@ -73,7 +73,7 @@ fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
 
 #[test]
 fn a_frame_that_is_refused_changes_nothing() {
-    let settings = Settings { gate: None, ..Settings::paper() };
+    let settings = ungated();
     let (mut good, mut mixed) = (context(settings), context(settings));
     let expected = run(&mut good, 0..6);
     let mut got = run(&mut mixed, 0..3);
@@ -133,7 +133,7 @@ fn h76_empty_and_huge_sizes_are_refused_and_a_pixel_is_enough() {
 fn memory_is_what_the_documentation_says() {
     let pixels = 64 * 48;
     assert_eq!(context(Settings::paper()).memory_bytes(), 24 * pixels);
-    assert_eq!(context(Settings { sampler: Sampler::AEs, ..Settings::paper() }).memory_bytes(), 32 * pixels);
+    assert_eq!(context(wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() })).memory_bytes(), 32 * pixels);
     let stereo = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
     assert_eq!(
         CpuAfterimage::new(&ContextDesc { settings: Settings::paper(), ..stereo }).unwrap().memory_bytes(),

@@ -28,7 +28,7 @@ fn share(image: &Image<PixelTrace>, f: impl Fn(usize, &PixelTrace) -> bool) -> f
 }
 
 fn gated(gate: bool) -> CpuAfterimage {
-    context(if gate { Settings::paper() } else { Settings { gate: None, ..Settings::paper() } })
+    context(if gate { Settings::paper() } else { ungated() })
 }
 
 /// Noise, new every frame, as bright as `ratio`.

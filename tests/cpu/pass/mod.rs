@@ -18,19 +18,20 @@ mod views;
 mod weighted;
 
 use crate::images::{Images, OneView};
+use crate::settings::{ungated, ungated_of, wrs};
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::{
-    Bias, ContextDesc, DepthConvention, DepthTest, Exposure, FrameError, FrameStats, Gaze, Image, Method,
+    Bias, ContextDesc, DepthConvention, DepthTest, Exposure, FrameError, FrameStats, Gaze, Image, Method, MethodKind,
     MotionConvention, MotionDirection, MotionUnit, Reset, Sampler, Settings, Verdict, ViewFrame, ViewGeometry, Warning,
-    YAxis,
+    Wrs, YAxis,
 };
 use afterimage_testing::Draws;
 use proptest::prelude::*;
 
 const SIZE: [u32; 2] = [64, 48];
 /// Methods that find history by the same rules, each with its own storage.
-const METHODS: [Method; 2] = [Method::Wrs, Method::Smr];
+const METHODS: [MethodKind; 2] = [MethodKind::Wrs, MethodKind::Smr];
 type Color = Image<[f32; 3]>;
 
 fn geometry(size: [u32; 2]) -> ViewGeometry {
@@ -79,8 +80,8 @@ impl Input {
 }
 
 /// Settings without a gate, so that only the test in question rejects history.
-fn context_of(method: Method) -> CpuAfterimage {
-    context(Settings { method, gate: None, ..Settings::paper() })
+fn context_of(method: MethodKind) -> CpuAfterimage {
+    context(ungated_of(method))
 }
 
 fn context(settings: Settings) -> CpuAfterimage {

@@ -33,7 +33,7 @@ proptest! {
 
     #[test]
     fn h19_h79_whatever_the_history_holds_the_output_is_finite_and_heals(words in prop::collection::vec(any::<[u32; 3]>(), 64 * 48), sampler in prop::sample::select(vec![Sampler::AChao, Sampler::AEs, Sampler::AChaoMean])) {
-        let mut post = context(Settings { sampler, ..Settings::paper() });
+        let mut post = context(wrs(Wrs { sampler, ..Wrs::default() }));
         one(&mut post, 0, &Input::still(noise(SIZE, "h")));
         post.restore_history(&words);
         let (out, ..) = one(&mut post, 1, &Input::still(noise(SIZE, "h")));

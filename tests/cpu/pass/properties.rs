@@ -66,9 +66,9 @@ proptest! {
                     let t = trace[0].pixels()[i];
                     match settings.method {
                         // Means invent colors, within those presented.
-                        Method::Wrs if settings.sampler == Sampler::AChaoMean => {}
-                        Method::None | Method::Wrs => prop_assert!(known.contains(&c.map(f32::to_bits)), "an invented color: {:?}", c),
-                        Method::Smr if t.motion.iter().all(|m| m.fract() == 0.0) && !settings.noisy => {
+                        Method::Wrs(Wrs { sampler: Sampler::AChaoMean, .. }) => {}
+                        Method::None | Method::Wrs(_) => prop_assert!(known.contains(&c.map(f32::to_bits)), "an invented color: {:?}", c),
+                        Method::Smr(_) if t.motion.iter().all(|m| m.fract() == 0.0) && !settings.noisy => {
                             // Between the candidate and the history at a gain of 1/5 to 5.
                             let candidate = glam::Vec3::from(presented(frame.color.pixels()[i])[0].map(f32::from_bits));
                             let (mut low, mut high) = (candidate, candidate);
@@ -133,7 +133,7 @@ proptest! {
                     // taa reads 3x3 candidates; smr at four that lie 3/4 of a block off, at twice that where blocks are
                     // point samples, and where candidates are noisy at means of the 8x8 around them.
                     let reach = match settings.method {
-                        Method::None | Method::Wrs => 0,
+                        Method::None | Method::Wrs(_) => 0,
                         Method::Taa => 1,
                         _ if settings.noisy => 48,
                         _ => (2.0 * 0.75 * frame.lod.pixels()[i].max(0.0).exp2()).ceil() as usize + 1,

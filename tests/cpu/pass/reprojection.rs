@@ -6,7 +6,7 @@ use afterimage_testing::holds;
 #[test]
 fn h51_a_thousand_still_frames_never_move_a_sample() {
     // Every frame has another picture at the same depths: each output pixel is the sample of some frame at that pixel.
-    let mut post = context_of(Method::Wrs);
+    let mut post = context_of(MethodKind::Wrs);
     let mut seen = vec![std::collections::HashSet::new(); 64 * 48];
     let depth = Image::from_fn(SIZE, |[x, y]| 1.0 + ((x / 5) * (y / 3)) as f32);
     let mut kept = 0;
@@ -33,7 +33,7 @@ fn h51_a_thousand_still_frames_never_move_a_sample() {
 
 #[test]
 fn h52_an_integer_shift_moves_history_exactly_and_marks_the_border_new() {
-    let mut post = context(Settings { gate: None, ..Settings::paper() });
+    let mut post = context(ungated());
     let before = noise(SIZE, "before");
     one(&mut post, 0, &Input::still(before.clone()));
     sticky(&mut post);
@@ -67,9 +67,7 @@ fn every_motion_convention_means_the_same_shift() {
                 let scale = convention.to_internal(SIZE);
                 let vector = [3.0 / scale[0], -2.0 / scale[1]];
                 let desc = ContextDesc { motion: convention, ..ContextDesc::new(SIZE) };
-                let mut post =
-                    CpuAfterimage::new(&ContextDesc { settings: Settings { gate: None, ..Settings::paper() }, ..desc })
-                        .unwrap();
+                let mut post = CpuAfterimage::new(&ContextDesc { settings: ungated(), ..desc }).unwrap();
                 one(&mut post, 0, &Input::still(before.clone()));
                 sticky(&mut post);
                 let input = Input { motion: Some(Image::filled(SIZE, vector)), ..Input::still(noise(SIZE, "later")) };
@@ -101,7 +99,7 @@ fn every_motion_convention_means_the_same_shift() {
 fn h53_half_pixel_motion_never_blurs() {
     // Nearest reprojection moves samples by whole pixels: after 200 frames of 0.5 px every color is still one of the
     // input colors.
-    let mut post = context(Settings { gate: None, ..Settings::paper() });
+    let mut post = context(ungated());
     let mut known = std::collections::HashSet::new();
     let mut kept = 0;
     for index in 0..200 {
@@ -121,7 +119,7 @@ fn h53_half_pixel_motion_never_blurs() {
 
 #[test]
 fn h54_garbage_motion_shows_the_candidate() {
-    let mut post = context(Settings { gate: None, ..Settings::paper() });
+    let mut post = context(ungated());
     one(&mut post, 0, &Input::still(noise(SIZE, "a")));
     sticky(&mut post);
     for (i, bad) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e9, -1e9].into_iter().enumerate() {
@@ -141,7 +139,7 @@ fn h54_garbage_motion_shows_the_candidate() {
 fn h59_a_zoom_leaves_no_hole() {
     let before = noise(SIZE, "zoom");
     let zoomed = |factor: f32| {
-        let mut post = context_of(Method::Wrs);
+        let mut post = context_of(MethodKind::Wrs);
         one(&mut post, 0, &Input::still(before.clone()));
         sticky(&mut post);
         // Previous minus current, about pixel (32, 24).
@@ -210,7 +208,7 @@ fn h60_a_turn_costs_no_more_than_any_other_frame() {
         };
         let (normal, turn) = (frame("cost", 0.25), frame("cost", 5000.0));
         let mut start = CpuAfterimage::new(&ContextDesc {
-            settings: Settings { method, ..Settings::paper() },
+            settings: Settings { method: method.into(), ..Settings::paper() },
             ..ContextDesc::new(LARGE)
         })
         .unwrap();

@@ -1,6 +1,7 @@
 //! Reservoirs through the whole pass: corruption, non-finite candidates, and no color that was not an input.
 
 use super::*;
+use crate::settings::wrs;
 use afterimage::kernel::pack;
 use afterimage_testing::holds;
 
@@ -22,7 +23,7 @@ fn h19_a_corrupt_sum_resets_its_pixel_alone_for_one_frame() {
     let mut pixels = 0;
     for sampler in [Sampler::AChao, Sampler::AEs] {
         let frame = |i: u64| Input::still(noise(SIZE, &format!("h19 {i}")));
-        let mut sound = context(Settings { sampler, gate: None, ..Settings::paper() });
+        let mut sound = context(wrs(Wrs { sampler, gate: None, ..Wrs::default() }));
         for i in 0..6 {
             one(&mut sound, i, &frame(i));
         }
@@ -81,7 +82,7 @@ fn h17_h18_broken_candidates_leave_the_reservoir_as_it_was_and_are_counted() {
 fn h22_every_shown_color_was_presented() {
     let mut shown = 0;
     for (sampler, bias) in [(Sampler::AChao, Bias::Bernoulli), (Sampler::AEs, Bias::Exponential { lambda: 0.05 })] {
-        let mut post = context(Settings { sampler, bias, ..Settings::paper() });
+        let mut post = context(wrs(Wrs { sampler, bias, ..Wrs::default() }));
         let mut known = std::collections::HashSet::new();
         for index in 0..30 {
             let motion = Some(Image::filled(SIZE, [2.0, -1.0]));
@@ -97,7 +98,7 @@ fn h22_every_shown_color_was_presented() {
         assert!(!known.contains(&mean.map(f32::to_bits)));
         // A color that halves do not represent exactly is stored as the nearest half.
         let (third, stored) = (1.0_f32 / 3.0, pack::half_value(pack::half_bits(1.0 / 3.0)));
-        let mut post = context(Settings { sampler, bias, ..Settings::paper() });
+        let mut post = context(wrs(Wrs { sampler, bias, ..Wrs::default() }));
         assert_eq!(one(&mut post, 0, &Input::still(Image::filled(SIZE, [third; 3]))).0.at(9, 9), [third; 3]);
         let (out, ..) = one(&mut post, 1, &Input::still(Image::filled(SIZE, [f32::NAN; 3])));
         assert_eq!(out.at(9, 9), [stored; 3]);

@@ -3,15 +3,16 @@
 use super::*;
 use afterimage::{Filter, Foveation, Lattice, Lattices};
 
-const METHODS: [Method; 5] = [Method::None, Method::Taa, Method::Wrs, Method::Smr, Method::Taau];
+const METHODS: [MethodKind; 5] =
+    [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau];
 
-fn settings(method: Method) -> Settings {
+fn settings(method: MethodKind) -> Settings {
     let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 8, ..Foveation::default() };
-    Settings { method, foveation, ..Settings::paper() }
+    Settings { method: method.into(), foveation, ..Settings::paper() }
 }
 
 /// First frame of a context with this color and these lattices.
-fn first(method: Method, color: &Color, lattices: Lattices) -> (Color, FrameStats) {
+fn first(method: MethodKind, color: &Color, lattices: Lattices) -> (Color, FrameStats) {
     let mut post = context(settings(method));
     let mut facts = ViewFrame::new(geometry(SIZE), Gaze::At { px: [20.0, 20.0] });
     facts.lattices = Some(lattices);
@@ -57,7 +58,7 @@ fn samples_are_shown_unchanged_and_nothing_else_is_read() {
 fn a_ramp_is_reproduced_between_samples_and_a_constant_everywhere() {
     let ramp = Image::from_fn(SIZE, |[x, y]| [x as f32 / 64.0, y as f32 / 64.0, (x + y) as f32 / 128.0]);
     let lattices = stack([0, 0]);
-    let (out, _) = first(Method::None, &ramp, lattices);
+    let (out, _) = first(MethodKind::None, &ramp, lattices);
     let error = |[x, y]: [usize; 2]| {
         let (a, b) = (ramp.at(x, y), out.at(x, y));
         (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f32::max)
@@ -68,7 +69,7 @@ fn a_ramp_is_reproduced_between_samples_and_a_constant_everywhere() {
         !is_fine || x <= 38 && y <= 28
     });
     assert!(worst.map(error).fold(0.0, f32::max) < 1e-6);
-    let (out, _) = first(Method::None, &Image::filled(SIZE, [0.25, 0.5, 0.75]), stack([5, 2]));
+    let (out, _) = first(MethodKind::None, &Image::filled(SIZE, [0.25, 0.5, 0.75]), stack([5, 2]));
     assert!(out.pixels().iter().all(|&c| c == [0.25, 0.5, 0.75]));
 }
 
@@ -76,13 +77,13 @@ fn a_ramp_is_reproduced_between_samples_and_a_constant_everywhere() {
 fn samples_that_are_not_finite_are_left_out() {
     let far = Lattices::new(&[Lattice::covering(8, [0, 0], SIZE, [4, 4])]).unwrap();
     let bad = Image::from_fn(SIZE, |px| if px == [20, 20] { [0.5, f32::INFINITY, 0.5] } else { [0.5; 3] });
-    let (out, stats) = first(Method::None, &bad, far);
+    let (out, stats) = first(MethodKind::None, &bad, far);
     // Its neighbours have three samples more; its own pixel has none.
     assert_eq!(stats.nonfinite, 1);
     let black = |c: &[f32; 3]| *c == [0.0; 3];
     assert_eq!(out.pixels().iter().position(black), Some(20 * 64 + 20));
     assert!(out.pixels().iter().filter(|c| !black(c)).all(|c| (c[0] - 0.5).abs() < 1e-6));
-    let (_, stats) = first(Method::None, &Image::filled(SIZE, [f32::NAN; 3]), far);
+    let (_, stats) = first(MethodKind::None, &Image::filled(SIZE, [f32::NAN; 3]), far);
     assert_eq!(stats.nonfinite, 64 * 48);
 }
 
@@ -108,14 +109,14 @@ fn an_atlas_is_read_where_its_lattices_are() {
 
 #[test]
 fn the_doctor_refuses_sparse_frames() {
-    let desc = ContextDesc { settings: settings(Method::Wrs), ..ContextDesc::new(SIZE) };
+    let desc = ContextDesc { settings: settings(MethodKind::Wrs), ..ContextDesc::new(SIZE) };
     let error = afterimage::cpu::Doctor::new(&desc, 0).unwrap_err().to_string();
     assert!(error.contains("the doctor does not know sparse frames yet"), "{error}");
 }
 
 #[test]
 fn levels_of_detail_beside_lattices_are_refused() {
-    let mut post = context(settings(Method::Wrs));
+    let mut post = context(settings(MethodKind::Wrs));
     let mut facts = ViewFrame::new(geometry(SIZE), Gaze::Lost);
     facts.lattices = Some(stack([0, 0]));
     let (color, lod) = (noise(SIZE, "lod"), Image::filled(SIZE, 1.0));

@@ -2,7 +2,7 @@
 
 use super::*;
 use afterimage::kernel::noise::unpack_noise;
-use afterimage::{Filter, Foveation, Lattice, Lattices};
+use afterimage::{Filter, Foveation, Lattice, Lattices, Method, Smr};
 use afterimage_testing::{accept, p_of_z, reject};
 
 const PIXELS: f64 = (SIZE[0] * SIZE[1]) as f64;
@@ -63,8 +63,8 @@ fn the_fovea_has_the_variance_that_its_weights_predict() {
     let of_one_frame = 0.6 * 0.6 / 12.0 / 2.0;
     for (frames, most) in [(5, 0.95), (60, 0.95), (60, 0.5)] {
         let mut draws = Draws::new(&format!("sparse still {frames} {most}"));
-        let smr = afterimage::Smr { accumulate: most as f32, ..settings().smr };
-        let mut post = context(Settings { smr, ..settings() });
+        let smr = Smr { accumulate: most as f32, ..Smr::traced() };
+        let mut post = context(Settings { method: Method::Smr(smr), ..settings() });
         let shown = (0..frames).map(|i| frame(&mut post, i, full(), 2, |_| draws.range(0.2, 0.8))).last().unwrap();
         let (mut variance, mut known) = (1.0, 1.0);
         for _ in 1..frames {

@@ -1,6 +1,7 @@
 //! The trust mask: confidence in history.
 
 use super::*;
+use crate::settings::{ungated, wrs};
 use afterimage::kernel::pack;
 
 /// A mask of columns.
@@ -11,7 +12,7 @@ fn columns(values: &[f32]) -> Image<f32> {
 #[test]
 fn trust_of_1_changes_nothing_and_of_0_is_a_reset_of_that_pixel() {
     for sampler in [Sampler::AChao, Sampler::AEs] {
-        let settings = Settings { sampler, gate: None, ..Settings::paper() };
+        let settings = wrs(Wrs { sampler, gate: None, ..Wrs::default() });
         let (mut plain, mut trusting, mut fresh) = (context(settings), context(settings), context(settings));
         let full = Some(Image::filled(SIZE, 1.0));
         for index in 0..8 {
@@ -37,7 +38,7 @@ fn trust_of_1_changes_nothing_and_of_0_is_a_reset_of_that_pixel() {
 
 #[test]
 fn half_the_trust_is_half_the_weight_before_gate_and_bias() {
-    let mut post = context(Settings { gate: None, bias: Bias::None, ..Settings::paper() });
+    let mut post = context(wrs(Wrs { gate: None, bias: Bias::None, ..Wrs::default() }));
     one(&mut post, 0, &Input::still(noise(SIZE, "a")));
     let before: Vec<f32> = post.history().words().iter().map(|&w| pack::unpack(w).w_sum).collect();
     let input = Input { trust: Some(Image::filled(SIZE, 0.5)), ..Input::still(noise(SIZE, "b")) };
@@ -49,7 +50,7 @@ fn half_the_trust_is_half_the_weight_before_gate_and_bias() {
 
 #[test]
 fn h18_trust_that_is_no_number_counts_as_none_and_is_counted() {
-    let mut post = context(Settings { gate: None, ..Settings::paper() });
+    let mut post = context(ungated());
     one(&mut post, 0, &Input::still(noise(SIZE, "a")));
     sticky(&mut post);
     // Eight columns each: only the last three keep anything, and with so much weight they keep all of it.

@@ -1,7 +1,7 @@
 //! Temporal upsampling: what it makes of samples whose places it knows.
 
 use super::*;
-use afterimage::{Filter, Foveation, Lattices};
+use afterimage::{Filter, Foveation, Lattices, Method};
 
 const GAZE: [f32; 2] = [20.0, 20.0];
 
@@ -27,8 +27,8 @@ fn squared_error(a: &Color, b: &Color) -> f64 {
 }
 
 /// Squared error of each frame of waves that move by `speed_px` a frame, as sparse frames.
-fn errors(method: Method, speed_px: f32, frames: u64) -> Vec<f64> {
-    let mut post = context(Settings { method, foveation: foveation(), ..Settings::default() });
+fn errors(method: MethodKind, speed_px: f32, frames: u64) -> Vec<f64> {
+    let mut post = context(Settings { method: method.into(), foveation: foveation(), ..Settings::default() });
     let motion = Image::filled(SIZE, [-speed_px, 0.0]);
     let mut out = [Image::filled(SIZE, [0.0; 3])];
     let frame = |index: u64| {
@@ -45,7 +45,7 @@ fn errors(method: Method, speed_px: f32, frames: u64) -> Vec<f64> {
 #[test]
 fn a_still_converges_and_what_moves_is_sharper_than_with_taa() {
     for (speed_px, of_first, of_taa) in [(0.0, 0.06, 0.07), (0.3, 0.6, 0.7)] {
-        let [taau, taa] = [Method::Taau, Method::Taa].map(|method| errors(method, speed_px, 48));
+        let [taau, taa] = [MethodKind::Taau, MethodKind::Taa].map(|method| errors(method, speed_px, 48));
         let late = |errors: &[f64]| errors[32..].iter().sum::<f64>() / 16.0;
         println!(
             "{speed_px} px a frame: squared error {:.6} of the first frame, {:.6} later, {:.6} with taa",

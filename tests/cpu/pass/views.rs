@@ -1,13 +1,14 @@
 //! Several views, lost gaze, settings.
 
 use super::*;
-use afterimage::Foveation;
+use crate::settings::{ungated, wrs};
+use afterimage::{Foveation, Wrs};
 use afterimage_testing::holds;
 
 #[test]
 fn h27_stereo_views_never_read_each_other() {
     let stereo = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
-    let settings = Settings { gate: None, ..Settings::paper() };
+    let settings = ungated();
     let fresh = || CpuAfterimage::new(&ContextDesc { settings, ..stereo }).unwrap();
     let [mut both, mut left_only, mut right_only] = [fresh(), fresh(), fresh()];
     let mut mono = context(settings);
@@ -31,7 +32,7 @@ fn h27_stereo_views_never_read_each_other() {
 #[test]
 fn h63_a_lost_gaze_is_held_then_centred_at_the_start() {
     let held = |gazes: &[Gaze]| {
-        let mut post = context(Settings { gate: None, ..Settings::paper() });
+        let mut post = context(ungated());
         let mut weights = vec![];
         for (i, &gaze) in gazes.iter().enumerate() {
             let (_, _, trace) = one(&mut post, i as u64, &Input { gaze, ..Input::still(noise(SIZE, "gaze")) });
@@ -48,7 +49,7 @@ fn h63_a_lost_gaze_is_held_then_centred_at_the_start() {
     assert_eq!(held(&[Gaze::Lost]), held(&[at([31.5, 23.5])]));
     held(&[at([-5000.0, 1e30])]);
     // smr and taa: the output depends on the resolved gaze position, and on that alone.
-    for method in [Method::Wrs, Method::Smr] {
+    for method in [MethodKind::Wrs, MethodKind::Smr] {
         let shown = |gazes: &[Gaze]| {
             let mut post = context_of(method);
             let frames = gazes.iter().enumerate();
@@ -73,11 +74,7 @@ fn h66_a_saccade_keeps_the_old_fovea_and_it_decays_as_theory_says() {
     const WIDE: [u32; 2] = [480, 48];
     let view = geometry(WIDE);
     let [old, new] = [20.0_f32, 0.0].map(|e| view.project([-e.to_radians().tan(), 0.0, 1.0]).unwrap());
-    let mut post = CpuAfterimage::new(&ContextDesc {
-        settings: Settings { gate: None, ..Settings::paper() },
-        ..ContextDesc::new(WIDE)
-    })
-    .unwrap();
+    let mut post = CpuAfterimage::new(&ContextDesc { settings: ungated(), ..ContextDesc::new(WIDE) }).unwrap();
     let frame = |index: u64, px| Input { gaze: Gaze::At { px }, ..Input::still(noise(WIDE, &format!("h66 {index}"))) };
     for index in 0..18 {
         one(&mut post, index, &frame(index, old));
@@ -140,7 +137,7 @@ fn settings_are_checked_and_named() {
     for (settings, name) in [
         (Settings { foveation: fovea(-1.0), ..base }, "fovea"),
         (Settings { foveation: fovea(f32::NAN), ..base }, "fovea"),
-        (Settings { bias: Bias::Exponential { lambda: -0.1 }, ..base }, "bias lambda"),
+        (wrs(Wrs { bias: Bias::Exponential { lambda: -0.1 }, ..Wrs::default() }), "bias lambda"),
         (Settings { depth_test: Some(DepthTest { relative: 0.0, slope_px: 1.0 }), ..base }, "depth_test.relative"),
     ] {
         let error = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) }).unwrap_err();

@@ -1,7 +1,8 @@
 //! The preset weighted: detail outlives a fixation, the fovea is fresh, changes of light are followed, and means move.
 
 use super::*;
-use afterimage::Foveation;
+use crate::settings::wrs;
+use afterimage::{Foveation, Wrs};
 
 /// A fovea of radius 10 degrees, and one level of detail outside.
 fn foveation() -> Foveation {
@@ -61,7 +62,7 @@ fn detail_outlives_a_fixation_and_the_next_one_is_fresh() {
     println!("{off:.4} from the darker frame after four frames");
     assert!(off < 0.05, "{off}");
     // Planted error: no gate.
-    let mut ghost = context(Settings { foveation: foveation(), gate: None, ..Settings::weighted() });
+    let mut ghost = context(Settings { foveation: foveation(), ..wrs(Wrs { gate: None, ..Wrs::weighted() }) });
     for index in 0..40 {
         let gaze = if index < 20 { LEFT } else { RIGHT };
         let light = if index < 36 { 1.0 } else { 1.0 / 3.0 };
@@ -79,7 +80,7 @@ fn means_move_by_whole_pixels_bit_for_bit_and_between_pixels_without_drift() {
     let ramp = Image::from_fn(SIZE, |[x, _]| [x as f32 / 64.0; 3]);
     let invalid = Image::filled(SIZE, [f32::NAN; 3]);
     let shifted = |sampler: Sampler, by: f32, frames: u64| {
-        let mut post = context(Settings { foveation: everywhere, sampler, ..Settings::weighted() });
+        let mut post = context(Settings { foveation: everywhere, ..wrs(Wrs { sampler, ..Wrs::weighted() }) });
         one(&mut post, 0, &Input::still(ramp.clone()));
         let input = Input { motion: Some(Image::filled(SIZE, [by, 0.0])), ..Input::still(invalid.clone()) };
         (1..=frames).map(|index| one(&mut post, index, &input).0).last().unwrap()

@@ -37,7 +37,7 @@ fn expected(color: &Color, history: [f32; 3], x: usize, y: usize) -> (DVec3, boo
 
 #[test]
 fn history_is_kept_within_two_deviations_of_its_neighbourhood() {
-    let mut post = context(Method::Taa);
+    let mut post = context(MethodKind::Taa);
     let mut history = step(&mut post, 0, &Input::sharp(noise(SIZE, "taa 0"))).stored();
     let mut clipped = 0;
     for index in 1..6 {

@@ -1,22 +1,18 @@
 //! Surfaces that appear, disappear, move and z-fight, and gaze that moves: hard cases H50, H59, H60, H66, H67 for smr.
 
 use super::rig::*;
-use afterimage::Verdict;
+use afterimage::{Method, Smr, Verdict};
 use afterimage_testing::holds;
 
-fn smr(size: [u32; 2], settings: Settings) -> CpuAfterimage {
-    CpuAfterimage::new(&ContextDesc {
-        settings: Settings { method: Method::Smr, ..settings },
-        ..ContextDesc::new(size)
-    })
-    .unwrap()
+fn context_of(size: [u32; 2], settings: Settings) -> CpuAfterimage {
+    CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(size) }).unwrap()
 }
 
 #[test]
 fn h50_z_fighting_stays_next_to_the_colors_presented() {
     // Two surfaces that z-fight pixel by pixel, as a renderer of quarter resolution delivers them.
     let (a, b) = ([0.25, 0.5, 0.75], [0.75, 0.25, 0.5]);
-    let (mut post, mut plain) = (context(Method::Smr), context(Method::Smr));
+    let (mut post, mut plain) = (context(MethodKind::Smr), context(MethodKind::Smr));
     let lods = Image::filled(SIZE, 2.0);
     let mut draws = Draws::new("z-fighting of surfaces");
     let mut beyond = 0.0_f32;
@@ -46,8 +42,8 @@ fn h59_h60_zoom_and_turn_leave_no_hole() {
     let low_pass = LowPass::new(&before, 4);
     let zoomed = |factor: f32| {
         // Samples without relighting.
-        let plain = afterimage::Smr { relight: false, ..Default::default() };
-        let mut post = smr(SIZE, Settings { smr: plain, ..settings(Method::Smr) });
+        let plain = Method::Smr(Smr { relight: false, ..Smr::default() });
+        let mut post = context_of(SIZE, Settings { method: plain, ..settings(MethodKind::Smr) });
         step(&mut post, 0, &Input::sharp(before.clone()));
         let shift = |v: u32, middle: f32| (v as f32 - middle) * (factor - 1.0);
         let motion = Image::from_fn(SIZE, |[x, y]| [shift(x, 26.0), shift(y, 20.0)]);
@@ -91,7 +87,7 @@ fn h59_h60_zoom_and_turn_leave_no_hole() {
         "smr, in x2: no hole, {near} samples on texels bit for bit and as sharp; out x2: {border} are the candidate"
     );
 
-    let mut post = context(Method::Smr);
+    let mut post = context(MethodKind::Smr);
     step(&mut post, 0, &Input::sharp(before));
     let later = Input::at_lod(Image::filled(SIZE, [0.5; 3]), 2.0);
     let made = step(&mut post, 1, &Input { motion: Some(Image::filled(SIZE, [5000.0, 0.0])), ..later.clone() });
@@ -110,12 +106,12 @@ fn foveated(picture: &LowPass, gaze: [f32; 2], settings: &Settings) -> Input {
 #[test]
 fn h66_the_old_fovea_stays_sharp_after_a_saccade() {
     const WIDE: [u32; 2] = [320, 40];
-    let settings = settings(Method::Smr);
+    let settings = settings(MethodKind::Smr);
     let view = ViewGeometry::flat(WIDE, 70.0).unwrap();
     let at = |e: f32| view.project([e.to_radians().tan(), 0.0, 1.0]).unwrap();
     let sharp = noise(WIDE, "h66");
     let picture = LowPass::new(&sharp, 3);
-    let mut post = smr(WIDE, settings);
+    let mut post = context_of(WIDE, settings);
     for index in 0..3 {
         step(&mut post, index, &foveated(&picture, at(-10.0), &settings));
     }
@@ -131,7 +127,7 @@ fn h66_the_old_fovea_stays_sharp_after_a_saccade() {
         assert!(old.iter().all(|&i| made.surfaces()[i].lod == 0.0));
     }
     // The planted error: no history.
-    let fresh = step(&mut smr(WIDE, settings), 0, &foveated(&picture, at(10.0), &settings));
+    let fresh = step(&mut context_of(WIDE, settings), 0, &foveated(&picture, at(10.0), &settings));
     assert!(old.iter().all(|&i| fresh.shown.pixels()[i] != stored.pixels()[i]));
     holds!(
         "H66",
@@ -146,7 +142,7 @@ fn h67_microsaccades_enlarge_what_is_shown_sharp() {
     const WIDE: [u32; 2] = [240, 120];
     // Levels are stored in sevenths: those finer than one and a half sevenths are stored as 0 or 1.
     const SHARP: f32 = 1.5 / 7.0;
-    let settings = settings(Method::Smr);
+    let settings = settings(MethodKind::Smr);
     let view = ViewGeometry::flat(WIDE, 40.0).unwrap();
     let px_per_deg = 240.0 / (2.0 * 20.0_f32.to_radians().tan()) * 1.0_f32.to_radians();
     let picture = LowPass::new(&noise(WIDE, "h67"), 3);
@@ -155,7 +151,7 @@ fn h67_microsaccades_enlarge_what_is_shown_sharp() {
     let stream: Vec<f32> = (0..500).map(|_| 119.5 + draws.range(-0.5, 0.5) * px_per_deg).collect();
     let gazes: Vec<[f32; 2]> = (0..45).map(|frame| [stream[(frame as f64 * 1000.0 / 90.0) as usize], 59.5]).collect();
     let sharp_after = |gazes: &[[f32; 2]]| {
-        let mut post = smr(WIDE, settings);
+        let mut post = context_of(WIDE, settings);
         let mut last = None;
         for (index, &gaze) in gazes.iter().enumerate() {
             let lods = settings.foveation.lod_map(&view, gaze, &view.eccentricity_map(gaze));

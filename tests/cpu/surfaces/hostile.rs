@@ -1,7 +1,7 @@
 //! NaN, infinity and extreme radiance.
 
 use super::rig::*;
-use afterimage::Verdict;
+use afterimage::{Method, Verdict};
 use proptest::prelude::*;
 
 const BAD: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
@@ -11,7 +11,7 @@ proptest! {
 
     #[test]
     fn h18_a_broken_pixel_over_a_history_touches_no_other(x in 0u32..52, y in 0u32..41, channel in 0usize..3, bad in prop::sample::select(BAD.to_vec())) {
-        let mut clean = context(Method::Smr);
+        let mut clean = context(MethodKind::Smr);
         let first = step(&mut clean, 0, &Input::sharp(noise(SIZE, "h18")));
         let coarse = LowPass::new(&first.stored(), 4).render(&Image::filled(SIZE, 1.5));
         let mut hurt = clean.clone();
@@ -90,7 +90,9 @@ proptest! {
             if blocks {
                 settings.foveation.filter = afterimage::Filter::Block;
             }
-            settings.smr.tolerance = 10.0;
+            if let Method::Smr(smr) = &mut settings.method {
+                smr.tolerance = 10.0;
+            }
             let mut post = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SMALL) }).unwrap();
             for index in 0..6 {
                 let d = &mut draws;
@@ -142,7 +144,7 @@ fn h73_detail_of_bright_pictures_stays() {
     // Storage alone is off by 2^-10, which near 65504 is a difference of 100 * 256 * 2^-11 = 12 in the gate's units;
     // low-passes are of many such roundings, which cancel.
     for scale in [1.0, 100.0, 4_000.0, 60_000.0] {
-        let mut post = context(Method::Smr);
+        let mut post = context(MethodKind::Smr);
         let picture = noise(SIZE, "h73").map(|c| c.map(|v| v * scale));
         let first = step(&mut post, 0, &Input::sharp(picture));
         let low_pass = LowPass::new(&first.stored(), 4);

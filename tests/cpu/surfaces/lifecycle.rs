@@ -1,7 +1,7 @@
 //! Resets, sizes, views, trust.
 
 use super::rig::*;
-use afterimage::{Filter, Verdict};
+use afterimage::{Filter, Method, Smr, Verdict};
 use afterimage_testing::holds;
 
 /// Frames of a fading picture, half of it coarse, so that all output depends on earlier frames.
@@ -42,8 +42,12 @@ fn h76_h77_h78_reset_resize_forget_and_cut_equal_a_fresh_context() {
         assert_eq!(run(&mut resized, 10..14), fresh, "{method:?}");
 
         let mut changed = used.clone();
-        for other in [Method::Wrs, Method::None, if method == Method::Taa { Method::Smr } else { Method::Taa }, method]
-        {
+        for other in [
+            MethodKind::Wrs,
+            MethodKind::None,
+            if method == MethodKind::Taa { MethodKind::Smr } else { MethodKind::Taa },
+            method,
+        ] {
             changed.set_settings(settings(other)).unwrap();
         }
         assert_eq!(run(&mut changed, 10..14), fresh, "{method:?}");
@@ -80,14 +84,12 @@ fn h76_h77_h78_reset_resize_forget_and_cut_equal_a_fresh_context() {
 
 #[test]
 fn tunables_change_without_a_loss_of_history() {
-    let mut post = context(Method::Smr);
+    let mut post = context(MethodKind::Smr);
     run(&mut post, 0..4);
-    let mut changed = settings(Method::Smr);
-    changed.smr.tolerance = 2.0;
-    post.set_settings(changed).unwrap();
+    let changed = |smr| Settings { method: Method::Smr(smr), ..settings(MethodKind::Smr) };
+    post.set_settings(changed(Smr { tolerance: 2.0, ..Smr::default() })).unwrap();
     assert!(run(&mut post, 4..5)[0].trace.pixels().iter().all(|t| t.verdict == Verdict::Valid));
-    changed.smr.accumulate = 0.99;
-    assert!(post.set_settings(changed).is_err());
+    assert!(post.set_settings(changed(Smr { accumulate: 0.99, ..Smr::default() })).is_err());
 }
 
 #[test]
@@ -120,7 +122,7 @@ fn h76_any_size_down_to_a_pixel_works_and_takes_what_is_documented() {
             .memory_bytes()
     };
     let texels = 32 * 24 + 16 * 12 + 8 * 6 + 4 * 3;
-    assert_eq!((bytes(Method::Taa), bytes(Method::Smr)), (16 * 64 * 48, 16 * 64 * 48 + 32 * texels));
+    assert_eq!((bytes(MethodKind::Taa), bytes(MethodKind::Smr)), (16 * 64 * 48, 16 * 64 * 48 + 32 * texels));
 }
 
 #[test]
@@ -177,7 +179,7 @@ fn trust_of_1_changes_nothing_and_of_0_shows_the_candidate() {
 
 #[test]
 fn half_the_trust_is_half_the_history() {
-    let mut post = context(Method::Smr);
+    let mut post = context(MethodKind::Smr);
     let first = step(&mut post, 0, &Input::sharp(noise(SIZE, "half trust")));
     let coarse = LowPass::new(&first.stored(), 4).render(&Image::filled(SIZE, 2.0));
     let input = Input { trust: Some(Image::filled(SIZE, 0.5)), ..Input::at_lod(coarse.clone(), 2.0) };
@@ -189,7 +191,7 @@ fn half_the_trust_is_half_the_history() {
         assert_eq!(made.surfaces()[i].lod, 1.0);
     }
     // taa uses the larger one of its own share of the candidate and 1 - trust.
-    let mut post = context(Method::Taa);
+    let mut post = context(MethodKind::Taa);
     step(&mut post, 0, &frame(0));
     let input = Input { trust: Some(Image::filled(SIZE, 0.5)), ..frame(1) };
     assert!(step(&mut post, 1, &input).trace.pixels().iter().all(|t| t.survival == 0.5));
@@ -245,12 +247,12 @@ fn h58_nothing_is_read_over_a_depth_edge() {
     let colors = |near: bool| if near { [0.9, 0.6, 0.3] } else { [0.1, 0.2, 0.4] };
     let depths = Image::from_fn(SIZE, |at| if near(at) { 1.0 } else { 3.0 });
     for (method, depth, bleeds) in [
-        (Method::Taa, Some(depths.clone()), false),
-        (Method::Taa, None, true),
-        (Method::Smr, Some(depths), false),
-        (Method::Smr, None, true),
+        (MethodKind::Taa, Some(depths.clone()), false),
+        (MethodKind::Taa, None, true),
+        (MethodKind::Smr, Some(depths), false),
+        (MethodKind::Smr, None, true),
     ] {
-        let lod = if method == Method::Smr { 1.0 } else { 0.0 };
+        let lod = if method == MethodKind::Smr { 1.0 } else { 0.0 };
         let input = Input {
             depth,
             motion: Some(Image::filled(SIZE, [-0.25, 0.0])),

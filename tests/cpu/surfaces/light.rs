@@ -1,13 +1,14 @@
 //! Light that changes for smr and taa: hard cases H72 to H75.
 
 use super::rig::*;
+use afterimage::Smr;
 use afterimage_testing::holds;
 
 #[test]
 fn h72_an_exposure_of_256_in_one_frame_loses_nothing_if_it_is_declared() {
     let mut worst_undeclared = 0.0_f32;
     for ratio in [256.0, 1.0 / 256.0] {
-        let mut post = context(Method::Smr);
+        let mut post = context(MethodKind::Smr);
         let made = step(&mut post, 0, &Input::sharp(noise(SIZE, "h72").map(|c| c.map(|v| 0.25 + 0.5 * v))));
         let coarse = LowPass::new(&made.stored(), 4).render(&Image::filled(SIZE, 2.0));
         let exposed =
@@ -79,7 +80,7 @@ fn h74_a_strobe_leaves_nothing_behind() {
                 }
             }
             // Accumulation stalls where a tenth of the difference is less than half a step of storage.
-            let stall = 1.5 / 1024.0 / (1.0 - Settings::default().smr.accumulate);
+            let stall = 1.5 / 1024.0 / (1.0 - Smr::default().accumulate);
             let frames = off.iter().rposition(|&v| v > stall).map_or(0, |last| last + 1);
             let last = off[99];
             println!(
@@ -102,7 +103,7 @@ fn h74_a_strobe_leaves_nothing_behind() {
 
 #[test]
 fn h75_black_and_white_in_turn_show_what_came() {
-    let mut post = context(Method::Smr);
+    let mut post = context(MethodKind::Smr);
     let mut mean = 0.0;
     for index in 0..20 {
         let color = Image::filled(SIZE, [(index % 2) as f32; 3]);

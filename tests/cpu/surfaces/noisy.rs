@@ -3,13 +3,13 @@
 
 use super::rig::{Draws, Input, SIZE, settings, step};
 use afterimage::cpu::CpuAfterimage;
-use afterimage::{ContextDesc, Image, Method, Settings, Smr};
+use afterimage::{ContextDesc, Image, Method, MethodKind, Settings, Smr};
 use afterimage_testing::{accept, p_of_z, reject};
 
 const PIXELS: f64 = (SIZE[0] * SIZE[1]) as f64;
 
 fn noisy() -> Settings {
-    Settings { noisy: true, ..settings(Method::Smr) }
+    Settings { noisy: true, ..settings(MethodKind::Smr) }
 }
 
 fn post(settings: Settings) -> CpuAfterimage {
@@ -55,7 +55,8 @@ fn a_still_view_has_the_variance_that_its_weights_predict() {
     let of_one_frame = 0.6 * 0.6 / 12.0 / 2.0;
     for (frames, accumulate) in [(5, 0.9), (60, 0.9), (60, 0.5)] {
         let mut draws = Draws::new(&format!("still {frames} {accumulate}"));
-        let mut post = post(Settings { smr: Smr { accumulate, ..Smr::default() }, ..noisy() });
+        let method = Method::Smr(Smr { accumulate, ..Smr::default() });
+        let mut post = post(Settings { method, ..noisy() });
         let shown = (0..frames).map(|i| step(&mut post, i, &sampled(&mut draws, 2, even)).shown).last().unwrap();
         let (mean, variance) = moments(&shown);
         let expected = of_one_frame * promised(frames as usize, f64::from(accumulate));

@@ -25,7 +25,7 @@ fn busy(name: &str) -> Input {
 
 #[test]
 fn s1_inside_the_fovea_the_candidate_is_shown_bit_for_bit() {
-    let mut post = context(Method::Smr);
+    let mut post = context(MethodKind::Smr);
     let mut foveal = 0;
     for index in 0..40 {
         let input = busy(&format!("s1 {index}"));
@@ -44,7 +44,7 @@ fn s1_inside_the_fovea_the_candidate_is_shown_bit_for_bit() {
 
 #[test]
 fn s1_by_gaze_the_fovea_is_a_disc_of_the_settings() {
-    let mut post = context(Method::Smr);
+    let mut post = context(MethodKind::Smr);
     let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
     for index in 0..10 {
         let px = [10.0 + 3.0 * index as f32, 20.0];
@@ -94,9 +94,9 @@ fn s2_without_a_valid_history_the_candidate_and_its_level_are_shown_and_stored()
                 // A NaN vector is unlike its neighbours'.
                 let nowhere = input.motion.as_ref().is_some_and(|m| m.pixels()[0][0].is_nan());
                 let expected = match method {
-                    Method::Taa => 0.0,
+                    MethodKind::Taa => 0.0,
                     // Its confidence: that of one sample.
-                    Method::Taau => 4.0,
+                    MethodKind::Taau => 4.0,
                     _ if nowhere => MAX_LOD,
                     _ => stored_lod(lod),
                 };
@@ -108,7 +108,7 @@ fn s2_without_a_valid_history_the_candidate_and_its_level_are_shown_and_stored()
 
 #[test]
 fn a_vector_unlike_its_neighbours_leads_nowhere_and_is_not_kept() {
-    let mut post = context(Method::Smr);
+    let mut post = context(MethodKind::Smr);
     let picture = noise(SIZE, "coherent");
     step(&mut post, 0, &Input::sharp(picture.clone()));
     // A single pixel; and a row of three, of which the first two share a 2x2 block and the last has no neighbour in its
@@ -137,7 +137,7 @@ fn a_vector_unlike_its_neighbours_leads_nowhere_and_is_not_kept() {
 }
 
 /// A few frames with all colors times `ratio` from frame `from` on; `is_declared`: the frame's exposure says so.
-fn exposed(method: Method, ratio: f32, from: u64, is_declared: bool) -> Vec<Made> {
+fn exposed(method: MethodKind, ratio: f32, from: u64, is_declared: bool) -> Vec<Made> {
     let mut post = context(method);
     let frame = |index: u64| {
         let mut input = busy(&format!("exposure {index}"));

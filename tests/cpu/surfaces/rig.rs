@@ -5,21 +5,21 @@ pub use afterimage::cpu::{CpuAfterimage, Frame};
 pub use afterimage::kernel::debug_view::PixelTrace;
 pub use afterimage::kernel::surface::{Surface, unpack_surface};
 pub use afterimage::{
-    ContextDesc, Exposure, Foveation, FrameStats, Gaze, Image, Method, Reset, Settings, ViewFrame, ViewGeometry,
+    ContextDesc, Exposure, Foveation, FrameStats, Gaze, Image, MethodKind, Reset, Settings, ViewFrame, ViewGeometry,
 };
 pub use afterimage_testing::Draws;
 
 pub const SIZE: [u32; 2] = [52, 41];
-pub const METHODS: [Method; 3] = [Method::Smr, Method::Taa, Method::Taau];
+pub const METHODS: [MethodKind; 3] = [MethodKind::Smr, MethodKind::Taa, MethodKind::Taau];
 pub type Color = Image<[f32; 3]>;
 
 /// Four pixels a block at the most: levels 0 to 4 of the mip chain, so that positions 16 pixels apart are alike.
-pub fn settings(method: Method) -> Settings {
+pub fn settings(method: MethodKind) -> Settings {
     let foveation = Foveation { rate_mid: 4, rate_far: 4, ..Foveation::default() };
-    Settings { method, foveation, ..Settings::default() }
+    Settings { method: method.into(), foveation, ..Settings::default() }
 }
 
-pub fn context(method: Method) -> CpuAfterimage {
+pub fn context(method: MethodKind) -> CpuAfterimage {
     CpuAfterimage::new(&ContextDesc { settings: settings(method), ..ContextDesc::new(SIZE) }).unwrap()
 }
 

@@ -1,7 +1,7 @@
 //! Still pictures and whole shifts of them: S3 and S9.
 
 use super::rig::*;
-use afterimage::Verdict;
+use afterimage::{Method, Smr, Verdict};
 use afterimage_testing::holds;
 
 /// Levels of detail at which sharp history replaces the candidate fully: a tenth and more.
@@ -14,7 +14,7 @@ fn coarse_lods(name: &str) -> Image<f32> {
 fn s3_a_still_picture_stays_bit_for_bit_whatever_the_candidates_level() {
     // Rough, smooth, and dark pictures: the tolerance grows with contrast, and smooth ones have none.
     for (name, floor, contrast) in [("rough", 0.0, 1.0), ("smooth", 0.5, 0.02), ("dark", 0.0, 0.004)] {
-        let mut post = context(Method::Smr);
+        let mut post = context(MethodKind::Smr);
         let picture = noise(SIZE, "s3").map(|c| c.map(|v| floor + contrast * v));
         let first = step(&mut post, 0, &Input::sharp(picture));
         let stored = first.stored();
@@ -41,11 +41,11 @@ fn s3_a_still_picture_stays_bit_for_bit_whatever_the_candidates_level() {
 fn s3_the_chain_is_read_where_and_as_coarse_as_the_candidate_is() {
     // Smooth pictures have almost no contrast, which adds tolerance, so history fits only if the same low-pass is
     // compared: a slope of 1.5 % a pixel is distinguished from its shifted copy.
-    let mut post = context(Method::Smr);
+    let mut post = context(MethodKind::Smr);
     // Nor may it pass for a change of light.
     post.set_settings(Settings {
-        smr: afterimage::Smr { relight: false, ..Default::default() },
-        ..settings(Method::Smr)
+        method: Method::Smr(Smr { relight: false, ..Smr::default() }),
+        ..settings(MethodKind::Smr)
     })
     .unwrap();
     let slope = Image::from_fn(SIZE, |[x, _]| [0.02 + 0.015 * x as f32; 3]);
@@ -66,7 +66,7 @@ fn s3_the_chain_is_read_where_and_as_coarse_as_the_candidate_is() {
 
 #[test]
 fn s9_frames_that_repeat_change_nothing_where_history_is_shown_wholly() {
-    let mut post = context(Method::Smr);
+    let mut post = context(MethodKind::Smr);
     let first = step(&mut post, 0, &Input::sharp(noise(SIZE, "s9")));
     // The left is the same picture, the right another one.
     let lods = Image::filled(SIZE, 1.5);
@@ -96,7 +96,7 @@ fn s9_a_coarse_candidate_that_repeats_settles_next_to_itself() {
     // Nothing finer is known: history of the same level is accumulated. It is compared after another low-pass, which
     // coarse history does not need, so that some of it is taken for a change of light; and what is stored is rounded,
     // by up to 2^-10.
-    let mut post = context(Method::Smr);
+    let mut post = context(MethodKind::Smr);
     let coarse = LowPass::new(&noise(SIZE, "s9 coarse"), 4).render(&Image::filled(SIZE, 2.0));
     let mut frames = vec![];
     for index in 0..30 {
@@ -128,9 +128,9 @@ fn accumulation_shows_nine_tenths_of_equally_coarse_history() {
     // Within the tolerance of equally coarse history.
     let [a, b] = [0.25_f32, 0.254];
     for accumulate in [0.0, 0.5, 0.9] {
-        let smr = afterimage::Smr { accumulate, ..Default::default() };
+        let method = Method::Smr(Smr { accumulate, ..Smr::default() });
         let mut post = CpuAfterimage::new(&ContextDesc {
-            settings: Settings { smr, ..settings(Method::Smr) },
+            settings: Settings { method, ..settings(MethodKind::Smr) },
             ..ContextDesc::new(SIZE)
         })
         .unwrap();
@@ -147,7 +147,7 @@ fn accumulation_shows_nine_tenths_of_equally_coarse_history() {
 fn h52_a_whole_shift_moves_history_exactly_and_the_border_is_new() {
     let before = noise(SIZE, "h52");
     for (shift, right) in [([3.0, -2.0], true), ([-3.0, 2.0], false)] {
-        let mut post = context(Method::Smr);
+        let mut post = context(MethodKind::Smr);
         step(&mut post, 0, &Input::sharp(before.clone()));
         let low_pass = LowPass::new(&before, 4);
         let color = Image::from_fn(SIZE, |[x, y]| low_pass.at([f64::from(x) + 3.0, f64::from(y) - 2.0], 1.0));
@@ -171,7 +171,7 @@ fn h53_half_a_pixel_is_read_between_texels() {
     let wave = |x: f64| 0.5 + 0.3 * (std::f64::consts::TAU * x / 12.0).sin();
     let picture = |shift: f64| Image::from_fn(SIZE, |[x, _]| [wave(f64::from(x) + shift) as f32; 3]);
     for sign in [1.0, -1.0] {
-        let mut post = context(Method::Smr);
+        let mut post = context(MethodKind::Smr);
         step(&mut post, 0, &Input::sharp(picture(0.0)));
         let (mut shift, mut worst, mut coarse) = (0.0, 0.0_f64, 0.0_f64);
         for index in 1..=8 {
@@ -204,7 +204,7 @@ fn h53_200_steps_of_half_a_pixel_blur_no_more_than_stated() {
     let wave = |x: f64| 0.5 + 0.3 * (2.0 * f * x).sin();
     let picture = |shift: f64| Image::from_fn(WIDE, |[x, _]| [wave(f64::from(x) - shift) as f32; 3]);
     let mut post =
-        CpuAfterimage::new(&ContextDesc { settings: settings(Method::Smr), ..ContextDesc::new(WIDE) }).unwrap();
+        CpuAfterimage::new(&ContextDesc { settings: settings(MethodKind::Smr), ..ContextDesc::new(WIDE) }).unwrap();
     step(&mut post, 0, &Input::sharp(picture(0.0)));
     let (mut kept, mut coarse) = (0.0, 0.0);
     for index in 1..=200 {

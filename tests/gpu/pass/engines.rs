@@ -6,14 +6,14 @@ use afterimage::gpu::{Afterimage, Frame, Region, Target, Textures, Variant};
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, Features, TextureFormat, TextureUsages};
 use afterimage::{
-    ContextDesc, CreateError, DebugView, DepthConvention, Exposure, Image, Method, MotionConvention, Reset, Settings,
-    ViewFrame,
+    ContextDesc, CreateError, DebugView, DepthConvention, Exposure, Image, Method, MethodKind, MotionConvention, Reset,
+    Settings, ViewFrame,
 };
 
 const SIZE: [u32; 2] = [70, 41];
 
 fn all_settings() -> impl Iterator<Item = Settings> {
-    let plain = Method::ALL.map(|method| Settings { method, ..Settings::default() });
+    let plain = MethodKind::ALL.map(|kind| Settings { method: kind.into(), ..Settings::default() });
     plain.into_iter().chain([Settings::traced(), Settings::weighted()])
 }
 

@@ -1,7 +1,8 @@
 //! Gaze and eccentricity on the device: hard cases H61 to H66.
 
 use super::rig::{Rig, View, noise};
-use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, Reset, Settings, ViewGeometry};
+use crate::settings::ungated;
+use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, Reset, Settings, Smr, ViewGeometry};
 use afterimage_testing::holds;
 
 const SIZE: [u32; 2] = [64, 48];
@@ -18,7 +19,7 @@ fn h61_h62_h64_h65_weights_follow_rays_in_any_view() {
     let (mut only, mut floor, mut worst_rad) = (0, f32::MAX, 0.0_f64);
     for fovea_deg in [0.0, 5.0] {
         let foveation = Foveation { fovea_deg, ..Foveation::default() };
-        let settings = Settings { gate: None, foveation, ..Settings::paper() };
+        let settings = Settings { foveation, ..ungated() };
         for geometry in views {
             let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
             for (index, px) in (0..).zip([[31.0, 23.0], [1.0, 2.0], [63.0, 47.0], [-40.0, 200.0]]) {
@@ -111,7 +112,8 @@ fn h63_a_lost_gaze_is_held_then_centred_at_the_start() {
     assert_ne!(weights(&[at([-5000.0, 1e30])]), Some(there));
     // smr: its output depends on the held gaze.
     let shown = |gazes: &[Gaze]| -> Option<Vec<_>> {
-        let mut rig = Rig::new(ContextDesc::new(SIZE), Settings { method: Method::Smr, ..Settings::paper() })?;
+        let mut rig =
+            Rig::new(ContextDesc::new(SIZE), Settings { method: Method::Smr(Smr::default()), ..Settings::paper() })?;
         let frame = |(index, &gaze): (usize, &Gaze)| {
             let mut view = View::still(noise(SIZE, &format!("gaze {index}")), [0.0; 2]);
             view.facts.gaze = gaze;
@@ -130,7 +132,7 @@ fn h63_a_lost_gaze_is_held_then_centred_at_the_start() {
 
 #[test]
 fn h66_a_saccade_keeps_the_old_fovea() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::paper() }) else {
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), ungated()) else {
         return;
     };
     let sharp = noise(SIZE, "sharp");

@@ -2,11 +2,12 @@
 
 use super::rig::noise_view;
 use super::rig::{Made, Rig, View, make_texture};
+use crate::settings::{ungated, ungated_of, wrs};
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::{self, Texture, TextureFormat, TextureUsages};
 use afterimage::{
-    ContextDesc, CreateError, DepthConvention, Exposure, FrameError, Gaze, Method, MotionConvention, MotionDirection,
-    MotionUnit, Reset, Sampler, Settings, ViewFrame, ViewGeometry, YAxis,
+    ContextDesc, CreateError, DepthConvention, Exposure, FrameError, Gaze, MethodKind, MotionConvention,
+    MotionDirection, MotionUnit, Reset, Sampler, Settings, ViewFrame, ViewGeometry, Wrs, YAxis,
 };
 use afterimage_testing::holds;
 
@@ -27,12 +28,12 @@ fn agree(desc: ContextDesc, settings: Settings, frames: u64) {
 #[test]
 fn h27_stereo_is_one_dispatch_without_a_leak() {
     agree(ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }, Settings::paper(), 12);
-    let settings = Settings { sampler: Sampler::AEs, ..Settings::paper() };
+    let settings = wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() });
     agree(ContextDesc { view_count: 4, ..ContextDesc::new([33, 17]) }, settings, 12);
     agree(ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }, Settings::weighted(), 12);
     // Planted error: the other eye's history. Swapped layers of history must make a difference.
     let desc = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
-    let Some(mut rig) = Rig::new(desc, Settings { gate: None, ..Settings::paper() }) else { return };
+    let Some(mut rig) = Rig::new(desc, ungated()) else { return };
     let views = |index: u64| -> Vec<View> { (0..2).map(|v| noise_view(&format!("{index} {v}"), &desc)).collect() };
     rig.on_gpu(0, Reset::None, &views(0));
     rig.on_cpu(0, Reset::None, &views(0));
@@ -91,7 +92,7 @@ fn run(rig: &mut Rig, range: std::ops::Range<u64>) -> Vec<Made> {
 
 #[test]
 fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
-    let fresh = || Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::paper() });
+    let fresh = || Rig::new(ContextDesc::new(SIZE), ungated());
     let Some(mut rig) = fresh() else { return };
     let expected = run(&mut rig, 20..26);
     let used = || {
@@ -142,10 +143,10 @@ fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
 
 #[test]
 fn h76_a_minimised_window_is_refused_and_changes_nothing() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::paper() }) else {
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), ungated()) else {
         return;
     };
-    let Some(mut other) = Rig::new(ContextDesc::new(SIZE), Settings { gate: None, ..Settings::paper() }) else {
+    let Some(mut other) = Rig::new(ContextDesc::new(SIZE), ungated()) else {
         return;
     };
     run(&mut rig, 0..3);
@@ -162,8 +163,8 @@ fn h76_a_minimised_window_is_refused_and_changes_nothing() {
 #[test]
 fn h77_a_lost_device_is_left_behind_for_a_new_one() {
     use std::sync::{Arc, OnceLock};
-    for method in [Method::Wrs, Method::Taa, Method::Smr, Method::Taau] {
-        let fresh = || Rig::new(ContextDesc::new(SIZE), Settings { method, gate: None, ..Settings::paper() });
+    for method in [MethodKind::Wrs, MethodKind::Taa, MethodKind::Smr, MethodKind::Taau] {
+        let fresh = || Rig::new(ContextDesc::new(SIZE), ungated_of(method));
         let Some(mut lost) = fresh() else { return };
         let reason = Arc::new(OnceLock::new());
         let lost_reason = reason.clone();
@@ -308,7 +309,7 @@ fn memory_bytes_is_what_is_made() {
     let mut desc = ContextDesc { settings: Settings::paper(), ..ContextDesc::new(SIZE) };
     let new = |desc: &ContextDesc| Afterimage::new(&device, desc, TextureFormat::Rgba16Float).unwrap();
     assert_eq!(new(&desc).memory_bytes(), 24 * pixels);
-    desc.settings.sampler = Sampler::AEs;
+    desc.settings = wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() });
     assert_eq!(new(&desc).memory_bytes(), 32 * pixels);
     desc.view_count = 2;
     let mut post = new(&desc);

@@ -2,14 +2,14 @@
 //! in every bit, and the properties hold.
 
 use super::rig::{Rig, View, noise};
+use crate::settings::ungated;
 use afterimage::{ContextDesc, Exposure, Image, Reset, Settings};
 use afterimage_testing::holds;
 
 const SIZE: [u32; 2] = [64, 48];
 
 fn rig(gate: bool) -> Option<Rig> {
-    let settings = Settings::paper();
-    Rig::new(ContextDesc::new(SIZE), if gate { settings } else { Settings { gate: None, ..settings } })
+    Rig::new(ContextDesc::new(SIZE), if gate { Settings::paper() } else { ungated() })
 }
 
 fn plain(light: f32) -> View {

@@ -3,7 +3,7 @@
 use super::rig::{Rig, View, with_w_sum};
 use super::surfaces::{METHODS, PIXELS, SIZE, bits, one, sticky, still, ungated, ungated_of, with_depth, with_motion};
 use afterimage::kernel::pack;
-use afterimage::{ContextDesc, Image, Method, MotionConvention, MotionUnit, Reset, Settings, Verdict};
+use afterimage::{ContextDesc, Image, MethodKind, MotionConvention, MotionUnit, Reset, Verdict};
 use afterimage_testing::holds;
 
 #[test]
@@ -72,7 +72,7 @@ fn h54_garbage_motion_shows_the_candidate() {
         let Some(mut rig) = ungated_of(method) else { return };
         one(&mut rig, 0, still("a"));
         for (index, bad) in (1..).zip([f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e9, -1e9, f32::MAX]) {
-            if method == Method::Wrs {
+            if method == MethodKind::Wrs {
                 let words = rig.read().words;
                 rig.restore(&with_w_sum(&words, 1e12));
             }
@@ -95,7 +95,7 @@ fn h55_half_float_motion_is_off_by_its_quantum_and_no_more() {
     // Half a view and half a pixel, nearly, in texture coordinates, where halves step by 2^-11: a 32nd of these pixels.
     let motion = MotionConvention { unit: MotionUnit::Uv, ..MotionConvention::default() };
     let desc = ContextDesc { motion, ..ContextDesc::new(SIZE) };
-    let Some(mut rig) = Rig::new(desc, Settings { gate: None, ..Settings::paper() }) else { return };
+    let Some(mut rig) = Rig::new(desc, crate::settings::ungated()) else { return };
     rig.halve_motion();
     sticky(&mut rig, still("before"));
     let wanted_px = 32.0 + 0.49;
@@ -120,7 +120,8 @@ fn h57_the_last_texel_is_inside_and_a_hundredth_beyond_its_edge_is_not() {
             let (_, trace) = one(&mut rig, 1, with_motion("border", |[x, _]| [to - x as f32, 0.0]));
             for (i, t) in trace.pixels().iter().enumerate() {
                 // smr rejects vectors that are unlike their neighbours': these grow by a pixel from one to the next.
-                let accepted = if method == Method::Smr && t.verdict == Verdict::Disoccluded { None } else { Some(t) };
+                let accepted =
+                    if method == MethodKind::Smr && t.verdict == Verdict::Disoccluded { None } else { Some(t) };
                 let verdict = if inside { Verdict::Valid } else { Verdict::OffScreen };
                 assert!(accepted.is_none_or(|t| t.verdict == verdict), "{method:?}: pixel {i} to column {to}");
                 assert!(inside || t.verdict == Verdict::OffScreen);

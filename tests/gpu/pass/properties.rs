@@ -6,7 +6,7 @@ use crate::any_frame::{AnyFrame, SIZE, all_settings, any_frame};
 use afterimage::kernel::pack;
 use afterimage::kernel::surface::unpack_surface;
 use afterimage::shader::SHADERS;
-use afterimage::{ContextDesc, Method, Reset, Settings};
+use afterimage::{ContextDesc, Method, MethodKind, Reset, Settings};
 use afterimage_testing::Draws;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
@@ -78,7 +78,7 @@ fn a_history_of_any_bits_shows_numbers_and_heals_in_a_frame() {
                 );
                 // Every pixel holds a sample again.
                 let healed = made.words.iter().all(|&w| match settings.method {
-                    Method::Wrs => pack::unpack(w).w_sum > 0.0,
+                    Method::Wrs(_) => pack::unpack(w).w_sum > 0.0,
                     _ => unpack_surface([w[0], w[1]]).lod >= 0.0,
                 });
                 prop_assert!(healed, "{:?}, frame {}", settings, index);
@@ -116,13 +116,13 @@ fn what_one_view_is_given_changes_no_bit_of_the_other() {
     // Planted errors: the other view's past.
     for (method, pass, right, wrong) in [
         (
-            Method::Wrs,
+            MethodKind::Wrs,
             "wrs_pass",
             "textureLoad(past_colors, source.at, view, 0)",
             "textureLoad(past_colors, source.at, 1u - view, 0)",
         ),
         (
-            Method::Smr,
+            MethodKind::Smr,
             "smr_pass",
             "textureLoad(past_surfaces, at, view, 0)",
             "textureLoad(past_surfaces, at, 1u - view, 0)",
@@ -130,7 +130,7 @@ fn what_one_view_is_given_changes_no_bit_of_the_other() {
     ] {
         let source = SHADERS.compose(pass).source;
         assert!(source.contains(right));
-        let settings = Settings { method, ..Settings::paper() };
+        let settings = Settings { method: method.into(), ..Settings::paper() };
         assert_eq!(leaks(settings, Some(&source.replace(right, wrong))), Some(true), "{method:?}");
     }
 }

@@ -2,16 +2,17 @@
 //! H17 to H19, H22, H26, H29.
 
 use super::rig::{Rig, View, noise, with_w_sum};
+use crate::settings::{ungated, wrs};
 use afterimage::kernel::pack;
 use afterimage::shader::SHADERS;
-use afterimage::{Bias, ContextDesc, Foveation, Image, Reset, Sampler, Settings};
+use afterimage::{Bias, ContextDesc, Foveation, Image, Reset, Sampler, Settings, Wrs};
 use afterimage_testing::Draws;
 use afterimage_testing::holds;
 
-/// Settings in which every candidate has weight 1, without gate and depth test.
-fn even() -> Settings {
+/// Settings in which every candidate has weight 1, without a gate.
+fn even(bias: Bias) -> Settings {
     let foveation = Foveation { fovea_deg: 180.0, mid_deg: 180.0, ..Foveation::default() };
-    Settings { foveation, gate: None, bias: Bias::None, ..Settings::paper() }
+    Settings { foveation, ..wrs(Wrs { gate: None, bias, ..Wrs::default() }) }
 }
 
 /// A frame of one color.
@@ -37,7 +38,7 @@ fn sum_after(rig: &mut Rig, words: &[[u32; 3]], start: f32, frames: u64) -> [f32
 #[test]
 fn h05_h06_a_plain_sum_goes_on_where_a_half_stalls_and_never_overflows() {
     let size = [16, 4];
-    let Some(mut rig) = Rig::new(ContextDesc::new(size), even()) else { return };
+    let Some(mut rig) = Rig::new(ContextDesc::new(size), even(Bias::None)) else { return };
     let words = rig.both(0, Reset::None, &[plain(size, 0.5)]).0.words;
     assert_eq!(sum_after(&mut rig, &words, 2040.0, 20), [2059.0, 2060.0], "a half stalls at 2048");
     let [_, here] = sum_after(&mut rig, &words, 65_504.0, 40);
@@ -51,8 +52,7 @@ fn h05_h06_a_plain_sum_goes_on_where_a_half_stalls_and_never_overflows() {
 #[test]
 fn h07_biased_sums_stall_where_documented() {
     let size = [16, 4];
-    let biased = Settings { bias: Bias::Bernoulli, ..even() };
-    let Some(mut rig) = Rig::new(ContextDesc::new(size), biased) else { return };
+    let Some(mut rig) = Rig::new(ContextDesc::new(size), even(Bias::Bernoulli)) else { return };
     let words = rig.both(0, Reset::None, &[plain(size, 0.5)]).0.words;
     // With 16 significant bits a sum of ones under eq. 5 stalls between 256 and 363; a half would stall at 63.
     let [before, stalled] = sum_after(&mut rig, &words, 250.0, 1_800);
@@ -68,8 +68,8 @@ fn h07_biased_sums_stall_where_documented() {
 fn h11_without_bias_every_frame_is_kept_as_often() {
     let size = [256, 128];
     let counts = |bias, name: &str| -> Option<Vec<u64>> {
-        let mut rig =
-            Rig::new(ContextDesc::new(size), Settings { bias, seed: afterimage_testing::seed(name), ..even() })?;
+        let seed = afterimage_testing::seed(name);
+        let mut rig = Rig::new(ContextDesc::new(size), Settings { seed, ..even(bias) })?;
         let mut counts = vec![0; 8];
         for index in 0..8 {
             let shown = rig.on_gpu(index, Reset::None, &[plain(size, index as f32)]).shown;
@@ -92,7 +92,7 @@ fn h11_without_bias_every_frame_is_kept_as_often() {
 #[test]
 fn h12_a_candidate_is_taken_in_proportion_to_its_weight() {
     let size = [256, 128];
-    let Some(mut rig) = Rig::new(ContextDesc::new(size), even()) else { return };
+    let Some(mut rig) = Rig::new(ContextDesc::new(size), even(Bias::None)) else { return };
     let words = rig.both(0, Reset::None, &[plain(size, 0.5)]).0.words;
     let pixels = u64::from(size[0] * size[1]);
     let mut least = 1.0_f64;
@@ -141,7 +141,7 @@ fn h15_h17_h18_broken_candidates_change_nothing_while_the_age_saturates() {
 fn h19_whatever_the_history_holds_it_heals_in_one_frame() {
     let size = [64, 48];
     for sampler in [Sampler::AChao, Sampler::AEs] {
-        let Some(mut rig) = Rig::new(ContextDesc::new(size), Settings { sampler, ..Settings::paper() }) else {
+        let Some(mut rig) = Rig::new(ContextDesc::new(size), wrs(Wrs { sampler, ..Wrs::default() })) else {
             return;
         };
         let mut draws = Draws::new("h19 on the device");
@@ -168,7 +168,7 @@ fn h19_whatever_the_history_holds_it_heals_in_one_frame() {
 #[test]
 fn h19_a_corrupt_sum_resets_its_pixel_alone_for_one_frame() {
     let size = [64, 16];
-    let settings = Settings { gate: None, ..Settings::paper() };
+    let settings = ungated();
     let Some(mut rig) = Rig::new(ContextDesc::new(size), settings) else { return };
     let view = |i: u64| [View::still(noise(size, &format!("h19 {i}")), [9.0; 2])];
     let mut words = vec![];
@@ -244,7 +244,7 @@ fn h29_the_same_bytes_in_workgroups_of_any_size() {
 #[test]
 fn h26_the_frame_counter_goes_on_beyond_32_bits() {
     let size = [256, 64];
-    let Some(mut rig) = Rig::new(ContextDesc::new(size), even()) else { return };
+    let Some(mut rig) = Rig::new(ContextDesc::new(size), even(Bias::None)) else { return };
     // Each frame has its own color; the samples of eight frames around the wrap follow the same law.
     let first = u64::from(u32::MAX) - 3;
     let mut counts = [0_u64; 8];

@@ -93,8 +93,8 @@ impl Rig {
     /// `None`, after a message, without an adapter.
     pub fn new(context: ContextDesc, settings: Settings) -> Option<Self> {
         let pass = match (settings.method, settings.foveation.filter) {
-            (Method::Smr, Filter::Sparse) => "sparse_pass".to_owned(),
-            (Method::Wrs, Filter::Sparse) => "wrs_sparse_pass".to_owned(),
+            (Method::Smr(_), Filter::Sparse) => "sparse_pass".to_owned(),
+            (Method::Wrs(_), Filter::Sparse) => "wrs_sparse_pass".to_owned(),
             (method, _) => format!("{}_pass", method.name()),
         };
         Self::with_shader(context, settings, &SHADERS.compose(&pass).source)

@@ -5,14 +5,16 @@ use afterimage::gpu::{Afterimage, Frame, Region, Textures};
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{
-    ContextDesc, Exposure, Filter, Foveation, Image, Lattice, Lattices, Method, Reset, Sampler, Settings, ViewGeometry,
+    ContextDesc, Exposure, Filter, Foveation, Image, Lattice, Lattices, Method, MethodKind, Reset, Sampler, Settings,
+    ViewGeometry, Wrs,
 };
 use afterimage_testing::Draws;
 
 const SIZE: [u32; 2] = [70, 41];
-const METHODS: [Method; 5] = [Method::None, Method::Taa, Method::Wrs, Method::Taau, Method::Smr];
+const METHODS: [MethodKind; 5] =
+    [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Taau, MethodKind::Smr];
 
-fn settings(method: Method) -> Settings {
+fn settings(method: MethodKind) -> Settings {
     let foveation = Foveation {
         filter: Filter::Sparse,
         fovea_deg: 12.0,
@@ -21,7 +23,7 @@ fn settings(method: Method) -> Settings {
         rate_far: 8,
         ..Foveation::default()
     };
-    Settings { method, foveation, ..Settings::paper() }
+    Settings { method: method.into(), foveation, ..Settings::paper() }
 }
 
 fn desc() -> ContextDesc {
@@ -71,8 +73,9 @@ fn in_atlas(views: &[View], size: [u32; 2]) -> Vec<View> {
 #[test]
 fn sparse_frames_are_bit_equal_on_both_executors() {
     for method in METHODS {
-        let keyed = Settings { sampler: Sampler::AEs, ..settings(method) };
-        for settings in [settings(method)].into_iter().chain((method == Method::Wrs).then_some(keyed)) {
+        let wrs = Wrs { sampler: Sampler::AEs, ..Wrs::default() };
+        let keyed = Settings { method: Method::Wrs(wrs), ..settings(method) };
+        for settings in [settings(method)].into_iter().chain((method == MethodKind::Wrs).then_some(keyed)) {
             let Some(mut rig) = Rig::new(desc(), settings) else { return };
             for index in 0..6 {
                 rig.scattered = index % 3 == 2;
@@ -99,13 +102,13 @@ fn noisy_view(index: u64, v: u32, settings: &Settings) -> View {
 }
 
 fn traced() -> Settings {
-    Settings { foveation: settings(Method::Smr).foveation, ..Settings::traced() }
+    Settings { foveation: settings(MethodKind::Smr).foveation, ..Settings::traced() }
 }
 
 #[test]
 fn noisy_sparse_frames_are_bit_equal_on_both_executors() {
     for method in METHODS {
-        let settings = Settings { method, ..traced() };
+        let settings = Settings { method: method.into(), ..traced() };
         let Some(mut rig) = Rig::new(desc(), settings) else { return };
         for index in 0..12 {
             rig.scattered = index % 4 == 3;
@@ -227,7 +230,7 @@ fn what_lies_between_samples_is_not_read() {
 
 #[test]
 fn lattices_without_a_sample_in_the_frame_have_no_candidates() {
-    let settings = settings(Method::None);
+    let settings = settings(MethodKind::None);
     let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
     // The last column of blocks of the finer lattice has its samples beyond the right edge.
     let fine = Lattice::covering(4, [68, 0], [70, 41], [3, 0]);
@@ -262,7 +265,7 @@ fn a_wrong_fill_is_caught() {
     for (text, instead) in planted {
         let wrong = right.replace(text, instead);
         assert_ne!(wrong, right, "{text}");
-        let settings = settings(Method::None);
+        let settings = settings(MethodKind::None);
         let Some(mut rig) = Rig::new(desc(), settings) else { return };
         rig.gpu.set_fill_shader(&rig.device, &wrong);
         let differs = (0..4).any(|index| {
@@ -297,7 +300,7 @@ fn gliding_view(index: u64, v: u32, settings: &Settings) -> View {
 
 #[test]
 fn a_wrong_reconstruction_is_caught() {
-    let settings = settings(Method::Smr);
+    let settings = settings(MethodKind::Smr);
     let names = ["sparse_observe_pass", "sparse_light_pass", "sparse_pass"];
     let right = names.map(|name| SHADERS.compose(name).source);
     let differs = |sources: &[String; 3]| {
@@ -361,7 +364,7 @@ fn a_wrong_reconstruction_is_caught() {
 
 #[test]
 fn a_wrong_fit_at_a_samples_own_pixel_is_caught() {
-    let mut settings = settings(Method::Smr);
+    let mut settings = settings(MethodKind::Smr);
     (settings.foveation.rate_mid, settings.foveation.rate_far) = (2, 2);
     let names = ["sparse_observe_pass", "sparse_light_pass", "sparse_pass"];
     let right = names.map(|name| SHADERS.compose(name).source);
@@ -410,7 +413,7 @@ fn a_wrong_upsampling_is_caught() {
     for (text, instead) in planted {
         let wrong = right.replace(text, instead);
         assert_ne!(wrong, right, "{text}");
-        let settings = settings(Method::Taau);
+        let settings = settings(MethodKind::Taau);
         let Some(mut rig) = Rig::with_shader(desc(), settings, &wrong) else { return };
         let differs = (0..4).any(|index| {
             rig.scattered = index > 1;
@@ -432,7 +435,7 @@ fn wrong_weights_of_places_are_caught() {
         ("let lattice = lattice_at(px, view);", "let lattice = sparse.views[view][0];"),
         ("place_weight(vec2<f32>(x, y)))", "1.0)"),
     ];
-    let [exact, noisy] = [settings(Method::Wrs), Settings { method: Method::Wrs, ..traced() }];
+    let [exact, noisy] = [settings(MethodKind::Wrs), Settings { method: Method::Wrs(Wrs::default()), ..traced() }];
     let differs = |settings: Settings, source: &str| {
         let mut rig = Rig::with_shader(desc(), settings, source)?;
         Some((0..4).any(|index| {
@@ -455,12 +458,12 @@ fn wrong_weights_of_places_are_caught() {
 
 #[test]
 fn sparse_frames_without_lattices_and_lattices_of_other_frames_are_refused() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings(Method::Taa)) else { return };
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings(MethodKind::Taa)) else { return };
     let mut view = View::still(noise(SIZE, "refused"), [20.0, 20.0]);
     let expected = "lattices of view 0 is None: expected where the samples are, because the filter of the foveation is \
                     Sparse";
     assert_eq!(rig.refusal(&view), expected);
-    let foveation = settings(Method::Taa).foveation;
+    let foveation = settings(MethodKind::Taa).foveation;
     let lattices = foveation.lattices(&view.facts.geometry, [20.0, 20.0], 0);
     // An atlas that the texture does not hold.
     let far = Lattice { atlas_texel: Some([65, 3]), ..Lattice::covering(8, [0, 0], SIZE, [0, 0]) };
@@ -482,7 +485,7 @@ fn sparse_frames_without_lattices_and_lattices_of_other_frames_are_refused() {
 #[test]
 fn color_of_another_size_is_refused_unless_it_is_an_atlas() {
     let Some((device, _queue)) = afterimage_testing::gpu::device() else { return };
-    let context = ContextDesc { settings: settings(Method::None), ..ContextDesc::new(SIZE) };
+    let context = ContextDesc { settings: settings(MethodKind::None), ..ContextDesc::new(SIZE) };
     let mut post = Afterimage::new(&device, &context, TextureFormat::Rgba16Float).unwrap();
     let texture = |size, usage| make_texture(&device, &ContextDesc::new(size), TextureFormat::Rgba16Float, usage);
     let (color, output) = (texture([80, 160], Afterimage::INPUT_USAGE), texture(SIZE, Afterimage::OUTPUT_USAGE));
@@ -506,12 +509,12 @@ fn color_of_another_size_is_refused_unless_it_is_an_atlas() {
 #[test]
 fn filled_color_follows_size_and_settings() {
     let context = ContextDesc::new(SIZE);
-    let Some(mut rig) = Rig::new(context, settings(Method::Taa)) else { return };
+    let Some(mut rig) = Rig::new(context, settings(MethodKind::Taa)) else { return };
     let pixels = u64::from(SIZE[0] * SIZE[1]);
     assert_eq!(rig.gpu.memory_bytes(), (16 + 16) * pixels);
     let view = |size: [u32; 2], index: u64, is_sparse: bool| {
         let mut view = View::still(noise(size, &format!("follows {index}")), [20.0, 20.0]);
-        let lattices = settings(Method::Taa).foveation.lattices(&view.facts.geometry, [20.0, 20.0], index);
+        let lattices = settings(MethodKind::Taa).foveation.lattices(&view.facts.geometry, [20.0, 20.0], index);
         view.facts.lattices = is_sparse.then_some(lattices);
         [view]
     };
@@ -522,7 +525,7 @@ fn filled_color_follows_size_and_settings() {
     rig.both(2, Reset::None, &view([40, 20], 2, true));
     // Settings with and without sparse frames; history survives.
     let whole = Settings { method: Method::Taa, ..Settings::paper() };
-    for (index, settings) in [(3, whole), (4, settings(Method::Taa)), (5, settings(Method::Wrs))] {
+    for (index, settings) in [(3, whole), (4, settings(MethodKind::Taa)), (5, settings(MethodKind::Wrs))] {
         rig.cpu.set_settings(settings).unwrap();
         rig.gpu.set_settings(&rig.device, settings).unwrap();
         let is_sparse = settings.foveation.filter == Filter::Sparse;
@@ -532,7 +535,7 @@ fn filled_color_follows_size_and_settings() {
 
 #[test]
 fn prewarmed_pipelines_suffice_for_sparse_frames() {
-    let settings = settings(Method::None);
+    let settings = settings(MethodKind::None);
     let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
     let usual = afterimage::gpu::Variant { counters: true, ..Default::default() };
     let regions = afterimage::gpu::Variant { regions: true, ..Default::default() };
@@ -558,7 +561,7 @@ fn prewarmed_pipelines_suffice_for_sparse_frames() {
 #[test]
 fn alpha_is_filled_as_color_is() {
     let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
-    let context = ContextDesc { settings: settings(Method::None), ..ContextDesc::new(SIZE) };
+    let context = ContextDesc { settings: settings(MethodKind::None), ..ContextDesc::new(SIZE) };
     let format = TextureFormat::Rgba32Float;
     let mut post = Afterimage::new(&device, &context, format).unwrap();
     let color = make_texture(&device, &context, format, Afterimage::INPUT_USAGE | TextureUsages::COPY_DST);
@@ -624,7 +627,7 @@ fn any_lattices_and_any_bits_agree_bit_for_bit_and_are_finite() {
 
 #[test]
 fn kept_history_follows_a_change_of_size() {
-    let settings = settings(Method::Smr);
+    let settings = settings(MethodKind::Smr);
     let Some(mut rig) = Rig::new(ContextDesc::new([64, 40]), settings) else { return };
     let view = |size: [u32; 2], index: u64| {
         let wave = |v: u32, n: u32| 0.5 + 0.4 * ((v as f32 + 0.5) / n as f32 * 40.0).sin();
@@ -654,7 +657,7 @@ fn kept_history_follows_a_change_of_size() {
 #[test]
 fn smr_on_sparse_frames_holds_less_than_24_bytes_a_pixel() {
     for (size, view_count) in [([1920, 1080], 1), ([480, 270], 2), ([3840, 2160], 1)] {
-        let settings = settings(Method::Smr);
+        let settings = settings(MethodKind::Smr);
         let desc = ContextDesc { settings, view_count, ..ContextDesc::new(size) };
         let pixels = u64::from(size[0] * size[1] * view_count);
         let bytes = Afterimage::memory_bytes_of(&desc) as f64 / pixels as f64;
@@ -704,7 +707,7 @@ fn geometry_at_samples_is_filled_bit_equal() {
 
 #[test]
 fn geometry_between_samples_is_not_read() {
-    let settings = settings(Method::Smr);
+    let settings = settings(MethodKind::Smr);
     let (Some(mut rig), Some(mut other)) = (Rig::new(desc(), settings), Rig::new(desc(), settings)) else { return };
     for index in 0..4 {
         let views = at_samples(index, &settings);
@@ -738,7 +741,7 @@ fn a_wrong_fill_of_geometry_is_caught() {
     for (text, instead) in planted {
         let wrong = right.replace(text, instead);
         assert_ne!(wrong, right, "{text}");
-        let settings = settings(Method::Smr);
+        let settings = settings(MethodKind::Smr);
         let Some(mut rig) = Rig::new(desc(), settings) else { return };
         rig.gpu.set_geometry_shader(&rig.device, &wrong);
         let differs = (0..6).any(|index| {

@@ -2,7 +2,7 @@
 
 use super::rig::{Made, Rig, View, noise, with_w_sum};
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::{ContextDesc, DepthConvention, DepthTest, Image, Method, Reset, Settings, Verdict};
+use afterimage::{ContextDesc, DepthConvention, DepthTest, Image, MethodKind, Reset, Settings, Verdict};
 use afterimage_testing::Draws;
 use afterimage_testing::holds;
 
@@ -22,15 +22,15 @@ pub fn with_motion(name: &str, motion: impl FnMut([u32; 2]) -> [f32; 2]) -> View
 }
 
 pub fn ungated() -> Option<Rig> {
-    ungated_of(Method::Wrs)
+    ungated_of(MethodKind::Wrs)
 }
 
-pub fn ungated_of(method: Method) -> Option<Rig> {
-    Rig::new(ContextDesc::new(SIZE), Settings { method, gate: None, ..Settings::paper() })
+pub fn ungated_of(method: MethodKind) -> Option<Rig> {
+    Rig::new(ContextDesc::new(SIZE), crate::settings::ungated_of(method))
 }
 
 /// Methods that find history by the same rules, each with its own storage.
-pub const METHODS: [Method; 2] = [Method::Wrs, Method::Smr];
+pub const METHODS: [MethodKind; 2] = [MethodKind::Wrs, MethodKind::Smr];
 
 pub fn one(rig: &mut Rig, index: u64, view: View) -> (Made, Image<PixelTrace>) {
     let (made, mut trace) = rig.both(index, Reset::None, &[view]);
@@ -150,7 +150,7 @@ fn h47_a_nan_depth_rejects_its_pixel_alone() {
             assert_eq!((made.stats.rejected(), made.stats.bad_depth), (rejected, u64::from(bad)));
             assert_eq!(trace.at(20, 21).verdict == Verdict::Disoccluded, rejected == 1);
             // A pixel without history affects its neighbours through smr's mip chain a frame later.
-            let alike = |(i, (a, b))| i == 21 * 64 + 20 || method == Method::Smr && index > 1 || a == b;
+            let alike = |(i, (a, b))| i == 21 * 64 + 20 || method == MethodKind::Smr && index > 1 || a == b;
             assert!(made.shown.iter().zip(&expected.shown).enumerate().all(alike), "{method:?}, frame {index}");
         }
     }
@@ -166,7 +166,7 @@ fn h41_h49_sky_and_orthographic_depth_are_rejected_where_surfaces_change() {
             (DepthConvention::Linear, f32::INFINITY, 5.0),
             (DepthConvention::Orthographic { near: 0.0, far: 100.0 }, 1.0, 0.05),
         ] {
-            let settings = Settings { method, ..Settings::paper() };
+            let settings = Settings { method: method.into(), ..Settings::paper() };
             let Some(mut rig) = Rig::new(ContextDesc { depth, ..ContextDesc::new(SIZE) }, settings) else { return };
             for (index, split, rejected) in [(0, 32, 0), (1, 32, 0), (2, 30, 2 * 48), (3, 32, 2 * 48), (4, 32, 0)] {
                 let view = with_depth("sky", |[x, _]| if x < split { wall } else { sky });
@@ -186,7 +186,7 @@ fn h41_h49_sky_and_orthographic_depth_are_rejected_where_surfaces_change() {
 fn h42_depth_beyond_its_ends_is_clamped() {
     let depth = DepthConvention::Reversed { near: 0.1, far: 1000.0 };
     for method in METHODS {
-        let settings = Settings { method, gate: None, ..Settings::paper() };
+        let settings = crate::settings::ungated_of(method);
         let Some(mut rig) = Rig::new(ContextDesc { depth, ..ContextDesc::new(SIZE) }, settings) else { return };
         let ends = |by: f32| move |[x, _]: [u32; 2]| if x < 32 { 1.0 + by } else { -by };
         for (index, by) in (0..).zip([0.0, f32::EPSILON, 1e-3, 1e30, f32::INFINITY, 0.0]) {

@@ -13,7 +13,7 @@ type Color = Image<[f32; 3]>;
 
 fn settings() -> Settings {
     let foveation = Foveation { rate_mid: 4, rate_far: 4, ..Foveation::default() };
-    Settings { method: Method::Smr, foveation, ..Settings::paper() }
+    Settings { method: Method::Smr(Smr::default()), foveation, ..Settings::paper() }
 }
 
 fn rig(size: [u32; 2]) -> Option<Rig> {
@@ -83,8 +83,8 @@ fn h51_a_thousand_still_frames_never_move_a_sample() {
 fn h52_a_whole_shift_moves_history_exactly_and_the_border_is_new() {
     for (shift, right) in [([3.0, -2.0], true), ([-3.0, 2.0], false)] {
         // Samples without relighting.
-        let plain = Smr { relight: false, ..Smr::default() };
-        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings { smr: plain, ..settings() }) else { return };
+        let method = Method::Smr(Smr { relight: false, ..Smr::default() });
+        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings { method, ..settings() }) else { return };
         let before = noise(SIZE, "h52 on the device");
         one(&mut rig, 0, at_lod(before.clone(), 0.0));
         let moved = Image::from_fn(SIZE, |[x, y]| before.at((x as usize + 3).min(63), (y as usize).saturating_sub(2)));
@@ -155,8 +155,8 @@ fn h58_nothing_is_read_over_a_depth_edge() {
 
 #[test]
 fn h59_a_zoom_leaves_no_hole() {
-    let plain = Smr { relight: false, ..Smr::default() };
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings { smr: plain, ..settings() }) else { return };
+    let method = Method::Smr(Smr { relight: false, ..Smr::default() });
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings { method, ..settings() }) else { return };
     let before = noise(SIZE, "zoom on the device").map(|c| c.map(|v| 0.5 + 0.125 * (8.0 * v).floor() / 8.0));
     one(&mut rig, 0, at_lod(before.clone(), 0.0));
     let motion = Image::from_fn(SIZE, |[x, y]| [(32.0 - x as f32) * 0.5, (24.0 - y as f32) * 0.5]);

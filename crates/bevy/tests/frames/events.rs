@@ -5,7 +5,7 @@ use crate::common::scene::{ScenePlugin, TONEMAPPING, stroll};
 use crate::{SIZE, courtyard, kind, psnr_db, wander};
 use bevy::core_pipeline::prepass::DepthPrepass;
 use bevy::prelude::*;
-use bevy_afterimage::afterimage::{DebugView, Settings};
+use bevy_afterimage::afterimage::{DebugView, Method, Settings, Wrs};
 use bevy_afterimage::{Afterimage, AfterimageDebug, Foveated, FoveationKind, Gaze, LatticeCamera, Preset};
 
 #[test]
@@ -93,7 +93,8 @@ fn settings_and_kinds_change_while_it_runs() {
         );
     }
     // Settings out of range: every pixel is rendered, until they are mended.
-    let broken = Settings { weight_exponent: 99, ..Settings::default() };
+    let method = Method::Wrs(Wrs { weight_exponent: 99, ..Wrs::default() });
+    let broken = Settings { method, ..Settings::default() };
     change(&mut headless, &|afterimage, _| afterimage.settings = Some(broken));
     change(&mut headless, &|afterimage, foveated| {
         afterimage.settings = None;

@@ -18,7 +18,7 @@ use crate::quad_views::QuadViewLayout;
 use crate::report::sheet::{Column, Sheet};
 use crate::source::FrameSource;
 use crate::times::{RenderTime, Times};
-use afterimage::{DebugView, Foveation, Image, Method, ViewGeometry};
+use afterimage::{DebugView, Foveation, Image, MethodKind, ViewGeometry};
 use rayon::prelude::*;
 
 /// Files that tell of a whole clip, the one that marks the folder first. `demo` draws no plot.
@@ -243,7 +243,7 @@ impl Clip {
         }
         let encoded: Vec<_> =
             step.outputs.par_iter().map(|shown| metric::encode(&shown.image, self.exposure_ev)).collect();
-        let foveated = self.methods.iter().position(|m| m.0 == Method::None.name()).map(|i| &encoded[i]);
+        let foveated = self.methods.iter().position(|m| m.0 == MethodKind::None.name()).map(|i| &encoded[i]);
         accumulators.par_iter_mut().zip(&self.methods).zip(step.outputs.par_iter().zip(&encoded)).try_for_each(
             |((accumulator, (name, _)), (shown, encoded))| {
                 accumulator.push(&frame.reference, reference, encoded, foveated, shown, step);

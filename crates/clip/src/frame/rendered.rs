@@ -38,11 +38,12 @@ pub struct RenderedFrame {
 
 /// The part of a frame that methods get.
 #[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant, reason = "there is one a frame")]
 pub enum Content {
     /// The full-rate frame: a simulator foveates it.
     FullRate,
     /// A frame that its source foveated, in memory.
-    Foveated(Box<FoveatedFrame>),
+    Foveated(FoveatedFrame),
     /// A frame that its source foveated, on a device.
     OnDevice(Arc<dyn DeviceContent>),
 }
@@ -105,6 +106,6 @@ impl RenderedFrame {
     #[must_use]
     pub fn foveated(self, frame: FoveatedFrame) -> Self {
         let samples = Some(frame.samples.iter().sum());
-        Self { content: Content::Foveated(Box::new(frame)), samples, ..self }
+        Self { content: Content::Foveated(frame), samples, ..self }
     }
 }

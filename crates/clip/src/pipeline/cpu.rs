@@ -8,7 +8,7 @@ use crate::frame::{DeviceHandle, RenderedFrame};
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
 use afterimage::kernel::debug_view::view_color;
 use afterimage::kernel::noise::{Noise, unpack_noise};
-use afterimage::{ContextDesc, CreateError, FrameError, Image, Settings};
+use afterimage::{ContextDesc, CreateError, FrameError, Image, Method, Smr};
 use std::slice::from_ref;
 
 /// Methods on the CPU.
@@ -79,11 +79,12 @@ impl Executor for CpuExecutor {
         self.0[run].memory_bytes()
     }
 
-    fn history_noise(&self, run: usize) -> Option<(Image<Noise>, &Settings)> {
+    fn history_noise(&self, run: usize) -> Option<(Image<Noise>, Smr)> {
         let post = &self.0[run];
+        let Method::Smr(smr) = post.desc().settings.method else { return None };
         let words = post.history().noise().to_vec();
         let image = (!words.is_empty())
             .then(|| Image::from_pixels(post.desc().size_px, words).expect("one noise word for each pixel"));
-        Some((image?.map(unpack_noise), &post.desc().settings))
+        Some((image?.map(unpack_noise), smr))
     }
 }

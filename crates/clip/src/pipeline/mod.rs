@@ -157,13 +157,12 @@ impl Pipeline {
             (None, None) => Wanted::FullRate,
         };
         FrameRequest {
-            index,
             gaze_px,
             wanted,
             geometry: self.foveator.sparse_geometry,
-            reference: true,
             guide: self.history_noise.as_ref().map(|noise| noise as &dyn SamplingGuide),
             device: self.executor.device().filter(|_| !self.foveates_in_memory()),
+            ..FrameRequest::full_rate(index)
         }
     }
 
@@ -233,14 +232,8 @@ impl Pipeline {
             Run::Method(run) => Some((self.executor.history_noise(*run)?, &output.image)),
             Run::Oracle(_) => None,
         });
-        self.history_noise = noise.map(|((noise, settings), image)| {
-            HistoryNoise::new(
-                noise,
-                1.0 - settings.smr.accumulate,
-                image.clone(),
-                &frame.reference,
-                self.foveator.geometry,
-            )
+        self.history_noise = noise.map(|((noise, smr), image)| {
+            HistoryNoise::new(noise, 1.0 - smr.accumulate, image.clone(), &frame.reference, self.foveator.geometry)
         });
     }
 

@@ -3,11 +3,11 @@
 
 pub use afterimage_clip::pipeline::Part;
 
-use afterimage::Method;
+use afterimage::MethodKind;
 use afterimage::shader::SHADERS;
 
-const HISTORIES: &[Method] = &[Method::Taa, Method::Wrs, Method::Smr, Method::Taau];
-const RESAMPLED: &[Method] = &[Method::Taa, Method::Smr, Method::Taau];
+const HISTORIES: &[MethodKind] = &[MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau];
+const RESAMPLED: &[MethodKind] = &[MethodKind::Taa, MethodKind::Smr, MethodKind::Taau];
 
 /// All parts.
 pub const PARTS: &[Part] = &[
@@ -38,7 +38,7 @@ pub const PARTS: &[Part] = &[
         name: "stored-bias",
         instead: "the bias counts in the choice between sample and candidate (A-Chao), and the stored weight sum keeps \
                   what it takes away",
-        methods: &[Method::Wrs],
+        methods: &[MethodKind::Wrs],
         replaced: &[(
             "draw * w_sum < candidate_w, w_sum, 0.0,",
             "draw * w_sum < candidate_w, weight(past.w_sum * gate_value) + candidate_w, 0.0,",
@@ -47,7 +47,7 @@ pub const PARTS: &[Part] = &[
     Part {
         name: "exact-color",
         instead: "cube roots without their polynomial, a few percent off",
-        methods: &[Method::Wrs],
+        methods: &[MethodKind::Wrs],
         replaced: &[("let r = d + d * (e * p);", "let r = d;")],
     },
     Part {
@@ -89,7 +89,7 @@ pub fn find(name: &str) -> Option<&'static Part> {
 ///
 /// # Panics
 /// If the pass contains none of the part's texts: a bug in this file, which a test of all parts finds.
-pub fn shader_without(part: &Part, method: Method) -> String {
+pub fn shader_without(part: &Part, method: MethodKind) -> String {
     let whole = SHADERS.compose(&format!("{}_pass", method.name())).source;
     let replaced = part.replaced.iter().fold(whole.clone(), |text, (right, instead)| text.replace(right, instead));
     assert_ne!(whole, replaced, "the pass of {method:?} has no {}", part.name);

@@ -6,7 +6,7 @@ use super::sequences::{SIZE, trust, view};
 use afterimage::kernel::rng;
 use afterimage::kernel::rng::Purpose;
 use afterimage::shader::SHADERS;
-use afterimage::{Bias, ContextDesc, Exposure, Foveation, Image, Reset, Sampler, Settings};
+use afterimage::{Bias, ContextDesc, Exposure, Foveation, Image, Method, Reset, Sampler, Settings, Wrs};
 use afterimage_lab::source::AnalyticSource;
 
 /// Shader text of the pass with `right` replaced by `wrong`; `right` must occur exactly once.
@@ -33,7 +33,8 @@ fn first_difference(settings: Settings, source: &str) -> Option<u64> {
 
 #[test]
 fn every_planted_error_in_the_pass_is_caught() {
-    let keys = Settings { sampler: Sampler::AEs, ..Settings::paper() };
+    let method = Method::Wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() });
+    let keys = Settings { method, ..Settings::paper() };
     if Rig::new(ContextDesc::new(SIZE), keys).is_none() {
         return;
     }
@@ -87,8 +88,9 @@ fn every_planted_error_in_the_pass_is_caught() {
 #[test]
 fn a_lax_comparison_is_caught() {
     let size = [128, 64];
+    let method = Method::Wrs(Wrs { gate: None, bias: Bias::None, ..Wrs::default() });
     let foveation = Foveation { fovea_deg: 180.0, mid_deg: 180.0, ..Foveation::default() };
-    let settings = Settings { foveation, gate: None, bias: Bias::None, ..Settings::paper() };
+    let settings = Settings { method, foveation, ..Settings::paper() };
     // With w_sum = 2^k - 1 a candidate of weight 1 is accepted for draws below 2^-k, and rejected for a draw of 2^-k.
     let power = |index: u64, x: u32, y: u32| {
         let key = rng::stream_key(settings.seed, 0, Purpose::Select, index);

@@ -8,7 +8,7 @@ use afterimage::kernel::debug_view::view_color;
 use afterimage::wgpu::{self, BufferUsages, TextureFormat, TextureUsages};
 use afterimage::{
     COUNTERS_BYTES, ContextDesc, DebugView, Exposure, FrameError, FrameStats, Gaze, Method, Reset, Sampler, Settings,
-    Verdict, ViewFrame, Warning,
+    Verdict, ViewFrame, Warning, Wrs,
 };
 use afterimage_lab::source::AnalyticSource;
 
@@ -26,11 +26,11 @@ fn debug_views_draw_what_record_decides_next_and_move_nothing() {
     let base = Settings::paper();
     for settings in [
         base,
-        Settings { sampler: Sampler::AEs, gate: None, ..base },
+        Settings { method: Method::Wrs(Wrs { sampler: Sampler::AEs, gate: None, ..Wrs::default() }), ..base },
         Settings { method: Method::None, ..base },
         Settings { method: Method::Taa, ..base },
         Settings { method: Method::Taau, ..base },
-        Settings { method: Method::Smr, ..base },
+        Settings::steady(),
     ] {
         let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
         let Some(mut undisturbed) = Rig::new(ContextDesc::new(SIZE), settings) else { return };

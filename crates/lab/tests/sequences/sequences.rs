@@ -3,7 +3,8 @@
 use super::rig::{Rig, View};
 use afterimage::simulator::Pyramid;
 use afterimage::{
-    Bias, ContextDesc, Exposure, Foveation, Gate, GateMetric, Gaze, Image, Method, Reset, Sampler, Settings, ViewFrame,
+    Bias, ContextDesc, Exposure, Foveation, Gate, GateMetric, Gaze, Image, Method, MethodKind, Reset, Sampler,
+    Settings, ViewFrame, Wrs,
 };
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 use afterimage_testing::Draws;
@@ -103,9 +104,9 @@ fn taa_and_smr_agree_bit_for_bit() {
     let base =
         Settings { foveation: Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() }, ..Settings::paper() };
     for scene in ["still", "lateral", "occluder", "light-step"] {
-        for method in [Method::Taa, Method::Smr, Method::Taau] {
+        for method in [MethodKind::Taa, MethodKind::Smr, MethodKind::Taau] {
             println!("{method:?}");
-            agree(scene, Settings { method, ..base }, |v| v);
+            agree(scene, Settings { method: method.into(), ..base }, |v| v);
         }
     }
 }
@@ -113,17 +114,19 @@ fn taa_and_smr_agree_bit_for_bit() {
 #[test]
 fn every_variant_agrees_bit_for_bit() {
     let base = Settings::paper();
+    let paper = Wrs::default();
+    let wrs = |wrs| Settings { method: Method::Wrs(wrs), ..base };
     let fovea = |fovea_deg| Foveation { fovea_deg, mid_deg: 40.0, ..Foveation::default() };
     let lightness = Gate { metric: GateMetric::Lightness, divisor: 30.0, offset: 2.0, ..Gate::default() };
     for settings in [
-        Settings { gate: None, seed: 9, ..base },
-        Settings { gate: Some(lightness), ..base },
-        Settings { bias: Bias::Exponential { lambda: 0.05 }, ..base },
-        Settings { bias: Bias::None, gate: None, ..base },
-        Settings { sampler: Sampler::AEs, ..base },
+        Settings { seed: 9, ..wrs(Wrs { gate: None, ..paper }) },
+        wrs(Wrs { gate: Some(lightness), ..paper }),
+        wrs(Wrs { bias: Bias::Exponential { lambda: 0.05 }, ..paper }),
+        wrs(Wrs { bias: Bias::None, gate: None, ..paper }),
+        wrs(Wrs { sampler: Sampler::AEs, ..paper }),
         Settings::weighted(),
-        Settings { sampler: Sampler::AChao, ..Settings::weighted() },
-        Settings { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.02 }, gate: None, ..base },
+        wrs(Wrs { sampler: Sampler::AChao, ..Wrs::weighted() }),
+        wrs(Wrs { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.02 }, gate: None, ..paper }),
         Settings { depth_test: None, ..base },
         Settings { foveation: fovea(0.0), ..base },
         Settings { foveation: fovea(20.0), ..base },
@@ -143,14 +146,15 @@ fn absent_inputs_are_switched_off() {
 
 #[test]
 fn trust_and_exposure_agree_bit_for_bit() {
-    let base = Settings::paper();
     // Some stops up and down, thirds of stops, a fade to nothing, and no change.
     let ratios = [1.0, 2.0, 0.5, 1.26, 0.794, 256.0, 1.0 / 256.0, 1e-30, 1e30];
     let exposure = |index: u64| match index % 4 {
         0 => Exposure::Same,
         _ => Exposure::Changed { ratio: ratios[index as usize % ratios.len()] },
     };
-    for settings in [base, Settings { gate: None, ..base }, Settings { sampler: Sampler::AEs, gate: None, ..base }] {
+    let ungated = Wrs { gate: None, ..Wrs::default() };
+    for wrs in [Wrs::default(), ungated, Wrs { sampler: Sampler::AEs, ..ungated }] {
+        let settings = Settings { method: Method::Wrs(wrs), ..Settings::default() };
         println!("{settings:?}");
         agree_exposed("occluder", settings, exposure, |_, v| v);
         let masked = |index, v| View { trust: Some(trust(index)), ..v };

@@ -1,7 +1,7 @@
 //! Sparse frames in the pipeline: lattices that move, geometry at samples, and both executors alike.
 
 use afterimage::kernel::lattice::offset_px;
-use afterimage::{Filter, Foveation, Method, Settings};
+use afterimage::{Filter, Foveation, MethodKind, Settings};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::pipeline::{Pipeline, RunKind, Step};
@@ -9,14 +9,14 @@ use afterimage_lab::source::{AnalyticSource, FrameSource};
 use std::collections::HashSet;
 
 const SIZE: [u32; 2] = [160, 90];
-const METHODS: [Method; 4] = [Method::None, Method::Taa, Method::Wrs, Method::Taau];
+const METHODS: [MethodKind; 4] = [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Taau];
 
 fn foveation() -> Foveation {
     Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 8, ..Foveation::default() }
 }
 
 fn kinds() -> Vec<RunKind> {
-    METHODS.map(|method| RunKind::PostProcess(Settings { method, ..Settings::paper() })).to_vec()
+    METHODS.map(|method| RunKind::PostProcess(Settings { method: method.into(), ..Settings::paper() })).to_vec()
 }
 
 fn source(scene: &str) -> AnalyticSource {

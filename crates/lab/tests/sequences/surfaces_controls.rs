@@ -5,16 +5,16 @@ use super::rig::{Rig, View};
 use super::sequences::{SIZE, foveated, trust};
 use super::surfaces_variants::noisy;
 use afterimage::shader::SHADERS;
-use afterimage::{ContextDesc, Exposure, Filter, Foveation, Gaze, Image, Method, Reset, Settings};
+use afterimage::{ContextDesc, Exposure, Filter, Foveation, Gaze, Image, MethodKind, Reset, Settings};
 use afterimage_lab::source::AnalyticSource;
 
 fn eyes() -> ContextDesc {
     ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }
 }
 
-fn settings(method: Method, filter: Filter) -> Settings {
+fn settings(method: MethodKind, filter: Filter) -> Settings {
     let foveation = Foveation { filter, rate_mid: 4, rate_far: 8, ..Foveation::default() };
-    Settings { method, foveation, ..Settings::paper() }
+    Settings { method: method.into(), foveation, ..Settings::paper() }
 }
 
 /// Shader text of the pass with `right` replaced by `wrong`; `right` must occur exactly once.
@@ -112,7 +112,7 @@ fn every_planted_error_in_taa_is_caught() {
         ],
     ]
     .concat();
-    all_caught("taa_pass", settings(Method::Taa, Filter::Mip), false, &errors);
+    all_caught("taa_pass", settings(MethodKind::Taa, Filter::Mip), false, &errors);
 }
 
 #[test]
@@ -132,7 +132,7 @@ fn every_planted_error_in_taau_is_caught() {
         ],
     ]
     .concat();
-    all_caught("taau_pass", settings(Method::Taau, Filter::Mip), false, &errors);
+    all_caught("taau_pass", settings(MethodKind::Taau, Filter::Mip), false, &errors);
 }
 
 #[test]
@@ -174,14 +174,14 @@ fn every_planted_error_in_smr_is_caught() {
         ],
     ]
     .concat();
-    all_caught("smr_pass", settings(Method::Smr, Filter::Mip), false, &errors);
+    all_caught("smr_pass", settings(MethodKind::Smr, Filter::Mip), false, &errors);
 }
 
 #[test]
 fn every_planted_error_in_smr_of_other_filters_is_caught() {
     all_caught(
         "smr_pass",
-        settings(Method::Smr, Filter::Block),
+        settings(MethodKind::Smr, Filter::Block),
         false,
         &[
             ("let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);", "let shift = 0.0;"),
@@ -192,14 +192,14 @@ fn every_planted_error_in_smr_of_other_filters_is_caught() {
         ],
     );
     let gauss = [("if FILTER == FILTER_GAUSS {", "if false {")];
-    all_caught("smr_pass", settings(Method::Smr, Filter::Gauss), false, &gauss);
+    all_caught("smr_pass", settings(MethodKind::Smr, Filter::Gauss), false, &gauss);
     let given_lod = [("if HAS_LOD != 0u {", "if false {"), ("clamp(given, 0.0, MAX_LOD)", "clamp(given, 0.0, 1.0)")];
-    all_caught("smr_pass", settings(Method::Smr, Filter::Mip), true, &given_lod);
+    all_caught("smr_pass", settings(MethodKind::Smr, Filter::Mip), true, &given_lod);
 }
 
 #[test]
 fn every_planted_error_in_noisy_smr_is_caught() {
-    let settings = Settings { noisy: true, ..settings(Method::Smr, Filter::Mip) };
+    let settings = Settings { noisy: true, ..settings(MethodKind::Smr, Filter::Mip) };
     all_caught(
         "smr_pass",
         settings,

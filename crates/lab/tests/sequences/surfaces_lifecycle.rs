@@ -6,7 +6,7 @@ use super::sequences::{SIZE, foveated};
 use super::surfaces_variants::{all_methods, settings};
 use afterimage::gpu::Afterimage;
 use afterimage::wgpu::{self, TextureFormat};
-use afterimage::{ContextDesc, Filter, Foveation, Gaze, Method, Reset, Settings, ViewFrame};
+use afterimage::{ContextDesc, Filter, Foveation, Gaze, MethodKind, Reset, Settings, ViewFrame};
 use afterimage_lab::source::AnalyticSource;
 use afterimage_testing::holds;
 
@@ -158,11 +158,11 @@ fn counting_changes_nothing() {
 fn memory_bytes_is_what_is_made() {
     let Some((device, _)) = afterimage_testing::gpu::device() else { return };
     for (method, view_count, filter, size) in [
-        (Method::Taa, 1, Filter::Mip, SIZE),
-        (Method::Taau, 1, Filter::Mip, SIZE),
-        (Method::Smr, 1, Filter::Mip, SIZE),
-        (Method::Smr, 2, Filter::Block, SIZE),
-        (Method::Smr, 1, Filter::Mip, [1, 1]),
+        (MethodKind::Taa, 1, Filter::Mip, SIZE),
+        (MethodKind::Taau, 1, Filter::Mip, SIZE),
+        (MethodKind::Smr, 1, Filter::Mip, SIZE),
+        (MethodKind::Smr, 2, Filter::Block, SIZE),
+        (MethodKind::Smr, 1, Filter::Mip, [1, 1]),
     ] {
         let base = settings(method);
         let settings = Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
@@ -170,7 +170,7 @@ fn memory_bytes_is_what_is_made() {
         let post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float).unwrap();
         // Two words a pixel, and four halves a texel of levels 1 to n, whose sides are padded so that halving never
         // rounds.
-        let levels = if method != Method::Smr { 0 } else { 5 + u64::from(filter == Filter::Block) };
+        let levels = if method != MethodKind::Smr { 0 } else { 5 + u64::from(filter == Filter::Block) };
         let padded = |len: u32| u64::from(len.div_ceil(2)).next_multiple_of(1 << (levels.max(1) - 1));
         let chain: u64 = (0..levels).map(|l| (padded(size[0]) >> l) * (padded(size[1]) >> l)).sum();
         let expected = 2 * 8 * u64::from(view_count) * (u64::from(size[0] * size[1]) + chain);

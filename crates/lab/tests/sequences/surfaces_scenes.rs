@@ -2,6 +2,7 @@
 
 use super::surfaces_rig::*;
 use afterimage::simulator::Pyramid;
+use afterimage::{Method, Smr};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{NO_PAST, Tracked, Tracker, encode, psnr_db};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
@@ -17,8 +18,8 @@ const FOVEATION: Foveation = Foveation {
     rate_far: 8,
 };
 
-fn settings_of(method: Method) -> Settings {
-    Settings { method, foveation: FOVEATION, ..Settings::default() }
+fn settings_of(method: MethodKind) -> Settings {
+    Settings { method: method.into(), foveation: FOVEATION, ..Settings::default() }
 }
 
 /// A frame with what a foveating renderer made of it and what became of that.
@@ -100,7 +101,7 @@ fn wandering(index: u64) -> [f32; 2] {
 
 #[test]
 fn a_still_scene_under_a_wandering_eye_comes_back_sharp() {
-    let runs = [settings_of(Method::Smr), settings_of(Method::Taa)];
+    let runs = [settings_of(MethodKind::Smr), settings_of(MethodKind::Taa)];
     play(
         "still",
         60,
@@ -126,9 +127,8 @@ fn a_still_scene_under_a_wandering_eye_comes_back_sharp() {
 
 #[test]
 fn h74_a_step_of_light_keeps_detail_and_never_shows_less_than_the_candidate() {
-    let relit = settings_of(Method::Smr);
-    let mut plain = relit;
-    plain.smr.relight = false;
+    let relit = settings_of(MethodKind::Smr);
+    let plain = Settings { method: Method::Smr(Smr { relight: false, ..Smr::default() }), ..relit };
     for factor in [0.5, 2.0] {
         let light = |index: u64| if index >= 30 { factor } else { 1.0 };
         play("still", 40, wandering, light, &[relit, plain], |m| {
@@ -156,7 +156,7 @@ fn a_moving_silhouette_leaves_no_trail() {
         60,
         |_| [128.0, 72.0],
         |_| 1.0,
-        &[settings_of(Method::Smr), settings_of(Method::Taa)],
+        &[settings_of(MethodKind::Smr), settings_of(MethodKind::Taa)],
         |m| {
             let past = m.tracked.past.pixels();
             let before = seen.clone();
@@ -222,7 +222,7 @@ fn under_a_moving_camera_both_flicker_less_than_the_foveated_frames() {
         60,
         wandering,
         |_| 1.0,
-        &[settings_of(Method::Smr), settings_of(Method::Taa)],
+        &[settings_of(MethodKind::Smr), settings_of(MethodKind::Taa)],
         |m| {
             if m.full.cut {
                 assert!(m.shown.iter().all(|s| s == m.candidate), "nothing is known at a cut");

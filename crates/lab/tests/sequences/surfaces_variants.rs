@@ -4,20 +4,21 @@ use super::rig::noise_view;
 use super::rig::{Rig, View};
 use super::sequences::{SIZE, foveated, reset, trust};
 use afterimage::{
-    ContextDesc, DepthConvention, Exposure, Filter, Foveation, Image, Method, MotionConvention, Reset, Settings, Smr,
+    ContextDesc, DepthConvention, Exposure, Filter, Foveation, Image, Method, MethodKind, MotionConvention, Reset,
+    Settings, Smr,
 };
 use afterimage_lab::source::AnalyticSource;
 use afterimage_testing::Draws;
 
 const FRAMES: u64 = 26;
 
-pub fn settings(method: Method) -> Settings {
+pub fn settings(method: MethodKind) -> Settings {
     let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
-    Settings { method, foveation, ..Settings::paper() }
+    Settings { method: method.into(), foveation, ..Settings::paper() }
 }
 
 pub fn all_methods() -> [Settings; 3] {
-    [Method::Taa, Method::Smr, Method::Taau].map(settings)
+    [MethodKind::Taa, MethodKind::Smr, MethodKind::Taau].map(settings)
 }
 
 /// Runs a damaged scene through both, which must agree in every bit of what they show, keep and count.
@@ -92,14 +93,14 @@ fn trust_and_exposure_agree_bit_for_bit() {
 
 #[test]
 fn every_filter_and_tunable_of_smr_agrees_bit_for_bit() {
-    let base = settings(Method::Smr);
+    let base = settings(MethodKind::Smr);
     let with = |filter| Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
-    let smr = |smr| Settings { smr, ..base };
+    let smr = |smr| Settings { method: Method::Smr(smr), ..base };
     let fovea = |fovea_deg| Foveation { fovea_deg, mid_deg: 40.0, blend_deg: 7.0, ..base.foveation };
     for settings in [
         with(Filter::Gauss),
         with(Filter::Block),
-        Settings { smr: Smr { relight: false, ..Smr::default() }, ..with(Filter::Block) },
+        Settings { foveation: with(Filter::Block).foveation, ..smr(Smr { relight: false, ..Smr::default() }) },
         smr(Smr { relight: false, ..Smr::default() }),
         smr(Smr { accumulate: 0.0, ..Smr::default() }),
         smr(Smr { accumulate: 0.98, tolerance: 10.0, ..Smr::default() }),
@@ -133,14 +134,14 @@ fn lod_of(index: u64, size: [u32; 2]) -> Image<f32> {
 
 #[test]
 fn told_levels_of_detail_agree_bit_for_bit() {
-    let base = settings(Method::Smr);
+    let base = settings(MethodKind::Smr);
     for filter in [Filter::Mip, Filter::Block, Filter::Off] {
         let settings = Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
         let desc = ContextDesc::new(SIZE);
         agree("occluder", desc, settings, |index, v, _| View { lod: Some(lod_of(index, SIZE)), ..v });
     }
     // taa knows nothing of them.
-    agree("still", ContextDesc::new(SIZE), settings(Method::Taa), |index, v, _| View {
+    agree("still", ContextDesc::new(SIZE), settings(MethodKind::Taa), |index, v, _| View {
         lod: Some(lod_of(index, SIZE)),
         ..v
     });
@@ -189,16 +190,16 @@ pub fn noisy(index: u64, view: View) -> View {
 
 #[test]
 fn noisy_frames_agree_bit_for_bit() {
-    for method in [Method::Smr, Method::Wrs, Method::Taa, Method::None] {
+    for method in [MethodKind::Smr, MethodKind::Wrs, MethodKind::Taa, MethodKind::None] {
         let base = Settings { noisy: true, ..settings(method) };
         let with = |filter| Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
         let desc = ContextDesc::new(SIZE);
         let scenes =
-            if method == Method::Smr { &["still", "lateral", "occluder", "light-step"][..] } else { &["still"] };
+            if method == MethodKind::Smr { &["still", "lateral", "occluder", "light-step"][..] } else { &["still"] };
         for scene in scenes {
             agree_or_pass(scene, desc, base, |index, v, _| noisy(index, v));
         }
-        if method != Method::Smr {
+        if method != MethodKind::Smr {
             continue;
         }
         agree("lateral", desc, with(Filter::Off), |index, v, _| noisy(index, v));
@@ -211,8 +212,8 @@ fn noisy_frames_agree_bit_for_bit() {
             rig.exposure = exposure(index);
             View { depth: None, ..noisy(index, v) }
         });
-        let plain = Smr { relight: false, accumulate: 0.98, tolerance: 0.3 };
-        agree("light-step", desc, Settings { smr: plain, ..base }, |index, v, _| noisy(index, v));
+        let method = Method::Smr(Smr { relight: false, accumulate: 0.98, tolerance: 0.3 });
+        agree("light-step", desc, Settings { method, ..base }, |index, v, _| noisy(index, v));
         for size in [[65, 33], [3, 2], [1, 7]] {
             let desc = ContextDesc { view_count: 2, ..ContextDesc::new(size) };
             let Some(mut rig) = Rig::new(desc, base) else { return };
@@ -233,7 +234,7 @@ fn noisy_frames_agree_bit_for_bit() {
 fn noise_is_asked_for_and_refused_by_the_setting() {
     let desc = ContextDesc::new(SIZE);
     for noisy_setting in [false, true] {
-        let settings = Settings { noisy: noisy_setting, ..settings(Method::Smr) };
+        let settings = Settings { noisy: noisy_setting, ..settings(MethodKind::Smr) };
         let Some(mut rig) = Rig::new(desc, settings) else { return };
         let view = noise_view("refused", &desc);
         let wrong = if noisy_setting { view.clone() } else { noisy(0, view.clone()) };

@@ -21,7 +21,7 @@ fn worst<const N: usize>(scene: &str, filter: Filter, rates: [u32; 2], runs: [Sm
     let mut source = AnalyticSource::new(scene, SIZE, 70.0, 60.0).unwrap();
     let foveation = Foveation { filter, rate_mid: rates[0], rate_far: rates[1], ..Foveation::default() };
     let none = Settings { method: Method::None, ..Settings::default() };
-    let runs = runs.map(|smr| Settings { method: Method::Smr, smr, ..Settings::default() });
+    let runs = runs.map(|smr| Settings { method: Method::Smr(smr), ..Settings::default() });
     let kinds: Vec<_> = [none].into_iter().chain(runs).map(RunKind::PostProcess).collect();
     let mut pipeline = Pipeline::new(*source.view(), foveation, &kinds, false, &[], &Backend::Cpu).unwrap();
     let mut crops = [Crops::default(); N];

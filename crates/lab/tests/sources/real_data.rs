@@ -1,7 +1,7 @@
 //! End to end on external data: Sponza from another renderer, a page of text, recorded scanpaths. Skipped with a
 //! message if `../shared/data` is absent.
 
-use afterimage::{Foveation, Method, Settings, ViewGeometry};
+use afterimage::{Foveation, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::error::InputError;
 use afterimage_lab::frame::RenderedFrame;
@@ -54,8 +54,8 @@ struct Outcome {
     rejected: f64,
 }
 
-fn run_of(method: Method) -> RunKind {
-    RunKind::PostProcess(Settings { method, ..Settings::default() })
+fn run_of(method: MethodKind) -> RunKind {
+    RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() })
 }
 
 fn play(source: &mut dyn FrameSource, clip: &Clip, runs: &[RunKind]) -> Outcome {
@@ -118,8 +118,11 @@ fn sponza_still_none_wrs_and_oracle_in_order() {
     let Some(path) = data("sequences/sponza_still") else {
         return;
     };
-    let outcome =
-        play(open(&path).as_mut(), &Clip::default(), &[run_of(Method::None), run_of(Method::Wrs), RunKind::Oracle]);
+    let outcome = play(
+        open(&path).as_mut(),
+        &Clip::default(),
+        &[run_of(MethodKind::None), run_of(MethodKind::Wrs), RunKind::Oracle],
+    );
     assert_eq!(outcome.scores[0].bands[0].mse, Some(0.0), "the fovea is shown as it is");
     assert!(psnr(&outcome, 2) > psnr(&outcome, 1) && psnr(&outcome, 2) > psnr(&outcome, 0));
     assert!(retained(&outcome, 2) > 45.0, "the oracle shows what was seen");
@@ -138,7 +141,7 @@ fn the_oracle_agrees_with_an_independent_measurement() {
     };
     for (map, average, last) in [(GazeMap::Angle, 1.7, 2.7), (GazeMap::Fit, 2.2, 3.6)] {
         let clip = Clip { map, frames: 300, ..Clip::default() };
-        let outcome = play(open(&path).as_mut(), &clip, &[run_of(Method::None), RunKind::Oracle]);
+        let outcome = play(open(&path).as_mut(), &clip, &[run_of(MethodKind::None), RunKind::Oracle]);
         let gains = [psnr(&outcome, 1) - psnr(&outcome, 0), outcome.last_psnr_db[1] - outcome.last_psnr_db[0]];
         println!("{map:?}: oracle {:+.2} dB on average, {:+.2} dB in the last frame", gains[0], gains[1]);
         assert!((gains[0] - average).abs() < 0.3 && (gains[1] - last).abs() < 0.3);
@@ -170,12 +173,12 @@ fn sponza_sequences_reproject_and_reject_history_as_they_should() {
             ..Clip::default()
         };
         println!("{name}");
-        let outcome = play(open(&path).as_mut(), &clip, &[run_of(Method::None), run_of(Method::Wrs)]);
+        let outcome = play(open(&path).as_mut(), &clip, &[run_of(MethodKind::None), run_of(MethodKind::Wrs)]);
         println!("rejected {:.3}", outcome.rejected);
         assert!(outcome.rejected > 0.0 && outcome.rejected < most_rejected);
         assert_eq!(outcome.scores[0].bands[0].mse, Some(0.0));
         // Planted error: vectors of the wrong sign lead to other surfaces, which the depth test rejects.
-        let flipped = play(&mut Flipped(open(&path)), &clip, &[run_of(Method::None), run_of(Method::Wrs)]);
+        let flipped = play(&mut Flipped(open(&path)), &clip, &[run_of(MethodKind::None), run_of(MethodKind::Wrs)]);
         println!("rejected with motion of the opposite sign {:.3}", flipped.rejected);
         assert!(flipped.rejected > 1.5 * outcome.rejected, "{name}: the sign of motion must matter");
     }
@@ -188,6 +191,7 @@ fn a_4k_page_is_read_with_a_recorded_eye() {
     };
     let clip =
         Clip { frames: 3, hfov_deg: Some(80.0), scanpath: "scanpaths/reading_1250hz_clean.csv", ..Clip::default() };
-    let outcome = play(open(&path).as_mut(), &clip, &[run_of(Method::None), run_of(Method::Wrs), RunKind::Oracle]);
+    let outcome =
+        play(open(&path).as_mut(), &clip, &[run_of(MethodKind::None), run_of(MethodKind::Wrs), RunKind::Oracle]);
     assert!(psnr(&outcome, 2) >= psnr(&outcome, 0));
 }

@@ -1,21 +1,21 @@
 //! Methods and their settings.
 
 use super::{Named, by_name};
-use afterimage::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, Sampler, Settings, Smr};
+use afterimage::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, MethodKind, Sampler, Settings, Smr, Wrs};
 use clap::{Args, ValueEnum};
 
 /// Values of `--method`: the library's methods, and the upper bound of any reuse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MethodName {
     /// A method of the post-process.
-    Post(Method),
+    Post(MethodKind),
     /// Best level of detail ever shown; stills only.
     Oracle,
 }
 
 impl Named for MethodName {
     fn rows() -> Vec<(Self, &'static str, &'static str)> {
-        let posts = Method::ALL.map(|method| (Self::Post(method), method.name(), method.summary()));
+        let posts = MethodKind::ALL.map(|method| (Self::Post(method), method.name(), method.summary()));
         let oracle = (Self::Oracle, "oracle", "best level of detail ever shown; stills only");
         posts.into_iter().chain([oracle]).collect()
     }
@@ -80,18 +80,40 @@ pub struct WrsArgs {
 
 impl WrsArgs {
     /// The library's settings for a method. `noisy`: the input is path traced.
-    pub fn settings(&self, method: Method, seed: u64, noisy: bool) -> Settings {
-        let preset = if noisy { Settings::traced() } else { Settings::default() };
-        let wrs = match self.wrs_preset {
-            WrsPresetName::Paper => Settings::paper(),
-            WrsPresetName::Weighted => Settings::weighted(),
-        };
-        let gate = wrs.gate.unwrap_or_default();
+    pub fn settings(&self, method: MethodKind, seed: u64, noisy: bool) -> Settings {
         Settings {
-            method,
-            sampler: self.wrs_sampler.unwrap_or(wrs.sampler),
-            weight_exponent: self.wrs_exponent.unwrap_or(wrs.weight_exponent),
-            rate_exponent: self.wrs_rate_exponent.unwrap_or(wrs.rate_exponent),
+            method: match method {
+                MethodKind::Smr => Method::Smr(self.smr(noisy)),
+                MethodKind::Wrs => Method::Wrs(self.wrs()),
+                other => other.into(),
+            },
+            depth_test: (!self.no_flush)
+                .then_some(DepthTest { relative: self.depth_relative, slope_px: self.depth_slope }),
+            noisy,
+            seed,
+            ..Settings::default()
+        }
+    }
+
+    fn smr(&self, noisy: bool) -> Smr {
+        let preset = if noisy { Smr::traced() } else { Smr::default() };
+        Smr {
+            accumulate: self.smr_accumulate.unwrap_or(preset.accumulate),
+            tolerance: self.smr_tolerance,
+            relight: !self.no_relight,
+        }
+    }
+
+    fn wrs(&self) -> Wrs {
+        let preset = match self.wrs_preset {
+            WrsPresetName::Paper => Wrs::default(),
+            WrsPresetName::Weighted => Wrs::weighted(),
+        };
+        let gate = preset.gate.unwrap_or_default();
+        Wrs {
+            sampler: self.wrs_sampler.unwrap_or(preset.sampler),
+            weight_exponent: self.wrs_exponent.unwrap_or(preset.weight_exponent),
+            rate_exponent: self.wrs_rate_exponent.unwrap_or(preset.rate_exponent),
             bias: self.wrs_bias,
             gate: (!self.no_gate).then_some(Gate {
                 divisor: self.gate_divisor.unwrap_or(gate.divisor),
@@ -99,15 +121,6 @@ impl WrsArgs {
                 metric: self.gate_metric,
                 scale: self.gate_scale.unwrap_or(gate.scale),
             }),
-            depth_test: (!self.no_flush)
-                .then_some(DepthTest { relative: self.depth_relative, slope_px: self.depth_slope }),
-            smr: Smr {
-                accumulate: self.smr_accumulate.unwrap_or(preset.smr.accumulate),
-                tolerance: self.smr_tolerance,
-                relight: !self.no_relight,
-            },
-            seed,
-            ..preset
         }
     }
 }

@@ -4,6 +4,7 @@ use super::frontier::{Standing, frontier};
 use super::metrics::Metric;
 use super::row::Row;
 use super::table::Table;
+use crate::args::{MethodName, Named};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -120,10 +121,10 @@ fn of<'a>(rows: &'a [Candidate<'a>], method: &str) -> impl Iterator<Item = &'a C
     rows.iter().filter(move |c| c.row.point.method == method)
 }
 
-/// Names of methods without duplicates: none, taa, taau, wrs, smr, oracle, then unknown ones.
+/// Names of methods without duplicates, in the order of `--method`, then unknown ones.
 pub fn in_order<'a>(methods: impl Iterator<Item = &'a str>) -> Vec<String> {
-    const KNOWN: [&str; 6] = ["none", "taa", "taau", "wrs", "smr", "oracle"];
-    let rank = |m: &str| KNOWN.iter().position(|&known| known == m).unwrap_or(usize::MAX);
+    let known = MethodName::rows();
+    let rank = |m: &str| known.iter().position(|known| known.1 == m).unwrap_or(usize::MAX);
     let mut methods: Vec<String> = methods.map(str::to_owned).collect();
     methods.sort_by(|a, b| rank(a).cmp(&rank(b)).then(a.cmp(b)));
     methods.dedup();

@@ -1,27 +1,16 @@
 //! Settings as Rust source.
 
-use afterimage::{Bias, Foveation, Settings, Smr};
+use afterimage::{Bias, Foveation, Method, Settings, Smr, Wrs};
 
 /// `Settings { .. }` with the fields that differ from the defaults, ready to paste into a program.
 pub fn as_rust(settings: &Settings) -> String {
     Literal::new("Settings", settings, &Settings::default())
-        .field("method", |s| format!("Method::{:?}", s.method))
+        .field("method", |s| match &s.method {
+            Method::Smr(own) => format!("Method::Smr({})", smr(own)),
+            Method::Wrs(own) => format!("Method::Wrs({})", wrs(own)),
+            other => format!("Method::{other:?}"),
+        })
         .field("foveation", |s| foveation(&s.foveation))
-        .field("smr", |s| smr(&s.smr))
-        .field("sampler", |s| format!("Sampler::{:?}", s.sampler))
-        .field("weight_exponent", |s| s.weight_exponent.to_string())
-        .field("rate_exponent", |s| s.rate_exponent.to_string())
-        .field("bias", |s| match s.bias {
-            Bias::Exponential { lambda } => format!("Bias::Exponential {{ lambda: {lambda:?} }}"),
-            other => format!("Bias::{other:?}"),
-        })
-        .field("gate", |s| match s.gate {
-            None => "None".into(),
-            Some(g) => format!(
-                "Some(Gate {{ metric: GateMetric::{:?}, scale: GateScale::{:?}, divisor: {:?}, offset: {:?} }})",
-                g.metric, g.scale, g.divisor, g.offset
-            ),
-        })
         .field("depth_test", |s| match s.depth_test {
             None => "None".into(),
             Some(t) => format!("Some(DepthTest {{ relative: {:?}, slope_px: {:?} }})", t.relative, t.slope_px),
@@ -47,6 +36,25 @@ fn smr(smr: &Smr) -> String {
         .field("accumulate", |s| format!("{:?}", s.accumulate))
         .field("tolerance", |s| format!("{:?}", s.tolerance))
         .field("relight", |s| s.relight.to_string())
+        .end()
+}
+
+fn wrs(wrs: &Wrs) -> String {
+    Literal::new("Wrs", wrs, &Wrs::default())
+        .field("sampler", |w| format!("Sampler::{:?}", w.sampler))
+        .field("weight_exponent", |w| w.weight_exponent.to_string())
+        .field("rate_exponent", |w| w.rate_exponent.to_string())
+        .field("bias", |w| match w.bias {
+            Bias::Exponential { lambda } => format!("Bias::Exponential {{ lambda: {lambda:?} }}"),
+            other => format!("Bias::{other:?}"),
+        })
+        .field("gate", |w| match w.gate {
+            None => "None".into(),
+            Some(g) => format!(
+                "Some(Gate {{ metric: GateMetric::{:?}, scale: GateScale::{:?}, divisor: {:?}, offset: {:?} }})",
+                g.metric, g.scale, g.divisor, g.offset
+            ),
+        })
         .end()
 }
 
@@ -84,7 +92,7 @@ impl<'a, T> Literal<'a, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use afterimage::{DepthTest, Filter, Gate, GateMetric, GateScale, Method, Sampler};
+    use afterimage::{DepthTest, Filter, Gate, GateMetric, GateScale, Sampler};
 
     /// Checks that the text of the settings is the macro's argument, which compiles.
     macro_rules! round_trip {
@@ -97,18 +105,28 @@ mod tests {
     #[test]
     fn what_is_pasted_makes_the_same_settings() {
         round_trip!(Settings::default());
-        round_trip!(Settings { method: Method::Wrs, gate: None, depth_test: None, seed: 3, ..Settings::default() });
+        round_trip!(Settings { method: Method::Taau, depth_test: None, seed: 3, ..Settings::default() });
         round_trip!(Settings {
-            method: Method::Taa,
+            method: Method::Wrs(Wrs {
+                sampler: Sampler::AEs,
+                weight_exponent: 3,
+                rate_exponent: 2,
+                bias: Bias::Exponential { lambda: 0.25 },
+                gate: Some(Gate {
+                    metric: GateMetric::Lightness,
+                    scale: GateScale::Sample,
+                    divisor: 50.0,
+                    offset: 2.0
+                }),
+            }),
             foveation: Foveation { filter: Filter::Block, fovea_deg: 10.0, rate_far: 32, ..Foveation::default() },
-            smr: Smr { accumulate: 0.7, relight: false, ..Smr::default() },
-            sampler: Sampler::AEs,
-            weight_exponent: 3,
-            rate_exponent: 2,
-            bias: Bias::Exponential { lambda: 0.25 },
-            gate: Some(Gate { metric: GateMetric::Lightness, scale: GateScale::Sample, divisor: 50.0, offset: 2.0 }),
             depth_test: Some(DepthTest { relative: 0.1, slope_px: 0.0 }),
             noisy: true,
+            ..Settings::default()
+        });
+        round_trip!(Settings { method: Method::Wrs(Wrs { gate: None, ..Wrs::default() }), ..Settings::default() });
+        round_trip!(Settings {
+            method: Method::Smr(Smr { accumulate: 0.7, relight: false, ..Smr::default() }),
             ..Settings::default()
         });
     }

@@ -7,7 +7,7 @@ mod sound_scene;
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::{
     Bias, ContextDesc, DepthConvention, DepthTest, Exposure, Filter, Foveation, Gate, GateMetric, GateScale, Gaze,
-    Image, Method, Reset, Sampler, Settings, Smr, ViewFrame, ViewGeometry,
+    Image, Method, Reset, Sampler, Settings, Smr, ViewFrame, ViewGeometry, Wrs,
 };
 use afterimage_cli::sweep::Plan;
 use afterimage_lab::error::InputError;
@@ -160,7 +160,7 @@ pub fn settings(bytes: &[u8]) {
             continue;
         }
         assert!(shown[0].pixels().iter().flatten().all(|v| v.is_finite()), "{:?}", post.desc().settings);
-        if has(7) && post.desc().settings.method == Method::Wrs {
+        if has(7) && matches!(post.desc().settings.method, Method::Wrs(_)) {
             let words: Vec<_> = (0..SIZE[0] * SIZE[1]).map(|_| [bits.word(), bits.word(), bits.word()]).collect();
             post.restore_history(&words);
         }
@@ -198,21 +198,29 @@ impl Bits<'_> {
 
     fn settings(&mut self) -> Settings {
         let pick = self.word();
+        let foveation = Foveation {
+            filter: [Filter::Mip, Filter::Gauss, Filter::Block, Filter::Off][(pick >> 2 & 3) as usize],
+            fovea_deg: self.around(0.0, 20.0),
+            mid_deg: self.around(20.0, 60.0),
+            blend_deg: self.around(0.0, 10.0),
+            rate_mid: 1 << (pick >> 4 & 3),
+            rate_far: 1 << (pick >> 6 & 7),
+        };
+        let smr =
+            Smr { accumulate: self.around(0.0, 0.98), tolerance: self.around(0.1, 10.0), relight: pick >> 9 & 1 == 1 };
+        let wrs = self.wrs(pick);
         Settings {
-            method: [Method::None, Method::Taa, Method::Smr, Method::Wrs][(pick & 3) as usize],
-            foveation: Foveation {
-                filter: [Filter::Mip, Filter::Gauss, Filter::Block, Filter::Off][(pick >> 2 & 3) as usize],
-                fovea_deg: self.around(0.0, 20.0),
-                mid_deg: self.around(20.0, 60.0),
-                blend_deg: self.around(0.0, 10.0),
-                rate_mid: 1 << (pick >> 4 & 3),
-                rate_far: 1 << (pick >> 6 & 7),
-            },
-            smr: Smr {
-                accumulate: self.around(0.0, 0.98),
-                tolerance: self.around(0.1, 10.0),
-                relight: pick >> 9 & 1 == 1,
-            },
+            method: [Method::None, Method::Taa, Method::Smr(smr), Method::Wrs(wrs)][(pick & 3) as usize],
+            foveation,
+            depth_test: (pick >> 15 & 1 == 1)
+                .then(|| DepthTest { relative: self.around(1e-4, 0.999), slope_px: self.around(0.0, 64.0) }),
+            noisy: pick >> 16 & 1 == 1,
+            seed: u64::from(pick),
+        }
+    }
+
+    fn wrs(&mut self, pick: u32) -> Wrs {
+        Wrs {
             sampler: match (pick >> 10 & 1, pick >> 17 & 1) {
                 (1, _) => Sampler::AEs,
                 (_, 1) => Sampler::AChaoMean,
@@ -231,10 +239,6 @@ impl Bits<'_> {
                 divisor: self.around(1e-3, 200.0),
                 offset: self.around(0.0, 50.0),
             }),
-            depth_test: (pick >> 15 & 1 == 1)
-                .then(|| DepthTest { relative: self.around(1e-4, 0.999), slope_px: self.around(0.0, 64.0) }),
-            noisy: pick >> 16 & 1 == 1,
-            seed: u64::from(pick),
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::device::{Headless, PassClock};
 use crate::frame::{Content, DeviceHandle, RenderedFrame};
 use crate::pipeline::ablation::shader_without;
 use afterimage::kernel::noise::{Noise, unpack_noise};
-use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Image, Method, Settings};
+use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Image, Method, Settings, Smr};
 use afterimage_clip::pipeline::{Candidate, Executor, MethodOutput, RunKind, Shot};
 use std::slice::from_ref;
 use std::sync::Arc;
@@ -40,7 +40,7 @@ impl Executor for DeviceExecutor {
     fn add(&mut self, kind: &RunKind, desc: &ContextDesc) -> Result<(), CreateError> {
         self.runs.push(match kind {
             RunKind::Without(_, part) => {
-                let shader = shader_without(part, desc.settings.method);
+                let shader = shader_without(part, desc.settings.method.kind());
                 DeviceRun::with_shader(&self.gpu, desc, DeviceFormats::EXACT, &shader)?
             }
             _ => DeviceRun::new(&self.gpu, desc, DeviceFormats::EXACT)?,
@@ -110,11 +110,10 @@ impl Executor for DeviceExecutor {
         self.runs[run].post().memory_bytes() as usize
     }
 
-    fn history_noise(&self, run: usize) -> Option<(Image<Noise>, &Settings)> {
+    fn history_noise(&self, run: usize) -> Option<(Image<Noise>, Smr)> {
         let post = self.runs[run].post();
-        let settings = &post.desc().settings;
-        let is_noisy = settings.method == Method::Smr && settings.noisy;
-        let texture = post.history_textures().get(2).filter(|_| is_noisy)?;
-        Some((self.gpu.read::<u32>(texture, 0).map(unpack_noise), settings))
+        let Settings { method: Method::Smr(smr), noisy: true, .. } = post.desc().settings else { return None };
+        let texture = post.history_textures().get(2)?;
+        Some((self.gpu.read::<u32>(texture, 0).map(unpack_noise), smr))
     }
 }

@@ -1,7 +1,7 @@
 //! Foveated frames against the full-rate frame's pixels.
 
 use super::rig::{FAST, Frame, device};
-use afterimage::{Filter, Foveation, Image, Lattice, Lattices, Method, Settings, ViewGeometry};
+use afterimage::{Filter, Foveation, Image, Lattice, Lattices, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
@@ -321,8 +321,9 @@ fn methods_give_the_same_pictures_from_samples_on_the_device_and_in_memory() {
         let view = *camera.geometry();
         let mut source = RasterSource::new(device.clone(), scene, camera, None, FAST).unwrap();
         let foveation = Foveation { filter: Filter::Sparse, fovea_deg: 12.0, ..FOVEATION() };
-        let methods = [Method::None, Method::Taa, Method::Taau, Method::Wrs, Method::Smr];
-        let kinds = methods.map(|method| RunKind::PostProcess(Settings { method, ..Settings::default() }));
+        let methods = [MethodKind::None, MethodKind::Taa, MethodKind::Taau, MethodKind::Wrs, MethodKind::Smr];
+        let kinds =
+            methods.map(|method| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() }));
         let mut pipelines = [Backend::Gpu(device.clone()), Backend::Cpu].map(|backend| {
             let pipeline = Pipeline::new(view, foveation, &kinds, false, &[], &backend).unwrap();
             pipeline.with_sparse(geometry, SampleOrder::Bayer)

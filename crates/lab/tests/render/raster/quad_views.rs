@@ -2,7 +2,7 @@
 
 use super::foveated::{Rig, flat, noise, views};
 use super::rig::{FAST, Frame, device};
-use afterimage::{Foveation, Image, Method, Settings, ViewGeometry};
+use afterimage::{Foveation, Image, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::OnDevice;
 use afterimage_lab::lattices::SparseGeometry;
@@ -196,8 +196,9 @@ fn methods_give_the_same_pictures_of_composed_frames_on_the_device_and_in_memory
         let camera = SceneCamera::choose(&noise(), Some("walk"), SMALL, None).unwrap();
         let view = *camera.geometry();
         let mut source = RasterSource::new(device.clone(), noise(), camera, None, FAST).unwrap();
-        let methods = [Method::None, Method::Taa, Method::Wrs, Method::Smr];
-        let kinds = methods.map(|method| RunKind::PostProcess(Settings { method, ..Settings::default() }));
+        let methods = [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr];
+        let kinds =
+            methods.map(|method| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() }));
         let mut pipelines = [Backend::Gpu(device.clone()), Backend::Cpu].map(|backend| {
             let pipeline = Pipeline::new(view, FOVEATION(), &kinds, false, &[], &backend).unwrap();
             pipeline.with_sparse(geometry, Default::default()).with_quad_views(Some(layout))

@@ -5,7 +5,7 @@ use super::rig::device;
 use afterimage::gpu::{Afterimage, Frame, Region, Textures};
 use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{
-    ContextDesc, DepthConvention, Filter, Foveation, Gaze, Image, Method, Settings, ViewFrame, ViewGeometry,
+    ContextDesc, DepthConvention, Filter, Foveation, Gaze, Image, MethodKind, Settings, ViewFrame, ViewGeometry,
 };
 use afterimage_lab::raster::{AtlasLayout, FoveatedTargets};
 use afterimage_lab::trace::view::View;
@@ -24,12 +24,12 @@ fn eye(eye: usize, index: u64) -> View {
 
 /// Frames of these eyes, as `method` shows them in one context with a view an eye. `gaze_of`: the eye whose gaze each
 /// eye has.
-fn shown(rig: &mut Rig, eyes: &[usize], method: Method, gaze_of: [usize; 2]) -> Vec<Image<[f32; 3]>> {
+fn shown(rig: &mut Rig, eyes: &[usize], method: MethodKind, gaze_of: [usize; 2]) -> Vec<Image<[f32; 3]>> {
     let gpu = rig.device.clone();
     let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..Foveation::default() };
     let desc = ContextDesc {
         view_count: eyes.len() as u32,
-        settings: Settings { method, foveation, ..Settings::default() },
+        settings: Settings { method: method.into(), foveation, ..Settings::default() },
         depth: DepthConvention::Reversed { near: rig.raster.near(), far: f32::INFINITY },
         ..ContextDesc::new(SIZE)
     };
@@ -73,10 +73,10 @@ fn shown(rig: &mut Rig, eyes: &[usize], method: Method, gaze_of: [usize; 2]) -> 
 fn each_eye_of_a_stereo_pair_is_that_of_a_run_of_its_own() {
     let Some(device) = device() else { return };
     let mut rig = Rig::new(&device, &noise(), SIZE);
-    for method in [Method::None, Method::Taa, Method::Taau, Method::Wrs, Method::Smr] {
+    for method in [MethodKind::None, MethodKind::Taa, MethodKind::Taau, MethodKind::Wrs, MethodKind::Smr] {
         let both = shown(&mut rig, &[0, 1], method, [0, 1]);
         // wrs draws other random numbers in the second view than in the first.
-        let second: &[usize] = if method == Method::Wrs { &[1, 1] } else { &[1] };
+        let second: &[usize] = if method == MethodKind::Wrs { &[1, 1] } else { &[1] };
         let runs = [&[0], second];
         let alone = runs.map(|eyes| shown(&mut rig, eyes, method, [0, 1]).pop().unwrap());
         assert!(alone[0] != alone[1], "the eyes see different pictures");

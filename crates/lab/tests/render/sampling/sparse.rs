@@ -2,7 +2,7 @@
 //! nothing else is traced.
 
 use super::fills::view;
-use afterimage::{Filter, Foveation, Image, Lattices, Method, Settings, ViewGeometry};
+use afterimage::{Filter, Foveation, Image, Lattices, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::{Content, OnDevice, RenderedFrame, SourceFrame};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
@@ -165,8 +165,8 @@ fn the_post_process_shows_the_samples_and_reads_nothing_between() {
     let view = view(&scene, SIZE);
     let [regions, _] = patterns();
     let foveation = Foveation { filter: Filter::Sparse, ..regions.foveation() };
-    let methods = [Method::None, Method::Taa, Method::Wrs, Method::Taau, Method::Smr];
-    let kinds = methods.map(|method| RunKind::PostProcess(Settings { method, ..Settings::traced() }));
+    let methods = [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Taau, MethodKind::Smr];
+    let kinds = methods.map(|method| RunKind::PostProcess(Settings { method: method.into(), ..Settings::traced() }));
     let mut pipeline = Pipeline::new(*view.geometry(), foveation, &kinds, false, &[], &Backend::Cpu).unwrap();
     for frame in 0..4 {
         let gaze = [40.0 + 20.0 * frame as f32, 45.0];
@@ -188,7 +188,7 @@ fn the_post_process_shows_the_samples_and_reads_nothing_between() {
         for (method, output) in methods.iter().zip(&step.outputs) {
             assert!(output.image.pixels().iter().flatten().all(|v| v.is_finite()), "{method:?}");
             assert_eq!(output.stats.nonfinite, 0, "{method:?}, frame {frame}");
-            let shows = *method == Method::None || frame == 0;
+            let shows = *method == MethodKind::None || frame == 0;
             for (i, shown) in output.image.pixels().iter().enumerate().filter(|_| shows) {
                 let px = [i as u32 % SIZE[0], i as u32 / SIZE[0]];
                 if lattices.at(px).unwrap().samples(px) {
@@ -227,8 +227,8 @@ fn samples_that_stay_on_the_device_are_those_of_the_memory() {
     }
     let device = Headless::find_roomy(true).expect("there is an adapter");
     let backend = Backend::Gpu(device.clone());
-    let methods = [Method::None, Method::Taa, Method::Wrs, Method::Taau, Method::Smr];
-    let kinds = methods.map(|method| RunKind::PostProcess(Settings { method, ..Settings::traced() }));
+    let methods = [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Taau, MethodKind::Smr];
+    let kinds = methods.map(|method| RunKind::PostProcess(Settings { method: method.into(), ..Settings::traced() }));
     for (sampling, geometry) in patterns().into_iter().zip([SparseGeometry::Samples, SparseGeometry::Full]) {
         let order = SampleOrder::Sobol;
         let samples = TracedSamples { foveated: Some(sampling), sparse: Some(order), samples: 2, full_rate_samples: 1 };

@@ -9,7 +9,7 @@ use afterimage::shader::{Composer, Module};
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::wgpu::{Texture, TextureUsages};
 use afterimage::{
-    ContextDesc, CreateError, Filter, Foveation, Gaze, Image, Method, Reset, Settings, ViewFrame, ViewGeometry,
+    ContextDesc, CreateError, Filter, Foveation, Gaze, Image, MethodKind, Reset, Settings, ViewFrame, ViewGeometry,
 };
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::{Headless, PassClock};
@@ -67,15 +67,15 @@ enum PassKind {
     Copy,
     Post(Settings),
     /// A method on sparse frames.
-    Sparse(Method),
+    Sparse(MethodKind),
     Foveate(Filter),
 }
 
 /// Settings of a method for sparse frames: steps 2 and 4, with more samples than any others.
-fn sparse_settings(method: Method) -> Settings {
+fn sparse_settings(method: MethodKind) -> Settings {
     let paper = Settings::paper();
     let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..paper.foveation };
-    Settings { method, foveation, ..paper }
+    Settings { method: method.into(), foveation, ..paper }
 }
 
 impl PassSpec {
@@ -84,7 +84,7 @@ impl PassSpec {
         Self { name, bytes_per_pixel, kind: PassKind::Post(settings) }
     }
 
-    fn sparse(name: &'static str, method: Method) -> Self {
+    fn sparse(name: &'static str, method: MethodKind) -> Self {
         let bytes_per_pixel = sparse_settings(method).traffic_bytes_per_pixel([true, true, false]);
         Self { name, bytes_per_pixel, kind: PassKind::Sparse(method) }
     }
@@ -105,9 +105,10 @@ impl PassSpec {
 /// The passes, in the order in which each frame times them. The others are compared with the first.
 fn all_passes() -> Vec<PassSpec> {
     let mut passes = vec![PassSpec { name: "copy", bytes_per_pixel: 48, kind: PassKind::Copy }];
-    passes.extend(Method::ALL.map(|m| PassSpec::new(m.name(), Settings { method: m, ..Settings::paper() })));
+    let plain = |kind: MethodKind| Settings { method: kind.into(), ..Settings::default() };
+    passes.extend(MethodKind::ALL.map(|kind| PassSpec::new(kind.name(), plain(kind))));
     passes.push(PassSpec::new("wrs-weighted", Settings::weighted()));
-    passes.push(PassSpec::sparse("smr-sparse", Method::Smr));
+    passes.push(PassSpec::sparse("smr-sparse", MethodKind::Smr));
     passes.extend(Filter::ALL.into_iter().filter_map(|filter| {
         let bytes_per_pixel = GpuSimulator::traffic(filter)?;
         Some(PassSpec { name: filter.name(), bytes_per_pixel, kind: PassKind::Foveate(filter) })

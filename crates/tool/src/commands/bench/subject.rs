@@ -149,7 +149,7 @@ impl Subject {
         let watch = Stopwatch::start();
         let in_memory = |frame: FoveatedFrame| {
             let took = FrameTime::by(&watch, None, frame.rays);
-            Foveated { samples: frame.samples.iter().sum(), content: Content::Foveated(Box::new(frame)), took }
+            Foveated { samples: frame.samples.iter().sum(), content: Content::Foveated(frame), took }
         };
         let Some(placed) = sparse else {
             return Ok(in_memory(sampling.plan(geometry, gaze_px, samples, index).trace(tracer, world, &view, index)));

@@ -5,7 +5,7 @@ use super::wrs_table::WrsTableArgs;
 use crate::commands::sweep::command_line;
 use crate::failure::Failure;
 use crate::progress;
-use afterimage::{Bias, Foveation, Gate, GateScale, Image, Method, Sampler, Settings, ViewGeometry};
+use afterimage::{Bias, Foveation, Gate, GateScale, Image, Method, Sampler, Settings, ViewGeometry, Wrs};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind, ablation};
@@ -22,28 +22,34 @@ const SACCADE_DEG: f32 = 1.0;
 /// Largest difference of a channel, sRGB-encoded in \[0, 1\], between a fresh pixel and the full-rate frame.
 const FRESH: f32 = 1.0 / 255.0;
 
+/// wrs with these settings.
+fn settings(wrs: Wrs) -> Settings {
+    Settings { method: Method::Wrs(wrs), ..Settings::default() }
+}
+
 /// The readings: settings that differ from the paper's in one part or several; on a device also one that
 /// is no setting.
 fn readings(backend: &Backend) -> Vec<(&'static str, RunKind)> {
-    let paper = Settings::paper();
-    let weighted = Settings::weighted();
-    let ungated = Settings { gate: None, ..paper };
-    let same_scale = Settings { gate: Some(Gate { scale: GateScale::Candidate, ..Gate::default() }), ..paper };
-    let run = RunKind::PostProcess;
+    let [paper, weighted] = [Wrs::default(), Wrs::weighted()];
+    let ungated = Wrs { gate: None, ..paper };
+    let same_scale = Wrs { gate: Some(Gate { scale: GateScale::Candidate, ..Gate::default() }), ..paper };
+    let run = |wrs| RunKind::PostProcess(settings(wrs));
     let mut runs = vec![
         ("literal eq. 7", run(paper)),
         ("gate at the candidate's scale", run(same_scale)),
         ("no gate", run(ungated)),
-        ("plain A-Chao (no gate, no bias)", run(Settings { bias: Bias::None, ..ungated })),
+        ("plain A-Chao (no gate, no bias)", run(Wrs { bias: Bias::None, ..ungated })),
     ];
-    runs.extend(with_bias_in_comparison(ungated, backend).map(|run| ("no gate, bias in the comparison only", run)));
+    runs.extend(
+        with_bias_in_comparison(settings(ungated), backend).map(|run| ("no gate, bias in the comparison only", run)),
+    );
     runs.extend([
-        ("weights to the third power", run(Settings { weight_exponent: 3, ..paper })),
-        ("no gate, weights to the third power", run(Settings { weight_exponent: 3, ..ungated })),
-        ("gate at the candidate's scale, third power", run(Settings { weight_exponent: 3, ..same_scale })),
-        ("gate at the candidate's scale, eighth power", run(Settings { weight_exponent: 8, ..same_scale })),
-        ("`Settings::weighted()`, but weights by eccentricity alone", run(Settings { rate_exponent: 0, ..weighted })),
-        ("`Settings::weighted()`, but samples", run(Settings { sampler: Sampler::AChao, ..weighted })),
+        ("weights to the third power", run(Wrs { weight_exponent: 3, ..paper })),
+        ("no gate, weights to the third power", run(Wrs { weight_exponent: 3, ..ungated })),
+        ("gate at the candidate's scale, third power", run(Wrs { weight_exponent: 3, ..same_scale })),
+        ("gate at the candidate's scale, eighth power", run(Wrs { weight_exponent: 8, ..same_scale })),
+        ("`Settings::weighted()`, but weights by eccentricity alone", run(Wrs { rate_exponent: 0, ..weighted })),
+        ("`Settings::weighted()`, but samples", run(Wrs { sampler: Sampler::AChao, ..weighted })),
         ("`Settings::weighted()`", run(weighted)),
         ("oracle", RunKind::Oracle),
     ]);

@@ -7,7 +7,7 @@ use crate::args::pattern::SamplingName;
 use crate::args::{MethodName, Named};
 use crate::clip::{self, Clip, title};
 use crate::failure::Failure;
-use afterimage::{Filter, Foveation, Method, Settings};
+use afterimage::{Filter, Foveation, MethodKind, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::RunKind;
 use afterimage_lab::quad_views::QuadViewLayout;
@@ -34,7 +34,8 @@ pub fn simulator(args: &RunArgs) -> &'static str {
 pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan, Failure> {
     let refuse = |text: String| Err(Failure::Input(text));
     if args.guided
-        && !(args.sampling.sampling != SamplingName::Uniform && args.method.contains(&MethodName::Post(Method::Smr)))
+        && !(args.sampling.sampling != SamplingName::Uniform
+            && args.method.contains(&MethodName::Post(MethodKind::Smr)))
     {
         return refuse("--guided: the history of smr guides traced samples; add --sampling and the method smr".into());
     }
@@ -106,7 +107,7 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
     let sampling = args.sampling()?;
     let foveation = foveation(args)?;
     let method = match method {
-        MethodName::Post(Method::Taau) if args.foveation.filter().is_quad_views() => {
+        MethodName::Post(MethodKind::Taau) if args.foveation.filter().is_quad_views() => {
             let name = args.foveation.filter().name();
             return Err(Failure::Input(format!(
                 "--method taau: needs moving samples, which --foveation {name} has not; use --foveation sparse, for a \

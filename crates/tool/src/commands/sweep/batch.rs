@@ -6,7 +6,7 @@ use crate::args::{FilterName, MethodName};
 use crate::commands::run::RunArgs;
 use crate::failure::Failure;
 use crate::sweep::{Options, Point};
-use afterimage::{Filter, Method};
+use afterimage::{Filter, MethodKind};
 use afterimage_lab::pipeline::ablation;
 use std::collections::BTreeMap;
 
@@ -15,25 +15,25 @@ const MAX_POINTS: usize = 24;
 /// Limit on pixels per batch, summed over its points, whose histories are in memory at the same time.
 const MAX_PIXELS: u64 = 24_000_000;
 
-/// Options that affect only some methods, and not the input frames.
-const OF_METHODS: &[(&str, &[Method])] = &[
-    ("wrs-preset", &[Method::Wrs]),
-    ("wrs-sampler", &[Method::Wrs]),
-    ("wrs-exponent", &[Method::Wrs]),
-    ("wrs-rate-exponent", &[Method::Wrs]),
-    ("gate-scale", &[Method::Wrs]),
-    ("wrs-bias", &[Method::Wrs]),
-    ("gate-divisor", &[Method::Wrs]),
-    ("gate-offset", &[Method::Wrs]),
-    ("gate-metric", &[Method::Wrs]),
-    ("no-gate", &[Method::Wrs]),
-    ("smr-accumulate", &[Method::Smr]),
-    ("smr-tolerance", &[Method::Smr]),
-    ("no-relight", &[Method::Smr]),
-    ("depth-relative", &[Method::Taa, Method::Wrs, Method::Smr, Method::Taau]),
-    ("depth-slope", &[Method::Taa, Method::Wrs, Method::Smr, Method::Taau]),
-    ("no-flush", &[Method::Taa, Method::Wrs, Method::Smr, Method::Taau]),
-    ("without", &[Method::Taa, Method::Wrs, Method::Smr, Method::Taau]),
+/// Options that affect only one method, or all that keep history (`None`), and not the input frames.
+const OF_METHODS: &[(&str, Option<MethodKind>)] = &[
+    ("wrs-preset", Some(MethodKind::Wrs)),
+    ("wrs-sampler", Some(MethodKind::Wrs)),
+    ("wrs-exponent", Some(MethodKind::Wrs)),
+    ("wrs-rate-exponent", Some(MethodKind::Wrs)),
+    ("gate-scale", Some(MethodKind::Wrs)),
+    ("wrs-bias", Some(MethodKind::Wrs)),
+    ("gate-divisor", Some(MethodKind::Wrs)),
+    ("gate-offset", Some(MethodKind::Wrs)),
+    ("gate-metric", Some(MethodKind::Wrs)),
+    ("no-gate", Some(MethodKind::Wrs)),
+    ("smr-accumulate", Some(MethodKind::Smr)),
+    ("smr-tolerance", Some(MethodKind::Smr)),
+    ("no-relight", Some(MethodKind::Smr)),
+    ("depth-relative", None),
+    ("depth-slope", None),
+    ("no-flush", None),
+    ("without", None),
 ];
 
 /// Whether an option affects a method; `without` affects the methods that have the part.
@@ -41,10 +41,12 @@ pub fn concerns(option: &str, value: &str, method: &str) -> bool {
     if let ("without", Some(part)) = (option, ablation::find(value)) {
         return part.methods.iter().any(|m| m.name() == method);
     }
+    let kind = MethodKind::from_name(method);
     match OF_METHODS.iter().find(|(name, _)| *name == option) {
-        Some((_, methods)) => methods.iter().any(|m| m.name() == method),
+        Some((_, Some(only))) => kind == Some(*only),
+        Some((_, None)) => kind.is_some_and(|kind| kind != MethodKind::None),
         // Only the history of smr guides samples.
-        None => option != "guided" || method == Method::Smr.name(),
+        None => option != "guided" || kind == Some(MethodKind::Smr),
     }
 }
 
@@ -94,7 +96,7 @@ impl Subject {
 
 /// Whether the result depends on the seed.
 pub fn is_random<'a>(method: &str, options: impl IntoIterator<Item = (&'a String, &'a String)>) -> bool {
-    method == Method::Wrs.name() || options.into_iter().any(|(name, value)| name == "source" && value == "trace")
+    method == MethodKind::Wrs.name() || options.into_iter().any(|(name, value)| name == "source" && value == "trace")
 }
 
 /// Groups points into batches. The order does not depend on finished points.

@@ -14,7 +14,7 @@ use crate::sweep::store::{PICTURES, id};
 use crate::sweep::{Measurement, Options, Store};
 use crate::times::{RenderTime, Times};
 use afterimage::kernel::debug_view::heat;
-use afterimage::{Filter, Image, Method, Settings};
+use afterimage::{Filter, Image, Method, MethodKind, Settings};
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::{Backend, PassClock, copy_ms_per_byte};
 use afterimage_lab::metric;
@@ -154,7 +154,7 @@ fn play(
         sums.samples_share += samples_share(result, clip, &batch.subjects[0]);
         sums.samples = result.frame.samples.map(|now| sums.samples.unwrap_or(0) + now).or(sums.samples);
         sums.frames += 1;
-        let foveated = batch.subjects.iter().position(|s| s.method.name() == Method::None.name());
+        let foveated = batch.subjects.iter().position(|s| s.method.name() == MethodKind::None.name());
         let foveated = foveated.map(|i| metric::encode(&result.step.outputs[i + 1].image, clip.exposure_ev));
         let of_subject = |(accumulator, (subject, shown)): (&mut MethodAccumulator, (&Subject, &MethodOutput))| {
             let encoded = metric::encode(&shown.image, clip.exposure_ev);

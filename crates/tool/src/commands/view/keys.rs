@@ -183,16 +183,17 @@ mod tests {
 
     #[test]
     fn a_digit_is_there_for_everything_that_is_shown() {
-        assert!(Shows::rows().len() <= DIGITS.len());
-        assert_eq!(rows(&state())[0].key, "1..6");
-        assert_eq!(action_of(KeyCode::Digit6, true, false), Some(Action::Show(Side::Right, Shows::Reference)));
-        assert_eq!(action_of(KeyCode::Digit7, false, false), None);
+        let last = Shows::rows().len();
+        assert_eq!(rows(&state())[0].key, format!("1..{last}"));
+        let of_last = action_of(DIGITS[last - 1], true, false);
+        assert_eq!(of_last, Some(Action::Show(Side::Right, Shows::Reference)));
+        assert_eq!(DIGITS.get(last).and_then(|digit| action_of(*digit, false, false)), None);
     }
 
     #[test]
     fn help_lists_all_keys() {
         let help = help();
-        assert!(help.starts_with("Keys: 1 to 6 choose the method (none, taa, wrs, smr, taau, reference), with Shift"));
+        assert!(help.contains(" choose the method (none, taa, wrs, smr, taau, "));
         for key in KEYS {
             assert!(help.contains(&format!(" {} ", key.label)), "{}", key.label);
         }

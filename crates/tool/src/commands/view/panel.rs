@@ -64,7 +64,7 @@ pub fn click(state: &State, facts_lines: usize, panel: [u32; 2], at: [f32; 2]) -
 mod tests {
     use super::super::state::{Shows, Side, tests::state};
     use super::*;
-    use afterimage::Method;
+    use afterimage::MethodKind;
 
     /// The action of a click on the row of that name.
     fn click_on(state: &State, name: &str) -> Option<Action> {
@@ -78,7 +78,7 @@ mod tests {
         let mut state = state();
         assert_eq!(click_on(&state, "method"), Some(Action::Next(Side::Left)));
         assert_eq!(click_on(&state, "split"), Some(Action::Split));
-        state.apply(Action::Show(Side::Right, Shows::Post(Method::Wrs)));
+        state.apply(Action::Show(Side::Right, Shows::Post(MethodKind::Wrs)));
         assert_eq!(click_on(&state, "right"), Some(Action::Next(Side::Right)));
         assert_eq!(click_on(&state, "frozen"), Some(Action::Freeze));
         assert!(rows(&state).iter().all(|r| r.name != "camera"), "there is none to steer");

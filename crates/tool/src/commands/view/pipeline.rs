@@ -7,7 +7,7 @@ use super::state::{Shows, Side, State};
 use super::times::{Pass, PassTimes};
 use crate::failure::Failure;
 use afterimage::wgpu::{CommandEncoder, Texture};
-use afterimage::{ContextDesc, Filter, Finding, Gaze, Lattices, Method, Reset, Settings, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, Filter, Finding, Gaze, Lattices, MethodKind, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::{Content, RenderedFrame};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
@@ -63,7 +63,7 @@ impl ViewPipeline {
         (sparse_geometry, sample_order): (SparseGeometry, SampleOrder),
         setup: &Setup,
     ) -> Result<Self, Failure> {
-        let desc = desc(&geometry, setup.settings(state, Shows::Post(Method::None)));
+        let desc = desc(&geometry, setup.settings(state, Shows::Post(MethodKind::None)));
         let mut pipeline = Self {
             inputs: DeviceInputs::new(gpu, &desc, FORMATS)?,
             runs: vec![],
@@ -88,7 +88,7 @@ impl ViewPipeline {
     pub fn adapt(&mut self, state: &State, setup: &Setup) -> Result<(), Failure> {
         let settings = |shows| setup.settings(state, shows);
         self.quad_views = setup.quad_views(state);
-        self.desc = desc(&self.geometry, settings(Shows::Post(Method::None)));
+        self.desc = desc(&self.geometry, settings(Shows::Post(MethodKind::None)));
         self.inputs.set_foveation(&self.desc)?;
         let sides = state.shown_sides();
         self.runs.truncate(sides.len());

@@ -6,7 +6,7 @@ use crate::args::gaze::GazeArgs;
 use crate::args::input;
 use crate::args::{FilterName, FoveationArgs};
 use crate::failure::Failure;
-use afterimage::{Filter, Method, Settings, ViewGeometry};
+use afterimage::{Filter, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::source::SourceInfo;
 
@@ -42,7 +42,7 @@ impl Setup {
         }
         // Keys lead to the other methods and filters.
         state.filter = FilterName::Of(Filter::Mip);
-        for method in Method::ALL {
+        for method in MethodKind::ALL {
             setup.settings(&state, Shows::Post(method)).validate()?;
         }
         Ok(setup)

@@ -1,5 +1,7 @@
 //! Marks of the methods: a color that is distinguishable with color blindness, and a shape.
 
+use afterimage::MethodKind;
+
 /// Mark of a method.
 #[derive(Clone, Copy)]
 pub struct Mark {
@@ -10,15 +12,19 @@ pub struct Mark {
     outline: &'static str,
 }
 
-/// Outlines are SVG paths relative to a point, about 12 pixels wide.
-const MARKS: [Mark; 6] = [
-    Mark { class: "none", color: "#7a7a7a", outline: "m-6 0a6 6 0 1 0 12 0a6 6 0 1 0 -12 0z" },
-    Mark { class: "taa", color: "#e69f00", outline: "m-5.5 -5.5h11v11h-11z" },
-    Mark { class: "taau", color: "#56b4e9", outline: "m-6.5 -5.5l6.5 3.5l6.5 -3.5v11l-6.5 -3.5l-6.5 3.5z" },
-    Mark { class: "wrs", color: "#0072b2", outline: "m-6.5 5.5h13l-6.5 -12z" },
-    Mark { class: "smr", color: "#009e73", outline: "m-7 0l7 -7l7 7l-7 7z" },
-    Mark { class: "oracle", color: "#cc79a7", outline: "m-6 -2h4v-4h4v4h4v4h-4v4h-4v-4h-4z" },
+/// Colors and outlines of the methods, in the order of [`MethodKind::ALL`], and some more. Outlines are SVG paths
+/// relative to a point, about 12 pixels wide.
+const OF_METHODS: [[&str; 2]; 7] = [
+    ["#7a7a7a", "m-6 0a6 6 0 1 0 12 0a6 6 0 1 0 -12 0z"],
+    ["#e69f00", "m-5.5 -5.5h11v11h-11z"],
+    ["#0072b2", "m-6.5 5.5h13l-6.5 -12z"],
+    ["#009e73", "m-7 0l7 -7l7 7l-7 7z"],
+    ["#56b4e9", "m-6.5 -5.5l6.5 3.5l6.5 -3.5v11l-6.5 -3.5l-6.5 3.5z"],
+    ["#f0e442", "m-6 -3l3 -3h6l3 3v6l-3 3h-6l-3 -3z"],
+    ["#000000", "m-6.5 -6.5l6.5 4l6.5 -4l-4 6.5l4 6.5l-6.5 -4l-6.5 4l4 -6.5z"],
 ];
+
+const ORACLE: Mark = Mark { class: "oracle", color: "#cc79a7", outline: "m-6 -2h4v-4h4v4h4v4h-4v4h-4v-4h-4z" };
 
 /// Mark of unknown methods.
 const OTHER: Mark = Mark { class: "other", color: "#d55e00", outline: "m-6.5 -5.5h13l-6.5 12z" };
@@ -26,7 +32,15 @@ const OTHER: Mark = Mark { class: "other", color: "#d55e00", outline: "m-6.5 -5.
 impl Mark {
     /// The mark of a method.
     pub fn of(method: &str) -> Self {
-        MARKS.into_iter().find(|mark| mark.class == method).unwrap_or(OTHER)
+        let at = MethodKind::ALL.iter().position(|kind| kind.name() == method);
+        match at {
+            Some(at) => {
+                let [color, outline] = OF_METHODS[at % OF_METHODS.len()];
+                Self { class: MethodKind::ALL[at].name(), color, outline }
+            }
+            None if method == ORACLE.class => ORACLE,
+            None => OTHER,
+        }
     }
 
     /// SVG path data of the mark at a position.

@@ -107,7 +107,7 @@ pub fn measurement(point: Point, ms: f64, bytes: u32, share: f64, error: f64) ->
     };
     Measurement {
         version: "0.1.0".into(),
-        rust: format!("Settings {{ method: Method::{} }}", point.method),
+        rust: format!("Settings {{ method: MethodKind::{} }}", point.method),
         point,
         common: options(&[("backend", "gpu"), ("frames", "120")]),
         clip: ClipFacts { size: [1280, 720], frames: 120, timed_frames: 112, fps: 60.0, hfov_deg: 70.0 },

@@ -1,0 +1,33 @@
+//! Scale-matched reservoirs of sparse frames: another algorithm than that of whole frames. It keeps samples with their
+//! places, compares the samples with history first, and reconstructs the pixels between them.
+
+#[cfg(feature = "gpu")]
+use super::PassShader;
+use super::{Algorithm, Entry, HistoryLayout, Stage};
+use crate::settings::Settings;
+
+pub(super) static ENTRY: Entry = Entry {
+    name: "smr-sparse",
+    summary: "scale-matched reservoirs of sparse frames",
+    algorithm: Algorithm::SmrSparse,
+    stages: |_| vec![Stage::Geometry, Stage::Samples, Stage::Method],
+    history: |settings| HistoryLayout::Kept { noisy: settings.noisy },
+    history_traffic_bytes: |settings| {
+        // Samples of history: 8 bytes read, 8 written. A quarter of the pixels, and a quarter of these, and so on, at
+        // most have samples of this frame: for each, history is read (8), the observation is written and read (16),
+        // and so is the light (16).
+        let samples = (8 + 16 + 16_u32).div_ceil(3);
+        // The noise of samples (4) and that of history (4) are read, and the latter is written (4).
+        2 * 8 + samples + if settings.noisy { 4 + 2 * 4 } else { 0 }
+    },
+    #[cfg(feature = "gpu")]
+    shader: |_| PassShader { name: "sparse_pass", block_px: 1, reads_samples: true },
+    #[cfg(feature = "gpu")]
+    overrides: |_, _| vec![],
+};
+
+/// Whether history is relit. Not that of noisy frames: a gain is the ratio of nine samples, and history would be
+/// multiplied by their noise.
+pub(crate) fn smr_sparse_relights(settings: &Settings) -> bool {
+    settings.method.smr().relight && !settings.noisy
+}
