@@ -47,7 +47,7 @@ cargo clippy "${everything_29[@]}" --lib --bins --examples -- -D warnings
 cargo clippy --locked -p afterimage -- -D warnings
 cargo clippy --locked -p afterimage --no-default-features --features cpu -- -D warnings
 # What `cargo demo` builds.
-cargo clippy --locked -p afterimage-cli --no-default-features -- -D warnings
+cargo clippy --locked -p afterimage-clip -- -D warnings
 # The fuzzing targets have a lock file of their own, which changes of dependencies must not leave behind.
 cargo metadata --locked --format-version 1 --manifest-path crates/tool/tests/fuzz/Cargo.toml >/dev/null
 

@@ -6,7 +6,6 @@
 use afterimage::Image;
 use afterimage::kernel::color::luma;
 use afterimage_lab::device::Backend;
-use afterimage_lab::frame::Guide;
 use afterimage_lab::scene::{Scene, SceneLimits};
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::film::{Film, Moments};
@@ -59,7 +58,7 @@ impl Stage {
             depth = Some(seen.depth);
             let mut plan = Sampling::Uniform.plan(view.geometry(), [0.0; 2], SAMPLES, frame);
             if guided {
-                plan = plan.guided(&Guide::of_film(&film), frame, 0)?;
+                plan = plan.guided(&film.guide(), frame, 0)?;
             }
             for spans in &plan.work()[0] {
                 self.tracer.trace(&self.world, view, frame, spans, &mut film);

@@ -15,26 +15,16 @@ extern crate wgpu_29 as wgpu;
 #[cfg(feature = "wgpu-30")]
 extern crate wgpu_30 as wgpu;
 
-pub mod clock;
+pub use afterimage_clip::{clock, lattices, metric, picture, quad_views, scanpath, whole_file};
+
 pub mod device;
 pub mod error;
 pub mod frame;
 pub mod kernel;
-pub mod lattices;
-pub mod metric;
-pub mod picture;
 pub mod pipeline;
-pub mod quad_views;
-#[cfg(feature = "full")]
 pub mod raster;
-pub mod scanpath;
-#[cfg(feature = "full")]
 pub mod scene;
-#[cfg(feature = "full")]
 pub mod self_test;
-#[cfg(feature = "full")]
 pub mod shader;
 pub mod source;
-#[cfg(feature = "full")]
 pub mod trace;
-pub mod whole_file;

@@ -3,7 +3,7 @@
 use afterimage::wgpu::naga;
 use afterimage::{Foveation, Image, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
-use afterimage_lab::pipeline::ablation::{PARTS, Part};
+use afterimage_lab::pipeline::ablation::{PARTS, find, shader_without};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 
@@ -32,9 +32,9 @@ fn bits(frames: &[Image<[f32; 3]>]) -> Vec<[u32; 3]> {
 #[test]
 fn parts_are_in_the_passes_and_their_texts_without_them_are_valid() {
     for part in PARTS {
-        assert_eq!(Part::find(part.name), Some(part));
+        assert_eq!(find(part.name), Some(part));
         for &method in part.methods {
-            let source = part.shader_without(method);
+            let source = shader_without(part, method);
             let module = naga::front::wgsl::parse_str(&source).unwrap_or_else(|e| panic!("{}: {e}", part.name));
             let flags = naga::valid::ValidationFlags::all();
             naga::valid::Validator::new(flags, naga::valid::Capabilities::all()).validate(&module).unwrap();

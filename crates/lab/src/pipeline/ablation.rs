@@ -1,22 +1,10 @@
 //! Passes without one of their parts, to measure the part's cost and its benefit. For measurements only: images without
 //! a part may contain errors that the part prevents.
 
+pub use afterimage_clip::pipeline::Part;
+
 use afterimage::MethodKind;
 use afterimage::shader::SHADERS;
-
-/// A part of the passes that can be left out.
-#[derive(Debug, PartialEq, Eq)]
-pub struct Part {
-    /// Name on the command line.
-    pub name: &'static str,
-    /// Behaviour of the pass without the part.
-    pub instead: &'static str,
-    /// Methods whose pass contains the part.
-    pub methods: &'static [MethodKind],
-    /// Shader texts and their replacements. Each method's pass contains at least one of them; the others belong to
-    /// other methods.
-    replaced: &'static [(&'static str, &'static str)],
-}
 
 const HISTORIES: &[MethodKind] = &[MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau];
 const RESAMPLED: &[MethodKind] = &[MethodKind::Taa, MethodKind::Smr, MethodKind::Taau];
@@ -92,20 +80,18 @@ pub const PARTS: &[Part] = &[
     },
 ];
 
-impl Part {
-    /// The part with this name.
-    pub fn find(name: &str) -> Option<&'static Self> {
-        PARTS.iter().find(|part| part.name == name)
-    }
+/// The part with this name.
+pub fn find(name: &str) -> Option<&'static Part> {
+    PARTS.iter().find(|part| part.name == name)
+}
 
-    /// Shader text of a method's pass without this part.
-    ///
-    /// # Panics
-    /// If the pass contains none of the part's texts: a bug in this file, which a test of all parts finds.
-    pub fn shader_without(&self, method: MethodKind) -> String {
-        let whole = SHADERS.compose(&format!("{}_pass", method.name())).source;
-        let replaced = self.replaced.iter().fold(whole.clone(), |text, (right, instead)| text.replace(right, instead));
-        assert_ne!(whole, replaced, "the pass of {method:?} has no {}", self.name);
-        replaced
-    }
+/// Shader text of a method's pass without a part.
+///
+/// # Panics
+/// If the pass contains none of the part's texts: a bug in this file, which a test of all parts finds.
+pub fn shader_without(part: &Part, method: MethodKind) -> String {
+    let whole = SHADERS.compose(&format!("{}_pass", method.name())).source;
+    let replaced = part.replaced.iter().fold(whole.clone(), |text, (right, instead)| text.replace(right, instead));
+    assert_ne!(whole, replaced, "the pass of {method:?} has no {}", part.name);
+    replaced
 }

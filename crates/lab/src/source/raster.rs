@@ -8,7 +8,7 @@ use super::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo, Wan
 use crate::clock::{Elapsed, Stopwatch};
 use crate::device::{Headless, PassClock};
 use crate::error::InputError;
-use crate::frame::{ComposedFrame, Content, DeviceFrame, OnDevice, RenderedFrame, SourceFrame, SparseFrame};
+use crate::frame::{ComposedFrame, DeviceFrame, DeviceHandle, OnDevice, RenderedFrame, SourceFrame, SparseFrame};
 use crate::lattices::SparseGeometry;
 use crate::quad_views::QuadViews;
 use crate::raster::{AtlasLayout, Composer, FoveatedTargets, Raster, RasterSettings, Targets};
@@ -151,7 +151,7 @@ impl RasterSource {
                 (OnDevice::Composed(self.record_quad_views(encoder, views, quads, layout)), quads.pixels())
             }
         };
-        RenderedFrame { content: Content::OnDevice(content), samples: Some(samples), ..frame }
+        RenderedFrame { content: content.into(), samples: Some(samples), ..frame }
     }
 
     /// The full-rate frame, read back.
@@ -192,8 +192,8 @@ impl RasterSource {
     }
 
     /// Targets of the full-rate frame.
-    fn targets(&self) -> DeviceFrame {
-        on_device(&self.device, self.raster.targets(), self.raster.near())
+    fn targets(&self) -> DeviceHandle {
+        Arc::new(on_device(&self.device, self.raster.targets(), self.raster.near()))
     }
 
     /// Poses the scene for a frame; the frame's view, and the previous one.

@@ -1,12 +1,12 @@
 //! Cameras and camera paths of scenes.
 
 use super::CameraPose;
-use super::gait::Head;
 use crate::error::InputError;
 use crate::scene::camera_file::CameraFile;
 use crate::scene::{Camera, Scene};
 use crate::trace::view::View;
 use afterimage::ViewGeometry;
+use afterimage_clip::source::gait::Head;
 use glam::{DMat4, DQuat, DVec3};
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;

@@ -7,7 +7,7 @@ use super::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo};
 use crate::clock::Elapsed;
 use crate::device::{Backend, SpanClock};
 use crate::error::InputError;
-use crate::frame::{Content, DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, SourceFrame};
+use crate::frame::{DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, SourceFrame};
 use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
@@ -186,7 +186,8 @@ impl TracedSource {
         [view, previous]: &[View; 2],
     ) -> Result<Option<(DeviceSamples, Elapsed)>, InputError> {
         let Tracer::Gpu(tracer) = &self.tracer else { return Ok(None) };
-        let is_wanted = request.device.as_ref().is_some_and(|device| Arc::ptr_eq(tracer.device(), device));
+        let is_wanted =
+            request.device.as_ref().is_some_and(|device| Arc::as_ptr(device).cast() == Arc::as_ptr(tracer.device()));
         if self.samples.sparse.is_none() || !is_wanted {
             return Ok(None);
         }
@@ -228,7 +229,7 @@ impl FrameSource for TracedSource {
             let reference = reference.unwrap_or_else(|| self.without_color(index, &views, !has_geometry));
             return Ok(RenderedFrame {
                 samples: Some(samples.samples.iter().sum()),
-                content: Content::OnDevice(OnDevice::Samples(samples)),
+                content: OnDevice::Samples(samples).into(),
                 render: Some(took),
                 ..request.answer(reference)
             });

@@ -1,7 +1,11 @@
 //! Debug views and file formats.
 
 use super::Named;
-use afterimage::DebugView;
+use crate::clip::{WriteFrame, write_png};
+use crate::failure::Failure;
+use crate::output::Output;
+use afterimage::{DebugView, Image};
+use afterimage_lab::source::exr_file::{self, FrameToWrite};
 use clap::ValueEnum;
 
 impl Named for DebugView {
@@ -23,8 +27,28 @@ pub enum FormatName {
     /// sRGB, 8 bit
     Png,
     /// Linear half float
-    #[cfg(feature = "full")]
     Exr,
+}
+
+impl FormatName {
+    /// Writer of frames in this format.
+    pub fn writer(self) -> WriteFrame {
+        match self {
+            Self::Png => write_png,
+            Self::Exr => write_exr,
+        }
+    }
+}
+
+fn write_exr(
+    out: &Output,
+    folder: &str,
+    index: usize,
+    linear: &Image<[f32; 3]>,
+    _: &Image<[f32; 3]>,
+) -> Result<(), Failure> {
+    let path = out.path(folder, index, "exr");
+    exr_file::write(&path, &FrameToWrite::color(linear)).map_err(|e| Failure::writing(&path, e))
 }
 
 #[cfg(test)]

@@ -17,8 +17,7 @@ use crate::failure::Failure;
 use crate::output::Output;
 use afterimage::{DebugView, Filter};
 use afterimage_lab::device::Backend;
-#[cfg(feature = "ablation")]
-use afterimage_lab::pipeline::ablation::{PARTS, Part};
+use afterimage_lab::pipeline::ablation::{self, PARTS, Part};
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::trace::sampling::Sampling;
 use clap::{Args, Parser};
@@ -86,8 +85,8 @@ pub struct RunArgs {
     /// Skip FLIP, which takes a third of a second per megapixel on one core
     #[arg(long)]
     pub no_flip: bool,
-    #[cfg(feature = "ablation")]
-    #[command(flatten)]
+    #[cfg_attr(feature = "ablation", command(flatten))]
+    #[cfg_attr(not(feature = "ablation"), arg(skip))]
     pub ablation: AblationArgs,
     /// Debug views to write as images, separated by commas
     #[arg(long, value_parser = by_name::<DebugView>(), value_delimiter = ',', value_name = "LIST")]
@@ -160,9 +159,8 @@ impl RunArgs {
     }
 }
 
-/// Ablation of parts of the passes; only in builds with the feature `ablation`.
-#[cfg(feature = "ablation")]
-#[derive(Args, Clone, Debug)]
+/// Ablation of parts of the passes; options only in builds with the feature `ablation`.
+#[derive(Args, Clone, Debug, Default)]
 pub struct AblationArgs {
     /// Part of the passes to leave out; with --backend gpu
     #[arg(long, value_parser = parse_part, value_name = "PART")]
@@ -172,9 +170,8 @@ pub struct AblationArgs {
     pub poison: f32,
 }
 
-#[cfg(feature = "ablation")]
 fn parse_part(name: &str) -> Result<&'static Part, String> {
-    Part::find(name).ok_or_else(|| {
+    ablation::find(name).ok_or_else(|| {
         let names: Vec<_> = PARTS.iter().map(|p| format!("{} ({})", p.name, p.instead)).collect();
         format!("expected one of {}", names.join("; "))
     })

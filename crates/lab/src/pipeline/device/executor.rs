@@ -3,12 +3,11 @@
 use super::{DeviceFormats, DeviceInputs, DeviceRun};
 use crate::clock::Stopwatch;
 use crate::device::{Headless, PassClock};
-use crate::frame::{Content, RenderedFrame};
-use crate::pipeline::candidate::Candidate;
-use crate::pipeline::executor::{Executor, Shot};
-use crate::pipeline::run::{MethodOutput, RunKind};
+use crate::frame::{Content, DeviceHandle, RenderedFrame};
+use crate::pipeline::ablation::shader_without;
 use afterimage::kernel::noise::{Noise, unpack_noise};
 use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Image, Method, Settings, Smr};
+use afterimage_clip::pipeline::{Candidate, Executor, MethodOutput, RunKind, Shot};
 use std::slice::from_ref;
 use std::sync::Arc;
 
@@ -40,9 +39,8 @@ impl DeviceExecutor {
 impl Executor for DeviceExecutor {
     fn add(&mut self, kind: &RunKind, desc: &ContextDesc) -> Result<(), CreateError> {
         self.runs.push(match kind {
-            #[cfg(feature = "ablation")]
             RunKind::Without(_, part) => {
-                let shader = part.shader_without(desc.settings.method.kind());
+                let shader = shader_without(part, desc.settings.method.kind());
                 DeviceRun::with_shader(&self.gpu, desc, DeviceFormats::EXACT, &shader)?
             }
             _ => DeviceRun::new(&self.gpu, desc, DeviceFormats::EXACT)?,
@@ -50,8 +48,8 @@ impl Executor for DeviceExecutor {
         Ok(())
     }
 
-    fn reads_memory(&self) -> bool {
-        false
+    fn device(&self) -> Option<DeviceHandle> {
+        Some(self.gpu.clone())
     }
 
     fn set(&mut self, frame: &RenderedFrame, candidate: &Candidate<'_>) -> Result<(), FrameError> {

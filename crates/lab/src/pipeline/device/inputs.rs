@@ -4,13 +4,13 @@ use super::{DeviceFormats, WRITTEN};
 use crate::device::Headless;
 use crate::frame::{ComposedFrame, Content, DeviceFrame, DeviceSamples, OnDevice, RenderedFrame, SourceFrame};
 use crate::lattices::SparseGeometry;
-use crate::pipeline::candidate::needs_lod;
 use crate::shader::SHADERS;
 use afterimage::gpu::compute::{ComputeShader, float_texture, storage_texture, uniform};
 use afterimage::gpu::{Frame, Timestamps, array_view, filled};
 use afterimage::kernel::pack::half_bits;
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::{ContextDesc, CreateError, FrameError, Image, Reset, ViewFrame};
+use afterimage_clip::pipeline::needs_lod;
 use std::sync::Arc;
 use wgpu::{BindingResource, BufferUsages, CommandEncoder, Texture, TextureFormat, TextureUsages};
 
@@ -108,7 +108,8 @@ impl DeviceInputs {
                 self.given.lod = foveated.lattices.is_none().then(|| self.uploaded(&self.lod, &foveated.lod));
                 self.given.noise = Some(self.uploaded(&self.noise, &foveated.noise));
             }
-            Content::OnDevice(content) => {
+            content @ Content::OnDevice(_) => {
+                let content = OnDevice::of(content).expect("this crate has no other frames on devices");
                 let content = self.take(encoder, content);
                 self.given = if frame.geometry == SparseGeometry::Samples {
                     content
@@ -122,7 +123,8 @@ impl DeviceInputs {
 
     /// Takes depth, motion and trust of the full-rate frame; with its color if it is on this device.
     fn set_reference(&mut self, encoder: &mut CommandEncoder, frame: &RenderedFrame) -> Option<()> {
-        let rendered = frame.reference_on_device.as_ref().filter(|on| Arc::ptr_eq(&on.device, &self.gpu));
+        let rendered = frame.reference_on_device.as_ref().and_then(|on| on.downcast_ref::<DeviceFrame>());
+        let rendered = rendered.filter(|on| Arc::ptr_eq(&on.device, &self.gpu));
         let Some(rendered) = rendered else {
             self.given = self.upload_geometry(&frame.reference);
             return None;

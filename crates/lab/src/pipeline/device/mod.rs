@@ -1,11 +1,12 @@
 //! The pipeline on a device. A frame is uploaded or rendered once; foveation and all methods then run on the device.
 //! `run`, `view` and `bench` share this code.
 
+mod backend;
+mod content;
 mod executor;
 mod inputs;
 mod run;
 
-pub(super) use executor::DeviceExecutor;
 pub use inputs::DeviceInputs;
 pub use run::DeviceRun;
 

@@ -35,12 +35,12 @@ const MAX_FACTOR: u32 = 8;
 /// Sample number reserved for the draws that round counts; no path has it.
 const ROUNDING_SAMPLE: u32 = u32::MAX;
 
-impl Guide {
-    /// Guide from frames accumulated in `film`, displayed without reprojection: sample counts, and standard deviations
+impl Film {
+    /// Guide from the frames accumulated here, displayed without reprojection: sample counts, and standard deviations
     /// of luma after the tone curve x / (1 + x). Deviations are pooled over 3x3 pixels, as a few samples may agree by
     /// chance.
-    pub fn of_film(film: &Film) -> Self {
-        let moments = &film.moments;
+    pub fn guide(&self) -> Guide {
+        let moments = &self.moments;
         let [width, height] = moments.size().map(|s| s as i64);
         let deviation = Image::from_fn_parallel(moments.size(), |[x, y]| {
             let (mut squares, mut freedom, mut mean, mut count) = (0.0, 0.0, 0.0, 0.0);
@@ -59,27 +59,27 @@ impl Guide {
             // Derivative of x / (1 + x) at the mean.
             (squares / freedom).sqrt() / (1.0 + mean / count).powi(2)
         });
-        Self { known: moments.map(|m| m.count as f32), deviation }
-    }
-
-    /// Guide for a lattice point: the smallest sample count of the pixels it stands for, and their mean deviation.
-    fn at(&self, lattice: &Lattice, point: [u32; 2]) -> PointHistory {
-        let [xs, ys] = lattice.cell(point, self.known.size());
-        let mut known = f32::INFINITY;
-        let (mut sum, mut count) = (0.0, 0.0);
-        for (x, y) in ys.flat_map(|y| xs.clone().map(move |x| (x as usize, y as usize))) {
-            // NaN counts as 0.
-            known = known.min(if self.known.at(x, y) > 0.0 { self.known.at(x, y) } else { 0.0 });
-            let deviation = self.deviation.at(x, y);
-            if deviation >= 0.0 && deviation.is_finite() {
-                sum += f64::from(deviation);
-                count += 1.0;
-            }
-        }
-        PointHistory { samples: f64::from(known), deviation: (count > 0.0).then(|| sum / count) }
+        Guide { known: moments.map(|m| m.count as f32), deviation }
     }
 }
 
+/// What a guide says of a lattice point: the smallest sample count of the pixels it stands for, and their mean
+/// deviation.
+fn history(guide: &Guide, lattice: &Lattice, point: [u32; 2]) -> PointHistory {
+    let [xs, ys] = lattice.cell(point, guide.known.size());
+    let mut known = f32::INFINITY;
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (x, y) in ys.flat_map(|y| xs.clone().map(move |x| (x as usize, y as usize))) {
+        // NaN counts as 0.
+        known = known.min(if guide.known.at(x, y) > 0.0 { guide.known.at(x, y) } else { 0.0 });
+        let deviation = guide.deviation.at(x, y);
+        if deviation >= 0.0 && deviation.is_finite() {
+            sum += f64::from(deviation);
+            count += 1.0;
+        }
+    }
+    PointHistory { samples: f64::from(known), deviation: (count > 0.0).then(|| sum / count) }
+}
 impl Plan {
     /// A plan with the same points whose samples are distributed by `guide`. Each ring spends at most its former number
     /// of samples on average over frames; fewer only where further samples gain nothing. Every point gets at least one
@@ -99,7 +99,7 @@ impl Plan {
         }
         let key = path_key(seed, frame);
         let work = self.parts().into_iter().zip(0..).map(|(part, ring)| {
-            let known: Vec<PointHistory> = part.targets.par_iter().map(|&p| guide.at(&part.lattice, p)).collect();
+            let known: Vec<PointHistory> = part.targets.par_iter().map(|&p| history(guide, &part.lattice, p)).collect();
             let rounded = |([x, y], share): (&[u32; 2], f64)| {
                 (share + f64::from(path_draws(x | y << 16, ROUNDING_SAMPLE, ring, key)[0])).floor() as u32
             };

@@ -4,7 +4,7 @@ use super::foveated::{Rig, flat, noise, views};
 use super::rig::{FAST, Frame, device};
 use afterimage::{Foveation, Image, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
-use afterimage_lab::frame::{Content, OnDevice};
+use afterimage_lab::frame::OnDevice;
 use afterimage_lab::lattices::SparseGeometry;
 use afterimage_lab::metric;
 use afterimage_lab::pipeline::{Pipeline, RunKind};
@@ -157,7 +157,7 @@ fn a_composed_frame_is_the_views_enlarged_and_blended() {
         let quads = layout.views(&FOVEATION(), &geometry, gaze);
         let request = FrameRequest { wanted: Wanted::QuadViews(quads.clone()), ..FrameRequest::full_rate(5) };
         let frame = source.render(&request).unwrap();
-        let Content::OnDevice(OnDevice::Composed(composed)) = frame.content else { panic!("it was composed") };
+        let Some(OnDevice::Composed(composed)) = OnDevice::of(&frame.content) else { panic!("it was composed") };
         let seen = source.views(5).0;
         let mut rig = Rig::new(&device, &noise(), SIZE);
         let (placed, atlas) = drawn(&mut rig, &seen, &quads, AtlasLayout::InPlace);

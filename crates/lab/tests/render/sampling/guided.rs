@@ -253,10 +253,10 @@ fn means_are_those_without_a_guide() {
     let cornell = Box::new();
     let plain = cornell.sums(FRAMES..2 * FRAMES, |_| None);
     // Past frames have other frame numbers.
-    let past = Guide::of_film(&cornell.film(1 << 40, 0..4));
+    let past = cornell.film(1 << 40, 0..4).guide();
     let guided = cornell.sums(0..FRAMES, |_| Some(past.clone()));
     accept("guided by a frame gone by", p_of_regions(guided, plain));
-    let guided = cornell.sums(0..FRAMES, |f| Some(Guide::of_film(&cornell.film((2 << 40) + f, 0..4))));
+    let guided = cornell.sums(0..FRAMES, |f| Some(cornell.film((2 << 40) + f, 0..4).guide()));
     accept("guided by another frame each", p_of_regions(guided, plain));
     // A guide from the frame's own first sample: pixels that happen to be bright get more samples to average, dark ones
     // stay as they are.

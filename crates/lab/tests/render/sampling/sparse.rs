@@ -253,7 +253,7 @@ fn samples_that_stay_on_the_device_are_those_of_the_memory() {
             assert!(request.device.is_some(), "the runs work on the device");
             let before = device.readbacks();
             let samples = source.render(&FrameRequest { reference: false, ..request.clone() }).unwrap();
-            assert!(matches!(samples.content, Content::OnDevice(OnDevice::Samples(_))));
+            assert!(matches!(OnDevice::of(&samples.content), Some(OnDevice::Samples(_))));
             assert_eq!(device.readbacks(), before, "samples stay on the device");
             let samples = RenderedFrame { reference: made.reference.clone(), ..samples };
             assert_eq!((made.content.lattices(), made.samples), (samples.content.lattices(), samples.samples));

@@ -9,9 +9,9 @@ mod table;
 use super::subject::{Subject, backends, is_real_gpu};
 use super::{BenchArgs, write_json};
 use crate::failure::Failure;
-use crate::report::backend::BackendReport;
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::Backend;
+use afterimage_lab::pipeline::Processor;
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::effects::{Effect, Effects};
 use afterimage_lab::trace::gpu::GpuTracer;
@@ -60,7 +60,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
             }
             prices.push(priced(&variants));
             if std::io::stderr().is_terminal() {
-                eprintln!("{name}: {} done", BackendReport::of(backend).kind);
+                eprintln!("{name}: {} done", backend.info().kind);
             }
             drop(variants);
             if args.removal && matches!(backend, Backend::Gpu(_)) {
@@ -83,7 +83,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
         max_depth: TraceSettings::default().max_depth,
         machine: machine(),
         compiled_cold: std::env::var("MESA_SHADER_CACHE_DISABLE").is_ok_and(|v| v == "true" || v == "1"),
-        backends: backends.iter().map(BackendReport::of).collect(),
+        backends: backends.iter().map(Processor::info).collect(),
         scenes,
     };
     let text = table::markdown(&report);

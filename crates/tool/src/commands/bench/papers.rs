@@ -6,9 +6,9 @@ use super::subject::{Pattern, Subject, backends, is_real_gpu};
 use super::{BenchArgs, write_json};
 use crate::args::backend::NO_ADAPTER;
 use crate::failure::Failure;
-use crate::report::backend::BackendReport;
 use afterimage::ViewGeometry;
 use afterimage_lab::device::Backend;
+use afterimage_lab::pipeline::{Processor, ProcessorInfo};
 use afterimage_lab::trace::sampling::{Layers, Regions, Sampling};
 use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
 use serde::Serialize;
@@ -58,7 +58,7 @@ struct Triple {
 struct Report {
     tool: &'static str,
     version: &'static str,
-    backend: BackendReport,
+    backend: ProcessorInfo,
     frames: u64,
     arithmetic: Vec<Arithmetic>,
     regions: SceneReport,
@@ -110,7 +110,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
         arithmetic: arithmetic()?,
         regions: regions_of_a_scene(args, &backend, size, frames)?,
         layers: SCENES.iter().map(layers).collect::<Result<_, _>>()?,
-        backend: BackendReport::of(&backend),
+        backend: backend.info(),
     };
     print(&report);
     write_json(args, &report)

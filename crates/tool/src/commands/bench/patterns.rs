@@ -6,11 +6,11 @@ use crate::args::backend::BackendName;
 use crate::args::{parse_exposure, parse_samples, parse_size};
 use crate::failure::Failure;
 use crate::output::Output;
-use crate::report::backend::BackendReport;
 use afterimage::kernel::debug_view::heat;
 use afterimage::{Image, ViewGeometry};
 use afterimage_lab::metric::{Flip, References, Scorer, Scores, Tracked, encode};
 use afterimage_lab::picture::to_rgb8;
+use afterimage_lab::pipeline::{Processor, ProcessorInfo};
 use afterimage_lab::source::exr_file;
 use afterimage_lab::source::exr_file::FrameToWrite;
 use afterimage_lab::source::{FrameSource, Light, ReadLimits, SceneChoice, SceneOptions, StillSource, ViewedScene};
@@ -91,7 +91,7 @@ struct Report<'a> {
     /// `null` if the reference was read from a file.
     reference_spp: Option<u32>,
     flip_pixels_per_degree: f32,
-    backend: BackendReport,
+    backend: ProcessorInfo,
     patterns: Vec<PatternReport>,
 }
 
@@ -159,7 +159,7 @@ pub fn bench(args: &PatternsArgs) -> Result<(), Failure> {
         frames: args.frames,
         reference_spp: args.reference.is_none().then_some(args.reference_spp),
         flip_pixels_per_degree: Flip::for_view(&geometry).pixels_per_degree(),
-        backend: BackendReport::of(&backend),
+        backend: backend.info(),
         patterns: reports,
     };
     super::write_json_to(args.json.as_deref(), &report)?;

@@ -4,8 +4,8 @@ use super::foveated::{self, PatternReport};
 use super::subject::{FrameTime, Subject, backends, is_real_gpu};
 use super::{BenchArgs, write_json};
 use crate::failure::Failure;
-use crate::report::backend::BackendReport;
 use afterimage_lab::clock::Quartiles;
+use afterimage_lab::pipeline::{Processor, ProcessorInfo};
 use afterimage_lab::trace::settings::TraceSettings;
 use serde::Serialize;
 
@@ -32,7 +32,7 @@ struct SceneReport {
 
 #[derive(Serialize)]
 struct TracerReport {
-    backend: BackendReport,
+    backend: ProcessorInfo,
     rays_per_frame: u64,
     /// CPU time of the process per frame, including the transfer of work list and film.
     cpu_ms: Option<Quartiles>,
@@ -74,7 +74,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
             let device_ms = if device { of(&|t| t.device_ms.unwrap_or(f64::NAN)) } else { None };
             let rate = |ms: &dyn Fn(&FrameTime) -> f64| of(&|t| t.rays as f64 / ms(t) * 1e-3).map(|q| q.median);
             Ok::<_, Failure>(TracerReport {
-                backend: BackendReport::of(backend),
+                backend: backend.info(),
                 rays_per_frame: took.first().map_or(0, |t| t.rays),
                 cpu_ms: of(&|t| t.cpu_ms),
                 wall_ms: of(&|t| t.wall_ms),

@@ -4,7 +4,7 @@ use super::foveated::{PatternReport, measure, one_path, regions};
 use super::subject::{Subject, backends, is_real_gpu};
 use super::{BenchArgs, write_json};
 use crate::failure::Failure;
-use crate::report::backend::BackendReport;
+use afterimage_lab::pipeline::{Processor, ProcessorInfo};
 use afterimage_lab::trace::settings::TraceSettings;
 use serde::Serialize;
 
@@ -27,7 +27,7 @@ struct SceneReport {
 
 #[derive(Serialize)]
 struct TracerReport {
-    backend: BackendReport,
+    backend: ProcessorInfo,
     patterns: Vec<PatternReport>,
 }
 
@@ -47,7 +47,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
         for backend in &backends {
             let tracer = subject.tracer(backend, settings)?;
             let patterns = measure(&subject, &tracer, &patterns, frames, is_real_gpu(backend))?;
-            tracers.push(TracerReport { backend: BackendReport::of(backend), patterns });
+            tracers.push(TracerReport { backend: backend.info(), patterns });
         }
         scenes.push(SceneReport { scene: name.clone(), triangles: subject.world.geometry.len(), tracers });
     }

@@ -162,7 +162,7 @@ impl Subject {
                 tracer.device().wait();
                 let took = FrameTime::by(&watch, None, 0);
                 let samples = held.samples.iter().sum();
-                Foveated { content: Content::OnDevice(OnDevice::Samples(held)), samples, took }
+                Foveated { content: OnDevice::Samples(held).into(), samples, took }
             }
             _ => in_memory(plan.trace(tracer, world, &view, index)),
         })

@@ -8,9 +8,7 @@ use crate::progress;
 use afterimage::{Bias, Foveation, Gate, GateScale, Image, Method, Sampler, Settings, ViewGeometry, Wrs};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
-#[cfg(feature = "ablation")]
-use afterimage_lab::pipeline::ablation::Part;
-use afterimage_lab::pipeline::{Pipeline, RunKind};
+use afterimage_lab::pipeline::{Pipeline, RunKind, ablation};
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage_lab::source;
 use afterimage_lab::source::{ReadLimits, SceneOptions};
@@ -29,8 +27,8 @@ fn settings(wrs: Wrs) -> Settings {
     Settings { method: Method::Wrs(wrs), ..Settings::default() }
 }
 
-/// The readings: settings that differ from the paper's in one part or several; in ablation builds on a device also one
-/// that is no setting.
+/// The readings: settings that differ from the paper's in one part or several; on a device also one that
+/// is no setting.
 fn readings(backend: &Backend) -> Vec<(&'static str, RunKind)> {
     let [paper, weighted] = [Wrs::default(), Wrs::weighted()];
     let ungated = Wrs { gate: None, ..paper };
@@ -58,16 +56,10 @@ fn readings(backend: &Backend) -> Vec<(&'static str, RunKind)> {
     runs
 }
 
-/// A run that stores unbiased weight sums, in ablation builds on a device.
-#[cfg(feature = "ablation")]
+/// A run that stores unbiased weight sums, on a device.
 fn with_bias_in_comparison(settings: Settings, backend: &Backend) -> Option<RunKind> {
-    let part = Part::find("stored-bias").expect("a part of wrs");
+    let part = ablation::find("stored-bias").expect("a part of wrs");
     matches!(backend, Backend::Gpu(_)).then_some(RunKind::Without(settings, part))
-}
-
-#[cfg(not(feature = "ablation"))]
-fn with_bias_in_comparison(_: Settings, _: &Backend) -> Option<RunKind> {
-    None
 }
 
 /// Result of a reading.

@@ -65,19 +65,18 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
             methods,
             gaze: track.px,
             exposure_ev: args.exposure,
-            format: args.format,
+            write_frame: args.format.writer(),
             write_reference: args.reference,
-            debug: args.debug.clone(),
+            debug: args.debug.iter().map(|&view| (view.name(), view)).collect(),
             trust: args.trust,
             guided: args.guided,
             flip: !args.no_flip,
-            #[cfg(feature = "ablation")]
             poison: args.ablation.poison,
             backend_note: match (args.backend, &backend) {
                 (BackendName::Auto, Backend::Cpu) => "; no GPU was found",
                 _ => "",
             },
-            backend,
+            processor: Box::new(backend),
         },
     })
 }
@@ -139,7 +138,6 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
     };
     let settings = Settings { foveation, ..args.wrs.settings(method, args.seed, sampling.is_some()) };
     settings.validate()?;
-    #[cfg(feature = "ablation")]
     if let Some(part) = args.ablation.without.filter(|part| part.methods.contains(&method)) {
         if args.backend != BackendName::Gpu {
             return Err(Failure::Input("--without: works on the GPU only; add --backend gpu".into()));

@@ -7,6 +7,7 @@ use crate::commands::run::RunArgs;
 use crate::failure::Failure;
 use crate::sweep::{Options, Point};
 use afterimage::{Filter, MethodKind};
+use afterimage_lab::pipeline::ablation;
 use std::collections::BTreeMap;
 
 /// Limit on points per batch: an interrupted sweep loses at most one batch.
@@ -37,12 +38,9 @@ const OF_METHODS: &[(&str, Option<MethodKind>)] = &[
 
 /// Whether an option affects a method; `without` affects the methods that have the part.
 pub fn concerns(option: &str, value: &str, method: &str) -> bool {
-    #[cfg(feature = "ablation")]
-    if let ("without", Some(part)) = (option, afterimage_lab::pipeline::ablation::Part::find(value)) {
+    if let ("without", Some(part)) = (option, ablation::find(value)) {
         return part.methods.iter().any(|m| m.name() == method);
     }
-    #[cfg(not(feature = "ablation"))]
-    let _ = value;
     let kind = MethodKind::from_name(method);
     match OF_METHODS.iter().find(|(name, _)| *name == option) {
         Some((_, Some(only))) => kind == Some(*only),

@@ -7,7 +7,6 @@ use crate::clip::{Clip, FrameResult};
 use crate::commands::run::{RunArgs, plan};
 use crate::failure::Failure;
 use crate::method_report::MethodAccumulator;
-use crate::report::backend::BackendReport;
 use crate::report::jpeg::write_jpeg;
 use crate::sweep::measurement::{ClipFacts, Machine};
 use crate::sweep::rust_source::as_rust;
@@ -21,6 +20,7 @@ use afterimage_lab::device::{Backend, PassClock, copy_ms_per_byte};
 use afterimage_lab::metric;
 use afterimage_lab::metric::Flip;
 use afterimage_lab::picture::to_rgb8;
+use afterimage_lab::pipeline::Processor;
 use afterimage_lab::pipeline::{MethodOutput, RunKind};
 use afterimage_lab::source::FrameSource;
 use indicatif::ProgressBar;
@@ -69,16 +69,16 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
     let args = &batch.subjects[0].args;
     let backend = args.backend.open_for(&args.input.name)?;
     let mut source = args.input.open(&args.rendering(&backend)?)?;
-    let plan = plan::plan(args, source.info(), backend)?;
+    let plan = plan::plan(args, source.info(), backend.clone())?;
     let mut methods = vec![("control", control(&batch.subjects[0]))];
     for subject in &batch.subjects {
         methods.push((subject.method.name(), plan::run_kind(&subject.args, subject.method, source.info().still)?));
     }
     let clip = Clip { methods, debug: vec![], ..plan.clip };
     check_frames(args, clip.gaze.len() as u64)?;
-    let copy_ms_per_byte = copy_ms_per_byte(&clip.backend);
+    let copy_ms_per_byte = copy_ms_per_byte(&backend);
     let (sums, memory_bytes) = play(batch, &clip, source.as_mut(), store, bar)?;
-    let machine = machine(&clip.backend);
+    let machine = machine(&backend);
     let facts = ClipFacts {
         size: clip.geometry.size_px(),
         frames: clip.gaze.len() as u64,
@@ -93,7 +93,6 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
         let (pass, render) = (accumulator.times().after(WARM_UP), sums.render.after(WARM_UP));
         let rust = match clip.methods[i + 1].1 {
             RunKind::PostProcess(settings) => as_rust(&Settings { foveation: clip.foveation, ..settings }),
-            #[cfg(feature = "ablation")]
             RunKind::Without(..) => "no settings: parts can be left out in an ablation build only".into(),
             RunKind::Oracle => "no settings: the oracle is an upper bound that knows all earlier frames".into(),
         };
@@ -206,7 +205,7 @@ fn pictures(
 
 /// Description of the machine.
 pub fn machine(backend: &Backend) -> Machine {
-    let report = BackendReport::of(backend);
+    let report = backend.info();
     let clock = match backend {
         Backend::Gpu(gpu) => PassClock::new(gpu).name(),
         Backend::Cpu => "CPU time of the process",

@@ -5,8 +5,8 @@ use super::eyes::{Eyes, below};
 use super::setup::Setup;
 use crate::args::Named;
 use crate::args::pattern::SamplingName;
-use crate::report::backend::BackendReport;
 use afterimage_lab::clock::Stopwatch;
+use afterimage_lab::pipeline::{Processor, ProcessorInfo};
 use afterimage_lab::trace::effects::Effects;
 use afterimage_lab::trace::view::View;
 use serde::Serialize;
@@ -46,7 +46,7 @@ struct TraceJson<'a> {
     integrator: &'static str,
     bsdf: &'static str,
     seed: u64,
-    backend: BackendReport,
+    backend: ProcessorInfo,
     triangles: u32,
     load_ms: f64,
     build_ms: f64,
@@ -206,7 +206,7 @@ impl Report {
             integrator: args.paths.integrator.name(),
             bsdf: args.paths.bsdf.name(),
             seed: args.seed,
-            backend: BackendReport::of(&setup.backend),
+            backend: setup.backend.info(),
             triangles: setup.world.geometry.len(),
             load_ms: setup.load_ms,
             build_ms: setup.build_ms,
@@ -254,7 +254,7 @@ impl Report {
             args.spp,
             self.seconds,
             self.total().rays as f64 / self.seconds * 1e-6,
-            BackendReport::of(&setup.backend).name,
+            setup.backend.info().name,
         );
         say!("wrote {}", args.out.display());
     }

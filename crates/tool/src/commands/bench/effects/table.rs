@@ -1,8 +1,8 @@
 //! Costs of effects: the report, and its Markdown tables.
 
 use crate::failure::Failure;
-use crate::report::backend::BackendReport;
 use afterimage_lab::clock::Quartiles;
+use afterimage_lab::pipeline::ProcessorInfo;
 use afterimage_lab::trace::effects::Effect;
 use afterimage_lab::whole_file::write_whole;
 use serde::Serialize;
@@ -20,7 +20,7 @@ pub struct Report {
     pub machine: String,
     /// Whether the driver's shader cache was switched off.
     pub compiled_cold: bool,
-    pub backends: Vec<BackendReport>,
+    pub backends: Vec<ProcessorInfo>,
     pub scenes: Vec<SceneReport>,
 }
 

@@ -1,11 +1,15 @@
 //! The one shape in which a frame goes from its source to the methods.
 
-#[cfg(feature = "full")]
-use super::{DeviceFrame, OnDevice};
 use super::{FoveatedFrame, SourceFrame};
 use crate::clock::Elapsed;
 use crate::lattices::SparseGeometry;
-use afterimage::Lattices;
+use afterimage::{Image, Lattices};
+use std::any::Any;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// A graphics device, or something on one, for those who know its type.
+pub type DeviceHandle = Arc<dyn Any + Send + Sync>;
 
 /// A frame as its source gives it: what the methods get, and the full-rate frame that metrics compare it with.
 #[derive(Clone, Debug)]
@@ -17,8 +21,7 @@ pub struct RenderedFrame {
     /// The full-rate frame. Its images are missing if they were not asked for and no method needs them.
     pub reference: SourceFrame,
     /// The full-rate frame on a device, where it was rendered there.
-    #[cfg(feature = "full")]
-    pub reference_on_device: Option<DeviceFrame>,
+    pub reference_on_device: Option<DeviceHandle>,
     /// What the methods get.
     pub content: Content,
     /// Where depth and motion are defined. At the samples of what is on a device: the methods get those in place of
@@ -42,8 +45,25 @@ pub enum Content {
     /// A frame that its source foveated, in memory.
     Foveated(FoveatedFrame),
     /// A frame that its source foveated, on a device.
-    #[cfg(feature = "full")]
-    OnDevice(OnDevice),
+    OnDevice(Arc<dyn DeviceContent>),
+}
+
+/// A foveated frame on a device, as far as a pipeline asks for it. Reading waits for all submitted work.
+pub trait DeviceContent: Any + Debug + Send + Sync {
+    /// Where the samples lie, if there is nothing between.
+    fn lattices(&self) -> Option<Lattices>;
+
+    /// Whether a path tracer foveated the frame.
+    fn is_traced(&self) -> bool;
+
+    /// Level of detail of every pixel of a frame of `size_px`.
+    fn lods(&self, size_px: [u32; 2]) -> Image<f32>;
+
+    /// Reads the color; `None` if it stays on the device.
+    fn read_color(&self) -> Option<Image<[f32; 3]>>;
+
+    /// Reads depth and motion vectors; `None` if they stay on the device.
+    fn read_geometry(&self) -> Option<(Image<f32>, Image<[f32; 2]>)>;
 }
 
 impl Content {
@@ -52,12 +72,7 @@ impl Content {
         match self {
             Self::FullRate => None,
             Self::Foveated(frame) => frame.lattices,
-            #[cfg(feature = "full")]
-            Self::OnDevice(OnDevice::Atlas(frame)) => Some(frame.lattices),
-            #[cfg(feature = "full")]
-            Self::OnDevice(OnDevice::Samples(frame)) => Some(frame.lattices),
-            #[cfg(feature = "full")]
-            Self::OnDevice(OnDevice::Composed(_)) => None,
+            Self::OnDevice(content) => content.lattices(),
         }
     }
 
@@ -66,8 +81,7 @@ impl Content {
         match self {
             Self::FullRate => false,
             Self::Foveated(_) => true,
-            #[cfg(feature = "full")]
-            Self::OnDevice(content) => matches!(content, OnDevice::Samples(_)),
+            Self::OnDevice(content) => content.is_traced(),
         }
     }
 }
@@ -79,7 +93,6 @@ impl RenderedFrame {
             index,
             gaze_px,
             reference,
-            #[cfg(feature = "full")]
             reference_on_device: None,
             content: Content::FullRate,
             geometry: SparseGeometry::Full,

@@ -1,11 +1,11 @@
 //! Scores, times and counts of a method over a clip.
 
+use crate::clock::{Elapsed, Quartiles};
+use crate::frame::SourceFrame;
+use crate::metric::{Crops, FrameErrors, Reference, Scorer, Scores, WorstCrop, psnr_db};
+use crate::pipeline::{MethodOutput, Step};
 use crate::times::{FrameTime, RenderTime, Times};
 use afterimage::Image;
-use afterimage_lab::clock::{Elapsed, Quartiles};
-use afterimage_lab::frame::SourceFrame;
-use afterimage_lab::metric::{Crops, FrameErrors, Reference, Scorer, Scores, WorstCrop, psnr_db};
-use afterimage_lab::pipeline::{MethodOutput, Step};
 use serde::{Deserialize, Serialize};
 
 /// Results of a method, as in `report.json`.

@@ -1,12 +1,8 @@
 //! The output folder. Each file is written completely or not at all, and frames of different runs never mix.
 
 use crate::failure::Failure;
-#[cfg(feature = "full")]
-use afterimage::Image;
-use afterimage_lab::picture::write_png;
-#[cfg(feature = "full")]
-use afterimage_lab::source::exr_file::{self, FrameToWrite};
-use afterimage_lab::whole_file::write_whole;
+use crate::picture::write_png;
+use crate::whole_file::write_whole;
 use image::RgbImage;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
@@ -62,13 +58,6 @@ impl Output {
             fs::create_dir_all(&folder).map_err(|e| refuse(&folder, &e))?;
         }
         Ok(Self { root: root.to_owned() })
-    }
-
-    /// Writes frame `index` of `folder` as linear half-float EXR.
-    #[cfg(feature = "full")]
-    pub fn exr(&self, folder: &str, index: usize, linear: &Image<[f32; 3]>) -> Result<(), Failure> {
-        let path = self.path(folder, index, "exr");
-        exr_file::write(&path, &FrameToWrite::color(linear)).map_err(|e| Failure::writing(&path, e))
     }
 
     /// Path of frame `index` of `folder`.

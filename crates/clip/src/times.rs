@@ -1,6 +1,6 @@
 //! Times of the frames of a clip: of a pass, of the renderer, and of both together.
 
-use afterimage_lab::clock::{Elapsed, Quartiles};
+use crate::clock::{Elapsed, Quartiles};
 use serde::{Deserialize, Serialize};
 
 /// Times of a renderer or of a pass, one a frame.

@@ -1,17 +1,15 @@
 //! `afterimage demo`: runs the methods on a built-in scene and explains the result.
 
-use crate::args::FormatName;
-use crate::args::gaze::GazeArgs;
 use crate::clip::run_report::{RunFacts, write_report};
-use crate::clip::{Clip, ClipReport, REPORTS, foveation_words, title};
+use crate::clip::{Clip, ClipReport, REPORTS, foveation_words, title, write_png};
 use crate::failure::Failure;
+use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::method_report::MethodReport;
 use crate::output::Output;
-use afterimage::{Foveation, MethodKind, Settings};
-use afterimage_lab::device::Backend;
-use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
-use afterimage_lab::pipeline::RunKind;
-use afterimage_lab::source::{AnalyticSource, FrameSource};
+use crate::pipeline::{Cpu, RunKind};
+use crate::scanpath::{FrameGaze, GazeMap, Screen, SyntheticOptions, generate};
+use crate::source::{AnalyticSource, FrameSource};
+use afterimage::{Foveation, MethodKind, Settings, ViewGeometry};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -31,15 +29,14 @@ pub const BY_HAND: &str = "analytic:still --size 960x540 --gaze synthetic:46 --f
 const SIZE: [u32; 2] = [960, 540];
 const FRAMES: u64 = 98;
 const FPS: f32 = 60.0;
-const GAZE: &str = "synthetic:46";
+const GAZE_SEED: u64 = 46;
 
 /// The clip that `afterimage run` plans for [`BY_HAND`].
 fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
     let source = AnalyticSource::new("still", SIZE, 70.0, FPS)?;
     let geometry = *source.view();
     let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
-    let gaze = GazeArgs { gaze: GAZE.into(), gaze_map: None, start: 0.0 };
-    let track = gaze.resolve(&geometry, FPS, Some(FRAMES))?;
+    let gaze: Vec<_> = gaze(&geometry)?.collect();
     let facts = RunFacts {
         input: "analytic:still",
         fps: FPS,
@@ -48,14 +45,14 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         geometry: None,
         scale: None,
         order: None,
-        gaze: GAZE,
-        gaze_map: track.map,
+        gaze: "synthetic:46",
+        gaze_map: "angle",
         start_s: 0.0,
     };
     let post_process =
         |method: MethodKind| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() });
     let clip = Clip {
-        title: title(&source.info().name, SIZE, track.px.len(), FPS, &foveation_words(&foveation, facts.simulator)),
+        title: title(&source.info().name, SIZE, gaze.len(), FPS, &foveation_words(&foveation, facts.simulator)),
         geometry,
         foveation,
         sparse_geometry: SparseGeometry::Full,
@@ -67,20 +64,29 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
             ("smr", post_process(MethodKind::Smr)),
             ("oracle", RunKind::Oracle),
         ],
-        gaze: track.px,
+        gaze,
         exposure_ev: 0.0,
-        format: FormatName::Png,
+        write_frame: write_png,
         write_reference: true,
         debug: vec![],
         trust: false,
         guided: false,
         flip: false,
-        #[cfg(feature = "ablation")]
         poison: 0.0,
-        backend: Backend::Cpu,
+        processor: Box::new(Cpu),
         backend_note: "",
     };
     Ok((source, clip, facts))
+}
+
+/// Gaze in frame pixels, as `run` plans it.
+fn gaze(view: &ViewGeometry) -> Result<impl Iterator<Item = Option<[f32; 2]>>, Failure> {
+    let fps = f64::from(FPS);
+    let duration_s = FRAMES as f64 / fps + 0.1;
+    let screen = Screen::of_view(view);
+    let options = SyntheticOptions { seed: GAZE_SEED, duration_s, screen, ..SyntheticOptions::default() };
+    let gaze = FrameGaze::new(&generate(&options)?.path, view, GazeMap::Angle, 0.0, fps)?;
+    Ok((0..FRAMES).map(move |i| gaze.px(i)))
 }
 
 /// Runs the clip and writes its files; prints nothing.

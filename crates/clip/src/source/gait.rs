@@ -29,9 +29,12 @@ impl Swing {
 
 /// Position and rotation of the head: moved in level directions, then yawed, nodded and rolled in that order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Head {
+pub struct Head {
+    /// Forwards, in metres.
     pub ahead_m: f64,
+    /// To the right, in metres.
     pub right_m: f64,
+    /// Upwards, in metres.
     pub up_m: f64,
     /// To the left, in radians.
     pub yaw: f64,

@@ -2,22 +2,31 @@
 
 use super::candidate::Candidate;
 use super::run::{MethodOutput, RunKind};
-use crate::frame::RenderedFrame;
+use crate::frame::{DeviceHandle, RenderedFrame};
 use afterimage::kernel::noise::Noise;
 use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Image, Reset, Smr};
 
 /// Methods on the CPU or on a device, in the order in which they were added.
-pub(super) trait Executor: Send {
+pub trait Executor: Send {
     /// Adds a method with `desc`'s settings.
+    ///
+    /// # Errors
+    /// [`CreateError`] if a setting is out of range or the processor does not support it.
     fn add(&mut self, kind: &RunKind, desc: &ContextDesc) -> Result<(), CreateError>;
 
-    /// Whether the methods get foveated frames in memory.
-    fn reads_memory(&self) -> bool;
+    /// Device that the methods run on; `None`: they get foveated frames in memory.
+    fn device(&self) -> Option<DeviceHandle>;
 
     /// Makes a frame the current one.
+    ///
+    /// # Errors
+    /// [`FrameError`] if the frame does not match the methods.
     fn set(&mut self, frame: &RenderedFrame, candidate: &Candidate<'_>) -> Result<(), FrameError>;
 
     /// Runs a method on the current frame.
+    ///
+    /// # Errors
+    /// As for [`set`](Self::set).
     fn run(&mut self, run: usize, shot: &Shot<'_>) -> Result<MethodOutput, FrameError>;
 
     /// Bytes of history that a method keeps between frames.
@@ -28,8 +37,10 @@ pub(super) trait Executor: Send {
 }
 
 /// The current frame, and what is asked of its methods.
-pub(super) struct Shot<'a> {
+pub struct Shot<'a> {
+    /// The frame as its source gave it.
     pub frame: &'a RenderedFrame,
+    /// The same, foveated.
     pub candidate: &'a Candidate<'a>,
     /// Debug views to draw.
     pub debug: &'a [DebugView],

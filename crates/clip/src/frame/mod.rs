@@ -1,12 +1,8 @@
 //! Frames: what sources give and methods take, in memory or on a device.
 
-#[cfg(feature = "full")]
-mod on_device;
 mod rendered;
 
-#[cfg(feature = "full")]
-pub use on_device::{ComposedFrame, DeviceFrame, DeviceSamples, OnDevice, SparseFrame};
-pub use rendered::{Content, RenderedFrame};
+pub use rendered::{Content, DeviceContent, DeviceHandle, RenderedFrame};
 
 use afterimage::{Image, Lattices};
 

@@ -1,10 +1,15 @@
-//! Frames on a device, as their renderers leave them until they render the next one.
+//! Frames: what sources give and methods take. Those on a device stay as their renderers leave them until they render
+//! the next one.
+
+pub use afterimage_clip::frame::{
+    Content, DeviceContent, DeviceHandle, FoveatedFrame, Guide, RenderedFrame, SourceFrame,
+};
 
 use crate::device::Headless;
 use afterimage::{Image, Lattices};
 use std::sync::Arc;
 
-/// A foveated frame on a device.
+/// A foveated frame on a device: what [`Content::OnDevice`] holds.
 #[derive(Clone, Debug)]
 pub enum OnDevice {
     /// Samples alone, in an atlas.
@@ -38,7 +43,7 @@ pub struct DeviceSamples {
     pub device: Arc<Headless>,
     /// Linear radiance; `Rgba32Float`.
     pub color: wgpu::Texture,
-    /// Noise, as in [`FoveatedFrame::noise`](super::FoveatedFrame::noise); `Rg32Float`.
+    /// Noise, as in [`FoveatedFrame::noise`]; `Rg32Float`.
     pub noise: wgpu::Texture,
     /// Distance along the view axis in metres, infinity for the background; `R32Float`. Defined for
     /// [`SparseGeometry::Samples`](crate::lattices::SparseGeometry::Samples).

@@ -5,7 +5,8 @@ use afterimage::{Filter, Image, ViewFrame};
 use std::borrow::Cow;
 
 /// A foveated frame.
-pub(super) struct Candidate<'a> {
+pub struct Candidate<'a> {
+    /// Geometry, gaze and lattices.
     pub view: ViewFrame,
     /// Level of detail of every pixel.
     pub lods: Image<f32>,
@@ -16,18 +17,21 @@ pub(super) struct Candidate<'a> {
 }
 
 /// A foveated frame in memory.
-pub(super) struct InMemory<'a> {
+pub struct InMemory<'a> {
+    /// Linear color.
     pub color: Cow<'a, Image<[f32; 3]>>,
     /// Whether some of its colors are invalid on purpose, and replace those on a device.
     pub is_poisoned: bool,
     /// Whether the levels of detail are an input of the methods.
     pub has_lod: bool,
+    /// Noise of the color, as in [`FoveatedFrame::noise`](crate::frame::FoveatedFrame::noise).
     pub noise: Option<&'a Image<[f32; 2]>>,
     /// Depth and motion of the samples, where they replace those of the full-rate frame.
     pub geometry: Option<(Image<f32>, Image<[f32; 2]>)>,
 }
 
 impl<'a> InMemory<'a> {
+    /// A frame of this color, with nothing but that.
     pub fn new(color: Cow<'a, Image<[f32; 3]>>) -> Self {
         Self { color, is_poisoned: false, has_lod: false, noise: None, geometry: None }
     }
@@ -35,6 +39,6 @@ impl<'a> InMemory<'a> {
 
 /// Whether methods need the levels of detail of a simulated frame as an input. `Filter::Block` evaluates the level at
 /// the center of a block, which a method cannot derive from the gaze.
-pub(super) fn needs_lod(filter: Filter) -> bool {
+pub fn needs_lod(filter: Filter) -> bool {
     filter == Filter::Block
 }

@@ -1,18 +1,21 @@
 //! `report.json` of a run.
 
 use super::{Clip, ClipReport};
+use crate::clock::Quartiles;
 use crate::failure::Failure;
 use crate::method_report::MethodReport;
 use crate::output::Output;
-use crate::report::backend::BackendReport;
+use crate::pipeline::ProcessorInfo;
 use crate::times::RenderTime;
-use afterimage_lab::clock::Quartiles;
 use serde::Serialize;
 
 /// Facts about the run that [`Clip`] does not hold.
 pub struct RunFacts<'a> {
+    /// Name of the input.
     pub input: &'a str,
+    /// Frames per second.
     pub fps: f32,
+    /// Seed of the random numbers.
     pub seed: u64,
     /// Simulator filter or sampling pattern that foveates the frames.
     pub simulator: &'static str,
@@ -22,8 +25,11 @@ pub struct RunFacts<'a> {
     pub scale: Option<f32>,
     /// Order in which the pixels of sparse frames are sampled.
     pub order: Option<&'static str>,
+    /// Gaze as the user gave it.
     pub gaze: &'a str,
+    /// Map from screen to frame: `angle`, `fit`, or `none` for positions that are frame pixels already.
     pub gaze_map: &'a str,
+    /// Start time in the scanpath, seconds.
     pub start_s: f64,
 }
 
@@ -38,7 +44,7 @@ struct RunReport<'a> {
     hfov_deg: f32,
     seed: u64,
     exposure_ev: f32,
-    backend: BackendReport,
+    backend: ProcessorInfo,
     foveation: FoveationReport,
     /// Camera samples of all foveated frames; null if a simulator foveates full-rate frames.
     samples: Option<u64>,
@@ -92,7 +98,7 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
         hfov_deg: clip.geometry.hfov_deg(),
         seed: facts.seed,
         exposure_ev: clip.exposure_ev,
-        backend: BackendReport::of(&clip.backend),
+        backend: clip.processor.info(),
         foveation: FoveationReport {
             simulator: facts.simulator,
             geometry: facts.geometry,

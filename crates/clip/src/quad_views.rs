@@ -55,8 +55,8 @@ impl QuadViews {
     }
 
     /// These views, at other places of an atlas.
-    #[cfg(feature = "full")]
-    pub(crate) fn with(&self, placed: Vec<QuadView>) -> Self {
+    #[must_use]
+    pub fn with(&self, placed: Vec<QuadView>) -> Self {
         Self(placed)
     }
 

@@ -1,10 +1,10 @@
 //! Contact sheet: reference and methods side by side, their errors, and a magnified area where the gaze was before.
 
 use super::canvas::{CHAR_PX, Canvas, LINE_PX};
+use crate::metric::Scores;
+use crate::picture::to_rgb8;
 use afterimage::kernel::debug_view::heat;
 use afterimage::{Image, ViewGeometry};
-use afterimage_lab::metric::Scores;
-use afterimage_lab::picture::to_rgb8;
 use image::imageops::{self, FilterType};
 use image::{Rgb, RgbImage};
 

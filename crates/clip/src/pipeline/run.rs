@@ -1,7 +1,6 @@
 //! Runs of a pipeline: what is run, and what comes out.
 
-#[cfg(feature = "ablation")]
-use super::ablation;
+use super::part::Part;
 use crate::clock::Elapsed;
 use afterimage::{FrameStats, Image, Settings, SettingsError};
 
@@ -11,8 +10,7 @@ pub enum RunKind {
     /// The post-process with these settings. The pipeline's foveation replaces theirs.
     PostProcess(Settings),
     /// The post-process without a part of its pass, on a device only: measures the part's cost and benefit.
-    #[cfg(feature = "ablation")]
-    Without(Settings, &'static ablation::Part),
+    Without(Settings, &'static Part),
     /// Every pixel at its finest level of detail so far: the upper bound of temporal reuse. Defined for stills only.
     Oracle,
 }
@@ -47,9 +45,7 @@ impl RunKind {
     /// Settings of a method; `None` for the oracle.
     pub(super) fn settings(&self) -> Option<&Settings> {
         match self {
-            Self::PostProcess(settings) => Some(settings),
-            #[cfg(feature = "ablation")]
-            Self::Without(settings, _) => Some(settings),
+            Self::PostProcess(settings) | Self::Without(settings, _) => Some(settings),
             Self::Oracle => None,
         }
     }
@@ -57,12 +53,11 @@ impl RunKind {
     /// Parts are removed from shaders.
     pub(super) fn check_on_cpu(&self) -> Result<(), SettingsError> {
         match self {
-            #[cfg(feature = "ablation")]
             Self::Without(..) => {
                 let expected = "a device: parts are removed from shaders".into();
                 Err(SettingsError { setting: "backend", found: "the CPU".into(), expected })
             }
-            _ => Ok(()),
+            Self::PostProcess(_) | Self::Oracle => Ok(()),
         }
     }
 }

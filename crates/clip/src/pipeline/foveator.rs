@@ -2,9 +2,7 @@
 
 use super::candidate::{Candidate, InMemory, needs_lod};
 use super::poison::poisoned;
-use crate::frame::{Content, RenderedFrame};
-#[cfg(feature = "full")]
-use crate::frame::{DeviceFrame, OnDevice};
+use crate::frame::{Content, DeviceContent, RenderedFrame};
 use crate::lattices::{SampleOrder, SparseGeometry, levels};
 use afterimage::simulator::Pyramid;
 use afterimage::{Filter, Foveation, Gaze, Image, Lattices, ViewFrame, ViewGeometry};
@@ -65,8 +63,7 @@ impl Foveator {
                 let view = self.view(frame);
                 Candidate { view, lods: foveated.lod.clone(), in_memory: Some(color), pyramid: None }
             }
-            #[cfg(feature = "full")]
-            Content::OnDevice(content) => self.on_device(frame, content, is_read),
+            Content::OnDevice(content) => self.on_device(frame, content.as_ref(), is_read),
         };
         if let Some(in_memory) = candidate.in_memory.as_mut().filter(|_| self.poison > 0.0) {
             in_memory.color =
@@ -100,27 +97,15 @@ impl Foveator {
     }
 
     /// What a source foveated on a device; it is read only if a method runs elsewhere.
-    #[cfg(feature = "full")]
-    fn on_device<'a>(&self, frame: &'a RenderedFrame, content: &'a OnDevice, is_read: bool) -> Candidate<'a> {
-        let size = self.geometry.size_px();
-        let has_geometry = frame.geometry == SparseGeometry::Samples;
-        let (lods, in_memory) = match content {
-            OnDevice::Atlas(sparse) => {
-                let in_memory = is_read.then(|| {
-                    let geometry = has_geometry.then(|| geometry_of(&sparse.atlas));
-                    InMemory { geometry, ..InMemory::new(Cow::Owned(color_of(&sparse.atlas))) }
-                });
-                (levels(&sparse.lattices, size), in_memory)
-            }
-            OnDevice::Samples(samples) => (levels(&samples.lattices, size), None),
-            OnDevice::Composed(composed) => {
-                let in_memory = is_read.then(|| {
-                    let geometry = has_geometry.then(|| (composed.read_distance(), composed.read_motion()));
-                    InMemory { has_lod: true, geometry, ..InMemory::new(Cow::Owned(composed.read_color())) }
-                });
-                (composed.read_lod(), in_memory)
-            }
-        };
+    fn on_device<'a>(&self, frame: &RenderedFrame, content: &dyn DeviceContent, is_read: bool) -> Candidate<'a> {
+        let color = if is_read { content.read_color() } else { None };
+        let in_memory = color.map(|color| {
+            let has_geometry = frame.geometry == SparseGeometry::Samples;
+            let geometry = if has_geometry { content.read_geometry() } else { None };
+            // Lattices say how coarse a sparse frame is.
+            InMemory { has_lod: content.lattices().is_none(), geometry, ..InMemory::new(Cow::Owned(color)) }
+        });
+        let lods = content.lods(self.geometry.size_px());
         Candidate { view: self.view(frame), lods, in_memory, pyramid: None }
     }
 
@@ -129,18 +114,4 @@ impl Foveator {
         let lattices = frame.content.lattices().map(|lattices| frame.geometry.of(lattices));
         ViewFrame { previous_from_current: frame.reference.previous_from_current, lattices, ..view }
     }
-}
-
-/// Waits for all submitted work, then reads the color. Pixels that are not finite are black, as in imported frames.
-#[cfg(feature = "full")]
-fn color_of(atlas: &DeviceFrame) -> Image<[f32; 3]> {
-    let color = crate::raster::read_color(&atlas.device, &atlas.color);
-    color.map(|c| if c.iter().all(|v| v.is_finite()) { c } else { [0.0; 3] })
-}
-
-/// Waits for all submitted work, then reads distance and motion vectors.
-#[cfg(feature = "full")]
-fn geometry_of(atlas: &DeviceFrame) -> (Image<f32>, Image<[f32; 2]>) {
-    let DeviceFrame { device, depth, motion, near, .. } = atlas;
-    (crate::raster::read_distance(device, depth, *near), device.read(motion, 0))
 }

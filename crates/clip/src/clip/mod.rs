@@ -3,24 +3,22 @@
 
 pub mod run_report;
 
-use crate::args::{FormatName, Named};
+use crate::clock::Quartiles;
 use crate::failure::Failure;
+use crate::frame::RenderedFrame;
+use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::method_report::{MethodAccumulator, MethodReport, Share};
+use crate::metric;
+use crate::metric::{Flip, Reference, References};
 use crate::output::Output;
+use crate::picture::to_rgb8;
+use crate::pipeline::{Pipeline, Processor, ProcessorInfo, RunKind, Step};
 use crate::progress;
+use crate::quad_views::QuadViewLayout;
 use crate::report::sheet::{Column, Sheet};
+use crate::source::FrameSource;
 use crate::times::{RenderTime, Times};
 use afterimage::{DebugView, Foveation, Image, MethodKind, ViewGeometry};
-use afterimage_lab::clock::Quartiles;
-use afterimage_lab::device::Backend;
-use afterimage_lab::frame::RenderedFrame;
-use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
-use afterimage_lab::metric;
-use afterimage_lab::metric::{Flip, Reference, References};
-use afterimage_lab::picture::to_rgb8;
-use afterimage_lab::pipeline::{Pipeline, RunKind, Step};
-use afterimage_lab::quad_views::QuadViewLayout;
-use afterimage_lab::source::FrameSource;
 use rayon::prelude::*;
 
 /// Files that tell of a whole clip, the one that marks the folder first. `demo` draws no plot.
@@ -30,7 +28,9 @@ pub const REPORTS: [&str; 3] = ["report.json", "psnr.svg", "psnr.png"];
 pub struct Clip {
     /// First line of the contact sheet.
     pub title: String,
+    /// The view of every frame.
     pub geometry: ViewGeometry,
+    /// Regions, and how coarse frames are in them.
     pub foveation: Foveation,
     /// Depth and motion of sparse frames.
     pub sparse_geometry: SparseGeometry,
@@ -42,10 +42,14 @@ pub struct Clip {
     pub methods: Vec<(&'static str, RunKind)>,
     /// Gaze position per frame, in frame pixels; `None`: tracking lost.
     pub gaze: Vec<Option<[f32; 2]>>,
+    /// Exposure before sRGB encoding, stops.
     pub exposure_ev: f32,
-    pub format: FormatName,
+    /// Writes a frame in the format of the run.
+    pub write_frame: WriteFrame,
+    /// Whether the full-rate frames are written, too.
     pub write_reference: bool,
-    pub debug: Vec<DebugView>,
+    /// Debug views to write, each with the name of its folder.
+    pub debug: Vec<(&'static str, DebugView)>,
     /// Whether the methods get the source's trust mask (history confidence).
     pub trust: bool,
     /// Whether the source gets the confidence of the history, to trace more samples where it is low.
@@ -53,11 +57,25 @@ pub struct Clip {
     /// Whether FLIP is measured.
     pub flip: bool,
     /// Share of the input pixels that are replaced by NaN, infinite, huge or negative values.
-    #[cfg(feature = "ablation")]
     pub poison: f32,
-    pub backend: Backend,
+    /// What runs the methods.
+    pub processor: Box<dyn Processor>,
     /// Reason for the fallback to the CPU, as a suffix for messages; empty without a fallback.
     pub backend_note: &'static str,
+}
+
+/// Writes frame `index` of a folder, given linear and encoded.
+pub type WriteFrame = fn(&Output, &str, usize, &Image<[f32; 3]>, &Image<[f32; 3]>) -> Result<(), Failure>;
+
+/// As 8-bit PNG.
+pub fn write_png(
+    out: &Output,
+    folder: &str,
+    index: usize,
+    _: &Image<[f32; 3]>,
+    encoded: &Image<[f32; 3]>,
+) -> Result<(), Failure> {
+    out.picture(folder, index, &to_rgb8(encoded))
 }
 
 /// A clip whose first frame is rendered: its input can be read.
@@ -70,16 +88,22 @@ pub struct Playback<'a> {
 
 /// One frame of a clip, and the outputs of all methods for it.
 pub struct FrameResult<'a> {
+    /// Number of the frame in the clip.
     pub index: usize,
+    /// The frame as its source gave it.
     pub frame: &'a RenderedFrame,
+    /// What metrics compare outputs with.
     pub reference: &'a Reference<'a>,
+    /// The foveated frame and the outputs.
     pub step: &'a Step,
 }
 
 /// Results of a clip.
 #[derive(Default)]
 pub struct ClipReport {
+    /// Name and results of each method.
     pub methods: Vec<(&'static str, MethodReport)>,
+    /// Wall time of the foveation simulator.
     pub foveation_ms: Option<Quartiles>,
     /// Time of rendering the full-rate frames, if they were rendered.
     pub full_rate: Option<RenderTime>,
@@ -176,27 +200,28 @@ impl Clip {
     pub fn start<'a>(&'a self, source: &'a mut dyn FrameSource) -> Result<Playback<'a>, Failure> {
         let kinds: Vec<RunKind> = self.methods.iter().map(|l| l.1).collect();
         let is_still = source.info().still;
-        let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &self.debug, &self.backend)?
+        let debug: Vec<_> = self.debug.iter().map(|d| d.1).collect();
+        let processor = self.processor.as_ref();
+        let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &debug, processor)?
             .with_sparse(self.sparse_geometry, self.sample_order)
-            .with_quad_views(self.quad_views);
+            .with_quad_views(self.quad_views)
+            .with_poison(self.poison);
         if self.trust {
             pipeline = pipeline.with_trust();
         }
         if self.guided {
             pipeline = pipeline.with_guidance();
         }
-        #[cfg(feature = "ablation")]
-        let mut pipeline = pipeline.with_poison(self.poison);
         let first = source.render(&pipeline.request(0, self.gaze.first().copied().flatten()))?;
         Ok(Playback { clip: self, source, pipeline, first })
     }
 
     /// Device that runs the methods, for messages.
     fn backend_name(&self) -> String {
-        match &self.backend {
-            Backend::Cpu => format!("CPU ({} threads{})", rayon::current_num_threads(), self.backend_note),
-            #[cfg(feature = "full")]
-            Backend::Gpu(gpu) => format!("GPU {} ({} {})", gpu.info.name, gpu.info.driver, gpu.info.driver_info),
+        let ProcessorInfo { kind, name, driver } = self.processor.info();
+        match kind {
+            "cpu" => format!("CPU ({name}{})", self.backend_note),
+            _ => format!("GPU {name} ({driver})"),
         }
     }
 
@@ -214,7 +239,7 @@ impl Clip {
     ) -> Result<Vec<Image<[f32; 3]>>, Failure> {
         let &FrameResult { index, frame, reference, step, .. } = result;
         if self.write_reference {
-            self.write_frame(out, "reference", index, &frame.reference.color, reference.encoded())?;
+            (self.write_frame)(out, "reference", index, &frame.reference.color, reference.encoded())?;
         }
         let encoded: Vec<_> =
             step.outputs.par_iter().map(|shown| metric::encode(&shown.image, self.exposure_ev)).collect();
@@ -222,34 +247,15 @@ impl Clip {
         accumulators.par_iter_mut().zip(&self.methods).zip(step.outputs.par_iter().zip(&encoded)).try_for_each(
             |((accumulator, (name, _)), (shown, encoded))| {
                 accumulator.push(&frame.reference, reference, encoded, foveated, shown, step);
-                self.write_frame(out, name, index, &shown.image, encoded)?;
-                for (debug, picture) in self.debug.iter().zip(&shown.debug) {
-                    let folder = format!("debug/{name}/{}", debug.name());
+                (self.write_frame)(out, name, index, &shown.image, encoded)?;
+                for ((view, _), picture) in self.debug.iter().zip(&shown.debug) {
+                    let folder = format!("debug/{name}/{view}");
                     out.picture(&folder, index, &to_rgb8(&metric::encode(picture, 0.0)))?;
                 }
                 Ok::<(), Failure>(())
             },
         )?;
         Ok(encoded)
-    }
-
-    fn write_frame(
-        &self,
-        out: &Output,
-        folder: &str,
-        index: usize,
-        #[cfg_attr(
-            not(feature = "full"),
-            expect(unused_variables, reason = "PNGs are written from the encoded frame")
-        )]
-        linear: &Image<[f32; 3]>,
-        encoded: &Image<[f32; 3]>,
-    ) -> Result<(), Failure> {
-        match self.format {
-            FormatName::Png => out.picture(folder, index, &to_rgb8(encoded)),
-            #[cfg(feature = "full")]
-            FormatName::Exr => out.exr(folder, index, linear),
-        }
     }
 
     fn write_sheet(

@@ -1,13 +1,9 @@
 //! What a caller asks a source for.
 
-#[cfg(feature = "full")]
-use crate::device::Headless;
-use crate::frame::{Guide, RenderedFrame, SourceFrame};
+use crate::frame::{DeviceHandle, Guide, RenderedFrame, SourceFrame};
 use crate::lattices::SparseGeometry;
 use crate::quad_views::QuadViews;
 use afterimage::Lattices;
-#[cfg(feature = "full")]
-use std::sync::Arc;
 
 /// A request of a frame. Sources without a renderer give the full-rate frame, whatever is asked for.
 #[derive(Clone)]
@@ -25,8 +21,7 @@ pub struct FrameRequest<'a> {
     /// Guides adaptive sampling.
     pub guide: Option<&'a dyn SamplingGuide>,
     /// Device that all methods run on: what is rendered there can stay.
-    #[cfg(feature = "full")]
-    pub device: Option<Arc<Headless>>,
+    pub device: Option<DeviceHandle>,
 }
 
 /// What is to be rendered.
@@ -56,7 +51,6 @@ impl FrameRequest<'_> {
             geometry: SparseGeometry::Full,
             reference: true,
             guide: None,
-            #[cfg(feature = "full")]
             device: None,
         }
     }

@@ -1,7 +1,7 @@
 //! Errors of the tool: one line of text, and an exit code that separates bad input from failed work.
 
+use crate::error::{Bound, InputError};
 use afterimage::{CreateError, FrameError, SettingsError};
-use afterimage_lab::error::{Bound, InputError};
 use std::fmt::Display;
 use std::path::Path;
 use std::process::ExitCode;
@@ -24,6 +24,21 @@ impl Failure {
         };
         eprintln!("afterimage: {}", text.replace('\n', " "));
         ExitCode::from(code)
+    }
+
+    /// Exit code of a command that has ended; prints its error.
+    pub fn exit_code(result: Result<(), Self>) -> ExitCode {
+        result.map_or_else(|failure| failure.report(), |()| ExitCode::SUCCESS)
+    }
+
+    /// Exit code of a command line that is not run: prints help and version, or a usage error in one line.
+    pub fn usage_exit_code(error: &clap::Error) -> ExitCode {
+        if !error.use_stderr() {
+            // A closed pipe is no error.
+            let _ = error.print();
+            return ExitCode::SUCCESS;
+        }
+        Self::usage(error).report()
     }
 
     /// A usage error of the command line, in one line.

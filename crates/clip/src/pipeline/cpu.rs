@@ -4,7 +4,7 @@ use super::candidate::Candidate;
 use super::executor::{Executor, Shot};
 use super::run::{MethodOutput, RunKind};
 use crate::clock::Stopwatch;
-use crate::frame::RenderedFrame;
+use crate::frame::{DeviceHandle, RenderedFrame};
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
 use afterimage::kernel::debug_view::view_color;
 use afterimage::kernel::noise::{Noise, unpack_noise};
@@ -22,8 +22,8 @@ impl Executor for CpuExecutor {
         Ok(())
     }
 
-    fn reads_memory(&self) -> bool {
-        true
+    fn device(&self) -> Option<DeviceHandle> {
+        None
     }
 
     fn set(&mut self, _: &RenderedFrame, _: &Candidate<'_>) -> Result<(), FrameError> {

@@ -1,0 +1,37 @@
+//! Plays a clip through the methods of [`afterimage`], frame by frame, scores what they show, and writes frames, scores
+//! and a contact sheet. Nothing here needs a graphics device: `afterimage-lab` runs the same pipeline on one, and adds
+//! renderers and files as sources.
+//!
+//! - [`frame`]: what sources give and methods take. [`source`]: the trait of sources, and analytic scenes.
+//! - [`scanpath`]: recorded and synthetic gaze. [`lattices`], [`quad_views`]: how sources can foveate.
+//! - [`pipeline`]: foveates frames and runs the methods on them. [`metric`]: image quality of the output.
+//! - [`clip`]: all of it over a clip. [`demo`]: a clip that explains the methods, `cargo demo`.
+
+/// Prints a line to stdout. Ignores errors: a closed pipe must not stop the work or cause a panic.
+#[macro_export]
+macro_rules! say {
+    ($($arg:tt)*) => {{
+        use std::io::Write;
+        let _ = writeln!(std::io::stdout(), $($arg)*);
+    }};
+}
+
+pub mod clip;
+pub mod clock;
+pub mod demo;
+pub mod error;
+pub mod failure;
+pub mod frame;
+pub mod lattices;
+pub mod method_report;
+pub mod metric;
+pub mod output;
+pub mod picture;
+pub mod pipeline;
+pub mod progress;
+pub mod quad_views;
+pub mod report;
+pub mod scanpath;
+pub mod source;
+pub mod times;
+pub mod whole_file;

@@ -1,0 +1,20 @@
+//! `cargo demo`: the tool's subcommand `demo` alone, with nothing compiled that it does not need.
+
+use afterimage_clip::demo::{DemoArgs, demo};
+use afterimage_clip::failure::Failure;
+use clap::Parser;
+use std::process::ExitCode;
+
+#[derive(Parser)]
+#[command(name = "afterimage-demo", version, max_term_width = 110)]
+struct Cli {
+    #[command(flatten)]
+    args: DemoArgs,
+}
+
+fn main() -> ExitCode {
+    match Cli::try_parse() {
+        Ok(cli) => Failure::exit_code(demo(&cli.args)),
+        Err(error) => Failure::usage_exit_code(&error),
+    }
+}

@@ -1,0 +1,261 @@
+//! Pipeline of a clip: foveates each frame for a gaze, runs each method on it, and tracks surfaces for the metrics.
+
+mod candidate;
+mod cpu;
+mod executor;
+mod foveator;
+mod guide;
+mod oracle;
+mod part;
+mod poison;
+mod processor;
+mod run;
+
+pub use candidate::{Candidate, InMemory, needs_lod};
+pub use executor::{Executor, Shot};
+pub use part::Part;
+pub use processor::{Cpu, Processor, ProcessorInfo};
+pub use run::{MethodOutput, RunKind};
+
+use crate::clock::Stopwatch;
+use crate::frame::{Content, RenderedFrame};
+use crate::lattices::{SampleOrder, SparseGeometry};
+use crate::metric::{Tracked, Tracker};
+use crate::quad_views::QuadViewLayout;
+use crate::source::{FrameRequest, SamplingGuide, Wanted};
+use afterimage::{
+    ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, Gaze, Image, Method, Settings, SettingsError,
+    ViewGeometry,
+};
+use foveator::Foveator;
+use guide::HistoryNoise;
+use oracle::Oracle;
+
+/// Result of one frame: the foveation, and the output of each run.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// Gaze that the foveation used, in pixels.
+    pub gaze_px: [f32; 2],
+    /// Eccentricity of every pixel in degrees.
+    pub ecc_deg: Image<f32>,
+    /// Level of detail of every pixel of the foveated frame.
+    pub lods: Image<f32>,
+    /// Correspondence with the previous frame, and retained pixels.
+    pub tracked: Tracked,
+    /// Outputs in the order of the runs.
+    pub outputs: Vec<MethodOutput>,
+    /// Wall time of the foveation simulator in milliseconds.
+    pub foveation_ms: f64,
+}
+
+/// A run of a pipeline.
+enum Run {
+    /// The executor's method of this number.
+    Method(usize),
+    Oracle(Oracle),
+}
+
+/// Pipeline of a clip: state of the foveation and of all runs.
+pub struct Pipeline {
+    foveator: Foveator,
+    runs: Vec<Run>,
+    executor: Box<dyn Executor>,
+    tracker: Tracker,
+    held_gaze: Option<[f32; 2]>,
+    debug: Vec<DebugView>,
+    use_trust: bool,
+    quad_views: Option<QuadViewLayout>,
+    /// For guided sampling.
+    history_noise: Option<HistoryNoise>,
+    is_guided: bool,
+}
+
+impl Pipeline {
+    /// Creates a pipeline for frames of `geometry`'s size. `is_still`: all frames are equal, so that the mip chain is
+    /// built once. `debug`: debug views to draw.
+    ///
+    /// # Errors
+    /// [`CreateError`] if a setting is out of range or the device does not support it.
+    pub fn new(
+        geometry: ViewGeometry,
+        foveation: Foveation,
+        runs: &[RunKind],
+        is_still: bool,
+        debug: &[DebugView],
+        processor: &dyn Processor,
+    ) -> Result<Self, CreateError> {
+        foveation.validate()?;
+        // Simulators read the foveation alone.
+        let settings = Settings { method: Method::None, foveation, ..Settings::default() };
+        let desc = ContextDesc { settings, ..ContextDesc::new(geometry.size_px()) };
+        let mut executor = processor.executor(&desc, is_still)?;
+        let mut methods = 0..;
+        let mut run = |kind: &RunKind| {
+            let Some(settings) = kind.settings() else {
+                return check_oracle(&foveation).map(|()| Run::Oracle(Oracle::default()));
+            };
+            executor.add(kind, &ContextDesc { settings: Settings { foveation, ..*settings }, ..desc })?;
+            Ok::<_, CreateError>(Run::Method(methods.next().unwrap_or_default()))
+        };
+        Ok(Self {
+            runs: runs.iter().map(&mut run).collect::<Result<_, _>>()?,
+            executor,
+            foveator: Foveator::new(geometry, foveation, is_still),
+            tracker: Tracker::default(),
+            held_gaze: None,
+            debug: debug.to_vec(),
+            use_trust: false,
+            quad_views: None,
+            history_noise: None,
+            is_guided: false,
+        })
+    }
+
+    /// Passes the source's trust masks, if any, to the methods.
+    #[must_use]
+    pub fn with_trust(self) -> Self {
+        Self { use_trust: true, ..self }
+    }
+
+    /// Depth and motion of sparse frames, and the order in which their samples move.
+    #[must_use]
+    pub fn with_sparse(mut self, geometry: SparseGeometry, order: SampleOrder) -> Self {
+        (self.foveator.sparse_geometry, self.foveator.sample_order) = (geometry, order);
+        self
+    }
+
+    /// Frames are composed of quad views, which their source renders.
+    #[must_use]
+    pub fn with_quad_views(self, layout: Option<QuadViewLayout>) -> Self {
+        Self { quad_views: layout, ..self }
+    }
+
+    /// Replaces a share of the foveated pixels of every frame by invalid colors: NaN, infinite, huge, negative.
+    #[must_use]
+    pub fn with_poison(mut self, share: f32) -> Self {
+        self.foveator.poison = share;
+        self
+    }
+
+    /// Guides the source's samples by the noise of the first noisy smr run's history.
+    #[must_use]
+    pub fn with_guidance(self) -> Self {
+        Self { is_guided: true, ..self }
+    }
+
+    /// The request of frame `index` for a gaze in pixels. A lost gaze holds the last position; before the first, it is
+    /// the center of the view.
+    pub fn request(&mut self, index: u64, gaze: Option<[f32; 2]>) -> FrameRequest<'_> {
+        let gaze = gaze.map_or(Gaze::Lost, |px| Gaze::At { px });
+        let gaze_px = gaze.resolve(self.held_gaze, &self.foveator.geometry);
+        self.held_gaze = Some(gaze_px);
+        let wanted = match (self.quad_views, self.foveator.lattices(gaze_px, index)) {
+            (_, Some(lattices)) => Wanted::Lattices(lattices),
+            (Some(layout), None) => {
+                Wanted::QuadViews(layout.views(&self.foveator.foveation, &self.foveator.geometry, gaze_px))
+            }
+            (None, None) => Wanted::FullRate,
+        };
+        FrameRequest {
+            gaze_px,
+            wanted,
+            geometry: self.foveator.sparse_geometry,
+            guide: self.history_noise.as_ref().map(|noise| noise as &dyn SamplingGuide),
+            device: self.executor.device().filter(|_| !self.foveates_in_memory()),
+            ..FrameRequest::full_rate(index)
+        }
+    }
+
+    /// Foveates a frame, unless its source did, and runs all methods on it. The runs' settings must be
+    /// [`noisy`](Settings::noisy) for frames of a path tracer that foveates; the oracle supports simulated frames only.
+    ///
+    /// # Errors
+    /// [`FrameError::Size`] if the frame's size is not the pipeline's, [`FrameError::Value`] if it is not composed of
+    /// quad views and should be.
+    pub fn step(&mut self, frame: &RenderedFrame) -> Result<Step, FrameError> {
+        let has_reference = self.check(frame)?;
+        let watch = Stopwatch::start();
+        let gaze_px = frame.gaze_px;
+        let ecc_deg = self.foveator.geometry.eccentricity_map(gaze_px);
+        let candidate = self.foveator.candidate(frame, &ecc_deg, self.foveates_in_memory());
+        self.executor.set(frame, &candidate)?;
+        // Nothing is foveated here if a path tracer did it.
+        let foveation_ms = if frame.content.is_traced() { 0.0 } else { watch.wall_ms() };
+        let tracked = match has_reference {
+            true => self.tracker.advance(&frame.reference, &self.foveator.geometry, &ecc_deg, &candidate.lods),
+            false => Tracked::unknown(self.foveator.geometry.size_px()),
+        };
+        let outputs = self.run(frame, &candidate)?;
+        self.note_noise(frame, &outputs);
+        let Candidate { lods, pyramid, .. } = candidate;
+        self.foveator.keep(pyramid);
+        Ok(Step { gaze_px, ecc_deg, lods, tracked, outputs, foveation_ms })
+    }
+
+    /// Whether a frame, which must fit the pipeline, has a reference.
+    fn check(&self, frame: &RenderedFrame) -> Result<bool, FrameError> {
+        let (found, expected) = (frame.reference.color.size(), self.foveator.geometry.size_px());
+        let is_full_rate = matches!(frame.content, Content::FullRate);
+        if found != expected && (is_full_rate || found != [0; 2]) {
+            return Err(FrameError::Size { input: "color", view: 0, found, expected });
+        }
+        if is_full_rate && self.quad_views.is_some() {
+            let (found, expected) = ("a full-rate frame".into(), "one that is composed of quad views");
+            return Err(FrameError::Value { what: "frame", view: 0, found, expected });
+        }
+        Ok(found == expected)
+    }
+
+    /// Runs all methods on the foveated frame.
+    fn run(&mut self, frame: &RenderedFrame, candidate: &Candidate<'_>) -> Result<Vec<MethodOutput>, FrameError> {
+        let shot = Shot { frame, candidate, debug: &self.debug, use_trust: self.use_trust };
+        let mut outputs: Vec<Option<MethodOutput>> = vec![None; self.runs.len()];
+        // Rotate the order of runs each frame: the first run finds caches as the foveation left them.
+        let first = frame.index as usize % self.runs.len().max(1);
+        for i in (first..self.runs.len()).chain(0..first) {
+            outputs[i] = Some(match &mut self.runs[i] {
+                Run::Method(run) => self.executor.run(*run, &shot)?,
+                Run::Oracle(oracle) => {
+                    oracle.run(candidate.pyramid.as_ref(), &candidate.lods, &self.foveator.foveation)?
+                }
+            });
+        }
+        Ok(outputs.into_iter().flatten().collect())
+    }
+
+    /// Stores the noise of the first history that knows it, for the next request.
+    fn note_noise(&mut self, frame: &RenderedFrame, outputs: &[MethodOutput]) {
+        if !self.is_guided {
+            return;
+        }
+        let noise = self.runs.iter().zip(outputs).find_map(|(run, output)| match run {
+            Run::Method(run) => Some((self.executor.history_noise(*run)?, &output.image)),
+            Run::Oracle(_) => None,
+        });
+        self.history_noise = noise.map(|((noise, smr), image)| {
+            HistoryNoise::new(noise, 1.0 - smr.accumulate, image.clone(), &frame.reference, self.foveator.geometry)
+        });
+    }
+
+    /// Bytes of history that run `index` keeps between frames.
+    pub fn memory_bytes(&self, index: usize) -> usize {
+        match &self.runs[index] {
+            Run::Method(run) => self.executor.memory_bytes(*run),
+            Run::Oracle(oracle) => oracle.memory_bytes(),
+        }
+    }
+
+    /// Whether frames are foveated in memory: for runs on the CPU, for the oracle, and for poisoned pixels.
+    fn foveates_in_memory(&self) -> bool {
+        let has_oracle = self.runs.iter().any(|run| matches!(run, Run::Oracle(_)));
+        self.executor.device().is_none() || has_oracle || self.foveator.poison > 0.0
+    }
+}
+
+fn check_oracle(foveation: &Foveation) -> Result<(), CreateError> {
+    if foveation.filter == Filter::Sparse {
+        let expected = "another one: the oracle's best level of detail is not defined for moving samples".into();
+        Err(SettingsError { setting: "foveation filter", found: "sparse".into(), expected })?;
+    }
+    Ok(())
+}

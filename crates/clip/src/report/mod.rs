@@ -1,0 +1,4 @@
+//! Contact sheets of clips.
+
+pub mod canvas;
+pub mod sheet;

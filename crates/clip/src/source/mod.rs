@@ -1,0 +1,72 @@
+//! Frame sources behind one trait ([`FrameSource`]), and those without a renderer: analytic scenes.
+
+pub mod analytic;
+pub mod gait;
+mod request;
+
+pub use analytic::AnalyticSource;
+pub use request::{FrameRequest, SamplingGuide, Wanted};
+
+use crate::error::InputError;
+use crate::frame::{RenderedFrame, SourceFrame};
+use glam::DMat4;
+
+/// Properties of a source that are known before its first frame is read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SourceInfo {
+    /// Name as the user gave it.
+    pub name: String,
+    /// Width and height of every frame in pixels.
+    pub size: [u32; 2],
+    /// Number of distinct frames; `None` for an endless source (analytic scenes).
+    pub frames: Option<u64>,
+    /// Frames per second, if the input states them.
+    pub fps: Option<f32>,
+    /// Horizontal field of view in degrees, if the input states it.
+    pub hfov_deg: Option<f32>,
+    /// Whether all frames show the same picture: nothing moves, and every pixel keeps its surface point.
+    pub still: bool,
+}
+
+/// Pose of a camera that a viewer can steer, and a speed to steer it with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraPose {
+    /// Camera-to-world matrix: x right, y up, looking along -z.
+    pub world_from_camera: DMat4,
+    /// Walking speed that suits the scene, in m/s: it crosses the scene in about ten seconds.
+    pub speed_m_s: f64,
+}
+
+/// A stream of frames, by playback index.
+///
+/// A sequence shorter than the playback is played forwards and backwards (0, 1, ..., n-1, n-2, ..., 1, 0, 1, ...), with
+/// motion vectors for the direction of playback. Memory does not grow with the number of frames.
+pub trait FrameSource {
+    /// Properties that hold for all frames.
+    fn info(&self) -> &SourceInfo;
+
+    /// The frame that `request` asks for. Positions may come in any order.
+    ///
+    /// # Errors
+    /// [`Io`](InputError::Io) and [`Invalid`](InputError::Invalid) if the file of the frame cannot be read or
+    /// contradicts its header, [`Limit`](InputError::Limit) if it is larger than the limits by now,
+    /// [`Device`](InputError::Device) if the renderer failed or lost its device.
+    fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError>;
+
+    /// The full-rate frame at playback position `index`: short for [`render`](Self::render).
+    ///
+    /// # Errors
+    /// As for `render`.
+    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
+        Ok(self.render(&FrameRequest::full_rate(index))?.reference)
+    }
+
+    /// Camera pose at playback position `index`; `None` if the camera cannot be steered.
+    fn camera_pose(&self, _index: u64) -> Option<CameraPose> {
+        None
+    }
+
+    /// Overrides the camera's path from frame `index` on with the poses before and from then; `None` returns it to its
+    /// path. See `SceneCamera::steer`. Sources whose camera cannot be steered ignore it.
+    fn steer(&mut self, _index: u64, _before_and_now: Option<[DMat4; 2]>) {}
+}
