@@ -26,6 +26,11 @@ pub(super) static ENTRY: Entry = Entry {
     overrides: |_, _| vec![],
 };
 
+/// Whether history stores means of jittered samples. Noisy samples are averaged in another way.
+pub(crate) fn smr_sparse_antialiases(settings: &Settings) -> bool {
+    settings.method.smr().antialias && !settings.noisy
+}
+
 /// Whether history is relit. Not that of noisy frames: a gain is the ratio of nine samples, and history would be
 /// multiplied by their noise.
 pub(crate) fn smr_sparse_relights(settings: &Settings) -> bool {
