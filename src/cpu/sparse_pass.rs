@@ -16,8 +16,8 @@ use crate::kernel::color::luma;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::depth::same_surface;
 use crate::kernel::kept::{
-    Around, EXACT_PX, INVERSE_MEAN_REACH, INVERSE_REACH, Interpolated, Kept, add_kept, code_word, interpolate, is_empty,
-    pack_color, pack_color_by, pack_kept, stands_in, unpack_color, unpack_full, unpack_kept,
+    Around, EXACT_PX, INVERSE_MEAN_REACH, INVERSE_REACH, Interpolated, Kept, add_kept, code_word, interpolate,
+    is_empty, pack_color, pack_color_by, pack_kept, stands_in, unpack_color, unpack_full, unpack_kept,
 };
 use crate::kernel::lattice::point_weight;
 use crate::kernel::matched::root_difference;
@@ -26,13 +26,13 @@ use crate::kernel::noise::{
 };
 use crate::kernel::pack::{half_bits, half_value};
 use crate::kernel::reproject::Verdict;
-use crate::kernel::rng;
 use crate::kernel::resample::{codes_between, has_code, tap_codes};
+use crate::kernel::rng;
 use crate::kernel::sanitize;
 use crate::kernel::sparse::{
     Light, Lit, Observation, Reconstruction, accumulate, add_light, agreement, candidate_level, errors_left,
-    expected_error, fit, mean_error, mean_fit, neighbour_weight, noisy_sureness, own_fit, pack_lit, reconstruct, relight, sureness,
-    unpack_lit,
+    expected_error, fit, mean_error, mean_fit, neighbour_weight, noisy_sureness, own_fit, pack_lit, reconstruct,
+    relight, sureness, unpack_lit,
 };
 use crate::kernel::wrs::expose;
 use crate::parallel::collect;

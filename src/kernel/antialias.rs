@@ -9,7 +9,7 @@
 use super::kept::{FARTHEST_PX, Kept};
 use super::matched::{root_difference, roots};
 use super::sparse::{Light, Reconstructed, Reconstruction, relit};
-use super::taa::{clip_to_box, roots_of_ycocg, to_ycocg};
+use super::taa::{clip_to_box, to_ycocg};
 use glam::{Vec2, Vec3};
 
 /// Largest number of samples in a mean: one frame's samples weigh at least a 31st. More is calmer and follows changes
@@ -108,7 +108,7 @@ pub fn add_near(n: Near, color: Vec3) -> Near {
 /// How history is clipped to the samples around a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clip {
-    /// Change in YCoCg of the square roots.
+    /// Change of the square roots of RGB.
     pub change: Vec3,
     /// Share of its samples that the mean keeps.
     pub kept: f32,
@@ -121,8 +121,10 @@ pub fn clip(near: Near, history: Vec3) -> Clip {
     let variance = (near.squares * near.count - near.sum * near.sum) * (inverse * inverse);
     let past = to_ycocg(history);
     let inside = clip_to_box(past, near.sum * inverse, roots(variance) * BOX_SIGMAS);
-    let change = (inside - past) * CLIP;
-    let distance = change.x.abs().max(change.y.abs()).max(change.z.abs());
+    let by = (inside - past) * CLIP;
+    let distance = by.x.abs().max(by.y.abs()).max(by.z.abs());
+    let outer = by.x - by.z;
+    let change = Vec3::new(outer + by.y, by.x + by.z, outer - by.y);
     Clip { change, kept: 1.0 - (distance * CLIP_COST / past.x.max(1.0)).min(1.0) }
 }
 
@@ -132,7 +134,7 @@ pub fn clipped(color: Vec3, change: Vec3) -> Vec3 {
     if change == Vec3::ZERO {
         return color;
     }
-    let v = roots_of_ycocg(to_ycocg(color) + change);
+    let v = (roots(color) + change).max(Vec3::ZERO);
     v * v
 }
 

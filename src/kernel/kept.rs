@@ -110,7 +110,7 @@ pub fn unpack_place(bits: u32) -> f32 {
 
 /// As [`multiple`], rounded up if the fraction that is cut off and `up`, in \[0, 1), give 1.
 #[inline]
-fn multiple_up(v: f32, exponent: u32, up: f32) -> u32 {
+pub fn multiple_up(v: f32, exponent: u32, up: f32) -> u32 {
     (v * f32::from_bits((262 - exponent) << 23) + up) as u32
 }
 

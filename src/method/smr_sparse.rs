@@ -23,7 +23,7 @@ pub(super) static ENTRY: Entry = Entry {
     #[cfg(feature = "gpu")]
     shader: |_| PassShader { name: "sparse_pass", block_px: 1, reads_samples: true },
     #[cfg(feature = "gpu")]
-    overrides: |_, _| vec![],
+    overrides: |settings, _| vec![("ANTIALIAS", u32::from(smr_sparse_antialiases(settings)))],
 };
 
 /// Whether history stores means of jittered samples. Noisy samples are averaged in another way.

@@ -23,26 +23,37 @@ fn halton(mut index: u64, base: u64) -> f32 {
 fn dump(path: &str, shown: &Color, reference: &Color) {
     let [w, h] = SIZE;
     let mut out = image::RgbImage::new(w * 2, h * 2);
-    for y in 0..h { for x in 0..w {
-        let i = (y * w + x) as usize;
-        let e = |c: f32| (srgb_encode(c).clamp(0.0, 1.0) * 255.0) as u8;
-        let (s, r) = (shown.pixels()[i].map(e), reference.pixels()[i].map(e));
-        out.put_pixel(x, y, image::Rgb(s));
-        out.put_pixel(x + w, y, image::Rgb(r));
-        let d = [0, 1, 2].map(|c| (128.0 + 4.0 * (f32::from(s[c]) - f32::from(r[c]))).clamp(0.0, 255.0) as u8);
-        out.put_pixel(x, y + h, image::Rgb(d));
-    } }
+    for y in 0..h {
+        for x in 0..w {
+            let i = (y * w + x) as usize;
+            let e = |c: f32| (srgb_encode(c).clamp(0.0, 1.0) * 255.0) as u8;
+            let (s, r) = (shown.pixels()[i].map(e), reference.pixels()[i].map(e));
+            out.put_pixel(x, y, image::Rgb(s));
+            out.put_pixel(x + w, y, image::Rgb(r));
+            let d = [0, 1, 2].map(|c| (128.0 + 4.0 * (f32::from(s[c]) - f32::from(r[c]))).clamp(0.0, 255.0) as u8);
+            out.put_pixel(x, y + h, image::Rgb(d));
+        }
+    }
     out.save(path).unwrap();
 }
 struct Pass(CpuAfterimage, Option<Image<PixelTrace>>);
 impl Pass {
     fn new(method: Method, fov: Foveation, noisy: bool, aa: bool) -> Self {
         let mut desc = ContextDesc::new(SIZE);
-        let method = match method { Method::Smr(smr) => Method::Smr(afterimage::Smr { antialias: aa, accumulate: if noisy { 0.95 } else { smr.accumulate }, ..smr }), other => other };
+        let method = match method {
+            Method::Smr(smr) => Method::Smr(afterimage::Smr {
+                antialias: aa,
+                accumulate: if noisy { 0.95 } else { smr.accumulate },
+                ..smr
+            }),
+            other => other,
+        };
         desc.settings = Settings { method, ..Settings::default() };
         desc.settings.foveation = fov;
         desc.settings.noisy = noisy;
-        if std::env::var("NODEPTH").is_ok() { desc.settings.depth_test = None; }
+        if std::env::var("NODEPTH").is_ok() {
+            desc.settings.depth_test = None;
+        }
         Self(CpuAfterimage::new(&desc).unwrap(), None)
     }
     fn process(
@@ -120,7 +131,15 @@ fn main() {
             blend_deg: 0.0,
             ..Foveation::default()
         };
-        let full1 = Foveation { filter: Filter::Sparse, rate_mid: 1, rate_far: 1, fovea_deg: 0.0, mid_deg: 0.0, blend_deg: 0.0, ..Foveation::default() };
+        let full1 = Foveation {
+            filter: Filter::Sparse,
+            rate_mid: 1,
+            rate_far: 1,
+            fovea_deg: 0.0,
+            mid_deg: 0.0,
+            blend_deg: 0.0,
+            ..Foveation::default()
+        };
         let full = Foveation { rate_mid: 1, rate_far: 1, ..Foveation::default() };
         let mk = |name: &'static str, fov: Foveation, sparse, jitter, methods: &[Method], post_taa: bool| {
             let noisy = name.contains("noisy");
@@ -128,7 +147,18 @@ fn main() {
             if post_taa {
                 passes.push(Pass::new(Method::Taa, full, false, false));
             }
-            Row { name, fov, sparse, jitter, passes, post_taa, noisy, sums: [0.0; 6], bins: [(0.0, 0.0); 7], before: None }
+            Row {
+                name,
+                fov,
+                sparse,
+                jitter,
+                passes,
+                post_taa,
+                noisy,
+                sums: [0.0; 6],
+                bins: [(0.0, 0.0); 7],
+                before: None,
+            }
         };
         let mut rows = vec![
             mk("full rate, one sample", full, false, false, &[], false),
@@ -156,7 +186,9 @@ fn main() {
             let cached = std::fs::read(&cache).ok();
             if let Some(bytes) = &cached {
                 for (p, b) in acc.iter_mut().zip(bytes.chunks_exact(12)) {
-                    for c in 0..3 { p[c] = f32::from_le_bytes(b[c*4..c*4+4].try_into().unwrap()); }
+                    for c in 0..3 {
+                        p[c] = f32::from_le_bytes(b[c * 4..c * 4 + 4].try_into().unwrap());
+                    }
                 }
             }
             for k in 0..(if cached.is_some() { 0 } else { 32u64 }) {
@@ -167,7 +199,10 @@ fn main() {
                     }
                 }
             }
-            if cached.is_none() { std::fs::write(&cache, acc.iter().flatten().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>()).unwrap(); }
+            if cached.is_none() {
+                std::fs::write(&cache, acc.iter().flatten().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>())
+                    .unwrap();
+            }
             let reference = Image::from_pixels(SIZE, acc).unwrap();
             let jitter = Foveation::jitter_px(index + 1);
             let frames = [source.jittered_frame(index, [0.0; 2]), source.jittered_frame(index, jitter)];
@@ -213,13 +248,40 @@ fn main() {
                         let [w, h] = SIZE.map(|s| s as i32);
                         for i in 0..shown.pixels().len() {
                             let (x, y) = (i as i32 % w, i as i32 / w);
-                            let mut lo = f32::MAX; let mut hi = 0.0f32;
-                            for j in -1..2 { for k in -1..2 { let d = depth.at((x + k).clamp(0, w - 1) as usize, (y + j).clamp(0, h - 1) as usize); lo = lo.min(d); hi = hi.max(d); } }
+                            let mut lo = f32::MAX;
+                            let mut hi = 0.0f32;
+                            for j in -1..2 {
+                                for k in -1..2 {
+                                    let d =
+                                        depth.at((x + k).clamp(0, w - 1) as usize, (y + j).clamp(0, h - 1) as usize);
+                                    lo = lo.min(d);
+                                    hi = hi.max(d);
+                                }
+                            }
                             let t = t.pixels()[i];
                             let edge = hi > lo * 1.1;
-                            let bin = if edge { 0 } else if t.verdict as u32 != 0 { 1 } else if t.quality < 0.5 { 2 } else if t.quality < 0.99 { 3 } else if t.gate < 0.9 { 4 } else if t.weight < 0.99 { 5 } else { 6 };
-                            let (a, _) = se(&Image::filled([1, 1], shown.pixels()[i]), &Image::filled([1, 1], reference.pixels()[i]), |_| true);
-                            row.bins[bin].0 += 1.0; row.bins[bin].1 += a;
+                            let bin = if edge {
+                                0
+                            } else if t.verdict as u32 != 0 {
+                                1
+                            } else if t.quality < 0.5 {
+                                2
+                            } else if t.quality < 0.99 {
+                                3
+                            } else if t.gate < 0.9 {
+                                4
+                            } else if t.weight < 0.99 {
+                                5
+                            } else {
+                                6
+                            };
+                            let (a, _) = se(
+                                &Image::filled([1, 1], shown.pixels()[i]),
+                                &Image::filled([1, 1], reference.pixels()[i]),
+                                |_| true,
+                            );
+                            row.bins[bin].0 += 1.0;
+                            row.bins[bin].1 += a;
                         }
                     }
                     let (a, b) = se(&shown, &reference, |_| true);
@@ -242,7 +304,11 @@ fn main() {
                         }
                     }
                 }
-                if index + 1 == frames_n { if let Ok(d) = std::env::var("DUMP") { dump(&format!("{d}/{scene}_{}.png", row.name.replace([' ', ','], "_")), &shown, &reference); } }
+                if index + 1 == frames_n {
+                    if let Ok(d) = std::env::var("DUMP") {
+                        dump(&format!("{d}/{scene}_{}.png", row.name.replace([' ', ','], "_")), &shown, &reference);
+                    }
+                }
                 row.before = Some((shown, reference.clone()));
             }
         }
@@ -252,9 +318,15 @@ fn main() {
         println!("{scene}");
         for r in &rows {
             if std::env::var("BINS").is_ok() {
-                let n: f64 = r.bins.iter().map(|b| b.0).sum(); let e: f64 = r.bins.iter().map(|b| b.1).sum();
+                let n: f64 = r.bins.iter().map(|b| b.0).sum();
+                let e: f64 = r.bins.iter().map(|b| b.1).sum();
                 for (name, b) in ["edge", "reject", "coarse", "mid", "gated", "between", "own"].iter().zip(&r.bins) {
-                    println!("     {name:8} pixels {:5.1} %  error {:5.1} %  PSNR {:.1}", 100.0 * b.0 / n, 100.0 * b.1 / e, -10.0 * (b.1 / (3.0 * b.0)).log10());
+                    println!(
+                        "     {name:8} pixels {:5.1} %  error {:5.1} %  PSNR {:.1}",
+                        100.0 * b.0 / n,
+                        100.0 * b.1 / e,
+                        -10.0 * (b.1 / (3.0 * b.0)).log10()
+                    );
                 }
             }
             let db = |i: usize| -10.0 * (r.sums[i] / r.sums[i + 1]).log10();

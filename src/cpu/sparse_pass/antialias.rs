@@ -1,6 +1,8 @@
 //! What the pass does more where frames are jittered: means of samples in place of single ones.
 
-use super::{Kept, Mean, Reconstruction, Vec2, Vec3, View, pack_color_by, pack_kept, reconstruct, rng, sanitize, stored_lod};
+use super::{
+    Kept, Mean, Reconstruction, Vec2, Vec3, View, pack_color_by, pack_kept, reconstruct, rng, sanitize, stored_lod,
+};
 use crate::kernel::antialias::{Averaged, Near, add_near, average, clip, clipped, kept_mean, stands_before};
 
 impl View<'_> {
