@@ -29,9 +29,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut scorers = [Scorer::default(), Scorer::default()];
     let mut references = References::default();
     for index in 0..60 {
-        let frame = source.frame(index)?;
-        let step = pipeline.step(index, &frame, gaze.px(index))?;
-        let full = encode(&frame.color, 0.0);
+        let frame = source.render(&pipeline.request(index, gaze.px(index)))?;
+        let step = pipeline.step(&frame)?;
+        let full = encode(&frame.reference.color, 0.0);
         let reference = references.next(&full, &step.tracked);
         for (scorer, shown) in scorers.iter_mut().zip(&step.outputs) {
             scorer.push(&reference, &encode(&shown.image, 0.0), &step.tracked, &step.ecc_deg);

@@ -32,8 +32,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut pipeline = Pipeline::new(geometry, foveation, &runs, info.still, &[], &Backend::Gpu(gpu))?;
     let mut last = None;
     for index in 0..120 {
-        let frame = source.frame(index)?;
-        let step = pipeline.step(index, &frame, gaze.px(index))?;
+        let frame = source.render(&pipeline.request(index, gaze.px(index)))?;
+        let step = pipeline.step(&frame)?;
         if index % 20 == 19 {
             let stats = step.outputs[1].stats;
             let [x, y] = step.gaze_px;

@@ -46,9 +46,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut worst = [f64::INFINITY; 5];
     let mut panel = [(0.0, 0.0); 5];
     for index in 0..number(2, 90)? {
-        let frame = source.frame(index)?;
-        let step = pipeline.step(index, &frame, gaze.px(index))?;
-        let full = encode(&frame.color, 0.0);
+        let frame = source.render(&pipeline.request(index, gaze.px(index)))?;
+        let step = pipeline.step(&frame)?;
+        let full = encode(&frame.reference.color, 0.0);
         let reference = references.next(&full, &step.tracked);
         let mask = scene.as_ref().and_then(|s| s.panel_mask(index));
         let mut foveated = None;

@@ -65,9 +65,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut references = References::default();
     println!("{input}, {scanpath} by {map:?}, fovea {fovea_deg} degrees");
     for index in 0..frames {
-        let frame = source.frame(index)?;
-        let step = pipeline.step(index, &frame, gaze.px(index))?;
-        let full = encode(&frame.color, 0.0);
+        let frame = source.render(&pipeline.request(index, gaze.px(index)))?;
+        let step = pipeline.step(&frame)?;
+        let full = encode(&frame.reference.color, 0.0);
         let reference = references.next(&full, &step.tracked);
         let mut last = vec![];
         for (scorer, shown) in scorers.iter_mut().zip(&step.outputs) {

@@ -34,23 +34,23 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut references = References::default();
     let mut sheet = vec![];
     for index in 0..frames {
-        let frame = source.frame(index)?;
         // The gaze moves over the frame from left to right and back.
         let t = 0.5 - 0.5 * (index as f32 * 0.15).cos();
         let gaze = [(0.2 + 0.6 * t) * info.size[0] as f32, 0.5 * info.size[1] as f32];
-        let step = pipeline.step(index, &frame, Some(gaze))?;
-        let full = encode(&frame.color, 0.0);
+        let frame = source.render(&pipeline.request(index, Some(gaze)))?;
+        let step = pipeline.step(&frame)?;
+        let full = encode(&frame.reference.color, 0.0);
         let reference = references.next(&full, &step.tracked);
         for (scorer, shown) in scorers.iter_mut().zip(&step.outputs) {
             scorer.push(&reference, &encode(&shown.image, 0.0), &step.tracked, &step.ecc_deg);
         }
         if index + 1 == frames {
-            let moves = frame.motion.as_ref().map_or(0.0, |m| {
+            let moves = frame.reference.motion.as_ref().map_or(0.0, |m| {
                 let seen = m.pixels().iter().filter(|v| v[0].abs() < 1e5);
                 seen.map(|v| v[0].hypot(v[1])).fold(0.0, f32::max)
             });
             println!("{}, {}x{}: fastest {moves:.1} px a frame", info.name, info.size[0], info.size[1]);
-            sheet = vec![frame.color.clone(), step.outputs[0].image.clone(), step.outputs[2].image.clone()];
+            sheet = vec![frame.reference.color.clone(), step.outputs[0].image.clone(), step.outputs[2].image.clone()];
         }
     }
     println!("method  PSNR dB  retained dB");

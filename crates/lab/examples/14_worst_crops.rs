@@ -7,10 +7,11 @@
 
 use afterimage::{Filter, Foveation, FrameError, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::frame::RenderedFrame;
 use afterimage_lab::metric::{Crops, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
-use afterimage_lab::source::{self, FrameSource, RasterSource, ReadLimits, SceneOptions};
+use afterimage_lab::source::{self, FrameRequest, FrameSource, RasterSource, ReadLimits, SceneOptions};
 use rayon::prelude::*;
 
 /// Size of analytic and rasterised frames in pixels.
@@ -42,10 +43,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut source = open(input)?;
         let mut rows = rows(source.as_ref(), input, scanpaths)?;
         for index in 0..frames {
-            let frame = source.frame(index)?;
-            let full = encode(&frame.color, 0.0);
+            let frame = source.render(&FrameRequest::full_rate(index))?;
+            let full = encode(&frame.reference.color, 0.0);
             rows.par_iter_mut().try_for_each(|row| {
-                let step = row.pipeline.step(index, &frame, row.gaze.px(index))?;
+                let gaze_px = row.pipeline.request(index, row.gaze.px(index)).gaze_px;
+                let step = row.pipeline.step(&RenderedFrame { gaze_px, ..frame.clone() })?;
                 let shown: Vec<_> = step.outputs.iter().map(|output| encode(&output.image, 0.0)).collect();
                 let (foveated, methods) = shown.split_first().expect("the first method is none");
                 for (crops, shown) in row.crops.iter_mut().zip(methods) {

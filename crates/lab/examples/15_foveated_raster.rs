@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{input}, {width}x{height}, {}", device.info.name);
 
     let foveation = Foveation { filter: Filter::Sparse, rate_mid: 4, rate_far: 8, ..Foveation::default() };
-    let near = source.render(0).near();
+    let near = source.draw(0).near();
     let mut posts = METHODS.map(|method| {
         let settings = Settings { method: method.into(), foveation, ..Settings::default() };
         let depth = DepthConvention::Reversed { near, far: f32::INFINITY };
@@ -69,9 +69,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let lattices = foveation.lattices(&geometry, gaze_px, index);
         samples = lattices.as_slice().iter().map(|l| l.points[0] * l.points[1]).sum();
         let (views, _) = source.views(index);
-        let mut ms = vec![timed(&device, || _ = source.render(index)).0];
-        ms.push(timed(&device, || _ = source.render_foveated(index, &lattices, AtlasLayout::Compact)).0);
-        let (targets, placed) = source.render_foveated(index, &lattices, AtlasLayout::Compact);
+        let mut ms = vec![timed(&device, || _ = source.draw(index)).0];
+        ms.push(timed(&device, || _ = source.draw_foveated(index, &lattices, AtlasLayout::Compact)).0);
+        let (targets, placed) = source.draw_foveated(index, &lattices, AtlasLayout::Compact);
         let view = ViewFrame {
             lattices: Some(placed.with_geometry_at_samples()),
             previous_from_current: Some(views[0].previous_from_current(&views[1])),
@@ -117,5 +117,5 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// Milliseconds of a frame whose full-rate lattice lies at its own pixels.
 fn in_place(device: &Arc<Headless>, source: &mut RasterSource, index: u64, lattices: &Lattices) -> f64 {
-    timed(device, || _ = source.render_foveated(index, lattices, AtlasLayout::InPlace)).0
+    timed(device, || _ = source.draw_foveated(index, lattices, AtlasLayout::InPlace)).0
 }

@@ -6,7 +6,7 @@ use afterimage::kernel::color::srgb_decode;
 use afterimage::{Foveation, Image, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::Backend;
-use afterimage_lab::frame::SourceFrame;
+use afterimage_lab::frame::{RenderedFrame, SourceFrame};
 use afterimage_lab::metric::{self, Crops, Flip, References, Scorer};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use std::error::Error;
@@ -32,13 +32,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             cut: false,
             nonfinite: 0,
         };
-        measure(&still, frames)?;
+        measure(RenderedFrame::full_rate(0, [0.0; 2], still), frames)?;
     }
     Ok(())
 }
 
-fn measure(frame: &SourceFrame, frames: u64) -> Result<(), Box<dyn Error>> {
-    let size = frame.color.size();
+fn measure(mut frame: RenderedFrame, frames: u64) -> Result<(), Box<dyn Error>> {
+    let size = frame.reference.color.size();
     let geometry = ViewGeometry::flat(size, 70.0)?;
     let methods = [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau];
     let kinds = methods.map(|method| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() }));
@@ -50,11 +50,12 @@ fn measure(frame: &SourceFrame, frames: u64) -> Result<(), Box<dyn Error>> {
     let [mut encode_ms, mut reference_ms, mut score_ms, mut crops_ms] = [0.0; 4];
     for index in 0..frames {
         let watch = Stopwatch::start();
-        let full = metric::encode(&frame.color, 0.0);
+        let full = metric::encode(&frame.reference.color, 0.0);
         encode_ms += watch.cpu_ms().unwrap_or(f64::NAN);
         // A gaze that jumps every eighth frame.
-        let gaze_px = [size[0] as f32 * (0.3 + 0.2 * ((index / 8) % 3) as f32), size[1] as f32 * 0.5];
-        let step = pipeline.step(index, frame, Some(gaze_px))?;
+        frame.index = index;
+        frame.gaze_px = [size[0] as f32 * (0.3 + 0.2 * ((index / 8) % 3) as f32), size[1] as f32 * 0.5];
+        let step = pipeline.step(&frame)?;
         // The first frame has no history.
         for (sum, output) in post_ms.iter_mut().zip(&step.outputs).filter(|_| index > 0) {
             *sum += output.cpu_ms.unwrap_or(f64::NAN);

@@ -193,11 +193,11 @@ fn twins(gpu: &Arc<Headless>, method: MethodKind) -> Result<Finding, SelfTestErr
     let mut pipelines = [pipeline(&Backend::Cpu)?, pipeline(&Backend::Gpu(gpu.clone()))?];
     let (mut differ, mut largest) = (0, 0.0_f32);
     for index in 0..FRAMES {
-        let frame = source.frame(index)?;
         let gaze = Some([20.0 + 10.0 * index as f32, 27.0]);
         let mut outputs = Vec::new();
         for pipeline in &mut pipelines {
-            outputs.push(pipeline.step(index, &frame, gaze)?.outputs.swap_remove(0).image);
+            let frame = source.render(&pipeline.request(index, gaze))?;
+            outputs.push(pipeline.step(&frame)?.outputs.swap_remove(0).image);
         }
         let (pixels, most) = difference(&outputs[0], &outputs[1]);
         (differ, largest) = (differ + pixels, largest.max(most));

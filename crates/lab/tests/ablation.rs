@@ -18,9 +18,9 @@ fn shown(backend: &Backend, run: RunKind) -> Vec<Image<[f32; 3]>> {
     let mut pipeline = Pipeline::new(geometry, foveation, &[run], false, &[], backend).unwrap().with_poison(0.01);
     (0..FRAMES)
         .map(|index| {
-            let frame = source.frame(index).unwrap();
             let gaze = [20.0 + 8.0 * index as f32, 32.0];
-            pipeline.step(index, &frame, Some(gaze)).unwrap().outputs.remove(0).image
+            let frame = source.render(&pipeline.request(index, Some(gaze))).unwrap();
+            pipeline.step(&frame).unwrap().outputs.remove(0).image
         })
         .collect()
 }

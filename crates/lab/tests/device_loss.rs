@@ -36,19 +36,22 @@ fn a_lost_device_is_an_error_and_a_new_one_goes_on() {
     };
     let mut first = pipeline(&lost, *source.view());
     for index in 0..3 {
-        first.step(index, &source.frame(index).unwrap(), Some([30.0, 18.0])).unwrap();
+        let frame = source.render(&first.request(index, Some([30.0, 18.0]))).unwrap();
+        first.step(&frame).unwrap();
     }
     lost.check().unwrap();
     lost.device.destroy();
     for index in 3..5 {
-        let error = first.step(index, &source.frame(index).unwrap(), None).map(|_| ()).unwrap_err();
+        let frame = source.render(&first.request(index, None)).unwrap();
+        let error = first.step(&frame).map(|_| ()).unwrap_err();
         assert_eq!(error, FrameError::DeviceLost);
     }
     assert_eq!(lost.check(), Err(FrameError::DeviceLost));
 
     // A new device shows what one shows that never had another: no frame of the past.
     let show = |pipeline: &mut Pipeline, source: &mut AnalyticSource| {
-        let step = pipeline.step(5, &source.frame(5).unwrap(), Some([30.0, 18.0])).unwrap();
+        let frame = source.render(&pipeline.request(5, Some([30.0, 18.0]))).unwrap();
+        let step = pipeline.step(&frame).unwrap();
         step.outputs[0].image.pixels().to_vec()
     };
     let again = [device().unwrap(), device().unwrap()].map(|d| show(&mut pipeline(&d, *source.view()), &mut source));

@@ -15,7 +15,7 @@ fn forty_frames_of_many_materials_leak_nothing() {
     let mut source = RasterSource::open("builtin:cubes", &limits, &options, None, device.clone()).unwrap();
     let mut resident = vec![];
     for index in 0..40 {
-        source.render(index);
+        source.draw(index);
         device.wait();
         if index % 10 == 9 {
             resident.extend(afterimage_testing::resident::resident_mib());

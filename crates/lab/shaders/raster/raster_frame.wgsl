@@ -1,4 +1,5 @@
-// Uniforms of a rasterized frame: current and previous camera, and lights. Twin of src/raster/frame.rs, lights.rs and lighting.rs.
+// Uniforms of a rasterized frame: current and previous camera, and lights. Twin of src/raster/frame.rs, lights.rs
+// and lighting.rs.
 
 // Camera. `high` plus `low` is the eye's position. The rows x, y, along project a point relative to the eye to
 // homogeneous pixels: (x, y) / along is the pixel (centres at integers, y down), along the distance on the view axis.

@@ -37,3 +37,14 @@ pub enum Backend {
     #[cfg(feature = "full")]
     Gpu(Arc<Headless>),
 }
+
+#[cfg(feature = "full")]
+impl Backend {
+    /// The device, if it is one.
+    pub fn device(&self) -> Option<&Arc<Headless>> {
+        match self {
+            Self::Cpu => None,
+            Self::Gpu(device) => Some(device),
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! Guided sampling: the noise of a run's history, reprojected to the next frame.
 
-use crate::frame::Guide;
-use crate::frame::SourceFrame;
+use crate::frame::{Guide, SourceFrame};
+use crate::source::SamplingGuide;
 use afterimage::kernel::color::luma;
 use afterimage::kernel::noise::{Noise, root_slope};
 use afterimage::kernel::reproject;
@@ -20,36 +20,29 @@ pub(super) struct HistoryNoise {
     new_share: f32,
     output: Image<[f32; 3]>,
     depth: Option<Image<f32>>,
+    geometry: ViewGeometry,
 }
 
 impl HistoryNoise {
     /// State after `frame`: noise of the history, least weight of a new frame in its mean, and the method's output.
-    pub fn new(noise: Image<Noise>, new_share: f32, output: Image<[f32; 3]>, frame: &SourceFrame) -> Self {
-        Self { noise, new_share, output, depth: frame.depth.clone() }
-    }
-
-    /// Guide for the next frame: for each pixel, the number of samples in its surface's history, and their standard
-    /// deviation in square roots of luma, the unit in which smr compares colors. Disoccluded and off-screen surfaces
-    /// have 0 samples and NaN.
-    pub fn guide(&self, frame: &SourceFrame, geometry: &ViewGeometry) -> Guide {
-        let known = Image::from_fn_parallel(self.noise.size(), |pixel| match self.source(frame, geometry, pixel) {
-            None => [0.0, f32::NAN],
-            Some([x, y]) => {
-                let (noise, luma) = (self.noise.at(x, y), luma(Vec3::from(self.output.at(x, y))));
-                [noise.samples * self.new_share, noise.variance.sqrt() * root_slope(luma)]
-            }
-        });
-        Guide { known: known.map(|[samples, _]| samples), deviation: known.map(|[_, deviation]| deviation) }
+    pub fn new(
+        noise: Image<Noise>,
+        new_share: f32,
+        output: Image<[f32; 3]>,
+        frame: &SourceFrame,
+        geometry: ViewGeometry,
+    ) -> Self {
+        Self { noise, new_share, output, depth: frame.depth.clone(), geometry }
     }
 
     /// Position of the pixel's surface in the previous frame; `None` if it was off the screen or fails the depth test.
-    fn source(&self, frame: &SourceFrame, geometry: &ViewGeometry, [x, y]: [u32; 2]) -> Option<[usize; 2]> {
+    fn source(&self, frame: &SourceFrame, [x, y]: [u32; 2]) -> Option<[usize; 2]> {
         let (px, py) = (x as usize, y as usize);
         let motion = frame.motion.as_ref().map_or([0.0; 2], |m| m.at(px, py));
         let [qx, qy] = reproject::nearest(x, y, motion, self.noise.size()).ok()?.map(|v| v as usize);
         let (Some(now), Some(before)) = (&frame.depth, &self.depth) else { return Some([qx, qy]) };
         let (now, before) = (now.at(px, py), before.at(qx, qy));
-        let point = (Vec3::from(geometry.ray([x as f32, y as f32])) * now).extend(1.0);
+        let point = (Vec3::from(self.geometry.ray([x as f32, y as f32])) * now).extend(1.0);
         let expected = frame.previous_from_current.map_or(now, |m| glam::Vec4::from(m[2]).dot(point));
         let is_background = |z: f32| z.is_nan() || z >= 1e9;
         let same = match (is_background(now), is_background(before)) {
@@ -57,6 +50,25 @@ impl HistoryNoise {
             (now, before) => now == before,
         };
         same.then_some([qx, qy])
+    }
+}
+
+impl SamplingGuide for HistoryNoise {
+    /// Guide for the next frame: for each pixel, the number of samples in its surface's history, and their standard
+    /// deviation in square roots of luma, the unit in which smr compares colors. Disoccluded and off-screen surfaces
+    /// have 0 samples and NaN. After a cut, nothing is known.
+    fn guide(&self, frame: &SourceFrame) -> Option<Guide> {
+        if frame.cut {
+            return None;
+        }
+        let known = Image::from_fn_parallel(self.noise.size(), |pixel| match self.source(frame, pixel) {
+            None => [0.0, f32::NAN],
+            Some([x, y]) => {
+                let (noise, luma) = (self.noise.at(x, y), luma(Vec3::from(self.output.at(x, y))));
+                [noise.samples * self.new_share, noise.variance.sqrt() * root_slope(luma)]
+            }
+        });
+        Some(Guide { known: known.map(|[samples, _]| samples), deviation: known.map(|[_, deviation]| deviation) })
     }
 }
 
@@ -81,7 +93,7 @@ mod tests {
     fn guided(before: &SourceFrame, now: &SourceFrame) -> Guide {
         let noise = Image::from_fn(SIZE, |[x, y]| Noise { samples: (1 + x + 8 * y) as f32, variance: 0.01 });
         let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
-        HistoryNoise::new(noise, 0.5, before.color.clone(), before).guide(now, &geometry)
+        HistoryNoise::new(noise, 0.5, before.color.clone(), before, geometry).guide(now).expect("it is no cut")
     }
 
     #[test]

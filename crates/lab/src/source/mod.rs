@@ -11,9 +11,9 @@ pub mod limits;
 pub mod motion_check;
 #[cfg(feature = "full")]
 mod open;
-mod peeked;
 #[cfg(feature = "full")]
 pub mod raster;
+mod request;
 #[cfg(feature = "full")]
 pub mod scene_camera;
 #[cfg(feature = "full")]
@@ -22,15 +22,17 @@ pub mod sequence;
 pub mod still;
 #[cfg(feature = "full")]
 pub mod traced;
+#[cfg(feature = "full")]
+pub mod viewed_scene;
 
 pub use analytic::AnalyticSource;
 #[cfg(feature = "full")]
 pub use limits::ReadLimits;
 #[cfg(feature = "full")]
 pub use open::{is_scene, open};
-pub use peeked::PeekedSource;
 #[cfg(feature = "full")]
-pub use raster::{RasterScene, RasterSource};
+pub use raster::RasterSource;
+pub use request::{FrameRequest, SamplingGuide, Wanted};
 #[cfg(feature = "full")]
 pub use scene_camera::SceneCamera;
 #[cfg(feature = "full")]
@@ -39,23 +41,12 @@ pub use sequence::SequenceSource;
 pub use still::StillSource;
 #[cfg(feature = "full")]
 pub use traced::{TracedSamples, TracedSource};
+#[cfg(feature = "full")]
+pub use viewed_scene::{Light, SceneChoice, ViewedScene};
 
-use crate::clock::Elapsed;
-#[cfg(feature = "full")]
-use crate::device::Headless;
 use crate::error::InputError;
-#[cfg(feature = "full")]
-use crate::frame::{ComposedFrame, DeviceFrame, DeviceSamples, SparseFrame};
-use crate::frame::{FoveatedFrame, Guide, SourceFrame};
-#[cfg(feature = "full")]
-use crate::lattices::SparseGeometry;
-#[cfg(feature = "full")]
-use crate::quad_views::QuadViews;
-#[cfg(feature = "full")]
-use afterimage::Lattices;
+use crate::frame::{RenderedFrame, SourceFrame};
 use glam::DMat4;
-#[cfg(feature = "full")]
-use std::sync::Arc;
 
 /// Properties of a source that are known before its first frame is read.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,75 +82,20 @@ pub trait FrameSource {
     /// Properties that hold for all frames.
     fn info(&self) -> &SourceInfo;
 
-    /// The frame at playback position `index`. Positions may come in any order; motion vectors always refer to
-    /// `index - 1`.
+    /// The frame that `request` asks for. Positions may come in any order.
     ///
     /// # Errors
     /// [`Io`](InputError::Io) and [`Invalid`](InputError::Invalid) if the file of the frame cannot be read or
     /// contradicts its header, [`Limit`](InputError::Limit) if it is larger than the limits by now,
     /// [`Device`](InputError::Device) if the renderer failed or lost its device.
-    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError>;
+    fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError>;
 
-    /// The frame at `index`, foveated by the source itself around a gaze in pixels. `guide` directs the samples. `None`
-    /// if the source cannot foveate: a simulator then foveates the full-rate frame.
+    /// The full-rate frame at playback position `index`: short for [`render`](Self::render).
     ///
     /// # Errors
-    /// As for [`frame`](Self::frame).
-    fn foveated(
-        &mut self,
-        _index: u64,
-        _gaze_px: [f32; 2],
-        _guide: Option<&Guide>,
-    ) -> Result<Option<FoveatedFrame>, InputError> {
-        Ok(None)
-    }
-
-    /// As [`foveated`](Self::foveated), with the samples of a sparse frame left on `device`, and with their depth and
-    /// motion if `geometry` asks for them. `None` unless the source makes sparse frames on that device.
-    ///
-    /// # Errors
-    /// As for [`frame`](Self::frame).
-    #[cfg(feature = "full")]
-    fn foveated_on(
-        &mut self,
-        _device: &Arc<Headless>,
-        _index: u64,
-        _gaze_px: [f32; 2],
-        _geometry: SparseGeometry,
-    ) -> Result<Option<DeviceSamples>, InputError> {
-        Ok(None)
-    }
-
-    /// The frame at `index` with the samples of `lattices` alone: color, depth and motion in atlases on a device.
-    /// `None` if the source does not render such frames: samples are then taken from the full-rate frame.
-    ///
-    /// # Errors
-    /// As for [`frame`](Self::frame).
-    #[cfg(feature = "full")]
-    fn sparse(&mut self, _index: u64, _lattices: &Lattices) -> Result<Option<SparseFrame>, InputError> {
-        Ok(None)
-    }
-
-    /// The frame at `index`, composed of quad views. `None` if the source does not render such frames.
-    ///
-    /// # Errors
-    /// As for [`frame`](Self::frame).
-    #[cfg(feature = "full")]
-    fn composed(&mut self, _index: u64, _views: &QuadViews) -> Result<Option<ComposedFrame>, InputError> {
-        Ok(None)
-    }
-
-    /// The frame that [`frame`](Self::frame) gave last, where it was rendered on a device and still lies there.
-    #[cfg(feature = "full")]
-    fn device_frame(&self) -> Option<DeviceFrame> {
-        None
-    }
-
-    /// Time of rendering the frame that [`frame`](Self::frame), [`foveated`](Self::foveated) or `sparse` gave last,
-    /// until it was complete on its device: posing the scene, recording and drawing or tracing, without reading back.
-    /// `None` if the source renders nothing.
-    fn render_time(&self) -> Option<Elapsed> {
-        None
+    /// As for `render`.
+    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
+        Ok(self.render(&FrameRequest::full_rate(index))?.reference)
     }
 
     /// Camera pose at playback position `index`; `None` if the camera cannot be steered.

@@ -1,95 +1,25 @@
 //! Frames of a scene from the rasteriser.
 
 use super::CameraPose;
-use super::open::{check_size, device_lost};
+use super::open::device_lost;
 use super::scene_camera::SceneCamera;
-use super::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
+use super::viewed_scene::{SceneChoice, ViewedScene};
+use super::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo, Wanted};
 use crate::clock::{Elapsed, Stopwatch};
 use crate::device::{Headless, PassClock};
 use crate::error::InputError;
-use crate::frame::{ComposedFrame, DeviceFrame, SourceFrame, SparseFrame};
+use crate::frame::{ComposedFrame, Content, DeviceFrame, OnDevice, RenderedFrame, SourceFrame, SparseFrame};
+use crate::lattices::SparseGeometry;
 use crate::quad_views::QuadViews;
 use crate::raster::{AtlasLayout, Composer, FoveatedTargets, Raster, RasterSettings, Targets};
-use crate::scene::{Scene, SceneLimits};
+use crate::scene::Scene;
 use crate::trace::view::View;
-use afterimage::{Lattices, ViewGeometry};
+use afterimage::Lattices;
 use glam::DMat4;
 use std::sync::Arc;
 use wgpu::{CommandEncoder, Device};
 
-/// Default width and height in pixels.
-pub const DEFAULT_SIZE: [u32; 2] = [640, 360];
-/// Default frames per second.
-pub const DEFAULT_FPS: f32 = 60.0;
-
-/// A scene and the camera that sees it, which a [`RasterSource`] renders on any device.
-#[derive(Clone)]
-pub struct RasterScene {
-    info: SourceInfo,
-    scene: Arc<Scene>,
-    camera: SceneCamera,
-    fps: f64,
-}
-
-impl RasterScene {
-    /// Opens a `.gltf` or `.glb` file or `builtin:NAME`, seen by the camera that [`SceneCamera::choose`] selects for
-    /// `camera`.
-    ///
-    /// # Errors
-    /// Those of [`Scene::open`], [`SceneCamera::choose`] and [`new`](Self::new), and [`Limit`](InputError::Limit) if
-    /// the frame has more pixels than `limits` allows.
-    pub fn open(
-        input: &str,
-        limits: &ReadLimits,
-        options: &SceneOptions,
-        camera: Option<&str>,
-    ) -> Result<Self, InputError> {
-        let size = options.size.unwrap_or(DEFAULT_SIZE);
-        check_size(input, size, limits)?;
-        let scene = Scene::open(input, &SceneLimits::default())?;
-        let camera = SceneCamera::choose(&scene, camera, size, options.hfov_deg)?;
-        Self::new(scene, camera, options.fps)
-    }
-
-    /// `scene` seen by `camera` at `fps` frames per second (default: those of the camera file, else 60).
-    ///
-    /// # Errors
-    /// [`Request`](InputError::Request) if the frame rate is not above 0.
-    pub fn new(scene: Scene, camera: SceneCamera, fps: Option<f32>) -> Result<Self, InputError> {
-        let fps = fps.or(camera.fps()).unwrap_or(DEFAULT_FPS);
-        if !(fps.is_finite() && fps > 0.0) {
-            let problem = format!("the frame rate is {fps}");
-            return Err(InputError::request(&scene.name, problem, "expected frames per second above 0"));
-        }
-        let info = SourceInfo {
-            name: scene.name.clone(),
-            size: camera.geometry().size_px(),
-            frames: camera.frames(),
-            fps: Some(fps),
-            hfov_deg: Some(camera.geometry().hfov_deg()),
-            still: scene.duration_s() <= 0.0 && camera.is_still(&scene),
-        };
-        Ok(Self { info, scene: Arc::new(scene), camera, fps: f64::from(fps) })
-    }
-
-    /// The same camera with another frame size or field of view.
-    #[must_use]
-    pub fn with_geometry(mut self, geometry: ViewGeometry) -> Self {
-        self.camera = self.camera.with_geometry(geometry);
-        (self.info.size, self.info.hfov_deg) = (geometry.size_px(), Some(geometry.hfov_deg()));
-        self
-    }
-
-    /// Properties that hold for all frames.
-    pub fn info(&self) -> &SourceInfo {
-        &self.info
-    }
-
-    /// Features of the scene file that are ignored or approximated.
-    pub fn warnings(&self) -> &[String] {
-        &self.scene.warnings
-    }
-
+impl ViewedScene {
     /// Uploads the scene to a device. Texture filtering is anisotropic except on software devices.
     ///
     /// # Errors
@@ -103,7 +33,7 @@ impl RasterScene {
     }
 
     fn on_with(&self, device: Arc<Headless>, settings: RasterSettings) -> Result<RasterSource, InputError> {
-        let raster = Raster::new(&device.device, &device.queue, &self.scene, self.info.size, settings)?;
+        let raster = Raster::new(&device.device, &device.queue, &self.scene, self.info().size, settings)?;
         Ok(RasterSource {
             of: self.clone(),
             clock: PassClock::new(&device),
@@ -111,7 +41,6 @@ impl RasterScene {
             raster,
             foveated: [const { None }; 2],
             composer: None,
-            render_time: None,
         })
     }
 }
@@ -122,7 +51,7 @@ impl RasterScene {
 /// `(index - 1) / fps`. Frame 0 is a cut without motion. Depth, motion and `previous_from_current` are always present.
 /// Depth and motion are sampled at pixel centres; color is the mean of four samples.
 pub struct RasterSource {
-    of: RasterScene,
+    of: ViewedScene,
     device: Arc<Headless>,
     raster: Raster,
     /// By layout of their atlases; none before the first such frame.
@@ -130,12 +59,10 @@ pub struct RasterSource {
     /// None before the first frame of quad views.
     composer: Option<Composer>,
     clock: PassClock,
-    /// Of the last frame that was rendered for [`FrameSource`].
-    render_time: Option<Elapsed>,
 }
 
 impl RasterSource {
-    /// [`RasterScene::open`] and [`RasterScene::on`].
+    /// [`ViewedScene::open`] and [`ViewedScene::on`].
     ///
     /// # Errors
     /// As for those.
@@ -146,13 +73,14 @@ impl RasterSource {
         camera: Option<&str>,
         device: Arc<Headless>,
     ) -> Result<Self, InputError> {
-        RasterScene::open(input, limits, options, camera)?.on(device)
+        let choice = SceneChoice { camera, options: *options, limits: *limits, ..SceneChoice::new(input) };
+        ViewedScene::open(&choice)?.on(device)
     }
 
-    /// [`RasterScene::new`], on a device with these settings.
+    /// [`ViewedScene::new`], on a device with these settings.
     ///
     /// # Errors
-    /// As for [`RasterScene::new`] and [`RasterScene::on`].
+    /// As for [`ViewedScene::new`] and [`ViewedScene::on`].
     pub fn new(
         device: Arc<Headless>,
         scene: Scene,
@@ -160,7 +88,7 @@ impl RasterSource {
         fps: Option<f32>,
         settings: RasterSettings,
     ) -> Result<Self, InputError> {
-        RasterScene::new(scene, camera, fps)?.on_with(device, settings)
+        ViewedScene::new(scene, camera, fps)?.on_with(device, settings)
     }
 
     /// Features of the scene file that are ignored or approximated.
@@ -175,79 +103,148 @@ impl RasterSource {
 
     /// Views of frame `index` and of the previous one, and the times of both in seconds.
     pub fn views(&self, index: u64) -> ([View; 2], [f64; 2]) {
-        let before = index.saturating_sub(1);
-        let times = [index, before].map(|i| i as f64 / self.of.fps);
-        (
-            [
-                self.of.camera.view(&self.of.scene, index, times[0]),
-                self.of.camera.view(&self.of.scene, before, times[1]),
-            ],
-            times,
-        )
+        self.of.views(index)
     }
 
-    /// Renders frame `index` without reading it back.
-    pub fn render(&mut self, index: u64) -> &Raster {
-        self.submit(|source, encoder| source.record(encoder, index));
+    /// Renders the full-rate frame `index` without reading it back.
+    pub fn draw(&mut self, index: u64) -> &Raster {
+        self.submit(|source, encoder| source.record_full_rate(encoder, &FrameRequest::full_rate(index)));
         &self.raster
     }
 
-    /// Records the rendering of frame `index`.
-    pub fn record(&mut self, encoder: &mut CommandEncoder, index: u64) {
-        let [view, previous] = self.pose(index);
+    /// Records the rendering of the full-rate frame.
+    fn record_full_rate(&mut self, encoder: &mut CommandEncoder, request: &FrameRequest<'_>) {
+        let [view, previous] = self.pose(request);
         self.raster.record(&self.device.device, encoder, &view, &previous);
     }
 
-    /// Poses the scene for frame `index`; the frame's view, and the previous one.
-    fn pose(&mut self, index: u64) -> [View; 2] {
-        let (views, times) = self.views(index);
+    /// Records the rendering of a frame that stays on the device, and the full-rate frame with it where its depth and
+    /// motion are asked for.
+    pub fn record(&mut self, encoder: &mut CommandEncoder, request: &FrameRequest<'_>) -> RenderedFrame {
+        let [view, previous] = self.pose(request);
+        if request.needs_full_rate() {
+            self.raster.record(&self.device.device, encoder, &view, &previous);
+        }
+        let frame = self.record_content(encoder, request, [&view, &previous], AtlasLayout::Compact);
+        RenderedFrame { reference_on_device: request.needs_full_rate().then(|| self.targets()), ..frame }
+    }
+
+    /// Records what the methods get, unless that is the full-rate frame.
+    fn record_content(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        request: &FrameRequest<'_>,
+        views: [&View; 2],
+        layout: AtlasLayout,
+    ) -> RenderedFrame {
+        let reference = SourceFrame::without_images(Some(views[0].previous_from_current(views[1])), request.index == 0);
+        let frame = request.answer(reference);
+        let (content, samples) = match &request.wanted {
+            Wanted::FullRate => return frame,
+            Wanted::Lattices(lattices) => {
+                let sparse = self.record_lattices(encoder, views, lattices, layout);
+                let points =
+                    lattices.as_slice().iter().map(|l| l.points.iter().map(|&n| u64::from(n)).product::<u64>());
+                (OnDevice::Atlas(sparse), points.sum())
+            }
+            Wanted::QuadViews(quads) => {
+                (OnDevice::Composed(self.record_quad_views(encoder, views, quads, layout)), quads.pixels())
+            }
+        };
+        RenderedFrame { content: Content::OnDevice(content), samples: Some(samples), ..frame }
+    }
+
+    /// The full-rate frame, read back.
+    fn full_rate(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
+        let index = request.index;
+        let ((), took) = self.submit_timed(|source, encoder| source.record_full_rate(encoder, request))?;
+        let ([view, previous], _) = self.of.views_of(request);
+        let targets = self.raster.targets();
+        let mut nonfinite = 0;
+        let color = targets.read_color(&self.device).map(|c| {
+            let usable = c.iter().all(|v| v.is_finite());
+            nonfinite += u64::from(!usable);
+            if usable { c } else { [0.0; 3] }
+        });
+        let (depth, motion) =
+            (targets.read_distance(&self.device, self.raster.near()), targets.read_motion(&self.device));
+        self.device.check().map_err(|lost| device_lost(&self.of.info().name, &lost))?;
+        let frame = SourceFrame {
+            color,
+            depth: Some(depth),
+            motion: Some(motion),
+            trust: None,
+            previous_from_current: Some(view.previous_from_current(&previous)),
+            cut: index == 0,
+            nonfinite,
+        };
+        Ok(RenderedFrame {
+            reference_on_device: Some(self.targets()),
+            render: Some(took),
+            full_rate: Some(took),
+            ..request.answer(frame)
+        })
+    }
+
+    /// Distance of the near plane in metres, of the frame that was drawn last.
+    pub fn near(&self) -> f32 {
+        self.raster.near()
+    }
+
+    /// Targets of the full-rate frame.
+    fn targets(&self) -> DeviceFrame {
+        on_device(&self.device, self.raster.targets(), self.raster.near())
+    }
+
+    /// Poses the scene for a frame; the frame's view, and the previous one.
+    fn pose(&mut self, request: &FrameRequest<'_>) -> [View; 2] {
+        let (views, times) = self.of.views_of(request);
         self.raster.pose(&self.of.scene, times[0], times[1]);
         views
     }
 
     /// Renders the samples of `lattices` of frame `index`, without reading them back: [`Raster::record_foveated`].
     /// Returns the targets, and the lattices with their places in the atlases.
-    pub fn render_foveated(
+    pub fn draw_foveated(
         &mut self,
         index: u64,
         lattices: &Lattices,
         layout: AtlasLayout,
     ) -> (&FoveatedTargets, Lattices) {
-        let frame = self.submit(|source, encoder| source.record_foveated(encoder, index, lattices, layout));
+        let frame = self.submit(|source, encoder| {
+            let [view, previous] = source.pose(&FrameRequest::full_rate(index));
+            source.record_lattices(encoder, [&view, &previous], lattices, layout)
+        });
         (self.foveated[layout as usize].as_ref().expect("they were drawn to"), frame.lattices)
     }
 
-    /// Records the rendering of the samples of `lattices` of frame `index`.
-    pub fn record_foveated(
+    fn record_lattices(
         &mut self,
         encoder: &mut CommandEncoder,
-        index: u64,
+        views: [&View; 2],
         lattices: &Lattices,
         layout: AtlasLayout,
     ) -> SparseFrame {
-        let [view, previous] = self.pose(index);
-        let (lattices, size) = layout.place(lattices, self.of.info.size);
+        let (lattices, size) = layout.place(lattices, self.of.info().size);
         let device = &self.device.device;
         let targets = fitted(&mut self.foveated[layout as usize], device, size);
-        self.raster.record_foveated(device, encoder, [&view, &previous], &lattices, targets);
+        self.raster.record_foveated(device, encoder, views, &lattices, targets);
         SparseFrame { atlas: on_device(&self.device, &targets.atlas, self.raster.near()), lattices }
     }
 
-    /// Records the rendering of quad views of frame `index`, and their composition.
-    pub fn record_composed(
+    fn record_quad_views(
         &mut self,
         encoder: &mut CommandEncoder,
-        index: u64,
-        views: &QuadViews,
+        frame_views: [&View; 2],
+        quads: &QuadViews,
         layout: AtlasLayout,
     ) -> ComposedFrame {
-        let [view, previous] = self.pose(index);
-        let (views, size) = layout.place_views(views, self.of.info.size);
+        let (quads, size) = layout.place_views(quads, self.of.info().size);
         let device = &self.device.device;
         let targets = fitted(&mut self.foveated[layout as usize], device, size);
-        let composer = self.composer.get_or_insert_with(|| Composer::new(device, self.of.info.size));
-        self.raster.record_quad_views(device, encoder, [&view, &previous], &views, targets);
-        composer.record(device, encoder, &views, &targets.atlas, self.raster.near());
+        let composer = self.composer.get_or_insert_with(|| Composer::new(device, self.of.info().size));
+        self.raster.record_quad_views(device, encoder, frame_views, &quads, targets);
+        composer.record(device, encoder, &quads, &targets.atlas, self.raster.near());
         let [color, distance, motion, lod] = composer.frame().clone();
         ComposedFrame { device: self.device.clone(), color, distance, motion, lod }
     }
@@ -260,7 +257,10 @@ impl RasterSource {
     }
 
     /// As [`submit`](Self::submit), and waits for the device: the time is that of this work alone.
-    fn submit_timed<T>(&mut self, record: impl FnOnce(&mut Self, &mut CommandEncoder) -> T) -> Result<T, InputError> {
+    fn submit_timed<T>(
+        &mut self,
+        record: impl FnOnce(&mut Self, &mut CommandEncoder) -> T,
+    ) -> Result<(T, Elapsed), InputError> {
         self.device.wait();
         let watch = Stopwatch::start();
         let recorded = self.submit(|source, encoder| {
@@ -269,9 +269,9 @@ impl RasterSource {
             source.clock.end(encoder);
             recorded
         });
-        self.render_time = Some(self.clock.elapsed(&self.device, &watch));
-        self.device.check().map_err(|lost| device_lost(&self.of.info.name, &lost))?;
-        Ok(recorded)
+        let took = self.clock.elapsed(&self.device, &watch);
+        self.device.check().map_err(|lost| device_lost(&self.of.info().name, &lost))?;
+        Ok((recorded, took))
     }
 }
 
@@ -290,65 +290,35 @@ fn fitted<'a>(held: &'a mut Option<FoveatedTargets>, device: &Device, size: [u32
 
 impl FrameSource for RasterSource {
     fn info(&self) -> &SourceInfo {
-        &self.of.info
+        self.of.info()
     }
 
-    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
-        let ([view, previous], _) = self.views(index);
-        self.submit_timed(|source, encoder| source.record(encoder, index))?;
-        let targets = self.raster.targets();
-        let mut nonfinite = 0;
-        let color = targets.read_color(&self.device).map(|c| {
-            let usable = c.iter().all(|v| v.is_finite());
-            nonfinite += u64::from(!usable);
-            if usable { c } else { [0.0; 3] }
-        });
-        let (depth, motion) =
-            (targets.read_distance(&self.device, self.raster.near()), targets.read_motion(&self.device));
-        self.device.check().map_err(|lost| device_lost(&self.of.info.name, &lost))?;
-        Ok(SourceFrame {
-            color,
-            depth: Some(depth),
-            motion: Some(motion),
-            trust: None,
-            previous_from_current: Some(view.previous_from_current(&previous)),
-            cut: index == 0,
-            nonfinite,
-        })
-    }
-
-    /// The full-rate lattice lies in place: with the full-rate frame as the reference, its samples are exact. Depth and
-    /// motion at every pixel, if the lattices call for them, are drawn again: they are part of the time.
-    fn sparse(&mut self, index: u64, lattices: &Lattices) -> Result<Option<SparseFrame>, InputError> {
-        let frame = self.submit_timed(|source, encoder| {
-            let frame = source.record_foveated(encoder, index, lattices, AtlasLayout::InPlace);
-            if !lattices.has_geometry_at_samples() {
-                let ([view, previous], _) = source.views(index);
+    /// Foveated frames lie in place in their atlas where the full-rate frame is their reference: samples at full rate
+    /// are then exactly those of the reference.
+    fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
+        let whole = request.reference.then(|| self.full_rate(request)).transpose()?;
+        let Some(whole) = whole else {
+            let (frame, took) = self.submit_timed(|source, encoder| source.record(encoder, request))?;
+            return Ok(RenderedFrame { render: Some(took), ..frame });
+        };
+        if request.wanted == Wanted::FullRate {
+            return Ok(whole);
+        }
+        let (frame, took) = self.submit_timed(|source, encoder| {
+            let [view, previous] = source.pose(request);
+            let frame = source.record_content(encoder, request, [&view, &previous], AtlasLayout::InPlace);
+            // Depth and motion at every pixel, if lattices call for them, are drawn again: they are part of the time.
+            if matches!(request.wanted, Wanted::Lattices(_)) && request.geometry == SparseGeometry::Full {
                 source.raster.record_surfaces(&source.device.device, encoder, &view, &previous);
             }
             frame
         })?;
-        Ok(Some(frame))
-    }
-
-    /// The full-rate view lies in place, as in [`sparse`](Self::sparse).
-    fn composed(&mut self, index: u64, views: &QuadViews) -> Result<Option<ComposedFrame>, InputError> {
-        let record = |source: &mut Self, encoder: &mut CommandEncoder| {
-            source.record_composed(encoder, index, views, AtlasLayout::InPlace)
-        };
-        Ok(Some(self.submit_timed(record)?))
-    }
-
-    fn device_frame(&self) -> Option<DeviceFrame> {
-        Some(on_device(&self.device, self.raster.targets(), self.raster.near()))
-    }
-
-    fn render_time(&self) -> Option<Elapsed> {
-        self.render_time
+        let RenderedFrame { content, samples, .. } = frame;
+        Ok(RenderedFrame { content, samples, render: Some(took), ..whole })
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {
-        Some(self.of.camera.camera_pose(&self.of.scene, index, index as f64 / self.of.fps))
+        Some(self.of.camera.camera_pose(&self.of.scene, index, self.of.time_s(index)))
     }
 
     fn steer(&mut self, index: u64, before_and_now: Option<[DMat4; 2]>) {

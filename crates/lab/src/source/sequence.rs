@@ -3,10 +3,10 @@
 use super::exr_file::{ExrHeader, Vectors};
 use super::limits::ReadLimits;
 use super::still::StillSource;
-use super::{FrameSource, SourceInfo};
+use super::{FrameRequest, FrameSource, SourceInfo};
 use crate::error::InputError;
 use crate::error::io_error;
-use crate::frame::SourceFrame;
+use crate::frame::{RenderedFrame, SourceFrame};
 use crate::scene::cameras::Cameras;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -82,9 +82,10 @@ impl FrameSource for SequenceSource {
         &self.info
     }
 
-    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
+    fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
+        let index = request.index;
         if let Some(still) = &mut self.still {
-            return still.frame(index);
+            return still.render(request);
         }
         let (file, step) = playback(index, self.files.len() as u64);
         let header = ExrHeader::open(&self.files[file], &self.limits)?;
@@ -108,7 +109,7 @@ impl FrameSource for SequenceSource {
             };
             Some(cameras.previous_from_current(poses[previous], poses[file]))
         });
-        Ok(SourceFrame {
+        let frame = SourceFrame {
             color: frame.color,
             depth: frame.depth,
             motion: frame.motion,
@@ -116,7 +117,8 @@ impl FrameSource for SequenceSource {
             previous_from_current,
             cut: step == Step::First,
             nonfinite: frame.nonfinite,
-        })
+        };
+        Ok(RenderedFrame::full_rate(index, request.gaze_px, frame))
     }
 }
 

@@ -2,11 +2,11 @@
 
 use super::exr_file::{ExrHeader, Vectors, guarded};
 use super::limits::{ReadLimits, SMALLER};
-use super::{FrameSource, SourceInfo};
+use super::{FrameRequest, FrameSource, SourceInfo};
 use crate::error::InputError;
 use crate::error::io_error;
 use crate::error::one_line;
-use crate::frame::SourceFrame;
+use crate::frame::{RenderedFrame, SourceFrame};
 use crate::scene::cameras::Cameras;
 use afterimage::Image;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
@@ -107,8 +107,9 @@ impl FrameSource for StillSource {
         &self.info
     }
 
-    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
-        Ok(SourceFrame { cut: index == 0, ..self.frame.clone() })
+    fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
+        let frame = SourceFrame { cut: request.index == 0, ..self.frame.clone() };
+        Ok(RenderedFrame::full_rate(request.index, request.gaze_px, frame))
     }
 }
 

@@ -1,17 +1,14 @@
 //! Frames of a scene from the path tracer.
 
 use super::CameraPose;
-use super::open::{check_size, device_lost};
-use super::raster::{DEFAULT_FPS, DEFAULT_SIZE};
-use super::scene_camera::SceneCamera;
-use super::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
+use super::open::device_lost;
+use super::viewed_scene::{Light, SceneChoice, ViewedScene};
+use super::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo};
 use crate::clock::Elapsed;
-use crate::device::{Backend, Headless, SpanClock};
+use crate::device::{Backend, SpanClock};
 use crate::error::InputError;
-use crate::frame::SourceFrame;
-use crate::frame::{DeviceSamples, FoveatedFrame, Guide};
+use crate::frame::{Content, DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, SourceFrame};
 use crate::lattices::{SampleOrder, SparseGeometry};
-use crate::scene::{Scene, SceneLimits};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
 use crate::trace::sampling::{Sampling, SparsePlan};
@@ -19,7 +16,7 @@ use crate::trace::settings::TraceSettings;
 use crate::trace::surfaces::Surfaces;
 use crate::trace::view::View;
 use crate::trace::work::Spans;
-use crate::trace::world::{World, light_if_dark};
+use crate::trace::world::World;
 use afterimage::SettingsError;
 use glam::DMat4;
 use std::sync::Arc;
@@ -49,30 +46,25 @@ pub struct TracedSamples {
 /// As with [`RasterSource`](super::RasterSource), each frame is a function of its index alone, and frame 0 is a cut.
 /// Depth and motion are those at pixel centres, without noise.
 pub struct TracedSource {
-    info: SourceInfo,
-    scene: Scene,
+    of: ViewedScene,
     world: World,
     tracer: Tracer,
-    camera: SceneCamera,
-    fps: f64,
     samples: TracedSamples,
     seed: u64,
     /// Cached full-rate frame of a static scene, and its time.
     still: Option<(SourceFrame, Elapsed)>,
     clock: SpanClock,
-    /// Of the last frame.
-    render_time: Option<Elapsed>,
     /// Samples of the last sparse frame on the tracer's device.
     on_device: Option<DeviceSamples>,
 }
 
 impl TracedSource {
-    /// Opens a `.gltf` or `.glb` file or `builtin:NAME`, seen by the camera that [`SceneCamera::choose`] selects for
-    /// `camera`. A scene without lights gets a uniform white environment.
+    /// Opens a `.gltf` or `.glb` file or `builtin:NAME`, seen by the camera that
+    /// [`SceneCamera::choose`](super::SceneCamera::choose) selects for `camera`. A scene without lights gets a uniform
+    /// white environment.
     ///
     /// # Errors
-    /// Those of [`Scene::open`] and [`SceneCamera::choose`]; [`Limit`](InputError::Limit) if the frame has more pixels
-    /// than `limits` allows; [`Device`](InputError::Device) if the scene does not fit the device;
+    /// Those of [`ViewedScene::open`]; [`Device`](InputError::Device) if the scene does not fit the device;
     /// [`Request`](InputError::Request) if the frame rate is not above 0.
     pub fn open(
         input: &str,
@@ -83,82 +75,64 @@ impl TracedSource {
         settings: TraceSettings,
         samples: TracedSamples,
     ) -> Result<Self, InputError> {
-        let size = options.size.unwrap_or(DEFAULT_SIZE);
-        check_size(input, size, limits)?;
-        let mut scene = Scene::open(input, &SceneLimits::default())?;
-        light_if_dark(&mut scene);
-        let camera = SceneCamera::choose(&scene, camera, size, options.hfov_deg)?;
-        let world = World::new(&scene);
+        let choice =
+            SceneChoice { camera, light: Light::IfDark, options: *options, limits: *limits, ..SceneChoice::new(input) };
+        let of = ViewedScene::open(&choice)?;
+        let world = World::new(&of.scene);
         let tracer = Tracer::new(backend, &world, settings)
             .map_err(|e| InputError::device(input, e.to_string(), "trace it on the CPU"))?;
-        let fps = options.fps.or(camera.fps()).unwrap_or(DEFAULT_FPS);
-        if !(fps.is_finite() && fps > 0.0) {
-            let problem = format!("the frame rate is {fps}");
-            return Err(InputError::request(input, problem, "expected frames per second above 0"));
-        }
-        let info = SourceInfo {
-            name: scene.name.clone(),
-            size,
-            frames: camera.frames(),
-            fps: Some(fps),
-            hfov_deg: Some(camera.geometry().hfov_deg()),
-            still: scene.duration_s() <= 0.0 && camera.is_still(&scene),
-        };
         Ok(Self {
-            info,
-            scene,
+            of,
             world,
             tracer,
-            camera,
-            fps: f64::from(fps),
             samples,
             seed: settings.seed,
             still: None,
             clock: SpanClock::new(backend),
-            render_time: None,
             on_device: None,
         })
     }
 
     /// Features of the scene file that are ignored or approximated.
     pub fn warnings(&self) -> &[String] {
-        &self.scene.warnings
+        &self.of.scene.warnings
     }
 }
 
 impl TracedSource {
     /// Poses the scene for a frame, and returns the frame's view and the previous one.
-    fn pose(&mut self, index: u64) -> Result<[View; 2], InputError> {
-        let before = index.saturating_sub(1);
-        let times = [index, before].map(|i| i as f64 / self.fps);
-        if self.scene.duration_s() > 0.0 {
-            self.world.pose(&self.scene, times[0], times[1]);
+    fn pose(&mut self, request: &FrameRequest<'_>) -> Result<[View; 2], InputError> {
+        let (views, times) = self.of.views_of(request);
+        if self.of.scene.duration_s() > 0.0 {
+            self.world.pose(&self.of.scene, times[0], times[1]);
             self.tracer
                 .update(&self.world)
-                .map_err(|e| InputError::device(&self.info.name, e.to_string(), "trace it on the CPU"))?;
+                .map_err(|e| InputError::device(&self.of.info().name, e.to_string(), "trace it on the CPU"))?;
         }
-        Ok([self.camera.view(&self.scene, index, times[0]), self.camera.view(&self.scene, before, times[1])])
+        Ok(views)
     }
 
     /// Plan of a sparse frame; `None` if frames are filled between their samples, or not foveated.
     fn sparse_plan(&self, view: &View, index: u64, gaze_px: [f32; 2]) -> Result<Option<SparsePlan>, InputError> {
         let Some((sampling, order)) = self.samples.foveated.zip(self.samples.sparse) else { return Ok(None) };
         let plan = sampling.sparse_plan(view.geometry(), gaze_px, self.samples.samples.max(1), index, order);
-        let refused =
-            |e: SettingsError| InputError::request(&self.info.name, e.to_string(), "choose another sampling pattern");
+        let refused = |e: SettingsError| {
+            InputError::request(&self.of.info().name, e.to_string(), "choose another sampling pattern")
+        };
         plan.map(Some).map_err(refused)
     }
 
     /// An error if the device was lost, which makes the traced samples invalid.
     fn check(&self) -> Result<(), InputError> {
-        self.tracer.check().map_err(|lost| device_lost(&self.info.name, &lost))
+        self.tracer.check().map_err(|lost| device_lost(&self.of.info().name, &lost))
     }
 
     /// The full-rate frame, and the time of tracing its color.
-    fn full_rate(&mut self, index: u64) -> Result<(SourceFrame, Elapsed), InputError> {
-        let [view, previous] = self.pose(index)?;
-        let [width, height] = self.info.size;
-        let mut film = Film::new(self.info.size);
+    fn full_rate(&mut self, request: &FrameRequest<'_>) -> Result<(SourceFrame, Elapsed), InputError> {
+        let index = request.index;
+        let [view, previous] = self.pose(request)?;
+        let [width, height] = self.of.info().size;
+        let mut film = Film::new(self.of.info().size);
         let samples = self.samples.full_rate_samples.max(1);
         let rows = (STEP / width.saturating_mul(samples).max(1)).max(1);
         let ((), took) = self.clock.time(|| {
@@ -180,93 +154,110 @@ impl TracedSource {
         };
         Ok((frame, took))
     }
-}
 
-impl FrameSource for TracedSource {
-    fn info(&self) -> &SourceInfo {
-        &self.info
-    }
-
-    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
-        if !self.info.still || self.camera.is_steered() {
-            let (frame, took) = self.full_rate(index)?;
-            self.render_time = Some(took);
-            return Ok(frame);
+    /// As [`full_rate`](Self::full_rate), traced once if all frames are equal.
+    fn kept_full_rate(&mut self, request: &FrameRequest<'_>) -> Result<(SourceFrame, Elapsed), InputError> {
+        if !self.of.info().still || self.of.camera.is_steered() {
+            return self.full_rate(request);
         }
         let (frame, took) = match self.still.take() {
             Some(traced) => traced,
-            None => self.full_rate(0)?,
+            None => self.full_rate(&FrameRequest { index: 0, ..request.clone() })?,
         };
-        self.render_time = Some(took);
         self.still = Some((frame.clone(), took));
-        Ok(SourceFrame { cut: index == 0, ..frame })
+        Ok((SourceFrame { cut: request.index == 0, ..frame }, took))
     }
 
-    fn foveated(
+    /// The full-rate frame without color; `has_geometry`: with depth and motion.
+    fn without_color(&self, index: u64, [view, previous]: &[View; 2], has_geometry: bool) -> SourceFrame {
+        let frame = SourceFrame::without_images(Some(view.previous_from_current(previous)), index == 0);
+        if !has_geometry {
+            return frame;
+        }
+        let seen = Surfaces::trace(&self.world, view, previous, self.tracer.effects(&self.world));
+        SourceFrame { depth: Some(seen.depth), motion: Some(seen.motion), ..frame }
+    }
+
+    /// The samples of a sparse frame, left on the tracer's device, and the time of tracing them; `None` unless the
+    /// frame is sparse and that device is the methods'.
+    fn samples_on_device(
         &mut self,
-        index: u64,
-        gaze_px: [f32; 2],
-        guide: Option<&Guide>,
-    ) -> Result<Option<FoveatedFrame>, InputError> {
-        let Some(sampling) = self.samples.foveated else { return Ok(None) };
-        let [view, _] = self.pose(index)?;
-        let samples = self.samples.samples.max(1);
-        let (frame, took) = self.clock.time(|| {
-            if let Some(plan) = self.sparse_plan(&view, index, gaze_px)? {
-                return Ok(plan.trace(&self.tracer, &self.world, &view, index));
-            }
-            let plan = sampling.plan(view.geometry(), gaze_px, samples, index);
-            let plan = match guide {
-                None => plan,
-                Some(guide) => plan.guided(guide, index, self.seed).map_err(|e| {
-                    InputError::request(&self.info.name, e.to_string(), "give a guide of the frame's size")
-                })?,
-            };
-            Ok(plan.trace(&self.tracer, &self.world, &view, index))
-        });
-        let frame: FoveatedFrame = frame?;
-        self.check()?;
-        self.render_time = Some(took);
-        Ok(Some(frame))
-    }
-
-    fn render_time(&self) -> Option<Elapsed> {
-        self.render_time
-    }
-
-    fn foveated_on(
-        &mut self,
-        device: &Arc<Headless>,
-        index: u64,
-        gaze_px: [f32; 2],
-        geometry: SparseGeometry,
-    ) -> Result<Option<DeviceSamples>, InputError> {
-        if !matches!(&self.tracer, Tracer::Gpu(tracer) if Arc::ptr_eq(tracer.device(), device)) {
+        request: &FrameRequest<'_>,
+        [view, previous]: &[View; 2],
+    ) -> Result<Option<(DeviceSamples, Elapsed)>, InputError> {
+        let Tracer::Gpu(tracer) = &self.tracer else { return Ok(None) };
+        let is_wanted = request.device.as_ref().is_some_and(|device| Arc::ptr_eq(tracer.device(), device));
+        if self.samples.sparse.is_none() || !is_wanted {
             return Ok(None);
         }
-        let [view, previous] = self.pose(index)?;
-        let mut on_device = self.on_device.take().unwrap_or_else(|| DeviceSamples::new(device, self.info.size));
+        let held = self.on_device.take();
+        let mut held = held.unwrap_or_else(|| DeviceSamples::new(tracer.device(), self.of.info().size));
         let (traced, took) = self.clock.time(|| {
-            let Some(plan) = self.sparse_plan(&view, index, gaze_px)? else { return Ok(false) };
-            if let Tracer::Gpu(tracer) = &self.tracer {
-                plan.trace_in_place(tracer, &self.world, [&view, &previous], index, geometry, &mut on_device);
-            }
+            let Some(plan) = self.sparse_plan(view, request.index, request.gaze_px)? else { return Ok(false) };
+            let views = [view, previous];
+            plan.trace_in_place(tracer, &self.world, views, request.index, request.geometry, &mut held);
             Ok(true)
         });
         if !traced? {
             return Ok(None);
         }
         self.check()?;
-        self.render_time = Some(took);
-        self.on_device = Some(on_device.clone());
-        Ok(Some(on_device))
+        self.on_device = Some(held.clone());
+        Ok(Some((held, took)))
+    }
+}
+
+impl FrameSource for TracedSource {
+    fn info(&self) -> &SourceInfo {
+        self.of.info()
+    }
+
+    /// Frames of its own sampling pattern, if there is one; else the full-rate frame.
+    fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
+        let &FrameRequest { index, gaze_px, .. } = request;
+        let Some(sampling) = self.samples.foveated else {
+            let (frame, took) = self.kept_full_rate(request)?;
+            return Ok(RenderedFrame { render: Some(took), full_rate: Some(took), ..request.answer(frame) });
+        };
+        // The reference has other samples a pixel: its time says nothing about foveation.
+        let reference = if request.reference { Some(self.kept_full_rate(request)?.0) } else { None };
+        let views = self.pose(request)?;
+        let view = &views[0];
+        if let Some((samples, took)) = self.samples_on_device(request, &views)? {
+            let has_geometry = request.geometry == SparseGeometry::Samples;
+            let reference = reference.unwrap_or_else(|| self.without_color(index, &views, !has_geometry));
+            return Ok(RenderedFrame {
+                samples: Some(samples.samples.iter().sum()),
+                content: Content::OnDevice(OnDevice::Samples(samples)),
+                render: Some(took),
+                ..request.answer(reference)
+            });
+        }
+        let reference = reference.unwrap_or_else(|| self.without_color(index, &views, true));
+        let samples = self.samples.samples.max(1);
+        let (frame, took) = self.clock.time(|| {
+            if let Some(plan) = self.sparse_plan(view, index, gaze_px)? {
+                return Ok(plan.trace(&self.tracer, &self.world, view, index));
+            }
+            let plan = sampling.plan(view.geometry(), gaze_px, samples, index);
+            let plan = match request.guide.and_then(|guide| guide.guide(&reference)) {
+                None => plan,
+                Some(guide) => plan.guided(&guide, index, self.seed).map_err(|e| {
+                    InputError::request(&self.of.info().name, e.to_string(), "give a guide of the frame's size")
+                })?,
+            };
+            Ok(plan.trace(&self.tracer, &self.world, view, index))
+        });
+        let frame: FoveatedFrame = frame?;
+        self.check()?;
+        Ok(RenderedFrame { render: Some(took), ..request.answer(reference).foveated(frame) })
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {
-        Some(self.camera.camera_pose(&self.scene, index, index as f64 / self.fps))
+        Some(self.of.camera.camera_pose(&self.of.scene, index, self.of.time_s(index)))
     }
 
     fn steer(&mut self, index: u64, before_and_now: Option<[DMat4; 2]>) {
-        self.camera.steer(index, before_and_now);
+        self.of.camera.steer(index, before_and_now);
     }
 }

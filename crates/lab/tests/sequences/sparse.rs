@@ -32,7 +32,11 @@ fn steps(scene: &str, geometry: SparseGeometry, order: SampleOrder, backend: &Ba
     let mut source = source(scene);
     let pipeline = Pipeline::new(*source.view(), foveation(), &kinds(), source.info().still, &[], backend).unwrap();
     let mut pipeline = pipeline.with_sparse(geometry, order);
-    (0..6).map(|i| pipeline.step(i, &source.frame(i).unwrap(), Some(gaze(i))).unwrap()).collect()
+    let step = |i| {
+        let frame = source.render(&pipeline.request(i, Some(gaze(i)))).unwrap();
+        pipeline.step(&frame).unwrap()
+    };
+    (0..6).map(step).collect()
 }
 
 #[test]

@@ -26,9 +26,9 @@ fn worst<const N: usize>(scene: &str, filter: Filter, rates: [u32; 2], runs: [Sm
     let mut pipeline = Pipeline::new(*source.view(), foveation, &kinds, false, &[], &Backend::Cpu).unwrap();
     let mut crops = [Crops::default(); N];
     for index in 0..FRAMES {
-        let frame = source.frame(index).unwrap();
-        let step = pipeline.step(index, &frame, Some(gaze(index))).unwrap();
-        let full = encode(&frame.color, 0.0);
+        let frame = source.render(&pipeline.request(index, Some(gaze(index)))).unwrap();
+        let step = pipeline.step(&frame).unwrap();
+        let full = encode(&frame.reference.color, 0.0);
         let shown: Vec<_> = step.outputs.iter().map(|output| encode(&output.image, 0.0)).collect();
         let (foveated, methods) = shown.split_first().unwrap();
         for (crops, shown) in crops.iter_mut().zip(methods) {

@@ -4,12 +4,12 @@
 use afterimage::{Foveation, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::error::InputError;
-use afterimage_lab::frame::SourceFrame;
+use afterimage_lab::frame::RenderedFrame;
 use afterimage_lab::metric::{References, Scorer, Scores, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage_lab::source;
-use afterimage_lab::source::{FrameSource, ReadLimits, SceneOptions, SourceInfo};
+use afterimage_lab::source::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo};
 use std::path::{Path, PathBuf};
 
 const DATA: &str = "../shared/data";
@@ -70,10 +70,10 @@ fn play(source: &mut dyn FrameSource, clip: &Clip, runs: &[RunKind]) -> Outcome 
     let mut last = vec![];
     let (mut rejected, mut pixels) = (0, 0);
     for index in 0..clip.frames {
-        let frame = source.frame(index).unwrap();
-        assert_eq!(frame.nonfinite, 0);
-        let step = pipeline.step(index, &frame, gaze.px(index)).unwrap();
-        let full = encode(&frame.color, 0.0);
+        let frame = source.render(&pipeline.request(index, gaze.px(index))).unwrap();
+        assert_eq!(frame.reference.nonfinite, 0);
+        let step = pipeline.step(&frame).unwrap();
+        let full = encode(&frame.reference.color, 0.0);
         let reference = references.next(&full, &step.tracked);
         last.clear();
         for (scorer, shown) in scorers.iter_mut().zip(&step.outputs) {
@@ -156,9 +156,9 @@ impl FrameSource for Flipped {
         self.0.info()
     }
 
-    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
-        let mut frame = self.0.frame(index)?;
-        frame.motion = frame.motion.map(|m| m.map(|v| [-v[0], -v[1]]));
+    fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
+        let mut frame = self.0.render(request)?;
+        frame.reference.motion = frame.reference.motion.map(|m| m.map(|v| [-v[0], -v[1]]));
         Ok(frame)
     }
 }

@@ -3,8 +3,10 @@
 use afterimage::{Filter, Foveation, ViewGeometry};
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::lattices::SparseGeometry;
 use afterimage_lab::source::{
-    AnalyticSource, FrameSource, PeekedSource, RasterSource, ReadLimits, SceneOptions, TracedSamples, TracedSource,
+    AnalyticSource, FrameRequest, FrameSource, RasterSource, ReadLimits, SceneOptions, TracedSamples, TracedSource,
+    Wanted,
 };
 use afterimage_lab::trace::sampling::{Regions, Sampling};
 use afterimage_lab::trace::settings::TraceSettings;
@@ -20,16 +22,11 @@ fn rasterised_frames_state_the_time_of_rendering_alone() {
     let device = Headless::find_roomy(true).unwrap();
     let mut source =
         RasterSource::open("builtin:cubes", &ReadLimits::default(), &OPTIONS, None, device.clone()).unwrap();
-    assert_eq!(source.render_time(), None, "nothing was rendered yet");
-    let mut source = PeekedSource::new(&mut source).unwrap();
-    let peeked = source.render_time().unwrap();
-    source.frame(0).unwrap();
-    assert_eq!(source.render_time(), Some(peeked), "that frame was rendered when it was peeked at");
-
     let watch = Stopwatch::start();
-    source.frame(1).unwrap();
+    let frame = source.render(&FrameRequest::full_rate(1)).unwrap();
     let whole = watch.elapsed();
-    let full_rate = source.render_time().unwrap();
+    let full_rate = frame.full_rate.unwrap();
+    assert_eq!(frame.render, Some(full_rate), "nothing else was rendered");
     assert!(full_rate.wall_ms > 0.0 && full_rate.wall_ms < whole.wall_ms, "{full_rate:?} of {whole:?}");
     assert_eq!(full_rate.device_ms.is_some(), !device.is_software(), "{full_rate:?}");
 
@@ -40,9 +37,12 @@ fn rasterised_frames_state_the_time_of_rendering_alone() {
     let [mut everywhere, mut at_samples] = [f64::INFINITY; 2];
     for index in 0..16 {
         let lattices = foveation.lattices(&geometry, [160.0, 90.0], index);
-        for (lattices, least) in [(lattices, &mut everywhere), (lattices.with_geometry_at_samples(), &mut at_samples)] {
-            source.sparse(index, &lattices).unwrap().unwrap();
-            *least = least.min(source.render_time().unwrap().cost_ms());
+        let wanted = Wanted::Lattices(lattices);
+        for (geometry, least) in [(SparseGeometry::Full, &mut everywhere), (SparseGeometry::Samples, &mut at_samples)] {
+            let request = FrameRequest { wanted: wanted.clone(), geometry, ..FrameRequest::full_rate(index) };
+            let frame = source.render(&request).unwrap();
+            assert!(frame.full_rate.is_some() && frame.samples.is_some());
+            *least = least.min(frame.render.unwrap().cost_ms());
         }
     }
     println!("full rate {full_rate:?}, sparse {everywhere:.2} ms, with depth and motion at samples {at_samples:.2} ms");
@@ -62,20 +62,26 @@ fn traced_frames_state_the_time_of_tracing_and_stills_repeat_it() {
     let mut source =
         TracedSource::open("builtin:cornell", &limits, &OPTIONS, camera, &Backend::Cpu, settings, samples).unwrap();
     assert!(source.info().still);
-    source.frame(0).unwrap();
-    let full_rate = source.render_time().unwrap();
-    source.foveated(0, [160.0, 90.0], None).unwrap().unwrap();
-    let foveated = source.render_time().unwrap();
-    println!("full rate {full_rate:?}, foveated {foveated:?}");
-    assert!(0.0 < foveated.cost_ms() && foveated.cost_ms() < full_rate.cost_ms());
+    // The reference has other samples a pixel: it has no time that says anything about foveation.
+    let watch = Stopwatch::start();
+    let frame = source.render(&FrameRequest { gaze_px: [160.0, 90.0], ..FrameRequest::full_rate(0) }).unwrap();
+    let (whole, foveated) = (watch.elapsed(), frame.render.unwrap());
+    assert_eq!((frame.full_rate, frame.reference.color.size()), (None, SIZE));
+    println!("both {whole:?}, foveated {foveated:?}");
+    assert!(0.0 < foveated.cost_ms() && foveated.cost_ms() < whole.cost_ms());
     assert_eq!(foveated.device_ms, None, "the CPU has no timestamps");
-    source.frame(1).unwrap();
-    assert_eq!(source.render_time(), Some(full_rate), "the frame is that of before");
+    // Without a sampling pattern, the frame is the full-rate one.
+    let samples = TracedSamples { foveated: None, ..samples };
+    let mut source =
+        TracedSource::open("builtin:cornell", &limits, &OPTIONS, camera, &Backend::Cpu, settings, samples).unwrap();
+    let [first, second] = [0, 1].map(|index| source.render(&FrameRequest::full_rate(index)).unwrap());
+    assert!(first.render.is_some() && first.render == first.full_rate);
+    assert_eq!(second.render, first.render, "the frame is that of before");
 }
 
 #[test]
 fn frames_that_are_not_rendered_have_no_time() {
     let mut source = AnalyticSource::new("still", [32, 18], 70.0, 60.0).unwrap();
-    source.frame(0).unwrap();
-    assert_eq!(source.render_time(), None);
+    let frame = source.render(&FrameRequest::full_rate(0)).unwrap();
+    assert_eq!((frame.render, frame.full_rate), (None, None));
 }

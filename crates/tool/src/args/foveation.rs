@@ -1,7 +1,7 @@
 //! Options of the foveation simulator.
 
-use super::named::{Named, by_name};
 use super::number::parse_scale;
+use super::{Named, by_name};
 use crate::failure::Failure;
 use afterimage::{Filter, Foveation};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};

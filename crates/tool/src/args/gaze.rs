@@ -1,6 +1,6 @@
 //! `--gaze`, `--gaze-map`, `--start`: resolved to one position per frame.
 
-use super::named::{Named, by_name};
+use super::{Named, by_name};
 use crate::failure::Failure;
 use afterimage::ViewGeometry;
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, Scanpath, Screen, SyntheticOptions, generate, read_csv};

@@ -9,7 +9,7 @@ use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::lattices::SampleOrder;
 use afterimage_lab::source;
 use afterimage_lab::source::{
-    FrameSource, RasterScene, ReadLimits, SceneOptions, SourceInfo, TracedSamples, TracedSource,
+    FrameSource, ReadLimits, SceneChoice, SceneOptions, SourceInfo, TracedSamples, TracedSource, ViewedScene,
 };
 use afterimage_lab::trace::sampling::Sampling;
 use clap::{Args, ValueEnum};
@@ -120,8 +120,9 @@ impl InputArgs {
     }
 
     /// Opens a scene for rasterization on any device.
-    pub fn scene(&self) -> Result<RasterScene, Failure> {
-        let scene = RasterScene::open(&self.name, &self.limits(), &self.scene_options(), self.camera.as_deref())?;
+    pub fn scene(&self) -> Result<ViewedScene, Failure> {
+        let (camera, options, limits) = (self.camera.as_deref(), self.scene_options(), self.limits());
+        let scene = ViewedScene::open(&SceneChoice { camera, options, limits, ..SceneChoice::new(&self.name) })?;
         warn(scene.warnings());
         Ok(scene)
     }

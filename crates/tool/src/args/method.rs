@@ -1,6 +1,6 @@
 //! Methods and their settings.
 
-use super::named::{Named, by_name};
+use super::{Named, by_name};
 use afterimage::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, MethodKind, Sampler, Settings, Smr, Wrs};
 use clap::{Args, ValueEnum};
 

@@ -1,6 +1,6 @@
 //! Settings of the path tracer: `--max-depth`, `--integrator`, `--bsdf`, `--effects`.
 
-use super::named::{Named, by_name};
+use super::{Named, by_name};
 use crate::failure::Failure;
 use afterimage_lab::trace::effects::{Effect, Effects};
 use afterimage_lab::trace::settings::{Bsdf, Integrator, MAX_DEPTH, TraceSettings};

@@ -1,6 +1,6 @@
 //! Debug views and file formats.
 
-use super::named::Named;
+use super::Named;
 use afterimage::DebugView;
 use clap::ValueEnum;
 

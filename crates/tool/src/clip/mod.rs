@@ -11,9 +11,9 @@ use crate::progress;
 use crate::report::sheet::{Column, Sheet};
 use crate::times::{RenderTime, Times};
 use afterimage::{DebugView, Foveation, Image, MethodKind, ViewGeometry};
-use afterimage_lab::clock::{Elapsed, Quartiles};
+use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::Backend;
-use afterimage_lab::frame::SourceFrame;
+use afterimage_lab::frame::RenderedFrame;
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::metric;
 use afterimage_lab::metric::{Flip, Reference, References};
@@ -60,18 +60,20 @@ pub struct Clip {
     pub backend_note: &'static str,
 }
 
+/// A clip whose first frame is rendered: its input can be read.
+pub struct Playback<'a> {
+    clip: &'a Clip,
+    source: &'a mut dyn FrameSource,
+    pipeline: Pipeline,
+    first: RenderedFrame,
+}
+
 /// One frame of a clip, and the outputs of all methods for it.
 pub struct FrameResult<'a> {
     pub index: usize,
-    pub frame: &'a SourceFrame,
+    pub frame: &'a RenderedFrame,
     pub reference: &'a Reference<'a>,
     pub step: &'a Step,
-    /// Camera samples of the frame; `None` unless the source renders foveated frames.
-    pub samples: Option<u64>,
-    /// Time of rendering the frame that the methods got; `None` unless it was rendered.
-    pub render: Option<Elapsed>,
-    /// Time of rendering the full-rate frame with as many samples a pixel, if it was.
-    pub full_rate: Option<Elapsed>,
 }
 
 /// Results of a clip.
@@ -91,75 +93,6 @@ pub struct ClipReport {
     pub frame_mse: Vec<Vec<f64>>,
 }
 
-/// Gives a frame to the pipeline, from the device where it was rendered, if it was. Sparse frames are rendered with
-/// their samples alone, if the source can: the number of samples, and the result.
-fn step(
-    pipeline: &mut Pipeline,
-    index: u64,
-    frame: &SourceFrame,
-    gaze_px: [f32; 2],
-    #[cfg_attr(not(feature = "full"), expect(unused_variables, reason = "renders nothing"))]
-    source: &mut dyn FrameSource,
-) -> Result<(Option<u64>, Step), Failure> {
-    #[cfg(feature = "full")]
-    {
-        let rendered = source.device_frame();
-        let sparse = match pipeline.lattices(gaze_px, index) {
-            Some(lattices) => source.sparse(index, &lattices)?,
-            None => None,
-        };
-        if let Some(sparse) = sparse {
-            let samples =
-                sparse.lattices.as_slice().iter().map(|l| l.points.iter().map(|&n| u64::from(n)).product::<u64>());
-            let step = pipeline.step_sparse(index, frame, gaze_px, rendered.as_ref(), &sparse)?;
-            return Ok((Some(samples.sum()), step));
-        }
-        if let Some(views) = pipeline.quad_views(gaze_px) {
-            let composed = source.composed(index, &views)?.ok_or_else(|| no_quad_views(source))?;
-            let step = pipeline.step_composed(index, frame, gaze_px, rendered.as_ref(), &composed)?;
-            return Ok((Some(views.pixels()), step));
-        }
-        if let Some(rendered) = rendered {
-            return Ok((None, pipeline.step_on_device(index, frame, Some(gaze_px), &rendered)?));
-        }
-    }
-    Ok((None, pipeline.step(index, frame, Some(gaze_px))?))
-}
-
-/// As [`step`], for samples that the source leaves on the pipeline's device; `None` if it cannot.
-#[cfg(feature = "full")]
-fn step_samples(
-    pipeline: &mut Pipeline,
-    index: u64,
-    frame: &SourceFrame,
-    gaze_px: [f32; 2],
-    source: &mut dyn FrameSource,
-) -> Result<Option<(u64, Step)>, Failure> {
-    let Some(device) = pipeline.samples_device() else { return Ok(None) };
-    let Some(on_device) = source.foveated_on(&device, index, gaze_px, pipeline.sparse_geometry())? else {
-        return Ok(None);
-    };
-    let step = pipeline.step_samples(index, frame, gaze_px, &on_device)?;
-    Ok(Some((on_device.samples.iter().sum(), step)))
-}
-
-#[cfg(not(feature = "full"))]
-fn step_samples(
-    _: &mut Pipeline,
-    _: u64,
-    _: &SourceFrame,
-    _: [f32; 2],
-    _: &mut dyn FrameSource,
-) -> Result<Option<(u64, Step)>, Failure> {
-    Ok(None)
-}
-
-/// The plan refuses quad views of other sources.
-#[cfg(feature = "full")]
-fn no_quad_views(source: &dyn FrameSource) -> Failure {
-    Failure::Input(format!("{}: renders no quad views; use another --foveation", source.info().name))
-}
-
 /// Title of a contact sheet: input, size and foveation.
 pub fn title(name: &str, size: [u32; 2], frames: usize, fps: f32, foveation: &str) -> String {
     format!("{name}   {}x{}, {frames} frames at {fps} fps, {foveation}", size[0], size[1])
@@ -171,32 +104,33 @@ pub fn foveation_words(foveation: &Foveation, simulator: &str) -> String {
     format!("fovea {fovea_deg} deg, blocks {rate_mid} and {rate_far} px, {simulator}")
 }
 
-impl Clip {
+impl Playback<'_> {
     /// Runs the clip and writes everything but `report.json`.
-    pub fn run(&self, source: &mut dyn FrameSource, out: &Output) -> Result<ClipReport, Failure> {
+    pub fn write(self, out: &Output) -> Result<ClipReport, Failure> {
+        let clip = self.clip;
         let mut accumulators: Vec<MethodAccumulator> =
-            self.methods.iter().map(|_| MethodAccumulator::default()).collect();
-        let mut report = ClipReport { backend: self.backend_name(), ..ClipReport::default() };
+            clip.methods.iter().map(|_| MethodAccumulator::default()).collect();
+        let mut report = ClipReport { backend: clip.backend_name(), ..ClipReport::default() };
         let mut foveation_ms = vec![];
         let (mut render, mut full_rate) = (Times::default(), Times::default());
-        let bar = progress::bar(self.gaze.len() as u64, "frame {pos}/{len}");
+        let bar = progress::bar(clip.gaze.len() as u64, "frame {pos}/{len}");
         let mut table = out.table(
             "frames.csv",
             "frame,method,psnr_db,retained_psnr_db,ms,fovea_psnr_db,mid_psnr_db,periphery_psnr_db,\
              cpu_ms,render_ms,render_cpu_ms,total_ms,total_cpu_ms",
         )?;
-        let pipeline = self.play(source, &mut |result| {
-            let encoded = self.score_and_write(result, &mut accumulators, out)?;
-            for ((name, _), accumulator) in self.methods.iter().zip(&accumulators) {
-                table.row(&accumulator.row(result.index, name, result.render))?;
+        let pipeline = self.play(&mut |result| {
+            let encoded = clip.score_and_write(result, &mut accumulators, out)?;
+            for ((name, _), accumulator) in clip.methods.iter().zip(&accumulators) {
+                table.row(&accumulator.row(result.index, name, result.frame.render))?;
             }
-            report.samples += result.samples.unwrap_or(0);
-            result.render.into_iter().for_each(|elapsed| render.push(elapsed));
-            result.full_rate.into_iter().for_each(|elapsed| full_rate.push(elapsed));
+            report.samples += result.frame.samples.unwrap_or(0);
+            result.frame.render.into_iter().for_each(|elapsed| render.push(elapsed));
+            result.frame.full_rate.into_iter().for_each(|elapsed| full_rate.push(elapsed));
             foveation_ms.push(result.step.foveation_ms);
             report.gaze_px.push(result.step.gaze_px);
-            if result.index + 1 == self.gaze.len() {
-                self.write_sheet(result.reference.encoded(), &encoded, &accumulators, &report.gaze_px, out)?;
+            if result.index + 1 == clip.gaze.len() {
+                clip.write_sheet(result.reference.encoded(), &encoded, &accumulators, &report.gaze_px, out)?;
             }
             bar.inc(1);
             Ok(())
@@ -204,10 +138,10 @@ impl Clip {
         bar.finish_and_clear();
         table.finish()?;
         out.gaze("gaze.csv", &report.gaze_px)?;
-        let pixels = self.geometry.size_px().iter().map(|&s| f64::from(s)).product::<f64>();
+        let pixels = clip.geometry.size_px().iter().map(|&s| f64::from(s)).product::<f64>();
         let of = |(i, accumulator): (usize, &MethodAccumulator)| {
             let bytes_per_pixel = pipeline.memory_bytes(i) as f64 / pixels;
-            (self.methods[i].0, accumulator.report(bytes_per_pixel, RenderTime::of(&render)))
+            (clip.methods[i].0, accumulator.report(bytes_per_pixel, RenderTime::of(&render)))
         };
         report.methods = accumulators.iter().enumerate().map(of).collect();
         compare_with_oracle(&mut report.methods);
@@ -219,11 +153,27 @@ impl Clip {
 
     /// Runs all methods over the clip and calls `each` after every frame. Returns the pipeline in its state after the
     /// last frame.
-    pub fn play(
-        &self,
-        source: &mut dyn FrameSource,
-        each: &mut dyn FnMut(&FrameResult<'_>) -> Result<(), Failure>,
-    ) -> Result<Pipeline, Failure> {
+    pub fn play(self, each: &mut dyn FnMut(&FrameResult<'_>) -> Result<(), Failure>) -> Result<Pipeline, Failure> {
+        let Self { clip, source, mut pipeline, first } = self;
+        let mut first = Some(first);
+        let mut references = clip.flip().map_or_else(References::default, References::with_flip);
+        for (index, &gaze) in clip.gaze.iter().enumerate() {
+            let frame = match first.take() {
+                Some(first) => first,
+                None => source.render(&pipeline.request(index as u64, gaze))?,
+            };
+            let full = metric::encode(&frame.reference.color, clip.exposure_ev);
+            let step = pipeline.step(&frame)?;
+            let reference = references.next(&full, &step.tracked);
+            each(&FrameResult { index, frame: &frame, reference: &reference, step: &step })?;
+        }
+        Ok(pipeline)
+    }
+}
+
+impl Clip {
+    /// Makes the pipeline and renders the first frame. Nothing is written yet.
+    pub fn start<'a>(&'a self, source: &'a mut dyn FrameSource) -> Result<Playback<'a>, Failure> {
         let kinds: Vec<RunKind> = self.methods.iter().map(|l| l.1).collect();
         let is_still = source.info().still;
         let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &self.debug, &self.backend)?
@@ -237,36 +187,8 @@ impl Clip {
         }
         #[cfg(feature = "ablation")]
         let mut pipeline = pipeline.with_poison(self.poison);
-        let mut references = self.flip().map_or_else(References::default, References::with_flip);
-        for (index, &gaze) in self.gaze.iter().enumerate() {
-            let frame = source.frame(index as u64)?;
-            let full_rate = source.render_time();
-            let full = metric::encode(&frame.color, self.exposure_ev);
-            let at = pipeline.look(gaze);
-            let guide = pipeline.guide(&frame);
-            // The reference of a traced frame has other samples a pixel: its time says nothing about foveation.
-            let (samples, full_rate, step) =
-                if let Some((samples, step)) = step_samples(&mut pipeline, index as u64, &frame, at, source)? {
-                    (Some(samples), None, step)
-                } else if let Some(foveated) = source.foveated(index as u64, at, guide.as_ref())? {
-                    let samples = foveated.samples.iter().sum();
-                    (Some(samples), None, pipeline.step_foveated(index as u64, &frame, at, foveated)?)
-                } else {
-                    let (samples, step) = step(&mut pipeline, index as u64, &frame, at, source)?;
-                    (samples, full_rate, step)
-                };
-            let (reference, render) = (references.next(&full, &step.tracked), source.render_time());
-            each(&FrameResult {
-                index,
-                frame: &frame,
-                reference: &reference,
-                step: &step,
-                samples,
-                render,
-                full_rate,
-            })?;
-        }
-        Ok(pipeline)
+        let first = source.render(&pipeline.request(0, self.gaze.first().copied().flatten()))?;
+        Ok(Playback { clip: self, source, pipeline, first })
     }
 
     /// Device that runs the methods, for messages.
@@ -292,14 +214,14 @@ impl Clip {
     ) -> Result<Vec<Image<[f32; 3]>>, Failure> {
         let &FrameResult { index, frame, reference, step, .. } = result;
         if self.write_reference {
-            self.write_frame(out, "reference", index, &frame.color, reference.encoded())?;
+            self.write_frame(out, "reference", index, &frame.reference.color, reference.encoded())?;
         }
         let encoded: Vec<_> =
             step.outputs.par_iter().map(|shown| metric::encode(&shown.image, self.exposure_ev)).collect();
         let foveated = self.methods.iter().position(|m| m.0 == MethodKind::None.name()).map(|i| &encoded[i]);
         accumulators.par_iter_mut().zip(&self.methods).zip(step.outputs.par_iter().zip(&encoded)).try_for_each(
             |((accumulator, (name, _)), (shown, encoded))| {
-                accumulator.push(frame, reference, encoded, foveated, shown, step);
+                accumulator.push(&frame.reference, reference, encoded, foveated, shown, step);
                 self.write_frame(out, name, index, &shown.image, encoded)?;
                 for (debug, picture) in self.debug.iter().zip(&shown.debug) {
                     let folder = format!("debug/{name}/{}", debug.name());

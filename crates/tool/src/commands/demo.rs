@@ -87,8 +87,9 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
 fn execute(out: &Path) -> Result<ClipReport, Failure> {
     let (mut source, clip, facts) = clip()?;
     let folders = clip.methods.iter().map(|l| l.0).chain(["reference"]).map(str::to_owned).collect::<Vec<_>>();
+    let playback = clip.start(&mut source)?;
     let out = Output::create(out, &folders, &REPORTS)?;
-    let report = clip.run(&mut source, &out)?;
+    let report = playback.write(&out)?;
     write_report(&facts, &clip, &report, &out)?;
     Ok(report)
 }

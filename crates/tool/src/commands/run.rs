@@ -20,7 +20,6 @@ use afterimage_lab::device::Backend;
 #[cfg(feature = "ablation")]
 use afterimage_lab::pipeline::ablation::{PARTS, Part};
 use afterimage_lab::quad_views::QuadViewLayout;
-use afterimage_lab::source::PeekedSource;
 use afterimage_lab::trace::sampling::Sampling;
 use clap::{Args, Parser};
 use std::ffi::OsString;
@@ -119,7 +118,7 @@ impl RunArgs {
     pub fn rendering(&self, backend: &Backend) -> Result<Rendering, Failure> {
         let foveated = self.sampling()?.map(|pattern| FoveatedSampling {
             pattern,
-            sparse: self.is_sparse().then(|| self.foveation.order),
+            sparse: self.is_sparse().then_some(self.foveation.order),
             reference_spp: self.reference_spp,
         });
         Ok(Rendering { backend: backend.clone(), seed: self.seed, foveated })
@@ -195,9 +194,9 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let mut source = args.input.open(&args.rendering(&backend)?)?;
     let plan = plan::plan(args, source.info(), backend)?;
     // The input can be read, or nothing is written.
-    let mut source = PeekedSource::new(source.as_mut())?;
+    let playback = plan.clip.start(source.as_mut())?;
     let out = Output::create(&args.out, &folders(args), &REPORTS)?;
-    let report = plan.clip.run(&mut source, &out)?;
+    let report = playback.write(&out)?;
     plot::write(&plan, plan::simulator(args), &report, &out)?;
     let facts = RunFacts {
         input: &args.input.name,

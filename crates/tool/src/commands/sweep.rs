@@ -14,7 +14,7 @@ use crate::progress;
 use crate::sweep::plan::MAX_POINTS;
 use crate::sweep::{Measurement, Options, Store, Table};
 use afterimage_lab::source::is_scene;
-use afterimage_lab::source::raster::DEFAULT_SIZE;
+use afterimage_lab::source::viewed_scene::DEFAULT_SIZE;
 use batch::{Batch, batches, concerns, is_random};
 use clap::Args;
 use pick::PickArgs;

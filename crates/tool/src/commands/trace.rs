@@ -137,13 +137,13 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
     let mut previous: Option<View> = None;
     let mut gaze = GazeTracks::default();
     for frame in 0..args.frames {
-        let time_s = frame as f64 / f64::from(setup.fps);
+        let time_s = frame as f64 / f64::from(setup.of.fps);
         let head = setup.pose(frame, time_s)?;
         let views = eyes.views(&head);
         let before = eyes.views(previous.as_ref().unwrap_or(&head));
         if sampling != Sampling::Uniform {
             if gaze.head.is_empty() {
-                gaze.head = args.pattern.gaze(head.geometry(), setup.fps, args.frames)?;
+                gaze.head = args.pattern.gaze(head.geometry(), setup.of.fps, args.frames)?;
             }
             let at = gaze.head[frame as usize];
             gaze.eyes.push(eyes.gaze(&setup, &head, &views, at));
@@ -196,7 +196,7 @@ fn finish(
             if !gaze.eyes.is_empty() {
                 let of_eye: Vec<_> = gaze.eyes.iter().map(|gaze| gaze[eye]).collect();
                 out.gaze(&below(name, "gaze.csv"), &of_eye)?;
-                out.text(&below(name, "scanpath.csv"), &scanpath_csv(name, args.size, setup.fps, &of_eye)?)?;
+                out.text(&below(name, "scanpath.csv"), &scanpath_csv(name, args.size, setup.of.fps, &of_eye)?)?;
             }
         }
     }

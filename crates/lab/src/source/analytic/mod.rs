@@ -24,8 +24,8 @@ mod texture;
 mod tile;
 
 use crate::error::InputError;
-use crate::frame::SourceFrame;
-use crate::source::{FrameSource, SourceInfo};
+use crate::frame::{RenderedFrame, SourceFrame};
+use crate::source::{FrameRequest, FrameSource, SourceInfo};
 use afterimage::{Image, ViewGeometry};
 use cast::{Caster, Geometry, Pattern};
 use scene::{Scene, Stage};
@@ -265,7 +265,8 @@ impl FrameSource for AnalyticSource {
         &self.info
     }
 
-    fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
+    fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
+        let index = request.index;
         let mut frame = match self.kind {
             Kind::Lateral | Kind::Turn | Kind::Walk | Kind::Occluder | Kind::Spin => {
                 self.cast(index, &self.view, &self.pattern)
@@ -284,6 +285,6 @@ impl FrameSource for AnalyticSource {
             }
         };
         frame.cut = index == 0;
-        Ok(frame)
+        Ok(RenderedFrame::full_rate(index, request.gaze_px, frame))
     }
 }

@@ -4,12 +4,13 @@ use super::foveated::{Rig, flat, noise, views};
 use super::rig::{FAST, Frame, device};
 use afterimage::{Foveation, Image, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
+use afterimage_lab::frame::{Content, OnDevice};
 use afterimage_lab::lattices::SparseGeometry;
 use afterimage_lab::metric;
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::quad_views::{QuadView, QuadViewLayout, QuadViews};
 use afterimage_lab::raster::{AtlasLayout, FoveatedTargets};
-use afterimage_lab::source::{FrameSource, RasterSource, SceneCamera};
+use afterimage_lab::source::{FrameRequest, FrameSource, RasterSource, SceneCamera, Wanted};
 use afterimage_lab::trace::view::View;
 
 const SIZE: [u32; 2] = [320, 180];
@@ -154,7 +155,9 @@ fn a_composed_frame_is_the_views_enlarged_and_blended() {
     let layouts = [QuadViewLayout::Regions, QuadViewLayout::Uniform { step: 1.5 }];
     for (layout, gaze) in [(layouts[0], [200.0, 90.0]), (layouts[0], [3.0, 170.0]), (layouts[1], [0.0; 2])] {
         let quads = layout.views(&FOVEATION(), &geometry, gaze);
-        let composed = source.composed(5, &quads).unwrap().unwrap();
+        let request = FrameRequest { wanted: Wanted::QuadViews(quads.clone()), ..FrameRequest::full_rate(5) };
+        let frame = source.render(&request).unwrap();
+        let Content::OnDevice(OnDevice::Composed(composed)) = frame.content else { panic!("it was composed") };
         let seen = source.views(5).0;
         let mut rig = Rig::new(&device, &noise(), SIZE);
         let (placed, atlas) = drawn(&mut rig, &seen, &quads, AtlasLayout::InPlace);
@@ -202,14 +205,11 @@ fn methods_give_the_same_pictures_of_composed_frames_on_the_device_and_in_memory
         });
         let [mut shown_db, mut none_db] = [0.0; 2];
         for index in 0..4 {
-            let frame = source.frame(index).unwrap();
-            let rendered = source.device_frame();
             let gaze_px = [60.0 + 10.0 * index as f32, 50.0];
-            let quads = pipelines[0].quad_views(gaze_px).unwrap();
-            let composed = source.composed(index, &quads).unwrap().unwrap();
-            let [gpu, cpu] = &mut pipelines;
-            let gpu = gpu.step_composed(index, &frame, gaze_px, rendered.as_ref(), &composed).unwrap();
-            let cpu = cpu.step_composed(index, &frame, gaze_px, None, &composed).unwrap();
+            let request = pipelines[0].request(index, Some(gaze_px));
+            let Wanted::QuadViews(quads) = request.wanted.clone() else { panic!("quad views are wanted") };
+            let frame = source.render(&request).unwrap();
+            let [gpu, cpu] = pipelines.each_mut().map(|pipeline| pipeline.step(&frame).unwrap());
             for ((gpu, cpu), method) in gpu.outputs.iter().zip(&cpu.outputs).zip(methods) {
                 assert_eq!(gpu.image, cpu.image, "{geometry:?}, {layout:?}, frame {index}, {}", method.name());
             }
@@ -217,14 +217,14 @@ fn methods_give_the_same_pictures_of_composed_frames_on_the_device_and_in_memory
                 // Without a method, foveal pixels are those of the full-rate frame.
                 let [[left, top], [right, bottom]] = quads.as_slice()[0].opaque_px;
                 for (x, y) in (top..bottom).flat_map(|y| (left..right).map(move |x| (x as usize, y as usize))) {
-                    assert_eq!(gpu.outputs[0].image.at(x, y), frame.color.at(x, y), "({x}, {y})");
+                    assert_eq!(gpu.outputs[0].image.at(x, y), frame.reference.color.at(x, y), "({x}, {y})");
                 }
             }
             let db = |image: &Image<[f32; 3]>| {
                 let squares = metric::encode(image, 0.0)
                     .pixels()
                     .iter()
-                    .zip(metric::encode(&frame.color, 0.0).pixels())
+                    .zip(metric::encode(&frame.reference.color, 0.0).pixels())
                     .map(|(a, b)| (0..3).map(|c| f64::from((a[c] - b[c]).powi(2))).sum::<f64>())
                     .sum::<f64>();
                 -10.0 * (squares / image.pixels().len() as f64 / 3.0).log10()

@@ -4,11 +4,11 @@
 use super::fills::view;
 use afterimage::{Filter, Foveation, Image, Lattices, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
-use afterimage_lab::frame::SourceFrame;
+use afterimage_lab::frame::{Content, OnDevice, RenderedFrame, SourceFrame};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::scene::builtin;
-use afterimage_lab::source::{FrameSource, ReadLimits, SceneOptions, TracedSamples, TracedSource};
+use afterimage_lab::source::{FrameRequest, FrameSource, ReadLimits, SceneOptions, TracedSamples, TracedSource};
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::sampling::{Acuity, Lattice, Layers, Regions, Sampling};
@@ -184,7 +184,7 @@ fn the_post_process_shows_the_samples_and_reads_nothing_between() {
             cut: frame == 0,
             nonfinite: 0,
         };
-        let step = pipeline.step_foveated(frame, &source, gaze, made).unwrap();
+        let step = pipeline.step(&RenderedFrame::full_rate(frame, gaze, source).foveated(made)).unwrap();
         for (method, output) in methods.iter().zip(&step.outputs) {
             assert!(output.image.pixels().iter().flatten().all(|v| v.is_finite()), "{method:?}");
             assert_eq!(output.stats.nonfinite, 0, "{method:?}, frame {frame}");
@@ -244,18 +244,22 @@ fn samples_that_stay_on_the_device_are_those_of_the_memory() {
             pipeline.with_sparse(geometry, order)
         };
         let (mut memory, mut on_device) = (pipeline(), pipeline());
-        let on = on_device.samples_device().expect("the runs work on the device");
         for index in 0..4 {
             let gaze = [40.0 + 20.0 * index as f32, 45.0];
-            let frame = source.frame(index).unwrap();
-            let made = source.foveated(index, gaze, None).unwrap().expect("the source foveates");
+            let request = FrameRequest { device: None, ..memory.request(index, Some(gaze)) };
+            let made = source.render(&request).unwrap();
+            assert!(matches!(made.content, Content::Foveated(_)));
+            let request = on_device.request(index, Some(gaze));
+            assert!(request.device.is_some(), "the runs work on the device");
             let before = device.readbacks();
-            let samples = source.foveated_on(&on, index, gaze, geometry).unwrap().expect("it is the source's device");
+            let samples = source.render(&FrameRequest { reference: false, ..request.clone() }).unwrap();
+            assert!(matches!(samples.content, Content::OnDevice(OnDevice::Samples(_))));
             assert_eq!(device.readbacks(), before, "samples stay on the device");
-            assert_eq!((&made.lattices, &made.samples), (&Some(samples.lattices), &samples.samples));
-            let a = memory.step_foveated(index, &frame, gaze, made).unwrap();
+            let samples = RenderedFrame { reference: made.reference.clone(), ..samples };
+            assert_eq!((made.content.lattices(), made.samples), (samples.content.lattices(), samples.samples));
+            let a = memory.step(&made).unwrap();
             let before = device.readbacks();
-            let b = on_device.step_samples(index, &frame, gaze, &samples).unwrap();
+            let b = on_device.step(&samples).unwrap();
             // The outputs, which the metrics need, and the counters.
             assert_eq!(device.readbacks() - before, 2 * methods.len() as u64);
             assert_eq!((&a.lods, &a.ecc_deg), (&b.lods, &b.ecc_deg));

@@ -125,9 +125,9 @@ pub fn measure(
             took.push(subject.uniform(tracer, samples, every(samples), round));
         }
         for (i, p) in patterns.iter().enumerate() {
-            let (frame, time) = subject.foveated(tracer, p, round)?;
-            traced[i] = frame.samples();
-            took[i].push(time);
+            let frame = subject.foveated(tracer, p, round)?;
+            traced[i] = frame.samples;
+            took[i].push(frame.took);
         }
     }
     let report = |(i, p): (usize, &Pattern)| {

@@ -11,16 +11,15 @@ use afterimage::kernel::debug_view::heat;
 use afterimage::{Image, ViewGeometry};
 use afterimage_lab::metric::{Flip, References, Scorer, Scores, Tracked, encode};
 use afterimage_lab::picture::to_rgb8;
-use afterimage_lab::scene::{Scene, SceneLimits};
 use afterimage_lab::source::exr_file;
 use afterimage_lab::source::exr_file::FrameToWrite;
-use afterimage_lab::source::{FrameSource, ReadLimits, SceneCamera, StillSource};
+use afterimage_lab::source::{FrameSource, Light, ReadLimits, SceneChoice, SceneOptions, StillSource, ViewedScene};
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::view::View;
 use afterimage_lab::trace::work::Spans;
-use afterimage_lab::trace::world::{World, light_if_dark};
+use afterimage_lab::trace::world::World;
 use clap::Args;
 use equal::Candidate;
 use serde::Serialize;
@@ -122,20 +121,22 @@ struct Stage {
 /// The subcommand.
 pub fn bench(args: &PatternsArgs) -> Result<(), Failure> {
     let region_spp = check(args)?;
-    let mut scene = Scene::open(&args.scene, &SceneLimits::default())?;
-    for warning in &scene.warnings {
+    let of = ViewedScene::open(&SceneChoice {
+        camera: Some(args.camera.as_deref().unwrap_or("still")),
+        light: Light::IfDark,
+        options: SceneOptions { size: Some(args.size), hfov_deg: args.hfov, fps: None },
+        ..SceneChoice::new(&args.scene)
+    })?;
+    for warning in of.warnings() {
         eprintln!("afterimage: warning: {warning}");
     }
-    light_if_dark(&mut scene);
-    let name = args.camera.as_deref().unwrap_or("still");
-    let camera = SceneCamera::choose(&scene, Some(name), args.size, args.hfov)?;
-    let view = camera.view(&scene, 0, 0.0);
+    let ([view, _], _) = of.views(0);
     let geometry = *view.geometry();
     let middle = args.size.map(|s| 0.5 * (s as f32 - 1.0));
     let gaze_px = args.gaze.as_ref().map_or(middle, |g| [g[0], g[1]]);
     let patterns = equal::candidates(&geometry, gaze_px, region_spp)?;
     let backend = args.backend.open_for_scenes()?;
-    let world = World::new(&scene);
+    let world = World::new(&of.scene);
     let tracer = Tracer::new(&backend, &world, TraceSettings::default())
         .map_err(|e| Failure::Input(format!("{}: {e}; use --backend cpu", args.scene)))?;
     let stage = Stage { world, view, tracer, gaze_px, exposure: args.exposure.exp2() };

@@ -3,17 +3,17 @@
 use super::{BenchArgs, write_json};
 use crate::args::backend::NO_ADAPTER;
 use crate::failure::Failure;
-use afterimage::kernel::pack::half_bits;
 use afterimage::kernel::rng;
 use afterimage::module;
 use afterimage::shader::{Composer, Module};
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::wgpu::{Texture, TextureUsages};
 use afterimage::{
-    ContextDesc, CreateError, Filter, Foveation, Gaze, MethodKind, Reset, Settings, ViewFrame, ViewGeometry,
+    ContextDesc, CreateError, Filter, Foveation, Gaze, Image, MethodKind, Reset, Settings, ViewFrame, ViewGeometry,
 };
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::{Headless, PassClock};
+use afterimage_lab::frame::{RenderedFrame, SourceFrame};
 use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun};
 use serde::Serialize;
 use std::sync::Arc;
@@ -290,14 +290,19 @@ fn views(size: [u32; 2], index: u64) -> Result<[ViewFrame; 1], Failure> {
 fn inputs(gpu: &Arc<Headless>, size: [u32; 2]) -> Result<DeviceInputs, Failure> {
     let desc = ContextDesc { settings: Settings::paper(), ..ContextDesc::new(size) };
     let mut inputs = DeviceInputs::new(gpu, &desc, DeviceFormats::ENGINE)?;
-    let pixels = || (0..size[1]).flat_map(move |y| (0..size[0]).map(move |x| [x, y]));
-    let half = |v: f32| half_bits(v) as u16;
-    let color: Vec<[u16; 4]> =
-        pixels().map(|[x, y]| [0, 1, 2, 3].map(|i| half(rng::unit_draw(rng::bits(x, y, i, 1))))).collect();
-    let depth: Vec<f32> = pixels().map(|[x, _]| if x / 64 % 2 == 0 { 3.0 } else { 12.0 }).collect();
-    let motion: Vec<[u16; 2]> =
-        pixels().map(|[x, _]| if x / 64 % 2 == 0 { [half(-3.0), half(1.0)] } else { [0, 0] }).collect();
-    inputs.upload_bytes(bytemuck::cast_slice(&color), bytemuck::cast_slice(&depth), bytemuck::cast_slice(&motion));
+    let is_odd = |x: u32| x / 64 % 2 == 1;
+    let frame = SourceFrame {
+        color: Image::from_fn(size, |[x, y]| [0, 1, 2].map(|i| rng::unit_draw(rng::bits(x, y, i, 1)))),
+        depth: Some(Image::from_fn(size, |[x, _]| if is_odd(x) { 12.0 } else { 3.0 })),
+        motion: Some(Image::from_fn(size, |[x, _]| if is_odd(x) { [0.0; 2] } else { [-3.0, 1.0] })),
+        trust: None,
+        previous_from_current: None,
+        cut: true,
+        nonfinite: 0,
+    };
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    inputs.set(&mut encoder, &RenderedFrame::full_rate(0, [0.0; 2], frame));
+    gpu.queue.submit([encoder.finish()]);
     Ok(inputs)
 }
 

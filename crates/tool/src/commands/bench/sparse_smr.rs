@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use afterimage::{Filter, Foveation, Image, Settings};
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::Backend;
+use afterimage_lab::frame::Content;
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::metric::{Flip, encode, psnr_db};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
@@ -82,43 +83,34 @@ impl<'a> Comparer<'a> {
     fn filled(&self, pattern: &Pattern, reference: &Image<[f32; 3]>) -> Result<Shown, Failure> {
         let (mut render_ms, mut last) = (vec![], None);
         for index in CLIP_FRAMES - TIMED_FRAMES..CLIP_FRAMES {
-            let (frame, took) = self.subject.foveated(self.tracer, pattern, index)?;
-            render_ms.push(self.ms(&took));
+            let frame = self.subject.foveated(self.tracer, pattern, index)?;
+            render_ms.push(self.ms(&frame.took));
             last = Some(frame);
         }
-        let Some(Foveated::InMemory(frame)) = last else { unreachable!("filled frames are in memory") };
-        let samples = frame.samples.iter().sum();
+        let Some(Foveated { content: Content::Foveated(frame), samples, .. }) = last else {
+            unreachable!("filled frames are in memory")
+        };
         Ok(self.shown(&frame.color, reference, samples, &render_ms, &[0.0]))
     }
 
     fn sparse(&self, pattern: &Pattern, reference: &Image<[f32; 3]>) -> Result<Shown, Failure> {
-        let (geometry, gaze_px) = (*self.subject.geometry(), pattern.gaze_px);
+        let geometry = *self.subject.geometry();
         let foveation = Foveation { filter: Filter::Sparse, ..pattern.sampling.foveation() };
         let smr = [RunKind::PostProcess(Settings::traced())];
         let mut pipeline = Pipeline::new(geometry, foveation, &smr, false, &[], self.backend)?
             .with_sparse(SparseGeometry::Samples, SampleOrder::default());
         let (mut render_ms, mut post_ms, mut last) = (vec![], vec![], None);
         for index in 0..CLIP_FRAMES {
-            let (frame, took) = self.subject.foveated(self.tracer, pattern, index)?;
-            let samples = frame.samples();
-            let step = match frame {
-                Foveated::OnDevice(frame) => {
-                    let source = self.subject.source_frame(self.tracer, index, false);
-                    pipeline.step_samples(index, &source, gaze_px, &frame)?
-                }
-                Foveated::InMemory(frame) => {
-                    let source = self.subject.source_frame(self.tracer, index, true);
-                    pipeline.step_foveated(index, &source, gaze_px, *frame)?
-                }
-            };
+            let (frame, took) = self.subject.rendered(self.tracer, pattern, index)?;
+            let step = pipeline.step(&frame)?;
             if index + TIMED_FRAMES >= CLIP_FRAMES {
                 render_ms.push(self.ms(&took));
                 post_ms.extend(step.outputs.iter().map(|output| output.elapsed().cost_ms()));
             }
-            last = step.outputs.into_iter().next().map(|output| (output.image, samples));
+            last = step.outputs.into_iter().next().map(|output| (output.image, frame.samples));
         }
         let (image, samples) = last.expect("a clip has frames");
-        Ok(self.shown(&image, reference, samples, &render_ms, &post_ms))
+        Ok(self.shown(&image, reference, samples.unwrap_or(0), &render_ms, &post_ms))
     }
 
     fn ms(&self, took: &FrameTime) -> f64 {

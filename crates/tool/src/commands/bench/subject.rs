@@ -6,11 +6,9 @@ use crate::failure::Failure;
 use afterimage::{Image, ViewGeometry};
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::{Backend, Headless};
-use afterimage_lab::frame::{DeviceSamples, FoveatedFrame, SourceFrame};
+use afterimage_lab::frame::{Content, DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, SourceFrame};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
-use afterimage_lab::scene::{Scene, SceneLimits};
-use afterimage_lab::source::SceneCamera;
-use afterimage_lab::source::raster::DEFAULT_FPS;
+use afterimage_lab::source::{Light, SceneChoice, SceneOptions, ViewedScene};
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::sampling::Sampling;
@@ -18,7 +16,7 @@ use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::surfaces::Surfaces;
 use afterimage_lab::trace::view::View;
 use afterimage_lab::trace::work::{Spans, WorkItem, uniform};
-use afterimage_lab::trace::world::{World, light_if_dark};
+use afterimage_lab::trace::world::World;
 use std::cell::OnceCell;
 use std::time::Duration;
 
@@ -41,8 +39,7 @@ const FULL_RATE_FRAMES: u64 = 1 << 31;
 pub struct Subject {
     pub name: String,
     pub world: World,
-    scene: Scene,
-    camera: SceneCamera,
+    of: ViewedScene,
     items: Vec<WorkItem>,
     size: [u32; 2],
     /// Where a tracer on a device leaves the samples of sparse frames.
@@ -50,22 +47,12 @@ pub struct Subject {
 }
 
 /// A foveated frame, where its tracer leaves it.
-pub enum Foveated {
-    /// Filled between the samples; or samples in their places, from the CPU.
-    InMemory(Box<FoveatedFrame>),
-    /// Samples in their places.
-    OnDevice(Box<DeviceSamples>),
-}
-
-impl Foveated {
+pub struct Foveated {
+    /// Filled between the samples; or samples in their places.
+    pub content: Content,
     /// Number of samples.
-    pub fn samples(&self) -> u64 {
-        let samples = match self {
-            Self::InMemory(frame) => &frame.samples,
-            Self::OnDevice(frame) => &frame.samples,
-        };
-        samples.iter().sum()
-    }
+    pub samples: u64,
+    pub took: FrameTime,
 }
 
 /// Times and rays of one frame.
@@ -84,31 +71,26 @@ impl Subject {
     /// Opens the scene `name`. `camera` as for `trace --camera`; default: its first camera, or one that frames the
     /// scene.
     pub fn open(name: &str, size: [u32; 2], camera: Option<&str>, hfov_deg: Option<f32>) -> Result<Self, Failure> {
-        let mut scene = Scene::open(name, &SceneLimits::default())?;
-        for warning in &scene.warnings {
+        let of = ViewedScene::open(&SceneChoice {
+            camera: camera.or(Some("still")),
+            light: Light::IfDark,
+            options: SceneOptions { size: Some(size), hfov_deg, fps: None },
+            ..SceneChoice::new(name)
+        })?;
+        for warning in of.warnings() {
             eprintln!("afterimage: warning: {warning}");
         }
-        light_if_dark(&mut scene);
-        let camera = SceneCamera::choose(&scene, camera.or(Some("still")), size, hfov_deg)?;
         let items = uniform(size[0], 0..size[1], 0..1);
-        Ok(Self {
-            name: name.to_owned(),
-            world: World::new(&scene),
-            scene,
-            camera,
-            items,
-            size,
-            on_device: OnceCell::new(),
-        })
+        Ok(Self { name: name.to_owned(), world: World::new(&of.scene), of, items, size, on_device: OnceCell::new() })
     }
 
     /// View geometry.
     pub fn geometry(&self) -> &ViewGeometry {
-        self.camera.geometry()
+        self.of.camera.geometry()
     }
 
     fn view(&self, index: u64) -> View {
-        self.camera.view(&self.scene, index, index as f64 / f64::from(self.camera.fps().unwrap_or(DEFAULT_FPS)))
+        self.of.camera.view(&self.of.scene, index, self.of.time_s(index))
     }
 
     /// A tracer of the scene.
@@ -130,20 +112,17 @@ impl Subject {
         film.color()
     }
 
-    /// What a post-process needs to know of a frame besides its color, which is black here. `has_geometry`: depth and
-    /// motion at every pixel, if they are not left on a device with the samples.
-    pub fn source_frame(&self, tracer: &Tracer, index: u64, has_geometry: bool) -> SourceFrame {
-        let [view, before] = [index, index.saturating_sub(1)].map(|index| self.view(index));
-        let seen = has_geometry.then(|| Surfaces::trace(&self.world, &view, &before, tracer.effects(&self.world)));
-        let (depth, motion) = seen.map(|seen| (seen.depth, seen.motion)).unzip();
-        SourceFrame {
-            color: Image::filled(self.size, [0.0; 3]),
-            depth,
-            motion,
-            trust: None,
-            previous_from_current: Some(view.previous_from_current(&before)),
-            cut: index == 0,
-            nonfinite: 0,
+    /// What a post-process needs to know of a frame in memory besides its color.
+    fn without_color(&self, tracer: &Tracer, index: u64, content: &Content) -> SourceFrame {
+        let ([view, before], _) = self.of.views(index);
+        let frame = SourceFrame::without_images(Some(view.previous_from_current(&before)), index == 0);
+        match content {
+            // Depth and motion are with the samples.
+            Content::OnDevice(_) => frame,
+            _ => {
+                let seen = Surfaces::trace(&self.world, &view, &before, tracer.effects(&self.world));
+                SourceFrame { depth: Some(seen.depth), motion: Some(seen.motion), ..frame }
+            }
         }
     }
 
@@ -162,16 +141,18 @@ impl Subject {
     ///
     /// # Errors
     /// If the samples of a sparse pattern cannot lie on lattices.
-    pub fn foveated(&self, tracer: &Tracer, pattern: &Pattern, index: u64) -> Result<(Foveated, FrameTime), Failure> {
+    pub fn foveated(&self, tracer: &Tracer, pattern: &Pattern, index: u64) -> Result<Foveated, Failure> {
         let &Pattern { sampling, samples, gaze_px, sparse, .. } = pattern;
         let (world, geometry, view) = (&self.world, self.geometry(), self.view(index));
         let on_device = |device| self.on_device.get_or_init(|| DeviceSamples::new(device, self.size)).clone();
         let held = if let Tracer::Gpu(tracer) = tracer { Some(on_device(tracer.device())) } else { None };
         let watch = Stopwatch::start();
-        let Some(placed) = sparse else {
-            let frame = sampling.plan(geometry, gaze_px, samples, index).trace(tracer, world, &view, index);
+        let in_memory = |frame: FoveatedFrame| {
             let took = FrameTime::by(&watch, None, frame.rays);
-            return Ok((Foveated::InMemory(Box::new(frame)), took));
+            Foveated { samples: frame.samples.iter().sum(), content: Content::Foveated(frame), took }
+        };
+        let Some(placed) = sparse else {
+            return Ok(in_memory(sampling.plan(geometry, gaze_px, samples, index).trace(tracer, world, &view, index)));
         };
         let plan = sampling.sparse_plan(geometry, gaze_px, samples, index, SampleOrder::default())?;
         Ok(match (tracer, held) {
@@ -179,14 +160,33 @@ impl Subject {
                 let before = self.view(index.saturating_sub(1));
                 plan.trace_in_place(tracer, world, [&view, &before], index, placed, &mut held);
                 tracer.device().wait();
-                (Foveated::OnDevice(Box::new(held)), FrameTime::by(&watch, None, 0))
+                let took = FrameTime::by(&watch, None, 0);
+                let samples = held.samples.iter().sum();
+                Foveated { content: Content::OnDevice(OnDevice::Samples(held)), samples, took }
             }
-            _ => {
-                let frame = plan.trace(tracer, world, &view, index);
-                let took = FrameTime::by(&watch, None, frame.rays);
-                (Foveated::InMemory(Box::new(frame)), took)
-            }
+            _ => in_memory(plan.trace(tracer, world, &view, index)),
         })
+    }
+
+    /// A foveated frame for a post-process, without a reference.
+    ///
+    /// # Errors
+    /// As for [`foveated`](Self::foveated).
+    pub fn rendered(
+        &self,
+        tracer: &Tracer,
+        pattern: &Pattern,
+        index: u64,
+    ) -> Result<(RenderedFrame, FrameTime), Failure> {
+        let Foveated { content, samples, took } = self.foveated(tracer, pattern, index)?;
+        let reference = self.without_color(tracer, index, &content);
+        let frame = RenderedFrame {
+            content,
+            geometry: pattern.sparse.unwrap_or_default(),
+            samples: Some(samples),
+            ..RenderedFrame::full_rate(index, pattern.gaze_px, reference)
+        };
+        Ok((frame, took))
     }
 
     /// Traces `samples` of every pixel. With `every` above 1, traces only every `every`-th band of rows and scales the

@@ -117,9 +117,9 @@ fn outcomes(args: &WrsTableArgs, backend: &Backend, scanpath: &str, map: GazeMap
     let mut past_gaze_px = None;
     let bar = progress::bar(args.frames, "frames");
     for index in 0..args.frames {
-        let frame = source.frame(index).map_err(|e| input(&e))?;
-        let step = pipeline.step(index, &frame, gaze.px(index)).map_err(|e| input(&e))?;
-        let full = encode(&frame.color, 0.0);
+        let frame = source.render(&pipeline.request(index, gaze.px(index))).map_err(|e| input(&e))?;
+        let step = pipeline.step(&frame).map_err(|e| input(&e))?;
+        let full = encode(&frame.reference.color, 0.0);
         let reference = references.next(&full, &step.tracked);
         let shift_deg = |past_px| geometry.eccentricity_deg(step.gaze_px, past_px);
         fixation_frames =

@@ -148,18 +148,25 @@ fn play(
         frames: 0,
     };
     let flip = Flip::for_view(&clip.geometry);
-    let pipeline = clip.play(source, &mut |result| {
+    let pipeline = clip.start(source)?.play(&mut |result| {
         let is_last = result.index + 1 == clip.gaze.len();
         sums.control_ms.push(result.step.outputs[0].elapsed().cost_ms());
-        result.render.into_iter().for_each(|elapsed| sums.render.push(elapsed));
+        result.frame.render.into_iter().for_each(|elapsed| sums.render.push(elapsed));
         sums.samples_share += samples_share(result, clip, &batch.subjects[0]);
-        sums.samples = result.samples.map(|now| sums.samples.unwrap_or(0) + now).or(sums.samples);
+        sums.samples = result.frame.samples.map(|now| sums.samples.unwrap_or(0) + now).or(sums.samples);
         sums.frames += 1;
         let foveated = batch.subjects.iter().position(|s| s.method.name() == MethodKind::None.name());
         let foveated = foveated.map(|i| metric::encode(&result.step.outputs[i + 1].image, clip.exposure_ev));
         let of_subject = |(accumulator, (subject, shown)): (&mut MethodAccumulator, (&Subject, &MethodOutput))| {
             let encoded = metric::encode(&shown.image, clip.exposure_ev);
-            accumulator.push(result.frame, result.reference, &encoded, foveated.as_ref(), shown, result.step);
+            accumulator.push(
+                &result.frame.reference,
+                result.reference,
+                &encoded,
+                foveated.as_ref(),
+                shown,
+                result.step,
+            );
             if is_last { pictures(store, subject, result.reference.encoded(), &encoded, &flip) } else { Ok(()) }
         };
         let subjects = batch.subjects.par_iter().zip(&result.step.outputs[1..]);
@@ -174,7 +181,7 @@ fn play(
 /// Samples of the foveated frame divided by those of a full-rate frame with the fovea's quality.
 fn samples_share(result: &FrameResult<'_>, clip: &Clip, subject: &Subject) -> f64 {
     let lods = result.step.lods.pixels();
-    match result.samples {
+    match result.frame.samples {
         Some(samples) => samples as f64 / (lods.len() as f64 * f64::from(subject.full_rate_samples())),
         None if clip.foveation.filter == Filter::Off => 1.0,
         None => lods.iter().map(|lod| f64::from((-2.0 * lod).exp2())).sum::<f64>() / lods.len() as f64,

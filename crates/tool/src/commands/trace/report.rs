@@ -197,7 +197,7 @@ impl Report {
             scene: &args.scene,
             size: args.size,
             frames: args.frames,
-            fps: setup.fps,
+            fps: setup.of.fps,
             hfov_deg: self.hfov_deg(),
             spp: args.spp,
             sampling: args.pattern.of.sampling.name(),
@@ -218,7 +218,7 @@ impl Report {
             nonfinite_samples: total.nonfinite,
             effects: setup.tracer.effects(&setup.world).iter().map(|e| e.name()).collect(),
             stereo: eyes.ipd_m.map(|ipd_m| Stereo { ipd_m, eyes: both() }),
-            warnings: &setup.scene.warnings,
+            warnings: &setup.of.scene.warnings,
         };
         serde_json::to_string_pretty(&report).expect("the report has no map with keys other than strings") + "\n"
     }
@@ -234,7 +234,7 @@ impl Report {
         let cameras = CamerasJson {
             width: args.size[0],
             height: args.size[1],
-            fps: setup.fps,
+            fps: setup.of.fps,
             horizontal_fov_deg: self.hfov_deg(),
             frames: frames.collect(),
         };

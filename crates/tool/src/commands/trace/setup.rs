@@ -4,26 +4,23 @@ use super::TraceArgs;
 use crate::failure::Failure;
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::Backend;
-use afterimage_lab::scene::{Environment, Scene, SceneLimits};
-use afterimage_lab::source::raster::DEFAULT_FPS;
-use afterimage_lab::source::{FrameSource, ReadLimits, SceneCamera, StillSource};
+use afterimage_lab::scene::Environment;
+use afterimage_lab::source::{FrameSource, Light, ReadLimits, SceneChoice, SceneOptions, StillSource, ViewedScene};
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::view::View;
-use afterimage_lab::trace::world::{World, light_if_dark};
+use afterimage_lab::trace::world::World;
 use std::path::Path;
 
 /// A scene ready to be traced.
 pub struct Setup {
-    pub scene: Scene,
+    pub of: ViewedScene,
     pub world: World,
     pub tracer: Tracer,
     pub backend: Backend,
-    pub fps: f32,
     /// Time to read the scene.
     pub load_ms: f64,
     /// Time to build its bounding volume hierarchy.
     pub build_ms: f64,
-    camera: SceneCamera,
     moves: bool,
 }
 
@@ -34,43 +31,37 @@ impl Setup {
     pub fn new(args: &TraceArgs) -> Result<Self, Failure> {
         check(args)?;
         let settings = args.paths.settings(args.seed)?;
+        let light = light(args)?;
         let clock = Stopwatch::start();
-        let mut scene = Scene::open_clip(&args.scene, args.clip.as_deref(), &SceneLimits::default())?;
-        for warning in &scene.warnings {
+        let of = ViewedScene::open(&SceneChoice {
+            clip: args.clip.as_deref(),
+            camera: Some(args.camera.as_deref().unwrap_or("still")),
+            light,
+            options: SceneOptions { size: Some(args.size), hfov_deg: args.hfov, fps: args.fps },
+            ..SceneChoice::new(&args.scene)
+        })?;
+        let load_ms = clock.wall_ms();
+        for warning in of.warnings() {
             eprintln!("afterimage: warning: {warning}");
         }
-        light(&mut scene, args)?;
-        let load_ms = clock.wall_ms();
-        let name = args.camera.as_deref().unwrap_or("still");
-        let camera = SceneCamera::choose(&scene, Some(name), args.size, args.hfov)?;
         let backend = args.backend.open_for_scenes()?;
         let clock = Stopwatch::start();
-        let world = World::new(&scene);
+        let world = World::new(&of.scene);
         let build_ms = clock.wall_ms();
         let tracer = Tracer::new(&backend, &world, settings)
             .map_err(|e| Failure::Input(format!("{}: {e}; use --backend cpu", args.scene)))?;
-        let moves = scene.duration_s() > 0.0;
-        Ok(Self {
-            world,
-            tracer,
-            backend,
-            fps: args.fps.or(camera.fps()).unwrap_or(DEFAULT_FPS),
-            load_ms,
-            build_ms,
-            camera,
-            moves,
-            scene,
-        })
+        let moves = of.scene.duration_s() > 0.0;
+        Ok(Self { world, tracer, backend, load_ms, build_ms, moves, of })
     }
 
     /// Updates the animated scene to `time_s`; returns the view of the head.
     pub fn pose(&mut self, frame: u64, time_s: f64) -> Result<View, Failure> {
         if self.moves {
-            let before = (time_s - 1.0 / f64::from(self.fps)).max(0.0);
-            self.world.pose(&self.scene, time_s, before);
+            let before = (time_s - 1.0 / f64::from(self.of.fps)).max(0.0);
+            self.world.pose(&self.of.scene, time_s, before);
             self.tracer.update(&self.world).map_err(|e| Failure::Work(e.to_string()))?;
         }
-        Ok(self.camera.view(&self.scene, frame, time_s))
+        Ok(self.of.camera.view(&self.of.scene, frame, time_s))
     }
 }
 
@@ -88,16 +79,16 @@ fn check(args: &TraceArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Applies `--sky`; by default adds a sky to a scene without light.
-fn light(scene: &mut Scene, args: &TraceArgs) -> Result<(), Failure> {
+/// Light by `--sky`; by default, a sky for a scene without light.
+fn light(args: &TraceArgs) -> Result<Light, Failure> {
     let expected = "expected none, a radiance R,G,B of numbers from 0, or an .exr file";
-    match args.sky.as_deref() {
-        None if !args.scene.starts_with("builtin:") => light_if_dark(scene),
-        None => {}
-        Some("none") => scene.environment = Environment::Constant([0.0; 3]),
+    Ok(match args.sky.as_deref() {
+        None if args.scene.starts_with("builtin:") => Light::Own,
+        None => Light::IfDark,
+        Some("none") => Light::Environment(Environment::Constant([0.0; 3])),
         Some(file) if file.to_lowercase().ends_with(".exr") => {
             let mut source = StillSource::open(Path::new(file), &ReadLimits::default())?;
-            scene.environment = Environment::Map(source.frame(0)?.color.map(|c| c.map(|v| v.max(0.0))));
+            Light::Environment(Environment::Map(source.frame(0)?.color.map(|c| c.map(|v| v.max(0.0)))))
         }
         Some(text) => {
             let values: Vec<f32> = text.split(',').filter_map(|v| v.trim().parse().ok()).collect();
@@ -106,8 +97,7 @@ fn light(scene: &mut Scene, args: &TraceArgs) -> Result<(), Failure> {
             if !is_valid {
                 return Err(Failure::Input(format!("--sky {text}: {expected}")));
             }
-            scene.environment = Environment::Constant([values[0], values[1], values[2]]);
+            Light::Environment(Environment::Constant([values[0], values[1], values[2]]))
         }
-    }
-    Ok(())
+    })
 }

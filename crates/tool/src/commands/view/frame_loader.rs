@@ -3,8 +3,8 @@
 
 use crate::failure::Failure;
 use afterimage::Image;
-use afterimage_lab::frame::SourceFrame;
-use afterimage_lab::source::{CameraPose, FrameSource};
+use afterimage_lab::frame::{RenderedFrame, SourceFrame};
+use afterimage_lab::source::{CameraPose, FrameRequest, FrameSource};
 use glam::DMat4;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
@@ -21,7 +21,7 @@ struct Request {
 
 /// A frame, and the camera that it was rendered with.
 pub struct LoadedFrame {
-    pub frame: SourceFrame,
+    pub frame: RenderedFrame,
     pub stance: Option<CameraPose>,
     generation: u64,
 }
@@ -104,8 +104,9 @@ fn serve(
     let mut steering = Steering::default();
     while let Ok(request) = requests.recv() {
         let cut = steering.steer(source.as_mut(), request.index, request.pose);
-        let loaded = source.frame(request.index).map(|frame| {
-            let frame = SourceFrame { cut: frame.cut || cut, ..resized(frame, request.size) };
+        let loaded = source.render(&FrameRequest::full_rate(request.index)).map(|mut frame| {
+            frame.reference = resized(frame.reference, request.size);
+            frame.reference.cut |= cut;
             LoadedFrame { frame, stance: source.camera_pose(request.index), generation: request.generation }
         });
         if frames.send(loaded.map_err(Failure::from)).is_err() {

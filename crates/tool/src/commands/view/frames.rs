@@ -2,7 +2,7 @@
 
 use super::frame_loader::{FrameLoader, LoadedFrame, Steering};
 use crate::failure::Failure;
-use afterimage_lab::source::{CameraPose, FrameSource, RasterScene, RasterSource};
+use afterimage_lab::source::{CameraPose, FrameSource, RasterSource, ViewedScene};
 use glam::DMat4;
 
 /// Where frames come from.
@@ -13,7 +13,7 @@ pub enum Frames {
 
 /// Frames of a scene, which need no waiting: they are rendered for the gaze of the frame that is shown.
 pub struct SceneFrames {
-    pub scene: RasterScene,
+    pub scene: ViewedScene,
     steering: Steering,
     /// Position, and the pose (world from camera) to which the user steers the camera.
     requested: Option<(u64, Option<DMat4>)>,
@@ -31,12 +31,12 @@ pub enum NextFrame {
 }
 
 impl Frames {
-    pub fn of_scene(scene: RasterScene) -> Self {
+    pub fn of_scene(scene: ViewedScene) -> Self {
         Self::Scene(Box::new(SceneFrames { scene, steering: Steering::default(), requested: None }))
     }
 
     /// The scene, if frames are rendered when they are shown.
-    pub fn scene(&self) -> Option<&RasterScene> {
+    pub fn scene(&self) -> Option<&ViewedScene> {
         match self {
             Self::Loaded(_) => None,
             Self::Scene(frames) => Some(&frames.scene),

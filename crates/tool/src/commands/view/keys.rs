@@ -13,6 +13,9 @@ enum Held {
     ControlShift,
 }
 
+/// Value of a row of the panel; `None`: there is no row now.
+type Value = fn(&State) -> Option<String>;
+
 /// A key, and others that do the same.
 struct Key {
     codes: &'static [KeyCode],
@@ -22,8 +25,8 @@ struct Key {
     action: Action,
     /// What the key does, after its name in `--help`; empty: said with another key.
     help: &'static str,
-    /// Row of the panel: its name, and the value that it shows (`None`: there is no row now).
-    row: Option<(&'static str, fn(&State) -> Option<String>)>,
+    /// Row of the panel: its name, and the value that it shows.
+    row: Option<(&'static str, Value)>,
 }
 
 const fn key(codes: &'static [KeyCode], label: &'static str, action: Action, help: &'static str) -> Key {
@@ -35,7 +38,7 @@ impl Key {
         Self { held, ..self }
     }
 
-    const fn row(self, name: &'static str, value: fn(&State) -> Option<String>) -> Self {
+    const fn row(self, name: &'static str, value: Value) -> Self {
         Self { row: Some((name, value)), ..self }
     }
 }

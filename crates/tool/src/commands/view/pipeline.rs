@@ -9,12 +9,11 @@ use crate::failure::Failure;
 use afterimage::wgpu::{CommandEncoder, Texture};
 use afterimage::{ContextDesc, Filter, Finding, Gaze, Lattices, MethodKind, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
-use afterimage_lab::frame::SourceFrame;
+use afterimage_lab::frame::{Content, RenderedFrame};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun};
 use afterimage_lab::quad_views::QuadViewLayout;
-use afterimage_lab::raster::AtlasLayout;
-use afterimage_lab::source::{FrameSource, RasterSource};
+use afterimage_lab::source::{FrameRequest, RasterSource, Wanted};
 use std::sync::Arc;
 
 /// Same formats as in `run`, so that both give the same pictures.
@@ -132,16 +131,23 @@ impl ViewPipeline {
     }
 
     /// Uploads a full-rate frame.
-    pub fn upload(&mut self, frame: &SourceFrame) {
-        self.inputs.upload(frame);
-        self.previous_from_current = frame.previous_from_current;
-        self.cut = frame.cut;
+    pub fn upload(&mut self, frame: &RenderedFrame) {
+        self.record_now(|inputs, encoder| inputs.set(encoder, frame));
+        self.previous_from_current = frame.reference.previous_from_current;
+        self.cut = frame.reference.cut;
         self.has_full = true;
     }
 
     /// Frame to render when it is shown. `cut`: the camera jumped.
     pub fn pose(&mut self, position: u64, cut: bool) {
         (self.position, self.cut) = (position, cut);
+    }
+
+    /// Records and submits changes of the inputs, untimed.
+    fn record_now(&mut self, record: impl FnOnce(&mut DeviceInputs, &mut CommandEncoder)) {
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        record(&mut self.inputs, &mut encoder);
+        self.gpu.queue.submit([encoder.finish()]);
     }
 
     /// Foveates the uploaded frame around `gaze_px`, or renders the posed one foveated, and runs the methods. `again`:
@@ -156,21 +162,19 @@ impl ViewPipeline {
     ) -> Result<(), Failure> {
         let foveation = &self.desc.settings.foveation;
         let is_sparse = foveation.filter == Filter::Sparse;
-        let mut lattices =
-            is_sparse.then(|| self.sample_order.lattices(foveation, &self.geometry, gaze_px, self.index));
+        let simulated = is_sparse.then(|| self.sample_order.lattices(foveation, &self.geometry, gaze_px, self.index));
         // Rendered frames are shown again only after a reset of the history, which needs no motion.
-        let is_rendered = renderer.is_some();
-        let again = again && !is_rendered;
-        if let Some(renderer) = renderer {
-            self.render(renderer, gaze_px, &mut lattices, state, times);
-        }
+        let again = again && renderer.is_none();
+        let content = renderer.map(|renderer| self.render(renderer, gaze_px, simulated, state, times));
+        let is_simulated = content.as_ref().is_none_or(|content| matches!(content, Content::FullRate));
+        let lattices = content.map_or(simulated, |content| content.lattices());
         let views = [ViewFrame {
             previous_from_current: self.previous_from_current.filter(|_| !again),
             lattices: lattices.map(|lattices| self.sparse_geometry.of(lattices)),
             ..ViewFrame::new(self.geometry, Gaze::At { px: gaze_px })
         }];
         let gpu = &self.gpu;
-        if !(is_rendered && (is_sparse || self.quad_views.is_some())) {
+        if is_simulated {
             times.pass(gpu, Pass::Foveation, |encoder, timestamps| self.inputs.foveate(encoder, &views, timestamps))?;
         }
         // A cut resets the history once, not again each time its frame is shown.
@@ -201,52 +205,40 @@ impl ViewPipeline {
         Ok(())
     }
 
-    /// Renders the posed frame: the samples of `lattices`, which get their places in the atlas, or quad views, or the
-    /// full-rate frame. That is rendered besides, untimed, where a side shows it.
+    /// Renders the posed frame, and the full-rate frame besides, untimed, where a side shows it. What the methods get.
     fn render(
         &mut self,
         renderer: &mut RasterSource,
         gaze_px: [f32; 2],
-        lattices: &mut Option<Lattices>,
+        lattices: Option<Lattices>,
         state: &State,
         times: &mut PassTimes,
-    ) {
-        let (position, inputs) = (self.position, &mut self.inputs);
-        let ([view, previous], _) = renderer.views(position);
-        self.previous_from_current = Some(view.previous_from_current(&previous));
-        let quad_views = self.quad_views;
-        let is_foveated = quad_views.is_some() || lattices.is_some();
-        let has_geometry = self.sparse_geometry == SparseGeometry::Samples;
-        let needs_full = !is_foveated || !has_geometry;
-        self.has_full = needs_full || state.shows_reference();
-        let full_rate = |inputs: &mut DeviceInputs, renderer: &mut RasterSource, encoder: &mut CommandEncoder| {
-            renderer.record(encoder, position);
-            if let Some(frame) = renderer.device_frame() {
-                inputs.import(encoder, &frame);
-            }
-        };
-        if self.has_full && !needs_full {
-            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-            full_rate(inputs, renderer, &mut encoder);
-            self.gpu.queue.submit([encoder.finish()]);
+    ) -> Content {
+        let quad_views = self
+            .quad_views
+            .map(|layout| Wanted::QuadViews(layout.views(&self.desc.settings.foveation, &self.geometry, gaze_px)));
+        let wanted = quad_views.or(lattices.map(Wanted::Lattices)).unwrap_or(Wanted::FullRate);
+        let full_rate = FrameRequest { reference: false, ..FrameRequest::full_rate(self.position) };
+        let request = FrameRequest { gaze_px, wanted, geometry: self.sparse_geometry, ..full_rate.clone() };
+        self.has_full = request.needs_full_rate();
+        if !self.has_full && state.shows_reference() {
+            self.record_now(|inputs, encoder| {
+                let frame = renderer.record(encoder, &full_rate);
+                inputs.set(encoder, &frame);
+            });
             if self.gpu.is_software() {
                 self.gpu.wait();
             }
+            self.has_full = true;
         }
+        let mut content = Content::FullRate;
         times.span(&self.gpu, Pass::Render, |encoder| {
-            if needs_full {
-                full_rate(inputs, renderer, encoder);
-            }
-            if let Some(layout) = quad_views {
-                let views = layout.views(&self.desc.settings.foveation, &self.geometry, gaze_px);
-                let frame = renderer.record_composed(encoder, position, &views, AtlasLayout::Compact);
-                inputs.take_composed(&frame, has_geometry);
-            } else if let Some(lattices) = lattices {
-                let frame = renderer.record_foveated(encoder, position, lattices, AtlasLayout::Compact);
-                inputs.import_atlas(encoder, &frame.atlas, has_geometry);
-                *lattices = frame.lattices;
-            }
+            let frame = renderer.record(encoder, &request);
+            self.inputs.set(encoder, &frame);
+            self.previous_from_current = frame.reference.previous_from_current;
+            content = frame.content;
         });
+        content
     }
 
     /// What is found about the inputs; nothing unless they are checked.

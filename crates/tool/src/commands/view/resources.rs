@@ -11,7 +11,7 @@ use super::surface::Surface;
 use super::times::PassTimes;
 use crate::failure::Failure;
 use afterimage_lab::lattices::SparseGeometry;
-use afterimage_lab::source::{RasterScene, RasterSource};
+use afterimage_lab::source::{RasterSource, ViewedScene};
 use std::sync::Arc;
 use winit::window::Window;
 
@@ -37,7 +37,7 @@ impl DeviceResources {
         setup: &Setup,
         state: &State,
         scale: f32,
-        scene: Option<&RasterScene>,
+        scene: Option<&ViewedScene>,
     ) -> Result<Self, Failure> {
         let device = Device::open(window)?;
         let size = window.inner_size();

@@ -217,7 +217,7 @@ fn rasterised(rig: &Rig, config: Config, frames: u64) -> Result<Point, Failure> 
     let (geometry, gaze_px) = (*camera.geometry(), gaze_px(config.size));
     let mut source = RasterSource::new(rig.gpu.clone(), scene, camera, None, RasterSettings::default())?;
     let head = source.camera_pose(0).map_or(DMat4::IDENTITY, |pose| pose.world_from_camera);
-    let near = source.device_frame().map_or(1.0, |frame| frame.near);
+    let near = source.near();
     let depth = DepthConvention::Reversed { near, far: f32::INFINITY };
     let settings = Settings { foveation: foveation(), ..Settings::steady() };
     let shifts_m = shifts_m(config.eyes);
@@ -233,7 +233,7 @@ fn rasterised(rig: &Rig, config: Config, frames: u64) -> Result<Point, Failure> 
             source.steer(index, Some([pose, pose]));
             let (source, lattices) = (&mut source, &lattices);
             let ((targets, placed), render) =
-                rig.clock.time(move || source.render_foveated(index, lattices, AtlasLayout::Compact));
+                rig.clock.time(move || source.draw_foveated(index, lattices, AtlasLayout::Compact));
             let lattices = Some(placed.with_geometry_at_samples());
             let views = [ViewFrame { lattices, ..ViewFrame::new(geometry, Gaze::At { px: gaze_px }) }];
             let atlas = &targets.atlas;

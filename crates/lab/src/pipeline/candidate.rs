@@ -1,0 +1,40 @@
+//! The foveated frame, as the methods of a pipeline get it.
+
+use afterimage::simulator::Pyramid;
+use afterimage::{Filter, Image, ViewFrame};
+use std::borrow::Cow;
+
+/// A foveated frame.
+pub(super) struct Candidate<'a> {
+    pub view: ViewFrame,
+    /// Level of detail of every pixel.
+    pub lods: Image<f32>,
+    /// The frame in memory, if a method reads it there.
+    pub in_memory: Option<InMemory<'a>>,
+    /// Mip chain of a simulated frame, if it is in memory.
+    pub pyramid: Option<Pyramid>,
+}
+
+/// A foveated frame in memory.
+pub(super) struct InMemory<'a> {
+    pub color: Cow<'a, Image<[f32; 3]>>,
+    /// Whether some of its colors are invalid on purpose, and replace those on a device.
+    pub is_poisoned: bool,
+    /// Whether the levels of detail are an input of the methods.
+    pub has_lod: bool,
+    pub noise: Option<&'a Image<[f32; 2]>>,
+    /// Depth and motion of the samples, where they replace those of the full-rate frame.
+    pub geometry: Option<(Image<f32>, Image<[f32; 2]>)>,
+}
+
+impl<'a> InMemory<'a> {
+    pub fn new(color: Cow<'a, Image<[f32; 3]>>) -> Self {
+        Self { color, is_poisoned: false, has_lod: false, noise: None, geometry: None }
+    }
+}
+
+/// Whether methods need the levels of detail of a simulated frame as an input. `Filter::Block` evaluates the level at
+/// the center of a block, which a method cannot derive from the gaze.
+pub(super) fn needs_lod(filter: Filter) -> bool {
+    filter == Filter::Block
+}

@@ -1,0 +1,90 @@
+//! Methods on the CPU.
+
+use super::candidate::Candidate;
+use super::executor::{Executor, Shot};
+use super::run::{MethodOutput, RunKind};
+use crate::clock::Stopwatch;
+use crate::frame::RenderedFrame;
+use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
+use afterimage::kernel::debug_view::view_color;
+use afterimage::kernel::noise::{Noise, unpack_noise};
+use afterimage::{ContextDesc, CreateError, FrameError, Image, Method, Smr};
+use std::slice::from_ref;
+
+/// Methods on the CPU.
+#[derive(Default)]
+pub(super) struct CpuExecutor(Vec<CpuAfterimage>);
+
+impl Executor for CpuExecutor {
+    fn add(&mut self, kind: &RunKind, desc: &ContextDesc) -> Result<(), CreateError> {
+        kind.check_on_cpu()?;
+        self.0.push(CpuAfterimage::new(desc)?);
+        Ok(())
+    }
+
+    fn reads_memory(&self) -> bool {
+        true
+    }
+
+    fn set(&mut self, _: &RenderedFrame, _: &Candidate<'_>) -> Result<(), FrameError> {
+        Ok(())
+    }
+
+    fn run(&mut self, run: usize, shot: &Shot<'_>) -> Result<MethodOutput, FrameError> {
+        let post = &mut self.0[run];
+        let candidate = shot.candidate;
+        let given = candidate.in_memory.as_ref().expect("frames are foveated in memory for runs on the CPU");
+        let size = post.desc().size_px;
+        let mut output = [Image::filled(size, [0.0; 3])];
+        let mut traces = (!shot.debug.is_empty()).then(|| [Image::filled(size, PixelTrace::default())]);
+        let reference = &shot.frame.reference;
+        let (depth, motion) = match &given.geometry {
+            Some((depth, motion)) => (Some(depth), Some(motion)),
+            None => (reference.depth.as_ref(), reference.motion.as_ref()),
+        };
+        let trust = reference.trust.as_ref().filter(|_| shot.use_trust);
+        let color: &Image<[f32; 3]> = &given.color;
+        let lod = given.has_lod.then_some(&candidate.lods);
+        let frame = Frame {
+            depth: depth.as_ref().map(from_ref),
+            motion: motion.as_ref().map(from_ref),
+            trust: trust.as_ref().map(from_ref),
+            lod: lod.as_ref().map(from_ref),
+            noise: given.noise.as_ref().map(from_ref),
+            reset: shot.reset(),
+            ..Frame::new(from_ref(&color), from_ref(&candidate.view), shot.frame.index)
+        };
+        let watch = Stopwatch::start();
+        let stats = match &mut traces {
+            Some(traces) => post.process_traced(&frame, &mut output, traces)?,
+            None => post.process(&frame, &mut output)?,
+        };
+        let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
+        let given = [depth.is_some(), motion.is_some(), trust.is_some()];
+        let [image] = output;
+        Ok(MethodOutput {
+            image,
+            wall_ms,
+            cpu_ms,
+            device_ms: None,
+            stats,
+            traffic_bytes_per_pixel: Some(post.desc().settings.traffic_bytes_per_pixel(given)),
+            debug: traces.map_or_else(Vec::new, |[trace]| {
+                shot.debug.iter().map(|&view| trace.map(|t| view_color(view, &t).to_array())).collect()
+            }),
+        })
+    }
+
+    fn memory_bytes(&self, run: usize) -> usize {
+        self.0[run].memory_bytes()
+    }
+
+    fn history_noise(&self, run: usize) -> Option<(Image<Noise>, Smr)> {
+        let post = &self.0[run];
+        let Method::Smr(smr) = post.desc().settings.method else { return None };
+        let words = post.history().noise().to_vec();
+        let image = (!words.is_empty())
+            .then(|| Image::from_pixels(post.desc().size_px, words).expect("one noise word for each pixel"));
+        Some((image?.map(unpack_noise), smr))
+    }
+}

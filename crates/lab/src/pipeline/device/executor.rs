@@ -1,0 +1,121 @@
+//! Methods on a device.
+
+use super::{DeviceFormats, DeviceInputs, DeviceRun};
+use crate::clock::Stopwatch;
+use crate::device::{Headless, PassClock};
+use crate::frame::{Content, RenderedFrame};
+use crate::pipeline::candidate::Candidate;
+use crate::pipeline::executor::{Executor, Shot};
+use crate::pipeline::run::{MethodOutput, RunKind};
+use afterimage::kernel::noise::{Noise, unpack_noise};
+use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Image, Method, Settings, Smr};
+use std::slice::from_ref;
+use std::sync::Arc;
+
+/// Methods on a device, which share one frame.
+pub struct DeviceExecutor {
+    gpu: Arc<Headless>,
+    inputs: DeviceInputs,
+    clock: PassClock,
+    runs: Vec<DeviceRun>,
+    is_still: bool,
+    /// Whether the frame of a still is already on the device.
+    has_still: bool,
+}
+
+impl DeviceExecutor {
+    /// An executor of frames with `desc`'s size and foveation. `is_still`: all frames are equal.
+    pub fn new(gpu: &Arc<Headless>, desc: &ContextDesc, is_still: bool) -> Result<Self, CreateError> {
+        Ok(Self {
+            inputs: DeviceInputs::new(gpu, desc, DeviceFormats::EXACT)?,
+            clock: PassClock::new(gpu),
+            runs: vec![],
+            is_still,
+            has_still: false,
+            gpu: gpu.clone(),
+        })
+    }
+}
+
+impl Executor for DeviceExecutor {
+    fn add(&mut self, kind: &RunKind, desc: &ContextDesc) -> Result<(), CreateError> {
+        self.runs.push(match kind {
+            #[cfg(feature = "ablation")]
+            RunKind::Without(_, part) => {
+                let shader = part.shader_without(desc.settings.method.kind());
+                DeviceRun::with_shader(&self.gpu, desc, DeviceFormats::EXACT, &shader)?
+            }
+            _ => DeviceRun::new(&self.gpu, desc, DeviceFormats::EXACT)?,
+        });
+        Ok(())
+    }
+
+    fn reads_memory(&self) -> bool {
+        false
+    }
+
+    fn set(&mut self, frame: &RenderedFrame, candidate: &Candidate<'_>) -> Result<(), FrameError> {
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        let is_simulated = matches!(frame.content, Content::FullRate);
+        if !(is_simulated && self.has_still && frame.reference_on_device.is_none()) {
+            self.inputs.set(&mut encoder, frame);
+        }
+        if is_simulated {
+            self.has_still = self.is_still;
+            self.inputs.foveate(&mut encoder, from_ref(&candidate.view), None)?;
+        }
+        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.wait();
+        if let Some(in_memory) = candidate.in_memory.as_ref().filter(|in_memory| in_memory.is_poisoned) {
+            self.inputs.replace_color(&in_memory.color);
+        }
+        self.gpu.check()
+    }
+
+    fn run(&mut self, run: usize, shot: &Shot<'_>) -> Result<MethodOutput, FrameError> {
+        let (gpu, run) = (&self.gpu, &mut self.runs[run]);
+        let views = from_ref(&shot.candidate.view);
+        let frame = self.inputs.frame(views, shot.frame.index, shot.reset(), shot.use_trust);
+        let encoder = || gpu.device.create_command_encoder(&Default::default());
+        let mut debug_views = vec![];
+        // Counters come from a debug view. If no view is requested, one is drawn for the counters and not read back.
+        for &view in if shot.debug.is_empty() { &[DebugView::Rejection] } else { shot.debug } {
+            let mut encoder = encoder();
+            run.record_view(&mut encoder, &frame, view)?;
+            gpu.queue.submit([encoder.finish()]);
+            debug_views.extend(run.debug().filter(|_| !shot.debug.is_empty()).map(|texture| gpu.read_rgb(texture, 0)));
+        }
+        // The device is idle when the watch starts.
+        gpu.wait();
+        let watch = Stopwatch::start();
+        let mut encoder = encoder();
+        run.record(&mut encoder, &frame, self.clock.timestamps())?;
+        self.clock.resolve(&mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        gpu.wait();
+        let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
+        let device_ms = self.clock.is_device().then(|| self.clock.read_ms(gpu, &watch));
+        let given = [frame.depth.is_some(), frame.motion.is_some(), frame.trust.is_some()];
+        let output = MethodOutput {
+            image: gpu.read_rgb(run.output(), 0),
+            wall_ms,
+            cpu_ms,
+            device_ms,
+            stats: run.stats(),
+            traffic_bytes_per_pixel: Some(run.post().desc().settings.traffic_bytes_per_pixel(given)),
+            debug: debug_views,
+        };
+        gpu.check().map(|()| output)
+    }
+
+    fn memory_bytes(&self, run: usize) -> usize {
+        self.runs[run].post().memory_bytes() as usize
+    }
+
+    fn history_noise(&self, run: usize) -> Option<(Image<Noise>, Smr)> {
+        let post = self.runs[run].post();
+        let Settings { method: Method::Smr(smr), noisy: true, .. } = post.desc().settings else { return None };
+        let texture = post.history_textures().get(2)?;
+        Some((self.gpu.read::<u32>(texture, 0).map(unpack_noise), smr))
+    }
+}

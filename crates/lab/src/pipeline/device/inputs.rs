@@ -1,0 +1,275 @@
+//! Inputs of the methods on a device.
+
+use super::{DeviceFormats, WRITTEN};
+use crate::device::Headless;
+use crate::frame::{ComposedFrame, Content, DeviceFrame, DeviceSamples, OnDevice, RenderedFrame, SourceFrame};
+use crate::lattices::SparseGeometry;
+use crate::pipeline::candidate::needs_lod;
+use crate::shader::SHADERS;
+use afterimage::gpu::compute::{ComputeShader, float_texture, storage_texture, uniform};
+use afterimage::gpu::{Frame, Timestamps, array_view, filled};
+use afterimage::kernel::pack::half_bits;
+use afterimage::simulator::{GpuSimulator, SimulatorFrame};
+use afterimage::{ContextDesc, CreateError, FrameError, Image, Reset, ViewFrame};
+use std::sync::Arc;
+use wgpu::{BindingResource, BufferUsages, CommandEncoder, Texture, TextureFormat, TextureUsages};
+
+/// Inputs of the methods on a device: the full-rate frame, and the foveated frame that its source rendered or a
+/// simulator computes from it.
+#[derive(Debug)]
+pub struct DeviceInputs {
+    gpu: Arc<Headless>,
+    formats: DeviceFormats,
+    full: Texture,
+    depth: Texture,
+    motion: Texture,
+    /// Motion vectors of zero, for a repeated frame.
+    no_motion: Texture,
+    trust: Texture,
+    lod: Texture,
+    noise: Texture,
+    foveated: Texture,
+    simulator: GpuSimulator,
+    import: Option<ComputeShader>,
+    /// Color and distance of the last sparse frame in an atlas.
+    atlas: Option<[Texture; 2]>,
+    given: Given,
+}
+
+/// The textures that the methods get of the current frame.
+#[derive(Clone, Debug)]
+struct Given {
+    color: Texture,
+    depth: Option<Texture>,
+    motion: Option<Texture>,
+    trust: Option<Texture>,
+    lod: Option<Texture>,
+    noise: Option<Texture>,
+}
+
+impl Given {
+    fn color(color: &Texture) -> Self {
+        Self { color: color.clone(), depth: None, motion: None, trust: None, lod: None, noise: None }
+    }
+}
+
+impl DeviceInputs {
+    /// Creates textures of `desc`'s size and a simulator of the foveation in its settings.
+    ///
+    /// # Errors
+    /// [`CreateError`] if a setting is out of range or the device does not support it.
+    pub fn new(gpu: &Arc<Headless>, desc: &ContextDesc, formats: DeviceFormats) -> Result<Self, CreateError> {
+        let texture = |format, usage| gpu.texture(desc.size_px, 1, format, usage);
+        let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST | TextureUsages::COPY_SRC;
+        let foveated = texture(formats.color, WRITTEN | TextureUsages::COPY_DST);
+        Ok(Self {
+            formats,
+            full: texture(formats.color, read | TextureUsages::STORAGE_BINDING),
+            depth: texture(TextureFormat::R32Float, read | TextureUsages::STORAGE_BINDING),
+            motion: texture(formats.motion, read),
+            no_motion: texture(formats.motion, read),
+            trust: texture(TextureFormat::R32Float, read),
+            lod: texture(TextureFormat::R32Float, read | TextureUsages::STORAGE_BINDING),
+            noise: texture(TextureFormat::Rg32Float, read),
+            simulator: GpuSimulator::new(&gpu.device, desc, formats.color)?,
+            import: None,
+            atlas: None,
+            given: Given::color(&foveated),
+            foveated,
+            gpu: gpu.clone(),
+        })
+    }
+
+    /// Replaces the simulator if the foveation in `desc`'s settings differs from its own.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn set_foveation(&mut self, desc: &ContextDesc) -> Result<(), CreateError> {
+        if desc.settings.foveation != self.simulator.desc().settings.foveation {
+            self.simulator = GpuSimulator::new(&self.gpu.device, desc, self.formats.color)?;
+        }
+        Ok(())
+    }
+
+    /// Makes `frame` the current one. What it has on this device is imported or, if the methods can read it, taken as
+    /// it is, and must stay until they have run; the rest is uploaded. Values are the same either way. A full-rate
+    /// frame waits for [`foveate`](Self::foveate). Records into `encoder`.
+    pub fn set(&mut self, encoder: &mut CommandEncoder, frame: &RenderedFrame) {
+        match &frame.content {
+            Content::FullRate => {
+                if self.set_reference(encoder, frame).is_none() {
+                    self.write_rgb(&self.full, &frame.reference.color);
+                }
+            }
+            Content::Foveated(foveated) => {
+                self.given = self.upload_geometry(&frame.reference);
+                self.write_rgb(&self.foveated, &foveated.color);
+                // Lattices say how coarse a sparse frame is.
+                self.given.lod = foveated.lattices.is_none().then(|| self.uploaded(&self.lod, &foveated.lod));
+                self.given.noise = Some(self.uploaded(&self.noise, &foveated.noise));
+            }
+            Content::OnDevice(content) => {
+                let content = self.take(encoder, content);
+                self.given = if frame.geometry == SparseGeometry::Samples {
+                    content
+                } else {
+                    self.set_reference(encoder, frame);
+                    Given { color: content.color, lod: content.lod, noise: content.noise, ..self.given.clone() }
+                };
+            }
+        }
+    }
+
+    /// Takes depth, motion and trust of the full-rate frame; with its color if it is on this device.
+    fn set_reference(&mut self, encoder: &mut CommandEncoder, frame: &RenderedFrame) -> Option<()> {
+        let rendered = frame.reference_on_device.as_ref().filter(|on| Arc::ptr_eq(&on.device, &self.gpu));
+        let Some(rendered) = rendered else {
+            self.given = self.upload_geometry(&frame.reference);
+            return None;
+        };
+        self.import(encoder, rendered, [&self.full.clone(), &self.depth.clone()]);
+        let size = rendered.motion.size();
+        encoder.copy_texture_to_texture(rendered.motion.as_image_copy(), self.motion.as_image_copy(), size);
+        let (depth, motion) = (Some(self.depth.clone()), Some(self.motion.clone()));
+        self.given = Given { depth, motion, ..Given::color(&self.foveated) };
+        Some(())
+    }
+
+    /// A frame that its source foveated on this device, with its own depth and motion.
+    fn take(&mut self, encoder: &mut CommandEncoder, content: &OnDevice) -> Given {
+        match content {
+            OnDevice::Atlas(sparse) => {
+                let [color, depth] = self.import_atlas(encoder, &sparse.atlas);
+                let motion = Some(sparse.atlas.motion.clone());
+                Given { depth: Some(depth), motion, ..Given::color(&color) }
+            }
+            OnDevice::Samples(DeviceSamples { color, noise, depth, motion, .. }) => {
+                let (depth, motion) = (Some(depth.clone()), Some(motion.clone()));
+                Given { depth, motion, noise: Some(noise.clone()), ..Given::color(color) }
+            }
+            OnDevice::Composed(ComposedFrame { color, distance, motion, lod, .. }) => {
+                let (depth, motion) = (Some(distance.clone()), Some(motion.clone()));
+                Given { depth, motion, lod: Some(lod.clone()), ..Given::color(color) }
+            }
+        }
+    }
+
+    /// Imports an atlas; its color and distance.
+    fn import_atlas(&mut self, encoder: &mut CommandEncoder, atlas: &DeviceFrame) -> [Texture; 2] {
+        let size = [atlas.color.width(), atlas.color.height()];
+        let fits = |[color, _]: &[Texture; 2]| [color.width(), color.height()] == size;
+        let held = self.atlas.take().filter(fits).unwrap_or_else(|| {
+            let texture = |format| self.gpu.texture(size, 1, format, WRITTEN | TextureUsages::COPY_DST);
+            [self.formats.color, TextureFormat::R32Float].map(texture)
+        });
+        let [color, depth] = &held;
+        self.import(encoder, atlas, [color, depth]);
+        self.atlas.insert(held).clone()
+    }
+
+    /// Records the conversion of a rasterized frame's color and depth.
+    fn import(&mut self, encoder: &mut CommandEncoder, frame: &DeviceFrame, to: [&Texture; 2]) {
+        let device = &self.gpu.device;
+        let import = self.import.get_or_insert_with(|| {
+            let types = [
+                uniform(),
+                float_texture(),
+                float_texture(),
+                storage_texture(self.formats.color),
+                storage_texture(TextureFormat::R32Float),
+            ];
+            ComputeShader::new(device, "import", SHADERS.compose("import_pass").source, &types)
+        });
+        let near = filled(device, "near", &frame.near.to_ne_bytes(), BufferUsages::UNIFORM);
+        let views = [&frame.color, &frame.depth, to[0], to[1]].map(array_view);
+        let resources = std::iter::once(near.as_entire_binding()).chain(views.iter().map(BindingResource::TextureView));
+        let group = import.group(device, resources);
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        import.dispatch(device, &mut pass, &[], &group, [frame.color.width(), frame.color.height()], 1);
+    }
+
+    /// Uploads what a frame has besides its color.
+    fn upload_geometry(&self, frame: &SourceFrame) -> Given {
+        let upload_motion = |motion: &Image<[f32; 2]>| {
+            match self.formats.motion {
+                TextureFormat::Rg16Float => self.gpu.write(&self.motion, 0, &motion.map(|v| v.map(half))),
+                _ => self.gpu.write(&self.motion, 0, motion),
+            }
+            self.motion.clone()
+        };
+        Given {
+            depth: frame.depth.as_ref().map(|depth| self.uploaded(&self.depth, depth)),
+            motion: frame.motion.as_ref().map(upload_motion),
+            trust: frame.trust.as_ref().map(|trust| self.uploaded(&self.trust, trust)),
+            ..Given::color(&self.foveated)
+        }
+    }
+
+    fn uploaded<T: bytemuck::NoUninit>(&self, texture: &Texture, image: &Image<T>) -> Texture {
+        self.gpu.write(texture, 0, image);
+        texture.clone()
+    }
+
+    fn write_rgb(&self, texture: &Texture, color: &Image<[f32; 3]>) {
+        match self.formats.color {
+            TextureFormat::Rgba16Float => {
+                self.gpu.write(texture, 0, &color.map(|[r, g, b]| [r, g, b, 1.0].map(half)));
+            }
+            _ => self.gpu.write_rgb(texture, 0, color),
+        }
+    }
+
+    /// Replaces the color that the methods get.
+    pub(super) fn replace_color(&mut self, color: &Image<[f32; 3]>) {
+        let is_atlas = self.atlas.as_ref().is_some_and(|[held, _]| *held == self.given.color);
+        if !is_atlas {
+            self.given.color = self.foveated.clone();
+        }
+        self.write_rgb(&self.given.color, color);
+    }
+
+    /// Records the simulator, which foveates the full-rate frame for the gaze of `views`.
+    ///
+    /// # Errors
+    /// [`FrameError`] if a view does not match the simulator's size or view count.
+    pub fn foveate(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        views: &[ViewFrame],
+        timestamps: Option<Timestamps<'_>>,
+    ) -> Result<(), FrameError> {
+        let lod = needs_lod(self.simulator.desc().settings.foveation.filter).then_some(&self.lod);
+        let frame = SimulatorFrame { lod, timestamps, ..SimulatorFrame::new(&self.full, &self.foveated, views) };
+        self.simulator.record(&self.gpu.device, encoder, &frame)?;
+        self.given = Given { lod: lod.cloned(), ..self.given.clone() };
+        Ok(())
+    }
+
+    /// The foveated frame as input of the methods. `use_trust`: include the trust mask, if the frame has one.
+    pub fn frame<'a>(&'a self, views: &'a [ViewFrame], index: u64, reset: Reset, use_trust: bool) -> Frame<'a> {
+        let Given { color, depth, motion, trust, lod, noise } = &self.given;
+        Frame {
+            depth: depth.as_ref().map(Into::into),
+            motion: motion.as_ref().map(Into::into),
+            trust: trust.as_ref().filter(|_| use_trust).map(Into::into),
+            lod: lod.as_ref().map(Into::into),
+            noise: noise.as_ref().map(Into::into),
+            reset,
+            ..Frame::new(color, views, index)
+        }
+    }
+
+    /// `frame` repeated, with motion vectors of zero.
+    pub fn again<'a>(&'a self, frame: Frame<'a>) -> Frame<'a> {
+        Frame { motion: frame.motion.map(|_| (&self.no_motion).into()), ..frame }
+    }
+
+    /// The full-rate frame.
+    pub fn full(&self) -> &Texture {
+        &self.full
+    }
+}
+
+fn half(value: f32) -> u16 {
+    half_bits(value) as u16
+}

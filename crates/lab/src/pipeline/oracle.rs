@@ -1,0 +1,49 @@
+//! The upper bound of temporal reuse.
+
+use super::run::MethodOutput;
+use crate::clock::Stopwatch;
+use afterimage::simulator::Pyramid;
+use afterimage::{Foveation, FrameError, FrameStats, Image};
+
+/// Every pixel at its finest level of detail so far.
+#[derive(Default)]
+pub(super) struct Oracle {
+    best: Option<Image<f32>>,
+}
+
+impl Oracle {
+    /// The next frame of a still: its mip chain, of a simulator, and its levels of detail.
+    pub fn run(
+        &mut self,
+        pyramid: Option<&Pyramid>,
+        lods: &Image<f32>,
+        foveation: &Foveation,
+    ) -> Result<MethodOutput, FrameError> {
+        let pyramid = pyramid.ok_or_else(|| FrameError::Value {
+            what: "oracle",
+            view: 0,
+            found: "a frame that its source foveated".into(),
+            expected: "a simulator's",
+        })?;
+        let watch = Stopwatch::start();
+        let best = self.best.get_or_insert_with(|| lods.clone());
+        for (b, &l) in best.pixels_mut().iter_mut().zip(lods.pixels()) {
+            *b = b.min(l);
+        }
+        let image = foveation.render(pyramid, best);
+        Ok(MethodOutput {
+            image,
+            wall_ms: watch.wall_ms(),
+            cpu_ms: watch.cpu_ms(),
+            device_ms: None,
+            stats: FrameStats::default(),
+            traffic_bytes_per_pixel: None,
+            debug: vec![],
+        })
+    }
+
+    /// Bytes kept between frames.
+    pub fn memory_bytes(&self) -> usize {
+        self.best.as_ref().map_or(0, |best| size_of_val(best.pixels()))
+    }
+}
