@@ -118,7 +118,6 @@ mod tests {
                     divisor: 50.0,
                     offset: 2.0
                 }),
-                ..Wrs::default()
             }),
             foveation: Foveation { filter: Filter::Block, fovea_deg: 10.0, rate_far: 32, ..Foveation::default() },
             depth_test: Some(DepthTest { relative: 0.1, slope_px: 0.0 }),

@@ -3,6 +3,7 @@
 use super::TraceArgs;
 use super::eyes::{Eyes, below};
 use super::setup::Setup;
+use crate::args::Named;
 use crate::args::pattern::SamplingName;
 use crate::report::backend::BackendReport;
 use afterimage_lab::clock::Stopwatch;
@@ -42,8 +43,8 @@ struct TraceJson<'a> {
     spp: u32,
     sampling: &'static str,
     max_depth: u32,
-    integrator: String,
-    bsdf: String,
+    integrator: &'static str,
+    bsdf: &'static str,
     seed: u64,
     backend: BackendReport,
     triangles: u32,
@@ -202,8 +203,8 @@ impl Report {
             spp: args.spp,
             sampling: args.pattern.of.sampling.name(),
             max_depth: args.paths.max_depth,
-            integrator: format!("{:?}", args.paths.integrator).to_lowercase(),
-            bsdf: format!("{:?}", args.paths.bsdf).to_lowercase(),
+            integrator: args.paths.integrator.name(),
+            bsdf: args.paths.bsdf.name(),
             seed: args.seed,
             backend: BackendReport::of(&setup.backend),
             triangles: setup.world.geometry.len(),
