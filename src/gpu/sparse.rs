@@ -63,7 +63,7 @@ impl SamplePasses {
             light: ComputeShader::with_bindings(device, "sparse_light_pass", light, &bindings),
             observed,
             lights,
-            absent: Placeholders::new(device, HistoryLayout::Kept { noisy: false }),
+            absent: Placeholders::new(device, HistoryLayout::Kept { noisy: false, means: false }),
         }
     }
 }

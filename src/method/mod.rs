@@ -178,6 +178,8 @@ pub(crate) enum HistoryLayout {
     Kept {
         /// Whether there is packed noise ([`noise`](crate::kernel::noise)).
         noisy: bool,
+        /// Whether they are means of samples ([`antialias`](crate::kernel::antialias)).
+        means: bool,
     },
     /// Packed surfaces ([`surface`](crate::kernel::surface)), and their mip chain.
     Surfaces {

@@ -11,7 +11,7 @@ pub(super) static ENTRY: Entry = Entry {
     summary: "scale-matched reservoirs of sparse frames",
     algorithm: Algorithm::SmrSparse,
     stages: |_| vec![Stage::Geometry, Stage::Samples, Stage::Method],
-    history: |settings| HistoryLayout::Kept { noisy: settings.noisy },
+    history: |settings| HistoryLayout::Kept { noisy: settings.noisy, means: smr_sparse_antialiases(settings) },
     history_traffic_bytes: |settings| {
         // Samples of history: 8 bytes read, 8 written. A quarter of the pixels, and a quarter of these, and so on, at
         // most have samples of this frame: for each, history is read (8), the observation is written and read (16),
