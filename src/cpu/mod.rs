@@ -120,8 +120,8 @@ impl CpuAfterimage {
     /// Changes the settings from the next frame on.
     ///
     /// History survives, unless its layout changes: with another [`method`](Settings::method), with
-    /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::Wrs::sampler) and the scale of its [`gate`](crate::Wrs::gate),
-    /// and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
+    /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::Wrs::sampler) and the scale of its
+    /// [`gate`](crate::Wrs::gate), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
     ///
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.

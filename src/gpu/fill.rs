@@ -2,7 +2,7 @@
 
 use super::compute::{ComputeShader, float_texture, storage_texture, uniform};
 use super::history::array_view;
-use super::stages::{Job, Passes};
+use super::stage::{Job, Passes};
 use super::textures::batches;
 use super::{Textures, Variant};
 use crate::frame::ContextDesc;

@@ -4,7 +4,7 @@
 use super::compute::{ComputeShader, float_texture, storage_texture, uint_texture, uniform};
 use super::history::array_view;
 use super::method_pass::{Placeholders, input_overrides};
-use super::stages::{Job, Passes};
+use super::stage::{Job, Passes};
 use super::textures::batches;
 use super::{Textures, Variant};
 use crate::convention::DepthConvention;

@@ -36,7 +36,7 @@ pub(super) struct History {
 }
 
 impl History {
-    /// Empty history, without what stages [add](super::stages::Passes::extend).
+    /// Empty history, without what stages [add](super::stage::Passes::extend).
     pub fn new(device: &Device, desc: &ContextDesc) -> Self {
         let layout = desc.settings.history_layout();
         let planes = || {

@@ -7,7 +7,7 @@
 use super::compute::{ComputeShader, float_texture, storage_buffer, storage_texture, uint_texture, uniform};
 use super::history::array_view;
 use super::output::DEBUG_FORMAT;
-use super::stages::{Job, Passes};
+use super::stage::{Job, Passes};
 use super::textures::{Batch, batches};
 use super::{Textures, Variant};
 use crate::frame::ContextDesc;

@@ -4,7 +4,7 @@ use super::Variant;
 use super::buffer::filled;
 use super::compute::{ComputeShader, WORKGROUP_WIDTH, float_texture, storage_texture, uniform};
 use super::history::{History, array_view, candidate_plan, levels_view};
-use super::stages::{Job, Passes};
+use super::stage::{Job, Passes};
 use super::textures::batches;
 use super::uniforms::CandidateUniforms;
 use crate::frame::ContextDesc;

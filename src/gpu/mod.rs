@@ -23,6 +23,7 @@ mod output;
 #[doc(hidden)]
 pub mod resize;
 mod sparse;
+mod stage;
 mod stages;
 mod textures;
 // For the tests, which compare struct layouts.
@@ -55,7 +56,8 @@ use fill_geometry::GeometryFill;
 use history::History;
 use resize::ResizePass;
 use sparse::SamplePasses;
-use stages::{Job, Stages};
+use stage::Job;
+use stages::Stages;
 use uniforms::FrameUniforms;
 use wgpu::{CommandEncoder, Device, Limits, Texture, TextureFormat, TextureUsages};
 

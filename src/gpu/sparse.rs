@@ -5,7 +5,7 @@ use super::buffer::filled;
 use super::compute::{ComputeShader, float_texture, storage_texture, uint_texture, uniform};
 use super::history::array_view;
 use super::method_pass::{Placeholders, input_overrides};
-use super::stages::{Job, Passes};
+use super::stage::{Job, Passes};
 use super::textures::{Batch, batches};
 use super::uniforms::{LatticeUniforms, SparseUniforms, ViewLattices};
 use super::{Frame, Textures, Variant};

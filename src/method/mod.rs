@@ -131,6 +131,7 @@ fn whole_frames(settings: &Settings) -> Vec<Stage> {
 pub(crate) struct Entry {
     pub name: &'static str,
     pub summary: &'static str,
+    #[cfg_attr(not(feature = "cpu"), expect(dead_code, reason = "the device has the stages"))]
     pub algorithm: Algorithm,
     /// Stages of a frame, in their order.
     pub stages: fn(&Settings) -> Vec<Stage>,

@@ -2,8 +2,8 @@
 
 use crate::error::{SettingsError, check};
 
-/// Sampler of [`Method::Wrs`](super::Method::Wrs): rule by which a reservoir chooses between its sample and the candidate. Both give the
-/// same probability to each candidate. Default: [`AChao`](Self::AChao). Example: [`Wrs`].
+/// Sampler of [`Method::Wrs`](super::Method::Wrs): rule by which a reservoir chooses between its sample and the
+/// candidate. Both give the same probability to each candidate. Default: [`AChao`](Self::AChao). Example: [`Wrs`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
@@ -20,8 +20,8 @@ pub enum Sampler {
     AChaoMean,
 }
 
-/// Bias of [`Method::Wrs`](super::Method::Wrs): decay of history's weight, without which new candidates would hardly ever be taken.
-/// Default: [`Bernoulli`](Self::Bernoulli). Example: [`Wrs`].
+/// Bias of [`Method::Wrs`](super::Method::Wrs): decay of history's weight, without which new candidates would hardly
+/// ever be taken. Default: [`Bernoulli`](Self::Bernoulli). Example: [`Wrs`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
@@ -60,14 +60,14 @@ pub enum GateScale {
     #[default]
     Sample,
     /// The candidate with the reference that is stored beside the sample: the first candidate of the same level of
-    /// detail since the sample was taken. Closes only where something changed. The level is that of
-    /// the frame's input `lod`, of [`Settings::foveation`](super::Settings::foveation) without that, or of the lattices. Needs 8 more bytes of
-    /// memory and of memory traffic a pixel.
+    /// detail since the sample was taken. Closes only where something changed. The level is that of the frame's input
+    /// `lod`, of [`Settings::foveation`](super::Settings::foveation) without that, or of the lattices. Needs 8 more
+    /// bytes of memory and of memory traffic a pixel.
     Candidate,
 }
 
-/// Color gate of [`Method::Wrs`](super::Method::Wrs) (eq. 7 of the paper): history loses weight in proportion to its color difference from
-/// the candidate.
+/// Color gate of [`Method::Wrs`](super::Method::Wrs) (eq. 7 of the paper): history loses weight in proportion to its
+/// color difference from the candidate.
 ///
 /// ```
 /// use afterimage::{Gate, Method, Settings, Wrs};

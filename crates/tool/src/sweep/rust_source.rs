@@ -103,6 +103,7 @@ mod tests {
     }
 
     #[test]
+    #[expect(clippy::needless_update, reason = "the text ends with the default whether or not fields are left")]
     fn what_is_pasted_makes_the_same_settings() {
         round_trip!(Settings::default());
         round_trip!(Settings { method: Method::Taau, depth_test: None, seed: 3, ..Settings::default() });
@@ -118,6 +119,7 @@ mod tests {
                     divisor: 50.0,
                     offset: 2.0
                 }),
+                ..Wrs::default()
             }),
             foveation: Foveation { filter: Filter::Block, fovea_deg: 10.0, rate_far: 32, ..Foveation::default() },
             depth_test: Some(DepthTest { relative: 0.1, slope_px: 0.0 }),
