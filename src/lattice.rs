@@ -3,7 +3,7 @@
 use crate::error::{FrameError, SettingsError};
 use crate::foveation::Foveation;
 use crate::geometry::ViewGeometry;
-use crate::kernel::lattice::offset_px;
+use crate::kernel::lattice::{jitter_px, offset_px};
 
 /// Largest position and number of samples along an axis: twice the largest side of a view.
 const FARTHEST_PX: u32 = 32768;
@@ -187,6 +187,21 @@ impl Lattices {
 }
 
 impl Foveation {
+    /// Jitter of the projection in a frame for [`Smr::antialias`](crate::Smr::antialias), in pixels, each in
+    /// \[-0.5, 0.5): where its samples lie in their pixels changes from frame to frame, so that a mean over time is one
+    /// over the pixel, also where a lattice samples a pixel only every 4 or 256 frames. What is at `p` without jitter is
+    /// drawn at `p + jitter_px`. `index`: the frame counter of [`lattices`](Self::lattices).
+    ///
+    /// ```
+    /// use afterimage::Foveation;
+    ///
+    /// assert_eq!(Foveation::jitter_px(0), [-0.5, -0.5]);
+    /// assert!(Foveation::jitter_px(7).iter().all(|v| v.abs() <= 0.5));
+    /// ```
+    pub fn jitter_px(index: u64) -> [f32; 2] {
+        jitter_px(index)
+    }
+
     /// Lattices of a sparse frame with this foveation: rectangles around the regions, and sample positions that visit
     /// every pixel of a block once in `step * step` frames, evenly spread after any number of frames. `index`: frame
     /// counter.

@@ -36,6 +36,7 @@ pub static MODULES: &[Module] = &[
     module!("foveation", "mip_level"),
     module!("foveation", "mip_show"),
     module!("lib", "acuity"),
+    module!("lib", "antialias"),
     module!("lib", "approx"),
     module!("lib", "color"),
     module!("lib", "debug_view"),

@@ -10,6 +10,9 @@ const PLACE_STEPS: f32 = 24.0;
 const FARTHEST_PX: f32 = 1.2;
 const EXACT_PX: f32 = 0.5f / PLACE_STEPS;
 const REACH_PX2: f32 = 3.0;
+const MEAN_REACH_PX2: f32 = 1.7;
+const INVERSE_REACH: f32 = 1.0f / REACH_PX2;
+const INVERSE_MEAN_REACH: f32 = 1.0f / MEAN_REACH_PX2;
 const SOFTEN_PX2: f32 = 0.03;
 const STIFF_PX2: f32 = 0.01;
 const LOD_PX2: f32 = 0.3;
@@ -38,6 +41,23 @@ fn pack_color(c: vec3<f32>) -> u32 {
     return multiple(v.x, exponent)
         | (multiple(v.y, exponent) << 9u)
         | (multiple(v.z, exponent) << 18u)
+        | ((exponent - SMALLEST_EXPONENT) << 27u);
+}
+
+// kept::multiple_up
+fn multiple_up(v: f32, exponent: u32, up: f32) -> u32 {
+    return u32(v * bitcast<f32>((262u - exponent) << 23u) + up);
+}
+
+// kept::pack_color_by
+fn pack_color_by(c: vec3<f32>, up: f32) -> u32 {
+    let v = select(vec3<f32>(0.0), min(c, vec3<f32>(MAX_COLOR)), c > vec3<f32>(0.0));
+    let largest = max(max(v.x, v.y), v.z);
+    let rough = max(bitcast<u32>(largest) >> 23u, SMALLEST_EXPONENT);
+    let exponent = rough + (multiple_up(largest, rough, up) >> 9u);
+    return multiple_up(v.x, exponent, up)
+        | (multiple_up(v.y, exponent, up) << 9u)
+        | (multiple_up(v.z, exponent, up) << 18u)
         | ((exponent - SMALLEST_EXPONENT) << 27u);
 }
 
@@ -132,19 +152,19 @@ fn nothing_around() -> AroundKept {
 }
 
 // kept::kept_weight
-fn kept_weight(px2: f32) -> f32 {
-    let inside = max(1.0 - px2 * (1.0f / REACH_PX2), 0.0);
+fn kept_weight(px2: f32, inverse_reach: f32) -> f32 {
+    let inside = max(1.0 - px2 * inverse_reach, 0.0);
     return (inside * inside) / (px2 + SOFTEN_PX2);
 }
 
 // kept::add_kept
-fn add_kept(a: AroundKept, sampled: Kept, texel_px: vec2<f32>, same: bool) -> AroundKept {
+fn add_kept(a: AroundKept, sampled: Kept, texel_px: vec2<f32>, same: bool, inverse_reach: f32) -> AroundKept {
     if !same {
         return a;
     }
     let place = texel_px + sampled.place_px;
     let px2 = place.x * place.x + place.y * place.y;
-    let w = kept_weight(px2);
+    let w = kept_weight(px2, inverse_reach);
     let wx = w * place.x;
     let wy = w * place.y;
     let cost = px2 + sampled.lod * LOD_PX2;

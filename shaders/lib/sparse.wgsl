@@ -95,8 +95,13 @@ fn add_light(l: Light, o: Observation, weight: f32, spatial: f32) -> Light {
     );
 }
 
+// sparse::mean_error
+fn mean_error(l: Light) -> f32 {
+    return l.error * (1.0 / l.weight);
+}
+
 // sparse::relight
-fn relight(l: Light) -> vec3<f32> {
+fn relight(l: Light, error: f32) -> vec3<f32> {
     if l.weight < 1e-6 {
         return vec3<f32>(1.0);
     }
@@ -104,7 +109,7 @@ fn relight(l: Light) -> vec3<f32> {
     let sampled = l.sampled * inverse;
     let history = l.history * inverse;
     // The standard error of a weighted mean.
-    let start = ((l.error * inverse) * (sqrt(l.squared) * inverse)) * RELIGHT_ERRORS;
+    let start = (error * (sqrt(l.squared) * inverse)) * RELIGHT_ERRORS;
     let changed = smooth_step(start, start, root_difference(sampled, history));
     // A share of 1 gives the ratio bit for bit.
     return ratios(sampled, history) * changed + (1.0 - changed);

@@ -1,9 +1,13 @@
+//#use antialias
 //#use previous
 //#use resample
 //#use sparse
 //#use wrs
 // Stored samples around the previous position of a pixel's surface, for smr on sparse frames. CPU twin:
 // src/cpu/sparse_pass.rs.
+
+// Whether frames are jittered and history stores means of samples.
+override ANTIALIAS: u32 = 0u;
 
 @group(0) @binding(8) var past_kept: texture_2d_array<u32>;
 
@@ -22,15 +26,43 @@ fn kept_source(px: vec2<u32>, view: u32, motion: vec2<f32>, disparity_now: f32) 
     return previous_of(px, view, motion, disparity_now, at, stored.lod, stored.disparity);
 }
 
+// Disparity and motion of a pixel.
+struct PixelSurface {
+    disparity: f32,
+    motion: vec2<f32>,
+}
+
+// Those of the nearest surface around a pixel, if that stands for it (ANTIALIAS). `level`: of its lattice.
+fn surface_of(px: vec2<u32>, view: u32, level: u32) -> PixelSurface {
+    let own = PixelSurface(disparity_at(px, view), motion_at(px, view));
+    if ANTIALIAS == 0u || DEPTH_TEST == 0u {
+        return own;
+    }
+    var nearest_disparity = own.disparity;
+    var at = px;
+    for (var tap = 0u; tap < 9u; tap++) {
+        let texel = clamp(px + vec2<u32>(tap % 3u, tap / 3u), vec2<u32>(1u), frame.size) - 1u;
+        let near = disparity_at(texel, view);
+        at = select(at, texel, near > nearest_disparity);
+        nearest_disparity = max(near, nearest_disparity);
+    }
+    let motion = motion_at(at, view);
+    if stands_before(own.disparity, nearest_disparity, own.motion, motion, level == 0u) {
+        return PixelSurface(nearest_disparity, motion);
+    }
+    return own;
+}
+
 // Whether history may be at a previous position.
 fn may_have_history(previous: Previous) -> bool {
     return previous.verdict == VERDICT_VALID || previous.verdict == VERDICT_DISOCCLUDED;
 }
 
-// History, and the texel of the sample to keep.
+// History, the texel of the sample to keep, and the number of samples in it.
 struct KeptHistory {
     found: Interpolated,
     texel: vec2<i32>,
+    samples: f32,
 }
 
 // History at a previous position, in this frame's exposure. At a silhouette, where the nearest stored sample is of
@@ -38,17 +70,33 @@ struct KeptHistory {
 // iterations: software Vulkan runs the body of an `if` for all pixels.
 fn kept_history(previous: Previous, view: u32, needed: bool) -> KeptHistory {
     var around = nothing_around();
-    let first = vec2<i32>(floor(previous.at));
+    // Means lie anywhere around their texels' centres, so that all around the nearest one count.
+    var columns = 2u;
+    var first = vec2<i32>(floor(previous.at));
+    var inverse_reach = INVERSE_REACH;
+    if ANTIALIAS != 0u {
+        columns = 3u;
+        first = vec2<i32>(floor(previous.at + 0.5)) - 1;
+        inverse_reach = INVERSE_MEAN_REACH;
+    }
     var nearest_texel = first;
+    var samples = 1.0;
     let codes = tap_codes(previous.expected);
-    let taps = select(0u, 4u, needed);
+    let taps = select(0u, columns * columns, needed);
     for (var tap = 0u; tap < taps; tap++) {
-        let texel = first + vec2<i32>(vec2<u32>(tap & 1u, tap >> 1u));
+        let texel = first + vec2<i32>(vec2<u32>(tap % columns, tap / columns));
         let words = kept_words(texel, view);
         let same = !is_empty(words) && (DEPTH_TEST == 0u || has_code(code_word(words), codes));
         let cost = around.cost;
-        around = add_kept(around, unpack_full(words), vec2<f32>(texel) - previous.at, same);
+        var stored = unpack_full(words);
+        var mean = Mean(stored.lod, 1.0);
+        if ANTIALIAS != 0u {
+            mean = mean_of(stored.lod);
+            stored.lod = mean.lod;
+        }
+        around = add_kept(around, stored, vec2<f32>(texel) - previous.at, same, inverse_reach);
         nearest_texel = select(nearest_texel, texel, around.cost < cost);
+        samples = select(samples, mean.samples, around.cost < cost);
     }
     if previous.verdict == VERDICT_DISOCCLUDED && !stands_in(around) {
         around = nothing_around();
@@ -58,7 +106,7 @@ fn kept_history(previous: Previous, view: u32, needed: bool) -> KeptHistory {
     found.lowest = expose(found.lowest, frame.exposure);
     found.highest = expose(found.highest, frame.exposure);
     found.nearest.color = expose(found.nearest.color, frame.exposure);
-    return KeptHistory(found, nearest_texel);
+    return KeptHistory(found, nearest_texel, samples);
 }
 
 // Whether history has moved since its samples were shaded, by more than their stored places resolve.

@@ -1,3 +1,4 @@
+//#use antialias
 //#use kept
 //#use resize_uniforms
 // Kept samples of history moved to another size: the nearest one, in its place. CPU twin: src/cpu/resize.rs. One
@@ -9,6 +10,8 @@
 @group(0) @binding(4) var next_noise: texture_storage_2d_array<r32uint, write>;
 
 override NOISY: u32 = 0u;
+// Whether they are means of samples.
+override MEANS: u32 = 0u;
 
 @compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
@@ -17,8 +20,15 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     }
     let position = old_position_of(id.xy);
     let at = nearest_to(position);
-    let stored = unpack_kept(textureLoad(past_kept, at, group.z, 0).xy);
-    let moved = moved_kept(stored, vec2<f32>(at) - position, 1.0 / resize.ratio, resize.lod_shift);
+    var stored = unpack_kept(textureLoad(past_kept, at, group.z, 0).xy);
+    let mean = mean_of(stored.lod);
+    if MEANS != 0u {
+        stored.lod = mean.lod;
+    }
+    var moved = moved_kept(stored, vec2<f32>(at) - position, 1.0 / resize.ratio, resize.lod_shift);
+    if MEANS != 0u {
+        moved.lod = stored_lod(Mean(moved.lod, mean.samples));
+    }
     textureStore(next_kept, id.xy, group.z, vec4<u32>(pack_kept(moved), 0u, 0u));
     if NOISY != 0u {
         textureStore(next_noise, id.xy, group.z, textureLoad(past_noise, at, group.z, 0));

@@ -1,3 +1,4 @@
+//#use antialias
 //#use sparse_samples
 // Gain and fit of history around the samples of a sparse frame. CPU twin: `light` in src/cpu/sparse_pass.rs. One
 // invocation a sample of lattice `frame.lattice`; z is the view.
@@ -5,6 +6,7 @@
 // 27 reads and 1 write a sample: color, depth and observation of itself and its eight neighbours; 8 bytes written.
 
 override RELIGHT_ON: u32 = 1u;
+override ANTIALIAS: u32 = 0u;
 
 @group(0) @binding(8) var observed: texture_2d_array<u32>;
 @group(0) @binding(18) var lights_out: texture_storage_2d_array<rg32uint, write>;
@@ -63,6 +65,7 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     let own = observation_at(point, lattice, view);
     let own_disparity = disparity_of(point, lattice, view);
     var without = 0.0;
+    var scatter = 0.0;
     var sum = Light(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, 0.0, 0.0);
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
     let taps = select(0u, 9u, frame.reset == 0u);
@@ -71,6 +74,10 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
         if near.spatial > 0.0 {
             sum = add_light(sum, near.observation, near.weight, near.spatial);
             without += errors_left(near.observation, vec3<f32>(1.0)) * near.weight;
+            if ANTIALIAS != 0u {
+                let difference = min(root_difference(near.observation.sampled, near.observation.history), 1e6);
+                scatter += (difference * difference) * near.weight;
+            }
         }
     }
     let is_own = own.error >= 0.0;
@@ -80,7 +87,11 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     }
     var gains = vec3<f32>(1.0);
     if RELIGHT_ON != 0u {
-        gains = relight(sum);
+        var error = mean_error(sum);
+        if ANTIALIAS != 0u {
+            error = scattered_error(sum, scatter);
+        }
+        gains = relight(sum, error);
     }
     let is_relit = any(gains != vec3<f32>(1.0));
     var with_gain = 0.0;

@@ -12,8 +12,13 @@
 fn observe(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     let nothing = vec2<u32>(0u, half_bits(-1.0));
     let px = px_of(point, lattice);
-    let motion = motion_at(px, view);
-    let previous = kept_source(px, view, motion, disparity_at(px, view));
+    let surface = surface_of(px, view, lattice.level);
+    let motion = surface.motion;
+    var previous = kept_source(px, view, motion, surface.disparity);
+    if ANTIALIAS != 0u {
+        // At the sample's place in its pixel.
+        previous.at -= frame.views[view].jitter_px;
+    }
     let needed = may_have_history(previous) && color(sample_at(point, lattice, view).xyz).usable;
     let kept = kept_history(previous, view, needed);
     let history = kept.found;
@@ -21,7 +26,8 @@ fn observe(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
         return nothing;
     }
     let contrast = root_difference(history.lowest, history.highest);
-    var error = expected_error(history.lod, contrast, has_moved(motion, history.nearest.place_px));
+    let moved = ANTIALIAS != 0u || has_moved(motion, history.nearest.place_px);
+    var error = expected_error(history.lod, contrast, moved);
     var sure = sureness(history.lod);
     if NOISY != 0u {
         let past = stored_noise(kept.texel, view);

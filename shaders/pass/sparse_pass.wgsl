@@ -1,6 +1,7 @@
 //#use kept_history
 //#use kept_noise
 //#use output
+//#use rng
 //#use sparse_samples
 // Reconstruction of sparse frames from history that keeps samples in their places (smr). CPU twin: `pixel` in
 // src/cpu/sparse_pass.rs; docs/method.md has the equations. One invocation a pixel; z is the view.
@@ -23,11 +24,13 @@ struct Candidate {
     fit: f32,
     alpha: f32,
     noise: Noise,
+    // Whether it is the sample of this pixel.
+    is_own: bool,
 }
 
 fn no_candidate() -> Candidate {
     let zero = vec3<f32>(0.0);
-    return Candidate(zero, false, 0.0, zero, zero, vec3<f32>(1.0), 1.0, 1.0, Noise(1.0, 0.0));
+    return Candidate(zero, false, 0.0, zero, zero, vec3<f32>(1.0), 1.0, 1.0, Noise(1.0, 0.0), false);
 }
 
 // Squared distances of a pixel from two others along an axis.
@@ -96,7 +99,18 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
     }
     if level == 0u {
         let none = no_candidate();
-        return Candidate(own.color, own.usable, 0.0, none.lowest, none.highest, none.gains, 1.0, own_alpha, none.noise);
+        return Candidate(
+            own.color,
+            own.usable,
+            0.0,
+            none.lowest,
+            none.highest,
+            none.gains,
+            1.0,
+            own_alpha,
+            none.noise,
+            own.usable,
+        );
     }
     if weights == 0.0 {
         return no_candidate();
@@ -123,6 +137,7 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
         min(fit_sum * known, select(1.0, unpack_lit(own_words).own_fit, is_own)),
         select(mean.w, own_alpha, is_own),
         noise,
+        is_own,
     );
 }
 
@@ -162,25 +177,70 @@ fn full_rate_candidate(px: vec2<u32>, lattice: LatticeUniforms, view: u32, fits:
     return candidate;
 }
 
+// Sums over the nine samples around a pixel of full rate, of which the own one is usable; of none unless `needed`. A
+// variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
+fn samples_near(px: vec2<u32>, lattice: LatticeUniforms, view: u32, needed: bool) -> Near {
+    var near = Near(vec3<f32>(0.0), vec3<f32>(0.0), 0.0);
+    let taps = select(0u, 9u, needed);
+    for (var tap = 0u; tap < taps; tap++) {
+        let point = px - lattice.first_px + vec2<u32>(tap % 3u, tap / 3u);
+        let sampled = color(sample_at(clamp(point, vec2<u32>(1u), lattice.points) - 1u, lattice, view).xyz);
+        if sampled.usable {
+            near = add_near(near, sampled.color);
+        }
+    }
+    return near;
+}
+
+// Result at a pixel that has history and a usable candidate, of jittered frames.
+fn antialiased(
+    px: vec2<u32>,
+    view: u32,
+    lattice: LatticeUniforms,
+    given: Reconstruction,
+    samples: f32,
+    is_own: bool,
+) -> Averaged {
+    let full_rate = is_own && lattice.level == 0u;
+    let near = samples_near(px, lattice, view, full_rate);
+    if !is_own {
+        return kept_mean(given, reconstruct(given), samples);
+    }
+    var inputs = given;
+    var left = 1.0;
+    if full_rate {
+        let by = clip(near, inputs.history);
+        inputs.history = clipped(inputs.history, by.change);
+        inputs.nearest.color = clipped(inputs.nearest.color, by.change);
+        left = by.kept;
+    }
+    return average(inputs, samples, -frame.views[view].jitter_px, left);
+}
+
 fn pixel(px: vec2<u32>, view: u32) {
     let disparity_now = disparity_at(px, view);
-    let motion = motion_at(px, view);
     let lattices = lattices_at(px, view);
     let lattice = lattices.own;
     var candidate = candidate_at(px, lattices.judging, view, disparity_now);
     if NOISY != 0u && lattice.level == 0u {
         candidate = full_rate_candidate(px, lattice, view, candidate.fit);
     }
-    let previous = kept_source(px, view, motion, disparity_now);
-    let full_rate = candidate.usable && lattice.level == 0u && NOISY == 0u;
-    let kept = kept_history(previous, view, may_have_history(previous) && !full_rate);
+    let surface = surface_of(px, view, lattice.level);
+    let motion = surface.motion;
+    let previous = kept_source(px, view, motion, surface.disparity);
+    let is_final = candidate.usable && lattice.level == 0u && NOISY == 0u && ANTIALIAS == 0u;
+    let kept = kept_history(previous, view, may_have_history(previous) && !is_final);
     let history = kept.found;
     let verdict = select(previous.verdict, VERDICT_VALID, history.lod >= 0.0);
     let valid = verdict == VERDICT_VALID;
     count_pixel(px, view, candidate.usable, disparity_now, verdict);
 
     var shown = candidate.color;
-    var next = Kept(candidate.color, select(-1.0, candidate.lod, candidate.usable), disparity_now, vec2<f32>(0.0));
+    var next = Kept(candidate.color, select(-1.0, candidate.lod, candidate.usable), surface.disparity, vec2<f32>(0.0));
+    var samples = 1.0;
+    if ANTIALIAS != 0u && candidate.is_own {
+        next.place_px = -frame.views[view].jitter_px;
+    }
     var share = 0.0;
     var fits = 1.0;
     var noise = candidate.noise;
@@ -205,6 +265,10 @@ fn pixel(px: vec2<u32>, view: u32) {
                 let accumulated = accumulate(inputs, stored_noise(kept.texel, view), candidate.noise);
                 result = accumulated.result;
                 noise = accumulated.noise;
+            } else if ANTIALIAS != 0u {
+                let averaged = antialiased(px, view, lattice, inputs, kept.samples, candidate.is_own);
+                result = averaged.result;
+                samples = averaged.samples;
             } else {
                 result = reconstruct(inputs);
             }
@@ -216,11 +280,12 @@ fn pixel(px: vec2<u32>, view: u32) {
             shown = history.color;
             share = 1.0;
             next = history.nearest;
+            samples = kept.samples;
             if NOISY != 0u {
                 noise = stored_noise(kept.texel, view);
             }
         }
-        next.disparity = disparity_now;
+        next.disparity = surface.disparity;
     }
     // Means of colors may exceed the largest half.
     shown = clamp(shown, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));
@@ -234,7 +299,14 @@ fn pixel(px: vec2<u32>, view: u32) {
         PixelTrace(verdict, exp2(-candidate.lod), sharpness, 0u, share, fits, share == 0.0, motion),
     );
     if VIEW == 0u {
-        textureStore(next_kept, px, view, vec4<u32>(pack_kept(next), 0u, 0u));
+        var words = pack_kept(next);
+        if ANTIALIAS != 0u {
+            // The color is rounded by chance.
+            let draw = unit_draw(bits(px.x, px.y, frame.frame_low, frame.views[view].key));
+            let stored = Kept(next.color, stored_lod(Mean(next.lod, samples)), next.disparity, next.place_px);
+            words = vec2<u32>(pack_color_by(next.color, draw), pack_kept(stored).y);
+        }
+        textureStore(next_kept, px, view, vec4<u32>(words, 0u, 0u));
         if NOISY != 0u {
             textureStore(next_noise, px, view, vec4<u32>(pack_noise(noise), 0u, 0u, 0u));
         }

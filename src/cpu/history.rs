@@ -37,7 +37,8 @@ impl Plane {
         let when = |used: bool| if used { len } else { 0 };
         let keyed = matches!(layout, HistoryLayout::Reservoirs { keys: true, .. });
         let referenced = matches!(layout, HistoryLayout::Reservoirs { references: true, .. });
-        let noisy = matches!(layout, HistoryLayout::Surfaces { noisy: true, .. } | HistoryLayout::Kept { noisy: true });
+        let noisy =
+            matches!(layout, HistoryLayout::Surfaces { noisy: true, .. } | HistoryLayout::Kept { noisy: true, .. });
         let is_stored = matches!(layout, HistoryLayout::Surfaces { .. } | HistoryLayout::Kept { .. });
         Self {
             reservoirs: vec![[0; 3]; when(matches!(layout, HistoryLayout::Reservoirs { .. }))],
@@ -98,7 +99,8 @@ impl History {
         next.previous.references = past.references.chunks(len).flat_map(|v| resize.nearest(v)).collect();
         next.previous.noise = past.noise.chunks(len).flat_map(|v| resize.nearest(v)).collect();
         let is_kept = matches!(self.layout, HistoryLayout::Kept { .. });
-        let surfaces = |v| if is_kept { resize.kept(v) } else { resize.surfaces(v) };
+        let means = matches!(self.layout, HistoryLayout::Kept { means: true, .. });
+        let surfaces = |v| if is_kept { resize.kept(v, means) } else { resize.surfaces(v) };
         next.previous.surfaces = past.surfaces.chunks(len).flat_map(surfaces).collect();
         for (mip_chain, words) in next.previous.mip_chains.iter_mut().zip(next.previous.surfaces.chunks(next.view_len))
         {

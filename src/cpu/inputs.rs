@@ -99,7 +99,7 @@ impl<'a> Inputs<'a> {
             return Err(Verdict::Distrusted);
         }
         let expected = self.previous_disparity(self.ray(x, y), disparity);
-        let is_same = self.same_surface(x, y, expected, stored_disparity);
+        let is_same = self.same_surface(x, y, disparity, expected, stored_disparity);
         Ok((Previous { at: [x as f32 + motion[0], y as f32 + motion[1]], expected, trust }, is_same))
     }
 
@@ -183,15 +183,15 @@ impl<'a> Inputs<'a> {
         depth::previous_disparity(disparity, m20 * ray.x + m21 * ray.y + m22, shift)
     }
 
-    /// Depth test: whether the `stored` disparity belongs to the surface of pixel (x, y), which had the disparity
-    /// `expected`. True without a depth test.
+    /// Depth test: whether the `stored` disparity belongs to the surface of pixel (x, y), which has the disparity `now`
+    /// and had the disparity `expected`. True without a depth test.
     #[inline(always)]
-    pub fn same_surface(&self, x: u32, y: u32, expected: f32, stored: f32) -> bool {
+    pub fn same_surface(&self, x: u32, y: u32, now: f32, expected: f32, stored: f32) -> bool {
         let Some(test) = self.depth_test else {
             return true;
         };
         depth::same_surface(expected, stored, test.relative, 0.0)
-            || depth::same_surface(expected, stored, test.relative, test.slope_px * self.slope(x, y))
+            || depth::same_surface(expected, stored, test.relative, test.slope_px * self.slope(x, y, now))
     }
 
     /// The depth test without the slope of the surface.
@@ -202,8 +202,8 @@ impl<'a> Inputs<'a> {
 
     /// Slope of disparity at a pixel. Needed only where the plain test fails, so that few pixels pay for the four taps.
     #[cold]
-    fn slope(&self, x: u32, y: u32) -> f32 {
-        depth::slope(x, y, self.size, |x, y| self.disparity(x, y))
+    fn slope(&self, x: u32, y: u32, now: f32) -> f32 {
+        depth::slope(x, y, self.size, |u, v| if [u, v] == [x, y] { now } else { self.disparity(u, v) })
     }
 
     /// Counts a pixel's unusable inputs, and the verdict on its history.

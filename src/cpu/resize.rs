@@ -1,6 +1,7 @@
 //! History resampled to another size. Twins: `shaders/pass/resize_{surfaces,reservoirs,kept}_pass.wgsl`.
 
-use crate::kernel::kept::{moved_kept, pack_kept, unpack_kept};
+use crate::kernel::antialias::{Mean, mean_of, stored_lod};
+use crate::kernel::kept::{Kept, moved_kept, pack_kept, unpack_kept};
 use crate::kernel::resample::{gather_around, resolve, sharp_sum, surface_tap, tap_codes, taps_around};
 use crate::kernel::resize::{old_position, resized_lod};
 use crate::kernel::sanitize::MAX_HALF;
@@ -38,14 +39,21 @@ impl Resize {
         })
     }
 
-    /// Packed kept samples of one view of the new size, from those of the old size.
-    pub(super) fn kept(&self, words: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    /// Packed kept samples of one view of the new size, from those of the old size. `means`: they are means of samples.
+    pub(super) fn kept(&self, words: &[[u32; 2]], means: bool) -> Vec<[u32; 2]> {
         let scale = Vec2::new(1.0 / self.ratio[0], 1.0 / self.ratio[1]);
         self.map(|x, y| {
             let position = self.old_position_of(x, y);
             let at = self.nearest_to(position);
             let texel_px = Vec2::new(at[0] as f32 - position[0], at[1] as f32 - position[1]);
-            pack_kept(moved_kept(unpack_kept(words[self.index(at)]), texel_px, scale, self.lod_shift))
+            let mut stored = unpack_kept(words[self.index(at)]);
+            if !means {
+                return pack_kept(moved_kept(stored, texel_px, scale, self.lod_shift));
+            }
+            let Mean { lod, samples } = mean_of(stored.lod);
+            stored.lod = lod;
+            let moved = moved_kept(stored, texel_px, scale, self.lod_shift);
+            pack_kept(Kept { lod: stored_lod(Mean { lod: moved.lod, samples }), ..moved })
         })
     }
 

@@ -5,16 +5,19 @@
 //! sample: estimate gain and fit from its own comparison and its eight neighbours'. For each pixel: interpolate these
 //! and the samples, read the four stored samples around its previous position, and blend.
 
+mod antialias;
+
 use super::Pass;
 use super::inputs::{Inputs, Previous};
 use super::surface_pass::{Pixel, ProcessPixel, Targets, for_pixels};
+use crate::kernel::antialias::{Mean, mean_of, scattered_error, stored_lod};
 use crate::kernel::approx;
 use crate::kernel::color::luma;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::depth::same_surface;
 use crate::kernel::kept::{
-    Around, EXACT_PX, Interpolated, Kept, add_kept, code_word, interpolate, is_empty, pack_color, pack_kept, stands_in,
-    unpack_color, unpack_full, unpack_kept,
+    Around, EXACT_PX, INVERSE_MEAN_REACH, INVERSE_REACH, Interpolated, Kept, add_kept, code_word, interpolate,
+    is_empty, pack_color, pack_color_by, pack_kept, stands_in, unpack_color, unpack_full, unpack_kept,
 };
 use crate::kernel::lattice::point_weight;
 use crate::kernel::matched::root_difference;
@@ -24,11 +27,12 @@ use crate::kernel::noise::{
 use crate::kernel::pack::{half_bits, half_value};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::{codes_between, has_code, tap_codes};
+use crate::kernel::rng;
 use crate::kernel::sanitize;
 use crate::kernel::sparse::{
     Light, Lit, Observation, Reconstruction, accumulate, add_light, agreement, candidate_level, errors_left,
-    expected_error, fit, mean_fit, neighbour_weight, noisy_sureness, own_fit, pack_lit, reconstruct, relight, sureness,
-    unpack_lit,
+    expected_error, fit, mean_error, mean_fit, neighbour_weight, noisy_sureness, own_fit, pack_lit, reconstruct,
+    relight, sureness, unpack_lit,
 };
 use crate::kernel::wrs::expose;
 use crate::parallel::collect;
@@ -62,6 +66,19 @@ struct View<'a> {
     lattices: ViewLattices,
     accumulate: f32,
     relights: bool,
+    /// Whether frames are jittered and history stores means of samples.
+    antialiases: bool,
+    /// Low word of the frame counter.
+    frame_low: u32,
+}
+
+/// History at a previous position.
+struct Found {
+    history: Interpolated,
+    /// Noise of the sample to keep.
+    noise: Noise,
+    /// Number of samples in it.
+    samples: f32,
 }
 
 /// Runs the three loops for every view.
@@ -82,6 +99,8 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
             lattices,
             accumulate: desc.settings.method.smr().accumulate,
             relights: crate::method::smr_sparse_relights(&desc.settings),
+            antialiases: crate::method::smr_sparse_antialiases(&desc.settings),
+            frame_low: frame.index as u32,
         };
         let observed = view.for_samples(|lattice, point| pack_observation(view.observe(lattice, point)));
         let lights = view.for_samples(|lattice, point| view.light(lattice, point, &observed));
@@ -190,25 +209,39 @@ impl View<'_> {
     /// History at a previous position, in this frame's exposure. At a silhouette, where the nearest stored sample is of
     /// another surface (`is_same` is false), samples beside it stand in for it if they are near enough.
     #[inline(always)]
-    fn interpolated(&self, (previous, is_same): &(Previous, bool)) -> (Interpolated, Noise) {
-        let [x, y] = previous.at.map(|v| v.floor() as i32);
+    fn interpolated(&self, (previous, is_same): &(Previous, bool)) -> Found {
+        // Means lie anywhere around their texels' centres, so that all around the nearest one count.
+        let (columns, [x, y]) = match self.antialiases {
+            true => (3, previous.at.map(|v| (v + 0.5).floor() as i32 - 1)),
+            false => (2, previous.at.map(|v| v.floor() as i32)),
+        };
+        let inverse_reach = if self.antialiases { INVERSE_MEAN_REACH } else { INVERSE_REACH };
         let codes = tap_codes(previous.expected);
         let mut around = Around::NOTHING;
         let mut nearest_texel = [x, y];
-        for tap in 0..4 {
-            let (tx, ty) = (x + (tap & 1), y + (tap >> 1));
+        let mut samples = 1.0;
+        for tap in 0..columns * columns {
+            let (tx, ty) = (x + tap % columns, y + tap / columns);
             let words = self.stored_words(tx, ty);
             let same = !is_empty(words) && (!self.inputs.tests_depth() || has_code(code_word(words), codes));
             let texel_px = Vec2::new(tx as f32 - previous.at[0], ty as f32 - previous.at[1]);
             let cost = around.cost;
-            around = add_kept(around, unpack_full(words), texel_px, same);
-            nearest_texel = if around.cost < cost { [tx, ty] } else { nearest_texel };
+            let mut stored = unpack_full(words);
+            let mut mean = Mean { lod: stored.lod, samples: 1.0 };
+            if self.antialiases {
+                mean = mean_of(stored.lod);
+                stored.lod = mean.lod;
+            }
+            around = add_kept(around, stored, texel_px, same, inverse_reach);
+            if around.cost < cost {
+                (nearest_texel, samples) = ([tx, ty], mean.samples);
+            }
         }
         let found = interpolate(if *is_same || stands_in(around) { around } else { Around::NOTHING });
         let exposed = |c: Vec3| expose(c, self.inputs.exposure);
         let nearest = Kept { color: exposed(found.nearest.color), ..found.nearest };
         let history = Interpolated { color: exposed(found.color), range: found.range.map(exposed), nearest, ..found };
-        (history, self.stored_noise(nearest_texel))
+        Found { history, noise: self.stored_noise(nearest_texel), samples }
     }
 
     /// Comparison of a sample with history at its pixel; `None` if either is missing.
@@ -217,13 +250,18 @@ impl View<'_> {
         let lattice = &self.lattices[lattice];
         let (sampled, usable) = self.sampled(lattice, point);
         let px = lattice.px_of(point);
-        let motion = self.inputs.motion(px[0], px[1]);
-        let previous = self.previous(px, motion, self.inputs.disparity(px[0], px[1])).ok().filter(|_| usable)?;
-        let (history, past) = self.interpolated(&previous);
+        let (disparity, motion) = self.surface(px, lattice.level);
+        let mut previous = self.previous(px, motion, disparity).ok().filter(|_| usable)?;
+        if self.antialiases {
+            // At the sample's place in its pixel.
+            let [x, y] = self.inputs.uniforms.jitter_px;
+            previous.0.at = [previous.0.at[0] - x, previous.0.at[1] - y];
+        }
+        let Found { history, noise: past, .. } = self.interpolated(&previous);
         if history.lod < 0.0 {
             return None;
         }
-        let moved = has_moved(motion, history.nearest.place_px);
+        let moved = self.antialiases || has_moved(motion, history.nearest.place_px);
         let [low, high] = history.range;
         let mut error = expected_error(history.lod, root_difference(low, high), moved);
         let mut sure = sureness(history.lod);
@@ -280,7 +318,11 @@ impl View<'_> {
         }
         let errors = |gain| neighbours().fold(0.0, |sum, (o, weight, _)| sum + errors_left(o, gain) * weight);
         let without = errors(Vec3::ONE);
-        let gain = if self.relights { relight(light) } else { Vec3::ONE };
+        let error = match self.antialiases {
+            true => scattered_error(light, neighbours().fold(0.0, |sum, (o, weight, _)| add_scatter(sum, o, weight))),
+            false => mean_error(light),
+        };
+        let gain = if self.relights { relight(light, error) } else { Vec3::ONE };
         let with_gain = if gain == Vec3::ONE { without } else { errors(gain) };
         let (gain, left) = if with_gain <= without { (gain, with_gain) } else { (Vec3::ONE, without) };
         let sure = (light.weight / light.spatial).min(1.0);
@@ -296,13 +338,14 @@ impl View<'_> {
     fn pixel(&self, x: u32, y: u32, lights: &[Samples], stats: &mut FrameStats) -> Pixel {
         let inputs = &self.inputs;
         let disparity = inputs.disparity(x, y);
-        let motion = inputs.motion(x, y);
         let index = LatticeUniforms::index_at(&self.lattices, [x, y]);
+        let level = self.lattices[index].level;
         let candidate = self.candidate(index, [x, y], disparity, lights);
-        let source = self.previous([x, y], motion, disparity);
-        let is_full_rate = candidate.usable && self.lattices[index].level == 0 && !self.is_noisy();
-        let history = source.as_ref().ok().filter(|_| !is_full_rate).map(|previous| self.interpolated(previous));
-        let history = history.filter(|(history, _)| history.lod >= 0.0);
+        let (front, motion) = self.surface([x, y], level);
+        let source = self.previous([x, y], motion, front);
+        let is_final = candidate.usable && level == 0 && !self.is_noisy() && !self.antialiases;
+        let history = source.as_ref().ok().filter(|_| !is_final).map(|previous| self.interpolated(previous));
+        let history = history.filter(|found| found.history.lod >= 0.0);
         let verdict = match &source {
             Err(verdict) => *verdict,
             Ok((_, false)) if history.is_none() => Verdict::Disoccluded,
@@ -314,15 +357,17 @@ impl View<'_> {
         let mut kept = Kept {
             color: candidate.color,
             lod: if candidate.usable { candidate.lod } else { -1.0 },
-            disparity,
-            place_px: Vec2::ZERO,
+            disparity: front,
+            place_px: if self.antialiases && candidate.is_own { self.sample_place_px() } else { Vec2::ZERO },
         };
+        let mut samples = 1.0;
         let (mut share, mut fits) = (0.0, 1.0);
         let mut noise = candidate.noise;
-        if let (Ok((previous, _)), Some((history, past))) = (source, history) {
+        if let (Ok((previous, _)), Some(found)) = (source, history) {
+            let Found { history, noise: past, samples: found_samples } = found;
             if !candidate.usable {
-                (output, share, noise) = (history.color, 1.0, past);
-                kept = Kept { disparity, ..history.nearest };
+                (output, share, noise, samples) = (history.color, 1.0, past, found_samples);
+                kept = Kept { disparity: front, ..history.nearest };
             } else {
                 let inputs = Reconstruction {
                     candidate: candidate.color,
@@ -341,11 +386,15 @@ impl View<'_> {
                     let accumulated = accumulate(&inputs, past, candidate.noise);
                     noise = accumulated.noise;
                     accumulated.result
+                } else if self.antialiases {
+                    let averaged = self.antialiased([x, y], level, inputs, found_samples, candidate.is_own);
+                    samples = averaged.samples;
+                    averaged.result
                 } else {
                     reconstruct(&inputs)
                 };
                 (output, share, fits) = (result.color, result.share, candidate.fit);
-                kept = Kept { disparity, ..result.kept };
+                kept = Kept { disparity: front, ..result.kept };
             }
         }
         // Means of colors may exceed the largest half.
@@ -361,7 +410,8 @@ impl View<'_> {
             take: share == 0.0,
             motion,
         };
-        Pixel { output, surface: pack_kept(kept), noise: pack_noise(noise), trace }
+        let surface = if self.antialiases { self.packed_mean([x, y], kept, samples) } else { pack_kept(kept) };
+        Pixel { output, surface, noise: pack_noise(noise), trace }
     }
 
     /// Candidate of a pixel and what is known of its light, from the samples around it.
@@ -373,7 +423,7 @@ impl View<'_> {
         if lattice.level == 0 {
             let (color, usable) = self.sampled(lattice, [x.points[0], y.points[0]]);
             let noise = if usable { self.sample_noise(px) } else { NO_NOISE };
-            let own = Candidate { color, usable, lod: 0.0, noise, ..Candidate::NONE };
+            let own = Candidate { color, usable, lod: 0.0, noise, is_own: usable, ..Candidate::NONE };
             let coarser = index + 1;
             if !self.is_noisy()
                 || !usable
@@ -423,10 +473,11 @@ impl View<'_> {
             return Candidate::NONE;
         }
         let coarsest = lattice.level as f32;
+        let is_own = own.is_some();
         let (color, own_fit) = own.unwrap_or((sums.color * (1.0 / sums.weight), 1.0));
         let noise = if !self.is_noisy() {
             NO_NOISE
-        } else if own.is_some() {
+        } else if is_own {
             self.sample_noise(px)
         } else {
             mean_noise(noises)
@@ -439,8 +490,16 @@ impl View<'_> {
             gain: sums.gain * (1.0 / sums.valid),
             fit: (sums.fit * (1.0 / sums.valid)).min(own_fit),
             noise,
+            is_own,
         }
     }
+}
+
+/// Sum of squared differences of samples and history, times weights, with one more.
+#[inline(always)]
+fn add_scatter(sum: f32, o: Observation, weight: f32) -> f32 {
+    let difference = root_difference(o.sampled, o.history).min(1e6);
+    sum + (difference * difference) * weight
 }
 
 /// Whether history has moved since its samples were shaded, by more than their stored places resolve.
@@ -460,6 +519,8 @@ struct Candidate {
     gain: Vec3,
     fit: f32,
     noise: Noise,
+    /// Whether it is the sample of this pixel.
+    is_own: bool,
 }
 
 impl Candidate {
@@ -471,6 +532,7 @@ impl Candidate {
         gain: Vec3::ONE,
         fit: 1.0,
         noise: NO_NOISE,
+        is_own: false,
     };
 }
 

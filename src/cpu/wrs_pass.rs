@@ -247,7 +247,7 @@ impl ViewPass<'_> {
             }
         }
         let expected = inputs.previous_disparity(ray, disparity);
-        if inputs.tests_depth() && !inputs.same_surface(x, y, expected, stored.disparity) {
+        if inputs.tests_depth() && !inputs.same_surface(x, y, disparity, expected, stored.disparity) {
             return Err(Verdict::Disoccluded);
         }
         if self.params.sampler == SamplerCode::AChaoMean {

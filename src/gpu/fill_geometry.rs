@@ -92,7 +92,7 @@ impl GeometryPass {
         ];
         Self {
             shader: ComputeShader::with_bindings(device, "fill_geometry_pass", source, &bindings),
-            absent: Placeholders::new(device, HistoryLayout::Kept { noisy: false }),
+            absent: Placeholders::new(device, HistoryLayout::Kept { noisy: false, means: false }),
             textures: textures(device, desc),
         }
     }

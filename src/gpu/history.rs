@@ -100,7 +100,7 @@ fn plan(desc: &ContextDesc, layout: HistoryLayout) -> Vec<Plan> {
             let formats = [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Uint];
             formats.into_iter().take(if keys || references { 3 } else { 2 }).map(full).collect()
         }
-        HistoryLayout::Kept { noisy } => {
+        HistoryLayout::Kept { noisy, .. } => {
             let formats = [TextureFormat::Rg32Uint, TextureFormat::R32Uint];
             formats.into_iter().take(if noisy { 2 } else { 1 }).map(full).collect()
         }

@@ -43,11 +43,11 @@ impl ResizePass {
         let [first, second, third] = written(layout).map(storage_texture);
         let (name, types, block_px, overrides) = match layout {
             HistoryLayout::Nothing => return None,
-            HistoryLayout::Kept { noisy } => (
+            HistoryLayout::Kept { noisy, means } => (
                 "resize_kept_pass",
                 vec![uniform(), uint_texture(), uint_texture(), first, third],
                 1,
-                vec![("NOISY", u32::from(noisy))],
+                vec![("NOISY", u32::from(noisy)), ("MEANS", u32::from(means))],
             ),
             HistoryLayout::Reservoirs { keys, references } => (
                 "resize_reservoirs_pass",

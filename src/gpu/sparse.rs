@@ -11,7 +11,7 @@ use super::uniforms::{LatticeUniforms, SparseUniforms, ViewLattices};
 use super::{Frame, Textures, Variant};
 use crate::frame::ContextDesc;
 use crate::lattice::Lattices;
-use crate::method::{HistoryLayout, Overrides, smr_sparse_relights};
+use crate::method::{HistoryLayout, Overrides, smr_sparse_antialiases, smr_sparse_relights};
 use crate::shader::SHADERS;
 use crate::uniforms::results_size;
 use wgpu::{
@@ -63,7 +63,7 @@ impl SamplePasses {
             light: ComputeShader::with_bindings(device, "sparse_light_pass", light, &bindings),
             observed,
             lights,
-            absent: Placeholders::new(device, HistoryLayout::Kept { noisy: false }),
+            absent: Placeholders::new(device, HistoryLayout::Kept { noisy: false, means: false }),
         }
     }
 }
@@ -143,6 +143,7 @@ fn samples(frame: &Frame<'_>, batch: &Batch, size_px: [u32; 2]) -> impl Iterator
 fn overrides(desc: &ContextDesc, variant: Variant) -> [Overrides; 2] {
     let mut observe = input_overrides(desc, variant);
     observe.push(("NOISY", u32::from(desc.settings.noisy)));
+    observe.push(("ANTIALIAS", u32::from(smr_sparse_antialiases(&desc.settings))));
     let relight = [("RELIGHT_ON", u32::from(smr_sparse_relights(&desc.settings)))];
     let light = observe.iter().copied().chain(relight).collect();
     [observe, light]

@@ -38,6 +38,8 @@ pub const EXACT_PX: f32 = 0.5 / PLACE_STEPS;
 
 /// Squared distance in pixels from which on a sample has no weight.
 const REACH_PX2: f32 = 3.0;
+/// The same for means of jittered samples.
+const MEAN_REACH_PX2: f32 = 1.7;
 /// Added to squared distances, so that a sample at the position itself has a finite weight.
 const SOFTEN_PX2: f32 = 0.03;
 /// Added to the variance of the samples' places, so that a plane through few samples stays flat.
@@ -104,6 +106,27 @@ pub fn pack_place(px: f32) -> u32 {
 #[inline]
 pub fn unpack_place(bits: u32) -> f32 {
     ((bits & 63) as f32 - 32.0) * (1.0 / PLACE_STEPS)
+}
+
+/// As [`multiple`], rounded up if the fraction that is cut off and `up`, in \[0, 1), give 1.
+#[inline]
+pub fn multiple_up(v: f32, exponent: u32, up: f32) -> u32 {
+    (v * f32::from_bits((262 - exponent) << 23) + up) as u32
+}
+
+/// As [`pack_color`], rounded by chance: up with a probability of the fraction that is cut off, if `up` is uniform in
+/// \[0, 1). A mean that is stored in each frame then has no drift and follows small differences.
+#[inline]
+pub fn pack_color_by(c: Vec3, up: f32) -> u32 {
+    let channel = |v: f32| if v > 0.0 { v.min(MAX_COLOR) } else { 0.0 };
+    let (r, g, b) = (channel(c.x), channel(c.y), channel(c.z));
+    let largest = r.max(g).max(b);
+    let exponent = (largest.to_bits() >> 23).max(SMALLEST_EXPONENT);
+    let exponent = exponent + (multiple_up(largest, exponent, up) >> 9);
+    multiple_up(r, exponent, up)
+        | multiple_up(g, exponent, up) << 9
+        | multiple_up(b, exponent, up) << 18
+        | (exponent - SMALLEST_EXPONENT) << 27
 }
 
 /// Packs a sample. The color must not be NaN.
@@ -204,22 +227,28 @@ impl Around {
     };
 }
 
-/// Weight of a sample at squared distance `px2` from the position that is interpolated.
+/// Inverse of the squared distance in pixels from which on a sample has no weight.
+pub const INVERSE_REACH: f32 = 1.0 / REACH_PX2;
+/// The same for means of jittered samples, of which nine are interpolated.
+pub const INVERSE_MEAN_REACH: f32 = 1.0 / MEAN_REACH_PX2;
+
+/// Weight of a sample at squared distance `px2` from the position that is interpolated. `inverse_reach`: of the squared
+/// distance from which on it is 0.
 #[inline]
-pub fn kept_weight(px2: f32) -> f32 {
-    let inside = (1.0 - px2 * (1.0 / REACH_PX2)).max(0.0);
+pub fn kept_weight(px2: f32, inverse_reach: f32) -> f32 {
+    let inside = (1.0 - px2 * inverse_reach).max(0.0);
     (inside * inside) / (px2 + SOFTEN_PX2)
 }
 
 /// Adds a stored sample whose texel lies `texel_px` from the position, if it is on the `same` surface.
 #[inline]
-pub fn add_kept(a: Around, sample: Kept, texel_px: Vec2, same: bool) -> Around {
+pub fn add_kept(a: Around, sample: Kept, texel_px: Vec2, same: bool, inverse_reach: f32) -> Around {
     if !same {
         return a;
     }
     let place = texel_px + sample.place_px;
     let px2 = place.x * place.x + place.y * place.y;
-    let w = kept_weight(px2);
+    let w = kept_weight(px2, inverse_reach);
     let (wx, wy) = (w * place.x, w * place.y);
     let cost = px2 + sample.lod * LOD_PX2;
     let nearer = cost < a.cost;

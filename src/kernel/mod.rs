@@ -6,6 +6,7 @@
 //! them state their accuracy.
 
 pub mod acuity;
+pub mod antialias;
 pub mod approx;
 pub mod color;
 pub mod debug_view;

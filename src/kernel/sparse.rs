@@ -151,17 +151,23 @@ pub fn add_light(l: Light, o: Observation, weight: f32, spatial: f32) -> Light {
     }
 }
 
-/// Gain of the light around a sample: the ratio of the means of samples and of history at the same pixels, blended to 1
-/// where the means differ by no more than chance explains.
+/// Expected difference of one sample from history around it.
 #[inline]
-pub fn relight(l: Light) -> Vec3 {
+pub fn mean_error(l: Light) -> f32 {
+    l.error * (1.0 / l.weight)
+}
+
+/// Gain of the light around a sample: the ratio of the means of samples and of history at the same pixels, blended to 1
+/// where the means differ by no more than chance explains. `error`: expected difference of one sample.
+#[inline]
+pub fn relight(l: Light, error: f32) -> Vec3 {
     if l.weight < 1e-6 {
         return Vec3::ONE;
     }
     let inverse = 1.0 / l.weight;
     let (sampled, history) = (l.sampled * inverse, l.history * inverse);
     // The standard error of a weighted mean.
-    let from = ((l.error * inverse) * (l.squared.sqrt() * inverse)) * RELIGHT_ERRORS;
+    let from = (error * (l.squared.sqrt() * inverse)) * RELIGHT_ERRORS;
     let changed = smooth_step(from, from, root_difference(sampled, history));
     // A share of 1 gives the ratio bit for bit.
     ratios(sampled, history) * changed + Vec3::splat(1.0 - changed)

@@ -11,7 +11,7 @@ mod taau;
 mod wrs;
 
 pub(crate) use smr::smr_params;
-pub(crate) use smr_sparse::smr_sparse_relights;
+pub(crate) use smr_sparse::{smr_sparse_antialiases, smr_sparse_relights};
 #[cfg(feature = "cpu")]
 pub(crate) use wrs::has_references;
 pub(crate) use wrs::{inv_density_at_fovea, wrs_params};
@@ -179,6 +179,8 @@ pub(crate) enum HistoryLayout {
     Kept {
         /// Whether there is packed noise ([`noise`](crate::kernel::noise)).
         noisy: bool,
+        /// Whether they are means of samples ([`antialias`](crate::kernel::antialias)).
+        means: bool,
     },
     /// Packed surfaces ([`surface`](crate::kernel::surface)), and their mip chain.
     Surfaces {

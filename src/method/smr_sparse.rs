@@ -11,7 +11,7 @@ pub(super) static ENTRY: Entry = Entry {
     summary: "scale-matched reservoirs of sparse frames",
     algorithm: Algorithm::SmrSparse,
     stages: |_| vec![Stage::Geometry, Stage::Samples, Stage::Method],
-    history: |settings| HistoryLayout::Kept { noisy: settings.noisy },
+    history: |settings| HistoryLayout::Kept { noisy: settings.noisy, means: smr_sparse_antialiases(settings) },
     history_traffic_bytes: |settings| {
         // Samples of history: 8 bytes read, 8 written. A quarter of the pixels, and a quarter of these, and so on, at
         // most have samples of this frame: for each, history is read (8), the observation is written and read (16),
@@ -23,8 +23,13 @@ pub(super) static ENTRY: Entry = Entry {
     #[cfg(feature = "gpu")]
     shader: |_| PassShader { name: "sparse_pass", block_px: 1, reads_samples: true },
     #[cfg(feature = "gpu")]
-    overrides: |_, _| vec![],
+    overrides: |settings, _| vec![("ANTIALIAS", u32::from(smr_sparse_antialiases(settings)))],
 };
+
+/// Whether history stores means of jittered samples. Noisy samples are averaged in another way.
+pub(crate) fn smr_sparse_antialiases(settings: &Settings) -> bool {
+    settings.method.smr().antialias && !settings.noisy
+}
 
 /// Whether history is relit. Not that of noisy frames: a gain is the ratio of nine samples, and history would be
 /// multiplied by their noise.

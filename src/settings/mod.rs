@@ -88,11 +88,16 @@ pub struct Smr {
     pub tolerance: f32,
     /// Whether history is scaled to follow changes of light, instead of being rejected. Default true.
     pub relight: bool,
+    /// Whether sparse frames are antialiased: their projection is jittered
+    /// ([`ViewFrame::jitter_px`](crate::ViewFrame::jitter_px), best [`Foveation::jitter_px`]), and history stores means
+    /// of samples instead of single ones. Set it in place of other temporal antialiasing, and only for jittered frames.
+    /// Not for noisy frames, which are averaged in any case. No effect on frames without lattices. Default false.
+    pub antialias: bool,
 }
 
 impl Default for Smr {
     fn default() -> Self {
-        Self { accumulate: 0.9, tolerance: 1.0, relight: true }
+        Self { accumulate: 0.9, tolerance: 1.0, relight: true, antialias: false }
     }
 }
 

@@ -1,15 +1,15 @@
 //! Samples that keep their places: storage, and interpolation between them.
 
 use afterimage::kernel::kept::{
-    Around, EXACT_PX, FARTHEST_PX, Kept, MAX_COLOR, STIFF_PX2, add_kept, interpolate, pack_color, pack_kept,
-    unpack_color, unpack_kept,
+    Around, EXACT_PX, FARTHEST_PX, INVERSE_REACH, Kept, MAX_COLOR, STIFF_PX2, add_kept, interpolate, pack_color,
+    pack_kept, unpack_color, unpack_kept,
 };
 use glam::{Mat2, Vec2, Vec3};
 use proptest::prelude::*;
 
 fn around(samples: &[(Vec3, Vec2)]) -> Around {
     samples.iter().fold(Around::NOTHING, |a, &(color, at)| {
-        add_kept(a, Kept { color, lod: 0.0, disparity: 1.0, place_px: Vec2::ZERO }, at, true)
+        add_kept(a, Kept { color, lod: 0.0, disparity: 1.0, place_px: Vec2::ZERO }, at, true, INVERSE_REACH)
     })
 }
 

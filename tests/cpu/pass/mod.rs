@@ -4,6 +4,7 @@
 mod depth;
 mod lifecycle;
 mod light;
+mod means;
 mod nan;
 mod properties;
 mod reprojection;

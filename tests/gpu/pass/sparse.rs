@@ -10,11 +10,11 @@ use afterimage::{
 };
 use afterimage_testing::Draws;
 
-const SIZE: [u32; 2] = [70, 41];
+pub(super) const SIZE: [u32; 2] = [70, 41];
 const METHODS: [MethodKind; 5] =
     [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Taau, MethodKind::Smr];
 
-fn settings(method: MethodKind) -> Settings {
+pub(super) fn settings(method: MethodKind) -> Settings {
     let foveation = Foveation {
         filter: Filter::Sparse,
         fovea_deg: 12.0,
@@ -26,7 +26,7 @@ fn settings(method: MethodKind) -> Settings {
     Settings { method: method.into(), foveation, ..Settings::paper() }
 }
 
-fn desc() -> ContextDesc {
+pub(super) fn desc() -> ContextDesc {
     ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }
 }
 
@@ -278,7 +278,7 @@ fn a_wrong_fill_is_caught() {
 }
 
 /// A view of a texture that glides across two depths under a light that changes; some samples are not finite.
-fn gliding_view(index: u64, v: u32, settings: &Settings) -> View {
+pub(super) fn gliding_view(index: u64, v: u32, settings: &Settings) -> View {
     let t = index as f32;
     let mut draws = Draws::new(&format!("gliding {index} {v}"));
     let mut view = noise_view("gliding", &desc());
@@ -320,7 +320,7 @@ fn a_wrong_reconstruction_is_caught() {
     let planted = [
         // History: of the other view, of another texel, of another surface, and in another exposure.
         ("vec2<i32>(frame.size) - 1), view, 0)", "vec2<i32>(frame.size) - 1), 1u - view, 0)"),
-        ("vec2<u32>(tap & 1u, tap >> 1u)", "vec2<u32>(tap >> 1u, tap >> 1u)"),
+        ("vec2<u32>(tap % columns, tap / columns)", "vec2<u32>(tap / columns, tap / columns)"),
         ("(DEPTH_TEST == 0u || has_code(code_word(words), codes))", "true"),
         ("found.color = expose(found.color, frame.exposure);", ""),
         ("found.highest = expose(found.highest, frame.exposure);", ""),
@@ -351,7 +351,7 @@ fn a_wrong_reconstruction_is_caught() {
         ("weight * select(BY_NEIGHBOURS, 1.0, lit.is_own)", "weight"),
         ("select(mean.xyz, own.color, is_own)", "mean.xyz"),
         ("candidate.usable && lattice.level == 0u", "false"),
-        ("next.disparity = disparity_now;", ""),
+        ("next.disparity = surface.disparity;", ""),
         ("textureStore(next_kept, px, view,", "textureStore(next_kept, px, 1u - view,"),
         ("count_if(valid && share == 0.0, COUNT_REPLACED);", ""),
     ];

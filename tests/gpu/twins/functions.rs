@@ -1,7 +1,9 @@
 //! Every function of every module; one test a module, named after its hard cases.
 
 use super::probe::check_module;
-use super::{decisions, doctor, foveation, lattice, matching, mathematics, noise, sparse, state, surfaces, upsampling};
+use super::{
+    antialias, decisions, doctor, foveation, lattice, matching, mathematics, noise, sparse, state, surfaces, upsampling,
+};
 use afterimage_testing::holds;
 
 #[test]
@@ -43,6 +45,11 @@ fn doctor_is_bit_equal() {
 #[test]
 fn foveate_is_bit_equal_h69_h71() {
     check_module(foveation::PROBES, "foveate");
+}
+
+#[test]
+fn antialias_is_bit_equal() {
+    check_module(antialias::PROBES, "antialias");
 }
 
 #[test]

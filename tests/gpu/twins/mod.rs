@@ -1,6 +1,7 @@
 //! The WGSL library against the Rust kernel, function by function, bit for bit; hard cases H01-H04, H15, H17-H21, H23,
 //! H28, H30-H39, H41, H42, H45, H47, H54, H57, H61, H64, H65, H71, H80, H83.
 
+mod antialias;
 mod composer;
 mod controls;
 mod decisions;

@@ -8,7 +8,7 @@ use afterimage_testing::Draws;
 use glam::Vec2;
 
 /// Seven words of a kept sample.
-fn kept_of(r: &Row<'_>, at: usize) -> kept::Kept {
+pub(super) fn kept_of(r: &Row<'_>, at: usize) -> kept::Kept {
     kept::Kept {
         color: r.v(at),
         lod: r.f(at + 3),
@@ -17,7 +17,7 @@ fn kept_of(r: &Row<'_>, at: usize) -> kept::Kept {
     }
 }
 
-fn put_kept(o: &mut Out, k: kept::Kept) {
+pub(super) fn put_kept(o: &mut Out, k: kept::Kept) {
     o.v(k.color);
     o.f(k.lod);
     o.f(k.disparity);
@@ -30,7 +30,7 @@ fn observation_of(r: &Row<'_>, at: usize) -> sparse::Observation {
     sparse::Observation { sampled: r.v(at), history: r.v(at + 3), error: r.f(at + 6), sure: r.f(at + 7) }
 }
 
-fn color(d: &mut Draws) -> [u32; 3] {
+pub(super) fn color(d: &mut Draws) -> [u32; 3] {
     [0; 3].map(|_| scaled(d, -14, 6))
 }
 
@@ -69,12 +69,12 @@ fn around_rows(name: &'static str) -> Rows {
 
 fn around_of(r: &Row<'_>) -> kept::Around {
     (0..r.u(27) as usize).map(|i| 9 * i).fold(kept::Around::NOTHING, |a, at| {
-        kept::add_kept(a, kept_of(r, at), Vec2::new(r.f(at + 7), r.f(at + 8)), true)
+        kept::add_kept(a, kept_of(r, at), Vec2::new(r.f(at + 7), r.f(at + 8)), true, kept::INVERSE_REACH)
     })
 }
 
 /// Twenty-nine words of a reconstruction.
-fn push_reconstruction(d: &mut Draws, row: &mut Vec<u32>) {
+pub(super) fn push_reconstruction(d: &mut Draws, row: &mut Vec<u32>) {
     row.extend(color(d));
     row.push(range(d, 0.0, 4.0));
     let (low, more) = (color(d), color(d));
@@ -91,7 +91,7 @@ fn push_reconstruction(d: &mut Draws, row: &mut Vec<u32>) {
     row.extend([range(d, 0.0, 0.98), 0]);
 }
 
-fn reconstruction_of(r: &Row<'_>) -> sparse::Reconstruction {
+pub(super) fn reconstruction_of(r: &Row<'_>) -> sparse::Reconstruction {
     sparse::Reconstruction {
         candidate: r.v(0),
         lod: r.f(3),
@@ -222,10 +222,35 @@ pub const PROBES: &[Probe] = &[
     Probe {
         name: "kept_weight",
         module: "kept",
-        words: [1, 1],
-        wgsl: "out_f(kept_weight(in_f(0u)));",
-        rust: |r, o| o.f(kept::kept_weight(r.f(0))),
+        words: [1, 2],
+        wgsl: "out_f(kept_weight(in_f(0u), INVERSE_REACH)); out_f(kept_weight(in_f(0u), INVERSE_MEAN_REACH));",
+        rust: |r, o| {
+            o.f(kept::kept_weight(r.f(0), kept::INVERSE_REACH));
+            o.f(kept::kept_weight(r.f(0), kept::INVERSE_MEAN_REACH));
+        },
         rows: || Rows::new(1).random("kept_weight", |d, row| row.push(range(d, 0.0, 20.0))),
+    },
+    Probe {
+        name: "multiple_up",
+        module: "kept",
+        words: [3, 1],
+        wgsl: "out_u(multiple_up(in_f(0u), in_u(1u), in_f(2u)));",
+        rust: |r, o| o.u(kept::multiple_up(r.f(0), r.u(1), r.f(2))),
+        rows: || Rows::new(3).random("multiple_up", |d, row| {
+            let v = scaled(d, -24, 15);
+            row.extend([v, (v >> 23).max(111), range(d, 0.0, 1.0)]);
+        }),
+    },
+    Probe {
+        name: "pack_color_by",
+        module: "kept",
+        words: [4, 1],
+        wgsl: "out_u(pack_color_by(in_v(0u), in_f(3u)));",
+        rust: |r, o| o.u(kept::pack_color_by(r.v(0), r.f(3))),
+        rows: || Rows::new(4).random("pack_color_by", |d, row| {
+            row.extend(color(d));
+            row.push(range(d, 0.0, 1.0));
+        }),
     },
     Probe {
         name: "add_kept",
@@ -233,7 +258,7 @@ pub const PROBES: &[Probe] = &[
         words: [28, 30],
         wgsl: "var a = nothing_around(); for (var i = 0u; i < in_u(27u); i++) { let b = 9u * i;
             a = add_kept(a, Kept(in_v(b), in_f(b + 3u), in_f(b + 4u), vec2<f32>(in_f(b + 5u), in_f(b + 6u))),
-                vec2<f32>(in_f(b + 7u), in_f(b + 8u)), true); }
+                vec2<f32>(in_f(b + 7u), in_f(b + 8u)), true, INVERSE_REACH); }
             out_f(a.weight); out_v(a.color); out_f(a.lod); out_f(a.place.x); out_f(a.place.y); out_v(a.square);
             out_v(a.color_x); out_v(a.color_y); out_v(a.lowest); out_v(a.highest); out_v(a.nearest.color); out_f(a.nearest.lod); out_f(a.nearest.disparity);
             out_f(a.nearest.place_px.x); out_f(a.nearest.place_px.y); out_f(a.cost);",
@@ -267,7 +292,7 @@ pub const PROBES: &[Probe] = &[
         words: [28, 17],
         wgsl: "var a = nothing_around(); for (var i = 0u; i < in_u(27u); i++) { let b = 9u * i;
             a = add_kept(a, Kept(in_v(b), in_f(b + 3u), in_f(b + 4u), vec2<f32>(in_f(b + 5u), in_f(b + 6u))),
-                vec2<f32>(in_f(b + 7u), in_f(b + 8u)), true); }
+                vec2<f32>(in_f(b + 7u), in_f(b + 8u)), true, INVERSE_REACH); }
             let k = interpolate(a); out_v(k.color); out_f(k.lod); out_v(k.lowest); out_v(k.highest);
             out_v(k.nearest.color); out_f(k.nearest.lod);
             out_f(k.nearest.disparity); out_f(k.nearest.place_px.x); out_f(k.nearest.place_px.y);",
@@ -388,9 +413,18 @@ pub const PROBES: &[Probe] = &[
         name: "relight",
         module: "sparse",
         words: [10, 3],
-        wgsl: "out_v(relight(Light(in_v(0u), in_v(3u), in_f(6u), in_f(7u), in_f(8u), in_f(9u))));",
-        rust: |r, o| o.v(sparse::relight(light_of(r))),
+        wgsl: "let l = Light(in_v(0u), in_v(3u), in_f(6u), in_f(7u), in_f(8u), in_f(9u));
+            out_v(relight(l, mean_error(l)));",
+        rust: |r, o| o.v(sparse::relight(light_of(r), sparse::mean_error(light_of(r)))),
         rows: || Rows::new(10).random("relight", push_light),
+    },
+    Probe {
+        name: "mean_error",
+        module: "sparse",
+        words: [10, 1],
+        wgsl: "out_f(mean_error(Light(in_v(0u), in_v(3u), in_f(6u), in_f(7u), in_f(8u), in_f(9u))));",
+        rust: |r, o| o.f(sparse::mean_error(light_of(r))),
+        rows: || Rows::new(10).random("mean_error", push_light),
     },
     Probe {
         name: "errors_left",
@@ -525,7 +559,7 @@ pub const PROBES: &[Probe] = &[
 ];
 
 /// Ten words of sums over neighbours, whose means are often close to each other.
-fn push_light(d: &mut Draws, row: &mut Vec<u32>) {
+pub(super) fn push_light(d: &mut Draws, row: &mut Vec<u32>) {
     let weight = range(d, 0.0, 16.0);
     let (mean, near) = (color(d), d.bits().is_multiple_of(2));
     let times = |v: u32, by: u32| (f32::from_bits(v) * f32::from_bits(by)).to_bits();
@@ -538,6 +572,6 @@ fn push_light(d: &mut Draws, row: &mut Vec<u32>) {
     row.extend([weight, times(times(weight, weight), range(d, 0.11, 1.0)), range(d, 0.0, 16.0)]);
 }
 
-fn light_of(r: &Row<'_>) -> sparse::Light {
+pub(super) fn light_of(r: &Row<'_>) -> sparse::Light {
     sparse::Light { sampled: r.v(0), history: r.v(3), error: r.f(6), weight: r.f(7), squared: r.f(8), spatial: r.f(9) }
 }

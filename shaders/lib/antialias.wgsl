@@ -1,0 +1,127 @@
+//#use kept
+//#use matched
+//#use sparse
+//#use taa
+// Twin of src/kernel/antialias.rs, which explains the constants.
+
+const MOST_SAMPLES: f32 = 31.0;
+const MOST_MOVED: f32 = 4.0;
+const MOVED_PER_PX: f32 = 4.0;
+const CODES_PER_LOD: f32 = 7.0;
+const ONE_SAMPLE: f32 = 30.0;
+const CODES_PER_COARSE_LOD: f32 = 5.0;
+const COARSE_LOD: f32 = 0.1;
+const CLIP_SIGMAS: f32 = 2.0;
+const CLIP: f32 = 0.5;
+const CLIP_COST: f32 = 10.0;
+const NEARER_RELATIVE: f32 = 0.02;
+const ALONGSIDE_PX: f32 = 1.0;
+
+// A negative `lod`: empty.
+struct Mean {
+    lod: f32,
+    samples: f32,
+}
+
+// antialias::mean_of
+fn mean_of(stored: f32) -> Mean {
+    let code = floor(stored * CODES_PER_LOD + 0.5);
+    let coarse = code > ONE_SAMPLE;
+    let empty = stored < 0.0;
+    let lod = select(0.0, (code - ONE_SAMPLE) * (1.0f / CODES_PER_COARSE_LOD), coarse);
+    return Mean(select(lod, -1.0, empty), select(ONE_SAMPLE + 1.0 - code, 1.0, coarse || empty));
+}
+
+// antialias::stored_lod
+fn stored_lod(m: Mean) -> f32 {
+    let fine = ONE_SAMPLE + 1.0 - clamp(m.samples, 1.0, MOST_SAMPLES);
+    let code = select(fine, ONE_SAMPLE + m.lod * CODES_PER_COARSE_LOD, m.lod > COARSE_LOD);
+    return select(code * (1.0f / CODES_PER_LOD), -1.0, m.lod < 0.0);
+}
+
+// antialias::stands_before
+fn stands_before(own: f32, neighbour: f32, own_motion: vec2<f32>, motion: vec2<f32>, full_rate: bool) -> bool {
+    let difference = motion - own_motion;
+    let alongside = max(abs(difference.x), abs(difference.y)) <= ALONGSIDE_PX;
+    return neighbour > own * (1.0 + NEARER_RELATIVE) && neighbour > own && (full_rate || alongside);
+}
+
+struct Near {
+    sum: vec3<f32>,
+    squares: vec3<f32>,
+    count: f32,
+}
+
+// antialias::add_near
+fn add_near(n: Near, c: vec3<f32>) -> Near {
+    let v = to_ycocg(c);
+    return Near(n.sum + v, n.squares + v * v, n.count + 1.0);
+}
+
+struct Clip {
+    change: vec3<f32>,
+    kept: f32,
+}
+
+// antialias::clip
+fn clip(near: Near, history: vec3<f32>) -> Clip {
+    let inverse = 1.0 / near.count;
+    let variance = (near.squares * near.count - near.sum * near.sum) * (inverse * inverse);
+    let past = to_ycocg(history);
+    let inside = clip_to_box(past, near.sum * inverse, roots(variance) * CLIP_SIGMAS);
+    let by = (inside - past) * CLIP;
+    let distance = max(max(abs(by.x), abs(by.y)), abs(by.z));
+    let outer = by.x - by.z;
+    let change = vec3<f32>(outer + by.y, by.x + by.z, outer - by.y);
+    return Clip(change, 1.0 - min(distance * CLIP_COST / max(past.x, 1.0), 1.0));
+}
+
+// antialias::clipped
+fn clipped(c: vec3<f32>, change: vec3<f32>) -> vec3<f32> {
+    if all(change == vec3<f32>(0.0)) {
+        return c;
+    }
+    let v = max(roots(c) + change, vec3<f32>(0.0));
+    return v * v;
+}
+
+// antialias::scattered_error
+fn scattered_error(l: Light, scatter: f32) -> f32 {
+    let inverse = 1.0 / l.weight;
+    let mean = root_difference(l.sampled * inverse, l.history * inverse);
+    let variance = max(scatter * inverse - mean * mean, 0.0);
+    return max(l.error * inverse, sqrt(variance));
+}
+
+struct Averaged {
+    result: Reconstructed,
+    samples: f32,
+}
+
+// antialias::average
+fn average(r: Reconstruction, samples: f32, place_px: vec2<f32>, kept: f32) -> Averaged {
+    let acceptance = (r.fit * r.trust) * kept;
+    let past_px = r.nearest.place_px;
+    let away = max(abs(past_px.x), abs(past_px.y));
+    let most = MOST_SAMPLES + (MOST_MOVED - MOST_SAMPLES) * min(away * MOVED_PER_PX, 1.0);
+    let count = select(min(samples, most - 1.0) * acceptance, 0.0, r.nearest.lod > 0.0);
+    let share = count / (count + 1.0);
+    let history = relit(r.history, r.gains, r.lowest, r.highest);
+    let near = away <= FARTHEST_PX;
+    var old = history;
+    if near {
+        old = relit(r.nearest.color, r.gains, r.lowest, r.highest);
+    }
+    let old_px = select(vec2<f32>(0.0), past_px, near);
+    let shown = r.candidate + (history - r.candidate) * share;
+    let next = r.candidate + (old - r.candidate) * share;
+    let next_px = place_px + (old_px - place_px) * share;
+    return Averaged(Reconstructed(shown, Kept(next, 0.0, r.nearest.disparity, next_px), share), count + 1.0);
+}
+
+// antialias::kept_mean
+fn kept_mean(r: Reconstruction, result: Reconstructed, samples: f32) -> Averaged {
+    let is_kept = result.kept.lod < COARSE_LOD && r.nearest.lod <= 0.0;
+    let left = 1.0 + (samples - 1.0) * (r.fit * r.trust);
+    return Averaged(result, select(1.0, left, is_kept));
+}

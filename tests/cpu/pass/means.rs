@@ -1,0 +1,154 @@
+//! Antialiasing of jittered sparse frames: laws of the means that history stores.
+
+use super::*;
+use afterimage::kernel::antialias::{MOST_SAMPLES, mean_of};
+use afterimage::kernel::kept::unpack_kept;
+use afterimage::{Filter, Foveation, Lattice, Lattices, Smr};
+
+const SMALL: [u32; 2] = [32, 24];
+
+/// A picture with detail below a pixel: stripes whose width is a fraction of one, and a slope.
+fn picture([x, y]: [f32; 2]) -> [f32; 3] {
+    let stripe = if (0.71 * x + 0.43 * y).rem_euclid(1.0) < 0.4 { 0.75 } else { 0.25 };
+    [stripe, 0.2 + 0.01 * x, if (0.31 * x - 0.55 * y).rem_euclid(1.0) < 0.5 { 0.3 } else { 0.5 }]
+}
+
+/// Samples of the picture, one a pixel, each at the pixel minus the jitter.
+fn samples([jx, jy]: [f32; 2], light: f32) -> Color {
+    Image::from_fn(SMALL, |[x, y]| picture([x as f32 - jx, y as f32 - jy]).map(|v| v * light))
+}
+
+/// Mean over each pixel, and variance of one sample around it, by 32x32 points.
+fn box_means() -> Vec<([f64; 3], f64)> {
+    let points: Vec<[f32; 2]> = (0..1024).map(|i| [i % 32, i / 32].map(|k| (k as f32 + 0.5) / 32.0 - 0.5)).collect();
+    let of = |i: u32| {
+        let [x, y] = [(i % SMALL[0]) as f32, (i / SMALL[0]) as f32];
+        let colors: Vec<[f64; 3]> = points.iter().map(|p| picture([x + p[0], y + p[1]]).map(f64::from)).collect();
+        let mean = [0, 1, 2].map(|c| colors.iter().map(|v| v[c]).sum::<f64>() / 1024.0);
+        let variance = colors.iter().flat_map(|v| [0, 1, 2].map(|c| (v[c] - mean[c]).powi(2))).sum::<f64>() / 3072.0;
+        (mean, variance)
+    };
+    (0..SMALL[0] * SMALL[1]).map(of).collect()
+}
+
+fn antialiased() -> CpuAfterimage {
+    let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..Foveation::default() };
+    let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
+    let settings = Settings { method, foveation, ..Settings::default() };
+    CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SMALL) }).unwrap()
+}
+
+/// Shows frame `index` of the still picture, sampled by the lattice of `step`.
+fn show(post: &mut CpuAfterimage, index: u64, step: u32, light: f32) -> Color {
+    let jitter_px = Foveation::jitter_px(index / u64::from(step * step));
+    let offset = afterimage::kernel::lattice::offset_px(index, step);
+    let lattices = Lattices::new(&[Lattice::covering(step, [0, 0], SMALL, offset)]).unwrap();
+    let mut facts = ViewFrame::new(geometry(SMALL), Gaze::At { px: [10.0, 10.0] });
+    (facts.jitter_px, facts.lattices) = (jitter_px, Some(lattices));
+    let color = samples(jitter_px, light);
+    let mut out = [Image::filled(SMALL, [f32::NAN; 3])];
+    post.process(&Images::of(&[OneView::new(facts, &color)]).frame(index), &mut out).unwrap();
+    let [out] = out;
+    out
+}
+
+fn mse(shown: &Color, means: &[([f64; 3], f64)], light: f64) -> f64 {
+    let of = |(s, (mean, _)): (&[f32; 3], &([f64; 3], f64))| {
+        (0..3).map(|c| (f64::from(s[c]) - light * mean[c]).powi(2)).sum::<f64>() / 3.0
+    };
+    shown.pixels().iter().zip(means).map(of).sum::<f64>() / means.len() as f64
+}
+
+/// The mean of N independent samples has a variance of 1/N of theirs; samples of low discrepancy have less. Interpolation
+/// between texels adds what the picture's means bend within a pixel, which is the rest of the bound.
+#[test]
+fn the_mean_of_a_still_is_the_mean_over_the_pixel_within_its_statistics() {
+    let means = box_means();
+    let variance = means.iter().map(|m| m.1).sum::<f64>() / means.len() as f64;
+    for (step, frames) in [(1, 60), (2, 240), (4, 960)] {
+        let mut post = antialiased();
+        let shown = (0..frames).map(|index| show(&mut post, index, step, 1.0)).last().unwrap();
+        let error = mse(&shown, &means, 1.0);
+        println!(
+            "step {step}: mean squared error {error:.2e}, of one sample {variance:.2e}: 1/{:.0}",
+            variance / error
+        );
+        // Twice the window's samples would be needed for less by chance alone.
+        assert!(error < 2.0 * variance / f64::from(MOST_SAMPLES), "step {step}");
+    }
+}
+
+#[test]
+fn samples_are_counted() {
+    let mut post = antialiased();
+    // Later, places that are off by a stored step limit the number.
+    for index in 0..25 {
+        show(&mut post, index, 1, 1.0);
+        let counts: Vec<f32> =
+            post.history().surfaces().iter().map(|&words| mean_of(unpack_kept(words).lod).samples).collect();
+        let expected = (index as f32 + 1.0).min(MOST_SAMPLES);
+        let counted = counts.iter().filter(|&&n| n == expected).count();
+        // Clips where detail is hardest shorten some.
+        assert!(2 * counted > counts.len() && counts.iter().all(|&n| n <= expected), "frame {index}: {counted}");
+    }
+}
+
+#[test]
+fn a_still_does_not_drift_over_ten_thousand_frames() {
+    let mut post = antialiased();
+    let mut sums = [[0.0; 3]; 2];
+    for index in 0..10_000 {
+        let shown = show(&mut post, index, 1, 1.0);
+        // Whole periods of the jitter.
+        let part = match index {
+            100..325 => 0,
+            9_775..10_000 => 1,
+            _ => continue,
+        };
+        for c in shown.pixels() {
+            (0..3).for_each(|i| sums[part][i] += f64::from(c[i]) / (225.0 * shown.pixels().len() as f64));
+        }
+    }
+    let drift = [0, 1, 2].map(|i| sums[1][i] - sums[0][i]);
+    println!("drift over 10,000 frames: {drift:?}");
+    assert!(drift.iter().all(|d| d.abs() < 5e-4), "{drift:?}");
+}
+
+#[test]
+fn a_step_of_light_is_followed() {
+    let means = box_means();
+    for light in [0.5, 2.0] {
+        let mut post = antialiased();
+        let settled = (0..128).map(|index| show(&mut post, index, 2, 1.0)).last().unwrap();
+        let after: Vec<Color> = (128..136).map(|index| show(&mut post, index, 2, light)).collect();
+        let relative = |shown: &Color| (mse(shown, &means, f64::from(light)) / f64::from(light * light)).sqrt();
+        println!(
+            "light times {light}: error before {:.4}, after 1 frame {:.4}, 8 frames {:.4}",
+            mse(&settled, &means, 1.0).sqrt(),
+            relative(&after[0]),
+            relative(&after[7])
+        );
+        // Of one sample, the error is 0.17.
+        assert!(relative(&after[7]) < 0.12, "times {light}");
+    }
+}
+
+#[test]
+fn an_invalid_sample_stays_in_its_pixel_for_its_frame() {
+    let mut post = antialiased();
+    for index in 0..30 {
+        show(&mut post, index, 1, 1.0);
+    }
+    let jitter_px = Foveation::jitter_px(30);
+    let mut facts = ViewFrame::new(geometry(SMALL), Gaze::At { px: [10.0, 10.0] });
+    facts.jitter_px = jitter_px;
+    facts.lattices = Some(Lattices::new(&[Lattice::covering(1, [0, 0], SMALL, [0, 0])]).unwrap());
+    let mut color = samples(jitter_px, 1.0);
+    color.pixels_mut()[5 * 32 + 7] = [f32::NAN; 3];
+    let mut out = [Image::filled(SMALL, [f32::NAN; 3])];
+    post.process(&Images::of(&[OneView::new(facts, &color)]).frame(30), &mut out).unwrap();
+    assert!(out[0].pixels().iter().flatten().all(|v| v.is_finite()));
+    let means = box_means();
+    let at = |c: usize| (f64::from(out[0].at(7, 5)[c]) - means[5 * 32 + 7].0[c]).abs();
+    assert!((0..3).all(|c| at(c) < 0.15), "history stands in: {:?}", out[0].at(7, 5));
+}

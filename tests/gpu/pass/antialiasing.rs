@@ -1,0 +1,106 @@
+//! Antialiasing of jittered sparse frames: both executors, and planted errors.
+
+use super::rig::{Rig, View};
+use super::sparse::{SIZE, desc, gliding_view, settings};
+use afterimage::gpu::Afterimage;
+use afterimage::shader::SHADERS;
+use afterimage::{ContextDesc, Exposure, Foveation, Lattice, Lattices, Method, MethodKind, Reset, Settings, Smr};
+
+fn antialiased() -> Settings {
+    let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
+    Settings { method, ..settings(MethodKind::Smr) }
+}
+
+/// Two views that glide, with jitter; the surfaces meet in a silhouette that is not straight. In the last frames all is
+/// at full rate.
+fn views(index: u64, settings: &Settings) -> [View; 2] {
+    [0, 1].map(|v| {
+        let mut view = gliding_view(index, v, settings);
+        view.facts.jitter_px = Foveation::jitter_px(index + u64::from(v));
+        view.depth = view.depth.map(|depth| {
+            let (near, far) = (depth.at(0, 0), depth.at(0, SIZE[1] as usize - 1));
+            afterimage::Image::from_fn(SIZE, |[x, y]| if 3 * y < SIZE[1] + x { near } else { far })
+        });
+        if index > 8 {
+            let full = Lattice::covering(1, [0, 0], SIZE, [0, 0]);
+            view.facts.lattices = Some(Lattices::new(&[full]).unwrap());
+        }
+        view
+    })
+}
+
+fn rig_of(index: u64, rig: &mut Rig) {
+    rig.scattered = index % 4 == 3;
+    rig.exposure = if index % 3 == 2 { Exposure::Changed { ratio: 1.25 } } else { Exposure::Same };
+}
+
+#[test]
+fn jittered_frames_are_bit_equal_on_both_executors() {
+    let settings = antialiased();
+    let Some(mut rig) = Rig::new(desc(), settings) else { return };
+    for index in 0..12 {
+        rig_of(index, &mut rig);
+        rig.both(index, Reset::None, &views(index, &settings));
+    }
+}
+
+#[test]
+fn means_take_no_memory() {
+    let bytes = |settings| Afterimage::memory_bytes_of(&ContextDesc { settings, ..ContextDesc::new([1920, 1080]) });
+    assert_eq!(bytes(antialiased()), bytes(settings(MethodKind::Smr)));
+}
+
+#[test]
+fn a_wrong_mean_is_caught() {
+    let settings = antialiased();
+    let names = ["sparse_observe_pass", "sparse_light_pass", "sparse_pass"];
+    let right = names.map(|name| SHADERS.compose(name).source);
+    let differs = |sources: &[String; 3]| {
+        let mut rig = Rig::with_shader(desc(), settings, &sources[2])?;
+        rig.gpu.set_sample_shaders(&rig.device, &sources[0], &sources[1]);
+        Some((0..12).any(|index| {
+            rig_of(index, &mut rig);
+            let views = views(index, &settings);
+            rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
+        }))
+    };
+    let Some(false) = differs(&right) else {
+        assert!(differs(&right).is_none(), "without an error");
+        return;
+    };
+    let planted = [
+        // Surfaces: without the nearer one, that of another texel, or its motion alone.
+        ("at = select(at, texel, near > nearest_disparity);", ""),
+        ("return PixelSurface(nearest_disparity, motion);", "return PixelSurface(own.disparity, motion);"),
+        ("own.motion, motion, level == 0u)", "own.motion, motion, true)"),
+        ("next.disparity = surface.disparity;", "next.disparity = disparity_now;"),
+        // History: fewer or other texels, another reach, another number of samples.
+        ("columns = 3u;", "columns = 2u;"),
+        ("floor(previous.at + 0.5)) - 1", "floor(previous.at)) - 1"),
+        ("inverse_reach = INVERSE_MEAN_REACH;", ""),
+        ("samples = select(samples, mean.samples, around.cost < cost);", ""),
+        ("stored.lod = mean.lod;", ""),
+        // Comparison: at the pixel's centre, by the model alone.
+        ("previous.at -= frame.views[view].jitter_px;", ""),
+        ("error = scattered_error(sum, scatter);", ""),
+        // Means: another place, no clip, samples of other pixels, other numbers of samples.
+        (
+            "return average(inputs, samples, -frame.views[view].jitter_px, left);",
+            "return average(inputs, samples, frame.views[view].jitter_px, left);",
+        ),
+        ("next.place_px = -frame.views[view].jitter_px;", ""),
+        ("inputs.nearest.color = clipped(inputs.nearest.color, by.change);", ""),
+        ("left = by.kept;", ""),
+        ("vec2<u32>(tap % 3u, tap / 3u);\n        let sampled", "vec2<u32>(tap / 3u, tap / 3u);\n        let sampled"),
+        ("return kept_mean(given, reconstruct(given), samples);", "return kept_mean(given, reconstruct(given), 1.0);"),
+        ("samples = averaged.samples;", ""),
+        // Storage: without chance, or with that of another view.
+        ("pack_color_by(next.color, draw)", "pack_color_by(next.color, 0.5)"),
+        ("frame.frame_low, frame.views[view].key", "frame.frame_low, frame.views[1u - view].key"),
+    ];
+    for (text, instead) in planted {
+        let wrong = right.clone().map(|source| source.replace(text, instead));
+        assert_ne!(wrong, right, "{text}");
+        assert_eq!(differs(&wrong), Some(true), "{text} -> {instead}");
+    }
+}
