@@ -212,7 +212,7 @@ fn noisy_frames_agree_bit_for_bit() {
             rig.exposure = exposure(index);
             View { depth: None, ..noisy(index, v) }
         });
-        let method = Method::Smr(Smr { relight: false, accumulate: 0.98, tolerance: 0.3 });
+        let method = Method::Smr(Smr { relight: false, accumulate: 0.98, tolerance: 0.3, ..Smr::default() });
         agree("light-step", desc, Settings { method, ..base }, |index, v, _| noisy(index, v));
         for size in [[65, 33], [3, 2], [1, 7]] {
             let desc = ContextDesc { view_count: 2, ..ContextDesc::new(size) };

@@ -101,6 +101,7 @@ impl WrsArgs {
             accumulate: self.smr_accumulate.unwrap_or(preset.accumulate),
             tolerance: self.smr_tolerance,
             relight: !self.no_relight,
+            ..preset
         }
     }
 

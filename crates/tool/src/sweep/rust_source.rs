@@ -36,6 +36,7 @@ fn smr(smr: &Smr) -> String {
         .field("accumulate", |s| format!("{:?}", s.accumulate))
         .field("tolerance", |s| format!("{:?}", s.tolerance))
         .field("relight", |s| s.relight.to_string())
+        .field("antialias", |s| s.antialias.to_string())
         .end()
 }
 

@@ -206,8 +206,12 @@ impl Bits<'_> {
             rate_mid: 1 << (pick >> 4 & 3),
             rate_far: 1 << (pick >> 6 & 7),
         };
-        let smr =
-            Smr { accumulate: self.around(0.0, 0.98), tolerance: self.around(0.1, 10.0), relight: pick >> 9 & 1 == 1 };
+        let smr = Smr {
+            accumulate: self.around(0.0, 0.98),
+            tolerance: self.around(0.1, 10.0),
+            relight: pick >> 9 & 1 == 1,
+            antialias: pick >> 31 & 1 == 1,
+        };
         let wrs = self.wrs(pick);
         Settings {
             method: [Method::None, Method::Taa, Method::Smr(smr), Method::Wrs(wrs)][(pick & 3) as usize],
