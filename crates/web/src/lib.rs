@@ -7,7 +7,7 @@ mod show;
 mod space;
 mod stage;
 
-use afterimage::{Filter, Foveation, Method, Settings};
+use afterimage::{Filter, Foveation, MethodKind, Settings};
 use gpu::Gpu;
 use show::Show;
 use stage::Stage;
@@ -85,7 +85,7 @@ impl Demo {
         let method = MethodKind::from_name(method).ok_or_else(|| JsError::new(method))?;
         let filter = Filter::ALL.into_iter().find(|f| f.name() == filter).ok_or_else(|| JsError::new(filter))?;
         let foveation = Foveation { filter, fovea_deg, mid_deg, rate_mid, rate_far, ..Foveation::default() };
-        self.stage.configure(&self.gpu, Settings { method, foveation, ..Settings::default() })
+        self.stage.configure(&self.gpu, Settings { method: method.into(), foveation, ..Settings::default() })
     }
 
     /// Draws a frame: gaze in pixels, time of the camera in seconds, position of the divider in pixels. Left of it is
