@@ -82,7 +82,8 @@ fn of_modules(files: &Graph) -> Graph {
     let mut modules = Graph::new();
     for (file, used) in files.iter().filter(|(file, _)| !["lib.rs", "main.rs"].contains(&file.as_str())) {
         let module = modules.entry(top(file)).or_default();
-        module.extend(used.iter().map(|used| top(used)).filter(|used| *used != top(file) && used != "lib"));
+        let is_other = |used: &String| ![top(file).as_str(), "lib", "main"].contains(&used.as_str());
+        module.extend(used.iter().map(|used| top(used)).filter(is_other));
     }
     modules
 }
@@ -98,7 +99,7 @@ fn modules_use_each_other_without_circles() {
         let graph = of_modules(&graph_of(folder));
         let edges: usize = graph.values().map(BTreeSet::len).sum();
         println!("{folder}: {} modules, {edges} edges", graph.len());
-        assert!(graph.len() > 3 && edges > 5, "{graph:?}");
+        assert!(graph.len() > 3 && edges > 4, "{graph:?}");
         expect_none(&format!("circles in {folder}"), &circles(&graph));
     }
 }
