@@ -189,8 +189,8 @@ impl Lattices {
 impl Foveation {
     /// Jitter of the projection in a frame for [`Smr::antialias`](crate::Smr::antialias), in pixels, each in
     /// \[-0.5, 0.5): where its samples lie in their pixels changes from frame to frame, so that a mean over time is one
-    /// over the pixel, also where a lattice samples a pixel only every 4 or 256 frames. What is at `p` without jitter is
-    /// drawn at `p + jitter_px`. `index`: the frame counter of [`lattices`](Self::lattices).
+    /// over the pixel, also where a lattice samples a pixel only every 4 or 256 frames. What is at `p` without jitter
+    /// is drawn at `p + jitter_px`. `index`: the frame counter of [`lattices`](Self::lattices).
     ///
     /// ```
     /// use afterimage::Foveation;

@@ -2,9 +2,9 @@
 //! its pixel, with the mean of their places.
 //!
 //! A jittered sample shows one point of its pixel, and what a pixel should show is the mean over its area. Moving the
-//! camera moves the place of a mean, as it moves that of a sample ([`kept`](super::kept)), and the mean is not resampled.
-//! Means of history that moved are short: each frame's samples fall into a box that lies elsewhere, which widens what the
-//! mean stands for.
+//! camera moves the place of a mean, as it moves that of a sample ([`kept`](super::kept)), and the mean is not
+//! resampled. Means of history that moved are short: each frame's samples fall into a box that lies elsewhere, which
+//! widens what the mean stands for.
 
 use super::kept::{FARTHEST_PX, Kept};
 use super::matched::{root_difference, roots};
@@ -77,8 +77,8 @@ pub fn stored_lod(m: Mean) -> f32 {
     if m.lod < 0.0 { -1.0 } else { code * (1.0 / CODES_PER_LOD) }
 }
 
-/// Whether a neighbour of a pixel stands for it, so that silhouettes are means of both surfaces and move with the nearer
-/// one. `full_rate`: whether the pixel has a sample in every frame; others keep their own surface where that moves
+/// Whether a neighbour of a pixel stands for it, so that silhouettes are means of both surfaces and move with the
+/// nearer one. `full_rate`: whether the pixel has a sample in every frame; others keep their own surface where that moves
 /// otherwise.
 #[inline]
 pub fn stands_before(own: f32, neighbour: f32, own_motion: Vec2, motion: Vec2, full_rate: bool) -> bool {

@@ -1,7 +1,8 @@
 //! Antialiasing of jittered frames, at full rate and sparse, against a supersampled reference.
 //!
-//! Reference: the mean of 32 jittered frames of the same instant. Each row says PSNR of the whole picture and within 3.5
-//! degrees of the gaze in dB (sRGB), and the mean absolute change of the luma's error from frame to frame, times 1000.
+//! Reference: the mean of 32 jittered frames of the same instant. Each row says PSNR of the whole picture and within
+//! 3.5 degrees of the gaze in dB (sRGB), and the mean absolute change of the luma's error from frame to frame, times
+//! 1000.
 //!
 //! `cargo run --release -p afterimage-lab --example 17_antialias`
 

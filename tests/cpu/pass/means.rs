@@ -59,8 +59,8 @@ fn mse(shown: &Color, means: &[([f64; 3], f64)], light: f64) -> f64 {
     shown.pixels().iter().zip(means).map(of).sum::<f64>() / means.len() as f64
 }
 
-/// The mean of N independent samples has a variance of 1/N of theirs; samples of low discrepancy have less. Interpolation
-/// between texels adds what the picture's means bend within a pixel, which is the rest of the bound.
+/// The mean of N independent samples has a variance of 1/N of theirs; samples of low discrepancy have less.
+/// Interpolation between texels adds what the picture's means bend within a pixel, which is the rest of the bound.
 #[test]
 fn the_mean_of_a_still_is_the_mean_over_the_pixel_within_its_statistics() {
     let means = box_means();
