@@ -78,8 +78,8 @@ pub fn stored_lod(m: Mean) -> f32 {
 }
 
 /// Whether a neighbour of a pixel stands for it, so that silhouettes are means of both surfaces and move with the
-/// nearer one. `full_rate`: whether the pixel has a sample in every frame; others keep their own surface where that moves
-/// otherwise.
+/// nearer one. `full_rate`: whether the pixel has a sample in every frame; others keep their own surface where that
+/// moves otherwise.
 #[inline]
 pub fn stands_before(own: f32, neighbour: f32, own_motion: Vec2, motion: Vec2, full_rate: bool) -> bool {
     let difference = motion - own_motion;

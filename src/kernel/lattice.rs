@@ -27,9 +27,9 @@ pub fn offset_px(index: u64, step: u32) -> [u32; 2] {
 }
 
 /// Jitter of the projection in frame `index`, in pixels, each in \[-0.5, 0.5): Halton's sequence of bases 3 and 5. A
-/// pixel of a lattice is sampled every `step * step` frames, a power of two. To those frames, too, the sequence is one of low
-/// discrepancy, because its bases are odd; that of base 2, which is common, would show the same half of the pixel in
-/// each of them.
+/// pixel of a lattice is sampled every `step * step` frames, a power of two. To those frames, too, the sequence is one
+/// of low discrepancy, because its bases are odd; that of base 2, which is common, would show the same half of the
+/// pixel in each of them.
 pub fn jitter_px(index: u64) -> [f32; 2] {
     [3, 5].map(|base| {
         let (mut rest, mut digit, mut value) = (index, 1.0, 0.0);
