@@ -5,7 +5,8 @@
 // Twin of src/kernel/antialias.rs, which explains the constants.
 
 const MOST_SAMPLES: f32 = 31.0;
-const MOST_MOVED: f32 = 4.0;
+const MOST_PAST: f32 = 30.0;
+const MOST_PAST_MOVED: f32 = 3.0;
 const MOVED_PER_PX: f32 = 4.0;
 const CODES_PER_LOD: f32 = 7.0;
 const ONE_SAMPLE: f32 = 30.0;
@@ -103,8 +104,8 @@ fn average(r: Reconstruction, samples: f32, place_px: vec2<f32>, kept: f32) -> A
     let acceptance = (r.fit * r.trust) * kept;
     let past_px = r.nearest.place_px;
     let away = max(abs(past_px.x), abs(past_px.y));
-    let most = MOST_SAMPLES + (MOST_MOVED - MOST_SAMPLES) * min(away * MOVED_PER_PX, 1.0);
-    let count = select(min(samples, most - 1.0) * acceptance, 0.0, r.nearest.lod > 0.0);
+    let most = MOST_PAST + (MOST_PAST_MOVED - MOST_PAST) * min(away * MOVED_PER_PX, 1.0);
+    let count = select(min(samples, most) * acceptance, 0.0, r.nearest.lod > 0.0);
     let share = count / (count + 1.0);
     let history = relit(r.history, r.gains, r.lowest, r.highest);
     let near = away <= FARTHEST_PX;

@@ -15,8 +15,10 @@ use glam::{Vec2, Vec3};
 /// Largest number of samples in a mean: one frame's samples weigh at least a 31st. More is calmer and follows changes
 /// that no gate sees later.
 pub const MOST_SAMPLES: f32 = 31.0;
-/// The same where history lies half a quarter pixel and more beside the pixel's centre: more blurs motion.
-const MOST_MOVED: f32 = 4.0;
+/// Largest number of samples of history in a mean.
+const MOST_PAST: f32 = MOST_SAMPLES - 1.0;
+/// The same where history lies a quarter of a pixel and more beside the pixel's centre: more blurs motion.
+const MOST_PAST_MOVED: f32 = 3.0;
 /// Inverse of the distance in pixels from the pixel's centre at which that limit is reached.
 const MOVED_PER_PX: f32 = 4.0;
 /// Codes of a level of detail: 31 of means, of 31 samples down to one, then levels above 0.
@@ -164,8 +166,8 @@ pub fn average(r: &Reconstruction, samples: f32, place_px: Vec2, kept: f32) -> A
     let acceptance = (r.fit * r.trust) * kept;
     let past_px = r.nearest.place_px;
     let away = past_px.x.abs().max(past_px.y.abs());
-    let most = MOST_SAMPLES + (MOST_MOVED - MOST_SAMPLES) * (away * MOVED_PER_PX).min(1.0);
-    let count = if r.nearest.lod > 0.0 { 0.0 } else { samples.min(most - 1.0) * acceptance };
+    let most = MOST_PAST + (MOST_PAST_MOVED - MOST_PAST) * (away * MOVED_PER_PX).min(1.0);
+    let count = if r.nearest.lod > 0.0 { 0.0 } else { samples.min(most) * acceptance };
     let share = count / (count + 1.0);
     let history = relit(r.history, r.gain, r.range);
     let near = away <= FARTHEST_PX;
