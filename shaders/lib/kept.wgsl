@@ -26,27 +26,14 @@ struct Kept {
 }
 
 // kept::multiple
-fn multiple(v: f32, exponent: u32) -> u32 {
+fn multiple(v: f32, exponent: u32, up: f32) -> u32 {
     // A power of two: the product is exact.
-    return u32(v * bitcast<f32>((262u - exponent) << 23u) + 0.5);
+    return u32(v * bitcast<f32>((262u - exponent) << 23u) + up);
 }
 
 // kept::pack_color
 fn pack_color(c: vec3<f32>) -> u32 {
-    let v = select(vec3<f32>(0.0), min(c, vec3<f32>(MAX_COLOR)), c > vec3<f32>(0.0));
-    let largest = max(max(v.x, v.y), v.z);
-    let rough = max(bitcast<u32>(largest) >> 23u, SMALLEST_EXPONENT);
-    // Rounding may carry into a tenth bit.
-    let exponent = rough + (multiple(largest, rough) >> 9u);
-    return multiple(v.x, exponent)
-        | (multiple(v.y, exponent) << 9u)
-        | (multiple(v.z, exponent) << 18u)
-        | ((exponent - SMALLEST_EXPONENT) << 27u);
-}
-
-// kept::multiple_up
-fn multiple_up(v: f32, exponent: u32, up: f32) -> u32 {
-    return u32(v * bitcast<f32>((262u - exponent) << 23u) + up);
+    return pack_color_by(c, 0.5);
 }
 
 // kept::pack_color_by
@@ -54,10 +41,11 @@ fn pack_color_by(c: vec3<f32>, up: f32) -> u32 {
     let v = select(vec3<f32>(0.0), min(c, vec3<f32>(MAX_COLOR)), c > vec3<f32>(0.0));
     let largest = max(max(v.x, v.y), v.z);
     let rough = max(bitcast<u32>(largest) >> 23u, SMALLEST_EXPONENT);
-    let exponent = rough + (multiple_up(largest, rough, up) >> 9u);
-    return multiple_up(v.x, exponent, up)
-        | (multiple_up(v.y, exponent, up) << 9u)
-        | (multiple_up(v.z, exponent, up) << 18u)
+    // Rounding may carry into a tenth bit.
+    let exponent = rough + (multiple(largest, rough, up) >> 9u);
+    return multiple(v.x, exponent, up)
+        | (multiple(v.y, exponent, up) << 9u)
+        | (multiple(v.z, exponent, up) << 18u)
         | ((exponent - SMALLEST_EXPONENT) << 27u);
 }
 

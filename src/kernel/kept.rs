@@ -65,26 +65,34 @@ impl Kept {
     pub const EMPTY: Self = Self { color: Vec3::ZERO, lod: -1.0, disparity: -1.0, place_px: Vec2::ZERO };
 }
 
-/// Multiple of the step that exponent code `exponent` (that of a float) stands for, nearest to `v`.
+/// Multiple of the step that exponent code `exponent` (that of a float) stands for, rounded up if the fraction that is
+/// cut off and `up` give at least 1: to the nearest for an `up` of 0.5.
 #[inline]
-pub fn multiple(v: f32, exponent: u32) -> u32 {
+pub fn multiple(v: f32, exponent: u32, up: f32) -> u32 {
     // A power of two: the product is exact.
-    (v * f32::from_bits((262 - exponent) << 23) + 0.5) as u32
+    (v * f32::from_bits((262 - exponent) << 23) + up) as u32
 }
 
-/// Packs a color: 9 bits a channel and an exponent that the three share. The color must not be NaN; negative channels
-/// become 0. The error of a channel is at most 2^-9 of the largest one.
+/// Packs a color: 9 bits a channel and an exponent that the three share, each rounded to the nearest. The color must
+/// not be NaN; negative channels become 0. The error of a channel is at most 2^-9 of the largest one.
 #[inline]
 pub fn pack_color(c: Vec3) -> u32 {
+    pack_color_by(c, 0.5)
+}
+
+/// As [`pack_color`], rounded by chance: up with a probability of the fraction that is cut off, if `up` is uniform in
+/// \[0, 1). A mean that is stored in each frame then has no drift and follows small differences.
+#[inline]
+pub fn pack_color_by(c: Vec3, up: f32) -> u32 {
     let channel = |v: f32| if v > 0.0 { v.min(MAX_COLOR) } else { 0.0 };
     let (r, g, b) = (channel(c.x), channel(c.y), channel(c.z));
     let largest = r.max(g).max(b);
     let exponent = (largest.to_bits() >> 23).max(SMALLEST_EXPONENT);
     // Rounding may carry into a tenth bit.
-    let exponent = exponent + (multiple(largest, exponent) >> 9);
-    multiple(r, exponent)
-        | multiple(g, exponent) << 9
-        | multiple(b, exponent) << 18
+    let exponent = exponent + (multiple(largest, exponent, up) >> 9);
+    multiple(r, exponent, up)
+        | multiple(g, exponent, up) << 9
+        | multiple(b, exponent, up) << 18
         | (exponent - SMALLEST_EXPONENT) << 27
 }
 
@@ -106,27 +114,6 @@ pub fn pack_place(px: f32) -> u32 {
 #[inline]
 pub fn unpack_place(bits: u32) -> f32 {
     ((bits & 63) as f32 - 32.0) * (1.0 / PLACE_STEPS)
-}
-
-/// As [`multiple`], rounded up if the fraction that is cut off and `up`, in \[0, 1), give 1.
-#[inline]
-pub fn multiple_up(v: f32, exponent: u32, up: f32) -> u32 {
-    (v * f32::from_bits((262 - exponent) << 23) + up) as u32
-}
-
-/// As [`pack_color`], rounded by chance: up with a probability of the fraction that is cut off, if `up` is uniform in
-/// \[0, 1). A mean that is stored in each frame then has no drift and follows small differences.
-#[inline]
-pub fn pack_color_by(c: Vec3, up: f32) -> u32 {
-    let channel = |v: f32| if v > 0.0 { v.min(MAX_COLOR) } else { 0.0 };
-    let (r, g, b) = (channel(c.x), channel(c.y), channel(c.z));
-    let largest = r.max(g).max(b);
-    let exponent = (largest.to_bits() >> 23).max(SMALLEST_EXPONENT);
-    let exponent = exponent + (multiple_up(largest, exponent, up) >> 9);
-    multiple_up(r, exponent, up)
-        | multiple_up(g, exponent, up) << 9
-        | multiple_up(b, exponent, up) << 18
-        | (exponent - SMALLEST_EXPONENT) << 27
 }
 
 /// Packs a sample. The color must not be NaN.

@@ -253,7 +253,7 @@ fn a_wrong_turn_or_draw_of_a_path_is_caught() {
 
 #[test]
 fn planted_errors_in_the_reconstruction_are_caught() {
-    caught(sparse::PROBES, "pack_color", "rough + (multiple(largest, rough) >> 9u)", "rough");
+    caught(sparse::PROBES, "pack_color", "rough + (multiple(largest, rough, up) >> 9u)", "rough");
     caught(sparse::PROBES, "unpack_color", "(SMALLEST_EXPONENT - 8u)", "(SMALLEST_EXPONENT - 9u)");
     caught(sparse::PROBES, "pack_kept", "min((code + 2u) >> 2u, 0x3ffeu)", "min(code >> 2u, 0x3ffeu)");
     caught(sparse::PROBES, "unpack_kept", "unpack_place(words.y >> 26u)", "unpack_place(words.y >> 20u)");

@@ -109,17 +109,6 @@ pub(super) fn reconstruction_of(r: &Row<'_>) -> sparse::Reconstruction {
 
 pub const PROBES: &[Probe] = &[
     Probe {
-        name: "multiple",
-        module: "kept",
-        words: [2, 1],
-        wgsl: "out_u(multiple(in_f(0u), in_u(1u)));",
-        rust: |r, o| o.u(kept::multiple(r.f(0), r.u(1))),
-        rows: || Rows::new(2).random("multiple", |d, row| {
-            let v = scaled(d, -24, 15);
-            row.extend([v, (v >> 23).max(111)]);
-        }),
-    },
-    Probe {
         name: "pack_color",
         module: "kept",
         words: [3, 1],
@@ -231,12 +220,12 @@ pub const PROBES: &[Probe] = &[
         rows: || Rows::new(1).random("kept_weight", |d, row| row.push(range(d, 0.0, 20.0))),
     },
     Probe {
-        name: "multiple_up",
+        name: "multiple",
         module: "kept",
         words: [3, 1],
-        wgsl: "out_u(multiple_up(in_f(0u), in_u(1u), in_f(2u)));",
-        rust: |r, o| o.u(kept::multiple_up(r.f(0), r.u(1), r.f(2))),
-        rows: || Rows::new(3).random("multiple_up", |d, row| {
+        wgsl: "out_u(multiple(in_f(0u), in_u(1u), in_f(2u)));",
+        rust: |r, o| o.u(kept::multiple(r.f(0), r.u(1), r.f(2))),
+        rows: || Rows::new(3).random("multiple", |d, row| {
             let v = scaled(d, -24, 15);
             row.extend([v, (v >> 23).max(111), range(d, 0.0, 1.0)]);
         }),
