@@ -1,11 +1,16 @@
 //! Measures what a frame costs and how far it is from full rate: the figures of the README.
 //!
-//! `cargo run --release --example measure -- MODE SCANPATH FRAMES [FOLDER]`
+//! `cargo run --release --example measure -- SCENE MODE SCANPATH FRAMES [FOLDER]`
 //!
-//! MODE: full, prepass (full rate with a depth prepass), quad, sparse, sparse48 (rates of 4 and 8), taa:SCALE (Bevy's
-//! temporal antialiasing at SCALE of both sides, enlarged bilinearly), reference (full rate with four samples a pixel).
-//! Prints CPU time of the process per frame. With FOLDER writes the frames there as PNG, and the gaze as `gaze.csv`;
-//! the time then includes that.
+//! SCENE: courtyard, or grille (the courtyard with thin bars and edges at slopes).
+//! MODE: full, prepass (full rate with a depth prepass), msaa (full rate, Bevy's MSAA of 4), taa:SCALE (Bevy's temporal
+//! antialiasing at SCALE of both sides, enlarged bilinearly), quad, sparse (without antialiasing), sparse48 (rates of 4
+//! and 8), antialiased (sparse, the default), reference (full rate with four samples a pixel).
+//! Prints CPU time of the process per frame. With FOLDER writes the frames there as PNG, and the gaze as `gaze.csv`.
+//!
+//! `cargo run --release --example measure -- psnr FOLDER REFERENCE`
+//!
+//! Prints PSNR of the frames in FOLDER against those in REFERENCE: of the whole frames, and within the fovea.
 
 mod common;
 
@@ -13,18 +18,23 @@ use bevy::anti_alias::taa::TemporalAntiAliasing;
 use bevy::core_pipeline::prepass::DepthPrepass;
 use bevy::prelude::*;
 use bevy_afterimage::{Afterimage, Foveated, FoveationKind, Gaze, Scanpath};
-use common::headless::{FRAME, Headless, write_png};
+use common::grille::GrillePlugin;
+use common::headless::{FRAME, Headless, psnr_db, read_png, write_png};
 use common::scene::{Mover, ScenePlugin, TONEMAPPING, stroll};
 use rustix::time::{ClockId, clock_gettime};
 use std::error::Error;
 use std::path::Path;
 
 const SIZE: UVec2 = UVec2::new(1280, 720);
-/// Frames before the clock starts: compilation of pipelines, first history.
+/// Frames before the clock starts, of the courtyard: compilation of pipelines, first history.
 const WARM_UP: usize = 6;
+/// The same, of the grille: history that antialiases is a mean of many frames.
+const LONG_WARM_UP: usize = 30;
 const LAMPS: usize = 12;
 /// Start in the scanpath, in seconds.
 const START_S: f64 = 1.0;
+/// Radius of the fovea: 5 degrees of a view of 45 degrees and 720 lines.
+const FOVEA_PX: f32 = 76.0;
 
 fn cpu_ms() -> f64 {
     let time = clock_gettime(ClockId::ProcessCPUTime);
@@ -33,18 +43,61 @@ fn cpu_ms() -> f64 {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [mode, scanpath, frames, folder @ ..] = &arguments[..] else {
-        return Err("expected: MODE SCANPATH FRAMES [FOLDER]".into());
-    };
-    let (scanpath, frames, folder) =
-        (Scanpath::read(scanpath)?, frames.parse::<usize>()?, folder.first().map(Path::new));
+    match &arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["psnr", folder, reference] => score(Path::new(folder), Path::new(reference)),
+        [scene @ ("courtyard" | "grille"), mode, scanpath, frames, folder @ ..] => {
+            let folder = folder.first().map(Path::new);
+            measure(scene, mode, &Scanpath::read(scanpath)?, frames.parse()?, folder)
+        }
+        _ => Err("expected: SCENE MODE SCANPATH FRAMES [FOLDER], or psnr FOLDER REFERENCE".into()),
+    }
+}
+
+fn measure(
+    scene: &str,
+    mode: &str,
+    scanpath: &Scanpath,
+    frames: usize,
+    folder: Option<&Path>,
+) -> Result<(), Box<dyn Error>> {
     let scale: f32 = match mode.strip_prefix("taa:") {
         Some(scale) => scale.parse()?,
         None if mode == "reference" => 2.0,
         None => 1.0,
     };
     let size = (SIZE.as_vec2() * scale).round().as_uvec2();
-    let mut headless = Headless::new(size, ScenePlugin { lamps: LAMPS, moves: true });
+    let courtyard = ScenePlugin { lamps: LAMPS, moves: true };
+    let (mut headless, warm_up) = match scene {
+        "grille" => (Headless::new(size, (courtyard, GrillePlugin)), LONG_WARM_UP),
+        _ => (Headless::new(size, courtyard), WARM_UP),
+    };
+    spawn_camera(&mut headless, mode)?;
+
+    let mut spent_ms = 0.0;
+    let mut gazes = "frame,x_px,y_px\n".to_owned();
+    for frame in 0..frames + warm_up {
+        let uv = scanpath.at(START_S + frame as f64 * FRAME.as_secs_f64());
+        headless.app.world_mut().resource_mut::<Gaze>().set(uv);
+        let began_ms = cpu_ms();
+        headless.frames(1);
+        headless.wait();
+        let Some(index) = frame.checked_sub(warm_up) else { continue };
+        spent_ms += cpu_ms() - began_ms;
+        if let Some(folder) = folder {
+            let shot = resized(&headless.read(), size);
+            write_png(&folder.join(format!("{index:06}.png")), SIZE, &shot)?;
+            let px = uv.map_or(Vec2::NAN, |uv| uv * SIZE.as_vec2() - 0.5);
+            gazes += &format!("{index},{},{}\n", px.x, px.y);
+        }
+    }
+    println!("{scene}, {mode}: {:.1} ms of CPU time a frame, {}", spent_ms / frames as f64, headless.adapter());
+    if let Some(folder) = folder {
+        std::fs::write(folder.join("gaze.csv"), gazes)?;
+    }
+    headless.problems().first().map_or(Ok(()), |problem| Err(problem.as_str().into()))
+}
+
+fn spawn_camera(headless: &mut Headless, mode: &str) -> Result<(), Box<dyn Error>> {
     let target = headless.render_target();
     let mut camera = headless.app.world_mut().spawn((
         Camera3d::default(),
@@ -54,47 +107,53 @@ fn main() -> Result<(), Box<dyn Error>> {
         stroll(0.0),
         Mover::Stroll,
     ));
-    let foveated = |kind, [rate_mid, rate_far]: [u32; 2]| {
-        (Afterimage::default(), Foveated { kind, rate_mid, rate_far, ..default() })
+    let foveated = |kind, [rate_mid, rate_far]: [u32; 2], antialias| {
+        (Afterimage { antialias, ..default() }, Foveated { kind, rate_mid, rate_far, ..default() })
     };
-    match mode.as_str() {
+    match mode {
         "full" | "reference" => &mut camera,
         "prepass" => camera.insert(DepthPrepass),
-        "quad" => camera.insert(foveated(FoveationKind::QuadViews, [2, 4])),
-        "sparse" => camera.insert(foveated(FoveationKind::Sparse, [2, 4])),
-        "sparse48" => camera.insert(foveated(FoveationKind::Sparse, [4, 8])),
+        "msaa" => camera.insert(Msaa::Sample4),
+        "quad" => camera.insert(foveated(FoveationKind::QuadViews, [2, 4], false)),
+        "sparse" => camera.insert(foveated(FoveationKind::Sparse, [2, 4], false)),
+        "sparse48" => camera.insert(foveated(FoveationKind::Sparse, [4, 8], false)),
+        "antialiased" => camera.insert(foveated(FoveationKind::Sparse, [2, 4], true)),
         _ if mode.starts_with("taa:") => camera.insert(TemporalAntiAliasing::default()),
         _ => {
             return Err(format!(
-                "mode is {mode}: expected full, prepass, quad, sparse, sparse48, taa:SCALE or reference"
+                "mode is {mode}: expected full, prepass, msaa, taa:SCALE, quad, sparse, sparse48, antialiased or \
+                 reference"
             )
             .into());
         }
     };
+    Ok(())
+}
 
-    let mut began = cpu_ms();
-    let mut gazes = "frame,x_px,y_px\n".to_owned();
-    for frame in 0..frames + WARM_UP {
-        if frame == WARM_UP {
-            headless.wait();
-            began = cpu_ms();
-        }
-        let uv = scanpath.at(START_S + frame as f64 * FRAME.as_secs_f64());
-        headless.app.world_mut().resource_mut::<Gaze>().set(uv);
-        headless.frames(1);
-        if let Some((folder, index)) = folder.zip(frame.checked_sub(WARM_UP)) {
-            let shot = resized(&headless.read(), size);
-            write_png(&folder.join(format!("{index:06}.png")), SIZE, &shot)?;
-            let px = uv.map_or(Vec2::NAN, |uv| uv * SIZE.as_vec2() - 0.5);
-            gazes += &format!("{index},{},{}\n", px.x, px.y);
+/// Prints the PSNR of frames, over all of them.
+fn score(folder: &Path, reference: &Path) -> Result<(), Box<dyn Error>> {
+    let gazes = std::fs::read_to_string(folder.join("gaze.csv"))?;
+    let (mut all, mut fovea) = ([vec![], vec![]], [vec![], vec![]]);
+    for line in gazes.lines().skip(1) {
+        let [index, x, y] = line.split(',').collect::<Vec<_>>()[..] else {
+            return Err("gaze.csv: three columns".into());
+        };
+        let gaze = Vec2::new(x.parse()?, y.parse()?);
+        let name = format!("{:06}.png", index.parse::<usize>()?);
+        for (i, folder) in [folder, reference].into_iter().enumerate() {
+            let image = read_png(&folder.join(&name))?;
+            for (at, pixel) in image.chunks_exact(4).enumerate() {
+                let px = UVec2::new(at as u32 % SIZE.x, at as u32 / SIZE.x).as_vec2();
+                if px.distance(gaze) < FOVEA_PX {
+                    fovea[i].extend_from_slice(pixel);
+                }
+            }
+            all[i].extend(image);
         }
     }
-    headless.wait();
-    println!("{mode}: {:.1} ms of CPU time a frame, {}", (cpu_ms() - began) / frames as f64, headless.adapter());
-    if let Some(folder) = folder {
-        std::fs::write(folder.join("gaze.csv"), gazes)?;
-    }
-    headless.problems().first().map_or(Ok(()), |problem| Err(problem.as_str().into()))
+    let [all, fovea] = [all, fovea].map(|[shown, reference]| psnr_db(&shown, &reference));
+    println!("{}: {all:.2} dB, {fovea:.2} dB within the fovea", folder.display());
+    Ok(())
 }
 
 /// The image at the size that is shown: the mean of four pixels, or enlarged bilinearly; both in linear light.

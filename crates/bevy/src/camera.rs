@@ -10,17 +10,28 @@ use bevy::render::render_resource::TextureUsages;
 ///
 /// Sets [`Msaa::Off`], because samples of a foveated frame have no neighbours to average with, and adds `DepthPrepass`
 /// and `MotionVectorPrepass` where history needs them.
-#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 #[require(Foveated)]
 pub struct Afterimage {
     /// Settings by name.
     pub preset: Preset,
-    /// Settings in full, instead of the preset. Their `foveation` is ignored: [`Foveated`] says it.
+    /// Settings in full, instead of the preset. Their `foveation` and `Smr::antialias` are ignored: [`Foveated`] and
+    /// [`antialias`](Self::antialias) say them.
     #[reflect(ignore)]
     pub settings: Option<Settings>,
+    /// Antialiases [`FoveationKind::Sparse`] with the method smr, in place of temporal antialiasing and MSAA: the
+    /// projection of what is shaded moves by a part of a pixel each frame, and history stores means of samples. Not for
+    /// cameras with `TemporalJitter`, which temporal antialiasing and upscaling add. Default true.
+    pub antialias: bool,
     /// Discards history in the next frame, for camera cuts and teleports. Becomes false when that frame is drawn.
     pub reset: bool,
+}
+
+impl Default for Afterimage {
+    fn default() -> Self {
+        Self { preset: Preset::default(), settings: None, antialias: true, reset: false }
+    }
 }
 
 impl Afterimage {

@@ -3,12 +3,13 @@
 use crate::camera::{Afterimage, AfterimageDebug, Foveated, FoveationKind, depth_convention, drawn_size_px};
 use crate::counters::AfterimageStats;
 use crate::gaze::{CameraGaze, Gaze};
+use crate::jitter::temporal_jitter;
 use crate::lattice::{COUNT, LatticeCameras, lattice_of};
-use afterimage::{ContextDesc, DebugView, Lattice, MotionConvention, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, DebugView, Lattice, Method, MotionConvention, ViewFrame, ViewGeometry};
 use bevy::core_pipeline::prepass::PreviousViewData;
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::prelude::*;
-use bevy::render::camera::{SortedCameras, sort_cameras};
+use bevy::render::camera::{SortedCameras, extract_cameras, sort_cameras};
 use bevy::render::sync_component::{SyncComponent, SyncComponentPlugin};
 use bevy::render::sync_world::RenderEntity;
 use bevy::render::{ExtractSchedule, MainWorld, Render, RenderApp, RenderSystems};
@@ -18,7 +19,10 @@ use bevy::render::{ExtractSchedule, MainWorld, Render, RenderApp, RenderSystems}
 pub(crate) struct ExtractedAfterimage {
     pub kind: FoveationKind,
     pub desc: ContextDesc,
+    /// Without the jitter: temporal antialiasing sets its own after extraction.
     pub view: ViewFrame,
+    /// Whether the post-process antialiases: the jitter is its own.
+    pub antialiases: bool,
     pub reset: bool,
     pub debug: Option<DebugView>,
     pub counts: bool,
@@ -55,7 +59,8 @@ impl Plugin for FramePlugin {
         app.add_plugins(SyncComponentPlugin::<Afterimage, FramePlugin>::default());
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
             render_app
-                .add_systems(ExtractSchedule, extract)
+                // It removes the jitter of cameras that have none in the main world.
+                .add_systems(ExtractSchedule, extract.after(extract_cameras))
                 .add_systems(Render, draw_lattices_first.after(sort_cameras).in_set(RenderSystems::CreateViews));
         }
     }
@@ -107,10 +112,18 @@ fn extract(mut commands: Commands, mut world: ResMut<MainWorld>) {
             }
         };
         desc.motion = planted.motion.unwrap_or(desc.motion);
+        let jitter_px = placed.and_then(|(_, placed)| placed.jitter_px);
+        if let Method::Smr(smr) = &mut desc.settings.method {
+            smr.antialias = jitter_px.is_some();
+        }
+        if let Some(jitter_px) = jitter_px {
+            commands.entity(entity).insert(temporal_jitter(jitter_px));
+        }
         let frame = ExtractedAfterimage {
             kind: foveated.kind,
             desc,
             view,
+            antialiases: jitter_px.is_some(),
             reset: std::mem::take(&mut afterimage.bypass_change_detection().reset),
             debug: debug.map(|debug| debug.0).filter(|_| foveated.kind != FoveationKind::QuadViews),
             counts,

@@ -44,6 +44,7 @@ mod diagnostics;
 mod frame;
 mod gaze;
 mod hide;
+mod jitter;
 mod lattice;
 mod mirror;
 mod pass;
@@ -79,6 +80,7 @@ impl Plugin for AfterimagePlugin {
                 shadow::ShadowPlugin,
                 hide::HidePlugin,
                 frame::FramePlugin,
+                jitter::JitterPlugin,
                 pass::PassPlugin,
                 diagnostics::DiagnosticsPlugin,
             ));
