@@ -25,16 +25,26 @@ use rustix::time::{ClockId, clock_gettime};
 use std::error::Error;
 use std::path::Path;
 
-const SIZE: UVec2 = UVec2::new(1280, 720);
-/// Frames before the clock starts, of the courtyard: compilation of pipelines, first history.
-const WARM_UP: usize = 6;
-/// The same, of the grille: history that antialiases is a mean of many frames.
-const LONG_WARM_UP: usize = 30;
 const LAMPS: usize = 12;
 /// Start in the scanpath, in seconds.
 const START_S: f64 = 1.0;
-/// Radius of the fovea: 5 degrees of a view of 45 degrees and 720 lines.
-const FOVEA_PX: f32 = 76.0;
+/// Radius of the fovea in heights of the view: 5 degrees of 45.
+const FOVEA: f32 = 0.105;
+
+/// A scene and how it is shown.
+struct Scene {
+    name: &'static str,
+    size: UVec2,
+    /// Frames before the clock starts.
+    warm_up: usize,
+}
+
+const SCENES: [Scene; 2] = [
+    // Compilation of pipelines, first history.
+    Scene { name: "courtyard", size: UVec2::new(1280, 720), warm_up: 6 },
+    // History that antialiases is a mean of many frames.
+    Scene { name: "grille", size: UVec2::new(640, 360), warm_up: 30 },
+];
 
 fn cpu_ms() -> f64 {
     let time = clock_gettime(ClockId::ProcessCPUTime);
@@ -45,7 +55,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match &arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["psnr", folder, reference] => score(Path::new(folder), Path::new(reference)),
-        [scene @ ("courtyard" | "grille"), mode, scanpath, frames, folder @ ..] => {
+        [scene, mode, scanpath, frames, folder @ ..] => {
+            let scene = SCENES.iter().find(|known| known.name == *scene).ok_or("SCENE is courtyard or grille")?;
             let folder = folder.first().map(Path::new);
             measure(scene, mode, &Scanpath::read(scanpath)?, frames.parse()?, folder)
         }
@@ -54,7 +65,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn measure(
-    scene: &str,
+    scene: &Scene,
     mode: &str,
     scanpath: &Scanpath,
     frames: usize,
@@ -65,32 +76,38 @@ fn measure(
         None if mode == "reference" => 2.0,
         None => 1.0,
     };
-    let size = (SIZE.as_vec2() * scale).round().as_uvec2();
+    let shown = scene.size;
+    let size = (shown.as_vec2() * scale).round().as_uvec2();
     let courtyard = ScenePlugin { lamps: LAMPS, moves: true };
-    let (mut headless, warm_up) = match scene {
-        "grille" => (Headless::new(size, (courtyard, GrillePlugin)), LONG_WARM_UP),
-        _ => (Headless::new(size, courtyard), WARM_UP),
+    let mut headless = match scene.name {
+        "grille" => Headless::new(size, (courtyard, GrillePlugin)),
+        _ => Headless::new(size, courtyard),
     };
     spawn_camera(&mut headless, mode)?;
 
     let mut spent_ms = 0.0;
     let mut gazes = "frame,x_px,y_px\n".to_owned();
-    for frame in 0..frames + warm_up {
+    let mut cameras = headless.app.world_mut().query::<&mut Camera>();
+    for frame in 0..frames + scene.warm_up {
+        if mode == "reference" {
+            // It needs no warm-up, which would take long.
+            cameras.single_mut(headless.app.world_mut())?.is_active = frame + 1 >= scene.warm_up;
+        }
         let uv = scanpath.at(START_S + frame as f64 * FRAME.as_secs_f64());
         headless.app.world_mut().resource_mut::<Gaze>().set(uv);
         let began_ms = cpu_ms();
         headless.frames(1);
         headless.wait();
-        let Some(index) = frame.checked_sub(warm_up) else { continue };
+        let Some(index) = frame.checked_sub(scene.warm_up) else { continue };
         spent_ms += cpu_ms() - began_ms;
         if let Some(folder) = folder {
-            let shot = resized(&headless.read(), size);
-            write_png(&folder.join(format!("{index:06}.png")), SIZE, &shot)?;
-            let px = uv.map_or(Vec2::NAN, |uv| uv * SIZE.as_vec2() - 0.5);
+            let shot = resized(&headless.read(), size, shown);
+            write_png(&folder.join(format!("{index:06}.png")), shown, &shot)?;
+            let px = uv.map_or(Vec2::NAN, |uv| uv * shown.as_vec2() - 0.5);
             gazes += &format!("{index},{},{}\n", px.x, px.y);
         }
     }
-    println!("{scene}, {mode}: {:.1} ms of CPU time a frame, {}", spent_ms / frames as f64, headless.adapter());
+    println!("{}, {mode}: {:.1} ms of CPU time a frame, {}", scene.name, spent_ms / frames as f64, headless.adapter());
     if let Some(folder) = folder {
         std::fs::write(folder.join("gaze.csv"), gazes)?;
     }
@@ -141,10 +158,10 @@ fn score(folder: &Path, reference: &Path) -> Result<(), Box<dyn Error>> {
         let gaze = Vec2::new(x.parse()?, y.parse()?);
         let name = format!("{:06}.png", index.parse::<usize>()?);
         for (i, folder) in [folder, reference].into_iter().enumerate() {
-            let image = read_png(&folder.join(&name))?;
+            let (size, image) = read_png(&folder.join(&name))?;
             for (at, pixel) in image.chunks_exact(4).enumerate() {
-                let px = UVec2::new(at as u32 % SIZE.x, at as u32 / SIZE.x).as_vec2();
-                if px.distance(gaze) < FOVEA_PX {
+                let px = UVec2::new(at as u32 % size.x, at as u32 / size.x).as_vec2();
+                if px.distance(gaze) < FOVEA * size.y as f32 {
                     fovea[i].extend_from_slice(pixel);
                 }
             }
@@ -157,17 +174,17 @@ fn score(folder: &Path, reference: &Path) -> Result<(), Box<dyn Error>> {
 }
 
 /// The image at the size that is shown: the mean of four pixels, or enlarged bilinearly; both in linear light.
-fn resized(rgba: &[u8], from: UVec2) -> Vec<u8> {
-    if from == SIZE {
+fn resized(rgba: &[u8], from: UVec2, to: UVec2) -> Vec<u8> {
+    if from == to {
         return rgba.to_vec();
     }
     let decode: Vec<f32> = (0..=255).map(|byte| Color::srgb_u8(byte, 0, 0).to_linear().red).collect();
     let pixel = |x: u32, y: u32, channel: usize| decode[usize::from(rgba[4 * (y * from.x + x) as usize + channel])];
     let encode = |linear: f32| (255.0 * Color::linear_rgb(linear, 0.0, 0.0).to_srgba().red).round() as u8;
-    let ratio = from.as_vec2() / SIZE.as_vec2();
-    let mut shown = Vec::with_capacity(4 * SIZE.element_product() as usize);
-    for y in 0..SIZE.y {
-        for x in 0..SIZE.x {
+    let ratio = from.as_vec2() / to.as_vec2();
+    let mut shown = Vec::with_capacity(4 * to.element_product() as usize);
+    for y in 0..to.y {
+        for x in 0..to.x {
             let at = (UVec2::new(x, y).as_vec2() + 0.5) * ratio - 0.5;
             let low = at.floor();
             let part = at - low;

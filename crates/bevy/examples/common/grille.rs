@@ -25,10 +25,10 @@ fn build(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, mut materials
                 .with_rotation(Quat::from_rotation_arc(Vec3::Y, along.normalize())),
         ));
     };
-    // A grille of bars of 12 mm, at the left: one to two pixels of a view of 1280 x 720.
+    // A grille of bars of 16 mm, at the left: about a pixel of a view of 640 x 360.
     for i in 0..22 {
         let x = -4.6 + 0.1 * i as f32;
-        beam(&dark, Vec3::new(x, 0.2, 2.2), Vec3::new(x, 2.4, 2.2), 0.012);
+        beam(&dark, Vec3::new(x, 0.2, 2.2), Vec3::new(x, 2.4, 2.2), 0.016);
     }
     for y in [0.2, 1.3, 2.4] {
         beam(&dark, Vec3::new(-4.7, y, 2.2), Vec3::new(-2.4, y, 2.2), 0.02);

@@ -156,11 +156,12 @@ pub fn psnr_db(a: &[u8], b: &[u8]) -> f64 {
 }
 
 /// Reads an image that [`write_png`] wrote, with alpha.
-pub fn read_png(path: &std::path::Path) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
+pub fn read_png(path: &std::path::Path) -> Result<(UVec2, Vec<u8>), Box<dyn std::error::Error>> {
     let mut reader = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(path)?)).read_info()?;
     let mut rgb = vec![0; reader.output_buffer_size().ok_or("a size")?];
     reader.next_frame(&mut rgb)?;
-    Ok(rgb.chunks_exact(3).flat_map(|pixel| [pixel[0], pixel[1], pixel[2], 255]).collect())
+    let size = UVec2::new(reader.info().width, reader.info().height);
+    Ok((size, rgb.chunks_exact(3).flat_map(|pixel| [pixel[0], pixel[1], pixel[2], 255]).collect()))
 }
 
 /// Writes an image as PNG.
