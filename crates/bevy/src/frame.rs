@@ -3,13 +3,12 @@
 use crate::camera::{Afterimage, AfterimageDebug, Foveated, FoveationKind, depth_convention, drawn_size_px};
 use crate::counters::AfterimageStats;
 use crate::gaze::{CameraGaze, Gaze};
-use crate::jitter::temporal_jitter;
 use crate::lattice::{COUNT, LatticeCameras, lattice_of};
 use afterimage::{ContextDesc, DebugView, Lattice, Method, MotionConvention, ViewFrame, ViewGeometry};
 use bevy::core_pipeline::prepass::PreviousViewData;
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::prelude::*;
-use bevy::render::camera::{SortedCameras, extract_cameras, sort_cameras};
+use bevy::render::camera::{SortedCameras, sort_cameras};
 use bevy::render::sync_component::{SyncComponent, SyncComponentPlugin};
 use bevy::render::sync_world::RenderEntity;
 use bevy::render::{ExtractSchedule, MainWorld, Render, RenderApp, RenderSystems};
@@ -19,10 +18,8 @@ use bevy::render::{ExtractSchedule, MainWorld, Render, RenderApp, RenderSystems}
 pub(crate) struct ExtractedAfterimage {
     pub kind: FoveationKind,
     pub desc: ContextDesc,
-    /// Without the jitter: temporal antialiasing sets its own after extraction.
+    /// Its jitter is that of the samples. The jitter of temporal antialiasing, which sets it later, is not in it.
     pub view: ViewFrame,
-    /// Whether the post-process antialiases: the jitter is its own.
-    pub antialiases: bool,
     pub reset: bool,
     pub debug: Option<DebugView>,
     pub counts: bool,
@@ -59,8 +56,7 @@ impl Plugin for FramePlugin {
         app.add_plugins(SyncComponentPlugin::<Afterimage, FramePlugin>::default());
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
             render_app
-                // It removes the jitter of cameras that have none in the main world.
-                .add_systems(ExtractSchedule, extract.after(extract_cameras))
+                .add_systems(ExtractSchedule, extract)
                 .add_systems(Render, draw_lattices_first.after(sort_cameras).in_set(RenderSystems::CreateViews));
         }
     }
@@ -116,14 +112,10 @@ fn extract(mut commands: Commands, mut world: ResMut<MainWorld>) {
         if let Method::Smr(smr) = &mut desc.settings.method {
             smr.antialias = jitter_px.is_some();
         }
-        if let Some(jitter_px) = jitter_px {
-            commands.entity(entity).insert(temporal_jitter(jitter_px));
-        }
         let frame = ExtractedAfterimage {
             kind: foveated.kind,
             desc,
-            view,
-            antialiases: jitter_px.is_some(),
+            view: ViewFrame { jitter_px: jitter_px.unwrap_or_default(), ..view },
             reset: std::mem::take(&mut afterimage.bypass_change_detection().reset),
             debug: debug.map(|debug| debug.0).filter(|_| foveated.kind != FoveationKind::QuadViews),
             counts,

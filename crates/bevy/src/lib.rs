@@ -44,7 +44,6 @@ mod diagnostics;
 mod frame;
 mod gaze;
 mod hide;
-mod jitter;
 mod lattice;
 mod mirror;
 mod pass;
@@ -80,7 +79,6 @@ impl Plugin for AfterimagePlugin {
                 shadow::ShadowPlugin,
                 hide::HidePlugin,
                 frame::FramePlugin,
-                jitter::JitterPlugin,
                 pass::PassPlugin,
                 diagnostics::DiagnosticsPlugin,
             ));

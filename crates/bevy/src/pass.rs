@@ -4,7 +4,6 @@ use crate::blit::BlitPass;
 use crate::camera::FoveationKind;
 use crate::context::{Context, Drawn, Facts, Geometry, Output};
 use crate::frame::ExtractedAfterimage;
-use crate::jitter::jitter_px;
 use bevy::core_pipeline::Core3dSystems;
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
 use bevy::core_pipeline::schedule::Core3d;
@@ -178,7 +177,9 @@ fn record(
         view: target.main_texture_other_view(),
         origin_px: origin(camera),
     };
-    let facts = Facts { index: index.into(), exposure: camera.exposure, jitter_px: jitter_px(jitter) };
+    // Bevy adds the offset to the projection's z column, whose factor is negative.
+    let jitter_px = jitter.map_or(frame.view.jitter_px, |jitter| (-jitter.offset).to_array());
+    let facts = Facts { index: index.into(), exposure: camera.exposure, jitter_px };
     let geometry = prepass.filter(|_| frame.kind != FoveationKind::QuadViews).and_then(|prepass| {
         let (depth, motion) = (prepass.depth.as_ref()?, prepass.motion_vectors.as_ref()?);
         Some(Geometry { depth: &depth.texture.texture, motion: &motion.texture.texture })

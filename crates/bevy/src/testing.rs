@@ -2,13 +2,11 @@
 
 use crate::frame::ExtractedAfterimage;
 pub use crate::frame::Planted;
-use crate::jitter::jitter_px;
 use crate::pass::Contexts;
 use afterimage::{ContextDesc, ViewFrame, wgpu};
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
 use bevy::diagnostic::FrameCount;
 use bevy::prelude::*;
-use bevy::render::camera::TemporalJitter;
 use bevy::render::view::ViewTarget;
 
 /// What the post-process of a camera was given in the last frame, and its output.
@@ -32,24 +30,20 @@ pub struct Recorded {
     pub output: wgpu::Texture,
 }
 
-type Camera<'a> =
-    (Entity, &'a ExtractedAfterimage, &'a ViewTarget, &'a ViewPrepassTextures, Option<&'a TemporalJitter>);
-
 /// What the post-processes of the last frame were given.
 pub fn recorded(render_world: &mut World) -> Vec<Recorded> {
-    let mut cameras = render_world.query::<Camera<'_>>();
+    let mut cameras = render_world.query::<(Entity, &ExtractedAfterimage, &ViewTarget, &ViewPrepassTextures)>();
     let index = render_world.resource::<FrameCount>().0.into();
     let contexts = &render_world.resource::<Contexts>().by_camera;
     cameras
         .iter(render_world)
-        .filter_map(|(camera, frame, target, prepass, jitter)| {
+        .filter_map(|(camera, frame, target, prepass)| {
             let color = contexts.get(&camera)?.color.clone()?;
             let [depth, motion] = [&prepass.depth, &prepass.motion_vectors]
                 .map(|attachment| attachment.as_ref().map(|attachment| (*attachment.texture.texture).clone()));
             let (depth, motion) = depth.zip(motion)?;
             let output = (**target.main_texture()).clone();
-            let view = ViewFrame { jitter_px: jitter_px(jitter), ..frame.view };
-            Some(Recorded { camera, desc: frame.desc, view, index, color, depth, motion, output })
+            Some(Recorded { camera, desc: frame.desc, view: frame.view, index, color, depth, motion, output })
         })
         .collect()
 }
