@@ -2,7 +2,8 @@
 //!
 //! `cargo run --release --example measure -- SCENE MODE SCANPATH FRAMES [FOLDER]`
 //!
-//! SCENE: courtyard, or grille (the courtyard with thin bars and edges at slopes).
+//! SCENE: courtyard; grille (the courtyard with thin bars and edges at slopes); grille-slow (camera at a fifth of the
+//! speed).
 //! MODE: full, prepass (full rate with a depth prepass), msaa (full rate, Bevy's MSAA of 4), taa:SCALE (Bevy's temporal
 //! antialiasing at SCALE of both sides, enlarged bilinearly), quad, sparse (without antialiasing), sparse48 (rates of 4
 //! and 8), antialiased (sparse, the default), reference (full rate with four samples a pixel).
@@ -37,13 +38,15 @@ struct Scene {
     size: UVec2,
     /// Frames before the clock starts.
     warm_up: usize,
+    camera: Mover,
 }
 
-const SCENES: [Scene; 2] = [
+const SCENES: [Scene; 3] = [
     // Compilation of pipelines, first history.
-    Scene { name: "courtyard", size: UVec2::new(1280, 720), warm_up: 6 },
+    Scene { name: "courtyard", size: UVec2::new(1280, 720), warm_up: 6, camera: Mover::Stroll },
     // History that antialiases is a mean of many frames.
-    Scene { name: "grille", size: UVec2::new(640, 360), warm_up: 30 },
+    Scene { name: "grille", size: UVec2::new(640, 360), warm_up: 30, camera: Mover::Stroll },
+    Scene { name: "grille-slow", size: UVec2::new(640, 360), warm_up: 30, camera: Mover::Amble },
 ];
 
 fn cpu_ms() -> f64 {
@@ -56,7 +59,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     match &arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["psnr", folder, reference] => score(Path::new(folder), Path::new(reference)),
         [scene, mode, scanpath, frames, folder @ ..] => {
-            let scene = SCENES.iter().find(|known| known.name == *scene).ok_or("SCENE is courtyard or grille")?;
+            let scene =
+                SCENES.iter().find(|known| known.name == *scene).ok_or("SCENE is courtyard, grille or grille-slow")?;
             let folder = folder.first().map(Path::new);
             measure(scene, mode, &Scanpath::read(scanpath)?, frames.parse()?, folder)
         }
@@ -80,10 +84,10 @@ fn measure(
     let size = (shown.as_vec2() * scale).round().as_uvec2();
     let courtyard = ScenePlugin { lamps: LAMPS, moves: true };
     let mut headless = match scene.name {
-        "grille" => Headless::new(size, (courtyard, GrillePlugin)),
-        _ => Headless::new(size, courtyard),
+        "courtyard" => Headless::new(size, courtyard),
+        _ => Headless::new(size, (courtyard, GrillePlugin)),
     };
-    spawn_camera(&mut headless, mode)?;
+    spawn_camera(&mut headless, scene.camera, mode)?;
 
     let mut spent_ms = 0.0;
     let mut gazes = "frame,x_px,y_px\n".to_owned();
@@ -114,16 +118,10 @@ fn measure(
     headless.problems().first().map_or(Ok(()), |problem| Err(problem.as_str().into()))
 }
 
-fn spawn_camera(headless: &mut Headless, mode: &str) -> Result<(), Box<dyn Error>> {
+fn spawn_camera(headless: &mut Headless, mover: Mover, mode: &str) -> Result<(), Box<dyn Error>> {
     let target = headless.render_target();
-    let mut camera = headless.app.world_mut().spawn((
-        Camera3d::default(),
-        Msaa::Off,
-        TONEMAPPING,
-        target,
-        stroll(0.0),
-        Mover::Stroll,
-    ));
+    let mut camera =
+        headless.app.world_mut().spawn((Camera3d::default(), Msaa::Off, TONEMAPPING, target, stroll(0.0), mover));
     let foveated = |kind, [rate_mid, rate_far]: [u32; 2], antialias| {
         (Afterimage { antialias, ..default() }, Foveated { kind, rate_mid, rate_far, ..default() })
     };

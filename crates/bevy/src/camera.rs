@@ -10,7 +10,7 @@ use bevy::render::render_resource::TextureUsages;
 ///
 /// Sets [`Msaa::Off`], because samples of a foveated frame have no neighbours to average with, and adds `DepthPrepass`
 /// and `MotionVectorPrepass` where history needs them.
-#[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 #[require(Foveated)]
 pub struct Afterimage {
@@ -21,17 +21,12 @@ pub struct Afterimage {
     #[reflect(ignore)]
     pub settings: Option<Settings>,
     /// Antialiases [`FoveationKind::Sparse`] with the method smr, in place of temporal antialiasing and MSAA: the
-    /// projection of what is shaded moves by a part of a pixel each frame, and history stores means of samples. Not for
-    /// cameras with `TemporalJitter`, which temporal antialiasing and upscaling add. Default true.
+    /// projection of what is shaded moves by a part of a pixel each frame, and history stores means of samples. Better
+    /// where little moves; frays thin things that move far from the gaze. Not for cameras with `TemporalJitter`, which
+    /// temporal antialiasing and upscaling add. Default false.
     pub antialias: bool,
     /// Discards history in the next frame, for camera cuts and teleports. Becomes false when that frame is drawn.
     pub reset: bool,
-}
-
-impl Default for Afterimage {
-    fn default() -> Self {
-        Self { preset: Preset::default(), settings: None, antialias: true, reset: false }
-    }
 }
 
 impl Afterimage {

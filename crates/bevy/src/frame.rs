@@ -42,6 +42,8 @@ pub(crate) struct Samples {
 pub struct Planted {
     /// Another convention of motion vectors than Bevy's.
     pub motion: Option<MotionConvention>,
+    /// History is told the opposite jitter.
+    pub jitter: bool,
 }
 
 // The camera's own component is what makes this one disappear with it.
@@ -109,13 +111,14 @@ fn extract(mut commands: Commands, mut world: ResMut<MainWorld>) {
         };
         desc.motion = planted.motion.unwrap_or(desc.motion);
         let jitter_px = placed.and_then(|(_, placed)| placed.jitter_px);
+        let told_px = jitter_px.unwrap_or_default().map(|px| if planted.jitter { -px } else { px });
         if let Method::Smr(smr) = &mut desc.settings.method {
             smr.antialias = jitter_px.is_some();
         }
         let frame = ExtractedAfterimage {
             kind: foveated.kind,
             desc,
-            view: ViewFrame { jitter_px: jitter_px.unwrap_or_default(), ..view },
+            view: ViewFrame { jitter_px: told_px, ..view },
             reset: std::mem::take(&mut afterimage.bypass_change_detection().reset),
             debug: debug.map(|debug| debug.0).filter(|_| foveated.kind != FoveationKind::QuadViews),
             counts,

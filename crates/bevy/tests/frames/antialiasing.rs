@@ -5,13 +5,14 @@ use crate::common::headless::{Headless, psnr_db};
 use crate::common::scene::{ScenePlugin, TONEMAPPING, stroll};
 use crate::{SIZE, kind};
 use bevy::prelude::*;
+use bevy_afterimage::testing::Planted;
 use bevy_afterimage::{Afterimage, Foveated, FoveationKind, Gaze};
 
 /// Samples a pixel along each side, of the reference.
 const SAMPLES: u32 = 4;
 
-/// A frame of a still camera, after `frames`.
-fn still(size: UVec2, components: impl Bundle, frames: usize) -> Vec<u8> {
+/// A frame of a still camera, after `frames`, with or without an error.
+fn still(size: UVec2, components: impl Bundle, frames: usize, planted: Planted) -> Vec<u8> {
     let mut headless = Headless::new(size, (ScenePlugin { lamps: 4, moves: false }, GrillePlugin));
     let target = headless.render_target();
     headless
@@ -19,6 +20,7 @@ fn still(size: UVec2, components: impl Bundle, frames: usize) -> Vec<u8> {
         .world_mut()
         .spawn((Camera3d::default(), Msaa::Off, target, TONEMAPPING, stroll(1.0)))
         .insert(components);
+    headless.app.insert_resource(planted);
     headless.app.world_mut().resource_mut::<Gaze>().set(Vec2::new(0.3, 0.5));
     headless.frames(frames);
     assert_eq!(headless.problems(), &[] as &[String]);
@@ -42,12 +44,20 @@ fn averaged(rgba: &[u8]) -> Vec<u8> {
 
 #[test]
 fn a_still_view_becomes_that_of_many_samples_a_pixel() {
-    let reference = averaged(&still(SIZE * SAMPLES, (), 3));
-    let sparse = |antialias| (Afterimage { antialias, ..default() }, Foveated::default());
-    let one = still(SIZE, kind(FoveationKind::Off), 3);
+    let right = Planted::default();
+    let reference = averaged(&still(SIZE * SAMPLES, (), 3, right));
+    let psnr = |shot: Vec<u8>| psnr_db(&shot, &reference);
+    let one = psnr(still(SIZE, kind(FoveationKind::Off), 3, right));
     // Each pixel of a block of 4 x 4 is sampled six times.
-    let [without, with] = [false, true].map(|antialias| still(SIZE, sparse(antialias), 96));
-    let [one, without, with] = [&one, &without, &with].map(|shot| psnr_db(shot, &reference));
-    println!("one sample a pixel {one:.2} dB, sparse {without:.2} dB, antialiased {with:.2} dB");
-    assert!(with > one + 2.0, "one sample a pixel {one:.2} dB, antialiased {with:.2} dB");
+    let sparse = |antialias, planted| {
+        psnr(still(SIZE, (Afterimage { antialias, ..default() }, Foveated::default()), 96, planted))
+    };
+    let [without, with] = [false, true].map(|antialias| sparse(antialias, right));
+    let wrong = sparse(true, Planted { jitter: true, ..right });
+    println!(
+        "one sample a pixel {one:.2} dB, sparse {without:.2} dB, antialiased {with:.2} dB, told the opposite jitter \
+         {wrong:.2} dB"
+    );
+    assert!(with > one + 3.0, "one sample a pixel {one:.2} dB, antialiased {with:.2} dB");
+    assert!(with > wrong + 1.0, "{with:.2} dB, told the opposite jitter {wrong:.2} dB");
 }
