@@ -17,6 +17,7 @@ const CLIP: f32 = 0.5;
 const CLIP_COST: f32 = 10.0;
 const NEARER_RELATIVE: f32 = 0.02;
 const ALONGSIDE_PX: f32 = 1.0;
+const TOGETHER_PX: f32 = 0.25;
 
 // A negative `lod`: empty.
 struct Mean {
@@ -45,6 +46,18 @@ fn stands_before(own: f32, neighbour: f32, own_motion: vec2<f32>, motion: vec2<f
     let difference = motion - own_motion;
     let alongside = max(abs(difference.x), abs(difference.y)) <= ALONGSIDE_PX;
     return neighbour > own * (1.0 + NEARER_RELATIVE) && neighbour > own && (full_rate || alongside);
+}
+
+// antialias::move_together
+fn move_together(own: vec2<f32>, nearest: vec2<f32>, farthest: vec2<f32>) -> bool {
+    let apart = max(max(abs(own - nearest), abs(own - farthest)), abs(nearest - farthest));
+    return max(apart.x, apart.y) <= TOGETHER_PX;
+}
+
+// antialias::is_of_surfaces
+fn is_of_surfaces(stored: f32, farthest: f32, nearest: f32) -> bool {
+    let far = farthest * (1.0 - NEARER_RELATIVE);
+    return stored >= far && stored * (1.0 - NEARER_RELATIVE) <= nearest;
 }
 
 struct Near {

@@ -99,6 +99,13 @@ fn tap_codes(expected: f32) -> vec2<u32> {
     return codes_between(expected, 1.0f - TAP_RELATIVE, 1.0f / (1.0f - TAP_RELATIVE));
 }
 
+// resample::tap_codes_between
+fn tap_codes_between(farthest: f32, nearest: f32) -> vec2<u32> {
+    let first = tap_codes(farthest);
+    let last = tap_codes(nearest);
+    return vec2<u32>(first.x, max(last.x, first.x) - first.x + last.y);
+}
+
 // resample::has_code
 fn has_code(word: u32, codes: vec2<u32>) -> bool {
     return (word >> 16u) - codes.x < codes.y;

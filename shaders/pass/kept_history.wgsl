@@ -19,38 +19,73 @@ fn kept_at(texel: vec2<i32>, view: u32) -> Kept {
     return unpack_kept(kept_words(texel, view));
 }
 
-// Previous position of a pixel's surface.
-fn kept_source(px: vec2<u32>, view: u32, motion: vec2<f32>, disparity_now: f32) -> Previous {
-    let at = reprojected(px, motion);
-    let stored = kept_at(vec2<i32>(at.at), view);
-    return previous_of(px, view, motion, disparity_now, at, stored.lod, stored.disparity);
-}
-
-// Disparity and motion of a pixel.
+// Disparity and motion of the surface whose history a pixel continues.
 struct PixelSurface {
     disparity: f32,
     motion: vec2<f32>,
+    // Disparity to store with the pixel.
+    stored_disparity: f32,
+    // Disparities of the farthest and the nearest surface that history may be of.
+    farthest: f32,
+    nearest: f32,
+    mixes: bool,
 }
 
 // Those of the nearest surface around a pixel, if that stands for it (ANTIALIAS). `level`: of its lattice.
 fn surface_of(px: vec2<u32>, view: u32, level: u32) -> PixelSurface {
-    let own = PixelSurface(disparity_at(px, view), motion_at(px, view));
+    let own = disparity_at(px, view);
+    let own_motion = motion_at(px, view);
     if ANTIALIAS == 0u || DEPTH_TEST == 0u {
-        return own;
+        return PixelSurface(own, own_motion, own, own, own, false);
     }
-    var nearest_disparity = own.disparity;
-    var at = px;
+    var nearest_disparity = own;
+    var farthest_disparity = own;
+    var nearest_at = px;
+    var farthest_at = px;
     for (var tap = 0u; tap < 9u; tap++) {
         let texel = clamp(px + vec2<u32>(tap % 3u, tap / 3u), vec2<u32>(1u), frame.size) - 1u;
         let near = disparity_at(texel, view);
-        at = select(at, texel, near > nearest_disparity);
+        let is_farther = near >= 0.0 && near < farthest_disparity;
+        nearest_at = select(nearest_at, texel, near > nearest_disparity);
+        farthest_at = select(farthest_at, texel, is_farther);
         nearest_disparity = max(near, nearest_disparity);
+        farthest_disparity = select(farthest_disparity, near, is_farther);
     }
-    let motion = motion_at(at, view);
-    if stands_before(own.disparity, nearest_disparity, own.motion, motion, level == 0u) {
-        return PixelSurface(nearest_disparity, motion);
+    let motion = motion_at(nearest_at, view);
+    var surface = PixelSurface(own, own_motion, own, own, own, false);
+    if stands_before(own, nearest_disparity, own_motion, motion, level == 0u) {
+        surface = PixelSurface(nearest_disparity, motion, nearest_disparity, own, own, false);
     }
-    return own;
+    if own >= 0.0 && move_together(own_motion, motion, motion_at(farthest_at, view)) {
+        surface.stored_disparity = own;
+        surface.farthest = farthest_disparity;
+        surface.nearest = nearest_disparity;
+        surface.mixes = true;
+    }
+    return surface;
+}
+
+// Previous position of a pixel's surface, and what its history may be of.
+struct KeptSource {
+    previous: Previous,
+    // As of stored disparities: `tap_codes`.
+    codes: vec2<u32>,
+}
+
+fn kept_source(px: vec2<u32>, view: u32, surface: PixelSurface) -> KeptSource {
+    let at = reprojected(px, surface.motion);
+    let stored = kept_at(vec2<i32>(at.at), view);
+    var previous = previous_of(px, view, surface.motion, surface.disparity, at, stored.lod, stored.disparity);
+    if ANTIALIAS == 0u || !surface.mixes {
+        return KeptSource(previous, tap_codes(previous.expected));
+    }
+    let ray = ray_at(px, view);
+    let farthest = expected_disparity(view, ray, surface.farthest);
+    let nearest_expected = expected_disparity(view, ray, surface.nearest);
+    if previous.verdict == VERDICT_DISOCCLUDED && is_of_surfaces(stored.disparity, farthest, nearest_expected) {
+        previous.verdict = VERDICT_VALID;
+    }
+    return KeptSource(previous, tap_codes_between(farthest, nearest_expected));
 }
 
 // Whether history may be at a previous position.
@@ -68,7 +103,8 @@ struct KeptHistory {
 // History at a previous position, in this frame's exposure. At a silhouette, where the nearest stored sample is of
 // another surface, samples beside it stand in for it if they are near enough. Where `needed` is false the loop has zero
 // iterations: software Vulkan runs the body of an `if` for all pixels.
-fn kept_history(previous: Previous, view: u32, needed: bool) -> KeptHistory {
+fn kept_history(source: KeptSource, view: u32, needed: bool) -> KeptHistory {
+    let previous = source.previous;
     var around = nothing_around();
     // Means lie anywhere around their texels' centres, so that all around the nearest one count.
     var columns = 2u;
@@ -81,12 +117,11 @@ fn kept_history(previous: Previous, view: u32, needed: bool) -> KeptHistory {
     }
     var nearest_texel = first;
     var samples = 1.0;
-    let codes = tap_codes(previous.expected);
     let taps = select(0u, columns * columns, needed);
     for (var tap = 0u; tap < taps; tap++) {
         let texel = first + vec2<i32>(vec2<u32>(tap % columns, tap / columns));
         let words = kept_words(texel, view);
-        let same = !is_empty(words) && (DEPTH_TEST == 0u || has_code(code_word(words), codes));
+        let same = !is_empty(words) && (DEPTH_TEST == 0u || has_code(code_word(words), source.codes));
         let cost = around.cost;
         var stored = unpack_full(words);
         var mean = Mean(stored.lod, 1.0);

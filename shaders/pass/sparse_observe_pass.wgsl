@@ -14,13 +14,13 @@ fn observe(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     let px = px_of(point, lattice);
     let surface = surface_of(px, view, lattice.level);
     let motion = surface.motion;
-    var previous = kept_source(px, view, motion, surface.disparity);
+    var source = kept_source(px, view, surface);
     if ANTIALIAS != 0u {
         // At the sample's place in its pixel.
-        previous.at -= frame.views[view].jitter_px;
+        source.previous.at -= frame.views[view].jitter_px;
     }
-    let needed = may_have_history(previous) && color(sample_at(point, lattice, view).xyz).usable;
-    let kept = kept_history(previous, view, needed);
+    let needed = may_have_history(source.previous) && color(sample_at(point, lattice, view).xyz).usable;
+    let kept = kept_history(source, view, needed);
     let history = kept.found;
     if !needed || history.lod < 0.0 {
         return nothing;

@@ -227,16 +227,17 @@ fn pixel(px: vec2<u32>, view: u32) {
     }
     let surface = surface_of(px, view, lattice.level);
     let motion = surface.motion;
-    let previous = kept_source(px, view, motion, surface.disparity);
+    let source = kept_source(px, view, surface);
+    let previous = source.previous;
     let is_final = candidate.usable && lattice.level == 0u && NOISY == 0u && ANTIALIAS == 0u;
-    let kept = kept_history(previous, view, may_have_history(previous) && !is_final);
+    let kept = kept_history(source, view, may_have_history(previous) && !is_final);
     let history = kept.found;
     let verdict = select(previous.verdict, VERDICT_VALID, history.lod >= 0.0);
     let valid = verdict == VERDICT_VALID;
     count_pixel(px, view, candidate.usable, disparity_now, verdict);
 
     var shown = candidate.color;
-    var next = Kept(candidate.color, select(-1.0, candidate.lod, candidate.usable), surface.disparity, vec2<f32>(0.0));
+    var next = Kept(candidate.color, select(-1.0, candidate.lod, candidate.usable), surface.stored_disparity, vec2<f32>(0.0));
     var samples = 1.0;
     if ANTIALIAS != 0u && candidate.is_own {
         next.place_px = -frame.views[view].jitter_px;
@@ -285,7 +286,7 @@ fn pixel(px: vec2<u32>, view: u32) {
                 noise = stored_noise(kept.texel, view);
             }
         }
-        next.disparity = surface.disparity;
+        next.disparity = surface.stored_disparity;
     }
     // Means of colors may exceed the largest half.
     shown = clamp(shown, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));

@@ -98,7 +98,7 @@ impl<'a> Inputs<'a> {
         if trust == 0.0 {
             return Err(Verdict::Distrusted);
         }
-        let expected = self.previous_disparity(self.ray(x, y), disparity);
+        let expected = self.expected_disparity(x, y, disparity);
         let is_same = self.same_surface(x, y, disparity, expected, stored_disparity);
         Ok((Previous { at: [x as f32 + motion[0], y as f32 + motion[1]], expected, trust }, is_same))
     }
@@ -181,6 +181,12 @@ impl<'a> Inputs<'a> {
     pub fn previous_disparity(&self, ray: Vec3, disparity: f32) -> f32 {
         let [m20, m21, m22, shift] = self.uniforms.depth_row;
         depth::previous_disparity(disparity, m20 * ray.x + m21 * ray.y + m22, shift)
+    }
+
+    /// Disparity that a surface of pixel (x, y) had.
+    #[inline(always)]
+    pub fn expected_disparity(&self, x: u32, y: u32, disparity: f32) -> f32 {
+        self.previous_disparity(self.ray(x, y), disparity)
     }
 
     /// Depth test: whether the `stored` disparity belongs to the surface of pixel (x, y), which has the disparity `now`

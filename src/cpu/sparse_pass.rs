@@ -10,7 +10,7 @@ mod antialias;
 use super::Pass;
 use super::inputs::{Inputs, Previous};
 use super::surface_pass::{Pixel, ProcessPixel, Targets, for_pixels};
-use crate::kernel::antialias::{Mean, mean_of, scattered_error, stored_lod};
+use crate::kernel::antialias::{Mean, is_of_surfaces, mean_of, scattered_error, stored_lod};
 use crate::kernel::approx;
 use crate::kernel::color::luma;
 use crate::kernel::debug_view::PixelTrace;
@@ -26,7 +26,7 @@ use crate::kernel::noise::{
 };
 use crate::kernel::pack::{half_bits, half_value};
 use crate::kernel::reproject::Verdict;
-use crate::kernel::resample::{codes_between, has_code, tap_codes};
+use crate::kernel::resample::{codes_between, has_code, tap_codes, tap_codes_between};
 use crate::kernel::rng;
 use crate::kernel::sanitize;
 use crate::kernel::sparse::{
@@ -70,6 +70,25 @@ struct View<'a> {
     antialiases: bool,
     /// Low word of the frame counter.
     frame_low: u32,
+}
+
+/// The surface whose history a pixel continues.
+struct Surroundings {
+    disparity: f32,
+    motion: [f32; 2],
+    /// Disparity to store with the pixel.
+    stored: f32,
+    /// Disparities of the farthest and the nearest surface around, if history may be of any of them.
+    mixed: Option<[f32; 2]>,
+}
+
+/// Where a pixel's history is.
+struct Source {
+    previous: Previous,
+    /// Whether the nearest stored sample is of the surface.
+    is_same: bool,
+    /// Codes of the disparities that history may have.
+    codes: [u32; 2],
 }
 
 /// History at a previous position.
@@ -196,34 +215,40 @@ impl View<'_> {
         !self.inputs.tests_depth() || same_surface(a, b, relative, 0.0)
     }
 
-    /// Previous position of a pixel's surface, and whether the nearest stored sample is of it; or the verdict that
-    /// rejects its history.
+    /// Previous position of a pixel's surface, or the verdict that rejects its history.
     #[inline(always)]
-    fn previous(&self, [x, y]: [u32; 2], motion: [f32; 2], disparity: f32) -> Result<(Previous, bool), Verdict> {
-        self.inputs.reprojected(x, y, motion, disparity, |[qx, qy]| {
+    fn source(&self, [x, y]: [u32; 2], surface: &Surroundings) -> Result<Source, Verdict> {
+        let mut found = 0.0;
+        let (previous, is_same) = self.inputs.reprojected(x, y, surface.motion, surface.disparity, |[qx, qy]| {
             let stored = unpack_kept(self.stored_words(qx as i32, qy as i32));
+            found = stored.disparity;
             [stored.lod, stored.disparity]
-        })
+        })?;
+        let Some(mixed) = surface.mixed else {
+            return Ok(Source { previous, is_same, codes: tap_codes(previous.expected) });
+        };
+        let [farthest, nearest] = mixed.map(|disparity| self.inputs.expected_disparity(x, y, disparity));
+        let is_same = is_same || is_of_surfaces(found, farthest, nearest);
+        Ok(Source { previous, is_same, codes: tap_codes_between(farthest, nearest) })
     }
 
     /// History at a previous position, in this frame's exposure. At a silhouette, where the nearest stored sample is of
     /// another surface (`is_same` is false), samples beside it stand in for it if they are near enough.
     #[inline(always)]
-    fn interpolated(&self, (previous, is_same): &(Previous, bool)) -> Found {
+    fn interpolated(&self, Source { previous, is_same, codes }: &Source) -> Found {
         // Means lie anywhere around their texels' centres, so that all around the nearest one count.
         let (columns, [x, y]) = match self.antialiases {
             true => (3, previous.at.map(|v| (v + 0.5).floor() as i32 - 1)),
             false => (2, previous.at.map(|v| v.floor() as i32)),
         };
         let inverse_reach = if self.antialiases { INVERSE_MEAN_REACH } else { INVERSE_REACH };
-        let codes = tap_codes(previous.expected);
         let mut around = Around::NOTHING;
         let mut nearest_texel = [x, y];
         let mut samples = 1.0;
         for tap in 0..columns * columns {
             let (tx, ty) = (x + tap % columns, y + tap / columns);
             let words = self.stored_words(tx, ty);
-            let same = !is_empty(words) && (!self.inputs.tests_depth() || has_code(code_word(words), codes));
+            let same = !is_empty(words) && (!self.inputs.tests_depth() || has_code(code_word(words), *codes));
             let texel_px = Vec2::new(tx as f32 - previous.at[0], ty as f32 - previous.at[1]);
             let cost = around.cost;
             let mut stored = unpack_full(words);
@@ -250,18 +275,18 @@ impl View<'_> {
         let lattice = &self.lattices[lattice];
         let (sampled, usable) = self.sampled(lattice, point);
         let px = lattice.px_of(point);
-        let (disparity, motion) = self.surface(px, lattice.level);
-        let mut previous = self.previous(px, motion, disparity).ok().filter(|_| usable)?;
+        let surface = self.surface(px, lattice.level);
+        let mut source = self.source(px, &surface).ok().filter(|_| usable)?;
         if self.antialiases {
             // At the sample's place in its pixel.
             let [x, y] = self.inputs.uniforms.jitter_px;
-            previous.0.at = [previous.0.at[0] - x, previous.0.at[1] - y];
+            source.previous.at = [source.previous.at[0] - x, source.previous.at[1] - y];
         }
-        let Found { history, noise: past, .. } = self.interpolated(&previous);
+        let Found { history, noise: past, .. } = self.interpolated(&source);
         if history.lod < 0.0 {
             return None;
         }
-        let moved = self.antialiases || has_moved(motion, history.nearest.place_px);
+        let moved = self.antialiases || has_moved(surface.motion, history.nearest.place_px);
         let [low, high] = history.range;
         let mut error = expected_error(history.lod, root_difference(low, high), moved);
         let mut sure = sureness(history.lod);
@@ -341,14 +366,14 @@ impl View<'_> {
         let index = LatticeUniforms::index_at(&self.lattices, [x, y]);
         let level = self.lattices[index].level;
         let candidate = self.candidate(index, [x, y], disparity, lights);
-        let (front, motion) = self.surface([x, y], level);
-        let source = self.previous([x, y], motion, front);
+        let surface = self.surface([x, y], level);
+        let source = self.source([x, y], &surface);
         let is_final = candidate.usable && level == 0 && !self.is_noisy() && !self.antialiases;
-        let history = source.as_ref().ok().filter(|_| !is_final).map(|previous| self.interpolated(previous));
+        let history = source.as_ref().ok().filter(|_| !is_final).map(|source| self.interpolated(source));
         let history = history.filter(|found| found.history.lod >= 0.0);
         let verdict = match &source {
             Err(verdict) => *verdict,
-            Ok((_, false)) if history.is_none() => Verdict::Disoccluded,
+            Ok(Source { is_same: false, .. }) if history.is_none() => Verdict::Disoccluded,
             Ok(_) => Verdict::Valid,
         };
         inputs.count(x, y, candidate.usable, disparity, verdict, stats);
@@ -357,17 +382,17 @@ impl View<'_> {
         let mut kept = Kept {
             color: candidate.color,
             lod: if candidate.usable { candidate.lod } else { -1.0 },
-            disparity: front,
+            disparity: surface.stored,
             place_px: if self.antialiases && candidate.is_own { self.sample_place_px() } else { Vec2::ZERO },
         };
         let mut samples = 1.0;
         let (mut share, mut fits) = (0.0, 1.0);
         let mut noise = candidate.noise;
-        if let (Ok((previous, _)), Some(found)) = (source, history) {
+        if let (Ok(Source { previous, .. }), Some(found)) = (source, history) {
             let Found { history, noise: past, samples: found_samples } = found;
             if !candidate.usable {
                 (output, share, noise, samples) = (history.color, 1.0, past, found_samples);
-                kept = Kept { disparity: front, ..history.nearest };
+                kept = Kept { disparity: surface.stored, ..history.nearest };
             } else {
                 let inputs = Reconstruction {
                     candidate: candidate.color,
@@ -394,7 +419,7 @@ impl View<'_> {
                     reconstruct(&inputs)
                 };
                 (output, share, fits) = (result.color, result.share, candidate.fit);
-                kept = Kept { disparity: front, ..result.kept };
+                kept = Kept { disparity: surface.stored, ..result.kept };
             }
         }
         // Means of colors may exceed the largest half.
@@ -408,10 +433,10 @@ impl View<'_> {
             survival: share,
             gate: fits,
             take: share == 0.0,
-            motion,
+            motion: surface.motion,
         };
-        let surface = if self.antialiases { self.packed_mean([x, y], kept, samples) } else { pack_kept(kept) };
-        Pixel { output, surface, noise: pack_noise(noise), trace }
+        let stored = if self.antialiases { self.packed_mean([x, y], kept, samples) } else { pack_kept(kept) };
+        Pixel { output, surface: stored, noise: pack_noise(noise), trace }
     }
 
     /// Candidate of a pixel and what is known of its light, from the samples around it.

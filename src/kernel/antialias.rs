@@ -41,6 +41,9 @@ const NEARER_RELATIVE: f32 = 0.02;
 /// Largest difference of motion, in pixels along an axis, at which a nearer surface stands for a pixel of a lattice of
 /// step 2 and more.
 const ALONGSIDE_PX: f32 = 1.0;
+/// Largest difference of motion, in pixels along an axis, at which the surfaces around a pixel move as one: history that
+/// mixes them stays in place.
+const TOGETHER_PX: f32 = 0.25;
 
 /// A stored texel: its level of detail, at least 0, and the number of samples in it. Empty texels stay empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,6 +90,22 @@ pub fn stands_before(own: f32, neighbour: f32, own_motion: Vec2, motion: Vec2, f
     let difference = motion - own_motion;
     let alongside = difference.x.abs().max(difference.y.abs()) <= ALONGSIDE_PX;
     neighbour > own * (1.0 + NEARER_RELATIVE) && neighbour > own && (full_rate || alongside)
+}
+
+/// Whether the surfaces around a pixel move as one: its own, the nearest, and the farthest. History may then be of any
+/// of them. If it had to be of one, it would be rejected whenever the jitter, or a position between texels, has the
+/// pixel on the other side of a silhouette, and edges would never be means.
+#[inline]
+pub fn move_together(own: Vec2, nearest: Vec2, farthest: Vec2) -> bool {
+    let apart = |a: Vec2, b: Vec2| (a.x - b.x).abs().max((a.y - b.y).abs());
+    apart(own, nearest).max(apart(own, farthest)).max(apart(nearest, farthest)) <= TOGETHER_PX
+}
+
+/// Whether a stored disparity is that of surfaces that had disparities from `farthest` to `nearest`.
+#[inline]
+pub fn is_of_surfaces(stored: f32, farthest: f32, nearest: f32) -> bool {
+    let far = farthest * (1.0 - NEARER_RELATIVE);
+    stored >= far && stored * (1.0 - NEARER_RELATIVE) <= nearest
 }
 
 /// Sums over the samples around a pixel of full rate.

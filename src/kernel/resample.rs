@@ -126,6 +126,13 @@ pub fn tap_codes(expected: f32) -> [u32; 2] {
     codes_between(expected, 1.0 - TAP_RELATIVE, 1.0 / (1.0 - TAP_RELATIVE))
 }
 
+/// The same for surfaces that have the disparities from `farthest` to `nearest`, both of them at least 0.
+#[inline]
+pub fn tap_codes_between(farthest: f32, nearest: f32) -> [u32; 2] {
+    let (first, last) = (tap_codes(farthest), tap_codes(nearest));
+    [first[0], last[0].max(first[0]) - first[0] + last[1]]
+}
+
 /// Whether the disparity in the high half of `word` is one of [`codes_between`].
 #[inline]
 pub fn has_code(word: u32, codes: [u32; 2]) -> bool {

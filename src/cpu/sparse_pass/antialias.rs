@@ -1,9 +1,12 @@
 //! What the pass does more where frames are jittered: means of samples in place of single ones.
 
+use super::Surroundings;
 use super::{
     Kept, Mean, Reconstruction, Vec2, Vec3, View, pack_color_by, pack_kept, reconstruct, rng, sanitize, stored_lod,
 };
-use crate::kernel::antialias::{Averaged, Near, add_near, average, clip, clipped, kept_mean, stands_before};
+use crate::kernel::antialias::{
+    Averaged, Near, add_near, average, clip, clipped, kept_mean, move_together, stands_before,
+};
 
 impl View<'_> {
     /// Place of this frame's samples in their pixels: a pixel shows what is at its position minus the jitter.
@@ -12,31 +15,41 @@ impl View<'_> {
         -Vec2::from(self.inputs.uniforms.jitter_px)
     }
 
-    /// Disparity and motion of a pixel: those of the nearest surface around it, if that stands for it. `level`: of its
+    /// The surface whose history a pixel continues: the nearest one around it, if that stands for it. `level`: of its
     /// lattice.
     #[inline(always)]
-    pub(super) fn surface(&self, [x, y]: [u32; 2], level: u32) -> (f32, [f32; 2]) {
+    pub(super) fn surface(&self, [x, y]: [u32; 2], level: u32) -> Surroundings {
         let own = self.inputs.disparity(x, y);
         let own_motion = self.inputs.motion(x, y);
+        let alone = Surroundings { disparity: own, motion: own_motion, stored: own, mixed: None };
         if !self.antialiases || !self.inputs.tests_depth() {
-            return (own, own_motion);
+            return alone;
         }
         let [width, height] = self.inputs.size;
-        let (mut nearest, mut at) = (own, [x, y]);
+        let (mut nearest, mut nearest_at) = (own, [x, y]);
+        let (mut farthest, mut farthest_at) = (own, [x, y]);
         for tap in 0..9 {
             let tx = (x + tap % 3).max(1).min(width) - 1;
             let ty = (y + tap / 3).max(1).min(height) - 1;
             let disparity = self.inputs.disparity(tx, ty);
             if disparity > nearest {
-                (nearest, at) = (disparity, [tx, ty]);
+                (nearest, nearest_at) = (disparity, [tx, ty]);
+            }
+            if disparity >= 0.0 && disparity < farthest {
+                (farthest, farthest_at) = (disparity, [tx, ty]);
             }
         }
-        let motion = self.inputs.motion(at[0], at[1]);
-        if stands_before(own, nearest, Vec2::from(own_motion), Vec2::from(motion), level == 0) {
-            (nearest, motion)
-        } else {
-            (own, own_motion)
+        let motion = self.inputs.motion(nearest_at[0], nearest_at[1]);
+        let farthest_motion = self.inputs.motion(farthest_at[0], farthest_at[1]);
+        let [own_px, nearest_px, farthest_px] = [own_motion, motion, farthest_motion].map(Vec2::from);
+        let mut surface = alone;
+        if stands_before(own, nearest, own_px, nearest_px, level == 0) {
+            surface = Surroundings { disparity: nearest, motion, stored: nearest, mixed: None };
         }
+        if own >= 0.0 && move_together(own_px, nearest_px, farthest_px) {
+            surface = Surroundings { stored: own, mixed: Some([farthest, nearest]), ..surface };
+        }
+        surface
     }
 
     /// Result at a pixel that has history and a usable candidate.

@@ -70,10 +70,18 @@ fn a_wrong_mean_is_caught() {
     };
     let planted = [
         // Surfaces: without the nearer one, that of another texel, or its motion alone.
-        ("at = select(at, texel, near > nearest_disparity);", ""),
-        ("return PixelSurface(nearest_disparity, motion);", "return PixelSurface(own.disparity, motion);"),
-        ("own.motion, motion, level == 0u)", "own.motion, motion, true)"),
-        ("next.disparity = surface.disparity;", "next.disparity = disparity_now;"),
+        ("nearest_at = select(nearest_at, texel, near > nearest_disparity);", ""),
+        ("surface = PixelSurface(nearest_disparity, motion,", "surface = PixelSurface(own, motion,"),
+        ("own_motion, motion, level == 0u)", "own_motion, motion, true)"),
+        ("next.disparity = surface.stored_disparity;", "next.disparity = disparity_now;"),
+        // Mixtures of surfaces: never, always, of fewer surfaces, stored as another.
+        ("surface.mixes = true;", ""),
+        ("own >= 0.0 && move_together(own_motion, motion, motion_at(farthest_at, view))", "own >= 0.0"),
+        ("farthest_at = select(farthest_at, texel, is_farther);", ""),
+        ("surface.farthest = farthest_disparity;", ""),
+        ("surface.nearest = nearest_disparity;", ""),
+        ("surface.stored_disparity = own;", ""),
+        ("previous.verdict = VERDICT_VALID;\n    }", "}"),
         // History: fewer or other texels, another reach, another number of samples.
         ("columns = 3u;", "columns = 2u;"),
         ("floor(previous.at + 0.5)) - 1", "floor(previous.at)) - 1"),
@@ -81,7 +89,7 @@ fn a_wrong_mean_is_caught() {
         ("samples = select(samples, mean.samples, around.cost < cost);", ""),
         ("stored.lod = mean.lod;", ""),
         // Comparison: at the pixel's centre, by the model alone.
-        ("previous.at -= frame.views[view].jitter_px;", ""),
+        ("source.previous.at -= frame.views[view].jitter_px;", ""),
         ("error = scattered_error(sum, scatter);", ""),
         // Means: another place, no clip, samples of other pixels, other numbers of samples.
         (

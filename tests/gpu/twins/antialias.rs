@@ -54,6 +54,35 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
+        name: "move_together",
+        module: "antialias",
+        words: [6, 1],
+        wgsl: "out_b(move_together(vec2<f32>(in_f(0u), in_f(1u)), vec2<f32>(in_f(2u), in_f(3u)),
+            vec2<f32>(in_f(4u), in_f(5u))));",
+        rust: |r, o| {
+            let [own, nearest, farthest] = [0, 2, 4].map(|at| Vec2::new(r.f(at), r.f(at + 1)));
+            o.u(u32::from(antialias::move_together(own, nearest, farthest)));
+        },
+        rows: || {
+            Rows::new(6).random("move_together", |d, row| {
+                row.extend([0; 6].map(|_| range(d, -0.2, 0.2)));
+            })
+        },
+    },
+    Probe {
+        name: "is_of_surfaces",
+        module: "antialias",
+        words: [3, 1],
+        wgsl: "out_b(is_of_surfaces(in_f(0u), in_f(1u), in_f(2u)));",
+        rust: |r, o| o.u(u32::from(antialias::is_of_surfaces(r.f(0), r.f(1), r.f(2)))),
+        rows: || {
+            let disparities = floats(&[-1.0, 0.0, 0.48, 0.49, 0.5, 0.51, 1.0, 1.02, 1.03, 1e30]);
+            Rows::new(3).cross(&[&disparities, &disparities, &disparities]).random("is_of_surfaces", |d, row| {
+                row.extend([0; 3].map(|_| range(d, 0.9, 1.1)));
+            })
+        },
+    },
+    Probe {
         name: "add_near",
         module: "antialias",
         words: [10, 7],

@@ -161,6 +161,7 @@ fn a_wrong_tap_or_weight_is_caught() {
     caught(surfaces::PROBES, "sharp_sum", "around.sharp_y.w", "around.sharp_y.z");
     caught(surfaces::PROBES, "codes_between", "last - first + 1u", "last - first");
     caught(surfaces::PROBES, "tap_codes", "1.0f - TAP_RELATIVE, 1.0f", "1.0f, 1.0f");
+    caught(surfaces::PROBES, "tap_codes_between", "- first.x + last.y", "- first.x");
     caught(surfaces::PROBES, "has_code", "< codes.y", "<= codes.y");
     caught(
         surfaces::PROBES,

@@ -304,6 +304,18 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
+        name: "tap_codes_between",
+        module: "resample",
+        words: [2, 2],
+        wgsl: "let c = tap_codes_between(in_f(0u), in_f(1u)); out_u(c.x); out_u(c.y);",
+        rust: |r, o| resample::tap_codes_between(r.f(0), r.f(1)).into_iter().for_each(|x| o.u(x)),
+        rows: || {
+            let disparities = [positive(), floats(&[-1.0, 0.0])].concat();
+            let rows = Rows::new(2).cross(&[&disparities, &disparities]);
+            rows.random("tap_codes_between", |d, row| row.extend([scaled(d, -34, 34), scaled(d, -34, 34)]))
+        },
+    },
+    Probe {
         name: "has_code",
         module: "resample",
         words: [3, 1],
