@@ -36,8 +36,8 @@ pub struct FoveationArgs {
     /// default: 2
     #[arg(long, value_parser = parse_scale, value_name = "S")]
     pub scale: Option<f32>,
-    /// With --foveation sparse, layers or uniform: depth and motion of every pixel, or of the nearest sample; default:
-    /// of the nearest sample in scenes, full in given frames
+    /// With --foveation sparse, layers or uniform: depth and motion of every pixel, or of the nearest sample; those of
+    /// every pixel are without jitter; default: of the nearest sample in scenes, full in given frames
     #[arg(long = "geometry", alias = "sparse-geometry", value_parser = by_name::<SparseGeometry>())]
     pub geometry: Option<SparseGeometry>,
     /// With --foveation sparse: order in which the pixels of a block are sampled
@@ -194,8 +194,6 @@ impl FoveationArgs {
                 .into()
         } else if self.filter().is_quad_views() {
             format!("--foveation {name} has four samples a pixel; use --foveation sparse")
-        } else if is_rasterised && self.may_lack_geometry() && self.geometry() == SparseGeometry::Full {
-            "jittered samples have their own depth and motion; leave out --geometry full".into()
         } else {
             return Ok(());
         };

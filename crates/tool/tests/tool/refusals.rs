@@ -40,10 +40,6 @@ fn bad_usage_is_one_line_and_exit_code_2() {
         &run("builtin:cubes", &out, &["--jitter", "halton", "--foveation", "layers"]),
         &["--jitter halton", "--foveation sparse"],
     );
-    refuses(
-        &run("builtin:cubes", &out, &["--jitter", "halton", "--geometry", "full"]),
-        &["--jitter halton", "leave out --geometry full"],
-    );
     refuses(&run(still, &out, &["--start=-1"]), &["start"]);
     refuses(&run(still, &out, &["--wrs-bias", "exponential:x"]), &["LAMBDA"]);
     refuses(&run(still, &out, &["--gate-divisor", "0"]), &["gate divisor"]);
