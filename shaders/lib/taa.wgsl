@@ -4,7 +4,7 @@
 const LIMIT: f32 = 16.0;
 const SETTLED: f32 = 2.0;
 const JITTER: f32 = 1.0 / 9.0;
-const ROUNDING: f32 = 2.5e-7;
+const ROUNDING: f32 = 5e-4;
 const SPREAD: f32 = 0.6;
 const BOX_SIGMAS: vec2<f32> = vec2<f32>(2.0, 5.0);
 const NO_CONFIDENCE_LOD: f32 = 8.0;
@@ -62,7 +62,7 @@ fn agreeing(sum: f32, squares: f32, past: f32, count: f32) -> f32 {
     let inverse = 1.0 / max(count, 1.0);
     let variance = (squares * count - sum * sum) * (inverse * inverse);
     let off = (sum - past) * inverse;
-    return (max(variance, 0.0) * JITTER + ROUNDING) * LIMIT / (off * off + ROUNDING);
+    return (max(variance, 0.0) * JITTER + (ROUNDING * ROUNDING)) * LIMIT / (off * off + (ROUNDING * ROUNDING));
 }
 
 // taa::candidate_share
@@ -86,7 +86,8 @@ fn blend_clipped(
 ) -> vec3<f32> {
     let mean = sum * (1.0f / 9.0f);
     let variance = (squares * 9.0 - sum * sum) * (1.0f / 81.0f);
-    let extent = roots(variance) * box_sigmas(BOX_SIGMAS.x, BOX_SIGMAS.y, confidence);
+    let sigmas = box_sigmas(BOX_SIGMAS.x, BOX_SIGMAS.y, confidence);
+    let extent = roots(variance) * sigmas + vec3<f32>(ROUNDING);
     let clipped = roots_of_ycocg(clip_to_box(to_ycocg(history), mean, extent));
     let shown = clipped + (roots(candidate) - clipped) * alpha;
     return shown * shown;

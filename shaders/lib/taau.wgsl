@@ -79,7 +79,8 @@ fn accumulate(
     let inverse = 1.0 / a.count;
     let variance = (a.squares * a.count - a.sum * a.sum) * (inverse * inverse);
     let past = to_ycocg(history);
-    let extent = roots(variance) * box_sigmas(UPSAMPLED_BOX_SIGMAS.x, UPSAMPLED_BOX_SIGMAS.y, confidence);
+    let sigmas = box_sigmas(UPSAMPLED_BOX_SIGMAS.x, UPSAMPLED_BOX_SIGMAS.y, confidence);
+    let extent = roots(variance) * sigmas + vec3<f32>(ROUNDING);
     let inside = clip_to_box(past, a.sum * inverse, extent);
     let strength = min(a.weights.x, 1.0) * (1.0f - LEAST_CLIP) + LEAST_CLIP;
     let clip = inside - past;

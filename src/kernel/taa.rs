@@ -15,8 +15,9 @@ pub const SETTLED: f32 = 2.0;
 /// all samples alike, and the mean of 3x3 of them by about a third of their deviation. More follows changes of light
 /// later, less takes jitter for one.
 const JITTER: f32 = 1.0 / 9.0;
-/// The same for samples without variance: steps of stored colors, half a thousandth of the range, squared.
-const ROUNDING: f32 = 2.5e-7;
+/// Rounding of the square roots of stored colors: 9 bits of mantissa. Samples without variance, as in the chroma of a
+/// grey picture, would reject history for it.
+pub const ROUNDING: f32 = 5e-4;
 /// Inverse confidence of history midway between texels: each resampling blurs, and a candidate aliases.
 pub const SPREAD: f32 = 0.6;
 /// Half width of the clipping box in standard deviations, around history that moves and around settled history. A
@@ -91,7 +92,7 @@ pub fn agreeing(sum: f32, squares: f32, past: f32, count: f32) -> f32 {
     let inverse = 1.0 / count.max(1.0);
     let variance = (squares * count - sum * sum) * (inverse * inverse);
     let off = (sum - past) * inverse;
-    (variance.max(0.0) * JITTER + ROUNDING) * LIMIT / (off * off + ROUNDING)
+    (variance.max(0.0) * JITTER + ROUNDING * ROUNDING) * LIMIT / (off * off + ROUNDING * ROUNDING)
 }
 
 /// Weight of the candidate beside history of some confidence; at least `1 - trust`.
@@ -112,7 +113,8 @@ pub fn box_sigmas(moving: f32, still: f32, confidence: f32) -> f32 {
 pub fn blend_clipped(candidate: Vec3, history: Vec3, sum: Vec3, squares: Vec3, alpha: f32, confidence: f32) -> Vec3 {
     let mean = sum * (1.0 / 9.0);
     let variance = (squares * 9.0 - sum * sum) * (1.0 / 81.0);
-    let extent = roots(variance) * box_sigmas(BOX_SIGMAS[0], BOX_SIGMAS[1], confidence);
+    let sigmas = box_sigmas(BOX_SIGMAS[0], BOX_SIGMAS[1], confidence);
+    let extent = roots(variance) * sigmas + Vec3::splat(ROUNDING);
     let clipped = roots_of_ycocg(clip_to_box(to_ycocg(history), mean, extent));
     let shown = clipped + (roots(candidate) - clipped) * alpha;
     shown * shown

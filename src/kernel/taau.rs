@@ -4,7 +4,7 @@
 //! `ffx_fsr2_accumulate.h`), without locks, reactive masks and dilated motion vectors.
 
 use super::matched::roots;
-use super::taa::{box_sigmas, clip_to_box, roots_of_ycocg, settled, to_ycocg};
+use super::taa::{ROUNDING, box_sigmas, clip_to_box, roots_of_ycocg, settled, to_ycocg};
 use glam::{Vec2, Vec3};
 
 /// Weight of interpolation between samples where history knows nothing, relative to a sample at the pixel. More
@@ -116,7 +116,8 @@ pub fn accumulate(a: SamplesAround, centre: Vec3, history: Vec3, confidence: f32
     let inverse = 1.0 / a.count;
     let variance = (a.squares * a.count - a.sum * a.sum) * (inverse * inverse);
     let past = to_ycocg(history);
-    let extent = roots(variance) * box_sigmas(UPSAMPLED_BOX_SIGMAS[0], UPSAMPLED_BOX_SIGMAS[1], confidence);
+    let sigmas = box_sigmas(UPSAMPLED_BOX_SIGMAS[0], UPSAMPLED_BOX_SIGMAS[1], confidence);
+    let extent = roots(variance) * sigmas + Vec3::splat(ROUNDING);
     let inside = clip_to_box(past, a.sum * inverse, extent);
     let strength = a.weights.x.min(1.0) * (1.0 - LEAST_CLIP) + LEAST_CLIP;
     let clip = inside - past;

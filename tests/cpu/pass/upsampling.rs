@@ -98,7 +98,7 @@ fn jittered_frames_of_full_rate_are_put_where_their_samples_lie() {
     assert!(last < 0.3);
 }
 
-/// A slanted pattern with hard edges of contrast 3 to 7, point by point.
+/// A grey slanted pattern with hard edges of contrast 3 to 7, point by point.
 fn hard(x: f32, y: f32) -> f32 {
     if (0.9 * x + 0.37 * y).sin() + (0.23 * x - 0.61 * y).cos() > 0.2 { 0.7 } else { 0.3 }
 }
@@ -134,16 +134,8 @@ fn still_errors(settings: Settings, trust: f32, frames: u64, [at, light]: [f32; 
 #[test]
 fn a_jittered_still_converges_and_a_step_of_light_is_followed() {
     for (method, step) in [(Method::Taa, 1), (Method::Taau, 1), (Method::Taau, 2)] {
-        let foveation = Foveation {
-            filter: Filter::Sparse,
-            fovea_deg: 0.0,
-            mid_deg: 0.0,
-            rate_mid: step,
-            rate_far: 2,
-            ..foveation()
-        };
-        let foveation = if step == 1 { Foveation { fovea_deg: 180.0, mid_deg: 180.0, ..foveation } } else { foveation };
-        let settings = Settings { method, foveation, ..Settings::default() };
+        let rates = Foveation { rate_mid: step, rate_far: step, fovea_deg: 0.0, mid_deg: 0.0, ..foveation() };
+        let settings = Settings { method, foveation: rates, ..Settings::default() };
         // A trust of 2/3 holds history to two samples.
         let [long, short] = [1.0, 2.0 / 3.0].map(|trust| still_errors(settings, trust, 104, [96.0, 0.5]));
         let mean = |errors: &[f64]| errors.iter().sum::<f64>() / errors.len() as f64;
@@ -152,6 +144,9 @@ fn a_jittered_still_converges_and_a_step_of_light_is_followed() {
         println!("{method:?}, step {step}: squared error {one:.5} of the first frame, {still:.6} later ({held:.6} if");
         println!("held to two samples); after a step of light {after:.6} ({held_after:.6})");
         assert!(still < 0.1 * one && still < 0.5 * held, "it converges");
-        assert!(after < 1.2 * held_after, "light is followed as fast");
+        // Between samples, trust replaces history by interpolation, which is another method.
+        let last = long[103] / long[96];
+        println!("{last:.3} of the step's first error is left after 7 frames");
+        assert!(last < 0.1 && (step > 1 || after < 1.2 * held_after), "light is followed as fast");
     }
 }

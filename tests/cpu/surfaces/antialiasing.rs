@@ -17,7 +17,7 @@ fn to_roots(y: DVec3) -> DVec3 {
 
 /// Squared thirds of a deviation by which means may differ: as far as jitter explains.
 const JITTER: f64 = 1.0 / 9.0;
-const ROUNDING: f64 = 2.5e-7;
+const ROUNDING: f64 = 5e-4;
 
 /// History of `n` samples, pulled towards the mean of 3x3 pixels until it is within two standard deviations (five from
 /// four samples on), and one sample of the candidate, all as square roots. History of more than two samples whose mean
@@ -38,10 +38,10 @@ fn expected(color: &Color, stored: &Color, lods: &[f32], [x, y]: [usize; 2]) -> 
     let mut n = ((8.0 - f64::from(lods[y * w + x])) / 2.0).powi(2);
     if n > 2.0 {
         let off = mean.x - past.iter().map(|v| v.x).sum::<f64>() / 9.0;
-        n = n.min(16.0).min((variance.x * JITTER + ROUNDING) * 16.0 / (off * off + ROUNDING));
+        n = n.min(16.0).min((variance.x * JITTER + ROUNDING.powi(2)) * 16.0 / (off * off + ROUNDING.powi(2)));
     }
     let sigmas = 2.0 + 3.0 * (n / 2.0 - 1.0).clamp(0.0, 1.0);
-    let extent = sigmas * DVec3::new(variance.x.sqrt(), variance.y.sqrt(), variance.z.sqrt());
+    let extent = sigmas * DVec3::new(variance.x.sqrt(), variance.y.sqrt(), variance.z.sqrt()) + ROUNDING;
     let away = past[4] - mean;
     let inside = (extent / away.abs().max(DVec3::splat(1e-6))).min_element().min(1.0);
     let clipped = to_roots(mean + away * inside).max(DVec3::ZERO);
