@@ -7,6 +7,7 @@ const JITTER: f32 = 1.0 / 9.0;
 const ROUNDING: f32 = 5e-4;
 const SPREAD: f32 = 0.6;
 const BOX_SIGMAS: vec2<f32> = vec2<f32>(2.0, 5.0);
+const MAX_ROOT: f32 = 256.0;
 const NO_CONFIDENCE_LOD: f32 = 8.0;
 
 // taa::to_ycocg
@@ -15,6 +16,11 @@ fn to_ycocg(c: vec3<f32>) -> vec3<f32> {
     let outer = 0.25 * (r.x + r.z);
     let inner = 0.5 * r.y;
     return vec3<f32>(outer + inner, 0.5 * (r.x - r.z), inner - outer);
+}
+
+// taa::root_luma
+fn root_luma(c: vec3<f32>) -> f32 {
+    return min(to_ycocg(c).x, MAX_ROOT);
 }
 
 // taa::roots_of_ycocg

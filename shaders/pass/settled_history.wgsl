@@ -5,5 +5,5 @@
 // Luma of history at the texel nearest to a position and `offset_px` beyond it, of whatever surface.
 fn luma_beside(source: Source, offset_px: vec2<i32>, view: u32) -> f32 {
     let nearest = source.texel + vec2<i32>(source.fraction >= vec2<f32>(0.5));
-    return to_ycocg(exposed(surface_at(nearest + offset_px, view).color)).x;
+    return root_luma(exposed(surface_at(nearest + offset_px, view).color));
 }

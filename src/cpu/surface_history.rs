@@ -12,7 +12,7 @@ use crate::kernel::resample::{
     tap_codes, taps_around,
 };
 use crate::kernel::surface::{Surface, mip_texel, unpack_surface};
-use crate::kernel::taa::to_ycocg;
+use crate::kernel::taa::root_luma;
 use crate::kernel::wrs::expose;
 use glam::Vec3;
 
@@ -84,7 +84,7 @@ impl SurfaceHistory<'_> {
             (nearest + offset_px[i]).clamp(0, self.inputs.size[i] as i32 - 1)
         });
         let words = self.past.words[(y * self.inputs.size[0] as i32 + x) as usize];
-        to_ycocg(self.expose(unpack_surface(words).color)).x
+        root_luma(self.expose(unpack_surface(words).color))
     }
 
     /// History resampled at a position; a position exactly on a texel reads that texel.

@@ -24,6 +24,8 @@ pub const SPREAD: f32 = 0.6;
 /// foveated neighbourhood is smooth, so that narrower boxes would clip the detail of earlier frames; wider ones keep
 /// what changes. Settled history agrees with its neighbourhood, and is the mean of other samples than this frame's.
 const BOX_SIGMAS: [f32; 2] = [2.0, 5.0];
+/// Largest square root of a half.
+const MAX_ROOT: f32 = 256.0;
 /// Level of detail that a stored texel of no confidence has. Confidence is stored as a level of detail, so that it
 /// falls where history is enlarged.
 const NO_CONFIDENCE_LOD: f32 = 8.0;
@@ -35,6 +37,13 @@ pub fn to_ycocg(c: Vec3) -> Vec3 {
     let outer = 0.25 * (r.x + r.z);
     let inner = 0.5 * r.y;
     Vec3::new(outer + inner, 0.5 * (r.x - r.z), inner - outer)
+}
+
+/// Luma of the square roots of a linear color: Y of [`to_ycocg`], at most that of the largest half.
+#[inline]
+pub fn root_luma(c: Vec3) -> f32 {
+    // The limit keeps compilers from merging the sum with others.
+    to_ycocg(c).x.min(MAX_ROOT)
 }
 
 /// Square roots of RGB from YCoCg, at least 0.

@@ -78,6 +78,19 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
+        name: "root_luma",
+        module: "taa",
+        words: [3, 1],
+        wgsl: "out_f(root_luma(in_v(0u)));",
+        rust: |r, o| o.f(taa::root_luma(r.v(0))),
+        rows: || {
+            let c = channels();
+            Rows::new(3)
+                .cross(&[&c, &c, &c])
+                .random("root_luma", |d, row| row.extend((0..3).map(|_| signed(d, -24, 18))))
+        },
+    },
+    Probe {
         name: "roots_of_ycocg",
         module: "taa",
         words: [3, 3],
