@@ -1,11 +1,17 @@
 //! Measures what a frame costs and how far it is from full rate: the figures of the README.
 //!
-//! `cargo run --release --example measure -- MODE SCANPATH FRAMES [FOLDER]`
+//! `cargo run --release --example measure -- SCENE MODE SCANPATH FRAMES [FOLDER]`
 //!
-//! MODE: full, prepass (full rate with a depth prepass), quad, sparse, sparse48 (rates of 4 and 8), taa:SCALE (Bevy's
-//! temporal antialiasing at SCALE of both sides, enlarged bilinearly), reference (full rate with four samples a pixel).
-//! Prints CPU time of the process per frame. With FOLDER writes the frames there as PNG, and the gaze as `gaze.csv`;
-//! the time then includes that.
+//! SCENE: courtyard; grille (the courtyard with thin bars and edges at slopes); grille-slow (camera at a fifth of the
+//! speed).
+//! MODE: full, prepass (full rate with a depth prepass), msaa (full rate, Bevy's MSAA of 4), taa:SCALE (Bevy's temporal
+//! antialiasing at SCALE of both sides, enlarged bilinearly), quad, sparse (without antialiasing), sparse48 (rates of 4
+//! and 8), antialiased (sparse, the default), reference (full rate with four samples a pixel).
+//! Prints CPU time of the process per frame. With FOLDER writes the frames there as PNG, and the gaze as `gaze.csv`.
+//!
+//! `cargo run --release --example measure -- psnr FOLDER REFERENCE`
+//!
+//! Prints PSNR of the frames in FOLDER against those in REFERENCE: of the whole frames, and within the fovea.
 
 mod common;
 
@@ -13,18 +19,35 @@ use bevy::anti_alias::taa::TemporalAntiAliasing;
 use bevy::core_pipeline::prepass::DepthPrepass;
 use bevy::prelude::*;
 use bevy_afterimage::{Afterimage, Foveated, FoveationKind, Gaze, Scanpath};
-use common::headless::{FRAME, Headless, write_png};
+use common::grille::GrillePlugin;
+use common::headless::{FRAME, Headless, psnr_db, read_png, write_png};
 use common::scene::{Mover, ScenePlugin, TONEMAPPING, stroll};
 use rustix::time::{ClockId, clock_gettime};
 use std::error::Error;
 use std::path::Path;
 
-const SIZE: UVec2 = UVec2::new(1280, 720);
-/// Frames before the clock starts: compilation of pipelines, first history.
-const WARM_UP: usize = 6;
 const LAMPS: usize = 12;
 /// Start in the scanpath, in seconds.
 const START_S: f64 = 1.0;
+/// Radius of the fovea in heights of the view: 5 degrees of 45.
+const FOVEA: f32 = 0.105;
+
+/// A scene and how it is shown.
+struct Scene {
+    name: &'static str,
+    size: UVec2,
+    /// Frames before the clock starts.
+    warm_up: usize,
+    camera: Mover,
+}
+
+const SCENES: [Scene; 3] = [
+    // Compilation of pipelines, first history.
+    Scene { name: "courtyard", size: UVec2::new(1280, 720), warm_up: 6, camera: Mover::Stroll },
+    // History that antialiases is a mean of many frames.
+    Scene { name: "grille", size: UVec2::new(640, 360), warm_up: 30, camera: Mover::Stroll },
+    Scene { name: "grille-slow", size: UVec2::new(640, 360), warm_up: 30, camera: Mover::Amble },
+];
 
 fn cpu_ms() -> f64 {
     let time = clock_gettime(ClockId::ProcessCPUTime);
@@ -33,82 +56,133 @@ fn cpu_ms() -> f64 {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [mode, scanpath, frames, folder @ ..] = &arguments[..] else {
-        return Err("expected: MODE SCANPATH FRAMES [FOLDER]".into());
-    };
-    let (scanpath, frames, folder) =
-        (Scanpath::read(scanpath)?, frames.parse::<usize>()?, folder.first().map(Path::new));
+    match &arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["psnr", folder, reference] => score(Path::new(folder), Path::new(reference)),
+        [scene, mode, scanpath, frames, folder @ ..] => {
+            let scene =
+                SCENES.iter().find(|known| known.name == *scene).ok_or("SCENE is courtyard, grille or grille-slow")?;
+            let folder = folder.first().map(Path::new);
+            measure(scene, mode, &Scanpath::read(scanpath)?, frames.parse()?, folder)
+        }
+        _ => Err("expected: SCENE MODE SCANPATH FRAMES [FOLDER], or psnr FOLDER REFERENCE".into()),
+    }
+}
+
+fn measure(
+    scene: &Scene,
+    mode: &str,
+    scanpath: &Scanpath,
+    frames: usize,
+    folder: Option<&Path>,
+) -> Result<(), Box<dyn Error>> {
     let scale: f32 = match mode.strip_prefix("taa:") {
         Some(scale) => scale.parse()?,
         None if mode == "reference" => 2.0,
         None => 1.0,
     };
-    let size = (SIZE.as_vec2() * scale).round().as_uvec2();
-    let mut headless = Headless::new(size, ScenePlugin { lamps: LAMPS, moves: true });
-    let target = headless.render_target();
-    let mut camera = headless.app.world_mut().spawn((
-        Camera3d::default(),
-        Msaa::Off,
-        TONEMAPPING,
-        target,
-        stroll(0.0),
-        Mover::Stroll,
-    ));
-    let foveated = |kind, [rate_mid, rate_far]: [u32; 2]| {
-        (Afterimage::default(), Foveated { kind, rate_mid, rate_far, ..default() })
+    let shown = scene.size;
+    let size = (shown.as_vec2() * scale).round().as_uvec2();
+    let courtyard = ScenePlugin { lamps: LAMPS, moves: true };
+    let mut headless = match scene.name {
+        "courtyard" => Headless::new(size, courtyard),
+        _ => Headless::new(size, (courtyard, GrillePlugin)),
     };
-    match mode.as_str() {
-        "full" | "reference" => &mut camera,
-        "prepass" => camera.insert(DepthPrepass),
-        "quad" => camera.insert(foveated(FoveationKind::QuadViews, [2, 4])),
-        "sparse" => camera.insert(foveated(FoveationKind::Sparse, [2, 4])),
-        "sparse48" => camera.insert(foveated(FoveationKind::Sparse, [4, 8])),
-        _ if mode.starts_with("taa:") => camera.insert(TemporalAntiAliasing::default()),
-        _ => {
-            return Err(format!(
-                "mode is {mode}: expected full, prepass, quad, sparse, sparse48, taa:SCALE or reference"
-            )
-            .into());
-        }
-    };
+    spawn_camera(&mut headless, scene.camera, mode)?;
 
-    let mut began = cpu_ms();
+    let mut spent_ms = 0.0;
     let mut gazes = "frame,x_px,y_px\n".to_owned();
-    for frame in 0..frames + WARM_UP {
-        if frame == WARM_UP {
-            headless.wait();
-            began = cpu_ms();
+    let mut cameras = headless.app.world_mut().query::<&mut Camera>();
+    for frame in 0..frames + scene.warm_up {
+        if mode == "reference" {
+            // It needs no warm-up, which would take long.
+            cameras.single_mut(headless.app.world_mut())?.is_active = frame + 1 >= scene.warm_up;
         }
         let uv = scanpath.at(START_S + frame as f64 * FRAME.as_secs_f64());
         headless.app.world_mut().resource_mut::<Gaze>().set(uv);
+        let began_ms = cpu_ms();
         headless.frames(1);
-        if let Some((folder, index)) = folder.zip(frame.checked_sub(WARM_UP)) {
-            let shot = resized(&headless.read(), size);
-            write_png(&folder.join(format!("{index:06}.png")), SIZE, &shot)?;
-            let px = uv.map_or(Vec2::NAN, |uv| uv * SIZE.as_vec2() - 0.5);
+        headless.wait();
+        let Some(index) = frame.checked_sub(scene.warm_up) else { continue };
+        spent_ms += cpu_ms() - began_ms;
+        if let Some(folder) = folder {
+            let shot = resized(&headless.read(), size, shown);
+            write_png(&folder.join(format!("{index:06}.png")), shown, &shot)?;
+            let px = uv.map_or(Vec2::NAN, |uv| uv * shown.as_vec2() - 0.5);
             gazes += &format!("{index},{},{}\n", px.x, px.y);
         }
     }
-    headless.wait();
-    println!("{mode}: {:.1} ms of CPU time a frame, {}", (cpu_ms() - began) / frames as f64, headless.adapter());
+    println!("{}, {mode}: {:.1} ms of CPU time a frame, {}", scene.name, spent_ms / frames as f64, headless.adapter());
     if let Some(folder) = folder {
         std::fs::write(folder.join("gaze.csv"), gazes)?;
     }
     headless.problems().first().map_or(Ok(()), |problem| Err(problem.as_str().into()))
 }
 
+fn spawn_camera(headless: &mut Headless, mover: Mover, mode: &str) -> Result<(), Box<dyn Error>> {
+    let target = headless.render_target();
+    let mut camera =
+        headless.app.world_mut().spawn((Camera3d::default(), Msaa::Off, TONEMAPPING, target, stroll(0.0), mover));
+    let foveated = |kind, [rate_mid, rate_far]: [u32; 2], antialias| {
+        (Afterimage { antialias, ..default() }, Foveated { kind, rate_mid, rate_far, ..default() })
+    };
+    match mode {
+        "full" | "reference" => &mut camera,
+        "prepass" => camera.insert(DepthPrepass),
+        "msaa" => camera.insert(Msaa::Sample4),
+        "quad" => camera.insert(foveated(FoveationKind::QuadViews, [2, 4], false)),
+        "sparse" => camera.insert(foveated(FoveationKind::Sparse, [2, 4], false)),
+        "sparse48" => camera.insert(foveated(FoveationKind::Sparse, [4, 8], false)),
+        "antialiased" => camera.insert(foveated(FoveationKind::Sparse, [2, 4], true)),
+        _ if mode.starts_with("taa:") => camera.insert(TemporalAntiAliasing::default()),
+        _ => {
+            return Err(format!(
+                "mode is {mode}: expected full, prepass, msaa, taa:SCALE, quad, sparse, sparse48, antialiased or \
+                 reference"
+            )
+            .into());
+        }
+    };
+    Ok(())
+}
+
+/// Prints the PSNR of frames, over all of them.
+fn score(folder: &Path, reference: &Path) -> Result<(), Box<dyn Error>> {
+    let gazes = std::fs::read_to_string(folder.join("gaze.csv"))?;
+    let (mut all, mut fovea) = ([vec![], vec![]], [vec![], vec![]]);
+    for line in gazes.lines().skip(1) {
+        let [index, x, y] = line.split(',').collect::<Vec<_>>()[..] else {
+            return Err("gaze.csv: three columns".into());
+        };
+        let gaze = Vec2::new(x.parse()?, y.parse()?);
+        let name = format!("{:06}.png", index.parse::<usize>()?);
+        for (i, folder) in [folder, reference].into_iter().enumerate() {
+            let (size, image) = read_png(&folder.join(&name))?;
+            for (at, pixel) in image.chunks_exact(4).enumerate() {
+                let px = UVec2::new(at as u32 % size.x, at as u32 / size.x).as_vec2();
+                if px.distance(gaze) < FOVEA * size.y as f32 {
+                    fovea[i].extend_from_slice(pixel);
+                }
+            }
+            all[i].extend(image);
+        }
+    }
+    let [all, fovea] = [all, fovea].map(|[shown, reference]| psnr_db(&shown, &reference));
+    println!("{}: {all:.2} dB, {fovea:.2} dB within the fovea", folder.display());
+    Ok(())
+}
+
 /// The image at the size that is shown: the mean of four pixels, or enlarged bilinearly; both in linear light.
-fn resized(rgba: &[u8], from: UVec2) -> Vec<u8> {
-    if from == SIZE {
+fn resized(rgba: &[u8], from: UVec2, to: UVec2) -> Vec<u8> {
+    if from == to {
         return rgba.to_vec();
     }
     let decode: Vec<f32> = (0..=255).map(|byte| Color::srgb_u8(byte, 0, 0).to_linear().red).collect();
     let pixel = |x: u32, y: u32, channel: usize| decode[usize::from(rgba[4 * (y * from.x + x) as usize + channel])];
     let encode = |linear: f32| (255.0 * Color::linear_rgb(linear, 0.0, 0.0).to_srgba().red).round() as u8;
-    let ratio = from.as_vec2() / SIZE.as_vec2();
-    let mut shown = Vec::with_capacity(4 * SIZE.element_product() as usize);
-    for y in 0..SIZE.y {
-        for x in 0..SIZE.x {
+    let ratio = from.as_vec2() / to.as_vec2();
+    let mut shown = Vec::with_capacity(4 * to.element_product() as usize);
+    for y in 0..to.y {
+        for x in 0..to.x {
             let at = (UVec2::new(x, y).as_vec2() + 0.5) * ratio - 0.5;
             let low = at.floor();
             let part = at - low;

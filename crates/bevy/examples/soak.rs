@@ -157,7 +157,8 @@ fn event(headless: &mut Headless, random: &mut Random, size: &mut UVec2) -> &'st
             let preset = random.of(&[Preset::Steady, Preset::Responsive, Preset::Weighted, Preset::Paper]);
             let method = random.of(&[MethodKind::None, MethodKind::Taa, MethodKind::Taau, MethodKind::Smr]);
             let settings = (random.below(2) == 0).then(|| Settings { method: method.into(), ..default() });
-            entity.insert(Afterimage { preset, settings, reset: random.below(2) == 0 });
+            let (antialias, reset) = (random.below(2) == 0, random.below(2) == 0);
+            entity.insert(Afterimage { preset, settings, antialias, reset });
             "settings"
         }
         9 => {

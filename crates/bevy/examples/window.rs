@@ -1,6 +1,7 @@
 //! A courtyard in a window. The mouse is the gaze.
 //!
-//! Keys: 1 full rate, 2 quad views, 3 sparse with history, 4 simulated; D debug views; S stats; R resets history.
+//! Keys: 1 full rate, 2 quad views, 3 sparse with history, 4 simulated; A antialiasing of 3; D debug views; S stats; R
+//! resets history.
 //!
 //! `cargo run --release --features window --example window`
 
@@ -48,6 +49,9 @@ fn keys(mut commands: Commands, keys: Res<ButtonInput<KeyCode>>, camera: Single<
     if keys.just_pressed(KeyCode::KeyR) {
         afterimage.reset = true;
     }
+    if keys.just_pressed(KeyCode::KeyA) {
+        afterimage.antialias = !afterimage.antialias;
+    }
     if keys.just_pressed(KeyCode::KeyD) {
         let views = [DebugView::Quality, DebugView::Age, DebugView::Rejection, DebugView::Motion];
         let next = debug.map_or(0, |debug| views.iter().position(|view| *view == debug.0).map_or(0, |i| i + 1));
@@ -74,5 +78,5 @@ fn title(
         diagnostics.get(&FrameTimeDiagnosticsPlugin::FRAME_TIME).and_then(|d| d.smoothed()).unwrap_or_default();
     let kept =
         stats.map_or(String::new(), |s| format!(", kept {:.0} %", 100.0 * s.kept as f64 / s.pixels.max(1) as f64));
-    window.title = format!("{:?}: {frame_ms:.1} ms{kept} (1-4, D, S, R)", foveated.kind);
+    window.title = format!("{:?}: {frame_ms:.1} ms{kept} (1-4, A, D, S, R)", foveated.kind);
 }

@@ -16,9 +16,15 @@ use bevy::render::render_resource::TextureUsages;
 pub struct Afterimage {
     /// Settings by name.
     pub preset: Preset,
-    /// Settings in full, instead of the preset. Their `foveation` is ignored: [`Foveated`] says it.
+    /// Settings in full, instead of the preset. Their `foveation` and `Smr::antialias` are ignored: [`Foveated`] and
+    /// [`antialias`](Self::antialias) say them.
     #[reflect(ignore)]
     pub settings: Option<Settings>,
+    /// Antialiases [`FoveationKind::Sparse`] with the method smr, in place of temporal antialiasing and MSAA: the
+    /// projection of what is shaded moves by a part of a pixel each frame, and history stores means of samples. Better
+    /// where little moves; frays thin things that move far from the gaze. Not for cameras with `TemporalJitter`, which
+    /// temporal antialiasing and upscaling add. Default false.
+    pub antialias: bool,
     /// Discards history in the next frame, for camera cuts and teleports. Becomes false when that frame is drawn.
     pub reset: bool,
 }

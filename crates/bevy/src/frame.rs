@@ -4,7 +4,7 @@ use crate::camera::{Afterimage, AfterimageDebug, Foveated, FoveationKind, depth_
 use crate::counters::AfterimageStats;
 use crate::gaze::{CameraGaze, Gaze};
 use crate::lattice::{COUNT, LatticeCameras, lattice_of};
-use afterimage::{ContextDesc, DebugView, Lattice, MotionConvention, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, DebugView, Lattice, Method, MotionConvention, ViewFrame, ViewGeometry};
 use bevy::core_pipeline::prepass::PreviousViewData;
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::prelude::*;
@@ -18,6 +18,7 @@ use bevy::render::{ExtractSchedule, MainWorld, Render, RenderApp, RenderSystems}
 pub(crate) struct ExtractedAfterimage {
     pub kind: FoveationKind,
     pub desc: ContextDesc,
+    /// Its jitter is that of the samples. The jitter of temporal antialiasing, which sets it later, is not in it.
     pub view: ViewFrame,
     pub reset: bool,
     pub debug: Option<DebugView>,
@@ -41,6 +42,8 @@ pub(crate) struct Samples {
 pub struct Planted {
     /// Another convention of motion vectors than Bevy's.
     pub motion: Option<MotionConvention>,
+    /// History is told the opposite jitter.
+    pub jitter: bool,
 }
 
 // The camera's own component is what makes this one disappear with it.
@@ -107,10 +110,15 @@ fn extract(mut commands: Commands, mut world: ResMut<MainWorld>) {
             }
         };
         desc.motion = planted.motion.unwrap_or(desc.motion);
+        let jitter_px = placed.and_then(|(_, placed)| placed.jitter_px);
+        let told_px = jitter_px.unwrap_or_default().map(|px| if planted.jitter { -px } else { px });
+        if let Method::Smr(smr) = &mut desc.settings.method {
+            smr.antialias = jitter_px.is_some();
+        }
         let frame = ExtractedAfterimage {
             kind: foveated.kind,
             desc,
-            view,
+            view: ViewFrame { jitter_px: told_px, ..view },
             reset: std::mem::take(&mut afterimage.bypass_change_detection().reset),
             debug: debug.map(|debug| debug.0).filter(|_| foveated.kind != FoveationKind::QuadViews),
             counts,

@@ -2,7 +2,7 @@
 
 use crate::camera::{Afterimage, Foveated, FoveationKind, depth_convention, drawn_size_px};
 use crate::gaze::{CameraGaze, Gaze};
-use afterimage::{Lattice, Lattices, ViewGeometry};
+use afterimage::{Foveation, Lattice, Lattices, Method, ViewGeometry};
 use bevy::asset::AssetEventSystems;
 use bevy::camera::visibility::VisibilitySystems;
 use bevy::camera::{
@@ -13,7 +13,7 @@ use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
 use bevy::light::SimulationLightSystems;
 use bevy::math::Vec3A;
 use bevy::prelude::*;
-use bevy::render::camera::MipBias;
+use bevy::render::camera::{MipBias, TemporalJitter};
 use bevy::render::render_resource::TextureFormat;
 
 /// Camera that draws one lattice of samples for another camera, whose child it is. The plugin spawns, moves and
@@ -55,6 +55,8 @@ pub(crate) struct LatticeCameras {
 pub(crate) struct Placed {
     pub lattices: Lattices,
     pub gaze_px: [f32; 2],
+    /// Jitter of the projection, with which history antialiases.
+    pub jitter_px: Option<[f32; 2]>,
 }
 
 pub(crate) struct LatticePlugin;
@@ -136,6 +138,7 @@ type MainCamera<'a> = (
     Option<&'a CameraGaze>,
     Option<&'a MipBias>,
     Option<&'a CompositingSpace>,
+    Has<TemporalJitter>,
 );
 
 type SmallCamera<'a> = (&'a mut Camera, &'a mut Projection, &'a mut RenderTarget);
@@ -148,13 +151,20 @@ fn place(
     mut cameras: Query<MainCamera<'_>, Without<LatticeCamera>>,
     mut smalls: Query<SmallCamera<'_>, With<LatticeCamera>>,
 ) {
-    for (entity, camera, afterimage, foveated, mut state, own_gaze, mip_bias, space) in &mut cameras {
+    for (entity, camera, afterimage, foveated, mut state, own_gaze, mip_bias, space, has_jitter) in &mut cameras {
         let size = drawn_size_px(camera);
         let uv = own_gaze.map_or(gaze.uv, |own| own.uv).filter(|uv| uv.is_finite());
         state.held_uv = uv.or(state.held_uv);
         state.placed = None;
         if let Some(size) = size {
             match lattices(camera, afterimage, foveated, &state, size, space) {
+                Ok(placed) if has_jitter && placed.jitter_px.is_some() => {
+                    warn_once!(
+                        "Afterimage does not antialias camera {entity}: it has TemporalJitter, which temporal \
+                         antialiasing adds. Remove that, or set Afterimage::antialias to false"
+                    );
+                    state.placed = Some(Placed { jitter_px: None, ..placed });
+                }
                 Ok(placed) => state.placed = Some(placed),
                 Err(problem) => {
                     error_once!("camera {entity} renders every pixel, without Afterimage: {problem}");
@@ -179,7 +189,8 @@ fn place(
             small_camera.viewport = Some(Viewport { physical_size: lattice.points.into(), ..default() });
             small_camera.clear_color = camera.clear_color;
             small_camera.invert_culling = camera.invert_culling;
-            let clip_from_view = crop(lattice, size) * camera.clip_from_view();
+            let jitter_px = placed.and_then(|placed| placed.jitter_px).unwrap_or_default();
+            let clip_from_view = crop(lattice, size, jitter_px) * camera.clip_from_view();
             *projection = Projection::custom(Cropped(clip_from_view));
             // What Bevy's `camera_system` computes, which has run.
             let size_px = Some(lattice.points.into());
@@ -224,7 +235,9 @@ fn lattices(
         let still: Vec<_> = lattices.as_slice().iter().map(|lattice| in_the_middle(lattice, size)).collect();
         lattices = Lattices::new(&still).map_err(|error| error.to_string())?;
     }
-    Ok(Placed { lattices, gaze_px })
+    let antialiases =
+        afterimage.antialias && foveated.kind == FoveationKind::Sparse && matches!(settings.method, Method::Smr(_));
+    Ok(Placed { lattices, gaze_px, jitter_px: antialiases.then(|| Foveation::jitter_px(state.index)) })
 }
 
 /// The lattice with its samples in the middle of their blocks.
@@ -258,13 +271,13 @@ fn reserve(state: &mut LatticeCameras, images: &mut Assets<Image>, placed: &Plac
 }
 
 /// Crop of clip space to the rectangle of a lattice, shifted so that the middles of its texels are those of the
-/// samples' pixels.
-fn crop(lattice: &Lattice, size: UVec2) -> Mat4 {
+/// samples' pixels, and then by the jitter, in pixels of the view.
+fn crop(lattice: &Lattice, size: UVec2, jitter_px: [f32; 2]) -> Mat4 {
     let [size, first, points] = [size, lattice.first_px.into(), lattice.points.into()].map(|v: UVec2| v.as_dvec2());
     let step = f64::from(lattice.step);
     let covered = points * step;
     let scale = size / covered;
-    let offset = (size - 1.0 - 2.0 * first + step) / covered - 1.0;
+    let offset = (size - 1.0 - 2.0 * first + step + 2.0 * Vec2::from(jitter_px).as_dvec2()) / covered - 1.0;
     // Rounded once. Clip space has y up.
     let [scale, offset] = [scale, offset].map(|v| v.as_vec2());
     Mat4::from_cols(Vec4::X * scale.x, Vec4::Y * scale.y, Vec4::Z, Vec4::new(offset.x, -offset.y, 0.0, 1.0))
@@ -309,6 +322,8 @@ impl CameraProjection for Cropped {
 mod tests {
     use super::*;
 
+    const JITTERS_PX: [[f32; 2]; 2] = [[0.0, 0.0], [0.375, -0.25]];
+
     #[test]
     fn a_texel_of_a_crop_shows_its_sample() {
         let size = UVec2::new(1280, 720);
@@ -316,17 +331,18 @@ mod tests {
         for (step, first_px, points) in [(1, [403, 77], [155, 154]), (4, [3, 1], [320, 180]), (2, [301, 40], [90, 111])]
         {
             let lattice = Lattice { step, first_px, points, atlas_texel: None };
-            for texel in [[0, 0], [points[0] - 1, points[1] / 2]] {
+            let texels = [[0, 0], [points[0] - 1, points[1] / 2]];
+            for (texel, jitter) in texels.into_iter().flat_map(|texel| JITTERS_PX.map(|jitter| (texel, jitter))) {
                 let point = Vec3::new(0.3, -0.2, -3.0);
                 let seen = |clip: Mat4, size: Vec2| {
                     let ndc = clip.project_point3(point);
                     (Vec2::new(ndc.x, -ndc.y) * 0.5 + 0.5) * size
                 };
                 let full = seen(projection, size.as_vec2());
-                let small = seen(crop(&lattice, size) * projection, UVec2::from(points).as_vec2());
-                // Both in pixels from the middle of the sample's pixel, and of its texel.
+                let small = seen(crop(&lattice, size, jitter) * projection, UVec2::from(points).as_vec2());
+                // In pixels from the middle of the sample's pixel, and in texels from that of its texel.
                 let pixel = UVec2::from(first_px) + UVec2::from(texel) * step;
-                let from_pixel = full - pixel.as_vec2() - 0.5;
+                let from_pixel = full + Vec2::from(jitter) - pixel.as_vec2() - 0.5;
                 let from_texel = small - UVec2::from(texel).as_vec2() - 0.5;
                 assert!(
                     (from_pixel - from_texel * step as f32).abs().max_element() < 0.01,

@@ -178,7 +178,7 @@ fn record(
         origin_px: origin(camera),
     };
     // Bevy adds the offset to the projection's z column, whose factor is negative.
-    let jitter_px = jitter.map_or([0.0; 2], |jitter| (-jitter.offset).to_array());
+    let jitter_px = jitter.map_or(frame.view.jitter_px, |jitter| (-jitter.offset).to_array());
     let facts = Facts { index: index.into(), exposure: camera.exposure, jitter_px };
     let geometry = prepass.filter(|_| frame.kind != FoveationKind::QuadViews).and_then(|prepass| {
         let (depth, motion) = (prepass.depth.as_ref()?, prepass.motion_vectors.as_ref()?);

@@ -4,6 +4,7 @@
 mod common;
 
 mod frames {
+    mod antialiasing;
     mod conventions;
     mod events;
     mod pixels;

@@ -5,6 +5,7 @@ mod common;
 
 use bevy::log::tracing_subscriber;
 use bevy::prelude::*;
+use bevy::render::camera::TemporalJitter;
 use bevy_afterimage::Afterimage;
 use common::headless::Headless;
 use common::scene::{ScenePlugin, TONEMAPPING, stroll};
@@ -25,25 +26,24 @@ impl Write for Log {
     }
 }
 
-/// How many lines name `Msaa` after a few frames of a camera.
-fn lines_about_msaa(msaa: Msaa) -> usize {
+/// How many lines contain `word` after a few frames of a camera with `components`.
+fn lines_about(word: &str, components: impl Bundle) -> usize {
     let mut headless = Headless::new(UVec2::new(64, 36), ScenePlugin { lamps: 0, moves: false });
     let target = headless.render_target();
-    headless.app.world_mut().spawn((
-        Camera3d::default(),
-        target,
-        TONEMAPPING,
-        stroll(1.0),
-        msaa,
-        Afterimage::default(),
-    ));
+    headless.app.world_mut().spawn((Camera3d::default(), target, TONEMAPPING, stroll(1.0), components));
     headless.frames(4);
     let log = LOG.lock().expect("the log");
-    String::from_utf8_lossy(&log).lines().filter(|line| line.contains("Msaa")).count()
+    String::from_utf8_lossy(&log).lines().filter(|line| line.contains(word)).count()
 }
 
 #[test]
-fn msaa_that_is_switched_off_is_said_once() {
+fn antialiasing_that_is_switched_off_is_said_once() {
     tracing_subscriber::fmt().with_writer(|| Log).init();
-    assert_eq!([Msaa::Off, Msaa::Sample4, Msaa::Sample2].map(lines_about_msaa), [0, 1, 1]);
+    let msaa = |msaa: Msaa| lines_about("Msaa", (msaa, Afterimage::default()));
+    assert_eq!([Msaa::Off, Msaa::Sample4, Msaa::Sample2].map(msaa), [0, 1, 1]);
+    let jitter = |antialias| {
+        let afterimage = Afterimage { antialias, ..default() };
+        lines_about("TemporalJitter", (Msaa::Off, TemporalJitter::default(), afterimage))
+    };
+    assert_eq!([false, true, true].map(jitter), [0, 1, 1]);
 }

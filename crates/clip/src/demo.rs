@@ -58,6 +58,8 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         sparse_geometry: SparseGeometry::Full,
         quad_views: None,
         sample_order: SampleOrder::default(),
+        jitter: false,
+        reference_samples: None,
         methods: vec![
             ("none", post_process(MethodKind::None)),
             ("wrs", post_process(MethodKind::Wrs)),

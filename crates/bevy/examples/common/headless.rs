@@ -1,7 +1,7 @@
 //! An application without a window that renders to an image, frame by frame.
 
 use afterimage::wgpu;
-use bevy::app::PluginsState;
+use bevy::app::{Plugins, PluginsState};
 use bevy::asset::RenderAssetUsages;
 use bevy::camera::RenderTarget;
 use bevy::log::LogPlugin;
@@ -36,7 +36,7 @@ pub struct Headless {
 
 impl Headless {
     /// An application with Bevy's default plugins, `AfterimagePlugin`, and a scene.
-    pub fn new(size: UVec2, scene: impl Plugin) -> Self {
+    pub fn new<M>(size: UVec2, scene: impl Plugins<M>) -> Self {
         let settings = WgpuSettings { backends: Some(Backends::VULKAN), ..default() };
         let mut app = App::new();
         let plugins = DefaultPlugins
@@ -48,7 +48,8 @@ impl Headless {
             })
             .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
             .disable::<LogPlugin>();
-        app.add_plugins((plugins, AfterimagePlugin, scene))
+        app.add_plugins((plugins, AfterimagePlugin))
+            .add_plugins(scene)
             .insert_resource(TimeUpdateStrategy::ManualDuration(FRAME))
             .init_resource::<Problems>()
             .insert_resource(RenderErrorHandler(|error, main, _| {
@@ -152,6 +153,15 @@ pub fn psnr_db(a: &[u8], b: &[u8]) -> f64 {
         .flat_map(|(a, b)| (0..3).map(move |i| u64::from(a[i].abs_diff(b[i])).pow(2)))
         .sum();
     10.0 * (255.0 * 255.0 * (a.len() / 4 * 3) as f64 / squares.max(1) as f64).log10()
+}
+
+/// Reads an image that [`write_png`] wrote, with alpha.
+pub fn read_png(path: &std::path::Path) -> Result<(UVec2, Vec<u8>), Box<dyn std::error::Error>> {
+    let mut reader = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(path)?)).read_info()?;
+    let mut rgb = vec![0; reader.output_buffer_size().ok_or("a size")?];
+    reader.next_frame(&mut rgb)?;
+    let size = UVec2::new(reader.info().width, reader.info().height);
+    Ok((size, rgb.chunks_exact(3).flat_map(|pixel| [pixel[0], pixel[1], pixel[2], 255]).collect()))
 }
 
 /// Writes an image as PNG.

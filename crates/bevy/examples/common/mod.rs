@@ -1,6 +1,7 @@
-//! What the examples and tests share: an application without a window, and a scene.
+//! What the examples and tests share: an application without a window, and scenes.
 
 #![allow(dead_code, reason = "each example and test uses a part")]
 
+pub mod grille;
 pub mod headless;
 pub mod scene;

@@ -27,6 +27,8 @@ pub enum Mover {
     Fly(f32),
     /// A camera that moves sideways and turns a little.
     Stroll,
+    /// A camera that does so at a fifth of that speed.
+    Amble,
 }
 
 #[derive(Resource)]
@@ -63,6 +65,7 @@ fn animate(time: Res<Time>, mut movers: Query<(&mut Transform, &Mover)>) {
                 transform.rotation = Quat::from_euler(EulerRot::YXZ, 2.0 * angle, angle, 0.0);
             }
             Mover::Stroll => *transform = stroll(t),
+            Mover::Amble => *transform = stroll(0.2 * t),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::common::headless::Headless;
 use crate::{clip, clip_psnr_db, courtyard, kind};
+use bevy::prelude::*;
 use bevy_afterimage::FoveationKind;
 use bevy_afterimage::afterimage::{MotionConvention, MotionDirection, MotionUnit, YAxis};
 use bevy_afterimage::testing::Planted;
@@ -29,7 +30,7 @@ fn compare(foveation: FoveationKind, errors: &[(&str, Planted)]) {
 }
 
 fn motion(convention: MotionConvention) -> Planted {
-    Planted { motion: Some(convention) }
+    Planted { motion: Some(convention), ..default() }
 }
 
 #[test]

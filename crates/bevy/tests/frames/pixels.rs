@@ -76,7 +76,11 @@ fn read(headless: &Headless, texture: &wgpu::Texture) -> Vec<u8> {
 
 #[test]
 fn frames_are_those_of_the_drop_in_fed_with_the_same_textures() {
-    let mut headless = courtyard((kind(FoveationKind::Sparse), linear()));
+    [false, true].into_iter().for_each(compare_with_the_drop_in);
+}
+
+fn compare_with_the_drop_in(antialias: bool) {
+    let mut headless = courtyard((Afterimage { antialias, ..default() }, Foveated::default(), linear()));
     let mut alone = None;
     for frame in 0..6 {
         wander(&mut headless, frame);
@@ -133,7 +137,8 @@ fn gizmos_are_drawn_at_full_rate_and_hidden_by_meshes() {
             let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: false });
             let target = headless.render_target();
             let camera = (Camera3d::default(), Msaa::Off, target, TONEMAPPING, stroll(1.0), kind(foveation));
-            headless.app.world_mut().spawn(camera);
+            // The jitter of samples does not move them.
+            headless.app.world_mut().spawn(camera).insert(Afterimage { antialias: true, ..default() });
             headless.app.add_systems(Update, move |mut gizmos: Gizmos<'_, '_>| {
                 gizmos.line(Vec3::new(-2.0, 2.0, z), Vec3::new(2.0, 2.3, z), Color::srgb(1.0, 0.0, 1.0));
             });

@@ -38,6 +38,10 @@ pub struct Clip {
     pub quad_views: Option<QuadViewLayout>,
     /// Order in which the pixels of sparse frames are sampled.
     pub sample_order: SampleOrder,
+    /// Whether the projection is jittered, by sources that can.
+    pub jitter: bool,
+    /// Samples a pixel of the reference; `None`: what the input has.
+    pub reference_samples: Option<u32>,
     /// Name of each method, which is also the name of its folder, and its pipeline stage.
     pub methods: Vec<(&'static str, RunKind)>,
     /// Gaze position per frame, in frame pixels; `None`: tracking lost.
@@ -205,7 +209,11 @@ impl Clip {
         let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &debug, processor)?
             .with_sparse(self.sparse_geometry, self.sample_order)
             .with_quad_views(self.quad_views)
+            .with_reference_samples(self.reference_samples)
             .with_poison(self.poison);
+        if self.jitter {
+            pipeline = pipeline.with_jitter();
+        }
         if self.trust {
             pipeline = pipeline.with_trust();
         }

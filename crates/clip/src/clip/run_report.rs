@@ -48,6 +48,10 @@ struct RunReport<'a> {
     foveation: FoveationReport,
     /// Camera samples of all foveated frames; null if a simulator foveates full-rate frames.
     samples: Option<u64>,
+    /// Whether the projection is jittered.
+    jitter: bool,
+    /// Samples a pixel of the rasterised or analytic reference; null: what the input has.
+    reference_samples: Option<u32>,
     gaze: &'a str,
     gaze_map: &'a str,
     start_s: f64,
@@ -112,6 +116,8 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
             ms: report.foveation_ms,
         },
         samples: (report.samples > 0).then_some(report.samples),
+        jitter: clip.jitter,
+        reference_samples: clip.reference_samples,
         gaze: facts.gaze,
         gaze_map: facts.gaze_map,
         start_s: facts.start_s,

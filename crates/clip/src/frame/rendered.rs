@@ -24,6 +24,9 @@ pub struct RenderedFrame {
     pub reference_on_device: Option<DeviceHandle>,
     /// What the methods get.
     pub content: Content,
+    /// Jitter of the content's projection in pixels, as in
+    /// [`FrameRequest::jitter_px`](crate::source::FrameRequest::jitter_px); 0 without jitter.
+    pub jitter_px: [f32; 2],
     /// Where depth and motion are defined. At the samples of what is on a device: the methods get those in place of
     /// the reference's.
     pub geometry: SparseGeometry,
@@ -42,6 +45,8 @@ pub struct RenderedFrame {
 pub enum Content {
     /// The full-rate frame: a simulator foveates it.
     FullRate,
+    /// The full-rate frame with jitter and one sample a pixel: a simulator foveates it in place of the reference.
+    Jittered(SourceFrame),
     /// A frame that its source foveated, in memory.
     Foveated(FoveatedFrame),
     /// A frame that its source foveated, on a device.
@@ -70,7 +75,7 @@ impl Content {
     /// Where the samples lie, if the source gave them without anything between.
     pub fn lattices(&self) -> Option<Lattices> {
         match self {
-            Self::FullRate => None,
+            Self::FullRate | Self::Jittered(_) => None,
             Self::Foveated(frame) => frame.lattices,
             Self::OnDevice(content) => content.lattices(),
         }
@@ -79,7 +84,7 @@ impl Content {
     /// Whether a path tracer foveated the frame.
     pub fn is_traced(&self) -> bool {
         match self {
-            Self::FullRate => false,
+            Self::FullRate | Self::Jittered(_) => false,
             Self::Foveated(_) => true,
             Self::OnDevice(content) => content.is_traced(),
         }
@@ -95,11 +100,26 @@ impl RenderedFrame {
             reference,
             reference_on_device: None,
             content: Content::FullRate,
+            jitter_px: [0.0; 2],
             geometry: SparseGeometry::Full,
             samples: None,
             render: None,
             full_rate: None,
         }
+    }
+
+    /// The full-rate frame that simulators foveate, and whose depth, motion and trust the methods get.
+    pub fn given(&self) -> &SourceFrame {
+        match &self.content {
+            Content::Jittered(frame) => frame,
+            _ => &self.reference,
+        }
+    }
+
+    /// The same frame, with one sample a pixel in `frame`, which is jittered by `jitter_px`.
+    #[must_use]
+    pub fn jittered(self, frame: SourceFrame, jitter_px: [f32; 2]) -> Self {
+        Self { content: Content::Jittered(frame), jitter_px, ..self }
     }
 
     /// The same frame, foveated by its source.

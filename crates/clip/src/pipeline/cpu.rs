@@ -37,12 +37,12 @@ impl Executor for CpuExecutor {
         let size = post.desc().size_px;
         let mut output = [Image::filled(size, [0.0; 3])];
         let mut traces = (!shot.debug.is_empty()).then(|| [Image::filled(size, PixelTrace::default())]);
-        let reference = &shot.frame.reference;
+        let full_rate = shot.frame.given();
         let (depth, motion) = match &given.geometry {
             Some((depth, motion)) => (Some(depth), Some(motion)),
-            None => (reference.depth.as_ref(), reference.motion.as_ref()),
+            None => (full_rate.depth.as_ref(), full_rate.motion.as_ref()),
         };
-        let trust = reference.trust.as_ref().filter(|_| shot.use_trust);
+        let trust = full_rate.trust.as_ref().filter(|_| shot.use_trust);
         let color: &Image<[f32; 3]> = &given.color;
         let lod = given.has_lod.then_some(&candidate.lods);
         let frame = Frame {

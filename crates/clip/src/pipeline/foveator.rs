@@ -54,7 +54,7 @@ impl Foveator {
     /// memory.
     pub fn candidate<'a>(&mut self, frame: &'a RenderedFrame, ecc_deg: &Image<f32>, is_read: bool) -> Candidate<'a> {
         let mut candidate = match &frame.content {
-            Content::FullRate => self.simulated(frame, ecc_deg, is_read),
+            Content::FullRate | Content::Jittered(_) => self.simulated(frame, ecc_deg, is_read),
             Content::Foveated(foveated) => {
                 let noise = Some(&foveated.noise);
                 // Lattices say how coarse a sparse frame is.
@@ -80,12 +80,13 @@ impl Foveator {
             None => self.foveation.lod_map(&self.geometry, frame.gaze_px, ecc_deg),
         };
         // Runs on a device use the GPU simulator, which equals this one bit for bit on software devices.
-        let pyramid = is_read.then(|| match self.still.take() {
+        let is_still = self.is_still && matches!(frame.content, Content::FullRate);
+        let pyramid = is_read.then(|| match self.still.take().filter(|_| is_still) {
             Some(pyramid) => pyramid,
             // Of sparse frames, only samples are read.
             None => {
                 let most = if lattices.is_some() { 0 } else { self.foveation.max_level() };
-                Pyramid::new(frame.reference.color.clone(), most)
+                Pyramid::new(frame.given().color.clone(), most)
             }
         });
         let has_lod = needs_lod(self.foveation.filter);
@@ -112,6 +113,7 @@ impl Foveator {
     fn view(&self, frame: &RenderedFrame) -> ViewFrame {
         let view = ViewFrame::new(self.geometry, Gaze::At { px: frame.gaze_px });
         let lattices = frame.content.lattices().map(|lattices| frame.geometry.of(lattices));
-        ViewFrame { previous_from_current: frame.reference.previous_from_current, lattices, ..view }
+        let previous_from_current = frame.reference.previous_from_current;
+        ViewFrame { previous_from_current, jitter_px: frame.jitter_px, lattices, ..view }
     }
 }

@@ -65,6 +65,8 @@ pub struct Pipeline {
     debug: Vec<DebugView>,
     use_trust: bool,
     quad_views: Option<QuadViewLayout>,
+    is_jittered: bool,
+    reference_samples: Option<u32>,
     /// For guided sampling.
     history_noise: Option<HistoryNoise>,
     is_guided: bool,
@@ -106,6 +108,8 @@ impl Pipeline {
             debug: debug.to_vec(),
             use_trust: false,
             quad_views: None,
+            is_jittered: false,
+            reference_samples: None,
             history_noise: None,
             is_guided: false,
         })
@@ -128,6 +132,18 @@ impl Pipeline {
     #[must_use]
     pub fn with_quad_views(self, layout: Option<QuadViewLayout>) -> Self {
         Self { quad_views: layout, ..self }
+    }
+
+    /// Sources that can jitter the projection do, by [`Foveation::jitter_px`] of the frame's number.
+    #[must_use]
+    pub fn with_jitter(self) -> Self {
+        Self { is_jittered: true, ..self }
+    }
+
+    /// Samples a pixel of references: [`FrameRequest::reference_samples`].
+    #[must_use]
+    pub fn with_reference_samples(self, samples: Option<u32>) -> Self {
+        Self { reference_samples: samples, ..self }
     }
 
     /// Replaces a share of the foveated pixels of every frame by invalid colors: NaN, infinite, huge, negative.
@@ -159,6 +175,9 @@ impl Pipeline {
         FrameRequest {
             gaze_px,
             wanted,
+            // The sequence starts with a corner of the pixel.
+            jitter_px: self.is_jittered.then(|| Foveation::jitter_px(index + 1)),
+            reference_samples: self.reference_samples,
             geometry: self.foveator.sparse_geometry,
             guide: self.history_noise.as_ref().map(|noise| noise as &dyn SamplingGuide),
             device: self.executor.device().filter(|_| !self.foveates_in_memory()),
@@ -194,16 +213,18 @@ impl Pipeline {
 
     /// Whether a frame, which must fit the pipeline, has a reference.
     fn check(&self, frame: &RenderedFrame) -> Result<bool, FrameError> {
-        let (found, expected) = (frame.reference.color.size(), self.foveator.geometry.size_px());
-        let is_full_rate = matches!(frame.content, Content::FullRate);
-        if found != expected && (is_full_rate || found != [0; 2]) {
+        let expected = self.foveator.geometry.size_px();
+        let sizes = [&frame.reference, frame.given()].map(|of| of.color.size());
+        let is_full_rate = matches!(frame.content, Content::FullRate | Content::Jittered(_));
+        let is_wrong = |found: &[u32; 2]| *found != expected && (is_full_rate || *found != [0; 2]);
+        if let Some(found) = sizes.into_iter().find(is_wrong) {
             return Err(FrameError::Size { input: "color", view: 0, found, expected });
         }
         if is_full_rate && self.quad_views.is_some() {
             let (found, expected) = ("a full-rate frame".into(), "one that is composed of quad views");
             return Err(FrameError::Value { what: "frame", view: 0, found, expected });
         }
-        Ok(found == expected)
+        Ok(sizes[0] == expected)
     }
 
     /// Runs all methods on the foveated frame.

@@ -2,9 +2,11 @@
 
 pub mod analytic;
 pub mod gait;
+mod reference;
 mod request;
 
 pub use analytic::AnalyticSource;
+pub use reference::reference_offsets_px;
 pub use request::{FrameRequest, SamplingGuide, Wanted};
 
 use crate::error::InputError;

@@ -14,10 +14,16 @@ pub struct FrameRequest<'a> {
     pub gaze_px: [f32; 2],
     /// What is to be rendered. A source that has a sampling pattern of its own gives that instead.
     pub wanted: Wanted,
+    /// Jitter of the projection in pixels: what is at `p` without it is at `p + jitter_px`. Each pixel or point of a
+    /// lattice then has one sample. `None`: no jitter, and pixels at full rate as the source filters them.
+    pub jitter_px: Option<[f32; 2]>,
     /// Where depth and motion of a foveated frame are needed.
     pub geometry: SparseGeometry,
     /// Whether the full-rate frame is wanted in memory, as the reference of metrics.
     pub reference: bool,
+    /// Samples a pixel of the reference: the mean of that many jittered full-rate frames. `None`: as the source filters
+    /// pixels. Sources without a renderer, and path tracers, have theirs anyway.
+    pub reference_samples: Option<u32>,
     /// Guides adaptive sampling.
     pub guide: Option<&'a dyn SamplingGuide>,
     /// Device that all methods run on: what is rendered there can stay.
@@ -48,8 +54,10 @@ impl FrameRequest<'_> {
             index,
             gaze_px: [0.0; 2],
             wanted: Wanted::FullRate,
+            jitter_px: None,
             geometry: SparseGeometry::Full,
             reference: true,
+            reference_samples: None,
             guide: None,
             device: None,
         }

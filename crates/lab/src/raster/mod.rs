@@ -49,7 +49,7 @@ pub use lighting::{DEFAULT_SKY, DEFAULT_SUN, DEFAULT_SUN_DIRECTION};
 pub use pipelines::{COLOR_FORMAT, DEPTH_FORMAT, MOTION_FORMAT};
 pub use targets::{FoveatedTargets, Targets};
 pub(crate) use targets::{read_color, read_distance};
-pub use window::AtlasLayout;
+pub use window::{AtlasLayout, PixelSamples};
 
 use crate::error::{Bound, Exceeded, InputError};
 use crate::kernel::albedo::AlbedoTables;

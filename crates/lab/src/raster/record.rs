@@ -5,7 +5,7 @@ use super::lighting::LightingRecord;
 use super::pipelines::ColorPipelines;
 use super::targets::{FoveatedTargets, Targets};
 use super::vertices::{AlphaKind, STRIDE};
-use super::window::{DrawCall, Frustum, Window};
+use super::window::{DrawCall, Frustum, PixelSamples, Window};
 use super::{Raster, VertexSet};
 use crate::quad_views::QuadViews;
 use crate::trace::view::View;
@@ -64,8 +64,7 @@ impl Raster {
     /// lattice shows the full-rate frame's pixel `first_px + step * (i, j)`; motion is in pixels of the full-rate
     /// frame. `view` and `previous` are those of the full-rate frame.
     ///
-    /// Lattices of step 1 have four samples per pixel, as the full-rate frame has; the others one, at the pixel's
-    /// centre.
+    /// Lattices of step 1 have `samples` a pixel; the others one, at the pixel's centre.
     ///
     /// # Panics
     /// If the atlas is larger than `targets`.
@@ -74,11 +73,11 @@ impl Raster {
         device: &Device,
         encoder: &mut CommandEncoder,
         [view, previous]: [&View; 2],
-        lattices: &Lattices,
+        (lattices, samples): (&Lattices, PixelSamples),
         targets: &FoveatedTargets,
     ) {
         let size = view.geometry().size_px();
-        let windows = lattices.as_slice().iter().map(|lattice| Window::of_lattice(lattice, size));
+        let windows = lattices.as_slice().iter().map(|lattice| Window::of_lattice(lattice, size, samples));
         self.record_windows(device, encoder, [view, previous], windows, targets);
     }
 

@@ -63,6 +63,16 @@ impl AtlasLayout {
     }
 }
 
+/// Samples of a pixel of lattices of step 1. Points of other lattices have one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PixelSamples {
+    /// Four, resolved by averaging, as the full-rate frame has.
+    #[default]
+    Four,
+    /// One, at the pixel's centre: what a jittered frame shows of a pixel.
+    One,
+}
+
 /// Part of a target, and the pixels of the full-rate frame that it shows: `first_px + step * (i, j)`.
 #[derive(Clone, Debug)]
 pub(super) struct Window {
@@ -97,7 +107,7 @@ impl Window {
 
     /// A lattice in an atlas, of frames of `size` pixels. A lattice of step 1 has the full-rate frame's viewport, moved
     /// by whole pixels, so that its vertices get the full-rate frame's positions.
-    pub fn of_lattice(lattice: &Lattice, size: [u32; 2]) -> Self {
+    pub fn of_lattice(lattice: &Lattice, size: [u32; 2], samples: PixelSamples) -> Self {
         let texel = lattice.atlas_texel.unwrap_or_default();
         let (first, step) = (lattice.first_px, f64::from(lattice.step));
         let scissor = [texel, lattice.points];
@@ -105,7 +115,8 @@ impl Window {
         let visible_px = [low, [0, 1].map(|i| low[i] + f64::from(lattice.points[i]) * step)];
         let whole = Self { scissor, visible_px, ..Self::full(size) };
         if lattice.step == 1 {
-            return Self { origin: [0, 1].map(|i| texel[i] as f32 - first[i] as f32), ..whole };
+            let is_point = samples == PixelSamples::One;
+            return Self { origin: [0, 1].map(|i| texel[i] as f32 - first[i] as f32), is_point, ..whole };
         }
         Self {
             origin: texel.map(|v| v as f32),
@@ -122,7 +133,7 @@ impl Window {
         let &QuadView { step, first, points, atlas_texel, .. } = view;
         if step == 1.0 {
             let lattice = Lattice { step: 1, first_px: first, points, atlas_texel: Some(atlas_texel) };
-            return Self::of_lattice(&lattice, size);
+            return Self::of_lattice(&lattice, size, PixelSamples::Four);
         }
         let low = first.map(|v| f64::from(v) * f64::from(step) - 0.5);
         Self {
@@ -209,7 +220,7 @@ mod tests {
         let fovea = texel(Lattice::covering(1, [40, 30], [72, 62], [0, 0]), [0, 0]);
         let far = texel(Lattice::covering(8, [0, 0], [100, 90], [3, 5]), [0, 32]);
         for lattice in [fovea, far] {
-            let window = Window::of_lattice(&lattice, [100, 90]);
+            let window = Window::of_lattice(&lattice, [100, 90], PixelSamples::Four);
             for (point, i) in [([0, 0], 0), ([0, 0], 1), ([7, 3], 0), ([7, 3], 1)] {
                 let target = (lattice.atlas_texel.unwrap()[i] + point[i]) as f32;
                 let px = window.first_px[i] + (target - window.origin[i]) * window.step;

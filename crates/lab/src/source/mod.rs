@@ -13,6 +13,7 @@ pub mod viewed_scene;
 
 pub use afterimage_clip::source::{
     AnalyticSource, CameraPose, FrameRequest, FrameSource, SamplingGuide, SourceInfo, Wanted, analytic,
+    reference_offsets_px,
 };
 pub use limits::ReadLimits;
 pub use open::{is_scene, open};

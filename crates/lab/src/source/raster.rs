@@ -4,17 +4,19 @@ use super::CameraPose;
 use super::open::device_lost;
 use super::scene_camera::SceneCamera;
 use super::viewed_scene::{SceneChoice, ViewedScene};
-use super::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo, Wanted};
+use super::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo, Wanted, reference_offsets_px};
 use crate::clock::{Elapsed, Stopwatch};
 use crate::device::{Headless, PassClock};
 use crate::error::InputError;
 use crate::frame::{ComposedFrame, DeviceFrame, DeviceHandle, OnDevice, RenderedFrame, SourceFrame, SparseFrame};
 use crate::lattices::SparseGeometry;
 use crate::quad_views::QuadViews;
-use crate::raster::{AtlasLayout, Composer, FoveatedTargets, Raster, RasterSettings, Targets};
+use crate::raster::{
+    AtlasLayout, Composer, FoveatedTargets, PixelSamples, Raster, RasterSettings, Targets, read_color, read_distance,
+};
 use crate::scene::Scene;
 use crate::trace::view::View;
-use afterimage::Lattices;
+use afterimage::{Image, Lattice, Lattices};
 use glam::DMat4;
 use std::sync::Arc;
 use wgpu::{CommandEncoder, Device};
@@ -40,6 +42,8 @@ impl ViewedScene {
             device,
             raster,
             foveated: [const { None }; 2],
+            points: None,
+            supersampled: None,
             composer: None,
         })
     }
@@ -49,13 +53,18 @@ impl ViewedScene {
 ///
 /// Each frame is a function of its index alone: the scene at `index / fps` seconds, with motion from
 /// `(index - 1) / fps`. Frame 0 is a cut without motion. Depth, motion and `previous_from_current` are always present.
-/// Depth and motion are sampled at pixel centres; color is the mean of four samples.
+/// Depth and motion are sampled at pixel centres; color is the mean of four samples, or of as many as
+/// [`FrameRequest::reference_samples`] asks for. Jittered frames have one sample a pixel or point.
 pub struct RasterSource {
     of: ViewedScene,
     device: Arc<Headless>,
     raster: Raster,
     /// By layout of their atlases; none before the first such frame.
     foveated: [Option<FoveatedTargets>; 2],
+    /// For full-rate frames with one sample a pixel; none before the first.
+    points: Option<FoveatedTargets>,
+    /// Color of a scene that stands still, and its samples a pixel.
+    supersampled: Option<(u32, Image<[f32; 3]>)>,
     /// None before the first frame of quad views.
     composer: Option<Composer>,
     clock: PassClock,
@@ -125,24 +134,30 @@ impl RasterSource {
         if request.needs_full_rate() {
             self.raster.record(&self.device.device, encoder, &view, &previous);
         }
-        let frame = self.record_content(encoder, request, [&view, &previous], AtlasLayout::Compact);
+        let frame = self.record_content(encoder, request, [view, previous], AtlasLayout::Compact);
         RenderedFrame { reference_on_device: request.needs_full_rate().then(|| self.targets()), ..frame }
     }
 
-    /// Records what the methods get, unless that is the full-rate frame.
+    /// Records what the methods get, unless that is the full-rate frame. Motion vectors contain no jitter: both views
+    /// have the same.
     fn record_content(
         &mut self,
         encoder: &mut CommandEncoder,
         request: &FrameRequest<'_>,
-        views: [&View; 2],
+        views: [View; 2],
         layout: AtlasLayout,
     ) -> RenderedFrame {
-        let reference = SourceFrame::without_images(Some(views[0].previous_from_current(views[1])), request.index == 0);
-        let frame = request.answer(reference);
+        let previous_from_current = views[0].previous_from_current(&views[1]);
+        let frame = request.answer(SourceFrame::without_images(Some(previous_from_current), request.index == 0));
+        let (views, pixel_samples, jitter_px) = match request.jitter_px {
+            Some(jitter_px) => (views.map(|view| view.jittered(jitter_px)), PixelSamples::One, jitter_px),
+            None => (views, PixelSamples::Four, [0.0; 2]),
+        };
+        let views = [&views[0], &views[1]];
         let (content, samples) = match &request.wanted {
             Wanted::FullRate => return frame,
             Wanted::Lattices(lattices) => {
-                let sparse = self.record_lattices(encoder, views, lattices, layout);
+                let sparse = self.record_lattices(encoder, views, (lattices, pixel_samples), layout);
                 let points =
                     lattices.as_slice().iter().map(|l| l.points.iter().map(|&n| u64::from(n)).product::<u64>());
                 (OnDevice::Atlas(sparse), points.sum())
@@ -151,21 +166,16 @@ impl RasterSource {
                 (OnDevice::Composed(self.record_quad_views(encoder, views, quads, layout)), quads.pixels())
             }
         };
-        RenderedFrame { content: content.into(), samples: Some(samples), ..frame }
+        RenderedFrame { content: content.into(), jitter_px, samples: Some(samples), ..frame }
     }
 
     /// The full-rate frame, read back.
     fn full_rate(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
         let index = request.index;
         let ((), took) = self.submit_timed(|source, encoder| source.record_full_rate(encoder, request))?;
-        let ([view, previous], _) = self.of.views_of(request);
+        let ([view, previous], _) = self.of.views(index);
         let targets = self.raster.targets();
-        let mut nonfinite = 0;
-        let color = targets.read_color(&self.device).map(|c| {
-            let usable = c.iter().all(|v| v.is_finite());
-            nonfinite += u64::from(!usable);
-            if usable { c } else { [0.0; 3] }
-        });
+        let (color, nonfinite) = finite(targets.read_color(&self.device));
         let (depth, motion) =
             (targets.read_distance(&self.device, self.raster.near()), targets.read_motion(&self.device));
         self.device.check().map_err(|lost| device_lost(&self.of.info().name, &lost))?;
@@ -178,12 +188,72 @@ impl RasterSource {
             cut: index == 0,
             nonfinite,
         };
-        Ok(RenderedFrame {
-            reference_on_device: Some(self.targets()),
-            render: Some(took),
-            full_rate: Some(took),
-            ..request.answer(frame)
-        })
+        let frame = RenderedFrame { render: Some(took), full_rate: Some(took), ..request.answer(frame) };
+        let Some(samples) = request.reference_samples else {
+            return Ok(RenderedFrame { reference_on_device: Some(self.targets()), ..frame });
+        };
+        let color = self.kept_supersampled(request, samples)?;
+        Ok(RenderedFrame { reference: SourceFrame { color, ..frame.reference }, ..frame })
+    }
+
+    /// Mean of the colors of `samples` jittered frames, drawn once if all frames are equal.
+    fn kept_supersampled(&mut self, request: &FrameRequest<'_>, samples: u32) -> Result<Image<[f32; 3]>, InputError> {
+        if let Some((_, color)) = self.supersampled.as_ref().filter(|(held, _)| *held == samples) {
+            return Ok(color.clone());
+        }
+        let mut mean = Image::filled(self.of.info().size, [0.0; 3]);
+        for jitter_px in reference_offsets_px(samples) {
+            let (drawn, ..) = self.draw_points(request, jitter_px)?;
+            let color = finite(read_color(&self.device, &drawn.color)).0;
+            for (sum, color) in mean.pixels_mut().iter_mut().zip(color.pixels()) {
+                (0..3).for_each(|c| sum[c] += color[c] / samples as f32);
+            }
+        }
+        let is_still = self.of.info().still && !self.of.camera.is_steered();
+        self.supersampled = is_still.then(|| (samples, mean.clone()));
+        Ok(mean)
+    }
+
+    /// The full-rate frame with a jittered projection and one sample a pixel, read back.
+    fn points(
+        &mut self,
+        request: &FrameRequest<'_>,
+        jitter_px: [f32; 2],
+    ) -> Result<(SourceFrame, Elapsed), InputError> {
+        let (drawn, [view, previous], took) = self.draw_points(request, jitter_px)?;
+        let (color, nonfinite) = finite(read_color(&self.device, &drawn.color));
+        let frame = SourceFrame {
+            color,
+            depth: Some(read_distance(&self.device, &drawn.depth, drawn.near)),
+            motion: Some(self.device.read::<[f32; 2]>(&drawn.motion, 0)),
+            trust: None,
+            previous_from_current: Some(view.previous_from_current(&previous)),
+            cut: request.index == 0,
+            nonfinite,
+        };
+        Ok((frame, took))
+    }
+
+    /// Draws the full-rate frame with a jittered projection and one sample a pixel. The frame on the device, its view
+    /// and the previous one, and the time.
+    fn draw_points(
+        &mut self,
+        request: &FrameRequest<'_>,
+        jitter_px: [f32; 2],
+    ) -> Result<(DeviceFrame, [View; 2], Elapsed), InputError> {
+        let size = self.of.info().size;
+        let whole = Lattice { atlas_texel: Some([0; 2]), ..Lattice::covering(1, [0; 2], size, [0; 2]) };
+        let whole = Lattices::new(&[whole]).expect("one lattice covers the frame");
+        let (views, took) = self.submit_timed(|source, encoder| {
+            let views = source.pose(request).map(|view| view.jittered(jitter_px));
+            let device = &source.device.device;
+            let targets = fitted(&mut source.points, device, size);
+            let points = (&whole, PixelSamples::One);
+            source.raster.record_foveated(device, encoder, [&views[0], &views[1]], points, targets);
+            views
+        })?;
+        let targets = &self.points.as_ref().expect("they were drawn to").atlas;
+        Ok((on_device(&self.device, targets, self.raster.near()), views, took))
     }
 
     /// Distance of the near plane in metres, of the frame that was drawn last.
@@ -198,7 +268,7 @@ impl RasterSource {
 
     /// Poses the scene for a frame; the frame's view, and the previous one.
     fn pose(&mut self, request: &FrameRequest<'_>) -> [View; 2] {
-        let (views, times) = self.of.views_of(request);
+        let (views, times) = self.of.views(request.index);
         self.raster.pose(&self.of.scene, times[0], times[1]);
         views
     }
@@ -213,7 +283,7 @@ impl RasterSource {
     ) -> (&FoveatedTargets, Lattices) {
         let frame = self.submit(|source, encoder| {
             let [view, previous] = source.pose(&FrameRequest::full_rate(index));
-            source.record_lattices(encoder, [&view, &previous], lattices, layout)
+            source.record_lattices(encoder, [&view, &previous], (lattices, PixelSamples::Four), layout)
         });
         (self.foveated[layout as usize].as_ref().expect("they were drawn to"), frame.lattices)
     }
@@ -222,13 +292,13 @@ impl RasterSource {
         &mut self,
         encoder: &mut CommandEncoder,
         views: [&View; 2],
-        lattices: &Lattices,
+        (lattices, samples): (&Lattices, PixelSamples),
         layout: AtlasLayout,
     ) -> SparseFrame {
         let (lattices, size) = layout.place(lattices, self.of.info().size);
         let device = &self.device.device;
         let targets = fitted(&mut self.foveated[layout as usize], device, size);
-        self.raster.record_foveated(device, encoder, views, &lattices, targets);
+        self.raster.record_foveated(device, encoder, views, (&lattices, samples), targets);
         SparseFrame { atlas: on_device(&self.device, &targets.atlas, self.raster.near()), lattices }
     }
 
@@ -275,6 +345,17 @@ impl RasterSource {
     }
 }
 
+/// A color with black in place of pixels that are not finite, and their number.
+fn finite(color: Image<[f32; 3]>) -> (Image<[f32; 3]>, u64) {
+    let mut nonfinite = 0;
+    let color = color.map(|c| {
+        let usable = c.iter().all(|v| v.is_finite());
+        nonfinite += u64::from(!usable);
+        if usable { c } else { [0.0; 3] }
+    });
+    (color, nonfinite)
+}
+
 /// Color, depth and motion of targets.
 fn on_device(device: &Arc<Headless>, targets: &Targets, near: f32) -> DeviceFrame {
     let Targets { color, depth, motion, .. } = targets;
@@ -302,19 +383,21 @@ impl FrameSource for RasterSource {
             return Ok(RenderedFrame { render: Some(took), ..frame });
         };
         if request.wanted == Wanted::FullRate {
-            return Ok(whole);
+            let Some(jitter_px) = request.jitter_px else { return Ok(whole) };
+            let (frame, took) = self.points(request, jitter_px)?;
+            return Ok(RenderedFrame { render: Some(took), ..whole.jittered(frame, jitter_px) });
         }
         let (frame, took) = self.submit_timed(|source, encoder| {
             let [view, previous] = source.pose(request);
-            let frame = source.record_content(encoder, request, [&view, &previous], AtlasLayout::InPlace);
+            let frame = source.record_content(encoder, request, [view, previous], AtlasLayout::InPlace);
             // Depth and motion at every pixel, if lattices call for them, are drawn again: they are part of the time.
             if matches!(request.wanted, Wanted::Lattices(_)) && request.geometry == SparseGeometry::Full {
                 source.raster.record_surfaces(&source.device.device, encoder, &view, &previous);
             }
             frame
         })?;
-        let RenderedFrame { content, samples, .. } = frame;
-        Ok(RenderedFrame { content, samples, render: Some(took), ..whole })
+        let RenderedFrame { content, jitter_px, samples, .. } = frame;
+        Ok(RenderedFrame { content, jitter_px, samples, render: Some(took), ..whole })
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

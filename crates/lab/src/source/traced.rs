@@ -102,7 +102,7 @@ impl TracedSource {
 impl TracedSource {
     /// Poses the scene for a frame, and returns the frame's view and the previous one.
     fn pose(&mut self, request: &FrameRequest<'_>) -> Result<[View; 2], InputError> {
-        let (views, times) = self.of.views_of(request);
+        let (views, times) = self.of.views(request.index);
         if self.of.scene.duration_s() > 0.0 {
             self.world.pose(&self.of.scene, times[0], times[1]);
             self.tracer

@@ -1,7 +1,7 @@
 //! A scene, its light, and the camera that sees it: what every renderer of scenes starts from.
 
 use super::open::check_size;
-use super::{FrameRequest, ReadLimits, SceneCamera, SceneOptions, SourceInfo};
+use super::{ReadLimits, SceneCamera, SceneOptions, SourceInfo};
 use crate::error::InputError;
 use crate::scene::{Environment, Scene, SceneLimits};
 use crate::trace::view::View;
@@ -124,11 +124,6 @@ impl ViewedScene {
     /// Time of frame `index` in seconds.
     pub fn time_s(&self, index: u64) -> f64 {
         index as f64 / f64::from(self.fps)
-    }
-
-    /// The views that a request asks for: that of the frame and that of the previous one, and their times in seconds.
-    pub(super) fn views_of(&self, request: &FrameRequest<'_>) -> ([View; 2], [f64; 2]) {
-        self.views(request.index)
     }
 
     /// Views of frame `index` and of the previous one, and the times of both in seconds.

@@ -69,6 +69,18 @@ impl View {
         matrix.transpose().to_cols_array_2d().map(|row| row.map(|v| v as f32))
     }
 
+    /// This view with a jittered projection: what is at pixel `p` without jitter is at `p + jitter_px`.
+    ///
+    /// # Panics
+    /// If the jitter is not finite.
+    pub fn jittered(&self, jitter_px: [f32; 2]) -> Self {
+        let [width, height] = self.geometry.size_px().map(|s| s as f32);
+        let first = self.geometry.ray([-0.5 - jitter_px[0], -0.5 - jitter_px[1]]);
+        let last = self.geometry.ray([width - 0.5 - jitter_px[0], height - 0.5 - jitter_px[1]]);
+        let geometry = ViewGeometry::off_axis(self.geometry.size_px(), [first[0], last[0]], [first[1], last[1]]);
+        Self { geometry: geometry.expect("finite tangents"), ..*self }
+    }
+
     /// This view restricted to the points of a lattice: pixel (x, y) becomes the lattice's point (x, y).
     pub fn on_lattice(&self, lattice: &Lattice) -> Self {
         Self { lattice: Some(*lattice), ..*self }

@@ -2,6 +2,7 @@
 
 mod analytic;
 mod fixtures;
+mod jitter;
 mod metric;
 mod real_data;
 mod render_time;

@@ -43,6 +43,28 @@ pub struct FoveationArgs {
     /// With --foveation sparse: order in which the pixels of a block are sampled
     #[arg(long = "order", alias = "sample-order", value_parser = by_name::<SampleOrder>(), default_value = "bayer")]
     pub order: SampleOrder,
+    /// Jitter of the projection, in scenes and analytic clips: full-rate frames then have one sample a pixel, sparse
+    /// ones one a block, smr antialiases sparse frames, and --foveation off means sparse frames of blocks of one pixel
+    #[arg(long, value_parser = by_name::<Jitter>(), default_value = "off")]
+    pub jitter: Jitter,
+}
+
+/// Values of `--jitter`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Jitter {
+    /// By Halton's sequence.
+    Halton,
+    /// None.
+    Off,
+}
+
+impl Named for Jitter {
+    fn rows() -> Vec<(Self, &'static str, &'static str)> {
+        vec![
+            (Self::Halton, "halton", "By Halton's sequence of bases 3 and 5, which does not repeat"),
+            (Self::Off, "off", "None"),
+        ]
+    }
 }
 
 impl FoveationArgs {
@@ -50,6 +72,11 @@ impl FoveationArgs {
     /// whether samples are rendered, not taken from given frames.
     #[must_use]
     pub fn with_defaults(self, is_sparse: bool, is_rendered: bool) -> Self {
+        if self.is_jittered() && self.filter() == FilterName::Of(Filter::Off) {
+            let filter = Some(FilterName::Of(Filter::Sparse));
+            let sparse = Self { filter, fovea: 0.0, mid: 0.0, rate_mid: 1, rate_far: 1, ..self };
+            return sparse.with_defaults(is_sparse, is_rendered);
+        }
         let filter = FilterName::Of(if is_sparse { Filter::Sparse } else { Filter::Mip });
         let named = Self { filter: Some(self.filter.unwrap_or(filter)), ..self };
         let geometry = match named.may_lack_geometry() && is_rendered {
@@ -62,6 +89,11 @@ impl FoveationArgs {
     /// How frames are foveated.
     pub fn filter(&self) -> FilterName {
         self.filter.unwrap_or(FilterName::Of(Filter::Mip))
+    }
+
+    /// Whether the projection is jittered.
+    pub fn is_jittered(&self) -> bool {
+        self.jitter == Jitter::Halton
     }
 
     /// Depth and motion of frames.
@@ -123,7 +155,11 @@ impl FoveationArgs {
     }
 
     /// Refuses options that do not apply to this foveation. `is_rasterised`: frames are those of a rasterised scene.
-    pub fn check(&self, is_rasterised: bool) -> Result<(), Failure> {
+    /// `is_analytic`: those of an analytic one.
+    pub fn check(&self, is_rasterised: bool, is_analytic: bool) -> Result<(), Failure> {
+        if self.is_jittered() {
+            self.check_jitter(is_rasterised, is_analytic)?;
+        }
         let name = self.filter().name();
         let refuse = |text: String| Err(Failure::Input(text));
         if self.filter().is_quad_views() && !is_rasterised {
@@ -145,6 +181,25 @@ impl FoveationArgs {
             return refuse(format!("--order {order}: applies to sparse frames only; add --foveation sparse"));
         }
         Ok(())
+    }
+}
+
+impl FoveationArgs {
+    /// Refuses what cannot be jittered.
+    fn check_jitter(&self, is_rasterised: bool, is_analytic: bool) -> Result<(), Failure> {
+        let name = self.filter().name();
+        let text = if !is_rasterised && !is_analytic {
+            "moves a projection; give a scene (.gltf, .glb, builtin:NAME) with --source raster or analytic:NAME, since \
+             the samples of traced frames lie anywhere in their pixels already"
+                .into()
+        } else if self.filter().is_quad_views() {
+            format!("--foveation {name} has four samples a pixel; use --foveation sparse")
+        } else if is_rasterised && self.may_lack_geometry() && self.geometry() == SparseGeometry::Full {
+            "jittered samples have their own depth and motion; leave out --geometry full".into()
+        } else {
+            return Ok(());
+        };
+        Err(Failure::Input(format!("--jitter halton: {text}")))
     }
 }
 

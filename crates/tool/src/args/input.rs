@@ -87,6 +87,11 @@ impl InputArgs {
         self.is_scene() && self.source != Some(SourceName::Trace)
     }
 
+    /// Whether the frames are those of an analytic scene.
+    pub fn is_analytic(&self) -> bool {
+        self.name.starts_with("analytic:")
+    }
+
     /// Opens files directly, and scenes with a renderer.
     pub fn open(&self, rendering: &Rendering) -> Result<Box<dyn FrameSource + Send>, Failure> {
         let refuse = |option: &str| {

@@ -46,9 +46,11 @@ pub struct RunArgs {
     pub frames: Option<u64>,
     #[command(flatten)]
     pub input: InputArgs,
-    /// With --sampling: samples per pixel of the full-rate frames that are the reference for scores
-    #[arg(long, default_value_t = 64, value_parser = parse_samples, value_name = "N")]
-    pub reference_spp: u32,
+    /// Samples per pixel of the full-rate frames that are the reference for scores, in scenes and analytic clips, and
+    /// which simulators foveate without --jitter. Default: 16 in rasterised scenes and jittered analytic clips, 64 with
+    /// --sampling, else what the input has
+    #[arg(long, alias = "reference-spp", value_parser = parse_samples, value_name = "N")]
+    pub reference_samples: Option<u32>,
     #[command(flatten)]
     pub sampling: SamplingArgs,
     /// With --sampling and the method smr: trace more samples where the history's confidence is low and fewer where it
@@ -118,7 +120,7 @@ impl RunArgs {
         let foveated = self.sampling()?.map(|pattern| FoveatedSampling {
             pattern,
             sparse: self.is_sparse().then_some(self.foveation.order),
-            reference_spp: self.reference_spp,
+            reference_spp: self.reference_samples.unwrap_or(64),
         });
         Ok(Rendering { backend: backend.clone(), seed: self.seed, foveated })
     }
@@ -151,6 +153,22 @@ impl RunArgs {
             }
         }
         Ok(Some(sampling))
+    }
+
+    /// Samples a pixel of rasterised and analytic references; `None`: what the input has.
+    pub fn reference_samples(&self) -> Result<Option<u32>, Failure> {
+        let default = (self.input.is_rasterised() || self.foveation.is_jittered()).then_some(16);
+        if self.input.is_rasterised() || self.input.is_analytic() {
+            return Ok(self.reference_samples.or(default));
+        }
+        if self.reference_samples.is_some() && !self.input.is_scene() {
+            return Err(Failure::Input(format!(
+                "--reference-samples: {} has frames already; give a scene (.gltf, .glb, builtin:NAME) or analytic:NAME, or \
+                 leave the option out",
+                self.input.name
+            )));
+        }
+        Ok(None)
     }
 
     /// Whether frames are given as samples: of a simulator, or of a sampling pattern.

@@ -30,7 +30,20 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     refuses(&run(still, &out, &["--exposure", "65"]), &["--exposure", "64 stops"]);
     refuses(&run(still, &out, &["--exposure", "NaN"]), &["--exposure"]);
     refuses(&run(still, &out, &["--spp", "0"]), &["--spp", "1 to"]);
-    refuses(&run(still, &out, &["--reference-spp", "0"]), &["--reference-spp", "1 to"]);
+    refuses(&run(still, &out, &["--reference-spp", "0"]), &["--reference-samples", "1 to"]);
+    let frames = afterimage_testing::workspace().join("fixtures/sequences/lateral_160x90");
+    let frames = frames.to_str().unwrap();
+    refuses(&run(frames, &out, &["--reference-samples", "4"]), &["--reference-samples", "scene"]);
+    refuses(&run(frames, &out, &["--jitter", "halton"]), &["--jitter halton", "--source raster", "analytic:NAME"]);
+    refuses(&run("builtin:cubes", &out, &["--jitter", "halton", "--source", "trace"]), &["--jitter halton", "raster"]);
+    refuses(
+        &run("builtin:cubes", &out, &["--jitter", "halton", "--foveation", "layers"]),
+        &["--jitter halton", "--foveation sparse"],
+    );
+    refuses(
+        &run("builtin:cubes", &out, &["--jitter", "halton", "--geometry", "full"]),
+        &["--jitter halton", "leave out --geometry full"],
+    );
     refuses(&run(still, &out, &["--start=-1"]), &["start"]);
     refuses(&run(still, &out, &["--wrs-bias", "exponential:x"]), &["LAMBDA"]);
     refuses(&run(still, &out, &["--gate-divisor", "0"]), &["gate divisor"]);

@@ -379,7 +379,7 @@ fn the_time_of_a_frame_is_that_of_the_renderer_and_the_post_process() {
     let mut render_ms = vec![];
     for (name, more) in kinds {
         let out = folder.text(name);
-        let source = if name == "traced" { &[][..] } else { &["--source", "raster"] };
+        let source = if name == "traced" { &[][..] } else { &["--source", "raster", "--reference-samples", "2"] };
         let small = ["--size", "320x180", "--frames", "5", "--method", "none,smr", "--backend", "cpu", "--no-flip"];
         let said = succeeds(&run("builtin:cubes", &out, &[source, more, &small].concat()));
         assert!(said.contains("render +   post =  total ms"), "{said}");

@@ -5,16 +5,20 @@ use super::scene::{Placed, Stage};
 use super::shape::{Ray, Shape, Surface};
 use super::texture::Spot;
 use super::tile::{Outline, Tile};
+use crate::source::reference_offsets_px;
 use afterimage::ViewGeometry;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 /// Side in pixels of a [`Tile`].
 const SIDE: usize = 16;
+/// Footprint width of the only sample of a pixel, in pixels.
+const SHARP: f32 = 1.2;
 /// Nearest depth of a hit, in metres.
 const NEAR: f32 = 1e-3;
 
 /// Sample pattern of color: offsets from the pixel centre, the same for every pixel and frame.
+#[derive(Clone)]
 pub(super) struct Pattern {
     offsets: Vec<[f32; 2]>,
     /// Footprint width of one sample, in pixels.
@@ -33,7 +37,12 @@ impl Pattern {
                 [i, y].map(|k| (k as f32 + 0.5) / count as f32 - 0.5)
             })
             .collect();
-        Self { offsets, footprint: 1.2 / (count as f32).sqrt() }
+        Self { offsets, footprint: SHARP / (count as f32).sqrt() }
+    }
+
+    /// `count` samples that are filtered as single samples of a pixel are: their mean is that of jittered frames.
+    pub fn supersampled(count: u32) -> Self {
+        Self { offsets: reference_offsets_px(count).collect(), footprint: SHARP }
     }
 }
 

@@ -89,8 +89,8 @@ pub struct AnalyticSource {
     view: ViewGeometry,
     pattern: Pattern,
     fps: f64,
-    /// Cached frame 0, for scenes whose later frames derive from it.
-    base: Option<SourceFrame>,
+    /// Cached frame 0, for scenes whose later frames derive from it, and its samples a pixel.
+    base: Option<(u32, SourceFrame)>,
 }
 
 impl AnalyticSource {
@@ -179,7 +179,8 @@ impl AnalyticSource {
     }
 
     /// Frame `index` of a projection that is jittered by `jitter_px` (what is at `p` without jitter is at
-    /// `p + jitter_px`), with one color sample a pixel, as a rasterizer draws it. Motion vectors contain no jitter.
+    /// `p + jitter_px`), with one color sample a pixel, as a rasterizer draws it. Motion vectors contain no jitter. The
+    /// mean of such frames is the frame with that many samples a pixel ([`FrameRequest::reference_samples`]).
     ///
     /// # Panics
     /// If the jitter is not finite.
@@ -188,7 +189,8 @@ impl AnalyticSource {
         let first = self.view.ray([-0.5 - jitter_px[0], -0.5 - jitter_px[1]]);
         let last = self.view.ray([width - 0.5 - jitter_px[0], height - 0.5 - jitter_px[1]]);
         let view = ViewGeometry::off_axis(self.info.size, [first[0], last[0]], [first[1], last[1]]);
-        self.cast(index, &view.expect("finite tangents"), &Pattern::new(1))
+        let frame = self.cast(index, &view.expect("finite tangents"), &Pattern::new(1));
+        SourceFrame { trust: self.trust(index), ..self.lit(frame, index) }
     }
 
     fn caster<'a>(&'a self, stage: &'a Stage) -> Caster<'a> {
@@ -227,23 +229,22 @@ impl AnalyticSource {
         }
     }
 
-    /// Frame 0 from the cache.
-    fn cached(&mut self) -> SourceFrame {
-        if let Some(base) = &self.base {
+    /// Frame 0 from the cache, with a pattern of samples.
+    fn cached(&mut self, pattern: &Pattern, samples: u32) -> SourceFrame {
+        if let Some((_, base)) = self.base.as_ref().filter(|(held, _)| *held == samples) {
             return base.clone();
         }
-        let base = self.cast(0, &self.view, &self.pattern);
-        self.base.insert(base).clone()
+        let base = self.cast(0, &self.view, pattern);
+        self.base.insert((samples, base)).1.clone()
     }
 
-    /// Frame 0 with the panel's pixels cast again.
-    fn scrolled(&mut self, index: u64) -> SourceFrame {
-        let mut frame = self.cached();
+    /// `frame`, which is frame 0 of `scroll`, with the panel's pixels cast again for frame `index`.
+    fn scrolled(&self, mut frame: SourceFrame, index: u64, pattern: &Pattern) -> SourceFrame {
         let stage = self.stage(index);
         let Some(panel) = stage.panel else {
             return frame;
         };
-        let caster = self.caster(&stage);
+        let caster = Caster::new(&stage, &self.view, pattern);
         let fresh = caster.render(None, |x, y, tile| {
             (tile.candidates.contains(&(panel as u16)) && caster.touches(x, y, tile, panel))
                 .then(|| caster.color(x, y, tile))
@@ -251,8 +252,34 @@ impl AnalyticSource {
         for (pixel, fresh) in frame.color.pixels_mut().iter_mut().zip(fresh) {
             *pixel = fresh.unwrap_or(*pixel);
         }
-        frame.trust = self.panel_mask(index).map(|mask| mask.map(|panel| if panel { 0.0 } else { 1.0 }));
+        SourceFrame { trust: self.trust(index), ..frame }
+    }
+
+    /// History confidence: none on the panel without motion vectors.
+    fn trust(&self, index: u64) -> Option<Image<f32>> {
+        self.panel_mask(index).map(|mask| mask.map(|panel| if panel { 0.0 } else { 1.0 }))
+    }
+
+    /// A frame of `light-step` in the light of frame `index`; those of other scenes as they are.
+    fn lit(&self, mut frame: SourceFrame, index: u64) -> SourceFrame {
+        let [from, until] = LIGHT_STEP_SECONDS;
+        if self.kind == Kind::LightStep && (from..until).contains(&(index as f64 / self.fps)) {
+            for pixel in frame.color.pixels_mut() {
+                *pixel = pixel.map(|channel| channel * LIGHT_STEP);
+            }
+        }
         frame
+    }
+
+    /// Full-rate frame `index`, with `samples` samples a pixel instead of its own, if given.
+    fn full_rate(&mut self, index: u64, samples: Option<u32>) -> SourceFrame {
+        let pattern = samples.map_or_else(|| self.pattern.clone(), Pattern::supersampled);
+        let samples = samples.unwrap_or_default();
+        let is_derived = matches!(self.kind, Kind::Still | Kind::Scroll | Kind::LightStep);
+        let frame = if is_derived { self.cached(&pattern, samples) } else { self.cast(index, &self.view, &pattern) };
+        let frame = if self.kind == Kind::Scroll { self.scrolled(frame, index, &pattern) } else { frame };
+        let frame = self.lit(frame, index);
+        SourceFrame { cut: index == 0, ..frame }
     }
 }
 
@@ -267,24 +294,11 @@ impl FrameSource for AnalyticSource {
 
     fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
         let index = request.index;
-        let mut frame = match self.kind {
-            Kind::Lateral | Kind::Turn | Kind::Walk | Kind::Occluder | Kind::Spin => {
-                self.cast(index, &self.view, &self.pattern)
-            }
-            Kind::Still => self.cached(),
-            Kind::Scroll => self.scrolled(index),
-            Kind::LightStep => {
-                let mut frame = self.cached();
-                let [from, until] = LIGHT_STEP_SECONDS;
-                if (from..until).contains(&(index as f64 / self.fps)) {
-                    for pixel in frame.color.pixels_mut() {
-                        *pixel = pixel.map(|channel| channel * LIGHT_STEP);
-                    }
-                }
-                frame
-            }
-        };
-        frame.cut = index == 0;
-        Ok(RenderedFrame::full_rate(index, request.gaze_px, frame))
+        let frame = self.full_rate(index, request.reference_samples);
+        let frame = RenderedFrame::full_rate(index, request.gaze_px, frame);
+        Ok(match request.jitter_px {
+            Some(jitter_px) => frame.jittered(self.jittered_frame(index, jitter_px), jitter_px),
+            None => frame,
+        })
     }
 }

@@ -54,12 +54,13 @@ impl Executor for DeviceExecutor {
 
     fn set(&mut self, frame: &RenderedFrame, candidate: &Candidate<'_>) -> Result<(), FrameError> {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        let is_simulated = matches!(frame.content, Content::FullRate);
-        if !(is_simulated && self.has_still && frame.reference_on_device.is_none()) {
+        let is_full_rate = matches!(frame.content, Content::FullRate);
+        let is_simulated = is_full_rate || matches!(frame.content, Content::Jittered(_));
+        if !(is_full_rate && self.has_still && frame.reference_on_device.is_none()) {
             self.inputs.set(&mut encoder, frame);
         }
         if is_simulated {
-            self.has_still = self.is_still;
+            self.has_still = self.is_still && is_full_rate;
             self.inputs.foveate(&mut encoder, from_ref(&candidate.view), None)?;
         }
         self.gpu.queue.submit([encoder.finish()]);

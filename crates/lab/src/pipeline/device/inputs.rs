@@ -101,6 +101,10 @@ impl DeviceInputs {
                     self.write_rgb(&self.full, &frame.reference.color);
                 }
             }
+            Content::Jittered(jittered) => {
+                self.given = self.upload_geometry(jittered);
+                self.write_rgb(&self.full, &jittered.color);
+            }
             Content::Foveated(foveated) => {
                 self.given = self.upload_geometry(&frame.reference);
                 self.write_rgb(&self.foveated, &foveated.color);

@@ -5,7 +5,7 @@ use afterimage::{Filter, Foveation, Image, Lattice, Lattices, MethodKind, Settin
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
-use afterimage_lab::raster::{AtlasLayout, FoveatedTargets, Raster, Targets};
+use afterimage_lab::raster::{AtlasLayout, FoveatedTargets, PixelSamples, Raster, Targets};
 use afterimage_lab::scene::{
     Environment, Material, Pose, Scene, SceneLimits, Texture, TextureRef, Triangles, Wrap, builtin,
 };
@@ -99,7 +99,13 @@ impl Rig {
         afterimage_testing::gpu::validated(&gpu.device, "a foveated frame", || {
             let targets = FoveatedTargets::new(&gpu.device, size);
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            self.raster.record_foveated(&gpu.device, &mut encoder, [&views[0], &views[1]], &lattices, &targets);
+            self.raster.record_foveated(
+                &gpu.device,
+                &mut encoder,
+                [&views[0], &views[1]],
+                (&lattices, PixelSamples::Four),
+                &targets,
+            );
             gpu.queue.submit([encoder.finish()]);
             Foveated { lattices, atlas: self.read(&targets.atlas) }
         })

@@ -7,7 +7,7 @@ use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{
     ContextDesc, DepthConvention, Filter, Foveation, Gaze, Image, MethodKind, Settings, ViewFrame, ViewGeometry,
 };
-use afterimage_lab::raster::{AtlasLayout, FoveatedTargets};
+use afterimage_lab::raster::{AtlasLayout, FoveatedTargets, PixelSamples};
 use afterimage_lab::trace::view::View;
 use glam::{DMat4, DVec3};
 
@@ -45,7 +45,13 @@ fn shown(rig: &mut Rig, eyes: &[usize], method: MethodKind, gaze_of: [usize; 2])
             let lattices = foveation.lattices(now.geometry(), gaze_px, index);
             let (lattices, size) = AtlasLayout::Compact.place(&lattices, SIZE);
             let targets = FoveatedTargets::new(&gpu.device, size);
-            rig.raster.record_foveated(&gpu.device, &mut encoder, [&now, &before], &lattices, &targets);
+            rig.raster.record_foveated(
+                &gpu.device,
+                &mut encoder,
+                [&now, &before],
+                (&lattices, PixelSamples::Four),
+                &targets,
+            );
             let view = ViewFrame {
                 lattices: Some(lattices.with_geometry_at_samples()),
                 previous_from_current: Some(now.previous_from_current(&before)),

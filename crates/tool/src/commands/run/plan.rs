@@ -7,7 +7,7 @@ use crate::args::pattern::SamplingName;
 use crate::args::{MethodName, Named};
 use crate::clip::{self, Clip, title};
 use crate::failure::Failure;
-use afterimage::{Filter, Foveation, MethodKind, Settings};
+use afterimage::{Filter, Foveation, Method, MethodKind, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::RunKind;
 use afterimage_lab::quad_views::QuadViewLayout;
@@ -40,7 +40,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
         return refuse("--guided: the history of smr guides traced samples; add --sampling and the method smr".into());
     }
     let foveation = foveation(args)?;
-    args.foveation.check(args.input.is_rasterised())?;
+    args.foveation.check(args.input.is_rasterised(), args.input.is_analytic())?;
     let fps = args.input.fps(info);
     let geometry = args.input.geometry(info)?;
     let mut methods: Vec<(&'static str, RunKind)> = vec![];
@@ -62,6 +62,8 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
             sparse_geometry: args.foveation.geometry(),
             quad_views: args.foveation.quad_views(),
             sample_order: args.foveation.order,
+            jitter: args.foveation.is_jittered(),
+            reference_samples: args.reference_samples()?,
             methods,
             gaze: track.px,
             exposure_ev: args.exposure,
@@ -136,7 +138,10 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
             )));
         }
     };
-    let settings = Settings { foveation, ..args.wrs.settings(method, args.seed, sampling.is_some()) };
+    let mut settings = Settings { foveation, ..args.wrs.settings(method, args.seed, sampling.is_some()) };
+    if let Method::Smr(smr) = &mut settings.method {
+        smr.antialias = args.foveation.is_jittered() && foveation.filter == Filter::Sparse;
+    }
     settings.validate()?;
     if let Some(part) = args.ablation.without.filter(|part| part.methods.contains(&method)) {
         if args.backend != BackendName::Gpu {

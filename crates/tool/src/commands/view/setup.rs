@@ -30,7 +30,7 @@ impl Setup {
         if let Some(scale) = args.internal_scale.filter(|s| !(*s > 0.0 && *s <= 1.0)) {
             return refuse(format!("--internal-scale {scale}: expected above 0 and at most 1"));
         }
-        args.foveation.check(args.input.is_rasterised())?;
+        args.foveation.check(args.input.is_rasterised(), args.input.is_analytic())?;
         let (fps, geometry) = (args.input.fps(info), args.input.geometry(info)?);
         let gaze = args.gaze.clone().unwrap_or_else(|| "synthetic:0".into());
         let gaze = GazeArgs { gaze, gaze_map: args.gaze_map, start: args.start };

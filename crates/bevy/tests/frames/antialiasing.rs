@@ -1,0 +1,63 @@
+//! Sparse frames with a jitter are those of a renderer with several samples a pixel.
+
+use crate::common::grille::GrillePlugin;
+use crate::common::headless::{Headless, psnr_db};
+use crate::common::scene::{ScenePlugin, TONEMAPPING, stroll};
+use crate::{SIZE, kind};
+use bevy::prelude::*;
+use bevy_afterimage::testing::Planted;
+use bevy_afterimage::{Afterimage, Foveated, FoveationKind, Gaze};
+
+/// Samples a pixel along each side, of the reference.
+const SAMPLES: u32 = 4;
+
+/// A frame of a still camera, after `frames`, with or without an error.
+fn still(size: UVec2, components: impl Bundle, frames: usize, planted: Planted) -> Vec<u8> {
+    let mut headless = Headless::new(size, (ScenePlugin { lamps: 4, moves: false }, GrillePlugin));
+    let target = headless.render_target();
+    headless
+        .app
+        .world_mut()
+        .spawn((Camera3d::default(), Msaa::Off, target, TONEMAPPING, stroll(1.0)))
+        .insert(components);
+    headless.app.insert_resource(planted);
+    headless.app.world_mut().resource_mut::<Gaze>().set(Vec2::new(0.3, 0.5));
+    headless.frames(frames);
+    assert_eq!(headless.problems(), &[] as &[String]);
+    headless.read()
+}
+
+/// Mean of the samples of a pixel, in linear light.
+fn averaged(rgba: &[u8]) -> Vec<u8> {
+    let width = SIZE.x * SAMPLES;
+    let pixel = |i: u32| {
+        let corner = UVec2::new(i % SIZE.x, i / SIZE.x) * SAMPLES;
+        let samples = (0..SAMPLES * SAMPLES).map(|k| {
+            let at = 4 * ((corner.y + k / SAMPLES) * width + corner.x + k % SAMPLES) as usize;
+            Color::srgb_u8(rgba[at], rgba[at + 1], rgba[at + 2]).to_linear().to_vec3()
+        });
+        let mean = samples.sum::<Vec3>() / (SAMPLES * SAMPLES) as f32;
+        Color::from(LinearRgba::from_vec3(mean)).to_srgba().to_u8_array()
+    };
+    (0..SIZE.element_product()).flat_map(pixel).collect()
+}
+
+#[test]
+fn a_still_view_becomes_that_of_many_samples_a_pixel() {
+    let right = Planted::default();
+    let reference = averaged(&still(SIZE * SAMPLES, (), 3, right));
+    let psnr = |shot: Vec<u8>| psnr_db(&shot, &reference);
+    let one = psnr(still(SIZE, kind(FoveationKind::Off), 3, right));
+    // Each pixel of a block of 4 x 4 is sampled six times.
+    let sparse = |antialias, planted| {
+        psnr(still(SIZE, (Afterimage { antialias, ..default() }, Foveated::default()), 96, planted))
+    };
+    let [without, with] = [false, true].map(|antialias| sparse(antialias, right));
+    let wrong = sparse(true, Planted { jitter: true, ..right });
+    println!(
+        "one sample a pixel {one:.2} dB, sparse {without:.2} dB, antialiased {with:.2} dB, told the opposite jitter \
+         {wrong:.2} dB"
+    );
+    assert!(with > one + 3.0, "one sample a pixel {one:.2} dB, antialiased {with:.2} dB");
+    assert!(with > wrong + 1.0, "{with:.2} dB, told the opposite jitter {wrong:.2} dB");
+}

@@ -1,0 +1,192 @@
+//! Jittered frames, and references that are sums of them.
+
+use afterimage::kernel::color::luma;
+use afterimage::{Filter, Foveation, Image, Method, Settings, Smr, ViewGeometry};
+use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::frame::{Content, RenderedFrame};
+use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
+use afterimage_lab::pipeline::{Pipeline, Processor, RunKind};
+use afterimage_lab::source::{
+    AnalyticSource, FrameRequest, FrameSource, RasterSource, ReadLimits, SceneOptions, Wanted, reference_offsets_px,
+};
+use std::sync::Arc;
+
+const SIZE: [u32; 2] = [96, 54];
+
+/// Rasterised cubes, which move; `None` without an adapter.
+fn cubes() -> Option<(RasterSource, Arc<Headless>)> {
+    afterimage_testing::gpu::adapter()?;
+    let device = Headless::find_roomy(true).unwrap();
+    let options = SceneOptions { size: Some(SIZE), hfov_deg: None, fps: None };
+    let source = RasterSource::open("builtin:cubes", &ReadLimits::default(), &options, None, device.clone());
+    Some((source.unwrap(), device))
+}
+
+fn jittered(source: &mut dyn FrameSource, index: u64, jitter_px: [f32; 2]) -> RenderedFrame {
+    source.render(&FrameRequest { jitter_px: Some(jitter_px), ..FrameRequest::full_rate(index) }).unwrap()
+}
+
+/// Largest difference of luma, and the number of pixels with more than a hundredth.
+fn difference(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>) -> (f32, usize) {
+    let all = a.pixels().iter().zip(b.pixels()).map(|(&a, &b)| (luma(a.into()) - luma(b.into())).abs());
+    let all: Vec<f32> = all.collect();
+    (all.iter().copied().fold(0.0, f32::max), all.iter().filter(|&&d| d > 0.01).count())
+}
+
+/// The frame moved by a whole pixel shows pixel (x - 1, y) at (x, y), with its depth and motion.
+fn moves_by_whole_pixels(source: &mut dyn FrameSource) {
+    let [at, moved] = [[0.0, 0.0], [1.0, 0.0]].map(|px| jittered(source, 3, px));
+    assert_eq!((at.jitter_px, moved.jitter_px), ([0.0; 2], [1.0, 0.0]));
+    let [at, moved] = [at.given(), moved.given()];
+    let (mut wrong, mut all) = (0, 0);
+    for y in 0..SIZE[1] {
+        for x in 1..SIZE[0] {
+            let near = |a: f32, b: f32, scale: f32| a == b || (a - b).abs() <= 1e-3 * scale;
+            let [from, to] = [[x - 1, y], [x, y]].map(|px| px.map(|v: u32| v as usize));
+            let (d0, d1) =
+                (at.depth.as_ref().unwrap().at(from[0], from[1]), moved.depth.as_ref().unwrap().at(to[0], to[1]));
+            let (m0, m1) =
+                (at.motion.as_ref().unwrap().at(from[0], from[1]), moved.motion.as_ref().unwrap().at(to[0], to[1]));
+            let (c0, c1) = (at.color.at(from[0], from[1]), moved.color.at(to[0], to[1]));
+            let is_same = near(d0, d1, d0.min(1e6))
+                && (0..2).all(|i| near(m0[i], m1[i], 1.0))
+                && (0..3).all(|i| near(c0[i], c1[i], 10.0));
+            wrong += usize::from(!is_same);
+            all += 1;
+        }
+    }
+    println!("{wrong} of {all} pixels differ");
+    // Edges that pass through a pixel's centre fall to either side.
+    assert!(wrong * 200 <= all, "{wrong} of {all}");
+}
+
+#[test]
+fn analytic_frames_move_with_the_jitter_and_motion_does_not_contain_it() {
+    moves_by_whole_pixels(&mut AnalyticSource::new("lateral", SIZE, 70.0, 60.0).unwrap());
+}
+
+#[test]
+fn rasterised_frames_move_with_the_jitter_and_motion_does_not_contain_it() {
+    let Some((mut source, _)) = cubes() else { return };
+    moves_by_whole_pixels(&mut source);
+}
+
+/// A reference of `n` samples a pixel is the mean of `n` jittered frames, whatever else is asked for.
+fn is_the_mean_of_jittered_frames(source: &mut dyn FrameSource, index: u64) {
+    const N: u32 = 8;
+    let mut mean = Image::filled(SIZE, [0.0; 3]);
+    for offset in reference_offsets_px(N) {
+        let frame = jittered(source, index, offset.map(|v| -v));
+        for (sum, color) in mean.pixels_mut().iter_mut().zip(frame.given().color.pixels()) {
+            (0..3).for_each(|c| sum[c] += color[c] / N as f32);
+        }
+    }
+    let request = FrameRequest { reference_samples: Some(N), ..FrameRequest::full_rate(index) };
+    let plain = source.render(&request).unwrap();
+    let jittered = source.render(&FrameRequest { jitter_px: Some([0.3, -0.2]), ..request }).unwrap();
+    assert!(matches!((&plain.content, &jittered.content), (Content::FullRate, Content::Jittered(_))));
+    assert_eq!(plain.reference.color.pixels(), jittered.reference.color.pixels());
+    assert_eq!(plain.reference.depth.unwrap().pixels(), jittered.reference.depth.as_ref().unwrap().pixels());
+    let (most, many) = difference(&mean, &plain.reference.color);
+    println!("largest difference {most}, {many} pixels above 0.01");
+    assert!(most < 0.2 && many < 5, "{most}, {many}");
+    let (most, many) = difference(&mean, &jittered.given().color);
+    assert!(many > 50, "one sample a pixel is another picture: {most}, {many}");
+}
+
+#[test]
+fn references_of_analytic_frames_are_means_of_jittered_ones() {
+    for (scene, index) in [("still", 2), ("turn", 5), ("light-step", 40), ("scroll", 3)] {
+        is_the_mean_of_jittered_frames(&mut AnalyticSource::new(scene, SIZE, 70.0, 60.0).unwrap(), index);
+    }
+}
+
+#[test]
+fn references_of_rasterised_frames_are_means_of_jittered_ones() {
+    let Some((mut source, _)) = cubes() else { return };
+    is_the_mean_of_jittered_frames(&mut source, 4);
+}
+
+#[test]
+fn samples_of_jittered_lattices_are_those_of_the_jittered_full_rate_frame() {
+    let Some((mut source, _)) = cubes() else { return };
+    let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..Foveation::default() };
+    let geometry = ViewGeometry::flat(SIZE, source.info().hfov_deg.unwrap()).unwrap();
+    let lattices = foveation.lattices(&geometry, [48.0, 27.0], 4);
+    let jitter_px = Some([0.3, -0.4]);
+    let full = jittered(&mut source, 4, [0.3, -0.4]);
+    let request = FrameRequest {
+        wanted: Wanted::Lattices(lattices),
+        geometry: SparseGeometry::Samples,
+        jitter_px,
+        ..FrameRequest::full_rate(4)
+    };
+    let sparse = source.render(&request).unwrap();
+    assert_eq!(sparse.jitter_px, [0.3, -0.4]);
+    let Content::OnDevice(content) = &sparse.content else { panic!("lattices stay on the device") };
+    let (color, (depth, motion)) = (content.read_color().unwrap(), content.read_geometry().unwrap());
+    let (mut wrong, mut all) = (0, 0);
+    for lattice in content.lattices().unwrap().as_slice() {
+        let texel = lattice.atlas_texel.unwrap();
+        for j in 0..lattice.points[1] {
+            for i in 0..lattice.points[0] {
+                let px = [lattice.first_px[0] + lattice.step * i, lattice.first_px[1] + lattice.step * j];
+                if px[0] >= SIZE[0] || px[1] >= SIZE[1] {
+                    continue;
+                }
+                let [px, at] = [px, [texel[0] + i, texel[1] + j]].map(|px| px.map(|v| v as usize));
+                let full = full.given();
+                let (d0, d1) = (full.depth.as_ref().unwrap().at(px[0], px[1]), depth.at(at[0], at[1]));
+                let (m0, m1) = (full.motion.as_ref().unwrap().at(px[0], px[1]), motion.at(at[0], at[1]));
+                let is_same = (d0 == d1 || (d0 - d1).abs() < 1e-3 * d0.min(1e6))
+                    && (0..2).all(|i| (m0[i] - m1[i]).abs() < 1e-2)
+                    && (luma(full.color.at(px[0], px[1]).into()) - luma(color.at(at[0], at[1]).into())).abs() < 0.01;
+                wrong += usize::from(!is_same);
+                all += 1;
+            }
+        }
+    }
+    println!("{wrong} of {all} samples differ");
+    assert!(all > 400 && wrong * 100 <= all, "{wrong} of {all}");
+}
+
+/// Mean squared errors after some jittered frames: of what smr shows, and of one sample a pixel.
+fn errors(source: &mut AnalyticSource, processor: &dyn Processor, frames: u64) -> ([f64; 2], Image<[f32; 3]>) {
+    let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..Foveation::default() };
+    let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
+    let run = RunKind::PostProcess(Settings { method, ..Settings::default() });
+    let mut pipeline = Pipeline::new(*source.view(), foveation, &[run], true, &[], processor)
+        .unwrap()
+        .with_sparse(SparseGeometry::Full, SampleOrder::default())
+        .with_reference_samples(Some(16))
+        .with_jitter();
+    let mut last = None;
+    for index in 0..frames {
+        let frame = source.render(&pipeline.request(index, Some([48.0, 27.0]))).unwrap();
+        let image = pipeline.step(&frame).unwrap().outputs.remove(0).image;
+        last = Some((image, frame));
+    }
+    let (image, frame) = last.unwrap();
+    let error = |shown: &Image<[f32; 3]>| {
+        let pairs = shown.pixels().iter().zip(frame.reference.color.pixels());
+        let square = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum::<f64>();
+        pairs.map(square).sum::<f64>() / shown.pixels().len() as f64
+    };
+    ([error(&image), error(&frame.given().color)], image)
+}
+
+#[test]
+fn a_jittered_still_converges_to_the_antialiased_reference_on_both_processors() {
+    let mut source = AnalyticSource::new("still", SIZE, 40.0, 60.0).unwrap();
+    let ([shown, single], on_cpu) = errors(&mut source, &Backend::Cpu, 64);
+    println!("mean squared error {shown:.6}, of one sample a pixel {single:.6}");
+    assert!(shown < 0.4 * single, "{shown} of {single}");
+    if afterimage_testing::gpu::adapter().is_none() {
+        return;
+    }
+    let device = Headless::find_roomy(true).unwrap();
+    let (_, on_gpu) = errors(&mut source, &Backend::Gpu(device.clone()), 64);
+    if device.is_software() {
+        assert_eq!(on_cpu.pixels(), on_gpu.pixels(), "twins");
+    }
+}
