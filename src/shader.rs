@@ -80,6 +80,7 @@ pub static MODULES: &[Module] = &[
     module!("pass", "resize_reservoirs_pass"),
     module!("pass", "resize_surfaces_pass"),
     module!("pass", "resize_uniforms"),
+    module!("pass", "settled_history"),
     module!("pass", "smr_pass"),
     module!("pass", "sparse_light_pass"),
     module!("pass", "sparse_observe_pass"),

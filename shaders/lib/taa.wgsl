@@ -1,9 +1,14 @@
 //#use matched
 // Twin of src/kernel/taa.rs, which explains the constants.
 
-const ALPHA_STILL: f32 = 0.1;
-const ALPHA_RESAMPLED: f32 = 0.4;
-const BOX_SIGMAS: f32 = 2.0;
+const LIMIT: f32 = 16.0;
+const SETTLED: f32 = 2.0;
+const JITTER: f32 = 1.0 / 9.0;
+const ROUNDING: f32 = 5e-4;
+const SPREAD: f32 = 0.6;
+const BOX_SIGMAS: vec2<f32> = vec2<f32>(2.0, 5.0);
+const MAX_ROOT: f32 = 256.0;
+const NO_CONFIDENCE_LOD: f32 = 8.0;
 
 // taa::to_ycocg
 fn to_ycocg(c: vec3<f32>) -> vec3<f32> {
@@ -11,6 +16,11 @@ fn to_ycocg(c: vec3<f32>) -> vec3<f32> {
     let outer = 0.25 * (r.x + r.z);
     let inner = 0.5 * r.y;
     return vec3<f32>(outer + inner, 0.5 * (r.x - r.z), inner - outer);
+}
+
+// taa::root_luma
+fn root_luma(c: vec3<f32>) -> f32 {
+    return min(to_ycocg(c).x, MAX_ROOT);
 }
 
 // taa::roots_of_ycocg
@@ -30,12 +40,45 @@ fn clip_to_box(history: vec3<f32>, mean: vec3<f32>, extent: vec3<f32>) -> vec3<f
     return history;
 }
 
-// taa::candidate_share
-fn candidate_share(fraction: vec2<f32>, trust: f32) -> f32 {
+// taa::confidence_of
+fn confidence_of(lod: f32) -> f32 {
+    let root = max(NO_CONFIDENCE_LOD - lod, 0.0) * 0.5;
+    return root * root;
+}
+
+// taa::lod_of
+fn lod_of(confidence: f32) -> f32 {
+    return max(NO_CONFIDENCE_LOD - 2.0 * sqrt(confidence), 0.0);
+}
+
+// taa::confidence_limit
+fn confidence_limit(fraction: vec2<f32>, spread: f32) -> f32 {
     let x = 4.0 * (fraction.x * (1.0 - fraction.x));
     let y = 4.0 * (fraction.y * (1.0 - fraction.y));
-    let resampled = ALPHA_STILL + (ALPHA_RESAMPLED - ALPHA_STILL) * max(x, y);
-    return max(resampled, 1.0 - trust);
+    return 1.0 / (max(x, y) * spread + (1.0f / LIMIT));
+}
+
+// taa::settled
+fn settled(confidence: f32) -> f32 {
+    return clamp((confidence - SETTLED) * (1.0f / SETTLED), 0.0, 1.0);
+}
+
+// taa::agreeing
+fn agreeing(sum: f32, squares: f32, past: f32, count: f32) -> f32 {
+    let inverse = 1.0 / max(count, 1.0);
+    let variance = (squares * count - sum * sum) * (inverse * inverse);
+    let off = (sum - past) * inverse;
+    return (max(variance, 0.0) * JITTER + (ROUNDING * ROUNDING)) * LIMIT / (off * off + (ROUNDING * ROUNDING));
+}
+
+// taa::candidate_share
+fn candidate_share(confidence: f32, trusted: f32) -> f32 {
+    return max(1.0 / (confidence + 1.0), 1.0 - trusted);
+}
+
+// taa::box_sigmas
+fn box_sigmas(moving: f32, still: f32, confidence: f32) -> f32 {
+    return moving + (still - moving) * settled(confidence);
 }
 
 // taa::blend_clipped
@@ -45,10 +88,13 @@ fn blend_clipped(
     sum: vec3<f32>,
     squares: vec3<f32>,
     alpha: f32,
+    confidence: f32,
 ) -> vec3<f32> {
     let mean = sum * (1.0f / 9.0f);
     let variance = (squares * 9.0 - sum * sum) * (1.0f / 81.0f);
-    let clipped = roots_of_ycocg(clip_to_box(to_ycocg(history), mean, roots(variance) * BOX_SIGMAS));
+    let sigmas = box_sigmas(BOX_SIGMAS.x, BOX_SIGMAS.y, confidence);
+    let extent = roots(variance) * sigmas + vec3<f32>(ROUNDING);
+    let clipped = roots_of_ycocg(clip_to_box(to_ycocg(history), mean, extent));
     let shown = clipped + (roots(candidate) - clipped) * alpha;
     return shown * shown;
 }

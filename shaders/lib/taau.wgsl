@@ -5,11 +5,11 @@ const TAIL: f32 = 0.02;
 const LEAST_TAIL: f32 = 0.02;
 const TAIL_UNTIL: f32 = 0.5;
 const LEAST_SAMPLE_WEIGHT: f32 = 1e-5;
-const LIMIT: vec2<f32> = vec2<f32>(2.0, 1.0);
-const UPSAMPLED_BOX_SIGMAS: f32 = 1.5;
+const UPSAMPLED_SPREAD: f32 = 1.0;
+const NARROWING: f32 = 0.4;
+const UPSAMPLED_BOX_SIGMAS: vec2<f32> = vec2<f32>(1.5, 5.0);
 const LEAST_CLIP: f32 = 0.1;
 const CLIP_COST: f32 = 10.0;
-const NO_CONFIDENCE_LOD: f32 = 8.0;
 
 // taau::lobe
 fn lobe(squared: f32) -> f32 {
@@ -23,11 +23,16 @@ fn tail(confidence: f32) -> f32 {
     return (unknown * (1.0f - LEAST_TAIL) + LEAST_TAIL) * TAIL;
 }
 
+// taau::narrowing
+fn narrowing(confidence: f32) -> f32 {
+    return settled(confidence) * NARROWING + 1.0;
+}
+
 // taau::sample_weights
-fn sample_weights(offset_px: vec2<f32>, level: u32, interpolation: f32) -> vec2<f32> {
+fn sample_weights(offset_px: vec2<f32>, level: u32, interpolation: f32, narrowed: f32) -> vec2<f32> {
     let px2 = offset_px.x * offset_px.x + offset_px.y * offset_px.y;
     let inverse_step = bitcast<f32>((127u - level) << 23u);
-    let own = lobe(px2);
+    let own = lobe(px2 * narrowed);
     return vec2<f32>(own, own + lobe(px2 * (inverse_step * inverse_step)) * interpolation);
 }
 
@@ -56,24 +61,6 @@ fn upsampled(a: SamplesAround, centre: vec3<f32>) -> vec3<f32> {
     return centre + a.difference * (1.0 / a.weights.y);
 }
 
-// taau::confidence_of
-fn confidence_of(lod: f32) -> f32 {
-    let root = max(NO_CONFIDENCE_LOD - lod, 0.0) * 0.25;
-    return root * root;
-}
-
-// taau::lod_of
-fn lod_of(confidence: f32) -> f32 {
-    return max(NO_CONFIDENCE_LOD - 4.0 * sqrt(confidence), 0.0);
-}
-
-// taau::confidence_limit
-fn confidence_limit(fraction: vec2<f32>) -> f32 {
-    let x = 4.0 * (fraction.x * (1.0 - fraction.x));
-    let y = 4.0 * (fraction.y * (1.0 - fraction.y));
-    return LIMIT.x + (LIMIT.y - LIMIT.x) * max(x, y);
-}
-
 struct Accumulated {
     color: vec3<f32>,
     confidence: f32,
@@ -92,7 +79,9 @@ fn accumulate(
     let inverse = 1.0 / a.count;
     let variance = (a.squares * a.count - a.sum * a.sum) * (inverse * inverse);
     let past = to_ycocg(history);
-    let inside = clip_to_box(past, a.sum * inverse, roots(variance) * UPSAMPLED_BOX_SIGMAS);
+    let sigmas = box_sigmas(UPSAMPLED_BOX_SIGMAS.x, UPSAMPLED_BOX_SIGMAS.y, confidence);
+    let extent = roots(variance) * sigmas + vec3<f32>(ROUNDING);
+    let inside = clip_to_box(past, a.sum * inverse, extent);
     let strength = min(a.weights.x, 1.0) * (1.0f - LEAST_CLIP) + LEAST_CLIP;
     let clip = inside - past;
     let distance = max(max(abs(clip.x), abs(clip.y)), abs(clip.z));

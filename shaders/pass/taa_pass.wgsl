@@ -1,4 +1,5 @@
 //#use output
+//#use settled_history
 //#use surface_history
 //#use taa
 // Temporal antialiasing of the foveated frame. CPU twin: src/cpu/taa_pass.rs, which lists the reads and writes. One
@@ -7,19 +8,32 @@
 struct Neighbourhood {
     sum: vec3<f32>,
     squares: vec3<f32>,
+    past_luma: f32,
 }
 
-// Sums of colors and of their squares over 3x3 pixels, in YCoCg. Non-finite pixels count as the centre, whose color is
-// `own`. The loop has a variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
-fn neighbourhood(px: vec2<u32>, view: u32, own: vec3<f32>, needed: bool) -> Neighbourhood {
-    var around = Neighbourhood(vec3<f32>(0.0), vec3<f32>(0.0));
-    let taps = select(0u, 9u, needed);
-    for (var tap = 0u; tap < taps; tap++) {
-        let at = max(px + vec2<u32>(tap % 3u, tap / 3u), vec2<u32>(1u)) - 1u;
-        let near = color(color_at(min(at, frame.size - 1u), view).xyz);
+// Sums of colors and of their squares over 3x3 pixels, in YCoCg, and of the luma of history if it is `compared`.
+// Non-finite pixels count as the centre, whose color is `own`. The loop has a variable count on purpose: Mesa would
+// unroll a constant one and reorder its sums of products.
+fn neighbourhood(
+    px: vec2<u32>,
+    view: u32,
+    own: vec3<f32>,
+    needed: bool,
+    source: Source,
+    compared: bool,
+) -> Neighbourhood {
+    var around = Neighbourhood(vec3<f32>(0.0), vec3<f32>(0.0), 0.0);
+    let taps = select(0, 9, needed);
+    for (var tap = 0; tap < taps; tap++) {
+        let offset = vec2<i32>(tap % 3, tap / 3) - 1;
+        let at = clamp(vec2<i32>(px) + offset, vec2<i32>(0), vec2<i32>(frame.size) - 1);
+        let near = color(color_at(vec2<u32>(at), view).xyz);
         let v = to_ycocg(select(own, near.color, near.usable));
         around.sum += v;
         around.squares += v * v;
+        if compared {
+            around.past_luma += luma_beside(source, offset, view);
+        }
     }
     return around;
 }
@@ -35,14 +49,23 @@ fn pixel(px: vec2<u32>, view: u32) {
 
     var shown = candidate.color;
     var share = 0.0;
-    let around = neighbourhood(px, view, candidate.color, valid && candidate.usable);
     let resampled = resample(source, view, valid);
+    var confidence = 1.0;
+    if valid {
+        confidence = min(confidence_of(resampled.lod), confidence_limit(source.fraction, SPREAD));
+    }
+    let compared = confidence > SETTLED;
+    let around = neighbourhood(px, view, candidate.color, valid && candidate.usable, source, compared);
     if valid {
         let history = exposed(resampled.sharp);
         if candidate.usable {
-            let alpha = candidate_share(source.fraction, source.previous.trust);
-            shown = blend_clipped(candidate.color, history, around.sum, around.squares, alpha);
+            if compared {
+                confidence = min(confidence, agreeing(around.sum.x, around.squares.x, around.past_luma, 9.0));
+            }
+            let alpha = candidate_share(confidence, source.previous.trust);
+            shown = blend_clipped(candidate.color, history, around.sum, around.squares, alpha, confidence);
             share = 1.0 - alpha;
+            confidence = 1.0 / alpha;
         } else {
             shown = history;
             share = 1.0;
@@ -54,7 +77,7 @@ fn pixel(px: vec2<u32>, view: u32) {
     if VIEW != 0u {
         return;
     }
-    let lod = select(-1.0, 0.0, candidate.usable || valid);
+    let lod = select(-1.0, lod_of(confidence), candidate.usable || valid);
     let words = pack_surface(Surface(shown, lod, disparity_now));
     textureStore(next_surfaces, px, view, vec4<u32>(words, 0u, 0u));
 }

@@ -1,5 +1,6 @@
 //#use lattices
 //#use output
+//#use settled_history
 //#use surface_history
 //#use taau
 // Temporal upsampling. CPU twin: src/cpu/taau_pass.rs, which lists the reads and writes. One invocation a pixel; z is
@@ -11,6 +12,8 @@ struct Samples {
     given: vec4<f32>,
     // The same color, sanitized.
     nearest: Sanitized,
+    // Sum of history's lumas at the samples' pixels; 0 if it is not compared.
+    past_luma: f32,
 }
 
 fn sample_near(point: vec2<i32>, lattice: LatticeUniforms, view: u32) -> vec4<f32> {
@@ -18,14 +21,16 @@ fn sample_near(point: vec2<i32>, lattice: LatticeUniforms, view: u32) -> vec4<f3
     return sample_at(vec2<u32>(clamp(point, vec2<i32>(0), last)), lattice, view);
 }
 
-// Nine samples around a pixel, of its lattice; at the lattice's border the last ones again, at places beyond it. The
-// loop has a variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
-fn samples(px: vec2<u32>, view: u32, interpolation: f32) -> Samples {
+// Nine samples around a pixel, of its lattice; at the lattice's border the last ones again, at places beyond it.
+// `kernel`: tail and narrowing. The loop has a variable count on purpose: Mesa would unroll a constant one and reorder
+// its sums of products.
+fn samples(px: vec2<u32>, view: u32, kernel: vec2<f32>, source: Source, compared: bool) -> Samples {
     let lattice = lattice_at(px, view);
     let first = lattice.first_px;
     let level = lattice.level;
     let middle = vec2<i32>(nearest_point(px.x, first.x, level), nearest_point(px.y, first.y, level));
     var around = SamplesAround(vec3<f32>(0.0), vec2<f32>(0.0), vec3<f32>(0.0), vec3<f32>(0.0), 0.0);
+    var past_luma = 0.0;
     let any = all(lattice.points > vec2<u32>(0u));
     var given = vec4<f32>(bitcast<f32>(sparse.missing));
     if any {
@@ -41,10 +46,14 @@ fn samples(px: vec2<u32>, view: u32, interpolation: f32) -> Samples {
             let x = point_offset_px(px.x, first.x, level, point.x);
             let y = point_offset_px(px.y, first.y, level, point.y);
             let offset = vec2<f32>(x, y) - frame.views[view].jitter_px;
-            around = add_around(around, nearest.color, sampled.color, sample_weights(offset, level, interpolation));
+            let weights = sample_weights(offset, level, kernel.x, kernel.y);
+            around = add_around(around, nearest.color, sampled.color, weights);
+            if compared {
+                past_luma += luma_beside(source, vec2<i32>(vec2<f32>(x, y)), view);
+            }
         }
     }
-    return Samples(around, given, nearest);
+    return Samples(around, given, nearest, past_luma);
 }
 
 fn pixel(px: vec2<u32>, view: u32) {
@@ -58,9 +67,14 @@ fn pixel(px: vec2<u32>, view: u32) {
     var confidence = 0.0;
     if valid {
         history = exposed(resampled.sharp);
-        confidence = min(confidence_of(resampled.lod), confidence_limit(source.fraction));
+        confidence = min(confidence_of(resampled.lod), confidence_limit(source.fraction, UPSAMPLED_SPREAD));
     }
-    let near = samples(px, view, tail(confidence * source.previous.trust));
+    let compared = confidence > SETTLED;
+    let kernel = vec2<f32>(tail(confidence * source.previous.trust), narrowing(confidence));
+    let near = samples(px, view, kernel, source, compared);
+    if compared {
+        confidence = min(confidence, agreeing(near.around.sum.x, near.around.squares.x, near.past_luma, near.around.count));
+    }
     count_pixel(px, view, near.nearest.usable, disparity_now, source.previous.verdict);
 
     let sampled = near.around.weights.y >= LEAST_SAMPLE_WEIGHT;

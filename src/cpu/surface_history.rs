@@ -12,6 +12,7 @@ use crate::kernel::resample::{
     tap_codes, taps_around,
 };
 use crate::kernel::surface::{Surface, mip_texel, unpack_surface};
+use crate::kernel::taa::root_luma;
 use crate::kernel::wrs::expose;
 use glam::Vec3;
 
@@ -73,6 +74,17 @@ impl SurfaceHistory<'_> {
             && stored.lod >= 0.0
             && self.inputs.same_disparity(expected, stored.disparity);
         stands_in.then_some((stored, (y * width + x) as usize))
+    }
+
+    /// Luma of history at the texel nearest to a position and `offset_px` beyond it, of whatever surface.
+    #[inline(always)]
+    pub fn luma_beside(&self, source: &Source, offset_px: [i32; 2]) -> f32 {
+        let [x, y] = [0, 1].map(|i| {
+            let nearest = source.texel[i] + i32::from(source.fraction[i] >= 0.5);
+            (nearest + offset_px[i]).clamp(0, self.inputs.size[i] as i32 - 1)
+        });
+        let words = self.past.words[(y * self.inputs.size[0] as i32 + x) as usize];
+        root_luma(self.expose(unpack_surface(words).color))
     }
 
     /// History resampled at a position; a position exactly on a texel reads that texel.

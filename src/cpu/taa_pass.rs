@@ -4,7 +4,7 @@
 //! Each pixel reads its motion and depth, nine colors and twelve stored surfaces (neighbours share most of these
 //! reads), and writes one surface and one color. Memory traffic: 40 bytes a pixel with color and motion as halves.
 
-use super::surface_history::SurfaceHistory;
+use super::surface_history::{Source, SurfaceHistory};
 use super::surface_pass::{Pixel, SurfaceMethod};
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::reproject::Verdict;
@@ -28,19 +28,25 @@ impl SurfaceMethod for Taa {
         let verdict = source.err().unwrap_or(Verdict::Valid);
         inputs.count(x, y, usable, disparity, verdict, stats);
 
-        let (mut output, mut share, mut stored_lod) = (candidate, 0.0, if usable { 0.0 } else { -1.0 });
+        let (mut output, mut share, mut confidence) = (candidate, 0.0, 1.0);
         if let Ok(source) = source {
-            let history = view.expose(view.resample(&source).sharp);
-            stored_lod = 0.0;
+            let resampled = view.resample(&source);
+            let history = view.expose(resampled.sharp);
+            confidence = taa::confidence_of(resampled.lod).min(taa::confidence_limit(source.fraction, taa::SPREAD));
+            (output, share) = (history, 1.0);
             if usable {
-                let alpha = taa::candidate_share(source.fraction, source.trust);
-                let (sum, squares) = neighbourhood(view, x, y, candidate);
-                output = taa::blend_clipped(candidate, history, sum, squares, alpha);
+                let past = (confidence > taa::SETTLED).then_some(&source);
+                let Neighbourhood { sum, squares, past_luma } = neighbourhood(view, [x, y], candidate, past);
+                if past.is_some() {
+                    confidence = confidence.min(taa::agreeing(sum.x, squares.x, past_luma, 9.0));
+                }
+                let alpha = taa::candidate_share(confidence, source.trust);
+                output = taa::blend_clipped(candidate, history, sum, squares, alpha, confidence);
                 share = 1.0 - alpha;
-            } else {
-                (output, share) = (history, 1.0);
+                confidence = 1.0 / alpha;
             }
         }
+        let stored_lod = if usable || source.is_ok() { taa::lod_of(confidence) } else { -1.0 };
         // The overshoot of Catmull-Rom may exceed the largest half.
         output = output.min(Vec3::splat(MAX_HALF));
         let trace = PixelTrace {
@@ -58,19 +64,31 @@ impl SurfaceMethod for Taa {
     }
 }
 
-/// Sums of colors and of their squares over 3x3 pixels, in YCoCg. Non-finite pixels count as the centre, whose color is
-/// `own`.
+/// Sums over 3x3 pixels.
+struct Neighbourhood {
+    /// Colors in YCoCg.
+    sum: Vec3,
+    /// Squares of these.
+    squares: Vec3,
+    /// Luma of history; 0 if it is not compared.
+    past_luma: f32,
+}
+
+/// Sums around a pixel. Non-finite pixels count as the centre, whose color is `own`. `past`: where history is that is
+/// compared.
 #[inline(always)]
-fn neighbourhood(view: &SurfaceHistory<'_>, x: u32, y: u32, own: Vec3) -> (Vec3, Vec3) {
-    let [width, height] = view.inputs.size;
-    let (mut sum, mut squares) = (Vec3::ZERO, Vec3::ZERO);
+fn neighbourhood(view: &SurfaceHistory<'_>, px: [u32; 2], own: Vec3, past: Option<&Source>) -> Neighbourhood {
+    let mut around = Neighbourhood { sum: Vec3::ZERO, squares: Vec3::ZERO, past_luma: 0.0 };
     for tap in 0..9 {
-        let nx = (x + tap % 3).max(1) - 1;
-        let ny = (y + tap / 3).max(1) - 1;
-        let (color, usable) = view.inputs.candidate(nx.min(width - 1), ny.min(height - 1));
+        let offset = [tap % 3 - 1, tap / 3 - 1];
+        let [x, y] = [0, 1].map(|i| (px[i] as i32 + offset[i]).clamp(0, view.inputs.size[i] as i32 - 1) as u32);
+        let (color, usable) = view.inputs.candidate(x, y);
         let v = taa::to_ycocg(if usable { color } else { own });
-        sum += v;
-        squares += v * v;
+        around.sum += v;
+        around.squares += v * v;
+        if let Some(source) = past {
+            around.past_luma += view.luma_beside(source, offset);
+        }
     }
-    (sum, squares)
+    around
 }

@@ -4,7 +4,7 @@
 //! Each pixel reads its motion and depth, nine samples and twelve stored surfaces (neighbours share most of these
 //! reads), and writes one surface and one color. Frames without lattices have a sample in every pixel.
 
-use super::surface_history::SurfaceHistory;
+use super::surface_history::{Source, SurfaceHistory};
 use super::surface_pass::{Pixel, SurfaceMethod};
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::lattice::{nearest_point, point_offset_px};
@@ -12,6 +12,7 @@ use crate::kernel::reproject::Verdict;
 use crate::kernel::sanitize;
 use crate::kernel::sanitize::MAX_HALF;
 use crate::kernel::surface::{Surface, pack_surface};
+use crate::kernel::taa;
 use crate::kernel::taau;
 use crate::kernel::taau::{Accumulated, SamplesAround};
 use crate::stats::FrameStats;
@@ -34,10 +35,16 @@ impl SurfaceMethod for Taau {
         if let Ok(source) = source {
             let resampled = view.resample(&source);
             history = view.expose(resampled.sharp);
-            confidence = taau::confidence_of(resampled.lod).min(taau::confidence_limit(source.fraction));
+            confidence =
+                taa::confidence_of(resampled.lod).min(taa::confidence_limit(source.fraction, taau::UPSAMPLED_SPREAD));
             trust = source.trust;
         }
-        let Samples { around, nearest, usable } = samples(view, [x, y], taau::tail(confidence * trust));
+        let past = source.as_ref().ok().filter(|_| confidence > taa::SETTLED);
+        let kernel = Kernel { tail: taau::tail(confidence * trust), narrowing: taau::narrowing(confidence) };
+        let Samples { around, nearest, usable, past_luma } = samples(view, [x, y], &kernel, past);
+        if past.is_some() {
+            confidence = confidence.min(taa::agreeing(around.sum.x, around.squares.x, past_luma, around.count));
+        }
         inputs.count(x, y, usable, disparity, verdict, stats);
 
         let sampled = around.weights.y >= taau::LEAST_SAMPLE_WEIGHT;
@@ -50,7 +57,7 @@ impl SurfaceMethod for Taau {
         }
         // The overshoot of Catmull-Rom may exceed the largest half.
         let output = result.color.min(Vec3::splat(MAX_HALF));
-        let lod = if sampled || source.is_ok() { taau::lod_of(result.confidence) } else { -1.0 };
+        let lod = if sampled || source.is_ok() { taa::lod_of(result.confidence) } else { -1.0 };
         let trace = PixelTrace {
             verdict,
             weight: result.share,
@@ -65,6 +72,12 @@ impl SurfaceMethod for Taau {
     }
 }
 
+/// How samples around a pixel are weighted.
+struct Kernel {
+    tail: f32,
+    narrowing: f32,
+}
+
 /// Samples around a pixel.
 struct Samples {
     around: SamplesAround,
@@ -72,11 +85,14 @@ struct Samples {
     nearest: Vec3,
     /// Whether the nearest one is usable.
     usable: bool,
+    /// Sum of history's lumas at the samples' pixels; 0 if it is not compared.
+    past_luma: f32,
 }
 
 /// Nine samples around a pixel, of its lattice; at the lattice's border the last ones again, at places beyond it.
+/// `past`: where history is that is compared.
 #[inline(always)]
-fn samples(view: &SurfaceHistory<'_>, px: [u32; 2], tail: f32) -> Samples {
+fn samples(view: &SurfaceHistory<'_>, px: [u32; 2], kernel: &Kernel, past: Option<&Source>) -> Samples {
     let inputs = &view.inputs;
     let lattice = &inputs.lattices[LatticeUniforms::index_at(&inputs.lattices, px)];
     let (first, level) = (lattice.first_px, lattice.level);
@@ -85,20 +101,24 @@ fn samples(view: &SurfaceHistory<'_>, px: [u32; 2], tail: f32) -> Samples {
         let [x, y] = lattice.texel_of([0, 1].map(|i| point[i].clamp(0, lattice.points[i] as i32 - 1) as u32));
         sanitize::color(Vec3::from(inputs.color.at(x as usize, y as usize)))
     };
-    let mut around = SamplesAround::default();
+    let mut found = Samples { around: SamplesAround::default(), nearest: Vec3::ZERO, usable: false, past_luma: 0.0 };
     if lattice.points.contains(&0) {
-        return Samples { around, nearest: Vec3::ZERO, usable: false };
+        return found;
     }
-    let (nearest, nearest_usable) = sample_at(middle);
+    (found.nearest, found.usable) = sample_at(middle);
     for tap in 0..9 {
         let point = [middle[0] + tap % 3 - 1, middle[1] + tap / 3 - 1];
         let (color, usable) = sample_at(point);
         if usable {
             // A sample shows what is at its pixel minus the jitter.
-            let offset = [0, 1].map(|i| point_offset_px(px[i], first[i], level, point[i]));
-            let offset = Vec2::from(offset) - Vec2::from(inputs.uniforms.jitter_px);
-            around = taau::add_around(around, nearest, color, taau::sample_weights(offset, level, tail));
+            let at = [0, 1].map(|i| point_offset_px(px[i], first[i], level, point[i]));
+            let offset = Vec2::from(at) - Vec2::from(inputs.uniforms.jitter_px);
+            let weights = taau::sample_weights(offset, level, kernel.tail, kernel.narrowing);
+            found.around = taau::add_around(found.around, found.nearest, color, weights);
+            if let Some(source) = past {
+                found.past_luma += view.luma_beside(source, at.map(|v| v as i32));
+            }
         }
     }
-    Samples { around, nearest, usable: nearest_usable }
+    found
 }

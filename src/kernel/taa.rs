@@ -1,16 +1,34 @@
-//! One pixel of temporal antialiasing, the gaze-unaware baseline: exponential mean along the motion, with history
-//! clipped to the color distribution of the candidate's neighbourhood (Salvi 2016, "An excursion in temporal
-//! supersampling"; Karis 2014).
+//! One pixel of temporal antialiasing, the gaze-unaware baseline: a mean along the motion, with history clipped to the
+//! color distribution of the candidate's neighbourhood (Salvi 2016, "An excursion in temporal supersampling"; Karis
+//! 2014). History counts for as many samples as what it has been through allows: its confidence.
 
 use super::matched::roots;
 use glam::Vec3;
 
-/// Weight of the candidate where history lies exactly on a texel, and midway between texels: higher there, because each
-/// resampling blurs.
-const ALPHA: [f32; 2] = [0.1, 0.4];
-/// Half width of the clipping box in standard deviations. A foveated neighbourhood is smooth, so that narrower boxes
-/// would clip the detail of earlier frames.
-const BOX_SIGMAS: f32 = 2.0;
+/// Largest confidence of history, in samples at the pixel: a mean of 16 jittered samples has a quarter of the error of
+/// one. More averages over longer, and colors of 14 bits would not follow the steps.
+const LIMIT: f32 = 16.0;
+/// Confidence above which history is settled: it has hardly moved, and has to agree with the samples around. From twice
+/// this on it is fully settled.
+pub const SETTLED: f32 = 2.0;
+/// Square of how far the samples' mean may be from history's, in their variances: a jitter of up to half a pixel moves
+/// all samples alike, and the mean of 3x3 of them by about a third of their deviation. More follows changes of light
+/// later, less takes jitter for one.
+const JITTER: f32 = 1.0 / 9.0;
+/// Rounding of the square roots of stored colors: 9 bits of mantissa. Samples without variance, as in the chroma of a
+/// grey picture, would reject history for it.
+pub const ROUNDING: f32 = 5e-4;
+/// Inverse confidence of history midway between texels: each resampling blurs, and a candidate aliases.
+pub const SPREAD: f32 = 0.6;
+/// Half width of the clipping box in standard deviations, around history that moves and around settled history. A
+/// foveated neighbourhood is smooth, so that narrower boxes would clip the detail of earlier frames; wider ones keep
+/// what changes. Settled history agrees with its neighbourhood, and is the mean of other samples than this frame's.
+const BOX_SIGMAS: [f32; 2] = [2.0, 5.0];
+/// Largest square root of a half.
+const MAX_ROOT: f32 = 256.0;
+/// Level of detail that a stored texel of no confidence has. Confidence is stored as a level of detail, so that it
+/// falls where history is enlarged.
+const NO_CONFIDENCE_LOD: f32 = 8.0;
 
 /// YCoCg of the square roots of a linear color.
 #[inline]
@@ -19,6 +37,13 @@ pub fn to_ycocg(c: Vec3) -> Vec3 {
     let outer = 0.25 * (r.x + r.z);
     let inner = 0.5 * r.y;
     Vec3::new(outer + inner, 0.5 * (r.x - r.z), inner - outer)
+}
+
+/// Luma of the square roots of a linear color: Y of [`to_ycocg`], at most that of the largest half.
+#[inline]
+pub fn root_luma(c: Vec3) -> f32 {
+    // The limit keeps compilers from merging the sum with others.
+    to_ycocg(c).x.min(MAX_ROOT)
 }
 
 /// Square roots of RGB from YCoCg, at least 0.
@@ -39,22 +64,67 @@ pub fn clip_to_box(history: Vec3, mean: Vec3, extent: Vec3) -> Vec3 {
     if inside < 1.0 { mean + d * inside } else { history }
 }
 
-/// Weight of the candidate, for history resampled at `fraction` (each in \[0, 1)) between texels; at least `1 - trust`.
+/// Confidence of a stored level of detail, in samples at the pixel.
 #[inline]
-pub fn candidate_share(fraction: [f32; 2], trust: f32) -> f32 {
-    let x = 4.0 * (fraction[0] * (1.0 - fraction[0]));
-    let y = 4.0 * (fraction[1] * (1.0 - fraction[1]));
-    let resampled = ALPHA[0] + (ALPHA[1] - ALPHA[0]) * x.max(y);
-    resampled.max(1.0 - trust)
+pub fn confidence_of(lod: f32) -> f32 {
+    let root = (NO_CONFIDENCE_LOD - lod).max(0.0) * 0.5;
+    root * root
 }
 
-/// Output color: candidate blended with clipped history. `sum` and `squares`: sums over the 3x3 neighbourhood in YCoCg
-/// of colors and of their squares.
+/// Level of detail to store for a confidence.
 #[inline]
-pub fn blend_clipped(candidate: Vec3, history: Vec3, sum: Vec3, squares: Vec3, alpha: f32) -> Vec3 {
+pub fn lod_of(confidence: f32) -> f32 {
+    (NO_CONFIDENCE_LOD - 2.0 * confidence.sqrt()).max(0.0)
+}
+
+/// Largest confidence of history read at `fraction` (each in \[0, 1)) between texels. Linear interpolation spreads a
+/// pixel by a variance of f (1 - f) in each frame, and a mean over n frames gathers about n of these: n is limited so
+/// that their sum is. `spread`: inverse of the confidence midway between texels; more blurs less, and averages less.
+#[inline]
+pub fn confidence_limit(fraction: [f32; 2], spread: f32) -> f32 {
+    let x = 4.0 * (fraction[0] * (1.0 - fraction[0]));
+    let y = 4.0 * (fraction[1] * (1.0 - fraction[1]));
+    1.0 / (x.max(y) * spread + 1.0 / LIMIT)
+}
+
+/// How settled history of some confidence is, in \[0, 1\].
+#[inline]
+pub fn settled(confidence: f32) -> f32 {
+    ((confidence - SETTLED) * (1.0 / SETTLED)).clamp(0.0, 1.0)
+}
+
+/// Largest confidence of settled history whose mean is off from that of the samples around: a bias is worth fewer
+/// samples the larger it is, and [`LIMIT`] where jitter explains it. `sum`, `squares`: of the lumas of `count` samples;
+/// `past`: sum of history's lumas at the same pixels.
+#[inline]
+pub fn agreeing(sum: f32, squares: f32, past: f32, count: f32) -> f32 {
+    let inverse = 1.0 / count.max(1.0);
+    let variance = (squares * count - sum * sum) * (inverse * inverse);
+    let off = (sum - past) * inverse;
+    (variance.max(0.0) * JITTER + ROUNDING * ROUNDING) * LIMIT / (off * off + ROUNDING * ROUNDING)
+}
+
+/// Weight of the candidate beside history of some confidence; at least `1 - trust`.
+#[inline]
+pub fn candidate_share(confidence: f32, trust: f32) -> f32 {
+    (1.0 / (confidence + 1.0)).max(1.0 - trust)
+}
+
+/// Half width of a clipping box in standard deviations.
+#[inline]
+pub fn box_sigmas(moving: f32, still: f32, confidence: f32) -> f32 {
+    moving + (still - moving) * settled(confidence)
+}
+
+/// Output color: a share `alpha` of the candidate, and clipped history. `sum` and `squares`: sums over the 3x3
+/// neighbourhood in YCoCg of colors and of their squares.
+#[inline]
+pub fn blend_clipped(candidate: Vec3, history: Vec3, sum: Vec3, squares: Vec3, alpha: f32, confidence: f32) -> Vec3 {
     let mean = sum * (1.0 / 9.0);
     let variance = (squares * 9.0 - sum * sum) * (1.0 / 81.0);
-    let clipped = roots_of_ycocg(clip_to_box(to_ycocg(history), mean, roots(variance) * BOX_SIGMAS));
+    let sigmas = box_sigmas(BOX_SIGMAS[0], BOX_SIGMAS[1], confidence);
+    let extent = roots(variance) * sigmas + Vec3::splat(ROUNDING);
+    let clipped = roots_of_ycocg(clip_to_box(to_ycocg(history), mean, extent));
     let shown = clipped + (roots(candidate) - clipped) * alpha;
     shown * shown
 }

@@ -4,7 +4,7 @@
 //! `ffx_fsr2_accumulate.h`), without locks, reactive masks and dilated motion vectors.
 
 use super::matched::roots;
-use super::taa::{clip_to_box, roots_of_ycocg, to_ycocg};
+use super::taa::{ROUNDING, box_sigmas, clip_to_box, roots_of_ycocg, settled, to_ycocg};
 use glam::{Vec2, Vec3};
 
 /// Weight of interpolation between samples where history knows nothing, relative to a sample at the pixel. More
@@ -17,19 +17,20 @@ const LEAST_TAIL: f32 = 0.02;
 const TAIL_UNTIL: f32 = 0.5;
 /// Least sum of weights of usable samples.
 pub const LEAST_SAMPLE_WEIGHT: f32 = 1e-5;
-/// Largest confidence of history, in samples at the pixel: read on a texel, and midway between texels. The latter is
-/// lower, because each resampling blurs. More averages jittered frames over longer, and follows changes later.
-const LIMIT: [f32; 2] = [2.0, 1.0];
-/// Half width of the clipping box in standard deviations of nine samples. More keeps thin detail, less follows changes.
-const UPSAMPLED_BOX_SIGMAS: f32 = 1.5;
+/// Inverse confidence of history midway between texels. More than that of taa: samples are put where they belong.
+pub const UPSAMPLED_SPREAD: f32 = 1.0;
+/// Squared distances count by so much more where history is settled: a sample then counts up to 0.85 pixels away, and
+/// the mean is nearer to one over the pixel. History has filled the pixels that no sample is near.
+const NARROWING: f32 = 0.4;
+/// Half width of the clipping box in standard deviations of nine samples, around history that moves and around settled
+/// history. More keeps thin detail, less follows changes. Settled history agrees with the samples, and is the mean of
+/// others than this frame's.
+const UPSAMPLED_BOX_SIGMAS: [f32; 2] = [1.5, 5.0];
 /// Share of the clip where no sample is near. Samples at a distance say little of a pixel's own detail.
 const LEAST_CLIP: f32 = 0.1;
 /// Share of its confidence that history loses for a clip by the range from black to white, or by the history's own
 /// brightness where that is more: a tenth of it costs all.
 const CLIP_COST: f32 = 10.0;
-/// Level of detail that a stored texel of no confidence has. Confidence is stored as a level of detail, so that it
-/// falls where history is enlarged.
-const NO_CONFIDENCE_LOD: f32 = 8.0;
 
 /// Weight of a sample at a squared distance, in units of the kernel's reach: the main lobe of Lanczos 2, as FSR2
 /// approximates it. 1 at the sample, 0 from a distance of 1 on, so that samples on texels stay sharp.
@@ -46,12 +47,18 @@ pub fn tail(confidence: f32) -> f32 {
     (unknown * (1.0 - LEAST_TAIL) + LEAST_TAIL) * TAIL
 }
 
+/// Factor on squared distances of a pixel's own samples, for history of some confidence.
+#[inline]
+pub fn narrowing(confidence: f32) -> f32 {
+    settled(confidence) * NARROWING + 1.0
+}
+
 /// Weights of a sample: as one of the pixel's own, and together with interpolation from lattices of larger steps.
 #[inline]
-pub fn sample_weights(offset_px: Vec2, level: u32, tail: f32) -> Vec2 {
+pub fn sample_weights(offset_px: Vec2, level: u32, tail: f32, narrowing: f32) -> Vec2 {
     let px2 = offset_px.x * offset_px.x + offset_px.y * offset_px.y;
     let inverse_step = f32::from_bits((127 - level) << 23);
-    let own = lobe(px2);
+    let own = lobe(px2 * narrowing);
     Vec2::new(own, own + lobe(px2 * (inverse_step * inverse_step)) * tail)
 }
 
@@ -89,27 +96,6 @@ pub fn upsampled(a: SamplesAround, centre: Vec3) -> Vec3 {
     centre + a.difference * (1.0 / a.weights.y)
 }
 
-/// Confidence of a stored level of detail, in samples at the pixel.
-#[inline]
-pub fn confidence_of(lod: f32) -> f32 {
-    let root = (NO_CONFIDENCE_LOD - lod).max(0.0) * 0.25;
-    root * root
-}
-
-/// Level of detail to store for a confidence.
-#[inline]
-pub fn lod_of(confidence: f32) -> f32 {
-    (NO_CONFIDENCE_LOD - 4.0 * confidence.sqrt()).max(0.0)
-}
-
-/// Largest confidence of history read at `fraction` (each in \[0, 1)) between texels.
-#[inline]
-pub fn confidence_limit(fraction: [f32; 2]) -> f32 {
-    let x = 4.0 * (fraction[0] * (1.0 - fraction[0]));
-    let y = 4.0 * (fraction[1] * (1.0 - fraction[1]));
-    LIMIT[0] + (LIMIT[1] - LIMIT[0]) * x.max(y)
-}
-
 /// Result of [`accumulate`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accumulated {
@@ -130,7 +116,9 @@ pub fn accumulate(a: SamplesAround, centre: Vec3, history: Vec3, confidence: f32
     let inverse = 1.0 / a.count;
     let variance = (a.squares * a.count - a.sum * a.sum) * (inverse * inverse);
     let past = to_ycocg(history);
-    let inside = clip_to_box(past, a.sum * inverse, roots(variance) * UPSAMPLED_BOX_SIGMAS);
+    let sigmas = box_sigmas(UPSAMPLED_BOX_SIGMAS[0], UPSAMPLED_BOX_SIGMAS[1], confidence);
+    let extent = roots(variance) * sigmas + Vec3::splat(ROUNDING);
+    let inside = clip_to_box(past, a.sum * inverse, extent);
     let strength = a.weights.x.min(1.0) * (1.0 - LEAST_CLIP) + LEAST_CLIP;
     let clip = inside - past;
     let distance = clip.x.abs().max(clip.y.abs()).max(clip.z.abs());

@@ -132,7 +132,7 @@ fn loops(module: &str, settings: &Settings) -> &'static [&'static str] {
         "sparse_light_pass" if settings.noisy => &["around"],
         "sparse_light_pass" => &["around", "around relit"],
         "sparse_pass" => &["lattice", "four", "slope", "four"],
-        "taa_pass" => &["slope", "around", "guard", "resample"],
+        "taa_pass" => &["slope", "guard", "resample", "around"],
         "smr_pass" if settings.noisy => &["block", "slope", "guard", "resample"],
         "smr_pass" => &["block", "slope", "guard", "resample", "relight"],
         _ => &[],

@@ -97,3 +97,56 @@ fn jittered_frames_of_full_rate_are_put_where_their_samples_lie() {
     println!("squared error {last:.4} of the jittered frame's");
     assert!(last < 0.3);
 }
+
+/// A grey slanted pattern with hard edges of contrast 3 to 7, point by point.
+fn hard(x: f32, y: f32) -> f32 {
+    if (0.9 * x + 0.37 * y).sin() + (0.23 * x - 0.61 * y).cos() > 0.2 { 0.7 } else { 0.3 }
+}
+
+/// Its frame with a jitter: what is at p is drawn at p + jitter.
+fn hard_frame([dx, dy]: [f32; 2], light: f32) -> Color {
+    Image::from_fn(SIZE, |[x, y]| [light * hard(x as f32 - dx, y as f32 - dy); 3])
+}
+
+/// Squared errors of jittered frames of a still against means over pixels. The light changes by a factor in a frame.
+fn still_errors(settings: Settings, trust: f32, frames: u64, [at, light]: [f32; 2]) -> Vec<f64> {
+    let mut post = context(settings);
+    let (gaze, trust) = (Gaze::At { px: GAZE }, Image::filled(SIZE, trust));
+    let places = (0..16).flat_map(|i| (0..16).map(move |j| [i, j].map(|k| (k as f32 + 0.5) / 16.0 - 0.5)));
+    let means = places.map(|at| hard_frame(at, 1.0 / 256.0)).reduce(|a, b| {
+        Image::from_fn(SIZE, |[x, y]| [a.at(x as usize, y as usize)[0] + b.at(x as usize, y as usize)[0]; 3])
+    });
+    let means = means.unwrap();
+    let mut out = [Image::filled(SIZE, [0.0; 3])];
+    let frame = |index: u64| {
+        let light = if index as f32 >= at { light } else { 1.0 };
+        let jitter_px = Foveation::jitter_px(index);
+        let lattices = Some(settings.foveation.lattices(&geometry(SIZE), GAZE, index));
+        let facts = ViewFrame { jitter_px, lattices, ..ViewFrame::new(geometry(SIZE), gaze) };
+        let color = hard_frame(jitter_px, light);
+        let view = OneView { trust: Some(&trust), ..OneView::new(facts, &color) };
+        post.process(&Images::of(&[view]).frame(index), &mut out).unwrap();
+        squared_error(&out[0], &means.map(|c| c.map(|v| v * light)))
+    };
+    (0..frames).map(frame).collect()
+}
+
+#[test]
+fn a_jittered_still_converges_and_a_step_of_light_is_followed() {
+    for (method, step) in [(Method::Taa, 1), (Method::Taau, 1), (Method::Taau, 2)] {
+        let rates = Foveation { rate_mid: step, rate_far: step, fovea_deg: 0.0, mid_deg: 0.0, ..foveation() };
+        let settings = Settings { method, foveation: rates, ..Settings::default() };
+        // A trust of 2/3 holds history to two samples.
+        let [long, short] = [1.0, 2.0 / 3.0].map(|trust| still_errors(settings, trust, 104, [96.0, 0.5]));
+        let mean = |errors: &[f64]| errors.iter().sum::<f64>() / errors.len() as f64;
+        let [one, still, held] = [mean(&long[..1]), mean(&long[64..96]), mean(&short[64..96])];
+        let [after, held_after] = [mean(&long[96..]), mean(&short[96..])];
+        println!("{method:?}, step {step}: squared error {one:.5} of the first frame, {still:.6} later ({held:.6} if");
+        println!("held to two samples); after a step of light {after:.6} ({held_after:.6})");
+        assert!(still < 0.1 * one && still < 0.5 * held, "it converges");
+        // Between samples, trust replaces history by interpolation, which is another method.
+        let last = long[103] / long[96];
+        println!("{last:.3} of the step's first error is left after 7 frames");
+        assert!(last < 0.1 && (step > 1 || after < 1.2 * held_after), "light is followed as fast");
+    }
+}

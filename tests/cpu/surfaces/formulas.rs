@@ -258,14 +258,26 @@ fn taa_agrees_with_f64_and_stays_in_its_box() {
         assert!(!inside || clipped == history, "what is inside stays");
         assert!((clipped - mean).cross(history - mean).length() < 1e-6, "on the way to the mean");
 
-        let at = [draws.uniform(), draws.uniform()];
-        let trust = draws.uniform();
+        let (at, spread) = ([draws.uniform(), draws.uniform()], draws.range(0.5, 1.0));
         let hump = |f: f32| 4.0 * f64::from(f) * (1.0 - f64::from(f));
-        let expected = (0.1 + 0.3 * hump(at[0]).max(hump(at[1]))).max(1.0 - f64::from(trust));
-        assert!((f64::from(taa::candidate_share(at, trust)) - expected).abs() < 1e-6);
+        let limit = 1.0 / (hump(at[0]).max(hump(at[1])) * f64::from(spread) + 1.0 / 16.0);
+        assert!((f64::from(taa::confidence_limit(at, spread)) / limit - 1.0).abs() < 1e-5);
+
+        let (confidence, trust) = (draws.range(0.0, 16.0), draws.uniform());
+        let expected = (1.0 / (f64::from(confidence) + 1.0)).max(1.0 - f64::from(trust));
+        assert!((f64::from(taa::candidate_share(confidence, trust)) - expected).abs() < 1e-6);
+        let stored = taa::confidence_of(taa::lod_of(confidence));
+        assert!((stored - confidence).abs() < 1e-5, "{confidence} is stored as {stored}");
     }
+    // History that is off by as much as jitter explains keeps 16 samples, that of another light none.
+    let lumas = [0.2, 0.4, 0.6];
+    let (sum, squares) = (lumas.iter().sum::<f32>(), lumas.iter().map(|v| v * v).sum::<f32>());
+    let third_of_deviation = (0.08_f32 / 3.0).sqrt() / 3.0;
+    assert!((taa::agreeing(sum, squares, sum + 3.0 * third_of_deviation, 3.0) - 16.0).abs() < 1e-3);
+    assert_eq!(taa::agreeing(3.0 * 0.5, 3.0 * 0.25, 1.5, 3.0), 16.0);
+    assert!(taa::agreeing(3.0 * 0.5, 3.0 * 0.25, 3.0 * 0.45, 3.0) < 0.01);
     // Nine equal neighbours leave no room for another history.
     let (c, y) = (Vec3::new(0.25, 0.5, 0.75), taa::to_ycocg(Vec3::new(0.25, 0.5, 0.75)));
-    let shown = taa::blend_clipped(c, Vec3::ONE, y * 9.0, y * y * 9.0, 0.1);
+    let shown = taa::blend_clipped(c, Vec3::ONE, y * 9.0, y * y * 9.0, 0.1, 16.0);
     assert!((shown - c).abs().max_element() < 2e-3, "{shown}");
 }

@@ -193,8 +193,8 @@ fn half_the_trust_is_half_the_history() {
     // taa uses the larger one of its own share of the candidate and 1 - trust.
     let mut post = context(MethodKind::Taa);
     step(&mut post, 0, &frame(0));
-    let input = Input { trust: Some(Image::filled(SIZE, 0.5)), ..frame(1) };
-    assert!(step(&mut post, 1, &input).trace.pixels().iter().all(|t| t.survival == 0.5));
+    let input = Input { trust: Some(Image::filled(SIZE, 0.25)), ..frame(1) };
+    assert!(step(&mut post, 1, &input).trace.pixels().iter().all(|t| t.survival == 0.25));
 }
 
 #[test]

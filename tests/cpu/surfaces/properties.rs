@@ -94,9 +94,8 @@ fn s2_without_a_valid_history_the_candidate_and_its_level_are_shown_and_stored()
                 // A NaN vector is unlike its neighbours'.
                 let nowhere = input.motion.as_ref().is_some_and(|m| m.pixels()[0][0].is_nan());
                 let expected = match method {
-                    MethodKind::Taa => 0.0,
                     // Its confidence: that of one sample.
-                    MethodKind::Taau => 4.0,
+                    MethodKind::Taa | MethodKind::Taau => 6.0,
                     _ if nowhere => MAX_LOD,
                     _ => stored_lod(lod),
                 };

@@ -211,16 +211,19 @@ fn a_wrong_size_is_caught() {
 
 #[test]
 fn a_wrong_antialiasing_is_caught() {
-    caught(surfaces::PROBES, "to_ycocg", "0.5 * (r.x - r.z)", "0.5 * (r.z - r.x)");
-    caught(surfaces::PROBES, "roots_of_ycocg", "outer - y.y", "outer + y.z");
-    caught(surfaces::PROBES, "clip_to_box", "if inside < 1.0", "if inside < 0.5");
-    caught(surfaces::PROBES, "candidate_share", "max(resampled, 1.0 - trust)", "resampled");
-    caught(
-        surfaces::PROBES,
-        "blend_clipped",
-        "(roots(candidate) - clipped) * alpha",
-        "(roots(candidate) - clipped) * (1.01 * alpha)",
-    );
+    let caught = |name, right, wrong| caught(upsampling::PROBES, name, right, wrong);
+    caught("to_ycocg", "0.5 * (r.x - r.z)", "0.5 * (r.z - r.x)");
+    caught("root_luma", "to_ycocg(c).x", "to_ycocg(c).z");
+    caught("roots_of_ycocg", "outer - y.y", "outer + y.z");
+    caught("clip_to_box", "if inside < 1.0", "if inside < 0.5");
+    caught("confidence_of", "NO_CONFIDENCE_LOD - lod", "7.0 - lod");
+    caught("lod_of", "2.0 * sqrt(confidence)", "2.01 * sqrt(confidence)");
+    caught("confidence_limit", "max(x, y)", "x");
+    caught("settled", "(1.0f / SETTLED), 0.0", "(1.0f / SETTLED), 0.5");
+    caught("agreeing", "squares * count - sum * sum", "squares * count");
+    caught("candidate_share", "1.0 - trusted)", "0.0)");
+    caught("box_sigmas", "(still - moving)", "still");
+    caught("blend_clipped", "(roots(candidate) - clipped) * alpha", "(roots(candidate) - clipped) * (1.01 * alpha)");
 }
 
 #[test]
@@ -231,14 +234,12 @@ fn a_wrong_upsampling_is_caught() {
     caught("sample_weights", "(127u - level)", "(128u - level)");
     caught("add_around", "(sampled - centre) * weights.y", "(sampled - centre) * weights.x");
     caught("upsampled", "1.0 / a.weights.y", "1.0 / a.weights.x");
-    caught("confidence_of", "NO_CONFIDENCE_LOD - lod", "7.0 - lod");
-    caught("lod_of", "4.0 * sqrt(confidence)", "4.0 * confidence");
-    caught("confidence_limit", "(LIMIT.y - LIMIT.x) * max(x, y)", "(LIMIT.y - LIMIT.x) * x");
     caught("accumulate", "a.squares * a.count", "a.squares * 9.0");
-    caught("accumulate", "const UPSAMPLED_BOX_SIGMAS: f32 = 1.5;", "const UPSAMPLED_BOX_SIGMAS: f32 = 1.52;");
+    caught("narrowing", "NARROWING: f32 = 0.4", "NARROWING: f32 = 0.41");
+    caught("accumulate", "vec2<f32>(1.5, 5.0)", "vec2<f32>(1.52, 5.0)");
     caught("accumulate", "past + clip * strength", "past + clip");
     caught("accumulate", "const CLIP_COST: f32 = 10.0;", "const CLIP_COST: f32 = 10.1;");
-    caught("accumulate", ", 1.0 - trusted)", ", 0.0)");
+    caught("accumulate", "a.weights.y), 1.0 - trusted)", "a.weights.y), 0.0)");
 }
 
 #[test]

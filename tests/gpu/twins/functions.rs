@@ -119,7 +119,7 @@ fn resize_is_bit_equal() {
 
 #[test]
 fn taa_is_bit_equal() {
-    check_module(surfaces::PROBES, "taa");
+    check_module(upsampling::PROBES, "taa");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Functions of stored surfaces and of temporal antialiasing: surface, resample, taa.
+//! Functions of stored surfaces: surface, resample.
 
 use super::matching::{channels, like, push, stored_color};
 use super::probe::{Out, Probe, Row, Rows};
@@ -8,9 +8,7 @@ use afterimage::kernel::resample::{FourTaps, Gathered, Resampled, Tap};
 use afterimage::kernel::resize;
 use afterimage::kernel::surface;
 use afterimage::kernel::surface::{MAX_LOD, Surface};
-use afterimage::kernel::taa;
 use afterimage_testing::Draws;
-use glam::Vec3;
 
 fn stored(r: &Row<'_>, k: usize) -> Surface {
     Surface { color: r.v(k), lod: r.f(k + 3), disparity: r.f(k + 4) }
@@ -56,7 +54,7 @@ fn packed_rows(name: &str) -> Rows {
 }
 
 /// Fractions between texels: 0, every quarter, random.
-fn fraction(d: &mut Draws) -> f32 {
+pub fn fraction(d: &mut Draws) -> f32 {
     match d.bits() % 4 {
         0 => (d.bits() % 4) as f32 / 4.0,
         1 => (d.bits() % 65536) as f32 / 65536.0,
@@ -94,19 +92,6 @@ fn read_twelve(r: &Row<'_>, o: &mut Out) {
 
 fn nearest(r: &Row<'_>, k: usize) -> Surface {
     Surface { color: r.v(k), lod: r.f(k + 3), disparity: 1.0 }
-}
-
-/// Sums over nine neighbours, near each other or not, as the pass makes them.
-fn push_box(d: &mut Draws, row: &mut Vec<u32>, center: [f32; 3]) {
-    let (mut sum, mut squares) = (Vec3::ZERO, Vec3::ZERO);
-    let flat = d.bits().is_multiple_of(4);
-    for _ in 0..9 {
-        let v = taa::to_ycocg(Vec3::from(if flat { center } else { like(d, center) }));
-        sum += v;
-        squares += v * v;
-    }
-    push(row, &sum.to_array());
-    push(row, &squares.to_array());
 }
 
 pub const PROBES: &[Probe] = &[
@@ -472,83 +457,6 @@ pub const PROBES: &[Probe] = &[
             let mut lists: Vec<&[u32]> = vec![&c, &c, &c, &h, &h, &h, &smooth, &lod, &complete, &sharp];
             lists.extend([&h[..], &h, &h, &lod]);
             Rows::new(14).mixed("resolve", &lists)
-        },
-    },
-    Probe {
-        name: "to_ycocg",
-        module: "taa",
-        words: [3, 3],
-        wgsl: "out_v(to_ycocg(in_v(0u)));",
-        rust: |r, o| o.v(taa::to_ycocg(r.v(0))),
-        rows: || {
-            let c = channels();
-            Rows::new(3)
-                .cross(&[&c, &c, &c])
-                .random("to_ycocg", |d, row| row.extend((0..3).map(|_| signed(d, -24, 16))))
-        },
-    },
-    Probe {
-        name: "roots_of_ycocg",
-        module: "taa",
-        words: [3, 3],
-        wgsl: "out_v(roots_of_ycocg(in_v(0u)));",
-        rust: |r, o| o.v(taa::roots_of_ycocg(r.v(0))),
-        rows: || {
-            let y = floats(&[0.0, 0.25, -0.25, 1.0, -128.0, 256.0]);
-            Rows::new(3)
-                .cross(&[&y, &y, &y])
-                .random("roots_of_ycocg", |d, row| row.extend((0..3).map(|_| signed(d, -12, 8))))
-        },
-    },
-    Probe {
-        name: "clip_to_box",
-        module: "taa",
-        words: [9, 3],
-        wgsl: "out_v(clip_to_box(in_v(0u), in_v(3u), in_v(6u)));",
-        rust: |r, o| o.v(taa::clip_to_box(r.v(0), r.v(3), r.v(6))),
-        rows: || {
-            let (y, extent) = (floats(&[0.0, 0.5, -0.25, 1e-7, 256.0]), floats(&[0.0, 1e-6, 0.5, 512.0]));
-            Rows::new(9).mixed("clip_to_box", &[&y, &y, &y, &y, &y, &y, &extent, &extent, &extent]).random(
-                "clip_to_box",
-                |d, row| {
-                    let mean = [d.range(0.0, 1.5), d.range(-0.5, 0.5), d.range(-0.5, 0.5)];
-                    let away = [0.0, 0.01, 0.3][d.bits() as usize % 3];
-                    push(row, &mean.map(|x| x + away * d.range(-1.0, 1.0)));
-                    push(row, &mean);
-                    row.extend((0..3).map(|_| range(d, 0.0, 0.3)));
-                },
-            )
-        },
-    },
-    Probe {
-        name: "candidate_share",
-        module: "taa",
-        words: [3, 1],
-        wgsl: "out_f(candidate_share(vec2<f32>(in_f(0u), in_f(1u)), in_f(2u)));",
-        rust: |r, o| o.f(taa::candidate_share([r.f(0), r.f(1)], r.f(2))),
-        rows: || {
-            let at = [around(&[0.25, 0.5]), floats(&[0.0, 1.0 / 16_777_216.0, 1.0_f32.next_down()])].concat();
-            let trust = [around(&[0.6, 0.9]), floats(&[1e-30, 0.25, 1.0])].concat();
-            Rows::new(3)
-                .cross(&[&at, &at, &trust])
-                .random("candidate_share", |d, row| push(row, &[fraction(d), fraction(d), d.range(0.0, 1.0)]))
-        },
-    },
-    Probe {
-        name: "blend_clipped",
-        module: "taa",
-        words: [13, 3],
-        wgsl: "out_v(blend_clipped(in_v(0u), in_v(3u), in_v(6u), in_v(9u), in_f(12u)));",
-        rust: |r, o| o.v(taa::blend_clipped(r.v(0), r.v(3), r.v(6), r.v(9), r.f(12))),
-        rows: || {
-            Rows::new(13).random("blend_clipped", |d, row| {
-                let candidate = stored_color(d);
-                let history = like(d, candidate);
-                push(row, &like(d, candidate));
-                push(row, &history.map(|x| x.max(0.0)));
-                push_box(d, row, candidate);
-                push(row, &[[0.1, 0.4, 1.0, d.range(0.1, 1.0)][d.bits() as usize % 4]]);
-            })
         },
     },
 ];
