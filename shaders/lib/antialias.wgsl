@@ -82,7 +82,7 @@ fn clip(near: Near, history: vec3<f32>) -> Clip {
     let inverse = 1.0 / near.count;
     let variance = (near.squares * near.count - near.sum * near.sum) * (inverse * inverse);
     let past = to_ycocg(history);
-    let inside = clip_to_box(past, near.sum * inverse, roots(variance) * CLIP_SIGMAS);
+    let inside = clip_to_box(past, near.sum * inverse, roots(variance) * CLIP_SIGMAS + ROUNDING);
     let by = (inside - past) * CLIP;
     let distance = max(max(abs(by.x), abs(by.y)), abs(by.z));
     let outer = by.x - by.z;

@@ -9,7 +9,7 @@
 use super::kept::{FARTHEST_PX, Kept};
 use super::matched::{root_difference, roots};
 use super::sparse::{Light, Reconstructed, Reconstruction, relit};
-use super::taa::{clip_to_box, to_ycocg};
+use super::taa::{ROUNDING, clip_to_box, to_ycocg};
 use glam::{Vec2, Vec3};
 
 /// Largest number of samples in a mean: one frame's samples weigh at least a 31st. More is calmer and follows changes
@@ -41,8 +41,8 @@ const NEARER_RELATIVE: f32 = 0.02;
 /// Largest difference of motion, in pixels along an axis, at which a nearer surface stands for a pixel of a lattice of
 /// step 2 and more.
 const ALONGSIDE_PX: f32 = 1.0;
-/// Largest difference of motion, in pixels along an axis, at which the surfaces around a pixel move as one: history that
-/// mixes them stays in place.
+/// Largest difference of motion, in pixels along an axis, at which the surfaces around a pixel move as one:
+/// history that mixes them stays in place.
 const TOGETHER_PX: f32 = 0.25;
 
 /// A stored texel: its level of detail, at least 0, and the number of samples in it. Empty texels stay empty.
@@ -141,7 +141,7 @@ pub fn clip(near: Near, history: Vec3) -> Clip {
     let inverse = 1.0 / near.count;
     let variance = (near.squares * near.count - near.sum * near.sum) * (inverse * inverse);
     let past = to_ycocg(history);
-    let inside = clip_to_box(past, near.sum * inverse, roots(variance) * BOX_SIGMAS);
+    let inside = clip_to_box(past, near.sum * inverse, roots(variance) * BOX_SIGMAS + Vec3::splat(ROUNDING));
     let by = (inside - past) * CLIP;
     let distance = by.x.abs().max(by.y.abs()).max(by.z.abs());
     let outer = by.x - by.z;

@@ -11,15 +11,21 @@ fn antialiased() -> Settings {
     Settings { method, ..settings(MethodKind::Smr) }
 }
 
-/// Two views that glide, with jitter; the surfaces meet in a silhouette that is not straight. In the last frames all is
-/// at full rate.
+/// Two views that glide, with jitter. The surfaces meet in a silhouette that is not straight; in the second view some
+/// of it is where motion changes, too, and the nearer surface comes from where the other one was. In the last frames all
+/// is at full rate.
 fn views(index: u64, settings: &Settings) -> [View; 2] {
     [0, 1].map(|v| {
         let mut view = gliding_view(index, v, settings);
         view.facts.jitter_px = Foveation::jitter_px(index + u64::from(v));
+        if v == 1 {
+            view.motion = view.motion.map(|motion| motion.map(|[x, y]| [x, -y]));
+        }
         view.depth = view.depth.map(|depth| {
             let (near, far) = (depth.at(0, 0), depth.at(0, SIZE[1] as usize - 1));
-            afterimage::Image::from_fn(SIZE, |[x, y]| if 3 * y < SIZE[1] + x { near } else { far })
+            afterimage::Image::from_fn(SIZE, |[x, y]| {
+                if 3 * y < SIZE[1] + x && (v == 0 || 2 * y < SIZE[1]) { near } else { far }
+            })
         });
         if index > 8 {
             let full = Lattice::covering(1, [0, 0], SIZE, [0, 0]);
