@@ -237,7 +237,8 @@ fn pixel(px: vec2<u32>, view: u32) {
     count_pixel(px, view, candidate.usable, disparity_now, verdict);
 
     var shown = candidate.color;
-    var next = Kept(candidate.color, select(-1.0, candidate.lod, candidate.usable), surface.stored_disparity, vec2<f32>(0.0));
+    let candidate_lod = select(-1.0, candidate.lod, candidate.usable);
+    var next = Kept(candidate.color, candidate_lod, surface.stored_disparity, vec2<f32>(0.0));
     var samples = 1.0;
     if ANTIALIAS != 0u && candidate.is_own {
         next.place_px = -frame.views[view].jitter_px;

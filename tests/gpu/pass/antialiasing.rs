@@ -12,8 +12,8 @@ fn antialiased() -> Settings {
 }
 
 /// Two views that glide, with jitter. The surfaces meet in a silhouette that is not straight; in the second view some
-/// of it is where motion changes, too, and the nearer surface comes from where the other one was. In the last frames all
-/// is at full rate.
+/// of it is where motion changes, too, and the nearer surface comes from where the other one was. In the last frames
+/// all is at full rate.
 fn views(index: u64, settings: &Settings) -> [View; 2] {
     [0, 1].map(|v| {
         let mut view = gliding_view(index, v, settings);

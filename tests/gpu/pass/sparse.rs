@@ -321,7 +321,7 @@ fn a_wrong_reconstruction_is_caught() {
         // History: of the other view, of another texel, of another surface, and in another exposure.
         ("vec2<i32>(frame.size) - 1), view, 0)", "vec2<i32>(frame.size) - 1), 1u - view, 0)"),
         ("vec2<u32>(tap % columns, tap / columns)", "vec2<u32>(tap / columns, tap / columns)"),
-        ("(DEPTH_TEST == 0u || has_code(code_word(words), codes))", "true"),
+        ("(DEPTH_TEST == 0u || has_code(code_word(words), source.codes))", "true"),
         ("found.color = expose(found.color, frame.exposure);", ""),
         ("found.highest = expose(found.highest, frame.exposure);", ""),
         ("found.nearest.color = expose(found.nearest.color, frame.exposure);", ""),
@@ -351,7 +351,7 @@ fn a_wrong_reconstruction_is_caught() {
         ("weight * select(BY_NEIGHBOURS, 1.0, lit.is_own)", "weight"),
         ("select(mean.xyz, own.color, is_own)", "mean.xyz"),
         ("candidate.usable && lattice.level == 0u", "false"),
-        ("next.disparity = surface.disparity;", ""),
+        ("next.disparity = surface.stored_disparity;", ""),
         ("textureStore(next_kept, px, view,", "textureStore(next_kept, px, 1u - view,"),
         ("count_if(valid && share == 0.0, COUNT_REPLACED);", ""),
     ];
