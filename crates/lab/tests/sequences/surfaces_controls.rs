@@ -106,9 +106,15 @@ fn every_planted_error_in_taa_is_caught() {
                 "clipped + (roots(candidate) - clipped) * (1.01 * alpha)",
             ),
             // A neighbor omitted, a wider clipping box, non-finite candidates stored as valid.
-            ("vec2<u32>(tap % 3u, tap / 3u)", "vec2<u32>(tap % 3u, min(tap / 3u, 1u))"),
-            ("const BOX_SIGMAS: f32 = 2.0;", "const BOX_SIGMAS: f32 = 2.02;"),
-            ("select(-1.0, 0.0, candidate.usable || valid)", "0.0"),
+            ("vec2<i32>(tap % 3, tap / 3) - 1", "vec2<i32>(tap % 3, min(tap / 3, 1)) - 1"),
+            (
+                "const BOX_SIGMAS: vec2<f32> = vec2<f32>(2.0, 5.0);",
+                "const BOX_SIGMAS: vec2<f32> = vec2<f32>(2.02, 5.0);",
+            ),
+            ("select(-1.0, lod_of(confidence), candidate.usable || valid)", "lod_of(confidence)"),
+            // Settled history that does not agree with its neighbourhood, and samples counted one too many.
+            ("confidence = min(confidence, agreeing(", "confidence = max(confidence, agreeing("),
+            ("confidence = 1.0 / alpha;", "confidence = 1.0 / alpha + 1.0;"),
         ],
     ]
     .concat();
@@ -121,12 +127,17 @@ fn every_planted_error_in_taau_is_caught() {
         SHARED,
         &[
             // Confidence ignored or not limited, samples and history swapped, non-finite candidates stored as valid.
-            ("min(confidence_of(resampled.lod), confidence_limit(source.fraction))", "1.0"),
-            ("min(confidence_of(resampled.lod), confidence_limit(source.fraction))", "confidence_of(resampled.lod)"),
+            ("min(confidence_of(resampled.lod), confidence_limit(source.fraction, UPSAMPLED_SPREAD))", "1.0"),
+            (
+                "min(confidence_of(resampled.lod), confidence_limit(source.fraction, UPSAMPLED_SPREAD))",
+                "confidence_of(resampled.lod)",
+            ),
             (
                 "clipped + (roots(upsampled(a, centre)) - clipped) * share",
                 "roots(upsampled(a, centre)) + (clipped - roots(upsampled(a, centre))) * share",
             ),
+            // Settled history that does not agree with its neighbourhood.
+            ("confidence = min(confidence, agreeing(near.", "confidence = max(confidence, agreeing(near."),
             ("vec2<i32>(tap % 3, tap / 3) - 1", "vec2<i32>(tap % 3, min(tap / 3, 1)) - 1"),
             ("select(-1.0, lod_of(result.confidence), sampled || valid)", "lod_of(result.confidence)"),
         ],

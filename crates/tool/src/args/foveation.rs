@@ -3,7 +3,7 @@
 use super::number::parse_scale;
 use super::{Named, by_name};
 use crate::failure::Failure;
-use afterimage::{Filter, Foveation};
+use afterimage::{Filter, Foveation, Method, Settings};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::trace::sampling::{Regions, Sampling};
@@ -94,6 +94,14 @@ impl FoveationArgs {
     /// Whether the projection is jittered.
     pub fn is_jittered(&self) -> bool {
         self.jitter == Jitter::Halton
+    }
+
+    /// The settings, with history that is antialiased where frames are jittered.
+    pub fn antialiased(&self, mut settings: Settings) -> Settings {
+        if let Method::Smr(smr) = &mut settings.method {
+            smr.antialias = self.is_jittered() && settings.foveation.filter == Filter::Sparse;
+        }
+        settings
     }
 
     /// Depth and motion of frames.

@@ -7,7 +7,7 @@ use crate::args::pattern::SamplingName;
 use crate::args::{MethodName, Named};
 use crate::clip::{self, Clip, title};
 use crate::failure::Failure;
-use afterimage::{Filter, Foveation, Method, MethodKind, Settings};
+use afterimage::{Filter, Foveation, MethodKind, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::RunKind;
 use afterimage_lab::quad_views::QuadViewLayout;
@@ -138,10 +138,8 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
             )));
         }
     };
-    let mut settings = Settings { foveation, ..args.wrs.settings(method, args.seed, sampling.is_some()) };
-    if let Method::Smr(smr) = &mut settings.method {
-        smr.antialias = args.foveation.is_jittered() && foveation.filter == Filter::Sparse;
-    }
+    let settings = Settings { foveation, ..args.wrs.settings(method, args.seed, sampling.is_some()) };
+    let settings = args.foveation.antialiased(settings);
     settings.validate()?;
     if let Some(part) = args.ablation.without.filter(|part| part.methods.contains(&method)) {
         if args.backend != BackendName::Gpu {

@@ -7,7 +7,9 @@ use super::state::{Shows, Side, State};
 use super::times::{Pass, PassTimes};
 use crate::failure::Failure;
 use afterimage::wgpu::{CommandEncoder, Texture};
-use afterimage::{ContextDesc, Filter, Finding, Gaze, Lattices, MethodKind, Reset, Settings, ViewFrame, ViewGeometry};
+use afterimage::{
+    ContextDesc, Filter, Finding, Foveation, Gaze, Lattices, MethodKind, Reset, Settings, ViewFrame, ViewGeometry,
+};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::{Content, RenderedFrame};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
@@ -37,6 +39,8 @@ pub struct ViewPipeline {
     desc: ContextDesc,
     sparse_geometry: SparseGeometry,
     sample_order: SampleOrder,
+    /// Whether sparse frames are jittered.
+    is_jittered: bool,
     /// Quad views of rendered frames.
     quad_views: Option<QuadViewLayout>,
     // Properties of the uploaded or posed frame.
@@ -71,6 +75,7 @@ impl ViewPipeline {
             desc,
             sparse_geometry,
             sample_order,
+            is_jittered: setup.args.foveation.is_jittered(),
             quad_views: None,
             position: 0,
             has_full: false,
@@ -165,11 +170,13 @@ impl ViewPipeline {
         let simulated = is_sparse.then(|| self.sample_order.lattices(foveation, &self.geometry, gaze_px, self.index));
         // Rendered frames are shown again only after a reset of the history, which needs no motion.
         let again = again && renderer.is_none();
-        let content = renderer.map(|renderer| self.render(renderer, gaze_px, simulated, state, times));
-        let is_simulated = content.as_ref().is_none_or(|content| matches!(content, Content::FullRate));
-        let lattices = content.map_or(simulated, |content| content.lattices());
+        let rendered = renderer.map(|renderer| self.render(renderer, gaze_px, simulated, state, times));
+        let is_simulated = rendered.as_ref().is_none_or(|(content, _)| matches!(content, Content::FullRate));
+        let (lattices, jitter_px) =
+            rendered.map_or((simulated, [0.0; 2]), |(content, jitter_px)| (content.lattices(), jitter_px));
         let views = [ViewFrame {
             previous_from_current: self.previous_from_current.filter(|_| !again),
+            jitter_px,
             lattices: lattices.map(|lattices| self.sparse_geometry.of(lattices)),
             ..ViewFrame::new(self.geometry, Gaze::At { px: gaze_px })
         }];
@@ -205,7 +212,8 @@ impl ViewPipeline {
         Ok(())
     }
 
-    /// Renders the posed frame, and the full-rate frame besides, untimed, where a side shows it. What the methods get.
+    /// Renders the posed frame, and the full-rate frame besides, untimed, where a side shows it. What the methods get,
+    /// and its jitter in pixels.
     fn render(
         &mut self,
         renderer: &mut RasterSource,
@@ -213,13 +221,15 @@ impl ViewPipeline {
         lattices: Option<Lattices>,
         state: &State,
         times: &mut PassTimes,
-    ) -> Content {
+    ) -> (Content, [f32; 2]) {
         let quad_views = self
             .quad_views
             .map(|layout| Wanted::QuadViews(layout.views(&self.desc.settings.foveation, &self.geometry, gaze_px)));
+        // As in run: the sequence starts with a corner of the pixel.
+        let jitter_px = (self.is_jittered && lattices.is_some()).then(|| Foveation::jitter_px(self.index + 1));
         let wanted = quad_views.or(lattices.map(Wanted::Lattices)).unwrap_or(Wanted::FullRate);
         let full_rate = FrameRequest { reference: false, ..FrameRequest::full_rate(self.position) };
-        let request = FrameRequest { gaze_px, wanted, geometry: self.sparse_geometry, ..full_rate.clone() };
+        let request = FrameRequest { gaze_px, wanted, jitter_px, geometry: self.sparse_geometry, ..full_rate.clone() };
         self.has_full = request.needs_full_rate();
         if !self.has_full && state.shows_reference() {
             self.record_now(|inputs, encoder| {
@@ -231,14 +241,14 @@ impl ViewPipeline {
             }
             self.has_full = true;
         }
-        let mut content = Content::FullRate;
+        let mut rendered = (Content::FullRate, [0.0; 2]);
         times.span(&self.gpu, Pass::Render, |encoder| {
             let frame = renderer.record(encoder, &request);
             self.inputs.set(encoder, &frame);
             self.previous_from_current = frame.reference.previous_from_current;
-            content = frame.content;
+            rendered = (frame.content, frame.jitter_px);
         });
-        content
+        rendered
     }
 
     /// What is found about the inputs; nothing unless they are checked.

@@ -31,6 +31,11 @@ impl Setup {
             return refuse(format!("--internal-scale {scale}: expected above 0 and at most 1"));
         }
         args.foveation.check(args.input.is_rasterised(), args.input.is_analytic())?;
+        if args.foveation.is_jittered() && !args.input.is_rasterised() {
+            return refuse(
+                "--jitter halton: the viewer jitters scenes only (.gltf, .glb, builtin:NAME); use run".into(),
+            );
+        }
         let (fps, geometry) = (args.input.fps(info), args.input.geometry(info)?);
         let gaze = args.gaze.clone().unwrap_or_else(|| "synthetic:0".into());
         let gaze = GazeArgs { gaze, gaze_map: args.gaze_map, start: args.start };
@@ -76,7 +81,8 @@ impl Setup {
     pub fn settings(&self, state: &State, shows: Shows) -> Settings {
         let method = shows.method().unwrap_or_default();
         let foveation = self.foveation(state).foveation();
-        Settings { foveation, ..self.args.wrs.settings(method, self.args.seed, false) }
+        let settings = Settings { foveation, ..self.args.wrs.settings(method, self.args.seed, false) };
+        self.args.foveation.antialiased(settings)
     }
 
     /// Quad views of rendered frames, if they are composed of such.
