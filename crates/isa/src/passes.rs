@@ -5,7 +5,7 @@ use afterimage::gpu::{Afterimage, Variant};
 use afterimage::shader::{Composer, Module, SHADERS};
 use afterimage::wgpu::{Device, DeviceDescriptor, TextureFormat};
 use afterimage::{
-    ContextDesc, Filter, Foveation, Gaze, Method, MethodKind, Sampler, Settings, ViewFrame, ViewGeometry, Wrs,
+    ContextDesc, Filter, Foveation, Gaze, Method, MethodKind, Sampler, Settings, Smr, ViewFrame, ViewGeometry, Wrs,
 };
 
 /// Size of the frames of the roofline.
@@ -49,6 +49,8 @@ pub fn methods() -> Result<Vec<MethodPasses>> {
         Settings { method: method.into(), foveation, ..Settings::default() }
     };
     let noisy = |settings: Settings| Settings { noisy: true, ..settings };
+    let antialias =
+        |settings: Settings| Settings { method: Method::Smr(Smr { antialias: true, ..Smr::default() }), ..settings };
     [
         ("copy", full(MethodKind::Wrs)),
         ("none", full(MethodKind::None)),
@@ -58,6 +60,7 @@ pub fn methods() -> Result<Vec<MethodPasses>> {
         ("smr", full(MethodKind::Smr)),
         ("smr noisy", noisy(full(MethodKind::Smr))),
         ("sparse smr", sparse(MethodKind::Smr)),
+        ("sparse smr antialias", antialias(sparse(MethodKind::Smr))),
         ("sparse smr noisy", noisy(sparse(MethodKind::Smr))),
         ("sparse taau", sparse(MethodKind::Taau)),
         ("sparse wrs", sparse(MethodKind::Wrs)),
@@ -119,6 +122,10 @@ fn samples_share(settings: &Settings) -> Result<f64> {
     Ok(samples.sum::<f64>() / SIZE_PX.map(f64::from).iter().product::<f64>())
 }
 
+fn is_antialiased(settings: &Settings) -> bool {
+    matches!(settings.method, Method::Smr(Smr { antialias: true, .. }))
+}
+
 fn loops(module: &str, settings: &Settings) -> &'static [&'static str] {
     match module {
         "wrs_pass" if matches!(settings.method, Method::Wrs(Wrs { sampler: Sampler::AChaoMean, .. })) => {
@@ -128,9 +135,11 @@ fn loops(module: &str, settings: &Settings) -> &'static [&'static str] {
         "wrs_sparse_pass" => &["lattice", "slope"],
         "fill_pass" => &["lattice", "four"],
         "taau_pass" => &["slope", "guard", "resample", "lattice", "around"],
+        "sparse_observe_pass" if is_antialiased(settings) => &["slope", "around"],
         "sparse_observe_pass" => &["slope", "four"],
         "sparse_light_pass" if settings.noisy => &["around"],
         "sparse_light_pass" => &["around", "around relit"],
+        "sparse_pass" if is_antialiased(settings) => &["lattice", "four", "slope", "around", "near"],
         "sparse_pass" => &["lattice", "four", "slope", "four"],
         "taa_pass" => &["slope", "guard", "resample", "around"],
         "smr_pass" if settings.noisy => &["block", "slope", "guard", "resample"],

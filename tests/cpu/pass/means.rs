@@ -182,6 +182,91 @@ fn a_silhouette_is_a_mean_of_both_surfaces() {
     }
 }
 
+/// Two surfaces with bars of a pixel and a half that glide past each other, and the edge between them, in a frame.
+struct Gliding {
+    edge_px: f32,
+    /// Position of the bars of the nearer surface, and of the other one.
+    bars_px: [f32; 2],
+    /// Velocities in pixels a frame.
+    velocity_px: [f32; 2],
+}
+
+impl Gliding {
+    fn at(index: u64, velocity_px: [f32; 2]) -> Self {
+        let bars_px = velocity_px.map(|v| v * index as f32);
+        Self { edge_px: 16.0 - 10.0 * velocity_px[0].signum() + bars_px[0], bars_px, velocity_px }
+    }
+
+    fn surface(&self, [x, y]: [f32; 2]) -> usize {
+        usize::from(x + 0.1 * y >= self.edge_px)
+    }
+
+    fn color(&self, [x, y]: [f32; 2]) -> [f32; 3] {
+        let surface = self.surface([x, y]);
+        let phase = (x - self.bars_px[surface] + 0.13 * y).rem_euclid(5.0);
+        [[0.6, 0.2][surface] + if phase < 1.5 { 0.2 } else { 0.0 }; 3]
+    }
+}
+
+/// Share of the contrast of bars that a method shows: the slope of the shown values over the means over the pixels, 2.5
+/// to 6.5 pixels from the edge and farther away, each on the nearer surface and on the other one.
+fn shown_contrast(method: Method, step: u32, velocity_px: [f32; 2]) -> [[f64; 2]; 2] {
+    let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..Foveation::default() };
+    let settings = Settings { method, foveation, ..Settings::default() };
+    let mut post = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SMALL) }).unwrap();
+    let mut out = [Image::filled(SMALL, [0.0; 3])];
+    let points: Vec<[f32; 2]> = (0..64).map(|i| [i % 8, i / 8].map(|k| (k as f32 + 0.5) / 8.0 - 0.5)).collect();
+    let mut sums = [[[0.0; 5]; 2]; 2];
+    for index in 0..80 {
+        let now = Gliding::at(index, velocity_px);
+        let jitter_px = Foveation::jitter_px(index + 1);
+        let center = |[x, y]: [u32; 2]| [x as f32, y as f32];
+        let color = Image::from_fn(SMALL, |[x, y]| now.color([x as f32 - jitter_px[0], y as f32 - jitter_px[1]]));
+        let depth = Image::from_fn(SMALL, |px| [2.0, 5.0][now.surface(center(px))]);
+        let motion = Image::from_fn(SMALL, |px| [-now.velocity_px[now.surface(center(px))], 0.0]);
+        let offset = afterimage::kernel::lattice::offset_px(index, step);
+        let mut facts = ViewFrame::new(geometry(SMALL), Gaze::At { px: [10.0, 10.0] });
+        facts.jitter_px = jitter_px;
+        facts.lattices = Some(Lattices::new(&[Lattice::covering(step, [0, 0], SMALL, offset)]).unwrap());
+        let view = OneView { depth: Some(&depth), motion: Some(&motion), ..OneView::new(facts, &color) };
+        post.process(&Images::of(&[view]).frame(index), &mut out).unwrap();
+        for (i, shown) in out[0].pixels().iter().enumerate().filter(|_| index >= 40) {
+            let at = center([i as u32 % SMALL[0], i as u32 / SMALL[0]]);
+            let edge_px = (at[0] + 0.1 * at[1] - now.edge_px).abs();
+            // What comes into view from the sides has little history.
+            if edge_px < 2.5 || !(4.0..28.0).contains(&at[0]) {
+                continue;
+            }
+            let of = |p: &[f32; 2]| f64::from(now.color([at[0] + p[0], at[1] + p[1]])[0]);
+            let expected = points.iter().map(of).sum::<f64>() / points.len() as f64;
+            let shown = f64::from(shown[0]);
+            let add = [1.0, expected, shown, expected * expected, expected * shown];
+            let sum = &mut sums[usize::from(edge_px >= 6.5)][now.surface(at)];
+            (0..5).for_each(|k| sum[k] += add[k]);
+        }
+    }
+    sums.map(|sums| sums.map(|[n, x, y, xx, xy]| (n * xy - x * y) / (n * xx - x * x)))
+}
+
+/// What stands beside an edge is as sharp as elsewhere, within a tenth. Temporal antialiasing at full rate, and every
+/// second pixel, are printed beside it.
+#[test]
+fn bars_beside_an_edge_are_not_softer_than_elsewhere() {
+    let smr = Method::Smr(Smr { antialias: true, ..Smr::default() });
+    for velocity_px in [[0.3, 0.1], [-0.3, 0.1]] {
+        let rows = [("taa", Method::Taa, 1), ("smr", smr, 1), ("smr", smr, 2)];
+        for (name, method, step) in rows {
+            let [beside, elsewhere] = shown_contrast(method, step, velocity_px);
+            println!(
+                "{velocity_px:?} px a frame: {name}, step {step}: {beside:.2?} of the contrast beside the edge, \
+                 {elsewhere:.2?} elsewhere"
+            );
+            let sharp = (0..2).all(|k| beside[k] >= 0.9 * elsewhere[k]);
+            assert!(sharp || (name, step) != ("smr", 1), "{velocity_px:?}: {beside:?}, elsewhere {elsewhere:?}");
+        }
+    }
+}
+
 #[test]
 fn an_invalid_sample_stays_in_its_pixel_for_its_frame() {
     let mut post = antialiased();
