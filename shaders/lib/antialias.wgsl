@@ -18,6 +18,7 @@ const CLIP_COST: f32 = 10.0;
 const NEARER_RELATIVE: f32 = 0.02;
 const ALONGSIDE_PX: f32 = 1.0;
 const TOGETHER_PX: f32 = 0.25;
+const DOUBTFUL: f32 = -2.0;
 
 // A negative `lod`: empty.
 struct Mean {
@@ -58,6 +59,14 @@ fn move_together(own: vec2<f32>, nearest: vec2<f32>, farthest: vec2<f32>) -> boo
 fn is_of_surfaces(stored: f32, farthest: f32, nearest: f32) -> bool {
     let far = farthest * (1.0 - NEARER_RELATIVE);
     return stored >= far && stored * (1.0 - NEARER_RELATIVE) <= nearest;
+}
+
+// antialias::may_show
+fn may_show(own: f32, neighbour: f32, place_px: vec2<f32>, offset: vec2<f32>) -> bool {
+    let nearer = neighbour > own * (1.0 + NEARER_RELATIVE);
+    let farther = neighbour >= 0.0 && neighbour < own * (1.0 - NEARER_RELATIVE);
+    let toward = place_px * offset;
+    return (nearer || farther) && (toward.x > 0.0 || offset.x == 0.0) && (toward.y > 0.0 || offset.y == 0.0);
 }
 
 struct Near {

@@ -29,6 +29,8 @@ struct PixelSurface {
     farthest: f32,
     nearest: f32,
     mixes: bool,
+    // Whether this frame's sample of the pixel may be of another surface.
+    is_doubtful: bool,
 }
 
 // Those of the nearest surface around a pixel, if that stands for it (ANTIALIAS). `level`: of its lattice.
@@ -36,15 +38,19 @@ fn surface_of(px: vec2<u32>, view: u32, level: u32) -> PixelSurface {
     let own = disparity_at(px, view);
     let own_motion = motion_at(px, view);
     if ANTIALIAS == 0u || DEPTH_TEST == 0u {
-        return PixelSurface(own, own_motion, own, own, own, false);
+        return PixelSurface(own, own_motion, own, own, own, false, false);
     }
     var nearest_disparity = own;
     var farthest_disparity = own;
     var nearest_at = px;
     var farthest_at = px;
+    var doubtful = false;
+    let place_px = -frame.views[view].jitter_px;
     for (var tap = 0u; tap < 9u; tap++) {
-        let texel = clamp(px + vec2<u32>(tap % 3u, tap / 3u), vec2<u32>(1u), frame.size) - 1u;
+        let offset = vec2<u32>(tap % 3u, tap / 3u);
+        let texel = clamp(px + offset, vec2<u32>(1u), frame.size) - 1u;
         let near = disparity_at(texel, view);
+        doubtful = doubtful || may_show(own, near, place_px, vec2<f32>(offset) - 1.0);
         let is_farther = near >= 0.0 && near < farthest_disparity;
         nearest_at = select(nearest_at, texel, near > nearest_disparity);
         farthest_at = select(farthest_at, texel, is_farther);
@@ -52,9 +58,9 @@ fn surface_of(px: vec2<u32>, view: u32, level: u32) -> PixelSurface {
         farthest_disparity = select(farthest_disparity, near, is_farther);
     }
     let motion = motion_at(nearest_at, view);
-    var surface = PixelSurface(own, own_motion, own, own, own, false);
+    var surface = PixelSurface(own, own_motion, own, own, own, false, false);
     if stands_before(own, nearest_disparity, own_motion, motion, level == 0u) {
-        surface = PixelSurface(nearest_disparity, motion, nearest_disparity, own, own, false);
+        surface = PixelSurface(nearest_disparity, motion, nearest_disparity, own, own, false, false);
     }
     if own >= 0.0 && move_together(own_motion, motion, motion_at(farthest_at, view)) {
         surface.stored_disparity = own;
@@ -62,6 +68,9 @@ fn surface_of(px: vec2<u32>, view: u32, level: u32) -> PixelSurface {
         surface.nearest = nearest_disparity;
         surface.mixes = true;
     }
+    // Of what stands still, a mean of both surfaces has samples enough to be smooth.
+    let is_still = surface.mixes && !has_moved(own_motion, vec2<f32>(0.0));
+    surface.is_doubtful = doubtful && own >= 0.0 && !is_still;
     return surface;
 }
 

@@ -81,9 +81,11 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
         }
     }
     let is_own = own.error >= 0.0;
+    // A sample that may be of another surface is of none.
+    let own_surface = select(own_disparity, INVALID_DISPARITY, ANTIALIAS != 0u && own.error == DOUBTFUL);
     if sum.weight < 1e-6 {
         let fit_unlit = fit_at_sample(own, vec3<f32>(1.0));
-        return pack_lit(Lit(vec3<f32>(1.0), 1.0, fit_unlit, is_own, own_disparity));
+        return pack_lit(Lit(vec3<f32>(1.0), 1.0, fit_unlit, is_own, own_surface));
     }
     var gains = vec3<f32>(1.0);
     if RELIGHT_ON != 0u {
@@ -110,7 +112,7 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     if NOISY != 0u {
         left = min(left, mean_fit(sum, sure));
     }
-    return pack_lit(Lit(gains, left, fit_at_sample(own, gains), is_own, own_disparity));
+    return pack_lit(Lit(gains, left, fit_at_sample(own, gains), is_own, own_surface));
 }
 
 @compute @workgroup_size(64, 1)

@@ -10,16 +10,17 @@
 @group(0) @binding(18) var observed_out: texture_storage_2d_array<rg32uint, write>;
 
 fn observe(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
-    let nothing = vec2<u32>(0u, half_bits(-1.0));
     let px = px_of(point, lattice);
     let surface = surface_of(px, view, lattice.level);
+    let nothing = vec2<u32>(0u, half_bits(select(-1.0, DOUBTFUL, surface.is_doubtful)));
     let motion = surface.motion;
     var source = kept_source(px, view, surface);
     if ANTIALIAS != 0u {
         // At the sample's place in its pixel.
         source.previous.at -= frame.views[view].jitter_px;
     }
-    let needed = may_have_history(source.previous) && color(sample_at(point, lattice, view).xyz).usable;
+    let usable = color(sample_at(point, lattice, view).xyz).usable && !surface.is_doubtful;
+    let needed = may_have_history(source.previous) && usable;
     let kept = kept_history(source, view, needed);
     let history = kept.found;
     if !needed || history.lod < 0.0 {

@@ -118,7 +118,8 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
     let coarsest = f32(level);
     let lod = select(candidate_level(sqrt(nearest_px2), coarsest), coarsest + 1.0, nearest_px2 == NO_PX2);
     let mean = sum * (1.0 / weights);
-    let is_own = is_sample && own.usable;
+    let same = DEPTH_TEST == 0u || disparity_now < 0.0 || has_code(own_words.y, codes);
+    let is_own = is_sample && own.usable && (ANTIALIAS == 0u || same);
     let known = 1.0 / valid_sum;
     var noise = Noise(1.0, 0.0);
     if NOISY != 0u {

@@ -10,11 +10,11 @@ mod antialias;
 use super::Pass;
 use super::inputs::{Inputs, Previous};
 use super::surface_pass::{Pixel, ProcessPixel, Targets, for_pixels};
-use crate::kernel::antialias::{Mean, is_of_surfaces, mean_of, scattered_error, stored_lod};
+use crate::kernel::antialias::{DOUBTFUL, Mean, is_of_surfaces, mean_of, scattered_error, stored_lod};
 use crate::kernel::approx;
 use crate::kernel::color::luma;
 use crate::kernel::debug_view::PixelTrace;
-use crate::kernel::depth::same_surface;
+use crate::kernel::depth::{INVALID_DISPARITY, same_surface};
 use crate::kernel::kept::{
     Around, EXACT_PX, INVERSE_MEAN_REACH, INVERSE_REACH, Interpolated, Kept, add_kept, code_word, interpolate,
     is_empty, pack_color, pack_color_by, pack_kept, stands_in, unpack_color, unpack_full, unpack_kept,
@@ -73,6 +73,7 @@ struct View<'a> {
 }
 
 /// The surface whose history a pixel continues.
+#[derive(Clone, Copy)]
 struct Surroundings {
     disparity: f32,
     motion: [f32; 2],
@@ -80,6 +81,8 @@ struct Surroundings {
     stored: f32,
     /// Disparities of the farthest and the nearest surface around, if history may be of any of them.
     mixed: Option<[f32; 2]>,
+    /// Whether this frame's sample of the pixel may be of another surface.
+    is_doubtful: bool,
 }
 
 /// Where a pixel's history is.
@@ -276,6 +279,9 @@ impl View<'_> {
         let (sampled, usable) = self.sampled(lattice, point);
         let px = lattice.px_of(point);
         let surface = self.surface(px, lattice.level);
+        if surface.is_doubtful {
+            return Some(Observation { sampled, history: Vec3::ZERO, error: DOUBTFUL, sure: 0.0 });
+        }
         let mut source = self.source(px, &surface).ok().filter(|_| usable)?;
         if self.antialiases {
             // At the sample's place in its pixel.
@@ -312,6 +318,13 @@ impl View<'_> {
         })
     }
 
+    /// Whether a sample may be of another surface than its pixel.
+    #[inline(always)]
+    fn is_doubtful(&self, lattice: usize, [x, y]: [u32; 2], observed: &[Samples]) -> bool {
+        let words = observed[lattice][(y * self.lattices[lattice].points[0] + x) as usize];
+        self.antialiases && half_value(words[1]) == DOUBTFUL
+    }
+
     /// Gain and fit around a sample, packed ([`pack_lit`]).
     #[inline(always)]
     fn light(&self, lattice: usize, point: [u32; 2], observed: &[Samples]) -> [u32; 2] {
@@ -337,6 +350,8 @@ impl View<'_> {
         // A single noisy sample says nothing.
         let judged = own.filter(|_| !self.is_noisy());
         let fit_of_own = |gain| judged.map_or(1.0, |own| own_fit(own, gain));
+        // A sample that may be of another surface is of none.
+        let disparity = if self.is_doubtful(lattice, point, observed) { INVALID_DISPARITY } else { disparity };
         let unlit = Lit { gain: Vec3::ONE, fit: 1.0, own_fit: fit_of_own(Vec3::ONE), is_own: own.is_some(), disparity };
         if light.weight < 1e-6 {
             return pack_lit(unlit);
@@ -490,7 +505,7 @@ impl View<'_> {
             if alike {
                 nearest_px2 = nearest_px2.min(px2[0][right as usize] + px2[1][below as usize]);
             }
-            if is_sample && tap == 0 {
+            if is_sample && tap == 0 && (alike || !self.antialiases || disparity < 0.0) {
                 own = Some((color, lit.own_fit));
             }
         }

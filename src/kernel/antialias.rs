@@ -108,6 +108,20 @@ pub fn is_of_surfaces(stored: f32, farthest: f32, nearest: f32) -> bool {
     stored >= far && stored * (1.0 - NEARER_RELATIVE) <= nearest
 }
 
+/// Observation of a sample that may be of another surface than its pixel, in place of an error.
+pub const DOUBTFUL: f32 = -2.0;
+
+/// Whether a pixel's sample at `place_px` may show the surface of the neighbour at `offset` (-1, 0 or 1 along each
+/// axis), whose disparity is `neighbour`: another surface, on the sample's side. Depth is that of pixel centres; a
+/// sample of what lies beside a silhouette would stay as a dot where the silhouette moves away.
+#[inline]
+pub fn may_show(own: f32, neighbour: f32, place_px: Vec2, offset: Vec2) -> bool {
+    let nearer = neighbour > own * (1.0 + NEARER_RELATIVE);
+    let farther = neighbour >= 0.0 && neighbour < own * (1.0 - NEARER_RELATIVE);
+    let toward = place_px * offset;
+    (nearer || farther) && (toward.x > 0.0 || offset.x == 0.0) && (toward.y > 0.0 || offset.y == 0.0)
+}
+
 /// Sums over the samples around a pixel of full rate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Near {

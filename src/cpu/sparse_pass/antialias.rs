@@ -1,11 +1,11 @@
 //! What the pass does more where frames are jittered: means of samples in place of single ones.
 
-use super::Surroundings;
 use super::{
     Kept, Mean, Reconstruction, Vec2, Vec3, View, pack_color_by, pack_kept, reconstruct, rng, sanitize, stored_lod,
 };
+use super::{Surroundings, has_moved};
 use crate::kernel::antialias::{
-    Averaged, Near, add_near, average, clip, clipped, kept_mean, move_together, stands_before,
+    Averaged, Near, add_near, average, clip, clipped, kept_mean, may_show, move_together, stands_before,
 };
 
 impl View<'_> {
@@ -21,17 +21,20 @@ impl View<'_> {
     pub(super) fn surface(&self, [x, y]: [u32; 2], level: u32) -> Surroundings {
         let own = self.inputs.disparity(x, y);
         let own_motion = self.inputs.motion(x, y);
-        let alone = Surroundings { disparity: own, motion: own_motion, stored: own, mixed: None };
+        let alone = Surroundings { disparity: own, motion: own_motion, stored: own, mixed: None, is_doubtful: false };
         if !self.antialiases || !self.inputs.tests_depth() {
             return alone;
         }
         let [width, height] = self.inputs.size;
         let (mut nearest, mut nearest_at) = (own, [x, y]);
         let (mut farthest, mut farthest_at) = (own, [x, y]);
+        let mut doubtful = false;
         for tap in 0..9 {
             let tx = (x + tap % 3).max(1).min(width) - 1;
             let ty = (y + tap / 3).max(1).min(height) - 1;
             let disparity = self.inputs.disparity(tx, ty);
+            let offset = Vec2::new((tap % 3) as f32, (tap / 3) as f32) - 1.0;
+            doubtful |= may_show(own, disparity, self.sample_place_px(), offset);
             if disparity > nearest {
                 (nearest, nearest_at) = (disparity, [tx, ty]);
             }
@@ -44,11 +47,14 @@ impl View<'_> {
         let [own_px, nearest_px, farthest_px] = [own_motion, motion, farthest_motion].map(Vec2::from);
         let mut surface = alone;
         if stands_before(own, nearest, own_px, nearest_px, level == 0) {
-            surface = Surroundings { disparity: nearest, motion, stored: nearest, mixed: None };
+            surface = Surroundings { disparity: nearest, motion, stored: nearest, ..alone };
         }
         if own >= 0.0 && move_together(own_px, nearest_px, farthest_px) {
             surface = Surroundings { stored: own, mixed: Some([farthest, nearest]), ..surface };
         }
+        // Of what stands still, a mean of both surfaces has samples enough to be smooth.
+        let is_still = surface.mixed.is_some() && !has_moved(own_motion, Vec2::ZERO);
+        surface.is_doubtful = doubtful && own >= 0.0 && !is_still;
         surface
     }
 

@@ -267,6 +267,44 @@ fn bars_beside_an_edge_are_not_softer_than_elsewhere() {
     }
 }
 
+/// Depth is that of pixel centres. A sample beside a silhouette that shows the other surface would stay as a dot where
+/// the silhouette moves away.
+#[test]
+fn a_moving_silhouette_leaves_no_dots() {
+    for step in [2, 4] {
+        let mut post = antialiased();
+        let mut shown = [Image::filled(SMALL, [0.0; 3])];
+        let (mut dots, mut pixels) = (0, 0);
+        for index in 0..60 {
+            let jitter_px = Foveation::jitter_px(index + 1);
+            // The nearer surface, whose color is another, glides to the left.
+            let edge_px = 28.0 - 0.4 * index as f32;
+            let near = |[x, y]: [f32; 2]| x + 0.2 * y < edge_px;
+            let center = |[x, y]: [u32; 2]| [x as f32, y as f32];
+            let color = Image::from_fn(SMALL, |[x, y]| {
+                if near([x as f32 - jitter_px[0], y as f32 - jitter_px[1]]) { [0.8; 3] } else { [0.2; 3] }
+            });
+            let depth = Image::from_fn(SMALL, |px| if near(center(px)) { 2.0 } else { 5.0 });
+            let motion = Image::from_fn(SMALL, |px| [if near(center(px)) { 0.4 } else { 0.0 }, 0.0]);
+            let mut facts = ViewFrame::new(geometry(SMALL), Gaze::At { px: [10.0, 10.0] });
+            let offset = afterimage::kernel::lattice::offset_px(index, step);
+            let lattices = Lattices::new(&[Lattice::covering(step, [0, 0], SMALL, offset)]).unwrap();
+            (facts.jitter_px, facts.lattices) = (jitter_px, Some(lattices));
+            let view = OneView { depth: Some(&depth), motion: Some(&motion), ..OneView::new(facts, &color) };
+            post.process(&Images::of(&[view]).frame(index), &mut shown).unwrap();
+            for (i, c) in shown[0].pixels().iter().enumerate().filter(|_| index >= 20) {
+                let [x, y] = center([i as u32 % SMALL[0], i as u32 / SMALL[0]]);
+                if x + 0.2 * y > edge_px + 1.5 {
+                    pixels += 1;
+                    dots += usize::from((c[0] - 0.2).abs() > 0.02);
+                }
+            }
+        }
+        println!("step {step}: {dots} of {pixels} pixels beside the silhouette are not of the farther surface");
+        assert_eq!(dots, 0, "step {step}");
+    }
+}
+
 #[test]
 fn an_invalid_sample_stays_in_its_pixel_for_its_frame() {
     let mut post = antialiased();

@@ -12,14 +12,17 @@ fn antialiased() -> Settings {
 }
 
 /// Two views that glide, with jitter. The surfaces meet in a silhouette that is not straight; in the second view some
-/// of it is where motion changes, too, and the nearer surface comes from where the other one was. In the last frames
-/// all is at full rate.
+/// of it is where motion changes, too, and the nearer surface comes from where the other one was. The first
+/// view stands still for three frames. In the last frames all is at full rate.
 fn views(index: u64, settings: &Settings) -> [View; 2] {
     [0, 1].map(|v| {
         let mut view = gliding_view(index, v, settings);
         view.facts.jitter_px = Foveation::jitter_px(index + u64::from(v));
         if v == 1 {
             view.motion = view.motion.map(|motion| motion.map(|[x, y]| [x, -y]));
+        }
+        if v == 0 && (5..8).contains(&index) {
+            view.motion = view.motion.map(|motion| motion.map(|_| [0.0; 2]));
         }
         view.depth = view.depth.map(|depth| {
             let (near, far) = (depth.at(0, 0), depth.at(0, SIZE[1] as usize - 1));
@@ -88,6 +91,15 @@ fn a_wrong_mean_is_caught() {
         ("surface.nearest = nearest_disparity;", ""),
         ("surface.stored_disparity = own;", ""),
         ("previous.verdict = VERDICT_VALID;\n    }", "}"),
+        // Samples of another surface: taken, on the other side, or where history is still; compared,
+        // interpolated, averaged.
+        ("doubtful = doubtful || may_show(own, near, place_px, vec2<f32>(offset) - 1.0);", ""),
+        ("let place_px = -frame.views[view].jitter_px;", "let place_px = frame.views[view].jitter_px;"),
+        ("own >= 0.0 && !is_still;", "own >= 0.0;"),
+        ("select(-1.0, DOUBTFUL, surface.is_doubtful)", "-1.0"),
+        ("usable && !surface.is_doubtful;", "usable;"),
+        ("ANTIALIAS != 0u && own.error == DOUBTFUL", "false"),
+        ("own.usable && (ANTIALIAS == 0u || same);", "own.usable;"),
         // History: fewer or other texels, another reach, another number of samples.
         ("columns = 3u;", "columns = 2u;"),
         ("floor(previous.at + 0.5)) - 1", "floor(previous.at)) - 1"),

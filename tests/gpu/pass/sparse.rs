@@ -327,7 +327,7 @@ fn a_wrong_reconstruction_is_caught() {
         ("found.nearest.color = expose(found.nearest.color, frame.exposure);", ""),
         ("confidence = trust(trust_at(px, view));", ""),
         // Samples: comparison of unusable ones, of another place, results of another lattice or view.
-        ("&& color(sample_at(point, lattice, view).xyz).usable", ""),
+        ("color(sample_at(point, lattice, view).xyz).usable && !", "!"),
         ("if previous.verdict == VERDICT_DISOCCLUDED && !stands_in(around) {", "if false {"),
         ("point.y << lattice.level", "point.x << lattice.level"),
         (

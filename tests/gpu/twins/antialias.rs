@@ -70,6 +70,21 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
+        name: "may_show",
+        module: "antialias",
+        words: [6, 1],
+        wgsl: "out_b(may_show(in_f(0u), in_f(1u), vec2<f32>(in_f(2u), in_f(3u)), vec2<f32>(in_f(4u), in_f(5u))));",
+        rust: |r, o| {
+            let [place, offset] = [2, 4].map(|at| Vec2::new(r.f(at), r.f(at + 1)));
+            o.u(u32::from(antialias::may_show(r.f(0), r.f(1), place, offset)));
+        },
+        rows: || {
+            let disparities = floats(&[-1.0, 0.0, 0.48, 0.49, 0.5, 0.51, 1.0, 1.02]);
+            let [places, offsets] = [floats(&[-0.5, 0.0, 0.3]), floats(&[-1.0, 0.0, 1.0])];
+            Rows::new(6).cross(&[&disparities, &disparities, &places, &places, &offsets, &offsets])
+        },
+    },
+    Probe {
         name: "is_of_surfaces",
         module: "antialias",
         words: [3, 1],
