@@ -136,7 +136,9 @@ fn the_mask_has_the_verdicts_of_process() {
             let mut post = context(settings(1.0, antialias));
             let (mut rejected, mut chosen) = (0, 0);
             for index in 0..=2 * TURN {
-                let input = square(index, 2 * TURN, speed_px, antialias);
+                // In the last frame, the lowest rows are distrusted.
+                let trust = Image::from_fn(SIZE, |[_, y]| if index == 2 * TURN && y >= 45 { 0.0 } else { 1.0 });
+                let input = Input { trust: Some(trust), ..square(index, 2 * TURN, speed_px, antialias) };
                 let view = sparse(&input, index, antialias);
                 let (mask, _, trace) = show(&mut post, index, view, |_| None);
                 if index < 2 * TURN && index > 0 {
