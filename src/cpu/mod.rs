@@ -25,7 +25,6 @@ pub use crate::kernel::debug_view::PixelTrace;
 pub use doctor::Doctor;
 #[doc(hidden)]
 pub use history::History;
-pub use repair::Repaired;
 
 use crate::error::{FrameError, SettingsError};
 use crate::frame::{ContextDesc, Executor, ViewFrame, check_size};
@@ -92,6 +91,20 @@ impl Executor for CpuAfterimage {
     type Scalars<'a> = &'a [&'a Image<f32>];
     type Repaired<'a> = &'a [Repaired<'a>];
     type Vectors<'a> = &'a [&'a Image<[f32; 2]>];
+}
+
+/// Repaired samples of a view: pixels of a sparse frame that the renderer shaded at full rate, as
+/// [`CpuAfterimage::plan`] asked.
+///
+/// Such a pixel is shown as those of the full-rate lattice are, and its sample is stored as theirs. Samples that are
+/// NaN or infinite are ignored: the pixel is as it would be without. So are those of pixels of the full-rate lattice,
+/// which have a sample in the color input.
+#[derive(Clone, Copy, Debug)]
+pub struct Repaired<'a> {
+    /// Linear colors, of the context's size; only pixels of the mask are read.
+    pub color: &'a Image<[f32; 3]>,
+    /// Pixels that were shaded, of the context's size: those that were planned, or others.
+    pub mask: &'a Image<bool>,
 }
 
 /// Arguments of a method's pass.

@@ -6,19 +6,6 @@ use crate::error::FrameError;
 use crate::image::Image;
 use crate::method::smr_sparse_repair;
 
-/// Repaired samples of a view: pixels of a sparse frame that the renderer shaded at full rate, as
-/// [`plan`](CpuAfterimage::plan) asked.
-///
-/// Such a pixel is shown as those of the full-rate lattice are, and its sample is stored as theirs. Samples that are
-/// NaN or infinite are ignored: the pixel is as it would be without.
-#[derive(Clone, Copy, Debug)]
-pub struct Repaired<'a> {
-    /// Linear colors, of the context's size; only pixels of the mask are read.
-    pub color: &'a Image<[f32; 3]>,
-    /// Pixels that were shaded, of the context's size: those that were planned, or others.
-    pub mask: &'a Image<bool>,
-}
-
 impl CpuAfterimage {
     /// Pixels of a sparse frame that want a sample of their own, one mask a view: quads of 2x2 pixels for which history
     /// has nothing, or nothing fine, and the frame's lattices have no sample. Where the frame is given to

@@ -18,15 +18,13 @@ const HASH_BITS: u32 = 8;
 /// Number of keys; every key is below it.
 pub const KEYS: u32 = (2 * RINGS + 1) << HASH_BITS;
 
-/// How much a pixel `e_deg` degrees from the gaze wants a sample of its own: 0, not at all, to 62. Pixels without
-/// history come before those whose history is coarse, and within either class the nearer ones come first.
-///
-/// `lod`: level of detail of history at the pixel; negative: there is none. `is_sample`: whether the frame samples the
-/// pixel anyway.
+/// How much a pixel that the frame does not sample, `e_deg` degrees from the gaze, wants a sample of its own: 0, not at
+/// all, to 62. Pixels without history come before those whose history is coarse, and within either class the nearer
+/// ones come first. `lod`: level of detail of history at the pixel; negative: there is none.
 #[inline]
-pub fn priority(lod: f32, is_sample: bool, e_deg: f32) -> u32 {
+pub fn priority(lod: f32, e_deg: f32) -> u32 {
     let has_history = lod >= 0.0;
-    if is_sample || has_history && lod < COARSE_LOD {
+    if has_history && lod < COARSE_LOD {
         return 0;
     }
     let ring = (e_deg * RINGS_PER_DEG).min((RINGS - 1) as f32) as u32;

@@ -1,8 +1,8 @@
 //! Repair of sparse frames: what samples of their own are worth for the pixels that history has nothing for.
 //!
-//! The repaired samples are pixels of the full-rate frame. Each row says PSNR in dB (sRGB) of the first third of a clip,
-//! which starts without history, and of its last third; and the share of pixels that were repaired in these thirds, in
-//! percent.
+//! The repaired samples are pixels of the full-rate frame. Each row says PSNR in dB (sRGB) of the first third of a
+//! clip, which starts without history, and of its last third; and the share of pixels that were repaired in these
+//! thirds, in percent.
 //!
 //! `cargo run --release -p afterimage-lab --example 19_repair`
 

@@ -56,13 +56,13 @@ impl View<'_> {
     /// How much a pixel wants a sample of its own.
     fn priority(&self, px: [u32; 2]) -> u32 {
         let lattice = &self.lattices[LatticeUniforms::index_at(&self.lattices, px)];
-        let is_sample = lattice.around(px).is_some_and(|[x, y]| x.fraction == 0.0 && y.fraction == 0.0);
-        if is_sample {
+        if lattice.around(px).is_some_and(|[x, y]| x.fraction == 0.0 && y.fraction == 0.0) {
+            // The frame samples it.
             return 0;
         }
         let surface = self.surface(px, lattice.level);
         let lod = self.source(px, &surface).map_or(-1.0, |source| self.interpolated(&source).history.lod);
         let e_deg = self.inputs.eccentricity_deg(self.inputs.ray(px[0], px[1]));
-        priority(lod, is_sample, e_deg)
+        priority(lod, e_deg)
     }
 }

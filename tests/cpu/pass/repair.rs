@@ -79,7 +79,7 @@ fn show(
     let frame = images.frame(index);
     let before = post.clone();
     let mask = post.plan(&frame).unwrap().remove(0);
-    assert_eq!(post.plan(&Frame { color: &[], ..frame }).unwrap(), [mask.clone()], "the second call");
+    assert!(post.plan(&Frame { color: &[], ..frame }).unwrap()[0] == mask, "the second call");
     assert!(post.history() == before.history(), "the question changed history");
     let samples = answer(&mask);
     let repaired = samples.as_ref().map(|color| [Repaired { color, mask: &mask }]);
@@ -183,7 +183,7 @@ fn repaired_pixels_show_their_samples_and_others_change_nothing() {
             emptied.process(&Frame { repaired: Some(&empty), ..images.frame(index) }, &mut out).unwrap();
             assert!(out[0] == without && emptied.history() == plain.history(), "an empty mask");
             // Other colors than the samples', and every seventh pixel is not a number.
-            let bad = |i: usize| i % 7 == 0;
+            let bad = |i: usize| i.is_multiple_of(7);
             let shaded = Image::from_fn(SIZE, |[x, y]| {
                 let i = (y * SIZE[0] + x) as usize;
                 let v = (i % 1024) as f32 / 1024.0;
@@ -318,15 +318,15 @@ fn what_does_not_fit_is_refused() {
 
 #[test]
 fn priorities_are_ordered_by_class_then_by_ring() {
-    let at = |lod, e_deg| priority(lod, false, e_deg);
-    assert_eq!((priority(-1.0, true, 0.0), priority(3.0, true, 0.0), at(0.0, 0.0), at(0.99, 90.0)), (0, 0, 0, 0));
-    assert_eq!((at(-1.0, 0.0), at(-1.0, 180.0), at(1.0, 0.0), at(8.0, 180.0)), (62, 32, 31, 1));
+    assert_eq!([(0.0, 0.0), (0.99, 90.0)].map(|(lod, e_deg)| priority(lod, e_deg)), [0; 2]);
+    let wanted = [(-1.0, 0.0), (-1.0, 180.0), (1.0, 0.0), (8.0, 180.0)];
+    assert_eq!(wanted.map(|(lod, e_deg)| priority(lod, e_deg)), [62, 32, 31, 1]);
     for ring in 1..40 {
         let e_deg = ring as f32 * 3.0;
-        assert!(at(-1.0, e_deg) <= at(-1.0, e_deg - 3.0) && at(-1.0, e_deg) > at(2.0, 0.0));
+        assert!(priority(-1.0, e_deg) <= priority(-1.0, e_deg - 3.0) && priority(-1.0, e_deg) > priority(2.0, 0.0));
     }
     let largest = (0..1000).map(|i| quad_key(62, i, 0, 0, 0)).max().unwrap();
-    assert!(largest < KEYS && largest >= 62 << 8);
+    assert!((62 << 8..KEYS).contains(&largest));
     assert!((0..1000).all(|i| quad_key(0, i, 0, 0, 0) == 0));
     assert!(quad_key(62, 5, 7, 0, 0) != quad_key(62, 5, 7, 1, 0), "every frame has another order");
 }
