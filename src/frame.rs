@@ -5,6 +5,7 @@ use crate::error::{FrameError, SettingsError};
 use crate::foveation::Filter;
 use crate::geometry::{ViewGeometry, camera_motion};
 use crate::lattice::Lattices;
+use crate::method::smr_sparse_repair;
 use crate::settings::Settings;
 use std::fmt::Debug;
 
@@ -265,6 +266,8 @@ pub trait Executor {
     type Scalars<'a>: Copy + Debug;
     /// Images with two channels.
     type Vectors<'a>: Copy + Debug;
+    /// Samples of single pixels at full rate.
+    type Repaired<'a>: Copy + Debug;
 }
 
 /// A frame: its input images, all of the context's size, and descriptions of its views.
@@ -306,6 +309,10 @@ pub struct Frame<'a, E: Executor> {
     /// its level of detail. On a GPU `Rg16Float`, `Rg32Float` or wider. Required if [`Settings::noisy`] is set,
     /// otherwise `None`. Of sparse frames it is read at the samples' pixels.
     pub noise: Option<E::Vectors<'a>>,
+    /// Samples of single pixels of a sparse frame at full rate, for which the renderer was asked: CPU executor only
+    /// (`cpu::Repaired`, `cpu::CpuAfterimage::plan`), and only with [`Smr::repair`](crate::Smr::repair). `None`: no
+    /// such samples.
+    pub repaired: Option<E::Repaired<'a>>,
     /// Descriptions of the views, one for each view of the context.
     pub views: &'a [ViewFrame],
     /// Frame counter, which seeds the random numbers: the same index and [`Settings::seed`] give the same bytes.
@@ -334,6 +341,7 @@ impl<E: Executor> Debug for Frame<'_, E> {
             .field("trust", &self.trust)
             .field("lod", &self.lod)
             .field("noise", &self.noise)
+            .field("repaired", &self.repaired)
             .field("views", &self.views)
             .field("index", &self.index)
             .field("reset", &self.reset)
@@ -352,6 +360,7 @@ impl<'a, E: Executor> Frame<'a, E> {
             trust: None,
             lod: None,
             noise: None,
+            repaired: None,
             views,
             index,
             reset: Reset::None,
@@ -361,6 +370,13 @@ impl<'a, E: Executor> Frame<'a, E> {
 
     /// Checks all fields but the images.
     pub(crate) fn check(&self, desc: &ContextDesc) -> Result<(), FrameError> {
+        self.check_facts(desc)?;
+        self.check_noise(&desc.settings)?;
+        self.check_repaired(&desc.settings)
+    }
+
+    /// Checks what is known of a frame before it is shaded.
+    pub(crate) fn check_facts(&self, desc: &ContextDesc) -> Result<(), FrameError> {
         let (found, expected) = (self.views.len(), desc.view_count as usize);
         if found != expected {
             return Err(FrameError::ViewCount { found, expected });
@@ -368,7 +384,6 @@ impl<'a, E: Executor> Frame<'a, E> {
         for (i, view) in self.views.iter().enumerate() {
             view.check(i, desc)?;
         }
-        self.check_noise(&desc.settings)?;
         self.check_lattices(&desc.settings)?;
         self.exposure.check()
     }
@@ -395,6 +410,15 @@ impl<'a, E: Executor> Frame<'a, E> {
             return Err(FrameError::Value { what: "lod", view: 0, found, expected });
         }
         Ok(())
+    }
+
+    /// Rejects repaired samples that the settings do not expect.
+    fn check_repaired(&self, settings: &Settings) -> Result<(), FrameError> {
+        if self.repaired.is_none() || smr_sparse_repair(settings).is_some() {
+            return Ok(());
+        }
+        let expected = "None; or set Smr::repair, and Filter::Sparse in Settings::foveation";
+        Err(FrameError::Value { what: "repaired", view: 0, found: "given".into(), expected })
     }
 
     /// Rejects a missing noise input if the settings require one, and an unexpected one.

@@ -8,7 +8,8 @@
 use super::Frame;
 use super::history::History;
 use super::inputs::Inputs;
-use crate::frame::ContextDesc;
+use crate::convention::{DepthConvention, MotionConvention};
+use crate::frame::{ContextDesc, ViewFrame};
 use crate::image::Image;
 use crate::kernel::depth::{INVALID_DISPARITY, distance_of, same_surface};
 use crate::kernel::kept::unpack_kept;
@@ -36,6 +37,29 @@ pub(super) fn filled(desc: &ContextDesc, frame: &Frame<'_>, history: &History) -
         views.push(Geometry { depth: pixels.map(|(depth, _)| depth), motion: pixels.map(|(_, motion)| motion) });
     }
     Some(views)
+}
+
+/// What `f` makes of a frame with its `filled` depth and motion, if any, in place of those at its samples.
+pub(super) fn with_filled<R>(
+    filled: Option<&[Geometry]>,
+    desc: &ContextDesc,
+    frame: &Frame<'_>,
+    f: impl FnOnce(&ContextDesc, &Frame<'_>) -> R,
+) -> R {
+    let Some(filled) = filled else { return f(desc, frame) };
+    let depths: Vec<_> = filled.iter().map(|g| &g.depth).collect();
+    let motions: Vec<_> = filled.iter().map(|g| &g.motion).collect();
+    // They are in internal conventions.
+    let views: Vec<_> = frame.views.iter().map(|view| ViewFrame { depth: None, ..*view }).collect();
+    let desc = ContextDesc { depth: DepthConvention::Linear, motion: MotionConvention::default(), ..*desc };
+    let whole = frame.with_color(frame.color);
+    let whole = Frame {
+        depth: whole.depth.is_some().then_some(&depths[..]),
+        motion: whole.motion.is_some().then_some(&motions[..]),
+        views: &views,
+        ..whole
+    };
+    f(&desc, &whole)
 }
 
 struct View<'a> {

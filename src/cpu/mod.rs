@@ -11,6 +11,7 @@ mod history;
 mod inputs;
 mod mip_chain;
 mod none_pass;
+mod repair;
 mod resize;
 mod smr_pass;
 mod sparse_pass;
@@ -25,7 +26,6 @@ pub use doctor::Doctor;
 #[doc(hidden)]
 pub use history::History;
 
-use crate::convention::{DepthConvention, MotionConvention};
 use crate::error::{FrameError, SettingsError};
 use crate::frame::{ContextDesc, Executor, ViewFrame, check_size};
 use crate::image::Image;
@@ -61,8 +61,8 @@ impl<'a> Frame<'a> {
     where
         'a: 'b,
     {
-        let Self { depth, motion, trust, lod, noise, views, index, reset, exposure, .. } = *self;
-        Frame { color, depth, motion, trust, lod, noise, views, index, reset, exposure }
+        let Self { depth, motion, trust, lod, noise, repaired, views, index, reset, exposure, .. } = *self;
+        Frame { color, depth, motion, trust, lod, noise, repaired, views, index, reset, exposure }
     }
 }
 
@@ -89,7 +89,22 @@ pub struct CpuAfterimage {
 impl Executor for CpuAfterimage {
     type Colors<'a> = &'a [&'a Image<[f32; 3]>];
     type Scalars<'a> = &'a [&'a Image<f32>];
+    type Repaired<'a> = &'a [Repaired<'a>];
     type Vectors<'a> = &'a [&'a Image<[f32; 2]>];
+}
+
+/// Repaired samples of a view: pixels of a sparse frame that the renderer shaded at full rate, as
+/// [`CpuAfterimage::plan`] asked.
+///
+/// Such a pixel is shown as those of the full-rate lattice are, and its sample is stored as theirs. Samples that are
+/// NaN or infinite are ignored: the pixel is as it would be without. So are those of pixels of the full-rate lattice,
+/// which have a sample in the color input.
+#[derive(Clone, Copy, Debug)]
+pub struct Repaired<'a> {
+    /// Linear colors, of the context's size; only pixels of the mask are read.
+    pub color: &'a Image<[f32; 3]>,
+    /// Pixels that were shaded, of the context's size: those that were planned, or others.
+    pub mask: &'a Image<bool>,
 }
 
 /// Arguments of a method's pass.
@@ -229,31 +244,18 @@ impl CpuAfterimage {
         let filled: Vec<_> = filled.iter().collect();
         let whole = frame.with_color(if filled.is_empty() { frame.color } else { &filled });
         let geometry = fill_geometry::filled(&self.desc, frame, &self.history);
-        let depths: Vec<_> = geometry.iter().flatten().map(|g| &g.depth).collect();
-        let motions: Vec<_> = geometry.iter().flatten().map(|g| &g.motion).collect();
-        // Filled depth and motion are in internal conventions.
-        let views: Vec<_> = frame.views.iter().map(|view| ViewFrame { depth: None, ..*view }).collect();
-        let (desc, whole) = match &geometry {
-            None => (self.desc, whole),
-            Some(_) => (
-                ContextDesc { depth: DepthConvention::Linear, motion: MotionConvention::default(), ..self.desc },
-                Frame {
-                    depth: whole.depth.is_some().then_some(&depths[..]),
-                    motion: whole.motion.is_some().then_some(&motions[..]),
-                    views: &views,
-                    ..whole
-                },
-            ),
-        };
-        let pass = Pass { desc: &desc, history: &mut self.history, frame: &whole, output, traces };
-        let stats = match self.desc.settings.algorithm() {
-            Algorithm::None => none_pass::run(pass),
-            Algorithm::Taa => surface_pass::run(pass, &taa_pass::Taa),
-            Algorithm::Taau => surface_pass::run(pass, &taau_pass::Taau),
-            Algorithm::Smr => surface_pass::run(pass, &smr_pass::Smr::new(&self.desc.settings)),
-            Algorithm::SmrSparse => sparse_pass::run(pass),
-            Algorithm::Wrs => wrs_pass::run(pass),
-        };
+        let history = &mut self.history;
+        let stats = fill_geometry::with_filled(geometry.as_deref(), &self.desc, &whole, |desc, frame| {
+            let pass = Pass { desc, history, frame, output, traces };
+            match desc.settings.algorithm() {
+                Algorithm::None => none_pass::run(pass),
+                Algorithm::Taa => surface_pass::run(pass, &taa_pass::Taa),
+                Algorithm::Taau => surface_pass::run(pass, &taau_pass::Taau),
+                Algorithm::Smr => surface_pass::run(pass, &smr_pass::Smr::new(&desc.settings)),
+                Algorithm::SmrSparse => sparse_pass::run(pass),
+                Algorithm::Wrs => wrs_pass::run(pass),
+            }
+        });
         if self.history.layout() == HistoryLayout::Nothing {
             self.history.forget();
         } else {
@@ -267,12 +269,19 @@ impl CpuAfterimage {
 fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
     frame.check(desc)?;
     check_samples(desc, "color", Some(frame.color.iter().map(|i| i.size())), frame.views, ViewFrame::atlas)?;
+    check_geometry(desc, frame)?;
+    check_sizes(desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
+    check_sizes(desc, "noise", frame.noise.map(|n| n.iter().map(|i| i.size())))?;
+    check_sizes(desc, "repaired colors", frame.repaired.map(|r| r.iter().map(|r| r.color.size())))?;
+    check_sizes(desc, "repaired mask", frame.repaired.map(|r| r.iter().map(|r| r.mask.size())))
+}
+
+/// Checks the sizes of what is known of a frame before it is shaded.
+fn check_geometry(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
     let geometry = |view| ViewFrame::atlas(view).filter(|atlas| atlas.has_geometry_at_samples());
     check_samples(desc, "depth", frame.depth.map(|d| d.iter().map(|i| i.size())), frame.views, geometry)?;
     check_samples(desc, "motion", frame.motion.map(|m| m.iter().map(|i| i.size())), frame.views, geometry)?;
-    check_sizes(desc, "trust", frame.trust.map(|t| t.iter().map(|i| i.size())))?;
-    check_sizes(desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
-    check_sizes(desc, "noise", frame.noise.map(|n| n.iter().map(|i| i.size())))
+    check_sizes(desc, "trust", frame.trust.map(|t| t.iter().map(|i| i.size())))
 }
 
 /// Checks the sizes of an input that may be an atlas of samples: `atlas` of a view.

@@ -6,10 +6,14 @@
 //! and the samples, read the four stored samples around its previous position, and blend.
 
 mod antialias;
+mod plan;
 
-use super::Pass;
+pub(super) use plan::plan;
+
 use super::inputs::{Inputs, Previous};
 use super::surface_pass::{Pixel, ProcessPixel, Targets, for_pixels};
+use super::{Frame, Pass};
+use crate::frame::ContextDesc;
 use crate::kernel::antialias::{DOUBTFUL, Mean, is_of_surfaces, mean_of, scattered_error, stored_lod};
 use crate::kernel::approx;
 use crate::kernel::color::luma;
@@ -112,18 +116,7 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
         let held = history.hold(i, &frame.views[i]);
         let inputs = Inputs::new(desc, frame, i, &held, has_history);
         let (past, next, next_noise) = history.split_surfaces(i);
-        let lattices = frame.views[i].lattices.as_ref().expect("the frame was checked to have lattices");
-        let lattices = LatticeUniforms::of_view(lattices, desc.size_px);
-        let view = View {
-            inputs,
-            words: past.words,
-            noise: past.noise,
-            lattices,
-            accumulate: desc.settings.method.smr().accumulate,
-            relights: crate::method::smr_sparse_relights(&desc.settings),
-            antialiases: crate::method::smr_sparse_antialiases(&desc.settings),
-            frame_low: frame.index as u32,
-        };
+        let view = View::new(desc, frame, i, inputs, past.words, past.noise);
         let observed = view.for_samples(|lattice, point| pack_observation(view.observe(lattice, point)));
         let lights = view.for_samples(|lattice, point| view.light(lattice, point, &observed));
         let traces = traces.as_mut().map(|t| &mut t[i]);
@@ -164,6 +157,30 @@ fn pack_observation(o: Option<Observation>) -> [u32; 2] {
     match o {
         Some(o) => [pack_color(o.history), half_bits(o.error) | half_bits(o.sure) << 16],
         None => [0, half_bits(-1.0)],
+    }
+}
+
+impl<'a> View<'a> {
+    /// View `index` of a frame with its inputs, and history's samples and their noise.
+    fn new(
+        desc: &ContextDesc,
+        frame: &Frame<'_>,
+        index: usize,
+        inputs: Inputs<'a>,
+        words: &'a [[u32; 2]],
+        noise: &'a [u32],
+    ) -> Self {
+        let lattices = frame.views[index].lattices.as_ref().expect("the frame was checked to have lattices");
+        Self {
+            inputs,
+            words,
+            noise,
+            lattices: LatticeUniforms::of_view(lattices, desc.size_px),
+            accumulate: desc.settings.method.smr().accumulate,
+            relights: crate::method::smr_sparse_relights(&desc.settings),
+            antialiases: crate::method::smr_sparse_antialiases(&desc.settings),
+            frame_low: frame.index as u32,
+        }
     }
 }
 
@@ -380,10 +397,18 @@ impl View<'_> {
         let disparity = inputs.disparity(x, y);
         let index = LatticeUniforms::index_at(&self.lattices, [x, y]);
         let level = self.lattices[index].level;
-        let candidate = self.candidate(index, [x, y], disparity, lights);
+        let mut candidate = self.candidate(index, [x, y], disparity, lights);
+        // Pixels of the lattice of full rate have a sample of their own in any case.
+        let repaired = if level > 0 { inputs.repaired(x, y) } else { None };
+        if let Some(color) = repaired {
+            // The samples around still say what became of the light.
+            let noise = self.sample_noise([x, y]);
+            candidate = Candidate { color, usable: true, lod: 0.0, noise, is_own: true, ..candidate };
+        }
+        let is_full_rate = level == 0 || repaired.is_some();
         let surface = self.surface([x, y], level);
         let source = self.source([x, y], &surface);
-        let is_final = candidate.usable && level == 0 && !self.is_noisy() && !self.antialiases;
+        let is_final = candidate.usable && is_full_rate && !self.is_noisy() && !self.antialiases;
         let history = source.as_ref().ok().filter(|_| !is_final).map(|source| self.interpolated(source));
         let history = history.filter(|found| found.history.lod >= 0.0);
         let verdict = match &source {

@@ -22,8 +22,8 @@ impl<'a> Frame<'a> {
     where
         'a: 'b,
     {
-        let Self { depth, motion, trust, lod, noise, views, index, reset, exposure, .. } = *self;
-        Frame { color, depth, motion, trust, lod, noise, views, index, reset, exposure }
+        let Self { depth, motion, trust, lod, noise, repaired, views, index, reset, exposure, .. } = *self;
+        Frame { color, depth, motion, trust, lod, noise, repaired, views, index, reset, exposure }
     }
 
     /// Whether depth and motion are given at samples only.

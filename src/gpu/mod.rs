@@ -81,6 +81,7 @@ pub struct Afterimage {
 impl Executor for Afterimage {
     type Colors<'a> = Textures<'a>;
     type Scalars<'a> = Textures<'a>;
+    type Repaired<'a> = std::convert::Infallible;
     type Vectors<'a> = Textures<'a>;
 }
 

@@ -18,6 +18,7 @@ pub mod lattice;
 pub mod matched;
 pub mod noise;
 pub mod pack;
+pub mod repair;
 pub mod reproject;
 pub mod resample;
 pub mod reservoir;

@@ -4,7 +4,8 @@
 #[cfg(feature = "gpu")]
 use super::PassShader;
 use super::{Algorithm, Entry, HistoryLayout, Stage};
-use crate::settings::Settings;
+use crate::foveation::Filter;
+use crate::settings::{Repair, Settings};
 
 pub(super) static ENTRY: Entry = Entry {
     name: "smr-sparse",
@@ -29,6 +30,11 @@ pub(super) static ENTRY: Entry = Entry {
 /// Whether history stores means of jittered samples. Noisy samples are averaged in another way.
 pub(crate) fn smr_sparse_antialiases(settings: &Settings) -> bool {
     settings.method.smr().antialias && !settings.noisy
+}
+
+/// Repair of sparse frames, if the renderer asks for it.
+pub(crate) fn smr_sparse_repair(settings: &Settings) -> Option<Repair> {
+    settings.method.smr().repair.filter(|_| settings.foveation.filter == Filter::Sparse)
 }
 
 /// Whether history is relit. Not that of noisy frames: a gain is the ratio of nine samples, and history would be

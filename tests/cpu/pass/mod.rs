@@ -7,6 +7,7 @@ mod light;
 mod means;
 mod nan;
 mod properties;
+mod repair;
 mod reprojection;
 mod reservoirs;
 mod sparse;

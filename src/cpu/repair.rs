@@ -1,0 +1,63 @@
+//! Repair of sparse frames: the renderer asks which pixels history has nothing for before it shades any, and shades
+//! them at full rate.
+
+use super::{CpuAfterimage, Frame, check_geometry, check_sizes, fill_geometry, sparse_pass};
+use crate::error::FrameError;
+use crate::image::Image;
+use crate::method::smr_sparse_repair;
+
+impl CpuAfterimage {
+    /// Pixels of a sparse frame that want a sample of their own, one mask a view: quads of 2x2 pixels for which history
+    /// has nothing, or nothing fine, and the frame's lattices have no sample. Where the frame is given to
+    /// [`process`](Self::process) with samples of them ([`Frame::repaired`](crate::Frame::repaired)), these are shown.
+    ///
+    /// At most the share [`Repair::budget`](crate::Repair::budget) of a view's quads is chosen: those without history
+    /// first, then those whose history is coarse, each from the gaze outwards. After a cut, successive frames repair
+    /// successive rings around the gaze.
+    ///
+    /// The frame is the one that will be processed, as far as it is known before it is shaded: views with their
+    /// lattices, depth, motion, trust, index and reset. Its colors, noise and repaired samples are not read, and the
+    /// colors may be an empty slice. Nothing is changed: the same call gives the same masks.
+    ///
+    /// ```
+    /// use afterimage::cpu::{CpuAfterimage, Frame, Repaired};
+    /// use afterimage::{ContextDesc, Filter, Gaze, Image, Method, Repair, Smr, ViewFrame, ViewGeometry};
+    ///
+    /// let size = [64, 36];
+    /// let mut desc = ContextDesc::new(size);
+    /// desc.settings.foveation.filter = Filter::Sparse;
+    /// desc.settings.method = Method::Smr(Smr { repair: Some(Repair { budget: 0.1 }), ..Smr::default() });
+    /// let mut post = CpuAfterimage::new(&desc)?;
+    /// let geometry = ViewGeometry::flat(size, 70.0)?;
+    /// let gaze_px = [40.0, 18.0];
+    /// let lattices = Some(desc.settings.foveation.lattices(&geometry, gaze_px, 0));
+    /// let views = [ViewFrame { lattices, ..ViewFrame::new(geometry, Gaze::At { px: gaze_px }) }];
+    /// let masks = post.plan(&Frame::new(&[], &views, 0))?;
+    /// // Here the renderer shades the samples of the lattices, and the pixels of the mask.
+    /// let (sampled, shaded) = (Image::filled(size, [0.5; 3]), Image::filled(size, [0.5; 3]));
+    /// let repaired = [Repaired { color: &shaded, mask: &masks[0] }];
+    /// let mut shown = [Image::filled(size, [0.0; 3])];
+    /// post.process(&Frame { repaired: Some(&repaired), ..Frame::new(&[&sampled], &views, 0) }, &mut shown)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`FrameError`] if the settings have no [`repair`](crate::Smr::repair) or the foveation is not
+    /// [`Sparse`](crate::Filter::Sparse), and as for `process`.
+    pub fn plan(&self, frame: &Frame<'_>) -> Result<Vec<Image<bool>>, FrameError> {
+        let Some(repair) = smr_sparse_repair(&self.desc.settings) else {
+            let expected = "given, to plan repairs, and Filter::Sparse in Settings::foveation";
+            return Err(FrameError::Value { what: "Smr::repair", view: 0, found: "None".into(), expected });
+        };
+        frame.check_facts(&self.desc)?;
+        check_geometry(&self.desc, frame)?;
+        check_sizes(&self.desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
+        let unshaded = Image::filled([1, 1], [0.0; 3]);
+        let colors = vec![&unshaded; frame.views.len()];
+        let frame = Frame { noise: None, repaired: None, ..frame.with_color(&colors) };
+        let geometry = fill_geometry::filled(&self.desc, &frame, &self.history);
+        Ok(fill_geometry::with_filled(geometry.as_deref(), &self.desc, &frame, |desc, frame| {
+            sparse_pass::plan(desc, &self.history, frame, repair)
+        }))
+    }
+}

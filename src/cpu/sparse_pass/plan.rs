@@ -1,0 +1,68 @@
+//! The question before a frame is shaded: which pixels want a sample of their own. Its mathematics is in
+//! `src/kernel/repair.rs`.
+//!
+//! Two loops. For each quad: find what history has for its pixels, as the pass will, and count the quad's key. For each
+//! pixel: is its quad's key at least the one that the budget reaches?
+
+use super::{Inputs, LatticeUniforms, View};
+use crate::cpu::Frame;
+use crate::cpu::history::History;
+use crate::frame::ContextDesc;
+use crate::image::Image;
+use crate::kernel::repair::{KEYS, priority, quad_key, threshold};
+use crate::settings::Repair;
+
+/// Pixels to repair, view by view.
+pub(in crate::cpu) fn plan(
+    desc: &ContextDesc,
+    history: &History,
+    frame: &Frame<'_>,
+    repair: Repair,
+) -> Vec<Image<bool>> {
+    let of_view = |i: usize| {
+        let inputs = Inputs::new(desc, frame, i, &history.held_after(i, &frame.views[i]), history.is_filled());
+        View::new(desc, frame, i, inputs, history.kept(i), &[]).plan(repair)
+    };
+    (0..frame.views.len()).map(of_view).collect()
+}
+
+impl View<'_> {
+    fn plan(&self, repair: Repair) -> Image<bool> {
+        let size = self.inputs.size;
+        let keys = Image::from_fn_parallel(size.map(|side| side.div_ceil(2)), |quad| self.key(quad));
+        let mut counts = vec![0; KEYS as usize];
+        for &key in keys.pixels() {
+            counts[key as usize] += 1;
+        }
+        // Of f64, so that the product is not rounded up.
+        let budget = (f64::from(repair.budget) * keys.pixels().len() as f64) as u32;
+        let threshold = threshold(&counts, budget);
+        Image::from_fn(size, |[x, y]| keys.at(x as usize / 2, y as usize / 2) >= threshold)
+    }
+
+    /// Key of a quad of 2x2 pixels, some of which may lie beyond the frame's edge.
+    fn key(&self, [x, y]: [u32; 2]) -> u32 {
+        let [width, height] = self.inputs.size;
+        let mut largest = 0;
+        for pixel in 0..4 {
+            let px = [2 * x + pixel % 2, 2 * y + pixel / 2];
+            if px[0] < width && px[1] < height {
+                largest = largest.max(self.priority(px));
+            }
+        }
+        quad_key(largest, x, y, self.frame_low, self.inputs.uniforms.key)
+    }
+
+    /// How much a pixel wants a sample of its own.
+    fn priority(&self, px: [u32; 2]) -> u32 {
+        let lattice = &self.lattices[LatticeUniforms::index_at(&self.lattices, px)];
+        if lattice.around(px).is_some_and(|[x, y]| x.fraction == 0.0 && y.fraction == 0.0) {
+            // The frame samples it.
+            return 0;
+        }
+        let surface = self.surface(px, lattice.level);
+        let lod = self.source(px, &surface).map_or(-1.0, |source| self.interpolated(&source).history.lod);
+        let e_deg = self.inputs.eccentricity_deg(self.inputs.ray(px[0], px[1]));
+        priority(lod, e_deg)
+    }
+}
