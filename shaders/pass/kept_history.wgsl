@@ -68,9 +68,8 @@ fn surface_of(px: vec2<u32>, view: u32, level: u32) -> PixelSurface {
         surface.nearest = nearest_disparity;
         surface.mixes = true;
     }
-    // Of what stands still, a mean of both surfaces has samples enough to be smooth.
-    let is_still = surface.mixes && !has_moved(own_motion, vec2<f32>(0.0));
-    surface.is_doubtful = doubtful && own >= 0.0 && !is_still;
+    // History of surfaces that move as one is a mean of both.
+    surface.is_doubtful = doubtful && own >= 0.0 && !surface.mixes;
     return surface;
 }
 

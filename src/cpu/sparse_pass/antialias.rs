@@ -1,9 +1,9 @@
 //! What the pass does more where frames are jittered: means of samples in place of single ones.
 
+use super::Surroundings;
 use super::{
     Kept, Mean, Reconstruction, Vec2, Vec3, View, pack_color_by, pack_kept, reconstruct, rng, sanitize, stored_lod,
 };
-use super::{Surroundings, has_moved};
 use crate::kernel::antialias::{
     Averaged, Near, add_near, average, clip, clipped, kept_mean, may_show, move_together, stands_before,
 };
@@ -52,9 +52,8 @@ impl View<'_> {
         if own >= 0.0 && move_together(own_px, nearest_px, farthest_px) {
             surface = Surroundings { stored: own, mixed: Some([farthest, nearest]), ..surface };
         }
-        // Of what stands still, a mean of both surfaces has samples enough to be smooth.
-        let is_still = surface.mixed.is_some() && !has_moved(own_motion, Vec2::ZERO);
-        surface.is_doubtful = doubtful && own >= 0.0 && !is_still;
+        // History of surfaces that move as one is a mean of both.
+        surface.is_doubtful = doubtful && own >= 0.0 && surface.mixed.is_none();
         surface
     }
 

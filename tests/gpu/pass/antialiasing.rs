@@ -91,11 +91,11 @@ fn a_wrong_mean_is_caught() {
         ("surface.nearest = nearest_disparity;", ""),
         ("surface.stored_disparity = own;", ""),
         ("previous.verdict = VERDICT_VALID;\n    }", "}"),
-        // Samples of another surface: taken, on the other side, or where history is still; compared,
+        // Samples of another surface: taken, on the other side, or where both move as one; compared,
         // interpolated, averaged.
         ("doubtful = doubtful || may_show(own, near, place_px, vec2<f32>(offset) - 1.0);", ""),
         ("let place_px = -frame.views[view].jitter_px;", "let place_px = frame.views[view].jitter_px;"),
-        ("own >= 0.0 && !is_still;", "own >= 0.0;"),
+        ("own >= 0.0 && !surface.mixes;", "own >= 0.0;"),
         ("select(-1.0, DOUBTFUL, surface.is_doubtful)", "-1.0"),
         ("usable && !surface.is_doubtful;", "usable;"),
         ("ANTIALIAS != 0u && own.error == DOUBTFUL", "false"),
