@@ -94,7 +94,7 @@ pub fn settled(confidence: f32) -> f32 {
 }
 
 /// Largest confidence of settled history whose mean is off from that of the samples around: a bias is worth fewer
-/// samples the larger it is, and [`LIMIT`] where jitter explains it. `sum`, `squares`: of the lumas of `count` samples;
+/// samples the larger it is, and `LIMIT` where jitter explains it. `sum`, `squares`: of the lumas of `count` samples;
 /// `past`: sum of history's lumas at the same pixels.
 #[inline]
 pub fn agreeing(sum: f32, squares: f32, past: f32, count: f32) -> f32 {
