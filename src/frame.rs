@@ -6,7 +6,7 @@ use crate::foveation::Filter;
 use crate::geometry::{ViewGeometry, camera_motion};
 use crate::lattice::Lattices;
 use crate::method::smr_sparse_repair;
-use crate::settings::Settings;
+use crate::settings::{Repair, Settings};
 use std::fmt::Debug;
 
 /// Largest accepted jitter of a projection along an axis, in pixels.
@@ -266,8 +266,6 @@ pub trait Executor {
     type Scalars<'a>: Copy + Debug;
     /// Images with two channels.
     type Vectors<'a>: Copy + Debug;
-    /// Samples of single pixels at full rate.
-    type Repaired<'a>: Copy + Debug;
 }
 
 /// A frame: its input images, all of the context's size, and descriptions of its views.
@@ -309,10 +307,12 @@ pub struct Frame<'a, E: Executor> {
     /// its level of detail. On a GPU `Rg16Float`, `Rg32Float` or wider. Required if [`Settings::noisy`] is set,
     /// otherwise `None`. Of sparse frames it is read at the samples' pixels.
     pub noise: Option<E::Vectors<'a>>,
-    /// Samples of single pixels of a sparse frame at full rate, for which the renderer was asked: CPU executor only
-    /// (`cpu::Repaired`, `cpu::CpuAfterimage::plan`), and only with [`Smr::repair`](crate::Smr::repair). `None`: no
-    /// such samples.
-    pub repaired: Option<E::Repaired<'a>>,
+    /// Samples of single pixels of a sparse frame, shaded at full rate: linear colors of the context's size, with the
+    /// frame's jitter. Only the pixels are read that `plan` chose for this frame (`gpu::Afterimage::plan`,
+    /// `cpu::CpuAfterimage::plan`). Such a pixel is shown as those of the full-rate lattice are, and its sample is
+    /// stored as theirs. Where the sample is NaN or infinite, or the full-rate lattice has one, it is ignored: a
+    /// renderer may leave out what it was asked for. `None`: no pixels are repaired.
+    pub repaired: Option<E::Colors<'a>>,
     /// Descriptions of the views, one for each view of the context.
     pub views: &'a [ViewFrame],
     /// Frame counter, which seeds the random numbers: the same index and [`Settings::seed`] give the same bytes.
@@ -410,6 +410,25 @@ impl<'a, E: Executor> Frame<'a, E> {
             return Err(FrameError::Value { what: "lod", view: 0, found, expected });
         }
         Ok(())
+    }
+
+    /// Checks the values of a frame whose repair is planned, and gives the settings for that.
+    pub(crate) fn check_plan(&self, desc: &ContextDesc) -> Result<Repair, FrameError> {
+        let Some(repair) = smr_sparse_repair(&desc.settings) else {
+            let expected = "given, to plan repairs, and Filter::Sparse in Settings::foveation";
+            return Err(FrameError::Value { what: "Smr::repair", view: 0, found: "None".into(), expected });
+        };
+        self.check_facts(desc)?;
+        Ok(repair)
+    }
+
+    /// Rejects repaired samples for which nobody asked. `planned`: index of the frame that was planned.
+    pub(crate) fn check_planned(&self, planned: Option<u64>) -> Result<(), FrameError> {
+        if self.repaired.is_none() || planned == Some(self.index) {
+            return Ok(());
+        }
+        let expected = "None, or that plan was called with this frame";
+        Err(FrameError::Value { what: "repaired", view: 0, found: "given".into(), expected })
     }
 
     /// Rejects repaired samples that the settings do not expect.

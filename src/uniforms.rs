@@ -51,6 +51,10 @@ pub struct ViewUniforms {
     pub debug_origin: u32,
     /// Jitter of this frame.
     pub jitter_px: [f32; 2],
+    /// First pixel of the view in the input of repaired samples: x in the low half, y in the high half.
+    pub repaired_origin: u32,
+    /// Padding to a multiple of 16 bytes.
+    pub unused: [u32; 3],
 }
 
 /// What a context holds of a view's descriptions from frame to frame.

@@ -29,7 +29,7 @@ struct PixelSurface {
     farthest: f32,
     nearest: f32,
     mixes: bool,
-    // Whether this frame's sample of the pixel may be of another surface.
+    // Whether this frame's sample of the pixel may show another surface.
     is_doubtful: bool,
 }
 
@@ -68,7 +68,7 @@ fn surface_of(px: vec2<u32>, view: u32, level: u32) -> PixelSurface {
         surface.nearest = nearest_disparity;
         surface.mixes = true;
     }
-    // History of surfaces that move as one is a mean of both.
+    // Where surfaces move as one, a pixel is the mean of both, and samples of either belong to it.
     surface.is_doubtful = doubtful && own >= 0.0 && !surface.mixes;
     return surface;
 }

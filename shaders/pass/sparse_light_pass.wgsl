@@ -81,7 +81,7 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
         }
     }
     let is_own = own.error >= 0.0;
-    // A sample that may be of another surface is of none.
+    // Without a disparity, pixels take a doubtful sample only where there is no other.
     let own_surface = select(own_disparity, INVALID_DISPARITY, ANTIALIAS != 0u && own.error == DOUBTFUL);
     if sum.weight < 1e-6 {
         let fit_unlit = fit_at_sample(own, vec3<f32>(1.0));

@@ -9,6 +9,11 @@
 @group(0) @binding(9) var next_kept: texture_storage_2d_array<rg32uint, write>;
 @group(0) @binding(10) var lights: texture_2d_array<u32>;
 @group(0) @binding(12) var next_noise: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(13) var repaired_in: texture_2d_array<f32>;
+@group(0) @binding(14) var repair_mask: texture_2d_array<u32>;
+
+// Whether the frame has samples of the pixels that a plan chose.
+override REPAIR: u32 = 0u;
 
 // Squared distance in pixels of a sample that there is not.
 const NO_PX2: f32 = 1e30;
@@ -218,6 +223,24 @@ fn antialiased(
     return average(inputs, samples, -frame.views[view].jitter_px, left);
 }
 
+// Color and alpha of a pixel's repaired sample.
+struct Repaired {
+    color: vec3<f32>,
+    alpha: f32,
+    usable: bool,
+}
+
+// Sample of a pixel that a plan chose. Pixels of the full-rate lattice have a sample of their own in any case.
+fn repaired(px: vec2<u32>, view: u32, level: u32) -> Repaired {
+    if REPAIR == 0u {
+        return Repaired(vec3<f32>(0.0), 1.0, false);
+    }
+    let chosen = textureLoad(repair_mask, px >> vec2<u32>(1u), view, 0).x != 0u && level > 0u;
+    let given = textureLoad(repaired_in, texel_of(px, frame.views[view].repaired_origin), layer_of(view), 0);
+    let own = color(given.xyz);
+    return Repaired(own.color, given.w, chosen && own.usable);
+}
+
 fn pixel(px: vec2<u32>, view: u32) {
     let disparity_now = disparity_at(px, view);
     let lattices = lattices_at(px, view);
@@ -226,11 +249,23 @@ fn pixel(px: vec2<u32>, view: u32) {
     if NOISY != 0u && lattice.level == 0u {
         candidate = full_rate_candidate(px, lattice, view, candidate.fit);
     }
+    let repair = repaired(px, view, lattice.level);
+    if repair.usable {
+        // The samples around still say what became of the light.
+        candidate.color = repair.color;
+        candidate.alpha = repair.alpha;
+        candidate.usable = true;
+        candidate.lod = 0.0;
+        candidate.is_own = true;
+        if NOISY != 0u {
+            candidate.noise = noise_at(px, view);
+        }
+    }
     let surface = surface_of(px, view, lattice.level);
     let motion = surface.motion;
     let source = kept_source(px, view, surface);
     let previous = source.previous;
-    let is_final = candidate.usable && lattice.level == 0u && NOISY == 0u && ANTIALIAS == 0u;
+    let is_final = candidate.usable && (lattice.level == 0u || repair.usable) && NOISY == 0u && ANTIALIAS == 0u;
     let kept = kept_history(source, view, may_have_history(previous) && !is_final);
     let history = kept.found;
     let verdict = select(previous.verdict, VERDICT_VALID, history.lod >= 0.0);

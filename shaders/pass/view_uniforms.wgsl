@@ -20,4 +20,8 @@ struct ViewUniforms {
     output_origin: u32,
     debug_origin: u32,
     jitter_px: vec2<f32>,
+    repaired_origin: u32,
+    unused_0: u32,
+    unused_1: u32,
+    unused_2: u32,
 }

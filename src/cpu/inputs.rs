@@ -1,6 +1,6 @@
 //! Inputs of the pixels of one view, in internal conventions; shared by all methods. Twin: `shaders/pass/inputs.wgsl`.
 
-use super::{Frame, Repaired};
+use super::Frame;
 use crate::foveation::Foveation;
 use crate::frame::{ContextDesc, Reset};
 use crate::image::Image;
@@ -35,7 +35,6 @@ pub(super) struct Inputs<'a> {
     motion: Option<&'a Image<[f32; 2]>>,
     trust: Option<&'a Image<f32>>,
     noise: Option<&'a Image<[f32; 2]>>,
-    repaired: Option<Repaired<'a>>,
     pub size: [u32; 2],
     /// Lattices of the samples: those of a sparse frame, otherwise one of full rate.
     pub lattices: ViewLattices,
@@ -63,7 +62,6 @@ impl<'a> Inputs<'a> {
             motion: frame.motion.map(|m| m[index]),
             trust: frame.trust.map(|t| t[index]),
             noise: frame.noise.map(|n| n[index]),
-            repaired: frame.repaired.map(|r| r[index]),
             size: desc.size_px,
             lattices: LatticeUniforms::of_view_or_full(view.lattices.as_ref(), desc.size_px),
             uniforms,
@@ -164,15 +162,6 @@ impl<'a> Inputs<'a> {
     #[inline(always)]
     pub fn noise(&self, x: u32, y: u32) -> Option<Noise> {
         self.noise.map(|n| candidate_noise(n.at(x as usize, y as usize)))
-    }
-
-    /// Sanitized repaired sample of a pixel, if the frame has a usable one.
-    #[inline(always)]
-    pub fn repaired(&self, x: u32, y: u32) -> Option<Vec3> {
-        let [x, y] = [x as usize, y as usize];
-        let repaired = self.repaired.filter(|repaired| repaired.mask.at(x, y))?;
-        let (color, usable) = sanitize::color(Vec3::from(repaired.color.at(x, y)));
-        usable.then_some(color)
     }
 
     /// Trust mask, not sanitized; `None` without a trust input.

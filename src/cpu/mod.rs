@@ -34,6 +34,7 @@ use crate::method::{Algorithm, HistoryLayout, Stage};
 use crate::resize::Resize;
 use crate::settings::Settings;
 use crate::stats::FrameStats;
+use repair::Planned;
 
 /// A frame whose inputs are slices with one image a view; fields are at [`Frame`](crate::Frame).
 ///
@@ -84,27 +85,13 @@ impl<'a> Frame<'a> {
 pub struct CpuAfterimage {
     desc: ContextDesc,
     history: History,
+    planned: Option<Planned>,
 }
 
 impl Executor for CpuAfterimage {
     type Colors<'a> = &'a [&'a Image<[f32; 3]>];
     type Scalars<'a> = &'a [&'a Image<f32>];
-    type Repaired<'a> = &'a [Repaired<'a>];
     type Vectors<'a> = &'a [&'a Image<[f32; 2]>];
-}
-
-/// Repaired samples of a view: pixels of a sparse frame that the renderer shaded at full rate, as
-/// [`CpuAfterimage::plan`] asked.
-///
-/// Such a pixel is shown as those of the full-rate lattice are, and its sample is stored as theirs. Samples that are
-/// NaN or infinite are ignored: the pixel is as it would be without. So are those of pixels of the full-rate lattice,
-/// which have a sample in the color input.
-#[derive(Clone, Copy, Debug)]
-pub struct Repaired<'a> {
-    /// Linear colors, of the context's size; only pixels of the mask are read.
-    pub color: &'a Image<[f32; 3]>,
-    /// Pixels that were shaded, of the context's size: those that were planned, or others.
-    pub mask: &'a Image<bool>,
 }
 
 /// Arguments of a method's pass.
@@ -112,6 +99,8 @@ struct Pass<'a, 'f> {
     desc: &'a ContextDesc,
     history: &'a mut History,
     frame: &'a Frame<'f>,
+    /// Pixels that are repaired, one mask a view; empty if none are.
+    repaired: &'a [Image<bool>],
     output: &'a mut [Image<[f32; 3]>],
     traces: Option<&'a mut [Image<PixelTrace>]>,
 }
@@ -124,7 +113,7 @@ impl CpuAfterimage {
     /// views.
     pub fn new(desc: &ContextDesc) -> Result<Self, SettingsError> {
         desc.validate()?;
-        Ok(Self { desc: *desc, history: History::new(desc) })
+        Ok(Self { desc: *desc, history: History::new(desc), planned: None })
     }
 
     /// Description of the context, with its current size and settings.
@@ -142,6 +131,7 @@ impl CpuAfterimage {
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
+        self.planned = None;
         let same_algorithm = settings.algorithm() == self.desc.settings.algorithm();
         self.desc.settings = settings;
         if settings.history_layout() != self.history.layout() {
@@ -160,6 +150,7 @@ impl CpuAfterimage {
     pub fn resize(&mut self, size_px: [u32; 2]) -> Result<(), FrameError> {
         check_size(size_px)?;
         self.desc.size_px = size_px;
+        self.planned = None;
         self.history = History::new(&self.desc);
         Ok(())
     }
@@ -175,6 +166,7 @@ impl CpuAfterimage {
         check_size(size_px)?;
         let resize = Resize::new(self.desc.size_px, size_px);
         self.desc.size_px = size_px;
+        self.planned = None;
         self.history = self.history.resized(&resize, &self.desc);
         Ok(())
     }
@@ -182,6 +174,7 @@ impl CpuAfterimage {
     /// Discards history and held gaze positions: the next frame is processed like the first one.
     /// [`Reset::All`](crate::Reset::All) does the same as part of a frame, but keeps the gaze.
     pub fn forget(&mut self) {
+        self.planned = None;
         self.history.forget();
     }
 
@@ -237,6 +230,7 @@ impl CpuAfterimage {
         traces: Option<&mut [Image<PixelTrace>]>,
     ) -> Result<FrameStats, FrameError> {
         check_inputs(&self.desc, frame)?;
+        let repaired = repair::masks(self.planned.as_ref(), frame)?;
         check_sizes(&self.desc, "output", Some(output.iter().map(Image::size)))?;
         check_sizes(&self.desc, "traces", traces.as_deref().map(|t| t.iter().map(Image::size)))?;
         let fills = self.desc.settings.stages().contains(&Stage::Fill);
@@ -246,7 +240,7 @@ impl CpuAfterimage {
         let geometry = fill_geometry::filled(&self.desc, frame, &self.history);
         let history = &mut self.history;
         let stats = fill_geometry::with_filled(geometry.as_deref(), &self.desc, &whole, |desc, frame| {
-            let pass = Pass { desc, history, frame, output, traces };
+            let pass = Pass { desc, history, frame, repaired, output, traces };
             match desc.settings.algorithm() {
                 Algorithm::None => none_pass::run(pass),
                 Algorithm::Taa => surface_pass::run(pass, &taa_pass::Taa),
@@ -256,6 +250,7 @@ impl CpuAfterimage {
                 Algorithm::Wrs => wrs_pass::run(pass),
             }
         });
+        self.planned = None;
         if self.history.layout() == HistoryLayout::Nothing {
             self.history.forget();
         } else {
@@ -272,8 +267,7 @@ fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError>
     check_geometry(desc, frame)?;
     check_sizes(desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
     check_sizes(desc, "noise", frame.noise.map(|n| n.iter().map(|i| i.size())))?;
-    check_sizes(desc, "repaired colors", frame.repaired.map(|r| r.iter().map(|r| r.color.size())))?;
-    check_sizes(desc, "repaired mask", frame.repaired.map(|r| r.iter().map(|r| r.mask.size())))
+    check_sizes(desc, "repaired", frame.repaired.map(|r| r.iter().map(|i| i.size())))
 }
 
 /// Checks the sizes of what is known of a frame before it is shaded.

@@ -4,7 +4,15 @@
 use super::{CpuAfterimage, Frame, check_geometry, check_sizes, fill_geometry, sparse_pass};
 use crate::error::FrameError;
 use crate::image::Image;
-use crate::method::smr_sparse_repair;
+
+/// Pixels that were chosen for a frame.
+#[derive(Clone, Debug)]
+pub(super) struct Planned {
+    /// Number of the frame.
+    index: u64,
+    /// One mask a view.
+    masks: Vec<Image<bool>>,
+}
 
 impl CpuAfterimage {
     /// Pixels of a sparse frame that want a sample of their own, one mask a view: quads of 2x2 pixels for which history
@@ -20,7 +28,7 @@ impl CpuAfterimage {
     /// colors may be an empty slice. Nothing is changed: the same call gives the same masks.
     ///
     /// ```
-    /// use afterimage::cpu::{CpuAfterimage, Frame, Repaired};
+    /// use afterimage::cpu::{CpuAfterimage, Frame};
     /// use afterimage::{ContextDesc, Filter, Gaze, Image, Method, Repair, Smr, ViewFrame, ViewGeometry};
     ///
     /// let size = [64, 36];
@@ -35,29 +43,31 @@ impl CpuAfterimage {
     /// let masks = post.plan(&Frame::new(&[], &views, 0))?;
     /// // Here the renderer shades the samples of the lattices, and the pixels of the mask.
     /// let (sampled, shaded) = (Image::filled(size, [0.5; 3]), Image::filled(size, [0.5; 3]));
-    /// let repaired = [Repaired { color: &shaded, mask: &masks[0] }];
     /// let mut shown = [Image::filled(size, [0.0; 3])];
-    /// post.process(&Frame { repaired: Some(&repaired), ..Frame::new(&[&sampled], &views, 0) }, &mut shown)?;
+    /// post.process(&Frame { repaired: Some(&[&shaded]), ..Frame::new(&[&sampled], &views, 0) }, &mut shown)?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Errors
     /// [`FrameError`] if the settings have no [`repair`](crate::Smr::repair) or the foveation is not
     /// [`Sparse`](crate::Filter::Sparse), and as for `process`.
-    pub fn plan(&self, frame: &Frame<'_>) -> Result<Vec<Image<bool>>, FrameError> {
-        let Some(repair) = smr_sparse_repair(&self.desc.settings) else {
-            let expected = "given, to plan repairs, and Filter::Sparse in Settings::foveation";
-            return Err(FrameError::Value { what: "Smr::repair", view: 0, found: "None".into(), expected });
-        };
-        frame.check_facts(&self.desc)?;
+    pub fn plan(&mut self, frame: &Frame<'_>) -> Result<&[Image<bool>], FrameError> {
+        let repair = frame.check_plan(&self.desc)?;
         check_geometry(&self.desc, frame)?;
         check_sizes(&self.desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
         let unshaded = Image::filled([1, 1], [0.0; 3]);
         let colors = vec![&unshaded; frame.views.len()];
         let frame = Frame { noise: None, repaired: None, ..frame.with_color(&colors) };
         let geometry = fill_geometry::filled(&self.desc, &frame, &self.history);
-        Ok(fill_geometry::with_filled(geometry.as_deref(), &self.desc, &frame, |desc, frame| {
+        let masks = fill_geometry::with_filled(geometry.as_deref(), &self.desc, &frame, |desc, frame| {
             sparse_pass::plan(desc, &self.history, frame, repair)
-        }))
+        });
+        Ok(&self.planned.insert(Planned { index: frame.index, masks }).masks)
     }
+}
+
+/// Pixels that a frame repairs, one mask a view; empty if it repairs none.
+pub(super) fn masks<'a>(planned: Option<&'a Planned>, frame: &Frame<'_>) -> Result<&'a [Image<bool>], FrameError> {
+    frame.check_planned(planned.map(|planned| planned.index))?;
+    Ok(planned.filter(|_| frame.repaired.is_some()).map_or(&[], |planned| &planned.masks))
 }

@@ -14,6 +14,7 @@ use super::inputs::{Inputs, Previous};
 use super::surface_pass::{Pixel, ProcessPixel, Targets, for_pixels};
 use super::{Frame, Pass};
 use crate::frame::ContextDesc;
+use crate::image::Image;
 use crate::kernel::antialias::{DOUBTFUL, Mean, is_of_surfaces, mean_of, scattered_error, stored_lod};
 use crate::kernel::approx;
 use crate::kernel::color::luma;
@@ -74,6 +75,8 @@ struct View<'a> {
     antialiases: bool,
     /// Low word of the frame counter.
     frame_low: u32,
+    /// Samples of repaired pixels, and which pixels are.
+    repaired: Option<(&'a Image<[f32; 3]>, &'a Image<bool>)>,
 }
 
 /// The surface whose history a pixel continues.
@@ -85,7 +88,7 @@ struct Surroundings {
     stored: f32,
     /// Disparities of the farthest and the nearest surface around, if history may be of any of them.
     mixed: Option<[f32; 2]>,
-    /// Whether this frame's sample of the pixel may be of another surface.
+    /// Whether this frame's sample of the pixel may show another surface.
     is_doubtful: bool,
 }
 
@@ -109,14 +112,15 @@ struct Found {
 
 /// Runs the three loops for every view.
 pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
-    let Pass { desc, history, frame, output, mut traces } = pass;
+    let Pass { desc, history, frame, repaired, output, mut traces } = pass;
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
         let held = history.hold(i, &frame.views[i]);
         let inputs = Inputs::new(desc, frame, i, &held, has_history);
         let (past, next, next_noise) = history.split_surfaces(i);
-        let view = View::new(desc, frame, i, inputs, past.words, past.noise);
+        let mut view = View::new(desc, frame, i, inputs, past.words, past.noise);
+        view.repaired = frame.repaired.map(|colors| colors[i]).zip(repaired.get(i));
         let observed = view.for_samples(|lattice, point| pack_observation(view.observe(lattice, point)));
         let lights = view.for_samples(|lattice, point| view.light(lattice, point, &observed));
         let traces = traces.as_mut().map(|t| &mut t[i]);
@@ -180,6 +184,7 @@ impl<'a> View<'a> {
             relights: crate::method::smr_sparse_relights(&desc.settings),
             antialiases: crate::method::smr_sparse_antialiases(&desc.settings),
             frame_low: frame.index as u32,
+            repaired: None,
         }
     }
 }
@@ -199,6 +204,15 @@ impl View<'_> {
     fn sampled(&self, lattice: &LatticeUniforms, point: [u32; 2]) -> (Vec3, bool) {
         let [x, y] = lattice.texel_of(point);
         sanitize::color(Vec3::from(self.inputs.color.at(x as usize, y as usize)))
+    }
+
+    /// Sample of a repaired pixel, if it is usable.
+    #[inline(always)]
+    fn repaired(&self, x: u32, y: u32) -> Option<Vec3> {
+        let [x, y] = [x as usize, y as usize];
+        let (colors, _) = self.repaired.filter(|(_, mask)| mask.at(x, y))?;
+        let (color, usable) = sanitize::color(Vec3::from(colors.at(x, y)));
+        usable.then_some(color)
     }
 
     #[inline(always)]
@@ -335,7 +349,7 @@ impl View<'_> {
         })
     }
 
-    /// Whether a sample may be of another surface than its pixel.
+    /// Whether a sample may show another surface than its pixel's.
     #[inline(always)]
     fn is_doubtful(&self, lattice: usize, [x, y]: [u32; 2], observed: &[Samples]) -> bool {
         let words = observed[lattice][(y * self.lattices[lattice].points[0] + x) as usize];
@@ -367,7 +381,7 @@ impl View<'_> {
         // A single noisy sample says nothing.
         let judged = own.filter(|_| !self.is_noisy());
         let fit_of_own = |gain| judged.map_or(1.0, |own| own_fit(own, gain));
-        // A sample that may be of another surface is of none.
+        // Without a disparity, pixels take a doubtful sample only where there is no other.
         let disparity = if self.is_doubtful(lattice, point, observed) { INVALID_DISPARITY } else { disparity };
         let unlit = Lit { gain: Vec3::ONE, fit: 1.0, own_fit: fit_of_own(Vec3::ONE), is_own: own.is_some(), disparity };
         if light.weight < 1e-6 {
@@ -399,7 +413,7 @@ impl View<'_> {
         let level = self.lattices[index].level;
         let mut candidate = self.candidate(index, [x, y], disparity, lights);
         // Pixels of the lattice of full rate have a sample of their own in any case.
-        let repaired = if level > 0 { inputs.repaired(x, y) } else { None };
+        let repaired = if level > 0 { self.repaired(x, y) } else { None };
         if let Some(color) = repaired {
             // The samples around still say what became of the light.
             let noise = self.sample_noise([x, y]);

@@ -65,7 +65,7 @@ impl<M: SurfaceMethod> ProcessPixel for InView<'_, M> {
 
 /// Runs a method for every pixel of every view.
 pub(super) fn run(pass: Pass<'_, '_>, method: &impl SurfaceMethod) -> FrameStats {
-    let Pass { desc, history, frame, output, mut traces } = pass;
+    let Pass { desc, history, frame, output, mut traces, .. } = pass;
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {

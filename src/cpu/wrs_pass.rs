@@ -68,7 +68,7 @@ struct Row<'a> {
 }
 
 pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
-    let Pass { desc, history, frame, output, mut traces } = pass;
+    let Pass { desc, history, frame, output, mut traces, .. } = pass;
     let settings = &desc.settings;
     let wrs = settings.method.wrs();
     let has_history = history.is_filled();

@@ -33,7 +33,7 @@ impl<'a> Frame<'a> {
 
     /// Whether an input consists of regions.
     pub(super) fn has_regions(&self) -> bool {
-        let optional = [self.depth, self.motion, self.trust, self.lod, self.noise];
+        let optional = [self.depth, self.motion, self.trust, self.lod, self.noise, self.repaired];
         self.color.is_regions() || optional.iter().flatten().any(Textures::is_regions)
     }
 }
@@ -132,12 +132,14 @@ pub struct Variant {
     /// Whether depth and motion are given at samples only
     /// ([`Lattices::with_geometry_at_samples`](crate::Lattices::with_geometry_at_samples)).
     pub geometry_at_samples: bool,
+    /// Whether there are repaired samples; [`Afterimage::plan`] has pipelines of its own then.
+    pub repaired: bool,
     /// View of the [`DebugTarget`], if any.
     pub debug: Option<DebugView>,
 }
 
 impl Variant {
-    /// All combinations without regions and debug views: 32.
+    /// All combinations without regions, geometry at samples, repaired samples and debug views: 32.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..32_u32).map(|bits| {
             let bit = |i: u32| bits >> i & 1 == 1;
@@ -155,6 +157,7 @@ impl Variant {
             counters: target.counters.is_some(),
             regions: frame.has_regions() || target.has_regions(),
             geometry_at_samples: frame.has_geometry_at_samples(),
+            repaired: frame.repaired.is_some(),
             debug: target.debug.map(|d| d.view),
         }
     }

@@ -38,14 +38,27 @@ pub(super) fn check(
 /// Checks a frame without its target.
 pub(super) fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
     frame.check(desc)?;
-    let inputs = [
+    let shaded = [
         ("color", Some(frame.color), 3),
-        ("depth", frame.depth, 1),
-        ("motion", frame.motion, 2),
-        ("trust", frame.trust, 1),
         ("lod", frame.lod, 1),
         ("noise", frame.noise, 2),
+        ("repaired", frame.repaired, 3),
     ];
+    check_each(desc, frame, shaded)?;
+    check_geometry(desc, frame)
+}
+
+/// Checks what is known of a frame before it is shaded.
+pub(super) fn check_geometry(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
+    check_each(desc, frame, [("depth", frame.depth, 1), ("motion", frame.motion, 2), ("trust", frame.trust, 1)])
+}
+
+/// Checks inputs: name, textures if given, and least number of channels.
+fn check_each<'a>(
+    desc: &ContextDesc,
+    frame: &Frame<'_>,
+    inputs: impl IntoIterator<Item = (&'static str, Option<Textures<'a>>, u8)>,
+) -> Result<(), FrameError> {
     for (input, textures, channels) in inputs {
         let Some(textures) = textures else { continue };
         let of_samples = match input {

@@ -111,7 +111,7 @@ impl MethodPass {
             optional(frame.trust),
             target.output.bind(batch),
         ];
-        let (lod, noise) = (optional(frame.lod), optional(frame.noise));
+        let [lod, noise, repaired] = [frame.lod, frame.noise, frame.repaired].map(optional);
         let debug = target.debug.map(|d| d.output.bind(batch));
         let (past, next) = history.split();
         let (past, next) = (&past.views, &next.targets);
@@ -135,6 +135,8 @@ impl MethodPass {
                 job.lights.as_ref().unwrap_or(&self.absent.word),
                 past_or(1, &self.absent.word),
                 next.get(1).unwrap_or(&self.absent.out[2]),
+                &repaired,
+                job.repair_mask.unwrap_or(&self.absent.word),
             ],
             HistoryLayout::Surfaces { .. } => vec![
                 &lod,
@@ -197,6 +199,9 @@ fn overrides(desc: &ContextDesc, variant: Variant, view: Option<DebugView>) -> O
     ]);
     list.extend(variant.debug.map(|v| ("BESIDE", v as u32)));
     list.extend(settings.overrides(variant.lod));
+    if matches!(settings.history_layout(), HistoryLayout::Kept { .. }) {
+        list.push(("REPAIR", flag(variant.repaired)));
+    }
     list
 }
 
@@ -252,7 +257,7 @@ fn bindings(pass: PassShader, output: TextureFormat, history: HistoryLayout) -> 
     types.extend(match history {
         HistoryLayout::Nothing => vec![],
         HistoryLayout::Reservoirs { .. } => vec![float, words, words, words, first, second, third],
-        HistoryLayout::Kept { .. } => vec![words, first, words, words, third],
+        HistoryLayout::Kept { .. } => vec![words, first, words, words, third, float, words],
         HistoryLayout::Surfaces { .. } => vec![float, words, float, first, second, words, float, third],
     });
     let lattices = pass.reads_samples.then(|| (LATTICES_BINDING, uniform()));

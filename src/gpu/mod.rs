@@ -19,6 +19,7 @@ mod input;
 mod method_pass;
 mod mip_chain;
 mod output;
+mod repair;
 // For the tests, which compare struct layouts.
 #[doc(hidden)]
 pub mod resize;
@@ -45,7 +46,7 @@ use crate::error::{CreateError, FrameError, SettingsError};
 use crate::foveation::Filter;
 use crate::frame::{ContextDesc, Executor, check_size};
 use crate::kernel::debug_view::DebugView;
-use crate::method::{HistoryLayout, PassShader, Stage};
+use crate::method::{HistoryLayout, PassShader, Stage, smr_sparse_repair};
 use crate::resize::Resize;
 use crate::settings::Settings;
 use crate::shader::SHADERS;
@@ -54,12 +55,13 @@ use crate::uniforms::Held;
 use fill::Fill;
 use fill_geometry::GeometryFill;
 use history::History;
+use repair::RepairPasses;
 use resize::ResizePass;
 use sparse::SamplePasses;
 use stage::Job;
 use stages::Stages;
 use uniforms::FrameUniforms;
-use wgpu::{CommandEncoder, Device, Limits, Texture, TextureFormat, TextureUsages};
+use wgpu::{Buffer, CommandEncoder, ComputePassDescriptor, Device, Limits, Texture, TextureFormat, TextureUsages};
 
 /// The post-process on a GPU: a context with its settings, history and pipelines.
 ///
@@ -76,12 +78,13 @@ pub struct Afterimage {
     history: History,
     /// Made at the first change of size that keeps history.
     resize: Option<ResizePass>,
+    /// If the settings ask for repair.
+    repair: Option<RepairPasses>,
 }
 
 impl Executor for Afterimage {
     type Colors<'a> = Textures<'a>;
     type Scalars<'a> = Textures<'a>;
-    type Repaired<'a> = std::convert::Infallible;
     type Vectors<'a> = Textures<'a>;
 }
 
@@ -124,7 +127,8 @@ impl Afterimage {
         let stages = Stages::new(device, desc, output_format, source);
         let history = stages.history(device, desc);
         let pass_shader = desc.settings.pass_shader();
-        Ok(Self { desc: *desc, output_format, pass_shader, stages, history, resize: None })
+        let repair = smr_sparse_repair(&desc.settings).map(|repair| RepairPasses::new(device, desc, repair));
+        Ok(Self { desc: *desc, output_format, pass_shader, stages, history, resize: None, repair })
     }
 
     /// Another shader for the pass that fills sparse frames, for tests that plant errors.
@@ -144,6 +148,13 @@ impl Afterimage {
     pub fn set_sample_shaders(&mut self, device: &Device, observe: &str, light: &str) {
         let sources = [observe, light].map(str::to_owned);
         self.stages.replace(Stage::Samples, SamplePasses::with_shaders(device, &self.desc, sources));
+    }
+
+    /// Other shaders for the passes of a plan, for tests that plant errors.
+    #[doc(hidden)]
+    pub fn set_repair_shaders(&mut self, device: &Device, sources: [String; 3]) {
+        let repair = smr_sparse_repair(&self.desc.settings).expect("the settings ask for repair");
+        self.repair = Some(RepairPasses::with_shaders(device, &self.desc, repair, sources));
     }
 
     /// Limits that a device needs for a context: WebGPU's defaults, with a larger texture size for large frames.
@@ -182,6 +193,7 @@ impl Afterimage {
         if !(has_same_pass && same_history) {
             self.history = self.stages.history(device, &self.desc);
         }
+        self.update_repair(device);
         Ok(())
     }
 
@@ -237,11 +249,22 @@ impl Afterimage {
     fn set_size(&mut self, device: &Device, size_px: [u32; 2]) {
         self.desc.size_px = size_px;
         self.stages.resize(device, &self.desc);
+        self.update_repair(device);
+    }
+
+    /// Follows a change of settings or size.
+    fn update_repair(&mut self, device: &Device) {
+        let (desc, repair) = (&self.desc, smr_sparse_repair(&self.desc.settings));
+        match (&mut self.repair, repair) {
+            (Some(passes), Some(repair)) => passes.update(device, desc, repair),
+            (_, repair) => self.repair = repair.map(|repair| RepairPasses::new(device, desc, repair)),
+        }
     }
 
     /// Discards history and held gaze positions: the next frame is processed like the first one.
     /// [`Reset::All`](crate::Reset::All) does the same as part of a frame, but keeps the gaze.
     pub fn forget(&mut self) {
+        self.unplan();
         self.history.forget();
     }
 
@@ -254,6 +277,9 @@ impl Afterimage {
     pub fn prewarm(&self, device: &Device, variants: impl IntoIterator<Item = Variant>) {
         for variant in variants {
             self.stages.prewarm(device, &self.desc, variant);
+            if let Some(repair) = self.repair.as_ref().filter(|_| variant.repaired) {
+                repair.prewarm(device, &self.desc, variant);
+            }
         }
     }
 
@@ -261,7 +287,8 @@ impl Afterimage {
     #[doc(hidden)]
     pub fn pipelines(&self) -> Vec<(&'static str, Vec<(&'static str, u32)>)> {
         let resize = self.resize.as_ref().map(ResizePass::pipelines);
-        self.stages.pipelines().chain(resize.into_iter().flatten()).collect()
+        let repair = self.repair.iter().flat_map(RepairPasses::pipelines);
+        self.stages.pipelines().chain(resize.into_iter().flatten()).chain(repair).collect()
     }
 
     /// Size in bytes of the textures that the context holds between frames.
@@ -280,7 +307,8 @@ impl Afterimage {
     /// assert_eq!(bytes / (1920 * 1080), 21);
     /// ```
     pub fn memory_bytes_of(desc: &ContextDesc) -> u64 {
-        history::memory_bytes(desc) + stages::memory_bytes_of(desc)
+        let repair = smr_sparse_repair(&desc.settings).map_or(0, |repair| repair::memory_bytes(desc, repair));
+        history::memory_bytes(desc) + stages::memory_bytes_of(desc) + repair
     }
 
     /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
@@ -310,9 +338,10 @@ impl Afterimage {
         target: impl Into<Target<'a>>,
     ) -> Result<Recorded, FrameError> {
         let target = target.into();
-        input::check(device, &self.desc, self.output_format, frame, &target)?;
-        let prepared = self.prepare(frame, &target);
+        self.check(device, frame, &target)?;
+        let prepared = self.prepare(frame, Some(&target));
         self.dispatch(device, encoder, frame, &target, None, prepared.uniforms);
+        self.unplan();
         if self.desc.settings.history_layout() == HistoryLayout::Nothing {
             self.history.forget();
         } else {
@@ -320,6 +349,78 @@ impl Afterimage {
             self.history.swap();
         }
         Ok(prepared.recorded)
+    }
+
+    /// Records, into `encoder`, the choice of pixels of a sparse frame that want a sample of their own: quads of 2x2
+    /// pixels for which history has nothing, or nothing fine, and the frame's lattices have no sample. The renderer
+    /// reads it from [`repair_mask`](Self::repair_mask) or [`repair_quads`](Self::repair_quads), shades these pixels at
+    /// full rate, and gives them to [`record`](Self::record) of the same frame
+    /// ([`Frame::repaired`](crate::Frame::repaired)).
+    ///
+    /// At most the share [`Repair::budget`](crate::Repair::budget) of a view's quads is chosen: those without history
+    /// first, then those whose history is coarse, each from the gaze outwards. After a cut, successive frames repair
+    /// successive rings around the gaze.
+    ///
+    /// The frame is the one that will be recorded, as far as it is known before it is shaded: views with their
+    /// lattices, depth, motion, trust, index and reset. Its colors, noise and repaired samples are not read. History is
+    /// unchanged.
+    ///
+    /// ```no_run
+    /// # use afterimage::{wgpu, ViewFrame};
+    /// # fn example(
+    /// #     post: &mut afterimage::gpu::Afterimage, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder,
+    /// #     [color, depth, motion, shaded, output]: [&wgpu::Texture; 5], views: &[ViewFrame], index: u64,
+    /// # ) -> Result<(), afterimage::FrameError> {
+    /// use afterimage::gpu::Frame;
+    ///
+    /// let frame = Frame { depth: Some(depth.into()), motion: Some(motion.into()), ..Frame::new(color, views, index) };
+    /// post.plan(device, encoder, &frame)?;
+    /// // Here the renderer shades the samples of the lattices into `color`, and the chosen pixels into `shaded`.
+    /// post.record(device, encoder, &Frame { repaired: Some(shaded.into()), ..frame }, output)?;
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// [`FrameError`] if the settings have no [`repair`](crate::Smr::repair) or the foveation is not
+    /// [`Sparse`](crate::Filter::Sparse), and as for `record`; then nothing was recorded.
+    pub fn plan(&mut self, device: &Device, encoder: &mut CommandEncoder, frame: &Frame<'_>) -> Result<(), FrameError> {
+        frame.check_plan(&self.desc)?;
+        input::check_geometry(&self.desc, frame)?;
+        let frame = Frame { noise: None, repaired: None, ..frame.with_color(frame.color) };
+        let uniforms = self.prepare(&frame, None).uniforms;
+        // Of which nothing is written.
+        let target = Target::new(frame.color);
+        let mut job = self.job(device, frame, &target, None, uniforms);
+        if let Some(repair) = &self.repair {
+            repair.clear(encoder);
+            let mut pass = encoder
+                .begin_compute_pass(&ComputePassDescriptor { label: Some("afterimage plan"), timestamp_writes: None });
+            self.stages.record_geometry(device, &mut pass, &mut job);
+            repair.record(device, &mut pass, &job);
+        }
+        let index = frame.index;
+        if let Some(repair) = &mut self.repair {
+            repair.planned = Some(index);
+        }
+        Ok(())
+    }
+
+    /// What the last [`plan`](Self::plan) chose: an `R32Uint` texture with a texel for each quad of 2x2 pixels, 1 if it
+    /// was chosen and otherwise 0, and an array layer for each view; usages `TEXTURE_BINDING` and `COPY_SRC`. `None`
+    /// without [`repair`](crate::Smr::repair) in the settings. Changes of size and settings replace it.
+    pub fn repair_mask(&self) -> Option<&Texture> {
+        self.repair.as_ref().map(RepairPasses::mask)
+    }
+
+    /// The quads of a view that the last [`plan`](Self::plan) chose, as a list on the device; usages `STORAGE`,
+    /// `INDIRECT` and `COPY_SRC`. 32-bit words: at byte 0 the arguments of `draw_indirect` with 6 vertices and an
+    /// instance for each quad, at byte 16 those of `dispatch_workgroups_indirect` with 64 invocations a workgroup and
+    /// one for each quad, at byte 28 the number of quads, from byte 32 on the quads, x + 65536 y in quads, in no
+    /// particular order. `None` without [`repair`](crate::Smr::repair) in the settings. Changes of size and settings
+    /// replace it.
+    pub fn repair_quads(&self, view: usize) -> Option<&Buffer> {
+        self.repair.as_ref().and_then(|repair| repair.list(view))
     }
 
     /// Records a debug view of the decisions that [`record`](Self::record) of the same frame will make, as linear
@@ -356,8 +457,8 @@ impl Afterimage {
         view: DebugView,
     ) -> Result<Recorded, FrameError> {
         let target = Target { debug: None, ..target.into() };
-        input::check(device, &self.desc, self.output_format, frame, &target)?;
-        let prepared = self.prepare(frame, &target);
+        self.check(device, frame, &target)?;
+        let prepared = self.prepare(frame, Some(&target));
         self.dispatch(device, encoder, frame, &target, Some(view), prepared.uniforms);
         Ok(prepared.recorded)
     }
@@ -374,22 +475,46 @@ impl Afterimage {
         if let Some(counters) = target.counters {
             encoder.clear_buffer(counters, 0, Some(COUNTERS_BYTES));
         }
-        let reads_samples = self.pass_shader.reads_samples || self.desc.settings.foveation.filter == Filter::Sparse;
-        let job = Job {
-            desc: &self.desc,
-            frame: frame.with_color(frame.color),
-            target,
-            variant: Variant::of(frame, target),
-            view,
-            uniforms,
-            history: &self.history,
-            lattices: reads_samples.then(|| sparse::lattices(device, frame, uniforms.size)),
-            lights: None,
-        };
+        let job = self.job(device, frame.with_color(frame.color), target, view, uniforms);
         self.stages.record(device, encoder, job);
     }
 
-    fn prepare(&self, frame: &Frame<'_>, target: &Target<'_>) -> Prepared {
+    fn job<'a>(
+        &'a self,
+        device: &Device,
+        frame: Frame<'a>,
+        target: &'a Target<'a>,
+        view: Option<DebugView>,
+        uniforms: FrameUniforms,
+    ) -> Job<'a> {
+        let reads_samples = self.pass_shader.reads_samples || self.desc.settings.foveation.filter == Filter::Sparse;
+        Job {
+            desc: &self.desc,
+            target,
+            variant: Variant::of(&frame, target),
+            view,
+            uniforms,
+            history: &self.history,
+            lattices: reads_samples.then(|| sparse::lattices(device, &frame, uniforms.size)),
+            lights: None,
+            repair_mask: self.repair.as_ref().map(RepairPasses::mask_view),
+            frame,
+        }
+    }
+
+    fn check(&self, device: &Device, frame: &Frame<'_>, target: &Target<'_>) -> Result<(), FrameError> {
+        input::check(device, &self.desc, self.output_format, frame, target)?;
+        frame.check_planned(self.repair.as_ref().and_then(|repair| repair.planned))
+    }
+
+    /// Forgets what was planned.
+    fn unplan(&mut self) {
+        if let Some(repair) = &mut self.repair {
+            repair.planned = None;
+        }
+    }
+
+    fn prepare(&self, frame: &Frame<'_>, target: Option<&Target<'_>>) -> Prepared {
         let mut recorded = Recorded::default();
         let mut after = vec![];
         for (i, (view, held)) in frame.views.iter().zip(&self.history.held).enumerate() {

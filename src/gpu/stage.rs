@@ -24,6 +24,8 @@ pub(super) struct Job<'a> {
     pub lattices: Option<Buffer>,
     /// Gain and fit for each sample, for smr.
     pub lights: Option<TextureView>,
+    /// Quads that a plan chose, if it planned anything.
+    pub repair_mask: Option<&'a TextureView>,
 }
 
 /// A stage on the device.

@@ -11,7 +11,7 @@ use super::{Variant, fill, sparse};
 use crate::frame::ContextDesc;
 use crate::method::{Overrides, Stage};
 use crate::shader::SHADERS;
-use wgpu::{CommandEncoder, ComputePassDescriptor, Device, TextureFormat};
+use wgpu::{CommandEncoder, ComputePass, ComputePassDescriptor, Device, TextureFormat};
 
 /// The stages of a context.
 #[derive(Debug)]
@@ -80,6 +80,12 @@ impl Stages {
             timestamp_writes: job.target.timestamps.map(|t| t.writes()),
         });
         self.passes().for_each(|passes| passes.record(device, &mut pass, &mut job));
+    }
+
+    /// Records what fills depth and motion of a frame that has them at its samples only.
+    pub fn record_geometry<'a>(&'a self, device: &Device, pass: &mut ComputePass<'_>, job: &mut Job<'a>) {
+        let geometry = self.0.iter().filter(|(stage, _)| *stage == Stage::Geometry);
+        geometry.for_each(|(_, passes)| passes.record(device, pass, job));
     }
 
     /// Completes a history that was resampled.

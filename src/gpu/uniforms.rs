@@ -66,12 +66,12 @@ pub struct FrameUniforms {
 }
 
 impl FrameUniforms {
-    /// Uniforms of a frame with a target; `held` is that after this frame. `has_history`: whether a frame was recorded
-    /// before.
+    /// Uniforms of a frame and its target, if it has one; `held` is that after this frame. `has_history`: whether a
+    /// frame was recorded before.
     pub(super) fn new(
         desc: &ContextDesc,
         frame: &Frame<'_>,
-        target: &Target<'_>,
+        target: Option<&Target<'_>>,
         held: &[Held],
         has_history: bool,
     ) -> Self {
@@ -114,8 +114,9 @@ impl FrameUniforms {
                 trust_origin: origin(frame.trust, i),
                 lod_origin: origin(frame.lod, i),
                 noise_origin: origin(frame.noise, i),
-                output_origin: origin(Some(target.output), i),
-                debug_origin: origin(target.debug.map(|d| d.output), i),
+                repaired_origin: origin(frame.repaired, i),
+                output_origin: origin(target.map(|t| t.output), i),
+                debug_origin: origin(target.and_then(|t| t.debug).map(|d| d.output), i),
                 ..ViewUniforms::new(desc, view, held, i, frame.index)
             };
         }

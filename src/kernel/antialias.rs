@@ -108,12 +108,14 @@ pub fn is_of_surfaces(stored: f32, farthest: f32, nearest: f32) -> bool {
     stored >= far && stored * (1.0 - NEARER_RELATIVE) <= nearest
 }
 
-/// Observation of a sample that may be of another surface than its pixel, in place of an error.
+/// Marks the observation of a sample that may show another surface than the one that depth gives for its pixel. It
+/// stands in place of the expected error.
 pub const DOUBTFUL: f32 = -2.0;
 
-/// Whether a pixel's sample at `place_px` may show the surface of the neighbour at `offset` (-1, 0 or 1 along each
-/// axis), whose disparity is `neighbour`: another surface, on the sample's side. Depth is that of pixel centres; a
-/// sample of what lies beside a silhouette would stay as a dot where the silhouette moves away.
+/// Whether a pixel's sample at `place_px` may show the surface of a neighbouring pixel instead of its own. It may if
+/// the neighbour's disparity differs and the sample lies on the neighbour's side of the pixel's centre. `offset`: -1, 0
+/// or 1 along each axis. Depth is that of pixel centres, so that it does not say which surface a sample shows. Kept
+/// under the wrong depth, a sample stays as a dot where the silhouette moves away.
 #[inline]
 pub fn may_show(own: f32, neighbour: f32, place_px: Vec2, offset: Vec2) -> bool {
     let nearer = neighbour > own * (1.0 + NEARER_RELATIVE);

@@ -8,7 +8,7 @@
 use super::rng;
 
 /// Level of detail from which on history is coarse: no sample fell on the pixel, or what did was contradicted since.
-const COARSE_LOD: f32 = 1.0;
+const WANTED_LOD: f32 = 1.0;
 /// Number of rings around the gaze. More follow the order from the gaze outwards more closely.
 const RINGS: u32 = 31;
 /// Rings a degree: they reach to 60 degrees, and the last one has the rest.
@@ -24,7 +24,7 @@ pub const KEYS: u32 = (2 * RINGS + 1) << HASH_BITS;
 #[inline]
 pub fn priority(lod: f32, e_deg: f32) -> u32 {
     let has_history = lod >= 0.0;
-    if has_history && lod < COARSE_LOD {
+    if has_history && lod < WANTED_LOD {
         return 0;
     }
     let ring = (e_deg * RINGS_PER_DEG).min((RINGS - 1) as f32) as u32;
@@ -39,6 +39,12 @@ pub fn quad_key(priority: u32, x: u32, y: u32, frame: u32, key: u32) -> u32 {
     // The inverted key is that of another stream than the pixels'.
     let hash = rng::bits(x, y, frame, !key) >> (32 - HASH_BITS);
     if priority == 0 { 0 } else { priority << HASH_BITS | hash }
+}
+
+/// Number of quads that `budget` pays for: a share, 0 to 1, of `columns` x `rows` quads.
+pub fn budget_quads(budget: f32, [columns, rows]: [u32; 2]) -> u32 {
+    // Of f64, so that the product is not rounded up.
+    (f64::from(budget) * f64::from(columns) * f64::from(rows)) as u32
 }
 
 /// Smallest key, at least 1, of which all quads of this and of larger keys are within `budget` quads. `counts`: number

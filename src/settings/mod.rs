@@ -94,8 +94,9 @@ pub struct Smr {
     /// Not for noisy frames, which are averaged in any case. No effect on frames without lattices. Default false.
     pub antialias: bool,
     /// Whether the renderer asks which pixels of a sparse frame history has nothing for, before it shades any
-    /// (`cpu::CpuAfterimage::plan`), and shades them at full rate ([`Frame::repaired`](crate::Frame::repaired)). CPU
-    /// executor only; no effect on frames without lattices. Default `None`: no frame has such samples.
+    /// (`gpu::Afterimage::plan`, `cpu::CpuAfterimage::plan`), and shades them at full rate
+    /// ([`Frame::repaired`](crate::Frame::repaired)). No effect on frames without lattices. Default `None`: no frame
+    /// has such samples.
     pub repair: Option<Repair>,
 }
 

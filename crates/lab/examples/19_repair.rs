@@ -6,7 +6,7 @@
 //!
 //! `cargo run --release -p afterimage-lab --example 19_repair`
 
-use afterimage::cpu::{CpuAfterimage, Frame, Repaired};
+use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::color::srgb_encode;
 use afterimage::{ContextDesc, Filter, Foveation, Gaze, Image, Method, Repair, Settings, Smr, ViewFrame};
 use afterimage_lab::frame::SourceFrame;
@@ -41,10 +41,9 @@ impl Row {
         let (depth, motion) = (full.depth.as_ref().ok_or("no depth")?, full.motion.as_ref().ok_or("no motion")?);
         let (colors, depths, motions, views) = ([&full.color], [depth], [motion], [view]);
         let frame = Frame { depth: Some(&depths), motion: Some(&motions), ..Frame::new(&colors, &views, index) };
-        let masks = if self.budget.is_some() { self.post.plan(&frame)? } else { vec![] };
-        let repaired: Vec<_> = masks.iter().map(|mask| Repaired { color: &full.color, mask }).collect();
+        let masks = if self.budget.is_some() { self.post.plan(&frame)?.to_vec() } else { vec![] };
         let mut shown = [Image::filled(SIZE, [0.0; 3])];
-        let repaired = self.budget.map(|_| &repaired[..]);
+        let repaired = self.budget.map(|_| &colors[..]);
         self.post.process(&Frame { repaired, ..frame }, &mut shown)?;
         let third = (3 * index / FRAMES) as usize;
         let wanted = masks.iter().flat_map(|mask| mask.pixels()).filter(|&&wanted| wanted).count();

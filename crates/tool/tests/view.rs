@@ -412,14 +412,15 @@ fn without_a_display_it_says_so_in_one_line() {
 fn what_it_cannot_show_is_refused_before_any_window() {
     let folder = tempfile::tempdir().unwrap();
     write_still(folder.path());
-    let refused: [(&[&str], &str); 7] = [
+    let refused: [(&[&str], &str); 8] = [
         (&["none.png"], "does not exist"),
         (&["still.png", "--split", "smr"], "expected two"),
         (&["still.png", "--split", "smr,oracle"], "oracle"),
         (&["still.png", "--internal-scale", "2"], "at most 1"),
         (&["still.png", "--fovea=-1"], "fovea"),
         (&["still.png", "--gaze", "none.csv"], "none.csv"),
-        (&["analytic:still", "--jitter", "halton"], "scenes only"),
+        (&["analytic:still", "--jitter", "halton"], "of scenes only"),
+        (&["builtin:courtyard", "--foveation", "mip", "--jitter", "halton"], "--foveation sparse"),
     ];
     for (words, expected) in refused {
         let out = Command::new(TOOL).arg("view").args(words).current_dir(folder.path()).output().unwrap();

@@ -52,7 +52,7 @@ impl View<'_> {
         if own >= 0.0 && move_together(own_px, nearest_px, farthest_px) {
             surface = Surroundings { stored: own, mixed: Some([farthest, nearest]), ..surface };
         }
-        // History of surfaces that move as one is a mean of both.
+        // Where surfaces move as one, a pixel is the mean of both, and samples of either belong to it.
         surface.is_doubtful = doubtful && own >= 0.0 && surface.mixed.is_none();
         surface
     }

@@ -9,7 +9,7 @@ use crate::cpu::Frame;
 use crate::cpu::history::History;
 use crate::frame::ContextDesc;
 use crate::image::Image;
-use crate::kernel::repair::{KEYS, priority, quad_key, threshold};
+use crate::kernel::repair::{KEYS, budget_quads, priority, quad_key, threshold};
 use crate::settings::Repair;
 
 /// Pixels to repair, view by view.
@@ -34,9 +34,7 @@ impl View<'_> {
         for &key in keys.pixels() {
             counts[key as usize] += 1;
         }
-        // Of f64, so that the product is not rounded up.
-        let budget = (f64::from(repair.budget) * keys.pixels().len() as f64) as u32;
-        let threshold = threshold(&counts, budget);
+        let threshold = threshold(&counts, budget_quads(repair.budget, keys.size()));
         Image::from_fn(size, |[x, y]| keys.at(x as usize / 2, y as usize / 2) >= threshold)
     }
 

@@ -248,8 +248,8 @@ fn shown_contrast(method: Method, step: u32, velocity_px: [f32; 2]) -> [[f64; 2]
     sums.map(|sums| sums.map(|[n, x, y, xx, xy]| (n * xy - x * y) / (n * xx - x * x)))
 }
 
-/// What stands beside an edge is as sharp as elsewhere, within a tenth. Temporal antialiasing at full rate, and every
-/// second pixel, are printed beside it.
+/// At full rate, bars beside an edge show as much contrast as bars elsewhere, within a tenth. The figures of temporal
+/// antialiasing, and of a lattice of step 2, are printed for comparison.
 #[test]
 fn bars_beside_an_edge_are_not_softer_than_elsewhere() {
     let smr = Method::Smr(Smr { antialias: true, ..Smr::default() });

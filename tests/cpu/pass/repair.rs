@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::any_frame::{self, AnyFrame, any_frame};
-use afterimage::cpu::Repaired;
+use crate::sparse_hard::foveation;
 use afterimage::kernel::repair::{KEYS, priority, quad_key, threshold};
-use afterimage::{Filter, Foveation, Repair, Smr};
+use afterimage::{Foveation, Repair, Smr};
 
 /// Frames in which lattices of steps 2 and 4 visit every position.
 const TURN: u64 = 16;
@@ -12,17 +12,6 @@ const GAZE: [f32; 2] = [20.0, 20.0];
 const SQUARE_PX: u32 = 16;
 
 type Mask = Image<bool>;
-
-fn foveation() -> Foveation {
-    Foveation {
-        filter: Filter::Sparse,
-        fovea_deg: 10.0,
-        mid_deg: 30.0,
-        rate_mid: 2,
-        rate_far: 4,
-        ..Foveation::default()
-    }
-}
 
 fn settings(budget: f32, antialias: bool) -> Settings {
     let method = Method::Smr(Smr { repair: Some(Repair { budget }), antialias, ..Smr::default() });
@@ -78,11 +67,11 @@ fn show(
     let images = Images::of(&[view]);
     let frame = images.frame(index);
     let before = post.clone();
-    let mask = post.plan(&frame).unwrap().remove(0);
+    let mask = post.plan(&frame).unwrap()[0].clone();
     assert!(post.plan(&Frame { color: &[], ..frame }).unwrap()[0] == mask, "the second call");
     assert!(post.history() == before.history(), "the question changed history");
     let samples = answer(&mask);
-    let repaired = samples.as_ref().map(|color| [Repaired { color, mask: &mask }]);
+    let repaired = samples.as_ref().map(|color| [color]);
     let mut out = [Image::filled(SIZE, [f32::NAN; 3])];
     let mut trace = [Image::filled(SIZE, PixelTrace::default())];
     let frame = Frame { repaired: repaired.as_ref().map(|r| &r[..]), ..frame };
@@ -177,11 +166,11 @@ fn repaired_pixels_show_their_samples_and_others_change_nothing() {
             let mut emptied = post.clone();
             let (_, without, trace) = show(&mut plain, index, view, |_| None);
             let images = Images::of(&[view]);
-            let nothing = Image::filled(SIZE, false);
-            let empty = [Repaired { color: &input.color, mask: &nothing }];
-            let mut out = [Image::filled(SIZE, [f32::NAN; 3])];
-            emptied.process(&Frame { repaired: Some(&empty), ..images.frame(index) }, &mut out).unwrap();
-            assert!(out[0] == without && emptied.history() == plain.history(), "an empty mask");
+            let unshaded = Image::filled(SIZE, [f32::NAN; 3]);
+            let mut out = [unshaded.clone()];
+            emptied.plan(&images.frame(index)).unwrap();
+            emptied.process(&Frame { repaired: Some(&[&unshaded]), ..images.frame(index) }, &mut out).unwrap();
+            assert!(out[0] == without && emptied.history() == plain.history(), "no pixel was shaded");
             // Other colors than the samples', and every seventh pixel is not a number.
             let bad = |i: usize| i.is_multiple_of(7);
             let shaded = Image::from_fn(SIZE, |[x, y]| {
@@ -219,7 +208,7 @@ fn after_a_cut_budgets_go_from_the_gaze_outwards_until_the_picture_is_whole() {
         for index in 0..60 {
             let input = square(index, u64::MAX, [0, 0], false);
             let view = sparse(&input, index, false);
-            let everything = context(settings(1.0, false)).plan(&Images::of(&[view]).frame(index)).unwrap().remove(0);
+            let everything = context(settings(1.0, false)).plan(&Images::of(&[view]).frame(index)).unwrap()[0].clone();
             let (mask, _, _) = show(&mut post, index, view, |_| Some(input.color.clone()));
             let used = quads(&mask) as f64 / all_quads(SIZE) as f64;
             assert!(used <= f64::from(budget), "{used} exceeds {budget}");
@@ -265,7 +254,7 @@ fn two_eyes_are_planned_as_one_would_be_and_a_lost_gaze_is_held() {
             here.facts.gaze = Gaze::Lost;
         }
         let images = [Images::of(&[here, there]), Images::of(&[here])];
-        let masks = both.plan(&images[0].frame(index)).unwrap();
+        let masks = both.plan(&images[0].frame(index)).unwrap().to_vec();
         assert_eq!(masks[0], left.plan(&images[1].frame(index)).unwrap()[0], "frame {index}");
         differ |= masks[0] != masks[1];
         let mut held = there;
@@ -286,8 +275,8 @@ fn a_reset_wants_everything_again() {
         let view = sparse(&input, index, false);
         let images = Images::of(&[view]);
         let after_a_cut = Frame { reset: Reset::All, ..images.frame(index) };
-        let fresh = context(settings(1.0, false)).plan(&images.frame(index)).unwrap();
-        assert_eq!(post.plan(&after_a_cut).unwrap(), fresh);
+        let mut fresh = context(settings(1.0, false));
+        assert_eq!(post.plan(&after_a_cut).unwrap(), fresh.plan(&images.frame(index)).unwrap());
         show(&mut post, index, view, |_| None);
     }
 }
@@ -299,17 +288,24 @@ fn what_does_not_fit_is_refused() {
     let plain = Settings { method: MethodKind::Smr.into(), ..settings(0.1, false) };
     let error = context(plain).plan(&images.frame(0)).unwrap_err().to_string();
     assert!(error.starts_with("Smr::repair of view 0 is None: expected given"), "{error}");
-    let mask = Image::filled(SIZE, true);
-    let repaired = [Repaired { color: &input.color, mask: &mask }];
+    let repaired = [&input.color];
     let frame = Frame { repaired: Some(&repaired), ..images.frame(0) };
     let mut out = [Image::filled(SIZE, [0.0; 3])];
     let error = context(plain).process(&frame, &mut out).unwrap_err().to_string();
     assert!(error.starts_with("repaired of view 0 is given: expected None; or set Smr::repair"), "{error}");
-    let small = Image::filled([8, 8], true);
-    let repaired = [Repaired { color: &input.color, mask: &small }];
-    let frame = Frame { repaired: Some(&repaired), ..images.frame(0) };
-    let error = context(settings(0.1, false)).process(&frame, &mut out).unwrap_err().to_string();
-    assert!(error.starts_with("repaired mask of view 0 is 8x8"), "{error}");
+    let mut post = context(settings(0.1, false));
+    let unplanned = "repaired of view 0 is given: expected None, or that plan was called with this frame";
+    let error = post.process(&frame, &mut out).unwrap_err().to_string();
+    assert!(error.starts_with(unplanned), "{error}");
+    post.plan(&frame).unwrap();
+    let error = post.process(&Frame { index: 1, ..frame }, &mut out).unwrap_err().to_string();
+    assert!(error.starts_with(unplanned), "{error}");
+    let small = [&Image::filled([8, 8], [0.0; 3])];
+    let error = post.process(&Frame { repaired: Some(&small), ..frame }, &mut out).unwrap_err().to_string();
+    assert!(error.starts_with("repaired of view 0 is 8x8"), "{error}");
+    post.process(&frame, &mut out).unwrap();
+    let error = post.process(&frame, &mut out).unwrap_err().to_string();
+    assert!(error.starts_with(unplanned), "{error}");
     for budget in [-0.1, 1.1, f32::NAN] {
         let error = settings(budget, false).validate().unwrap_err().to_string();
         assert!(error.starts_with("smr.repair.budget is "), "{error}");
@@ -374,13 +370,13 @@ proptest! {
             let reset = if draws.uniform() < 0.2 { Reset::All } else { Reset::None };
             let frame = Frame { reset, ..images.frame(index) };
             let before = post.clone();
-            let masks = post.plan(&frame).unwrap();
-            prop_assert_eq!(&post.plan(&Frame { color: &[], noise: None, ..frame }).unwrap(), &masks);
+            let masks = post.plan(&frame).unwrap().to_vec();
+            prop_assert_eq!(post.plan(&Frame { color: &[], noise: None, ..frame }).unwrap(), &masks);
             prop_assert!(post.history() == before.history());
             for mask in &masks {
                 prop_assert!(quads(mask) as f64 <= f64::from(budget) * all_quads(size) as f64);
             }
-            let repaired: Vec<_> = frames.iter().zip(&masks).map(|(f, mask)| Repaired { color: &f.color, mask }).collect();
+            let repaired = frames.each_ref().map(|f| &f.color);
             let mut out = vec![Image::filled(size, [f32::NAN; 3]); 2];
             post.process(&Frame { repaired: Some(&repaired), ..frame }, &mut out).unwrap();
             prop_assert!(out.iter().flat_map(|o| o.pixels()).flatten().all(|v| v.is_finite()));

@@ -12,8 +12,8 @@ fn antialiased() -> Settings {
 }
 
 /// Two views that glide, with jitter. The surfaces meet in a silhouette that is not straight; in the second view some
-/// of it is where motion changes, too, and the nearer surface comes from where the other one was. The first
-/// view stands still for three frames. In the last frames all is at full rate.
+/// of it is where motion changes, too, and the nearer surface comes from where the other one was. The first view
+/// stands still for three frames. In the last frames all is at full rate.
 fn views(index: u64, settings: &Settings) -> [View; 2] {
     [0, 1].map(|v| {
         let mut view = gliding_view(index, v, settings);
@@ -91,8 +91,8 @@ fn a_wrong_mean_is_caught() {
         ("surface.nearest = nearest_disparity;", ""),
         ("surface.stored_disparity = own;", ""),
         ("previous.verdict = VERDICT_VALID;\n    }", "}"),
-        // Samples of another surface: taken, on the other side, or where both move as one; compared,
-        // interpolated, averaged.
+        // Doubtful samples: none, those on the other side, those of surfaces that move as one, too; compared with
+        // history, interpolated, averaged.
         ("doubtful = doubtful || may_show(own, near, place_px, vec2<f32>(offset) - 1.0);", ""),
         ("let place_px = -frame.views[view].jitter_px;", "let place_px = frame.views[view].jitter_px;"),
         ("own >= 0.0 && !surface.mixes;", "own >= 0.0;"),

@@ -8,6 +8,7 @@ mod lifecycle;
 mod light;
 mod motion;
 mod properties;
+mod repair;
 mod reservoirs;
 #[allow(dead_code, reason = "the lab's tests on analytic scenes use all of it")]
 pub mod rig;

@@ -21,6 +21,7 @@ fn view(frame: AnyFrame, settings: &Settings) -> View {
         trust: Some(frame.trust),
         lod: Some(frame.lod),
         noise: settings.noisy.then_some(frame.noise),
+        repaired: None,
     }
 }
 

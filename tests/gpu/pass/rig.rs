@@ -25,13 +25,15 @@ pub struct View {
     pub lod: Option<Image<f32>>,
     /// Standard errors and numbers of samples of noisy frames.
     pub noise: Option<Image<[f32; 2]>>,
+    /// Colors of the pixels that a plan chooses, if the frame is planned.
+    pub repaired: Option<Image<[f32; 3]>>,
 }
 
 impl View {
     /// Without optional inputs, under 70 degrees.
     pub fn still(color: Image<[f32; 3]>, gaze_px: [f32; 2]) -> Self {
         let facts = ViewFrame::new(ViewGeometry::flat(color.size(), 70.0).unwrap(), Gaze::At { px: gaze_px });
-        Self { facts, color, depth: None, motion: None, trust: None, lod: None, noise: None }
+        Self { facts, color, depth: None, motion: None, trust: None, lod: None, noise: None, repaired: None }
     }
 }
 
@@ -61,6 +63,7 @@ struct Textures {
     trust: Texture,
     lod: Texture,
     noise: Texture,
+    repaired: Texture,
     output: Texture,
 }
 
@@ -76,6 +79,7 @@ impl Textures {
             trust: texture(TextureFormat::R32Float, read),
             lod: texture(TextureFormat::R32Float, read),
             noise: texture(TextureFormat::Rg32Float, read),
+            repaired: texture(TextureFormat::Rgba32Float, read),
             output: texture(TextureFormat::Rgba32Float, write),
         }
     }
@@ -86,6 +90,8 @@ impl Textures {
 pub struct Made {
     pub shown: Vec<[u32; 3]>,
     pub words: Vec<[u32; 3]>,
+    /// Chosen quads of a planned frame: 1, others 0.
+    pub quads: Vec<u32>,
     pub stats: FrameStats,
 }
 
@@ -214,9 +220,16 @@ impl Rig {
             .collect();
         let images = Images::of(&cpu_views);
         let frame = afterimage::cpu::Frame { reset, exposure: self.exposure, ..images.frame(index) };
+        let repaired: Vec<_> = views.iter().filter_map(|v| v.repaired.as_ref()).collect();
+        let repaired = (!repaired.is_empty()).then_some(&repaired[..]);
+        let quads = match repaired {
+            Some(_) => self.cpu.plan(&frame).unwrap().iter().flat_map(quads_of).collect(),
+            None => vec![],
+        };
+        let frame = afterimage::cpu::Frame { repaired, ..frame };
         let stats = self.cpu.process_traced(&frame, &mut output, &mut trace).unwrap();
         let shown = output.iter().flat_map(|o| o.pixels()).map(|c| c.map(f32::to_bits)).collect();
-        (Made { shown, words: held_words(&self.cpu), stats }, trace)
+        (Made { shown, words: held_words(&self.cpu), quads, stats }, trace)
     }
 
     pub fn on_gpu(&mut self, index: u64, reset: Reset, views: &[View]) -> Made {
@@ -262,6 +275,7 @@ impl Rig {
             trust: views[0].trust.is_some().then_some((&self.textures.trust).into()),
             lod: views[0].lod.is_some().then_some((&self.textures.lod).into()),
             noise: views[0].noise.is_some().then_some((&self.textures.noise).into()),
+            repaired: views[0].repaired.is_some().then_some((&self.textures.repaired).into()),
             exposure: self.exposure,
             reset,
             ..Frame::new(&self.textures.color, &facts, index)
@@ -270,10 +284,17 @@ impl Rig {
         let target = Target { debug, counters: count.then_some(&self.counters), ..Target::new(&self.textures.output) };
         let scattered = |texture, number| Scattered::new(&self.device, &self.queue, texture, number);
         let textures = &self.textures;
-        let inputs =
-            [&textures.color, &textures.depth, &textures.motion, &textures.trust, &textures.lod, &textures.noise];
+        let inputs = [
+            &textures.color,
+            &textures.depth,
+            &textures.motion,
+            &textures.trust,
+            &textures.lod,
+            &textures.noise,
+            &textures.repaired,
+        ];
         let inputs: Vec<_> = (0..).zip(inputs).filter(|_| self.scattered).map(|(i, t)| scattered(t, i)).collect();
-        let outputs: Vec<_> = [(&textures.output, 6), (&self.debug, 7)]
+        let outputs: Vec<_> = [(&textures.output, 7), (&self.debug, 8)]
             .into_iter()
             .filter(|_| self.scattered)
             .map(|(t, i)| scattered(t, i))
@@ -287,13 +308,17 @@ impl Rig {
             trust: frame.trust.map(|t| of(3, t)),
             lod: frame.lod.map(|t| of(4, t)),
             noise: frame.noise.map(|t| of(5, t)),
+            repaired: frame.repaired.map(|t| of(6, t)),
             ..frame
         };
-        let debug = target.debug.map(|d| DebugTarget { output: of(7, d.output), ..d });
-        let target = Target { output: of(6, target.output), debug, ..target };
+        let debug = target.debug.map(|d| DebugTarget { output: of(8, d.output), ..d });
+        let target = Target { output: of(7, target.output), debug, ..target };
         afterimage_testing::gpu::validated(&self.device, "record", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
             inputs.iter().for_each(|i| i.scatter(&mut encoder));
+            if frame.repaired.is_some() {
+                self.gpu.plan(&self.device, &mut encoder, &frame).unwrap();
+            }
             match view {
                 None => self.gpu.record(&self.device, &mut encoder, &frame, target).unwrap(),
                 Some(view) => self.gpu.record_view(&self.device, &mut encoder, &frame, target, view).unwrap(),
@@ -357,6 +382,8 @@ impl Rig {
                 }
                 [] => vec![],
             },
+            // As it was planned last.
+            quads: self.gpu.repair_mask().map_or_else(Vec::new, |mask| self.read_texture(mask)),
             stats: self.read_counters(),
         }
     }
@@ -388,6 +415,10 @@ impl Rig {
             if let Some(lod) = &view.lod {
                 self.write(&self.textures.lod, layer, bytemuck::cast_slice(lod.pixels()));
             }
+            if let Some(repaired) = &view.repaired {
+                let color: Vec<[f32; 4]> = repaired.pixels().iter().map(|c| [c[0], c[1], c[2], 1.0]).collect();
+                self.write(&self.textures.repaired, layer, bytemuck::cast_slice(&color));
+            }
             if let Some(noise) = &view.noise {
                 self.write(&self.textures.noise, layer, bytemuck::cast_slice(noise.pixels()));
             }
@@ -401,6 +432,12 @@ impl Rig {
     fn read_texture(&self, texture: &Texture) -> Vec<u32> {
         afterimage_testing::gpu::read_texture(&self.device, &self.queue, texture)
     }
+}
+
+/// The quads of a mask.
+fn quads_of(mask: &Image<bool>) -> Vec<u32> {
+    let quads = (0..mask.height()).step_by(2).flat_map(|y| (0..mask.width()).step_by(2).map(move |x| (x, y)));
+    quads.map(|(x, y)| u32::from(mask.at(x, y))).collect()
 }
 
 /// The views of a texture, as regions of larger textures that contain NaN elsewhere.
@@ -530,5 +567,6 @@ pub fn noise_view(name: &str, desc: &ContextDesc) -> View {
         trust: None,
         lod: None,
         noise: None,
+        repaired: None,
     }
 }

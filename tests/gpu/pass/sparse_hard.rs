@@ -26,6 +26,7 @@ impl Shows for Both {
             trust: s.trust.clone(),
             lod: None,
             noise: None,
+            repaired: None,
         };
         let views: Vec<_> = shots.iter().map(view).collect();
         let (made, _) = rig.both(index, shots[0].reset, &views);

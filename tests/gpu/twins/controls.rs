@@ -2,7 +2,8 @@
 
 use super::probe::caught;
 use super::{
-    decisions, doctor, foveation, lattice, matching, mathematics, noise, sparse, state, surfaces, upsampling, weighted,
+    decisions, doctor, foveation, lattice, matching, mathematics, noise, repair, sparse, state, surfaces, upsampling,
+    weighted,
 };
 
 #[test]
@@ -201,6 +202,14 @@ fn a_wrong_match_is_caught() {
     caught(matching::PROBES, "decide", "let fit = 1.0 -", "let fit = 0.99 -");
     caught(matching::PROBES, "mip_mean", "(a + b + c + d)", "(a + b + c + c)");
     caught(matching::PROBES, "mip_bilinear", "(b - t) * fraction.y", "(b - t) * fraction.x");
+}
+
+#[test]
+fn a_wrong_repair_is_caught() {
+    caught(repair::PROBES, "priority", "RINGS - 1u", "RINGS");
+    caught(repair::PROBES, "priority", "lod < WANTED_LOD", "lod <= WANTED_LOD");
+    caught(repair::PROBES, "quad_key", "~key", "key");
+    caught(repair::PROBES, "quad_key", "32u - HASH_BITS", "HASH_BITS");
 }
 
 #[test]

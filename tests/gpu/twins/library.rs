@@ -2,7 +2,7 @@
 
 use super::probe::Probe;
 use super::{
-    antialias, decisions, doctor, foveation, lattice, matching, mathematics, noise, sparse, state, surfaces,
+    antialias, decisions, doctor, foveation, lattice, matching, mathematics, noise, repair, sparse, state, surfaces,
     upsampling, weighted,
 };
 pub use afterimage::shader::SHADERS;
@@ -34,6 +34,7 @@ pub fn probes() -> impl Iterator<Item = &'static Probe> {
         noise::PROBES,
         mathematics::PROBES,
         antialias::PROBES,
+        repair::PROBES,
         sparse::PROBES,
         state::PROBES,
         surfaces::PROBES,

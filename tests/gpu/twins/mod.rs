@@ -19,6 +19,7 @@ mod modules;
 mod noise;
 mod order;
 mod probe;
+mod repair;
 mod sparse;
 mod state;
 mod surfaces;

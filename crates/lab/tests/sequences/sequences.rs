@@ -40,7 +40,7 @@ pub fn foveated(source: &mut AnalyticSource, index: u64, foveation: &Foveation) 
     }
     let gaze = if (13..17).contains(&index) { Gaze::Lost } else { Gaze::At { px } };
     let facts = ViewFrame { previous_from_current: frame.previous_from_current, ..ViewFrame::new(geometry, gaze) };
-    View { facts, color, depth: Some(depth), motion: Some(motion), trust: None, lod: None, noise: None }
+    View { facts, color, depth: Some(depth), motion: Some(motion), trust: None, lod: None, noise: None, repaired: None }
 }
 
 /// A mask that moves over the frame: full trust, none, some, and numbers that are none.

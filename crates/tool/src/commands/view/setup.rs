@@ -31,9 +31,12 @@ impl Setup {
             return refuse(format!("--internal-scale {scale}: expected above 0 and at most 1"));
         }
         args.foveation.check(args.input.is_rasterised(), args.input.is_analytic())?;
-        if args.foveation.is_jittered() && !args.input.is_rasterised() {
+        let is_sparse = args.foveation.filter() == FilterName::Of(Filter::Sparse);
+        if args.foveation.is_jittered() && !(args.input.is_rasterised() && is_sparse) {
             return refuse(
-                "--jitter halton: the viewer jitters scenes only (.gltf, .glb, builtin:NAME); use run".into(),
+                "--jitter halton: the viewer jitters sparse frames of scenes only; give a scene (.gltf, .glb, \
+                 builtin:NAME) and --foveation sparse, or use run"
+                    .into(),
             );
         }
         let (fps, geometry) = (args.input.fps(info), args.input.geometry(info)?);

@@ -1,0 +1,13 @@
+//#use repair
+// Counts of the quads of a view by their key, and which keys are chosen; shared by the passes of a plan.
+
+struct RepairState {
+    // Of all quads that want samples.
+    counts: array<atomic<u32>, KEYS>,
+    // Smallest key that is chosen.
+    threshold: u32,
+    // Number of chosen quads that are in the list.
+    listed: atomic<u32>,
+}
+
+@group(0) @binding(19) var<storage, read_write> state: RepairState;

@@ -1,0 +1,196 @@
+//! Plans of repairs and repaired frames: both executors, the lists on the device, and planted errors.
+
+use super::rig::{Rig, View};
+use super::sparse::{SIZE, desc, gliding_view, settings};
+use afterimage::gpu::{Afterimage, Frame};
+use afterimage::shader::SHADERS;
+use afterimage::wgpu::TextureFormat;
+use afterimage::{ContextDesc, Exposure, Foveation, Gaze, Image, Method, MethodKind, Repair, Reset, Settings, Smr};
+
+/// A budget that some frames use up and others do not.
+const BUDGET: f32 = 0.5;
+const FRAMES: u64 = 12;
+
+fn repairing(antialias: bool, noisy: bool) -> Settings {
+    let method = Method::Smr(Smr { repair: Some(Repair { budget: BUDGET }), antialias, ..Smr::default() });
+    Settings { method, noisy, ..settings(MethodKind::Smr) }
+}
+
+/// Two views that glide, and colors of the pixels to repair, of which some are not numbers. In the second view surfaces
+/// part, and its gaze is lost in every fifth frame.
+fn views(index: u64, settings: &Settings) -> [View; 2] {
+    [0, 1].map(|v| {
+        let mut view = gliding_view(index, v, settings);
+        let antialias = settings.method == repairing(true, false).method;
+        view.facts.jitter_px = if antialias { Foveation::jitter_px(index) } else { [0.0; 2] };
+        if v == 1 {
+            view.motion = view.motion.map(|motion| motion.map(|[x, y]| [x, -y]));
+            view.facts.gaze = if index % 5 == 4 { Gaze::Lost } else { view.facts.gaze };
+        }
+        if index % 4 == 2 {
+            let lattices = view.facts.lattices.unwrap();
+            view.facts.lattices = Some(lattices.with_geometry_at_samples());
+        }
+        view.noise =
+            settings.noisy.then(|| Image::from_fn(SIZE, |[x, y]| [0.02 * (x % 3) as f32, 1.0 + (y % 4) as f32]));
+        let whole = |[x, y]: [u32; 2]| {
+            if (x + 3 * y).is_multiple_of(13) { f32::NAN } else { ((x * 7 + y * 3 + index as u32) % 32) as f32 / 32.0 }
+        };
+        view.repaired = Some(Image::from_fn(SIZE, |px| [whole(px), 0.25, 0.5]));
+        view
+    })
+}
+
+fn rig_of(index: u64, rig: &mut Rig) -> Reset {
+    rig.scattered = index % 4 == 3;
+    rig.exposure = if index % 3 == 2 { Exposure::Changed { ratio: 1.25 } } else { Exposure::Same };
+    if index == 7 { Reset::All } else { Reset::None }
+}
+
+#[test]
+fn repaired_frames_are_bit_equal_on_both_executors() {
+    for [antialias, noisy] in [[false, false], [true, false], [false, true]] {
+        let settings = repairing(antialias, noisy);
+        let Some(mut rig) = Rig::new(desc(), settings) else { return };
+        let counts: Vec<u32> = (0..FRAMES)
+            .map(|index| {
+                let reset = rig_of(index, &mut rig);
+                let (made, _) = rig.both(index, reset, &views(index, &settings));
+                assert_lists_are_masks(&rig, &made.quads);
+                made.quads.iter().sum()
+            })
+            .collect();
+        println!("antialias {antialias}, noisy {noisy}: quads chosen {counts:?}");
+        let most = (BUDGET * (SIZE[0].div_ceil(2) * SIZE[1].div_ceil(2)) as f32) as u32 * 2;
+        assert!(counts.iter().all(|&n| n <= most) && counts[0] > most - 40, "at most {most}");
+        assert!(counts.iter().any(|&n| n > 0 && n < most - 40), "some plans do not use up their budget");
+    }
+}
+
+/// Lists of the device, view by view, against a mask of all views.
+fn assert_lists_are_masks(rig: &Rig, mask: &[u32]) {
+    let [columns, rows] = SIZE.map(|side| side.div_ceil(2));
+    for (view, mask) in mask.chunks((columns * rows) as usize).enumerate() {
+        let words: Vec<u32> =
+            afterimage_testing::gpu::read_buffer(&rig.device, &rig.queue, rig.gpu.repair_quads(view).unwrap());
+        let count = mask.iter().sum::<u32>();
+        assert_eq!(words[..8], [6, count, 0, 0, count.div_ceil(64), 1, 1, count], "view {view}");
+        let mut listed = words[8..8 + count as usize].to_vec();
+        listed.sort_unstable_by_key(|quad| (quad >> 16, quad & 0xffff));
+        let chosen =
+            (0..).zip(mask).filter(|(_, chosen)| **chosen == 1).map(|(i, _)| (i % columns) | ((i / columns) << 16));
+        assert_eq!(listed, chosen.collect::<Vec<_>>(), "view {view}");
+    }
+}
+
+/// A frame that is planned and then given without samples is as one that was not planned.
+#[test]
+fn a_plan_changes_nothing() {
+    let settings = repairing(true, false);
+    let (Some(mut planned), Some(mut plain)) = (Rig::new(desc(), settings), Rig::new(desc(), settings)) else { return };
+    for index in 0..6 {
+        let views = views(index, &settings);
+        let unrepaired = views.clone().map(|view| View { repaired: None, ..view });
+        let unshaded = views.map(|view| View { repaired: Some(Image::filled(SIZE, [f32::NAN; 3])), ..view });
+        let (with, without) =
+            (planned.on_gpu(index, Reset::None, &unshaded), plain.on_gpu(index, Reset::None, &unrepaired));
+        assert!(with.shown == without.shown && with.words == without.words, "frame {index}");
+    }
+}
+
+/// Sizes of a plan's textures and buffers, and that changes of settings replace them.
+#[test]
+fn plans_follow_size_and_settings() {
+    let settings = repairing(false, false);
+    let Some(mut rig) = Rig::new(desc(), settings) else { return };
+    let without = Settings { method: MethodKind::Smr.into(), ..settings };
+    let bytes = |settings| Afterimage::memory_bytes_of(&ContextDesc { settings, ..ContextDesc::new([1920, 1080]) });
+    let (with, plain) = (bytes(settings), bytes(without));
+    let pixels = 1920.0 * 1080.0;
+    println!("{:.2} bytes a pixel, {:.2} without repair", with as f64 / pixels, plain as f64 / pixels);
+    // Keys and mask, 4 bytes a quad each, and a word for each quad that the budget pays for.
+    assert!((with - plain) as f64 <= (2.1 + f64::from(BUDGET)) * pixels);
+    let size = |rig: &Rig| rig.gpu.repair_mask().map(|mask| [mask.width(), mask.height()]);
+    assert_eq!(size(&rig), Some([35, 21]));
+    rig.gpu.set_settings(&rig.device, without).unwrap();
+    assert!(size(&rig).is_none() && rig.gpu.repair_quads(0).is_none());
+    rig.gpu.set_settings(&rig.device, settings).unwrap();
+    rig.gpu.resize(&rig.device, [64, 64]).unwrap();
+    assert_eq!(size(&rig), Some([32, 32]));
+    assert!(rig.gpu.repair_quads(1).is_some() && rig.gpu.repair_quads(2).is_none());
+}
+
+#[test]
+fn what_was_not_planned_is_refused() {
+    let settings = repairing(false, false);
+    let Some(rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
+    let desc = ContextDesc { settings, ..ContextDesc::new(SIZE) };
+    let mut post = Afterimage::new(&rig.device, &desc, TextureFormat::Rgba16Float).unwrap();
+    let usage = Afterimage::INPUT_USAGE;
+    let color = super::rig::make_texture(&rig.device, &desc, TextureFormat::Rgba16Float, usage);
+    let output = super::rig::make_texture(&rig.device, &desc, TextureFormat::Rgba16Float, Afterimage::OUTPUT_USAGE);
+    let facts = [views(0, &settings)[0].facts];
+    let mut encoder = rig.device.create_command_encoder(&Default::default());
+    let frame = Frame::new(&color, &facts, 3);
+    let repaired = Frame { repaired: Some((&color).into()), ..frame };
+    let mut refused = |post: &mut Afterimage, frame: &Frame<'_>| {
+        post.record(&rig.device, &mut encoder, frame, &output).map(|_| ()).map_err(|error| error.to_string())
+    };
+    let unplanned = "repaired of view 0 is given: expected None, or that plan was called with this frame";
+    assert_eq!(refused(&mut post, &repaired), Err(unplanned.into()));
+    let mut encoder = rig.device.create_command_encoder(&Default::default());
+    post.plan(&rig.device, &mut encoder, &frame).unwrap();
+    assert_eq!(refused(&mut post, &Frame { index: 4, ..repaired }), Err(unplanned.into()));
+    assert_eq!(refused(&mut post, &repaired), Ok(()));
+    assert_eq!(refused(&mut post, &repaired), Err(unplanned.into()));
+    post.set_settings(&rig.device, Settings { method: MethodKind::Smr.into(), ..settings }).unwrap();
+    let error = post.plan(&rig.device, &mut encoder, &frame).unwrap_err().to_string();
+    assert!(error.starts_with("Smr::repair of view 0 is None: expected given"), "{error}");
+}
+
+#[test]
+fn a_wrong_plan_is_caught() {
+    let settings = repairing(true, false);
+    let names = ["repair_key_pass", "repair_threshold_pass", "repair_mask_pass", "sparse_pass"];
+    let right = names.map(|name| SHADERS.compose(name).source);
+    let differs = |sources: &[String; 4]| {
+        let [key, threshold, mask, pass] = sources.clone();
+        let mut rig = Rig::with_shader(desc(), settings, &pass)?;
+        rig.gpu.set_repair_shaders(&rig.device, [key, threshold, mask]);
+        Some((0..FRAMES).any(|index| {
+            let reset = rig_of(index, &mut rig);
+            let views = views(index, &settings);
+            rig.on_gpu(index, reset, &views) != rig.on_cpu(index, reset, &views).0
+        }))
+    };
+    match differs(&right) {
+        None => return,
+        Some(differs) => assert!(!differs, "without an error"),
+    }
+    let planted = [
+        ("select(priority(kept.found.lod, e_deg), 0u, is_sample)", "priority(kept.found.lod, e_deg)"),
+        ("largest = max(largest, pixel_priority(px, view));", "largest = pixel_priority(px, view);"),
+        ("has_history && lod < WANTED_LOD", "has_history"),
+        ("select(2u * RINGS, RINGS, has_history)", "2u * RINGS"),
+        ("bits(x, y, frame_low, ~key)", "bits(x, y, frame_low, key)"),
+        ("if key > 0u {", "if key > 1u << 14u {"),
+        ("of_run[first - 1u] <= budget - chosen", "of_run[first - 1u] <= budget"),
+        ("<= budget - chosen {\n        key--;", "<= budget {\n        key--;"),
+        (">= state.threshold", "> state.threshold"),
+        ("px >> vec2<u32>(1u), view, 0).x != 0u", "px >> vec2<u32>(1u), view, 0).x == 0u"),
+        ("!= 0u && level > 0u;", "!= 0u;"),
+        ("chosen && own.usable", "chosen"),
+        ("candidate.lod = 0.0;\n        candidate.is_own = true;", "candidate.is_own = true;"),
+        ("candidate.is_own = true;", ""),
+    ];
+    for (text, instead) in planted {
+        let mut wrong = right.clone();
+        let mut found = false;
+        for source in &mut wrong {
+            found |= source.contains(text);
+            *source = source.replace(text, instead);
+        }
+        assert!(found, "{text}");
+        assert_eq!(differs(&wrong), Some(true), "{text} -> {instead}");
+    }
+}
