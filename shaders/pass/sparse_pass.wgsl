@@ -265,7 +265,8 @@ fn pixel(px: vec2<u32>, view: u32) {
     let motion = surface.motion;
     let source = kept_source(px, view, surface);
     let previous = source.previous;
-    let is_final = candidate.usable && (lattice.level == 0u || repair.usable) && NOISY == 0u && ANTIALIAS == 0u;
+    let is_full_rate = lattice.level == 0u || repair.usable;
+    let is_final = candidate.usable && is_full_rate && NOISY == 0u && ANTIALIAS == 0u;
     let kept = kept_history(source, view, may_have_history(previous) && !is_final);
     let history = kept.found;
     let verdict = select(previous.verdict, VERDICT_VALID, history.lod >= 0.0);

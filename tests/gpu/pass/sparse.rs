@@ -171,7 +171,7 @@ fn wrong_noise_is_caught() {
         ("own.level == 0u && next > index", "false"),
         ("index + 1u, LATTICES - 1u", "index + 2u, LATTICES - 1u"),
         ("sample_at(px - lattice.first_px, lattice, view)", "sample_at(px, lattice, view)"),
-        ("lattice.level == 0u && NOISY == 0u", "lattice.level == 0u"),
+        ("is_full_rate && NOISY == 0u", "is_full_rate"),
         ("candidate.fit = fits;", ""),
         ("candidate.noise = noise_at(px, view);", ""),
         // What is shown and stored.
@@ -350,7 +350,7 @@ fn a_wrong_reconstruction_is_caught() {
         ("max(share, LEAST_SHARE) * select(OTHER_SURFACE, 1.0, same)", "max(share, LEAST_SHARE)"),
         ("weight * select(BY_NEIGHBOURS, 1.0, lit.is_own)", "weight"),
         ("select(mean.xyz, own.color, is_own)", "mean.xyz"),
-        ("candidate.usable && lattice.level == 0u", "false"),
+        ("candidate.usable && is_full_rate", "false"),
         ("next.disparity = surface.stored_disparity;", ""),
         ("textureStore(next_kept, px, view,", "textureStore(next_kept, px, 1u - view,"),
         ("count_if(valid && share == 0.0, COUNT_REPLACED);", ""),

@@ -17,8 +17,14 @@ pub const WGSL_ONLY: &[(&str, &str)] =
 
 /// (Rust file stem, function there) without a WGSL twin: two take a closure, in whose place the pass has a loop; the
 /// other one places the samples of a frame before a device sees it.
-pub const RUST_ONLY: &[(&str, &str)] =
-    &[("depth", "slope"), ("lattice", "jitter_px"), ("lattice", "offset_px"), ("resample", "gather_around")];
+pub const RUST_ONLY: &[(&str, &str)] = &[
+    ("depth", "slope"),
+    ("lattice", "jitter_px"),
+    ("lattice", "offset_px"),
+    ("repair", "budget_quads"),
+    ("repair", "threshold"),
+    ("resample", "gather_around"),
+];
 
 /// Functions without a name of their own in the Rust kernel's public interface; probed through their callers.
 pub const PRIVATE: &[&str] = &["fifth_root", "lab_f", "nothing_around", "pcg4d_mix", "saturating_add"];
