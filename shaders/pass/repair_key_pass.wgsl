@@ -4,12 +4,31 @@
 // How much the quads of a sparse frame want samples of their own, before it is shaded. CPU twin: `key` in
 // src/cpu/sparse_pass/plan.rs. One invocation a quad of 2x2 pixels of view `frame.first_view`.
 //
-// 7 reads a pixel (depth, motion, trust, 4 stored samples; 9 more of depth and 5 more of stored samples with
-// antialiasing), 1 write and 1 atomic sum a quad.
+// 4 reads a pixel (depth, motion, trust, a stored sample), 1 write a quad. A pixel that is not settled: up to 14 reads of
+// depth and motion and 9 of stored samples more; its quad 1 atomic sum.
 
 @group(0) @binding(18) var keys_out: texture_storage_2d_array<r32uint, write>;
 
-// How much a pixel wants a sample of its own.
+// Whether the stored sample nearest to a pixel's previous position is a fine one of its surface.
+fn is_settled(px: vec2<u32>, view: u32) -> bool {
+    let at = reprojected(px, motion_at(px, view));
+    let stored = kept_at(vec2<i32>(at.at), view);
+    var lod = stored.lod;
+    if ANTIALIAS != 0u {
+        lod = mean_of(lod).lod;
+    }
+    var same = true;
+    if DEPTH_TEST != 0u {
+        let expected = expected_disparity(view, ray_at(px, view), disparity_at(px, view));
+        same = same_surface(expected, stored.disparity, frame.depth_relative, 0.0);
+    }
+    if HAS_TRUST != 0u {
+        same = same && trust(trust_at(px, view)) > 0.0;
+    }
+    return same && at.verdict == VERDICT_VALID && lod >= 0.0 && lod < WANTED_LOD;
+}
+
+// How much a pixel that is not settled wants a sample of its own.
 fn pixel_priority(px: vec2<u32>, view: u32) -> u32 {
     let lattice = lattice_at(px, view);
     let near = around(px, lattice);
@@ -21,18 +40,27 @@ fn pixel_priority(px: vec2<u32>, view: u32) -> u32 {
     return select(priority(kept.found.lod, e_deg), 0u, is_sample);
 }
 
+fn pixel_of(quad: vec2<u32>, pixel: u32) -> vec2<u32> {
+    return 2u * quad + vec2<u32>(pixel % 2u, pixel / 2u);
+}
+
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) quad: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let view = frame.first_view;
-    if any(2u * quad.xy >= frame.size) {
+    let quad = id.xy;
+    if any(2u * quad >= frame.size) {
         return;
     }
-    var largest = 0u;
+    // Pixels that need a closer look, as bits. Few do, and the second loop ends at once for the others.
+    var left = 0u;
     for (var pixel = 0u; pixel < 4u; pixel++) {
-        let px = 2u * quad.xy + vec2<u32>(pixel % 2u, pixel / 2u);
-        if all(px < frame.size) {
-            largest = max(largest, pixel_priority(px, view));
-        }
+        let px = pixel_of(quad, pixel);
+        left |= select(0u, 1u << pixel, all(px < frame.size) && !is_settled(px, view));
+    }
+    var largest = 0u;
+    while left != 0u {
+        largest = max(largest, pixel_priority(pixel_of(quad, firstTrailingBit(left)), view));
+        left &= left - 1u;
     }
     let key = quad_key(largest, quad.x, quad.y, frame.frame_low, frame.views[view].key);
     if key > 0u {

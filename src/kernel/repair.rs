@@ -8,7 +8,7 @@
 use super::rng;
 
 /// Level of detail from which on history is coarse: no sample fell on the pixel, or what did was contradicted since.
-const WANTED_LOD: f32 = 1.0;
+pub const WANTED_LOD: f32 = 1.0;
 /// Number of rings around the gaze. More follow the order from the gaze outwards more closely.
 const RINGS: u32 = 31;
 /// Rings a degree: they reach to 60 degrees, and the last one has the rest.

@@ -9,7 +9,11 @@ use crate::cpu::Frame;
 use crate::cpu::history::History;
 use crate::frame::ContextDesc;
 use crate::image::Image;
-use crate::kernel::repair::{KEYS, budget_quads, priority, quad_key, threshold};
+use crate::kernel::antialias::mean_of;
+use crate::kernel::kept::unpack_kept;
+use crate::kernel::repair::{KEYS, WANTED_LOD, budget_quads, priority, quad_key, threshold};
+use crate::kernel::reproject::nearest;
+use crate::kernel::sanitize;
 use crate::settings::Repair;
 
 /// Pixels to repair, view by view.
@@ -58,9 +62,28 @@ impl View<'_> {
             // The frame samples it.
             return 0;
         }
+        if self.is_settled(px) {
+            return 0;
+        }
         let surface = self.surface(px, lattice.level);
         let lod = self.source(px, &surface).map_or(-1.0, |source| self.interpolated(&source).history.lod);
         let e_deg = self.inputs.eccentricity_deg(self.inputs.ray(px[0], px[1]));
         priority(lod, e_deg)
+    }
+
+    /// Whether the stored sample nearest to a pixel's previous position is a fine one of its surface. Most pixels need
+    /// no closer look.
+    fn is_settled(&self, [x, y]: [u32; 2]) -> bool {
+        let inputs = &self.inputs;
+        if inputs.reset {
+            return false;
+        }
+        let Ok([qx, qy]) = nearest(x, y, inputs.motion(x, y), inputs.size) else { return false };
+        let stored = unpack_kept(self.stored_words(qx as i32, qy as i32));
+        let lod = if self.antialiases { mean_of(stored.lod).lod } else { stored.lod };
+        let expected = inputs.expected_disparity(x, y, inputs.disparity(x, y));
+        let same = inputs.same_disparity(expected, stored.disparity);
+        let trusted = inputs.trust(x, y).is_none_or(|trust| sanitize::trust(trust) > 0.0);
+        same && trusted && (0.0..WANTED_LOD).contains(&lod)
     }
 }

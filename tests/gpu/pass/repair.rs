@@ -21,6 +21,9 @@ fn repairing(antialias: bool, noisy: bool) -> Settings {
 fn views(index: u64, settings: &Settings) -> [View; 2] {
     [0, 1].map(|v| {
         let mut view = gliding_view(index, v, settings);
+        view.trust = view
+            .trust
+            .map(|trust| Image::from_fn(SIZE, |[x, y]| if y == 5 { 0.0 } else { trust.at(x as usize, y as usize) }));
         let antialias = settings.method == repairing(true, false).method;
         view.facts.jitter_px = if antialias { Foveation::jitter_px(index) } else { [0.0; 2] };
         if v == 1 {
@@ -168,8 +171,13 @@ fn a_wrong_plan_is_caught() {
         Some(differs) => assert!(!differs, "without an error"),
     }
     let planted = [
-        ("select(priority(kept.found.lod, e_deg), 0u, is_sample)", "priority(kept.found.lod, e_deg)"),
-        ("largest = max(largest, pixel_priority(px, view));", "largest = pixel_priority(px, view);"),
+        ("priority(kept.found.lod, e_deg), 0u, is_sample)", "priority(kept.found.lod, e_deg), 0u, false)"),
+        ("!is_settled(px, view)", "is_settled(px, view)"),
+        ("firstTrailingBit(left)", "0u"),
+        ("same = same_surface(expected, stored.disparity, frame.depth_relative, 0.0);", ""),
+        ("same = same && trust(trust_at(px, view)) > 0.0;", ""),
+        ("at.verdict == VERDICT_VALID && lod >= 0.0 && lod < WANTED_LOD", "lod >= 0.0 && lod < WANTED_LOD"),
+        ("largest = max(largest, pixel_priority(", "largest = max(0u, pixel_priority("),
         ("has_history && lod < WANTED_LOD", "has_history"),
         ("select(2u * RINGS, RINGS, has_history)", "2u * RINGS"),
         ("bits(x, y, frame_low, ~key)", "bits(x, y, frame_low, key)"),

@@ -3,13 +3,15 @@
 use super::{BenchArgs, write_json};
 use crate::args::backend::NO_ADAPTER;
 use crate::failure::Failure;
+use afterimage::gpu::Timestamps;
 use afterimage::kernel::rng;
 use afterimage::module;
 use afterimage::shader::{Composer, Module};
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
-use afterimage::wgpu::{Texture, TextureUsages};
+use afterimage::wgpu::{CommandEncoder, ComputePassDescriptor, ComputePassTimestampWrites, Texture, TextureUsages};
 use afterimage::{
-    ContextDesc, CreateError, Filter, Foveation, Gaze, Image, MethodKind, Reset, Settings, ViewFrame, ViewGeometry,
+    ContextDesc, CreateError, Filter, Foveation, Gaze, Image, Method, MethodKind, Repair, Reset, Settings, Smr,
+    ViewFrame, ViewGeometry,
 };
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::{Headless, PassClock};
@@ -67,7 +69,9 @@ enum PassKind {
     Copy,
     Post(Settings),
     /// A method on sparse frames.
-    Sparse(MethodKind),
+    Sparse(Settings),
+    /// The plan of repairs before smr on sparse frames.
+    Plan(Settings),
     Foveate(Filter),
 }
 
@@ -78,15 +82,25 @@ fn sparse_settings(method: MethodKind) -> Settings {
     Settings { method: method.into(), foveation, ..paper }
 }
 
+/// smr on sparse frames that are repaired, and jittered or not.
+fn repairing(antialias: bool) -> Settings {
+    let smr = Smr { repair: Some(Repair { budget: 0.03 }), antialias, ..Smr::default() };
+    Settings { method: Method::Smr(smr), ..sparse_settings(MethodKind::Smr) }
+}
+
 impl PassSpec {
     fn new(name: &'static str, settings: Settings) -> Self {
         let bytes_per_pixel = settings.traffic_bytes_per_pixel([true, true, false]);
         Self { name, bytes_per_pixel, kind: PassKind::Post(settings) }
     }
 
-    fn sparse(name: &'static str, method: MethodKind) -> Self {
-        let bytes_per_pixel = sparse_settings(method).traffic_bytes_per_pixel([true, true, false]);
-        Self { name, bytes_per_pixel, kind: PassKind::Sparse(method) }
+    fn sparse(name: &'static str, settings: Settings) -> Self {
+        Self { kind: PassKind::Sparse(settings), ..Self::new(name, settings) }
+    }
+
+    fn plan(name: &'static str, settings: Settings) -> Self {
+        // Depth, motion, history; a key is written and read, and a mask is written, for each four pixels.
+        Self { name, bytes_per_pixel: 4 + 4 + 8 + 3, kind: PassKind::Plan(settings) }
     }
 }
 
@@ -94,8 +108,9 @@ impl PassSpec {
     /// The views of frame `index`, with lattices if it is sparse.
     fn views(&self, views: &[ViewFrame; 1], index: u64) -> [ViewFrame; 1] {
         views.map(|mut view| {
-            if let (PassKind::Sparse(method), Gaze::At { px }) = (self.kind, view.gaze) {
-                view.lattices = Some(sparse_settings(method).foveation.lattices(&view.geometry, px, index));
+            let (PassKind::Sparse(settings) | PassKind::Plan(settings)) = self.kind else { return view };
+            if let Gaze::At { px } = view.gaze {
+                view.lattices = Some(settings.foveation.lattices(&view.geometry, px, index));
             }
             view
         })
@@ -108,7 +123,12 @@ fn all_passes() -> Vec<PassSpec> {
     let plain = |kind: MethodKind| Settings { method: kind.into(), ..Settings::default() };
     passes.extend(MethodKind::ALL.map(|kind| PassSpec::new(kind.name(), plain(kind))));
     passes.push(PassSpec::new("wrs-weighted", Settings::weighted()));
-    passes.push(PassSpec::sparse("smr-sparse", MethodKind::Smr));
+    let sparse = sparse_settings(MethodKind::Smr);
+    let antialiased = Settings { method: Method::Smr(Smr { antialias: true, ..Smr::default() }), ..sparse };
+    passes.push(PassSpec::sparse("smr-sparse", sparse));
+    passes.push(PassSpec::plan("smr-plan", repairing(false)));
+    passes.push(PassSpec::sparse("smr-antialias", antialiased));
+    passes.push(PassSpec::plan("smr-antialias-plan", repairing(true)));
     passes.extend(Filter::ALL.into_iter().filter_map(|filter| {
         let bytes_per_pixel = GpuSimulator::traffic(filter)?;
         Some(PassSpec { name: filter.name(), bytes_per_pixel, kind: PassKind::Foveate(filter) })
@@ -119,7 +139,12 @@ fn all_passes() -> Vec<PassSpec> {
 /// A pass, created on the device.
 enum CreatedPass {
     Post(Box<DeviceRun>),
-    Foveate { simulator: Box<GpuSimulator>, output: Texture },
+    /// A run whose plan is timed, and which is recorded then.
+    Plan(Box<DeviceRun>),
+    Foveate {
+        simulator: Box<GpuSimulator>,
+        output: Texture,
+    },
 }
 
 impl CreatedPass {
@@ -130,13 +155,13 @@ impl CreatedPass {
                 let source = SHADERS.compose("copy_pass").source;
                 Self::Post(Box::new(DeviceRun::with_shader(gpu, &desc, DeviceFormats::ENGINE, &source)?))
             }
-            PassKind::Post(settings) => {
+            PassKind::Post(settings) | PassKind::Sparse(settings) => {
                 desc.settings = settings;
                 Self::Post(Box::new(DeviceRun::new(gpu, &desc, DeviceFormats::ENGINE)?))
             }
-            PassKind::Sparse(method) => {
-                desc.settings = sparse_settings(method);
-                Self::Post(Box::new(DeviceRun::new(gpu, &desc, DeviceFormats::ENGINE)?))
+            PassKind::Plan(settings) => {
+                desc.settings = settings;
+                Self::Plan(Box::new(DeviceRun::new(gpu, &desc, DeviceFormats::ENGINE)?))
             }
             PassKind::Foveate(filter) => {
                 desc.settings.foveation.filter = filter;
@@ -231,14 +256,14 @@ fn summarise(
 fn print(report: &Report) {
     say!("{} ({}, {})", report.adapter, report.driver, report.backend);
     say!("{}x{}, {} frames; times are {}", report.size[0], report.size[1], report.frames, report.clock);
-    say!("pass          median      p25      p75 ms   ms/Mpx  B/px  share of the copy's bandwidth");
+    say!("pass                median      p25      p75 ms   ms/Mpx  B/px  share of the copy's bandwidth");
     for pass in &report.passes {
         let (Some(q), Some(per_mpx), Some(share)) = (pass.ms, pass.ms_per_megapixel, pass.share_of_copy_bandwidth)
         else {
             continue;
         };
         say!(
-            "{:12} {:>7.3} {:>8.3} {:>8.3} {:>11.3} {:>5} {:>6.0} %",
+            "{:18} {:>7.3} {:>8.3} {:>8.3} {:>11.3} {:>5} {:>6.0} %",
             pass.name,
             q.median,
             q.p25,
@@ -266,6 +291,12 @@ fn time(
         CreatedPass::Post(run) => {
             run.record(&mut encoder, &inputs.frame(views, index, Reset::None, false), clock.timestamps())?;
         }
+        CreatedPass::Plan(run) => {
+            let frame = inputs.frame(views, index, Reset::None, false);
+            mark(&mut encoder, clock, |t| (Some(t.begin), None));
+            run.post_mut().plan(&gpu.device, &mut encoder, &frame)?;
+            mark(&mut encoder, clock, |t| (None, Some(t.end)));
+        }
         CreatedPass::Foveate { simulator, output } => {
             let frame =
                 SimulatorFrame { timestamps: clock.timestamps(), ..SimulatorFrame::new(inputs.full(), output, views) };
@@ -275,7 +306,28 @@ fn time(
     clock.resolve(&mut encoder);
     gpu.queue.submit([encoder.finish()]);
     gpu.wait();
-    Ok(clock.read_ms(gpu, &watch))
+    let ms = clock.read_ms(gpu, &watch);
+    if let CreatedPass::Plan(run) = pass {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        run.record(&mut encoder, &inputs.frame(views, index, Reset::None, false), None)?;
+        gpu.queue.submit([encoder.finish()]);
+        gpu.wait();
+    }
+    Ok(ms)
+}
+
+/// Records a timestamp: that of the beginning or of the end.
+fn mark(encoder: &mut CommandEncoder, clock: &PassClock, index: impl Fn(Timestamps<'_>) -> (Option<u32>, Option<u32>)) {
+    let Some(timestamps) = clock.timestamps() else { return };
+    let (beginning_of_pass_write_index, end_of_pass_write_index) = index(timestamps);
+    encoder.begin_compute_pass(&ComputePassDescriptor {
+        label: None,
+        timestamp_writes: Some(ComputePassTimestampWrites {
+            query_set: timestamps.queries,
+            beginning_of_pass_write_index,
+            end_of_pass_write_index,
+        }),
+    });
 }
 
 /// A view whose gaze moves on a circle.

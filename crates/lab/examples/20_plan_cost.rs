@@ -1,0 +1,88 @@
+//! Repair of sparse frames: what the plan costs beside the passes of smr, on a device.
+//!
+//! CPU time of the process on software Vulkan, otherwise wall time; medians of frames with settled history. Depth,
+//! motion and samples are those of analytic clips, 640x360 at 70 degrees, steps 2 and 4, budget 3 %.
+//!
+//! `cargo run --release -p afterimage-lab --example 20_plan_cost`
+
+use afterimage::gpu::{Afterimage, Frame};
+use afterimage::wgpu::{CommandEncoder, TextureFormat, TextureUsages};
+use afterimage::{ContextDesc, Filter, Foveation, Gaze, Method, Repair, Settings, Smr, ViewFrame};
+use afterimage_lab::clock::{Quartiles, Stopwatch};
+use afterimage_lab::device::Headless;
+use afterimage_lab::source::FrameSource;
+use afterimage_lab::source::analytic::AnalyticSource;
+
+const SIZE: [u32; 2] = [640, 360];
+const GAZE_PX: [f32; 2] = [320.0, 180.0];
+/// Frames before the first that is timed: the lattices have visited every pixel.
+const WARM_UP: u64 = 18;
+const FRAMES: u64 = 40;
+
+type Failure = Box<dyn std::error::Error>;
+
+fn main() -> Result<(), Failure> {
+    let gpu = Headless::find(true).ok_or("no adapter was found")?;
+    println!("{:9} {:>9} {:>8} {:>8} {:>6}", "scene", "antialias", "plan ms", "smr ms", "ratio");
+    for scene in ["still", "lateral", "walk", "occluder"] {
+        for antialias in [false, true] {
+            let [plan, record] = times(&gpu, scene, antialias)?;
+            println!("{scene:9} {antialias:>9} {plan:8.1} {record:8.1} {:6.2}", plan / record);
+        }
+    }
+    Ok(())
+}
+
+/// Median times of `plan` and `record` in milliseconds.
+fn times(gpu: &Headless, scene: &str, antialias: bool) -> Result<[f64; 2], Failure> {
+    let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..Foveation::default() };
+    let smr = Smr { repair: Some(Repair { budget: 0.03 }), antialias, ..Smr::default() };
+    let settings = Settings { method: Method::Smr(smr), foveation, ..Settings::default() };
+    let desc = ContextDesc { settings, ..ContextDesc::new(SIZE) };
+    let mut post = Afterimage::new(&gpu.device, &desc, TextureFormat::Rgba16Float)?;
+    let input = |format| gpu.texture(SIZE, 1, format, TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST);
+    let (color, depth, motion) =
+        (input(TextureFormat::Rgba32Float), input(TextureFormat::R32Float), input(TextureFormat::Rg32Float));
+    let output = gpu.texture(SIZE, 1, TextureFormat::Rgba16Float, TextureUsages::STORAGE_BINDING);
+    let mut source = AnalyticSource::new(scene, SIZE, 70.0, 60.0)?;
+    let geometry = *source.view();
+    let mut times = [vec![], vec![]];
+    for index in 0..FRAMES {
+        let full = source.frame(index)?;
+        gpu.write_rgb(&color, 0, &full.color);
+        gpu.write(&depth, 0, full.depth.as_ref().ok_or("no depth")?);
+        gpu.write(&motion, 0, full.motion.as_ref().ok_or("no motion")?);
+        let views = [ViewFrame {
+            previous_from_current: full.previous_from_current,
+            lattices: Some(foveation.lattices(&geometry, GAZE_PX, index)),
+            jitter_px: if antialias { Foveation::jitter_px(index) } else { [0.0; 2] },
+            ..ViewFrame::new(geometry, Gaze::At { px: GAZE_PX })
+        }];
+        let (depth, motion) = (Some((&depth).into()), Some((&motion).into()));
+        let frame = Frame { depth, motion, ..Frame::new(&color, &views, index) };
+        // Uploads are done before the first watch starts.
+        gpu.queue.submit([]);
+        gpu.wait();
+        let plan = timed(gpu, |encoder| post.plan(&gpu.device, encoder, &frame))?;
+        let repaired = Frame { repaired: Some((&color).into()), ..frame };
+        let record = timed(gpu, |encoder| post.record(&gpu.device, encoder, &repaired, &output).map(|_| ()))?;
+        if index >= WARM_UP {
+            times[0].push(plan);
+            times[1].push(record);
+        }
+    }
+    Ok(times.map(|times| Quartiles::of(&times).map_or(f64::NAN, |q| q.median)))
+}
+
+/// Milliseconds until the device has done what `record` records.
+fn timed(
+    gpu: &Headless,
+    record: impl FnOnce(&mut CommandEncoder) -> Result<(), afterimage::FrameError>,
+) -> Result<f64, Failure> {
+    let watch = Stopwatch::start();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    record(&mut encoder)?;
+    gpu.queue.submit([encoder.finish()]);
+    gpu.wait();
+    Ok(watch.cpu_ms().filter(|_| gpu.is_software()).unwrap_or_else(|| watch.wall_ms()))
+}
