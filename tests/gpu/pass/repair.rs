@@ -184,7 +184,7 @@ fn a_wrong_plan_is_caught() {
         ("if key > 0u {", "if key > 1u << 14u {"),
         ("of_run[first - 1u] <= budget - chosen", "of_run[first - 1u] <= budget"),
         ("<= budget - chosen {\n        key--;", "<= budget {\n        key--;"),
-        (">= state.threshold", "> state.threshold"),
+        (">= state.threshold", ">= state.threshold + 64u"),
         ("px >> vec2<u32>(1u), view, 0).x != 0u", "px >> vec2<u32>(1u), view, 0).x == 0u"),
         ("!= 0u && level > 0u;", "!= 0u;"),
         ("chosen && own.usable", "chosen"),
