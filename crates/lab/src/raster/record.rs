@@ -143,8 +143,8 @@ impl Raster {
         self.color_pass(encoder, target, point_depth, point_pipelines, points, &blended);
     }
 
-    /// Records the color of some quads of 2x2 pixels of the full-rate frame, with one sample per pixel, into the targets'
-    /// color; the rest of it is black. `list`: the quads, in the form of `gpu::Afterimage::repair_quads`.
+    /// Records the color of some quads of 2x2 pixels of the full-rate frame, with one sample per pixel, into the color
+    /// of `targets`; the rest of it is black. `list`: the quads, in the form of `gpu::Afterimage::repair_quads`.
     pub fn record_quads(
         &mut self,
         device: &Device,
