@@ -42,6 +42,17 @@ pub struct Elapsed {
 }
 
 impl Elapsed {
+    /// Time of this and of `other` work, by the clocks that measured both.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        let sum = |a: Option<f64>, b: Option<f64>| Some(a? + b?);
+        Self {
+            wall_ms: self.wall_ms + other.wall_ms,
+            cpu_ms: sum(self.cpu_ms, other.cpu_ms),
+            device_ms: sum(self.device_ms, other.device_ms),
+        }
+    }
+
     /// Cost of the work in milliseconds: timestamp queries if available, otherwise CPU time, which other processes
     /// disturb less than wall time.
     pub fn cost_ms(&self) -> f64 {

@@ -1,7 +1,7 @@
 //! Scores, times and counts of a method over a clip.
 
-use crate::clock::{Elapsed, Quartiles};
-use crate::frame::SourceFrame;
+use crate::clock::Quartiles;
+use crate::frame::RenderedFrame;
 use crate::metric::{Crops, FrameErrors, Reference, Scorer, Scores, WorstCrop, psnr_db};
 use crate::pipeline::{MethodOutput, Step};
 use crate::times::{FrameTime, RenderTime, Times};
@@ -36,6 +36,9 @@ pub struct MethodReport {
     pub flushed: Option<f64>,
     /// Share of replaced samples among pixels with valid history.
     pub replaced: Option<f64>,
+    /// Mean share of the pixels that a frame repaired; `None` if the method repairs none.
+    #[serde(default)]
+    pub repaired_share: Option<f64>,
     /// Bytes per pixel and frame that the pass reads and writes, for half-float inputs.
     pub bytes_per_pixel: Option<u32>,
     /// Bytes per pixel that are kept between frames.
@@ -69,6 +72,8 @@ pub struct MethodAccumulator {
     scorer: Scorer,
     crops: Crops,
     times: Times,
+    render: Times,
+    repaired: Vec<f64>,
     nonfinite_in: u64,
     nonfinite_out: u64,
     pixels: u64,
@@ -84,7 +89,7 @@ impl MethodAccumulator {
     /// Adds a frame: the method's output, its sRGB-encoded image, and that of the foveated frame, if there is one.
     pub fn push(
         &mut self,
-        frame: &SourceFrame,
+        frame: &RenderedFrame,
         reference: &Reference<'_>,
         encoded: &Image<[f32; 3]>,
         foveated: Option<&Image<[f32; 3]>>,
@@ -98,7 +103,12 @@ impl MethodAccumulator {
             self.crops.push(reference.encoded(), encoded, foveated);
         }
         self.traffic = shown.traffic_bytes_per_pixel;
-        self.times.push(shown.elapsed());
+        self.times.push(shown.elapsed);
+        let shading = shown.repaired.and_then(|repaired| repaired.shading);
+        let render = frame.render.map(|render| shading.map_or(render, |shading| render.and(shading)));
+        render.into_iter().for_each(|elapsed| self.render.push(elapsed));
+        self.repaired.extend(shown.repaired.map(|repaired| repaired.share));
+        let frame = &frame.reference;
         self.nonfinite_in += frame.nonfinite + shown.stats.nonfinite;
         let bad = |c: &&[f32; 3]| !c.iter().all(|v| v.is_finite());
         self.nonfinite_out += shown.image.pixels().iter().filter(bad).count() as u64;
@@ -120,34 +130,41 @@ impl MethodAccumulator {
         &self.times
     }
 
+    /// Times of rendering what the method gets: the frame, and the pixels that it repairs.
+    pub fn render(&self) -> &Times {
+        &self.render
+    }
+
     /// Mean squared error of each frame.
     pub fn into_frame_mse(self) -> Vec<f64> {
         self.frame_mse
     }
 
-    /// A row of `frames.csv` for the last frame, which took `render` to render.
-    pub fn row(&self, index: usize, name: &str, render: Option<Elapsed>) -> String {
+    /// A row of `frames.csv` for the last frame.
+    pub fn row(&self, index: usize, name: &str) -> String {
         let db = |mse: Option<f64>| mse.and_then(psnr_db).map_or(String::new(), |v| format!("{v:.4}"));
         let (psnr, retained) = self.last.map_or_else(Default::default, |e| (db(Some(e.mse)), db(e.retained_mse)));
         let [fovea, mid, periphery] = self.last.map_or_else(Default::default, |e| e.band_mse.map(db));
-        let post = self.times.last();
+        let (post, render) = (self.times.last(), self.render.last());
         let [ms, cpu_ms] = [post.map(|e| e.wall_ms), post.and_then(|e| e.cpu_ms)];
         let [render_ms, render_cpu_ms] = [render.map(|e| e.wall_ms), render.and_then(|e| e.cpu_ms)];
         let sum = |a: Option<f64>, b: Option<f64>| Some(a? + b?);
         let times = [cpu_ms, render_ms, render_cpu_ms, sum(render_ms, ms), sum(render_cpu_ms, cpu_ms)];
         let number = |v: Option<f64>| v.map_or(String::new(), |v| format!("{v:.3}"));
         let (ms, times) = (number(ms), times.map(number).join(","));
-        format!("{index},{name},{psnr},{retained},{ms},{fovea},{mid},{periphery},{times}")
+        let repaired = self.repaired.last().map_or(String::new(), |share| format!("{share:.6}"));
+        format!("{index},{name},{psnr},{retained},{ms},{fovea},{mid},{periphery},{times},{repaired}")
     }
 
-    /// The results of the method, for frames that took `render` to render.
-    pub fn report(&self, persistent_bytes_per_pixel: f64, render: RenderTime) -> MethodReport {
+    /// The results of the method.
+    pub fn report(&self, persistent_bytes_per_pixel: f64) -> MethodReport {
         let share = |part: u64, whole: u64| (whole > 0).then(|| part as f64 / whole as f64);
+        let repaired = (self.repaired.iter().sum::<f64>(), self.repaired.len());
         MethodReport {
             share_of_oracle: None,
             ms: self.times.wall_ms(),
             cpu_ms: self.times.cpu_ms(),
-            frame: FrameTime::of(render, &self.times),
+            frame: FrameTime::of(RenderTime::of(&self.render), &self.times),
             scores: self.scorer.scores(),
             psnr_last_frame_db: self.last.and_then(|e| psnr_db(e.mse)),
             worst_crop: self.crops.worst(),
@@ -155,6 +172,7 @@ impl MethodAccumulator {
             nonfinite_out: self.nonfinite_out,
             flushed: share(self.flushed, self.pixels),
             replaced: share(self.replaced, self.with_history),
+            repaired_share: (repaired.1 > 0).then(|| repaired.0 / repaired.1 as f64),
             bytes_per_pixel: self.traffic,
             persistent_bytes_per_pixel,
         }

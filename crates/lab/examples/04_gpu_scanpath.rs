@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             println!(
                 "frame {index:3}: eye at ({x:3.0}, {y:3.0}), {:4.1} % of all samples replaced, {:.1} ms",
                 100.0 * stats.replaced as f64 / stats.pixels as f64,
-                step.outputs[1].wall_ms
+                step.outputs[1].elapsed.wall_ms
             );
         }
         last = Some(step);

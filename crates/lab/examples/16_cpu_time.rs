@@ -58,7 +58,7 @@ fn measure(mut frame: RenderedFrame, frames: u64) -> Result<(), Box<dyn Error>> 
         let step = pipeline.step(&frame)?;
         // The first frame has no history.
         for (sum, output) in post_ms.iter_mut().zip(&step.outputs).filter(|_| index > 0) {
-            *sum += output.cpu_ms.unwrap_or(f64::NAN);
+            *sum += output.elapsed.cpu_ms.unwrap_or(f64::NAN);
         }
         let watch = Stopwatch::start();
         let reference = references.next(&full, &step.tracked);

@@ -21,6 +21,7 @@ static MODULES: &[Module] = &[
     module!("lib", "triangle"),
     module!("raster", "color_pass"),
     module!("raster", "lighting_maps"),
+    module!("raster", "quads_pass"),
     module!("raster", "raster_frame"),
     module!("raster", "raster_material"),
     module!("raster", "sky_pass"),

@@ -140,20 +140,19 @@ impl Playback<'_> {
             clip.methods.iter().map(|_| MethodAccumulator::default()).collect();
         let mut report = ClipReport { backend: clip.backend_name(), ..ClipReport::default() };
         let mut foveation_ms = vec![];
-        let (mut render, mut full_rate) = (Times::default(), Times::default());
+        let mut full_rate = Times::default();
         let bar = progress::bar(clip.gaze.len() as u64, "frame {pos}/{len}");
         let mut table = out.table(
             "frames.csv",
             "frame,method,psnr_db,retained_psnr_db,ms,fovea_psnr_db,mid_psnr_db,periphery_psnr_db,\
-             cpu_ms,render_ms,render_cpu_ms,total_ms,total_cpu_ms",
+             cpu_ms,render_ms,render_cpu_ms,total_ms,total_cpu_ms,repaired_share",
         )?;
         let pipeline = self.play(&mut |result| {
             let encoded = clip.score_and_write(result, &mut accumulators, out)?;
             for ((name, _), accumulator) in clip.methods.iter().zip(&accumulators) {
-                table.row(&accumulator.row(result.index, name, result.frame.render))?;
+                table.row(&accumulator.row(result.index, name))?;
             }
             report.samples += result.frame.samples.unwrap_or(0);
-            result.frame.render.into_iter().for_each(|elapsed| render.push(elapsed));
             result.frame.full_rate.into_iter().for_each(|elapsed| full_rate.push(elapsed));
             foveation_ms.push(result.step.foveation_ms);
             report.gaze_px.push(result.step.gaze_px);
@@ -169,7 +168,7 @@ impl Playback<'_> {
         let pixels = clip.geometry.size_px().iter().map(|&s| f64::from(s)).product::<f64>();
         let of = |(i, accumulator): (usize, &MethodAccumulator)| {
             let bytes_per_pixel = pipeline.memory_bytes(i) as f64 / pixels;
-            (clip.methods[i].0, accumulator.report(bytes_per_pixel, RenderTime::of(&render)))
+            (clip.methods[i].0, accumulator.report(bytes_per_pixel))
         };
         report.methods = accumulators.iter().enumerate().map(of).collect();
         compare_with_oracle(&mut report.methods);
@@ -191,7 +190,7 @@ impl Playback<'_> {
                 None => source.render(&pipeline.request(index as u64, gaze))?,
             };
             let full = metric::encode(&frame.reference.color, clip.exposure_ev);
-            let step = pipeline.step(&frame)?;
+            let step = pipeline.step_with(&frame, &mut |wish| Ok::<_, Failure>(source.shade(&frame, wish)?))?;
             let reference = references.next(&full, &step.tracked);
             each(&FrameResult { index, frame: &frame, reference: &reference, step: &step })?;
         }
@@ -254,7 +253,7 @@ impl Clip {
         let foveated = self.methods.iter().position(|m| m.0 == MethodKind::None.name()).map(|i| &encoded[i]);
         accumulators.par_iter_mut().zip(&self.methods).zip(step.outputs.par_iter().zip(&encoded)).try_for_each(
             |((accumulator, (name, _)), (shown, encoded))| {
-                accumulator.push(&frame.reference, reference, encoded, foveated, shown, step);
+                accumulator.push(frame, reference, encoded, foveated, shown, step);
                 (self.write_frame)(out, name, index, &shown.image, encoded)?;
                 for ((view, _), picture) in self.debug.iter().zip(&shown.debug) {
                     let folder = format!("debug/{name}/{view}");

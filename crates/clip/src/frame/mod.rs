@@ -1,8 +1,10 @@
 //! Frames: what sources give and methods take, in memory or on a device.
 
 mod rendered;
+mod repair;
 
 pub use rendered::{Content, DeviceContent, DeviceHandle, RenderedFrame};
+pub use repair::{Shaded, ShadedColor, Wish};
 
 use afterimage::{Image, Lattices};
 

@@ -92,6 +92,11 @@ impl Content {
 }
 
 impl RenderedFrame {
+    /// Whether a simulator foveates the frame, which has every pixel at full rate.
+    pub fn is_simulated(&self) -> bool {
+        matches!(self.content, Content::FullRate | Content::Jittered(_))
+    }
+
     /// A full-rate frame that took no time to render.
     pub fn full_rate(index: u64, gaze_px: [f32; 2], reference: SourceFrame) -> Self {
         Self {

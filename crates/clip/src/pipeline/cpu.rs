@@ -1,10 +1,10 @@
 //! Methods on the CPU.
 
 use super::candidate::Candidate;
-use super::executor::{Executor, Shot};
-use super::run::{MethodOutput, RunKind};
-use crate::clock::Stopwatch;
-use crate::frame::{DeviceHandle, RenderedFrame};
+use super::executor::{Executor, Shade, Shot};
+use super::run::{MethodOutput, Repaired, RunKind, repairs};
+use crate::clock::{Elapsed, Stopwatch};
+use crate::frame::{DeviceHandle, RenderedFrame, Shaded, ShadedColor, Wish};
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
 use afterimage::kernel::debug_view::view_color;
 use afterimage::kernel::noise::{Noise, unpack_noise};
@@ -30,7 +30,7 @@ impl Executor for CpuExecutor {
         Ok(())
     }
 
-    fn run(&mut self, run: usize, shot: &Shot<'_>) -> Result<MethodOutput, FrameError> {
+    fn run(&mut self, run: usize, shot: &Shot<'_>, shade: Shade<'_>) -> Result<MethodOutput, FrameError> {
         let post = &mut self.0[run];
         let candidate = shot.candidate;
         let given = candidate.in_memory.as_ref().expect("frames are foveated in memory for runs on the CPU");
@@ -54,19 +54,31 @@ impl Executor for CpuExecutor {
             reset: shot.reset(),
             ..Frame::new(from_ref(&color), from_ref(&candidate.view), shot.frame.index)
         };
+        let planned = match repairs(&post.desc().settings) {
+            true => Some(plan(post, &frame)?),
+            false => None,
+        };
+        let shaded = planned.as_ref().filter(|_| !shot.frame.is_simulated()).and_then(|(wish, _)| shade(wish));
+        let repaired = match &shaded {
+            Some(Shaded { color: ShadedColor::InMemory(color), .. }) => Some(color),
+            _ => planned.as_ref().filter(|_| shot.frame.is_simulated()).map(|_| &full_rate.color),
+        };
+        let frame = Frame { repaired: repaired.as_ref().map(from_ref), ..frame };
         let watch = Stopwatch::start();
         let stats = match &mut traces {
             Some(traces) => post.process_traced(&frame, &mut output, traces)?,
             None => post.process(&frame, &mut output)?,
         };
-        let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
+        let elapsed = watch.elapsed();
         let given = [depth.is_some(), motion.is_some(), trust.is_some()];
         let [image] = output;
         Ok(MethodOutput {
             image,
-            wall_ms,
-            cpu_ms,
-            device_ms: None,
+            elapsed: planned.as_ref().map_or(elapsed, |(_, planning)| elapsed.and(*planning)),
+            repaired: planned.filter(|_| repaired.is_some()).map(|(wish, _)| Repaired {
+                share: wish.share(size),
+                shading: shaded.as_ref().map(|shaded| shaded.took),
+            }),
             stats,
             traffic_bytes_per_pixel: Some(post.desc().settings.traffic_bytes_per_pixel(given)),
             debug: traces.map_or_else(Vec::new, |[trace]| {
@@ -87,4 +99,14 @@ impl Executor for CpuExecutor {
             .then(|| Image::from_pixels(post.desc().size_px, words).expect("one noise word for each pixel"));
         Some((image?.map(unpack_noise), smr))
     }
+}
+
+/// The quads that a method wants to repair, and the time of choosing them.
+fn plan(post: &mut CpuAfterimage, frame: &Frame<'_>) -> Result<(Wish, Elapsed), FrameError> {
+    let watch = Stopwatch::start();
+    let pixels = &post.plan(frame)?[0];
+    let elapsed = watch.elapsed();
+    let size = pixels.size().map(|side| side.div_ceil(2));
+    let quads = Image::from_fn(size, |[x, y]| pixels.at(2 * x as usize, 2 * y as usize));
+    Ok((Wish { quads, on_device: None }, elapsed))
 }

@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::run::{MethodOutput, RunKind};
-use crate::frame::{DeviceHandle, RenderedFrame};
+use crate::frame::{DeviceHandle, RenderedFrame, Shaded, Wish};
 use afterimage::kernel::noise::Noise;
 use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Image, Reset, Smr};
 
@@ -23,11 +23,12 @@ pub trait Executor: Send {
     /// [`FrameError`] if the frame does not match the methods.
     fn set(&mut self, frame: &RenderedFrame, candidate: &Candidate<'_>) -> Result<(), FrameError>;
 
-    /// Runs a method on the current frame.
+    /// Runs a method on the current frame. `shade` gives the pixels that it wants to repair, of frames that no
+    /// simulator foveates.
     ///
     /// # Errors
     /// As for [`set`](Self::set).
-    fn run(&mut self, run: usize, shot: &Shot<'_>) -> Result<MethodOutput, FrameError>;
+    fn run(&mut self, run: usize, shot: &Shot<'_>, shade: Shade<'_>) -> Result<MethodOutput, FrameError>;
 
     /// Bytes of history that a method keeps between frames.
     fn memory_bytes(&self, run: usize) -> usize;
@@ -35,6 +36,9 @@ pub trait Executor: Send {
     /// Noise of a method's history, and smr's settings; `None` unless it is smr of noisy frames.
     fn history_noise(&self, run: usize) -> Option<(Image<Noise>, Smr)>;
 }
+
+/// Shades pixels that a method wants to repair.
+pub type Shade<'a> = &'a mut dyn FnMut(&Wish) -> Option<Shaded>;
 
 /// The current frame, and what is asked of its methods.
 pub struct Shot<'a> {

@@ -12,13 +12,13 @@ mod processor;
 mod run;
 
 pub use candidate::{Candidate, InMemory, needs_lod};
-pub use executor::{Executor, Shot};
+pub use executor::{Executor, Shade, Shot};
 pub use part::Part;
 pub use processor::{Cpu, Processor, ProcessorInfo};
-pub use run::{MethodOutput, RunKind};
+pub use run::{MethodOutput, Repaired, RunKind, repairs};
 
 use crate::clock::Stopwatch;
-use crate::frame::{Content, RenderedFrame};
+use crate::frame::{RenderedFrame, Shaded, Wish};
 use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::metric::{Tracked, Tracker};
 use crate::quad_views::QuadViewLayout;
@@ -192,6 +192,19 @@ impl Pipeline {
     /// [`FrameError::Size`] if the frame's size is not the pipeline's, [`FrameError::Value`] if it is not composed of
     /// quad views and should be.
     pub fn step(&mut self, frame: &RenderedFrame) -> Result<Step, FrameError> {
+        self.step_with(frame, &mut |_| Ok(None))
+    }
+
+    /// As [`step`](Self::step), for methods that repair frames: `shade` gives the pixels that they want, of frames that
+    /// no simulator foveates, or `None` for no repair.
+    ///
+    /// # Errors
+    /// As for `step`, and those of `shade`.
+    pub fn step_with<E: From<FrameError>>(
+        &mut self,
+        frame: &RenderedFrame,
+        shade: &mut dyn FnMut(&Wish) -> Result<Option<Shaded>, E>,
+    ) -> Result<Step, E> {
         let has_reference = self.check(frame)?;
         let watch = Stopwatch::start();
         let gaze_px = frame.gaze_px;
@@ -204,7 +217,10 @@ impl Pipeline {
             true => self.tracker.advance(&frame.reference, &self.foveator.geometry, &ecc_deg, &candidate.lods),
             false => Tracked::unknown(self.foveator.geometry.size_px()),
         };
-        let outputs = self.run(frame, &candidate)?;
+        let mut failed = None;
+        let mut shade = |wish: &Wish| shade(wish).unwrap_or_else(|error| (failed = Some(error), None).1);
+        let outputs = self.run(frame, &candidate, &mut shade)?;
+        failed.map_or(Ok(()), Err)?;
         self.note_noise(frame, &outputs);
         let Candidate { lods, pyramid, .. } = candidate;
         self.foveator.keep(pyramid);
@@ -215,7 +231,7 @@ impl Pipeline {
     fn check(&self, frame: &RenderedFrame) -> Result<bool, FrameError> {
         let expected = self.foveator.geometry.size_px();
         let sizes = [&frame.reference, frame.given()].map(|of| of.color.size());
-        let is_full_rate = matches!(frame.content, Content::FullRate | Content::Jittered(_));
+        let is_full_rate = frame.is_simulated();
         let is_wrong = |found: &[u32; 2]| *found != expected && (is_full_rate || *found != [0; 2]);
         if let Some(found) = sizes.into_iter().find(is_wrong) {
             return Err(FrameError::Size { input: "color", view: 0, found, expected });
@@ -228,14 +244,19 @@ impl Pipeline {
     }
 
     /// Runs all methods on the foveated frame.
-    fn run(&mut self, frame: &RenderedFrame, candidate: &Candidate<'_>) -> Result<Vec<MethodOutput>, FrameError> {
+    fn run(
+        &mut self,
+        frame: &RenderedFrame,
+        candidate: &Candidate<'_>,
+        shade: Shade<'_>,
+    ) -> Result<Vec<MethodOutput>, FrameError> {
         let shot = Shot { frame, candidate, debug: &self.debug, use_trust: self.use_trust };
         let mut outputs: Vec<Option<MethodOutput>> = vec![None; self.runs.len()];
         // Rotate the order of runs each frame: the first run finds caches as the foveation left them.
         let first = frame.index as usize % self.runs.len().max(1);
         for i in (first..self.runs.len()).chain(0..first) {
             outputs[i] = Some(match &mut self.runs[i] {
-                Run::Method(run) => self.executor.run(*run, &shot)?,
+                Run::Method(run) => self.executor.run(*run, &shot, shade)?,
                 Run::Oracle(oracle) => {
                     oracle.run(candidate.pyramid.as_ref(), &candidate.lods, &self.foveator.foveation)?
                 }

@@ -33,9 +33,8 @@ impl Oracle {
         let image = foveation.render(pyramid, best);
         Ok(MethodOutput {
             image,
-            wall_ms: watch.wall_ms(),
-            cpu_ms: watch.cpu_ms(),
-            device_ms: None,
+            elapsed: watch.elapsed(),
+            repaired: None,
             stats: FrameStats::default(),
             traffic_bytes_per_pixel: None,
             debug: vec![],

@@ -2,7 +2,7 @@
 
 use super::part::Part;
 use crate::clock::Elapsed;
-use afterimage::{FrameStats, Image, Settings, SettingsError};
+use afterimage::{Filter, FrameStats, Image, Method, Settings, SettingsError, Smr};
 
 /// Kind of a run: how it processes the foveated frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,12 +20,10 @@ pub enum RunKind {
 pub struct MethodOutput {
     /// Displayed frame, linear.
     pub image: Image<[f32; 3]>,
-    /// Wall time of the pass in milliseconds.
-    pub wall_ms: f64,
-    /// CPU time of the process during the pass in milliseconds; `None` if the system does not measure it.
-    pub cpu_ms: Option<f64>,
-    /// Time of the pass by timestamp queries, in milliseconds; `None` on software devices and the CPU.
-    pub device_ms: Option<f64>,
+    /// Time of the pass, and of choosing the pixels to repair.
+    pub elapsed: Elapsed,
+    /// Pixels that were repaired; `None` if the method repairs none, or the source cannot shade any.
+    pub repaired: Option<Repaired>,
     /// Counters of the pass; all 0 for the oracle.
     pub stats: FrameStats,
     /// Bytes per pixel that the pass reads and writes; `None` for the oracle.
@@ -34,11 +32,19 @@ pub struct MethodOutput {
     pub debug: Vec<Image<[f32; 3]>>,
 }
 
-impl MethodOutput {
-    /// Time of the pass.
-    pub fn elapsed(&self) -> Elapsed {
-        Elapsed { wall_ms: self.wall_ms, cpu_ms: self.cpu_ms, device_ms: self.device_ms }
-    }
+/// Repair of a sparse frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Repaired {
+    /// Share of the pixels.
+    pub share: f64,
+    /// Time of shading them; `None` if a simulator had them.
+    pub shading: Option<Elapsed>,
+}
+
+/// Whether runs of these settings choose pixels to repair.
+pub fn repairs(settings: &Settings) -> bool {
+    let has_budget = matches!(settings.method, Method::Smr(Smr { repair: Some(_), .. }));
+    has_budget && settings.foveation.filter == Filter::Sparse
 }
 
 impl RunKind {

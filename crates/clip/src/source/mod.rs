@@ -10,7 +10,7 @@ pub use reference::reference_offsets_px;
 pub use request::{FrameRequest, SamplingGuide, Wanted};
 
 use crate::error::InputError;
-use crate::frame::{RenderedFrame, SourceFrame};
+use crate::frame::{RenderedFrame, Shaded, SourceFrame, Wish};
 use glam::DMat4;
 
 /// Properties of a source that are known before its first frame is read.
@@ -61,6 +61,15 @@ pub trait FrameSource {
     /// As for `render`.
     fn frame(&mut self, index: u64) -> Result<SourceFrame, InputError> {
         Ok(self.render(&FrameRequest::full_rate(index))?.reference)
+    }
+
+    /// Shades pixels of `frame`, which was rendered last, at full rate and with one sample each. `None`: the source
+    /// cannot. Sources whose frames a simulator foveates need not: they have these pixels.
+    ///
+    /// # Errors
+    /// As for `render`.
+    fn shade(&mut self, _frame: &RenderedFrame, _wish: &Wish) -> Result<Option<Shaded>, InputError> {
+        Ok(None)
     }
 
     /// Camera pose at playback position `index`; `None` if the camera cannot be steered.

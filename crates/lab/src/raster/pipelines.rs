@@ -25,6 +25,8 @@ pub(super) struct Layouts {
     pub frame: BindGroupLayout,
     pub material: BindGroupLayout,
     pub lighting_maps: BindGroupLayout,
+    /// Group 1 of [`Pipelines::quads`].
+    pub quads: BindGroupLayout,
 }
 
 #[derive(Debug)]
@@ -32,6 +34,8 @@ pub(super) struct Pipelines {
     motion: [RenderPipeline; 2],
     pub motion_far: RenderPipeline,
     sun: [RenderPipeline; 2],
+    /// Far plane in the quads of a list, for passes of color with one sample per pixel.
+    pub quads: RenderPipeline,
     /// With [`SAMPLES`] samples per pixel.
     pub color: ColorPipelines,
 }
@@ -119,7 +123,7 @@ impl Pipelines {
     }
 
     pub fn new(device: &Device, layouts: &Layouts, effects: Effects, has_sun: bool) -> Self {
-        let [surface, sun] = ["surface_pass", "sun_pass"].map(|name| shader(device, name));
+        let [surface, sun, quads] = ["surface_pass", "sun_pass", "quads_pass"].map(|name| shader(device, name));
         let base = constants(effects, &[("BASE_COLOR_TEXTURE", Effect::BaseColor)]);
         let two = [Some(&layouts.frame), Some(&layouts.material)];
         let make = |recipe: Recipe<'_>| recipe.make(device, &two);
@@ -143,6 +147,13 @@ impl Pipelines {
                 ..Recipe::new(&surface, "fullscreen", Some("motion_far"), MOTION_FORMAT)
             }),
             sun: [shadow(None), shadow(Some("alpha_test"))],
+            quads: Recipe {
+                vertices: false,
+                compare: CompareFunction::Always,
+                writes: ColorWrites::empty(),
+                ..Recipe::new(&quads, "quad", Some("nothing"), COLOR_FORMAT)
+            }
+            .make(device, &[Some(&layouts.frame), Some(&layouts.quads)]),
             color: ColorPipelines::new(device, layouts, effects, has_sun, SAMPLES),
         }
     }
@@ -163,8 +174,10 @@ struct Recipe<'a> {
     format: Option<TextureFormat>,
     /// Whether depth is written.
     depth: bool,
+    compare: CompareFunction,
     bias: DepthBiasState,
     blend: Option<BlendState>,
+    writes: ColorWrites,
     /// Alpha to coverage.
     coverage: bool,
     samples: u32,
@@ -181,8 +194,10 @@ impl<'a> Recipe<'a> {
             constants: &[],
             format: Some(format),
             depth: true,
+            compare: CompareFunction::GreaterEqual,
             bias: DepthBiasState::default(),
             blend: None,
+            writes: ColorWrites::ALL,
             coverage: false,
             samples: 1,
             vertices: true,
@@ -196,9 +211,8 @@ impl<'a> Recipe<'a> {
             ..Default::default()
         });
         let options = || wgpu::PipelineCompilationOptions { constants: self.constants, ..Default::default() };
-        let targets = self
-            .format
-            .map(|format| [Some(ColorTargetState { format, blend: self.blend, write_mask: ColorWrites::ALL })]);
+        let targets =
+            self.format.map(|format| [Some(ColorTargetState { format, blend: self.blend, write_mask: self.writes })]);
         let buffers = LAYOUTS.map(Into::into);
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: self.fragment.or(Some(self.vertex)),
@@ -214,7 +228,7 @@ impl<'a> Recipe<'a> {
             depth_stencil: Some(DepthStencilState {
                 format: DEPTH_FORMAT,
                 depth_write_enabled: Some(self.depth),
-                depth_compare: Some(CompareFunction::GreaterEqual),
+                depth_compare: Some(self.compare),
                 stencil: Default::default(),
                 bias: self.bias,
             }),
@@ -272,6 +286,7 @@ impl Layouts {
         Self {
             frame: make("frame", &[entry(0, both, uniform), entry(1, both, storage)]),
             material: make("material", &material),
+            quads: make("quads", &[entry(0, ShaderStages::VERTEX, storage)]),
             lighting_maps: make(
                 "lighting_maps",
                 &[

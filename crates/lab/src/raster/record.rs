@@ -17,6 +17,10 @@ use wgpu::{
     RenderPassColorAttachment, StoreOp,
 };
 
+/// Reversed depth of the planes that bound what is drawn.
+const FAR_PLANE: f32 = 0.0;
+const NEAR_PLANE: f32 = 1.0;
+
 /// Index range of blended triangles with one material.
 struct Run {
     is_moving: bool,
@@ -29,6 +33,8 @@ struct Section {
     window: Window,
     group: BindGroup,
     calls: Vec<DrawCall>,
+    /// The quads of 2x2 pixels that are drawn to, if not all, as a list.
+    quads: Option<(Buffer, BindGroup)>,
 }
 
 impl Section {
@@ -131,12 +137,38 @@ impl Raster {
         if points.is_empty() {
             return;
         }
-        let point_pipelines = self
-            .point_pipelines
-            .get_or_init(|| ColorPipelines::new(device, &self.layouts, self.effects, self.has_sun, 1));
+        let point_pipelines = self.point_pipelines(device);
         let ops = Operations { load, store: StoreOp::Store };
         let target = RenderPassColorAttachment { view: color, depth_slice: None, resolve_target: None, ops };
         self.color_pass(encoder, target, point_depth, point_pipelines, points, &blended);
+    }
+
+    /// Records the color of some quads of 2x2 pixels of the full-rate frame, with one sample per pixel, into the color
+    /// of `targets`; the rest of it is black. `list`: the quads, in the form of `gpu::Afterimage::repair_quads`.
+    pub fn record_quads(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        [view, previous]: [&View; 2],
+        list: &Buffer,
+        targets: &FoveatedTargets,
+    ) {
+        self.upload(device, encoder);
+        let window = Window::full(view.geometry().size_px()).with_points();
+        let section = self.section(device, [view, previous], window);
+        let section = Section { quads: Some((list.clone(), self.quads_group(device, list))), ..section };
+        self.shadows(encoder, &section.group);
+        let blended = self.back_to_front(device, view);
+        let FoveatedTargets { atlas: Targets { views: [color, ..], .. }, point_depth } = targets;
+        let ops = Operations { load: LoadOp::Clear(Color::BLACK), store: StoreOp::Store };
+        let target = RenderPassColorAttachment { view: color, depth_slice: None, resolve_target: None, ops };
+        let pipelines = self.point_pipelines(device);
+        self.color_pass(encoder, target, point_depth, pipelines, &[section], &blended);
+    }
+
+    fn point_pipelines(&self, device: &Device) -> &ColorPipelines {
+        let new = || ColorPipelines::new(device, &self.layouts, self.effects, self.has_sun, 1);
+        self.point_pipelines.get_or_init(new)
     }
 
     /// Records depth and motion of a full-rate frame, without its color.
@@ -152,7 +184,7 @@ impl Raster {
         let frame = FrameUniforms::new(view, previous, self.near, &window);
         let lights = self.lighting.record(&self.lights, self.last_level, self.shadow_side);
         let calls = self.calls(Some(&Frustum::new(view, &window)));
-        Section { group: self.frame_group(device, &frame, &lights), calls, window }
+        Section { group: self.frame_group(device, &frame, &lights), calls, window, quads: None }
     }
 
     /// Draws the shadow map anew if the scene moved. `group`: uniforms of the full-rate frame.
@@ -187,7 +219,7 @@ impl Raster {
     }
 
     fn sun_pass(&self, encoder: &mut CommandEncoder, group: &BindGroup) {
-        let mut pass = begin(encoder, "sun", None, &self.shadow, StoreOp::Store);
+        let mut pass = begin(encoder, "sun", None, (&self.shadow, FAR_PLANE), StoreOp::Store);
         pass.set_bind_group(0, group, &[]);
         // Transmissive and blended surfaces cast no shadow.
         for call in self.calls(None).iter().filter(|call| call.kind != AlphaKind::Blend) {
@@ -208,7 +240,7 @@ impl Raster {
             resolve_target: None,
             ops: Operations { load: LoadOp::Clear(Color::TRANSPARENT), store: StoreOp::Store },
         };
-        let mut pass = begin(encoder, "surfaces", Some(color), depth, StoreOp::Store);
+        let mut pass = begin(encoder, "surfaces", Some(color), (depth, FAR_PLANE), StoreOp::Store);
         for section in sections {
             section.set_up(&mut pass);
             for call in &section.calls {
@@ -230,10 +262,17 @@ impl Raster {
         sections: &[Section],
         (indices, runs): &(Option<Buffer>, Vec<Run>),
     ) {
-        let mut pass = begin(encoder, "color", Some(target), depth, StoreOp::Discard);
+        let has_quads = sections.iter().any(|section| section.quads.is_some());
+        let behind = if has_quads { NEAR_PLANE } else { FAR_PLANE };
+        let mut pass = begin(encoder, "color", Some(target), (depth, behind), StoreOp::Discard);
         pass.set_bind_group(2, &self.lighting_maps, &[]);
         for section in sections {
             section.set_up(&mut pass);
+            if let Some((list, group)) = &section.quads {
+                pass.set_pipeline(&self.pipelines.quads);
+                pass.set_bind_group(1, group, &[]);
+                pass.draw_indirect(list, 0);
+            }
             for call in section.calls.iter().filter(|call| call.kind != AlphaKind::Blend) {
                 pass.set_pipeline(pipelines.surfaces(call.kind));
                 self.draw(&mut pass, call);
@@ -250,6 +289,14 @@ impl Raster {
                 }
             }
         }
+    }
+
+    fn quads_group(&self, device: &Device, list: &Buffer) -> BindGroup {
+        device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("quads"),
+            layout: &self.layouts.quads,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: list.as_entire_binding() }],
+        })
     }
 
     /// Draw calls of the static and moving triangles that meet `frustum`, opaque ones first.
@@ -312,7 +359,7 @@ fn begin<'e>(
     encoder: &'e mut CommandEncoder,
     label: &str,
     color: Option<wgpu::RenderPassColorAttachment<'_>>,
-    depth: &wgpu::TextureView,
+    (depth, behind): (&wgpu::TextureView, f32),
     keep_depth: StoreOp,
 ) -> RenderPass<'e> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -320,7 +367,7 @@ fn begin<'e>(
         color_attachments: if color.is_some() { std::slice::from_ref(&color) } else { &[] },
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: depth,
-            depth_ops: Some(Operations { load: LoadOp::Clear(0.0), store: keep_depth }),
+            depth_ops: Some(Operations { load: LoadOp::Clear(behind), store: keep_depth }),
             stencil_ops: None,
         }),
         ..Default::default()

@@ -105,6 +105,11 @@ impl Window {
         }
     }
 
+    /// The same, with one sample a pixel.
+    pub fn with_points(self) -> Self {
+        Self { is_point: true, ..self }
+    }
+
     /// A lattice in an atlas, of frames of `size` pixels. A lattice of step 1 has the full-rate frame's viewport, moved
     /// by whole pixels, so that its vertices get the full-rate frame's positions.
     pub fn of_lattice(lattice: &Lattice, size: [u32; 2], samples: PixelSamples) -> Self {

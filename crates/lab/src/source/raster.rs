@@ -8,7 +8,10 @@ use super::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo, Wan
 use crate::clock::{Elapsed, Stopwatch};
 use crate::device::{Headless, PassClock};
 use crate::error::InputError;
-use crate::frame::{ComposedFrame, DeviceFrame, DeviceHandle, OnDevice, RenderedFrame, SourceFrame, SparseFrame};
+use crate::frame::{
+    ComposedFrame, DeviceFrame, DeviceHandle, OnDevice, RenderedFrame, Shaded, ShadedColor, SourceFrame, SparseFrame,
+    Wish,
+};
 use crate::lattices::SparseGeometry;
 use crate::quad_views::QuadViews;
 use crate::raster::{
@@ -16,10 +19,11 @@ use crate::raster::{
 };
 use crate::scene::Scene;
 use crate::trace::view::View;
+use afterimage::gpu::filled;
 use afterimage::{Image, Lattice, Lattices};
 use glam::DMat4;
 use std::sync::Arc;
-use wgpu::{CommandEncoder, Device};
+use wgpu::{Buffer, BufferUsages, CommandEncoder, Device};
 
 impl ViewedScene {
     /// Uploads the scene to a device. Texture filtering is anisotropic except on software devices.
@@ -356,6 +360,18 @@ fn finite(color: Image<[f32; 3]>) -> (Image<[f32; 3]>, u64) {
     (color, nonfinite)
 }
 
+/// List of quads in the form of `gpu::Afterimage::repair_quads`.
+fn quad_list(device: &Device, quads: &Image<bool>) -> Buffer {
+    let width = quads.width();
+    let chosen = (0..).zip(quads.pixels()).filter(|(_, chosen)| **chosen);
+    let quads: Vec<u32> = chosen.map(|(i, _): (usize, _)| (i % width) as u32 | (((i / width) as u32) << 16)).collect();
+    let count = quads.len() as u32;
+    let header = [6, count, 0, 0, count.div_ceil(64), 1, 1, count];
+    // An empty array has no binding.
+    let words: Vec<u32> = header.into_iter().chain(quads).chain([0]).collect();
+    filled(device, "quads", bytemuck::cast_slice(&words), BufferUsages::STORAGE | BufferUsages::INDIRECT)
+}
+
 /// Color, depth and motion of targets.
 fn on_device(device: &Arc<Headless>, targets: &Targets, near: f32) -> DeviceFrame {
     let Targets { color, depth, motion, .. } = targets;
@@ -398,6 +414,26 @@ impl FrameSource for RasterSource {
         })?;
         let RenderedFrame { content, jitter_px, samples, .. } = frame;
         Ok(RenderedFrame { content, jitter_px, samples, render: Some(took), ..whole })
+    }
+
+    /// The colors are those of a full-rate frame with the same jitter and one sample a pixel.
+    fn shade(&mut self, frame: &RenderedFrame, wish: &Wish) -> Result<Option<Shaded>, InputError> {
+        let list = wish.on_device.as_ref().and_then(|list| list.downcast_ref::<Buffer>()).cloned();
+        let list = list.unwrap_or_else(|| quad_list(&self.device.device, &wish.quads));
+        let ((), took) = self.submit_timed(|source, encoder| {
+            let (views, _) = source.of.views(frame.index);
+            let is_jittered = frame.jitter_px != [0.0; 2];
+            let [view, previous] = views.map(|v| if is_jittered { v.jittered(frame.jitter_px) } else { v });
+            let device = &source.device.device;
+            let targets = fitted(&mut source.points, device, source.of.info().size);
+            source.raster.record_quads(device, encoder, [&view, &previous], &list, targets);
+        })?;
+        let color = &self.points.as_ref().expect("they were drawn to").atlas.color;
+        let color = match wish.on_device {
+            Some(_) => ShadedColor::OnDevice(Arc::new(color.clone())),
+            None => ShadedColor::InMemory(read_color(&self.device, color)),
+        };
+        Ok(Some(Shaded { color, took }))
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

@@ -37,6 +37,11 @@ pub fn parse_scale(text: &str) -> Result<f32, String> {
     within(text, "1 to 256 pixels", |v| (1.0..=256.0).contains(v))
 }
 
+/// Share of a frame's pixels.
+pub fn parse_percent(text: &str) -> Result<f32, String> {
+    within(text, "0 to 100 percent", |v| (0.0..=100.0).contains(v))
+}
+
 /// Exposure in stops.
 pub fn parse_exposure(text: &str) -> Result<f32, String> {
     within(text, "-64 to 64 stops", |v| (-64.0..=64.0).contains(v))

@@ -33,6 +33,7 @@ fn measurement(point: Point, ms: f64, control_ms: f64, flip: f64) -> Measurement
         nonfinite_out: 0,
         flushed: None,
         replaced: None,
+        repaired_share: None,
         bytes_per_pixel: Some(48),
         persistent_bytes_per_pixel: 24.0,
     };

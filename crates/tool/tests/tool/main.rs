@@ -3,6 +3,7 @@
 mod bench;
 mod info;
 mod refusals;
+mod repair;
 mod rig;
 mod run;
 mod sweep;

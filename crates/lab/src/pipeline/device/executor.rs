@@ -1,15 +1,17 @@
 //! Methods on a device.
 
 use super::{DeviceFormats, DeviceInputs, DeviceRun};
-use crate::clock::Stopwatch;
+use crate::clock::{Elapsed, Stopwatch};
 use crate::device::{Headless, PassClock};
-use crate::frame::{Content, DeviceHandle, RenderedFrame};
+use crate::frame::{Content, DeviceHandle, RenderedFrame, Shaded, ShadedColor, Wish};
 use crate::pipeline::ablation::shader_without;
+use afterimage::gpu::Frame;
 use afterimage::kernel::noise::{Noise, unpack_noise};
 use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Image, Method, Settings, Smr};
-use afterimage_clip::pipeline::{Candidate, Executor, MethodOutput, RunKind, Shot};
+use afterimage_clip::pipeline::{Candidate, Executor, MethodOutput, Repaired, RunKind, Shade, Shot, repairs};
 use std::slice::from_ref;
 use std::sync::Arc;
+use wgpu::Texture;
 
 /// Methods on a device, which share one frame.
 pub struct DeviceExecutor {
@@ -55,11 +57,10 @@ impl Executor for DeviceExecutor {
     fn set(&mut self, frame: &RenderedFrame, candidate: &Candidate<'_>) -> Result<(), FrameError> {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let is_full_rate = matches!(frame.content, Content::FullRate);
-        let is_simulated = is_full_rate || matches!(frame.content, Content::Jittered(_));
         if !(is_full_rate && self.has_still && frame.reference_on_device.is_none()) {
             self.inputs.set(&mut encoder, frame);
         }
-        if is_simulated {
+        if frame.is_simulated() {
             self.has_still = self.is_still && is_full_rate;
             self.inputs.foveate(&mut encoder, from_ref(&candidate.view), None)?;
         }
@@ -71,10 +72,21 @@ impl Executor for DeviceExecutor {
         self.gpu.check()
     }
 
-    fn run(&mut self, run: usize, shot: &Shot<'_>) -> Result<MethodOutput, FrameError> {
+    fn run(&mut self, run: usize, shot: &Shot<'_>, shade: Shade<'_>) -> Result<MethodOutput, FrameError> {
         let (gpu, run) = (&self.gpu, &mut self.runs[run]);
         let views = from_ref(&shot.candidate.view);
         let frame = self.inputs.frame(views, shot.frame.index, shot.reset(), shot.use_trust);
+        let planned = match repairs(&run.post().desc().settings) {
+            true => Some(plan(gpu, &self.clock, run, &frame)?),
+            false => None,
+        };
+        let is_simulated = shot.frame.is_simulated();
+        let shaded = planned.as_ref().filter(|_| !is_simulated).and_then(|(wish, _)| shade(wish));
+        let repaired = match &shaded {
+            Some(Shaded { color: ShadedColor::OnDevice(color), .. }) => color.downcast_ref::<Texture>(),
+            _ => planned.as_ref().filter(|_| is_simulated).map(|_| self.inputs.full()),
+        };
+        let frame = Frame { repaired: repaired.map(Into::into), ..frame };
         let encoder = || gpu.device.create_command_encoder(&Default::default());
         let mut debug_views = vec![];
         // Counters come from a debug view. If no view is requested, one is drawn for the counters and not read back.
@@ -92,14 +104,17 @@ impl Executor for DeviceExecutor {
         self.clock.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
         gpu.wait();
-        let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
+        let elapsed = watch.elapsed();
         let device_ms = self.clock.is_device().then(|| self.clock.read_ms(gpu, &watch));
+        let elapsed = Elapsed { device_ms, ..elapsed };
         let given = [frame.depth.is_some(), frame.motion.is_some(), frame.trust.is_some()];
         let output = MethodOutput {
             image: gpu.read_rgb(run.output(), 0),
-            wall_ms,
-            cpu_ms,
-            device_ms,
+            elapsed: planned.as_ref().map_or(elapsed, |(_, planning)| elapsed.and(*planning)),
+            repaired: planned.as_ref().filter(|_| repaired.is_some()).map(|(wish, _)| Repaired {
+                share: wish.share(run.post().desc().size_px),
+                shading: shaded.as_ref().map(|shaded| shaded.took),
+            }),
             stats: run.stats(),
             traffic_bytes_per_pixel: Some(run.post().desc().settings.traffic_bytes_per_pixel(given)),
             debug: debug_views,
@@ -117,4 +132,25 @@ impl Executor for DeviceExecutor {
         let texture = post.history_textures().get(2)?;
         Some((self.gpu.read::<u32>(texture, 0).map(unpack_noise), smr))
     }
+}
+
+/// The quads that a method wants to repair, and the time of choosing them.
+fn plan(
+    gpu: &Headless,
+    clock: &PassClock,
+    run: &mut DeviceRun,
+    frame: &Frame<'_>,
+) -> Result<(Wish, Elapsed), FrameError> {
+    gpu.wait();
+    let watch = Stopwatch::start();
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    clock.begin(&mut encoder);
+    run.post_mut().plan(&gpu.device, &mut encoder, frame)?;
+    clock.end(&mut encoder);
+    gpu.queue.submit([encoder.finish()]);
+    let elapsed = clock.elapsed(gpu, &watch);
+    let planned = run.post().repair_mask().zip(run.post().repair_quads(0));
+    let (mask, list) = planned.expect("the settings ask for repair");
+    let quads = gpu.read::<u32>(mask, 0).map(|chosen| chosen != 0);
+    Ok((Wish { quads, on_device: Some(Arc::new(list.clone())) }, elapsed))
 }

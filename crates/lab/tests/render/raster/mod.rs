@@ -5,5 +5,6 @@ mod geometry;
 mod light;
 mod quad_views;
 mod real;
+mod repair;
 mod rig;
 mod stereo;

@@ -105,7 +105,7 @@ impl<'a> Comparer<'a> {
             let step = pipeline.step(&frame)?;
             if index + TIMED_FRAMES >= CLIP_FRAMES {
                 render_ms.push(self.ms(&took));
-                post_ms.extend(step.outputs.iter().map(|output| output.elapsed().cost_ms()));
+                post_ms.extend(step.outputs.iter().map(|output| output.elapsed.cost_ms()));
             }
             last = step.outputs.into_iter().next().map(|output| (output.image, frame.samples));
         }

@@ -7,7 +7,7 @@ use crate::args::pattern::SamplingName;
 use crate::args::{MethodName, Named};
 use crate::clip::{self, Clip, title};
 use crate::failure::Failure;
-use afterimage::{Filter, Foveation, MethodKind, Settings};
+use afterimage::{Filter, Foveation, Method, MethodKind, Repair, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::RunKind;
 use afterimage_lab::quad_views::QuadViewLayout;
@@ -38,6 +38,9 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
             && args.method.contains(&MethodName::Post(MethodKind::Smr)))
     {
         return refuse("--guided: the history of smr guides traced samples; add --sampling and the method smr".into());
+    }
+    if args.repair > 0.0 && !args.method.contains(&MethodName::Post(MethodKind::Smr)) {
+        return refuse("--repair: only smr repairs frames; add smr to --method, or leave it out".into());
     }
     let foveation = foveation(args)?;
     args.foveation.check(args.input.is_rasterised(), args.input.is_analytic())?;
@@ -139,7 +142,13 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
         }
     };
     let settings = Settings { foveation, ..args.wrs.settings(method, args.seed, sampling.is_some()) };
-    let settings = args.foveation.antialiased(settings);
+    let mut settings = args.foveation.antialiased(settings);
+    if args.repair > 0.0 {
+        check_repair(args)?;
+        if let Method::Smr(smr) = &mut settings.method {
+            smr.repair = Some(Repair { budget: args.repair / 100.0 });
+        }
+    }
     settings.validate()?;
     if let Some(part) = args.ablation.without.filter(|part| part.methods.contains(&method)) {
         if args.backend != BackendName::Gpu {
@@ -148,4 +157,16 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
         return Ok(RunKind::Without(settings, part));
     }
     Ok(RunKind::PostProcess(settings))
+}
+
+/// Refuses frames whose pixels cannot be shaded one by one.
+fn check_repair(args: &RunArgs) -> Result<(), Failure> {
+    if !args.is_sparse() {
+        return Err(Failure::Input("--repair: applies to sparse frames only; add --foveation sparse".into()));
+    }
+    if args.sampling()?.is_some() {
+        let text = "--repair: traces no pixels beside the lattices; use --source raster, or leave it out";
+        return Err(Failure::Input(text.into()));
+    }
+    Ok(())
 }

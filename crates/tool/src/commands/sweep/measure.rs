@@ -12,7 +12,6 @@ use crate::sweep::measurement::{ClipFacts, Machine};
 use crate::sweep::rust_source::as_rust;
 use crate::sweep::store::{PICTURES, id};
 use crate::sweep::{Measurement, Options, Store};
-use crate::times::{RenderTime, Times};
 use afterimage::kernel::debug_view::heat;
 use afterimage::{Filter, Image, Method, MethodKind, Settings};
 use afterimage_lab::clock::Quartiles;
@@ -37,7 +36,6 @@ const PICTURE_WIDTH: u32 = 960;
 struct BatchAccumulator {
     subjects: Vec<MethodAccumulator>,
     control_ms: Vec<f64>,
-    render: Times,
     samples_share: f64,
     samples: Option<u64>,
     frames: usize,
@@ -89,8 +87,8 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
     let round = format!("{} and {} more", id(&batch.subjects[0].point), batch.subjects.len() - 1);
     let pixels = facts.size.iter().map(|&s| f64::from(s)).product::<f64>();
     for (i, (subject, accumulator)) in batch.subjects.iter().zip(&sums.subjects).enumerate() {
-        let figures = accumulator.report(memory_bytes[i] as f64 / pixels, RenderTime::of(&sums.render));
-        let (pass, render) = (accumulator.times().after(WARM_UP), sums.render.after(WARM_UP));
+        let figures = accumulator.report(memory_bytes[i] as f64 / pixels);
+        let (pass, render) = (accumulator.times().after(WARM_UP), accumulator.render().after(WARM_UP));
         let rust = match clip.methods[i + 1].1 {
             RunKind::PostProcess(settings) => as_rust(&Settings { foveation: clip.foveation, ..settings }),
             RunKind::Without(..) => "no settings: parts can be left out in an ablation build only".into(),
@@ -141,7 +139,6 @@ fn play(
     let mut sums = BatchAccumulator {
         subjects: batch.subjects.iter().map(|_| MethodAccumulator::default()).collect(),
         control_ms: vec![],
-        render: Times::default(),
         samples_share: 0.0,
         samples: None,
         frames: 0,
@@ -149,8 +146,7 @@ fn play(
     let flip = Flip::for_view(&clip.geometry);
     let pipeline = clip.start(source)?.play(&mut |result| {
         let is_last = result.index + 1 == clip.gaze.len();
-        sums.control_ms.push(result.step.outputs[0].elapsed().cost_ms());
-        result.frame.render.into_iter().for_each(|elapsed| sums.render.push(elapsed));
+        sums.control_ms.push(result.step.outputs[0].elapsed.cost_ms());
         sums.samples_share += samples_share(result, clip, &batch.subjects[0]);
         sums.samples = result.frame.samples.map(|now| sums.samples.unwrap_or(0) + now).or(sums.samples);
         sums.frames += 1;
@@ -158,14 +154,7 @@ fn play(
         let foveated = foveated.map(|i| metric::encode(&result.step.outputs[i + 1].image, clip.exposure_ev));
         let of_subject = |(accumulator, (subject, shown)): (&mut MethodAccumulator, (&Subject, &MethodOutput))| {
             let encoded = metric::encode(&shown.image, clip.exposure_ev);
-            accumulator.push(
-                &result.frame.reference,
-                result.reference,
-                &encoded,
-                foveated.as_ref(),
-                shown,
-                result.step,
-            );
+            accumulator.push(result.frame, result.reference, &encoded, foveated.as_ref(), shown, result.step);
             if is_last { pictures(store, subject, result.reference.encoded(), &encoded, &flip) } else { Ok(()) }
         };
         let subjects = batch.subjects.par_iter().zip(&result.step.outputs[1..]);

@@ -1,0 +1,42 @@
+//! Pixels that a method asks a source for while a frame is processed.
+
+use super::DeviceHandle;
+use crate::clock::Elapsed;
+use afterimage::Image;
+
+/// Pixels of a sparse frame that a method's history lacks: what it wants to have shaded at full rate.
+#[derive(Clone, Debug)]
+pub struct Wish {
+    /// Whether it wants the pixels of a quad, by quad of 2x2 pixels.
+    pub quads: Image<bool>,
+    /// The same as a list on the method's device, in the form of `gpu::Afterimage::repair_quads`; `None` for methods on
+    /// the CPU.
+    pub on_device: Option<DeviceHandle>,
+}
+
+impl Wish {
+    /// Share of a frame's pixels, of which there are `size_px`. Quads may lie half beyond the edge.
+    pub fn share(&self, size_px: [u32; 2]) -> f64 {
+        let [width, height] = size_px.map(|side| side as usize);
+        let wanted = |y: usize| (0..width).filter(|x| self.quads.at(x / 2, y / 2)).count();
+        (0..height).map(wanted).sum::<usize>() as f64 / (width * height) as f64
+    }
+}
+
+/// The pixels of a [`Wish`], in an image of the frame's size. Others are not defined.
+#[derive(Clone, Debug)]
+pub struct Shaded {
+    /// Linear color.
+    pub color: ShadedColor,
+    /// Time of shading.
+    pub took: Elapsed,
+}
+
+/// Where shaded pixels are.
+#[derive(Clone, Debug)]
+pub enum ShadedColor {
+    /// In memory, for methods on the CPU.
+    InMemory(Image<[f32; 3]>),
+    /// In a texture on the methods' device.
+    OnDevice(DeviceHandle),
+}

@@ -1,0 +1,23 @@
+//#use raster_frame
+// Depth of chosen quads of 2x2 pixels: the far plane. The rest of the target is at the near plane, where the depth test
+// rejects whatever is drawn then.
+
+// The list of gpu::Afterimage::repair_quads.
+@group(1) @binding(0) var<storage, read> list: array<u32>;
+
+@vertex
+fn quad(
+    @builtin(vertex_index) vertex: u32,
+    @builtin(instance_index) instance: u32,
+) -> @builtin(position) vec4<f32> {
+    // Corners of two triangles.
+    let corner = vec2<u32>(0x32u >> vertex, 0x2cu >> vertex) & vec2<u32>(1u);
+    let word = list[8u + instance];
+    let px = vec2<f32>(2u * (vec2<u32>(word & 0xffffu, word >> 16u) + corner));
+    let at = 2.0 * px / frame.size - vec2<f32>(1.0);
+    return vec4<f32>(at.x, -at.y, 0.0, 1.0);
+}
+
+// Writes no color.
+@fragment
+fn nothing() {}

@@ -1,0 +1,45 @@
+//! Pixels of the full-rate frame that are shaded alone.
+
+use super::rig::{FAST, device};
+use afterimage::Image;
+use afterimage_lab::frame::{Content, ShadedColor, Wish};
+use afterimage_lab::scene::{Scene, SceneLimits};
+use afterimage_lab::source::{FrameRequest, FrameSource, RasterSource, SceneCamera};
+
+/// Odd sides: the last quads lie half beyond the edges.
+const SIZE: [u32; 2] = [159, 91];
+
+fn scenes() -> Vec<Scene> {
+    let open = |name: &str| Scene::open(&format!("builtin:{name}"), &SceneLimits::default()).unwrap();
+    let named = ["courtyard", "cubes", "mirror-room"].map(open);
+    [&named[..], &[super::foveated::noise()]].concat()
+}
+
+/// They have the bits of that frame with the same jitter and one sample a pixel, and nothing else is shaded.
+#[test]
+fn chosen_pixels_are_those_of_the_full_rate_frame() {
+    let Some(device) = device() else { return };
+    for scene in scenes() {
+        let camera = SceneCamera::choose(&scene, Some("walk"), SIZE, None).unwrap();
+        let name = scene.name.clone();
+        let mut source = RasterSource::new(device.clone(), scene, camera, None, FAST).unwrap();
+        for (index, jitter_px) in [[0.3, -0.45], [-0.2, 0.1]].into_iter().enumerate() {
+            let request = FrameRequest { jitter_px: Some(jitter_px), ..FrameRequest::full_rate(3 * index as u64) };
+            let frame = source.render(&request).unwrap();
+            let Content::Jittered(full) = &frame.content else { panic!("one sample a pixel") };
+            let chosen = |[x, y]: [u32; 2]| (x * 7 + y * 5 + x * y) % 4 == index as u32;
+            let quads = Image::from_fn(SIZE.map(|side| side.div_ceil(2)), chosen);
+            let shaded = source.shade(&frame, &Wish { quads, on_device: None }).unwrap().unwrap();
+            assert!(shaded.took.wall_ms > 0.0);
+            let ShadedColor::InMemory(color) = shaded.color else { panic!("asked for in memory") };
+            let mut lit = 0;
+            for [x, y] in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y])) {
+                let [shaded, full] = [&color, &full.color].map(|image| image.at(x as usize, y as usize));
+                let expected = if chosen([x / 2, y / 2]) { full } else { [0.0; 3] };
+                assert_eq!(shaded.map(f32::to_bits), expected.map(f32::to_bits), "{name}, frame {index}, ({x}, {y})");
+                lit += u32::from(shaded != [0.0; 3]);
+            }
+            assert!(lit > SIZE[0] * SIZE[1] / 8, "{name}: {lit} pixels have a color");
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! `afterimage run --repair`.
+
+use super::rig::{Folder, SMALL, read_json, refuses, run, succeeds};
+use std::fs;
+use std::path::Path;
+
+/// Sparse frames of smr with a budget in percent.
+fn repaired<'a>(budget: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    let sparse = ["--foveation", "sparse", "--rate-mid", "2", "--rate-far", "4", "--method", "none,smr"];
+    [&sparse[..], &["--repair", budget], more].concat()
+}
+
+/// A column of a `frames.csv` by frame; `None` where cells are empty.
+fn column(folder: &Path, method: &str, name: &str) -> Vec<Option<f64>> {
+    let csv = fs::read_to_string(folder.join("frames.csv")).unwrap();
+    let mut lines = csv.lines();
+    let place = lines.next().unwrap().split(',').position(|head| head == name).unwrap();
+    let rows = lines.map(|line| line.split(',').collect::<Vec<_>>()).filter(|cells| cells[1] == method);
+    rows.map(|cells| cells[place].parse().ok()).collect()
+}
+
+#[test]
+fn both_backends_write_the_same_bytes_of_repaired_frames() {
+    if afterimage_testing::gpu::adapter().is_none() {
+        return;
+    }
+    let folder = Folder::new();
+    let cases: [(&str, &[&str]); 4] = [
+        ("analytic:occluder", &[]),
+        ("analytic:occluder", &["--jitter", "halton", "--reference-samples", "2"]),
+        ("builtin:cubes", &["--geometry", "samples", "--reference-samples", "2"]),
+        ("builtin:cubes", &["--geometry", "full", "--jitter", "halton", "--reference-samples", "2"]),
+    ];
+    for (i, (input, more)) in cases.into_iter().enumerate() {
+        for backend in ["cpu", "gpu"] {
+            let out = folder.text(&format!("{i}/{backend}"));
+            // Odd sides: quads lie half beyond the edges.
+            let rest = ["--backend", backend, "--format", "exr", "--no-flip", "--size", "159x91", "--frames", "4"];
+            succeeds(&run(input, &out, &repaired("6", &[&rest, more].concat())));
+        }
+        let [cpu, gpu] = ["cpu", "gpu"].map(|b| read_json(&folder.path(&format!("{i}/{b}/report.json"))));
+        if !gpu["backend"]["name"].as_str().unwrap().contains("llvmpipe") {
+            return;
+        }
+        assert!(cpu["methods"]["smr"]["repaired_share"].as_f64().unwrap() > 0.0, "{input}");
+        for key in ["psnr_db", "repaired_share", "nonfinite_in", "flushed"] {
+            assert_eq!(cpu["methods"]["smr"][key], gpu["methods"]["smr"][key], "{input}, {more:?}: {key}");
+        }
+        for frame in 0..4 {
+            let path = |b: &str| folder.path(&format!("{i}/{b}/smr/{frame:06}.exr"));
+            assert_eq!(fs::read(path("cpu")).unwrap(), fs::read(path("gpu")).unwrap(), "{input}, {more:?}: {frame}");
+        }
+    }
+}
+
+#[test]
+fn repair_keeps_to_its_budget_and_shows_what_is_uncovered() {
+    let folder = Folder::new();
+    let mut before = None;
+    for budget in ["0", "2", "10"] {
+        let out = folder.text(budget);
+        let small = ["--size", "320x180", "--frames", "16", "--backend", "cpu", "--gaze", "120,100", "--no-flip"];
+        succeeds(&run("analytic:occluder", &out, &repaired(budget, &small)));
+        let methods = &read_json(&folder.path(budget).join("report.json"))["methods"];
+        assert!(methods["none"]["repaired_share"].is_null(), "only smr repairs");
+        let shares = column(&folder.path(budget), "smr", "repaired_share");
+        assert_eq!(shares.len(), 16);
+        let most = budget.parse::<f64>().unwrap() / 100.0;
+        if budget == "0" {
+            assert!(methods["smr"]["repaired_share"].is_null() && shares.iter().all(Option::is_none));
+        } else {
+            let mean = methods["smr"]["repaired_share"].as_f64().unwrap();
+            let shares: Vec<f64> = shares.into_iter().flatten().collect();
+            assert!((shares.iter().sum::<f64>() / 16.0 - mean).abs() < 1e-6 && mean > 0.1 * most, "{mean} of {most}");
+            assert!(shares.iter().all(|share| *share <= most), "{shares:?}");
+        }
+        let psnr_db = methods["smr"]["psnr_db"].as_f64().unwrap();
+        println!("budget {budget} %: {psnr_db:.2} dB, {} repaired", methods["smr"]["repaired_share"]);
+        assert!(before.is_none_or(|before| psnr_db > before + 0.1), "{budget} %: {psnr_db} after {before:?}");
+        before = Some(psnr_db);
+    }
+}
+
+/// The renderer's time is that of the lattices, and for methods that repair also that of the pixels they asked for.
+#[test]
+fn shading_repaired_pixels_takes_time() {
+    if afterimage_testing::gpu::adapter().is_none() {
+        return;
+    }
+    let folder = Folder::new();
+    let out = folder.text("out");
+    succeeds(&run("builtin:cubes", &out, &repaired("5", &[SMALL, &["--backend", "cpu", "--no-flip"]].concat())));
+    for key in ["render_ms", "total_ms"] {
+        let [none, smr] = ["none", "smr"].map(|method| column(&folder.path("out"), method, key));
+        assert!(none.iter().zip(&smr).all(|(none, smr)| none.unwrap() < smr.unwrap()), "{key}: {none:?}, {smr:?}");
+    }
+}
+
+#[test]
+fn repair_of_what_cannot_be_repaired_is_refused() {
+    let folder = Folder::new();
+    let out = folder.text("out");
+    let still = "analytic:still";
+    for budget in ["-1", "101", "NaN", "much"] {
+        let budget = format!("--repair={budget}");
+        refuses(&run(still, &out, &["--foveation", "sparse", &budget]), &["--repair", "0 to 100 percent"]);
+    }
+    refuses(&run(still, &out, &["--repair", "3"]), &["--repair", "--foveation sparse"]);
+    let wrs = ["--foveation", "sparse", "--repair", "3", "--method", "none,wrs"];
+    refuses(&run(still, &out, &wrs), &["--repair", "add smr to --method"]);
+    refuses(&run("builtin:cubes", &out, &["--source", "trace", "--repair", "3"]), &["--repair", "--source raster"]);
+    assert!(!folder.path("out").exists(), "nothing was written");
+}
