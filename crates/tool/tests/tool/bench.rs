@@ -19,7 +19,22 @@ fn bench_times_every_pass_against_the_copy() {
     let passes = report["passes"].as_array().unwrap();
     assert_eq!(
         passes.iter().map(|p| p["name"].as_str().unwrap()).collect::<Vec<_>>(),
-        ["copy", "none", "taa", "wrs", "smr", "taau", "wrs-weighted", "smr-sparse", "mip", "gauss", "block"]
+        [
+            "copy",
+            "none",
+            "taa",
+            "wrs",
+            "smr",
+            "taau",
+            "wrs-weighted",
+            "smr-sparse",
+            "smr-plan",
+            "smr-antialias",
+            "smr-antialias-plan",
+            "mip",
+            "gauss",
+            "block"
+        ]
     );
     for pass in passes {
         assert!(pass["ms"]["median"].as_f64().unwrap() > 0.0);

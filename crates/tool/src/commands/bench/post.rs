@@ -3,12 +3,11 @@
 use super::{BenchArgs, write_json};
 use crate::args::backend::NO_ADAPTER;
 use crate::failure::Failure;
-use afterimage::gpu::Timestamps;
 use afterimage::kernel::rng;
 use afterimage::module;
 use afterimage::shader::{Composer, Module};
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
-use afterimage::wgpu::{CommandEncoder, ComputePassDescriptor, ComputePassTimestampWrites, Texture, TextureUsages};
+use afterimage::wgpu::{Texture, TextureUsages};
 use afterimage::{
     ContextDesc, CreateError, Filter, Foveation, Gaze, Image, Method, MethodKind, Repair, Reset, Settings, Smr,
     ViewFrame, ViewGeometry,
@@ -293,9 +292,9 @@ fn time(
         }
         CreatedPass::Plan(run) => {
             let frame = inputs.frame(views, index, Reset::None, false);
-            mark(&mut encoder, clock, |t| (Some(t.begin), None));
+            clock.begin(&mut encoder);
             run.post_mut().plan(&gpu.device, &mut encoder, &frame)?;
-            mark(&mut encoder, clock, |t| (None, Some(t.end)));
+            clock.end(&mut encoder);
         }
         CreatedPass::Foveate { simulator, output } => {
             let frame =
@@ -314,20 +313,6 @@ fn time(
         gpu.wait();
     }
     Ok(ms)
-}
-
-/// Records a timestamp: that of the beginning or of the end.
-fn mark(encoder: &mut CommandEncoder, clock: &PassClock, index: impl Fn(Timestamps<'_>) -> (Option<u32>, Option<u32>)) {
-    let Some(timestamps) = clock.timestamps() else { return };
-    let (beginning_of_pass_write_index, end_of_pass_write_index) = index(timestamps);
-    encoder.begin_compute_pass(&ComputePassDescriptor {
-        label: None,
-        timestamp_writes: Some(ComputePassTimestampWrites {
-            query_set: timestamps.queries,
-            beginning_of_pass_write_index,
-            end_of_pass_write_index,
-        }),
-    });
 }
 
 /// A view whose gaze moves on a circle.
