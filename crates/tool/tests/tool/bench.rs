@@ -40,7 +40,7 @@ fn bench_times_every_pass_against_the_copy() {
         assert!(pass["ms"]["median"].as_f64().unwrap() > 0.0);
         let most = match pass["name"].as_str().unwrap() {
             // Samples, and two loops over them before the pixels.
-            "smr-sparse" => 64,
+            "smr-sparse" | "smr-antialias" => 64,
             // A reference beside each sample.
             "wrs-weighted" => 56,
             _ => 48,
