@@ -1,8 +1,9 @@
 //! Repair of sparse frames: which quads of pixels history has nothing for, before the frame is shaded. CPU twin:
 //! `src/cpu/sparse_pass/plan.rs`.
 //!
-//! Three passes a view. For each quad: find what history has for its pixels, as the method's pass will, and count the
-//! quad's key. Once: which keys does the budget pay for? For each quad: is its key one of them?
+//! Three passes a view. For each quad: find what history has for those of its pixels that are not settled, as the
+//! method's pass will, and count the quad's key. Once: which keys does the budget pay for? For each quad: is its key
+//! one of them?
 
 use super::Variant;
 use super::buffer::filled;

@@ -1,8 +1,8 @@
 //! The question before a frame is shaded: which pixels want a sample of their own. Its mathematics is in
 //! `src/kernel/repair.rs`.
 //!
-//! Two loops. For each quad: find what history has for its pixels, as the pass will, and count the quad's key. For each
-//! pixel: is its quad's key at least the one that the budget reaches?
+//! Two loops. For each quad: find what history has for those of its pixels that are not settled, as the pass will, and
+//! count the quad's key. For each pixel: is its quad's key at least the one that the budget reaches?
 
 use super::{Inputs, LatticeUniforms, View};
 use crate::cpu::Frame;
