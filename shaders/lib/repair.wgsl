@@ -14,6 +14,11 @@ fn priority(lod: f32, e_deg: f32) -> u32 {
     return select(select(2u * RINGS, RINGS, has_history) - ring, 0u, has_history && lod < WANTED_LOD);
 }
 
+// repair::asked_px
+fn asked_px(i: u32, x: u32, y: u32, frame_low: u32) -> vec2<u32> {
+    return vec2<u32>(2u * x + ((i ^ frame_low) & 1u), 2u * y + i);
+}
+
 // repair::quad_key
 fn quad_key(largest: u32, x: u32, y: u32, frame_low: u32, key: u32) -> u32 {
     let hash = bits(x, y, frame_low, ~key) >> (32u - HASH_BITS);

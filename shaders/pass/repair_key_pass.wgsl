@@ -4,8 +4,8 @@
 // How much the quads of a sparse frame want samples of their own, before it is shaded. CPU twin: `key` in
 // src/cpu/sparse_pass/plan.rs. One invocation a quad of 2x2 pixels of view `frame.first_view`.
 //
-// 4 reads a pixel (depth, motion, trust, a stored sample), 1 write a quad. A pixel that is not settled: up to 14 reads
-// of depth and motion and 9 of stored samples more; its quad 1 atomic sum.
+// 8 reads and 1 write a quad: depth, motion, trust and a stored sample of two pixels. A pixel that is not settled: up to
+// 14 reads of depth and motion and 9 of stored samples more; its quad 1 atomic sum.
 
 @group(0) @binding(18) var keys_out: texture_storage_2d_array<r32uint, write>;
 
@@ -40,10 +40,6 @@ fn pixel_priority(px: vec2<u32>, view: u32) -> u32 {
     return select(priority(kept.found.lod, e_deg), 0u, is_sample);
 }
 
-fn pixel_of(quad: vec2<u32>, pixel: u32) -> vec2<u32> {
-    return 2u * quad + vec2<u32>(pixel % 2u, pixel / 2u);
-}
-
 @compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     let view = frame.first_view;
@@ -53,13 +49,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     // Pixels that need a closer look, as bits. Few do, and the second loop ends at once for the others.
     var left = 0u;
-    for (var pixel = 0u; pixel < 4u; pixel++) {
-        let px = pixel_of(quad, pixel);
-        left |= select(0u, 1u << pixel, all(px < frame.size) && !is_settled(px, view));
+    for (var i = 0u; i < 2u; i++) {
+        let px = asked_px(i, quad.x, quad.y, frame.frame_low);
+        left |= select(0u, 1u << i, all(px < frame.size) && !is_settled(px, view));
     }
     var largest = 0u;
     while left != 0u {
-        largest = max(largest, pixel_priority(pixel_of(quad, firstTrailingBit(left)), view));
+        let px = asked_px(firstTrailingBit(left), quad.x, quad.y, frame.frame_low);
+        largest = max(largest, pixel_priority(px, view));
         left &= left - 1u;
     }
     let key = quad_key(largest, quad.x, quad.y, frame.frame_low, frame.views[view].key);

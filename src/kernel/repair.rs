@@ -1,8 +1,8 @@
 //! Which pixels of a sparse frame want a sample of their own, because history has nothing for them, and which of them
 //! a budget pays for.
 //!
-//! Hardware shades quads of 2x2 pixels, so that quads are chosen. Each has a key: the largest priority of its pixels,
-//! then a hash. The chosen ones are those whose key reaches a threshold, which a histogram of the keys gives: without
+//! Hardware shades quads of 2x2 pixels, so that quads are chosen. Two pixels of each are asked, for half the cost of
+//! four and the same pictures. A quad has a key: the largest priority of these, then a hash. The chosen ones are those whose key reaches a threshold, which a histogram of the keys gives: without
 //! sorting, and without going beyond the budget.
 
 use super::rng;
@@ -31,9 +31,16 @@ pub fn priority(lod: f32, e_deg: f32) -> u32 {
     (if has_history { RINGS } else { 2 * RINGS }) - ring
 }
 
-/// Key of quad (`x`, `y`), whose pixels' largest priority is `priority`: 0 if they want nothing. The hash gives another
-/// order in every frame, so that what the budget leaves out is spread evenly. `frame` and `key`: of the view's random
-/// stream ([`rng::bits`]).
+/// One of the two pixels of quad (`x`, `y`) that are asked in a frame, `i` 0 or 1: those of a diagonal, so that both
+/// columns and both rows are; and those of the other diagonal in the next frame.
+#[inline]
+pub fn asked_px(i: u32, x: u32, y: u32, frame: u32) -> [u32; 2] {
+    [2 * x + ((i ^ frame) & 1), 2 * y + i]
+}
+
+/// Key of quad (`x`, `y`), whose asked pixels' largest priority is `priority`: 0 if they want nothing. The hash gives
+/// another order in every frame, so that what the budget leaves out is spread evenly. `frame` and `key`: of the view's
+/// random stream ([`rng::bits`]).
 #[inline]
 pub fn quad_key(priority: u32, x: u32, y: u32, frame: u32, key: u32) -> u32 {
     // The inverted key is that of another stream than the pixels'.

@@ -11,7 +11,7 @@ use crate::frame::ContextDesc;
 use crate::image::Image;
 use crate::kernel::antialias::mean_of;
 use crate::kernel::kept::unpack_kept;
-use crate::kernel::repair::{KEYS, WANTED_LOD, budget_quads, priority, quad_key, threshold};
+use crate::kernel::repair::{KEYS, WANTED_LOD, asked_px, budget_quads, priority, quad_key, threshold};
 use crate::kernel::reproject::nearest;
 use crate::kernel::sanitize;
 use crate::settings::Repair;
@@ -46,8 +46,8 @@ impl View<'_> {
     fn key(&self, [x, y]: [u32; 2]) -> u32 {
         let [width, height] = self.inputs.size;
         let mut largest = 0;
-        for pixel in 0..4 {
-            let px = [2 * x + pixel % 2, 2 * y + pixel / 2];
+        for i in 0..2 {
+            let px = asked_px(i, x, y, self.frame_low);
             if px[0] < width && px[1] < height {
                 largest = largest.max(self.priority(px));
             }

@@ -20,6 +20,18 @@ pub const PROBES: &[Probe] = &[
         },
     },
     Probe {
+        name: "asked_px",
+        module: "repair",
+        words: [4, 2],
+        wgsl: "let p = asked_px(in_u(0u), in_u(1u), in_u(2u), in_u(3u)); out_u(p.x); out_u(p.y);",
+        rust: |r, o| repair::asked_px(r.u(0), r.u(1), r.u(2), r.u(3)).into_iter().for_each(|side| o.u(side)),
+        rows: || {
+            Rows::new(4).random("asked_px", |d, row| {
+                row.extend([d.bits() % 2, d.bits() % 4096, d.bits() % 4096, d.bits()]);
+            })
+        },
+    },
+    Probe {
         name: "quad_key",
         module: "repair",
         words: [5, 1],

@@ -177,7 +177,8 @@ fn both_backends_write_the_same_bytes_of_quad_views() {
         return;
     }
     let folder = Folder::new();
-    let scene = ["--method", "none,taa,wrs,smr", "--format", "exr", "--rate-mid", "2", "--rate-far", "4"];
+    let method = ["--method", "none,taa,wrs,smr", "--format", "exr", "--rate-mid", "2", "--rate-far", "4"];
+    let scene = [&method[..], &["--reference-samples", "1", "--no-flip"]].concat();
     let cases: [(&str, &[&str]); 2] =
         [("layers", &["--geometry", "samples"]), ("uniform", &["--foveation", "uniform", "--scale", "1.5"])];
     for (name, more) in cases {
