@@ -2,9 +2,8 @@
 //!
 //! The repaired samples are pixels of the full-rate frame. Each row says PSNR in dB (sRGB) of the first third of a
 //! clip, which starts without history, and of its last third; and the share of pixels that were repaired in these
-//! thirds, in percent. After the cut at frame 0, a row also says how many frames it takes until the picture is rebuilt:
-//! the first frame from which on each frame reaches 95 % of the PSNR in dB of the row's last third (the mean of its
-//! frames' PSNR), counted from 1.
+//! thirds, in percent. Frame 0 is a cut. A row also says how many frames it takes from there until the picture is
+//! rebuilt: until the PSNR of a frame first reaches 95 % of the mean PSNR, both in dB, of the row's last third.
 //!
 //! `cargo run --release -p afterimage-lab --example 19_repair`
 
@@ -57,16 +56,16 @@ impl Row {
         self.share[third] += 3.0 * wanted as f64 / (self.frames as f64 * depth.pixels().len() as f64);
         let squared = squared_error(&shown[0], &full.color);
         self.squared[third] += 3.0 * squared / self.frames as f64;
-        // Of a picture that is exact, as if by 16 bits.
+        // The limit is for pictures that are exact.
         self.psnr.push(-10.0 * squared.max(2e-10).log10());
         Ok(())
     }
 
-    /// Number of frames until each frame reaches 95 % of the final PSNR.
+    /// Number of frames until one reaches 95 % of the final PSNR.
     fn frames_until_rebuilt(&self) -> usize {
         let last = &self.psnr[2 * self.psnr.len() / 3..];
         let enough = 0.95 * last.iter().sum::<f64>() / last.len() as f64;
-        self.psnr.iter().rposition(|&psnr| psnr < enough).map_or(1, |below| below + 2)
+        1 + self.psnr.iter().take_while(|&&psnr| psnr < enough).count()
     }
 }
 
@@ -107,7 +106,7 @@ fn main() -> Result<(), Failure> {
                     row.budget.map_or("without repair".into(), |budget| format!("budget {:.0} %", 100.0 * budget));
                 let [first, last] = [0, 2].map(|third| (-10.0 * row.squared[third].log10(), 100.0 * row.share[third]));
                 println!(
-                    "  {name:15} first third {:5.2} dB, {:4.1} %; last third {:5.2} dB, {:4.1} %; 95 % from frame {}",
+                    "  {name:15} first third {:5.2} dB, {:4.1} %; last third {:5.2} dB, {:4.1} %; 95 % after {} frames",
                     first.0,
                     first.1,
                     last.0,
