@@ -2,7 +2,8 @@
 //!
 //! The repaired samples are pixels of the full-rate frame. Each row says PSNR in dB (sRGB) of the first third of a
 //! clip, which starts without history, and of its last third; and the share of pixels that were repaired in these
-//! thirds, in percent.
+//! thirds, in percent. Frame 0 is a cut. A row also says how many frames it takes from there until the picture is
+//! rebuilt: until the PSNR of a frame first reaches 95 % of the mean PSNR, both in dB, of the row's last third.
 //!
 //! `cargo run --release -p afterimage-lab --example 19_repair`
 
@@ -15,6 +16,8 @@ use afterimage_lab::source::analytic::AnalyticSource;
 
 const SIZE: [u32; 2] = [320, 180];
 const FRAMES: u64 = 48;
+/// Lattices of steps 4 and 8 visit all pixels in 64 frames.
+const FRAMES_OF_STILL: u64 = 96;
 const GAZE: [f32; 2] = [120.0, 100.0];
 const BUDGETS: [Option<f32>; 5] = [None, Some(0.01), Some(0.03), Some(0.1), Some(1.0)];
 
@@ -24,17 +27,20 @@ type Failure = Box<dyn std::error::Error>;
 /// smr with a budget, and what was measured of it in each third.
 struct Row {
     budget: Option<f32>,
+    frames: u64,
     post: CpuAfterimage,
     squared: [f64; 3],
     share: [f64; 3],
+    /// PSNR of each frame.
+    psnr: Vec<f64>,
 }
 
 impl Row {
-    fn new(budget: Option<f32>, foveation: Foveation) -> Result<Self, Failure> {
+    fn new(budget: Option<f32>, frames: u64, foveation: Foveation) -> Result<Self, Failure> {
         let method = Method::Smr(Smr { repair: budget.map(|budget| Repair { budget }), ..Smr::default() });
         let settings = Settings { method, foveation, ..Settings::default() };
         let post = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) })?;
-        Ok(Self { budget, post, squared: [0.0; 3], share: [0.0; 3] })
+        Ok(Self { budget, frames, post, squared: [0.0; 3], share: [0.0; 3], psnr: vec![] })
     }
 
     fn show(&mut self, full: &SourceFrame, view: ViewFrame, index: u64) -> Result<(), Failure> {
@@ -45,11 +51,21 @@ impl Row {
         let mut shown = [Image::filled(SIZE, [0.0; 3])];
         let repaired = self.budget.map(|_| &colors[..]);
         self.post.process(&Frame { repaired, ..frame }, &mut shown)?;
-        let third = (3 * index / FRAMES) as usize;
+        let third = (3 * index / self.frames) as usize;
         let wanted = masks.iter().flat_map(|mask| mask.pixels()).filter(|&&wanted| wanted).count();
-        self.share[third] += 3.0 * wanted as f64 / (FRAMES as f64 * depth.pixels().len() as f64);
-        self.squared[third] += 3.0 * squared_error(&shown[0], &full.color) / FRAMES as f64;
+        self.share[third] += 3.0 * wanted as f64 / (self.frames as f64 * depth.pixels().len() as f64);
+        let squared = squared_error(&shown[0], &full.color);
+        self.squared[third] += 3.0 * squared / self.frames as f64;
+        // The limit is for pictures that are exact.
+        self.psnr.push(-10.0 * squared.max(2e-10).log10());
         Ok(())
+    }
+
+    /// Number of frames until one reaches 95 % of the final PSNR.
+    fn frames_until_rebuilt(&self) -> usize {
+        let last = &self.psnr[2 * self.psnr.len() / 3..];
+        let enough = 0.95 * last.iter().sum::<f64>() / last.len() as f64;
+        1 + self.psnr.iter().take_while(|&&psnr| psnr < enough).count()
     }
 }
 
@@ -61,18 +77,20 @@ fn squared_error(shown: &Color, full: &Color) -> f64 {
 }
 
 fn main() -> Result<(), Failure> {
-    for scene in ["occluder", "lateral", "walk", "turn"] {
+    for scene in ["still", "occluder", "lateral", "walk", "turn"] {
         for [rate_mid, rate_far] in [[2, 4], [4, 8]] {
+            let frames = if scene == "still" { FRAMES_OF_STILL } else { FRAMES };
             let mut source = AnalyticSource::new(scene, SIZE, 70.0, 60.0)?;
             let geometry = *source.view();
             let foveation = Foveation { filter: Filter::Sparse, rate_mid, rate_far, ..Foveation::default() };
-            let mut rows = BUDGETS.into_iter().map(|b| Row::new(b, foveation)).collect::<Result<Vec<_>, _>>()?;
+            let mut rows =
+                BUDGETS.into_iter().map(|b| Row::new(b, frames, foveation)).collect::<Result<Vec<_>, _>>()?;
             let mut samples = 0.0;
-            for index in 0..FRAMES {
+            for index in 0..frames {
                 let full = source.frame(index)?;
                 let lattices = foveation.lattices(&geometry, GAZE, index);
                 let points = lattices.as_slice().iter().map(|lattice| lattice.points[0] * lattice.points[1]);
-                samples += f64::from(points.sum::<u32>()) / (FRAMES as f64 * f64::from(SIZE[0] * SIZE[1]));
+                samples += f64::from(points.sum::<u32>()) / (frames as f64 * f64::from(SIZE[0] * SIZE[1]));
                 let view = ViewFrame {
                     previous_from_current: full.previous_from_current,
                     lattices: Some(lattices),
@@ -88,8 +106,12 @@ fn main() -> Result<(), Failure> {
                     row.budget.map_or("without repair".into(), |budget| format!("budget {:.0} %", 100.0 * budget));
                 let [first, last] = [0, 2].map(|third| (-10.0 * row.squared[third].log10(), 100.0 * row.share[third]));
                 println!(
-                    "  {name:15} first third {:5.2} dB, {:4.1} %; last third {:5.2} dB, {:4.1} %",
-                    first.0, first.1, last.0, last.1
+                    "  {name:15} first third {:5.2} dB, {:4.1} %; last third {:5.2} dB, {:4.1} %; 95 % after {} frames",
+                    first.0,
+                    first.1,
+                    last.0,
+                    last.1,
+                    row.frames_until_rebuilt()
                 );
             }
         }

@@ -6,12 +6,14 @@ mod cuts;
 mod inputs;
 mod lattices;
 mod offsets;
+mod repair;
 
 pub use content::{fast_motion, silhouettes, sparkles, thin_lines};
 pub use cuts::{announced_and_unannounced_cuts, restarts_of_the_order};
 pub use inputs::{invalid_samples, light_trust_views_gaze_and_foveation};
 pub use lattices::{borders, degenerate_lattices, starved_positions};
 pub use offsets::{offsets_off_by_one, repeated_offsets};
+pub use repair::{half_uncovered, light_and_contradictions, order_without_flicker, thin_occluders};
 
 use crate::images::{Images, OneView};
 use afterimage::cpu::{CpuAfterimage, Frame};
@@ -25,6 +27,8 @@ pub const SIZE: [u32; 2] = [94, 70];
 /// Frames in which lattices of steps 2 and 4 visit every position.
 pub const TURN: u64 = 16;
 pub type Color = Image<[f32; 3]>;
+/// Pixels to repair.
+pub type Mask = Image<bool>;
 
 /// One view of one frame.
 #[derive(Clone)]
@@ -34,6 +38,8 @@ pub struct Shot {
     pub depth: Option<Image<f32>>,
     pub motion: Option<Image<[f32; 2]>>,
     pub trust: Option<Image<f32>>,
+    /// Colors of the pixels that a plan chooses, if the frame is planned.
+    pub repaired: Option<Color>,
     pub exposure: Exposure,
     pub reset: Reset,
 }
@@ -42,7 +48,16 @@ impl Shot {
     /// Without optional inputs. The color is a full-rate frame, of which only the samples are read.
     pub fn new(color: Color, lattices: Lattices) -> Self {
         let facts = ViewFrame { lattices: Some(lattices), ..ViewFrame::new(geometry(color.size()), Gaze::Lost) };
-        Self { facts, color, depth: None, motion: None, trust: None, exposure: Exposure::Same, reset: Reset::None }
+        Self {
+            facts,
+            color,
+            depth: None,
+            motion: None,
+            trust: None,
+            repaired: None,
+            exposure: Exposure::Same,
+            reset: Reset::None,
+        }
     }
 
     /// A frame of `foveation`.
@@ -75,6 +90,9 @@ pub trait Shows {
     /// Outputs of a frame. Reset and exposure are those of the first view.
     fn show(&mut self, index: u64, shots: &[Shot]) -> Vec<Color>;
 
+    /// Pixels that a frame of one view, not shown yet, wants to have shaded.
+    fn plan(&mut self, index: u64, shot: &Shot) -> Mask;
+
     fn set_settings(&mut self, settings: Settings);
 
     /// Output of a frame of one view.
@@ -92,8 +110,20 @@ impl Shows for CpuAfterimage {
         let views: Vec<_> = shots.iter().map(Shot::view).collect();
         let images = Images::of(&views);
         let frame = Frame { reset: shots[0].reset, exposure: shots[0].exposure, ..images.frame(index) };
-        self.process(&frame, &mut out).unwrap();
+        let repaired: Vec<_> = shots.iter().filter_map(|shot| shot.repaired.as_ref()).collect();
+        let repaired = (!repaired.is_empty()).then_some(&repaired[..]);
+        if repaired.is_some() {
+            CpuAfterimage::plan(self, &frame).unwrap();
+        }
+        self.process(&Frame { repaired, ..frame }, &mut out).unwrap();
         out
+    }
+
+    fn plan(&mut self, index: u64, shot: &Shot) -> Mask {
+        let views = [shot.view()];
+        let images = Images::of(&views);
+        let frame = Frame { reset: shot.reset, exposure: shot.exposure, ..images.frame(index) };
+        CpuAfterimage::plan(self, &frame).unwrap()[0].clone()
     }
 
     fn set_settings(&mut self, settings: Settings) {

@@ -107,3 +107,27 @@ fn h98_light_trust_views_gaze_and_foveation() {
     let figure = held(light_trust_views_gaze_and_foveation);
     holds!("H98", Cpu, "{figure}");
 }
+
+#[test]
+fn h99_half_a_screen_uncovered_is_repaired_from_the_gaze_outwards() {
+    let figure = held(half_uncovered);
+    holds!("H99", Cpu, "{figure}");
+}
+
+#[test]
+fn h100_the_order_of_a_budget_does_not_flicker() {
+    let figure = held(order_without_flicker);
+    holds!("H100", Cpu, "{figure}");
+}
+
+#[test]
+fn h101_trails_of_thin_occluders_are_no_ghosts() {
+    let figure = held(thin_occluders);
+    holds!("H101", Cpu, "{figure}");
+}
+
+#[test]
+fn h102_a_step_of_light_is_followed_while_much_is_repaired() {
+    let figure = held(light_and_contradictions);
+    holds!("H102", Cpu, "{figure}");
+}

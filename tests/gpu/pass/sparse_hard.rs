@@ -26,13 +26,18 @@ impl Shows for Both {
             trust: s.trust.clone(),
             lod: None,
             noise: None,
-            repaired: None,
+            repaired: s.repaired.clone(),
         };
         let views: Vec<_> = shots.iter().map(view).collect();
         let (made, _) = rig.both(index, shots[0].reset, &views);
         let size = rig.context.size_px;
         let pixels = made.shown.chunks(made.shown.len() / shots.len());
         pixels.map(|p| Image::from_pixels(size, p.iter().map(|c| c.map(f32::from_bits)).collect()).unwrap()).collect()
+    }
+
+    /// The CPU's, which that of the frame on the GPU must equal.
+    fn plan(&mut self, index: u64, shot: &Shot) -> Mask {
+        Shows::plan(&mut self.rig.as_mut().unwrap().cpu, index, shot)
     }
 
     fn set_settings(&mut self, settings: Settings) {
@@ -145,4 +150,28 @@ fn h97_offsets_off_by_one_cost_little() {
 fn h98_light_trust_views_gaze_and_foveation() {
     let Some(figure) = held(light_trust_views_gaze_and_foveation) else { return };
     holds!("H98", Gpu, "{figure}");
+}
+
+#[test]
+fn h99_half_a_screen_uncovered_is_repaired_from_the_gaze_outwards() {
+    let Some(figure) = held(half_uncovered) else { return };
+    holds!("H99", Gpu, "{figure}");
+}
+
+#[test]
+fn h100_the_order_of_a_budget_does_not_flicker() {
+    let Some(figure) = held(order_without_flicker) else { return };
+    holds!("H100", Gpu, "{figure}");
+}
+
+#[test]
+fn h101_trails_of_thin_occluders_are_no_ghosts() {
+    let Some(figure) = held(thin_occluders) else { return };
+    holds!("H101", Gpu, "{figure}");
+}
+
+#[test]
+fn h102_a_step_of_light_is_followed_while_much_is_repaired() {
+    let Some(figure) = held(light_and_contradictions) else { return };
+    holds!("H102", Gpu, "{figure}");
 }
