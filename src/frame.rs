@@ -305,7 +305,8 @@ pub struct Frame<'a, E: Executor> {
     pub lod: Option<E::Scalars<'a>>,
     /// Noise of the color: standard error of its luma (linear), and number of samples that the color is a mean of, at
     /// its level of detail. On a GPU `Rg16Float`, `Rg32Float` or wider. Required if [`Settings::noisy`] is set,
-    /// otherwise `None`. Of sparse frames it is read at the samples' pixels.
+    /// otherwise `None`. Of sparse frames it is read at the samples' pixels and at
+    /// repaired ones.
     pub noise: Option<E::Vectors<'a>>,
     /// Samples of single pixels of a sparse frame, shaded at full rate: linear colors of the context's size, with the
     /// frame's jitter. Only the pixels are read that `plan` chose for this frame (`gpu::Afterimage::plan`,

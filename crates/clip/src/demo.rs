@@ -72,7 +72,6 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         write_reference: true,
         debug: vec![],
         trust: false,
-        guided: false,
         flip: false,
         poison: 0.0,
         processor: Box::new(Cpu),

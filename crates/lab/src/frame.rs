@@ -2,7 +2,7 @@
 //! the next one.
 
 pub use afterimage_clip::frame::{
-    Content, DeviceContent, DeviceHandle, FoveatedFrame, Guide, RenderedFrame, Shaded, ShadedColor, SourceFrame, Wish,
+    Content, DeviceContent, DeviceHandle, FoveatedFrame, RenderedFrame, Shaded, ShadedColor, SourceFrame, Wish,
 };
 
 use crate::device::Headless;

@@ -56,8 +56,6 @@ pub struct Clip {
     pub debug: Vec<(&'static str, DebugView)>,
     /// Whether the methods get the source's trust mask (history confidence).
     pub trust: bool,
-    /// Whether the source gets the confidence of the history, to trace more samples where it is low.
-    pub guided: bool,
     /// Whether FLIP is measured.
     pub flip: bool,
     /// Share of the input pixels that are replaced by NaN, infinite, huge or negative values.
@@ -215,9 +213,6 @@ impl Clip {
         }
         if self.trust {
             pipeline = pipeline.with_trust();
-        }
-        if self.guided {
-            pipeline = pipeline.with_guidance();
         }
         let first = source.render(&pipeline.request(0, self.gaze.first().copied().flatten()))?;
         Ok(Playback { clip: self, source, pipeline, first })

@@ -57,17 +57,3 @@ pub struct FoveatedFrame {
     /// Number of samples that were not finite and count as black.
     pub nonfinite: u64,
 }
-
-/// Per-pixel guide for adaptive sampling, known before the frame is traced.
-///
-/// An invalid number (NaN, negative, or an infinite deviation) counts as unknown: 0 samples in the history, and the
-/// mean of the ring's valid deviations.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Guide {
-    /// Number of samples that the history holds of the visible surface. 0: none, as at a disocclusion. Infinity: no
-    /// more needed.
-    pub known: Image<f32>,
-    /// Standard deviation of one sample's luma, in any unit common to all pixels: sampling minimizes the error in that
-    /// unit. 0: more samples gain nothing.
-    pub deviation: Image<f32>,
-}

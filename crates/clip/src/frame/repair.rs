@@ -28,8 +28,24 @@ impl Wish {
 pub struct Shaded {
     /// Linear color.
     pub color: ShadedColor,
+    /// Noise of the color, as in [`FoveatedFrame::noise`](super::FoveatedFrame::noise), with 0 samples at other pixels.
+    /// `None`: there is no noise, or the source has put it into that of its frame on the device.
+    pub noise: Option<Image<[f32; 2]>>,
     /// Time of shading.
     pub took: Elapsed,
+}
+
+impl Shaded {
+    /// `of_frame`, the noise of the frame, with that of these pixels; `None` if either is missing.
+    pub fn noise_in(&self, of_frame: Option<&Image<[f32; 2]>>) -> Option<Image<[f32; 2]>> {
+        let mut noise = of_frame?.clone();
+        for (noise, &own) in noise.pixels_mut().iter_mut().zip(self.noise.as_ref()?.pixels()) {
+            if own[1] > 0.0 {
+                *noise = own;
+            }
+        }
+        Some(noise)
+    }
 }
 
 /// Where shaded pixels are.

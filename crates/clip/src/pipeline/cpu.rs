@@ -7,8 +7,7 @@ use crate::clock::{Elapsed, Stopwatch};
 use crate::frame::{DeviceHandle, RenderedFrame, Shaded, ShadedColor, Wish};
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
 use afterimage::kernel::debug_view::view_color;
-use afterimage::kernel::noise::{Noise, unpack_noise};
-use afterimage::{ContextDesc, CreateError, FrameError, Image, Method, Smr};
+use afterimage::{ContextDesc, CreateError, FrameError, Image};
 use std::slice::from_ref;
 
 /// Methods on the CPU.
@@ -63,7 +62,9 @@ impl Executor for CpuExecutor {
             Some(Shaded { color: ShadedColor::InMemory(color), .. }) => Some(color),
             _ => planned.as_ref().filter(|_| shot.frame.is_simulated()).map(|_| &full_rate.color),
         };
-        let frame = Frame { repaired: repaired.as_ref().map(from_ref), ..frame };
+        let noise = shaded.as_ref().and_then(|shaded| shaded.noise_in(given.noise));
+        let noise = noise.as_ref().or(given.noise);
+        let frame = Frame { repaired: repaired.as_ref().map(from_ref), noise: noise.as_ref().map(from_ref), ..frame };
         let watch = Stopwatch::start();
         let stats = match &mut traces {
             Some(traces) => post.process_traced(&frame, &mut output, traces)?,
@@ -89,15 +90,6 @@ impl Executor for CpuExecutor {
 
     fn memory_bytes(&self, run: usize) -> usize {
         self.0[run].memory_bytes()
-    }
-
-    fn history_noise(&self, run: usize) -> Option<(Image<Noise>, Smr)> {
-        let post = &self.0[run];
-        let Method::Smr(smr) = post.desc().settings.method else { return None };
-        let words = post.history().noise().to_vec();
-        let image = (!words.is_empty())
-            .then(|| Image::from_pixels(post.desc().size_px, words).expect("one noise word for each pixel"));
-        Some((image?.map(unpack_noise), smr))
     }
 }
 

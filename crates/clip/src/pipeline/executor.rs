@@ -3,8 +3,7 @@
 use super::candidate::Candidate;
 use super::run::{MethodOutput, RunKind};
 use crate::frame::{DeviceHandle, RenderedFrame, Shaded, Wish};
-use afterimage::kernel::noise::Noise;
-use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Image, Reset, Smr};
+use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Reset};
 
 /// Methods on the CPU or on a device, in the order in which they were added.
 pub trait Executor: Send {
@@ -32,9 +31,6 @@ pub trait Executor: Send {
 
     /// Bytes of history that a method keeps between frames.
     fn memory_bytes(&self, run: usize) -> usize;
-
-    /// Noise of a method's history, and smr's settings; `None` unless it is smr of noisy frames.
-    fn history_noise(&self, run: usize) -> Option<(Image<Noise>, Smr)>;
 }
 
 /// Shades pixels that a method wants to repair.

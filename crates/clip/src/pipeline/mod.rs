@@ -4,7 +4,6 @@ mod candidate;
 mod cpu;
 mod executor;
 mod foveator;
-mod guide;
 mod oracle;
 mod part;
 mod poison;
@@ -22,13 +21,12 @@ use crate::frame::{RenderedFrame, Shaded, Wish};
 use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::metric::{Tracked, Tracker};
 use crate::quad_views::QuadViewLayout;
-use crate::source::{FrameRequest, SamplingGuide, Wanted};
+use crate::source::{FrameRequest, Wanted};
 use afterimage::{
     ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, Gaze, Image, Method, Settings, SettingsError,
     ViewGeometry,
 };
 use foveator::Foveator;
-use guide::HistoryNoise;
 use oracle::Oracle;
 
 /// Result of one frame: the foveation, and the output of each run.
@@ -67,9 +65,6 @@ pub struct Pipeline {
     quad_views: Option<QuadViewLayout>,
     is_jittered: bool,
     reference_samples: Option<u32>,
-    /// For guided sampling.
-    history_noise: Option<HistoryNoise>,
-    is_guided: bool,
 }
 
 impl Pipeline {
@@ -110,8 +105,6 @@ impl Pipeline {
             quad_views: None,
             is_jittered: false,
             reference_samples: None,
-            history_noise: None,
-            is_guided: false,
         })
     }
 
@@ -153,15 +146,9 @@ impl Pipeline {
         self
     }
 
-    /// Guides the source's samples by the noise of the first noisy smr run's history.
-    #[must_use]
-    pub fn with_guidance(self) -> Self {
-        Self { is_guided: true, ..self }
-    }
-
     /// The request of frame `index` for a gaze in pixels. A lost gaze holds the last position; before the first, it is
     /// the center of the view.
-    pub fn request(&mut self, index: u64, gaze: Option<[f32; 2]>) -> FrameRequest<'_> {
+    pub fn request(&mut self, index: u64, gaze: Option<[f32; 2]>) -> FrameRequest {
         let gaze = gaze.map_or(Gaze::Lost, |px| Gaze::At { px });
         let gaze_px = gaze.resolve(self.held_gaze, &self.foveator.geometry);
         self.held_gaze = Some(gaze_px);
@@ -179,7 +166,6 @@ impl Pipeline {
             jitter_px: self.is_jittered.then(|| Foveation::jitter_px(index + 1)),
             reference_samples: self.reference_samples,
             geometry: self.foveator.sparse_geometry,
-            guide: self.history_noise.as_ref().map(|noise| noise as &dyn SamplingGuide),
             device: self.executor.device().filter(|_| !self.foveates_in_memory()),
             ..FrameRequest::full_rate(index)
         }
@@ -221,7 +207,6 @@ impl Pipeline {
         let mut shade = |wish: &Wish| shade(wish).unwrap_or_else(|error| (failed = Some(error), None).1);
         let outputs = self.run(frame, &candidate, &mut shade)?;
         failed.map_or(Ok(()), Err)?;
-        self.note_noise(frame, &outputs);
         let Candidate { lods, pyramid, .. } = candidate;
         self.foveator.keep(pyramid);
         Ok(Step { gaze_px, ecc_deg, lods, tracked, outputs, foveation_ms })
@@ -263,20 +248,6 @@ impl Pipeline {
             });
         }
         Ok(outputs.into_iter().flatten().collect())
-    }
-
-    /// Stores the noise of the first history that knows it, for the next request.
-    fn note_noise(&mut self, frame: &RenderedFrame, outputs: &[MethodOutput]) {
-        if !self.is_guided {
-            return;
-        }
-        let noise = self.runs.iter().zip(outputs).find_map(|(run, output)| match run {
-            Run::Method(run) => Some((self.executor.history_noise(*run)?, &output.image)),
-            Run::Oracle(_) => None,
-        });
-        self.history_noise = noise.map(|((noise, smr), image)| {
-            HistoryNoise::new(noise, 1.0 - smr.accumulate, image.clone(), &frame.reference, self.foveator.geometry)
-        });
     }
 
     /// Bytes of history that run `index` keeps between frames.

@@ -7,7 +7,7 @@ mod request;
 
 pub use analytic::AnalyticSource;
 pub use reference::reference_offsets_px;
-pub use request::{FrameRequest, SamplingGuide, Wanted};
+pub use request::{FrameRequest, Wanted};
 
 use crate::error::InputError;
 use crate::frame::{RenderedFrame, Shaded, SourceFrame, Wish};
@@ -53,7 +53,7 @@ pub trait FrameSource {
     /// [`Io`](InputError::Io) and [`Invalid`](InputError::Invalid) if the file of the frame cannot be read or
     /// contradicts its header, [`Limit`](InputError::Limit) if it is larger than the limits by now,
     /// [`Device`](InputError::Device) if the renderer failed or lost its device.
-    fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError>;
+    fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError>;
 
     /// The full-rate frame at playback position `index`: short for [`render`](Self::render).
     ///

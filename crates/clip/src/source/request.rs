@@ -1,13 +1,13 @@
 //! What a caller asks a source for.
 
-use crate::frame::{DeviceHandle, Guide, RenderedFrame, SourceFrame};
+use crate::frame::{DeviceHandle, RenderedFrame, SourceFrame};
 use crate::lattices::SparseGeometry;
 use crate::quad_views::QuadViews;
 use afterimage::Lattices;
 
 /// A request of a frame. Sources without a renderer give the full-rate frame, whatever is asked for.
 #[derive(Clone)]
-pub struct FrameRequest<'a> {
+pub struct FrameRequest {
     /// Playback position. Motion vectors refer to `index - 1`.
     pub index: u64,
     /// Where the frame is to be sharp, in pixels.
@@ -24,8 +24,6 @@ pub struct FrameRequest<'a> {
     /// Samples a pixel of the reference: the mean of that many jittered full-rate frames. `None`: as the source filters
     /// pixels. Sources without a renderer, and path tracers, have theirs anyway.
     pub reference_samples: Option<u32>,
-    /// Guides adaptive sampling.
-    pub guide: Option<&'a dyn SamplingGuide>,
     /// Device that all methods run on: what is rendered there can stay.
     pub device: Option<DeviceHandle>,
 }
@@ -41,13 +39,7 @@ pub enum Wanted {
     QuadViews(QuadViews),
 }
 
-/// Says how many samples a frame needs where, once its surfaces are known.
-pub trait SamplingGuide {
-    /// Guide for the frame whose full-rate depth and motion are those of `reference`; `None` if nothing is known.
-    fn guide(&self, reference: &SourceFrame) -> Option<Guide>;
-}
-
-impl FrameRequest<'_> {
+impl FrameRequest {
     /// A request of the full-rate frame at a playback position, in memory.
     pub fn full_rate(index: u64) -> Self {
         Self {
@@ -58,7 +50,6 @@ impl FrameRequest<'_> {
             geometry: SparseGeometry::Full,
             reference: true,
             reference_samples: None,
-            guide: None,
             device: None,
         }
     }

@@ -12,8 +12,7 @@ pub mod traced;
 pub mod viewed_scene;
 
 pub use afterimage_clip::source::{
-    AnalyticSource, CameraPose, FrameRequest, FrameSource, SamplingGuide, SourceInfo, Wanted, analytic,
-    reference_offsets_px,
+    AnalyticSource, CameraPose, FrameRequest, FrameSource, SourceInfo, Wanted, analytic, reference_offsets_px,
 };
 pub use limits::ReadLimits;
 pub use open::{is_scene, open};

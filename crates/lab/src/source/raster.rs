@@ -126,14 +126,14 @@ impl RasterSource {
     }
 
     /// Records the rendering of the full-rate frame.
-    fn record_full_rate(&mut self, encoder: &mut CommandEncoder, request: &FrameRequest<'_>) {
+    fn record_full_rate(&mut self, encoder: &mut CommandEncoder, request: &FrameRequest) {
         let [view, previous] = self.pose(request);
         self.raster.record(&self.device.device, encoder, &view, &previous);
     }
 
     /// Records the rendering of a frame that stays on the device, and the full-rate frame with it where its depth and
     /// motion are asked for.
-    pub fn record(&mut self, encoder: &mut CommandEncoder, request: &FrameRequest<'_>) -> RenderedFrame {
+    pub fn record(&mut self, encoder: &mut CommandEncoder, request: &FrameRequest) -> RenderedFrame {
         let [view, previous] = self.pose(request);
         if request.needs_full_rate() {
             self.raster.record(&self.device.device, encoder, &view, &previous);
@@ -147,7 +147,7 @@ impl RasterSource {
     fn record_content(
         &mut self,
         encoder: &mut CommandEncoder,
-        request: &FrameRequest<'_>,
+        request: &FrameRequest,
         views: [View; 2],
         layout: AtlasLayout,
     ) -> RenderedFrame {
@@ -174,7 +174,7 @@ impl RasterSource {
     }
 
     /// The full-rate frame, read back.
-    fn full_rate(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
+    fn full_rate(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
         let index = request.index;
         let ((), took) = self.submit_timed(|source, encoder| source.record_full_rate(encoder, request))?;
         let ([view, previous], _) = self.of.views(index);
@@ -201,7 +201,7 @@ impl RasterSource {
     }
 
     /// Mean of the colors of `samples` jittered frames, drawn once if all frames are equal.
-    fn kept_supersampled(&mut self, request: &FrameRequest<'_>, samples: u32) -> Result<Image<[f32; 3]>, InputError> {
+    fn kept_supersampled(&mut self, request: &FrameRequest, samples: u32) -> Result<Image<[f32; 3]>, InputError> {
         if let Some((_, color)) = self.supersampled.as_ref().filter(|(held, _)| *held == samples) {
             return Ok(color.clone());
         }
@@ -219,11 +219,7 @@ impl RasterSource {
     }
 
     /// The full-rate frame with a jittered projection and one sample a pixel, read back.
-    fn points(
-        &mut self,
-        request: &FrameRequest<'_>,
-        jitter_px: [f32; 2],
-    ) -> Result<(SourceFrame, Elapsed), InputError> {
+    fn points(&mut self, request: &FrameRequest, jitter_px: [f32; 2]) -> Result<(SourceFrame, Elapsed), InputError> {
         let (drawn, [view, previous], took) = self.draw_points(request, jitter_px)?;
         let (color, nonfinite) = finite(read_color(&self.device, &drawn.color));
         let frame = SourceFrame {
@@ -242,7 +238,7 @@ impl RasterSource {
     /// and the previous one, and the time.
     fn draw_points(
         &mut self,
-        request: &FrameRequest<'_>,
+        request: &FrameRequest,
         jitter_px: [f32; 2],
     ) -> Result<(DeviceFrame, [View; 2], Elapsed), InputError> {
         let size = self.of.info().size;
@@ -271,7 +267,7 @@ impl RasterSource {
     }
 
     /// Poses the scene for a frame; the frame's view, and the previous one.
-    fn pose(&mut self, request: &FrameRequest<'_>) -> [View; 2] {
+    fn pose(&mut self, request: &FrameRequest) -> [View; 2] {
         let (views, times) = self.of.views(request.index);
         self.raster.pose(&self.of.scene, times[0], times[1]);
         views
@@ -392,7 +388,7 @@ impl FrameSource for RasterSource {
 
     /// Foveated frames lie in place in their atlas where the full-rate frame is their reference: samples at full rate
     /// are then exactly those of the reference.
-    fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
+    fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
         let whole = request.reference.then(|| self.full_rate(request)).transpose()?;
         let Some(whole) = whole else {
             let (frame, took) = self.submit_timed(|source, encoder| source.record(encoder, request))?;
@@ -433,7 +429,7 @@ impl FrameSource for RasterSource {
             Some(_) => ShadedColor::OnDevice(Arc::new(color.clone())),
             None => ShadedColor::InMemory(read_color(&self.device, color)),
         };
-        Ok(Some(Shaded { color, took }))
+        Ok(Some(Shaded { color, noise: None, took }))
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

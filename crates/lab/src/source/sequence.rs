@@ -82,7 +82,7 @@ impl FrameSource for SequenceSource {
         &self.info
     }
 
-    fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
+    fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
         let index = request.index;
         if let Some(still) = &mut self.still {
             return still.render(request);

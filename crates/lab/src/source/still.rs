@@ -107,7 +107,7 @@ impl FrameSource for StillSource {
         &self.info
     }
 
-    fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
+    fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
         let frame = SourceFrame { cut: request.index == 0, ..self.frame.clone() };
         Ok(RenderedFrame::full_rate(request.index, request.gaze_px, frame))
     }

@@ -7,7 +7,7 @@ use super::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo};
 use crate::clock::Elapsed;
 use crate::device::{Backend, SpanClock};
 use crate::error::InputError;
-use crate::frame::{DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, SourceFrame};
+use crate::frame::{DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, Shaded, ShadedColor, SourceFrame, Wish};
 use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
@@ -25,6 +25,8 @@ use std::sync::Arc;
 const STEP: u32 = 1 << 20;
 /// Offset of the frame numbers that seed full-rate frames, so that their noise is independent of the foveated frames'.
 const FULL_RATE_FRAMES: u64 = 1 << 31;
+/// The same for the pixels that [`shade`](FrameSource::shade) traces.
+const SHADED_FRAMES: u64 = 1 << 32;
 
 /// Sample counts and distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,12 +52,13 @@ pub struct TracedSource {
     world: World,
     tracer: Tracer,
     samples: TracedSamples,
-    seed: u64,
     /// Cached full-rate frame of a static scene, and its time.
     still: Option<(SourceFrame, Elapsed)>,
     clock: SpanClock,
     /// Samples of the last sparse frame on the tracer's device.
     on_device: Option<DeviceSamples>,
+    /// Samples of single pixels there.
+    repaired: Option<DeviceSamples>,
 }
 
 impl TracedSource {
@@ -86,10 +89,10 @@ impl TracedSource {
             world,
             tracer,
             samples,
-            seed: settings.seed,
             still: None,
             clock: SpanClock::new(backend),
             on_device: None,
+            repaired: None,
         })
     }
 
@@ -101,7 +104,7 @@ impl TracedSource {
 
 impl TracedSource {
     /// Poses the scene for a frame, and returns the frame's view and the previous one.
-    fn pose(&mut self, request: &FrameRequest<'_>) -> Result<[View; 2], InputError> {
+    fn pose(&mut self, request: &FrameRequest) -> Result<[View; 2], InputError> {
         let (views, times) = self.of.views(request.index);
         if self.of.scene.duration_s() > 0.0 {
             self.world.pose(&self.of.scene, times[0], times[1]);
@@ -128,7 +131,7 @@ impl TracedSource {
     }
 
     /// The full-rate frame, and the time of tracing its color.
-    fn full_rate(&mut self, request: &FrameRequest<'_>) -> Result<(SourceFrame, Elapsed), InputError> {
+    fn full_rate(&mut self, request: &FrameRequest) -> Result<(SourceFrame, Elapsed), InputError> {
         let index = request.index;
         let [view, previous] = self.pose(request)?;
         let [width, height] = self.of.info().size;
@@ -156,7 +159,7 @@ impl TracedSource {
     }
 
     /// As [`full_rate`](Self::full_rate), traced once if all frames are equal.
-    fn kept_full_rate(&mut self, request: &FrameRequest<'_>) -> Result<(SourceFrame, Elapsed), InputError> {
+    fn kept_full_rate(&mut self, request: &FrameRequest) -> Result<(SourceFrame, Elapsed), InputError> {
         if !self.of.info().still || self.of.camera.is_steered() {
             return self.full_rate(request);
         }
@@ -182,7 +185,7 @@ impl TracedSource {
     /// frame is sparse and that device is the methods'.
     fn samples_on_device(
         &mut self,
-        request: &FrameRequest<'_>,
+        request: &FrameRequest,
         [view, previous]: &[View; 2],
     ) -> Result<Option<(DeviceSamples, Elapsed)>, InputError> {
         let Tracer::Gpu(tracer) = &self.tracer else { return Ok(None) };
@@ -214,7 +217,7 @@ impl FrameSource for TracedSource {
     }
 
     /// Frames of its own sampling pattern, if there is one; else the full-rate frame.
-    fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
+    fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
         let &FrameRequest { index, gaze_px, .. } = request;
         let Some(sampling) = self.samples.foveated else {
             let (frame, took) = self.kept_full_rate(request)?;
@@ -241,17 +244,40 @@ impl FrameSource for TracedSource {
                 return Ok(plan.trace(&self.tracer, &self.world, view, index));
             }
             let plan = sampling.plan(view.geometry(), gaze_px, samples, index);
-            let plan = match request.guide.and_then(|guide| guide.guide(&reference)) {
-                None => plan,
-                Some(guide) => plan.guided(&guide, index, self.seed).map_err(|e| {
-                    InputError::request(&self.of.info().name, e.to_string(), "give a guide of the frame's size")
-                })?,
-            };
             Ok(plan.trace(&self.tracer, &self.world, view, index))
         });
         let frame: FoveatedFrame = frame?;
         self.check()?;
         Ok(RenderedFrame { render: Some(took), ..request.answer(reference).foveated(frame) })
+    }
+
+    /// Pixels have as many samples as the lattice there has a point, and paths of their own. What the frame left on the
+    /// device, they join there.
+    fn shade(&mut self, frame: &RenderedFrame, wish: &Wish) -> Result<Option<Shaded>, InputError> {
+        // The scene is posed: the frame was rendered last.
+        let ([view, _], _) = self.of.views(frame.index);
+        let seed_frame = SHADED_FRAMES + frame.index;
+        let held = match (&self.tracer, OnDevice::of(&frame.content)) {
+            (Tracer::Gpu(tracer), Some(OnDevice::Samples(of_frame))) => {
+                let held = self.repaired.take();
+                let held = held.unwrap_or_else(|| DeviceSamples::new(tracer.device(), self.of.info().size));
+                Some(DeviceSamples { noise: of_frame.noise.clone(), ..held })
+            }
+            _ => None,
+        };
+        let (shaded, took) = self.clock.time(|| {
+            let Some(plan) = self.sparse_plan(&view, frame.index, frame.gaze_px)? else { return Ok(None) };
+            if let (Tracer::Gpu(tracer), Some(held)) = (&self.tracer, &held) {
+                plan.trace_quads_in_place(tracer, &self.world, &view, seed_frame, &wish.quads, held);
+                return Ok(Some((ShadedColor::OnDevice(Arc::new(held.color.clone())), None)));
+            }
+            let (color, noise) = plan.trace_quads(&self.tracer, &self.world, &view, seed_frame, &wish.quads);
+            Ok(Some((ShadedColor::InMemory(color), Some(noise))))
+        });
+        let shaded: Option<_> = shaded?;
+        self.check()?;
+        self.repaired = held;
+        Ok(shaded.map(|(color, noise)| Shaded { color, noise, took }))
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

@@ -85,9 +85,9 @@ impl Spans {
         Self { spans: if width == 0 { vec![] } else { rows.map(span).collect() }, samples }
     }
 
-    /// Corner and size in pixels of the smallest window that contains all pixels of `work`.
-    pub fn window(work: &[Self]) -> ([u32; 2], [u32; 2]) {
-        let spans = || work.iter().flat_map(|w| &w.spans);
+    /// Corner and size in pixels of the smallest window that contains all pixels.
+    pub fn window(&self) -> ([u32; 2], [u32; 2]) {
+        let spans = || self.spans.iter();
         let columns = |s: &Span| (s.pixel & 0xffff, (s.pixel & 0xffff) + s.count);
         let left = spans().map(|s| columns(s).0).min().unwrap_or(0);
         let right = spans().map(|s| columns(s).1).max().unwrap_or(0);
@@ -200,10 +200,10 @@ mod tests {
         assert_eq!(got, expected);
         assert_eq!(spans.spans().iter().map(|s| s.before).collect::<Vec<_>>(), [0, 2, 3, 5, 6]);
         assert_eq!((spans.pixels(), spans.len()), (7, 21));
-        assert_eq!(Spans::window(std::slice::from_ref(&spans)), ([0, 0], [65536, 4]));
+        assert_eq!(spans.window(), ([0, 0], [65536, 4]));
         let runs = [(3..5, 0), (6..7, 0), (9..9, 0), (0..2, 1), (65535..65536, 2), (0..1, 3)];
         assert_eq!(Spans::of_runs(runs, 2..5), spans);
-        assert_eq!(Spans::window(&[Spans::of_runs([(7..9, 4), (5..6, 6)], 0..1)]), ([5, 4], [4, 3]));
+        assert_eq!(Spans::of_runs([(7..9, 4), (5..6, 6)], 0..1).window(), ([5, 4], [4, 3]));
     }
 
     #[test]

@@ -156,7 +156,7 @@ impl FrameSource for Flipped {
         self.0.info()
     }
 
-    fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
+    fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
         let mut frame = self.0.render(request)?;
         frame.reference.motion = frame.reference.motion.map(|m| m.map(|v| [-v[0], -v[1]]));
         Ok(frame)

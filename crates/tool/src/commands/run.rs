@@ -53,10 +53,6 @@ pub struct RunArgs {
     pub reference_samples: Option<u32>,
     #[command(flatten)]
     pub sampling: SamplingArgs,
-    /// With --sampling and the method smr: trace more samples where the history's confidence is low and fewer where it
-    /// is high, with the same total
-    #[arg(long)]
-    pub guided: bool,
     #[command(flatten)]
     pub foveation: FoveationArgs,
     /// Methods, separated by commas
@@ -150,11 +146,6 @@ impl RunArgs {
         let sampling = self.sampling.sampling()?;
         if self.is_sparse() {
             self.sampling.check_sparse(&sampling)?;
-            if self.guided {
-                return Err(Failure::Input(
-                    "--guided: distributes the samples of filled frames; leave out --foveation sparse".into(),
-                ));
-            }
         }
         Ok(Some(sampling))
     }

@@ -55,10 +55,6 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     refuses(&run(cubes, &out, &traced(&["layers"])), &["[1, 2, 3, 4]", "--layer-step", "1,2,4,8"]);
     refuses(&run(cubes, &out, &traced(&["regions", "--region-block", "3,6"])), &["[1, 3, 6]", "--region-block"]);
     refuses(&run(cubes, &out, &traced(&["layers", "--layer-step", "1,2,4,8", "--lens-deg", "40"])), &["--lens-deg"]);
-    refuses(
-        &run(cubes, &out, &traced(&["regions", "--guided", "--method", "smr"])),
-        &["--guided", "--foveation sparse"],
-    );
     assert!(!folder.path("out").exists(), "nothing was written");
 }
 

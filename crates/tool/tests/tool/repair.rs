@@ -25,11 +25,14 @@ fn both_backends_write_the_same_bytes_of_repaired_frames() {
         return;
     }
     let folder = Folder::new();
-    let cases: [(&str, &[&str]); 4] = [
+    let traced = ["--source", "trace", "--spp", "2", "--max-depth", "1", "--reference-samples", "2"];
+    let cases: [(&str, &[&str]); 6] = [
         ("analytic:occluder", &[]),
         ("analytic:occluder", &["--jitter", "halton", "--reference-samples", "2"]),
         ("builtin:cubes", &["--geometry", "samples", "--reference-samples", "2"]),
         ("builtin:cubes", &["--geometry", "full", "--jitter", "halton", "--reference-samples", "2"]),
+        ("builtin:cubes", &traced),
+        ("builtin:cubes", &[&traced[..], &["--geometry", "full", "--camera", "lateral"]].concat()),
     ];
     for (i, (input, more)) in cases.into_iter().enumerate() {
         for backend in ["cpu", "gpu"] {
@@ -108,6 +111,7 @@ fn repair_of_what_cannot_be_repaired_is_refused() {
     refuses(&run(still, &out, &["--repair", "3"]), &["--repair", "--foveation sparse"]);
     let wrs = ["--foveation", "sparse", "--repair", "3", "--method", "none,wrs"];
     refuses(&run(still, &out, &wrs), &["--repair", "add smr to --method"]);
-    refuses(&run("builtin:cubes", &out, &["--source", "trace", "--repair", "3"]), &["--repair", "--source raster"]);
+    let filled = ["--source", "trace", "--sampling", "regions", "--repair", "3"];
+    refuses(&run("builtin:cubes", &out, &filled), &["--repair", "--foveation sparse"]);
     assert!(!folder.path("out").exists(), "nothing was written");
 }

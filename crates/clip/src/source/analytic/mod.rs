@@ -292,7 +292,7 @@ impl FrameSource for AnalyticSource {
         &self.info
     }
 
-    fn render(&mut self, request: &FrameRequest<'_>) -> Result<RenderedFrame, InputError> {
+    fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
         let index = request.index;
         let frame = self.full_rate(index, request.reference_samples);
         let frame = RenderedFrame::full_rate(index, request.gaze_px, frame);

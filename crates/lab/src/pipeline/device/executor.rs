@@ -6,8 +6,7 @@ use crate::device::{Headless, PassClock};
 use crate::frame::{Content, DeviceHandle, RenderedFrame, Shaded, ShadedColor, Wish};
 use crate::pipeline::ablation::shader_without;
 use afterimage::gpu::Frame;
-use afterimage::kernel::noise::{Noise, unpack_noise};
-use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Image, Method, Settings, Smr};
+use afterimage::{ContextDesc, CreateError, DebugView, FrameError};
 use afterimage_clip::pipeline::{Candidate, Executor, MethodOutput, Repaired, RunKind, Shade, Shot, repairs};
 use std::slice::from_ref;
 use std::sync::Arc;
@@ -84,7 +83,12 @@ impl Executor for DeviceExecutor {
         let shaded = planned.as_ref().filter(|_| !is_simulated).and_then(|(wish, _)| shade(wish));
         let repaired = match &shaded {
             Some(Shaded { color: ShadedColor::OnDevice(color), .. }) => color.downcast_ref::<Texture>(),
-            _ => planned.as_ref().filter(|_| is_simulated).map(|_| self.inputs.full()),
+            Some(Shaded { color: ShadedColor::InMemory(color), .. }) => {
+                let of_frame = shot.candidate.in_memory.as_ref().and_then(|given| given.noise);
+                let noise = shaded.as_ref().and_then(|shaded| shaded.noise_in(of_frame));
+                Some(self.inputs.upload_repaired(color, noise.as_ref()))
+            }
+            None => planned.as_ref().filter(|_| is_simulated).map(|_| self.inputs.full()),
         };
         let frame = Frame { repaired: repaired.map(Into::into), ..frame };
         let encoder = || gpu.device.create_command_encoder(&Default::default());
@@ -124,13 +128,6 @@ impl Executor for DeviceExecutor {
 
     fn memory_bytes(&self, run: usize) -> usize {
         self.runs[run].post().memory_bytes() as usize
-    }
-
-    fn history_noise(&self, run: usize) -> Option<(Image<Noise>, Smr)> {
-        let post = self.runs[run].post();
-        let Settings { method: Method::Smr(smr), noisy: true, .. } = post.desc().settings else { return None };
-        let texture = post.history_textures().get(2)?;
-        Some((self.gpu.read::<u32>(texture, 0).map(unpack_noise), smr))
     }
 }
 

@@ -225,6 +225,16 @@ impl DeviceInputs {
         }
     }
 
+    /// Uploads samples of single pixels, and the noise of the frame with theirs. They take the place of the full-rate
+    /// frame, which foveated frames have no use for.
+    pub(super) fn upload_repaired(&self, color: &Image<[f32; 3]>, noise: Option<&Image<[f32; 2]>>) -> &Texture {
+        self.write_rgb(&self.full, color);
+        if let Some(noise) = noise {
+            self.uploaded(&self.noise, noise);
+        }
+        &self.full
+    }
+
     /// Replaces the color that the methods get.
     pub(super) fn replace_color(&mut self, color: &Image<[f32; 3]>) {
         let is_atlas = self.atlas.as_ref().is_some_and(|[held, _]| *held == self.given.color);

@@ -221,7 +221,7 @@ impl GpuTracer {
             place.submit(&self.device, lattice, points, &film, [[0; 2]; 2], samples);
             return;
         }
-        let (first, size) = Spans::window(std::slice::from_ref(work));
+        let (first, size) = work.window();
         let film = vec![[0.0; 4]; 2 * size[0] as usize * size[1] as usize];
         let base = Film::base_of(first, size);
         let run = self.submit_batches(world, view, frame, work.into(), (size[0], base, &film), None);

@@ -1,7 +1,5 @@
 //! Regular lattices of sample points on a frame.
 
-use std::ops::Range;
-
 /// A lattice of points, and the area that each point's samples cover.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
@@ -47,14 +45,5 @@ impl Lattice {
     /// Lattice coordinate of a pixel.
     pub fn coordinate(&self, px: [f32; 2]) -> [f32; 2] {
         [0, 1].map(|i| (px[i] - self.first_px[i]) / self.step as f32)
-    }
-    /// Pixels that a point stands for: a square of `step` pixels around it, clipped to a frame of `size_px`.
-    pub fn cell(&self, point: [u32; 2], size_px: [u32; 2]) -> [Range<u32>; 2] {
-        let half = (self.step - 1) as f32 * 0.5;
-        let px = self.px(point);
-        [0, 1].map(|i| {
-            let first = (px[i] - half).ceil();
-            first.max(0.0) as u32..((first + self.step as f32).max(0.0) as u32).min(size_px[i])
-        })
     }
 }

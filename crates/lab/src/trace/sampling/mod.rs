@@ -6,7 +6,6 @@
 mod acuity;
 mod circle;
 mod fill;
-mod guided;
 mod lattice;
 mod layers;
 mod regions;
@@ -27,7 +26,6 @@ use super::world::World;
 use crate::frame::FoveatedFrame;
 use afterimage::{Filter, Foveation, Image, ViewGeometry};
 use rings::{Blended, Ring};
-use std::borrow::Cow;
 use std::ops::Range;
 
 /// Sampling pattern.
@@ -50,15 +48,6 @@ pub struct Plan {
     size_px: [u32; 2],
     gaze_px: [f32; 2],
     kind: Kind,
-    /// Spans of each ring where guided sampling has distributed the samples; otherwise the ring's number everywhere.
-    guided: Option<Vec<Vec<Spans>>>,
-}
-
-/// Points of a lattice with the same number of samples.
-struct Part {
-    lattice: Lattice,
-    targets: Vec<[u32; 2]>,
-    samples: u32,
 }
 
 #[derive(Clone, Debug)]
@@ -118,49 +107,25 @@ impl Sampling {
                 Kind::Scattered { targets, samples, lod }
             }
         };
-        Plan { size_px, gaze_px, kind, guided: None }
+        Plan { size_px, gaze_px, kind }
     }
 }
 
 impl Plan {
     /// Number of samples of each ring.
     pub fn samples(&self) -> Vec<u64> {
-        self.work().iter().map(|ring| ring.iter().map(Spans::len).sum()).collect()
+        self.work().iter().map(Spans::len).collect()
     }
 
     /// Spans to trace for each ring, on its own lattice.
-    pub fn work(&self) -> Cow<'_, [Vec<Spans>]> {
-        match &self.guided {
-            Some(work) => work.into(),
-            None => match &self.kind {
-                Kind::Rings(rings) => {
-                    let spans = |(i, ring): (usize, &Ring)| {
-                        vec![Spans::of_runs(ring.targets(rings, i, self.gaze_px), 0..ring.samples)]
-                    };
-                    rings.iter().enumerate().map(spans).collect()
-                }
-                Kind::Scattered { targets, samples, .. } => {
-                    vec![vec![Spans::new(targets.iter().copied(), 0..*samples)]].into()
-                }
-            },
-        }
-    }
-
-    /// Sample points of each ring.
-    fn parts(&self) -> Vec<Part> {
+    pub fn work(&self) -> Vec<Spans> {
         match &self.kind {
             Kind::Rings(rings) => {
-                let part = |(i, ring): (usize, &Ring)| Part {
-                    lattice: ring.lattice,
-                    targets: points(ring.targets(rings, i, self.gaze_px)).collect(),
-                    samples: ring.samples,
-                };
-                rings.iter().enumerate().map(part).collect()
+                let spans =
+                    |(i, ring): (usize, &Ring)| Spans::of_runs(ring.targets(rings, i, self.gaze_px), 0..ring.samples);
+                rings.iter().enumerate().map(spans).collect()
             }
-            Kind::Scattered { targets, samples, .. } => {
-                let lattice = Lattice::blocks(1, self.size_px);
-                vec![Part { lattice, targets: targets.clone(), samples: *samples }]
-            }
+            Kind::Scattered { targets, samples, .. } => vec![Spans::new(targets.iter().copied(), 0..*samples)],
         }
     }
 
@@ -178,11 +143,9 @@ impl Plan {
     pub fn trace(&self, tracer: &Tracer, world: &World, view: &View, frame: u64) -> FoveatedFrame {
         let work = self.work();
         let (mut samples, mut rays, mut nonfinite) = (vec![], 0, 0);
-        let mut add = |view: &View, mut film: Film, work: &[Spans]| {
-            for spans in work {
-                tracer.trace(world, view, frame, spans, &mut film);
-            }
-            samples.push(work.iter().map(Spans::len).sum());
+        let mut add = |view: &View, mut film: Film, work: &Spans| {
+            tracer.trace(world, view, frame, work, &mut film);
+            samples.push(work.len());
             (rays, nonfinite) = (rays + film.rays, nonfinite + film.nonfinite);
             film
         };
@@ -192,7 +155,7 @@ impl Plan {
                     .iter()
                     .zip(work.iter())
                     .map(|(ring, work)| {
-                        let (first, size) = Spans::window(work);
+                        let (first, size) = work.window();
                         add(&view.on_lattice(&ring.lattice), Film::window(first, size), work)
                     })
                     .collect();

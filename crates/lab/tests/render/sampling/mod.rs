@@ -2,6 +2,6 @@
 
 mod acuity;
 mod fills;
-mod guided;
 mod papers;
+mod repair;
 mod sparse;

@@ -11,6 +11,6 @@ mod hard;
 mod radiosity;
 mod rig;
 mod scenes;
-mod statistics;
+pub mod statistics;
 mod stereo;
 mod surfaces;

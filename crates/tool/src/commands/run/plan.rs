@@ -33,12 +33,6 @@ pub fn simulator(args: &RunArgs) -> &'static str {
 /// Plans a run on an input.
 pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan, Failure> {
     let refuse = |text: String| Err(Failure::Input(text));
-    if args.guided
-        && !(args.sampling.sampling != SamplingName::Uniform
-            && args.method.contains(&MethodName::Post(MethodKind::Smr)))
-    {
-        return refuse("--guided: the history of smr guides traced samples; add --sampling and the method smr".into());
-    }
     if args.repair > 0.0 && !args.method.contains(&MethodName::Post(MethodKind::Smr)) {
         return refuse("--repair: only smr repairs frames; add smr to --method, or leave it out".into());
     }
@@ -74,7 +68,6 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
             write_reference: args.reference,
             debug: args.debug.iter().map(|&view| (view.name(), view)).collect(),
             trust: args.trust,
-            guided: args.guided,
             flip: !args.no_flip,
             poison: args.ablation.poison,
             backend_note: match (args.backend, &backend) {
@@ -163,10 +156,6 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
 fn check_repair(args: &RunArgs) -> Result<(), Failure> {
     if !args.is_sparse() {
         return Err(Failure::Input("--repair: applies to sparse frames only; add --foveation sparse".into()));
-    }
-    if args.sampling()?.is_some() {
-        let text = "--repair: traces no pixels beside the lattices; use --source raster, or leave it out";
-        return Err(Failure::Input(text.into()));
     }
     Ok(())
 }

@@ -46,8 +46,7 @@ pub fn concerns(option: &str, value: &str, method: &str) -> bool {
     match OF_METHODS.iter().find(|(name, _)| *name == option) {
         Some((_, Some(only))) => kind == Some(*only),
         Some((_, None)) => kind.is_some_and(|kind| kind != MethodKind::None),
-        // Only the history of smr guides samples.
-        None => option != "guided" || kind == Some(MethodKind::Smr),
+        None => true,
     }
 }
 
