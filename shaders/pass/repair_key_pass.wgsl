@@ -4,8 +4,8 @@
 // How much the quads of a sparse frame want samples of their own, before it is shaded. CPU twin: `key` in
 // src/cpu/sparse_pass/plan.rs. One invocation a quad of 2x2 pixels of view `frame.first_view`.
 //
-// 8 reads and 1 write a quad: depth, motion, trust and a stored sample of two pixels. A pixel that is not settled: up to
-// 14 reads of depth and motion and 9 of stored samples more; its quad 1 atomic sum.
+// 8 reads and 1 write a quad: depth, motion, trust and a stored sample of two pixels. A pixel that is not settled: up
+// to 14 reads of depth and motion and 9 of stored samples more; its quad 1 atomic sum.
 
 @group(0) @binding(18) var keys_out: texture_storage_2d_array<r32uint, write>;
 

@@ -2,8 +2,9 @@
 //! a budget pays for.
 //!
 //! Hardware shades quads of 2x2 pixels, so that quads are chosen. Two pixels of each are asked, for half the cost of
-//! four and the same pictures. A quad has a key: the largest priority of these, then a hash. The chosen ones are those whose key reaches a threshold, which a histogram of the keys gives: without
-//! sorting, and without going beyond the budget.
+//! four and the same pictures. A quad has a key: the largest priority of these, then a hash. The chosen ones are those
+//! whose key reaches a threshold, which a histogram of the keys gives: without sorting, and without going beyond the
+//! budget.
 
 use super::rng;
 

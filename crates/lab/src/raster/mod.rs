@@ -31,6 +31,7 @@
 //! - **Refraction** is not simulated: glass shows what is straight behind it, dimmed by the base color's luminance.
 
 mod bounce;
+mod chosen_quads;
 mod compose;
 mod frame;
 mod lighting;
@@ -57,6 +58,7 @@ use crate::scene::{Environment, Pose, PunctualLight, Scene};
 use crate::trace::effects::Effects;
 use afterimage::kernel::pack::half_bits;
 use bytemuck::Zeroable;
+use chosen_quads::ChunkTest;
 use lighting::Lighting;
 use materials::upload_levels;
 use pipelines::{ColorPipelines, Layouts, Pipelines};
@@ -88,6 +90,8 @@ pub struct Raster {
     pipelines: Pipelines,
     /// Pipelines of lattices with one sample per pixel; none before the first foveated frame.
     point_pipelines: OnceCell<ColorPipelines>,
+    /// None before the first frame of which some quads are drawn.
+    chunk_test: OnceCell<ChunkTest>,
     effects: Effects,
     materials: Vec<BindGroup>,
     /// Bind group of the color pass. It includes the shadow map, so it is not bound while that is drawn.
@@ -166,6 +170,7 @@ impl Raster {
             layouts,
             pipelines,
             point_pipelines: OnceCell::new(),
+            chunk_test: OnceCell::new(),
             effects,
             materials,
             lighting_maps,

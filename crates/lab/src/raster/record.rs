@@ -1,16 +1,18 @@
 //! Recording of a frame's passes.
 
+use super::chosen_quads::{ChosenQuads, ChunkTest};
 use super::frame::FrameUniforms;
 use super::lighting::LightingRecord;
 use super::pipelines::ColorPipelines;
 use super::targets::{FoveatedTargets, Targets};
-use super::vertices::{AlphaKind, STRIDE};
+use super::vertices::{AlphaKind, DrawRange, STRIDE};
 use super::window::{DrawCall, Frustum, PixelSamples, Window};
 use super::{Raster, VertexSet};
 use crate::quad_views::QuadViews;
 use crate::trace::view::View;
 use afterimage::Lattices;
 use afterimage::gpu::filled;
+use glam::DVec3;
 use std::ops::Range;
 use wgpu::{
     BindGroup, Buffer, BufferUsages, Color, CommandEncoder, Device, IndexFormat, LoadOp, Operations, RenderPass,
@@ -33,8 +35,8 @@ struct Section {
     window: Window,
     group: BindGroup,
     calls: Vec<DrawCall>,
-    /// The quads of 2x2 pixels that are drawn to, if not all, as a list.
-    quads: Option<(Buffer, BindGroup)>,
+    /// The quads of 2x2 pixels that are drawn to, if not all.
+    quads: Option<ChosenQuads>,
 }
 
 impl Section {
@@ -155,8 +157,12 @@ impl Raster {
     ) {
         self.upload(device, encoder);
         let window = Window::full(view.geometry().size_px()).with_points();
-        let section = self.section(device, [view, previous], window);
-        let section = Section { quads: Some((list.clone(), self.quads_group(device, list))), ..section };
+        let calls = self.chunk_calls(&Frustum::new(view, &window));
+        let test = self.chunk_test.get_or_init(|| ChunkTest::new(device));
+        let quads = test.record(device, encoder, view, &calls, (list, &self.layouts.quads));
+        let calls = calls.into_iter().map(|(call, _)| call).collect();
+        let group = self.frame_uniforms(device, [view, previous], &window);
+        let section = Section { window, group, calls, quads: Some(quads) };
         self.shadows(encoder, &section.group);
         let blended = self.back_to_front(device, view);
         let FoveatedTargets { atlas: Targets { views: [color, ..], .. }, point_depth } = targets;
@@ -181,10 +187,14 @@ impl Raster {
 
     /// Uniforms and draw calls of what a window shows.
     fn section(&self, device: &Device, [view, previous]: [&View; 2], window: Window) -> Section {
-        let frame = FrameUniforms::new(view, previous, self.near, &window);
-        let lights = self.lighting.record(&self.lights, self.last_level, self.shadow_side);
         let calls = self.calls(Some(&Frustum::new(view, &window)));
-        Section { group: self.frame_group(device, &frame, &lights), calls, window, quads: None }
+        Section { group: self.frame_uniforms(device, [view, previous], &window), calls, window, quads: None }
+    }
+
+    fn frame_uniforms(&self, device: &Device, [view, previous]: [&View; 2], window: &Window) -> BindGroup {
+        let frame = FrameUniforms::new(view, previous, self.near, window);
+        let lights = self.lighting.record(&self.lights, self.last_level, self.shadow_side);
+        self.frame_group(device, &frame, &lights)
     }
 
     /// Draws the shadow map anew if the scene moved. `group`: uniforms of the full-rate frame.
@@ -268,14 +278,21 @@ impl Raster {
         pass.set_bind_group(2, &self.lighting_maps, &[]);
         for section in sections {
             section.set_up(&mut pass);
-            if let Some((list, group)) = &section.quads {
+            if let Some(quads) = &section.quads {
                 pass.set_pipeline(&self.pipelines.quads);
-                pass.set_bind_group(1, group, &[]);
-                pass.draw_indirect(list, 0);
+                pass.set_bind_group(1, &quads.group, &[]);
+                pass.draw_indirect(&quads.list, 0);
             }
-            for call in section.calls.iter().filter(|call| call.kind != AlphaKind::Blend) {
+            for (i, call) in section.calls.iter().enumerate().filter(|(_, call)| call.kind != AlphaKind::Blend) {
                 pass.set_pipeline(pipelines.surfaces(call.kind));
-                self.draw(&mut pass, call);
+                match &section.quads {
+                    None => self.draw(&mut pass, call),
+                    Some(quads) => {
+                        self.bind(&mut pass, call.is_moving, call.material);
+                        let (arguments, at) = quads.draw(i);
+                        pass.draw_indirect(arguments, at);
+                    }
+                }
             }
             pass.set_bind_group(1, &self.materials[0], &[]);
             pass.set_pipeline(&pipelines.sky);
@@ -291,24 +308,30 @@ impl Raster {
         }
     }
 
-    fn quads_group(&self, device: &Device, list: &Buffer) -> BindGroup {
-        device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("quads"),
-            layout: &self.layouts.quads,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: list.as_entire_binding() }],
-        })
-    }
-
     /// Draw calls of the static and moving triangles that meet `frustum`, opaque ones first.
     fn calls(&self, frustum: Option<&Frustum>) -> Vec<DrawCall> {
-        let of = |set: &VertexSet, is_moving| {
-            let parts = set.grouped.parts.iter();
-            parts.flat_map(|part| DrawCall::of(part, &set.chunks, is_moving, frustum)).collect::<Vec<_>>()
-        };
-        let mut calls = of(&self.still, false);
-        calls.extend(of(&self.moving, true));
+        let mut calls: Vec<_> = self
+            .parts()
+            .flat_map(|(part, set, is_moving)| DrawCall::of(part, &set.chunks, is_moving, frustum))
+            .collect();
         calls.sort_by_key(|call| call.kind);
         calls
+    }
+
+    /// The same, chunk by chunk, with their boxes.
+    fn chunk_calls(&self, frustum: &Frustum) -> Vec<(DrawCall, [DVec3; 2])> {
+        let mut calls: Vec<_> = self
+            .parts()
+            .flat_map(|(part, set, is_moving)| DrawCall::of_chunks(part, &set.chunks, is_moving, Some(frustum)))
+            .collect();
+        calls.sort_by_key(|(call, _)| call.kind);
+        calls
+    }
+
+    /// Parts of the static triangles, then of the moving ones, with their vertices and whether they move.
+    fn parts(&self) -> impl Iterator<Item = (&DrawRange, &VertexSet, bool)> {
+        let sets = [(&self.still, false), (&self.moving, true)];
+        sets.into_iter().flat_map(|(set, is_moving)| set.grouped.parts.iter().map(move |part| (part, set, is_moving)))
     }
 
     fn bind(&self, pass: &mut RenderPass<'_>, is_moving: bool, material: u32) {

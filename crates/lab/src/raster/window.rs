@@ -177,20 +177,6 @@ impl Frustum {
         let (middle, half) = (0.5 * (low + high) - self.eye, 0.5 * (high - low));
         !self.planes.iter().any(|n| n.dot(middle) + n.abs().dot(half) < 0.0)
     }
-
-    /// Runs of a part's vertices whose triangles may be visible.
-    fn visible(&self, part: &DrawRange, chunks: &Chunks) -> Vec<Range<u32>> {
-        let mut runs: Vec<Range<u32>> = vec![];
-        for (vertices, bounds) in chunks.of(part) {
-            if self.meets(bounds) {
-                match runs.last_mut() {
-                    Some(last) if last.end == vertices.start => last.end = vertices.end,
-                    _ => runs.push(vertices),
-                }
-            }
-        }
-        runs
-    }
 }
 
 /// Draw calls of a window, opaque surfaces first.
@@ -203,15 +189,28 @@ pub(super) struct DrawCall {
 }
 
 impl DrawCall {
-    /// All of a part's triangles, or those that meet `frustum`.
-    pub fn of<'a>(
+    /// A call for each chunk of a part, all or those that meet `frustum`, with its box.
+    pub fn of_chunks<'a>(
         part: &'a DrawRange,
-        chunks: &Chunks,
+        chunks: &'a Chunks,
         is_moving: bool,
-        frustum: Option<&Frustum>,
-    ) -> impl Iterator<Item = Self> + use<'a> {
-        let runs = frustum.map_or_else(|| vec![part.vertices.clone()], |frustum| frustum.visible(part, chunks));
-        runs.into_iter().map(move |vertices| Self { kind: part.kind, material: part.material, is_moving, vertices })
+        frustum: Option<&'a Frustum>,
+    ) -> impl Iterator<Item = (Self, [DVec3; 2])> + 'a {
+        chunks.of(part).filter(move |(_, bounds)| frustum.is_none_or(|frustum| frustum.meets(*bounds))).map(
+            move |(vertices, bounds)| (Self { kind: part.kind, material: part.material, is_moving, vertices }, bounds),
+        )
+    }
+
+    /// As [`of_chunks`](Self::of_chunks), successive chunks in one call.
+    pub fn of(part: &DrawRange, chunks: &Chunks, is_moving: bool, frustum: Option<&Frustum>) -> Vec<Self> {
+        let mut calls: Vec<Self> = vec![];
+        for (call, _) in Self::of_chunks(part, chunks, is_moving, frustum) {
+            match calls.last_mut() {
+                Some(last) if last.vertices.end == call.vertices.start => last.vertices.end = call.vertices.end,
+                _ => calls.push(call),
+            }
+        }
+        calls
     }
 }
 
