@@ -321,7 +321,7 @@ fn rasterised_scenes_are_compared_by_the_time_of_the_whole_frame() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let axes = ["--axis", "method=none,smr", "--axis", "foveation+geometry=sparse+samples,mip+-"];
-    let small = ["--source", "raster", "--size", "320x180", "--frames", "10", "--backend", "gpu"];
+    let small = ["--source", "raster", "--size", "320x180", "--frames", "38", "--backend", "gpu"];
     let quick = ["--set", "no-flip", "--set", "reference-samples=1"];
     let text = out.to_str().unwrap();
     let said = succeeds(&[&["sweep", "builtin:cubes", "--out", text][..], &axes, &small, &quick].concat());
