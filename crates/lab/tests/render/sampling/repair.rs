@@ -3,7 +3,7 @@
 use super::super::trace::statistics::{p_of_means, p_of_pixels};
 use afterimage::{Image, wgpu};
 use afterimage_lab::device::{Backend, Headless};
-use afterimage_lab::frame::{Content, DeviceSamples, OnDevice, RenderedFrame, ShadedColor, Wish};
+use afterimage_lab::frame::{DeviceSamples, OnDevice, RenderedFrame, ShadedColor, Wish};
 use afterimage_lab::lattices::SampleOrder;
 use afterimage_lab::source::{FrameRequest, FrameSource, ReadLimits, SceneOptions, TracedSamples, TracedSource};
 use afterimage_lab::trace::film::{Film, Moments};
