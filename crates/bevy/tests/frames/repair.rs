@@ -51,7 +51,7 @@ fn chosen(headless: &mut Headless) -> Vec<bool> {
 }
 
 /// Of two images, the pixels that `mask` has as `is`.
-fn masked<'a>(images: [&'a [u8]; 2], mask: &[bool], is: bool) -> [Vec<u8>; 2] {
+fn masked(images: [&[u8]; 2], mask: &[bool], is: bool) -> [Vec<u8>; 2] {
     images.map(|image| image.chunks(4).zip(mask).filter(|(_, m)| **m == is).flat_map(|(p, _)| p).copied().collect())
 }
 
