@@ -25,10 +25,10 @@ pub struct Afterimage {
     /// where little moves; frays thin things that move far from the gaze. Not for cameras with `TemporalJitter`, which
     /// temporal antialiasing and upscaling add. Default false.
     pub antialias: bool,
-    /// Repairs [`FoveationKind::Sparse`] with the method smr: largest share of the pixels, 0 to 1, that the camera itself
-    /// shades where history has nothing, as behind what has moved away. Better there; costs the meshes' vertices once
-    /// more, and a pass that asks history. Not with [`antialias`](Self::antialias), because the camera itself does not
-    /// jitter. Default 0.
+    /// Repairs [`FoveationKind::Sparse`] with the method smr: largest share of the pixels, 0 to 1, that the camera
+    /// itself shades where history has nothing, as behind what has moved away. Better there; costs the meshes' vertices
+    /// once more, and a pass that asks history. Not with [`antialias`](Self::antialias), because the camera itself does
+    /// not jitter. Default 0.
     pub repair: f32,
     /// Discards history in the next frame, for camera cuts and teleports. Becomes false when that frame is drawn.
     pub reset: bool,
