@@ -1,6 +1,6 @@
 //! Components of a camera, and what they require of it.
 
-use afterimage::{DebugView, DepthConvention, Filter, Settings};
+use afterimage::{DebugView, DepthConvention, Filter, Method, Repair, Settings};
 use bevy::camera::{CameraMainTextureUsages, Hdr};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass};
 use bevy::prelude::*;
@@ -16,8 +16,8 @@ use bevy::render::render_resource::TextureUsages;
 pub struct Afterimage {
     /// Settings by name.
     pub preset: Preset,
-    /// Settings in full, instead of the preset. Their `foveation` and `Smr::antialias` are ignored: [`Foveated`] and
-    /// [`antialias`](Self::antialias) say them.
+    /// Settings in full, instead of the preset. Their `foveation`, `Smr::antialias` and `Smr::repair` are ignored:
+    /// [`Foveated`], [`antialias`](Self::antialias) and [`repair`](Self::repair) say them.
     #[reflect(ignore)]
     pub settings: Option<Settings>,
     /// Antialiases [`FoveationKind::Sparse`] with the method smr, in place of temporal antialiasing and MSAA: the
@@ -25,6 +25,11 @@ pub struct Afterimage {
     /// where little moves; frays thin things that move far from the gaze. Not for cameras with `TemporalJitter`, which
     /// temporal antialiasing and upscaling add. Default false.
     pub antialias: bool,
+    /// Repairs [`FoveationKind::Sparse`] with the method smr: largest share of the pixels, 0 to 1, that the camera
+    /// itself shades where history has nothing, as behind what has moved away. Better there; costs the meshes' vertices
+    /// once more, and a pass that asks history. Not with [`antialias`](Self::antialias), because the camera itself does
+    /// not jitter. Default 0.
+    pub repair: f32,
     /// Discards history in the next frame, for camera cuts and teleports. Becomes false when that frame is drawn.
     pub reset: bool,
 }
@@ -37,10 +42,14 @@ impl Afterimage {
             Preset::Weighted => Settings::weighted(),
             Preset::Paper => Settings::paper(),
         });
-        let method = match foveated.kind {
-            FoveationKind::QuadViews => afterimage::Method::None,
+        let mut method = match foveated.kind {
+            FoveationKind::QuadViews => Method::None,
             _ => settings.method,
         };
+        if let Method::Smr(smr) = &mut method {
+            let is_asked = self.repair != 0.0 && foveated.kind == FoveationKind::Sparse;
+            smr.repair = is_asked.then_some(Repair { budget: self.repair });
+        }
         Settings { method, foveation: foveated.foveation(), ..settings }
     }
 }

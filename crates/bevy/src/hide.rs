@@ -1,5 +1,5 @@
 //! Divides what is drawn: lattice cameras draw samples of meshes, and the camera that shows them everything else, as
-//! gizmos, at full rate. Of meshes it draws depth and motion alone, in its prepasses.
+//! gizmos, at full rate. Of meshes it draws depth and motion alone, in its prepasses, unless it repairs (`pass.rs`).
 
 use crate::frame::ExtractedAfterimage;
 use bevy::core_pipeline::core_3d::Transparent3d;
@@ -38,11 +38,8 @@ fn renew(
     mut dirty: ResMut<DirtySpecializations>,
     views: Query<(&ExtractedView, &ExtractedAfterimage)>,
 ) {
-    let now: HashSet<_> = views
-        .iter()
-        .filter(|(_, frame)| !frame.samples.is_empty())
-        .map(|(view, _)| view.retained_view_entity)
-        .collect();
+    let now: HashSet<_> =
+        views.iter().filter(|(_, frame)| frame.hides_meshes()).map(|(view, _)| view.retained_view_entity).collect();
     dirty.views.extend(now.symmetric_difference(&hidden.0));
     hidden.0 = now;
 }

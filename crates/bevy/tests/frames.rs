@@ -8,6 +8,7 @@ mod frames {
     mod conventions;
     mod events;
     mod pixels;
+    mod repair;
 }
 
 use bevy::camera::Hdr;

@@ -133,12 +133,15 @@ fn compare_with_the_drop_in(antialias: bool) {
 fn gizmos_are_drawn_at_full_rate_and_hidden_by_meshes() {
     // The line at a distance before the camera, and behind the wall.
     let [before, behind] = [3.0, -9.0].map(|z| {
-        [FoveationKind::Off, FoveationKind::Sparse].map(|foveation| {
+        let sparse = FoveationKind::Sparse;
+        let repair = Afterimage { repair: 0.2, ..default() };
+        // The jitter of samples does not move them, and they are not among what is repaired.
+        let antialias = Afterimage { antialias: true, ..default() };
+        [(FoveationKind::Off, default()), (sparse, antialias), (sparse, repair)].map(|(foveation, afterimage)| {
             let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: false });
             let target = headless.render_target();
             let camera = (Camera3d::default(), Msaa::Off, target, TONEMAPPING, stroll(1.0), kind(foveation));
-            // The jitter of samples does not move them.
-            headless.app.world_mut().spawn(camera).insert(Afterimage { antialias: true, ..default() });
+            headless.app.world_mut().spawn(camera).insert(afterimage);
             headless.app.add_systems(Update, move |mut gizmos: Gizmos<'_, '_>| {
                 gizmos.line(Vec3::new(-2.0, 2.0, z), Vec3::new(2.0, 2.3, z), Color::srgb(1.0, 0.0, 1.0));
             });
@@ -148,15 +151,19 @@ fn gizmos_are_drawn_at_full_rate_and_hidden_by_meshes() {
             shot.chunks(4).map(|pixel| pixel[0].min(pixel[2]) > pixel[1].saturating_add(100)).collect::<Vec<bool>>()
         })
     });
-    let [full, sparse] = [0, 1].map(|i| before[i].iter().filter(|is_line| **is_line).count());
-    println!("pixels of the line: {full}, {sparse} with lattices");
-    assert!(full > 100);
-    assert!(before[0] == before[1]);
+    let counts = before.each_ref().map(|shot| shot.iter().filter(|is_line| **is_line).count());
+    println!("pixels of the line: {counts:?} at full rate, with lattices, and with repair");
+    assert!(counts[0] > 100);
+    assert!(before[0] == before[1] && before[0] == before[2]);
     assert!(behind.iter().flatten().all(|is_line| !is_line));
 }
 
 #[test]
 fn two_cameras_show_what_each_shows_alone() {
+    [0.0, 0.1].into_iter().for_each(compare_with_each_alone);
+}
+
+fn compare_with_each_alone(repair: f32) {
     let half = UVec2::new(SIZE.x / 2, SIZE.y);
     let camera = |headless: &mut Headless, side: u32| {
         let target = headless.render_target();
@@ -165,7 +172,7 @@ fn two_cameras_show_what_each_shows_alone() {
         headless.app.world_mut().spawn((
             Camera3d::default(),
             Camera { order: side as isize, viewport: Some(viewport), clear_color, ..default() },
-            (target, TONEMAPPING, kind(FoveationKind::Sparse)),
+            (target, TONEMAPPING, Afterimage { repair, ..default() }),
             (stroll(0.6 * side as f32), Mover::Stroll),
             CameraGaze { uv: Some(Vec2::new(0.3 + 0.4 * side as f32, 0.5)) },
         ));
