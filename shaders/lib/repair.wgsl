@@ -16,7 +16,7 @@ fn priority(lod: f32, e_deg: f32) -> u32 {
 
 // repair::asked_px
 fn asked_px(i: u32, x: u32, y: u32, frame_low: u32) -> vec2<u32> {
-    return vec2<u32>(2u * x + ((i ^ frame_low) & 1u), 2u * y + i);
+    return vec2<u32>(2u * x + ((i ^ frame_low ^ x ^ y) & 1u), 2u * y + i);
 }
 
 // repair::quad_key

@@ -33,10 +33,11 @@ pub fn priority(lod: f32, e_deg: f32) -> u32 {
 }
 
 /// One of the two pixels of quad (`x`, `y`) that are asked in a frame, `i` 0 or 1: those of a diagonal, so that both
-/// columns and both rows are; and those of the other diagonal in the next frame.
+/// columns and both rows are; and those of the other diagonal in the next frame. Quads beside each other take turns,
+/// because a lattice has its samples at the same place in all of them.
 #[inline]
 pub fn asked_px(i: u32, x: u32, y: u32, frame: u32) -> [u32; 2] {
-    [2 * x + ((i ^ frame) & 1), 2 * y + i]
+    [2 * x + ((i ^ frame ^ x ^ y) & 1), 2 * y + i]
 }
 
 /// Key of quad (`x`, `y`), whose asked pixels' largest priority is `priority`: 0 if they want nothing. The hash gives

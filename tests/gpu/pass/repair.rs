@@ -184,7 +184,7 @@ fn a_wrong_plan_is_caught() {
         ("priority(kept.found.lod, e_deg), 0u, is_sample)", "priority(kept.found.lod, e_deg), 0u, false)"),
         ("!is_settled(px, view)", "is_settled(px, view)"),
         ("asked_px(firstTrailingBit(left),", "asked_px(0u,"),
-        ("i ^ frame_low", "i"),
+        ("i ^ frame_low ^ x ^ y", "i ^ x ^ y"),
         ("same = same_surface(expected, stored.disparity, frame.depth_relative, 0.0);", ""),
         ("same = same && trust(trust_at(px, view)) > 0.0;", ""),
         ("at.verdict == VERDICT_VALID && lod >= 0.0 && lod < WANTED_LOD", "lod >= 0.0 && lod < WANTED_LOD"),

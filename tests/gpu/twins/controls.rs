@@ -208,7 +208,7 @@ fn a_wrong_match_is_caught() {
 fn a_wrong_repair_is_caught() {
     caught(repair::PROBES, "priority", "RINGS - 1u", "RINGS");
     caught(repair::PROBES, "priority", "lod < WANTED_LOD", "lod <= WANTED_LOD");
-    caught(repair::PROBES, "asked_px", "i ^ frame_low", "i");
+    caught(repair::PROBES, "asked_px", "i ^ frame_low ^ x ^ y", "i ^ x ^ y");
     caught(repair::PROBES, "quad_key", "~key", "key");
     caught(repair::PROBES, "quad_key", "32u - HASH_BITS", "HASH_BITS");
 }

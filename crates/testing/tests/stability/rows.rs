@@ -463,7 +463,7 @@ pub const ROWS: [Row; 102] = [
     row(
         "H99",
         "repair: half of the screen is uncovered at once; budgets of 5, 10 and 20 %",
-        "budget never exceeded; finite; nearest to the gaze first; whole when the budget has paid for half of the quads; what was sampled stays; no frame worse than without repair",
+        "budget never exceeded; finite; nearest to the gaze first; whole one frame after the budget has paid for half of the quads; what was sampled stays; no frame worse than without repair",
         BOTH,
     ),
     row(
@@ -482,7 +482,7 @@ pub const ROWS: [Row; 102] = [
     row(
         "H102",
         "repair: light x0.4 and x1.5 in one frame, undeclared, with and without half of the pixels distrusted; budget 10 %",
-        "budget never exceeded; no frame farther from the light than without repair; nothing wanted after 11 frames",
+        "budget never exceeded; no frame farther from the light than without repair; nothing wanted after 12 frames",
         BOTH,
     )
     .but("where light changes by 1.5, history is not coarse for it: then nothing is planned, and repair changes nothing."),
