@@ -58,7 +58,7 @@ fi
 # Without planted errors and sequences of many frames, which the same tests on wgpu 30 have. The plugin for Bevy is on
 # wgpu 29, too.
 step "tests on wgpu 29: the drop-in on the GPU, lost devices"
-long=(thousand h07 h11 h12 h53 h91 h92 h95 h96 h97)
+long=(thousand h07 h11 h12 h53 h91 h92 h95 h96 h97 h99 h100 h101 h102)
 cargo test "${everything_29[@]}" --test gpu --test gpu_cost --test gpu_memory --test device_loss -- \
     --skip caught --skip planted "${long[@]/#/--skip=}"
 

@@ -31,7 +31,7 @@ rm -rf "$recordings"
 # Not here: planted errors, which have their own below; views beside the frame, which need five storage textures; and
 # sequences whose many frames take minutes on SwiftShader and show nothing that shorter ones do not; lists, whose order is
 # not the same twice.
-long=(thousand h07 h11 h12 h53 h91 h92 h95 h96 h97)
+long=(thousand h07 h11 h12 h53 h91 h92 h95 h96 h97 h99 h100 h101 h102)
 skipped=(caught planted refused beside record_compiles lost_device lists_have "${long[@]}")
 # Rows of twins with NaN or with numbers below 2^-64 are left out of recordings (tests/gpu/twins/probe.rs): devices may
 # flush denormals, and NaN has many bits. The passes' hostile inputs are not left out.
