@@ -1,10 +1,10 @@
 //! Which pixels of a sparse frame want a sample of their own, because history has nothing for them, and which of them
 //! a budget pays for.
 //!
-//! Hardware shades quads of 2x2 pixels, so that quads are chosen. Two pixels of each are asked, for half the cost of
-//! four and the same pictures. A quad has a key: the largest priority of these, then a hash. The chosen ones are those
-//! whose key reaches a threshold, which a histogram of the keys gives: without sorting, and without going beyond the
-//! budget.
+//! Hardware shades quads of 2x2 pixels, so that quads are chosen. Two pixels of each are asked, for three quarters
+//! of the cost of four and nearly the same pictures. A quad has a key: the largest priority of these, then a hash. The
+//! chosen ones are those whose key reaches a threshold, which a histogram of the keys gives: without sorting, and
+//! without going beyond the budget.
 
 use super::rng;
 

@@ -75,7 +75,8 @@ impl ChunkTest {
     ) -> ChosenQuads {
         let tiles = view.geometry().size_px().map(|side| side.div_ceil(TILE_PX));
         let words_per_row = tiles[0].div_ceil(32);
-        let rectangles = Rectangles { pixels: Pixels::of(view), eye: eye(view), last: tiles.map(|n| n - 1) };
+        let eye = view.world_from_camera().w_axis.truncate();
+        let rectangles = Rectangles { pixels: Pixels::of(view), eye, last: tiles.map(|n| n - 1) };
         let mut chunks: Vec<Chunk> = calls
             .iter()
             .map(|(call, bounds)| {
@@ -115,10 +116,6 @@ impl ChunkTest {
         });
         ChosenQuads { list: list.clone(), group, draws }
     }
-}
-
-fn eye(view: &View) -> DVec3 {
-    view.world_from_camera().w_axis.truncate()
 }
 
 /// Rectangles of boxes, in tiles.

@@ -15,7 +15,6 @@ use std::sync::Arc;
 
 /// Odd sides: the last quads lie half beyond the edges.
 const SIZE: [u32; 2] = [63, 35];
-/// The lattice of full rate starts at the corner: its points have the numbers of their pixels.
 const GAZE_PX: [f32; 2] = [12.0, 9.0];
 
 fn regions(samples: [u32; 3]) -> Regions {
