@@ -21,20 +21,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let color = gpu.texture(size, 2, TextureFormat::Rgba32Float, read);
     let output = gpu.texture(size, 2, TextureFormat::Rgba32Float, write);
 
-    // Each eye of a headset has a wider field of view on its outer side. Both look at one point, first on the left,
-    // then on the right.
-    let eyes = [([-1.2, 0.9], 0.032), ([-0.9, 1.2], -0.032)];
+    // Each eye of a headset has a wider field of view on its outer side (left, right, up, down). Both look at one point,
+    // first on the left, then on the right.
+    let eyes = [([-0.876, 0.733, 0.83, -0.83], -0.032), ([-0.733, 0.876, 0.83, -0.83], 0.032)];
     let stripes = |eye: u32, sharp: bool, x: u32| {
         let light = if sharp { (x % 2) as f32 } else { 0.5 };
         if eye == 0 { [light, 0.25, 0.25] } else { [0.25, 0.25, light] }
     };
     for index in 0..2 {
         let mut views = vec![];
-        for (eye, (tan_x, offset_m)) in (0..).zip(eyes) {
-            let geometry = ViewGeometry::off_axis(size, tan_x, [-1.1, 1.1])?;
-            let target = [if index == 0 { -0.2 } else { 0.3 } + offset_m, 0.0, 0.6];
-            let gaze = geometry.project(target).map_or(Gaze::Lost, |px| Gaze::At { px });
-            views.push(ViewFrame::new(geometry, gaze));
+        // The ray of an eye tracker that sits between the eyes, and how far along it they look.
+        let ray = [if index == 0 { -0.2 } else { 0.3 }, 0.0, -0.6];
+        for (eye, (angles_rad, x_m)) in (0..).zip(eyes) {
+            let geometry = ViewGeometry::from_angles(size, angles_rad)?;
+            let pose = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [x_m, 0.0, 0.0, 1.0]];
+            views.push(ViewFrame::new(geometry, Gaze::on_ray([0.0; 3], ray, 0.65, pose)));
             gpu.write(&color, eye, |x, _| stripes(eye, index == 0, x));
         }
         let mut encoder = gpu.encoder();
@@ -43,10 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for warning in recorded.warnings() {
             println!("frame {index}: {warning}");
         }
-        let column = |eye: usize| match views[eye].gaze {
-            Gaze::At { px } => px[0],
-            _ => f32::NAN,
-        };
+        let column = |eye: usize| post.gaze_px(eye, &views[eye].geometry, views[eye].gaze)[0];
         println!("frame {index}: left eye looks at column {:.0}, right eye at {:.0}", column(0), column(1));
     }
     for (eye, name) in [(0, "left"), (1, "right")] {

@@ -3,10 +3,11 @@
 use crate::convention::{DepthConvention, MotionConvention};
 use crate::error::{FrameError, SettingsError};
 use crate::foveation::Filter;
-use crate::geometry::{ViewGeometry, camera_motion};
+use crate::geometry::{ViewGeometry, camera_motion, checked_pose, pose_motion};
 use crate::lattice::Lattices;
 use crate::method::smr_sparse_repair;
 use crate::settings::{Repair, Settings};
+use glam::{DVec3, Vec3};
 use std::fmt::Debug;
 
 /// Largest accepted jitter of a projection along an axis, in pixels.
@@ -54,6 +55,40 @@ impl Gaze {
     pub fn if_confident(self, confidence: f32, least: f32) -> Self {
         // A confidence that is NaN is none.
         if confidence >= least { self } else { Self::Lost }
+    }
+
+    /// The gaze of one eye, or of one view, from a ray in world space: an eye tracker's combined ray in a headset, whose
+    /// two views then each have a gaze of their own. `distance`: how far along the ray the eyes look, in the units of
+    /// `origin`: the distance of the surface under the gaze, or that at which the two eyes' own rays meet; infinite is
+    /// far away. `world_from_view`: pose of the view, a rotation and a translation by columns; y up, -z forward, as in
+    /// OpenXR. A ray, a distance or a pose that is not finite or not in that form counts as [`Lost`](Self::Lost).
+    ///
+    /// ```
+    /// use afterimage::Gaze;
+    ///
+    /// // An eye 3 cm to the left of the tracker's origin sees a point 1 m ahead to its right.
+    /// let left_eye = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [-0.03, 0.0, 0.0, 1.0]];
+    /// let near = Gaze::on_ray([0.0; 3], [0.0, 0.0, -1.0], 1.0, left_eye);
+    /// assert_eq!(near, Gaze::Direction { view: [0.03, 0.0, 1.0] });
+    /// let far = Gaze::on_ray([0.0; 3], [0.0, 0.0, -1.0], f32::INFINITY, left_eye);
+    /// assert_eq!(far, Gaze::Direction { view: [0.0, 0.0, 1.0] });
+    /// ```
+    pub fn on_ray(origin: [f32; 3], direction: [f32; 3], distance: f32, world_from_view: [[f32; 4]; 4]) -> Self {
+        let Ok(pose) = checked_pose("world_from_view", world_from_view) else { return Self::Lost };
+        let (origin, direction) = (Vec3::from(origin).as_dvec3(), Vec3::from(direction).as_dvec3().normalize_or_zero());
+        let view_from_world = pose.inverse();
+        let seen = if distance == f32::INFINITY {
+            view_from_world.transform_vector3(direction)
+        } else {
+            view_from_world.transform_point3(origin + f64::from(distance) * direction)
+        };
+        let is_known = seen.is_finite() && direction != DVec3::ZERO && distance >= 0.0;
+        // y is down and z forward here.
+        if is_known {
+            Self::Direction { view: (seen * DVec3::new(1.0, -1.0, -1.0)).as_vec3().into() }
+        } else {
+            Self::Lost
+        }
     }
 
     /// Position in pixels of a view of `geometry`; `None` if it is lost or not finite. Clamped to +-1e6 pixels, so that
@@ -151,6 +186,31 @@ impl ViewFrame {
         previous_clip_from_world: [[f32; 4]; 4],
     ) -> Result<Self, SettingsError> {
         let matrix = camera_motion(clip_from_view, clip_from_world, previous_clip_from_world)?;
+        Ok(Self { previous_from_current: Some(matrix), ..self })
+    }
+
+    /// This view with the camera motion between two poses: the transforms `world_from_view` of this frame and of the
+    /// previous one, each a rotation and a translation by columns; y up, -z forward, as in OpenXR. "Previous" is the
+    /// last frame that was recorded, not the last one that was displayed.
+    ///
+    /// ```
+    /// # use afterimage::{Gaze, ViewFrame, ViewGeometry};
+    /// # let (pose, previous) = ([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 1.6, 0.0, 1.0]], [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 1.6, 0.1, 1.0]]);
+    /// let geometry = ViewGeometry::from_angles([1440, 1600], [-0.87, 0.75, 0.80, -0.84])?;
+    /// let view = ViewFrame::new(geometry, Gaze::Lost).posed(pose, previous)?;
+    /// // What is 2 m ahead was 2.1 m ahead: the head moved 0.1 m forward.
+    /// assert!((view.previous_from_current.unwrap()[2][3] - 0.1).abs() < 1e-6);
+    /// # Ok::<(), afterimage::SettingsError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SettingsError`] if a matrix is not a rotation and a translation of finite numbers.
+    pub fn posed(
+        self,
+        world_from_view: [[f32; 4]; 4],
+        previous_world_from_view: [[f32; 4]; 4],
+    ) -> Result<Self, SettingsError> {
+        let matrix = pose_motion(world_from_view, previous_world_from_view)?;
         Ok(Self { previous_from_current: Some(matrix), ..self })
     }
 

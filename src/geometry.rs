@@ -4,7 +4,8 @@ use crate::error::SettingsError;
 #[cfg(feature = "cpu")]
 use crate::image::Image;
 use crate::kernel::acuity;
-use glam::{DMat4, DVec4, Vec2, Vec3};
+use glam::{DMat3, DMat4, DVec4, Vec2, Vec3};
+use std::f32::consts::FRAC_PI_2;
 
 /// Geometry of a view: the map from pixels to rays of a perspective camera, symmetric or off-axis (one eye of a
 /// headset).
@@ -72,6 +73,33 @@ impl ViewGeometry {
         let scale = Vec2::new(span("tan_x", tan_x)?, span("tan_y", tan_y)?) / size;
         let offset = Vec2::new(tan_x[0], tan_y[0]) + 0.5 * scale;
         Ok(Self { size_px, scale, offset })
+    }
+
+    /// A view of `size_px` from the angles at its edges in radians, as OpenXR gives an eye's field of view (`XrFovf`):
+    /// left, right, up, down, measured from straight ahead; right and up are positive, so that the first and the last
+    /// are usually negative.
+    ///
+    /// ```
+    /// use afterimage::ViewGeometry;
+    ///
+    /// // The left eye of a headset: 50 degrees to the left, 43 to the right, 46 up, 48 down.
+    /// let left_eye = ViewGeometry::from_angles([1440, 1600], [-50.0_f32, 43.0, 46.0, -48.0].map(f32::to_radians))?;
+    /// assert!((left_eye.hfov_deg() - 93.0).abs() < 0.01);
+    /// # Ok::<(), afterimage::SettingsError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SettingsError`] unless the angles lie within 90 degrees of straight ahead, left below right, down below up.
+    pub fn from_angles(size_px: [u32; 2], angles_rad: [f32; 4]) -> Result<Self, SettingsError> {
+        let [left, right, up, down] = angles_rad;
+        if !(angles_rad.iter().all(|angle| angle.abs() < FRAC_PI_2) && left < right && down < up) {
+            return Err(SettingsError {
+                setting: "angles_rad",
+                found: format!("left {left}, right {right}, up {up}, down {down}"),
+                expected: "angles within 90 degrees of straight ahead, left below right, down below up".into(),
+            });
+        }
+        Self::off_axis(size_px, [left.tan(), right.tan()], [-up.tan(), -down.tan()])
     }
 
     /// A view of `size_px` from an engine's projection matrix, without jitter: right-handed with y up and -z forward,
@@ -214,8 +242,36 @@ pub(crate) fn camera_motion(
     let previous = matrix("previous_clip_from_world", previous_clip_from_world)?;
     // Both frames have the same projection, or one that differs in field of view or planes only: the distance, which
     // the depth test needs, is the previous clip w in either case.
-    let previous_from_current = projection.inverse() * previous * world_from_clip * projection;
+    Ok(rows_y_down(projection.inverse() * previous * world_from_clip * projection))
+}
+
+/// The same from two poses: the transforms from this frame's view space and from the previous frame's to the world.
+pub(crate) fn pose_motion(
+    world_from_view: [[f32; 4]; 4],
+    previous_world_from_view: [[f32; 4]; 4],
+) -> Result<[[f32; 4]; 4], SettingsError> {
+    let current = checked_pose("world_from_view", world_from_view)?;
+    let previous = checked_pose("previous_world_from_view", previous_world_from_view)?;
+    Ok(rows_y_down(previous.inverse() * current))
+}
+
+/// A pose, if it is one: a rotation and a translation.
+pub(crate) fn checked_pose(setting: &'static str, columns: [[f32; 4]; 4]) -> Result<DMat4, SettingsError> {
+    // Doubles: a position of kilometres leaves few digits of a float for the motion of a frame.
+    let pose = DMat4::from_cols_array_2d(&columns.map(|c| c.map(f64::from)));
+    let rotation = DMat3::from_mat4(pose);
+    let is_rotation =
+        (rotation.transpose() * rotation).abs_diff_eq(DMat3::IDENTITY, 1e-3) && rotation.determinant() > 0.0;
+    if is_rotation && pose.w_axis.is_finite() && pose.row(3) == DVec4::W {
+        return Ok(pose);
+    }
+    let expected = "a rotation and a translation, stored by columns; normalise the quaternion of a pose".into();
+    Err(SettingsError { setting, found: format!("{columns:?}"), expected })
+}
+
+/// A motion between view spaces with y up and -z forward, for those with y down and z forward, by rows.
+fn rows_y_down(previous_from_current: DMat4) -> [[f32; 4]; 4] {
     let flip = DMat4::from_diagonal(DVec4::new(1.0, -1.0, -1.0, 1.0));
     let rows = (flip * previous_from_current * flip).transpose();
-    Ok(rows.to_cols_array_2d().map(|row| row.map(|v| v as f32)))
+    rows.to_cols_array_2d().map(|row| row.map(|v| v as f32))
 }

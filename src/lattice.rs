@@ -4,6 +4,7 @@ use crate::error::{FrameError, SettingsError};
 use crate::foveation::Foveation;
 use crate::geometry::ViewGeometry;
 use crate::kernel::lattice::{jitter_px, offset_px};
+use std::f32::consts::SQRT_2;
 
 /// Largest position and number of samples along an axis: twice the largest side of a view.
 const FARTHEST_PX: u32 = 32768;
@@ -216,19 +217,73 @@ impl Foveation {
             Lattice::covering(step, low, high, [0, 1].map(|i| offset[i] % size[i]))
         };
         let mut stack = vec![];
-        for (step, radius_deg) in [(1, self.fovea_radius_deg()), (self.rate_mid, self.mid_radius_deg())] {
+        for (step, radius_deg) in self.regions() {
             let [low, high] = geometry.around_px(gaze_px, radius_deg);
-            if radius_deg > 0.0
-                && low[0] < high[0]
-                && low[1] < high[1]
-                && step < self.rate_far
-                && stack.iter().all(|l: &Lattice| l.step < step)
-            {
+            if low[0] < high[0] && low[1] < high[1] && stack.iter().all(|l: &Lattice| l.step < step) {
                 let lattice: Lattice = covering(step, low, high);
                 stack.extend((0..2).all(|i| lattice.first_px[i] < size[i]).then_some(lattice));
             }
         }
         stack.push(covering(self.rate_far, [0, 0], size));
         Lattices::new(&stack).expect("steps ascend, and each lattice has a sample")
+    }
+
+    /// Size in texels that holds the atlas ([`Lattices::in_atlas`]) of every frame of a view: the largest over all
+    /// gazes, in the view and beyond it, and over all frames. It exceeds what a gaze in the middle needs, because flat
+    /// views magnify what lies at their edges. Renderers allocate color, depth and motion of this size once. Takes some
+    /// ten milliseconds.
+    ///
+    /// ```
+    /// use afterimage::{Filter, Foveation, ViewGeometry};
+    ///
+    /// let eye = ViewGeometry::from_angles([1600, 1600], [-0.785, 0.785, 0.785, -0.785])?;
+    /// let foveation = Foveation {
+    ///     filter: Filter::Sparse,
+    ///     fovea_deg: 10.0,
+    ///     mid_deg: 30.0,
+    ///     rate_mid: 2,
+    ///     rate_far: 4,
+    ///     ..Foveation::default()
+    /// };
+    /// let [width, height] = foveation.max_atlas_px(&eye);
+    /// let (_, [w, h]) = foveation.lattices(&eye, [1599.0, 0.0], 7).in_atlas();
+    /// assert!(w <= width && h <= height && width * height < 1600 * 1600 / 3);
+    /// # Ok::<(), afterimage::SettingsError>(())
+    /// ```
+    pub fn max_atlas_px(&self, geometry: &ViewGeometry) -> [u32; 2] {
+        /// Distance of the gazes that are tried.
+        const GRID_DEG: f32 = 0.5;
+        // A gaze lies at most half a diagonal of the grid from one that is tried.
+        const SLACK_DEG: f32 = 0.5 * GRID_DEG * SQRT_2;
+        let size = geometry.size_px();
+        let whole = size.map(|n| n.div_ceil(self.rate_far));
+        let (scale, offset) = geometry.scale_offset();
+        let reach = (89.0 / GRID_DEG) as i32;
+        let px = |axis: usize, i: i32| ((i as f32 * GRID_DEG).to_radians().tan() - offset[axis]) / scale[axis];
+        let mut largest = whole;
+        for (i, j) in (-reach..=reach).flat_map(|i| (-reach..=reach).map(move |j| (i, j))) {
+            let gaze_px = [px(0, i), px(1, j)];
+            let mut atlas = whole;
+            let mut last_step = 0;
+            for (step, radius_deg) in self.regions() {
+                let [low, high] = geometry.around_px(gaze_px, radius_deg + SLACK_DEG);
+                if low[0] < high[0] && low[1] < high[1] && step > last_step {
+                    // A rectangle of n pixels lies in at most ceil(n / step) + 1 blocks of the frame.
+                    let points = [0, 1].map(|i| ((high[i] - low[i]).div_ceil(step) + 1).min(size[i].div_ceil(step)));
+                    atlas = [atlas[0].max(points[0]), atlas[1] + points[1]];
+                    last_step = step;
+                }
+            }
+            largest = [0, 1].map(|i| largest[i].max(atlas[i]));
+        }
+        largest
+    }
+
+    /// Steps and radii in degrees of the regions that may have lattices of their own, finest first.
+    fn regions(&self) -> impl Iterator<Item = (u32, f32)> {
+        let far = self.rate_far;
+        [(1, self.fovea_radius_deg()), (self.rate_mid, self.mid_radius_deg())]
+            .into_iter()
+            .filter(move |&(step, radius_deg)| radius_deg > 0.0 && step < far)
     }
 }

@@ -136,6 +136,11 @@ impl History {
         held
     }
 
+    /// Last known gaze position of a view, if any.
+    pub(super) fn held_gaze_px(&self, index: usize) -> Option<[f32; 2]> {
+        self.held.get(index).and_then(|held| held.gaze_px)
+    }
+
     /// What [`hold`](Self::hold) would hold.
     pub(super) fn held_after(&self, index: usize, view: &ViewFrame) -> Held {
         self.held[index].with(view)

@@ -27,7 +27,8 @@ pub use doctor::Doctor;
 pub use history::History;
 
 use crate::error::{FrameError, SettingsError};
-use crate::frame::{ContextDesc, Executor, ViewFrame, check_size};
+use crate::frame::{ContextDesc, Executor, Gaze, ViewFrame, check_size};
+use crate::geometry::ViewGeometry;
 use crate::image::Image;
 use crate::lattice::Lattices;
 use crate::method::{Algorithm, HistoryLayout, Stage};
@@ -119,6 +120,13 @@ impl CpuAfterimage {
     /// Description of the context, with its current size and settings.
     pub fn desc(&self) -> &ContextDesc {
         &self.desc
+    }
+
+    /// Gaze position in pixels that [`process`](Self::process) would use for view `view` of the next frame: `gaze` if it
+    /// is known, else the last known one, else the middle of the view. Renderers of sparse frames need it before, to
+    /// place the [lattices](crate::Foveation::lattices).
+    pub fn gaze_px(&self, view: usize, geometry: &ViewGeometry, gaze: Gaze) -> [f32; 2] {
+        gaze.resolve(self.history.held_gaze_px(view), geometry)
     }
 
     /// Changes the settings from the next frame on.
@@ -252,7 +260,9 @@ impl CpuAfterimage {
         });
         self.planned = None;
         if self.history.layout() == HistoryLayout::Nothing {
-            self.history.forget();
+            for (i, view) in frame.views.iter().enumerate() {
+                self.history.hold(i, view);
+            }
         } else {
             self.history.swap();
         }

@@ -68,6 +68,10 @@ impl Passes for GeometryFill {
         self.0.get().map_or(0, GeometryPass::memory_bytes)
     }
 
+    fn filled_depth(&self) -> Option<&Texture> {
+        self.0.get().map(|pass| &pass.textures[0])
+    }
+
     fn record<'a>(&'a self, device: &Device, pass: &mut ComputePass<'_>, job: &mut Job<'a>) {
         if job.variant.geometry_at_samples {
             let own = self.pass(device, job.desc);
@@ -174,7 +178,7 @@ fn textures(device: &Device, desc: &ContextDesc) -> [Texture; 2] {
             sample_count: 1,
             dimension: TextureDimension::D2,
             format,
-            usage: TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING,
+            usage: TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC,
             view_formats: &[],
         })
     })

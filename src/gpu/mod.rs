@@ -44,7 +44,8 @@ pub use uniforms::MAX_VIEWS;
 
 use crate::error::{CreateError, FrameError, SettingsError};
 use crate::foveation::Filter;
-use crate::frame::{ContextDesc, Executor, check_size};
+use crate::frame::{ContextDesc, Executor, Gaze, check_size};
+use crate::geometry::ViewGeometry;
 use crate::kernel::debug_view::DebugView;
 use crate::method::{HistoryLayout, PassShader, Stage, smr_sparse_repair};
 use crate::resize::Resize;
@@ -268,6 +269,13 @@ impl Afterimage {
         self.history.forget();
     }
 
+    /// Gaze position in pixels that [`record`](Self::record) would use for view `view` of the next frame: `gaze` if it is
+    /// known, else the last known one, else the middle of the view. Renderers of sparse frames need it before, to place
+    /// the [lattices](crate::Foveation::lattices).
+    pub fn gaze_px(&self, view: usize, geometry: &ViewGeometry, gaze: Gaze) -> [f32; 2] {
+        gaze.resolve(self.history.held.get(view).and_then(|held| held.gaze_px), geometry)
+    }
+
     /// Compiles the pipelines for `variants` of frames and targets, so that [`record`](Self::record) does not have to:
     /// while loading, and again after [`set_settings`](Self::set_settings). [`Variant::all`] are all that a frame can
     /// need without regions and debug views; a list of those that occur takes less time.
@@ -342,10 +350,8 @@ impl Afterimage {
         let prepared = self.prepare(frame, Some(&target));
         self.dispatch(device, encoder, frame, &target, None, prepared.uniforms);
         self.unplan();
-        if self.desc.settings.history_layout() == HistoryLayout::Nothing {
-            self.history.forget();
-        } else {
-            self.history.held = prepared.held;
+        self.history.held = prepared.held;
+        if self.desc.settings.history_layout() != HistoryLayout::Nothing {
             self.history.swap();
         }
         Ok(prepared.recorded)
@@ -421,6 +427,15 @@ impl Afterimage {
     /// replace it.
     pub fn repair_quads(&self, view: usize) -> Option<&Buffer> {
         self.repair.as_ref().and_then(|repair| repair.list(view))
+    }
+
+    /// Distance of every pixel along the view axis, interpolated from the depth at the samples, for composition layers
+    /// with depth and for effects that follow: `R32Float`, an array layer for each view; usages `TEXTURE_BINDING` and
+    /// `COPY_SRC`. At least 1e30 where nothing is, -1 where depth was invalid. It is of the last frame that was recorded or planned
+    /// with [geometry at samples](crate::Lattices::with_geometry_at_samples) and a depth input; `None` before the first
+    /// one, since other frames have depth at every pixel. A change of size replaces it.
+    pub fn filled_depth(&self) -> Option<&Texture> {
+        self.stages.filled_depth()
     }
 
     /// Records a debug view of the decisions that [`record`](Self::record) of the same frame will make, as linear

@@ -7,7 +7,7 @@ use crate::frame::ContextDesc;
 use crate::kernel::debug_view::DebugView;
 use crate::method::Overrides;
 use std::fmt::Debug;
-use wgpu::{Buffer, ComputePass, Device, TextureView};
+use wgpu::{Buffer, ComputePass, Device, Texture, TextureView};
 
 /// A frame to record: its description, and what follows from it. A stage replaces what it fills.
 pub(super) struct Job<'a> {
@@ -46,6 +46,11 @@ pub(super) trait Passes: Debug + wgpu::WasmNotSendSync {
     /// [`memory_bytes_of`](super::Afterimage::memory_bytes_of).
     fn added_bytes(&self) -> u64 {
         0
+    }
+
+    /// Distance of every pixel, if the stage fills it.
+    fn filled_depth(&self) -> Option<&Texture> {
+        None
     }
 
     /// Records the passes of a frame.

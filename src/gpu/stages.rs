@@ -11,7 +11,7 @@ use super::{Variant, fill, sparse};
 use crate::frame::ContextDesc;
 use crate::method::{Overrides, Stage};
 use crate::shader::SHADERS;
-use wgpu::{CommandEncoder, ComputePass, ComputePassDescriptor, Device, TextureFormat};
+use wgpu::{CommandEncoder, ComputePass, ComputePassDescriptor, Device, Texture, TextureFormat};
 
 /// The stages of a context.
 #[derive(Debug)]
@@ -71,6 +71,11 @@ impl Stages {
     /// Bytes of textures that were made at a frame, in addition to [`memory_bytes_of`].
     pub fn added_bytes(&self) -> u64 {
         self.passes().map(Passes::added_bytes).sum()
+    }
+
+    /// Distance of every pixel of a frame that had it at its samples only.
+    pub fn filled_depth(&self) -> Option<&Texture> {
+        self.passes().find_map(Passes::filled_depth)
     }
 
     /// Records a frame.

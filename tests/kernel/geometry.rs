@@ -4,7 +4,7 @@ use afterimage::{ContextDesc, Gaze, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
 use glam::camera::rh::proj::{directx, opengl};
 use glam::camera::rh::view::look_to_mat4;
-use glam::{Mat4, Vec3, Vec4};
+use glam::{Mat4, Quat, Vec3, Vec4};
 
 const SIZE: [u32; 2] = [1600, 900];
 
@@ -52,6 +52,91 @@ fn a_projection_has_the_geometry_of_its_angles() {
         ViewGeometry::from_projection(SIZE, eye).unwrap(),
         ViewGeometry::off_axis(SIZE, [-1.2, 0.9], [-1.1, 1.0]).unwrap(),
     );
+}
+
+#[test]
+fn four_angles_have_the_geometry_of_their_tangents() {
+    let angles = [-0.876_f32, 0.733, 0.785, -0.82];
+    let [left, right, up, down] = angles.map(f32::tan);
+    let expected = ViewGeometry::from_projection(SIZE, off_axis([left, right], [down, up]).to_cols_array_2d()).unwrap();
+    assert_same(ViewGeometry::from_angles(SIZE, angles).unwrap(), expected);
+    for (wrong, i) in [(1.6, 0), (-1.6, 1), (f32::NAN, 2), (f32::INFINITY, 3), (0.733, 0), (-0.9, 2)] {
+        let mut angles = angles;
+        angles[i] = wrong;
+        let error = ViewGeometry::from_angles(SIZE, angles).unwrap_err();
+        assert!(error.to_string().contains("within 90 degrees"), "{angles:?}: {error}");
+    }
+}
+
+#[test]
+fn poses_give_the_motion_of_their_matrices() {
+    let mut draws = Draws::new("poses");
+    let eye = off_axis([-1.2, 0.9], [-1.0, 1.1]);
+    let geometry = ViewGeometry::from_projection(SIZE, eye.to_cols_array_2d()).unwrap();
+    let view = ViewFrame::new(geometry, Gaze::Lost);
+    for _ in 0..50 {
+        let mut pose = |around: Vec3, radians: f32| {
+            let mut number = |reach: f32| draws.range(-reach, reach);
+            let turn = Vec3::new(number(radians), number(radians), number(radians));
+            let place = around + Vec3::new(number(0.1), number(0.1), number(0.1));
+            Mat4::from_rotation_translation(Quat::from_scaled_axis(turn), place)
+        };
+        let (now, before) = (pose(Vec3::new(3.0, 1.6, -2.0), 1.0), pose(Vec3::new(3.0, 1.6, -2.0), 1.0));
+        let clip = |pose: Mat4| (eye * pose.inverse()).to_cols_array_2d();
+        let expected = view.moved(eye.to_cols_array_2d(), clip(now), clip(before)).unwrap();
+        let found = view.posed(now.to_cols_array_2d(), before.to_cols_array_2d()).unwrap();
+        let (expected, found) = (expected.previous_from_current.unwrap(), found.previous_from_current.unwrap());
+        for (a, b) in expected.iter().flatten().zip(found.iter().flatten()) {
+            assert!((a - b).abs() < 2e-5, "{expected:?}, {found:?}");
+        }
+    }
+    let good = Mat4::from_rotation_y(0.3).to_cols_array_2d();
+    let scaled = Mat4::from_scale(Vec3::splat(1.1)).to_cols_array_2d();
+    let mirrored = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0)).to_cols_array_2d();
+    let by_rows = Mat4::from_translation(Vec3::X).transpose().to_cols_array_2d();
+    for bad in [scaled, mirrored, by_rows, Mat4::NAN.to_cols_array_2d(), [[0.0; 4]; 4]] {
+        assert_eq!(view.posed(bad, good).unwrap_err().setting, "world_from_view");
+        let error = view.posed(good, bad).unwrap_err();
+        assert_eq!(error.setting, "previous_world_from_view");
+        assert!(error.expected.contains("a rotation and a translation"), "{error}");
+    }
+}
+
+#[test]
+fn one_ray_is_seen_by_both_eyes_where_the_point_is() {
+    let mut draws = Draws::new("one ray");
+    for _ in 0..200 {
+        let mut number = |reach: f32| draws.range(-reach, reach);
+        let turn = Quat::from_scaled_axis(Vec3::new(number(1.0), number(1.0), number(1.0)));
+        let head = Mat4::from_rotation_translation(turn, Vec3::new(number(5.0), number(2.0), number(5.0)));
+        let direction = Vec3::new(number(0.5), number(0.5), -1.0).normalize();
+        let (origin, direction) = (head.transform_point3(Vec3::ZERO), head.transform_vector3(direction));
+        let distance = 0.3 + number(0.25).abs() * 20.0;
+        let point = origin + distance * direction;
+        for side in [-0.032, 0.032] {
+            let pose = head * Mat4::from_translation(Vec3::new(side, 0.0, 0.0));
+            let geometry = ViewGeometry::from_angles(SIZE, [-0.876, 0.733, 0.785, -0.82]).unwrap();
+            // A direction of any length.
+            let ray = (3.0 * direction).into();
+            let gaze = Gaze::on_ray(origin.into(), ray, distance, pose.to_cols_array_2d()).resolve(None, &geometry);
+            let seen = pose.inverse().transform_point3(point) * Vec3::new(1.0, -1.0, -1.0);
+            let expected = geometry.project(seen.into()).unwrap();
+            assert!((0..2).all(|i| (gaze[i] - expected[i]).abs() < 0.05), "{gaze:?} instead of {expected:?}");
+            // The planted error: the gaze of an eye that sits between both.
+            let middle = head.inverse().transform_point3(point) * Vec3::new(1.0, -1.0, -1.0);
+            assert!((geometry.project(middle.into()).unwrap()[0] - expected[0]).abs() > 1.0);
+        }
+    }
+    let pose = Mat4::IDENTITY.to_cols_array_2d();
+    let lost = |origin, direction, distance, pose| Gaze::on_ray(origin, direction, distance, pose) == Gaze::Lost;
+    let ahead = [0.0, 0.0, -1.0];
+    assert!(lost([f32::NAN, 0.0, 0.0], ahead, 1.0, pose));
+    assert!(lost([0.0; 3], [0.0; 3], 1.0, pose) && lost([0.0; 3], [0.0; 3], f32::INFINITY, pose));
+    assert!(lost([0.0; 3], [f32::INFINITY, 0.0, 0.0], 1.0, pose));
+    assert!(lost([0.0; 3], ahead, f32::NAN, pose) && lost([0.0; 3], ahead, -1.0, pose));
+    assert!(lost([0.0; 3], ahead, 1.0, [[0.0; 4]; 4]));
+    let flipped = Gaze::on_ray([0.0; 3], [0.2, 0.1, -1.0], f32::INFINITY, pose);
+    assert!(matches!(flipped, Gaze::Direction { view: [x, y, z] } if x > 0.0 && y < 0.0 && z > 0.0), "{flipped:?}");
 }
 
 #[test]

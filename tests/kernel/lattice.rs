@@ -2,6 +2,7 @@
 
 use afterimage::kernel::lattice::*;
 use afterimage::{Foveation, Lattice, Lattices, ViewGeometry};
+use afterimage_testing::Draws;
 use glam::{Vec2, Vec4};
 use std::collections::HashSet;
 
@@ -41,6 +42,41 @@ fn lattices_cover_the_view_and_their_regions() {
                     assert!(step <= needed, "{gaze:?}: ({x}, {y}) at {e_deg} degrees has step {step}");
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn the_largest_atlas_holds_every_gaze_and_is_not_much_larger() {
+    let mut draws = Draws::new("largest atlas");
+    let views = [
+        ViewGeometry::flat([640, 360], 70.0).unwrap(),
+        ViewGeometry::from_angles([800, 800], [-0.785, 0.785, 0.785, -0.785]).unwrap(),
+        ViewGeometry::from_angles([723, 811], [-0.95, 0.70, 0.80, -0.90]).unwrap(),
+        ViewGeometry::flat([33, 7], 120.0).unwrap(),
+        ViewGeometry::off_axis([400, 300], [0.2, 1.5], [-0.1, 0.9]).unwrap(),
+    ];
+    let foveations = [(5.0, 15.0, 8, 16), (10.0, 30.0, 2, 4), (0.0, 20.0, 2, 4), (12.0, 20.0, 1, 2), (0.0, 0.0, 4, 4)];
+    for geometry in views {
+        for (fovea_deg, mid_deg, rate_mid, rate_far) in foveations {
+            let foveation = Foveation { fovea_deg, mid_deg, rate_mid, rate_far, ..Foveation::default() };
+            let bound = foveation.max_atlas_px(&geometry);
+            let size = geometry.size_px();
+            let mut largest = [0, 0];
+            for i in 0..4000 {
+                // In the view, on its edges, and around it.
+                let gaze = [0, 1].map(|axis| {
+                    let s = size[axis] as f32;
+                    [draws.range(-0.5 * s, 1.5 * s), draws.range(0.0, s), -0.5, s - 0.5][draws.bits() as usize % 4]
+                });
+                let atlas = foveation.lattices(&geometry, gaze, i).in_atlas().1;
+                assert!((0..2).all(|i| atlas[i] <= bound[i]), "{gaze:?}: {atlas:?} of {bound:?}");
+                largest = [0, 1].map(|i| largest[i].max(atlas[i]));
+            }
+            println!("{size:?}, {fovea_deg} and {mid_deg} degrees: {bound:?}, used {largest:?}");
+            // Lattices of different gazes are largest, and some pixels are for what lies between the gazes tried.
+            let slack = [0, 1].map(|i| bound[i] as f32 - 1.2 * largest[i] as f32);
+            assert!(slack.iter().all(|&v| v <= 6.0), "{bound:?} where {largest:?} were used");
         }
     }
 }

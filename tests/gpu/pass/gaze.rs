@@ -2,7 +2,7 @@
 
 use super::rig::{Rig, View, noise};
 use crate::settings::ungated;
-use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, Reset, Settings, Smr, ViewGeometry};
+use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, MethodKind, Reset, Settings, Smr, ViewGeometry};
 use afterimage_testing::holds;
 
 const SIZE: [u32; 2] = [64, 48];
@@ -88,6 +88,38 @@ fn h61_h62_h64_h65_weights_follow_rays_in_any_view() {
 /// Watson's density in f64, up to constant factors.
 fn density64(e_deg: f64) -> f64 {
     (0.9851 / (1.0 + e_deg / 1.058).powi(2) + 0.0149 * (-e_deg / 22.14).exp()) / (1.0 + e_deg / 41.03)
+}
+
+#[test]
+fn the_gaze_of_the_next_frame_is_known_before_it() {
+    let at = |px| Gaze::At { px };
+    for method in MethodKind::ALL {
+        let settings = Settings { method: method.into(), ..Settings::paper() };
+        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
+        let geometry = View::still(noise(SIZE, "gaze"), [0.0; 2]).facts.geometry;
+        let known = |rig: &Rig, gaze| {
+            let (cpu, gpu) = (rig.cpu.gaze_px(0, &geometry, gaze), rig.gpu.gaze_px(0, &geometry, gaze));
+            assert_eq!(cpu, gpu, "{method:?}");
+            cpu
+        };
+        assert_eq!(known(&rig, Gaze::Lost), [31.5, 23.5]);
+        let steps = [
+            (at([9.0, 8.0]), Reset::None, [9.0, 8.0]),
+            (Gaze::Lost, Reset::None, [9.0, 8.0]),
+            (Gaze::Uv { uv: [0.5, 0.25] }, Reset::None, [31.5, 11.5]),
+            // A cut is no reason to forget where the eye looks.
+            (Gaze::Lost, Reset::All, [31.5, 11.5]),
+        ];
+        for (index, (gaze, reset, expected)) in (0..).zip(steps) {
+            assert_eq!(known(&rig, gaze), expected, "{method:?}, frame {index}");
+            let mut view = View::still(noise(SIZE, "gaze"), [0.0; 2]);
+            view.facts.gaze = gaze;
+            rig.both(index, reset, &[view]);
+        }
+        rig.cpu.forget();
+        rig.gpu.forget();
+        assert_eq!(known(&rig, Gaze::Lost), [31.5, 23.5]);
+    }
 }
 
 #[test]

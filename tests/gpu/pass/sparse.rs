@@ -715,6 +715,38 @@ fn geometry_at_samples_is_filled_bit_equal() {
 }
 
 #[test]
+fn filled_depth_is_that_of_the_samples_and_between_them() {
+    let settings = settings(MethodKind::Smr);
+    let Some(mut rig) = Rig::new(desc(), settings) else { return };
+    assert!(rig.gpu.filled_depth().is_none());
+    for index in [0, 2, 3] {
+        let views = at_samples(index, &settings);
+        rig.on_gpu(index, Reset::None, &views);
+        let filled = rig.gpu.filled_depth().expect("a frame with geometry at samples");
+        let filled = afterimage_testing::gpu::read_texture(&rig.device, &rig.queue, filled);
+        let pixels = (SIZE[0] * SIZE[1]) as usize;
+        let mut worst: [f32; 2] = [0.0; 2];
+        for (v, view) in views.iter().enumerate() {
+            let (depth, lattices) = (view.depth.as_ref().unwrap(), view.facts.lattices.unwrap());
+            for (i, (&given, &bits)) in depth.pixels().iter().zip(&filled[v * pixels..]).enumerate() {
+                let (px, z) = ([i as u32 % SIZE[0], i as u32 / SIZE[0]], f32::from_bits(bits));
+                let is_sample = lattices.at(px).unwrap().samples(px);
+                // Between samples, silhouettes may lie elsewhere; but each distance is one of the scene's.
+                let error = if is_sample {
+                    (z / given - 1.0).abs()
+                } else {
+                    (z / (2.0 + 0.01 * index as f32) - 1.0).abs().min((z / 6.5 - 1.0).abs())
+                };
+                worst[usize::from(is_sample)] = worst[usize::from(is_sample)].max(error);
+            }
+        }
+        println!("frame {index}: largest relative error {:.1e} at samples, {:.1e} between them", worst[1], worst[0]);
+        // A reciprocal there and back; a mean of reciprocals between.
+        assert!(worst[1] < 1e-6 && worst[0] < 1e-6, "{worst:?}");
+    }
+}
+
+#[test]
 fn geometry_between_samples_is_not_read() {
     let settings = settings(MethodKind::Smr);
     let (Some(mut rig), Some(mut other)) = (Rig::new(desc(), settings), Rig::new(desc(), settings)) else { return };
