@@ -195,7 +195,8 @@ impl ViewFrame {
     ///
     /// ```
     /// # use afterimage::{Gaze, ViewFrame, ViewGeometry};
-    /// # let (pose, previous) = ([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 1.6, 0.0, 1.0]], [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 1.6, 0.1, 1.0]]);
+    /// # let at = |z| [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 1.6, z, 1.0]];
+    /// # let (pose, previous) = (at(0.0), at(0.1));
     /// let geometry = ViewGeometry::from_angles([1440, 1600], [-0.87, 0.75, 0.80, -0.84])?;
     /// let view = ViewFrame::new(geometry, Gaze::Lost).posed(pose, previous)?;
     /// // What is 2 m ahead was 2.1 m ahead: the head moved 0.1 m forward.
