@@ -21,8 +21,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let color = gpu.texture(size, 2, TextureFormat::Rgba32Float, read);
     let output = gpu.texture(size, 2, TextureFormat::Rgba32Float, write);
 
-    // Each eye of a headset has a wider field of view on its outer side (left, right, up, down). Both look at one point,
-    // first on the left, then on the right.
+    // Each eye of a headset has a wider field of view on its outer side (left, right, up, down). Both look at one
+    // point, first on the left, then on the right.
     let eyes = [([-0.876, 0.733, 0.83, -0.83], -0.032), ([-0.733, 0.876, 0.83, -0.83], 0.032)];
     let stripes = |eye: u32, sharp: bool, x: u32| {
         let light = if sharp { (x % 2) as f32 } else { 0.5 };

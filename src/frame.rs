@@ -57,11 +57,12 @@ impl Gaze {
         if confidence >= least { self } else { Self::Lost }
     }
 
-    /// The gaze of one eye, or of one view, from a ray in world space: an eye tracker's combined ray in a headset, whose
-    /// two views then each have a gaze of their own. `distance`: how far along the ray the eyes look, in the units of
-    /// `origin`: the distance of the surface under the gaze, or that at which the two eyes' own rays meet; infinite is
-    /// far away. `world_from_view`: pose of the view, a rotation and a translation by columns; y up, -z forward, as in
-    /// OpenXR. A ray, a distance or a pose that is not finite or not in that form counts as [`Lost`](Self::Lost).
+    /// The gaze of one eye, or of one view, from a ray in world space: an eye tracker's combined ray in a headset,
+    /// whose two views then each have a gaze of their own. `distance`: how far along the ray the eyes look, in the
+    /// units of `origin`: the distance of the surface under the gaze, or that at which the two eyes' own rays meet;
+    /// infinite is far away. `world_from_view`: pose of the view, a rotation and a translation by columns; y up, -z
+    /// forward, as in OpenXR. A ray, a distance or a pose that is not finite or not in that form counts as
+    /// [`Lost`](Self::Lost).
     ///
     /// ```
     /// use afterimage::Gaze;

@@ -269,9 +269,9 @@ impl Afterimage {
         self.history.forget();
     }
 
-    /// Gaze position in pixels that [`record`](Self::record) would use for view `view` of the next frame: `gaze` if it is
-    /// known, else the last known one, else the middle of the view. Renderers of sparse frames need it before, to place
-    /// the [lattices](crate::Foveation::lattices).
+    /// Gaze position in pixels that [`record`](Self::record) would use for view `view` of the next frame: `gaze` if it
+    /// is known, else the last known one, else the middle of the view. Renderers of sparse frames need it before, to
+    /// place the [lattices](crate::Foveation::lattices).
     pub fn gaze_px(&self, view: usize, geometry: &ViewGeometry, gaze: Gaze) -> [f32; 2] {
         gaze.resolve(self.history.held.get(view).and_then(|held| held.gaze_px), geometry)
     }
@@ -431,9 +431,9 @@ impl Afterimage {
 
     /// Distance of every pixel along the view axis, interpolated from the depth at the samples, for composition layers
     /// with depth and for effects that follow: `R32Float`, an array layer for each view; usages `TEXTURE_BINDING` and
-    /// `COPY_SRC`. At least 1e30 where nothing is, -1 where depth was invalid. It is of the last frame that was recorded or planned
-    /// with [geometry at samples](crate::Lattices::with_geometry_at_samples) and a depth input; `None` before the first
-    /// one, since other frames have depth at every pixel. A change of size replaces it.
+    /// `COPY_SRC`. At least 1e30 where nothing is, -1 where depth was invalid. It is of the last frame that was
+    /// recorded or planned with [geometry at samples](crate::Lattices::with_geometry_at_samples) and a depth input;
+    /// `None` before the first one, since other frames have depth at every pixel. A change of size replaces it.
     pub fn filled_depth(&self) -> Option<&Texture> {
         self.stages.filled_depth()
     }
