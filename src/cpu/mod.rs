@@ -122,8 +122,8 @@ impl CpuAfterimage {
         &self.desc
     }
 
-    /// Gaze position in pixels that [`process`](Self::process) would use for view `view` of the next frame: `gaze` if it
-    /// is known, else the last known one, else the middle of the view. Renderers of sparse frames need it before, to
+    /// Gaze position in pixels that [`process`](Self::process) would use for view `view` of the next frame: `gaze` if
+    /// it is known, else the last known one, else the middle of the view. Renderers of sparse frames need it before, to
     /// place the [lattices](crate::Foveation::lattices).
     pub fn gaze_px(&self, view: usize, geometry: &ViewGeometry, gaze: Gaze) -> [f32; 2] {
         gaze.resolve(self.history.held_gaze_px(view), geometry)
