@@ -148,6 +148,11 @@ pub struct ViewFrame {
     /// Convention of this view's depth values in this frame. `None`: the context's ([`ContextDesc::depth`]). History
     /// stays valid when the near plane changes, because distances are stored.
     pub depth: Option<DepthConvention>,
+    /// What a headset's lens shows of the view: an octagon, by the lowest x, y, x + y and x - y of its pixels and the
+    /// highest ones ([`ViewGeometry::visible_px`] makes it from a visibility mask). smr on sparse frames does not
+    /// process what lies beyond it, asks for no repair there, and shows it black; other methods process every pixel.
+    /// `None`: every pixel is seen.
+    pub visible_px: Option<[[f32; 4]; 2]>,
     /// Where the samples of a sparse frame lie ([`Filter::Sparse`](crate::Filter::Sparse)): those that the renderer
     /// drew, for the gaze that it used. The color input is of the context's size, and only its samples are read, or it
     /// is an atlas ([`Lattice::atlas_texel`](crate::Lattice::atlas_texel)) of any size; other inputs are of the
@@ -158,7 +163,15 @@ pub struct ViewFrame {
 impl ViewFrame {
     /// A view of unknown camera motion, without jitter.
     pub fn new(geometry: ViewGeometry, gaze: Gaze) -> Self {
-        Self { geometry, gaze, previous_from_current: None, jitter_px: [0.0; 2], depth: None, lattices: None }
+        Self {
+            geometry,
+            gaze,
+            previous_from_current: None,
+            jitter_px: [0.0; 2],
+            depth: None,
+            visible_px: None,
+            lattices: None,
+        }
     }
 
     /// This view with the camera motion between two frames, from an engine's matrices: the projection
@@ -245,6 +258,12 @@ impl ViewFrame {
         let [x, y] = self.jitter_px;
         if !(x.abs() <= MAX_JITTER_PX && y.abs() <= MAX_JITTER_PX) {
             return refuse("jitter_px", format!("({x}, {y})"), "finite offsets of at most 16 pixels, usually below 1");
+        }
+        if let Some([lowest, highest]) = self.visible_px
+            && !(0..4).all(|i| lowest[i].is_finite() && highest[i].is_finite() && lowest[i] <= highest[i])
+        {
+            let expected = "finite bounds, the lowest first, or None if every pixel is seen";
+            return refuse("visible_px", format!("{lowest:?} to {highest:?}"), expected);
         }
         if let Some(lattices) = &self.lattices {
             lattices.check(view, desc.size_px)?;

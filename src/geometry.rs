@@ -4,7 +4,7 @@ use crate::error::SettingsError;
 #[cfg(feature = "cpu")]
 use crate::image::Image;
 use crate::kernel::acuity;
-use glam::{DMat3, DMat4, DVec4, Vec2, Vec3};
+use glam::{DMat3, DMat4, DVec4, Vec2, Vec3, Vec4};
 use std::f32::consts::FRAC_PI_2;
 
 /// Geometry of a view: the map from pixels to rays of a perspective camera, symmetric or off-axis (one eye of a
@@ -137,6 +137,35 @@ impl ViewGeometry {
     #[inline]
     pub fn ray(&self, px: [f32; 2]) -> [f32; 3] {
         (Vec2::from(px) * self.scale + self.offset).extend(1.0).to_array()
+    }
+
+    /// Octagon around what a headset's lens shows, for [`ViewFrame::visible_px`](crate::ViewFrame::visible_px).
+    /// `outline`: points whose convex hull is the visible area, such as the vertices of OpenXR's visibility mask: x and
+    /// y in the plane one unit ahead, y up. One pixel is added on every side. `None` if a point is not finite, or there
+    /// is none.
+    ///
+    /// ```
+    /// use afterimage::ViewGeometry;
+    ///
+    /// let eye = ViewGeometry::from_angles([1440, 1600], [-0.88, 0.73, 0.85, -0.85])?;
+    /// // A lens that shows a diamond.
+    /// let [lowest, highest] = eye.visible_px([[-1.2, 0.0], [0.9, 0.0], [0.0, 1.1], [0.0, -1.1]]).expect("finite points");
+    /// assert!(lowest[0] < highest[0] && lowest[2] > lowest[0] + lowest[1]);
+    /// # Ok::<(), afterimage::SettingsError>(())
+    /// ```
+    pub fn visible_px(&self, outline: impl IntoIterator<Item = [f32; 2]>) -> Option<[[f32; 4]; 2]> {
+        let mut bounds: Option<[Vec4; 2]> = None;
+        for [x, y] in outline {
+            let px = (Vec2::new(x, -y) - self.offset) / self.scale;
+            let along = Vec4::new(px.x, px.y, px.x + px.y, px.x - px.y);
+            if !along.is_finite() {
+                return None;
+            }
+            bounds = Some(bounds.map_or([along; 2], |[lowest, highest]| [lowest.min(along), highest.max(along)]));
+        }
+        // Along a diagonal, a pixel's corner is twice as far from its centre as along an axis.
+        let margin = Vec4::new(1.0, 1.0, 2.0, 2.0);
+        bounds.map(|[lowest, highest]| [(lowest - margin).to_array(), (highest + margin).to_array()])
     }
 
     /// Position in pixels of a point or direction in view space (x right, y down, z forward). May lie outside the view.

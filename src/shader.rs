@@ -45,6 +45,7 @@ pub static MODULES: &[Module] = &[
     module!("lib", "foveate"),
     module!("lib", "kept"),
     module!("lib", "lattice"),
+    module!("lib", "lens"),
     module!("lib", "matched"),
     module!("lib", "noise"),
     module!("lib", "pack"),

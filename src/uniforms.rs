@@ -55,6 +55,10 @@ pub struct ViewUniforms {
     pub repaired_origin: u32,
     /// Padding to a multiple of 16 bytes.
     pub unused: [u32; 3],
+    /// Lowest x, y, x + y and x - y of pixels that are seen.
+    pub lowest_px: [f32; 4],
+    /// Highest ones.
+    pub highest_px: [f32; 4],
 }
 
 /// What a context holds of a view's descriptions from frame to frame.
@@ -91,6 +95,7 @@ impl ViewUniforms {
         let [x, y, z] = view.geometry.ray(view.gaze.resolve(held.gaze_px, &view.geometry));
         let disparity = view.depth_convention(desc).disparity_map();
         let jitter = view.jitter_px;
+        let [lowest_px, highest_px] = view.visible_px.unwrap_or([[f32::MIN; 4], [f32::MAX; 4]]);
         Self {
             ray_scale,
             // A pixel shows what is at its position minus the jitter.
@@ -103,6 +108,8 @@ impl ViewUniforms {
             disparity_flags: disparity.flags(),
             motion_offset: desc.motion.jitter_offset(jitter, held.previous_jitter_px),
             jitter_px: jitter,
+            lowest_px,
+            highest_px,
             ..Self::default()
         }
     }

@@ -1,5 +1,6 @@
 //#use acuity
 //#use depth
+//#use lens
 //#use noise
 //#use origin
 //#use reproject
@@ -89,6 +90,11 @@ fn color_at(px: vec2<u32>, view: u32) -> vec4<f32> {
 // Trust mask, not sanitized.
 fn trust_at(px: vec2<u32>, view: u32) -> f32 {
     return textureLoad(trust_in, texel_of(px, frame.views[view].trust_origin), layer_of(view), 0).x;
+}
+
+// Whether the lens shows a pixel.
+fn is_seen(px: vec2<u32>, view: u32) -> bool {
+    return is_visible(px.x, px.y, frame.views[view].lowest_px, frame.views[view].highest_px);
 }
 
 fn ray_at(px: vec2<u32>, view: u32) -> vec3<f32> {

@@ -51,7 +51,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     var left = 0u;
     for (var i = 0u; i < 2u; i++) {
         let px = asked_px(i, quad.x, quad.y, frame.frame_low);
-        left |= select(0u, 1u << i, all(px < frame.size) && !is_settled(px, view));
+        left |= select(0u, 1u << i, all(px < frame.size) && is_seen(px, view) && !is_settled(px, view));
     }
     var largest = 0u;
     while left != 0u {

@@ -241,7 +241,24 @@ fn repaired(px: vec2<u32>, view: u32, level: u32) -> Repaired {
     return Repaired(own.color, given.w, chosen && own.usable);
 }
 
+// What the lens hides: black, and no history for what moves into view.
+fn hidden_pixel(px: vec2<u32>, view: u32) {
+    let trace = PixelTrace(VERDICT_RESET, 0.0, 0.0, 0u, 0.0, 1.0, true, vec2<f32>(0.0));
+    write_output(px, view, vec3<f32>(0.0), 1.0, trace);
+    if VIEW == 0u {
+        let empty = pack_kept(Kept(vec3<f32>(0.0), -1.0, -1.0, vec2<f32>(0.0)));
+        textureStore(next_kept, px, view, vec4<u32>(empty, 0u, 0u));
+        if NOISY != 0u {
+            textureStore(next_noise, px, view, vec4<u32>(pack_noise(Noise(1.0, 0.0)), 0u, 0u, 0u));
+        }
+    }
+}
+
 fn pixel(px: vec2<u32>, view: u32) {
+    if !is_seen(px, view) {
+        hidden_pixel(px, view);
+        return;
+    }
     let disparity_now = disparity_at(px, view);
     let lattices = lattices_at(px, view);
     let lattice = lattices.own;

@@ -24,4 +24,6 @@ struct ViewUniforms {
     unused_0: u32,
     unused_1: u32,
     unused_2: u32,
+    lowest_px: vec4<f32>,
+    highest_px: vec4<f32>,
 }

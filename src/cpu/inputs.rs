@@ -10,7 +10,7 @@ use crate::kernel::matched::moves_alike;
 use crate::kernel::noise::{Noise, candidate_noise};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::surface::MAX_LOD;
-use crate::kernel::{acuity, reproject, sanitize};
+use crate::kernel::{acuity, lens, reproject, sanitize};
 use crate::settings::DepthTest;
 use crate::stats::FrameStats;
 use crate::uniforms::{Held, LatticeUniforms, ViewLattices, ViewUniforms};
@@ -72,6 +72,12 @@ impl<'a> Inputs<'a> {
             disparity_map: view.depth_convention(desc).disparity_map(),
             depth_test: desc.settings.depth_test.filter(|_| frame.depth.is_some()),
         }
+    }
+
+    /// Whether the lens shows a pixel.
+    #[inline(always)]
+    pub fn is_visible(&self, x: u32, y: u32) -> bool {
+        lens::is_visible(x, y, self.uniforms.lowest_px.into(), self.uniforms.highest_px.into())
     }
 
     /// Previous position of the surface of pixel (x, y), and whether the nearest stored texel shows that surface; or

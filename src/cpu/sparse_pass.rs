@@ -408,6 +408,11 @@ impl View<'_> {
     #[inline(always)]
     fn pixel(&self, x: u32, y: u32, lights: &[Samples], stats: &mut FrameStats) -> Pixel {
         let inputs = &self.inputs;
+        if !inputs.is_visible(x, y) {
+            // Black, and no history for what moves into view.
+            let (surface, noise) = (pack_kept(Kept::EMPTY), pack_noise(NO_NOISE));
+            return Pixel { output: Vec3::ZERO, surface, noise, trace: PixelTrace::default() };
+        }
         let disparity = inputs.disparity(x, y);
         let index = LatticeUniforms::index_at(&self.lattices, [x, y]);
         let level = self.lattices[index].level;

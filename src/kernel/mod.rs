@@ -15,6 +15,7 @@ pub mod doctor;
 pub mod foveate;
 pub mod kept;
 pub mod lattice;
+pub mod lens;
 pub mod matched;
 pub mod noise;
 pub mod pack;

@@ -69,6 +69,36 @@ fn four_angles_have_the_geometry_of_their_tangents() {
 }
 
 #[test]
+fn an_octagon_holds_what_the_lens_shows_and_little_more() {
+    use afterimage::kernel::lens::is_visible;
+    let geometry = ViewGeometry::from_angles(SIZE, [-0.876, 0.733, 0.785, -0.82]).unwrap();
+    // A round lens; y up.
+    let (middle, radius) = ([-0.15_f32, 0.03], 1.0_f32);
+    let outline = (0..64).map(|i| {
+        let (sin, cos) = (i as f32 / 64.0 * std::f32::consts::TAU).sin_cos();
+        [middle[0] + radius * cos, middle[1] + radius * sin]
+    });
+    let [lowest, highest] = geometry.visible_px(outline).unwrap();
+    let (mut shown, mut kept) = (0, 0);
+    for i in 0..SIZE[0] * SIZE[1] {
+        let (x, y) = (i % SIZE[0], i / SIZE[0]);
+        let [u, v, _] = geometry.ray([x as f32, y as f32]);
+        let is_kept = is_visible(x, y, lowest.into(), highest.into());
+        kept += u32::from(is_kept);
+        // 64 points lie 0.1 % inside the circle between them.
+        if (u - middle[0]).hypot(-v - middle[1]) < 0.998 * radius {
+            shown += 1;
+            assert!(is_kept, "({x}, {y}) is seen");
+        }
+    }
+    println!("{shown} pixels are seen, {kept} kept, of {}", SIZE[0] * SIZE[1]);
+    assert!(kept < SIZE[0] * SIZE[1] - 100_000 && f64::from(kept) < 1.12 * f64::from(shown));
+    assert_eq!(geometry.visible_px([]), None);
+    assert_eq!(geometry.visible_px([[0.0, 0.0], [f32::NAN, 0.0]]), None);
+    assert_eq!(geometry.visible_px([[f32::MAX, 0.0]]), None);
+}
+
+#[test]
 fn poses_give_the_motion_of_their_matrices() {
     let mut draws = Draws::new("poses");
     let eye = off_axis([-1.2, 0.9], [-1.0, 1.1]);
@@ -231,6 +261,10 @@ fn wrong_jitters_and_depth_conventions_are_refused() {
     for jitter_px in [[f32::NAN, 0.0], [0.0, f32::INFINITY], [17.0, 0.0]] {
         let text = refusal(ViewFrame { jitter_px, ..good });
         assert!(text.starts_with("jitter_px of view 0 is (") && text.contains("at most 16 pixels"), "{text}");
+    }
+    for visible_px in [[[f32::NAN; 4], [1.0; 4]], [[0.0; 4], [f32::INFINITY; 4]], [[2.0; 4], [1.0; 4]]] {
+        let text = refusal(ViewFrame { visible_px: Some(visible_px), ..good });
+        assert!(text.starts_with("visible_px of view 0 is [") && text.contains("the lowest first"), "{text}");
     }
     let text = refusal(ViewFrame { depth: Some(DepthConvention::Reversed { near: 0.0, far: 1.0 }), ..good });
     assert!(text.starts_with("depth convention of view 0 is near 0, far 1: expected planes"), "{text}");

@@ -1,10 +1,10 @@
-//! Two eyes in one `record` against two contexts with an eye each: time, and whether the left eye's bytes are equal. The
-//! right eye draws random numbers of its own (dithering of stored colors), which a context of its own has not; tests
-//! compare its bytes with those of two views whose left one shows something else.
+//! Two eyes in one `record` against two contexts with an eye each: time, and whether the left eye's bytes are equal.
+//! The right eye draws random numbers of its own (dithering of stored colors), which a context of its own has not;
+//! tests compare its bytes with those of two views whose left one shows something else.
 //!
-//! Sparse frames of two analytic clips, one for each eye, with gazes of their own; fovea 10 and middle 30 degrees, steps
-//! 2 and 4, antialiased, 90 degrees. CPU time of the process on software Vulkan, otherwise wall time; medians of frames
-//! that alternate between both ways.
+//! Sparse frames of two analytic clips, one for each eye, with gazes of their own; fovea 10 and middle 30 degrees,
+//! steps 2 and 4, antialiased, 90 degrees. CPU time of the process on software Vulkan, otherwise wall time; medians of
+//! frames that alternate between both ways.
 //!
 //! `cargo run --release -p afterimage-lab --example 21_two_eyes`
 

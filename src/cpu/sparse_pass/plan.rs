@@ -48,7 +48,7 @@ impl View<'_> {
         let mut largest = 0;
         for i in 0..2 {
             let px = asked_px(i, x, y, self.frame_low);
-            if px[0] < width && px[1] < height {
+            if px[0] < width && px[1] < height && self.inputs.is_visible(px[0], px[1]) {
                 largest = largest.max(self.priority(px));
             }
         }

@@ -27,7 +27,7 @@ macro_rules! rust {
 fn view_uniforms() -> (Vec<(String, usize)>, usize) {
     rust!(ViewUniforms: ray_scale, ray_offset, gaze_ray, depth_row, key, disparity_a, disparity_b, disparity_flags,
         motion_offset, color_origin, depth_origin, motion_origin, trust_origin, lod_origin, noise_origin,
-        output_origin, debug_origin, jitter_px, repaired_origin)
+        output_origin, debug_origin, jitter_px, repaired_origin, lowest_px, highest_px)
 }
 
 #[test]

@@ -69,6 +69,69 @@ fn repaired_frames_are_bit_equal_on_both_executors() {
     }
 }
 
+/// An octagon that cuts off corners and edges, another one in each view.
+fn lens_of(v: u32) -> [[f32; 4]; 2] {
+    let [width, height] = SIZE.map(|side| side as f32);
+    let inset = 3.0 + 2.0 * v as f32;
+    let lowest = [inset, 2.0, 16.0, 14.0 - height];
+    [lowest, [width - 4.0, height - 1.0 - inset, width + height - 20.0, width - 12.0]]
+}
+
+#[test]
+fn what_a_lens_hides_is_black_without_history_and_never_repaired() {
+    for [antialias, noisy] in [[false, false], [true, false], [false, true]] {
+        let settings = repairing(antialias, noisy);
+        let Some(mut rig) = Rig::new(desc(), settings) else { return };
+        let hides = |v: u32, [x, y]: [u32; 2]| {
+            let ([lowest, highest], [x, y]) = (lens_of(v), [x as f32, y as f32]);
+            [x, y, x + y, x - y]
+                .into_iter()
+                .zip(lowest.into_iter().zip(highest))
+                .any(|(at, (low, high))| at < low || at > high)
+        };
+        let (mut hidden, mut asked) = (0, 0);
+        for index in 0..FRAMES {
+            let reset = rig_of(index, &mut rig);
+            let mut seen = views(index, &settings);
+            seen.iter_mut().zip(0..).for_each(|(view, v)| view.facts.visible_px = Some(lens_of(v)));
+            let (made, _) = rig.both(index, reset, &seen);
+            let pixels = (SIZE[0] * SIZE[1]) as usize;
+            for (i, shown) in made.shown.iter().enumerate() {
+                let (v, i) = ((i / pixels) as u32, i % pixels);
+                let px = [i as u32 % SIZE[0], i as u32 / SIZE[0]];
+                if hides(v, px) {
+                    hidden += 1;
+                    assert_eq!(*shown, [0; 3], "{px:?}");
+                    assert_eq!(made.words[v as usize * pixels + i][1] & 63, 63, "{px:?} has history");
+                }
+            }
+            let columns = SIZE[0].div_ceil(2);
+            let quads_a_view = (columns * SIZE[1].div_ceil(2)) as usize;
+            for (i, _) in made.quads.iter().enumerate().filter(|(_, chosen)| **chosen == 1) {
+                let (v, i) = ((i / quads_a_view) as u32, (i % quads_a_view) as u32);
+                let px = [0, 1, 2, 3].map(|k| [2 * (i % columns) + k % 2, 2 * (i / columns) + k / 2]);
+                assert!(px.iter().any(|px| !hides(v, *px)), "{px:?} is repaired");
+                asked += 1;
+            }
+        }
+        // What is seen is as it was, where no history can have come from beyond, and no budget is left over.
+        let method = Method::Smr(Smr { antialias, ..Smr::default() });
+        let Some(mut first) = Rig::new(desc(), Settings { method, ..settings }) else { return };
+        let mut seen = views(0, &settings);
+        seen.iter_mut().for_each(|view| view.repaired = None);
+        let all = first.on_gpu(0, Reset::All, &seen);
+        seen.iter_mut().zip(0..).for_each(|(view, v)| view.facts.visible_px = Some(lens_of(v)));
+        let made = first.on_gpu(0, Reset::All, &seen);
+        let differing = all.shown.iter().zip(&made.shown).enumerate().filter(|(_, (all, made))| all != made);
+        for (i, _) in differing {
+            let (v, i) = (i as u32 / (SIZE[0] * SIZE[1]), i as u32 % (SIZE[0] * SIZE[1]));
+            assert!(hides(v, [i % SIZE[0], i / SIZE[0]]), "view {v}, pixel {i}");
+        }
+        println!("antialias {antialias}, noisy {noisy}: {hidden} hidden pixels, {asked} quads repaired");
+        assert!(hidden > 1000 && asked > 100);
+    }
+}
+
 #[test]
 fn lists_have_the_quads_of_the_masks() {
     let settings = repairing(false, false);

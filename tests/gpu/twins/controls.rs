@@ -2,8 +2,8 @@
 
 use super::probe::caught;
 use super::{
-    decisions, doctor, foveation, lattice, matching, mathematics, noise, repair, sparse, state, surfaces, upsampling,
-    weighted,
+    decisions, doctor, foveation, lattice, lens, matching, mathematics, noise, repair, sparse, state, surfaces,
+    upsampling, weighted,
 };
 
 #[test]
@@ -202,6 +202,13 @@ fn a_wrong_match_is_caught() {
     caught(matching::PROBES, "decide", "let fit = 1.0 -", "let fit = 0.99 -");
     caught(matching::PROBES, "mip_mean", "(a + b + c + d)", "(a + b + c + c)");
     caught(matching::PROBES, "mip_bilinear", "(b - t) * fraction.y", "(b - t) * fraction.x");
+}
+
+#[test]
+fn a_wrong_lens_is_caught() {
+    caught(lens::PROBES, "is_visible", "f32(x) - f32(y)", "f32(y) - f32(x)");
+    caught(lens::PROBES, "is_visible", "along >= lowest", "along > lowest");
+    caught(lens::PROBES, "is_visible", "along <= highest", "along < highest");
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use super::probe::check_module;
 use super::{
-    antialias, decisions, doctor, foveation, lattice, matching, mathematics, noise, repair, sparse, state, surfaces,
-    upsampling,
+    antialias, decisions, doctor, foveation, lattice, lens, matching, mathematics, noise, repair, sparse, state,
+    surfaces, upsampling,
 };
 use afterimage_testing::holds;
 
@@ -51,6 +51,11 @@ fn foveate_is_bit_equal_h69_h71() {
 #[test]
 fn antialias_is_bit_equal() {
     check_module(antialias::PROBES, "antialias");
+}
+
+#[test]
+fn lens_is_bit_equal() {
+    check_module(lens::PROBES, "lens");
 }
 
 #[test]

@@ -12,6 +12,7 @@ mod hard_colors;
 mod hard_reservoirs;
 mod lattice;
 mod laws;
+mod lens;
 mod library;
 mod matching;
 mod mathematics;
