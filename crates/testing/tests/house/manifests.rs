@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use toml::{Table, Value};
 
 /// Folders of published packages.
-const PUBLISHED: [&str; 4] = ["", "crates/clip/", "crates/lab/", "crates/tool/"];
+const PUBLISHED: [&str; 5] = ["", "crates/clip/", "crates/lab/", "crates/openxr/", "crates/tool/"];
 
 /// The package that needs no device.
 const WITHOUT_WGPU: &str = "crates/clip/";

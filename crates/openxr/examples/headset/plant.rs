@@ -1,0 +1,55 @@
+//! Errors that tests must see.
+
+use afterimage_openxr::{Headset, HeadsetFrame, openxr as xr, wgpu};
+use clap::ValueEnum;
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+pub enum Plant {
+    /// A buffer of 0 bytes, which Vulkan's validation must see.
+    Vulkan,
+    /// A swapchain with unknown flags, which OpenXR's validation must see.
+    Openxr,
+    /// Each eye is drawn from the other one's place.
+    Eyes,
+    /// Motion vectors of a head that does not move.
+    Motion,
+}
+
+impl Plant {
+    pub fn before(self, headset: &Headset) -> Result<(), xr::sys::Result> {
+        match self {
+            Self::Vulkan => zero_bytes(headset.device()),
+            Self::Openxr => {
+                let path = xr::Path::from_raw(u64::MAX);
+                let seen = headset.instance().path_to_string(path);
+                println!("planted: {seen:?}");
+            }
+            Self::Eyes | Self::Motion => {}
+        }
+        Ok(())
+    }
+
+    pub fn spoil(self, frame: &mut HeadsetFrame<'_>) {
+        let [left, right] = &mut frame.eyes;
+        match self {
+            Self::Eyes => std::mem::swap(&mut left.clip_from_world, &mut right.clip_from_world),
+            Self::Motion => {
+                for eye in [left, right] {
+                    eye.previous_clip_from_world = eye.clip_from_world;
+                }
+            }
+            Self::Vulkan | Self::Openxr => {}
+        }
+    }
+}
+
+#[expect(unsafe_code, reason = "wgpu would refuse the call before Vulkan sees it")]
+fn zero_bytes(device: &wgpu::Device) {
+    let info = ash::vk::BufferCreateInfo::default().usage(ash::vk::BufferUsageFlags::UNIFORM_BUFFER);
+    // SAFETY: not valid, on purpose: the validation layer reports it. Drivers create an empty buffer or refuse.
+    unsafe {
+        if let Some(device) = device.as_hal::<wgpu::hal::api::Vulkan>() {
+            let _ = device.raw_device().create_buffer(&info, None);
+        }
+    }
+}

@@ -1,0 +1,30 @@
+//! Errors of a headset.
+
+use afterimage::{CreateError, FrameError, SettingsError};
+
+/// Why there is no headset, or no further frame.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// No OpenXR loader on this machine.
+    #[error("no OpenXR loader was found ({0}): install a runtime, such as Monado or SteamVR")]
+    Loader(String),
+    /// The runtime lacks what is needed.
+    #[error("the OpenXR runtime {0}")]
+    Runtime(&'static str),
+    /// A call of OpenXR failed. `ERROR_FORM_FACTOR_UNAVAILABLE`: no headset is connected.
+    #[error("OpenXR: {0}")]
+    OpenXr(#[from] openxr::sys::Result),
+    /// The Vulkan device could not be created.
+    #[error("the Vulkan device: {0}")]
+    Device(String),
+    /// Settings are out of range, or a view of the runtime is none.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The post-process could not be created.
+    #[error(transparent)]
+    Create(#[from] CreateError),
+    /// The post-process refused a frame.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+}

@@ -1,0 +1,539 @@
+//! The headset: from one frame to the next.
+
+use crate::error::Error;
+use crate::eye::{Eye, Posed, angles};
+use crate::gaze::{Ray, Tracker, from_head};
+use crate::present::Present;
+use crate::session::{HiddenMesh, Session, VIEWS};
+use crate::targets::{Targets, layers};
+use crate::vulkan::Gpu;
+use afterimage::gpu::{Afterimage, Frame};
+use afterimage::{
+    ContextDesc, DepthConvention, Filter, Foveation, Gaze, Method, Reset, Settings, Smr, ViewFrame, ViewGeometry,
+};
+use openxr as xr;
+use std::time::Duration;
+use wgpu_30::{CommandEncoder, Device, PollType, Queue, Texture, TextureFormat, TextureUsages};
+use xr::sys;
+
+/// Time without a recorded frame after which history is discarded, in nanoseconds.
+const PAUSE_NS: i64 = 1_000_000_000;
+/// How often a session that is not running is asked for news.
+const IDLE: Duration = Duration::from_millis(5);
+
+/// Gaze where there is no eye tracker: direction in the head's space (x right, y up, -z forward, of any length) at a
+/// time in seconds since the first frame; `None`: lost.
+pub type GazeFn = Box<dyn FnMut(f64) -> Option<[f32; 3]> + Send>;
+/// Action sets of the application, created from the instance.
+pub type ActionsFn = Box<dyn FnOnce(&xr::Instance) -> Result<Vec<xr::ActionSet>, sys::Result>>;
+
+/// Description of a headset. Create it with `..HeadsetDesc::default()`.
+pub struct HeadsetDesc {
+    /// Method and foveation, whose filter must be [`Filter::Sparse`]. Default: smr; fovea 10 degrees, middle region 30
+    /// degrees with every second pixel along both axes, beyond it every fourth.
+    pub settings: Settings,
+    /// Distance of the near plane in metres, above 0. Default 0.05.
+    pub near_m: f32,
+    /// Size of a view in pixels. Default: what the runtime recommends.
+    pub size_px: Option<[u32; 2]>,
+    /// How far away the eyes look, in metres, until [`Headset::set_gaze_distance_m`] says it better. Default 2.
+    pub gaze_distance_m: f32,
+    /// Gaze where the runtime has no eye tracker. Default: straight ahead.
+    pub gaze: Option<GazeFn>,
+    /// The application's own actions (controllers, hands). OpenXR takes all action sets of a session at once, so that
+    /// the headset attaches and synchronises them, together with that of the eye tracker. Default: none.
+    pub actions: Option<ActionsFn>,
+}
+
+impl Default for HeadsetDesc {
+    fn default() -> Self {
+        let foveation = Foveation {
+            filter: Filter::Sparse,
+            fovea_deg: 10.0,
+            mid_deg: 30.0,
+            rate_mid: 2,
+            rate_far: 4,
+            ..Foveation::default()
+        };
+        Self {
+            settings: Settings { foveation, ..Settings::default() },
+            near_m: 0.05,
+            size_px: None,
+            gaze_distance_m: 2.0,
+            gaze: None,
+            actions: None,
+        }
+    }
+}
+
+/// What the last submitted frame showed.
+#[derive(Clone, Copy)]
+struct Past {
+    poses: [Posed; 2],
+    time: xr::Time,
+}
+
+/// What the lens of an eye hides and shows.
+#[derive(Clone, Default)]
+struct Lens {
+    hidden: Option<HiddenMesh>,
+    outline: Vec<[f32; 2]>,
+}
+
+/// A headset: device, session, eye tracker and post-process.
+// Fields are dropped in this order: the runtime's objects before the device that they were created on.
+pub struct Headset {
+    /// `None` only after a lost session could not be replaced.
+    session: Option<Session>,
+    tracker: Option<Tracker>,
+    sets: Vec<xr::ActionSet>,
+    blend: xr::EnvironmentBlendMode,
+    system: xr::SystemId,
+    post: Afterimage,
+    present: Present,
+    output: Texture,
+    targets: Option<Targets>,
+    lenses: [Lens; 2],
+    gaze_fn: Option<GazeFn>,
+    gaze_distance_m: f32,
+    near_m: f32,
+    past: Option<Past>,
+    /// From this time on the world's origin is another one.
+    recentred_at: Option<xr::Time>,
+    begun_at: Option<xr::Time>,
+    index: u64,
+    instance: xr::Instance,
+    gpu: Gpu,
+}
+
+/// A frame to draw and to submit. A frame that is dropped is not shown, and leaves history as it was.
+pub struct HeadsetFrame<'a> {
+    /// Records the frame: the application's passes, then the post-process.
+    pub encoder: CommandEncoder,
+    /// Left and right eye.
+    pub eyes: [Eye; 2],
+    /// The gaze, unless it is lost.
+    pub gaze: Option<Ray>,
+    /// When the frame will be displayed, in seconds since the first frame.
+    pub time_s: f64,
+    /// The same of the last submitted frame, for motion vectors of what moves; after resets, this frame's.
+    pub previous_time_s: f64,
+    /// [`Reset::All`] in the first frame, after recentring, in a new session and after pauses.
+    pub reset: Reset,
+    headset: &'a mut Headset,
+    poses: [Posed; 2],
+    views: Vec<xr::View>,
+    time: xr::Time,
+}
+
+/// What a submitted frame was made of: for pictures and measurements.
+pub struct Shown<'a> {
+    /// Linear color of both eyes, `Rgba16Float` with usages `TEXTURE_BINDING` and `COPY_SRC`.
+    pub output: &'a Texture,
+    /// What was drawn.
+    pub targets: &'a Targets,
+    /// Descriptions of both views.
+    pub views: [ViewFrame; 2],
+    /// Counter of submitted frames.
+    pub index: u64,
+}
+
+impl Headset {
+    /// Connects to the runtime of the system, creates a device and a session. `name`: the application's.
+    ///
+    /// # Errors
+    /// [`Error`] without a loader, a runtime or a headset, or if the settings are out of range.
+    pub fn new(name: &str, desc: HeadsetDesc) -> Result<Self, Error> {
+        let entry = load()?;
+        let available = entry.enumerate_extensions()?;
+        if !available.khr_vulkan_enable2 {
+            return Err(Error::Runtime("lacks XR_KHR_vulkan_enable2"));
+        }
+        let mut extensions = xr::ExtensionSet::default();
+        extensions.khr_vulkan_enable2 = true;
+        extensions.khr_visibility_mask = available.khr_visibility_mask;
+        extensions.ext_eye_gaze_interaction = available.ext_eye_gaze_interaction;
+        let app = xr::ApplicationInfo {
+            application_name: name,
+            application_version: 0,
+            engine_name: "afterimage",
+            engine_version: 0,
+            api_version: xr::Version::new(1, 0, 0),
+        };
+        let instance = entry.create_instance(&app, &extensions, &[], &())?;
+        let system = instance.system(xr::FormFactor::HEAD_MOUNTED_DISPLAY)?;
+        let blend = *instance
+            .enumerate_environment_blend_modes(system, VIEWS)?
+            .first()
+            .ok_or(Error::Runtime("has no stereo views"))?;
+        let recommended = instance.enumerate_view_configuration_views(system, VIEWS)?;
+        let [left, _] = recommended[..] else { return Err(Error::Runtime("has no stereo views")) };
+        let size = desc.size_px.unwrap_or([left.recommended_image_rect_width, left.recommended_image_rect_height]);
+        let context = ContextDesc {
+            view_count: 2,
+            depth: DepthConvention::Reversed { near: desc.near_m, far: f32::INFINITY },
+            settings: desc.settings,
+            ..ContextDesc::new(size)
+        };
+        let gpu = Gpu::new(&instance, system, Afterimage::required_limits(&context))?;
+        let post = Afterimage::new(&gpu.device, &context, TextureFormat::Rgba16Float)?;
+        let tracker = Tracker::new(&instance, system)?;
+        let sets = match desc.actions {
+            Some(create) => create(&instance)?,
+            None => vec![],
+        };
+        let session = Session::new(&instance, system, &gpu, size)?;
+        let present = Present::new(&gpu.device, session.format);
+        let mut headset = Self {
+            output: output(&gpu.device, size),
+            session: Some(session),
+            tracker,
+            sets,
+            blend,
+            system,
+            post,
+            present,
+            targets: None,
+            lenses: Default::default(),
+            gaze_fn: desc.gaze,
+            gaze_distance_m: desc.gaze_distance_m,
+            near_m: desc.near_m,
+            past: None,
+            recentred_at: None,
+            begun_at: None,
+            index: 0,
+            instance,
+            gpu,
+        };
+        headset.attach()?;
+        Ok(headset)
+    }
+
+    /// The device that the runtime created.
+    pub fn device(&self) -> &Device {
+        &self.gpu.device
+    }
+
+    /// Its queue.
+    pub fn queue(&self) -> &Queue {
+        &self.gpu.queue
+    }
+
+    /// The runtime's instance.
+    pub fn instance(&self) -> &xr::Instance {
+        &self.instance
+    }
+
+    /// Size of a view in pixels.
+    pub fn size_px(&self) -> [u32; 2] {
+        self.post.desc().size_px
+    }
+
+    /// Whether the runtime has an eye tracker.
+    pub fn has_eye_tracker(&self) -> bool {
+        self.tracker.is_some()
+    }
+
+    /// What the lens of an eye (0 left, 1 right) hides; `None` if the runtime does not say. Draw it first.
+    pub fn hidden_mesh(&self, eye: usize) -> Option<&HiddenMesh> {
+        self.lenses[eye].hidden.as_ref()
+    }
+
+    /// How far away the eyes look, in metres: the distance of what lies under the gaze. Infinite is far away.
+    pub fn set_gaze_distance_m(&mut self, distance_m: f32) {
+        self.gaze_distance_m = distance_m;
+    }
+
+    /// Changes method and foveation from the next frame on.
+    ///
+    /// # Errors
+    /// [`Error::Settings`] if a setting is out of range; then nothing changes.
+    pub fn set_settings(&mut self, settings: Settings) -> Result<(), Error> {
+        Ok(self.post.set_settings(&self.gpu.device, settings)?)
+    }
+
+    /// Changes the size of the views from the next frame on. History is resampled.
+    ///
+    /// # Errors
+    /// [`Error`] if the runtime or the post-process refuses the size.
+    pub fn resize(&mut self, size_px: [u32; 2]) -> Result<(), Error> {
+        self.wait()?;
+        if let Some(session) = &mut self.session {
+            session.resize(&self.gpu, size_px)?;
+        }
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        self.post.resize_keeping_history(&self.gpu.device, &mut encoder, size_px)?;
+        self.gpu.queue.submit([encoder.finish()]);
+        self.output = output(&self.gpu.device, size_px);
+        self.targets = None;
+        Ok(())
+    }
+
+    /// Asks the runtime to end the session: [`next_frame`](Self::next_frame) returns `None` soon.
+    ///
+    /// # Errors
+    /// [`Error::OpenXr`] if the runtime refuses.
+    pub fn exit(&mut self) -> Result<(), Error> {
+        match self.session.as_ref().map(|session| session.session.request_exit()) {
+            None | Some(Err(sys::Result::ERROR_SESSION_NOT_RUNNING) | Ok(())) => Ok(()),
+            Some(Err(error)) => Err(error.into()),
+        }
+    }
+
+    /// Waits for the next frame to draw; `None` when the session is over. While the headset shows nothing (it is taken
+    /// off, a menu covers it) there is no frame to draw, and the call goes on waiting. A session that the runtime loses
+    /// is replaced by another one, without history.
+    ///
+    /// # Errors
+    /// [`Error`] if the runtime fails.
+    pub fn next_frame(&mut self) -> Result<Option<HeadsetFrame<'_>>, Error> {
+        let (time, views) = loop {
+            match self.follow() {
+                Ok(true) => {}
+                Ok(false) => return Ok(None),
+                Err(Error::OpenXr(error)) if is_lost(error) => self.restart()?,
+                Err(error) => return Err(error),
+            }
+            let Some(session) = self.session.as_mut().filter(|session| session.is_running) else {
+                std::thread::sleep(IDLE);
+                continue;
+            };
+            let sets: Vec<_> = self.sets.iter().chain(self.tracker.as_ref().map(|tracker| &tracker.set)).collect();
+            match session.next_views(self.blend, &sets) {
+                Ok(Some(found)) => break found,
+                Ok(None) => {}
+                Err(error) if is_lost(error) => self.restart()?,
+                Err(error) => return Err(error.into()),
+            }
+        };
+        self.frame(time, views).map(Some)
+    }
+
+    /// The frame to draw.
+    fn frame(&mut self, time: xr::Time, views: Vec<xr::View>) -> Result<HeadsetFrame<'_>, Error> {
+        let begun_at = *self.begun_at.get_or_insert(time);
+        let seconds = |time: xr::Time| (time.as_nanos() - begun_at.as_nanos()) as f64 / 1e9;
+        if self.recentred_at.is_some_and(|at| time.as_nanos() >= at.as_nanos()) {
+            (self.recentred_at, self.past) = (None, None);
+        }
+        if self.past.is_some_and(|past| time.as_nanos() - past.time.as_nanos() > PAUSE_NS) {
+            self.past = None;
+        }
+        let reset = if self.past.is_some() { Reset::None } else { Reset::All };
+        let poses = [Posed::new(&views[0], self.near_m), Posed::new(&views[1], self.near_m)];
+        let before = self.past.map_or(poses, |past| past.poses);
+        let ray = match (&self.tracker, &mut self.gaze_fn) {
+            (Some(tracker), _) => match &self.session {
+                Some(session) => tracker.at(&session.space, time)?,
+                None => None,
+            },
+            (None, Some(gaze)) => gaze(seconds(time)).and_then(|direction| from_head(&views, direction)),
+            (None, None) => from_head(&views, [0.0, 0.0, -1.0]),
+        };
+        let settings = self.post.desc().settings;
+        let jitter_px = match settings.method {
+            Method::Smr(Smr { antialias: true, .. }) => Foveation::jitter_px(self.index),
+            _ => [0.0; 2],
+        };
+        let geometry = |i: usize| ViewGeometry::from_angles(self.size_px(), angles(views[i].fov));
+        let geometries = [geometry(0)?, geometry(1)?];
+        let eyes = [0, 1].map(|i| {
+            let gaze_px = self.post.gaze_px(i, &geometries[i], self.gaze_of(ray, &poses[i]));
+            let at = (self.index, jitter_px);
+            Eye::new(i as u32, geometries[i], [&poses[i], &before[i]], gaze_px, &settings.foveation, at)
+        });
+        let fits = |size: [u32; 2]| {
+            eyes.iter().flat_map(|eye| eye.lattices.as_slice()).all(|lattice| {
+                let [x, y] = lattice.atlas_texel.unwrap_or_default();
+                x + lattice.points[0] <= size[0] && y + lattice.points[1] <= size[1]
+            })
+        };
+        if !self.targets.as_ref().is_some_and(|targets| fits(targets.size())) {
+            let [a, b] = geometries.map(|geometry| settings.foveation.max_atlas_px(&geometry));
+            self.targets = Some(Targets::new(&self.gpu.device, [a[0].max(b[0]), a[1].max(b[1])]));
+        }
+        Ok(HeadsetFrame {
+            encoder: self.gpu.device.create_command_encoder(&Default::default()),
+            eyes,
+            gaze: ray,
+            time_s: seconds(time),
+            previous_time_s: seconds(self.past.map_or(time, |past| past.time)),
+            reset,
+            poses,
+            views,
+            time,
+            headset: self,
+        })
+    }
+
+    fn gaze_of(&self, ray: Option<Ray>, pose: &Posed) -> Gaze {
+        ray.map_or(Gaze::Lost, |ray| {
+            let pose = pose.world_from_view.to_cols_array_2d();
+            Gaze::on_ray(ray.origin, ray.direction, self.gaze_distance_m, pose)
+        })
+    }
+
+    /// Handles the runtime's events. `false`: the session is over.
+    fn follow(&mut self) -> Result<bool, Error> {
+        let mut buffer = xr::EventDataBuffer::new();
+        while let Some(event) = self.instance.poll_event(&mut buffer)? {
+            match event {
+                xr::Event::SessionStateChanged(event) => {
+                    // Events of a session that was replaced may still come.
+                    let session = self.session.as_mut().filter(|live| live.session.as_raw() == event.session());
+                    match (event.state(), session) {
+                        (xr::SessionState::READY, Some(session)) => {
+                            session.session.begin(VIEWS)?;
+                            session.is_running = true;
+                            self.past = None;
+                        }
+                        (xr::SessionState::STOPPING, Some(session)) => {
+                            session.session.end()?;
+                            session.is_running = false;
+                        }
+                        (xr::SessionState::LOSS_PENDING, Some(_)) => self.restart()?,
+                        (xr::SessionState::EXITING, Some(_)) => return Ok(false),
+                        _ => {}
+                    }
+                }
+                // The world moves under every pose from then on.
+                xr::Event::ReferenceSpaceChangePending(event) => self.recentred_at = Some(event.change_time()),
+                xr::Event::VisibilityMaskChangedKHR(_) => self.ask_lenses(),
+                xr::Event::InstanceLossPending(_) => return Ok(false),
+                _ => {}
+            }
+        }
+        Ok(true)
+    }
+
+    /// Another session in place of one that was lost.
+    fn restart(&mut self) -> Result<(), Error> {
+        self.wait()?;
+        if let Some(tracker) = &mut self.tracker {
+            tracker.follow(None)?;
+        }
+        // A runtime may allow one session at a time: the old one goes first.
+        self.session = None;
+        self.past = None;
+        self.session = Some(Session::new(&self.instance, self.system, &self.gpu, self.size_px())?);
+        self.attach()
+    }
+
+    /// Attaches the action sets to a new session, and asks what its lenses hide.
+    fn attach(&mut self) -> Result<(), Error> {
+        let Some(session) = &self.session else { return Ok(()) };
+        let sets: Vec<_> = self.sets.iter().chain(self.tracker.as_ref().map(|tracker| &tracker.set)).collect();
+        if !sets.is_empty() {
+            session.session.attach_action_sets(&sets)?;
+        }
+        if let Some(tracker) = &mut self.tracker {
+            tracker.follow(Some(&session.session))?;
+        }
+        self.ask_lenses();
+        Ok(())
+    }
+
+    fn ask_lenses(&mut self) {
+        let lens = |eye| self.session.as_ref().and_then(|session| session.lens(&self.instance, eye));
+        self.lenses = [0, 1].map(|eye| match lens(eye) {
+            Some((hidden, outline)) => Lens { hidden: Some(hidden), outline },
+            None => Lens::default(),
+        });
+    }
+
+    /// Waits until the device has done everything: the runtime's images may then go.
+    fn wait(&self) -> Result<(), Error> {
+        self.gpu.device.poll(PollType::wait_indefinitely()).map_err(|e| Error::Device(e.to_string()))?;
+        Ok(())
+    }
+}
+
+impl<'a> HeadsetFrame<'a> {
+    /// What to draw into.
+    pub fn targets(&self) -> &Targets {
+        self.headset.targets.as_ref().expect("a frame has targets")
+    }
+
+    /// The device's queue.
+    pub fn queue(&self) -> &Queue {
+        &self.headset.gpu.queue
+    }
+
+    /// Encoder and targets together.
+    pub fn encoder_and_targets(&mut self) -> (&mut CommandEncoder, &Targets) {
+        (&mut self.encoder, self.headset.targets.as_ref().expect("a frame has targets"))
+    }
+
+    /// The session of the frame, for the application's action spaces. Another one replaces it when the runtime loses
+    /// it.
+    pub fn session(&self) -> &xr::Session<xr::Vulkan> {
+        &self.headset.session.as_ref().expect("a frame has a session").session
+    }
+
+    /// The space of the world: the runtime's LOCAL space.
+    pub fn space(&self) -> &xr::Space {
+        &self.headset.session.as_ref().expect("a frame has a session").space
+    }
+
+    /// When the frame will be displayed, on the runtime's clock.
+    pub fn time(&self) -> xr::Time {
+        self.time
+    }
+
+    /// Makes whole frames of what was drawn, and shows them.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] if the post-process refuses the frame, [`Error::OpenXr`] if the runtime fails. A session that
+    /// is lost meanwhile is no error: [`Headset::next_frame`] replaces it.
+    pub fn submit(self) -> Result<Shown<'a>, Error> {
+        let Self { mut encoder, eyes, gaze, reset, headset, poses, views, time, .. } = self;
+        let before = headset.past.map(|past| past.poses);
+        let described = |i: usize| {
+            let gaze = headset.gaze_of(gaze, &poses[i]);
+            let lens = &headset.lenses[i];
+            let visible_px = eyes[i].geometry.visible_px(lens.outline.iter().copied());
+            eyes[i].view_frame(gaze, before.as_ref().map(|before| &before[i]), visible_px)
+        };
+        let described = [described(0)?, described(1)?];
+        let targets = headset.targets.as_ref().expect("a frame has targets");
+        let frame = Frame {
+            depth: Some((&targets.depth).into()),
+            motion: Some((&targets.motion).into()),
+            reset,
+            ..Frame::new(&targets.color, &described, headset.index)
+        };
+        headset.post.record(&headset.gpu.device, &mut encoder, &frame, &headset.output)?;
+        let index = headset.index;
+        headset.index += 1;
+        headset.past = Some(Past { poses, time });
+        let session = headset.session.as_mut().expect("a frame has a session");
+        let shown = session.show(|image| {
+            headset.present.record(&headset.gpu.device, &mut encoder, &headset.output, image);
+            headset.gpu.queue.submit([encoder.finish()]);
+        });
+        match shown.and_then(|()| session.end(time, headset.blend, &views)) {
+            Ok(()) => {}
+            Err(error) if is_lost(error) => {}
+            Err(error) => return Err(error.into()),
+        }
+        Ok(Shown { output: &headset.output, targets, views: described, index })
+    }
+}
+
+/// Linear color of whole frames.
+fn output(device: &Device, size: [u32; 2]) -> Texture {
+    let usage = Afterimage::OUTPUT_USAGE | Afterimage::INPUT_USAGE | TextureUsages::COPY_SRC;
+    layers(device, "headset", size, TextureFormat::Rgba16Float, usage)
+}
+
+/// Whether another session may go on.
+fn is_lost(error: sys::Result) -> bool {
+    error == sys::Result::ERROR_SESSION_LOST
+}
+
+/// The loader of the system, found when the program runs.
+#[expect(unsafe_code, reason = "loads a library")]
+fn load() -> Result<xr::Entry, Error> {
+    // SAFETY: the library that the system calls its OpenXR loader.
+    unsafe { xr::Entry::load(&()) }.map_err(|e| Error::Loader(e.to_string()))
+}
