@@ -9,6 +9,7 @@ use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 
 mod frames;
+mod head;
 mod statistics;
 
 const HEADER: &str = "# screen_px: 1024x768\n# screen_cm: 38.0x30.0\n# distance_cm: 67\nt_s,x_px,y_px,valid\n";
