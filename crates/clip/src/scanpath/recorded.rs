@@ -78,8 +78,8 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<Scanpath, InputError> {
 /// measure in the header may be followed by a remark (`1024x768 (inferred)`), which becomes the note `screen_px_note`,
 /// or be `unknown`; only `screen_px` must be known. Blank lines, a byte order mark and CRLF are accepted.
 ///
-/// The columns `head_x_m,head_y_m,head_z_m,head_qx,head_qy,head_qz,head_qw` may follow: the [`HeadPose`] in every row,
-/// also where the gaze is lost. The screen is then fixed to the head.
+/// The columns `head_x_m,head_y_m,head_z_m` and `head_qx,head_qy,head_qz,head_qw` may follow: the [`HeadPose`] in every
+/// row, also where the gaze is lost. The screen is then fixed to the head.
 ///
 /// # Errors
 /// [`Invalid`](InputError::Invalid). With the line number: bytes that are not UTF-8, a header line or row that cannot

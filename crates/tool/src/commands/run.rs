@@ -5,6 +5,7 @@ mod plot;
 
 use crate::args::backend::BackendName;
 use crate::args::gaze::GazeArgs;
+use crate::args::head::head_path;
 use crate::args::input::{FoveatedSampling, InputArgs, Rendering, SourceName};
 use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
@@ -19,6 +20,8 @@ use afterimage::{DebugView, Filter};
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::ablation::{self, PARTS, Part};
 use afterimage_lab::quad_views::QuadViewLayout;
+use afterimage_lab::scanpath::{HeadPath, write_csv};
+use afterimage_lab::source::FrameSource;
 use afterimage_lab::trace::sampling::Sampling;
 use clap::{Args, Parser};
 use std::ffi::OsString;
@@ -32,7 +35,9 @@ use std::path::PathBuf;
     afterimage run scene.glb --foveation uniform --scale 1.5 --frames 60 --method none --out out/uniform\n\n\
     Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/psnr.svg and OUT/psnr.png (PSNR by\n\
     frame), OUT/gaze.csv, OUT/frames.csv and OUT/report.json. Of scenes, the latter two also have the time of rendering\n\
-    the frames and that of the whole frame, renderer and method."
+    the frames and that of the whole frame, renderer and method. With --camera head also OUT/scanpath.csv, the\n\
+    head's scanpath as --gaze takes it, and OUT/pose.csv, the camera of each frame (meters and a quaternion x, y, z, w in\n\
+    the scene's axes; x right, y up, looking along -z)."
 )]
 pub struct RunArgs {
     /// Output folder
@@ -115,14 +120,19 @@ impl RunArgs {
         Self { foveation: self.foveation.with_defaults(is_sparse, is_scene), ..self }
     }
 
+    /// The head that moves the camera, with `--camera head`.
+    pub fn head(&self) -> Result<Option<HeadPath>, Failure> {
+        head_path(self.input.camera.as_deref(), &self.gaze, &self.input.name, self.input.fps, self.frames)
+    }
+
     /// Settings for rendering a scene on `backend`.
-    pub fn rendering(&self, backend: &Backend) -> Result<Rendering, Failure> {
+    pub fn rendering(&self, backend: &Backend, head: Option<&HeadPath>) -> Result<Rendering, Failure> {
         let foveated = self.sampling()?.map(|pattern| FoveatedSampling {
             pattern,
             sparse: self.is_sparse().then_some(self.foveation.order),
             reference_spp: self.reference_samples.unwrap_or(64),
         });
-        Ok(Rendering { backend: backend.clone(), seed: self.seed, foveated })
+        Ok(Rendering { backend: backend.clone(), seed: self.seed, foveated, head: head.cloned() })
     }
 
     /// Sampling pattern of traced frames; `None` if a simulator foveates full-rate frames.
@@ -201,12 +211,16 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
 /// Runs the clip and writes its files; prints nothing.
 fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let backend = args.backend.open_for(&args.input.name)?;
-    let mut source = args.input.open(&args.rendering(&backend)?)?;
-    let plan = plan::plan(args, source.info(), backend)?;
+    let head = args.head()?;
+    let mut source = args.input.open(&args.rendering(&backend, head.as_ref())?)?;
+    let plan = plan::plan(args, source.info(), backend, head.as_ref())?;
     // The input can be read, or nothing is written.
     let playback = plan.clip.start(source.as_mut())?;
     let out = Output::create(&args.out, &folders(args), &REPORTS)?;
     let report = playback.write(&out)?;
+    if let Some(head) = &head {
+        write_head(head, source.as_ref(), report.gaze_px.len() as u64, &out)?;
+    }
     plot::write(&plan, plan::simulator(args), &report, &out)?;
     let facts = RunFacts {
         input: &args.input.name,
@@ -225,6 +239,20 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     };
     write_report(&facts, &plan.clip, &report, &out)?;
     Ok(report)
+}
+
+/// Writes the head's scanpath, from which the run can be repeated, and the camera of every frame in the scene's axes.
+fn write_head(head: &HeadPath, source: &dyn FrameSource, frames: u64, out: &Output) -> Result<(), Failure> {
+    let mut csv = vec![];
+    write_csv(head.scanpath(), &mut csv).map_err(|e| Failure::Work(format!("scanpath.csv: {e}")))?;
+    out.text("scanpath.csv", &String::from_utf8_lossy(&csv))?;
+    let mut table = out.table("pose.csv", "frame,x_m,y_m,z_m,qx,qy,qz,qw")?;
+    for frame in 0..frames {
+        let Some(pose) = source.camera_pose(frame) else { continue };
+        let (_, q, p) = pose.world_from_camera.to_scale_rotation_translation();
+        table.row(&format!("{frame},{:.6},{:.6},{:.6},{:.8},{:.8},{:.8},{:.8}", p.x, p.y, p.z, q.x, q.y, q.z, q.w))?;
+    }
+    table.finish()
 }
 
 /// Folders of the run's frames.
