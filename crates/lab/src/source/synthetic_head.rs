@@ -8,8 +8,8 @@ use crate::trace::world::World;
 use afterimage_clip::scanpath::{HeadOptions, SyntheticHead, generate_head};
 use glam::DVec3;
 
-/// A head and eye that look around in a scene, from [`SceneCamera::head_space`]: gaze rests on its surfaces, as they are
-/// at time 0.
+/// A head and eye that look around in a scene, from [`SceneCamera::head_space`]: gaze rests on its surfaces, as they
+/// are at time 0.
 ///
 /// # Errors
 /// Those of [`generate_head`].

@@ -43,8 +43,8 @@ pub struct Track {
 }
 
 impl GazeArgs {
-    /// Resolves the options for `frames` frames, by default for the duration of the gaze. With `--camera head`, `head` is
-    /// the scanpath, read or generated already.
+    /// Resolves the options for `frames` frames, by default for the duration of the gaze. With `--camera head`,
+    /// `head` is the scanpath, read or generated already.
     pub fn resolve(
         &self,
         view: &ViewGeometry,
@@ -52,9 +52,7 @@ impl GazeArgs {
         frames: Option<u64>,
         head: Option<&HeadPath>,
     ) -> Result<Track, Failure> {
-        if !(self.start >= 0.0 && self.start.is_finite()) {
-            return Err(Failure::Input(format!("--start {}: expected seconds, 0 or more", self.start)));
-        }
+        self.check_start()?;
         let default_frames = (DEFAULT_SECONDS * f64::from(fps)).ceil() as u64;
         if let Some(px) = fixed(&self.gaze)? {
             let count = frames.unwrap_or(default_frames) as usize;
@@ -81,6 +79,13 @@ impl GazeArgs {
             )));
         }
         Ok(Track { px, map: map.name() })
+    }
+
+    pub(super) fn check_start(&self) -> Result<(), Failure> {
+        if !(self.start >= 0.0 && self.start.is_finite()) {
+            return Err(Failure::Input(format!("--start {}: expected seconds, 0 or more", self.start)));
+        }
+        Ok(())
     }
 }
 

@@ -26,6 +26,7 @@ pub fn head_path(
     if !is_scene(scene) {
         return Ok(None);
     }
+    gaze.check_start()?;
     let fps = f64::from(fps.unwrap_or(60.0));
     let path = match synthetic_seed(&gaze.gaze)? {
         Some(seed) => {

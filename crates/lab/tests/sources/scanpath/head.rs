@@ -6,6 +6,7 @@ use super::statistics::check_uniform;
 use super::{csv, parse_csv};
 use afterimage_lab::scanpath::*;
 use glam::{DQuat, DVec2, DVec3};
+use std::path::PathBuf;
 use std::sync::LazyLock;
 
 const RUNS: u64 = 20;
@@ -306,6 +307,30 @@ fn a_seed_is_a_head_and_its_file_reads_back() {
         let error = generate_head(&o, &in_a_room).unwrap_err().to_string();
         assert!(error.starts_with("synthetic head, ") && error.contains(word), "{error}");
     }
+}
+
+pub fn fixture() -> PathBuf {
+    afterimage_testing::workspace().join("fixtures/scanpath_headset.csv")
+}
+
+pub fn fixture_path() -> Scanpath {
+    let options = HeadOptions { seed: 1, duration_s: 6.0, rate_hz: 90.0, is_walking: true, ..Default::default() };
+    generate_head(&options, &in_a_room).unwrap().path
+}
+
+#[test]
+fn the_fixture_is_what_the_generator_makes() {
+    let (read, made) = (read_csv(fixture()).unwrap(), fixture_path());
+    assert_eq!((read.about(), read.samples().len()), (made.about(), made.samples().len()));
+    let [read_poses, made_poses] = [&read, &made].map(|path| path.poses().unwrap());
+    for i in 0..read.samples().len() {
+        let (p, q) = (read.samples()[i].px.unwrap(), made.samples()[i].px.unwrap());
+        // Not bit for bit: sines may differ in the last digit on another platform.
+        assert!((p[0] - q[0]).abs() < 1e-2 && (p[1] - q[1]).abs() < 1e-2, "{p:?} {q:?}");
+        let apart = read_poses[i].space_from_head() - made_poses[i].space_from_head();
+        assert!(apart.to_cols_array().iter().all(|v| v.abs() < 1e-5));
+    }
+    assert!(std::fs::metadata(fixture()).unwrap().len() < 200_000);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Scanpaths: files, resampling to frames, and the statistics of synthetic ones.
 //!
-//! `cargo test -p afterimage-lab --test sources -- --ignored write_fixture` rewrites `fixtures/scanpath_viewing.csv`.
+//! `cargo test -p afterimage-lab --test sources -- --ignored write_fixture` rewrites `fixtures/scanpath_viewing.csv`
+//! and `fixtures/scanpath_headset.csv`.
 
 use afterimage::ViewGeometry;
 use afterimage_lab::error::InputError;
@@ -81,9 +82,10 @@ fn recorded_files_and_the_fixture_read_as_their_table_says() {
 }
 
 #[test]
-#[ignore = "writes fixtures/scanpath_viewing.csv"]
+#[ignore = "writes fixtures/scanpath_viewing.csv and fixtures/scanpath_headset.csv"]
 fn write_fixture() {
     std::fs::write(fixture(), csv(&fixture_path())).unwrap();
+    std::fs::write(head::fixture(), csv(&head::fixture_path())).unwrap();
 }
 
 #[test]
