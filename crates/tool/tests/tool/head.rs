@@ -16,7 +16,7 @@ fn rows(path: &Path) -> Vec<Vec<f64>> {
 #[test]
 fn a_generated_head_moves_the_camera_and_its_scanpath_repeats_the_run() {
     let folder = Folder::new();
-    let head = ["--camera", "head-walk", "--gaze", "synthetic:4", "--frames", "24", "--start", "1"];
+    let head = ["--camera", "head-walk", "--gaze", "synthetic:4", "--frames", "24", "--start", "1", "--format", "exr"];
     succeeds(&run("builtin:courtyard", &folder.text("a"), &[SMALL, &head].concat()));
     let a = folder.path("a");
     assert!(["pose.csv", "scanpath.csv", "gaze.csv"].iter().all(|f| files(&a).contains(&(*f).to_owned())));
@@ -32,11 +32,21 @@ fn a_generated_head_moves_the_camera_and_its_scanpath_repeats_the_run() {
     assert_eq!(read_json(&a.join("report.json"))["gaze_map"], "angle");
 
     let path = folder.text("a/scanpath.csv");
-    let again = ["--camera", "head", "--gaze", &path, "--frames", "24", "--start", "1"];
+    let again = ["--camera", "head", "--gaze", &path, "--frames", "24", "--start", "1", "--format", "exr"];
     succeeds(&run("builtin:courtyard", &folder.text("b"), &[SMALL, &again].concat()));
-    for file in ["pose.csv", "scanpath.csv", "gaze.csv", "none/000023.png"] {
+    for file in ["pose.csv", "scanpath.csv", "gaze.csv", "cameras.json", "none/000023.exr"] {
         assert_eq!(fs::read(a.join(file)).unwrap(), fs::read(folder.path("b").join(file)).unwrap(), "{file}");
     }
+    // The cameras lie beside the frames, too; a run without a head leaves none behind.
+    let frames = read_json(&a.join("none/cameras.json"));
+    assert_eq!((frames["frames"].as_array().unwrap().len(), &frames["width"]), (24, &96.into()));
+    assert_eq!(fs::read(a.join("none/cameras.json")).unwrap(), fs::read(a.join("cameras.json")).unwrap());
+    succeeds(&run("builtin:courtyard", &folder.text("b"), &[SMALL, &["--frames", "1", "--camera", "walk"]].concat()));
+    assert!(
+        !["pose.csv", "scanpath.csv", "cameras.json", "none/cameras.json"]
+            .iter()
+            .any(|f| folder.path("b").join(f).exists())
+    );
 }
 
 #[test]
