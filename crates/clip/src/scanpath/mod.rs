@@ -1,15 +1,24 @@
 //! Scanpaths: recorded and synthetic gaze over time, and its resampling to frames.
 //!
-//! A [`Scanpath`] comes from a CSV file ([`read_csv`]) or from a model of the eye ([`generate`]); [`FrameGaze`]
-//! resamples it to one gaze point per frame. Lost gaze is `None` in samples, and is never filled in by interpolation.
+//! A [`Scanpath`] comes from a CSV file ([`read_csv`]), from a model of the eye before a screen ([`generate`]) or from
+//! one of eye and head ([`generate_head`]); [`FrameGaze`] resamples it to one gaze point per frame. Lost gaze is `None`
+//! in samples, and is never filled in by interpolation. A scanpath of a headset has a [`HeadPose`] for each sample,
+//! which [`HeadPath`] makes a camera's path of.
 
 mod frames;
+mod head;
+mod head_path;
+mod kinematics;
+mod pose;
 mod recorded;
 mod synthetic;
 mod viewing;
 mod walk;
 
 pub use frames::{FrameGaze, GazeMap};
+pub use head::{DistanceOf, HeadOptions, HeadTurn, Regarded, SyntheticHead, generate_head, in_a_room};
+pub use head_path::HeadPath;
+pub use pose::HeadPose;
 pub use recorded::{MAX_FILE_BYTES, parse_csv, read_csv, write_csv};
 pub use synthetic::{Synthetic, SyntheticOptions, generate};
 pub use viewing::{Event, EventKind};
@@ -33,7 +42,8 @@ pub struct Sample {
     pub px: Option<[f32; 2]>,
 }
 
-/// The screen of a recording: flat, with its middle straight ahead of the eye.
+/// The screen of a recording: flat, with its middle straight ahead of the eye. It is fixed to the head if the recording
+/// has poses of the head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Screen {
     /// Width and height in pixels, at least 1.
@@ -109,6 +119,8 @@ pub struct Scanpath {
     screen: Screen,
     about: About,
     samples: Vec<Sample>,
+    /// One for each sample, or none at all.
+    poses: Vec<HeadPose>,
 }
 
 impl Scanpath {
@@ -149,7 +161,27 @@ impl Scanpath {
                 "give a recording with at least one valid sample",
             ));
         }
-        Ok(Self { name, screen, about, samples })
+        Ok(Self { name, screen, about, samples, poses: vec![] })
+    }
+
+    /// The scanpath of a headset: with the pose of the head at each sample, also where the gaze is lost.
+    ///
+    /// # Errors
+    /// [`Invalid`](InputError::Invalid) if there are not as many poses as samples, a position is not finite or beyond
+    /// 1000 km, or a quaternion's length is not 1.
+    pub fn with_poses(self, poses: Vec<HeadPose>) -> Result<Self, InputError> {
+        if poses.len() != self.samples.len() {
+            return Err(InputError::invalid(
+                self.name,
+                format!("there are {} poses of the head for {} samples", poses.len(), self.samples.len()),
+                "give one for each sample",
+            ));
+        }
+        let faults = poses.iter().enumerate().filter_map(|(i, pose)| Some((i, pose.fault()?)));
+        match faults.into_iter().next() {
+            Some((i, fault)) => Err(InputError::invalid(self.name, format!("sample {i}: {fault}"), HeadPose::EXPECTED)),
+            None => Ok(Self { poses, ..self }),
+        }
     }
 
     /// Name in errors, usually the file's path.
@@ -170,6 +202,11 @@ impl Scanpath {
     /// All samples including lost ones, by increasing time.
     pub fn samples(&self) -> &[Sample] {
         &self.samples
+    }
+
+    /// Pose of the head at each sample; `None` if the head is not tracked.
+    pub fn poses(&self) -> Option<&[HeadPose]> {
+        (!self.poses.is_empty()).then_some(&self.poses[..])
     }
 
     /// Duration in seconds from the first to the last sample; 0 for a single one.

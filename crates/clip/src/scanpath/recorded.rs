@@ -10,8 +10,15 @@
 //! 0.000,nan,nan,0
 //! 0.002,511.09,375.05,1
 //! ```
+//!
+//! With the pose of the head, for headsets:
+//!
+//! ```text
+//! t_s,x_px,y_px,valid,head_x_m,head_y_m,head_z_m,head_qx,head_qy,head_qz,head_qw
+//! 0.000,1000,1000,1,0,0,0,0,0,0,1
+//! ```
 
-use super::{About, RESERVED_KEYS, Sample, Scanpath, Screen, UNKNOWN};
+use super::{About, HeadPose, RESERVED_KEYS, Sample, Scanpath, Screen, UNKNOWN};
 use crate::error::{Bound, Exceeded, InputError};
 use std::fs::File;
 use std::io::{Read, Write};
@@ -21,6 +28,12 @@ use std::path::Path;
 pub const MAX_FILE_BYTES: u64 = 256 << 20;
 
 const COLUMNS: &str = "t_s,x_px,y_px,valid";
+
+/// Further columns of a scanpath with poses of the head.
+const POSE_COLUMNS: &str = "head_x_m,head_y_m,head_z_m,head_qx,head_qy,head_qz,head_qw";
+
+/// Number of columns without and with poses.
+const COUNTS: [usize; 2] = [4, 11];
 
 /// Reads a scanpath file; its path becomes the scanpath's name.
 ///
@@ -65,42 +78,52 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<Scanpath, InputError> {
 /// measure in the header may be followed by a remark (`1024x768 (inferred)`), which becomes the note `screen_px_note`,
 /// or be `unknown`; only `screen_px` must be known. Blank lines, a byte order mark and CRLF are accepted.
 ///
+/// The columns `head_x_m,head_y_m,head_z_m` and `head_qx,head_qy,head_qz,head_qw` may follow: the [`HeadPose`] in every
+/// row, also where the gaze is lost. The screen is then fixed to the head.
+///
 /// # Errors
 /// [`Invalid`](InputError::Invalid). With the line number: bytes that are not UTF-8, a header line or row that cannot
-/// be parsed, a row without exactly four columns, times that do not increase. Without: no column names, and the errors
-/// of [`Scanpath::new`].
+/// be parsed, a row without exactly the columns named, times that do not increase, a pose that is none. Without: no
+/// column names, and the errors of [`Scanpath::new`].
 pub fn parse_csv(name: &str, bytes: &[u8]) -> Result<Scanpath, InputError> {
     let text = utf8(name, bytes)?;
     let mut header = Header::default();
     let mut samples: Vec<Sample> = Vec::new();
-    let mut columns_seen = false;
+    let mut poses: Vec<HeadPose> = Vec::new();
+    // Number of columns, once their names are read.
+    let mut columns: Option<usize> = None;
     for (index, line) in text.lines().enumerate() {
         let line = line.trim();
         let parsed = if line.is_empty() {
             Ok(())
         } else if let Some(comment) = line.strip_prefix('#') {
             header.line(comment)
-        } else if columns_seen {
-            row(line, samples.last()).map(|s| samples.push(s))
-        } else if line.split(',').map(str::trim).eq(COLUMNS.split(',')) {
-            columns_seen = true;
+        } else if let Some(count) = columns {
+            row(line, count, samples.last()).map(|(sample, pose)| {
+                samples.push(sample);
+                poses.extend(pose);
+            })
+        } else if let Some(count) = named_columns(line) {
+            columns = Some(count);
             Ok(())
         } else {
             Err(bad(
                 format!("{} instead of the column names", quote(line)),
-                format!("the first line without # must be {COLUMNS}"),
+                format!(
+                    "the first line without # must be {COLUMNS}, or with poses of the head {COLUMNS},{POSE_COLUMNS}"
+                ),
             ))
         };
         parsed
             .map_err(|(problem, remedy)| InputError::invalid(format!("{name}, line {}", index + 1), problem, remedy))?;
     }
-    if !columns_seen {
+    let Some(columns) = columns else {
         return Err(InputError::invalid(
             name,
             "there are no column names",
             format!("the first line without # must be {COLUMNS}"),
         ));
-    }
+    };
     let Some(size_px) = header.size_px else {
         return Err(InputError::invalid(
             name,
@@ -109,7 +132,21 @@ pub fn parse_csv(name: &str, bytes: &[u8]) -> Result<Scanpath, InputError> {
         ));
     };
     let screen = Screen { size_px, size_cm: header.size_cm, distance_cm: header.distance_cm };
-    Scanpath::new(name, screen, header.about, samples)
+    let path = Scanpath::new(name, screen, header.about, samples)?;
+    if columns == COUNTS[1] { path.with_poses(poses) } else { Ok(path) }
+}
+
+/// Number of columns, if a line has their names.
+fn named_columns(line: &str) -> Option<usize> {
+    let names = || line.split(',').map(str::trim);
+    let count = if names().eq(COLUMNS.split(',')) {
+        COUNTS[0]
+    } else if names().eq(COLUMNS.split(',').chain(POSE_COLUMNS.split(','))) {
+        COUNTS[1]
+    } else {
+        return None;
+    };
+    Some(count)
 }
 
 /// Writes the format that [`read_csv`] reads. Numbers have as many digits as an exact round trip needs, and lost
@@ -135,12 +172,20 @@ pub fn write_csv(path: &Scanpath, out: &mut impl Write) -> std::io::Result<()> {
     for (key, value) in &about.notes {
         writeln!(out, "# {key}: {value}")?;
     }
-    writeln!(out, "{COLUMNS}")?;
-    for sample in path.samples() {
+    match path.poses() {
+        Some(_) => writeln!(out, "{COLUMNS},{POSE_COLUMNS}")?,
+        None => writeln!(out, "{COLUMNS}")?,
+    }
+    for (i, sample) in path.samples().iter().enumerate() {
         match sample.px {
-            Some([x, y]) => writeln!(out, "{},{x},{y},1", sample.t_s)?,
-            None => writeln!(out, "{},nan,nan,0", sample.t_s)?,
+            Some([x, y]) => write!(out, "{},{x},{y},1", sample.t_s)?,
+            None => write!(out, "{},nan,nan,0", sample.t_s)?,
         }
+        if let Some(poses) = path.poses() {
+            let ([x, y, z], [qx, qy, qz, qw]) = (poses[i].position_m, poses[i].orientation);
+            write!(out, ",{x},{y},{z},{qx},{qy},{qz},{qw}")?;
+        }
+        writeln!(out)?;
     }
     out.flush()
 }
@@ -247,8 +292,9 @@ fn pair<T: std::str::FromStr + Into<f64> + Copy>(text: &str) -> Option<[T; 2]> {
     Some([positive(a)?, positive(b)?])
 }
 
-fn row(line: &str, previous: Option<&Sample>) -> Result<Sample, LineError> {
-    let mut fields = [""; 4];
+/// A row of `expected` columns. The pose is `None` without columns for it.
+fn row(line: &str, expected: usize, previous: Option<&Sample>) -> Result<(Sample, Option<HeadPose>), LineError> {
+    let mut fields = [""; COUNTS[1]];
     let mut count = 0;
     for field in line.split(',') {
         if let Some(slot) = fields.get_mut(count) {
@@ -256,10 +302,11 @@ fn row(line: &str, previous: Option<&Sample>) -> Result<Sample, LineError> {
         }
         count += 1;
     }
-    if count != fields.len() {
+    if count != expected {
+        let names = if expected == COUNTS[0] { COLUMNS.to_owned() } else { format!("{COLUMNS},{POSE_COLUMNS}") };
         return Err(bad(
             format!("{count} columns in {}", quote(line)),
-            format!("expected the {} columns {COLUMNS}", fields.len()),
+            format!("expected the {expected} columns {names}"),
         ));
     }
     let t_s: f64 = number(fields[0])
@@ -284,7 +331,21 @@ fn row(line: &str, previous: Option<&Sample>) -> Result<Sample, LineError> {
             return Err(bad(format!("valid is {}", quote(other)), "expected 1, or 0 where the gaze was lost"));
         }
     };
-    Ok(Sample { t_s, px: valid.then_some(px) })
+    let pose = if expected == COUNTS[1] { Some(pose(&fields[COUNTS[0]..])?) } else { None };
+    Ok((Sample { t_s, px: valid.then_some(px) }, pose))
+}
+
+/// Pose of the head from its seven columns.
+fn pose(fields: &[&str]) -> Result<HeadPose, LineError> {
+    let mut values = [0.0; 7];
+    for ((value, text), column) in values.iter_mut().zip(fields).zip(POSE_COLUMNS.split(',')) {
+        *value = number(text)
+            .filter(|v: &f32| v.is_finite())
+            .ok_or_else(|| bad(format!("{column} is {}", quote(text)), HeadPose::EXPECTED))?;
+    }
+    let [x, y, z, qx, qy, qz, qw] = values;
+    let pose = HeadPose { position_m: [x, y, z], orientation: [qx, qy, qz, qw] };
+    pose.fault().map_or(Ok(pose), |fault| Err(bad(fault, HeadPose::EXPECTED)))
 }
 
 fn number<T: std::str::FromStr>(text: &str) -> Option<T> {

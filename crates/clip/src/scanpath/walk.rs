@@ -1,11 +1,14 @@
 //! Simulation of the eye for synthetic scanpaths: generates events, and samples the gaze at given times.
 
+use super::kinematics::{
+    angle_deg, axes, main_sequence_s, minimum_jerk, tangent_towards, truncated_exponential, turn, uniform, unit,
+};
 use super::viewing::{
     AIM_MARGIN_DEG, CORRECT_ABOVE_DEG, DRIFT_RMS_DEG, DRIFT_STEP_S, EDGE_MARGIN_DEG, Event, EventKind, FIXATION_S,
-    LANDING_S, MAIN_SEQUENCE_S, MICROSACCADE_DEG, MICROSACCADE_HZ, SACCADE_DEG, SACCADE_SCALE_DEG, UNDERSHOOT,
+    LANDING_S, MICROSACCADE_DEG, MICROSACCADE_HZ, SACCADE_DEG, SACCADE_SCALE_DEG, UNDERSHOOT,
 };
 use glam::{DVec2, DVec3};
-use rand::{Rng, SeedableRng};
+use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use std::f64::consts::TAU;
 
@@ -108,7 +111,7 @@ impl<T: Iterator<Item = f64>> Walk<T> {
     /// Direction and amplitude in degrees of a saccade that ends in the aim field.
     fn choose_target(&mut self) -> (DVec3, f64) {
         for _ in 0..AIM_TRIES {
-            let amplitude_deg = saccade_amplitude_deg(unit(&mut self.rng));
+            let amplitude_deg = truncated_exponential(unit(&mut self.rng), SACCADE_SCALE_DEG, SACCADE_DEG);
             let towards = self.any_direction();
             if self.aim.contains(turn(self.gaze, towards, amplitude_deg)) {
                 return (towards, amplitude_deg);
@@ -158,15 +161,14 @@ impl<T: Iterator<Item = f64>> Walk<T> {
         }
     }
 
-    /// Simulates a movement of `amplitude_deg` with the minimum-jerk profile (Flash & Hogan 1985).
+    /// Simulates a movement of `amplitude_deg` with the minimum-jerk profile.
     fn turn_by(&mut self, kind: EventKind, towards: DVec3, amplitude_deg: f64, intended_deg: f64) {
         let (start_s, start) = (self.now_s, self.gaze);
         let duration_s = main_sequence_s(amplitude_deg);
         let end_s = start_s + duration_s;
         while let Some(t_s) = self.times.next_if(|t| *t < end_s) {
             let u = (t_s - start_s) / duration_s;
-            let progress = u * u * u * (10.0 + u * (6.0 * u - 15.0));
-            self.write(t_s, turn(start, towards, amplitude_deg * progress));
+            self.write(t_s, turn(start, towards, amplitude_deg * minimum_jerk(u)));
         }
         self.now_s = end_s;
         self.gaze = turn(start, towards, amplitude_deg);
@@ -181,46 +183,4 @@ impl<T: Iterator<Item = f64>> Walk<T> {
     fn write(&mut self, t_s: f64, gaze: DVec3) {
         self.samples.push((t_s, (gaze.truncate() / gaze.z).into()));
     }
-}
-
-fn main_sequence_s(amplitude_deg: f64) -> f64 {
-    MAIN_SEQUENCE_S[0] + MAIN_SEQUENCE_S[1] * amplitude_deg
-}
-
-/// Inverse of the truncated exponential distribution function.
-fn saccade_amplitude_deg(u: f64) -> f64 {
-    let [least, most] = SACCADE_DEG;
-    let share = 1.0 - (-(most - least) / SACCADE_SCALE_DEG).exp();
-    least - SACCADE_SCALE_DEG * (1.0 - u * share).ln()
-}
-
-/// Uniform in \[0, 1). Not the `rand` crate's conversion, whose values may change between versions.
-fn unit(rng: &mut Pcg64) -> f64 {
-    (rng.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
-}
-
-fn uniform(rng: &mut Pcg64, [low, high]: [f64; 2]) -> f64 {
-    low + (high - low) * unit(rng)
-}
-
-/// Unit vector `from` rotated by `angle_deg` towards `towards`, a unit vector orthogonal to it.
-fn turn(from: DVec3, towards: DVec3, angle_deg: f64) -> DVec3 {
-    let (sin, cos) = angle_deg.to_radians().sin_cos();
-    // Normalised, so that rounding errors do not accumulate over millions of steps.
-    (from * cos + towards * sin).normalize()
-}
-
-/// Two orthonormal vectors orthogonal to `gaze`, which points forward and so is never the y axis.
-fn axes(gaze: DVec3) -> (DVec3, DVec3) {
-    let right = DVec3::Y.cross(gaze).normalize();
-    (right, gaze.cross(right))
-}
-
-/// Direction at `from` of the shortest rotation to `to`; an arbitrary one if they coincide.
-fn tangent_towards(from: DVec3, to: DVec3) -> DVec3 {
-    (to - from * from.dot(to)).try_normalize().unwrap_or_else(|| axes(from).0)
-}
-
-fn angle_deg(a: DVec3, b: DVec3) -> f64 {
-    a.cross(b).length().atan2(a.dot(b)).to_degrees()
 }

@@ -8,6 +8,7 @@ pub mod raster;
 pub mod scene_camera;
 pub mod sequence;
 pub mod still;
+pub mod synthetic_head;
 pub mod traced;
 pub mod viewed_scene;
 
@@ -20,6 +21,7 @@ pub use raster::RasterSource;
 pub use scene_camera::SceneCamera;
 pub use sequence::SequenceSource;
 pub use still::StillSource;
+pub use synthetic_head::head_in_scene;
 pub use traced::{TracedSamples, TracedSource};
 pub use viewed_scene::{Light, SceneChoice, ViewedScene};
 

@@ -6,6 +6,7 @@ use crate::scene::camera_file::CameraFile;
 use crate::scene::{Camera, Scene};
 use crate::trace::view::View;
 use afterimage::ViewGeometry;
+use afterimage_clip::scanpath::HeadPath;
 use afterimage_clip::source::gait::Head;
 use glam::{DMat4, DQuat, DVec3};
 use std::f64::consts::FRAC_PI_2;
@@ -60,6 +61,12 @@ enum CameraPath {
     /// The head of a person who walks forwards.
     Walk {
         from: DMat4,
+    },
+    /// A recorded or generated head.
+    Head {
+        /// World from the space of its poses.
+        world_from_space: DMat4,
+        path: HeadPath,
     },
 }
 
@@ -116,6 +123,13 @@ impl SceneCamera {
                 let geometry = flat(scene, size_px, hfov_deg)?;
                 return Ok(Self { path: CameraPath::File(file), geometry, steering: None });
             }
+            Some("head") => {
+                return Err(InputError::request(
+                    "camera head",
+                    "there is no scanpath with poses of a head",
+                    "give one with the columns head_x_m to head_qw, or a synthetic one",
+                ));
+            }
             Some(name) => {
                 let names: Vec<_> = cameras.iter().map(|c| format!("'{}'", c.name)).collect();
                 let listed = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
@@ -134,6 +148,33 @@ impl SceneCamera {
             2.0 * half.atan().to_degrees()
         };
         Ok(Self { path, geometry: flat(scene, size_px, hfov_deg.unwrap_or_else(own))?, steering: None })
+    }
+
+    /// A camera between the eyes of a head whose poses are in the space of [`SceneCamera::head_space`]. Field of view:
+    /// `hfov_deg` (horizontal, degrees), or that of the scene's first camera if `None`.
+    ///
+    /// # Errors
+    /// [`Request`](InputError::Request) if the size or the field of view is out of range.
+    pub fn head(scene: &Scene, path: HeadPath, size_px: [u32; 2], hfov_deg: Option<f32>) -> Result<Self, InputError> {
+        let still = Self::choose(scene, Some("still"), size_px, hfov_deg)?;
+        Ok(Self { path: CameraPath::Head { world_from_space: Self::head_space(scene), path }, ..still })
+    }
+
+    /// World from the space that poses of a head refer to: its origin and its direction ahead are those of the scene's
+    /// first camera, else of a person in the middle of its floor. It is level, whatever the camera looks at.
+    pub fn head_space(scene: &Scene) -> DMat4 {
+        let first = scene.pose(0.0).cameras.into_iter().next();
+        let from = first.unwrap_or_else(|| standing(scene, scene.framing_camera(1.0))).world_from_camera;
+        let back = -heading(&from);
+        DMat4::from_cols(DVec3::Y.cross(back).extend(0.0), DVec3::Y.extend(0.0), back.extend(0.0), from.w_axis)
+    }
+
+    /// Poses of the head that the camera follows, if it does.
+    pub fn head_path(&self) -> Option<&HeadPath> {
+        match &self.path {
+            CameraPath::Head { path, .. } => Some(path),
+            _ => None,
+        }
     }
 
     /// Frame size and field of view of all frames.
@@ -169,7 +210,10 @@ impl SceneCamera {
             CameraPath::Scene(_) => scene.duration_s() <= 0.0,
             CameraPath::Framing(_) => true,
             CameraPath::File(file) => file.is_still(),
-            CameraPath::Lateral { .. } | CameraPath::Orbit { .. } | CameraPath::Walk { .. } => false,
+            CameraPath::Lateral { .. }
+            | CameraPath::Orbit { .. }
+            | CameraPath::Walk { .. }
+            | CameraPath::Head { .. } => false,
         }
     }
 
@@ -208,6 +252,7 @@ impl SceneCamera {
                 DMat4::from_translation(*middle) * DMat4::from_quat(turn) * DMat4::from_translation(-*middle) * *from
             }
             CameraPath::Walk { from } => walk(from, time_s),
+            CameraPath::Head { world_from_space, path } => *world_from_space * path.pose(time_s).space_from_head(),
         };
         View::new(self.geometry, world_from_camera)
     }
@@ -252,10 +297,14 @@ fn standing(scene: &Scene, camera: Camera) -> Camera {
     Camera { world_from_camera: DMat4::from_rotation_translation(turn, eye), ..camera }
 }
 
+/// Level direction in which a camera looks. Looking straight up or down gives none: then -z.
+fn heading(from: &DMat4) -> DVec3 {
+    (-from.z_axis.truncate() * DVec3::new(1.0, 0.0, 1.0)).normalize_or(DVec3::NEG_Z)
+}
+
 /// Pose of the head at `time_s` of a walk that starts at `from`.
 fn walk(from: &DMat4, time_s: f64) -> DMat4 {
-    // Looking straight up or down gives no direction to walk in.
-    let ahead = (-from.z_axis.truncate() * DVec3::new(1.0, 0.0, 1.0)).normalize_or(DVec3::NEG_Z);
+    let ahead = heading(from);
     let head = Head::at(time_s);
     let step = ahead * head.ahead_m + DVec3::Y * head.up_m + ahead.cross(DVec3::Y) * head.right_m;
     let eye = from.w_axis.truncate();

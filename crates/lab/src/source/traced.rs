@@ -67,8 +67,7 @@ impl TracedSource {
     /// white environment.
     ///
     /// # Errors
-    /// Those of [`ViewedScene::open`]; [`Device`](InputError::Device) if the scene does not fit the device;
-    /// [`Request`](InputError::Request) if the frame rate is not above 0.
+    /// Those of [`ViewedScene::open`] and [`TracedSource::new`].
     pub fn open(
         input: &str,
         limits: &ReadLimits,
@@ -80,10 +79,22 @@ impl TracedSource {
     ) -> Result<Self, InputError> {
         let choice =
             SceneChoice { camera, light: Light::IfDark, options: *options, limits: *limits, ..SceneChoice::new(input) };
-        let of = ViewedScene::open(&choice)?;
+        Self::new(ViewedScene::open(&choice)?, backend, settings, samples)
+    }
+
+    /// Path-traces a scene as it is, with the light that it has.
+    ///
+    /// # Errors
+    /// [`Device`](InputError::Device) if the scene does not fit the device.
+    pub fn new(
+        of: ViewedScene,
+        backend: &Backend,
+        settings: TraceSettings,
+        samples: TracedSamples,
+    ) -> Result<Self, InputError> {
         let world = World::new(&of.scene);
         let tracer = Tracer::new(backend, &world, settings)
-            .map_err(|e| InputError::device(input, e.to_string(), "trace it on the CPU"))?;
+            .map_err(|e| InputError::device(&of.scene.name, e.to_string(), "trace it on the CPU"))?;
         Ok(Self {
             of,
             world,

@@ -7,6 +7,7 @@ use crate::scene::{Environment, Scene, SceneLimits};
 use crate::trace::view::View;
 use crate::trace::world::light_if_dark;
 use afterimage::ViewGeometry;
+use afterimage_clip::scanpath::HeadPath;
 use std::sync::Arc;
 
 /// Default width and height in pixels.
@@ -23,6 +24,8 @@ pub struct SceneChoice<'a> {
     pub clip: Option<&'a str>,
     /// The camera that [`SceneCamera::choose`] selects for this.
     pub camera: Option<&'a str>,
+    /// Poses of a head that the camera follows ([`SceneCamera::head`]) instead.
+    pub head: Option<HeadPath>,
     /// Light besides the scene's own.
     pub light: Light,
     /// Size, field of view and frame rate.
@@ -35,7 +38,7 @@ impl<'a> SceneChoice<'a> {
     /// The scene as it is, with defaults for the rest.
     pub fn new(name: &'a str) -> Self {
         let (options, limits) = (SceneOptions::default(), ReadLimits::default());
-        Self { name, clip: None, camera: None, light: Light::Own, options, limits }
+        Self { name, clip: None, camera: None, head: None, light: Light::Own, options, limits }
     }
 }
 
@@ -67,7 +70,7 @@ impl ViewedScene {
     /// Opens a scene.
     ///
     /// # Errors
-    /// Those of [`Scene::open_clip`], [`SceneCamera::choose`] and [`new`](Self::new), and
+    /// Those of [`Scene::open_clip`], [`SceneCamera::choose`], [`SceneCamera::head`] and [`new`](Self::new), and
     /// [`Limit`](InputError::Limit) if the frame has more pixels than the limits allow.
     pub fn open(choice: &SceneChoice<'_>) -> Result<Self, InputError> {
         let size = choice.options.size.unwrap_or(DEFAULT_SIZE);
@@ -78,7 +81,11 @@ impl ViewedScene {
             Light::IfDark => light_if_dark(&mut scene),
             Light::Environment(environment) => scene.environment = environment.clone(),
         }
-        let camera = SceneCamera::choose(&scene, choice.camera, size, choice.options.hfov_deg)?;
+        let hfov_deg = choice.options.hfov_deg;
+        let camera = match &choice.head {
+            Some(path) => SceneCamera::head(&scene, path.clone(), size, hfov_deg)?,
+            None => SceneCamera::choose(&scene, choice.camera, size, hfov_deg)?,
+        };
         Self::new(scene, camera, choice.options.fps)
     }
 

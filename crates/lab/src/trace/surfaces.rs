@@ -53,6 +53,12 @@ impl Surfaces {
     }
 }
 
+/// Distance in metres from a point to the first surface in a direction, a unit vector; `None` if there is none.
+pub fn distance_m(world: &World, from: DVec3, direction: DVec3) -> Option<f64> {
+    let seen = first_surface(world, from.as_vec3(), unit(direction.as_vec3()), world.needs)?;
+    Some(seen.current.distance(from))
+}
+
 /// World-space positions of a surface point, in this frame and in the previous one.
 pub(super) struct SurfacePosition {
     pub current: DVec3,

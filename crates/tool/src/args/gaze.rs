@@ -3,12 +3,12 @@
 use super::{Named, by_name};
 use crate::failure::Failure;
 use afterimage::ViewGeometry;
-use afterimage_lab::scanpath::{FrameGaze, GazeMap, Scanpath, Screen, SyntheticOptions, generate, read_csv};
+use afterimage_lab::scanpath::{FrameGaze, GazeMap, HeadPath, Scanpath, Screen, SyntheticOptions, generate, read_csv};
 use clap::Args;
 use std::path::Path;
 
 /// Duration of a fixed or synthetic gaze, seconds.
-const DEFAULT_SECONDS: f64 = 5.0;
+pub(super) const DEFAULT_SECONDS: f64 = 5.0;
 
 /// Gaze of a clip.
 #[derive(Args, Clone, Debug)]
@@ -43,23 +43,29 @@ pub struct Track {
 }
 
 impl GazeArgs {
-    /// Resolves the options for `frames` frames, by default for the duration of the gaze.
-    pub fn resolve(&self, view: &ViewGeometry, fps: f32, frames: Option<u64>) -> Result<Track, Failure> {
-        if !(self.start >= 0.0 && self.start.is_finite()) {
-            return Err(Failure::Input(format!("--start {}: expected seconds, 0 or more", self.start)));
-        }
+    /// Resolves the options for `frames` frames, by default for the duration of the gaze. With `--camera head`,
+    /// `head` is the scanpath, read or generated already.
+    pub fn resolve(
+        &self,
+        view: &ViewGeometry,
+        fps: f32,
+        frames: Option<u64>,
+        head: Option<&HeadPath>,
+    ) -> Result<Track, Failure> {
+        self.check_start()?;
         let default_frames = (DEFAULT_SECONDS * f64::from(fps)).ceil() as u64;
         if let Some(px) = fixed(&self.gaze)? {
             let count = frames.unwrap_or(default_frames) as usize;
             return Ok(Track { px: vec![Some(px); count], map: "none" });
         }
         let synthetic = synthetic_seed(&self.gaze)?;
-        let path = match synthetic {
-            Some(seed) => {
+        let path = match (head, synthetic) {
+            (Some(head), _) => head.scanpath().clone(),
+            (None, Some(seed)) => {
                 let seconds = frames.unwrap_or(default_frames) as f64 / f64::from(fps) + self.start;
-                make_synthetic(seed, seconds + 0.1, view)?
+                make_synthetic(seed, seconds + 0.1, view)?.into()
             }
-            None => read_csv(Path::new(&self.gaze))?,
+            (None, None) => read_csv(Path::new(&self.gaze))?.into(),
         };
         let map = self.gaze_map.unwrap_or_else(|| GazeMap::default_for(path.screen()));
         let gaze = FrameGaze::new(&path, view, map, self.start, f64::from(fps))?;
@@ -74,6 +80,13 @@ impl GazeArgs {
         }
         Ok(Track { px, map: map.name() })
     }
+
+    pub(super) fn check_start(&self) -> Result<(), Failure> {
+        if !(self.start >= 0.0 && self.start.is_finite()) {
+            return Err(Failure::Input(format!("--start {}: expected seconds, 0 or more", self.start)));
+        }
+        Ok(())
+    }
 }
 
 fn make_synthetic(seed: u64, seconds: f64, view: &ViewGeometry) -> Result<Scanpath, Failure> {
@@ -83,7 +96,7 @@ fn make_synthetic(seed: u64, seconds: f64, view: &ViewGeometry) -> Result<Scanpa
 }
 
 /// `X,Y` in frame pixels.
-fn fixed(text: &str) -> Result<Option<[f32; 2]>, Failure> {
+pub(super) fn fixed(text: &str) -> Result<Option<[f32; 2]>, Failure> {
     let Some((x, y)) = text.split_once(',') else {
         return Ok(None);
     };
@@ -97,7 +110,7 @@ fn fixed(text: &str) -> Result<Option<[f32; 2]>, Failure> {
     }
 }
 
-fn synthetic_seed(text: &str) -> Result<Option<u64>, Failure> {
+pub(super) fn synthetic_seed(text: &str) -> Result<Option<u64>, Failure> {
     match text.strip_prefix("synthetic") {
         Some("") => Ok(Some(0)),
         Some(rest) if rest.starts_with(':') => rest[1..].parse().map(Some).map_err(|_| {

@@ -7,9 +7,10 @@ use crate::failure::Failure;
 use afterimage::ViewGeometry;
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::lattices::SampleOrder;
+use afterimage_lab::scanpath::HeadPath;
 use afterimage_lab::source;
 use afterimage_lab::source::{
-    FrameSource, ReadLimits, SceneChoice, SceneOptions, SourceInfo, TracedSamples, TracedSource, ViewedScene,
+    FrameSource, Light, ReadLimits, SceneChoice, SceneOptions, SourceInfo, TracedSamples, TracedSource, ViewedScene,
 };
 use afterimage_lab::trace::sampling::Sampling;
 use clap::{Args, ValueEnum};
@@ -39,8 +40,9 @@ pub struct InputArgs {
     #[command(flatten)]
     pub paths: PathArgs,
     /// Camera of a scene: one of its cameras by name, a .json file (a cameras.json, or a path of keyframes), or
-    /// lateral, orbit, walk (the head of a walking person), framing; default: the scene's first camera, which glides
-    /// sideways if nothing in the scene moves
+    /// lateral, orbit, walk (the head of a walking person), framing, head (the poses of the head in --gaze FILE.csv, or
+    /// somebody who looks around with head and eye with --gaze synthetic:SEED), head-walk (the same, walking); default:
+    /// the scene's first camera, which glides sideways if nothing in the scene moves
     #[arg(long, value_name = "NAME|FILE.json")]
     pub camera: Option<String>,
     /// Limit on the size of input images, million pixels
@@ -63,6 +65,8 @@ pub struct Rendering {
     pub seed: u64,
     /// Sampling pattern of foveated frames; `None`: full-rate frames only.
     pub foveated: Option<FoveatedSampling>,
+    /// Head that moves the camera.
+    pub head: Option<HeadPath>,
 }
 
 /// Samples of foveated frames.
@@ -121,13 +125,18 @@ impl InputArgs {
             Backend::Cpu => Headless::find_roomy(true),
         };
         let device = device.ok_or_else(|| Failure::Input(format!("--source raster: {NO_ADAPTER}")))?;
-        Ok(Box::new(self.scene()?.on(device)?))
+        Ok(Box::new(self.scene(rendering.head.clone())?.on(device)?))
     }
 
     /// Opens a scene for rasterization on any device.
-    pub fn scene(&self) -> Result<ViewedScene, Failure> {
+    pub fn scene(&self, head: Option<HeadPath>) -> Result<ViewedScene, Failure> {
+        self.viewed(head, Light::Own)
+    }
+
+    fn viewed(&self, head: Option<HeadPath>, light: Light) -> Result<ViewedScene, Failure> {
         let (camera, options, limits) = (self.camera.as_deref(), self.scene_options(), self.limits());
-        let scene = ViewedScene::open(&SceneChoice { camera, options, limits, ..SceneChoice::new(&self.name) })?;
+        let choice = SceneChoice { camera, head, light, options, limits, ..SceneChoice::new(&self.name) };
+        let scene = ViewedScene::open(&choice)?;
         warn(scene.warnings());
         Ok(scene)
     }
@@ -142,11 +151,8 @@ impl InputArgs {
             full_rate_samples: foveated.map_or(self.spp, |f| f.reference_spp),
         };
         let settings = self.paths.settings(rendering.seed)?;
-        let (limits, options, camera) = (self.limits(), self.scene_options(), self.camera.as_deref());
-        let backend = &rendering.backend;
-        let source = TracedSource::open(&self.name, &limits, &options, camera, backend, settings, samples)?;
-        warn(source.warnings());
-        Ok(Box::new(source))
+        let scene = self.viewed(rendering.head.clone(), Light::IfDark)?;
+        Ok(Box::new(TracedSource::new(scene, &rendering.backend, settings, samples)?))
     }
 
     fn limits(&self) -> ReadLimits {

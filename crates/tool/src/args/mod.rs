@@ -3,6 +3,7 @@
 pub mod backend;
 mod foveation;
 pub mod gaze;
+pub mod head;
 pub mod input;
 mod method;
 mod named;

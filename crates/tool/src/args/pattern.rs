@@ -3,6 +3,7 @@
 use crate::args::gaze::GazeArgs;
 use crate::failure::Failure;
 use afterimage::ViewGeometry;
+use afterimage_lab::scanpath::HeadPath;
 use afterimage_lab::trace::sampling::{Acuity, Layers, Regions, Sampling};
 use clap::{Args, ValueEnum};
 
@@ -12,7 +13,7 @@ pub struct PatternArgs {
     #[command(flatten)]
     pub of: SamplingArgs,
     #[command(flatten)]
-    gaze: GazeArgs,
+    pub gaze: GazeArgs,
 }
 
 /// Sampling pattern of traced frames.
@@ -69,8 +70,14 @@ impl SamplingName {
 
 impl PatternArgs {
     /// Gaze of every frame in pixels; the last known position where tracking is lost.
-    pub fn gaze(&self, view: &ViewGeometry, fps: f32, frames: u64) -> Result<Vec<[f32; 2]>, Failure> {
-        let track = self.gaze.resolve(view, fps, Some(frames))?;
+    pub fn gaze(
+        &self,
+        view: &ViewGeometry,
+        fps: f32,
+        frames: u64,
+        head: Option<&HeadPath>,
+    ) -> Result<Vec<[f32; 2]>, Failure> {
+        let track = self.gaze.resolve(view, fps, Some(frames), head)?;
         let mut last = view.size_px().map(|s| 0.5 * (s as f32 - 1.0));
         Ok(track
             .px

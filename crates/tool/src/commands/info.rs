@@ -58,6 +58,9 @@ fn scanpath_info(path: &str) -> Result<(), InputError> {
     let lost = scanpath.samples().iter().filter(|s| s.px.is_none()).count();
     say!("scanpath of {:.3} s", scanpath.duration_s());
     say!("samples: {} ({lost} lost)", scanpath.samples().len());
+    if scanpath.poses().is_some() {
+        say!("head: a pose at every sample; use it with --camera head");
+    }
     say!("screen: {}x{} px", screen.size_px[0], screen.size_px[1]);
     match (screen.size_cm, screen.distance_cm) {
         (Some([w, h]), Some(d)) => say!("geometry: {w}x{h} cm seen from {d} cm"),

@@ -5,6 +5,7 @@ mod plot;
 
 use crate::args::backend::BackendName;
 use crate::args::gaze::GazeArgs;
+use crate::args::head::head_path;
 use crate::args::input::{FoveatedSampling, InputArgs, Rendering, SourceName};
 use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
@@ -15,10 +16,13 @@ use crate::clip::run_report::{RunFacts, write_report};
 use crate::clip::{ClipReport, REPORTS};
 use crate::failure::Failure;
 use crate::output::Output;
+use crate::report::cameras::cameras_json;
 use afterimage::{DebugView, Filter};
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::ablation::{self, PARTS, Part};
 use afterimage_lab::quad_views::QuadViewLayout;
+use afterimage_lab::scanpath::{HeadPath, write_csv};
+use afterimage_lab::source::FrameSource;
 use afterimage_lab::trace::sampling::Sampling;
 use clap::{Args, Parser};
 use std::ffi::OsString;
@@ -32,7 +36,9 @@ use std::path::PathBuf;
     afterimage run scene.glb --foveation uniform --scale 1.5 --frames 60 --method none --out out/uniform\n\n\
     Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/psnr.svg and OUT/psnr.png (PSNR by\n\
     frame), OUT/gaze.csv, OUT/frames.csv and OUT/report.json. Of scenes, the latter two also have the time of rendering\n\
-    the frames and that of the whole frame, renderer and method."
+    the frames and that of the whole frame, renderer and method. With --camera head also OUT/scanpath.csv, the\n\
+    head's scanpath as --gaze takes it, and the camera of each frame: OUT/pose.csv (meters and a quaternion x, y, z, w in\n\
+    the scene's axes; x right, y up, looking along -z) and OUT/cameras.json, also beside frames in EXR."
 )]
 pub struct RunArgs {
     /// Output folder
@@ -115,14 +121,19 @@ impl RunArgs {
         Self { foveation: self.foveation.with_defaults(is_sparse, is_scene), ..self }
     }
 
+    /// The head that moves the camera, with `--camera head`.
+    pub fn head(&self) -> Result<Option<HeadPath>, Failure> {
+        head_path(self.input.camera.as_deref(), &self.gaze, &self.input.name, self.input.fps, self.frames)
+    }
+
     /// Settings for rendering a scene on `backend`.
-    pub fn rendering(&self, backend: &Backend) -> Result<Rendering, Failure> {
+    pub fn rendering(&self, backend: &Backend, head: Option<&HeadPath>) -> Result<Rendering, Failure> {
         let foveated = self.sampling()?.map(|pattern| FoveatedSampling {
             pattern,
             sparse: self.is_sparse().then_some(self.foveation.order),
             reference_spp: self.reference_samples.unwrap_or(64),
         });
-        Ok(Rendering { backend: backend.clone(), seed: self.seed, foveated })
+        Ok(Rendering { backend: backend.clone(), seed: self.seed, foveated, head: head.cloned() })
     }
 
     /// Sampling pattern of traced frames; `None` if a simulator foveates full-rate frames.
@@ -201,12 +212,18 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
 /// Runs the clip and writes its files; prints nothing.
 fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let backend = args.backend.open_for(&args.input.name)?;
-    let mut source = args.input.open(&args.rendering(&backend)?)?;
-    let plan = plan::plan(args, source.info(), backend)?;
+    let head = args.head()?;
+    let mut source = args.input.open(&args.rendering(&backend, head.as_ref())?)?;
+    let plan = plan::plan(args, source.info(), backend, head.as_ref())?;
     // The input can be read, or nothing is written.
     let playback = plan.clip.start(source.as_mut())?;
-    let out = Output::create(&args.out, &folders(args), &REPORTS)?;
+    let cameras: Vec<String> = folders(args).iter().map(|folder| format!("{folder}/cameras.json")).collect();
+    let reports: Vec<&str> = REPORTS.into_iter().chain(OF_HEAD).chain(cameras.iter().map(String::as_str)).collect();
+    let out = Output::create(&args.out, &folders(args), &reports)?;
     let report = playback.write(&out)?;
+    if let Some(head) = &head {
+        write_head(args, head, source.as_ref(), &plan, &out)?;
+    }
     plot::write(&plan, plan::simulator(args), &report, &out)?;
     let facts = RunFacts {
         input: &args.input.name,
@@ -225,6 +242,36 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     };
     write_report(&facts, &plan.clip, &report, &out)?;
     Ok(report)
+}
+
+/// Files of a run whose camera is a head.
+const OF_HEAD: [&str; 3] = ["scanpath.csv", "pose.csv", "cameras.json"];
+
+/// Writes the head's scanpath, from which the run can be repeated, and the camera of every frame.
+fn write_head(
+    args: &RunArgs,
+    head: &HeadPath,
+    source: &dyn FrameSource,
+    plan: &plan::Plan,
+    out: &Output,
+) -> Result<(), Failure> {
+    let mut csv = vec![];
+    write_csv(head.scanpath(), &mut csv).map_err(|e| Failure::Work(format!("scanpath.csv: {e}")))?;
+    out.text("scanpath.csv", &String::from_utf8_lossy(&csv))?;
+    let frames = 0..plan.clip.gaze.len() as u64;
+    let poses: Vec<_> = frames.filter_map(|frame| Some(source.camera_pose(frame)?.world_from_camera)).collect();
+    let mut table = out.table("pose.csv", "frame,x_m,y_m,z_m,qx,qy,qz,qw")?;
+    for (frame, pose) in poses.iter().enumerate() {
+        let (_, q, p) = pose.to_scale_rotation_translation();
+        table.row(&format!("{frame},{:.6},{:.6},{:.6},{:.8},{:.8},{:.8},{:.8}", p.x, p.y, p.z, q.x, q.y, q.z, q.w))?;
+    }
+    table.finish()?;
+    let view = &plan.clip.geometry;
+    let cameras = cameras_json(view.size_px(), plan.fps, view.hfov_deg(), poses.into_iter());
+    out.text("cameras.json", &cameras)?;
+    // Other programs look for it beside EXR frames.
+    let beside = folders(args).into_iter().filter(|f| args.format == FormatName::Exr && !f.starts_with("debug/"));
+    beside.into_iter().try_for_each(|folder| out.text(&format!("{folder}/cameras.json"), &cameras))
 }
 
 /// Folders of the run's frames.

@@ -2,14 +2,20 @@
 
 use crate::args::parse_size;
 use crate::failure::Failure;
-use afterimage_lab::scanpath::{EventKind, Screen, SyntheticOptions, generate, write_csv};
+use afterimage_lab::scanpath::{
+    Event, EventKind, HeadOptions, Scanpath, Screen, SyntheticOptions, generate, generate_head, in_a_room, write_csv,
+};
 use afterimage_lab::whole_file::write_whole;
 use clap::Args;
 use std::path::PathBuf;
 
-/// Write a synthetic scanpath: fixations, drift, microsaccades, saccades
+/// Write a synthetic scanpath: fixations, drift, microsaccades, saccades; of eye and head with --head
 #[derive(Args, Clone, Debug)]
-#[command(after_help = "Example:\n  afterimage scanpath --seconds 10 --seed 3 --out viewing.csv")]
+#[command(after_help = "Examples:\n  afterimage scanpath --seconds 10 --seed 3 --out viewing.csv\n  \
+    afterimage scanpath --head --walk --seconds 10 --rate 90 --out head.csv\n  \
+    afterimage run scene.glb --camera head --gaze head.csv --hfov 90 --out out/head\n\n\
+    With --head, seven columns are added: position of the head (head_x_m ..., meters) and its orientation (head_qx ...,\n\
+    a quaternion) with x right, y up, -z ahead. The screen is then fixed to the head: 2000x2000 pixels, 100 degrees wide.")]
 pub struct ScanpathArgs {
     /// Duration, seconds
     #[arg(long, default_value_t = 5.0, value_name = "S")]
@@ -18,11 +24,20 @@ pub struct ScanpathArgs {
     #[arg(long, default_value_t = 500.0, value_name = "HZ")]
     pub rate: f64,
     /// Screen size, pixels
-    #[arg(long, value_parser = parse_size, default_value = "1920x1080", value_name = "WxH")]
+    #[arg(long, value_parser = parse_size, default_value = "1920x1080", value_name = "WxH", conflicts_with = "head")]
     pub screen: [u32; 2],
     /// Horizontal field of view of the screen, degrees
-    #[arg(long, default_value_t = 70.0, value_name = "DEG")]
+    #[arg(long, default_value_t = 70.0, value_name = "DEG", conflicts_with = "head")]
     pub hfov: f32,
+    /// Head and eye together, as in a headset: somebody who looks around in a room of 6x3x12 meters
+    #[arg(long)]
+    pub head: bool,
+    /// With --head: walking, 0.9 m/s forwards for 3 s, then back
+    #[arg(long, requires = "head")]
+    pub walk: bool,
+    /// With --head: share of the gaze shifts that end on a thing that moves and is pursued, 0 to 1
+    #[arg(long, default_value_t = 0.0, requires = "head", value_name = "SHARE")]
+    pub pursuits: f64,
     /// Seed of the random numbers: same seed, same scanpath
     #[arg(long, default_value_t = 0, value_name = "N")]
     pub seed: u64,
@@ -33,21 +48,14 @@ pub struct ScanpathArgs {
 
 /// The subcommand.
 pub fn scanpath(args: &ScanpathArgs) -> Result<(), Failure> {
-    let view = afterimage::ViewGeometry::flat(args.screen, args.hfov)?;
-    let options = SyntheticOptions {
-        seed: args.seed,
-        duration_s: args.seconds,
-        rate_hz: args.rate,
-        screen: Screen::of_view(&view),
-    };
-    let synthetic = generate(&options)?;
-    write_whole(&args.out, |file| write_csv(&synthetic.path, file)).map_err(|e| {
+    let (path, events) = if args.head { with_head(args)? } else { on_screen(args)? };
+    write_whole(&args.out, |file| write_csv(&path, file)).map_err(|e| {
         Failure::Input(format!(
             "{}: cannot be written ({e}); give --out a file in a folder that can be written",
             args.out.display()
         ))
     })?;
-    let count = |kind| synthetic.events.iter().filter(|e| e.kind == kind).count();
+    let count = |kind| events.iter().filter(|e| e.kind == kind).count();
     say!(
         "{}: {} s, {} fixations, {} saccades, {} microsaccades",
         args.out.display(),
@@ -57,4 +65,29 @@ pub fn scanpath(args: &ScanpathArgs) -> Result<(), Failure> {
         count(EventKind::Microsaccade)
     );
     Ok(())
+}
+
+fn on_screen(args: &ScanpathArgs) -> Result<(Scanpath, Vec<Event>), Failure> {
+    let view = afterimage::ViewGeometry::flat(args.screen, args.hfov)?;
+    let options = SyntheticOptions {
+        seed: args.seed,
+        duration_s: args.seconds,
+        rate_hz: args.rate,
+        screen: Screen::of_view(&view),
+    };
+    let made = generate(&options)?;
+    Ok((made.path, made.events))
+}
+
+fn with_head(args: &ScanpathArgs) -> Result<(Scanpath, Vec<Event>), Failure> {
+    let options = HeadOptions {
+        seed: args.seed,
+        duration_s: args.seconds,
+        rate_hz: args.rate,
+        is_walking: args.walk,
+        pursuits: args.pursuits,
+        ..HeadOptions::default()
+    };
+    let made = generate_head(&options, &in_a_room)?;
+    Ok((made.path, made.events))
 }

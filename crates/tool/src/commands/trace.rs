@@ -56,7 +56,9 @@ pub struct TraceArgs {
     #[arg(long, value_parser = parse_hfov, value_name = "DEG")]
     pub hfov: Option<f32>,
     /// A camera of the scene by name; still (the scene's first camera, else one that frames the scene), lateral, orbit,
-    /// walk; or a file: a cameras.json, or a path {"keyframes": [{"time_s", "position", "target"}]}; default: still
+    /// walk, head (the poses of the head in --gaze FILE.csv, or somebody who looks around with head and eye with --gaze
+    /// synthetic:SEED), head-walk (the same, walking); or a file: a cameras.json, or a path {"keyframes": [{"time_s",
+    /// "position", "target"}]}; default: still
     #[arg(long, value_name = "NAME|FILE.json")]
     pub camera: Option<String>,
     /// Animation of the scene to play, by name or number; default: the first
@@ -143,7 +145,8 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
         let before = eyes.views(previous.as_ref().unwrap_or(&head));
         if sampling != Sampling::Uniform {
             if gaze.head.is_empty() {
-                gaze.head = args.pattern.gaze(head.geometry(), setup.of.fps, args.frames)?;
+                let path = setup.of.camera.head_path();
+                gaze.head = args.pattern.gaze(head.geometry(), setup.of.fps, args.frames, path)?;
             }
             let at = gaze.head[frame as usize];
             gaze.eyes.push(eyes.gaze(&setup, &head, &views, at));

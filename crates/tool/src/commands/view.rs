@@ -104,12 +104,15 @@ pub fn view(args: &ViewArgs) -> Result<(), Failure> {
     let foveation = FoveationArgs { geometry: args.foveation.geometry, ..foveation };
     let args = &ViewArgs { foveation, ..args.clone() };
     let (setup, frames) = if args.input.is_rasterised() {
-        let scene = args.input.scene()?;
-        (Setup::new(args, scene.info())?, Frames::of_scene(scene))
+        let head = setup::head(args)?;
+        let scene = args.input.scene(head.clone())?;
+        (Setup::new(args, scene.info(), head.as_ref())?, Frames::of_scene(scene))
     } else {
         let backend = BackendName::Auto.open_for(&args.input.name)?;
-        let source = args.input.open(&Rendering { backend, seed: args.seed, foveated: None })?;
-        (Setup::new(args, source.info())?, Frames::Loaded(FrameLoader::new(source)))
+        let head = setup::head(args)?;
+        let rendering = Rendering { backend, seed: args.seed, foveated: None, head: head.clone() };
+        let source = args.input.open(&rendering)?;
+        (Setup::new(args, source.info(), head.as_ref())?, Frames::Loaded(FrameLoader::new(source)))
     };
     let events = EventLoop::new().map_err(|_| {
         Failure::Work("there is no display for a window; start it on a desktop, or use afterimage run".into())

@@ -1,5 +1,6 @@
 //! Reports of runs and sweeps: scores, contact sheets, plots, pages.
 
+pub mod cameras;
 pub mod jpeg;
 pub mod page;
 pub mod pareto;

@@ -1,6 +1,7 @@
 //! The command-line tool as a process: files and errors.
 
 mod bench;
+mod head;
 mod info;
 mod refusals;
 mod repair;

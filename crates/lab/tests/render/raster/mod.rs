@@ -2,6 +2,7 @@
 
 mod foveated;
 mod geometry;
+mod head;
 mod light;
 mod quad_views;
 mod real;

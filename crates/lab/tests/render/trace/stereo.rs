@@ -1,7 +1,7 @@
 //! Stereo views and gaze targets.
 
 use super::scenes::builtin;
-use afterimage::ViewGeometry;
+use afterimage::{Gaze, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::scene::{Camera, Environment, Pose, Scene, Triangles};
 use afterimage_lab::trace::Tracer;
@@ -83,6 +83,15 @@ fn gazes_converge_as_ipd_f_over_z() {
                 let expected = [f64::from(gaze[0]) + side * disparity, f64::from(gaze[1])];
                 let off = (f64::from(px[0]) - expected[0]).hypot(f64::from(px[1]) - expected[1]);
                 assert!(off < 2e-3, "{distance_m} m, gaze {gaze:?}: {px:?}, expected {expected:?}");
+            }
+            // The drop-in says the same of one ray and the distance along it.
+            for (px, eye) in [(l, &left), (r, &right)] {
+                let pose = eye.world_from_camera().to_cols_array_2d().map(|column| column.map(|v| v as f32));
+                let ray = at.normalize().as_vec3().to_array();
+                let gaze = Gaze::on_ray([0.0; 3], ray, at.length() as f32, pose);
+                let Gaze::Direction { view } = gaze else { panic!("{gaze:?}") };
+                let of_ray = eye.geometry().project(view).unwrap();
+                assert!((0..2).all(|i| (of_ray[i] - px[i]).abs() < 2e-3), "{distance_m} m: {of_ray:?} {px:?}");
             }
         }
     }

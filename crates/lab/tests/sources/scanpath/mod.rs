@@ -1,6 +1,7 @@
 //! Scanpaths: files, resampling to frames, and the statistics of synthetic ones.
 //!
-//! `cargo test -p afterimage-lab --test sources -- --ignored write_fixture` rewrites `fixtures/scanpath_viewing.csv`.
+//! `cargo test -p afterimage-lab --test sources -- --ignored write_fixture` rewrites `fixtures/scanpath_viewing.csv`
+//! and `fixtures/scanpath_headset.csv`.
 
 use afterimage::ViewGeometry;
 use afterimage_lab::error::InputError;
@@ -9,6 +10,7 @@ use proptest::prelude::*;
 use std::path::{Path, PathBuf};
 
 mod frames;
+mod head;
 mod statistics;
 
 const HEADER: &str = "# screen_px: 1024x768\n# screen_cm: 38.0x30.0\n# distance_cm: 67\nt_s,x_px,y_px,valid\n";
@@ -80,9 +82,10 @@ fn recorded_files_and_the_fixture_read_as_their_table_says() {
 }
 
 #[test]
-#[ignore = "writes fixtures/scanpath_viewing.csv"]
+#[ignore = "writes fixtures/scanpath_viewing.csv and fixtures/scanpath_headset.csv"]
 fn write_fixture() {
     std::fs::write(fixture(), csv(&fixture_path())).unwrap();
+    std::fs::write(head::fixture(), csv(&head::fixture_path())).unwrap();
 }
 
 #[test]

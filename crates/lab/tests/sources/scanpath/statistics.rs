@@ -42,7 +42,7 @@ fn check_z(what: &str, found: f64, expected: f64, sd: f64) {
 }
 
 /// Tests for a uniform distribution: range, mean, and shape by chi-squared over ten bins.
-fn check_uniform(what: &str, draws: &[f64], [low, high]: [f64; 2]) {
+pub fn check_uniform(what: &str, draws: &[f64], [low, high]: [f64; 2]) {
     let slack = 1e-9;
     assert!(draws.iter().all(|d| (low - slack..=high + slack).contains(d)), "{what}");
     let sd = (high - low) / 12f64.sqrt() / (draws.len() as f64).sqrt();

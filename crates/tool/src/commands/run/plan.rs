@@ -11,6 +11,7 @@ use afterimage::{Filter, Foveation, Method, MethodKind, Repair, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::RunKind;
 use afterimage_lab::quad_views::QuadViewLayout;
+use afterimage_lab::scanpath::HeadPath;
 use afterimage_lab::source::SourceInfo;
 
 /// The clip of a run, and facts that its report needs.
@@ -30,8 +31,8 @@ pub fn simulator(args: &RunArgs) -> &'static str {
     }
 }
 
-/// Plans a run on an input.
-pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan, Failure> {
+/// Plans a run on an input, whose camera may be that of a head.
+pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&HeadPath>) -> Result<Plan, Failure> {
     let refuse = |text: String| Err(Failure::Input(text));
     if args.repair > 0.0 && !args.method.contains(&MethodName::Post(MethodKind::Smr)) {
         return refuse("--repair: only smr repairs frames; add smr to --method, or leave it out".into());
@@ -47,7 +48,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend) -> Result<Plan,
         }
         methods.push((method.name(), run_kind(args, method, info.still)?));
     }
-    let track = args.gaze.resolve(&geometry, fps, input::frames(args.frames, info))?;
+    let track = args.gaze.resolve(&geometry, fps, input::frames(args.frames, info), head)?;
     Ok(Plan {
         input: info.name.clone(),
         fps,

@@ -66,8 +66,9 @@ fn check_frames(args: &RunArgs, frames: u64) -> Result<(), Failure> {
 pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar) -> Result<(), Failure> {
     let args = &batch.subjects[0].args;
     let backend = args.backend.open_for(&args.input.name)?;
-    let mut source = args.input.open(&args.rendering(&backend)?)?;
-    let plan = plan::plan(args, source.info(), backend.clone())?;
+    let head = args.head()?;
+    let mut source = args.input.open(&args.rendering(&backend, head.as_ref())?)?;
+    let plan = plan::plan(args, source.info(), backend.clone(), head.as_ref())?;
     let mut methods = vec![("control", control(&batch.subjects[0]))];
     for subject in &batch.subjects {
         methods.push((subject.method.name(), plan::run_kind(&subject.args, subject.method, source.info().still)?));

@@ -5,6 +5,7 @@ use super::eyes::{Eyes, below};
 use super::setup::Setup;
 use crate::args::Named;
 use crate::args::pattern::SamplingName;
+use crate::report::cameras::cameras_json;
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
 use afterimage_lab::trace::effects::Effects;
@@ -90,21 +91,6 @@ struct Samples {
     ideal_reduction: Option<f64>,
     /// Ratio of times; null, since it needs a uniform run to compare with (see `bench trace`).
     achieved_reduction: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct CamerasJson {
-    width: u32,
-    height: u32,
-    fps: f32,
-    horizontal_fov_deg: f32,
-    frames: Vec<CameraJson>,
-}
-
-#[derive(Serialize)]
-struct CameraJson {
-    frame: usize,
-    camera_to_world: [[f64; 4]; 4],
 }
 
 impl Counts {
@@ -227,19 +213,8 @@ impl Report {
     /// Camera poses as a cameras.json (z up), which `run` reads with the frames and `--camera` accepts. `view_of` maps
     /// the head's view to the camera.
     pub fn cameras_json(&self, args: &TraceArgs, setup: &Setup, view_of: impl Fn(&View) -> View) -> String {
-        let frames = self.heads.iter().enumerate().map(|(frame, head)| {
-            let m = view_of(head).world_from_camera().transpose().to_cols_array_2d();
-            // The scene's (x, y, z) is the file's (x, -z, y).
-            CameraJson { frame, camera_to_world: [m[0], m[2].map(|v| -v), m[1], m[3]] }
-        });
-        let cameras = CamerasJson {
-            width: args.size[0],
-            height: args.size[1],
-            fps: setup.of.fps,
-            horizontal_fov_deg: self.hfov_deg(),
-            frames: frames.collect(),
-        };
-        serde_json::to_string_pretty(&cameras).expect("numbers and lists only") + "\n"
+        let poses = self.heads.iter().map(|head| view_of(head).world_from_camera());
+        cameras_json(args.size, setup.of.fps, self.hfov_deg(), poses)
     }
 
     pub fn print_summary(&self, args: &TraceArgs, setup: &Setup, eyes: &Eyes) {

@@ -1,6 +1,7 @@
 //! Setup of a trace: scene, light, camera, tracer.
 
 use super::TraceArgs;
+use crate::args::head::head_path;
 use crate::failure::Failure;
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::Backend;
@@ -36,6 +37,7 @@ impl Setup {
         let of = ViewedScene::open(&SceneChoice {
             clip: args.clip.as_deref(),
             camera: Some(args.camera.as_deref().unwrap_or("still")),
+            head: head_path(args.camera.as_deref(), &args.pattern.gaze, &args.scene, args.fps, Some(args.frames))?,
             light,
             options: SceneOptions { size: Some(args.size), hfov_deg: args.hfov, fps: args.fps },
             ..SceneChoice::new(&args.scene)

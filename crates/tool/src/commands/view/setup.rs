@@ -3,11 +3,13 @@
 use super::ViewArgs;
 use super::state::{Shows, State};
 use crate::args::gaze::GazeArgs;
+use crate::args::head::head_path;
 use crate::args::input;
 use crate::args::{FilterName, FoveationArgs};
 use crate::failure::Failure;
 use afterimage::{Filter, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::quad_views::QuadViewLayout;
+use afterimage_lab::scanpath::HeadPath;
 use afterimage_lab::source::SourceInfo;
 
 /// Options, and properties of the input.
@@ -20,9 +22,19 @@ pub struct Setup {
     pub track: Vec<Option<[f32; 2]>>,
 }
 
+/// The head that moves the camera, with `--camera head`.
+pub fn head(args: &ViewArgs) -> Result<Option<HeadPath>, Failure> {
+    head_path(args.input.camera.as_deref(), &gaze(args), &args.input.name, args.input.fps, args.frames)
+}
+
+fn gaze(args: &ViewArgs) -> GazeArgs {
+    let gaze = args.gaze.clone().unwrap_or_else(|| "synthetic:0".into());
+    GazeArgs { gaze, gaze_map: args.gaze_map, start: args.start }
+}
+
 impl Setup {
     /// Checks everything that can be checked without a device.
-    pub fn new(args: &ViewArgs, info: &SourceInfo) -> Result<Self, Failure> {
+    pub fn new(args: &ViewArgs, info: &SourceInfo, head: Option<&HeadPath>) -> Result<Self, Failure> {
         let refuse = |text: String| Err(Failure::Input(text));
         if !matches!(args.split.len(), 0 | 2) {
             return refuse(format!("--split: {} names, expected two, such as none,smr", args.split.len()));
@@ -40,9 +52,7 @@ impl Setup {
             );
         }
         let (fps, geometry) = (args.input.fps(info), args.input.geometry(info)?);
-        let gaze = args.gaze.clone().unwrap_or_else(|| "synthetic:0".into());
-        let gaze = GazeArgs { gaze, gaze_map: args.gaze_map, start: args.start };
-        let track = gaze.resolve(&geometry, fps, input::frames(args.frames, info))?.px;
+        let track = gaze(args).resolve(&geometry, fps, input::frames(args.frames, info), head)?.px;
         let setup = Self { args: args.clone(), info: info.clone(), fps, hfov_deg: geometry.hfov_deg(), track };
         let mut state = setup.state();
         for &side in state.shown_sides() {

@@ -1,0 +1,95 @@
+//! Options of a generated head and eye, and the surroundings that they look at.
+
+use super::coordination::{ROTATION_GAIN, TRANSLATION_GAIN};
+use crate::error::InputError;
+
+/// Largest number of samples: 64 bytes each, two thirds of a gigabyte in all.
+const MAX_SAMPLES: f64 = 1e7;
+
+/// Distance in metres to what is seen from a point in a direction, a unit vector; `None` if nothing is. Both are in the
+/// space of [`HeadPose`](super::HeadPose).
+pub type DistanceOf<'a> = &'a dyn Fn([f64; 3], [f64; 3]) -> Option<f64>;
+
+/// Options of [`generate_head`](super::generate_head).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeadOptions {
+    /// Seed. The same seed gives the same scanpath, bit for bit on one platform.
+    pub seed: u64,
+    /// Duration in seconds, above 0; default 60. `duration_s * rate_hz` is at most ten million.
+    pub duration_s: f64,
+    /// Samples per second, 1 to 10,000; default 500.
+    pub rate_hz: f64,
+    /// Whether the person walks, as [`gait`](crate::source::gait) describes; default: stands.
+    pub is_walking: bool,
+    /// Share of the gaze shifts that end on a thing that moves and is pursued, 0 to 1; default 0: nothing moves.
+    pub pursuits: f64,
+    /// Share of the head's rotation that the eye makes up for at once (vestibulo-ocular reflex); default 0.98, 1 is
+    /// perfect. -1 to 2.
+    pub rotation_gain: f64,
+    /// The same for the head's translation; default 0.6. -1 to 2.
+    pub translation_gain: f64,
+    /// Whether the gaze drifts; default: it does.
+    pub drifts: bool,
+}
+
+impl Default for HeadOptions {
+    fn default() -> Self {
+        Self {
+            seed: 0,
+            duration_s: 60.0,
+            rate_hz: 500.0,
+            is_walking: false,
+            pursuits: 0.0,
+            rotation_gain: ROTATION_GAIN,
+            translation_gain: TRANSLATION_GAIN,
+            drifts: true,
+        }
+    }
+}
+
+impl HeadOptions {
+    /// Checks every option.
+    ///
+    /// # Errors
+    /// [`Request`](InputError::Request) for the first option that is out of range.
+    pub fn validate(&self) -> Result<(), InputError> {
+        let fault = |option: &str, found: String, remedy: &str| {
+            Err(InputError::request(format!("synthetic head, {option}"), found, remedy))
+        };
+        if !(1.0..=10_000.0).contains(&self.rate_hz) {
+            return fault("rate", format!("{} Hz", self.rate_hz), "expected 1 to 10000 Hz");
+        }
+        if !(self.duration_s > 0.0 && self.duration_s * self.rate_hz <= MAX_SAMPLES) {
+            let found = format!("{} s at {} Hz", self.duration_s, self.rate_hz);
+            return fault("duration", found, "expected more than 0 s and at most ten million samples");
+        }
+        if !(0.0..=1.0).contains(&self.pursuits) {
+            return fault("pursuits", self.pursuits.to_string(), "expected a share from 0 to 1");
+        }
+        for (option, gain) in [("rotation gain", self.rotation_gain), ("translation gain", self.translation_gain)] {
+            if !(-1.0..=2.0).contains(&gain) {
+                return fault(option, gain.to_string(), "expected -1 to 2, 1 for a perfect reflex");
+            }
+        }
+        Ok(())
+    }
+
+    /// Number of samples: one at every multiple of `1 / rate_hz` below the duration.
+    pub(super) fn samples(&self) -> usize {
+        // Tolerance for rounding: 1.1 s at 10 Hz is 11.000000000000002 in floats, and must give 11 samples.
+        ((self.duration_s * self.rate_hz - 1e-6).ceil() as usize).max(1)
+    }
+}
+
+/// Distances in a room that is 6 m wide, 3 m high and 12 m long, by somebody whose eyes are 1.6 m above the floor and
+/// who looks along it from 3 m before the end behind: surroundings for scanpaths without a scene.
+pub fn in_a_room(from: [f64; 3], direction: [f64; 3]) -> Option<f64> {
+    const LEAST: [f64; 3] = [-3.0, -1.6, -9.0];
+    const MOST: [f64; 3] = [3.0, 1.4, 3.0];
+    let wall = |axis: usize| {
+        let to = if direction[axis] > 0.0 { MOST[axis] } else { LEAST[axis] };
+        if direction[axis] == 0.0 { f64::INFINITY } else { (to - from[axis]) / direction[axis] }
+    };
+    let nearest = (0..3).map(wall).fold(f64::INFINITY, f64::min);
+    (nearest.is_finite() && nearest >= 0.0).then_some(nearest)
+}
