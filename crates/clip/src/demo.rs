@@ -48,6 +48,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         gaze: "synthetic:46",
         gaze_map: "angle",
         start_s: 0.0,
+        gaze_latency_ms: 0.0,
     };
     let post_process =
         |method: MethodKind| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() });
@@ -67,6 +68,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
             ("oracle", RunKind::Oracle),
         ],
         gaze,
+        late_gaze: None,
         exposure_ev: 0.0,
         write_frame: write_png,
         write_reference: true,

@@ -46,6 +46,9 @@ pub struct Clip {
     pub methods: Vec<(&'static str, RunKind)>,
     /// Gaze position per frame, in frame pixels; `None`: tracking lost.
     pub gaze: Vec<Option<[f32; 2]>>,
+    /// Gaze that the renderer and the methods get in each frame, where a tracker's latency makes it another one; scores
+    /// have the true one. `None`: no latency.
+    pub late_gaze: Option<Vec<Option<[f32; 2]>>>,
     /// Exposure before sRGB encoding, stops.
     pub exposure_ev: f32,
     /// Writes a frame in the format of the run.
@@ -182,12 +185,13 @@ impl Playback<'_> {
         let Self { clip, source, mut pipeline, first } = self;
         let mut first = Some(first);
         let mut references = clip.flip().map_or_else(References::default, References::with_flip);
-        for (index, &gaze) in clip.gaze.iter().enumerate() {
+        for index in 0..clip.gaze.len() {
             let frame = match first.take() {
                 Some(first) => first,
-                None => source.render(&pipeline.request(index as u64, gaze))?,
+                None => source.render(&pipeline.request(index as u64, clip.known_gaze(index)))?,
             };
             let full = metric::encode(&frame.reference.color, clip.exposure_ev);
+            pipeline.look_at(clip.gaze[index].filter(|_| clip.late_gaze.is_some()));
             let step = pipeline.step_with(&frame, &mut |wish| Ok::<_, Failure>(source.shade(&frame, wish)?))?;
             let reference = references.next(&full, &step.tracked);
             each(&FrameResult { index, frame: &frame, reference: &reference, step: &step })?;
@@ -214,8 +218,13 @@ impl Clip {
         if self.trust {
             pipeline = pipeline.with_trust();
         }
-        let first = source.render(&pipeline.request(0, self.gaze.first().copied().flatten()))?;
+        let first = source.render(&pipeline.request(0, self.known_gaze(0)))?;
         Ok(Playback { clip: self, source, pipeline, first })
+    }
+
+    /// Gaze that the renderer and the methods get in a frame.
+    fn known_gaze(&self, index: usize) -> Option<[f32; 2]> {
+        self.late_gaze.as_ref().unwrap_or(&self.gaze).get(index).copied().flatten()
     }
 
     /// Device that runs the methods, for messages.

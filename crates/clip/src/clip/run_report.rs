@@ -31,6 +31,8 @@ pub struct RunFacts<'a> {
     pub gaze_map: &'a str,
     /// Start time in the scanpath, seconds.
     pub start_s: f64,
+    /// Latency of the eye tracker, milliseconds.
+    pub gaze_latency_ms: f64,
 }
 
 #[derive(Serialize)]
@@ -55,6 +57,7 @@ struct RunReport<'a> {
     gaze: &'a str,
     gaze_map: &'a str,
     start_s: f64,
+    gaze_latency_ms: f64,
     /// FLIP's viewing distance, in pixels per degree of visual angle; null without FLIP.
     flip_pixels_per_degree: Option<f32>,
     /// Time of rendering the frames at full rate, which foveation saves; null if they were not rendered, or with other
@@ -121,6 +124,7 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
         gaze: facts.gaze,
         gaze_map: facts.gaze_map,
         start_s: facts.start_s,
+        gaze_latency_ms: facts.gaze_latency_ms,
         flip_pixels_per_degree: clip.flip().map(|flip| flip.pixels_per_degree()),
         full_rate: report.full_rate,
         methods: Methods(&report.methods),

@@ -32,9 +32,9 @@ use oracle::Oracle;
 /// Result of one frame: the foveation, and the output of each run.
 #[derive(Clone, Debug)]
 pub struct Step {
-    /// Gaze that the foveation used, in pixels.
+    /// Where the eye looked, in pixels: the gaze that the foveation used, unless that was late.
     pub gaze_px: [f32; 2],
-    /// Eccentricity of every pixel in degrees.
+    /// Eccentricity of every pixel from there, in degrees.
     pub ecc_deg: Image<f32>,
     /// Level of detail of every pixel of the foveated frame.
     pub lods: Image<f32>,
@@ -60,6 +60,8 @@ pub struct Pipeline {
     executor: Box<dyn Executor>,
     tracker: Tracker,
     held_gaze: Option<[f32; 2]>,
+    /// Where the eye looks, if the gaze of the requests is late.
+    true_gaze: Option<[f32; 2]>,
     debug: Vec<DebugView>,
     use_trust: bool,
     quad_views: Option<QuadViewLayout>,
@@ -100,6 +102,7 @@ impl Pipeline {
             foveator: Foveator::new(geometry, foveation, is_still),
             tracker: Tracker::default(),
             held_gaze: None,
+            true_gaze: None,
             debug: debug.to_vec(),
             use_trust: false,
             quad_views: None,
@@ -171,6 +174,11 @@ impl Pipeline {
         }
     }
 
+    /// Where the eye looks in the next steps, for scores, if the gaze of the requests is late; `None`: at that gaze.
+    pub fn look_at(&mut self, true_gaze: Option<[f32; 2]>) {
+        self.true_gaze = true_gaze;
+    }
+
     /// Foveates a frame, unless its source did, and runs all methods on it. The runs' settings must be
     /// [`noisy`](Settings::noisy) for frames of a path tracer that foveates; the oracle supports simulated frames only.
     ///
@@ -193,12 +201,15 @@ impl Pipeline {
     ) -> Result<Step, E> {
         let has_reference = self.check(frame)?;
         let watch = Stopwatch::start();
-        let gaze_px = frame.gaze_px;
-        let ecc_deg = self.foveator.geometry.eccentricity_map(gaze_px);
+        let ecc_deg = self.foveator.geometry.eccentricity_map(frame.gaze_px);
         let candidate = self.foveator.candidate(frame, &ecc_deg, self.foveates_in_memory());
         self.executor.set(frame, &candidate)?;
         // Nothing is foveated here if a path tracer did it.
         let foveation_ms = if frame.content.is_traced() { 0.0 } else { watch.wall_ms() };
+        let (gaze_px, ecc_deg) = match self.true_gaze {
+            Some(px) => (px, self.foveator.geometry.eccentricity_map(px)),
+            None => (frame.gaze_px, ecc_deg),
+        };
         let tracked = match has_reference {
             true => self.tracker.advance(&frame.reference, &self.foveator.geometry, &ecc_deg, &candidate.lods),
             false => Tracked::unknown(self.foveator.geometry.size_px()),

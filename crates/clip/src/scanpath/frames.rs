@@ -91,6 +91,12 @@ impl FrameGaze {
         self.held(index).map(|(_, px)| px)
     }
 
+    /// Gaze that is known in frame `index` of a tracker whose samples arrive `latency_s` seconds late. Before the first
+    /// valid sample arrives, that sample: the eye is taken to have rested there.
+    pub fn late_px(&self, index: u64, latency_s: f64) -> Option<[f32; 2]> {
+        self.held_at(self.time_s(index) - latency_s).or(self.valid.first().copied()).map(|(_, px)| px)
+    }
+
     /// Age in seconds, at least 0, of the sample behind [`FrameGaze::px`]. An age of more than a few sample intervals
     /// means that the gaze is lost and held; a caller may respond with a wider fovea.
     pub fn age_s(&self, index: u64) -> Option<f64> {
@@ -98,8 +104,12 @@ impl FrameGaze {
     }
 
     fn held(&self, index: u64) -> Option<(f64, [f32; 2])> {
-        let now = self.time_s(index) + TIME_SLACK_S;
-        let after = self.valid.partition_point(|(t_s, _)| *t_s <= now);
+        self.held_at(self.time_s(index))
+    }
+
+    /// Last valid sample at or before a time.
+    fn held_at(&self, time_s: f64) -> Option<(f64, [f32; 2])> {
+        let after = self.valid.partition_point(|(t_s, _)| *t_s <= time_s + TIME_SLACK_S);
         after.checked_sub(1).map(|last| self.valid[last])
     }
 

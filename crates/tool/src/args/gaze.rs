@@ -38,25 +38,30 @@ impl Named for GazeMap {
 pub struct Track {
     /// Frame pixels; `None`: tracking lost.
     pub px: Vec<Option<[f32; 2]>>,
+    /// What a late tracker says of each frame; `None` without latency.
+    pub late_px: Option<Vec<Option<[f32; 2]>>>,
     /// Map from screen to frame: `angle`, `fit`, or `none` for positions that are frame pixels already.
     pub map: &'static str,
 }
 
 impl GazeArgs {
-    /// Resolves the options for `frames` frames, by default for the duration of the gaze. With `--camera head`,
-    /// `head` is the scanpath, read or generated already.
+    /// Resolves the options for `frames` frames, by default for the duration of the gaze. With `--camera head`, `head` is
+    /// the scanpath, read or generated already. `latency_ms`: of the tracker.
     pub fn resolve(
         &self,
         view: &ViewGeometry,
         fps: f32,
         frames: Option<u64>,
         head: Option<&HeadPath>,
+        latency_ms: f64,
     ) -> Result<Track, Failure> {
         self.check_start()?;
+        let is_late = latency_ms > 0.0;
         let default_frames = (DEFAULT_SECONDS * f64::from(fps)).ceil() as u64;
         if let Some(px) = fixed(&self.gaze)? {
             let count = frames.unwrap_or(default_frames) as usize;
-            return Ok(Track { px: vec![Some(px); count], map: "none" });
+            let px = vec![Some(px); count];
+            return Ok(Track { late_px: is_late.then(|| px.clone()), px, map: "none" });
         }
         let synthetic = synthetic_seed(&self.gaze)?;
         let path = match (head, synthetic) {
@@ -78,7 +83,8 @@ impl GazeArgs {
                 self.gaze, self.start
             )));
         }
-        Ok(Track { px, map: map.name() })
+        let late_px = is_late.then(|| (0..count).map(|i| gaze.late_px(i, 1e-3 * latency_ms)).collect());
+        Ok(Track { px, late_px, map: map.name() })
     }
 
     pub(super) fn check_start(&self) -> Result<(), Failure> {

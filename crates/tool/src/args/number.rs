@@ -42,6 +42,11 @@ pub fn parse_percent(text: &str) -> Result<f32, String> {
     within(text, "0 to 100 percent", |v| (0.0..=100.0).contains(v))
 }
 
+/// Latency in milliseconds.
+pub fn parse_latency(text: &str) -> Result<f64, String> {
+    within(text, "0 to 1000 milliseconds", |v| (0.0..=1000.0).contains(v))
+}
+
 /// Exposure in stops.
 pub fn parse_exposure(text: &str) -> Result<f32, String> {
     within(text, "-64 to 64 stops", |v| (-64.0..=64.0).contains(v))

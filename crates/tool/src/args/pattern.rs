@@ -77,7 +77,7 @@ impl PatternArgs {
         frames: u64,
         head: Option<&HeadPath>,
     ) -> Result<Vec<[f32; 2]>, Failure> {
-        let track = self.gaze.resolve(view, fps, Some(frames), head)?;
+        let track = self.gaze.resolve(view, fps, Some(frames), head, 0.0)?;
         let mut last = view.size_px().map(|s| 0.5 * (s as f32 - 1.0));
         Ok(track
             .px

@@ -10,7 +10,7 @@ use crate::args::input::{FoveatedSampling, InputArgs, Rendering, SourceName};
 use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
     FilterName, FormatName, FoveationArgs, MethodName, Named, WrsArgs, by_name, parse_exposure, parse_frames,
-    parse_percent, parse_samples,
+    parse_latency, parse_percent, parse_samples,
 };
 use crate::clip::run_report::{RunFacts, write_report};
 use crate::clip::{ClipReport, REPORTS};
@@ -57,6 +57,10 @@ pub struct RunArgs {
     /// --sampling, else what the input has
     #[arg(long, alias = "reference-spp", value_parser = parse_samples, value_name = "N")]
     pub reference_samples: Option<u32>,
+    /// Latency of the eye tracker, milliseconds: the renderer and the methods see the gaze of so long ago, scores and
+    /// gaze.csv have the true one; at most 1000
+    #[arg(long, default_value_t = 0.0, value_parser = parse_latency, value_name = "MS")]
+    pub gaze_latency: f64,
     #[command(flatten)]
     pub sampling: SamplingArgs,
     #[command(flatten)]
@@ -239,6 +243,7 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
         gaze: &args.gaze.gaze,
         gaze_map: plan.gaze_map,
         start_s: args.gaze.start,
+        gaze_latency_ms: args.gaze_latency,
     };
     write_report(&facts, &plan.clip, &report, &out)?;
     Ok(report)

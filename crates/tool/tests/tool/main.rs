@@ -3,6 +3,7 @@
 mod bench;
 mod head;
 mod info;
+mod latency;
 mod refusals;
 mod repair;
 mod rig;

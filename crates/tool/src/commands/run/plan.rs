@@ -48,7 +48,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
         }
         methods.push((method.name(), run_kind(args, method, info.still)?));
     }
-    let track = args.gaze.resolve(&geometry, fps, input::frames(args.frames, info), head)?;
+    let track = args.gaze.resolve(&geometry, fps, input::frames(args.frames, info), head, args.gaze_latency)?;
     Ok(Plan {
         input: info.name.clone(),
         fps,
@@ -64,6 +64,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
             reference_samples: args.reference_samples()?,
             methods,
             gaze: track.px,
+            late_gaze: track.late_px,
             exposure_ev: args.exposure,
             write_frame: args.format.writer(),
             write_reference: args.reference,

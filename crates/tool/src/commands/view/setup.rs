@@ -52,7 +52,7 @@ impl Setup {
             );
         }
         let (fps, geometry) = (args.input.fps(info), args.input.geometry(info)?);
-        let track = gaze(args).resolve(&geometry, fps, input::frames(args.frames, info), head)?.px;
+        let track = gaze(args).resolve(&geometry, fps, input::frames(args.frames, info), head, 0.0)?.px;
         let setup = Self { args: args.clone(), info: info.clone(), fps, hfov_deg: geometry.hfov_deg(), track };
         let mut state = setup.state();
         for &side in state.shown_sides() {

@@ -1,0 +1,91 @@
+//! `run --gaze-latency`.
+
+use super::rig::{Folder, read_json, refuses, run, succeeds};
+use std::fs;
+
+/// A gaze that steps by 12 pixels in every frame of 60 a second, after it rested for a second.
+fn stepping() -> String {
+    let head = "# screen_px: 160x90\n# screen_cm: 40x22.5\n# distance_cm: 60\nt_s,x_px,y_px,valid\n";
+    // Half a frame before each frame, so that rounding does not matter.
+    let row = |i: i32| {
+        let t_s = 1.0 + (f64::from(i) - 0.5) / 60.0;
+        format!("{t_s:.6},{},{},1\n", 20 + 12 * i.max(0), 60 - 2 * i.max(0))
+    };
+    head.to_owned() + &(-60..12).map(row).collect::<String>()
+}
+
+#[test]
+fn a_late_gaze_foveates_elsewhere_and_scores_know_the_true_one() {
+    let folder = Folder::new();
+    let gaze = folder.write("gaze.csv", stepping().as_bytes());
+    let clip = |name: &str, start: &str, latency: &str, foveation: &str| {
+        let words = [
+            "--size",
+            "160x90",
+            "--frames",
+            "8",
+            "--method",
+            "none,smr",
+            "--no-flip",
+            "--foveation",
+            foveation,
+            "--gaze",
+            &gaze,
+            "--gaze-map",
+            "fit",
+            "--start",
+            start,
+            "--gaze-latency",
+            latency,
+            "--backend",
+            "cpu",
+        ];
+        succeeds(&run("analytic:lateral", &folder.text(name), &words));
+    };
+    for foveation in ["sparse", "mip"] {
+        // Times count from the first sample. Three frames are 50 ms.
+        clip("true", "1.008333333", "0", foveation);
+        clip("late", "1.008333333", "50", foveation);
+        let bytes = |run: &str, file: &str| fs::read(folder.path(run).join(file)).unwrap();
+        clip("expected", "0.958333333", "0", foveation);
+        for frame in 0..8 {
+            for method in ["none", "smr"] {
+                let file = format!("{method}/{frame:06}.png");
+                assert_eq!(bytes("late", &file), bytes("expected", &file), "{foveation}: {file}");
+            }
+        }
+        // The planted error: without latency the frames are others.
+        assert_ne!(bytes("late", "none/000007.png"), bytes("true", "none/000007.png"));
+        assert_eq!(bytes("late", "gaze.csv"), bytes("true", "gaze.csv"));
+        assert_ne!(bytes("late", "gaze.csv"), bytes("expected", "gaze.csv"));
+        let fovea = |run: &str| {
+            let report = read_json(&folder.path(run).join("report.json"));
+            assert_eq!(report["gaze_latency_ms"], if run == "late" { 50.0 } else { 0.0 });
+            report["methods"]["none"]["bands"]["fovea"]["psnr_db"].as_f64()
+        };
+        // Where the eye looks is no longer sharp; where the renderer thought it looked, it is (null: no error at all).
+        let db = |run: &str| fovea(run).unwrap_or(f64::INFINITY);
+        println!("{foveation}: fovea {} dB in time, {} dB late", db("true"), db("late"));
+        assert!(db("late") < db("true") - 3.0 && db("late") < db("expected") - 3.0, "{} dB", db("late"));
+    }
+    let out = folder.text("refused");
+    for wrong in ["-1", "NaN", "1001", "late"] {
+        let latency = format!("--gaze-latency={wrong}");
+        refuses(&run("analytic:still", &out, &[&latency]), &["--gaze-latency", "0 to 1000 milliseconds"]);
+    }
+}
+
+#[test]
+fn no_latency_and_a_fixed_gaze_change_nothing() {
+    let folder = Folder::new();
+    let clip = |name: &str, more: &[&str]| {
+        let words = ["--size", "96x54", "--frames", "3", "--method", "smr", "--no-flip", "--backend", "cpu"];
+        succeeds(&run("analytic:turn", &folder.text(name), &[&words, more].concat()));
+        fs::read(folder.path(name).join("smr/000002.png")).unwrap()
+    };
+    assert_eq!(clip("a", &["--gaze", "synthetic:3"]), clip("b", &["--gaze", "synthetic:3", "--gaze-latency", "0"]));
+    assert_eq!(clip("c", &["--gaze", "30,20"]), clip("d", &["--gaze", "30,20", "--gaze-latency", "80"]));
+    // Before the first sample arrives, the eye is taken to have rested there.
+    let early = clip("e", &["--gaze", "synthetic:3", "--gaze-latency", "1000"]);
+    assert_ne!(early, clip("f", &["--gaze", "synthetic:3", "--start", "0.5"]));
+}
