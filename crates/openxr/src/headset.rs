@@ -1,7 +1,7 @@
 //! The headset: from one frame to the next.
 
 use crate::error::Error;
-use crate::eye::{Eye, Posed, angles};
+use crate::eye::{Eye, Posed, angles, matrix};
 use crate::gaze::{Ray, Tracker, from_head};
 use crate::present::Present;
 use crate::session::{HiddenMesh, Session, VIEWS};
@@ -12,12 +12,12 @@ use afterimage::{
     ContextDesc, DepthConvention, Filter, Foveation, Gaze, Method, Reset, Settings, Smr, ViewFrame, ViewGeometry,
 };
 use openxr as xr;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use wgpu_30::{CommandEncoder, Device, PollType, Queue, Texture, TextureFormat, TextureUsages};
 use xr::sys;
 
-/// Time without a recorded frame after which history is discarded, in nanoseconds.
-const PAUSE_NS: i64 = 1_000_000_000;
+/// Time in which nothing was to be shown after which history is discarded.
+const PAUSE: Duration = Duration::from_secs(1);
 /// How often a session that is not running is asked for news.
 const IDLE: Duration = Duration::from_millis(5);
 
@@ -101,6 +101,10 @@ pub struct Headset {
     /// From this time on the world's origin is another one.
     recentred_at: Option<xr::Time>,
     begun_at: Option<xr::Time>,
+    /// Since when nothing is to be shown.
+    idle_since: Option<Instant>,
+    /// Spaces of the application's pose actions in this session.
+    poses: Vec<(xr::sys::Action, xr::Path, xr::Space)>,
     index: u64,
     instance: xr::Instance,
     gpu: Gpu,
@@ -201,6 +205,8 @@ impl Headset {
             past: None,
             recentred_at: None,
             begun_at: None,
+            idle_since: None,
+            poses: vec![],
             index: 0,
             instance,
             gpu,
@@ -301,7 +307,9 @@ impl Headset {
             let sets: Vec<_> = self.sets.iter().chain(self.tracker.as_ref().map(|tracker| &tracker.set)).collect();
             match session.next_views(self.blend, &sets) {
                 Ok(Some(found)) => break found,
-                Ok(None) => {}
+                Ok(None) => {
+                    self.idle_since.get_or_insert_with(Instant::now);
+                }
                 Err(error) if is_lost(error) => self.restart()?,
                 Err(error) => return Err(error.into()),
             }
@@ -316,7 +324,7 @@ impl Headset {
         if self.recentred_at.is_some_and(|at| time.as_nanos() >= at.as_nanos()) {
             (self.recentred_at, self.past) = (None, None);
         }
-        if self.past.is_some_and(|past| time.as_nanos() - past.time.as_nanos() > PAUSE_NS) {
+        if self.idle_since.take().is_some_and(|since| since.elapsed() > PAUSE) {
             self.past = None;
         }
         let reset = if self.past.is_some() { Reset::None } else { Reset::All };
@@ -412,7 +420,8 @@ impl Headset {
         if let Some(tracker) = &mut self.tracker {
             tracker.follow(None)?;
         }
-        // A runtime may allow one session at a time: the old one goes first.
+        // A runtime may allow one session at a time: the old one goes first, with all that was made in it.
+        self.poses.clear();
         self.session = None;
         self.past = None;
         self.session = Some(Session::new(&self.instance, self.system, &self.gpu, self.size_px())?);
@@ -464,15 +473,39 @@ impl<'a> HeadsetFrame<'a> {
         (&mut self.encoder, self.headset.targets.as_ref().expect("a frame has targets"))
     }
 
-    /// The session of the frame, for the application's action spaces. Another one replaces it when the runtime loses
-    /// it.
+    /// The session of the frame, for the state of the application's actions. Objects that are made in it must not be
+    /// kept: a lost session cannot be replaced while they live.
     pub fn session(&self) -> &xr::Session<xr::Vulkan> {
         &self.headset.session.as_ref().expect("a frame has a session").session
     }
 
-    /// The space of the world: the runtime's LOCAL space.
-    pub fn space(&self) -> &xr::Space {
-        &self.headset.session.as_ref().expect("a frame has a session").space
+    /// Pose of a hand, or of what else an action of the application says, in the world, by columns; `None` where it is
+    /// not tracked.
+    ///
+    /// # Errors
+    /// The runtime's, if the action is none of the session's.
+    pub fn pose(
+        &mut self,
+        action: &xr::Action<xr::Posef>,
+        path: xr::Path,
+    ) -> Result<Option<[[f32; 4]; 4]>, sys::Result> {
+        let Headset { session, poses, .. } = &mut *self.headset;
+        let session = session.as_ref().expect("a frame has a session");
+        let found = poses.iter().position(|(of, at, _)| *of == action.as_raw() && *at == path);
+        let found = match found {
+            Some(found) => found,
+            None => {
+                let space = action.create_space(&session.session, path, xr::Posef::IDENTITY)?;
+                poses.push((action.as_raw(), path, space));
+                poses.len() - 1
+            }
+        };
+        let located = poses[found].2.locate(&session.space, self.time)?;
+        let needed = xr::SpaceLocationFlags::ORIENTATION_VALID
+            | xr::SpaceLocationFlags::ORIENTATION_TRACKED
+            | xr::SpaceLocationFlags::POSITION_VALID;
+        let is_tracked = located.location_flags.contains(needed);
+        Ok(is_tracked.then(|| matrix(located.pose).to_cols_array_2d()))
     }
 
     /// When the frame will be displayed, on the runtime's clock.

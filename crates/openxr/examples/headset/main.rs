@@ -16,7 +16,7 @@ use room::{Hands, Room};
 use std::io::BufRead;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -31,6 +31,9 @@ struct Options {
     /// Frames to show, then the end; default: until the runtime or q ends it
     #[arg(long)]
     frames: Option<u64>,
+    /// Seconds to run, then the end
+    #[arg(long)]
+    seconds: Option<u64>,
     /// Method at the start: smr, taau, none, or antialias (smr with a jittered projection)
     #[arg(long, default_value = "smr")]
     method: String,
@@ -62,7 +65,6 @@ struct Controls {
     trigger: xr::Action<bool>,
     grip: xr::Action<xr::Posef>,
     hands: [xr::Path; 2],
-    spaces: Option<(xr::sys::Session, [xr::Space; 2])>,
 }
 
 fn main() -> Result<(), Failure> {
@@ -82,7 +84,7 @@ fn main() -> Result<(), Failure> {
         Ok(vec![set])
     }));
     let mut headset = Headset::new("headset", desc)?;
-    let mut controls = controls.recv()?;
+    let controls = controls.recv()?;
     println!("runtime: {}", headset.instance().properties()?.runtime_name);
     println!("eye tracker: {}", if headset.has_eye_tracker() { "yes" } else { "no" });
     println!("views: {:?} pixels each", headset.size_px());
@@ -97,10 +99,11 @@ fn main() -> Result<(), Failure> {
     }
     let measure = measure::Measure::new(headset.device(), headset.queue());
     let keys = keys();
+    let began = Instant::now();
     let mut hands_before: Option<Hands> = None;
     let (mut shown_frames, mut is_over) = (0, false);
     while let Some(mut frame) = headset.next_frame()? {
-        let hands = controls.hands(&frame)?;
+        let hands = controls.hands(&mut frame)?;
         let pressed = controls.is_pressed(&frame)?;
         let moved = [hands, hands_before.unwrap_or(hands)];
         hands_before = Some(hands);
@@ -150,6 +153,7 @@ fn main() -> Result<(), Failure> {
             headset.set_settings(settings)?;
             println!("method: {}", settings.method.kind().name());
         }
+        is_over |= options.seconds.is_some_and(|seconds| began.elapsed().as_secs() >= seconds);
         if is_over || options.frames.is_some_and(|frames| shown_frames >= frames) {
             headset.exit()?;
             is_over = true;
@@ -223,29 +227,20 @@ impl Controls {
             bindings.push(xr::Binding::new(&grip, path("grip/pose")?));
         }
         instance.suggest_interaction_profile_bindings(profile, &bindings)?;
-        Ok((set, Self { trigger, grip, hands, spaces: None }))
+        Ok((set, Self { trigger, grip, hands }))
     }
 
     /// Poses of the hands; where there are no controllers, they move by themselves.
-    fn hands(&mut self, frame: &HeadsetFrame<'_>) -> Result<Hands, xr::sys::Result> {
-        let session = frame.session();
-        if self.spaces.as_ref().is_none_or(|(of, _)| *of != session.as_raw()) {
-            let space = |hand| self.grip.create_space(session, hand, xr::Posef::IDENTITY);
-            self.spaces = Some((session.as_raw(), [space(self.hands[0])?, space(self.hands[1])?]));
-        }
-        let Some((_, spaces)) = &self.spaces else { return Ok(Hands::default()) };
+    fn hands(&self, frame: &mut HeadsetFrame<'_>) -> Result<Hands, xr::sys::Result> {
         let time_s = frame.time_s as f32;
         let mut hands = [-1.0, 1.0].map(|side| {
             let place = Vec3::new(0.2 * side + 0.05 * (1.3 * time_s + side).sin(), -0.15, -0.5);
             let turn = Quat::from_rotation_y(0.4 * (0.9 * time_s + side).sin());
             Mat4::from_rotation_translation(turn, place)
         });
-        for (hand, space) in hands.iter_mut().zip(spaces) {
-            let found = space.locate(frame.space(), frame.time())?;
-            if found.location_flags.contains(xr::SpaceLocationFlags::ORIENTATION_TRACKED) {
-                let (q, p) = (found.pose.orientation, found.pose.position);
-                let turn = Quat::from_xyzw(q.x, q.y, q.z, q.w).normalize();
-                *hand = Mat4::from_rotation_translation(turn, Vec3::new(p.x, p.y, p.z));
+        for (hand, path) in hands.iter_mut().zip(self.hands) {
+            if let Some(pose) = frame.pose(&self.grip, path)? {
+                *hand = Mat4::from_cols_array_2d(&pose);
             }
         }
         Ok(hands)

@@ -45,8 +45,8 @@ pub struct Track {
 }
 
 impl GazeArgs {
-    /// Resolves the options for `frames` frames, by default for the duration of the gaze. With `--camera head`, `head` is
-    /// the scanpath, read or generated already. `latency_ms`: of the tracker.
+    /// Resolves the options for `frames` frames, by default for the duration of the gaze. With `--camera head`, `head`
+    /// is the scanpath, read or generated already. `latency_ms`: of the tracker.
     pub fn resolve(
         &self,
         view: &ViewGeometry,
