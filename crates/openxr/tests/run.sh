@@ -2,6 +2,7 @@
 # The example `headset` on a real OpenXR runtime: Monado with a simulated headset on software Vulkan, under Vulkan's and OpenXR's
 # validation, with an eye tracker and events that an API layer plays. Needs Debian (bookworm or trixie, x86-64), root, gcc and
 # Rust; says loudly if it cannot run. 190 MB are downloaded the first time. `run.sh soak SECONDS` repeats the events for so long.
+# `run.sh picture FILE.png` writes what Monado's compositor shows of both eyes in a window; it needs python3, too.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 tests="$PWD/crates/openxr/tests"
@@ -37,9 +38,18 @@ rm -f "$root/xr/stdin" "$root/run/user/0/monado_comp_ipc"
 mkfifo "$root/xr/stdin"
 sleep 100000 >"$root/xr/stdin" &
 holder=$!
-in_root SIMULATED_ENABLE=1 XRT_COMPOSITOR_NULL=1 /usr/bin/monado-service <"$root/xr/stdin" >"$root/xr/monado.log" 2>&1 &
+compositor=(XRT_COMPOSITOR_NULL=1)
+window=
+if [ "${1:-}" = picture ]; then
+    mkdir -p "$root/xr/screen"
+    in_root Xvfb :77 -screen 0 1280x720x24 -fbdir /xr/screen -nolisten tcp >/dev/null 2>&1 &
+    window=$!
+    sleep 2
+    compositor=(DISPLAY=:77 XRT_COMPOSITOR_FORCE_XCB=1)
+fi
+in_root SIMULATED_ENABLE=1 "${compositor[@]}" /usr/bin/monado-service <"$root/xr/stdin" >"$root/xr/monado.log" 2>&1 &
 service=$!
-trap 'kill $service $holder 2>/dev/null || true' EXIT
+trap 'kill $service $holder $window 2>/dev/null || true' EXIT
 for _ in $(seq 100); do [ -S "$root/run/user/0/monado_comp_ipc" ] && break; sleep 0.1; done
 [ -S "$root/run/user/0/monado_comp_ipc" ] || { echo "monado-service did not start:"; cat "$root/xr/monado.log"; exit 1; }
 
@@ -80,6 +90,15 @@ if [ "${1:-}" = soak ]; then
     silent soak
     grep -E "frames shown" "$log"
     step "soak passed: $(grep -c '^player: lose' "$log") sessions lost, $(grep -c '^player: off' "$log") times taken off"
+    exit 0
+fi
+
+if [ "${1:-}" = picture ]; then
+    in_root /xr/headset --gaze /xr/scanpath_viewing.csv --side 512 --check 20 --frames 100000 </dev/null >"$root/xr/picture.log" 2>&1 &
+    window="$window $!"
+    for _ in $(seq 240); do grep -q "^frame 60:" "$root/xr/picture.log" && break; sleep 0.5; done
+    python3 "$tests/screen_to_png.py" "$root/xr/screen/Xvfb_screen0" "$2"
+    step "wrote $2"
     exit 0
 fi
 
