@@ -98,13 +98,11 @@ pub struct Headset {
     gaze_distance_m: f32,
     near_m: f32,
     past: Option<Past>,
-    /// From this time on the world's origin is another one.
-    recentred_at: Option<xr::Time>,
+    /// From each of these times on the world's origin is another one.
+    recentred_at: Vec<xr::Time>,
     begun_at: Option<xr::Time>,
     /// Since when nothing is to be shown.
     idle_since: Option<Instant>,
-    /// Spaces of the application's pose actions in this session.
-    poses: Vec<(xr::sys::Action, xr::Path, xr::Space)>,
     index: u64,
     instance: xr::Instance,
     gpu: Gpu,
@@ -203,10 +201,9 @@ impl Headset {
             gaze_distance_m: desc.gaze_distance_m,
             near_m: desc.near_m,
             past: None,
-            recentred_at: None,
+            recentred_at: vec![],
             begun_at: None,
             idle_since: None,
-            poses: vec![],
             index: 0,
             instance,
             gpu,
@@ -321,8 +318,8 @@ impl Headset {
     fn frame(&mut self, time: xr::Time, views: Vec<xr::View>) -> Result<HeadsetFrame<'_>, Error> {
         let begun_at = *self.begun_at.get_or_insert(time);
         let seconds = |time: xr::Time| (time.as_nanos() - begun_at.as_nanos()) as f64 / 1e9;
-        if self.recentred_at.is_some_and(|at| time.as_nanos() >= at.as_nanos()) {
-            (self.recentred_at, self.past) = (None, None);
+        if self.recentred_at.extract_if(.., |at| time.as_nanos() >= at.as_nanos()).count() > 0 {
+            self.past = None;
         }
         if self.idle_since.take().is_some_and(|since| since.elapsed() > PAUSE) {
             self.past = None;
@@ -332,7 +329,7 @@ impl Headset {
         let before = self.past.map_or(poses, |past| past.poses);
         let ray = match (&self.tracker, &mut self.gaze_fn) {
             (Some(tracker), _) => match &self.session {
-                Some(session) => tracker.at(&session.space, time)?,
+                Some(session) => tracker.at(&session.space, time).or_else(none_if_lost)?,
                 None => None,
             },
             (None, Some(gaze)) => gaze(seconds(time)).and_then(|direction| from_head(&views, direction)),
@@ -405,7 +402,7 @@ impl Headset {
                     }
                 }
                 // The world moves under every pose from then on.
-                xr::Event::ReferenceSpaceChangePending(event) => self.recentred_at = Some(event.change_time()),
+                xr::Event::ReferenceSpaceChangePending(event) => self.recentred_at.push(event.change_time()),
                 xr::Event::VisibilityMaskChangedKHR(_) => self.ask_lenses(),
                 xr::Event::InstanceLossPending(_) => return Ok(false),
                 _ => {}
@@ -421,7 +418,6 @@ impl Headset {
             tracker.follow(None)?;
         }
         // A runtime may allow one session at a time: the old one goes first, with all that was made in it.
-        self.poses.clear();
         self.session = None;
         self.past = None;
         self.session = Some(Session::new(&self.instance, self.system, &self.gpu, self.size_px())?);
@@ -483,29 +479,11 @@ impl<'a> HeadsetFrame<'a> {
     /// not tracked.
     ///
     /// # Errors
-    /// The runtime's, if the action is none of the session's.
-    pub fn pose(
-        &mut self,
-        action: &xr::Action<xr::Posef>,
-        path: xr::Path,
-    ) -> Result<Option<[[f32; 4]; 4]>, sys::Result> {
-        let Headset { session, poses, .. } = &mut *self.headset;
-        let session = session.as_ref().expect("a frame has a session");
-        let found = poses.iter().position(|(of, at, _)| *of == action.as_raw() && *at == path);
-        let found = match found {
-            Some(found) => found,
-            None => {
-                let space = action.create_space(&session.session, path, xr::Posef::IDENTITY)?;
-                poses.push((action.as_raw(), path, space));
-                poses.len() - 1
-            }
-        };
-        let located = poses[found].2.locate(&session.space, self.time)?;
-        let needed = xr::SpaceLocationFlags::ORIENTATION_VALID
-            | xr::SpaceLocationFlags::ORIENTATION_TRACKED
-            | xr::SpaceLocationFlags::POSITION_VALID;
-        let is_tracked = located.location_flags.contains(needed);
-        Ok(is_tracked.then(|| matrix(located.pose).to_cols_array_2d()))
+    /// [`Error::OpenXr`] if the action is none of the session's.
+    pub fn pose(&mut self, action: &xr::Action<xr::Posef>, path: xr::Path) -> Result<Option<[[f32; 4]; 4]>, Error> {
+        let session = self.headset.session.as_mut().expect("a frame has a session");
+        let pose = session.pose(action, path, self.time).or_else(none_if_lost)?;
+        Ok(pose.map(|pose| matrix(pose).to_cols_array_2d()))
     }
 
     /// When the frame will be displayed, on the runtime's clock.
@@ -562,6 +540,11 @@ fn output(device: &Device, size: [u32; 2]) -> Texture {
 /// Whether another session may go on.
 fn is_lost(error: sys::Result) -> bool {
     error == sys::Result::ERROR_SESSION_LOST
+}
+
+/// What a session that was lost meanwhile knows: nothing. The next frame replaces it.
+fn none_if_lost<T>(error: sys::Result) -> Result<Option<T>, sys::Result> {
+    if is_lost(error) { Ok(None) } else { Err(error) }
 }
 
 /// The loader of the system, found when the program runs.

@@ -23,6 +23,8 @@ pub(crate) struct Session {
     pub images: Vec<Texture>,
     pub swapchain: xr::Swapchain<xr::Vulkan>,
     pub space: xr::Space,
+    /// Of the application's pose actions, each made at its first use.
+    poses: Vec<(sys::Action, xr::Path, xr::Space)>,
     pub stream: xr::FrameStream<xr::Vulkan>,
     pub waiter: xr::FrameWaiter,
     pub session: xr::Session<xr::Vulkan>,
@@ -38,7 +40,7 @@ impl Session {
         let formats = session.enumerate_swapchain_formats()?;
         let (_, format) = srgb_format(&formats).ok_or(Error::Runtime("has no swapchain of 8 bits and sRGB"))?;
         let (swapchain, images) = swapchain(&session, gpu, size)?;
-        Ok(Self { images, swapchain, space, stream, waiter, session, format, size, is_running: false })
+        Ok(Self { images, swapchain, space, poses: vec![], stream, waiter, session, format, size, is_running: false })
     }
 
     /// A swapchain of another size.
@@ -46,6 +48,29 @@ impl Session {
         (self.swapchain, self.images) = swapchain(&self.session, gpu, size)?;
         self.size = size;
         Ok(())
+    }
+
+    /// Pose of an action in the world; `None` where it is not tracked.
+    pub fn pose(
+        &mut self,
+        action: &xr::Action<xr::Posef>,
+        path: xr::Path,
+        time: xr::Time,
+    ) -> Result<Option<xr::Posef>, sys::Result> {
+        let known = self.poses.iter().position(|(of, at, _)| *of == action.as_raw() && *at == path);
+        let i = match known {
+            Some(i) => i,
+            None => {
+                let space = action.create_space(&self.session, path, xr::Posef::IDENTITY)?;
+                self.poses.push((action.as_raw(), path, space));
+                self.poses.len() - 1
+            }
+        };
+        let found = self.poses[i].2.locate(&self.space, time)?;
+        let needed = xr::SpaceLocationFlags::ORIENTATION_VALID
+            | xr::SpaceLocationFlags::ORIENTATION_TRACKED
+            | xr::SpaceLocationFlags::POSITION_VALID;
+        Ok(found.location_flags.contains(needed).then_some(found.pose))
     }
 
     /// Waits for a frame, synchronises `sets`, and locates the views; `None` if nothing is to be shown.

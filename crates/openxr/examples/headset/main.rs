@@ -231,7 +231,7 @@ impl Controls {
     }
 
     /// Poses of the hands; where there are no controllers, they move by themselves.
-    fn hands(&self, frame: &mut HeadsetFrame<'_>) -> Result<Hands, xr::sys::Result> {
+    fn hands(&self, frame: &mut HeadsetFrame<'_>) -> Result<Hands, afterimage_openxr::Error> {
         let time_s = frame.time_s as f32;
         let mut hands = [-1.0, 1.0].map(|side| {
             let place = Vec3::new(0.2 * side + 0.05 * (1.3 * time_s + side).sin(), -0.15, -0.5);
