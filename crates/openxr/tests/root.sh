@@ -7,7 +7,7 @@ root="$1"
 apt="$root.apt"
 mkdir -p "$root" "$apt/lists/partial" "$apt/cache/archives/partial"
 # The mirror that this machine's own apt uses.
-mirror=$(sed -n 's/^URIs: *//p' /etc/apt/sources.list.d/*.sources | head -n 1)
+mirror=$(cat /etc/apt/sources.list.d/*.sources 2>/dev/null | sed -n 's/^URIs: *//p' | head -n 1) || true
 [ -n "$mirror" ] || mirror=$(awk '$1 == "deb" {print $2; exit}' /etc/apt/sources.list)
 echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror trixie main" >"$apt/trixie.list"
 : >"$apt/status"

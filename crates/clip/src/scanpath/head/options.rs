@@ -7,7 +7,7 @@ use crate::error::InputError;
 const MAX_SAMPLES: f64 = 1e7;
 
 /// Distance in metres to what is seen from a point in a direction, a unit vector; `None` if nothing is. Both are in the
-/// space of [`HeadPose`](super::HeadPose).
+/// space of [`HeadPose`](crate::scanpath::HeadPose).
 pub type DistanceOf<'a> = &'a dyn Fn([f64; 3], [f64; 3]) -> Option<f64>;
 
 /// Options of [`generate_head`](super::generate_head).
