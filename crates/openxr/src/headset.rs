@@ -239,7 +239,7 @@ impl Headset {
 
     /// What the lens of an eye (0 left, 1 right) hides; `None` if the runtime does not say. Draw it first.
     pub fn hidden_mesh(&self, eye: usize) -> Option<&HiddenMesh> {
-        self.lenses[eye].hidden.as_ref()
+        self.lenses.get(eye)?.hidden.as_ref()
     }
 
     /// How far away the eyes look, in metres: the distance of what lies under the gaze. Infinite is far away.

@@ -17,7 +17,8 @@ step() { printf '\n== openxr: %s (%d s so far)\n' "$*" "$SECONDS"; }
 step "example"
 cargo build "${everything[@]}" --example headset
 
-if [ "$(id -u)" != 0 ] || [ "$(uname -m)" != x86_64 ] || ! command -v apt-get dpkg-deb unshare gcc >/dev/null ||
+has() { for command in "$@"; do command -v "$command" >/dev/null || return 1; done; }
+if [ "$(id -u)" != 0 ] || [ "$(uname -m)" != x86_64 ] || ! has apt-get dpkg-deb unshare gcc ||
     [ ! -f /usr/share/keyrings/debian-archive-keyring.gpg ]; then
     printf '\nWARNING: no Debian on x86-64 with root, apt and gcc: the tests with an OpenXR runtime are SKIPPED\n'
     exit 0
@@ -81,6 +82,8 @@ silent() {
 # gain FRAME: dB that memory gains in a checked frame.
 gain() { awk -v at="frame $1:" 'index($0, at) == 1 {for (i = 1; i < NF; i++) if ($i == "dB," ) v[n++] = $(i - 1); print v[0] - v[1]}' "$log"; }
 gains() { awk -v g="$(gain "$1")" -v least="$2" 'BEGIN {exit !(g != "" && g > least)}' || fail "frame $1: memory gains $(gain "$1") dB, at least $2 expected"; }
+# loses FRAME: whether memory makes a checked frame worse.
+loses() { awk -v g="$(gain "$1")" 'BEGIN {exit !(g != "" && g < 0)}'; }
 has_reset() { grep -q "^frame $1: All" "$log" || fail "frame $1: no reset after $2"; }
 
 if [ "${1:-}" = soak ]; then
@@ -126,10 +129,10 @@ step "planted errors"
 run planted-vulkan 60 -- --frames 2 --plant vulkan
 [ -s "$root/xr/vulkan.txt" ] || fail "Vulkan's validation does not see a buffer of no bytes"
 run planted-openxr 60 -- --frames 2 --plant openxr
-grep -qE "VALID_ERROR|INVALID" "$root/xr/openxr.txt" "$log" || fail "OpenXR's validation does not see an unknown path"
+grep -q "VALID_ERROR" "$root/xr/openxr.txt" || fail "OpenXR's validation does not see an unknown reference space"
 run planted-eyes 60 -- --gaze /xr/scanpath_viewing.csv --frames 31 --check 15 --plant eyes
-! (gains 30 0.7) >/dev/null || fail "swapped eyes are not seen"
+loses 30 || fail "swapped eyes are not seen"
 run planted-motion 60 -- --gaze /xr/scanpath_viewing.csv --frames 31 --check 15 --plant motion
-! (gains 30 0.7) >/dev/null || fail "wrong motion vectors are not seen"
+loses 30 || fail "wrong motion vectors are not seen"
 
 step "all checks passed"

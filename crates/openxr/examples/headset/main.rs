@@ -95,7 +95,7 @@ fn main() -> Result<(), Failure> {
         room.hide(headset.device(), eye, hidden.as_ref());
     }
     if let Some(plant) = options.plant {
-        plant.before(&headset)?;
+        plant.before(&headset);
     }
     let measure = measure::Measure::new(headset.device(), headset.queue());
     let keys = keys();

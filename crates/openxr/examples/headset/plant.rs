@@ -7,7 +7,7 @@ use clap::ValueEnum;
 pub enum Plant {
     /// A buffer of 0 bytes, which Vulkan's validation must see.
     Vulkan,
-    /// A swapchain with unknown flags, which OpenXR's validation must see.
+    /// A reference space of an unknown type, which OpenXR's validation must see.
     Openxr,
     /// Each eye is drawn from the other one's place.
     Eyes,
@@ -16,20 +16,18 @@ pub enum Plant {
 }
 
 impl Plant {
-    pub fn before(self, headset: &Headset) -> Result<(), xr::sys::Result> {
-        match self {
-            Self::Vulkan => zero_bytes(headset.device()),
-            Self::Openxr => {
-                let path = xr::Path::from_raw(u64::MAX);
-                let seen = headset.instance().path_to_string(path);
-                println!("planted: {seen:?}");
-            }
-            Self::Eyes | Self::Motion => {}
+    pub fn before(self, headset: &Headset) {
+        if self == Self::Vulkan {
+            zero_bytes(headset.device());
         }
-        Ok(())
     }
 
     pub fn spoil(self, frame: &mut HeadsetFrame<'_>) {
+        if self == Self::Openxr {
+            let unknown = xr::ReferenceSpaceType::from_raw(9999);
+            // The runtime refuses it, too.
+            frame.session().create_reference_space(unknown, xr::Posef::IDENTITY).ok();
+        }
         let [left, right] = &mut frame.eyes;
         match self {
             Self::Eyes => std::mem::swap(&mut left.clip_from_world, &mut right.clip_from_world),
