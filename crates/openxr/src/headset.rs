@@ -185,7 +185,8 @@ impl Headset {
             None => vec![],
         };
         let session = Session::new(&instance, system, &gpu, size)?;
-        let present = Present::new(&gpu.device, session.format);
+        let image = session.images.first().ok_or(Error::Runtime("has no swapchain images"))?;
+        let present = Present::new(&gpu.device, image.format());
         let mut headset = Self {
             output: output(&gpu.device, size),
             session: Some(session),
@@ -454,17 +455,12 @@ impl Headset {
 }
 
 impl<'a> HeadsetFrame<'a> {
-    /// What to draw into.
-    pub fn targets(&self) -> &Targets {
-        self.headset.targets.as_ref().expect("a frame has targets")
-    }
-
     /// The device's queue.
     pub fn queue(&self) -> &Queue {
         &self.headset.gpu.queue
     }
 
-    /// Encoder and targets together.
+    /// The encoder, and what to draw into.
     pub fn encoder_and_targets(&mut self) -> (&mut CommandEncoder, &Targets) {
         (&mut self.encoder, self.headset.targets.as_ref().expect("a frame has targets"))
     }

@@ -50,7 +50,7 @@ pub use afterimage::wgpu;
 pub use error::Error;
 pub use eye::{Draw, Eye};
 pub use gaze::Ray;
-pub use headset::{Headset, HeadsetDesc, HeadsetFrame, Shown};
+pub use headset::{ActionsFn, GazeFn, Headset, HeadsetDesc, HeadsetFrame, Shown};
 pub use openxr;
 pub use session::HiddenMesh;
 pub use targets::Targets;

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::vulkan::{Gpu, srgb_format};
 use openxr as xr;
-use wgpu_30::{Texture, TextureFormat};
+use wgpu_30::Texture;
 use xr::sys;
 
 pub(crate) const VIEWS: xr::ViewConfigurationType = xr::ViewConfigurationType::PRIMARY_STEREO;
@@ -28,7 +28,6 @@ pub(crate) struct Session {
     pub stream: xr::FrameStream<xr::Vulkan>,
     pub waiter: xr::FrameWaiter,
     pub session: xr::Session<xr::Vulkan>,
-    pub format: TextureFormat,
     pub size: [u32; 2],
     pub is_running: bool,
 }
@@ -37,10 +36,8 @@ impl Session {
     pub fn new(instance: &xr::Instance, system: xr::SystemId, gpu: &Gpu, size: [u32; 2]) -> Result<Self, Error> {
         let (session, waiter, stream) = gpu.session(instance, system)?;
         let space = session.create_reference_space(xr::ReferenceSpaceType::LOCAL, xr::Posef::IDENTITY)?;
-        let formats = session.enumerate_swapchain_formats()?;
-        let (_, format) = srgb_format(&formats).ok_or(Error::Runtime("has no swapchain of 8 bits and sRGB"))?;
         let (swapchain, images) = swapchain(&session, gpu, size)?;
-        Ok(Self { images, swapchain, space, poses: vec![], stream, waiter, session, format, size, is_running: false })
+        Ok(Self { images, swapchain, space, poses: vec![], stream, waiter, session, size, is_running: false })
     }
 
     /// A swapchain of another size.

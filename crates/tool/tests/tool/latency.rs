@@ -85,7 +85,12 @@ fn no_latency_and_a_fixed_gaze_change_nothing() {
     };
     assert_eq!(clip("a", &["--gaze", "synthetic:3"]), clip("b", &["--gaze", "synthetic:3", "--gaze-latency", "0"]));
     assert_eq!(clip("c", &["--gaze", "30,20"]), clip("d", &["--gaze", "30,20", "--gaze-latency", "80"]));
-    // Before the first sample arrives, the eye is taken to have rested there.
-    let early = clip("e", &["--gaze", "synthetic:3", "--gaze-latency", "1000"]);
-    assert_ne!(early, clip("f", &["--gaze", "synthetic:3", "--start", "0.5"]));
+    // Before the first sample arrives, the eye is taken to have rested there: at this gaze, which rests for a second.
+    let gaze = folder.write("gaze.csv", stepping().as_bytes());
+    let from = |name: &str, start: &str, latency: &str| {
+        clip(name, &["--gaze", &gaze, "--gaze-map", "fit", "--start", start, "--gaze-latency", latency])
+    };
+    let rested = from("e", "0", "0");
+    assert_eq!(from("f", "0", "1000"), rested);
+    assert_ne!(from("g", "1.1", "0"), rested);
 }
