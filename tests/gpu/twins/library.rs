@@ -2,8 +2,8 @@
 
 use super::probe::Probe;
 use super::{
-    antialias, decisions, doctor, foveation, lattice, matching, mathematics, noise, repair, sparse, state, surfaces,
-    upsampling, weighted,
+    antialias, decisions, doctor, foveation, lattice, lens, matching, mathematics, noise, repair, sparse, state,
+    surfaces, upsampling, weighted,
 };
 pub use afterimage::shader::SHADERS;
 
@@ -36,6 +36,7 @@ pub fn probes() -> impl Iterator<Item = &'static Probe> {
         doctor::PROBES,
         foveation::PROBES,
         lattice::PROBES,
+        lens::PROBES,
         matching::PROBES,
         noise::PROBES,
         mathematics::PROBES,
