@@ -8,11 +8,11 @@ use bevy::render::render_resource::TextureUsages;
 
 /// Runs the post-process for this camera: a `Camera3d` with a perspective projection, symmetric or off-axis.
 ///
-/// Sets [`Msaa::Off`], because samples of a foveated frame have no neighbours to average with, and adds `DepthPrepass`
-/// and `MotionVectorPrepass` where history needs them.
+/// Sets [`Msaa::Off`] while it runs, because samples of a foveated frame have no neighbours to average with. Requires
+/// `DepthPrepass` and `MotionVectorPrepass`, which history needs; they stay when this component is removed.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
-#[require(Foveated)]
+#[require(Foveated, DepthPrepass, MotionVectorPrepass)]
 pub struct Afterimage {
     /// Settings by name.
     pub preset: Preset,
@@ -69,7 +69,7 @@ pub enum Preset {
     Paper,
 }
 
-/// How a camera with [`Afterimage`] foveates. Angles are visual angles of the camera: its field of view is taken for
+/// How a camera with [`Afterimage`] foveates; of one without it does nothing. Angles are visual angles of the camera: its field of view is taken for
 /// the one that the screen fills.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
@@ -128,7 +128,7 @@ impl FoveationKind {
     }
 
     /// Whether the post-process has history, and needs depth and motion vectors for it.
-    fn has_history(self) -> bool {
+    pub(crate) fn has_history(self) -> bool {
         matches!(self, Self::Sparse | Self::Simulated)
     }
 }
@@ -150,6 +150,11 @@ pub(crate) fn drawn_size_px(camera: &Camera) -> Option<UVec2> {
 
 /// Convention of Bevy's depth: reversed, with a far plane that is infinite or not.
 pub(crate) fn depth_convention(clip_from_view: Mat4) -> Result<DepthConvention, String> {
+    if clip_from_view.z_axis.w == 0.0 {
+        return Err("its projection is orthographic, and regions of foveation are visual angles. Use a perspective \
+                    projection, or remove Afterimage"
+            .into());
+    }
     // depth = w.z / distance - z.z
     let (z, w) = (clip_from_view.z_axis.z, clip_from_view.w_axis.z);
     if w <= 0.0 || z < 0.0 {
@@ -166,19 +171,29 @@ pub(crate) struct CameraPlugin;
 impl Plugin for CameraPlugin {
     fn build(&self, app: &mut App) {
         // Before what reads these components in this frame.
-        app.add_systems(
-            PostUpdate,
-            (require_no_msaa, add_storage, add_prepasses).before(bevy::camera::CameraUpdateSystems),
-        );
+        app.add_systems(PostUpdate, (replace_msaa, add_storage).before(bevy::camera::CameraUpdateSystems));
     }
 }
 
-/// Switches MSAA off.
-fn require_no_msaa(mut cameras: Query<(&Foveated, &mut Msaa), With<Afterimage>>) {
-    for (foveated, mut msaa) in &mut cameras {
-        if foveated.kind != FoveationKind::Off && *msaa != Msaa::Off {
+/// MSAA of a camera before the plugin switched it off.
+#[derive(Component)]
+struct ReplacedMsaa(Msaa);
+
+type Multisampled<'a> = (Entity, &'a mut Msaa, Option<&'a ReplacedMsaa>, Option<&'a Foveated>, Has<Afterimage>);
+
+type Switched = Or<(With<Afterimage>, With<ReplacedMsaa>)>;
+
+/// Switches MSAA off for cameras that are foveated, and back when they no longer are.
+fn replace_msaa(mut commands: Commands, mut cameras: Query<Multisampled<'_>, Switched>) {
+    for (entity, mut msaa, replaced, foveated, has_afterimage) in &mut cameras {
+        let is_foveated = has_afterimage && foveated.is_some_and(|foveated| foveated.kind != FoveationKind::Off);
+        if is_foveated && *msaa != Msaa::Off {
             warn_once!("Afterimage sets Msaa::Off: samples of a foveated frame have no neighbours to average with");
+            commands.entity(entity).insert(ReplacedMsaa(*msaa));
             *msaa = Msaa::Off;
+        } else if let Some(replaced) = replaced.filter(|_| !is_foveated) {
+            *msaa = replaced.0;
+            commands.entity(entity).remove::<ReplacedMsaa>();
         }
     }
 }
@@ -205,49 +220,6 @@ fn add_storage(mut commands: Commands, mut cameras: Query<Storage<'_>>) {
     }
 }
 
-/// Prepasses that the plugin has added to a camera.
-#[derive(Component)]
-struct AddedPrepasses {
-    depth: bool,
-    motion: bool,
-}
-
-type Prepasses<'a> = (
-    Entity,
-    Option<&'a Afterimage>,
-    Option<&'a Foveated>,
-    Option<&'a AddedPrepasses>,
-    Has<DepthPrepass>,
-    Has<MotionVectorPrepass>,
-);
-
-/// Adds depth and motion prepasses to cameras with history, and removes them when they are no longer needed.
-fn add_prepasses(mut commands: Commands, cameras: Query<Prepasses<'_>, With<Camera3d>>) {
-    for (entity, afterimage, foveated, added, has_depth, has_motion) in &cameras {
-        let needed = afterimage.is_some() && foveated.is_some_and(|foveated| foveated.kind.has_history());
-        let mut camera = commands.entity(entity);
-        match added {
-            None if needed => {
-                camera.insert((
-                    DepthPrepass,
-                    MotionVectorPrepass,
-                    AddedPrepasses { depth: !has_depth, motion: !has_motion },
-                ));
-            }
-            Some(added) if !needed => {
-                if added.depth {
-                    camera.remove::<DepthPrepass>();
-                }
-                if added.motion {
-                    camera.remove::<MotionVectorPrepass>();
-                }
-                camera.remove::<AddedPrepasses>();
-            }
-            _ => {}
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -263,6 +235,8 @@ mod tests {
         let Ok(DepthConvention::Reversed { near, far }) = depth_convention(finite) else { panic!("not reversed") };
         assert!((near - 0.25).abs() < 1e-4 && (far - 100.0).abs() < 0.1, "{near} {far}");
         let forward = Mat4::perspective_rh(1.0, 1.5, 0.25, 100.0);
-        assert!(depth_convention(forward).is_err());
+        assert!(depth_convention(forward).is_err_and(|problem| problem.contains("reversed")));
+        let orthographic = OrthographicProjection::default_3d().get_clip_from_view();
+        assert!(depth_convention(orthographic).is_err_and(|problem| problem.contains("orthographic")));
     }
 }

@@ -5,8 +5,8 @@ use bevy::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// Counts the pixels of a camera with [`Afterimage`](crate::Afterimage) by what became of their history, a few frames
-/// ago. Add it to the camera; without it nothing is counted, at no cost.
+/// Counts what a camera with [`Afterimage`](crate::Afterimage) shades and draws in this frame, and its pixels by what
+/// became of their history, a few frames ago. Add it to the camera; without it nothing is counted, at no cost.
 ///
 /// The shares are also Bevy diagnostics, `afterimage/kept` and `afterimage/disoccluded`, in percent. The time of the
 /// post-process is the diagnostic `render/afterimage/elapsed_gpu` (and `elapsed_cpu`), if the application has Bevy's
@@ -26,18 +26,25 @@ pub struct AfterimageStats {
     pub rejected: u64,
     /// Pixels whose color was NaN or infinite.
     pub nonfinite: u64,
+    /// Pixels at which meshes are shaded, without those that are repaired. All pixels, if nothing is foveated.
+    pub shaded: u64,
+    /// Meshes in the camera's view.
+    pub meshes: u64,
+    /// Meshes that are drawn: those of the camera, for depth and motion vectors, and those of its lattice cameras. The
+    /// more there are to one of [`meshes`](Self::meshes), the more of what is paid for a mesh or a triangle, and not
+    /// for a pixel, is paid again.
+    pub drawn_meshes: u64,
 }
 
-impl From<FrameStats> for AfterimageStats {
-    fn from(stats: FrameStats) -> Self {
-        Self {
-            pixels: stats.pixels,
-            kept: stats.valid().saturating_sub(stats.replaced),
-            replaced: stats.replaced,
-            disoccluded: stats.verdicts[Verdict::Disoccluded as usize],
-            rejected: stats.rejected(),
-            nonfinite: stats.nonfinite,
-        }
+impl AfterimageStats {
+    /// Takes over what the device has counted.
+    pub(crate) fn count(&mut self, stats: FrameStats) {
+        self.pixels = stats.pixels;
+        self.kept = stats.valid().saturating_sub(stats.replaced);
+        self.replaced = stats.replaced;
+        self.disoccluded = stats.verdicts[Verdict::Disoccluded as usize];
+        self.rejected = stats.rejected();
+        self.nonfinite = stats.nonfinite;
     }
 }
 

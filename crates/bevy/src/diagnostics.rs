@@ -45,7 +45,7 @@ fn receive(arrivals: Res<Arrivals>, mut cameras: Query<&mut AfterimageStats>, mu
     let Ok(arrivals) = arrivals.0.lock() else { return };
     for (camera, stats) in arrivals.try_iter() {
         let Ok(mut shown) = cameras.get_mut(camera) else { continue };
-        *shown = stats.into();
+        shown.count(stats);
         let percent = |pixels: u64| 100.0 * pixels as f64 / shown.pixels.max(1) as f64;
         diagnostics.add_measurement(&KEPT, || percent(shown.kept));
         diagnostics.add_measurement(&DISOCCLUDED, || percent(shown.disoccluded));

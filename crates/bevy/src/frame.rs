@@ -1,17 +1,18 @@
 //! Description of a frame, from Bevy's camera.
 
+use crate::AfterimageSupported;
 use crate::camera::{Afterimage, AfterimageDebug, Foveated, FoveationKind, depth_convention, drawn_size_px};
 use crate::counters::AfterimageStats;
 use crate::gaze::{CameraGaze, Gaze};
-use crate::lattice::{COUNT, LatticeCameras, lattice_of};
+use crate::lattice::{COUNT, LatticeCamera, LatticeCameras, lattice_of};
 use afterimage::{ContextDesc, DebugView, Lattice, Method, MotionConvention, ViewFrame, ViewGeometry};
-use bevy::core_pipeline::prepass::PreviousViewData;
+use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, PreviousViewData};
 use bevy::ecs::entity::{EntityHashMap, EntityHashSet};
 use bevy::prelude::*;
 use bevy::render::camera::{SortedCameras, sort_cameras};
 use bevy::render::sync_component::{SyncComponent, SyncComponentPlugin};
 use bevy::render::sync_world::RenderEntity;
-use bevy::render::{ExtractSchedule, MainWorld, Render, RenderApp, RenderSystems};
+use bevy::render::{Extract, ExtractSchedule, MainWorld, Render, RenderApp, RenderSystems};
 
 /// What the post-process needs to know of a camera, in the render world.
 #[derive(Component, Clone, Debug)]
@@ -70,7 +71,8 @@ impl Plugin for FramePlugin {
         app.add_plugins(SyncComponentPlugin::<Afterimage, FramePlugin>::default());
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
             render_app
-                .add_systems(ExtractSchedule, extract)
+                .init_resource::<LatticeViews>()
+                .add_systems(ExtractSchedule, (extract, forget_despawned))
                 .add_systems(Render, draw_lattices_first.after(sort_cameras).in_set(RenderSystems::CreateViews));
         }
     }
@@ -86,22 +88,25 @@ type MainCamera<'a> = (
     Option<&'a LatticeCameras>,
     Option<&'a PreviousViewData>,
     Option<&'a CameraGaze>,
-    (Option<&'a AfterimageDebug>, Has<AfterimageStats>),
+    (Option<&'a AfterimageDebug>, Has<AfterimageStats>, Has<DepthPrepass>, Has<MotionVectorPrepass>),
 );
 
 fn extract(mut commands: Commands, mut world: ResMut<MainWorld>) {
     let gaze = *world.resource::<Gaze>();
     let planted = *world.resource::<Planted>();
+    let is_supported = world.contains_resource::<AfterimageSupported>();
     let mut render_entities = world.query::<RenderEntity>();
     let mut cameras = world.query::<MainCamera<'_>>();
     let mut frames = vec![];
-    for (main, entity, camera, transform, mut afterimage, foveated, lattices, previous, own, (debug, counts)) in
+    for (main, entity, camera, transform, mut afterimage, foveated, lattices, previous, own, others) in
         cameras.iter_mut(&mut world)
     {
+        let (debug, counts, has_depth, has_motion) = others;
         let placed = lattices.and_then(|lattices| Some((lattices.entities, lattices.placed?)));
         let renders = match foveated.kind {
+            _ if !is_supported => false,
             FoveationKind::Off => false,
-            FoveationKind::Simulated => true,
+            FoveationKind::Simulated => has_depth && has_motion,
             FoveationKind::Sparse | FoveationKind::QuadViews => placed.is_some(),
         };
         let Some(size) = drawn_size_px(camera).filter(|_| renders) else {
@@ -182,6 +187,25 @@ fn describe(
         view = view.moved(projection, now, past).unwrap_or(view);
     }
     Ok((desc, view))
+}
+
+/// Render entities of lattice cameras, by their own.
+#[derive(Resource, Default)]
+struct LatticeViews(EntityHashMap<Entity>);
+
+/// Despawns the render entities of lattice cameras that are despawned: Bevy does not where an entity was `Disabled`,
+/// and would go on drawing them.
+fn forget_despawned(
+    mut commands: Commands,
+    mut known: ResMut<LatticeViews>,
+    lattices: Extract<Query<(Entity, RenderEntity), With<LatticeCamera>>>,
+) {
+    for (_, view) in known.0.extract_if(|entity, _| !lattices.contains(*entity)) {
+        if let Ok(mut view) = commands.get_entity(view) {
+            view.try_despawn();
+        }
+    }
+    known.0.extend(&lattices);
 }
 
 /// Puts lattice cameras directly before the camera that shows their samples, whatever the order of other cameras:

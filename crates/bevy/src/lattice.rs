@@ -1,25 +1,35 @@
 //! Lattice cameras: the small views that draw the samples of a sparse frame.
 
+use crate::AfterimageSupported;
 use crate::camera::{Afterimage, Foveated, FoveationKind, depth_convention, drawn_size_px};
+use crate::counters::AfterimageStats;
 use crate::gaze::{CameraGaze, Gaze};
 use afterimage::{Foveation, Lattice, Lattices, Method, ViewGeometry};
+use bevy::app::MainScheduleOrder;
 use bevy::asset::AssetEventSystems;
-use bevy::camera::visibility::VisibilitySystems;
+use bevy::camera::visibility::{VisibilitySystems, VisibleEntities};
 use bevy::camera::{
-    CameraProjection, CameraUpdateSystems, CompositingSpace, Hdr, RenderTarget, RenderTargetInfo, SubCameraView,
-    Viewport,
+    CameraProjection, CameraUpdateSystems, ClearColorConfig, CompositingSpace, Hdr, RenderTarget, RenderTargetInfo,
+    SubCameraView, Viewport,
 };
+use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass, MotionVectorPrepass};
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
-use bevy::light::SimulationLightSystems;
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::ecs::query::{Allow, QueryData};
+use bevy::ecs::schedule::ScheduleLabel;
+use bevy::light::{SimulationLightSystems, Skybox};
 use bevy::math::Vec3A;
 use bevy::prelude::*;
 use bevy::render::camera::{MipBias, TemporalJitter};
 use bevy::render::render_resource::TextureFormat;
+use std::any::TypeId;
 
 /// Camera that draws one lattice of samples for another camera, whose child it is. The plugin spawns, moves and
 /// despawns it.
 ///
-/// Its entity has `Camera` and `Camera3d`. Queries for cameras that should not find it need `Without<LatticeCamera>`.
+/// Its entity has `Camera` and `Camera3d`, and is `Disabled` until Bevy needs it: queries of systems in `First` to
+/// `Update`, and in `PostUpdate` before `TransformSystems::Propagate`, do not find it. Later ones that should not find
+/// it, as those in `Last` and in extraction, need `Without<LatticeCamera>`.
 #[derive(Component, Clone, Copy, Debug, Reflect)]
 #[reflect(Component)]
 pub struct LatticeCamera {
@@ -48,6 +58,8 @@ pub(crate) struct LatticeCameras {
     /// Frame counter, which moves the samples.
     index: u64,
     held_uv: Option<Vec2>,
+    /// Why nothing is placed, if the log says so.
+    problem: Option<String>,
 }
 
 /// Samples of a frame.
@@ -61,24 +73,65 @@ pub(crate) struct Placed {
     pub repairs: bool,
 }
 
+/// Systems of lattice cameras, in order, in `PostUpdate`.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum LatticeSystems {
+    /// They exist for every camera that needs them.
+    Spawn,
+    /// They have the components that change how meshes are shaded.
+    Mirror,
+    /// They are where this frame's samples are.
+    Place,
+}
+
+/// Runs before `First`.
+#[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
+struct Hide;
+
 pub(crate) struct LatticePlugin;
 
 impl Plugin for LatticePlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<LatticeCamera>().add_systems(
-            PostUpdate,
-            (
-                spawn.before(TransformSystems::Propagate).before(CameraUpdateSystems),
-                // After the system that updates the camera's own projection.
-                place
+        app.register_type::<LatticeCamera>()
+            .init_schedule(Hide)
+            .configure_sets(
+                PostUpdate,
+                (LatticeSystems::Spawn, LatticeSystems::Mirror, LatticeSystems::Place)
+                    .chain()
+                    // After the systems that update the camera's own projection and transform.
                     .after(CameraUpdateSystems)
+                    .after(TransformSystems::Propagate)
                     .before(AssetEventSystems)
                     .before(VisibilitySystems::UpdateFrusta)
+                    .before(VisibilitySystems::VisibilityPropagate)
                     .before(SimulationLightSystems::UpdateDirectionalLightCascades)
                     .before(SimulationLightSystems::AssignLightsToClusters),
-            ),
-        );
+            )
+            .add_systems(Hide, hide)
+            .add_systems(
+                PostUpdate,
+                (
+                    (spawn.run_if(resource_exists::<AfterimageSupported>), show).in_set(LatticeSystems::Spawn),
+                    place.in_set(LatticeSystems::Place),
+                    count_drawn.after(VisibilitySystems::CheckVisibility),
+                ),
+            );
+        app.world_mut().resource_mut::<MainScheduleOrder>().insert_before(First, Hide);
     }
+}
+
+/// Hides lattice cameras from the application's queries: `Single<&Transform, With<Camera3d>>` finds the one camera that
+/// the application has spawned. Bevy's own queries must find them, which are in `PostUpdate` and in extraction.
+fn hide(mut commands: Commands, shown: Query<Entity, With<LatticeCamera>>) {
+    shown.iter().for_each(|entity| {
+        commands.entity(entity).insert(Disabled);
+    });
+}
+
+fn show(mut commands: Commands, hidden: Query<Entity, (With<LatticeCamera>, With<Disabled>)>) {
+    hidden.iter().for_each(|entity| {
+        commands.entity(entity).remove::<Disabled>();
+    });
 }
 
 /// Whether the main textures of lattice cameras need another format.
@@ -89,41 +142,52 @@ type Needs<'a> =
     (Entity, Option<&'a Afterimage>, Option<&'a Foveated>, Has<Hdr>, Option<(&'a LatticeCameras, &'a IsHdr)>);
 
 /// Spawns lattice cameras for cameras that need them, and despawns those of others.
-fn spawn(mut commands: Commands, mut images: ResMut<Assets<Image>>, cameras: Query<Needs<'_>, With<Camera3d>>) {
+fn spawn(
+    mut commands: Commands,
+    mut images: ResMut<Assets<Image>>,
+    cameras: Query<Needs<'_>, With<Camera3d>>,
+    lattices: Query<(), (With<LatticeCamera>, Allow<Disabled>)>,
+) {
     for (camera, afterimage, foveated, is_hdr, made) in &cameras {
-        let needed = afterimage.is_some() && foveated.is_some_and(|foveated| foveated.kind.has_lattices());
-        if let Some((lattices, made_hdr)) = made
-            && (!needed || made_hdr.0 != is_hdr)
-        {
-            lattices.entities.iter().for_each(|&entity| commands.entity(entity).try_despawn());
+        let is_needed = afterimage.is_some() && foveated.is_some_and(|foveated| foveated.kind.has_lattices());
+        if let Some((made, made_hdr)) = made {
+            // Children may be despawned by the application.
+            let are_there = made.entities.iter().all(|&entity| lattices.contains(entity));
+            if is_needed && made_hdr.0 == is_hdr && are_there {
+                continue;
+            }
+            made.entities.iter().for_each(|&entity| commands.entity(entity).try_despawn());
             commands.entity(camera).remove::<(LatticeCameras, IsHdr)>();
-        } else if needed && made.is_none() {
-            let target = images.add(target_image(UVec2::splat(TARGET_MULTIPLE_PX)));
-            let entities = std::array::from_fn(|index| {
-                let mut lattice = commands.spawn((
-                    ChildOf(camera),
-                    LatticeCamera { camera, index },
-                    Camera3d::default(),
-                    // The orders differ so that Bevy sees no ambiguity; the plugin sorts the cameras (`frame.rs`).
-                    Camera { is_active: false, order: index as isize, ..default() },
-                    RenderTarget::from(target.clone()),
-                    (Msaa::Off, DebandDither::Disabled),
-                ));
-                if is_hdr {
-                    lattice.insert((Hdr, Tonemapping::None));
-                }
-                lattice.id()
-            });
-            let lattices = LatticeCameras {
-                entities,
-                placed: None,
-                target,
-                target_size_px: UVec2::splat(TARGET_MULTIPLE_PX),
-                index: 0,
-                held_uv: None,
-            };
-            commands.entity(camera).insert((lattices, IsHdr(is_hdr)));
         }
+        if !is_needed {
+            continue;
+        }
+        let target = images.add(target_image(UVec2::splat(TARGET_MULTIPLE_PX)));
+        let entities = std::array::from_fn(|index| {
+            let mut lattice = commands.spawn((
+                ChildOf(camera),
+                LatticeCamera { camera, index },
+                Camera3d::default(),
+                // The orders differ so that Bevy sees no ambiguity; the plugin sorts the cameras (`frame.rs`).
+                Camera { is_active: false, order: index as isize, ..default() },
+                RenderTarget::from(target.clone()),
+                (Msaa::Off, DebandDither::Disabled),
+            ));
+            if is_hdr {
+                lattice.insert((Hdr, Tonemapping::None));
+            }
+            lattice.id()
+        });
+        let lattices = LatticeCameras {
+            entities,
+            placed: None,
+            target,
+            target_size_px: UVec2::splat(TARGET_MULTIPLE_PX),
+            index: 0,
+            held_uv: None,
+            problem: None,
+        };
+        commands.entity(camera).insert((lattices, IsHdr(is_hdr)));
     }
 }
 
@@ -134,16 +198,27 @@ fn target_image(size_px: UVec2) -> Image {
 type MainCamera<'a> = (
     Entity,
     &'a Camera,
+    &'a GlobalTransform,
     &'a Afterimage,
     &'a Foveated,
     &'a mut LatticeCameras,
     Option<&'a CameraGaze>,
     Option<&'a MipBias>,
-    Option<&'a CompositingSpace>,
-    Has<TemporalJitter>,
+    Beside<'a>,
 );
 
-type SmallCamera<'a> = (&'a mut Camera, &'a mut Projection, &'a mut RenderTarget);
+/// What changes how a camera can be foveated.
+#[derive(QueryData)]
+struct Beside<'a> {
+    space: Option<&'a CompositingSpace>,
+    sky: Option<&'a Skybox>,
+    jitters: Has<TemporalJitter>,
+    is_deferred: Has<DeferredPrepass>,
+    depth: Has<DepthPrepass>,
+    motion: Has<MotionVectorPrepass>,
+}
+
+type SmallCamera<'a> = (&'a mut Camera, &'a mut GlobalTransform, &'a mut Projection, &'a mut RenderTarget);
 
 /// Moves the lattice cameras to where this frame's samples are.
 fn place(
@@ -153,14 +228,14 @@ fn place(
     mut cameras: Query<MainCamera<'_>, Without<LatticeCamera>>,
     mut smalls: Query<SmallCamera<'_>, With<LatticeCamera>>,
 ) {
-    for (entity, camera, afterimage, foveated, mut state, own_gaze, mip_bias, space, has_jitter) in &mut cameras {
+    for (entity, camera, transform, afterimage, foveated, mut state, own_gaze, mip_bias, beside) in &mut cameras {
         let size = drawn_size_px(camera);
         let uv = own_gaze.map_or(gaze.uv, |own| own.uv).filter(|uv| uv.is_finite());
         state.held_uv = uv.or(state.held_uv);
         state.placed = None;
         if let Some(size) = size {
-            match lattices(camera, afterimage, foveated, &state, size, space) {
-                Ok(placed) if has_jitter && placed.jitter_px.is_some() => {
+            match lattices(camera, afterimage, foveated, &state, size, &beside) {
+                Ok(placed) if beside.jitters && placed.jitter_px.is_some() => {
                     warn_once!(
                         "Afterimage does not antialias camera {entity}: it has TemporalJitter, which temporal \
                          antialiasing adds. Remove that, or set Afterimage::antialias to false"
@@ -168,10 +243,15 @@ fn place(
                     state.placed = Some(Placed { jitter_px: None, ..placed });
                 }
                 Ok(placed) => state.placed = Some(placed),
+                Err(problem) if state.problem.as_ref() == Some(&problem) => {}
                 Err(problem) => {
-                    error_once!("camera {entity} renders every pixel, without Afterimage: {problem}");
+                    error!("camera {entity} renders every pixel, without Afterimage: {problem}");
+                    state.problem = Some(problem);
                 }
             }
+        }
+        if state.placed.is_some() {
+            state.problem = None;
         }
         state.index += 1;
         let placed = state.placed;
@@ -179,7 +259,9 @@ fn place(
             reserve(&mut state, &mut images, placed, foveated);
         }
         for (index, &small) in state.entities.iter().enumerate() {
-            let Ok((mut small_camera, mut projection, mut target)) = smalls.get_mut(small) else { continue };
+            let Ok((mut small_camera, mut small_transform, mut projection, mut target)) = smalls.get_mut(small) else {
+                continue;
+            };
             let lattice = placed.as_ref().and_then(|placed| lattice_of(&placed.lattices, foveated, index));
             if small_camera.is_active != lattice.is_some() {
                 small_camera.is_active = lattice.is_some();
@@ -189,7 +271,12 @@ fn place(
                 *target = state.target.clone().into();
             }
             small_camera.viewport = Some(Viewport { physical_size: lattice.points.into(), ..default() });
-            small_camera.clear_color = camera.clear_color;
+            *small_transform = *transform;
+            small_camera.clear_color = match camera.clear_color {
+                // The sky covers it.
+                ClearColorConfig::None => ClearColorConfig::Default,
+                color => color,
+            };
             small_camera.invert_culling = camera.invert_culling;
             let jitter_px = placed.and_then(|placed| placed.jitter_px).unwrap_or_default();
             let clip_from_view = crop(lattice, size, jitter_px) * camera.clip_from_view();
@@ -217,19 +304,33 @@ fn lattices(
     foveated: &Foveated,
     state: &LatticeCameras,
     size: UVec2,
-    space: Option<&CompositingSpace>,
+    beside: &BesideItem<'_, '_, '_>,
 ) -> Result<Placed, String> {
-    if space.is_some_and(|space| *space != CompositingSpace::Linear) {
+    if beside.space.is_some_and(|space| *space != CompositingSpace::Linear) {
         return Err("its CompositingSpace is not linear".into());
+    }
+    if beside.is_deferred {
+        return Err("it has DeferredPrepass, and samples are shaded by forward rendering alone".into());
+    }
+    let has_sky = beside.sky.is_some_and(|sky| sky.image.is_some());
+    if matches!(camera.clear_color, ClearColorConfig::None) && !has_sky {
+        return Err(
+            "its ClearColorConfig::None leaves what is behind it, which samples cannot. Choose a clear color, \
+                    or a Skybox"
+                .into(),
+        );
+    }
+    if foveated.kind.has_history() && !(beside.depth && beside.motion) {
+        return Err("its DepthPrepass or MotionVectorPrepass, which history needs, is removed".into());
     }
     let settings = afterimage.settings(foveated);
     settings.validate().map_err(|error| error.to_string())?;
     if settings.noisy {
         return Err("its settings expect a noise input, which Bevy does not have".into());
     }
+    depth_convention(camera.clip_from_view())?;
     let geometry = ViewGeometry::from_projection(size.into(), camera.clip_from_view().to_cols_array_2d())
         .map_err(|error| error.to_string())?;
-    depth_convention(camera.clip_from_view())?;
     let uv = state.held_uv.unwrap_or(Vec2::splat(0.5));
     let gaze_px = (uv * size.as_vec2() - 0.5).to_array();
     let mut lattices = settings.foveation.lattices(&geometry, gaze_px, state.index);
@@ -247,6 +348,33 @@ fn lattices(
     }
     let jitter_px = antialiases.then(|| Foveation::jitter_px(state.index));
     Ok(Placed { lattices, gaze_px, jitter_px, repairs: is_asked && !antialiases })
+}
+
+/// Counts what a camera shades, and draws more than once.
+fn count_drawn(
+    mut cameras: Query<
+        (&Camera, &VisibleEntities, Option<&LatticeCameras>, &mut AfterimageStats),
+        Without<LatticeCamera>,
+    >,
+    smalls: Query<(&Camera, &VisibleEntities), With<LatticeCamera>>,
+) {
+    let meshes = |visible: &VisibleEntities| visible.len(TypeId::of::<Mesh3d>()) as u64;
+    for (camera, visible, lattices, mut stats) in &mut cameras {
+        let placed = lattices.and_then(|lattices| Some((&lattices.entities, lattices.placed.as_ref()?)));
+        let size = drawn_size_px(camera).unwrap_or_default();
+        let (shaded, drawn) = match placed {
+            Some((entities, placed)) => {
+                let points = |lattice: &Lattice| u64::from(lattice.points[0]) * u64::from(lattice.points[1]);
+                let active = entities.iter().filter_map(|&entity| smalls.get(entity).ok()).filter(|(c, _)| c.is_active);
+                let drawn: u64 = active.map(|(_, visible)| meshes(visible)).sum();
+                (placed.lattices.as_slice().iter().map(points).sum(), drawn)
+            }
+            None => (u64::from(size.x) * u64::from(size.y), 0),
+        };
+        let meshes = meshes(visible);
+        let now = AfterimageStats { shaded, meshes, drawn_meshes: meshes + drawn, ..*stats };
+        stats.set_if_neq(now);
+    }
 }
 
 /// The lattice with its samples in the middle of their blocks.

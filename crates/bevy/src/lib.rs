@@ -25,17 +25,9 @@
 //! gizmos, the post-process writes the frame into its main texture, so that those stay at full rate. Post-processing
 //! effects and UI follow as usual.
 //!
-//! Lattice cameras have `Camera` and `Camera3d`, as all cameras do. A query for one camera needs
-//! `Without<LatticeCamera>`:
-//!
-//! ```
-//! # use bevy::prelude::*;
-//! # use bevy_afterimage::LatticeCamera;
-//! fn turn(mut camera: Single<&mut Transform, (With<Camera3d>, Without<LatticeCamera>)>) {
-//!     camera.rotate_y(0.01);
-//! }
-//! # bevy::ecs::system::assert_is_system(turn);
-//! ```
+//! An application's queries for its camera find that alone: lattice cameras are hidden from systems in `First` to
+//! `Update`, and in `PostUpdate` before `TransformSystems::Propagate`. Later ones, as in `Last`, need
+//! `Without<LatticeCamera>`.
 
 mod blit;
 mod camera;
@@ -53,6 +45,7 @@ mod scanpath;
 mod shadow;
 #[doc(hidden)]
 pub mod testing;
+mod warnings;
 
 pub use afterimage;
 pub use camera::{Afterimage, AfterimageDebug, Foveated, FoveationKind, Preset};
@@ -63,26 +56,59 @@ pub use mirror::MirrorPlugin;
 pub use scanpath::{Scanpath, ScanpathError, ScanpathPlugin};
 
 use bevy::prelude::*;
+use bevy::render::RenderApp;
+use bevy::render::renderer::RenderAdapter;
 
 /// Runs the post-process for cameras with [`Afterimage`]. Needs Bevy's `PbrPlugin`, which is among `DefaultPlugins`;
 /// add it after those.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct AfterimagePlugin;
 
+/// A resource that is there if cameras with [`Afterimage`] are foveated: [`AfterimagePlugin`] has found a renderer, and
+/// a device with compute shaders. Without it they render every pixel, and the log says why. Systems may ask for it from
+/// `Startup` on.
+#[derive(Resource, Clone, Copy, Debug, Default)]
+pub struct AfterimageSupported;
+
 impl Plugin for AfterimagePlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Gaze>()
-            .init_resource::<testing::Planted>()
-            .register_type::<(Afterimage, AfterimageDebug, AfterimageStats, CameraGaze, Foveated, Gaze)>()
-            .add_plugins((
-                camera::CameraPlugin,
-                lattice::LatticePlugin,
-                mirror::MirrorDefaultsPlugin,
-                shadow::ShadowPlugin,
-                hide::HidePlugin,
-                frame::FramePlugin,
-                pass::PassPlugin,
-                diagnostics::DiagnosticsPlugin,
-            ));
+        app.init_resource::<Gaze>().init_resource::<testing::Planted>().register_type::<(
+            Afterimage,
+            AfterimageDebug,
+            AfterimageStats,
+            CameraGaze,
+            Foveated,
+            Gaze,
+        )>();
+        if app.get_sub_app(RenderApp).is_none() {
+            return;
+        }
+        app.init_resource::<AfterimageSupported>().add_plugins((
+            camera::CameraPlugin,
+            lattice::LatticePlugin,
+            mirror::MirrorDefaultsPlugin,
+            shadow::ShadowPlugin,
+            hide::HidePlugin,
+            frame::FramePlugin,
+            pass::PassPlugin,
+            diagnostics::DiagnosticsPlugin,
+            warnings::WarningsPlugin,
+        ));
+    }
+
+    fn finish(&self, app: &mut App) {
+        let Some(render_app) = app.get_sub_app(RenderApp) else { return };
+        if !app.world().contains_resource::<AfterimageSupported>() {
+            error!(
+                "AfterimagePlugin does nothing: no renderer was there when it was added. Add it after DefaultPlugins"
+            );
+            return;
+        }
+        let adapter = render_app.world().get_resource::<RenderAdapter>();
+        let flags = adapter.map(|adapter| adapter.get_downlevel_capabilities().flags);
+        if flags.is_some_and(|flags| !flags.contains(afterimage::wgpu::DownlevelFlags::COMPUTE_SHADERS)) {
+            app.world_mut().remove_resource::<AfterimageSupported>();
+            error!("AfterimagePlugin does nothing: the device has no compute shaders");
+        }
     }
 }

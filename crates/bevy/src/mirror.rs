@@ -1,6 +1,6 @@
 //! Components of a camera that its lattice cameras need, too, because they change how meshes are shaded.
 
-use crate::lattice::{LatticeCamera, LatticeCameras};
+use crate::lattice::{LatticeCamera, LatticeCameras, LatticeSystems};
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{Exposure, Hdr};
 use bevy::core_pipeline::tonemapping::Tonemapping;
@@ -37,7 +37,7 @@ impl<T, F> Default for MirrorPlugin<T, F> {
 
 impl<T: Component + Clone, F: QueryFilter + 'static> Plugin for MirrorPlugin<T, F> {
     fn build(&self, app: &mut App) {
-        app.add_systems(PostUpdate, mirror::<T, F>.before(TransformSystems::Propagate));
+        app.add_systems(PostUpdate, mirror::<T, F>.in_set(LatticeSystems::Mirror));
     }
 }
 

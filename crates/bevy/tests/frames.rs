@@ -5,6 +5,7 @@ mod common;
 
 mod frames {
     mod antialiasing;
+    mod applications;
     mod conventions;
     mod events;
     mod pixels;

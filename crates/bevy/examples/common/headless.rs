@@ -37,18 +37,9 @@ pub struct Headless {
 impl Headless {
     /// An application with Bevy's default plugins, `AfterimagePlugin`, and a scene.
     pub fn new<M>(size: UVec2, scene: impl Plugins<M>) -> Self {
-        let settings = WgpuSettings { backends: Some(Backends::VULKAN), ..default() };
         let mut app = App::new();
-        let plugins = DefaultPlugins
-            .set(RenderPlugin {
-                render_creation: RenderCreation::Automatic(Box::new(settings)),
-                // Otherwise the first frames lack what is not compiled yet.
-                synchronous_pipeline_compilation: true,
-                ..default()
-            })
-            .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
-            .disable::<LogPlugin>();
-        app.add_plugins((plugins, AfterimagePlugin))
+        add_default_plugins(&mut app);
+        app.add_plugins(AfterimagePlugin)
             .add_plugins(scene)
             .insert_resource(TimeUpdateStrategy::ManualDuration(FRAME))
             .init_resource::<Problems>()
@@ -56,11 +47,7 @@ impl Headless {
                 main.resource_mut::<Problems>().0.push(error.description.clone());
                 RenderErrorPolicy::Ignore
             }));
-        while app.plugins_state() == PluginsState::Adding {
-            bevy::tasks::tick_global_task_pools_on_main_thread();
-        }
-        app.finish();
-        app.cleanup();
+        start(&mut app);
         let target = app.world_mut().resource_mut::<Assets<Image>>().add(target_image(size));
         Self { app, target }
     }
@@ -135,6 +122,31 @@ impl Headless {
     pub fn problems(&self) -> &[String] {
         &self.app.world().resource::<Problems>().0
     }
+}
+
+/// Adds Bevy's default plugins, without a window.
+pub fn add_default_plugins(app: &mut App) {
+    let settings = WgpuSettings { backends: Some(Backends::VULKAN), ..default() };
+    app.add_plugins(
+        DefaultPlugins
+            .set(RenderPlugin {
+                render_creation: RenderCreation::Automatic(Box::new(settings)),
+                // Otherwise the first frames lack what is not compiled yet.
+                synchronous_pipeline_compilation: true,
+                ..default()
+            })
+            .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
+            .disable::<LogPlugin>(),
+    );
+}
+
+/// Does what `App::run` does before the first frame.
+pub fn start(app: &mut App) {
+    while app.plugins_state() == PluginsState::Adding {
+        bevy::tasks::tick_global_task_pools_on_main_thread();
+    }
+    app.finish();
+    app.cleanup();
 }
 
 fn target_image(size: UVec2) -> Image {
