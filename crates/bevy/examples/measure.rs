@@ -2,8 +2,9 @@
 //!
 //! `cargo run --release --example measure -- SCENE MODE SCANPATH FRAMES [FOLDER]`
 //!
-//! SCENE: courtyard; grille (the courtyard with thin bars and edges at slopes); grille-slow (camera at a fifth of the
-//! speed).
+//! SCENE: courtyard; small (the courtyard at 640x360); triangles (with a million triangles more); shadows (with two
+//! lamps that have shadow maps); both (and the triangles cast shadows); grille (the courtyard with thin bars and edges
+//! at slopes); grille-slow (camera at a fifth of the speed).
 //! MODE: full, prepass (full rate with a depth prepass), msaa (full rate, Bevy's MSAA of 4), taa:SCALE (Bevy's temporal
 //! antialiasing at SCALE of both sides, enlarged bilinearly), quad, sparse (the default), sparse:PERCENT (with repair
 //! of at most PERCENT of the pixels), sparse48 (rates of 4 and 8), antialiased (sparse), reference (full rate with four
@@ -17,9 +18,10 @@
 mod common;
 
 use bevy::anti_alias::taa::TemporalAntiAliasing;
-use bevy::core_pipeline::prepass::DepthPrepass;
+use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass};
 use bevy::prelude::*;
 use bevy_afterimage::{Afterimage, Foveated, FoveationKind, Gaze, Scanpath};
+use common::crowd::CrowdPlugin;
 use common::grille::GrillePlugin;
 use common::headless::{FRAME, Headless, psnr_db, read_png, write_png};
 use common::scene::{Mover, ScenePlugin, TONEMAPPING, stroll};
@@ -40,15 +42,35 @@ struct Scene {
     /// Frames before the clock starts.
     warm_up: usize,
     camera: Mover,
+    extra: Extra,
 }
 
-const SCENES: [Scene; 3] = [
-    // Compilation of pipelines, first history.
-    Scene { name: "courtyard", size: UVec2::new(1280, 720), warm_up: 6, camera: Mover::Stroll },
-    // History that antialiases is a mean of many frames.
-    Scene { name: "grille", size: UVec2::new(640, 360), warm_up: 30, camera: Mover::Stroll },
-    Scene { name: "grille-slow", size: UVec2::new(640, 360), warm_up: 30, camera: Mover::Amble },
+/// What stands in the courtyard.
+enum Extra {
+    Nothing,
+    Grille,
+    Crowd(CrowdPlugin),
+}
+
+const LARGE: UVec2 = UVec2::new(1280, 720);
+const SMALL: UVec2 = UVec2::new(640, 360);
+/// 256 shapes of 4096 triangles.
+const SIDE: usize = 16;
+
+/// After six frames pipelines are compiled. History that antialiases is a mean of many frames.
+const SCENES: [Scene; 7] = [
+    Scene { name: "courtyard", size: LARGE, warm_up: 6, camera: Mover::Stroll, extra: Extra::Nothing },
+    Scene { name: "small", size: SMALL, warm_up: 6, camera: Mover::Stroll, extra: Extra::Nothing },
+    Scene { name: "triangles", size: LARGE, warm_up: 6, camera: Mover::Stroll, extra: crowd(SIDE, false, 0) },
+    Scene { name: "shadows", size: LARGE, warm_up: 6, camera: Mover::Stroll, extra: crowd(0, true, 2) },
+    Scene { name: "both", size: LARGE, warm_up: 6, camera: Mover::Stroll, extra: crowd(SIDE, true, 2) },
+    Scene { name: "grille", size: SMALL, warm_up: 30, camera: Mover::Stroll, extra: Extra::Grille },
+    Scene { name: "grille-slow", size: SMALL, warm_up: 30, camera: Mover::Amble, extra: Extra::Grille },
 ];
+
+const fn crowd(side: usize, casts_shadows: bool, lamps: usize) -> Extra {
+    Extra::Crowd(CrowdPlugin { side, casts_shadows, lamps })
+}
 
 fn cpu_ms() -> f64 {
     let time = clock_gettime(ClockId::ProcessCPUTime);
@@ -60,8 +82,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     match &arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["psnr", folder, reference] => score(Path::new(folder), Path::new(reference)),
         [scene, mode, scanpath, frames, folder @ ..] => {
-            let scene =
-                SCENES.iter().find(|known| known.name == *scene).ok_or("SCENE is courtyard, grille or grille-slow")?;
+            let names = SCENES.iter().map(|known| known.name).collect::<Vec<_>>().join(", ");
+            let known = SCENES.into_iter().find(|known| known.name == *scene);
+            let scene = known.ok_or_else(|| format!("SCENE is one of {names}"))?;
             let folder = folder.first().map(Path::new);
             measure(scene, mode, &Scanpath::read(scanpath)?, frames.parse()?, folder)
         }
@@ -70,7 +93,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn measure(
-    scene: &Scene,
+    scene: Scene,
     mode: &str,
     scanpath: &Scanpath,
     frames: usize,
@@ -84,9 +107,10 @@ fn measure(
     let shown = scene.size;
     let size = (shown.as_vec2() * scale).round().as_uvec2();
     let courtyard = ScenePlugin { lamps: LAMPS, moves: true };
-    let mut headless = match scene.name {
-        "courtyard" => Headless::new(size, courtyard),
-        _ => Headless::new(size, (courtyard, GrillePlugin)),
+    let mut headless = match scene.extra {
+        Extra::Nothing => Headless::new(size, courtyard),
+        Extra::Grille => Headless::new(size, (courtyard, GrillePlugin)),
+        Extra::Crowd(crowd) => Headless::new(size, (courtyard, crowd)),
     };
     spawn_camera(&mut headless, scene.camera, mode)?;
 
@@ -130,7 +154,10 @@ fn spawn_camera(headless: &mut Headless, mover: Mover, mode: &str) -> Result<(),
         "full" | "reference" => &mut camera,
         "prepass" => camera.insert(DepthPrepass),
         "msaa" => camera.insert(Msaa::Sample4),
-        "quad" => camera.insert(foveated(FoveationKind::QuadViews, [2, 4], false)),
+        // Without history it needs no prepass.
+        "quad" => camera
+            .insert(foveated(FoveationKind::QuadViews, [2, 4], false))
+            .remove::<(DepthPrepass, MotionVectorPrepass)>(),
         "sparse" => camera.insert(foveated(FoveationKind::Sparse, [2, 4], false)),
         "sparse48" => camera.insert(foveated(FoveationKind::Sparse, [4, 8], false)),
         "antialiased" => camera.insert(foveated(FoveationKind::Sparse, [2, 4], true)),

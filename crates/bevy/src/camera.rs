@@ -69,8 +69,8 @@ pub enum Preset {
     Paper,
 }
 
-/// How a camera with [`Afterimage`] foveates; of one without it does nothing. Angles are visual angles of the camera: its field of view is taken for
-/// the one that the screen fills.
+/// How a camera with [`Afterimage`] foveates; without that it does nothing. Angles are visual angles of the camera: its
+/// field of view is taken for the one that the screen fills.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct Foveated {
@@ -165,6 +165,12 @@ pub(crate) fn depth_convention(clip_from_view: Mat4) -> Result<DepthConvention, 
     let depth = DepthConvention::Reversed { near, far };
     depth.validate().map(|()| depth).map_err(|error| error.to_string())
 }
+
+/// A resource that is there if cameras with [`Afterimage`] are foveated: the plugin has found a renderer, and a device
+/// with compute shaders. Without it they render every pixel, and the log says why. Systems may ask for it from `Startup`
+/// on.
+#[derive(Resource, Clone, Copy, Debug, Default)]
+pub struct AfterimageSupported;
 
 pub(crate) struct CameraPlugin;
 

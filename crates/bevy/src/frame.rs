@@ -1,7 +1,8 @@
 //! Description of a frame, from Bevy's camera.
 
-use crate::AfterimageSupported;
-use crate::camera::{Afterimage, AfterimageDebug, Foveated, FoveationKind, depth_convention, drawn_size_px};
+use crate::camera::{
+    Afterimage, AfterimageDebug, AfterimageSupported, Foveated, FoveationKind, depth_convention, drawn_size_px,
+};
 use crate::counters::AfterimageStats;
 use crate::gaze::{CameraGaze, Gaze};
 use crate::lattice::{COUNT, LatticeCamera, LatticeCameras, lattice_of};

@@ -1,7 +1,6 @@
 //! Lattice cameras: the small views that draw the samples of a sparse frame.
 
-use crate::AfterimageSupported;
-use crate::camera::{Afterimage, Foveated, FoveationKind, depth_convention, drawn_size_px};
+use crate::camera::{Afterimage, AfterimageSupported, Foveated, FoveationKind, depth_convention, drawn_size_px};
 use crate::counters::AfterimageStats;
 use crate::gaze::{CameraGaze, Gaze};
 use afterimage::{Foveation, Lattice, Lattices, Method, ViewGeometry};

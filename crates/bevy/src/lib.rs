@@ -48,7 +48,7 @@ pub mod testing;
 mod warnings;
 
 pub use afterimage;
-pub use camera::{Afterimage, AfterimageDebug, Foveated, FoveationKind, Preset};
+pub use camera::{Afterimage, AfterimageDebug, AfterimageSupported, Foveated, FoveationKind, Preset};
 pub use counters::AfterimageStats;
 pub use gaze::{CameraGaze, CursorGazePlugin, Gaze};
 pub use lattice::LatticeCamera;
@@ -63,12 +63,6 @@ use bevy::render::renderer::RenderAdapter;
 /// add it after those.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct AfterimagePlugin;
-
-/// A resource that is there if cameras with [`Afterimage`] are foveated: [`AfterimagePlugin`] has found a renderer, and
-/// a device with compute shaders. Without it they render every pixel, and the log says why. Systems may ask for it from
-/// `Startup` on.
-#[derive(Resource, Clone, Copy, Debug, Default)]
-pub struct AfterimageSupported;
 
 impl Plugin for AfterimagePlugin {
     fn build(&self, app: &mut App) {

@@ -2,6 +2,7 @@
 
 #![allow(dead_code, reason = "each example and test uses a part")]
 
+pub mod crowd;
 pub mod grille;
 pub mod headless;
 pub mod scene;
