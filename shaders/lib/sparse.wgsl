@@ -42,14 +42,14 @@ fn expected_error(lod: f32, contrast: f32, moved: bool) -> f32 {
     return select(STILL_ERROR, MOVED_ERROR, moved) + contrast * (by_motion + CONTRAST_ERROR * coarse);
 }
 
-// sparse::sureness
-fn sureness(lod: f32) -> f32 {
+// sparse::lod_confidence
+fn lod_confidence(lod: f32) -> f32 {
     return 1.0 - clamp(lod, 0.0, 1.0);
 }
 
-// sparse::noisy_sureness
-fn noisy_sureness(lod: f32, past: Noise, around: f32) -> f32 {
-    return max(sureness(lod), noise_visibility(past, around));
+// sparse::noisy_lod_confidence
+fn noisy_lod_confidence(lod: f32, past: Noise, around: f32) -> f32 {
+    return max(lod_confidence(lod), noise_visibility(past, around));
 }
 
 // sparse::ratio

@@ -29,11 +29,11 @@ fn observe(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     let contrast = root_difference(history.lowest, history.highest);
     let moved = ANTIALIAS != 0u || has_moved(motion, history.nearest.place_px);
     var error = expected_error(history.lod, contrast, moved);
-    var sure = sureness(history.lod);
+    var sure = lod_confidence(history.lod);
     if NOISY != 0u {
         let past = stored_noise(kept.texel, view);
         error += expected_noise(past, noise_at(px, view), luma(history.color));
-        sure = noisy_sureness(history.lod, past, luma(history.color));
+        sure = noisy_lod_confidence(history.lod, past, luma(history.color));
     }
     return vec2<u32>(pack_color(history.color), half_bits(error) | (half_bits(sure) << 16u));
 }

@@ -67,7 +67,7 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
     let x_weights = vec2<f32>(point_weight(near.x.fraction, 0u), point_weight(near.x.fraction, 1u));
     let y_weights = vec2<f32>(point_weight(near.y.fraction, 0u), point_weight(near.y.fraction, 1u));
     let taps = select(0u, select(4u, 1u, level == 0u), near.any);
-    // The pixel's own sample last: what the loop leaves is of it.
+    // The pixel's own sample last: after the loop, values are those of that sample.
     for (var left = taps; left > 0u; left--) {
         let tap = left - 1u;
         let right = (tap & 1u) != 0u;

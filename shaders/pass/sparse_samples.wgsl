@@ -8,7 +8,7 @@ const LIGHT_RELATIVE: f32 = 0.1;
 const SAMPLE_RELATIVE: f32 = 0.05;
 // Weight of a sample of another surface, which counts only where there is no better one.
 const OTHER_SURFACE: f32 = 1e-3;
-// Weight of gain and fit that only a sample's neighbours know.
+// Weight of gain and fit of neighbouring samples, where the sample itself has none.
 const BY_NEIGHBOURS: f32 = 1e-3;
 // Least weight of one of the four samples around a pixel.
 const LEAST_SHARE: f32 = 1e-4;

@@ -36,8 +36,8 @@ use crate::kernel::rng;
 use crate::kernel::sanitize;
 use crate::kernel::sparse::{
     Light, Lit, Observation, Reconstruction, accumulate, add_light, agreement, candidate_level, errors_left,
-    expected_error, fit, mean_error, mean_fit, neighbour_weight, noisy_sureness, own_fit, pack_lit, reconstruct,
-    relight, sureness, unpack_lit,
+    expected_error, fit, lod_confidence, mean_error, mean_fit, neighbour_weight, noisy_lod_confidence, own_fit,
+    pack_lit, reconstruct, relight, unpack_lit,
 };
 use crate::kernel::wrs::expose;
 use crate::parallel::collect;
@@ -51,7 +51,7 @@ const LIGHT_RELATIVE: f32 = 0.1;
 const SAMPLE_RELATIVE: f32 = 0.05;
 /// Weight of a sample of another surface, which counts only where there is no better one.
 const OTHER_SURFACE: f32 = 1e-3;
-/// Weight of gain and fit that only a sample's neighbours know.
+/// Weight of gain and fit of neighbouring samples, where the sample itself has none.
 const BY_NEIGHBOURS: f32 = 1e-3;
 /// Least weight of one of the four samples around a pixel.
 const LEAST_SHARE: f32 = 1e-4;
@@ -156,7 +156,7 @@ fn offset_px2(a: u32, b: u32) -> f32 {
     offset * offset
 }
 
-/// Observation in two words: history's color, expected error and sureness as halves.
+/// Observation in two words: history's color, expected error and confidence as halves.
 fn pack_observation(o: Option<Observation>) -> [u32; 2] {
     match o {
         Some(o) => [pack_color(o.history), half_bits(o.error) | half_bits(o.sure) << 16],
@@ -326,11 +326,11 @@ impl View<'_> {
         let moved = self.antialiases || has_moved(surface.motion, history.nearest.place_px);
         let [low, high] = history.range;
         let mut error = expected_error(history.lod, root_difference(low, high), moved);
-        let mut sure = sureness(history.lod);
+        let mut sure = lod_confidence(history.lod);
         if self.is_noisy() {
             let around = luma(history.color);
             error += expected_noise(past, self.sample_noise(px), around);
-            sure = noisy_sureness(history.lod, past, around);
+            sure = noisy_lod_confidence(history.lod, past, around);
         }
         Some(Observation { sampled, history: history.color, error, sure })
     }

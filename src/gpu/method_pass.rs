@@ -197,7 +197,7 @@ fn overrides(desc: &ContextDesc, variant: Variant, view: Option<DebugView>) -> O
         ("VIEW", view.map_or(0, |v| v as u32)),
         ("KEEP_ALPHA", flag(desc.keep_alpha)),
     ]);
-    list.extend(variant.debug.map(|v| ("BESIDE", v as u32)));
+    list.extend(variant.debug.map(|v| ("DEBUG_VIEW", v as u32)));
     list.extend(settings.overrides(variant.lod));
     if matches!(settings.history_layout(), HistoryLayout::Kept { .. }) {
         list.push(("REPAIR", flag(variant.repaired)));

@@ -160,10 +160,10 @@ pub struct Evidence {
     pub level: Vec3,
     /// History at the whole level after `level`.
     pub next_level: Vec3,
-    /// History where and as `compared_coarser` was shaded.
+    /// History at the place and level of detail of `compared_coarser`.
     pub matched_coarser: Vec3,
-    /// History where and as `observed` was shaded: the same low-pass at the same place. Two different ones would make a
-    /// gain of every edge, and gains are stored: edges would grow rings, frame by frame.
+    /// History at the place and level of detail of `observed`: the same low-pass. Two different ones would make a gain
+    /// of every edge, and gains are stored: edges would grow rings, frame by frame.
     pub predicted: Vec3,
     /// Confidence in history, in \[0, 1\]: the frame's trust mask.
     pub trust: f32,

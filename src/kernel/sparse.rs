@@ -81,17 +81,17 @@ pub fn expected_error(lod: f32, contrast: f32, moved: bool) -> f32 {
     (if moved { MOVED_ERROR } else { STILL_ERROR }) + contrast * (by_motion + CONTRAST_ERROR * coarse)
 }
 
-/// How much a difference from history at level of detail `lod` says, in \[0, 1\].
+/// Confidence in a difference from history at level of detail `lod`, in \[0, 1\].
 #[inline]
-pub fn sureness(lod: f32) -> f32 {
+pub fn lod_confidence(lod: f32) -> f32 {
     1.0 - lod.clamp(0.0, 1.0)
 }
 
-/// As [`sureness`], for noisy samples at a luma. Where history's noise is visible, the expected difference is that of
-/// noise, and coarse history says as much as fine history.
+/// As [`lod_confidence`], for noisy samples at a luma. Where history's noise is visible, the expected difference is
+/// that of noise, and coarse history is worth as much as fine history.
 #[inline]
-pub fn noisy_sureness(lod: f32, past: Noise, luma: f32) -> f32 {
-    sureness(lod).max(noise_visibility(past, luma))
+pub fn noisy_lod_confidence(lod: f32, past: Noise, luma: f32) -> f32 {
+    lod_confidence(lod).max(noise_visibility(past, luma))
 }
 
 /// Gain for one channel, limited.

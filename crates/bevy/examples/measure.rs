@@ -3,12 +3,15 @@
 //! `cargo run --release --example measure -- SCENE MODE SCANPATH FRAMES [FOLDER]`
 //!
 //! SCENE: courtyard; small (the courtyard at 640x360); triangles (with a million triangles more); shadows (with two
-//! lamps that have shadow maps); both (and the triangles cast shadows); grille (the courtyard with thin bars and edges
-//! at slopes); grille-slow (camera at a fifth of the speed).
-//! MODE: full, prepass (full rate with a depth prepass), msaa (full rate, Bevy's MSAA of 4), taa:SCALE (Bevy's temporal
-//! antialiasing at SCALE of both sides, enlarged bilinearly), quad, sparse (the default), sparse:PERCENT (with repair
-//! of at most PERCENT of the pixels), sparse48 (rates of 4 and 8), antialiased (sparse), reference (full rate with four
-//! samples a pixel).
+//! lamps that have shadow maps); both (and the triangles cast shadows); cheap (both, without other lamps, so that
+//! pixels are cheap); worst (cheap at 640x360); grille (the courtyard with thin bars and edges at slopes); grille-slow
+//! (camera at a fifth of the speed).
+//!
+//! MODE: full, prepass (full rate with a depth prepass), msaa (full rate, Bevy's MSAA
+//! of 4), taa:SCALE (Bevy's temporal antialiasing at SCALE of both sides, enlarged bilinearly), quad, sparse (the
+//! default), sparse:PERCENT (with repair of at most PERCENT of the pixels), sparse48 (rates of 4 and 8), antialiased
+//! (sparse), reference (full rate with four samples a pixel).
+//!
 //! Prints CPU time of the process per frame. With FOLDER writes the frames there as PNG, and the gaze as `gaze.csv`.
 //!
 //! `cargo run --release --example measure -- psnr FOLDER REFERENCE`
@@ -58,12 +61,14 @@ const SMALL: UVec2 = UVec2::new(640, 360);
 const SIDE: usize = 16;
 
 /// After six frames pipelines are compiled. History that antialiases is a mean of many frames.
-const SCENES: [Scene; 7] = [
+const SCENES: [Scene; 9] = [
     Scene { name: "courtyard", size: LARGE, warm_up: 6, camera: Mover::Stroll, extra: Extra::Nothing },
     Scene { name: "small", size: SMALL, warm_up: 6, camera: Mover::Stroll, extra: Extra::Nothing },
     Scene { name: "triangles", size: LARGE, warm_up: 6, camera: Mover::Stroll, extra: crowd(SIDE, false, 0) },
     Scene { name: "shadows", size: LARGE, warm_up: 6, camera: Mover::Stroll, extra: crowd(0, true, 2) },
     Scene { name: "both", size: LARGE, warm_up: 6, camera: Mover::Stroll, extra: crowd(SIDE, true, 2) },
+    Scene { name: "cheap", size: LARGE, warm_up: 6, camera: Mover::Stroll, extra: crowd(SIDE, true, 2) },
+    Scene { name: "worst", size: SMALL, warm_up: 6, camera: Mover::Stroll, extra: crowd(SIDE, true, 2) },
     Scene { name: "grille", size: SMALL, warm_up: 30, camera: Mover::Stroll, extra: Extra::Grille },
     Scene { name: "grille-slow", size: SMALL, warm_up: 30, camera: Mover::Amble, extra: Extra::Grille },
 ];
@@ -106,7 +111,8 @@ fn measure(
     };
     let shown = scene.size;
     let size = (shown.as_vec2() * scale).round().as_uvec2();
-    let courtyard = ScenePlugin { lamps: LAMPS, moves: true };
+    let lamps = if matches!(scene.name, "cheap" | "worst") { 0 } else { LAMPS };
+    let courtyard = ScenePlugin { lamps, moves: true };
     let mut headless = match scene.extra {
         Extra::Nothing => Headless::new(size, courtyard),
         Extra::Grille => Headless::new(size, (courtyard, GrillePlugin)),

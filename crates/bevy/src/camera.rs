@@ -167,8 +167,7 @@ pub(crate) fn depth_convention(clip_from_view: Mat4) -> Result<DepthConvention, 
 }
 
 /// A resource that is there if cameras with [`Afterimage`] are foveated: the plugin has found a renderer, and a device
-/// with compute shaders. Without it they render every pixel, and the log says why. Systems may ask for it from `Startup`
-/// on.
+/// with compute shaders. Without it they render every pixel, and the log says why. It is known from `Startup` on.
 #[derive(Resource, Clone, Copy, Debug, Default)]
 pub struct AfterimageSupported;
 

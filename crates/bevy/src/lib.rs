@@ -106,3 +106,7 @@ impl Plugin for AfterimagePlugin {
         }
     }
 }
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

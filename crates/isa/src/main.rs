@@ -1,4 +1,4 @@
-//! What the compute passes cost on GPUs that are not there.
+//! A cycle model of the compute passes on three AMD GPUs.
 //!
 //! Mesa's RADV makes a device without hardware (`RADV_FORCE_FAMILY`), compiles for it, and says how many cycles it
 //! expects of each instruction. `afterimage-isa` adds them up along the paths of a wave and prints the tables of

@@ -3,14 +3,19 @@
 #[macro_use]
 extern crate afterimage_clip;
 
-mod args;
-mod commands;
+// Hidden: for the project's experiments (`crates/research`), and no stable interface.
+#[doc(hidden)]
+pub mod args;
+#[doc(hidden)]
+pub mod commands;
 pub mod report;
 pub mod sweep;
 
+#[doc(hidden)]
+pub use afterimage_clip::{failure, output, progress};
 pub use afterimage_clip::{method_report, times};
 
-use afterimage_clip::{clip, demo, failure, output, progress};
+use afterimage_clip::{clip, demo};
 use clap::{Parser, Subcommand};
 #[cfg(feature = "view")]
 use commands::view;
@@ -34,7 +39,7 @@ enum Command {
     Run(Box<run::RunArgs>),
     /// Render a scene by path tracing
     Trace(Box<trace::TraceArgs>),
-    /// Time passes, tracers and effects
+    /// Time the passes, or the path tracer
     Bench(bench::BenchArgs),
     /// Measure a grid of methods and options: error against time, and what each switch costs
     Sweep(Box<sweep_command::SweepArgs>),

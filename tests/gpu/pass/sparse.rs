@@ -166,7 +166,7 @@ fn wrong_noise_is_caught() {
         ("if is_own {", "if false {"),
         ("frame.views[view].noise_origin", "frame.views[0].noise_origin"),
         ("left = min(left, mean_fit(sum, sure));", ""),
-        ("sure = noisy_sureness(", "sure = 0.0 * noisy_sureness("),
+        ("sure = noisy_lod_confidence(", "sure = 0.0 * noisy_lod_confidence("),
         // Full rate: judged by another lattice or by none, at another sample, not averaged.
         ("own.level == 0u && next > index", "false"),
         ("index + 1u, LATTICES - 1u", "index + 2u, LATTICES - 1u"),

@@ -294,7 +294,12 @@ fn planted_errors_in_the_reconstruction_are_caught() {
     caught(sparse::PROBES, "relight", standard_error[0], standard_error[1]);
     caught(sparse::PROBES, "fit", "1.0 - sure * smooth_step(FIT_ERRORS.x", "1.0 - smooth_step(FIT_ERRORS.x");
     caught(sparse::PROBES, "mean_fit", "sqrt(l.squared) * inverse)) * MEAN_ERRORS", "inverse)) * MEAN_ERRORS");
-    caught(sparse::PROBES, "noisy_sureness", "max(sureness(lod), noise", "max(0.0 * sureness(lod), noise");
+    caught(
+        sparse::PROBES,
+        "noisy_lod_confidence",
+        "max(lod_confidence(lod), noise",
+        "max(0.0 * lod_confidence(lod), noise",
+    );
     caught(sparse::PROBES, "own_fit", "own.sure);", "1.0);");
     caught(sparse::PROBES, "pack_lit", "l.fit * 256.0 + 0.5", "l.fit * 256.0");
     caught(sparse::PROBES, "unpack_lit", "(words.y & 512u) != 0u", "(words.y & 1024u) != 0u");

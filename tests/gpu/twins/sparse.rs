@@ -313,23 +313,23 @@ pub const PROBES: &[Probe] = &[
         }),
     },
     Probe {
-        name: "sureness",
+        name: "lod_confidence",
         module: "sparse",
         words: [1, 1],
-        wgsl: "out_f(sureness(in_f(0u)));",
-        rust: |r, o| o.f(sparse::sureness(r.f(0))),
-        rows: || Rows::new(1).random("sureness", |d, row| row.push(range(d, 0.0, 3.0))),
+        wgsl: "out_f(lod_confidence(in_f(0u)));",
+        rust: |r, o| o.f(sparse::lod_confidence(r.f(0))),
+        rows: || Rows::new(1).random("lod_confidence", |d, row| row.push(range(d, 0.0, 3.0))),
     },
     Probe {
-        name: "noisy_sureness",
+        name: "noisy_lod_confidence",
         module: "sparse",
         words: [4, 1],
-        wgsl: "out_f(noisy_sureness(in_f(0u), Noise(in_f(1u), in_f(2u)), in_f(3u)));",
+        wgsl: "out_f(noisy_lod_confidence(in_f(0u), Noise(in_f(1u), in_f(2u)), in_f(3u)));",
         rust: |r, o| {
             let past = Noise { samples: r.f(1), variance: r.f(2) };
-            o.f(sparse::noisy_sureness(r.f(0), past, r.f(3)));
+            o.f(sparse::noisy_lod_confidence(r.f(0), past, r.f(3)));
         },
-        rows: || Rows::new(4).random("noisy_sureness", |d, row| {
+        rows: || Rows::new(4).random("noisy_lod_confidence", |d, row| {
             row.extend([range(d, 0.0, 3.0), range(d, 1.0, 80.0), range(d, 0.0, 0.01), range(d, 0.0, 2.0)]);
         }),
     },

@@ -2,7 +2,7 @@
 
 use afterimage::wgpu;
 use bevy::app::{Plugins, PluginsState};
-use bevy::asset::RenderAssetUsages;
+use bevy::asset::{RenderAssetUsages, UnapprovedPathMode};
 use bevy::camera::RenderTarget;
 use bevy::log::LogPlugin;
 use bevy::prelude::*;
@@ -135,6 +135,8 @@ pub fn add_default_plugins(app: &mut App) {
                 synchronous_pipeline_compilation: true,
                 ..default()
             })
+            // Models may lie anywhere.
+            .set(AssetPlugin { unapproved_path_mode: UnapprovedPathMode::Allow, ..default() })
             .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
             .disable::<LogPlugin>(),
     );

@@ -11,9 +11,9 @@ mod head_path;
 mod kinematics;
 mod pose;
 mod recorded;
+mod simulated_eye;
 mod synthetic;
 mod viewing;
-mod walk;
 
 pub use frames::{FrameGaze, GazeMap};
 pub use head::{DistanceOf, HeadOptions, HeadTurn, Regarded, SyntheticHead, generate_head, in_a_room};

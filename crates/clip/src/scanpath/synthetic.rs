@@ -1,7 +1,7 @@
 //! Synthetic scanpaths: options, and their generation by a model of free viewing.
 
+use super::simulated_eye::SimulatedEye;
 use super::viewing::{AIM_MARGIN_DEG, Event, SACCADE_DEG};
-use super::walk::Walk;
 use super::{About, Sample, Scanpath, Screen};
 use crate::error::InputError;
 
@@ -102,12 +102,12 @@ pub struct Synthetic {
 pub fn generate(options: &SyntheticOptions) -> Result<Synthetic, InputError> {
     let (slope, half_deg) = options.aim_field()?;
     let times = (0..options.samples()).map(|i| i as f64 / options.rate_hz);
-    let mut walk = Walk::new(options.seed, half_deg, times);
-    while !walk.done() {
-        walk.fixate();
-        walk.look_elsewhere();
+    let mut eye = SimulatedEye::new(options.seed, half_deg, times);
+    while !eye.done() {
+        eye.fixate();
+        eye.look_elsewhere();
     }
-    let (tangents, events) = walk.finish();
+    let (tangents, events) = eye.finish();
     let size = options.screen.size_px;
     let samples = tangents.into_iter().map(|(t_s, tangent)| Sample {
         t_s,

@@ -5,13 +5,14 @@ use super::uses::{Graph, graph};
 use std::collections::BTreeSet;
 
 /// Folders of crates.
-const CRATES: [&str; 5] = ["src/", "crates/clip/src/", "crates/lab/src/", "crates/tool/src/", "crates/bevy/src/"];
+const CRATES: [&str; 6] =
+    ["src/", "crates/clip/src/", "crates/lab/src/", "crates/tool/src/", "crates/bevy/src/", "crates/research/src/"];
 
 /// Subcommands and the options of their parts.
 const OPTIONS: &str = "A subcommand's file begins with its options, as `--help` does, and its parts read them.";
 
 /// Uses that close a circle, and why they stay: crate, user or folder of users, used, reason.
-const ALLOWED: [[&str; 4]; 14] = [
+const ALLOWED: [[&str; 4]; 13] = [
     ["src/", "method/", "method/mod.rs", "Entries are values of the type that the table lists."],
     ["src/", "cpu/", "cpu/mod.rs", "Passes read the frame, which is described beside the executor that is given it."],
     ["src/", "gpu/", "gpu/mod.rs", "Checks of a frame say the limits of the executor that is given it."],
@@ -36,7 +37,6 @@ const ALLOWED: [[&str; 4]; 14] = [
         "Names of files tell their kind, as when they are opened.",
     ],
     ["crates/tool/src/", "commands/bench/", "commands/bench.rs", OPTIONS],
-    ["crates/tool/src/", "commands/bench/wrs_readings.rs", "commands/bench/wrs_table.rs", OPTIONS],
     ["crates/tool/src/", "commands/run/", "commands/run.rs", OPTIONS],
     ["crates/tool/src/", "commands/sweep/", "commands/sweep.rs", OPTIONS],
     ["crates/tool/src/", "commands/trace/", "commands/trace.rs", OPTIONS],
@@ -111,7 +111,7 @@ fn files_use_each_other_without_circles() {
         let mut graph = graph_of(folder);
         let edges: usize = graph.values().map(BTreeSet::len).sum();
         println!("{folder}: {} files, {edges} edges", graph.len());
-        assert!(graph.len() > 10 && edges > 20, "{graph:?}");
+        assert!(graph.len() > 10 && edges > 15, "{graph:?}");
         for [_, user, used, _] in ALLOWED.iter().filter(|allowed| allowed[0] == folder) {
             let ahead: BTreeSet<String> = reached(&graph, used).into_iter().map(str::to_owned).collect();
             let users = graph.iter_mut().filter(|(file, _)| file.starts_with(user) && ahead.contains(*file));

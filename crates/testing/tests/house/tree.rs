@@ -8,8 +8,16 @@ use std::path::Path;
 const SKIPPED: [&str; 5] = ["target", ".git", "out", "artifacts", "corpus"];
 
 /// Folders of the packages, relative to the root of the workspace, with a slash at the end unless empty.
-pub const PACKAGES: [&str; 7] =
-    ["", "crates/clip/", "crates/isa/", "crates/lab/", "crates/openxr/", "crates/testing/", "crates/tool/"];
+pub const PACKAGES: [&str; 8] = [
+    "",
+    "crates/clip/",
+    "crates/isa/",
+    "crates/lab/",
+    "crates/openxr/",
+    "crates/research/",
+    "crates/testing/",
+    "crates/tool/",
+];
 
 /// Packages in this repository that are workspaces of their own, and that have commands in documents.
 pub const APART: [&str; 3] = ["crates/bevy/", "crates/web/", "crates/web/bindgen/"];

@@ -31,7 +31,7 @@ override SHADER_ENCODES: bool = false;
 
 // Linear.
 const MARK = vec3<f32>(1.0, 0.69, 0.01);
-const BESIDE = vec3<f32>(0.013, 0.013, 0.015);
+const BACKDROP = vec3<f32>(0.013, 0.013, 0.015);
 // Share of the panel in what is shown where it lies.
 const PANEL_OPACITY: f32 = 0.97;
 // Half width of the divider and of the light in its middle, and radius of the gaze point, in pixels of the window.
@@ -89,11 +89,11 @@ fn marked(color: vec3<f32>, at: vec2<f32>) -> vec3<f32> {
 
 fn composed(at_window: vec2<f32>) -> vec3<f32> {
     let at = (at_window - screen.corner) / screen.scale;
-    var shown = BESIDE;
+    var shown = BACKDROP;
     if all(at >= vec2<f32>(0.0)) && all(at < screen.size) {
         let from_divider = (at.x - screen.divider) * screen.scale;
         if abs(from_divider) < DIVIDER_PX {
-            shown = select(BESIDE, vec3<f32>(1.0), abs(from_divider) < DIVIDER_LIGHT_PX);
+            shown = select(BACKDROP, vec3<f32>(1.0), abs(from_divider) < DIVIDER_LIGHT_PX);
         } else {
             shown = marked(picture_at(at) * screen.gain, at);
         }

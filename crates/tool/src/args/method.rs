@@ -23,7 +23,7 @@ impl Named for MethodName {
 
 /// Settings and ablations of the methods.
 #[derive(Args, Clone, Debug)]
-pub struct WrsArgs {
+pub struct MethodArgs {
     /// wrs: the paper literally, or with a gate at the candidate's scale, sharper weights and means; the options below
     /// replace its parts
     #[arg(long, value_enum, default_value = "paper")]
@@ -78,7 +78,7 @@ pub struct WrsArgs {
     pub no_flush: bool,
 }
 
-impl WrsArgs {
+impl MethodArgs {
     /// The library's settings for a method. `noisy`: the input is path traced.
     pub fn settings(&self, method: MethodKind, seed: u64, noisy: bool) -> Settings {
         Settings {

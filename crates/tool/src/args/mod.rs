@@ -13,7 +13,7 @@ pub mod pattern;
 mod picture;
 
 pub use foveation::{FilterName, FoveationArgs};
-pub use method::{MethodName, WrsArgs};
+pub use method::{MethodArgs, MethodName};
 pub use named::{Named, by_name};
 pub use number::{
     parse_exposure, parse_fps, parse_frames, parse_hfov, parse_latency, parse_percent, parse_samples, parse_size,

@@ -27,7 +27,7 @@ mod viewer;
 
 use crate::args::backend::BackendName;
 use crate::args::input::{InputArgs, Rendering};
-use crate::args::{FoveationArgs, WrsArgs, by_name, parse_exposure, parse_frames};
+use crate::args::{FoveationArgs, MethodArgs, by_name, parse_exposure, parse_frames};
 use crate::failure::Failure;
 use afterimage_lab::scanpath::GazeMap;
 use app::App;
@@ -73,7 +73,7 @@ pub struct ViewArgs {
     #[command(flatten)]
     pub foveation: FoveationArgs,
     #[command(flatten)]
-    pub wrs: WrsArgs,
+    pub wrs: MethodArgs,
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0, value_name = "N")]
     pub seed: u64,

@@ -1,6 +1,6 @@
 //! Time and sample reduction of foveated against uniform path tracing.
 
-use super::subject::{FrameTime, Pattern, Subject};
+use super::traced_view::{FrameTime, Pattern, TracedView};
 use crate::failure::Failure;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::lattices::SparseGeometry;
@@ -82,7 +82,7 @@ pub fn one_path(gaze_px: [f32; 2]) -> Pattern {
 }
 
 /// The papers' patterns, with a quarter of their samples where those are divisible by 4, which keeps the ratio.
-pub fn patterns(subject: &Subject) -> Vec<Pattern> {
+pub fn patterns(subject: &TracedView) -> Vec<Pattern> {
     let middle = subject.middle_px();
     vec![
         regions([32, 16, 8], true, 1.0, middle),
@@ -103,7 +103,7 @@ pub fn patterns(subject: &Subject) -> Vec<Pattern> {
 /// # Errors
 /// If the samples of a sparse pattern cannot lie on lattices.
 pub fn measure(
-    subject: &Subject,
+    subject: &TracedView,
     tracer: &Tracer,
     patterns: &[Pattern],
     rounds: u64,

@@ -1,7 +1,7 @@
 //! `afterimage bench trace`: rays per second of the tracers.
 
 use super::foveated::{self, PatternReport};
-use super::subject::{FrameTime, Subject, backends, is_real_gpu};
+use super::traced_view::{FrameTime, TracedView, backends, is_real_gpu};
 use super::{BenchArgs, write_json};
 use crate::failure::Failure;
 use afterimage_lab::clock::Quartiles;
@@ -51,12 +51,12 @@ struct TracerReport {
 /// Times the tracers for `size` and `frames`.
 pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
     let settings = TraceSettings::default();
-    let backends = backends(args)?;
+    let backends = backends(args.backend)?;
     let default = ["builtin:courtyard".to_owned()];
     let names = if args.scene.is_empty() { &default[..] } else { &args.scene };
     let mut scenes = vec![];
     for name in names {
-        let subject = Subject::open(name, size, args.camera.as_deref(), None)?;
+        let subject = TracedView::open(name, size, args.camera.as_deref(), None)?;
         let tracers = backends.iter().map(|b| subject.tracer(b, settings)).collect::<Result<Vec<_>, _>>()?;
         let mut took: Vec<Vec<FrameTime>> = vec![vec![]; tracers.len()];
         for index in 0..WARM_UP + frames {
@@ -102,7 +102,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
         scenes,
     };
     print(&report);
-    write_json(args, &report)
+    write_json(args.json.as_deref(), &report)
 }
 
 fn print(report: &Report) {

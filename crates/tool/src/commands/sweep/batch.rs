@@ -51,7 +51,7 @@ pub fn concerns(option: &str, value: &str, method: &str) -> bool {
 }
 
 /// A point, and its arguments for `run`.
-pub struct Subject {
+pub struct Planned {
     pub point: Point,
     pub args: RunArgs,
     pub method: MethodName,
@@ -59,10 +59,10 @@ pub struct Subject {
 
 /// Points with the same input frames.
 pub struct Batch {
-    pub subjects: Vec<Subject>,
+    pub subjects: Vec<Planned>,
 }
 
-impl Subject {
+impl Planned {
     fn new(point: Point, common: &Options) -> Result<Self, Failure> {
         let mut words = vec!["--out=unused".to_owned(), format!("--seed={}", point.seed)];
         words.push(format!("--method={}", point.method));
@@ -105,9 +105,9 @@ pub fn batches(
     common: &Options,
     mut pixels: impl FnMut(&InputArgs) -> Result<u64, Failure>,
 ) -> Result<Vec<Batch>, Failure> {
-    let mut groups: BTreeMap<_, Vec<Subject>> = BTreeMap::new();
+    let mut groups: BTreeMap<_, Vec<Planned>> = BTreeMap::new();
     for point in points {
-        let subject = Subject::new(point, common)?;
+        let subject = Planned::new(point, common)?;
         groups.entry(subject.key()).or_default().push(subject);
     }
     let mut batches = vec![];

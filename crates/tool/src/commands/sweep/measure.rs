@@ -1,7 +1,7 @@
 //! Measures a batch: all methods take turns on every frame, so that other load on the machine affects all of them
 //! alike.
 
-use super::batch::{Batch, Subject};
+use super::batch::{Batch, Planned};
 use crate::args::Named;
 use crate::clip::{Clip, FrameResult};
 use crate::commands::run::{RunArgs, plan};
@@ -42,7 +42,7 @@ struct BatchAccumulator {
 }
 
 /// Checks a point. All points are checked before the first is measured, so that a sweep does not fail halfway.
-pub fn check(subject: &Subject) -> Result<(), Failure> {
+pub fn check(subject: &Planned) -> Result<(), Failure> {
     plan::foveation(&subject.args)?;
     if let Some(frames) = subject.args.frames {
         check_frames(&subject.args, frames)?;
@@ -120,7 +120,7 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
 }
 
 /// The control method, the same in every batch: its time shows the drift of the machine's speed between batches.
-fn control(subject: &Subject) -> RunKind {
+fn control(subject: &Planned) -> RunKind {
     let noisy = matches!(subject.args.sampling(), Ok(Some(_)));
     RunKind::PostProcess(Settings { method: Method::Taa, noisy, ..Settings::default() })
 }
@@ -153,7 +153,7 @@ fn play(
         sums.frames += 1;
         let foveated = batch.subjects.iter().position(|s| s.method.name() == MethodKind::None.name());
         let foveated = foveated.map(|i| metric::encode(&result.step.outputs[i + 1].image, clip.exposure_ev));
-        let of_subject = |(accumulator, (subject, shown)): (&mut MethodAccumulator, (&Subject, &MethodOutput))| {
+        let of_subject = |(accumulator, (subject, shown)): (&mut MethodAccumulator, (&Planned, &MethodOutput))| {
             let encoded = metric::encode(&shown.image, clip.exposure_ev);
             accumulator.push(result.frame, result.reference, &encoded, foveated.as_ref(), shown, result.step);
             if is_last { pictures(store, subject, result.reference.encoded(), &encoded, &flip) } else { Ok(()) }
@@ -168,7 +168,7 @@ fn play(
 }
 
 /// Samples of the foveated frame divided by those of a full-rate frame with the fovea's quality.
-fn samples_share(result: &FrameResult<'_>, clip: &Clip, subject: &Subject) -> f64 {
+fn samples_share(result: &FrameResult<'_>, clip: &Clip, subject: &Planned) -> f64 {
     let lods = result.step.lods.pixels();
     match result.frame.samples {
         Some(samples) => samples as f64 / (lods.len() as f64 * f64::from(subject.full_rate_samples())),
@@ -180,7 +180,7 @@ fn samples_share(result: &FrameResult<'_>, clip: &Clip, subject: &Subject) -> f6
 /// Saves the pictures of a point for the report: its last frame, the FLIP error map, and the reference.
 fn pictures(
     store: &Store,
-    subject: &Subject,
+    subject: &Planned,
     reference: &Image<[f32; 3]>,
     shown: &Image<[f32; 3]>,
     flip: &Flip,

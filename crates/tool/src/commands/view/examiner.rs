@@ -37,8 +37,8 @@ impl Examiner {
         Ok(Self { doctor, words, free, pending: VecDeque::new(), has_skipped: false })
     }
 
-    /// Looks at a frame, unless all buffers are on their way.
-    pub fn look(&mut self, gpu: &Headless, frame: &Frame<'_>) -> Result<(), Failure> {
+    /// Gives a frame to the doctor, unless all buffers are on their way.
+    pub fn examine(&mut self, gpu: &Headless, frame: &Frame<'_>) -> Result<(), Failure> {
         self.take(gpu);
         let Some(buffer) = self.free.pop() else {
             self.has_skipped = true;
@@ -107,7 +107,7 @@ mod tests {
             };
             gpu.write_rgb(&color, 0, &Image::from_fn(SIZE, shown));
             let frame = Frame { motion: Some((&motion).into()), ..Frame::new(&color, &views, index) };
-            examiner.look(&gpu, &frame).unwrap();
+            examiner.examine(&gpu, &frame).unwrap();
             if waits {
                 gpu.wait();
             }

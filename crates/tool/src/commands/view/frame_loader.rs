@@ -22,7 +22,7 @@ struct Request {
 /// A frame, and the camera that it was rendered with.
 pub struct LoadedFrame {
     pub frame: RenderedFrame,
-    pub stance: Option<CameraPose>,
+    pub camera_pose: Option<CameraPose>,
     generation: u64,
 }
 
@@ -107,7 +107,7 @@ fn serve(
         let loaded = source.render(&FrameRequest::full_rate(request.index)).map(|mut frame| {
             frame.reference = resized(frame.reference, request.size);
             frame.reference.cut |= cut;
-            LoadedFrame { frame, stance: source.camera_pose(request.index), generation: request.generation }
+            LoadedFrame { frame, camera_pose: source.camera_pose(request.index), generation: request.generation }
         });
         if frames.send(loaded.map_err(Failure::from)).is_err() {
             break;

@@ -26,7 +26,7 @@ pub enum NextFrame {
     Posed {
         index: u64,
         cut: bool,
-        stance: Option<CameraPose>,
+        camera_pose: Option<CameraPose>,
     },
 }
 
@@ -68,7 +68,7 @@ impl Frames {
                     return Ok(None);
                 };
                 let cut = frames.steering.steer(renderer, index, pose) || index == 0;
-                Ok(Some(NextFrame::Posed { index, cut, stance: renderer.camera_pose(index) }))
+                Ok(Some(NextFrame::Posed { index, cut, camera_pose: renderer.camera_pose(index) }))
             }
         }
     }

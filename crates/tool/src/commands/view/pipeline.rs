@@ -195,7 +195,7 @@ impl ViewPipeline {
                 Some(examiner) => examiner,
                 none => none.insert(Examiner::new(gpu, &self.desc)?),
             };
-            examiner.look(gpu, &frame)?;
+            examiner.examine(gpu, &frame)?;
         } else {
             self.examiner = None;
         }

@@ -53,7 +53,7 @@ pub struct Viewer {
     /// Gaze of the frames since the last history reset.
     record: Record,
     /// Camera of the current frame.
-    stance: Option<CameraPose>,
+    camera_pose: Option<CameraPose>,
     /// Pose (world from camera) to which the user steers the camera.
     pose: Option<DMat4>,
     /// The window does not show the current state yet.
@@ -61,7 +61,7 @@ pub struct Viewer {
     /// Pictures to save after the next frame.
     to_save: Vec<Effect>,
     /// Faults of the inputs that the terminal shows already.
-    told: HashSet<afterimage::Outcome>,
+    announced: HashSet<afterimage::Outcome>,
 }
 
 impl Viewer {
@@ -84,11 +84,11 @@ impl Viewer {
             pointer: None,
             position: 0,
             record: Record::default(),
-            stance: None,
+            camera_pose: None,
             pose: None,
             is_stale: true,
             to_save: vec![],
-            told: HashSet::new(),
+            announced: HashSet::new(),
         };
         viewer.request_frame();
         Ok(viewer)
@@ -218,19 +218,19 @@ impl Viewer {
             return Ok(());
         }
         let DeviceResources { pipeline, renderer, .. } = &mut self.resources;
-        self.stance = match self.frames.take(renderer.as_mut())? {
+        self.camera_pose = match self.frames.take(renderer.as_mut())? {
             None => return Ok(()),
             Some(NextFrame::Loaded(loaded)) => {
                 pipeline.upload(&loaded.frame);
-                loaded.stance
+                loaded.camera_pose
             }
-            Some(NextFrame::Posed { index, cut, stance }) => {
+            Some(NextFrame::Posed { index, cut, camera_pose }) => {
                 pipeline.pose(index, cut);
-                stance
+                camera_pose
             }
         };
         (self.resources.has_frame, self.resources.is_new) = (true, true);
-        if self.state.is_flying.is_none() && self.stance.is_some() {
+        if self.state.is_flying.is_none() && self.camera_pose.is_some() {
             self.state.is_flying = Some(false);
         }
         Ok(())
@@ -254,9 +254,9 @@ impl Viewer {
         if self.setup.info.still && self.state.is_flying != Some(true) && self.pose.is_none() {
             return;
         }
-        if let (Some(true), Some(stance)) = (self.state.is_flying, self.stance) {
-            let from = self.pose.unwrap_or(stance.world_from_camera);
-            self.pose = Some(self.fly_camera.step(from, self.stats.since_last_s(), stance.speed_m_s));
+        if let (Some(true), Some(camera_pose)) = (self.state.is_flying, self.camera_pose) {
+            let from = self.pose.unwrap_or(camera_pose.world_from_camera);
+            self.pose = Some(self.fly_camera.step(from, self.stats.since_last_s(), camera_pose.speed_m_s));
         }
         self.resources.is_new = false;
         self.request_frame();

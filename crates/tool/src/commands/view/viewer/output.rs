@@ -54,7 +54,7 @@ impl Viewer {
                     Outcome::Wrong(fault) => fault.name(),
                 };
                 lines.push(format!("{}: {outcome}", finding.check.name()));
-                if finding.fault().is_some() && self.told.insert(finding.outcome) {
+                if finding.fault().is_some() && self.announced.insert(finding.outcome) {
                     eprintln!("afterimage: inputs: {finding}");
                 }
             }

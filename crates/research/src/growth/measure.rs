@@ -1,12 +1,12 @@
 //! Time of one foveated frame: its samples rendered alone, and smr.
 
-use crate::failure::Failure;
-use crate::times::Times;
 use afterimage::gpu::{Afterimage, Frame, Target};
 use afterimage::wgpu::{Texture, TextureFormat, TextureUsages};
 use afterimage::{
     ContextDesc, DepthConvention, Filter, Foveation, Gaze, Lattice, Lattices, Settings, ViewFrame, ViewGeometry,
 };
+use afterimage_cli::failure::Failure;
+use afterimage_cli::times::Times;
 use afterimage_lab::clock::Elapsed;
 use afterimage_lab::device::{Backend, Headless, SpanClock};
 use afterimage_lab::raster::{AtlasLayout, RasterSettings};

@@ -1,8 +1,8 @@
 //! Sparse frames with smr beside frames that are filled between the same number of samples: quality and time.
 
-use super::subject::{Foveated, FrameTime, Pattern, Subject};
-use crate::failure::Failure;
 use afterimage::{Filter, Foveation, Image, Settings};
+use afterimage_cli::commands::bench::traced_view::{Foveated, FrameTime, Pattern, TracedView};
+use afterimage_cli::failure::Failure;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::Content;
@@ -46,7 +46,7 @@ pub struct Shown {
 
 /// Compares the patterns of a scene, on the device that traces them.
 pub struct Comparer<'a> {
-    subject: &'a Subject,
+    subject: &'a TracedView,
     tracer: &'a Tracer,
     backend: &'a Backend,
     /// Times are wall times instead of CPU times.
@@ -56,7 +56,7 @@ pub struct Comparer<'a> {
 }
 
 impl<'a> Comparer<'a> {
-    pub fn new(subject: &'a Subject, tracer: &'a Tracer, backend: &'a Backend, by_wall: bool) -> Self {
+    pub fn new(subject: &'a TracedView, tracer: &'a Tracer, backend: &'a Backend, by_wall: bool) -> Self {
         Self { subject, tracer, backend, by_wall, references: BTreeMap::new() }
     }
 

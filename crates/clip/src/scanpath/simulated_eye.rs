@@ -31,7 +31,7 @@ impl Field {
 }
 
 /// State of the simulation. Gaze is a unit vector: x right, y down, z forward.
-pub(super) struct Walk<T: Iterator<Item = f64>> {
+pub(super) struct SimulatedEye<T: Iterator<Item = f64>> {
     rng: Pcg64,
     /// Allowed targets of saccades.
     aim: Field,
@@ -44,7 +44,7 @@ pub(super) struct Walk<T: Iterator<Item = f64>> {
     events: Vec<Event>,
 }
 
-impl<T: Iterator<Item = f64>> Walk<T> {
+impl<T: Iterator<Item = f64>> SimulatedEye<T> {
     pub(super) fn new(seed: u64, half_deg: [f64; 2], times: T) -> Self {
         let mut rng = Pcg64::seed_from_u64(seed);
         let aim = Field::inset(half_deg, AIM_MARGIN_DEG);

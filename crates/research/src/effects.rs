@@ -1,4 +1,6 @@
-//! `afterimage bench effects`: cost of each effect in a scene that does not need it.
+//! `cargo research effects`: cost of each effect in a scene that does not need it.
+//!
+//! Makes the tables of `docs/effects.md`. The command is there; it takes hours on software Vulkan.
 //!
 //! Kernels with and without the effect take turns on the same rays, frame by frame. The result is the ratio of the
 //! times of two frames that are traced within a second of each other.
@@ -6,9 +8,10 @@
 mod removals;
 mod table;
 
-use super::subject::{Subject, backends, is_real_gpu};
-use super::{BenchArgs, write_json};
-use crate::failure::Failure;
+use crate::options::EffectsArgs;
+use afterimage_cli::commands::bench::traced_view::{TracedView, backends, is_real_gpu};
+use afterimage_cli::commands::bench::write_json;
+use afterimage_cli::failure::Failure;
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::Processor;
@@ -40,15 +43,15 @@ struct Variant {
 }
 
 /// Measures the cost of effects at `size` for `frames` frames.
-pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
-    let backends = backends(args)?;
+pub fn bench(args: &EffectsArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
+    let backends = backends(args.traced.backend)?;
     let default = SCENES.map(str::to_owned);
-    let names = if args.scene.is_empty() { &default[..] } else { &args.scene };
+    let names = if args.traced.scene.is_empty() { &default[..] } else { &args.traced.scene };
     // Compiled kernels depend only on the effects, not on the rest of the scene.
-    let small = Subject::open("builtin:cornell", [8, 8], None, None)?;
+    let small = TracedView::open("builtin:cornell", [8, 8], None, None)?;
     let mut scenes = vec![];
     for name in names {
-        let subject = Subject::open(name, size, None, None)?;
+        let subject = TracedView::open(name, size, None, None)?;
         let needs = subject.world.needs;
         let mut prices = vec![];
         let mut removals = vec![];
@@ -91,11 +94,11 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
         Some(path) => table::write(path, &text)?,
         None => say!("{text}"),
     }
-    write_json(args, &report)
+    write_json(args.traced.json.as_deref(), &report)
 }
 
 /// The scene's effects, twice; all effects; the scene's effects with each other effect.
-fn variants(subject: &Subject, backend: &Backend) -> Result<Vec<Variant>, Failure> {
+fn variants(subject: &TracedView, backend: &Backend) -> Result<Vec<Variant>, Failure> {
     let needs = subject.world.needs;
     let mut sets = vec![("auto".to_owned(), needs), ("again".into(), needs), ("all".into(), Effects::all())];
     sets.extend(Effects::all().without(needs).iter().map(|e| (e.name().to_owned(), needs.set(e, true))));
@@ -110,7 +113,7 @@ fn with(effects: Effects) -> TraceSettings {
 }
 
 /// Times every variant on every frame. Each frame starts with another variant.
-fn take_turns(subject: &Subject, backend: &Backend, variants: &mut [Variant], frames: u64) {
+fn take_turns(subject: &TracedView, backend: &Backend, variants: &mut [Variant], frames: u64) {
     let count = variants.len();
     for index in 0..WARM_UP + frames {
         for i in 0..count {
@@ -125,7 +128,7 @@ fn take_turns(subject: &Subject, backend: &Backend, variants: &mut [Variant], fr
 
 /// Measures compile times: CPU time of creating the tracer and tracing a first small frame, minus that of a second one.
 /// Drivers compile at the first dispatch.
-fn compile_in_turn(small: &Subject, backend: &Backend, variants: &mut [Variant]) -> Result<(), Failure> {
+fn compile_in_turn(small: &TracedView, backend: &Backend, variants: &mut [Variant]) -> Result<(), Failure> {
     for _ in 0..COMPILES {
         for variant in &mut *variants {
             let watch = Stopwatch::start();
@@ -139,7 +142,7 @@ fn compile_in_turn(small: &Subject, backend: &Backend, variants: &mut [Variant])
 }
 
 /// Compares the kernels of `auto`, with the effect switched off, with kernels whose source lacks the effect.
-fn price_removals(subject: &Subject, backend: &Backend, frames: u64) -> Result<Vec<Price>, Failure> {
+fn price_removals(subject: &TracedView, backend: &Backend, frames: u64) -> Result<Vec<Price>, Failure> {
     let Backend::Gpu(gpu) = backend else { return Ok(vec![]) };
     let needs = subject.world.needs;
     let variant = |what: &str, edit: &dyn Fn(String) -> String| {

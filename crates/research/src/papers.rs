@@ -1,12 +1,16 @@
-//! `afterimage bench papers`: savings of foveated path tracing, compared with the results of two papers.
+//! `cargo research papers`: savings of foveated path tracing, compared with the results of two papers.
+//!
+//! Makes the tables of `docs/performance.md`, "Foveated against uniform" and "Both papers' patterns beside sparse
+//! frames with smr"; the commands are there.
 
-use super::foveated::{PatternReport, UNIFORM_EVERY, UNIFORM_SAMPLES, measure, regions};
 use super::sparse_smr::{CLIP_FRAMES, Comparer, Comparison, Shown};
-use super::subject::{Pattern, Subject, backends, is_real_gpu};
-use super::{BenchArgs, write_json};
-use crate::args::backend::NO_ADAPTER;
-use crate::failure::Failure;
+use crate::options::TracedArgs;
 use afterimage::ViewGeometry;
+use afterimage_cli::args::backend::NO_ADAPTER;
+use afterimage_cli::commands::bench::foveated::{PatternReport, UNIFORM_EVERY, UNIFORM_SAMPLES, measure, regions};
+use afterimage_cli::commands::bench::traced_view::{Pattern, TracedView, backends, is_real_gpu};
+use afterimage_cli::commands::bench::write_json;
+use afterimage_cli::failure::Failure;
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
 use afterimage_lab::trace::sampling::{Layers, Regions, Sampling};
@@ -99,8 +103,8 @@ struct Compared {
 
 /// Measures both tables: the first with frames of `size`, the second with frames whose width is that height (1080x1200
 /// for 1920x1080).
-pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
-    let backend = backends(args)?.pop().ok_or_else(|| Failure::Input(NO_ADAPTER.into()))?;
+pub fn bench(args: &TracedArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
+    let backend = backends(args.backend)?.pop().ok_or_else(|| Failure::Input(NO_ADAPTER.into()))?;
     let eye = [size[1], (size[1] * 10).div_ceil(9)];
     let layers = |(name, paper): &(&str, Option<[f64; 2]>)| layers_of(name, *paper, &backend, eye, frames);
     let report = Report {
@@ -113,7 +117,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
         backend: backend.info(),
     };
     print(&report);
-    write_json(args, &report)
+    write_json(args.json.as_deref(), &report)
 }
 
 fn display() -> Result<ViewGeometry, Failure> {
@@ -148,13 +152,13 @@ fn arithmetic() -> Result<Vec<Arithmetic>, Failure> {
 
 /// The first table: the field of view of the paper's display, at any size in pixels.
 fn regions_of_a_scene(
-    args: &BenchArgs,
+    args: &TracedArgs,
     backend: &Backend,
     size: [u32; 2],
     frames: u64,
 ) -> Result<SceneReport, Failure> {
     let name = args.scene.first().map_or("builtin:courtyard", String::as_str);
-    let subject = Subject::open(name, size, args.camera.as_deref(), Some(display()?.hfov_deg()))?;
+    let subject = TracedView::open(name, size, args.camera.as_deref(), Some(display()?.hfov_deg()))?;
     let settings = TraceSettings::default();
     let tracer = subject.tracer(backend, settings)?;
     let by_wall = is_real_gpu(backend);
@@ -188,7 +192,7 @@ fn layers_of(
     eye_px: [u32; 2],
     frames: u64,
 ) -> Result<SceneReport, Failure> {
-    let subject = Subject::open(&format!("builtin:{name}"), eye_px, None, Some(EYE_HFOV_DEG))?;
+    let subject = TracedView::open(&format!("builtin:{name}"), eye_px, None, Some(EYE_HFOV_DEG))?;
     let settings = TraceSettings {
         integrator: Integrator::Naive,
         bsdf: Bsdf::Phong,
@@ -225,7 +229,7 @@ fn layers_of(
     Ok(scene_report(&subject, settings, compared))
 }
 
-fn scene_report(subject: &Subject, settings: TraceSettings, patterns: Vec<Compared>) -> SceneReport {
+fn scene_report(subject: &TracedView, settings: TraceSettings, patterns: Vec<Compared>) -> SceneReport {
     SceneReport {
         scene: subject.name.rsplit('/').next().unwrap_or(&subject.name).to_owned(),
         triangles: subject.world.geometry.len(),

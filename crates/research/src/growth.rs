@@ -1,14 +1,16 @@
-//! `afterimage bench growth`: how the time of a whole foveated frame grows with pixels, triangles, lattices and eyes.
+//! `cargo research growth`: how the time of a whole foveated frame grows with pixels, triangles, lattices and eyes.
+//!
+//! Makes the tables of `docs/performance.md`, "Growth".
 
 mod fit;
 mod measure;
 
-use super::write_json_to;
-use crate::args::backend::NO_ADAPTER;
-use crate::args::parse_size;
-use crate::failure::Failure;
-use crate::progress;
 use afterimage::Lattices;
+use afterimage_cli::args::backend::NO_ADAPTER;
+use afterimage_cli::args::parse_size;
+use afterimage_cli::commands::bench::write_json;
+use afterimage_cli::failure::Failure;
+use afterimage_cli::progress;
 use afterimage_lab::device::{Headless, PassClock};
 use clap::{Args, ValueEnum};
 use fit::Fit;
@@ -29,7 +31,7 @@ const LARGE_PIXELS: f64 = 2e6;
 /// Measure how the time of a foveated frame, rendering and smr, grows with pixels, triangles, lattices and eyes
 #[derive(Args, Clone, Debug)]
 #[command(
-    after_help = "Example:\n  afterimage bench growth --of pixels,triangles --renderer raster --json growth.json\n\n\
+    after_help = "Example:\n  cargo research growth --of pixels,triangles --renderer raster --json growth.json\n\n\
     The scene is the courtyard, built for a number of triangles, with the gaze in the middle; the samples of each frame\n\
     are rendered alone, on lattices with steps up to 8 (trace: one sample a point), and smr makes the picture. Prints\n\
     Markdown tables. Slopes are exponents: the time grows as pixels, triangles, lattices or eyes to this power."
@@ -188,7 +190,7 @@ pub fn bench(args: &GrowthArgs) -> Result<(), Failure> {
     };
     say!("{} ({}); times: {}; medians of {} frames\n", report.adapter, report.driver, clock, args.frames);
     report.series.iter().for_each(Series::print);
-    write_json_to(args.json.as_deref(), &report)
+    write_json(args.json.as_deref(), &report)
 }
 
 impl Series {

@@ -1,6 +1,6 @@
 //! A scene to benchmark, and the backends that trace it.
 
-use super::{BenchArgs, Traces};
+use super::Traces;
 use crate::args::backend::NO_ADAPTER;
 use crate::failure::Failure;
 use afterimage::{Image, ViewGeometry};
@@ -36,7 +36,7 @@ pub struct Pattern {
 const FULL_RATE_FRAMES: u64 = 1 << 31;
 
 /// A still scene and its camera, traced at one sample per pixel.
-pub struct Subject {
+pub struct TracedView {
     pub name: String,
     pub world: World,
     of: ViewedScene,
@@ -67,7 +67,7 @@ pub struct FrameTime {
     pub rays: u64,
 }
 
-impl Subject {
+impl TracedView {
     /// Opens the scene `name`. `camera` as for `trace --camera`; default: its first camera, or one that frames the
     /// scene.
     pub fn open(name: &str, size: [u32; 2], camera: Option<&str>, hfov_deg: Option<f32>) -> Result<Self, Failure> {
@@ -234,15 +234,15 @@ impl FrameTime {
 }
 
 /// Backends to time: the CPU, an adapter, or both.
-pub fn backends(args: &BenchArgs) -> Result<Vec<Backend>, Failure> {
+pub fn backends(traces: Traces) -> Result<Vec<Backend>, Failure> {
     let mut backends = vec![];
-    if args.backend != Traces::Gpu {
+    if traces != Traces::Gpu {
         backends.push(Backend::Cpu);
     }
-    if args.backend != Traces::Cpu {
+    if traces != Traces::Cpu {
         match Headless::find_roomy(true) {
             Some(gpu) => backends.push(Backend::Gpu(gpu)),
-            None if args.backend == Traces::Gpu => {
+            None if traces == Traces::Gpu => {
                 return Err(Failure::Input(format!("--backend gpu: {NO_ADAPTER}, or use --backend cpu")));
             }
             None => {}

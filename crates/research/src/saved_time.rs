@@ -1,9 +1,12 @@
-//! `afterimage bench foveated`: what of the samples that foveated path tracing saves becomes saved time.
+//! `cargo research foveated`: what of the samples that foveated path tracing saves becomes saved time.
+//!
+//! Makes the table of `docs/performance.md`, "Saved samples as saved time"; the commands are there.
 
-use super::foveated::{PatternReport, measure, one_path, regions};
-use super::subject::{Subject, backends, is_real_gpu};
-use super::{BenchArgs, write_json};
-use crate::failure::Failure;
+use crate::options::TracedArgs;
+use afterimage_cli::commands::bench::foveated::{PatternReport, measure, one_path, regions};
+use afterimage_cli::commands::bench::traced_view::{TracedView, backends, is_real_gpu};
+use afterimage_cli::commands::bench::write_json;
+use afterimage_cli::failure::Failure;
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
 use afterimage_lab::trace::settings::TraceSettings;
 use serde::Serialize;
@@ -32,14 +35,14 @@ struct TracerReport {
 }
 
 /// Times the patterns for `size` in each scene on each device, `frames` times.
-pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
+pub fn bench(args: &TracedArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
     let settings = TraceSettings::default();
-    let backends = backends(args)?;
+    let backends = backends(args.backend)?;
     let default = ["builtin:courtyard".to_owned()];
     let names = if args.scene.is_empty() { &default[..] } else { &args.scene };
     let mut scenes = vec![];
     for name in names {
-        let subject = Subject::open(name, size, args.camera.as_deref(), None)?;
+        let subject = TracedView::open(name, size, args.camera.as_deref(), None)?;
         let middle = subject.middle_px();
         let regions = |samples| regions(samples, false, 1.0, middle);
         let patterns = [one_path(middle), regions([8, 4, 2]), regions([32, 16, 8])];
@@ -60,7 +63,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
         scenes,
     };
     print(&report);
-    write_json(args, &report)
+    write_json(args.json.as_deref(), &report)
 }
 
 /// Markdown.

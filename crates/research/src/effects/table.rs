@@ -1,6 +1,6 @@
 //! Costs of effects: the report, and its Markdown tables.
 
-use crate::failure::Failure;
+use afterimage_cli::failure::Failure;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::pipeline::ProcessorInfo;
 use afterimage_lab::trace::effects::Effect;
@@ -50,8 +50,8 @@ pub struct Price {
     pub compile_ms: Option<Quartiles>,
 }
 
-const BEGIN: &str = "<!-- begin of the output of `afterimage bench effects` -->";
-const END: &str = "<!-- end of the output of `afterimage bench effects` -->";
+const BEGIN: &str = "<!-- begin of the output of `cargo research effects` -->";
+const END: &str = "<!-- end of the output of `cargo research effects` -->";
 
 /// Replaces the text between the markers of a file, or writes a new file.
 pub fn write(path: &Path, text: &str) -> Result<(), Failure> {

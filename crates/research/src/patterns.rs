@@ -1,13 +1,16 @@
-//! `afterimage bench patterns`: errors of sampling patterns at equal numbers of samples.
+//! `cargo research patterns`: errors of sampling patterns at equal numbers of samples.
+//!
+//! Makes the table of patterns in `docs/path-tracing.md`; the command is there.
 
 mod equal;
 
-use crate::args::backend::BackendName;
-use crate::args::{parse_exposure, parse_samples, parse_size};
-use crate::failure::Failure;
-use crate::output::Output;
 use afterimage::kernel::debug_view::heat;
 use afterimage::{Image, ViewGeometry};
+use afterimage_cli::args::backend::BackendName;
+use afterimage_cli::args::{parse_exposure, parse_samples, parse_size};
+use afterimage_cli::commands::bench::write_json;
+use afterimage_cli::failure::Failure;
+use afterimage_cli::output::Output;
 use afterimage_lab::metric::{Flip, References, Scorer, Scores, Tracked, encode};
 use afterimage_lab::picture::to_rgb8;
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
@@ -29,7 +32,7 @@ use std::path::{Path, PathBuf};
 /// Compare errors of sampling patterns of the path tracer at equal numbers of camera samples
 #[derive(Args, Clone, Debug)]
 #[command(
-    after_help = "Example:\n  afterimage bench patterns builtin:courtyard --region-spp 8,4,2 --out out/patterns\n\n\
+    after_help = "Example:\n  cargo research patterns builtin:courtyard --region-spp 8,4,2 --out out/patterns\n\n\
     Writes OUT/patterns.md, the first frame of each pattern and its FLIP map, OUT/reference.png and OUT/reference.exr."
 )]
 pub struct PatternsArgs {
@@ -162,7 +165,7 @@ pub fn bench(args: &PatternsArgs) -> Result<(), Failure> {
         backend: backend.info(),
         patterns: reports,
     };
-    super::write_json_to(args.json.as_deref(), &report)?;
+    write_json(args.json.as_deref(), &report)?;
     say!("{table}");
     say!("pictures and FLIP maps: {}", args.out.display());
     Ok(())

@@ -1,71 +1,15 @@
-//! `afterimage bench wrs`: table 1 and the run times of Cantory et al. 2025, with our results and theirs.
+//! `cargo research wrs`: table 1 and the run times of Cantory et al. 2025, with our results and theirs.
+//!
+//! Makes `docs/wrs-table.md` and `docs/wrs-readings.md`, whose first lines are their commands.
 
-use super::wrs_readings;
-use crate::args::backend::BackendName;
-use crate::commands::sweep::{SweepArgs, execute};
-use crate::failure::Failure;
-use crate::sweep::{Metric, Row, Table};
+use crate::options::{Tables, WrsTableArgs};
+use crate::wrs_readings;
+use afterimage_cli::commands::sweep::{SweepArgs, execute};
+use afterimage_cli::failure::Failure;
+use afterimage_cli::sweep::{Metric, Row, Table};
 use afterimage_lab::whole_file::write_whole;
-use clap::{Args, Parser, ValueEnum};
+use clap::Parser;
 use std::io::Write;
-use std::path::PathBuf;
-
-/// Table 1 and the run times of weighted reservoir sampling (Cantory et al. 2025) in Markdown, with our results and
-/// theirs
-#[derive(Args, Clone, Debug)]
-#[command(
-    after_help = "Example:\n  afterimage bench wrs sponza_still/ sponza_lateral/ --gaze viewing.csv --start 1 --out out/wrs --markdown docs/wrs-table.md\n\n\
-    Run the same command again to resume. OUT/report.html has all results."
-)]
-pub struct WrsTableArgs {
-    /// A still, as for run; compared with the paper's scenes "-S"
-    pub still: String,
-    /// Frames of a camera that moves sideways; compared with the paper's scenes "-M"
-    pub moving: String,
-    /// Scanpath, as for run
-    #[arg(long, value_name = "FILE.csv")]
-    pub gaze: String,
-    /// Start time in the scanpath, seconds
-    #[arg(long, default_value_t = 0.0, value_name = "S")]
-    pub start: f64,
-    /// Number of frames of each point
-    #[arg(long, default_value_t = 300, value_name = "N")]
-    pub frames: u64,
-    /// Block edge in the middle region, pixels. With 4 and 8 a frame of 1920x1080 has the block angles of the paper's
-    /// 3840x2160 with 8 and 16
-    #[arg(long, default_value_t = 4, value_name = "N")]
-    pub rate_mid: u32,
-    /// Block edge in the periphery, pixels
-    #[arg(long, default_value_t = 8, value_name = "N")]
-    pub rate_far: u32,
-    /// Another scanpath for the readings, stretched over the picture
-    #[arg(long, value_name = "FILE.csv")]
-    pub second_gaze: Option<String>,
-    /// Make these tables alone
-    #[arg(long, value_enum, value_name = "TABLES")]
-    pub only: Option<Tables>,
-    /// Repetitions of randomized methods, each with another seed
-    #[arg(long, default_value_t = 3, value_name = "N")]
-    pub seeds: u64,
-    /// Device that runs the methods
-    #[arg(long, value_enum, default_value = "auto")]
-    pub backend: BackendName,
-    /// Folder of the sweep
-    #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
-    /// File for the tables; default: standard output
-    #[arg(long, value_name = "FILE.md")]
-    pub markdown: Option<PathBuf>,
-}
-
-/// Tables of `bench wrs`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Tables {
-    /// Table 1 and run times, which need a sweep
-    Published,
-    /// Gains of the method with other readings of its equations, on the still
-    Readings,
-}
 
 /// Published results: PSNR in dB and SSIM, without (still) or with TAA (moving), and with weighted reservoirs.
 struct Published {
