@@ -3,8 +3,9 @@
 # Needs Rust with the target wasm32-unknown-unknown. If that is missing, it takes Debian's compiler for browsers, which
 # it unpacks into crates/web/target/debian without installing it; the standard library is then compiled, too.
 set -euo pipefail
-cd "$(dirname "$0")"
-to="$(realpath -m "${1:-dist}")"
+here="$(realpath "$(dirname "$0")")"
+to="$(realpath -m "${1:-$here/dist}")"
+cd "$here"
 target="${CARGO_TARGET_DIR:-$PWD/target}"
 export CARGO_TARGET_DIR="$target"
 wasm=wasm32-unknown-unknown
@@ -42,6 +43,5 @@ env -u RUSTC -u LD_LIBRARY_PATH -u RUSTC_BOOTSTRAP CARGO_PROFILE_RELEASE_OPT_LEV
     CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 cargo run --locked --release --package afterimage-web-bindgen \
     -- "$target/$wasm/release/afterimage_web.wasm" "$to"
 cp page/* "$to"
-cp ../../fixtures/scanpath_viewing.csv "$to/scanpath.csv"
 
 echo "$to, compressed: $(cat "$to"/*.{html,css,js,wasm} | gzip -9 | wc -c) bytes without pictures"

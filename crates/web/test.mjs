@@ -165,6 +165,22 @@ async function a_phone_and_its_size() {
     await page.close();
 }
 
+async function the_scanpath_is_fair() {
+    const page = await open();
+    await page.until("window.frames_shown > 2");
+    const words = await page.evaluate("document.body.textContent");
+    check(/synthetic/.test(words) && !/recorded path/.test(words), "the page says that its scanpath is synthetic");
+    const left = await page.evaluate("page.scanpath().filter(([x]) => x < 0.5).length / page.scanpath().length");
+    check(left > 0.4 && left < 0.6, `it looks at the left half for ${(100 * left).toFixed(0)} % of its time`);
+    const { x, y } = JSON.parse(await page.evaluate("JSON.stringify(document.getElementById('canvas').getBoundingClientRect())"));
+    await page.send("Input.dispatchMouseEvent", { type: "mouseMoved", x: x + 9, y: y + 9 });
+    await page.settled();
+    const taken = await page.evaluate("page.gaze()");
+    check(taken[0] < 20 && taken[1] < 20, "the pointer takes the gaze");
+    check(await page.until("page.gaze()[0] > 50", 10), "and the scanpath goes on after some seconds without it");
+    await page.close();
+}
+
 async function nothing_moves_for_those_who_want_that() {
     // Whether two frames of a picture that does not change itself are the same.
     const is_still = async (features) => {
@@ -216,6 +232,7 @@ async function a_planted_error_is_caught() {
 try {
     await everything_works();
     await a_phone_and_its_size();
+    await the_scanpath_is_fair();
     await nothing_moves_for_those_who_want_that();
     await without_webgpu();
     await a_planted_error_is_caught();

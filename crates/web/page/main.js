@@ -22,13 +22,17 @@ const METHOD_WORDS = {
     none: "Without a method both sides are the same: what the renderer delivers.",
 };
 
+const SCANPATH_HZ = 25;
+// After this time without a hand, the scanpath goes on.
+const IDLE_S = 5;
+
 let demo;
 let size = [0, 0];
 let scanpath = [];
 let gaze = [0, 0];
 let divider = 0.5;
-// The pointer or a key has taken the gaze over from the scanpath.
-let is_taken = false;
+// When the pointer or a key moved the gaze last.
+let taken_ms = -Infinity;
 let own_picture;
 // Waits between two frames for what must not happen during one.
 const jobs = [];
@@ -55,15 +59,12 @@ function trouble(title, reason) {
 
 async function load_scanpath() {
     const text = await (await fetch("scanpath.csv")).text();
-    const [width, height] = text.match(/screen_px: (\d+)x(\d+)/).slice(1).map(Number);
-    const rows = text.split("\n").filter((line) => /^[\d.]+,/.test(line)).map((line) => line.split(",").map(Number));
-    scanpath = rows.filter((row) => row[3] === 1).map(([t, x, y]) => [t, x / width, y / height]);
+    scanpath = text.split("\n").filter((line) => /^-?\d/.test(line)).map((line) => line.split(",").map((v) => v / 1000));
 }
 
 // Position at a time, in shares of the picture; the path starts again when it ends.
 function scanpath_at(seconds) {
-    const t = seconds % scanpath.at(-1)[0];
-    return scanpath[between(scanpath.findIndex((row) => row[0] > t), 1, scanpath.length) - 1].slice(1);
+    return scanpath[Math.floor(seconds * SCANPATH_HZ) % scanpath.length];
 }
 
 async function show_scene() {
@@ -90,7 +91,7 @@ function configure() {
 
 // One frame; the time of the camera stands still for those who want that.
 function draw(seconds) {
-    if (!is_taken && scanpath.length > 0) {
+    if (performance.now() - taken_ms > 1000 * IDLE_S) {
         const [x, y] = scanpath_at(is_still.matches ? 0 : seconds);
         gaze = [x * size[0] - 0.5, y * size[1] - 0.5];
     }
@@ -172,7 +173,7 @@ async function start() {
 
 function take_gaze(event) {
     const box = canvas.getBoundingClientRect();
-    is_taken = true;
+    taken_ms = performance.now();
     gaze = [((event.clientX - box.left) / box.width) * size[0] - 0.5, ((event.clientY - box.top) / box.height) * size[1] - 0.5];
 }
 
@@ -181,7 +182,7 @@ canvas.addEventListener("pointerdown", take_gaze);
 canvas.addEventListener("keydown", (event) => {
     const step = { ArrowLeft: [-8, 0], ArrowRight: [8, 0], ArrowUp: [0, -8], ArrowDown: [0, 8] }[event.key];
     if (step) {
-        is_taken = true;
+        taken_ms = performance.now();
         gaze = [0, 1].map((i) => between(gaze[i] + step[i], 0, size[i] - 1));
     } else if (event.key === "[" || event.key === "]") {
         divider = between(divider + (event.key === "[" ? -0.02 : 0.02), 0, 1);
@@ -243,6 +244,6 @@ addEventListener("resize", () => {
 });
 
 // For the tests of the page, and for the recording of it.
-window.page = { later, draw, demo: () => demo, gaze: () => gaze, show: () => show_scene().then(configure) };
+window.page = { later, draw, demo: () => demo, gaze: () => gaze, scanpath: () => scanpath, show: () => show_scene().then(configure) };
 
 start();
