@@ -14,7 +14,7 @@ const [built = join(here, "dist"), part = ""] = process.argv.slice(2);
 // equal length, because they are data there.
 const MUTANTS = [
     ["halves swapped", "each_half_shows_its_frames", "afterimage_web_bg.wasm", "at.x < show.divider_px", "at.x > show.divider_px"],
-    ["right half without memory", "each_half_shows_its_frames", "afterimage_web_bg.wasm", "encoded(textureLoad(right, px, 0)", "encoded(textureLoad(left , px, 0)"],
+    ["right half without memory", "each_half_shows_its_frames", "afterimage_web_bg.wasm", "at.x < show.divider_px", "at.x >-show.divider_px"],
     ["a label on the wrong side", "ten_seconds", "style.css", ".side.left {\n    left:", ".side.left {\n    right:"],
     ["a label that lies", "ten_seconds", "index.html", "Without memory</p>", "With memory</p>"],
     ["pointer dead", "pointer_and_keys_move_gaze_and_line", "gaze.js", 'stage.addEventListener("pointermove", follow);', ""],

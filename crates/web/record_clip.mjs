@@ -10,7 +10,7 @@ import { launch, serve } from "../../tests/web/chromium.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const FRAMES_PER_SECOND = 20;
-const SECONDS = 6;
+const SECONDS = 5;
 const server = await serve({ demo: process.argv[2] ?? join(here, "dist") });
 const folder = mkdtempSync(join(tmpdir(), "clip-"));
 
@@ -25,7 +25,7 @@ async function stage([width, height], scene) {
     await browser.evaluate("new Promise((resolve) => page.later(() => (resolve(), new Promise(() => {}))))");
     await browser.evaluate(`{
         const style = document.createElement("style");
-        style.textContent = "#stage { position: fixed !important; inset: 0; z-index: 9; border-radius: 0 !important } #hint, #fullscreen { display: none }";
+        style.textContent = "html { overflow: hidden } #stage { position: fixed !important; inset: 0; z-index: 9; border-radius: 0 !important } #hint, #fullscreen { display: none }";
         document.head.append(style);
     }`);
     const shoot = async (options) => (await browser.send("Page.captureScreenshot", options)).data;
@@ -53,7 +53,7 @@ try {
 } finally {
     server.close();
 }
-const codec = ["-c:v", "libvpx-vp9", "-crf", "36", "-b:v", "0", "-pix_fmt", "yuv420p"];
+const codec = ["-c:v", "libvpx-vp9", "-crf", "40", "-b:v", "0", "-pix_fmt", "yuv420p"];
 const input = ["-framerate", String(FRAMES_PER_SECOND), "-i", join(folder, "%04d.png")];
 const { status } = spawnSync("ffmpeg", ["-y", "-loglevel", "error", ...input, ...codec, join(here, "page/clip.webm")], { stdio: "inherit" });
 rmSync(folder, { recursive: true });
