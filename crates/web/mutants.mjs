@@ -6,6 +6,7 @@ import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:f
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const [built = join(here, "dist"), part = ""] = process.argv.slice(2);
@@ -61,7 +62,9 @@ for (const [name, test, file, right, wrong] of MUTANTS) {
     const [from, to] = [right, wrong].map((words) => Buffer.from(words).toString("latin1"));
     const is_library = file.endsWith(".wasm");
     if (!text.includes(from) || (is_library && from.length !== to.length)) throw new Error(`${name}: cannot be applied to ${file}`);
-    writeFileSync(join(folder, file), text.replaceAll(from, () => to), "latin1");
+    const bytes = Buffer.from(text.replaceAll(from, () => to), "latin1");
+    writeFileSync(join(folder, file), bytes);
+    writeFileSync(join(folder, `${file}.gz`), gzipSync(bytes, { level: 9 }));
     const { status, stdout } = spawnSync("node", [join(here, "test.mjs"), folder, test], { encoding: "utf8", timeout: 300_000 });
     rmSync(folder, { recursive: true });
     const words = stdout.match(/^FAILED .*/m)?.[0].slice(7);

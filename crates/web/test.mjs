@@ -518,6 +518,10 @@ const tests = {
         const stage = await page.box("#stage");
         const upright = await page.evaluate(size);
         check(Math.abs(upright[0] / upright[1] - stage.width / stage.height) < 0.02, `frames have the shape of the stage: ${upright.join("x")}`);
+        // A device whose speed changes nothing, and forgets that it was another before.
+        const frames_take = (ms) => `{ const demo = page.demo(); demo.frame = () => {}; demo.quality = async () => [1, 2]; demo.finished = () => new Promise((resolve) => setTimeout(resolve, ${ms})); }`;
+        await page.evaluate(frames_take(25));
+        await page.choose("filter", "mip");
         await page.resize([844, 390], 2);
         check(await page.until(`${size}[0] > ${size}[1]`, 20), "and of the phone that was turned");
         await page.settled();
@@ -528,10 +532,11 @@ const tests = {
 
         // Devices of other speeds: frames that take no time, and then such that take long.
         const other = await open({ size: [844, 390], query: "", density: 2 });
-        await other.evaluate("{ const demo = page.demo(); demo.frame = () => {}; demo.finished = async () => {}; demo.quality = async () => [1, 2]; }");
+        await other.evaluate(frames_take(0));
+        await other.choose("filter", "mip");
         const wide = await other.box("#stage");
         check(await other.until(`${size}[0] === ${Math.round(2 * wide.width)}`, 30), `on a fast device every pixel of the screen is one of the frame: ${await other.evaluate(size)}`);
-        await other.evaluate("page.demo().finished = () => new Promise((resolve) => setTimeout(resolve, 100))");
+        await other.evaluate(frames_take(100));
         check(await other.until(`${size}[0] * ${size}[1] < 150000`, 60), `on a slow one frames are smaller: ${await other.evaluate(size)}`);
         other.no_errors();
         await other.close();

@@ -146,9 +146,10 @@ async function measure() {
 
 // Larger frames for fast devices, smaller ones for slow devices; once slow, never larger again.
 function follow_speed(frame_ms, is_slow) {
+    const before = pixels;
     if (frame_ms > SLOW_MS && pixels > LEAST_PIXELS) pixels = Math.max(pixels / 2, LEAST_PIXELS);
     else if (frame_ms < FAST_MS && !is_slow && pixels < MOST_PIXELS) pixels = Math.min(pixels * 2, MOST_PIXELS);
-    if (String(frame_size()) !== String(size)) change({ is_sized: true });
+    if (pixels !== before && String(frame_size()) !== String(size)) change({ is_sized: true });
     return is_slow || frame_ms > SLOW_MS;
 }
 
