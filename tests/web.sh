@@ -44,7 +44,8 @@ rm -rf "$recordings"
 
 step "the demo"
 cargo fmt --check --all --manifest-path crates/web/Cargo.toml
-crates/web/build.sh
-node crates/web/test.mjs
+# A folder seen from here, where the page must then be.
+crates/web/build.sh target/demo
+node crates/web/test.mjs target/demo
 
 step "all checks in the browser passed"

@@ -1,10 +1,14 @@
 #!/usr/bin/env bash
 # Builds the demo into a folder that any static server serves: crates/web/build.sh [FOLDER] (default: crates/web/dist).
-# Needs Rust with the target wasm32-unknown-unknown. If that is missing, it takes Debian's compiler for browsers, which
-# it unpacks into crates/web/target/debian without installing it; the standard library is then compiled, too.
+# CODE_URL: where the code is, for the page's links; without it they lead to copies of README.md and docs/method.md.
+# PAGE_URL: where the page will be, with a slash at its end; the preview card needs it.
+# Needs Node.js, and Rust with the target wasm32-unknown-unknown. If that is missing, it takes Debian's compiler for
+# browsers, which it unpacks into crates/web/target/debian without installing it; the standard library is then compiled,
+# too.
 set -euo pipefail
-cd "$(dirname "$0")"
-to="$(realpath -m "${1:-dist}")"
+here="$(realpath "$(dirname "$0")")"
+to="$(realpath -m "${1:-$here/dist}")"
+cd "$here"
 target="${CARGO_TARGET_DIR:-$PWD/target}"
 export CARGO_TARGET_DIR="$target"
 wasm=wasm32-unknown-unknown
@@ -34,14 +38,25 @@ fi
 
 # Messages of panics name files, of this machine without this.
 home="${CARGO_HOME:-$HOME/.cargo}"
-RUSTFLAGS="--remap-path-prefix=$home/registry/src= --remap-path-prefix=$target= --remap-path-prefix=$(realpath ../..)=" \
-    cargo build --locked --release --target $wasm "${std[@]}"
+remapped="--remap-path-prefix=$home/registry/src= --remap-path-prefix=$target= --remap-path-prefix=$(realpath ../..)="
+bindgen=(env -u RUSTC -u LD_LIBRARY_PATH -u RUSTC_BOOTSTRAP CARGO_PROFILE_RELEASE_OPT_LEVEL=1 CARGO_PROFILE_RELEASE_LTO=off
+    CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 cargo run --locked --release --package afterimage-web-bindgen --)
 
 mkdir -p "$to"
-env -u RUSTC -u LD_LIBRARY_PATH -u RUSTC_BOOTSTRAP CARGO_PROFILE_RELEASE_OPT_LEVEL=1 CARGO_PROFILE_RELEASE_LTO=off \
-    CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 cargo run --locked --release --package afterimage-web-bindgen \
-    -- "$target/$wasm/release/afterimage_web.wasm" "$to"
-cp page/* "$to"
-cp ../../fixtures/scanpath_viewing.csv "$to/scanpath.csv"
+# library NAME OPTIONS...: a library and its bindings.
+library() {
+    local name=$1
+    shift
+    RUSTFLAGS="$remapped" cargo build --locked --release --target $wasm "${std[@]}" "$@"
+    "${bindgen[@]}" "$target/$wasm/release/afterimage_web.wasm" "$to" "$name" shaders/*.wgsl ../../shaders/*/*.wgsl
+}
+library afterimage_web
+library compare --features compare
 
-echo "$to, compressed: $(cat "$to"/*.{html,css,js,wasm} | gzip -9 | wc -c) bytes without pictures"
+cp page/* "$to"
+cp ../../README.md "$to/readme.txt"
+cp ../../docs/method.md "$to/method.txt"
+code="${CODE_URL:-readme.txt}"
+method="${CODE_URL:+$CODE_URL/blob/HEAD/docs/method.md}"
+sed -i "s|@CODE@|$code|; s|@METHOD@|${method:-method.txt}|; s|@PAGE_URL@|${PAGE_URL:-}|" "$to/index.html"
+node pack.mjs "$to"

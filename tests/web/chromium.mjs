@@ -2,7 +2,7 @@
 
 import { spawn } from "node:child_process";
 import { createServer } from "node:http";
-import { mkdtempSync, readFileSync, rmSync, statSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, rmSync, statSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { extname, join, normalize } from "node:path";
 
@@ -18,7 +18,7 @@ const TYPES = {
 // SwiftShader is the software Vulkan device that Chromium brings; Dawn is its WebGPU. What Dawn draws on a canvas reaches
 // the page only if the page is composed by SwiftShader, too: otherwise the device is lost at the first frame. The rest keeps
 // Chromium off the network.
-const FLAGS = [
+export const FLAGS = [
     "--headless=new",
     "--no-sandbox",
     "--enable-unsafe-webgpu",
@@ -35,7 +35,8 @@ const FLAGS = [
     "--remote-debugging-pipe",
 ];
 
-// Serves files: `folders` maps the first part of a path to a folder. Resolves to the server's address.
+// Serves files: `folders` maps the first part of a path to a folder; `FILE.gz` beside a file is sent in its place. Resolves to
+// the server's address.
 export function serve(folders) {
     const server = createServer((request, response) => {
         const path = normalize(decodeURIComponent(new URL(request.url, "http://localhost").pathname));
@@ -43,8 +44,10 @@ export function serve(folders) {
         try {
             let file = join(folders[first] ?? "/nonexistent", ...rest);
             if (statSync(file).isDirectory()) file = join(file, "index.html");
-            const body = readFileSync(file);
-            response.writeHead(200, { "Content-Type": TYPES[extname(file)] ?? "application/octet-stream" });
+            const is_gzip = existsSync(`${file}.gz`) && /gzip/.test(request.headers["accept-encoding"]);
+            const body = readFileSync(is_gzip ? `${file}.gz` : file);
+            const encoding = is_gzip ? { "Content-Encoding": "gzip" } : {};
+            response.writeHead(200, { "Content-Type": TYPES[extname(file)] ?? "application/octet-stream", ...encoding });
             response.end(body);
         } catch {
             response.writeHead(404);

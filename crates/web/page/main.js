@@ -1,41 +1,62 @@
-// Controls of the demo: gaze, pictures, settings, and what is measured. The frames are made by the Rust library.
+// The page: its controls, its frames, and what is measured of them. The frames are made by the Rust library.
 
 import init, { Demo } from "./afterimage_web.js";
-import { draw_text_page, fitted } from "./pictures.js";
+import { read_address, write_address } from "./address.js";
+import { Gaze } from "./gaze.js";
+import { draw_text_page, filling, letterboxed } from "./pictures.js";
+import { show_trouble } from "./trouble.js";
 
 const $ = (id) => document.getElementById(id);
 const canvas = $("canvas");
+const stage = $("stage");
+const gaze = new Gaze(stage, canvas);
 const is_still = matchMedia("(prefers-reduced-motion: reduce)");
 
-// Frames are small on phones, and where a query says so.
-const query = new URLSearchParams(location.search);
-function frame_size() {
-    const asked = query.get("size")?.match(/^(\d+)x(\d+)$/);
-    if (asked) return [Number(asked[1]), Number(asked[2])];
-    return innerWidth < 700 ? [480, 270] : [640, 360];
-}
-
 const METHOD_WORDS = {
-    smr: "smr keeps the sharpest sample of every surface point as long as it explains the new frames.",
-    wrs: "wrs keeps a random sample of every surface point, weighted by how sharply the eye saw it; it speckles.",
-    taa: "taa blends a tenth of each frame in and clips what came before to the new frame's colors: detail is lost.",
-    none: "Without a method both sides are the same: what the renderer delivers.",
+    smr: "Scale-matched reservoirs show a sample for as long as it explains the new frames.",
+    wrs: "Weighted reservoirs prefer what the eye saw sharply. They speckle.",
+    taa: "Each frame is blended in by a tenth, and older color is clipped to the new frame’s: detail is lost.",
+    none: "Both sides are the same.",
 };
+// Pixels of a frame: at first, and the least and the most that a device's speed changes them to.
+const FIRST_PIXELS = 640 * 360;
+const LEAST_PIXELS = 480 * 270;
+const MOST_PIXELS = 1920 * 1080;
+// Frame times below which a device gets larger frames, and above which smaller ones.
+const FAST_MS = 9;
+const SLOW_MS = 60;
+// After so many frames it is decided about.
+const TRIED_FRAMES = 20;
+// Motion goes on by at most this from frame to frame: on a slow device it is slow, not jerky, and memory is of use.
+const LONGEST_STEP_S = 1 / 30;
+const COMPARED_FRAMES = 4;
 
 let demo;
 let size = [0, 0];
-let scanpath = [];
-let gaze = [0, 0];
-let divider = 0.5;
-// The pointer or a key has taken the gaze over from the scanpath.
-let is_taken = false;
+let pixels = FIRST_PIXELS;
 let own_picture;
-// Waits between two frames for what must not happen during one.
-const jobs = [];
+let courtyard;
+// Time of the camera and of the scanpath.
+let clock_s = 0;
+// Number of the loop that runs; 0: none.
 let running = 0;
+// What the next frame waits for.
+const jobs = [];
+// Choices since the last frame; many are one.
+let changed;
 
-const chosen = (name) => document.querySelector(`input[name=${name}]:checked`).value;
-const between = (x, low, high) => Math.min(Math.max(x, low), high);
+const number = (id) => Number($(id).value);
+const chosen = (name) => document.querySelector(`input[name=${name}]:checked`)?.value;
+const scene = () => chosen("scene") ?? "own";
+
+// The stage's device pixels, as many as the device is fast enough for; fixed where the address says so.
+function frame_size() {
+    const asked = new URLSearchParams(location.search).get("size")?.match(/^(\d+)x(\d+)$/);
+    if (asked) return [Number(asked[1]), Number(asked[2])];
+    const full = [stage.clientWidth, stage.clientHeight].map((side) => side * devicePixelRatio);
+    const scale = Math.min(1, Math.sqrt(pixels / (full[0] * full[1])));
+    return full.map((side) => Math.max(16, Math.round(side * scale)));
+}
 
 function progress(text) {
     $("progress").textContent = text;
@@ -43,206 +64,257 @@ function progress(text) {
     return new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
 }
 
-function trouble(title, reason) {
+let noticed;
+function notice(text) {
+    $("notice").textContent = text;
+    clearTimeout(noticed);
+    noticed = setTimeout(() => ($("notice").textContent = ""), 8000);
+}
+
+function trouble(kind, error) {
     running = 0;
     progress("");
-    $("trouble").querySelector("h2").textContent = title;
-    $("reason").textContent = reason;
-    if (!$("trouble").open) $("trouble").showModal();
-    $("clip").src = "clip.webm";
-    if (!is_still.matches) $("clip").play().catch(() => {});
+    show_trouble(kind, error?.message ?? error);
 }
 
-async function load_scanpath() {
-    const text = await (await fetch("scanpath.csv")).text();
-    const [width, height] = text.match(/screen_px: (\d+)x(\d+)/).slice(1).map(Number);
-    const rows = text.split("\n").filter((line) => /^[\d.]+,/.test(line)).map((line) => line.split(",").map(Number));
-    scanpath = rows.filter((row) => row[3] === 1).map(([t, x, y]) => [t, x / width, y / height]);
+async function picture(size) {
+    if (scene() === "own") return letterboxed(own_picture, size);
+    if (scene() === "text") return draw_text_page(size);
+    courtyard ??= await createImageBitmap(await (await fetch("courtyard.jpg")).blob());
+    return filling(courtyard, size);
 }
 
-// Position at a time, in shares of the picture; the path starts again when it ends.
-function scanpath_at(seconds) {
-    const t = seconds % scanpath.at(-1)[0];
-    return scanpath[between(scanpath.findIndex((row) => row[0] > t), 1, scanpath.length) - 1].slice(1);
+async function show_scene(demo, size) {
+    if (scene() === "space") demo.space();
+    else demo.picture(await picture(size));
 }
 
-async function show_scene() {
-    const scene = chosen("scene");
-    if (scene === "space") demo.space();
-    else if (scene === "courtyard" || (scene === "own" && own_picture)) {
-        const file = scene === "own" ? own_picture : await (await fetch("courtyard.jpg")).blob();
-        demo.picture(fitted(await createImageBitmap(file), size));
-    } else demo.picture(draw_text_page(size));
-    // The scene draws its samples itself.
-    $("filter").disabled = scene === "space";
+function configure(demo) {
+    const filter = scene() === "space" ? "sparse" : $("filter").value;
+    demo.configure(chosen("method"), filter, number("fovea"), number("mid"), number("rate_mid"), number("rate_far"));
 }
 
-function configure() {
-    const number = (id) => Number($(id).value);
+// Controls that follow from others, and words about them.
+function show_choices() {
     $("mid").value = Math.max(number("mid"), number("fovea"));
     $("rate_far").value = Math.max(number("rate_far"), number("rate_mid"));
     for (const id of ["fovea", "mid"]) document.querySelector(`output[for=${id}]`).textContent = `${$(id).value}°`;
-    const filter = chosen("scene") === "space" ? "sparse" : $("filter").value;
-    demo.configure(chosen("method"), filter, number("fovea"), number("mid"), number("rate_mid"), number("rate_far"));
+    // The scene is drawn at its samples.
+    $("filter").disabled = scene() === "space";
+    $("own_label").classList.toggle("is-chosen", scene() === "own");
     $("words").textContent = METHOD_WORDS[chosen("method")];
-    $("compared").textContent = "";
+    $("size").textContent = size.join(" × ");
+    const share = number("divider");
+    document.querySelector(".side.left").hidden = share < 25;
+    document.querySelector(".side.right").hidden = share > 75;
 }
 
-// One frame; the time of the camera stands still for those who want that.
-function draw(seconds) {
-    if (!is_taken && scanpath.length > 0) {
-        const [x, y] = scanpath_at(is_still.matches ? 0 : seconds);
-        gaze = [x * size[0] - 0.5, y * size[1] - 0.5];
+// Pixels of the frame for each of the page's.
+const density = () => size[0] / (stage.clientWidth || size[0]);
+
+function draw() {
+    const [x, y] = gaze.at.map((share, i) => share * size[i] - 0.5);
+    demo.frame(x, y, is_still.matches ? 0 : clock_s, (number("divider") / 100) * size[0], Math.max(2, 2 * density()));
+}
+
+// Frames of what is chosen now. Their first compiles pipelines.
+async function apply({ is_sized, is_scene }) {
+    if (is_sized) {
+        size = frame_size();
+        [canvas.width, canvas.height] = size;
+        demo.resize(...size);
     }
-    demo.frame(gaze[0], gaze[1], is_still.matches ? 0 : seconds, divider * size[0]);
-}
-
-// The first frame of a configuration compiles its pipelines.
-async function prepare(what) {
-    await progress(`${what}: preparing the pipelines …`);
-    draw(0);
+    if (is_sized || is_scene) await show_scene(demo, size);
+    configure(demo);
+    show_choices();
+    await progress("Preparing …");
+    draw();
     await demo.finished();
     await progress("");
+}
+
+function change(what) {
+    changed = { ...changed, ...what };
 }
 
 async function measure() {
     const [left, right] = await demo.quality();
     $("quality_left").textContent = `${left.toFixed(1)} dB`;
     $("quality_right").textContent = `${right.toFixed(1)} dB`;
+    $("gain").textContent = `${Math.max(right - left, 0).toFixed(right - left < 9.95 ? 1 : 0)} dB`;
+}
+
+// Larger frames for fast devices, smaller ones for slow devices; once slow, never larger again.
+function follow_speed(frame_ms, is_slow) {
+    const before = pixels;
+    if (frame_ms > SLOW_MS && pixels > LEAST_PIXELS) pixels = Math.max(pixels / 2, LEAST_PIXELS);
+    else if (frame_ms < FAST_MS && !is_slow && pixels < MOST_PIXELS) pixels = Math.min(pixels * 2, MOST_PIXELS);
+    if (pixels !== before && String(frame_size()) !== String(size)) change({ is_sized: true });
+    return is_slow || frame_ms > SLOW_MS;
 }
 
 async function loop(number) {
     let frame_ms = 0;
-    let measured = performance.now();
+    let tried = 0;
+    let is_slow = false;
+    let before = performance.now();
+    let measure_at = before + 500;
     while (running === number) {
         await new Promise(requestAnimationFrame);
         if (running !== number) return;
         try {
             while (jobs.length > 0) await jobs.shift()();
+            if (changed) {
+                const what = changed;
+                changed = undefined;
+                await apply(what);
+                [tried, frame_ms] = [0, 0];
+                measure_at = performance.now() + 500;
+                before = performance.now();
+            }
             const now = performance.now();
-            draw(now / 1000);
+            clock_s += Math.min((now - before) / 1000, LONGEST_STEP_S);
+            before = now;
+            gaze.advance(is_still.matches ? 0 : clock_s);
+            draw();
             await demo.finished();
             const fault = demo.fault();
             if (fault) throw new Error(fault);
-            frame_ms += 0.1 * (performance.now() - now - frame_ms);
+            const took_ms = performance.now() - now;
+            frame_ms += (took_ms - frame_ms) / Math.min(++tried, 10);
             $("time").textContent = `${frame_ms.toFixed(1)} ms`;
-            $("shaded").textContent = `${(100 * demo.shaded()).toFixed(1)} %`;
-            if (now - measured > 1500) {
+            $("shaded").textContent = `${(100 * demo.shaded()).toFixed(0)} %`;
+            if (tried % TRIED_FRAMES === 0) is_slow = follow_speed(frame_ms, is_slow);
+            if (now > measure_at) {
                 await measure();
-                measured = performance.now();
+                // A tenth of the time at most.
+                const done = performance.now();
+                measure_at = done + Math.max(1000, 10 * (done - now - took_ms));
+                before += done - now;
             }
             window.frames_shown = (window.frames_shown ?? 0) + 1;
         } catch (error) {
-            trouble("The frames have stopped.", demo.fault() ?? error.message);
+            const fault = demo.fault() ?? error.message ?? String(error);
+            trouble(/lost|destroyed/i.test(fault) ? "lost" : "fault", fault);
         }
     }
 }
 
 // Runs between two frames.
 function later(job) {
-    return new Promise((resolve, reject) => jobs.push(() => job().then(resolve, (error) => {
-        reject(error);
-        throw error;
-    })));
+    return new Promise((resolve, reject) => jobs.push(() => job().then(resolve, reject)));
 }
 
 async function start() {
-    if (!navigator.gpu) {
-        trouble("This browser has no WebGPU.", "The demo needs it: a current Chrome or Edge, Safari 26, or Firefox 141 on Windows. Below is a recording.");
-        return;
-    }
+    if (!isSecureContext) return trouble("insecure");
+    if (!navigator.gpu) return trouble("no_webgpu");
     try {
         const begin = performance.now();
-        await progress("Loading …");
-        await Promise.all([init(), load_scanpath()]);
+        read_address();
+        await Promise.all([init(), gaze.load()]);
         size = frame_size();
         [canvas.width, canvas.height] = size;
         demo = await Demo.open(canvas, ...size);
         $("adapter").textContent = demo.adapter() || "WebGPU";
-        await show_scene();
-        configure();
-        await prepare("First frame");
+        if (scene() === "own") document.querySelector("input[name=scene]").checked = true;
+        gaze.advance(0);
+        await apply({ is_scene: true });
         window.first_frame_ms = performance.now() - begin;
-        $("trouble").close();
         loop(++running);
     } catch (error) {
-        trouble("The demo cannot start.", `${demo?.fault() ?? error.message ?? error} Below is a recording.`);
+        trouble(/adapter/i.test(error.message ?? error) ? "no_adapter" : "no_start", demo?.fault() ?? error);
     }
 }
 
-function take_gaze(event) {
-    const box = canvas.getBoundingClientRect();
-    is_taken = true;
-    gaze = [((event.clientX - box.left) / box.width) * size[0] - 0.5, ((event.clientY - box.top) / box.height) * size[1] - 0.5];
+// A picture of the visitor's; it stays on the device.
+async function take_picture(file) {
+    if (!file) return;
+    try {
+        own_picture = await createImageBitmap(file);
+    } catch {
+        const is_picture = file.type.startsWith("image/");
+        notice(is_picture ? `This browser cannot read “${file.name}”. JPEG, PNG and WebP work.` : `“${file.name}” is not a picture.`);
+        return;
+    }
+    notice("");
+    for (const radio of document.querySelectorAll("input[name=scene]")) radio.checked = false;
+    change({ is_scene: true });
+    write_address();
 }
 
-canvas.addEventListener("pointermove", take_gaze);
-canvas.addEventListener("pointerdown", take_gaze);
-canvas.addEventListener("keydown", (event) => {
-    const step = { ArrowLeft: [-8, 0], ArrowRight: [8, 0], ArrowUp: [0, -8], ArrowDown: [0, 8] }[event.key];
-    if (step) {
-        is_taken = true;
-        gaze = [0, 1].map((i) => between(gaze[i] + step[i], 0, size[i] - 1));
-    } else if (event.key === "[" || event.key === "]") {
-        divider = between(divider + (event.key === "[" ? -0.02 : 0.02), 0, 1);
-        $("divider").value = 100 * divider;
-    } else return;
-    event.preventDefault();
+async function compare() {
+    $("compare").disabled = true;
+    $("compared").textContent = "Comparing …";
+    try {
+        // A second library, with a device of its own: the frames on the screen keep their history.
+        const library = await import("./compare.js");
+        await library.default();
+        const scale = Math.min(1, Math.sqrt(FIRST_PIXELS / (size[0] * size[1])));
+        const compared_size = size.map((side) => Math.floor(side * scale));
+        const twin = await library.Demo.open(document.createElement("canvas"), ...compared_size);
+        await show_scene(twin, compared_size);
+        configure(twin);
+        const [values, different, ms] = await twin.compare(COMPARED_FRAMES);
+        twin.free();
+        $("compared").textContent = `${different} of ${values.toLocaleString("en")} values of ${COMPARED_FRAMES} frames differ (${ms.toFixed(0)} ms a frame on the CPU).`;
+    } catch {
+        $("compared").textContent = "The comparison could not be made: its library could not be loaded, or the graphics device refused it.";
+    }
+    $("compare").disabled = false;
+}
+
+document.addEventListener("change", ({ target }) => {
+    if (target === $("own") || target === $("divider")) return;
+    if (target.name === "scene" && target.value !== "own") notice("");
+    show_choices();
+    change({ is_scene: changed?.is_scene || target.name === "scene" });
+    $("compared").textContent = "";
+    write_address();
 });
-$("divider").addEventListener("input", () => {
-    divider = $("divider").value / 100;
+document.addEventListener("input", ({ target }) => {
+    if (target.type === "range") show_choices();
+});
+$("divider").addEventListener("change", write_address);
+canvas.addEventListener("keydown", ({ key }) => {
+    if (key !== "[" && key !== "]") return;
+    $("divider").value = number("divider") + (key === "[" ? -2 : 2);
+    show_choices();
+    write_address();
 });
 $("own").addEventListener("change", () => {
-    own_picture = $("own").files[0];
-    document.querySelector("input[value=own]").checked = true;
-    $("controls").dispatchEvent(new Event("change"));
+    take_picture($("own").files[0]);
+    // So that the same file can be chosen again.
+    $("own").value = "";
 });
-$("controls").addEventListener("change", (event) => {
-    if (!demo || event.target === $("own")) return;
-    const is_scene = event.target.name === "scene" || event.target === $("controls");
-    later(async () => {
-        try {
-            if (is_scene) await show_scene();
-        } catch {
-            $("words").textContent = "The browser cannot read this picture.";
-            return;
-        }
-        configure();
-        await prepare("New settings");
-    }).catch(() => {});
+addEventListener("paste", (event) => {
+    const [file] = event.clipboardData.files;
+    if (file) take_picture(file);
+    else notice("The clipboard holds no picture.");
 });
-$("controls").addEventListener("input", () => {
-    for (const id of ["fovea", "mid"]) document.querySelector(`output[for=${id}]`).textContent = `${$(id).value}°`;
+addEventListener("dragover", (event) => event.preventDefault());
+addEventListener("drop", (event) => {
+    event.preventDefault();
+    const [file] = event.dataTransfer.files;
+    if (file) take_picture(file);
+    else notice("Drop a picture’s file here.");
 });
 $("controls").addEventListener("submit", (event) => event.preventDefault());
-$("compare").addEventListener("click", () => {
-    later(async () => {
-        const frames = 4;
-        $("compared").textContent = "Comparing …";
-        await progress("Comparing with the CPU …");
-        const [values, different, ms] = await demo.compare(frames);
-        await progress("");
-        $("compared").textContent = `${different} of ${values.toLocaleString("en")} values of ${frames} frames differ (${ms.toFixed(0)} ms a frame on the CPU).`;
-    }).catch(() => {});
-});
+$("compare").addEventListener("click", compare);
 $("again").addEventListener("click", () => location.reload());
+$("fullscreen").hidden = !document.fullscreenEnabled;
+$("fullscreen").addEventListener("click", () => {
+    if (document.fullscreenElement) document.exitFullscreen();
+    else stage.requestFullscreen();
+});
 let resizing;
-addEventListener("resize", () => {
+new ResizeObserver(() => {
     clearTimeout(resizing);
     resizing = setTimeout(() => {
-        if (!demo || running === 0 || String(frame_size()) === String(size)) return;
-        later(async () => {
-            size = frame_size();
-            [canvas.width, canvas.height] = size;
-            demo.resize(...size);
-            await show_scene();
-            configure();
-            await prepare("New size");
-        }).catch(() => {});
-    }, 200);
-});
+        if (running && String(frame_size()) !== String(size)) change({ is_sized: true });
+    }, 150);
+}).observe(stage);
 
 // For the tests of the page, and for the recording of it.
-window.page = { later, draw, demo: () => demo, gaze: () => gaze, show: () => show_scene().then(configure) };
+window.page = { later, draw, picture, gaze, demo: () => demo, size: () => size, clock: () => clock_s, apply, set_clock: (s) => (clock_s = s) };
 
 start();

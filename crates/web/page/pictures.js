@@ -23,10 +23,11 @@ export function draw_text_page([width, height]) {
     surface.fillStyle = "#f4efe4";
     surface.fillRect(0, 0, width, height);
     surface.fillStyle = "#1c1a17";
-    const font_px = Math.max(11, Math.round(height / 27));
-    const [left, line_px] = [0.06 * width, 1.32 * font_px];
+    // As large as the page holds it.
+    const font_px = Math.max(8, Math.sqrt((width * height) / 1330));
+    const [left, line_px] = [0.05 * width, 1.36 * font_px];
     surface.font = `600 ${1.5 * font_px}px Georgia, serif`;
-    let y = 2.2 * font_px;
+    let y = 3.2 * font_px;
     surface.fillText("Down the Rabbit-Hole", left, y);
     surface.font = `${font_px}px Georgia, serif`;
     y += 1.7 * line_px;
@@ -42,12 +43,22 @@ export function draw_text_page([width, height]) {
     return new Uint8Array(surface.getImageData(0, 0, width, height).data.buffer);
 }
 
-// A picture, cut to the shape of the frames.
-export function fitted(image, size) {
+function drawn(image, size, scale) {
     const surface = new OffscreenCanvas(...size).getContext("2d", { willReadFrequently: true });
+    surface.fillStyle = "#16171a";
+    surface.fillRect(0, 0, ...size);
     surface.imageSmoothingQuality = "high";
-    const scale = Math.max(size[0] / image.width, size[1] / image.height);
     const [width, height] = [image.width * scale, image.height * scale];
-    surface.drawImage(image, (size[0] - width) / 2, (size[1] - height) / 2, width, height);
+    const box = [(size[0] - width) / 2, (size[1] - height) / 2, width, height];
+    // Under what is transparent.
+    surface.fillStyle = "#fff";
+    surface.fillRect(...box);
+    surface.drawImage(image, ...box);
     return new Uint8Array(surface.getImageData(0, 0, ...size).data.buffer);
 }
+
+// A picture that fills the frame; what does not fit is cut.
+export const filling = (image, size) => drawn(image, size, Math.max(size[0] / image.width, size[1] / image.height));
+
+// A whole picture in the frame, between bars.
+export const letterboxed = (image, size) => drawn(image, size, Math.min(size[0] / image.width, size[1] / image.height));

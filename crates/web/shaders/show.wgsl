@@ -5,8 +5,8 @@ struct Show {
     gaze_px: vec2<f32>,
     divider_px: f32,
     ring_px: f32,
-    unused_0: f32,
-    unused_1: f32,
+    line_px: f32,
+    unused: f32,
 }
 
 @group(0) @binding(0) var<uniform> show: Show;
@@ -31,8 +31,11 @@ fn fragment(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     if at.x < show.divider_px {
         shown = encoded(textureLoad(left, px, 0).xyz);
     }
-    let line = abs(at.x - show.divider_px);
-    let ring = abs(distance(at - 0.5, show.gaze_px) - show.ring_px);
-    let mark = max(1.0 - smoothstep(0.5, 1.5, line), 0.7 * (1.0 - smoothstep(0.5, 1.5, ring)));
-    return vec4<f32>(mix(shown, vec3<f32>(1.0, 0.72, 0.1), mark), 1.0);
+    // A dark rim keeps the lines visible on light pictures.
+    let half = 0.5 * show.line_px;
+    let distances = vec2<f32>(abs(at.x - show.divider_px), abs(distance(at - 0.5, show.gaze_px) - show.ring_px));
+    let rim = 0.35 * (1.0 - smoothstep(vec2<f32>(half), vec2<f32>(3.0 * half + 0.5), distances));
+    let line = vec2<f32>(1.0, 0.85) * (1.0 - smoothstep(vec2<f32>(half - 0.5), vec2<f32>(half + 0.5), distances));
+    shown = mix(shown, vec3<f32>(0.0), max(rim.x, rim.y));
+    return vec4<f32>(mix(shown, vec3<f32>(1.0, 0.72, 0.1), max(line.x, line.y)), 1.0);
 }

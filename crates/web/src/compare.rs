@@ -1,52 +1,60 @@
-//! The same frames on the device and on the CPU, value by value.
+//! The same frames on the device and on the CPU, value by value. Not in the page's library but in a second one, which
+//! the page loads when somebody asks for the comparison.
 
-use crate::Result;
 use crate::gpu::Gpu;
-use crate::stage::Stage;
+use crate::{Demo, Result};
 use afterimage::Image;
 use afterimage::cpu::{CpuAfterimage, Frame};
+use wasm_bindgen::prelude::*;
 use wgpu::Texture;
 
-/// Values compared, values that differ in any bit, and milliseconds a frame on the CPU. The gaze wanders; history
-/// starts empty before and after.
-pub async fn compare(gpu: &Gpu, stage: &mut Stage, frames: u32) -> Result<Vec<f64>> {
-    stage.forget(gpu)?;
-    let desc = stage.desc();
-    let [width, height] = desc.size_px.map(|s| s as f32);
-    let mut cpu = CpuAfterimage::new(&desc)?;
-    let (mut compared, mut different, mut ms) = (0_u32, 0_u32, 0.0);
-    for index in 0..frames {
-        let t = index as f32 / frames.max(2) as f32;
-        let gaze_px = [width * (0.3 + 0.5 * t), height * (0.4 + 0.3 * t)];
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let inputs = stage.record(gpu, &mut encoder, gaze_px, t)?;
-        gpu.queue.submit([encoder.finish()]);
-        let color = image(gpu, &inputs.color, |c| [c[0], c[1], c[2]]).await?;
-        let (depth, motion) = match &inputs.geometry {
-            Some([depth, motion]) => {
-                (vec![image(gpu, depth, |c| c[0]).await?], vec![image(gpu, motion, |c| [c[0], c[1]]).await?])
+#[wasm_bindgen]
+impl Demo {
+    /// Makes `frames` frames on the device and on the CPU: numbers of values compared and of values that differ in any
+    /// bit, and milliseconds a frame of the CPU. The gaze wanders; history starts empty.
+    ///
+    /// # Errors
+    /// On a lost device.
+    pub async fn compare(&mut self, frames: u32) -> Result<Vec<f64>> {
+        let (gpu, stage) = (&self.gpu, &mut self.stage);
+        stage.restart(gpu)?;
+        let desc = stage.desc();
+        let [width, height] = desc.size_px.map(|s| s as f32);
+        let mut cpu = CpuAfterimage::new(&desc)?;
+        let (mut compared, mut different, mut ms) = (0_u32, 0_u32, 0.0);
+        for index in 0..frames {
+            let t = index as f32 / frames.max(2) as f32;
+            let gaze_px = [width * (0.3 + 0.5 * t), height * (0.4 + 0.3 * t)];
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            let inputs = stage.record(gpu, &mut encoder, gaze_px, t)?;
+            gpu.queue.submit([encoder.finish()]);
+            let color = image(gpu, &inputs.color, |c| [c[0], c[1], c[2]]).await?;
+            let (depth, motion) = match &inputs.geometry {
+                Some([depth, motion]) => {
+                    (vec![image(gpu, depth, |c| c[0]).await?], vec![image(gpu, motion, |c| [c[0], c[1]]).await?])
+                }
+                None => (vec![], vec![]),
+            };
+            let (colors, depths, motions): (Vec<_>, Vec<_>, Vec<_>) =
+                (vec![&color], depth.iter().collect(), motion.iter().collect());
+            let frame = Frame {
+                depth: inputs.geometry.is_some().then_some(&depths[..]),
+                motion: inputs.geometry.is_some().then_some(&motions[..]),
+                ..Frame::new(&colors, &inputs.views, index.into())
+            };
+            let mut expected = [Image::filled(desc.size_px, [0.0_f32; 3])];
+            let start = js_sys::Date::now();
+            cpu.process(&frame, &mut expected)?;
+            ms += js_sys::Date::now() - start;
+            let [expected] = expected;
+            let shown = gpu.read(&stage.output).await?;
+            for (got, expected) in shown.chunks_exact(4).zip(expected.pixels()) {
+                different += (0..3).map(|i| u32::from(got[i].to_bits() != expected[i].to_bits())).sum::<u32>();
+                compared += 3;
             }
-            None => (vec![], vec![]),
-        };
-        let (colors, depths, motions): (Vec<_>, Vec<_>, Vec<_>) =
-            (vec![&color], depth.iter().collect(), motion.iter().collect());
-        let frame = Frame {
-            depth: inputs.geometry.is_some().then_some(&depths[..]),
-            motion: inputs.geometry.is_some().then_some(&motions[..]),
-            ..Frame::new(&colors, &inputs.views, index.into())
-        };
-        let mut expected = [Image::filled(desc.size_px, [0.0_f32; 3])];
-        let start = js_sys::Date::now();
-        cpu.process(&frame, &mut expected)?;
-        ms += js_sys::Date::now() - start;
-        let shown = gpu.read(&stage.output).await?;
-        for (got, expected) in shown.chunks_exact(4).zip(expected[0].pixels()) {
-            different += (0..3).map(|i| u32::from(got[i].to_bits() != expected[i].to_bits())).sum::<u32>();
-            compared += 3;
         }
+        Ok(vec![compared.into(), different.into(), ms / f64::from(frames.max(1))])
     }
-    stage.forget(gpu)?;
-    Ok(vec![compared.into(), different.into(), ms / f64::from(frames.max(1))])
 }
 
 /// A texture as an image: `pixel` makes a pixel of a texel's channels.

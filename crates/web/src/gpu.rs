@@ -81,28 +81,39 @@ impl Gpu {
 
     /// Texels of a texture whose channels are floats, row after row.
     pub async fn read(&self, texture: &Texture) -> Result<Vec<f32>> {
+        self.read_rows(texture, 1).await
+    }
+
+    /// Texels of every `step`-th row. Depth can only be read as a whole.
+    pub async fn read_rows(&self, texture: &Texture, step: u32) -> Result<Vec<f32>> {
         let texel = texture.format().block_copy_size(Some(TextureAspect::All)).unwrap_or(4);
         let row = texture.width() * texel;
+        let rows = texture.height();
         let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = self.device.create_buffer(&BufferDescriptor {
             label: Some("readback"),
-            size: u64::from(padded * texture.height()),
+            size: u64::from(padded * rows.div_ceil(step)),
             usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(padded),
-            rows_per_image: Some(texture.height()),
-        };
         let mut encoder = self.device.create_command_encoder(&Default::default());
-        let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
-        encoder.copy_texture_to_buffer(texture.as_image_copy(), to, texture.size());
+        let height = if step == 1 { rows } else { 1 };
+        for (i, y) in (0..rows).step_by(if step == 1 { rows } else { step } as usize).enumerate() {
+            let layout = wgpu::TexelCopyBufferLayout {
+                offset: i as u64 * u64::from(padded),
+                bytes_per_row: Some(padded),
+                rows_per_image: Some(height),
+            };
+            let from =
+                wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x: 0, y, z: 0 }, ..texture.as_image_copy() };
+            let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+            encoder.copy_texture_to_buffer(from, to, Extent3d { height, ..texture.size() });
+        }
         self.queue.submit([encoder.finish()]);
         mapped(&buffer).await?;
         let bytes = buffer.get_mapped_range(..).map_err(failed)?;
-        let rows = bytes.chunks(padded as usize).map(|r| &r[..row as usize]);
-        Ok(rows.flat_map(bytemuck::pod_collect_to_vec::<u8, f32>).collect())
+        let texels = bytes.chunks(padded as usize).map(|r| &r[..row as usize]);
+        Ok(texels.flat_map(bytemuck::pod_collect_to_vec::<u8, f32>).collect())
     }
 }
 

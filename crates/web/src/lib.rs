@@ -1,6 +1,7 @@
-//! The demo in a browser: WebGPU through wgpu, with the drop-in's executor on the device and, for comparison, the one
-//! on the CPU. `page/main.js` has the controls, and calls what is here.
+//! The demo in a browser: WebGPU through wgpu, with the drop-in's executor on the device and, with the feature `compare`,
+//! the one on the CPU. `page/main.js` has the controls, and calls what is here.
 
+#[cfg(feature = "compare")]
 mod compare;
 mod gpu;
 mod show;
@@ -9,7 +10,7 @@ mod stage;
 
 use afterimage::{Filter, Foveation, MethodKind, Settings};
 use gpu::Gpu;
-use show::Show;
+use show::{Marks, Show};
 use stage::Stage;
 use wasm_bindgen::prelude::*;
 
@@ -88,17 +89,18 @@ impl Demo {
         self.stage.configure(&self.gpu, Settings { method: method.into(), foveation, ..Settings::default() })
     }
 
-    /// Draws a frame: gaze in pixels, time of the camera in seconds, position of the divider in pixels. Left of it is
-    /// what the renderer delivers, right of it what the method makes of it.
+    /// Draws a frame: gaze in pixels, time of the camera in seconds, position of the divider and width of lines in
+    /// pixels. Left of the divider is what the renderer delivers, right of it what the method makes of it.
     ///
     /// # Errors
     /// If a frame is not what the description says.
-    pub fn frame(&mut self, gaze_x: f32, gaze_y: f32, seconds: f32, divider_px: f32) -> Result<()> {
+    pub fn frame(&mut self, gaze_x: f32, gaze_y: f32, seconds: f32, divider_px: f32, line_px: f32) -> Result<()> {
         let gaze = [gaze_x, gaze_y];
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.stage.record(&self.gpu, &mut encoder, gaze, seconds)?;
         let images = [&self.stage.plain_output, &self.stage.output];
-        self.show.record(&self.gpu, &mut encoder, images, gaze, divider_px, self.stage.fovea_radius_px())?;
+        let marks = Marks { gaze_px: gaze, ring_px: self.stage.fovea_radius_px(), divider_px, line_px };
+        self.show.record(&self.gpu, &mut encoder, images, marks)?;
         self.gpu.queue.submit([encoder.finish()]);
         self.show.present(&self.gpu);
         Ok(())
@@ -125,16 +127,15 @@ impl Demo {
         self.stage.quality(&self.gpu).await
     }
 
-    /// Makes `frames` frames on the device and on the CPU: numbers of values compared and of values that differ in any
-    /// bit, and milliseconds a frame of the CPU.
+    /// Pixels of what the renderer delivered: linear color and alpha, floats.
     ///
     /// # Errors
     /// On a lost device.
-    pub async fn compare(&mut self, frames: u32) -> Result<Vec<f64>> {
-        compare::compare(&self.gpu, &mut self.stage, frames).await
+    pub async fn delivered(&self) -> Result<Vec<f32>> {
+        self.gpu.read(&self.stage.plain_output).await
     }
 
-    /// Pixels of what is shown: linear color and alpha, floats.
+    /// Pixels of what the method made of it.
     ///
     /// # Errors
     /// On a lost device.

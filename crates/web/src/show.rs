@@ -16,6 +16,14 @@ pub struct Show {
     drawn: Option<SurfaceTexture>,
 }
 
+/// What is drawn over the images, in pixels.
+pub struct Marks {
+    pub gaze_px: [f32; 2],
+    pub ring_px: f32,
+    pub divider_px: f32,
+    pub line_px: f32,
+}
+
 impl Show {
     pub fn new(gpu: &Gpu, adapter: &Adapter, surface: Surface<'static>, [width, height]: [u32; 2]) -> Result<Self> {
         let configuration = surface
@@ -58,16 +66,15 @@ impl Show {
         gpu: &Gpu,
         encoder: &mut CommandEncoder,
         images: [&Texture; 2],
-        gaze_px: [f32; 2],
-        divider_px: f32,
-        ring_px: f32,
+        marks: Marks,
     ) -> Result<()> {
         let frame = match self.surface.get_current_texture() {
             wgpu::CurrentSurfaceTexture::Success(frame) | wgpu::CurrentSurfaceTexture::Suboptimal(frame) => frame,
             _ => return Err(JsError::new("the canvas cannot be drawn to")),
         };
         let [width, height] = [images[0].width(), images[0].height()].map(|s| s as f32);
-        let words = [width, height, gaze_px[0], gaze_px[1], divider_px, ring_px, 0.0, 0.0];
+        let [x, y] = marks.gaze_px;
+        let words = [width, height, x, y, marks.divider_px, marks.ring_px, marks.line_px, 0.0];
         let uniforms = gpu.device.create_buffer_init(&BufferInitDescriptor {
             label: Some("show"),
             contents: bytemuck::bytes_of(&words),

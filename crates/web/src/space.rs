@@ -10,8 +10,6 @@ use wgpu::{BufferUsages, CommandEncoder, RenderPipeline, Texture, TextureFormat,
 const NEAR: f32 = 0.1;
 /// Half of the width of the view at distance 1: a horizontal field of view of 70 degrees.
 const TAN_X: f32 = 0.7;
-/// The floor, and the boxes on it.
-const INSTANCES: u32 = 41;
 
 /// Depth as the scene is drawn.
 pub const DEPTH: DepthConvention = DepthConvention::Reversed { near: NEAR, far: f32::INFINITY };
@@ -43,13 +41,13 @@ impl Atlas {
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Scene {
-    scale: [f32; 2],
-    offset: [f32; 2],
-    size_px: [f32; 2],
-    tan: [f32; 2],
     eye: [f32; 4],
     eye_before: [f32; 4],
-    level: f32,
+    size_px: [f32; 2],
+    tan: [f32; 2],
+    first_px: [f32; 2],
+    atlas_texel: [f32; 2],
+    step: f32,
     unused: [f32; 3],
 }
 
@@ -63,7 +61,12 @@ pub struct Space {
 /// Position of the camera, and its turn around the vertical axis in radians.
 fn eye(seconds: f32) -> Vec4 {
     let t = seconds;
-    Vec4::new(0.7 * (0.31 * t).sin(), 1.5 + 0.1 * (0.7 * t).sin(), 7.0 + 4.0 * (0.23 * t).cos(), 0.22 * (0.4 * t).sin())
+    Vec4::new(
+        0.6 * (0.31 * t).sin(),
+        1.55 + 0.08 * (0.7 * t).sin(),
+        6.0 + 3.0 * (0.23 * t).cos(),
+        0.22 * (0.4 * t).sin(),
+    )
 }
 
 impl Space {
@@ -82,7 +85,7 @@ impl Space {
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: TextureFormat::Depth32Float,
                 depth_write_enabled: Some(true),
-                depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
+                depth_compare: Some(wgpu::CompareFunction::Always),
                 stencil: Default::default(),
                 bias: Default::default(),
             }),
@@ -142,16 +145,12 @@ impl Space {
         let [color, depth, motion] =
             [&atlas.color, &atlas.depth, &atlas.motion].map(|texture| texture.create_view(&Default::default()));
         let target = |view| {
-            let sky = wgpu::Color { r: 0.42, g: 0.55, b: 0.72, a: 1.0 };
-            let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(sky), store: wgpu::StoreOp::Store };
+            let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store };
             Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
         };
-        let still =
-            wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store };
-        let motion_target = target(&motion).map(|t| wgpu::RenderPassColorAttachment { ops: still, ..t });
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("scene"),
-            color_attachments: &[target(&color), motion_target],
+            color_attachments: &[target(&color), target(&motion)],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &depth,
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
@@ -176,25 +175,19 @@ impl Space {
             pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
             pass.set_scissor_rect(x, y, width, height);
             pass.set_bind_group(0, &group, &[]);
-            pass.draw(0..36, 0..INSTANCES);
+            pass.draw(0..3, 0..1);
         }
     }
 
-    /// Pixel (i, j) of the small view shows the full-rate frame's pixel `first_px + step * (i, j)`.
     fn uniforms(&self, lattice: &Lattice, seconds: f32) -> Scene {
-        let size = self.size_px.map(|s| s as f32);
-        let step = lattice.step as f32;
-        let covered = lattice.points.map(|n| n as f32 * step);
-        let scale = [0, 1].map(|i| size[i] / covered[i]);
-        let offset = [0, 1].map(|i| (size[i] - 1.0 - 2.0 * lattice.first_px[i] as f32 + step) / covered[i] - 1.0);
         Scene {
-            scale,
-            offset: [offset[0], -offset[1]],
-            size_px: size,
-            tan: self.tan(),
             eye: eye(seconds).to_array(),
             eye_before: eye(self.before(seconds)).to_array(),
-            level: step.log2(),
+            size_px: self.size_px.map(|s| s as f32),
+            tan: self.tan(),
+            first_px: lattice.first_px.map(|p| p as f32),
+            atlas_texel: lattice.atlas_texel.unwrap_or_default().map(|p| p as f32),
+            step: lattice.step as f32,
             unused: [0.0; 3],
         }
     }
