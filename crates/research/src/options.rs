@@ -60,10 +60,8 @@ impl TracedArgs {
 /// Table 1 and the run times of weighted reservoir sampling (Cantory et al. 2025) in Markdown, with our results and
 /// theirs
 #[derive(Args, Clone, Debug)]
-#[command(
-    after_help = "Example:\n  cargo research wrs sponza_still/ sponza_lateral/ --gaze viewing.csv --out DIR\n\n\
-    Run the same command again to resume. OUT/report.html has all results."
-)]
+#[command(after_help = "Example:\n  cargo research wrs sponza_still/ sponza_lateral/ --gaze viewing.csv --out DIR\n\n\
+    Run the same command again to resume. OUT/report.html has all results.")]
 pub struct WrsTableArgs {
     /// A still, as for run; compared with the paper's scenes "-S"
     pub still: String,

@@ -1,5 +1,5 @@
-//! The demo in a browser: WebGPU through wgpu, with the drop-in's executor on the device and, with the feature `compare`,
-//! the one on the CPU. `page/main.js` has the controls, and calls what is here.
+//! The demo in a browser: WebGPU through wgpu, with the drop-in's executor on the device and, with the feature
+//! `compare`, the one on the CPU. `page/main.js` has the controls, and calls what is here.
 
 #[cfg(feature = "compare")]
 mod compare;

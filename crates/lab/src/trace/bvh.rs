@@ -128,6 +128,12 @@ impl Bvh {
         stack_needed(&self.nodes)
     }
 
+    /// The nodes, of 80 bytes each.
+    #[doc(hidden)]
+    pub fn nodes(&self) -> &[CwBvhNode] {
+        &self.nodes
+    }
+
     /// Number of nodes, of 80 bytes each.
     pub fn node_count(&self) -> usize {
         self.nodes.len()

@@ -16,7 +16,6 @@ pub mod effects;
 pub mod film;
 mod geometry;
 pub mod gpu;
-pub mod measure;
 mod node;
 pub mod sampling;
 pub mod scene_buffer;

@@ -1,7 +1,7 @@
 //! Finds the crops of 64x64 pixels in which a method is worst against the foveated frame, over clips, scanpaths,
 //! filters and rates.
 //!
-//! `cargo run --release -p afterimage-lab --example 14_worst_crops FRAMES SCANPATH.csv[,...] INPUT...`; INPUT as for
+//! `cargo run --release -p afterimage-research --example worst_crops FRAMES SCANPATH.csv[,...] INPUT...`; INPUT as for
 //! `afterimage run`. Scenes (`builtin:NAME`, .gltf, .glb) are rasterised, which needs an adapter; a software one is
 //! enough.
 
@@ -34,7 +34,7 @@ struct Row {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let [frames, scanpaths, inputs @ ..] = &args[..] else {
-        return Err("usage: 14_worst_crops FRAMES SCANPATH.csv[,...] INPUT...".into());
+        return Err("usage: worst_crops FRAMES SCANPATH.csv[,...] INPUT...".into());
     };
     let frames: u64 = frames.parse()?;
     println!("PSNR of the worst crop minus that of the foveated frame in dB (frame: x, y)");

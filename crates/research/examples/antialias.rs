@@ -4,7 +4,7 @@
 //! 3.5 degrees of the gaze in dB (sRGB), and the mean absolute change of the luma's error from frame to frame, times
 //! 1000.
 //!
-//! `cargo run --release -p afterimage-lab --example 17_antialias`
+//! `cargo run --release -p afterimage-research --example antialias`
 
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::color::srgb_encode;

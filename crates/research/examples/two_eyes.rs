@@ -6,7 +6,7 @@
 //! steps 2 and 4, antialiased, 90 degrees. CPU time of the process on software Vulkan, otherwise wall time; medians of
 //! frames that alternate between both ways.
 //!
-//! `cargo run --release -p afterimage-lab --example 21_two_eyes`
+//! `cargo run --release -p afterimage-research --example two_eyes`
 
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::{self, CommandEncoder, Texture, TextureFormat, TextureUsages};

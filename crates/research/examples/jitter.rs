@@ -4,7 +4,7 @@
 //! example compares the orders, on frames with one sample a pixel, against the antialiased full-rate frame. "untold":
 //! vectors that contain the jitter, said to have none.
 //!
-//! `cargo run --release -p afterimage-lab --example 13_jitter`
+//! `cargo run --release -p afterimage-research --example jitter`
 
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::color::srgb_encode;

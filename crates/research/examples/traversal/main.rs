@@ -1,18 +1,20 @@
 //! Cost of ray traversal: build times, and ray rates on the CPU (with `obvhs` for comparison) and on the GPU, from 2.6
 //! thousand to 2.6 million triangles.
 //!
-//! `cargo run --release -p afterimage-lab --example 12_traversal`; optionally followed by triangle counts.
+//! `cargo run --release -p afterimage-research --example traversal`; optionally followed by triangle counts.
+
+mod rays;
 
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::Headless;
 use afterimage_lab::scene::Triangles;
 use afterimage_lab::trace::gpu::ray_lists::{GpuRays, HitQuery};
 use afterimage_lab::trace::gpu::scene_buffer::{GpuSceneBuffer, Storage};
-use afterimage_lab::trace::measure::{Obvhs, bounce_rays, closest, cpu_ms, occluded, primary_rays};
 use afterimage_lab::trace::scene_buffer::{SceneBuffer, SceneBufferBuilder};
 use afterimage_lab::trace::{Bvh, Geometry, Ray};
 use glam::{Vec3, vec3};
 use obvhs::BvhBuildParams;
+use rays::{Obvhs, bounce_rays, closest, cpu_ms, occluded, primary_rays};
 use std::f32::consts::TAU;
 
 const SIZE: [u32; 2] = [640, 360];

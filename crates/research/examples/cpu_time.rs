@@ -1,5 +1,5 @@
 //! CPU time of each method on the CPU executor and of the metrics, for a picture at rest and under a moving camera:
-//! `cargo run --release -p afterimage-lab --example 16_cpu_time PICTURE.png [FRAMES]`. Set `RAYON_NUM_THREADS=1` for
+//! `cargo run --release -p afterimage-research --example cpu_time PICTURE.png [FRAMES]`. Set `RAYON_NUM_THREADS=1` for
 //! the time of one core.
 
 use afterimage::kernel::color::srgb_decode;

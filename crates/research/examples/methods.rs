@@ -1,7 +1,7 @@
 //! Compares all methods and presets on a clip, on the same foveated frames, with the metrics that the documents quote:
 //! PSNR, SSIM, retention, flicker, the worst frame against the foveated one, and PSNR on `analytic:scroll`'s panel.
 //!
-//! `cargo run --release -p afterimage-lab --example 07_methods INPUT SCANPATH.csv [FRAMES [mip|gauss|block RATE_MID RATE_FAR]]`
+//! `cargo run --release -p afterimage-research --example methods INPUT SCANPATH.csv [FRAMES [mip|gauss|block RATE_MID RATE_FAR]]`
 
 use afterimage::{Filter, Foveation, Method, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
@@ -14,7 +14,7 @@ use afterimage_lab::source::{AnalyticSource, ReadLimits, SceneOptions};
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let [input, scanpath, ..] = &args[..] else {
-        return Err("usage: 07_methods INPUT SCANPATH.csv [FRAMES [mip|gauss|block RATE_MID RATE_FAR]]".into());
+        return Err("usage: methods INPUT SCANPATH.csv [FRAMES [mip|gauss|block RATE_MID RATE_FAR]]".into());
     };
     let number = |i: usize, absent: u64| args.get(i).map_or(Ok(absent), |n| n.parse());
     let filter = match args.get(3).map(String::as_str) {

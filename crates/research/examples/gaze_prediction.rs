@@ -1,5 +1,5 @@
 //! What predicting the gaze of a late tracker gains over holding its last sample:
-//! `cargo run --release -p afterimage-lab --example 23_gaze_prediction SCANPATH.csv ...`.
+//! `cargo run --release -p afterimage-research --example gaze_prediction SCANPATH.csv ...`.
 //!
 //! The predictor is ballistic: while the last samples are of a saccade, it fits a displacement with the least jerk and
 //! the duration of the main sequence to the samples since the saccade's begin, and predicts where that ends. Held gaze

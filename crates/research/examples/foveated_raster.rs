@@ -1,7 +1,7 @@
 //! Renders a scene at full rate and foveated, each lattice of samples as a small view of its own, and compares the CPU
 //! time of both, frame by frame. On a GPU, it is wall time.
 //!
-//! `cargo run --release -p afterimage-lab --example 15_foveated_raster [SCENE [WIDTHxHEIGHT [FRAMES [CAMERA
+//! `cargo run --release -p afterimage-research --example foveated_raster [SCENE [WIDTHxHEIGHT [FRAMES [CAMERA
 //! [OUT.png]]]]]`; SCENE is a .gltf or .glb file, or builtin:NAME (default builtin:courtyard, 1920x1080, 12 frames,
 //! walk). OUT.png gets the last atlas. Needs an adapter; a software one is enough.
 

@@ -1,6 +1,6 @@
 //! Ablation of the reservoir method on one clip: the gate, the bias, the weights and the sampler, one by one.
 //!
-//! `cargo run --release -p afterimage-lab --example 08_parts_of_wrs INPUT SCANPATH.csv [angle|fit [FRAMES [FOVEA_DEG]]]`
+//! `cargo run --release -p afterimage-research --example parts_of_wrs INPUT SCANPATH.csv [angle|fit [FRAMES [FOVEA_DEG]]]`
 //!
 //! Prints PSNR over none at several lengths of the clip: whole frame, and retained pixels (sampled at full rate
 //! earlier).
@@ -43,7 +43,7 @@ fn variants() -> Vec<(&'static str, RunKind)> {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let [input, scanpath, ..] = &args[..] else {
-        return Err("usage: 08_parts_of_wrs INPUT SCANPATH.csv [angle|fit [FRAMES [FOVEA_DEG]]]".into());
+        return Err("usage: parts_of_wrs INPUT SCANPATH.csv [angle|fit [FRAMES [FOVEA_DEG]]]".into());
     };
     let frames: u64 = args.get(3).map_or(Ok(300), |n| n.parse())?;
     let fovea_deg: f32 = args.get(4).map_or(Ok(5.0), |n| n.parse())?;

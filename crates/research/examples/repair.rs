@@ -5,7 +5,7 @@
 //! thirds, in percent. Frame 0 is a cut. A row also says how many frames it takes from there until the picture is
 //! rebuilt: until the PSNR of a frame first reaches 95 % of the mean PSNR, both in dB, of the row's last third.
 //!
-//! `cargo run --release -p afterimage-lab --example 19_repair`
+//! `cargo run --release -p afterimage-research --example repair`
 
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::color::srgb_encode;

@@ -1,8 +1,8 @@
 //! Traversal cost: ray rates on the CPU against `obvhs`' own traversal, and build times.
 
-use super::{Bvh, Geometry, Hit, Ray};
-use crate::clock::Stopwatch;
-use crate::scene::Triangles;
+use afterimage_lab::clock::Stopwatch;
+use afterimage_lab::scene::Triangles;
+use afterimage_lab::trace::{Bvh, Geometry, Hit, Ray};
 use glam::{Vec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::cwbvh::CwBvh;
@@ -68,7 +68,7 @@ impl Obvhs {
 
     /// Shares the nodes of `bvh`, so that only the traversal differs.
     pub fn sharing(bvh: &Bvh) -> Self {
-        let nodes = CwBvh { nodes: bvh.nodes.clone(), ..CwBvh::default() };
+        let nodes = CwBvh { nodes: bvh.nodes().to_vec(), ..CwBvh::default() };
         let triangles = bvh.triangles().iter().map(|t| RtTriangle::from(&of_obvhs(&t.positions()))).collect();
         Self { bvh: nodes, triangles, build_ms: 0.0 }
     }
@@ -109,7 +109,7 @@ pub fn primary_rays(size: [u32; 2], eye: Vec3, target: Vec3, fov_y_deg: f32) -> 
 /// A cosine-distributed ray from each hit into the half space above its surface, as paths continue after their first
 /// hit.
 pub fn bounce_rays(geometry: &Geometry, rays: &[Ray], hits: &[Option<Hit>]) -> Vec<Ray> {
-    use crate::kernel::triangle::{magnitude, offset_ray, point_at};
+    use afterimage_lab::kernel::triangle::{magnitude, offset_ray, point_at};
     use afterimage::kernel::rng::{pcg4d, unit_draw};
     let bounce = |(i, (ray, hit)): (usize, (&Ray, &Option<Hit>))| {
         let hit = (*hit)?;

@@ -3,7 +3,7 @@
 //! CPU time of the process on software Vulkan, otherwise wall time; medians of frames with settled history. Depth,
 //! motion and samples are those of analytic clips, 640x360 at 70 degrees, steps 2 and 4, budget 3 %.
 //!
-//! `cargo run --release -p afterimage-lab --example 20_plan_cost`
+//! `cargo run --release -p afterimage-research --example plan_cost`
 
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::{CommandEncoder, TextureFormat, TextureUsages};

@@ -7,7 +7,7 @@
 //! frames 24 to 63 in dB (sRGB, pooled) and the mean absolute change of the luma's error from frame to frame, times
 //! 1000. `still` also goes on to frame 255.
 //!
-//! `cargo run --release -p afterimage-lab --example 18_upscaling`
+//! `cargo run --release -p afterimage-research --example upscaling`
 
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::color::srgb_encode;
