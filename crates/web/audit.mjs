@@ -1,6 +1,6 @@
-// Audits of the demo by others' rules: node audit.mjs [FOLDER THAT build.sh MADE]. axe on three screens, in light and in dark,
-// and Lighthouse's performance on a desktop. Takes both from npm's registry. The software device makes its figures worse than
-// those of visitors, and differ from run to run.
+// Audits of the demo by others' rules: node audit.mjs [FOLDER THAT build.sh MADE]. axe on three screens, in light and
+// in dark, and Lighthouse's performance on a desktop. Takes both from npm's registry. The figures are of a software
+// device, and differ from run to run.
 
 import { spawn, spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";

@@ -11,8 +11,8 @@ import { gzipSync } from "node:zlib";
 const here = dirname(fileURLToPath(import.meta.url));
 const [built = join(here, "dist"), part = ""] = process.argv.slice(2);
 
-// Name; the test that must catch it; the file; what is there, and what is put in its place. Texts in the library must be of
-// equal length, because they are data there.
+// Name; the test that must catch it; the file; what is there, and what is put in its place. Texts in the library must
+// be of equal length, because they are data there.
 const MUTANTS = [
     ["halves swapped", "each_half_shows_its_frames", "afterimage_web_bg.wasm", "at.x < show.divider_px", "at.x > show.divider_px"],
     ["right half without memory", "each_half_shows_its_frames", "afterimage_web_bg.wasm", "at.x < show.divider_px", "at.x >-show.divider_px"],

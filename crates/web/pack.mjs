@@ -1,5 +1,5 @@
-// The last step of build.sh: node pack.mjs FOLDER minifies the bindings and compresses what a server may send compressed.
-// Without a registry of packages the bindings stay as they are.
+// The last step of build.sh: node pack.mjs FOLDER minifies the bindings and compresses what a server may send
+// compressed. Without a registry of packages the bindings stay as they are.
 
 import { spawnSync } from "node:child_process";
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";

@@ -1,5 +1,5 @@
-// Records page/clip.webm, which browsers without WebGPU show, and page/card.jpg, the picture of the preview card and of the
-// page without JavaScript: node record_clip.mjs [FOLDER THAT build.sh MADE]. Needs Chromium and ffmpeg.
+// Records page/clip.webm, which browsers without WebGPU show, and page/card.jpg, the picture of the preview card and of
+// the page without JavaScript: node record_clip.mjs [FOLDER THAT build.sh MADE]. Needs Chromium and ffmpeg.
 
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
@@ -14,8 +14,8 @@ const SECONDS = 5;
 const server = await serve({ demo: process.argv[2] ?? join(here, "dist") });
 const folder = mkdtempSync(join(tmpdir(), "clip-"));
 
-// A page whose stage alone is seen, at a size, and whose frames are drawn one by one: resolves to what draws the next and
-// takes its picture.
+// A page whose stage alone is seen, at a size, and whose frames are drawn one by one: resolves to what draws the next
+// and takes its picture.
 async function stage([width, height], scene) {
     const browser = await launch({ size: [width, height] });
     await browser.send("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: false });

@@ -35,8 +35,8 @@ export const FLAGS = [
     "--remote-debugging-pipe",
 ];
 
-// Serves files: `folders` maps the first part of a path to a folder; `FILE.gz` beside a file is sent in its place. Resolves to
-// the server's address.
+// Serves files: `folders` maps the first part of a path to a folder; `FILE.gz` beside a file is sent in its place.
+// Resolves to the server's address.
 export function serve(folders) {
     const server = createServer((request, response) => {
         const path = normalize(decodeURIComponent(new URL(request.url, "http://localhost").pathname));

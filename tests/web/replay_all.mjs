@@ -16,8 +16,8 @@ const EXCEPTIONS = [
     ["simulator.lifecycle.the_fovea_of_a_half_float_frame", 8000, "a device rounds to halves as it likes"],
 ];
 
-// Recordings that read nothing, by the start of their name: of tests about what is refused, and about memory. In every other
-// one something must be read, or nothing is compared.
+// Recordings that read nothing, by the start of their name: of tests about what is refused, and about memory. In every
+// other one something must be read, or nothing is compared.
 const UNREAD = [
     "pass.engines.every_storable_format_is_written_and_others_say_what_to_change",
     "pass.lifecycle.memory_bytes_is_what_is_made",

@@ -1,5 +1,5 @@
-// The page's choices in its address, so that a link shows what its sender saw. Choices that are as they were at first are
-// left out.
+// The page's choices in its address, so that a link shows what its sender saw. Choices that are as they were at first
+// are left out.
 
 const controls = () => [...document.querySelectorAll("input[name=scene], input[name=method], select, input[type=range]")];
 const key = (control) => control.name || control.id;

@@ -1,4 +1,5 @@
-// Where the gaze is: at the pointer, where the arrow keys move it, and on a synthetic scanpath while nobody does either.
+// Where the gaze is: at the pointer, where the arrow keys move it, and on a synthetic scanpath while nobody does
+// either.
 
 const SCANPATH_HZ = 25;
 // After this time without pointer and keys the scanpath goes on.
