@@ -10,7 +10,7 @@ const folder = process.argv[2];
 const ESBUILD = "esbuild@0.28.2";
 const bindings = ["afterimage_web.js", "compare.js"].map((name) => join(folder, name));
 const options = ["--minify", "--format=esm", `--outdir=${folder}`, "--allow-overwrite", "--log-level=warning"];
-const { status } = spawnSync("npx", ["--yes", ESBUILD, ...bindings, ...options], { stdio: "inherit" });
+const { status } = spawnSync("npx", ["--yes", ESBUILD, ...bindings, ...options], { stdio: "inherit", timeout: 120_000 });
 if (status !== 0) console.log(`${ESBUILD} could not run: the bindings are not minified`);
 
 for (const name of readdirSync(folder)) {
