@@ -49,7 +49,7 @@
 //!   and all tunables.
 //! - [`Frame`]: inputs of a frame. [`ViewFrame`], [`ViewGeometry`], [`Gaze`]: description of a view.
 //! - [`FrameStats`], [`Warning`], [`DebugView`]: what happened in a frame, as counters, messages and images.
-//! - `gpu::Doctor`, `cpu::Doctor`, [`Finding`]: checks whether frames are what their description says; for the day when
+//! - `gpu::Doctor`, `cpu::Doctor`, [`doctor::Finding`]: checks whether frames are what their description says; for the day when
 //!   the picture looks wrong (`07_doctor.rs`).
 //! - [`CreateError`], [`FrameError`], [`SettingsError`]: what can go wrong.
 //! - [`simulator`]: foveation of full-rate frames, for tests and for renderers that do not foveate.
@@ -100,7 +100,7 @@ pub extern crate wgpu_30 as wgpu;
 mod convention;
 #[cfg(feature = "cpu")]
 pub mod cpu;
-mod doctor;
+pub mod doctor;
 mod error;
 mod foveation;
 mod frame;
@@ -127,7 +127,6 @@ mod uniforms;
 mod warning;
 
 pub use convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
-pub use doctor::{Check, Fault, Finding, Outcome};
 pub use error::{CreateError, FrameError, SettingsError};
 pub use foveation::{Filter, Foveation};
 pub use frame::{ContextDesc, Executor, Exposure, Frame, Gaze, Reset, ViewFrame};

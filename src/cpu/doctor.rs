@@ -12,7 +12,8 @@ use crate::image::Image;
 ///
 /// ```
 /// use afterimage::cpu::{Doctor, Frame};
-/// use afterimage::{ContextDesc, Fault, Filter, Gaze, Image, ViewFrame, ViewGeometry};
+/// use afterimage::doctor::Fault;
+/// use afterimage::{ContextDesc, Filter, Gaze, Image, ViewFrame, ViewGeometry};
 ///
 /// // A pattern moves to the right by 2 pixels a frame. It was to the left before, but the vectors point to the right.
 /// let size = [160, 96];
@@ -96,7 +97,7 @@ impl Doctor {
         Ok(())
     }
 
-    /// One finding for each [`Check`](crate::Check), from all frames seen so far (the last 16).
+    /// One finding for each [`Check`](crate::doctor::Check), from all frames seen so far (the last 16).
     pub fn findings(&self) -> Vec<Finding> {
         self.chart.findings(&self.desc)
     }

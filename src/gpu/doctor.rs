@@ -152,7 +152,7 @@ impl Doctor {
         true
     }
 
-    /// One finding for each [`Check`](crate::Check), from all frames read so far (the last 16).
+    /// One finding for each [`Check`](crate::doctor::Check), from all frames read so far (the last 16).
     pub fn findings(&self) -> Vec<Finding> {
         self.chart.findings(&self.desc)
     }

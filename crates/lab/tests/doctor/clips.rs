@@ -1,10 +1,11 @@
 //! Clips of moving pictures, foveated by the simulators.
 
+use afterimage::cpu;
+use afterimage::doctor::Finding;
 use afterimage::simulator::Pyramid;
 use afterimage::{
     ContextDesc, DepthConvention, Filter, Foveation, Gaze, Image, MotionConvention, Reset, ViewFrame, ViewGeometry,
 };
-use afterimage::{Finding, cpu};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::source::{self, ReadLimits, SceneOptions};
 

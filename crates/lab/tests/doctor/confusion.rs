@@ -2,7 +2,7 @@
 
 use super::clips::{Clip, Delivery, foveations};
 use super::planted::{PLANTED, Planted};
-use afterimage::{Finding, Outcome};
+use afterimage::doctor::{Finding, Outcome};
 
 /// How an error fared on a clip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,10 +1,9 @@
 //! Errors in a description of frames, one at a time, and what must be said about each.
 
 use super::clips::{Clip, Delivery, FORWARD, REVERSED, stored};
+use afterimage::doctor::{Check, Fault};
 use afterimage::kernel::color::srgb_encode;
-use afterimage::{
-    Check, DepthConvention, Fault, Filter, Foveation, Gaze, MotionConvention, MotionDirection, MotionUnit, YAxis,
-};
+use afterimage::{DepthConvention, Filter, Foveation, Gaze, MotionConvention, MotionDirection, MotionUnit, YAxis};
 
 /// A planted error.
 pub struct Planted {

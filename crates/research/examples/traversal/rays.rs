@@ -109,8 +109,8 @@ pub fn primary_rays(size: [u32; 2], eye: Vec3, target: Vec3, fov_y_deg: f32) -> 
 /// A cosine-distributed ray from each hit into the half space above its surface, as paths continue after their first
 /// hit.
 pub fn bounce_rays(geometry: &Geometry, rays: &[Ray], hits: &[Option<Hit>]) -> Vec<Ray> {
-    use afterimage_lab::kernel::triangle::{magnitude, offset_ray, point_at};
     use afterimage::kernel::rng::{pcg4d, unit_draw};
+    use afterimage_lab::kernel::triangle::{magnitude, offset_ray, point_at};
     let bounce = |(i, (ray, hit)): (usize, (&Ray, &Option<Hit>))| {
         let hit = (*hit)?;
         let [a, b, c] = geometry.triangle(hit.triangle).positions();

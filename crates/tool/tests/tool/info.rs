@@ -93,16 +93,16 @@ fn info_says_what_a_scene_holds() {
     refuses(&["info", &folder.write("broken.gltf", b"no scene")], &["broken.gltf"]);
 }
 
+/// `INSTA_UPDATE=always` writes the reviewed texts anew (`snapshots/`).
 #[test]
-fn help_states_units_and_an_example() {
-    for command in ["demo", "run", "bench", "scanpath", "info"] {
+fn help_is_what_was_reviewed() {
+    let commands = ["demo", "run", "trace", "bench", "sweep", "scanpath", "info"];
+    for command in commands {
         let text = succeeds(&[command, "--help"]);
-        assert!(text.contains("Example"), "{command}");
-        assert!(text.contains(&format!("afterimage {command}")), "{command}");
+        assert!(text.contains("Example") && text.contains(&format!("afterimage {command}")), "{command}");
+        insta::assert_snapshot!(format!("help_{command}"), text);
     }
-    let text = succeeds(&["run", "--help"]);
-    for word in ["degrees", "pixels", "seconds", "[default: 5]", "stops"] {
-        assert!(text.contains(word), "{word}");
-    }
+    #[cfg(feature = "view")]
+    insta::assert_snapshot!("help_view", succeeds(&["view", "--help"]));
     assert!(succeeds(&["--version"]).starts_with("afterimage 0."));
 }

@@ -2,9 +2,10 @@
 //! a stall.
 
 use crate::failure::Failure;
+use afterimage::doctor::Finding;
 use afterimage::gpu::{Doctor, Frame};
 use afterimage::wgpu::{self, Buffer, BufferUsages};
-use afterimage::{ContextDesc, Finding, Reset};
+use afterimage::{ContextDesc, Reset};
 use afterimage_lab::device::{Headless, mapped};
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -81,7 +82,8 @@ impl Examiner {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use afterimage::{Fault, Filter, Gaze, Image, ViewFrame, ViewGeometry};
+    use afterimage::doctor::Fault;
+    use afterimage::{Filter, Gaze, Image, ViewFrame, ViewGeometry};
     use wgpu::{TextureFormat, TextureUsages};
 
     const SIZE: [u32; 2] = [160, 96];

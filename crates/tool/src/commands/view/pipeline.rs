@@ -6,9 +6,10 @@ use super::setup::Setup;
 use super::state::{Shows, Side, State};
 use super::times::{Pass, PassTimes};
 use crate::failure::Failure;
+use afterimage::doctor::Finding;
 use afterimage::wgpu::{CommandEncoder, Texture};
 use afterimage::{
-    ContextDesc, Filter, Finding, Foveation, Gaze, Lattices, MethodKind, Reset, Settings, ViewFrame, ViewGeometry,
+    ContextDesc, Filter, Foveation, Gaze, Lattices, MethodKind, Reset, Settings, ViewFrame, ViewGeometry,
 };
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::{Content, RenderedFrame};

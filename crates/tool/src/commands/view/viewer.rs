@@ -61,7 +61,7 @@ pub struct Viewer {
     /// Pictures to save after the next frame.
     to_save: Vec<Effect>,
     /// Faults of the inputs that the terminal shows already.
-    announced: HashSet<afterimage::Outcome>,
+    announced: HashSet<afterimage::doctor::Outcome>,
 }
 
 impl Viewer {

@@ -7,7 +7,7 @@ use super::super::state::Side;
 use super::super::times::Pass;
 use super::Viewer;
 use crate::failure::Failure;
-use afterimage::Outcome;
+use afterimage::doctor::Outcome;
 use afterimage::wgpu;
 
 impl Viewer {
