@@ -5,8 +5,18 @@ extern crate afterimage_clip;
 
 // Hidden: for the project's experiments (`crates/research`), and no stable interface.
 #[doc(hidden)]
+#[allow(
+    rustdoc::broken_intra_doc_links,
+    rustdoc::invalid_html_tags,
+    reason = "help texts: `synthetic[:SEED]` is no link"
+)]
 pub mod args;
 #[doc(hidden)]
+#[allow(
+    rustdoc::broken_intra_doc_links,
+    rustdoc::invalid_html_tags,
+    reason = "help texts: `synthetic[:SEED]` is no link"
+)]
 pub mod commands;
 pub mod report;
 pub mod sweep;

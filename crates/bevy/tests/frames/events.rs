@@ -154,7 +154,7 @@ fn an_orthographic_camera_renders_every_pixel() {
     let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: false });
     let target = headless.render_target();
     let projection = Projection::from(OrthographicProjection { scale: 0.03, ..OrthographicProjection::default_3d() });
-    let camera = (Camera3d::default(), projection, target, TONEMAPPING, stroll(1.0));
+    let camera = (Camera3d::default(), Msaa::Off, projection, target, TONEMAPPING, stroll(1.0));
     let camera = headless.app.world_mut().spawn((camera, kind(FoveationKind::Sparse))).id();
     headless.frames(4);
     let foveated = headless.read();
