@@ -66,8 +66,8 @@ pub(crate) fn smr_params(settings: &Settings) -> SmrParams {
     let blocks = filter(settings) == Filter::Block;
     SmrParams {
         accumulate: smr.accumulate,
-        // Rejecting coarse history costs little detail, so the test of its fit can be stricter. It is not stricter
-        // where aliasing or noise need averaging, or for Gaussian blurs, which never agree with levels of history
+        // Rejecting coarse history costs little detail, so it must fit more strictly. The test is less strict for
+        // blocks and noise, which need averaging, and for Gaussian blurs, which never agree with levels of history
         // exactly.
         accumulate_tolerance: if settings.noisy || filter(settings) == Filter::Gauss {
             0.5
