@@ -108,7 +108,7 @@ impl DeviceInputs {
             Content::Foveated(foveated) => {
                 self.given = self.upload_geometry(&frame.reference);
                 self.write_rgb(&self.foveated, &foveated.color);
-                // Lattices say how coarse a sparse frame is.
+                // The levels of detail of a sparse frame follow from its lattices.
                 self.given.lod = foveated.lattices.is_none().then(|| self.uploaded(&self.lod, &foveated.lod));
                 self.given.noise = Some(self.uploaded(&self.noise, &foveated.noise));
             }
