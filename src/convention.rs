@@ -82,7 +82,7 @@ impl MotionConvention {
     pub const UNITY: Self = Self::BEVY;
 
     /// Unreal's velocity after `DecodeVelocityFromTexture`: current minus previous in normalised device coordinates,
-    /// y up. The encoded texture cannot be passed as it is; its pixels without velocity need the camera's motion.
+    /// y up. Decode the texture before you pass it. Fill its pixels without velocity with the camera's motion.
     pub const UNREAL: Self = Self {
         unit: MotionUnit::Ndc,
         direction: MotionDirection::CurrentMinusPrevious,
@@ -99,8 +99,8 @@ impl MotionConvention {
         jittered: false,
     };
 
-    /// Factors that convert a vector of this convention to the default convention, for a frame of `size_px`. A jitter
-    /// in it remains: see [`jitter_offset`](Self::jitter_offset).
+    /// Factors that convert a vector of this convention to the default convention, for a frame of `size_px`. They leave
+    /// the jitter in the vector; [`jitter_offset`](Self::jitter_offset) removes it.
     #[doc(hidden)]
     pub fn to_internal(self, size_px: [u32; 2]) -> [f32; 2] {
         let [w, h] = size_px.map(|s| s as f32);
@@ -129,8 +129,8 @@ impl MotionConvention {
 
 /// Convention of depth values. Default: [`Linear`](Self::Linear).
 ///
-/// Distances are along the view axis, in any unit that also [`ViewFrame::previous_from_current`](crate::ViewFrame)
-/// uses.
+/// Distances are along the view axis. Any unit will do, as long as
+/// [`ViewFrame::previous_from_current`](crate::ViewFrame) uses the same one.
 ///
 /// ```
 /// use afterimage::{ContextDesc, DepthConvention};

@@ -164,7 +164,7 @@ pub enum FrameError {
         /// Supported buffers.
         expected: &'static str,
     },
-    /// The graphics device was lost; it executes nothing any more.
+    /// The graphics device was lost. It executes no more work.
     #[error("the graphics device was lost: create a new device and a new context on it; history starts empty")]
     DeviceLost,
     /// A value of the frame's description is invalid.

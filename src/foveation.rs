@@ -15,8 +15,8 @@ pub enum Filter {
     Mip,
     /// Gaussian blur whose width grows linearly with eccentricity.
     Gauss,
-    /// One point sample a block: coarse shading hardware (variable rate shading). Blends between regions become steps
-    /// by powers of two.
+    /// One point sample a block: coarse shading hardware (variable rate shading). Block edges are powers of two, so
+    /// that blends between regions become steps.
     Block,
     /// Full rate everywhere; no foveation.
     Off,
@@ -27,7 +27,7 @@ pub enum Filter {
 }
 
 impl Filter {
-    /// All filters, in the order of the tool.
+    /// All filters, in the order of the command-line tool.
     pub const ALL: [Self; 5] = [Self::Mip, Self::Gauss, Self::Block, Self::Sparse, Self::Off];
 
     /// Short name in lower case, such as `mip`.
@@ -54,7 +54,7 @@ impl Filter {
 /// Foveation of a renderer: concentric regions around the gaze, and the shading rate of each. Angles are true visual
 /// angles.
 ///
-/// Set it as your renderer foveates: it tells the post-process the level of detail of each pixel
+/// Set it to match your renderer: it tells the post-process the level of detail of each pixel
 /// ([`Settings::foveation`](crate::Settings::foveation)). The simulators ([`simulator`](crate::simulator)) foveate a
 /// full-rate frame by the same description.
 ///

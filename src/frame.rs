@@ -53,15 +53,15 @@ impl Gaze {
     /// assert_eq!(gaze.if_confident(0.1, 0.5), Gaze::Lost);
     /// ```
     pub fn if_confident(self, confidence: f32, least: f32) -> Self {
-        // A confidence that is NaN is none.
+        // A NaN fails the comparison and counts as no confidence.
         if confidence >= least { self } else { Self::Lost }
     }
 
-    /// The gaze of one eye, or of one view, from a ray in world space: an eye tracker's combined ray in a headset,
-    /// whose two views then each have a gaze of their own. `distance`: how far along the ray the eyes look, in the
-    /// units of `origin`: the distance of the surface under the gaze, or that at which the two eyes' own rays meet;
-    /// infinite is far away. `world_from_view`: pose of the view, a rotation and a translation by columns; y up, -z
-    /// forward, as in OpenXR. A ray, a distance or a pose that is not finite or not in that form counts as
+    /// The gaze of one eye, or of one view, from a ray in world space. A headset's eye tracker reports one combined
+    /// ray; this gives each of the two views its own gaze. `distance`: how far along the ray the eyes look, in the
+    /// units of `origin`. Use the distance of the surface under the gaze, or the distance at which the rays of the two
+    /// eyes meet; infinite is allowed. `world_from_view`: pose of the view, a rotation and a translation by columns; y
+    /// up, -z forward, as in OpenXR. A ray, a distance or a pose that is not finite or not in that form counts as
     /// [`Lost`](Self::Lost).
     ///
     /// ```
@@ -92,8 +92,8 @@ impl Gaze {
         }
     }
 
-    /// Position in pixels of a view of `geometry`; `None` if it is lost or not finite. Clamped to +-1e6 pixels, so that
-    /// angles stay finite.
+    /// Position of the gaze in pixels of a view of `geometry`; `None` if the gaze is lost or not finite. Clamped to
+    /// +-1e6 pixels, so that angles stay finite.
     pub(crate) fn known_px(self, geometry: &ViewGeometry) -> Option<[f32; 2]> {
         let px = match self {
             Self::At { px } => Some(px),
@@ -142,26 +142,27 @@ pub struct ViewFrame {
     /// without jitter puts at `p` is drawn at `p + jitter_px`; y down. (0, 0) without jitter.
     ///
     /// The jitter is removed from motion vectors that contain it ([`MotionConvention::jittered`]) and from the rays
-    /// through the pixels, so that history stays where it is on a still camera. [`geometry`](Self::geometry) is that of
-    /// the projection without jitter. Temporal antialiasing runs after the post-process, with the same jitter.
+    /// through the pixels, so that history stays in place while the camera is still. [`geometry`](Self::geometry)
+    /// describes the projection without jitter. Temporal antialiasing runs after the post-process, with the same
+    /// jitter.
     pub jitter_px: [f32; 2],
     /// Convention of this view's depth values in this frame. `None`: the context's ([`ContextDesc::depth`]). History
     /// stays valid when the near plane changes, because distances are stored.
     pub depth: Option<DepthConvention>,
-    /// What a headset's lens shows of the view: an octagon, by the lowest x, y, x + y and x - y of its pixels and the
-    /// highest ones ([`ViewGeometry::visible_px`] makes it from a visibility mask). smr on sparse frames does not
-    /// process what lies beyond it, asks for no repair there, and shows it black; other methods process every pixel.
-    /// `None`: every pixel is seen.
+    /// The part of the view that a headset's lens shows: an octagon, given by the lowest and the highest x, y, x + y
+    /// and x - y of its pixels ([`ViewGeometry::visible_px`] computes it from a visibility mask). On sparse frames smr
+    /// does not process pixels outside it, repairs none of them, and shows them black; other methods process every
+    /// pixel. `None`: every pixel is visible.
     pub visible_px: Option<[[f32; 4]; 2]>,
-    /// Where the samples of a sparse frame lie ([`Filter::Sparse`](crate::Filter::Sparse)): those that the renderer
-    /// drew, for the gaze that it used. The color input is of the context's size, and only its samples are read, or it
-    /// is an atlas ([`Lattice::atlas_texel`](crate::Lattice::atlas_texel)) of any size; other inputs are of the
-    /// context's size. `None`: every pixel of the color input is a sample.
+    /// Where the samples of a sparse frame lie ([`Filter::Sparse`](crate::Filter::Sparse)): the lattices that the
+    /// renderer drew, for the gaze that it used. The color input is of the context's size, and only its samples are
+    /// read, or it is an atlas ([`Lattice::atlas_texel`](crate::Lattice::atlas_texel)) of any size; other inputs are of
+    /// the context's size. `None`: every pixel of the color input is a sample.
     pub lattices: Option<Lattices>,
 }
 
 impl ViewFrame {
-    /// A view of unknown camera motion, without jitter.
+    /// A view with unknown camera motion and without jitter.
     pub fn new(geometry: ViewGeometry, gaze: Gaze) -> Self {
         Self {
             geometry,
@@ -376,24 +377,23 @@ pub struct Frame<'a, E: Executor> {
     /// Motion vectors in the context's convention. On a GPU `Rg16Float`, `Rg32Float` or wider. `None`: no motion.
     pub motion: Option<E::Vectors<'a>>,
     /// Trust mask: confidence in history, 0 to 1. 0 rejects history; use it for what changes without motion vectors
-    /// (video panels, particles, reflections). About 1 minus FSR2's reactive mask. On a GPU any float or normalised
-    /// format. `None`: 1 everywhere.
+    /// (video panels, particles, reflections). It is about 1 minus FSR2's reactive mask. On a GPU any float or
+    /// normalised format. `None`: 1 everywhere.
     pub trust: Option<E::Scalars<'a>>,
     /// Level of detail of the foveated frame: log2 of the block edge in pixels. On a GPU any float format. `None`:
     /// computed from gaze and [`Settings::foveation`]. Sparse frames have the levels of their lattices instead, and no
     /// such input. With this input, too, `foveation.rate_far` must be the coarsest block edge: history is not matched
     /// at coarser levels.
     pub lod: Option<E::Scalars<'a>>,
-    /// Noise of the color: standard error of its luma (linear), and number of samples that the color is a mean of, at
-    /// its level of detail. On a GPU `Rg16Float`, `Rg32Float` or wider. Required if [`Settings::noisy`] is set,
-    /// otherwise `None`. Of sparse frames it is read at the samples' pixels and at
-    /// repaired ones.
+    /// Noise of the color: standard error of its luma (linear), and the number of samples that were averaged into the
+    /// color, at its level of detail. On a GPU `Rg16Float`, `Rg32Float` or wider. Required if [`Settings::noisy`] is
+    /// set, otherwise `None`. In sparse frames it is read only at the pixels of samples and at repaired pixels.
     pub noise: Option<E::Vectors<'a>>,
     /// Samples of single pixels of a sparse frame, shaded at full rate: linear colors of the context's size, with the
     /// frame's jitter. Only the pixels are read that `plan` chose for this frame (`gpu::Afterimage::plan`,
-    /// `cpu::CpuAfterimage::plan`). Such a pixel is shown as those of the full-rate lattice are, and its sample is
-    /// stored as theirs. Where the sample is NaN or infinite, or the full-rate lattice has one, it is ignored: a
-    /// renderer may leave out what it was asked for. `None`: no pixels are repaired.
+    /// `cpu::CpuAfterimage::plan`). Such a pixel is shown, and its sample is stored, like a pixel of the full-rate
+    /// lattice. A sample is ignored if it is NaN or infinite, so a renderer may leave out pixels that it was asked for.
+    /// It is also ignored where the full-rate lattice has a sample. `None`: no pixels are repaired.
     pub repaired: Option<E::Colors<'a>>,
     /// Descriptions of the views, one for each view of the context.
     pub views: &'a [ViewFrame],
@@ -433,7 +433,7 @@ impl<E: Executor> Debug for Frame<'_, E> {
 }
 
 impl<'a, E: Executor> Frame<'a, E> {
-    /// What `new` of either executor does.
+    /// Implementation of `new` of both executors.
     pub(crate) fn of_color(color: E::Colors<'a>, views: &'a [ViewFrame], index: u64) -> Self {
         Self {
             color,
@@ -450,14 +450,14 @@ impl<'a, E: Executor> Frame<'a, E> {
         }
     }
 
-    /// Checks all fields but the images.
+    /// Checks all fields except the images.
     pub(crate) fn check(&self, desc: &ContextDesc) -> Result<(), FrameError> {
         self.check_facts(desc)?;
         self.check_noise(&desc.settings)?;
         self.check_repaired(&desc.settings)
     }
 
-    /// Checks what is known of a frame before it is shaded.
+    /// Checks the parts of a frame that are known before it is shaded.
     pub(crate) fn check_facts(&self, desc: &ContextDesc) -> Result<(), FrameError> {
         let (found, expected) = (self.views.len(), desc.view_count as usize);
         if found != expected {
@@ -470,7 +470,7 @@ impl<'a, E: Executor> Frame<'a, E> {
         self.exposure.check()
     }
 
-    /// Rejects views without lattices if the settings require them, and unexpected ones.
+    /// Rejects views without lattices if the settings require lattices, and views with lattices if they do not.
     fn check_lattices(&self, settings: &Settings) -> Result<(), FrameError> {
         let is_sparse = settings.foveation.filter == Filter::Sparse;
         for (view, facts) in self.views.iter().enumerate() {
@@ -494,7 +494,7 @@ impl<'a, E: Executor> Frame<'a, E> {
         Ok(())
     }
 
-    /// Checks the values of a frame whose repair is planned, and gives the settings for that.
+    /// Checks the values of a frame whose repair is to be planned, and returns the repair settings.
     pub(crate) fn check_plan(&self, desc: &ContextDesc) -> Result<Repair, FrameError> {
         let Some(repair) = smr_sparse_repair(&desc.settings) else {
             let expected = "given, to plan repairs, and Filter::Sparse in Settings::foveation";
@@ -504,7 +504,8 @@ impl<'a, E: Executor> Frame<'a, E> {
         Ok(repair)
     }
 
-    /// Rejects repaired samples for which nobody asked. `planned`: index of the frame that was planned.
+    /// Rejects repaired samples of a frame for which no repair was planned. `planned`: index of the frame that was
+    /// planned.
     pub(crate) fn check_planned(&self, planned: Option<u64>) -> Result<(), FrameError> {
         if self.repaired.is_none() || planned == Some(self.index) {
             return Ok(());
@@ -522,7 +523,7 @@ impl<'a, E: Executor> Frame<'a, E> {
         Err(FrameError::Value { what: "repaired", view: 0, found: "given".into(), expected })
     }
 
-    /// Rejects a missing noise input if the settings require one, and an unexpected one.
+    /// Rejects a missing noise input if the settings require one, and a noise input if they do not.
     fn check_noise(&self, settings: &Settings) -> Result<(), FrameError> {
         let (found, expected) = match (settings.noisy, self.noise.is_some()) {
             (true, false) => ("None", "a noise input, because Settings::noisy is set"),

@@ -103,8 +103,8 @@ impl ViewGeometry {
     }
 
     /// A view of `size_px` from an engine's projection matrix, without jitter: right-handed with y up and -z forward,
-    /// stored by columns (`to_cols_array_2d` of glam). Symmetric or off-axis. The depth range does not matter: 0 to 1
-    /// or -1 to 1, reversed and infinite ones, too.
+    /// stored by columns (`to_cols_array_2d` of glam). It may be symmetric or off-axis. The depth range does not
+    /// matter: 0 to 1 or -1 to 1, reversed or infinite.
     ///
     /// ```
     /// use afterimage::ViewGeometry;
@@ -139,10 +139,10 @@ impl ViewGeometry {
         (Vec2::from(px) * self.scale + self.offset).extend(1.0).to_array()
     }
 
-    /// Octagon around what a headset's lens shows, for [`ViewFrame::visible_px`](crate::ViewFrame::visible_px).
-    /// `outline`: points whose convex hull is the visible area, such as the vertices of OpenXR's visibility mask: x and
-    /// y in the plane one unit ahead, y up. One pixel is added on every side. `None` if a point is not finite, or there
-    /// is none.
+    /// Octagon around the area that a headset's lens shows, for
+    /// [`ViewFrame::visible_px`](crate::ViewFrame::visible_px). `outline`: points whose convex hull is the visible
+    /// area, such as the vertices of OpenXR's visibility mask: x and y in the plane one unit ahead, y up. One pixel is
+    /// added on every side. `None` if a point is not finite, or if there are no points.
     ///
     /// ```
     /// use afterimage::ViewGeometry;
@@ -196,8 +196,8 @@ impl ViewGeometry {
         acuity::eccentricity_deg(self.ray(px).into(), self.ray(gaze_px).into())
     }
 
-    /// Smallest rectangle of pixels around all that lies within `radius_deg` of the gaze: first pixel, and pixel after
-    /// the last; clamped to the view, empty if nothing of it lies in the view. For renderers that draw regions as views
+    /// Smallest rectangle that contains all pixels within `radius_deg` of the gaze: first pixel, and pixel after the
+    /// last. It is clamped to the view, and empty if it lies outside the view. For renderers that draw regions as views
     /// of their own.
     pub fn around_px(&self, gaze_px: [f32; 2], radius_deg: f32) -> [[u32; 2]; 2] {
         let gaze = Vec3::from(self.ray(gaze_px)).normalize();
@@ -222,7 +222,7 @@ impl ViewGeometry {
     }
 }
 
-/// The columns of a projection matrix, if it is one that [`ViewGeometry::from_projection`] accepts.
+/// The columns of a projection matrix, if [`ViewGeometry::from_projection`] accepts it.
 fn checked_projection(columns: [[f32; 4]; 4]) -> Result<[[f32; 4]; 4], SettingsError> {
     let refuse = |expected: &str| {
         Err(SettingsError { setting: "clip_from_view", found: format!("{columns:?}"), expected: expected.into() })
@@ -269,8 +269,8 @@ pub(crate) fn camera_motion(
     let projection = matrix("clip_from_view", checked_projection(clip_from_view)?)?;
     let world_from_clip = matrix("clip_from_world", clip_from_world)?.inverse();
     let previous = matrix("previous_clip_from_world", previous_clip_from_world)?;
-    // Both frames have the same projection, or one that differs in field of view or planes only: the distance, which
-    // the depth test needs, is the previous clip w in either case.
+    // The depth test needs only the distance, which is the previous clip w. It does not change if the previous frame's
+    // projection differs in field of view or planes.
     Ok(rows_y_down(projection.inverse() * previous * world_from_clip * projection))
 }
 
@@ -284,7 +284,7 @@ pub(crate) fn pose_motion(
     Ok(rows_y_down(previous.inverse() * current))
 }
 
-/// A pose, if it is one: a rotation and a translation.
+/// The matrix as a pose, if it is one: a rotation and a translation.
 pub(crate) fn checked_pose(setting: &'static str, columns: [[f32; 4]; 4]) -> Result<DMat4, SettingsError> {
     // Doubles: a position of kilometres leaves few digits of a float for the motion of a frame.
     let pose = DMat4::from_cols_array_2d(&columns.map(|c| c.map(f64::from)));
@@ -298,7 +298,7 @@ pub(crate) fn checked_pose(setting: &'static str, columns: [[f32; 4]; 4]) -> Res
     Err(SettingsError { setting, found: format!("{columns:?}"), expected })
 }
 
-/// A motion between view spaces with y up and -z forward, for those with y down and z forward, by rows.
+/// Converts a motion between view spaces with y up and -z forward to view spaces with y down and z forward, by rows.
 fn rows_y_down(previous_from_current: DMat4) -> [[f32; 4]; 4] {
     let flip = DMat4::from_diagonal(DVec4::new(1.0, -1.0, -1.0, 1.0));
     let rows = (flip * previous_from_current * flip).transpose();

@@ -24,7 +24,7 @@ pub struct Lattice {
     /// Number of samples along x and y, at least 1. Samples beyond the frame are ignored.
     pub points: [u32; 2],
     /// Texel of the top-left sample in an atlas, in which neighbouring samples are neighbouring texels. `None`: samples
-    /// lie at their own pixels of images of the frame's size; what lies between them is not read.
+    /// lie at their own pixels of images of the frame's size; the pixels between them are not read.
     pub atlas_texel: Option<[u32; 2]>,
 }
 
@@ -123,9 +123,10 @@ impl Lattices {
         (stack, size)
     }
 
-    /// This stack for frames whose depth and motion vectors, too, are given at the samples only, as a renderer that
-    /// draws each lattice as a small view has them: at the texels of their colors, in images laid out as the color
-    /// input is. What lies between is interpolated, for 12 bytes a pixel of memory. Trust masks stay at full size.
+    /// This stack for frames whose depth and motion vectors are also given at the samples only, as by a renderer that
+    /// draws each lattice as a small view. They lie at the same texels as the colors, in images with the layout of the
+    /// color input. The pixels between samples are interpolated, which takes 12 bytes a pixel of memory. Trust masks
+    /// stay at full size.
     pub fn with_geometry_at_samples(self) -> Self {
         Self { has_geometry_at_samples: true, ..self }
     }
@@ -188,10 +189,10 @@ impl Lattices {
 }
 
 impl Foveation {
-    /// Jitter of the projection in a frame for [`Smr::antialias`](crate::Smr::antialias), in pixels, each in
-    /// \[-0.5, 0.5): where its samples lie in their pixels changes from frame to frame, so that a mean over time is one
-    /// over the pixel, also where a lattice samples a pixel only every 4 or 256 frames. What is at `p` without jitter
-    /// is drawn at `p + jitter_px`. `index`: the frame counter of [`lattices`](Self::lattices).
+    /// Jitter of the projection in a frame for [`Smr::antialias`](crate::Smr::antialias), in pixels, each in \[-0.5,
+    /// 0.5). It moves the samples within their pixels from frame to frame, so that a mean over time is a mean over the
+    /// pixel's area. This also holds where a lattice samples a pixel only every 4 or 256 frames. A point at `p` without
+    /// jitter is drawn at `p + jitter_px`. `index`: the frame counter of [`lattices`](Self::lattices).
     ///
     /// ```
     /// use afterimage::Foveation;
@@ -203,13 +204,13 @@ impl Foveation {
         jitter_px(index)
     }
 
-    /// Lattices of a sparse frame with this foveation: rectangles around the regions, and sample positions that visit
-    /// every pixel of a block once in `step * step` frames, evenly spread after any number of frames. `index`: frame
+    /// Lattices of a sparse frame with this foveation: rectangles around the regions. The sample positions visit every
+    /// pixel of a block once in `step * step` frames, and are evenly spread after any number of frames. `index`: frame
     /// counter.
     ///
-    /// Regions outside the view, and of 0 degrees, are left out. So are those whose samples would all lie beyond the
-    /// view's edge: regions that reach only its last blocks, in frames that sample the part of them beyond the edge.
-    /// Steps larger than the view have their sample inside it.
+    /// Regions outside the view, and regions of 0 degrees, are left out. A region is also left out of frames in which
+    /// all of its samples would lie beyond the view's edge; this happens if the region covers only the last blocks at
+    /// the edge. A step larger than the view has its sample inside the view.
     pub fn lattices(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], index: u64) -> Lattices {
         let size = geometry.size_px();
         let covering = |step, low, high| {
@@ -229,9 +230,9 @@ impl Foveation {
     }
 
     /// Size in texels that holds the atlas ([`Lattices::in_atlas`]) of every frame of a view: the largest over all
-    /// gazes, in the view and beyond it, and over all frames. It exceeds what a gaze in the middle needs, because flat
-    /// views magnify what lies at their edges. Renderers allocate color, depth and motion of this size once. Takes some
-    /// ten milliseconds.
+    /// frames and over all gaze positions, inside and outside the view. It exceeds the size for a gaze in the middle,
+    /// because flat views magnify the regions at their edges. Renderers allocate color, depth and motion of this size
+    /// once. The call takes about ten milliseconds.
     ///
     /// ```
     /// use afterimage::{Filter, Foveation, ViewGeometry};
@@ -251,9 +252,9 @@ impl Foveation {
     /// # Ok::<(), afterimage::SettingsError>(())
     /// ```
     pub fn max_atlas_px(&self, geometry: &ViewGeometry) -> [u32; 2] {
-        /// Distance of the gazes that are tried.
+        /// Distance of neighbouring gaze positions on the grid that is searched.
         const GRID_DEG: f32 = 0.5;
-        // A gaze lies at most half a diagonal of the grid from one that is tried.
+        // A gaze lies at most half a diagonal of the grid from the nearest gaze position that is tried.
         const SLACK_DEG: f32 = 0.5 * GRID_DEG * SQRT_2;
         let size = geometry.size_px();
         let whole = size.map(|n| n.div_ceil(self.rate_far));

@@ -1,9 +1,9 @@
 //! Temporal post-process for foveated rendering: keeps the detail that the renderer shaded at earlier gaze positions.
 //!
 //! A foveating renderer shades at full rate only where the eye looks. `afterimage` runs after it, before tone mapping:
-//! it stores the sharpest sample of every surface point, follows it along the motion vectors, and shows it as long as
-//! it explains the foveated frame ([`Method::Smr`]). For comparison there are weighted reservoirs (Cantory et al., MIG
-//! 2025; [`Method::Wrs`]) and temporal antialiasing ([`Method::Taa`]).
+//! it stores the sharpest sample of every surface point, reprojects it along the motion vectors, and shows it as long
+//! as it agrees with the foveated frame ([`Method::Smr`]). For comparison there are weighted reservoirs (Cantory et
+//! al., MIG 2025; [`Method::Wrs`]) and temporal antialiasing ([`Method::Taa`]).
 //!
 //! # Example
 //!

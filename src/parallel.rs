@@ -1,5 +1,5 @@
-//! Rows and pixels on all cores, with the processor's newest vector instructions. WebAssembly has neither: one core
-//! computes the same.
+//! Loops over rows and pixels, on all cores and with the widest vector instructions of the processor. On WebAssembly
+//! one core computes the same results.
 
 use crate::stats::FrameStats;
 #[cfg(not(target_family = "wasm"))]
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 /// A pass over the rows of an image.
 pub(crate) trait ProcessRow<R>: Sync {
-    /// Processes row `y`. Implementations are inlined, so that they are compiled for the instructions at hand.
+    /// Processes row `y`. Implementations are inlined, so that they are compiled for each instruction set.
     fn process(&self, y: u32, row: &mut R) -> FrameStats;
 }
 
@@ -52,7 +52,7 @@ pub(crate) fn for_rows<T: Send>(pixels: &mut [T], width: usize, f: impl Fn(usize
     pixels.chunks_mut(width).enumerate().for_each(|(y, row)| f(y, row));
 }
 
-/// `f` of 0 to `len - 1`.
+/// The results of `f` for 0 to `len - 1`.
 pub(crate) fn collect<T: Send>(len: u32, f: impl Fn(u32) -> T + Sync + Send) -> Vec<T> {
     #[cfg(not(target_family = "wasm"))]
     return (0..len).into_par_iter().map(f).collect();

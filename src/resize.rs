@@ -2,7 +2,7 @@
 
 use crate::uniforms::Held;
 
-/// Sizes before and after, and what follows from them.
+/// Ratios that follow from the sizes before and after.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Resize {
     pub old_size_px: [u32; 2],
@@ -19,7 +19,7 @@ impl Resize {
         Self { old_size_px, size_px, ratio, lod_shift: -0.5 * (ratio[0] * ratio[1]).log2() }
     }
 
-    /// What is held of a view, in pixels of the new size.
+    /// Converts the held state of a view to pixels of the new size.
     pub fn held(&self, held: Held) -> Held {
         let position = |px: [f32; 2]| [0, 1].map(|i| (px[i] + 0.5) / self.ratio[i] - 0.5);
         let vector = |px: [f32; 2]| [0, 1].map(|i| px[i] / self.ratio[i]);

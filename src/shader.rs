@@ -153,7 +153,7 @@ impl Composer {
         self.compose_with(&[name], "")
     }
 
-    /// The module `name` after all modules that it uses, with the second module of `instead` in place of the first.
+    /// As [`compose`](Self::compose), with the second module of `instead` in place of the first.
     ///
     /// # Panics
     /// As for [`compose`](Self::compose).

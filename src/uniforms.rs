@@ -55,13 +55,13 @@ pub struct ViewUniforms {
     pub repaired_origin: u32,
     /// Padding to a multiple of 16 bytes.
     pub unused: [u32; 3],
-    /// Lowest x, y, x + y and x - y of pixels that are seen.
+    /// Lowest x, y, x + y and x - y of the visible pixels.
     pub lowest_px: [f32; 4],
-    /// Highest ones.
+    /// Highest x, y, x + y and x - y of the visible pixels.
     pub highest_px: [f32; 4],
 }
 
-/// What a context holds of a view's descriptions from frame to frame.
+/// State of a view that a context holds from frame to frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Held {
     /// Last known gaze position, if any.
@@ -73,7 +73,7 @@ pub(crate) struct Held {
 }
 
 impl Held {
-    /// After a frame with this description of the view.
+    /// This state after a frame with this description of the view.
     pub fn with(self, view: &ViewFrame) -> Self {
         Self {
             gaze_px: Some(view.gaze.resolve(self.gaze_px, &view.geometry)),
@@ -84,7 +84,7 @@ impl Held {
 }
 
 impl ViewUniforms {
-    /// Constants of view `index` of frame `frame`; `held` is that [after](Held::with) this frame.
+    /// Constants of view `index` of frame `frame`. `held`: the view's state [after](Held::with) this frame.
     pub(crate) fn new(desc: &ContextDesc, view: &ViewFrame, held: &Held, index: usize, frame: u64) -> Self {
         let (ray_scale, offset) = view.geometry.scale_offset();
         let settings = &desc.settings;
@@ -98,7 +98,7 @@ impl ViewUniforms {
         let [lowest_px, highest_px] = view.visible_px.unwrap_or([[f32::MIN; 4], [f32::MAX; 4]]);
         Self {
             ray_scale,
-            // A pixel shows what is at its position minus the jitter.
+            // A pixel shows the point at its position minus the jitter.
             ray_offset: [offset[0] - jitter[0] * ray_scale[0], offset[1] - jitter[1] * ray_scale[1]],
             gaze_ray: [x, y, z, 0.0],
             depth_row: view.depth_row(),
@@ -140,9 +140,9 @@ pub struct LatticeUniforms {
     pub unused: [u32; 2],
 }
 
-/// Texel at which the results for the samples of a lattice begin, in an image of [`results_size`]: that of step 2 above
-/// the coarser ones, which lie side by side. No lattice of a view of `size_px` has more samples than pixels divided by
-/// its step.
+/// First texel of the results for a lattice's samples, in an image of [`results_size`]. The lattice of step 2 lies at
+/// the top; the coarser ones lie side by side below it. Along an axis, no lattice of a view of `size_px` has more
+/// samples than pixels divided by its step.
 fn result_texel(level: u32, size_px: [u32; 2]) -> [u32; 2] {
     match level {
         0 | 1 => [0, 0],
@@ -183,7 +183,7 @@ impl LatticeUniforms {
         all
     }
 
-    /// Lattices of a view of `size_px`; without any, one of full rate.
+    /// Lattices of a view of `size_px`; one full-rate lattice if `lattices` is `None`.
     pub(crate) fn of_view_or_full(lattices: Option<&Lattices>, size_px: [u32; 2]) -> ViewLattices {
         let full = Lattice::covering(1, [0, 0], size_px, [0, 0]);
         lattices.map_or_else(

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-/// A recoverable problem of a frame, which was processed all the same. Displays as one line: the problem, and how it
-/// was handled.
+/// A recoverable problem of a frame. The frame was processed nevertheless. Displays as one line: the problem, and how
+/// it was handled.
 ///
 /// Warnings about gaze are known when a frame is recorded (`gpu::Recorded::warnings`); those about pixels come from
 /// counters ([`FrameStats::warnings`](crate::FrameStats::warnings)).

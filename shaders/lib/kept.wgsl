@@ -202,7 +202,7 @@ fn interpolate(a: AroundKept) -> Interpolated {
         // All samples are far away.
         return Interpolated(nearest.color, nearest.lod, a.lowest, a.highest, nearest);
     }
-    // Moments times the squared weight: without quotients, which shader compilers reorder.
+    // Moments times the squared weight. This avoids quotients, which shader compilers reorder.
     let stiff = (a.weight * a.weight) * STIFF_PX2;
     let xx = (a.square.x * a.weight - a.place.x * a.place.x) + stiff;
     let xy = a.square.y * a.weight - a.place.x * a.place.y;

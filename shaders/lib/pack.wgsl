@@ -73,7 +73,7 @@ struct StoredColor {
 // pack::unpack_sample
 fn unpack_sample(words: vec2<u32>) -> StoredColor {
     let stored_color = vec3<f32>(half_value(words.x), half_value(words.x >> 16u), half_value(words.y));
-    // Infinity and NaN are decoded as larger numbers than the largest half.
+    // Infinity and NaN decode to numbers above the largest half.
     let largest = max(max(abs(stored_color.x), abs(stored_color.y)), abs(stored_color.z));
     return StoredColor(stored_color, disparity_value(words.y >> 16u), largest <= MAX_HALF);
 }

@@ -31,7 +31,7 @@ fn catmull_rom(t: f32) -> vec4<f32> {
     );
 }
 
-// What the taps around a position have in common: where it is, and Catmull-Rom weights of columns and rows.
+// Shared values of the taps around a position: the position, and Catmull-Rom weights of columns and rows.
 struct TapsAround {
     texel: vec2<i32>,
     last: vec2<i32>,
@@ -45,8 +45,8 @@ fn taps_around(texel: vec2<i32>, fraction: vec2<f32>, size: vec2<u32>) -> TapsAr
     return TapsAround(texel, vec2<i32>(size) - 1, fraction, catmull_rom(fraction.x), catmull_rom(fraction.y));
 }
 
-// Texels of four taps, and their weights: products of a column's and a row's. `sharp_rows` are of the first two and the
-// last two taps; linear weights are of `b` and `c`, and 0 for the others.
+// Texels of four taps, and their weights: products of a column's and a row's. `sharp_rows`: weights of the row of the
+// first two and of the last two taps. Linear weights belong to `b` and `c`; those of the other taps are 0.
 struct FourTaps {
     a: vec2<i32>,
     b: vec2<i32>,
@@ -87,7 +87,7 @@ fn sharp_sum(around: TapsAround) -> f32 {
 
 // resample::codes_between
 fn codes_between(expected: f32, low: f32, high: f32) -> vec2<u32> {
-    // The limit keeps compilers from merging the factors with those of the disparity.
+    // The limit keeps compilers from merging these factors with those of the disparity.
     let limited = min(expected, LARGEST_DISPARITY);
     let first = disparity_code(limited * low);
     let last = disparity_code(limited * high);

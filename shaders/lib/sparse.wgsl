@@ -228,7 +228,7 @@ struct Accumulated {
 fn accumulate(r: Reconstruction, past: Noise, candidate: Noise) -> Accumulated {
     let acceptance = r.fit * r.trust;
     let bright = luma(r.history);
-    // The farther the samples are, the less they say of this pixel.
+    // Samples farther from this pixel count less.
     let now = Noise(candidate.samples * exp2(-r.lod), candidate.variance);
     let certain = noise_confidence(past, bright);
     let sharp = noise_confidence(Noise(now.samples, past.variance), bright);

@@ -11,7 +11,7 @@ override HAS_LOD: u32 = 0u;
 fn candidate_lod(px: vec2<u32>, view: u32, e_deg: f32) -> f32 {
     if HAS_LOD != 0u {
         let given = textureLoad(lod_in, texel_of(px, frame.views[view].lod_origin), layer_of(view), 0).x;
-        // By bits: NaN is 0.
+        // The test is on the bits: NaN gives 0.
         return select(0.0, clamp(given, 0.0, MAX_LOD), (bitcast<u32>(given) & 0x7fffffffu) <= 0x7f800000u);
     }
     return foveation_lod(e_deg);

@@ -101,7 +101,7 @@ fn add(word: u32, count: u32) {
     atomicAdd(&sums[word], count);
 }
 
-// Compares the frame at a pixel with the previous one, where each hypothesis says that it was.
+// Compares the frame at a pixel with the previous frame at the position that each hypothesis predicts.
 fn match_sample(px: vec2<u32>, level: u32) {
     if HAS_MOTION == 0u {
         return;

@@ -8,7 +8,8 @@
 //#use view_uniforms
 // Inputs of a pixel in internal conventions, and its counters; shared by all methods. CPU twin: src/cpu/inputs.rs.
 
-// Which inputs the frame has, and which features are on. Constants of a pipeline: what is off is not compiled.
+// Which inputs the frame has, and which features are on. They are constants of a pipeline: code for absent inputs and
+// for features that are off is not compiled.
 override HAS_DEPTH: u32 = 1u;
 override HAS_MOTION: u32 = 1u;
 override HAS_TRUST: u32 = 1u;
@@ -161,7 +162,7 @@ fn is_same_surface(px: vec2<u32>, view: u32, disparity_now: f32, expected: f32, 
         return true;
     }
     let plain = same_surface(expected, stored, frame.depth_relative, 0.0);
-    // Few pixels need the four taps of the slope.
+    // Only few pixels need the four taps of the slope.
     let slope_px = frame.depth_slope_px * slope_at(px, view, disparity_now, !plain);
     return plain || same_surface(expected, stored, frame.depth_relative, slope_px);
 }

@@ -25,15 +25,16 @@ struct PixelSurface {
     motion: vec2<f32>,
     // Disparity to store with the pixel.
     stored_disparity: f32,
-    // Disparities of the farthest and the nearest surface that history may be of.
+    // Disparities of the farthest and the nearest surface that history may show.
     farthest: f32,
     nearest: f32,
     mixes: bool,
-    // Whether this frame's sample of the pixel may show another surface.
+    // Whether this frame's sample at the pixel may show another surface.
     is_doubtful: bool,
 }
 
-// Those of the nearest surface around a pixel, if that stands for it (ANTIALIAS). `level`: of its lattice.
+// The surface whose history a pixel continues: with ANTIALIAS the nearest surface around it if `stands_before` is true,
+// otherwise its own. `level`: of its lattice.
 fn surface_of(px: vec2<u32>, view: u32, level: u32) -> PixelSurface {
     let own = disparity_at(px, view);
     let own_motion = motion_at(px, view);
@@ -68,15 +69,15 @@ fn surface_of(px: vec2<u32>, view: u32, level: u32) -> PixelSurface {
         surface.nearest = nearest_disparity;
         surface.mixes = true;
     }
-    // Where surfaces move as one, a pixel is the mean of both, and samples of either belong to it.
+    // Where surfaces move together, a pixel is the mean of both, and samples of either surface belong to it.
     surface.is_doubtful = doubtful && own >= 0.0 && !surface.mixes;
     return surface;
 }
 
-// Previous position of a pixel's surface, and what its history may be of.
+// Previous position of a pixel's surface, and the disparities that its history may have.
 struct KeptSource {
     previous: Previous,
-    // As of stored disparities: `tap_codes`.
+    // Codes of these disparities, as `tap_codes` gives them.
     codes: vec2<u32>,
 }
 
@@ -96,7 +97,7 @@ fn kept_source(px: vec2<u32>, view: u32, surface: PixelSurface) -> KeptSource {
     return KeptSource(previous, tap_codes_between(farthest, nearest_expected));
 }
 
-// Whether history may be at a previous position.
+// Whether a previous position may have history.
 fn may_have_history(previous: Previous) -> bool {
     return previous.verdict == VERDICT_VALID || previous.verdict == VERDICT_DISOCCLUDED;
 }
@@ -108,13 +109,14 @@ struct KeptHistory {
     samples: f32,
 }
 
-// History at a previous position, in this frame's exposure. At a silhouette, where the nearest stored sample is of
-// another surface, samples beside it stand in for it if they are near enough. Where `needed` is false the loop has zero
+// History at a previous position, in this frame's exposure. At a silhouette the nearest stored sample may belong to
+// another surface. Samples beside it then replace it if they are near enough. Where `needed` is false the loop has zero
 // iterations: software Vulkan runs the body of an `if` for all pixels.
 fn kept_history(source: KeptSource, view: u32, needed: bool) -> KeptHistory {
     let previous = source.previous;
     var around = nothing_around();
-    // Means lie anywhere around their texels' centres, so that all around the nearest one count.
+    // The place of a mean may lie anywhere around its texel's centre, so that the eight texels around the nearest one
+    // also count.
     var columns = 2u;
     var first = vec2<i32>(floor(previous.at));
     var inverse_reach = INVERSE_REACH;
@@ -152,7 +154,7 @@ fn kept_history(source: KeptSource, view: u32, needed: bool) -> KeptHistory {
     return KeptHistory(found, nearest_texel, samples);
 }
 
-// Whether history has moved since its samples were shaded, by more than their stored places resolve.
+// Whether history has moved since its samples were shaded, by more than the resolution of their stored places.
 fn has_moved(motion: vec2<f32>, place_px: vec2<f32>) -> bool {
     return max(abs(motion.x), abs(motion.y)) > EXACT_PX || max(abs(place_px.x), abs(place_px.y)) > EXACT_PX;
 }

@@ -5,8 +5,8 @@
 fn pixel(px: vec2<u32>, view: u32) {
     let given = color_at(px, view);
     let candidate = color(given.xyz);
-    // Not a constant, although frame.reset is always set: compilers would fold the debug view's color with other
-    // roundings.
+    // The verdict is not a constant, although frame.reset is always set. Compilers would compute the debug view's color
+    // of a constant with a different rounding.
     let verdict = select(VERDICT_EMPTY, VERDICT_RESET, frame.reset != 0u);
     count_if(!candidate.usable, COUNT_NONFINITE);
     count_if(true, COUNT_VERDICTS + verdict);

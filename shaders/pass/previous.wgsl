@@ -52,7 +52,7 @@ fn previous_of(
     return Previous(verdict, vec2<f32>(px) + motion, at.at, expected, confidence);
 }
 
-// Whether a neighbour in the 2x2 block moves as the pixel does.
+// Whether a neighbour in the 2x2 block has the same motion as the pixel.
 fn is_coherent(px: vec2<u32>, view: u32, own: vec2<f32>) -> bool {
     if HAS_MOTION == 0u {
         return true;

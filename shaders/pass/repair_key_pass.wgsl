@@ -4,12 +4,12 @@
 // How much the quads of a sparse frame want samples of their own, before it is shaded. CPU twin: `key` in
 // src/cpu/sparse_pass/plan.rs. One invocation a quad of 2x2 pixels of view `frame.first_view`.
 //
-// 8 reads and 1 write a quad: depth, motion, trust and a stored sample of two pixels. A pixel that is not settled: up
-// to 14 reads of depth and motion and 9 of stored samples more; its quad 1 atomic sum.
+// 8 reads and 1 write a quad: depth, motion, trust and a stored sample of two pixels. A pixel that is not settled needs
+// up to 14 more reads of depth and motion and 9 more of stored samples, and its quad 1 atomic sum.
 
 @group(0) @binding(18) var keys_out: texture_storage_2d_array<r32uint, write>;
 
-// Whether the stored sample nearest to a pixel's previous position is a fine one of its surface.
+// Whether the stored sample nearest to a pixel's previous position is fine and belongs to the pixel's surface.
 fn is_settled(px: vec2<u32>, view: u32) -> bool {
     let at = reprojected(px, motion_at(px, view));
     let stored = kept_at(vec2<i32>(at.at), view);
@@ -28,7 +28,7 @@ fn is_settled(px: vec2<u32>, view: u32) -> bool {
     return same && at.verdict == VERDICT_VALID && lod >= 0.0 && lod < WANTED_LOD;
 }
 
-// How much a pixel that is not settled wants a sample of its own.
+// Priority, for a sample of its own, of a pixel that is not settled.
 fn pixel_priority(px: vec2<u32>, view: u32) -> u32 {
     let lattice = lattice_at(px, view);
     let near = around(px, lattice);
@@ -47,7 +47,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if any(2u * quad >= frame.size) {
         return;
     }
-    // Pixels that need a closer look, as bits. Few do, and the second loop ends at once for the others.
+    // Pixels that are not settled, as bits. They are few, and the second loop ends at once for the others.
     var left = 0u;
     for (var i = 0u; i < 2u; i++) {
         let px = asked_px(i, quad.x, quad.y, frame.frame_low);

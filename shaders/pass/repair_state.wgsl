@@ -2,7 +2,7 @@
 // Counts of the quads of a view by their key, and which keys are chosen; shared by the passes of a plan.
 
 struct RepairState {
-    // Of all quads that want samples.
+    // Counts of the quads with a key above 0.
     counts: array<atomic<u32>, KEYS>,
     // Smallest key that is chosen.
     threshold: u32,

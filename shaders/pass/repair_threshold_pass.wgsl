@@ -4,7 +4,7 @@
 // `threshold` in src/kernel/repair.rs, which goes through all keys; here 64 invocations sum them first. One workgroup.
 
 const INVOCATIONS: u32 = 64u;
-// Keys of an invocation. The last one has no quads.
+// Number of keys that an invocation sums. The last invocation's keys have no quads.
 const RUN: u32 = 1u << HASH_BITS;
 
 @group(0) @binding(0) var<uniform> budget_quads: vec4<u32>;
@@ -30,7 +30,7 @@ fn main(@builtin(local_invocation_index) run: u32) {
         first--;
         chosen += of_run[first];
     }
-    // The budget ends among the keys of the run before, if there is one. No quad has key 0.
+    // The budget ends within the keys of the previous run, if there is one. No quad is counted at key 0.
     var key = first * RUN;
     while key > 1u && atomicLoad(&state.counts[key - 1u]) <= budget - chosen {
         key--;

@@ -10,7 +10,7 @@
 @group(0) @binding(4) var next_noise: texture_storage_2d_array<r32uint, write>;
 
 override NOISY: u32 = 0u;
-// Whether they are means of samples.
+// Whether the kept samples are means of samples.
 override MEANS: u32 = 0u;
 
 @compute @workgroup_size(64, 1)

@@ -2,7 +2,7 @@
 //#use taa
 // What settled history is compared by; shared by taa and taau. CPU twin: src/cpu/surface_history.rs.
 
-// Luma of history at the texel nearest to a position and `offset_px` beyond it, of whatever surface.
+// Luma of history at `offset_px` from the texel nearest to a position, regardless of its surface.
 fn luma_beside(source: Source, offset_px: vec2<i32>, view: u32) -> f32 {
     let nearest = source.texel + vec2<i32>(source.fraction >= vec2<f32>(0.5));
     return root_luma(exposed(surface_at(nearest + offset_px, view).color));

@@ -38,8 +38,8 @@ fn past_texel(x: u32, y: u32, view: u32) -> vec4<f32> {
     return mip_texel(textureLoad(past_surfaces, min(vec2<u32>(x, y), frame.size - 1u), view, 0).xy);
 }
 
-// History where and as the block around pixel `px`, of level of detail `lod`, was sampled: the texel of history that
-// corresponds to the one that the block filter reads.
+// History at the sample position of the block of level of detail `lod` around pixel `px`, low-passed like that sample:
+// the texel of history that corresponds to the texel that the block filter reads.
 fn past_sampled(source: Source, px: vec2<u32>, lod: f32, view: u32) -> vec3<f32> {
     let level = u32(lod + 0.5);
     let finer = min(block_sample_level(level), frame.mip_levels);
@@ -68,8 +68,8 @@ struct Matching {
     next_level: vec3<f32>,
 }
 
-// History at a position, at level of detail `lod` and at the whole levels around it. `smooth_color` is its level 0
-// there.
+// History at a position, at level of detail `lod` and at the whole levels around it. `smooth_color`: history at level
+// 0.
 fn past_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Matching {
     let last = frame.mip_levels;
     let limited = min(lod, f32(last));
@@ -145,7 +145,7 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
     let whole_level = exposed(past.level);
     let next_level = exposed(past.next_level);
     let blocks = FILTER == FILTER_BLOCK;
-    // Levels of history are means of blocks, not Gaussian blurs: these agree better a level coarser.
+    // Levels of history are means of blocks, not Gaussian blurs: the two agree better one level coarser.
     let gauss = FILTER == FILTER_GAUSS;
     let changed = RELIGHT_ON != 0u && is_changed(candidate, matched, whole_level, next_level);
     let around = candidates_around(px, view, candidate, lod, blocks || changed);
@@ -273,7 +273,7 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
             result = matched_pixel(px, view, candidate.color, lod, source, history);
         }
     }
-    // Gains and the overshoot of Catmull-Rom may exceed the largest half.
+    // With gains, and with the overshoot of Catmull-Rom, colors may exceed the largest half.
     result.color = min(result.color, vec3<f32>(MAX_HALF));
     count_if(valid && result.share == 0.0, COUNT_REPLACED);
     let sharpness = exp2(-max(result.lod, 0.0));
@@ -284,7 +284,7 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
         given.w,
         PixelTrace(source.previous.verdict, exp2(-lod), sharpness, 0u, result.share, result.fit, result.share == 0.0, motion),
     );
-    // Colors on a moving silhouette mix two surfaces. The coarsest level of detail makes the next candidate replace
+    // Colors on a moving silhouette mix two surfaces. With the coarsest level of detail, the next candidate replaces
     // them.
     let stored_lod = select(MAX_LOD, result.lod, coherent_motion || result.lod < 0.0);
     let words = pack_surface(Surface(result.color, stored_lod, disparity_now));

@@ -4,8 +4,8 @@
 // Comparison of the samples of a sparse frame with history at their pixels. CPU twin: `observe` in
 // src/cpu/sparse_pass.rs. One invocation a sample of lattice `frame.lattice`; z is the view.
 //
-// 9 reads and 1 write a sample: color, depth, motion, trust, 5 stored samples; 8 bytes written. With noise
-// 2 reads more.
+// 9 reads and 1 write a sample: color, depth, motion, trust, 5 stored samples; 8 bytes written. With noise, 2 more
+// reads.
 
 @group(0) @binding(18) var observed_out: texture_storage_2d_array<rg32uint, write>;
 
@@ -16,7 +16,7 @@ fn observe(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     let motion = surface.motion;
     var source = kept_source(px, view, surface);
     if ANTIALIAS != 0u {
-        // At the sample's place in its pixel.
+        // History is read at the sample's place in its pixel.
         source.previous.at -= frame.views[view].jitter_px;
     }
     let usable = color(sample_at(point, lattice, view).xyz).usable && !surface.is_doubtful;

@@ -15,10 +15,10 @@
 // Whether the frame has samples of the pixels that a plan chose.
 override REPAIR: u32 = 0u;
 
-// Squared distance in pixels of a sample that there is not.
+// Squared distance in pixels that stands for a missing sample.
 const NO_PX2: f32 = 1e30;
 
-// Candidate of a pixel, and what is known of its light.
+// Candidate of a pixel, and its gain and fit.
 struct Candidate {
     color: vec3<f32>,
     usable: bool,
@@ -29,7 +29,7 @@ struct Candidate {
     fit: f32,
     alpha: f32,
     noise: Noise,
-    // Whether it is the sample of this pixel.
+    // Whether the candidate is this pixel's own sample.
     is_own: bool,
 }
 
@@ -67,7 +67,7 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
     let x_weights = vec2<f32>(point_weight(near.x.fraction, 0u), point_weight(near.x.fraction, 1u));
     let y_weights = vec2<f32>(point_weight(near.y.fraction, 0u), point_weight(near.y.fraction, 1u));
     let taps = select(0u, select(4u, 1u, level == 0u), near.any);
-    // The pixel's own sample last: after the loop, values are those of that sample.
+    // The pixel's own sample comes last: after the loop, the values are those of that sample.
     for (var left = taps; left > 0u; left--) {
         let tap = left - 1u;
         let right = (tap & 1u) != 0u;
@@ -147,8 +147,8 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
     );
 }
 
-// The lattice that a pixel is shaded by, and the one whose samples say how well history fits there: for noisy pixels
-// at full rate the next one, if it has samples.
+// The lattice by which a pixel is shaded, and the lattice whose samples give the fit of history. For noisy pixels at
+// full rate that is the next lattice, if it has samples.
 struct PixelLattices {
     own: LatticeUniforms,
     judging: LatticeUniforms,
@@ -183,8 +183,8 @@ fn full_rate_candidate(px: vec2<u32>, lattice: LatticeUniforms, view: u32, fits:
     return candidate;
 }
 
-// Sums over the nine samples around a pixel of full rate, of which the own one is usable; of none unless `needed`. A
-// variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
+// Sums over the nine samples around a pixel of full rate, whose own sample is usable; without samples unless `needed`.
+// A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
 fn samples_near(px: vec2<u32>, lattice: LatticeUniforms, view: u32, needed: bool) -> Near {
     var near = Near(vec3<f32>(0.0), vec3<f32>(0.0), 0.0);
     let taps = select(0u, 9u, needed);
@@ -230,7 +230,7 @@ struct Repaired {
     usable: bool,
 }
 
-// Sample of a pixel that a plan chose. Pixels of the full-rate lattice have a sample of their own in any case.
+// Sample of a pixel that a plan chose. Pixels of the full-rate lattice always have a sample of their own.
 fn repaired(px: vec2<u32>, view: u32, level: u32) -> Repaired {
     if REPAIR == 0u {
         return Repaired(vec3<f32>(0.0), 1.0, false);
@@ -241,7 +241,7 @@ fn repaired(px: vec2<u32>, view: u32, level: u32) -> Repaired {
     return Repaired(own.color, given.w, chosen && own.usable);
 }
 
-// What the lens hides: black, and no history for what moves into view.
+// Pixels outside the visible area: black, without stored history.
 fn hidden_pixel(px: vec2<u32>, view: u32) {
     let trace = PixelTrace(VERDICT_RESET, 0.0, 0.0, 0u, 0.0, 1.0, true, vec2<f32>(0.0));
     write_output(px, view, vec3<f32>(0.0), 1.0, trace);
@@ -268,7 +268,7 @@ fn pixel(px: vec2<u32>, view: u32) {
     }
     let repair = repaired(px, view, lattice.level);
     if repair.usable {
-        // The samples around still say what became of the light.
+        // The samples around the pixel still give gain and fit.
         candidate.color = repair.color;
         candidate.alpha = repair.alpha;
         candidate.usable = true;
@@ -357,7 +357,7 @@ fn pixel(px: vec2<u32>, view: u32) {
     if VIEW == 0u {
         var words = pack_kept(next);
         if ANTIALIAS != 0u {
-            // The color is rounded by chance.
+            // The color is rounded stochastically.
             let draw = unit_draw(bits(px.x, px.y, frame.frame_low, frame.views[view].key));
             let stored = Kept(next.color, stored_lod(Mean(next.lod, samples)), next.disparity, next.place_px);
             words = vec2<u32>(pack_color_by(next.color, draw), pack_kept(stored).y);

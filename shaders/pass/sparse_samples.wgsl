@@ -8,7 +8,8 @@ const LIGHT_RELATIVE: f32 = 0.1;
 const SAMPLE_RELATIVE: f32 = 0.05;
 // Weight of a sample of another surface, which counts only where there is no better one.
 const OTHER_SURFACE: f32 = 1e-3;
-// Weight of gain and fit of neighbouring samples, where the sample itself has none.
+// Factor on the weight of a sample's gain and fit if they come from its neighbours only, because the sample itself was
+// not compared with history.
 const BY_NEIGHBOURS: f32 = 1e-3;
 // Least weight of one of the four samples around a pixel.
 const LEAST_SHARE: f32 = 1e-4;

@@ -29,8 +29,8 @@ fn surface_at(texel: vec2<i32>, view: u32) -> Surface {
     return unpack_surface(words_at(texel, view));
 }
 
-// Previous position of a pixel's surface. At a silhouette the nearest texel may show another surface. Then the one with
-// the second largest weight stands in for it. It is read without a branch, which costs more on software Vulkan.
+// Previous position of a pixel's surface. At a silhouette the nearest texel may show another surface. The texel with
+// the second largest weight then replaces it. It is always read, because a branch costs more on software Vulkan.
 fn source_of(px: vec2<u32>, view: u32, motion: vec2<f32>, disparity_now: f32) -> Source {
     let at = reprojected(px, motion);
     let words = words_at(vec2<i32>(at.at), view);

@@ -71,7 +71,7 @@ fn pixel(px: vec2<u32>, view: u32) {
             share = 1.0;
         }
     }
-    // The overshoot of Catmull-Rom may exceed the largest half.
+    // With the overshoot of Catmull-Rom, colors may exceed the largest half.
     shown = min(shown, vec3<f32>(MAX_HALF));
     write_output(px, view, shown, given.w, PixelTrace(source.previous.verdict, 1.0 - share, 0.0, 0u, share, 1.0, !valid, motion));
     if VIEW != 0u {

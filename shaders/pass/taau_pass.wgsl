@@ -12,7 +12,7 @@ struct Samples {
     given: vec4<f32>,
     // The same color, sanitized.
     nearest: Sanitized,
-    // Sum of history's lumas at the samples' pixels; 0 if it is not compared.
+    // Sum of history's lumas at the samples' pixels; 0 if history is not compared.
     past_luma: f32,
 }
 
@@ -21,7 +21,7 @@ fn sample_near(point: vec2<i32>, lattice: LatticeUniforms, view: u32) -> vec4<f3
     return sample_at(vec2<u32>(clamp(point, vec2<i32>(0), last)), lattice, view);
 }
 
-// Nine samples around a pixel, of its lattice; at the lattice's border the last ones again, at places beyond it.
+// Nine samples around a pixel, of its lattice. At the lattice's border the last samples repeat at positions beyond it.
 // `kernel`: tail and narrowing. The loop has a variable count on purpose: Mesa would unroll a constant one and reorder
 // its sums of products.
 fn samples(px: vec2<u32>, view: u32, kernel: vec2<f32>, source: Source, compared: bool) -> Samples {
@@ -42,7 +42,7 @@ fn samples(px: vec2<u32>, view: u32, kernel: vec2<f32>, source: Source, compared
         let point = middle + vec2<i32>(tap % 3, tap / 3) - 1;
         let sampled = color(sample_near(point, lattice, view).xyz);
         if sampled.usable {
-            // A sample shows what is at its pixel minus the jitter.
+            // A sample shows the point at its pixel minus the jitter.
             let x = point_offset_px(px.x, first.x, level, point.x);
             let y = point_offset_px(px.y, first.y, level, point.y);
             let offset = vec2<f32>(x, y) - frame.views[view].jitter_px;
@@ -84,7 +84,7 @@ fn pixel(px: vec2<u32>, view: u32) {
     } else if sampled {
         result = Accumulated(upsampled(near.around, near.nearest.color), near.around.weights.y, 1.0, 1.0);
     }
-    // The overshoot of Catmull-Rom may exceed the largest half.
+    // With the overshoot of Catmull-Rom, colors may exceed the largest half.
     let shown = min(result.color, vec3<f32>(MAX_HALF));
     let quality = min(0.5 * result.confidence, 1.0);
     let survival = select(0.0, 1.0 - result.share, valid);

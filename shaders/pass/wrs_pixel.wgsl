@@ -8,7 +8,7 @@
 // Weighted reservoirs in one pass: sanitize, reproject, reject, expose, gate, bias, combine, store and output. CPU
 // twin: src/cpu/wrs_pass.rs, which lists the reads and writes.
 
-// Settings as constants of a pipeline: what is off is not compiled.
+// Settings as constants of a pipeline: code for settings that are off is not compiled.
 override SAMPLER: u32 = 0u;
 override BIAS: u32 = 2u;
 override GATE: u32 = 1u;
@@ -42,7 +42,7 @@ fn tap(texel: vec2<i32>, view: u32, codes: vec2<u32>) -> Tap {
     return Tap(stored.color, 0.0, stored.valid && (DEPTH_TEST == 0u || has_code(words.y, codes)));
 }
 
-// Mean of history at a position, by Catmull-Rom weights. Exactly that of `nearest_color` at the centre of a pixel.
+// Mean of history at a position, by Catmull-Rom weights. At the centre of a pixel it is exactly `nearest_color`.
 fn resampled(at: vec2<f32>, view: u32, expected: f32, nearest_color: vec3<f32>) -> vec3<f32> {
     let whole = floor(at);
     let fraction = at - whole;
@@ -109,7 +109,7 @@ fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, dispa
     return History(VERDICT_VALID, past, stored.age, reference);
 }
 
-// Pixel of a pixel's sample, and the weight of a sample there.
+// Pixel of the sample nearest to a pixel, and the weight of its place.
 struct Place {
     px: vec2<u32>,
     weight: f32,

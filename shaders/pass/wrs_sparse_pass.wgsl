@@ -3,7 +3,7 @@
 // Weighted reservoirs over sparse frames: candidates count by the place of their sample. One invocation a pixel; z
 // is the view.
 
-// Place of the sample nearest to a pixel: the pixel itself, and weight 1, without samples in the frame.
+// Place of the sample nearest to a pixel. Without samples in the frame: the pixel itself, with a weight of 1.
 fn place_of(px: vec2<u32>, view: u32) -> Place {
     let lattice = lattice_at(px, view);
     if any(lattice.points == vec2<u32>(0u)) {

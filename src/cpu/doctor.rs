@@ -7,8 +7,8 @@ use crate::error::{FrameError, SettingsError};
 use crate::frame::ContextDesc;
 use crate::image::Image;
 
-/// Checks whether the frames of a renderer are what a [`ContextDesc`] says: motion vectors, depth, colors, gaze and
-/// foveation of one view. Give it some consecutive frames in which the camera moves and the eye looks around.
+/// Checks whether a renderer's frames match a [`ContextDesc`]: motion vectors, depth, colors, gaze and foveation of one
+/// view. Give it some consecutive frames in which the camera moves and the eye looks around.
 ///
 /// ```
 /// use afterimage::cpu::{Doctor, Frame};
@@ -52,7 +52,7 @@ struct Past {
 }
 
 impl Doctor {
-    /// A doctor that has seen nothing, for view `view` of a context of `desc`.
+    /// A doctor that has seen no frame yet, for view `view` of a context with the description `desc`.
     ///
     /// # Errors
     /// [`SettingsError`] if the description is out of range, or has no such view.
@@ -62,11 +62,11 @@ impl Doctor {
         Ok(Self { desc: *desc, view, chart: Chart::default(), past: None })
     }
 
-    /// Looks at a frame: the same that the post-process gets, one after the other.
+    /// Examines a frame. Give it the same frames as the post-process, in the same order.
     ///
     /// # Errors
     /// [`FrameError`] if a size, a number of images or a value does not fit the description; then the frame was not
-    /// looked at.
+    /// examined.
     pub fn observe(&mut self, frame: &Frame<'_>) -> Result<(), FrameError> {
         check_inputs(&self.desc, frame)?;
         let view = self.view;

@@ -53,7 +53,7 @@ impl Examined<'_> {
         words
     }
 
-    /// Compares the frame at the pixel `px` with the previous one, where each hypothesis says that it was.
+    /// Compares the frame at the pixel `px` with the previous frame at the position that each hypothesis predicts.
     fn match_sample(&self, px: [u32; 2], level: u32, words: &mut [u32]) {
         let Some(motion) = self.motion else { return };
         let stored = motion.at(px[0] as usize, px[1] as usize);

@@ -1,5 +1,5 @@
-//! Every pixel of a sparse frame, for methods that read whole frames: samples unchanged, and between them linear
-//! interpolation without those that are not finite. Twin: `shaders/pass/fill_pass.wgsl`.
+//! Fills every pixel of a sparse frame, for methods that read whole frames. Samples stay unchanged; pixels between them
+//! are linear interpolations of the finite ones. Twin: `shaders/pass/fill_pass.wgsl`.
 
 use super::Frame;
 use crate::image::Image;

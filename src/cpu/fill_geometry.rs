@@ -1,9 +1,9 @@
-//! Depth and motion of every pixel of a sparse frame that has them at its samples only. Twin:
+//! Fills depth and motion of every pixel of a sparse frame that has them at its samples only. Twin:
 //! `shaders/pass/fill_geometry_pass.wgsl`.
 //!
-//! A pixel belongs to the surface of one of the four samples around it: the nearest one whose motion leads to history
-//! of its own disparity; otherwise the nearest one. Disparity, which is linear over planes, and motion are interpolated
-//! between the samples of that surface.
+//! A pixel belongs to the surface of one of the four samples around it: the nearest sample whose motion leads to
+//! history with that sample's disparity. If there is none, it is the nearest sample. Disparity, which is linear over
+//! planes, and motion are interpolated between the samples of that surface.
 
 use super::Frame;
 use super::history::History;
@@ -39,7 +39,7 @@ pub(super) fn filled(desc: &ContextDesc, frame: &Frame<'_>, history: &History) -
     Some(views)
 }
 
-/// What `f` makes of a frame with its `filled` depth and motion, if any, in place of those at its samples.
+/// Calls `f` with the frame, in which the `filled` depth and motion, if any, replace those at its samples.
 pub(super) fn with_filled<R>(
     filled: Option<&[Geometry]>,
     desc: &ContextDesc,
@@ -49,7 +49,7 @@ pub(super) fn with_filled<R>(
     let Some(filled) = filled else { return f(desc, frame) };
     let depths: Vec<_> = filled.iter().map(|g| &g.depth).collect();
     let motions: Vec<_> = filled.iter().map(|g| &g.motion).collect();
-    // They are in internal conventions.
+    // The filled geometry is in internal conventions.
     let views: Vec<_> = frame.views.iter().map(|view| ViewFrame { depth: None, ..*view }).collect();
     let desc = ContextDesc { depth: DepthConvention::Linear, motion: MotionConvention::default(), ..*desc };
     let whole = frame.with_color(frame.color);
@@ -105,7 +105,8 @@ impl View<'_> {
         (filled.x, [filled.y, filled.z])
     }
 
-    /// Whether the surface of a sample, seen at a pixel, was there in the previous frame.
+    /// Whether history confirms that a pixel shows a sample's surface: it has the expected disparity at the previous
+    /// position.
     fn is_confirmed(&self, [x, y]: [u32; 2], ray: Vec3, s: Sample) -> bool {
         if self.words.is_empty() || !self.inputs.tests_depth() {
             return false;

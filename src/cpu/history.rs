@@ -129,7 +129,7 @@ impl History {
         self.filled
     }
 
-    /// Gaze to use for a view and its previous jitter, which are held for the next frame.
+    /// Updates the held state of a view (gaze and jitter) with this frame, and returns it.
     pub(super) fn hold(&mut self, index: usize, view: &ViewFrame) -> Held {
         let held = self.held[index].with(view);
         self.held[index] = held;
@@ -141,7 +141,7 @@ impl History {
         self.held.get(index).and_then(|held| held.gaze_px)
     }
 
-    /// What [`hold`](Self::hold) would hold.
+    /// The state that [`hold`](Self::hold) would return, without changing anything.
     pub(super) fn held_after(&self, index: usize, view: &ViewFrame) -> Held {
         self.held[index].with(view)
     }

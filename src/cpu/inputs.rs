@@ -80,9 +80,9 @@ impl<'a> Inputs<'a> {
         lens::is_visible(x, y, self.uniforms.lowest_px.into(), self.uniforms.highest_px.into())
     }
 
-    /// Previous position of the surface of pixel (x, y), and whether the nearest stored texel shows that surface; or
-    /// the verdict that rejects its history whatever its neighbours store. `stored` gives level of detail (negative:
-    /// empty) and disparity of a stored texel.
+    /// Previous position of the surface of pixel (x, y), and whether the nearest stored texel shows that surface. If
+    /// history is rejected regardless of the neighbouring texels, the verdict. `stored` gives level of detail
+    /// (negative: empty) and disparity of a stored texel.
     #[inline(always)]
     pub fn reprojected(
         &self,
@@ -119,7 +119,7 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Whether a neighbour in the 2x2 block moves as the pixel (x, y) does.
+    /// Whether a neighbour in the 2x2 block has the same motion as the pixel (x, y).
     #[inline(always)]
     pub fn is_coherent(&self, x: u32, y: u32, own: [f32; 2]) -> bool {
         if self.motion.is_none() {
@@ -212,7 +212,8 @@ impl<'a> Inputs<'a> {
         self.depth_test.is_none_or(|test| depth::same_surface(expected, stored, test.relative, 0.0))
     }
 
-    /// Slope of disparity at a pixel. Needed only where the plain test fails, so that few pixels pay for the four taps.
+    /// Slope of disparity at a pixel. It takes four taps, so it is computed only where the test without slope fails,
+    /// which is at few pixels.
     #[cold]
     fn slope(&self, x: u32, y: u32, now: f32) -> f32 {
         depth::slope(x, y, self.size, |u, v| if [u, v] == [x, y] { now } else { self.disparity(u, v) })

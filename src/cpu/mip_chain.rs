@@ -1,5 +1,5 @@
 //! Mip chains of stored surfaces and of noisy candidates: means of 2x2 texels, as in the foveation's mip levels, so
-//! that a level of history compares with a candidate of the same level.
+//! that a level of history can be compared with a candidate of the same level of detail.
 
 use crate::image::Image;
 use crate::kernel::foveate::{level_coordinate, level_len, split};
@@ -106,8 +106,8 @@ impl MipChain {
         [first + (second - first) * (lod - whole), second]
     }
 
-    /// History at a position in pixels: at level of detail `lod`, and at the two whole levels around it. `smooth` is
-    /// its level 0 there.
+    /// History at a position in pixels: at level of detail `lod`, and at the two whole levels around it. `smooth`:
+    /// history at level 0.
     #[inline(always)]
     pub fn read(&self, at: [f32; 2], lod: f32, smooth: Vec3) -> [Vec3; 3] {
         let last = self.levels.len() as u32;

@@ -58,7 +58,7 @@ impl<'a> Frame<'a> {
         Self::of_color(color, views, index)
     }
 
-    /// This frame with another color input. Not `..*self`, which would require the longer lifetime of it.
+    /// This frame with another color input, whose lifetime may be shorter. `..*self` would not allow that.
     fn with_color<'b>(&self, color: &'b [&'b Image<[f32; 3]>]) -> Frame<'b>
     where
         'a: 'b,
@@ -123,8 +123,8 @@ impl CpuAfterimage {
     }
 
     /// Gaze position in pixels that [`process`](Self::process) would use for view `view` of the next frame: `gaze` if
-    /// it is known, else the last known one, else the middle of the view. Renderers of sparse frames need it before, to
-    /// place the [lattices](crate::Foveation::lattices).
+    /// it is known, else the last known one, else the middle of the view. Renderers of sparse frames need it before
+    /// that call, to place the [lattices](crate::Foveation::lattices).
     pub fn gaze_px(&self, view: usize, geometry: &ViewGeometry, gaze: Gaze) -> [f32; 2] {
         gaze.resolve(self.history.held_gaze_px(view), geometry)
     }
@@ -164,9 +164,8 @@ impl CpuAfterimage {
     }
 
     /// Changes the size of the views and resamples history to it, for dynamic resolution. The view directions at the
-    /// edges should stay the same. Reservoirs of wrs are taken from the nearest pixel; surfaces of taa, taau and
-    /// smr are filtered, kept samples of sparse frames are taken from the nearest pixel with their places; levels of
-    /// detail follow the scale.
+    /// edges should stay the same. Reservoirs of wrs, and kept samples of sparse frames with their places, are taken
+    /// from the nearest pixel. Surfaces of taa, taau and smr are filtered. Levels of detail follow the scale.
     ///
     /// # Errors
     /// As for [`resize`](Self::resize).
@@ -280,7 +279,7 @@ fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError>
     check_sizes(desc, "repaired", frame.repaired.map(|r| r.iter().map(|i| i.size())))
 }
 
-/// Checks the sizes of what is known of a frame before it is shaded.
+/// Checks the sizes of the inputs that are known before a frame is shaded.
 fn check_geometry(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
     let geometry = |view| ViewFrame::atlas(view).filter(|atlas| atlas.has_geometry_at_samples());
     check_samples(desc, "depth", frame.depth.map(|d| d.iter().map(|i| i.size())), frame.views, geometry)?;
@@ -288,7 +287,8 @@ fn check_geometry(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameErro
     check_sizes(desc, "trust", frame.trust.map(|t| t.iter().map(|i| i.size())))
 }
 
-/// Checks the sizes of an input that may be an atlas of samples: `atlas` of a view.
+/// Checks the sizes of an input that may be an atlas of samples. `atlas`: the lattices of a view if its samples lie in
+/// an atlas.
 fn check_samples<'a>(
     desc: &ContextDesc,
     input: &'static str,

@@ -1,5 +1,5 @@
-//! Repair of sparse frames: the renderer asks which pixels history has nothing for before it shades any, and shades
-//! them at full rate.
+//! Repair of sparse frames: before shading, the renderer asks which pixels have no usable history, and shades these at
+//! full rate.
 
 use super::{CpuAfterimage, Frame, check_geometry, check_sizes, fill_geometry, sparse_pass};
 use crate::error::FrameError;
@@ -15,17 +15,18 @@ pub(super) struct Planned {
 }
 
 impl CpuAfterimage {
-    /// Pixels of a sparse frame that want a sample of their own, one mask a view: quads of 2x2 pixels for which history
-    /// has nothing, or nothing fine, and the frame's lattices have no sample. Where the frame is given to
-    /// [`process`](Self::process) with samples of them ([`Frame::repaired`](crate::Frame::repaired)), these are shown.
+    /// Pixels of a sparse frame to repair with a sample of their own, one mask a view: quads of 2x2 pixels whose
+    /// history is missing or coarse, and in which the frame's lattices have no sample. If the frame is given to
+    /// [`process`](Self::process) with samples of these pixels ([`Frame::repaired`](crate::Frame::repaired)), they are
+    /// shown.
     ///
     /// At most the share [`Repair::budget`](crate::Repair::budget) of a view's quads is chosen: those without history
     /// first, then those whose history is coarse, each from the gaze outwards. After a cut, successive frames repair
     /// successive rings around the gaze.
     ///
-    /// The frame is the one that will be processed, as far as it is known before it is shaded: views with their
+    /// Give it the frame that will be processed, with the parts that are known before shading: views with their
     /// lattices, depth, motion, trust, index and reset. Its colors, noise and repaired samples are not read, and the
-    /// colors may be an empty slice. Nothing is changed: the same call gives the same masks.
+    /// colors may be an empty slice. History is unchanged: the same call gives the same masks.
     ///
     /// ```
     /// use afterimage::cpu::{CpuAfterimage, Frame};

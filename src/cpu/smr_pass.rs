@@ -1,12 +1,12 @@
 //! Scale-matched reservoirs: sanitize, reproject, reject, resample, match scales, relight, decide, store and output.
 //! `docs/method.md` has the equations. Twin: `shaders/pass/smr_pass.wgsl`.
 //!
-//! Each pixel reads its color, depth, three motion vectors, twelve stored surfaces, eight texels of their mip chain
-//! and, where light changed, four more colors (neighbours share most of these reads). Point-sampled blocks always read
-//! these four colors, and four more texels of history. It writes one surface, a third of
-//! a texel of the mip chain and one color. Memory traffic: 48 bytes a pixel with color and motion as halves. With noisy
-//! candidates it also reads their noise, the noise of one surface and eight texels of the candidates' mip chain, and
-//! writes one word of noise: 80 bytes a pixel, including the passes that compute that mip chain.
+//! Each pixel reads its color, depth, three motion vectors, twelve stored surfaces and eight texels of their mip chain.
+//! It reads four more colors where light changed; point-sampled blocks always read these, and four more texels of
+//! history. Neighbours share most of these reads. It writes one surface, a third of a texel of the mip chain and one
+//! color. Memory traffic: 48 bytes a pixel with color and motion as halves. With noisy candidates it also reads their
+//! noise, the noise of one surface and eight texels of the candidates' mip chain, and writes one word of noise: 80
+//! bytes a pixel, including the passes that compute that mip chain.
 
 use super::surface_history::{Source, SurfaceHistory};
 use super::surface_pass::{Pixel, SurfaceMethod};
@@ -65,11 +65,11 @@ impl SurfaceMethod for Smr {
                 result = self.matched(view, x, y, candidate, lod, &source);
             }
         }
-        // Gains and the overshoot of Catmull-Rom may exceed the largest half.
+        // With gains, and with the overshoot of Catmull-Rom, colors may exceed the largest half.
         result.color = result.color.min(Vec3::splat(MAX_HALF));
         stats.replaced += u64::from(verdict == Verdict::Valid && result.share == 0.0);
-        // Colors on a moving silhouette mix two surfaces. The coarsest level of detail makes the next candidate replace
-        // them.
+        // Colors on a moving silhouette mix two surfaces. With the coarsest level of detail, the next candidate
+        // replaces them.
         let stored_lod = if coherent_motion || result.lod < 0.0 { result.lod } else { MAX_LOD };
         let trace = PixelTrace {
             verdict,
@@ -117,7 +117,7 @@ impl Smr {
             mip_chain.read(source.at, lod + shift, history.smooth).map(|c| view.expose(c));
         let radius = 0.75 * approx::exp2(lod);
         let blocks = self.params.blocks;
-        // Levels of history are means of blocks, not Gaussian blurs: these agree better a level coarser.
+        // Levels of history are means of blocks, not Gaussian blurs: the two agree better one level coarser.
         let gauss = self.settings.foveation.filter == Filter::Gauss;
         let changed = self.params.relight && matched::is_changed(candidate, matched, level, next_level);
         let around = if blocks || changed { self.around(view, x, y, candidate, radius) } else { Vec3::ZERO };

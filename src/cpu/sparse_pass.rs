@@ -1,9 +1,10 @@
 //! Reconstruction of sparse frames from history that keeps samples in their places (smr). Its mathematics is in
 //! `src/kernel/{kept,sparse}.rs`.
 //!
-//! Three loops. For each sample of a lattice of step 2 and more: compare it with history at its pixel. For each such
-//! sample: estimate gain and fit from its own comparison and its eight neighbours'. For each pixel: interpolate these
-//! and the samples, read the four stored samples around its previous position, and blend.
+//! Three loops. The first compares each sample of a lattice of step 2 and more with history at its pixel. The second
+//! estimates gain and fit for each of these samples, from its own comparison and those of its eight neighbours. The
+//! third interpolates gain, fit and samples for each pixel, reads the four stored samples around the pixel's previous
+//! position, and blends.
 
 mod antialias;
 mod plan;
@@ -51,7 +52,8 @@ const LIGHT_RELATIVE: f32 = 0.1;
 const SAMPLE_RELATIVE: f32 = 0.05;
 /// Weight of a sample of another surface, which counts only where there is no better one.
 const OTHER_SURFACE: f32 = 1e-3;
-/// Weight of gain and fit of neighbouring samples, where the sample itself has none.
+/// Factor on the weight of a sample's gain and fit if they come from its neighbours only, because the sample itself was
+/// not compared with history.
 const BY_NEIGHBOURS: f32 = 1e-3;
 /// Least weight of one of the four samples around a pixel.
 const LEAST_SHARE: f32 = 1e-4;
@@ -75,7 +77,7 @@ struct View<'a> {
     antialiases: bool,
     /// Low word of the frame counter.
     frame_low: u32,
-    /// Samples of repaired pixels, and which pixels are.
+    /// Samples of repaired pixels, and the mask of these pixels.
     repaired: Option<(&'a Image<[f32; 3]>, &'a Image<bool>)>,
 }
 
@@ -86,16 +88,16 @@ struct Surroundings {
     motion: [f32; 2],
     /// Disparity to store with the pixel.
     stored: f32,
-    /// Disparities of the farthest and the nearest surface around, if history may be of any of them.
+    /// Disparities of the farthest and the nearest surface around the pixel, if history may show any of them.
     mixed: Option<[f32; 2]>,
-    /// Whether this frame's sample of the pixel may show another surface.
+    /// Whether this frame's sample at the pixel may show another surface.
     is_doubtful: bool,
 }
 
 /// Where a pixel's history is.
 struct Source {
     previous: Previous,
-    /// Whether the nearest stored sample is of the surface.
+    /// Whether the nearest stored sample belongs to the surface.
     is_same: bool,
     /// Codes of the disparities that history may have.
     codes: [u32; 2],
@@ -106,7 +108,7 @@ struct Found {
     history: Interpolated,
     /// Noise of the sample to keep.
     noise: Noise,
-    /// Number of samples in it.
+    /// Number of samples in the texel to keep.
     samples: f32,
 }
 
@@ -143,7 +145,7 @@ impl ProcessPixel for LitView<'_> {
     }
 }
 
-/// [`codes_between`] of a surface's samples, which are interpolated for a pixel of disparity `disparity`.
+/// [`codes_between`] of the samples that are interpolated for a pixel with the disparity `disparity`.
 #[inline(always)]
 fn sample_codes(disparity: f32) -> [u32; 2] {
     codes_between(disparity, 1.0 - SAMPLE_RELATIVE, 1.0 / (1.0 - SAMPLE_RELATIVE))
@@ -266,11 +268,12 @@ impl View<'_> {
         Ok(Source { previous, is_same, codes: tap_codes_between(farthest, nearest) })
     }
 
-    /// History at a previous position, in this frame's exposure. At a silhouette, where the nearest stored sample is of
-    /// another surface (`is_same` is false), samples beside it stand in for it if they are near enough.
+    /// History at a previous position, in this frame's exposure. At a silhouette the nearest stored sample may belong
+    /// to another surface (`is_same` is false). Samples beside it then replace it if they are near enough.
     #[inline(always)]
     fn interpolated(&self, Source { previous, is_same, codes }: &Source) -> Found {
-        // Means lie anywhere around their texels' centres, so that all around the nearest one count.
+        // The place of a mean may lie anywhere around its texel's centre, so that the eight texels around the nearest
+        // one also count.
         let (columns, [x, y]) = match self.antialiases {
             true => (3, previous.at.map(|v| (v + 0.5).floor() as i32 - 1)),
             false => (2, previous.at.map(|v| v.floor() as i32)),
@@ -315,7 +318,7 @@ impl View<'_> {
         }
         let mut source = self.source(px, &surface).ok().filter(|_| usable)?;
         if self.antialiases {
-            // At the sample's place in its pixel.
+            // History is read at the sample's place in its pixel.
             let [x, y] = self.inputs.uniforms.jitter_px;
             source.previous.at = [source.previous.at[0] - x, source.previous.at[1] - y];
         }
@@ -335,7 +338,7 @@ impl View<'_> {
         Some(Observation { sampled, history: history.color, error, sure })
     }
 
-    /// An observation again, from its packed words.
+    /// Unpacks an observation.
     #[inline(always)]
     fn observation(&self, lattice: usize, point: [u32; 2], observed: &[Samples]) -> Option<Observation> {
         let own = &self.lattices[lattice];
@@ -349,7 +352,7 @@ impl View<'_> {
         })
     }
 
-    /// Whether a sample may show another surface than its pixel's.
+    /// Whether a sample may show a surface other than its pixel's.
     #[inline(always)]
     fn is_doubtful(&self, lattice: usize, [x, y]: [u32; 2], observed: &[Samples]) -> bool {
         let words = observed[lattice][(y * self.lattices[lattice].points[0] + x) as usize];
@@ -378,10 +381,10 @@ impl View<'_> {
             })
         };
         let light = neighbours().fold(Light::default(), |l, (o, weight, spatial)| add_light(l, o, weight, spatial));
-        // A single noisy sample says nothing.
+        // A single noisy sample is no evidence.
         let judged = own.filter(|_| !self.is_noisy());
         let fit_of_own = |gain| judged.map_or(1.0, |own| own_fit(own, gain));
-        // Without a disparity, pixels take a doubtful sample only where there is no other.
+        // Pixels interpolate a sample without disparity only if there is no other one.
         let disparity = if self.is_doubtful(lattice, point, observed) { INVALID_DISPARITY } else { disparity };
         let unlit = Lit { gain: Vec3::ONE, fit: 1.0, own_fit: fit_of_own(Vec3::ONE), is_own: own.is_some(), disparity };
         if light.weight < 1e-6 {
@@ -409,7 +412,7 @@ impl View<'_> {
     fn pixel(&self, x: u32, y: u32, lights: &[Samples], stats: &mut FrameStats) -> Pixel {
         let inputs = &self.inputs;
         if !inputs.is_visible(x, y) {
-            // Black, and no history for what moves into view.
+            // Outside the visible area: black, without stored history.
             let (surface, noise) = (pack_kept(Kept::EMPTY), pack_noise(NO_NOISE));
             return Pixel { output: Vec3::ZERO, surface, noise, trace: PixelTrace::default() };
         }
@@ -417,10 +420,10 @@ impl View<'_> {
         let index = LatticeUniforms::index_at(&self.lattices, [x, y]);
         let level = self.lattices[index].level;
         let mut candidate = self.candidate(index, [x, y], disparity, lights);
-        // Pixels of the lattice of full rate have a sample of their own in any case.
+        // Pixels of the full-rate lattice always have a sample of their own.
         let repaired = if level > 0 { self.repaired(x, y) } else { None };
         if let Some(color) = repaired {
-            // The samples around still say what became of the light.
+            // The samples around the pixel still give gain and fit.
             let noise = self.sample_noise([x, y]);
             candidate = Candidate { color, usable: true, lod: 0.0, noise, is_own: true, ..candidate };
         }
@@ -498,7 +501,7 @@ impl View<'_> {
         Pixel { output, surface: stored, noise: pack_noise(noise), trace }
     }
 
-    /// Candidate of a pixel and what is known of its light, from the samples around it.
+    /// Candidate of a pixel, and its gain and fit, from the samples around it.
     #[inline(always)]
     fn candidate(&self, index: usize, px: [u32; 2], disparity: f32, lights: &[Samples]) -> Candidate {
         let lattice = &self.lattices[index];
@@ -516,7 +519,7 @@ impl View<'_> {
             {
                 return own;
             }
-            // The next lattice's samples say how well history fits.
+            // The fit of history comes from the samples of the next lattice.
             return Candidate { fit: self.candidate(coarser, px, disparity, lights).fit, ..own };
         }
         let mut sums = Sums::default();
@@ -579,14 +582,14 @@ impl View<'_> {
     }
 }
 
-/// Sum of squared differences of samples and history, times weights, with one more.
+/// Weighted sum of squared differences between samples and history, with one more sample added.
 #[inline(always)]
 fn add_scatter(sum: f32, o: Observation, weight: f32) -> f32 {
     let difference = root_difference(o.sampled, o.history).min(1e6);
     sum + (difference * difference) * weight
 }
 
-/// Whether history has moved since its samples were shaded, by more than their stored places resolve.
+/// Whether history has moved since its samples were shaded, by more than the resolution of their stored places.
 #[inline(always)]
 fn has_moved(motion: [f32; 2], place_px: Vec2) -> bool {
     let farthest = |x: f32, y: f32| x.abs().max(y.abs()) > EXACT_PX;
@@ -603,7 +606,7 @@ struct Candidate {
     gain: Vec3,
     fit: f32,
     noise: Noise,
-    /// Whether it is the sample of this pixel.
+    /// Whether the candidate is this pixel's own sample.
     is_own: bool,
 }
 

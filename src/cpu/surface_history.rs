@@ -31,7 +31,7 @@ pub(super) struct Source {
     pub fraction: [f32; 2],
     /// Position in pixels.
     pub at: [f32; 2],
-    /// Nearest stored texel, or the one that stands in for it.
+    /// Nearest stored texel, or the one that replaces it at a silhouette.
     pub nearest: Surface,
     /// Index of `nearest` in the stored view.
     pub index: usize,
@@ -61,8 +61,8 @@ impl SurfaceHistory<'_> {
         Ok(Source { texel, fraction, at, nearest, index, expected, trust })
     }
 
-    /// The texel with the second largest weight around a position, and its index, if its disparity is the expected one.
-    /// At a silhouette the nearest one may show the other surface.
+    /// The texel with the second largest weight around a position, and its index, if it has the expected disparity. It
+    /// replaces the nearest texel, which may show the other surface at a silhouette.
     #[cold]
     fn stand_in(&self, texel: [i32; 2], fraction: [f32; 2], expected: f32) -> Option<(Surface, usize)> {
         let corner = second_corner(fraction);
@@ -76,7 +76,7 @@ impl SurfaceHistory<'_> {
         stands_in.then_some((stored, (y * width + x) as usize))
     }
 
-    /// Luma of history at the texel nearest to a position and `offset_px` beyond it, of whatever surface.
+    /// Luma of history at `offset_px` from the texel nearest to a position, regardless of its surface.
     #[inline(always)]
     pub fn luma_beside(&self, source: &Source, offset_px: [i32; 2]) -> f32 {
         let [x, y] = [0, 1].map(|i| {
@@ -103,8 +103,8 @@ impl SurfaceHistory<'_> {
         resolve(gathered, sharp_sum(&taps), source.nearest)
     }
 
-    /// History where and as the block around pixel `px`, of level of detail `lod`, was sampled: the texel of history
-    /// that corresponds to the one that the block filter reads.
+    /// History at the sample position of the block of level of detail `lod` around pixel `px`, low-passed like that
+    /// sample: the texel of history that corresponds to the texel that the block filter reads.
     #[inline(always)]
     pub fn sampled(&self, source: &Source, px: [u32; 2], lod: f32) -> Vec3 {
         let mip_chain = self.past.mip_chain.expect("smr stores a mip chain");

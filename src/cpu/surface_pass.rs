@@ -37,7 +37,7 @@ struct Row<'a> {
     trace: Option<&'a mut [PixelTrace]>,
 }
 
-/// The work of a pass at a pixel.
+/// A pass that computes one pixel at a time.
 pub(super) trait ProcessPixel: Sync {
     /// Processes pixel (x, y) and counts it in `stats`. Always inlined into the loop over a row, which is compiled for
     /// several instruction sets.

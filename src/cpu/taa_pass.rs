@@ -47,7 +47,7 @@ impl SurfaceMethod for Taa {
             }
         }
         let stored_lod = if usable || source.is_ok() { taa::lod_of(confidence) } else { -1.0 };
-        // The overshoot of Catmull-Rom may exceed the largest half.
+        // With the overshoot of Catmull-Rom, colors may exceed the largest half.
         output = output.min(Vec3::splat(MAX_HALF));
         let trace = PixelTrace {
             verdict,
@@ -70,12 +70,12 @@ struct Neighbourhood {
     sum: Vec3,
     /// Squares of these.
     squares: Vec3,
-    /// Luma of history; 0 if it is not compared.
+    /// Lumas of history; 0 if history is not compared.
     past_luma: f32,
 }
 
-/// Sums around a pixel. Non-finite pixels count as the centre, whose color is `own`. `past`: where history is that is
-/// compared.
+/// Sums around a pixel. Non-finite pixels count as the centre, whose color is `own`. `past`: position of the history to
+/// compare with, if any.
 #[inline(always)]
 fn neighbourhood(view: &SurfaceHistory<'_>, px: [u32; 2], own: Vec3, past: Option<&Source>) -> Neighbourhood {
     let mut around = Neighbourhood { sum: Vec3::ZERO, squares: Vec3::ZERO, past_luma: 0.0 };

@@ -55,7 +55,7 @@ impl SurfaceMethod for Taau {
             let color = taau::upsampled(around, nearest);
             result = Accumulated { color, confidence: around.weights.y, share: 1.0, kept: 1.0 };
         }
-        // The overshoot of Catmull-Rom may exceed the largest half.
+        // With the overshoot of Catmull-Rom, colors may exceed the largest half.
         let output = result.color.min(Vec3::splat(MAX_HALF));
         let lod = if sampled || source.is_ok() { taa::lod_of(result.confidence) } else { -1.0 };
         let trace = PixelTrace {
@@ -81,16 +81,16 @@ struct Kernel {
 /// Samples around a pixel.
 struct Samples {
     around: SamplesAround,
-    /// Color of the nearest one, black if it is not usable.
+    /// Color of the nearest sample; black if it is not usable.
     nearest: Vec3,
-    /// Whether the nearest one is usable.
+    /// Whether the nearest sample is usable.
     usable: bool,
-    /// Sum of history's lumas at the samples' pixels; 0 if it is not compared.
+    /// Sum of history's lumas at the samples' pixels; 0 if history is not compared.
     past_luma: f32,
 }
 
-/// Nine samples around a pixel, of its lattice; at the lattice's border the last ones again, at places beyond it.
-/// `past`: where history is that is compared.
+/// Nine samples around a pixel, of its lattice. At the lattice's border the last samples repeat at positions beyond it.
+/// `past`: position of the history to compare with, if any.
 #[inline(always)]
 fn samples(view: &SurfaceHistory<'_>, px: [u32; 2], kernel: &Kernel, past: Option<&Source>) -> Samples {
     let inputs = &view.inputs;
@@ -110,7 +110,7 @@ fn samples(view: &SurfaceHistory<'_>, px: [u32; 2], kernel: &Kernel, past: Optio
         let point = [middle[0] + tap % 3 - 1, middle[1] + tap / 3 - 1];
         let (color, usable) = sample_at(point);
         if usable {
-            // A sample shows what is at its pixel minus the jitter.
+            // A sample shows the point at its pixel minus the jitter.
             let at = [0, 1].map(|i| point_offset_px(px[i], first[i], level, point[i]));
             let offset = Vec2::from(at) - Vec2::from(inputs.uniforms.jitter_px);
             let weights = taau::sample_weights(offset, level, kernel.tail, kernel.narrowing);

@@ -3,8 +3,8 @@
 //!
 //! Each pixel reads its color, motion, depth and one reservoir (and four more depths where the depth test needs the
 //! slope), and writes one reservoir and one color. Memory traffic: 48 bytes a pixel with color and motion as halves.
-//! Means (`Sampler::AChaoMean`) are read from twelve reservoirs where history lies between pixels, and the gate's
-//! references (`GateScale::Candidate`) are 8 bytes more.
+//! Means (`Sampler::AChaoMean`) are read from twelve reservoirs where history lies between pixels. The gate's
+//! references (`GateScale::Candidate`) take 8 more bytes.
 
 use super::Pass;
 use super::history::{NextView, PastView};
@@ -42,7 +42,7 @@ struct ViewPass<'a> {
     foveation: Foveation,
     inv_density_at_fovea: f32,
     frame_low: u32,
-    /// Whether candidates count by the place of their sample, as in sparse frames.
+    /// Whether the weight of a candidate depends on the place of its sample, as in sparse frames.
     weighs_places: bool,
 }
 
@@ -211,8 +211,8 @@ impl ViewPass<'_> {
         }
     }
 
-    /// Pixel of the sample nearest to a pixel, and the weight of its place. The pixel itself, and 1, without samples in
-    /// the frame.
+    /// Pixel of the sample nearest to a pixel, and the weight of its place. Without samples in the frame: the pixel
+    /// itself, and 1.
     #[inline(always)]
     fn place(&self, px: [u32; 2]) -> ([u32; 2], f32) {
         let lattice = &self.inputs.lattices[LatticeUniforms::index_at(&self.inputs.lattices, px)];
@@ -259,7 +259,8 @@ impl ViewPass<'_> {
         Ok(History { past, age: stored.age, reference })
     }
 
-    /// Mean of history at a position, by Catmull-Rom weights. Exactly that of `nearest` at the centre of a pixel.
+    /// Mean of history at a position, by Catmull-Rom weights. At the centre of a pixel it is exactly the color of
+    /// `nearest`.
     #[inline(always)]
     fn resampled(&self, at: [f32; 2], expected: f32, nearest: Vec3) -> Vec3 {
         let whole = at.map(f32::floor);

@@ -28,7 +28,7 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> Finding
                 continue;
             }
             coarse += 1;
-            // Second differences where the frame has no kinks, as a share of those where it has.
+            // Second differences where the frame has no kinks, as a share of the second differences at kinks.
             let [given, decoded] = bends(&evidence).map(|bends| {
                 let most = bends.iter().copied().fold(0.0, f64::max);
                 let least = bends.iter().copied().fold(f64::INFINITY, f64::min);

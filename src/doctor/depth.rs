@@ -1,6 +1,7 @@
-//! Rule of depth. A camera that moves sideways shows how far surfaces are: their motion beyond that of infinitely far
-//! ones is proportional to their disparity, which the stored depths must agree with. Without such a camera, planes tell
-//! distances from buffers, and implausible distances a reversed buffer from one that is not.
+//! Rule of depth. A camera that moves sideways shows how far surfaces are: their parallax, the motion beyond that of
+//! infinitely far surfaces, is proportional to their disparity. The stored depths must agree with that disparity.
+//! Without such a camera, slanted planes tell distances from depth buffers, and implausible distances tell a reversed
+//! buffer from a forward one.
 
 use super::finding::{Check, Fault, Finding, Outcome};
 use super::motion::OPEN_Y_AXIS;
@@ -13,7 +14,8 @@ use crate::kernel::doctor::{DEPTHS, TILE_PX};
 /// Least parallax of a tile in pixels, and number of such tiles.
 const PARALLAX_PX: f64 = 0.2;
 const TILES: usize = 20;
-/// Median deviation of the logarithm of disparities from those of the motion, up to which a convention explains it.
+/// A convention explains the motion up to this median deviation of the logarithm of its disparities from those of the
+/// motion.
 const SPREAD: f64 = 0.12;
 /// Factor of distances that counts as wrong.
 const FACTOR: f64 = 1.3;
@@ -50,7 +52,7 @@ impl Shape {
         }
     }
 
-    /// Line that states this shape. `scale`: disparity over [`Self::disparity`], if known.
+    /// Line of code that sets this shape. `scale`: disparity over [`Self::disparity`], if known.
     fn line(self, scale: Option<f64>) -> String {
         let near = scale.map_or("YOUR_NEAR_PLANE".to_owned(), |s| format!("{:.3}", 1.0 / s));
         match self {
@@ -102,7 +104,7 @@ fn by_parallax(desc: &ContextDesc, observations: &[Observation], stated: Shape, 
     let fits = Shape::ALL.map(|s| (s, fit(&tiles, |p| s.disparity(p.stored))));
     let (best, (best_scale, best_spread)) =
         fits.into_iter().filter_map(|(s, f)| Some((s, f?))).min_by(|a, b| a.1.1.total_cmp(&b.1.1))?;
-    // How different the distances are: with one distance, every convention explains the motion.
+    // Spread of the distances: if all are equal, every convention explains the motion.
     let (_, variety) = fit(&tiles, |_| 1.0)?;
     let evidence = vec![
         ("tiles with parallax", tiles.len() as f64),
@@ -125,7 +127,7 @@ fn by_parallax(desc: &ContextDesc, observations: &[Observation], stated: Shape, 
     if scale.ln().abs() < FACTOR.ln() {
         return Some(Finding::fits(Check::Depth, confidence, evidence));
     }
-    // Vectors of another length, too, look like other distances.
+    // Motion vectors of a wrong length also look like wrong distances.
     let why = match motion.outcome {
         Outcome::Fits => None,
         Outcome::CannotTell(why) if why == OPEN_Y_AXIS => None,
@@ -164,7 +166,7 @@ fn by_planes(desc: &ContextDesc, observations: &[Observation], stated: Shape) ->
         values.sort_by(f64::total_cmp);
         values.get((q * values.len() as f64) as usize).copied()
     };
-    // Distances over that of the near plane, if the buffer is not reversed, and if it is.
+    // Distances relative to the near plane's: for a forward buffer, and for a reversed one.
     let [forward, reversed] = [Shape::Forward, Shape::Reversed].map(|s| {
         let mut z: Vec<f64> = depths.iter().map(|d| 1.0 / s.disparity(*d).max(1e-9)).collect();
         (quantile(&mut z, 0.1), quantile(&mut z, 0.9))

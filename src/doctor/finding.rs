@@ -1,4 +1,4 @@
-//! What a doctor says.
+//! Findings of a doctor.
 
 use std::fmt;
 
@@ -34,7 +34,7 @@ pub enum Fault {
     MotionScale,
     /// x and y of the motion vectors are swapped.
     MotionAxes,
-    /// The motion vectors contain the projection's jitter, or lack it, against
+    /// The motion vectors contain the projection's jitter, or lack it, contrary to
     /// [`MotionConvention::jittered`](crate::MotionConvention::jittered).
     MotionJitter,
     /// Depth values have another convention.
@@ -73,7 +73,7 @@ pub struct Finding {
     pub check: Check,
     /// What was found.
     pub outcome: Outcome,
-    /// Confidence in the outcome, 0 to 1; 0 if it cannot be told.
+    /// Confidence in the outcome, 0 to 1; 0 for [`Outcome::CannotTell`].
     pub confidence: f32,
     /// Figures on which the outcome rests: name and value.
     pub evidence: Vec<(&'static str, f64)>,

@@ -1,4 +1,4 @@
-//! Rule of the gaze and of the foveation: the frame is as sharp as both say.
+//! Rule of the gaze and of the foveation: the frame's sharpness must match both.
 
 use super::finding::{Check, Fault, Finding};
 use super::observation::Observation;
@@ -10,7 +10,7 @@ use crate::kernel::doctor::TILE_PX;
 
 /// Least number of tiles with measurable sharpness.
 const TILES: usize = 12;
-/// Number of tiles, and share of all, by which one description must agree better than another.
+/// One description is better than another if it agrees with more tiles, by at least this number and this share of all.
 const BETTER_TILES: f64 = 6.0;
 const BETTER_SHARE: f64 = 0.03;
 /// Share of the tiles that agree with a right description.
@@ -19,7 +19,7 @@ const AGREE: f64 = 0.94;
 /// A measured tile.
 struct Measurement {
     measured: Measured,
-    /// Corners, and what lies between them, in pixels.
+    /// Corners, midpoints of the sides, and centre, in pixels.
     points: [[f32; 2]; 9],
     /// Eccentricities of the points.
     ecc_deg: [f32; 9],
@@ -53,7 +53,7 @@ const CHANGES: [Change; 8] = [
 struct Candidate {
     foveation: Foveation,
     fault: Fault,
-    /// Whether it differs much. Regions that differ by less than a factor of 2 often agree as well.
+    /// Whether it differs much. Regions that differ by less than a factor of 2 often agree with the tiles equally well.
     is_coarse: bool,
 }
 
@@ -61,7 +61,7 @@ struct Candidate {
 struct Agreement {
     all: f64,
     stated: f64,
-    /// By how many tiles one description must agree better than another.
+    /// Number of tiles by which one description must exceed another to be better.
     better: f64,
 }
 
@@ -78,12 +78,13 @@ impl Agreement {
         1.0 - (-gain / (2.0 * self.better)).exp()
     }
 
-    /// Whether a description with `count` agreeing tiles is right, and the stated one and those with `rival` are not.
+    /// Whether a description with `count` agreeing tiles is right, while the stated one and its rivals with `rival`
+    /// agreeing tiles are wrong.
     fn is_right(&self, count: f64, rival: f64) -> bool {
         count >= AGREE * self.all && count >= self.stated.max(rival) + self.better
     }
 
-    /// That the description is right, if no alternative agrees as well.
+    /// Finding that the description is right, if no alternative agrees with as many tiles.
     fn fits(&self, check: Check, best: f64, why_not: &'static str) -> Finding {
         if self.stated >= best + self.better {
             Finding::fits(check, self.confidence(self.stated - best), self.evidence(best))
@@ -93,7 +94,7 @@ impl Agreement {
     }
 }
 
-/// The first of those with the largest count.
+/// The first element with the largest count.
 fn largest<T>(counts: &[(T, f64)]) -> &(T, f64) {
     counts.iter().reduce(|best, c| if c.1 > best.1 { c } else { best }).expect("the lists are not empty")
 }
@@ -150,12 +151,12 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> [Findin
     ]
 }
 
-/// That the foveation is another one; `None` if several kinds of faults agree as well.
+/// Finding that the foveation is another one; `None` if several kinds of faults agree equally well.
 fn another(agreement: &Agreement, stated: &Foveation, candidates: &[(Candidate, f64)]) -> Option<Finding> {
     let (mut best, count) = largest(candidates).clone();
     let enough = count - 0.5 * agreement.better;
     let mut rival = 0.0;
-    // Where nothing is foveated, huge regions agree, too.
+    // If nothing is foveated, descriptions with huge regions also agree.
     match candidates.iter().find(|c| c.0.fault == Fault::NotFoveated && c.1 > enough) {
         Some((plain, _)) => best = plain.clone(),
         None => {
@@ -230,7 +231,7 @@ fn candidates(stated: &Foveation) -> Vec<Candidate> {
     all
 }
 
-/// Line that changes the stated foveation to the right one.
+/// Line of code that changes the stated foveation to the right one.
 fn line(stated: &Foveation, right: &Foveation) -> String {
     let mut fields = vec![];
     let mut field = |differs: bool, text: String| fields.extend(differs.then_some(text));

@@ -43,7 +43,7 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation], motion: &F
         return Finding { evidence, ..cannot_tell("the camera moves too irregularly") };
     }
     let contained = share >= 0.5;
-    // Vectors in a larger unit, or too short, hide their jitter.
+    // Motion vectors in a larger unit, or that are too short, hide their jitter.
     if !contained && matches!(motion.outcome, Outcome::Wrong(_)) {
         return cannot_tell("the motion vectors are wrong");
     }

@@ -1,4 +1,4 @@
-//! Checks of a renderer's inputs: what is found, and the rules by which it is found. The executors gather the evidence
+//! Checks of a renderer's inputs: the findings, and the rules that lead to them. The executors gather the evidence
 //! (`cpu::Doctor`, `gpu::Doctor`); the rules are the same for both.
 
 mod color;
@@ -52,7 +52,7 @@ impl Chart {
         let depth = depth::check(desc, seen, &motion);
         let color = color::check(desc, seen);
         let [gaze, foveation] = foveation::check(desc, seen);
-        // A fault that looks like others, too, is mended first.
+        // If a fault can look like another one, report only the fault that must be mended first.
         let after = |first: &Finding, why, finding: Finding| match first.fault() {
             Some(_) => Finding::cannot_tell(finding.check, why),
             None => finding,
@@ -69,7 +69,7 @@ pub(crate) fn continues<E: Executor>(frame: &Frame<'_, E>) -> bool {
     frame.reset == Reset::None && frame.exposure == Exposure::Same
 }
 
-/// Rejects sparse frames, whose rules are not known yet, and the index of a view that a context does not have.
+/// Rejects sparse frames, for which there are no rules yet, and the index of a view that a context does not have.
 pub(crate) fn check_view(desc: &ContextDesc, view: usize) -> Result<(), SettingsError> {
     if desc.settings.foveation.filter == Filter::Sparse {
         let expected = "another filter: the doctor does not know sparse frames yet".into();

@@ -6,17 +6,17 @@ use crate::convention::{MotionConvention, MotionDirection, YAxis};
 use crate::frame::ContextDesc;
 use crate::kernel::doctor::{ERRORS, HYPOTHESES, MATCHED};
 
-/// Mean difference of roots of light below which a tile's errors count little: noise.
+/// Noise floor: a tile whose mean difference of roots of light is below this counts little.
 const FLOOR: f64 = 0.002;
 /// Least number of samples of a tile.
 const SAMPLES: u32 = 32;
-/// Significance, in standard deviations over tiles, from which one hypothesis is better than another.
+/// Least significance, in standard deviations over tiles, at which one hypothesis is better than another.
 const BETTER: f64 = 4.0;
-/// Significance from which the stated convention is called wrong. Higher, because tiles of neighbouring frames are not
-/// independent.
+/// Least significance at which the stated convention is reported as wrong. It is higher, because tiles of neighbouring
+/// frames are not independent.
 const WRONG: f64 = 7.0;
 
-/// Gain over no motion from which vectors explain a frame. Tiny vectors gain little, but in every tile.
+/// Least gain over no motion at which vectors explain a frame. Tiny vectors gain little, but in every tile.
 const GAIN: f64 = 0.025;
 
 /// Why the vertical axis cannot be told, although all else fits.
@@ -35,9 +35,9 @@ fn tiles(observations: &[Observation]) -> Vec<[f64; HYPOTHESES as usize]> {
 /// Comparison of two hypotheses over tiles.
 #[derive(Clone, Copy, Debug)]
 struct Comparison {
-    /// By how many standard deviations the first predicts better.
+    /// Number of standard deviations by which the first predicts better.
     significance: f64,
-    /// By what share of the errors the first predicts better, -1 to 1; mean of the tiles.
+    /// Share of the errors by which the first predicts better, -1 to 1; mean over the tiles.
     gain: f64,
 }
 
@@ -88,7 +88,7 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> Finding
         };
     }
     let right = &hypotheses[plainest];
-    // Frames that are compared on a coarse lattice favor short vectors. Vectors that are twice too long explain little.
+    // Comparisons on a coarse lattice favor short vectors. Vectors that are too long by a factor of 2 explain little.
     let is_shorter = right.factors[0].abs() == 0.5 && !right.swapped;
     let stated_gain = compare(&tiles, STATED, NOTHING).gain;
     if over_stated.significance < WRONG || is_shorter && stated_gain > 0.3 * over_nothing.gain {
@@ -104,7 +104,7 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> Finding
     )
 }
 
-/// The fault of a convention for which `right` holds, and the line that mends it.
+/// The fault of the stated convention if `right` is the true one, and the line of code that mends it.
 fn mend(stated: MotionConvention, right: &Hypothesis) -> (Fault, String) {
     let [x, y] = right.factors.map(|f| f < 0.0);
     let mut fields = vec![];

@@ -1,4 +1,4 @@
-//! What is known of a frame: its description, and the words of its tiles, which an executor computes.
+//! Evidence on a frame: its description, and the words of its tiles, which an executor computes.
 
 use crate::convention::MotionUnit;
 use crate::frame::{ContextDesc, ViewFrame};
@@ -7,7 +7,7 @@ use crate::kernel::doctor::{DEPTH, DEPTHS, HYPOTHESES, MOTION, TILE_PX, WORDS};
 /// Largest number of tiles along an axis.
 const MAX_TILES: u32 = 32;
 
-/// A tile to look at: the pixels of its first corner, and the level of the lattice on which frames are compared there.
+/// A tile to examine: the pixel of its first corner, and the level of the lattice on which frames are compared there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tile {
     pub origin_px: [u32; 2],
@@ -17,7 +17,7 @@ pub(crate) struct Tile {
     pub is_comparable: bool,
 }
 
-/// What the caller said about a frame.
+/// The caller's description of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Description {
     pub view: ViewFrame,
@@ -28,7 +28,7 @@ pub(crate) struct Description {
     pub has_depth: bool,
     pub has_motion: bool,
     pub has_lod: bool,
-    /// Whether the previous frame was seen, too, and there was no cut.
+    /// Whether the previous frame was also seen, without a cut between the two.
     pub has_past: bool,
     pub tiles: Vec<Tile>,
 }
@@ -133,7 +133,8 @@ pub(crate) struct Hypothesis {
     pub unit: Option<MotionUnit>,
 }
 
-/// The hypotheses on the vectors of a frame. The first is that nothing moves, the second that the convention is right.
+/// The hypotheses on the motion vectors of a frame. The first one is that nothing moves, the second one that the stated
+/// convention is right.
 pub(crate) fn hypotheses(desc: &ContextDesc) -> [Hypothesis; HYPOTHESES as usize] {
     let [w, h] = desc.size_px.map(|s| s as f32);
     let pixels_of = |unit| match unit {
@@ -161,8 +162,8 @@ pub(crate) fn hypotheses(desc: &ContextDesc) -> [Hypothesis; HYPOTHESES as usize
     all.try_into().expect("1 + 5 * 4 + 4 hypotheses")
 }
 
-/// Factors, with swapping, from stored vectors to texels of two pixels, as the executors use them: x, y, and 1 where x
-/// and y are swapped.
+/// Maps of the hypotheses from stored vectors to texels of two pixels, as the executors use them: factors of x and y,
+/// and 1 if x and y are swapped.
 pub(crate) fn maps(desc: &ContextDesc) -> [[f32; 4]; HYPOTHESES as usize] {
     let [x, y] = desc.motion.to_internal(desc.size_px);
     hypotheses(desc).map(|h| {

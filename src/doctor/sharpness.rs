@@ -1,4 +1,4 @@
-//! Measured sharpness: the level of detail that the pixels of a tile show, whatever the description says.
+//! Measured sharpness: the level of detail of a tile's pixels, independent of the description.
 
 use super::observation::{Evidence, Tile};
 use crate::foveation::{Filter, Foveation};
@@ -12,18 +12,18 @@ const BEND_COUNTS: [f64; KINKS as usize] = [256.0, 128.0, 64.0, 64.0];
 const FLAT: f64 = 4e-3;
 /// Share of the largest class below which the differences of a class count as none.
 const NONE: f64 = 0.1;
-/// Ratio of second differences over 1 and over 2 pixels from which a tile is sharp: 1/4 where a frame is smooth, about
-/// 1/2 at steps, more in texture.
+/// A tile is sharp if the ratio of its second differences over 1 and over 2 pixels is at least this. The ratio is 1/4
+/// where a frame is smooth, about 1/2 at steps, and more in texture.
 const SHARP: f64 = 0.38;
 
-/// What the pixels of a tile show.
+/// Measured detail of a tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Measured {
     /// Detail of single pixels.
     Fine,
-    /// Interpolation between the middles of blocks of 2^lod; 5 and more count as 5.
+    /// Interpolation between the middles of blocks of 2^lod pixels; a `lod` of 5 stands for 5 and more.
     Interpolated { lod: f64 },
-    /// Blocks of 2^level pixels; 4 and more count as 4.
+    /// Blocks of 2^level pixels; a `level` of 4 stands for 4 and more.
     Blocks { level: u32 },
 }
 
@@ -69,7 +69,7 @@ pub(super) fn measure(evidence: &Evidence<'_>) -> Option<Measured> {
     (near > SHARP * over_two).then_some(Measured::Fine)
 }
 
-/// Whether a foveation delivers such a tile, if its levels of detail there are between `least` and `most`.
+/// Whether a foveation with levels of detail from `least` to `most` at the tile produces this measurement.
 pub(super) fn agrees(measured: Measured, filter: Filter, [least, most]: [f64; 2]) -> bool {
     match (measured, filter) {
         (Measured::Fine, Filter::Off) => true,

@@ -12,7 +12,7 @@ pub fn filled(device: &Device, label: &str, bytes: &[u8], usage: BufferUsages) -
         usage,
         mapped_at_creation: true,
     });
-    // On a lost device the buffer is not mapped. wgpu 30 says so, wgpu 29 panics.
+    // On a lost device the buffer is not mapped: wgpu 30 returns an error, wgpu 29 panics.
     #[cfg(feature = "wgpu-29")]
     let mapped = (!is_lost(device)).then(|| buffer.get_mapped_range_mut(..));
     #[cfg(not(feature = "wgpu-29"))]
@@ -25,8 +25,8 @@ pub fn filled(device: &Device, label: &str, bytes: &[u8], usage: BufferUsages) -
     buffer
 }
 
-/// Whether the device is lost, which wgpu reports to the application only: a buffer that cannot be unmapped is a
-/// validation error. Devices do not recover, so that all buffers from before are valid if this one is.
+/// Whether the device is lost. wgpu reports a loss to the application only, so this creates a buffer and checks for a
+/// validation error when it is unmapped. Lost devices do not recover: if this buffer is valid, so are all earlier ones.
 #[cfg(feature = "wgpu-29")]
 fn is_lost(device: &Device) -> bool {
     use std::future::Future;

@@ -17,7 +17,7 @@ pub const WORKGROUP_WIDTH: u32 = 64;
 #[derive(Debug)]
 pub struct ComputeShader {
     name: &'static str,
-    /// Label of what the shader makes on the device, for captures of a frame.
+    /// Label of the shader's objects on the device, for captures of a frame.
     label: String,
     /// Binding numbers, in the order of the resources of a [`group`](Self::group).
     numbers: Vec<u32>,
@@ -87,7 +87,7 @@ impl ComputeShader {
             entry_point: Some("main"),
             compilation_options: PipelineCompilationOptions {
                 constants: &constants,
-                // Workgroup memory is used for counters only, and zeroing it costs a barrier.
+                // Only counters use workgroup memory, and zeroing it costs a barrier.
                 zero_initialize_workgroup_memory: !overrides.contains(&("COUNT", 0)),
             },
             cache: None,

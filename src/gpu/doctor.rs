@@ -19,7 +19,7 @@ use wgpu::{
     TextureUsages, TextureView,
 };
 
-/// Frames that may be recorded before the words of the first are read.
+/// Largest number of frames that may be recorded before the words of the first one are read.
 const PENDING: usize = 16;
 
 /// `DoctorUniforms` in `shaders/pass/doctor_pass.wgsl`.
@@ -40,11 +40,11 @@ struct DoctorUniforms {
     maps: [[f32; 4]; HYPOTHESES as usize],
 }
 
-/// Checks whether the frames of a renderer are what a [`ContextDesc`] says: motion vectors, depth, colors, gaze and
-/// foveation of one view.
+/// Checks whether a renderer's frames match a [`ContextDesc`]: motion vectors, depth, colors, gaze and foveation of one
+/// view.
 ///
-/// Give it some consecutive frames in which the camera moves and the eye looks around. `record` never submits,
-/// maps or waits: the caller reads its buffer back, when that suits, and gives the bytes to [`read`](Self::read).
+/// Give it some consecutive frames in which the camera moves and the eye looks around. `record` never submits, maps or
+/// waits: the caller reads its buffer back at any later time, and gives the bytes to [`read`](Self::read).
 /// `examples/07_doctor.rs` is a whole program; `cpu::Doctor` has a smaller example.
 #[derive(Debug)]
 pub struct Doctor {
@@ -60,7 +60,7 @@ pub struct Doctor {
     chart: Chart,
 }
 
-/// What is kept of the last frame, besides its light.
+/// State that is kept from the last frame, besides its light.
 #[derive(Clone, Copy, Debug)]
 struct Past {
     gaze_px: [f32; 2],
@@ -68,7 +68,7 @@ struct Past {
 }
 
 impl Doctor {
-    /// A doctor that has seen nothing, for view `view` of a context of `desc`.
+    /// A doctor that has seen no frame yet, for view `view` of a context with the description `desc`.
     ///
     /// # Errors
     /// [`CreateError`] if the description is out of range, or has no such view, or a limit of the device is too low.
@@ -105,8 +105,9 @@ impl Doctor {
         4 * u64::from(WORDS) * u64::from(tile_count(self.desc.size_px).max(1))
     }
 
-    /// Records the look at a frame, the same that the post-process gets, into `encoder`. Writes `words`: a buffer of
-    /// [`words_bytes`](Self::words_bytes) with the usages `STORAGE`, `COPY_DST` and (to read it back) `COPY_SRC`.
+    /// Records the examination of a frame into `encoder`. Give it the same frames as the post-process. Writes `words`:
+    /// a buffer of [`words_bytes`](Self::words_bytes) with the usages `STORAGE`, `COPY_DST` and (to read it back)
+    /// `COPY_SRC`.
     ///
     /// # Errors
     /// [`FrameError`] if a texture, buffer or value does not fit the context; then nothing was recorded.

@@ -1,4 +1,4 @@
-//! Every pixel of a sparse frame, for methods that read whole frames. CPU twin: `src/cpu/fill.rs`.
+//! Fills every pixel of a sparse frame, for methods that read whole frames. CPU twin: `src/cpu/fill.rs`.
 
 use super::compute::{ComputeShader, float_texture, storage_texture, uniform};
 use super::history::array_view;
@@ -13,7 +13,7 @@ use wgpu::{
     TextureUsages,
 };
 
-/// Format of filled colors: samples keep their bits in it.
+/// Format of filled colors. It stores samples bit for bit.
 const FORMAT: TextureFormat = TextureFormat::Rgba32Float;
 
 /// Pass that fills sparse frames, and the filled color of the current one.
@@ -71,7 +71,7 @@ impl Passes for Fill {
             self.shader.dispatch(device, pass, &overrides(regions), &group, job.desc.size_px, count);
         }
         job.frame = job.frame.with_color(Textures::Layers(&self.color));
-        // A layer is a whole view.
+        // Each layer of the filled texture is one view, which begins at texel (0, 0).
         job.uniforms.views.iter_mut().for_each(|view| view.color_origin = 0);
     }
 }

@@ -1,4 +1,4 @@
-//! Depth and motion of every pixel of a sparse frame that has them at its samples only. CPU twin:
+//! Fills depth and motion of every pixel of a sparse frame that has them at its samples only. CPU twin:
 //! `src/cpu/fill_geometry.rs`.
 
 use super::compute::{ComputeShader, float_texture, storage_texture, uint_texture, uniform};
@@ -109,7 +109,7 @@ impl GeometryPass {
             (view.disparity_a, view.disparity_b) = (map.a, map.b);
             view.disparity_flags = map.flags();
             view.motion_offset = [0.0; 2];
-            // A layer is a whole view.
+            // Each layer of the filled textures is one view, which begins at texel (0, 0).
             (view.depth_origin, view.motion_origin) = (0, 0);
         }
         let [depth, motion] = &self.textures;
@@ -163,7 +163,7 @@ fn overrides(desc: &ContextDesc, variant: Variant) -> Overrides {
     list
 }
 
-/// Whether history has samples that kept their places.
+/// Whether the history layout is that of kept samples, with their sub-pixel places.
 fn is_kept(desc: &ContextDesc) -> bool {
     matches!(desc.settings.history_layout(), HistoryLayout::Kept { .. })
 }

@@ -8,7 +8,7 @@ use wgpu::{Buffer, QuerySet, Texture};
 
 /// A frame whose inputs are textures; fields and an example are at [`Frame`](crate::Frame).
 ///
-/// Textures have one sample a pixel and the usage `TEXTURE_BINDING`. [`Textures`] says where the views are in them.
+/// Textures have one sample a pixel and the usage `TEXTURE_BINDING`. [`Textures`] tells where the views lie in them.
 pub type Frame<'a> = crate::Frame<'a, Afterimage>;
 
 impl<'a> Frame<'a> {
@@ -17,7 +17,7 @@ impl<'a> Frame<'a> {
         Self::of_color(color.into(), views, index)
     }
 
-    /// This frame with another color input. Not `..*self`, which would require the longer lifetime of it.
+    /// This frame with another color input, whose lifetime may be shorter. `..*self` would not allow that.
     pub(super) fn with_color<'b>(&self, color: Textures<'b>) -> Frame<'b>
     where
         'a: 'b,
@@ -54,8 +54,8 @@ impl<'a> Frame<'a> {
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Target<'a> {
-    /// Output frame, of the context's output format, with the usage `STORAGE_BINDING`. Color is linear, as the input's;
-    /// alpha is the input's, or 1 ([`ContextDesc::keep_alpha`](crate::ContextDesc::keep_alpha)).
+    /// Output frame, of the context's output format, with the usage `STORAGE_BINDING`. Its color is linear, like the
+    /// input's. Its alpha is the input's, or 1 ([`ContextDesc::keep_alpha`](crate::ContextDesc::keep_alpha)).
     pub output: Textures<'a>,
     /// Debug view of the frame's decisions, drawn by the same pass. `None`: no view, at no cost.
     pub debug: Option<DebugTarget<'a>>,
@@ -102,8 +102,8 @@ impl<'a> From<Textures<'a>> for Target<'a> {
     }
 }
 
-/// What a frame and its target have, for [`Afterimage::prewarm`]: each combination has pipelines of its own. Default:
-/// color and output alone.
+/// Which inputs and outputs a frame and its target have, for [`Afterimage::prewarm`]: each combination has its own
+/// pipelines. Default: color and output alone.
 ///
 /// ```no_run
 /// # use afterimage::wgpu;
@@ -132,7 +132,7 @@ pub struct Variant {
     /// Whether depth and motion are given at samples only
     /// ([`Lattices::with_geometry_at_samples`](crate::Lattices::with_geometry_at_samples)).
     pub geometry_at_samples: bool,
-    /// Whether there are repaired samples; [`Afterimage::plan`] has pipelines of its own then.
+    /// Whether there are repaired samples, which need additional pipelines for [`Afterimage::plan`].
     pub repaired: bool,
     /// View of the [`DebugTarget`], if any.
     pub debug: Option<DebugView>,

@@ -23,7 +23,7 @@ pub(super) struct Planes {
     pub mip_levels: Vec<MipLevel>,
 }
 
-/// Textures of the previous and the current frame, and what is held of the views.
+/// Textures of the previous and the current frame, and the held state of the views.
 #[derive(Debug)]
 pub(super) struct History {
     layout: HistoryLayout,
@@ -36,7 +36,7 @@ pub(super) struct History {
 }
 
 impl History {
-    /// Empty history, without what stages [add](super::stage::Passes::extend).
+    /// Empty history, without the textures that stages [add](super::stage::Passes::extend).
     pub fn new(device: &Device, desc: &ContextDesc) -> Self {
         let layout = desc.settings.history_layout();
         let planes = || {
@@ -53,7 +53,7 @@ impl History {
         self.layout
     }
 
-    /// Discards history and what is held of the views: the next frame starts without history.
+    /// Discards history and the held state of the views: the next frame starts without history.
     pub fn forget(&mut self) {
         self.filled = false;
         self.held.fill(Held::default());
@@ -153,8 +153,8 @@ impl Plan {
     }
 }
 
-/// View of all layers of a texture's first level as a 2D array. Textures with one layer, too, because the shaders bind
-/// arrays.
+/// View of all layers of a texture's first level as a 2D array. Textures with one layer also get a 2D array view,
+/// because the shaders bind arrays.
 pub fn array_view(texture: &Texture) -> TextureView {
     levels_view(texture, 0, Some(1), None)
 }

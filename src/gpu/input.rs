@@ -48,7 +48,7 @@ pub(super) fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), 
     check_geometry(desc, frame)
 }
 
-/// Checks what is known of a frame before it is shaded.
+/// Checks the parts of a frame that are known before it is shaded.
 pub(super) fn check_geometry(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
     check_each(desc, frame, [("depth", frame.depth, 1), ("motion", frame.motion, 2), ("trust", frame.trust, 1)])
 }
@@ -207,7 +207,7 @@ fn check_usage(input: &'static str, texture: &Texture, usage: TextureUsages) -> 
     Ok(())
 }
 
-/// Checks size and usages of a buffer of the caller's, which is cleared and written.
+/// Checks size and usages of a buffer from the caller, which is cleared and written.
 pub(super) fn check_words(
     input: &'static str,
     buffer: &Buffer,

@@ -45,7 +45,7 @@ pub(super) struct MethodPass {
 pub(super) struct Placeholders {
     pub float: TextureView,
     pub word: TextureView,
-    /// Those of [`written`].
+    /// Placeholders for the history textures of [`written`].
     pub out: [TextureView; 3],
 }
 

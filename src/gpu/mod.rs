@@ -77,9 +77,9 @@ pub struct Afterimage {
     pass_shader: PassShader,
     stages: Stages,
     history: History,
-    /// Made at the first change of size that keeps history.
+    /// Pass that resamples history; created at the first change of size that keeps history.
     resize: Option<ResizePass>,
-    /// If the settings ask for repair.
+    /// Passes of repair, if the settings ask for it.
     repair: Option<RepairPasses>,
 }
 
@@ -89,10 +89,10 @@ impl Executor for Afterimage {
     type Vectors<'a> = Textures<'a>;
 }
 
-/// Uniforms of a frame, and what else follows from its description.
+/// Uniforms of a frame, and other state that follows from its description.
 struct Prepared {
     uniforms: FrameUniforms,
-    /// What is held of the views for the next frame.
+    /// State of the views that is held for the next frame.
     held: Vec<Held>,
     recorded: Recorded,
 }
@@ -211,12 +211,10 @@ impl Afterimage {
     }
 
     /// Changes the size of the views and resamples history to it, for dynamic resolution. The view directions at the
-    /// edges should stay the same. Reservoirs of wrs are taken from the nearest pixel; surfaces of taa, taau and
-    /// smr are filtered, kept samples of sparse frames are taken from the nearest pixel with their places; levels of
-    /// detail follow the scale.
+    /// edges should stay the same. Reservoirs of wrs, and kept samples of sparse frames with their places, are taken
+    /// from the nearest pixel. Surfaces of taa, taau and smr are filtered. Levels of detail follow the scale.
     ///
-    /// Records a pass into `encoder`, whose pipeline is compiled at the first call. Records nothing if there is no
-    /// history yet.
+    /// Records a pass into `encoder`. The first call compiles its pipeline. Without history it records nothing.
     ///
     /// # Errors
     /// As for [`resize`](Self::resize).
@@ -270,15 +268,15 @@ impl Afterimage {
     }
 
     /// Gaze position in pixels that [`record`](Self::record) would use for view `view` of the next frame: `gaze` if it
-    /// is known, else the last known one, else the middle of the view. Renderers of sparse frames need it before, to
-    /// place the [lattices](crate::Foveation::lattices).
+    /// is known, else the last known one, else the middle of the view. Renderers of sparse frames need it before that
+    /// call, to place the [lattices](crate::Foveation::lattices).
     pub fn gaze_px(&self, view: usize, geometry: &ViewGeometry, gaze: Gaze) -> [f32; 2] {
         gaze.resolve(self.history.held.get(view).and_then(|held| held.gaze_px), geometry)
     }
 
     /// Compiles the pipelines for `variants` of frames and targets, so that [`record`](Self::record) does not have to:
-    /// while loading, and again after [`set_settings`](Self::set_settings). [`Variant::all`] are all that a frame can
-    /// need without regions and debug views; a list of those that occur takes less time.
+    /// while loading, and again after [`set_settings`](Self::set_settings). [`Variant::all`] lists all variants without
+    /// regions and debug views; a list of only those that occur takes less time.
     ///
     /// Drivers may finish compilation at the first dispatch (software Vulkan does): record a frame while loading to
     /// force that, too.
@@ -291,7 +289,7 @@ impl Afterimage {
         }
     }
 
-    /// Shader module and override values of each compiled pipeline, for tests and for the count of instructions.
+    /// Shader module and override values of each compiled pipeline, for tests and for tools that count instructions.
     #[doc(hidden)]
     pub fn pipelines(&self) -> Vec<(&'static str, Vec<(&'static str, u32)>)> {
         let resize = self.resize.as_ref().map(ResizePass::pipelines);
@@ -357,8 +355,8 @@ impl Afterimage {
         Ok(prepared.recorded)
     }
 
-    /// Records, into `encoder`, the choice of pixels of a sparse frame that want a sample of their own: quads of 2x2
-    /// pixels for which history has nothing, or nothing fine, and the frame's lattices have no sample. The renderer
+    /// Records, into `encoder`, the choice of pixels of a sparse frame to repair with a sample of their own: quads of
+    /// 2x2 pixels whose history is missing or coarse, and in which the frame's lattices have no sample. The renderer
     /// reads it from [`repair_mask`](Self::repair_mask) or [`repair_quads`](Self::repair_quads), shades these pixels at
     /// full rate, and gives them to [`record`](Self::record) of the same frame
     /// ([`Frame::repaired`](crate::Frame::repaired)).
@@ -367,7 +365,7 @@ impl Afterimage {
     /// first, then those whose history is coarse, each from the gaze outwards. After a cut, successive frames repair
     /// successive rings around the gaze.
     ///
-    /// The frame is the one that will be recorded, as far as it is known before it is shaded: views with their
+    /// Give it the frame that will be recorded, with the parts that are known before shading: views with their
     /// lattices, depth, motion, trust, index and reset. Its colors, noise and repaired samples are not read. History is
     /// unchanged.
     ///
@@ -395,7 +393,7 @@ impl Afterimage {
         input::check_geometry(&self.desc, frame)?;
         let frame = Frame { noise: None, repaired: None, ..frame.with_color(frame.color) };
         let uniforms = self.prepare(&frame, None).uniforms;
-        // Of which nothing is written.
+        // A placeholder: a plan writes nothing to it.
         let target = Target::new(frame.color);
         let mut job = self.job(device, frame, &target, None, uniforms);
         if let Some(repair) = &self.repair {
@@ -412,9 +410,10 @@ impl Afterimage {
         Ok(())
     }
 
-    /// What the last [`plan`](Self::plan) chose: an `R32Uint` texture with a texel for each quad of 2x2 pixels, 1 if it
-    /// was chosen and otherwise 0, and an array layer for each view; usages `TEXTURE_BINDING` and `COPY_SRC`. `None`
-    /// without [`repair`](crate::Smr::repair) in the settings. Changes of size and settings replace it.
+    /// The quads that the last [`plan`](Self::plan) chose: an `R32Uint` texture with a texel for each quad of 2x2
+    /// pixels, 1 if the quad was chosen and otherwise 0, and an array layer for each view; usages `TEXTURE_BINDING` and
+    /// `COPY_SRC`. `None` without [`repair`](crate::Smr::repair) in the settings. Changes of size and settings replace
+    /// it.
     pub fn repair_mask(&self) -> Option<&Texture> {
         self.repair.as_ref().map(RepairPasses::mask)
     }
@@ -431,9 +430,10 @@ impl Afterimage {
 
     /// Distance of every pixel along the view axis, interpolated from the depth at the samples, for composition layers
     /// with depth and for effects that follow: `R32Float`, an array layer for each view; usages `TEXTURE_BINDING` and
-    /// `COPY_SRC`. At least 1e30 where nothing is, -1 where depth was invalid. It is of the last frame that was
-    /// recorded or planned with [geometry at samples](crate::Lattices::with_geometry_at_samples) and a depth input;
-    /// `None` before the first one, since other frames have depth at every pixel. A change of size replaces it.
+    /// `COPY_SRC`. It is at least 1e30 where there is no surface, and -1 where depth was invalid. It belongs to the
+    /// last frame that was recorded or planned with [geometry at samples](crate::Lattices::with_geometry_at_samples)
+    /// and a depth input. `None` before the first such frame: other frames have depth at every pixel. A change of size
+    /// replaces it.
     pub fn filled_depth(&self) -> Option<&Texture> {
         self.stages.filled_depth()
     }
@@ -522,7 +522,7 @@ impl Afterimage {
         frame.check_planned(self.repair.as_ref().and_then(|repair| repair.planned))
     }
 
-    /// Forgets what was planned.
+    /// Discards the last plan.
     fn unplan(&mut self) {
         if let Some(repair) = &mut self.repair {
             repair.planned = None;

@@ -1,9 +1,9 @@
-//! Repair of sparse frames: which quads of pixels history has nothing for, before the frame is shaded. CPU twin:
+//! Repair of sparse frames: chooses quads of pixels without usable history, before the frame is shaded. CPU twin:
 //! `src/cpu/sparse_pass/plan.rs`.
 //!
-//! Three passes a view. For each quad: find what history has for those of its pixels that are not settled, as the
-//! method's pass will, and count the quad's key. Once: which keys does the budget pay for? For each quad: is its key
-//! one of them?
+//! Three passes a view. The first looks up history at each quad's pixels, as the method's pass will, and counts the
+//! quad's key; it skips pixels that are settled. The second, once a view, finds the smallest key that the budget pays
+//! for. The third chooses the quads whose keys are at least that large.
 
 use super::Variant;
 use super::buffer::filled;
@@ -29,7 +29,7 @@ const LIST_HEADER_BYTES: u64 = 32;
 /// Bytes of a view's counts by key, threshold and number of listed quads.
 const STATE_BYTES: u64 = 4 * (KEYS as u64 + 2);
 
-/// The passes, and what they chose.
+/// The passes, and the quads that they chose.
 #[derive(Debug)]
 pub(super) struct RepairPasses {
     key: ComputeShader,
@@ -48,7 +48,7 @@ struct Quads {
     keys: TextureView,
     mask: Texture,
     mask_view: TextureView,
-    /// One a view, as are the lists.
+    /// One for each view, like the lists.
     states: Vec<Buffer>,
     lists: Vec<Buffer>,
 }
@@ -158,7 +158,7 @@ impl RepairPasses {
         self.quads.lists.get(view)
     }
 
-    /// Forgets what was counted for the last frame.
+    /// Clears the counts of the last frame.
     pub fn clear(&self, encoder: &mut CommandEncoder) {
         self.quads.states.iter().for_each(|state| encoder.clear_buffer(state, 0, None));
     }
@@ -223,7 +223,7 @@ fn list_bytes(desc: &ContextDesc, repair: Repair) -> u64 {
     LIST_HEADER_BYTES + 4 * u64::from(budget_quads(repair.budget, size_quads(desc)).max(1))
 }
 
-/// Bytes of what a plan holds.
+/// Bytes of the textures and buffers of a plan.
 pub(super) fn memory_bytes(desc: &ContextDesc, repair: Repair) -> u64 {
     let [columns, rows] = size_quads(desc).map(u64::from);
     let images = 2 * u64::from(FORMAT.block_copy_size(None).unwrap_or(0)) * columns * rows;

@@ -38,7 +38,7 @@ pub(super) struct ResizePass {
 }
 
 impl ResizePass {
-    /// `None` for a layout without history.
+    /// The pass for a layout; `None` for a layout without history.
     pub fn new(device: &Device, layout: HistoryLayout) -> Option<Self> {
         let [first, second, third] = written(layout).map(storage_texture);
         let (name, types, block_px, overrides) = match layout {
@@ -76,8 +76,8 @@ impl ResizePass {
         self.shader.pipelines()
     }
 
-    /// Records the pass that fills `next`, of the new size, from `past`; but for the mip chain's second level and all
-    /// after it.
+    /// Records the pass that fills `next`, of the new size, from `past`. It does not fill the mip chain's second level
+    /// and those after it.
     pub fn record(
         &self,
         device: &Device,

@@ -149,7 +149,7 @@ fn overrides(desc: &ContextDesc, variant: Variant) -> [Overrides; 2] {
     [observe, light]
 }
 
-/// Image for the results for the samples of all views.
+/// Texture for the results of the samples of all views.
 fn results(device: &Device, desc: &ContextDesc) -> Texture {
     let [width, height] = results_size(desc.size_px);
     device.create_texture(&TextureDescriptor {

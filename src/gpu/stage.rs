@@ -1,4 +1,4 @@
-//! A stage of a frame: what its passes have in common.
+//! Stages of a frame: the interface that their passes share.
 
 use super::history::History;
 use super::uniforms::FrameUniforms;
@@ -9,12 +9,13 @@ use crate::method::Overrides;
 use std::fmt::Debug;
 use wgpu::{Buffer, ComputePass, Device, Texture, TextureView};
 
-/// A frame to record: its description, and what follows from it. A stage replaces what it fills.
+/// A frame to record: its description, and state that follows from it. A stage that fills an input replaces that input
+/// here.
 pub(super) struct Job<'a> {
     pub desc: &'a ContextDesc,
     pub frame: Frame<'a>,
     pub target: &'a Target<'a>,
-    /// Of the frame as it was given, so that prewarmed pipelines suffice.
+    /// Variant of the frame as the caller gave it, so that prewarmed pipelines suffice.
     pub variant: Variant,
     /// View to output in place of the frame, without storing anything.
     pub view: Option<DebugView>,
@@ -33,7 +34,7 @@ pub(super) trait Passes: Debug + wgpu::WasmNotSendSync {
     /// Follows a change of the context's size.
     fn resize(&mut self, _device: &Device, _desc: &ContextDesc) {}
 
-    /// Adds what the stage writes to a history that was just made.
+    /// Adds the stage's own textures to a new history.
     fn extend(&self, _device: &Device, _desc: &ContextDesc, _history: &mut History) {}
 
     /// Compiles the pipelines of a variant.
@@ -56,6 +57,6 @@ pub(super) trait Passes: Debug + wgpu::WasmNotSendSync {
     /// Records the passes of a frame.
     fn record<'a>(&'a self, device: &Device, pass: &mut ComputePass<'_>, job: &mut Job<'a>);
 
-    /// Completes a history that was written by other passes than those of a frame.
+    /// Completes a history that passes outside a frame have written, such as a resize.
     fn complete(&self, _device: &Device, _pass: &mut ComputePass<'_>, _history: &History) {}
 }

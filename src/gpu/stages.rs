@@ -87,7 +87,7 @@ impl Stages {
         self.passes().for_each(|passes| passes.record(device, &mut pass, &mut job));
     }
 
-    /// Records what fills depth and motion of a frame that has them at its samples only.
+    /// Records the passes that fill depth and motion of a frame that has them at its samples only.
     pub fn record_geometry<'a>(&'a self, device: &Device, pass: &mut ComputePass<'_>, job: &mut Job<'a>) {
         let geometry = self.0.iter().filter(|(stage, _)| *stage == Stage::Geometry);
         geometry.for_each(|(_, passes)| passes.record(device, pass, job));

@@ -101,7 +101,8 @@ fn layer_view(texture: &Texture, layer: u32) -> TextureView {
 #[derive(Clone, Debug)]
 pub(super) struct Batch {
     pub views: Range<u32>,
-    /// Whether it is a single view whose inputs and outputs may be regions; otherwise all views, as layers.
+    /// Whether the batch is a single view, whose inputs and outputs may be regions. Otherwise it is all views, as
+    /// layers.
     pub regions: bool,
 }
 

@@ -66,8 +66,8 @@ pub struct FrameUniforms {
 }
 
 impl FrameUniforms {
-    /// Uniforms of a frame and its target, if it has one; `held` is that after this frame. `has_history`: whether a
-    /// frame was recorded before.
+    /// Uniforms of a frame and its target, if it has one. `held`: state of the views after this frame. `has_history`:
+    /// whether a frame was recorded before.
     pub(super) fn new(
         desc: &ContextDesc,
         frame: &Frame<'_>,
@@ -124,7 +124,7 @@ impl FrameUniforms {
     }
 
     /// These uniforms on the device, for a dispatch from view `first_view` on. Each has a buffer of its own, so that
-    /// one submission can contain several. `lattice`: whose samples it processes, if it does.
+    /// one submission can contain several. `lattice`: the lattice whose samples the dispatch processes, if any.
     pub(super) fn buffer(self, device: &Device, first_view: u32, lattice: u32) -> Buffer {
         let uniforms = Self { first_view, lattice, ..self };
         filled(device, "afterimage uniforms", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM)

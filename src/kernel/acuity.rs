@@ -23,7 +23,7 @@ pub fn eccentricity_deg(ray: Vec3, gaze: Vec3) -> f32 {
     let cy = ray.z * gaze.x - ray.x * gaze.z;
     let cz = ray.x * gaze.y - ray.y * gaze.x;
     let cross = (cx * cx + cy * cy + cz * cz).sqrt();
-    // z first: the product of z is often a constant, and compilers may move a constant that comes last.
+    // The z product comes first: it is often a constant, and compilers may move a constant that comes last.
     let dot = ray.z * gaze.z + ray.x * gaze.x + ray.y * gaze.y;
     // The limit also keeps compilers from merging this factor with those of the functions that the angle is passed to.
     (approx::atan2_upper(cross, dot) * (180.0 / std::f32::consts::PI)).min(180.0)

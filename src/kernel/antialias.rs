@@ -1,10 +1,10 @@
 //! Antialiasing of sparse frames whose projection is jittered: a stored texel is the mean of the samples that fell into
 //! its pixel, with the mean of their places.
 //!
-//! A jittered sample shows one point of its pixel, and what a pixel should show is the mean over its area. Moving the
-//! camera moves the place of a mean, as it moves that of a sample ([`kept`](super::kept)), and the mean is not
-//! resampled. Means of history that moved are short: each frame's samples fall into a box that lies elsewhere, which
-//! widens what the mean stands for.
+//! A jittered sample shows one point of its pixel, but the pixel should show the mean over its area. Camera motion
+//! moves the place of a mean, like that of a sample ([`kept`](super::kept)), and the mean is not resampled. Means of
+//! moving history contain few samples: the pixel's area lies elsewhere on the surface in each frame, so that a long
+//! mean would blur.
 
 use super::kept::{FARTHEST_PX, Kept};
 use super::matched::{root_difference, roots};
@@ -12,36 +12,37 @@ use super::sparse::{Light, Reconstructed, Reconstruction, relit};
 use super::taa::{ROUNDING, clip_to_box, to_ycocg};
 use glam::{Vec2, Vec3};
 
-/// Largest number of samples in a mean: one frame's samples weigh at least a 31st. More is calmer and follows changes
-/// that no gate sees later.
+/// Largest number of samples in a mean: one frame's sample has a weight of at least 1/31. A larger limit flickers less,
+/// and is slower to follow changes that the gate does not detect.
 pub const MOST_SAMPLES: f32 = 31.0;
 /// Largest number of samples of history in a mean.
 const MOST_PAST: f32 = MOST_SAMPLES - 1.0;
-/// The same where history lies a quarter of a pixel and more beside the pixel's centre: more blurs motion.
+/// The same where history lies a quarter of a pixel or more from the pixel's centre. A larger limit blurs motion.
 const MOST_PAST_MOVED: f32 = 3.0;
 /// Inverse of the distance in pixels from the pixel's centre at which that limit is reached.
 const MOVED_PER_PX: f32 = 4.0;
-/// Codes of a level of detail: 31 of means, of 31 samples down to one, then levels above 0.
+/// Steps of a stored level of detail. The first 31 codes are means of 31 samples down to one; the following ones are
+/// levels above 0.
 const CODES_PER_LOD: f32 = 7.0;
-/// Code of one sample.
+/// Code of a mean of one sample.
 const ONE_SAMPLE: f32 = 30.0;
 /// Codes a level above 0.
 const CODES_PER_COARSE_LOD: f32 = 5.0;
-/// Level from which on a texel is coarse.
+/// A texel of this level or more is coarse.
 const COARSE_LOD: f32 = 0.1;
 /// Half width of the box of nine samples to which history is clipped at full rate, in standard deviations.
 const BOX_SIGMAS: f32 = 2.0;
-/// Share of the clip that is applied: a thin feature that a frame misses is not lost at once.
+/// Share of the clip that is applied, so that a thin feature is not lost at once if a frame misses it.
 const CLIP: f32 = 0.5;
-/// Share of its samples that a mean loses for a clip by the range from black to white, or by its own brightness where
-/// that is more: a tenth of it costs all.
+/// Cost of a clip: the share of its samples that a mean loses, per clip distance in units of the range from black to
+/// white, or of the mean's own brightness if that is larger. A clip by a tenth costs all samples.
 const CLIP_COST: f32 = 10.0;
-/// Relative difference of disparity from which on a neighbour is another, nearer surface.
+/// Least relative difference of disparity at which a neighbour is another, nearer surface.
 const NEARER_RELATIVE: f32 = 0.02;
-/// Largest difference of motion, in pixels along an axis, at which a nearer surface stands for a pixel of a lattice of
-/// step 2 and more.
+/// Largest difference of motion, in pixels along an axis, at which a pixel of a lattice of step 2 and more takes the
+/// history of a nearer surface beside it.
 const ALONGSIDE_PX: f32 = 1.0;
-/// Largest difference of motion, in pixels along an axis, at which the surfaces around a pixel move as one:
+/// Largest difference of motion, in pixels along an axis, at which the surfaces around a pixel move together, so that
 /// history that mixes them stays in place.
 const TOGETHER_PX: f32 = 0.25;
 
@@ -82,9 +83,9 @@ pub fn stored_lod(m: Mean) -> f32 {
     if m.lod < 0.0 { -1.0 } else { code * (1.0 / CODES_PER_LOD) }
 }
 
-/// Whether a neighbour of a pixel stands for it, so that silhouettes are means of both surfaces and move with the
-/// nearer one. `full_rate`: whether the pixel has a sample in every frame; others keep their own surface where that
-/// moves otherwise.
+/// Whether a pixel takes the history of a neighbour's nearer surface, so that silhouettes are means of both surfaces
+/// and move with the nearer one. `full_rate`: whether the pixel has a sample in every frame. Other pixels keep their
+/// own surface if it moves differently.
 #[inline]
 pub fn stands_before(own: f32, neighbour: f32, own_motion: Vec2, motion: Vec2, full_rate: bool) -> bool {
     let difference = motion - own_motion;
@@ -92,30 +93,30 @@ pub fn stands_before(own: f32, neighbour: f32, own_motion: Vec2, motion: Vec2, f
     neighbour > own * (1.0 + NEARER_RELATIVE) && neighbour > own && (full_rate || alongside)
 }
 
-/// Whether the surfaces around a pixel move as one: its own, the nearest, and the farthest. History may then be of any
-/// of them. If it had to be of one, it would be rejected whenever the jitter, or a position between texels, has the
-/// pixel on the other side of a silhouette, and edges would never be means.
+/// Whether the surfaces around a pixel move together: its own, the nearest, and the farthest. History may then show any
+/// of them. If it had to show one of them, it would be rejected whenever the jitter, or a position between texels, puts
+/// the pixel on the other side of a silhouette, and edges would never become means.
 #[inline]
 pub fn move_together(own: Vec2, nearest: Vec2, farthest: Vec2) -> bool {
     let apart = |a: Vec2, b: Vec2| (a.x - b.x).abs().max((a.y - b.y).abs());
     apart(own, nearest).max(apart(own, farthest)).max(apart(nearest, farthest)) <= TOGETHER_PX
 }
 
-/// Whether a stored disparity is that of surfaces that had disparities from `farthest` to `nearest`.
+/// Whether a stored disparity belongs to a surface with a disparity from `farthest` to `nearest`.
 #[inline]
 pub fn is_of_surfaces(stored: f32, farthest: f32, nearest: f32) -> bool {
     let far = farthest * (1.0 - NEARER_RELATIVE);
     stored >= far && stored * (1.0 - NEARER_RELATIVE) <= nearest
 }
 
-/// Marks the observation of a sample that may show another surface than the one that depth gives for its pixel. It
-/// stands in place of the expected error.
+/// Marks the observation of a sample that may show a surface other than the one at its pixel's depth. It is stored in
+/// place of the expected error.
 pub const DOUBTFUL: f32 = -2.0;
 
 /// Whether a pixel's sample at `place_px` may show the surface of a neighbouring pixel instead of its own. It may if
 /// the neighbour's disparity differs and the sample lies on the neighbour's side of the pixel's centre. `offset`: -1, 0
-/// or 1 along each axis. Depth is that of pixel centres, so that it does not say which surface a sample shows. Kept
-/// under the wrong depth, a sample stays as a dot where the silhouette moves away.
+/// or 1 along each axis. Depth is given at pixel centres, so it does not tell which surface a sample shows. A sample
+/// stored with the wrong depth would stay behind as a dot when the silhouette moves away.
 #[inline]
 pub fn may_show(own: f32, neighbour: f32, place_px: Vec2, offset: Vec2) -> bool {
     let nearer = neighbour > own * (1.0 + NEARER_RELATIVE);
@@ -142,7 +143,7 @@ pub fn add_near(n: Near, color: Vec3) -> Near {
     Near { sum: n.sum + v, squares: n.squares + v * v, count: n.count + 1.0 }
 }
 
-/// How history is clipped to the samples around a pixel.
+/// Clip of history to the samples around a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clip {
     /// Change of the square roots of RGB.
@@ -175,8 +176,8 @@ pub fn clipped(color: Vec3, change: Vec3) -> Vec3 {
     v * v
 }
 
-/// Expected difference of one sample from history around it: by the model, or by the scatter of the samples' own
-/// differences, where that is more. `scatter`: squared [`root_difference`]s of samples and history, times weights.
+/// Expected difference of one sample from history around it: the larger of the model's value and the standard deviation
+/// of the samples' differences. `scatter`: squared [`root_difference`]s of samples and history, times weights.
 #[inline]
 pub fn scattered_error(l: Light, scatter: f32) -> f32 {
     let inverse = 1.0 / l.weight;
@@ -190,12 +191,12 @@ pub fn scattered_error(l: Light, scatter: f32) -> f32 {
 pub struct Averaged {
     /// Color to show, and texel to store.
     pub result: Reconstructed,
-    /// Number of samples in it.
+    /// Number of samples in the texel.
     pub samples: f32,
 }
 
-/// Mean of history and of the pixel's own sample, whose place in the pixel is `place_px`. `samples`: number in the
-/// texel of history to keep; `kept`: share of them that a clip leaves.
+/// Mean of history and of the pixel's own sample, whose place in the pixel is `place_px`. `samples`: number of samples
+/// in the texel of history to keep; `kept`: share of them that remains after a clip.
 #[inline]
 pub fn average(r: &Reconstruction, samples: f32, place_px: Vec2, kept: f32) -> Averaged {
     let acceptance = (r.fit * r.trust) * kept;
@@ -218,8 +219,8 @@ pub fn average(r: &Reconstruction, samples: f32, place_px: Vec2, kept: f32) -> A
     Averaged { result: Reconstructed { color, kept: next, share }, samples: count + 1.0 }
 }
 
-/// Number of samples of a texel that a pixel without an own sample stores: those of the kept one, as far as history
-/// fits. `result`: of [`reconstruct`](super::sparse::reconstruct).
+/// Number of samples in the texel that a pixel without a sample of its own stores: that of the kept texel, reduced
+/// where history does not fit. `result`: of [`reconstruct`](super::sparse::reconstruct).
 #[inline]
 pub fn kept_mean(r: &Reconstruction, result: Reconstructed, samples: f32) -> Averaged {
     let is_kept = result.kept.lod < COARSE_LOD && r.nearest.lod <= 0.0;

@@ -48,7 +48,7 @@ pub fn disparity(stored: f32, map: DisparityMap) -> f32 {
     }
 }
 
-/// Distance of a disparity, of which [`disparity`] makes the same again: negative for [`INVALID_DISPARITY`].
+/// Distance of a disparity, the inverse of [`disparity`]; negative for [`INVALID_DISPARITY`].
 #[inline]
 pub fn distance_of(disparity: f32) -> f32 {
     if disparity < 0.0 {
@@ -75,7 +75,7 @@ pub fn previous_disparity(disparity: f32, stretch: f32, shift: f32) -> f32 {
 }
 
 /// Whether a stored and an expected disparity belong to one surface: they differ by at most `relative` of the larger
-/// one plus `slope`, the surface's own change over the distance that reprojection may be off.
+/// one plus `slope`, the surface's own change of disparity over the reprojection error.
 #[inline]
 pub fn same_surface(expected: f32, stored: f32, relative: f32, slope: f32) -> bool {
     if expected < 0.0 || stored < 0.0 {

@@ -1,6 +1,6 @@
-//! Evidence on the inputs of a renderer, tile by tile: how well hypotheses on its motion vectors predict the frame from
-//! the previous one, and how fine the detail of the frame is. Words of a tile are integers, so that their sums do not
-//! depend on the order of the pixels.
+//! Evidence on the inputs of a renderer, tile by tile: the prediction errors of hypotheses on its motion vectors, and
+//! the fineness of the frame's detail. Words of a tile are integers, so that their sums do not depend on the order of
+//! the pixels.
 
 use super::sanitize;
 
@@ -33,7 +33,7 @@ pub const DECODED_BENDS: u32 = BENDS + KINKS;
 pub const WIDE_BENDS: u32 = DECODED_BENDS + KINKS;
 /// Word of a tile: sum of the signal, each at most 1.
 pub const LIGHT: u32 = WIDE_BENDS + WIDE;
-/// Word of a tile: number of pixels on a code of 8 bits.
+/// Word of a tile: number of pixels whose value is an 8-bit code.
 pub const CODES: u32 = LIGHT + 1;
 /// Word of a tile: number of pixels that are not finite.
 pub const BROKEN: u32 = CODES + 1;
@@ -46,19 +46,19 @@ pub const MOTION: u32 = DEPTH + DEPTHS;
 /// Number of words of a tile.
 pub const WORDS: u32 = MOTION + 2;
 
-/// Brightest signal; brighter pixels count as this one.
+/// Largest signal; brighter pixels are clamped to it.
 pub const MAX_SIGNAL: f32 = 64.0;
-/// Largest component of a stored motion vector; longer ones count as this long.
+/// Largest component of a stored motion vector; larger ones are clamped to it.
 pub const MAX_STORED_MOTION: f32 = 65536.0;
 
-/// Signal of a pixel: its green channel, which is most of its luma and, unlike luma, is a mean of means and an encoding
-/// of an encoding. 0, or from 1e-30 to 64; 0 for numbers that are not finite.
+/// Signal of a pixel: its green channel, which is most of its luma. Unlike luma, a single channel can be averaged and
+/// decoded by itself. 0, or from 1e-30 to 64; 0 for numbers that are not finite.
 #[inline]
 pub fn signal(green: f32) -> f32 {
     if sanitize::is_finite(green) && green >= 1e-30 { green.min(MAX_SIGNAL) } else { 0.0 }
 }
 
-/// Root of the mean signal of 2x2 pixels: about as bright as it looks.
+/// Root of the mean signal of 2x2 pixels, which is about perceived brightness.
 #[inline]
 pub fn root_mean(a: f32, b: f32, c: f32, d: f32) -> f32 {
     ((a + b + c + d) * 0.25).sqrt()
@@ -96,8 +96,8 @@ pub fn interpolate(a: f32, b: f32, t: f32) -> f32 {
 }
 
 /// Uniform cubic B-spline of four values at equal distances, at fraction `t` from the second to the third, by de Boor's
-/// algorithm: interpolations only, whose order no compiler changes. It smooths: interpolation of point samples would
-/// favor short vectors, because it follows what aliases on the lattice.
+/// algorithm. It consists of interpolations only, whose order no compiler changes. The spline smooths: plain
+/// interpolation of point samples would favor short vectors, because it follows aliasing on the lattice.
 #[inline]
 pub fn spline(values: [f32; 4], t: f32) -> f32 {
     let [a, b, c, d] = values;
@@ -126,8 +126,9 @@ pub fn boundary_class(at: u32) -> u32 {
     at.trailing_zeros().min(BOUNDARIES - 1)
 }
 
-/// Class of the kink that the pixels `at - 1` to `at + 1` may straddle: that of the even boundary of `at`, less 1. A
-/// frame that interpolates between the middles of blocks of 2^l (l >= 2) has kinks of class l - 2 only.
+/// Class of the kink that the pixels `at - 1` to `at + 1` may straddle: the class of the even one of the two boundaries
+/// of `at`, less 1. A frame that interpolates between the middles of blocks of 2^l (l >= 2) has kinks of class l - 2
+/// only.
 #[inline]
 pub fn kink_class(at: u32) -> u32 {
     boundary_class(at + (at & 1)) - 1
@@ -139,7 +140,7 @@ pub fn bend(before: f32, at: f32, after: f32) -> f32 {
     ((after - at) - (at - before)).abs()
 }
 
-/// Whether a signal is on a code of 8 bits, from 1 to 254.
+/// Whether a signal is an 8-bit code from 1 to 254.
 #[inline]
 pub fn is_code(signal: f32) -> bool {
     let code = signal * 255.0;
@@ -147,8 +148,8 @@ pub fn is_code(signal: f32) -> bool {
     (code - whole).abs() <= 0.015625 && (1.0..=254.0).contains(&whole)
 }
 
-/// Bits of a stored number that the rules read: those of NaN, infinities and numbers below the normal range (which
-/// devices may flush to zero) are those of one NaN, infinity of one sign, and zero.
+/// Bits of a stored number for the rules. Every NaN becomes the same NaN, both infinities become one, and numbers below
+/// the normal range (which devices may flush to zero) become zero.
 #[inline]
 pub fn kept_bits(stored: f32) -> u32 {
     let bits = stored.to_bits();

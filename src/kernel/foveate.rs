@@ -9,8 +9,8 @@ use std::f32::consts::LOG2_E;
 /// last bit of any color.
 const SHARPEST_BLUR_PX: f32 = 0.125;
 /// Mip bias of block samples: the sample of a block of level l reads level l - 2. Renderers filter textures for a finer
-/// level than the shading rate (anisotropic filtering, mip bias), so that block samples alias; the filter reproduces
-/// that.
+/// level than the shading rate (anisotropic filtering, mip bias), so that block samples alias. The block filter
+/// reproduces this aliasing.
 const SAMPLE_LEVEL_BIAS: u32 = 2;
 
 /// 0 up to `start`, 1 from `start + width` on, linear in between (a step for width 0).

@@ -1,8 +1,8 @@
 //! Storage of a sample that keeps its sub-pixel position, in two words, and interpolation of such samples.
 //!
-//! History that is resampled in every frame loses detail in every frame. Here a texel holds one sample as the renderer
-//! shaded it, and the place of that sample relative to the texel's centre. Reprojection changes the place, not the
-//! color; only what is shown is interpolated.
+//! History that is resampled in every frame loses detail in every frame. Here a texel holds one unfiltered sample of
+//! the renderer, and the place of that sample relative to the texel's centre. Reprojection changes the place, not the
+//! color. Only the displayed color is interpolated.
 //!
 //! | word | bits | |
 //! |---|---|---|
@@ -24,7 +24,7 @@ pub const MAX_COLOR: f32 = 65408.0;
 
 /// Code of the level of detail of an empty texel.
 const EMPTY: u32 = 63;
-/// Smallest exponent of a float that is the largest channel; a smaller one has fewer bits.
+/// Smallest exponent of the largest channel; a smaller channel is stored with fewer bits.
 const SMALLEST_EXPONENT: u32 = 111;
 /// Stored steps a level of detail.
 const LOD_STEPS: f32 = 7.0;
@@ -36,7 +36,7 @@ pub const FARTHEST_PX: f32 = 1.2;
 /// Distance along each axis, in pixels, up to which a sample counts as lying exactly at a position: half a stored step.
 pub const EXACT_PX: f32 = 0.5 / PLACE_STEPS;
 
-/// Squared distance in pixels from which on a sample has no weight.
+/// A sample at this squared distance in pixels or more has no weight.
 const REACH_PX2: f32 = 3.0;
 /// The same for means of jittered samples.
 const MEAN_REACH_PX2: f32 = 1.7;
@@ -44,7 +44,7 @@ const MEAN_REACH_PX2: f32 = 1.7;
 const SOFTEN_PX2: f32 = 0.03;
 /// Added to the variance of the samples' places, so that a plane through few samples stays flat.
 pub const STIFF_PX2: f32 = 0.01;
-/// Squared pixels that a level of detail is worth in the choice of the sample to keep.
+/// Cost of a level of detail in the choice of the sample to keep, in squared pixels.
 const LOD_PX2: f32 = 0.3;
 
 /// Stored sample of a surface point.
@@ -65,8 +65,8 @@ impl Kept {
     pub const EMPTY: Self = Self { color: Vec3::ZERO, lod: -1.0, disparity: -1.0, place_px: Vec2::ZERO };
 }
 
-/// Multiple of the step that exponent code `exponent` (that of a float) stands for, rounded up if the fraction that is
-/// cut off and `up` give at least 1: to the nearest for an `up` of 0.5.
+/// `v` as a multiple of the step of exponent code `exponent` (that of a float). It is rounded up if its fraction plus
+/// `up` is at least 1; an `up` of 0.5 rounds to the nearest.
 #[inline]
 pub fn multiple(v: f32, exponent: u32, up: f32) -> u32 {
     // A power of two: the product is exact.
@@ -80,8 +80,8 @@ pub fn pack_color(c: Vec3) -> u32 {
     pack_color_by(c, 0.5)
 }
 
-/// As [`pack_color`], rounded by chance: up with a probability of the fraction that is cut off, if `up` is uniform in
-/// \[0, 1). A mean that is stored in each frame then has no drift and follows small differences.
+/// As [`pack_color`], with stochastic rounding: if `up` is uniform in \[0, 1), the probability of rounding up is the
+/// fraction that is cut off. A mean that is stored in each frame then has no drift and follows small differences.
 #[inline]
 pub fn pack_color_by(c: Vec3, up: f32) -> u32 {
     let channel = |v: f32| if v > 0.0 { v.min(MAX_COLOR) } else { 0.0 };
@@ -138,7 +138,7 @@ pub fn is_empty(words: [u32; 2]) -> bool {
     words[1] & 63 == EMPTY
 }
 
-/// A word with the code of a sample's disparity in its high half, for [`has_code`](super::resample::has_code).
+/// Word for [`has_code`](super::resample::has_code), with the code of a sample's disparity in its high half.
 #[inline]
 pub fn code_word(words: [u32; 2]) -> u32 {
     (words[1] << 12) & 0xfffc_0000
@@ -158,7 +158,8 @@ pub fn unpack_full(words: [u32; 2]) -> Kept {
 }
 
 /// A stored sample in an image of another size. `texel_px`: its texel's place relative to the new texel, in old pixels;
-/// `scale`: new size over old size; `lod_shift`: log2 of it. Places that are too far to be stored make it coarse.
+/// `scale`: new size over old size; `lod_shift`: log2 of it. The sample becomes coarse if its place is too far to be
+/// stored.
 #[inline]
 pub fn moved_kept(s: Kept, texel_px: Vec2, scale: Vec2, lod_shift: f32) -> Kept {
     if s.lod < 0.0 {
@@ -170,7 +171,8 @@ pub fn moved_kept(s: Kept, texel_px: Vec2, scale: Vec2, lod_shift: f32) -> Kept 
     Kept { lod: if near { lod } else { lod.max(1.0) }, place_px, ..s }
 }
 
-/// Weight from which on samples beside a position stand in for the nearest one: of one at 0.65 px.
+/// Least sum of weights at which samples beside a position replace the nearest one: the weight of one sample at 0.65
+/// px.
 const STAND_IN: f32 = 1.6;
 
 /// Sums over the samples around a position, and the sample to keep.
@@ -214,13 +216,13 @@ impl Around {
     };
 }
 
-/// Inverse of the squared distance in pixels from which on a sample has no weight.
+/// Inverse of the squared distance in pixels at which the weight of a sample falls to 0.
 pub const INVERSE_REACH: f32 = 1.0 / REACH_PX2;
-/// The same for means of jittered samples, of which nine are interpolated.
+/// The same for means of jittered samples; nine of them are interpolated.
 pub const INVERSE_MEAN_REACH: f32 = 1.0 / MEAN_REACH_PX2;
 
-/// Weight of a sample at squared distance `px2` from the position that is interpolated. `inverse_reach`: of the squared
-/// distance from which on it is 0.
+/// Weight of a sample at squared distance `px2` from the position that is interpolated. `inverse_reach`: inverse of the
+/// squared distance at which the weight falls to 0.
 #[inline]
 pub fn kept_weight(px2: f32, inverse_reach: f32) -> f32 {
     let inside = (1.0 - px2 * inverse_reach).max(0.0);
@@ -253,7 +255,7 @@ pub fn add_kept(a: Around, sample: Kept, texel_px: Vec2, same: bool, inverse_rea
     }
 }
 
-/// Whether samples beside a position may stand in for the nearest one, which is of another surface.
+/// Whether samples beside a position may replace the nearest one, which belongs to another surface.
 #[inline]
 pub fn stands_in(a: Around) -> bool {
     a.weight >= STAND_IN
@@ -286,7 +288,7 @@ pub fn interpolate(a: Around) -> Interpolated {
         // All samples are far away.
         return Interpolated { color: nearest.color, lod: nearest.lod, range, nearest };
     }
-    // Moments times the squared weight: without quotients, which shader compilers reorder.
+    // Moments times the squared weight. This avoids quotients, which shader compilers reorder.
     let stiff = (a.weight * a.weight) * STIFF_PX2;
     let xx = (a.square.x * a.weight - a.place.x * a.place.x) + stiff;
     let xy = a.square.y * a.weight - a.place.x * a.place.y;

@@ -27,9 +27,9 @@ pub fn offset_px(index: u64, step: u32) -> [u32; 2] {
 }
 
 /// Jitter of the projection in frame `index`, in pixels, each in \[-0.5, 0.5): Halton's sequence of bases 3 and 5. A
-/// pixel of a lattice is sampled every `step * step` frames, a power of two. To those frames, too, the sequence is one
-/// of low discrepancy, because its bases are odd; that of base 2, which is common, would show the same half of the
-/// pixel in each of them.
+/// pixel of a lattice is sampled every `step * step` frames, a power of two. The sequence has low discrepancy over
+/// these frames, too, because its bases are odd. The common base 2 would place all of these samples in the same half of
+/// the pixel.
 pub fn jitter_px(index: u64) -> [f32; 2] {
     [3, 5].map(|base| {
         let (mut rest, mut digit, mut value) = (index, 1.0, 0.0);
@@ -51,7 +51,7 @@ pub struct Between {
     pub fraction: f32,
 }
 
-/// Samples around pixel `px` of `count` ones at `first + i * 2^level`; `count` is at least 1.
+/// Samples around pixel `px`, out of `count` samples at `first + i * 2^level`; `count` is at least 1.
 #[inline]
 pub fn between(px: u32, first: u32, level: u32, count: u32) -> Between {
     let last = count as i32 - 1;
@@ -78,9 +78,9 @@ pub fn point_offset_px(px: u32, first: u32, level: u32, point: i32) -> f32 {
 /// Largest exponent of [`place_weight`], so that products with weights of the eccentricity stay normal.
 const LEAST_PLACE_EXPONENT: u32 = 40;
 
-/// Weight of a pixel's candidate whose nearest sample lies at a whole offset: 1 at the sample's own pixel, 2^-12 beside
-/// it, and about `(1 + 8 d^2)^-4` at `d` pixels. A reservoir then keeps the sample that landed on its pixel. A power of
-/// two, so that products are exact in any order.
+/// Weight of a pixel's candidate by the offset of its nearest sample in whole pixels: 1 at the sample's own pixel,
+/// 2^-12 beside it, and about `(1 + 8 d^2)^-4` at `d` pixels. A reservoir then keeps the sample that fell on its own
+/// pixel. Weights are powers of two, so that products are exact in any order.
 #[inline]
 pub fn place_weight(offset_px: Vec2) -> f32 {
     let inverse = 1.0 + 8.0 * (offset_px.x * offset_px.x + offset_px.y * offset_px.y);
@@ -94,7 +94,7 @@ pub fn point_weight(fraction: f32, point: u32) -> f32 {
     if point == 0 { 1.0 - fraction } else { fraction }
 }
 
-/// Mean of samples, in the making. Weights are multiples of 1/65536, so that their sums are exact.
+/// Running sums of a mean of samples. Weights are multiples of 1/65536, so that their sums are exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SampleMean {
     /// Sum of weighted colors and alphas.
@@ -122,7 +122,7 @@ pub fn sample_mean(mean: SampleMean) -> Vec4 {
 /// disparity of a floor changes much from sample to sample.
 const GEOMETRY_RELATIVE: f32 = 0.35;
 
-/// Mean of depth and motion at the samples of a surface, in the making.
+/// Running sums of a mean of depth and motion at the samples of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GeometryMean {
     /// Sum of weighted disparities.

@@ -1,5 +1,5 @@
-//! One pixel of the scale-matched reservoir (smr): the sharpest sample of a surface point is shown as long as,
-//! low-passed to the candidate's level of detail, it explains the candidate. `docs/method.md` derives the equations.
+//! One pixel of the scale-matched reservoir (smr): the sharpest sample of a surface point is shown as long as it
+//! explains the candidate when low-passed to the candidate's level of detail. `docs/method.md` derives the equations.
 
 use super::approx;
 use glam::{Vec3, Vec4};
@@ -15,17 +15,18 @@ const GATE: [f32; 2] = [3.0, 6.0];
 /// Difference at which relighting starts, in units of [`root_difference`], and the factor on contrast that is added to
 /// it.
 const RELIGHT: [f32; 2] = [1.5, 0.5];
-/// [`RELIGHT`] for point-sampled blocks: higher, because their aliasing must not pass for a change of light.
+/// [`RELIGHT`] for point-sampled blocks: higher, because their aliasing must not be mistaken for a change of light.
 const RELIGHT_BLOCKS: [f32; 2] = [8.0, 0.5];
-/// Share of their difference that candidate and history may keep after relighting, if it is to be used. Less for
-/// point-sampled blocks, where a gain that follows aliasing often helps by chance.
+/// Relighting is used if it reduces the difference of candidate and history to at most this share. The share is smaller
+/// for point-sampled blocks, where a gain that follows aliasing often reduces the difference by chance.
 const RELIT: f32 = 1.0;
 const RELIT_BLOCKS: f32 = 0.5;
-/// Share of the difference between what is observed and what finer history predicts that is added to history in a
-/// frame. More follows slow changes of light sooner and lets more of the candidates' aliasing into history.
+/// Share of the difference between the observed color and the color predicted by finer history that is added to history
+/// in each frame. A larger share follows slow changes of light sooner, and lets more of the candidates' aliasing into
+/// history.
 const CORRECTION: f32 = 0.2;
 const CORRECTION_BLOCKS: f32 = 0.1;
-/// Share of the contrast that widens the gate for history that is not finer; for finer history it is 1.
+/// Share of the contrast that is added to the gate for history that is not finer. For finer history the share is 1.
 const ALIKE_CONTRAST: f32 = 0.5;
 /// Smallest and largest gain of relighting.
 const GAIN: [f32; 2] = [0.2, 5.0];
@@ -87,7 +88,7 @@ pub fn moves_alike(own: [f32; 2], other: [f32; 2]) -> bool {
     (other[0] - own[0]).abs() <= within && (other[1] - own[1]).abs() <= within
 }
 
-/// Weight of history before its fit is known.
+/// Weight of history, without regard to its fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReuseWeight {
     /// Degree to which history is finer than the candidate, in \[0, 1\].
@@ -98,8 +99,8 @@ pub struct ReuseWeight {
 }
 
 /// Reuse weight of history at level of detail `history_lod` for a candidate at `lod`. `confidence`: noise confidence of
-/// history and of the candidate, in \[0, 1\], 1 without noise. It makes noisy finer history count as equally fine, and
-/// lets coarser history be accumulated into a noisy candidate.
+/// history and of the candidate, in \[0, 1\], 1 without noise. With low confidence, finer history counts as equally
+/// fine, and coarser history can be accumulated into a noisy candidate.
 #[inline]
 pub fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confidence: [f32; 2]) -> ReuseWeight {
     let finer = ((lod - history_lod) * (1.0 / QUALITY_WIDTH)).clamp(0.0, 1.0) * confidence[0];
@@ -109,8 +110,8 @@ pub fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, co
     ReuseWeight { finer, share: finer + (alike * calm) * accumulate }
 }
 
-/// Gain of relighting for one color channel: the ratio of what is observed and what history predicts, blended to 1
-/// where light did not change (`changed` in \[0, 1\]) and for ratios within a few percent of 1.
+/// Gain of relighting for one color channel: the ratio of the observed color to the one that history predicts, blended
+/// to 1 where light did not change (`changed` in \[0, 1\]) and for ratios within a few percent of 1.
 #[inline(always)]
 pub fn gain(observed: f32, predicted: f32, changed: f32) -> f32 {
     let ratio = ((observed + DARK) / (predicted + DARK)).clamp(GAIN[0], GAIN[1]);
@@ -127,8 +128,8 @@ pub fn relight_from(contrast: f32, blocks: bool, noise: f32) -> f32 {
     (relight[0] + relight[1] * contrast) + noise
 }
 
-/// Whether candidate and history differ by more than detail explains. Only then does relighting need the candidate's
-/// neighbours.
+/// Whether candidate and history differ by more than contrast explains. Relighting needs the candidate's neighbours
+/// only in this case.
 #[inline(always)]
 pub fn is_changed(compared: Vec3, matched: Vec3, level: Vec3, next_level: Vec3) -> bool {
     root_difference(compared, matched) > relight_from(root_difference(level, next_level), false, 0.0)
@@ -144,7 +145,7 @@ pub struct Evidence {
     pub compared: Vec3,
     /// Candidate at the level of detail of `matched_coarser`; used only where [`is_changed`].
     pub compared_coarser: Vec3,
-    /// What history is corrected and relit by: the candidate, or a mean of its neighbourhood where it is noisy.
+    /// Color by which history is corrected and relit: the candidate, or a mean of its neighbourhood where it is noisy.
     pub observed: Vec3,
     /// Level of detail of the candidate.
     pub lod: f32,
@@ -162,8 +163,9 @@ pub struct Evidence {
     pub next_level: Vec3,
     /// History at the place and level of detail of `compared_coarser`.
     pub matched_coarser: Vec3,
-    /// History at the place and level of detail of `observed`: the same low-pass. Two different ones would make a gain
-    /// of every edge, and gains are stored: edges would grow rings, frame by frame.
+    /// History at the place and level of detail of `observed`, with the same low-pass filter. With two different
+    /// filters every edge would produce a gain. Gains are stored, so that rings would grow at edges from frame to
+    /// frame.
     pub predicted: Vec3,
     /// Confidence in history, in \[0, 1\]: the frame's trust mask.
     pub trust: f32,
@@ -192,18 +194,19 @@ pub struct Matched {
 #[inline(always)]
 pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     let reuse = reuse_weight(e.lod, e.history_lod, p.accumulate, p.noisy, e.confidence);
-    // Contrast of detail finer than the candidate. Where it is high, resampling and aliasing alone make differences.
+    // Contrast of detail finer than the candidate. Where it is high, resampling and aliasing alone cause differences.
     let mut contrast = root_difference(e.level, e.next_level);
     let mut d = root_difference(e.compared, e.matched);
     let mut k = Vec3::ONE;
-    // Levels of detail that relighting costs: a gain multiplies the errors of history, too.
+    // Levels of detail that history loses by relighting, because a gain also multiplies history's errors.
     let mut worn = 0.0;
     if p.relight {
         let from = relight_from(contrast, p.blocks, e.noise);
         let changed = smooth_step(from, from, root_difference(e.observed, e.predicted));
         let (c, h) = (e.observed, e.predicted);
         let gains = Vec3::new(gain(c.x, h.x, changed), gain(c.y, h.y, changed), gain(c.z, h.z, changed));
-        // The gain makes history agree with what it was computed from, so it is judged elsewhere.
+        // History after the gain agrees by construction with the colors from which the gain was computed. The gain is
+        // therefore judged by other colors.
         let unlit = root_difference(e.compared_coarser, e.matched_coarser);
         let relit = root_difference(e.compared_coarser, gains * e.matched_coarser);
         if relit < unlit * (if p.blocks { RELIT_BLOCKS } else { RELIT }) {
@@ -222,9 +225,10 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     let acceptance = fit * e.trust;
     let share = acceptance * reuse.share;
     let correction = if p.blocks { CORRECTION_BLOCKS } else { CORRECTION };
-    // History that is read where it was stored has not changed since. Noise is averaged by accumulation.
+    // No correction for history that was not resampled, because it is unchanged since it was stored. None for noisy
+    // frames either, where accumulation averages the noise.
     let finer = if e.resampled && !p.noisy { reuse.finer } else { 0.0 };
-    // The constant with the first factor: shader compilers order such products this way.
+    // The constant is multiplied with the first factor, because shader compilers order such products this way.
     let missed = (e.observed - k * e.predicted) * correction;
     let history = (missed * finer + k * e.history).max(Vec3::ZERO);
     // A share of 1 gives history bit for bit, a share of 0 the candidate.

@@ -48,8 +48,8 @@ pub fn candidate_noise(input: [f32; 2]) -> Noise {
     Noise { samples, variance: ((error * error) * samples).min(MAX_HALF) }
 }
 
-/// `x` if it is positive, infinity included, else 0. By bits, because shading languages may assume that NaN does not
-/// exist.
+/// `x` if it is positive, infinity included, else 0. The test is on the bits, because shading languages may assume that
+/// NaN does not exist.
 #[inline]
 fn positive(x: f32) -> f32 {
     if x.to_bits() <= 0x7f80_0000 { x } else { 0.0 }
@@ -119,8 +119,8 @@ pub fn root_slope(luma: f32) -> f32 {
     50.0 / (luma.max(0.0) + DARK).sqrt()
 }
 
-/// Difference of the compared means of candidates and of history that noise alone can make: three standard deviations
-/// at a luma, in units of [`root_difference`](super::matched::root_difference).
+/// Largest difference of the compared means of candidates and of history that noise alone explains: three standard
+/// deviations at a luma, in units of [`root_difference`](super::matched::root_difference).
 #[inline]
 pub fn noise_difference(history: Noise, candidate: Noise, luma: f32) -> f32 {
     let sample_variance = pooled_variance(history, candidate);
@@ -151,14 +151,14 @@ pub fn discount_coarser(history: Noise, candidate: Noise, levels: f32) -> Noise 
     Noise { samples: history.samples + (limited - history.samples) * t, variance: history.variance }
 }
 
-/// Difference of a candidate and a sample of equal noise that noise alone can make: three standard deviations at a
-/// luma, in units of [`root_difference`](super::matched::root_difference).
+/// Largest difference of a candidate and a sample of equal noise that noise alone explains: three standard deviations
+/// at a luma, in units of [`root_difference`](super::matched::root_difference).
 #[inline]
 pub fn sample_difference(candidate: Noise, luma: f32) -> f32 {
     root_slope(luma) * (candidate.variance * ((2.0 * SIGMAS * SIGMAS) / candidate.samples)).sqrt()
 }
 
-/// Difference of a sample and of history at its pixel that noise makes on average: the standard deviation at a luma, in
+/// Expected difference, due to noise, of a sample and of history at its pixel: the standard deviation at a luma, in
 /// units of [`root_difference`](super::matched::root_difference).
 #[inline]
 pub fn expected_noise(history: Noise, candidate: Noise, luma: f32) -> f32 {
@@ -166,7 +166,7 @@ pub fn expected_noise(history: Noise, candidate: Noise, luma: f32) -> f32 {
     root_slope(luma) * (pooled_variance(history, candidate) * inverse_samples).sqrt()
 }
 
-/// Noise of a weighted mean of samples, in the making.
+/// Running sums for the noise of a weighted mean of samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NoiseSum {
     /// Weights.
@@ -187,7 +187,7 @@ pub fn add_noise(sum: NoiseSum, n: Noise, weight: f32) -> NoiseSum {
     }
 }
 
-/// Noise of the mean: it is worth as many samples as its variance says, at least one.
+/// Noise of the mean. Its number of samples, at least one, follows from its variance.
 #[inline]
 pub fn mean_noise(sum: NoiseSum) -> Noise {
     let samples = (sum.weight * sum.weight) / sum.spread.max(LEAST_SPREAD);

@@ -55,8 +55,8 @@ pub fn half_value(bits: u32) -> f32 {
     let magnitude = (bits & 0x7fff) << 13;
     let sign = (bits & 0x8000) << 16;
     let normal = f32::from_bits(magnitude + (112 << 23));
-    // Of denormal halves, whose leading bit is not one, the second is the value, and less. No 32-bit denormal occurs;
-    // devices may flush those to zero.
+    // Denormal halves have no leading one bit: their value is the second operand, which is then the smaller one. No
+    // 32-bit denormal occurs, which devices may flush to zero.
     let value = normal.min(2.0 * normal - f32::from_bits(113 << 23));
     f32::from_bits(value.to_bits() | sign)
 }
@@ -101,14 +101,15 @@ pub fn pack(s: Stored) -> [u32; 3] {
     ]
 }
 
-/// Words of an empty reservoir whose color says so, too: an infinite half. For passes that read colors alone.
+/// Words of an empty reservoir whose color is an infinite half, so that passes that read colors alone recognise it as
+/// empty.
 pub const EMPTY_WORDS: [u32; 3] = [0x7c00, 0xffff_0000, 0];
 
 /// Color and disparity from the first two words of a reservoir, and whether the color is valid.
 #[inline]
 pub fn unpack_sample(words: [u32; 2]) -> (Vec3, f32, bool) {
     let color = Vec3::new(half_value(words[0]), half_value(words[0] >> 16), half_value(words[1]));
-    // Infinity and NaN are decoded as larger numbers than the largest half.
+    // Infinity and NaN decode to numbers above the largest half.
     let largest = color.x.abs().max(color.y.abs()).max(color.z.abs());
     (color, disparity_value(words[1] >> 16), largest <= MAX_HALF)
 }

@@ -11,12 +11,13 @@ pub const TAP_RELATIVE: f32 = 0.1;
 /// Largest disparity that [`disparity`](super::depth::disparity) gives.
 const LARGEST_DISPARITY: f32 = 1e30;
 
-/// Least bilinear weight of a texel that stands in for the nearest one, if that shows another surface: so that history
-/// moves by less than a pixel, but edges do not lose it wherever they are rounded away.
+/// Least bilinear weight of a texel that replaces the nearest one where that shows another surface. The limit keeps the
+/// shift of history below a pixel. The replacement keeps history at edges, where the nearest texel may lie on the wrong
+/// side.
 pub const STAND_IN_WEIGHT: f32 = 0.1;
 
-/// Rounds of four taps: 4x4 texels without the corners, whose weights are close to 0. The second row, the third one,
-/// and what is left of the first and last.
+/// Rounds of four taps: 4x4 texels without the corners, whose weights are close to 0. The rounds are the second row,
+/// the third row, and the middle texels of the first and the last row.
 pub const ROUNDS: u32 = 3;
 
 /// Number of the texel (as for [`corner_weight`]) that has the second largest bilinear weight at the fractions of a
@@ -45,7 +46,7 @@ pub fn catmull_rom(t: f32) -> [f32; 4] {
     [((1.0 - 0.5 * t) * t - 0.5) * t, (1.5 * t - 2.5) * t2 + 1.0, ((2.0 - 1.5 * t) * t + 0.5) * t, (0.5 * t - 0.5) * t2]
 }
 
-/// What the taps around a position have in common.
+/// Shared values of the taps around a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TapsAround {
     /// The texel before the position.
@@ -113,7 +114,7 @@ pub fn taps_of(around: &TapsAround, round: u32) -> FourTaps {
 /// expected disparity is negative.
 #[inline]
 pub fn codes_between(expected: f32, low: f32, high: f32) -> [u32; 2] {
-    // The limit keeps compilers from merging the factors with those of the disparity.
+    // The limit keeps compilers from merging these factors with those of the disparity.
     let limited = expected.min(LARGEST_DISPARITY);
     let first = disparity_code(limited * low);
     let last = disparity_code(limited * high);
@@ -162,7 +163,7 @@ pub fn surface_tap(words: [u32; 2], codes: [u32; 2], any_code: bool) -> Tap {
 /// Sums over the taps around a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gathered {
-    /// Colors times Catmull-Rom weights, of whatever surface.
+    /// Colors times Catmull-Rom weights, regardless of the surface.
     pub sharp: Vec3,
     /// Colors times linear weights.
     pub smooth: Vec3,
@@ -180,7 +181,7 @@ pub fn nothing_gathered() -> Gathered {
     Gathered { sharp: Vec3::ZERO, smooth: Vec3::ZERO, smooth_sum: 0.0, lod: 0.0, complete: true }
 }
 
-/// Adds four taps with their weights. Linear weights count on the surface only.
+/// Adds four taps with their weights. Linear weights are added only for taps on the surface.
 #[inline]
 pub fn gather(g: Gathered, [a, b, c, d]: [Tap; 4], four: &FourTaps) -> Gathered {
     let x = four.sharp_x;
@@ -216,8 +217,9 @@ pub struct Resampled {
     pub lod: f32,
 }
 
-/// Result of the sums: Catmull-Rom where all taps are on the surface, bilinear over those that are elsewhere, and the
-/// `nearest` texel where their weights are close to 0. `weights`: their [`sharp_sum`].
+/// Result of the sums. If all taps are on the surface, it is the Catmull-Rom color. Otherwise it is bilinear over the
+/// taps that are on the surface, or the `nearest` texel where their weights are close to 0. `weights`: their
+/// [`sharp_sum`].
 #[inline]
 pub fn resolve(g: Gathered, weights: f32, nearest: Surface) -> Resampled {
     if g.smooth_sum < 0.01 {

@@ -2,8 +2,8 @@
 
 use super::surface::MAX_LOD;
 
-/// Position in a row or column of `old_len` pixels of pixel `x` of one with another length. `ratio`: old length over
-/// new length.
+/// Position, in a row or column of `old_len` pixels, of pixel `x` of a row or column of the new length. `ratio`: old
+/// length over new length.
 #[inline]
 pub fn old_position(x: u32, ratio: f32, old_len: u32) -> f32 {
     ((x as f32 + 0.5) * ratio - 0.5).clamp(0.0, (old_len - 1) as f32)

@@ -6,8 +6,8 @@ use glam::Vec3;
 /// Largest finite half. Colors are clamped to it.
 pub const MAX_HALF: f32 = 65504.0;
 
-/// Least size of a color's channel, 2^-32: a 256th of what halves store. Products and squares of smaller ones would be
-/// denormal, which devices may flush to zero.
+/// Smallest magnitude of a color channel, 2^-32: 1/256 of the smallest half. Products and squares of smaller ones would
+/// be denormal, which devices may flush to zero.
 pub const LEAST_COLOR: f32 = 1.0 / 4_294_967_296.0;
 
 /// Whether a number is neither NaN nor infinite.

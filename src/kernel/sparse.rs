@@ -1,10 +1,10 @@
-//! Reconstruction of sparse frames: what history predicts at each new sample, how light changed around it, and what a
-//! pixel between samples shows.
+//! Reconstruction of sparse frames: comparison of each new sample with history, estimation of changes of light, and
+//! colors of the pixels between samples.
 //!
 //! Three steps. At each sample, history is compared with the sample **at the sample's own pixel at full rate**
-//! ([`Observation`]): no low-pass, no scale to match. Then each sample and its eight neighbours estimate the gain of a
-//! change of light, and how well history fits after it ([`relight`]). Then each pixel interpolates gain and fit, and
-//! blends its own history with the interpolated samples ([`reconstruct`]).
+//! ([`Observation`]): it needs no low-pass and no match of scales. Then the gain of a change of light, and the fit of
+//! history after it, are estimated from each sample and its eight neighbours ([`relight`]). Then each pixel
+//! interpolates gain and fit, and blends its own history with the interpolated samples ([`reconstruct`]).
 
 use super::approx;
 use super::color::luma;
@@ -15,12 +15,13 @@ use super::pack::{disparity_code, disparity_value};
 use glam::Vec3;
 use std::f32::consts::LOG2_E;
 
-/// Expected difference of a sample and of history that has not moved, in units of [`root_difference`]: storage.
+/// Expected difference of a sample and of history that has not moved, due to the precision of storage, in units of
+/// [`root_difference`].
 const STILL_ERROR: f32 = 0.3;
 /// The same for history that has moved.
 const MOVED_ERROR: f32 = 0.6;
-/// Share of history's local contrast, the difference of the smallest and the largest color around, that is added where
-/// history moved, and where it is coarse: interpolation between samples, and places that are not exact.
+/// Share of history's local contrast (the difference of the smallest and the largest color around) that is added to the
+/// expected difference where history moved or is coarse, for errors of interpolation and of inexact places.
 const CONTRAST_ERROR: f32 = 0.375;
 /// Added to the expected error where the gate compares single samples.
 const GATE_ERROR: f32 = 0.7;
@@ -30,7 +31,7 @@ const RELIGHT_ERRORS: f32 = 2.5;
 const AGREE_ERRORS: f32 = 4.0;
 /// Added to these in that comparison, in units of [`root_difference`].
 const AGREE_ERROR: f32 = 0.8;
-/// Mean difference, in expected errors, at which the fit starts to fall, and width over which it falls to 0.
+/// Gate: mean difference at which the fit starts to fall, and width over which it falls to 0, in expected errors.
 const GATE: [f32; 2] = [2.0, 4.0];
 /// Smallest and largest gain.
 const GAIN: [f32; 2] = [0.2, 5.0];
@@ -46,8 +47,8 @@ const ACCUMULATE: f32 = 0.5;
 const KEEP_SHARE: f32 = 0.9;
 /// Noisy samples: standard errors of a mean difference at which the fit starts to fall; it is 0 at twice as many.
 const MEAN_ERRORS: f32 = 3.0;
-/// Noisy samples: limit on the samples of a history coarser than the candidate, in frames. More has less noise and
-/// keeps blurred history for longer.
+/// Noisy samples: limit on the samples of a history coarser than the candidate, in frames. A larger limit has less
+/// noise, and keeps blurred history for longer.
 const BLURRED_FRAMES: f32 = 8.0;
 /// Noisy samples: share of history from which on the mean is stored in the place of the kept sample.
 const STAY_SHARE: f32 = 0.5;
@@ -69,7 +70,7 @@ pub struct Observation {
     /// Expected difference of the two if nothing changed, in units of [`root_difference`]; negative: there is no
     /// history, or no usable sample.
     pub error: f32,
-    /// How much a difference says, in \[0, 1\]: less for coarse history, which differs from a point sample anyway.
+    /// Confidence in the difference, in \[0, 1\]: lower for coarse history, which differs from a point sample anyway.
     pub sure: f32,
 }
 
@@ -87,8 +88,8 @@ pub fn lod_confidence(lod: f32) -> f32 {
     1.0 - lod.clamp(0.0, 1.0)
 }
 
-/// As [`lod_confidence`], for noisy samples at a luma. Where history's noise is visible, the expected difference is
-/// that of noise, and coarse history is worth as much as fine history.
+/// As [`lod_confidence`], for noisy samples at a luma. Where history's noise is visible, noise dominates the expected
+/// difference, and coarse history counts as much as fine history.
 #[inline]
 pub fn noisy_lod_confidence(lod: f32, past: Noise, luma: f32) -> f32 {
     lod_confidence(lod).max(noise_visibility(past, luma))
@@ -158,7 +159,7 @@ pub fn mean_error(l: Light) -> f32 {
 }
 
 /// Gain of the light around a sample: the ratio of the means of samples and of history at the same pixels, blended to 1
-/// where the means differ by no more than chance explains. `error`: expected difference of one sample.
+/// where chance explains the difference of the means. `error`: expected difference of one sample.
 #[inline]
 pub fn relight(l: Light, error: f32) -> Vec3 {
     if l.weight < 1e-6 {
@@ -179,22 +180,22 @@ pub fn errors_left(o: Observation, gain: Vec3) -> f32 {
     root_difference(o.sampled, gain * o.history) / (o.error + GATE_ERROR)
 }
 
-/// Degree to which history after a gain fits at a sample's own pixel, in \[0, 1\]: what its neighbours say cannot
-/// outweigh the comparison at the pixel itself, as where a sparkle was sampled.
+/// Degree to which history after a gain fits at a sample's own pixel, in \[0, 1\]. It limits the fit of the
+/// neighbourhood: a sample that hit a sparkle, for example, contradicts history even where its neighbours agree.
 #[inline]
 pub fn own_fit(own: Observation, gain: Vec3) -> f32 {
     fit(errors_left(own, gain), own.sure)
 }
 
-/// Degree to which history fits the samples, in \[0, 1\], from the mean of [`errors_left`]. `sure`: how much that mean
-/// says, in \[0, 1\].
+/// Degree to which history fits the samples, in \[0, 1\], from the mean of [`errors_left`]. `sure`: confidence in that
+/// mean, in \[0, 1\].
 #[inline]
 pub fn fit(errors: f32, sure: f32) -> f32 {
     1.0 - sure * smooth_step(GATE[0], GATE[1], errors)
 }
 
-/// As [`fit`], for noisy samples, from the difference of the means of samples and of history. Nine samples tell a
-/// smaller change from noise than each of them does.
+/// As [`fit`], for noisy samples, from the difference of the means of samples and of history. Nine samples together
+/// distinguish smaller changes from noise than a single sample.
 #[inline]
 pub fn mean_fit(l: Light, sure: f32) -> f32 {
     let inverse = 1.0 / l.weight;
@@ -202,16 +203,16 @@ pub fn mean_fit(l: Light, sure: f32) -> f32 {
     1.0 - sure * smooth_step(from, from, root_difference(l.sampled * inverse, l.history * inverse))
 }
 
-/// What a sample says of the light on its surface.
+/// Estimate of light at a sample: gain and fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lit {
     /// Factor on history's color.
     pub gain: Vec3,
-    /// How well history fits after it: 0 to 1.
+    /// Fit of history after the gain: 0 to 1.
     pub fit: f32,
-    /// How well it fits at the sample's own pixel: 0 to 1.
+    /// Fit at the sample's own pixel: 0 to 1.
     pub own_fit: f32,
-    /// Whether the sample was compared with history itself; otherwise its neighbours were.
+    /// Whether the sample itself was compared with history; otherwise only its neighbours were.
     pub is_own: bool,
     /// Disparity of the sample.
     pub disparity: f32,
@@ -273,7 +274,7 @@ pub struct Reconstructed {
     pub share: f32,
 }
 
-/// Relit color; a gain does not lift it above the samples around it by more than their range allows.
+/// Relit color. A gain cannot raise it above the largest of the samples around it by more than a share of their range.
 #[inline]
 pub fn relit(color: Vec3, gain: Vec3, range: [Vec3; 2]) -> Vec3 {
     let highest = range[1] + (range[1] - range[0]) * OVERSHOOT;
@@ -333,7 +334,7 @@ pub struct Accumulated {
 pub fn accumulate(r: &Reconstruction, past: Noise, now: Noise) -> Accumulated {
     let acceptance = r.fit * r.trust;
     let bright = luma(r.history);
-    // The farther the samples are, the less they say of this pixel.
+    // Samples farther from this pixel count less.
     let now = Noise { samples: now.samples * approx::exp2(-r.lod), variance: now.variance };
     let certain = noise_confidence(past, bright);
     let sharp = noise_confidence(Noise { samples: now.samples, variance: past.variance }, bright);

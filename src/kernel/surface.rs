@@ -46,8 +46,8 @@ impl Surface {
 }
 
 /// 14-bit float nearest to `x` (ties to even), at most [`MAX_FLOAT14`]: 5 bits of exponent and 9 of mantissa, without
-/// sign, infinity and NaN, whose codes are one more octave of numbers. The relative error is at most 2^-10 down to
-/// 2^-15, and below that the error is at most 2^-25. Negative values become 0.
+/// sign, infinity and NaN. The codes of infinity and NaN represent one more octave of numbers. The relative error is at
+/// most 2^-10 down to 2^-15, and below that the error is at most 2^-25. Negative values become 0.
 #[inline]
 pub fn float14_bits(x: f32) -> u32 {
     let a = if x > 0.0 { x.min(MAX_FLOAT14) } else { 0.0 }.to_bits();
@@ -62,8 +62,8 @@ pub fn float14_bits(x: f32) -> u32 {
 #[inline]
 pub fn float14_value(code: u32) -> f32 {
     let normal = f32::from_bits((code << 14) + (111 << 23));
-    // Of denormal numbers, whose leading bit is not one, the second is the value, and less. No 32-bit denormal occurs;
-    // devices may flush those to zero.
+    // Denormal numbers have no leading one bit: their value is the second operand, which is then the smaller one. No
+    // 32-bit denormal occurs, which devices may flush to zero.
     normal.min(2.0 * normal - f32::from_bits(112 << 23))
 }
 

@@ -1,33 +1,34 @@
 //! One pixel of temporal antialiasing, the gaze-unaware baseline: a mean along the motion, with history clipped to the
 //! color distribution of the candidate's neighbourhood (Salvi 2016, "An excursion in temporal supersampling"; Karis
-//! 2014). History counts for as many samples as what it has been through allows: its confidence.
+//! 2014). Confidence is the number of samples that history counts for; resampling and bias limit it.
 
 use super::matched::roots;
 use glam::Vec3;
 
 /// Largest confidence of history, in samples at the pixel: a mean of 16 jittered samples has a quarter of the error of
-/// one. More averages over longer, and colors of 14 bits would not follow the steps.
+/// one. With a larger limit, the steps of the mean would be too small for colors of 14 bits.
 const LIMIT: f32 = 16.0;
-/// Confidence above which history is settled: it has hardly moved, and has to agree with the samples around. From twice
-/// this on it is fully settled.
+/// Confidence above which history is settled: it has hardly moved, and must agree with the samples around it. At twice
+/// this confidence it is fully settled.
 pub const SETTLED: f32 = 2.0;
-/// Square of how far the samples' mean may be from history's, in their variances: a jitter of up to half a pixel moves
-/// all samples alike, and the mean of 3x3 of them by about a third of their deviation. More follows changes of light
-/// later, less takes jitter for one.
+/// Largest squared difference of the samples' mean and history's, in variances of the samples, that jitter explains. A
+/// jitter of up to half a pixel moves all samples alike, and the mean of 3x3 samples by about a third of their
+/// deviation. A larger value follows changes of light later; a smaller one mistakes jitter for a change of light.
 const JITTER: f32 = 1.0 / 9.0;
-/// Rounding of the square roots of stored colors: 9 bits of mantissa. Samples without variance, as in the chroma of a
-/// grey picture, would reject history for it.
+/// Rounding of the square roots of stored colors: 9 bits of mantissa. It is tolerated, because samples without
+/// variance, as in the chroma of a grey picture, would otherwise reject history.
 pub const ROUNDING: f32 = 5e-4;
 /// Inverse confidence of history midway between texels: each resampling blurs, and a candidate aliases.
 pub const SPREAD: f32 = 0.6;
 /// Half width of the clipping box in standard deviations, around history that moves and around settled history. A
 /// foveated neighbourhood is smooth, so that narrower boxes would clip the detail of earlier frames; wider ones keep
-/// what changes. Settled history agrees with its neighbourhood, and is the mean of other samples than this frame's.
+/// outdated history. Settled history needs a wider box: it agrees with its neighbourhood on average, but is a mean of
+/// earlier samples.
 const BOX_SIGMAS: [f32; 2] = [2.0, 5.0];
 /// Largest square root of a half.
 const MAX_ROOT: f32 = 256.0;
-/// Level of detail that a stored texel of no confidence has. Confidence is stored as a level of detail, so that it
-/// falls where history is enlarged.
+/// Level of detail that is stored for a confidence of 0. Confidence is stored as a level of detail, so that it falls
+/// where history is enlarged.
 const NO_CONFIDENCE_LOD: f32 = 8.0;
 
 /// YCoCg of the square roots of a linear color.
@@ -77,9 +78,10 @@ pub fn lod_of(confidence: f32) -> f32 {
     (NO_CONFIDENCE_LOD - 2.0 * confidence.sqrt()).max(0.0)
 }
 
-/// Largest confidence of history read at `fraction` (each in \[0, 1)) between texels. Linear interpolation spreads a
-/// pixel by a variance of f (1 - f) in each frame, and a mean over n frames gathers about n of these: n is limited so
-/// that their sum is. `spread`: inverse of the confidence midway between texels; more blurs less, and averages less.
+/// Largest confidence of history read at `fraction` (each in \[0, 1)) between texels. In each frame, linear
+/// interpolation spreads a pixel by a variance of f (1 - f), and a mean over n frames accumulates about n of these.
+/// Limiting n limits the blur. `spread`: inverse of the confidence midway between texels; a larger spread blurs less,
+/// and averages less.
 #[inline]
 pub fn confidence_limit(fraction: [f32; 2], spread: f32) -> f32 {
     let x = 4.0 * (fraction[0] * (1.0 - fraction[0]));
@@ -87,15 +89,15 @@ pub fn confidence_limit(fraction: [f32; 2], spread: f32) -> f32 {
     1.0 / (x.max(y) * spread + 1.0 / LIMIT)
 }
 
-/// How settled history of some confidence is, in \[0, 1\].
+/// Degree to which history of a confidence is settled, in \[0, 1\].
 #[inline]
 pub fn settled(confidence: f32) -> f32 {
     ((confidence - SETTLED) * (1.0 / SETTLED)).clamp(0.0, 1.0)
 }
 
-/// Largest confidence of settled history whose mean is off from that of the samples around: a bias is worth fewer
-/// samples the larger it is, and `LIMIT` where jitter explains it. `sum`, `squares`: of the lumas of `count` samples;
-/// `past`: sum of history's lumas at the same pixels.
+/// Largest confidence of settled history whose mean differs from that of the samples around it: it falls with the
+/// squared difference. It is `LIMIT` or more where jitter explains the difference. `sum`, `squares`: of the lumas of
+/// `count` samples; `past`: sum of history's lumas at the same pixels.
 #[inline]
 pub fn agreeing(sum: f32, squares: f32, past: f32, count: f32) -> f32 {
     let inverse = 1.0 / count.max(1.0);
@@ -104,7 +106,7 @@ pub fn agreeing(sum: f32, squares: f32, past: f32, count: f32) -> f32 {
     (variance.max(0.0) * JITTER + ROUNDING * ROUNDING) * LIMIT / (off * off + ROUNDING * ROUNDING)
 }
 
-/// Weight of the candidate beside history of some confidence; at least `1 - trust`.
+/// Share of the candidate in a mean with history of a confidence; at least `1 - trust`.
 #[inline]
 pub fn candidate_share(confidence: f32, trust: f32) -> f32 {
     (1.0 / (confidence + 1.0)).max(1.0 - trust)
@@ -116,8 +118,8 @@ pub fn box_sigmas(moving: f32, still: f32, confidence: f32) -> f32 {
     moving + (still - moving) * settled(confidence)
 }
 
-/// Output color: a share `alpha` of the candidate, and clipped history. `sum` and `squares`: sums over the 3x3
-/// neighbourhood in YCoCg of colors and of their squares.
+/// Output color: the candidate with a share of `alpha`, and clipped history with the rest. `sum` and `squares`: sums
+/// over the 3x3 neighbourhood in YCoCg of colors and of their squares.
 #[inline]
 pub fn blend_clipped(candidate: Vec3, history: Vec3, sum: Vec3, squares: Vec3, alpha: f32, confidence: f32) -> Vec3 {
     let mean = sum * (1.0 / 9.0);

@@ -7,29 +7,31 @@ use super::matched::roots;
 use super::taa::{ROUNDING, box_sigmas, clip_to_box, roots_of_ycocg, settled, to_ycocg};
 use glam::{Vec2, Vec3};
 
-/// Weight of interpolation between samples where history knows nothing, relative to a sample at the pixel. More
-/// flickers less until a pixel's first sample arrives, and blurs it afterwards.
+/// Weight of interpolation between samples where history has no confidence, relative to a sample at the pixel. A larger
+/// weight flickers less until a pixel's first sample arrives, and blurs the pixel afterwards.
 const TAIL: f32 = 0.02;
-/// The least share of that weight, where history is confident: with it a pixel leaves outdated history between its
-/// samples, too.
+/// Least share of that weight, where history is confident. It lets a pixel leave outdated history even in frames
+/// without a sample of its own.
 const LEAST_TAIL: f32 = 0.02;
-/// Confidence from which on interpolation has that share: half a sample at the pixel.
+/// Confidence at which the weight of interpolation has fallen to that share: half a sample at the pixel.
 const TAIL_UNTIL: f32 = 0.5;
 /// Least sum of weights of usable samples.
 pub const LEAST_SAMPLE_WEIGHT: f32 = 1e-5;
-/// Inverse confidence of history midway between texels. More than that of taa: samples are put where they belong.
+/// Inverse confidence of history midway between texels. Larger than that of taa, because samples are added at their
+/// true positions.
 pub const UPSAMPLED_SPREAD: f32 = 1.0;
-/// Squared distances count by so much more where history is settled: a sample then counts up to 0.85 pixels away, and
-/// the mean is nearer to one over the pixel. History has filled the pixels that no sample is near.
+/// Increase of squared distances where history is settled. A sample then counts up to 0.85 pixels away, so that the
+/// mean is closer to a mean over the pixel's area. This is possible because history has already filled the pixels
+/// without a sample nearby.
 const NARROWING: f32 = 0.4;
 /// Half width of the clipping box in standard deviations of nine samples, around history that moves and around settled
-/// history. More keeps thin detail, less follows changes. Settled history agrees with the samples, and is the mean of
-/// others than this frame's.
+/// history. Wider boxes keep thin detail; narrower ones follow changes. Settled history needs a wider box: it agrees
+/// with the samples on average, but is a mean of earlier ones.
 const UPSAMPLED_BOX_SIGMAS: [f32; 2] = [1.5, 5.0];
-/// Share of the clip where no sample is near. Samples at a distance say little of a pixel's own detail.
+/// Share of the clip where no sample is near. Distant samples are weak evidence about a pixel's own detail.
 const LEAST_CLIP: f32 = 0.1;
-/// Share of its confidence that history loses for a clip by the range from black to white, or by the history's own
-/// brightness where that is more: a tenth of it costs all.
+/// Cost of a clip: the share of its confidence that history loses, per clip distance in units of the range from black
+/// to white, or of history's own brightness if that is larger. A clip by a tenth costs all confidence.
 const CLIP_COST: f32 = 10.0;
 
 /// Weight of a sample at a squared distance, in units of the kernel's reach: the main lobe of Lanczos 2, as FSR2
@@ -40,20 +42,20 @@ pub fn lobe(squared: f32) -> f32 {
     ((1.0 - squared).max(0.0) * b) * (b * b)
 }
 
-/// Weight of interpolation between samples, for history of some confidence.
+/// Weight of interpolation between samples, for history of a confidence.
 #[inline]
 pub fn tail(confidence: f32) -> f32 {
     let unknown = (1.0 - confidence * (1.0 / TAIL_UNTIL)).clamp(0.0, 1.0);
     (unknown * (1.0 - LEAST_TAIL) + LEAST_TAIL) * TAIL
 }
 
-/// Factor on squared distances of a pixel's own samples, for history of some confidence.
+/// Factor on squared distances of a pixel's own samples, for history of a confidence.
 #[inline]
 pub fn narrowing(confidence: f32) -> f32 {
     settled(confidence) * NARROWING + 1.0
 }
 
-/// Weights of a sample: as one of the pixel's own, and together with interpolation from lattices of larger steps.
+/// Weights of a sample: as one of the pixel's own samples, and that plus its weight for interpolation on the lattice.
 #[inline]
 pub fn sample_weights(offset_px: Vec2, level: u32, tail: f32, narrowing: f32) -> Vec2 {
     let px2 = offset_px.x * offset_px.x + offset_px.y * offset_px.y;
@@ -90,7 +92,7 @@ pub fn add_around(a: SamplesAround, centre: Vec3, color: Vec3, weights: Vec2) ->
     }
 }
 
-/// Color of the samples at the pixel. A sample that is alone has its color, bit for bit.
+/// Color of the samples at the pixel. A single sample keeps its color bit for bit.
 #[inline]
 pub fn upsampled(a: SamplesAround, centre: Vec3) -> Vec3 {
     centre + a.difference * (1.0 / a.weights.y)

@@ -57,8 +57,7 @@ pub struct WrsParams {
     pub inv_gate_divisor: f32,
 }
 
-/// Code of a level of detail that equals no candidate's: of interpolated candidates and of reservoirs without
-/// reference.
+/// Code that matches no candidate's level of detail: for interpolated candidates and for reservoirs without reference.
 pub const NO_LEVEL: u32 = 63;
 
 /// Exponent, as in the bits of a float, below which all channels of a packed color share one.
@@ -87,11 +86,12 @@ pub fn level_code(lod: f32) -> u32 {
 }
 
 /// Packs a reference into a word: 7 bits a channel, 5 of their common exponent, 6 of the level. Negative channels
-/// become 0. The error of a channel is at most 1/127 of the largest one, and packing what was unpacked changes nothing.
+/// become 0. The error of a channel is at most 1/127 of the largest one, and packing an unpacked reference gives the
+/// same word.
 #[inline]
 pub fn pack_reference(r: Reference) -> u32 {
     let c = r.color.clamp(Vec3::ZERO, Vec3::splat(MAX_HALF));
-    // Adding half a step first: a mantissa that would be rounded up to 128 needs the next exponent.
+    // Half a step is added first, because a mantissa that would be rounded up to 128 needs the next exponent.
     let largest = c.x.max(c.y).max(c.z).to_bits() + (1 << (23 - CHANNEL_BITS));
     let exponent = (largest >> 23).max(LEAST_EXPONENT);
     let scale = f32::from_bits((2 * 127 + CHANNEL_BITS - 1 - exponent) << 23);
@@ -108,8 +108,8 @@ pub fn unpack_reference(word: u32) -> Reference {
     Reference { color: Vec3::new(channel(0), channel(7), channel(14)), level: word >> 26 }
 }
 
-/// Color that the gate compares with a candidate of level `level`: the reference if that has the same level. Otherwise
-/// nothing can be said of a change, and it is the candidate itself.
+/// Color that the gate compares with a candidate of level `level`: the reference if it has the same level. Otherwise it
+/// is the candidate itself, because a change cannot be detected.
 #[inline]
 pub fn compared(candidate: Vec3, level: u32, reference: Reference) -> Vec3 {
     if level != NO_LEVEL && reference.level == level { reference.color } else { candidate }
@@ -186,8 +186,8 @@ pub fn scale_by_trust(past: Past, trust: f32, sampler: SamplerCode) -> Past {
     Past { color: past.color, w_sum: sanitize::weight(past.w_sum * share), log_key }
 }
 
-/// Stored color scaled to this frame's exposure: times `ratio`, clamped to halves. `ratio` from 2^-40 to 2^40: beyond
-/// that every half over- or underflows, and within it no product over- or underflows as a float.
+/// Stored color scaled to this frame's exposure: times `ratio`, clamped to halves. `ratio` is limited to 2^-40 to 2^40:
+/// beyond this range every half overflows or underflows, and within it no float product does.
 #[inline]
 pub fn expose(stored: Vec3, ratio: f32) -> Vec3 {
     (stored * ratio).clamp(Vec3::splat(-MAX_HALF), Vec3::splat(MAX_HALF))
@@ -211,8 +211,8 @@ pub fn difference(candidate: Vec3, sample: Vec3, code: GateCode) -> f32 {
     if code == GateCode::Lightness { (reference.x - stored.x).abs() } else { color::delta_e94(reference, stored) }
 }
 
-/// Color that is kept and shown after [`step`]: the candidate or history's sample, or the mean of both by the
-/// probabilities of A-Chao. Equal colors, and a candidate that has all the weight, are kept bit for bit.
+/// Color that is stored and shown after [`step`]: the candidate or history's sample, or the mean of both by the
+/// probabilities of A-Chao. Equal colors, and a candidate with all the weight, stay unchanged bit for bit.
 #[inline]
 pub fn combined(candidate: Vec3, weight: f32, past: Vec3, decision: &Decision, sampler: SamplerCode) -> Vec3 {
     if sampler != SamplerCode::AChaoMean || weight == decision.w_sum {
@@ -223,7 +223,7 @@ pub fn combined(candidate: Vec3, weight: f32, past: Vec3, decision: &Decision, s
 
 /// One frame of one pixel: gate (eq. 7), bias, then Alg. 2 with the candidate as second reservoir. The gate compares
 /// the candidate with `past.color`: the sample, or what [`compared`] gives. A `weight` of 0 marks an unusable
-/// candidate; it says nothing about a change of color either, so the gate value is 1.
+/// candidate; it is no evidence of a change of color either, so the gate value is 1.
 #[inline]
 pub fn step(candidate: Vec3, weight: f32, past: Past, params: &WrsParams, draw: f32) -> Decision {
     let mut gate_value = 1.0;

@@ -90,7 +90,7 @@ impl From<MethodKind> for Method {
     }
 }
 
-/// What processes a frame: each has an entry in the table, and passes of its own on either executor.
+/// Algorithm that processes a frame. Each has an entry in the table of methods, and its own passes on either executor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Algorithm {
     None,
@@ -200,7 +200,7 @@ impl Settings {
         }
     }
 
-    /// What processes frames.
+    /// Algorithm that processes frames.
     #[cfg(feature = "cpu")]
     pub(crate) fn algorithm(&self) -> Algorithm {
         self.entry().algorithm
@@ -232,7 +232,7 @@ impl Settings {
     /// trust inputs. Assumes common formats: color and output as halves (8 bytes each), motion as halves (4), depth
     /// (4), trust (1). Taps that neighbouring pixels share are counted once.
     pub fn traffic_bytes_per_pixel(&self, given: [bool; 3]) -> u32 {
-        // Samples are read, filled colors are floats, written and read.
+        // The filling stage reads the samples (8 bytes), and writes colors as floats (16), which the pass reads (16).
         let (color, output) = (if self.stages().contains(&Stage::Fill) { 8 + 16 + 16 } else { 8 }, 8);
         if self.method == Method::None {
             return color + output;

@@ -66,8 +66,9 @@ pub(crate) fn smr_params(settings: &Settings) -> SmrParams {
     let blocks = filter(settings) == Filter::Block;
     SmrParams {
         accumulate: smr.accumulate,
-        // Rejecting coarse history costs little detail, so it must fit more strictly. Aliasing of blocks and noise need
-        // averaging, and Gaussian blurs never agree with levels of history exactly.
+        // Rejecting coarse history costs little detail, so it must fit more strictly. The test is less strict for
+        // blocks and noise, which need averaging, and for Gaussian blurs, which never agree with levels of history
+        // exactly.
         accumulate_tolerance: if settings.noisy || filter(settings) == Filter::Gauss {
             0.5
         } else if blocks {

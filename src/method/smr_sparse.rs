@@ -1,5 +1,5 @@
-//! Scale-matched reservoirs of sparse frames: another algorithm than that of whole frames. It keeps samples with their
-//! places, compares the samples with history first, and reconstructs the pixels between them.
+//! Scale-matched reservoirs of sparse frames. The algorithm differs from that of whole frames. It keeps samples with
+//! their places, compares the samples with history first, and reconstructs the pixels between them.
 
 #[cfg(feature = "gpu")]
 use super::PassShader;
@@ -14,9 +14,9 @@ pub(super) static ENTRY: Entry = Entry {
     stages: |_| vec![Stage::Geometry, Stage::Samples, Stage::Method],
     history: |settings| HistoryLayout::Kept { noisy: settings.noisy, means: smr_sparse_antialiases(settings) },
     history_traffic_bytes: |settings| {
-        // Samples of history: 8 bytes read, 8 written. A quarter of the pixels, and a quarter of these, and so on, at
-        // most have samples of this frame: for each, history is read (8), the observation is written and read (16),
-        // and so is the light (16).
+        // Samples of history: 8 bytes read, 8 written. At most a third of the pixels (1/4 + 1/16 + ...) have samples of
+        // this frame. For each of these, history is read (8), and the observation (16) and the light (16) are written
+        // and read.
         let samples = (8 + 16 + 16_u32).div_ceil(3);
         // The noise of samples (4) and that of history (4) are read, and the latter is written (4).
         2 * 8 + samples + if settings.noisy { 4 + 2 * 4 } else { 0 }
@@ -37,8 +37,8 @@ pub(crate) fn smr_sparse_repair(settings: &Settings) -> Option<Repair> {
     settings.method.smr().repair.filter(|_| settings.foveation.filter == Filter::Sparse)
 }
 
-/// Whether history is relit. Not that of noisy frames: a gain is the ratio of nine samples, and history would be
-/// multiplied by their noise.
+/// Whether history is relit. History of noisy frames is not: a gain is a ratio of means of nine samples, so that
+/// relighting would multiply history by their noise.
 pub(crate) fn smr_sparse_relights(settings: &Settings) -> bool {
     settings.method.smr().relight && !settings.noisy
 }

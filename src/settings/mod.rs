@@ -80,8 +80,8 @@ pub enum MethodKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Smr {
-    /// Share of equally coarse history in the output: 0 to 0.98. More reduces the flicker of coarse regions in motion,
-    /// and follows changes of light later. Default 0.9.
+    /// Share of equally coarse history in the output: 0 to 0.98. A larger share reduces the flicker of coarse regions
+    /// in motion, and follows changes of light later. Default 0.9.
     pub accumulate: f32,
     /// Factor on the tolerated color difference of candidate and history: 0.1 to 10. More keeps detail in spite of
     /// noise and imprecise motion vectors; less rejects outdated history sooner. Default 1.
@@ -91,12 +91,12 @@ pub struct Smr {
     /// Whether sparse frames are antialiased: their projection is jittered
     /// ([`ViewFrame::jitter_px`](crate::ViewFrame::jitter_px), best [`Foveation::jitter_px`]), and history stores means
     /// of samples instead of single ones. Set it in place of other temporal antialiasing, and only for jittered frames.
-    /// Not for noisy frames, which are averaged in any case. No effect on frames without lattices. Default false.
+    /// It has no effect on noisy frames, which are averaged in any case, or on frames without lattices. Default false.
     pub antialias: bool,
-    /// Whether the renderer asks which pixels of a sparse frame history has nothing for, before it shades any
-    /// (`gpu::Afterimage::plan`, `cpu::CpuAfterimage::plan`), and shades them at full rate
+    /// Whether sparse frames are repaired: before shading, the renderer asks which pixels have no usable history
+    /// (`gpu::Afterimage::plan`, `cpu::CpuAfterimage::plan`), and shades these at full rate
     /// ([`Frame::repaired`](crate::Frame::repaired)). No effect on frames without lattices. Default `None`: no frame
-    /// has such samples.
+    /// has repaired samples.
     pub repair: Option<Repair>,
 }
 
@@ -107,12 +107,12 @@ impl Default for Smr {
 }
 
 impl Smr {
-    /// Those of [`Settings::responsive`].
+    /// The smr settings of [`Settings::responsive`].
     pub fn responsive() -> Self {
         Self { accumulate: 0.7, tolerance: 0.6, ..Self::default() }
     }
 
-    /// Those of [`Settings::traced`].
+    /// The smr settings of [`Settings::traced`].
     pub fn traced() -> Self {
         Self { accumulate: 0.95, ..Self::default() }
     }
@@ -124,7 +124,7 @@ impl Smr {
     }
 }
 
-/// Repair of sparse frames: pixels for which history has nothing get a sample of their own.
+/// Repair of sparse frames: pixels without usable history get a sample of their own.
 ///
 /// ```
 /// use afterimage::{Method, Repair, Settings, Smr};
@@ -138,9 +138,9 @@ impl Smr {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
 pub struct Repair {
-    /// Largest share of a view's pixels to repair in a frame: 0 to 1. A quad of 2x2 pixels counts as four. More makes
-    /// the picture whole sooner after cuts and behind moving objects, and costs that share of a full-rate frame at the
-    /// most. Default 0.03.
+    /// Largest share of a view's pixels to repair in a frame: 0 to 1. A quad of 2x2 pixels counts as four. A larger
+    /// budget completes the picture sooner after cuts and behind moving objects. It costs at most that share of a
+    /// full-rate frame. Default 0.03.
     pub budget: f32,
 }
 
@@ -196,15 +196,15 @@ impl Default for DepthTest {
 pub struct Settings {
     /// Method with its settings: how history is stored and combined with the frame. Default [`Method::Smr`].
     pub method: Method,
-    /// Foveation of the renderer: level of detail by eccentricity. Set it as your renderer foveates.
+    /// Foveation of the renderer: level of detail by eccentricity. Set it to match your renderer.
     pub foveation: Foveation,
     /// Depth test; `None` compares no depths. Default on.
     pub depth_test: Option<DepthTest>,
     /// Whether frames are noisy, that is path-traced with few samples a pixel. Each frame must then have a noise input
-    /// ([`Frame::noise`](crate::Frame::noise)), so that noise does not pass for a change. wrs weights a candidate by
+    /// ([`Frame::noise`](crate::Frame::noise)), so that noise is not mistaken for a change. wrs weights a candidate by
     /// its number of samples; smr averages history in the fovea, too, compares means of 8x8 candidates, and stores 8
-    /// more bytes a pixel and a mip chain of the candidates. On sparse frames it compares nine samples, needs the 8
-    /// bytes alone, and does not follow changes of light by gains. Default false.
+    /// more bytes a pixel and a mip chain of the candidates. On sparse frames smr compares nine samples, stores the 8
+    /// bytes but no mip chain, and does not relight history. Default false.
     pub noisy: bool,
     /// Seed of the random numbers. The same seed and the same frames give the same bytes. Default 0.
     pub seed: u64,
@@ -224,15 +224,15 @@ impl Default for Settings {
 
 impl Settings {
     /// The paper's method (Cantory et al., MIG 2025) as published: weighted reservoirs, A-Chao, Bernoulli survival,
-    /// Delta E 94 gate. Looks like the foveated frame with scattered sharp pixels, more of them the longer the eye
-    /// stayed. The cheapest preset.
+    /// Delta E 94 gate. The result looks like the foveated frame with scattered sharp pixels, and their number grows
+    /// while the eye fixates. The cheapest preset.
     pub fn paper() -> Self {
         Self { method: Method::Wrs(Wrs::default()), ..Self::default() }
     }
 
-    /// Weighted reservoirs that reach the paper's gains: the gate compares at the candidate's scale, weights fall with
-    /// the eighth power of the density and the third of the samples a pixel, and reservoirs keep means. Keeps most of
-    /// the detail that [`steady`](Self::steady) keeps of a still view, and less of it in motion.
+    /// Weighted reservoirs that reach the gains that the paper reports: the gate compares at the candidate's scale,
+    /// weights fall with the eighth power of the density and the third of the samples a pixel, and reservoirs keep
+    /// means. Keeps most of the detail that [`steady`](Self::steady) keeps of a still view, and less of it in motion.
     pub fn weighted() -> Self {
         Self { method: Method::Wrs(Wrs::weighted()), ..Self::default() }
     }

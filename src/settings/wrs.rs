@@ -3,7 +3,8 @@
 use crate::error::{SettingsError, check};
 
 /// Sampler of [`Method::Wrs`](super::Method::Wrs): rule by which a reservoir chooses between its sample and the
-/// candidate. Both give the same probability to each candidate. Default: [`AChao`](Self::AChao). Example: [`Wrs`].
+/// candidate. A-Chao and A-ES give the same probability to each candidate. Default: [`AChao`](Self::AChao). Example:
+/// [`Wrs`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
@@ -15,8 +16,8 @@ pub enum Sampler {
     /// pixel. Not with [`GateScale::Candidate`].
     AEs,
     /// The expectation of A-Chao: keeps and shows the mean of history and candidate by the probabilities of A-Chao
-    /// instead of drawing, so that nothing speckles. Means may be interpolated, so history is read between pixels by
-    /// Catmull-Rom weights; samples are read from the nearest pixel.
+    /// instead of drawing, which avoids speckle. Means may be interpolated, so history is read between pixels with
+    /// Catmull-Rom weights; the other samplers read the nearest pixel.
     AChaoMean,
 }
 
@@ -46,7 +47,7 @@ pub enum GateMetric {
     /// Delta E 94: lightness, chroma and hue.
     #[default]
     DeltaE94,
-    /// Difference of L\* alone: does not see changes of hue.
+    /// Difference of L\* alone; ignores changes of hue.
     Lightness,
 }
 
@@ -55,14 +56,14 @@ pub enum GateMetric {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum GateScale {
-    /// The stored sample with the candidate, as in the paper: a sharp sample differs from the blurred candidate of the
-    /// same surface, so that the gate also closes on detail.
+    /// Compares the stored sample with the candidate, as in the paper. A sharp sample differs from the blurred
+    /// candidate of the same surface, so that the gate also closes on detail.
     #[default]
     Sample,
-    /// The candidate with the reference that is stored beside the sample: the first candidate of the same level of
-    /// detail since the sample was taken. Closes only where something changed. The level is that of the frame's input
-    /// `lod`, of [`Settings::foveation`](super::Settings::foveation) without that, or of the lattices. Needs 8 more
-    /// bytes of memory and of memory traffic a pixel.
+    /// Compares the candidate with a reference that is stored beside the sample: the first candidate of the same level
+    /// of detail since the sample was taken. The gate closes only where something changed. The level is that of the
+    /// frame's input `lod`, of [`Settings::foveation`](super::Settings::foveation) without that, or of the lattices.
+    /// Needs 8 more bytes of memory and of memory traffic a pixel.
     Candidate,
 }
 
@@ -85,9 +86,9 @@ pub struct Gate {
     pub metric: GateMetric,
     /// What is compared with the candidate. Default [`GateScale::Sample`].
     pub scale: GateScale,
-    /// Difference above `offset` at which history loses all weight, in Delta E: 0.001 to 1e6. Less follows changes of
-    /// light sooner and keeps less detail, because a sharp sample differs from the blurred candidate of the same
-    /// surface. Default 100.
+    /// Difference above `offset` at which history loses all weight, in Delta E: 0.001 to 1e6. A smaller divisor follows
+    /// changes of light sooner and keeps less detail, because a sharp sample differs from the blurred candidate of the
+    /// same surface. Default 100.
     pub divisor: f32,
     /// Difference up to which history loses no weight, in Delta E: 0 to 1e6. Default 0.
     pub offset: f32,
@@ -116,12 +117,13 @@ pub struct Wrs {
     /// Rule by which a reservoir chooses. Default [`Sampler::AChao`].
     pub sampler: Sampler,
     /// Exponent of the candidate weights, 1 to 8: a candidate outside the fovea weighs `(d(e) / d(r_f))^k`, with the
-    /// density of retinal ganglion cells `d` (eq. 4 of the paper). More protects samples of the fovea longer from
-    /// coarser candidates, and lets the fovea replace coarse samples sooner. Default 1.
+    /// density of retinal ganglion cells `d` (eq. 4 of the paper). A larger exponent protects samples of the fovea
+    /// longer from coarser candidates, and lets the fovea replace coarse samples sooner. Default 1.
     pub weight_exponent: u32,
     /// Exponent of the number of samples a pixel in the candidate weights, 0 to 4: at level of detail `l`, weights are
-    /// multiplied by `4^-kl`. More replaces coarse samples sooner once the gaze arrives, also where eccentricity hardly
-    /// changed. Not on sparse frames, whose candidates count by the place of their sample. Default 0, as published.
+    /// multiplied by `4^-kl`. A larger exponent replaces coarse samples sooner once the gaze arrives, even where
+    /// eccentricity hardly changed. No effect on sparse frames, where a candidate's weight depends on the place of its
+    /// sample. Default 0, as published.
     pub rate_exponent: u32,
     /// Decay of history's weight. Default [`Bias::Bernoulli`].
     pub bias: Bias,
@@ -142,7 +144,7 @@ impl Default for Wrs {
 }
 
 impl Wrs {
-    /// Those of [`Settings::weighted`](super::Settings::weighted).
+    /// The wrs settings of [`Settings::weighted`](super::Settings::weighted).
     pub fn weighted() -> Self {
         Self {
             sampler: Sampler::AChaoMean,

@@ -24,13 +24,13 @@ impl Stopwatch {
         Some(process_cpu_ms()? - self.cpu_ms?)
     }
 
-    /// Both, for work on the CPU.
+    /// Wall and CPU time, for work on the CPU.
     pub fn elapsed(&self) -> Elapsed {
         Elapsed { wall_ms: self.wall_ms(), cpu_ms: self.cpu_ms(), device_ms: None }
     }
 }
 
-/// Time of a piece of work, by every clock that there is.
+/// Time of a piece of work, by every available clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Elapsed {
     /// Wall time in milliseconds.

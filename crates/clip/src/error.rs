@@ -21,7 +21,7 @@ pub enum InputError {
     Limit {
         /// Subject, problem and remedy.
         message: Message,
-        /// The limit and by how much it is exceeded.
+        /// The limit, and the size that would be needed.
         exceeded: Exceeded,
     },
     /// The caller asked for something unknown, contradictory or out of range. Change the argument.
@@ -55,7 +55,7 @@ impl fmt::Display for Message {
     }
 }
 
-/// A limit and by how much an input exceeds it, in the limit's unit.
+/// A limit, and the size that an input needs, in the limit's unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exceeded {
     /// The limit.

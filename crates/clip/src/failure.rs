@@ -67,7 +67,7 @@ impl From<InputError> for Failure {
     }
 }
 
-/// The line of `error`, with the option of this tool that it calls for. The library does not know the options.
+/// The line of `error`, with the option of this tool that solves the problem. The library does not know the options.
 fn with_option(error: &InputError) -> String {
     match error {
         // These remedies end with "or raise the limit".
@@ -75,9 +75,9 @@ fn with_option(error: &InputError) -> String {
             let megapixels = exceeded.needed_megapixels().map_or("N".to_owned(), |n| n.to_string());
             format!("{error} with --max-megapixels {megapixels}")
         }
-        // The subject of a camera that does not exist is "camera NAME".
+        // If a camera does not exist, the error's subject is "camera NAME".
         InputError::Request(message) if message.subject.starts_with("camera ") => format!("--{error}"),
-        // These remedies end with the CPU as a way out.
+        // These remedies end with the suggestion to use the CPU.
         InputError::Device(_) => format!("{error} (--backend cpu)"),
         _ => error.to_string(),
     }

@@ -1,4 +1,4 @@
-//! Plays a clip through the methods of [`afterimage`], frame by frame, scores what they show, and writes frames, scores
+//! Plays a clip through the methods of [`afterimage`], frame by frame, scores their output, and writes frames, scores
 //! and a contact sheet. Nothing here needs a graphics device: `afterimage-lab` runs the same pipeline on one, and adds
 //! renderers and files as sources.
 //!

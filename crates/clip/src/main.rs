@@ -1,4 +1,4 @@
-//! `cargo demo`: the tool's subcommand `demo` alone, with nothing compiled that it does not need.
+//! `cargo demo`: the tool's subcommand `demo` alone, so that only the code that it needs is compiled.
 
 use afterimage_clip::demo::{DemoArgs, demo};
 use afterimage_clip::failure::Failure;

@@ -130,7 +130,7 @@ impl MethodAccumulator {
         &self.times
     }
 
-    /// Times of rendering what the method gets: the frame, and the pixels that it repairs.
+    /// Times of rendering the method's input: the frame, and the pixels to repair.
     pub fn render(&self) -> &Times {
         &self.render
     }

@@ -15,9 +15,9 @@ pub struct QuadView {
     pub points: [u32; 2],
     /// Texel of its top-left pixel in an atlas.
     pub atlas_texel: [u32; 2],
-    /// Rectangle of the frame in which it hides coarser views: first pixel, and pixel after the last.
+    /// Rectangle of the frame in which this view hides coarser views: first pixel, and pixel after the last.
     pub opaque_px: [[u32; 2]; 2],
-    /// Distance from that rectangle at which it has faded out linearly, in pixels of the frame.
+    /// Width of the linear fade-out around that rectangle, in pixels of the frame.
     pub blend_px: f32,
 }
 
@@ -54,7 +54,7 @@ impl QuadViews {
         &self.0
     }
 
-    /// These views, at other places of an atlas.
+    /// These views, at other places in an atlas.
     #[must_use]
     pub fn with(&self, placed: Vec<QuadView>) -> Self {
         Self(placed)
@@ -66,7 +66,7 @@ impl QuadViews {
     }
 }
 
-/// Which quad views frames have.
+/// Layout of the quad views of frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum QuadViewLayout {
     /// One view a region of the foveation: rectangles around the regions and their blend.
@@ -79,7 +79,7 @@ pub enum QuadViewLayout {
 }
 
 impl QuadViewLayout {
-    /// Views of a frame. Regions outside the frame, and of 0 degrees, are left out.
+    /// Views of a frame. Regions outside the frame, and regions of 0 degrees, are left out.
     pub fn views(self, foveation: &Foveation, geometry: &ViewGeometry, gaze_px: [f32; 2]) -> QuadViews {
         let size = geometry.size_px();
         let whole = [[0; 2], size];
@@ -126,7 +126,7 @@ mod tests {
                     let corner = view.center_px(point).map(|v| (v + 0.5) / view.step - 0.5);
                     assert_eq!(corner.map(f32::fract), [0.0; 2], "{view:?}");
                 }
-                // The view covers what it hides.
+                // A view covers the rectangle in which it hides coarser views.
                 let [low, high] = view.opaque_px;
                 for i in 0..2 {
                     let begin = view.first[i] as f32 * view.step;

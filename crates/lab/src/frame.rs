@@ -1,5 +1,5 @@
-//! Frames: what sources give and methods take. Those on a device stay as their renderers leave them until they render
-//! the next one.
+//! Frames that sources produce and methods process. Frames on a device stay unchanged until their renderer renders the
+//! next one.
 
 pub use afterimage_clip::frame::{
     Content, DeviceContent, DeviceHandle, FoveatedFrame, RenderedFrame, Shaded, ShadedColor, SourceFrame, Wish,
@@ -20,14 +20,14 @@ pub enum OnDevice {
     Composed(ComposedFrame),
 }
 
-/// A frame as the rasterizer leaves it: the full-rate frame, or an atlas of the samples of a sparse one.
+/// A frame of the rasterizer: the full-rate frame, or an atlas of the samples of a sparse one.
 #[derive(Clone, Debug)]
 pub struct DeviceFrame {
     /// The device.
     pub device: Arc<Headless>,
     /// Linear color.
     pub color: wgpu::Texture,
-    /// Near plane over distance; 0 where there is nothing.
+    /// Near plane over distance; 0 where there is no surface.
     pub depth: wgpu::Texture,
     /// Pixels, y down, previous minus current; `Rg32Float`.
     pub motion: wgpu::Texture,
@@ -35,8 +35,8 @@ pub struct DeviceFrame {
     pub near: f32,
 }
 
-/// The samples of a sparse frame at their pixels on a device, as the path tracer leaves them until it traces the next
-/// frame. Nothing is defined between them.
+/// The samples of a sparse frame at their pixels on a device. They stay until the path tracer traces the next frame.
+/// Pixels between them are undefined.
 #[derive(Clone, Debug)]
 pub struct DeviceSamples {
     /// The device.
@@ -90,7 +90,7 @@ pub struct ComposedFrame {
     pub device: Arc<Headless>,
     /// Linear color, `Rgba32Float`, finite.
     pub color: wgpu::Texture,
-    /// Distance along the view axis, `R32Float`; infinity where there is nothing. Of the nearest pixel of a view.
+    /// Distance along the view axis, `R32Float`, of the nearest pixel of a view; infinity where there is no surface.
     pub distance: wgpu::Texture,
     /// Pixels, y down, previous minus current; `Rg32Float`. Of the nearest pixel of a view.
     pub motion: wgpu::Texture,

@@ -9,7 +9,7 @@
 //! - [`lattices`]: sparse frames, their order of samples and their geometry.
 //! - [`device`]: a graphics device without a window. [`error`]: errors of inputs.
 
-// The name `wgpu` for the chosen version.
+// Gives the chosen version the name `wgpu`.
 #[cfg(feature = "wgpu-29")]
 extern crate wgpu_29 as wgpu;
 #[cfg(feature = "wgpu-30")]

@@ -1,4 +1,4 @@
-//! What the pass does more where frames are jittered: means of samples in place of single ones.
+//! Antialiasing in the pass for jittered frames: history stores means of samples instead of single samples.
 
 use super::Surroundings;
 use super::{
@@ -9,14 +9,14 @@ use crate::kernel::antialias::{
 };
 
 impl View<'_> {
-    /// Place of this frame's samples in their pixels: a pixel shows what is at its position minus the jitter.
+    /// Place of this frame's samples in their pixels: a pixel shows the point at its position minus the jitter.
     #[inline(always)]
     pub(super) fn sample_place_px(&self) -> Vec2 {
         -Vec2::from(self.inputs.uniforms.jitter_px)
     }
 
-    /// The surface whose history a pixel continues: the nearest one around it, if that stands for it. `level`: of its
-    /// lattice.
+    /// The surface whose history a pixel continues: the nearest surface around it if [`stands_before`] says so,
+    /// otherwise its own. `level`: of its lattice.
     #[inline(always)]
     pub(super) fn surface(&self, [x, y]: [u32; 2], level: u32) -> Surroundings {
         let own = self.inputs.disparity(x, y);
@@ -52,7 +52,7 @@ impl View<'_> {
         if own >= 0.0 && move_together(own_px, nearest_px, farthest_px) {
             surface = Surroundings { stored: own, mixed: Some([farthest, nearest]), ..surface };
         }
-        // Where surfaces move as one, a pixel is the mean of both, and samples of either belong to it.
+        // Where surfaces move together, a pixel is the mean of both, and samples of either surface belong to it.
         surface.is_doubtful = doubtful && own >= 0.0 && surface.mixed.is_none();
         surface
     }
@@ -80,7 +80,7 @@ impl View<'_> {
         average(&inputs, samples, self.sample_place_px(), kept)
     }
 
-    /// Sums over the nine samples around a pixel of full rate, of which the own one is usable.
+    /// Sums over the nine samples around a pixel of full rate, whose own sample is usable.
     #[inline(always)]
     fn near(&self, [x, y]: [u32; 2]) -> Near {
         let lattice = &self.lattices[0];
@@ -98,7 +98,7 @@ impl View<'_> {
         near
     }
 
-    /// Packs a mean of `samples`; its color is rounded by chance.
+    /// Packs a mean of `samples` samples. Its color is rounded stochastically.
     #[inline(always)]
     pub(super) fn packed_mean(&self, [x, y]: [u32; 2], kept: Kept, samples: f32) -> [u32; 2] {
         let [_, word] = pack_kept(Kept { lod: stored_lod(Mean { lod: kept.lod, samples }), ..kept });

@@ -1,8 +1,9 @@
-//! The question before a frame is shaded: which pixels want a sample of their own. Its mathematics is in
+//! Plan of a repair, before a frame is shaded: which pixels should get a sample of their own. Its mathematics is in
 //! `src/kernel/repair.rs`.
 //!
-//! Two loops. For each quad: find what history has for those of its pixels that are not settled, as the pass will, and
-//! count the quad's key. For each pixel: is its quad's key at least the one that the budget reaches?
+//! Two loops. The first looks up history at each quad's pixels, as the pass will, and counts the quad's key; it skips
+//! pixels that are settled. The second chooses the pixels whose quad has at least the smallest key that the budget pays
+//! for.
 
 use super::{Inputs, LatticeUniforms, View};
 use crate::cpu::Frame;
@@ -55,11 +56,11 @@ impl View<'_> {
         quad_key(largest, x, y, self.frame_low, self.inputs.uniforms.key)
     }
 
-    /// How much a pixel wants a sample of its own.
+    /// Priority of a pixel for a sample of its own.
     fn priority(&self, px: [u32; 2]) -> u32 {
         let lattice = &self.lattices[LatticeUniforms::index_at(&self.lattices, px)];
         if lattice.around(px).is_some_and(|[x, y]| x.fraction == 0.0 && y.fraction == 0.0) {
-            // The frame samples it.
+            // The frame has a sample at this pixel.
             return 0;
         }
         if self.is_settled(px) {
@@ -71,8 +72,8 @@ impl View<'_> {
         priority(lod, e_deg)
     }
 
-    /// Whether the stored sample nearest to a pixel's previous position is a fine one of its surface. Most pixels need
-    /// no closer look.
+    /// Whether the stored sample nearest to a pixel's previous position is fine and belongs to the pixel's surface.
+    /// This quick test suffices for most pixels.
     fn is_settled(&self, [x, y]: [u32; 2]) -> bool {
         let inputs = &self.inputs;
         if inputs.reset {

@@ -9,7 +9,7 @@ use wgpu::{
     TextureViewDescriptor, TextureViewDimension,
 };
 
-/// 32-bit floats, as on the CPU: level l is a mean of means, rounded l times.
+/// 32-bit floats, as on the CPU, because level l is rounded l times.
 const FORMAT: TextureFormat = TextureFormat::Rgba32Float;
 
 /// Levels from 1 on, as mips from 0 on of one texture. Mip sizes of a texture round down, levels round up; the texture

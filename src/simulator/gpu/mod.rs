@@ -122,7 +122,7 @@ impl GpuSimulator {
         let steps = match foveation.filter {
             Filter::Mip => levels(foveation.max_level(), "mip_show"),
             Filter::Block => levels(block_sample_level(foveation.max_level()), "block_show"),
-            // Blocks of one pixel: only the samples of a sparse frame are read.
+            // Blocks of one pixel copy the full-rate frame: the post-process reads only the samples of a sparse frame.
             Filter::Off | Filter::Sparse => levels(0, "block_show"),
             Filter::Gauss => {
                 let format = TextureFormat::Rgba32Float;
@@ -233,7 +233,7 @@ impl GpuSimulator {
         Ok(())
     }
 
-    /// Uniforms of a frame. Holds its gaze positions for frames in which the gaze is lost.
+    /// Uniforms of a frame. Also stores its gaze positions, for later frames in which the gaze is lost.
     fn uniforms(&mut self, views: &[ViewFrame]) -> FoveationUniforms {
         for (view, held) in views.iter().zip(&mut self.held) {
             *held = held.with(view);

@@ -30,7 +30,7 @@ pub struct FoveationUniforms {
 }
 
 impl FoveationUniforms {
-    /// Uniforms of a frame; `held` is that after this frame.
+    /// Uniforms of a frame. `held`: state of the views after this frame.
     pub(super) fn new(desc: &ContextDesc, views: &[ViewFrame], held: &[Held]) -> Self {
         let foveation = &desc.settings.foveation;
         let [mid, far] = foveation.coarseness();

@@ -21,7 +21,7 @@ use crate::times::{RenderTime, Times};
 use afterimage::{DebugView, Foveation, Image, MethodKind, ViewGeometry};
 use rayon::prelude::*;
 
-/// Files that tell of a whole clip, the one that marks the folder first. `demo` draws no plot.
+/// Files that describe a whole clip. The first one marks the folder. `demo` draws no plot.
 pub const REPORTS: [&str; 3] = ["report.json", "psnr.svg", "psnr.png"];
 
 /// Settings of a clip: foveation, methods, gaze, and files to write.
@@ -30,7 +30,7 @@ pub struct Clip {
     pub title: String,
     /// The view of every frame.
     pub geometry: ViewGeometry,
-    /// Regions, and how coarse frames are in them.
+    /// Regions of the foveation, and their coarseness.
     pub foveation: Foveation,
     /// Depth and motion of sparse frames.
     pub sparse_geometry: SparseGeometry,
@@ -38,16 +38,16 @@ pub struct Clip {
     pub quad_views: Option<QuadViewLayout>,
     /// Order in which the pixels of sparse frames are sampled.
     pub sample_order: SampleOrder,
-    /// Whether the projection is jittered, by sources that can.
+    /// Whether sources that can jitter the projection do so.
     pub jitter: bool,
-    /// Samples a pixel of the reference; `None`: what the input has.
+    /// Samples a pixel of the reference; `None`: as many as the input has.
     pub reference_samples: Option<u32>,
     /// Name of each method, which is also the name of its folder, and its pipeline stage.
     pub methods: Vec<(&'static str, RunKind)>,
     /// Gaze position per frame, in frame pixels; `None`: tracking lost.
     pub gaze: Vec<Option<[f32; 2]>>,
-    /// Gaze that the renderer and the methods get in each frame, where a tracker's latency makes it another one; scores
-    /// have the true one. `None`: no latency.
+    /// Gaze that the renderer and the methods get in each frame, delayed by a tracker's latency; scores use the true
+    /// gaze. `None`: no latency.
     pub late_gaze: Option<Vec<Option<[f32; 2]>>>,
     /// Exposure before sRGB encoding, stops.
     pub exposure_ev: f32,
@@ -63,13 +63,13 @@ pub struct Clip {
     pub flip: bool,
     /// Share of the input pixels that are replaced by NaN, infinite, huge or negative values.
     pub poison: f32,
-    /// What runs the methods.
+    /// Processor that runs the methods.
     pub processor: Box<dyn Processor>,
     /// Reason for the fallback to the CPU, as a suffix for messages; empty without a fallback.
     pub backend_note: &'static str,
 }
 
-/// Writes frame `index` of a folder, given linear and encoded.
+/// Writes frame `index` of a folder. The frame is given as linear and as encoded colors.
 pub type WriteFrame = fn(&Output, &str, usize, &Image<[f32; 3]>, &Image<[f32; 3]>) -> Result<(), Failure>;
 
 /// As 8-bit PNG.
@@ -95,9 +95,9 @@ pub struct Playback<'a> {
 pub struct FrameResult<'a> {
     /// Number of the frame in the clip.
     pub index: usize,
-    /// The frame as its source gave it.
+    /// The frame from its source.
     pub frame: &'a RenderedFrame,
-    /// What metrics compare outputs with.
+    /// Reference with which metrics compare outputs.
     pub reference: &'a Reference<'a>,
     /// The foveated frame and the outputs.
     pub step: &'a Step,

@@ -19,7 +19,7 @@ pub struct RunFacts<'a> {
     pub seed: u64,
     /// Simulator filter or sampling pattern that foveates the frames.
     pub simulator: &'static str,
-    /// Where rendered samples have depth and motion; `None` for other frames.
+    /// Where depth and motion of rendered samples are known; `None` for other frames.
     pub geometry: Option<&'static str>,
     /// Side of the pixels of uniform frames, pixels of the full-rate frame.
     pub scale: Option<f32>,
@@ -52,7 +52,7 @@ struct RunReport<'a> {
     samples: Option<u64>,
     /// Whether the projection is jittered.
     jitter: bool,
-    /// Samples a pixel of the rasterised or analytic reference; null: what the input has.
+    /// Samples a pixel of the rasterised or analytic reference; null: as many as the input has.
     reference_samples: Option<u32>,
     gaze: &'a str,
     gaze_map: &'a str,

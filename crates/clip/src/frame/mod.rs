@@ -1,4 +1,4 @@
-//! Frames: what sources give and methods take, in memory or on a device.
+//! Frames that sources produce and methods process, in memory or on a device.
 
 mod rendered;
 mod repair;
@@ -11,8 +11,8 @@ use afterimage::{Image, Lattices};
 /// A full-rate frame with the auxiliary images of a temporal method.
 #[derive(Clone, Debug)]
 pub struct SourceFrame {
-    /// Linear Rec. 709 color, scene-referred. Non-finite pixels of the input are black here and counted below. Empty in
-    /// a reference that nobody asked for ([`without_images`](Self::without_images)).
+    /// Linear Rec. 709 color, scene-referred. Non-finite pixels of the input are black here and counted below. It is
+    /// empty if no reference was requested ([`without_images`](Self::without_images)).
     pub color: Image<[f32; 3]>,
     /// Depth along the view axis; `f32::INFINITY` (or 1e10) for the background. `None`: not known.
     pub depth: Option<Image<f32>>,
@@ -31,15 +31,15 @@ pub struct SourceFrame {
 }
 
 impl SourceFrame {
-    /// A frame without images, for methods that get all of them elsewhere.
+    /// A frame without images, for methods that get all images from a device.
     pub fn without_images(previous_from_current: Option<[[f32; 4]; 4]>, cut: bool) -> Self {
         let color = Image::filled([0; 2], [0.0; 3]);
         Self { color, depth: None, motion: None, trust: None, previous_from_current, cut, nonfinite: 0 }
     }
 }
 
-/// A foveated frame: sampled sparsely by a sampling plan, then reconstructed at every pixel, or given with its samples'
-/// places.
+/// A foveated frame, sampled sparsely by a sampling plan. It is either reconstructed at every pixel, or given as
+/// samples with their places.
 #[derive(Clone, Debug)]
 pub struct FoveatedFrame {
     /// Linear radiance.
@@ -48,7 +48,7 @@ pub struct FoveatedFrame {
     pub lod: Image<f32>,
     /// Noise of the color at its level of detail: standard error of its luma (linear), and number of samples averaged.
     pub noise: Image<[f32; 2]>,
-    /// Where the samples lie, if the frame is not reconstructed between them: only they have a color.
+    /// Where the samples lie, if the frame is not reconstructed between them. Only samples then have a color.
     pub lattices: Option<Lattices>,
     /// Number of samples in each ring.
     pub samples: Vec<u64>,

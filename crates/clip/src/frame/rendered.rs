@@ -1,4 +1,4 @@
-//! The one shape in which a frame goes from its source to the methods.
+//! Rendered frames: the type by which a source passes a frame to the methods.
 
 use super::{FoveatedFrame, SourceFrame};
 use crate::clock::Elapsed;
@@ -8,34 +8,34 @@ use std::any::Any;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// A graphics device, or something on one, for those who know its type.
+/// A graphics device, or an object on one, for code that knows its type.
 pub type DeviceHandle = Arc<dyn Any + Send + Sync>;
 
-/// A frame as its source gives it: what the methods get, and the full-rate frame that metrics compare it with.
+/// A frame from its source: the content for the methods, and the full-rate frame that metrics compare with.
 #[derive(Clone, Debug)]
 pub struct RenderedFrame {
     /// Playback position.
     pub index: u64,
     /// Gaze that it was rendered for, in pixels.
     pub gaze_px: [f32; 2],
-    /// The full-rate frame. Its images are missing if they were not asked for and no method needs them.
+    /// The full-rate frame. Its images are missing if they were not requested and no method needs them.
     pub reference: SourceFrame,
     /// The full-rate frame on a device, where it was rendered there.
     pub reference_on_device: Option<DeviceHandle>,
-    /// What the methods get.
+    /// Content for the methods.
     pub content: Content,
     /// Jitter of the content's projection in pixels, as in
     /// [`FrameRequest::jitter_px`](crate::source::FrameRequest::jitter_px); 0 without jitter.
     pub jitter_px: [f32; 2],
-    /// Where depth and motion are defined. At the samples of what is on a device: the methods get those in place of
-    /// the reference's.
+    /// Where depth and motion are defined. If only at the samples of content on a device, the methods get them in place
+    /// of the reference's.
     pub geometry: SparseGeometry,
     /// Number of camera samples of the content; `None` if it is the full-rate frame.
     pub samples: Option<u64>,
     /// Time of rendering the content until it was complete on its device: posing the scene, recording and drawing or
     /// tracing, without reading back. `None` if the source renders nothing.
     pub render: Option<Elapsed>,
-    /// Time of rendering the full-rate frame with as many samples a pixel, if it was.
+    /// Time of rendering the full-rate frame with as many samples a pixel, if it was rendered.
     pub full_rate: Option<Elapsed>,
 }
 
@@ -53,9 +53,9 @@ pub enum Content {
     OnDevice(Arc<dyn DeviceContent>),
 }
 
-/// A foveated frame on a device, as far as a pipeline asks for it. Reading waits for all submitted work.
+/// Interface of a pipeline to a foveated frame on a device. Reading waits for all submitted work.
 pub trait DeviceContent: Any + Debug + Send + Sync {
-    /// Where the samples lie, if there is nothing between.
+    /// Where the samples lie, if the frame has no colors between them.
     fn lattices(&self) -> Option<Lattices>;
 
     /// Whether a path tracer foveated the frame.
@@ -72,7 +72,7 @@ pub trait DeviceContent: Any + Debug + Send + Sync {
 }
 
 impl Content {
-    /// Where the samples lie, if the source gave them without anything between.
+    /// Where the samples lie, if the source gave no colors between them.
     pub fn lattices(&self) -> Option<Lattices> {
         match self {
             Self::FullRate | Self::Jittered(_) => None,
@@ -113,7 +113,7 @@ impl RenderedFrame {
         }
     }
 
-    /// The full-rate frame that simulators foveate, and whose depth, motion and trust the methods get.
+    /// The full-rate frame. Simulators foveate it, and the methods get its depth, motion and trust.
     pub fn given(&self) -> &SourceFrame {
         match &self.content {
             Content::Jittered(frame) => frame,

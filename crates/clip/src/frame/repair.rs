@@ -1,13 +1,13 @@
-//! Pixels that a method asks a source for while a frame is processed.
+//! Pixels that a method requests from a source while a frame is processed.
 
 use super::DeviceHandle;
 use crate::clock::Elapsed;
 use afterimage::Image;
 
-/// Pixels of a sparse frame that a method's history lacks: what it wants to have shaded at full rate.
+/// Pixels of a sparse frame that a method's history lacks, and that the source should shade at full rate.
 #[derive(Clone, Debug)]
 pub struct Wish {
-    /// Whether it wants the pixels of a quad, by quad of 2x2 pixels.
+    /// Whether the pixels of each quad of 2x2 pixels are requested.
     pub quads: Image<bool>,
     /// The same as a list on the method's device, in the form of `gpu::Afterimage::repair_quads`; `None` for methods on
     /// the CPU.
@@ -15,7 +15,7 @@ pub struct Wish {
 }
 
 impl Wish {
-    /// Share of a frame's pixels, of which there are `size_px`. Quads may lie half beyond the edge.
+    /// Share of the pixels of a frame of `size_px`. Half of a quad may lie beyond the edge.
     pub fn share(&self, size_px: [u32; 2]) -> f64 {
         let [width, height] = size_px.map(|side| side as usize);
         let wanted = |y: usize| (0..width).filter(|x| self.quads.at(x / 2, y / 2)).count();
@@ -29,14 +29,14 @@ pub struct Shaded {
     /// Linear color.
     pub color: ShadedColor,
     /// Noise of the color, as in [`FoveatedFrame::noise`](super::FoveatedFrame::noise), with 0 samples at other pixels.
-    /// `None`: there is no noise, or the source has put it into that of its frame on the device.
+    /// `None`: there is no noise, or the source has written it into the noise of its frame on the device.
     pub noise: Option<Image<[f32; 2]>>,
     /// Time of shading.
     pub took: Elapsed,
 }
 
 impl Shaded {
-    /// `of_frame`, the noise of the frame, with that of these pixels; `None` if either is missing.
+    /// `of_frame`, the noise of the frame, with the noise of these pixels inserted; `None` if either is missing.
     pub fn noise_in(&self, of_frame: Option<&Image<[f32; 2]>>) -> Option<Image<[f32; 2]>> {
         let mut noise = of_frame?.clone();
         for (noise, &own) in noise.pixels_mut().iter_mut().zip(self.noise.as_ref()?.pixels()) {

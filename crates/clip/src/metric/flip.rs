@@ -35,8 +35,8 @@ const WIDEST: f64 = 0.04;
 const PRIMARIES: [[f64; 2]; 3] = [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]];
 const WHITE: [f64; 2] = [0.3127, 0.3290];
 
-/// Range of pixels per degree: below it the filters are a single pixel; above it they grow large beyond what any eye
-/// resolves.
+/// Range of pixels per degree: below it the filters are a single pixel; above it they become large without need,
+/// because no eye resolves such detail.
 const PIXELS_PER_DEGREE: [f32; 2] = [1.0, 1000.0];
 
 /// Filter weights of pixels -r to r.
@@ -256,7 +256,7 @@ fn hyab(a: Vec3, b: Vec3) -> f32 {
 }
 
 /// `base` of at least 0 to the power of an exponent from 0 to 1; relative error below 3e-6 for a base from 1e-9 to 1e3.
-/// The system's function takes longer than all of FLIP's filters.
+/// The standard library's function takes longer than all of FLIP's filters.
 #[inline(always)]
 fn power(base: f32, exponent: f32) -> f32 {
     let power = approx::exp(exponent * approx::ln(base));

@@ -25,7 +25,7 @@ pub struct Reference<'a> {
     pub(super) ghosts: Image<Ghost>,
 }
 
-/// What metrics need of a strip of an sRGB-encoded image.
+/// Data for the metrics from a strip of an sRGB-encoded image.
 #[derive(Clone, Debug)]
 pub(super) struct Prepared {
     /// L\*a\*b\*.

@@ -258,7 +258,7 @@ impl WithSimd for ScoreStrip<'_> {
                 }
             }
         }
-        // From the sum of the squares of three channels to their mean.
+        // Converts the sum of the squares of three channels to their mean.
         sums.squared = sums.squared.map(|mean| mean.scaled(1.0 / 3.0));
         sums.weighted = sums.weighted.scaled(1.0 / 3.0);
         sums.retained = sums.retained.scaled(1.0 / 3.0);

@@ -33,10 +33,10 @@ pub(super) fn blocks(count: usize) -> impl Iterator<Item = Range<usize>> {
     (0..count.div_ceil(BLOCK)).map(move |i| i * BLOCK..count.min((i + 1) * BLOCK))
 }
 
-/// The values of a block, and whatever follows it in the plane; 0 after the end of the plane.
+/// The values of a block. If it is short, the plane's following values fill it, and then zeros.
 #[inline(always)]
 pub(super) fn block(plane: &[f32], range: Range<usize>) -> [f32; BLOCK] {
-    // Of a whole block the length is known, so that copying it takes a few vector instructions.
+    // The length of a whole block is known, so that copying it takes a few vector instructions.
     if let Some(values) = plane[range.start..].first_chunk() {
         return *values;
     }

@@ -1,4 +1,4 @@
-//! The foveated frame, as the methods of a pipeline get it.
+//! The foveated frame, as input of a pipeline's methods.
 
 use afterimage::simulator::Pyramid;
 use afterimage::{Filter, Image, ViewFrame};
@@ -20,7 +20,7 @@ pub struct Candidate<'a> {
 pub struct InMemory<'a> {
     /// Linear color.
     pub color: Cow<'a, Image<[f32; 3]>>,
-    /// Whether some of its colors are invalid on purpose, and replace those on a device.
+    /// Whether some of its colors are invalid on purpose. They then replace the colors on a device.
     pub is_poisoned: bool,
     /// Whether the levels of detail are an input of the methods.
     pub has_lod: bool,
@@ -31,7 +31,7 @@ pub struct InMemory<'a> {
 }
 
 impl<'a> InMemory<'a> {
-    /// A frame of this color, with nothing but that.
+    /// A frame with this color and no other inputs.
     pub fn new(color: Cow<'a, Image<[f32; 3]>>) -> Self {
         Self { color, is_poisoned: false, has_lod: false, noise: None, geometry: None }
     }

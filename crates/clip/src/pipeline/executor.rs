@@ -1,4 +1,4 @@
-//! What a pipeline asks of the processor that runs its methods.
+//! Interface of a pipeline to the processor that runs its methods.
 
 use super::candidate::Candidate;
 use super::run::{MethodOutput, RunKind};
@@ -22,8 +22,7 @@ pub trait Executor: Send {
     /// [`FrameError`] if the frame does not match the methods.
     fn set(&mut self, frame: &RenderedFrame, candidate: &Candidate<'_>) -> Result<(), FrameError>;
 
-    /// Runs a method on the current frame. `shade` gives the pixels that it wants to repair, of frames that no
-    /// simulator foveates.
+    /// Runs a method on the current frame. `shade` shades the pixels to repair, for frames that no simulator foveates.
     ///
     /// # Errors
     /// As for [`set`](Self::set).
@@ -33,14 +32,14 @@ pub trait Executor: Send {
     fn memory_bytes(&self, run: usize) -> usize;
 }
 
-/// Shades pixels that a method wants to repair.
+/// Shades the pixels that a method repairs.
 pub type Shade<'a> = &'a mut dyn FnMut(&Wish) -> Option<Shaded>;
 
-/// The current frame, and what is asked of its methods.
+/// The current frame, and the options of its processing.
 pub struct Shot<'a> {
-    /// The frame as its source gave it.
+    /// The frame from its source.
     pub frame: &'a RenderedFrame,
-    /// The same, foveated.
+    /// The foveated frame.
     pub candidate: &'a Candidate<'a>,
     /// Debug views to draw.
     pub debug: &'a [DebugView],

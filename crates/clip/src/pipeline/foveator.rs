@@ -57,7 +57,7 @@ impl Foveator {
             Content::FullRate | Content::Jittered(_) => self.simulated(frame, ecc_deg, is_read),
             Content::Foveated(foveated) => {
                 let noise = Some(&foveated.noise);
-                // Lattices say how coarse a sparse frame is.
+                // The levels of detail of a sparse frame follow from its lattices.
                 let has_lod = foveated.lattices.is_none();
                 let color = InMemory { has_lod, noise, ..InMemory::new(Cow::Borrowed(&foveated.color)) };
                 let view = self.view(frame);
@@ -83,7 +83,7 @@ impl Foveator {
         let is_still = self.is_still && matches!(frame.content, Content::FullRate);
         let pyramid = is_read.then(|| match self.still.take().filter(|_| is_still) {
             Some(pyramid) => pyramid,
-            // Of sparse frames, only samples are read.
+            // Methods read only the samples of sparse frames.
             None => {
                 let most = if lattices.is_some() { 0 } else { self.foveation.max_level() };
                 Pyramid::new(frame.given().color.clone(), most)
@@ -97,13 +97,13 @@ impl Foveator {
         Candidate { view: ViewFrame { lattices, ..self.view(frame) }, lods, in_memory, pyramid }
     }
 
-    /// What a source foveated on a device; it is read only if a method runs elsewhere.
+    /// A frame that its source foveated on a device. It is read back only if a method runs elsewhere.
     fn on_device<'a>(&self, frame: &RenderedFrame, content: &dyn DeviceContent, is_read: bool) -> Candidate<'a> {
         let color = if is_read { content.read_color() } else { None };
         let in_memory = color.map(|color| {
             let has_geometry = frame.geometry == SparseGeometry::Samples;
             let geometry = if has_geometry { content.read_geometry() } else { None };
-            // Lattices say how coarse a sparse frame is.
+            // The levels of detail of a sparse frame follow from its lattices.
             InMemory { has_lod: content.lattices().is_none(), geometry, ..InMemory::new(Cow::Owned(color)) }
         });
         let lods = content.lods(self.geometry.size_px());

@@ -32,9 +32,9 @@ use oracle::Oracle;
 /// Result of one frame: the foveation, and the output of each run.
 #[derive(Clone, Debug)]
 pub struct Step {
-    /// Where the eye looked, in pixels: the gaze that the foveation used, unless that was late.
+    /// True gaze in pixels. It differs from the foveation's gaze if the tracker has latency.
     pub gaze_px: [f32; 2],
-    /// Eccentricity of every pixel from there, in degrees.
+    /// Eccentricity of every pixel from the true gaze, in degrees.
     pub ecc_deg: Image<f32>,
     /// Level of detail of every pixel of the foveated frame.
     pub lods: Image<f32>,
@@ -60,7 +60,7 @@ pub struct Pipeline {
     executor: Box<dyn Executor>,
     tracker: Tracker,
     held_gaze: Option<[f32; 2]>,
-    /// Where the eye looks, if the gaze of the requests is late.
+    /// True gaze, if the gaze of the requests is late.
     true_gaze: Option<[f32; 2]>,
     debug: Vec<DebugView>,
     use_trust: bool,
@@ -84,7 +84,7 @@ impl Pipeline {
         processor: &dyn Processor,
     ) -> Result<Self, CreateError> {
         foveation.validate()?;
-        // Simulators read the foveation alone.
+        // Simulators read only the foveation of the settings.
         let settings = Settings { method: Method::None, foveation, ..Settings::default() };
         let desc = ContextDesc { settings, ..ContextDesc::new(geometry.size_px()) };
         let mut executor = processor.executor(&desc, is_still)?;
@@ -130,7 +130,7 @@ impl Pipeline {
         Self { quad_views: layout, ..self }
     }
 
-    /// Sources that can jitter the projection do, by [`Foveation::jitter_px`] of the frame's number.
+    /// Sources that can jitter the projection do so, by [`Foveation::jitter_px`] of the frame's number.
     #[must_use]
     pub fn with_jitter(self) -> Self {
         Self { is_jittered: true, ..self }
@@ -174,7 +174,8 @@ impl Pipeline {
         }
     }
 
-    /// Where the eye looks in the next steps, for scores, if the gaze of the requests is late; `None`: at that gaze.
+    /// True gaze of the next steps, for scores, if the gaze of the requests is late. `None`: the requests' gaze is the
+    /// true one.
     pub fn look_at(&mut self, true_gaze: Option<[f32; 2]>) {
         self.true_gaze = true_gaze;
     }
@@ -189,8 +190,8 @@ impl Pipeline {
         self.step_with(frame, &mut |_| Ok(None))
     }
 
-    /// As [`step`](Self::step), for methods that repair frames: `shade` gives the pixels that they want, of frames that
-    /// no simulator foveates, or `None` for no repair.
+    /// As [`step`](Self::step), for methods that repair frames: `shade` shades the pixels to repair, for frames that no
+    /// simulator foveates; it gives `None` for no repair.
     ///
     /// # Errors
     /// As for `step`, and those of `shade`.
@@ -204,7 +205,7 @@ impl Pipeline {
         let ecc_deg = self.foveator.geometry.eccentricity_map(frame.gaze_px);
         let candidate = self.foveator.candidate(frame, &ecc_deg, self.foveates_in_memory());
         self.executor.set(frame, &candidate)?;
-        // Nothing is foveated here if a path tracer did it.
+        // Frames that a path tracer foveated are not foveated again.
         let foveation_ms = if frame.content.is_traced() { 0.0 } else { watch.wall_ms() };
         let (gaze_px, ecc_deg) = match self.true_gaze {
             Some(px) => (px, self.foveator.geometry.eccentricity_map(px)),
@@ -248,7 +249,8 @@ impl Pipeline {
     ) -> Result<Vec<MethodOutput>, FrameError> {
         let shot = Shot { frame, candidate, debug: &self.debug, use_trust: self.use_trust };
         let mut outputs: Vec<Option<MethodOutput>> = vec![None; self.runs.len()];
-        // Rotate the order of runs each frame: the first run finds caches as the foveation left them.
+        // Rotate the order of runs each frame, because the foveation's data in the caches favor or slow down the first
+        // run.
         let first = frame.index as usize % self.runs.len().max(1);
         for i in (first..self.runs.len()).chain(0..first) {
             outputs[i] = Some(match &mut self.runs[i] {

@@ -12,7 +12,7 @@ pub(super) struct Oracle {
 }
 
 impl Oracle {
-    /// The next frame of a still: its mip chain, of a simulator, and its levels of detail.
+    /// The next frame of a still: a simulator's mip chain, and the levels of detail.
     pub fn run(
         &mut self,
         pyramid: Option<&Pyramid>,

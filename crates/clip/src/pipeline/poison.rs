@@ -1,4 +1,4 @@
-//! Invalid colors, to measure how methods stand them.
+//! Invalid colors, to measure the robustness of methods.
 
 use afterimage::Image;
 use afterimage::kernel::rng;

@@ -1,4 +1,4 @@
-//! What runs the methods of a pipeline: the CPU, or a device.
+//! Processor of a pipeline's methods: the CPU, or a device.
 
 use super::cpu::CpuExecutor;
 use super::executor::Executor;

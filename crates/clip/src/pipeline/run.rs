@@ -1,4 +1,4 @@
-//! Runs of a pipeline: what is run, and what comes out.
+//! Runs of a pipeline: kinds and outputs.
 
 use super::part::Part;
 use crate::clock::Elapsed;
@@ -37,7 +37,7 @@ pub struct MethodOutput {
 pub struct Repaired {
     /// Share of the pixels.
     pub share: f64,
-    /// Time of shading them; `None` if a simulator had them.
+    /// Time of shading the pixels; `None` if they came from a simulator's full-rate frame.
     pub shading: Option<Elapsed>,
 }
 

@@ -92,7 +92,7 @@ impl FrameGaze {
     }
 
     /// Gaze that is known in frame `index` of a tracker whose samples arrive `latency_s` seconds late. Before the first
-    /// valid sample arrives, that sample: the eye is taken to have rested there.
+    /// valid sample arrives, it is that sample, as if the eye had rested there.
     pub fn late_px(&self, index: u64, latency_s: f64) -> Option<[f32; 2]> {
         self.held_at(self.time_s(index) - latency_s).or(self.valid.first().copied()).map(|(_, px)| px)
     }

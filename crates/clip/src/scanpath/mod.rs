@@ -3,7 +3,7 @@
 //! A [`Scanpath`] comes from a CSV file ([`read_csv`]), from a model of the eye before a screen ([`generate`]) or from
 //! one of eye and head ([`generate_head`]); [`FrameGaze`] resamples it to one gaze point per frame. Lost gaze is `None`
 //! in samples, and is never filled in by interpolation. A scanpath of a headset has a [`HeadPose`] for each sample,
-//! which [`HeadPath`] makes a camera's path of.
+//! from which [`HeadPath`] makes a camera path.
 
 mod frames;
 mod head;

@@ -5,11 +5,11 @@ use glam::{DMat4, DQuat, DVec3};
 /// Largest distance of a head from its origin in metres: 1000 km, beyond which `f32` positions jump by centimetres.
 const FARTHEST_M: f32 = 1e6;
 
-/// Largest difference of a quaternion's length from 1. Rounding to four digits errs by less.
+/// Largest difference of a quaternion's length from 1. The error of rounding to four digits is smaller.
 const UNIT_TOLERANCE: f64 = 1e-3;
 
-/// Where the point between the eyes is, and how the head is turned, in a space at rest: x right, y up, -z ahead (the
-/// axes of OpenXR, WebXR and glTF cameras). Gravity points along -y.
+/// Position of the point between the eyes, and orientation of the head, in a space at rest: x right, y up, -z ahead
+/// (the axes of OpenXR, WebXR and glTF cameras). Gravity points along -y.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeadPose {
     /// Position in metres.
@@ -20,7 +20,7 @@ pub struct HeadPose {
 }
 
 impl HeadPose {
-    /// What a pose must be, for errors.
+    /// Requirements on a pose, for errors.
     pub(super) const EXPECTED: &str = "expected metres, at most a million, and a unit quaternion x, y, z, w";
 
     /// Pose of a head that is at `position_m` and turned by `orientation`.
@@ -51,7 +51,7 @@ impl HeadPose {
         DQuat::from_array(self.orientation.map(f64::from)).normalize()
     }
 
-    /// What is wrong with the pose, if anything is.
+    /// Problem with the pose, if there is one.
     pub(super) fn fault(&self) -> Option<String> {
         let [x, y, z] = self.position_m;
         if !self.position_m.iter().all(|v| v.abs() <= FARTHEST_M) {

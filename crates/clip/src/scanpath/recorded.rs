@@ -83,8 +83,8 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<Scanpath, InputError> {
 ///
 /// # Errors
 /// [`Invalid`](InputError::Invalid). With the line number: bytes that are not UTF-8, a header line or row that cannot
-/// be parsed, a row without exactly the columns named, times that do not increase, a pose that is none. Without: no
-/// column names, and the errors of [`Scanpath::new`].
+/// be parsed, a row without exactly the columns named, times that do not increase, an invalid pose. Without: no column
+/// names, and the errors of [`Scanpath::new`].
 pub fn parse_csv(name: &str, bytes: &[u8]) -> Result<Scanpath, InputError> {
     let text = utf8(name, bytes)?;
     let mut header = Header::default();

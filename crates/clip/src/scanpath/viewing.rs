@@ -69,7 +69,7 @@ pub enum EventKind {
     Saccade,
     /// Small movement during a fixation.
     Microsaccade,
-    /// Rest on a thing that moves; only with a head.
+    /// Pursuit of a moving object; only with a head.
     Pursuit,
     /// Movement that corrects a saccade's undershoot. Not counted in "saccades per second"; see the module's
     /// documentation.

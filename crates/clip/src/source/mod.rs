@@ -51,7 +51,7 @@ pub trait FrameSource {
     ///
     /// # Errors
     /// [`Io`](InputError::Io) and [`Invalid`](InputError::Invalid) if the file of the frame cannot be read or
-    /// contradicts its header, [`Limit`](InputError::Limit) if it is larger than the limits by now,
+    /// contradicts its header, [`Limit`](InputError::Limit) if it has grown beyond the limits since it was opened,
     /// [`Device`](InputError::Device) if the renderer failed or lost its device.
     fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError>;
 
@@ -64,7 +64,7 @@ pub trait FrameSource {
     }
 
     /// Shades pixels of `frame`, which was rendered last, at full rate and with one sample each. `None`: the source
-    /// cannot. Sources whose frames a simulator foveates need not: they have these pixels.
+    /// cannot. Sources whose frames a simulator foveates do not need this, because their frames contain these pixels.
     ///
     /// # Errors
     /// As for `render`.
@@ -77,7 +77,7 @@ pub trait FrameSource {
         None
     }
 
-    /// Overrides the camera's path from frame `index` on with the poses before and from then; `None` returns it to its
-    /// path. See `SceneCamera::steer`. Sources whose camera cannot be steered ignore it.
+    /// Overrides the camera's path with two poses: one for the frames before `index`, and one from `index` on. `None`
+    /// returns the camera to its path. See `SceneCamera::steer`. Sources whose camera cannot be steered ignore it.
     fn steer(&mut self, _index: u64, _before_and_now: Option<[DMat4; 2]>) {}
 }

@@ -1,30 +1,30 @@
-//! What a caller asks a source for.
+//! Requests of callers to a source.
 
 use crate::frame::{DeviceHandle, RenderedFrame, SourceFrame};
 use crate::lattices::SparseGeometry;
 use crate::quad_views::QuadViews;
 use afterimage::Lattices;
 
-/// A request of a frame. Sources without a renderer give the full-rate frame, whatever is asked for.
+/// A request of a frame. Sources without a renderer give the full-rate frame for every request.
 #[derive(Clone)]
 pub struct FrameRequest {
     /// Playback position. Motion vectors refer to `index - 1`.
     pub index: u64,
-    /// Where the frame is to be sharp, in pixels.
+    /// Gaze in pixels, around which the frame should be sharp.
     pub gaze_px: [f32; 2],
-    /// What is to be rendered. A source that has a sampling pattern of its own gives that instead.
+    /// Content to render. A source with its own sampling pattern uses that pattern instead.
     pub wanted: Wanted,
-    /// Jitter of the projection in pixels: what is at `p` without it is at `p + jitter_px`. Each pixel or point of a
-    /// lattice then has one sample. `None`: no jitter, and pixels at full rate as the source filters them.
+    /// Jitter of the projection in pixels: a point at `p` without jitter is at `p + jitter_px`. Each pixel or point of
+    /// a lattice then has one sample. `None`: no jitter, and pixels at full rate as the source filters them.
     pub jitter_px: Option<[f32; 2]>,
     /// Where depth and motion of a foveated frame are needed.
     pub geometry: SparseGeometry,
     /// Whether the full-rate frame is wanted in memory, as the reference of metrics.
     pub reference: bool,
     /// Samples a pixel of the reference: the mean of that many jittered full-rate frames. `None`: as the source filters
-    /// pixels. Sources without a renderer, and path tracers, have theirs anyway.
+    /// pixels. Files of frames, and path tracers, ignore this and use their own number.
     pub reference_samples: Option<u32>,
-    /// Device that all methods run on: what is rendered there can stay.
+    /// Device on which all methods run. Frames that are rendered there need not be read back.
     pub device: Option<DeviceHandle>,
 }
 
@@ -54,13 +54,13 @@ impl FrameRequest {
         }
     }
 
-    /// The full-rate frame, rendered as asked for. What else was rendered is added to it.
+    /// Answer with the full-rate frame, to which the source adds other rendered content.
     pub fn answer(&self, reference: SourceFrame) -> RenderedFrame {
         RenderedFrame { geometry: self.geometry, ..RenderedFrame::full_rate(self.index, self.gaze_px, reference) }
     }
 
-    /// Whether the full-rate frame is rendered, too, when nobody wants it as a reference: as what a simulator foveates,
-    /// or for depth and motion of every pixel.
+    /// Whether the full-rate frame must be rendered even if it is not requested as a reference: as input of a
+    /// simulator, or for depth and motion of every pixel.
     pub fn needs_full_rate(&self) -> bool {
         self.wanted == Wanted::FullRate || self.geometry == SparseGeometry::Full
     }

@@ -41,7 +41,7 @@ impl PassClock {
         }
     }
 
-    /// Records the end of the span, and resolves its queries. The encoder may be another one than that of
+    /// Records the end of the span, and resolves its queries. The encoder may differ from that of
     /// [`begin`](Self::begin).
     pub fn end(&self, encoder: &mut CommandEncoder) {
         if let Some(clock) = &self.0 {
@@ -50,8 +50,8 @@ impl PassClock {
         self.resolve(encoder);
     }
 
-    /// Waits for submitted work, and returns the time since `watch` was started and that of the span on the device. The
-    /// device was idle when the watch was started, or the times include earlier work.
+    /// Waits for submitted work, and returns the time since `watch` was started and the time of the span on the device.
+    /// The device must be idle when the watch is started; otherwise the times include earlier work.
     pub fn elapsed(&self, gpu: &Headless, watch: &Stopwatch) -> Elapsed {
         gpu.wait();
         let elapsed = watch.elapsed();
@@ -87,8 +87,8 @@ impl SpanClock {
         })
     }
 
-    /// Runs `work`, waits for what it submitted, and returns the time, too. The device's time is that from the first
-    /// submission to the last: waiting for the host in between is part of it.
+    /// Runs `work`, waits for the work that it submitted, and returns its result and the time. The device's time lasts
+    /// from the first submission to the last, and includes waiting for the host between them.
     pub fn time<T>(&self, work: impl FnOnce() -> T) -> (T, Elapsed) {
         let Some((gpu, clock)) = &self.0 else {
             let watch = Stopwatch::start();

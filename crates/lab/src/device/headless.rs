@@ -87,7 +87,8 @@ impl Headless {
         if self.is_lost.load(Ordering::Relaxed) { Err(FrameError::DeviceLost) } else { Ok(()) }
     }
 
-    /// Number of textures and buffers that were read back with this so far. A frame that stays on the device adds none.
+    /// Number of textures and buffers that were read back from this device so far. A frame that stays on the device
+    /// adds none.
     pub fn readbacks(&self) -> u64 {
         self.readbacks.load(Ordering::Relaxed)
     }

@@ -1,4 +1,4 @@
-//! Contents of a mapped buffer, in either wgpu.
+//! Contents of a mapped buffer, for either version of wgpu.
 
 use std::sync::mpsc;
 use std::time::Duration;
@@ -20,8 +20,8 @@ pub fn mapped(buffer: &Buffer) -> Option<BufferView> {
 /// Maps a buffer with usage `MAP_READ`, waits for all submitted work and for the mapping, and returns the contents.
 /// `None` on a lost device.
 ///
-/// The end of `poll` does not say that the buffer is mapped: where several threads poll one device, the callback may
-/// be running on another one.
+/// The return of `poll` does not guarantee that the buffer is mapped: if several threads poll one device, the callback
+/// may still be running on another thread.
 pub(crate) fn wait_mapped(device: &Device, buffer: &Buffer) -> Option<BufferView> {
     let (sender, receiver) = mpsc::channel();
     buffer.map_async(wgpu::MapMode::Read, .., move |result| {

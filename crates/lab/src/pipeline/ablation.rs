@@ -1,5 +1,5 @@
-//! Passes without one of their parts, to measure the part's cost and its benefit. For measurements only: images without
-//! a part may contain errors that the part prevents.
+//! Passes without one of their parts, to measure the part's cost and its benefit. For measurements only: without a
+//! part, images may contain errors that the part prevents.
 
 pub use afterimage_clip::pipeline::Part;
 

@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn a_room_surrounds_itself_and_a_ball_does_not() {
         let cornell = builtin::cornell();
-        // A cube open in front would lose a sixth; back faces do not count.
+        // A cube with one open side would lose a sixth of its enclosure. Back faces do not count.
         let room = enclosure(&cornell, &Triangles::default());
         assert!((0.6..0.95).contains(&room), "{room}");
         let ball = enclosure(&builtin::furnace(), &Triangles::default());

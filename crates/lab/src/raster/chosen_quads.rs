@@ -1,5 +1,5 @@
-//! Drawing to chosen quads of 2x2 pixels alone: the rest is at the near plane, where the depth test rejects what is
-//! drawn, and chunks of triangles that can show no chosen quad are left out.
+//! Drawing to chosen quads of 2x2 pixels only. All other pixels have the depth of the near plane, so that the depth
+//! test rejects drawing to them. Chunks of triangles that cannot touch a chosen quad are left out.
 
 use super::pixels::Pixels;
 use super::window::DrawCall;
@@ -21,7 +21,7 @@ const LIST_DISPATCH: u64 = 16;
 /// Pixels around a chunk's rectangle, for rounding.
 const MARGIN_PX: f64 = 1.0;
 
-/// A chunk of triangles and the tiles that it may show. Twin of `Chunk` in `shaders/raster/chunk_pass.wgsl`.
+/// A chunk of triangles and the tiles that it may cover. Twin of `Chunk` in `shaders/raster/chunk_pass.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 struct Chunk {
@@ -31,14 +31,14 @@ struct Chunk {
     high: u32,
 }
 
-/// The passes that find what to draw.
+/// The passes that choose the draw calls.
 #[derive(Debug)]
 pub(super) struct ChunkTest {
     tile: ComputeShader,
     chunk: ComputeShader,
 }
 
-/// Chosen quads, and arguments of the draws of what they may show.
+/// Chosen quads, and arguments of the draw calls that may touch them.
 #[derive(Debug)]
 pub(super) struct ChosenQuads {
     /// The quads, in the form of `gpu::Afterimage::repair_quads`.
@@ -64,7 +64,8 @@ impl ChunkTest {
         }
     }
 
-    /// Records which of `calls`, whose triangles lie in boxes, may show a quad of `list`, seen by `view`.
+    /// Records the choice of those of `calls`, whose triangles lie in boxes, that may touch a quad of `list`, seen by
+    /// `view`.
     pub fn record(
         &self,
         device: &Device,
@@ -127,7 +128,7 @@ struct Rectangles {
 }
 
 impl Rectangles {
-    /// First and last tile of what a box may show: all, if a part of it may be behind the eye or is not finite.
+    /// First and last tile that a box may cover: all tiles if a part of the box may be behind the eye or is not finite.
     fn tiles(&self, [low, high]: [DVec3; 2]) -> [[u32; 2]; 2] {
         let mut px = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
         for corner in 0..8 {

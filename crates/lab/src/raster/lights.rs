@@ -22,7 +22,7 @@ pub(super) struct LightRecord {
     cos_inner: f32,
     cos_outer: f32,
     area: f32,
-    /// 1 for the light that the shadow map is of.
+    /// 1 for the light of the shadow map.
     pub has_shadow: f32,
     unused: f32,
 }

@@ -90,7 +90,7 @@ pub struct Raster {
     pipelines: Pipelines,
     /// Pipelines of lattices with one sample per pixel; none before the first foveated frame.
     point_pipelines: OnceCell<ColorPipelines>,
-    /// None before the first frame of which some quads are drawn.
+    /// None before the first frame with drawing to chosen quads.
     chunk_test: OnceCell<ChunkTest>,
     effects: Effects,
     materials: Vec<BindGroup>,
@@ -164,7 +164,7 @@ impl Raster {
         let count = 3 * pose.moving.len();
         let moving =
             VertexSet { grouped, buffer: vertex_buffer(device, count), chunks: Chunks::default(), blended: vec![] };
-        // Much nearer than anything of interest, but not so near that 1/near overflows.
+        // The near plane is much nearer than anything of interest, but not so near that 1/near overflows.
         let near = (lighting.radius * 1e-4).clamp(1e-6, 1e-2);
         let mut raster = Self {
             layouts,

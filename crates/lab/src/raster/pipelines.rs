@@ -34,7 +34,7 @@ pub(super) struct Pipelines {
     motion: [RenderPipeline; 2],
     pub motion_far: RenderPipeline,
     sun: [RenderPipeline; 2],
-    /// Far plane in the quads of a list, for passes of color with one sample per pixel.
+    /// Sets depth to the far plane in the quads of a list, for color passes with one sample per pixel.
     pub quads: RenderPipeline,
     /// With [`SAMPLES`] samples per pixel.
     pub color: ColorPipelines,
@@ -134,7 +134,7 @@ impl Pipelines {
             make(Recipe {
                 constants: &base,
                 format: None,
-                // Away from the sun, and more on surfaces steep to it.
+                // Depth bias away from the sun, larger on surfaces that are steep to it.
                 bias: DepthBiasState { constant: -2, slope_scale: -2.0, clamp: 0.0 },
                 ..Recipe::new(&sun, "shadow_vertex", fragment, COLOR_FORMAT)
             })

@@ -185,7 +185,7 @@ impl Raster {
         self.surface_pass(encoder, [depth, motion], &[section]);
     }
 
-    /// Uniforms and draw calls of what a window shows.
+    /// Uniforms and draw calls of a window.
     fn section(&self, device: &Device, [view, previous]: [&View; 2], window: Window) -> Section {
         let calls = self.calls(Some(&Frustum::new(view, &window)));
         Section { group: self.frame_uniforms(device, [view, previous], &window), calls, window, quads: None }

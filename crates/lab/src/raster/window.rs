@@ -1,4 +1,4 @@
-//! Windows: what a target shows of the full-rate frame, and which triangles it shows.
+//! Windows: the part of the full-rate frame that a target shows, and the triangles in it.
 
 use super::pixels::Pixels;
 use super::vertices::{AlphaKind, Chunks, DrawRange};
@@ -8,11 +8,12 @@ use afterimage::{Lattice, Lattices};
 use glam::DVec3;
 use std::ops::Range;
 
-/// Where foveated frames have the samples of their lattices.
+/// Layout of the samples of foveated frames in their atlas.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AtlasLayout {
-    /// Below each other, in an atlas as small as they are. Depth and color of the full-rate lattice differ from those
-    /// of the full-rate frame by rounding: rasterizers interpolate relative to the target's corner.
+    /// Lattices lie below each other, in an atlas that is as small as possible. Depth and color of the full-rate
+    /// lattice differ from those of the full-rate frame by rounding: rasterizers interpolate relative to the target's
+    /// corner.
     #[default]
     Compact,
     /// The full-rate lattice at its own pixels of an atlas as large as the frame, the others below that: the full-rate
@@ -69,7 +70,7 @@ pub enum PixelSamples {
     /// Four, resolved by averaging, as the full-rate frame has.
     #[default]
     Four,
-    /// One, at the pixel's centre: what a jittered frame shows of a pixel.
+    /// One, at the pixel's centre, as in a jittered frame.
     One,
 }
 
@@ -153,7 +154,7 @@ impl Window {
     }
 }
 
-/// Planes around what a window shows: directions `n` with `n . (point - eye) >= 0` inside.
+/// Planes around the volume that a window shows: directions `n` with `n . (point - eye) >= 0` inside.
 pub(super) struct Frustum {
     eye: DVec3,
     planes: [DVec3; 5],

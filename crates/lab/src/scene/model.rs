@@ -1,4 +1,4 @@
-//! A scene, whatever it is read from.
+//! The model of a scene, independent of its source.
 
 use super::animated::Animated;
 use super::light::Environment;

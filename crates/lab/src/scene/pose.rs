@@ -1,4 +1,4 @@
-//! What of a scene moves.
+//! The moving part of a scene.
 
 use super::camera::Camera;
 use super::light::PunctualLight;

@@ -63,9 +63,9 @@ pub struct RasterSource {
     of: ViewedScene,
     device: Arc<Headless>,
     raster: Raster,
-    /// By layout of their atlases; none before the first such frame.
+    /// Targets of foveated frames, by layout of their atlases; none before the first such frame.
     foveated: [Option<FoveatedTargets>; 2],
-    /// For full-rate frames with one sample a pixel; none before the first.
+    /// Targets of full-rate frames with one sample a pixel; none before the first such frame.
     points: Option<FoveatedTargets>,
     /// Color of a scene that stands still, and its samples a pixel.
     supersampled: Option<(u32, Image<[f32; 3]>)>,
@@ -142,8 +142,8 @@ impl RasterSource {
         RenderedFrame { reference_on_device: request.needs_full_rate().then(|| self.targets()), ..frame }
     }
 
-    /// Records what the methods get, unless that is the full-rate frame. Motion vectors contain no jitter: both views
-    /// have the same.
+    /// Records the rendering of the methods' content, unless that is the full-rate frame. Motion vectors contain no
+    /// jitter, because both views have the same jitter.
     fn record_content(
         &mut self,
         encoder: &mut CommandEncoder,
@@ -234,8 +234,8 @@ impl RasterSource {
         Ok((frame, took))
     }
 
-    /// Draws the full-rate frame with a jittered projection and one sample a pixel. The frame on the device, its view
-    /// and the previous one, and the time.
+    /// Draws the full-rate frame with a jittered projection and one sample a pixel. Returns the frame on the device,
+    /// its view and the previous one, and the time.
     fn draw_points(
         &mut self,
         request: &FrameRequest,
@@ -266,7 +266,7 @@ impl RasterSource {
         Arc::new(on_device(&self.device, self.raster.targets(), self.raster.near()))
     }
 
-    /// Poses the scene for a frame; the frame's view, and the previous one.
+    /// Poses the scene for a frame, and returns the frame's view and the previous one.
     fn pose(&mut self, request: &FrameRequest) -> [View; 2] {
         let (views, times) = self.of.views(request.index);
         self.raster.pose(&self.of.scene, times[0], times[1]);
@@ -345,7 +345,7 @@ impl RasterSource {
     }
 }
 
-/// A color with black in place of pixels that are not finite, and their number.
+/// The color with non-finite pixels replaced by black, and the number of these pixels.
 fn finite(color: Image<[f32; 3]>) -> (Image<[f32; 3]>, u64) {
     let mut nonfinite = 0;
     let color = color.map(|c| {
@@ -386,8 +386,8 @@ impl FrameSource for RasterSource {
         self.of.info()
     }
 
-    /// Foveated frames lie in place in their atlas where the full-rate frame is their reference: samples at full rate
-    /// are then exactly those of the reference.
+    /// If the full-rate frame is the reference, foveated frames have the atlas layout in place: their samples at full
+    /// rate are then exactly those of the reference.
     fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
         let whole = request.reference.then(|| self.full_rate(request)).transpose()?;
         let Some(whole) = whole else {
@@ -402,7 +402,7 @@ impl FrameSource for RasterSource {
         let (frame, took) = self.submit_timed(|source, encoder| {
             let [view, previous] = source.pose(request);
             let frame = source.record_content(encoder, request, [view, previous], AtlasLayout::InPlace);
-            // Depth and motion at every pixel, if lattices call for them, are drawn again: they are part of the time.
+            // If lattices need depth and motion at every pixel, these are drawn again, so that the time includes them.
             if matches!(request.wanted, Wanted::Lattices(_)) && request.geometry == SparseGeometry::Full {
                 source.raster.record_surfaces(&source.device.device, encoder, &view, &previous);
             }

@@ -161,7 +161,7 @@ impl SceneCamera {
     }
 
     /// World from the space that poses of a head refer to: its origin and its direction ahead are those of the scene's
-    /// first camera, else of a person in the middle of its floor. It is level, whatever the camera looks at.
+    /// first camera, else of a person in the middle of its floor. It is level even if the camera looks up or down.
     pub fn head_space(scene: &Scene) -> DMat4 {
         let first = scene.pose(0.0).cameras.into_iter().next();
         let from = first.unwrap_or_else(|| standing(scene, scene.framing_camera(1.0))).world_from_camera;
@@ -297,7 +297,7 @@ fn standing(scene: &Scene, camera: Camera) -> Camera {
     Camera { world_from_camera: DMat4::from_rotation_translation(turn, eye), ..camera }
 }
 
-/// Level direction in which a camera looks. Looking straight up or down gives none: then -z.
+/// Level direction in which a camera looks. A camera that looks straight up or down has no such direction: then -z.
 fn heading(from: &DMat4) -> DVec3 {
     (-from.z_axis.truncate() * DVec3::new(1.0, 0.0, 1.0)).normalize_or(DVec3::NEG_Z)
 }
@@ -332,7 +332,7 @@ mod tests {
         let step = eye(&passing, &scene, 1e-3).distance(start) / 1e-3;
         let fastest = (radius / 18.0).max(start.distance(middle(&scene).1) / 5.0);
         assert!(step > 0.0 && step <= fastest * 1.000_001, "{step} m/s of at most {fastest}");
-        // It stays within its amplitude.
+        // The camera stays within its amplitude.
         assert!((0..1000).all(|i| eye(&passing, &scene, f64::from(i)).distance(start) <= fastest * LATERAL_SECONDS));
         let framing = SceneCamera::choose(&scene, Some("framing"), [64, 36], Some(60.0)).unwrap();
         assert!(framing.is_still(&scene) && (framing.geometry().hfov_deg() - 60.0).abs() < 1e-3);

@@ -25,7 +25,7 @@ use std::sync::Arc;
 const STEP: u32 = 1 << 20;
 /// Offset of the frame numbers that seed full-rate frames, so that their noise is independent of the foveated frames'.
 const FULL_RATE_FRAMES: u64 = 1 << 31;
-/// The same for the pixels that [`shade`](FrameSource::shade) traces.
+/// Offset for the pixels that [`shade`](FrameSource::shade) traces.
 const SHADED_FRAMES: u64 = 1 << 32;
 
 /// Sample counts and distribution.
@@ -57,7 +57,7 @@ pub struct TracedSource {
     clock: SpanClock,
     /// Samples of the last sparse frame on the tracer's device.
     on_device: Option<DeviceSamples>,
-    /// Samples of single pixels there.
+    /// Samples of single pixels on the tracer's device.
     repaired: Option<DeviceSamples>,
 }
 
@@ -192,8 +192,8 @@ impl TracedSource {
         SourceFrame { depth: Some(seen.depth), motion: Some(seen.motion), ..frame }
     }
 
-    /// The samples of a sparse frame, left on the tracer's device, and the time of tracing them; `None` unless the
-    /// frame is sparse and that device is the methods'.
+    /// The samples of a sparse frame, which stay on the tracer's device, and the time of tracing them. `None` unless
+    /// the frame is sparse and the methods run on that device.
     fn samples_on_device(
         &mut self,
         request: &FrameRequest,
@@ -234,7 +234,8 @@ impl FrameSource for TracedSource {
             let (frame, took) = self.kept_full_rate(request)?;
             return Ok(RenderedFrame { render: Some(took), full_rate: Some(took), ..request.answer(frame) });
         };
-        // The reference has other samples a pixel: its time says nothing about foveation.
+        // The reference has another number of samples a pixel, so its time cannot be compared with that of the foveated
+        // frame.
         let reference = if request.reference { Some(self.kept_full_rate(request)?.0) } else { None };
         let views = self.pose(request)?;
         let view = &views[0];
@@ -262,8 +263,8 @@ impl FrameSource for TracedSource {
         Ok(RenderedFrame { render: Some(took), ..request.answer(reference).foveated(frame) })
     }
 
-    /// Pixels have as many samples as the lattice there has a point, and paths of their own. What the frame left on the
-    /// device, they join there.
+    /// Each pixel has as many samples as a point of its lattice, and independent paths. If the frame's samples are on
+    /// the device, these stay there, and their noise is written into the frame's.
     fn shade(&mut self, frame: &RenderedFrame, wish: &Wish) -> Result<Option<Shaded>, InputError> {
         // The scene is posed: the frame was rendered last.
         let ([view, _], _) = self.of.views(frame.index);

@@ -1,4 +1,4 @@
-//! A scene, its light, and the camera that sees it: what every renderer of scenes starts from.
+//! A scene, its light, and the camera that sees it: the input of every renderer of scenes.
 
 use super::open::check_size;
 use super::{ReadLimits, SceneCamera, SceneOptions, SourceInfo};

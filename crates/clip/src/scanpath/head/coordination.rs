@@ -1,15 +1,16 @@
-//! Constants of head and eye together, with their sources, and what the model generates besides samples.
+//! Constants of the coordination of head and eye, with their sources, and events that the model generates besides
+//! samples.
 //!
-//! What is called *chosen* has no published figure behind it that was at hand; the figure beside it says what it agrees
+//! Values marked *chosen* have no published source that was at hand. The figures beside them are those that they agree
 //! with.
 
 /// Amplitude of a gaze shift in degrees: exponential with [`SHIFT_SCALE_DEG`], truncated to this range. The lower end
-/// is that of saccades on a screen; shifts of the upper end were made by all subjects of Guitton & Volle 1987 (up to
+/// is that of saccades on a screen. All subjects of Guitton & Volle 1987 made shifts as large as the upper end (up to
 /// 160).
 pub(super) const SHIFT_DEG: [f64; 2] = [2.5, 100.0];
 
 /// Scale of the amplitude in degrees; chosen. 65 % of the shifts are then below 15 degrees, where Malinov et al. 2000
-/// counted 83 % among people who look at targets on a table, who have no reason to look behind them.
+/// counted 83 %. Their subjects looked at targets on a table, and had no reason to look behind them.
 pub(super) const SHIFT_SCALE_DEG: f64 = 12.0;
 
 /// Vertical component of a shift's direction, as a share of the horizontal one in the mean; chosen. People in headsets
@@ -23,16 +24,17 @@ pub(super) const AZIMUTH_DEG: f64 = 80.0;
 /// Lowest and highest elevation in degrees; chosen.
 pub(super) const ELEVATION_DEG: [f64; 2] = [-35.0, 25.0];
 
-/// Angle in degrees between head and target up to which the eye goes alone: uniform; chosen. Freedman & Sparks 1997: no
-/// contribution of the head below 20 degrees (monkeys). Hu et al. 2026 fit a hinge to people in headsets, and find all
-/// from eye-movers to head-movers; here, a person is a bit of each.
+/// Angle in degrees between head and target up to which the eye moves without the head: uniform; chosen. Freedman &
+/// Sparks 1997: no contribution of the head below 20 degrees (monkeys). Hu et al. 2026 fit a hinge function to people
+/// in headsets, and find a continuum from eye-movers to head-movers; this model lies between the two.
 pub(super) const EYE_ALONE_DEG: [f64; 2] = [5.0, 20.0];
 
-/// Degrees that the head turns a degree of the target's angle beyond [`EYE_ALONE_DEG`]; chosen. Freedman & Sparks 1997:
-/// linear from 25 to 90 degrees. Eyes then rest within 31 degrees of the head's axis for targets within 90.
+/// Turn of the head in degrees for each degree of the target's angle beyond [`EYE_ALONE_DEG`]; chosen. Freedman &
+/// Sparks 1997: linear from 25 to 90 degrees. Eyes then rest within 31 degrees of the head's axis for targets within
+/// 90.
 pub(super) const HEAD_GAIN: f64 = 0.85;
 
-/// Vertical part of a turn, as a share of what the horizontal one would be; chosen. Freedman & Sparks 1997: the head
+/// Vertical part of a turn, relative to a horizontal turn for the same angle; chosen. Freedman & Sparks 1997: the head
 /// contributes less the more vertical a shift is.
 pub(super) const HEAD_VERTICAL: f64 = 0.7;
 
@@ -51,36 +53,37 @@ pub(super) const HEAD_TURN_S: [f64; 2] = [0.26, 0.00625];
 /// bring the target within it.
 pub(super) const EYE_LIMIT_DEG: f64 = 45.0;
 
-/// Share of the head's rotation that the eye makes up for at once; chosen. It is close to 1 in the light: gaze then
-/// slips by 1 degree a second when the head turns by 50.
+/// Gain of the vestibulo-ocular reflex: share of the head's rotation that the eye compensates at once; chosen. It is
+/// close to 1 in the light: gaze then slips by 1 degree a second when the head turns by 50.
 pub(super) const ROTATION_GAIN: f64 = 0.98;
 
 /// The same for the head's translation: about 0.6 for near and far targets (Liao et al. 2009).
 pub(super) const TRANSLATION_GAIN: f64 = 0.6;
 
-/// The same for the motion of a pursued thing; chosen.
+/// The same for the motion of a pursued object; chosen.
 pub(super) const PURSUIT_GAIN: f64 = 0.95;
 
 /// Time in seconds in which gaze approaches its target by a factor e, by slow eye movements; chosen. Slip and drift
 /// then do not add up. Shorter times make gaze steadier than the gains alone.
 pub(super) const RETURN_S: f64 = 0.2;
 
-/// Speed of a pursued thing in degrees a second: uniform; chosen, below the 100 that pursuit
-/// reaches (Meyer et al. 1985).
+/// Speed of a pursued object in degrees a second: uniform; chosen, below the limit of pursuit of 100 (Meyer et al.
+/// 1985).
 pub(super) const PURSUIT_DEG_S: [f64; 2] = [5.0, 20.0];
 
 /// Duration of a pursuit in seconds: uniform; chosen.
 pub(super) const PURSUIT_S: [f64; 2] = [0.6, 1.5];
 
-/// Share of a pursued thing's way that the head turns; chosen.
+/// Share of a pursued object's path that the head turns; chosen.
 pub(super) const PURSUIT_HEAD: f64 = 0.6;
 
-/// Place of the eyes from the axis of the neck in metres: above and ahead. Oculus SDK,
+/// Offset of the eyes from the axis of the neck in metres: above and ahead. Oculus SDK,
 /// `OVR_DEFAULT_NECK_TO_EYE_VERTICAL` and `_HORIZONTAL`.
 pub(super) const NECK_TO_EYE_M: [f64; 2] = [0.075, 0.0805];
 
-/// Distance in metres of a point ahead that the head of a walking person keeps aiming at: it pitches and yaws against
-/// what its step raises and moves aside (Imai et al. 2001). Of the order of Hirasaki et al. 1999; chosen.
+/// Distance in metres of a point ahead at which the head of a walking person keeps aiming. The head pitches and yaws to
+/// compensate for the vertical and sideways motion of the steps (Imai et al. 2001). Of the order of Hirasaki et al.
+/// 1999; chosen.
 pub(super) const HEAD_FIXATION_M: f64 = 1.0;
 
 /// A rotation of the head: ground truth behind the samples. Turns may overlap; their angles then add up.
@@ -92,7 +95,7 @@ pub struct HeadTurn {
     pub end_s: f64,
     /// To the left and upwards, in degrees.
     pub by_deg: [f64; 2],
-    /// Angles to the left and upwards, in degrees, from where the head was about to rest to the target.
+    /// Angles to the left and upwards, in degrees, to the target from the planned resting direction of the head.
     pub error_deg: [f64; 2],
     /// Begin of the gaze shift or pursuit that it belongs to, in seconds.
     pub gaze_start_s: f64,

@@ -52,8 +52,8 @@ pub struct SyntheticHead {
     pub regarded: Vec<Regarded>,
 }
 
-/// Generates a scanpath of somebody who looks around among surroundings at these distances: [`in_a_room`], or those of
-/// a scene. It begins with head and gaze straight ahead.
+/// Generates a scanpath of a person who looks around in surroundings with these distances: [`in_a_room`], or those of a
+/// scene. It begins with head and gaze straight ahead.
 ///
 /// # Errors
 /// Those of [`HeadOptions::validate`].

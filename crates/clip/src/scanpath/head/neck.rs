@@ -26,7 +26,7 @@ impl Neck {
         Self { is_walking, done_deg: DVec2::ZERO, turns: vec![] }
     }
 
-    /// Adds a turn that takes as long as its amplitude asks for; returns its end.
+    /// Adds a turn whose duration follows from its amplitude; returns its end.
     pub(super) fn turn(&mut self, start_s: f64, by_deg: DVec2) -> f64 {
         self.turn_in(start_s, HEAD_TURN_S[0] + HEAD_TURN_S[1] * by_deg.length(), by_deg)
     }
@@ -42,7 +42,7 @@ impl Neck {
         self.done_deg + self.turns.iter().map(|t| t.by_deg).sum::<DVec2>()
     }
 
-    /// Drops the turns that are over. Poses are asked for at `now_s` and later.
+    /// Drops the turns that are over. Poses are requested only at `now_s` and later.
     pub(super) fn forget(&mut self, now_s: f64) {
         let is_over = |t: &Turn| t.start_s + t.duration_s <= now_s;
         self.done_deg += self.turns.iter().filter(|t| is_over(t)).map(|t| t.by_deg).sum::<DVec2>();

@@ -6,8 +6,8 @@ use crate::error::InputError;
 /// Largest number of samples: 64 bytes each, two thirds of a gigabyte in all.
 const MAX_SAMPLES: f64 = 1e7;
 
-/// Distance in metres to what is seen from a point in a direction, a unit vector; `None` if nothing is. Both are in the
-/// space of [`HeadPose`](crate::scanpath::HeadPose).
+/// Distance in metres from a point to the surface that is seen in a direction, a unit vector; `None` if there is no
+/// surface. Both are in the space of [`HeadPose`](crate::scanpath::HeadPose).
 pub type DistanceOf<'a> = &'a dyn Fn([f64; 3], [f64; 3]) -> Option<f64>;
 
 /// Options of [`generate_head`](super::generate_head).
@@ -21,9 +21,9 @@ pub struct HeadOptions {
     pub rate_hz: f64,
     /// Whether the person walks, as [`gait`](crate::source::gait) describes; default: stands.
     pub is_walking: bool,
-    /// Share of the gaze shifts that end on a thing that moves and is pursued, 0 to 1; default 0: nothing moves.
+    /// Share of the gaze shifts that end on a moving object, which is then pursued, 0 to 1; default 0: nothing moves.
     pub pursuits: f64,
-    /// Share of the head's rotation that the eye makes up for at once (vestibulo-ocular reflex); default 0.98, 1 is
+    /// Share of the head's rotation that the eye compensates at once (vestibulo-ocular reflex); default 0.98, 1 is
     /// perfect. -1 to 2.
     pub rotation_gain: f64,
     /// The same for the head's translation; default 0.6. -1 to 2.
@@ -81,8 +81,8 @@ impl HeadOptions {
     }
 }
 
-/// Distances in a room that is 6 m wide, 3 m high and 12 m long, by somebody whose eyes are 1.6 m above the floor and
-/// who looks along it from 3 m before the end behind: surroundings for scanpaths without a scene.
+/// Distances in a room that is 6 m wide, 3 m high and 12 m long: surroundings for scanpaths without a scene. The eyes
+/// are 1.6 m above the floor and 3 m in front of the rear wall, and look along the room.
 pub fn in_a_room(from: [f64; 3], direction: [f64; 3]) -> Option<f64> {
     const LEAST: [f64; 3] = [-3.0, -1.6, -9.0];
     const MOST: [f64; 3] = [3.0, 1.4, 3.0];

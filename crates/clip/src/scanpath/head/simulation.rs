@@ -24,8 +24,8 @@ use std::f64::consts::TAU;
 const AIM_TRIES: usize = 64;
 /// Longest step in seconds in which slip is integrated: the head turns by less than half a degree in it.
 const STEP_S: f64 = 0.002;
-/// Distances in metres of points to look at. A surface nearer than the lower one would be passed within a fixation by
-/// somebody who walks; beyond the upper one, translation does not matter.
+/// Distances in metres of points to look at. A walking person would pass a surface nearer than the lower limit within a
+/// fixation. Beyond the upper limit, translation does not matter.
 const DISTANCE_M: [f64; 2] = [0.4, 1000.0];
 /// Points in time at which a gaze shift is checked against the eye's range.
 const FLIGHT_CHECKS: u32 = 32;
@@ -90,7 +90,7 @@ impl<'a, T: Iterator<Item = f64>> Simulation<'a, T> {
         self.times.peek().is_none()
     }
 
-    /// Looks at the point of the space, or follows it as it moves off.
+    /// Fixates the point of the space, or pursues it when it moves.
     pub(super) fn rest(&mut self) {
         if unit(&mut self.rng) < self.options.pursuits {
             self.pursue();
@@ -117,13 +117,13 @@ impl<'a, T: Iterator<Item = f64>> Simulation<'a, T> {
         self.note(EventKind::Fixation, start_s, start);
     }
 
-    /// Follows a thing that begins to move where the gaze rests.
+    /// Pursues an object that begins to move at the point of gaze.
     fn pursue(&mut self) {
         let (start_s, start) = (self.now_s, self.gaze);
         let duration_s = uniform(&mut self.rng, PURSUIT_S);
         let speed_deg_s = uniform(&mut self.rng, PURSUIT_DEG_S);
         let (right, down) = axes(self.gaze);
-        // Rather sideways, and towards the middle of the field.
+        // The direction is mostly sideways, and towards the middle of the field.
         let slant = uniform(&mut self.rng, [-VERTICAL_SHARE, VERTICAL_SHARE]);
         let side = if right.dot(DVec3::NEG_Z) >= 0.0 { 1.0 } else { -1.0 };
         let along = (right * side + down * slant).normalize();
@@ -184,12 +184,12 @@ impl<'a, T: Iterator<Item = f64>> Simulation<'a, T> {
         Thing { start_s: self.now_s, point: eye + direction * distance_m, velocity: DVec3::ZERO }
     }
 
-    /// Plans the head's turn of a gaze shift: by the target's angle from where the head is about to rest (Goossens &
-    /// Van Opstal 1997), so far as it is beyond what the eye covers alone.
+    /// Plans the head's turn of a gaze shift: by the part of the target's angle that the eye does not cover alone. The
+    /// angle is measured from the planned resting direction of the head (Goossens & Van Opstal 1997).
     fn turn_head_to(&mut self, target: &Thing) {
         let eye = self.neck.pose(self.now_s).0;
         let error_deg = azimuth_elevation_deg((target.point - eye).normalize()) - self.neck.goal_deg();
-        // Both are drawn in any case, so that the same seed gives the same shifts in other surroundings.
+        // Both numbers are always drawn, so that the same seed gives the same shifts in other surroundings.
         let beyond_deg = error_deg.length() - uniform(&mut self.rng, EYE_ALONE_DEG);
         let lag_s = uniform(&mut self.rng, HEAD_LAG_S);
         if beyond_deg <= 0.0 {
@@ -254,8 +254,8 @@ impl<'a, T: Iterator<Item = f64>> Simulation<'a, T> {
         turn(gaze, right * cos + down * sin, length_deg)
     }
 
-    /// Moves the gaze onto a point. The reflex is off in large shifts and made up for in small ones (Guitton & Volle
-    /// 1987): gaze, not the eye in the head, follows the plan.
+    /// Moves the gaze onto a point. The vestibulo-ocular reflex is off in large shifts and compensated in small ones
+    /// (Guitton & Volle 1987), so the plan describes the gaze in space, not the eye in the head.
     fn shift_to(&mut self, kind: EventKind, to: Thing, intended_deg: f64) {
         let (start_s, start) = (self.now_s, self.gaze);
         self.thing = to;

@@ -40,7 +40,8 @@ impl Pattern {
         Self { offsets, footprint: SHARP / (count as f32).sqrt() }
     }
 
-    /// `count` samples that are filtered as single samples of a pixel are: their mean is that of jittered frames.
+    /// `count` samples, each filtered like the only sample of a pixel, so that their mean equals the mean of jittered
+    /// frames.
     pub fn supersampled(count: u32) -> Self {
         Self { offsets: reference_offsets_px(count).collect(), footprint: SHARP }
     }

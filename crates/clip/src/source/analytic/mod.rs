@@ -178,9 +178,9 @@ impl AnalyticSource {
         Some(image(self.info.size, pixels))
     }
 
-    /// Frame `index` of a projection that is jittered by `jitter_px` (what is at `p` without jitter is at
-    /// `p + jitter_px`), with one color sample a pixel, as a rasterizer draws it. Motion vectors contain no jitter. The
-    /// mean of such frames is the frame with that many samples a pixel ([`FrameRequest::reference_samples`]).
+    /// Frame `index` of a projection that is jittered by `jitter_px` (a point at `p` without jitter is at `p +
+    /// jitter_px`), with one color sample a pixel, as a rasterizer draws it. Motion vectors contain no jitter. The mean
+    /// of n such frames is the frame with n samples a pixel ([`FrameRequest::reference_samples`]).
     ///
     /// # Panics
     /// If the jitter is not finite.
@@ -260,7 +260,7 @@ impl AnalyticSource {
         self.panel_mask(index).map(|mask| mask.map(|panel| if panel { 0.0 } else { 1.0 }))
     }
 
-    /// A frame of `light-step` in the light of frame `index`; those of other scenes as they are.
+    /// A frame of `light-step` in the light of frame `index`. Frames of other scenes stay unchanged.
     fn lit(&self, mut frame: SourceFrame, index: u64) -> SourceFrame {
         let [from, until] = LIGHT_STEP_SECONDS;
         if self.kind == Kind::LightStep && (from..until).contains(&(index as f64 / self.fps)) {
@@ -271,7 +271,7 @@ impl AnalyticSource {
         frame
     }
 
-    /// Full-rate frame `index`, with `samples` samples a pixel instead of its own, if given.
+    /// Full-rate frame `index`, with `samples` samples a pixel, if given, instead of the scene's own number.
     fn full_rate(&mut self, index: u64, samples: Option<u32>) -> SourceFrame {
         let pattern = samples.map_or_else(|| self.pattern.clone(), Pattern::supersampled);
         let samples = samples.unwrap_or_default();

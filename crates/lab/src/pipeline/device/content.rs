@@ -1,4 +1,4 @@
-//! Frames on a device, as the pipeline asks for them.
+//! Frames on a device, by the interface of the pipeline.
 
 use crate::frame::{Content, DeviceContent, DeviceFrame, OnDevice, SparseFrame};
 use crate::lattices::levels;

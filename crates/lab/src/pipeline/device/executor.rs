@@ -131,7 +131,7 @@ impl Executor for DeviceExecutor {
     }
 }
 
-/// The quads that a method wants to repair, and the time of choosing them.
+/// The quads that a method chooses to repair, and the time of choosing them.
 fn plan(
     gpu: &Headless,
     clock: &PassClock,

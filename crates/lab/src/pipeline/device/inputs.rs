@@ -36,7 +36,7 @@ pub struct DeviceInputs {
     given: Given,
 }
 
-/// The textures that the methods get of the current frame.
+/// The textures of the current frame that the methods get.
 #[derive(Clone, Debug)]
 struct Given {
     color: Texture,
@@ -91,9 +91,9 @@ impl DeviceInputs {
         Ok(())
     }
 
-    /// Makes `frame` the current one. What it has on this device is imported or, if the methods can read it, taken as
-    /// it is, and must stay until they have run; the rest is uploaded. Values are the same either way. A full-rate
-    /// frame waits for [`foveate`](Self::foveate). Records into `encoder`.
+    /// Makes `frame` the current one. Images on this device are used directly if the methods can read them, and
+    /// imported otherwise; they must stay until the methods have run. Other images are uploaded. Values are the same in
+    /// each case. A full-rate frame waits for [`foveate`](Self::foveate). Records into `encoder`.
     pub fn set(&mut self, encoder: &mut CommandEncoder, frame: &RenderedFrame) {
         match &frame.content {
             Content::FullRate => {
@@ -108,7 +108,7 @@ impl DeviceInputs {
             Content::Foveated(foveated) => {
                 self.given = self.upload_geometry(&frame.reference);
                 self.write_rgb(&self.foveated, &foveated.color);
-                // Lattices say how coarse a sparse frame is.
+                // The levels of detail of a sparse frame follow from its lattices.
                 self.given.lod = foveated.lattices.is_none().then(|| self.uploaded(&self.lod, &foveated.lod));
                 self.given.noise = Some(self.uploaded(&self.noise, &foveated.noise));
             }
@@ -125,7 +125,7 @@ impl DeviceInputs {
         }
     }
 
-    /// Takes depth, motion and trust of the full-rate frame; with its color if it is on this device.
+    /// Takes depth, motion and trust of the full-rate frame, and its color if that is on this device.
     fn set_reference(&mut self, encoder: &mut CommandEncoder, frame: &RenderedFrame) -> Option<()> {
         let rendered = frame.reference_on_device.as_ref().and_then(|on| on.downcast_ref::<DeviceFrame>());
         let rendered = rendered.filter(|on| Arc::ptr_eq(&on.device, &self.gpu));
@@ -194,7 +194,7 @@ impl DeviceInputs {
         import.dispatch(device, &mut pass, &[], &group, [frame.color.width(), frame.color.height()], 1);
     }
 
-    /// Uploads what a frame has besides its color.
+    /// Uploads all images of a frame except its color.
     fn upload_geometry(&self, frame: &SourceFrame) -> Given {
         let upload_motion = |motion: &Image<[f32; 2]>| {
             match self.formats.motion {
@@ -225,8 +225,8 @@ impl DeviceInputs {
         }
     }
 
-    /// Uploads samples of single pixels, and the noise of the frame with theirs. They take the place of the full-rate
-    /// frame, which foveated frames have no use for.
+    /// Uploads samples of single pixels, and the noise of the frame with the noise of these samples. They are written
+    /// to the texture of the full-rate frame, which foveated frames do not use.
     pub(super) fn upload_repaired(&self, color: &Image<[f32; 3]>, noise: Option<&Image<[f32; 2]>>) -> &Texture {
         self.write_rgb(&self.full, color);
         if let Some(noise) = noise {

@@ -1,4 +1,4 @@
-//! Errors of damaged files, and what errors and warnings call the parts of a file.
+//! Errors of damaged files, and names for the parts of a file in errors and warnings.
 
 use crate::error::InputError;
 

@@ -35,7 +35,7 @@ fn fill(geometry: &mut Geometry) {
         }
         return;
     }
-    // It cannot fail.
+    // MikkTSpace cannot fail here.
     let _ = generate_tangents(&mut Corners(geometry));
 }
 

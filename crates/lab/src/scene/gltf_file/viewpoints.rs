@@ -71,7 +71,7 @@ pub(super) fn light(
                 warnings.about("cones of spot lights out of range are clamped", name);
             }
             let outer = outer.clamp(1e-3, FRAC_PI_2);
-            // Narrower by so much that the cosines differ.
+            // Narrow the inner angle enough that the cosines differ.
             let inner = inner.clamp(0.0, outer * 0.999);
             PunctualKind::Spot { cos_inner: inner.cos(), cos_outer: outer.cos() }
         }

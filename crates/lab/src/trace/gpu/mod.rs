@@ -228,7 +228,8 @@ impl GpuTracer {
         place.submit(&self.device, lattice, points, run.film(), [first, size], samples);
     }
 
-    /// Traces `work` into a film on the device. The film: its width in pixels, its base, and what it holds before.
+    /// Traces `work` into a film on the device. The film is given by its width in pixels, its base, and its earlier
+    /// contents.
     fn submit_batches(
         &self,
         world: &World,
@@ -291,7 +292,7 @@ fn scene_buffer(
     limits: super::scene_buffer::SceneBufferLimits,
 ) -> Result<SceneBuffer, SceneBufferError> {
     let tables: Vec<[u32; 4]> = world.tables.words().collect();
-    // Room for one triangle even where nothing moves: a zeroed node has no children.
+    // Reserves room for one triangle even if nothing moves. A zeroed node has no children.
     let max_moving = if effects.has(Effect::MovingObjects) { world.max_moving.max(1) } else { 0 };
     let mut builder = SceneBufferBuilder::default();
     builder

@@ -1,4 +1,4 @@
-//! Samples of lattices from their films to their pixels, on the device.
+//! Copies samples of lattices from their films to their pixels, on the device.
 
 use crate::device::Headless;
 use crate::frame::DeviceSamples;
@@ -18,7 +18,7 @@ const COLUMNS: u32 = 4096;
 pub struct SampledPoint {
     /// x in the low 16 bits, y in the high 16 bits.
     pub point: u32,
-    /// Distance along the view axis in metres; infinity where there is nothing.
+    /// Distance along the view axis in metres; infinity where there is no surface.
     pub depth: f32,
     /// Pixels, y down, previous minus current.
     pub motion: [f32; 2],

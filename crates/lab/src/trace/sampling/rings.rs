@@ -62,7 +62,7 @@ pub(super) struct Blended {
 }
 
 /// Distance in pixels from the borders of rings within which a pixel's distance to the gaze is computed. Farther away,
-/// a row's runs in closed form tell its ring. Larger than any rounding error.
+/// the closed-form runs of a row give its ring. Larger than any rounding error.
 const MARGIN_PX: f32 = 1e-3;
 
 /// Blends the rings into one frame. Outside the lens, black without noise.
@@ -90,7 +90,7 @@ pub(super) fn blend(rings: &[Ring], films: &[Film], size_px: [u32; 2], gaze_px: 
     Blended { color, lod, noise }
 }
 
-/// What is the same for all pixels of a blend.
+/// Constants of a blend, shared by all of its pixels.
 struct Blend<'a> {
     rings: &'a [Ring],
     films: &'a [Film],

@@ -17,8 +17,8 @@ use std::collections::BTreeMap;
 
 /// Samples of a sparse frame: lattices of the post-process, and the number of samples a point.
 ///
-/// A lattice covers the rectangle around its region, as a view that a renderer draws does. Each point is one pixel of
-/// the full-rate frame: samples are spread over that pixel, not over the block.
+/// A lattice covers the rectangle around its region, like a view that a renderer draws. Each point is one pixel of the
+/// full-rate frame: samples are spread over that pixel, not over the block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SparsePlan {
     size_px: [u32; 2],
@@ -34,7 +34,8 @@ impl Sampling {
     ///
     /// # Errors
     /// [`SettingsError`] unless the pattern has lattices whose steps are ascending powers of two from 1 on, without a
-    /// lens. The last two of regions may be equal: both are one lattice then, with the samples of the outer region.
+    /// lens. The last two regions may have equal steps: they then form one lattice, with the samples of the outer
+    /// region.
     pub fn check_sparse(&self) -> Result<(), SettingsError> {
         let refuse =
             |setting, found: String, expected: &str| Err(SettingsError { setting, found, expected: expected.into() });
@@ -83,7 +84,8 @@ impl Sampling {
         let mut samples = vec![samples; 4];
         match self {
             Self::Layers(Layers { radii_deg, steps, .. }) => {
-                // A foveation has three regions: the second layer is the middle one of another foveation.
+                // A foveation has only three regions. The second layer is therefore taken from another foveation, as
+                // its middle region.
                 let inner =
                     Foveation { mid_deg: 2.0 * radii_deg[1].max(radii_deg[0]), rate_mid: steps[1], ..foveation };
                 let second = order.lattices(&inner, geometry, gaze_px, frame);
@@ -147,8 +149,8 @@ impl SparsePlan {
         stack.flat_map(|(lattice, (points, &n))| points.iter().map(move |&point| (px_of(lattice, point), n)))
     }
 
-    /// Traces the samples. Pixels without any are NaN: the post-process does not read them, and what did would show.
-    /// Their noise is that of the nearest sample of their lattice.
+    /// Traces the samples. Pixels without samples are NaN: the post-process does not read them, and any code that did
+    /// would be noticed. Their noise is that of the nearest sample of their lattice.
     pub fn trace(&self, tracer: &Tracer, world: &World, view: &View, frame: u64) -> FoveatedFrame {
         let mut color = Image::filled(self.size_px, [f32::NAN; 3]);
         let mut noise: Vec<Image<[f32; 2]>> = vec![];
@@ -210,9 +212,9 @@ impl SparsePlan {
         (samples.lattices, samples.samples) = (self.lattices, self.samples());
     }
 
-    /// Traces the pixels of chosen quads of 2x2 pixels, with as many samples each as the points of the lattice there,
-    /// whether that samples them or not. `frame` seeds the samples: a number that no frame has makes them independent.
-    /// Color and noise of these pixels; elsewhere NaN, and a noise of 0 samples.
+    /// Traces the pixels of chosen quads of 2x2 pixels. Each has as many samples as a point of its lattice, even if it
+    /// is no point of the lattice. `frame` seeds the samples: a number that no frame has makes them independent.
+    /// Returns color and noise of these pixels; other pixels are NaN, with a noise of 0 samples.
     pub fn trace_quads(
         &self,
         tracer: &Tracer,
@@ -239,8 +241,8 @@ impl SparsePlan {
         (color, noise)
     }
 
-    /// As [`trace_quads`](Self::trace_quads), left on the tracer's device in color and noise of `samples`. Other pixels
-    /// of these keep their values.
+    /// As [`trace_quads`](Self::trace_quads), but writes to color and noise of `samples` on the tracer's device. Other
+    /// pixels of these keep their values.
     pub fn trace_quads_in_place(
         &self,
         tracer: &GpuTracer,
@@ -292,7 +294,8 @@ impl SparsePlan {
         Spans::new(self.points[index].iter().copied(), 0..self.samples[index])
     }
 
-    /// Noise of the points of a lattice at which a finer one has a sample, in `finer`; 0 at the others.
+    /// Noise of those points of a lattice at which a finer lattice has a sample; 0 at other points. `finer`: noise of
+    /// the finer lattices' points.
     fn finer_noise(&self, index: usize, finer: &[Image<[f32; 2]>]) -> Image<[f32; 2]> {
         let stack = self.lattices.as_slice();
         let mut of_points = Image::filled(stack[index].points, [0.0; 2]);
