@@ -231,9 +231,9 @@ impl Settings {
     }
 
     /// Weighted reservoirs that reach the gains that the paper reports: the gate compares at the candidate's scale,
-    /// weights fall with the eighth power of the density and the third of the samples a pixel, and reservoirs keep
-    /// means. In a still view they keep most of the detail that [`steady`](Self::steady) keeps; in motion they keep
-    /// less of it.
+    /// weights fall with the eighth power of the density and the third power of the samples a pixel, and reservoirs
+    /// keep means. In a still view they keep most of the detail that [`steady`](Self::steady) keeps; in motion they
+    /// keep less of it.
     pub fn weighted() -> Self {
         Self { method: Method::Wrs(Wrs::weighted()), ..Self::default() }
     }
