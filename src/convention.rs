@@ -1,8 +1,8 @@
 //! Conventions of motion vectors and depth values, and their conversion to internal conventions.
 //!
 //! Internally, a motion vector is `previous - current` in pixels with y down: a pixel `p` was at `p + motion` in the
-//! previous frame. Depth is a **disparity** 1/z, with z the distance along the view axis: 0 is infinitely far, planes
-//! are linear in screen space, and every perspective depth buffer is an affine function of it.
+//! previous frame. Depth is a **disparity** 1/z, with z the distance along the view axis. It is 0 at infinity and
+//! linear in screen space over planes, and every perspective depth buffer is an affine function of it.
 
 use crate::error::SettingsError;
 use crate::kernel::depth::DisparityMap;

@@ -155,9 +155,9 @@ pub struct ViewFrame {
     /// pixel. `None`: every pixel is visible.
     pub visible_px: Option<[[f32; 4]; 2]>,
     /// Where the samples of a sparse frame lie ([`Filter::Sparse`](crate::Filter::Sparse)): the lattices that the
-    /// renderer drew, for the gaze that it used. The color input is of the context's size, and only its samples are
-    /// read, or it is an atlas ([`Lattice::atlas_texel`](crate::Lattice::atlas_texel)) of any size; other inputs are of
-    /// the context's size. `None`: every pixel of the color input is a sample.
+    /// renderer drew, for the gaze that it used. The color input either has the context's size, and only its samples
+    /// are read, or it is an atlas ([`Lattice::atlas_texel`](crate::Lattice::atlas_texel)) of any size. Other inputs
+    /// have the context's size. `None`: every pixel of the color input is a sample.
     pub lattices: Option<Lattices>,
 }
 
@@ -376,14 +376,14 @@ pub struct Frame<'a, E: Executor> {
     pub depth: Option<E::Scalars<'a>>,
     /// Motion vectors in the context's convention. On a GPU `Rg16Float`, `Rg32Float` or wider. `None`: no motion.
     pub motion: Option<E::Vectors<'a>>,
-    /// Trust mask: confidence in history, 0 to 1. 0 rejects history; use it for what changes without motion vectors
-    /// (video panels, particles, reflections). It is about 1 minus FSR2's reactive mask. On a GPU any float or
+    /// Trust mask: confidence in history, 0 to 1. 0 rejects history; use it for content that changes without motion
+    /// vectors (video panels, particles, reflections). It is about 1 minus FSR2's reactive mask. On a GPU any float or
     /// normalised format. `None`: 1 everywhere.
     pub trust: Option<E::Scalars<'a>>,
     /// Level of detail of the foveated frame: log2 of the block edge in pixels. On a GPU any float format. `None`:
     /// computed from gaze and [`Settings::foveation`]. Sparse frames have the levels of their lattices instead, and no
-    /// such input. With this input, too, `foveation.rate_far` must be the coarsest block edge: history is not matched
-    /// at coarser levels.
+    /// such input. `foveation.rate_far` must be the coarsest block edge even with this input, because history is not
+    /// matched at coarser levels.
     pub lod: Option<E::Scalars<'a>>,
     /// Noise of the color: standard error of its luma (linear), and the number of samples that were averaged into the
     /// color, at its level of detail. On a GPU `Rg16Float`, `Rg32Float` or wider. Required if [`Settings::noisy`] is
@@ -392,8 +392,8 @@ pub struct Frame<'a, E: Executor> {
     /// Samples of single pixels of a sparse frame, shaded at full rate: linear colors of the context's size, with the
     /// frame's jitter. Only the pixels are read that `plan` chose for this frame (`gpu::Afterimage::plan`,
     /// `cpu::CpuAfterimage::plan`). Such a pixel is shown, and its sample is stored, like a pixel of the full-rate
-    /// lattice. A sample is ignored if it is NaN or infinite, so a renderer may leave out pixels that it was asked for.
-    /// It is also ignored where the full-rate lattice has a sample. `None`: no pixels are repaired.
+    /// lattice. A sample is ignored if it is NaN or infinite, so a renderer may leave out some of the chosen pixels. It
+    /// is also ignored where the full-rate lattice has a sample. `None`: no pixels are repaired.
     pub repaired: Option<E::Colors<'a>>,
     /// Descriptions of the views, one for each view of the context.
     pub views: &'a [ViewFrame],

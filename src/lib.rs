@@ -73,7 +73,7 @@
 //! # Determinism
 //!
 //! Random numbers are a hash of [`Settings::seed`], view, frame index and pixel. The same seed and the same frames give
-//! the same bytes, whatever the number of threads or the size of workgroups. Different GPUs and drivers may round
+//! the same bytes, regardless of the number of threads and the size of workgroups. Different GPUs and drivers may round
 //! differently.
 //!
 //! The crate `afterimage-lab` has research tools around this one: scenes, a path tracer, foveation along scanpaths, and

@@ -198,7 +198,7 @@ impl Smr {
     }
 
     /// Mean of the four candidates at diagonal offsets of `radius` pixels. `own`, the usable candidate of the pixel,
-    /// stands in for non-finite ones.
+    /// replaces non-finite ones.
     #[inline(always)]
     fn around(&self, view: &SurfaceHistory<'_>, x: u32, y: u32, own: Vec3, radius: f32) -> Vec3 {
         let [width, height] = view.inputs.size.map(|s| (s - 1) as f32);

@@ -278,7 +278,7 @@ fn parallax(desc: &ContextDesc, observations: &[Observation]) -> Option<Vec<Para
     (found.len() >= TILES && found.len() > strange).then_some(found)
 }
 
-/// Median factor from the disparities of a convention to those that the motion shows, and the median deviation of its
+/// Median ratio of the disparities that the motion shows to those of a convention, and the median deviation of its
 /// logarithm. `None` if too few are above 0.
 fn fit(tiles: &[Parallax], of: impl Fn(&Parallax) -> f64) -> Option<(f64, f64)> {
     let ratios = tiles.iter().map(|p| (p.disparity / of(p)).ln()).filter(|r| r.is_finite());

@@ -20,7 +20,7 @@ pub enum Check {
     Foveation,
 }
 
-/// What is wrong with an input.
+/// Fault of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Fault {

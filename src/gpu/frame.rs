@@ -8,7 +8,8 @@ use wgpu::{Buffer, QuerySet, Texture};
 
 /// A frame whose inputs are textures; fields and an example are at [`Frame`](crate::Frame).
 ///
-/// Textures have one sample a pixel and the usage `TEXTURE_BINDING`. [`Textures`] tells where the views lie in them.
+/// Textures have one sample a pixel and the usage `TEXTURE_BINDING`. [`Textures`] describes where the views lie in
+/// them.
 pub type Frame<'a> = crate::Frame<'a, Afterimage>;
 
 impl<'a> Frame<'a> {

@@ -52,7 +52,7 @@ const LOD_PX2: f32 = 0.3;
 pub struct Kept {
     /// Linear color, at least 0.
     pub color: Vec3,
-    /// Level of detail that the sample stands for: log2 of the block edge in pixels. Negative: the texel is empty.
+    /// Level of detail of the sample: log2 of the block edge in pixels. Negative: the texel is empty.
     pub lod: f32,
     /// Disparity in the frame that stored it; negative: unknown.
     pub disparity: f32,

@@ -147,7 +147,7 @@ pub fn add_geometry(mean: GeometryMean, own: f32, disparity: f32, motion: Vec2, 
     }
 }
 
-/// Distance and motion vector of a pixel: the mean, or those of its `own` sample where there is none.
+/// Distance and motion vector of a pixel: the mean, or those of its `own` sample if the mean is empty.
 #[inline]
 pub fn filled_geometry(mean: GeometryMean, own: f32, own_motion: Vec2) -> Vec3 {
     if mean.weight == 0.0 {

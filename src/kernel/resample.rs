@@ -21,7 +21,8 @@ pub const STAND_IN_WEIGHT: f32 = 0.1;
 pub const ROUNDS: u32 = 3;
 
 /// Number of the texel (as for [`corner_weight`]) that has the second largest bilinear weight at the fractions of a
-/// position: across the axis along which the position lies nearer to the middle.
+/// position: the neighbour of the nearest texel along the axis on which the position lies closer to the middle between
+/// texels.
 #[inline]
 pub fn second_corner(fraction: [f32; 2]) -> u32 {
     let nearest = u32::from(fraction[0] >= 0.5) + 2 * u32::from(fraction[1] >= 0.5);

@@ -25,7 +25,7 @@ pub enum Method {
     None,
     /// Temporal antialiasing, which ignores gaze: a baseline for comparison.
     Taa,
-    /// Temporal upsampling, which ignores gaze but knows where a sparse frame has its samples: a baseline for
+    /// Temporal upsampling, which ignores gaze but uses the positions of a sparse frame's samples: a baseline for
     /// comparison.
     Taau,
     /// Scale-matched reservoirs: the sharpest sample of each surface point is shown as long as it explains the foveated
@@ -231,8 +231,9 @@ impl Settings {
     }
 
     /// Weighted reservoirs that reach the gains that the paper reports: the gate compares at the candidate's scale,
-    /// weights fall with the eighth power of the density and the third of the samples a pixel, and reservoirs keep
-    /// means. Keeps most of the detail that [`steady`](Self::steady) keeps of a still view, and less of it in motion.
+    /// weights fall with the eighth power of the density and the third power of the samples a pixel, and reservoirs
+    /// keep means. In a still view they keep most of the detail that [`steady`](Self::steady) keeps; in motion they
+    /// keep less of it.
     pub fn weighted() -> Self {
         Self { method: Method::Wrs(Wrs::weighted()), ..Self::default() }
     }
@@ -244,7 +245,7 @@ impl Settings {
     }
 
     /// smr that rejects outdated history sooner and averages over fewer frames: moving objects and changes of light
-    /// flicker less, but less detail survives a moving camera (2 dB of what was retained on Sponza). The same cost as
+    /// flicker less, but less detail survives a moving camera (on Sponza, retained detail loses 2 dB). The same cost as
     /// [`steady`](Self::steady).
     pub fn responsive() -> Self {
         Self { method: Method::Smr(Smr::responsive()), ..Self::default() }

@@ -84,7 +84,7 @@ pub enum GateScale {
 pub struct Gate {
     /// Measure of the color difference. Default [`GateMetric::DeltaE94`].
     pub metric: GateMetric,
-    /// What is compared with the candidate. Default [`GateScale::Sample`].
+    /// Scale of the comparison. Default [`GateScale::Sample`].
     pub scale: GateScale,
     /// Difference above `offset` at which history loses all weight, in Delta E: 0.001 to 1e6. A smaller divisor follows
     /// changes of light sooner and keeps less detail, because a sharp sample differs from the blurred candidate of the

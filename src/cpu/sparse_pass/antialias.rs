@@ -15,7 +15,7 @@ impl View<'_> {
         -Vec2::from(self.inputs.uniforms.jitter_px)
     }
 
-    /// The surface whose history a pixel continues: the nearest surface around it if [`stands_before`] says so,
+    /// The surface whose history a pixel continues: the nearest surface around it if [`stands_before`] is true,
     /// otherwise its own. `level`: of its lattice.
     #[inline(always)]
     pub(super) fn surface(&self, [x, y]: [u32; 2], level: u32) -> Surroundings {

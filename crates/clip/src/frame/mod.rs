@@ -19,7 +19,7 @@ pub struct SourceFrame {
     /// Motion vectors in pixels, y down, previous minus current: `p` was at `p + motion`. `None`: nothing moves.
     pub motion: Option<Image<[f32; 2]>>,
     /// History confidence of each pixel, about 1 - FSR2's reactive mask: 1 reuses history as usual, 0 rejects it.
-    /// `Some` where the source knows content that moves without motion vectors.
+    /// `Some` if the source has content that moves without motion vectors.
     pub trust: Option<Image<f32>>,
     /// Matrix from this frame's view space (x right, y down, z forward) to the previous frame's; row-major, for column
     /// vectors. `None`: the camera did not move, or its motion is not known.

@@ -341,7 +341,7 @@ impl Rows {
         out
     }
 
-    /// Convolution along columns, clamped to the edge: rows beyond those that are held are beyond the image.
+    /// Convolution along columns, clamped to the edge. Rows that are read but not held lie outside the image.
     #[inline(always)]
     fn down(&self, plane: &[f32], kernel: &Kernel) -> Plane {
         let (width, reach) = (self.width, kernel.len() / 2);

@@ -93,7 +93,7 @@ impl Executor for CpuExecutor {
     }
 }
 
-/// The quads that a method wants to repair, and the time of choosing them.
+/// The quads that a method chooses to repair, and the time of choosing them.
 fn plan(post: &mut CpuAfterimage, frame: &Frame<'_>) -> Result<(Wish, Elapsed), FrameError> {
     let watch = Stopwatch::start();
     let pixels = &post.plan(frame)?[0];

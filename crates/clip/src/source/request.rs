@@ -28,7 +28,7 @@ pub struct FrameRequest {
     pub device: Option<DeviceHandle>,
 }
 
-/// What is to be rendered.
+/// Content to render.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Wanted {
     /// The full-rate frame, which a simulator foveates.

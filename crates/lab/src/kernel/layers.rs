@@ -301,7 +301,7 @@ pub fn layers(surface: &Surface, wo: Vec3, tables: &AlbedoTables, lobes: Lobes) 
         let amount = (dielectric * transmission) * below;
         glass = Vec3::splat(amount) / (glass_reflect * (returned.x - returned.y) + Vec3::splat(returned.y));
         let f = glass_fresnel(glass_reflect, fresnel_dielectric(z, eta));
-        // From inside, some facets reflect totally whatever the colors.
+        // From inside, some facets reflect totally, regardless of the colors.
         let least = if eta < 1.0 { 0.1 } else { 0.0 };
         glass_probability = luma((Vec3::ONE - f) * base + f).max(least) * amount;
     }

@@ -19,7 +19,7 @@ use wgpu::{
     RenderPassColorAttachment, StoreOp,
 };
 
-/// Reversed depth of the planes that bound what is drawn.
+/// Reversed depth of the near and the far plane.
 const FAR_PLANE: f32 = 0.0;
 const NEAR_PLANE: f32 = 1.0;
 
@@ -146,7 +146,7 @@ impl Raster {
     }
 
     /// Records the color of some quads of 2x2 pixels of the full-rate frame, with one sample per pixel, into the color
-    /// of `targets`; the rest of it is black. `list`: the quads, in the form of `gpu::Afterimage::repair_quads`.
+    /// of `targets`. Other pixels are black. `list`: the quads, in the form of `gpu::Afterimage::repair_quads`.
     pub fn record_quads(
         &mut self,
         device: &Device,

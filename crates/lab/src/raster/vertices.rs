@@ -94,7 +94,7 @@ impl GroupedTriangles {
         Self { order, parts }
     }
 
-    /// Vertices of `triangles`, in the grouped order. Their materials must be those that the groups were built from.
+    /// Vertices of `triangles`, in the grouped order. Their materials must be those from which the groups were built.
     pub fn vertices(&self, triangles: &Triangles) -> Vec<Vertex> {
         let mut vertices = vec![Vertex::default(); 3 * self.order.len()];
         vertices.par_chunks_mut(3).with_min_len(1024).zip(&self.order).for_each(|(vertices, &i)| {

@@ -131,8 +131,8 @@ impl RasterSource {
         self.raster.record(&self.device.device, encoder, &view, &previous);
     }
 
-    /// Records the rendering of a frame that stays on the device, and the full-rate frame with it where its depth and
-    /// motion are asked for.
+    /// Records the rendering of a frame that stays on the device, and of the full-rate frame if a simulator or the
+    /// depth and motion of every pixel need it.
     pub fn record(&mut self, encoder: &mut CommandEncoder, request: &FrameRequest) -> RenderedFrame {
         let [view, previous] = self.pose(request);
         if request.needs_full_rate() {

@@ -82,7 +82,7 @@ impl TracedSource {
         Self::new(ViewedScene::open(&choice)?, backend, settings, samples)
     }
 
-    /// Path-traces a scene as it is, with the light that it has.
+    /// Path-traces a scene without changes, with only its own light.
     ///
     /// # Errors
     /// [`Device`](InputError::Device) if the scene does not fit the device.

@@ -34,8 +34,8 @@ pub(super) fn build(boxes: &[Aabb], halve: bool) -> Bvh2 {
     bvh
 }
 
-/// A node still to be built, and what its subtree takes of the tree's arrays. Splits by the heuristic end at
-/// [`MAX_DEPTH`] and halving takes at most 32 levels more, so that recursion is shallow.
+/// A node to be built, and the parts of the tree's arrays for its subtree. Splits by the heuristic end at [`MAX_DEPTH`]
+/// and halving takes at most 32 levels more, so that recursion is shallow.
 struct Subtree<'a> {
     root: &'a mut Bvh2Node,
     /// The other nodes: the two children, then the descendants of the left one, then those of the right one.

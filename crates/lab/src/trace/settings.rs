@@ -37,7 +37,7 @@ pub struct TraceSettings {
     /// Seed of all random draws: the same seed and frame number give the same image. Default 0.
     pub seed: u64,
     /// Effects to simulate; `None`: those that the scene needs. Effects left out are missing from the image; effects
-    /// that the scene does not need change no bit of it. Default `None`.
+    /// that the scene does not need do not change the image. Default `None`.
     pub effects: Option<Effects>,
 }
 

@@ -69,7 +69,7 @@ impl View {
         matrix.transpose().to_cols_array_2d().map(|row| row.map(|v| v as f32))
     }
 
-    /// This view with a jittered projection: what is at pixel `p` without jitter is at `p + jitter_px`.
+    /// This view with a jittered projection: a point at pixel `p` without jitter is at `p + jitter_px`.
     ///
     /// # Panics
     /// If the jitter is not finite.

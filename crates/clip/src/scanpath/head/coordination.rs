@@ -1,8 +1,8 @@
 //! Constants of the coordination of head and eye, with their sources, and events that the model generates besides
 //! samples.
 //!
-//! Values marked *chosen* have no published source that was at hand. The figures beside them are those that they agree
-//! with.
+//! Values marked *chosen* have no published source that was at hand. The published figures beside them agree with these
+//! values.
 
 /// Amplitude of a gaze shift in degrees: exponential with [`SHIFT_SCALE_DEG`], truncated to this range. The lower end
 /// is that of saccades on a screen. All subjects of Guitton & Volle 1987 made shifts as large as the upper end (up to

@@ -99,7 +99,7 @@ impl<'a, T: Iterator<Item = f64>> Simulation<'a, T> {
         }
     }
 
-    /// Looks at the point of the space for a while, with at most one microsaccade, which ends on a point beside it.
+    /// Fixates the point of the space for a while, with at most one microsaccade, which ends on a point nearby.
     fn fixate(&mut self) {
         let rest_s = uniform(&mut self.rng, FIXATION_S);
         let (start_s, start) = (self.now_s, self.gaze);
@@ -231,7 +231,8 @@ impl<'a, T: Iterator<Item = f64>> Simulation<'a, T> {
         let was = (point0 - eye0).normalize();
         let moved = (point0 - eye).normalize();
         let ideal = (point - eye).normalize();
-        // In the head, the eye turns by -gain times the head's rotation: in space, the rest of it remains.
+        // In the head, the eye turns by -gain times the head's rotation. In space, it turns by the rest, (1 - gain)
+        // times the head's rotation.
         let slip = scaled(turned * turned0.inverse(), 1.0 - self.options.rotation_gain);
         let translation = scaled(DQuat::from_rotation_arc(was, moved), self.options.translation_gain);
         let pursuit = scaled(DQuat::from_rotation_arc(moved, ideal), PURSUIT_GAIN);

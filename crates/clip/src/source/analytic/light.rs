@@ -62,7 +62,8 @@ fn open_floor(stage: &Stage, standing: &[u16], point: Vec3) -> f32 {
     open
 }
 
-/// Sphere that stands for an object on the floor in ambient occlusion; `None` for objects that do not stand there.
+/// Sphere that represents an object on the floor in ambient occlusion; `None` for objects that do not stand on the
+/// floor.
 fn occluder(shape: &Shape) -> Option<(Vec3, f32)> {
     match *shape {
         Shape::Sphere { centre, radius } if centre.y + radius > FLOOR - 0.1 => Some((centre, radius)),

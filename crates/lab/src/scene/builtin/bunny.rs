@@ -1,5 +1,5 @@
-//! `bunny-low` and `bunny-high`: a rabbit of ellipsoids, not derived from the Stanford bunny, but with as many
-//! triangles as the thesis' two decimations of it: 292 and 4,968.
+//! `bunny-low` and `bunny-high`: a rabbit of ellipsoids. It is not derived from the Stanford bunny, but has as many
+//! triangles as the thesis' two decimations of that model: 292 and 4,968.
 
 use super::shapes::{self, Ellipsoid};
 use crate::scene::{Camera, Environment, Pose, PunctualKind, PunctualLight, Scene, Triangles};

@@ -40,8 +40,8 @@ pub struct ExrHeader {
 }
 
 impl ExrHeader {
-    /// Reads and checks the header of `path`. Memory is proportional to the header's actual bytes, whatever sizes it
-    /// claims.
+    /// Reads and checks the header of `path`. Memory is proportional to the header's actual bytes, regardless of the
+    /// sizes that it claims.
     ///
     /// # Errors
     /// - [`Io`](InputError::Io): the file is missing or cannot be read.

@@ -113,7 +113,7 @@ pub(super) fn pull_push(film: &Film) -> Image<[f32; 3]> {
                     weight += w;
                 }
             }
-            // Coverage saturates at 1, whatever the number of samples.
+            // Coverage saturates at 1, regardless of the number of samples.
             (if weight > 0.0 { sum / weight } else { Vec3::ZERO }, weight.min(1.0))
         }));
     }
