@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (middle, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
     for frame in 0..FRAMES {
         let angle = 0.5 + 0.006 * frame as f32;
-        let from = middle + 2.2 * radius * Vec3A::new(ops::sin(angle), 0.35, ops::cos(angle));
+        let from = middle + 2.6 * radius * Vec3A::new(ops::sin(angle), 0.35, ops::cos(angle));
         let world = headless.app.world_mut();
         *world.entity_mut(camera).get_mut().ok_or("the camera is gone")? =
             Transform::from_translation(from.into()).looking_at(middle.into(), Vec3::Y);
