@@ -176,7 +176,12 @@ pub(crate) struct CameraPlugin;
 impl Plugin for CameraPlugin {
     fn build(&self, app: &mut App) {
         // Before what reads these components in this frame.
-        app.add_systems(PostUpdate, (replace_msaa, add_storage).before(bevy::camera::CameraUpdateSystems));
+        app.add_systems(
+            PostUpdate,
+            (replace_msaa, add_storage)
+                .run_if(resource_exists::<AfterimageSupported>)
+                .before(bevy::camera::CameraUpdateSystems),
+        );
     }
 }
 

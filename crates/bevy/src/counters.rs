@@ -30,14 +30,13 @@ pub struct AfterimageStats {
     pub shaded: u64,
     /// Meshes in the camera's view.
     pub meshes: u64,
-    /// Meshes that are drawn: those of the camera, for depth and motion vectors, and those of its lattice cameras. The
-    /// more there are to one of [`meshes`](Self::meshes), the more of what is paid for a mesh or a triangle, and not
-    /// for a pixel, is paid again.
+    /// Mesh draws: those of the camera, for depth and motion vectors, and those of its lattice cameras. Divided by
+    /// [`meshes`](Self::meshes) it says how often the cost of a mesh and its triangles is paid.
     pub drawn_meshes: u64,
 }
 
 impl AfterimageStats {
-    /// Takes over what the device has counted.
+    /// Copies the device's counts.
     pub(crate) fn count(&mut self, stats: FrameStats) {
         self.pixels = stats.pixels;
         self.kept = stats.valid().saturating_sub(stats.replaced);

@@ -190,12 +190,12 @@ fn describe(
     Ok((desc, view))
 }
 
-/// Render entities of lattice cameras, by their own.
+/// Render-world entities of lattice cameras, by their main-world entities.
 #[derive(Resource, Default)]
 struct LatticeViews(EntityHashMap<Entity>);
 
-/// Despawns the render entities of lattice cameras that are despawned: Bevy does not where an entity was `Disabled`,
-/// and would go on drawing them.
+/// Despawns the render-world entities of lattice cameras that no longer exist. Bevy does not do so if the main-world
+/// entity was `Disabled`, and would go on drawing them.
 fn forget_despawned(
     mut commands: Commands,
     mut known: ResMut<LatticeViews>,

@@ -75,24 +75,24 @@ pub(crate) struct Placed {
 /// Systems of lattice cameras, in order, in `PostUpdate`.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum LatticeSystems {
-    /// They exist for every camera that needs them.
+    /// Spawns and despawns lattice cameras, and shows them to queries.
     Spawn,
-    /// They have the components that change how meshes are shaded.
+    /// Copies components that change how meshes are shaded.
     Mirror,
-    /// They are where this frame's samples are.
+    /// Moves lattice cameras to this frame's samples.
     Place,
 }
 
-/// Runs before `First`.
+/// Schedule before `First`.
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
-struct Hide;
+struct HideLattices;
 
 pub(crate) struct LatticePlugin;
 
 impl Plugin for LatticePlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<LatticeCamera>()
-            .init_schedule(Hide)
+            .init_schedule(HideLattices)
             .configure_sets(
                 PostUpdate,
                 (LatticeSystems::Spawn, LatticeSystems::Mirror, LatticeSystems::Place)
@@ -106,7 +106,7 @@ impl Plugin for LatticePlugin {
                     .before(SimulationLightSystems::UpdateDirectionalLightCascades)
                     .before(SimulationLightSystems::AssignLightsToClusters),
             )
-            .add_systems(Hide, hide)
+            .add_systems(HideLattices, hide)
             .add_systems(
                 PostUpdate,
                 (
@@ -115,12 +115,12 @@ impl Plugin for LatticePlugin {
                     count_drawn.after(VisibilitySystems::CheckVisibility),
                 ),
             );
-        app.world_mut().resource_mut::<MainScheduleOrder>().insert_before(First, Hide);
+        app.world_mut().resource_mut::<MainScheduleOrder>().insert_before(First, HideLattices);
     }
 }
 
 /// Hides lattice cameras from the application's queries: `Single<&Transform, With<Camera3d>>` finds the one camera that
-/// the application has spawned. Bevy's own queries must find them, which are in `PostUpdate` and in extraction.
+/// the application has spawned. Bevy's own systems, in `PostUpdate` and in extraction, must find them.
 fn hide(mut commands: Commands, shown: Query<Entity, With<LatticeCamera>>) {
     shown.iter().for_each(|entity| {
         commands.entity(entity).insert(Disabled);
@@ -206,7 +206,7 @@ type MainCamera<'a> = (
     Beside<'a>,
 );
 
-/// What changes how a camera can be foveated.
+/// Other components of a camera that limit its foveation.
 #[derive(QueryData)]
 struct Beside<'a> {
     space: Option<&'a CompositingSpace>,
@@ -314,13 +314,13 @@ fn lattices(
     let has_sky = beside.sky.is_some_and(|sky| sky.image.is_some());
     if matches!(camera.clear_color, ClearColorConfig::None) && !has_sky {
         return Err(
-            "its ClearColorConfig::None leaves what is behind it, which samples cannot. Choose a clear color, \
-                    or a Skybox"
+            "its ClearColorConfig::None keeps what the target shows, and sparse samples cannot. Choose a clear color, or \
+             add a Skybox"
                 .into(),
         );
     }
     if foveated.kind.has_history() && !(beside.depth && beside.motion) {
-        return Err("its DepthPrepass or MotionVectorPrepass, which history needs, is removed".into());
+        return Err("it lacks DepthPrepass or MotionVectorPrepass, which history needs. Insert both".into());
     }
     let settings = afterimage.settings(foveated);
     settings.validate().map_err(|error| error.to_string())?;
@@ -349,7 +349,7 @@ fn lattices(
     Ok(Placed { lattices, gaze_px, jitter_px, repairs: is_asked && !antialiases })
 }
 
-/// Counts what a camera shades, and draws more than once.
+/// Counts shaded pixels and mesh draws of each camera.
 fn count_drawn(
     mut cameras: Query<
         (&Camera, &VisibleEntities, Option<&LatticeCameras>, &mut AfterimageStats),

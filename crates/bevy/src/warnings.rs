@@ -1,4 +1,4 @@
-//! What an application has beside [`Afterimage`] that samples of a foveated frame get wrong: one line in the log each.
+//! Warnings about components and materials that sparse frames render wrongly: one line in the log each.
 
 use crate::camera::{Afterimage, Foveated, FoveationKind};
 use crate::lattice::{LatticeCameras, LatticeSystems};

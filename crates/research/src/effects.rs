@@ -1,6 +1,6 @@
 //! `cargo research effects`: cost of each effect in a scene that does not need it.
 //!
-//! Makes the tables of `docs/effects.md`. The command is there; it takes hours on software Vulkan.
+//! Makes the tables of `docs/effects.md`. The command is there.
 //!
 //! Kernels with and without the effect take turns on the same rays, frame by frame. The result is the ratio of the
 //! times of two frames that are traced within a second of each other.

@@ -1,5 +1,4 @@
-//! `cargo research`: experiments, one file each. The head of each says which page of `docs/` it makes, with which
-//! command and in how long.
+//! `cargo research`: experiments, one file each. The head of each says which page of `docs/` it makes.
 
 #[macro_use]
 extern crate afterimage_clip;

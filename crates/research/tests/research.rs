@@ -42,7 +42,7 @@ fn tells_how_much_of_the_saved_samples_is_saved_time() {
 }
 
 #[test]
-#[ignore = "half a minute or more: cargo test -p afterimage-research -- --ignored"]
+#[ignore = "experiments are long: cargo test -p afterimage-research -- --ignored"]
 fn puts_the_papers_figures_beside_ours() {
     let folder = Folder::new();
     let json = folder.text("papers.json");
@@ -104,7 +104,7 @@ fn prices_effects_between_the_markers() {
 }
 
 #[test]
-#[ignore = "half a minute or more: cargo test -p afterimage-research -- --ignored"]
+#[ignore = "experiments are long: cargo test -p afterimage-research -- --ignored"]
 fn compares_patterns_at_equal_numbers_of_samples() {
     let folder = Folder::new();
     let (out, json) = (folder.text("out"), folder.text("patterns.json"));
@@ -150,7 +150,7 @@ fn compares_patterns_at_equal_numbers_of_samples() {
 }
 
 #[test]
-#[ignore = "half a minute or more: cargo test -p afterimage-research -- --ignored"]
+#[ignore = "experiments are long: cargo test -p afterimage-research -- --ignored"]
 fn measures_how_time_grows() {
     if afterimage_testing::gpu::adapter().is_none() {
         return;
@@ -188,7 +188,7 @@ fn measures_how_time_grows() {
 
 /// The rows contain the sweep's results and the paper's.
 #[test]
-#[ignore = "half a minute or more: cargo test -p afterimage-research -- --ignored"]
+#[ignore = "experiments are long: cargo test -p afterimage-research -- --ignored"]
 fn the_papers_table_is_written_beside_ours() {
     let folder = Folder::new();
     let (still, out, markdown) = (folder.path("still.png"), folder.path("out"), folder.path("table.md"));
