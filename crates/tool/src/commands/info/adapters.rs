@@ -43,7 +43,7 @@ pub fn adapters_info(test: bool) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Work(format!(
-        "self-test: {}; pictures there differ from the CPU's: run with --backend cpu, or report it with this text",
+        "self-test: {}; pictures there are not the CPU's: run with --backend cpu, or report it with this text",
         wrong.join("; ")
     )))
 }
