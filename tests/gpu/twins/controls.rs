@@ -84,7 +84,7 @@ fn one_wrong_last_bit_is_caught() {
 
 #[test]
 fn an_unwritten_word_is_caught() {
-    caught(state::PROBES, "unpack", "out_u(s.age);", "");
+    caught(state::PROBES, "unpack", "out_u(result.age);", "");
 }
 
 #[test]
