@@ -232,6 +232,11 @@ impl Rig {
         (Made { shown, words: held_words(&self.cpu), quads, stats }, trace)
     }
 
+    /// Whether the executors differ on a frame: what a planted error must do.
+    pub fn differs(&mut self, index: u64, reset: Reset, views: &[View]) -> bool {
+        self.on_gpu(index, reset, views) != self.on_cpu(index, reset, views).0
+    }
+
     pub fn on_gpu(&mut self, index: u64, reset: Reset, views: &[View]) -> Made {
         self.record(index, reset, views, true, None);
         self.read()

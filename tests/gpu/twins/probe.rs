@@ -1,6 +1,6 @@
 //! A probe: one library function over a table of words, on the adapter and by its Rust twin.
 
-use super::library::{SHADERS, table_data};
+use super::library::{SHADERS, probes, table_data};
 use super::shape::Twin;
 use afterimage::wgpu;
 use glam::Vec3;
@@ -242,9 +242,9 @@ pub fn named<'a>(probes: &'a [Probe], name: &str) -> &'a Probe {
 }
 
 /// Checks every probe of `module`, on a fresh device; how many rows agree, or `None` without an adapter.
-pub fn check_module(probes: &[Probe], module: &str) -> Option<usize> {
+pub fn check_module(module: &str) -> Option<usize> {
     let (device, queue) = afterimage_testing::gpu::device()?;
-    let chosen: Vec<_> = probes.iter().filter(|p| p.module == module).collect();
+    let chosen: Vec<_> = probes().filter(|p| p.module == module).collect();
     assert!(!chosen.is_empty());
     let (counts, failures): (Vec<_>, Vec<_>) = chosen.iter().map(|p| p.check(&device, &queue)).partition(Result::is_ok);
     let failures: Vec<_> = failures.into_iter().filter_map(Result::err).collect();
@@ -252,15 +252,17 @@ pub fn check_module(probes: &[Probe], module: &str) -> Option<usize> {
     Some(counts.into_iter().flatten().sum())
 }
 
-/// A planted error: `wrong` instead of `right` in the source of the function `name`. Fails unless the comparison sees
-/// it.
+/// Planted errors: a function, a text of its source, and what stands there instead. Fails unless the comparison sees
+/// each.
 #[track_caller]
-pub fn caught(probes: &[Probe], name: &str, right: &str, wrong: &str) {
-    let probe = probes.iter().find(|p| p.name == name).unwrap();
-    let source = probe.source();
-    assert_eq!(source.matches(right).count(), 1, "'{right}' in the source of {name}");
+pub fn caught(errors: &[(&str, &str, &str)]) {
     let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
-    let (count, lines) = probe.differences(&device, &queue, &source.replace(right, wrong));
-    println!("{name}, '{right}' -> '{wrong}': {} of {count} rows differ", lines.len());
-    assert!(!lines.is_empty(), "planted error not caught: {name}, '{right}' -> '{wrong}'");
+    for (function, right, wrong) in errors {
+        let probe = probes().find(|p| format!("{}::{}", p.module, p.name) == *function).expect(function);
+        let source = probe.source();
+        assert_eq!(source.matches(right).count(), 1, "'{right}' in the source of {function}");
+        let (count, lines) = probe.differences(&device, &queue, &source.replace(right, wrong));
+        println!("{function}, '{right}' -> '{wrong}': {} of {count} rows differ", lines.len());
+        assert!(!lines.is_empty(), "planted error not caught: {function}, '{right}' -> '{wrong}'");
+    }
 }
