@@ -2,6 +2,9 @@
 
 #[path = "../common/any_frame.rs"]
 mod any_frame;
+#[path = "../common/depth_hard.rs"]
+mod depth_hard;
+#[allow(dead_code, reason = "the device's tests use all of it")]
 #[path = "../common/images.rs"]
 mod images;
 mod pass;

@@ -3,6 +3,8 @@
 
 #[path = "../common/any_frame.rs"]
 mod any_frame;
+#[path = "../common/depth_hard.rs"]
+mod depth_hard;
 #[path = "../common/images.rs"]
 mod images;
 mod pass;

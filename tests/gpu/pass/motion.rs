@@ -1,7 +1,8 @@
 //! Moving surfaces on the device: hard cases H51 to H60.
 
 use super::rig::{Rig, View, with_w_sum};
-use super::surfaces::{METHODS, PIXELS, SIZE, bits, one, sticky, still, ungated, ungated_of, with_depth, with_motion};
+use super::surfaces::{PIXELS, bits, one, sticky, still, ungated, ungated_of, with_depth, with_motion};
+use crate::depth_hard::{METHODS, SIZE};
 use afterimage::kernel::pack;
 use afterimage::{ContextDesc, Image, MethodKind, MotionConvention, MotionUnit, Reset, Verdict};
 use afterimage_testing::holds;

@@ -2,7 +2,7 @@
 //! same history, finite for any history, valid again after a frame, and without effect of one view on another.
 
 use super::rig::{Rig, View};
-use crate::any_frame::{AnyFrame, SIZE, all_settings, any_frame};
+use crate::any_frame::{SIZE, all_settings, any_frame};
 use afterimage::kernel::pack;
 use afterimage::kernel::surface::unpack_surface;
 use afterimage::shader::SHADERS;
@@ -13,17 +13,8 @@ use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::cell::RefCell;
 
-fn view(frame: AnyFrame, settings: &Settings) -> View {
-    View {
-        facts: frame.facts,
-        color: frame.color,
-        depth: Some(frame.depth),
-        motion: Some(frame.motion),
-        trust: Some(frame.trust),
-        lod: Some(frame.lod),
-        noise: settings.noisy.then_some(frame.noise),
-        repaired: None,
-    }
+fn view(frame: View, settings: &Settings) -> View {
+    View { noise: frame.noise.filter(|_| settings.noisy), ..frame }
 }
 
 fn stereo() -> ContextDesc {

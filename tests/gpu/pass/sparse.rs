@@ -581,17 +581,7 @@ fn any_lattices_and_any_bits_agree_bit_for_bit_and_are_finite() {
             let views = [0; 2].map(|_| {
                 let mut frame = any_frame(&mut draws, wild);
                 frame.facts.lattices = Some(any_lattices(&mut draws, SIZE));
-                let (depth, motion, trust) = (Some(frame.depth), Some(frame.motion), Some(frame.trust));
-                View {
-                    facts: frame.facts,
-                    color: frame.color,
-                    depth,
-                    motion,
-                    trust,
-                    lod: None,
-                    noise: None,
-                    repaired: None,
-                }
+                View { lod: None, noise: None, ..frame }
             });
             let (made, _) = rig.both(index, if index % 6 == 0 { Reset::All } else { Reset::None }, &views);
             assert!(made.shown.iter().flatten().all(|&v| f32::from_bits(v).abs() <= 65504.0));
