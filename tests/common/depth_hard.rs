@@ -3,9 +3,9 @@
 
 use crate::images::{Images, View, noise};
 use crate::settings::ungated_of;
-use afterimage::cpu::CpuAfterimage;
+use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::{ContextDesc, DepthConvention, DepthTest, FrameStats, Image, MethodKind, Settings, Verdict};
+use afterimage::{ContextDesc, DepthConvention, DepthTest, Exposure, FrameStats, Image, MethodKind, Settings, Verdict};
 use afterimage_testing::Draws;
 
 /// The laws as tests of an executor. `$held` runs one, and returns what it measured.
@@ -32,12 +32,17 @@ pub(crate) use depth_laws;
 pub const SIZE: [u32; 2] = [64, 48];
 /// Methods that find history by the same rules, each with its own storage.
 pub const METHODS: [MethodKind; 2] = [MethodKind::Wrs, MethodKind::Smr];
-type Color = Image<[f32; 3]>;
+pub type Color = Image<[f32; 3]>;
 
 /// An executor.
 pub trait Steps {
     /// Output, counters and decisions of a frame of one view.
-    fn step(&mut self, index: u64, view: &View) -> (Color, FrameStats, Image<PixelTrace>);
+    fn exposed(&mut self, index: u64, view: &View, exposure: Exposure) -> (Color, FrameStats, Image<PixelTrace>);
+
+    /// The same at the exposure of the frame before.
+    fn step(&mut self, index: u64, view: &View) -> (Color, FrameStats, Image<PixelTrace>) {
+        self.exposed(index, view, Exposure::Same)
+    }
 
     fn set_settings(&mut self, settings: Settings);
 }
@@ -46,10 +51,11 @@ pub trait Steps {
 pub type Make<'a> = &'a dyn Fn(ContextDesc) -> Option<Box<dyn Steps>>;
 
 impl Steps for CpuAfterimage {
-    fn step(&mut self, index: u64, view: &View) -> (Color, FrameStats, Image<PixelTrace>) {
+    fn exposed(&mut self, index: u64, view: &View, exposure: Exposure) -> (Color, FrameStats, Image<PixelTrace>) {
         let size = view.color.size();
         let (mut out, mut trace) = ([Image::filled(size, [f32::NAN; 3])], [Image::filled(size, PixelTrace::default())]);
-        let stats = self.process_traced(&Images::of(&[view.one()]).frame(index), &mut out, &mut trace).unwrap();
+        let images = Images::of(&[view.one()]);
+        let stats = self.process_traced(&Frame { exposure, ..images.frame(index) }, &mut out, &mut trace).unwrap();
         let ([out], [trace]) = (out, trace);
         (out, stats, trace)
     }
@@ -59,7 +65,7 @@ impl Steps for CpuAfterimage {
     }
 }
 
-fn desc(settings: Settings) -> ContextDesc {
+pub fn desc(settings: Settings) -> ContextDesc {
     ContextDesc { settings, ..ContextDesc::new(SIZE) }
 }
 
@@ -68,7 +74,7 @@ fn of(method: MethodKind) -> ContextDesc {
     desc(ungated_of(method))
 }
 
-fn still(color: Color) -> View {
+pub fn still(color: Color) -> View {
     View::still(color, [20.0, 20.0])
 }
 

@@ -7,6 +7,8 @@ mod depth_hard;
 #[allow(dead_code, reason = "the device's tests use all of it")]
 #[path = "../common/images.rs"]
 mod images;
+#[path = "../common/light_hard.rs"]
+mod light_hard;
 mod pass;
 #[path = "../common/settings.rs"]
 mod settings;

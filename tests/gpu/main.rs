@@ -7,6 +7,8 @@ mod any_frame;
 mod depth_hard;
 #[path = "../common/images.rs"]
 mod images;
+#[path = "../common/light_hard.rs"]
+mod light_hard;
 mod pass;
 #[path = "../common/settings.rs"]
 mod settings;

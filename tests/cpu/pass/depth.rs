@@ -6,7 +6,7 @@ use crate::sparse_hard::laws;
 use afterimage_testing::holds;
 
 /// What a law measured.
-fn held(law: fn(Make<'_>) -> Option<String>) -> Option<String> {
+pub fn held(law: fn(Make<'_>) -> Option<String>) -> Option<String> {
     Some(law(&|desc| Some(Box::new(CpuAfterimage::new(&desc).unwrap()))).expect("the CPU is always there"))
 }
 

@@ -1,16 +1,16 @@
 //! Occlusion and disocclusion on the device: hard cases H41, H42, H44 to H47, H49 and H50.
 
 use super::rig::{Made, Rig, View, noise, with_w_sum};
-use crate::depth_hard::*;
+use crate::depth_hard::{self, *};
 use crate::sparse_hard::laws;
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::{ContextDesc, DepthConvention, FrameStats, Image, MethodKind, Reset, Settings};
+use afterimage::{ContextDesc, DepthConvention, Exposure, FrameStats, Image, MethodKind, Reset, Settings};
 use afterimage_testing::holds;
 
 pub const PIXELS: u64 = 64 * 48;
 
 pub fn still(name: &str) -> View {
-    View::still(noise(SIZE, name), [20.0, 20.0])
+    depth_hard::still(noise(SIZE, name))
 }
 
 pub fn with_depth(name: &str, depth: impl FnMut([u32; 2]) -> f32) -> View {
@@ -45,7 +45,8 @@ pub fn bits(color: [f32; 3]) -> [u32; 3] {
 }
 
 impl Steps for Rig {
-    fn step(&mut self, index: u64, view: &View) -> (Image<[f32; 3]>, FrameStats, Image<PixelTrace>) {
+    fn exposed(&mut self, index: u64, view: &View, exposure: Exposure) -> (Color, FrameStats, Image<PixelTrace>) {
+        self.exposure = exposure;
         let (made, mut trace) = self.both(index, Reset::None, std::slice::from_ref(view));
         let shown = made.shown.iter().map(|c| c.map(f32::from_bits)).collect();
         (Image::from_pixels(view.color.size(), shown).unwrap(), made.stats, trace.remove(0))
@@ -58,7 +59,7 @@ impl Steps for Rig {
 }
 
 /// What a law measured; `None`, after a message, without an adapter.
-fn held(law: fn(Make<'_>) -> Option<String>) -> Option<String> {
+pub fn held(law: fn(Make<'_>) -> Option<String>) -> Option<String> {
     law(&|desc| Some(Box::new(Rig::new(desc, desc.settings)?)))
 }
 
