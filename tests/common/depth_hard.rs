@@ -5,6 +5,7 @@ use crate::images::{Images, View, noise};
 use crate::settings::ungated_of;
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::debug_view::PixelTrace;
+use afterimage::kernel::pack;
 use afterimage::{ContextDesc, DepthConvention, DepthTest, Exposure, FrameStats, Image, MethodKind, Settings, Verdict};
 use afterimage_testing::Draws;
 
@@ -45,6 +46,9 @@ pub trait Steps {
     }
 
     fn set_settings(&mut self, settings: Settings);
+
+    /// Gives reservoirs so much weight that no candidate replaces their samples.
+    fn stick(&mut self);
 }
 
 /// Makes an executor, if there is one.
@@ -63,6 +67,13 @@ impl Steps for CpuAfterimage {
     fn set_settings(&mut self, settings: Settings) {
         CpuAfterimage::set_settings(self, settings).unwrap();
     }
+
+    fn stick(&mut self) {
+        // The candidate's share is below the smallest draw, 2^-24.
+        let heavy = |&w: &[u32; 3]| pack::pack(pack::Stored { w_sum: 1e12, ..pack::unpack(w) });
+        let words: Vec<_> = self.history().words().iter().map(heavy).collect();
+        self.restore_history(&words);
+    }
 }
 
 pub fn desc(settings: Settings) -> ContextDesc {
@@ -70,7 +81,7 @@ pub fn desc(settings: Settings) -> ContextDesc {
 }
 
 /// A method without a gate, so that only the test in question rejects history.
-fn of(method: MethodKind) -> ContextDesc {
+pub fn of(method: MethodKind) -> ContextDesc {
     desc(ungated_of(method))
 }
 

@@ -9,6 +9,8 @@ mod depth_hard;
 mod images;
 #[path = "../common/light_hard.rs"]
 mod light_hard;
+#[path = "../common/motion_hard.rs"]
+mod motion_hard;
 mod pass;
 #[path = "../common/settings.rs"]
 mod settings;

@@ -62,22 +62,3 @@ fn h48_history_outlives_a_change_of_planes() {
         wrong.rejected()
     );
 }
-
-#[test]
-fn h58_nothing_bleeds_over_a_depth_edge() {
-    // A bright near square moves right by 1.5 px a frame over a dark wall; vectors are right at each pixel.
-    let mut post = context(ungated());
-    for index in 0..30_u64 {
-        let left = 4.0 + 1.5 * index as f32;
-        let inside = |x: u32, y: u32| (left..left + 10.0).contains(&(x as f32)) && (10..30).contains(&y);
-        let input = Input {
-            color: Image::from_fn(SIZE, |[x, y]| if inside(x, y) { [1.0; 3] } else { [0.125; 3] }),
-            depth: Some(Image::from_fn(SIZE, |[x, y]| if inside(x, y) { 1.0 } else { 8.0 })),
-            motion: Some(Image::from_fn(SIZE, |[x, y]| if inside(x, y) { [-1.5, 0.0] } else { [0.0, 0.0] })),
-            ..Input::still(noise(SIZE, ""))
-        };
-        let (out, ..) = one(&mut post, index, &input);
-        assert_eq!(out, input.color, "frame {index}");
-    }
-    holds!("H58", Cpu, "wrs, a square at 1.5 px a frame over a wall, 30 frames: no pixel bleeds");
-}

@@ -82,12 +82,9 @@ fn context(settings: Settings) -> CpuAfterimage {
     CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) }).unwrap()
 }
 
-/// Weight of history with which it is always kept: the candidate's share is below the smallest draw, 2^-24.
+/// Weight of history with which it is always kept.
 fn sticky(post: &mut CpuAfterimage) {
-    use afterimage::kernel::pack;
-    let words: Vec<_> =
-        post.history().words().iter().map(|&w| pack::pack(pack::Stored { w_sum: 1e12, ..pack::unpack(w) })).collect();
-    post.restore_history(&words);
+    crate::depth_hard::Steps::stick(post);
 }
 
 fn step(

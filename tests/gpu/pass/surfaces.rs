@@ -21,10 +21,6 @@ pub fn with_motion(name: &str, motion: impl FnMut([u32; 2]) -> [f32; 2]) -> View
     View { motion: Some(Image::from_fn(SIZE, motion)), ..still(name) }
 }
 
-pub fn ungated() -> Option<Rig> {
-    ungated_of(MethodKind::Wrs)
-}
-
 pub fn ungated_of(method: MethodKind) -> Option<Rig> {
     Rig::new(ContextDesc::new(SIZE), crate::settings::ungated_of(method))
 }
@@ -55,6 +51,11 @@ impl Steps for Rig {
     fn set_settings(&mut self, settings: Settings) {
         self.cpu.set_settings(settings).unwrap();
         self.gpu.set_settings(&self.device, settings).unwrap();
+    }
+
+    fn stick(&mut self) {
+        let words = self.read().words;
+        self.restore(&with_w_sum(&words, 1e12));
     }
 }
 

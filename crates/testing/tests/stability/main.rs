@@ -40,7 +40,7 @@ fn the_table_has_every_row() {
 /// executors share.
 #[test]
 fn the_tests_of_the_table_exist() {
-    let shared = ["depth_hard.rs", "light_hard.rs", "sparse_hard/mod.rs"]
+    let shared = ["depth_hard.rs", "light_hard.rs", "motion_hard.rs", "sparse_hard/mod.rs"]
         .map(|file| workspace().join("tests/common").join(file));
     let shared = shared.map(|file| fs::read_to_string(file).unwrap()).concat();
     for held in parse(&fs::read_to_string(table_path()).unwrap()) {
