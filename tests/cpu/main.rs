@@ -7,6 +7,8 @@ mod depth_hard;
 #[allow(dead_code, reason = "the device's tests use all of it")]
 #[path = "../common/images.rs"]
 mod images;
+#[path = "../common/laws.rs"]
+mod laws;
 #[path = "../common/light_hard.rs"]
 mod light_hard;
 #[path = "../common/motion_hard.rs"]

@@ -7,6 +7,8 @@ mod any_frame;
 mod depth_hard;
 #[path = "../common/images.rs"]
 mod images;
+#[path = "../common/laws.rs"]
+mod laws;
 #[path = "../common/light_hard.rs"]
 mod light_hard;
 #[path = "../common/motion_hard.rs"]

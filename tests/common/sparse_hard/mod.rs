@@ -23,7 +23,7 @@ use afterimage::{
 use afterimage_testing::Draws;
 
 /// The laws as tests of an executor. `$held` runs one, and returns what it measured.
-macro_rules! laws {
+macro_rules! sparse_laws {
     ($side:ident, $held:ident) => {
         laws! { $side, $held,
             h86_positions_that_are_never_sampled_are_no_worse_than_foveated: "H86", starved_positions;
@@ -45,15 +45,8 @@ macro_rules! laws {
             h102_a_step_of_light_is_followed_while_much_is_repaired: "H102", light_and_contradictions;
         }
     };
-    ($side:ident, $held:ident, $($test:ident: $row:literal, $law:ident;)*) => {$(
-        #[test]
-        fn $test() {
-            let Some(figure) = $held($law) else { return };
-            holds!($row, $side, "{figure}");
-        }
-    )*};
 }
-pub(crate) use laws;
+pub(crate) use sparse_laws;
 
 /// Neither side is a multiple of a step.
 pub const SIZE: [u32; 2] = [94, 70];

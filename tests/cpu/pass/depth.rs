@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::depth_hard::*;
-use crate::sparse_hard::laws;
+use crate::laws::laws;
 use afterimage_testing::holds;
 
 /// What a law measured.

@@ -3,8 +3,8 @@
 use super::depth::held;
 use super::*;
 use crate::depth_hard::{Steps, still};
+use crate::laws::laws;
 use crate::light_hard::*;
-use crate::sparse_hard::laws;
 use afterimage_testing::holds;
 
 light_laws!(Cpu, held);

@@ -2,8 +2,8 @@
 
 use super::depth::held;
 use super::*;
+use crate::laws::laws;
 use crate::motion_hard::*;
-use crate::sparse_hard::laws;
 use afterimage_testing::holds;
 
 motion_laws!(Cpu, held);

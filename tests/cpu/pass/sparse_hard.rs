@@ -1,5 +1,6 @@
 //! Hard cases of sparse frames on the CPU, H86 and up.
 
+use crate::laws::laws;
 use crate::sparse_hard::*;
 use afterimage::{Filter, Foveation};
 use afterimage_testing::{Draws, holds};
@@ -9,7 +10,7 @@ fn held(law: fn(Make) -> Option<String>) -> Option<String> {
     Some(law(&on_cpu).expect("the CPU is always there"))
 }
 
-laws!(Cpu, held);
+sparse_laws!(Cpu, held);
 
 #[test]
 fn h87_every_lattice_of_a_foveation_has_a_sample_in_the_view() {

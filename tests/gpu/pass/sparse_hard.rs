@@ -2,6 +2,7 @@
 //! are those of the CPU.
 
 use super::rig::{Rig, View};
+use crate::laws::laws;
 use crate::sparse_hard::*;
 use afterimage::{ContextDesc, Image, Settings};
 use afterimage_testing::holds;
@@ -74,4 +75,4 @@ fn held(law: fn(Make) -> Option<String>) -> Option<String> {
     })
 }
 
-laws!(Gpu, held);
+sparse_laws!(Gpu, held);

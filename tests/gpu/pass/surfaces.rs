@@ -2,7 +2,7 @@
 
 use super::rig::{Made, Rig, View, noise, with_w_sum};
 use crate::depth_hard::{self, *};
-use crate::sparse_hard::laws;
+use crate::laws::laws;
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::{ContextDesc, DepthConvention, Exposure, FrameStats, Image, MethodKind, Reset, Settings};
 use afterimage_testing::holds;
