@@ -1,23 +1,12 @@
 //! Small frames of arbitrary bit patterns, for properties of whole passes on either executor.
 
+use crate::images::View;
 use afterimage::{
     Bias, Filter, Foveation, Gaze, Image, Method, MethodKind, Sampler, Settings, ViewFrame, ViewGeometry, Wrs,
 };
 use afterimage_testing::Draws;
 
 pub const SIZE: [u32; 2] = [8, 6];
-
-/// All images of a view of a frame.
-#[derive(Clone)]
-pub struct AnyFrame {
-    pub facts: ViewFrame,
-    pub color: Image<[f32; 3]>,
-    pub depth: Image<f32>,
-    pub motion: Image<[f32; 2]>,
-    pub trust: Image<f32>,
-    pub lod: Image<f32>,
-    pub noise: Image<[f32; 2]>,
-}
 
 /// Every method, sampler, bias and filter that has a path of its own; the last one is noisy.
 pub fn all_settings() -> Vec<Settings> {
@@ -43,18 +32,19 @@ fn number(draws: &mut Draws, wild: f32, low: f32, high: f32) -> f32 {
 }
 
 /// Plausible inputs of an engine, a share `wild` of them arbitrary bits. Motion vectors are whole pixels, or such bits.
-pub fn any_frame(draws: &mut Draws, wild: f32) -> AnyFrame {
+pub fn any_frame(draws: &mut Draws, wild: f32) -> View {
     let d = draws;
     let gaze = Gaze::At { px: [number(d, wild, 0.0, 8.0), number(d, wild, 0.0, 6.0)] };
     let shift = [0; 2].map(|_| (d.bits() % 5) as f32 - 2.0);
     let vector = |d: &mut Draws, v: f32| if d.uniform() < wild { f32::from_bits(d.bits()) } else { v };
-    AnyFrame {
+    View {
         facts: ViewFrame::new(ViewGeometry::flat(SIZE, 70.0).unwrap(), gaze),
         color: Image::from_fn(SIZE, |_| [0; 3].map(|_| number(d, wild, 0.0, 1.0))),
-        depth: Image::from_fn(SIZE, |_| number(d, wild, 3.0, 3.05)),
-        motion: Image::from_fn(SIZE, |_| shift.map(|v| vector(d, v))),
-        trust: Image::from_fn(SIZE, |_| number(d, wild, 0.5, 1.0)),
-        lod: Image::from_fn(SIZE, |_| number(d, wild, 0.0, 4.0)),
-        noise: Image::from_fn(SIZE, |_| [number(d, wild, 0.0, 0.3), number(d, wild, 1.0, 16.0)]),
+        depth: Some(Image::from_fn(SIZE, |_| number(d, wild, 3.0, 3.05))),
+        motion: Some(Image::from_fn(SIZE, |_| shift.map(|v| vector(d, v)))),
+        trust: Some(Image::from_fn(SIZE, |_| number(d, wild, 0.5, 1.0))),
+        lod: Some(Image::from_fn(SIZE, |_| number(d, wild, 0.0, 4.0))),
+        noise: Some(Image::from_fn(SIZE, |_| [number(d, wild, 0.0, 0.3), number(d, wild, 1.0, 16.0)])),
+        repaired: None,
     }
 }

@@ -1,9 +1,46 @@
 //! Images of frames, view by view, in the form of the CPU executor's inputs.
 
 use afterimage::cpu::Frame;
-use afterimage::{Image, ViewFrame};
+use afterimage::{Gaze, Image, ViewFrame, ViewGeometry};
+use afterimage_testing::Draws;
 
-/// All images of one view.
+/// Images of one view of one frame.
+#[derive(Clone)]
+pub struct View {
+    pub facts: ViewFrame,
+    pub color: Image<[f32; 3]>,
+    pub depth: Option<Image<f32>>,
+    pub motion: Option<Image<[f32; 2]>>,
+    pub trust: Option<Image<f32>>,
+    /// Level-of-detail input, if any.
+    pub lod: Option<Image<f32>>,
+    /// Standard errors and numbers of samples of noisy frames.
+    pub noise: Option<Image<[f32; 2]>>,
+    /// Colors of the pixels that a plan chooses, if the frame is planned.
+    pub repaired: Option<Image<[f32; 3]>>,
+}
+
+impl View {
+    /// Without optional inputs, under 70 degrees.
+    pub fn still(color: Image<[f32; 3]>, gaze_px: [f32; 2]) -> Self {
+        let facts = ViewFrame::new(ViewGeometry::flat(color.size(), 70.0).unwrap(), Gaze::At { px: gaze_px });
+        Self { facts, color, depth: None, motion: None, trust: None, lod: None, noise: None, repaired: None }
+    }
+
+    /// As the CPU executor's inputs.
+    pub fn one(&self) -> OneView<'_> {
+        OneView {
+            depth: self.depth.as_ref(),
+            motion: self.motion.as_ref(),
+            trust: self.trust.as_ref(),
+            lod: self.lod.as_ref(),
+            noise: self.noise.as_ref(),
+            ..OneView::new(self.facts, &self.color)
+        }
+    }
+}
+
+/// All images of one view, borrowed.
 #[derive(Clone, Copy)]
 pub struct OneView<'a> {
     pub facts: ViewFrame,
@@ -60,4 +97,10 @@ impl<'a> Images<'a> {
 
 fn given<T>(images: &[T]) -> Option<&[T]> {
     (!images.is_empty()).then_some(images)
+}
+
+/// Colors that halves hold exactly, different at every pixel.
+pub fn noise(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
+    let mut draws = Draws::new(name);
+    Image::from_fn(size, |_| [0; 3].map(|_| (draws.bits() % 1024) as f32 / 1024.0))
 }

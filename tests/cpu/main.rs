@@ -2,8 +2,17 @@
 
 #[path = "../common/any_frame.rs"]
 mod any_frame;
+#[path = "../common/depth_hard.rs"]
+mod depth_hard;
+#[allow(dead_code, reason = "the device's tests use all of it")]
 #[path = "../common/images.rs"]
 mod images;
+#[path = "../common/laws.rs"]
+mod laws;
+#[path = "../common/light_hard.rs"]
+mod light_hard;
+#[path = "../common/motion_hard.rs"]
+mod motion_hard;
 mod pass;
 #[path = "../common/settings.rs"]
 mod settings;

@@ -3,8 +3,16 @@
 
 #[path = "../common/any_frame.rs"]
 mod any_frame;
+#[path = "../common/depth_hard.rs"]
+mod depth_hard;
 #[path = "../common/images.rs"]
 mod images;
+#[path = "../common/laws.rs"]
+mod laws;
+#[path = "../common/light_hard.rs"]
+mod light_hard;
+#[path = "../common/motion_hard.rs"]
+mod motion_hard;
 mod pass;
 #[path = "../common/settings.rs"]
 mod settings;

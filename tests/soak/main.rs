@@ -5,10 +5,11 @@
 
 mod events;
 #[path = "../common/images.rs"]
+#[allow(dead_code, reason = "the passes' tests use all of it")]
 mod images;
 mod pictures;
 #[path = "../gpu/pass/rig.rs"]
-#[allow(dead_code, reason = "the passes' tests use all of it")]
+#[allow(dead_code, unused_imports, reason = "the passes' tests use all of it")]
 mod rig;
 mod witness;
 

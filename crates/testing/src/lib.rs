@@ -11,6 +11,7 @@ extern crate wgpu_30 as wgpu;
 pub mod gpu;
 pub mod hard_case;
 pub mod panics;
+pub mod planted;
 pub mod program;
 pub mod resident;
 

@@ -22,6 +22,32 @@ use afterimage::{
 };
 use afterimage_testing::Draws;
 
+/// The laws as tests of an executor. `$held` runs one, and returns what it measured.
+macro_rules! sparse_laws {
+    ($side:ident, $held:ident) => {
+        laws! { $side, $held,
+            h86_positions_that_are_never_sampled_are_no_worse_than_foveated: "H86", starved_positions;
+            h87_degenerate_lattices_are_finite_and_show_their_samples: "H87", degenerate_lattices;
+            h88_a_reset_in_the_middle_of_the_order_equals_a_fresh_context: "H88", restarts_of_the_order;
+            h89_the_fovea_is_the_candidate_and_borders_have_no_seam: "H89", borders;
+            h90_a_line_of_one_pixel_is_rebuilt: "H90", thin_lines;
+            h91_a_sparkle_is_gone_after_a_turn: "H91", sparkles;
+            h92_fast_motion_is_no_worse_than_foveated: "H92", fast_motion;
+            h93_cuts_leave_no_ghost: "H93", announced_and_unannounced_cuts;
+            h94_geometry_at_samples_holds_at_silhouettes: "H94", silhouettes;
+            h95_an_invalid_sample_stays_in_its_block: "H95", invalid_samples;
+            h96_repeated_offsets_do_no_harm: "H96", repeated_offsets;
+            h97_offsets_off_by_one_cost_little: "H97", offsets_off_by_one;
+            h98_light_trust_views_gaze_and_foveation: "H98", light_trust_views_gaze_and_foveation;
+            h99_half_a_screen_uncovered_is_repaired_from_the_gaze_outwards: "H99", half_uncovered;
+            h100_the_order_of_a_budget_does_not_flicker: "H100", order_without_flicker;
+            h101_trails_of_thin_occluders_are_no_ghosts: "H101", thin_occluders;
+            h102_a_step_of_light_is_followed_while_much_is_repaired: "H102", light_and_contradictions;
+        }
+    };
+}
+pub(crate) use sparse_laws;
+
 /// Neither side is a multiple of a step.
 pub const SIZE: [u32; 2] = [94, 70];
 /// Frames in which lattices of steps 2 and 4 visit every position.

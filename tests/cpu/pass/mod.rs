@@ -19,7 +19,8 @@ mod upsampling;
 mod views;
 mod weighted;
 
-use crate::images::{Images, OneView};
+use crate::depth_hard::{METHODS, SIZE};
+use crate::images::{Images, OneView, noise};
 use crate::settings::{ungated, ungated_of, wrs};
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::debug_view::PixelTrace;
@@ -31,19 +32,10 @@ use afterimage::{
 use afterimage_testing::Draws;
 use proptest::prelude::*;
 
-const SIZE: [u32; 2] = [64, 48];
-/// Methods that find history by the same rules, each with its own storage.
-const METHODS: [MethodKind; 2] = [MethodKind::Wrs, MethodKind::Smr];
 type Color = Image<[f32; 3]>;
 
 fn geometry(size: [u32; 2]) -> ViewGeometry {
     ViewGeometry::flat(size, 70.0).unwrap()
-}
-
-/// Colors that halves hold exactly, different at every pixel.
-fn noise(size: [u32; 2], name: &str) -> Color {
-    let mut draws = Draws::new(name);
-    Image::from_fn(size, |_| [0; 3].map(|_| (draws.bits() % 1024) as f32 / 1024.0))
 }
 
 /// A view with all optional inputs.
@@ -90,12 +82,9 @@ fn context(settings: Settings) -> CpuAfterimage {
     CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) }).unwrap()
 }
 
-/// Weight of history with which it is always kept: the candidate's share is below the smallest draw, 2^-24.
+/// Weight of history with which it is always kept.
 fn sticky(post: &mut CpuAfterimage) {
-    use afterimage::kernel::pack;
-    let words: Vec<_> =
-        post.history().words().iter().map(|&w| pack::pack(pack::Stored { w_sum: 1e12, ..pack::unpack(w) })).collect();
-    post.restore_history(&words);
+    crate::depth_hard::Steps::stick(post);
 }
 
 fn step(

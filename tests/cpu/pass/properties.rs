@@ -2,7 +2,8 @@
 //! view affects another one.
 
 use super::*;
-use crate::any_frame::{AnyFrame, SIZE, all_settings, any_frame};
+use crate::any_frame::{SIZE, all_settings, any_frame};
+use crate::images::View;
 use afterimage::kernel::pack;
 use afterimage::kernel::surface::unpack_surface;
 use std::collections::HashSet;
@@ -14,19 +15,10 @@ fn new(settings: Settings, view_count: u32) -> CpuAfterimage {
     CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc { view_count, ..ContextDesc::new(SIZE) } }).unwrap()
 }
 
-fn show(post: &mut CpuAfterimage, index: u64, frames: &[&AnyFrame]) -> (Vec<Color>, Vec<Image<PixelTrace>>) {
+fn show(post: &mut CpuAfterimage, index: u64, frames: &[&View]) -> (Vec<Color>, Vec<Image<PixelTrace>>) {
     let noisy = post.desc().settings.noisy;
-    let views: Vec<_> = frames
-        .iter()
-        .map(|f| OneView {
-            depth: Some(&f.depth),
-            motion: Some(&f.motion),
-            trust: Some(&f.trust),
-            lod: Some(&f.lod),
-            noise: noisy.then_some(&f.noise),
-            ..OneView::new(f.facts, &f.color)
-        })
-        .collect();
+    let views: Vec<_> =
+        frames.iter().map(|f| OneView { noise: f.noise.as_ref().filter(|_| noisy), ..f.one() }).collect();
     let mut out = vec![Image::filled(SIZE, [f32::NAN; 3]); frames.len()];
     let mut trace = vec![Image::filled(SIZE, PixelTrace::default()); frames.len()];
     post.process_traced(&Images::of(&views).frame(index), &mut out, &mut trace).unwrap();
@@ -136,7 +128,7 @@ proptest! {
                         Method::None | Method::Wrs(_) => 0,
                         Method::Taa => 1,
                         _ if settings.noisy => 48,
-                        _ => (2.0 * 0.75 * frame.lod.pixels()[i].max(0.0).exp2()).ceil() as usize + 1,
+                        _ => (2.0 * 0.75 * frame.lod.as_ref().unwrap().pixels()[i].max(0.0).exp2()).ceil() as usize + 1,
                     };
                     prop_assert!(p == q || far <= reach, "{:?}: {} pixels off", settings.method, far);
                 }

@@ -1,7 +1,8 @@
 //! Repair of sparse frames: which pixels a plan asks for, and what their samples show.
 
 use super::*;
-use crate::any_frame::{self, AnyFrame, any_frame};
+use crate::any_frame::{self, any_frame};
+use crate::images::View;
 use crate::sparse_hard::foveation;
 use afterimage::kernel::repair::{KEYS, asked_px, priority, quad_key, threshold};
 use afterimage::{Foveation, Repair, Smr};
@@ -327,7 +328,7 @@ fn priorities_are_ordered_by_class_then_by_ring() {
 }
 
 /// Any frame of 8x6 pixels with lattices.
-fn sparse_any(draws: &mut Draws, wild: f32, index: u64, at_samples: bool) -> AnyFrame {
+fn sparse_any(draws: &mut Draws, wild: f32, index: u64, at_samples: bool) -> View {
     let mut frame = any_frame(draws, wild);
     let gaze = [draws.range(0.0, 8.0), draws.range(0.0, 6.0)];
     let lattices = foveation().lattices(&frame.facts.geometry, gaze, index);
@@ -359,11 +360,9 @@ proptest! {
         for index in 0..4 {
             let frames = [0; 2].map(|_| sparse_any(&mut draws, wild, index, at_samples));
             let views = frames.each_ref().map(|f| OneView {
-                depth: Some(&f.depth),
-                motion: Some(&f.motion),
-                trust: Some(&f.trust),
-                noise: noisy.then_some(&f.noise),
-                ..OneView::new(f.facts, &f.color)
+                lod: None,
+                noise: f.noise.as_ref().filter(|_| noisy),
+                ..f.one()
             });
             let images = Images::of(&views);
             let reset = if draws.uniform() < 0.2 { Reset::All } else { Reset::None };

@@ -1,61 +1,12 @@
 //! Reprojection: identity, shifts, conventions, garbage vectors.
 
+use super::depth::held;
 use super::*;
+use crate::laws::laws;
+use crate::motion_hard::*;
 use afterimage_testing::holds;
 
-#[test]
-fn h51_a_thousand_still_frames_never_move_a_sample() {
-    // Every frame has another picture at the same depths: each output pixel is the sample of some frame at that pixel.
-    let mut post = context_of(MethodKind::Wrs);
-    let mut seen = vec![std::collections::HashSet::new(); 64 * 48];
-    let depth = Image::from_fn(SIZE, |[x, y]| 1.0 + ((x / 5) * (y / 3)) as f32);
-    let mut kept = 0;
-    for index in 0..1000 {
-        let input = Input {
-            depth: Some(depth.clone()),
-            motion: Some(Image::filled(SIZE, [0.0, -0.0])),
-            ..Input::still(noise(SIZE, &format!("still {index}")))
-        };
-        let (out, stats, trace) = one(&mut post, index, &input);
-        assert_eq!(stats.rejected(), 0);
-        for (i, colors) in seen.iter_mut().enumerate() {
-            colors.insert(input.color.pixels()[i].map(f32::to_bits));
-            assert!(colors.contains(&out.pixels()[i].map(f32::to_bits)), "frame {index}, pixel {i}");
-        }
-        kept += trace.pixels().iter().filter(|t| !t.take).count();
-    }
-    holds!(
-        "H51",
-        Cpu,
-        "wrs, 1000 frames of noise over 200 depths: {kept} samples kept, each at its own pixel, bit for bit"
-    );
-}
-
-#[test]
-fn h52_an_integer_shift_moves_history_exactly_and_marks_the_border_new() {
-    let mut post = context(ungated());
-    let before = noise(SIZE, "before");
-    one(&mut post, 0, &Input::still(before.clone()));
-    sticky(&mut post);
-    let input = Input { motion: Some(Image::filled(SIZE, [3.0, -2.0])), ..Input::still(noise(SIZE, "after")) };
-    let (out, _, trace) = one(&mut post, 1, &input);
-    let mut border = 0;
-    for y in 0..48_usize {
-        for x in 0..64_usize {
-            let (qx, qy) = (x + 3, y as i64 - 2);
-            if qx < 64 && qy >= 0 {
-                assert_eq!(out.at(x, y), before.at(qx, qy as usize));
-                assert_eq!(trace.at(x, y).verdict, Verdict::Valid);
-            } else {
-                assert_eq!(out.at(x, y), input.color.at(x, y));
-                assert_eq!(trace.at(x, y).verdict, Verdict::OffScreen);
-                border += 1;
-            }
-        }
-    }
-    assert_eq!(border, 64 * 48 - 61 * 46);
-    holds!("H52", Cpu, "wrs: {} samples moved bit for bit, {border} of the border new", 61 * 46);
-}
+motion_laws!(Cpu, held);
 
 #[test]
 fn every_motion_convention_means_the_same_shift() {
@@ -93,85 +44,6 @@ fn every_motion_convention_means_the_same_shift() {
     assert_eq!(uv.to_internal([64, 48]), [-64.0, 48.0]);
     let ndc = MotionConvention { unit: MotionUnit::Ndc, ..MotionConvention::default() };
     assert_eq!(ndc.to_internal([64, 48]), [32.0, 24.0]);
-}
-
-#[test]
-fn h53_half_pixel_motion_never_blurs() {
-    // Nearest reprojection moves samples by whole pixels: after 200 frames of 0.5 px every color is still one of the
-    // input colors.
-    let mut post = context(ungated());
-    let mut known = std::collections::HashSet::new();
-    let mut kept = 0;
-    for index in 0..200 {
-        let color = noise(SIZE, &format!("frame {index}"));
-        known.extend(color.pixels().iter().map(|c| c.map(f32::to_bits)));
-        let input = Input { motion: Some(Image::filled(SIZE, [-0.5, 0.5])), ..Input::still(color) };
-        let (out, _, trace) = one(&mut post, index, &input);
-        assert!(out.pixels().iter().all(|c| known.contains(&c.map(f32::to_bits))), "H22: no invented colors");
-        kept += trace.pixels().iter().filter(|t| !t.take).count();
-    }
-    holds!(
-        "H53",
-        Cpu,
-        "wrs, 0.5 px x 200: {kept} samples kept, no color that no frame brought; nearest, nothing is mixed"
-    );
-}
-
-#[test]
-fn h54_garbage_motion_shows_the_candidate() {
-    let mut post = context(ungated());
-    one(&mut post, 0, &Input::still(noise(SIZE, "a")));
-    sticky(&mut post);
-    for (i, bad) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e9, -1e9].into_iter().enumerate() {
-        let mut motion = Image::filled(SIZE, [0.0; 2]);
-        motion.pixels_mut()[5 * 64 + 7] = [bad, 0.0];
-        motion.pixels_mut()[6 * 64 + 7] = [0.0, bad];
-        let input = Input { motion: Some(motion), ..Input::still(noise(SIZE, "b")) };
-        let (out, stats, _) = one(&mut post, 1 + i as u64, &input);
-        assert_eq!(stats.verdicts[Verdict::BadMotion as usize], 2);
-        assert_eq!(stats.rejected(), 2);
-        assert_eq!((out.at(7, 5), out.at(7, 6)), (input.color.at(7, 5), input.color.at(7, 6)));
-    }
-    holds!("H54", Cpu, "wrs: NaN, infinities, 1e9 and -1e9 on either axis show the candidate, bit for bit");
-}
-
-#[test]
-fn h59_a_zoom_leaves_no_hole() {
-    let before = noise(SIZE, "zoom");
-    let zoomed = |factor: f32| {
-        let mut post = context_of(MethodKind::Wrs);
-        one(&mut post, 0, &Input::still(before.clone()));
-        sticky(&mut post);
-        // Previous minus current, about pixel (32, 24).
-        let motion =
-            Image::from_fn(SIZE, |[x, y]| [(x as f32 - 32.0) * (factor - 1.0), (y as f32 - 24.0) * (factor - 1.0)]);
-        let input = Input { motion: Some(motion), ..Input::still(noise(SIZE, "zoom 2")) };
-        let (out, stats, trace) = one(&mut post, 1, &input);
-        let (mut kept, mut sources) = (0, std::collections::HashSet::new());
-        for y in 0..48_usize {
-            for x in 0..64_usize {
-                let source = |at: usize, middle: f32| (middle + (at as f32 - middle) * factor + 0.5).floor();
-                let [qx, qy] = [source(x, 32.0), source(y, 24.0)];
-                let t = trace.at(x, y);
-                if (0.0..64.0).contains(&qx) && (0.0..48.0).contains(&qy) {
-                    assert_eq!((out.at(x, y), t.age, t.take), (before.at(qx as usize, qy as usize), 1, false));
-                    sources.insert((qx as usize, qy as usize));
-                    kept += 1;
-                } else {
-                    assert_eq!((out.at(x, y), t.age, t.verdict), (input.color.at(x, y), 0, Verdict::OffScreen));
-                }
-            }
-        }
-        assert_eq!(stats.rejected(), 64 * 48 - kept);
-        [kept, sources.len() as u64]
-    };
-    let ([near, originals], [far, all]) = (zoomed(0.5), zoomed(2.0));
-    assert!(near == 64 * 48 && near > 3 * originals && far == all && far < 1000);
-    holds!(
-        "H59",
-        Cpu,
-        "wrs, in x2: {near} show {originals} samples, ages kept; out x2: {far} kept, the rest is the candidate"
-    );
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Frames of one view for the methods that store surfaces, and their results.
 
-pub use crate::images::{Images, OneView};
+pub use crate::images::{Images, OneView, noise};
 pub use afterimage::cpu::{CpuAfterimage, Frame};
 pub use afterimage::kernel::debug_view::PixelTrace;
 pub use afterimage::kernel::surface::{Surface, unpack_surface};
@@ -21,12 +21,6 @@ pub fn settings(method: MethodKind) -> Settings {
 
 pub fn context(method: MethodKind) -> CpuAfterimage {
     CpuAfterimage::new(&ContextDesc { settings: settings(method), ..ContextDesc::new(SIZE) }).unwrap()
-}
-
-/// Colors that halves hold exactly, different at every pixel.
-pub fn noise(size: [u32; 2], name: &str) -> Color {
-    let mut draws = Draws::new(name);
-    Image::from_fn(size, |_| [0; 3].map(|_| (draws.bits() % 1024) as f32 / 1024.0))
 }
 
 /// One view of one frame.

@@ -61,7 +61,7 @@ fn a_wrong_origin_is_caught() {
         rig.scattered = true;
         let differs = (0..3).any(|index| {
             let views = full_views(index, &desc, &settings);
-            rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
+            rig.differs(index, Reset::None, &views)
         });
         assert!(differs, "{origin}");
     }

@@ -2,27 +2,19 @@
 //! same history, finite for any history, valid again after a frame, and without effect of one view on another.
 
 use super::rig::{Rig, View};
-use crate::any_frame::{AnyFrame, SIZE, all_settings, any_frame};
+use crate::any_frame::{SIZE, all_settings, any_frame};
 use afterimage::kernel::pack;
 use afterimage::kernel::surface::unpack_surface;
 use afterimage::shader::SHADERS;
 use afterimage::{ContextDesc, Method, MethodKind, Reset, Settings};
 use afterimage_testing::Draws;
+use afterimage_testing::planted::all_caught;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::cell::RefCell;
 
-fn view(frame: AnyFrame, settings: &Settings) -> View {
-    View {
-        facts: frame.facts,
-        color: frame.color,
-        depth: Some(frame.depth),
-        motion: Some(frame.motion),
-        trust: Some(frame.trust),
-        lod: Some(frame.lod),
-        noise: settings.noisy.then_some(frame.noise),
-        repaired: None,
-    }
+fn view(frame: View, settings: &Settings) -> View {
+    View { noise: frame.noise.filter(|_| settings.noisy), ..frame }
 }
 
 fn stereo() -> ContextDesc {
@@ -129,9 +121,7 @@ fn what_one_view_is_given_changes_no_bit_of_the_other() {
             "textureLoad(past_surfaces, at, 1u - view, 0)",
         ),
     ] {
-        let source = SHADERS.compose(pass).source;
-        assert!(source.contains(right));
         let settings = Settings { method: method.into(), ..Settings::paper() };
-        assert_eq!(leaks(settings, Some(&source.replace(right, wrong))), Some(true), "{method:?}");
+        all_caught(&[SHADERS.compose(pass).source], &[(right, wrong)], |[source]| leaks(settings, Some(source)));
     }
 }

@@ -1,6 +1,7 @@
 //! Frames through both executors, and the device's results.
 
 use crate::images::{Images, OneView};
+pub use crate::images::{View, noise};
 use afterimage::cpu::CpuAfterimage;
 use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target};
 use afterimage::kernel::debug_view::PixelTrace;
@@ -8,34 +9,10 @@ use afterimage::kernel::pack;
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};
 use afterimage::{
-    COUNTERS_BYTES, ContextDesc, DebugView, DepthConvention, Exposure, Filter, FrameStats, Gaze, Image, Method, Reset,
-    Settings, ViewFrame, ViewGeometry,
+    COUNTERS_BYTES, ContextDesc, DebugView, DepthConvention, Exposure, Filter, FrameStats, Image, Method, Reset,
+    Settings, ViewFrame,
 };
 use afterimage_testing::Draws;
-
-/// Images of one view of one frame.
-#[derive(Clone)]
-pub struct View {
-    pub facts: ViewFrame,
-    pub color: Image<[f32; 3]>,
-    pub depth: Option<Image<f32>>,
-    pub motion: Option<Image<[f32; 2]>>,
-    pub trust: Option<Image<f32>>,
-    /// Level-of-detail input, if any.
-    pub lod: Option<Image<f32>>,
-    /// Standard errors and numbers of samples of noisy frames.
-    pub noise: Option<Image<[f32; 2]>>,
-    /// Colors of the pixels that a plan chooses, if the frame is planned.
-    pub repaired: Option<Image<[f32; 3]>>,
-}
-
-impl View {
-    /// Without optional inputs, under 70 degrees.
-    pub fn still(color: Image<[f32; 3]>, gaze_px: [f32; 2]) -> Self {
-        let facts = ViewFrame::new(ViewGeometry::flat(color.size(), 70.0).unwrap(), Gaze::At { px: gaze_px });
-        Self { facts, color, depth: None, motion: None, trust: None, lod: None, noise: None, repaired: None }
-    }
-}
 
 /// A device with textures of one size, and both executors.
 pub struct Rig {
@@ -207,17 +184,7 @@ impl Rig {
         let size = self.context.size_px;
         let mut output = vec![Image::filled(size, [0.0; 3]); views.len()];
         let mut trace = vec![Image::filled(size, PixelTrace::default()); views.len()];
-        let cpu_views: Vec<_> = views
-            .iter()
-            .map(|v| OneView {
-                depth: v.depth.as_ref(),
-                motion: v.motion.as_ref(),
-                trust: v.trust.as_ref(),
-                lod: v.lod.as_ref(),
-                noise: v.noise.as_ref(),
-                ..OneView::new(v.facts, &v.color)
-            })
-            .collect();
+        let cpu_views: Vec<_> = views.iter().map(View::one).collect();
         let images = Images::of(&cpu_views);
         let frame = afterimage::cpu::Frame { reset, exposure: self.exposure, ..images.frame(index) };
         let repaired: Vec<_> = views.iter().filter_map(|v| v.repaired.as_ref()).collect();
@@ -230,6 +197,11 @@ impl Rig {
         let stats = self.cpu.process_traced(&frame, &mut output, &mut trace).unwrap();
         let shown = output.iter().flat_map(|o| o.pixels()).map(|c| c.map(f32::to_bits)).collect();
         (Made { shown, words: held_words(&self.cpu), quads, stats }, trace)
+    }
+
+    /// Whether the executors differ on a frame: what a planted error must do.
+    pub fn differs(&mut self, index: u64, reset: Reset, views: &[View]) -> bool {
+        self.on_gpu(index, reset, views) != self.on_cpu(index, reset, views).0
     }
 
     pub fn on_gpu(&mut self, index: u64, reset: Reset, views: &[View]) -> Made {
@@ -524,12 +496,6 @@ pub fn make_texture(device: &Device, context: &ContextDesc, format: TextureForma
     })
 }
 
-/// Colors that halves hold exactly, different at every pixel.
-pub fn noise(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
-    let mut draws = Draws::new(name);
-    Image::from_fn(size, |_| [0; 3].map(|_| (draws.bits() % 1024) as f32 / 1024.0))
-}
-
 /// Packed reservoirs, or packed surfaces and their noise (0 without noise).
 fn held_words(cpu: &CpuAfterimage) -> Vec<[u32; 3]> {
     let history = cpu.history();
@@ -556,17 +522,13 @@ pub fn noise_view(name: &str, desc: &ContextDesc) -> View {
         DepthConvention::Orthographic { near, far } => (z - near) / (far - near),
         other => panic!("{other:?}: a convention that the rig does not know"),
     };
+    let color = Image::from_fn(size, |_| [draws.uniform(), draws.uniform(), draws.uniform()]);
     View {
-        facts: ViewFrame::new(ViewGeometry::flat(size, 70.0).unwrap(), Gaze::At { px }),
-        color: Image::from_fn(size, |_| [draws.uniform(), draws.uniform(), draws.uniform()]),
         depth: Some(Image::from_fn(size, |[x, _]| stored(if x % 16 < 8 { 2.0 } else { 30.0 }))),
         motion: Some(Image::from_fn(size, |[x, y]| {
             let m = if (x / 8 + y / 8) % 2 == 0 { [16.0, -1.0] } else { [-0.5, 2.5] };
             [m[0] / scale[0], m[1] / scale[1]]
         })),
-        trust: None,
-        lod: None,
-        noise: None,
-        repaired: None,
+        ..View::still(color, px)
     }
 }

@@ -9,6 +9,7 @@ use afterimage::{
     ViewGeometry, Wrs,
 };
 use afterimage_testing::Draws;
+use afterimage_testing::planted::all_caught;
 
 pub(super) const SIZE: [u32; 2] = [70, 41];
 const METHODS: [MethodKind; 5] =
@@ -140,12 +141,8 @@ fn wrong_noise_is_caught() {
             rig.scattered = index % 4 == 3;
             rig.exposure = if index % 3 == 2 { Exposure::Changed { ratio: 1.25 } } else { Exposure::Same };
             let views = [0, 1].map(|v| noisy_view(index, v, &settings));
-            rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
+            rig.differs(index, Reset::None, &views)
         }))
-    };
-    let Some(false) = differs(&right) else {
-        assert!(differs(&right).is_none(), "without an error");
-        return;
     };
     let planted = [
         // Stored noise: of another texel, view or exposure; of a sample that is not the kept one.
@@ -178,11 +175,7 @@ fn wrong_noise_is_caught() {
         ("noise = accumulated.noise;", ""),
         ("result = accumulated.result;", "result = reconstruct(inputs);"),
     ];
-    for (text, instead) in planted {
-        let wrong = right.clone().map(|source| source.replace(text, instead));
-        assert_ne!(wrong, right, "{text}");
-        assert_eq!(differs(&wrong), Some(true), "{text} -> {instead}");
-    }
+    all_caught(&right, &planted, differs);
 }
 
 #[test]
@@ -262,19 +255,15 @@ fn a_wrong_fill_is_caught() {
         ("let view = frame.first_view + group.z;", "let view = group.z;"),
         ("frame.views[view].color_origin", "frame.views[0].color_origin"),
     ];
-    for (text, instead) in planted {
-        let wrong = right.replace(text, instead);
-        assert_ne!(wrong, right, "{text}");
-        let settings = settings(MethodKind::None);
-        let Some(mut rig) = Rig::new(desc(), settings) else { return };
-        rig.gpu.set_fill_shader(&rig.device, &wrong);
-        let differs = (0..4).any(|index| {
+    let settings = settings(MethodKind::None);
+    all_caught(&[right], &planted, |[source]| {
+        let mut rig = Rig::new(desc(), settings)?;
+        rig.gpu.set_fill_shader(&rig.device, source);
+        Some((0..4).any(|index| {
             rig.scattered = index > 1;
-            let views = sparse_views(index, &settings);
-            rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
-        });
-        assert!(differs, "{text} -> {instead}");
-    }
+            rig.differs(index, Reset::None, &sparse_views(index, &settings))
+        }))
+    });
 }
 
 /// A view of a texture that glides across two depths under a light that changes; some samples are not finite.
@@ -310,12 +299,8 @@ fn a_wrong_reconstruction_is_caught() {
             rig.scattered = index % 4 == 3;
             rig.exposure = if index % 3 == 2 { Exposure::Changed { ratio: 1.25 } } else { Exposure::Same };
             let views = [0, 1].map(|v| gliding_view(index, v, &settings));
-            rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
+            rig.differs(index, Reset::None, &views)
         }))
-    };
-    let Some(false) = differs(&right) else {
-        assert!(differs(&right).is_none(), "without an error");
-        return;
     };
     let planted = [
         // History: of the other view, of another texel, of another surface, and in another exposure.
@@ -355,11 +340,7 @@ fn a_wrong_reconstruction_is_caught() {
         ("textureStore(next_kept, px, view,", "textureStore(next_kept, px, 1u - view,"),
         ("count_if(valid && share == 0.0, COUNT_REPLACED);", ""),
     ];
-    for (text, instead) in planted {
-        let wrong = right.clone().map(|source| source.replace(text, instead));
-        assert_ne!(wrong, right, "{text}");
-        assert_eq!(differs(&wrong), Some(true), "{text} -> {instead}");
-    }
+    all_caught(&right, &planted, differs);
 }
 
 #[test]
@@ -381,20 +362,12 @@ fn a_wrong_fit_at_a_samples_own_pixel_is_caught() {
             let lattices = settings.foveation.lattices(&view.facts.geometry, [10.0, 10.0], index);
             view.facts.lattices = Some(lattices);
             let views = [view];
-            rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
+            rig.differs(index, Reset::None, &views)
         }))
     };
-    let Some(false) = differs(&right) else {
-        assert!(differs(&right).is_none(), "without an error");
-        return;
-    };
-    for (text, instead) in
-        [("select(1.0, unpack_lit(own_words).own_fit, is_own)", "1.0"), ("return own_fit(own, gains);", "return 1.0;")]
-    {
-        let wrong = right.clone().map(|source| source.replace(text, instead));
-        assert_ne!(wrong, right, "{text}");
-        assert_eq!(differs(&wrong), Some(true), "{text} -> {instead}");
-    }
+    let planted =
+        [("select(1.0, unpack_lit(own_words).own_fit, is_own)", "1.0"), ("return own_fit(own, gains);", "return 1.0;")];
+    all_caught(&right, &planted, differs);
 }
 
 #[test]
@@ -410,19 +383,16 @@ fn a_wrong_upsampling_is_caught() {
         ("let lattice = lattice_at(px, view);", "let lattice = sparse.views[view][0];"),
         ("frame.views[view].color_origin", "frame.views[0].color_origin"),
     ];
-    for (text, instead) in planted {
-        let wrong = right.replace(text, instead);
-        assert_ne!(wrong, right, "{text}");
-        let settings = settings(MethodKind::Taau);
-        let Some(mut rig) = Rig::with_shader(desc(), settings, &wrong) else { return };
-        let differs = (0..4).any(|index| {
+    let settings = settings(MethodKind::Taau);
+    all_caught(&[right], &planted, |[source]| {
+        let mut rig = Rig::with_shader(desc(), settings, source)?;
+        Some((0..4).any(|index| {
             rig.scattered = index > 1;
             let mut views = sparse_views(index, &settings);
             views.iter_mut().for_each(|view| view.facts.jitter_px = [0.25, -0.375]);
-            rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
-        });
-        assert!(differs, "{text} -> {instead}");
-    }
+            rig.differs(index, Reset::None, &views)
+        }))
+    });
 }
 
 #[test]
@@ -443,17 +413,12 @@ fn wrong_weights_of_places_are_caught() {
                 true => vec![noisy_view(index, 0, &settings), noisy_view(index, 1, &settings)],
                 false => sparse_views(index, &settings),
             };
-            rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
+            rig.differs(index, Reset::None, &views)
         }))
     };
-    let Some(without) = differs(exact, &right) else { return };
-    assert!(!without && differs(noisy, &right) == Some(false), "without an error");
-    let noise_of_pixels = ("noise_at(place.px, view)", "noise_at(px, view)");
-    for (settings, (text, instead)) in planted.map(|p| (exact, p)).into_iter().chain([(noisy, noise_of_pixels)]) {
-        let wrong = right.replace(text, instead);
-        assert_ne!(wrong, right, "{text}");
-        assert_eq!(differs(settings, &wrong), Some(true), "{text} -> {instead}");
-    }
+    let right = [right];
+    all_caught(&right, &planted, |[source]| differs(exact, source));
+    all_caught(&right, &[("noise_at(place.px, view)", "noise_at(px, view)")], |[source]| differs(noisy, source));
 }
 
 #[test]
@@ -616,17 +581,7 @@ fn any_lattices_and_any_bits_agree_bit_for_bit_and_are_finite() {
             let views = [0; 2].map(|_| {
                 let mut frame = any_frame(&mut draws, wild);
                 frame.facts.lattices = Some(any_lattices(&mut draws, SIZE));
-                let (depth, motion, trust) = (Some(frame.depth), Some(frame.motion), Some(frame.trust));
-                View {
-                    facts: frame.facts,
-                    color: frame.color,
-                    depth,
-                    motion,
-                    trust,
-                    lod: None,
-                    noise: None,
-                    repaired: None,
-                }
+                View { lod: None, noise: None, ..frame }
             });
             let (made, _) = rig.both(index, if index % 6 == 0 { Reset::All } else { Reset::None }, &views);
             assert!(made.shown.iter().flatten().all(|&v| f32::from_bits(v).abs() <= 65504.0));
@@ -779,16 +734,10 @@ fn a_wrong_fill_of_geometry_is_caught() {
         ("textureStore(depth_out, px, view", "textureStore(depth_out, px, 1u - view"),
         ("vec4<f32>(filled.yz, 0.0, 0.0)", "vec4<f32>(filled.zy, 0.0, 0.0)"),
     ];
-    for (text, instead) in planted {
-        let wrong = right.replace(text, instead);
-        assert_ne!(wrong, right, "{text}");
-        let settings = settings(MethodKind::Smr);
-        let Some(mut rig) = Rig::new(desc(), settings) else { return };
-        rig.gpu.set_geometry_shader(&rig.device, &wrong);
-        let differs = (0..6).any(|index| {
-            let views = at_samples(index, &settings);
-            rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
-        });
-        assert!(differs, "{text} -> {instead}");
-    }
+    let settings = settings(MethodKind::Smr);
+    all_caught(&[right], &planted, |[source]| {
+        let mut rig = Rig::new(desc(), settings)?;
+        rig.gpu.set_geometry_shader(&rig.device, source);
+        Some((0..6).any(|index| rig.differs(index, Reset::None, &at_samples(index, &settings))))
+    });
 }

@@ -1,6 +1,6 @@
 //! Hard cases of reservoirs and random numbers on the device: its results, equal to Rust's in every bit.
 
-use super::probe::{Probe, Rows, named};
+use super::probe::{Probe, named};
 use super::values::floats;
 use super::{decisions, state};
 use afterimage::kernel::wrs;
@@ -68,7 +68,8 @@ const STREAM: Probe = Probe {
     name: "a stream of one weight",
     module: "wrs rng",
     words: [5, 3],
-    wgsl: "var past = Past(vec3<f32>(0.5), in_f(3u), in_f(4u));
+    wgsl: || {
+        "var past = Past(vec3<f32>(0.5), in_f(3u), in_f(4u));
     let params = WrsParams(in_u(1u), BIAS_BERNOULLI, 1.0, GATE_OFF, 0.0, 0.01);
     var taken = 0u;
     for (var n = 0u; n < in_u(0u); n++) {
@@ -77,7 +78,9 @@ const STREAM: Probe = Probe {
         past.w_sum = d.w_sum;
         past.log_key = d.log_key;
     }
-    out_u(taken); out_f(past.w_sum); out_f(past.log_key);",
+    out_u(taken); out_f(past.w_sum); out_f(past.log_key);"
+            .into()
+    },
     rust: |r, o| {
         let mut past = Past { color: Vec3::splat(0.5), w_sum: r.f(3), log_key: r.f(4) };
         let params = WrsParams {
@@ -99,7 +102,7 @@ const STREAM: Probe = Probe {
         o.f(past.w_sum);
         o.f(past.log_key);
     },
-    rows: || Rows::new(5),
+    rows: |rows| rows,
 };
 
 /// `frames` of a stream; software devices end a loop after 65,535 rounds, so in pieces. Taken, weight sum, log key.

@@ -1,6 +1,6 @@
 //! Probabilities of samples on the device: histograms of streams from its own generator and reservoirs.
 
-use super::probe::{Probe, Rows};
+use super::probe::Probe;
 use super::values::floats;
 use afterimage::kernel::reservoir;
 use afterimage::kernel::reservoir::Reservoir;
@@ -14,7 +14,8 @@ const STREAMS: Probe = Probe {
     name: "streams of eight",
     module: "reservoir rng",
     words: [12, 8],
-    wgsl: "var counts = array<u32, 8>();
+    wgsl: || {
+        "var counts = array<u32, 8>();
     for (var trial = 0u; trial < in_u(2u); trial++) {
         var kept = Reservoir(0.0, 0u);
         var best = LOWEST;
@@ -35,7 +36,9 @@ const STREAMS: Probe = Probe {
         }
         counts[sample] += 1u;
     }
-    for (var i = 0u; i < 8u; i++) { out_u(counts[i]); }",
+    for (var i = 0u; i < 8u; i++) { out_u(counts[i]); }"
+            .into()
+    },
     rust: |r, o| {
         let mut counts = [0; 8];
         for trial in 0..r.u(2) {
@@ -63,7 +66,7 @@ const STREAMS: Probe = Probe {
         }
         counts.into_iter().for_each(|n| o.u(n));
     },
-    rows: || Rows::new(12),
+    rows: |rows| rows,
 };
 
 /// p-value of the histogram of `trials` streams of `weights` on the device against the law of `law_weights`.

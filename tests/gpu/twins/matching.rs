@@ -1,11 +1,11 @@
 //! Functions that match the scales of history and candidate: matched.
 
-use super::probe::{Out, Probe, Row, Rows};
+use super::probe::{Out, Probe, Row, Rows, probe};
+use super::shape::*;
 use super::values::*;
 use afterimage::kernel::matched;
 use afterimage::kernel::matched::{Evidence, SmrParams};
 use afterimage_testing::Draws;
-use glam::Vec4;
 
 /// Channels of sanitized colors: 0, dark, negative, the largest half.
 pub fn channels() -> Vec<u32> {
@@ -37,21 +37,17 @@ fn lod(d: &mut Draws) -> f32 {
     }
 }
 
-fn pair_rows(name: &str) -> Rows {
+fn pair_rows(rows: Rows) -> Rows {
     let c = channels();
-    Rows::new(6).mixed(name, &[&c, &c, &c, &c, &c, &c]).random(name, |d, row| {
+    rows.mixed(&[&c, &c, &c, &c, &c, &c]).random(|d, row| {
         let a = stored_color(d);
         let b = like(d, a);
         push(row, &[a, b].concat());
     })
 }
 
-fn vec4(r: &Row<'_>, k: usize) -> Vec4 {
-    r.v(k).extend(r.f(k + 3))
-}
-
 /// Texels of the mip chain: color times coverage, and coverage.
-fn chain_rows(name: &str, fractions: usize) -> Rows {
+fn chain_rows(rows: Rows, fractions: usize) -> Rows {
     let width = 16 + fractions;
     let (c, cover) = (floats(&[0.0, 0.18, 1.0, 65504.0, 6e-5]), floats(&[0.0, 0.25, 0.5, 1.0]));
     let at = floats(&[0.0, 0.25, 0.5, 0.75, 0.9]);
@@ -66,7 +62,7 @@ fn chain_rows(name: &str, fractions: usize) -> Rows {
             }
         })
         .collect();
-    Rows::new(width).mixed(name, &lists).random(name, |d, row| {
+    rows.mixed(&lists).random(|d, row| {
         for _ in 0..4 {
             let covered = [0.0, 0.25, 0.5, 0.75, 1.0, 1.0, 1.0, 1.0][d.bits() as usize % 8];
             push(row, &stored_color(d).map(|x| x * covered));
@@ -111,7 +107,7 @@ fn decide(r: &Row<'_>, o: &mut Out) {
 }
 
 /// With these flags, or any.
-fn decide_rows(flags: Option<[u32; 3]>) -> Rows {
+fn decide_rows(rows: Rows, flags: Option<[u32; 3]>) -> Rows {
     let (c, l) = (channels(), floats(&[0.0, 1.0 / 7.0, 1.0, 2.0, 3.0, 8.0, 62.0 / 7.0]));
     let h = floats(&[0.0, 6e-8, 0.002, 0.18, 0.5, 1.0, 65504.0]);
     let trust = floats(&[0.25, 1.0, 1e-30]);
@@ -140,7 +136,7 @@ fn decide_rows(flags: Option<[u32; 3]>) -> Rows {
     lists.extend([&c[..]; 3]);
     lists.extend([&h[..]; 6]);
     lists.push(&[0, 1]);
-    Rows::new(DECIDE_IN).mixed("decide", &lists).random("decide", |d, row| {
+    rows.mixed(&lists).random(|d, row| {
         let candidate = stored_color(d);
         let compared = if d.bits() & 1 == 0 { candidate } else { like(d, candidate) };
         let lit = [1.0, 1.0, 1.2, 0.4, 2.0][d.bits() as usize % 5];
@@ -169,13 +165,12 @@ fn decide_rows(flags: Option<[u32; 3]>) -> Rows {
     })
 }
 
+shape!(matched::ReuseWeight { finer: f32, share: f32 });
+
 macro_rules! decide_probe {
     ($blocks:literal, $relight:literal, $noisy:literal, $flags:expr) => {
         Probe {
-            name: "decide",
-            module: "matched",
-            words: [DECIDE_IN, 6],
-            wgsl: concat!(
+name: "decide", module: "matched", words: [DECIDE_IN, 6], wgsl: || concat!(
                 "let e = Evidence(in_v(0u), in_v(3u), in_v(6u), in_v(33u), in_f(9u), in_v(10u), in_f(13u), in_u(42u) != 0u, in_v(14u), in_v(17u), in_v(20u), in_v(36u), in_v(39u), in_f(23u), in_f(29u), vec2<f32>(in_f(31u), in_f(32u)));
     let m = decide(e, SmrParams(in_f(24u), in_f(25u), in_f(26u), ",
                 $blocks,
@@ -185,163 +180,73 @@ macro_rules! decide_probe {
                 $noisy,
                 "));
     out_v(m.color); out_f(m.lod); out_f(m.share); out_f(m.fit);"
-            ),
-            rust: decide,
-            rows: || decide_rows($flags),
-        }
+            ).into(), rust: decide, rows: |rows| decide_rows(rows, $flags) }
     };
 }
 
 pub const PROBES: &[Probe] = &[
-    Probe {
-        name: "smooth_step",
-        module: "matched",
-        words: [3, 1],
-        wgsl: "out_f(smooth_step(in_f(0u), in_f(1u), in_f(2u)));",
-        rust: |r, o| o.f(matched::smooth_step(r.f(0), r.f(1), r.f(2))),
-        rows: || {
-            let (low, width) = (floats(&[0.0, 0.05, 1.5, 3.0, 48.0]), floats(&[0.1, 1.5, 6.0, 24.0]));
-            let x = [positive(), around(&[0.05, 0.15, 1.5, 3.0, 9.0])].concat();
-            Rows::new(3)
-                .cross(&[&low, &width, &x])
-                .random("smooth_step", |d, row| row.extend([0.0, 0.1, 0.0].map(|l| range(d, l, 20.0))))
-        },
-    },
-    Probe {
-        name: "root_difference",
-        module: "matched",
-        words: [6, 1],
-        wgsl: "out_f(root_difference(in_v(0u), in_v(3u)));",
-        rust: |r, o| o.f(matched::root_difference(r.v(0), r.v(3))),
-        rows: || pair_rows("root_difference"),
-    },
-    Probe {
-        name: "roots",
-        module: "matched",
-        words: [3, 3],
-        wgsl: "out_v(roots(in_v(0u)));",
-        rust: |r, o| o.v(matched::roots(r.v(0))),
-        rows: || {
-            // A root of a denormal is a normal number, unless a device flushes it.
-            let c: Vec<u32> = finite().into_iter().filter(|&x| x & 0x7fff_ffff == 0 || x & 0x7f80_0000 != 0).collect();
-            Rows::new(3)
-                .mixed("roots", &[&c, &c, &c])
-                .random("roots", |d, row| row.extend((0..3).map(|_| signed(d, -24, 17))))
-        },
-    },
-    Probe {
-        name: "moves_alike",
-        module: "matched",
-        words: [4, 1],
-        wgsl: "out_b(moves_alike(vec2<f32>(in_f(0u), in_f(1u)), vec2<f32>(in_f(2u), in_f(3u))));",
-        rust: |r, o| o.b(matched::moves_alike([r.f(0), r.f(1)], [r.f(2), r.f(3)])),
-        rows: || {
-            let v = [finite(), around(&[0.5, -0.5, 16.0])].concat();
-            Rows::new(4).mixed("moves_alike", &[&v, &v, &v, &v]).random("moves_alike", |d, row| {
-                let own = [d.range(-40.0, 40.0), d.range(-40.0, 40.0)];
-                let within = 0.5 + 0.1 * (own[0].abs() + own[1].abs());
-                let other = own.map(|x| x + within * d.range(-1.2, 1.2));
-                push(row, &[own, other].concat());
-            })
-        },
-    },
-    Probe {
-        name: "reuse_weight",
-        module: "matched",
-        words: [6, 2],
-        wgsl: "let w = reuse_weight(in_f(0u), in_f(1u), in_f(2u), in_u(3u) != 0u, vec2<f32>(in_f(4u), in_f(5u))); out_f(w.finer); out_f(w.share);",
-        rust: |r, o| {
-            let w = matched::reuse_weight(r.f(0), r.f(1), r.f(2), r.u(3) != 0, [r.f(4), r.f(5)]);
-            o.f(w.finer);
-            o.f(w.share);
-        },
-        rows: || {
-            let l: Vec<u32> = (0..63).map(|i| (i as f32 / 7.0).to_bits()).chain(around(&[0.1, 0.25, 1.0])).collect();
-            let shares = floats(&[0.0, 0.5, 0.9, 0.99]);
-            let (then, one, confidence) = ([l.clone(), floats(&[-1.0])].concat(), floats(&[1.0]), floats(&[0.0, 0.3]));
-            Rows::new(6)
-                .cross(&[&l, &then, &shares, &[0, 1], &one, &one])
-                .mixed("reuse_weight", &[&l, &then, &shares, &[0, 1], &confidence, &confidence])
-                .random("reuse_weight", |d, row| {
-                    let (now, then) = (lod(d), lod(d));
-                    let near = if d.bits() & 1 == 0 { then } else { (now + d.range(-0.4, 0.4)).max(0.0) };
-                    push(row, &[now, near, d.range(0.0, 0.99)]);
-                    row.push(d.bits() & 1);
-                    push(row, &[d.uniform(), d.uniform()]);
-                })
-        },
-    },
-    Probe {
-        name: "gain",
-        module: "matched",
-        words: [3, 1],
-        wgsl: "out_f(gain(in_f(0u), in_f(1u), in_f(2u)));",
-        rust: |r, o| o.f(matched::gain(r.f(0), r.f(1), r.f(2))),
-        rows: || {
-            let h = floats(&[0.0, 6e-8, 0.002, 0.18, 1.0, 65504.0]);
-            Rows::new(3).cross(&[&channels(), &h, &floats(&[0.0, 0.5, 1.0])]).random("gain", |d, row| {
-                let [h, ..] = stored_color(d);
-                let [c, ..] = like(d, [h; 3]);
-                push(row, &[c * [1.0, 0.3, 4.0][d.bits() as usize % 3], h, d.uniform()]);
-            })
-        },
-    },
-    Probe {
-        name: "relight_from",
-        module: "matched",
-        words: [3, 1],
-        wgsl: "out_f(relight_from(in_f(0u), in_u(1u) != 0u, in_f(2u)));",
-        rust: |r, o| o.f(matched::relight_from(r.f(0), r.u(1) != 0, r.f(2))),
-        rows: || {
-            Rows::new(3).cross(&[&positive(), &[0, 1], &positive()]).random("relight_from", |d, row| {
-                push(row, &[d.range(0.0, 150.0)]);
+    probe!(matched::smooth_step, |rows| {
+        let (low, width) = (floats(&[0.0, 0.05, 1.5, 3.0, 48.0]), floats(&[0.1, 1.5, 6.0, 24.0]));
+        let x = [positive(), around(&[0.05, 0.15, 1.5, 3.0, 9.0])].concat();
+        rows.cross(&[&low, &width, &x]).random(|d, row| row.extend([0.0, 0.1, 0.0].map(|l| range(d, l, 20.0))))
+    }),
+    probe!(matched::root_difference, pair_rows),
+    probe!(matched::roots, |rows| {
+        // A root of a denormal is a normal number, unless a device flushes it.
+        let c: Vec<u32> = finite().into_iter().filter(|&x| x & 0x7fff_ffff == 0 || x & 0x7f80_0000 != 0).collect();
+        rows.mixed(&[&c, &c, &c]).random(|d, row| row.extend((0..3).map(|_| signed(d, -24, 17))))
+    }),
+    probe!(matched::moves_alike, |rows| {
+        let v = [finite(), around(&[0.5, -0.5, 16.0])].concat();
+        rows.mixed(&[&v, &v, &v, &v]).random(|d, row| {
+            let own = [d.range(-40.0, 40.0), d.range(-40.0, 40.0)];
+            let within = 0.5 + 0.1 * (own[0].abs() + own[1].abs());
+            let other = own.map(|x| x + within * d.range(-1.2, 1.2));
+            push(row, &[own, other].concat());
+        })
+    }),
+    probe!(matched::reuse_weight, |rows| {
+        let l: Vec<u32> = (0..63).map(|i| (i as f32 / 7.0).to_bits()).chain(around(&[0.1, 0.25, 1.0])).collect();
+        let shares = floats(&[0.0, 0.5, 0.9, 0.99]);
+        let (then, one, confidence) = ([l.clone(), floats(&[-1.0])].concat(), floats(&[1.0]), floats(&[0.0, 0.3]));
+        rows.cross(&[&l, &then, &shares, &[0, 1], &one, &one])
+            .mixed(&[&l, &then, &shares, &[0, 1], &confidence, &confidence])
+            .random(|d, row| {
+                let (now, then) = (lod(d), lod(d));
+                let near = if d.bits() & 1 == 0 { then } else { (now + d.range(-0.4, 0.4)).max(0.0) };
+                push(row, &[now, near, d.range(0.0, 0.99)]);
                 row.push(d.bits() & 1);
-                push(row, &[d.range(0.0, 150.0)]);
+                push(row, &[d.uniform(), d.uniform()]);
             })
-        },
-    },
-    Probe {
-        name: "is_changed",
-        module: "matched",
-        words: [12, 1],
-        wgsl: "out_b(is_changed(in_v(0u), in_v(3u), in_v(6u), in_v(9u)));",
-        rust: |r, o| o.b(matched::is_changed(r.v(0), r.v(3), r.v(6), r.v(9))),
-        rows: || {
-            Rows::new(12).random("is_changed", |d, row| {
-                let compared = stored_color(d);
-                let [matched, level, next] = [0; 3].map(|_| like(d, compared).map(|x| x.max(0.0)));
-                push(row, &[compared, matched, level, next].concat());
-            })
-        },
-    },
+    }),
+    probe!(matched::gain, |rows| {
+        let h = floats(&[0.0, 6e-8, 0.002, 0.18, 1.0, 65504.0]);
+        rows.cross(&[&channels(), &h, &floats(&[0.0, 0.5, 1.0])]).random(|d, row| {
+            let [h, ..] = stored_color(d);
+            let [c, ..] = like(d, [h; 3]);
+            push(row, &[c * [1.0, 0.3, 4.0][d.bits() as usize % 3], h, d.uniform()]);
+        })
+    }),
+    probe!(matched::relight_from, |rows| {
+        rows.cross(&[&positive(), &[0, 1], &positive()]).random(|d, row| {
+            push(row, &[d.range(0.0, 150.0)]);
+            row.push(d.bits() & 1);
+            push(row, &[d.range(0.0, 150.0)]);
+        })
+    }),
+    probe!(matched::is_changed, |rows| {
+        rows.random(|d, row| {
+            let compared = stored_color(d);
+            let [matched, level, next] = [0; 3].map(|_| like(d, compared).map(|x| x.max(0.0)));
+            push(row, &[compared, matched, level, next].concat());
+        })
+    }),
     decide_probe!("in_u(27u) != 0u", "in_u(28u) != 0u", "in_u(30u) != 0u", None),
     // As the passes have them: constants of a pipeline, which the compiler folds.
     decide_probe!("false", "true", "false", Some([0, 1, 0])),
     decide_probe!("true", "true", "false", Some([1, 1, 0])),
     decide_probe!("false", "false", "false", Some([0, 0, 0])),
     decide_probe!("false", "true", "true", Some([0, 1, 1])),
-    Probe {
-        name: "mip_mean",
-        module: "matched",
-        words: [16, 4],
-        wgsl: "let m = mip_mean(vec4<f32>(in_v(0u), in_f(3u)), vec4<f32>(in_v(4u), in_f(7u)), vec4<f32>(in_v(8u), in_f(11u)), vec4<f32>(in_v(12u), in_f(15u)));
-    out_v(m.xyz); out_f(m.w);",
-        rust: |r, o| {
-            let m = matched::mip_mean(vec4(r, 0), vec4(r, 4), vec4(r, 8), vec4(r, 12));
-            o.v(m.truncate());
-            o.f(m.w);
-        },
-        rows: || chain_rows("mip_mean", 0),
-    },
-    Probe {
-        name: "mip_bilinear",
-        module: "matched",
-        words: [18, 3],
-        wgsl: "out_v(mip_bilinear(vec4<f32>(in_v(0u), in_f(3u)), vec4<f32>(in_v(4u), in_f(7u)), vec4<f32>(in_v(8u), in_f(11u)), vec4<f32>(in_v(12u), in_f(15u)), vec2<f32>(in_f(16u), in_f(17u))));",
-        rust: |r, o| {
-            let (top, bottom) = ([vec4(r, 0), vec4(r, 4)], [vec4(r, 8), vec4(r, 12)]);
-            o.v(matched::mip_bilinear(top, bottom, [r.f(16), r.f(17)]));
-        },
-        rows: || chain_rows("mip_bilinear", 2),
-    },
+    probe!(matched::mip_mean, |rows| chain_rows(rows, 0)),
+    probe!(matched::mip_bilinear, |rows| chain_rows(rows, 2)),
 ];

@@ -21,6 +21,7 @@ mod noise;
 mod order;
 mod probe;
 mod repair;
+mod shape;
 mod sparse;
 mod state;
 mod surfaces;

@@ -1,6 +1,7 @@
 //! A probe: one library function over a table of words, on the adapter and by its Rust twin.
 
-use super::library::{SHADERS, table_data};
+use super::library::{SHADERS, probes, table_data};
+use super::shape::Twin;
 use afterimage::wgpu;
 use glam::Vec3;
 use std::cell::Cell;
@@ -14,12 +15,45 @@ pub struct Probe {
     pub words: [usize; 2],
     /// WGSL statements that read `in_u`, `in_f`, `in_v` (word, float, three floats; by index) and call `out_u`,
     /// `out_f`, `out_v`, `out_b` in order.
-    pub wgsl: &'static str,
+    pub wgsl: fn() -> String,
     /// Calls the Rust twin on a row.
     pub rust: fn(&Row<'_>, &mut Out),
-    /// The table.
-    pub rows: fn() -> Rows,
+    /// Fills the table.
+    pub rows: fn(Rows) -> Rows,
 }
+
+/// A probe of a function of the kernel, `module::name`. The types of the Rust function say how its arguments lie in a
+/// row, and how WGSL spells the call:
+///
+/// ```ignore
+/// // Rust: lobe(r.f(0)); WGSL: lobe(in_f(0u)); 100,000 random rows of one float.
+/// probe!(taau::lobe, |rows| rows.random(|d, row| row.push(range(d, 0.0, 2.0))))
+/// // Rust takes a reference, or something that is no word of the row; WGSL is the same call.
+/// probe!(phong::phong_diffuse, |s: PhongSurface, wi: Vec3| phong::phong_diffuse(&s, wi), materials)
+/// // WGSL differs: `$0` is the first argument; statements may stand before the result, or `out_` calls write it.
+/// probe!(albedo::sheen_albedo, |x: f32, y: f32| albedo::sheen_albedo(&TABLES, x, y), "sheen_albedo(0u, $0, $1)", pair)
+/// ```
+///
+/// Structs have their fields' shapes from `shape!`.
+macro_rules! probe {
+    ($module:ident::$name:ident, $rows:expr) => {
+        probe!($module::$name, $module::$name, stringify!($name), $rows)
+    };
+    ($module:ident::$name:ident, $rust:expr, $rows:expr) => {
+        probe!($module::$name, $rust, stringify!($name), $rows)
+    };
+    ($module:ident::$name:ident, $rust:expr, $wgsl:expr, $rows:expr) => {
+        Probe {
+            name: stringify!($name),
+            module: stringify!($module),
+            words: Probe::words_of(&$rust),
+            wgsl: || Probe::spell(&$rust, $wgsl),
+            rust: |row, out| Probe::run(&$rust, row, out),
+            rows: $rows,
+        }
+    };
+}
+pub(crate) use probe;
 
 /// One row of input.
 pub struct Row<'a> {
@@ -75,13 +109,29 @@ fn outside(x: f32) -> bool {
     x.is_nan() || (x != 0.0 && x.abs() < 1.0 / 18_446_744_073_709_551_616.0)
 }
 
-/// A table of input.
+/// A table of input, of the probe of that name.
 pub struct Rows {
+    pub name: &'static str,
     pub width: usize,
     pub words: Vec<u32>,
 }
 
 impl Probe {
+    pub const fn words_of<Arguments, Function: Twin<Arguments>>(_: &Function) -> [usize; 2] {
+        Function::WORDS
+    }
+    pub fn spell<Arguments>(function: &impl Twin<Arguments>, call: &str) -> String {
+        function.wgsl(call)
+    }
+    pub fn run<Arguments>(function: &impl Twin<Arguments>, row: &Row<'_>, out: &mut Out) {
+        function.run(row, out);
+    }
+
+    /// The table.
+    pub fn table(&self) -> Rows {
+        (self.rows)(Rows { name: self.name, width: self.words[0], words: vec![] })
+    }
+
     /// The library and an entry point `main` that runs one row per invocation.
     pub fn source(&self) -> String {
         let [ins, outs] = self.words;
@@ -110,14 +160,14 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
 }}
 ",
             workgroup = afterimage_testing::gpu::WORKGROUP,
-            wgsl = self.wgsl
+            wgsl = (self.wgsl)()
         );
         SHADERS.compose_with(&self.module.split(' ').collect::<Vec<_>>(), &harness).source
     }
 
     /// Rows of the table, and a line for each whose results differ between `source` on the device and the Rust twin.
     pub fn differences(&self, device: &wgpu::Device, queue: &wgpu::Queue, source: &str) -> (usize, Vec<String>) {
-        self.differences_of(device, queue, source, &(self.rows)())
+        self.differences_of(device, queue, source, &self.table())
     }
 
     /// Results of the Rust twin for a row, and whether a float among the row or its results is [`outside`].
@@ -192,9 +242,9 @@ pub fn named<'a>(probes: &'a [Probe], name: &str) -> &'a Probe {
 }
 
 /// Checks every probe of `module`, on a fresh device; how many rows agree, or `None` without an adapter.
-pub fn check_module(probes: &[Probe], module: &str) -> Option<usize> {
+pub fn check_module(module: &str) -> Option<usize> {
     let (device, queue) = afterimage_testing::gpu::device()?;
-    let chosen: Vec<_> = probes.iter().filter(|p| p.module == module).collect();
+    let chosen: Vec<_> = probes().filter(|p| p.module == module).collect();
     assert!(!chosen.is_empty());
     let (counts, failures): (Vec<_>, Vec<_>) = chosen.iter().map(|p| p.check(&device, &queue)).partition(Result::is_ok);
     let failures: Vec<_> = failures.into_iter().filter_map(Result::err).collect();
@@ -202,15 +252,17 @@ pub fn check_module(probes: &[Probe], module: &str) -> Option<usize> {
     Some(counts.into_iter().flatten().sum())
 }
 
-/// A planted error: `wrong` instead of `right` in the source of the function `name`. Fails unless the comparison sees
-/// it.
+/// Planted errors: a function, a text of its source, and what stands there instead. Fails unless the comparison sees
+/// each.
 #[track_caller]
-pub fn caught(probes: &[Probe], name: &str, right: &str, wrong: &str) {
-    let probe = probes.iter().find(|p| p.name == name).unwrap();
-    let source = probe.source();
-    assert_eq!(source.matches(right).count(), 1, "'{right}' in the source of {name}");
+pub fn caught(errors: &[(&str, &str, &str)]) {
     let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
-    let (count, lines) = probe.differences(&device, &queue, &source.replace(right, wrong));
-    println!("{name}, '{right}' -> '{wrong}': {} of {count} rows differ", lines.len());
-    assert!(!lines.is_empty(), "planted error not caught: {name}, '{right}' -> '{wrong}'");
+    for (function, right, wrong) in errors {
+        let probe = probes().find(|p| format!("{}::{}", p.module, p.name) == *function).expect(function);
+        let source = probe.source();
+        assert_eq!(source.matches(right).count(), 1, "'{right}' in the source of {function}");
+        let (count, lines) = probe.differences(&device, &queue, &source.replace(right, wrong));
+        println!("{function}, '{right}' -> '{wrong}': {} of {count} rows differ", lines.len());
+        assert!(!lines.is_empty(), "planted error not caught: {function}, '{right}' -> '{wrong}'");
+    }
 }

@@ -143,10 +143,6 @@ pub fn range(d: &mut Draws, low: f32, high: f32) -> u32 {
 }
 
 impl Rows {
-    pub fn new(width: usize) -> Self {
-        Self { width, words: vec![] }
-    }
-
     /// Every combination of one word from each list.
     pub fn cross(mut self, lists: &[&[u32]]) -> Self {
         assert_eq!(lists.len(), self.width);
@@ -163,20 +159,31 @@ impl Rows {
     }
 
     /// Random combinations of one word from each list.
-    pub fn mixed(self, name: &str, lists: &[&[u32]]) -> Self {
+    pub fn mixed(self, lists: &[&[u32]]) -> Self {
         assert_eq!(lists.len(), self.width);
-        self.random(&format!("{name}, mixed"), |d, row| {
-            row.extend(lists.iter().map(|l| l[d.bits() as usize % l.len()]));
-        })
+        self.random_of("mixed", |d, row| row.extend(lists.iter().map(|l| l[d.bits() as usize % l.len()])))
     }
 
-    /// Random rows, from a seed that is the name.
-    pub fn random(mut self, name: &str, mut row: impl FnMut(&mut Draws, &mut Vec<u32>)) -> Self {
-        let mut draws = Draws::new(&format!("twins: {name}"));
+    /// Random rows, from a seed that is the probe's name.
+    pub fn random(self, row: impl FnMut(&mut Draws, &mut Vec<u32>)) -> Self {
+        let seed = self.name.to_owned();
+        self.seeded(&seed, row)
+    }
+
+    /// Random rows of another kind, from a seed with its name.
+    pub fn random_of(self, kind: &str, row: impl FnMut(&mut Draws, &mut Vec<u32>)) -> Self {
+        let seed = format!("{}, {kind}", self.name);
+        self.seeded(&seed, row)
+    }
+
+    fn seeded(mut self, seed: &str, mut row: impl FnMut(&mut Draws, &mut Vec<u32>)) -> Self {
+        let mut draws = Draws::new(&format!("twins: {seed}"));
         for _ in 0..RANDOM {
-            row(&mut draws, &mut self.words);
+            let mut words = Vec::with_capacity(self.width);
+            row(&mut draws, &mut words);
+            assert_eq!(words.len(), self.width, "{}", self.name);
+            self.words.append(&mut words);
         }
-        assert_eq!(self.words.len() % self.width, 0);
         self
     }
 

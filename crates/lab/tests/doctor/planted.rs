@@ -15,6 +15,16 @@ pub struct Planted {
     pub plant: fn(&Clip, &mut Delivery),
 }
 
+const fn planted(
+    name: &'static str,
+    check: Check,
+    fault: Fault,
+    mend: &'static str,
+    plant: fn(&Clip, &mut Delivery),
+) -> Planted {
+    Planted { name, check, fault, mend, plant }
+}
+
 fn vectors(delivery: &mut Delivery, change: impl Fn([f32; 2]) -> [f32; 2]) {
     for frame in &mut delivery.frames {
         frame.motion = frame.motion.as_ref().map(|m| m.map(&change));
@@ -81,255 +91,169 @@ const UV: MotionConvention = MotionConvention { unit: MotionUnit::Uv, ..PIXELS }
 const NDC: MotionConvention = MotionConvention { unit: MotionUnit::Ndc, ..PIXELS };
 
 pub const PLANTED: [Planted; 32] = [
-    Planted {
-        name: "vectors: current minus previous",
-        check: Check::Motion,
-        fault: Fault::MotionDirection,
-        mend: "{ direction: MotionDirection::CurrentMinusPrevious, ..",
-        plant: |_, d| vectors(d, |[x, y]| [-x, -y]),
-    },
-    Planted {
-        name: "vectors: y up",
-        check: Check::Motion,
-        fault: Fault::MotionYAxis,
-        mend: "{ y_axis: YAxis::Up, ..",
-        plant: |_, d| vectors(d, |[x, y]| [x, -y]),
-    },
-    Planted {
-        name: "vectors: stated y up",
-        check: Check::Motion,
-        fault: Fault::MotionYAxis,
-        mend: "{ y_axis: YAxis::Down, ..",
-        plant: |_, d| d.desc.motion = MotionConvention::BLENDER,
-    },
-    Planted {
-        name: "vectors: UV, stated pixels",
-        check: Check::Motion,
-        fault: Fault::MotionUnit,
-        mend: "{ unit: MotionUnit::Uv, ..",
-        plant: |_, d| convention(d, UV, PIXELS),
-    },
-    Planted {
-        name: "vectors: NDC, stated pixels",
-        check: Check::Motion,
-        fault: Fault::MotionUnit,
-        mend: "{ unit: MotionUnit::Ndc, ..",
-        plant: |_, d| convention(d, NDC, PIXELS),
-    },
-    Planted {
-        name: "vectors: pixels, stated UV",
-        check: Check::Motion,
-        fault: Fault::MotionUnit,
-        mend: "{ unit: MotionUnit::Pixels, ..",
-        plant: |_, d| convention(d, PIXELS, UV),
-    },
-    Planted {
-        name: "vectors: UV, stated NDC",
-        check: Check::Motion,
-        fault: Fault::MotionUnit,
-        mend: "{ unit: MotionUnit::Uv, ..",
-        plant: |_, d| convention(d, UV, NDC),
-    },
-    Planted {
-        name: "vectors: NDC, stated UV",
-        check: Check::Motion,
-        fault: Fault::MotionUnit,
-        mend: "{ unit: MotionUnit::Ndc, ..",
-        plant: |_, d| convention(d, NDC, UV),
-    },
-    Planted {
-        name: "vectors: twice too long",
-        check: Check::Motion,
-        fault: Fault::MotionScale,
-        mend: "motion *= 0.5;",
-        plant: |_, d| vectors(d, |v| v.map(|v| 2.0 * v)),
-    },
-    Planted {
-        name: "vectors: half as long",
-        check: Check::Motion,
-        fault: Fault::MotionScale,
-        mend: "motion *= 2;",
-        plant: |_, d| vectors(d, |v| v.map(|v| 0.5 * v)),
-    },
-    Planted {
-        name: "vectors: x and y swapped",
-        check: Check::Motion,
-        fault: Fault::MotionAxes,
-        mend: "motion = motion.yx;",
-        plant: |_, d| vectors(d, |[x, y]| [y, x]),
-    },
-    Planted {
-        name: "vectors: with jitter",
-        check: Check::Jitter,
-        fault: Fault::MotionJitter,
-        mend: "desc.motion.jittered = true;",
-        plant: |_, d| contain_jitter(d),
-    },
-    Planted {
-        name: "vectors: without jitter, stated with it",
-        check: Check::Jitter,
-        fault: Fault::MotionJitter,
-        mend: "desc.motion.jittered = false;",
-        plant: |_, d| {
+    planted(
+        "vectors: current minus previous",
+        Check::Motion,
+        Fault::MotionDirection,
+        "{ direction: MotionDirection::CurrentMinusPrevious, ..",
+        |_, d| vectors(d, |[x, y]| [-x, -y]),
+    ),
+    planted("vectors: y up", Check::Motion, Fault::MotionYAxis, "{ y_axis: YAxis::Up, ..", |_, d| {
+        vectors(d, |[x, y]| [x, -y])
+    }),
+    planted("vectors: stated y up", Check::Motion, Fault::MotionYAxis, "{ y_axis: YAxis::Down, ..", |_, d| {
+        d.desc.motion = MotionConvention::BLENDER
+    }),
+    planted("vectors: UV, stated pixels", Check::Motion, Fault::MotionUnit, "{ unit: MotionUnit::Uv, ..", |_, d| {
+        convention(d, UV, PIXELS)
+    }),
+    planted("vectors: NDC, stated pixels", Check::Motion, Fault::MotionUnit, "{ unit: MotionUnit::Ndc, ..", |_, d| {
+        convention(d, NDC, PIXELS)
+    }),
+    planted(
+        "vectors: pixels, stated UV",
+        Check::Motion,
+        Fault::MotionUnit,
+        "{ unit: MotionUnit::Pixels, ..",
+        |_, d| convention(d, PIXELS, UV),
+    ),
+    planted("vectors: UV, stated NDC", Check::Motion, Fault::MotionUnit, "{ unit: MotionUnit::Uv, ..", |_, d| {
+        convention(d, UV, NDC)
+    }),
+    planted("vectors: NDC, stated UV", Check::Motion, Fault::MotionUnit, "{ unit: MotionUnit::Ndc, ..", |_, d| {
+        convention(d, NDC, UV)
+    }),
+    planted("vectors: twice too long", Check::Motion, Fault::MotionScale, "motion *= 0.5;", |_, d| {
+        vectors(d, |v| v.map(|v| 2.0 * v))
+    }),
+    planted("vectors: half as long", Check::Motion, Fault::MotionScale, "motion *= 2;", |_, d| {
+        vectors(d, |v| v.map(|v| 0.5 * v))
+    }),
+    planted("vectors: x and y swapped", Check::Motion, Fault::MotionAxes, "motion = motion.yx;", |_, d| {
+        vectors(d, |[x, y]| [y, x])
+    }),
+    planted("vectors: with jitter", Check::Jitter, Fault::MotionJitter, "desc.motion.jittered = true;", |_, d| {
+        contain_jitter(d)
+    }),
+    planted(
+        "vectors: without jitter, stated with it",
+        Check::Jitter,
+        Fault::MotionJitter,
+        "desc.motion.jittered = false;",
+        |_, d| {
             d.desc.motion.jittered = true;
             d.frames.iter_mut().enumerate().for_each(|(i, f)| f.view.jitter_px = jitter(i));
         },
-    },
-    Planted {
-        name: "depth: reversed, stated forward",
-        check: Check::Depth,
-        fault: Fault::DepthConvention,
-        mend: "DepthConvention::Reversed",
-        plant: |_, d| d.desc.depth = FORWARD,
-    },
-    Planted {
-        name: "depth: reversed, stated linear",
-        check: Check::Depth,
-        fault: Fault::DepthConvention,
-        mend: "DepthConvention::Reversed",
-        plant: |_, d| d.desc.depth = DepthConvention::Linear,
-    },
-    Planted {
-        name: "depth: linear, stated reversed",
-        check: Check::Depth,
-        fault: Fault::DepthConvention,
-        mend: "DepthConvention::Linear",
-        plant: |clip, d| depths(clip, d, DepthConvention::Linear, REVERSED),
-    },
-    Planted {
-        name: "depth: forward, stated reversed",
-        check: Check::Depth,
-        fault: Fault::DepthConvention,
-        mend: "DepthConvention::Forward",
-        plant: |clip, d| depths(clip, d, FORWARD, REVERSED),
-    },
-    Planted {
-        name: "depth: forward, stated linear",
-        check: Check::Depth,
-        fault: Fault::DepthConvention,
-        mend: "DepthConvention::Forward",
-        plant: |clip, d| depths(clip, d, FORWARD, DepthConvention::Linear),
-    },
-    Planted {
-        name: "depth: near plane 4 times too far",
-        check: Check::Depth,
-        fault: Fault::DepthPlanes,
-        mend: "DepthConvention::Reversed { near: 0.1",
-        plant: |_, d| d.desc.depth = DepthConvention::Reversed { near: 0.4, far: f32::INFINITY },
-    },
-    Planted {
-        name: "depth: near plane 4 times too near",
-        check: Check::Depth,
-        fault: Fault::DepthPlanes,
-        mend: "DepthConvention::Reversed { near: 0.1",
-        plant: |_, d| d.desc.depth = DepthConvention::Reversed { near: 0.025, far: f32::INFINITY },
-    },
-    Planted {
-        name: "color: sRGB-encoded",
-        check: Check::Color,
-        fault: Fault::ColorEncoded,
-        mend: "pow(",
-        plant: |_, d| d.frames.iter_mut().for_each(|f| f.color = f.color.map(|c| c.map(srgb_encode))),
-    },
-    Planted {
-        name: "gaze: y up",
-        check: Check::Gaze,
-        fault: Fault::Gaze,
-        mend: "[x, height - 1.0 - y]",
-        plant: |_, d| gazes(d, |[x, y], [_, h]| [x, h - 1.0 - y]),
-    },
-    Planted {
-        name: "gaze: UV",
-        check: Check::Gaze,
-        fault: Fault::Gaze,
-        mend: "[x * width - 0.5, y * height - 0.5]",
-        plant: |_, d| gazes(d, |[x, y], [w, h]| [(x + 0.5) / w, (y + 0.5) / h]),
-    },
-    Planted {
-        name: "gaze: origin in the middle",
-        check: Check::Gaze,
-        fault: Fault::Gaze,
-        mend: "[x + 0.5 * width, y + 0.5 * height]",
-        plant: |_, d| gazes(d, |[x, y], [w, h]| [x - 0.5 * w, y - 0.5 * h]),
-    },
-    Planted {
-        name: "gaze: pixels of half the size",
-        check: Check::Gaze,
-        fault: Fault::Gaze,
-        mend: "[2.0 * x, 2.0 * y]",
-        plant: |_, d| gazes(d, |[x, y], _| [0.5 * x, 0.5 * y]),
-    },
-    Planted {
-        name: "foveation: stated off",
-        check: Check::Foveation,
-        fault: Fault::FoveationFilter,
-        mend: "{ filter: Filter::",
-        plant: |_, d| foveation(d, |f| f.filter = Filter::Off),
-    },
-    Planted {
-        name: "foveation: another filter",
-        check: Check::Foveation,
-        fault: Fault::FoveationFilter,
-        mend: "{ filter: Filter::",
-        plant: |_, d| foveation(d, |f| f.filter = if f.filter == Filter::Mip { Filter::Block } else { Filter::Mip }),
-    },
-    Planted {
-        name: "foveation: radii, stated as diameters",
-        check: Check::Foveation,
-        fault: Fault::FoveationRegions,
-        mend: "fovea_deg: 16.0, mid_deg: 40.0",
-        plant: |_, d| {
+    ),
+    planted(
+        "depth: reversed, stated forward",
+        Check::Depth,
+        Fault::DepthConvention,
+        "DepthConvention::Reversed",
+        |_, d| d.desc.depth = FORWARD,
+    ),
+    planted(
+        "depth: reversed, stated linear",
+        Check::Depth,
+        Fault::DepthConvention,
+        "DepthConvention::Reversed",
+        |_, d| d.desc.depth = DepthConvention::Linear,
+    ),
+    planted(
+        "depth: linear, stated reversed",
+        Check::Depth,
+        Fault::DepthConvention,
+        "DepthConvention::Linear",
+        |clip, d| depths(clip, d, DepthConvention::Linear, REVERSED),
+    ),
+    planted(
+        "depth: forward, stated reversed",
+        Check::Depth,
+        Fault::DepthConvention,
+        "DepthConvention::Forward",
+        |clip, d| depths(clip, d, FORWARD, REVERSED),
+    ),
+    planted(
+        "depth: forward, stated linear",
+        Check::Depth,
+        Fault::DepthConvention,
+        "DepthConvention::Forward",
+        |clip, d| depths(clip, d, FORWARD, DepthConvention::Linear),
+    ),
+    planted(
+        "depth: near plane 4 times too far",
+        Check::Depth,
+        Fault::DepthPlanes,
+        "DepthConvention::Reversed { near: 0.1",
+        |_, d| d.desc.depth = DepthConvention::Reversed { near: 0.4, far: f32::INFINITY },
+    ),
+    planted(
+        "depth: near plane 4 times too near",
+        Check::Depth,
+        Fault::DepthPlanes,
+        "DepthConvention::Reversed { near: 0.1",
+        |_, d| d.desc.depth = DepthConvention::Reversed { near: 0.025, far: f32::INFINITY },
+    ),
+    planted("color: sRGB-encoded", Check::Color, Fault::ColorEncoded, "pow(", |_, d| {
+        d.frames.iter_mut().for_each(|f| f.color = f.color.map(|c| c.map(srgb_encode)))
+    }),
+    planted("gaze: y up", Check::Gaze, Fault::Gaze, "[x, height - 1.0 - y]", |_, d| {
+        gazes(d, |[x, y], [_, h]| [x, h - 1.0 - y])
+    }),
+    planted("gaze: UV", Check::Gaze, Fault::Gaze, "[x * width - 0.5, y * height - 0.5]", |_, d| {
+        gazes(d, |[x, y], [w, h]| [(x + 0.5) / w, (y + 0.5) / h])
+    }),
+    planted("gaze: origin in the middle", Check::Gaze, Fault::Gaze, "[x + 0.5 * width, y + 0.5 * height]", |_, d| {
+        gazes(d, |[x, y], [w, h]| [x - 0.5 * w, y - 0.5 * h])
+    }),
+    planted("gaze: pixels of half the size", Check::Gaze, Fault::Gaze, "[2.0 * x, 2.0 * y]", |_, d| {
+        gazes(d, |[x, y], _| [0.5 * x, 0.5 * y])
+    }),
+    planted("foveation: stated off", Check::Foveation, Fault::FoveationFilter, "{ filter: Filter::", |_, d| {
+        foveation(d, |f| f.filter = Filter::Off)
+    }),
+    planted("foveation: another filter", Check::Foveation, Fault::FoveationFilter, "{ filter: Filter::", |_, d| {
+        foveation(d, |f| f.filter = if f.filter == Filter::Mip { Filter::Block } else { Filter::Mip })
+    }),
+    planted(
+        "foveation: radii, stated as diameters",
+        Check::Foveation,
+        Fault::FoveationRegions,
+        "fovea_deg: 16.0, mid_deg: 40.0",
+        |_, d| {
             foveation(d, |f| {
                 f.fovea_deg *= 0.5;
                 f.mid_deg *= 0.5;
             });
         },
-    },
-    Planted {
-        name: "foveation: regions twice too large",
-        check: Check::Foveation,
-        fault: Fault::FoveationRegions,
-        mend: "fovea_deg: 16.0, mid_deg: 40.0",
-        plant: |_, d| {
+    ),
+    planted(
+        "foveation: regions twice too large",
+        Check::Foveation,
+        Fault::FoveationRegions,
+        "fovea_deg: 16.0, mid_deg: 40.0",
+        |_, d| {
             foveation(d, |f| {
                 f.fovea_deg *= 2.0;
                 f.mid_deg *= 2.0;
             });
         },
-    },
-    Planted {
-        name: "foveation: blocks half as large",
-        check: Check::Foveation,
-        fault: Fault::FoveationRates,
-        mend: "rate_mid: ",
-        plant: |_, d| {
-            foveation(d, |f| {
-                f.rate_mid /= 2;
-                f.rate_far /= 2;
-            });
-        },
-    },
-    Planted {
-        name: "foveation: blocks twice as large",
-        check: Check::Foveation,
-        fault: Fault::FoveationRates,
-        mend: "rate_mid: ",
-        plant: |_, d| {
-            foveation(d, |f| {
-                f.rate_mid *= 2;
-                f.rate_far *= 2;
-            });
-        },
-    },
-    Planted {
-        name: "foveation: none",
-        check: Check::Foveation,
-        fault: Fault::NotFoveated,
-        mend: "{ filter: Filter::Off, ..",
-        plant: |clip, d| {
-            for (frame, full) in d.frames.iter_mut().zip(&clip.frames) {
-                frame.color = full.color.clone();
-            }
-        },
-    },
+    ),
+    planted("foveation: blocks half as large", Check::Foveation, Fault::FoveationRates, "rate_mid: ", |_, d| {
+        foveation(d, |f| {
+            f.rate_mid /= 2;
+            f.rate_far /= 2;
+        });
+    }),
+    planted("foveation: blocks twice as large", Check::Foveation, Fault::FoveationRates, "rate_mid: ", |_, d| {
+        foveation(d, |f| {
+            f.rate_mid *= 2;
+            f.rate_far *= 2;
+        });
+    }),
+    planted("foveation: none", Check::Foveation, Fault::NotFoveated, "{ filter: Filter::Off, ..", |clip, d| {
+        for (frame, full) in d.frames.iter_mut().zip(&clip.frames) {
+            frame.color = full.color.clone();
+        }
+    }),
 ];

@@ -8,40 +8,29 @@ use afterimage::kernel::rng::Purpose;
 use afterimage::shader::SHADERS;
 use afterimage::{Bias, ContextDesc, Exposure, Foveation, Image, Method, Reset, Sampler, Settings, Wrs};
 use afterimage_lab::source::AnalyticSource;
+use afterimage_testing::planted::all_caught_once;
 
-/// Shader text of the pass with `right` replaced by `wrong`; `right` must occur exactly once.
-#[track_caller]
-fn mutated(right: &str, wrong: &str) -> String {
-    let source = SHADERS.compose("wrs_pass").source;
-    assert_eq!(source.matches(right).count(), 1, "'{right}' in the pass");
-    source.replace(right, wrong)
+fn pass() -> String {
+    SHADERS.compose("wrs_pass").source
 }
 
-/// First of 12 frames in which the device differs from the CPU. The scene is an occluder that moves sideways; every
+/// Whether the device differs from the CPU in one of 12 frames. The scene is an occluder that moves sideways; every
 /// other frame also has vertical motion.
-fn first_difference(settings: Settings, source: &str) -> Option<u64> {
+fn differs(settings: Settings, source: &str) -> Option<bool> {
     let mut scene = AnalyticSource::new("occluder", SIZE, 70.0, 60.0).unwrap();
     let mut rig = Rig::with_shader(ContextDesc::new(SIZE), settings, source)?;
-    (0..12).find(|&index| {
+    Some((0..12).any(|index| {
         rig.exposure = if index == 6 { Exposure::Changed { ratio: 2.0 } } else { Exposure::Same };
         let mut views = [View { trust: Some(trust(index)), ..view(&mut scene, index) }];
         let shake = (index % 2) as f32 * 3.0;
         views[0].motion = views[0].motion.as_ref().map(|m| m.map(|[x, y]| [x, y + shake]));
-        rig.on_gpu(index, Reset::None, &views) != rig.on_cpu(index, Reset::None, &views).0
-    })
+        rig.differs(index, Reset::None, &views)
+    }))
 }
 
 #[test]
 fn every_planted_error_in_the_pass_is_caught() {
-    let method = Method::Wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() });
-    let keys = Settings { method, ..Settings::paper() };
-    if Rig::new(ContextDesc::new(SIZE), keys).is_none() {
-        return;
-    }
-    for settings in [Settings::paper(), keys] {
-        assert_eq!(first_difference(settings, &SHADERS.compose("wrs_pass").source), None, "without an error");
-    }
-    for (right, wrong) in [
+    let planted = [
         // Candidate and history swapped.
         (
             "combined(candidate.color, candidate_w, history.past.color, decision, SAMPLER)",
@@ -68,19 +57,14 @@ fn every_planted_error_in_the_pass_is_caught() {
         // Wrong counters.
         ("count_if(valid && decision.take, COUNT_REPLACED);", "count_if(decision.take, COUNT_REPLACED);"),
         ("count_if(!usable, COUNT_NONFINITE);", ""),
-    ] {
-        let caught = first_difference(Settings::paper(), &mutated(right, wrong));
-        println!("'{right}' -> '{wrong}': {caught:?}");
-        assert!(caught.is_some(), "planted error not caught: '{right}' -> '{wrong}'");
-    }
-    let caught = first_difference(
-        keys,
-        &mutated(
-            "textureStore(next_extras, px, view, vec4<u32>(bitcast<u32>(decision.log_key),",
-            "textureStore(next_extras, px, view, vec4<u32>(0u,",
-        ),
+    ];
+    all_caught_once(pass(), &planted, |source| differs(Settings::paper(), source));
+    let keys = Method::Wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() });
+    let not_stored = (
+        "textureStore(next_extras, px, view, vec4<u32>(bitcast<u32>(decision.log_key),",
+        "textureStore(next_extras, px, view, vec4<u32>(0u,",
     );
-    assert!(caught.is_some());
+    all_caught_once(pass(), &[not_stored], |source| differs(Settings { method: keys, ..Settings::paper() }, source));
 }
 
 /// Tests draws that equal their threshold exactly, which happens once in 2^24 draws: searches for a frame and a pixel
@@ -104,10 +88,9 @@ fn a_lax_comparison_is_caught() {
         })
         .unwrap();
     println!("frame {index}, pixel {at}: a draw of 2^-{k}");
-    let texts =
-        [SHADERS.compose("wrs_pass").source, mutated("draw * w_sum < candidate_w", "draw * w_sum <= candidate_w")];
-    for (text, differs) in texts.iter().zip([false, true]) {
-        let Some(mut rig) = Rig::with_shader(ContextDesc::new(size), settings, text) else { return };
+    let planted = [("draw * w_sum < candidate_w", "draw * w_sum <= candidate_w")];
+    all_caught_once(pass(), &planted, |source| {
+        let mut rig = Rig::with_shader(ContextDesc::new(size), settings, source)?;
         let words = {
             let first = [View::still(noise(size, "lax"), [0.0; 2])];
             rig.on_cpu(0, Reset::None, &first);
@@ -117,8 +100,8 @@ fn a_lax_comparison_is_caught() {
         let views = [View::still(noise(size, "lax, next"), [0.0; 2])];
         let (gpu, (cpu, trace)) = (rig.on_gpu(index, Reset::None, &views), rig.on_cpu(index, Reset::None, &views));
         assert!(!trace[0].pixels()[at].take, "strict");
-        assert_eq!(gpu != cpu, differs);
-    }
+        Some(gpu != cpu)
+    });
 }
 
 #[test]

@@ -3,7 +3,7 @@
 #[allow(dead_code, reason = "the drop-in's tests use the rest")]
 #[path = "../../../../tests/gpu/pass/rig.rs"]
 mod rig;
-#[allow(dead_code, reason = "the drop-in's tests use all of it")]
+#[allow(dead_code, unused_imports, reason = "the drop-in's tests use all of it")]
 #[path = "../../../../tests/cpu/surfaces/rig.rs"]
 mod surfaces_rig;
 

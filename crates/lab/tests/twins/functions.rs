@@ -1,64 +1,28 @@
 //! Every function of every module; one test per module, named after its hard cases.
 
 use super::probe::check_module;
-use super::{facets, lighting, scattering, scattering_lobes, triangles};
 
-#[test]
-fn triangle_is_bit_equal_h80() {
-    check_module(triangles::PROBES, "triangle");
+/// A test of each module.
+macro_rules! bit_equal {
+    ($($test:ident: $module:literal;)*) => {$(
+        #[test]
+        fn $test() {
+            check_module($module);
+        }
+    )*};
 }
 
-#[test]
-fn octahedral_is_bit_equal() {
-    check_module(triangles::PROBES, "octahedral");
-}
-
-#[test]
-fn direction_is_bit_equal() {
-    check_module(scattering::PROBES, "direction");
-}
-
-#[test]
-fn sampling_is_bit_equal_h83() {
-    check_module(scattering::PROBES, "sampling");
-}
-
-#[test]
-fn microfacet_is_bit_equal_h83() {
-    check_module(facets::PROBES, "microfacet");
-}
-
-#[test]
-fn phong_is_bit_equal() {
-    check_module(scattering::PROBES, "phong");
-}
-
-#[test]
-fn albedo_is_bit_equal() {
-    check_module(scattering_lobes::PROBES, "albedo");
-}
-
-#[test]
-fn bsdf_is_bit_equal_h83() {
-    check_module(scattering_lobes::PROBES, "bsdf");
-}
-
-#[test]
-fn layers_is_bit_equal_h83() {
-    check_module(scattering_lobes::PROBES, "layers");
-}
-
-#[test]
-fn light_is_bit_equal() {
-    check_module(lighting::PROBES, "light");
-}
-
-#[test]
-fn shading_is_bit_equal() {
-    check_module(lighting::PROBES, "shading");
-}
-
-#[test]
-fn texel_is_bit_equal() {
-    check_module(lighting::PROBES, "texel");
+bit_equal! {
+    triangle_is_bit_equal_h80: "triangle";
+    octahedral_is_bit_equal: "octahedral";
+    direction_is_bit_equal: "direction";
+    sampling_is_bit_equal_h83: "sampling";
+    microfacet_is_bit_equal_h83: "microfacet";
+    phong_is_bit_equal: "phong";
+    albedo_is_bit_equal: "albedo";
+    bsdf_is_bit_equal_h83: "bsdf";
+    layers_is_bit_equal_h83: "layers";
+    light_is_bit_equal: "light";
+    shading_is_bit_equal: "shading";
+    texel_is_bit_equal: "texel";
 }

@@ -8,6 +8,9 @@ mod order;
 #[allow(dead_code, reason = "the drop-in's twins use all of it")]
 #[path = "../../../../tests/gpu/twins/probe.rs"]
 mod probe;
+#[allow(dead_code, unused_imports, unused_macros, reason = "the drop-in's twins use all of it")]
+#[path = "../../../../tests/gpu/twins/shape.rs"]
+mod shape;
 #[allow(dead_code, reason = "the drop-in's twins use all of it")]
 #[path = "../../../../tests/gpu/twins/values.rs"]
 mod values;

@@ -1,0 +1,165 @@
+//! Hard cases of motion, H51 to H54, H58 and H59: laws that hold on either executor.
+
+use crate::depth_hard::{METHODS, Make, SIZE, of, still};
+use crate::images::{View, noise};
+use afterimage::{Image, MethodKind, Verdict};
+
+/// The laws as tests of an executor. `$held` runs one, and returns what it measured.
+macro_rules! motion_laws {
+    ($side:ident, $held:ident) => {
+        laws! { $side, $held,
+            h51_a_thousand_still_frames_never_move_a_sample: "H51", still_frames;
+            h52_an_integer_shift_moves_history_exactly_and_marks_the_border_new: "H52", whole_shift;
+            h53_half_pixel_motion_never_blurs: "H53", half_pixels;
+            h54_garbage_motion_shows_the_candidate: "H54", garbage_motion;
+            h58_nothing_bleeds_over_a_depth_edge: "H58", depth_edge;
+            h59_a_zoom_leaves_no_hole: "H59", zoom;
+        }
+    };
+}
+pub(crate) use motion_laws;
+
+/// A thousand frames in which nothing moves.
+pub fn still_frames(make: Make<'_>) -> Option<String> {
+    // Every frame has another picture at the same depths: each output pixel is the sample of some frame at that pixel.
+    let mut post = make(of(MethodKind::Wrs))?;
+    let mut seen = vec![std::collections::HashSet::new(); 64 * 48];
+    let depth = Image::from_fn(SIZE, |[x, y]| 1.0 + ((x / 5) * (y / 3)) as f32);
+    let mut kept = 0;
+    for index in 0..1000 {
+        let input = View {
+            depth: Some(depth.clone()),
+            motion: Some(Image::filled(SIZE, [0.0, -0.0])),
+            ..still(noise(SIZE, &format!("still {index}")))
+        };
+        let (out, stats, trace) = post.step(index, &input);
+        assert_eq!(stats.rejected(), 0);
+        for (i, colors) in seen.iter_mut().enumerate() {
+            colors.insert(input.color.pixels()[i].map(f32::to_bits));
+            assert!(colors.contains(&out.pixels()[i].map(f32::to_bits)), "frame {index}, pixel {i}");
+        }
+        kept += trace.pixels().iter().filter(|t| !t.take).count();
+    }
+    Some(format!("wrs, 1000 frames of noise over 200 depths: {kept} samples kept, each at its own pixel, bit for bit"))
+}
+
+/// A shift by whole pixels.
+pub fn whole_shift(make: Make<'_>) -> Option<String> {
+    let mut border = 0;
+    for (shift, right) in [([3.0, -2.0], true), ([-3.0, 2.0], false)] {
+        let mut post = make(of(MethodKind::Wrs))?;
+        let before = noise(SIZE, "before");
+        post.step(0, &still(before.clone()));
+        post.stick();
+        let input = View { motion: Some(Image::filled(SIZE, shift)), ..still(noise(SIZE, "after")) };
+        let (out, _, trace) = post.step(1, &input);
+        let mut wrong = 0;
+        border = 0;
+        for (x, y) in (0..48_usize).flat_map(|y| (0..64_usize).map(move |x| (x, y))) {
+            let (qx, qy) = (x + 3, y.wrapping_sub(2));
+            let inside = qx < 64 && qy < 48;
+            let expected =
+                if inside { (before.at(qx, qy), Verdict::Valid) } else { (input.color.at(x, y), Verdict::OffScreen) };
+            wrong += u32::from((out.at(x, y), trace.at(x, y).verdict) != expected);
+            border += u32::from(!inside);
+        }
+        assert_eq!(wrong == 0, right, "{wrong} wrong; the planted error: the other sign");
+    }
+    assert_eq!(border, 64 * 48 - 61 * 46);
+    Some(format!("wrs: {} samples moved bit for bit, {border} of the border new", 61 * 46))
+}
+
+/// Half a pixel a frame.
+pub fn half_pixels(make: Make<'_>) -> Option<String> {
+    // Nearest reprojection moves samples by whole pixels: after 200 frames of 0.5 px every color is still one of the
+    // input colors.
+    let mut post = make(of(MethodKind::Wrs))?;
+    let mut known = std::collections::HashSet::new();
+    let mut kept = 0;
+    for index in 0..200 {
+        let color = noise(SIZE, &format!("frame {index}"));
+        known.extend(color.pixels().iter().map(|c| c.map(f32::to_bits)));
+        let input = View { motion: Some(Image::filled(SIZE, [-0.5, 0.5])), ..still(color) };
+        let (out, _, trace) = post.step(index, &input);
+        assert!(out.pixels().iter().all(|c| known.contains(&c.map(f32::to_bits))), "H22: no invented colors");
+        kept += trace.pixels().iter().filter(|t| !t.take).count();
+    }
+    Some(format!("wrs, 0.5 px x 200: {kept} samples kept, no color that no frame brought; nearest, nothing is mixed"))
+}
+
+/// Vectors that are no numbers, or far too long.
+pub fn garbage_motion(make: Make<'_>) -> Option<String> {
+    for method in METHODS {
+        let mut post = make(of(method))?;
+        post.step(0, &still(noise(SIZE, "a")));
+        for (index, bad) in (1..).zip([f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e9, -1e9, f32::MAX]) {
+            if method == MethodKind::Wrs {
+                post.stick();
+            }
+            let mut motion = Image::filled(SIZE, [0.0; 2]);
+            motion.pixels_mut()[5 * 64 + 7] = [bad, 0.0];
+            motion.pixels_mut()[6 * 64 + 7] = [0.0, bad];
+            let input = View { motion: Some(motion), ..still(noise(SIZE, "b")) };
+            let (out, stats, _) = post.step(index, &input);
+            assert_eq!((stats.verdicts[Verdict::BadMotion as usize], stats.rejected()), (2, 2), "{method:?}, {bad}");
+            assert_eq!((out.at(7, 5), out.at(7, 6)), (input.color.at(7, 5), input.color.at(7, 6)));
+        }
+    }
+    Some("wrs and smr: NaN, infinities, +-1e9, 3e38 on either axis show the candidate, and return".into())
+}
+
+/// A bright near square that moves over a dark wall.
+pub fn depth_edge(make: Make<'_>) -> Option<String> {
+    // A bright near square moves right by 1.5 px a frame over a dark wall; vectors are right at each pixel.
+    let mut post = make(of(MethodKind::Wrs))?;
+    for index in 0..30_u64 {
+        let left = 4.0 + 1.5 * index as f32;
+        let inside = |x: u32, y: u32| (left..left + 10.0).contains(&(x as f32)) && (10..30).contains(&y);
+        let input = View {
+            color: Image::from_fn(SIZE, |[x, y]| if inside(x, y) { [1.0; 3] } else { [0.125; 3] }),
+            depth: Some(Image::from_fn(SIZE, |[x, y]| if inside(x, y) { 1.0 } else { 8.0 })),
+            motion: Some(Image::from_fn(SIZE, |[x, y]| if inside(x, y) { [-1.5, 0.0] } else { [0.0, 0.0] })),
+            ..still(noise(SIZE, ""))
+        };
+        let (out, ..) = post.step(index, &input);
+        assert_eq!(out, input.color, "frame {index}");
+    }
+    Some("wrs, a square at 1.5 px a frame over a wall, 30 frames: no pixel bleeds".into())
+}
+
+/// A zoom by 2 in and out.
+pub fn zoom(make: Make<'_>) -> Option<String> {
+    let before = noise(SIZE, "zoom");
+    let zoomed = |factor: f32| -> Option<[u64; 2]> {
+        let mut post = make(of(MethodKind::Wrs))?;
+        post.step(0, &still(before.clone()));
+        post.stick();
+        // Previous minus current, about pixel (32, 24).
+        let motion =
+            Image::from_fn(SIZE, |[x, y]| [(x as f32 - 32.0) * (factor - 1.0), (y as f32 - 24.0) * (factor - 1.0)]);
+        let input = View { motion: Some(motion), ..still(noise(SIZE, "zoom 2")) };
+        let (out, stats, trace) = post.step(1, &input);
+        let (mut kept, mut sources) = (0, std::collections::HashSet::new());
+        for y in 0..48_usize {
+            for x in 0..64_usize {
+                let source = |at: usize, middle: f32| (middle + (at as f32 - middle) * factor + 0.5).floor();
+                let [qx, qy] = [source(x, 32.0), source(y, 24.0)];
+                let t = trace.at(x, y);
+                if (0.0..64.0).contains(&qx) && (0.0..48.0).contains(&qy) {
+                    assert_eq!((out.at(x, y), t.age, t.take), (before.at(qx as usize, qy as usize), 1, false));
+                    sources.insert((qx as usize, qy as usize));
+                    kept += 1;
+                } else {
+                    assert_eq!((out.at(x, y), t.age, t.verdict), (input.color.at(x, y), 0, Verdict::OffScreen));
+                }
+            }
+        }
+        assert_eq!(stats.rejected(), 64 * 48 - kept);
+        Some([kept, sources.len() as u64])
+    };
+    let ([near, originals], [far, all]) = (zoomed(0.5)?, zoomed(2.0)?);
+    assert!(near == 64 * 48 && near > 3 * originals && far == all && far < 1000);
+    Some(format!(
+        "wrs, in x2: {near} show {originals} samples, ages kept; out x2: {far} kept, the rest is the candidate"
+    ))
+}
