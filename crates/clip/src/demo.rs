@@ -25,7 +25,7 @@ pub struct DemoArgs {
 /// Arguments of `afterimage run` that give the same result. The clip ends 0.1 s after a wide saccade, when the effect
 /// of reuse is easiest to see.
 pub const BY_HAND: &str = "analytic:still --size 960x540 --gaze synthetic:46 --frames 98 --rate-mid 4 --rate-far 8 \
-    --method none,wrs,smr,oracle --reference --no-flip --backend cpu";
+    --method none,wrs,smr,oracle --reference --no-flip --no-jod --backend cpu";
 const SIZE: [u32; 2] = [960, 540];
 const FRAMES: u64 = 98;
 const FPS: f32 = 60.0;
@@ -75,6 +75,8 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         debug: vec![],
         trust: false,
         flip: false,
+        jod: false,
+        fps: FPS,
         poison: 0.0,
         processor: Box::new(Cpu),
         backend_note: "",

@@ -153,7 +153,8 @@ impl MethodAccumulator {
         let number = |v: Option<f64>| v.map_or(String::new(), |v| format!("{v:.3}"));
         let (ms, times) = (number(ms), times.map(number).join(","));
         let repaired = self.repaired.last().map_or(String::new(), |share| format!("{share:.6}"));
-        format!("{index},{name},{psnr},{retained},{ms},{fovea},{mid},{periphery},{times},{repaired}")
+        let jod = self.last.and_then(|e| e.jod).map_or(String::new(), |jod| format!("{jod:.4}"));
+        format!("{index},{name},{psnr},{retained},{ms},{fovea},{mid},{periphery},{times},{repaired},{jod}")
     }
 
     /// The results of the method.

@@ -322,7 +322,7 @@ fn ask(gpu: &Headless, question: Question, rows: &[[f32; 3]]) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Question, arithmetic, difference};
+    use super::{Difference, Question, arithmetic, rounds_as_cpu};
     use afterimage::Image;
     use afterimage::kernel::pack::{half_bits, half_value};
 
@@ -378,11 +378,27 @@ mod tests {
     }
 
     #[test]
+    fn only_an_adapter_that_rounds_as_the_cpu_does_must_give_its_bits() {
+        assert!(rounds_as_cpu(&adapter(true)) && !rounds_as_cpu(&adapter(false)));
+        // Each deviation alone is enough.
+        for deviant in [Question::Fused, Question::TwoSum, Question::Quotient] {
+            let mixed =
+                |question: Question, rows: &[[f32; 3]]| adapter(question as u32 != deviant as u32)(question, rows);
+            assert!(!rounds_as_cpu(&mixed), "{}", deviant as u32);
+        }
+    }
+
+    #[test]
     fn one_bit_is_a_difference() {
         let a = Image::filled([2, 2], [1.0_f32; 3]);
         let mut b = a.clone();
-        assert_eq!(difference(&a, &b), (0, 0.0));
+        let of = |b: &Image<[f32; 3]>| {
+            let mut difference = Difference::default();
+            difference.add(&a, b);
+            difference
+        };
+        assert!(of(&b).holds(true));
         b.pixels_mut()[3][1] = 1.0_f32.next_up();
-        assert_eq!(difference(&a, &b).0, 1);
+        assert!(!of(&b).holds(true) && of(&b).holds(false));
     }
 }

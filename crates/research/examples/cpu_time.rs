@@ -61,7 +61,7 @@ fn measure(mut frame: RenderedFrame, frames: u64) -> Result<(), Box<dyn Error>> 
             *sum += output.elapsed.cpu_ms.unwrap_or(f64::NAN);
         }
         let watch = Stopwatch::start();
-        let reference = references.next(&full, &step.tracked);
+        let reference = references.next(&full, &step.tracked, &step.ecc_deg);
         reference_ms += watch.cpu_ms().unwrap_or(f64::NAN);
         let watch = Stopwatch::start();
         let encoded: Vec<_> = step.outputs.iter().map(|output| metric::encode(&output.image, 0.0)).collect();

@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let frame = source.render(&pipeline.request(index, gaze.px(index)))?;
         let step = pipeline.step(&frame)?;
         let full = encode(&frame.reference.color, 0.0);
-        let reference = references.next(&full, &step.tracked);
+        let reference = references.next(&full, &step.tracked, &step.ecc_deg);
         let mask = scene.as_ref().and_then(|s| s.panel_mask(index));
         let mut foveated = None;
         for (i, shown) in step.outputs.iter().enumerate() {

@@ -68,7 +68,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let frame = source.render(&pipeline.request(index, gaze.px(index)))?;
         let step = pipeline.step(&frame)?;
         let full = encode(&frame.reference.color, 0.0);
-        let reference = references.next(&full, &step.tracked);
+        let reference = references.next(&full, &step.tracked, &step.ecc_deg);
         let mut last = vec![];
         for (scorer, shown) in scorers.iter_mut().zip(&step.outputs) {
             let errors = scorer.push(&reference, &encode(&shown.image, 0.0), &step.tracked, &step.ecc_deg);

@@ -233,7 +233,7 @@ impl Stage {
         let tracked = Tracked::unknown(size);
         let flip = Flip::for_view(self.geometry());
         let mut references = References::with_flip(flip.clone());
-        let full = references.next(reference, &tracked);
+        let full = references.next(reference, &tracked, &ecc_deg);
         let mut reports: Vec<PatternReport> = vec![];
         for pattern in patterns {
             let mut scorer = Scorer::default();

@@ -112,7 +112,7 @@ fn outcomes(args: &WrsTableArgs, backend: &Backend, scanpath: &str, map: GazeMap
         let frame = source.render(&pipeline.request(index, gaze.px(index))).map_err(|e| input(&e))?;
         let step = pipeline.step(&frame).map_err(|e| input(&e))?;
         let full = encode(&frame.reference.color, 0.0);
-        let reference = references.next(&full, &step.tracked);
+        let reference = references.next(&full, &step.tracked, &step.ecc_deg);
         let shift_deg = |past_px| geometry.eccentricity_deg(step.gaze_px, past_px);
         fixation_frames =
             if past_gaze_px.is_some_and(|px| shift_deg(px) > SACCADE_DEG) { 0 } else { fixation_frames + 1 };

@@ -19,6 +19,7 @@ use crate::report::sheet::{Column, Sheet};
 use crate::source::FrameSource;
 use crate::times::{RenderTime, Times};
 use afterimage::{DebugView, Foveation, Image, MethodKind, ViewGeometry};
+use afterimage_metric::{Display, Viewing};
 use rayon::prelude::*;
 
 /// Files that describe a whole clip. The first one marks the folder. `demo` draws no plot.
@@ -61,6 +62,10 @@ pub struct Clip {
     pub trust: bool,
     /// Whether FLIP is measured.
     pub flip: bool,
+    /// Whether JOD is measured.
+    pub jod: bool,
+    /// Frames per second.
+    pub fps: f32,
     /// Share of the input pixels that are replaced by NaN, infinite, huge or negative values.
     pub poison: f32,
     /// Processor that runs the methods.
@@ -146,7 +151,7 @@ impl Playback<'_> {
         let mut table = out.table(
             "frames.csv",
             "frame,method,psnr_db,retained_psnr_db,ms,fovea_psnr_db,mid_psnr_db,periphery_psnr_db,\
-             cpu_ms,render_ms,render_cpu_ms,total_ms,total_cpu_ms,repaired_share",
+             cpu_ms,render_ms,render_cpu_ms,total_ms,total_cpu_ms,repaired_share,jod",
         )?;
         let pipeline = self.play(&mut |result| {
             let encoded = clip.score_and_write(result, &mut accumulators, out)?;
@@ -184,7 +189,7 @@ impl Playback<'_> {
     pub fn play(self, each: &mut dyn FnMut(&FrameResult<'_>) -> Result<(), Failure>) -> Result<Pipeline, Failure> {
         let Self { clip, source, mut pipeline, first } = self;
         let mut first = Some(first);
-        let mut references = clip.flip().map_or_else(References::default, References::with_flip);
+        let mut references = clip.references();
         for index in 0..clip.gaze.len() {
             let frame = match first.take() {
                 Some(first) => first,
@@ -193,7 +198,7 @@ impl Playback<'_> {
             let full = metric::encode(&frame.reference.color, clip.exposure_ev);
             pipeline.look_at(clip.gaze[index].filter(|_| clip.late_gaze.is_some()));
             let step = pipeline.step_with(&frame, &mut |wish| Ok::<_, Failure>(source.shade(&frame, wish)?))?;
-            let reference = references.next(&full, &step.tracked);
+            let reference = references.next(&full, &step.tracked, &step.ecc_deg);
             each(&FrameResult { index, frame: &frame, reference: &reference, step: &step })?;
         }
         Ok(pipeline)
@@ -239,6 +244,20 @@ impl Clip {
     /// FLIP at the pixels per degree of the view, if it is measured.
     pub fn flip(&self) -> Option<Flip> {
         self.flip.then(|| Flip::for_view(&self.geometry))
+    }
+
+    /// How the clip is seen, for JOD, if it is measured.
+    pub fn viewing(&self) -> Option<Viewing> {
+        self.jod.then_some(Viewing { geometry: self.geometry, display: Display::default(), fps: self.fps })
+    }
+
+    /// References for the metrics that are measured.
+    fn references(&self) -> References {
+        let references = self.flip().map_or_else(References::default, References::with_flip);
+        match self.viewing() {
+            Some(viewing) => references.with_jod(viewing),
+            None => references,
+        }
     }
 
     /// Scores and writes the outputs of all methods for a frame, in parallel; returns their encoded images.

@@ -7,6 +7,7 @@ use crate::method_report::MethodReport;
 use crate::output::Output;
 use crate::pipeline::ProcessorInfo;
 use crate::times::RenderTime;
+use afterimage_metric::Display;
 use serde::Serialize;
 
 /// Facts about the run that [`Clip`] does not hold.
@@ -60,10 +61,20 @@ struct RunReport<'a> {
     gaze_latency_ms: f64,
     /// FLIP's viewing distance, in pixels per degree of visual angle; null without FLIP.
     flip_pixels_per_degree: Option<f32>,
+    /// The display of JOD; null without JOD.
+    jod_display: Option<JodDisplay>,
     /// Time of rendering the frames at full rate, which foveation saves; null if they were not rendered, or with other
     /// samples a pixel.
     full_rate: Option<RenderTime>,
     methods: Methods<'a>,
+}
+
+#[derive(Serialize)]
+struct JodDisplay {
+    /// Luminance of white in cd/m2.
+    peak_nits: f32,
+    /// Luminance of white over that of black.
+    contrast: f32,
 }
 
 #[derive(Serialize)]
@@ -126,6 +137,10 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
         start_s: facts.start_s,
         gaze_latency_ms: facts.gaze_latency_ms,
         flip_pixels_per_degree: clip.flip().map(|flip| flip.pixels_per_degree()),
+        jod_display: clip.viewing().map(|viewing| {
+            let Display { peak_nits, contrast } = viewing.display;
+            JodDisplay { peak_nits, contrast }
+        }),
         full_rate: report.full_rate,
         methods: Methods(&report.methods),
     };

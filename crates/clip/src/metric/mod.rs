@@ -5,55 +5,23 @@
 //! formulas.
 
 mod crop;
-pub mod flip;
 mod ghost;
 mod mean;
 mod reference;
 mod score;
-mod ssim;
-mod strip;
 mod track;
 
 pub use crop::{CROP_FROM_FRAME, CROP_INVISIBLE_DB, CROP_PX, Crops, WorstCrop};
-pub use flip::Flip;
 pub use ghost::{GHOST_FRAMES, Ghost};
 pub use reference::{Reference, References};
 pub use score::{BandScores, FrameErrors, Scorer, Scores};
-pub use ssim::ssim_map;
 pub use track::{NO_PAST, Tracked, Tracker};
 
 use afterimage::Image;
 use afterimage::kernel::{acuity, color};
+pub use afterimage_metric::{Band, Flip, flip, psnr_db, ssim_map};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
-
-/// Eccentricity bands of reports.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Band {
-    /// Below 2.5 degrees.
-    Fovea = 0,
-    /// 2.5 to 7.5 degrees.
-    Mid = 1,
-    /// Beyond 7.5 degrees.
-    Periphery = 2,
-}
-
-impl Band {
-    /// All bands, from the gaze outwards.
-    pub const ALL: [Self; 3] = [Self::Fovea, Self::Mid, Self::Periphery];
-
-    /// Band of an eccentricity in degrees.
-    #[inline]
-    pub fn of(e_deg: f32) -> Self {
-        if e_deg < 2.5 {
-            Self::Fovea
-        } else if e_deg <= 7.5 {
-            Self::Mid
-        } else {
-            Self::Periphery
-        }
-    }
-}
 
 /// sRGB encoding in \[0, 1\] of a linear image after `exposure_ev` stops. Non-finite values become 0.
 pub fn encode(linear: &Image<[f32; 3]>, exposure_ev: f32) -> Image<[f32; 3]> {
@@ -95,9 +63,4 @@ impl WithSimd for Encode<'_> {
 #[inline(always)]
 pub fn error_weight(e_deg: f32) -> f32 {
     acuity::cell_density(e_deg) / acuity::cell_density(0.0)
-}
-
-/// PSNR in dB of a mean squared error on a scale of 1; `None` for an error of 0, where it is infinite.
-pub fn psnr_db(mse: f64) -> Option<f64> {
-    (mse > 0.0).then(|| -10.0 * mse.log10())
 }

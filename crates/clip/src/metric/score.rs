@@ -3,11 +3,12 @@
 use super::ghost::GhostShares;
 use super::mean::{Histogram, Mean};
 use super::reference::Prepared;
-use super::strip::{STRIP_ROWS, delta_e94, strips};
 use super::track::RETAINED_FROM_DEG;
 use super::{Band, NO_PAST, Reference, Tracked, error_weight, psnr_db, ssim_map};
 use afterimage::Image;
 use afterimage::kernel::color;
+use afterimage_metric::TestVideo;
+use afterimage_metric::strip::{STRIP_ROWS, delta_e94, strips};
 use glam::Vec3;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -24,6 +25,7 @@ pub struct Scorer {
     ssim: [Mean; 3],
     luma_error: Option<Image<f32>>,
     skip_ssim: bool,
+    video: TestVideo,
 }
 
 /// Sums over pixels.
@@ -65,6 +67,9 @@ pub struct BandScores {
     pub ssim: Option<f64>,
     /// Mean FLIP error, 0 to 1; `None` if the references have no FLIP.
     pub flip: Option<f64>,
+    /// Just-objectionable differences: 10 for none. `None` if the references have no JOD.
+    #[serde(default)]
+    pub jod: Option<f64>,
 }
 
 /// Scores of one method over a clip.
@@ -125,6 +130,8 @@ pub struct FrameErrors {
     pub band_mse: [Option<f64>; 3],
     /// MSE over retained pixels; `None` if there are none.
     pub retained_mse: Option<f64>,
+    /// JOD of the frame; `None` if the reference has none.
+    pub jod: Option<f64>,
 }
 
 impl Scorer {
@@ -174,7 +181,9 @@ impl Scorer {
                 add_by_band(&mut self.ssim, map.row(y), ecc_deg);
             }
         }
+        let jod = reference.video.as_ref().map(|video| self.video.push(video, output).jod);
         FrameErrors {
+            jod,
             mse: Mean::total(frame.squared).value().unwrap_or(0.0),
             band_mse: frame.squared.map(Mean::value),
             retained_mse: frame.retained.value(),
@@ -183,17 +192,20 @@ impl Scorer {
 
     /// Scores of the frames added so far.
     pub fn scores(&self) -> Scores {
-        let figures = |squared: Mean, ssim: Mean, flip: Mean| BandScores {
+        let video = self.video.score();
+        let figures = |squared: Mean, ssim: Mean, flip: Mean, jod: Option<f64>| BandScores {
             psnr_db: squared.value().and_then(psnr_db),
             mse: squared.value(),
             ssim: ssim.value(),
             flip: flip.value(),
+            jod,
         };
         let sums = &self.sums;
         let all = Mean::total(sums.squared);
         Scores {
-            whole: figures(all, Mean::total(self.ssim), Mean::total(sums.flip)),
-            bands: [0, 1, 2].map(|i| figures(sums.squared[i], self.ssim[i], sums.flip[i])),
+            whole: figures(all, Mean::total(self.ssim), Mean::total(sums.flip), video.map(|v| v.jod)),
+            bands: [0, 1, 2]
+                .map(|i| figures(sums.squared[i], self.ssim[i], sums.flip[i], video.and_then(|v| v.bands[i]))),
             weighted_psnr_db: sums.weighted.value().and_then(psnr_db),
             delta_e94_mean: sums.delta_e94.value(),
             delta_e94_p99: sums.delta_e94_counts.quantile(1.0 - WORST),

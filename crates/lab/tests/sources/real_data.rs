@@ -74,7 +74,7 @@ fn play(source: &mut dyn FrameSource, clip: &Clip, runs: &[RunKind]) -> Outcome 
         assert_eq!(frame.reference.nonfinite, 0);
         let step = pipeline.step(&frame).unwrap();
         let full = encode(&frame.reference.color, 0.0);
-        let reference = references.next(&full, &step.tracked);
+        let reference = references.next(&full, &step.tracked, &step.ecc_deg);
         last.clear();
         for (scorer, shown) in scorers.iter_mut().zip(&step.outputs) {
             assert!(shown.image.pixels().as_flattened().iter().all(|v| v.is_finite()));

@@ -97,6 +97,9 @@ pub struct RunArgs {
     /// Skip FLIP, which takes a third of a second per megapixel on one core
     #[arg(long)]
     pub no_flip: bool,
+    /// Skip JOD, the foveated video metric
+    #[arg(long)]
+    pub no_jod: bool,
     #[cfg_attr(feature = "ablation", command(flatten))]
     #[cfg_attr(not(feature = "ablation"), arg(skip))]
     pub ablation: AblationArgs,
@@ -296,14 +299,15 @@ fn print_summary(args: &RunArgs, report: &ClipReport) {
     let ms = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.1}"));
     say!("{} frames, methods on the {}", report.gaze_px.len(), report.backend);
     say!(
-        "method    PSNR dB    SSIM    FLIP   fovea     mid  periph  weighted  retained  flicker  of oracle  \
+        "method       JOD  PSNR dB    SSIM    FLIP   fovea     mid  periph  weighted  retained  flicker  of oracle  \
          render +   post =  total ms"
     );
     for (name, m) in &report.methods {
         let s = &m.scores;
         let bands = s.bands.map(|b| if b.mse == Some(0.0) { "exact".into() } else { db(b.psnr_db) });
         say!(
-            "{name:8} {:>8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>9} {:>9} {:>8} {:>10} {:>7} {:>8} {:>9}",
+            "{name:8} {:>7} {:>8} {:>7} {:>7} {:>7} {:>7} {:>7} {:>9} {:>9} {:>8} {:>10} {:>7} {:>8} {:>9}",
+            db(s.whole.jod),
             db(s.whole.psnr_db),
             s.whole.ssim.map_or("-".into(), |v| format!("{v:.4}")),
             s.whole.flip.map_or("-".into(), |v| format!("{v:.4}")),
@@ -319,6 +323,7 @@ fn print_summary(args: &RunArgs, report: &ClipReport) {
             ms(m.total_ms()),
         );
     }
+    say!("JOD: quality by a foveated video metric, 10 for no visible difference, docs/metrics.md");
     say!("weighted: PSNR with errors weighted by the density of retinal ganglion cells, docs/metrics.md");
     say!(
         "retained: PSNR of pixels that were sharp in an earlier frame; of oracle: share of the PSNR that reuse could gain"

@@ -278,7 +278,7 @@ fn another_sweep_is_not_mixed_in_and_what_is_no_sweep_is_refused() {
         refuses(&tool(&["sweep", "x.exr", "--out", empty, "--shard", shard]).output().unwrap(), 2, &[words]);
     }
     let by = tool(&["sweep", "--out", empty, "--by", "beauty"]).output().unwrap();
-    refuses(&by, 2, &["expected one of flip, psnr_db"]);
+    refuses(&by, 2, &["expected one of jod, flip, psnr_db"]);
 }
 
 #[cfg(unix)]

@@ -41,7 +41,7 @@ fn h68_the_error_at_the_true_gaze_grows_with_latency() {
         frame.cut = true;
         let tracked = Tracker::default().advance(&frame, &geometry, &ecc, &ecc);
         let mut scorer = Scorer::default();
-        scorer.push(&References::default().next(&reference, &tracked), &shown, &tracked, &ecc);
+        scorer.push(&References::default().next(&reference, &tracked, &ecc), &shown, &tracked, &ecc);
         let scores = scorer.scores();
         (scores.bands[0].mse.unwrap(), scores.weighted_psnr_db.unwrap())
     });
@@ -74,7 +74,7 @@ fn psnr_ssim_and_flicker_of_known_errors() {
     for (i, offset) in [0.1_f32, -0.1, 0.1].into_iter().enumerate() {
         let frame = SourceFrame { cut: i == 0, ..source_frame(reference.clone()) };
         let tracked = tracker.advance(&frame, &geometry, &ecc, &ecc);
-        let full = references.next(&reference, &tracked);
+        let full = references.next(&reference, &tracked, &ecc);
         scorer.push(&full, &reference.map(|c| c.map(|v| v + offset)), &tracked, &ecc);
     }
     let scores = scorer.scores();
@@ -88,7 +88,7 @@ fn psnr_ssim_and_flicker_of_known_errors() {
     // An exact image has no PSNR.
     let mut exact = Scorer::default();
     let tracked = tracker.advance(&source_frame(reference.clone()), &geometry, &ecc, &ecc);
-    exact.push(&references.next(&reference, &tracked), &reference, &tracked, &ecc);
+    exact.push(&references.next(&reference, &tracked, &ecc), &reference, &tracked, &ecc);
     let scores = exact.scores();
     assert_eq!((scores.whole.psnr_db, scores.whole.mse), (None, Some(0.0)));
     assert_abs_diff_eq!(scores.whole.ssim.unwrap(), 1.0, epsilon = 1e-6);
@@ -181,7 +181,7 @@ fn flip_is_pooled_by_band_and_left_out_without_being_asked() {
     let mut scorer = Scorer::default();
     let mut references = References::with_flip(flip.clone());
     for _ in 0..2 {
-        scorer.push(&references.next(&reference, &tracked), &shown, &tracked, &ecc);
+        scorer.push(&references.next(&reference, &tracked, &ecc), &shown, &tracked, &ecc);
     }
     let scores = scorer.scores();
     let map = flip.map(&reference, &shown);
@@ -198,7 +198,7 @@ fn flip_is_pooled_by_band_and_left_out_without_being_asked() {
     // The fovea has full rate, but the filters include pixels around it.
     assert!(scores.bands[0].flip.unwrap() < 0.1 * scores.bands[2].flip.unwrap());
     let mut without = Scorer::default();
-    without.push(&References::default().next(&reference, &tracked), &shown, &tracked, &ecc);
+    without.push(&References::default().next(&reference, &tracked, &ecc), &shown, &tracked, &ecc);
     let scores = without.scores();
     assert!(scores.whole.flip.is_none() && scores.bands.iter().all(|b| b.flip.is_none()));
 }

@@ -27,7 +27,7 @@ fn score(frames: &[Frame], gaze: [f32; 2]) -> Scores {
     let (mut tracker, mut references, mut scorer) = (Tracker::default(), References::default(), Scorer::default());
     for (reference, shown, frame) in frames {
         let tracked = tracker.advance(frame, &view, &ecc, &ecc);
-        scorer.push(&references.next(reference, &tracked), shown, &tracked, &ecc);
+        scorer.push(&references.next(reference, &tracked, &ecc), shown, &tracked, &ecc);
     }
     scorer.scores()
 }

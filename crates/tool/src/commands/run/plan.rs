@@ -71,6 +71,8 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
             debug: args.debug.iter().map(|&view| (view.name(), view)).collect(),
             trust: args.trust,
             flip: !args.no_flip,
+            jod: !args.no_jod,
+            fps,
             poison: args.ablation.poison,
             backend_note: match (args.backend, &backend) {
                 (BackendName::Auto, Backend::Cpu) => "; no GPU was found",

@@ -76,7 +76,13 @@ pub fn measurements() -> Vec<Measurement> {
 pub fn measurement(point: Point, ms: f64, bytes: u32, share: f64, error: f64) -> Measurement {
     let around = |ms: f64| Quartiles { median: ms, p25: 0.95 * ms, p75: 1.08 * ms };
     let db = |error: f64| Some(-20.0 * error.log10());
-    let band = |of: f64| BandScores { psnr_db: db(of), mse: Some(of * of), ssim: Some(1.0 - of), flip: Some(of * 0.9) };
+    let band = |of: f64| BandScores {
+        psnr_db: db(of),
+        mse: Some(of * of),
+        ssim: Some(1.0 - of),
+        flip: Some(of * 0.9),
+        jod: Some(10.0 - of),
+    };
     let moves = point.input.ends_with('/');
     let scores = Scores {
         whole: band(error),

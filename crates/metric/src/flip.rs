@@ -4,7 +4,7 @@
 //! A contrast sensitivity filter removes detail that the eye cannot resolve at the given distance. The filtered images
 //! are then compared by color, with more weight where edges or points differ.
 
-use super::strip::{BLOCK, Plane, block, blocks, linear, store, strips};
+use crate::strip::{BLOCK, Plane, block, blocks, linear, store, strips};
 use afterimage::kernel::{approx, color};
 use afterimage::{Image, ViewGeometry};
 use glam::{DMat3, DVec3, Mat3, Vec3};
@@ -59,7 +59,7 @@ pub struct Flip {
 
 /// A strip after FLIP's filters and feature detection.
 #[derive(Clone, Debug)]
-pub(super) struct Filtered {
+pub struct Filtered {
     /// Filtered color in L\*a\*b\*, with Hunt's adjustment of chroma to lightness.
     colors: [Plane; 3],
     /// Strength of edges and of points.
@@ -116,7 +116,7 @@ impl Flip {
     }
 
     /// Rows that the filters read for `rows` of an image of `height` rows.
-    pub(super) fn rows_read(&self, rows: Range<usize>, height: usize) -> Range<usize> {
+    pub fn rows_read(&self, rows: Range<usize>, height: usize) -> Range<usize> {
         let kernels = self.luminance.iter().chain(&self.red_green).chain(&self.blue_yellow).chain([&self.smooth]);
         let reach = kernels.map(|kernel| kernel.len() / 2).max().unwrap_or(0);
         rows.start.saturating_sub(reach)..height.min(rows.end + reach)
@@ -125,13 +125,7 @@ impl Flip {
     /// Filters `rows` of an image and detects its features, given the linear colors of the rows `held`, which are all
     /// that [`Self::rows_read`] names.
     #[inline(always)]
-    pub(super) fn filtered(
-        &self,
-        linear: &[Plane; 3],
-        width: usize,
-        held: Range<usize>,
-        rows: Range<usize>,
-    ) -> Filtered {
+    pub fn filtered(&self, linear: &[Plane; 3], width: usize, held: Range<usize>, rows: Range<usize>) -> Filtered {
         let own = Rows { width, held, rows };
         let opponent = self.opponents(linear);
         let [y, red_green, blue_yellow] = &opponent;
@@ -149,7 +143,7 @@ impl Flip {
 
     /// FLIP error at every pixel of a strip, 0 to 1.
     #[inline(always)]
-    pub(super) fn difference(&self, reference: &Filtered, output: &Filtered) -> Plane {
+    pub fn difference(&self, reference: &Filtered, output: &Filtered) -> Plane {
         let mut errors = vec![0.0; reference.colors[0].len()];
         for range in blocks(errors.len()) {
             let [a, b] = [reference, output].map(|f| [0, 1, 2].map(|c| block(&f.colors[c], range.clone())));

@@ -12,30 +12,30 @@ use std::ops::Range;
 
 /// Rows of a strip. FLIP's filters reach a few rows beyond it, which more rows amortize; fewer keep planes in the
 /// cache.
-pub(super) const STRIP_ROWS: usize = 32;
+pub const STRIP_ROWS: usize = 32;
 
 /// Pixels of a block: results are collected in an array of its own, because compilers give up vector instructions where
 /// too many slices might overlap.
-pub(super) const BLOCK: usize = 32;
+pub(crate) const BLOCK: usize = 32;
 
 /// One value a pixel, row after row.
-pub(super) type Plane = Vec<f32>;
+pub type Plane = Vec<f32>;
 
 /// Rows of each strip of an image of `height` rows.
-pub(super) fn strips(height: usize) -> impl IndexedParallelIterator<Item = Range<usize>> {
+pub fn strips(height: usize) -> impl IndexedParallelIterator<Item = Range<usize>> {
     let rows = move |i| i * STRIP_ROWS..height.min((i + 1) * STRIP_ROWS);
     (0..height.div_ceil(STRIP_ROWS)).into_par_iter().map(rows)
 }
 
 /// Ranges of the blocks of `count` pixels.
 #[inline(always)]
-pub(super) fn blocks(count: usize) -> impl Iterator<Item = Range<usize>> {
+pub(crate) fn blocks(count: usize) -> impl Iterator<Item = Range<usize>> {
     (0..count.div_ceil(BLOCK)).map(move |i| i * BLOCK..count.min((i + 1) * BLOCK))
 }
 
 /// The values of a block. If it is short, the plane's following values fill it, and then zeros.
 #[inline(always)]
-pub(super) fn block(plane: &[f32], range: Range<usize>) -> [f32; BLOCK] {
+pub(crate) fn block(plane: &[f32], range: Range<usize>) -> [f32; BLOCK] {
     // The length of a whole block is known, so that copying it takes a few vector instructions.
     if let Some(values) = plane[range.start..].first_chunk() {
         return *values;
@@ -47,7 +47,7 @@ pub(super) fn block(plane: &[f32], range: Range<usize>) -> [f32; BLOCK] {
 
 /// Stores the values of a block.
 #[inline(always)]
-pub(super) fn store(values: &[f32; BLOCK], plane: &mut [f32], range: Range<usize>) {
+pub(crate) fn store(values: &[f32; BLOCK], plane: &mut [f32], range: Range<usize>) {
     match plane[range.clone()].first_chunk_mut() {
         Some(whole) => *whole = *values,
         None => plane[range.clone()].copy_from_slice(&values[..range.len()]),
@@ -56,7 +56,7 @@ pub(super) fn store(values: &[f32; BLOCK], plane: &mut [f32], range: Range<usize
 
 /// Linear colors of rows of an sRGB-encoded image.
 #[inline(always)]
-pub(super) fn linear(encoded: &Image<[f32; 3]>, rows: Range<usize>) -> [Plane; 3] {
+pub fn linear(encoded: &Image<[f32; 3]>, rows: Range<usize>) -> [Plane; 3] {
     let width = encoded.width();
     let pixels = &encoded.pixels()[rows.start * width..rows.end * width];
     let mut planes = [0; 3].map(|_| vec![0.0; pixels.len()]);
@@ -70,7 +70,7 @@ pub(super) fn linear(encoded: &Image<[f32; 3]>, rows: Range<usize>) -> [Plane; 3
 
 /// L\*a\*b\* of linear colors.
 #[inline(always)]
-pub(super) fn lab(linear: &[Plane; 3], range: Range<usize>) -> [Plane; 3] {
+pub fn lab(linear: &[Plane; 3], range: Range<usize>) -> [Plane; 3] {
     let mut planes = [0; 3].map(|_| vec![0.0; range.len()]);
     for to in blocks(range.len()) {
         let from = range.start + to.start..range.start + to.end;
@@ -88,7 +88,7 @@ pub(super) fn lab(linear: &[Plane; 3], range: Range<usize>) -> [Plane; 3] {
 
 /// Delta E 94 of L\*a\*b\* colors.
 #[inline(always)]
-pub(super) fn delta_e94(reference: &[Plane; 3], output: &[Plane; 3]) -> Plane {
+pub fn delta_e94(reference: &[Plane; 3], output: &[Plane; 3]) -> Plane {
     let mut differences = vec![0.0; reference[0].len()];
     for range in blocks(differences.len()) {
         let [r, s] = [reference, output].map(|lab| [0, 1, 2].map(|c| block(&lab[c], range.clone())));

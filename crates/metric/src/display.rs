@@ -1,0 +1,33 @@
+//! What a display shows: luminance of sRGB-encoded colors.
+
+use afterimage::kernel::color;
+use glam::Vec3;
+
+/// Photometry of a display.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Display {
+    /// Luminance of white in cd/m2.
+    pub peak_nits: f32,
+    /// Luminance of white over that of black.
+    pub contrast: f32,
+}
+
+impl Default for Display {
+    /// A desktop monitor: 250 cd/m2, 1000:1.
+    fn default() -> Self {
+        Self { peak_nits: 250.0, contrast: 1000.0 }
+    }
+}
+
+impl Display {
+    /// Luminance in cd/m2 of an sRGB-encoded color (FovVideoVDP, equation 1, without light from the room). Values
+    /// outside \[0, 1\] are clamped; NaN is black.
+    #[inline(always)]
+    #[expect(clippy::manual_clamp, reason = "`clamp` would keep NaN")]
+    pub fn luminance(&self, encoded: [f32; 3]) -> f32 {
+        // `max` turns NaN into 0.
+        let linear = encoded.map(|v| color::srgb_decode(v.max(0.0).min(1.0)));
+        let black = self.peak_nits / self.contrast;
+        black + (self.peak_nits - black) * color::luma(Vec3::from(linear))
+    }
+}
