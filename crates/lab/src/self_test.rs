@@ -322,7 +322,7 @@ fn ask(gpu: &Headless, question: Question, rows: &[[f32; 3]]) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Question, arithmetic, difference};
+    use super::{Difference, Question, arithmetic};
     use afterimage::Image;
     use afterimage::kernel::pack::{half_bits, half_value};
 
@@ -381,8 +381,13 @@ mod tests {
     fn one_bit_is_a_difference() {
         let a = Image::filled([2, 2], [1.0_f32; 3]);
         let mut b = a.clone();
-        assert_eq!(difference(&a, &b), (0, 0.0));
+        let difference = |b: &Image<[f32; 3]>| {
+            let mut difference = Difference::default();
+            difference.add(&a, b);
+            (difference.pixels, difference.differ, difference.largest)
+        };
+        assert_eq!(difference(&b), (4, 0, 0.0));
         b.pixels_mut()[3][1] = 1.0_f32.next_up();
-        assert_eq!(difference(&a, &b).0, 1);
+        assert_eq!(difference(&b), (4, 1, f32::EPSILON));
     }
 }

@@ -1,7 +1,12 @@
 //! Determinism, reset, resize, errors.
 
+use super::depth::held;
 use super::*;
+use crate::laws::laws;
+use crate::lifecycle_hard::*;
 use afterimage_testing::holds;
+
+lifecycle_laws!(Cpu, held);
 
 fn run(post: &mut CpuAfterimage, frames: std::ops::Range<u64>) -> Vec<Color> {
     frames.map(|i| one(post, i, &Input::still(noise(SIZE, &format!("run {i}")))).0).collect()
@@ -27,48 +32,6 @@ fn h29_the_same_bytes_whatever_the_number_of_threads() {
     let other_seed = run(&mut context(Settings { seed: 1, ..Settings::paper() }), 0..20);
     assert_ne!(other_seed, run(&mut context(Settings::paper()), 0..20));
     afterimage_testing::holds!("H29", Cpu, "20 frames of two samplers bit-equal on 1, 2 and 7 threads, and again");
-}
-
-#[test]
-fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
-    let settings = ungated();
-    let fresh = run(&mut context(settings), 20..30);
-    let mut used = context(settings);
-    run(&mut used, 0..20);
-    let stale = run(&mut used.clone(), 20..30);
-    assert_ne!(stale, fresh, "the planted error: no reset");
-
-    let mut forgotten = used.clone();
-    forgotten.forget();
-    assert_eq!(run(&mut forgotten, 20..30), fresh);
-
-    // Odd, even, a single pixel and back (another pixel density is another size), with frames between.
-    let mut resized = used.clone();
-    for size in [[3, 5], [64, 64], [1, 1], [65, 47], SIZE] {
-        resized.resize(size).unwrap();
-        if size != SIZE {
-            let input = Input::still(noise(size, "resized"));
-            assert_eq!(one(&mut resized, 0, &input).0, input.color, "the first frame of a size is the candidate");
-            one(&mut resized, 1, &input);
-        }
-    }
-    assert_eq!(run(&mut resized, 20..30), fresh);
-    holds!("H76", Cpu, "wrs: 5 sizes, odd, even and 1x1, then back: 10 frames as of a fresh context, bit for bit");
-
-    let mut cut = used.clone();
-    let input = Input::still(noise(SIZE, "run 20"));
-    for _ in 0..2 {
-        let (out, ..) = step(&mut cut, 20, Reset::All, &[&input]);
-        assert_eq!((&out[0], &out[0]), (&fresh[0], &input.color), "reset two frames running");
-    }
-    assert_eq!(run(&mut cut, 21..30), fresh[1..]);
-    let mut with_reset = context(settings);
-    step(&mut with_reset, 0, Reset::All, &[&Input::still(noise(SIZE, "run 0"))]);
-    let mut without_reset = context(settings);
-    run(&mut without_reset, 0..1);
-    assert_eq!(run(&mut with_reset, 1..10), run(&mut without_reset, 1..10), "a reset at frame 0");
-    holds!("H77", Cpu, "wrs: the first frame after a cut is the candidate, bit for bit; 9 more as of a fresh context");
-    holds!("H78", Cpu, "wrs: reset twice running, and at frame 0: 10 frames each as of a fresh context, bit for bit");
 }
 
 #[test]

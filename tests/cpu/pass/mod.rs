@@ -19,9 +19,11 @@ mod upsampling;
 mod views;
 mod weighted;
 
+pub use depth::held;
+
 use crate::depth_hard::{METHODS, SIZE};
 use crate::images::{Images, OneView, noise};
-use crate::settings::{ungated, ungated_of, wrs};
+use crate::settings::{ungated, wrs};
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::{
@@ -71,11 +73,6 @@ impl Input {
             ..OneView::new(facts, &self.color)
         }
     }
-}
-
-/// Settings without a gate, so that only the test in question rejects history.
-fn context_of(method: MethodKind) -> CpuAfterimage {
-    context(ungated_of(method))
 }
 
 fn context(settings: Settings) -> CpuAfterimage {

@@ -46,17 +46,6 @@ fn every_motion_convention_means_the_same_shift() {
     assert_eq!(ndc.to_internal([64, 48]), [32.0, 24.0]);
 }
 
-#[test]
-fn h60_a_turn_is_a_full_reset() {
-    for method in METHODS {
-        let mut post = context_of(method);
-        one(&mut post, 0, &Input::still(noise(SIZE, "turn 0")));
-        let turn = Input { motion: Some(Image::filled(SIZE, [5000.0, 0.0])), ..Input::still(noise(SIZE, "turn")) };
-        let (out, stats, _) = one(&mut post, 1, &turn);
-        assert_eq!((out, stats.rejected()), (turn.color, 64 * 48), "{method:?}");
-    }
-}
-
 /// CPU time of the calling thread.
 #[cfg(unix)]
 fn thread_ns() -> f64 {

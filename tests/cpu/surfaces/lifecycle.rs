@@ -2,7 +2,6 @@
 
 use super::rig::*;
 use afterimage::{Filter, Method, Smr, Verdict};
-use afterimage_testing::holds;
 
 /// Frames of a fading picture, half of it coarse, so that all output depends on earlier frames.
 fn frame(index: u64) -> Input {
@@ -16,70 +15,18 @@ fn run(post: &mut CpuAfterimage, frames: std::ops::Range<u64>) -> Vec<Made> {
 }
 
 #[test]
-fn h76_h77_h78_reset_resize_forget_and_cut_equal_a_fresh_context() {
+fn another_method_and_back_equals_a_fresh_context() {
     for method in METHODS {
         let fresh = run(&mut context(method), 10..14);
-        let mut used = context(method);
-        run(&mut used, 0..10);
-        assert_ne!(run(&mut used.clone(), 10..14)[0].shown, fresh[0].shown, "the planted error: no reset");
-
-        let mut forgotten = used.clone();
-        forgotten.forget();
-        assert_eq!(run(&mut forgotten, 10..14), fresh, "{method:?}");
-
-        let mut resized = used.clone();
-        for size in [[3, 5], [64, 64], [1, 1], [53, 41], SIZE] {
-            resized.resize(size).unwrap();
-            if size != SIZE {
-                let input = Input::sharp(noise(size, "resized"));
-                assert_eq!(
-                    step(&mut resized, 0, &input).shown,
-                    input.color,
-                    "the first frame of a size is the candidate"
-                );
-            }
-        }
-        assert_eq!(run(&mut resized, 10..14), fresh, "{method:?}");
-
-        let mut changed = used.clone();
-        for other in [
-            MethodKind::Wrs,
-            MethodKind::None,
-            if method == MethodKind::Taa { MethodKind::Smr } else { MethodKind::Taa },
-            method,
-        ] {
-            changed.set_settings(settings(other)).unwrap();
+        let mut changed = context(method);
+        run(&mut changed, 0..10);
+        assert_ne!(run(&mut changed.clone(), 10..14)[0].shown, fresh[0].shown, "the planted error: no change");
+        let other = if method == MethodKind::Taa { MethodKind::Smr } else { MethodKind::Taa };
+        for kind in [MethodKind::Wrs, MethodKind::None, other, method] {
+            changed.set_settings(settings(kind)).unwrap();
         }
         assert_eq!(run(&mut changed, 10..14), fresh, "{method:?}");
-
-        let mut cut = used.clone();
-        for _ in 0..2 {
-            let made = step(&mut cut, 10, &Input { reset: Reset::All, ..frame(10) });
-            assert_eq!(made.shown, frame(10).color, "{method:?}: the cut shows what came");
-            assert_eq!(made, fresh[0], "reset two frames running");
-        }
-        assert_eq!(run(&mut cut, 11..14), fresh[1..]);
-        let mut with_reset = context(method);
-        step(&mut with_reset, 0, &Input { reset: Reset::All, ..frame(0) });
-        let mut without_reset = context(method);
-        run(&mut without_reset, 0..1);
-        assert_eq!(run(&mut with_reset, 1..4), run(&mut without_reset, 1..4), "{method:?}: a reset at frame 0");
     }
-    holds!(
-        "H76",
-        Cpu,
-        "smr and taa: 5 sizes, odd, even and 1x1, then back: 4 frames as of a fresh context, bit for bit"
-    );
-    holds!(
-        "H77",
-        Cpu,
-        "smr and taa: the first frame after a cut is the candidate, 3 more as of a fresh context, bit for bit"
-    );
-    holds!(
-        "H78",
-        Cpu,
-        "smr and taa: reset twice running, and at frame 0: 4 frames each as of a fresh context, bit for bit"
-    );
 }
 
 #[test]
@@ -236,51 +183,4 @@ fn beside_a_depth_edge_another_texel_stands_in_for_the_nearest_one() {
             }
         }
     }
-}
-
-#[test]
-fn h58_nothing_is_read_over_a_depth_edge() {
-    // A quarter of a pixel to the left of the edge and to the right of it, taps reach over; plain colors show any that
-    // do. smr accumulates what is coarse.
-    let mut widest = vec![];
-    let near = |[x, _]: [u32; 2]| x < 26;
-    let colors = |near: bool| if near { [0.9, 0.6, 0.3] } else { [0.1, 0.2, 0.4] };
-    let depths = Image::from_fn(SIZE, |at| if near(at) { 1.0 } else { 3.0 });
-    for (method, depth, bleeds) in [
-        (MethodKind::Taa, Some(depths.clone()), false),
-        (MethodKind::Taa, None, true),
-        (MethodKind::Smr, Some(depths), false),
-        (MethodKind::Smr, None, true),
-    ] {
-        let lod = if method == MethodKind::Smr { 1.0 } else { 0.0 };
-        let input = Input {
-            depth,
-            motion: Some(Image::filled(SIZE, [-0.25, 0.0])),
-            ..Input::at_lod(Image::from_fn(SIZE, |at| colors(near(at))), lod)
-        };
-        let mut post = context(method);
-        let mut worst = 0.0_f32;
-        let mut columns = std::collections::BTreeSet::new();
-        for index in 0..20 {
-            let made = step(&mut post, index, &input);
-            for (i, (a, b)) in made.shown.pixels().iter().zip(input.color.pixels()).enumerate() {
-                let off = (0..3).fold(0.0_f32, |w, k| w.max((a[k] - b[k]).abs() / b[k]));
-                worst = worst.max(off);
-                // Storage alone is off by 2^-10, and by up to three times that before a share of 0.3 tells.
-                if off > 0.006 {
-                    columns.insert(i % 52);
-                }
-            }
-        }
-        println!("{method:?}, bleeds {bleeds}: off by {worst:.4} in columns {columns:?}");
-        assert_eq!(!columns.is_empty(), bleeds, "{method:?}: {worst}");
-        widest.push(worst);
-    }
-    holds!(
-        "H58",
-        Cpu,
-        "smr and taa, 1/4 px over an edge: off by {:.4}, rounding; without depth {:.2}",
-        widest[0].max(widest[2]),
-        widest[3]
-    );
 }

@@ -2,6 +2,9 @@
 
 use super::rig::noise_view;
 use super::rig::{Made, Rig, View, make_texture};
+use super::surfaces::held;
+use crate::laws::laws;
+use crate::lifecycle_hard::*;
 use crate::settings::{ungated, ungated_of, wrs};
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::{self, Texture, TextureFormat, TextureUsages};
@@ -10,6 +13,8 @@ use afterimage::{
     MotionDirection, MotionUnit, Reset, Sampler, Settings, ViewFrame, ViewGeometry, Wrs, YAxis,
 };
 use afterimage_testing::holds;
+
+lifecycle_laws!(Gpu, held);
 
 const SIZE: [u32; 2] = [70, 40];
 
@@ -88,57 +93,6 @@ fn h79_poisoned_fresh_history_is_never_visible() {
 fn run(rig: &mut Rig, range: std::ops::Range<u64>) -> Vec<Made> {
     let context = rig.context;
     range.map(|i| rig.both(i, Reset::None, &[noise_view(&format!("run {i}"), &context)]).0).collect()
-}
-
-#[test]
-fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
-    let fresh = || Rig::new(ContextDesc::new(SIZE), ungated());
-    let Some(mut rig) = fresh() else { return };
-    let expected = run(&mut rig, 20..26);
-    let used = || {
-        let mut rig = fresh().unwrap();
-        run(&mut rig, 14..20);
-        rig
-    };
-    assert!(run(&mut used(), 20..26) != expected, "the planted error: no reset");
-
-    let mut forgotten = used();
-    forgotten.cpu.forget();
-    forgotten.gpu.forget();
-    assert!(run(&mut forgotten, 20..26) == expected);
-
-    // Odd, even, a single pixel, and back, with frames between and the new history full of garbage.
-    let mut resized = used();
-    for size in [[3, 5], [64, 64], [1, 1], [65, 41], SIZE] {
-        resized.resize(size);
-        resized.poison();
-        if size != SIZE {
-            run(&mut resized, 0..2);
-        }
-    }
-    assert!(run(&mut resized, 20..26) == expected);
-
-    // A pause or a cut, declared twice; already the first shows only the candidate.
-    let mut cut = used();
-    let views = [noise_view("run 20", &cut.context)];
-    for _ in 0..2 {
-        let (made, _) = cut.both(20, Reset::All, &views);
-        let candidate: Vec<[u32; 3]> = views[0].color.pixels().iter().map(|c| c.map(f32::to_bits)).collect();
-        assert!(made.shown == candidate && made == expected[0]);
-    }
-    assert!(run(&mut cut, 21..26) == expected[1..]);
-
-    let Some(mut from_zero) = fresh() else { return };
-    let Some(mut with_reset) = fresh() else { return };
-    let views = [noise_view("run 0", &with_reset.context)];
-    assert!(
-        with_reset.both(0, Reset::All, &views).0 == run(&mut from_zero, 0..1)[0],
-        "a reset at frame 0 changes nothing"
-    );
-    assert!(run(&mut with_reset, 1..4) == run(&mut from_zero, 1..4));
-    holds!("H76", Gpu, "wrs: 4 sizes, odd, even and 1x1, then back: 6 frames as of a fresh context, bit for bit");
-    holds!("H77", Gpu, "wrs: the first frame after a cut is the candidate, 5 more as of a fresh context, bit for bit");
-    holds!("H78", Gpu, "wrs: reset twice running, and at frame 0: as a fresh context, bit for bit");
 }
 
 #[test]

@@ -70,61 +70,6 @@ fn h79_poisoned_fresh_history_is_never_visible() {
 }
 
 #[test]
-fn h76_h78_reset_resize_and_forget_equal_a_fresh_context() {
-    for base in all_methods() {
-        let fresh = || Rig::new(ContextDesc::new(SIZE), base);
-        let run = |rig: &mut Rig, range: std::ops::Range<u64>| {
-            let desc = rig.context;
-            let views = |i: u64| [noise_view(&format!("run {}", i / 4), &desc)];
-            range.map(|i| rig.both(i, Reset::None, &views(i)).0).collect::<Vec<_>>()
-        };
-        let Some(mut rig) = fresh() else { return };
-        let expected = run(&mut rig, 22..26);
-        let mut used = fresh().unwrap();
-        run(&mut used, 16..22);
-        let mut forgotten = fresh().unwrap();
-        run(&mut forgotten, 16..22);
-        assert!(run(&mut used, 22..26) != expected, "the planted error: no reset");
-        forgotten.cpu.forget();
-        forgotten.gpu.forget();
-        assert!(run(&mut forgotten, 22..26) == expected);
-        for size in [[3, 5], [64, 64], [1, 1], SIZE] {
-            used.resize(size);
-            used.poison();
-            if size != SIZE {
-                run(&mut used, 0..2);
-            }
-        }
-        assert!(run(&mut used, 22..26) == expected);
-        // A cut, said twice running; and a reset at frame 0.
-        let mut cut = fresh().unwrap();
-        run(&mut cut, 16..22);
-        let views = [noise_view("run 5", &cut.context)];
-        for _ in 0..2 {
-            let (made, _) = cut.both(22, Reset::All, &views);
-            let candidate = views[0].color.pixels().iter().map(|c| c.map(f32::to_bits));
-            assert!(made.shown.iter().copied().eq(candidate) && made == expected[0]);
-        }
-        assert!(run(&mut cut, 23..26) == expected[1..]);
-        let (mut with_reset, mut without_reset) = (fresh().unwrap(), fresh().unwrap());
-        let views = [noise_view("run 0", &with_reset.context)];
-        assert!(with_reset.both(0, Reset::All, &views).0 == run(&mut without_reset, 0..1)[0]);
-        assert!(run(&mut with_reset, 1..3) == run(&mut without_reset, 1..3));
-    }
-    holds!(
-        "H76",
-        Gpu,
-        "smr and taa: 3 sizes, odd, even and 1x1, then back: 4 frames as of a fresh context, bit for bit"
-    );
-    holds!(
-        "H77",
-        Gpu,
-        "smr and taa: the first frame after a cut is the candidate, 3 more as of a fresh context, bit for bit"
-    );
-    holds!("H78", Gpu, "smr and taa: reset twice running, and at frame 0: as a fresh context, bit for bit");
-}
-
-#[test]
 fn two_frames_in_one_submission_see_their_own_constants() {
     for base in all_methods() {
         let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), base) else { return };
