@@ -6,11 +6,12 @@ use super::surfaces::held;
 use crate::laws::laws;
 use crate::lifecycle_hard::*;
 use crate::settings::{ungated, ungated_of, wrs};
+use crate::surfaces_hard;
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::{self, Texture, TextureFormat, TextureUsages};
 use afterimage::{
-    ContextDesc, CreateError, DepthConvention, Exposure, FrameError, Gaze, MethodKind, MotionConvention,
-    MotionDirection, MotionUnit, Reset, Sampler, Settings, ViewFrame, ViewGeometry, Wrs, YAxis,
+    ContextDesc, CreateError, DepthConvention, Exposure, Filter, Foveation, FrameError, Gaze, MethodKind,
+    MotionConvention, MotionDirection, MotionUnit, Reset, Sampler, Settings, ViewFrame, ViewGeometry, Wrs, YAxis,
 };
 use afterimage_testing::holds;
 
@@ -80,13 +81,38 @@ fn odd_sizes_agree() {
 
 #[test]
 fn h79_poisoned_fresh_history_is_never_visible() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
-    rig.poison();
-    for index in 0..3 {
-        let views = [noise_view(&format!("poison {index}"), &rig.context)];
-        assert_eq!(rig.on_gpu(index, Reset::None, &views), rig.on_cpu(index, Reset::None, &views).0);
+    for method in METHODS {
+        for filter in [Filter::Mip, Filter::Block] {
+            let base = surfaces_hard::settings(method);
+            let settings = Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
+            for size in [SIZE, [65, 33], [3, 2]] {
+                let desc = ContextDesc::new(size);
+                let Some(mut rig) = Rig::new(desc, settings) else { return };
+                for index in 0..6 {
+                    // What was never written, what a reset forgets, and what a resize makes.
+                    if index == 5 {
+                        rig.resize(size);
+                    }
+                    if [0, 3, 5].contains(&index) {
+                        rig.poison();
+                    }
+                    let reset = if index == 3 { Reset::All } else { Reset::None };
+                    let (made, _) = rig.both(index, reset, &[noise_view("poison", &desc)]);
+                    assert!(made.shown.iter().flatten().all(|&c| f32::from_bits(c).is_finite()));
+                }
+            }
+        }
+        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), surfaces_hard::settings(method)) else { return };
+        let views = [noise_view("poison", &rig.context)];
+        rig.both(0, Reset::None, &views);
+        rig.poison();
+        assert!(rig.differs(1, Reset::None, &views), "the planted error: no reset");
     }
-    holds!("H79", Gpu, "wrs: fresh textures of NaN words, 3 frames as of the CPU's clean ones, bit for bit");
+    holds!(
+        "H79",
+        Gpu,
+        "wrs, smr, taa: NaN words and levels, fresh, after a reset and a resize: never seen, bit for bit"
+    );
 }
 
 /// Frames `range`, on both.
@@ -183,13 +209,16 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
 
 #[test]
 fn two_frames_in_one_submission_see_their_own_constants() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
-    let mut view = noise_view("submission", &rig.context);
-    let (first, second) = (view.facts, ViewFrame { gaze: Gaze::At { px: [3.0, 4.0] }, ..view.facts });
-    rig.on_cpu(0, Reset::None, &[view.clone()]);
-    view.facts = second;
-    let expected = rig.on_cpu(1, Reset::None, &[view.clone()]).0;
-    assert_eq!(rig.on_gpu_in_one_submission(&view, &[first, second]), expected);
+    for method in METHODS {
+        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), surfaces_hard::settings(method)) else { return };
+        let mut view = noise_view("submission", &rig.context);
+        let (first, second) = (view.facts, ViewFrame { gaze: Gaze::At { px: [3.0, 4.0] }, ..view.facts });
+        rig.on_cpu(0, Reset::None, &[view.clone()]);
+        view.facts = second;
+        let (expected, trace) = rig.on_cpu(1, Reset::None, &[view.clone()]);
+        assert_eq!(rig.on_gpu_in_one_submission(&view, &[first, second]), expected, "{method:?}");
+        assert!(trace[0].pixels().iter().any(|t| !t.take), "the second frame has a past");
+    }
 }
 
 #[test]
