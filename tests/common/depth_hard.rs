@@ -6,6 +6,7 @@ use crate::settings::ungated_of;
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack;
+use afterimage::kernel::surface::{Surface, unpack_surface};
 use afterimage::{
     ContextDesc, DepthConvention, DepthTest, Exposure, FrameStats, Image, MethodKind, Reset, Settings, Verdict,
 };
@@ -45,6 +46,19 @@ pub struct Made {
     pub words: Vec<[u32; 3]>,
     pub trace: Image<PixelTrace>,
     pub stats: FrameStats,
+}
+
+impl Made {
+    /// What the history stores, of methods that store surfaces.
+    pub fn surfaces(&self) -> Vec<Surface> {
+        self.words.iter().map(|w| unpack_surface([w[0], w[1]])).collect()
+    }
+
+    /// Its colors as an image.
+    pub fn stored(&self) -> Color {
+        let colors = self.surfaces().iter().map(|s| s.color.to_array()).collect();
+        Image::from_pixels(self.shown.size(), colors).unwrap()
+    }
 }
 
 /// An executor.

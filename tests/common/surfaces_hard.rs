@@ -4,7 +4,6 @@
 use crate::depth_hard::{Color, Made, Make, Steps};
 use crate::images::{View, noise};
 use crate::low_pass::LowPass;
-use afterimage::kernel::surface::{Surface, unpack_surface};
 use afterimage::{ContextDesc, Exposure, Foveation, Gaze, Image, Method, MethodKind, Reset, Settings, Smr, Verdict};
 use afterimage_testing::Draws;
 
@@ -56,26 +55,17 @@ fn at_lods(color: Color, lods: Image<f32>) -> View {
     View { lod: Some(lods), ..View::still(color, [20.0, 20.0]) }
 }
 
-fn at_lod(color: Color, lod: f32) -> View {
+pub fn at_lod(color: Color, lod: f32) -> View {
     let lods = Image::filled(color.size(), lod);
     at_lods(color, lods)
 }
 
-fn sharp(color: Color) -> View {
+pub fn sharp(color: Color) -> View {
     at_lod(color, 0.0)
 }
 
 fn step(post: &mut Box<dyn Steps>, index: u64, view: &View) -> Made {
     post.make(index, view, Exposure::Same, Reset::None)
-}
-
-fn surfaces(made: &Made) -> Vec<Surface> {
-    made.words.iter().map(|w| unpack_surface([w[0], w[1]])).collect()
-}
-
-/// Stored colors as an image.
-fn stored(made: &Made) -> Color {
-    Image::from_pixels(made.shown.size(), surfaces(made).iter().map(|s| s.color.to_array()).collect()).unwrap()
 }
 
 fn scaled(color: &Color, ratio: f32) -> Color {
@@ -121,7 +111,7 @@ pub fn still_picture(make: Make<'_>) -> Option<String> {
         let mut post = make(of(MethodKind::Smr))?;
         let picture = noise(SIZE, "s3").map(|c| c.map(|v| floor + contrast * v));
         let first = step(&mut post, 0, &sharp(picture));
-        let stored = stored(&first);
+        let stored = first.stored();
         let low_pass = LowPass::new(&stored, 4);
         for index in 1..=frames {
             // Levels at which sharp history replaces the candidate fully: a tenth and more.
@@ -240,7 +230,7 @@ pub fn zoom(make: Make<'_>) -> Option<String> {
         });
         let later = View { motion: Some(motion), ..at_lod(color, 2.0) };
         let made = step(&mut post, 1, &later);
-        let surfaces = surfaces(&made);
+        let surfaces = made.surfaces();
         let mut kept = 0;
         for (x, y) in (0..41_usize).flat_map(|y| (0..52_usize).map(move |x| (x, y))) {
             let t = made.trace.at(x, y);
@@ -290,14 +280,14 @@ pub fn saccade(make: Make<'_>) -> Option<String> {
     let ((left, ecc), (right, _)) = (frame(-10.0), frame(10.0));
     let mut post = make(sized(WIDE, settings))?;
     let before: Vec<_> = (0..4).map(|index| step(&mut post, index, &left)).collect();
-    let stored = stored(&before[3]);
+    let stored = before[3].stored();
     let old: Vec<usize> = (0..320 * 40).filter(|&i| ecc.pixels()[i] < 2.4).collect();
     // For two seconds: no frame loses a pixel of it.
     for index in 4..124 {
         let made = step(&mut post, index, &right);
         let kept = old.iter().filter(|&&i| made.shown.pixels()[i] == stored.pixels()[i]).count();
         assert_eq!(kept, old.len(), "frame {index}");
-        let surfaces = surfaces(&made);
+        let surfaces = made.surfaces();
         assert!(old.iter().all(|&i| surfaces[i].lod == 0.0));
     }
     // The planted error: no history.
@@ -314,10 +304,10 @@ pub fn exposure(make: Make<'_>) -> Option<String> {
         let [mut post, mut undeclared] = [make(of(MethodKind::Smr))?, make(of(MethodKind::Smr))?];
         let picture = sharp(noise(SIZE, "h72").map(|c| c.map(|v| 0.25 + 0.5 * v)));
         let made = step(&mut post, 0, &picture);
-        let coarse = LowPass::new(&stored(&made), 4).render(&Image::filled(SIZE, 2.0));
+        let coarse = LowPass::new(&made.stored(), 4).render(&Image::filled(SIZE, 2.0));
         let exposed = at_lod(scaled(&coarse, ratio), 2.0);
         let declared = post.make(1, &exposed, Exposure::Changed { ratio }, Reset::None);
-        assert_eq!(declared.shown, scaled(&stored(&made), ratio), "x{ratio}");
+        assert_eq!(declared.shown, scaled(&made.stored(), ratio), "x{ratio}");
         assert_eq!(declared.stats.rejected(), 0);
         // Undeclared, it is another picture: the new one is shown at once. So it is on the way back.
         step(&mut undeclared, 0, &picture);

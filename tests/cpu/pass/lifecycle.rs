@@ -9,7 +9,7 @@ use afterimage_testing::holds;
 lifecycle_laws!(Cpu, held);
 
 fn run(post: &mut CpuAfterimage, frames: std::ops::Range<u64>) -> Vec<Color> {
-    frames.map(|i| one(post, i, &Input::still(noise(SIZE, &format!("run {i}")))).0).collect()
+    frames.map(|i| one(post, i, &still(noise(SIZE, &format!("run {i}")))).0).collect()
 }
 
 #[test]
@@ -42,7 +42,7 @@ fn a_frame_that_is_refused_changes_nothing() {
     let mut got = run(&mut mixed, 0..3);
     let words = mixed.history().words().to_vec();
     let (small, right) = (noise([3, 4], "small"), noise(SIZE, "right"));
-    let facts = Input::still(right.clone()).view().facts;
+    let facts = still(right.clone()).one().facts;
     let bad = |view: OneView<'_>, out: &mut [Color], mixed: &mut CpuAfterimage| {
         let images = Images::of(&[view]);
         mixed.process(&Frame { reset: Reset::All, ..images.frame(3) }, out).unwrap_err()
@@ -86,7 +86,7 @@ fn h76_empty_and_huge_sizes_are_refused_and_a_pixel_is_enough() {
     }
     let mut post =
         CpuAfterimage::new(&ContextDesc { settings: Settings::paper(), ..ContextDesc::new([1, 1]) }).unwrap();
-    let input = Input { depth: Some(Image::filled([1, 1], 1.0)), ..Input::still(noise([1, 1], "one")) };
+    let input = View { depth: Some(Image::filled([1, 1], 1.0)), ..still(noise([1, 1], "one")) };
     assert_eq!(one(&mut post, 0, &input).0, input.color);
     assert_eq!(one(&mut post, 1, &input).0, input.color);
     holds!("H76", Cpu, "0x0, 0x5, 5x0 and 2^20 x 1 are refused, the context stays as it was; 1x1 works");
@@ -109,7 +109,7 @@ fn method_none_shows_the_frame_and_forgets() {
     let mut post = context(Settings { method: Method::None, ..Settings::paper() });
     let mut color = noise(SIZE, "none");
     color.pixels_mut()[3] = [f32::NAN, 1.0, 1.0];
-    let (out, stats, _) = one(&mut post, 0, &Input::still(color.clone()));
+    let (out, stats, _) = one(&mut post, 0, &still(color.clone()));
     assert_eq!((out.pixels()[3], stats.nonfinite, out.pixels()[4]), ([0.0; 3], 1, color.pixels()[4]));
     assert!(!post.history().is_filled());
 }

@@ -17,12 +17,12 @@ fn h27_stereo_views_never_read_each_other() {
     let fresh = || CpuAfterimage::new(&ContextDesc { settings, ..stereo }).unwrap();
     let [mut both, mut left_only, mut right_only] = [fresh(), fresh(), fresh()];
     let mut mono = context(settings);
-    let junk = Input { gaze: Gaze::Lost, ..Input::still(Image::filled(SIZE, [f32::NAN, 9.0, 1e9])) };
+    let mut junk = still(Image::filled(SIZE, [f32::NAN, 9.0, 1e9]));
+    junk.facts.gaze = Gaze::Lost;
     let mut eyes_differ = false;
     for index in 0..20 {
-        let left = Input::still(noise(SIZE, &format!("left {index}")));
-        let gaze = Gaze::At { px: [50.0, 30.0] };
-        let right = Input { gaze, ..Input::still(noise(SIZE, &format!("right {index}"))) };
+        let left = still(noise(SIZE, &format!("left {index}")));
+        let right = View::still(noise(SIZE, &format!("right {index}")), [50.0, 30.0]);
         let both_out = step(&mut both, index, Reset::None, &[&left, &right]).0;
         assert_eq!(both_out[0], step(&mut left_only, index, Reset::None, &[&left, &junk]).0[0], "left");
         assert_eq!(both_out[1], step(&mut right_only, index, Reset::None, &[&junk, &right]).0[1], "right");

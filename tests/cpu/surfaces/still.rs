@@ -15,12 +15,12 @@ fn s3_the_chain_is_read_where_and_as_coarse_as_the_candidate_is() {
     })
     .unwrap();
     let slope = Image::from_fn(SIZE, |[x, _]| [0.02 + 0.015 * x as f32; 3]);
-    let first = step(&mut post, 0, &Input::sharp(slope));
+    let first = step(&mut post, 0, &sharp(slope));
     let low_pass = LowPass::new(&first.stored(), 4);
     for lod in [0.5_f32, 1.0, 1.5, 2.0] {
         let at = |shift: f64| {
             let color = Image::from_fn(SIZE, |[x, y]| low_pass.at([f64::from(x) + shift, f64::from(y)], lod));
-            step(&mut post.clone(), 1, &Input::at_lod(color, lod))
+            step(&mut post.clone(), 1, &at_lod(color, lod))
         };
         let fit = |made: &Made| made.trace.pixels().iter().map(|t| f64::from(t.gate)).sum::<f64>() / (52.0 * 41.0);
         let (right, shifted) = (at(0.0), at(12.0));
@@ -33,13 +33,13 @@ fn s3_the_chain_is_read_where_and_as_coarse_as_the_candidate_is() {
 #[test]
 fn s9_frames_that_repeat_change_nothing_where_history_is_shown_wholly() {
     let mut post = context(MethodKind::Smr);
-    let first = step(&mut post, 0, &Input::sharp(noise(SIZE, "s9")));
+    let first = step(&mut post, 0, &sharp(noise(SIZE, "s9")));
     // The left is the same picture, the right another one.
     let lods = Image::filled(SIZE, 1.5);
     let same = LowPass::new(&first.stored(), 4).render(&lods);
     let other = LowPass::new(&noise(SIZE, "s9 other"), 4).render(&lods);
     let half = |[x, y]: [u32; 2]| if x < 26 { &same } else { &other }.at(x as usize, y as usize);
-    let input = Input::at_lod(Image::from_fn(SIZE, half), 1.5);
+    let input = at_lod(Image::from_fn(SIZE, half), 1.5);
     let mut before = step(&mut post, 1, &input);
     let mut settled = 0;
     for index in 2..20 {
@@ -66,7 +66,7 @@ fn s9_a_coarse_candidate_that_repeats_settles_next_to_itself() {
     let coarse = LowPass::new(&noise(SIZE, "s9 coarse"), 4).render(&Image::filled(SIZE, 2.0));
     let mut frames = vec![];
     for index in 0..30 {
-        let made = step(&mut post, index, &Input::at_lod(coarse.clone(), 2.0));
+        let made = step(&mut post, index, &at_lod(coarse.clone(), 2.0));
         // Level 2 is stored in sevenths, exactly.
         assert!(made.surfaces().iter().all(|s| s.lod == 2.0), "it never becomes sharper than it was seen");
         frames.push(made);
@@ -100,8 +100,8 @@ fn accumulation_shows_nine_tenths_of_equally_coarse_history() {
             ..ContextDesc::new(SIZE)
         })
         .unwrap();
-        step(&mut post, 0, &Input::at_lod(Image::filled(SIZE, [a; 3]), 2.0));
-        let made = step(&mut post, 1, &Input::at_lod(Image::filled(SIZE, [b; 3]), 2.0));
+        step(&mut post, 0, &at_lod(Image::filled(SIZE, [a; 3]), 2.0));
+        let made = step(&mut post, 1, &at_lod(Image::filled(SIZE, [b; 3]), 2.0));
         for shown in made.shown.pixels() {
             assert!((shown[0] - (b + accumulate * (a - b))).abs() < 1e-6, "{accumulate}: {shown:?}");
         }
@@ -116,13 +116,13 @@ fn h53_half_a_pixel_is_read_between_texels() {
     let picture = |shift: f64| Image::from_fn(SIZE, |[x, _]| [wave(f64::from(x) + shift) as f32; 3]);
     for sign in [1.0, -1.0] {
         let mut post = context(MethodKind::Smr);
-        step(&mut post, 0, &Input::sharp(picture(0.0)));
+        step(&mut post, 0, &sharp(picture(0.0)));
         let (mut shift, mut worst, mut coarse) = (0.0, 0.0_f64, 0.0_f64);
         for index in 1..=8 {
             shift += 0.5 * sign;
             let color = LowPass::new(&picture(shift), 4).render(&Image::filled(SIZE, 2.0));
             let motion = Some(Image::filled(SIZE, [0.5 * sign as f32, 0.0]));
-            let made = step(&mut post, index, &Input { motion, ..Input::at_lod(color.clone(), 2.0) });
+            let made = step(&mut post, index, &View { motion, ..at_lod(color.clone(), 2.0) });
             for x in 10..42 {
                 let error = |image: &Color| (f64::from(image.at(x, 20)[0]) - wave(x as f64 + shift)).abs();
                 worst = worst.max(error(&made.shown));
