@@ -23,6 +23,8 @@ mod pass;
 #[path = "../common/settings.rs"]
 mod settings;
 mod simulator;
+#[path = "../common/simulator_hard.rs"]
+mod simulator_hard;
 #[path = "../common/sparse_hard/mod.rs"]
 mod sparse_hard;
 mod surfaces;

@@ -23,6 +23,9 @@ mod pass;
 #[path = "../common/settings.rs"]
 mod settings;
 mod simulator;
+#[allow(dead_code, reason = "the CPU's tests use all of it")]
+#[path = "../common/simulator_hard.rs"]
+mod simulator_hard;
 #[path = "../common/sparse_hard/mod.rs"]
 mod sparse_hard;
 #[path = "../common/surfaces_hard.rs"]

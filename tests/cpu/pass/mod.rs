@@ -12,7 +12,7 @@ mod reprojection;
 mod reservoirs;
 mod sparse;
 mod sparse_hard;
-mod sparse_noise;
+pub mod sparse_noise;
 mod sparse_planted;
 mod trust;
 mod upsampling;

@@ -2,6 +2,7 @@
 //! pass for a change, nor a change for noise.
 
 use super::rig::{Draws, SIZE, View, settings, sharp, step};
+use crate::pass::sparse_noise::moments;
 use afterimage::cpu::CpuAfterimage;
 use afterimage::{ContextDesc, Image, Method, MethodKind, Settings, Smr};
 use afterimage_testing::{accept, p_of_z, reject};
@@ -26,13 +27,6 @@ fn sampled(draws: &mut Draws, samples: usize, sample: impl Fn(&mut Draws, [u32; 
         (mean, (squares / (samples * (samples - 1)) as f32).sqrt())
     });
     View { noise: Some(made.map(|(_, error)| [error, samples as f32])), ..sharp(made.map(|(mean, _)| [mean; 3])) }
-}
-
-/// Mean of the shown pixels, and the variance between them.
-fn moments(shown: &Image<[f32; 3]>) -> (f64, f64) {
-    let mean = shown.pixels().iter().map(|c| f64::from(c[0])).sum::<f64>() / PIXELS;
-    let squares: f64 = shown.pixels().iter().map(|c| (f64::from(c[0]) - mean).powi(2)).sum();
-    (mean, squares / (PIXELS - 1.0))
 }
 
 /// Variance of a still pixel after `frames` of variance 1, by the weights that `docs/method.md` states.
