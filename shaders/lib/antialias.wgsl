@@ -145,6 +145,7 @@ fn average(r: Reconstruction, samples: f32, place_px: vec2<f32>, kept: f32) -> A
 // antialias::kept_mean
 fn kept_mean(r: Reconstruction, result: Reconstructed, samples: f32) -> Averaged {
     let is_kept = result.kept.lod < COARSE_LOD && r.nearest.lod <= 0.0;
-    let left = 1.0 + (samples - 1.0) * (r.fit * r.trust);
+    let share = r.fit * r.trust;
+    let left = samples * share + (1.0 - share);
     return Averaged(result, select(1.0, left, is_kept));
 }

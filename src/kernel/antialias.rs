@@ -224,6 +224,8 @@ pub fn average(r: &Reconstruction, samples: f32, place_px: Vec2, kept: f32) -> A
 #[inline]
 pub fn kept_mean(r: &Reconstruction, result: Reconstructed, samples: f32) -> Averaged {
     let is_kept = result.kept.lod < COARSE_LOD && r.nearest.lod <= 0.0;
-    let left = 1.0 + (samples - 1.0) * (r.fit * r.trust);
+    let share = r.fit * r.trust;
+    // Compilers rewrite `1.0 + (samples - 1.0) * share` as this sum, which rounds in another way.
+    let left = samples * share + (1.0 - share);
     Averaged { result, samples: if is_kept { left } else { 1.0 } }
 }

@@ -1,12 +1,15 @@
 //! Hard cases of depth, H41 and H44 to H50: laws that hold on either executor. A law returns what it measured, or
 //! `None` without an executor.
 
-use crate::images::{Images, View, noise};
+use crate::images::{Images, View, held_words, noise};
 use crate::settings::ungated_of;
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack;
-use afterimage::{ContextDesc, DepthConvention, DepthTest, Exposure, FrameStats, Image, MethodKind, Settings, Verdict};
+use afterimage::kernel::surface::{Surface, unpack_surface};
+use afterimage::{
+    ContextDesc, DepthConvention, DepthTest, Exposure, FrameStats, Image, MethodKind, Reset, Settings, Verdict,
+};
 use afterimage_testing::Draws;
 
 /// The laws as tests of an executor. `$held` runs one, and returns what it measured.
@@ -35,10 +38,39 @@ pub const SIZE: [u32; 2] = [64, 48];
 pub const METHODS: [MethodKind; 2] = [MethodKind::Wrs, MethodKind::Smr];
 pub type Color = Image<[f32; 3]>;
 
+/// Result of a frame of one view.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Made {
+    pub shown: Color,
+    /// Packed history.
+    pub words: Vec<[u32; 3]>,
+    pub trace: Image<PixelTrace>,
+    pub stats: FrameStats,
+}
+
+impl Made {
+    /// What the history stores, of methods that store surfaces.
+    pub fn surfaces(&self) -> Vec<Surface> {
+        self.words.iter().map(|w| unpack_surface([w[0], w[1]])).collect()
+    }
+
+    /// Its colors as an image.
+    pub fn stored(&self) -> Color {
+        let colors = self.surfaces().iter().map(|s| s.color.to_array()).collect();
+        Image::from_pixels(self.shown.size(), colors).unwrap()
+    }
+}
+
 /// An executor.
 pub trait Steps {
-    /// Output, counters and decisions of a frame of one view.
-    fn exposed(&mut self, index: u64, view: &View, exposure: Exposure) -> (Color, FrameStats, Image<PixelTrace>);
+    /// A frame of one view.
+    fn make(&mut self, index: u64, view: &View, exposure: Exposure, reset: Reset) -> Made;
+
+    /// Output, counters and decisions of a frame.
+    fn exposed(&mut self, index: u64, view: &View, exposure: Exposure) -> (Color, FrameStats, Image<PixelTrace>) {
+        let made = self.make(index, view, exposure, Reset::None);
+        (made.shown, made.stats, made.trace)
+    }
 
     /// The same at the exposure of the frame before.
     fn step(&mut self, index: u64, view: &View) -> (Color, FrameStats, Image<PixelTrace>) {
@@ -46,6 +78,11 @@ pub trait Steps {
     }
 
     fn set_settings(&mut self, settings: Settings);
+
+    /// Another size; history that it makes anew is garbage.
+    fn resize(&mut self, size: [u32; 2]);
+
+    fn forget(&mut self);
 
     /// Gives reservoirs so much weight that no candidate replaces their samples.
     fn stick(&mut self);
@@ -55,17 +92,26 @@ pub trait Steps {
 pub type Make<'a> = &'a dyn Fn(ContextDesc) -> Option<Box<dyn Steps>>;
 
 impl Steps for CpuAfterimage {
-    fn exposed(&mut self, index: u64, view: &View, exposure: Exposure) -> (Color, FrameStats, Image<PixelTrace>) {
+    fn make(&mut self, index: u64, view: &View, exposure: Exposure, reset: Reset) -> Made {
         let size = view.color.size();
         let (mut out, mut trace) = ([Image::filled(size, [f32::NAN; 3])], [Image::filled(size, PixelTrace::default())]);
         let images = Images::of(&[view.one()]);
-        let stats = self.process_traced(&Frame { exposure, ..images.frame(index) }, &mut out, &mut trace).unwrap();
-        let ([out], [trace]) = (out, trace);
-        (out, stats, trace)
+        let frame = Frame { exposure, reset, ..images.frame(index) };
+        let stats = self.process_traced(&frame, &mut out, &mut trace).unwrap();
+        let ([shown], [trace]) = (out, trace);
+        Made { shown, words: held_words(self), trace, stats }
     }
 
     fn set_settings(&mut self, settings: Settings) {
         CpuAfterimage::set_settings(self, settings).unwrap();
+    }
+
+    fn resize(&mut self, size: [u32; 2]) {
+        CpuAfterimage::resize(self, size).unwrap();
+    }
+
+    fn forget(&mut self) {
+        CpuAfterimage::forget(self);
     }
 
     fn stick(&mut self) {

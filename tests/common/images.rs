@@ -1,6 +1,6 @@
 //! Images of frames, view by view, in the form of the CPU executor's inputs.
 
-use afterimage::cpu::Frame;
+use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::{Gaze, Image, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
 
@@ -103,4 +103,12 @@ fn given<T>(images: &[T]) -> Option<&[T]> {
 pub fn noise(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
     let mut draws = Draws::new(name);
     Image::from_fn(size, |_| [0; 3].map(|_| (draws.bits() % 1024) as f32 / 1024.0))
+}
+
+/// Packed reservoirs, or packed surfaces and their noise (0 without noise).
+pub fn held_words(cpu: &CpuAfterimage) -> Vec<[u32; 3]> {
+    let history = cpu.history();
+    let noise = history.noise().iter().copied().chain(std::iter::repeat(0));
+    let surfaces = history.surfaces().iter().zip(noise).map(|(s, n)| [s[0], s[1], n]);
+    history.words().iter().copied().chain(surfaces).collect()
 }

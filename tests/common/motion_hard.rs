@@ -1,4 +1,4 @@
-//! Hard cases of motion, H51 to H54, H58 and H59: laws that hold on either executor.
+//! Hard cases of motion, H51 to H54 and H58 to H60: laws that hold on either executor.
 
 use crate::depth_hard::{METHODS, Make, SIZE, of, still};
 use crate::images::{View, noise};
@@ -14,6 +14,7 @@ macro_rules! motion_laws {
             h54_garbage_motion_shows_the_candidate: "H54", garbage_motion;
             h58_nothing_bleeds_over_a_depth_edge: "H58", depth_edge;
             h59_a_zoom_leaves_no_hole: "H59", zoom;
+            h60_a_turn_is_a_full_reset: "H60", turn;
         }
     };
 }
@@ -162,4 +163,17 @@ pub fn zoom(make: Make<'_>) -> Option<String> {
     Some(format!(
         "wrs, in x2: {near} show {originals} samples, ages kept; out x2: {far} kept, the rest is the candidate"
     ))
+}
+
+/// A turn of the head.
+pub fn turn(make: Make<'_>) -> Option<String> {
+    for (method, lod) in [(MethodKind::Wrs, None), (MethodKind::Smr, None), (MethodKind::Smr, Some(2.0))] {
+        let mut post = make(of(method))?;
+        post.step(0, &still(noise(SIZE, "turn 0")));
+        let lod = lod.map(|lod| Image::filled(SIZE, lod));
+        let turn = View { motion: Some(Image::filled(SIZE, [5000.0, 0.0])), lod, ..still(noise(SIZE, "turn")) };
+        let (out, stats, _) = post.step(1, &turn);
+        assert_eq!((out, stats.rejected()), (turn.color, 64 * 48), "{method:?}");
+    }
+    Some("wrs and smr: all 3072 pixels are the candidate, bit for bit".into())
 }

@@ -4,19 +4,29 @@
 mod any_frame;
 #[path = "../common/depth_hard.rs"]
 mod depth_hard;
+#[path = "../common/gaze_hard.rs"]
+mod gaze_hard;
 #[allow(dead_code, reason = "the device's tests use all of it")]
 #[path = "../common/images.rs"]
 mod images;
 #[path = "../common/laws.rs"]
 mod laws;
+#[path = "../common/lifecycle_hard.rs"]
+mod lifecycle_hard;
 #[path = "../common/light_hard.rs"]
 mod light_hard;
+#[path = "../common/low_pass.rs"]
+mod low_pass;
 #[path = "../common/motion_hard.rs"]
 mod motion_hard;
 mod pass;
 #[path = "../common/settings.rs"]
 mod settings;
 mod simulator;
+#[path = "../common/simulator_hard.rs"]
+mod simulator_hard;
 #[path = "../common/sparse_hard/mod.rs"]
 mod sparse_hard;
 mod surfaces;
+#[path = "../common/surfaces_hard.rs"]
+mod surfaces_hard;

@@ -158,7 +158,8 @@ fn square(index: u64) -> Shot {
     let speed = |px| if is_near(px) { [-1.3, -0.5] } else { [0.4, -0.2] };
     let depth = Image::from_fn(SIZE, |px| if is_near(px) { 2.0 } else { 6.5 });
     let motion = Image::from_fn(SIZE, speed);
-    Shot { depth: Some(depth), motion: Some(motion), ..Shot::foveated(color, &foveation(), [75.0, 20.0], index) }
+    Shot::foveated(color, &foveation(), [75.0, 20.0], index)
+        .with(|view| (view.depth, view.motion) = (Some(depth), Some(motion)))
 }
 
 /// Whether a pixel within a coarse step of `px` is of another surface.
@@ -185,7 +186,7 @@ pub fn silhouettes(make: Make) -> Option<String> {
             };
             let depth = shot.depth.as_ref().map(holed);
             let facts = ViewFrame { lattices: Some(lattices.with_geometry_at_samples()), ..shot.facts };
-            Shot { facts, depth, ..shot.clone() }
+            shot.clone().with(|view| (view.facts, view.depth) = (facts, depth))
         };
         let shown = [full.one(index, &shot), sparse.one(index, &at_samples), none(&shot)];
         shown.iter().for_each(|shown| assert_finite(shown, "silhouettes"));

@@ -48,7 +48,7 @@ pub fn restarts_of_the_order(make: Make) -> Option<String> {
 fn picture(index: u64, depth_m: f32) -> Shot {
     let shift = 17.0 * index as f32 + 0.3 * (index * index) as f32;
     let shot = Shot::foveated(waves(SIZE, [shift, 1.7 * shift]), &foveation(), [40.0, 30.0], index);
-    Shot { depth: Some(Image::filled(SIZE, depth_m)), ..shot }
+    shot.with(|view| view.depth = Some(Image::filled(SIZE, depth_m)))
 }
 
 /// Cuts in every frame, with and without a reset, and one cut after a turn.
@@ -83,10 +83,10 @@ pub fn announced_and_unannounced_cuts(make: Make) -> Option<String> {
     // One cut, after a turn of samples.
     let mut post = make(smr(SIZE))?;
     for index in 0..TURN {
-        post.one(index, &Shot { color: shot(0).color, ..shot(index) });
+        post.one(index, &shot(index).with(|view| view.color = shot(0).view.color));
     }
     for index in TURN..2 * TURN {
-        let after = Shot { color: shot(5).color, ..shot(index) };
+        let after = shot(index).with(|view| view.color = shot(5).view.color);
         let shown = post.one(index, &after);
         let i = if index == TURN { 1 } else { 2 };
         worst[i] = worst[i].max(loss(&shown, &after));

@@ -108,7 +108,7 @@ pub fn light_trust_views_gaze_and_foveation(make: Make) -> Option<String> {
     let shot = gliding(6, gaze(6), 0.0);
     let fresh = make(smr(SIZE))?.one(6, &shot);
     let trust = Image::from_fn(SIZE, |px| if is_distrusted(px) { 0.0 } else { 1.0 });
-    let shown = post.one(6, &Shot { trust: Some(trust), ..shot.clone() });
+    let shown = post.one(6, &shot.clone().with(|view| view.trust = Some(trust)));
     let other = plain.one(6, &shot);
     assert_eq!(squared_error(&shown, &fresh, is_distrusted), 0.0, "no trust: the candidate");
     let trusted = squared_error(&shown, &other, |px| !is_distrusted(px));

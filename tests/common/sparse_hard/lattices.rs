@@ -63,7 +63,7 @@ pub fn degenerate_lattices(make: Make) -> Option<String> {
         for at_samples in [false, true] {
             let mut post = make(smr(SIZE))?;
             let lattices = if at_samples { lattices.with_geometry_at_samples() } else { lattices };
-            let shot = Shot { depth: Some(Image::filled(SIZE, 3.0)), ..Shot::new(full.clone(), lattices) };
+            let shot = Shot::new(full.clone(), lattices).with(|view| view.depth = Some(Image::filled(SIZE, 3.0)));
             let shot = shot.moving([0.0; 2]);
             for index in 0..3 {
                 let shown = post.one(index, &shot);

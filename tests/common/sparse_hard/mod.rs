@@ -15,12 +15,13 @@ pub use lattices::{borders, degenerate_lattices, starved_positions};
 pub use offsets::{offsets_off_by_one, repeated_offsets};
 pub use repair::{half_uncovered, light_and_contradictions, order_without_flicker, thin_occluders};
 
-use crate::images::{Images, OneView};
+use crate::images::{Images, View};
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::{
     ContextDesc, Exposure, Filter, Foveation, Gaze, Image, Lattices, Method, Reset, Settings, ViewFrame, ViewGeometry,
 };
 use afterimage_testing::Draws;
+use std::ops::{Deref, DerefMut};
 
 /// The laws as tests of an executor. `$held` runs one, and returns what it measured.
 macro_rules! sparse_laws {
@@ -56,34 +57,40 @@ pub type Color = Image<[f32; 3]>;
 /// Pixels to repair.
 pub type Mask = Image<bool>;
 
-/// One view of one frame.
+/// One view of one frame, and what is said of the frame.
 #[derive(Clone)]
 pub struct Shot {
-    pub facts: ViewFrame,
-    pub color: Color,
-    pub depth: Option<Image<f32>>,
-    pub motion: Option<Image<[f32; 2]>>,
-    pub trust: Option<Image<f32>>,
-    /// Colors of the pixels that a plan chooses, if the frame is planned.
-    pub repaired: Option<Color>,
+    pub view: View,
     pub exposure: Exposure,
     pub reset: Reset,
+}
+
+impl Deref for Shot {
+    type Target = View;
+
+    fn deref(&self) -> &View {
+        &self.view
+    }
+}
+
+impl DerefMut for Shot {
+    fn deref_mut(&mut self) -> &mut View {
+        &mut self.view
+    }
 }
 
 impl Shot {
     /// Without optional inputs. The color is a full-rate frame, of which only the samples are read.
     pub fn new(color: Color, lattices: Lattices) -> Self {
-        let facts = ViewFrame { lattices: Some(lattices), ..ViewFrame::new(geometry(color.size()), Gaze::Lost) };
-        Self {
-            facts,
-            color,
-            depth: None,
-            motion: None,
-            trust: None,
-            repaired: None,
-            exposure: Exposure::Same,
-            reset: Reset::None,
-        }
+        let mut view = View::still(color, [0.0; 2]);
+        view.facts = ViewFrame { lattices: Some(lattices), gaze: Gaze::Lost, ..view.facts };
+        Self { view, exposure: Exposure::Same, reset: Reset::None }
+    }
+
+    /// With other images or facts.
+    pub fn with(mut self, change: impl FnOnce(&mut View)) -> Self {
+        change(&mut self.view);
+        self
     }
 
     /// A frame of `foveation`.
@@ -94,20 +101,11 @@ impl Shot {
 
     /// In which everything moves by `speed_px` a frame.
     pub fn moving(self, speed_px: [f32; 2]) -> Self {
-        Self { motion: Some(Image::filled(self.color.size(), speed_px.map(|v| -v))), ..self }
+        self.with(|view| view.motion = Some(Image::filled(view.color.size(), speed_px.map(|v| -v))))
     }
 
     pub fn lattices(&self) -> Lattices {
         self.facts.lattices.unwrap()
-    }
-
-    pub fn view(&self) -> OneView<'_> {
-        OneView {
-            depth: self.depth.as_ref(),
-            motion: self.motion.as_ref(),
-            trust: self.trust.as_ref(),
-            ..OneView::new(self.facts, &self.color)
-        }
     }
 }
 
@@ -133,7 +131,7 @@ pub type Make<'a> = &'a dyn Fn(ContextDesc) -> Option<Box<dyn Shows>>;
 impl Shows for CpuAfterimage {
     fn show(&mut self, index: u64, shots: &[Shot]) -> Vec<Color> {
         let mut out: Vec<_> = shots.iter().map(|shot| Image::filled(shot.facts.geometry.size_px(), [0.0; 3])).collect();
-        let views: Vec<_> = shots.iter().map(Shot::view).collect();
+        let views: Vec<_> = shots.iter().map(|shot| shot.one()).collect();
         let images = Images::of(&views);
         let frame = Frame { reset: shots[0].reset, exposure: shots[0].exposure, ..images.frame(index) };
         let repaired: Vec<_> = shots.iter().filter_map(|shot| shot.repaired.as_ref()).collect();
@@ -146,7 +144,7 @@ impl Shows for CpuAfterimage {
     }
 
     fn plan(&mut self, index: u64, shot: &Shot) -> Mask {
-        let views = [shot.view()];
+        let views = [shot.one()];
         let images = Images::of(&views);
         let frame = Frame { reset: shot.reset, exposure: shot.exposure, ..images.frame(index) };
         CpuAfterimage::plan(self, &frame).unwrap()[0].clone()

@@ -18,7 +18,7 @@ fn repairing(budget: f32) -> ContextDesc {
 fn shot(color: Color, index: u64) -> Shot {
     let mut shot = Shot::foveated(color.clone(), &foveation(), GAZE, index);
     shot.facts.gaze = Gaze::At { px: GAZE };
-    Shot { repaired: Some(color), ..shot.moving([0.0; 2]) }
+    shot.moving([0.0; 2]).with(|view| view.repaired = Some(color))
 }
 
 /// The same frames with and without repair.
@@ -46,7 +46,7 @@ impl Pair {
         let (chosen, all) = (quads().filter(|&quad| at(&mask, quad)).count(), quads().count());
         assert!(chosen as f64 <= f64::from(self.budget) * all as f64, "frame {index}: {chosen} of {all} quads");
         let with = self.with.one(index, shot);
-        let without = self.without.one(index, &Shot { repaired: None, ..shot.clone() });
+        let without = self.without.one(index, &shot.clone().with(|view| view.repaired = None));
         assert_finite(&with, "repaired");
         Shown { with, without, mask }
     }
@@ -101,7 +101,7 @@ pub fn half_uncovered(make: Make) -> Option<String> {
             let is_covered = |px| index < TURN && is_uncovered(px);
             let color = Image::from_fn(SIZE, |px| if is_covered(px) { [0.9, 0.1, 0.2] } else { at(&behind, px) });
             let depth = Image::from_fn(SIZE, |px| if is_covered(px) { 2.0 } else { 6.0 });
-            let shot = Shot { depth: Some(depth), ..shot(color.clone(), index) };
+            let shot = shot(color.clone(), index).with(|view| view.depth = Some(depth));
             let shown = pair.show(index, &shot);
             if index < TURN {
                 continue;
@@ -206,7 +206,7 @@ pub fn thin_occluders(make: Make) -> Option<String> {
             let color = Image::from_fn(SIZE, |px| if is_near(px) { bar } else { at(&wall, px) });
             let depth = Image::from_fn(SIZE, |px| if is_near(px) { 2.0 } else { 6.0 });
             let motion = Image::from_fn(SIZE, |px| if is_near(px) { [-(speed as f32), 0.0] } else { [0.0; 2] });
-            let shot = Shot { depth: Some(depth), motion: Some(motion), ..shot(color.clone(), index) };
+            let shot = shot(color.clone(), index).with(|view| (view.depth, view.motion) = (Some(depth), Some(motion)));
             let shown = pair.show(index, &shot);
             if index < TURN {
                 continue;
@@ -251,7 +251,7 @@ pub fn light_and_contradictions(make: Make) -> Option<String> {
             let color = if index < TURN { picture.clone() } else { picture.map(|c| c.map(|v| v * light)) };
             let is_distrusted = |[x, y]: [u32; 2]| distrusts && index == TURN && (x / 4 + y / 4).is_multiple_of(2);
             let trust = Image::from_fn(SIZE, |px| if is_distrusted(px) { 0.0 } else { 1.0 });
-            let shot = Shot { trust: Some(trust), ..shot(color.clone(), index) };
+            let shot = shot(color.clone(), index).with(|view| view.trust = Some(trust));
             let shown = pair.show(index, &shot);
             if index < TURN {
                 continue;

@@ -19,11 +19,11 @@ fn two_walls(split: u32, near: f32, far: f32) -> Image<f32> {
 #[test]
 fn a_disoccluded_wall_is_rejected_and_only_it() {
     let mut post = context(ungated());
-    let first = Input { depth: Some(two_walls(32, 1.0, 5.0)), ..Input::still(noise(SIZE, "x")) };
+    let first = View { depth: Some(two_walls(32, 1.0, 5.0)), ..still(noise(SIZE, "x")) };
     one(&mut post, 0, &first);
     // The near wall steps back by 8 px: columns 24..32 now show the far wall.
     let motion = Image::from_fn(SIZE, |[x, _]| if x < 24 { [8.0, 0.0] } else { [0.0, 0.0] });
-    let second = Input { depth: Some(two_walls(24, 1.0, 5.0)), motion: Some(motion), ..Input::still(noise(SIZE, "y")) };
+    let second = View { depth: Some(two_walls(24, 1.0, 5.0)), motion: Some(motion), ..still(noise(SIZE, "y")) };
     let (_, stats, trace) = one(&mut post.clone(), 1, &second);
     assert_eq!(stats.verdicts[Verdict::Disoccluded as usize], 8 * 48);
     assert!((24..32).all(|x| trace.at(x, 3).verdict == Verdict::Disoccluded && trace.at(x, 3).take));
@@ -40,7 +40,7 @@ fn h48_history_outlives_a_change_of_planes() {
     let stored = |d: f32, near: f32, far: f32| (d - 1.0 / far) / (1.0 / near - 1.0 / far);
     let frame = |near: f32, far: f32| {
         let depth = Image::from_fn(SIZE, |[x, _]| stored(1.0 / (1.0 + x as f32), near, far));
-        Input { depth: Some(depth), ..Input::still(noise(SIZE, "planes")) }
+        View { depth: Some(depth), ..still(noise(SIZE, "planes")) }
     };
     let make = |near, far| {
         let desc = ContextDesc { depth: planes(near, far), ..ContextDesc::new(SIZE) };

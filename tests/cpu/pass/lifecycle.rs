@@ -1,10 +1,15 @@
 //! Determinism, reset, resize, errors.
 
+use super::depth::held;
 use super::*;
+use crate::laws::laws;
+use crate::lifecycle_hard::*;
 use afterimage_testing::holds;
 
+lifecycle_laws!(Cpu, held);
+
 fn run(post: &mut CpuAfterimage, frames: std::ops::Range<u64>) -> Vec<Color> {
-    frames.map(|i| one(post, i, &Input::still(noise(SIZE, &format!("run {i}")))).0).collect()
+    frames.map(|i| one(post, i, &still(noise(SIZE, &format!("run {i}")))).0).collect()
 }
 
 #[test]
@@ -30,48 +35,6 @@ fn h29_the_same_bytes_whatever_the_number_of_threads() {
 }
 
 #[test]
-fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
-    let settings = ungated();
-    let fresh = run(&mut context(settings), 20..30);
-    let mut used = context(settings);
-    run(&mut used, 0..20);
-    let stale = run(&mut used.clone(), 20..30);
-    assert_ne!(stale, fresh, "the planted error: no reset");
-
-    let mut forgotten = used.clone();
-    forgotten.forget();
-    assert_eq!(run(&mut forgotten, 20..30), fresh);
-
-    // Odd, even, a single pixel and back (another pixel density is another size), with frames between.
-    let mut resized = used.clone();
-    for size in [[3, 5], [64, 64], [1, 1], [65, 47], SIZE] {
-        resized.resize(size).unwrap();
-        if size != SIZE {
-            let input = Input::still(noise(size, "resized"));
-            assert_eq!(one(&mut resized, 0, &input).0, input.color, "the first frame of a size is the candidate");
-            one(&mut resized, 1, &input);
-        }
-    }
-    assert_eq!(run(&mut resized, 20..30), fresh);
-    holds!("H76", Cpu, "wrs: 5 sizes, odd, even and 1x1, then back: 10 frames as of a fresh context, bit for bit");
-
-    let mut cut = used.clone();
-    let input = Input::still(noise(SIZE, "run 20"));
-    for _ in 0..2 {
-        let (out, ..) = step(&mut cut, 20, Reset::All, &[&input]);
-        assert_eq!((&out[0], &out[0]), (&fresh[0], &input.color), "reset two frames running");
-    }
-    assert_eq!(run(&mut cut, 21..30), fresh[1..]);
-    let mut with_reset = context(settings);
-    step(&mut with_reset, 0, Reset::All, &[&Input::still(noise(SIZE, "run 0"))]);
-    let mut without_reset = context(settings);
-    run(&mut without_reset, 0..1);
-    assert_eq!(run(&mut with_reset, 1..10), run(&mut without_reset, 1..10), "a reset at frame 0");
-    holds!("H77", Cpu, "wrs: the first frame after a cut is the candidate, bit for bit; 9 more as of a fresh context");
-    holds!("H78", Cpu, "wrs: reset twice running, and at frame 0: 10 frames each as of a fresh context, bit for bit");
-}
-
-#[test]
 fn a_frame_that_is_refused_changes_nothing() {
     let settings = ungated();
     let (mut good, mut mixed) = (context(settings), context(settings));
@@ -79,7 +42,7 @@ fn a_frame_that_is_refused_changes_nothing() {
     let mut got = run(&mut mixed, 0..3);
     let words = mixed.history().words().to_vec();
     let (small, right) = (noise([3, 4], "small"), noise(SIZE, "right"));
-    let facts = Input::still(right.clone()).view().facts;
+    let facts = still(right.clone()).one().facts;
     let bad = |view: OneView<'_>, out: &mut [Color], mixed: &mut CpuAfterimage| {
         let images = Images::of(&[view]);
         mixed.process(&Frame { reset: Reset::All, ..images.frame(3) }, out).unwrap_err()
@@ -123,7 +86,7 @@ fn h76_empty_and_huge_sizes_are_refused_and_a_pixel_is_enough() {
     }
     let mut post =
         CpuAfterimage::new(&ContextDesc { settings: Settings::paper(), ..ContextDesc::new([1, 1]) }).unwrap();
-    let input = Input { depth: Some(Image::filled([1, 1], 1.0)), ..Input::still(noise([1, 1], "one")) };
+    let input = View { depth: Some(Image::filled([1, 1], 1.0)), ..still(noise([1, 1], "one")) };
     assert_eq!(one(&mut post, 0, &input).0, input.color);
     assert_eq!(one(&mut post, 1, &input).0, input.color);
     holds!("H76", Cpu, "0x0, 0x5, 5x0 and 2^20 x 1 are refused, the context stays as it was; 1x1 works");
@@ -146,7 +109,7 @@ fn method_none_shows_the_frame_and_forgets() {
     let mut post = context(Settings { method: Method::None, ..Settings::paper() });
     let mut color = noise(SIZE, "none");
     color.pixels_mut()[3] = [f32::NAN, 1.0, 1.0];
-    let (out, stats, _) = one(&mut post, 0, &Input::still(color.clone()));
+    let (out, stats, _) = one(&mut post, 0, &still(color.clone()));
     assert_eq!((out.pixels()[3], stats.nonfinite, out.pixels()[4]), ([0.0; 3], 1, color.pixels()[4]));
     assert!(!post.history().is_filled());
 }

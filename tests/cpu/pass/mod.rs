@@ -12,16 +12,18 @@ mod reprojection;
 mod reservoirs;
 mod sparse;
 mod sparse_hard;
-mod sparse_noise;
+pub mod sparse_noise;
 mod sparse_planted;
 mod trust;
 mod upsampling;
 mod views;
 mod weighted;
 
-use crate::depth_hard::{METHODS, SIZE};
-use crate::images::{Images, OneView, noise};
-use crate::settings::{ungated, ungated_of, wrs};
+pub use depth::held;
+
+use crate::depth_hard::{METHODS, SIZE, still};
+use crate::images::{Images, OneView, View, noise};
+use crate::settings::{ungated, wrs};
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::{
@@ -38,46 +40,6 @@ fn geometry(size: [u32; 2]) -> ViewGeometry {
     ViewGeometry::flat(size, 70.0).unwrap()
 }
 
-/// A view with all optional inputs.
-#[derive(Clone)]
-struct Input {
-    color: Color,
-    depth: Option<Image<f32>>,
-    motion: Option<Image<[f32; 2]>>,
-    trust: Option<Image<f32>>,
-    lod: Option<Image<f32>>,
-    gaze: Gaze,
-    camera: Option<[[f32; 4]; 4]>,
-}
-
-impl Input {
-    fn still(color: Color) -> Self {
-        let gaze = Gaze::At { px: [20.0, 20.0] };
-        Self { color, depth: None, motion: None, trust: None, lod: None, gaze, camera: None }
-    }
-
-    fn without_trust(&self) -> Self {
-        Self { trust: None, ..self.clone() }
-    }
-
-    fn view(&self) -> OneView<'_> {
-        let geometry = geometry(self.color.size());
-        let facts = ViewFrame { previous_from_current: self.camera, ..ViewFrame::new(geometry, self.gaze) };
-        OneView {
-            depth: self.depth.as_ref(),
-            motion: self.motion.as_ref(),
-            trust: self.trust.as_ref(),
-            lod: self.lod.as_ref(),
-            ..OneView::new(facts, &self.color)
-        }
-    }
-}
-
-/// Settings without a gate, so that only the test in question rejects history.
-fn context_of(method: MethodKind) -> CpuAfterimage {
-    context(ungated_of(method))
-}
-
 fn context(settings: Settings) -> CpuAfterimage {
     CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) }).unwrap()
 }
@@ -91,19 +53,19 @@ fn step(
     post: &mut CpuAfterimage,
     index: u64,
     reset: Reset,
-    inputs: &[&Input],
+    inputs: &[&View],
 ) -> (Vec<Color>, FrameStats, Vec<Image<PixelTrace>>) {
     let size = inputs[0].color.size();
     let mut out = vec![Image::filled(size, [f32::NAN; 3]); inputs.len()];
     let mut trace = vec![Image::filled(size, PixelTrace::default()); inputs.len()];
-    let views: Vec<_> = inputs.iter().map(|i| i.view()).collect();
+    let views: Vec<_> = inputs.iter().map(|view| view.one()).collect();
     let images = Images::of(&views);
     let frame = Frame { reset, ..images.frame(index) };
     let stats = post.process_traced(&frame, &mut out, &mut trace).unwrap();
     (out, stats, trace)
 }
 
-fn one(post: &mut CpuAfterimage, index: u64, input: &Input) -> (Color, FrameStats, Image<PixelTrace>) {
+fn one(post: &mut CpuAfterimage, index: u64, input: &View) -> (Color, FrameStats, Image<PixelTrace>) {
     let (mut out, stats, mut trace) = step(post, index, Reset::None, &[input]);
     (out.remove(0), stats, trace.remove(0))
 }

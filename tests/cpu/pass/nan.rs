@@ -16,8 +16,8 @@ proptest! {
             if index == 0 || index == 2 {
                 broken.pixels_mut()[y * 64 + x][channel] = bad;
             }
-            let (a, ..) = one(&mut clean, index, &Input::still(color));
-            let (b, stats, _) = one(&mut hurt, index, &Input::still(broken));
+            let (a, ..) = one(&mut clean, index, &still(color));
+            let (b, stats, _) = one(&mut hurt, index, &still(broken));
             prop_assert_eq!(stats.nonfinite, u64::from(index == 0 || index == 2));
             prop_assert!(b.pixels().iter().flatten().all(|v| v.is_finite()));
             for (i, (p, q)) in a.pixels().iter().zip(b.pixels()).enumerate() {
@@ -34,9 +34,9 @@ proptest! {
     #[test]
     fn h19_h79_whatever_the_history_holds_the_output_is_finite_and_heals(words in prop::collection::vec(any::<[u32; 3]>(), 64 * 48), sampler in prop::sample::select(vec![Sampler::AChao, Sampler::AEs, Sampler::AChaoMean])) {
         let mut post = context(wrs(Wrs { sampler, ..Wrs::default() }));
-        one(&mut post, 0, &Input::still(noise(SIZE, "h")));
+        one(&mut post, 0, &still(noise(SIZE, "h")));
         post.restore_history(&words);
-        let (out, ..) = one(&mut post, 1, &Input::still(noise(SIZE, "h")));
+        let (out, ..) = one(&mut post, 1, &still(noise(SIZE, "h")));
         prop_assert!(out.pixels().iter().flatten().all(|v| v.is_finite()));
         for &w in post.history().words() {
             let s = afterimage::kernel::pack::unpack(w);
@@ -49,7 +49,7 @@ proptest! {
 fn h79_poisoned_fresh_history_is_never_read() {
     let mut post = context(Settings::paper());
     post.restore_history(&vec![[u32::MAX; 3]; 64 * 48]);
-    let input = Input::still(noise(SIZE, "poison"));
+    let input = still(noise(SIZE, "poison"));
     assert_eq!(one(&mut post.clone(), 0, &input).0, input.color, "all NaN words are empty");
     let (out, _, _) = step(&mut post, 0, Reset::All, &[&input]);
     assert_eq!(out[0], input.color);
@@ -64,9 +64,9 @@ fn h79_poisoned_fresh_history_is_never_read() {
 fn h18_a_nonfinite_candidate_shows_history() {
     let mut post = context(Settings::paper());
     let good = noise(SIZE, "good");
-    one(&mut post, 0, &Input::still(good.clone()));
+    one(&mut post, 0, &still(good.clone()));
     for index in 1..200 {
-        let broken = Input::still(Image::filled(SIZE, [f32::NAN; 3]));
+        let broken = still(Image::filled(SIZE, [f32::NAN; 3]));
         let (out, stats, trace) = one(&mut post, index, &broken);
         assert_eq!(out, good, "frame {index}");
         assert_eq!((stats.nonfinite, stats.replaced), (64 * 48, 0));

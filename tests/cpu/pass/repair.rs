@@ -26,7 +26,7 @@ fn waves([x, y]: [f32; 2]) -> [f32; 3] {
 
 /// A square at 2 m in front of a wall at 6 m. Frame `index` is one of a still until `from`; then the square moves by
 /// `speed_px` a frame.
-fn square(index: u64, from: u64, speed_px: [i32; 2], antialias: bool) -> Input {
+fn square(index: u64, from: u64, speed_px: [i32; 2], antialias: bool) -> View {
     let moves = index >= from;
     let steps = (index + 1).saturating_sub(from) as i32;
     let low = [0, 1].map(|i| [30, 22][i] + speed_px[i] * steps);
@@ -37,17 +37,16 @@ fn square(index: u64, from: u64, speed_px: [i32; 2], antialias: bool) -> Input {
         if inside(px) { waves([0, 1].map(|i| 40.0 + at[i] - low[i] as f32)) } else { waves(at) }
     };
     let motion = |px| if inside(px) && moves { speed_px.map(|v| -v as f32) } else { [0.0; 2] };
-    Input {
+    View {
         depth: Some(Image::from_fn(SIZE, |px| if inside(px) { 2.0 } else { 6.0 })),
         motion: Some(Image::from_fn(SIZE, motion)),
-        gaze: Gaze::At { px: GAZE },
-        ..Input::still(Image::from_fn(SIZE, color))
+        ..View::still(Image::from_fn(SIZE, color), GAZE)
     }
 }
 
 /// Description of a sparse view of an input.
-fn sparse(input: &Input, index: u64, antialias: bool) -> OneView<'_> {
-    let view = input.view();
+fn sparse(input: &View, index: u64, antialias: bool) -> OneView<'_> {
+    let view = input.one();
     let lattices = Some(foveation().lattices(&geometry(SIZE), GAZE, index));
     let jitter_px = if antialias { Foveation::jitter_px(index) } else { [0.0; 2] };
     OneView { facts: ViewFrame { lattices, jitter_px, ..view.facts }, ..view }
@@ -128,7 +127,7 @@ fn the_mask_has_the_verdicts_of_process() {
             for index in 0..=2 * TURN {
                 // In the last frame, the lowest rows are distrusted.
                 let trust = Image::from_fn(SIZE, |[_, y]| if index == 2 * TURN && y >= 45 { 0.0 } else { 1.0 });
-                let input = Input { trust: Some(trust), ..square(index, 2 * TURN, speed_px, antialias) };
+                let input = View { trust: Some(trust), ..square(index, 2 * TURN, speed_px, antialias) };
                 let view = sparse(&input, index, antialias);
                 let (mask, _, trace) = show(&mut post, index, view, |_| None);
                 if index < 2 * TURN && index > 0 {

@@ -22,7 +22,7 @@ fn corrupt(words: [u32; 3], kind: usize) -> [u32; 3] {
 fn h19_a_corrupt_sum_resets_its_pixel_alone_for_one_frame() {
     let mut pixels = 0;
     for sampler in [Sampler::AChao, Sampler::AEs] {
-        let frame = |i: u64| Input::still(noise(SIZE, &format!("h19 {i}")));
+        let frame = |i: u64| still(noise(SIZE, &format!("h19 {i}")));
         let mut sound = context(wrs(Wrs { sampler, gate: None, ..Wrs::default() }));
         for i in 0..6 {
             one(&mut sound, i, &frame(i));
@@ -61,11 +61,11 @@ fn h19_a_corrupt_sum_resets_its_pixel_alone_for_one_frame() {
 fn h17_h18_broken_candidates_leave_the_reservoir_as_it_was_and_are_counted() {
     let mut post = context(Settings::paper());
     for index in 0..5 {
-        one(&mut post, index, &Input::still(noise(SIZE, "sound")));
+        one(&mut post, index, &still(noise(SIZE, "sound")));
     }
     let before: Vec<_> = post.history().words().iter().map(|&w| pack::unpack(w)).collect();
     for (index, bad) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY].into_iter().enumerate() {
-        let broken = Input::still(Image::filled(SIZE, [0.5, bad, 0.5]));
+        let broken = still(Image::filled(SIZE, [0.5, bad, 0.5]));
         let (_, stats, trace) = one(&mut post, 5 + index as u64, &broken);
         assert!(trace.pixels().iter().all(|t| t.weight == 0.0 && !t.take));
         assert!(stats.warnings().any(|w| w == Warning::NonfiniteColor { pixels: 64 * 48 }));
@@ -86,7 +86,7 @@ fn h22_every_shown_color_was_presented() {
         let mut known = std::collections::HashSet::new();
         for index in 0..30 {
             let motion = Some(Image::filled(SIZE, [2.0, -1.0]));
-            let input = Input { motion, ..Input::still(noise(SIZE, &format!("h22 {index}"))) };
+            let input = View { motion, ..still(noise(SIZE, &format!("h22 {index}"))) };
             known.extend(input.color.pixels().iter().map(|c| c.map(f32::to_bits)));
             let (out, stats, _) = one(&mut post, index, &input);
             assert!(out.pixels().iter().all(|c| known.contains(&c.map(f32::to_bits))), "an invented color");
@@ -99,8 +99,8 @@ fn h22_every_shown_color_was_presented() {
         // A color that halves do not represent exactly is stored as the nearest half.
         let (third, stored) = (1.0_f32 / 3.0, pack::half_value(pack::half_bits(1.0 / 3.0)));
         let mut post = context(wrs(Wrs { sampler, bias, ..Wrs::default() }));
-        assert_eq!(one(&mut post, 0, &Input::still(Image::filled(SIZE, [third; 3]))).0.at(9, 9), [third; 3]);
-        let (out, ..) = one(&mut post, 1, &Input::still(Image::filled(SIZE, [f32::NAN; 3])));
+        assert_eq!(one(&mut post, 0, &still(Image::filled(SIZE, [third; 3]))).0.at(9, 9), [third; 3]);
+        let (out, ..) = one(&mut post, 1, &still(Image::filled(SIZE, [f32::NAN; 3])));
         assert_eq!(out.at(9, 9), [stored; 3]);
     }
     holds!("H22", Cpu, "{shown} shown colors, each a presented one bit for bit (of colors that halves hold)");

@@ -52,10 +52,12 @@ fn both(index: u64) -> Lattices {
     Lattices::new(&[fine, coarse(index).as_slice()[0]]).unwrap()
 }
 
-fn moments(shown: &Color) -> (f64, f64) {
-    let mean = shown.pixels().iter().map(|c| f64::from(c[0])).sum::<f64>() / PIXELS;
+/// Mean of the shown pixels, and the variance between them.
+pub fn moments(shown: &Color) -> (f64, f64) {
+    let pixels = shown.pixels().len() as f64;
+    let mean = shown.pixels().iter().map(|c| f64::from(c[0])).sum::<f64>() / pixels;
     let squares: f64 = shown.pixels().iter().map(|c| (f64::from(c[0]) - mean).powi(2)).sum();
-    (mean, squares / (PIXELS - 1.0))
+    (mean, squares / (pixels - 1.0))
 }
 
 #[test]

@@ -16,8 +16,7 @@ fn lattices(index: u64) -> Lattices {
 /// Waves of 5 to 9 pixels, moved to the right by `shift_px`.
 fn waves(shift_px: f32, offset_px: [f32; 2]) -> Color {
     Image::from_fn(SIZE, |[x, y]| {
-        let (x, y) = (x as f32 - shift_px - offset_px[0], y as f32 - offset_px[1]);
-        [(1.2 * x).sin(), (0.9 * y + 0.3 * x).cos(), (0.7 * x - 0.8 * y).sin()].map(|v| 0.5 + 0.3 * v)
+        crate::sparse_hard::wave([x as f32 - shift_px - offset_px[0], y as f32 - offset_px[1]])
     })
 }
 

@@ -10,13 +10,13 @@ fn foveation() -> Foveation {
 }
 
 /// `sharp` in the fovea around `gaze_px`, grey outside, times `light`.
-fn foveated(sharp: &Color, gaze_px: [f32; 2], light: f32) -> Input {
+fn foveated(sharp: &Color, gaze_px: [f32; 2], light: f32) -> View {
     let ecc_deg = geometry(SIZE).eccentricity_map(gaze_px);
     let at = |[x, y]: [u32; 2]| {
         let (x, y) = (x as usize, y as usize);
         if ecc_deg.at(x, y) <= 10.0 { sharp.at(x, y) } else { [0.5; 3] }.map(|v| v * light)
     };
-    Input { gaze: Gaze::At { px: gaze_px }, ..Input::still(Image::from_fn(SIZE, at)) }
+    View::still(Image::from_fn(SIZE, at), gaze_px)
 }
 
 /// Mean absolute difference over the pixels within `radius_deg` of `center_px`.
@@ -81,8 +81,8 @@ fn means_move_by_whole_pixels_bit_for_bit_and_between_pixels_without_drift() {
     let invalid = Image::filled(SIZE, [f32::NAN; 3]);
     let shifted = |sampler: Sampler, by: f32, frames: u64| {
         let mut post = context(Settings { foveation: everywhere, ..wrs(Wrs { sampler, ..Wrs::weighted() }) });
-        one(&mut post, 0, &Input::still(ramp.clone()));
-        let input = Input { motion: Some(Image::filled(SIZE, [by, 0.0])), ..Input::still(invalid.clone()) };
+        one(&mut post, 0, &still(ramp.clone()));
+        let input = View { motion: Some(Image::filled(SIZE, [by, 0.0])), ..still(invalid.clone()) };
         (1..=frames).map(|index| one(&mut post, index, &input).0).last().unwrap()
     };
     let whole = shifted(Sampler::AChaoMean, 2.0, 1);
@@ -104,8 +104,8 @@ fn the_gate_compares_candidates_of_one_level_by_the_frames_input() {
     let survived = |says_level: bool| {
         let mut post = context(Settings { foveation: all_foveal, ..Settings::weighted() });
         let lod = |lod| says_level.then(|| Image::filled(SIZE, lod));
-        one(&mut post, 0, &Input { lod: lod(0.0), ..Input::still(sharp.clone()) });
-        let coarse = Input { lod: lod(4.0), ..Input::still(Image::filled(SIZE, [0.5; 3])) };
+        one(&mut post, 0, &View { lod: lod(0.0), ..still(sharp.clone()) });
+        let coarse = View { lod: lod(4.0), ..still(Image::filled(SIZE, [0.5; 3])) };
         let trace = one(&mut post, 1, &coarse).2;
         trace.pixels().iter().map(|t| t.gate).sum::<f32>() / trace.pixels().len() as f32
     };

@@ -12,7 +12,7 @@ proptest! {
     #[test]
     fn h18_a_broken_pixel_over_a_history_touches_no_other(x in 0u32..52, y in 0u32..41, channel in 0usize..3, bad in prop::sample::select(BAD.to_vec())) {
         let mut clean = context(MethodKind::Smr);
-        let first = step(&mut clean, 0, &Input::sharp(noise(SIZE, "h18")));
+        let first = step(&mut clean, 0, &sharp(noise(SIZE, "h18")));
         let coarse = LowPass::new(&first.stored(), 4).render(&Image::filled(SIZE, 1.5));
         let mut hurt = clean.clone();
         let i = (y * 52 + x) as usize;
@@ -21,8 +21,8 @@ proptest! {
             if index == 1 {
                 broken.pixels_mut()[i][channel] = bad;
             }
-            let a = step(&mut clean, index, &Input::at_lod(coarse.clone(), 1.5));
-            let b = step(&mut hurt, index, &Input::at_lod(broken, 1.5));
+            let a = step(&mut clean, index, &at_lod(coarse.clone(), 1.5));
+            let b = step(&mut hurt, index, &at_lod(broken, 1.5));
             prop_assert_eq!(b.stats.nonfinite, u64::from(index == 1));
             // History is shown at non-finite pixels, too.
             prop_assert_eq!(&a.shown, &b.shown);
@@ -36,13 +36,13 @@ proptest! {
         // (taa).
         for method in METHODS {
             let mut clean = context(method);
-            step(&mut clean, 0, &Input::sharp(Image::filled(SIZE, [0.5, 0.4, 0.3])));
+            step(&mut clean, 0, &sharp(Image::filled(SIZE, [0.5, 0.4, 0.3])));
             let mut hurt = clean.clone();
             let darker = Image::filled(SIZE, [0.2, 0.16, 0.12]);
             let mut broken = darker.clone();
             broken.pixels_mut()[(y * 52 + x) as usize][1] = bad;
-            let a = step(&mut clean, 1, &Input::at_lod(darker, 2.0));
-            let b = step(&mut hurt, 1, &Input::at_lod(broken, 2.0));
+            let a = step(&mut clean, 1, &at_lod(darker, 2.0));
+            let b = step(&mut hurt, 1, &at_lod(broken, 2.0));
             for (i, (p, q)) in a.shown.pixels().iter().zip(b.shown.pixels()).enumerate() {
                 prop_assert!(p == q || i == (y * 52 + x) as usize, "{:?}: {:?} became {:?}", method, p, q);
             }
@@ -58,14 +58,14 @@ proptest! {
             let mut broken = picture.clone();
             let i = (y * 52 + x) as usize;
             broken.pixels_mut()[i][2] = bad;
-            let a = step(&mut clean, 0, &Input::sharp(picture.clone()));
-            let b = step(&mut hurt, 0, &Input::sharp(broken));
+            let a = step(&mut clean, 0, &sharp(picture.clone()));
+            let b = step(&mut hurt, 0, &sharp(broken));
             prop_assert_eq!(b.shown.at(x as usize, y as usize), [0.0; 3]);
             prop_assert_eq!(b.surfaces()[i], Surface::EMPTY);
             prop_assert!(a.shown.pixels().iter().zip(b.shown.pixels()).enumerate().all(|(k, (p, q))| p == q || k == i));
             // The empty pixel has no weight in the mip chain, so that the neighbours' history still fits.
             let coarse = LowPass::new(&a.stored(), 4).render(&Image::filled(SIZE, 1.5));
-            let (a, b) = (step(&mut clean, 1, &Input::at_lod(coarse.clone(), 1.5)), step(&mut hurt, 1, &Input::at_lod(coarse.clone(), 1.5)));
+            let (a, b) = (step(&mut clean, 1, &at_lod(coarse.clone(), 1.5)), step(&mut hurt, 1, &at_lod(coarse.clone(), 1.5)));
             prop_assert_eq!(b.trace.at(x as usize, y as usize).verdict, Verdict::Empty);
             prop_assert_eq!(b.shown.at(x as usize, y as usize), coarse.at(x as usize, y as usize));
             prop_assert!(a.shown.pixels().iter().zip(b.shown.pixels()).enumerate().all(|(k, (p, q))| p == q || k == i));
@@ -97,16 +97,16 @@ proptest! {
             for index in 0..6 {
                 let d = &mut draws;
                 let shift = number(d, wild, -3.0, 3.0);
-                let input = Input {
+                let mut input = View {
                     lod: Some(Image::from_fn(SMALL, |_| number(d, wild, -0.5, 9.0))),
                     depth: Some(Image::from_fn(SMALL, |_| number(d, wild, 3.0, 3.1))),
                     motion: Some(Image::from_fn(SMALL, |_| [shift, number(d, wild, -0.2, 0.2)])),
                     trust: Some(Image::from_fn(SMALL, |_| number(d, wild, 0.5, 1.0))),
-                    gaze: Gaze::At { px: [number(d, wild, 0.0, 19.0), 5.0] },
-                    exposure: Exposure::Changed { ratio: d.range(-40.0, 40.0).exp2() },
-                    ..Input::sharp(Image::from_fn(SMALL, |_| [0; 3].map(|_| number(d, wild, 0.0, brightest))))
+                    ..sharp(Image::from_fn(SMALL, |_| [0; 3].map(|_| number(d, wild, 0.0, brightest))))
                 };
-                let made = step(&mut post, index, &input);
+                input.facts.gaze = Gaze::At { px: [number(d, wild, 0.0, 19.0), 5.0] };
+                let exposure = Exposure::Changed { ratio: d.range(-40.0, 40.0).exp2() };
+                let made = post.make(index, &input, exposure, Reset::None);
                 for &v in made.shown.pixels().iter().flatten() {
                     prop_assert!(v.abs() <= 65504.0, "{:?} frame {}: {}", method, index, v);
                 }
@@ -127,9 +127,9 @@ fn resampled_and_relit_highlights_stay_within_halves() {
     let bright = Image::from_fn(SIZE, |[x, y]| [if x / 4 % 2 == 0 || y % 8 == 0 { 65504.0 } else { 100.0 }; 3]);
     for method in METHODS {
         let mut post = context(method);
-        step(&mut post, 0, &Input::sharp(bright.map(|c| c.map(|v| 0.6 * v))));
+        step(&mut post, 0, &sharp(bright.map(|c| c.map(|v| 0.6 * v))));
         for index in 1..4 {
-            let input = Input { motion: Some(Image::filled(SIZE, [0.5, 0.5])), ..Input::at_lod(bright.clone(), 1.0) };
+            let input = View { motion: Some(Image::filled(SIZE, [0.5, 0.5])), ..at_lod(bright.clone(), 1.0) };
             let made = step(&mut post, index, &input);
             let brightest = made.shown.pixels().iter().flatten().fold(0.0_f32, |m, &v| m.max(v));
             println!("{method:?}, frame {index}: at the most {brightest}");
@@ -146,10 +146,10 @@ fn h73_detail_of_bright_pictures_stays() {
     for scale in [1.0, 100.0, 4_000.0, 60_000.0] {
         let mut post = context(MethodKind::Smr);
         let picture = noise(SIZE, "h73").map(|c| c.map(|v| v * scale));
-        let first = step(&mut post, 0, &Input::sharp(picture));
+        let first = step(&mut post, 0, &sharp(picture));
         let low_pass = LowPass::new(&first.stored(), 4);
         for index in 1..20 {
-            let input = Input::at_lod(low_pass.render(&Image::filled(SIZE, 2.0)), 2.0);
+            let input = at_lod(low_pass.render(&Image::filled(SIZE, 2.0)), 2.0);
             assert_eq!(step(&mut post, index, &input).shown, first.stored(), "scale {scale}, frame {index}");
         }
     }

@@ -5,9 +5,9 @@ mod antialiasing;
 mod decision;
 mod formulas;
 mod geometry;
+mod hard;
 mod hostile;
 mod lifecycle;
-mod light;
 mod noisy;
 mod properties;
 #[allow(dead_code, reason = "the lab's tests on analytic scenes use a part of it")]

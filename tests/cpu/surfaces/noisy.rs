@@ -1,7 +1,8 @@
 //! Noisy candidates: the mean of many frames has the variance that its weights predict, and no bias; noise does not
 //! pass for a change, nor a change for noise.
 
-use super::rig::{Draws, Input, SIZE, settings, step};
+use super::rig::{Draws, SIZE, View, settings, sharp, step};
+use crate::pass::sparse_noise::moments;
 use afterimage::cpu::CpuAfterimage;
 use afterimage::{ContextDesc, Image, Method, MethodKind, Settings, Smr};
 use afterimage_testing::{accept, p_of_z, reject};
@@ -18,24 +19,14 @@ fn post(settings: Settings) -> CpuAfterimage {
 
 /// Grey pixels, each the mean of `samples` draws of `sample`, with the standard error that these draws themselves
 /// suggest.
-fn sampled(draws: &mut Draws, samples: usize, sample: impl Fn(&mut Draws, [u32; 2]) -> f32) -> Input {
+fn sampled(draws: &mut Draws, samples: usize, sample: impl Fn(&mut Draws, [u32; 2]) -> f32) -> View {
     let made = Image::from_fn(SIZE, |px| {
         let drawn: Vec<f32> = (0..samples).map(|_| sample(draws, px)).collect();
         let mean = drawn.iter().sum::<f32>() / samples as f32;
         let squares: f32 = drawn.iter().map(|v| (v - mean) * (v - mean)).sum();
         (mean, (squares / (samples * (samples - 1)) as f32).sqrt())
     });
-    Input {
-        noise: Some(made.map(|(_, error)| [error, samples as f32])),
-        ..Input::sharp(made.map(|(mean, _)| [mean; 3]))
-    }
-}
-
-/// Mean of the shown pixels, and the variance between them.
-fn moments(shown: &Image<[f32; 3]>) -> (f64, f64) {
-    let mean = shown.pixels().iter().map(|c| f64::from(c[0])).sum::<f64>() / PIXELS;
-    let squares: f64 = shown.pixels().iter().map(|c| (f64::from(c[0]) - mean).powi(2)).sum();
-    (mean, squares / (PIXELS - 1.0))
+    View { noise: Some(made.map(|(_, error)| [error, samples as f32])), ..sharp(made.map(|(mean, _)| [mean; 3])) }
 }
 
 /// Variance of a still pixel after `frames` of variance 1, by the weights that `docs/method.md` states.
@@ -131,7 +122,7 @@ fn a_change_beyond_the_noise_is_followed_within_frames() {
 #[test]
 fn a_picture_without_noise_is_a_fixed_point_and_nan_stays_where_it_is() {
     let color = super::rig::noise(SIZE, "noisy fixed point");
-    let mut input = Input { noise: Some(Image::filled(SIZE, [0.0, 4.0])), ..Input::sharp(color.clone()) };
+    let mut input = View { noise: Some(Image::filled(SIZE, [0.0, 4.0])), ..sharp(color.clone()) };
     let mut post = post(noisy());
     let first = step(&mut post, 0, &input);
     for index in 1..8 {

@@ -6,7 +6,7 @@ use afterimage::kernel::surface::MAX_LOD;
 
 /// Coarse, moving, partly distrusted frames, as engines may deliver. Motion in quarters of a pixel, constant over large
 /// areas.
-fn busy(name: &str) -> Input {
+fn busy(name: &str) -> View {
     let mut draws = Draws::new(name);
     let size = SIZE;
     let shift = [0; 2].map(|_| (draws.bits() % 17) as f32 * 0.25 - 2.0);
@@ -14,12 +14,12 @@ fn busy(name: &str) -> Input {
     let lods = Image::from_fn(size, |_| if draws.uniform() < 0.3 { 0.0 } else { draws.range(0.0, 2.0) });
     let trust = Image::from_fn(size, |_| if draws.uniform() < 0.8 { 1.0 } else { draws.uniform() });
     let near = |x: u32| (x as f32) < split;
-    Input {
+    View {
         lod: Some(lods),
         depth: Some(Image::from_fn(size, |[x, _]| if near(x) { 2.0 } else { 5.0 })),
         motion: Some(Image::from_fn(size, |[x, _]| if near(x) { shift } else { [0.0; 2] })),
         trust: Some(trust),
-        ..Input::sharp(LowPass::new(&noise(size, name), 3).render(&Image::filled(size, 0.5)))
+        ..sharp(LowPass::new(&noise(size, name), 3).render(&Image::filled(size, 0.5)))
     }
 }
 
@@ -48,8 +48,7 @@ fn s1_by_gaze_the_fovea_is_a_disc_of_the_settings() {
     let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
     for index in 0..10 {
         let px = [10.0 + 3.0 * index as f32, 20.0];
-        let input =
-            Input { lod: None, gaze: Gaze::At { px }, ..Input::sharp(noise(SIZE, &format!("s1 gaze {index}"))) };
+        let input = View::still(noise(SIZE, &format!("s1 gaze {index}")), px);
         let made = step(&mut post, index, &input);
         for (i, e) in geometry.eccentricity_map(px).pixels().iter().enumerate() {
             if *e < 2.49 {
@@ -64,22 +63,22 @@ fn s1_by_gaze_the_fovea_is_a_disc_of_the_settings() {
 
 #[test]
 fn s2_without_a_valid_history_the_candidate_and_its_level_are_shown_and_stored() {
-    let before = Input { depth: Some(Image::filled(SIZE, 4.0)), ..Input::sharp(noise(SIZE, "s2 before")) };
+    let before = View { depth: Some(Image::filled(SIZE, 4.0)), ..sharp(noise(SIZE, "s2 before")) };
     let lods = Image::from_fn(SIZE, |[x, y]| ((x + 3 * y) % 40) as f32 * 0.05);
-    let plain = Input {
+    let plain = View {
         lod: Some(lods.clone()),
         depth: before.depth.clone(),
-        ..Input::sharp(LowPass::new(&before.color, 3).render(&lods))
+        ..sharp(LowPass::new(&before.color, 3).render(&lods))
     };
     let motion = |m: [f32; 2]| Some(Image::filled(SIZE, m));
     let cases = [
-        (Verdict::Reset, Input { reset: Reset::All, ..plain.clone() }),
-        (Verdict::Distrusted, Input { trust: Some(Image::filled(SIZE, 0.0)), ..plain.clone() }),
-        (Verdict::OffScreen, Input { motion: motion([100.0, 0.0]), ..plain.clone() }),
-        (Verdict::Disoccluded, Input { depth: Some(Image::filled(SIZE, 9.0)), ..plain.clone() }),
-        (Verdict::Disoccluded, Input { depth: Some(Image::filled(SIZE, f32::NAN)), ..plain.clone() }),
-        (Verdict::BadMotion, Input { motion: motion([1e9, 0.0]), ..plain.clone() }),
-        (Verdict::BadMotion, Input { motion: motion([f32::NAN, 0.0]), ..plain.clone() }),
+        (Verdict::Reset, plain.clone()),
+        (Verdict::Distrusted, View { trust: Some(Image::filled(SIZE, 0.0)), ..plain.clone() }),
+        (Verdict::OffScreen, View { motion: motion([100.0, 0.0]), ..plain.clone() }),
+        (Verdict::Disoccluded, View { depth: Some(Image::filled(SIZE, 9.0)), ..plain.clone() }),
+        (Verdict::Disoccluded, View { depth: Some(Image::filled(SIZE, f32::NAN)), ..plain.clone() }),
+        (Verdict::BadMotion, View { motion: motion([1e9, 0.0]), ..plain.clone() }),
+        (Verdict::BadMotion, View { motion: motion([f32::NAN, 0.0]), ..plain.clone() }),
     ];
     for method in METHODS {
         let mut seen = context(method);
@@ -87,7 +86,8 @@ fn s2_without_a_valid_history_the_candidate_and_its_level_are_shown_and_stored()
         let kept = step(&mut seen.clone(), 1, &plain);
         assert_ne!(kept.shown, plain.color, "the planted error: a history");
         for (verdict, input) in &cases {
-            let made = step(&mut seen.clone(), 1, input);
+            let reset = if *verdict == Verdict::Reset { Reset::All } else { Reset::None };
+            let made = seen.clone().make(1, input, Exposure::Same, reset);
             assert!(made.trace.pixels().iter().all(|t| t.verdict == *verdict), "{verdict:?}");
             assert_eq!(made.shown, input.color, "{method:?} {verdict:?}");
             for (s, &lod) in made.surfaces().iter().zip(lods.pixels()) {
@@ -109,15 +109,13 @@ fn s2_without_a_valid_history_the_candidate_and_its_level_are_shown_and_stored()
 fn a_vector_unlike_its_neighbours_leads_nowhere_and_is_not_kept() {
     let mut post = context(MethodKind::Smr);
     let picture = noise(SIZE, "coherent");
-    step(&mut post, 0, &Input::sharp(picture.clone()));
+    step(&mut post, 0, &sharp(picture.clone()));
     // A single pixel; and a row of three, of which the first two share a 2x2 block and the last has no neighbour in its
     // own.
     let odd = [[10, 10], [20, 10], [21, 10], [22, 10]];
     let motion = Image::from_fn(SIZE, |at| if odd.contains(&at) { [2.0, 0.0] } else { [0.0; 2] });
-    let input = Input {
-        motion: Some(motion),
-        ..Input::at_lod(LowPass::new(&picture, 3).render(&Image::filled(SIZE, 1.0)), 1.0)
-    };
+    let input =
+        View { motion: Some(motion), ..at_lod(LowPass::new(&picture, 3).render(&Image::filled(SIZE, 1.0)), 1.0) };
     let made = step(&mut post, 1, &input);
     for y in 0..SIZE[1] {
         for x in 0..SIZE[0] {
@@ -138,17 +136,15 @@ fn a_vector_unlike_its_neighbours_leads_nowhere_and_is_not_kept() {
 /// A few frames with all colors times `ratio` from frame `from` on; `is_declared`: the frame's exposure says so.
 fn exposed(method: MethodKind, ratio: f32, from: u64, is_declared: bool) -> Vec<Made> {
     let mut post = context(method);
-    let frame = |index: u64| {
+    let mut frame = |index: u64| {
         let mut input = busy(&format!("exposure {index}"));
         if index >= from {
             input.color = input.color.map(|c| c.map(|v| v * ratio));
         }
-        if is_declared && index == from {
-            input.exposure = Exposure::Changed { ratio };
-        }
-        input
+        let is_change = is_declared && index == from;
+        post.make(index, &input, if is_change { Exposure::Changed { ratio } } else { Exposure::Same }, Reset::None)
     };
-    (0..6).map(|index| step(&mut post, index, &frame(index))).collect()
+    (0..6).map(&mut frame).collect()
 }
 
 #[test]
@@ -208,11 +204,11 @@ fn s8_a_picture_16_pixels_further_becomes_the_same_16_pixels_further() {
                     let [x, y] = window(at);
                     world.at(x as usize, y as usize).map(|v| 0.4 + 0.1 * v)
                 });
-                let input = Input {
+                let input = View {
                     lod: Some(Image::from_fn(WIDE, |at| (window(at)[1] % 24) as f32 / 12.0 * (index.min(1) as f32))),
                     depth: Some(Image::from_fn(WIDE, |at| if near(at) { 2.0 } else { 4.0 })),
                     motion: Some(Image::from_fn(WIDE, |at| if near(at) { [-0.25, 0.75] } else { [1.0, 0.0] })),
-                    ..Input::sharp(color)
+                    ..sharp(color)
                 };
                 last = Some(step(&mut post, index.into(), &input));
             }

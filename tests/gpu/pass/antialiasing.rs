@@ -1,11 +1,9 @@
 //! Antialiasing of jittered sparse frames: both executors, and planted errors.
 
 use super::rig::{Rig, View};
-use super::sparse::{SIZE, desc, gliding_view, settings};
+use super::sparse::{SIZE, all_caught_in_samples, arrange, desc, gliding_view, settings};
 use afterimage::gpu::Afterimage;
-use afterimage::shader::SHADERS;
-use afterimage::{ContextDesc, Exposure, Foveation, Lattice, Lattices, Method, MethodKind, Reset, Settings, Smr};
-use afterimage_testing::planted::all_caught;
+use afterimage::{ContextDesc, Foveation, Lattice, Lattices, Method, MethodKind, Reset, Settings, Smr};
 
 fn antialiased() -> Settings {
     let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
@@ -39,17 +37,12 @@ fn views(index: u64, settings: &Settings) -> [View; 2] {
     })
 }
 
-fn rig_of(index: u64, rig: &mut Rig) {
-    rig.scattered = index % 4 == 3;
-    rig.exposure = if index % 3 == 2 { Exposure::Changed { ratio: 1.25 } } else { Exposure::Same };
-}
-
 #[test]
 fn jittered_frames_are_bit_equal_on_both_executors() {
     let settings = antialiased();
     let Some(mut rig) = Rig::new(desc(), settings) else { return };
     for index in 0..12 {
-        rig_of(index, &mut rig);
+        arrange(index, &mut rig);
         rig.both(index, Reset::None, &views(index, &settings));
     }
 }
@@ -63,17 +56,6 @@ fn means_take_no_memory() {
 #[test]
 fn a_wrong_mean_is_caught() {
     let settings = antialiased();
-    let names = ["sparse_observe_pass", "sparse_light_pass", "sparse_pass"];
-    let right = names.map(|name| SHADERS.compose(name).source);
-    let differs = |sources: &[String; 3]| {
-        let mut rig = Rig::with_shader(desc(), settings, &sources[2])?;
-        rig.gpu.set_sample_shaders(&rig.device, &sources[0], &sources[1]);
-        Some((0..12).any(|index| {
-            rig_of(index, &mut rig);
-            let views = views(index, &settings);
-            rig.differs(index, Reset::None, &views)
-        }))
-    };
     let planted = [
         // Surfaces: without the nearer one, that of another texel, or its motion alone.
         ("nearest_at = select(nearest_at, texel, near > nearest_disparity);", ""),
@@ -121,5 +103,8 @@ fn a_wrong_mean_is_caught() {
         ("pack_color_by(next.color, draw)", "pack_color_by(next.color, 0.5)"),
         ("frame.frame_low, frame.views[view].key", "frame.frame_low, frame.views[1u - view].key"),
     ];
-    all_caught(&right, &planted, differs);
+    all_caught_in_samples(desc(), settings, 12, &planted, |index, rig| {
+        arrange(index, rig);
+        views(index, &settings).to_vec()
+    });
 }

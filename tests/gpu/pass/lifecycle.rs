@@ -2,14 +2,20 @@
 
 use super::rig::noise_view;
 use super::rig::{Made, Rig, View, make_texture};
+use super::surfaces::held;
+use crate::laws::laws;
+use crate::lifecycle_hard::*;
 use crate::settings::{ungated, ungated_of, wrs};
+use crate::surfaces_hard;
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::{self, Texture, TextureFormat, TextureUsages};
 use afterimage::{
-    ContextDesc, CreateError, DepthConvention, Exposure, FrameError, Gaze, MethodKind, MotionConvention,
-    MotionDirection, MotionUnit, Reset, Sampler, Settings, ViewFrame, ViewGeometry, Wrs, YAxis,
+    ContextDesc, CreateError, DepthConvention, Exposure, Filter, Foveation, FrameError, Gaze, MethodKind,
+    MotionConvention, MotionDirection, MotionUnit, Reset, Sampler, Settings, ViewFrame, ViewGeometry, Wrs, YAxis,
 };
 use afterimage_testing::holds;
+
+lifecycle_laws!(Gpu, held);
 
 const SIZE: [u32; 2] = [70, 40];
 
@@ -75,70 +81,44 @@ fn odd_sizes_agree() {
 
 #[test]
 fn h79_poisoned_fresh_history_is_never_visible() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
-    rig.poison();
-    for index in 0..3 {
-        let views = [noise_view(&format!("poison {index}"), &rig.context)];
-        assert_eq!(rig.on_gpu(index, Reset::None, &views), rig.on_cpu(index, Reset::None, &views).0);
+    for method in METHODS {
+        for filter in [Filter::Mip, Filter::Block] {
+            let base = surfaces_hard::settings(method);
+            let settings = Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
+            for size in [SIZE, [65, 33], [3, 2]] {
+                let desc = ContextDesc::new(size);
+                let Some(mut rig) = Rig::new(desc, settings) else { return };
+                for index in 0..6 {
+                    // What was never written, what a reset forgets, and what a resize makes.
+                    if index == 5 {
+                        rig.resize(size);
+                    }
+                    if [0, 3, 5].contains(&index) {
+                        rig.poison();
+                    }
+                    let reset = if index == 3 { Reset::All } else { Reset::None };
+                    let (made, _) = rig.both(index, reset, &[noise_view("poison", &desc)]);
+                    assert!(made.shown.iter().flatten().all(|&c| f32::from_bits(c).is_finite()));
+                }
+            }
+        }
+        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), surfaces_hard::settings(method)) else { return };
+        let views = [noise_view("poison", &rig.context)];
+        rig.both(0, Reset::None, &views);
+        rig.poison();
+        assert!(rig.differs(1, Reset::None, &views), "the planted error: no reset");
     }
-    holds!("H79", Gpu, "wrs: fresh textures of NaN words, 3 frames as of the CPU's clean ones, bit for bit");
+    holds!(
+        "H79",
+        Gpu,
+        "wrs, smr, taa: NaN words and levels, fresh, after a reset and a resize: never seen, bit for bit"
+    );
 }
 
 /// Frames `range`, on both.
 fn run(rig: &mut Rig, range: std::ops::Range<u64>) -> Vec<Made> {
     let context = rig.context;
     range.map(|i| rig.both(i, Reset::None, &[noise_view(&format!("run {i}"), &context)]).0).collect()
-}
-
-#[test]
-fn h76_h77_h78_reset_resize_and_forget_equal_a_fresh_context() {
-    let fresh = || Rig::new(ContextDesc::new(SIZE), ungated());
-    let Some(mut rig) = fresh() else { return };
-    let expected = run(&mut rig, 20..26);
-    let used = || {
-        let mut rig = fresh().unwrap();
-        run(&mut rig, 14..20);
-        rig
-    };
-    assert!(run(&mut used(), 20..26) != expected, "the planted error: no reset");
-
-    let mut forgotten = used();
-    forgotten.cpu.forget();
-    forgotten.gpu.forget();
-    assert!(run(&mut forgotten, 20..26) == expected);
-
-    // Odd, even, a single pixel, and back, with frames between and the new history full of garbage.
-    let mut resized = used();
-    for size in [[3, 5], [64, 64], [1, 1], [65, 41], SIZE] {
-        resized.resize(size);
-        resized.poison();
-        if size != SIZE {
-            run(&mut resized, 0..2);
-        }
-    }
-    assert!(run(&mut resized, 20..26) == expected);
-
-    // A pause or a cut, declared twice; already the first shows only the candidate.
-    let mut cut = used();
-    let views = [noise_view("run 20", &cut.context)];
-    for _ in 0..2 {
-        let (made, _) = cut.both(20, Reset::All, &views);
-        let candidate: Vec<[u32; 3]> = views[0].color.pixels().iter().map(|c| c.map(f32::to_bits)).collect();
-        assert!(made.shown == candidate && made == expected[0]);
-    }
-    assert!(run(&mut cut, 21..26) == expected[1..]);
-
-    let Some(mut from_zero) = fresh() else { return };
-    let Some(mut with_reset) = fresh() else { return };
-    let views = [noise_view("run 0", &with_reset.context)];
-    assert!(
-        with_reset.both(0, Reset::All, &views).0 == run(&mut from_zero, 0..1)[0],
-        "a reset at frame 0 changes nothing"
-    );
-    assert!(run(&mut with_reset, 1..4) == run(&mut from_zero, 1..4));
-    holds!("H76", Gpu, "wrs: 4 sizes, odd, even and 1x1, then back: 6 frames as of a fresh context, bit for bit");
-    holds!("H77", Gpu, "wrs: the first frame after a cut is the candidate, 5 more as of a fresh context, bit for bit");
-    holds!("H78", Gpu, "wrs: reset twice running, and at frame 0: as a fresh context, bit for bit");
 }
 
 #[test]
@@ -229,13 +209,16 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
 
 #[test]
 fn two_frames_in_one_submission_see_their_own_constants() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
-    let mut view = noise_view("submission", &rig.context);
-    let (first, second) = (view.facts, ViewFrame { gaze: Gaze::At { px: [3.0, 4.0] }, ..view.facts });
-    rig.on_cpu(0, Reset::None, &[view.clone()]);
-    view.facts = second;
-    let expected = rig.on_cpu(1, Reset::None, &[view.clone()]).0;
-    assert_eq!(rig.on_gpu_in_one_submission(&view, &[first, second]), expected);
+    for method in METHODS {
+        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), surfaces_hard::settings(method)) else { return };
+        let mut view = noise_view("submission", &rig.context);
+        let (first, second) = (view.facts, ViewFrame { gaze: Gaze::At { px: [3.0, 4.0] }, ..view.facts });
+        rig.on_cpu(0, Reset::None, &[view.clone()]);
+        view.facts = second;
+        let (expected, trace) = rig.on_cpu(1, Reset::None, &[view.clone()]);
+        assert_eq!(rig.on_gpu_in_one_submission(&view, &[first, second]), expected, "{method:?}");
+        assert!(trace[0].pixels().iter().any(|t| !t.take), "the second frame has a past");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::rig::Rig;
 use super::surfaces::held;
-use super::surfaces::{PIXELS, bits, one, sticky, still, ungated_of, with_motion};
+use super::surfaces::{one, sticky, still, ungated_of, with_motion};
 use crate::depth_hard::{METHODS, SIZE};
 use crate::laws::laws;
 use crate::motion_hard::*;
@@ -51,16 +51,4 @@ fn h57_the_last_texel_is_inside_and_a_hundredth_beyond_its_edge_is_not() {
         }
     }
     holds!("H57", Gpu, "wrs and smr: columns 63, 63.49 and -0.49 of 0 to 63 are accepted, 63.51 and -0.51 rejected");
-}
-
-#[test]
-fn h60_a_turn_is_a_full_reset() {
-    for method in METHODS {
-        let Some(mut rig) = ungated_of(method) else { return };
-        one(&mut rig, 0, still("turn 0"));
-        let turn = with_motion("turn", |_| [5000.0, 0.0]);
-        let color: Vec<[u32; 3]> = turn.color.pixels().iter().map(|&c| bits(c)).collect();
-        let (made, _) = one(&mut rig, 1, turn);
-        assert!(made.shown == color && made.stats.rejected() == PIXELS, "{method:?}");
-    }
 }

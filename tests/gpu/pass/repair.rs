@@ -5,7 +5,7 @@ use super::sparse::{SIZE, desc, gliding_view, settings};
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::TextureFormat;
-use afterimage::{ContextDesc, Exposure, Foveation, Gaze, Image, Method, MethodKind, Repair, Reset, Settings, Smr};
+use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, MethodKind, Repair, Reset, Settings, Smr};
 
 /// A budget that some frames use up and others do not.
 const BUDGET: f32 = 0.5;
@@ -45,8 +45,7 @@ fn views(index: u64, settings: &Settings) -> [View; 2] {
 }
 
 fn rig_of(index: u64, rig: &mut Rig) -> Reset {
-    rig.scattered = index % 4 == 3;
-    rig.exposure = if index % 3 == 2 { Exposure::Changed { ratio: 1.25 } } else { Exposure::Same };
+    super::sparse::arrange(index, rig);
     if index == 7 { Reset::All } else { Reset::None }
 }
 

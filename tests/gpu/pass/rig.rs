@@ -1,6 +1,6 @@
 //! Frames through both executors, and the device's results.
 
-use crate::images::{Images, OneView};
+use crate::images::{Images, OneView, held_words};
 pub use crate::images::{View, noise};
 use afterimage::cpu::CpuAfterimage;
 use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target};
@@ -494,14 +494,6 @@ pub fn make_texture(device: &Device, context: &ContextDesc, format: TextureForma
         usage,
         view_formats: &[],
     })
-}
-
-/// Packed reservoirs, or packed surfaces and their noise (0 without noise).
-fn held_words(cpu: &CpuAfterimage) -> Vec<[u32; 3]> {
-    let history = cpu.history();
-    let noise = history.noise().iter().copied().chain(std::iter::repeat(0));
-    let surfaces = history.surfaces().iter().zip(noise).map(|(s, n)| [s[0], s[1], n]);
-    history.words().iter().copied().chain(surfaces).collect()
 }
 
 /// Packed reservoirs with another weight sum.

@@ -112,8 +112,7 @@ fn noisy_sparse_frames_are_bit_equal_on_both_executors() {
         let settings = Settings { method: method.into(), ..traced() };
         let Some(mut rig) = Rig::new(desc(), settings) else { return };
         for index in 0..12 {
-            rig.scattered = index % 4 == 3;
-            rig.exposure = if index % 3 == 2 { Exposure::Changed { ratio: 1.25 } } else { Exposure::Same };
+            arrange(index, &mut rig);
             rig.both(index, Reset::None, &[0, 1].map(|v| noisy_view(index, v, &settings)));
         }
     }
@@ -129,21 +128,37 @@ fn noise_takes_eight_bytes_a_pixel() {
     assert!(calm <= 24 * pixels && noisy == calm + 8 * pixels);
 }
 
+/// Regions and exposures of frame `index`.
+pub(super) fn arrange(index: u64, rig: &mut Rig) {
+    rig.scattered = index % 4 == 3;
+    rig.exposure = if index % 3 == 2 { Exposure::Changed { ratio: 1.25 } } else { Exposure::Same };
+}
+
+/// Fails unless each planted error in the passes of smr for sparse frames makes the executors differ in one of
+/// `frames` frames, whose views `views` gives.
+#[track_caller]
+pub(super) fn all_caught_in_samples(
+    desc: ContextDesc,
+    settings: Settings,
+    frames: u64,
+    planted: &[(&str, &str)],
+    views: impl Fn(u64, &mut Rig) -> Vec<View>,
+) {
+    let names = ["sparse_observe_pass", "sparse_light_pass", "sparse_pass"];
+    let right = names.map(|name| SHADERS.compose(name).source);
+    all_caught(&right, planted, |sources: &[String; 3]| {
+        let mut rig = Rig::with_shader(desc, settings, &sources[2])?;
+        rig.gpu.set_sample_shaders(&rig.device, &sources[0], &sources[1]);
+        Some((0..frames).any(|index| {
+            let views = views(index, &mut rig);
+            rig.differs(index, Reset::None, &views)
+        }))
+    });
+}
+
 #[test]
 fn wrong_noise_is_caught() {
     let settings = traced();
-    let names = ["sparse_observe_pass", "sparse_light_pass", "sparse_pass"];
-    let right = names.map(|name| SHADERS.compose(name).source);
-    let differs = |sources: &[String; 3]| {
-        let mut rig = Rig::with_shader(desc(), settings, &sources[2])?;
-        rig.gpu.set_sample_shaders(&rig.device, &sources[0], &sources[1]);
-        Some((0..12).any(|index| {
-            rig.scattered = index % 4 == 3;
-            rig.exposure = if index % 3 == 2 { Exposure::Changed { ratio: 1.25 } } else { Exposure::Same };
-            let views = [0, 1].map(|v| noisy_view(index, v, &settings));
-            rig.differs(index, Reset::None, &views)
-        }))
-    };
     let planted = [
         // Stored noise: of another texel, view or exposure; of a sample that is not the kept one.
         ("textureLoad(past_noise, at, view, 0)", "textureLoad(past_noise, at, 1u - view, 0)"),
@@ -175,7 +190,10 @@ fn wrong_noise_is_caught() {
         ("noise = accumulated.noise;", ""),
         ("result = accumulated.result;", "result = reconstruct(inputs);"),
     ];
-    all_caught(&right, &planted, differs);
+    all_caught_in_samples(desc(), settings, 12, &planted, |index, rig| {
+        arrange(index, rig);
+        [0, 1].map(|v| noisy_view(index, v, &settings)).to_vec()
+    });
 }
 
 #[test]
@@ -290,18 +308,6 @@ pub(super) fn gliding_view(index: u64, v: u32, settings: &Settings) -> View {
 #[test]
 fn a_wrong_reconstruction_is_caught() {
     let settings = settings(MethodKind::Smr);
-    let names = ["sparse_observe_pass", "sparse_light_pass", "sparse_pass"];
-    let right = names.map(|name| SHADERS.compose(name).source);
-    let differs = |sources: &[String; 3]| {
-        let mut rig = Rig::with_shader(desc(), settings, &sources[2])?;
-        rig.gpu.set_sample_shaders(&rig.device, &sources[0], &sources[1]);
-        Some((0..8).any(|index| {
-            rig.scattered = index % 4 == 3;
-            rig.exposure = if index % 3 == 2 { Exposure::Changed { ratio: 1.25 } } else { Exposure::Same };
-            let views = [0, 1].map(|v| gliding_view(index, v, &settings));
-            rig.differs(index, Reset::None, &views)
-        }))
-    };
     let planted = [
         // History: of the other view, of another texel, of another surface, and in another exposure.
         ("vec2<i32>(frame.size) - 1), view, 0)", "vec2<i32>(frame.size) - 1), 1u - view, 0)"),
@@ -340,34 +346,28 @@ fn a_wrong_reconstruction_is_caught() {
         ("textureStore(next_kept, px, view,", "textureStore(next_kept, px, 1u - view,"),
         ("count_if(valid && share == 0.0, COUNT_REPLACED);", ""),
     ];
-    all_caught(&right, &planted, differs);
+    all_caught_in_samples(desc(), settings, 8, &planted, |index, rig| {
+        arrange(index, rig);
+        [0, 1].map(|v| gliding_view(index, v, &settings)).to_vec()
+    });
 }
 
 #[test]
 fn a_wrong_fit_at_a_samples_own_pixel_is_caught() {
     let mut settings = settings(MethodKind::Smr);
     (settings.foveation.rate_mid, settings.foveation.rate_far) = (2, 2);
-    let names = ["sparse_observe_pass", "sparse_light_pass", "sparse_pass"];
-    let right = names.map(|name| SHADERS.compose(name).source);
     let picture = noise(SIZE, "a sparkle");
-    let differs = |sources: &[String; 3]| {
-        let mut rig = Rig::with_shader(ContextDesc::new(SIZE), settings, &sources[2])?;
-        rig.gpu.set_sample_shaders(&rig.device, &sources[0], &sources[1]);
-        Some((0..12).any(|index| {
-            // Sampled in frame 5, and again in frame 9.
-            let is_bright = |px| index == 5 && px == [51, 31];
-            let color = |px: [u32; 2]| picture.at(px[0] as usize, px[1] as usize);
-            let color = Image::from_fn(SIZE, |px| if is_bright(px) { [50.0; 3] } else { color(px) });
-            let mut view = View::still(color, [10.0, 10.0]);
-            let lattices = settings.foveation.lattices(&view.facts.geometry, [10.0, 10.0], index);
-            view.facts.lattices = Some(lattices);
-            let views = [view];
-            rig.differs(index, Reset::None, &views)
-        }))
-    };
     let planted =
         [("select(1.0, unpack_lit(own_words).own_fit, is_own)", "1.0"), ("return own_fit(own, gains);", "return 1.0;")];
-    all_caught(&right, &planted, differs);
+    all_caught_in_samples(ContextDesc::new(SIZE), settings, 12, &planted, |index, _| {
+        // Sampled in frame 5, and again in frame 9.
+        let is_bright = |px| index == 5 && px == [51, 31];
+        let color = |px: [u32; 2]| picture.at(px[0] as usize, px[1] as usize);
+        let color = Image::from_fn(SIZE, |px| if is_bright(px) { [50.0; 3] } else { color(px) });
+        let mut view = View::still(color, [10.0, 10.0]);
+        view.facts.lattices = Some(settings.foveation.lattices(&view.facts.geometry, [10.0, 10.0], index));
+        vec![view]
+    });
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Hard cases of sparse frames on the GPU, H86 and up: each frame is equal on both executors, bit for bit, and the laws
 //! are those of the CPU.
 
-use super::rig::{Rig, View};
+use super::rig::Rig;
 use crate::laws::laws;
 use crate::sparse_hard::*;
 use afterimage::{ContextDesc, Image, Settings};
@@ -19,17 +19,7 @@ impl Shows for Both {
     fn show(&mut self, index: u64, shots: &[Shot]) -> Vec<Color> {
         let rig = self.rig.as_mut().unwrap();
         rig.exposure = shots[0].exposure;
-        let view = |s: &Shot| View {
-            facts: s.facts,
-            color: s.color.clone(),
-            depth: s.depth.clone(),
-            motion: s.motion.clone(),
-            trust: s.trust.clone(),
-            lod: None,
-            noise: None,
-            repaired: s.repaired.clone(),
-        };
-        let views: Vec<_> = shots.iter().map(view).collect();
+        let views: Vec<_> = shots.iter().map(|shot| shot.view.clone()).collect();
         let (made, _) = rig.both(index, shots[0].reset, &views);
         let size = rig.context.size_px;
         let pixels = made.shown.chunks(made.shown.len() / shots.len());

@@ -4,10 +4,8 @@ use super::rig::{Made, Rig, View, noise, with_w_sum};
 use crate::depth_hard::{self, *};
 use crate::laws::laws;
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::{ContextDesc, DepthConvention, Exposure, FrameStats, Image, MethodKind, Reset, Settings};
+use afterimage::{ContextDesc, DepthConvention, Exposure, Image, MethodKind, Reset, Settings};
 use afterimage_testing::holds;
-
-pub const PIXELS: u64 = 64 * 48;
 
 pub fn still(name: &str) -> View {
     depth_hard::still(noise(SIZE, name))
@@ -36,21 +34,28 @@ pub fn sticky(rig: &mut Rig, view: View) {
     rig.restore(&with_w_sum(&made.words, 1e12));
 }
 
-pub fn bits(color: [f32; 3]) -> [u32; 3] {
-    color.map(f32::to_bits)
-}
-
 impl Steps for Rig {
-    fn exposed(&mut self, index: u64, view: &View, exposure: Exposure) -> (Color, FrameStats, Image<PixelTrace>) {
+    fn make(&mut self, index: u64, view: &View, exposure: Exposure, reset: Reset) -> depth_hard::Made {
         self.exposure = exposure;
-        let (made, mut trace) = self.both(index, Reset::None, std::slice::from_ref(view));
+        let (made, mut trace) = self.both(index, reset, std::slice::from_ref(view));
         let shown = made.shown.iter().map(|c| c.map(f32::from_bits)).collect();
-        (Image::from_pixels(view.color.size(), shown).unwrap(), made.stats, trace.remove(0))
+        let shown = Image::from_pixels(view.color.size(), shown).unwrap();
+        depth_hard::Made { shown, words: made.words, trace: trace.remove(0), stats: made.stats }
     }
 
     fn set_settings(&mut self, settings: Settings) {
         self.cpu.set_settings(settings).unwrap();
         self.gpu.set_settings(&self.device, settings).unwrap();
+    }
+
+    fn resize(&mut self, size: [u32; 2]) {
+        Rig::resize(self, size);
+        self.poison();
+    }
+
+    fn forget(&mut self) {
+        self.cpu.forget();
+        self.gpu.forget();
     }
 
     fn stick(&mut self) {

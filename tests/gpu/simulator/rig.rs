@@ -1,9 +1,10 @@
 //! A frame through the simulators of both executors, and their results.
 
+pub use crate::pass::rig::make_texture as texture;
 use afterimage::shader::SHADERS;
 use afterimage::simulator::Pyramid;
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
-use afterimage::wgpu::{self, Device, Queue, Texture, TextureFormat, TextureUsages};
+use afterimage::wgpu::{Device, Queue, Texture, TextureFormat, TextureUsages};
 use afterimage::{ContextDesc, Filter, Foveation, Gaze, Image, Settings, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
 
@@ -133,20 +134,6 @@ impl Rig {
             lods: afterimage_testing::gpu::read_texture(&self.device, &self.queue, &self.lod),
         }
     }
-}
-
-pub fn texture(device: &Device, context: &ContextDesc, format: TextureFormat, usage: TextureUsages) -> Texture {
-    let [width, height] = context.size_px;
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("test"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: context.view_count },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage,
-        view_formats: &[],
-    })
 }
 
 /// Noise from dark to the brightest half, with non-finite pixels.

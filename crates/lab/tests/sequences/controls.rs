@@ -2,30 +2,17 @@
 //! differ.
 
 use super::rig::{Rig, View, noise, with_w_sum};
-use super::sequences::{SIZE, trust, view};
+use super::sequences::{SIZE, view};
+use super::surfaces_controls::differs;
 use afterimage::kernel::rng;
 use afterimage::kernel::rng::Purpose;
 use afterimage::shader::SHADERS;
-use afterimage::{Bias, ContextDesc, Exposure, Foveation, Image, Method, Reset, Sampler, Settings, Wrs};
+use afterimage::{Bias, ContextDesc, Foveation, Image, Method, Reset, Sampler, Settings, Wrs};
 use afterimage_lab::source::AnalyticSource;
 use afterimage_testing::planted::all_caught_once;
 
 fn pass() -> String {
     SHADERS.compose("wrs_pass").source
-}
-
-/// Whether the device differs from the CPU in one of 12 frames. The scene is an occluder that moves sideways; every
-/// other frame also has vertical motion.
-fn differs(settings: Settings, source: &str) -> Option<bool> {
-    let mut scene = AnalyticSource::new("occluder", SIZE, 70.0, 60.0).unwrap();
-    let mut rig = Rig::with_shader(ContextDesc::new(SIZE), settings, source)?;
-    Some((0..12).any(|index| {
-        rig.exposure = if index == 6 { Exposure::Changed { ratio: 2.0 } } else { Exposure::Same };
-        let mut views = [View { trust: Some(trust(index)), ..view(&mut scene, index) }];
-        let shake = (index % 2) as f32 * 3.0;
-        views[0].motion = views[0].motion.as_ref().map(|m| m.map(|[x, y]| [x, y + shake]));
-        rig.differs(index, Reset::None, &views)
-    }))
 }
 
 #[test]
@@ -58,13 +45,15 @@ fn every_planted_error_in_the_pass_is_caught() {
         ("count_if(valid && decision.take, COUNT_REPLACED);", "count_if(decision.take, COUNT_REPLACED);"),
         ("count_if(!usable, COUNT_NONFINITE);", ""),
     ];
-    all_caught_once(pass(), &planted, |source| differs(Settings::paper(), source));
+    all_caught_once(pass(), &planted, |source| differs(Settings::paper(), source, false));
     let keys = Method::Wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() });
     let not_stored = (
         "textureStore(next_extras, px, view, vec4<u32>(bitcast<u32>(decision.log_key),",
         "textureStore(next_extras, px, view, vec4<u32>(0u,",
     );
-    all_caught_once(pass(), &[not_stored], |source| differs(Settings { method: keys, ..Settings::paper() }, source));
+    all_caught_once(pass(), &[not_stored], |source| {
+        differs(Settings { method: keys, ..Settings::paper() }, source, false)
+    });
 }
 
 /// Tests draws that equal their threshold exactly, which happens once in 2^24 draws: searches for a frame and a pixel

@@ -2,7 +2,7 @@
 //! left out.
 
 use super::rig::{Rig, View, make_texture};
-use super::sequences::{SIZE, reset, trust, view};
+use super::sequences::{SIZE, reset, surfaces, trust, view};
 use afterimage::gpu::{Frame, Recorded, Target};
 use afterimage::kernel::debug_view::view_color;
 use afterimage::wgpu::{self, BufferUsages, TextureFormat, TextureUsages};
@@ -63,19 +63,23 @@ fn debug_views_draw_what_record_decides_next_and_move_nothing() {
 
 #[test]
 fn counting_changes_nothing_and_may_be_left_out() {
-    let Some(mut counted) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
-    let Some(mut uncounted) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
-    let mut source = source("lateral");
-    for index in 0..6 {
-        let views = [masked(&mut source, index)];
-        let with = counted.on_gpu(index, Reset::None, &views);
-        let without = uncounted.on_gpu_uncounted(index, Reset::None, &views);
-        assert_eq!((with.shown, with.words), (without.shown, without.words));
-        assert_eq!(with.stats.pixels, u64::from(SIZE[0] * SIZE[1]));
-        assert_eq!(without.stats, FrameStats::default(), "not counted, not cleared");
-        let warnings: Vec<_> = with.stats.warnings().collect();
-        assert!(warnings.iter().any(|w| matches!(w, Warning::NonfiniteColor { pixels: 1.. })), "{warnings:?}");
-        assert!(warnings.iter().any(|w| matches!(w, Warning::BadTrust { pixels: 1.. })), "{warnings:?}");
+    for settings in [Settings::paper()].into_iter().chain(surfaces()) {
+        let Some(mut counted) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
+        let Some(mut uncounted) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
+        for scene in ["lateral", "occluder"] {
+            let mut source = source(scene);
+            for index in 0..6 {
+                let views = [masked(&mut source, index)];
+                let with = counted.on_gpu(index, Reset::None, &views);
+                let without = uncounted.on_gpu_uncounted(index, Reset::None, &views);
+                assert_eq!((with.shown, with.words), (without.shown, without.words));
+                assert_eq!(with.stats.pixels, u64::from(SIZE[0] * SIZE[1]));
+                assert_eq!(without.stats, FrameStats::default(), "not counted, not cleared");
+                let warnings: Vec<_> = with.stats.warnings().collect();
+                assert!(warnings.iter().any(|w| matches!(w, Warning::NonfiniteColor { pixels: 1.. })), "{warnings:?}");
+                assert!(warnings.iter().any(|w| matches!(w, Warning::BadTrust { pixels: 1.. })), "{warnings:?}");
+            }
+        }
     }
 }
 

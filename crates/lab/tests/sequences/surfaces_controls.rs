@@ -21,7 +21,7 @@ fn settings(method: MethodKind, filter: Filter) -> Settings {
 /// Whether the device differs from the CPU in one of 12 frames. The left view has an occluder that moves sideways, the
 /// right view a change of lighting; every other frame also has vertical motion. `has_lod`: the frame has a map of
 /// levels of detail.
-fn differs(settings: Settings, source: &str, has_lod: bool) -> Option<bool> {
+pub fn differs(settings: Settings, source: &str, has_lod: bool) -> Option<bool> {
     let mut scenes = ["occluder", "light-step"].map(|s| AnalyticSource::new(s, SIZE, 70.0, 60.0).unwrap());
     let mut rig = Rig::with_shader(eyes(), settings, source)?;
     Some((0..12).any(|index| {

@@ -1,18 +1,15 @@
-//! Lives of taa's and smr's histories: views, poison, resets, submissions, memory. Bit equality throughout.
+//! taa's and smr's histories: views, bit for bit, and memory.
 
-use super::rig::noise_view;
 use super::rig::{Rig, View};
-use super::sequences::{SIZE, foveated};
-use super::surfaces_variants::{all_methods, settings};
+use super::sequences::{SIZE, foveated, settings, surfaces};
 use afterimage::gpu::Afterimage;
 use afterimage::wgpu::{self, TextureFormat};
-use afterimage::{ContextDesc, Filter, Foveation, Gaze, MethodKind, Reset, Settings, ViewFrame};
+use afterimage::{ContextDesc, Filter, Foveation, Gaze, MethodKind, Reset, Settings};
 use afterimage_lab::source::AnalyticSource;
-use afterimage_testing::holds;
 
 #[test]
 fn h27_two_eyes_with_two_gazes_are_one_dispatch_without_a_leak() {
-    for base in all_methods() {
+    for base in surfaces() {
         for view_count in [2, 4] {
             let desc = ContextDesc { view_count, ..ContextDesc::new(SIZE) };
             let Some(mut rig) = Rig::new(desc, base) else { return };
@@ -33,123 +30,6 @@ fn h27_two_eyes_with_two_gazes_are_one_dispatch_without_a_leak() {
                     .collect();
                 rig.both(index, Reset::None, &views);
             }
-        }
-    }
-}
-
-#[test]
-fn h79_poisoned_fresh_history_is_never_visible() {
-    for base in all_methods() {
-        for filter in [Filter::Mip, Filter::Block] {
-            let settings = Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
-            for size in [SIZE, [65, 33], [3, 2]] {
-                let desc = ContextDesc::new(size);
-                let Some(mut rig) = Rig::new(desc, settings) else { return };
-                for index in 0..6 {
-                    // What was never written, what a reset forgets, and what a resize makes.
-                    if index == 5 {
-                        rig.resize(size);
-                    }
-                    if [0, 3, 5].contains(&index) {
-                        rig.poison();
-                    }
-                    let reset = if index == 3 { Reset::All } else { Reset::None };
-                    let (made, _) = rig.both(index, reset, &[noise_view("poison", &desc)]);
-                    assert!(made.shown.iter().flatten().all(|&c| f32::from_bits(c).is_finite()));
-                }
-            }
-        }
-        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), base) else { return };
-        let views = [noise_view("poison", &rig.context)];
-        rig.both(0, Reset::None, &views);
-        rig.poison();
-        let (cpu, _) = rig.on_cpu(1, Reset::None, &views);
-        assert!(rig.on_gpu(1, Reset::None, &views) != cpu, "the planted error: no reset");
-    }
-    holds!("H79", Gpu, "smr and taa: NaN words and levels, fresh, after a reset and a resize: never seen, bit for bit");
-}
-
-#[test]
-fn h76_h78_reset_resize_and_forget_equal_a_fresh_context() {
-    for base in all_methods() {
-        let fresh = || Rig::new(ContextDesc::new(SIZE), base);
-        let run = |rig: &mut Rig, range: std::ops::Range<u64>| {
-            let desc = rig.context;
-            let views = |i: u64| [noise_view(&format!("run {}", i / 4), &desc)];
-            range.map(|i| rig.both(i, Reset::None, &views(i)).0).collect::<Vec<_>>()
-        };
-        let Some(mut rig) = fresh() else { return };
-        let expected = run(&mut rig, 22..26);
-        let mut used = fresh().unwrap();
-        run(&mut used, 16..22);
-        let mut forgotten = fresh().unwrap();
-        run(&mut forgotten, 16..22);
-        assert!(run(&mut used, 22..26) != expected, "the planted error: no reset");
-        forgotten.cpu.forget();
-        forgotten.gpu.forget();
-        assert!(run(&mut forgotten, 22..26) == expected);
-        for size in [[3, 5], [64, 64], [1, 1], SIZE] {
-            used.resize(size);
-            used.poison();
-            if size != SIZE {
-                run(&mut used, 0..2);
-            }
-        }
-        assert!(run(&mut used, 22..26) == expected);
-        // A cut, said twice running; and a reset at frame 0.
-        let mut cut = fresh().unwrap();
-        run(&mut cut, 16..22);
-        let views = [noise_view("run 5", &cut.context)];
-        for _ in 0..2 {
-            let (made, _) = cut.both(22, Reset::All, &views);
-            let candidate = views[0].color.pixels().iter().map(|c| c.map(f32::to_bits));
-            assert!(made.shown.iter().copied().eq(candidate) && made == expected[0]);
-        }
-        assert!(run(&mut cut, 23..26) == expected[1..]);
-        let (mut with_reset, mut without_reset) = (fresh().unwrap(), fresh().unwrap());
-        let views = [noise_view("run 0", &with_reset.context)];
-        assert!(with_reset.both(0, Reset::All, &views).0 == run(&mut without_reset, 0..1)[0]);
-        assert!(run(&mut with_reset, 1..3) == run(&mut without_reset, 1..3));
-    }
-    holds!(
-        "H76",
-        Gpu,
-        "smr and taa: 3 sizes, odd, even and 1x1, then back: 4 frames as of a fresh context, bit for bit"
-    );
-    holds!(
-        "H77",
-        Gpu,
-        "smr and taa: the first frame after a cut is the candidate, 3 more as of a fresh context, bit for bit"
-    );
-    holds!("H78", Gpu, "smr and taa: reset twice running, and at frame 0: as a fresh context, bit for bit");
-}
-
-#[test]
-fn two_frames_in_one_submission_see_their_own_constants() {
-    for base in all_methods() {
-        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), base) else { return };
-        let mut source = AnalyticSource::new("still", SIZE, 70.0, 60.0).unwrap();
-        let mut view = foveated(&mut source, 0, &base.foveation);
-        let (first, second) = (view.facts, ViewFrame { gaze: Gaze::At { px: [100.0, 20.0] }, ..view.facts });
-        rig.on_cpu(0, Reset::None, &[view.clone()]);
-        view.facts = second;
-        let (expected, trace) = rig.on_cpu(1, Reset::None, &[view.clone()]);
-        assert_eq!(rig.on_gpu_in_one_submission(&view, &[first, second]), expected);
-        assert!(trace[0].pixels().iter().any(|t| !t.take), "the second frame has a past");
-    }
-}
-
-#[test]
-fn counting_changes_nothing() {
-    for base in all_methods() {
-        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), base) else { return };
-        let Some(mut other) = Rig::new(ContextDesc::new(SIZE), base) else { return };
-        let mut source = AnalyticSource::new("occluder", SIZE, 70.0, 60.0).unwrap();
-        for index in 0..6 {
-            let views = [foveated(&mut source, index, &base.foveation)];
-            let (counted, plain) =
-                (rig.on_gpu(index, Reset::None, &views), other.on_gpu_uncounted(index, Reset::None, &views));
-            assert!(counted.shown == plain.shown && counted.words == plain.words);
         }
     }
 }

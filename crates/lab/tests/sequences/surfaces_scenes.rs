@@ -1,8 +1,10 @@
 //! Analytic scenes, foveated and put together again: what is won, and that nothing is lost.
 
-use super::surfaces_rig::*;
+use crate::depth_hard::{Color, Steps};
+use crate::images::View;
+use afterimage::cpu::CpuAfterimage;
 use afterimage::simulator::Pyramid;
-use afterimage::{Method, Smr};
+use afterimage::{ContextDesc, Exposure, Foveation, Gaze, Image, Method, MethodKind, Reset, Settings, Smr, ViewFrame};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{NO_PAST, Tracked, Tracker, encode, psnr_db};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
@@ -79,16 +81,16 @@ fn play(
         let lods = FOVEATION.lod_map(&geometry, px, &ecc);
         let candidate = FOVEATION.render(&Pyramid::new(full.color.clone(), 3), &lods);
         let tracked = tracker.advance(&full, &geometry, &ecc, &lods);
-        let input = Input {
-            lod: None,
-            gaze: Gaze::At { px },
-            camera: full.previous_from_current,
+        let gaze = Gaze::At { px };
+        let view = View {
+            facts: ViewFrame { previous_from_current: full.previous_from_current, ..ViewFrame::new(geometry, gaze) },
             depth: full.depth.clone(),
             motion: full.motion.clone(),
-            reset: if full.cut { Reset::All } else { Reset::None },
-            ..Input::sharp(candidate.clone())
+            ..View::still(candidate.clone(), px)
         };
-        let shown: Vec<_> = posts.iter_mut().map(|post| step(post, index, &input).shown).collect();
+        let reset = if full.cut { Reset::All } else { Reset::None };
+        let show = |post: &mut CpuAfterimage| post.make(index, &view, Exposure::Same, reset).shown;
+        let shown: Vec<_> = posts.iter_mut().map(show).collect();
         look(&Moment { index, full: &full, lods: &lods, tracked: &tracked, candidate: &candidate, shown: &shown });
     }
 }

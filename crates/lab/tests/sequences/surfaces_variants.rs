@@ -2,94 +2,12 @@
 
 use super::rig::noise_view;
 use super::rig::{Rig, View};
-use super::sequences::{SIZE, foveated, reset, trust};
+use super::sequences::{SIZE, agree, exposure, foveated, settings, surfaces, trust};
 use afterimage::{
-    ContextDesc, DepthConvention, Exposure, Filter, Foveation, Image, Method, MethodKind, MotionConvention, Reset,
-    Settings, Smr,
+    ContextDesc, DepthConvention, Filter, Foveation, Image, Method, MethodKind, MotionConvention, Reset, Settings, Smr,
 };
 use afterimage_lab::source::AnalyticSource;
 use afterimage_testing::Draws;
-
-const FRAMES: u64 = 26;
-
-pub fn settings(method: MethodKind) -> Settings {
-    let foveation = Foveation { rate_mid: 4, rate_far: 8, ..Foveation::default() };
-    Settings { method: method.into(), foveation, ..Settings::paper() }
-}
-
-pub fn all_methods() -> [Settings; 3] {
-    [MethodKind::Taa, MethodKind::Smr, MethodKind::Taau].map(settings)
-}
-
-/// Runs a damaged scene through both, which must agree in every bit of what they show, keep and count.
-#[track_caller]
-fn agree(scene: &str, desc: ContextDesc, settings: Settings, change: impl Fn(u64, View, &mut Rig) -> View) {
-    let Some(mut rig) = Rig::new(desc, settings) else { return };
-    let mut source = AnalyticSource::new(scene, desc.size_px, 70.0, 60.0).unwrap();
-    let (mut kept, mut flushed) = (0, 0);
-    for index in 0..FRAMES {
-        let view = foveated(&mut source, index, &settings.foveation);
-        let view = change(index, view, &mut rig);
-        let (_, trace) = rig.both(index, reset(index), &[view]);
-        kept += trace[0].pixels().iter().filter(|t| !t.take).count();
-        flushed += trace[0].pixels().iter().filter(|t| t.verdict as u32 > 1).count();
-    }
-    println!("{:?}, {scene}: {kept} kept and {flushed} flushed pixels agree", settings.method);
-    assert!(kept > 1000, "history must play a part");
-}
-
-/// The same, but for methods that keep nothing.
-#[track_caller]
-fn agree_or_pass(scene: &str, desc: ContextDesc, settings: Settings, change: impl Fn(u64, View, &mut Rig) -> View) {
-    if settings.method != Method::None {
-        return agree(scene, desc, settings, change);
-    }
-    let Some(mut rig) = Rig::new(desc, settings) else { return };
-    let mut source = AnalyticSource::new(scene, desc.size_px, 70.0, 60.0).unwrap();
-    for index in 0..3 {
-        let view = foveated(&mut source, index, &settings.foveation);
-        let view = change(index, view, &mut rig);
-        rig.both(index, reset(index), &[view]);
-    }
-}
-
-#[test]
-fn absent_inputs_are_switched_off() {
-    for base in all_methods() {
-        let desc = ContextDesc::new(SIZE);
-        agree("lateral", desc, base, |_, v, _| View { depth: None, ..v });
-        agree("still", desc, base, |_, v, _| View { motion: None, ..v });
-        agree("still", desc, base, |_, v, _| View { motion: None, depth: None, ..v });
-        agree("occluder", desc, Settings { depth_test: None, ..base }, |_, v, _| v);
-    }
-}
-
-/// Some stops up and down, thirds of stops, a fade to nothing, and no change.
-fn exposure(index: u64) -> Exposure {
-    let ratios = [1.0, 2.0, 0.5, 1.26, 0.794, 256.0, 1.0 / 256.0, 1e-30, 1e30];
-    match index % 4 {
-        0 => Exposure::Same,
-        _ => Exposure::Changed { ratio: ratios[index as usize % ratios.len()] },
-    }
-}
-
-#[test]
-fn trust_and_exposure_agree_bit_for_bit() {
-    for base in all_methods() {
-        let desc = ContextDesc::new(SIZE);
-        // The mask has NaN, infinity, numbers below 0 and above 1.
-        let masked = |index, v| View { trust: Some(trust(index)), ..v };
-        agree("occluder", desc, base, |index, v, _| masked(index, v));
-        agree("still", desc, base, |index, v, rig| {
-            rig.exposure = exposure(index);
-            v
-        });
-        agree("lateral", desc, base, |index, v, rig| {
-            rig.exposure = exposure(index);
-            View { depth: None, ..masked(index, v) }
-        });
-    }
-}
 
 #[test]
 fn every_filter_and_tunable_of_smr_agrees_bit_for_bit() {
@@ -197,7 +115,7 @@ fn noisy_frames_agree_bit_for_bit() {
         let scenes =
             if method == MethodKind::Smr { &["still", "lateral", "occluder", "light-step"][..] } else { &["still"] };
         for scene in scenes {
-            agree_or_pass(scene, desc, base, |index, v, _| noisy(index, v));
+            agree(scene, desc, base, |index, v, _| noisy(index, v));
         }
         if method != MethodKind::Smr {
             continue;
@@ -251,14 +169,14 @@ fn other_conventions_agree_bit_for_bit() {
     let motion = MotionConvention::UNREAL;
     let depth = DepthConvention::Reversed { near: 0.1, far: f32::INFINITY };
     let desc = ContextDesc { motion, depth, ..ContextDesc::new(SIZE) };
-    for base in all_methods() {
+    for base in surfaces() {
         agree("occluder", desc, base, |_, v, _| in_conventions(v, &desc));
     }
 }
 
 #[test]
 fn odd_sizes_agree_bit_for_bit() {
-    for base in all_methods() {
+    for base in surfaces() {
         for filter in [Filter::Mip, Filter::Block] {
             let settings = Settings { foveation: Foveation { filter, fovea_deg: 0.0, ..base.foveation }, ..base };
             agree("lateral", ContextDesc::new([65, 33]), settings, |_, v, _| v);

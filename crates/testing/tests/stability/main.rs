@@ -40,9 +40,11 @@ fn the_table_has_every_row() {
 /// executors share.
 #[test]
 fn the_tests_of_the_table_exist() {
-    let shared = ["depth_hard.rs", "light_hard.rs", "motion_hard.rs", "sparse_hard/mod.rs"]
-        .map(|file| workspace().join("tests/common").join(file));
-    let shared = shared.map(|file| fs::read_to_string(file).unwrap()).concat();
+    let shared =
+        ["depth", "gaze", "lifecycle", "light", "motion", "simulator", "surfaces"].map(|of| format!("{of}_hard.rs"));
+    let shared = shared.into_iter().chain(["sparse_hard/mod.rs".into()]);
+    let shared = shared.map(|file| fs::read_to_string(workspace().join("tests/common").join(file)).unwrap());
+    let shared = shared.collect::<String>();
     for held in parse(&fs::read_to_string(table_path()).unwrap()) {
         let (name, files) = (held.test.rsplit("::").next().unwrap(), held.files());
         let side = match held.side.as_str() {

@@ -1,10 +1,11 @@
 //! `afterimage sweep` as a process: files, resuming, errors.
 
+use super::rig::{refuses, succeeds};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// Three rounds (sizes of the fovea) of two methods on small frames; the first size has a third point.
@@ -25,32 +26,6 @@ const SMALL: &[&str] = &[
     "no-flush",
 ];
 
-fn tool(args: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_afterimage"));
-    command.args(args).current_dir(afterimage_testing::workspace());
-    command
-}
-
-#[track_caller]
-fn succeeds(args: &[&str]) -> String {
-    let output = tool(args).output().unwrap();
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success() && stderr.is_empty(), "{args:?}: {stderr}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
-/// Checks for an error in one line that contains `words`, and no panic.
-#[track_caller]
-fn refuses(output: &Output, code: i32, words: &[&str]) {
-    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
-    println!("{}", stderr.trim_end());
-    assert_eq!(output.status.code(), Some(code), "{stderr}");
-    assert_eq!(stderr.lines().count(), 1, "one line: {stderr}");
-    for word in words {
-        assert!(stderr.contains(word), "'{word}' is missing: {stderr}");
-    }
-}
-
 fn sweep(out: &Path, more: &[&str]) -> Vec<String> {
     let out = ["--out".to_owned(), out.to_str().unwrap().to_owned()];
     SMALL.iter().chain(more).map(|a| (*a).to_owned()).chain(out).collect()
@@ -58,8 +33,11 @@ fn sweep(out: &Path, more: &[&str]) -> Vec<String> {
 
 #[track_caller]
 fn run(out: &Path, more: &[&str]) -> String {
-    let args = sweep(out, more);
-    succeeds(&args.iter().map(String::as_str).collect::<Vec<_>>())
+    succeeds(&words(&sweep(out, more)))
+}
+
+fn words(args: &[String]) -> Vec<&str> {
+    args.iter().map(String::as_str).collect()
 }
 
 fn table(out: &Path) -> Value {
@@ -89,8 +67,9 @@ fn a_sweep_that_is_killed_goes_on_and_ends_with_the_same_tables() {
         assert!(whole.join(name).exists(), "{name}");
     }
 
-    let args = sweep(&killed, &[]);
-    let mut child = tool(&args.iter().map(String::as_str).collect::<Vec<_>>())
+    let mut child = Command::new(env!("CARGO_BIN_EXE_afterimage"))
+        .args(sweep(&killed, &[]))
+        .current_dir(afterimage_testing::workspace())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
@@ -149,9 +128,8 @@ fn shards_that_are_merged_are_the_whole_sweep() {
 
     let other = path("other");
     run(&other, &["--set", "hfov=50", "--axis", "fovea=5"]);
-    let output =
-        tool(&["sweep", "--merge", &text(&merged), &text(&other), "--out", &text(&path("no"))]).output().unwrap();
-    refuses(&output, 2, &["other", "is part of another sweep"]);
+    let args = ["sweep", "--merge", &text(&merged), &text(&other), "--out", &text(&path("no"))];
+    refuses(&args, &["other", "is part of another sweep"]);
 }
 
 #[test]
@@ -214,12 +192,12 @@ fn a_plan_in_a_file_is_read_and_a_wrong_one_refused() {
     for (text, words) in wrong {
         fs::write(&plan, text).unwrap();
         let args = ["sweep", "analytic:lateral", "--file", &plan, "--out", &path("no")];
-        refuses(&tool(&args).output().unwrap(), 2, &[words]);
+        refuses(&args, &[words]);
     }
     assert!(!Path::new(&path("no")).exists(), "all points are checked before the first is measured");
     let missing = path("missing.toml");
     let args = ["sweep", "analytic:lateral", "--file", &missing, "--out", &path("no")];
-    refuses(&tool(&args).output().unwrap(), 2, &["missing.toml", "cannot be read"]);
+    refuses(&args, &["missing.toml", "cannot be read"]);
 }
 
 /// Traced samples are independent and, where every pixel has samples, unbiased. So the squared error of single frames
@@ -261,24 +239,18 @@ fn another_sweep_is_not_mixed_in_and_what_is_no_sweep_is_refused() {
     let out = folder.path().join("out");
     run(&out, &["--axis", "fovea=5", "--axis", "method=none"]);
     let before = figures(&out);
-    let args = sweep(&out, &["--start", "0.5"]);
-    refuses(
-        &tool(&args.iter().map(String::as_str).collect::<Vec<_>>()).output().unwrap(),
-        2,
-        &["holds a sweep that was made with"],
-    );
+    refuses(&words(&sweep(&out, &["--start", "0.5"])), &["holds a sweep that was made with"]);
     assert_eq!(figures(&out), before);
     // Points with the same frames may be added.
     run(&out, &["--axis", "fovea=5,10", "--axis", "method=none"]);
     assert_eq!(figures(&out).len(), 2);
     let empty = folder.path().to_str().unwrap();
-    refuses(&tool(&["sweep", "--out", empty]).output().unwrap(), 2, &["holds no sweep"]);
-    refuses(&tool(&["sweep", "nowhere.exr", "--out", empty]).output().unwrap(), 2, &["nowhere.exr", "does not exist"]);
+    refuses(&["sweep", "--out", empty], &["holds no sweep"]);
+    refuses(&["sweep", "nowhere.exr", "--out", empty], &["nowhere.exr", "does not exist"]);
     for (shard, words) in [("0/2", "1 <= I <= N"), ("3/2", "1 <= I <= N"), ("x", "2/8")] {
-        refuses(&tool(&["sweep", "x.exr", "--out", empty, "--shard", shard]).output().unwrap(), 2, &[words]);
+        refuses(&["sweep", "x.exr", "--out", empty, "--shard", shard], &[words]);
     }
-    let by = tool(&["sweep", "--out", empty, "--by", "beauty"]).output().unwrap();
-    refuses(&by, 2, &["expected one of jod, flip, psnr_db"]);
+    refuses(&["sweep", "--out", empty, "--by", "beauty"], &["expected one of jod, flip, psnr_db"]);
 }
 
 #[cfg(unix)]
@@ -287,9 +259,7 @@ fn a_full_disk_and_an_unwritable_folder_are_clear_errors() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "x").unwrap();
-    let args = sweep(&file, &[]);
-    let output = tool(&args.iter().map(String::as_str).collect::<Vec<_>>()).output().unwrap();
-    refuses(&output, 2, &["cannot be written", "give --out a folder"]);
+    refuses(&words(&sweep(&file, &[])), &["cannot be written", "give --out a folder"]);
 
     // Limit files to 1 KiB to simulate a full disk. The signal is ignored, so that writing fails.
     let out = folder.path().join("out");
@@ -297,7 +267,9 @@ fn a_full_disk_and_an_unwritable_folder_are_clear_errors() {
     let script = format!("trap '' XFSZ; ulimit -f 2; exec {} {command}", env!("CARGO_BIN_EXE_afterimage"));
     let output =
         Command::new("sh").args(["-c", &script]).current_dir(afterimage_testing::workspace()).output().unwrap();
-    refuses(&output, 1, &["cannot be written", "free space or choose another --out"]);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(1) && stderr.lines().count() == 1, "{stderr}");
+    assert!(stderr.contains("cannot be written") && stderr.contains("free space or choose another --out"), "{stderr}");
     // No partial file remains, and the sweep resumes when there is space.
     let names = |part: &str| -> Vec<_> {
         fs::read_dir(out.join(part)).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect()

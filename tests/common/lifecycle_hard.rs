@@ -1,0 +1,121 @@
+//! Hard cases of a context's life, H76 to H78: laws that hold on either executor. What remains equals a fresh context,
+//! bit for bit.
+
+use crate::depth_hard::{Made, Make, SIZE, Steps, desc};
+use crate::images::{View, noise};
+use crate::surfaces_hard::settings;
+use afterimage::{ContextDesc, Exposure, Image, MethodKind, Reset};
+
+/// The laws as tests of an executor. `$held` runs one, and returns what it measured.
+macro_rules! lifecycle_laws {
+    ($side:ident, $held:ident) => {
+        laws! { $side, $held,
+            h76_other_sizes_and_back_equal_a_fresh_context: "H76", other_sizes;
+            h77_a_cut_shows_the_candidate_and_equals_a_fresh_context: "H77", cut;
+            h78_resets_equal_a_fresh_context: "H78", resets;
+        }
+    };
+}
+pub(crate) use lifecycle_laws;
+
+pub const METHODS: [MethodKind; 4] = [MethodKind::Wrs, MethodKind::Smr, MethodKind::Taa, MethodKind::Taau];
+
+fn of(method: MethodKind) -> ContextDesc {
+    match method {
+        MethodKind::Wrs => desc(crate::settings::ungated()),
+        method => desc(settings(method)),
+    }
+}
+
+/// Frames so that all output depends on earlier ones: noise for wrs, for others a picture that fades, half of it
+/// coarse. Every third frame moves, over two depths.
+fn frame(method: MethodKind, index: u64) -> View {
+    let coarse = |x: u32| (u64::from(x) + 5 * index) % 26 < 13;
+    let picture = match method {
+        MethodKind::Wrs => noise(SIZE, &format!("run {index}")),
+        _ => noise(SIZE, "run").map(|c| c.map(|v| v * (1.0 + 0.02 * index as f32))),
+    };
+    let color = Image::from_fn(SIZE, |[x, y]| {
+        let at = |x: u32, y: u32| picture.at(x as usize, y as usize);
+        if method == MethodKind::Wrs || !coarse(x) { at(x, y) } else { at(x & !1, y & !1) }
+    });
+    let motion = |[x, y]: [u32; 2]| if (x / 8 + y / 8) % 2 == 0 { [16.0, -1.0] } else { [-0.5, 2.5] };
+    View {
+        lod: (method != MethodKind::Wrs).then(|| Image::from_fn(SIZE, |[x, _]| if coarse(x) { 1.5 } else { 0.0 })),
+        depth: Some(Image::from_fn(SIZE, |[x, _]| if x % 32 < 16 { 2.0 } else { 30.0 })),
+        motion: (index % 3 == 2).then(|| Image::from_fn(SIZE, motion)),
+        ..View::still(color, [20.0, 20.0])
+    }
+}
+
+fn step(post: &mut Box<dyn Steps>, index: u64, view: &View, reset: Reset) -> Made {
+    post.make(index, view, Exposure::Same, reset)
+}
+
+fn run(post: &mut Box<dyn Steps>, method: MethodKind, frames: std::ops::Range<u64>) -> Vec<Made> {
+    frames.map(|index| step(post, index, &frame(method, index), Reset::None)).collect()
+}
+
+/// What a fresh context makes of frames 20 to 29, and another after its first 20 frames.
+fn fresh_and_used(make: Make<'_>, method: MethodKind) -> Option<(Vec<Made>, Box<dyn Steps>)> {
+    let (mut fresh, mut used) = (make(of(method))?, make(of(method))?);
+    run(&mut used, method, 0..20);
+    Some((run(&mut fresh, method, 20..30), used))
+}
+
+/// Odd, even, a single pixel, and back, with frames between: another pixel density is another size.
+pub fn other_sizes(make: Make<'_>) -> Option<String> {
+    for method in METHODS {
+        let (fresh, mut resized) = fresh_and_used(make, method)?;
+        for size in [[3, 5], [64, 64], [1, 1], [65, 47], [53, 41]] {
+            resized.resize(size);
+            let lod = (method != MethodKind::Wrs).then(|| Image::filled(size, 0.0));
+            let view = View { lod, ..View::still(noise(size, "resized"), [20.0, 20.0]) };
+            let made = step(&mut resized, 0, &view, Reset::None);
+            assert_eq!(made.shown, view.color, "{method:?}: the first frame of a size is the candidate");
+            step(&mut resized, 1, &view, Reset::None);
+        }
+        resized.resize(SIZE);
+        assert!(run(&mut resized, method, 20..30) == fresh, "{method:?}");
+    }
+    Some("wrs, smr, taa: 5 sizes, odd, even and 1x1, then back: 10 frames as of a fresh context, bit for bit".into())
+}
+
+/// A cut, or a pause, said twice.
+pub fn cut(make: Make<'_>) -> Option<String> {
+    for method in METHODS {
+        let (fresh, mut cut) = fresh_and_used(make, method)?;
+        let view = frame(method, 20);
+        for _ in 0..2 {
+            let made = step(&mut cut, 20, &view, Reset::All);
+            assert_eq!(made.shown, view.color, "{method:?}: the cut shows what came");
+            assert!(made == fresh[0], "{method:?}");
+        }
+        assert!(run(&mut cut, method, 21..30) == fresh[1..], "{method:?}");
+    }
+    Some(
+        "wrs, smr, taa: the first frame after a cut is the candidate, 9 more as of a fresh context, bit for bit".into(),
+    )
+}
+
+/// A reset at frame 0 and two frames running, and a context that is told to forget.
+pub fn resets(make: Make<'_>) -> Option<String> {
+    for method in METHODS {
+        let (fresh, mut twice) = fresh_and_used(make, method)?;
+        for index in 18..20 {
+            step(&mut twice, index, &frame(method, index), Reset::All);
+        }
+        let mut stale = make(of(method))?;
+        run(&mut stale, method, 19..20);
+        let expected = run(&mut stale, method, 20..30);
+        assert!(run(&mut twice, method, 20..30) == expected, "{method:?}: two frames running");
+        assert!(expected[0].shown != fresh[0].shown, "{method:?}, the planted error: no reset");
+        stale.forget();
+        assert!(run(&mut stale, method, 20..30) == fresh, "{method:?}: forgotten");
+        let [mut with_reset, mut without] = [make(of(method))?, make(of(method))?];
+        let first = step(&mut with_reset, 0, &frame(method, 0), Reset::All);
+        assert!(run(&mut without, method, 0..1) == [first], "{method:?}: a reset at frame 0");
+        assert!(run(&mut with_reset, method, 1..10) == run(&mut without, method, 1..10), "{method:?}");
+    }
+    Some("wrs, smr, taa: reset twice running, and at frame 0: 10 frames each as of a fresh context, bit for bit".into())
+}

@@ -1,0 +1,8 @@
+//! Hard cases for the methods that store surfaces: the laws that hold on either executor.
+
+use crate::laws::laws;
+use crate::pass::held;
+use crate::surfaces_hard::*;
+use afterimage_testing::holds;
+
+surfaces_laws!(Cpu, held);
