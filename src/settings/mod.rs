@@ -6,6 +6,8 @@ pub use wrs::{Bias, Gate, GateMetric, GateScale, Sampler, Wrs};
 
 use crate::error::{SettingsError, check};
 use crate::foveation::Foveation;
+#[cfg(feature = "bevy-0-19")]
+use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
 /// Method with its settings: how history is stored and combined with the foveated frame. Default:
 /// [`Smr`](Self::Smr).
@@ -19,6 +21,7 @@ use crate::foveation::Foveation;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
 #[non_exhaustive]
 pub enum Method {
     /// No method: the foveated frame unchanged, except that non-finite pixels are black. No history.
@@ -79,6 +82,7 @@ pub enum MethodKind {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
 pub struct Smr {
     /// Share of equally coarse history in the output: 0 to 0.98. A larger share reduces the flicker of coarse regions
     /// in motion, and follows changes of light later. Default 0.9.
@@ -137,6 +141,7 @@ impl Smr {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
 pub struct Repair {
     /// Largest share of a view's pixels to repair in a frame: 0 to 1. A quad of 2x2 pixels counts as four. A larger
     /// budget completes the picture sooner after cuts and behind moving objects. It costs at most that share of a
@@ -163,6 +168,7 @@ impl Default for Repair {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
 pub struct DepthTest {
     /// Largest relative difference of distance within one surface: 0.0001 to 0.999. Less rejects valid history where
     /// motion or depth is imprecise; more lets surfaces at similar distance bleed into each other. Default 0.02.
@@ -193,6 +199,7 @@ impl Default for DepthTest {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
 pub struct Settings {
     /// Method with its settings: how history is stored and combined with the frame. Default [`Method::Smr`].
     pub method: Method,

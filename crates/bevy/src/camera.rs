@@ -10,6 +10,20 @@ use bevy::render::render_resource::TextureUsages;
 ///
 /// Sets [`Msaa::Off`] while it runs, because samples of a foveated frame have no neighbours to average with. Requires
 /// `DepthPrepass` and `MotionVectorPrepass`, which history needs; they stay when this component is removed.
+///
+/// All of it may change at any time, through reflection, too: an inspector such as `bevy-inspector-egui` shows
+/// [`settings`](field@Self::settings) down to each number, as it does the fields of [`Foveated`].
+///
+/// ```
+/// use bevy::prelude::*;
+/// use bevy_afterimage::Afterimage;
+/// use bevy_afterimage::afterimage::Settings;
+///
+/// let mut camera = Afterimage { settings: Some(Settings::steady()), ..default() };
+/// let accumulate: &mut f32 = camera.path_mut("settings.0.method.0.accumulate")?;
+/// *accumulate = 0.8;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 #[require(Foveated, DepthPrepass, MotionVectorPrepass)]
@@ -18,7 +32,6 @@ pub struct Afterimage {
     pub preset: Preset,
     /// Settings in full, instead of the preset. Their `foveation`, `Smr::antialias` and `Smr::repair` are ignored:
     /// [`Foveated`], [`antialias`](Self::antialias) and [`repair`](Self::repair) say them.
-    #[reflect(ignore)]
     pub settings: Option<Settings>,
     /// Antialiases [`FoveationKind::Sparse`] with the method smr, in place of temporal antialiasing and MSAA: the
     /// projection of what is shaded moves by a part of a pixel each frame, and history stores means of samples. Better
@@ -136,7 +149,7 @@ impl FoveationKind {
 /// Shows a view of the post-process's decisions instead of the frame. Not with [`FoveationKind::QuadViews`], which
 /// decides nothing.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
-#[reflect(Component, opaque)]
+#[reflect(Component)]
 pub struct AfterimageDebug(pub DebugView);
 
 /// Size in pixels of what a camera draws: its viewport, which must lie inside its target. `None`: nothing is drawn, or

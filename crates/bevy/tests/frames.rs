@@ -9,6 +9,7 @@ mod frames {
     mod conventions;
     mod events;
     mod pixels;
+    mod reflection;
     mod repair;
 }
 
