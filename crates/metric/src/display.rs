@@ -25,9 +25,10 @@ impl Display {
     #[inline(always)]
     #[expect(clippy::manual_clamp, reason = "`clamp` would keep NaN")]
     pub fn luminance(&self, encoded: [f32; 3]) -> f32 {
-        // `max` turns NaN into 0.
-        let linear = encoded.map(|v| color::srgb_decode(v.max(0.0).min(1.0)));
+        // `max` turns NaN into 0. No `map`: it keeps compilers from vector instructions.
+        let linear = |v: f32| color::srgb_decode(v.max(0.0).min(1.0));
+        let [r, g, b] = encoded;
         let black = self.peak_nits / self.contrast;
-        black + (self.peak_nits - black) * color::luma(Vec3::from(linear))
+        black + (self.peak_nits - black) * color::luma(Vec3::new(linear(r), linear(g), linear(b)))
     }
 }

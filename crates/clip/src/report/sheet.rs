@@ -163,7 +163,8 @@ fn caption(column: &Column<'_>) -> String {
     };
     let db = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.2} dB"));
     let ssim = scores.whole.ssim.map_or("-".into(), |v| format!("{v:.4}"));
-    format!("PSNR {}  SSIM {ssim}  retained {}", db(scores.whole.psnr_db), db(scores.retained_psnr_db))
+    let jod = scores.whole.jod.map_or(String::new(), |v| format!("JOD {v:.2}  "));
+    format!("{jod}PSNR {}  SSIM {ssim}  retained {}", db(scores.whole.psnr_db), db(scores.retained_psnr_db))
 }
 
 fn panel_size(frame: [u32; 2]) -> [u32; 2] {

@@ -84,6 +84,7 @@ impl ReferenceVideo {
     fn band(&self, levels: &[Levels; CHANNELS], level: usize, ecc_deg: &Image<f32>) -> ReferenceBand {
         let fine = levels.each_ref().map(|l| l.at(level));
         let coarse = levels.each_ref().map(|l| l.at(level + 1));
+        let seen = self.sensitivities(coarse[0], level, ecc_deg);
         let [mut c0, mut c1, mut s0, mut s1, mut adapted_nits] = [0; 5].map(|_| fine[0].like());
         let rows = ROWS * fine[0].width;
         (
@@ -99,16 +100,60 @@ impl ReferenceVideo {
                 Arch::new().dispatch(Prepare {
                     fine,
                     coarse,
-                    level,
+                    seen: &seen,
                     first: strip * ROWS,
-                    curves: &self.bands[level],
-                    ecc_deg,
                     contrast: [c0, c1],
                     sensitivity: [s0, s1],
                     adapted_nits,
                 });
             });
         ReferenceBand { contrast: [c0, c1], sensitivity: [s0, s1], adapted_nits }
+    }
+}
+
+impl ReferenceVideo {
+    /// Sensitivity of both channels in band `level`, at the resolution of the level below it: both luminance, which is
+    /// that level, and eccentricity change slowly.
+    fn sensitivities(&self, coarse: &Plane, level: usize, ecc_deg: &Image<f32>) -> [Plane; CHANNELS] {
+        let [mut s0, mut s1] = [0; 2].map(|_| coarse.like());
+        let rows = ROWS * coarse.width;
+        (s0.values.par_chunks_mut(rows), s1.values.par_chunks_mut(rows)).into_par_iter().enumerate().for_each(
+            |(strip, (s0, s1))| {
+                let (curves, first) = (&self.bands[level], strip * ROWS);
+                Arch::new().dispatch(Sense { coarse, curves, level: level + 1, first, ecc_deg, sensitivity: [s0, s1] });
+            },
+        );
+        [s0, s1]
+    }
+}
+
+/// Rows of the sensitivity of a band.
+struct Sense<'a> {
+    coarse: &'a Plane,
+    curves: &'a [SensitivityAt; CHANNELS],
+    level: usize,
+    first: usize,
+    ecc_deg: &'a Image<f32>,
+    sensitivity: [&'a mut [f32]; CHANNELS],
+}
+
+impl WithSimd for Sense<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { coarse, curves, level, first, ecc_deg, sensitivity } = self;
+        let width = coarse.width;
+        let mut e_deg = vec![0.0; width];
+        for (c, sensitivity) in sensitivity.into_iter().enumerate() {
+            for (i, sensitivity) in sensitivity.chunks_exact_mut(width).enumerate() {
+                ecc_row(ecc_deg, level, first + i, &mut e_deg);
+                for ((sensitivity, &nits), &e_deg) in sensitivity.iter_mut().zip(coarse.row(first + i)).zip(&e_deg) {
+                    let e_deg = ECCENTRICITY.scale[c] * e_deg / (1.0 + e_deg / ECCENTRICITY.knee_deg);
+                    *sensitivity = curves[c].sensitivity(nits.max(LEAST_NITS), e_deg);
+                }
+            }
+        }
     }
 }
 
@@ -125,10 +170,9 @@ pub(super) fn ecc_row(ecc_deg: &Image<f32>, level: usize, y: usize, out: &mut [f
 struct Prepare<'a> {
     fine: [&'a Plane; CHANNELS],
     coarse: [&'a Plane; CHANNELS],
-    level: usize,
+    /// Sensitivity at half the size.
+    seen: &'a [Plane; CHANNELS],
     first: usize,
-    curves: &'a [SensitivityAt; CHANNELS],
-    ecc_deg: &'a Image<f32>,
     contrast: [&'a mut [f32]; CHANNELS],
     sensitivity: [&'a mut [f32]; CHANNELS],
     adapted_nits: &'a mut [f32],
@@ -139,9 +183,9 @@ impl WithSimd for Prepare<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { fine, coarse, level, first, curves, ecc_deg, contrast, sensitivity, adapted_nits } = self;
+        let Self { fine, coarse, seen, first, contrast, sensitivity, adapted_nits } = self;
         let width = fine[0].width;
-        let [mut low, mut e_deg] = [0; 2].map(|_| vec![0.0; width]);
+        let mut low = vec![0.0; width];
         let mut doubler = Doubler::new(coarse[0].width);
         for (i, nits) in adapted_nits.chunks_exact_mut(width).enumerate() {
             doubler.row(coarse[0], first + i, nits);
@@ -152,11 +196,9 @@ impl WithSimd for Prepare<'_> {
             for (i, ((contrast, sensitivity), nits)) in rows.zip(adapted_nits.chunks_exact(width)).enumerate() {
                 let y = first + i;
                 doubler.row(coarse[c], y, &mut low);
-                ecc_row(ecc_deg, level, y, &mut e_deg);
+                doubler.row(&seen[c], y, sensitivity);
                 let fine = fine[c].row(y);
                 for x in 0..width {
-                    let e_deg = ECCENTRICITY.scale[c] * e_deg[x] / (1.0 + e_deg[x] / ECCENTRICITY.knee_deg);
-                    sensitivity[x] = curves[c].sensitivity(nits[x], e_deg);
                     // Contrast is relative to the luminance of the surroundings (equation 8). Operations have the
                     // order of those in `compare`, so that equal frames have equal bits.
                     contrast[x] = sensitivity[x] * (fine[x] - low[x]) * (1.0 / nits[x]);
