@@ -125,6 +125,11 @@ impl MethodAccumulator {
         self.scorer.scores()
     }
 
+    /// Visible difference of the last frame in JOD; `None` if it is not measured.
+    pub fn visible_jod(&self) -> Option<Image<f32>> {
+        self.scorer.visible_jod()
+    }
+
     /// Times of the pass.
     pub fn times(&self) -> &Times {
         &self.times

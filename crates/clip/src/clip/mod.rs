@@ -296,10 +296,11 @@ impl Clip {
         gaze_px: &[[f32; 2]],
         out: &Output,
     ) -> Result<(), Failure> {
-        let mut columns = vec![Column { name: "reference", shown: reference, scores: None }];
+        let mut columns = vec![Column { name: "reference", shown: reference, scores: None, visible_jod: None }];
         for (((name, _), shown), accumulator) in self.methods.iter().zip(encoded).zip(accumulators) {
             let name = if *name == "none" { "none (foveated only)" } else { name };
-            columns.push(Column { name, shown, scores: Some(accumulator.scores()) });
+            let (scores, visible_jod) = (Some(accumulator.scores()), accumulator.visible_jod());
+            columns.push(Column { name, shown, scores, visible_jod });
         }
         let sheet = Sheet {
             title: self.title.clone(),

@@ -190,6 +190,11 @@ impl Scorer {
         }
     }
 
+    /// Where the last frame differs visibly, in JOD; `None` if the references have no JOD.
+    pub fn visible_jod(&self) -> Option<Image<f32>> {
+        self.video.heat_map()
+    }
+
     /// Scores of the frames added so far.
     pub fn scores(&self) -> Scores {
         let video = self.video.score();

@@ -22,6 +22,9 @@ const PANEL_PX: u32 = 640;
 const MIN_PANEL_PX: u32 = 480;
 const GAP_PX: u32 = 12;
 
+/// Loss in JOD that the map of visible differences shows as white.
+const WORST_JOD: f32 = 5.0;
+
 /// Magnification of the bottom row.
 const ZOOM_FACTOR: u32 = 4;
 
@@ -33,6 +36,10 @@ pub struct Column<'a> {
     pub shown: &'a Image<[f32; 3]>,
     /// Scores over the clip; `None` for the reference.
     pub scores: Option<Scores>,
+    /// Visible difference of the frame shown, in JOD ([`TestVideo::heat_map`]); `None` if it is not measured.
+    ///
+    /// [`TestVideo::heat_map`]: afterimage_metric::TestVideo::heat_map
+    pub visible_jod: Option<Image<f32>>,
 }
 
 /// Contents of a contact sheet.
@@ -59,7 +66,18 @@ impl Sheet<'_> {
         let panel = panel_size(reference.size());
         let count = self.columns.len() as u32;
         let zoom_center = self.place_left();
-        let rows = if zoom_center.is_some() { 3 } else { 2 };
+        let has_visible = self.columns.iter().any(|column| column.visible_jod.is_some());
+        let mut notes = vec![
+            "the last frame; yellow: gaze and fovea; blue: path of the gaze; green: area magnified below",
+            "error against the reference: black is zero, white is 25 % of full scale or more",
+        ];
+        if has_visible {
+            notes.push("what a person sees of it, with the gaze there: black is nothing, white loses 5 JOD or more");
+        }
+        if zoom_center.is_some() {
+            notes.push("magnified area where the gaze rested before");
+        }
+        let rows = notes.len() as u32;
         let head = 2 * LINE_PX + GAP_PX;
         let row_height = panel[1] + LINE_PX + GAP_PX;
         let width = (count * (panel[0] + GAP_PX) + GAP_PX).max(120 * CHAR_PX);
@@ -72,17 +90,16 @@ impl Sheet<'_> {
             canvas.text(&caption(column), x, 2 * LINE_PX + GAP_PX, FAINT);
             self.draw_shown(&mut canvas, column, panel, [x, row_y(0)], zoom_center);
             self.draw_error(&mut canvas, column, panel, [x, row_y(1)]);
+            if let Some(lost) = &column.visible_jod {
+                let heat = lost.map(|jod| heat((jod / WORST_JOD).min(1.0)).to_array());
+                canvas.put(&fit(&to_rgb8(&heat), panel), x, row_y(2));
+            }
             if let Some(center) = zoom_center {
-                canvas.put(&zoom(column.shown, center, panel), x, row_y(2));
-                canvas.frame([x, row_y(2)], panel, 2, ZOOM);
+                canvas.put(&zoom(column.shown, center, panel), x, row_y(rows - 1));
+                canvas.frame([x, row_y(rows - 1)], panel, 2, ZOOM);
             }
         }
-        let notes = [
-            "the last frame; yellow: gaze and fovea; blue: path of the gaze; green: area magnified below",
-            "error against the reference: black is zero, white is 25 % of full scale or more",
-            "magnified area where the gaze rested before",
-        ];
-        for (row, note) in notes.iter().take(rows as usize).enumerate() {
+        for (row, note) in notes.iter().enumerate() {
             canvas.text(note, GAP_PX, row_y(row as u32) + panel[1] + 2, FAINT);
         }
         canvas.0

@@ -6,7 +6,7 @@ use super::table::Table;
 use std::fmt::Write;
 
 /// Metrics of the tables: as many as fit on a page.
-const KEYS: [&str; 6] = ["flip", "psnr_db", "ssim", "weighted_psnr_db", "retained_psnr_db", "flicker"];
+const KEYS: [&str; 7] = ["jod", "flip", "psnr_db", "ssim", "weighted_psnr_db", "retained_psnr_db", "flicker"];
 
 /// All tables: points by cost, cost of each switch, convergence of traced points.
 pub fn markdown(table: &Table) -> String {

@@ -6,7 +6,7 @@ const inputs = [...new Set(table.rows.map((row) => row.input))];
 const chosen = { input: inputs[0], metric: metrics[0], pinned: null };
 
 // Metrics that tables always show.
-const MAIN = ["flip", "psnr_db", "retained_psnr_db", "flicker", "ghost_energy"];
+const MAIN = ["jod", "flip", "psnr_db", "retained_psnr_db", "flicker", "ghost_energy"];
 const mainMetrics = () => metrics.filter((m) => MAIN.includes(m.key) || m === chosen.metric);
 const ofInput = () => table.rows.filter((row) => row.input === chosen.input);
 

@@ -51,9 +51,9 @@ pub fn embed(table: &Table, read: &dyn Fn(&str, &str) -> Option<Vec<u8>>) -> Pic
 /// Rows in order of interest: points on a frontier, then the base points of switches, then the rest; inputs take turns.
 fn in_order(table: &Table) -> Vec<&Row> {
     let rank = |row: &Row| {
-        let place = ["flip", "psnr_db", "retained_psnr_db"].iter().position(|key| row.frontier.contains(key));
+        let place = ["jod", "flip", "psnr_db", "retained_psnr_db"].iter().position(|key| row.frontier.contains(key));
         let is_base = table.prices.iter().any(|p| p.base == row.id);
-        place.unwrap_or(if is_base { 3 } else { 4 })
+        place.unwrap_or(if is_base { 4 } else { 5 })
     };
     let mut seen: HashMap<(&str, usize), usize> = HashMap::new();
     let mut order: Vec<((usize, usize), &Row)> = vec![];
