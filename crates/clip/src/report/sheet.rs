@@ -178,10 +178,23 @@ fn caption(column: &Column<'_>) -> String {
     let Some(scores) = column.scores else {
         return "all pixels at full rate".into();
     };
-    let db = |v: Option<f64>| v.map_or("-".into(), |v| format!("{v:.2} dB"));
-    let ssim = scores.whole.ssim.map_or("-".into(), |v| format!("{v:.4}"));
-    let jod = scores.whole.jod.map_or(String::new(), |v| format!("JOD {v:.2}  "));
-    format!("{jod}PSNR {}  SSIM {ssim}  retained {}", db(scores.whole.psnr_db), db(scores.retained_psnr_db))
+    let [psnr, retained] = [scores.whole.psnr_db, scores.retained_psnr_db];
+    let number = |v: Option<f64>, digits: usize| v.map_or("-".into(), |v| format!("{v:.digits$}"));
+    // A panel holds 48 characters.
+    match scores.whole.jod {
+        Some(jod) => format!(
+            "JOD {jod:.2}  PSNR {}  SSIM {}  retained {}",
+            number(psnr, 1),
+            number(scores.whole.ssim, 3),
+            number(retained, 1)
+        ),
+        None => format!(
+            "PSNR {} dB  SSIM {}  retained {} dB",
+            number(psnr, 2),
+            number(scores.whole.ssim, 4),
+            number(retained, 2)
+        ),
+    }
 }
 
 fn panel_size(frame: [u32; 2]) -> [u32; 2] {
