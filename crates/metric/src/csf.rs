@@ -48,7 +48,7 @@ pub const TRANSIENT: ChannelSensitivity = ChannelSensitivity {
 };
 
 /// Constants of summation over area: A0 in square degrees, and f0 squared in (cycles per degree)^2 (Rovamo et al.
-/// 1993, equation 11).
+/// 1993).
 const SUMMATION: [f32; 2] = [56.126, 0.62512];
 
 impl ChannelSensitivity {

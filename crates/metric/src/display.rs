@@ -8,7 +8,7 @@ use glam::Vec3;
 pub struct Display {
     /// Luminance of white in cd/m2.
     pub peak_nits: f32,
-    /// Luminance of white over that of black.
+    /// Luminance of white over that of black, at least 1.
     pub contrast: f32,
 }
 
@@ -20,7 +20,7 @@ impl Default for Display {
 }
 
 impl Display {
-    /// Luminance in cd/m2 of an sRGB-encoded color (FovVideoVDP, equation 1, without light from the room). Values
+    /// Luminance in cd/m2 of an sRGB-encoded color, without light from the room. Values
     /// outside \[0, 1\] are clamped; NaN is black.
     #[inline(always)]
     #[expect(clippy::manual_clamp, reason = "`clamp` would keep NaN")]
@@ -28,7 +28,7 @@ impl Display {
         // `max` turns NaN into 0. No `map`: it keeps compilers from vector instructions.
         let linear = |v: f32| color::srgb_decode(v.max(0.0).min(1.0));
         let [r, g, b] = encoded;
-        let black = self.peak_nits / self.contrast;
+        let black = self.peak_nits / self.contrast.max(1.0);
         black + (self.peak_nits - black) * color::luma(Vec3::new(linear(r), linear(g), linear(b)))
     }
 }

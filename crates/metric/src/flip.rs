@@ -4,6 +4,7 @@
 //! A contrast sensitivity filter removes detail that the eye cannot resolve at the given distance. The filtered images
 //! are then compared by color, with more weight where edges or points differ.
 
+use crate::jod::pixels_per_degree;
 use crate::strip::{BLOCK, Plane, block, blocks, linear, store, strips};
 use afterimage::kernel::{approx, color};
 use afterimage::{Image, ViewGeometry};
@@ -94,8 +95,7 @@ impl Flip {
 
     /// The metric at the pixels per degree in the middle of `view`.
     pub fn for_view(view: &ViewGeometry) -> Self {
-        let ([tangent_per_px, _], _) = view.scale_offset();
-        Self::new(1.0 / (2.0 * (0.5 * tangent_per_px).atan().to_degrees()))
+        Self::new(pixels_per_degree(view))
     }
 
     /// Resolution in pixels per degree.

@@ -1,5 +1,5 @@
-//! Temporal channels: a sustained one that averages over a tenth of a second, and a transient one that answers change
-//! (FovVideoVDP, section 4.2).
+//! Temporal channels, as in FovVideoVDP: a sustained one that averages over a tenth of a second, and a transient one
+//! that answers change.
 
 use crate::display::Display;
 use crate::pyramid::Plane;
@@ -27,11 +27,13 @@ pub struct TemporalFilters {
 }
 
 impl TemporalFilters {
-    /// The filters at a rate in frames per second.
+    /// The filters at a rate in frames per second, clamped to 1 to 1000.
+    #[expect(clippy::manual_clamp, reason = "`clamp` would keep NaN")]
     pub fn new(fps: f32) -> Self {
+        let fps = fps.max(1.0).min(1000.0);
         let taps = ((MEMORY_S * fps).ceil() as usize).max(1);
         let seconds = |i: usize| i as f32 / fps;
-        // A log-normal curve and its derivative (equations 5 and 6).
+        // A log-normal curve and its derivative.
         let ln_ratio = |t: f32| ((t + 1e-4) / PEAK_S).ln();
         let curve = |t: f32| (-ln_ratio(t).powi(2) / (2.0 * WIDTH * WIDTH)).exp();
         let slope = |t: f32| -curve(t) * ln_ratio(t) / (WIDTH * WIDTH * (t + 1e-4));

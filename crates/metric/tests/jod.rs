@@ -178,7 +178,6 @@ fn a_grating_at_its_threshold_is_just_seen_at_any_eccentricity() {
     let pixels_per_degree = viewing().pixels_per_degree();
     let losses = [0.0, 5.0, 10.0, 20.0].map(|ecc_deg: f32| {
         let cpd = 1.0;
-        // 20 times the threshold: 8 bits do not hold less, and JOD is smooth.
         let area = viewing().geometry.hfov_deg().powi(2) * 0.6;
         let threshold = 1.0 / sensitivity(cpd, 0.0, ecc_deg, 50.0, area);
         let gaze = [80.0 + ecc_deg * pixels_per_degree, 48.0];
@@ -294,6 +293,11 @@ fn hard_input_gives_a_finite_score() {
     assert!(huge.jod.is_finite(), "{huge:?}");
     let one = score_seen(viewing(), 1, |_| None, scene, |i| blurred(&scene(i), 2));
     assert!(one.jod < 10.0 && one.jod.is_finite());
+    for (fps, contrast) in [(0.0, 1000.0), (f32::NAN, 1000.0), (f32::INFINITY, 1000.0), (60.0, 0.0)] {
+        let viewing = Viewing { fps, display: Display { contrast, ..Display::default() }, ..viewing() };
+        let seen = score_seen(viewing, 2, |_| Some(MIDDLE), scene, |i| blurred(&scene(i), 2));
+        assert!(seen.jod.is_finite(), "{fps} {contrast}: {seen:?}");
+    }
     assert_eq!(TestVideo::default().score(), None);
     assert!(TestVideo::default().heat_map().is_none());
     for size in [[1, 1], [1, 7], [2, 2], [3, 200], [17, 5]] {

@@ -74,7 +74,7 @@ impl References {
         Self { flip: Some(flip), ..Self::default() }
     }
 
-    /// The references, with JOD too, which takes a third of the time of FLIP.
+    /// The references, with JOD too.
     pub fn with_jod(self, viewing: Viewing) -> Self {
         Self { video: Some(ReferenceVideo::new(viewing)), ..self }
     }

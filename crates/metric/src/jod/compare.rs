@@ -157,7 +157,7 @@ impl WithSimd for Compare<'_> {
 /// Visible difference of two contrasts in multiples of their threshold, to the power p.
 #[inline(always)]
 fn masked(test: f32, reference: f32, channel: usize) -> f32 {
-    // Mutual masking: only what both videos show can hide the difference (equation 11).
+    // Mutual masking: only what both videos show can hide the difference.
     let mask = MASK_GAIN[channel] * test.abs().min(reference.abs());
     let [difference, squared_mask] = [(test - reference) * (test - reference), mask * mask];
     // The exponents 4 of the difference and 4.5 of the mask need no more than products and a root.

@@ -22,7 +22,7 @@ pub(super) struct Eccentricity {
 }
 pub(super) const ECCENTRICITY: Eccentricity = Eccentricity { scale: [0.6895, 0.803], knee_deg: 27.52 };
 
-/// Exponent of the difference, p (equation 11); that of the mask, q, is 4.5.
+/// Exponent of the difference, p; that of the mask, q, is 4.5.
 pub(super) const DIFFERENCE_EXPONENT: f64 = 4.0;
 /// Gain of the mask, k.
 pub(super) const MASK_GAIN: [f32; CHANNELS] = [0.9036, 2.423];
@@ -38,6 +38,6 @@ pub(super) const BASE_EXPONENT: f64 = 0.8844;
 pub(super) const BAND_EXPONENT: f64 = 2.256;
 pub(super) const CHANNEL_EXPONENT: f64 = 2.299;
 pub(super) const FRAME_EXPONENT: f64 = 2.924;
-/// JOD lost by a visible difference d: scale times d to the exponent (equation 14).
+/// JOD lost by a visible difference d: scale times d to the exponent.
 pub(super) const JOD_SCALE: f64 = 0.2965;
 pub(super) const JOD_EXPONENT: f64 = 1.659;

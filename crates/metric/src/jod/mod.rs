@@ -18,13 +18,12 @@
 //! ```
 //!
 //! The model follows FovVideoVDP (Mantiuk et al., "FovVideoVDP: A visible difference predictor for wide field-of-view
-//! video", 2021), written from the paper: luminance of the display, a sustained and a transient temporal channel, a
-//! Laplacian pyramid of local contrasts, sensitivity by frequency, luminance and eccentricity, mutual masking, and
-//! pooling. It sees luminance only. Constants that the paper does not state, or that only fit its own sensitivity
-//! function, are fitted to the scores of FovVideoVDP for 171 pairs of videos; `docs/metrics.md` has its agreement with
-//! 171 other pairs.
+//! video", 2021) in its steps: luminance of the display, a sustained and a transient temporal channel, a Laplacian
+//! pyramid of local contrasts, sensitivity by frequency, luminance and eccentricity, mutual masking, and pooling. It
+//! sees luminance only. The constants are our own, fitted to the scores of FovVideoVDP for 171 pairs of videos;
+//! `docs/metrics.md` has its agreement with 171 other pairs.
 //!
-//! Memory: the luminance of 250 ms of frames, for the reference and for each test, four bytes a pixel, and about thirty
+//! Memory: the luminance of 250 ms of frames, for the reference and for each test, four bytes a pixel, and about 120
 //! bytes a pixel for the frame at hand. The score does not depend on the number of threads.
 
 mod compare;
@@ -37,6 +36,7 @@ pub use compare::TestVideo;
 pub use pool::VideoScore;
 pub use reference::{ReferenceFrame, ReferenceVideo};
 pub use viewing::Viewing;
+pub(crate) use viewing::pixels_per_degree;
 
 /// Temporal channels: sustained, transient.
 const CHANNELS: usize = 2;

@@ -1,4 +1,4 @@
-//! From masked differences to JOD: over pixels, bands, channels and frames (section 4.6 of the paper).
+//! From masked differences to JOD: over pixels, bands, channels and frames.
 
 use super::CHANNELS;
 use super::constants::{

@@ -199,7 +199,7 @@ impl WithSimd for Prepare<'_> {
                 doubler.row(&seen[c], y, sensitivity);
                 let fine = fine[c].row(y);
                 for x in 0..width {
-                    // Contrast is relative to the luminance of the surroundings (equation 8). Operations have the
+                    // Contrast is relative to the luminance of the surroundings. Operations have the
                     // order of those in `compare`, so that equal frames have equal bits.
                     contrast[x] = sensitivity[x] * (fine[x] - low[x]) * (1.0 / nits[x]);
                 }

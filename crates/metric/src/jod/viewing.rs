@@ -14,15 +14,14 @@ pub struct Viewing {
     pub geometry: ViewGeometry,
     /// Photometry of the display.
     pub display: Display,
-    /// Frames per second.
+    /// Frames per second, clamped to 1 to 1000.
     pub fps: f32,
 }
 
 impl Viewing {
     /// Resolution in the middle of the view in pixels per degree.
     pub fn pixels_per_degree(&self) -> f32 {
-        let ([tangent_per_px, _], _) = self.geometry.scale_offset();
-        1.0 / (2.0 * (0.5 * tangent_per_px).atan().to_degrees())
+        pixels_per_degree(&self.geometry)
     }
 
     /// Sensitivity of both channels in each band of the pyramid, the finest first.
@@ -45,7 +44,13 @@ impl Viewing {
     }
 }
 
-/// Peak frequency in cycles per degree of band `i` of a Laplacian pyramid (section 4.3 of the paper).
+/// Resolution in the middle of a view in pixels per degree.
+pub(crate) fn pixels_per_degree(view: &ViewGeometry) -> f32 {
+    let ([tangent_per_px, _], _) = view.scale_offset();
+    1.0 / (2.0 * (0.5 * tangent_per_px).atan().to_degrees())
+}
+
+/// Peak frequency in cycles per degree of band `i` of a Laplacian pyramid.
 fn band_cpd(i: usize, pixels_per_degree: f32) -> f32 {
     let nyquist = 0.5 * pixels_per_degree;
     if i == 0 { nyquist } else { nyquist * 0.3228 * 0.5_f32.powi(i as i32 - 1) }
