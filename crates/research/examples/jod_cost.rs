@@ -3,6 +3,7 @@
 
 use afterimage::{Image, ViewGeometry};
 use afterimage_clip::clock::Stopwatch;
+use afterimage_clip::say;
 use afterimage_metric::{Display, ReferenceVideo, TestVideo, Viewing};
 use std::error::Error;
 
@@ -12,8 +13,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     if let Some(threads) = std::env::args().nth(1) {
         rayon::ThreadPoolBuilder::new().num_threads(threads.parse()?).build_global()?;
     }
-    println!("| size, fps | CPU ms a frame, one test | each further test | resident memory, most so far |");
-    println!("|---|---|---|---|");
+    say!("| size, fps | CPU ms a frame, one test | each further test | resident memory, most so far |");
+    say!("|---|---|---|---|");
     for (size, fps) in [([640, 360], 60.0), ([1920, 1080], 60.0), ([1920, 1080], 90.0)] {
         let geometry = ViewGeometry::flat(size, 70.0)?;
         let mut reference = ReferenceVideo::new(Viewing { geometry, display: Display::default(), fps });
@@ -38,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let [one, further] = times.map(|ms| ms / (FRAMES / 2) as f64);
         let memory_mib = resident_mib().map_or("-".to_owned(), |mib| format!("{mib:.0} MiB"));
-        println!("| {}x{}, {fps} | {one:.1} | {further:.1} | {memory_mib} |", size[0], size[1]);
+        say!("| {}x{}, {fps} | {one:.1} | {further:.1} | {memory_mib} |", size[0], size[1]);
     }
     Ok(())
 }

@@ -7,6 +7,7 @@
 //! `gaze/NAME.csv` (frame, x_px, y_px; (0, 0) is the middle of the top-left pixel).
 
 use afterimage::{Image, ViewGeometry};
+use afterimage_clip::say;
 use afterimage_metric::{Display, ReferenceVideo, TestVideo, Viewing};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -46,20 +47,20 @@ fn main() -> Result<(), Box<dyn Error>> {
         })
         .collect::<Result<_, _>>()
         .map_err(|e: String| e)?;
-    println!("| pairs | number | Pearson | Spearman | mean absolute difference | largest | ranked the other way |");
-    println!("|---|---|---|---|---|---|---|");
+    say!("| pairs | number | Pearson | Spearman | mean absolute difference | largest | ranked the other way |");
+    say!("|---|---|---|---|---|---|---|");
     for (name, is_held) in [("fitted", false), ("set aside", true)] {
         let of: Vec<&Scored> = scored.iter().filter(|s| s.is_held == is_held).collect();
-        println!("| {name} | {} |", summary(&of));
+        say!("| {name} | {} |", summary(&of));
     }
     let mut kinds: BTreeMap<&str, Vec<&Scored>> = BTreeMap::new();
     scored.iter().filter(|s| s.is_held).for_each(|s| kinds.entry(&s.kind).or_default().push(s));
-    println!("\n| kind, set aside | number | JOD of the other metric | mean absolute difference | mean difference |");
-    println!("|---|---|---|---|---|");
+    say!("\n| kind, set aside | number | JOD of the other metric | mean absolute difference | mean difference |");
+    say!("|---|---|---|---|---|");
     for (kind, of) in kinds {
         let (least, most) = of.iter().fold((10.0_f64, 0.0_f64), |(a, b), s| (a.min(s.other), b.max(s.other)));
         let mean = |f: &dyn Fn(&Scored) -> f64| of.iter().map(|s| f(s)).sum::<f64>() / of.len() as f64;
-        println!(
+        say!(
             "| {kind} | {} | {least:.2} to {most:.2} | {:.2} | {:+.2} |",
             of.len(),
             mean(&|s| (s.ours - s.other).abs()),
@@ -68,8 +69,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let mut worst: Vec<&Scored> = scored.iter().filter(|s| s.is_held).collect();
     worst.sort_by(|a, b| (b.ours - b.other).abs().total_cmp(&(a.ours - a.other).abs()));
-    println!("\nlargest differences, set aside:");
-    worst.iter().take(10).for_each(|s| println!("  {}: {:.2}, ours {:.2}", s.id, s.other, s.ours));
+    say!("\nlargest differences, set aside:");
+    worst.iter().take(10).for_each(|s| say!("  {}: {:.2}, ours {:.2}", s.id, s.other, s.ours));
     if let Some(path) = args.get(1) {
         fs::write(path, plot(&scored))?;
     }
