@@ -7,7 +7,7 @@ mod headless;
 
 use afterimage::gpu::{Afterimage, Frame, Target};
 use afterimage::wgpu::{self, Buffer, BufferUsages, Texture, TextureFormat, TextureUsages};
-use afterimage::{COUNTERS_BYTES, ContextDesc, Exposure, FrameStats, Gaze, Reset, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, Exposure, FrameStats, Gaze, Reset, ViewFrame, ViewGeometry};
 use headless::Headless;
 
 /// Event of the application before a frame.
@@ -44,7 +44,7 @@ impl Engine {
         let (color, output) = targets(gpu, size);
         let post = Afterimage::new(&gpu.device, &ContextDesc::new(size), OUTPUT)?;
         let counted = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
-        Ok(Self { post, color, output, counters: gpu.buffer(COUNTERS_BYTES, counted), size: Some(size) })
+        Ok(Self { post, color, output, counters: gpu.buffer(FrameStats::COUNTERS_BYTES, counted), size: Some(size) })
     }
 
     fn resize(&mut self, gpu: &Headless, size: [u32; 2]) -> Result<(), Box<dyn std::error::Error>> {

@@ -1,5 +1,6 @@
 //! Errors. Each reads as one line: what is wrong, what was expected, and what to do about it.
 
+use std::fmt::{Display, Formatter};
 use thiserror::Error;
 
 /// A setting that is out of range, or contradicts another one.
@@ -168,10 +169,10 @@ pub enum FrameError {
     #[error("the graphics device was lost: create a new device and a new context on it; history starts empty")]
     DeviceLost,
     /// A value of the frame's description is invalid.
-    #[error("{what} of view {view} is {found}: expected {expected}")]
+    #[error("{value} of view {view} is {found}: expected {expected}")]
     Value {
-        /// Name of the value.
-        what: &'static str,
+        /// Which value.
+        value: FrameValue,
         /// Index of the view.
         view: usize,
         /// Rejected value.
@@ -179,4 +180,67 @@ pub enum FrameError {
         /// Accepted values.
         expected: &'static str,
     },
+}
+
+/// A value in the description of a frame that [`FrameError::Value`] rejects, to match on. Displayed, it is the name
+/// that the message has.
+///
+/// ```
+/// use afterimage::FrameValue;
+///
+/// assert_eq!(FrameValue::Jitter.to_string(), "jitter_px");
+/// assert_eq!(FrameValue::Region { input: "depth" }.to_string(), "depth");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum FrameValue {
+    /// Color whose foveation the receiver does not process.
+    Color,
+    /// [`ViewFrame::depth`](crate::ViewFrame::depth).
+    DepthConvention,
+    /// [`ViewFrame::jitter_px`](crate::ViewFrame::jitter_px).
+    Jitter,
+    /// [`ViewFrame::visible_px`](crate::ViewFrame::visible_px).
+    VisibleBounds,
+    /// [`ViewFrame::previous_from_current`](crate::ViewFrame::previous_from_current).
+    CameraMotion,
+    /// [`ViewFrame::lattices`](crate::ViewFrame::lattices).
+    Lattices,
+    /// [`FrameInputs::lod`](crate::FrameInputs::lod).
+    Lod,
+    /// [`FrameInputs::noise`](crate::FrameInputs::noise).
+    Noise,
+    /// [`FrameInputs::repaired`](crate::FrameInputs::repaired).
+    Repaired,
+    /// [`FrameInputs::exposure`](crate::FrameInputs::exposure).
+    Exposure,
+    /// [`Smr::repair`](crate::Smr::repair), which planning needs.
+    Repair,
+    /// A rectangle of a texture that is larger than the view.
+    Region {
+        /// Name of the input or output.
+        input: &'static str,
+    },
+    /// The debug view beside the output.
+    DebugView,
+}
+
+impl Display for FrameValue {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match *self {
+            Self::Color => "color",
+            Self::DepthConvention => "depth convention",
+            Self::Jitter => "jitter_px",
+            Self::VisibleBounds => "visible_px",
+            Self::CameraMotion => "previous_from_current",
+            Self::Lattices => "lattices",
+            Self::Lod => "lod",
+            Self::Noise => "noise",
+            Self::Repaired => "repaired",
+            Self::Exposure => "exposure ratio",
+            Self::Repair => "Smr::repair",
+            Self::Region { input } => input,
+            Self::DebugView => "debug view",
+        })
+    }
 }

@@ -1,7 +1,7 @@
 //! Descriptions of a context, of a frame and of its views, for both executors.
 
 use crate::convention::{DepthConvention, MotionConvention};
-use crate::error::{FrameError, SettingsError};
+use crate::error::{FrameError, FrameValue, SettingsError};
 use crate::foveation::Filter;
 use crate::geometry::{ViewGeometry, camera_motion, checked_pose, pose_motion};
 use crate::lattice::Lattices;
@@ -251,20 +251,24 @@ impl ViewFrame {
         if found != desc.size_px {
             return Err(FrameError::Size { input: "geometry", view, found, expected: desc.size_px });
         }
-        let refuse = |what, found, expected| Err(FrameError::Value { what, view, found, expected });
+        let refuse = |value, found, expected| Err(FrameError::Value { value, view, found, expected });
         if let Some(Err(error)) = self.depth.map(DepthConvention::validate) {
             let expected = "planes in the ranges that DepthConvention documents, or None for the context's convention";
-            return refuse("depth convention", error.found, expected);
+            return refuse(FrameValue::DepthConvention, error.found, expected);
         }
         let [x, y] = self.jitter_px;
         if !(x.abs() <= MAX_JITTER_PX && y.abs() <= MAX_JITTER_PX) {
-            return refuse("jitter_px", format!("({x}, {y})"), "finite offsets of at most 16 pixels, usually below 1");
+            return refuse(
+                FrameValue::Jitter,
+                format!("({x}, {y})"),
+                "finite offsets of at most 16 pixels, usually below 1",
+            );
         }
         if let Some([lowest, highest]) = self.visible_px
             && !(0..4).all(|i| lowest[i].is_finite() && highest[i].is_finite() && lowest[i] <= highest[i])
         {
             let expected = "finite bounds, the lowest first, or None if every pixel is seen";
-            return refuse("visible_px", format!("{lowest:?} to {highest:?}"), expected);
+            return refuse(FrameValue::VisibleBounds, format!("{lowest:?} to {highest:?}"), expected);
         }
         if let Some(lattices) = &self.lattices {
             lattices.check(view, desc.size_px)?;
@@ -272,15 +276,14 @@ impl ViewFrame {
         let Some(matrix) = self.previous_from_current else {
             return Ok(());
         };
-        let what = "previous_from_current";
         if matches!(self.depth_convention(desc), DepthConvention::Orthographic { .. }) {
             let expected = "None: rays of an orthographic view are not known here";
-            return refuse(what, "given with orthographic depth".into(), expected);
+            return refuse(FrameValue::CameraMotion, "given with orthographic depth".into(), expected);
         }
         match matrix.iter().flatten().find(|v| !v.is_finite()) {
             Some(v) => {
                 let expected = "finite numbers, or None if the camera's motion is not known";
-                refuse(what, format!("a matrix that holds {v}"), expected)
+                refuse(FrameValue::CameraMotion, format!("a matrix that holds {v}"), expected)
             }
             None => Ok(()),
         }
@@ -318,7 +321,7 @@ impl Exposure {
     pub(crate) fn check(self) -> Result<(), FrameError> {
         match self {
             Self::Changed { ratio } if !(ratio.is_finite() && ratio > 0.0) => Err(FrameError::Value {
-                what: "exposure ratio",
+                value: FrameValue::Exposure,
                 view: 0,
                 found: ratio.to_string(),
                 expected: "a number above 0 and finite: this frame's exposure divided by the previous frame's",
@@ -340,7 +343,7 @@ impl Exposure {
 /// Executor of the post-process: types of its input images.
 ///
 /// Implemented by `gpu::Afterimage`, whose inputs are `gpu::Textures`, and by `cpu::CpuAfterimage`, whose inputs are
-/// slices with one `Image` a view. It only makes [`Frame`] generic; there is no need to implement or to name it.
+/// slices with one `Image` a view. It only makes [`FrameInputs`] generic; there is no need to implement or to name it.
 pub trait Executor {
     /// Images with three channels (color).
     type Colors<'a>: Copy + Debug;
@@ -368,7 +371,7 @@ pub trait Executor {
 /// # let _ = after_a_cut;
 /// # }
 /// ```
-pub struct Frame<'a, E: Executor> {
+pub struct FrameInputs<'a, E: Executor> {
     /// Foveated frame: linear scene-referred color in Rec. 709 primaries, before tone mapping. Pixels that are NaN or
     /// infinite show their history, or black, and are counted. On a GPU any float format.
     pub color: E::Colors<'a>,
@@ -406,17 +409,17 @@ pub struct Frame<'a, E: Executor> {
 }
 
 // Not derived: a derived impl would require the executor itself to be `Copy`.
-impl<E: Executor> Clone for Frame<'_, E> {
+impl<E: Executor> Clone for FrameInputs<'_, E> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<E: Executor> Copy for Frame<'_, E> {}
+impl<E: Executor> Copy for FrameInputs<'_, E> {}
 
-impl<E: Executor> Debug for Frame<'_, E> {
+impl<E: Executor> Debug for FrameInputs<'_, E> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Frame")
+        f.debug_struct("FrameInputs")
             .field("color", &self.color)
             .field("depth", &self.depth)
             .field("motion", &self.motion)
@@ -432,7 +435,7 @@ impl<E: Executor> Debug for Frame<'_, E> {
     }
 }
 
-impl<'a, E: Executor> Frame<'a, E> {
+impl<'a, E: Executor> FrameInputs<'a, E> {
     /// Implementation of `new` of both executors.
     pub(crate) fn of_color(color: E::Colors<'a>, views: &'a [ViewFrame], index: u64) -> Self {
         Self {
@@ -479,17 +482,17 @@ impl<'a, E: Executor> Frame<'a, E> {
                 (false, true) => ("given", "None; or set Filter::Sparse in Settings::foveation"),
                 _ => continue,
             };
-            return Err(FrameError::Value { what: "lattices", view, found: found.into(), expected });
+            return Err(FrameError::Value { value: FrameValue::Lattices, view, found: found.into(), expected });
         }
         let at_samples = |view: &ViewFrame| view.lattices.is_some_and(|lattices| lattices.has_geometry_at_samples());
         if let Some(view) = (1..self.views.len()).find(|&i| at_samples(&self.views[i]) != at_samples(&self.views[0])) {
             let found = "given with depth and motion at samples for some views".into();
             let expected = "depth and motion at samples for all views, or at every pixel for all";
-            return Err(FrameError::Value { what: "lattices", view, found, expected });
+            return Err(FrameError::Value { value: FrameValue::Lattices, view, found, expected });
         }
         if is_sparse && self.lod.is_some() {
             let (found, expected) = ("given".into(), "None: the lattices say how coarse a sparse frame is");
-            return Err(FrameError::Value { what: "lod", view: 0, found, expected });
+            return Err(FrameError::Value { value: FrameValue::Lod, view: 0, found, expected });
         }
         Ok(())
     }
@@ -498,7 +501,7 @@ impl<'a, E: Executor> Frame<'a, E> {
     pub(crate) fn check_plan(&self, desc: &ContextDesc) -> Result<Repair, FrameError> {
         let Some(repair) = smr_sparse_repair(&desc.settings) else {
             let expected = "given, to plan repairs, and Filter::Sparse in Settings::foveation";
-            return Err(FrameError::Value { what: "Smr::repair", view: 0, found: "None".into(), expected });
+            return Err(FrameError::Value { value: FrameValue::Repair, view: 0, found: "None".into(), expected });
         };
         self.check_facts(desc)?;
         Ok(repair)
@@ -511,7 +514,7 @@ impl<'a, E: Executor> Frame<'a, E> {
             return Ok(());
         }
         let expected = "None, or that plan was called with this frame";
-        Err(FrameError::Value { what: "repaired", view: 0, found: "given".into(), expected })
+        Err(FrameError::Value { value: FrameValue::Repaired, view: 0, found: "given".into(), expected })
     }
 
     /// Rejects repaired samples that the settings do not expect.
@@ -520,7 +523,7 @@ impl<'a, E: Executor> Frame<'a, E> {
             return Ok(());
         }
         let expected = "None; or set Smr::repair, and Filter::Sparse in Settings::foveation";
-        Err(FrameError::Value { what: "repaired", view: 0, found: "given".into(), expected })
+        Err(FrameError::Value { value: FrameValue::Repaired, view: 0, found: "given".into(), expected })
     }
 
     /// Rejects a missing noise input if the settings require one, and a noise input if they do not.
@@ -530,7 +533,7 @@ impl<'a, E: Executor> Frame<'a, E> {
             (false, true) => ("given", "None; or set Settings::noisy"),
             _ => return Ok(()),
         };
-        Err(FrameError::Value { what: "noise", view: 0, found: found.into(), expected })
+        Err(FrameError::Value { value: FrameValue::Noise, view: 0, found: found.into(), expected })
     }
 }
 

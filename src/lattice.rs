@@ -1,6 +1,6 @@
 //! Lattices: where the samples of a sparse foveated frame lie.
 
-use crate::error::{FrameError, SettingsError};
+use crate::error::{FrameError, FrameValue, SettingsError};
 use crate::foveation::Foveation;
 use crate::geometry::ViewGeometry;
 use crate::kernel::lattice::{jitter_px, offset_px};
@@ -160,7 +160,7 @@ impl Lattices {
             if (0..2).any(|i| at[i] + u64::from(lattice.points[i]) > u64::from(size[i])) {
                 let ([w, h], [x, y]) = (lattice.points, at);
                 return Err(FrameError::Value {
-                    what: "lattices",
+                    value: FrameValue::Lattices,
                     view,
                     found: format!(
                         "{w}x{h} samples from texel ({x}, {y}) on in a {input} input of {}x{}",
@@ -179,7 +179,7 @@ impl Lattices {
         match coarsest {
             Some([low, high]) if low == [0, 0] && high[0] >= size_px[0] && high[1] >= size_px[1] => Ok(()),
             _ => Err(FrameError::Value {
-                what: "lattices",
+                value: FrameValue::Lattices,
                 view,
                 found: "a stack whose last lattice leaves pixels uncovered".into(),
                 expected: "a last, coarsest lattice that covers the whole view",

@@ -127,9 +127,9 @@ mod uniforms;
 mod warning;
 
 pub use convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
-pub use error::{CreateError, FrameError, SettingsError};
+pub use error::{CreateError, FrameError, FrameValue, SettingsError};
 pub use foveation::{Filter, Foveation};
-pub use frame::{ContextDesc, Executor, Exposure, Frame, Gaze, Reset, ViewFrame};
+pub use frame::{ContextDesc, Executor, Exposure, FrameInputs, Gaze, Reset, ViewFrame};
 pub use geometry::ViewGeometry;
 #[cfg(feature = "cpu")]
 pub use image::Image;
@@ -139,5 +139,5 @@ pub use lattice::{Lattice, Lattices};
 pub use settings::{
     Bias, DepthTest, Gate, GateMetric, GateScale, Method, MethodKind, Repair, Sampler, Settings, Smr, Wrs,
 };
-pub use stats::{COUNTERS_BYTES, FrameStats};
+pub use stats::FrameStats;
 pub use warning::Warning;

@@ -3,19 +3,15 @@
 use crate::kernel::reproject::Verdict;
 use crate::warning::Warning;
 
-/// Size in bytes of the counters' buffer of the GPU executor (`gpu::Target::counters`): little-endian words of 32 bits,
-/// which [`FrameStats::from_counters`] reads. `examples/02_engine.rs` uses it.
-pub const COUNTERS_BYTES: u64 = 4 * (4 + Verdict::COUNT as u64);
-
 /// Pixel counters of one frame, over all views.
 ///
 /// The CPU executor returns them; from a GPU they are read back, if the frame had a buffer for them:
 ///
 /// ```
-/// use afterimage::{COUNTERS_BYTES, FrameStats, Verdict};
+/// use afterimage::{FrameStats, Verdict};
 ///
 /// // Bytes of `Target::counters`, read back; here a frame of 100 pixels, all with valid history.
-/// let mut bytes = vec![0; COUNTERS_BYTES as usize];
+/// let mut bytes = vec![0; FrameStats::COUNTERS_BYTES as usize];
 /// let valid = 4 * (4 + Verdict::Valid as usize);
 /// bytes[valid..valid + 4].copy_from_slice(&100_u32.to_le_bytes());
 ///
@@ -40,10 +36,15 @@ pub struct FrameStats {
 }
 
 impl FrameStats {
-    /// Counters from the bytes that a GPU wrote. Reads the first [`COUNTERS_BYTES`] bytes; `None` if there are fewer.
+    /// Size in bytes of the counters' buffer of the GPU executor (`gpu::Target::counters`): little-endian words of 32
+    /// bits, which [`from_counters`](Self::from_counters) reads. `examples/02_engine.rs` uses it.
+    pub const COUNTERS_BYTES: u64 = 4 * (4 + Verdict::COUNT as u64);
+
+    /// Counters from the bytes that a GPU wrote. Reads the first [`COUNTERS_BYTES`](Self::COUNTERS_BYTES) bytes; `None`
+    /// if there are fewer.
     pub fn from_counters(bytes: &[u8]) -> Option<Self> {
         let words: Vec<u64> = bytes
-            .get(..COUNTERS_BYTES as usize)?
+            .get(..Self::COUNTERS_BYTES as usize)?
             .chunks_exact(4)
             .map(|b| u64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]])))
             .collect();

@@ -4,7 +4,7 @@
 //#use rng
 //#use sparse_samples
 // Reconstruction of sparse frames from history that keeps samples in their places (smr). CPU twin: `pixel` in
-// src/cpu/sparse_pass.rs; docs/method.md has the equations. One invocation a pixel; z is the view.
+// src/cpu/sparse_pass/mod.rs; docs/method.md has the equations. One invocation a pixel; z is the view.
 
 @group(0) @binding(9) var next_kept: texture_storage_2d_array<rg32uint, write>;
 @group(0) @binding(10) var lights: texture_2d_array<u32>;

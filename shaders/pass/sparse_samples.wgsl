@@ -1,6 +1,6 @@
 //#use lattices
 //#use sparse
-// Samples of a sparse frame, and where the results for them lie. CPU twin: src/cpu/sparse_pass.rs.
+// Samples of a sparse frame, and where the results for them lie. CPU twin: src/cpu/sparse_pass/mod.rs.
 
 // Relative difference of disparity within which neighbouring samples share an estimate of light.
 const LIGHT_RELATIVE: f32 = 0.1;

@@ -37,7 +37,7 @@ use crate::settings::Settings;
 use crate::stats::FrameStats;
 use repair::Planned;
 
-/// A frame whose inputs are slices with one image a view; fields are at [`Frame`](crate::Frame).
+/// A frame whose inputs are slices with one image a view; fields are at [`FrameInputs`](crate::FrameInputs).
 ///
 /// ```
 /// # use afterimage::{Image, ViewFrame};
@@ -49,7 +49,7 @@ use repair::Planned;
 /// # let _ = frame;
 /// # }
 /// ```
-pub type Frame<'a> = crate::Frame<'a, CpuAfterimage>;
+pub type Frame<'a> = crate::FrameInputs<'a, CpuAfterimage>;
 
 impl<'a> Frame<'a> {
     /// A frame without optional inputs, which continues the previous frame: no reset, unchanged exposure. `color`: one

@@ -17,8 +17,8 @@ pub(super) struct Planned {
 impl CpuAfterimage {
     /// Pixels of a sparse frame to repair with a sample of their own, one mask a view: quads of 2x2 pixels whose
     /// history is missing or coarse, and in which the frame's lattices have no sample. If the frame is given to
-    /// [`process`](Self::process) with samples of these pixels ([`Frame::repaired`](crate::Frame::repaired)), they are
-    /// shown.
+    /// [`process`](Self::process) with samples of these pixels
+    /// ([`FrameInputs::repaired`](crate::FrameInputs::repaired)), they are shown.
     ///
     /// At most the share [`Repair::budget`](crate::Repair::budget) of a view's quads is chosen: those without history
     /// first, then those whose history is coarse, each from the gaze outwards. After a cut, successive frames repair

@@ -19,7 +19,7 @@ pub(crate) use observation::{Description, Observation, maps};
 
 use crate::error::SettingsError;
 use crate::foveation::Filter;
-use crate::frame::{ContextDesc, Executor, Exposure, Frame, Reset};
+use crate::frame::{ContextDesc, Executor, Exposure, FrameInputs, Reset};
 
 /// Number of frames that are kept; with more, the oldest ones are forgotten.
 const KEPT: usize = 16;
@@ -65,7 +65,7 @@ impl Chart {
 }
 
 /// Whether a frame can be compared with the one before.
-pub(crate) fn continues<E: Executor>(frame: &Frame<'_, E>) -> bool {
+pub(crate) fn continues<E: Executor>(frame: &FrameInputs<'_, E>) -> bool {
     frame.reset == Reset::None && frame.exposure == Exposure::Same
 }
 

@@ -6,11 +6,11 @@ use crate::kernel::debug_view::DebugView;
 use crate::warning::Warning;
 use wgpu::{Buffer, QuerySet, Texture};
 
-/// A frame whose inputs are textures; fields and an example are at [`Frame`](crate::Frame).
+/// A frame whose inputs are textures; fields and an example are at [`FrameInputs`](crate::FrameInputs).
 ///
 /// Textures have one sample a pixel and the usage `TEXTURE_BINDING`. [`Textures`] describes where the views lie in
 /// them.
-pub type Frame<'a> = crate::Frame<'a, Afterimage>;
+pub type Frame<'a> = crate::FrameInputs<'a, Afterimage>;
 
 impl<'a> Frame<'a> {
     /// A frame without optional inputs, which continues the previous frame: no reset, unchanged exposure.
@@ -61,8 +61,8 @@ pub struct Target<'a> {
     /// Debug view of the frame's decisions, drawn by the same pass. `None`: no view, at no cost.
     pub debug: Option<DebugTarget<'a>>,
     /// Buffer for pixel counters, which [`FrameStats::from_counters`](crate::FrameStats::from_counters) reads: at least
-    /// [`COUNTERS_BYTES`](crate::COUNTERS_BYTES), usages `STORAGE` and `COPY_DST` (and `COPY_SRC`, to read it back).
-    /// `None`: nothing is counted, at no cost.
+    /// [`FrameStats::COUNTERS_BYTES`](crate::FrameStats::COUNTERS_BYTES), usages `STORAGE` and `COPY_DST` (and
+    /// `COPY_SRC`, to read it back). `None`: nothing is counted, at no cost.
     pub counters: Option<&'a Buffer>,
     /// Timestamp queries around the passes. Needs `Features::TIMESTAMP_QUERY`.
     pub timestamps: Option<Timestamps<'a>>,

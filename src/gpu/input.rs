@@ -2,9 +2,9 @@
 
 use super::output::DEBUG_FORMAT;
 use super::{Afterimage, Frame, Target, Textures};
-use crate::error::FrameError;
+use crate::error::{FrameError, FrameValue};
 use crate::frame::{ContextDesc, ViewFrame};
-use crate::stats::COUNTERS_BYTES;
+use crate::stats::FrameStats;
 use wgpu::{Buffer, BufferUsages, Device, Texture, TextureAspect, TextureFormat, TextureSampleType, TextureUsages};
 
 /// Checks a frame and its target against the device and the context's description.
@@ -17,7 +17,7 @@ pub(super) fn check(
 ) -> Result<(), FrameError> {
     check_inputs(desc, frame)?;
     if let Some(counters) = target.counters {
-        check_words("counters", counters, COUNTERS_BYTES, "at least afterimage::COUNTERS_BYTES")?;
+        check_words("counters", counters, FrameStats::COUNTERS_BYTES, "at least FrameStats::COUNTERS_BYTES")?;
     }
     let expected = "the output format given to Afterimage::new; or create a context for this one";
     check_output(desc, "output", target.output, output_format, expected)?;
@@ -26,7 +26,7 @@ pub(super) fn check(
     let found = device.limits().max_storage_textures_per_shader_stage;
     if found < STORAGE_TEXTURES_WITH_VIEW {
         return Err(FrameError::Value {
-            what: "debug view",
+            value: FrameValue::DebugView,
             view: 0,
             found: format!("beside the output, on a device with max_storage_textures_per_shader_stage of {found}"),
             expected: "a limit of 5; or Afterimage::record_view",
@@ -130,7 +130,7 @@ fn check_textures(
         } else if end[0] > u64::from(size[0]) || end[1] > u64::from(size[1]) {
             let ([x, y], [width, height]) = (region.origin_px, desc.size_px);
             return Err(FrameError::Value {
-                what: input,
+                value: FrameValue::Region { input },
                 view,
                 found: format!("a region of {width}x{height} from ({x}, {y}) in a texture of {}x{}", size[0], size[1]),
                 expected: "a rectangle of the context's size inside the texture",

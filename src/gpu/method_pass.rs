@@ -15,7 +15,7 @@ use crate::kernel::debug_view::DebugView;
 use crate::method::{HistoryLayout, Overrides, PassShader};
 use crate::settings::Settings;
 use crate::shader::SHADERS;
-use crate::stats::COUNTERS_BYTES;
+use crate::stats::FrameStats;
 use std::sync::OnceLock;
 use wgpu::{
     BindGroup, BindingResource, BindingType, Buffer, BufferBinding, BufferUsages, ComputePass, Device, TextureFormat,
@@ -65,7 +65,7 @@ impl MethodPass {
         let history = settings.history_layout();
         let no_counters = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("afterimage absent counters"),
-            size: COUNTERS_BYTES,
+            size: FrameStats::COUNTERS_BYTES,
             usage: BufferUsages::STORAGE,
             mapped_at_creation: false,
         });
@@ -153,7 +153,7 @@ impl MethodPass {
         let counters = BindingResource::Buffer(BufferBinding {
             buffer: target.counters.unwrap_or(&self.no_counters),
             offset: 0,
-            size: std::num::NonZeroU64::new(COUNTERS_BYTES),
+            size: std::num::NonZeroU64::new(FrameStats::COUNTERS_BYTES),
         });
         let resources = std::iter::once(uniforms.as_entire_binding())
             .chain(inputs.iter().map(BindingResource::TextureView))

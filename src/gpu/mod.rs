@@ -51,7 +51,7 @@ use crate::method::{HistoryLayout, PassShader, Stage, smr_sparse_repair};
 use crate::resize::Resize;
 use crate::settings::Settings;
 use crate::shader::SHADERS;
-use crate::stats::COUNTERS_BYTES;
+use crate::stats::FrameStats;
 use crate::uniforms::Held;
 use fill::Fill;
 use fill_geometry::GeometryFill;
@@ -359,7 +359,7 @@ impl Afterimage {
     /// 2x2 pixels whose history is missing or coarse, and in which the frame's lattices have no sample. The renderer
     /// reads it from [`repair_mask`](Self::repair_mask) or [`repair_quads`](Self::repair_quads), shades these pixels at
     /// full rate, and gives them to [`record`](Self::record) of the same frame
-    /// ([`Frame::repaired`](crate::Frame::repaired)).
+    /// ([`FrameInputs::repaired`](crate::FrameInputs::repaired)).
     ///
     /// At most the share [`Repair::budget`](crate::Repair::budget) of a view's quads is chosen: those without history
     /// first, then those whose history is coarse, each from the gaze outwards. After a cut, successive frames repair
@@ -488,7 +488,7 @@ impl Afterimage {
         uniforms: FrameUniforms,
     ) {
         if let Some(counters) = target.counters {
-            encoder.clear_buffer(counters, 0, Some(COUNTERS_BYTES));
+            encoder.clear_buffer(counters, 0, Some(FrameStats::COUNTERS_BYTES));
         }
         let job = self.job(device, frame.with_color(frame.color), target, view, uniforms);
         self.stages.record(device, encoder, job);

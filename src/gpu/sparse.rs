@@ -1,5 +1,5 @@
 //! Comparison of the samples of a sparse frame with history, before the pass of smr that reconstructs its pixels. CPU
-//! twin: `src/cpu/sparse_pass.rs`.
+//! twin: `src/cpu/sparse_pass/mod.rs`.
 
 use super::buffer::filled;
 use super::compute::{ComputeShader, float_texture, storage_texture, uint_texture, uniform};

@@ -99,8 +99,8 @@ pub struct Smr {
     pub antialias: bool,
     /// Whether sparse frames are repaired: before shading, the renderer asks which pixels have no usable history
     /// (`gpu::Afterimage::plan`, `cpu::CpuAfterimage::plan`), and shades these at full rate
-    /// ([`Frame::repaired`](crate::Frame::repaired)). No effect on frames without lattices. Default `None`: no frame
-    /// has repaired samples.
+    /// ([`FrameInputs::repaired`](crate::FrameInputs::repaired)). No effect on frames without lattices. Default `None`:
+    /// no frame has repaired samples.
     pub repair: Option<Repair>,
 }
 
@@ -208,10 +208,10 @@ pub struct Settings {
     /// Depth test; `None` compares no depths. Default on.
     pub depth_test: Option<DepthTest>,
     /// Whether frames are noisy, that is path-traced with few samples a pixel. Each frame must then have a noise input
-    /// ([`Frame::noise`](crate::Frame::noise)), so that noise is not mistaken for a change. wrs weights a candidate by
-    /// its number of samples; smr averages history in the fovea, too, compares means of 8x8 candidates, and stores 8
-    /// more bytes a pixel and a mip chain of the candidates. On sparse frames smr compares nine samples, stores the 8
-    /// bytes but no mip chain, and does not relight history. Default false.
+    /// ([`FrameInputs::noise`](crate::FrameInputs::noise)), so that noise is not mistaken for a change. wrs weights a
+    /// candidate by its number of samples; smr averages history in the fovea, too, compares means of 8x8 candidates,
+    /// and stores 8 more bytes a pixel and a mip chain of the candidates. On sparse frames smr compares nine samples,
+    /// stores the 8 bytes but no mip chain, and does not relight history. Default false.
     pub noisy: bool,
     /// Seed of the random numbers. The same seed and the same frames give the same bytes. Default 0.
     pub seed: u64,
@@ -259,7 +259,8 @@ impl Settings {
     }
 
     /// smr for frames that are path-traced with few samples a pixel: averages over twice as many frames as
-    /// [`steady`](Self::steady). Each frame must have a noise input ([`Frame::noise`](crate::Frame::noise)).
+    /// [`steady`](Self::steady). Each frame must have a noise input
+    /// ([`FrameInputs::noise`](crate::FrameInputs::noise)).
     pub fn traced() -> Self {
         Self { method: Method::Smr(Smr::traced()), noisy: true, ..Self::default() }
     }

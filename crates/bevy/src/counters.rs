@@ -1,6 +1,6 @@
 //! What is counted of a camera: the component, and the buffer on the device.
 
-use afterimage::{COUNTERS_BYTES, FrameStats, Verdict, wgpu};
+use afterimage::{FrameStats, Verdict, wgpu};
 use bevy::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -68,7 +68,7 @@ impl Counters {
         let buffer = |usage| {
             device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("afterimage counters"),
-                size: COUNTERS_BYTES,
+                size: FrameStats::COUNTERS_BYTES,
                 usage: usage | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             })
@@ -83,7 +83,7 @@ impl Counters {
     /// Copies the counts of this frame, unless those of an earlier one are still on their way.
     pub fn record(&mut self, encoder: &mut wgpu::CommandEncoder) {
         if self.state.load(Ordering::Acquire) == FREE {
-            encoder.copy_buffer_to_buffer(&self.buffer, 0, &self.copy, 0, COUNTERS_BYTES);
+            encoder.copy_buffer_to_buffer(&self.buffer, 0, &self.copy, 0, FrameStats::COUNTERS_BYTES);
             self.state.store(RECORDED, Ordering::Release);
         }
     }

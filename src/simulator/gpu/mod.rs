@@ -32,8 +32,8 @@ pub struct SimulatorFrame<'a> {
     /// Output: the foveated frame. The simulator's output format, usage `STORAGE_BINDING`. Pixels of level 0 are copied
     /// bit for bit if `full` has the same format.
     pub output: &'a Texture,
-    /// Output: level of detail of each pixel (log2 of the block edge in pixels), for [`Frame::lod`](crate::Frame::lod).
-    /// `R32Float`, usage `STORAGE_BINDING`. `None`: not written.
+    /// Output: level of detail of each pixel (log2 of the block edge in pixels), for
+    /// [`FrameInputs::lod`](crate::FrameInputs::lod). `R32Float`, usage `STORAGE_BINDING`. `None`: not written.
     pub lod: Option<&'a Texture>,
     /// Descriptions of the views, one for each view of the context; only geometry and gaze are used.
     pub views: &'a [ViewFrame],

@@ -4,6 +4,7 @@ use super::depth::held;
 use super::*;
 use crate::laws::laws;
 use crate::lifecycle_hard::*;
+use afterimage::FrameValue;
 use afterimage_testing::holds;
 
 lifecycle_laws!(Cpu, held);
@@ -69,7 +70,7 @@ fn a_frame_that_is_refused_changes_nothing() {
         let images = Images::of(&[view]);
         let frame = Frame { exposure: Exposure::Changed { ratio }, ..images.frame(3) };
         let error = mixed.process(&frame, &mut [right.clone()]).unwrap_err();
-        assert!(matches!(error, FrameError::Value { what: "exposure ratio", .. }), "{error}");
+        assert!(matches!(error, FrameError::Value { value: FrameValue::Exposure, .. }), "{error}");
     }
     assert_eq!(mixed.history().words(), words);
     got.extend(run(&mut mixed, 3..6));

@@ -168,7 +168,7 @@ fn record_compiles_nothing_after_prewarm() {
             .map(|format| texture(format, Afterimage::INPUT_USAGE));
         let counters = device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
-            size: afterimage::COUNTERS_BYTES,
+            size: afterimage::FrameStats::COUNTERS_BYTES,
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });

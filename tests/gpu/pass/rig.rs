@@ -9,8 +9,7 @@ use afterimage::kernel::pack;
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};
 use afterimage::{
-    COUNTERS_BYTES, ContextDesc, DebugView, DepthConvention, Exposure, Filter, FrameStats, Image, Method, Reset,
-    Settings, ViewFrame,
+    ContextDesc, DebugView, DepthConvention, Exposure, Filter, FrameStats, Image, Method, Reset, Settings, ViewFrame,
 };
 use afterimage_testing::Draws;
 
@@ -100,7 +99,7 @@ impl Rig {
             beside: None,
             counters: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("counters"),
-                size: COUNTERS_BYTES,
+                size: FrameStats::COUNTERS_BYTES,
                 usage: BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             }),

@@ -23,8 +23,8 @@ use crate::metric::{Tracked, Tracker};
 use crate::quad_views::QuadViewLayout;
 use crate::source::{FrameRequest, Wanted};
 use afterimage::{
-    ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, Gaze, Image, Method, Settings, SettingsError,
-    ViewGeometry,
+    ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, FrameValue, Gaze, Image, Method, Settings,
+    SettingsError, ViewGeometry,
 };
 use foveator::Foveator;
 use oracle::Oracle;
@@ -235,7 +235,7 @@ impl Pipeline {
         }
         if is_full_rate && self.quad_views.is_some() {
             let (found, expected) = ("a full-rate frame".into(), "one that is composed of quad views");
-            return Err(FrameError::Value { what: "frame", view: 0, found, expected });
+            return Err(FrameError::Value { value: FrameValue::Color, view: 0, found, expected });
         }
         Ok(sizes[0] == expected)
     }

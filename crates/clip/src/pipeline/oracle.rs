@@ -3,7 +3,7 @@
 use super::run::MethodOutput;
 use crate::clock::Stopwatch;
 use afterimage::simulator::Pyramid;
-use afterimage::{Foveation, FrameError, FrameStats, Image};
+use afterimage::{Foveation, FrameError, FrameStats, FrameValue, Image};
 
 /// Every pixel at its finest level of detail so far.
 #[derive(Default)]
@@ -20,10 +20,10 @@ impl Oracle {
         foveation: &Foveation,
     ) -> Result<MethodOutput, FrameError> {
         let pyramid = pyramid.ok_or_else(|| FrameError::Value {
-            what: "oracle",
+            value: FrameValue::Color,
             view: 0,
             found: "a frame that its source foveated".into(),
-            expected: "a simulator's",
+            expected: "a simulator's, which the oracle needs",
         })?;
         let watch = Stopwatch::start();
         let best = self.best.get_or_insert_with(|| lods.clone());

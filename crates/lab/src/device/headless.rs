@@ -2,7 +2,7 @@
 //! device and calls [`Afterimage`](afterimage::gpu::Afterimage) directly.
 
 use super::wait_mapped;
-use afterimage::{COUNTERS_BYTES, FrameError, FrameStats, Image};
+use afterimage::{FrameError, FrameStats, Image};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use wgpu::{Buffer, BufferUsages, Texture, TextureFormat, TextureUsages};
@@ -116,7 +116,7 @@ impl Headless {
     /// A buffer for [`Target::counters`](afterimage::gpu::Target::counters).
     pub fn counters(&self) -> Buffer {
         let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
-        self.buffer(COUNTERS_BYTES, usage)
+        self.buffer(FrameStats::COUNTERS_BYTES, usage)
     }
 
     /// Writes a layer of a texture whose texels have the memory layout of the image's pixels.
@@ -169,8 +169,8 @@ impl Headless {
 
     /// Waits for submitted work and reads the counters.
     pub fn read_counters(&self, counters: &Buffer) -> FrameStats {
-        let bytes = self.read_back(COUNTERS_BYTES, |encoder, buffer| {
-            encoder.copy_buffer_to_buffer(counters, 0, buffer, 0, COUNTERS_BYTES);
+        let bytes = self.read_back(FrameStats::COUNTERS_BYTES, |encoder, buffer| {
+            encoder.copy_buffer_to_buffer(counters, 0, buffer, 0, FrameStats::COUNTERS_BYTES);
         });
         FrameStats::from_counters(&bytes).expect("the readback has COUNTERS_BYTES bytes")
     }

@@ -7,8 +7,8 @@ use afterimage::gpu::{Frame, Recorded, Target};
 use afterimage::kernel::debug_view::view_color;
 use afterimage::wgpu::{self, BufferUsages, TextureFormat, TextureUsages};
 use afterimage::{
-    COUNTERS_BYTES, ContextDesc, DebugView, Exposure, FrameError, FrameStats, Gaze, Method, Reset, Sampler, Settings,
-    Verdict, ViewFrame, Warning, Wrs,
+    ContextDesc, DebugView, Exposure, FrameError, FrameStats, Gaze, Method, Reset, Sampler, Settings, Verdict,
+    ViewFrame, Warning, Wrs,
 };
 use afterimage_lab::source::AnalyticSource;
 
@@ -92,9 +92,9 @@ fn counters_without_room_or_use_are_refused() {
     let facts = [view(&mut source, 0).facts];
     let enough = BufferUsages::STORAGE | BufferUsages::COPY_DST;
     for (size, usage, word) in [
-        (COUNTERS_BYTES - 4, enough, "40 bytes"),
-        (COUNTERS_BYTES, BufferUsages::STORAGE, "COPY_DST"),
-        (COUNTERS_BYTES, BufferUsages::COPY_DST, "STORAGE"),
+        (FrameStats::COUNTERS_BYTES - 4, enough, "40 bytes"),
+        (FrameStats::COUNTERS_BYTES, BufferUsages::STORAGE, "COPY_DST"),
+        (FrameStats::COUNTERS_BYTES, BufferUsages::COPY_DST, "STORAGE"),
     ] {
         let desc = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
         let buffer = rig.device.create_buffer(&desc);
@@ -106,7 +106,7 @@ fn counters_without_room_or_use_are_refused() {
         assert!(matches!(error, FrameError::Buffer { input: "counters", .. }));
         assert!(error.to_string().contains(word), "{error}");
     }
-    assert_eq!(FrameStats::from_counters(&[0; COUNTERS_BYTES as usize - 1]), None);
+    assert_eq!(FrameStats::from_counters(&[0; FrameStats::COUNTERS_BYTES as usize - 1]), None);
 }
 
 #[test]

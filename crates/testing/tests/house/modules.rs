@@ -36,11 +36,11 @@ const ALLOWED: [[&str; 4]; 13] = [
         "source/open.rs",
         "Names of files tell their kind, as when they are opened.",
     ],
-    ["crates/tool/src/", "commands/bench/", "commands/bench.rs", OPTIONS],
-    ["crates/tool/src/", "commands/run/", "commands/run.rs", OPTIONS],
-    ["crates/tool/src/", "commands/sweep/", "commands/sweep.rs", OPTIONS],
-    ["crates/tool/src/", "commands/trace/", "commands/trace.rs", OPTIONS],
-    ["crates/tool/src/", "commands/view/", "commands/view.rs", OPTIONS],
+    ["crates/tool/src/", "commands/bench/", "commands/bench/mod.rs", OPTIONS],
+    ["crates/tool/src/", "commands/run/", "commands/run/mod.rs", OPTIONS],
+    ["crates/tool/src/", "commands/sweep/", "commands/sweep/mod.rs", OPTIONS],
+    ["crates/tool/src/", "commands/trace/", "commands/trace/mod.rs", OPTIONS],
+    ["crates/tool/src/", "commands/view/", "commands/view/mod.rs", OPTIONS],
 ];
 
 /// Everything that a path leads to.

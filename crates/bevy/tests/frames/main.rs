@@ -1,17 +1,15 @@
 //! Frames of an application without a window, on software Vulkan.
 
-#[path = "../examples/common/mod.rs"]
+#[path = "../../examples/common/mod.rs"]
 mod common;
 
-mod frames {
-    mod antialiasing;
-    mod applications;
-    mod conventions;
-    mod events;
-    mod pixels;
-    mod reflection;
-    mod repair;
-}
+mod antialiasing;
+mod applications;
+mod conventions;
+mod events;
+mod pixels;
+mod reflection;
+mod repair;
 
 use bevy::camera::Hdr;
 use bevy::core_pipeline::tonemapping::Tonemapping;
