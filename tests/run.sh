@@ -8,9 +8,9 @@ cd "$(dirname "$0")/.."
 step() { printf '\n== %s (%d s so far)\n' "$*" "$SECONDS"; }
 # Every package with every feature, on the newest wgpu: one set of features, so that tests, examples and documentation share
 # compiled dependencies. Not --all-features, since wgpu-30 and wgpu-29 exclude each other.
-everything=(--locked --workspace --features cpu,serde,view,ablation)
+everything=(--locked --workspace --features cpu,serde,view)
 # The same on the other wgpu.
-everything_29=(--locked --workspace --no-default-features --features wgpu-29,cpu,serde,view,ablation)
+everything_29=(--locked --workspace --no-default-features --features wgpu-29,cpu,serde,view)
 target="${CARGO_TARGET_DIR:-target}"
 # Incremental compilation pays off in later builds only, and costs time in this one. So do symbols for debuggers.
 export CARGO_INCREMENTAL=0 CARGO_PROFILE_DEV_DEBUG=none

@@ -4,4 +4,4 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export AFTERIMAGE_GPU=require NODEVICE_SELECT=1
-cargo test --locked --workspace --features cpu,view,ablation --test soak -- --ignored --nocapture --test-threads "${SOAK_THREADS:-2}"
+cargo test --locked --workspace --features cpu,view --test soak -- --ignored --nocapture --test-threads "${SOAK_THREADS:-2}"

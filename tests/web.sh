@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 step() { printf '\n== %s (%d s so far)\n' "$*" "$SECONDS"; }
-everything=(--locked --workspace --features cpu,serde,view,ablation)
+everything=(--locked --workspace --features cpu,serde,view)
 # As in tests/run.sh, whose builds these are.
 export CARGO_INCREMENTAL=0 CARGO_PROFILE_DEV_DEBUG=none AFTERIMAGE_GPU=require NODEVICE_SELECT=1
 

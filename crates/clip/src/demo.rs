@@ -77,7 +77,6 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         flip: false,
         jod: false,
         fps: FPS,
-        poison: 0.0,
         processor: Box::new(Cpu),
         backend_note: "",
     };

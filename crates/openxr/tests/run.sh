@@ -8,7 +8,7 @@ cd "$(dirname "$0")/../../.."
 tests="$PWD/crates/openxr/tests"
 target="${CARGO_TARGET_DIR:-$PWD/target}"
 root="${AFTERIMAGE_XR_ROOT:-$target/openxr-root}"
-everything=(--locked --workspace --features cpu,serde,view,ablation)
+everything=(--locked --workspace --features cpu,serde,view)
 # As in tests/run.sh, whose builds these are.
 export CARGO_INCREMENTAL=0 CARGO_PROFILE_DEV_DEBUG="${CARGO_PROFILE_DEV_DEBUG:-none}"
 

@@ -59,7 +59,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if !info.still {
         runs.pop();
     }
-    let kinds: Vec<_> = runs.iter().map(|run| run.1).collect();
+    let kinds: Vec<_> = runs.iter().map(|run| run.1.clone()).collect();
     let mut pipeline = Pipeline::new(geometry, foveation, &kinds, info.still, &[], &Backend::Cpu)?;
     let mut scorers = vec![Scorer::without_ssim(); runs.len()];
     let mut references = References::default();

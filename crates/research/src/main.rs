@@ -7,7 +7,9 @@ mod effects;
 mod growth;
 mod options;
 mod papers;
+mod parts;
 mod patterns;
+mod safeguards;
 mod saved_time;
 mod sparse_smr;
 mod wrs_readings;
@@ -38,6 +40,7 @@ enum Experiment {
     /// those of sparse frames with smr
     Papers(TracedArgs),
     Patterns(Box<patterns::PatternsArgs>),
+    Safeguards(safeguards::SafeguardsArgs),
     Wrs(Box<WrsTableArgs>),
 }
 
@@ -65,6 +68,7 @@ fn run(experiment: &Experiment) -> Result<(), Failure> {
         }
         Experiment::Growth(args) => growth::bench(args),
         Experiment::Patterns(args) => patterns::bench(args),
+        Experiment::Safeguards(args) => safeguards::bench(args),
         Experiment::Wrs(args) => wrs_table::bench(args),
     }
 }

@@ -2,13 +2,14 @@
 //! frame, and how fresh the fovea is.
 
 use crate::options::WrsTableArgs;
+use crate::parts::{STORED_BIAS, shader_without};
 use afterimage::{Bias, Foveation, Gate, GateScale, Image, Method, Sampler, Settings, ViewGeometry, Wrs};
 use afterimage_cli::commands::sweep::command_line;
 use afterimage_cli::failure::Failure;
 use afterimage_cli::progress;
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
-use afterimage_lab::pipeline::{Pipeline, RunKind, ablation};
+use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage_lab::source;
 use afterimage_lab::source::{ReadLimits, SceneOptions};
@@ -58,8 +59,8 @@ fn readings(backend: &Backend) -> Vec<(&'static str, RunKind)> {
 
 /// A run that stores unbiased weight sums, on a device.
 fn with_bias_in_comparison(settings: Settings, backend: &Backend) -> Option<RunKind> {
-    let part = ablation::find("stored-bias").expect("a part of wrs");
-    matches!(backend, Backend::Gpu(_)).then_some(RunKind::Without(settings, part))
+    let shader = || shader_without(&STORED_BIAS, settings.method.kind());
+    matches!(backend, Backend::Gpu(_)).then(|| RunKind::WithShader(settings, shader().into()))
 }
 
 /// Result of a reading.

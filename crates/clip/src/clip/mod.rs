@@ -66,8 +66,6 @@ pub struct Clip {
     pub jod: bool,
     /// Frames per second.
     pub fps: f32,
-    /// Share of the input pixels that are replaced by NaN, infinite, huge or negative values.
-    pub poison: f32,
     /// Processor that runs the methods.
     pub processor: Box<dyn Processor>,
     /// Reason for the fallback to the CPU, as a suffix for messages; empty without a fallback.
@@ -208,15 +206,14 @@ impl Playback<'_> {
 impl Clip {
     /// Makes the pipeline and renders the first frame. Nothing is written yet.
     pub fn start<'a>(&'a self, source: &'a mut dyn FrameSource) -> Result<Playback<'a>, Failure> {
-        let kinds: Vec<RunKind> = self.methods.iter().map(|l| l.1).collect();
+        let kinds: Vec<RunKind> = self.methods.iter().map(|l| l.1.clone()).collect();
         let is_still = source.info().still;
         let debug: Vec<_> = self.debug.iter().map(|d| d.1).collect();
         let processor = self.processor.as_ref();
         let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &debug, processor)?
             .with_sparse(self.sparse_geometry, self.sample_order)
             .with_quad_views(self.quad_views)
-            .with_reference_samples(self.reference_samples)
-            .with_poison(self.poison);
+            .with_reference_samples(self.reference_samples);
         if self.jitter {
             pipeline = pipeline.with_jitter();
         }

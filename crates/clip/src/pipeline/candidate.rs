@@ -20,8 +20,6 @@ pub struct Candidate<'a> {
 pub struct InMemory<'a> {
     /// Linear color.
     pub color: Cow<'a, Image<[f32; 3]>>,
-    /// Whether some of its colors are invalid on purpose. They then replace the colors on a device.
-    pub is_poisoned: bool,
     /// Whether the levels of detail are an input of the methods.
     pub has_lod: bool,
     /// Noise of the color, as in [`FoveatedFrame::noise`](crate::frame::FoveatedFrame::noise).
@@ -33,7 +31,7 @@ pub struct InMemory<'a> {
 impl<'a> InMemory<'a> {
     /// A frame with this color and no other inputs.
     pub fn new(color: Cow<'a, Image<[f32; 3]>>) -> Self {
-        Self { color, is_poisoned: false, has_lod: false, noise: None, geometry: None }
+        Self { color, has_lod: false, noise: None, geometry: None }
     }
 }
 

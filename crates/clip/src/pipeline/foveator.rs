@@ -1,7 +1,6 @@
 //! Makes the foveated frame, or takes the one that a source rendered.
 
 use super::candidate::{Candidate, InMemory, needs_lod};
-use super::poison::poisoned;
 use crate::frame::{Content, DeviceContent, RenderedFrame};
 use crate::lattices::{SampleOrder, SparseGeometry, levels};
 use afterimage::simulator::Pyramid;
@@ -14,8 +13,6 @@ pub(super) struct Foveator {
     pub foveation: Foveation,
     pub sparse_geometry: SparseGeometry,
     pub sample_order: SampleOrder,
-    /// Share of the foveated pixels that get invalid colors.
-    pub poison: f32,
     /// Whether all frames are equal.
     is_still: bool,
     /// Mip chain of a still.
@@ -30,7 +27,6 @@ impl Foveator {
             foveation,
             sparse_geometry: SparseGeometry::default(),
             sample_order: SampleOrder::default(),
-            poison: 0.0,
             is_still,
             still: None,
         }
@@ -53,7 +49,7 @@ impl Foveator {
     /// The foveated frame: a simulator's, or the one that its source rendered. `is_read`: some method reads it in
     /// memory.
     pub fn candidate<'a>(&mut self, frame: &'a RenderedFrame, ecc_deg: &Image<f32>, is_read: bool) -> Candidate<'a> {
-        let mut candidate = match &frame.content {
+        match &frame.content {
             Content::FullRate | Content::Jittered(_) => self.simulated(frame, ecc_deg, is_read),
             Content::Foveated(foveated) => {
                 let noise = Some(&foveated.noise);
@@ -64,13 +60,7 @@ impl Foveator {
                 Candidate { view, lods: foveated.lod.clone(), in_memory: Some(color), pyramid: None }
             }
             Content::OnDevice(content) => self.on_device(frame, content.as_ref(), is_read),
-        };
-        if let Some(in_memory) = candidate.in_memory.as_mut().filter(|_| self.poison > 0.0) {
-            in_memory.color =
-                Cow::Owned(poisoned(in_memory.color.clone().into_owned(), self.poison, frame.index as u32));
-            in_memory.is_poisoned = true;
         }
-        candidate
     }
 
     fn simulated<'a>(&mut self, frame: &'a RenderedFrame, ecc_deg: &Image<f32>, is_read: bool) -> Candidate<'a> {

@@ -5,14 +5,11 @@ mod cpu;
 mod executor;
 mod foveator;
 mod oracle;
-mod part;
-mod poison;
 mod processor;
 mod run;
 
 pub use candidate::{Candidate, InMemory, needs_lod};
 pub use executor::{Executor, Shade, Shot};
-pub use part::Part;
 pub use processor::{Cpu, Processor, ProcessorInfo};
 pub use run::{MethodOutput, Repaired, RunKind, repairs};
 
@@ -142,13 +139,6 @@ impl Pipeline {
         Self { reference_samples: samples, ..self }
     }
 
-    /// Replaces a share of the foveated pixels of every frame by invalid colors: NaN, infinite, huge, negative.
-    #[must_use]
-    pub fn with_poison(mut self, share: f32) -> Self {
-        self.foveator.poison = share;
-        self
-    }
-
     /// The request of frame `index` for a gaze in pixels. A lost gaze holds the last position; before the first, it is
     /// the center of the view.
     pub fn request(&mut self, index: u64, gaze: Option<[f32; 2]>) -> FrameRequest {
@@ -271,10 +261,10 @@ impl Pipeline {
         }
     }
 
-    /// Whether frames are foveated in memory: for runs on the CPU, for the oracle, and for poisoned pixels.
+    /// Whether frames are foveated in memory: for runs on the CPU, and for the oracle.
     fn foveates_in_memory(&self) -> bool {
         let has_oracle = self.runs.iter().any(|run| matches!(run, Run::Oracle(_)));
-        self.executor.device().is_none() || has_oracle || self.foveator.poison > 0.0
+        self.executor.device().is_none() || has_oracle
     }
 }
 

@@ -1,16 +1,16 @@
 //! Runs of a pipeline: kinds and outputs.
 
-use super::part::Part;
 use crate::clock::Elapsed;
 use afterimage::{Filter, FrameStats, Image, Method, Settings, SettingsError, Smr};
+use std::sync::Arc;
 
 /// Kind of a run: how it processes the foveated frames.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum RunKind {
     /// The post-process with these settings. The pipeline's foveation replaces theirs.
     PostProcess(Settings),
-    /// The post-process without a part of its pass, on a device only: measures the part's cost and benefit.
-    Without(Settings, &'static Part),
+    /// The same on a device with this WGSL in place of the method's pass, for measurements of changed passes.
+    WithShader(Settings, Arc<str>),
     /// Every pixel at its finest level of detail so far: the upper bound of temporal reuse. Defined for stills only.
     Oracle,
 }
@@ -51,16 +51,16 @@ impl RunKind {
     /// Settings of a method; `None` for the oracle.
     pub(super) fn settings(&self) -> Option<&Settings> {
         match self {
-            Self::PostProcess(settings) | Self::Without(settings, _) => Some(settings),
+            Self::PostProcess(settings) | Self::WithShader(settings, _) => Some(settings),
             Self::Oracle => None,
         }
     }
 
-    /// Parts are removed from shaders.
+    /// A shader runs on a device only.
     pub(super) fn check_on_cpu(&self) -> Result<(), SettingsError> {
         match self {
-            Self::Without(..) => {
-                let expected = "a device: parts are removed from shaders".into();
+            Self::WithShader(..) => {
+                let expected = "a device, which runs the shader".into();
                 Err(SettingsError { setting: "backend", found: "the CPU".into(), expected })
             }
             Self::PostProcess(_) | Self::Oracle => Ok(()),

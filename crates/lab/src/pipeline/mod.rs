@@ -1,7 +1,6 @@
 //! Pipeline of a clip on any [`Backend`](crate::device::Backend): foveates each frame for a gaze, runs each method on
 //! it, and tracks surfaces for the metrics.
 
-pub mod ablation;
 mod device;
 
 pub use afterimage_clip::pipeline::{MethodOutput, Pipeline, Processor, ProcessorInfo, RunKind, Step};

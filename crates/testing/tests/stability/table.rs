@@ -6,7 +6,7 @@ use std::path::PathBuf;
 const HEAD: &str = "# Hard cases\n\n\
     Every row of the contract: an input that breaks temporal methods, and what must hold for it. \"CPU\" is the Rust kernel or \
     pass, compared with f64 or a closed form; \"GPU\" is the WGSL on an adapter (here a software one); \"tool\" is the command-line tool. \
-    The last column is what the test measured when this page was generated; run a test with `cargo test --workspace --features cpu,view,ablation NAME -- --nocapture`.\n\n\
+    The last column is what the test measured when this page was generated; run a test with `cargo test --workspace --features cpu,view NAME -- --nocapture`.\n\n\
     This page is generated: `tests/stability.sh`. `tests/run.sh` fails if a row or a test of it is missing.\n\n\
     Long runs supplement the single cases: `tests/soak.sh` runs 100,000 frames of 320x180 each of wrs and smr on both executors, through \
     46,406 and 46,303 resets, resizes, lost gazes, invalid pixels and exposure steps in random order. Both executors were equal in every \

@@ -95,20 +95,20 @@ pub fn parse_switch(text: &str) -> (String, Option<String>) {
 
 impl Grid {
     /// The points for inputs and seeds, without duplicates. Options are dropped unless
-    /// `concerns(option, value, method)`, and further seeds unless `is_random(method, options)`, since they would not
+    /// `concerns(option, method)`, and further seeds unless `is_random(method, options)`, since they would not
     /// change the result.
     pub fn points(
         &self,
         inputs: &[String],
         seeds: u64,
-        concerns: impl Fn(&str, &str, &str) -> bool,
+        concerns: impl Fn(&str, &str) -> bool,
         is_random: impl Fn(&str, &Options) -> bool,
     ) -> Vec<Point> {
         let mut points = vec![];
         let mut add = |input: &String, options: &Options| {
             let mut options = options.clone();
             let method = options.remove("method").unwrap_or_else(|| "smr".into());
-            options.retain(|name, value| concerns(name, value, &method));
+            options.retain(|name, _| concerns(name, &method));
             for seed in 0..if is_random(&method, &options) { seeds.max(1) } else { 1 } {
                 let point = Point { input: input.clone(), method: method.clone(), options: options.clone(), seed };
                 if !points.contains(&point) {
@@ -123,11 +123,7 @@ impl Grid {
                 add(input, options);
             }
             for (base, (name, value)) in bases.iter().flat_map(|base| self.switches.iter().map(move |s| (base, s))) {
-                if concerns(
-                    name,
-                    value.as_deref().unwrap_or_default(),
-                    base.get("method").map_or("smr", String::as_str),
-                ) {
+                if concerns(name, base.get("method").map_or("smr", String::as_str)) {
                     let mut options = base.clone();
                     put(&mut options, name, value.as_ref());
                     add(input, &options);

@@ -84,7 +84,7 @@ fn a_grid_has_every_combination_once_and_switches_one_at_a_time() {
         axes: ["method=none,wrs,smr", "fovea=5,10"].map(|a| Axis::parse(a).unwrap()).into(),
         switches: ["no-gate", "no-relight", "no-flush"].map(parse_switch).into(),
     };
-    let concerns = |option: &str, _: &str, method: &str| match option {
+    let concerns = |option: &str, method: &str| match option {
         "no-gate" => method == "wrs",
         "no-relight" => method == "smr",
         "no-flush" => method != "none",

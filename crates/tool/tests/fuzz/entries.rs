@@ -117,7 +117,7 @@ pub fn plan(bytes: &[u8]) {
     }
     let combinations: usize = plan.grid.axes.iter().map(|a| a.values.len()).product();
     if combinations.saturating_mul(1 + plan.grid.switches.len()) < 256 {
-        let points = plan.grid.points(&["in".into()], plan.seeds.min(2), |_, _, _| true, |_, _| true);
+        let points = plan.grid.points(&["in".into()], plan.seeds.min(2), |_, _| true, |_, _| true);
         assert!(points.iter().all(|p| !p.command(&plan.common).contains('\0')));
     }
 }

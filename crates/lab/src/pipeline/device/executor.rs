@@ -4,7 +4,6 @@ use super::{DeviceFormats, DeviceInputs, DeviceRun};
 use crate::clock::{Elapsed, Stopwatch};
 use crate::device::{Headless, PassClock};
 use crate::frame::{Content, DeviceHandle, RenderedFrame, Shaded, ShadedColor, Wish};
-use crate::pipeline::ablation::shader_without;
 use afterimage::gpu::Frame;
 use afterimage::{ContextDesc, CreateError, DebugView, FrameError};
 use afterimage_clip::pipeline::{Candidate, Executor, MethodOutput, Repaired, RunKind, Shade, Shot, repairs};
@@ -40,10 +39,7 @@ impl DeviceExecutor {
 impl Executor for DeviceExecutor {
     fn add(&mut self, kind: &RunKind, desc: &ContextDesc) -> Result<(), CreateError> {
         self.runs.push(match kind {
-            RunKind::Without(_, part) => {
-                let shader = shader_without(part, desc.settings.method.kind());
-                DeviceRun::with_shader(&self.gpu, desc, DeviceFormats::EXACT, &shader)?
-            }
+            RunKind::WithShader(_, shader) => DeviceRun::with_shader(&self.gpu, desc, DeviceFormats::EXACT, shader)?,
             _ => DeviceRun::new(&self.gpu, desc, DeviceFormats::EXACT)?,
         });
         Ok(())
@@ -65,9 +61,6 @@ impl Executor for DeviceExecutor {
         }
         self.gpu.queue.submit([encoder.finish()]);
         self.gpu.wait();
-        if let Some(in_memory) = candidate.in_memory.as_ref().filter(|in_memory| in_memory.is_poisoned) {
-            self.inputs.replace_color(&in_memory.color);
-        }
         self.gpu.check()
     }
 

@@ -235,15 +235,6 @@ impl DeviceInputs {
         &self.full
     }
 
-    /// Replaces the color that the methods get.
-    pub(super) fn replace_color(&mut self, color: &Image<[f32; 3]>) {
-        let is_atlas = self.atlas.as_ref().is_some_and(|[held, _]| *held == self.given.color);
-        if !is_atlas {
-            self.given.color = self.foveated.clone();
-        }
-        self.write_rgb(&self.given.color, color);
-    }
-
     /// Records the simulator, which foveates the full-rate frame for the gaze of `views`.
     ///
     /// # Errors

@@ -19,7 +19,6 @@ use crate::output::Output;
 use crate::report::cameras::cameras_json;
 use afterimage::{DebugView, Filter};
 use afterimage_lab::device::Backend;
-use afterimage_lab::pipeline::ablation::{self, PARTS, Part};
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::scanpath::{HeadPath, write_csv};
 use afterimage_lab::source::FrameSource;
@@ -100,9 +99,6 @@ pub struct RunArgs {
     /// Skip JOD, the foveated video metric
     #[arg(long)]
     pub no_jod: bool,
-    #[cfg_attr(feature = "ablation", command(flatten))]
-    #[cfg_attr(not(feature = "ablation"), arg(skip))]
-    pub ablation: AblationArgs,
     /// Debug views to write as images, separated by commas
     #[arg(long, value_parser = by_name::<DebugView>(), value_delimiter = ',', value_name = "LIST")]
     pub debug: Vec<DebugView>,
@@ -188,24 +184,6 @@ impl RunArgs {
     pub fn is_sparse(&self) -> bool {
         self.foveation.filter() == FilterName::Of(Filter::Sparse)
     }
-}
-
-/// Ablation of parts of the passes; options only in builds with the feature `ablation`.
-#[derive(Args, Clone, Debug, Default)]
-pub struct AblationArgs {
-    /// Part of the passes to leave out; with --backend gpu
-    #[arg(long, value_parser = parse_part, value_name = "PART")]
-    pub without: Option<&'static Part>,
-    /// Fraction of the input pixels that are replaced by NaN, infinite, huge or negative values in every frame, 0 to 1
-    #[arg(long, default_value_t = 0.0, value_name = "SHARE")]
-    pub poison: f32,
-}
-
-fn parse_part(name: &str) -> Result<&'static Part, String> {
-    ablation::find(name).ok_or_else(|| {
-        let names: Vec<_> = PARTS.iter().map(|p| format!("{} ({})", p.name, p.instead)).collect();
-        format!("expected one of {}", names.join("; "))
-    })
 }
 
 /// The subcommand.

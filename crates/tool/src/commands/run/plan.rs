@@ -73,7 +73,6 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
             flip: !args.no_flip,
             jod: !args.no_jod,
             fps,
-            poison: args.ablation.poison,
             backend_note: match (args.backend, &backend) {
                 (BackendName::Auto, Backend::Cpu) => "; no GPU was found",
                 _ => "",
@@ -147,12 +146,6 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
         }
     }
     settings.validate()?;
-    if let Some(part) = args.ablation.without.filter(|part| part.methods.contains(&method)) {
-        if args.backend != BackendName::Gpu {
-            return Err(Failure::Input("--without: works on the GPU only; add --backend gpu".into()));
-        }
-        return Ok(RunKind::Without(settings, part));
-    }
     Ok(RunKind::PostProcess(settings))
 }
 

@@ -7,7 +7,6 @@ use crate::commands::run::RunArgs;
 use crate::failure::Failure;
 use crate::sweep::{Options, Point};
 use afterimage::{Filter, MethodKind};
-use afterimage_lab::pipeline::ablation;
 use std::collections::BTreeMap;
 
 /// Limit on points per batch: an interrupted sweep loses at most one batch.
@@ -34,14 +33,10 @@ const OF_METHODS: &[(&str, Option<MethodKind>)] = &[
     ("depth-relative", None),
     ("depth-slope", None),
     ("no-flush", None),
-    ("without", None),
 ];
 
-/// Whether an option affects a method; `without` affects the methods that have the part.
-pub fn concerns(option: &str, value: &str, method: &str) -> bool {
-    if let ("without", Some(part)) = (option, ablation::find(value)) {
-        return part.methods.iter().any(|m| m.name() == method);
-    }
+/// Whether an option affects a method.
+pub fn concerns(option: &str, method: &str) -> bool {
     let kind = MethodKind::from_name(method);
     match OF_METHODS.iter().find(|(name, _)| *name == option) {
         Some((_, Some(only))) => kind == Some(*only),

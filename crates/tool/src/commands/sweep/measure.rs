@@ -90,9 +90,10 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
     for (i, (subject, accumulator)) in batch.subjects.iter().zip(&sums.subjects).enumerate() {
         let figures = accumulator.report(memory_bytes[i] as f64 / pixels);
         let (pass, render) = (accumulator.times().after(WARM_UP), accumulator.render().after(WARM_UP));
-        let rust = match clip.methods[i + 1].1 {
-            RunKind::PostProcess(settings) => as_rust(&Settings { foveation: clip.foveation, ..settings }),
-            RunKind::Without(..) => "no settings: parts can be left out in an ablation build only".into(),
+        let rust = match &clip.methods[i + 1].1 {
+            RunKind::PostProcess(settings) | RunKind::WithShader(settings, _) => {
+                as_rust(&Settings { foveation: clip.foveation, ..*settings })
+            }
             RunKind::Oracle => "no settings: the oracle is an upper bound that knows all earlier frames".into(),
         };
         let measurement = Measurement {

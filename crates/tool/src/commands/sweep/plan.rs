@@ -21,9 +21,6 @@ pub enum PresetName {
     Paper,
     /// Scenes: error against samples and time
     Convergence,
-    /// Parts of the passes left out, on frames with invalid pixels
-    #[cfg(feature = "ablation")]
-    Safeguards,
 }
 
 impl PresetName {
@@ -34,8 +31,6 @@ impl PresetName {
             Self::Traced => include_str!("presets/traced.toml"),
             Self::Raster => include_str!("presets/raster.toml"),
             Self::Paper => include_str!("presets/paper.toml"),
-            #[cfg(feature = "ablation")]
-            Self::Safeguards => include_str!("presets/safeguards.toml"),
             Self::Convergence => include_str!("presets/convergence.toml"),
         }
     }
