@@ -396,6 +396,35 @@ fn a_scene_is_rendered_foveated_for_the_gaze_and_nothing_is_read_back() {
 }
 
 #[test]
+fn what_is_shown_has_a_running_jod() {
+    let Some(display) = Display::open() else { return };
+    let view = |words: &[&str]| {
+        let common =
+            ["view", "analytic:lateral", "--size", "320x180", "--internal-scale", "1", "--gaze", "synthetic:3"];
+        let tool = Command::new(TOOL)
+            .args([&common[..], &["--frames", "60"], words].concat())
+            .env("DISPLAY", &display.name)
+            .output();
+        let out = tool.unwrap();
+        assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+        String::from_utf8(out.stdout).unwrap()
+    };
+    // The JOD of a method, as it is said at the end.
+    let jod = |said: &str, name: &str| -> f64 {
+        let (_, after) = said.split_once(&format!("{name} ")).unwrap_or_else(|| panic!("no {name} in {said}"));
+        after[..after.find([',', ' ']).unwrap()].parse().unwrap()
+    };
+    let full_rate = view(&["--foveation", "off", "--split", "none,reference"]);
+    say(&full_rate);
+    assert_eq!([jod(&full_rate, "none"), jod(&full_rate, "reference")], [10.0; 2]);
+    let foveated = view(&["--foveation", "mip", "--fovea", "8", "--split", "reference,none"]);
+    say(&foveated);
+    assert_eq!(jod(&foveated, "reference"), 10.0);
+    assert!((0.0..9.9).contains(&jod(&foveated, "none")), "{foveated}");
+    assert_eq!(view(&["--no-panel"]), "60 frames, 0 read back\n", "only the panel asks for it");
+}
+
+#[test]
 fn without_a_display_it_says_so_in_one_line() {
     let folder = tempfile::tempdir().unwrap();
     write_still(folder.path());

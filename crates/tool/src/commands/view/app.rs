@@ -93,7 +93,7 @@ impl App {
     /// Exits normally.
     fn end(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
         events.exit();
-        self.viewer.as_ref().map_or(Ok(()), Viewer::finish)
+        self.viewer.as_mut().map_or(Ok(()), Viewer::finish)
     }
 
     fn handle(&mut self, events: &ActiveEventLoop, event: WindowEvent) -> Result<(), Failure> {

@@ -2,12 +2,14 @@
 
 mod app;
 mod auto_scale;
+mod burst;
 mod device;
 mod examiner;
 mod fly_camera;
 mod frame_loader;
 mod frames;
 mod graph;
+mod jod;
 mod keys;
 mod layout;
 mod panel;

@@ -1,6 +1,7 @@
 //! All GPU resources of the viewer. A lost device takes them with it, so they are created and replaced together.
 
 use super::device::Device;
+use super::jod::Jod;
 use super::layout::Layout;
 use super::pipeline::ViewPipeline;
 use super::quality::Quality;
@@ -22,6 +23,7 @@ pub struct DeviceResources {
     pub pipeline: ViewPipeline,
     pub times: PassTimes,
     pub quality: Quality,
+    pub jod: Jod,
     pub screen: Screen,
     /// Renders the input, if it is a scene that is rendered as it is shown.
     pub renderer: Option<RasterSource>,
@@ -54,6 +56,7 @@ impl DeviceResources {
             renderer,
             times: PassTimes::new(gpu),
             quality: Quality::new(gpu, geometry.size_px()),
+            jod: Jod::new(gpu, geometry)?,
             screen: Screen::new(gpu, surface.format()),
             has_frame: false,
             is_new: false,

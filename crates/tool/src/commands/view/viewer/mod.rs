@@ -137,6 +137,7 @@ impl Viewer {
         self.record.clear();
         self.auto_scale = AutoScale::default();
         self.stats.clear();
+        self.resources.jod.reset();
         self.is_stale = true;
     }
 
@@ -192,7 +193,8 @@ impl Viewer {
             self.record.push(self.gaze_px);
             self.advance();
         }
-        self.measure();
+        self.measure_quality();
+        self.measure_jod();
         self.draw(&target.texture.create_view(&Default::default()))?;
         self.window.pre_present_notify();
         #[cfg(feature = "wgpu-29")]

@@ -1,18 +1,23 @@
 //! Output of the viewer: window, statistics, files.
 
+use super::super::jod::RunningJod;
 use super::super::pictures;
 use super::super::quality::Viewing;
 use super::super::resources::{DeviceResources, scene};
 use super::super::state::Side;
 use super::super::times::Pass;
 use super::Viewer;
+use crate::args::Named;
 use crate::failure::Failure;
 use afterimage::doctor::Outcome;
 use afterimage::wgpu;
 
+/// Frames after a reset that have no JOD: pipelines are compiled at their first use, which delays frames.
+const WARM_UP_FRAMES: u64 = 4;
+
 impl Viewer {
-    /// Takes finished measurements of quality, and starts new ones at the panel's interval.
-    pub(super) fn measure(&mut self) {
+    /// Takes finished measurements of PSNR, and starts new ones at the panel's interval.
+    pub(super) fn measure_quality(&mut self) {
         let resources = &mut self.resources;
         for &side in self.state.shown_sides() {
             if let Some(psnr_db) = resources.quality.take(&resources.device.gpu, side) {
@@ -32,6 +37,18 @@ impl Viewer {
         }
     }
 
+    /// Gives the frame to the measurement of JOD, if the panel shows it.
+    pub(super) fn measure_jod(&mut self) {
+        let DeviceResources { device, pipeline, jod, .. } = &mut self.resources;
+        let is_measured = self.state.has_panel && pipeline.has_full() && !self.state.is_frozen;
+        if is_measured && pipeline.index() > WARM_UP_FRAMES {
+            let sides: Vec<_> = self.state.shown_sides().iter().map(|&side| pipeline.picture(side)).collect();
+            jod.push(&device.gpu, pipeline.full(), &sides, self.gaze_px, self.setup.gain());
+        } else {
+            jod.skip();
+        }
+    }
+
     /// Draws panel and window.
     pub(super) fn draw(&mut self, target: &wgpu::TextureView) -> Result<(), Failure> {
         let panel_scale = self.panel_scale();
@@ -46,6 +63,12 @@ impl Viewer {
             if let (Some(render), Some(left)) = (ms(Pass::Render), ms(Pass::Left)) {
                 let post = left + ms(Pass::Right).unwrap_or(0.0);
                 lines.push(format!("render {render:.2} ms, post {post:.2} ms"));
+            }
+            if self.resources.pipeline.has_full() {
+                lines.push(self.resources.jod.last().map_or("JOD -".into(), |RunningJod { sides, fps }| {
+                    let sides: Vec<_> = sides.iter().map(|jod| format!("{jod:.2}")).collect();
+                    format!("JOD {} at {fps:.1} fps", sides.join(", "))
+                }));
             }
             for finding in self.resources.pipeline.findings() {
                 let outcome = match finding.outcome {
@@ -99,9 +122,15 @@ impl Viewer {
     }
 
     /// Saves the files due at the end.
-    pub fn finish(&self) -> Result<(), Failure> {
+    pub fn finish(&mut self) -> Result<(), Failure> {
         if let Some(frames) = self.setup.args.frames {
             say!("{frames} frames, {} read back", self.resources.device.gpu.readbacks());
+            self.resources.jod.finish();
+            if let Some(RunningJod { sides, fps }) = self.resources.jod.last() {
+                let names = self.state.sides.map(Named::name);
+                let sides: Vec<_> = names.iter().zip(sides).map(|(name, jod)| format!("{name} {jod:.2}")).collect();
+                say!("JOD {} at {fps:.1} fps", sides.join(", "));
+            }
         }
         match (self.setup.args.frames, &self.setup.args.screenshot) {
             (Some(frames), Some(_)) if frames == self.record.len() as u64 => self.write_picture(),
