@@ -5,6 +5,7 @@ extern crate afterimage_clip;
 
 mod effects;
 mod growth;
+mod isa;
 mod options;
 mod papers;
 mod parts;
@@ -36,6 +37,7 @@ enum Experiment {
     /// and 32,16,8
     Foveated(TracedArgs),
     Growth(growth::GrowthArgs),
+    Isa(isa::IsaArgs),
     /// Foveated and uniform path tracing, as measured in two papers: Markdown tables with their results, ours, and
     /// those of sparse frames with smr
     Papers(TracedArgs),
@@ -67,6 +69,7 @@ fn run(experiment: &Experiment) -> Result<(), Failure> {
             papers::bench(args, size, frames)
         }
         Experiment::Growth(args) => growth::bench(args),
+        Experiment::Isa(args) => isa::bench(args),
         Experiment::Patterns(args) => patterns::bench(args),
         Experiment::Safeguards(args) => safeguards::bench(args),
         Experiment::Wrs(args) => wrs_table::bench(args),

@@ -132,7 +132,7 @@ mod tests {
             .map(|index| {
                 let gaze = [20.0 + 8.0 * index as f32, 32.0];
                 let frame = source.render(&pipeline.request(index, Some(gaze))).unwrap();
-                let frame = with_invalid_colors(frame, 0.01);
+                let frame = with_invalid_colors(frame, &geometry, &foveation, 0.01);
                 pipeline.step(&frame).unwrap().outputs.remove(0).image
             })
             .collect()

@@ -47,7 +47,8 @@ pub struct FoveatedFrame {
     /// Level of detail: log2 of the sample spacing in pixels.
     pub lod: Image<f32>,
     /// Noise of the color at its level of detail: standard error of its luma (linear), and number of samples averaged.
-    pub noise: Image<[f32; 2]>,
+    /// `None`: the methods get no such input.
+    pub noise: Option<Image<[f32; 2]>>,
     /// Where the samples lie, if the frame is not reconstructed between them. Only samples then have a color.
     pub lattices: Option<Lattices>,
     /// Number of samples in each ring.

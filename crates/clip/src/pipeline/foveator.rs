@@ -52,7 +52,7 @@ impl Foveator {
         match &frame.content {
             Content::FullRate | Content::Jittered(_) => self.simulated(frame, ecc_deg, is_read),
             Content::Foveated(foveated) => {
-                let noise = Some(&foveated.noise);
+                let noise = foveated.noise.as_ref();
                 // The levels of detail of a sparse frame follow from its lattices.
                 let has_lod = foveated.lattices.is_none();
                 let color = InMemory { has_lod, noise, ..InMemory::new(Cow::Borrowed(&foveated.color)) };

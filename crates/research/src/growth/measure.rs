@@ -276,7 +276,7 @@ fn traced(rig: &Rig, config: Config, frames: u64) -> Result<Point, Failure> {
             });
             sums.samples += frame.samples.iter().sum::<u64>();
             rig.gpu.write_rgb(&images.color, 0, &frame.color);
-            rig.gpu.write(&images.noise, 0, &frame.noise);
+            rig.gpu.write(&images.noise, 0, frame.noise.as_ref().expect("traced frames are noisy"));
             let lattices = Some(lattices);
             let views = [ViewFrame { lattices, ..ViewFrame::new(geometry, Gaze::At { px: gaze_px }) }];
             let frame = Frame {

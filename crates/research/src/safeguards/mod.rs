@@ -5,12 +5,13 @@
 mod invalid_colors;
 
 use crate::parts::{PARTS, shader_without};
+use afterimage::simulator::Pyramid;
 use afterimage::{DepthTest, Foveation, Method, MethodKind, Settings, ViewGeometry};
 use afterimage_cli::failure::Failure;
 use afterimage_cli::progress;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::{Backend, Headless};
-use afterimage_lab::frame::{RenderedFrame, SourceFrame};
+use afterimage_lab::frame::{FoveatedFrame, RenderedFrame};
 use afterimage_lab::metric::{References, Scorer, Scores, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
@@ -43,7 +44,7 @@ pub struct SafeguardsArgs {
     /// Block edge in the periphery, pixels
     #[arg(long, default_value_t = 8, value_name = "N")]
     pub rate_far: u32,
-    /// Share of the full-rate frame's pixels that are NaN, infinite, huge or negative, before foveation, 0 to 1
+    /// Share of the pixels of each foveated frame that are NaN, infinite, huge or negative, 0 to 1
     #[arg(long, default_value_t = 0.0001, value_name = "SHARE")]
     pub invalid: f32,
 }
@@ -84,12 +85,17 @@ fn with_smr(settings: &mut Settings, change: impl Fn(&mut afterimage::Smr)) {
     }
 }
 
-/// The frame with invalid colors, which a simulator spreads over blocks as coarse shading does; metrics compare with
-/// the frame without.
-pub fn with_invalid_colors(frame: RenderedFrame, share: f32) -> RenderedFrame {
-    let color = invalid_colors::among(frame.reference.color.clone(), share, frame.index as u32);
-    let given = SourceFrame { color, ..frame.reference.clone() };
-    frame.jittered(given, [0.0; 2])
+/// The frame as a simulator foveates it, with invalid colors.
+pub fn with_invalid_colors(
+    frame: RenderedFrame,
+    geometry: &ViewGeometry,
+    foveation: &Foveation,
+    share: f32,
+) -> RenderedFrame {
+    let lod = foveation.lod_map(geometry, frame.gaze_px, &geometry.eccentricity_map(frame.gaze_px));
+    let pyramid = Pyramid::new(frame.reference.color.clone(), foveation.max_level());
+    let color = invalid_colors::among(foveation.render(&pyramid, &lod), share, frame.index as u32);
+    frame.foveated(FoveatedFrame { color, lod, noise: None, lattices: None, samples: vec![], rays: 0, nonfinite: 0 })
 }
 
 /// Makes the table.
@@ -143,7 +149,7 @@ fn measured(
     for index in 0..args.frames {
         let request = pipeline.request(index, gaze.px(index));
         let frame = source.render(&request).map_err(|e| input(&e))?;
-        let frame = with_invalid_colors(frame, args.invalid);
+        let frame = with_invalid_colors(frame, &geometry, &foveation, args.invalid);
         let step = pipeline.step(&frame).map_err(|e| input(&e))?;
         let full = encode(&frame.reference.color, 0.0);
         let reference = references.next(&full, &step.tracked, &step.ecc_deg);

@@ -11,8 +11,8 @@ const SKIPPED: [&str; 5] = ["target", ".git", "out", "artifacts", "corpus"];
 pub const PACKAGES: [&str; 8] = [
     "",
     "crates/clip/",
-    "crates/isa/",
     "crates/lab/",
+    "crates/metric/",
     "crates/openxr/",
     "crates/research/",
     "crates/testing/",

@@ -110,7 +110,7 @@ impl DeviceInputs {
                 self.write_rgb(&self.foveated, &foveated.color);
                 // The levels of detail of a sparse frame follow from its lattices.
                 self.given.lod = foveated.lattices.is_none().then(|| self.uploaded(&self.lod, &foveated.lod));
-                self.given.noise = Some(self.uploaded(&self.noise, &foveated.noise));
+                self.given.noise = foveated.noise.as_ref().map(|noise| self.uploaded(&self.noise, noise));
             }
             content @ Content::OnDevice(_) => {
                 let content = OnDevice::of(content).expect("this crate has no other frames on devices");

@@ -166,7 +166,7 @@ impl Plan {
                 Blended { color: fill::pull_push(&film), lod: lod.clone(), noise: fill::noise_between(&film) }
             }
         };
-        FoveatedFrame { color, lod, noise, lattices: None, samples, rays, nonfinite }
+        FoveatedFrame { color, lod, noise: Some(noise), lattices: None, samples, rays, nonfinite }
     }
 }
 

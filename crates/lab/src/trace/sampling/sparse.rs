@@ -170,7 +170,7 @@ impl SparsePlan {
         FoveatedFrame {
             color,
             lod: levels(&self.lattices, self.size_px),
-            noise: self.noise(&noise),
+            noise: Some(self.noise(&noise)),
             lattices: Some(self.lattices),
             samples: self.samples(),
             rays,

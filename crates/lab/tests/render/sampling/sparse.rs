@@ -122,7 +122,7 @@ fn samples_have_the_colors_traced_at_their_places() {
                 let mut film = Film::window([x, y], [1, 1]);
                 tracer.trace(&world, &view.on_lattice(&grid), 7, &items, &mut film);
                 assert_eq!(made.color.at(px[0] as usize, px[1] as usize), film.at([x, y]).mean.to_array(), "{px:?}");
-                assert_eq!(made.noise.at(px[0] as usize, px[1] as usize)[1], traced[&px] as f32);
+                assert_eq!(made.noise.as_ref().unwrap().at(px[0] as usize, px[1] as usize)[1], traced[&px] as f32);
                 seen += 1;
             }
         }

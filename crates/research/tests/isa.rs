@@ -5,8 +5,8 @@ use std::process::Command;
 #[test]
 fn cycles_are_those_of_the_page() {
     let bless = std::env::var_os("AFTERIMAGE_BLESS").is_some();
-    let status = Command::new(env!("CARGO_BIN_EXE_afterimage-isa"))
-        .arg(if bless { "bless" } else { "check" })
+    let status = Command::new(env!("CARGO_BIN_EXE_afterimage-research"))
+        .args(["isa", if bless { "bless" } else { "check" }])
         .status()
         .expect("the program runs");
     assert!(status.success(), "see above");

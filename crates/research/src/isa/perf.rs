@@ -2,7 +2,7 @@
 //! itself takes every loop for 8 rounds, an inner one for 32, and every branch for taken half or three quarters of the
 //! time.
 
-use crate::gpu::Gpu;
+use super::gpu::Gpu;
 use std::collections::BTreeMap;
 
 /// Paths of a wave: nothing moves; all moves; smr also relights history.

@@ -1,7 +1,8 @@
 //! A Vulkan device that only compiles, and what it says of a compute pipeline.
+#![allow(unsafe_code, reason = "plain Vulkan, which has no safe interface for statistics of pipelines")]
 
-use crate::Result;
-use crate::spirv::Shader;
+use super::failure::Result;
+use super::spirv::Shader;
 use ash::{khr::pipeline_executable_properties as executables, vk};
 use serde_json::{Map, Value, json};
 use std::ffi::{CStr, c_char};

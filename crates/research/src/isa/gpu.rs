@@ -1,9 +1,9 @@
 //! The GPUs, and what their compiler says of the passes.
 
-use crate::Result;
-use crate::passes::methods;
-use crate::radv::Radv;
-use crate::spirv;
+use super::failure::Result;
+use super::passes::methods;
+use super::radv::Radv;
+use super::spirv;
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::Path;
@@ -45,7 +45,7 @@ impl Gpu {
     pub fn compile(&self, icd: &Path, count: usize) -> Result<Compiled> {
         let runtime = tempfile::tempdir()?;
         let mut command = Command::new(std::env::current_exe()?);
-        command.arg("compile").env("RADV_FORCE_FAMILY", self.family).env("ACO_DEBUG", "perfinfo");
+        command.args(["isa", "compile"]).env("RADV_FORCE_FAMILY", self.family).env("ACO_DEBUG", "perfinfo");
         // A pipeline that RADV finds in its cache says nothing.
         command.env("MESA_SHADER_CACHE_DISABLE", "1").env("RADV_DEBUG", "nocache");
         command.env("VK_ICD_FILENAMES", icd).env_remove("VK_DRIVER_FILES");

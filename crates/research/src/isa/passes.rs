@@ -1,6 +1,6 @@
 //! The passes of the methods, as the drop-in compiles them.
 
-use crate::Result;
+use super::failure::Result;
 use afterimage::gpu::{Afterimage, Variant};
 use afterimage::shader::{Composer, Module, SHADERS};
 use afterimage::wgpu::{Device, DeviceDescriptor, TextureFormat};

@@ -1,12 +1,12 @@
 //! The tables of docs/performance.md, and what differs from them.
 
-use crate::Result;
-use crate::gpu::{Compiled, GPUS, Gpu};
-use crate::passes::{MethodPasses, Pass, SIZE_PX};
-use crate::perf::{PATHS, Path, Program};
+use super::failure::Result;
+use super::gpu::{Compiled, GPUS, Gpu};
+use super::passes::{MethodPasses, Pass, SIZE_PX};
+use super::perf::{PATHS, Path, Program};
 use serde_json::Value;
 
-const MARKER: &str = "<!-- generated: afterimage-isa, ";
+const MARKER: &str = "<!-- generated: cargo research isa, ";
 /// Change of a pass's cycles that the page need not follow.
 const TOLERANCE: f64 = 0.03;
 
@@ -191,7 +191,7 @@ fn changes(page: Vec<Vec<&str>>, now: Vec<Vec<&str>>) -> Vec<String> {
 mod tests {
     use super::*;
 
-    const PAGE: &str = "<!-- generated: afterimage-isa, passes -->\n| radv 1 | pass | instructions | VGPRs | spills \
+    const PAGE: &str = "<!-- generated: cargo research isa, passes -->\n| radv 1 | pass | instructions | VGPRs | spills \
         | waves | still | moving | relit | loads |\n|---|\n| g | a | 9 | 9 | 0 | 16 | 100 | 200 | 300 | 5, 5 |\n\
         | g | b | 9 | 9 | 0 | 16 | 100 | 200 | 300 | 5, 5 |\n\ntext\n";
 

@@ -1,10 +1,10 @@
-//! A cycle model of the compute passes on three AMD GPUs.
+//! `cargo research isa`: a cycle model of the compute passes on three AMD GPUs.
 //!
-//! Mesa's RADV makes a device without hardware (`RADV_FORCE_FAMILY`), compiles for it, and says how many cycles it
-//! expects of each instruction. `afterimage-isa` adds them up along the paths of a wave and prints the tables of
-//! docs/performance.md; `afterimage-isa check` compares them with the page, `afterimage-isa bless` rewrites the page.
-//! A model: no memory system, no divergence within a wave.
+//! Makes the tables of `docs/performance.md` that name it. Mesa's RADV makes a device without hardware
+//! (`RADV_FORCE_FAMILY`), compiles for it, and says how many cycles it expects of each instruction. This adds them up
+//! along the paths of a wave. A model: no memory system, no divergence within a wave.
 
+mod failure;
 mod gpu;
 mod passes;
 mod perf;
@@ -12,33 +12,44 @@ mod radv;
 mod spirv;
 mod table;
 
+use afterimage_cli::failure::Failure;
+use clap::{Args, ValueEnum};
+use failure::Result;
 use gpu::GPUS;
 use passes::{Pass, methods};
 use std::io::Write;
 use std::path::Path;
-use std::process::ExitCode;
 use table::{Figures, page_changes, rewritten};
-
-type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 /// Page with the tables.
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/performance.md");
 
-fn main() -> ExitCode {
-    match run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(e) => {
-            // Not by a macro for standard error, which tests capture.
-            let _ = writeln!(std::io::stderr(), "afterimage-isa: {e}");
-            ExitCode::FAILURE
-        }
-    }
+/// Cycles of the passes on AMD GPUs, modelled from the code of Mesa's driver
+#[derive(Args, Clone, Debug)]
+pub struct IsaArgs {
+    /// What to do; default: print the tables
+    #[arg(value_enum)]
+    action: Option<Action>,
 }
 
-fn run() -> Result<()> {
-    let args: Vec<String> = std::env::args().skip(1).collect();
-    let args: Vec<&str> = args.iter().map(String::as_str).collect();
-    if args == ["compile"] {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Action {
+    /// Compare the tables with docs/performance.md
+    Check,
+    /// Rewrite the tables of docs/performance.md
+    Bless,
+    /// Compile the passes for the GPU that RADV_FORCE_FAMILY names, in a process of its own
+    #[value(hide = true)]
+    Compile,
+}
+
+/// Makes, compares or rewrites the tables.
+pub fn bench(args: &IsaArgs) -> std::result::Result<(), Failure> {
+    run(args.action).map_err(|e| Failure::Work(e.to_string()))
+}
+
+fn run(action: Option<Action>) -> Result<()> {
+    if action == Some(Action::Compile) {
         // In a process of its own: see Gpu::compile.
         return gpu::compile_all();
     }
@@ -49,9 +60,9 @@ fn run() -> Result<()> {
     for gpu in &GPUS {
         figures.add(gpu, &passes, gpu.compile(&icd, passes.len())?)?;
     }
-    match args[..] {
-        [] => print!("{}", table::all(&methods, &figures)),
-        ["check"] => {
+    match action {
+        None | Some(Action::Compile) => print!("{}", table::all(&methods, &figures)),
+        Some(Action::Check) => {
             let page = std::fs::read_to_string(PAGE)?;
             let known = table::driver_of(&page).ok_or("docs/performance.md names no driver of the tables")?;
             if known != figures.driver {
@@ -59,15 +70,14 @@ fn run() -> Result<()> {
             }
             let changes = page_changes(&page, &figures);
             if !changes.is_empty() {
-                let how = "AFTERIMAGE_BLESS=1 cargo test -p afterimage-isa accepts them";
+                let how = "cargo research isa bless accepts them";
                 return Err(format!("cycles differ from docs/performance.md; {how}:\n{}", changes.join("\n")).into());
             }
         }
-        ["bless"] => {
+        Some(Action::Bless) => {
             let page = std::fs::read_to_string(PAGE)?;
             std::fs::write(Path::new(PAGE), rewritten(&page, &methods, &figures))?;
         }
-        _ => return Err("usage: afterimage-isa [check | bless]".into()),
     }
     Ok(())
 }
