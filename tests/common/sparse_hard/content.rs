@@ -179,12 +179,8 @@ pub fn silhouettes(make: Make) -> Option<String> {
         let shot = square(index);
         let at_samples = {
             let lattices = shot.lattices();
-            let is_read = |px: [u32; 2]| lattices.as_slice().iter().any(|l| l.samples(px));
             // What lies between the samples must not be read.
-            let holed = |image: &Image<f32>| {
-                Image::from_fn(SIZE, |px| if is_read(px) { image.at(px[0] as usize, px[1] as usize) } else { f32::NAN })
-            };
-            let depth = shot.depth.as_ref().map(holed);
+            let depth = shot.depth.as_ref().map(|depth| shot.read_of(depth, f32::NAN));
             let facts = ViewFrame { lattices: Some(lattices.with_geometry_at_samples()), ..shot.facts };
             shot.clone().with(|view| (view.facts, view.depth) = (facts, depth))
         };

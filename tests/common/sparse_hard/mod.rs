@@ -101,7 +101,7 @@ impl Shot {
 
     /// In which everything moves by `speed_px` a frame.
     pub fn moving(self, speed_px: [f32; 2]) -> Self {
-        self.with(|view| view.motion = Some(Image::filled(view.color.size(), speed_px.map(|v| -v))))
+        Self { view: self.view.moving(speed_px), ..self }
     }
 
     pub fn lattices(&self) -> Lattices {

@@ -86,24 +86,25 @@ fn no_worse([with, without]: [f64; 2]) -> bool {
     with <= without + 1e-8
 }
 
-/// A near wall before the right half is gone from frame `TURN` on.
+/// A near wall before the right half is gone from frame `TURN` on; and the first frames of a context.
 pub fn half_uncovered(make: Make) -> Option<String> {
     let behind = waves(SIZE, [0.0; 2]);
-    let is_uncovered = |[x, _]: [u32; 2]| x >= SIZE[0] / 2;
     let mut figures = vec![];
-    for budget in [0.05, 0.1, 0.2] {
+    let at_first = [0.002, 0.05, 0.1, 0.2].map(|budget| (budget, 0, 1.0));
+    for (budget, from, share) in [0.05, 0.1, 0.2].map(|budget| (budget, TURN, 0.5)).into_iter().chain(at_first) {
+        let is_uncovered = |[x, _]: [u32; 2]| from == 0 || x >= SIZE[0] / 2;
         let mut pair = Pair::new(make, budget)?;
         // Pixels that no sample has shown yet.
         let mut unseen = Image::from_fn(SIZE, is_uncovered);
         let mut whole = None;
         let mut gain = vec![];
         for index in 0..3 * TURN {
-            let is_covered = |px| index < TURN && is_uncovered(px);
+            let is_covered = |px| index < from && is_uncovered(px);
             let color = Image::from_fn(SIZE, |px| if is_covered(px) { [0.9, 0.1, 0.2] } else { at(&behind, px) });
             let depth = Image::from_fn(SIZE, |px| if is_covered(px) { 2.0 } else { 6.0 });
             let shot = shot(color.clone(), index).with(|view| view.depth = Some(depth));
             let shown = pair.show(index, &shot);
-            if index < TURN {
+            if index < from {
                 continue;
             }
             // A quad wants as much as the pixel nearest to the gaze of those that are asked and have no sample, in this
@@ -113,8 +114,10 @@ pub fn half_uncovered(make: Make) -> Option<String> {
                 let asked = [0, 1].map(|i| asked_px(i, x / 2, y / 2, index as u32)).into_iter();
                 asked.filter(|&px| px[0] < SIZE[0] && px[1] < SIZE[1] && wants(px)).map(ring).min()
             };
-            let chosen = quads().filter(|&quad| at(&shown.mask, quad)).map(ring_of);
-            let last = chosen.map(|ring| ring.expect("a chosen quad wants something")).max();
+            let chosen: Vec<_> = quads().filter(|&quad| at(&shown.mask, quad)).map(ring_of).collect();
+            let used = chosen.len() as f32 / quads().count() as f32;
+            assert!(index > from || used > 0.5 * budget, "{used} of {budget} is used");
+            let last = chosen.into_iter().map(|ring| ring.expect("a chosen quad wants something")).max();
             let first_left = quads().filter(|&quad| !at(&shown.mask, quad)).filter_map(ring_of).min();
             assert!(
                 first_left.is_none_or(|left| last.is_some_and(|last| last <= left)),
@@ -127,16 +130,19 @@ pub fn half_uncovered(make: Make) -> Option<String> {
             let off = wrong(&shown.with, &color, |px| !at(&unseen, px));
             assert_eq!(off, 0, "frame {index}: pixels that were sampled are lost");
             if whole.is_none() && unseen.pixels().iter().all(|&unseen| !unseen) {
-                whole = Some(index - TURN);
+                whole = Some(index - from);
             }
         }
         let whole = whole.expect("never whole");
-        // The lattices alone take all but one frame of a turn; half of the quads were uncovered. The last pixels may be
-        // those that are asked one frame later.
-        let most = (TURN - 1).min((0.5 / budget).ceil() as u64 + 1);
-        println!("budget {budget}: whole after {whole} frames, {most} at the most; gain {gain:.2?}");
+        // The lattices alone take all but one frame of a turn; that share of the quads was uncovered. The last pixels
+        // may be those that are asked one frame later.
+        let most = (TURN - 1).min((share / budget).ceil() as u64 + 1);
+        println!(
+            "budget {budget} for {share} from frame {from} on: whole after {whole} frames, {most} at the most; gain {gain:.2?}"
+        );
         assert!(whole <= most, "budget {budget}: whole after {whole} frames instead of {most}");
-        figures.push(format!("{:.0} %: {whole} ({:+.1}, {:+.1})", 100.0 * budget, gain[0], gain[4]));
+        let what = if from == 0 { " at first" } else { "" };
+        figures.push(format!("{:.1} %{what}: {whole} ({:+.1}, {:+.1})", 100.0 * budget, gain[0], gain[4]));
     }
     Some(format!(
         "frames after the uncovering until whole, by budget, and dB there against no repair in its frame and 4 later: {}",

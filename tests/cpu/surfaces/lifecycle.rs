@@ -141,25 +141,6 @@ fn half_the_trust_is_half_the_history() {
 }
 
 #[test]
-fn a_camera_that_drives_keeps_what_it_drives_at() {
-    let camera = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 1.0], [0.0, 0.0, 0.0, 1.0]];
-    for method in METHODS {
-        for (camera, valid) in [(Some(camera), true), (None, false)] {
-            let mut post = context(method);
-            for (index, z) in [(0, 6.0_f32), (1, 5.0)] {
-                let k = z / (z + 1.0) - 1.0;
-                let motion = Image::from_fn(SIZE, |[x, y]| [(x as f32 - 25.5) * k, (y as f32 - 20.0) * k]);
-                let mut input = View { depth: Some(Image::filled(SIZE, z)), motion: Some(motion), ..frame(index) };
-                input.facts.previous_from_current = camera;
-                let made = step(&mut post, index, &input);
-                let all = |v| made.trace.pixels().iter().all(|t| t.verdict == v);
-                assert!(index == 0 || all(if valid { Verdict::Valid } else { Verdict::Disoccluded }));
-            }
-        }
-    }
-}
-
-#[test]
 fn beside_a_depth_edge_another_texel_stands_in_for_the_nearest_one() {
     // The far pixel in column 26 was at 25.4 or 25.05: the nearest texel shows the near surface, and the one that shows
     // the far surface has a weight of 0.4 or 0.05.

@@ -9,7 +9,7 @@ const RANDOM: usize = 100_000;
 
 /// Zeros, denormals, both ends of the normal range, powers, halves, infinities and NaNs, of both signs.
 pub fn any() -> Vec<u32> {
-    let denormal = vec![0, 1, 0x1234, 0x007f_ffff];
+    let denormal = [0, 1, 0x1234, 0x007f_ffff];
     let power = |exponent| 2.0_f32.powi(exponent);
     let least = f32::MIN_POSITIVE;
     // Rounding of halves at both ends of their range, and the knees of sRGB's curves.
