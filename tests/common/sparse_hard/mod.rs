@@ -204,6 +204,14 @@ pub fn noise(size: [u32; 2], name: &str) -> Color {
     Image::from_fn(size, |_| [0; 3].map(|_| draws.range(0.125, 0.875)))
 }
 
+pub fn pixels() -> impl Iterator<Item = [u32; 2]> {
+    (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]))
+}
+
+pub fn pixel<T: Copy>(image: &Image<T>, [x, y]: [u32; 2]) -> T {
+    image.at(x as usize, y as usize)
+}
+
 /// Mean squared error over the pixels that `counts`.
 pub fn squared_error(shown: &Color, full: &Color, counts: impl Fn([u32; 2]) -> bool) -> f64 {
     let width = shown.size()[0];

@@ -46,7 +46,7 @@ fn h76_any_size_down_to_a_pixel_works_and_takes_what_is_documented() {
             for method in METHODS {
                 let mut settings = settings(method);
                 settings.foveation.filter = filter;
-                let mut post = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(size) }).unwrap();
+                let mut post = context_of(size, settings);
                 for index in 0..3 {
                     let input = View {
                         lod: None,
@@ -63,11 +63,7 @@ fn h76_any_size_down_to_a_pixel_works_and_takes_what_is_documented() {
     }
     // Two words of two frames, and for smr levels 1 to 4 of sixteen bytes a texel of two frames: a quarter, a
     // sixteenth, ...
-    let bytes = |method| {
-        CpuAfterimage::new(&ContextDesc { settings: settings(method), ..ContextDesc::new([64, 48]) })
-            .unwrap()
-            .memory_bytes()
-    };
+    let bytes = |method| context_of([64, 48], settings(method)).memory_bytes();
     let texels = 32 * 24 + 16 * 12 + 8 * 6 + 4 * 3;
     assert_eq!((bytes(MethodKind::Taa), bytes(MethodKind::Smr)), (16 * 64 * 48, 16 * 64 * 48 + 32 * texels));
 }
@@ -76,10 +72,8 @@ fn h76_any_size_down_to_a_pixel_works_and_takes_what_is_documented() {
 fn views_know_nothing_of_each_other() {
     for method in METHODS {
         let desc = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
-        let (mut both, mut swapped) = (
-            CpuAfterimage::new(&ContextDesc { settings: settings(method), ..desc }).unwrap(),
-            CpuAfterimage::new(&ContextDesc { settings: settings(method), ..desc }).unwrap(),
-        );
+        let fresh = || CpuAfterimage::new(&ContextDesc { settings: settings(method), ..desc }).unwrap();
+        let (mut both, mut swapped) = (fresh(), fresh());
         let (mut left, mut right) = (context(method), context(method));
         for index in 0..5 {
             let a = View::still(frame(index).color, [10.0, 10.0]);

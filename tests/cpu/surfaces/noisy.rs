@@ -1,10 +1,10 @@
 //! Noisy candidates: the mean of many frames has the variance that its weights predict, and no bias; noise does not
 //! pass for a change, nor a change for noise.
 
-use super::rig::{Draws, SIZE, View, settings, sharp, step};
+use super::rig::{Draws, SIZE, View, context_of, settings, sharp, step};
 use crate::pass::sparse_noise::{self, moments, promised};
 use afterimage::cpu::CpuAfterimage;
-use afterimage::{ContextDesc, Image, Method, MethodKind, Settings, Smr};
+use afterimage::{Image, Method, MethodKind, Settings, Smr};
 use afterimage_testing::{accept, p_of_z, reject};
 
 const PIXELS: f64 = (SIZE[0] * SIZE[1]) as f64;
@@ -14,7 +14,7 @@ fn noisy() -> Settings {
 }
 
 fn post(settings: Settings) -> CpuAfterimage {
-    CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) }).unwrap()
+    context_of(SIZE, settings)
 }
 
 /// Sharp pixels, each the mean of two draws of `sample`.

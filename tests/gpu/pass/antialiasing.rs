@@ -2,8 +2,7 @@
 
 use super::rig::View;
 use super::sparse::{SIZE, all_caught_in_samples, arrange, desc, full_rate, gliding_view, settings};
-use afterimage::gpu::Afterimage;
-use afterimage::{ContextDesc, Foveation, Method, MethodKind, Settings, Smr};
+use afterimage::{Foveation, Method, MethodKind, Settings, Smr};
 
 fn antialiased() -> Settings {
     let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
@@ -34,12 +33,6 @@ fn views(index: u64, settings: &Settings) -> [View; 2] {
         }
         view
     })
-}
-
-#[test]
-fn means_take_no_memory() {
-    let bytes = |settings| Afterimage::memory_bytes_of(&ContextDesc { settings, ..ContextDesc::new([1920, 1080]) });
-    assert_eq!(bytes(antialiased()), bytes(settings(MethodKind::Smr)));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use afterimage::shader::SHADERS;
 use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{
     ContextDesc, Exposure, Filter, Foveation, Image, Lattice, Lattices, Method, MethodKind, Reset, Sampler, Settings,
-    ViewGeometry, Wrs,
+    Smr, ViewGeometry, Wrs,
 };
 use afterimage_testing::Draws;
 use afterimage_testing::planted::all_caught;
@@ -91,16 +91,6 @@ fn noisy_sparse_frames_are_bit_equal_on_both_executors() {
             rig.both(index, Reset::None, &[0, 1].map(|v| noisy_view(index, v, &settings)));
         }
     }
-}
-
-#[test]
-fn noise_takes_eight_bytes_a_pixel() {
-    let size = [1920, 1080];
-    let bytes = |settings| Afterimage::memory_bytes_of(&ContextDesc { settings, ..ContextDesc::new(size) });
-    let (noisy, calm) = (bytes(traced()), bytes(Settings { noisy: false, ..traced() }));
-    let pixels = u64::from(size[0]) * u64::from(size[1]);
-    println!("{:.1} bytes a pixel, {:.1} with noise", calm as f64 / pixels as f64, noisy as f64 / pixels as f64);
-    assert!(calm <= 24 * pixels && noisy == calm + 8 * pixels);
 }
 
 /// Regions and exposures of frame `index`.
@@ -582,14 +572,20 @@ fn kept_history_follows_a_change_of_size() {
 }
 
 #[test]
-fn smr_on_sparse_frames_holds_less_than_24_bytes_a_pixel() {
-    for (size, view_count) in [([1920, 1080], 1), ([480, 270], 2), ([3840, 2160], 1)] {
-        let settings = settings(MethodKind::Smr);
+fn smr_on_sparse_frames_holds_less_than_24_bytes_a_pixel_and_8_more_for_noise() {
+    let bytes = |size: [u32; 2], view_count, settings| {
         let desc = ContextDesc { settings, view_count, ..ContextDesc::new(size) };
-        let pixels = u64::from(size[0] * size[1] * view_count);
-        let bytes = Afterimage::memory_bytes_of(&desc) as f64 / pixels as f64;
-        println!("{size:?}: {bytes:.2} bytes a pixel and view");
-        assert!((22.0..24.0).contains(&bytes), "{bytes}");
+        Afterimage::memory_bytes_of(&desc) as f64 / f64::from(size[0] * size[1] * view_count)
+    };
+    for (size, view_count) in [([1920, 1080], 1), ([480, 270], 2), ([3840, 2160], 1)] {
+        let calm = bytes(size, view_count, settings(MethodKind::Smr));
+        println!("{size:?}: {calm:.2} bytes a pixel and view");
+        assert!((22.0..24.0).contains(&calm), "{calm}");
+        let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
+        let antialiased = Settings { method, ..settings(MethodKind::Smr) };
+        assert_eq!(bytes(size, view_count, antialiased), calm, "means take no memory");
+        let [noisy, exact] = [true, false].map(|noisy| bytes(size, view_count, Settings { noisy, ..traced() }));
+        assert!(exact <= 24.0 && (noisy - exact - 8.0).abs() < 1e-9, "{noisy}, {exact}");
     }
 }
 
