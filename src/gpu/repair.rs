@@ -219,8 +219,8 @@ fn size_quads(desc: &ContextDesc) -> [u32; 2] {
 
 /// Bytes of a view's list.
 fn list_bytes(desc: &ContextDesc, repair: Repair) -> u64 {
-    // An empty array has no binding.
-    LIST_HEADER_BYTES + 4 * u64::from(budget_quads(repair.budget, size_quads(desc)).max(1))
+    // A binding holds the header and a whole vec4 of the array.
+    LIST_HEADER_BYTES + 4 * u64::from(budget_quads(repair.budget, size_quads(desc)).max(4))
 }
 
 /// Bytes of the textures and buffers of a plan.

@@ -27,7 +27,7 @@ pub fn all_settings() -> Vec<Settings> {
 }
 
 /// Arbitrary bits with probability `wild`, else a number in [low, high).
-fn number(draws: &mut Draws, wild: f32, low: f32, high: f32) -> f32 {
+pub fn number(draws: &mut Draws, wild: f32, low: f32, high: f32) -> f32 {
     if draws.uniform() < wild { f32::from_bits(draws.bits()) } else { draws.range(low, high) }
 }
 

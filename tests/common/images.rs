@@ -1,7 +1,7 @@
 //! Images of frames, view by view, in the form of the CPU executor's inputs.
 
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::{Gaze, Image, ViewFrame, ViewGeometry};
+use afterimage::{Foveation, Gaze, Image, Lattices, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
 
 /// Images of one view of one frame.
@@ -25,6 +25,54 @@ impl View {
     pub fn still(color: Image<[f32; 3]>, gaze_px: [f32; 2]) -> Self {
         let facts = ViewFrame::new(ViewGeometry::flat(color.size(), 70.0).unwrap(), Gaze::At { px: gaze_px });
         Self { facts, color, depth: None, motion: None, trust: None, lod: None, noise: None, repaired: None }
+    }
+
+    /// With other images or facts.
+    pub fn with(mut self, change: impl FnOnce(&mut Self)) -> Self {
+        change(&mut self);
+        self
+    }
+
+    /// A sparse frame with these lattices.
+    pub fn sparse(self, lattices: Lattices) -> Self {
+        self.with(|view| view.facts.lattices = Some(lattices))
+    }
+
+    /// A sparse frame of `foveation`.
+    pub fn foveated(self, foveation: &Foveation, gaze_px: [f32; 2], index: u64) -> Self {
+        let lattices = foveation.lattices(&self.facts.geometry, gaze_px, index);
+        self.sparse(lattices)
+    }
+
+    /// What the lattices read of an image, and `elsewhere` between.
+    pub fn read_of<T: Copy>(&self, image: &Image<T>, elsewhere: T) -> Image<T> {
+        let lattices = self.facts.lattices.unwrap();
+        let is_read = |px| lattices.as_slice().iter().any(|lattice| lattice.samples(px));
+        let at = |[x, y]: [u32; 2]| image.at(x as usize, y as usize);
+        Image::from_fn(image.size(), |px| if is_read(px) { at(px) } else { elsewhere })
+    }
+
+    /// With the samples in an atlas of `size`, and NaN elsewhere.
+    pub fn in_atlas(&self, size: [u32; 2]) -> Self {
+        let (atlas, least) = self.facts.lattices.unwrap().in_atlas();
+        assert!(least[0] <= size[0] && least[1] <= size[1]);
+        let mut color = Image::filled(size, [f32::NAN; 3]);
+        for lattice in atlas.as_slice() {
+            let [left, top] = lattice.atlas_texel.unwrap();
+            for (i, j) in (0..lattice.points[1]).flat_map(|j| (0..lattice.points[0]).map(move |i| (i, j))) {
+                let [x, y] = [lattice.first_px[0] + i * lattice.step, lattice.first_px[1] + j * lattice.step];
+                if x < self.color.size()[0] && y < self.color.size()[1] {
+                    let at = ((top + j) * size[0] + left + i) as usize;
+                    color.pixels_mut()[at] = self.color.at(x as usize, y as usize);
+                }
+            }
+        }
+        Self { color, ..self.clone() }.sparse(atlas)
+    }
+
+    /// In which everything moves by `speed_px` a frame.
+    pub fn moving(self, speed_px: [f32; 2]) -> Self {
+        self.with(|view| view.motion = Some(Image::filled(view.color.size(), speed_px.map(|v| -v))))
     }
 
     /// As the CPU executor's inputs.

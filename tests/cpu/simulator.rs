@@ -17,11 +17,14 @@ fn noise(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
     Image::from_fn(size, |_| [draws.uniform(), draws.uniform(), draws.uniform()])
 }
 
+/// Levels of detail of a view of 70 degrees.
+fn lods(foveation: &Foveation, size: [u32; 2], gaze: [f32; 2]) -> Image<f32> {
+    let geometry = ViewGeometry::flat(size, 70.0).unwrap();
+    foveation.lod_map(&geometry, gaze, &geometry.eccentricity_map(gaze))
+}
+
 fn foveate(foveation: &Foveation, image: &Image<[f32; 3]>, gaze: [f32; 2]) -> Image<[f32; 3]> {
-    let geometry = ViewGeometry::flat(image.size(), 70.0).unwrap();
-    let ecc = geometry.eccentricity_map(gaze);
-    let lods = foveation.lod_map(&geometry, gaze, &ecc);
-    foveation.render(&Pyramid::new(image.clone(), foveation.max_level()), &lods)
+    foveation.render(&Pyramid::new(image.clone(), foveation.max_level()), &lods(foveation, image.size(), gaze))
 }
 
 /// What a law measured.
@@ -172,9 +175,7 @@ fn a_blurred_point_is_a_gaussian() {
 fn blocks_are_aligned_nested_and_constant() {
     let image = noise([320, 180], "blocks");
     let foveation = Foveation { filter: Filter::Block, ..Foveation::default() };
-    let geometry = ViewGeometry::flat([320, 180], 70.0).unwrap();
-    let gaze = [100.0, 90.0];
-    let lods = foveation.lod_map(&geometry, gaze, &geometry.eccentricity_map(gaze));
+    let lods = lods(&foveation, [320, 180], [100.0, 90.0]);
     let out = foveation.render(&Pyramid::new(image, 4), &lods);
     for y in 0..180_usize {
         for x in 0..320_usize {
@@ -228,13 +229,11 @@ fn h62_angles_follow_rays_not_the_screen() {
 #[test]
 fn h67_small_gaze_movements_enlarge_the_area_seen_sharp() {
     let size = [640, 360];
-    let geometry = ViewGeometry::flat(size, 70.0).unwrap();
     let foveation = Foveation::default();
     let sharp = |gazes: &[[f32; 2]]| {
         let mut seen = Image::filled(size, false);
         for &gaze in gazes {
-            let ecc = geometry.eccentricity_map(gaze);
-            let lods = foveation.lod_map(&geometry, gaze, &ecc);
+            let lods = lods(&foveation, size, gaze);
             for (s, &l) in seen.pixels_mut().iter_mut().zip(lods.pixels()) {
                 *s |= l < 0.25;
             }
@@ -266,9 +265,8 @@ fn a_bad_pixel_does_not_spread() {
     for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
         for x in 0..64 {
             let foveation = Foveation { filter, rate_mid: 2, rate_far: 4, ..Foveation::default() };
-            let geometry = ViewGeometry::flat([64, 64], 70.0).unwrap();
             let gaze = [x as f32, 0.0];
-            let lods = foveation.lod_map(&geometry, gaze, &geometry.eccentricity_map(gaze));
+            let lods = lods(&foveation, [64, 64], gaze);
             let out = foveate(&foveation, &image, gaze);
             for (c, lod) in out.pixels().iter().zip(lods.pixels()) {
                 assert!(c.iter().all(|v| v.is_finite()) || *lod == 0.0, "{filter:?}");

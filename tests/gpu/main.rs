@@ -9,6 +9,8 @@ mod depth_hard;
 mod gaze_hard;
 #[path = "../common/images.rs"]
 mod images;
+#[path = "../common/kernel_hard.rs"]
+mod kernel_hard;
 #[path = "../common/laws.rs"]
 mod laws;
 #[path = "../common/lifecycle_hard.rs"]

@@ -5,8 +5,13 @@ mod conventions;
 mod depth;
 mod elementary;
 mod geometry;
+mod hard;
 mod kept;
+#[path = "../common/kernel_hard.rs"]
+mod kernel_hard;
 mod lattice;
+#[path = "../common/laws.rs"]
+mod laws;
 mod reprojection;
 mod reservoir;
 mod rng;

@@ -71,7 +71,7 @@ pub fn sparkles(make: Make) -> Option<String> {
             let (mut post, mut without) = (make(smr(SIZE))?, make(smr(SIZE))?);
             for index in 0..bright + 2 * TURN {
                 let sparkle = Image::from_fn(SIZE, |px| {
-                    let c = clean.at(px[0] as usize, px[1] as usize);
+                    let c = pixel(&clean, px);
                     if index == bright && px == at { [light; 3] } else { c }
                 });
                 let input = shot(sparkle, index);
@@ -179,12 +179,8 @@ pub fn silhouettes(make: Make) -> Option<String> {
         let shot = square(index);
         let at_samples = {
             let lattices = shot.lattices();
-            let is_read = |px: [u32; 2]| lattices.as_slice().iter().any(|l| l.samples(px));
             // What lies between the samples must not be read.
-            let holed = |image: &Image<f32>| {
-                Image::from_fn(SIZE, |px| if is_read(px) { image.at(px[0] as usize, px[1] as usize) } else { f32::NAN })
-            };
-            let depth = shot.depth.as_ref().map(holed);
+            let depth = shot.depth.as_ref().map(|depth| shot.read_of(depth, f32::NAN));
             let facts = ViewFrame { lattices: Some(lattices.with_geometry_at_samples()), ..shot.facts };
             shot.clone().with(|view| (view.facts, view.depth) = (facts, depth))
         };
@@ -196,7 +192,7 @@ pub fn silhouettes(make: Make) -> Option<String> {
         let depth = shot.depth.as_ref().unwrap();
         let near = Image::from_fn(SIZE, |px| is_silhouette(depth, px));
         for (part, sums) in sums.iter_mut().enumerate() {
-            let counts = |px: [u32; 2]| near.at(px[0] as usize, px[1] as usize) == (part == 0);
+            let counts = |px: [u32; 2]| pixel(&near, px) == (part == 0);
             (0..3).for_each(|i| sums[i] += squared_error(&shown[i], &shot.color, counts) / TURN as f64);
         }
     }

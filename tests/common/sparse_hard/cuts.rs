@@ -12,10 +12,11 @@ fn shot(index: u64) -> Shot {
 /// Resets in the middle of the order, and orders that begin anew without one.
 pub fn restarts_of_the_order(make: Make) -> Option<String> {
     let resets = [1, 7, TURN, TURN + 3];
-    for at in resets {
+    let taau = ContextDesc { settings: Settings { method: Method::Taau, ..smr(SIZE).settings }, ..smr(SIZE) };
+    for (at, desc) in resets.into_iter().flat_map(|at| [(at, smr(SIZE)), (at, taau)]) {
         // The order goes on, or begins anew.
         for first in [at, 0] {
-            let (mut used, mut fresh) = (make(smr(SIZE))?, make(smr(SIZE))?);
+            let (mut used, mut fresh) = (make(desc)?, make(desc)?);
             (0..at).for_each(|index| drop(used.one(index, &shot(index))));
             let mut kept = false;
             for index in first..first + 5 {
@@ -40,7 +41,7 @@ pub fn restarts_of_the_order(make: Make) -> Option<String> {
         last = wrong;
     }
     Some(format!(
-        "reset after {resets:?} frames, order going on or anew: 5 frames as of a fresh context, bit for bit; without: rebuilt after a turn"
+        "smr and taau: reset after {resets:?} frames, order going on or anew: 5 frames as of a fresh context, bit for bit; without: rebuilt after a turn"
     ))
 }
 

@@ -8,9 +8,7 @@ pub fn invalid_samples(make: Make) -> Option<String> {
     let at = [70, 58];
     let full = waves(SIZE, [0.0; 2]);
     let shot = |color: Color, index| Shot::foveated(color, &foveation(), [30.0, 25.0], index);
-    let holed = |value: f32| {
-        Image::from_fn(SIZE, |px| if px == at { [value; 3] } else { full.at(px[0] as usize, px[1] as usize) })
-    };
+    let holed = |value: f32| Image::from_fn(SIZE, |px| if px == at { [value; 3] } else { pixel(&full, px) });
     let mut reach = 0;
     let mut after = 0;
     for from in [0, TURN] {
@@ -24,11 +22,8 @@ pub fn invalid_samples(make: Make) -> Option<String> {
                 assert_finite(&shown, "a sample that is NaN");
                 // Pixels that the sample is interpolated for: nearer than a step.
                 let apart = |px: [u32; 2]| (0..2).map(|i| px[i].abs_diff(at[i])).max().unwrap();
-                let differs = |px: &[u32; 2]| {
-                    shown.at(px[0] as usize, px[1] as usize) != expected.at(px[0] as usize, px[1] as usize)
-                };
-                let farthest =
-                    (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y])).filter(differs).map(apart).max();
+                let differs = |&px: &[u32; 2]| pixel(&shown, px) != pixel(&expected, px);
+                let farthest = pixels().filter(differs).map(apart).max();
                 if index == bad {
                     reach = reach.max(farthest.unwrap_or(0));
                 } else if let Some(far) = farthest {

@@ -15,7 +15,7 @@ pub fn starved_positions(make: Make) -> Option<String> {
         .collect();
     let is_starved = |px: [u32; 2]| shots.iter().all(|shot| !shot.lattices().at(px).unwrap().samples(px));
     let starved = Image::from_fn(SIZE, is_starved);
-    let is_starved = |px: [u32; 2]| starved.at(px[0] as usize, px[1] as usize);
+    let is_starved = |px: [u32; 2]| pixel(&starved, px);
     let count = starved.pixels().iter().filter(|&&s| s).count();
     assert!(count > 200, "{count} starved pixels: the case is not there");
     let mut post = make(smr(SIZE))?;
@@ -69,10 +69,9 @@ pub fn degenerate_lattices(make: Make) -> Option<String> {
                 let shown = post.one(index, &shot);
                 assert_finite(&shown, name);
                 let mut samples = 0;
-                for px in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y])) {
+                for px in pixels() {
                     if lattices.at(px).unwrap().samples(px) {
-                        let at = (px[0] as usize, px[1] as usize);
-                        let (a, b) = (shown.at(at.0, at.1), full.at(at.0, at.1));
+                        let (a, b) = (pixel(&shown, px), pixel(&full, px));
                         let rounding = if index == 0 { 0.0 } else { 1.0 / 511.0 };
                         assert!((0..3).all(|c| (a[c] - b[c]).abs() <= rounding), "{name}: {a:?} instead of {b:?}");
                         samples += 1;
@@ -136,16 +135,16 @@ pub fn borders(make: Make) -> Option<String> {
             assert_finite(&shown, &format!("frame {index}"));
             let lattices = shot.lattices();
             let is_sample = |px: [u32; 2]| lattices.at(px).unwrap().samples(px);
-            sampled = Image::from_fn(SIZE, |px| sampled.at(px[0] as usize, px[1] as usize) || is_sample(px));
+            sampled = Image::from_fn(SIZE, |px| pixel(&sampled, px) || is_sample(px));
             let is_fovea = |px: [u32; 2]| lattices.at(px).unwrap().step == 1;
             assert_eq!(squared_error(&shown, &full, is_fovea), 0.0, "frame {index}: the fovea is the candidate");
             if index < TURN {
                 continue;
             }
             let border = border(lattices);
-            let is_border = |px: [u32; 2]| border.at(px[0] as usize, px[1] as usize);
+            let is_border = |px: [u32; 2]| pixel(&border, px);
             if speed_px == [0.0; 2] {
-                let was_sampled = |px: [u32; 2]| sampled.at(px[0] as usize, px[1] as usize);
+                let was_sampled = |px: [u32; 2]| pixel(&sampled, px);
                 assert_eq!(wrong(&shown, &full, was_sampled), 0, "frame {index}");
                 continue;
             }

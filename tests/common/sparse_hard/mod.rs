@@ -101,7 +101,7 @@ impl Shot {
 
     /// In which everything moves by `speed_px` a frame.
     pub fn moving(self, speed_px: [f32; 2]) -> Self {
-        self.with(|view| view.motion = Some(Image::filled(view.color.size(), speed_px.map(|v| -v))))
+        Self { view: self.view.moving(speed_px), ..self }
     }
 
     pub fn lattices(&self) -> Lattices {
@@ -202,6 +202,14 @@ pub fn waves(size: [u32; 2], shift_px: [f32; 2]) -> Color {
 pub fn noise(size: [u32; 2], name: &str) -> Color {
     let mut draws = Draws::new(name);
     Image::from_fn(size, |_| [0; 3].map(|_| draws.range(0.125, 0.875)))
+}
+
+pub fn pixels() -> impl Iterator<Item = [u32; 2]> {
+    (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]))
+}
+
+pub fn pixel<T: Copy>(image: &Image<T>, [x, y]: [u32; 2]) -> T {
+    image.at(x as usize, y as usize)
 }
 
 /// Mean squared error over the pixels that `counts`.

@@ -43,7 +43,7 @@ impl Pair {
     /// Shows a frame; its plan must keep to the budget, and its colors must be finite.
     fn show(&mut self, index: u64, shot: &Shot) -> Shown {
         let mask = self.with.plan(index, shot);
-        let (chosen, all) = (quads().filter(|&quad| at(&mask, quad)).count(), quads().count());
+        let (chosen, all) = (quads().filter(|&quad| pixel(&mask, quad)).count(), quads().count());
         assert!(chosen as f64 <= f64::from(self.budget) * all as f64, "frame {index}: {chosen} of {all} quads");
         let with = self.with.one(index, shot);
         let without = self.without.one(index, &shot.clone().with(|view| view.repaired = None));
@@ -59,17 +59,9 @@ impl Shown {
     }
 }
 
-fn pixels() -> impl Iterator<Item = [u32; 2]> {
-    (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]))
-}
-
 /// First pixels of all quads.
 fn quads() -> impl Iterator<Item = [u32; 2]> {
     pixels().filter(|[x, y]| x % 2 == 0 && y % 2 == 0)
-}
-
-fn at<T: Copy>(image: &Image<T>, [x, y]: [u32; 2]) -> T {
-    image.at(x as usize, y as usize)
 }
 
 fn is_sample(shot: &Shot, px: [u32; 2]) -> bool {
@@ -86,36 +78,39 @@ fn no_worse([with, without]: [f64; 2]) -> bool {
     with <= without + 1e-8
 }
 
-/// A near wall before the right half is gone from frame `TURN` on.
+/// A near wall before the right half is gone from frame `TURN` on; and the first frames of a context.
 pub fn half_uncovered(make: Make) -> Option<String> {
     let behind = waves(SIZE, [0.0; 2]);
-    let is_uncovered = |[x, _]: [u32; 2]| x >= SIZE[0] / 2;
     let mut figures = vec![];
-    for budget in [0.05, 0.1, 0.2] {
+    let at_first = [0.002, 0.05, 0.1, 0.2].map(|budget| (budget, 0, 1.0));
+    for (budget, from, share) in [0.05, 0.1, 0.2].map(|budget| (budget, TURN, 0.5)).into_iter().chain(at_first) {
+        let is_uncovered = |[x, _]: [u32; 2]| from == 0 || x >= SIZE[0] / 2;
         let mut pair = Pair::new(make, budget)?;
         // Pixels that no sample has shown yet.
         let mut unseen = Image::from_fn(SIZE, is_uncovered);
         let mut whole = None;
         let mut gain = vec![];
         for index in 0..3 * TURN {
-            let is_covered = |px| index < TURN && is_uncovered(px);
-            let color = Image::from_fn(SIZE, |px| if is_covered(px) { [0.9, 0.1, 0.2] } else { at(&behind, px) });
+            let is_covered = |px| index < from && is_uncovered(px);
+            let color = Image::from_fn(SIZE, |px| if is_covered(px) { [0.9, 0.1, 0.2] } else { pixel(&behind, px) });
             let depth = Image::from_fn(SIZE, |px| if is_covered(px) { 2.0 } else { 6.0 });
             let shot = shot(color.clone(), index).with(|view| view.depth = Some(depth));
             let shown = pair.show(index, &shot);
-            if index < TURN {
+            if index < from {
                 continue;
             }
             // A quad wants as much as the pixel nearest to the gaze of those that are asked and have no sample, in this
             // frame neither.
-            let wants = |px| at(&unseen, px) && !is_sample(&shot, px);
+            let wants = |px| pixel(&unseen, px) && !is_sample(&shot, px);
             let ring_of = |[x, y]: [u32; 2]| {
                 let asked = [0, 1].map(|i| asked_px(i, x / 2, y / 2, index as u32)).into_iter();
                 asked.filter(|&px| px[0] < SIZE[0] && px[1] < SIZE[1] && wants(px)).map(ring).min()
             };
-            let chosen = quads().filter(|&quad| at(&shown.mask, quad)).map(ring_of);
-            let last = chosen.map(|ring| ring.expect("a chosen quad wants something")).max();
-            let first_left = quads().filter(|&quad| !at(&shown.mask, quad)).filter_map(ring_of).min();
+            let chosen: Vec<_> = quads().filter(|&quad| pixel(&shown.mask, quad)).map(ring_of).collect();
+            let used = chosen.len() as f32 / quads().count() as f32;
+            assert!(index > from || used > 0.5 * budget, "{used} of {budget} is used");
+            let last = chosen.into_iter().map(|ring| ring.expect("a chosen quad wants something")).max();
+            let first_left = quads().filter(|&quad| !pixel(&shown.mask, quad)).filter_map(ring_of).min();
             assert!(
                 first_left.is_none_or(|left| last.is_some_and(|last| last <= left)),
                 "frame {index}: ring {last:?} is repaired before {first_left:?}"
@@ -123,20 +118,23 @@ pub fn half_uncovered(make: Make) -> Option<String> {
             let errors = shown.errors(&color, is_uncovered);
             assert!(no_worse(errors), "frame {index}: {errors:?}");
             gain.push(psnr(errors[0]) - psnr(errors[1]));
-            unseen = Image::from_fn(SIZE, |px| wants(px) && !at(&shown.mask, px));
-            let off = wrong(&shown.with, &color, |px| !at(&unseen, px));
+            unseen = Image::from_fn(SIZE, |px| wants(px) && !pixel(&shown.mask, px));
+            let off = wrong(&shown.with, &color, |px| !pixel(&unseen, px));
             assert_eq!(off, 0, "frame {index}: pixels that were sampled are lost");
             if whole.is_none() && unseen.pixels().iter().all(|&unseen| !unseen) {
-                whole = Some(index - TURN);
+                whole = Some(index - from);
             }
         }
         let whole = whole.expect("never whole");
-        // The lattices alone take all but one frame of a turn; half of the quads were uncovered. The last pixels may be
-        // those that are asked one frame later.
-        let most = (TURN - 1).min((0.5 / budget).ceil() as u64 + 1);
-        println!("budget {budget}: whole after {whole} frames, {most} at the most; gain {gain:.2?}");
+        // The lattices alone take all but one frame of a turn; that share of the quads was uncovered. The last pixels
+        // may be those that are asked one frame later.
+        let most = (TURN - 1).min((share / budget).ceil() as u64 + 1);
+        println!(
+            "budget {budget} for {share} from frame {from} on: whole after {whole} frames, {most} at the most; gain {gain:.2?}"
+        );
         assert!(whole <= most, "budget {budget}: whole after {whole} frames instead of {most}");
-        figures.push(format!("{:.0} %: {whole} ({:+.1}, {:+.1})", 100.0 * budget, gain[0], gain[4]));
+        let what = if from == 0 { " at first" } else { "" };
+        figures.push(format!("{:.1} %{what}: {whole} ({:+.1}, {:+.1})", 100.0 * budget, gain[0], gain[4]));
     }
     Some(format!(
         "frames after the uncovering until whole, by budget, and dB there against no repair in its frame and 4 later: {}",
@@ -164,8 +162,8 @@ pub fn order_without_flicker(make: Make) -> Option<String> {
             let other = pair.with.plan(index + 1000, &shot);
             let shown = pair.show(index, &shot);
             orders += u32::from(other != shown.mask);
-            kept = Image::from_fn(SIZE, |px| at(&kept, px) || at(&shown.mask, px));
-            let lost = wrong(&shown.with, &full, |px| at(&kept, px));
+            kept = Image::from_fn(SIZE, |px| pixel(&kept, px) || pixel(&shown.mask, px));
+            let lost = wrong(&shown.with, &full, |px| pixel(&kept, px));
             assert_eq!(lost, 0, "{name}, frame {index}: repaired pixels change again");
             if let Some(last) = &last {
                 changes.push([change(&last.with, &shown.with), change(&last.without, &shown.without)]);
@@ -203,7 +201,7 @@ pub fn thin_occluders(make: Make) -> Option<String> {
         let mut ghosts = [0; 2];
         for index in 0..2 * TURN {
             let is_near = |px| is_bar(px, index);
-            let color = Image::from_fn(SIZE, |px| if is_near(px) { bar } else { at(&wall, px) });
+            let color = Image::from_fn(SIZE, |px| if is_near(px) { bar } else { pixel(&wall, px) });
             let depth = Image::from_fn(SIZE, |px| if is_near(px) { 2.0 } else { 6.0 });
             let motion = Image::from_fn(SIZE, |px| if is_near(px) { [-(speed as f32), 0.0] } else { [0.0; 2] });
             let shot = shot(color.clone(), index).with(|view| (view.depth, view.motion) = (Some(depth), Some(motion)));
@@ -220,7 +218,8 @@ pub fn thin_occluders(make: Make) -> Option<String> {
             // Nearer to the bar's color than to the wall's.
             let distance = |a: [f32; 3], b: [f32; 3]| (0..3).map(|c| (a[c] - b[c]).powi(2)).sum::<f32>();
             for (count, shown) in ghosts.iter_mut().zip([&shown.with, &shown.without]) {
-                let is_ghost = |&px: &[u32; 2]| distance(at(shown, px), bar) < distance(at(shown, px), at(&wall, px));
+                let off = |px, color| distance(pixel(shown, px), color);
+                let is_ghost = |&px: &[u32; 2]| off(px, bar) < off(px, pixel(&wall, px));
                 *count += pixels().filter(|&px| in_trail(px)).filter(is_ghost).count();
             }
         }
@@ -256,7 +255,7 @@ pub fn light_and_contradictions(make: Make) -> Option<String> {
             if index < TURN {
                 continue;
             }
-            let chosen = quads().filter(|&quad| at(&shown.mask, quad)).count();
+            let chosen = quads().filter(|&quad| pixel(&shown.mask, quad)).count();
             largest = largest.max(chosen);
             if chosen > 0 {
                 last_wanted = Some(index - TURN);

@@ -85,8 +85,8 @@ fn h76_empty_and_huge_sizes_are_refused_and_a_pixel_is_enough() {
         assert!(matches!(post.resize(size), Err(FrameError::Extent { .. })));
         assert_eq!(post.desc().size_px, SIZE);
     }
-    let mut post =
-        CpuAfterimage::new(&ContextDesc { settings: Settings::paper(), ..ContextDesc::new([1, 1]) }).unwrap();
+    let settings = Settings::paper();
+    let mut post = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new([1, 1]) }).unwrap();
     let input = View { depth: Some(Image::filled([1, 1], 1.0)), ..still(noise([1, 1], "one")) };
     assert_eq!(one(&mut post, 0, &input).0, input.color);
     assert_eq!(one(&mut post, 1, &input).0, input.color);

@@ -13,14 +13,33 @@ fn picture([x, y]: [f32; 2]) -> [f32; 3] {
     [stripe, 0.2 + 0.01 * x, if (0.31 * x - 0.55 * y).rem_euclid(1.0) < 0.5 { 0.3 } else { 0.5 }]
 }
 
-/// Samples of the picture, one a pixel, each at the pixel minus the jitter.
-fn samples([jx, jy]: [f32; 2], light: f32) -> Color {
-    Image::from_fn(SMALL, |[x, y]| picture([x as f32 - jx, y as f32 - jy]).map(|v| v * light))
+/// Values where the samples lie, at the pixels minus the jitter; without jitter, at the pixels' centres.
+fn sampled<T: Copy>([jx, jy]: [f32; 2], value: impl Fn([f32; 2]) -> T) -> Image<T> {
+    Image::from_fn(SMALL, |[x, y]| value([x as f32 - jx, y as f32 - jy]))
+}
+
+/// Frame `index`, sampled by the lattice of `step`.
+fn frame(index: u64, step: u32, jitter_px: [f32; 2], color: impl Fn([f32; 2]) -> [f32; 3]) -> View {
+    let offset = afterimage::kernel::lattice::offset_px(index, step);
+    let lattices = Lattices::new(&[Lattice::covering(step, [0, 0], SMALL, offset)]).unwrap();
+    let view = View::still(sampled(jitter_px, color), [10.0, 10.0]).sparse(lattices);
+    view.with(|view| view.facts.jitter_px = jitter_px)
+}
+
+/// Jitter of a frame if it changes once in a turn of the lattice.
+fn jitter_of_turn(index: u64, step: u32) -> [f32; 2] {
+    Foveation::jitter_px(index / u64::from(step * step))
+}
+
+/// Points of a grid of `side` by `side` in a pixel, from its centre.
+fn points(side: usize) -> Vec<[f32; 2]> {
+    let at = |k: usize| (k as f32 + 0.5) / side as f32 - 0.5;
+    (0..side * side).map(|i| [i % side, i / side].map(at)).collect()
 }
 
 /// Mean over each pixel, and variance of one sample around it, by 32x32 points.
 fn box_means() -> Vec<([f64; 3], f64)> {
-    let points: Vec<[f32; 2]> = (0..1024).map(|i| [i % 32, i / 32].map(|k| (k as f32 + 0.5) / 32.0 - 0.5)).collect();
+    let points = points(32);
     let of = |i: u32| {
         let [x, y] = [(i % SMALL[0]) as f32, (i / SMALL[0]) as f32];
         let colors: Vec<[f64; 3]> = points.iter().map(|p| picture([x + p[0], y + p[1]]).map(f64::from)).collect();
@@ -32,24 +51,18 @@ fn box_means() -> Vec<([f64; 3], f64)> {
 }
 
 fn antialiased() -> CpuAfterimage {
+    context_of(Method::Smr(Smr { antialias: true, ..Smr::default() }))
+}
+
+fn context_of(method: Method) -> CpuAfterimage {
     let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..Foveation::default() };
-    let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
     let settings = Settings { method, foveation, ..Settings::default() };
     CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SMALL) }).unwrap()
 }
 
-/// Shows frame `index` of the still picture, sampled by the lattice of `step`.
+/// Shows frame `index` of the still picture.
 fn show(post: &mut CpuAfterimage, index: u64, step: u32, light: f32) -> Color {
-    let jitter_px = Foveation::jitter_px(index / u64::from(step * step));
-    let offset = afterimage::kernel::lattice::offset_px(index, step);
-    let lattices = Lattices::new(&[Lattice::covering(step, [0, 0], SMALL, offset)]).unwrap();
-    let mut facts = ViewFrame::new(geometry(SMALL), Gaze::At { px: [10.0, 10.0] });
-    (facts.jitter_px, facts.lattices) = (jitter_px, Some(lattices));
-    let color = samples(jitter_px, light);
-    let mut out = [Image::filled(SMALL, [f32::NAN; 3])];
-    post.process(&Images::of(&[OneView::new(facts, &color)]).frame(index), &mut out).unwrap();
-    let [out] = out;
-    out
+    one(post, index, &frame(index, step, jitter_of_turn(index, step), |at| picture(at).map(|v| v * light))).0
 }
 
 fn mse(shown: &Color, means: &[([f64; 3], f64)], light: f64) -> f64 {
@@ -147,24 +160,19 @@ fn nearer([x, y]: [f32; 2]) -> bool {
 /// on the other side, the pixels of the edge would stay single samples.
 #[test]
 fn a_silhouette_is_a_mean_of_both_surfaces() {
-    let points: Vec<[f32; 2]> = (0..1024).map(|i| [i % 32, i / 32].map(|k| (k as f32 + 0.5) / 32.0 - 0.5)).collect();
+    let points = points(32);
     for (step, samples) in [(1, 16.0), (2, 16.0), (4, 4.0)] {
         let mut post = antialiased();
-        let mut shown = [Image::filled(SMALL, [0.0; 3])];
-        for index in 0..u64::from(60 * step * step) {
-            let jitter_px = Foveation::jitter_px(index / u64::from(step * step));
-            let offset = afterimage::kernel::lattice::offset_px(index, step);
-            let place = |[x, y]: [u32; 2]| [x as f32 - jitter_px[0], y as f32 - jitter_px[1]];
-            let color = Image::from_fn(SMALL, |px| if nearer(place(px)) { [0.8; 3] } else { picture(place(px)) });
-            let depth = Image::from_fn(SMALL, |px| if nearer(place(px)) { 2.0 } else { 5.0 });
-            let mut facts = ViewFrame::new(geometry(SMALL), Gaze::At { px: [10.0, 10.0] });
-            let lattices = Lattices::new(&[Lattice::covering(step, [0, 0], SMALL, offset)]).unwrap();
-            (facts.jitter_px, facts.lattices) = (jitter_px, Some(lattices));
-            let view = OneView { depth: Some(&depth), ..OneView::new(facts, &color) };
-            post.process(&Images::of(&[view]).frame(index), &mut shown).unwrap();
-        }
+        let frame = |index| {
+            let jitter_px = jitter_of_turn(index, step);
+            let depth = sampled(jitter_px, |at| if nearer(at) { 2.0 } else { 5.0 });
+            let view = frame(index, step, jitter_px, |at| if nearer(at) { [0.8; 3] } else { picture(at) });
+            View { depth: Some(depth), ..view }
+        };
+        let frames = 0..u64::from(60 * step * step);
+        let shown = frames.map(|index| one(&mut post, index, &frame(index)).0).last().unwrap();
         let (mut error, mut variance, mut edge) = (0.0, 0.0, 0);
-        for (i, shown) in shown[0].pixels().iter().enumerate() {
+        for (i, shown) in shown.pixels().iter().enumerate() {
             let [x, y] = [i % 32, i / 32].map(|v| v as f32);
             // Pixels whose nearest surface, or that of a neighbour, trembles.
             if !(-1.5..1.5).contains(&(0.83 * x + 0.55 * y - 17.3)) {
@@ -211,27 +219,18 @@ impl Gliding {
 /// Share of the contrast of bars that a method shows: the slope of the shown values over the means over the pixels, 2.5
 /// to 6.5 pixels from the edge and farther away, each on the nearer surface and on the other one.
 fn shown_contrast(method: Method, step: u32, velocity_px: [f32; 2]) -> [[f64; 2]; 2] {
-    let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..Foveation::default() };
-    let settings = Settings { method, foveation, ..Settings::default() };
-    let mut post = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SMALL) }).unwrap();
-    let mut out = [Image::filled(SMALL, [0.0; 3])];
-    let points: Vec<[f32; 2]> = (0..64).map(|i| [i % 8, i / 8].map(|k| (k as f32 + 0.5) / 8.0 - 0.5)).collect();
+    let (mut post, points) = (context_of(method), points(8));
     let mut sums = [[[0.0; 5]; 2]; 2];
     for index in 0..80 {
         let now = Gliding::at(index, velocity_px);
-        let jitter_px = Foveation::jitter_px(index + 1);
-        let center = |[x, y]: [u32; 2]| [x as f32, y as f32];
-        let color = Image::from_fn(SMALL, |[x, y]| now.color([x as f32 - jitter_px[0], y as f32 - jitter_px[1]]));
-        let depth = Image::from_fn(SMALL, |px| [2.0, 5.0][now.surface(center(px))]);
-        let motion = Image::from_fn(SMALL, |px| [-now.velocity_px[now.surface(center(px))], 0.0]);
-        let offset = afterimage::kernel::lattice::offset_px(index, step);
-        let mut facts = ViewFrame::new(geometry(SMALL), Gaze::At { px: [10.0, 10.0] });
-        facts.jitter_px = jitter_px;
-        facts.lattices = Some(Lattices::new(&[Lattice::covering(step, [0, 0], SMALL, offset)]).unwrap());
-        let view = OneView { depth: Some(&depth), motion: Some(&motion), ..OneView::new(facts, &color) };
-        post.process(&Images::of(&[view]).frame(index), &mut out).unwrap();
-        for (i, shown) in out[0].pixels().iter().enumerate().filter(|_| index >= 40) {
-            let at = center([i as u32 % SMALL[0], i as u32 / SMALL[0]]);
+        let view = View {
+            depth: Some(sampled([0.0; 2], |at| [2.0, 5.0][now.surface(at)])),
+            motion: Some(sampled([0.0; 2], |at| [-now.velocity_px[now.surface(at)], 0.0])),
+            ..frame(index, step, Foveation::jitter_px(index + 1), |at| now.color(at))
+        };
+        let out = one(&mut post, index, &view).0;
+        for (i, shown) in out.pixels().iter().enumerate().filter(|_| index >= 40) {
+            let at = [i % SMALL[0] as usize, i / SMALL[0] as usize].map(|v| v as f32);
             let edge_px = (at[0] + 0.1 * at[1] - now.edge_px).abs();
             // What comes into view from the sides has little history.
             if edge_px < 2.5 || !(4.0..28.0).contains(&at[0]) {
@@ -273,27 +272,19 @@ fn bars_beside_an_edge_are_not_softer_than_elsewhere() {
 fn a_moving_silhouette_leaves_no_dots() {
     for step in [2, 4] {
         let mut post = antialiased();
-        let mut shown = [Image::filled(SMALL, [0.0; 3])];
         let (mut dots, mut pixels) = (0, 0);
         for index in 0..60 {
-            let jitter_px = Foveation::jitter_px(index + 1);
             // The nearer surface, whose color is another, glides to the left.
             let edge_px = 28.0 - 0.4 * index as f32;
             let near = |[x, y]: [f32; 2]| x + 0.2 * y < edge_px;
-            let center = |[x, y]: [u32; 2]| [x as f32, y as f32];
-            let color = Image::from_fn(SMALL, |[x, y]| {
-                if near([x as f32 - jitter_px[0], y as f32 - jitter_px[1]]) { [0.8; 3] } else { [0.2; 3] }
-            });
-            let depth = Image::from_fn(SMALL, |px| if near(center(px)) { 2.0 } else { 5.0 });
-            let motion = Image::from_fn(SMALL, |px| [if near(center(px)) { 0.4 } else { 0.0 }, 0.0]);
-            let mut facts = ViewFrame::new(geometry(SMALL), Gaze::At { px: [10.0, 10.0] });
-            let offset = afterimage::kernel::lattice::offset_px(index, step);
-            let lattices = Lattices::new(&[Lattice::covering(step, [0, 0], SMALL, offset)]).unwrap();
-            (facts.jitter_px, facts.lattices) = (jitter_px, Some(lattices));
-            let view = OneView { depth: Some(&depth), motion: Some(&motion), ..OneView::new(facts, &color) };
-            post.process(&Images::of(&[view]).frame(index), &mut shown).unwrap();
-            for (i, c) in shown[0].pixels().iter().enumerate().filter(|_| index >= 20) {
-                let [x, y] = center([i as u32 % SMALL[0], i as u32 / SMALL[0]]);
+            let view = View {
+                depth: Some(sampled([0.0; 2], |at| if near(at) { 2.0 } else { 5.0 })),
+                motion: Some(sampled([0.0; 2], |at| [if near(at) { 0.4 } else { 0.0 }, 0.0])),
+                ..frame(index, step, Foveation::jitter_px(index + 1), |at| if near(at) { [0.8; 3] } else { [0.2; 3] })
+            };
+            let shown = one(&mut post, index, &view).0;
+            for (i, c) in shown.pixels().iter().enumerate().filter(|_| index >= 20) {
+                let [x, y] = [i % SMALL[0] as usize, i / SMALL[0] as usize].map(|v| v as f32);
                 if x + 0.2 * y > edge_px + 1.5 {
                     pixels += 1;
                     dots += usize::from((c[0] - 0.2).abs() > 0.02);
@@ -311,16 +302,11 @@ fn an_invalid_sample_stays_in_its_pixel_for_its_frame() {
     for index in 0..30 {
         show(&mut post, index, 1, 1.0);
     }
-    let jitter_px = Foveation::jitter_px(30);
-    let mut facts = ViewFrame::new(geometry(SMALL), Gaze::At { px: [10.0, 10.0] });
-    facts.jitter_px = jitter_px;
-    facts.lattices = Some(Lattices::new(&[Lattice::covering(1, [0, 0], SMALL, [0, 0])]).unwrap());
-    let mut color = samples(jitter_px, 1.0);
-    color.pixels_mut()[5 * 32 + 7] = [f32::NAN; 3];
-    let mut out = [Image::filled(SMALL, [f32::NAN; 3])];
-    post.process(&Images::of(&[OneView::new(facts, &color)]).frame(30), &mut out).unwrap();
-    assert!(out[0].pixels().iter().flatten().all(|v| v.is_finite()));
+    let mut view = frame(30, 1, Foveation::jitter_px(30), picture);
+    view.color.pixels_mut()[5 * 32 + 7] = [f32::NAN; 3];
+    let out = one(&mut post, 30, &view).0;
+    assert!(out.pixels().iter().flatten().all(|v| v.is_finite()));
     let means = box_means();
-    let at = |c: usize| (f64::from(out[0].at(7, 5)[c]) - means[5 * 32 + 7].0[c]).abs();
-    assert!((0..3).all(|c| at(c) < 0.15), "history stands in: {:?}", out[0].at(7, 5));
+    let at = |c: usize| (f64::from(out.at(7, 5)[c]) - means[5 * 32 + 7].0[c]).abs();
+    assert!((0..3).all(|c| at(c) < 0.15), "history stands in: {:?}", out.at(7, 5));
 }

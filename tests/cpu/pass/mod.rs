@@ -55,7 +55,7 @@ fn step(
     reset: Reset,
     inputs: &[&View],
 ) -> (Vec<Color>, FrameStats, Vec<Image<PixelTrace>>) {
-    let size = inputs[0].color.size();
+    let size = inputs[0].facts.geometry.size_px();
     let mut out = vec![Image::filled(size, [f32::NAN; 3]); inputs.len()];
     let mut trace = vec![Image::filled(size, PixelTrace::default()); inputs.len()];
     let views: Vec<_> = inputs.iter().map(|view| view.one()).collect();

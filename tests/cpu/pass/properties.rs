@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::any_frame::{SIZE, all_settings, any_frame};
-use crate::images::View;
+use crate::images::{View, held_words};
 use afterimage::kernel::pack;
 use afterimage::kernel::surface::unpack_surface;
 use std::collections::HashSet;
@@ -23,13 +23,6 @@ fn show(post: &mut CpuAfterimage, index: u64, frames: &[&View]) -> (Vec<Color>, 
     let mut trace = vec![Image::filled(SIZE, PixelTrace::default()); frames.len()];
     post.process_traced(&Images::of(&views).frame(index), &mut out, &mut trace).unwrap();
     (out, trace)
-}
-
-/// Stored history, view after view.
-fn words(post: &CpuAfterimage) -> Vec<u32> {
-    let h = post.history();
-    let surfaces = h.surfaces().iter().flatten().chain(h.noise());
-    h.words().iter().flatten().chain(surfaces).copied().collect()
 }
 
 /// Possible outputs of a color: itself, and its stored value in wrs.
@@ -135,7 +128,7 @@ proptest! {
             }
             // No non-finite value is left, and empty pixels are filled again.
             prop_assert!(hurt.history().surfaces().iter().all(|&w| unpack_surface(w).lod >= 0.0));
-            prop_assert!(words(&hurt).len() == words(&clean).len());
+            prop_assert!(held_words(&hurt).len() == held_words(&clean).len());
             prop_assert!(hurt.history().words().iter().all(|&w| pack::unpack(w).w_sum > 0.0));
         }
     }

@@ -5,7 +5,7 @@ use crate::any_frame::{self, any_frame};
 use crate::images::View;
 use crate::sparse_hard::foveation;
 use afterimage::kernel::repair::{KEYS, asked_px, priority, quad_key, threshold};
-use afterimage::{Foveation, Repair, Smr};
+use afterimage::{Foveation, Lattices, Repair, Smr};
 
 /// Frames in which lattices of steps 2 and 4 visit every position.
 const TURN: u64 = 16;
@@ -24,8 +24,8 @@ fn waves([x, y]: [f32; 2]) -> [f32; 3] {
     [(0.5 * x).sin(), (0.4 * y + 0.1 * x).cos(), (0.3 * x - 0.35 * y).sin()].map(|v| 0.5 + 0.3 * v)
 }
 
-/// A square at 2 m in front of a wall at 6 m. Frame `index` is one of a still until `from`; then the square moves by
-/// `speed_px` a frame.
+/// A sparse frame of a square at 2 m in front of a wall at 6 m. Frame `index` is one of a still until `from`; then the
+/// square moves by `speed_px` a frame.
 fn square(index: u64, from: u64, speed_px: [i32; 2], antialias: bool) -> View {
     let moves = index >= from;
     let steps = (index + 1).saturating_sub(from) as i32;
@@ -37,41 +37,28 @@ fn square(index: u64, from: u64, speed_px: [i32; 2], antialias: bool) -> View {
         if inside(px) { waves([0, 1].map(|i| 40.0 + at[i] - low[i] as f32)) } else { waves(at) }
     };
     let motion = |px| if inside(px) && moves { speed_px.map(|v| -v as f32) } else { [0.0; 2] };
-    View {
+    let view = View {
         depth: Some(Image::from_fn(SIZE, |px| if inside(px) { 2.0 } else { 6.0 })),
         motion: Some(Image::from_fn(SIZE, motion)),
         ..View::still(Image::from_fn(SIZE, color), GAZE)
-    }
+    };
+    view.foveated(&foveation(), GAZE, index).with(|view| view.facts.jitter_px = jitter)
 }
 
-/// Description of a sparse view of an input.
-fn sparse(input: &View, index: u64, antialias: bool) -> OneView<'_> {
-    let view = input.one();
-    let lattices = Some(foveation().lattices(&geometry(SIZE), GAZE, index));
-    let jitter_px = if antialias { Foveation::jitter_px(index) } else { [0.0; 2] };
-    OneView { facts: ViewFrame { lattices, jitter_px, ..view.facts }, ..view }
-}
-
-fn samples(view: &OneView<'_>, [x, y]: [usize; 2]) -> bool {
+fn samples(view: &View, [x, y]: [usize; 2]) -> bool {
     let px = [x as u32, y as u32];
     view.facts.lattices.unwrap().at(px).unwrap().samples(px)
 }
 
-/// Mask, output and decisions of a frame. `answer`: the repaired samples of a mask.
-fn show(
-    post: &mut CpuAfterimage,
-    index: u64,
-    view: OneView<'_>,
-    answer: impl FnOnce(&Mask) -> Option<Color>,
-) -> (Mask, Color, Image<PixelTrace>) {
-    let images = Images::of(&[view]);
+/// Mask, output and decisions of a frame.
+fn show(post: &mut CpuAfterimage, index: u64, view: &View) -> (Mask, Color, Image<PixelTrace>) {
+    let images = Images::of(&[view.one()]);
     let frame = images.frame(index);
     let before = post.clone();
     let mask = post.plan(&frame).unwrap()[0].clone();
     assert!(post.plan(&Frame { color: &[], ..frame }).unwrap()[0] == mask, "the second call");
     assert!(post.history() == before.history(), "the question changed history");
-    let samples = answer(&mask);
-    let repaired = samples.as_ref().map(|color| [color]);
+    let repaired = view.repaired.as_ref().map(|color| [color]);
     let mut out = [Image::filled(SIZE, [f32::NAN; 3])];
     let mut trace = [Image::filled(SIZE, PixelTrace::default())];
     let frame = Frame { repaired: repaired.as_ref().map(|r| &r[..]), ..frame };
@@ -98,19 +85,12 @@ fn all_quads([width, height]: [u32; 2]) -> usize {
     (width.div_ceil(2) * height.div_ceil(2)) as usize
 }
 
-fn distance_px(x: usize, y: usize) -> f32 {
-    (x as f32 - GAZE[0]).hypot(y as f32 - GAZE[1])
-}
-
 #[test]
 fn a_settled_still_wants_nothing() {
     for antialias in [false, true] {
         let mut post = context(settings(1.0, antialias));
         let counts: Vec<_> = (0..3 * TURN)
-            .map(|index| {
-                let input = square(index, u64::MAX, [0, 0], antialias);
-                quads(&show(&mut post, index, sparse(&input, index, antialias), |_| None).0)
-            })
+            .map(|index| quads(&show(&mut post, index, &square(index, u64::MAX, [0, 0], antialias)).0))
             .collect();
         println!("antialias {antialias}: quads wanted frame by frame {counts:?}");
         assert!(counts[0] > 500 && counts[4] > 300, "everything outside the fovea is wanted at first");
@@ -127,9 +107,8 @@ fn the_mask_has_the_verdicts_of_process() {
             for index in 0..=2 * TURN {
                 // In the last frame, the lowest rows are distrusted.
                 let trust = Image::from_fn(SIZE, |[_, y]| if index == 2 * TURN && y >= 45 { 0.0 } else { 1.0 });
-                let input = View { trust: Some(trust), ..square(index, 2 * TURN, speed_px, antialias) };
-                let view = sparse(&input, index, antialias);
-                let (mask, _, trace) = show(&mut post, index, view, |_| None);
+                let view = View { trust: Some(trust), ..square(index, 2 * TURN, speed_px, antialias) };
+                let (mask, _, trace) = show(&mut post, index, &view);
                 if index < 2 * TURN && index > 0 {
                     continue;
                 }
@@ -159,17 +138,12 @@ fn repaired_pixels_show_their_samples_and_others_change_nothing() {
     for antialias in [false, true] {
         let mut post = context(settings(1.0, antialias));
         for index in 0..=2 * TURN {
-            let input = square(index, 2 * TURN, [5, 3], antialias);
-            let view = sparse(&input, index, antialias);
-            let mut plain = post.clone();
-            let mut emptied = post.clone();
-            let (_, without, trace) = show(&mut plain, index, view, |_| None);
-            let images = Images::of(&[view]);
-            let unshaded = Image::filled(SIZE, [f32::NAN; 3]);
-            let mut out = [unshaded.clone()];
-            emptied.plan(&images.frame(index)).unwrap();
-            emptied.process(&Frame { repaired: Some(&[&unshaded]), ..images.frame(index) }, &mut out).unwrap();
-            assert!(out[0] == without && emptied.history() == plain.history(), "no pixel was shaded");
+            let view = square(index, 2 * TURN, [5, 3], antialias);
+            let (mut plain, mut emptied) = (post.clone(), post.clone());
+            let (_, without, trace) = show(&mut plain, index, &view);
+            let unshaded = View { repaired: Some(Image::filled(SIZE, [f32::NAN; 3])), ..view.clone() };
+            let (_, out, _) = show(&mut emptied, index, &unshaded);
+            assert!(out == without && emptied.history() == plain.history(), "no pixel was shaded");
             // Other colors than the samples', and every seventh pixel is not a number.
             let bad = |i: usize| i.is_multiple_of(7);
             let shaded = Image::from_fn(SIZE, |[x, y]| {
@@ -177,7 +151,7 @@ fn repaired_pixels_show_their_samples_and_others_change_nothing() {
                 let v = (i % 1024) as f32 / 1024.0;
                 if bad(i) { [0.5, f32::NAN, v] } else { [v, 0.25, 1.0 - v] }
             });
-            let (mask, with, _) = show(&mut post, index, view, |_| Some(shaded.clone()));
+            let (mask, with, _) = show(&mut post, index, &View { repaired: Some(shaded.clone()), ..view.clone() });
             let mut shown = 0;
             for (i, &wanted) in mask.pixels().iter().enumerate() {
                 let [x, y] = [i % SIZE[0] as usize, i / SIZE[0] as usize];
@@ -199,44 +173,6 @@ fn repaired_pixels_show_their_samples_and_others_change_nothing() {
 }
 
 #[test]
-fn after_a_cut_budgets_go_from_the_gaze_outwards_until_the_picture_is_whole() {
-    let mut figures = vec![];
-    for budget in [0.002, 0.05, 0.1, 0.2] {
-        let mut post = context(settings(budget, false));
-        let mut whole = None;
-        for index in 0..60 {
-            let input = square(index, u64::MAX, [0, 0], false);
-            let view = sparse(&input, index, false);
-            let everything = context(settings(1.0, false)).plan(&Images::of(&[view]).frame(index)).unwrap()[0].clone();
-            let (mask, _, _) = show(&mut post, index, view, |_| Some(input.color.clone()));
-            let used = quads(&mask) as f64 / all_quads(SIZE) as f64;
-            assert!(used <= f64::from(budget), "{used} exceeds {budget}");
-            if index == 0 {
-                assert!(used > 0.5 * f64::from(budget), "{used} of {budget} is used");
-                let wanted = |x: usize, y: usize| everything.at(x, y);
-                let pixels = || (0..SIZE[1] as usize).flat_map(|y| (0..SIZE[0] as usize).map(move |x| (x, y)));
-                let far = pixels().filter(|&(x, y)| mask.at(x, y)).map(|(x, y)| distance_px(x, y)).fold(0.0, f32::max);
-                let near = pixels()
-                    .filter(|&(x, y)| wanted(x, y) && !mask.at(x, y))
-                    .map(|(x, y)| distance_px(x, y))
-                    .fold(f32::MAX, f32::min);
-                // A ring is 1.4 to 2 pixels wide. The pixels of a quad are up to 2.9 from those that are asked.
-                println!("budget {budget}: repaired up to {far:.1} px from the gaze, not yet from {near:.1} px on");
-                assert!(far < near + 2.0 + 2.0 * 2.9, "{far} px are repaired before {near} px");
-            }
-            if quads(&mask) == 0 && whole.is_none() {
-                whole = Some(index);
-            }
-        }
-        let whole = whole.unwrap();
-        // The lattices alone take all but one frame of a turn.
-        assert!(whole <= (TURN - 1).min((1.0 / budget) as u64 + 1), "budget {budget}: {whole}");
-        figures.push(format!("{budget}: {whole}"));
-    }
-    println!("frames until the picture is whole, by budget: {}", figures.join(", "));
-}
-
-#[test]
 fn two_eyes_are_planned_as_one_would_be_and_a_lost_gaze_is_held() {
     let fresh = |view_count| {
         CpuAfterimage::new(&ContextDesc { settings: settings(0.05, false), view_count, ..ContextDesc::new(SIZE) })
@@ -246,7 +182,7 @@ fn two_eyes_are_planned_as_one_would_be_and_a_lost_gaze_is_held() {
     let mut differ = false;
     for index in 0..8 {
         let input = square(index, 3, [3, 1], false);
-        let mut here = sparse(&input, index, false);
+        let mut here = input.one();
         let mut there = here;
         there.facts.gaze = if index == 0 { Gaze::At { px: [50.0, 40.0] } } else { Gaze::Lost };
         if index == 5 {
@@ -270,41 +206,38 @@ fn two_eyes_are_planned_as_one_would_be_and_a_lost_gaze_is_held() {
 fn a_reset_wants_everything_again() {
     let mut post = context(settings(1.0, false));
     for index in 0..=TURN {
-        let input = square(index, u64::MAX, [0, 0], false);
-        let view = sparse(&input, index, false);
-        let images = Images::of(&[view]);
+        let view = square(index, u64::MAX, [0, 0], false);
+        let images = Images::of(&[view.one()]);
         let after_a_cut = Frame { reset: Reset::All, ..images.frame(index) };
         let mut fresh = context(settings(1.0, false));
         assert_eq!(post.plan(&after_a_cut).unwrap(), fresh.plan(&images.frame(index)).unwrap());
-        show(&mut post, index, view, |_| None);
+        show(&mut post, index, &view);
     }
 }
 
 #[test]
 fn what_does_not_fit_is_refused() {
     let input = square(0, u64::MAX, [0, 0], false);
-    let images = Images::of(&[sparse(&input, 0, false)]);
-    let plain = Settings { method: MethodKind::Smr.into(), ..settings(0.1, false) };
-    let error = context(plain).plan(&images.frame(0)).unwrap_err().to_string();
-    assert!(error.starts_with("Smr::repair of view 0 is None: expected given"), "{error}");
-    let repaired = [&input.color];
-    let frame = Frame { repaired: Some(&repaired), ..images.frame(0) };
-    let mut out = [Image::filled(SIZE, [0.0; 3])];
-    let error = context(plain).process(&frame, &mut out).unwrap_err().to_string();
-    assert!(error.starts_with("repaired of view 0 is given: expected None; or set Smr::repair"), "{error}");
+    let (images, repaired) = (Images::of(&[input.one()]), [&input.color]);
+    let mut plain = context(Settings { method: MethodKind::Smr.into(), ..settings(0.1, false) });
     let mut post = context(settings(0.1, false));
+    let mut out = [Image::filled(SIZE, [0.0; 3])];
+    let frame = Frame { repaired: Some(&repaired), ..images.frame(0) };
+    let refused = |result: Result<(), FrameError>, words: &str| {
+        let error = result.unwrap_err().to_string();
+        assert!(error.starts_with(words), "{error}");
+    };
+    refused(plain.plan(&images.frame(0)).map(drop), "Smr::repair of view 0 is None: expected given");
+    let unset = "repaired of view 0 is given: expected None; or set Smr::repair";
+    refused(plain.process(&frame, &mut out).map(drop), unset);
     let unplanned = "repaired of view 0 is given: expected None, or that plan was called with this frame";
-    let error = post.process(&frame, &mut out).unwrap_err().to_string();
-    assert!(error.starts_with(unplanned), "{error}");
+    refused(post.process(&frame, &mut out).map(drop), unplanned);
     post.plan(&frame).unwrap();
-    let error = post.process(&Frame { index: 1, ..frame }, &mut out).unwrap_err().to_string();
-    assert!(error.starts_with(unplanned), "{error}");
+    refused(post.process(&Frame { index: 1, ..frame }, &mut out).map(drop), unplanned);
     let small = [&Image::filled([8, 8], [0.0; 3])];
-    let error = post.process(&Frame { repaired: Some(&small), ..frame }, &mut out).unwrap_err().to_string();
-    assert!(error.starts_with("repaired of view 0 is 8x8"), "{error}");
+    refused(post.process(&Frame { repaired: Some(&small), ..frame }, &mut out).map(drop), "repaired of view 0 is 8x8");
     post.process(&frame, &mut out).unwrap();
-    let error = post.process(&frame, &mut out).unwrap_err().to_string();
-    assert!(error.starts_with(unplanned), "{error}");
+    refused(post.process(&frame, &mut out).map(drop), unplanned);
     for budget in [-0.1, 1.1, f32::NAN] {
         let error = settings(budget, false).validate().unwrap_err().to_string();
         assert!(error.starts_with("smr.repair.budget is "), "{error}");
@@ -328,10 +261,11 @@ fn priorities_are_ordered_by_class_then_by_ring() {
 
 /// Any frame of 8x6 pixels with lattices.
 fn sparse_any(draws: &mut Draws, wild: f32, index: u64, at_samples: bool) -> View {
-    let mut frame = any_frame(draws, wild);
-    let gaze = [draws.range(0.0, 8.0), draws.range(0.0, 6.0)];
-    let lattices = foveation().lattices(&frame.facts.geometry, gaze, index);
-    frame.facts.lattices = Some(if at_samples { lattices.with_geometry_at_samples() } else { lattices });
+    let frame = any_frame(draws, wild);
+    let mut frame = frame.foveated(&foveation(), [draws.range(0.0, 8.0), draws.range(0.0, 6.0)], index);
+    if at_samples {
+        frame.facts.lattices = frame.facts.lattices.map(Lattices::with_geometry_at_samples);
+    }
     if draws.uniform() < 0.2 {
         frame.facts.gaze = Gaze::Lost;
     }

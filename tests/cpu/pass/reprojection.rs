@@ -66,11 +66,8 @@ fn h60_a_turn_costs_no_more_than_any_other_frame() {
             ..still(noise(LARGE, name))
         };
         let (normal, turn) = (frame("cost", 0.25), frame("cost", 5000.0));
-        let mut start = CpuAfterimage::new(&ContextDesc {
-            settings: Settings { method: method.into(), ..Settings::paper() },
-            ..ContextDesc::new(LARGE)
-        })
-        .unwrap();
+        let settings = Settings { method: method.into(), ..Settings::paper() };
+        let mut start = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(LARGE) }).unwrap();
         one(&mut start, 0, &frame("before", 0.0));
         let time = |input: &View| {
             let mut post = start.clone();

@@ -13,12 +13,9 @@ fn settings(method: MethodKind) -> Settings {
 
 /// First frame of a context with this color and these lattices.
 fn first(method: MethodKind, color: &Color, lattices: Lattices) -> (Color, FrameStats) {
-    let mut post = context(settings(method));
-    let mut facts = ViewFrame::new(geometry(SIZE), Gaze::At { px: [20.0, 20.0] });
-    facts.lattices = Some(lattices);
-    let mut out = [Image::filled(SIZE, [f32::NAN; 3])];
-    let stats = post.process(&Images::of(&[OneView::new(facts, color)]).frame(0), &mut out).unwrap();
-    let [out] = out;
+    let facts = View::still(noise(SIZE, "facts"), [20.0, 20.0]).sparse(lattices).facts;
+    let view = View { facts, ..View::still(color.clone(), [20.0, 20.0]) };
+    let (out, stats, _) = one(&mut context(settings(method)), 0, &view);
     (out, stats)
 }
 
@@ -34,14 +31,8 @@ fn samples_are_shown_unchanged_and_nothing_else_is_read() {
         for offset in [[0, 0], [3, 6], [7, 7]] {
             let lattices = stack(offset);
             let is_sample = |px: [u32; 2]| lattices.at(px).unwrap().samples(px);
-            let is_read = |px: [u32; 2]| lattices.as_slice().iter().any(|l| l.samples(px));
-            let holed =
-                Image::from_fn(
-                    SIZE,
-                    |px| {
-                        if is_read(px) { full.at(px[0] as usize, px[1] as usize) } else { [f32::NAN; 3] }
-                    },
-                );
+            let view = View::still(full.clone(), [0.0; 2]).sparse(lattices);
+            let holed = view.read_of(&full, [f32::NAN; 3]);
             let (out, stats) = first(method, &holed, lattices);
             assert_eq!((stats.nonfinite, stats.pixels), (0, 64 * 48), "{method:?}");
             assert_eq!(out, first(method, &full, lattices).0, "{method:?}");
@@ -92,16 +83,7 @@ fn an_atlas_is_read_where_its_lattices_are() {
     let full = noise(SIZE, "atlas");
     let lattices = stack([3, 5]);
     let (atlas, size) = lattices.in_atlas();
-    let mut packed = Image::filled(size, [f32::NAN; 3]);
-    for l in atlas.as_slice() {
-        let [left, top] = l.atlas_texel.unwrap();
-        for (i, j) in (0..l.points[1]).flat_map(|j| (0..l.points[0]).map(move |i| (i, j))) {
-            let [x, y] = [l.first_px[0] + l.step * i, l.first_px[1] + l.step * j];
-            if x < SIZE[0] && y < SIZE[1] {
-                packed.pixels_mut()[((top + j) * size[0] + left + i) as usize] = full.at(x as usize, y as usize);
-            }
-        }
-    }
+    let packed = View::still(full.clone(), [0.0; 2]).sparse(lattices).in_atlas(size).color;
     for method in METHODS {
         assert_eq!(first(method, &packed, atlas), first(method, &full, lattices), "{method:?}");
     }
@@ -124,28 +106,4 @@ fn levels_of_detail_beside_lattices_are_refused() {
     let error = post.process(&images.frame(0), &mut [Image::filled(SIZE, [0.0; 3])]).unwrap_err().to_string();
     assert_eq!(error, "lod of view 0 is given: expected None: the lattices say how coarse a sparse frame is");
     assert!(!post.history().is_filled());
-}
-
-/// Largest error of a stored channel: half a step of 9 bits of the largest channel.
-fn storage_error(color: [f32; 3]) -> f32 {
-    color.iter().fold(0.0_f32, |a, &b| a.max(b)) / 511.0
-}
-
-#[test]
-fn a_still_is_rebuilt_from_its_samples() {
-    let full = noise(SIZE, "still");
-    let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..Foveation::default() };
-    let mut post = context(Settings { foveation, ..Settings::steady() });
-    let mut out = [Image::filled(SIZE, [0.0; 3])];
-    for index in 0..20 {
-        let gaze = [20.0, 20.0];
-        let mut facts = ViewFrame::new(geometry(SIZE), Gaze::At { px: gaze });
-        facts.lattices = Some(foveation.lattices(&geometry(SIZE), gaze, index));
-        post.process(&Images::of(&[OneView::new(facts, &full)]).frame(index), &mut out).unwrap();
-        let wrong = |(a, b): &(&[f32; 3], &[f32; 3])| (0..3).any(|c| (a[c] - b[c]).abs() > storage_error(**b));
-        let wrong = out[0].pixels().iter().zip(full.pixels()).filter(wrong).count();
-        println!("frame {index}: {wrong} pixels are not yet those of the full-rate frame");
-        // Each pixel is sampled once in 16 frames.
-        assert_eq!(wrong == 0, index >= 15, "frame {index}");
-    }
 }

@@ -12,29 +12,9 @@ fn settings() -> Settings {
     Settings { foveation, ..Settings::traced() }
 }
 
-/// Frame `index` of a still view: the sample at a pixel, if there is one, is the mean of `samples` draws.
-fn frame(
-    post: &mut CpuAfterimage,
-    index: u64,
-    lattices: Lattices,
-    samples: usize,
-    mut draw: impl FnMut([u32; 2]) -> f32,
-) -> Color {
-    let made = Image::from_fn(SIZE, |px| {
-        let drawn: Vec<f32> = (0..samples).map(|_| draw(px)).collect();
-        let mean = drawn.iter().sum::<f32>() / samples as f32;
-        let squares: f32 = drawn.iter().map(|v| (v - mean) * (v - mean)).sum();
-        (mean, (squares / (samples * (samples - 1)).max(1) as f32).sqrt())
-    });
-    let color = made.map(|(mean, _)| [mean; 3]);
-    let noise = made.map(|(_, error)| [error, samples as f32]);
-    let mut facts = ViewFrame::new(geometry(SIZE), Gaze::At { px: [20.0, 20.0] });
-    facts.lattices = Some(lattices);
-    let view = OneView { noise: Some(&noise), ..OneView::new(facts, &color) };
-    let mut out = [Image::filled(SIZE, [f32::NAN; 3])];
-    post.process(&Images::of(&[view]).frame(index), &mut out).unwrap();
-    let [out] = out;
-    out
+/// Shows frame `index` of a still view: the sample at a pixel, if there is one, is the mean of two draws.
+fn frame(post: &mut CpuAfterimage, index: u64, lattices: Lattices, draw: impl FnMut([u32; 2]) -> f32) -> Color {
+    one(post, index, &sampled(SIZE, draw).sparse(lattices)).0
 }
 
 fn full() -> Lattices {
@@ -52,12 +32,28 @@ fn both(index: u64) -> Lattices {
     Lattices::new(&[fine, coarse(index).as_slice()[0]]).unwrap()
 }
 
+/// Grey pixels, each the mean of two draws, with the standard error that these draws themselves suggest.
+pub fn sampled(size: [u32; 2], mut draw: impl FnMut([u32; 2]) -> f32) -> View {
+    let drawn = Image::from_fn(size, |px| [0; 2].map(|_| draw(px)));
+    let color = drawn.map(|[a, b]| [0.5 * (a + b); 3]);
+    View { noise: Some(drawn.map(|[a, b]| [0.5 * (a - b).abs(), 2.0])), ..still(color) }
+}
+
 /// Mean of the shown pixels, and the variance between them.
 pub fn moments(shown: &Color) -> (f64, f64) {
     let pixels = shown.pixels().len() as f64;
     let mean = shown.pixels().iter().map(|c| f64::from(c[0])).sum::<f64>() / pixels;
     let squares: f64 = shown.pixels().iter().map(|c| (f64::from(c[0]) - mean).powi(2)).sum();
     (mean, squares / (pixels - 1.0))
+}
+
+/// Variance of a still pixel after `frames` of variance 1, by the weights that `docs/method.md` states, and how many
+/// frames it then counts for.
+pub fn promised(frames: u64, most: f64) -> (f64, f64) {
+    (1..frames).fold((1.0, 1.0), |(variance, known), _| {
+        let share = f64::min(known / (known + 1.0), most);
+        (share * share * variance + (1.0 - share) * (1.0 - share), 1.0 / (1.0 - share))
+    })
 }
 
 #[test]
@@ -67,13 +63,8 @@ fn the_fovea_has_the_variance_that_its_weights_predict() {
         let mut draws = Draws::new(&format!("sparse still {frames} {most}"));
         let smr = Smr { accumulate: most as f32, ..Smr::traced() };
         let mut post = context(Settings { method: Method::Smr(smr), ..settings() });
-        let shown = (0..frames).map(|i| frame(&mut post, i, full(), 2, |_| draws.range(0.2, 0.8))).last().unwrap();
-        let (mut variance, mut known) = (1.0, 1.0);
-        for _ in 1..frames {
-            let share = f64::min(known / (known + 1.0), most);
-            variance = share * share * variance + (1.0 - share) * (1.0 - share);
-            known = 1.0 / (1.0 - share);
-        }
+        let shown = (0..frames).map(|i| frame(&mut post, i, full(), |_| draws.range(0.2, 0.8))).last().unwrap();
+        let (variance, known) = promised(frames, most);
         let expected = of_one_frame * variance;
         let (mean, variance) = moments(&shown);
         println!("{frames} frames, share {most}: variance {variance:.2e}, predicted {expected:.2e}");
@@ -103,7 +94,7 @@ fn coarse_lattices_are_averaged_without_bias() {
         let mut first = 0.0;
         let mut last = 0.0;
         for index in 0..600 {
-            let (mean, variance) = moments(&frame(&mut post, index, lattices(index), 2, &mut rare));
+            let (mean, variance) = moments(&frame(&mut post, index, lattices(index), &mut rare));
             first = if index == 0 { variance } else { first };
             last = variance;
             if index >= 60 && index % 40 == 0 {
@@ -125,10 +116,10 @@ fn a_change_beyond_the_noise_is_followed() {
         let mut post = context(settings());
         let mut around = |level: f32| draws.range(level - 0.1, level + 0.1);
         for index in 0..40 {
-            frame(&mut post, index, lattices(index), 2, |_| around(0.2));
+            frame(&mut post, index, lattices(index), |_| around(0.2));
         }
         let change = |index: u64, around: &mut dyn FnMut(f32) -> f32, post: &mut CpuAfterimage| {
-            moments(&frame(post, index, lattices(index), 2, |_| around(0.6))).0
+            moments(&frame(post, index, lattices(index), |_| around(0.6))).0
         };
         let after: Vec<f64> = (40..46).map(|index| change(index, &mut around, &mut post)).collect();
         println!("0.2 becomes 0.6: {after:.3?}");
@@ -141,16 +132,11 @@ fn what_is_known_exactly_becomes_as_sharp_as_without_noise() {
     let picture = noise(SIZE, "sparse, no noise");
     let run = |settings: Settings| {
         let mut post = context(settings);
-        let mut shown = Image::filled(SIZE, [0.0; 3]);
-        for index in 0..40 {
-            let noise = Image::filled(SIZE, [0.0, 4.0]);
-            let mut facts = ViewFrame::new(geometry(SIZE), Gaze::At { px: [20.0, 20.0] });
-            facts.lattices = Some(coarse(index));
-            let view = OneView { noise: settings.noisy.then_some(&noise), ..OneView::new(facts, &picture) };
-            let mut out = [Image::filled(SIZE, [f32::NAN; 3])];
-            post.process(&Images::of(&[view]).frame(index), &mut out).unwrap();
-            [shown] = out;
-        }
+        let frame = |index| {
+            let noise = settings.noisy.then(|| Image::filled(SIZE, [0.0, 4.0]));
+            View { noise, ..still(picture.clone()) }.sparse(coarse(index))
+        };
+        let shown = (0..40).map(|index| one(&mut post, index, &frame(index)).0).last().unwrap();
         let error: f64 = shown
             .pixels()
             .iter()

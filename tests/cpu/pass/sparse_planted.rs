@@ -70,16 +70,16 @@ impl Executor {
     }
 
     fn change(&mut self, index: u64, shot: &Shot, shown: &Color) -> Color {
-        let at = |[x, y]: [u32; 2]| shown.at(x as usize, y as usize);
+        let at = |px| pixel(shown, px);
         let step = |px| shot.lattices().at(px).map_or(0, |lattice| lattice.step);
         let last = self.last.as_ref();
-        let pixel = |px: [u32; 2]| match self.planted {
+        let changed = |px: [u32; 2]| match self.planted {
             Planted::Nan if index == 3 && px == [0, 0] => [f32::NAN; 3],
-            Planted::Unsanitized if !shot.color.at(px[0] as usize, px[1] as usize)[0].is_finite() => [f32::NAN; 3],
+            Planted::Unsanitized if !pixel(&shot.color, px)[0].is_finite() => [f32::NAN; 3],
             Planted::Beside => at([px[0].saturating_sub(1), px[1]]),
             Planted::Seam if step(px) == 4 => at(px).map(|v| v * 1.05),
             Planted::Lingering => {
-                let last = last.map_or([0.0; 3], |last| last.at(px[0] as usize, px[1] as usize));
+                let last = last.map_or([0.0; 3], |last| pixel(last, px));
                 [0, 1, 2].map(|c| at(px)[c].max(0.9 * last[c]))
             }
             Planted::Gaze => match shot.facts.gaze {
@@ -88,7 +88,7 @@ impl Executor {
             },
             _ => at(px),
         };
-        Image::from_fn(shown.size(), pixel)
+        Image::from_fn(shown.size(), changed)
     }
 }
 
@@ -104,10 +104,7 @@ impl Shows for Executor {
             shown = vec![shown[0].clone(); shown.len()];
         }
         if let (Some(mask), Some(repaired)) = (planned, repaired) {
-            let at = |[x, y]: [u32; 2]| {
-                let from = if mask.at(x as usize, y as usize) { &repaired } else { &shown[0] };
-                from.at(x as usize, y as usize)
-            };
+            let at = |px| pixel(if pixel(&mask, px) { &repaired } else { &shown[0] }, px);
             shown[0] = Image::from_fn(mask.size(), at);
         }
         self.last = Some(shown[0].clone());

@@ -1,16 +1,12 @@
 //! Temporal upsampling: what it makes of samples whose places it knows.
 
 use super::*;
-use afterimage::{Filter, Foveation, Lattices, Method};
+use afterimage::{Filter, Foveation, Method};
 
 const GAZE: [f32; 2] = [20.0, 20.0];
 
 fn foveation() -> Foveation {
     Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..Foveation::default() }
-}
-
-fn lattices(index: u64) -> Lattices {
-    foveation().lattices(&geometry(SIZE), GAZE, index)
 }
 
 /// Waves of 5 to 9 pixels, moved to the right by `shift_px`.
@@ -28,15 +24,10 @@ fn squared_error(a: &Color, b: &Color) -> f64 {
 /// Squared error of each frame of waves that move by `speed_px` a frame, as sparse frames.
 fn errors(method: MethodKind, speed_px: f32, frames: u64) -> Vec<f64> {
     let mut post = context(Settings { method: method.into(), foveation: foveation(), ..Settings::default() });
-    let motion = Image::filled(SIZE, [-speed_px, 0.0]);
-    let mut out = [Image::filled(SIZE, [0.0; 3])];
     let frame = |index: u64| {
         let full = waves(speed_px * index as f32, [0.0; 2]);
-        let mut facts = ViewFrame::new(geometry(SIZE), Gaze::At { px: GAZE });
-        facts.lattices = Some(lattices(index));
-        let view = OneView { motion: Some(&motion), ..OneView::new(facts, &full) };
-        post.process(&Images::of(&[view]).frame(index), &mut out).unwrap();
-        squared_error(&out[0], &full)
+        let view = View::still(full.clone(), GAZE).foveated(&foveation(), GAZE, index).moving([speed_px, 0.0]);
+        squared_error(&one(&mut post, index, &view).0, &full)
     };
     (0..frames).map(frame).collect()
 }
@@ -57,41 +48,14 @@ fn a_still_converges_and_what_moves_is_sharper_than_with_taa() {
 }
 
 #[test]
-fn a_cut_starts_afresh() {
-    let settings = Settings { method: Method::Taau, foveation: foveation(), ..Settings::default() };
-    let (mut seen, mut fresh) = (context(settings), context(settings));
-    let full = noise(SIZE, "after the cut");
-    let show = |post: &mut CpuAfterimage, color: &Color, index: u64, reset: Reset| {
-        let mut facts = ViewFrame::new(geometry(SIZE), Gaze::At { px: GAZE });
-        facts.lattices = Some(lattices(index));
-        let mut out = [Image::filled(SIZE, [0.0; 3])];
-        let view = [OneView::new(facts, color)];
-        let images = Images::of(&view);
-        post.process(&Frame { reset, ..images.frame(index) }, &mut out).unwrap();
-        let [out] = out;
-        out
-    };
-    for index in 0..5 {
-        show(&mut seen, &waves(0.0, [0.0; 2]), index, Reset::None);
-    }
-    for index in 5..8 {
-        let reset = if index == 5 { Reset::All } else { Reset::None };
-        assert_eq!(show(&mut seen, &full, index, reset), show(&mut fresh, &full, index, Reset::None));
-    }
-}
-
-#[test]
 fn jittered_frames_of_full_rate_are_put_where_their_samples_lie() {
     let mut post = context(Settings { method: Method::Taau, ..Settings::default() });
     let full = waves(0.0, [0.0; 2]);
-    let mut out = [Image::filled(SIZE, [0.0; 3])];
     let mut last = 0.0;
     for index in 0..16_u64 {
         let jitter_px = [0, 1].map(|i| ((index * [5, 3][i]) % 8) as f32 / 8.0 - 0.4375);
-        let facts = ViewFrame { jitter_px, ..ViewFrame::new(geometry(SIZE), Gaze::At { px: GAZE }) };
-        let color = waves(0.0, jitter_px);
-        post.process(&Images::of(&[OneView::new(facts, &color)]).frame(index), &mut out).unwrap();
-        last = squared_error(&out[0], &full) / squared_error(&color, &full);
+        let view = View::still(waves(0.0, jitter_px), GAZE).with(|view| view.facts.jitter_px = jitter_px);
+        last = squared_error(&one(&mut post, index, &view).0, &full) / squared_error(&view.color, &full);
     }
     println!("squared error {last:.4} of the jittered frame's");
     assert!(last < 0.3);
@@ -110,22 +74,17 @@ fn hard_frame([dx, dy]: [f32; 2], light: f32) -> Color {
 /// Squared errors of jittered frames of a still against means over pixels. The light changes by a factor in a frame.
 fn still_errors(settings: Settings, trust: f32, frames: u64, [at, light]: [f32; 2]) -> Vec<f64> {
     let mut post = context(settings);
-    let (gaze, trust) = (Gaze::At { px: GAZE }, Image::filled(SIZE, trust));
     let places = (0..16).flat_map(|i| (0..16).map(move |j| [i, j].map(|k| (k as f32 + 0.5) / 16.0 - 0.5)));
     let means = places.map(|at| hard_frame(at, 1.0 / 256.0)).reduce(|a, b| {
         Image::from_fn(SIZE, |[x, y]| [a.at(x as usize, y as usize)[0] + b.at(x as usize, y as usize)[0]; 3])
     });
     let means = means.unwrap();
-    let mut out = [Image::filled(SIZE, [0.0; 3])];
     let frame = |index: u64| {
         let light = if index as f32 >= at { light } else { 1.0 };
         let jitter_px = Foveation::jitter_px(index);
-        let lattices = Some(settings.foveation.lattices(&geometry(SIZE), GAZE, index));
-        let facts = ViewFrame { jitter_px, lattices, ..ViewFrame::new(geometry(SIZE), gaze) };
-        let color = hard_frame(jitter_px, light);
-        let view = OneView { trust: Some(&trust), ..OneView::new(facts, &color) };
-        post.process(&Images::of(&[view]).frame(index), &mut out).unwrap();
-        squared_error(&out[0], &means.map(|c| c.map(|v| v * light)))
+        let mut view = View::still(hard_frame(jitter_px, light), GAZE).foveated(&settings.foveation, GAZE, index);
+        (view.facts.jitter_px, view.trust) = (jitter_px, Some(Image::filled(SIZE, trust)));
+        squared_error(&one(&mut post, index, &view).0, &means.map(|c| c.map(|v| v * light)))
     };
     (0..frames).map(frame).collect()
 }

@@ -157,19 +157,31 @@ fn relit(draws: &mut Draws, step: Vec3) -> Evidence {
     let matched = color(draws) * 0.9 + 0.1;
     let coarser = (matched + (color(draws) - 0.5) * 0.05).max(Vec3::splat(0.05));
     Evidence {
-        candidate: matched * step,
-        compared: matched * step,
         compared_coarser: coarser * step,
-        observed: matched * step,
         lod: 3.0,
         history: near(draws, matched),
-        history_lod: 0.0,
-        resampled: true,
-        matched,
-        level: matched,
         next_level: coarser,
         matched_coarser: coarser,
-        predicted: matched,
+        ..unlike(matched, matched * step)
+    }
+}
+
+/// A sharp history of one color below a candidate of another one, two levels coarser.
+fn unlike(history: Vec3, candidate: Vec3) -> Evidence {
+    Evidence {
+        candidate,
+        compared: candidate,
+        compared_coarser: candidate,
+        observed: candidate,
+        lod: 2.0,
+        history,
+        history_lod: 0.0,
+        resampled: true,
+        matched: history,
+        level: history,
+        next_level: history,
+        matched_coarser: history,
+        predicted: history,
         trust: 1.0,
         noise: 0.0,
         confidence: [1.0; 2],
@@ -245,24 +257,7 @@ fn s7_relighting_explains_no_change_of_structure() {
     // The coarse colors agree, so light did not change; the fine ones do not.
     over("s7 structure", |draws| {
         let ground = color(draws) * 0.5 + 0.25;
-        let e = Evidence {
-            candidate: ground * 2.0,
-            compared: ground * 2.0,
-            compared_coarser: ground,
-            observed: ground * 2.0,
-            lod: 2.0,
-            history: ground,
-            history_lod: 0.0,
-            resampled: true,
-            matched: ground,
-            level: ground,
-            next_level: ground,
-            matched_coarser: ground,
-            predicted: ground,
-            trust: 1.0,
-            noise: 0.0,
-            confidence: [1.0; 2],
-        };
+        let e = Evidence { compared_coarser: ground, ..unlike(ground, ground * 2.0) };
         assert!(shows_the_candidate(&e, &decide(&e, &PARAMS)));
         true
     });

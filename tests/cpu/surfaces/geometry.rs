@@ -3,10 +3,6 @@
 use super::rig::*;
 use afterimage_testing::holds;
 
-fn context_of(size: [u32; 2], settings: Settings) -> CpuAfterimage {
-    CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(size) }).unwrap()
-}
-
 #[test]
 fn h67_microsaccades_enlarge_what_is_shown_sharp() {
     const WIDE: [u32; 2] = [240, 120];

@@ -1,6 +1,7 @@
 //! NaN, infinity and extreme radiance.
 
 use super::rig::*;
+use crate::any_frame::number;
 use afterimage::{Method, Verdict};
 use proptest::prelude::*;
 
@@ -73,11 +74,6 @@ proptest! {
     }
 }
 
-/// Arbitrary bits with probability `wild`, else a plausible number.
-fn number(draws: &mut Draws, wild: f32, low: f32, high: f32) -> f32 {
-    if draws.uniform() < wild { f32::from_bits(draws.bits()) } else { draws.range(low, high) }
-}
-
 proptest! {
     #![proptest_config(afterimage_testing::property("surfaces from garbage", 150))]
 
@@ -93,7 +89,7 @@ proptest! {
             if let Method::Smr(smr) = &mut settings.method {
                 smr.tolerance = 10.0;
             }
-            let mut post = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SMALL) }).unwrap();
+            let mut post = context_of(SMALL, settings);
             for index in 0..6 {
                 let d = &mut draws;
                 let shift = number(d, wild, -3.0, 3.0);

@@ -1,10 +1,10 @@
 //! Noisy candidates: the mean of many frames has the variance that its weights predict, and no bias; noise does not
 //! pass for a change, nor a change for noise.
 
-use super::rig::{Draws, SIZE, View, settings, sharp, step};
-use crate::pass::sparse_noise::moments;
+use super::rig::{Draws, SIZE, View, context_of, settings, sharp, step};
+use crate::pass::sparse_noise::{self, moments, promised};
 use afterimage::cpu::CpuAfterimage;
-use afterimage::{ContextDesc, Image, Method, MethodKind, Settings, Smr};
+use afterimage::{Image, Method, MethodKind, Settings, Smr};
 use afterimage_testing::{accept, p_of_z, reject};
 
 const PIXELS: f64 = (SIZE[0] * SIZE[1]) as f64;
@@ -14,30 +14,13 @@ fn noisy() -> Settings {
 }
 
 fn post(settings: Settings) -> CpuAfterimage {
-    CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) }).unwrap()
+    context_of(SIZE, settings)
 }
 
-/// Grey pixels, each the mean of `samples` draws of `sample`, with the standard error that these draws themselves
-/// suggest.
-fn sampled(draws: &mut Draws, samples: usize, sample: impl Fn(&mut Draws, [u32; 2]) -> f32) -> View {
-    let made = Image::from_fn(SIZE, |px| {
-        let drawn: Vec<f32> = (0..samples).map(|_| sample(draws, px)).collect();
-        let mean = drawn.iter().sum::<f32>() / samples as f32;
-        let squares: f32 = drawn.iter().map(|v| (v - mean) * (v - mean)).sum();
-        (mean, (squares / (samples * (samples - 1)) as f32).sqrt())
-    });
-    View { noise: Some(made.map(|(_, error)| [error, samples as f32])), ..sharp(made.map(|(mean, _)| [mean; 3])) }
-}
-
-/// Variance of a still pixel after `frames` of variance 1, by the weights that `docs/method.md` states.
-fn promised(frames: usize, most: f64) -> f64 {
-    let (mut variance, mut known) = (1.0, 1.0);
-    for _ in 1..frames {
-        let share = f64::min(known / (known + 1.0), most);
-        variance = share * share * variance + (1.0 - share) * (1.0 - share);
-        known = 1.0 / (1.0 - share);
-    }
-    variance
+/// Sharp pixels, each the mean of two draws of `sample`.
+fn sampled(draws: &mut Draws, sample: impl Fn(&mut Draws, [u32; 2]) -> f32) -> View {
+    let View { color, noise, .. } = sparse_noise::sampled(SIZE, |px| sample(draws, px));
+    View { noise, ..sharp(color) }
 }
 
 #[test]
@@ -48,9 +31,9 @@ fn a_still_view_has_the_variance_that_its_weights_predict() {
         let mut draws = Draws::new(&format!("still {frames} {accumulate}"));
         let method = Method::Smr(Smr { accumulate, ..Smr::default() });
         let mut post = post(Settings { method, ..noisy() });
-        let shown = (0..frames).map(|i| step(&mut post, i, &sampled(&mut draws, 2, even)).shown).last().unwrap();
+        let shown = (0..frames).map(|i| step(&mut post, i, &sampled(&mut draws, even)).shown).last().unwrap();
         let (mean, variance) = moments(&shown);
-        let expected = of_one_frame * promised(frames as usize, f64::from(accumulate));
+        let expected = of_one_frame * promised(frames, f64::from(accumulate)).0;
         println!("{frames} frames, share {accumulate}: variance {variance:.2e}, promised {expected:.2e}");
         // Rounding in storage adds less than a thousandth of the color each frame.
         let rounding = f64::from(2.0_f32.powi(-10)).powi(2) * 0.25;
@@ -59,7 +42,7 @@ fn a_still_view_has_the_variance_that_its_weights_predict() {
         accept("variance", p_of_z((z.abs() - allowed).max(0.0)));
         accept("mean", p_of_z((mean - 0.5) / (expected / PIXELS).sqrt()));
         if frames > 5 {
-            let other = of_one_frame * promised(frames as usize, 0.8 * f64::from(accumulate));
+            let other = of_one_frame * promised(frames, 0.8 * f64::from(accumulate)).0;
             reject("variance, other weights", p_of_z((variance - other) / (other * (2.0 / PIXELS).sqrt())));
         }
     }
@@ -78,7 +61,7 @@ fn rare_bright_samples_are_neither_lost_nor_doubled() {
     // Means over time, from when the average has settled on.
     let (mut sum, mut squares, mut frames) = (0.0, 0.0, 0.0);
     for index in 0..400 {
-        let (mean, _) = moments(&step(&mut post, index, &sampled(&mut draws, 2, rare)).shown);
+        let (mean, _) = moments(&step(&mut post, index, &sampled(&mut draws, rare)).shown);
         if index >= 50 && index % 50 == 0 {
             (sum, squares, frames) = (sum + mean, squares + mean * mean, frames + 1.0);
         }
@@ -96,16 +79,16 @@ fn a_change_beyond_the_noise_is_followed_within_frames() {
     let mut post = post(noisy());
     let around = |level: f32| move |d: &mut Draws, _: [u32; 2]| level + d.range(-0.1, 0.1);
     for index in 0..30 {
-        step(&mut post, index, &sampled(&mut draws, 2, around(0.2)));
+        step(&mut post, index, &sampled(&mut draws, around(0.2)));
     }
     let after: Vec<f64> =
-        (30..36).map(|index| moments(&step(&mut post, index, &sampled(&mut draws, 2, around(0.6))).shown).0).collect();
+        (30..36).map(|index| moments(&step(&mut post, index, &sampled(&mut draws, around(0.6))).shown).0).collect();
     println!("0.2 becomes 0.6: {after:.3?}");
     assert!((after[1] - 0.6).abs() < 0.02, "{after:?}");
     // In half of the picture alone, the other half keeps its history.
     let half = |d: &mut Draws, [x, _]: [u32; 2]| if x < SIZE[0] / 2 { 0.6 } else { 0.1 } + d.range(-0.05, 0.05);
     for index in 36..42 {
-        let shown = step(&mut post, index, &sampled(&mut draws, 2, half)).shown;
+        let shown = step(&mut post, index, &sampled(&mut draws, half)).shown;
         let errors = |range: std::ops::Range<usize>, truth: f32| -> f32 {
             let row: Vec<f32> = range.map(|x| (shown.at(x, 20)[0] - truth).abs()).collect();
             row.iter().sum::<f32>() / row.len() as f32

@@ -172,11 +172,7 @@ fn s8_the_index_of_a_frame_and_the_number_of_threads_do_not_matter() {
         let run = |from: u64, seed: u64, threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
-                let mut post = CpuAfterimage::new(&ContextDesc {
-                    settings: Settings { seed, ..settings(method) },
-                    ..ContextDesc::new(SIZE)
-                })
-                .unwrap();
+                let mut post = context_of(SIZE, Settings { seed, ..settings(method) });
                 (0..6).map(|i| step(&mut post, from + 7 * i, &busy(&format!("s8 {i}")))).collect::<Vec<_>>()
             })
         };
@@ -193,8 +189,7 @@ fn s8_a_picture_16_pixels_further_becomes_the_same_16_pixels_further() {
     const MARGIN: usize = 2 * 2 * 16 + 8;
     for method in METHODS {
         let run = |offset: [u32; 2]| {
-            let mut post =
-                CpuAfterimage::new(&ContextDesc { settings: settings(method), ..ContextDesc::new(WIDE) }).unwrap();
+            let mut post = context_of(WIDE, settings(method));
             let mut last = None;
             for index in 0..3_u32 {
                 let world = noise([WIDE[0] + 64, WIDE[1] + 64], &format!("world {index}"));

@@ -11,7 +11,11 @@ pub use afterimage::{ContextDesc, Exposure, Gaze, Image, MethodKind, Reset, Sett
 pub use afterimage_testing::Draws;
 
 pub fn context(method: MethodKind) -> CpuAfterimage {
-    CpuAfterimage::new(&ContextDesc { settings: settings(method), ..ContextDesc::new(SIZE) }).unwrap()
+    context_of(SIZE, settings(method))
+}
+
+pub fn context_of(size: [u32; 2], settings: Settings) -> CpuAfterimage {
+    CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(size) }).unwrap()
 }
 
 /// One frame of several views.

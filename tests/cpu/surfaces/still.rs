@@ -7,13 +7,9 @@ use afterimage::{Method, Smr};
 fn s3_the_chain_is_read_where_and_as_coarse_as_the_candidate_is() {
     // Smooth pictures have almost no contrast, which adds tolerance, so history fits only if the same low-pass is
     // compared: a slope of 1.5 % a pixel is distinguished from its shifted copy.
-    let mut post = context(MethodKind::Smr);
     // Nor may it pass for a change of light.
-    post.set_settings(Settings {
-        method: Method::Smr(Smr { relight: false, ..Smr::default() }),
-        ..settings(MethodKind::Smr)
-    })
-    .unwrap();
+    let method = Method::Smr(Smr { relight: false, ..Smr::default() });
+    let mut post = context_of(SIZE, Settings { method, ..settings(MethodKind::Smr) });
     let slope = Image::from_fn(SIZE, |[x, _]| [0.02 + 0.015 * x as f32; 3]);
     let first = step(&mut post, 0, &sharp(slope));
     let low_pass = LowPass::new(&first.stored(), 4);
@@ -95,11 +91,7 @@ fn accumulation_shows_nine_tenths_of_equally_coarse_history() {
     let [a, b] = [0.25_f32, 0.254];
     for accumulate in [0.0, 0.5, 0.9] {
         let method = Method::Smr(Smr { accumulate, ..Smr::default() });
-        let mut post = CpuAfterimage::new(&ContextDesc {
-            settings: Settings { method, ..settings(MethodKind::Smr) },
-            ..ContextDesc::new(SIZE)
-        })
-        .unwrap();
+        let mut post = context_of(SIZE, Settings { method, ..settings(MethodKind::Smr) });
         step(&mut post, 0, &at_lod(Image::filled(SIZE, [a; 3]), 2.0));
         let made = step(&mut post, 1, &at_lod(Image::filled(SIZE, [b; 3]), 2.0));
         for shown in made.shown.pixels() {

@@ -9,6 +9,7 @@ use afterimage::{
     ContextDesc, CreateError, DebugView, DepthConvention, Exposure, Image, Method, MethodKind, MotionConvention, Reset,
     Settings, ViewFrame,
 };
+use afterimage_testing::planted::all_caught_once;
 
 const SIZE: [u32; 2] = [70, 41];
 
@@ -49,22 +50,23 @@ fn regions_give_the_bits_of_layers() {
 #[test]
 fn a_wrong_origin_is_caught() {
     let desc = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
-    let settings = Settings::default();
-    let right = SHADERS.compose("smr_pass").source;
-    let origins = ["color_origin), layer", "depth_origin), layer", "motion_origin), layer", "trust_origin), layer"];
-    for origin in origins.into_iter().chain(["lod_origin), layer", "output_origin);"]) {
-        let name = origin.split(')').next().unwrap();
-        // Its declaration remains.
-        let wrong = right.replacen(&format!(".{origin}"), &format!(".noise_origin{}", &origin[name.len()..]), 1);
-        assert_ne!(wrong, right, "{origin}");
-        let Some(mut rig) = Rig::with_shader(desc, settings, &wrong) else { return };
+    // Reads and writes at another input's origin.
+    let planted = [
+        (".color_origin), layer", ".noise_origin), layer"),
+        (".depth_origin), layer", ".noise_origin), layer"),
+        (".motion_origin), layer", ".noise_origin), layer"),
+        (".trust_origin), layer", ".noise_origin), layer"),
+        (".lod_origin), layer", ".noise_origin), layer"),
+        (".output_origin);", ".noise_origin);"),
+    ];
+    all_caught_once(SHADERS.compose("smr_pass").source, &planted, |source| {
+        let mut rig = Rig::with_shader(desc, Settings::default(), source)?;
         rig.scattered = true;
-        let differs = (0..3).any(|index| {
-            let views = full_views(index, &desc, &settings);
+        Some((0..3).any(|index| {
+            let views = full_views(index, &desc, &Settings::default());
             rig.differs(index, Reset::None, &views)
-        });
-        assert!(differs, "{origin}");
-    }
+        }))
+    });
 }
 
 #[test]

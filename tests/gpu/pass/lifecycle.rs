@@ -123,12 +123,8 @@ fn run(rig: &mut Rig, range: std::ops::Range<u64>) -> Vec<Made> {
 
 #[test]
 fn h76_a_minimised_window_is_refused_and_changes_nothing() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), ungated()) else {
-        return;
-    };
-    let Some(mut other) = Rig::new(ContextDesc::new(SIZE), ungated()) else {
-        return;
-    };
+    let fresh = || Rig::new(ContextDesc::new(SIZE), ungated());
+    let (Some(mut rig), Some(mut other)) = (fresh(), fresh()) else { return };
     run(&mut rig, 0..3);
     run(&mut other, 0..3);
     for size in [[0, 0], [0, 5], [5, 0], [1 << 20, 1]] {

@@ -5,7 +5,7 @@ use super::sparse::{SIZE, desc, gliding_view, settings};
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::TextureFormat;
-use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, MethodKind, Repair, Reset, Settings, Smr};
+use afterimage::{ContextDesc, Foveation, Gaze, Image, Lattices, Method, MethodKind, Repair, Reset, Settings, Smr};
 
 /// A budget that some frames use up and others do not.
 const BUDGET: f32 = 0.5;
@@ -21,9 +21,9 @@ fn repairing(antialias: bool, noisy: bool) -> Settings {
 fn views(index: u64, settings: &Settings) -> [View; 2] {
     [0, 1].map(|v| {
         let mut view = gliding_view(index, v, settings);
-        view.trust = view
-            .trust
-            .map(|trust| Image::from_fn(SIZE, |[x, y]| if y == 5 { 0.0 } else { trust.at(x as usize, y as usize) }));
+        let trust = view.trust.take().unwrap();
+        let at = |x: u32, y: u32| trust.at(x as usize, y as usize);
+        view.trust = Some(Image::from_fn(SIZE, |[x, y]| if y == 5 { 0.0 } else { at(x, y) }));
         let antialias = settings.method == repairing(true, false).method;
         view.facts.jitter_px = if antialias { Foveation::jitter_px(index) } else { [0.0; 2] };
         if v == 1 {
@@ -31,8 +31,7 @@ fn views(index: u64, settings: &Settings) -> [View; 2] {
             view.facts.gaze = if index % 5 == 4 { Gaze::Lost } else { view.facts.gaze };
         }
         if index % 4 == 2 {
-            let lattices = view.facts.lattices.unwrap();
-            view.facts.lattices = Some(lattices.with_geometry_at_samples());
+            view.facts.lattices = view.facts.lattices.map(Lattices::with_geometry_at_samples);
         }
         view.noise =
             settings.noisy.then(|| Image::from_fn(SIZE, |[x, y]| [0.02 * (x % 3) as f32, 1.0 + (y % 4) as f32]));
@@ -201,9 +200,8 @@ fn what_was_not_planned_is_refused() {
     let Some(rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
     let desc = ContextDesc { settings, ..ContextDesc::new(SIZE) };
     let mut post = Afterimage::new(&rig.device, &desc, TextureFormat::Rgba16Float).unwrap();
-    let usage = Afterimage::INPUT_USAGE;
-    let color = super::rig::make_texture(&rig.device, &desc, TextureFormat::Rgba16Float, usage);
-    let output = super::rig::make_texture(&rig.device, &desc, TextureFormat::Rgba16Float, Afterimage::OUTPUT_USAGE);
+    let texture = |usage| super::rig::make_texture(&rig.device, &desc, TextureFormat::Rgba16Float, usage);
+    let (color, output) = (texture(Afterimage::INPUT_USAGE), texture(Afterimage::OUTPUT_USAGE));
     let facts = [views(0, &settings)[0].facts];
     let mut encoder = rig.device.create_command_encoder(&Default::default());
     let frame = Frame::new(&color, &facts, 3);

@@ -64,20 +64,21 @@ fn h07_biased_sums_stall_where_documented() {
     holds!("H07", Gpu, "stalls at {stalled}: replacement 1/{:.0} a frame, stated floor 1/364", stalled);
 }
 
+/// How many pixels show each of eight frames, which have a color each, after the last one.
+fn shown_of_eight(rig: &mut Rig, first: u64) -> Vec<u64> {
+    let size = rig.context.size_px;
+    let mut counts = vec![0; 8];
+    let shown = (0..8).map(|k| rig.both(first + k, Reset::None, &[plain(size, k as f32)]).0.shown).last().unwrap();
+    shown.iter().for_each(|c| counts[f32::from_bits(c[0]) as usize] += 1);
+    counts
+}
+
 #[test]
 fn h11_without_bias_every_frame_is_kept_as_often() {
     let size = [256, 128];
     let counts = |bias, name: &str| -> Option<Vec<u64>> {
         let seed = afterimage_testing::seed(name);
-        let mut rig = Rig::new(ContextDesc::new(size), Settings { seed, ..even(bias) })?;
-        let mut counts = vec![0; 8];
-        for index in 0..8 {
-            let shown = rig.on_gpu(index, Reset::None, &[plain(size, index as f32)]).shown;
-            if index == 7 {
-                shown.iter().for_each(|c| counts[f32::from_bits(c[0]) as usize] += 1);
-            }
-        }
-        Some(counts)
+        Some(shown_of_eight(&mut Rig::new(ContextDesc::new(size), Settings { seed, ..even(bias) })?, 0))
     };
     let expected = [f64::from(size[0] * size[1]) / 8.0; 8];
     let (Some(even), Some(biased)) = (counts(Bias::None, "h11"), counts(Bias::Bernoulli, "h11, biased")) else {
@@ -145,8 +146,7 @@ fn h19_whatever_the_history_holds_it_heals_in_one_frame() {
             return;
         };
         let mut draws = Draws::new("h19 on the device");
-        rig.on_cpu(0, Reset::None, &[View::still(noise(size, "h19"), [9.0; 2])]);
-        rig.on_gpu(0, Reset::None, &[View::still(noise(size, "h19"), [9.0; 2])]);
+        rig.both(0, Reset::None, &[View::still(noise(size, "h19"), [9.0; 2])]);
         let words: Vec<[u32; 3]> = (0..64 * 48).map(|_| [0; 3].map(|_| draws.bits())).collect();
         if sampler == Sampler::AEs {
             // Keys are floats of their own, which restoring sets on the CPU alone.
@@ -245,15 +245,8 @@ fn h29_the_same_bytes_in_workgroups_of_any_size() {
 fn h26_the_frame_counter_goes_on_beyond_32_bits() {
     let size = [256, 64];
     let Some(mut rig) = Rig::new(ContextDesc::new(size), even(Bias::None)) else { return };
-    // Each frame has its own color; the samples of eight frames around the wrap follow the same law.
-    let first = u64::from(u32::MAX) - 3;
-    let mut counts = [0_u64; 8];
-    for k in 0..8 {
-        let shown = rig.both(first + k, Reset::None, &[plain(size, k as f32)]).0.shown;
-        if k == 7 {
-            shown.iter().for_each(|c| counts[f32::from_bits(c[0]) as usize] += 1);
-        }
-    }
+    // The samples of eight frames around the wrap follow the same law.
+    let counts = shown_of_eight(&mut rig, u64::from(u32::MAX) - 3);
     let p = afterimage_testing::p_of_counts(&counts, &[f64::from(size[0] * size[1]) / 8.0; 8]);
     afterimage_testing::accept(&format!("kept around the wrap: {counts:?}"), p);
     // The planted error: draws that start again give the same choices 2^32 frames later.

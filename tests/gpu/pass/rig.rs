@@ -26,39 +26,48 @@ pub struct Rig {
     pub scattered: bool,
     /// Debug view to draw beside the next frames, and what it showed.
     pub beside: Option<DebugView>,
-    textures: Textures,
-    debug: Texture,
+    textures: [Texture; 9],
     counters: Buffer,
 }
 
-/// Inputs and output of one size.
-struct Textures {
-    color: Texture,
-    depth: Texture,
-    motion: Texture,
-    trust: Texture,
-    lod: Texture,
-    noise: Texture,
-    repaired: Texture,
-    output: Texture,
+// Places of textures: color, depth, motion, trust, levels of detail, noise and repaired samples; output, debug view.
+const COLOR: usize = 0;
+const MOTION: usize = 2;
+const NOISE: usize = 5;
+const REPAIRED: usize = 6;
+const OUTPUT: usize = 7;
+const DEBUG: usize = 8;
+
+const READ: TextureUsages =
+    TextureUsages::TEXTURE_BINDING.union(TextureUsages::COPY_DST).union(TextureUsages::COPY_SRC);
+
+fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 9] {
+    std::array::from_fn(|i| {
+        let format = match i {
+            COLOR | REPAIRED | OUTPUT => TextureFormat::Rgba32Float,
+            DEBUG => TextureFormat::Rgba16Float,
+            MOTION | NOISE => TextureFormat::Rg32Float,
+            _ => TextureFormat::R32Float,
+        };
+        let written = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC | TextureUsages::COPY_DST;
+        make_texture(device, context, format, if i < OUTPUT { READ } else { written })
+    })
 }
 
-impl Textures {
-    fn new(device: &Device, context: &ContextDesc) -> Self {
-        let texture = |format, usage| make_texture(device, context, format, usage);
-        let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST | TextureUsages::COPY_SRC;
-        let write = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC | TextureUsages::COPY_DST;
-        Self {
-            color: texture(TextureFormat::Rgba32Float, read),
-            depth: texture(TextureFormat::R32Float, read),
-            motion: texture(TextureFormat::Rg32Float, read),
-            trust: texture(TextureFormat::R32Float, read),
-            lod: texture(TextureFormat::R32Float, read),
-            noise: texture(TextureFormat::Rg32Float, read),
-            repaired: texture(TextureFormat::Rgba32Float, read),
-            output: texture(TextureFormat::Rgba32Float, write),
-        }
-    }
+/// Texels of each input that a view has.
+fn texels(view: &View) -> [Option<Vec<f32>>; OUTPUT] {
+    let one = |image: &Image<f32>| image.pixels().to_vec();
+    let two = |image: &Image<[f32; 2]>| image.pixels().as_flattened().to_vec();
+    let four = |image: &Image<[f32; 3]>| image.pixels().iter().flat_map(|c| [c[0], c[1], c[2], 1.0]).collect();
+    [
+        Some(four(&view.color)),
+        view.depth.as_ref().map(one),
+        view.motion.as_ref().map(two),
+        view.trust.as_ref().map(one),
+        view.lod.as_ref().map(one),
+        view.noise.as_ref().map(two),
+        view.repaired.as_ref().map(four),
+    ]
 }
 
 /// Result of a frame: output colors and packed history, view after view.
@@ -93,8 +102,7 @@ impl Rig {
         Some(Self {
             cpu: CpuAfterimage::new(&context).unwrap(),
             gpu: afterimage_testing::gpu::validated(&device, "new", made).unwrap(),
-            textures: Textures::new(&device, &context),
-            debug: debug_texture(&device, &context),
+            textures: make_textures(&device, &context),
             scattered: false,
             beside: None,
             counters: device.create_buffer(&wgpu::BufferDescriptor {
@@ -114,9 +122,7 @@ impl Rig {
     pub fn resize(&mut self, size: [u32; 2]) {
         self.cpu.resize(size).unwrap();
         self.gpu.resize(&self.device, size).unwrap();
-        self.context.size_px = size;
-        self.textures = Textures::new(&self.device, &self.context);
-        self.debug = debug_texture(&self.device, &self.context);
+        self.remake_textures(size);
     }
 
     /// Changes the size of both executors, which keep their history, and of the textures.
@@ -127,9 +133,12 @@ impl Rig {
             self.gpu.resize_keeping_history(&self.device, &mut encoder, size).unwrap();
             self.queue.submit([encoder.finish()]);
         });
+        self.remake_textures(size);
+    }
+
+    fn remake_textures(&mut self, size: [u32; 2]) {
         self.context.size_px = size;
-        self.textures = Textures::new(&self.device, &self.context);
-        self.debug = debug_texture(&self.device, &self.context);
+        self.textures = make_textures(&self.device, &self.context);
     }
 
     /// Stored history of both executors.
@@ -139,20 +148,18 @@ impl Rig {
 
     /// What was drawn beside the last frame: linear color as halves.
     pub fn beside(&self) -> Vec<u32> {
-        self.read_texture(&self.debug)
+        self.read_texture(&self.textures[DEBUG])
     }
 
     /// Makes the color input an atlas of another size.
     pub fn resize_color(&mut self, size_px: [u32; 2]) {
         let atlas = ContextDesc { size_px, ..self.context };
-        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST | TextureUsages::COPY_SRC;
-        self.textures.color = make_texture(&self.device, &atlas, TextureFormat::Rgba32Float, usage);
+        self.textures[COLOR] = make_texture(&self.device, &atlas, TextureFormat::Rgba32Float, READ);
     }
 
     /// Stores motion as halves on the device from now on.
     pub fn halve_motion(&mut self) {
-        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
-        self.textures.motion = make_texture(&self.device, &self.context, TextureFormat::Rg16Float, usage);
+        self.textures[MOTION] = make_texture(&self.device, &self.context, TextureFormat::Rg16Float, READ);
     }
 
     /// Sets the history of both executors.
@@ -211,11 +218,9 @@ impl Rig {
     /// Errors of both executors for a frame that they must reject.
     pub fn refusal(&mut self, view: &View) -> String {
         self.upload(std::slice::from_ref(view));
-        let frame = Frame {
-            noise: view.noise.is_some().then_some((&self.textures.noise).into()),
-            ..Frame::new(&self.textures.color, std::slice::from_ref(&view.facts), 0)
-        };
-        let output = &self.textures.output;
+        let [color, .., noise, _, output, _] = &self.textures;
+        let noise = view.noise.is_some().then_some(noise.into());
+        let frame = Frame { noise, ..Frame::new(color, std::slice::from_ref(&view.facts), 0) };
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let gpu = self.gpu.record(&self.device, &mut encoder, &frame, output).unwrap_err().to_string();
         let images = Images::of(&[OneView { noise: view.noise.as_ref(), ..OneView::new(view.facts, &view.color) }]);
@@ -240,53 +245,28 @@ impl Rig {
     fn record(&mut self, index: u64, reset: Reset, views: &[View], count: bool, view: Option<DebugView>) {
         self.upload(views);
         let facts: Vec<_> = views.iter().map(|v| v.facts).collect();
+        let all = (0..).zip(&self.textures).filter(|_| self.scattered);
+        let all: Vec<_> = all.map(|(i, texture)| Scattered::new(&self.device, &self.queue, texture, i)).collect();
+        let regions: Vec<_> = all.iter().map(Scattered::regions).collect();
+        let [color, depth, motion, trust, lod, noise, repaired, output, debug] = std::array::from_fn(|i| {
+            regions.get(i).map_or((&self.textures[i]).into(), |r| afterimage::gpu::Textures::Regions(r))
+        });
         let frame = Frame {
-            depth: views[0].depth.is_some().then_some((&self.textures.depth).into()),
-            motion: views[0].motion.is_some().then_some((&self.textures.motion).into()),
-            trust: views[0].trust.is_some().then_some((&self.textures.trust).into()),
-            lod: views[0].lod.is_some().then_some((&self.textures.lod).into()),
-            noise: views[0].noise.is_some().then_some((&self.textures.noise).into()),
-            repaired: views[0].repaired.is_some().then_some((&self.textures.repaired).into()),
+            depth: views[0].depth.is_some().then_some(depth),
+            motion: views[0].motion.is_some().then_some(motion),
+            trust: views[0].trust.is_some().then_some(trust),
+            lod: views[0].lod.is_some().then_some(lod),
+            noise: views[0].noise.is_some().then_some(noise),
+            repaired: views[0].repaired.is_some().then_some(repaired),
             exposure: self.exposure,
             reset,
-            ..Frame::new(&self.textures.color, &facts, index)
+            ..Frame::new(color, &facts, index)
         };
-        let debug = self.beside.map(|view| DebugTarget { view, output: (&self.debug).into() });
-        let target = Target { debug, counters: count.then_some(&self.counters), ..Target::new(&self.textures.output) };
-        let scattered = |texture, number| Scattered::new(&self.device, &self.queue, texture, number);
-        let textures = &self.textures;
-        let inputs = [
-            &textures.color,
-            &textures.depth,
-            &textures.motion,
-            &textures.trust,
-            &textures.lod,
-            &textures.noise,
-            &textures.repaired,
-        ];
-        let inputs: Vec<_> = (0..).zip(inputs).filter(|_| self.scattered).map(|(i, t)| scattered(t, i)).collect();
-        let outputs: Vec<_> = [(&textures.output, 7), (&self.debug, 8)]
-            .into_iter()
-            .filter(|_| self.scattered)
-            .map(|(t, i)| scattered(t, i))
-            .collect();
-        let regions: Vec<_> = inputs.iter().chain(&outputs).map(Scattered::regions).collect();
-        let of = |i: usize, plain| regions.get(i).map_or(plain, |r| afterimage::gpu::Textures::Regions(r));
-        let frame = Frame {
-            color: of(0, frame.color),
-            depth: frame.depth.map(|t| of(1, t)),
-            motion: frame.motion.map(|t| of(2, t)),
-            trust: frame.trust.map(|t| of(3, t)),
-            lod: frame.lod.map(|t| of(4, t)),
-            noise: frame.noise.map(|t| of(5, t)),
-            repaired: frame.repaired.map(|t| of(6, t)),
-            ..frame
-        };
-        let debug = target.debug.map(|d| DebugTarget { output: of(8, d.output), ..d });
-        let target = Target { output: of(7, target.output), debug, ..target };
+        let debug = self.beside.map(|view| DebugTarget { view, output: debug });
+        let target = Target { debug, counters: count.then_some(&self.counters), ..Target::new(output) };
         afterimage_testing::gpu::validated(&self.device, "record", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
-            inputs.iter().for_each(|i| i.scatter(&mut encoder));
+            all.iter().take(OUTPUT).for_each(|input| input.copy(&mut encoder, true));
             if frame.repaired.is_some() {
                 self.gpu.plan(&self.device, &mut encoder, &frame).unwrap();
             }
@@ -294,7 +274,7 @@ impl Rig {
                 None => self.gpu.record(&self.device, &mut encoder, &frame, target).unwrap(),
                 Some(view) => self.gpu.record_view(&self.device, &mut encoder, &frame, target, view).unwrap(),
             };
-            outputs.iter().for_each(|o| o.gather(&mut encoder));
+            all.iter().skip(OUTPUT).for_each(|output| output.copy(&mut encoder, false));
             self.queue.submit([encoder.finish()]);
         });
     }
@@ -304,12 +284,13 @@ impl Rig {
         self.upload(std::slice::from_ref(view));
         let mut encoder = self.device.create_command_encoder(&Default::default());
         for (index, facts) in facts.iter().enumerate() {
+            let [color, depth, motion, .., output, _] = &self.textures;
             let frame = Frame {
-                depth: Some((&self.textures.depth).into()),
-                motion: Some((&self.textures.motion).into()),
-                ..Frame::new(&self.textures.color, std::slice::from_ref(facts), index as u64)
+                depth: Some(depth.into()),
+                motion: Some(motion.into()),
+                ..Frame::new(color, std::slice::from_ref(facts), index as u64)
             };
-            let target = Target { counters: Some(&self.counters), ..Target::new(&self.textures.output) };
+            let target = Target { counters: Some(&self.counters), ..Target::new(output) };
             self.gpu.record(&self.device, &mut encoder, &frame, target).unwrap();
         }
         self.queue.submit([encoder.finish()]);
@@ -337,7 +318,7 @@ impl Rig {
 
     /// Output colors and stored history, read back from the device.
     pub fn read(&self) -> Made {
-        let shown = self.read_texture(&self.textures.output);
+        let shown = self.read_texture(&self.textures[OUTPUT]);
         let held: Vec<_> =
             self.gpu.history_textures().iter().take(2).map(|t| (t.format(), self.read_texture(t))).collect();
         Made {
@@ -366,32 +347,14 @@ impl Rig {
 
     fn upload(&self, views: &[View]) {
         for (layer, view) in views.iter().enumerate() {
-            let color: Vec<[f32; 4]> = view.color.pixels().iter().map(|c| [c[0], c[1], c[2], 1.0]).collect();
-            self.write(&self.textures.color, layer, bytemuck::cast_slice(&color));
-            if let Some(depth) = &view.depth {
-                self.write(&self.textures.depth, layer, bytemuck::cast_slice(depth.pixels()));
-            }
-            if let Some(motion) = &view.motion {
-                let halves: Vec<[u16; 2]> =
-                    motion.pixels().iter().map(|m| m.map(|v| pack::half_bits(v) as u16)).collect();
-                let bytes = match self.textures.motion.format() {
-                    TextureFormat::Rg16Float => bytemuck::cast_slice(&halves),
-                    _ => bytemuck::cast_slice(motion.pixels()),
-                };
-                self.write(&self.textures.motion, layer, bytes);
-            }
-            if let Some(trust) = &view.trust {
-                self.write(&self.textures.trust, layer, bytemuck::cast_slice(trust.pixels()));
-            }
-            if let Some(lod) = &view.lod {
-                self.write(&self.textures.lod, layer, bytemuck::cast_slice(lod.pixels()));
-            }
-            if let Some(repaired) = &view.repaired {
-                let color: Vec<[f32; 4]> = repaired.pixels().iter().map(|c| [c[0], c[1], c[2], 1.0]).collect();
-                self.write(&self.textures.repaired, layer, bytemuck::cast_slice(&color));
-            }
-            if let Some(noise) = &view.noise {
-                self.write(&self.textures.noise, layer, bytemuck::cast_slice(noise.pixels()));
+            for (texture, texels) in self.textures.iter().zip(texels(view)) {
+                let Some(texels) = texels else { continue };
+                if texture.format() == TextureFormat::Rg16Float {
+                    let halves: Vec<_> = texels.iter().map(|&v| pack::half_bits(v) as u16).collect();
+                    self.write(texture, layer, bytemuck::cast_slice(&halves));
+                } else {
+                    self.write(texture, layer, bytemuck::cast_slice(&texels));
+                }
             }
         }
     }
@@ -449,36 +412,17 @@ impl<'a> Scattered<'a> {
         regions.map(|(texture, (layer, origin_px))| Region { texture, origin_px, layer }).collect()
     }
 
-    fn scatter(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.copy(encoder, |plain, place| (plain, place));
-    }
-
-    fn gather(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.copy(encoder, |plain, place| (place, plain));
-    }
-
-    fn copy<'t>(
-        &'t self,
-        encoder: &mut wgpu::CommandEncoder,
-        order: impl Fn(
-            wgpu::TexelCopyTextureInfo<'t>,
-            wgpu::TexelCopyTextureInfo<'t>,
-        ) -> (wgpu::TexelCopyTextureInfo<'t>, wgpu::TexelCopyTextureInfo<'t>),
-    ) {
+    /// Copies the texture to its places, or back from them.
+    fn copy(&self, encoder: &mut wgpu::CommandEncoder, scatters: bool) {
         for (view, (texture, [x, y])) in (0..).zip(&self.places) {
             let at = |x, y, z| wgpu::Origin3d { x, y, z };
             let plain = wgpu::TexelCopyTextureInfo { origin: at(0, 0, view), ..self.texture.as_image_copy() };
             let place = wgpu::TexelCopyTextureInfo { origin: at(*x, *y, view), ..texture.as_image_copy() };
             let (width, height) = (self.texture.width(), self.texture.height());
-            let (from, to) = order(plain, place);
+            let (from, to) = if scatters { (plain, place) } else { (place, plain) };
             encoder.copy_texture_to_texture(from, to, wgpu::Extent3d { width, height, depth_or_array_layers: 1 });
         }
     }
-}
-
-fn debug_texture(device: &Device, context: &ContextDesc) -> Texture {
-    let usage = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC | TextureUsages::COPY_DST;
-    make_texture(device, context, TextureFormat::Rgba16Float, usage)
 }
 
 pub fn make_texture(device: &Device, context: &ContextDesc, format: TextureFormat, usage: TextureUsages) -> Texture {

@@ -6,7 +6,7 @@ use afterimage::shader::SHADERS;
 use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{
     ContextDesc, Exposure, Filter, Foveation, Image, Lattice, Lattices, Method, MethodKind, Reset, Sampler, Settings,
-    ViewGeometry, Wrs,
+    Smr, ViewGeometry, Wrs,
 };
 use afterimage_testing::Draws;
 use afterimage_testing::planted::all_caught;
@@ -35,54 +35,25 @@ pub(super) fn desc() -> ContextDesc {
 fn sparse_views(index: u64, settings: &Settings) -> Vec<View> {
     let view = |v: u32| {
         let name = format!("sparse {index} {v}");
-        let mut view = noise_view(&name, &desc());
+        let view = noise_view(&name, &desc());
         let mut draws = Draws::new(&name);
-        view.color = view.color.map(|c| if draws.uniform() < 0.1 { [f32::NAN, c[1], f32::INFINITY] } else { c });
+        let color = view.color.map(|c| if draws.uniform() < 0.1 { [f32::NAN, c[1], f32::INFINITY] } else { c });
         let gaze_px = [draws.range(-20.0, 90.0), draws.range(-20.0, 60.0)];
-        view.facts.lattices = Some(settings.foveation.lattices(&view.facts.geometry, gaze_px, index + u64::from(v)));
-        view
+        View { color, ..view }.foveated(&settings.foveation, gaze_px, index + u64::from(v))
     };
     (0..2).map(view).collect()
 }
 
-/// The same views with their samples in atlases of `size`, and NaN elsewhere.
-fn in_atlas(views: &[View], size: [u32; 2]) -> Vec<View> {
-    let moved = |view: &View| {
-        let lattices = view.facts.lattices.unwrap();
-        let (atlas, least) = lattices.in_atlas();
-        assert!(least[0] <= size[0] && least[1] <= size[1]);
-        let mut color = Image::filled(size, [f32::NAN; 3]);
-        for lattice in atlas.as_slice() {
-            let [left, top] = lattice.atlas_texel.unwrap();
-            for j in 0..lattice.points[1] {
-                for i in 0..lattice.points[0] {
-                    let [x, y] = [lattice.first_px[0] + i * lattice.step, lattice.first_px[1] + j * lattice.step];
-                    if x < SIZE[0] && y < SIZE[1] {
-                        let at = (top + j) as usize * size[0] as usize + (left + i) as usize;
-                        color.pixels_mut()[at] = view.color.at(x as usize, y as usize);
-                    }
-                }
-            }
-        }
-        let mut moved = view.clone();
-        (moved.color, moved.facts.lattices) = (color, Some(atlas));
-        moved
-    };
-    views.iter().map(moved).collect()
-}
-
 #[test]
 fn sparse_frames_are_bit_equal_on_both_executors() {
-    for method in METHODS {
-        let wrs = Wrs { sampler: Sampler::AEs, ..Wrs::default() };
-        let keyed = Settings { method: Method::Wrs(wrs), ..settings(method) };
-        for settings in [settings(method)].into_iter().chain((method == MethodKind::Wrs).then_some(keyed)) {
-            let Some(mut rig) = Rig::new(desc(), settings) else { return };
-            for index in 0..6 {
-                rig.scattered = index % 3 == 2;
-                let (made, _) = rig.both(index, Reset::None, &sparse_views(index, &settings));
-                assert!(made.stats.nonfinite > 0);
-            }
+    let wrs = Wrs { sampler: Sampler::AEs, ..Wrs::default() };
+    let keyed = Settings { method: Method::Wrs(wrs), ..settings(MethodKind::Wrs) };
+    for settings in METHODS.map(settings).into_iter().chain([keyed]) {
+        let Some(mut rig) = Rig::new(desc(), settings) else { return };
+        for index in 0..6 {
+            rig.scattered = index % 3 == 2;
+            let (made, _) = rig.both(index, Reset::None, &sparse_views(index, &settings));
+            assert!(made.stats.nonfinite > 0);
         }
     }
 }
@@ -96,10 +67,14 @@ fn noisy_view(index: u64, v: u32, settings: &Settings) -> View {
         [if draws.uniform() < 0.02 { f32::NAN } else { error }, 1.0 + (draws.bits() % 4) as f32]
     }));
     if index > 9 {
-        let full = Lattice::covering(1, [0, 0], SIZE, [0, 0]);
-        view.facts.lattices = Some(Lattices::new(&[full]).unwrap());
+        view.facts.lattices = Some(full_rate());
     }
     view
+}
+
+/// One lattice of every pixel.
+pub(super) fn full_rate() -> Lattices {
+    Lattices::new(&[Lattice::covering(1, [0, 0], SIZE, [0, 0])]).unwrap()
 }
 
 fn traced() -> Settings {
@@ -116,16 +91,6 @@ fn noisy_sparse_frames_are_bit_equal_on_both_executors() {
             rig.both(index, Reset::None, &[0, 1].map(|v| noisy_view(index, v, &settings)));
         }
     }
-}
-
-#[test]
-fn noise_takes_eight_bytes_a_pixel() {
-    let size = [1920, 1080];
-    let bytes = |settings| Afterimage::memory_bytes_of(&ContextDesc { settings, ..ContextDesc::new(size) });
-    let (noisy, calm) = (bytes(traced()), bytes(Settings { noisy: false, ..traced() }));
-    let pixels = u64::from(size[0]) * u64::from(size[1]);
-    println!("{:.1} bytes a pixel, {:.1} with noise", calm as f64 / pixels as f64, noisy as f64 / pixels as f64);
-    assert!(calm <= 24 * pixels && noisy == calm + 8 * pixels);
 }
 
 /// Regions and exposures of frame `index`.
@@ -209,33 +174,30 @@ fn an_atlas_gives_the_bits_of_full_images() {
             let views = sparse_views(index, &settings);
             let (expected, _) = full.both(index, Reset::None, &views);
             atlas.scattered = index % 2 == 1;
-            let (made, _) = atlas.both(index, Reset::None, &in_atlas(&views, size));
+            let (made, _) = atlas.both(index, Reset::None, &[0, 1].map(|v| views[v].in_atlas(size)));
             assert_eq!(made, expected, "{method:?}, frame {index}");
         }
+    }
+}
+
+/// Fails unless frames of `views` and the same ones after a `change` are equal in every bit.
+fn assert_unread(method: MethodKind, views: fn(u64, &Settings) -> Vec<View>, change: fn(View) -> View) {
+    let settings = settings(method);
+    let (Some(mut rig), Some(mut other)) = (Rig::new(desc(), settings), Rig::new(desc(), settings)) else { return };
+    for index in 0..4 {
+        let views = views(index, &settings);
+        let changed: Vec<_> = views.iter().cloned().map(change).collect();
+        assert_eq!(rig.on_gpu(index, Reset::None, &views), other.on_gpu(index, Reset::None, &changed), "{method:?}");
     }
 }
 
 #[test]
 fn what_lies_between_samples_is_not_read() {
     for method in METHODS {
-        let settings = settings(method);
-        let Some(mut rig) = Rig::new(desc(), settings) else { return };
-        let Some(mut other) = Rig::new(desc(), settings) else { return };
-        for index in 0..3 {
-            let views = sparse_views(index, &settings);
-            let mut changed = views.clone();
-            for view in &mut changed {
-                let lattices = view.facts.lattices.unwrap();
-                let width = SIZE[0] as usize;
-                for (i, c) in view.color.pixels_mut().iter_mut().enumerate() {
-                    let px = [(i % width) as u32, (i / width) as u32];
-                    if !lattices.as_slice().iter().any(|l| l.samples(px)) {
-                        *c = [f32::NAN, -3.0, 1e30];
-                    }
-                }
-            }
-            assert_eq!(rig.on_gpu(index, Reset::None, &views), other.on_gpu(index, Reset::None, &changed));
-        }
+        assert_unread(method, sparse_views, |view| View {
+            color: view.read_of(&view.color, [f32::NAN, -3.0, 1e30]),
+            ..view
+        });
     }
 }
 
@@ -246,14 +208,14 @@ fn lattices_without_a_sample_in_the_frame_have_no_candidates() {
     // The last column of blocks of the finer lattice has its samples beyond the right edge.
     let fine = Lattice::covering(4, [68, 0], [70, 41], [3, 0]);
     let far = Lattice::covering(8, [0, 0], SIZE, [1, 2]);
-    let mut view = View::still(noise(SIZE, "beyond"), [20.0, 20.0]);
-    view.facts.lattices = Some(Lattices::new(&[fine, far]).unwrap());
-    let (made, _) = rig.both(0, Reset::None, &[view.clone()]);
+    let view = |lattices: &[Lattice]| {
+        View::still(noise(SIZE, "beyond"), [20.0, 20.0]).sparse(Lattices::new(lattices).unwrap())
+    };
+    let (made, _) = rig.both(0, Reset::None, &[view(&[fine, far])]);
     assert_eq!(made.stats.nonfinite, 2 * 41);
     assert!(made.shown.chunks(70).all(|row| row[68..] == [[0; 3]; 2] && row[..68].iter().all(|&c| c != [0; 3])));
     // No sample at all.
-    view.facts.lattices = Some(Lattices::new(&[Lattice::covering(128, [0, 0], SIZE, [100, 0])]).unwrap());
-    let (made, _) = rig.both(1, Reset::None, &[view]);
+    let (made, _) = rig.both(1, Reset::None, &[view(&[Lattice::covering(128, [0, 0], SIZE, [100, 0])])]);
     assert_eq!(made.stats.nonfinite, 70 * 41);
 }
 
@@ -300,9 +262,7 @@ pub(super) fn gliding_view(index: u64, v: u32, settings: &Settings) -> View {
     // Vectors that contradict their depth in a corner.
     view.motion = Some(Image::from_fn(SIZE, |[x, y]| if x < 12 { [0.0, 25.0] } else { [shift(y), -0.8] }));
     view.trust = Some(Image::from_fn(SIZE, |[x, _]| if x % 9 == 0 { draws.uniform() } else { 1.0 }));
-    let gaze_px = [20.0 + 4.0 * t, 15.0];
-    view.facts.lattices = Some(settings.foveation.lattices(&view.facts.geometry, gaze_px, index + u64::from(v)));
-    view
+    view.foveated(&settings.foveation, [20.0 + 4.0 * t, 15.0], index + u64::from(v))
 }
 
 #[test]
@@ -364,9 +324,7 @@ fn a_wrong_fit_at_a_samples_own_pixel_is_caught() {
         let is_bright = |px| index == 5 && px == [51, 31];
         let color = |px: [u32; 2]| picture.at(px[0] as usize, px[1] as usize);
         let color = Image::from_fn(SIZE, |px| if is_bright(px) { [50.0; 3] } else { color(px) });
-        let mut view = View::still(color, [10.0, 10.0]);
-        view.facts.lattices = Some(settings.foveation.lattices(&view.facts.geometry, [10.0, 10.0], index));
-        vec![view]
+        vec![View::still(color, [10.0, 10.0]).foveated(&settings.foveation, [10.0, 10.0], index)]
     });
 }
 
@@ -478,10 +436,9 @@ fn filled_color_follows_size_and_settings() {
     let pixels = u64::from(SIZE[0] * SIZE[1]);
     assert_eq!(rig.gpu.memory_bytes(), (16 + 16) * pixels);
     let view = |size: [u32; 2], index: u64, is_sparse: bool| {
-        let mut view = View::still(noise(size, &format!("follows {index}")), [20.0, 20.0]);
-        let lattices = settings(MethodKind::Taa).foveation.lattices(&view.facts.geometry, [20.0, 20.0], index);
-        view.facts.lattices = is_sparse.then_some(lattices);
-        [view]
+        let view = View::still(noise(size, &format!("follows {index}")), [20.0, 20.0]);
+        let foveation = settings(MethodKind::Taa).foveation;
+        [if is_sparse { view.foveated(&foveation, [20.0, 20.0], index) } else { view }]
     };
     rig.both(0, Reset::None, &view(SIZE, 0, true));
     rig.resize([33, 50]);
@@ -507,8 +464,7 @@ fn prewarmed_pipelines_suffice_for_sparse_frames() {
     rig.gpu.prewarm(&rig.device, [usual, regions]);
     let count = rig.gpu.pipelines().len();
     assert_eq!(count, 4);
-    let mut view = View::still(noise(SIZE, "prewarmed"), [20.0, 20.0]);
-    view.facts.lattices = Some(settings.foveation.lattices(&view.facts.geometry, [20.0, 20.0], 0));
+    let view = View::still(noise(SIZE, "prewarmed"), [20.0, 20.0]).foveated(&settings.foveation, [20.0, 20.0], 0);
     let made = rig.on_gpu(0, Reset::None, std::slice::from_ref(&view));
     assert_eq!(rig.gpu.pipelines().len(), count);
     // A region for the output alone.
@@ -535,8 +491,8 @@ fn alpha_is_filled_as_color_is() {
     let texel = |i: u32| if i == 0 { [0.5, 0.5, 0.5, f32::NAN] } else { [0.5, 0.5, 0.5, (i % 70) as f32 / 64.0] };
     let texels: Vec<[f32; 4]> = (0..70 * 41).map(texel).collect();
     afterimage_testing::gpu::write_layer(&queue, &color, 0, bytemuck::cast_slice(&texels));
-    let mut view = View::still(noise(SIZE, "alpha"), [20.0, 20.0]).facts;
-    view.lattices = Some(Lattices::new(&[Lattice::covering(8, [0, 0], SIZE, [0, 0])]).unwrap());
+    let lattices = Lattices::new(&[Lattice::covering(8, [0, 0], SIZE, [0, 0])]).unwrap();
+    let view = View::still(noise(SIZE, "alpha"), [20.0, 20.0]).sparse(lattices).facts;
     let mut encoder = device.create_command_encoder(&Default::default());
     post.record(&device, &mut encoder, &Frame::new(&color, &[view], 0), &output).unwrap();
     queue.submit([encoder.finish()]);
@@ -579,8 +535,7 @@ fn any_lattices_and_any_bits_agree_bit_for_bit_and_are_finite() {
             rig.scattered = index % 5 == 4;
             let wild = [0.0, 0.02, 0.3, 1.0][index as usize % 4];
             let views = [0; 2].map(|_| {
-                let mut frame = any_frame(&mut draws, wild);
-                frame.facts.lattices = Some(any_lattices(&mut draws, SIZE));
+                let frame = any_frame(&mut draws, wild).sparse(any_lattices(&mut draws, SIZE));
                 View { lod: None, noise: None, ..frame }
             });
             let (made, _) = rig.both(index, if index % 6 == 0 { Reset::All } else { Reset::None }, &views);
@@ -596,10 +551,8 @@ fn kept_history_follows_a_change_of_size() {
     let view = |size: [u32; 2], index: u64| {
         let wave = |v: u32, n: u32| 0.5 + 0.4 * ((v as f32 + 0.5) / n as f32 * 40.0).sin();
         let color = Image::from_fn(size, |[x, y]| [wave(x, size[0]), wave(y, size[1]), 0.3]);
-        let mut view = View::still(color, [size[0] as f32 * 0.5, size[1] as f32 * 0.5]);
-        let lattices = settings.foveation.lattices(&view.facts.geometry, [20.0, 20.0], index);
-        view.facts.lattices = Some(lattices);
-        view
+        let view = View::still(color, size.map(|side| side as f32 * 0.5));
+        view.foveated(&settings.foveation, [20.0, 20.0], index)
     };
     for index in 0..64 {
         rig.both(index, Reset::None, &[view([64, 40], index)]);
@@ -619,14 +572,20 @@ fn kept_history_follows_a_change_of_size() {
 }
 
 #[test]
-fn smr_on_sparse_frames_holds_less_than_24_bytes_a_pixel() {
-    for (size, view_count) in [([1920, 1080], 1), ([480, 270], 2), ([3840, 2160], 1)] {
-        let settings = settings(MethodKind::Smr);
+fn smr_on_sparse_frames_holds_less_than_24_bytes_a_pixel_and_8_more_for_noise() {
+    let bytes = |size: [u32; 2], view_count, settings| {
         let desc = ContextDesc { settings, view_count, ..ContextDesc::new(size) };
-        let pixels = u64::from(size[0] * size[1] * view_count);
-        let bytes = Afterimage::memory_bytes_of(&desc) as f64 / pixels as f64;
-        println!("{size:?}: {bytes:.2} bytes a pixel and view");
-        assert!((22.0..24.0).contains(&bytes), "{bytes}");
+        Afterimage::memory_bytes_of(&desc) as f64 / f64::from(size[0] * size[1] * view_count)
+    };
+    for (size, view_count) in [([1920, 1080], 1), ([480, 270], 2), ([3840, 2160], 1)] {
+        let calm = bytes(size, view_count, settings(MethodKind::Smr));
+        println!("{size:?}: {calm:.2} bytes a pixel and view");
+        assert!((22.0..24.0).contains(&calm), "{calm}");
+        let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
+        let antialiased = Settings { method, ..settings(MethodKind::Smr) };
+        assert_eq!(bytes(size, view_count, antialiased), calm, "means take no memory");
+        let [noisy, exact] = [true, false].map(|noisy| bytes(size, view_count, Settings { noisy, ..traced() }));
+        assert!(exact <= 24.0 && (noisy - exact - 8.0).abs() < 1e-9, "{noisy}, {exact}");
     }
 }
 
@@ -703,23 +662,11 @@ fn filled_depth_is_that_of_the_samples_and_between_them() {
 
 #[test]
 fn geometry_between_samples_is_not_read() {
-    let settings = settings(MethodKind::Smr);
-    let (Some(mut rig), Some(mut other)) = (Rig::new(desc(), settings), Rig::new(desc(), settings)) else { return };
-    for index in 0..4 {
-        let views = at_samples(index, &settings);
-        let mut changed = views.clone();
-        for view in &mut changed {
-            let lattices = view.facts.lattices.unwrap();
-            let sampled = |px: [u32; 2]| lattices.as_slice().iter().any(|l| l.samples(px));
-            let (depth, motion) = (view.depth.take().unwrap(), view.motion.take().unwrap());
-            let at = |[x, y]: [u32; 2]| (x as usize, y as usize);
-            let depth = Image::from_fn(SIZE, |px| if sampled(px) { depth.at(at(px).0, at(px).1) } else { 0.1 });
-            let motion =
-                Image::from_fn(SIZE, |px| if sampled(px) { motion.at(at(px).0, at(px).1) } else { [f32::NAN; 2] });
-            (view.depth, view.motion) = (Some(depth), Some(motion));
-        }
-        assert_eq!(rig.on_gpu(index, Reset::None, &views), other.on_gpu(index, Reset::None, &changed));
-    }
+    assert_unread(MethodKind::Smr, at_samples, |view| View {
+        depth: view.depth.as_ref().map(|depth| view.read_of(depth, 0.1)),
+        motion: view.motion.as_ref().map(|motion| view.read_of(motion, [f32::NAN; 2])),
+        ..view
+    });
 }
 
 #[test]

@@ -4,95 +4,76 @@
 use super::rig::*;
 use afterimage::shader::SHADERS;
 use afterimage::{Filter, Foveation};
+use afterimage_testing::planted::all_caught;
 
-#[track_caller]
-fn caught(filter: Filter, right: &str, wrong: &str) {
+/// Every pass of the simulators.
+const PASSES: [&str; 4] = ["mip_level", "mip_show", "block_show", "gauss_axis"];
+
+/// Fails unless each planted error in the passes makes the executors differ on a frame that is filtered.
+fn caught(filter: Filter, errors: &[(&str, &str)]) {
     // Even and odd: the one reads beyond the last texel's centre, the other has texels of one pixel.
     let size = [96, 61];
     // A fovea wide enough to contain non-finite pixels.
     let foveation = Foveation { fovea_deg: 15.0, mid_deg: 30.0, ..foveation(filter, [2, 16]) };
-    let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
-    let planted = std::cell::Cell::new(0);
-    let mut rig = Rig::with_shaders(device, queue, &desc(size, 2, foveation), FORMAT, |name| {
-        let source = SHADERS.compose(name).source;
-        planted.set(planted.get() + source.matches(right).count());
-        source.replace(right, wrong)
-    });
-    assert!(planted.get() > 0, "'{right}' in the shaders of {filter:?}");
     let scene = Scene::stereo(size, [[20.0, 30.0], [70.0, 10.0]]);
-    let (gpu, cpu) = (rig.on_gpu(&scene), scene.on_cpu(&foveation));
-    let differ = gpu.shown.iter().zip(&cpu.shown).filter(|(g, c)| g != c).count();
-    println!("{filter:?}, '{right}' -> '{wrong}': {differ} pixels differ");
-    assert!(gpu != cpu, "planted error not caught: {filter:?}, '{right}' -> '{wrong}'");
+    all_caught(&PASSES.map(|name| SHADERS.compose(name).source), errors, |sources| {
+        let (device, queue) = afterimage_testing::gpu::device()?;
+        let source = |name: &str| sources[PASSES.iter().position(|pass| *pass == name).unwrap()].clone();
+        let mut rig = Rig::with_shaders(device, queue, &desc(size, 2, foveation), FORMAT, source);
+        Some(rig.on_gpu(&scene) != scene.on_cpu(&foveation))
+    });
 }
 
-const FILTERS: [Filter; 3] = [Filter::Mip, Filter::Gauss, Filter::Block];
+/// Of one eye, whatever the filter.
+const OF_ONE_EYE: [(&str, &str); 2] = [
+    ("frame.views[view].gaze_ray", "frame.views[1u - view].gaze_ray"),
+    ("frame.views[view].ray_offset", "frame.views[0].ray_offset"),
+];
 
 #[test]
-fn a_shifted_level_is_caught() {
-    caught(Filter::Mip, "let mip = level - 1u;", "let mip = max(level, 2u) - 2u;");
-    caught(Filter::Mip, "read_level(px, view, level.whole + 1u)", "read_level(px, view, max(level.whole, 1u))");
-    caught(Filter::Block, "view, source - 1u)", "view, source)");
-}
-
-#[test]
-fn swapped_bilinear_fractions_are_caught() {
-    caught(Filter::Mip, "vec2<f32>(x.fraction, y.fraction)", "vec2<f32>(y.fraction, x.fraction)");
-    caught(Filter::Mip, "vec2<u32>(next.x, near.y)", "vec2<u32>(near.x, next.y)");
-}
-
-#[test]
-fn a_wrong_border_is_caught() {
-    caught(Filter::Mip, "level_len(frame.size.x, level)", "(level_len(frame.size.x, level) + 1u)");
-    caught(Filter::Mip, "min(at, fine_size - 1u)", "at");
-    caught(Filter::Gauss, "vec2<i32>(frame.size) - 1)", "vec2<i32>(frame.size))");
-}
-
-#[test]
-fn the_other_eye_s_gaze_or_frame_is_caught() {
-    for filter in FILTERS {
-        caught(filter, "frame.views[view].gaze_ray", "frame.views[1u - view].gaze_ray");
-        caught(filter, "frame.views[view].ray_offset", "frame.views[0].ray_offset");
-    }
-    caught(Filter::Mip, "textureLoad(full, px, view, 0)", "textureLoad(full, px, 0u, 0)");
-    caught(Filter::Mip, "min(at, fine_size - 1u), view", "min(at, fine_size - 1u), 0u");
-    caught(Filter::Gauss, "textureLoad(color_in, at, view, 0)", "textureLoad(color_in, at, 1u, 0)");
-    caught(Filter::Block, "textureLoad(levels, at, view", "textureLoad(levels, at, 0u");
-}
-
-#[test]
-fn axes_in_the_wrong_order_are_caught() {
-    caught(Filter::Gauss, "AXIS == 0u", "AXIS == 1u");
+fn planted_errors_in_mip_are_caught() {
+    let planted = [
+        // Shifted levels, swapped fractions, a wrong border.
+        ("let mip = level - 1u;", "let mip = max(level, 2u) - 2u;"),
+        ("read_level(px, view, level.whole + 1u)", "read_level(px, view, max(level.whole, 1u))"),
+        ("vec2<f32>(x.fraction, y.fraction)", "vec2<f32>(y.fraction, x.fraction)"),
+        ("vec2<u32>(next.x, near.y)", "vec2<u32>(near.x, next.y)"),
+        ("level_len(frame.size.x, level)", "(level_len(frame.size.x, level) + 1u)"),
+        ("min(at, fine_size - 1u)", "at"),
+        // The other eye's frame.
+        ("textureLoad(full, px, view, 0)", "textureLoad(full, px, 0u, 0)"),
+        ("min(at, fine_size - 1u), view", "min(at, fine_size - 1u), 0u"),
+        // Bad pixels that spread, and a sanitized fovea.
+        (
+            "color(textureLoad(fine, min(at, fine_size - 1u), view, 0).xyz).color",
+            "textureLoad(fine, min(at, fine_size - 1u), view, 0).xyz",
+        ),
+        ("shown = color(shown).color;", ""),
+        ("shown = textureLoad(full, px, view, 0).xyz;", "shown = color(textureLoad(full, px, view, 0).xyz).color;"),
+    ];
+    caught(Filter::Mip, &[&OF_ONE_EYE[..], &planted].concat());
 }
 
 #[test]
-fn a_lax_comparison_is_caught() {
-    caught(Filter::Block, "lod >= f32(level)", "lod > f32(level)");
+fn planted_errors_in_gauss_are_caught() {
+    let planted = [
+        ("vec2<i32>(frame.size) - 1)", "vec2<i32>(frame.size))"),
+        ("textureLoad(color_in, at, view, 0)", "textureLoad(color_in, at, 1u, 0)"),
+        ("AXIS == 0u", "AXIS == 1u"),
+        ("color(textureLoad(color_in, at, view, 0).xyz).color", "textureLoad(color_in, at, view, 0).xyz"),
+        ("if lod <= 0.0 {", "if lod < 0.0 {"),
+    ];
+    caught(Filter::Gauss, &[&OF_ONE_EYE[..], &planted].concat());
 }
 
 #[test]
-fn bad_pixels_that_spread_are_caught() {
-    caught(
-        Filter::Mip,
-        "color(textureLoad(fine, min(at, fine_size - 1u), view, 0).xyz).color",
-        "textureLoad(fine, min(at, fine_size - 1u), view, 0).xyz",
-    );
-    caught(Filter::Mip, "shown = color(shown).color;", "");
-    caught(
-        Filter::Gauss,
-        "color(textureLoad(color_in, at, view, 0).xyz).color",
-        "textureLoad(color_in, at, view, 0).xyz",
-    );
-    caught(Filter::Block, "shown = color(shown).color;", "");
-}
-
-#[test]
-fn a_sanitized_fovea_is_caught() {
-    caught(
-        Filter::Mip,
-        "shown = textureLoad(full, px, view, 0).xyz;",
-        "shown = color(textureLoad(full, px, view, 0).xyz).color;",
-    );
-    caught(Filter::Block, "if level > 0u {", "if true {");
-    caught(Filter::Gauss, "if lod <= 0.0 {", "if lod < 0.0 {");
+fn planted_errors_in_block_are_caught() {
+    let planted = [
+        ("view, source - 1u)", "view, source)"),
+        ("textureLoad(levels, at, view", "textureLoad(levels, at, 0u"),
+        ("lod >= f32(level)", "lod > f32(level)"),
+        ("shown = color(shown).color;", ""),
+        ("if level > 0u {", "if true {"),
+    ];
+    caught(Filter::Block, &[&OF_ONE_EYE[..], &planted].concat());
 }

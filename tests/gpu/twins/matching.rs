@@ -1,11 +1,12 @@
 //! Functions that match the scales of history and candidate: matched.
 
-use super::probe::{Out, Probe, Row, Rows, probe};
+use super::probe::{Probe, Rows, probe};
 use super::shape::*;
 use super::values::*;
 use afterimage::kernel::matched;
-use afterimage::kernel::matched::{Evidence, SmrParams};
+use afterimage::kernel::matched::{Evidence, Matched, SmrParams};
 use afterimage_testing::Draws;
+use glam::Vec3;
 
 /// Channels of sanitized colors: 0, dark, negative, the largest half.
 pub fn channels() -> Vec<u32> {
@@ -48,20 +49,9 @@ fn pair_rows(rows: Rows) -> Rows {
 
 /// Texels of the mip chain: color times coverage, and coverage.
 fn chain_rows(rows: Rows, fractions: usize) -> Rows {
-    let width = 16 + fractions;
     let (c, cover) = (floats(&[0.0, 0.18, 1.0, 65504.0, 6e-5]), floats(&[0.0, 0.25, 0.5, 1.0]));
-    let at = floats(&[0.0, 0.25, 0.5, 0.75, 0.9]);
-    let lists: Vec<&[u32]> = (0..width)
-        .map(|i| {
-            if i >= 16 {
-                &at[..]
-            } else if i % 4 == 3 {
-                &cover
-            } else {
-                &c
-            }
-        })
-        .collect();
+    let (at, texel) = (floats(&[0.0, 0.25, 0.5, 0.75, 0.9]), [&c[..], &c, &c, &cover]);
+    let lists = [texel.repeat(4), vec![&at; fractions]].concat();
     rows.mixed(&lists).random(|d, row| {
         for _ in 0..4 {
             let covered = [0.0, 0.25, 0.5, 0.75, 1.0, 1.0, 1.0, 1.0][d.bits() as usize % 8];
@@ -72,38 +62,29 @@ fn chain_rows(rows: Rows, fractions: usize) -> Rows {
     })
 }
 
-const DECIDE_IN: usize = 43;
+shape!(Evidence {
+    candidate: Vec3,
+    compared: Vec3,
+    compared_coarser: Vec3,
+    observed: Vec3,
+    lod: f32,
+    history: Vec3,
+    history_lod: f32,
+    resampled: bool,
+    matched: Vec3,
+    level: Vec3,
+    next_level: Vec3,
+    matched_coarser: Vec3,
+    predicted: Vec3,
+    trust: f32,
+    noise: f32,
+    confidence: [f32; 2]
+});
+shape!(Matched { color: Vec3, lod: f32, share: f32, fit: f32 });
 
-fn decide(r: &Row<'_>, o: &mut Out) {
-    let e = Evidence {
-        candidate: r.v(0),
-        compared: r.v(3),
-        compared_coarser: r.v(6),
-        observed: r.v(33),
-        lod: r.f(9),
-        history: r.v(10),
-        history_lod: r.f(13),
-        resampled: r.u(42) != 0,
-        matched: r.v(14),
-        level: r.v(17),
-        next_level: r.v(20),
-        matched_coarser: r.v(36),
-        predicted: r.v(39),
-        trust: r.f(23),
-        noise: r.f(29),
-        confidence: [r.f(31), r.f(32)],
-    };
-    let p = SmrParams {
-        accumulate: r.f(24),
-        accumulate_tolerance: r.f(25),
-        tolerance: r.f(26),
-        blocks: r.u(27) != 0,
-        relight: r.u(28) != 0,
-        noisy: r.u(30) != 0,
-    };
-    let m = matched::decide(&e, &p);
-    o.v(m.color);
-    [m.lod, m.share, m.fit].into_iter().for_each(|x| o.f(x));
+fn decide(e: Evidence, accumulate: f32, tolerances: (f32, f32), [blocks, relight, noisy]: [bool; 3]) -> Matched {
+    let (accumulate_tolerance, tolerance) = tolerances;
+    matched::decide(&e, &SmrParams { accumulate, accumulate_tolerance, tolerance, blocks, relight, noisy })
 }
 
 /// With these flags, or any.
@@ -116,73 +97,35 @@ fn decide_rows(rows: Rows, flags: Option<[u32; 3]>) -> Rows {
     let (blocks, relight, noisy) = (flag(0), flag(1), flag(2));
     let noise = floats(&[0.0, 1e-30, 0.5, 3.0, 100.0]);
     let confidence = floats(&[0.0, 0.25, 1.0]);
-    let mut lists: Vec<&[u32]> = vec![&c; 9];
-    lists.push(&l);
-    lists.extend([&h[..]; 3]);
-    lists.push(&l);
-    lists.extend([&h[..]; 9]);
-    lists.extend([
-        &trust[..],
-        &share,
-        &tolerance,
-        &tolerance,
-        &blocks,
-        &relight,
-        &noise,
-        &noisy,
-        &confidence,
-        &confidence,
-    ]);
-    lists.extend([&c[..]; 3]);
-    lists.extend([&h[..]; 6]);
-    lists.push(&[0, 1]);
+    let mut lists: Vec<&[u32]> = vec![&c; 12];
+    lists.extend([&l[..], &h, &h, &h, &l, &[0, 1]]);
+    lists.extend([&h[..]; 15]);
+    lists.extend([&trust[..], &noise, &confidence, &confidence, &share, &tolerance, &tolerance]);
+    lists.extend([&blocks[..], &relight, &noisy]);
     rows.mixed(&lists).random(|d, row| {
         let candidate = stored_color(d);
-        let compared = if d.bits() & 1 == 0 { candidate } else { like(d, candidate) };
+        let [compared, observed] = [0; 2].map(|_| if d.bits() & 1 == 0 { candidate } else { like(d, candidate) });
         let lit = [1.0, 1.0, 1.2, 0.4, 2.0][d.bits() as usize % 5];
         let [coarser, history, matched, whole, dimmer] = [0; 5].map(|_| like(d, candidate).map(|x| (x * lit).max(0.0)));
         let level = lod(d);
         let past = if d.bits() & 1 == 0 { level } else { lod(d) };
-        push(row, &[candidate, compared, coarser].concat());
-        push(row, &[level]);
-        push(row, &history);
-        push(row, &[past]);
-        push(row, &[matched, whole, dimmer].concat());
+        push(row, &[candidate, compared, coarser, observed].concat());
+        push(row, &[&[level][..], &history, &[past]].concat());
+        row.push(d.bits() & 1);
+        let [matched_coarser, other] = [0; 2].map(|_| like(d, matched).map(|x| x.max(0.0)));
+        let predicted = if d.bits() & 1 == 0 { matched } else { other };
+        push(row, &[matched, whole, dimmer, matched_coarser, predicted].concat());
         let trust = if d.bits() & 1 == 0 { 1.0 } else { d.range(0.01, 1.0) };
-        push(row, &[trust, d.range(0.0, 0.99), d.range(0.1, 1.0), d.range(0.2, 3.0)]);
-        row.push(blocks[d.bits() as usize % blocks.len()]);
-        row.push(relight[d.bits() as usize % relight.len()]);
         let noise = if d.bits() & 1 == 0 { 0.0 } else { d.range(0.0, 20.0) };
-        push(row, &[noise]);
-        row.push(noisy[d.bits() as usize % noisy.len()]);
+        push(row, &[trust, noise]);
         let confidence = [0; 2].map(|_| if d.bits() & 1 == 0 { 1.0 } else { d.uniform() });
         push(row, &confidence);
-        let observed = if d.bits() & 1 == 0 { candidate } else { like(d, candidate) };
-        let [coarser, other] = [0; 2].map(|_| like(d, matched).map(|x| x.max(0.0)));
-        let predicted = if d.bits() & 1 == 0 { matched } else { other };
-        push(row, &[observed, coarser, predicted].concat());
-        row.push(d.bits() & 1);
+        push(row, &[d.range(0.0, 0.99), d.range(0.1, 1.0), d.range(0.2, 3.0)]);
+        row.extend([&blocks, &relight, &noisy].map(|flag| flag[d.bits() as usize % flag.len()]));
     })
 }
 
 shape!(matched::ReuseWeight { finer: f32, share: f32 });
-
-macro_rules! decide_probe {
-    ($blocks:literal, $relight:literal, $noisy:literal, $flags:expr) => {
-        Probe {
-name: "decide", module: "matched", words: [DECIDE_IN, 6], wgsl: || concat!(
-                "let e = Evidence(in_v(0u), in_v(3u), in_v(6u), in_v(33u), in_f(9u), in_v(10u), in_f(13u), in_u(42u) != 0u, in_v(14u), in_v(17u), in_v(20u), in_v(36u), in_v(39u), in_f(23u), in_f(29u), vec2<f32>(in_f(31u), in_f(32u)));
-    let m = decide(e, SmrParams(in_f(24u), in_f(25u), in_f(26u), ",
-                $blocks,
-                ", ",
-                $relight,
-                ", ",
-                $noisy,
-                "));
-    out_v(m.color); out_f(m.lod); out_f(m.share); out_f(m.fit);"
-            ).into(), rust: decide, rows: |rows| decide_rows(rows, $flags) }
-    };
-}
 
 pub const PROBES: &[Probe] = &[
     probe!(matched::smooth_step, |rows| {
@@ -241,12 +184,20 @@ pub const PROBES: &[Probe] = &[
             push(row, &[compared, matched, level, next].concat());
         })
     }),
-    decide_probe!("in_u(27u) != 0u", "in_u(28u) != 0u", "in_u(30u) != 0u", None),
+    probe!(matched::decide, decide, "decide($0, SmrParams($1, $2, $3))", |rows| decide_rows(rows, None)),
     // As the passes have them: constants of a pipeline, which the compiler folds.
-    decide_probe!("false", "true", "false", Some([0, 1, 0])),
-    decide_probe!("true", "true", "false", Some([1, 1, 0])),
-    decide_probe!("false", "false", "false", Some([0, 0, 0])),
-    decide_probe!("false", "true", "true", Some([0, 1, 1])),
+    probe!(matched::decide, decide, "decide($0, SmrParams($1, $2, false, true, false))", |rows| {
+        decide_rows(rows, Some([0, 1, 0]))
+    }),
+    probe!(matched::decide, decide, "decide($0, SmrParams($1, $2, true, true, false))", |rows| {
+        decide_rows(rows, Some([1, 1, 0]))
+    }),
+    probe!(matched::decide, decide, "decide($0, SmrParams($1, $2, false, false, false))", |rows| {
+        decide_rows(rows, Some([0, 0, 0]))
+    }),
+    probe!(matched::decide, decide, "decide($0, SmrParams($1, $2, false, true, true))", |rows| {
+        decide_rows(rows, Some([0, 1, 1]))
+    }),
     probe!(matched::mip_mean, |rows| chain_rows(rows, 0)),
     probe!(matched::mip_bilinear, |rows| chain_rows(rows, 2)),
 ];

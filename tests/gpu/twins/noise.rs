@@ -43,15 +43,8 @@ fn pair_rows(rows: Rows, more: &[&[u32]]) -> Rows {
 
 /// Four texels of the candidates' mip chain, some unusable, and `fractions` numbers in [0, 1].
 fn texel_rows(rows: Rows, fractions: usize) -> Rows {
-    let width = 16 + fractions;
     let (c, alpha, at) = (channels(), floats(&[-1.0, 0.0, -0.0, 0.5, 65504.0]), floats(&[0.0, 0.25, 0.5, 1.0]));
-    let lists: Vec<&[u32]> = (0..width)
-        .map(|i| match i {
-            16.. => &at[..],
-            _ if i % 4 == 3 => &alpha,
-            _ => &c,
-        })
-        .collect();
+    let lists = [[&c[..], &c, &c, &alpha].repeat(4), vec![&at; fractions]].concat();
     rows.mixed(&lists).random(|d, row| {
         for _ in 0..4 {
             push(row, &[d.range(0.0, 4.0), d.range(0.0, 4.0), d.range(0.0, 4.0)]);

@@ -2,63 +2,25 @@
 
 use super::probe::{Row, Rows};
 use afterimage_testing::Draws;
+use std::f32::consts::FRAC_1_SQRT_2;
 
 /// Random rows of each table.
 const RANDOM: usize = 100_000;
 
 /// Zeros, denormals, both ends of the normal range, powers, halves, infinities and NaNs, of both signs.
 pub fn any() -> Vec<u32> {
-    let magnitudes = [
-        0,
-        1,
-        0x0000_1234,
-        0x007f_ffff,
-        0x0080_0000,
-        0x0080_0001,
-        0x0100_0000, // around the denormals
-        0x0da2_425f,
-        0x0da2_4260,
-        0x0da2_4261, // 1e-30
-        0x3300_0000,
-        0x3880_0000,
-        0x387f_ffff,
-        0x3b4d_2e1c,
-        0x3d25_aee6, // half's steps, sRGB's
-        0x3e80_0000,
-        0x3ed4_13cd,
-        0x3eff_ffff,
-        0x3f00_0000,
-        0x3f00_0001,
-        0x3f35_04f3,
-        0x3f7f_ffff,
-        0x3f80_0000,
-        0x3f80_0001,
-        0x4000_0000,
-        0x40a0_0000,
-        0x42b0_0000,
-        0x42b0_0001,
-        0x42ae_0000,
-        0x4334_0000,
-        0x4580_0000,
-        0x477f_dfff,
-        0x477f_e000,
-        0x477f_e001,
-        0x477f_efff,
-        0x477f_f000,
-        0x4780_0000,
-        0x4b80_0000,
-        0x4f00_0000, // 65504 ...
-        0x7149_f2ca,
-        0x7180_0000,
-        0x7180_0001,
-        0x7e80_0000,
-        0x7f00_0000,
-        0x7f7f_ffff, // 1e30, 2^100 ... the largest
-        0x7f80_0000,
-        0x7f80_0001,
-        0x7fc0_0000,
-        0x7fff_ffff, // infinity, NaNs
-    ];
+    let denormal = [0, 1, 0x1234, 0x007f_ffff];
+    let power = |exponent| 2.0_f32.powi(exponent);
+    let least = f32::MIN_POSITIVE;
+    // Rounding of halves at both ends of their range, and the knees of sRGB's curves.
+    let halves = floats(&[power(-25), power(-14).next_down(), power(-14), 65520.0_f32.next_down(), 65520.0]);
+    let knees = [0x3b4d_2e1c, 0x3d25_aee6, 0x3ed4_13cd];
+    let small = floats(&[least, least.next_up(), 2.0 * least, 0.25, FRAC_1_SQRT_2, 2.0, 5.0]);
+    let large = floats(&[88.0, 88.0_f32.next_up(), 87.0, 180.0, 4096.0, 65536.0, power(24), power(31), 1e30]);
+    let huge = floats(&[power(100), power(100).next_up(), power(126), power(127), f32::MAX, f32::INFINITY]);
+    let nans = [0x7f80_0001, 0x7fc0_0000, 0x7fff_ffff];
+    let near = around(&[1e-30, 0.5, 1.0, 65504.0]);
+    let magnitudes = [&denormal[..], &halves, &knees, &small, &large, &huge, &nans, &near].concat();
     magnitudes.iter().flat_map(|&m| [m, m | 0x8000_0000]).collect()
 }
 
@@ -92,25 +54,8 @@ pub fn floats(values: &[f32]) -> Vec<u32> {
 
 /// Words of integers.
 pub fn words() -> Vec<u32> {
-    vec![
-        0,
-        1,
-        2,
-        63,
-        254,
-        255,
-        256,
-        4095,
-        4096,
-        65535,
-        65536,
-        0x00ff_ffff,
-        0x0100_0001,
-        0x7fff_ffff,
-        0x8000_0000,
-        !1,
-        !0,
-    ]
+    let powers = [1_u32 << 12, 1 << 16, 1 << 31].into_iter().flat_map(|power| [power - 1, power]);
+    (0..3).chain(254..257).chain(powers).chain([63, 0x00ff_ffff, 0x0100_0001, !1, !0]).collect()
 }
 
 /// Any bits at all.

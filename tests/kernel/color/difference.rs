@@ -3,31 +3,6 @@
 use super::*;
 use afterimage_testing::holds;
 
-fn ulps(a: f32, b: f64) -> f64 {
-    let b32 = b as f32;
-    let spacing = f64::from(f32::from_bits(b32.abs().to_bits() + 1)) - f64::from(b32.abs());
-    (f64::from(a) - b).abs() / spacing
-}
-
-#[test]
-fn h38_cbrt_is_within_4_ulp_and_exact_at_0_and_1() {
-    assert_eq!(color::cbrt(0.0).to_bits(), 0);
-    assert_eq!(color::cbrt(1.0), 1.0);
-    assert_eq!(color::cbrt(-1.0), -1.0);
-    let sweep = (0..=400_000).map(|i| (1e-30 * 1e60_f64.powf(f64::from(i) / 4e5)) as f32);
-    let worst = sweep.map(|x| ulps(color::cbrt(x), f64::from(x).cbrt())).fold(0.0, f64::max);
-    assert!(worst <= 2.0);
-    // The planted error: a polynomial of degree 3 is not enough.
-    let shorter = |x: f32| {
-        let y = f32::from_bits(0x54a1_f800 - (x.to_bits() as f32 * (1.0 / 3.0)) as u32);
-        let (d, e) = (x * y * y, 1.0 - x * y * y * y);
-        d + d * (e * (((0.456_643_1 * e + 0.498_263_66) * e + 0.555_551_23) * e + 0.666_660_9))
-    };
-    let worst_shorter = (100..800).map(|i| i as f32 / 100.0).map(|x| ulps(shorter(x), f64::from(x).cbrt()));
-    assert!(worst_shorter.fold(0.0, f64::max) > 4.0);
-    holds!("H38", Cpu, "worst error {worst:.2} ulp over 1e-30 to 1e30, exact at 0 and +-1");
-}
-
 #[test]
 fn lab_matches_f64_and_white_is_100() {
     let white = color::lab(Vec3::ONE);
@@ -41,52 +16,6 @@ fn lab_matches_f64_and_white_is_100() {
     }
     println!("lab: worst distance to f64 {worst:.2e}");
     assert!(worst < 2e-4);
-}
-
-#[test]
-fn h30_hue_term_never_makes_nan() {
-    let mut draws = Draws::new("same hue");
-    // How often the term under the root is negative before the clamp, and how often the whole sum under it would be.
-    let (mut negative_term, mut negative_sum, mut spread_pairs) = (0, 0, 0);
-    for i in 0..400_000 {
-        let (l, a, b) = (draws.range(0.0, 100.0), draws.range(-80.0, 80.0), draws.range(-80.0, 80.0));
-        // Half of the pairs differ in chroma, half by rounding alone.
-        let s = if i % 2 == 0 { draws.range(0.1, 2.0) } else { 1.0 + draws.range(-4e-7, 4e-7) };
-        let (x, y) = (Vec3::new(l, a, b), Vec3::new(l, a * s, b * s));
-        let d = x - y;
-        let c1 = (x.y * x.y + x.z * x.z).sqrt();
-        let dc = c1 - (y.y * y.y + y.z * y.z).sqrt();
-        let dh2 = d.y * d.y + d.z * d.z - dc * dc;
-        let (sc, sh) = (1.0 + 0.045 * c1, 1.0 + 0.015 * c1);
-        spread_pairs += usize::from(i % 2 == 0 && dh2 < 0.0);
-        negative_term += usize::from(dh2 < 0.0);
-        negative_sum += usize::from(dc * dc / (sc * sc) + dh2 / (sh * sh) < 0.0);
-        let e = color::delta_e94(x, y);
-        assert!(e.is_finite() && e >= 0.0);
-    }
-    println!("negative hue term in {negative_term} of 400000 pairs, negative sum in {negative_sum}");
-    assert!(negative_term > 40_000 && negative_sum > 100, "the case must really occur");
-    let percent = spread_pairs as f64 / 2_000.0;
-    holds!("H30", Cpu, "hue term negative in {percent:.0} % of same-hue pairs, no NaN in 400,000");
-}
-
-#[test]
-fn h31_greys_differ_by_lightness_alone() {
-    let grey = |l| Vec3::new(l, 0.0, 0.0);
-    assert_eq!(color::delta_e94(grey(40.0), grey(65.0)), 25.0);
-    // Its slope towards any chroma is that of a distance: at most 1, and 1 where lightness is equal.
-    let mut steepest = 0.0_f32;
-    for h in (0..=60).map(|e| 2.0_f32.powi(e - 60)) {
-        for way in [Vec3::Y, Vec3::Z, -Vec3::Y, -Vec3::Z] {
-            let from_equal = color::delta_e94(grey(40.0), grey(40.0) + way * h) / h;
-            let from_other = (color::delta_e94(grey(40.0), grey(65.0) + way * h) - 25.0) / h;
-            assert!(from_other.is_finite() && (0.0..1.0).contains(&from_other), "{from_other} at {h:e}");
-            assert!((from_equal - 1.0).abs() < 1e-6, "{from_equal} at {h:e}");
-            steepest = steepest.max(from_equal).max(from_other);
-            assert!(color::delta_e94(grey(40.0) + way * h, grey(40.0)).is_finite(), "no division by a small chroma");
-        }
-    }
-    holds!("H31", Cpu, "25 for L* 40 and 65; slope at most {steepest:.6} for chroma 2^-60 to 1");
 }
 
 #[test]
@@ -109,23 +38,6 @@ fn h32_the_candidate_is_the_reference() {
     assert_eq!(wrs::difference(a, b, DELTA_E), reference_first);
     assert_ne!(wrs::difference(b, a, DELTA_E), reference_first);
     holds!("H32", Cpu, "up to {most:.2}x apart in sRGB; the candidate is the reference");
-}
-
-#[test]
-fn h33_lab_is_continuous_at_its_knee() {
-    let knee = 216.0_f32 / 24389.0;
-    let mut off = 0.0_f32;
-    for y in [knee.next_down(), knee, knee.next_up()] {
-        off = off.max((color::lab(Vec3::splat(y)).x - 8.0).abs());
-    }
-    assert!(off < 2e-5);
-    // Slope of 903.3 from both sides, over steps wide enough for f32.
-    let slope = |step: f32| (color::lab(Vec3::splat(knee + step)).x - color::lab(Vec3::splat(knee)).x) / step;
-    let [below, above] = [-1e-5, 1e-5].map(slope);
-    // Above, the curve bends: its mean over the step is (2/3) (step / 2) / knee lower, 0.04 %.
-    assert_abs_diff_eq!(below, 903.3, epsilon = 0.2);
-    assert_abs_diff_eq!(above, 903.3 * (1.0 - 1e-5 / (3.0 * knee)), epsilon = 0.2);
-    holds!("H33", Cpu, "L* 8 within {off:.1e} at the knee +- 1 ulp; slopes {below:.1} and {above:.1}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! CIE Lab, Delta E 94 and the gate that uses them: f32 kernels against f64; hard cases H20, H30-H40.
+//! CIE Lab, Delta E 94 and the gate that uses them: f32 kernels against f64; hard cases H20, H32, H34-H36 and H40.
 
 mod difference;
 mod gate;

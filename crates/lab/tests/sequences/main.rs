@@ -10,6 +10,7 @@ mod rig;
 #[path = "../../../../tests/common/settings.rs"]
 mod settings;
 
+#[allow(dead_code, reason = "the drop-in's tests use the rest")]
 #[path = "../../../../tests/common/images.rs"]
 mod images;
 

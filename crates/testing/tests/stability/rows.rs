@@ -462,8 +462,8 @@ pub const ROWS: [Row; 102] = [
     ),
     row(
         "H99",
-        "repair: half of the screen is uncovered at once; budgets of 5, 10 and 20 %",
-        "budget never exceeded; finite; nearest to the gaze first; whole one frame after the budget has paid for half of the quads; what was sampled stays; no frame worse than without repair",
+        "repair: half of the screen is uncovered at once, or all of it is new; budgets of 0.2 to 20 %",
+        "budget never exceeded; finite; nearest to the gaze first; whole one frame after the budget has paid for these quads; what was sampled stays; no frame worse than without repair",
         BOTH,
     ),
     row(
