@@ -74,8 +74,8 @@ pub struct MethodArgs {
     #[arg(long, default_value_t = DepthTest::default().slope_px, value_name = "PX")]
     pub depth_slope: f32,
     /// Turn the depth test off: history is never rejected as disoccluded
-    #[arg(long)]
-    pub no_flush: bool,
+    #[arg(long, visible_alias = "no-flush")]
+    pub no_depth_test: bool,
 }
 
 impl MethodArgs {
@@ -87,7 +87,7 @@ impl MethodArgs {
                 MethodKind::Wrs => Method::Wrs(self.wrs()),
                 other => other.into(),
             },
-            depth_test: (!self.no_flush)
+            depth_test: (!self.no_depth_test)
                 .then_some(DepthTest { relative: self.depth_relative, slope_px: self.depth_slope }),
             noisy,
             seed,

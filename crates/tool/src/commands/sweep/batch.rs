@@ -32,6 +32,8 @@ const OF_METHODS: &[(&str, Option<MethodKind>)] = &[
     ("repair", Some(MethodKind::Smr)),
     ("depth-relative", None),
     ("depth-slope", None),
+    ("no-depth-test", None),
+    // Its other name.
     ("no-flush", None),
 ];
 

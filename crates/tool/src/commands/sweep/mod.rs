@@ -32,7 +32,7 @@ use std::path::PathBuf;
     Writes OUT/report.html (open it), sweep.csv, sweep.json, pareto.svg and pareto.png. Finished points are in OUT/points: run the same command\n\
     again to resume a sweep. Example of a plan (--file) in TOML:\n\n  \
     seeds = 3\n  [common]\n  frames = 96\n  [axes]\n  method = [\"none\", \"smr\"]\n  \"rate-mid+rate-far\" = [\"4+8\", \"8+16\"]\n  \
-    [switches]\n  of = [\"no-flush\", \"smr-tolerance=2\"]")]
+    [switches]\n  of = [\"no-depth-test\", \"smr-tolerance=2\"]")]
 pub struct SweepArgs {
     /// Stills, folders of .exr frames, scenes, analytic:NAME, as for run; without inputs, only report the points in OUT
     pub input: Vec<String>,
