@@ -3,6 +3,8 @@
 //! To add one, write a variant of [`Method`] and of [`MethodKind`], its arms and a file with its [`Entry`] here, its
 //! passes in `cpu/` and in `shaders/pass/`, and tests.
 
+#![cfg_attr(not(all(feature = "cpu", feature = "gpu")), allow(dead_code, reason = "each executor reads its part"))]
+
 mod none;
 mod smr;
 mod smr_sparse;
@@ -131,7 +133,6 @@ fn whole_frames(settings: &Settings) -> Vec<Stage> {
 pub(crate) struct Entry {
     pub name: &'static str,
     pub summary: &'static str,
-    #[cfg_attr(not(feature = "cpu"), expect(dead_code, reason = "the device has the stages"))]
     pub algorithm: Algorithm,
     /// Stages of a frame, in their order.
     pub stages: fn(&Settings) -> Vec<Stage>,
@@ -139,16 +140,13 @@ pub(crate) struct Entry {
     pub history: fn(&Settings) -> HistoryLayout,
     /// Memory traffic of history and noise, in bytes a pixel.
     pub history_traffic_bytes: fn(&Settings) -> u32,
-    #[cfg(feature = "gpu")]
     pub shader: fn(&Settings) -> PassShader,
     /// Values of the shader's own overrides, in addition to those of `shaders/pass/inputs.wgsl`. The `bool` says
     /// whether the frame has a level-of-detail input.
-    #[cfg(feature = "gpu")]
     pub overrides: fn(&Settings, bool) -> Overrides,
 }
 
 /// Shader of a method's pass.
-#[cfg(feature = "gpu")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PassShader {
     /// Name of a module of `shaders/pass/`.
@@ -160,7 +158,6 @@ pub(crate) struct PassShader {
 }
 
 /// Names and values of a shader's overrides.
-#[cfg(feature = "gpu")]
 pub(crate) type Overrides = Vec<(&'static str, u32)>;
 
 /// Layout of history.
@@ -201,7 +198,6 @@ impl Settings {
     }
 
     /// Algorithm that processes frames.
-    #[cfg(feature = "cpu")]
     pub(crate) fn algorithm(&self) -> Algorithm {
         self.entry().algorithm
     }
@@ -212,13 +208,11 @@ impl Settings {
     }
 
     /// Shader of the method's pass.
-    #[cfg(feature = "gpu")]
     pub(crate) fn pass_shader(&self) -> PassShader {
         (self.entry().shader)(self)
     }
 
     /// Values of the method's own overrides. `has_lod`: whether the frame has a level-of-detail input.
-    #[cfg(feature = "gpu")]
     pub(crate) fn overrides(&self, has_lod: bool) -> Overrides {
         (self.entry().overrides)(self, has_lod)
     }

@@ -1,8 +1,6 @@
 //! No method: the sanitized foveated frame.
 
-#[cfg(feature = "gpu")]
-use super::PassShader;
-use super::{Algorithm, Entry, HistoryLayout, whole_frames};
+use super::{Algorithm, Entry, HistoryLayout, PassShader, whole_frames};
 
 pub(super) static ENTRY: Entry = Entry {
     name: "none",
@@ -11,8 +9,6 @@ pub(super) static ENTRY: Entry = Entry {
     stages: whole_frames,
     history: |_| HistoryLayout::Nothing,
     history_traffic_bytes: |_| 0,
-    #[cfg(feature = "gpu")]
     shader: |_| PassShader { name: "none_pass", block_px: 1, reads_samples: false },
-    #[cfg(feature = "gpu")]
     overrides: |_, _| vec![],
 };

@@ -1,8 +1,6 @@
 //! Scale-matched reservoirs.
 
-#[cfg(feature = "gpu")]
-use super::PassShader;
-use super::{Algorithm, Entry, HistoryLayout, Stage};
+use super::{Algorithm, Entry, HistoryLayout, PassShader, Stage};
 use crate::foveation::Filter;
 use crate::kernel::matched::SmrParams;
 use crate::kernel::noise::NOISY_LEVELS;
@@ -18,10 +16,8 @@ pub(super) static ENTRY: Entry = Entry {
     },
     history,
     history_traffic_bytes,
-    #[cfg(feature = "gpu")]
     // An invocation processes 2x2 pixels, so that it can also write their mean, the first level of the mip chain.
     shader: |_| PassShader { name: "smr_pass", block_px: 2, reads_samples: false },
-    #[cfg(feature = "gpu")]
     overrides: |settings, has_lod| {
         vec![
             ("HAS_LOD", u32::from(has_lod)),

@@ -1,9 +1,7 @@
 //! Scale-matched reservoirs of sparse frames. The algorithm differs from that of whole frames. It keeps samples with
 //! their places, compares the samples with history first, and reconstructs the pixels between them.
 
-#[cfg(feature = "gpu")]
-use super::PassShader;
-use super::{Algorithm, Entry, HistoryLayout, Stage};
+use super::{Algorithm, Entry, HistoryLayout, PassShader, Stage};
 use crate::foveation::Filter;
 use crate::settings::{Repair, Settings};
 
@@ -21,9 +19,7 @@ pub(super) static ENTRY: Entry = Entry {
         // The noise of samples (4) and that of history (4) are read, and the latter is written (4).
         2 * 8 + samples + if settings.noisy { 4 + 2 * 4 } else { 0 }
     },
-    #[cfg(feature = "gpu")]
     shader: |_| PassShader { name: "sparse_pass", block_px: 1, reads_samples: true },
-    #[cfg(feature = "gpu")]
     overrides: |settings, _| vec![("ANTIALIAS", u32::from(smr_sparse_antialiases(settings)))],
 };
 

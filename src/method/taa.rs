@@ -1,8 +1,6 @@
 //! Temporal antialiasing of the foveated frame.
 
-#[cfg(feature = "gpu")]
-use super::PassShader;
-use super::{Algorithm, Entry, HistoryLayout, whole_frames};
+use super::{Algorithm, Entry, HistoryLayout, PassShader, whole_frames};
 
 pub(super) static ENTRY: Entry = Entry {
     name: "taa",
@@ -11,8 +9,6 @@ pub(super) static ENTRY: Entry = Entry {
     stages: whole_frames,
     history: |_| HistoryLayout::Surfaces { levels: 0, noisy: false },
     history_traffic_bytes: |_| 2 * 8,
-    #[cfg(feature = "gpu")]
     shader: |_| PassShader { name: "taa_pass", block_px: 1, reads_samples: false },
-    #[cfg(feature = "gpu")]
     overrides: |_, _| vec![],
 };

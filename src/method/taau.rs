@@ -1,8 +1,6 @@
 //! Temporal upsampling.
 
-#[cfg(feature = "gpu")]
-use super::PassShader;
-use super::{Algorithm, Entry, HistoryLayout, Stage};
+use super::{Algorithm, Entry, HistoryLayout, PassShader, Stage};
 use crate::foveation::Filter;
 
 pub(super) static ENTRY: Entry = Entry {
@@ -15,8 +13,6 @@ pub(super) static ENTRY: Entry = Entry {
     },
     history: |_| HistoryLayout::Surfaces { levels: 0, noisy: false },
     history_traffic_bytes: |_| 2 * 8,
-    #[cfg(feature = "gpu")]
     shader: |_| PassShader { name: "taau_pass", block_px: 1, reads_samples: true },
-    #[cfg(feature = "gpu")]
     overrides: |_, _| vec![],
 };

@@ -1,9 +1,6 @@
 //! Weighted reservoirs.
 
-#[cfg(feature = "gpu")]
-use super::PassShader;
-use super::{Algorithm, Entry, HistoryLayout, whole_frames};
-#[cfg(feature = "gpu")]
+use super::{Algorithm, Entry, HistoryLayout, PassShader, whole_frames};
 use crate::foveation::Filter;
 use crate::kernel::acuity;
 use crate::kernel::reservoir;
@@ -22,12 +19,10 @@ pub(super) static ENTRY: Entry = Entry {
         let noise = if settings.noisy { 4 } else { 0 };
         2 * reservoir + noise
     },
-    #[cfg(feature = "gpu")]
     shader: |settings| match settings.foveation.filter {
         Filter::Sparse => PassShader { name: "wrs_sparse_pass", block_px: 1, reads_samples: true },
         _ => PassShader { name: "wrs_pass", block_px: 1, reads_samples: false },
     },
-    #[cfg(feature = "gpu")]
     overrides: |settings, has_lod| {
         let params = wrs_params(settings);
         vec![
