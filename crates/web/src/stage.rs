@@ -18,6 +18,7 @@ const HFOV_DEG: f32 = 70.0;
 const MEASURED_PIXELS: u32 = 640 * 360;
 
 /// Source of frames.
+#[expect(clippy::large_enum_variant, reason = "there is one")]
 enum Source {
     /// A picture, at full rate and foveated.
     Picture { full: Texture, foveated: Texture, simulator: Option<GpuSimulator> },
