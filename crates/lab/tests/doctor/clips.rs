@@ -11,14 +11,14 @@ use afterimage_lab::source::{self, ReadLimits, SceneOptions};
 
 /// Full-rate frames.
 pub struct Clip {
-    pub name: &'static str,
+    pub name: String,
     pub geometry: ViewGeometry,
     pub frames: Vec<SourceFrame>,
 }
 
 impl Clip {
     /// Frames `from` and the following ones of an input, relative to the workspace.
-    pub fn open(name: &'static str, size: Option<[u32; 2]>, from: u64, count: u64) -> Self {
+    pub fn open(name: &str, size: Option<[u32; 2]>, from: u64, count: u64) -> Self {
         let path = match name.split_once(':') {
             Some(_) => name.to_owned(),
             None => afterimage_testing::workspace().join(name).to_string_lossy().into_owned(),
@@ -27,7 +27,7 @@ impl Clip {
         let mut source = source::open(&path, &ReadLimits::default(), &options).unwrap();
         let info = source.info().clone();
         Self {
-            name,
+            name: name.to_owned(),
             geometry: ViewGeometry::flat(info.size, info.hfov_deg.unwrap_or(70.0)).unwrap(),
             frames: (from..from + count).map(|i| source.frame(i).unwrap()).collect(),
         }

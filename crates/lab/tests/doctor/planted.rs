@@ -1,28 +1,38 @@
 //! Errors in a description of frames, one at a time, and what must be said about each.
 
 use super::clips::{Clip, Delivery, FORWARD, REVERSED, stored};
+use afterimage::MotionUnit::{Ndc, Pixels, Uv};
+use afterimage::doctor::Fault::*;
 use afterimage::doctor::{Check, Fault};
 use afterimage::kernel::color::srgb_encode;
-use afterimage::{DepthConvention, Filter, Foveation, Gaze, MotionConvention, MotionDirection, MotionUnit, YAxis};
+use afterimage::{DepthConvention as Convention, Filter, Foveation, Gaze, MotionConvention};
 
 /// A planted error.
 pub struct Planted {
     pub name: &'static str,
-    pub check: Check,
     pub fault: Fault,
     /// Part of the line that mends it.
     pub mend: &'static str,
     pub plant: fn(&Clip, &mut Delivery),
 }
 
-const fn planted(
-    name: &'static str,
-    check: Check,
-    fault: Fault,
-    mend: &'static str,
-    plant: fn(&Clip, &mut Delivery),
-) -> Planted {
-    Planted { name, check, fault, mend, plant }
+const fn planted(name: &'static str, fault: Fault, mend: &'static str, plant: fn(&Clip, &mut Delivery)) -> Planted {
+    Planted { name, fault, mend, plant }
+}
+
+impl Planted {
+    /// The check that is to find it.
+    pub fn check(&self) -> Check {
+        match self.fault {
+            MotionDirection | MotionYAxis | MotionUnit | MotionScale | MotionAxes => Check::Motion,
+            MotionJitter => Check::Jitter,
+            DepthConvention | DepthPlanes => Check::Depth,
+            ColorEncoded => Check::Color,
+            Fault::Gaze => Check::Gaze,
+            NotFoveated | FoveationFilter | FoveationRegions | FoveationRates => Check::Foveation,
+            _ => panic!("{:?} is of no check that is known here", self.fault),
+        }
+    }
 }
 
 fn vectors(delivery: &mut Delivery, change: impl Fn([f32; 2]) -> [f32; 2]) {
@@ -38,7 +48,7 @@ fn convention(delivery: &mut Delivery, stored: MotionConvention, stated: MotionC
     delivery.desc.motion = stated;
 }
 
-fn depths(clip: &Clip, delivery: &mut Delivery, as_stored: DepthConvention, stated: DepthConvention) {
+fn depths(clip: &Clip, delivery: &mut Delivery, as_stored: Convention, stated: Convention) {
     for (frame, full) in delivery.frames.iter_mut().zip(&clip.frames) {
         frame.depth = full.depth.as_ref().map(|d| d.map(|z| stored(as_stored, z)));
     }
@@ -82,178 +92,112 @@ pub fn contain_jitter(delivery: &mut Delivery) {
 }
 
 const PIXELS: MotionConvention = MotionConvention {
-    unit: MotionUnit::Pixels,
-    direction: MotionDirection::PreviousMinusCurrent,
-    y_axis: YAxis::Down,
+    unit: Pixels,
+    direction: afterimage::MotionDirection::PreviousMinusCurrent,
+    y_axis: afterimage::YAxis::Down,
     jittered: false,
 };
-const UV: MotionConvention = MotionConvention { unit: MotionUnit::Uv, ..PIXELS };
-const NDC: MotionConvention = MotionConvention { unit: MotionUnit::Ndc, ..PIXELS };
+const UV: MotionConvention = MotionConvention { unit: Uv, ..PIXELS };
+const NDC: MotionConvention = MotionConvention { unit: Ndc, ..PIXELS };
+
+/// Regions of the clips, which the description of the foveation must have.
+const REGIONS: &str = "fovea_deg: 16.0, mid_deg: 40.0";
+const LINEAR: Convention = Convention::Linear;
+const NEAR: &str = "DepthConvention::Reversed { near: 0.1";
+
+fn near(near: f32) -> Convention {
+    Convention::Reversed { near, far: f32::INFINITY }
+}
+
+fn scale_regions(delivery: &mut Delivery, by: f32) {
+    foveation(delivery, |f| (f.fovea_deg, f.mid_deg) = (by * f.fovea_deg, by * f.mid_deg));
+}
+
+fn state_another_filter(delivery: &mut Delivery) {
+    foveation(delivery, |f| f.filter = if f.filter == Filter::Mip { Filter::Block } else { Filter::Mip });
+}
+
+fn state_jitter(delivery: &mut Delivery) {
+    delivery.desc.motion.jittered = true;
+    delivery.frames.iter_mut().enumerate().for_each(|(i, f)| f.view.jitter_px = jitter(i));
+}
+
+fn encode(delivery: &mut Delivery) {
+    delivery.frames.iter_mut().for_each(|f| f.color = f.color.map(|c| c.map(srgb_encode)));
+}
+
+fn show_full_rate(clip: &Clip, delivery: &mut Delivery) {
+    for (frame, full) in delivery.frames.iter_mut().zip(&clip.frames) {
+        frame.color = full.color.clone();
+    }
+}
 
 pub const PLANTED: [Planted; 32] = [
     planted(
         "vectors: current minus previous",
-        Check::Motion,
-        Fault::MotionDirection,
+        MotionDirection,
         "{ direction: MotionDirection::CurrentMinusPrevious, ..",
         |_, d| vectors(d, |[x, y]| [-x, -y]),
     ),
-    planted("vectors: y up", Check::Motion, Fault::MotionYAxis, "{ y_axis: YAxis::Up, ..", |_, d| {
-        vectors(d, |[x, y]| [x, -y])
-    }),
-    planted("vectors: stated y up", Check::Motion, Fault::MotionYAxis, "{ y_axis: YAxis::Down, ..", |_, d| {
+    planted("vectors: y up", MotionYAxis, "{ y_axis: YAxis::Up, ..", |_, d| vectors(d, |[x, y]| [x, -y])),
+    planted("vectors: stated y up", MotionYAxis, "{ y_axis: YAxis::Down, ..", |_, d| {
         d.desc.motion = MotionConvention::BLENDER
     }),
-    planted("vectors: UV, stated pixels", Check::Motion, Fault::MotionUnit, "{ unit: MotionUnit::Uv, ..", |_, d| {
-        convention(d, UV, PIXELS)
-    }),
-    planted("vectors: NDC, stated pixels", Check::Motion, Fault::MotionUnit, "{ unit: MotionUnit::Ndc, ..", |_, d| {
+    planted("vectors: UV, stated pixels", MotionUnit, "{ unit: MotionUnit::Uv, ..", |_, d| convention(d, UV, PIXELS)),
+    planted("vectors: NDC, stated pixels", MotionUnit, "{ unit: MotionUnit::Ndc, ..", |_, d| {
         convention(d, NDC, PIXELS)
     }),
-    planted(
-        "vectors: pixels, stated UV",
-        Check::Motion,
-        Fault::MotionUnit,
-        "{ unit: MotionUnit::Pixels, ..",
-        |_, d| convention(d, PIXELS, UV),
-    ),
-    planted("vectors: UV, stated NDC", Check::Motion, Fault::MotionUnit, "{ unit: MotionUnit::Uv, ..", |_, d| {
-        convention(d, UV, NDC)
+    planted("vectors: pixels, stated UV", MotionUnit, "{ unit: MotionUnit::Pixels, ..", |_, d| {
+        convention(d, PIXELS, UV)
     }),
-    planted("vectors: NDC, stated UV", Check::Motion, Fault::MotionUnit, "{ unit: MotionUnit::Ndc, ..", |_, d| {
-        convention(d, NDC, UV)
+    planted("vectors: UV, stated NDC", MotionUnit, "{ unit: MotionUnit::Uv, ..", |_, d| convention(d, UV, NDC)),
+    planted("vectors: NDC, stated UV", MotionUnit, "{ unit: MotionUnit::Ndc, ..", |_, d| convention(d, NDC, UV)),
+    planted("vectors: twice too long", MotionScale, "motion *= 0.5;", |_, d| vectors(d, |v| v.map(|v| 2.0 * v))),
+    planted("vectors: half as long", MotionScale, "motion *= 2;", |_, d| vectors(d, |v| v.map(|v| 0.5 * v))),
+    planted("vectors: x and y swapped", MotionAxes, "motion = motion.yx;", |_, d| vectors(d, |[x, y]| [y, x])),
+    planted("vectors: with jitter", MotionJitter, "desc.motion.jittered = true;", |_, d| contain_jitter(d)),
+    planted("vectors: without jitter, stated with it", MotionJitter, "desc.motion.jittered = false;", |_, d| {
+        state_jitter(d)
     }),
-    planted("vectors: twice too long", Check::Motion, Fault::MotionScale, "motion *= 0.5;", |_, d| {
-        vectors(d, |v| v.map(|v| 2.0 * v))
+    planted("depth: reversed, stated forward", DepthConvention, "DepthConvention::Reversed", |_, d| {
+        d.desc.depth = FORWARD
     }),
-    planted("vectors: half as long", Check::Motion, Fault::MotionScale, "motion *= 2;", |_, d| {
-        vectors(d, |v| v.map(|v| 0.5 * v))
+    planted("depth: reversed, stated linear", DepthConvention, "DepthConvention::Reversed", |_, d| {
+        d.desc.depth = LINEAR
     }),
-    planted("vectors: x and y swapped", Check::Motion, Fault::MotionAxes, "motion = motion.yx;", |_, d| {
-        vectors(d, |[x, y]| [y, x])
+    planted("depth: linear, stated reversed", DepthConvention, "DepthConvention::Linear", |clip, d| {
+        depths(clip, d, LINEAR, REVERSED)
     }),
-    planted("vectors: with jitter", Check::Jitter, Fault::MotionJitter, "desc.motion.jittered = true;", |_, d| {
-        contain_jitter(d)
+    planted("depth: forward, stated reversed", DepthConvention, "DepthConvention::Forward", |clip, d| {
+        depths(clip, d, FORWARD, REVERSED)
     }),
-    planted(
-        "vectors: without jitter, stated with it",
-        Check::Jitter,
-        Fault::MotionJitter,
-        "desc.motion.jittered = false;",
-        |_, d| {
-            d.desc.motion.jittered = true;
-            d.frames.iter_mut().enumerate().for_each(|(i, f)| f.view.jitter_px = jitter(i));
-        },
-    ),
-    planted(
-        "depth: reversed, stated forward",
-        Check::Depth,
-        Fault::DepthConvention,
-        "DepthConvention::Reversed",
-        |_, d| d.desc.depth = FORWARD,
-    ),
-    planted(
-        "depth: reversed, stated linear",
-        Check::Depth,
-        Fault::DepthConvention,
-        "DepthConvention::Reversed",
-        |_, d| d.desc.depth = DepthConvention::Linear,
-    ),
-    planted(
-        "depth: linear, stated reversed",
-        Check::Depth,
-        Fault::DepthConvention,
-        "DepthConvention::Linear",
-        |clip, d| depths(clip, d, DepthConvention::Linear, REVERSED),
-    ),
-    planted(
-        "depth: forward, stated reversed",
-        Check::Depth,
-        Fault::DepthConvention,
-        "DepthConvention::Forward",
-        |clip, d| depths(clip, d, FORWARD, REVERSED),
-    ),
-    planted(
-        "depth: forward, stated linear",
-        Check::Depth,
-        Fault::DepthConvention,
-        "DepthConvention::Forward",
-        |clip, d| depths(clip, d, FORWARD, DepthConvention::Linear),
-    ),
-    planted(
-        "depth: near plane 4 times too far",
-        Check::Depth,
-        Fault::DepthPlanes,
-        "DepthConvention::Reversed { near: 0.1",
-        |_, d| d.desc.depth = DepthConvention::Reversed { near: 0.4, far: f32::INFINITY },
-    ),
-    planted(
-        "depth: near plane 4 times too near",
-        Check::Depth,
-        Fault::DepthPlanes,
-        "DepthConvention::Reversed { near: 0.1",
-        |_, d| d.desc.depth = DepthConvention::Reversed { near: 0.025, far: f32::INFINITY },
-    ),
-    planted("color: sRGB-encoded", Check::Color, Fault::ColorEncoded, "pow(", |_, d| {
-        d.frames.iter_mut().for_each(|f| f.color = f.color.map(|c| c.map(srgb_encode)))
+    planted("depth: forward, stated linear", DepthConvention, "DepthConvention::Forward", |clip, d| {
+        depths(clip, d, FORWARD, LINEAR)
     }),
-    planted("gaze: y up", Check::Gaze, Fault::Gaze, "[x, height - 1.0 - y]", |_, d| {
-        gazes(d, |[x, y], [_, h]| [x, h - 1.0 - y])
-    }),
-    planted("gaze: UV", Check::Gaze, Fault::Gaze, "[x * width - 0.5, y * height - 0.5]", |_, d| {
+    planted("depth: near plane 4 times too far", DepthPlanes, NEAR, |_, d| d.desc.depth = near(0.4)),
+    planted("depth: near plane 4 times too near", DepthPlanes, NEAR, |_, d| d.desc.depth = near(0.025)),
+    planted("color: sRGB-encoded", ColorEncoded, "pow(", |_, d| encode(d)),
+    planted("gaze: y up", Fault::Gaze, "[x, height - 1.0 - y]", |_, d| gazes(d, |[x, y], [_, h]| [x, h - 1.0 - y])),
+    planted("gaze: UV", Fault::Gaze, "[x * width - 0.5, y * height - 0.5]", |_, d| {
         gazes(d, |[x, y], [w, h]| [(x + 0.5) / w, (y + 0.5) / h])
     }),
-    planted("gaze: origin in the middle", Check::Gaze, Fault::Gaze, "[x + 0.5 * width, y + 0.5 * height]", |_, d| {
+    planted("gaze: origin in the middle", Fault::Gaze, "[x + 0.5 * width, y + 0.5 * height]", |_, d| {
         gazes(d, |[x, y], [w, h]| [x - 0.5 * w, y - 0.5 * h])
     }),
-    planted("gaze: pixels of half the size", Check::Gaze, Fault::Gaze, "[2.0 * x, 2.0 * y]", |_, d| {
+    planted("gaze: pixels of half the size", Fault::Gaze, "[2.0 * x, 2.0 * y]", |_, d| {
         gazes(d, |[x, y], _| [0.5 * x, 0.5 * y])
     }),
-    planted("foveation: stated off", Check::Foveation, Fault::FoveationFilter, "{ filter: Filter::", |_, d| {
+    planted("foveation: stated off", FoveationFilter, "{ filter: Filter::", |_, d| {
         foveation(d, |f| f.filter = Filter::Off)
     }),
-    planted("foveation: another filter", Check::Foveation, Fault::FoveationFilter, "{ filter: Filter::", |_, d| {
-        foveation(d, |f| f.filter = if f.filter == Filter::Mip { Filter::Block } else { Filter::Mip })
+    planted("foveation: another filter", FoveationFilter, "{ filter: Filter::", |_, d| state_another_filter(d)),
+    planted("foveation: radii, stated as diameters", FoveationRegions, REGIONS, |_, d| scale_regions(d, 0.5)),
+    planted("foveation: regions twice too large", FoveationRegions, REGIONS, |_, d| scale_regions(d, 2.0)),
+    planted("foveation: blocks half as large", FoveationRates, "rate_mid: ", |_, d| {
+        foveation(d, |f| (f.rate_mid, f.rate_far) = (f.rate_mid / 2, f.rate_far / 2))
     }),
-    planted(
-        "foveation: radii, stated as diameters",
-        Check::Foveation,
-        Fault::FoveationRegions,
-        "fovea_deg: 16.0, mid_deg: 40.0",
-        |_, d| {
-            foveation(d, |f| {
-                f.fovea_deg *= 0.5;
-                f.mid_deg *= 0.5;
-            });
-        },
-    ),
-    planted(
-        "foveation: regions twice too large",
-        Check::Foveation,
-        Fault::FoveationRegions,
-        "fovea_deg: 16.0, mid_deg: 40.0",
-        |_, d| {
-            foveation(d, |f| {
-                f.fovea_deg *= 2.0;
-                f.mid_deg *= 2.0;
-            });
-        },
-    ),
-    planted("foveation: blocks half as large", Check::Foveation, Fault::FoveationRates, "rate_mid: ", |_, d| {
-        foveation(d, |f| {
-            f.rate_mid /= 2;
-            f.rate_far /= 2;
-        });
+    planted("foveation: blocks twice as large", FoveationRates, "rate_mid: ", |_, d| {
+        foveation(d, |f| (f.rate_mid, f.rate_far) = (f.rate_mid * 2, f.rate_far * 2))
     }),
-    planted("foveation: blocks twice as large", Check::Foveation, Fault::FoveationRates, "rate_mid: ", |_, d| {
-        foveation(d, |f| {
-            f.rate_mid *= 2;
-            f.rate_far *= 2;
-        });
-    }),
-    planted("foveation: none", Check::Foveation, Fault::NotFoveated, "{ filter: Filter::Off, ..", |clip, d| {
-        for (frame, full) in d.frames.iter_mut().zip(&clip.frames) {
-            frame.color = full.color.clone();
-        }
-    }),
+    planted("foveation: none", NotFoveated, "{ filter: Filter::Off, ..", show_full_rate),
 ];

@@ -1,6 +1,6 @@
 //! Right inputs, ordinary and odd, are never accused.
 
-use super::clips::{Clip, Delivery, foveations};
+use super::clips::{Clip, Delivered, Delivery, foveations};
 use super::planted::{contain_jitter, jitter};
 use afterimage::{Filter, Foveation, Gaze, Image, ViewFrame};
 use afterimage_testing::Draws;
@@ -24,7 +24,7 @@ fn all_foveations() -> Vec<Foveation> {
     all
 }
 
-fn scene(name: &'static str) -> Clip {
+fn scene(name: &str) -> Clip {
     Clip::open(name, Some([240, 136]), 3, 4)
 }
 
@@ -37,7 +37,7 @@ fn gazes(delivery: &mut Delivery, gaze: impl Fn(usize) -> Gaze) {
 #[test]
 fn clips_under_every_filter() {
     for name in ["still", "lateral", "turn", "walk", "occluder", "light-step", "scroll"] {
-        let clip = scene(["analytic:", name].concat().leak());
+        let clip = scene(&format!("analytic:{name}"));
         for foveation in all_foveations() {
             let what = format!("{name}, {:?} {}/{}", foveation.filter, foveation.rate_mid, foveation.rate_far);
             is_not_accused(&what, &Delivery::right(&clip, foveation));
@@ -76,14 +76,15 @@ fn frames_that_show_nothing_or_nonsense() {
     let mut draws = Draws::new("nonsense");
     for foveation in foveations() {
         let right = Delivery::right(&clip, foveation);
-        let filter = foveation.filter;
+        let check = |what: &str, change: &mut dyn FnMut(usize, &mut Delivered)| {
+            let mut changed = right.clone();
+            changed.frames.iter_mut().enumerate().for_each(|(i, frame)| change(i, frame));
+            is_not_accused(&format!("{what}, {:?}", foveation.filter), &changed);
+        };
         for (what, value) in [("gray", 0.18), ("black", 0.0), ("NaN", f32::NAN)] {
-            let mut plain = right.clone();
-            plain.frames.iter_mut().for_each(|f| f.color = Image::filled(clip.size(), [value; 3]));
-            is_not_accused(&format!("{what}, {filter:?}"), &plain);
+            check(what, &mut |_, f| f.color = Image::filled(clip.size(), [value; 3]));
         }
-        let mut riddled = right.clone();
-        for frame in &mut riddled.frames {
+        check("riddled", &mut |_, frame| {
             for pixel in frame.color.pixels_mut().iter_mut().filter(|_| draws.uniform() < 0.03) {
                 *pixel = [f32::NAN, f32::INFINITY, 0.5];
             }
@@ -93,23 +94,14 @@ fn frames_that_show_nothing_or_nonsense() {
             for motion in frame.motion.as_mut().unwrap().pixels_mut().iter_mut().filter(|_| draws.uniform() < 0.03) {
                 *motion = [f32::INFINITY, f32::NAN];
             }
-        }
-        is_not_accused(&format!("riddled, {filter:?}"), &riddled);
-        let mut bare = right.clone();
-        for frame in &mut bare.frames {
-            (frame.depth, frame.motion) = (None, None);
-        }
-        is_not_accused(&format!("color alone, {filter:?}"), &bare);
-        let mut jittered = right.clone();
-        jittered.frames.iter_mut().enumerate().for_each(|(i, f)| f.view.jitter_px = jitter(i));
-        is_not_accused(&format!("jitter that the vectors lack, {filter:?}"), &jittered);
+        });
+        check("color alone", &mut |_, f| (f.depth, f.motion) = (None, None));
+        check("jitter that the vectors lack", &mut |i, f| f.view.jitter_px = jitter(i));
+        check("a camera of unknown motion", &mut |_, f| f.view.previous_from_current = None);
         let mut contained = right.clone();
         contained.desc.motion.jittered = true;
         contain_jitter(&mut contained);
-        is_not_accused(&format!("jitter that the vectors contain as stated, {filter:?}"), &contained);
-        let mut unknown = right.clone();
-        unknown.frames.iter_mut().for_each(|f| f.view.previous_from_current = None);
-        is_not_accused(&format!("a camera of unknown motion, {filter:?}"), &unknown);
+        is_not_accused(&format!("jitter that the vectors contain as stated, {:?}", foveation.filter), &contained);
     }
     // Nothing but noise, described as full rate.
     let mut noise = Delivery::right(&clip, Foveation { filter: Filter::Off, ..Foveation::default() });

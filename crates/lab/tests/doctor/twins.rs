@@ -2,8 +2,9 @@
 
 use super::clips::{Clip, Delivered, Delivery, foveations};
 use afterimage::shader::SHADERS;
-use afterimage::wgpu::{self, BufferUsages, Texture, TextureFormat, TextureUsages};
+use afterimage::wgpu::{self, BufferUsages, TextureFormat, TextureUsages};
 use afterimage::{Image, Reset, cpu, gpu};
+use afterimage_lab::device::Headless;
 use afterimage_testing::Draws;
 
 /// A foveated clip of an odd size, with broken pixels, and the levels of detail of each frame.
@@ -60,41 +61,25 @@ fn on_cpu((delivery, lods): &(Delivery, Vec<Image<f32>>), given: Given) -> Vec<V
 
 /// `None`, after a message, without an adapter.
 fn on_gpu((delivery, lods): &(Delivery, Vec<Image<f32>>), given: Given, source: &str) -> Option<Vec<Vec<u32>>> {
-    let (device, queue) = afterimage_testing::gpu::device()?;
-    let [width, height] = delivery.desc.size_px;
-    let texture = |format| {
-        device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("test"),
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
-            view_formats: &[],
-        })
-    };
+    let device = Headless::on(afterimage_testing::gpu::adapter()?, wgpu::Limits::default()).unwrap();
+    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
     let [color, depth, motion, lod_in] =
         [TextureFormat::Rgba32Float, TextureFormat::R32Float, TextureFormat::Rg32Float, TextureFormat::R32Float]
-            .map(texture);
-    let mut doctor = afterimage_testing::gpu::validated(&device, "new", || {
-        gpu::Doctor::with_shader(&device, &delivery.desc, 0, source).unwrap()
+            .map(|format| device.texture(delivery.desc.size_px, 1, format, usage));
+    let mut doctor = afterimage_testing::gpu::validated(&device.device, "new", || {
+        gpu::Doctor::with_shader(&device.device, &delivery.desc, 0, source).unwrap()
     });
-    let bytes = doctor.words_bytes();
     let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
-    let buffer = |usage| {
-        device.create_buffer(&wgpu::BufferDescriptor { label: None, size: bytes, usage, mapped_at_creation: false })
-    };
-    let words = buffer(usage);
-    let write = |texture: &Texture, bytes: &[u8]| afterimage_testing::gpu::write_layer(&queue, texture, 0, bytes);
+    let size = doctor.words_bytes();
+    let words =
+        device.device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false });
     for (i, (Delivered { color: c, depth: d, motion: m, view, .. }, lod)) in
         delivery.frames.iter().zip(lods).enumerate()
     {
-        let rgba: Vec<[f32; 4]> = c.pixels().iter().map(|c| [c[0], c[1], c[2], 1.0]).collect();
-        write(&color, bytemuck::cast_slice(&rgba));
-        write(&depth, bytemuck::cast_slice(d.as_ref().unwrap().pixels()));
-        write(&motion, bytemuck::cast_slice(m.as_ref().unwrap().pixels()));
-        write(&lod_in, bytemuck::cast_slice(lod.pixels()));
+        device.write_rgb(&color, 0, c);
+        device.write(&depth, 0, d.as_ref().unwrap());
+        device.write(&motion, 0, m.as_ref().unwrap());
+        device.write(&lod_in, 0, lod);
         let views = [*view];
         let frame = gpu::Frame {
             depth: given.depth.then_some((&depth).into()),
@@ -103,16 +88,12 @@ fn on_gpu((delivery, lods): &(Delivery, Vec<Image<f32>>), given: Given, source: 
             reset: if i == 0 { Reset::All } else { Reset::None },
             ..gpu::Frame::new(&color, &views, i as u64)
         };
-        let readback = buffer(BufferUsages::COPY_DST | BufferUsages::MAP_READ);
-        afterimage_testing::gpu::validated(&device, "record", || {
-            let mut encoder = device.create_command_encoder(&Default::default());
-            doctor.record(&device, &mut encoder, &frame, &words).unwrap();
-            encoder.copy_buffer_to_buffer(&words, 0, &readback, 0, bytes);
-            queue.submit([encoder.finish()]);
+        afterimage_testing::gpu::validated(&device.device, "record", || {
+            let mut encoder = device.device.create_command_encoder(&Default::default());
+            doctor.record(&device.device, &mut encoder, &frame, &words).unwrap();
+            device.queue.submit([encoder.finish()]);
         });
-        readback.map_async(wgpu::MapMode::Read, .., |r| r.expect("the readback maps"));
-        device.poll(wgpu::PollType::wait_indefinitely()).expect("the device finishes");
-        assert!(doctor.read(&afterimage_lab::device::mapped(&readback).expect("the readback is mapped")));
+        assert!(doctor.read(&afterimage_testing::gpu::read_buffer::<u8>(&device.device, &device.queue, &words)));
     }
     Some(doctor.words().into_iter().map(<[u32]>::to_vec).collect())
 }

@@ -1,5 +1,13 @@
 //! Scenes, and what renders them: glTF files, the rasteriser, the path tracer and its parts.
 
+#[path = "../common/explained.rs"]
+mod explained;
+#[path = "../common/hostile.rs"]
+mod hostile;
+#[path = "../common/shared_data.rs"]
+mod shared_data;
+
+mod given;
 mod raster;
 mod sampling;
 mod scattering;

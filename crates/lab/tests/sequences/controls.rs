@@ -19,10 +19,7 @@ fn pass() -> String {
 fn every_planted_error_in_the_pass_is_caught() {
     let planted = [
         // Candidate and history swapped.
-        (
-            "combined(candidate.color, candidate_w, history.past.color, decision, SAMPLER)",
-            "combined(history.past.color, candidate_w, candidate.color, decision, SAMPLER)",
-        ),
+        ("candidate.color, candidate_w, history.past.color", "history.past.color, candidate_w, candidate.color"),
         ("step(candidate.color, candidate_w, past, params,", "step(history.past.color, candidate_w, past, params,"),
         // Motion with the opposite sign.
         ("f32(x) + motion.x", "f32(x) - motion.x"),
@@ -30,10 +27,7 @@ fn every_planted_error_in_the_pass_is_caught() {
         // Candidate weight 1 % too large.
         ("frame.inv_density_at_fovea);", "1.01 * frame.inv_density_at_fovea);"),
         // History weights not stored.
-        (
-            "textureStore(next_weights, px, view, vec4<u32>(words.z,",
-            "textureStore(next_weights, px, view, vec4<u32>(0u,",
-        ),
+        ("next_weights, px, view, vec4<u32>(words.z,", "next_weights, px, view, vec4<u32>(0u,"),
         // Random numbers of another frame, and equal ones in each row.
         ("bits(px.x, px.y, frame.frame_low, constants.key)", "bits(px.x, px.y, frame.frame_low + 1u, constants.key)"),
         ("bits(px.x, px.y, frame.frame_low, constants.key)", "bits(0u, px.y, frame.frame_low, constants.key)"),

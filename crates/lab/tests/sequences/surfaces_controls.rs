@@ -82,20 +82,11 @@ fn every_planted_error_in_taa_is_caught() {
         SHARED,
         &[
             // Candidate and history swapped; a blend factor 1 % too large.
-            (
-                "clipped + (roots(candidate) - clipped) * alpha",
-                "roots(candidate) + (clipped - roots(candidate)) * alpha",
-            ),
-            (
-                "clipped + (roots(candidate) - clipped) * alpha",
-                "clipped + (roots(candidate) - clipped) * (1.01 * alpha)",
-            ),
+            ("clipped + (roots(candidate) - clipped)", "roots(candidate) + (clipped - roots(candidate))"),
+            ("(roots(candidate) - clipped) * alpha", "(roots(candidate) - clipped) * (1.01 * alpha)"),
             // A neighbor omitted, a wider clipping box, non-finite candidates stored as valid.
             ("vec2<i32>(tap % 3, tap / 3) - 1", "vec2<i32>(tap % 3, min(tap / 3, 1)) - 1"),
-            (
-                "const BOX_SIGMAS: vec2<f32> = vec2<f32>(2.0, 5.0);",
-                "const BOX_SIGMAS: vec2<f32> = vec2<f32>(2.02, 5.0);",
-            ),
+            ("BOX_SIGMAS: vec2<f32> = vec2<f32>(2.0, 5.0)", "BOX_SIGMAS: vec2<f32> = vec2<f32>(2.02, 5.0)"),
             ("select(-1.0, lod_of(confidence), candidate.usable || valid)", "lod_of(confidence)"),
             // Settled history that does not agree with its neighbourhood, and samples counted one too many.
             ("confidence = min(confidence, agreeing(", "confidence = max(confidence, agreeing("),
@@ -145,16 +136,10 @@ fn every_planted_error_in_smr_is_caught() {
             ("const GATE_FROM: f32 = 3.0;", "const GATE_FROM: f32 = 3.03;"),
             ("clamp((observed + DARK)", "clamp(1.01 * (observed + DARK)"),
             // Mip chain of the other view; levels and texels one off.
-            (
-                "textureLoad(past_mips, four.low, view, level - 1u)",
-                "textureLoad(past_mips, four.low, 1u - view, level - 1u)",
-            ),
+            ("past_mips, four.low, view, level - 1u", "past_mips, four.low, 1u - view, level - 1u"),
             ("textureStore(next_mips, id.xy, view,", "textureStore(next_mips, id.xy, 1u - view,"),
             ("first = past_level(at, level, view);", "first = past_level(at, min(level + 1u, last), view);"),
-            (
-                "let second = past_level(at, min(level + 1u, last), view);",
-                "let second = past_level(at, max(level, 1u), view);",
-            ),
+            ("past_level(at, min(level + 1u, last), view)", "past_level(at, max(level, 1u), view)"),
             ("past_level(at, min(level + 1u, last), view)", "past_level(at, level, view)"),
             ("words_1 = select(words_1, words, i == 1u);", ""),
             // Rules omitted: coarse levels at motion edges, empty texels for non-finite candidates, mip means weighted
@@ -202,14 +187,8 @@ fn every_planted_error_in_noisy_smr_is_caught() {
         false,
         &[
             // Noise and candidates of the other view.
-            (
-                "textureLoad(past_noise, source.previous.nearest_at, view, 0)",
-                "textureLoad(past_noise, source.previous.nearest_at, 1u - view, 0)",
-            ),
-            (
-                "textureLoad(candidate_mips, four.low, view, level - 1u)",
-                "textureLoad(candidate_mips, four.low, 1u - view, level - 1u)",
-            ),
+            ("past_noise, source.previous.nearest_at, view", "past_noise, source.previous.nearest_at, 1u - view"),
+            ("candidate_mips, four.low, view, level - 1u", "candidate_mips, four.low, 1u - view, level - 1u"),
             ("textureStore(next_noise, px, view,", "textureStore(next_noise, px, 1u - view,"),
             // Stored noise not scaled to the exposure; two sigmas instead of three.
             (
@@ -219,10 +198,7 @@ fn every_planted_error_in_noisy_smr_is_caught() {
             ("const SIGMAS: f32 = 3.0;", "const SIGMAS: f32 = 2.0;"),
             // Weights of the mean, and confidence in a finer or a coarser history.
             ("history.samples / (history.samples + candidate.samples)", "0.5"),
-            (
-                "let together = candidate.samples / max(1.0 - share",
-                "let together = candidate.samples / max(1.01 - share",
-            ),
+            ("candidate.samples / max(1.0 - share", "candidate.samples / max(1.01 - share"),
             (") * confidence.x;", ");"),
             ("/ COARSER_WIDTH, 0.0, 1.0) * confidence.y", "/ COARSER_WIDTH, 0.0, 1.0)"),
             ("const COARSER_FRAMES: f32 = 4.0;", "const COARSER_FRAMES: f32 = 5.0;"),

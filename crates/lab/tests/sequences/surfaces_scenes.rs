@@ -57,11 +57,16 @@ impl Moment<'_> {
     }
 }
 
-/// Plays `frames` frames of a scene with each of `runs`; colors are multiplied by `light` of the frame.
-fn play(
+/// Plays 60 frames of a scene with each of `runs`.
+fn play(scene: &str, gaze: fn(u64) -> [f32; 2], runs: &[Settings], look: impl FnMut(&Moment<'_>)) {
+    play_lit(scene, 60, gaze, |_| 1.0, runs, look);
+}
+
+/// The same for another number of frames; colors are multiplied by `light` of the frame.
+fn play_lit(
     scene: &str,
     frames: u64,
-    gaze: impl Fn(u64) -> [f32; 2],
+    gaze: fn(u64) -> [f32; 2],
     light: impl Fn(u64) -> f32,
     runs: &[Settings],
     mut look: impl FnMut(&Moment<'_>),
@@ -104,27 +109,20 @@ fn wandering(index: u64) -> [f32; 2] {
 #[test]
 fn a_still_scene_under_a_wandering_eye_comes_back_sharp() {
     let runs = [settings_of(MethodKind::Smr), settings_of(MethodKind::Taa)];
-    play(
-        "still",
-        60,
-        wandering,
-        |_| 1.0,
-        &runs,
-        |m| {
-            if m.index < 10 || m.index % 10 != 9 {
-                return;
-            }
-            let [none, smr, taa] = [m.candidate, &m.shown[0], &m.shown[1]].map(|i| m.retained(i));
-            println!("frame {}: retained {none:.2} dB foveated, {taa:.2} taa, {smr:.2} smr", m.index);
-            // Measured: 29 to 31 dB more than either.
-            assert!(smr > none + 25.0 && smr > taa + 25.0, "frame {}", m.index);
-            let whole = [m.candidate, &m.shown[0]].map(|i| m.psnr(i, |_| true));
-            assert!(whole[1] > whole[0], "the whole image gains too");
-            // Nowhere a loss worth the name: what is shown is history that explains the candidate.
-            let outside = |i: usize| !m.tracked.retained.pixels()[i];
-            assert!(m.psnr(&m.shown[0], outside) > m.psnr(m.candidate, outside) - 0.1);
-        },
-    );
+    play("still", wandering, &runs, |m| {
+        if m.index < 10 || m.index % 10 != 9 {
+            return;
+        }
+        let [none, smr, taa] = [m.candidate, &m.shown[0], &m.shown[1]].map(|i| m.retained(i));
+        println!("frame {}: retained {none:.2} dB foveated, {taa:.2} taa, {smr:.2} smr", m.index);
+        // Measured: 29 to 31 dB more than either.
+        assert!(smr > none + 25.0 && smr > taa + 25.0, "frame {}", m.index);
+        let whole = [m.candidate, &m.shown[0]].map(|i| m.psnr(i, |_| true));
+        assert!(whole[1] > whole[0], "the whole image gains too");
+        // Nowhere a loss worth the name: what is shown is history that explains the candidate.
+        let outside = |i: usize| !m.tracked.retained.pixels()[i];
+        assert!(m.psnr(&m.shown[0], outside) > m.psnr(m.candidate, outside) - 0.1);
+    });
 }
 
 #[test]
@@ -133,7 +131,7 @@ fn h74_a_step_of_light_keeps_detail_and_never_shows_less_than_the_candidate() {
     let plain = Settings { method: Method::Smr(Smr { relight: false, ..Smr::default() }), ..relit };
     for factor in [0.5, 2.0] {
         let light = |index: u64| if index >= 30 { factor } else { 1.0 };
-        play("still", 40, wandering, light, &[relit, plain], |m| {
+        play_lit("still", 40, wandering, light, &[relit, plain], |m| {
             if m.index < 29 {
                 return;
             }
@@ -153,12 +151,11 @@ fn a_moving_silhouette_leaves_no_trail() {
     // Frames since a pixel's surface came into view.
     let mut seen = Image::filled(VIEW, 0_u32);
     let (mut none, mut smr, mut taa, mut count) = (0.0, 0.0, 0.0, 0);
+    let runs = [settings_of(MethodKind::Smr), settings_of(MethodKind::Taa)];
     play(
         "occluder",
-        60,
         |_| [128.0, 72.0],
-        |_| 1.0,
-        &[settings_of(MethodKind::Smr), settings_of(MethodKind::Taa)],
+        &runs,
         |m| {
             let past = m.tracked.past.pixels();
             let before = seen.clone();
@@ -219,24 +216,18 @@ impl Flicker {
 fn under_a_moving_camera_both_flicker_less_than_the_foveated_frames() {
     let mut flicker = [0; 3].map(|_| Flicker { before: None, sum: 0.0, count: 0 });
     let mut gain = vec![];
-    play(
-        "lateral",
-        60,
-        wandering,
-        |_| 1.0,
-        &[settings_of(MethodKind::Smr), settings_of(MethodKind::Taa)],
-        |m| {
-            if m.full.cut {
-                assert!(m.shown.iter().all(|s| s == m.candidate), "nothing is known at a cut");
-            }
-            for (flicker, image) in flicker.iter_mut().zip([m.candidate, &m.shown[0], &m.shown[1]]) {
-                flicker.add(m, image);
-            }
-            if m.index >= 20 {
-                gain.push(m.retained(&m.shown[0]) - m.retained(m.candidate));
-            }
-        },
-    );
+    let runs = [settings_of(MethodKind::Smr), settings_of(MethodKind::Taa)];
+    play("lateral", wandering, &runs, |m| {
+        if m.full.cut {
+            assert!(m.shown.iter().all(|s| s == m.candidate), "nothing is known at a cut");
+        }
+        for (flicker, image) in flicker.iter_mut().zip([m.candidate, &m.shown[0], &m.shown[1]]) {
+            flicker.add(m, image);
+        }
+        if m.index >= 20 {
+            gain.push(m.retained(&m.shown[0]) - m.retained(m.candidate));
+        }
+    });
     let [none, smr, taa] = flicker.each_ref().map(Flicker::value);
     let worst = gain.iter().copied().fold(f64::MAX, f64::min);
     let mean = gain.iter().sum::<f64>() / gain.len() as f64;

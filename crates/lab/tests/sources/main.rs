@@ -1,5 +1,12 @@
 //! Frame sources, scanpaths and metrics.
 
+#[path = "../common/explained.rs"]
+mod explained;
+#[path = "../common/hostile.rs"]
+mod hostile;
+#[path = "../common/shared_data.rs"]
+mod shared_data;
+
 mod analytic;
 mod fixtures;
 mod jitter;

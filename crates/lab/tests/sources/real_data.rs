@@ -1,6 +1,7 @@
 //! End to end on external data: Sponza from another renderer, a page of text, recorded scanpaths. Skipped with a
 //! message if `../shared/data` is absent.
 
+use crate::shared_data::shared_data;
 use afterimage::{Foveation, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::error::InputError;
@@ -10,21 +11,7 @@ use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage_lab::source;
 use afterimage_lab::source::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo};
-use std::path::{Path, PathBuf};
-
-const DATA: &str = "../shared/data";
-
-/// Path of the file or folder; `None` if the data is absent.
-fn data(name: &str) -> Option<PathBuf> {
-    let path = afterimage_testing::workspace().join(DATA).join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    // Write to stderr directly: the test harness hides the output of passing tests.
-    use std::io::Write;
-    let _ = writeln!(std::io::stderr(), "\nSKIPPED: {} is not there\n", path.display());
-    None
-}
+use std::path::Path;
 
 struct Clip {
     frames: u64,
@@ -62,7 +49,7 @@ fn play(source: &mut dyn FrameSource, clip: &Clip, runs: &[RunKind]) -> Outcome 
     let info = source.info().clone();
     let hfov = clip.hfov_deg.or(info.hfov_deg).unwrap();
     let view = ViewGeometry::flat(info.size, hfov).unwrap();
-    let scanpath = read_csv(data(clip.scanpath).unwrap()).unwrap();
+    let scanpath = read_csv(shared_data(clip.scanpath).unwrap()).unwrap();
     let gaze = FrameGaze::new(&scanpath, &view, clip.map, clip.start_s, 60.0).unwrap();
     let mut pipeline = Pipeline::new(view, clip.foveation, runs, info.still, &[], &Backend::Cpu).unwrap();
     let mut scorers = vec![Scorer::default(); runs.len()];
@@ -115,9 +102,7 @@ fn retained(outcome: &Outcome, run: usize) -> f64 {
 
 #[test]
 fn sponza_still_none_wrs_and_oracle_in_order() {
-    let Some(path) = data("sequences/sponza_still") else {
-        return;
-    };
+    let Some(path) = shared_data("sequences/sponza_still") else { return };
     let outcome = play(
         open(&path).as_mut(),
         &Clip::default(),
@@ -136,9 +121,7 @@ fn sponza_still_none_wrs_and_oracle_in_order() {
 #[test]
 #[ignore = "two minutes; cargo test --release -p afterimage-lab --test sources -- --ignored real_data"]
 fn the_oracle_agrees_with_an_independent_measurement() {
-    let Some(path) = data("sequences/sponza_still") else {
-        return;
-    };
+    let Some(path) = shared_data("sequences/sponza_still") else { return };
     for (map, average, last) in [(GazeMap::Angle, 1.7, 2.7), (GazeMap::Fit, 2.2, 3.6)] {
         let clip = Clip { map, frames: 300, ..Clip::default() };
         let outcome = play(open(&path).as_mut(), &clip, &[run_of(MethodKind::None), RunKind::Oracle]);
@@ -166,7 +149,7 @@ impl FrameSource for Flipped {
 #[test]
 fn sponza_sequences_reproject_and_reject_history_as_they_should() {
     for (name, most_rejected) in [("sequences/sponza_lateral", 0.05), ("sequences/sponza_object", 0.05)] {
-        let Some(path) = data(name) else { return };
+        let Some(path) = shared_data(name) else { return };
         let clip = Clip {
             frames: 40,
             foveation: Foveation { rate_mid: 2, rate_far: 4, ..Foveation::default() },
@@ -186,9 +169,7 @@ fn sponza_sequences_reproject_and_reject_history_as_they_should() {
 
 #[test]
 fn a_4k_page_is_read_with_a_recorded_eye() {
-    let Some(path) = data("text/page_3840x2160.png") else {
-        return;
-    };
+    let Some(path) = shared_data("text/page_3840x2160.png") else { return };
     let clip =
         Clip { frames: 3, hfov_deg: Some(80.0), scanpath: "scanpaths/reading_1250hz_clean.csv", ..Clip::default() };
     let outcome =

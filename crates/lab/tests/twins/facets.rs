@@ -1,7 +1,7 @@
 //! Probes of microfacet functions.
 
 use crate::probe::{Probe, Rows, probe};
-use crate::scattering::{above, draw, one_share, put, two_draws};
+use crate::scattering::{above, directions, draw, one_share, put, two_draws};
 use crate::values::*;
 use afterimage_lab::kernel::microfacet;
 use afterimage_testing::Draws;
@@ -14,21 +14,21 @@ fn width(d: &mut Draws) -> f32 {
     }
 }
 
-/// Rows of a direction above the horizon and two widths.
-fn seen(rows: Rows, more: usize) -> Rows {
+/// Rows of a direction above the horizon, two widths, and the words that `more` adds.
+fn seen(rows: Rows, more: fn(&mut Draws, &mut Vec<u32>)) -> Rows {
     rows.random(|d, row| {
         put(row, above(d));
-        row.extend([width(d), width(d)].map(f32::to_bits));
-        (0..more).for_each(|_| row.push(draw(d)));
+        two_widths(d, row);
+        more(d, row);
     })
 }
 
-fn vector_and_normal(rows: Rows, more: usize) -> Rows {
-    rows.random(|d, row| {
-        put(row, above(d));
-        put(row, above(d));
-        (0..more).for_each(|_| row.push(range(d, 0.3, 3.0)));
-    })
+fn two_widths(d: &mut Draws, row: &mut Vec<u32>) {
+    row.extend([width(d), width(d)].map(f32::to_bits));
+}
+
+fn cosine_and_width(rows: Rows) -> Rows {
+    rows.random(|d, row| row.extend([draw(d), range(d, 0.01, 1.0)]))
 }
 
 fn widths_rows(rows: Rows, count: usize) -> Rows {
@@ -38,29 +38,23 @@ fn widths_rows(rows: Rows, count: usize) -> Rows {
 pub const PROBES: &[Probe] = &[
     probe!(microfacet::ggx_widths, two_draws),
     probe!(microfacet::ggx_mean_width, |rows| widths_rows(rows, 2)),
-    probe!(microfacet::ggx_length, |rows| seen(rows, 0)),
-    probe!(microfacet::ggx_d, |rows| seen(rows, 0)),
-    probe!(microfacet::smith_g1, |rows| seen(rows, 0)),
+    probe!(microfacet::ggx_length, |rows| seen(rows, |_, _| {})),
+    probe!(microfacet::ggx_d, |rows| seen(rows, |_, _| {})),
+    probe!(microfacet::smith_g1, |rows| seen(rows, |_, _| {})),
     probe!(microfacet::smith_g2, |rows| widths_rows(rows, 4)),
-    probe!(microfacet::vndf_sample, |rows| seen(rows, 2)),
-    probe!(microfacet::vndf_pdf, |rows| {
-        rows.random(|d, row| {
-            put(row, above(d));
-            put(row, above(d));
-            row.extend([width(d), width(d)].map(f32::to_bits));
-        })
-    }),
+    probe!(microfacet::vndf_sample, |rows| seen(rows, |d, row| row.extend([draw(d), draw(d)]))),
+    probe!(microfacet::vndf_pdf, |rows| directions(rows, 2, above, two_widths)),
     probe!(microfacet::schlick_weight, one_share),
     probe!(microfacet::reflectance_at_normal, |rows| {
         rows.cross(&[&floats(&[1.0, 1.5, 3.0])]).random(|d, row| row.push(range(d, 1.0, 4.0)))
     }),
     probe!(microfacet::fresnel_dielectric, |rows| rows.random(|d, row| row.extend([draw(d), range(d, 0.3, 3.0)]))),
     probe!(microfacet::refraction_discriminant, |rows| rows.random(|d, row| row.extend([draw(d), range(d, 0.3, 3.0)]))),
-    probe!(microfacet::mirrored, |rows| vector_and_normal(rows, 0)),
-    probe!(microfacet::refracted, |rows| vector_and_normal(rows, 1)),
-    probe!(microfacet::charlie_d, |rows| rows.random(|d, row| row.extend([draw(d), range(d, 0.01, 1.0)]))),
-    probe!(microfacet::charlie_curve, |rows| rows.random(|d, row| row.extend([draw(d), range(d, 0.01, 1.0)]))),
-    probe!(microfacet::charlie_lambda, |rows| rows.random(|d, row| row.extend([draw(d), range(d, 0.01, 1.0)]))),
+    probe!(microfacet::mirrored, |rows| directions(rows, 2, above, |_, _| {})),
+    probe!(microfacet::refracted, |rows| directions(rows, 2, above, |d, row| row.push(range(d, 0.3, 3.0)))),
+    probe!(microfacet::charlie_d, cosine_and_width),
+    probe!(microfacet::charlie_curve, cosine_and_width),
+    probe!(microfacet::charlie_lambda, cosine_and_width),
     probe!(microfacet::charlie_visibility, |rows| {
         rows.random(|d, row| {
             row.extend([draw(d), scaled(d, -4, 14), draw(d), scaled(d, -4, 14)]);

@@ -9,8 +9,8 @@ use afterimage_lab::kernel::{direction, phong, sampling};
 use afterimage_testing::Draws;
 use glam::Vec3;
 
-pub fn put(row: &mut Vec<u32>, v: Vec3) {
-    row.extend(v.to_array().map(f32::to_bits));
+pub fn put(row: &mut Vec<u32>, v: impl Into<Vec3>) {
+    row.extend(v.into().to_array().map(f32::to_bits));
 }
 
 /// Unit vector in the upper hemisphere, including the horizon and the pole.
@@ -34,6 +34,19 @@ fn around_z(d: &mut Draws, z: f32) -> Vec3 {
 pub fn anywhere(d: &mut Draws) -> Vec3 {
     let v = above(d);
     if d.bits() & 1 == 0 { v } else { Vec3::new(v.x, v.y, -v.z) }
+}
+
+/// Rows of `count` directions, and the words that `more` adds.
+pub fn directions(
+    rows: Rows,
+    count: usize,
+    direction: fn(&mut Draws) -> Vec3,
+    more: fn(&mut Draws, &mut Vec<u32>),
+) -> Rows {
+    rows.random(|d, row| {
+        (0..count).for_each(|_| put(row, direction(d)));
+        more(d, row);
+    })
 }
 
 /// 0, 1 or uniform in between.
@@ -82,9 +95,9 @@ pub const PROBES: &[Probe] = &[
         rows.cross(&[&sizes, &sizes, &sizes])
             .random(|d, row| row.extend([signed(d, -9, 9), signed(d, -9, 9), signed(d, -9, 9)]))
     }),
-    probe!(direction::basis, |rows| rows.random(|d, row| put(row, anywhere(d)))),
-    probe!(direction::to_local, |rows| rows.random(|d, row| (0..4).for_each(|_| put(row, anywhere(d))))),
-    probe!(direction::to_world, |rows| rows.random(|d, row| (0..4).for_each(|_| put(row, anywhere(d))))),
+    probe!(direction::basis, |rows| directions(rows, 1, anywhere, |_, _| {})),
+    probe!(direction::to_local, |rows| directions(rows, 4, anywhere, |_, _| {})),
+    probe!(direction::to_world, |rows| directions(rows, 4, anywhere, |_, _| {})),
     probe!(sampling::disk, two_draws),
     probe!(sampling::cosine_hemisphere, two_draws),
     probe!(sampling::cosine_hemisphere_pdf, one_share),

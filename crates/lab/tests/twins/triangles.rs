@@ -1,6 +1,7 @@
 //! Probes of intersection and direction functions.
 
 use crate::probe::{Probe, probe};
+use crate::scattering::put;
 use crate::shape::*;
 use crate::values::*;
 use afterimage_lab::kernel::octahedral;
@@ -13,17 +14,13 @@ fn vector(d: &mut Draws, size: f32) -> Vec3 {
     Vec3::new(d.range(-size, size), d.range(-size, size), d.range(-size, size))
 }
 
-fn push(row: &mut Vec<u32>, v: impl Into<Vec3>) {
-    row.extend(v.into().to_array().map(f32::to_bits));
-}
-
 /// A ray, and a distant triangle as small as the rounding error at its distance: edge signs are random.
 fn ray_and_speck(d: &mut Draws, row: &mut Vec<u32>) {
     let (at, direction) = (vector(d, 1.0), vector(d, 1.0).normalize_or(Vec3::X));
     let shear = triangle::shear(direction);
     let corners = [0; 3].map(|_| at + vector(d, 3e-7));
     for v in [shear.x, shear.y, shear.z, vector(d, 1e-3).into()].into_iter().chain(corners.map(Vec3A::from)) {
-        push(row, v);
+        put(row, v);
     }
 }
 
@@ -44,7 +41,7 @@ fn ray_and_triangle(d: &mut Draws, row: &mut Vec<u32>) {
     }
     let shear = triangle::shear(direction.normalize_or(Vec3::Y));
     for v in [shear.x, shear.y, shear.z, origin.into()].into_iter().chain(corners.map(Vec3A::from)) {
-        push(row, v);
+        put(row, v);
     }
 }
 
@@ -54,17 +51,14 @@ shape!(triangle::Intersection { t: f32, u: f32, v: f32 });
 pub const PROBES: &[Probe] = &[
     probe!(triangle::shear, |rows| {
         let axis = floats(&[1.0, -1.0, 0.5, -0.25, 1e-3]);
-        rows.cross(&[&axis, &axis, &axis]).random(|d, row| {
-            let v = vector(d, 1.0);
-            push(row, v);
-        })
+        rows.cross(&[&axis, &axis, &axis]).random(|d, row| put(row, vector(d, 1.0)))
     }),
     probe!(triangle::sheared, |rows| {
         rows.random(|d, row| {
             let shear = triangle::shear(vector(d, 1.0).normalize_or(Vec3::X));
             let at = vector(d, 10.0);
             for v in [shear.x, shear.y, shear.z, at.into()] {
-                push(row, v);
+                put(row, v);
             }
         })
     }),
@@ -80,8 +74,8 @@ pub const PROBES: &[Probe] = &[
             rows.random(|d, row| {
                 let a = vector(d, 1.0);
                 let b = if d.bits().is_multiple_of(2) { a * d.range(-2.0, 2.0) } else { vector(d, 1.0) };
-                push(row, a);
-                push(row, b);
+                put(row, a);
+                put(row, b);
             })
         }
     ),
@@ -96,35 +90,22 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(triangle::point_at, |rows| {
         rows.random(|d, row| {
-            for _ in 0..3 {
-                let v = vector(d, 100.0);
-                push(row, v);
-            }
+            (0..3).for_each(|_| put(row, vector(d, 100.0)));
             row.extend([d.uniform().to_bits(), d.uniform().to_bits()]);
         })
     }),
-    probe!(triangle::magnitude, |rows| {
-        rows.random(|d, row| {
-            for _ in 0..3 {
-                let v = vector(d, 100.0);
-                push(row, v);
-            }
-        })
-    }),
+    probe!(triangle::magnitude, |rows| { rows.random(|d, row| (0..3).for_each(|_| put(row, vector(d, 100.0)))) }),
     probe!(triangle::offset_ray, |rows| {
         rows.random(|d, row| {
             let (p, n) = (vector(d, 100.0), vector(d, 1.0).normalize_or(Vec3::X));
-            push(row, p);
-            push(row, n);
+            put(row, p);
+            put(row, n);
             row.push(scaled(d, -20, 20));
         })
     }),
     probe!(octahedral::encode_direction, |rows| {
         let axis = floats(&[1.0, -1.0, 0.5, -0.25, 1e-3]);
-        rows.cross(&[&axis, &axis, &axis]).random(|d, row| {
-            let v = vector(d, 1.0);
-            push(row, v);
-        })
+        rows.cross(&[&axis, &axis, &axis]).random(|d, row| put(row, vector(d, 1.0)))
     }),
     probe!(octahedral::decode_direction, |rows| rows.cross(&[&words()]).random(|d, row| row.push(d.bits()))),
 ];

@@ -1,62 +1,29 @@
 //! Grid, frontier, table and store of a sweep.
 
-use afterimage_cli::method_report::MethodReport;
+use crate::report::table;
+use crate::report::table::options;
 use afterimage_cli::sweep::frontier::{Standing, frontier};
 use afterimage_cli::sweep::grid::parse_switch;
-use afterimage_cli::sweep::measurement::{ClipFacts, Machine};
 use afterimage_cli::sweep::store::id;
-use afterimage_cli::sweep::{Axis, Grid, METRICS, Measurement, Metric, Options, Point, Store, Table};
+use afterimage_cli::sweep::{Axis, Grid, METRICS, Measurement, Metric, Point, Store, Table};
 use afterimage_lab::clock::Quartiles;
 use proptest::prelude::*;
 use std::collections::BTreeSet;
-
-fn options(pairs: &[(&str, &str)]) -> Options {
-    pairs.iter().map(|(name, value)| ((*name).into(), (*value).into())).collect()
-}
 
 fn point(method: &str, pairs: &[(&str, &str)], seed: u64) -> Point {
     Point { input: "clip".into(), method: method.into(), options: options(pairs), seed }
 }
 
-/// A measurement whose pass takes `ms` while the control takes `control_ms`.
+/// A measurement whose pass takes `ms` while the control takes `control_ms`, and that has no score but `flip`.
 fn measurement(point: Point, ms: f64, control_ms: f64, flip: f64) -> Measurement {
     let around = |v: f64| Quartiles { median: v, p25: 0.9 * v, p75: 1.2 * v };
-    let mut figures = MethodReport {
-        share_of_oracle: None,
-        ms: Some(around(ms)),
-        cpu_ms: Some(ms),
-        frame: Default::default(),
-        scores: Default::default(),
-        psnr_last_frame_db: None,
-        worst_crop: None,
-        nonfinite_in: 0,
-        nonfinite_out: 0,
-        flushed: None,
-        replaced: None,
-        repaired_share: None,
-        bytes_per_pixel: Some(48),
-        persistent_bytes_per_pixel: 24.0,
-    };
-    figures.scores.whole.flip = Some(flip);
-    Measurement {
-        version: "1".into(),
-        point,
-        common: options(&[("frames", "40")]),
-        clip: ClipFacts { size: [64, 36], frames: 40, timed_frames: 32, fps: 60.0, hfov_deg: 70.0 },
-        machine: Machine { kind: "cpu".into(), name: "2 threads".into(), driver: "none".into(), clock: "CPU".into() },
-        pass_ms: around(ms),
-        pass_cpu_ms: Some(ms),
-        frame_ms: vec![0.5 * ms, ms, 2.0 * ms],
-        round: "a".into(),
-        control_ms: around(control_ms),
-        render_ms: None,
-        render_cpu_ms: None,
-        samples_share: 0.1,
-        samples_per_pixel: None,
-        copy_ms: 0.5,
-        figures,
-        rust: "Settings::default()".into(),
-    }
+    let mut m = table::measurement(point, ms, 48, 0.1, flip);
+    (m.figures.ms, m.figures.psnr_last_frame_db, m.figures.scores) = (Some(around(ms)), None, Default::default());
+    m.figures.scores.whole.flip = Some(flip);
+    (m.pass_ms, m.control_ms) = (around(ms), around(control_ms));
+    m.frame_ms = vec![0.5 * ms, ms, 2.0 * ms];
+    m.round = "a".into();
+    m
 }
 
 #[test]

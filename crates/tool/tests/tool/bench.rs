@@ -1,39 +1,23 @@
 //! `afterimage bench`.
 
-use super::rig::{Folder, read_json, refuses, succeeds, tool};
+use super::rig::{Folder, read_json, refuses, succeeds, words};
 use std::path::Path;
 
 #[test]
 fn bench_times_every_pass_against_the_copy() {
     let folder = Folder::new();
     let json = folder.text("bench.json");
-    let output = tool(&["bench", "post", "--size", "160x90", "--frames", "30", "--json", &json]);
-    if output.status.code() == Some(2) && std::env::var("AFTERIMAGE_GPU").as_deref() != Ok("require") {
-        eprintln!("SKIPPED: no adapter");
+    let args = ["bench", "post", "--size", "160x90", "--frames", "30", "--json", &json];
+    if afterimage_testing::gpu::adapter().is_none() {
+        refuses(&args, &["adapter"]);
         return;
     }
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    succeeds(&args);
     let report = read_json(Path::new(&json));
     let passes = report["passes"].as_array().unwrap();
-    assert_eq!(
-        passes.iter().map(|p| p["name"].as_str().unwrap()).collect::<Vec<_>>(),
-        [
-            "copy",
-            "none",
-            "taa",
-            "wrs",
-            "smr",
-            "taau",
-            "wrs-weighted",
-            "smr-sparse",
-            "smr-plan",
-            "smr-antialias",
-            "smr-antialias-plan",
-            "mip",
-            "gauss",
-            "block"
-        ]
-    );
+    let expected = "copy none taa wrs smr taau wrs-weighted smr-sparse smr-plan smr-antialias smr-antialias-plan mip gauss \
+                    block";
+    assert_eq!(passes.iter().map(|p| p["name"].as_str().unwrap()).collect::<Vec<_>>(), words(expected));
     for pass in passes {
         assert!(pass["ms"]["median"].as_f64().unwrap() > 0.0);
         let most = match pass["name"].as_str().unwrap() {

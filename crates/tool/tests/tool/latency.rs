@@ -1,6 +1,6 @@
 //! `run --gaze-latency`.
 
-use super::rig::{Folder, read_json, refuses, run, succeeds};
+use super::rig::{Folder, read_json, refuses, run, succeeds, words};
 use std::fs;
 
 /// A gaze that steps by 12 pixels in every frame of 60 a second, after it rested for a second.
@@ -19,28 +19,11 @@ fn a_late_gaze_foveates_elsewhere_and_scores_know_the_true_one() {
     let folder = Folder::new();
     let gaze = folder.write("gaze.csv", stepping().as_bytes());
     let clip = |name: &str, start: &str, latency: &str, foveation: &str| {
-        let words = [
-            "--size",
-            "160x90",
-            "--frames",
-            "8",
-            "--method",
-            "none,smr",
-            "--no-flip",
-            "--foveation",
-            foveation,
-            "--gaze",
-            &gaze,
-            "--gaze-map",
-            "fit",
-            "--start",
-            start,
-            "--gaze-latency",
-            latency,
-            "--backend",
-            "cpu",
-        ];
-        succeeds(&run("analytic:lateral", &folder.text(name), &words));
+        let line = format!(
+            "--size 160x90 --frames 8 --method none,smr --no-flip --foveation {foveation} --gaze {gaze} --gaze-map fit \
+             --start {start} --gaze-latency {latency} --backend cpu"
+        );
+        succeeds(&run("analytic:lateral", &folder.text(name), &words(&line)));
     };
     for foveation in ["sparse", "mip"] {
         // Times count from the first sample. Three frames are 50 ms.

@@ -2,6 +2,8 @@
 
 use afterimage_testing::program::Program;
 pub use afterimage_testing::program::{Folder, read_json};
+use serde_json::Value;
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::Output;
@@ -33,6 +35,53 @@ pub const DEBUG: &str = "weight,age,survival,flush,gate,motion";
 
 pub const SMALL: &[&str] = &["--size", "160x90", "--frames", "4"];
 
+/// The arguments of a command line, which has no quotes.
+pub fn words(line: &str) -> Vec<&str> {
+    line.split_whitespace().collect()
+}
+
 pub fn run<'a>(input: &'a str, out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     [&["run", input, "--out", out][..], more].concat()
+}
+
+/// The numbered frames of a run, by their path in its folder.
+fn frames(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    for name in files(folder) {
+        let path = folder.join(&name);
+        if path.is_dir() {
+            all.extend(frames(&path).into_iter().map(|(file, bytes)| (format!("{name}/{file}"), bytes)));
+        } else if name.starts_with(|c: char| c.is_ascii_digit()) {
+            all.insert(name, fs::read(path).unwrap());
+        }
+    }
+    all
+}
+
+/// Runs on both backends: every frame has the same bytes, and every method the same figures. Returns the reports, the
+/// CPU's first.
+#[track_caller]
+pub fn same_on_both_backends(name: &str, input: &str, more: &[&str]) -> [Value; 2] {
+    const FIGURES: [&str; 6] = ["psnr_db", "flushed", "replaced", "repaired_share", "nonfinite_in", "bytes_per_pixel"];
+    let folder = Folder::new();
+    let reports = ["cpu", "gpu"].map(|backend| {
+        let rest = ["--backend", backend, "--format", "exr"];
+        succeeds(&run(input, &folder.text(backend), &[&rest, more].concat()));
+        read_json(&folder.path(backend).join("report.json"))
+    });
+    // Other devices round differently.
+    if reports[1]["backend"]["name"].as_str().unwrap().contains("llvmpipe") {
+        let [cpu, gpu] = ["cpu", "gpu"].map(|backend| frames(&folder.path(backend)));
+        assert!(cpu.len() > 1 && cpu.keys().eq(gpu.keys()), "{name}: {:?}", cpu.keys());
+        for (file, bytes) in &cpu {
+            assert!(gpu[file] == *bytes, "{name}: {file}");
+        }
+        let [cpu, gpu] = reports.each_ref().map(|report| &report["methods"]);
+        for (method, figures) in cpu.as_object().unwrap() {
+            for key in FIGURES {
+                assert_eq!(figures[key], gpu[method][key], "{name}: {method}.{key}");
+            }
+        }
+    }
+    reports
 }

@@ -1,6 +1,6 @@
 //! `afterimage run`: files, and their reproducibility.
 
-use super::rig::{DEBUG, Folder, SMALL, files, read_json, refuses, run, succeeds, tool};
+use super::rig::{DEBUG, Folder, SMALL, files, read_json, refuses, run, same_on_both_backends, succeeds, tool, words};
 use serde_json::Value;
 use std::fs;
 use std::process::Command;
@@ -12,21 +12,8 @@ fn run_writes_what_the_contract_says() {
     let more = [SMALL, &["--reference", "--method", "none,wrs", "--debug", DEBUG]].concat();
     succeeds(&run("analytic:lateral", &out, &more));
     let out = folder.path("out");
-    assert_eq!(
-        files(&out),
-        [
-            "debug",
-            "frames.csv",
-            "gaze.csv",
-            "none",
-            "psnr.png",
-            "psnr.svg",
-            "reference",
-            "report.json",
-            "sheet.png",
-            "wrs"
-        ]
-    );
+    let expected = "debug frames.csv gaze.csv none psnr.png psnr.svg reference report.json sheet.png wrs";
+    assert_eq!(files(&out), words(expected));
     let frames = ["000000.png", "000001.png", "000002.png", "000003.png"];
     for part in ["none", "wrs", "reference", "debug/wrs/flush", "debug/none/motion"] {
         assert_eq!(files(&out.join(part)), frames, "{part}");
@@ -101,107 +88,42 @@ fn the_same_seed_gives_the_same_bytes_on_any_number_of_threads() {
 
 #[test]
 fn both_backends_write_the_same_bytes() {
-    let folder = Folder::new();
-    let on = |backend| {
-        let out = folder.text(backend);
-        let more = ["--format", "exr", "--wrs-sampler", "a-es", "--backend", backend, "--debug", DEBUG];
-        tool(&run("analytic:occluder", &out, &[SMALL, &more].concat()))
-    };
-    let gpu = on("gpu");
-    if gpu.status.code() == Some(2) && std::env::var("AFTERIMAGE_GPU").as_deref() != Ok("require") {
-        let text = String::from_utf8_lossy(&gpu.stderr).into_owned();
-        assert!(text.contains("mesa-vulkan-drivers"), "{text}");
-        eprintln!("SKIPPED: no adapter");
+    if afterimage_testing::gpu::adapter().is_none() {
+        let folder = Folder::new();
+        refuses(&run("analytic:still", &folder.text("out"), &["--backend", "gpu"]), &["mesa-vulkan-drivers"]);
         return;
     }
-    assert!(gpu.status.success(), "{}", String::from_utf8_lossy(&gpu.stderr));
-    assert!(on("cpu").status.success());
-    let report = read_json(&folder.path("gpu/report.json"));
-    assert_eq!(report["backend"]["kind"], "gpu");
-    if report["backend"]["name"].as_str().unwrap().contains("llvmpipe") {
-        let cpu = read_json(&folder.path("cpu/report.json"));
-        for method in ["none", "wrs"] {
-            let of = |report: &Value, key: &str| report["methods"][method][key].clone();
-            for key in ["flushed", "replaced", "nonfinite_in", "bytes_per_pixel", "persistent_bytes_per_pixel"] {
-                assert_eq!(of(&report, key), of(&cpu, key), "{method}.{key}");
-            }
-            assert!(of(&report, "flushed").is_number());
-            for view in DEBUG.split(',') {
-                for i in 0..4 {
-                    let path = |b: &str| folder.path(b).join(format!("debug/{method}/{view}/{i:06}.png"));
-                    assert_eq!(fs::read(path("cpu")).unwrap(), fs::read(path("gpu")).unwrap(), "{method}, {view}, {i}");
+    let debug = format!("--size 160x90 --frames 4 --wrs-sampler a-es --debug {DEBUG}");
+    let sparse = "--size 160x90 --frames 4 --method none,taa,wrs --foveation sparse --geometry";
+    let quads = "--size 160x90 --frames 4 --method none,taa,wrs,smr --rate-mid 2 --rate-far 4 --reference-samples 1 \
+                 --no-flip --foveation";
+    let traced = "--source trace --sampling regions --region-spp 2,1,1 --foveation sparse --reference-spp 2 \
+                  --method none,taa,taau,smr --frames 3 --size 64x36 --gaze 20,12";
+    for (input, line, simulator, geometry) in [
+        ("analytic:occluder", &debug, "mip", None),
+        ("analytic:occluder", &format!("{sparse} full"), "sparse", Some("full")),
+        ("analytic:occluder", &format!("{sparse} samples"), "sparse", Some("samples")),
+        ("builtin:cubes", &format!("{quads} layers --geometry samples"), "layers", Some("samples")),
+        ("builtin:cubes", &format!("{quads} uniform --scale 1.5"), "uniform", Some("samples")),
+        ("builtin:cubes", &traced.to_owned(), "regions", Some("samples")),
+    ] {
+        let [cpu, gpu] = same_on_both_backends(line, input, &words(line));
+        assert_eq!((&cpu["backend"]["kind"], &gpu["backend"]["kind"]), (&"cpu".into(), &"gpu".into()));
+        let foveation = &cpu["foveation"];
+        assert_eq!((&foveation["simulator"], foveation["geometry"].as_str()), (&simulator.into(), geometry), "{line}");
+        assert_eq!(foveation["scale"].as_f64(), (simulator == "uniform").then_some(1.5));
+        match simulator {
+            "mip" => {
+                assert!(cpu["methods"]["wrs"]["flushed"].is_number());
+                for method in ["none", "wrs"] {
+                    let of = |report: &Value| report["methods"][method]["persistent_bytes_per_pixel"].clone();
+                    assert_eq!(of(&cpu), of(&gpu), "{method}");
                 }
             }
-        }
-        for i in 0..4 {
-            let frame = |b: &str| fs::read(folder.path(b).join(format!("wrs/{i:06}.exr"))).unwrap();
-            assert_eq!(frame("cpu"), frame("gpu"), "frame {i}");
-        }
-    }
-}
-
-#[test]
-fn both_backends_write_the_same_bytes_of_sparse_frames() {
-    if afterimage_testing::gpu::adapter().is_none() {
-        return;
-    }
-    let folder = Folder::new();
-    let methods = ["none", "taa", "wrs"];
-    for geometry in ["full", "samples"] {
-        for backend in ["cpu", "gpu"] {
-            let out = folder.text(&format!("{geometry}/{backend}"));
-            let more = ["--format", "exr", "--method", "none,taa,wrs", "--backend", backend, "--foveation", "sparse"];
-            succeeds(&run("analytic:occluder", &out, &[SMALL, &more, &["--geometry", geometry]].concat()));
-        }
-        let [cpu, gpu] = ["cpu", "gpu"].map(|b| read_json(&folder.path(&format!("{geometry}/{b}/report.json"))));
-        assert_eq!(cpu["foveation"]["simulator"], "sparse");
-        assert_eq!(cpu["foveation"]["geometry"], geometry);
-        if !gpu["backend"]["name"].as_str().unwrap().contains("llvmpipe") {
-            return;
-        }
-        for method in methods {
-            for key in ["psnr_db", "flushed", "replaced", "nonfinite_in", "bytes_per_pixel"] {
-                assert_eq!(cpu["methods"][method][key], gpu["methods"][method][key], "{method}.{key}");
-            }
-            for i in 0..4 {
-                let path = |b: &str| folder.path(&format!("{geometry}/{b}/{method}/{i:06}.exr"));
-                assert_eq!(fs::read(path("cpu")).unwrap(), fs::read(path("gpu")).unwrap(), "{method}, frame {i}");
-            }
-        }
-    }
-}
-
-#[test]
-fn both_backends_write_the_same_bytes_of_quad_views() {
-    if afterimage_testing::gpu::adapter().is_none() {
-        return;
-    }
-    let folder = Folder::new();
-    let method = ["--method", "none,taa,wrs,smr", "--format", "exr", "--rate-mid", "2", "--rate-far", "4"];
-    let scene = [&method[..], &["--reference-samples", "1", "--no-flip"]].concat();
-    let cases: [(&str, &[&str]); 2] =
-        [("layers", &["--geometry", "samples"]), ("uniform", &["--foveation", "uniform", "--scale", "1.5"])];
-    for (name, more) in cases {
-        for backend in ["cpu", "gpu"] {
-            let out = folder.text(&format!("{name}/{backend}"));
-            let layers: &[&str] = if name == "layers" { &["--foveation", "layers"] } else { &[] };
-            let words = [SMALL, &scene, &["--backend", backend], layers, more].concat();
-            succeeds(&run("builtin:cubes", &out, &words));
-        }
-        let [cpu, gpu] = ["cpu", "gpu"].map(|b| read_json(&folder.path(&format!("{name}/{b}/report.json"))));
-        assert_eq!(cpu["foveation"]["simulator"], name);
-        let uniform = (name == "uniform").then_some(1.5);
-        assert_eq!(cpu["foveation"]["scale"].as_f64(), uniform);
-        // 107 x 60 pixels a frame.
-        assert!(name == "layers" || cpu["samples"] == 4 * 107 * 60, "{}", cpu["samples"]);
-        if !gpu["backend"]["name"].as_str().unwrap().contains("llvmpipe") {
-            return;
-        }
-        for method in ["none", "taa", "wrs", "smr"] {
-            for i in 0..4 {
-                let path = |b: &str| folder.path(&format!("{name}/{b}/{method}/{i:06}.exr"));
-                assert_eq!(fs::read(path("cpu")).unwrap(), fs::read(path("gpu")).unwrap(), "{method}, frame {i}");
-            }
+            "uniform" => assert_eq!(cpu["samples"], 4 * 107 * 60, "107 x 60 pixels a frame"),
+            // Kept samples and their noise, of two frames.
+            "regions" => assert_eq!(cpu["methods"]["smr"]["persistent_bytes_per_pixel"], 24.0),
+            _ => {}
         }
     }
 }
@@ -293,17 +215,14 @@ fn a_run_that_fails_leaves_no_plot_of_the_run_before() {
 #[test]
 fn scenes_are_rasterised_and_go_through_every_method() {
     let folder = Folder::new();
-    let mut args =
-        vec!["run", "builtin:cubes", "--source", "raster", "--size", "96x54", "--frames", "3", "--fps", "30"];
+    let line = "--source raster --size 96x54 --frames 3 --fps 30 --method none,taa,wrs,smr --backend cpu";
     let out = folder.text("out");
-    args.extend(["--method", "none,taa,wrs,smr", "--backend", "cpu", "--out", &out]);
-    let output = tool(&args);
-    if output.status.code() == Some(2) && std::env::var("AFTERIMAGE_GPU").as_deref() != Ok("require") {
-        assert!(String::from_utf8_lossy(&output.stderr).contains("adapter"));
-        eprintln!("SKIPPED: no adapter");
+    let args = run("builtin:cubes", &out, &words(line));
+    if afterimage_testing::gpu::adapter().is_none() {
+        refuses(&args, &["adapter"]);
         return;
     }
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    succeeds(&args);
     let report = read_json(&folder.path("out/report.json"));
     assert_eq!((&report["fps"], &report["frames"]), (&serde_json::json!(30.0), &serde_json::json!(3)));
     for method in ["none", "taa", "wrs", "smr"] {
@@ -333,35 +252,6 @@ fn a_still_from_a_picture_file_works_without_depth_and_motion() {
     assert!(share("wrs") > 0.0 && share("wrs") < 1.0);
     assert_eq!(report["methods"]["wrs"]["bytes_per_pixel"], 40);
     assert_eq!(report["methods"]["none"]["flicker"], 0.0, "nothing moves, and the eye neither");
-}
-
-#[test]
-fn traced_samples_go_through_every_method_and_both_backends_agree() {
-    if afterimage_testing::gpu::adapter().is_none() {
-        return;
-    }
-    let folder = Folder::new();
-    let methods = ["none", "taa", "taau", "smr"];
-    for backend in ["cpu", "gpu"] {
-        let out = folder.text(backend);
-        let pattern = ["--source", "trace", "--sampling", "regions", "--region-spp", "2,1,1", "--foveation", "sparse"];
-        let rest = ["--reference-spp", "2", "--method", "none,taa,taau,smr", "--backend", backend, "--frames", "3"];
-        let view = ["--size", "64x36", "--gaze", "20,12", "--format", "exr"];
-        succeeds(&run("builtin:cubes", &out, &[&pattern[..], &rest, &view].concat()));
-    }
-    let [cpu, gpu] = ["cpu", "gpu"].map(|b| read_json(&folder.path(&format!("{b}/report.json"))));
-    assert_eq!((&cpu["foveation"]["simulator"], &cpu["foveation"]["geometry"]), (&"regions".into(), &"samples".into()));
-    // Kept samples and their noise, of two frames.
-    assert_eq!(cpu["methods"]["smr"]["persistent_bytes_per_pixel"], 24.0);
-    if !gpu["backend"]["name"].as_str().unwrap().contains("llvmpipe") {
-        return;
-    }
-    for method in methods {
-        for i in 0..3 {
-            let path = |b: &str| folder.path(&format!("{b}/{method}/{i:06}.exr"));
-            assert_eq!(fs::read(path("cpu")).unwrap(), fs::read(path("gpu")).unwrap(), "{method}, frame {i}");
-        }
-    }
 }
 
 /// Renderer and post-process, in every file that has times, add up to the whole frame.

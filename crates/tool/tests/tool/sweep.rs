@@ -1,6 +1,6 @@
 //! `afterimage sweep` as a process: files, resuming, errors.
 
-use super::rig::{refuses, succeeds};
+use super::rig::{Folder, files, read_json, refuses, succeeds, words};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
@@ -9,43 +9,24 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// Three rounds (sizes of the fovea) of two methods on small frames; the first size has a third point.
-const SMALL: &[&str] = &[
-    "sweep",
-    "analytic:lateral",
-    "--backend",
-    "cpu",
-    "--size",
-    "96x54",
-    "--frames",
-    "38",
-    "--axis",
-    "method=none,smr",
-    "--axis",
-    "fovea=5,10,15",
-    "--switch",
-    "no-flush",
-];
+const SMALL: &str = "sweep analytic:lateral --backend cpu --size 96x54 --frames 38 --axis method=none,smr \
+                     --axis fovea=5,10,15 --switch no-flush";
 
-fn sweep(out: &Path, more: &[&str]) -> Vec<String> {
-    let out = ["--out".to_owned(), out.to_str().unwrap().to_owned()];
-    SMALL.iter().chain(more).map(|a| (*a).to_owned()).chain(out).collect()
+fn sweep<'a>(out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    [&words(SMALL), more, &["--out", out]].concat()
 }
 
 #[track_caller]
-fn run(out: &Path, more: &[&str]) -> String {
-    succeeds(&words(&sweep(out, more)))
+fn run(out: &str, more: &[&str]) -> String {
+    succeeds(&sweep(out, more))
 }
 
-fn words(args: &[String]) -> Vec<&str> {
-    args.iter().map(String::as_str).collect()
-}
-
-fn table(out: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(out.join("sweep.json")).unwrap()).unwrap()
+fn table(out: &str) -> Value {
+    read_json(&Path::new(out).join("sweep.json"))
 }
 
 /// Every point and its scores, without times, which differ between runs.
-fn figures(out: &Path) -> BTreeMap<String, String> {
+fn figures(out: &str) -> BTreeMap<String, String> {
     let table = table(out);
     let rows = table["rows"].as_array().unwrap().iter();
     rows.map(|row| {
@@ -58,13 +39,13 @@ fn figures(out: &Path) -> BTreeMap<String, String> {
 
 #[test]
 fn a_sweep_that_is_killed_goes_on_and_ends_with_the_same_tables() {
-    let folder = tempfile::tempdir().unwrap();
-    let (whole, killed) = (folder.path().join("whole"), folder.path().join("killed"));
+    let folder = Folder::new();
+    let (whole, killed) = (folder.text("whole"), folder.text("killed"));
     let said = run(&whole, &[]);
     assert!(said.contains("7 points, 7 to measure in 3 rounds"), "{said}");
     assert_eq!(figures(&whole).len(), 7);
     for name in ["sweep.csv", "sweep.json"] {
-        assert!(whole.join(name).exists(), "{name}");
+        assert!(folder.path("whole").join(name).exists(), "{name}");
     }
 
     let mut child = Command::new(env!("CARGO_BIN_EXE_afterimage"))
@@ -74,20 +55,23 @@ fn a_sweep_that_is_killed_goes_on_and_ends_with_the_same_tables() {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    let points =
-        || fs::read_dir(killed.join("points")).map_or(0, |d| d.filter(|e| is_point(e.as_ref().unwrap())).count());
+    let points = || {
+        let place = folder.path("killed/points");
+        let names = if place.is_dir() { files(&place) } else { vec![] };
+        names.into_iter().filter(|name| name.ends_with(".json") && !name.starts_with('.')).collect::<Vec<_>>()
+    };
     // Rounds have at most three points, so at least one is complete then, on any machine.
     let patience = Instant::now();
-    while points() < 3 && child.try_wait().unwrap().is_none() {
+    while points().len() < 3 && child.try_wait().unwrap().is_none() {
         assert!(patience.elapsed() < Duration::from_secs(120), "no round was ever finished");
         std::thread::sleep(Duration::from_millis(2));
     }
     child.kill().unwrap();
     child.wait().unwrap();
-    let kept = points();
+    let kept = points().len();
     println!("killed with {kept} of 7 points");
     assert!((3..7).contains(&kept), "killed in the middle");
-    assert!(!killed.join("sweep.json").exists());
+    assert!(!folder.path("killed/sweep.json").exists());
     let said = run(&killed, &[]);
     assert!(!said.contains("7 to measure"), "what was finished is not measured again: {said}");
     assert_eq!(figures(&killed), figures(&whole));
@@ -95,81 +79,71 @@ fn a_sweep_that_is_killed_goes_on_and_ends_with_the_same_tables() {
     assert!(run(&killed, &[]).contains("0 to measure"));
     // A round that was killed between writing its points is measured again completely, so that its times are from one
     // run.
-    let point = fs::read_dir(killed.join("points")).unwrap().map(Result::unwrap).find(is_point).unwrap();
-    fs::remove_file(point.path()).unwrap();
+    fs::remove_file(folder.path("killed/points").join(&points()[0])).unwrap();
     let said = run(&killed, &[]);
     assert!(said.contains("in 1 rounds") && !said.contains(", 1 to measure"), "{said}");
     assert_eq!(figures(&killed), figures(&whole));
 }
 
-fn is_point(entry: &fs::DirEntry) -> bool {
-    let name = entry.file_name().into_string().unwrap();
-    name.ends_with(".json") && !name.starts_with('.')
-}
-
 #[test]
 fn shards_that_are_merged_are_the_whole_sweep() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = |name: &str| folder.path().join(name);
+    let folder = Folder::new();
     let parts = ["1/2", "2/2"].map(|shard| {
-        let part = path(&shard.replace('/', "of"));
+        let part = folder.text(&shard.replace('/', "of"));
         run(&part, &["--shard", shard]);
         part
     });
     let counts = parts.each_ref().map(|part| figures(part).len());
     assert!(counts.iter().all(|&n| n > 0) && counts.iter().sum::<usize>() == 7, "{counts:?}");
-    let text = |p: &Path| p.to_str().unwrap().to_owned();
-    let merged = path("merged");
-    succeeds(&["sweep", "--merge", &text(&parts[0]), &text(&parts[1]), "--out", &text(&merged)]);
-    run(&path("whole"), &[]);
-    assert_eq!(figures(&merged), figures(&path("whole")));
-    let pictures = |p: &Path| fs::read_dir(p.join("pictures")).unwrap().count();
-    assert_eq!(pictures(&merged), pictures(&path("whole")));
+    let [merged, whole, other] = ["merged", "whole", "other"].map(|name| folder.text(name));
+    succeeds(&["sweep", "--merge", &parts[0], &parts[1], "--out", &merged]);
+    run(&whole, &[]);
+    assert_eq!(figures(&merged), figures(&whole));
+    let pictures = |name: &str| files(&folder.path(name).join("pictures")).len();
+    assert_eq!(pictures("merged"), pictures("whole"));
 
-    let other = path("other");
     run(&other, &["--set", "hfov=50", "--axis", "fovea=5"]);
-    let args = ["sweep", "--merge", &text(&merged), &text(&other), "--out", &text(&path("no"))];
+    let args = ["sweep", "--merge", &merged, &other, "--out", &folder.text("no")];
     refuses(&args, &["other", "is part of another sweep"]);
 }
 
 #[test]
 fn it_recommends_what_fits() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("out");
-    let text = out.to_str().unwrap();
+    let folder = Folder::new();
+    let out = folder.text("out");
     run(&out, &[]);
-    let said = succeeds(&["sweep", "--out", text, "--budget-ms", "1e9", "--renderer-ms", "0"]);
-    assert!(said.contains("afterimage run analytic:lateral --method smr"), "{said}");
-    assert!(said.contains("let settings = Settings { foveation: Foveation {"), "{said}");
-    let said = succeeds(&["sweep", "--out", text, "--budget-ms", "0"]);
-    assert!(said.contains("nothing costs 0 ms or less; the cheapest, none"), "{said}");
-    let said = succeeds(&["sweep", "--out", text, "--by", "psnr_db", "--target", "1", "--renderer-ms", "0"]);
-    assert!(said.contains("--method none"), "anything reaches 1 dB: {said}");
-    let said = succeeds(&["sweep", "--out", text, "--target-flip", "0", "--renderer-ms", "0"]);
-    assert!(said.contains("nothing is as good; the best is"), "{said}");
+    for (line, expected) in [
+        ("--budget-ms 1e9 --renderer-ms 0", "afterimage run analytic:lateral --method smr"),
+        ("--budget-ms 1e9 --renderer-ms 0", "let settings = Settings { foveation: Foveation {"),
+        ("--budget-ms 0", "nothing costs 0 ms or less; the cheapest, none"),
+        // Anything reaches 1 dB.
+        ("--by psnr_db --target 1 --renderer-ms 0", "--method none"),
+        ("--target-flip 0 --renderer-ms 0", "nothing is as good; the best is"),
+    ] {
+        let said = succeeds(&[&["sweep", "--out", &out], &words(line)[..]].concat());
+        assert!(said.contains(expected), "{line}: {said}");
+    }
 
     // The printed command gives the printed scores.
     let table = table(&out);
     let row = table["rows"].as_array().unwrap().iter().find(|r| r["method"] == "smr").unwrap();
-    let again = folder.path().join("again");
-    let command = format!("{} --out {}", row["command"].as_str().unwrap(), again.display());
-    succeeds(&command.split(' ').skip(1).collect::<Vec<_>>());
-    let report: Value = serde_json::from_str(&fs::read_to_string(again.join("report.json")).unwrap()).unwrap();
+    let command = format!("{} --out {}", row["command"].as_str().unwrap(), folder.text("again"));
+    succeeds(&words(&command)[1..]);
+    let report = read_json(&folder.path("again/report.json"));
     assert_eq!(report["methods"]["smr"]["flip"], row["values"]["flip"]);
     assert_eq!(report["methods"]["smr"]["psnr_db"], row["values"]["psnr_db"]);
 }
 
 #[test]
 fn a_plan_in_a_file_is_read_and_a_wrong_one_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    let (plan, out) = (path("plan.toml"), path("out"));
+    let folder = Folder::new();
+    let (plan, out, no) = (folder.text("plan.toml"), folder.text("out"), folder.text("no"));
     let text = "seeds = 2\n[common]\nframes = 38\nsize = \"64x36\"\nbackend = \"cpu\"\n[axes]\nmethod = [\"wrs\"]\n\
                 \"rate-mid+rate-far\" = [\"2+4\"]\n[switches]\nof = [\"no-gate\"]\n";
     fs::write(&plan, text).unwrap();
     let args = ["sweep", "analytic:lateral", "--file", &plan, "--out", &out];
     succeeds(&args);
-    let table = table(Path::new(&out));
+    let table = table(&out);
     let rows = table["rows"].as_array().unwrap();
     assert_eq!(rows.len(), 2);
     assert!(rows.iter().all(|r| r["seeds"] == 2 && r["command"].as_str().unwrap().contains("--rate-far 4")));
@@ -191,12 +165,12 @@ fn a_plan_in_a_file_is_read_and_a_wrong_one_refused() {
     ];
     for (text, words) in wrong {
         fs::write(&plan, text).unwrap();
-        let args = ["sweep", "analytic:lateral", "--file", &plan, "--out", &path("no")];
+        let args = ["sweep", "analytic:lateral", "--file", &plan, "--out", &no];
         refuses(&args, &[words]);
     }
-    assert!(!Path::new(&path("no")).exists(), "all points are checked before the first is measured");
-    let missing = path("missing.toml");
-    let args = ["sweep", "analytic:lateral", "--file", &missing, "--out", &path("no")];
+    assert!(!folder.path("no").exists(), "all points are checked before the first is measured");
+    let missing = folder.text("missing.toml");
+    let args = ["sweep", "analytic:lateral", "--file", &missing, "--out", &no];
     refuses(&args, &["missing.toml", "cannot be read"]);
 }
 
@@ -206,11 +180,13 @@ fn a_plan_in_a_file_is_read_and_a_wrong_one_refused() {
 /// help least.
 #[test]
 fn traced_patterns_converge_with_samples() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("out");
-    let small = ["--size", "32x24", "--gaze", "16,12", "--frames", "38", "--backend", "cpu"];
-    let quick = ["--set", "reference-spp=1024", "--set", "no-flip", "--out", out.to_str().unwrap()];
-    succeeds(&[&["sweep", "builtin:cornell", "--preset", "convergence"][..], &small, &quick].concat());
+    let folder = Folder::new();
+    let out = folder.text("out");
+    let line = format!(
+        "sweep builtin:cornell --preset convergence --size 32x24 --gaze 16,12 --frames 38 --backend cpu \
+         --set reference-spp=1024 --set no-flip --out {out}"
+    );
+    succeeds(&words(&line));
     let table = table(&out);
     let all = table["convergences"].as_array().unwrap();
     assert_eq!(all.len(), 8, "four patterns, with and without history");
@@ -229,22 +205,21 @@ fn traced_patterns_converge_with_samples() {
         assert!(pattern == "uniform" || frame > uniform[0] + 0.3, "{pattern}: bias stays");
     }
     assert!(uniform[0] < -0.5 && slopes("smr", "uniform")[0] < -0.5);
-    let text = fs::read_to_string(out.join("sweep.md")).unwrap();
+    let text = fs::read_to_string(folder.path("out/sweep.md")).unwrap();
     assert!(text.contains("sampling uniform: slopes"), "{text}");
 }
 
 #[test]
 fn another_sweep_is_not_mixed_in_and_what_is_no_sweep_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("out");
-    run(&out, &["--axis", "fovea=5", "--axis", "method=none"]);
-    let before = figures(&out);
-    refuses(&words(&sweep(&out, &["--start", "0.5"])), &["holds a sweep that was made with"]);
-    assert_eq!(figures(&out), before);
+    let folder = Folder::new();
+    let (out, empty) = (&folder.text("out"), &folder.text(""));
+    run(out, &["--axis", "fovea=5", "--axis", "method=none"]);
+    let before = figures(out);
+    refuses(&sweep(out, &["--start", "0.5"]), &["holds a sweep that was made with"]);
+    assert_eq!(figures(out), before);
     // Points with the same frames may be added.
-    run(&out, &["--axis", "fovea=5,10", "--axis", "method=none"]);
-    assert_eq!(figures(&out).len(), 2);
-    let empty = folder.path().to_str().unwrap();
+    run(out, &["--axis", "fovea=5,10", "--axis", "method=none"]);
+    assert_eq!(figures(out).len(), 2);
     refuses(&["sweep", "--out", empty], &["holds no sweep"]);
     refuses(&["sweep", "nowhere.exr", "--out", empty], &["nowhere.exr", "does not exist"]);
     for (shard, words) in [("0/2", "1 <= I <= N"), ("3/2", "1 <= I <= N"), ("x", "2/8")] {
@@ -256,14 +231,13 @@ fn another_sweep_is_not_mixed_in_and_what_is_no_sweep_is_refused() {
 #[cfg(unix)]
 #[test]
 fn a_full_disk_and_an_unwritable_folder_are_clear_errors() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("file");
-    fs::write(&file, "x").unwrap();
-    refuses(&words(&sweep(&file, &[])), &["cannot be written", "give --out a folder"]);
+    let folder = Folder::new();
+    refuses(&sweep(&folder.write("file", b"x"), &[]), &["cannot be written", "give --out a folder"]);
 
     // Limit files to 1 KiB to simulate a full disk. The signal is ignored, so that writing fails.
-    let out = folder.path().join("out");
-    let command = sweep(&out, &["--axis", "method=none", "--axis", "fovea=5"]).join(" ");
+    let out = folder.text("out");
+    let one = ["--axis", "method=none", "--axis", "fovea=5"];
+    let command = sweep(&out, &one).join(" ");
     let script = format!("trap '' XFSZ; ulimit -f 2; exec {} {command}", env!("CARGO_BIN_EXE_afterimage"));
     let output =
         Command::new("sh").args(["-c", &script]).current_dir(afterimage_testing::workspace()).output().unwrap();
@@ -271,16 +245,8 @@ fn a_full_disk_and_an_unwritable_folder_are_clear_errors() {
     assert!(output.status.code() == Some(1) && stderr.lines().count() == 1, "{stderr}");
     assert!(stderr.contains("cannot be written") && stderr.contains("free space or choose another --out"), "{stderr}");
     // No partial file remains, and the sweep resumes when there is space.
-    let names = |part: &str| -> Vec<_> {
-        fs::read_dir(out.join(part)).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect()
-    };
-    assert!(
-        names("points").is_empty() && names("pictures").is_empty(),
-        "{:?} {:?}",
-        names("points"),
-        names("pictures")
-    );
-    run(&out, &["--axis", "method=none", "--axis", "fovea=5"]);
+    assert_eq!(["out/points", "out/pictures"].map(|part| files(&folder.path(part))), [[""; 0]; 2]);
+    run(&out, &one);
     assert_eq!(figures(&out).len(), 1);
 }
 
@@ -290,13 +256,13 @@ fn rasterised_scenes_are_compared_by_the_time_of_the_whole_frame() {
     if afterimage_testing::gpu::adapter().is_none() {
         return;
     }
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("out");
-    let axes = ["--axis", "method=none,smr", "--axis", "foveation+geometry=sparse+samples,mip+-"];
-    let small = ["--source", "raster", "--size", "320x180", "--frames", "38", "--backend", "gpu"];
-    let quick = ["--set", "no-flip", "--set", "reference-samples=1"];
-    let text = out.to_str().unwrap();
-    let said = succeeds(&[&["sweep", "builtin:cubes", "--out", text][..], &axes, &small, &quick].concat());
+    let folder = Folder::new();
+    let out = folder.text("out");
+    let line = format!(
+        "sweep builtin:cubes --out {out} --axis method=none,smr --axis foveation+geometry=sparse+samples,mip+- \
+         --source raster --size 320x180 --frames 38 --backend gpu --set no-flip --set reference-samples=1"
+    );
+    let said = succeeds(&words(&line));
     assert!(said.contains("whole frame, render + post"), "{said}");
     let table = table(&out);
     let rows = table["rows"].as_array().unwrap();
@@ -317,13 +283,13 @@ fn rasterised_scenes_are_compared_by_the_time_of_the_whole_frame() {
     }
     println!("{render_ms:?}");
     assert!(render_ms["sparse"] < render_ms["mip"], "a simulator needs the full-rate frame: {render_ms:?}");
-    let csv = fs::read_to_string(out.join("sweep.csv")).unwrap();
+    let csv = fs::read_to_string(folder.path("out/sweep.csv")).unwrap();
     let header = csv.lines().next().unwrap();
     assert!(header.starts_with("input,label,method,seeds,cost_ms,pass_ms,pass_p25_ms,pass_p75_ms,render_ms,"));
     assert!(header.ends_with(",frontier,command,post_ms,total_ms,render_cpu_ms,post_cpu_ms,total_cpu_ms"), "{header}");
-    assert!(fs::read_to_string(out.join("pareto.svg")).unwrap().contains("whole frame: renderer and pass"));
+    assert!(fs::read_to_string(folder.path("out/pareto.svg")).unwrap().contains("whole frame: renderer and pass"));
     // The user's renderer replaces ours.
-    succeeds(&["sweep", "--out", text, "--renderer-ms", "1000"]);
+    succeeds(&["sweep", "--out", &out, "--renderer-ms", "1000"]);
     let rows = self::table(&out)["rows"].clone();
     for row in rows.as_array().unwrap() {
         let expected = 1000.0 * row["samples_share"].as_f64().unwrap();

@@ -1,15 +1,13 @@
 //! Foveated frames against the full-rate frame's pixels.
 
-use super::rig::{FAST, Frame, device};
-use afterimage::{Filter, Foveation, Image, Lattice, Lattices, MethodKind, Settings, ViewGeometry};
-use afterimage_lab::device::{Backend, Headless};
-use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
-use afterimage_lab::pipeline::{Pipeline, RunKind};
+use super::rig::{FAST, Frame};
+use crate::given;
+use crate::given::device;
+use afterimage::{Foveation, Image, Lattice, Lattices, ViewGeometry};
+use afterimage_lab::device::Headless;
 use afterimage_lab::raster::{AtlasLayout, FoveatedTargets, PixelSamples, Raster, Targets};
-use afterimage_lab::scene::{
-    Environment, Material, Pose, Scene, SceneLimits, Texture, TextureRef, Triangles, Wrap, builtin,
-};
-use afterimage_lab::source::{FrameSource, RasterSource, SceneCamera};
+use afterimage_lab::scene::{Environment, Material, Pose, Scene, Texture, TextureRef, Triangles, Wrap, builtin};
+use afterimage_lab::source::SceneCamera;
 use afterimage_lab::trace::view::View;
 use glam::{DMat4, DQuat, DVec3, Vec2, vec3};
 use proptest::prelude::*;
@@ -186,7 +184,8 @@ fn difference(full: &Frame, made: &Frame, lattice: &Lattice, shift: usize) -> Di
     d
 }
 
-const FOVEATION: fn() -> Foveation = || Foveation { rate_mid: 4, rate_far: 8, fovea_deg: 20.0, ..Foveation::default() };
+pub(super) const FOVEATION: fn() -> Foveation =
+    || Foveation { rate_mid: 4, rate_far: 8, fovea_deg: 20.0, ..Foveation::default() };
 
 /// In the middle, at a corner, and beyond the edge.
 const GAZES: [[f32; 2]; 3] = [[161.0, 90.0], [2.0, 178.0], [330.0, 61.0]];
@@ -199,8 +198,8 @@ fn scenes() -> Vec<(&'static str, Scene, [View; 2])> {
     let courtyard = builtin::courtyard();
     let mut scenes =
         vec![("noise", noise(), views(flat(SIZE))), ("courtyard", courtyard.clone(), moving(&courtyard, "walk"))];
-    if let Some(folder) = super::real::folder() {
-        let sponza = Scene::open(folder.join("sponza/sponza.gltf").to_str().unwrap(), &SceneLimits::default()).unwrap();
+    if let Some(sponza) = given::path_of("sponza/sponza.gltf") {
+        let sponza = given::open(&sponza);
         let views = moving(&sponza, "walk");
         scenes.push(("sponza", sponza, views));
     }
@@ -208,13 +207,14 @@ fn scenes() -> Vec<(&'static str, Scene, [View; 2])> {
 }
 
 #[test]
-fn foveal_samples_have_the_bits_of_the_full_rate_frame() {
+fn samples_are_pixels_of_the_full_rate_frame() {
     let Some(device) = device() else { return };
     for (name, scene, views) in scenes() {
         let mut rig = Rig::new(&device, &scene, SIZE);
         let full = rig.full(&views);
         for (gaze, index) in GAZES.into_iter().zip([0, 5, 9]) {
             let lattices = FOVEATION().lattices(views[0].geometry(), gaze, index);
+            // In place, foveal samples have the bits of the frame.
             let seen = rig.foveated(&views, &lattices, AtlasLayout::InPlace);
             let fovea = &seen.lattices.as_slice()[0];
             assert_eq!(fovea.step, 1);
@@ -226,33 +226,21 @@ fn foveal_samples_have_the_bits_of_the_full_rate_frame() {
             assert!(planted.bits.iter().any(|&n| 10 * n > planted.samples), "{planted:?}");
 
             // In the smallest atlas, rounding differs.
-            let seen = rig.foveated(&views, &lattices, AtlasLayout::Compact);
-            let d = difference(&full, &seen.atlas, &seen.lattices.as_slice()[0], 0);
+            let mut seen = rig.foveated(&views, &lattices, AtlasLayout::Compact);
+            let [fovea, coarse @ ..] = seen.lattices.as_slice() else { unreachable!() };
+            let d = difference(&full, &seen.atlas, fovea, 0);
             println!("{name}, compact: {d:?}");
             assert!(d.psnr_db > 60.0 && d.distance < 1e-5 && d.motion_px < 2e-3, "{d:?}");
-        }
-    }
-}
-
-#[test]
-fn coarse_samples_are_pixels_of_the_full_rate_frame() {
-    let Some(device) = device() else { return };
-    for (name, scene, views) in scenes() {
-        let mut rig = Rig::new(&device, &scene, SIZE);
-        let full = rig.full(&views);
-        for (gaze, index) in GAZES.into_iter().zip([0, 5, 9]) {
-            let lattices = FOVEATION().lattices(views[0].geometry(), gaze, index);
-            let mut seen = rig.foveated(&views, &lattices, AtlasLayout::Compact);
-            for lattice in seen.lattices.as_slice().iter().filter(|l| l.step > 1) {
+            for lattice in coarse {
                 let d = difference(&full, &seen.atlas, lattice, 0);
                 println!("{name}, step {}: {d:?}", lattice.step);
-                assert!(d.smooth > 20 && d.is_small());
+                assert!(lattice.step > 1 && d.smooth > 20 && d.is_small());
                 // Planted: samples of the neighbouring pixel.
                 let planted = difference(&full, &seen.atlas, lattice, 1);
                 assert!(!planted.is_small(), "{planted:?}");
             }
             // Planted: motion in pixels of the small view.
-            let far = *seen.lattices.as_slice().last().unwrap();
+            let far = *coarse.last().unwrap();
             seen.atlas.motion = seen.atlas.motion.map(|m| m.map(|v| v / far.step as f32));
             let planted = difference(&full, &seen.atlas, &far, 0);
             assert!(planted.motion_px > 100.0 * MOTION_PX, "{planted:?}");
@@ -312,42 +300,6 @@ fn lattices_may_reach_beyond_the_frame() {
             let d = difference(&full, &seen.atlas, lattice, 0);
             println!("step {}: {d:?}", lattice.step);
             assert!(d.is_small());
-        }
-    }
-}
-
-/// One walk with all methods: on the device, where samples stay, and read back for methods on the CPU.
-#[test]
-fn methods_give_the_same_pictures_from_samples_on_the_device_and_in_memory() {
-    const SMALL: [u32; 2] = [158, 90];
-    let Some(device) = device() else { return };
-    for geometry in [SparseGeometry::Full, SparseGeometry::Samples] {
-        let scene = noise();
-        let camera = SceneCamera::choose(&scene, Some("walk"), SMALL, None).unwrap();
-        let view = *camera.geometry();
-        let mut source = RasterSource::new(device.clone(), scene, camera, None, FAST).unwrap();
-        let foveation = Foveation { filter: Filter::Sparse, fovea_deg: 12.0, ..FOVEATION() };
-        let methods = [MethodKind::None, MethodKind::Taa, MethodKind::Taau, MethodKind::Wrs, MethodKind::Smr];
-        let kinds =
-            methods.map(|method| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() }));
-        let mut pipelines = [Backend::Gpu(device.clone()), Backend::Cpu].map(|backend| {
-            let pipeline = Pipeline::new(view, foveation, &kinds, false, &[], &backend).unwrap();
-            pipeline.with_sparse(geometry, SampleOrder::Bayer)
-        });
-        for index in 0..4 {
-            let gaze_px = [60.0 + 10.0 * index as f32, 50.0];
-            let frame = source.render(&pipelines[0].request(index, Some(gaze_px))).unwrap();
-            let lattices = frame.content.lattices().unwrap();
-            let [gpu, cpu] = pipelines.each_mut().map(|pipeline| pipeline.step(&frame).unwrap());
-            for ((gpu, cpu), method) in gpu.outputs.iter().zip(&cpu.outputs).zip(methods) {
-                assert_eq!(gpu.image, cpu.image, "{geometry:?}, frame {index}, {}", method.name());
-            }
-            // Without a method, foveal pixels are those of the full-rate frame.
-            let fovea = lattices.as_slice()[0];
-            let [[left, top], [right, bottom]] = fovea.covered_px();
-            for (x, y) in (top..bottom).flat_map(|y| (left..right).map(move |x| (x as usize, y as usize))) {
-                assert_eq!(gpu.outputs[0].image.at(x, y), frame.reference.color.at(x, y), "({x}, {y})");
-            }
         }
     }
 }

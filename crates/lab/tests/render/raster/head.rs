@@ -1,8 +1,10 @@
 //! A head and eye in a scene: what gaze rests on, in rendered depth and motion.
 
-use super::rig::{FAST, device};
+use super::rig::FAST;
+use crate::given;
+use crate::given::device;
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, HeadOptions, HeadPath, Regarded};
-use afterimage_lab::scene::{Scene, SceneLimits};
+use afterimage_lab::scene::Scene;
 use afterimage_lab::source::{FrameSource, RasterSource, SceneCamera, head_in_scene};
 use glam::DVec3;
 
@@ -13,7 +15,7 @@ const FPS: f64 = 60.0;
 /// A walk through the courtyard with these gains of the reflex, and no drift; the camera, the gaze of each frame, and
 /// what the gaze rests on.
 fn walk(rotation_gain: f64, translation_gain: f64) -> (Scene, SceneCamera, FrameGaze, Vec<Regarded>) {
-    let scene = Scene::open("builtin:courtyard", &SceneLimits::default()).unwrap();
+    let scene = given::builtin("courtyard");
     let options = HeadOptions {
         seed: 5,
         duration_s: 6.0,
@@ -117,7 +119,7 @@ fn rendered_depth_and_motion_under_the_gaze_are_those_of_the_point() {
 
 #[test]
 fn the_space_of_a_head_is_level_and_its_camera_needs_poses() {
-    let scene = Scene::open("builtin:courtyard", &SceneLimits::default()).unwrap();
+    let scene = given::builtin("courtyard");
     let space = SceneCamera::head_space(&scene);
     let first = scene.pose(0.0).cameras[0].world_from_camera;
     assert_eq!((space.w_axis, space.y_axis.truncate()), (first.w_axis, DVec3::Y));

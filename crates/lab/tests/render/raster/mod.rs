@@ -4,6 +4,7 @@ mod foveated;
 mod geometry;
 mod head;
 mod light;
+mod methods;
 mod quad_views;
 mod real;
 mod repair;

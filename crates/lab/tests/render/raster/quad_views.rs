@@ -1,20 +1,17 @@
 //! Quad views against a camera of their resolution, and their composition against its formula.
 
 use super::foveated::{Rig, flat, noise, views};
-use super::rig::{FAST, Frame, device};
-use afterimage::{Foveation, Image, MethodKind, Settings, ViewGeometry};
-use afterimage_lab::device::Backend;
+use super::rig::{FAST, Frame};
+use crate::given::device;
+use afterimage::{Foveation, Image, ViewGeometry};
 use afterimage_lab::frame::OnDevice;
-use afterimage_lab::lattices::SparseGeometry;
-use afterimage_lab::metric;
-use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::quad_views::{QuadView, QuadViewLayout, QuadViews};
 use afterimage_lab::raster::{AtlasLayout, FoveatedTargets};
 use afterimage_lab::source::{FrameRequest, FrameSource, RasterSource, SceneCamera, Wanted};
 use afterimage_lab::trace::view::View;
 
 const SIZE: [u32; 2] = [320, 180];
-const FOVEATION: fn() -> Foveation =
+pub(super) const FOVEATION: fn() -> Foveation =
     || Foveation { rate_mid: 2, rate_far: 4, fovea_deg: 20.0, mid_deg: 40.0, ..Foveation::default() };
 
 /// Quad views of the rig's scene, in an atlas.
@@ -180,58 +177,5 @@ fn a_composed_frame_is_the_views_enlarged_and_blended() {
         println!("{layout:?}: {} and {lods} at most; {nearest} differ; planted {planted}", worst(&expected));
         assert!(worst(&expected) < 1e-4 && lods < 1e-5 && nearest < 200, "rounding decides between two pixels there");
         assert!(planted > 0.05);
-    }
-}
-
-/// One walk with all methods: on the device, where frames stay, and read back for methods on the CPU.
-#[test]
-fn methods_give_the_same_pictures_of_composed_frames_on_the_device_and_in_memory() {
-    const SMALL: [u32; 2] = [158, 90];
-    let Some(device) = device() else { return };
-    for (geometry, layout) in [
-        (SparseGeometry::Full, QuadViewLayout::Regions),
-        (SparseGeometry::Samples, QuadViewLayout::Regions),
-        (SparseGeometry::Samples, QuadViewLayout::Uniform { step: 1.5 }),
-    ] {
-        let camera = SceneCamera::choose(&noise(), Some("walk"), SMALL, None).unwrap();
-        let view = *camera.geometry();
-        let mut source = RasterSource::new(device.clone(), noise(), camera, None, FAST).unwrap();
-        let methods = [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr];
-        let kinds =
-            methods.map(|method| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() }));
-        let mut pipelines = [Backend::Gpu(device.clone()), Backend::Cpu].map(|backend| {
-            let pipeline = Pipeline::new(view, FOVEATION(), &kinds, false, &[], &backend).unwrap();
-            pipeline.with_sparse(geometry, Default::default()).with_quad_views(Some(layout))
-        });
-        let [mut shown_db, mut none_db] = [0.0; 2];
-        for index in 0..4 {
-            let gaze_px = [60.0 + 10.0 * index as f32, 50.0];
-            let request = pipelines[0].request(index, Some(gaze_px));
-            let Wanted::QuadViews(quads) = request.wanted.clone() else { panic!("quad views are wanted") };
-            let frame = source.render(&request).unwrap();
-            let [gpu, cpu] = pipelines.each_mut().map(|pipeline| pipeline.step(&frame).unwrap());
-            for ((gpu, cpu), method) in gpu.outputs.iter().zip(&cpu.outputs).zip(methods) {
-                assert_eq!(gpu.image, cpu.image, "{geometry:?}, {layout:?}, frame {index}, {}", method.name());
-            }
-            if layout == QuadViewLayout::Regions {
-                // Without a method, foveal pixels are those of the full-rate frame.
-                let [[left, top], [right, bottom]] = quads.as_slice()[0].opaque_px;
-                for (x, y) in (top..bottom).flat_map(|y| (left..right).map(move |x| (x as usize, y as usize))) {
-                    assert_eq!(gpu.outputs[0].image.at(x, y), frame.reference.color.at(x, y), "({x}, {y})");
-                }
-            }
-            let db = |image: &Image<[f32; 3]>| {
-                let squares = metric::encode(image, 0.0)
-                    .pixels()
-                    .iter()
-                    .zip(metric::encode(&frame.reference.color, 0.0).pixels())
-                    .map(|(a, b)| (0..3).map(|c| f64::from((a[c] - b[c]).powi(2))).sum::<f64>())
-                    .sum::<f64>();
-                -10.0 * (squares / image.pixels().len() as f64 / 3.0).log10()
-            };
-            (none_db, shown_db) = (db(&gpu.outputs[0].image), db(&gpu.outputs[3].image));
-        }
-        println!("{geometry:?}, {layout:?}: none {none_db:.2} dB, smr {shown_db:.2} dB");
-        assert!(none_db > 15.0 && shown_db > 0.98 * none_db, "what is enlarged resembles the frame");
     }
 }

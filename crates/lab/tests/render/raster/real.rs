@@ -1,9 +1,12 @@
 //! Every available scene: finite, and similar to the path tracer's image.
 
-use super::rig::{device, draw};
+use super::rig::draw;
+use crate::explained::explained_db;
+use crate::given;
+use crate::given::{device, path_of};
 use afterimage::Image;
 use afterimage::kernel::color::srgb_encode;
-use afterimage_lab::scene::{Environment, Scene, SceneLimits, builtin};
+use afterimage_lab::scene::{Environment, builtin};
 use afterimage_lab::source::{FrameSource, RasterSource, SceneCamera};
 use afterimage_lab::trace::cpu::CpuTracer;
 use afterimage_lab::trace::effects::{Effect, Effects};
@@ -11,18 +14,7 @@ use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::work;
 use afterimage_lab::trace::world::World;
-use std::path::PathBuf;
-
-/// Folder of scenes that are not in the repository; if it is missing, prints that and returns `None`.
-pub fn folder() -> Option<PathBuf> {
-    let root = afterimage_testing::workspace();
-    let places = ["shared/data/scenes", "../shared/data/scenes"];
-    let found = places.iter().map(|p| root.join(p)).find(|p| p.is_dir());
-    if found.is_none() {
-        eprintln!("SKIPPED: no scenes in ../shared/data/scenes");
-    }
-    found
-}
+use std::path::Path;
 
 fn shown(image: &Image<[f32; 3]>) -> Image<[f32; 3]> {
     image.map(|c| c.map(|v| srgb_encode((v / (1.0 + v)).clamp(0.0, 1.0))))
@@ -38,7 +30,7 @@ fn psnr(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>) -> f64 {
 /// finite.
 fn likeness(input: &str) -> Option<f64> {
     let device = device()?;
-    let mut scene = Scene::open(input, &SceneLimits::default()).unwrap();
+    let mut scene = given::open(Path::new(input));
     let needs = Effects::needed(&scene);
     if ![Effect::EmissiveTriangles, Effect::PunctualLights, Effect::Environment].iter().any(|&e| needs.has(e)) {
         scene.environment = Environment::Constant([1.0; 3]);
@@ -86,7 +78,7 @@ fn builtin_scenes_look_like_traced_ones() {
 
 #[test]
 fn files_look_like_traced_ones() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = path_of("") else { return };
     let mut files: Vec<_> = std::fs::read_dir(folder)
         .unwrap()
         .flat_map(|e| std::fs::read_dir(e.unwrap().path()).unwrap())
@@ -105,47 +97,28 @@ fn files_look_like_traced_ones() {
 /// distances within 2 %.
 #[test]
 fn vectors_explain_the_next_frame() {
-    let (Some(device), Some(folder)) = (device(), folder()) else { return };
-    let scene = Scene::open(folder.join("sponza/sponza.gltf").to_str().unwrap(), &SceneLimits::default()).unwrap();
+    let (Some(device), Some(folder)) = (device(), path_of("")) else { return };
+    let scene = given::open(&folder.join("sponza/sponza.gltf"));
     let size = [640, 360];
     let file = folder.join("../sequences/sponza_lateral/cameras.json");
     let camera = SceneCamera::choose(&scene, file.to_str(), size, None).unwrap();
     let mut source = RasterSource::new(device, scene, camera, None, super::rig::FAST).unwrap();
     let frames = [3, 4].map(|i| source.frame(i).unwrap());
     let [before, now] = [&frames[0], &frames[1]];
-    let (motion, depth, previous) =
-        (now.motion.as_ref().unwrap(), now.depth.as_ref().unwrap(), before.depth.as_ref().unwrap());
-    let [was, is] = [before, now].map(|f| f.color.map(|c| c.map(|v| srgb_encode(v.clamp(0.0, 1.0)))));
+    let (depth, previous) = (now.depth.as_ref().unwrap(), before.depth.as_ref().unwrap());
     let row = now.previous_from_current.unwrap()[2];
-    let (mut with, mut without, mut count) = (0.0, 0.0, 0);
-    for y in 0..size[1] as usize {
-        for x in 0..size[0] as usize {
-            let m = motion.at(x, y);
-            let (px, py) = (x as f32 + m[0], y as f32 + m[1]);
-            let (i, j) = (px.floor(), py.floor());
-            if !(i >= 0.0 && j >= 0.0 && i + 1.0 < size[0] as f32 && j + 1.0 < size[1] as f32) {
-                continue;
-            }
-            let (s, t, i, j) = (px - i, py - j, i as usize, j as usize);
-            let ray = source.views(4).0[0].geometry().ray([x as f32, y as f32]);
-            let z = depth.at(x, y);
-            let expected = (row[0] * ray[0] + row[1] * ray[1] + row[2]) * z + row[3];
-            let four = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)];
-            if !four.iter().all(|&(i, j)| (previous.at(i, j) / expected - 1.0).abs() < 0.02) {
-                continue;
-            }
-            for c in 0..3 {
-                let v = four.map(|(i, j)| was.at(i, j)[c]);
-                let top = v[0] + (v[1] - v[0]) * s;
-                let bottom = v[2] + (v[3] - v[2]) * s;
-                with += f64::from(top + (bottom - top) * t - is.at(x, y)[c]).powi(2);
-                without += f64::from(was.at(x, y)[c] - is.at(x, y)[c]).powi(2);
-            }
-            count += 3;
-        }
-    }
-    let db = |sum: f64| -10.0 * (sum / count as f64).log10();
-    println!("explained {:.2} dB, without vectors {:.2} dB, {count} values", db(with), db(without));
-    assert!(count > size[0] as usize * size[1] as usize * 2);
-    assert!(db(with) >= 35.0 && db(without) < db(with) - 6.0);
+    let view = source.views(4).0[0];
+    let is_same = |px: [usize; 2], from: [f32; 2]| {
+        let ray = view.geometry().ray(px.map(|v| v as f32));
+        let expected = (row[0] * ray[0] + row[1] * ray[1] + row[2]) * depth.at(px[0], px[1]) + row[3];
+        let [i, j] = from.map(|v| v as usize);
+        let four = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)];
+        let there = four.map(|(i, j)| previous.at(i.min(size[0] as usize - 1), j.min(size[1] as usize - 1)));
+        there.iter().all(|z| (z / expected - 1.0).abs() < 0.02)
+    };
+    let db = |sign| explained_db(before, now, [sign; 2], |c| c.map(|v| srgb_encode(v.clamp(0.0, 1.0))), is_same);
+    let ((with, share), (without, _)) = (db(1.0), db(0.0));
+    println!("explained {with:.2} dB, without vectors {without:.2} dB, {share:.3} of the pixels");
+    assert!(share > 2.0 / 3.0);
+    assert!(with >= 35.0 && without < with - 6.0);
 }

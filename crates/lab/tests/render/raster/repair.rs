@@ -1,17 +1,17 @@
 //! Pixels of the full-rate frame that are shaded alone.
 
-use super::rig::{FAST, device};
+use super::rig::FAST;
+use crate::given::{builtin, device};
 use afterimage::Image;
 use afterimage_lab::frame::{Content, ShadedColor, Wish};
-use afterimage_lab::scene::{Scene, SceneLimits};
+use afterimage_lab::scene::Scene;
 use afterimage_lab::source::{FrameRequest, FrameSource, RasterSource, SceneCamera};
 
 /// Odd sides: the last quads lie half beyond the edges.
 const SIZE: [u32; 2] = [159, 91];
 
 fn scenes() -> Vec<Scene> {
-    let open = |name: &str| Scene::open(&format!("builtin:{name}"), &SceneLimits::default()).unwrap();
-    let named = ["courtyard", "cubes", "mirror-room"].map(open);
+    let named = ["courtyard", "cubes", "mirror-room"].map(builtin);
     [&named[..], &[super::foveated::noise()]].concat()
 }
 

@@ -8,15 +8,6 @@ use afterimage_lab::trace::effects::Effects;
 use afterimage_lab::trace::surfaces::Surfaces;
 use afterimage_lab::trace::view::View;
 use afterimage_lab::trace::world::World;
-use afterimage_testing::gpu::adapter;
-use std::sync::{Arc, OnceLock};
-
-/// The device shared by all tests; without one, prints that and returns `None`.
-pub fn device() -> Option<Arc<Headless>> {
-    static DEVICE: OnceLock<Option<Arc<Headless>>> = OnceLock::new();
-    adapter()?;
-    DEVICE.get_or_init(|| Headless::find_roomy(true)).clone()
-}
 
 /// A frame read back from the device.
 pub struct Frame {

@@ -1,7 +1,7 @@
 //! Two eyes with a gaze each: their lattices in an atlas an eye, both views in one context.
 
 use super::foveated::{Rig, noise};
-use super::rig::device;
+use crate::given::device;
 use afterimage::gpu::{Afterimage, Frame, Region, Textures};
 use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{

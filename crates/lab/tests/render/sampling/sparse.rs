@@ -1,20 +1,18 @@
 //! Samples of moving lattices: they lie where the post-process reads them, have the color that was traced there, and
 //! nothing else is traced.
 
-use super::fills::view;
+use super::fills::Yard;
+use crate::given::device;
 use afterimage::{Filter, Foveation, Image, Lattices, Method, MethodKind, Repair, Settings, Smr, ViewGeometry};
-use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::device::Backend;
 use afterimage_lab::frame::{Content, OnDevice, RenderedFrame, Shaded, SourceFrame, Wish};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
-use afterimage_lab::scene::builtin;
 use afterimage_lab::source::{FrameRequest, FrameSource, ReadLimits, SceneOptions, TracedSamples, TracedSource};
-use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::sampling::{Acuity, Lattice, Layers, Regions, Sampling};
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::work::WorkItem;
-use afterimage_lab::trace::world::World;
 use std::collections::{HashMap, HashSet};
 use std::error::Error;
 
@@ -43,16 +41,15 @@ fn read_for(lattices: &Lattices, [x, y]: [u32; 2]) -> Vec<[u32; 2]> {
 
 #[test]
 fn what_the_post_process_reads_is_traced_and_little_else() {
-    let scene = builtin::courtyard_of(2000);
-    let view = view(&scene, SIZE);
+    let yard = Yard::new(SIZE, TraceSettings::default());
     for sampling in patterns() {
-        let mut offsets = std::collections::HashSet::new();
+        let mut offsets = HashSet::new();
         for (frame, gaze) in [(0, [80.0, 45.0]), (5, [10.0, 80.0]), (11, [150.3, 2.0]), (14, [-400.0, 45.0])] {
-            let plan = sampling.sparse_plan(view.geometry(), gaze, 2, frame, SampleOrder::Bayer).unwrap();
+            let plan = sampling.sparse_plan(yard.geometry(), gaze, 2, frame, SampleOrder::Bayer).unwrap();
             let traced: HashMap<[u32; 2], u32> = plan.pixels().collect();
             assert_eq!(traced.len(), plan.pixels().count(), "no pixel is traced twice");
             let read = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).flat_map(move |x| [[x, y]]));
-            let read: std::collections::HashSet<_> = read.flat_map(|px| read_for(plan.lattices(), px)).collect();
+            let read: HashSet<_> = read.flat_map(|px| read_for(plan.lattices(), px)).collect();
             for px in &read {
                 assert!(traced.contains_key(px), "{sampling:?}, frame {frame}: {px:?} is read");
             }
@@ -68,8 +65,7 @@ fn what_the_post_process_reads_is_traced_and_little_else() {
 
 #[test]
 fn lattices_are_those_of_the_sparse_simulator() {
-    let scene = builtin::courtyard_of(2000);
-    let geometry = *view(&scene, SIZE).geometry();
+    let geometry = *Yard::new(SIZE, TraceSettings::default()).geometry();
     let [regions, layers] = patterns();
     for order in SampleOrder::ALL {
         for frame in 0..16 {
@@ -89,13 +85,10 @@ fn lattices_are_those_of_the_sparse_simulator() {
 
 #[test]
 fn samples_have_the_colors_traced_at_their_places() {
-    let scene = builtin::courtyard_of(2000);
-    let world = World::new(&scene);
-    let tracer = Tracer::new(&Backend::Cpu, &world, TraceSettings::default()).unwrap();
-    let view = view(&scene, SIZE);
+    let yard = Yard::new(SIZE, TraceSettings::default());
     for sampling in patterns() {
-        let plan = sampling.sparse_plan(view.geometry(), [60.0, 50.0], 2, 7, SampleOrder::Bayer).unwrap();
-        let made = plan.trace(&tracer, &world, &view, 7);
+        let plan = sampling.sparse_plan(yard.geometry(), [60.0, 50.0], 2, 7, SampleOrder::Bayer).unwrap();
+        let made = plan.trace(&yard.tracer, &yard.world, &yard.view, 7);
         assert_eq!(made.lattices, Some(*plan.lattices()));
         let level = |px| plan.lattices().at(px).map_or(0.0, |lattice| lattice.step.ilog2() as f32);
         assert_eq!(made.lod, Image::from_fn(SIZE, level));
@@ -120,7 +113,7 @@ fn samples_have_the_colors_traced_at_their_places() {
                 }
                 let items: Vec<WorkItem> = (0..traced[&px]).map(|s| WorkItem::new(x, y, s)).collect();
                 let mut film = Film::window([x, y], [1, 1]);
-                tracer.trace(&world, &view.on_lattice(&grid), 7, &items, &mut film);
+                yard.tracer.trace(&yard.world, &yard.view.on_lattice(&grid), 7, &items, &mut film);
                 assert_eq!(made.color.at(px[0] as usize, px[1] as usize), film.at([x, y]).mean.to_array(), "{px:?}");
                 assert_eq!(made.noise.as_ref().unwrap().at(px[0] as usize, px[1] as usize)[1], traced[&px] as f32);
                 seen += 1;
@@ -133,15 +126,13 @@ fn samples_have_the_colors_traced_at_their_places() {
 #[test]
 fn samples_show_what_is_at_their_pixels() {
     // Many samples a point, against many samples of all pixels: the places agree better than any shifted by a pixel.
-    let scene = builtin::courtyard_of(2000);
-    let world = World::new(&scene);
-    let tracer = Tracer::new(&Backend::Cpu, &world, TraceSettings { max_depth: 1, ..Default::default() }).unwrap();
-    let view = view(&scene, SIZE);
-    let full = Sampling::Uniform.plan(view.geometry(), [0.0; 2], 24, 0).trace(&tracer, &world, &view, 0).color;
+    let yard = Yard::new(SIZE, TraceSettings { max_depth: 1, ..Default::default() });
+    let full =
+        Sampling::Uniform.plan(yard.geometry(), [0.0; 2], 24, 0).trace(&yard.tracer, &yard.world, &yard.view, 0).color;
     let sampling = Sampling::Regions(Regions { samples: [24; 3], ..Regions::default() });
     for frame in [1, 6] {
-        let plan = sampling.sparse_plan(view.geometry(), [60.0, 50.0], 2, frame, SampleOrder::Bayer).unwrap();
-        let made = plan.trace(&tracer, &world, &view, frame).color;
+        let plan = sampling.sparse_plan(yard.geometry(), [60.0, 50.0], 2, frame, SampleOrder::Bayer).unwrap();
+        let made = plan.trace(&yard.tracer, &yard.world, &yard.view, frame).color;
         let error = |shift: [i32; 2]| -> f64 {
             let of = |[x, y]: [u32; 2]| {
                 let at = [x as i32 + shift[0], y as i32 + shift[1]];
@@ -160,21 +151,20 @@ fn samples_show_what_is_at_their_pixels() {
 
 #[test]
 fn the_post_process_shows_the_samples_and_reads_nothing_between() {
-    let scene = builtin::courtyard_of(2000);
-    let world = World::new(&scene);
-    let tracer = Tracer::new(&Backend::Cpu, &world, TraceSettings::default()).unwrap();
-    let view = view(&scene, SIZE);
+    let yard = Yard::new(SIZE, TraceSettings::default());
     let [regions, _] = patterns();
     let foveation = Foveation { filter: Filter::Sparse, ..regions.foveation() };
     let methods = [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Taau, MethodKind::Smr];
     let kinds = methods.map(|method| RunKind::PostProcess(Settings { method: method.into(), ..Settings::traced() }));
-    let mut pipeline = Pipeline::new(*view.geometry(), foveation, &kinds, false, &[], &Backend::Cpu).unwrap();
+    let mut pipeline = Pipeline::new(*yard.geometry(), foveation, &kinds, false, &[], &Backend::Cpu).unwrap();
     for frame in 0..4 {
         let gaze = [40.0 + 20.0 * frame as f32, 45.0];
-        let made = regions
-            .sparse_plan(view.geometry(), gaze, 2, frame, SampleOrder::Bayer)
-            .unwrap()
-            .trace(&tracer, &world, &view, frame);
+        let made = regions.sparse_plan(yard.geometry(), gaze, 2, frame, SampleOrder::Bayer).unwrap().trace(
+            &yard.tracer,
+            &yard.world,
+            &yard.view,
+            frame,
+        );
         let (color, lattices) = (made.color.clone(), made.lattices.unwrap());
         let source = SourceFrame {
             color: color.map(|_| [0.0; 3]),
@@ -202,20 +192,11 @@ fn the_post_process_shows_the_samples_and_reads_nothing_between() {
 
 #[test]
 fn the_device_traces_the_same_samples() {
-    // Prints that there is no adapter, and fails where one is required.
-    if afterimage_testing::gpu::device().is_none() {
-        return;
-    }
-    let device = Headless::find_roomy(true).expect("there is an adapter");
-    let scene = builtin::courtyard_of(2000);
-    let world = World::new(&scene);
-    let [cpu, gpu] = [Backend::Cpu, Backend::Gpu(device)]
-        .map(|backend| Tracer::new(&backend, &world, TraceSettings::default()).unwrap());
-    let view = view(&scene, SIZE);
+    let Some((yard, on_device)) = Yard::new(SIZE, TraceSettings::default()).on_both() else { return };
     for sampling in patterns() {
-        let plan = sampling.sparse_plan(view.geometry(), [60.0, 50.0], 2, 5, SampleOrder::Bayer).unwrap();
-        let [a, b] = [&cpu, &gpu].map(|tracer| plan.trace(tracer, &world, &view, 5));
-        let bits = |image: &afterimage::Image<[f32; 3]>| image.map(|c| c.map(f32::to_bits));
+        let plan = sampling.sparse_plan(yard.geometry(), [60.0, 50.0], 2, 5, SampleOrder::Bayer).unwrap();
+        let [a, b] = [&yard.tracer, &on_device].map(|tracer| plan.trace(tracer, &yard.world, &yard.view, 5));
+        let bits = |image: &Image<[f32; 3]>| image.map(|c| c.map(f32::to_bits));
         assert_eq!((&a.samples, a.rays), (&b.samples, b.rays), "{sampling:?}");
         assert!(bits(&a.color) == bits(&b.color) && a.noise == b.noise, "{sampling:?}");
     }
@@ -227,10 +208,7 @@ fn shaded(source: &mut TracedSource, frame: &RenderedFrame, wish: &Wish) -> Resu
 
 #[test]
 fn samples_that_stay_on_the_device_are_those_of_the_memory() {
-    if afterimage_testing::gpu::device().is_none() {
-        return;
-    }
-    let device = Headless::find_roomy(true).expect("there is an adapter");
+    let Some(device) = device() else { return };
     let backend = Backend::Gpu(device.clone());
     let kinds = [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Taau, MethodKind::Smr];
     let repaired = Method::Smr(Smr { repair: Some(Repair { budget: 0.05 }), ..Smr::default() });
@@ -245,7 +223,7 @@ fn samples_that_stay_on_the_device_are_those_of_the_memory() {
         let camera = Some("lateral");
         let mut source =
             TracedSource::open("builtin:courtyard", &limits, &options, camera, &backend, settings, samples).unwrap();
-        let view = view(&builtin::courtyard_of(2000), SIZE);
+        let view = Yard::new(SIZE, TraceSettings::default()).view;
         let foveation = Foveation { filter: Filter::Sparse, ..sampling.foveation() };
         let pipeline = || {
             let pipeline = Pipeline::new(*view.geometry(), foveation, &kinds, false, &[], &backend).unwrap();
@@ -274,7 +252,7 @@ fn samples_that_stay_on_the_device_are_those_of_the_memory() {
             assert_eq!(a.outputs[5].repaired.unwrap().share, b.outputs[5].repaired.unwrap().share, "frame {index}");
             assert_eq!((&a.lods, &a.ecc_deg), (&b.lods, &b.ecc_deg));
             for (method, (a, b)) in methods.iter().zip(a.outputs.iter().zip(&b.outputs)) {
-                let bits = |image: &afterimage::Image<[f32; 3]>| image.map(|c| c.map(f32::to_bits));
+                let bits = |image: &Image<[f32; 3]>| image.map(|c| c.map(f32::to_bits));
                 assert!(bits(&a.image) == bits(&b.image), "{method:?}, {sampling:?}, {geometry:?}, frame {index}");
                 assert_eq!(a.stats, b.stats, "{method:?}, frame {index}");
             }

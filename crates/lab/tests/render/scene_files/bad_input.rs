@@ -2,7 +2,7 @@
 
 use super::builder::{Gltf, TRIANGLE, encoded, glb, png, written};
 use super::{assert_refused, assert_sound, open};
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// A file that uses every feature.
 pub fn everything() -> Gltf {
@@ -19,28 +19,22 @@ pub fn everything() -> Gltf {
     file.push("cameras", json!({"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}}));
     let (target, joints) =
         (file.floats(&[[0.5f32, 0.0, 0.0]; 3]), file.accessor(&[0, 1, 0, 0].repeat(3), 3, "VEC4", 5121));
-    let weights = file.floats(&[[0.5f32, 0.5, 0.0, 0.0]; 3]);
-    let (at, values) = (file.view(&[1]), file.view(&[0; 12]));
-    file.json["accessors"][target]["sparse"] =
-        json!({"count": 1, "indices": {"bufferView": at, "componentType": 5121}, "values": {"bufferView": values}});
+    file.set("WEIGHTS_0", &[[0.5, 0.5, 0.0, 0.0]; 3]);
+    file.sparse(target, &[1], &[0; 12]);
     let indices = file.indices(&[2, 0, 1]);
-    let primitive = &mut file.json["meshes"][0]["primitives"][0];
+    let primitive = file.primitive();
     primitive["targets"] = json!([{"POSITION": target}]);
     primitive["indices"] = json!(indices);
     primitive["attributes"]["JOINTS_0"] = json!(joints);
-    primitive["attributes"]["WEIGHTS_0"] = json!(weights);
     let leaf = file.push("nodes", json!({"camera": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}}));
     let root = file.node(json!({"children": [leaf], "scale": [1.0, 2.0, -1.0]}));
     let identity = glam::Mat4::IDENTITY.to_cols_array();
     let bind = file.floats(&[identity, identity]);
     file.push("skins", json!({"joints": [root, leaf], "inverseBindMatrices": bind}));
     file.json["nodes"][0]["skin"] = json!(0);
-    let times = file.floats(&[[0.0], [1.0]]);
-    let (turns, shapes) = (file.floats(&[[0.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.0]]), file.floats(&[[0.0]; 6]));
-    file.push("animations", json!({
-        "samplers": [{"input": times, "output": turns}, {"input": times, "output": shapes, "interpolation": "CUBICSPLINE"}],
-        "channels": [{"sampler": 0, "target": {"node": root, "path": "rotation"}}, {"sampler": 1, "target": {"node": 0, "path": "weights"}}]
-    }));
+    file.animate(root, "rotation", "LINEAR", &[0.0, 1.0], &[[0.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.0]]);
+    file.animate(0, "weights", "CUBICSPLINE", &[0.0, 1.0], &[[0.0]; 6]);
+    file.join_animations();
     file
 }
 
@@ -100,15 +94,9 @@ fn containers_and_descriptions_of_other_kinds() {
     assert_sound(&scene);
 }
 
-/// [`everything`] with one JSON value replaced.
-fn changed(path: &str, value: Value) -> Gltf {
-    let mut file = everything();
-    *file.json.pointer_mut(path).unwrap_or_else(|| panic!("{path}")) = value;
-    file
-}
-
 #[test]
 fn references_to_nothing() {
+    let file = everything();
     for path in [
         "/scene",
         "/scenes/0/nodes/0",
@@ -137,7 +125,7 @@ fn references_to_nothing() {
         "/animations/0/samplers/1/output",
     ] {
         for index in [999u64, u32::MAX.into()] {
-            changed(path, json!(index)).assert_refused(&[]);
+            file.with(path, json!(index)).assert_refused(&[]);
         }
     }
 }
@@ -145,30 +133,27 @@ fn references_to_nothing() {
 #[test]
 fn accessors_of_the_wrong_type_or_length() {
     let mut file = everything();
-    let attributes = file.json["meshes"][0]["primitives"][0]["attributes"].clone();
-    let (positions, uvs) = (attributes["POSITION"].clone(), attributes["TEXCOORD_0"].clone());
-    file.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = uvs;
-    file.assert_refused(&["positions", "Vec2"]);
-    let mut file = everything();
-    file.json["meshes"][0]["primitives"][0]["indices"] = positions;
-    file.assert_refused(&["indices", "Vec3"]);
-    // Indices that are floats.
-    let mut file = everything();
     let floats = file.floats(&[[0.0], [1.0], [2.0]]);
-    file.json["meshes"][0]["primitives"][0]["indices"] = json!(floats);
-    file.assert_refused(&["indices", "F32"]);
-    changed("/accessors/1/count", json!(2)).assert_refused(&["texture coordinates", "2 elements, expected 3"]);
-    changed("/accessors/0/componentType", json!(5124)).assert_refused(&["component type"]);
-    changed("/accessors/0/type", json!("VEC7")).assert_refused(&["unknown type"]);
-    for (path, value) in [
-        ("/accessors/0/count", json!(4)),
-        ("/accessors/0/count", json!(1u64 << 40)),
-        ("/accessors/0/count", json!(u64::MAX)),
-        ("/bufferViews/0/byteOffset", json!(u64::MAX)),
-        ("/bufferViews/0/byteLength", json!(u64::MAX)),
-        ("/bufferViews/0/byteLength", json!(35)),
+    let attribute = |name: &str| everything().primitive()["attributes"][name].clone();
+    let (primitive, positions) = ("/meshes/0/primitives/0", "/meshes/0/primitives/0/attributes/POSITION");
+    for (path, value, words) in [
+        (positions, attribute("TEXCOORD_0"), &["positions", "Vec2"][..]),
+        (&format!("{primitive}/indices"), attribute("POSITION"), &["indices", "Vec3"]),
+        (&format!("{primitive}/indices"), json!(floats), &["indices", "F32"]),
+        ("/accessors/1/count", json!(2), &["texture coordinates", "2 elements, expected 3"]),
+        ("/accessors/0/componentType", json!(5124), &["component type"]),
+        ("/accessors/0/type", json!("VEC7"), &["unknown type"]),
+        ("/accessors/0/count", json!(4), &[]),
+        ("/accessors/0/count", json!(1u64 << 40), &[]),
+        ("/accessors/0/count", json!(u64::MAX), &[]),
+        ("/bufferViews/0/byteOffset", json!(u64::MAX), &[]),
+        ("/bufferViews/0/byteLength", json!(u64::MAX), &[]),
+        ("/bufferViews/0/byteLength", json!(35), &[]),
+        ("/skins/0/joints", json!([1]), &["joint 1 of 1"]),
+        ("/skins/0/joints", json!([]), &["of 0"]),
+        ("/skins/0/joints", json!([1, 2, 1]), &["3 joints and 2 bind matrices"]),
     ] {
-        changed(path, value).assert_refused(&[]);
+        file.with(path, value).assert_refused(words);
     }
     let mut file = everything();
     for stride in [0, 4, 11, u32::MAX] {
@@ -186,14 +171,10 @@ fn indices_and_sparse_elements_out_of_range() {
     file.assert_refused(&["index 3 of 3 vertices"]);
     let mut file = Gltf::new();
     file.soup(&TRIANGLE);
-    let (at, values) = (file.view(&[3]), file.view(&[0; 12]));
-    file.json["accessors"][0]["sparse"] =
-        json!({"count": 1, "indices": {"bufferView": at, "componentType": 5121}, "values": {"bufferView": values}});
-    file.assert_refused(&["sets element 3"]);
-    file.json["accessors"][0]["sparse"]["count"] = json!(2);
-    file.assert_refused(&["beyond its buffer"]);
-    file.json["accessors"][0]["sparse"]["count"] = json!(u64::MAX);
-    file.assert_refused(&["beyond its buffer"]);
+    file.sparse(0, &[3], &[0; 12]);
+    for (count, words) in [(1, "sets element 3"), (2, "beyond its buffer"), (u64::MAX, "beyond its buffer")] {
+        file.with("/accessors/0/sparse/count", json!(count)).assert_refused(&[words]);
+    }
 }
 
 #[test]
@@ -220,8 +201,7 @@ fn triangles_without_area_and_duplicates_are_kept() {
     assert_eq!((scene.still().len(), scene.warnings.len()), (4, 0));
     // Also with generated tangents.
     let mut file = everything();
-    let flat = file.floats(&[[0.5f32, 0.5, 0.5]; 3]);
-    file.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(flat);
+    file.set("POSITION", &[[0.5, 0.5, 0.5]; 3]);
     file.open();
 }
 
@@ -248,8 +228,7 @@ fn nodes_that_are_no_tree() {
 #[test]
 fn a_chain_of_a_hundred_thousand_nodes() {
     let mut file = Gltf::new();
-    let positions = file.floats(&TRIANGLE);
-    let mesh = file.mesh(json!({"attributes": {"POSITION": positions}}));
+    let mesh = file.triangle();
     let n = 100_000;
     let chain = (0..n).map(|i| json!({"children": [i + 1], "translation": [0.001, 0.0, 0.0]}));
     file.json["nodes"] = chain.chain([json!({"mesh": mesh})]).collect();
@@ -257,53 +236,46 @@ fn a_chain_of_a_hundred_thousand_nodes() {
     let scene = file.open();
     // 0.001 as f32 is off by 5e-8 of itself.
     assert!((scene.still().positions[0][0].x - 100.0).abs() < 1e-4);
-    let (times, values) = (file.floats(&[[0.0], [1.0]]), file.floats(&[[0.0; 3], [0.0, 5.0, 0.0]]));
-    file.push(
-        "animations",
-        json!({"samplers": [{"input": times, "output": values}],
-        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}),
-    );
+    file.animate(0, "translation", "LINEAR", &[0.0, 1.0], &[[0.0; 3], [0.0, 5.0, 0.0]]);
     assert!((file.open().pose(0.5).moving.positions[0][0].y - 2.5).abs() < 1e-4);
 }
 
 #[test]
 fn animations_with_keys_that_do_not_fit() {
-    let broken = |times: &[[f32; 1]], values: &[[f32; 3]], interpolation: &str| {
+    let broken = |times: &[f32], values: &[[f32; 3]], interpolation: &str| {
         let mut file = Gltf::new();
         let node = file.soup(&TRIANGLE);
-        let (input, output) = (file.floats(times), file.floats(values));
-        file.push(
-            "animations",
-            json!({"samplers": [{"input": input, "output": output, "interpolation": interpolation}],
-            "channels": [{"sampler": 0, "target": {"node": node, "path": "scale"}}]}),
-        );
+        file.animate(node, "scale", interpolation, times, values);
         file
     };
-    let two = [[0.0], [1.0]];
-    broken(&two, &[[1.0; 3]], "LINEAR").assert_refused(&["1 elements, expected 2"]);
-    broken(&two, &[[1.0; 3]; 2], "CUBICSPLINE").assert_refused(&["2 elements, expected 6"]);
-    broken(&[[1.0], [0.0]], &[[1.0; 3]; 2], "STEP").assert_refused(&["not ascending"]);
-    broken(&[[0.0], [f32::NAN]], &[[1.0; 3]; 2], "LINEAR").assert_refused(&["not finite"]);
-    broken(&[], &[], "LINEAR").assert_refused(&["empty"]);
-    broken(&two, &[[f32::INFINITY; 3]; 2], "LINEAR").assert_refused(&["not finite"]);
-    broken(&two, &[[1.0; 3]; 2], "WOBBLY").assert_refused(&["interpolation"]);
+    let (two, ones) = ([0.0, 1.0], [[1.0; 3]; 2]);
+    for (times, values, interpolation, words) in [
+        (&two[..], &ones[..1], "LINEAR", "1 elements, expected 2"),
+        (&two, &ones, "CUBICSPLINE", "2 elements, expected 6"),
+        (&[1.0, 0.0], &ones, "STEP", "not ascending"),
+        (&[0.0, f32::NAN], &ones, "LINEAR", "not finite"),
+        (&[], &[], "LINEAR", "empty"),
+        (&two, &[[f32::INFINITY; 3]; 2], "LINEAR", "not finite"),
+        (&two, &ones, "WOBBLY", "interpolation"),
+    ] {
+        broken(times, values, interpolation).assert_refused(&[words]);
+    }
     // Two keys at the same time: the later one applies.
-    let scene = broken(&[[0.5], [0.5]], &[[1.0; 3], [3.0; 3]], "LINEAR").open();
+    let scene = broken(&[0.5, 0.5], &[[1.0; 3], [3.0; 3]], "LINEAR").open();
     assert_eq!(scene.pose(0.0).moving.positions[0][1].x, 1.0);
     // Huge values collapse triangles; coordinates stay finite.
     broken(&two, &[[3e38; 3], [-3e38; 3]], "LINEAR").open();
-    let mut file = everything();
-    file.json["animations"][0]["channels"][0]["target"]["path"] = json!("color");
-    assert!(file.open().warnings[0].contains("unknown"));
+    let unknown = everything().with("/animations/0/channels/0/target/path", json!("color"));
+    assert!(unknown.open().warnings[0].contains("unknown"));
 }
 
 #[test]
 fn skins_with_odd_weights_and_joints() {
     let with = |joints: [u8; 4], weights: [f32; 4]| {
         let mut file = everything();
-        let (joints, weights) = (file.accessor(&joints.repeat(3), 3, "VEC4", 5121), file.floats(&[weights; 3]));
-        file.json["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] = json!(joints);
-        file.json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = json!(weights);
+        let joints = file.accessor(&joints.repeat(3), 3, "VEC4", 5121);
+        file.primitive()["attributes"]["JOINTS_0"] = json!(joints);
+        file.set("WEIGHTS_0", &[weights; 3]);
         file
     };
     with([0, 2, 0, 0], [0.5, 0.5, 0.0, 0.0]).assert_refused(&["joint 2 of 2"]);
@@ -320,9 +292,6 @@ fn skins_with_odd_weights_and_joints() {
     for weights in [[0.0; 4], [f32::NAN; 4], [-1.0; 4], [f32::MAX; 4]] {
         with([1, 1, 1, 1], weights).open();
     }
-    changed("/skins/0/joints", json!([1])).assert_refused(&["joint 1 of 1"]);
-    changed("/skins/0/joints", json!([])).assert_refused(&["of 0"]);
-    changed("/skins/0/joints", json!([1, 2, 1])).assert_refused(&["3 joints and 2 bind matrices"]);
 }
 
 #[test]
@@ -352,11 +321,11 @@ fn scales_of_zero_and_matrices_of_nothing() {
 #[test]
 fn primitives_and_scenes_that_lack_something() {
     let mut file = everything();
-    file.json["meshes"][0]["primitives"][0]["attributes"].as_object_mut().unwrap().remove("POSITION");
+    file.primitive()["attributes"].as_object_mut().unwrap().remove("POSITION");
     assert!(file.open().warnings.contains(&"primitives without positions are left out: mesh 0".to_owned()));
     // Application-specific attributes are accepted.
     let mut file = everything();
-    file.json["meshes"][0]["primitives"][0]["attributes"]["_TEMPERATURE"] = json!(0);
+    file.primitive()["attributes"]["_TEMPERATURE"] = json!(0);
     assert_eq!(file.open().pose(0.0).moving.len(), 1);
     let mut file = everything();
     file.json["scenes"] = json!([{"nodes": []}, {"nodes": [0]}]);

@@ -74,6 +74,57 @@ impl Gltf {
         self.push("meshes", json!({"primitives": [primitive]}))
     }
 
+    /// A mesh of one triangle.
+    pub fn triangle(&mut self) -> usize {
+        let positions = self.floats(&TRIANGLE);
+        self.mesh(json!({"attributes": {"POSITION": positions}}))
+    }
+
+    /// The first primitive of the first mesh.
+    pub fn primitive(&mut self) -> &mut Value {
+        &mut self.json["meshes"][0]["primitives"][0]
+    }
+
+    /// Gives the first primitive an attribute.
+    pub fn set<const N: usize>(&mut self, attribute: &str, values: &[[f32; N]]) {
+        let values = self.floats(values);
+        self.primitive()["attributes"][attribute] = json!(values);
+    }
+
+    /// Replaces elements of an accessor.
+    pub fn sparse(&mut self, accessor: usize, at: &[u8], values: &[u8]) {
+        let (indices, values) = (self.view(at), self.view(values));
+        self.json["accessors"][accessor]["sparse"] = json!({"count": at.len(),
+            "indices": {"bufferView": indices, "componentType": 5121}, "values": {"bufferView": values}});
+    }
+
+    /// An animation of one channel.
+    pub fn animate<const N: usize>(
+        &mut self,
+        node: usize,
+        path: &str,
+        interpolation: &str,
+        times: &[f32],
+        values: &[[f32; N]],
+    ) {
+        let times: Vec<[f32; 1]> = times.iter().map(|&t| [t]).collect();
+        let (input, output) = (self.floats(&times), self.floats(values));
+        let sampler = json!({"input": input, "output": output, "interpolation": interpolation});
+        let channel = json!({"sampler": 0, "target": {"node": node, "path": path}});
+        let name = format!("{path} {interpolation}");
+        self.push("animations", json!({"name": name, "channels": [channel], "samplers": [sampler]}));
+    }
+
+    /// Makes one of the last two animations, of one channel each.
+    pub fn join_animations(&mut self) {
+        let animations = self.json["animations"].as_array_mut().unwrap();
+        let mut last = animations.pop().unwrap();
+        last["channels"][0]["sampler"] = json!(1);
+        for list in ["channels", "samplers"] {
+            animations.last_mut().unwrap()[list].as_array_mut().unwrap().push(last[list][0].take());
+        }
+    }
+
     /// A node without a parent, in the scene.
     pub fn node(&mut self, node: Value) -> usize {
         let index = self.push("nodes", node);
@@ -97,6 +148,13 @@ impl Gltf {
         let attributes = json!({"POSITION": positions, "TEXCOORD_0": uvs});
         let mesh = file.mesh(json!({"attributes": attributes, "material": material}));
         file.node(json!({"mesh": mesh}));
+        file
+    }
+
+    /// The same with another value at a JSON pointer.
+    pub fn with(&self, pointer: &str, value: Value) -> Self {
+        let mut file = self.clone();
+        *file.json.pointer_mut(pointer).unwrap_or_else(|| panic!("{pointer}")) = value;
         file
     }
 

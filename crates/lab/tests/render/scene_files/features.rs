@@ -98,25 +98,19 @@ fn interleaved_vertices_are_read_by_their_stride() {
 #[test]
 fn sparse_accessors_replace_elements_with_or_without_a_base() {
     let mut file = Gltf::new();
-    let positions = file.floats(&TRIANGLE);
-    let (at, values) = (file.view(&[1, 2]), file.floats(&[[5.0, 0.0, 0.0], [0.0, 7.0, 0.0]]));
-    let values = file.json["accessors"][values]["bufferView"].clone();
-    let sparse =
-        json!({"count": 2, "indices": {"bufferView": at, "componentType": 5121}, "values": {"bufferView": values}});
-    file.json["accessors"][positions]["sparse"] = sparse;
-    let mesh = file.mesh(json!({"attributes": {"POSITION": positions}}));
-    file.node(json!({"mesh": mesh}));
+    file.soup(&TRIANGLE);
+    let values = [[5.0f32, 0.0, 0.0], [0.0, 7.0, 0.0]];
+    file.sparse(0, &[1, 2], &values.as_flattened().iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<_>>());
     let expected = [Vec3::ZERO, Vec3::X * 5.0, Vec3::Y * 7.0];
     assert_eq!(file.open().still().positions[0], expected);
-    file.json["accessors"][positions].as_object_mut().unwrap().remove("bufferView");
+    file.json["accessors"][0].as_object_mut().unwrap().remove("bufferView");
     assert_eq!(file.open().still().positions[0], expected);
 }
 
 #[test]
 fn nodes_place_their_meshes_through_the_tree() {
     let mut file = Gltf::new();
-    let positions = file.floats(&TRIANGLE);
-    let mesh = file.mesh(json!({"attributes": {"POSITION": positions}}));
+    let mesh = file.triangle();
     let leaf = file.push("nodes", json!({"mesh": mesh, "scale": [2.0, 1.0, 1.0]}));
     let half = std::f32::consts::FRAC_1_SQRT_2;
     file.node(json!({"children": [leaf], "translation": [10.0, 0.0, 0.0], "rotation": [0.0, 0.0, half, half]}));

@@ -221,8 +221,7 @@ fn the_second_set_of_coordinates_is_found() {
     let mut file = Gltf::with_material(json!({"emissiveTexture": {"index": 0, "texCoord": 1}}));
     file.texture(&png([2, 2], |_, _| [1, 2, 3, 4]));
     assert!(file.open().warnings[0].contains("without texture coordinates"));
-    let second = file.floats(&[[0.5, 0.5], [0.6, 0.5], [0.5, f32::NAN]]);
-    file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = json!(second);
+    file.set("TEXCOORD_1", &[[0.5, 0.5], [0.6, 0.5], [0.5, f32::NAN]]);
     let scene = file.open();
     assert_eq!(scene.warnings, [""; 0]);
     assert_eq!(scene.still().uvs[0], [Vec2::splat(0.5), Vec2::new(0.6, 0.5), Vec2::ZERO]);

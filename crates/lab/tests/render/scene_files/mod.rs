@@ -4,7 +4,7 @@
 mod sound_scene;
 
 mod bad_input;
-mod builder;
+pub mod builder;
 mod builtin;
 mod features;
 mod framing;

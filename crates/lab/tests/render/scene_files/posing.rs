@@ -6,23 +6,8 @@ use afterimage_testing::Draws;
 use glam::{DMat4, DQuat, DVec3, Vec3};
 use serde_json::json;
 
-/// Adds an animation of one channel.
-fn animate<const N: usize>(
-    file: &mut Gltf,
-    node: usize,
-    path: &str,
-    interpolation: &str,
-    times: &[f32],
-    values: &[[f32; N]],
-) {
-    let times: Vec<[f32; 1]> = times.iter().map(|&t| [t]).collect();
-    let (input, output) = (file.floats(&times), file.floats(values));
-    let sampler = json!({"input": input, "output": output, "interpolation": interpolation});
-    let channel = json!({"sampler": 0, "target": {"node": node, "path": path}});
-    file.push(
-        "animations",
-        json!({"name": format!("{path} {interpolation}"), "channels": [channel], "samplers": [sampler]}),
-    );
+fn vector(v: [f32; 3]) -> DVec3 {
+    Vec3::from_array(v).as_dvec3()
 }
 
 /// Position of the first corner at a time.
@@ -37,7 +22,7 @@ fn every_interpolation_between_keys_and_beyond() {
     for interpolation in ["STEP", "LINEAR"] {
         let mut file = Gltf::new();
         let node = file.soup(&TRIANGLE);
-        animate(&mut file, node, "translation", interpolation, &times, &keys);
+        file.animate(node, "translation", interpolation, &times, &keys);
         let scene = file.open();
         assert_eq!((scene.still().len(), scene.pose(0.0).moving.len(), scene.duration_s()), (0, 1, 2.0));
         let halfway = if interpolation == "STEP" { keys[0] } else { [2.0, 1.0, 0.0] };
@@ -57,9 +42,9 @@ fn cubic_splines_follow_their_formula() {
     let times = [0.0f32, 0.5, 2.5];
     let mut file = Gltf::new();
     let node = file.soup(&TRIANGLE);
-    animate(&mut file, node, "translation", "CUBICSPLINE", &times, &stored);
+    file.animate(node, "translation", "CUBICSPLINE", &times, &stored);
     let scene = file.open();
-    let at = |key: usize, part: usize| DVec3::from_array(stored[key * 3 + part].map(f64::from));
+    let at = |key: usize, part: usize| vector(stored[key * 3 + part]);
     for step in 1..50 {
         let time_s = f64::from(step) * 0.05 - 0.001;
         let key = usize::from(time_s >= 0.5);
@@ -87,7 +72,7 @@ fn rotations_take_the_shorter_arc() {
     let half = std::f32::consts::FRAC_1_SQRT_2;
     let mut file = Gltf::new();
     let node = file.soup(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
-    animate(&mut file, node, "rotation", "LINEAR", &[0.0, 1.0], &[[0.0, 0.0, 0.0, 2.0], [0.0, 0.0, -half, -half]]);
+    file.animate(node, "rotation", "LINEAR", &[0.0, 1.0], &[[0.0, 0.0, 0.0, 2.0], [0.0, 0.0, -half, -half]]);
     let scene = file.open();
     let found = corner(&scene, 1.0 / 3.0);
     let (sin, cos) = (std::f32::consts::FRAC_PI_6).sin_cos();
@@ -98,8 +83,8 @@ fn rotations_take_the_shorter_arc() {
 fn a_clip_is_chosen_by_name_or_number() {
     let mut file = Gltf::new();
     let (a, b) = (file.soup(&TRIANGLE), file.soup(&TRIANGLE));
-    animate(&mut file, a, "translation", "STEP", &[0.0], &[[5.0, 0.0, 0.0]]);
-    animate(&mut file, b, "scale", "LINEAR", &[0.0, 3.0], &[[1.0; 3], [2.0; 3]]);
+    file.animate(a, "translation", "STEP", &[0.0], &[[5.0, 0.0, 0.0]]);
+    file.animate(b, "scale", "LINEAR", &[0.0, 3.0], &[[1.0; 3], [2.0; 3]]);
     assert_eq!(file.open().duration_s(), 0.0);
     // An animation with one key has one pose.
     assert_eq!(corner(&file.open(), 7.0), Vec3::X * 5.0);
@@ -143,28 +128,22 @@ fn bent() -> Bent {
         "JOINTS_0": file.accessor(&[0u8, 1, 200, 0].repeat(30), 30, "VEC4", 5121)
     });
     let mesh = file.mesh(json!({"attributes": attributes}));
-    let matrices = inverse_bind.map(|m| m.as_mat4().to_cols_array());
-    let matrices = file.floats(&matrices);
+    let matrices = file.floats(&inverse_bind.map(|m| m.as_mat4().to_cols_array()));
     let joint = file.push("nodes", json!({"translation": JOINT_SHIFT, "scale": JOINT_SCALE}));
     let root = file.node(json!({"children": [joint], "translation": ROOT_SHIFT}));
     let skin = file.push("skins", json!({"joints": [root, joint], "inverseBindMatrices": matrices}));
     // The transform of the mesh's own node is ignored.
     file.node(json!({"mesh": mesh, "skin": skin, "translation": [100.0, 0.0, 0.0]}));
     let half = std::f32::consts::FRAC_1_SQRT_2;
-    animate(&mut file, joint, "rotation", "LINEAR", &[0.0, 1.0], &[[0.0, 0.0, 0.0, 1.0], [half, 0.0, 0.0, half]]);
-    let inverse_bind = matrices_of(&inverse_bind);
+    file.animate(joint, "rotation", "LINEAR", &[0.0, 1.0], &[[0.0, 0.0, 0.0, 1.0], [half, 0.0, 0.0, half]]);
+    // Values of the file, rounded to f32.
+    let inverse_bind = inverse_bind.map(|m| m.as_mat4().as_dmat4());
     Bent { file, positions, normals, weights, inverse_bind }
-}
-
-/// Values of the file, rounded to f32.
-fn matrices_of(m: &[DMat4; 2]) -> [DMat4; 2] {
-    m.map(|m| m.as_mat4().as_dmat4())
 }
 
 impl Bent {
     /// Position and normal of a vertex at a share of the rotation.
     fn expected(&self, vertex: usize, share: f64, inverse_bind: &[DMat4; 2]) -> (DVec3, DVec3) {
-        let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
         let turn = DQuat::from_rotation_x(share * std::f64::consts::FRAC_PI_2);
         let root = DMat4::from_translation(vector(ROOT_SHIFT));
         let joint = root * DMat4::from_scale_rotation_translation(vector(JOINT_SCALE), turn, vector(JOINT_SHIFT));
@@ -223,8 +202,7 @@ fn morph_targets_add_up() {
     let node = file.node(json!({"mesh": mesh, "weights": [0.5, 0.0]}));
     file.node(json!({"mesh": mesh}));
     let expected = |corner: usize, w: [f64; 2]| {
-        let v = |a: [f32; 3]| DVec3::from_array(a.map(f64::from));
-        v(TRIANGLE[corner]) + v(deltas[0][corner]) * w[0] + v(deltas[1][corner]) * w[1]
+        vector(TRIANGLE[corner]) + vector(deltas[0][corner]) * w[0] + vector(deltas[1][corner]) * w[1]
     };
     let still = file.open();
     for corner in 0..3 {
@@ -232,7 +210,7 @@ fn morph_targets_add_up() {
         assert_eq!(still.still().positions[0][corner].as_dvec3(), expected(corner, [0.5, 0.0]));
         assert_eq!(still.still().positions[1][corner].as_dvec3(), expected(corner, [0.0, 1.0]));
     }
-    animate(&mut file, node, "weights", "LINEAR", &[0.0, 2.0], &[[0.0], [0.5], [1.0], [-0.5]]);
+    file.animate(node, "weights", "LINEAR", &[0.0, 2.0], &[[0.0], [0.5], [1.0], [-0.5]]);
     let scene = file.open();
     assert_eq!((scene.still().len(), scene.pose(0.0).moving.len()), (1, 1));
     let moving = scene.pose(1.0).moving;
@@ -249,15 +227,14 @@ fn what_hangs_below_an_animated_node_moves_with_it() {
     let mut file = Gltf::new();
     file.push("cameras", json!({"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}));
     file.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [{"type": "point"}]}});
-    let positions = file.floats(&TRIANGLE);
-    let mesh = file.mesh(json!({"attributes": {"POSITION": positions}}));
+    let mesh = file.triangle();
     let leaf =
         file.push("nodes", json!({"mesh": mesh, "camera": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}}));
     let middle =
         file.push("nodes", json!({"children": [leaf], "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1]}));
     let top = file.node(json!({"children": [middle]}));
     file.node(json!({"mesh": mesh}));
-    animate(&mut file, top, "translation", "LINEAR", &[0.0, 1.0], &[[0.0; 3], [4.0, 0.0, 0.0]]);
+    file.animate(top, "translation", "LINEAR", &[0.0, 1.0], &[[0.0; 3], [4.0, 0.0, 0.0]]);
     let scene = file.open();
     assert_eq!(scene.still().len(), 1);
     let pose = scene.pose(0.5);
@@ -271,7 +248,7 @@ fn what_hangs_below_an_animated_node_moves_with_it() {
 fn animated_scales_mirror_and_collapse_without_harm() {
     let mut file = Gltf::new();
     let node = file.soup(&TRIANGLE);
-    animate(&mut file, node, "scale", "LINEAR", &[0.0, 1.0], &[[1.0; 3], [-1.0, 1.0, 1.0]]);
+    file.animate(node, "scale", "LINEAR", &[0.0, 1.0], &[[1.0; 3], [-1.0, 1.0, 1.0]]);
     let scene = file.open();
     for time_s in [0.0, 0.25, 0.5, 0.75, 0.999] {
         let moving = scene.pose(time_s).moving;

@@ -1,23 +1,11 @@
 //! External scenes. Counts are those in the data's own list.
 
 use super::{assert_sound, open};
+use crate::given::path_of;
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::scene::{Alpha, PunctualKind, Scene, Triangles};
 use glam::{DMat4, DQuat, DVec3, Vec3, Vec4};
 use serde_json::Value;
-use std::io::Write;
-use std::path::PathBuf;
-
-/// Path of a scene in the shared data; prints a message if it is absent.
-pub fn path_of(name: &str) -> Option<PathBuf> {
-    let path = afterimage_testing::workspace().join("../shared/data/scenes").join(name);
-    if path.is_file() {
-        return Some(path);
-    }
-    // Not eprintln: the test harness captures it.
-    let _ = writeln!(std::io::stderr(), "SKIPPED: no scene at {}", path.display());
-    None
-}
 
 fn real(name: &str) -> Option<Scene> {
     let path = path_of(name)?;

@@ -2,7 +2,7 @@
 
 use super::builder::{Gltf, png};
 use super::open;
-use super::real::path_of;
+use crate::given::path_of;
 use afterimage_lab::scene::Scene;
 use afterimage_testing::Draws;
 use glam::{Vec3, Vec4};
@@ -17,8 +17,8 @@ fn mapped(uvs: &[[f32; 2]; 4], normals: bool) -> Gltf {
     if normals {
         attributes["NORMAL"] = json!(file.floats(&[[0.0, 0.0, 1.0]; 4]));
     }
-    file.json["meshes"][0]["primitives"][0]["attributes"] = attributes;
-    file.json["meshes"][0]["primitives"][0]["mode"] = json!(5);
+    file.primitive()["attributes"] = attributes;
+    file.primitive()["mode"] = json!(5);
     file
 }
 
@@ -61,8 +61,8 @@ fn vertices_that_a_thousand_triangles_share_take_no_square_time() {
     let positions: Vec<[f32; 3]> = [[0.0; 3]].into_iter().chain(rim.map(|(y, x)| [x, y, 0.0])).collect();
     let uvs: Vec<[f32; 2]> = positions.iter().map(|p| [p[0], -p[1]]).collect();
     let attributes = json!({"POSITION": file.floats(&positions), "TEXCOORD_0": file.floats(&uvs)});
-    file.json["meshes"][0]["primitives"][0]["attributes"] = attributes;
-    file.json["meshes"][0]["primitives"][0]["mode"] = json!(6);
+    file.primitive()["attributes"] = attributes;
+    file.primitive()["mode"] = json!(6);
     let scene = file.open();
     assert_eq!(scene.still().len(), n - 1);
     // Edges of 6e-5 from coordinates rounded to 6e-8: the direction is accurate to a few thousandths.
@@ -89,7 +89,7 @@ fn tangled_meshes_get_tangents_too() {
             attributes["NORMAL"] = json!(file.floats(&normals));
         }
         let indices = file.indices(&indices);
-        file.json["meshes"][0]["primitives"][0] = json!({"attributes": attributes, "indices": indices, "material": 0});
+        *file.primitive() = json!({"attributes": attributes, "indices": indices, "material": 0});
         // Only soundness can be checked.
         file.open();
     }

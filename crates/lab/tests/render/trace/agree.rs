@@ -1,8 +1,9 @@
 //! The three integrators converge to the same image.
 
 use super::rig::Rig;
-use super::scenes::{builtin, under_a_map, under_a_screen, under_lamps};
+use super::scenes::{under_a_map, under_a_screen, under_lamps};
 use super::statistics::{p_of_means, p_of_regions};
+use crate::given::builtin;
 use afterimage_lab::scene::builtin::furnace_of;
 use afterimage_lab::scene::{Material, Scene};
 use afterimage_lab::trace::film::Film;
@@ -64,27 +65,15 @@ fn under_punctual_lights() {
 }
 
 #[test]
-fn a_light_picked_with_a_wrong_probability_is_caught() {
-    let mut rig = Rig::new(under_a_screen(), [32, 32]);
-    let right = film(&rig, Integrator::Naive, Bsdf::Principled, 256);
-    for pick in &mut rig.world.picks {
-        pick.probability *= 1.1;
+fn a_light_or_a_texel_picked_with_a_wrong_probability_is_caught() {
+    for (what, scene) in [("lights", under_a_screen()), ("texels", under_a_map())] {
+        let mut rig = Rig::new(scene, [32, 32]);
+        let right = film(&rig, Integrator::Naive, Bsdf::Principled, 256);
+        match what {
+            "lights" => rig.world.picks.iter_mut().for_each(|pick| pick.probability *= 1.1),
+            _ => rig.world.map.iter_mut().for_each(|texel| texel.probability *= 1.1),
+        }
+        let wrong = film(&rig, Integrator::Nee, Bsdf::Principled, 64);
+        reject(&format!("{what} 1.1 times as often"), p_of_means(&right, &wrong, |_| true));
     }
-    reject(
-        "chosen 1.1 times as often",
-        p_of_means(&right, &film(&rig, Integrator::Nee, Bsdf::Principled, 64), |_| true),
-    );
-}
-
-#[test]
-fn a_texel_picked_with_a_wrong_probability_is_caught() {
-    let mut rig = Rig::new(under_a_map(), [32, 32]);
-    let right = film(&rig, Integrator::Naive, Bsdf::Principled, 256);
-    for texel in &mut rig.world.map {
-        texel.probability *= 1.1;
-    }
-    reject(
-        "texels 1.1 times as often",
-        p_of_means(&right, &film(&rig, Integrator::Nee, Bsdf::Principled, 64), |_| true),
-    );
 }

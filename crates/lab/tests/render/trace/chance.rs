@@ -1,8 +1,9 @@
 //! With different seeds, the CPU's and the device's images differ only by noise.
 
-use super::rig::{Rig, device};
-use super::scenes::{SMALL, builtin, shared};
+use super::rig::Rig;
+use super::scenes::{SMALL, shared};
 use super::statistics::{p_of_means, p_of_pixels};
+use crate::given::{builtin, device};
 use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_testing::{accept, reject};

@@ -1,10 +1,11 @@
 //! Images with known results: depth 0, increasing depth, furnaces, spheres under a sky.
 
 use super::rig::Rig;
-use super::scenes::{DARK, builtin};
+use super::scenes::{DARK, made};
 use super::statistics::mean_of;
+use crate::given::builtin;
 use afterimage_lab::scene::builtin::furnace_of;
-use afterimage_lab::scene::{Camera, Environment, Material, Pose, Scene, Triangles};
+use afterimage_lab::scene::{Camera, Environment, Material, Pose, Triangles};
 use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
 use afterimage_testing::{ALPHA, p_of_z};
 use glam::{DVec3, Vec3};
@@ -62,6 +63,23 @@ fn more_depth_is_more_light() {
             }
         }
     }
+}
+
+/// A floor of 18 m sides, seen from above its middle, and more.
+fn over_a_floor(
+    height_m: f64,
+    vfov_deg: f32,
+    size: [u32; 2],
+    materials: Vec<Material>,
+    more: Triangles,
+    sky: Environment,
+) -> Rig {
+    let v = Vec3::new;
+    let mut t = Triangles::default();
+    t.push_quad([v(-9., 0., 9.), v(9., 0., 9.), v(9., 0., -9.), v(-9., 0., -9.)], 0);
+    t.extend(&more);
+    let camera = Camera::look_at(DVec3::Y * height_m, DVec3::ZERO, vfov_deg);
+    Rig::new(made("a floor", materials, t, Pose { cameras: vec![camera], ..Pose::default() }, sky), size)
 }
 
 /// Mean over a ball, and its standard error.
@@ -134,16 +152,12 @@ fn grey_balls_are_as_grey_as_they_are() {
 fn a_floor_under_a_lamp_has_its_form_factor() {
     // Square lamp with 2 m sides, 1 m above a floor and parallel to it. Returns the radiance of the floor point below
     // its centre.
-    let mut t = Triangles::default();
-    let v = Vec3::new;
-    t.push_quad([v(-9., 0., 9.), v(9., 0., 9.), v(9., 0., -9.), v(-9., 0., -9.)], 0);
+    let (mut t, v) = (Triangles::default(), Vec3::new);
     t.push_quad([v(-1., 1., -1.), v(1., 1., -1.), v(1., 1., 1.), v(-1., 1., 1.)], 1);
     let floor = Material { base_color: [0.5; 3], specular: 0.0, ..Material::default() };
     let lamp =
         Material { base_color: [0.0; 3], specular: 0.0, emissive: [2.0; 3], double_sided: false, ..floor.clone() };
-    let camera = Camera::look_at(DVec3::new(0.0, 0.5, 0.0), DVec3::ZERO, 0.2);
-    let pose = Pose { cameras: vec![camera], ..Pose::default() };
-    let rig = Rig::new(Scene::from_parts("a lamp", vec![floor, lamp], t, pose, DARK).unwrap(), [4, 4]);
+    let rig = over_a_floor(0.5, 0.2, [4, 4], vec![floor, lamp], t, DARK);
     // Siegel and Howell, configuration factors: parallel rectangle with a corner above the point, four times.
     let corner = {
         let (a, b) = (1.0f64, 1.0f64);
@@ -161,14 +175,9 @@ fn a_floor_under_a_lamp_has_its_form_factor() {
 
 #[test]
 fn a_plane_under_a_sky_shows_its_albedo() {
-    let mut t = Triangles::default();
-    let v = Vec3::new;
-    t.push_quad([v(-9., 0., 9.), v(9., 0., 9.), v(9., 0., -9.), v(-9., 0., -9.)], 0);
     let floor = Material { base_color: [0.2, 0.5, 0.8], specular: 0.0, ..Material::default() };
-    let camera = Camera::look_at(DVec3::new(0.0, 2.0, 0.0), DVec3::ZERO, 40.0);
-    let pose = Pose { cameras: vec![camera], ..Pose::default() };
     let sky = Environment::Constant([1.0, 2.0, 0.5]);
-    let rig = Rig::new(Scene::from_parts("a plane", vec![floor], t, pose, sky).unwrap(), [8, 8]);
+    let rig = over_a_floor(2.0, 40.0, [8, 8], vec![floor], Triangles::default(), sky);
     // Lambertian scattering samples exactly the sky's cosine density, so there is no noise.
     let film = rig.cpu(TraceSettings { integrator: Integrator::Naive, ..depth(5) }, 16);
     for m in film.moments.pixels() {

@@ -1,7 +1,8 @@
 //! A kernel with more effects than a scene needs gives the same image, bit for bit.
 
-use super::rig::{Rig, device, differing};
+use super::rig::{Rig, differing};
 use super::scenes::DARK;
+use crate::given::device;
 use afterimage::Image;
 use afterimage_lab::scene::{
     Alpha, Camera, Environment, Material, Pose, PunctualKind, PunctualLight, Scene, Texture, TextureRef, Triangles,

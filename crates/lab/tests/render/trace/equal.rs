@@ -1,7 +1,8 @@
 //! With the same seed, the device's film equals the CPU's bit for bit.
 
-use super::rig::{Rig, device, differing};
-use super::scenes::{SMALL, builtin, shared, under_a_map, under_a_screen, under_lamps};
+use super::rig::{Rig, differing};
+use super::scenes::{SMALL, shared, under_a_map, under_a_screen, under_lamps};
+use crate::given::{builtin, device};
 use afterimage_lab::scene::builtin::courtyard_of;
 use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};

@@ -1,9 +1,10 @@
 //! Films: sums, samples that are not finite, and results independent of how the work is split.
 
-use super::rig::{Rig, device, differing};
-use super::scenes::{DARK, builtin, stage, under_a_map};
+use super::rig::{Rig, differing};
+use super::scenes::{DARK, staged, under_a_map};
+use crate::given::{builtin, device};
 use afterimage_lab::device::Backend;
-use afterimage_lab::scene::{Pose, Scene};
+use afterimage_lab::scene::Environment;
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::cpu::CpuTracer;
 use afterimage_lab::trace::film::{Film, Moments};
@@ -114,10 +115,7 @@ fn moments_are_those_of_f64() {
 
 /// The stage with a wall that emits `emissive`.
 fn wall_of(emissive: [f32; 3]) -> Rig {
-    let (mut materials, t, camera) = stage();
-    materials[1].emissive = emissive;
-    let pose = Pose { cameras: vec![camera], ..Pose::default() };
-    Rig::new(Scene::from_parts("a bad wall", materials, t, pose, DARK).unwrap(), [32, 24])
+    Rig::new(staged("a wall", DARK, |materials| materials[1].emissive = emissive), [32, 24])
 }
 
 #[test]
@@ -141,19 +139,14 @@ fn samples_that_are_no_numbers_are_counted_and_black_h37() {
 
 #[test]
 fn a_surface_that_is_no_number_stays_in_its_pixels_h17() {
-    let (mut materials, t, camera) = stage();
-    materials[3].base_color = [f32::NAN, 0.5, 0.5];
-    let pose = Pose { cameras: vec![camera], ..Pose::default() };
-    let sky = afterimage_lab::scene::Environment::Constant([1.0; 3]);
-    let bad = Rig::new(Scene::from_parts("a bad ball", materials, t, pose, sky).unwrap(), [32, 24]);
-    let film = bad.cpu(TraceSettings { max_depth: 1, ..TraceSettings::default() }, 8);
+    let film = |red: f32| {
+        let sky = Environment::Constant([1.0; 3]);
+        let scene = staged("a ball", sky, |materials| materials[3].base_color = [red, 0.5, 0.5]);
+        Rig::new(scene, [32, 24]).cpu(TraceSettings { max_depth: 1, ..TraceSettings::default() }, 8)
+    };
+    let (film, reference) = (film(f32::NAN), film(0.7));
     assert!(film.moments.pixels().iter().all(|m| m.mean.is_finite() && m.squares.is_finite()));
     // Pixels that do not see the ball are the same as with a valid ball: at depth 1 nothing is reflected twice.
-    let (materials, t, camera) = stage();
-    let pose = Pose { cameras: vec![camera], ..Pose::default() };
-    let sky = afterimage_lab::scene::Environment::Constant([1.0; 3]);
-    let sound = Rig::new(Scene::from_parts("a sound ball", materials, t, pose, sky).unwrap(), [32, 24]);
-    let reference = sound.cpu(TraceSettings { max_depth: 1, ..TraceSettings::default() }, 8);
     let mut same = 0;
     for (i, (a, b)) in film.moments.pixels().iter().zip(reference.moments.pixels()).enumerate() {
         let (x, y) = ((i % 32) as f32 - 15.5, (i / 32) as f32 - 11.5);

@@ -1,11 +1,13 @@
 //! Extreme scenes: the tracer never panics, and no pixel becomes NaN.
 
-use super::rig::{Rig, device, differing};
-use super::scenes::{DARK, builtin, stage};
+use super::rig::{Rig, differing};
+use super::scenes::{DARK, made, stage};
+use crate::given::{builtin, device};
 use afterimage::Image;
 use afterimage_lab::scene::{Camera, Environment, Material, Pose, PunctualKind, PunctualLight, Scene, Triangles};
 use afterimage_lab::trace::Bvh;
-use afterimage_lab::trace::film::Film;
+use afterimage_lab::trace::effects::Effects;
+use afterimage_lab::trace::film::{Film, Moments};
 use afterimage_lab::trace::gpu::GpuTracer;
 use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
@@ -15,10 +17,6 @@ use afterimage_testing::holds;
 use glam::{DVec3, Vec3, Vec4};
 
 const SIZE: [u32; 2] = [16, 12];
-
-fn scene(name: &str, materials: Vec<Material>, t: Triangles, pose: Pose, environment: Environment) -> Scene {
-    Scene::from_parts(name, materials, t, pose, environment).unwrap()
-}
 
 fn one_triangle(corners: [Vec3; 3]) -> Triangles {
     let mut t = Triangles::default();
@@ -44,7 +42,7 @@ fn far_away(scale: f32, offset: Vec3) -> Scene {
     t.positions.iter_mut().flatten().for_each(|p| *p = *p * scale + offset);
     let eye = camera.world_from_camera.w_axis.truncate() * f64::from(scale) + offset.as_dvec3();
     let target = DVec3::new(0.0, 1.2, 0.0) * f64::from(scale) + offset.as_dvec3();
-    scene(&format!("scale {scale}, at {offset}"), materials, t, pose_of(eye, target), sky())
+    made(&format!("scale {scale}, at {offset}"), materials, t, pose_of(eye, target), sky())
 }
 
 fn scenes() -> Vec<Scene> {
@@ -66,9 +64,9 @@ fn scenes() -> Vec<Scene> {
     nan.normals[1] = [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY];
     nan.tangents[1] = [Vec4::NAN; 3];
     nan.colors[1] = [Vec4::NAN; 3];
-    let mut one = one_triangle(triangle);
-    one.positions[0][2] = Vec3::new(0.0, 1e9, 0.0);
-    let mirrors = vec![Material { metallic: 1.0, roughness: 0.0, ..Material::default() }];
+    let mut long = one_triangle(triangle);
+    long.positions[0][2] = Vec3::new(0.0, 1e9, 0.0);
+    let mirror = Material { metallic: 1.0, roughness: 0.0, ..Material::default() };
     let weird = Material {
         roughness: 7.0,
         metallic: -3.0,
@@ -85,49 +83,28 @@ fn scenes() -> Vec<Scene> {
     let bright = Environment::Map(Image::from_fn([3, 2], |[x, _]| [if x == 0 { 1e30 } else { 0.0 }; 3]));
     let black_map = Environment::Map(Image::filled([4, 2], [0.0; 3]));
     let bad_map = Environment::Map(Image::from_fn([4, 2], |[x, _]| if x == 1 { [f32::NAN; 3] } else { [1.0; 3] }));
+    let empty = |name, pose, environment| made(name, vec![], Triangles::default(), pose, environment);
+    let one = |name, material: Material, pose, sky| made(name, vec![material], one_triangle(triangle), pose, sky);
+    let gray = Material::default;
     vec![
-        scene("nothing", vec![], Triangles::default(), Pose::default(), DARK),
-        scene("nothing but sky", vec![], Triangles::default(), Pose::default(), sky()),
-        scene(
-            "nothing but a lamp",
-            vec![],
-            Triangles::default(),
-            lit(vec![lamp(5.0, Vec3::ZERO, f32::INFINITY)]),
-            DARK,
-        ),
-        scene("one triangle", vec![Material::default()], one_triangle(triangle), front(), sky()),
-        scene("one triangle that glows", vec![glowing()], one_triangle(triangle), front(), DARK),
-        scene("one triangle without light", vec![Material::default()], one_triangle(triangle), front(), DARK),
-        scene("a point that glows", vec![glowing()], one_triangle([Vec3::ZERO; 3]), front(), DARK),
-        scene("a line that glows", vec![glowing()], one_triangle([Vec3::X, Vec3::ZERO, -Vec3::X]), front(), DARK),
-        scene("a very long triangle", vec![glowing()], one, front(), sky()),
-        scene("no numbers", vec![glowing()], nan, front(), sky()),
-        scene(
-            "a lamp on a surface",
-            vec![Material::default()],
-            one_triangle(triangle),
-            lit(vec![lamp(5.0, Vec3::ZERO, 9.0)]),
-            DARK,
-        ),
-        scene(
-            "a lamp without range",
-            vec![Material::default()],
-            one_triangle(triangle),
-            lit(vec![lamp(5.0, Vec3::Z, 0.0)]),
-            DARK,
-        ),
-        scene(
-            "a lamp of nothing",
-            vec![Material::default()],
-            one_triangle(triangle),
-            lit(vec![lamp(0.0, Vec3::Z, 9.0)]),
-            DARK,
-        ),
-        scene("parameters out of range", vec![weird], one_triangle(triangle), front(), sky()),
-        scene("a camera in a mirror's plane", mirrors, one_triangle(triangle), pose_of(DVec3::ZERO, DVec3::X), sky()),
-        scene("a very bright texel", vec![Material::default()], one_triangle(triangle), front(), bright),
-        scene("a black map", vec![Material::default()], one_triangle(triangle), front(), black_map),
-        scene("a map that is no number", vec![Material::default()], one_triangle(triangle), front(), bad_map),
+        empty("nothing", Pose::default(), DARK),
+        empty("nothing but sky", Pose::default(), sky()),
+        empty("nothing but a lamp", lit(vec![lamp(5.0, Vec3::ZERO, f32::INFINITY)]), DARK),
+        one("one triangle", gray(), front(), sky()),
+        one("one triangle that glows", glowing(), front(), DARK),
+        one("one triangle without light", gray(), front(), DARK),
+        made("a point that glows", vec![glowing()], one_triangle([Vec3::ZERO; 3]), front(), DARK),
+        made("a line that glows", vec![glowing()], one_triangle([Vec3::X, Vec3::ZERO, -Vec3::X]), front(), DARK),
+        made("a very long triangle", vec![glowing()], long, front(), sky()),
+        made("no numbers", vec![glowing()], nan, front(), sky()),
+        one("a lamp on a surface", gray(), lit(vec![lamp(5.0, Vec3::ZERO, 9.0)]), DARK),
+        one("a lamp without range", gray(), lit(vec![lamp(5.0, Vec3::Z, 0.0)]), DARK),
+        one("a lamp of nothing", gray(), lit(vec![lamp(0.0, Vec3::Z, 9.0)]), DARK),
+        one("parameters out of range", weird, front(), sky()),
+        one("a camera in a mirror's plane", mirror, pose_of(DVec3::ZERO, DVec3::X), sky()),
+        one("a very bright texel", gray(), front(), bright),
+        one("a black map", gray(), front(), black_map),
+        one("a map that is no number", gray(), front(), bad_map),
         far_away(1e-3, Vec3::ZERO),
         far_away(1e5, Vec3::ZERO),
         far_away(1.0, Vec3::new(1e5, -1e6, 1e5)),
@@ -143,11 +120,10 @@ fn every_scene_gives_an_image_of_numbers_h81_h82_h83() {
         let rig = Rig::new(scene, SIZE);
         for integrator in [Integrator::Mis, Integrator::Nee, Integrator::Naive] {
             for bsdf in [Bsdf::Principled, Bsdf::Phong] {
-                for effects in [None, Some(afterimage_lab::trace::effects::Effects::all())] {
+                for effects in [None, Some(Effects::all())] {
                     let settings = TraceSettings { integrator, bsdf, effects, ..TraceSettings::default() };
                     let film = rig.cpu(settings, 4);
-                    let sound =
-                        |m: &afterimage_lab::trace::film::Moments| m.mean.is_finite() && m.mean.min_element() >= 0.0;
+                    let sound = |m: &Moments| m.mean.is_finite() && m.mean.min_element() >= 0.0;
                     assert!(film.moments.pixels().iter().all(sound), "{}, {settings:?}", rig.name);
                 }
             }
@@ -199,12 +175,12 @@ fn a_camera_inside_a_body_sees_it_from_inside() {
     super::scenes::ball(&mut t, Vec3::ZERO, 1.0, 0);
     // Closed: no sky light enters.
     let pose = || pose_of(DVec3::new(0.1, 0.2, 0.3), DVec3::X);
-    let dark = Rig::new(scene("inside", vec![Material::default()], t.clone(), pose(), sky()), SIZE);
+    let dark = Rig::new(made("inside", vec![Material::default()], t.clone(), pose(), sky()), SIZE);
     let film = dark.cpu(TraceSettings { max_depth: 8, ..TraceSettings::default() }, 16);
     assert!(film.moments.pixels().iter().all(|m| m.mean == Vec3::ZERO));
     // A closed room that emits: radiance 1 at depth 0, then a geometric series in its albedo.
     let half = Material { base_color: [0.5; 3], specular: 0.0, emissive: [1.0; 3], ..Material::default() };
-    let lit = Rig::new(scene("inside a lamp", vec![half], t, pose(), DARK), SIZE);
+    let lit = Rig::new(made("inside a lamp", vec![half], t, pose(), DARK), SIZE);
     let naive = TraceSettings { integrator: Integrator::Naive, ..TraceSettings::default() };
     for (max_depth, expected) in [(0, 1.0), (1, 1.5), (3, 1.875)] {
         for m in lit.cpu(TraceSettings { max_depth, ..naive }, 4).moments.pixels() {
@@ -220,7 +196,7 @@ fn the_image_is_the_same_far_from_the_origin_h82() {
     let near = Rig::new(far_away(1.0, Vec3::ZERO), [32, 24]);
     let settings = TraceSettings { max_depth: 2, ..TraceSettings::default() };
     let reference = near.cpu(settings, 64);
-    let mean = |film: &afterimage_lab::trace::film::Film| super::statistics::mean_of(film, 0, |_| true);
+    let mean = |film: &Film| super::statistics::mean_of(film, 0, |_| true);
     let (expected, se) = mean(&reference);
     for (scale, offset) in
         [(1e-3, Vec3::ZERO), (1e4, Vec3::ZERO), (1.0, Vec3::splat(1024.0)), (1.0, Vec3::splat(16384.0))]
@@ -245,7 +221,7 @@ fn what_had_no_area_at_first_may_grow_on_the_device() {
     shrunk.positions.fill([Vec3::ZERO; 3]);
     let pose = Pose { moving: shrunk, ..pose_of(DVec3::Z * 3.0, DVec3::ZERO) };
     let materials = vec![Material { base_color: [0.5; 3], ..Material::default() }];
-    let mut rig = Rig::new(scene("growing", materials.clone(), Triangles::default(), pose, sky()), SIZE);
+    let mut rig = Rig::new(made("growing", materials.clone(), Triangles::default(), pose, sky()), SIZE);
     let settings = TraceSettings::default();
     let mut tracer = GpuTracer::new(device, &rig.world, settings).unwrap();
     rig.world.geometry.moving = Bvh::build(&grown, Some(&grown.positions), &materials);

@@ -1,6 +1,5 @@
 //! Traces scenes on the CPU and on the device.
 
-use afterimage::wgpu;
 use afterimage_lab::device::Headless;
 use afterimage_lab::scene::{Camera, Scene};
 use afterimage_lab::trace::cpu::CpuTracer;
@@ -11,7 +10,7 @@ use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::view::View;
 use afterimage_lab::trace::work::{WorkItem, uniform};
 use afterimage_lab::trace::world::World;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// A scene prepared for tracing.
 pub struct Rig {
@@ -68,22 +67,4 @@ pub fn differing(a: &Film, b: &Film) -> usize {
         film.moments.pixels().iter().map(row).collect()
     };
     words(a).iter().zip(words(b)).filter(|(a, b)| **a != *b).count()
-}
-
-/// One device shared by all tests; without an adapter, prints that and returns `None`.
-pub fn device() -> Option<Arc<Headless>> {
-    static DEVICE: OnceLock<Arc<Headless>> = OnceLock::new();
-    let adapter = afterimage_testing::gpu::adapter()?;
-    let open = || {
-        let offered = adapter.limits();
-        // Sponza exceeds the default limits.
-        let required_limits = wgpu::Limits {
-            max_texture_dimension_2d: offered.max_texture_dimension_2d,
-            max_buffer_size: offered.max_buffer_size,
-            max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
-            ..wgpu::Limits::default()
-        };
-        Headless::on(adapter, required_limits).expect("a device with these limits")
-    };
-    Some(DEVICE.get_or_init(open).clone())
 }

@@ -1,16 +1,11 @@
 //! Scenes for the path tracer tests.
 
+use crate::given;
 use afterimage::Image;
 use afterimage_lab::scene::{
-    Camera, Environment, Material, Pose, PunctualKind, PunctualLight, Scene, SceneLimits, Texture, TextureRef,
-    Triangles, Wrap,
+    Camera, Environment, Material, Pose, PunctualKind, PunctualLight, Scene, Texture, TextureRef, Triangles, Wrap,
 };
 use glam::{DVec3, Vec2, Vec3};
-use std::io::Write;
-
-pub fn builtin(name: &str) -> Scene {
-    Scene::open(&format!("builtin:{name}"), &SceneLimits::default()).unwrap()
-}
 
 /// Small scenes of the shared data, made by others.
 pub const SMALL: &[&str] = &[
@@ -24,15 +19,9 @@ pub const SMALL: &[&str] = &[
     "vertex_color/22_vertex_color.gltf",
 ];
 
-/// A scene of the shared data; if it is missing, prints that and returns `None`. Scenes without light get a sky.
+/// A scene of the shared data, under a sky; `None` if it is missing.
 pub fn shared(name: &str) -> Option<Scene> {
-    let path = afterimage_testing::workspace().join("../shared/data/scenes").join(name);
-    if !path.is_file() {
-        // Not eprintln, whose output the test harness captures.
-        let _ = writeln!(std::io::stderr(), "SKIPPED: no scene at {}", path.display());
-        return None;
-    }
-    let mut scene = Scene::open(path.to_str().unwrap(), &SceneLimits::default()).unwrap();
+    let mut scene = given::open(&given::path_of(name)?);
     scene.environment = Environment::Constant([0.6, 0.7, 0.9]);
     scene.name = name.to_owned();
     Some(scene)
@@ -68,6 +57,13 @@ pub fn stage() -> (Vec<Material>, Triangles, Camera) {
     (materials, t, camera)
 }
 
+/// The stage in an environment, its materials changed.
+pub fn staged(name: &str, environment: Environment, change: impl FnOnce(&mut [Material])) -> Scene {
+    let (mut materials, t, camera) = stage();
+    change(&mut materials);
+    made(name, materials, t, Pose { cameras: vec![camera], ..Pose::default() }, environment)
+}
+
 /// A flat-shaded ball.
 pub fn ball(t: &mut Triangles, center: Vec3, radius: f32, material: u32) {
     let (columns, rows) = (24, 12);
@@ -90,18 +86,17 @@ pub fn ball(t: &mut Triangles, center: Vec3, radius: f32, material: u32) {
 
 pub const DARK: Environment = Environment::Constant([0.0; 3]);
 
-fn made(name: &str, materials: Vec<Material>, t: Triangles, pose: Pose, environment: Environment) -> Scene {
+pub fn made(name: &str, materials: Vec<Material>, t: Triangles, pose: Pose, environment: Environment) -> Scene {
     Scene::from_parts(name, materials, t, pose, environment).unwrap()
 }
 
 /// The stage under an environment map with a bright spot.
 pub fn under_a_map() -> Scene {
-    let (materials, t, camera) = stage();
     let map = Image::from_fn([16, 8], |[x, y]| {
         let spot = if (x, y) == (10, 1) { 40.0 } else { 0.0 };
         [0.2 + 0.05 * x as f32 + spot, 0.3 + 0.8 * spot, 0.8 - 0.05 * y as f32 + 0.5 * spot]
     });
-    made("a map", materials, t, Pose { cameras: vec![camera], ..Pose::default() }, Environment::Map(map))
+    staged("a map", Environment::Map(map), |_| {})
 }
 
 /// The stage with one punctual light of each kind.

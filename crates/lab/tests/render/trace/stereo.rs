@@ -1,9 +1,10 @@
 //! Stereo views and gaze targets.
 
-use super::scenes::builtin;
+use super::scenes::made;
+use crate::given::builtin;
 use afterimage::{Gaze, ViewGeometry};
 use afterimage_lab::device::Backend;
-use afterimage_lab::scene::{Camera, Environment, Pose, Scene, Triangles};
+use afterimage_lab::scene::{Camera, Environment, Pose, Triangles};
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::effects::Effects;
 use afterimage_lab::trace::film::Film;
@@ -29,19 +30,12 @@ fn focal_px(view: &View) -> f64 {
     1.0 / f64::from(view.geometry().scale_offset().0[0])
 }
 
-fn effects() -> Effects {
-    Effects::all()
-}
-
 /// A wall perpendicular to the axis of a head at the origin that looks along -z.
 fn wall(distance_m: f32) -> World {
     let mut still = Triangles::default();
     let corner = |x: f32, y: f32| Vec3::new(x * 3.0, y * 3.0, -1.0) * distance_m;
     still.push_quad([corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)], 0);
-    let scene =
-        Scene::from_parts("wall", vec![Default::default()], still, Pose::default(), Environment::Constant([1.0; 3]))
-            .unwrap();
-    World::new(&scene)
+    World::new(&made("wall", vec![Default::default()], still, Pose::default(), Environment::Constant([1.0; 3])))
 }
 
 #[test]
@@ -72,7 +66,7 @@ fn gazes_converge_as_ipd_f_over_z() {
     for distance_m in [0.2, 0.6, 1.5, 10.0, 300.0] {
         let world = wall(distance_m);
         for gaze in [[199.5, 149.5], [120.25, 80.75], [390.0, 10.0]] {
-            let point = GazePoint::seen(&world, &head, gaze, effects());
+            let point = GazePoint::seen(&world, &head, gaze, Effects::all());
             let GazePoint::At(at) = point else { panic!("the wall is missed: {point:?}") };
             assert!((at.z + f64::from(distance_m)).abs() < 1e-5 * f64::from(distance_m), "{at}");
             let [l, r] = [&left, &right].map(|eye| point.px(eye).unwrap());
@@ -99,12 +93,11 @@ fn gazes_converge_as_ipd_f_over_z() {
 
 #[test]
 fn eyes_are_parallel_where_there_is_nothing() {
-    let nothing =
-        Scene::from_parts("nothing", vec![], Triangles::default(), Pose::default(), Environment::Constant([1.0; 3]));
-    let world = World::new(&nothing.unwrap());
+    let sky = Environment::Constant([1.0; 3]);
+    let world = World::new(&made("nothing", vec![], Triangles::default(), Pose::default(), sky));
     let head = head(DVec3::new(1.0, 2.0, 3.0), DVec3::new(-4.0, 0.0, 1.0));
     for gaze in [[199.5, 149.5], [17.0, 260.5]] {
-        let point = GazePoint::seen(&world, &head, gaze, effects());
+        let point = GazePoint::seen(&world, &head, gaze, Effects::all());
         assert!(matches!(point, GazePoint::Far(_)), "{point:?}");
         for eye in head.stereo(IPD_M) {
             let px = point.px(&eye).unwrap();
@@ -126,9 +119,9 @@ fn behind_the_eyes_there_is_no_pixel() {
     }
     // A gaze that is not finite means the centre of the frame.
     let world = wall(2.0);
-    let middle = GazePoint::seen(&world, &head, [199.5, 149.5], effects());
+    let middle = GazePoint::seen(&world, &head, [199.5, 149.5], Effects::all());
     for nowhere in [[f32::NAN, 3.0], [0.0, f32::INFINITY]] {
-        assert_eq!(GazePoint::seen(&world, &head, nowhere, effects()), middle);
+        assert_eq!(GazePoint::seen(&world, &head, nowhere, Effects::all()), middle);
     }
 }
 
@@ -165,10 +158,10 @@ fn depth_and_color_agree_at_the_gazes() {
     // A matte wall under a constant sky: both eyes see the same depth, and the same color except for noise.
     let (head, world) = (head(DVec3::ZERO, DVec3::NEG_Z), wall(0.7));
     let tracer = Tracer::new(&Backend::Cpu, &world, TraceSettings::default()).unwrap();
-    let point = GazePoint::seen(&world, &head, [150.0, 200.0], effects());
+    let point = GazePoint::seen(&world, &head, [150.0, 200.0], Effects::all());
     let seen = head.stereo(IPD_M).map(|eye| {
         let px = point.px(&eye).unwrap().map(|v| v.round() as u32);
-        let depth = Surfaces::trace(&world, &eye, &eye, effects()).depth.at(px[0] as usize, px[1] as usize);
+        let depth = Surfaces::trace(&world, &eye, &eye, Effects::all()).depth.at(px[0] as usize, px[1] as usize);
         let mut film = Film::new(SIZE);
         let items: Vec<_> = (0..4096).map(|s| WorkItem::new(px[0], px[1], s)).collect();
         tracer.trace(&world, &eye, 0, &items, &mut film);

@@ -1,13 +1,13 @@
 //! Depth and motion at pixel centres, against explicit projection in f64 and brute-force intersection.
 
-use super::scenes::{shared, stage};
-use afterimage_lab::scene::{Camera, Environment, Pose, Scene, SceneLimits, Triangles};
+use super::scenes::{shared, staged};
+use crate::scene_files::builder::Gltf;
+use afterimage_lab::scene::{Camera, Environment, Scene, Triangles};
 use afterimage_lab::trace::effects::Effects;
 use afterimage_lab::trace::surfaces::Surfaces;
 use afterimage_lab::trace::view::View;
 use afterimage_lab::trace::world::World;
 use glam::{DMat4, DVec3};
-use serde_json::json;
 
 const SIZE: [u32; 2] = [48, 36];
 /// Tolerance of motion in pixels. Rays and tangents are f32, whose 1e-7 is about 1e-5 pixels here; motion has the error
@@ -121,8 +121,8 @@ fn check(scene: &Scene, [now, before]: [&Camera; 2], [time_s, previous_s]: [f64;
 }
 
 fn still_stage() -> (Scene, Camera) {
-    let (materials, t, camera) = stage();
-    let scene = Scene::from_parts("stage", materials, t, Pose::default(), Environment::Constant([1.0; 3])).unwrap();
+    let scene = staged("stage", Environment::Constant([1.0; 3]), |_| {});
+    let camera = scene.pose(0.0).cameras[0].clone();
     (scene, camera)
 }
 
@@ -182,47 +182,14 @@ fn skinned_and_morphing_bodies() {
 
 /// A glTF file with a square that turns a quarter about y and rises 2 m in one second.
 fn turning_square() -> Scene {
-    let floats = |values: &[f32]| values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>();
     let half = std::f32::consts::FRAC_1_SQRT_2;
-    let parts = [
-        floats(&[-1., -1., 0., 1., -1., 0., 1., 1., 0., -1., -1., 0., 1., 1., 0., -1., 1., 0.]),
-        floats(&[0., 1.]),
-        floats(&[0., 0., 0., 1., 0., half, 0., half]),
-        floats(&[0., 0., 0., 0., 2., 0.]),
-    ];
-    let mut offset = 0;
-    let mut views = vec![];
-    for part in &parts {
-        views.push(json!({"buffer": 0, "byteOffset": offset, "byteLength": part.len()}));
-        offset += part.len();
-    }
-    let accessor = |view: usize, count: usize, kind: &str| json!({"bufferView": view, "count": count, "type": kind, "componentType": 5126});
-    let mut times = accessor(1, 2, "SCALAR");
-    times["min"] = json!([0.0]);
-    times["max"] = json!([1.0]);
-    let mut positions = accessor(0, 6, "VEC3");
-    positions["min"] = json!([-1.0, -1.0, 0.0]);
-    positions["max"] = json!([1.0, 1.0, 0.0]);
-    let file = json!({
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-        "accessors": [positions, times, accessor(2, 2, "VEC4"), accessor(3, 2, "VEC3")],
-        "bufferViews": views, "buffers": [{"uri": "square.bin", "byteLength": offset}],
-        "animations": [{
-            "samplers": [{"input": 1, "output": 2}, {"input": 1, "output": 3}],
-            "channels": [
-                {"sampler": 0, "target": {"node": 0, "path": "rotation"}},
-                {"sampler": 1, "target": {"node": 0, "path": "translation"}}
-            ]
-        }]
-    });
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("square.bin"), parts.concat()).unwrap();
-    let path = folder.path().join("square.gltf");
-    std::fs::write(&path, file.to_string()).unwrap();
-    let mut scene = Scene::open(path.to_str().unwrap(), &SceneLimits::default()).unwrap();
-    scene.name = "turning square".into();
-    scene
+    let corners = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
+    let mut file = Gltf::new();
+    let node = file.soup(&[0, 1, 2, 0, 2, 3].map(|i: usize| corners[i]));
+    file.animate(node, "rotation", "LINEAR", &[0.0, 1.0], &[[0.0, 0.0, 0.0, 1.0], [0.0, half, 0.0, half]]);
+    file.animate(node, "translation", "LINEAR", &[0.0, 1.0], &[[0.0; 3], [0.0, 2.0, 0.0]]);
+    file.join_animations();
+    file.open()
 }
 
 #[test]

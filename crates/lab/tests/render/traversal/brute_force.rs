@@ -1,6 +1,6 @@
 //! Traversal finds exactly what a loop over all triangles finds, bit for bit.
 
-use super::scenes::{all, nearest, no_rays, rays, soup};
+use super::scenes::{SOUPS, all, nearest, no_rays, rays, soup};
 use afterimage_lab::trace::{Bvh, Geometry, Ray};
 use afterimage_testing::Draws;
 use glam::Vec3;
@@ -11,17 +11,7 @@ fn differing(bvh: &Bvh, rays: &[Ray]) -> usize {
 
 #[test]
 fn closest_hits_of_random_soups() {
-    for (count, center, half) in [
-        (1, Vec3::ZERO, 1.0),
-        (2, Vec3::ZERO, 1.0),
-        (7, Vec3::ZERO, 1.0),
-        (300, Vec3::ZERO, 1.0),
-        (3000, Vec3::new(3.0, -40.0, 7.0), 10.0),
-        (300, Vec3::splat(1e6), 30.0),
-        (300, Vec3::ZERO, 1e-3),
-        (300, Vec3::splat(1.0), 1e-3),
-        (300, Vec3::ZERO, 1e6),
-    ] {
+    for (count, center, half) in SOUPS {
         let name = format!("soup of {count} around {center}, {half} m");
         let bvh = Bvh::build(&soup(&name, count, center, half), None, &[]);
         let rays = rays(&name, 4000, center, half);

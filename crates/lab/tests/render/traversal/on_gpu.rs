@@ -1,6 +1,6 @@
 //! The device's hits equal the CPU's bit for bit: triangle, distance, barycentric weights.
 
-use super::scenes::{all, direction, no_rays, rays, soup, sphere};
+use super::scenes::{SOUPS, all, direction, no_rays, rays, soup, sphere};
 use afterimage::wgpu;
 use afterimage_lab::scene::{Alpha, Material};
 use afterimage_lab::trace::gpu::ray_lists::{GpuRays, HitQuery};
@@ -70,16 +70,7 @@ fn resting(still: Bvh) -> Geometry {
 
 #[test]
 fn random_soups() {
-    for (count, center, half) in [
-        (0, Vec3::ZERO, 1.0),
-        (1, Vec3::ZERO, 1.0),
-        (5, Vec3::ZERO, 1.0),
-        (3000, Vec3::ZERO, 1.0),
-        (3000, vec3(3.0, -40.0, 7.0), 10.0),
-        (500, Vec3::splat(1e6), 30.0),
-        (500, Vec3::ZERO, 1e-3),
-        (500, Vec3::ZERO, 1e6),
-    ] {
+    for (count, center, half) in SOUPS {
         let name = format!("soup of {count} around {center}, {half} m");
         for storage in STORAGES {
             let geometry = resting(Bvh::build(&soup(&name, count, center, half), None, &[]));

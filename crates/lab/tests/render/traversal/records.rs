@@ -1,22 +1,16 @@
 //! Packing and unpacking of triangle records.
 
-use super::scenes::{direction, soup};
+use super::scenes::{dressed, soup};
 use afterimage_lab::scene::{Alpha, Material};
-use afterimage_lab::trace::{Bvh, Geometry, TriangleFlags, scene_buffer};
-use afterimage_testing::Draws;
+use afterimage_lab::trace::scene_buffer::{
+    SceneBuffer, SceneBufferBuilder, SceneBufferError, SceneBufferLimits, Section,
+};
+use afterimage_lab::trace::{Bvh, Geometry, TriangleFlags};
 use glam::{Vec2, Vec3, Vec4};
 
 #[test]
 fn attributes_survive_packing() {
-    let mut d = Draws::new("attributes");
-    let mut triangles = soup("attributes", 500, Vec3::ZERO, 1.0);
-    for i in 0..500 {
-        triangles.normals[i] = [0; 3].map(|_| direction(&mut d));
-        triangles.tangents[i] =
-            [0; 3].map(|_| direction(&mut d).extend(if d.range(0.0, 1.0) < 0.5 { 1.0 } else { -1.0 }));
-        triangles.uvs[i] = [0; 3].map(|_| Vec2::new(d.range(-9.0, 9.0), d.range(-9.0, 9.0)));
-        triangles.colors[i] = [0; 3].map(|_| Vec4::new(d.range(0.0, 1.0), d.range(0.0, 1.0), 1.0, d.range(0.0, 1.0)));
-    }
+    let triangles = dressed("attributes", 500);
     let bvh = Bvh::build(&triangles, None, &[]);
     for (record, attributes) in bvh.triangles().iter().zip(bvh.attributes()) {
         let (source, got) = (record.source() as usize, attributes.unpack());
@@ -71,27 +65,22 @@ fn moving_triangles_are_rewritten_where_they_were_reserved() {
     let pose = |name| soup(name, 100, Vec3::ZERO, 1.0);
     let (before, now) = (pose("before"), pose("now"));
     first.moving = Bvh::build(&before, Some(&before.positions), &[]);
-    let limits = scene_buffer::SceneBufferLimits { rows: 8192, elements: 1 << 26 };
-    let mut packed = scene_buffer::SceneBufferBuilder::default().geometry(&first, 100).finish(limits).unwrap();
-    let resting = packed.elements()[..packed.base(scene_buffer::Section::MovingNodes) as usize].to_vec();
+    let limits = SceneBufferLimits { rows: 8192, elements: 1 << 26 };
+    let mut packed = SceneBufferBuilder::default().geometry(&first, 100).finish(limits).unwrap();
+    let resting = packed.elements()[..packed.base(Section::MovingNodes) as usize].to_vec();
 
     let mut second = first.clone();
     second.moving = Bvh::build(&now, Some(&before.positions), &[]);
     packed.rewrite_moving(&second).unwrap();
-    let afresh = scene_buffer::SceneBufferBuilder::default().geometry(&second, 100).finish(limits).unwrap();
+    let afresh = SceneBufferBuilder::default().geometry(&second, 100).finish(limits).unwrap();
     assert_eq!(packed.elements()[..resting.len()], resting);
-    for section in [
-        scene_buffer::Section::MovingTriangles,
-        scene_buffer::Section::MovingAttributes,
-        scene_buffer::Section::MovingPrevious,
-    ] {
-        let of = |scene_buffer: &scene_buffer::SceneBuffer| {
-            scene_buffer.elements()[scene_buffer.base(section) as usize..][..scene_buffer.capacity(section) as usize]
-                .to_vec()
+    for section in [Section::MovingTriangles, Section::MovingAttributes, Section::MovingPrevious] {
+        let of = |packed: &SceneBuffer| {
+            packed.elements()[packed.base(section) as usize..][..packed.capacity(section) as usize].to_vec()
         };
         assert_eq!(of(&packed), of(&afresh), "{section:?}");
     }
-    assert_eq!(packed.moving_rows().start << packed.width_log2(), packed.base(scene_buffer::Section::MovingNodes));
+    assert_eq!(packed.moving_rows().start << packed.width_log2(), packed.base(Section::MovingNodes));
     for (record, previous) in second.moving.triangles().iter().zip(second.moving.previous()) {
         assert_eq!(previous.positions(), before.positions[record.source() as usize]);
     }
@@ -100,27 +89,21 @@ fn moving_triangles_are_rewritten_where_they_were_reserved() {
     second.moving = Bvh::default();
     packed.rewrite_moving(&second).unwrap();
     second.moving = Bvh::build(&soup("more", 500, Vec3::ZERO, 1.0), None, &[]);
-    assert!(matches!(packed.rewrite_moving(&second), Err(scene_buffer::SceneBufferError::Full { .. })));
+    assert!(matches!(packed.rewrite_moving(&second), Err(SceneBufferError::Full { .. })));
 }
 
 #[test]
 fn a_heap_that_no_device_takes_is_refused() {
     let geometry =
         Geometry { still: Bvh::build(&soup("large", 3000, Vec3::ZERO, 1.0), None, &[]), ..Geometry::default() };
-    for limits in [
-        scene_buffer::SceneBufferLimits { rows: 16, elements: 1 << 20 },
-        scene_buffer::SceneBufferLimits { rows: 8192, elements: 5000 },
-    ] {
-        let refused = scene_buffer::SceneBufferBuilder::default().geometry(&geometry, 0).finish(limits);
-        assert!(matches!(refused, Err(scene_buffer::SceneBufferError::TooLarge { .. })), "{refused:?}");
+    for limits in [SceneBufferLimits { rows: 16, elements: 1 << 20 }, SceneBufferLimits { rows: 8192, elements: 5000 }]
+    {
+        let refused = SceneBufferBuilder::default().geometry(&geometry, 0).finish(limits);
+        assert!(matches!(refused, Err(SceneBufferError::TooLarge { .. })), "{refused:?}");
     }
     // Rows widen if there would be too many of the default width.
-    let limits = scene_buffer::SceneBufferLimits { rows: 2048, elements: 1 << 22 };
-    let mut builder = scene_buffer::SceneBufferBuilder::default();
-    let wide = builder
-        .geometry(&geometry, 0)
-        .reserve(scene_buffer::Section::Texels, &[0_u32; 0], 3 << 20)
-        .finish(limits)
-        .unwrap();
+    let limits = SceneBufferLimits { rows: 2048, elements: 1 << 22 };
+    let mut builder = SceneBufferBuilder::default();
+    let wide = builder.geometry(&geometry, 0).reserve(Section::Texels, &[0_u32; 0], 3 << 20).finish(limits).unwrap();
     assert_eq!((wide.width_log2(), wide.rows() <= 2048), (11, true));
 }

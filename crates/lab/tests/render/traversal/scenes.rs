@@ -4,7 +4,7 @@ use afterimage_lab::kernel::triangle::{Intersection, intersect, shear};
 use afterimage_lab::scene::Triangles;
 use afterimage_lab::trace::{Bvh, Hit, Ray};
 use afterimage_testing::Draws;
-use glam::{Vec3, Vec3A, vec3};
+use glam::{Vec2, Vec3, Vec3A, Vec4, vec3};
 
 /// Accepts every hit.
 pub fn all(_: u32, _: f32, _: f32) -> bool {
@@ -26,6 +26,20 @@ pub fn direction(d: &mut Draws) -> Vec3 {
     }
 }
 
+/// Numbers of triangles, and the cubes that they are in: center and half width.
+pub const SOUPS: [(usize, Vec3, f32); 10] = [
+    (0, Vec3::ZERO, 1.0),
+    (1, Vec3::ZERO, 1.0),
+    (2, Vec3::ZERO, 1.0),
+    (7, Vec3::ZERO, 1.0),
+    (3000, Vec3::ZERO, 1.0),
+    (3000, vec3(3.0, -40.0, 7.0), 10.0),
+    (500, Vec3::splat(1e6), 30.0),
+    (500, Vec3::ZERO, 1e-3),
+    (500, Vec3::splat(1.0), 1e-3),
+    (500, Vec3::ZERO, 1e6),
+];
+
 /// Random triangles around `center`, with sizes from `half` down to a thousandth of it.
 pub fn soup(name: &str, count: usize, center: Vec3, half: f32) -> Triangles {
     let mut d = Draws::new(name);
@@ -34,6 +48,21 @@ pub fn soup(name: &str, count: usize, center: Vec3, half: f32) -> Triangles {
         let at = center + point(&mut d, half);
         let size = half * 10_f32.powf(d.range(-3.0, 0.0));
         triangles.push_flat([0; 3].map(|_| at + point(&mut d, size)), 0);
+    }
+    triangles
+}
+
+/// The same around the origin with random attributes, of two materials in turn.
+pub fn dressed(name: &str, count: u32) -> Triangles {
+    let mut d = Draws::new(name);
+    let mut triangles = soup(name, count as usize, Vec3::ZERO, 1.0);
+    for i in 0..count as usize {
+        triangles.normals[i] = [0; 3].map(|_| direction(&mut d));
+        triangles.tangents[i] =
+            [0; 3].map(|_| direction(&mut d).extend(if d.bits().is_multiple_of(2) { 1.0 } else { -1.0 }));
+        triangles.uvs[i] = [0; 3].map(|_| Vec2::new(d.range(-9.0, 9.0), d.range(-9.0, 9.0)));
+        triangles.colors[i] = [0; 3].map(|_| Vec4::new(d.uniform(), d.uniform(), d.uniform(), d.uniform()));
+        triangles.materials[i] = i as u32 % 2;
     }
     triangles
 }

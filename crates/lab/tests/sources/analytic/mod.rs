@@ -1,11 +1,11 @@
 //! Analytic scenes: depth and motion against independent closed forms in f64, invariance over time, threads and size,
 //! and the fixture of a page of text.
 
+use crate::explained::explained_db;
 use afterimage::Image;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::source::FrameSource;
 use afterimage_lab::source::analytic::{AnalyticSource, LIGHT_STEP};
-use glam::Vec3;
 
 mod oracle;
 mod page;
@@ -31,42 +31,17 @@ fn pixels(size: [u32; 2]) -> impl Iterator<Item = (usize, usize)> {
     (0..size[1] as usize).flat_map(move |y| (0..size[0] as usize).map(move |x| (x, y)))
 }
 
-/// Approximate sRGB encoding, sufficient for a PSNR.
-fn encode(color: [f32; 3]) -> Vec3 {
-    Vec3::from(color).clamp(Vec3::ZERO, Vec3::ONE).powf(1.0 / 2.2)
-}
-
-/// PSNR between frame `now` and frame `before` fetched at `p + sign * motion`, over pixels whose four texels lie on the
-/// same surface; and the share of those pixels.
+/// PSNR between frame `now` and frame `before` fetched at `p + sign * motion`, approximately in sRGB, over pixels whose
+/// four texels lie on the same surface; and the share of those pixels.
 fn explained(before: &SourceFrame, now: &SourceFrame, sign: f32) -> (f64, f64) {
-    let (depth, motion) = geometry(now);
-    let (previous_depth, _) = geometry(before);
-    let (mut sum, mut count) = (0.0_f64, 0_u32);
-    for (x, y) in pixels(SIZE) {
-        let [mx, my] = motion.at(x, y).map(|m| m * sign);
-        let (px, py) = (x as f32 + mx, y as f32 + my);
-        if !((0.0..639.0).contains(&px) && (0.0..359.0).contains(&py)) {
-            continue;
-        }
-        let (left, top) = (px.floor(), py.floor());
-        let z = depth.at(x, y);
-        let mut fetched = Vec3::ZERO;
-        let mut same = true;
-        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-            let (tx, ty) = (left as usize + dx, top as usize + dy);
-            let weight = (1.0 - (px - tx as f32).abs()) * (1.0 - (py - ty as f32).abs());
-            let there = previous_depth.at(tx, ty);
-            same &= there == z || (there - z).abs() < 0.05 * z;
-            fetched += weight * Vec3::from(before.color.at(tx, ty));
-        }
-        if same {
-            let error = encode(fetched.to_array()) - encode(now.color.at(x, y));
-            sum += f64::from(error.length_squared() / 3.0);
-            count += 1;
-        }
-    }
-    let mean = sum / f64::from(count);
-    (-10.0 * mean.log10(), f64::from(count) / (640.0 * 360.0))
+    let (depth, previous_depth) = (geometry(now).0, geometry(before).0);
+    let encode = |c: [f32; 3]| c.map(|v| v.clamp(0.0, 1.0).powf(1.0 / 2.2));
+    let is_same = |[x, y]: [usize; 2], from: [f32; 2]| {
+        let (z, [left, top]) = (depth.at(x, y), from.map(|v| v as usize));
+        let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| ((left + i).min(639), (top + j).min(359)));
+        four.map(|(i, j)| previous_depth.at(i, j)).iter().all(|&there| there == z || (there - z).abs() < 0.05 * z)
+    };
+    explained_db(before, now, [sign; 2], encode, is_same)
 }
 
 #[test]
@@ -214,33 +189,5 @@ fn refusals_say_what_to_do() {
         (refusal("still", SIZE, 70.0, f32::NAN), "frame rate is NaN"),
     ] {
         assert!(message.contains(word), "{message}");
-    }
-}
-
-#[test]
-#[ignore = "writes pictures to look at and prints how long they took"]
-fn write_pictures() {
-    let folder = std::env::temp_dir().join("analytic");
-    std::fs::create_dir_all(&folder).unwrap();
-    for name in AnalyticSource::names() {
-        for size in [SIZE, [1280, 720]] {
-            let mut source = source(name, size);
-            for index in [0, 40] {
-                let start = std::time::Instant::now();
-                let frame = source.frame(index).unwrap();
-                println!("{name} {size:?} {index}: {:?}", start.elapsed());
-                let bytes = frame
-                    .color
-                    .pixels()
-                    .iter()
-                    .flat_map(|&c| (encode(c) * 255.0 + 0.5).to_array())
-                    .map(|v| v as u8)
-                    .collect();
-                image::RgbImage::from_raw(size[0], size[1], bytes)
-                    .unwrap()
-                    .save(folder.join(format!("{name}_{}_{index}.png", size[0])))
-                    .unwrap();
-            }
-        }
     }
 }

@@ -8,7 +8,7 @@ use afterimage::simulator::Pyramid;
 use afterimage::{Foveation, Image, ViewGeometry};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric;
-use afterimage_lab::metric::{Band, Flip, NO_PAST, References, Scorer, Tracker};
+use afterimage_lab::metric::{Band, Flip, NO_PAST, References, Scorer, Scores, Tracker};
 use afterimage_testing::Draws;
 use afterimage_testing::holds;
 use approx::assert_abs_diff_eq;
@@ -16,6 +16,22 @@ use approx::assert_abs_diff_eq;
 fn noise(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
     let mut draws = Draws::new(name);
     Image::from_fn(size, |_| [draws.uniform(), draws.uniform(), draws.uniform()])
+}
+
+/// Reference and output, both encoded, and the frame's correspondence.
+type Frame = (Image<[f32; 3]>, Image<[f32; 3]>, SourceFrame);
+
+/// Scores of frames with the gaze at `gaze`. `flip`: where it is asked for.
+fn score(frames: &[Frame], gaze: [f32; 2], flip: Option<Flip>) -> Scores {
+    let view = ViewGeometry::flat(frames[0].0.size(), 70.0).unwrap();
+    let ecc = view.eccentricity_map(gaze);
+    let (mut tracker, mut scorer) = (Tracker::default(), Scorer::default());
+    let mut references = flip.map_or_else(References::default, References::with_flip);
+    for (reference, shown, frame) in frames {
+        let tracked = tracker.advance(frame, &view, &ecc, &ecc);
+        scorer.push(&references.next(reference, &tracked, &ecc), shown, &tracked, &ecc);
+    }
+    scorer.scores()
 }
 
 fn foveate(foveation: &Foveation, image: &Image<[f32; 3]>, gaze: [f32; 2]) -> Image<[f32; 3]> {
@@ -30,19 +46,13 @@ fn h68_the_error_at_the_true_gaze_grows_with_latency() {
     let size = [640, 360];
     let image = noise(size, "latency");
     let reference = metric::encode(&image, 0.0);
-    let geometry = ViewGeometry::flat(size, 70.0).unwrap();
-    let ecc = geometry.eccentricity_map([320.0, 180.0]);
     // The gaze moves at 30 degrees a second; the foveation lags.
     let latencies_ms = [0.0, 10.0, 20.0, 30.0, 45.0, 60.0, 80.0, 100.0, 125.0, 150.0];
     let scores = latencies_ms.map(|latency_ms| {
         let lag_px = 30.0 * latency_ms / 1000.0 * 8.0;
         let shown = metric::encode(&foveate(&Foveation::default(), &image, [320.0 - lag_px, 180.0]), 0.0);
-        let mut frame = source_frame(image.clone());
-        frame.cut = true;
-        let tracked = Tracker::default().advance(&frame, &geometry, &ecc, &ecc);
-        let mut scorer = Scorer::default();
-        scorer.push(&References::default().next(&reference, &tracked, &ecc), &shown, &tracked, &ecc);
-        let scores = scorer.scores();
+        let frame = SourceFrame { cut: true, ..source_frame(image.clone()) };
+        let scores = score(&[(reference.clone(), shown, frame)], [320.0, 180.0], None);
         (scores.bands[0].mse.unwrap(), scores.weighted_psnr_db.unwrap())
     });
     for (ms, (mse, db)) in latencies_ms.iter().zip(scores) {
@@ -65,19 +75,13 @@ fn source_frame(color: Image<[f32; 3]>) -> SourceFrame {
 #[test]
 fn psnr_ssim_and_flicker_of_known_errors() {
     let size = [96, 64];
-    let geometry = ViewGeometry::flat(size, 70.0).unwrap();
-    let ecc = geometry.eccentricity_map([48.0, 32.0]);
     let reference = Image::filled(size, [0.5; 3]);
-    let mut tracker = Tracker::default();
-    let mut scorer = Scorer::default();
-    let mut references = References::default();
-    for (i, offset) in [0.1_f32, -0.1, 0.1].into_iter().enumerate() {
+    let frame = |(i, offset): (usize, f32)| {
         let frame = SourceFrame { cut: i == 0, ..source_frame(reference.clone()) };
-        let tracked = tracker.advance(&frame, &geometry, &ecc, &ecc);
-        let full = references.next(&reference, &tracked, &ecc);
-        scorer.push(&full, &reference.map(|c| c.map(|v| v + offset)), &tracked, &ecc);
-    }
-    let scores = scorer.scores();
+        (reference.clone(), reference.map(|c| c.map(|v| v + offset)), frame)
+    };
+    let frames: Vec<_> = [0.1_f32, -0.1, 0.1].into_iter().enumerate().map(frame).collect();
+    let scores = score(&frames, [48.0, 32.0], None);
     assert_abs_diff_eq!(scores.whole.psnr_db.unwrap(), 20.0, epsilon = 1e-4);
     assert_abs_diff_eq!(scores.bands[2].psnr_db.unwrap(), 20.0, epsilon = 1e-4);
     assert_abs_diff_eq!(scores.flicker.unwrap(), 200.0, epsilon = 1e-2);
@@ -86,10 +90,7 @@ fn psnr_ssim_and_flicker_of_known_errors() {
     let expected = (2.0 * luminance(127.5, 153.0) + luminance(127.5, 102.0)) / 3.0;
     assert_abs_diff_eq!(scores.whole.ssim.unwrap(), expected, epsilon = 1e-4);
     // An exact image has no PSNR.
-    let mut exact = Scorer::default();
-    let tracked = tracker.advance(&source_frame(reference.clone()), &geometry, &ecc, &ecc);
-    exact.push(&references.next(&reference, &tracked, &ecc), &reference, &tracked, &ecc);
-    let scores = exact.scores();
+    let scores = score(&[(reference.clone(), reference.clone(), source_frame(reference))], [48.0, 32.0], None);
     assert_eq!((scores.whole.psnr_db, scores.whole.mse), (None, Some(0.0)));
     assert_abs_diff_eq!(scores.whole.ssim.unwrap(), 1.0, epsilon = 1e-6);
 }
@@ -176,14 +177,10 @@ fn flip_is_pooled_by_band_and_left_out_without_being_asked() {
     let ecc = view.eccentricity_map([90.0, 100.0]);
     let reference = noise(size, "flip bands");
     let shown = foveate(&Foveation::default(), &reference, [90.0, 100.0]);
-    let tracked = Tracker::default().advance(&source_frame(reference.clone()), &view, &ecc, &ecc);
     let flip = Flip::for_view(&view);
-    let mut scorer = Scorer::default();
-    let mut references = References::with_flip(flip.clone());
-    for _ in 0..2 {
-        scorer.push(&references.next(&reference, &tracked, &ecc), &shown, &tracked, &ecc);
-    }
-    let scores = scorer.scores();
+    let frame = (reference.clone(), shown.clone(), source_frame(reference.clone()));
+    let frames = [frame.clone(), frame];
+    let scores = score(&frames, [90.0, 100.0], Some(flip.clone()));
     let map = flip.map(&reference, &shown);
     let mean_of = |band: Option<Band>| {
         let pixels = map.pixels().iter().zip(ecc.pixels());
@@ -197,8 +194,6 @@ fn flip_is_pooled_by_band_and_left_out_without_being_asked() {
     assert_abs_diff_eq!(scores.whole.flip.unwrap(), mean_of(None), epsilon = 1e-9);
     // The fovea has full rate, but the filters include pixels around it.
     assert!(scores.bands[0].flip.unwrap() < 0.1 * scores.bands[2].flip.unwrap());
-    let mut without = Scorer::default();
-    without.push(&References::default().next(&reference, &tracked, &ecc), &shown, &tracked, &ecc);
-    let scores = without.scores();
+    let scores = score(&frames[..1], [90.0, 100.0], None);
     assert!(scores.whole.flip.is_none() && scores.bands.iter().all(|b| b.flip.is_none()));
 }

@@ -28,6 +28,11 @@ fn length_s(e: &Event) -> f64 {
     e.end_s - e.start_s
 }
 
+/// Samples during an event.
+fn during(samples: &[Sample], e: &Event) -> std::ops::Range<usize> {
+    samples.partition_point(|s| s.t_s < e.start_s)..samples.partition_point(|s| s.t_s < e.end_s)
+}
+
 fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     let n = values.len() as f64;
     values.sum::<f64>() / n
@@ -142,13 +147,12 @@ fn the_main_sequence_is_in_the_samples() {
         let made = generate(&SyntheticOptions { seed, rate_hz: 5_000.0, ..Default::default() }).unwrap();
         let samples = made.path.samples();
         for e in made.events.iter().filter(|e| e.kind == EventKind::Saccade) {
-            let from = samples.partition_point(|s| s.t_s < e.start_s);
-            let to = samples.partition_point(|s| s.t_s < e.end_s);
-            if to == samples.len() {
+            let during = during(samples, e);
+            if during.end == samples.len() {
                 continue;
             }
-            let start = ray(&made.path, &samples[from]);
-            let way: Vec<f64> = samples[from..to].iter().map(|s| angle_deg(start, ray(&made.path, s))).collect();
+            let start = ray(&made.path, &samples[during.start]);
+            let way: Vec<f64> = samples[during].iter().map(|s| angle_deg(start, ray(&made.path, s))).collect();
             let whole = *way.last().unwrap();
             assert!((whole - e.amplitude_deg).abs() < 0.01, "{whole} {}", e.amplitude_deg);
             let crossing = |share: f64| {
@@ -195,9 +199,7 @@ fn drift_moves_0_035_degrees_rms_in_a_sixtieth_of_a_second() {
         let rest = |e: &&Event| matches!(e.kind, EventKind::Fixation | EventKind::Landing);
         let turns: Vec<_> = made.events.iter().filter(|e| !rest(e)).collect();
         for e in made.events.iter().filter(rest) {
-            let from = samples.partition_point(|s| s.t_s < e.start_s);
-            let to = samples.partition_point(|s| s.t_s < e.end_s);
-            for pair in samples[from..to].windows(2) {
+            for pair in samples[during(samples, e)].windows(2) {
                 if turns.iter().any(|t| t.start_s < pair[1].t_s && pair[0].t_s < t.end_s) {
                     continue;
                 }

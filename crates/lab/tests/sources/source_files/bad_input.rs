@@ -1,6 +1,9 @@
 //! Invalid inputs: the error names the file and a remedy.
 
-use super::{ALL, Extras, assert_needs_megapixels, assert_says, error_of, folder_of, limits, picture, write_frame};
+use super::{
+    ALL, Extras, assert_needs_megapixels, assert_says, error_of, folder_of, limits, picture, save, write_frame,
+};
+use crate::hostile::claim_size;
 use afterimage_lab::error::InputError;
 use afterimage_lab::source::exr_file::{ExrHeader, FrameToWrite, write};
 use afterimage_lab::source::{FrameSource, ReadLimits, SceneOptions, SequenceSource, StillSource, open};
@@ -99,19 +102,13 @@ fn every_truncation_is_noticed_before_decoding() {
     assert_says(&e, &["cut.exr", "truncated", "copy or export it again"]);
 }
 
-fn save(path: &Path, channels: Vec<AnyChannel<FlatSamples>>, size: (usize, usize)) {
-    let channels = AnyChannels::sort(SmallVec::from_vec(channels));
-    let layer = Layer::new(size, LayerAttributes::default(), Encoding::FAST_LOSSLESS, channels);
-    Image::from_layer(layer).write().to_file(path).unwrap();
-}
-
 #[test]
 fn missing_color_lists_what_is_there() {
     let folder = folder_of(2, [4, 4], ALL);
     let path = folder.path().join("frame_0001.exr");
     let zeros = || FlatSamples::F32(vec![0.0; 16]);
     let names = ["ViewLayer.Depth.Z", "ViewLayer.Mist.Z", "R", "G"];
-    save(&path, names.map(|n| AnyChannel::new(n, zeros())).into(), (4, 4));
+    save(&path, (4, 4), Encoding::FAST_LOSSLESS, names.map(|n| AnyChannel::new(n, zeros())).into());
     assert_says(
         &refused(folder.path()),
         &["frame_0001.exr", "no color", "ViewLayer.Depth.Z, ViewLayer.Mist.Z", "Combined.R/G/B"],
@@ -168,9 +165,7 @@ fn one_huge_tile_is_refused() {
     let channels: Vec<_> =
         names.iter().map(|n| AnyChannel::new(n.as_str(), FlatSamples::F32(vec![0.5; 64 * 64]))).collect();
     let encoding = Encoding { blocks: Blocks::Tiles(Vec2(4096, 4096)), ..Encoding::FAST_LOSSLESS };
-    let channels = AnyChannels::sort(SmallVec::from_vec(channels));
-    let layer = Layer::new((64, 64), LayerAttributes::default(), encoding, channels);
-    Image::from_layer(layer).write().to_file(&path).unwrap();
+    save(&path, (64, 64), encoding, channels);
     assert!(StillSource::open(&path, &limits()).is_ok());
     let tight = ReadLimits { max_pixels: 64 * 64 };
     let e = error_of(StillSource::open(&path, &tight));
@@ -184,7 +179,7 @@ fn subsampled_channels_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("yc.exr");
     let zeros = || FlatSamples::F32(vec![0.0; 64]);
-    save(&path, vec![AnyChannel::new("Y", zeros())], (8, 8));
+    save(&path, (8, 8), Encoding::FAST_LOSSLESS, vec![AnyChannel::new("Y", zeros())]);
     let mut bytes = std::fs::read(&path).unwrap();
     // The channel list: name, zero, type, flags, then the sampling in x and y.
     let key = b"chlist\0";
@@ -194,12 +189,6 @@ fn subsampled_channels_are_refused() {
     assert_says(&refused(&path), &["yc.exr", "subsampled", "RGB"]);
 }
 
-fn crc32(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(!0u32, |crc, &b| {
-        (0..8).fold(crc ^ u32::from(b), |c, _| (c >> 1) ^ (0xEDB8_8320 & 0u32.wrapping_sub(c & 1)))
-    })
-}
-
 #[test]
 fn png_and_jpeg_keep_the_same_limits() {
     let folder = tempfile::tempdir().unwrap();
@@ -207,17 +196,12 @@ fn png_and_jpeg_keep_the_same_limits() {
     let png = folder.path().join("a.png");
     flat.save(&png).unwrap();
     let mut bytes = std::fs::read(&png).unwrap();
-    bytes[16..20].copy_from_slice(&100_000u32.to_be_bytes());
-    bytes[20..24].copy_from_slice(&90_000u32.to_be_bytes());
-    let crc = crc32(&bytes[12..29]);
-    bytes[29..33].copy_from_slice(&crc.to_be_bytes());
+    claim_size(&mut bytes, [100_000, 90_000]);
     std::fs::write(&png, &bytes).unwrap();
     let e = refused(&png);
     assert_says(&e, &["a.png", "100000x90000", "64 million"]);
     assert_needs_megapixels(&e, 9000);
-    bytes[16..20].copy_from_slice(&0u32.to_be_bytes());
-    let crc = crc32(&bytes[12..29]);
-    bytes[29..33].copy_from_slice(&crc.to_be_bytes());
+    claim_size(&mut bytes, [0, 90_000]);
     std::fs::write(&png, &bytes).unwrap();
     assert_says(&refused(&png), &["a.png", "export it again"]);
 

@@ -1,7 +1,9 @@
 //! Frames of another renderer: names, counts, and all sign conventions.
 
-use super::{limits, recorded};
-use afterimage::{Image, ViewGeometry};
+use super::limits;
+use crate::explained::explained_db;
+use crate::shared_data::shared_data;
+use afterimage::ViewGeometry;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::source::exr_file::{ExrHeader, Vectors};
 use afterimage_lab::source::motion_check::{Verdict, detect};
@@ -10,16 +12,6 @@ use glam::{Mat4, Vec3};
 
 fn tone(x: f32) -> f32 {
     (x.max(0.0) / (1.0 + x.max(0.0))).powf(1.0 / 2.2)
-}
-
-fn bilinear(image: &Image<[f32; 3]>, x: f32, y: f32) -> [f32; 3] {
-    let (w, h) = (image.width(), image.height());
-    let (x0, y0) = (x.floor(), y.floor());
-    let (fx, fy) = (x - x0, y - y0);
-    let at = |x: f32, y: f32| image.at((x.max(0.0) as usize).min(w - 1), (y.max(0.0) as usize).min(h - 1));
-    let (a, b) = (at(x0, y0), at(x0 + 1.0, y0));
-    let (c, d) = (at(x0, y0 + 1.0), at(x0 + 1.0, y0 + 1.0));
-    std::array::from_fn(|i| (a[i] * (1.0 - fx) + b[i] * fx) * (1.0 - fy) + (c[i] * (1.0 - fx) + d[i] * fx) * fy)
 }
 
 /// Previous position and depth of a pixel's surface point, from depth and cameras.
@@ -47,33 +39,15 @@ fn reprojected_db(
         let before = source.frame(index - 1).unwrap();
         let now = source.frame(index).unwrap();
         let (zb, zn) = (before.depth.as_ref().unwrap(), now.depth.as_ref().unwrap());
-        let toned = before.color.map(|c| c.map(tone));
         let motion = now.motion.as_ref().unwrap();
-        let (w, h) = (zn.width(), zn.height());
-        let (mut error, mut count) = (0.0f64, 0u64);
-        for y in 0..h {
-            for x in 0..w {
-                let m = motion.at(x, y);
-                let (px, py) = (x as f32 + m[0], y as f32 + m[1]);
-                let inside = px >= 0.0 && px <= (w - 1) as f32 && py >= 0.0 && py <= (h - 1) as f32;
-                if !inside || m[0].hypot(m[1]) < min_px {
-                    continue;
-                }
-                let (expected, tolerance) =
-                    if static_scene { (by_camera(&now, &view, x, y).1, 0.03) } else { (zn.at(x, y), 0.1) };
-                let seen = zb.at(px.round() as usize, py.round() as usize);
-                if (seen - expected).abs() >= tolerance * expected {
-                    continue;
-                }
-                let fetched = bilinear(&toned, x as f32 + sign[0] * m[0], y as f32 + sign[1] * m[1]);
-                let here = now.color.at(x, y).map(tone);
-                for i in 0..3 {
-                    error += f64::from(fetched[i] - here[i]).powi(2);
-                }
-                count += 3;
-            }
-        }
-        sum += -10.0 * (error / count as f64).log10();
+        let was_seen = |[x, y]: [usize; 2], from: [f32; 2]| {
+            let (expected, tolerance) =
+                if static_scene { (by_camera(&now, &view, x, y).1, 0.03) } else { (zn.at(x, y), 0.1) };
+            let seen = zb.at(from[0].round() as usize, from[1].round() as usize);
+            let [mx, my] = motion.at(x, y);
+            mx.hypot(my) >= min_px && (seen - expected).abs() < tolerance * expected
+        };
+        sum += explained_db(&before, &now, sign, |c| c.map(tone), was_seen).0;
     }
     sum / steps
 }
@@ -81,17 +55,17 @@ fn reprojected_db(
 #[test]
 fn counts_sizes_and_channels() {
     for (name, size, frames) in [
-        ("sponza_lateral", [480, 270], 24),
-        ("sponza_object", [480, 270], 16),
-        ("sponza_still", [1920, 1080], 1),
-        ("blender_raw", [480, 270], 1),
+        ("sequences/sponza_lateral", [480, 270], 24),
+        ("sequences/sponza_object", [480, 270], 16),
+        ("sequences/sponza_still", [1920, 1080], 1),
+        ("sequences/blender_raw", [480, 270], 1),
     ] {
-        let Some(folder) = recorded(name) else { return };
+        let Some(folder) = shared_data(name) else { return };
         let mut source = open(folder.to_str().unwrap(), &limits(), &SceneOptions::default()).unwrap();
         let info = source.info().clone();
         assert_eq!((info.size, info.frames), (size, Some(frames)), "{name}");
         assert_eq!(info.still, frames == 1, "{name}");
-        if name != "blender_raw" {
+        if name != "sequences/blender_raw" {
             assert_eq!((info.fps, info.hfov_deg), (Some(60.0), Some(70.0)), "{name}");
         }
         let frame = source.frame(0).unwrap();
@@ -106,7 +80,8 @@ fn counts_sizes_and_channels() {
 /// Color and depth of the raw file against its repacked copy, and all four vector channels to half of 1/4096 px.
 #[test]
 fn the_repacked_frame_is_the_raw_one() {
-    let (Some(raw), Some(packed)) = (recorded("blender_raw"), recorded("sponza_lateral")) else {
+    let (Some(raw), Some(packed)) = (shared_data("sequences/blender_raw"), shared_data("sequences/sponza_lateral"))
+    else {
         return;
     };
     let raw = ExrHeader::open(&raw.join("sponza_lateral_0005.exr"), &limits()).unwrap();
@@ -131,9 +106,10 @@ fn the_repacked_frame_is_the_raw_one() {
 /// The table in the data's README, forwards and backwards; flipped signs must be clearly worse.
 #[test]
 fn vectors_reproject_as_published() {
-    let cases = [("sponza_lateral", true, 0.0, 36.3, 24.8), ("sponza_object", false, 0.25, 34.8, 18.4)];
+    let cases =
+        [("sequences/sponza_lateral", true, 0.0, 36.3, 24.8), ("sequences/sponza_object", false, 0.25, 34.8, 18.4)];
     for (name, static_scene, min_px, right, both_flipped) in cases {
-        let Some(folder) = recorded(name) else { return };
+        let Some(folder) = shared_data(name) else { return };
         let mut source = SequenceSource::open(&folder, &limits()).unwrap();
         let n = source.info().frames.unwrap();
         for (direction, steps) in [("forwards", 1..n), ("backwards", n..2 * n - 1)] {
@@ -147,7 +123,7 @@ fn vectors_reproject_as_published() {
             if direction == "forwards" {
                 assert!((both - both_flipped).abs() < 0.5, "{name}: {both}");
             }
-            if name == "sponza_object" {
+            if name == "sequences/sponza_object" {
                 assert!(good > y + 5.0, "{name} {direction}: the y sign does not matter?");
             }
         }
@@ -157,9 +133,7 @@ fn vectors_reproject_as_published() {
 /// In a static scene, depth and cameras agree with the motion vectors, in both directions of playback.
 #[test]
 fn cameras_agree_with_vectors() {
-    let Some(folder) = recorded("sponza_lateral") else {
-        return;
-    };
+    let Some(folder) = shared_data("sequences/sponza_lateral") else { return };
     let mut source = SequenceSource::open(&folder, &limits()).unwrap();
     let view = ViewGeometry::flat(source.info().size, source.info().hfov_deg.unwrap()).unwrap();
     for index in [1, 5, 12, 13, 23, 24, 30, 40, 46, 47] {
@@ -186,9 +160,7 @@ fn cameras_agree_with_vectors() {
 /// The frames at positions i and 2n-2-i are equal; only frame 0 is a cut.
 #[test]
 fn playback_turns_round() {
-    let Some(folder) = recorded("sponza_object") else {
-        return;
-    };
+    let Some(folder) = shared_data("sequences/sponza_object") else { return };
     let mut source = SequenceSource::open(&folder, &limits()).unwrap();
     let n = source.info().frames.unwrap();
     for i in [0, 3, n - 2] {
@@ -204,8 +176,10 @@ fn playback_turns_round() {
 
 #[test]
 fn the_detector_confirms_what_the_reader_delivers() {
-    for (name, verdict) in [("sponza_lateral", Verdict::YAxisOpen), ("sponza_object", Verdict::Decided)] {
-        let Some(folder) = recorded(name) else { return };
+    for (name, verdict) in
+        [("sequences/sponza_lateral", Verdict::YAxisOpen), ("sequences/sponza_object", Verdict::Decided)]
+    {
+        let Some(folder) = shared_data(name) else { return };
         let mut source = SequenceSource::open(&folder, &limits()).unwrap();
         for index in [3, 20, 40] {
             let before = source.frame(index - 1).unwrap();

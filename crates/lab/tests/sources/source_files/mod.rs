@@ -10,19 +10,8 @@ use afterimage::Image;
 use afterimage_lab::error::InputError;
 use afterimage_lab::source::ReadLimits;
 use afterimage_lab::source::exr_file::{ColorFormat, FrameToWrite, write};
-use std::io::Write;
-use std::path::{Path, PathBuf};
-
-/// Folder of a recorded sequence; prints a message if it is absent.
-fn recorded(name: &str) -> Option<PathBuf> {
-    let path = afterimage_testing::workspace().join("../shared/data/sequences").join(name);
-    if path.is_dir() {
-        return Some(path);
-    }
-    // Not eprintln: the test harness captures it.
-    let _ = writeln!(std::io::stderr(), "SKIPPED: no recorded frames at {}", path.display());
-    None
-}
+use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, SmallVec, WritableImage};
+use std::path::Path;
 
 fn limits() -> ReadLimits {
     ReadLimits::default()
@@ -71,6 +60,13 @@ fn folder_of(n: u32, size: [u32; 2], extras: Extras) -> tempfile::TempDir {
         write_frame(&path, size, extras);
     }
     folder
+}
+
+/// Writes an EXR file of one part.
+fn save(path: &Path, size: (usize, usize), encoding: Encoding, channels: Vec<AnyChannel<FlatSamples>>) {
+    let channels = AnyChannels::sort(SmallVec::from_vec(channels));
+    let layer = Layer::new(size, LayerAttributes::default(), encoding, channels);
+    exr::prelude::Image::from_layer(layer).write().to_file(path).unwrap();
 }
 
 /// Checks that an error is one line, has a remedy, and contains all words.

@@ -1,14 +1,14 @@
 //! Damaged files: flipped, inserted and removed bytes must give an error or an image, never a panic or excessive
 //! memory.
 
-use super::{picture, vectors};
+use super::{picture, save, vectors};
+use crate::hostile::peak_mb;
 use afterimage_lab::source::exr_file::{ColorFormat, FrameToWrite, write};
 use afterimage_lab::source::{ReadLimits, SceneOptions, open};
 use afterimage_testing::panics::silence_the_exr_decoder;
 use exr::prelude::*;
 use image::{DynamicImage, ImageBuffer, Rgb};
 use proptest::prelude::*;
-use std::path::Path;
 use std::sync::OnceLock;
 
 /// Small, so that a damaged file that is accepted at its claimed size takes little memory.
@@ -44,7 +44,8 @@ fn samples() -> &'static [(String, Vec<u8>)] {
         ] {
             for (kind, blocks) in [("lines", Blocks::ScanLines), ("tiles", Blocks::Tiles(Vec2(16, 8)))] {
                 let name = format!("{name}_{kind}.exr");
-                save(&folder.path().join(&name), compression, blocks);
+                let encoding = Encoding { compression, blocks, line_order: LineOrder::Increasing };
+                save(&folder.path().join(&name), (24, 20), encoding, channels());
                 take(&name);
             }
         }
@@ -52,26 +53,12 @@ fn samples() -> &'static [(String, Vec<u8>)] {
     })
 }
 
-fn save(path: &Path, compression: Compression, blocks: Blocks) {
+/// Channels of 24x20 pixels.
+fn channels() -> Vec<AnyChannel<FlatSamples>> {
     let n = 24 * 20;
     let half = |k: usize| FlatSamples::F16((0..n).map(|i| f16::from_f32((i * k % 97) as f32)).collect());
-    let channels = SmallVec::from_vec(vec![
-        AnyChannel::new("R", half(3)),
-        AnyChannel::new("G", half(5)),
-        AnyChannel::new("B", half(7)),
-        AnyChannel::new("Z", FlatSamples::F32((0..n).map(|i| i as f32).collect())),
-    ]);
-    let encoding = Encoding { compression, blocks, line_order: LineOrder::Increasing };
-    let channels = AnyChannels::sort(channels);
-    let layer = Layer::new((24, 20), LayerAttributes::default(), encoding, channels);
-    Image::from_layer(layer).write().to_file(path).unwrap();
-}
-
-/// Peak resident memory of this process in MB, where the system provides it.
-fn peak_mb() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
-    Some(line.split_whitespace().nth(1)?.parse::<u64>().ok()? / 1024)
+    let depth = FlatSamples::F32((0..n).map(|i| i as f32).collect());
+    [("R", half(3)), ("G", half(5)), ("B", half(7)), ("Z", depth)].map(|(name, of)| AnyChannel::new(name, of)).into()
 }
 
 fn mutate(bytes: &mut Vec<u8>, edits: &[(prop::sample::Index, u8, u8)]) {

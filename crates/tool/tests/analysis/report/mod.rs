@@ -5,4 +5,4 @@ mod equal;
 mod page;
 mod pareto;
 mod psnr;
-mod table;
+pub mod table;

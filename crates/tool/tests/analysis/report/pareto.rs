@@ -1,9 +1,9 @@
 //! The plot: well-formed, complete, legible, reproducible.
 
-use super::drawn::{has_text, mark_at, number, with_class};
+use super::drawn::{assert_ends_before_the_border, assert_marks_and_letters, has_text, mark_at, number, with_class};
 use super::table::{INPUTS, measurements, of, table};
-use afterimage_cli::report::{pareto, plot};
-use afterimage_cli::sweep::{METRICS, Metric, Table};
+use afterimage_cli::report::pareto;
+use afterimage_cli::sweep::{METRICS, Measurement, Metric, Table};
 use resvg::usvg::roxmltree::{Document, Node};
 
 fn flip() -> &'static Metric {
@@ -75,12 +75,14 @@ fn numbers_lie_on_no_other_number() {
 
 #[test]
 fn labels_that_differ_at_their_ends_are_whole() {
+    let lengthen = |all: &mut [Measurement], value: fn(&str) -> String| {
+        for m in all {
+            let value = value(&m.point.options["fovea"]);
+            m.point.options.insert("a-long-option".into(), value);
+        }
+    };
     let mut all = measurements();
-    for m in &mut all {
-        let fovea = &m.point.options["fovea"];
-        let value = format!("with much to say before it comes to {fovea}");
-        m.point.options.insert("a-long-option".into(), value);
-    }
+    lengthen(&mut all, |fovea| format!("with much to say before it comes to {fovea}"));
     let table = of(&all, None);
     let svg = pareto::svg(&table, INPUTS[0], flip());
     let document = Document::parse(&svg).unwrap();
@@ -94,32 +96,13 @@ fn labels_that_differ_at_their_ends_are_whole() {
     }
     assert!(places.len() > 2 && places.windows(2).all(|p| p[0] < p[1]), "a line each: {places:?}");
     // Labels that are too long even so are cut before the border.
-    for m in &mut all {
-        let fovea = &m.point.options["fovea"];
-        let value = format!("{fovea} {}", "a much longer value ".repeat(10));
-        m.point.options.insert("a-long-option".into(), value);
-    }
-    let picture = plot::png(&pareto::svg(&of(&all, None), INPUTS[0], flip()));
-    let paper = *picture.get_pixel(0, 0);
-    assert!((0..picture.height()).all(|y| *picture.get_pixel(picture.width() - 4, y) == paper), "ink at the border");
+    lengthen(&mut all, |fovea| format!("{fovea} {}", "a much longer value ".repeat(10)));
+    assert_ends_before_the_border(&pareto::svg(&of(&all, None), INPUTS[0], flip()));
 }
 
 #[test]
 fn png_has_marks_and_letters_and_is_the_same_again() {
-    let table = table(None);
-    let picture = plot::png(&pareto::svg(&table, INPUTS[1], flip()));
-    assert_eq!(picture.width(), 1920);
-    assert_eq!(picture, plot::png(&pareto::svg(&table, INPUTS[1], flip())));
-    let count = |color: [u8; 3]| picture.pixels().filter(|p| p.0 == color).count();
-    for (method, color) in
-        [("none", [122, 122, 122]), ("taa", [230, 159, 0]), ("wrs", [0, 114, 178]), ("smr", [0, 158, 115])]
-    {
-        assert!(count(color) > 100, "{method} has {} pixels", count(color));
-    }
-    // Dark pixels in the title area are letters, which do not depend on the machine's fonts.
-    let title = image::imageops::crop_imm(&picture, 150, 16, 1000, 40).to_image();
-    let dark = title.pixels().filter(|p| p.0.iter().all(|v| *v < 128)).count();
-    assert!(dark > 500, "{dark} pixels of letters");
+    assert_marks_and_letters(&pareto::svg(&table(None), INPUTS[1], flip()), 100);
 }
 
 #[test]

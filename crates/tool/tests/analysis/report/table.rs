@@ -18,7 +18,7 @@ const METHODS: [(&str, f64, u32, f64); 5] = [
     ("oracle", 9.0, 0, 0.2),
 ];
 
-fn options(pairs: &[(&str, &str)]) -> Options {
+pub fn options(pairs: &[(&str, &str)]) -> Options {
     pairs.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect()
 }
 

@@ -1,9 +1,9 @@
 //! `afterimage trace` with one eye: files, options, cameras.
 
-use super::rig::{Traced, picture, trace};
+use super::rig::{Traced, picture};
+use crate::rig::{Folder, words};
 use afterimage_lab::trace::effects::Effect;
 use serde_json::Value;
-use std::fs;
 
 #[test]
 fn it_writes_what_the_contract_says() {
@@ -21,27 +21,17 @@ fn it_writes_what_the_contract_says() {
     assert!(t.stdout.contains("36 triangles, 2 frames of 24x16 at 2 spp"), "{}", t.stdout);
 
     let report = t.report();
-    for (key, value) in [
-        ("tool", "afterimage"),
-        ("scene", "builtin:cornell"),
-        ("integrator", "mis"),
-        ("bsdf", "auto"),
-        ("sampling", "uniform"),
-    ] {
-        assert_eq!(report[key], value, "{key}");
-    }
-    for (key, value) in
-        [("frames", 2), ("spp", 2), ("max_depth", 3), ("seed", 0), ("triangles", 36), ("nonfinite_samples", 0)]
-    {
-        assert_eq!(report[key], value, "{key}");
+    let expected = serde_json::json!({"tool": "afterimage", "scene": "builtin:cornell", "integrator": "mis", "bsdf": "auto",
+        "sampling": "uniform", "frames": 2, "spp": 2, "max_depth": 3, "seed": 0, "triangles": 36, "nonfinite_samples": 0,
+        "effects": ["emissive-triangles"], "warnings": []});
+    for (key, value) in expected.as_object().unwrap() {
+        assert_eq!(report[key], *value, "{key}");
     }
     for key in ["fps", "hfov_deg", "load_ms", "build_ms", "compile_ms", "rays", "seconds", "million_rays_per_second"] {
         assert!(report[key].is_number(), "{key}: {}", report[key]);
     }
     assert_eq!(report["backend"]["kind"], "cpu");
     assert_eq!((&report["samples"]["traced"], &report["samples"]["uniform"]), (&1536.into(), &1536.into()));
-    assert_eq!(report["effects"], serde_json::json!(["emissive-triangles"]));
-    assert_eq!(report["warnings"], serde_json::json!([]));
     assert!(report["rays"].as_u64().unwrap() > 1536);
     let cameras: Value = serde_json::from_slice(&t.bytes("cameras.json")).unwrap();
     assert_eq!(cameras["frames"].as_array().unwrap().len(), 2);
@@ -76,31 +66,21 @@ fn all_effects_give_the_bytes_of_those_that_are_needed() {
 fn every_option_does_something() {
     let plain = Traced::new("builtin:bunny-low", &[]);
     let exr = plain.bytes("color/000000.exr");
-    for more in [
-        &["--hfov", "30"][..],
-        &["--spp", "3"],
-        &["--max-depth", "1"],
-        &["--integrator", "nee"],
-        &["--integrator", "naive"],
-        &["--bsdf", "phong"],
-        &["--sky", "none"],
-        &["--sky", "0.1,2,3"],
-        &["--effects", "environment"],
-        &["--tonemap", "reinhard"],
-        &["--exposure", "-1.5"],
+    assert_ne!(Traced::with_spp("builtin:bunny-low", "3", &[]).bytes("color/000000.exr"), exr);
+    for (option, value) in [
+        ("--hfov", "30"),
+        ("--max-depth", "1"),
+        ("--integrator", "nee"),
+        ("--integrator", "naive"),
+        ("--bsdf", "phong"),
+        ("--sky", "none"),
+        ("--sky", "0.1,2,3"),
+        ("--effects", "environment"),
+        ("--tonemap", "reinhard"),
+        ("--exposure", "-1.5"),
     ] {
-        // If an option may be repeated, the last one counts.
-        let args: Vec<&str> = more.to_vec();
-        let folder = tempfile::tempdir().unwrap();
-        let out = folder.path().join("out");
-        let mut all = vec!["builtin:bunny-low", "--out", out.to_str().unwrap(), "--size", "24x16", "--backend", "cpu"];
-        if args[0] != "--spp" {
-            all.extend(["--spp", "2"]);
-        }
-        all.extend(&args);
-        let output = trace(&all);
-        assert!(output.status.success(), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
-        assert_ne!(fs::read(out.join("color/000000.exr")).unwrap(), exr, "{args:?}");
+        let other = Traced::new("builtin:bunny-low", &[option, value]);
+        assert_ne!(other.bytes("color/000000.exr"), exr, "{option} {value}");
     }
     let png = Traced::new("builtin:bunny-low", &["--format", "png"]);
     assert_eq!(png.files("color"), ["000000.png", "cameras.json"]);
@@ -125,25 +105,15 @@ fn a_written_camera_file_is_a_camera() {
 #[test]
 fn a_path_of_keyframes_moves_the_camera_and_a_sky_may_be_a_picture() {
     let sky = Traced::new("builtin:control", &[]);
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("path.json");
-    let keyframes = r#"{"keyframes": [{"time_s": 0, "position": [0, 1, 5], "target": [0, 0, 0]},
-        {"time_s": 1, "position": [3, 1, 4], "target": [0, 0, 0]}]}"#;
-    fs::write(&path, keyframes).unwrap();
+    let folder = Folder::new();
+    let path = folder.write(
+        "path.json",
+        br#"{"keyframes": [{"time_s": 0, "position": [0, 1, 5], "target": [0, 0, 0]},
+        {"time_s": 1, "position": [3, 1, 4], "target": [0, 0, 0]}]}"#,
+    );
     let exr = sky.path("color/000000.exr");
-    let args = [
-        "--camera",
-        path.to_str().unwrap(),
-        "--frames",
-        "2",
-        "--fps",
-        "2",
-        "--sky",
-        exr.to_str().unwrap(),
-        "--aov",
-        "motion",
-    ];
-    let moved = Traced::new("builtin:bunny-low", &args);
+    let line = format!("--camera {path} --frames 2 --fps 2 --sky {} --aov motion", exr.display());
+    let moved = Traced::new("builtin:bunny-low", &words(&line));
     assert_ne!(moved.bytes("color/000000.exr"), moved.bytes("color/000001.exr"));
     assert_ne!(moved.bytes("motion/000000.exr"), moved.bytes("motion/000001.exr"));
     assert!(moved.report()["effects"].as_array().unwrap().contains(&"environment-map".into()));
@@ -151,10 +121,9 @@ fn a_path_of_keyframes_moves_the_camera_and_a_sky_may_be_a_picture() {
 
 #[test]
 fn a_scene_of_nothing_gives_a_frame() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("nothing.gltf");
-    fs::write(&path, br#"{"asset": {"version": "2.0"}}"#).unwrap();
-    let t = Traced::new(path.to_str().unwrap(), &["--aov", "depth,motion,variance"]);
+    let folder = Folder::new();
+    let path = folder.write("nothing.gltf", br#"{"asset": {"version": "2.0"}}"#);
+    let t = Traced::new(&path, &["--aov", "depth,motion,variance"]);
     // A scene without light gets a white sky.
     assert!(picture(&t.path("color/000000.exr")).pixels().iter().all(|c| *c == [1.0; 3]));
     assert_eq!(t.report()["triangles"], 0);

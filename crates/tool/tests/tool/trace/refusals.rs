@@ -1,7 +1,7 @@
 //! Invalid values and scene files.
 
 use super::rig::refuses;
-use std::fs;
+use crate::rig::Folder;
 
 #[test]
 fn values_that_cannot_be_are_refused_in_one_line() {
@@ -46,12 +46,7 @@ fn values_that_cannot_be_are_refused_in_one_line() {
 
 #[test]
 fn hostile_scene_files_are_refused_in_one_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let write = |name: &str, bytes: &[u8]| {
-        let path = folder.path().join(name);
-        fs::write(&path, bytes).unwrap();
-        path.to_str().unwrap().to_owned()
-    };
+    let folder = Folder::new();
     let header = |length: u32| [b"glTF".to_vec(), 2u32.to_le_bytes().to_vec(), length.to_le_bytes().to_vec()].concat();
     let huge = br#"{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 4000000000000}],
         "bufferViews": [{"buffer": 0, "byteLength": 4000000000000}],
@@ -73,9 +68,9 @@ fn hostile_scene_files_are_refused_in_one_line() {
         ("circle.gltf", circle),
         ("scene.fbx", b"whatever"),
     ] {
-        refuses(&write(name, bytes), &[], &[name]);
+        refuses(&folder.write(name, bytes), &[], &[name]);
     }
     refuses("missing.glb", &[], &["missing.glb"]);
     refuses("builtin:teapot", &[], &["teapot", "cornell"]);
-    refuses(folder.path().to_str().unwrap(), &[], &[]);
+    refuses(&folder.text(""), &[], &[]);
 }

@@ -1,11 +1,11 @@
 //! `afterimage trace --stereo`.
 
 use super::rig::{Traced, picture, refuses};
+use crate::rig::{run, succeeds, words};
 use afterimage_lab::source::{FrameSource, ReadLimits, SequenceSource};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 /// Rows of a gaze.csv.
 fn gaze(path: &Path) -> Vec<[f64; 2]> {
@@ -67,9 +67,8 @@ fn two_eyes_have_frames_cameras_and_gazes_of_their_own() {
     // `run` reads an eye's folder and its scanpath.
     let out = t.path("run");
     let [input, path] = ["right/color", "right/scanpath.csv"].map(|name| t.path(name).to_str().unwrap().to_owned());
-    let args = ["run", &input, "--gaze", &path, "--frames", "2", "--method", "none", "--backend", "cpu", "--out"];
-    let run = Command::new(env!("CARGO_BIN_EXE_afterimage")).args(args).arg(&out).output().unwrap();
-    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let line = format!("--gaze {path} --frames 2 --method none --backend cpu");
+    succeeds(&run(&input, out.to_str().unwrap(), &words(&line)));
     for (a, b) in gaze(&out.join("gaze.csv")).iter().zip(&r) {
         assert!((a[0] - b[0]).abs() < 2e-3 && (a[1] - b[1]).abs() < 2e-3, "{a:?} {b:?}");
     }

@@ -1,0 +1,39 @@
+//! What all tests are given: the device, built-in scenes, and scenes made by others.
+
+use crate::shared_data::shared_data;
+use afterimage::wgpu;
+use afterimage_lab::device::Headless;
+use afterimage_lab::scene::{Scene, SceneLimits};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+/// One device shared by all tests; without an adapter, prints that and returns `None`.
+pub fn device() -> Option<Arc<Headless>> {
+    static DEVICE: OnceLock<Arc<Headless>> = OnceLock::new();
+    let adapter = afterimage_testing::gpu::adapter()?;
+    let open = || {
+        let offered = adapter.limits();
+        // Sponza exceeds the default limits.
+        let required_limits = wgpu::Limits {
+            max_texture_dimension_2d: offered.max_texture_dimension_2d,
+            max_buffer_size: offered.max_buffer_size,
+            max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
+            ..wgpu::Limits::default()
+        };
+        Headless::on(adapter, required_limits).expect("a device with these limits")
+    };
+    Some(DEVICE.get_or_init(open).clone())
+}
+
+pub fn open(path: &Path) -> Scene {
+    Scene::open(path.to_str().unwrap(), &SceneLimits::default()).unwrap()
+}
+
+pub fn builtin(name: &str) -> Scene {
+    open(Path::new(&format!("builtin:{name}")))
+}
+
+/// Path of a scene in the shared data.
+pub fn path_of(name: &str) -> Option<PathBuf> {
+    shared_data(&format!("scenes/{name}"))
+}

@@ -1,0 +1,88 @@
+//! One walk with all methods: on the device, where frames stay, and read back for methods on the CPU.
+
+use super::foveated::noise;
+use super::rig::FAST;
+use super::{foveated, quad_views};
+use crate::given::device;
+use afterimage::{Filter, Foveation, Image, MethodKind, Settings};
+use afterimage_lab::device::Backend;
+use afterimage_lab::lattices::SparseGeometry;
+use afterimage_lab::metric;
+use afterimage_lab::pipeline::{Pipeline, RunKind};
+use afterimage_lab::quad_views::QuadViewLayout;
+use afterimage_lab::source::{FrameSource, RasterSource, SceneCamera, Wanted};
+
+const SIZE: [u32; 2] = [158, 90];
+
+/// PSNR after encoding.
+fn psnr_db(shown: &Image<[f32; 3]>, full: &Image<[f32; 3]>) -> f64 {
+    let (shown, full) = (metric::encode(shown, 0.0), metric::encode(full, 0.0));
+    let square = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| f64::from((a[c] - b[c]).powi(2))).sum::<f64>();
+    let squares = shown.pixels().iter().zip(full.pixels()).map(square).sum::<f64>();
+    -10.0 * (squares / shown.pixels().len() as f64 / 3.0).log10()
+}
+
+/// `layout`: of quad views; lattices without it.
+fn both_show_the_same(
+    foveation: Foveation,
+    geometry: SparseGeometry,
+    layout: Option<QuadViewLayout>,
+    methods: &[MethodKind],
+) {
+    let Some(device) = device() else { return };
+    let camera = SceneCamera::choose(&noise(), Some("walk"), SIZE, None).unwrap();
+    let view = *camera.geometry();
+    let mut source = RasterSource::new(device.clone(), noise(), camera, None, FAST).unwrap();
+    let run = |method: &MethodKind| RunKind::PostProcess(Settings { method: (*method).into(), ..Settings::default() });
+    let kinds: Vec<_> = methods.iter().map(run).collect();
+    let mut pipelines = [Backend::Gpu(device), Backend::Cpu].map(|backend| {
+        let pipeline = Pipeline::new(view, foveation, &kinds, false, &[], &backend).unwrap();
+        pipeline.with_sparse(geometry, Default::default()).with_quad_views(layout)
+    });
+    let mut db = [0.0; 2];
+    for index in 0..4 {
+        let gaze_px = [60.0 + 10.0 * index as f32, 50.0];
+        let request = pipelines[0].request(index, Some(gaze_px));
+        let frame = source.render(&request).unwrap();
+        let [gpu, cpu] = pipelines.each_mut().map(|pipeline| pipeline.step(&frame).unwrap());
+        for ((gpu, cpu), method) in gpu.outputs.iter().zip(&cpu.outputs).zip(methods) {
+            assert_eq!(gpu.image, cpu.image, "{geometry:?}, {layout:?}, frame {index}, {}", method.name());
+        }
+        // Without a method, foveal pixels are those of the full-rate frame.
+        let fovea = match (&request.wanted, layout) {
+            (Wanted::QuadViews(quads), Some(QuadViewLayout::Regions)) => quads.as_slice()[0].opaque_px,
+            (Wanted::QuadViews(_), Some(QuadViewLayout::Uniform { .. })) => [[0; 2]; 2],
+            (Wanted::Lattices(_), None) => frame.content.lattices().unwrap().as_slice()[0].covered_px(),
+            (wanted, _) => panic!("{layout:?}: {wanted:?}"),
+        };
+        let [[left, top], [right, bottom]] = fovea;
+        for (x, y) in (top..bottom).flat_map(|y| (left..right).map(move |x| (x as usize, y as usize))) {
+            assert_eq!(gpu.outputs[0].image.at(x, y), frame.reference.color.at(x, y), "({x}, {y})");
+        }
+        let last = &gpu.outputs[methods.len() - 1];
+        db = [&gpu.outputs[0], last].map(|output| psnr_db(&output.image, &frame.reference.color));
+    }
+    println!("{geometry:?}, {layout:?}: none {:.2} dB, smr {:.2} dB", db[0], db[1]);
+    assert!(layout.is_none() || db[0] > 15.0 && db[1] > 0.98 * db[0], "what is enlarged resembles the frame");
+}
+
+#[test]
+fn methods_give_the_same_pictures_from_samples_on_the_device_and_in_memory() {
+    use MethodKind::{None, Smr, Taa, Taau, Wrs};
+    let foveation = Foveation { filter: Filter::Sparse, fovea_deg: 12.0, ..foveated::FOVEATION() };
+    for geometry in [SparseGeometry::Full, SparseGeometry::Samples] {
+        both_show_the_same(foveation, geometry, Option::None, &[None, Taa, Taau, Wrs, Smr]);
+    }
+}
+
+#[test]
+fn methods_give_the_same_pictures_of_composed_frames_on_the_device_and_in_memory() {
+    use MethodKind::{None, Smr, Taa, Wrs};
+    for (geometry, layout) in [
+        (SparseGeometry::Full, QuadViewLayout::Regions),
+        (SparseGeometry::Samples, QuadViewLayout::Regions),
+        (SparseGeometry::Samples, QuadViewLayout::Uniform { step: 1.5 }),
+    ] {
+        both_show_the_same(quad_views::FOVEATION(), geometry, Some(layout), &[None, Taa, Wrs, Smr]);
+    }
+}
