@@ -41,6 +41,9 @@ fi
 step "format"
 cargo fmt --check
 
+step "spelling"
+if command -v typos >/dev/null; then typos; else echo "no typos (cargo install typos-cli): SKIPPED"; fi
+
 step "lints: every target, and the combinations of features that users build"
 cargo clippy "${everything[@]}" --all-targets -- -D warnings
 cargo clippy "${everything_29[@]}" --lib --bins --examples -- -D warnings
