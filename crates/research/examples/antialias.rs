@@ -5,6 +5,8 @@
 //! 1000.
 //!
 //! `cargo run --release -p afterimage-research --example antialias`
+//!
+//! Makes figures of `docs/integration.md`, "Jitter and temporal antialiasing"; minutes.
 
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::color::srgb_encode;

@@ -1,6 +1,8 @@
 //! CPU time of each method on the CPU executor and of the metrics, for a picture at rest and under a moving camera:
 //! `cargo run --release -p afterimage-research --example cpu_time PICTURE.png [FRAMES]`. Set `RAYON_NUM_THREADS=1` for
 //! the time of one core.
+//!
+//! Makes the table "CPU executor and metrics" of `docs/performance.md`.
 
 use afterimage::kernel::color::srgb_decode;
 use afterimage::{Foveation, Image, MethodKind, Settings, ViewGeometry};

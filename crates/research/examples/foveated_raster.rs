@@ -4,6 +4,8 @@
 //! `cargo run --release -p afterimage-research --example foveated_raster [SCENE [WIDTHxHEIGHT [FRAMES [CAMERA
 //! [OUT.png]]]]]`; SCENE is a .gltf or .glb file, or builtin:NAME (default builtin:courtyard, 1920x1080, 12 frames,
 //! walk). OUT.png gets the last atlas. Needs an adapter; a software one is enough.
+//!
+//! Makes the table "Foveated rasterising" of `docs/performance.md`.
 
 use afterimage::gpu::{Afterimage, Frame, Target};
 use afterimage::kernel::color::srgb_encode;

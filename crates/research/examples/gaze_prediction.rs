@@ -5,6 +5,8 @@
 //! the duration of the main sequence to the samples since the saccade's begin, and predicts where that ends. Held gaze
 //! is what `run --gaze-latency` uses. The bound knows the true gaze whenever the last samples are of a saccade: no
 //! predictor that begins at a saccade's begin errs less.
+//!
+//! Makes the table of predictors in `docs/equal-time.md`, "Late gaze".
 
 use afterimage_lab::scanpath::{Scanpath, read_csv};
 use std::error::Error;

@@ -1,5 +1,7 @@
 //! What head and eye do in one gaze shift of about 60 degrees, as a plot: `cargo run --release -p afterimage-research
 //! --example head_and_eye [FILE.svg]`.
+//!
+//! Makes the plot of `docs/scanpaths.md`; a second.
 
 use afterimage_lab::scanpath::{EventKind, HeadOptions, HeadTurn, Scanpath, SyntheticHead, generate_head, in_a_room};
 use glam::{DQuat, DVec3};

@@ -5,6 +5,8 @@
 //! vectors that contain the jitter, said to have none.
 //!
 //! `cargo run --release -p afterimage-research --example jitter`
+//!
+//! Makes figures of `docs/integration.md`; half a minute.
 
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::color::srgb_encode;

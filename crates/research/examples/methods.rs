@@ -2,6 +2,8 @@
 //! PSNR, SSIM, retention, flicker, the worst frame against the foveated one, and PSNR on `analytic:scroll`'s panel.
 //!
 //! `cargo run --release -p afterimage-research --example methods INPUT SCANPATH.csv [FRAMES [mip|gauss|block RATE_MID RATE_FAR]]`
+//!
+//! Makes figures of `docs/method.md`, with the clips that it names.
 
 use afterimage::{Filter, Foveation, Method, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;

@@ -4,6 +4,8 @@
 //!
 //! Prints PSNR over none at several lengths of the clip: whole frame, and retained pixels (sampled at full rate
 //! earlier).
+//!
+//! Makes a table of `docs/wrs-findings.md`, whose command is there.
 
 use afterimage::{Bias, Foveation, Gate, GateMetric, Method, Sampler, Settings, ViewGeometry, Wrs};
 use afterimage_lab::device::Backend;

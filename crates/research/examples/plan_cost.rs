@@ -4,6 +4,8 @@
 //! motion and samples are those of analytic clips, 640x360 at 70 degrees, steps 2 and 4, budget 3 %.
 //!
 //! `cargo run --release -p afterimage-research --example plan_cost`
+//!
+//! Makes figures of `docs/method.md`, "Repair"; a minute.
 
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::{CommandEncoder, TextureFormat, TextureUsages};

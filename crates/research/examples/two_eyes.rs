@@ -7,6 +7,8 @@
 //! frames that alternate between both ways.
 //!
 //! `cargo run --release -p afterimage-research --example two_eyes`
+//!
+//! Makes figures of `docs/equal-time.md`, "Headset"; minutes.
 
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::{self, CommandEncoder, Texture, TextureFormat, TextureUsages};

@@ -4,6 +4,8 @@
 //! `cargo run --release -p afterimage-research --example worst_crops FRAMES SCANPATH.csv[,...] INPUT...`; INPUT as for
 //! `afterimage run`. Scenes (`builtin:NAME`, .gltf, .glb) are rasterised, which needs an adapter; a software one is
 //! enough.
+//!
+//! Makes tables of `docs/method.md` and `docs/metrics.md`.
 
 use afterimage::{Filter, Foveation, FrameError, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};

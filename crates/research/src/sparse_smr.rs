@@ -1,4 +1,5 @@
-//! Sparse frames with smr beside frames that are filled between the same number of samples: quality and time.
+//! Sparse frames with smr beside frames that are filled between the same number of samples: quality and time. Makes the
+//! last columns of `cargo research papers`.
 
 use afterimage::{Filter, Foveation, Image, Settings};
 use afterimage_cli::commands::bench::traced_view::{Foveated, FrameTime, Pattern, TracedView};

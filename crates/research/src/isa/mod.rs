@@ -2,7 +2,8 @@
 //!
 //! Makes the tables of `docs/performance.md` that name it. Mesa's RADV makes a device without hardware
 //! (`RADV_FORCE_FAMILY`), compiles for it, and says how many cycles it expects of each instruction. This adds them up
-//! along the paths of a wave. A model: no memory system, no divergence within a wave.
+//! along the paths of a wave. A model: no memory system, no divergence within a wave. Ten
+//! seconds.
 
 mod failure;
 mod gpu;
