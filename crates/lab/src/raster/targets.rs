@@ -11,7 +11,7 @@ use wgpu::{Device, Texture, TextureFormat, TextureUsages, TextureView};
 pub struct Targets {
     /// Linear color.
     pub color: Texture,
-    /// Near plane divided by distance; 0 where there is no surface.
+    /// Near plane divided by distance; 0 for pixels without a surface.
     pub depth: Texture,
     /// Motion in pixels, y down, previous minus current.
     pub motion: Texture,

@@ -90,7 +90,7 @@ impl RasterSource {
         ViewedScene::open(&choice)?.on(device)
     }
 
-    /// [`ViewedScene::new`], on a device with these settings.
+    /// As [`ViewedScene::new`], on a device with these settings.
     ///
     /// # Errors
     /// As for [`ViewedScene::new`] and [`ViewedScene::on`].
