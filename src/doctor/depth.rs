@@ -173,17 +173,17 @@ fn by_planes(desc: &ContextDesc, observations: &[Observation], stated: Shape) ->
     });
     let evidence = vec![("slanted planes", votes as f64), ("share affine as stored", share)];
     let confidence = 0.9 * (1.0 - (-(votes as f64) / 30.0).exp());
-    let is_told = votes >= PLANES && (share >= MAJORITY || share <= 1.0 - MAJORITY);
+    let is_decided = votes >= PLANES && (share >= MAJORITY || share <= 1.0 - MAJORITY);
     let wrong = |shape: Shape, scale| {
         Some(Finding::wrong(Check::Depth, Fault::DepthConvention, confidence, evidence.clone(), shape.line(scale)))
     };
-    if is_told && share < 0.5 {
+    if is_decided && share < 0.5 {
         return match stated {
             Shape::Linear => Some(Finding::fits(Check::Depth, confidence, evidence)),
             _ => wrong(Shape::Linear, None),
         };
     }
-    if !is_told && stated == Shape::Linear {
+    if !is_decided && stated == Shape::Linear {
         return None;
     }
     // A direction is implausible if it puts nearly all surfaces at the near plane.

@@ -98,7 +98,7 @@ pub fn cut(make: Make<'_>) -> Option<String> {
     )
 }
 
-/// A reset at frame 0 and two frames running, and a context that is told to forget.
+/// A reset at frame 0, a reset in two successive frames, and a context whose history is discarded.
 pub fn resets(make: Make<'_>) -> Option<String> {
     for method in METHODS {
         let (fresh, mut twice) = fresh_and_used(make, method)?;

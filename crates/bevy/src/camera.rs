@@ -127,8 +127,8 @@ pub enum FoveationKind {
     Sparse,
     /// The pixel in the middle of each block, interpolated, without history: quad views, for comparison. Saves time.
     QuadViews,
-    /// Every pixel, and then means of blocks, as if a renderer had shaded those, with history. Saves nothing; shows
-    /// what the post-process does.
+    /// The renderer shades every pixel. Means of blocks then replace the colors, as if the renderer had shaded blocks.
+    /// Saves nothing; shows what the post-process does.
     Simulated,
     /// Every pixel, without post-process: for comparison.
     Off,

@@ -117,7 +117,7 @@ fn rows() -> Result<Vec<Row>, Failure> {
         Row::new("sparse 2/4, taau", foveated, false, Some(Method::Taau))?,
         Row::new("sparse 2/4, jitter, taau", foveated, true, Some(Method::Taau))?,
         Row::new("sparse 2/4, smr", foveated, false, smr(false))?,
-        Row::new("sparse 2/4, jitter, smr that is not told", foveated, true, smr(false))?,
+        Row::new("sparse 2/4, jitter, smr without antialias", foveated, true, smr(false))?,
         Row::new("sparse 2/4, jitter, smr", foveated, true, smr(true))?,
     ])
 }

@@ -91,7 +91,7 @@ impl Store {
     /// All measurements, in the order of their points.
     ///
     /// # Errors
-    /// If a file cannot be read or is no measurement.
+    /// If a file cannot be read, or does not contain a measurement.
     pub fn load(&self) -> Result<Vec<Measurement>, InputError> {
         let folder = self.root.join("points");
         let wrong = |path: &Path, problem: String| {
