@@ -475,7 +475,7 @@ impl<'a> HeadsetFrame<'a> {
     /// not tracked.
     ///
     /// # Errors
-    /// [`Error::OpenXr`] if the action is none of the session's.
+    /// [`Error::OpenXr`] if the action does not belong to the session.
     pub fn pose(&mut self, action: &xr::Action<xr::Posef>, path: xr::Path) -> Result<Option<[[f32; 4]; 4]>, Error> {
         let session = self.headset.session.as_mut().expect("a frame has a session");
         let pose = session.pose(action, path, self.time).or_else(none_if_lost)?;

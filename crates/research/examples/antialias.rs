@@ -23,7 +23,7 @@ const NEAR_DEG: f32 = 3.5;
 type Color = Image<[f32; 3]>;
 type Failure = Box<dyn std::error::Error>;
 
-/// A method on frames of a kind, and what was measured of it.
+/// A method on one kind of frames, and its measurements.
 struct Row {
     name: &'static str,
     foveation: Foveation,

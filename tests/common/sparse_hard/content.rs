@@ -1,4 +1,4 @@
-//! What the frames show: lines of a pixel, sparkles, fast motion, silhouettes.
+//! Content of the frames: lines of one pixel's width, sparkles, fast motion, silhouettes.
 
 use super::*;
 
@@ -142,7 +142,7 @@ pub fn fast_motion(make: Make) -> Option<String> {
     Some(format!("dB against the foveated frame: {}", figures.join("; ")))
 }
 
-/// A near square before a wall that moves otherwise.
+/// A near square in front of a wall that moves in another way.
 fn square(index: u64) -> Shot {
     let t = index as f32;
     let (near_px, wall_px) = ([1.3 * t, 0.5 * t], [-0.4 * t, 0.2 * t]);

@@ -35,7 +35,7 @@ impl Targets {
         read_color(device, &self.color)
     }
 
-    /// Waits for all submitted work, then reads distance along the view axis in metres; infinity where there is no
+    /// Waits for all submitted work, then reads distance along the view axis in metres; infinity for pixels without a
     /// surface. `near` is [`Raster::near`](super::Raster::near).
     pub fn read_distance(&self, device: &Headless, near: f32) -> Image<f32> {
         read_distance(device, &self.depth, near)

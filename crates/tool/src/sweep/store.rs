@@ -44,7 +44,7 @@ impl Store {
     /// Opens an existing folder.
     ///
     /// # Errors
-    /// If the folder is not that of a sweep.
+    /// If the folder does not belong to a sweep.
     pub fn open(root: &Path) -> Result<Self, InputError> {
         if !root.join("points").is_dir() {
             let remedy = "expected the --out folder of an earlier afterimage sweep";
