@@ -49,8 +49,8 @@
 //!   and all tunables.
 //! - [`FrameInputs`]: inputs of a frame. [`ViewFrame`], [`ViewGeometry`], [`Gaze`]: description of a view.
 //! - [`FrameStats`], [`Warning`], [`DebugView`]: counters, messages and images of a frame's decisions.
-//! - `gpu::Doctor`, `cpu::Doctor`, [`doctor::Finding`]: checks whether frames match their description, to
-//!   diagnose a wrong picture (`07_doctor.rs`).
+//! - `gpu::Doctor`, `cpu::Doctor`, [`doctor::Finding`]: checks whether frames match their description, to diagnose
+//!   a wrong picture (`07_doctor.rs`).
 //! - [`CreateError`], [`FrameError`], [`SettingsError`]: errors.
 //! - [`simulator`]: foveation of full-rate frames, for tests and for renderers that do not foveate.
 //! - `examples/`: numbered programs, from the smallest one (`01_smallest.rs`) to an engine's loop (`02_engine.rs`),
