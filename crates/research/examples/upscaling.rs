@@ -26,7 +26,7 @@ const PHASES: u64 = 32;
 type Color = Image<[f32; 3]>;
 type Failure = Box<dyn std::error::Error>;
 
-/// A method on frames with one sample in blocks of `step` pixels, and its measurements.
+/// A method on frames with one sample in blocks of `step` pixels, and what was measured of it.
 struct Row {
     name: &'static str,
     step: u32,
