@@ -145,7 +145,7 @@ impl MotionConvention {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum DepthConvention {
-    /// Distance along the view axis; infinite, or above 1e30, where there is no surface.
+    /// Distance along the view axis. Infinity, or a value above 1e30, means that the pixel shows no surface.
     #[default]
     Linear,
     /// Perspective depth buffer: 0 at `near`, 1 at `far`.

@@ -171,7 +171,7 @@ pub enum FrameError {
     /// A value of the frame's description is invalid.
     #[error("{value} of view {view} is {found}: expected {expected}")]
     Value {
-        /// Which value.
+        /// The rejected part of the description.
         value: FrameValue,
         /// Index of the view.
         view: usize,
@@ -182,8 +182,8 @@ pub enum FrameError {
     },
 }
 
-/// A value in the description of a frame that [`FrameError::Value`] rejects, to match on. Displayed, it is the name
-/// that the message has.
+/// A value in the description of a frame that [`FrameError::Value`] rejects, for programs that match on it. It displays
+/// as its name in the error message.
 ///
 /// ```
 /// use afterimage::FrameValue;
@@ -194,7 +194,7 @@ pub enum FrameError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FrameValue {
-    /// Color whose foveation the receiver does not process.
+    /// Color input of a foveation that the receiver does not process.
     Color,
     /// [`ViewFrame::depth`](crate::ViewFrame::depth).
     DepthConvention,

@@ -155,9 +155,9 @@ pub struct ViewFrame {
     /// pixel. `None`: every pixel is visible.
     pub visible_px: Option<[[f32; 4]; 2]>,
     /// Where the samples of a sparse frame lie ([`Filter::Sparse`](crate::Filter::Sparse)): the lattices that the
-    /// renderer drew, for the gaze that it used. The color input either has the context's size, and only its samples
-    /// are read, or it is an atlas ([`Lattice::atlas_texel`](crate::Lattice::atlas_texel)) of any size. Other inputs
-    /// have the context's size. `None`: every pixel of the color input is a sample.
+    /// renderer drew, for the gaze that it used. The color input has the context's size, and only its samples are read;
+    /// or it is an atlas ([`Lattice::atlas_texel`](crate::Lattice::atlas_texel)) of any size. Other inputs have the
+    /// context's size. `None`: every pixel of the color input is a sample.
     pub lattices: Option<Lattices>,
 }
 
@@ -297,7 +297,7 @@ pub enum Reset {
     /// History is valid.
     #[default]
     None,
-    /// No history is valid: after a cut, a teleport or a pause. The frame is processed like the first one.
+    /// All history is invalid, as after a cut, a teleport or a pause. The frame is processed like the first one.
     All,
 }
 
@@ -343,7 +343,8 @@ impl Exposure {
 /// Executor of the post-process: types of its input images.
 ///
 /// Implemented by `gpu::Afterimage`, whose inputs are `gpu::Textures`, and by `cpu::CpuAfterimage`, whose inputs are
-/// slices with one `Image` a view. It only makes [`FrameInputs`] generic; there is no need to implement or to name it.
+/// slices with one `Image` a view. It only makes [`FrameInputs`] generic: applications need neither implement nor name
+/// it.
 pub trait Executor {
     /// Images with three channels (color).
     type Colors<'a>: Copy + Debug;
@@ -393,10 +394,11 @@ pub struct FrameInputs<'a, E: Executor> {
     /// set, otherwise `None`. In sparse frames it is read only at the pixels of samples and at repaired pixels.
     pub noise: Option<E::Vectors<'a>>,
     /// Samples of single pixels of a sparse frame, shaded at full rate: linear colors of the context's size, with the
-    /// frame's jitter. Only the pixels are read that `plan` chose for this frame (`gpu::Afterimage::plan`,
-    /// `cpu::CpuAfterimage::plan`). Such a pixel is shown, and its sample is stored, like a pixel of the full-rate
-    /// lattice. A sample is ignored if it is NaN or infinite, so a renderer may leave out some of the chosen pixels. It
-    /// is also ignored where the full-rate lattice has a sample. `None`: no pixels are repaired.
+    /// frame's jitter. The post-process reads only the pixels that `plan` chose for this frame
+    /// (`gpu::Afterimage::plan`, `cpu::CpuAfterimage::plan`). Such a pixel is shown, and its sample is stored, like a
+    /// pixel of the full-rate lattice. A sample is ignored if it is NaN or infinite, so a renderer may leave out some
+    /// of the chosen pixels. It is also ignored where the full-rate lattice has a sample. `None`: no pixels are
+    /// repaired.
     pub repaired: Option<E::Colors<'a>>,
     /// Descriptions of the views, one for each view of the context.
     pub views: &'a [ViewFrame],

@@ -142,7 +142,7 @@ impl ViewGeometry {
     /// Octagon around the area that a headset's lens shows, for
     /// [`ViewFrame::visible_px`](crate::ViewFrame::visible_px). `outline`: points whose convex hull is the visible
     /// area, such as the vertices of OpenXR's visibility mask: x and y in the plane one unit ahead, y up. One pixel is
-    /// added on every side. `None` if a point is not finite, or if there are no points.
+    /// added on every side. `None` without points, or if a point is not finite.
     ///
     /// ```
     /// use afterimage::ViewGeometry;

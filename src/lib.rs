@@ -40,18 +40,18 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Add depth and motion vectors as soon as the camera or the scene moves: fields `depth` and `motion` of [`Frame`], in
-//! your renderer's [`DepthConvention`] and [`MotionConvention`].
+//! Add depth and motion vectors as soon as the camera or the scene moves: fields `depth` and `motion` of
+//! [`FrameInputs`], in your renderer's [`DepthConvention`] and [`MotionConvention`].
 //!
 //! # Where to look
 //!
 //! - [`ContextDesc`]: description of a context. Its [`Settings`] contain the [`Method`], the renderer's [`Foveation`]
 //!   and all tunables.
-//! - [`Frame`]: inputs of a frame. [`ViewFrame`], [`ViewGeometry`], [`Gaze`]: description of a view.
-//! - [`FrameStats`], [`Warning`], [`DebugView`]: what happened in a frame, as counters, messages and images.
-//! - `gpu::Doctor`, `cpu::Doctor`, [`doctor::Finding`]: checks whether frames are what their description says; for the day when
-//!   the picture looks wrong (`07_doctor.rs`).
-//! - [`CreateError`], [`FrameError`], [`SettingsError`]: what can go wrong.
+//! - [`FrameInputs`]: inputs of a frame. [`ViewFrame`], [`ViewGeometry`], [`Gaze`]: description of a view.
+//! - [`FrameStats`], [`Warning`], [`DebugView`]: counters, messages and images of a frame's decisions.
+//! - `gpu::Doctor`, `cpu::Doctor`, [`doctor::Finding`]: checks whether frames match their description, to diagnose
+//!   a wrong picture (`07_doctor.rs`).
+//! - [`CreateError`], [`FrameError`], [`SettingsError`]: errors.
 //! - [`simulator`]: foveation of full-rate frames, for tests and for renderers that do not foveate.
 //! - `examples/`: numbered programs, from the smallest one (`01_smallest.rs`) to an engine's loop (`02_engine.rs`),
 //!   stereo (`03_stereo.rs`) and a window (`06_window.rs`).

@@ -24,7 +24,7 @@ pub enum Warning {
         /// Index of the view.
         view: usize,
     },
-    /// The gaze is lost or not finite, and was not known before; the middle of the view is used.
+    /// The gaze is lost or not finite, and no earlier position is known; the middle of the view is used.
     GazeUnknown {
         /// Index of the view.
         view: usize,

@@ -70,7 +70,7 @@ fn pack_kept(s: Kept) -> vec2<u32> {
         lod = u32(min(s.lod, MAX_KEPT_LOD) * KEPT_LOD_STEPS + 0.5);
     }
     let code = disparity_code(s.disparity);
-    // The last code is that of an unknown disparity.
+    // The last code stands for an unknown disparity.
     let disparity = select(min((code + 2u) >> 2u, 0x3ffeu), 0x3fffu, code == 0xffffu);
     return vec2<u32>(
         pack_color(s.color),

@@ -27,7 +27,7 @@ fn candidate_level(px: f32, coarsest: f32) -> f32 {
     return min(ln(1.0 + 2.0 * px) * LOG2_E, coarsest);
 }
 
-// A negative `error`: there is no history, or no usable sample.
+// `error` is negative without history or without a usable sample.
 struct Observation {
     sampled: vec3<f32>,
     history: vec3<f32>,

@@ -26,8 +26,8 @@ fn geometry_at(tap: u32, near: Around, lattice: LatticeUniforms, view: u32) -> G
     return GeometrySample(disparity_at(texel, view), motion_at(texel, view), share);
 }
 
-// Whether history confirms that a pixel shows a sample's surface: it has the expected disparity at the previous
-// position.
+// Whether history confirms that a pixel shows a sample's surface: history must have the expected disparity at the
+// previous position.
 fn is_confirmed(px: vec2<u32>, view: u32, s: GeometrySample) -> bool {
     if HAS_KEPT == 0u || DEPTH_TEST == 0u {
         return false;

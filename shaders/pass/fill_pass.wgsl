@@ -1,6 +1,7 @@
 //#use lattices
-// Every pixel of a sparse frame, for methods that read whole frames: samples unchanged, and between them linear
-// interpolation without those that are not finite. CPU twin: src/cpu/fill.rs. One invocation a pixel; z is the view.
+// Fills every pixel of a sparse frame, for methods that read whole frames: samples stay unchanged, and pixels between
+// them are linear interpolations of the finite samples. CPU twin: src/cpu/fill.rs. One invocation a pixel; z is the
+// view.
 //
 // Up to 4 reads and 1 write a pixel: the samples, and 16 bytes a pixel written.
 

@@ -64,7 +64,7 @@ const COUNT_REPLACED: u32 = 3u;
 const COUNT_VERDICTS: u32 = 4u;
 const COUNTERS: u32 = COUNT_VERDICTS + VERDICT_COUNT;
 
-// Counts of a workgroup: one global atomic a counter and workgroup instead of one a pixel.
+// Counts of a workgroup. They need one global atomic for each counter and workgroup, instead of one for each pixel.
 var<workgroup> group_counters: array<atomic<u32>, COUNTERS>;
 
 // Texel of an input or output whose view begins at `origin`.
@@ -125,8 +125,8 @@ fn disparity_at(px: vec2<u32>, view: u32) -> f32 {
     return disparity(textureLoad(depth_in, texel_of(px, constants.depth_origin), layer_of(view), 0).x, map);
 }
 
-// depth::slope: change of the surface's disparity a pixel; 0 unless `needed`. A loop with zero iterations for most
-// pixels: software Vulkan runs the body of an `if` for all pixels, but leaves such a loop at once.
+// depth::slope: change of the surface's disparity a pixel; 0 unless `needed`. It is a loop with zero iterations for
+// most pixels: software Vulkan runs the body of an `if` for all pixels, but leaves such a loop at once.
 fn slope_at(px: vec2<u32>, view: u32, center: f32, needed: bool) -> f32 {
     var total = 0.0;
     var before = INVALID_DISPARITY;

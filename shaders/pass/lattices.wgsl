@@ -45,7 +45,7 @@ fn lattice_at(px: vec2<u32>, view: u32) -> LatticeUniforms {
     return sparse.views[view][lattice_index_at(px, view)];
 }
 
-// Samples around a pixel along both axes. Without samples in the frame (`any` is false) the others are not valid.
+// Samples around a pixel along both axes. Without samples in the frame (`any` is false) the other fields are not valid.
 struct Around {
     x: Between,
     y: Between,

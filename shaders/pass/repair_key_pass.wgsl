@@ -1,7 +1,7 @@
 //#use kept_history
 //#use lattices
 //#use repair_state
-// How much the quads of a sparse frame want samples of their own, before it is shaded. CPU twin: `key` in
+// Keys by which the quads of a sparse frame are chosen for repair, before the frame is shaded. CPU twin: `key` in
 // src/cpu/sparse_pass/plan.rs. One invocation a quad of 2x2 pixels of view `frame.first_view`.
 //
 // 8 reads and 1 write a quad: depth, motion, trust and a stored sample of two pixels. A pixel that is not settled needs

@@ -1,7 +1,7 @@
 //#use repair_list
 //#use repair_state
-// Which quads of a view a plan chose: a mask, and a list in no particular order. CPU twin: `plan` in
-// src/cpu/sparse_pass/plan.rs. One invocation a quad of 2x2 pixels.
+// Quads of a view that a plan chose: a mask, and an unordered list. CPU twin: `plan` in src/cpu/sparse_pass/plan.rs.
+// One invocation a quad of 2x2 pixels.
 
 struct RepairQuads {
     // Number of quads along x and y.

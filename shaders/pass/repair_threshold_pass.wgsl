@@ -30,7 +30,7 @@ fn main(@builtin(local_invocation_index) run: u32) {
         first--;
         chosen += of_run[first];
     }
-    // The budget ends within the keys of the previous run, if there is one. No quad is counted at key 0.
+    // The budget ends within the keys of the run before `first`, unless `first` is 0. No quad is counted at key 0.
     var key = first * RUN;
     while key > 1u && atomicLoad(&state.counts[key - 1u]) <= budget - chosen {
         key--;

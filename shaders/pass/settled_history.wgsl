@@ -1,6 +1,7 @@
 //#use surface_history
 //#use taa
-// What settled history is compared by; shared by taa and taau. CPU twin: src/cpu/surface_history.rs.
+// Luma of history, by which settled history is compared with samples; shared by taa and taau. CPU twin:
+// src/cpu/surface_history.rs.
 
 // Luma of history at `offset_px` from the texel nearest to a position, regardless of its surface.
 fn luma_beside(source: Source, offset_px: vec2<i32>, view: u32) -> f32 {

@@ -27,7 +27,7 @@ fn disparity_of(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> f32 {
     return disparity_at(px_of(point, lattice), view);
 }
 
-// Neighbour `tap` of 3x3. Its weight is 0 if it is no evidence of the sample's light.
+// Neighbour `tap` of 3x3. Its weight is 0 if it shows nothing about the light at the sample.
 fn neighbour(
     tap: u32,
     point: vec2<u32>,
@@ -53,7 +53,7 @@ fn neighbour(
     return Neighbour(other, spatial * other.sure, spatial);
 }
 
-// Fit at the sample's own pixel. A single noisy sample is no evidence.
+// Fit at the sample's own pixel. A single noisy sample does not show whether history fits.
 fn fit_at_sample(own: Observation, gains: vec3<f32>) -> f32 {
     if NOISY != 0u || own.error < 0.0 {
         return 1.0;
@@ -81,7 +81,7 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
         }
     }
     let is_own = own.error >= 0.0;
-    // Pixels interpolate a sample without disparity only if there is no other one.
+    // A sample without disparity is interpolated only where no other sample is near.
     let own_surface = select(own_disparity, INVALID_DISPARITY, ANTIALIAS != 0u && own.error == DOUBTFUL);
     if sum.weight < 1e-6 {
         let fit_unlit = fit_at_sample(own, vec3<f32>(1.0));

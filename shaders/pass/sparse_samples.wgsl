@@ -6,7 +6,8 @@
 const LIGHT_RELATIVE: f32 = 0.1;
 // Relative difference of disparity within which a sample is interpolated for a pixel.
 const SAMPLE_RELATIVE: f32 = 0.05;
-// Weight of a sample of another surface, which counts only where there is no better one.
+// Weight of a sample of another surface. It is so small that such a sample counts only where no sample near the pixel
+// shows the pixel's own surface.
 const OTHER_SURFACE: f32 = 1e-3;
 // Factor on the weight of a sample's gain and fit if they come from its neighbours only, because the sample itself was
 // not compared with history.

@@ -12,7 +12,7 @@ pub(super) struct Examined<'a> {
     pub color: &'a Image<[f32; 3]>,
     pub depth: Option<&'a Image<f32>>,
     pub motion: Option<&'a Image<[f32; 2]>>,
-    /// [`light`] of this frame and of the one before.
+    /// [`light`] of this frame and of the previous one.
     pub now: &'a Image<f32>,
     pub past: &'a Image<f32>,
     /// Maps of the hypotheses.

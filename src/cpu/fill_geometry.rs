@@ -2,8 +2,8 @@
 //! `shaders/pass/fill_geometry_pass.wgsl`.
 //!
 //! A pixel belongs to the surface of one of the four samples around it: the nearest sample whose motion leads to
-//! history with that sample's disparity. If there is none, it is the nearest sample. Disparity, which is linear over
-//! planes, and motion are interpolated between the samples of that surface.
+//! history with that sample's disparity. Without such a sample, the pixel belongs to the surface of the nearest sample.
+//! Disparity, which is linear over planes, and motion are interpolated between the samples of that surface.
 
 use super::Frame;
 use super::history::History;
@@ -105,8 +105,8 @@ impl View<'_> {
         (filled.x, [filled.y, filled.z])
     }
 
-    /// Whether history confirms that a pixel shows a sample's surface: it has the expected disparity at the previous
-    /// position.
+    /// Whether history confirms that a pixel shows a sample's surface: history must have the expected disparity at the
+    /// previous position.
     fn is_confirmed(&self, [x, y]: [u32; 2], ray: Vec3, s: Sample) -> bool {
         if self.words.is_empty() || !self.inputs.tests_depth() {
             return false;

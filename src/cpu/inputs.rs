@@ -42,7 +42,7 @@ pub(super) struct Inputs<'a> {
     gaze_ray: Vec3,
     /// Factor on stored colors.
     pub exposure: f32,
-    /// Whether there is no history.
+    /// Whether the view starts without history.
     pub reset: bool,
     motion_scale: [f32; 2],
     disparity_map: DisparityMap,
@@ -80,9 +80,9 @@ impl<'a> Inputs<'a> {
         lens::is_visible(x, y, self.uniforms.lowest_px.into(), self.uniforms.highest_px.into())
     }
 
-    /// Previous position of the surface of pixel (x, y), and whether the nearest stored texel shows that surface. If
-    /// history is rejected regardless of the neighbouring texels, the verdict. `stored` gives level of detail
-    /// (negative: empty) and disparity of a stored texel.
+    /// Previous position of the surface of pixel (x, y), and whether the nearest stored texel shows that surface.
+    /// Returns the verdict instead if history is rejected regardless of the neighbouring texels. `stored` gives level
+    /// of detail (negative: empty) and disparity of a stored texel.
     #[inline(always)]
     pub fn reprojected(
         &self,
@@ -189,7 +189,7 @@ impl<'a> Inputs<'a> {
         depth::previous_disparity(disparity, m20 * ray.x + m21 * ray.y + m22, shift)
     }
 
-    /// Disparity that a surface of pixel (x, y) had.
+    /// Disparity in the previous frame of a surface at pixel (x, y).
     #[inline(always)]
     pub fn expected_disparity(&self, x: u32, y: u32, disparity: f32) -> f32 {
         self.previous_disparity(self.ray(x, y), disparity)
@@ -219,7 +219,7 @@ impl<'a> Inputs<'a> {
         depth::slope(x, y, self.size, |u, v| if [u, v] == [x, y] { now } else { self.disparity(u, v) })
     }
 
-    /// Counts a pixel's unusable inputs, and the verdict on its history.
+    /// Counts the unusable inputs of a pixel, and the verdict on its history.
     #[inline(always)]
     pub fn count(&self, x: u32, y: u32, usable: bool, disparity: f32, verdict: Verdict, stats: &mut FrameStats) {
         stats.pixels += 1;

@@ -100,7 +100,7 @@ struct Pass<'a, 'f> {
     desc: &'a ContextDesc,
     history: &'a mut History,
     frame: &'a Frame<'f>,
-    /// Pixels that are repaired, one mask a view; empty if none are.
+    /// Masks of the repaired pixels, one a view; empty if the frame repairs no pixel.
     repaired: &'a [Image<bool>],
     output: &'a mut [Image<[f32; 3]>],
     traces: Option<&'a mut [Image<PixelTrace>]>,
@@ -195,14 +195,14 @@ impl CpuAfterimage {
     /// state.
     ///
     /// # Panics
-    /// If `words` has another length than the history's.
+    /// If `words` and the history differ in length.
     #[doc(hidden)]
     pub fn restore_history(&mut self, words: &[[u32; 3]]) {
         self.history.restore(words);
     }
 
-    /// Size in bytes of the buffers that the context holds between frames. Larger than on a GPU, because mip chains are
-    /// floats here and halves there.
+    /// Size in bytes of the buffers that the context holds between frames. It is larger than on a GPU, because the CPU
+    /// stores mip chains as floats, and a GPU stores them as halves.
     pub fn memory_bytes(&self) -> usize {
         self.history.memory_bytes()
     }

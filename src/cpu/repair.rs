@@ -67,7 +67,7 @@ impl CpuAfterimage {
     }
 }
 
-/// Pixels that a frame repairs, one mask a view; empty if it repairs none.
+/// Masks of the pixels that a frame repairs, one a view; empty if it repairs no pixel.
 pub(super) fn masks<'a>(planned: Option<&'a Planned>, frame: &Frame<'_>) -> Result<&'a [Image<bool>], FrameError> {
     frame.check_planned(planned.map(|planned| planned.index))?;
     Ok(planned.filter(|_| frame.repaired.is_some()).map_or(&[], |planned| &planned.masks))

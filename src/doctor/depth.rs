@@ -14,10 +14,10 @@ use crate::kernel::doctor::{DEPTHS, TILE_PX};
 /// Least parallax of a tile in pixels, and number of such tiles.
 const PARALLAX_PX: f64 = 0.2;
 const TILES: usize = 20;
-/// A convention explains the motion up to this median deviation of the logarithm of its disparities from those of the
-/// motion.
+/// A convention explains the motion if its disparities agree with the disparities that the motion shows: the median
+/// deviation of the logarithm of their ratio is at most this.
 const SPREAD: f64 = 0.12;
-/// Factor of distances that counts as wrong.
+/// Distances that are wrong by this factor are a fault.
 const FACTOR: f64 = 1.3;
 /// Least number of tiles on slanted planes, and majority that decides.
 const PLANES: usize = 16;
@@ -173,20 +173,20 @@ fn by_planes(desc: &ContextDesc, observations: &[Observation], stated: Shape) ->
     });
     let evidence = vec![("slanted planes", votes as f64), ("share affine as stored", share)];
     let confidence = 0.9 * (1.0 - (-(votes as f64) / 30.0).exp());
-    let is_told = votes >= PLANES && (share >= MAJORITY || share <= 1.0 - MAJORITY);
+    let is_decided = votes >= PLANES && (share >= MAJORITY || share <= 1.0 - MAJORITY);
     let wrong = |shape: Shape, scale| {
         Some(Finding::wrong(Check::Depth, Fault::DepthConvention, confidence, evidence.clone(), shape.line(scale)))
     };
-    if is_told && share < 0.5 {
+    if is_decided && share < 0.5 {
         return match stated {
             Shape::Linear => Some(Finding::fits(Check::Depth, confidence, evidence)),
             _ => wrong(Shape::Linear, None),
         };
     }
-    if !is_told && stated == Shape::Linear {
+    if !is_decided && stated == Shape::Linear {
         return None;
     }
-    // The plausible direction: not nearly everything at the near plane.
+    // A direction is implausible if it puts nearly all surfaces at the near plane.
     let plausible = match (forward, reversed) {
         ((Some(f10), Some(f90)), (Some(r10), Some(r90))) if f90 < 1.5 && r10 > 3.0 && r90 >= f90 && f10 >= 0.0 => {
             Some(Shape::Reversed)
@@ -237,8 +237,8 @@ fn middles(observations: &[Observation]) -> Vec<f64> {
     tiles.map(|(_, e)| f64::from(e.depths()[0])).filter(|d| d.is_finite() && *d != 0.0 && d.abs() < 1e9).collect()
 }
 
-/// Disparities that the motion shows, where it follows the camera; `None` if it does not, or if there is too little
-/// parallax.
+/// Disparities that the motion shows, where it follows the camera; `None` if it does not follow the camera, or with too
+/// little parallax.
 fn parallax(desc: &ContextDesc, observations: &[Observation]) -> Option<Vec<Parallax>> {
     let to_px = desc.motion.to_internal(desc.size_px).map(f64::from);
     let (mut found, mut strange) = (vec![], 0_usize);
@@ -278,8 +278,8 @@ fn parallax(desc: &ContextDesc, observations: &[Observation]) -> Option<Vec<Para
     (found.len() >= TILES && found.len() > strange).then_some(found)
 }
 
-/// Median ratio of the disparities that the motion shows to those of a convention, and the median deviation of its
-/// logarithm. `None` if too few are above 0.
+/// Median ratio of the disparities that the motion shows to the disparities of a convention, and the median deviation
+/// of the ratio's logarithm. `None` if too few disparities are above 0.
 fn fit(tiles: &[Parallax], of: impl Fn(&Parallax) -> f64) -> Option<(f64, f64)> {
     let ratios = tiles.iter().map(|p| (p.disparity / of(p)).ln()).filter(|r| r.is_finite());
     let mut ratios: Vec<f64> = ratios.collect();

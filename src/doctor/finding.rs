@@ -60,7 +60,7 @@ pub enum Fault {
 pub enum Outcome {
     /// The frames agree with the description.
     Fits,
-    /// The frames contain too little evidence; the reason.
+    /// The frames contain too little evidence, for this reason.
     CannotTell(&'static str),
     /// The frames contradict the description.
     Wrong(Fault),

@@ -151,7 +151,7 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> [Findin
     ]
 }
 
-/// Finding that the foveation is another one; `None` if several kinds of faults agree equally well.
+/// Finding that the foveation differs from the stated one; `None` if several kinds of faults agree equally well.
 fn another(agreement: &Agreement, stated: &Foveation, candidates: &[(Candidate, f64)]) -> Option<Finding> {
     let (mut best, count) = largest(candidates).clone();
     let enough = count - 0.5 * agreement.better;

@@ -69,7 +69,7 @@ pub(crate) fn continues<E: Executor>(frame: &FrameInputs<'_, E>) -> bool {
     frame.reset == Reset::None && frame.exposure == Exposure::Same
 }
 
-/// Rejects sparse frames, for which there are no rules yet, and the index of a view that a context does not have.
+/// Rejects sparse frames, which the rules do not cover yet, and the index of a view that a context does not have.
 pub(crate) fn check_view(desc: &ContextDesc, view: usize) -> Result<(), SettingsError> {
     if desc.settings.foveation.filter == Filter::Sparse {
         let expected = "another filter: the doctor does not know sparse frames yet".into();

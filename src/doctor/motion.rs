@@ -19,7 +19,7 @@ const WRONG: f64 = 7.0;
 /// Least gain over no motion at which vectors explain a frame. Tiny vectors gain little, but in every tile.
 const GAIN: f64 = 0.025;
 
-/// Why the vertical axis cannot be told, although all else fits.
+/// Reason why the direction of the vertical axis is unknown, although direction and unit fit.
 pub(super) const OPEN_Y_AXIS: &str = "direction and unit fit, but nothing moves up or down: the y axis is open";
 
 const NOTHING: usize = 0;

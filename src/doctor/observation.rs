@@ -28,7 +28,7 @@ pub(crate) struct Description {
     pub has_depth: bool,
     pub has_motion: bool,
     pub has_lod: bool,
-    /// Whether the previous frame was also seen, without a cut between the two.
+    /// Whether the doctor also saw the previous frame, without a cut between the two.
     pub has_past: bool,
     pub tiles: Vec<Tile>,
 }
@@ -133,8 +133,8 @@ pub(crate) struct Hypothesis {
     pub unit: Option<MotionUnit>,
 }
 
-/// The hypotheses on the motion vectors of a frame. The first one is that nothing moves, the second one that the stated
-/// convention is right.
+/// The hypotheses on the motion vectors of a frame. The first hypothesis is that nothing moves. The second one is that
+/// the stated convention is right.
 pub(crate) fn hypotheses(desc: &ContextDesc) -> [Hypothesis; HYPOTHESES as usize] {
     let [w, h] = desc.size_px.map(|s| s as f32);
     let pixels_of = |unit| match unit {

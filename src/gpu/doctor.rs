@@ -52,7 +52,7 @@ pub struct Doctor {
     view: usize,
     light_pass: ComputeShader,
     pass: ComputeShader,
-    /// Light of the last frame, and of the one before.
+    /// Light of the last frame, and of the frame before it.
     light: [TextureView; 2],
     absent: TextureView,
     past: Option<Past>,
@@ -141,8 +141,8 @@ impl Doctor {
         Ok(())
     }
 
-    /// Takes the words of the earliest recorded frame that has not been read, as the device wrote them. `false` if
-    /// there is no such frame, or there are too few bytes.
+    /// Takes the words of the earliest recorded frame that has not been read, as the device wrote them. `false` without
+    /// such a frame, or with too few bytes.
     pub fn read(&mut self, words: &[u8]) -> bool {
         let Some(bytes) = words.get(..self.words_bytes() as usize) else { return false };
         let Some(mut observation) = self.pending.pop_front() else { return false };
@@ -202,7 +202,7 @@ impl Doctor {
             return;
         }
         let tiles = filled(device, "afterimage doctor tiles", bytemuck::cast_slice(&tiles), BufferUsages::STORAGE);
-        // Without a frame before, the frame is compared with itself, and the result is not used.
+        // The first frame is compared with itself, and the result is not used.
         let past = if now.has_past { &self.light[1] } else { &self.light[0] };
         let textures = [&color, &depth, &motion, &self.light[0], past];
         let resources = std::iter::once(uniforms.as_entire_binding())

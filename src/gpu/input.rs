@@ -1,4 +1,4 @@
-//! Validation of a frame before anything is recorded.
+//! Validation of a frame before its passes are recorded.
 
 use super::output::DEBUG_FORMAT;
 use super::{Afterimage, Frame, Target, Textures};

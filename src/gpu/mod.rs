@@ -430,10 +430,10 @@ impl Afterimage {
 
     /// Distance of every pixel along the view axis, interpolated from the depth at the samples, for composition layers
     /// with depth and for effects that follow: `R32Float`, an array layer for each view; usages `TEXTURE_BINDING` and
-    /// `COPY_SRC`. It is at least 1e30 where there is no surface, and -1 where depth was invalid. It belongs to the
-    /// last frame that was recorded or planned with [geometry at samples](crate::Lattices::with_geometry_at_samples)
-    /// and a depth input. `None` before the first such frame: other frames have depth at every pixel. A change of size
-    /// replaces it.
+    /// `COPY_SRC`. It is at least 1e30 where a pixel shows no surface, and -1 where depth was invalid. It belongs to
+    /// the last frame that was recorded or planned with [geometry at
+    /// samples](crate::Lattices::with_geometry_at_samples) and a depth input. `None` before the first such frame: other
+    /// frames have depth at every pixel. A change of size replaces it.
     pub fn filled_depth(&self) -> Option<&Texture> {
         self.stages.filled_depth()
     }

@@ -37,7 +37,7 @@ pub(super) struct RepairPasses {
     mask: ComputeShader,
     quads: Quads,
     absent: Placeholders,
-    /// Index of the frame that was planned last, unless it was recorded since.
+    /// Index of the last planned frame; `None` once it is recorded.
     pub planned: Option<u64>,
 }
 

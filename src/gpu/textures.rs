@@ -22,7 +22,7 @@ use wgpu::{Texture, TextureView};
 /// # }
 /// ```
 ///
-/// The views of a frame with regions are processed one after the other, and its pipelines differ from those without.
+/// The views of a frame with regions are processed one after the other. Such a frame has pipelines of its own.
 #[derive(Clone, Copy, Debug)]
 pub enum Textures<'a> {
     /// A texture of the context's size with one array layer for each view; a plain 2D texture for one view.

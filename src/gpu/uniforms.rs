@@ -18,7 +18,7 @@ pub const MAX_VIEWS: usize = 4;
 pub struct FrameUniforms {
     /// Width and height of a view in pixels.
     pub size: [u32; 2],
-    /// 1 if there is no history, otherwise 0.
+    /// 1 without history, otherwise 0.
     pub reset: u32,
     /// Low word of the frame counter.
     pub frame_low: u32,

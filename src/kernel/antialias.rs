@@ -17,7 +17,7 @@ use glam::{Vec2, Vec3};
 pub const MOST_SAMPLES: f32 = 31.0;
 /// Largest number of samples of history in a mean.
 const MOST_PAST: f32 = MOST_SAMPLES - 1.0;
-/// The same where history lies a quarter of a pixel or more from the pixel's centre. A larger limit blurs motion.
+/// The same limit where history lies a quarter of a pixel or more from the pixel's centre. A larger limit blurs motion.
 const MOST_PAST_MOVED: f32 = 3.0;
 /// Inverse of the distance in pixels from the pixel's centre at which that limit is reached.
 const MOVED_PER_PX: f32 = 4.0;
@@ -37,7 +37,7 @@ const CLIP: f32 = 0.5;
 /// Cost of a clip: the share of its samples that a mean loses, per clip distance in units of the range from black to
 /// white, or of the mean's own brightness if that is larger. A clip by a tenth costs all samples.
 const CLIP_COST: f32 = 10.0;
-/// Least relative difference of disparity at which a neighbour is another, nearer surface.
+/// Least relative difference of disparity at which a neighbour counts as another, nearer surface.
 const NEARER_RELATIVE: f32 = 0.02;
 /// Largest difference of motion, in pixels along an axis, at which a pixel of a lattice of step 2 and more takes the
 /// history of a nearer surface beside it.
@@ -136,7 +136,7 @@ pub struct Near {
     pub count: f32,
 }
 
-/// The sums with one sample more.
+/// The sums after one more sample.
 #[inline]
 pub fn add_near(n: Near, color: Vec3) -> Near {
     let v = to_ycocg(color);
@@ -152,7 +152,7 @@ pub struct Clip {
     pub kept: f32,
 }
 
-/// Clip of history to the distribution of the samples around; `near` has at least one.
+/// Clip of history to the distribution of the samples around it; `near` must contain at least one sample.
 #[inline]
 pub fn clip(near: Near, history: Vec3) -> Clip {
     let inverse = 1.0 / near.count;
@@ -166,7 +166,7 @@ pub fn clip(near: Near, history: Vec3) -> Clip {
     Clip { change, kept: 1.0 - (distance * CLIP_COST / past.x.max(1.0)).min(1.0) }
 }
 
-/// A color after a clip; the color itself, bit for bit, without a change.
+/// A color after a clip. A clip without a change returns the color bit for bit.
 #[inline]
 pub fn clipped(color: Vec3, change: Vec3) -> Vec3 {
     if change == Vec3::ZERO {
@@ -219,8 +219,8 @@ pub fn average(r: &Reconstruction, samples: f32, place_px: Vec2, kept: f32) -> A
     Averaged { result: Reconstructed { color, kept: next, share }, samples: count + 1.0 }
 }
 
-/// Number of samples in the texel that a pixel without a sample of its own stores: that of the kept texel, reduced
-/// where history does not fit. `result`: of [`reconstruct`](super::sparse::reconstruct).
+/// Number of samples in the texel that is stored for a pixel without a sample of its own. This is the number in the
+/// kept texel, reduced where history does not fit. `result`: of [`reconstruct`](super::sparse::reconstruct).
 #[inline]
 pub fn kept_mean(r: &Reconstruction, result: Reconstructed, samples: f32) -> Averaged {
     let is_kept = result.kept.lod < COARSE_LOD && r.nearest.lod <= 0.0;

@@ -126,9 +126,9 @@ pub fn boundary_class(at: u32) -> u32 {
     at.trailing_zeros().min(BOUNDARIES - 1)
 }
 
-/// Class of the kink that the pixels `at - 1` to `at + 1` may straddle: the class of the even one of the two boundaries
-/// of `at`, less 1. A frame that interpolates between the middles of blocks of 2^l (l >= 2) has kinks of class l - 2
-/// only.
+/// Class of the kink that the pixels `at - 1` to `at + 1` may straddle: one less than the class of that boundary of
+/// pixel `at` whose position is even. A frame that interpolates between the middles of blocks of 2^l (l >= 2) has kinks
+/// of class l - 2 only.
 #[inline]
 pub fn kink_class(at: u32) -> u32 {
     boundary_class(at + (at & 1)) - 1

@@ -13,7 +13,7 @@ const SHARPEST_BLUR_PX: f32 = 0.125;
 /// reproduces this aliasing.
 const SAMPLE_LEVEL_BIAS: u32 = 2;
 
-/// 0 up to `start`, 1 from `start + width` on, linear in between (a step for width 0).
+/// Linear ramp: 0 up to `start`, 1 from `start + width` on. A width of 0 makes it a step.
 #[inline]
 pub fn ramp(x: f32, start: f32, width: f32) -> f32 {
     if x <= start {

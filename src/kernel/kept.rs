@@ -65,8 +65,8 @@ impl Kept {
     pub const EMPTY: Self = Self { color: Vec3::ZERO, lod: -1.0, disparity: -1.0, place_px: Vec2::ZERO };
 }
 
-/// `v` as a multiple of the step of exponent code `exponent` (that of a float). It is rounded up if its fraction plus
-/// `up` is at least 1; an `up` of 0.5 rounds to the nearest.
+/// `v` as a multiple of the step that belongs to `exponent`, an exponent coded as in a float. It is rounded up if its
+/// fraction plus `up` is at least 1; an `up` of 0.5 rounds to the nearest.
 #[inline]
 pub fn multiple(v: f32, exponent: u32, up: f32) -> u32 {
     // A power of two: the product is exact.
@@ -121,7 +121,7 @@ pub fn unpack_place(bits: u32) -> f32 {
 pub fn pack_kept(s: Kept) -> [u32; 2] {
     let lod = if s.lod < 0.0 { EMPTY } else { (s.lod.min(MAX_LOD) * LOD_STEPS + 0.5) as u32 };
     let disparity = disparity_code(s.disparity);
-    // The last code is that of an unknown disparity.
+    // The last code stands for an unknown disparity.
     let disparity = if disparity == 0xffff { 0x3fff } else { ((disparity + 2) >> 2).min(0x3ffe) };
     [pack_color(s.color), lod | disparity << 6 | pack_place(s.place_px.x) << 20 | pack_place(s.place_px.y) << 26]
 }
@@ -194,7 +194,7 @@ pub struct Around {
     pub color_y: Vec3,
     /// Smallest and largest color.
     pub range: [Vec3; 2],
-    /// The sample to keep, its place relative to the position.
+    /// The sample to keep. Its place is relative to the position.
     pub nearest: Kept,
     /// Cost of that choice.
     pub cost: f32,
@@ -270,7 +270,7 @@ pub struct Interpolated {
     pub lod: f32,
     /// Smallest and largest color of the samples around the position.
     pub range: [Vec3; 2],
-    /// Sample to keep, its place relative to the position; empty if there is none.
+    /// Sample to keep, or an empty one. Its place is relative to the position.
     pub nearest: Kept,
 }
 

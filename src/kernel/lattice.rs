@@ -103,7 +103,7 @@ pub struct SampleMean {
     pub weight: f32,
 }
 
-/// A mean with one sample more, if that is usable.
+/// The mean after one more sample. An unusable sample does not change it.
 #[inline]
 pub fn add_sample(mean: SampleMean, color: Vec4, usable: bool, weight: f32) -> SampleMean {
     if !usable {
@@ -133,7 +133,7 @@ pub struct GeometryMean {
     pub weight: f32,
 }
 
-/// A mean with one sample more, if it belongs to the surface of disparity `own`.
+/// The mean after one more sample. A sample of another surface than that of disparity `own` does not change it.
 #[inline]
 pub fn add_geometry(mean: GeometryMean, own: f32, disparity: f32, motion: Vec2, weight: f32) -> GeometryMean {
     let usable = is_finite(motion.x) && is_finite(motion.y);

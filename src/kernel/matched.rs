@@ -26,7 +26,8 @@ const RELIT_BLOCKS: f32 = 0.5;
 /// history.
 const CORRECTION: f32 = 0.2;
 const CORRECTION_BLOCKS: f32 = 0.1;
-/// Share of the contrast that is added to the gate for history that is not finer. For finer history the share is 1.
+/// Share of the contrast that is added to the gate, for history that is not finer than the candidate. For finer history
+/// the share is 1.
 const ALIKE_CONTRAST: f32 = 0.5;
 /// Smallest and largest gain of relighting.
 const GAIN: [f32; 2] = [0.2, 5.0];
@@ -40,7 +41,8 @@ const COHERENT: [f32; 2] = [0.5, 0.1];
 pub struct SmrParams {
     /// Share of equally coarse history in the output, in \[0, 1).
     pub accumulate: f32,
-    /// Tolerance for equally coarse history, as a share of that for finer history, in (0, 1\]; without contrast.
+    /// Tolerance for equally coarse history, as a share of the tolerance for finer history, in (0, 1\]. The share does
+    /// not apply to contrast.
     pub accumulate_tolerance: f32,
     /// Factor on the gate's differences.
     pub tolerance: f32,
@@ -121,7 +123,7 @@ pub fn gain(observed: f32, predicted: f32, changed: f32) -> f32 {
 }
 
 /// Difference at which relighting starts, in units of [`root_difference`]. `noise`: difference that noise alone can
-/// make.
+/// cause.
 #[inline]
 pub fn relight_from(contrast: f32, blocks: bool, noise: f32) -> f32 {
     let relight = if blocks { RELIGHT_BLOCKS } else { RELIGHT };
@@ -157,19 +159,19 @@ pub struct Evidence {
     pub resampled: bool,
     /// History at the level of detail of `compared`.
     pub matched: Vec3,
-    /// History at the next finer whole level, or at that of `compared` if it is whole.
+    /// History at the whole level of detail that is equal to or finer than the level of `compared`.
     pub level: Vec3,
-    /// History at the whole level after `level`.
+    /// History at the next coarser whole level after `level`.
     pub next_level: Vec3,
     /// History at the place and level of detail of `compared_coarser`.
     pub matched_coarser: Vec3,
     /// History at the place and level of detail of `observed`, with the same low-pass filter. With two different
-    /// filters every edge would produce a gain. Gains are stored, so that rings would grow at edges from frame to
-    /// frame.
+    /// filters, every edge would produce a gain. Gains are stored with history, so rings would grow at edges from frame
+    /// to frame.
     pub predicted: Vec3,
     /// Confidence in history, in \[0, 1\]: the frame's trust mask.
     pub trust: f32,
-    /// Difference of `compared` and `matched` that noise alone can make, in units of [`root_difference`]; 0 for
+    /// Difference of `compared` and `matched` that noise alone can cause, in units of [`root_difference`]; 0 for
     /// candidates without noise.
     pub noise: f32,
     /// Noise confidence of history and of the candidate, in \[0, 1\]; 1 without noise.
@@ -225,8 +227,8 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     let acceptance = fit * e.trust;
     let share = acceptance * reuse.share;
     let correction = if p.blocks { CORRECTION_BLOCKS } else { CORRECTION };
-    // No correction for history that was not resampled, because it is unchanged since it was stored. None for noisy
-    // frames either, where accumulation averages the noise.
+    // History that was not resampled is not corrected, because it is unchanged since it was stored. History of noisy
+    // frames is not corrected either, because accumulation averages the noise.
     let finer = if e.resampled && !p.noisy { reuse.finer } else { 0.0 };
     // The constant is multiplied with the first factor, because shader compilers order such products this way.
     let missed = (e.observed - k * e.predicted) * correction;

@@ -12,7 +12,7 @@ use glam::{Vec3, Vec4};
 /// Levels of detail beyond the candidate's own at which noisy candidates are compared: means of 8x8 samples have an
 /// eighth of the noise.
 pub const NOISY_LEVELS: f32 = 3.0;
-/// Number of candidates in such a mean.
+/// Number of candidates in the mean of 8x8 that is compared.
 const COMPARED_CANDIDATES: f32 = 64.0;
 /// Standard deviations up to which a difference is attributed to noise.
 const SIGMAS: f32 = 3.0;
@@ -177,7 +177,7 @@ pub struct NoiseSum {
     pub variance: f32,
 }
 
-/// A sum with one color more.
+/// The sums after one more color.
 #[inline]
 pub fn add_noise(sum: NoiseSum, n: Noise, weight: f32) -> NoiseSum {
     NoiseSum {

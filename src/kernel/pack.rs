@@ -55,8 +55,8 @@ pub fn half_value(bits: u32) -> f32 {
     let magnitude = (bits & 0x7fff) << 13;
     let sign = (bits & 0x8000) << 16;
     let normal = f32::from_bits(magnitude + (112 << 23));
-    // Denormal halves have no leading one bit: their value is the second operand, which is then the smaller one. No
-    // 32-bit denormal occurs, which devices may flush to zero.
+    // Denormal halves have no leading one bit: their value is the second operand, which is then the smaller one.
+    // Neither operand is a 32-bit denormal, which devices may flush to zero.
     let value = normal.min(2.0 * normal - f32::from_bits(113 << 23));
     f32::from_bits(value.to_bits() | sign)
 }

@@ -19,9 +19,9 @@ const HASH_BITS: u32 = 8;
 /// Number of keys; every key is below it.
 pub const KEYS: u32 = (2 * RINGS + 1) << HASH_BITS;
 
-/// Priority, 0 (none) to 62, of repairing a pixel that the frame does not sample, at `e_deg` degrees from the gaze.
-/// Pixels without history come before those whose history is coarse, and within either class the nearer ones come
-/// first. `lod`: level of detail of history at the pixel; negative: there is none.
+/// Priority, 0 (none) to 62, for the repair of a pixel that the frame does not sample, at `e_deg` degrees from the
+/// gaze. Pixels without history come before those whose history is coarse, and within either class the nearer ones come
+/// first. `lod`: level of detail of history at the pixel, negative without history.
 #[inline]
 pub fn priority(lod: f32, e_deg: f32) -> u32 {
     let has_history = lod >= 0.0;
@@ -40,9 +40,9 @@ pub fn asked_px(i: u32, x: u32, y: u32, frame: u32) -> [u32; 2] {
     [2 * x + ((i ^ frame ^ x ^ y) & 1), 2 * y + i]
 }
 
-/// Key of quad (`x`, `y`), whose tested pixels have the largest priority `priority`; 0 for a priority of 0. The hash
-/// gives another order in every frame, so that the quads beyond the budget are spread evenly. `frame` and `key`: of the
-/// view's random stream ([`rng::bits`]).
+/// Key of quad (`x`, `y`). `priority`: the larger priority of its two tested pixels. The key of a priority of 0 is 0.
+/// The hash gives another order in every frame, so that the quads beyond the budget are spread evenly. `frame` and
+/// `key` select the view's random stream ([`rng::bits`]).
 #[inline]
 pub fn quad_key(priority: u32, x: u32, y: u32, frame: u32, key: u32) -> u32 {
     // The inverted key selects a random stream other than the pixels'.

@@ -13,7 +13,7 @@ pub const MAX_MOTION_PX: f32 = 65536.0;
 pub enum Verdict {
     /// History is valid: it belongs to this surface.
     Valid = 0,
-    /// There is no history: first frame, [`Reset::All`](crate::Reset::All), resize.
+    /// History is empty: first frame, [`Reset::All`](crate::Reset::All), resize.
     Reset = 1,
     /// The motion vector is NaN, infinite, or has a component beyond 65536 pixels.
     BadMotion = 2,

@@ -11,9 +11,9 @@ pub const TAP_RELATIVE: f32 = 0.1;
 /// Largest disparity that [`disparity`](super::depth::disparity) gives.
 const LARGEST_DISPARITY: f32 = 1e30;
 
-/// Least bilinear weight of a texel that replaces the nearest one where that shows another surface. The limit keeps the
-/// shift of history below a pixel. The replacement keeps history at edges, where the nearest texel may lie on the wrong
-/// side.
+/// Least bilinear weight of the texel that replaces the nearest texel, where the nearest texel shows another surface.
+/// The limit keeps the shift of history below a pixel. The replacement keeps history at edges, where the nearest texel
+/// may lie on the wrong side.
 pub const STAND_IN_WEIGHT: f32 = 0.1;
 
 /// Rounds of four taps: 4x4 texels without the corners, whose weights are close to 0. The rounds are the second row,
@@ -82,11 +82,11 @@ pub struct FourTaps {
     pub texels: [[i32; 2]; 4],
     /// Catmull-Rom weights of the columns.
     pub sharp_x: [f32; 4],
-    /// Catmull-Rom weights of the row of the first two and of the last two taps.
+    /// Catmull-Rom weights of two rows: the first two taps' and the last two taps'.
     pub sharp_rows: [f32; 2],
-    /// Linear weights of the columns of the second and the third tap; those of the others are 0.
+    /// Linear weights of the second and the third tap's columns. The other taps have a linear weight of 0.
     pub linear_x: [f32; 2],
-    /// Linear weight of their row.
+    /// Linear weight of the second and the third tap's row.
     pub linear_row: f32,
 }
 
@@ -128,7 +128,7 @@ pub fn tap_codes(expected: f32) -> [u32; 2] {
     codes_between(expected, 1.0 - TAP_RELATIVE, 1.0 / (1.0 - TAP_RELATIVE))
 }
 
-/// The same for surfaces that have the disparities from `farthest` to `nearest`, both of them at least 0.
+/// [`tap_codes`] for surfaces that have the disparities from `farthest` to `nearest`, both of them at least 0.
 #[inline]
 pub fn tap_codes_between(farthest: f32, nearest: f32) -> [u32; 2] {
     let (first, last) = (tap_codes(farthest), tap_codes(nearest));
@@ -152,8 +152,8 @@ pub struct Tap {
     pub same: bool,
 }
 
-/// Tap of a packed surface. It shows the surface if its disparity is one of `codes`; with `any_code` if it is not
-/// empty.
+/// Tap of a packed surface. It shows the surface if its disparity is one of `codes`. With `any_code`, every tap that is
+/// not empty shows the surface.
 #[inline]
 pub fn surface_tap(words: [u32; 2], codes: [u32; 2], any_code: bool) -> Tap {
     let lod = lod_code(words);

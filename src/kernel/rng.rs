@@ -35,8 +35,8 @@ fn mix(v: &mut [u32; 4]) {
     v[3] = v[3].wrapping_add(v[1].wrapping_mul(v[2]));
 }
 
-/// Key of a stream, from all that is constant over one view of a frame except the low word of the 64-bit frame counter.
-/// When that word wraps, the key changes.
+/// Key of a random stream: a hash of everything that is constant over one view of a frame, except the low word of the
+/// 64-bit frame counter. When that word wraps, the key changes.
 #[inline]
 pub fn stream_key(seed: u64, view: u32, purpose: Purpose, frame: u64) -> u32 {
     let context = [seed as u32, (seed >> 32) as u32, (frame >> 32) as u32, (purpose as u32) << 16 ^ view];

@@ -15,13 +15,13 @@ use super::pack::{disparity_code, disparity_value};
 use glam::Vec3;
 use std::f32::consts::LOG2_E;
 
-/// Expected difference of a sample and of history that has not moved, due to the precision of storage, in units of
+/// Expected difference between a sample and history that has not moved. The precision of storage causes it. In units of
 /// [`root_difference`].
 const STILL_ERROR: f32 = 0.3;
-/// The same for history that has moved.
+/// Expected difference between a sample and history that has moved.
 const MOVED_ERROR: f32 = 0.6;
 /// Share of history's local contrast (the difference of the smallest and the largest color around) that is added to the
-/// expected difference where history moved or is coarse, for errors of interpolation and of inexact places.
+/// expected difference where history moved or is coarse. It covers errors of interpolation and of inexact places.
 const CONTRAST_ERROR: f32 = 0.375;
 /// Added to the expected error where the gate compares single samples.
 const GATE_ERROR: f32 = 0.7;
@@ -29,28 +29,28 @@ const GATE_ERROR: f32 = 0.7;
 const RELIGHT_ERRORS: f32 = 2.5;
 /// Expected errors within which neighbours agree with a sample's own gain.
 const AGREE_ERRORS: f32 = 4.0;
-/// Added to these in that comparison, in units of [`root_difference`].
+/// Added to the expected errors when a neighbour is compared with a sample's own gain, in units of [`root_difference`].
 const AGREE_ERROR: f32 = 0.8;
 /// Gate: mean difference at which the fit starts to fall, and width over which it falls to 0, in expected errors.
 const GATE: [f32; 2] = [2.0, 4.0];
 /// Smallest and largest gain.
 const GAIN: [f32; 2] = [0.2, 5.0];
-/// Levels of detail that a doubling of light costs history that has moved, and history that has not.
+/// Levels of detail that history loses when light doubles: history that has moved, and history that has not.
 const WORN: [f32; 2] = [4.0, 1.0];
 /// Levels of detail by which history must be finer than the candidate to replace it fully.
 const FINER_WIDTH: f32 = 0.25;
 /// Share of the samples' range by which a gain may exceed their largest value.
 const OVERSHOOT: f32 = 0.25;
-/// Share of equally fine history, as a part of `Smr::accumulate`: samples at their own pixels need less averaging.
+/// Factor on `Smr::accumulate`, the share of equally fine history: samples at their own pixels need less averaging.
 const ACCUMULATE: f32 = 0.5;
-/// Share of history from which on the kept sample is stored instead of the shown color.
+/// Least share of history at which the kept sample is stored instead of the shown color.
 const KEEP_SHARE: f32 = 0.9;
 /// Noisy samples: standard errors of a mean difference at which the fit starts to fall; it is 0 at twice as many.
 const MEAN_ERRORS: f32 = 3.0;
-/// Noisy samples: limit on the samples of a history coarser than the candidate, in frames. A larger limit has less
+/// Noisy samples: limit on the samples of a history coarser than the candidate, in frames. A larger limit reduces
 /// noise, and keeps blurred history for longer.
 const BLURRED_FRAMES: f32 = 8.0;
-/// Noisy samples: share of history from which on the mean is stored in the place of the kept sample.
+/// Noisy samples: least share of history at which the mean is stored in the place of the kept sample.
 const STAY_SHARE: f32 = 0.5;
 
 /// Level of detail of a candidate at distance `px` from the nearest sample of a lattice of level `coarsest`: 0 at the
@@ -65,16 +65,16 @@ pub fn candidate_level(px: f32, coarsest: f32) -> f32 {
 pub struct Observation {
     /// The sample's color.
     pub sampled: Vec3,
-    /// History's color there.
+    /// History's color at the sample's pixel.
     pub history: Vec3,
-    /// Expected difference of the two if nothing changed, in units of [`root_difference`]; negative: there is no
-    /// history, or no usable sample.
+    /// Expected difference between sample and history if nothing changed, in units of [`root_difference`]. Negative
+    /// without history or without a usable sample.
     pub error: f32,
     /// Confidence in the difference, in \[0, 1\]: lower for coarse history, which differs from a point sample anyway.
     pub sure: f32,
 }
 
-/// Expected difference of a sample and of history at level of detail `lod` with local contrast `contrast`.
+/// Expected difference between a sample and history of level of detail `lod` with local contrast `contrast`.
 #[inline]
 pub fn expected_error(lod: f32, contrast: f32, moved: bool) -> f32 {
     let coarse = lod.clamp(0.0, 1.0);
@@ -174,7 +174,7 @@ pub fn relight(l: Light, error: f32) -> Vec3 {
     ratios(sampled, history) * changed + Vec3::splat(1.0 - changed)
 }
 
-/// Difference of a sample and of history after a gain, in expected errors.
+/// Difference between a sample and history after a gain, in expected errors.
 #[inline]
 pub fn errors_left(o: Observation, gain: Vec3) -> f32 {
     root_difference(o.sampled, gain * o.history) / (o.error + GATE_ERROR)
@@ -188,7 +188,7 @@ pub fn own_fit(own: Observation, gain: Vec3) -> f32 {
 }
 
 /// Degree to which history fits the samples, in \[0, 1\], from the mean of [`errors_left`]. `sure`: confidence in that
-/// mean, in \[0, 1\].
+/// mean, in \[0, 1\]; with a confidence of 0, history fits.
 #[inline]
 pub fn fit(errors: f32, sure: f32) -> f32 {
     1.0 - sure * smooth_step(GATE[0], GATE[1], errors)
@@ -249,7 +249,7 @@ pub struct Reconstruction {
     pub history: Vec3,
     /// Its level of detail.
     pub history_lod: f32,
-    /// Stored sample to keep, its place relative to the pixel.
+    /// Stored sample to keep. Its place is relative to the pixel.
     pub nearest: Kept,
     /// Whether history was read between samples.
     pub moved: bool,
@@ -259,7 +259,8 @@ pub struct Reconstruction {
     pub fit: f32,
     /// Confidence in history, in \[0, 1\]: the frame's trust mask.
     pub trust: f32,
-    /// Share of equally fine history in the output of blurred frames; here it is a third of that.
+    /// `Smr::accumulate`: share of equally fine history in the output of blurred frames. Sparse frames use half of this
+    /// share.
     pub accumulate: f32,
 }
 
@@ -268,7 +269,7 @@ pub struct Reconstruction {
 pub struct Reconstructed {
     /// Color to show.
     pub color: Vec3,
-    /// Sample to store; the disparity is that of the kept sample and must be replaced.
+    /// Sample to store. It has the kept sample's disparity, which the caller must replace.
     pub kept: Kept,
     /// History's share in `color`.
     pub share: f32,
@@ -281,8 +282,8 @@ pub fn relit(color: Vec3, gain: Vec3, range: [Vec3; 2]) -> Vec3 {
     (color * gain).min(color.max(highest))
 }
 
-/// Blends history into the candidate, and chooses what to store: the kept sample where history prevails, so that it is
-/// not resampled, otherwise the blend.
+/// Blends history into the candidate, and chooses the sample to store. Where history prevails, this is the kept sample,
+/// which is then not resampled; elsewhere it is the blend.
 #[inline]
 pub fn reconstruct(r: &Reconstruction) -> Reconstructed {
     let gain = r.gain;
@@ -326,7 +327,7 @@ pub struct Accumulated {
 }
 
 /// As [`reconstruct`], for noisy samples: a mean of history and candidate by their numbers of samples. History replaces
-/// the candidate only as far as it is finer and its noise is invisible. `past`: noise of the kept sample; `now`: that
+/// the candidate only as far as it is finer and its noise is invisible. `past`: noise of the kept sample; `now`: noise
 /// of the candidate. History is not relit.
 ///
 /// The mean is stored in the place of the kept sample, so that history is not resampled.

@@ -62,8 +62,8 @@ pub fn float14_bits(x: f32) -> u32 {
 #[inline]
 pub fn float14_value(code: u32) -> f32 {
     let normal = f32::from_bits((code << 14) + (111 << 23));
-    // Denormal numbers have no leading one bit: their value is the second operand, which is then the smaller one. No
-    // 32-bit denormal occurs, which devices may flush to zero.
+    // Denormal numbers have no leading one bit: their value is the second operand, which is then the smaller one.
+    // Neither operand is a 32-bit denormal, which devices may flush to zero.
     normal.min(2.0 * normal - f32::from_bits(112 << 23))
 }
 

@@ -11,9 +11,10 @@ const LIMIT: f32 = 16.0;
 /// Confidence above which history is settled: it has hardly moved, and must agree with the samples around it. At twice
 /// this confidence it is fully settled.
 pub const SETTLED: f32 = 2.0;
-/// Largest squared difference of the samples' mean and history's, in variances of the samples, that jitter explains. A
-/// jitter of up to half a pixel moves all samples alike, and the mean of 3x3 samples by about a third of their
-/// deviation. A larger value follows changes of light later; a smaller one mistakes jitter for a change of light.
+/// Largest squared difference between the mean of the samples and the mean of history that jitter explains, in
+/// variances of the samples. A jitter of up to half a pixel moves all samples alike, and the mean of 3x3 samples by
+/// about a third of their deviation. A larger value follows changes of light later; a smaller one mistakes jitter for a
+/// change of light.
 const JITTER: f32 = 1.0 / 9.0;
 /// Rounding of the square roots of stored colors: 9 bits of mantissa. It is tolerated, because samples without
 /// variance, as in the chroma of a grey picture, would otherwise reject history.
@@ -95,9 +96,10 @@ pub fn settled(confidence: f32) -> f32 {
     ((confidence - SETTLED) * (1.0 / SETTLED)).clamp(0.0, 1.0)
 }
 
-/// Largest confidence of settled history whose mean differs from that of the samples around it: it falls with the
-/// squared difference. It is `LIMIT` or more where jitter explains the difference. `sum`, `squares`: of the lumas of
-/// `count` samples; `past`: sum of history's lumas at the same pixels.
+/// Largest confidence of settled history, by the difference between its mean and the mean of the samples around it. The
+/// confidence falls with the squared difference. It is `LIMIT` or more where jitter explains the difference. `sum`,
+/// `squares`: sums of the lumas of `count` samples, and of their squares; `past`: sum of history's lumas at the same
+/// pixels.
 #[inline]
 pub fn agreeing(sum: f32, squares: f32, past: f32, count: f32) -> f32 {
     let inverse = 1.0 / count.max(1.0);

@@ -10,10 +10,11 @@ use glam::{Vec2, Vec3};
 /// Weight of interpolation between samples where history has no confidence, relative to a sample at the pixel. A larger
 /// weight flickers less until a pixel's first sample arrives, and blurs the pixel afterwards.
 const TAIL: f32 = 0.02;
-/// Least share of that weight, where history is confident. It lets a pixel leave outdated history even in frames
+/// Share of [`TAIL`] that remains where history is confident. It lets a pixel leave outdated history even in frames
 /// without a sample of its own.
 const LEAST_TAIL: f32 = 0.02;
-/// Confidence at which the weight of interpolation has fallen to that share: half a sample at the pixel.
+/// Confidence at which the weight of interpolation has fallen to [`LEAST_TAIL`] times [`TAIL`]: half a sample at the
+/// pixel.
 const TAIL_UNTIL: f32 = 0.5;
 /// Least sum of weights of usable samples.
 pub const LEAST_SAMPLE_WEIGHT: f32 = 1e-5;
@@ -55,7 +56,8 @@ pub fn narrowing(confidence: f32) -> f32 {
     settled(confidence) * NARROWING + 1.0
 }
 
-/// Weights of a sample: as one of the pixel's own samples, and that plus its weight for interpolation on the lattice.
+/// Two weights of a sample: its weight as one of the pixel's own samples, and the sum of this weight and its weight for
+/// interpolation on the lattice.
 #[inline]
 pub fn sample_weights(offset_px: Vec2, level: u32, tail: f32, narrowing: f32) -> Vec2 {
     let px2 = offset_px.x * offset_px.x + offset_px.y * offset_px.y;
@@ -69,7 +71,7 @@ pub fn sample_weights(offset_px: Vec2, level: u32, tail: f32, narrowing: f32) ->
 pub struct SamplesAround {
     /// Differences from the nearest sample's color times weights.
     pub difference: Vec3,
-    /// Weights: of [`sample_weights`].
+    /// Sums of the two weights of [`sample_weights`].
     pub weights: Vec2,
     /// Colors in YCoCg.
     pub sum: Vec3,
@@ -79,7 +81,7 @@ pub struct SamplesAround {
     pub count: f32,
 }
 
-/// The sums with one sample more. `centre`: color of the nearest sample.
+/// The sums after one more sample. `centre`: color of the nearest sample.
 #[inline]
 pub fn add_around(a: SamplesAround, centre: Vec3, color: Vec3, weights: Vec2) -> SamplesAround {
     let v = to_ycocg(color);

@@ -109,7 +109,7 @@ pub fn unpack_reference(word: u32) -> Reference {
 }
 
 /// Color that the gate compares with a candidate of level `level`: the reference if it has the same level. Otherwise it
-/// is the candidate itself, because a change cannot be detected.
+/// is the candidate itself, because the two levels do not show whether anything changed.
 #[inline]
 pub fn compared(candidate: Vec3, level: u32, reference: Reference) -> Vec3 {
     if level != NO_LEVEL && reference.level == level { reference.color } else { candidate }
@@ -122,8 +122,8 @@ pub fn next_reference(candidate: Vec3, level: u32, take: bool, reference: Refere
     if take || is_other_level { Reference { color: candidate, level } } else { reference }
 }
 
-/// Weight of a candidate of eccentricity `weight` (eq. 4), sharpened: its power with a whole exponent from 1 on, by
-/// products.
+/// Sharpened weight of a candidate: its weight by eccentricity `weight` (eq. 4), raised to a whole exponent of at least
+/// 1 by multiplication.
 #[inline]
 pub fn sharpen(weight: f32, exponent: u32) -> f32 {
     let mut w = weight;
@@ -133,7 +133,7 @@ pub fn sharpen(weight: f32, exponent: u32) -> f32 {
     w
 }
 
-/// Least weight of a usable candidate: 2^-100. Below 2^-126 it would be 0, which marks an unusable one.
+/// Least weight of a usable candidate: 2^-100. A weight below 2^-126 would become 0, which marks an unusable candidate.
 const LEAST_CANDIDATE_W: f32 = f32::from_bits((127 - 100) << 23);
 
 /// Weight of a candidate at level of detail `lod` (0 to 8.9): `weight` times the number of samples a pixel, `4^-lod`,
@@ -148,7 +148,7 @@ pub fn at_rate(weight: f32, lod: f32, exponent: u32) -> f32 {
 pub struct Past {
     /// Color of the sample.
     pub color: Vec3,
-    /// Weight sum; 0: there is no history.
+    /// Weight sum; 0 without history.
     pub w_sum: f32,
     /// Log key of the sample (A-ES only).
     pub log_key: f32,
@@ -222,8 +222,8 @@ pub fn combined(candidate: Vec3, weight: f32, past: Vec3, decision: &Decision, s
 }
 
 /// One frame of one pixel: gate (eq. 7), bias, then Alg. 2 with the candidate as second reservoir. The gate compares
-/// the candidate with `past.color`: the sample, or what [`compared`] gives. A `weight` of 0 marks an unusable
-/// candidate; it is no evidence of a change of color either, so the gate value is 1.
+/// the candidate with `past.color`: the sample, or the result of [`compared`]. A `weight` of 0 marks an unusable
+/// candidate. Such a candidate does not show whether the color changed, so the gate value is 1.
 #[inline]
 pub fn step(candidate: Vec3, weight: f32, past: Past, params: &WrsParams, draw: f32) -> Decision {
     let mut gate_value = 1.0;

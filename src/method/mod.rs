@@ -141,7 +141,7 @@ pub(crate) struct Entry {
     /// Memory traffic of history and noise, in bytes a pixel.
     pub history_traffic_bytes: fn(&Settings) -> u32,
     pub shader: fn(&Settings) -> PassShader,
-    /// Values of the shader's own overrides, in addition to those of `shaders/pass/inputs.wgsl`. The `bool` says
+    /// Values of the shader's own overrides, in addition to those of `shaders/pass/inputs.wgsl`. The `bool` states
     /// whether the frame has a level-of-detail input.
     pub overrides: fn(&Settings, bool) -> Overrides,
 }

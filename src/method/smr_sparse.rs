@@ -16,7 +16,7 @@ pub(super) static ENTRY: Entry = Entry {
         // this frame. For each of these, history is read (8), and the observation (16) and the light (16) are written
         // and read.
         let samples = (8 + 16 + 16_u32).div_ceil(3);
-        // The noise of samples (4) and that of history (4) are read, and the latter is written (4).
+        // The noise of samples (4) and the noise of history (4) are read. The noise of history is written (4).
         2 * 8 + samples + if settings.noisy { 4 + 2 * 4 } else { 0 }
     },
     shader: |_| PassShader { name: "sparse_pass", block_px: 1, reads_samples: true },
@@ -33,8 +33,8 @@ pub(crate) fn smr_sparse_repair(settings: &Settings) -> Option<Repair> {
     settings.method.smr().repair.filter(|_| settings.foveation.filter == Filter::Sparse)
 }
 
-/// Whether history is relit. History of noisy frames is not: a gain is a ratio of means of nine samples, so that
-/// relighting would multiply history by their noise.
+/// Whether history is relit. Noisy frames are not relit: a gain is a ratio of means of nine samples, so relighting
+/// would multiply history by the noise of these means.
 pub(crate) fn smr_sparse_relights(settings: &Settings) -> bool {
     settings.method.smr().relight && !settings.noisy
 }

@@ -7,8 +7,8 @@ use glam::Vec3;
 /// Mip levels of a full-rate frame: level 0 is the frame, a texel of each next level the mean of 2x2. Needs the feature
 /// `cpu`.
 ///
-/// Level l has `ceil(size / 2^l)` texels a side; texel i covers pixels `i * 2^l` to `(i + 1) * 2^l - 1`, as far as they
-/// exist.
+/// Level l has `ceil(size / 2^l)` texels a side; texel i covers pixels `i * 2^l` to `(i + 1) * 2^l - 1`, without those
+/// beyond the frame's edge.
 ///
 /// ```
 /// use afterimage::simulator::Pyramid;
@@ -31,8 +31,8 @@ pub struct Pyramid {
 }
 
 impl Pyramid {
-    /// Computes levels 0 to `max_level` of `full`. Non-finite pixels count as black in coarser levels, so that one of
-    /// them does not make a whole block non-finite.
+    /// Computes levels 0 to `max_level` of `full`. Non-finite pixels count as black in coarser levels, so that one
+    /// non-finite pixel does not make a whole block non-finite.
     pub fn new(full: Image<[f32; 3]>, max_level: u32) -> Self {
         let mut levels = vec![full];
         for _ in 0..max_level {
@@ -88,8 +88,8 @@ impl Pyramid {
     }
 }
 
-/// Next mip level: means of 2x2 texels. At odd borders a missing texel is replaced by its neighbour, which gives the
-/// mean of the existing ones.
+/// Next mip level: means of 2x2 texels. At odd borders a missing texel is replaced by its neighbour, so that the result
+/// is the mean of the existing texels.
 fn halve(image: &Image<[f32; 3]>) -> Image<[f32; 3]> {
     let size = image.size();
     let texel = |x: u32, y: u32| {

@@ -260,7 +260,7 @@ pub fn greys(call: Call<'_>) -> Option<String> {
     let rows: Vec<_> = rows.chain([row(grey, [65.0, 0.0, 0.0])]).collect();
     let found = of_floats(call, "delta_e94", &rows)?.concat();
     assert_eq!(found.last(), Some(&25.0));
-    // Its slope towards any chroma is that of a distance: at most 1, and 1 where lightness is equal.
+    // Its slope towards any chroma is at most 1, as for a distance, and 1 where lightness is equal.
     let mut steepest = 0.0_f32;
     for (found, h) in found.chunks_exact(3).zip(heights.iter().flat_map(|&h| [h; 4])) {
         let (from_equal, from_other) = (found[0] / h, (found[1] - 25.0) / h);

@@ -56,7 +56,7 @@ fn run(post: &mut Box<dyn Steps>, method: MethodKind, frames: std::ops::Range<u6
     frames.map(|index| step(post, index, &frame(method, index), Reset::None)).collect()
 }
 
-/// What a fresh context makes of frames 20 to 29, and another after its first 20 frames.
+/// Output of a fresh context for frames 20 to 29, and a context after its first 20 frames.
 fn fresh_and_used(make: Make<'_>, method: MethodKind) -> Option<(Vec<Made>, Box<dyn Steps>)> {
     let (mut fresh, mut used) = (make(of(method))?, make(of(method))?);
     run(&mut used, method, 0..20);
@@ -98,7 +98,7 @@ pub fn cut(make: Make<'_>) -> Option<String> {
     )
 }
 
-/// A reset at frame 0 and two frames running, and a context that is told to forget.
+/// A reset at frame 0, a reset in two successive frames, and a context whose history is discarded.
 pub fn resets(make: Make<'_>) -> Option<String> {
     for method in METHODS {
         let (fresh, mut twice) = fresh_and_used(make, method)?;

@@ -88,7 +88,7 @@ pub fn half_pixels(make: Make<'_>) -> Option<String> {
     Some(format!("wrs, 0.5 px x 200: {kept} samples kept, no color that no frame brought; nearest, nothing is mixed"))
 }
 
-/// Vectors that are no numbers, or far too long.
+/// Vectors that are not numbers, or far too long.
 pub fn garbage_motion(make: Make<'_>) -> Option<String> {
     for method in METHODS {
         let mut post = make(of(method))?;

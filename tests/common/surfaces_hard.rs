@@ -179,7 +179,8 @@ pub fn half_pixels(make: Make<'_>) -> Option<String> {
     }
     let stated = mtf.powi(200);
     println!("{kept:.4} of the wave is left, {stated:.4} stated; the candidate has {coarse:.4}");
-    // Misses the MTF by 0.023: differences of phase are taken for light, and a gain costs detail.
+    // The amplitude differs from the MTF by 0.023: differences of phase count as changes of light, and a gain costs
+    // detail.
     assert!(kept > stated - 0.03 && kept < 1.01 && coarse < stated - 0.05);
     Some(format!(
         "smr, 0.5 px x 200: {kept:.3} of a wave of 16 px left, {stated:.3} by its MTF; the candidate has {coarse:.3}"
@@ -188,8 +189,8 @@ pub fn half_pixels(make: Make<'_>) -> Option<String> {
 
 /// Taps that reach over an edge.
 pub fn depth_edge(make: Make<'_>) -> Option<String> {
-    // A quarter of a pixel to the left of the edge and to the right of it, taps reach over; plain colors show any that
-    // do. smr accumulates what is coarse.
+    // A quarter of a pixel to the left of the edge and to the right of it, taps reach over; plain colors show any such
+    // tap. smr accumulates coarse history.
     let mut widest = vec![];
     let near = |[x, _]: [u32; 2]| x < 26;
     let colors = |near: bool| if near { [0.9, 0.6, 0.3] } else { [0.1, 0.2, 0.4] };
@@ -238,8 +239,8 @@ pub fn zoom(make: Make<'_>) -> Option<String> {
             let [qx, qy] = [source(x, 26.0), source(y, 20.0)];
             let shown = made.shown.at(x, y);
             if t.verdict != Verdict::Valid {
-                // Near the middle, where neighbours' vectors differ by much of themselves, they are taken for a
-                // silhouette's.
+                // Near the middle, the vectors of neighbours differ by a large part of their length, and count as
+                // vectors on a silhouette.
                 let inside = (-0.5..51.5).contains(&qx) && (-0.5..40.5).contains(&qy);
                 assert_eq!(t.verdict, if inside { Verdict::Disoccluded } else { Verdict::OffScreen });
                 assert_eq!(shown, later.color.at(x, y));
@@ -282,7 +283,7 @@ pub fn saccade(make: Make<'_>) -> Option<String> {
     let before: Vec<_> = (0..4).map(|index| step(&mut post, index, &left)).collect();
     let stored = before[3].stored();
     let old: Vec<usize> = (0..320 * 40).filter(|&i| ecc.pixels()[i] < 2.4).collect();
-    // For two seconds: no frame loses a pixel of it.
+    // For two seconds, no frame loses a sharp pixel.
     for index in 4..124 {
         let made = step(&mut post, index, &right);
         let kept = old.iter().filter(|&&i| made.shown.pixels()[i] == stored.pixels()[i]).count();
@@ -309,7 +310,7 @@ pub fn exposure(make: Make<'_>) -> Option<String> {
         let declared = post.make(1, &exposed, Exposure::Changed { ratio }, Reset::None);
         assert_eq!(declared.shown, scaled(&made.stored(), ratio), "x{ratio}");
         assert_eq!(declared.stats.rejected(), 0);
-        // Undeclared, it is another picture: the new one is shown at once. So it is on the way back.
+        // Undeclared, it is another picture, and is shown at once. The same holds for the change back.
         step(&mut undeclared, 0, &picture);
         for index in 1..20 {
             worst = worst.max(off(&step(&mut undeclared, index, &exposed).shown, &exposed.color));

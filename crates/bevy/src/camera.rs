@@ -1,4 +1,4 @@
-//! Components of a camera, and what they require of it.
+//! Components of a camera, and the components that these require.
 
 use afterimage::{DebugView, DepthConvention, Filter, Method, Repair, Settings};
 use bevy::camera::{CameraMainTextureUsages, Hdr};
@@ -127,8 +127,8 @@ pub enum FoveationKind {
     Sparse,
     /// The pixel in the middle of each block, interpolated, without history: quad views, for comparison. Saves time.
     QuadViews,
-    /// Every pixel, and then means of blocks, as if a renderer had shaded those, with history. Saves nothing; shows
-    /// what the post-process does.
+    /// The renderer shades every pixel. Means of blocks replace the colors, as if it had shaded blocks, and history
+    /// adds their detail again. Saves nothing; shows what the post-process does.
     Simulated,
     /// Every pixel, without post-process: for comparison.
     Off,

@@ -56,7 +56,7 @@ pub(crate) struct Samples {
 pub struct Planted {
     /// Another convention of motion vectors than Bevy's.
     pub motion: Option<MotionConvention>,
-    /// History is told the opposite jitter.
+    /// The post-process gets the opposite jitter.
     pub jitter: bool,
 }
 

@@ -250,7 +250,7 @@ fn show_repaired(
     }
 }
 
-/// Foveates the camera's frame, and shows what history makes of it.
+/// Foveates the camera's frame, and shows the output of the post-process.
 fn simulate(
     view: ViewQuery<Camera<'_>>,
     mut contexts: ResMut<Contexts>,

@@ -19,7 +19,7 @@ pub enum InputError {
     /// The input is larger than a limit. Use a smaller one, or raise the limit that `exceeded` names.
     #[error("{message}")]
     Limit {
-        /// Subject, problem and remedy.
+        /// Message with the input concerned, the problem and the remedy.
         message: Message,
         /// The limit, and the size that would be needed.
         exceeded: Exceeded,
@@ -130,7 +130,7 @@ impl InputError {
         Self::Device(Message::new(subject, problem, remedy))
     }
 
-    /// Subject, problem and remedy of any variant.
+    /// Message of any variant: the input concerned, the problem and the remedy.
     pub fn message(&self) -> &Message {
         match self {
             Self::Limit { message, .. } => message,

@@ -34,7 +34,7 @@ impl Failure {
     /// Exit code of a command line that is not run: prints help and version, or a usage error in one line.
     pub fn usage_exit_code(error: &clap::Error) -> ExitCode {
         if !error.use_stderr() {
-            // A closed pipe is no error.
+            // A closed pipe is not an error.
             let _ = error.print();
             return ExitCode::SUCCESS;
         }
@@ -67,7 +67,7 @@ impl From<InputError> for Failure {
     }
 }
 
-/// The line of `error`, with the option of this tool that solves the problem. The library does not know the options.
+/// The line of `error`, with the option of this tool that solves the problem: the library does not know these options.
 fn with_option(error: &InputError) -> String {
     match error {
         // These remedies end with "or raise the limit".

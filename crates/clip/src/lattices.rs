@@ -78,7 +78,7 @@ impl SampleOrder {
     }
 }
 
-/// Level of detail of every pixel: log2 of the step of its lattice, 0 where there is none.
+/// Level of detail of every pixel: log2 of the step of its lattice, 0 for pixels outside all lattices.
 pub fn levels(lattices: &Lattices, size_px: [u32; 2]) -> Image<f32> {
     let mut levels = Image::filled(size_px, 0.0);
     let rows = levels.pixels_mut().par_chunks_mut(size_px[0].max(1) as usize);

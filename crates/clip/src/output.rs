@@ -118,7 +118,7 @@ impl Table {
     }
 }
 
-/// Files such as `000000.png` in a folder; none if it does not exist.
+/// Files such as `000000.png` in a folder; empty if the folder does not exist.
 fn numbered_frames(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else {
         return vec![];

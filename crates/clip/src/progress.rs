@@ -3,8 +3,8 @@
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 
-/// A progress bar of `length` steps; hidden if stderr is no terminal. `counted`: indicatif template of the text behind
-/// the bar.
+/// A progress bar of `length` steps; hidden if stderr is not a terminal. `counted`: indicatif template of the text
+/// behind the bar.
 pub fn bar(length: u64, counted: &str) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();

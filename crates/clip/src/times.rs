@@ -81,8 +81,8 @@ impl RenderTime {
     }
 }
 
-/// Time of a whole frame in milliseconds: the renderer's and the pass's medians, and their sums. `None` where nothing
-/// is rendered.
+/// Time of a whole frame in milliseconds: the renderer's and the pass's medians, and their sums. `None` if no frame is
+/// rendered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrameTime {
     /// Of the renderer.

@@ -1,4 +1,4 @@
-//! Fall back to the CPU where there is no GPU. Both give the same image.
+//! Fall back to the CPU on a machine without a GPU. Both give the same image.
 //!
 //! `cargo run -p afterimage-lab --example 05_cpu_fallback`; writes `out/05_cpu_fallback.png`
 

@@ -27,7 +27,7 @@ pub struct DeviceFrame {
     pub device: Arc<Headless>,
     /// Linear color.
     pub color: wgpu::Texture,
-    /// Near plane over distance; 0 where there is no surface.
+    /// Near plane over distance; 0 for pixels without a surface.
     pub depth: wgpu::Texture,
     /// Pixels, y down, previous minus current; `Rg32Float`.
     pub motion: wgpu::Texture,
@@ -90,7 +90,8 @@ pub struct ComposedFrame {
     pub device: Arc<Headless>,
     /// Linear color, `Rgba32Float`, finite.
     pub color: wgpu::Texture,
-    /// Distance along the view axis, `R32Float`, of the nearest pixel of a view; infinity where there is no surface.
+    /// Distance along the view axis, `R32Float`, of the nearest pixel of a view; infinity where that pixel shows no
+    /// surface.
     pub distance: wgpu::Texture,
     /// Pixels, y down, previous minus current; `Rg32Float`. Of the nearest pixel of a view.
     pub motion: wgpu::Texture,

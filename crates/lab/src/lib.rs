@@ -4,7 +4,7 @@
 //! - [`scene`]: glTF and built-in scenes. [`raster`]: a rasteriser for them. [`trace`]: a path tracer, foveated or at
 //!   full rate.
 //! - [`scanpath`]: recorded and synthetic gaze.
-//! - [`quad_views`]: foveation as headset runtimes draw it, as a rival.
+//! - [`quad_views`]: foveation as headset runtimes draw it, for comparison.
 //! - [`pipeline`]: foveates frames and runs the methods on them. [`metric`]: image quality of the output.
 //! - [`lattices`]: sparse frames, their order of samples and their geometry.
 //! - [`device`]: a graphics device without a window. [`error`]: errors of inputs.

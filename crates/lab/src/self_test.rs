@@ -28,11 +28,11 @@ pub const LEAST_PSNR_DB: f64 = 60.0;
 /// Result of one probe.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
-    /// Subject of the probe.
+    /// Behaviour that the probe examines.
     pub what: String,
     /// Observed behaviour.
     pub found: String,
-    /// Whether the behaviour meets this library's requirement; `None` if there is no requirement.
+    /// Whether the behaviour meets this library's requirement; `None` if the library does not depend on it.
     pub holds: Option<bool>,
 }
 

@@ -2,7 +2,7 @@
 
 use afterimage::{CreateError, FrameError, SettingsError};
 
-/// Why there is no headset, or no further frame.
+/// Reason why no headset was found, or why frames end.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {

@@ -21,8 +21,8 @@ const PAUSE: Duration = Duration::from_secs(1);
 /// How often a session that is not running is asked for news.
 const IDLE: Duration = Duration::from_millis(5);
 
-/// Gaze where there is no eye tracker: direction in the head's space (x right, y up, -z forward, of any length) at a
-/// time in seconds since the first frame; `None`: lost.
+/// Gaze without an eye tracker: direction in the head's space (x right, y up, -z forward, of any length) at a time in
+/// seconds since the first frame; `None`: lost.
 pub type GazeFn = Box<dyn FnMut(f64) -> Option<[f32; 3]> + Send>;
 /// Action sets of the application, created from the instance.
 pub type ActionsFn = Box<dyn FnOnce(&xr::Instance) -> Result<Vec<xr::ActionSet>, sys::Result>>;
@@ -475,7 +475,7 @@ impl<'a> HeadsetFrame<'a> {
     /// not tracked.
     ///
     /// # Errors
-    /// [`Error::OpenXr`] if the action is none of the session's.
+    /// [`Error::OpenXr`] if the action does not belong to the session.
     pub fn pose(&mut self, action: &xr::Action<xr::Posef>, path: xr::Path) -> Result<Option<[[f32; 4]; 4]>, Error> {
         let session = self.headset.session.as_mut().expect("a frame has a session");
         let pose = session.pose(action, path, self.time).or_else(none_if_lost)?;
@@ -491,7 +491,7 @@ impl<'a> HeadsetFrame<'a> {
     ///
     /// # Errors
     /// [`Error::Frame`] if the post-process refuses the frame, [`Error::OpenXr`] if the runtime fails. A session that
-    /// is lost meanwhile is no error: [`Headset::next_frame`] replaces it.
+    /// is lost meanwhile is not an error: [`Headset::next_frame`] replaces it.
     pub fn submit(self) -> Result<Shown<'a>, Error> {
         let Self { mut encoder, eyes, gaze, reset, headset, poses, views, time, .. } = self;
         let before = headset.past.map(|past| past.poses);

@@ -24,7 +24,8 @@ impl Gpu {
     pub fn new(instance: &xr::Instance, system: xr::SystemId, required_limits: Limits) -> Result<Self, Error> {
         // The specification requires this call before a device is created.
         instance.graphics_requirements::<xr::Vulkan>(system)?;
-        // The newest version that wgpu-hal knows; a runtime's maximum is only what it was tested with.
+        // The newest version that wgpu-hal knows; a runtime's maximum is only the newest version that it was tested
+        // with.
         let version = vk::API_VERSION_1_3;
         let failed = |error: &dyn std::fmt::Display| Error::Device(error.to_string());
         // SAFETY: the loader's library stays loaded as long as `entry`, of which wgpu-hal keeps a copy.
@@ -46,7 +47,7 @@ impl Gpu {
         // SAFETY: the instance is that of the runtime's device.
         let raw_physical = unsafe { instance.vulkan_graphics_device(system, raw_instance) }?;
         let physical = vk::PhysicalDevice::from_raw(raw_physical as u64);
-        // SAFETY: the instance has the version and the extensions that are said here, and nobody else destroys it.
+        // SAFETY: the instance has the version and the extensions that are stated here, and no other code destroys it.
         let hal_instance = unsafe {
             vulkan::Instance::from_raw(
                 entry.clone(),

@@ -25,7 +25,7 @@ const NEAR_DEG: f32 = 3.5;
 type Color = Image<[f32; 3]>;
 type Failure = Box<dyn std::error::Error>;
 
-/// A method on frames of a kind, and what was measured of it.
+/// A method on one kind of frames, and its measurements.
 struct Row {
     name: &'static str,
     foveation: Foveation,
@@ -119,7 +119,7 @@ fn rows() -> Result<Vec<Row>, Failure> {
         Row::new("sparse 2/4, taau", foveated, false, Some(Method::Taau))?,
         Row::new("sparse 2/4, jitter, taau", foveated, true, Some(Method::Taau))?,
         Row::new("sparse 2/4, smr", foveated, false, smr(false))?,
-        Row::new("sparse 2/4, jitter, smr that is not told", foveated, true, smr(false))?,
+        Row::new("sparse 2/4, jitter, smr without antialias", foveated, true, smr(false))?,
         Row::new("sparse 2/4, jitter, smr", foveated, true, smr(true))?,
     ])
 }

@@ -1,8 +1,8 @@
 //! Jittered projections, and temporal antialiasing before or after the post-process.
 //!
 //! A renderer jitters its projection so that its antialiasing sees another part of each pixel in every frame. This
-//! example compares the orders, on frames with one sample a pixel, against the antialiased full-rate frame. "untold":
-//! vectors that contain the jitter, said to have none.
+//! example compares the orders, on frames with one sample a pixel, against the antialiased full-rate frame.
+//! "undeclared": vectors that contain the jitter, contrary to their description.
 //!
 //! `cargo run --release -p afterimage-research --example jitter`
 //!
@@ -17,7 +17,7 @@ use afterimage_lab::source::analytic::AnalyticSource;
 
 const SIZE: [u32; 2] = [320, 180];
 const FRAMES: u64 = 48;
-const ROWS: [&str; 6] = ["foveated", "taa", "smr", "smr, untold", "smr, then taa", "taa, then smr"];
+const ROWS: [&str; 6] = ["foveated", "taa", "smr", "smr, undeclared", "smr, then taa", "taa, then smr"];
 
 type Color = Image<[f32; 3]>;
 
@@ -110,7 +110,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 ..frame.clone()
             };
             for (row, passes) in passes.iter_mut().enumerate() {
-                let from = if ROWS[row] == "smr, untold" { &with_jitter } else { &frame };
+                let from = if ROWS[row] == "smr, undeclared" { &with_jitter } else { &frame };
                 let mut shown = seen.clone();
                 for pass in passes {
                     shown = pass.process(&shown, from, view, index)?;

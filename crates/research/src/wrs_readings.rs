@@ -28,8 +28,8 @@ fn settings(wrs: Wrs) -> Settings {
     Settings { method: Method::Wrs(wrs), ..Settings::default() }
 }
 
-/// The readings: settings that differ from the paper's in one part or several; on a device also one that
-/// is no setting.
+/// The readings: settings that differ from the paper's in one part or several; on a device also one that is not a
+/// setting.
 fn readings(backend: &Backend) -> Vec<(&'static str, RunKind)> {
     let [paper, weighted] = [Wrs::default(), Wrs::weighted()];
     let ungated = Wrs { gate: None, ..paper };

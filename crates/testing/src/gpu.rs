@@ -37,10 +37,10 @@ fn find_adapter() -> Option<wgpu::Adapter> {
     }
 }
 
-/// The Vulkan adapter of this run. Prints a line and returns `None` if there is none.
+/// The Vulkan adapter of this run. Without an adapter, prints a line and returns `None`.
 ///
 /// # Panics
-/// If there is none and `AFTERIMAGE_GPU=require` is set, as in CI.
+/// Without an adapter, if `AFTERIMAGE_GPU=require` is set, as in CI.
 pub fn adapter() -> Option<&'static wgpu::Adapter> {
     static ADAPTER: OnceLock<Option<wgpu::Adapter>> = OnceLock::new();
     let adapter = ADAPTER.get_or_init(find_adapter).as_ref();

@@ -19,7 +19,7 @@ impl Program {
             .expect("the program starts")
     }
 
-    /// Checks that it succeeds, with nothing on stderr, which is no terminal. Returns stdout.
+    /// Checks that it succeeds, with nothing on stderr, which is not a terminal. Returns stdout.
     #[track_caller]
     pub fn succeeds(self, args: &[&str]) -> String {
         let output = self.output(args);

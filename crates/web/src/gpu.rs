@@ -121,7 +121,7 @@ impl Gpu {
 async fn mapped(buffer: &Buffer) -> Result<()> {
     let promise = js_sys::Promise::new(&mut |resolve, reject| {
         buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // A promise that nobody waits for any more cannot be told.
+            // The call fails if nobody waits for the promise any more.
             let _ = match result {
                 Ok(()) => resolve.call0(&JsValue::NULL),
                 Err(error) => reject.call1(&JsValue::NULL, &error.to_string().into()),

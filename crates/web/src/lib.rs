@@ -90,7 +90,7 @@ impl Demo {
     }
 
     /// Draws a frame: gaze in pixels, time of the camera in seconds, position of the divider and width of lines in
-    /// pixels. Left of the divider is what the renderer delivers, right of it what the method makes of it.
+    /// pixels. Left of the divider is the renderer's frame, right of it the method's output.
     ///
     /// # Errors
     /// If a frame is not what the description says.
@@ -135,7 +135,7 @@ impl Demo {
         self.gpu.read(&self.stage.plain_output).await
     }
 
-    /// Pixels of what the method made of it.
+    /// Pixels of the method's output.
     ///
     /// # Errors
     /// On a lost device.

@@ -2,9 +2,9 @@
 //! `src/kernel/{kept,sparse}.rs`.
 //!
 //! Three loops. The first compares each sample of a lattice of step 2 and more with history at its pixel. The second
-//! estimates gain and fit for each of these samples, from its own comparison and those of its eight neighbours. The
-//! third interpolates gain, fit and samples for each pixel, reads the four stored samples around the pixel's previous
-//! position, and blends.
+//! estimates gain and fit for each of these samples, from its own comparison and from the comparisons of its eight
+//! neighbours. The third interpolates gain, fit and samples for each pixel, reads the four stored samples around the
+//! pixel's previous position, and blends.
 
 mod antialias;
 mod plan;
@@ -50,7 +50,8 @@ use glam::{Vec2, Vec3};
 const LIGHT_RELATIVE: f32 = 0.1;
 /// Relative difference of disparity within which a sample is interpolated for a pixel.
 const SAMPLE_RELATIVE: f32 = 0.05;
-/// Weight of a sample of another surface, which counts only where there is no better one.
+/// Weight of a sample of another surface. It is so small that such a sample counts only where no sample near the pixel
+/// shows the pixel's own surface.
 const OTHER_SURFACE: f32 = 1e-3;
 /// Factor on the weight of a sample's gain and fit if they come from its neighbours only, because the sample itself was
 /// not compared with history.
@@ -58,7 +59,7 @@ const BY_NEIGHBOURS: f32 = 1e-3;
 /// Least weight of one of the four samples around a pixel.
 const LEAST_SHARE: f32 = 1e-4;
 
-/// Noise where candidates have none.
+/// Noise of candidates without a noise input.
 const NO_NOISE: Noise = Noise { samples: 1.0, variance: 0.0 };
 
 /// Packed results for the samples of a lattice, row by row.
@@ -381,10 +382,10 @@ impl View<'_> {
             })
         };
         let light = neighbours().fold(Light::default(), |l, (o, weight, spatial)| add_light(l, o, weight, spatial));
-        // A single noisy sample is no evidence.
+        // A single noisy sample does not show whether history fits.
         let judged = own.filter(|_| !self.is_noisy());
         let fit_of_own = |gain| judged.map_or(1.0, |own| own_fit(own, gain));
-        // Pixels interpolate a sample without disparity only if there is no other one.
+        // A sample without disparity is interpolated only where no other sample is near.
         let disparity = if self.is_doubtful(lattice, point, observed) { INVALID_DISPARITY } else { disparity };
         let unlit = Lit { gain: Vec3::ONE, fit: 1.0, own_fit: fit_of_own(Vec3::ONE), is_own: own.is_some(), disparity };
         if light.weight < 1e-6 {

@@ -1,4 +1,4 @@
-//! What the frames show: lines of a pixel, sparkles, fast motion, silhouettes.
+//! Content of the frames: lines of one pixel's width, sparkles, fast motion, silhouettes.
 
 use super::*;
 
@@ -63,7 +63,7 @@ pub fn sparkles(make: Make) -> Option<String> {
     let shot = |color: Color, index| Shot::foveated(color, &foveation, [30.0, 25.0], index);
     let highest = 0.8;
     let mut figures = vec![];
-    // In the first turn, when history is coarse; and after it, when history is sure.
+    // In the first turn, when history is coarse, and after it, when confidence in history is high.
     for from in [0, TURN] {
         let bright = (from..).find(|&index| shot(clean.clone(), index).lattices().at(at).unwrap().samples(at))?;
         for light in [2.0, 65504.0] {
@@ -111,7 +111,7 @@ pub fn sparkles(make: Make) -> Option<String> {
 /// Everything moves by 20 pixels and more a frame.
 pub fn fast_motion(make: Make) -> Option<String> {
     let mut figures = vec![];
-    for (name, speed_px, told) in [
+    for (name, speed_px, has_vectors) in [
         ("20 px", [20.0, 0.0], true),
         ("(20.3, -7.6) px", [20.3, -7.6], true),
         ("200 px", [200.0, 0.0], true),
@@ -122,7 +122,7 @@ pub fn fast_motion(make: Make) -> Option<String> {
         for index in 0..2 * TURN {
             let full = waves(SIZE, speed_px.map(|v| v * index as f32));
             let shot = Shot::foveated(full.clone(), &foveation(), [40.0, 30.0], index);
-            let shot = if told { shot.moving(speed_px) } else { shot };
+            let shot = if has_vectors { shot.moving(speed_px) } else { shot };
             let shown = post.one(index, &shot);
             assert_finite(&shown, name);
             let errors = [&shown, &none(&shot)].map(|c| squared_error(c, &full, everywhere));
@@ -131,7 +131,7 @@ pub fn fast_motion(make: Make) -> Option<String> {
         }
         let gain = psnr(sums[0]) - psnr(sums[1]);
         println!("{name}: {gain:.2} dB, at least {least:.2}");
-        if told {
+        if has_vectors {
             // Positions are rounded to 1/24 pixel, which is why a frame may be a little worse.
             assert!(gain > -0.05 && least > -0.1, "{name}: {gain:.2} dB, at least {least:.2}");
         }
@@ -142,7 +142,7 @@ pub fn fast_motion(make: Make) -> Option<String> {
     Some(format!("dB against the foveated frame: {}", figures.join("; ")))
 }
 
-/// A near square before a wall that moves otherwise.
+/// A near square in front of a wall that moves in another way.
 fn square(index: u64) -> Shot {
     let t = index as f32;
     let (near_px, wall_px) = ([1.3 * t, 0.5 * t], [-0.4 * t, 0.2 * t]);

@@ -51,7 +51,7 @@ pub fn invalid_samples(make: Make) -> Option<String> {
         let shown = post.one(index, &Shot::new(color, only(index)));
         assert_finite(&shown, "the only sample");
         if index == 2 {
-            // Where history had less than its whole share, what is stored differs a little from what was shown.
+            // Where history had a share below 1, the stored color differs a little from the output.
             assert!(squared_error(&shown, &last, everywhere) < 1e-6, "the last frame again");
         }
         last = shown;
@@ -92,7 +92,7 @@ pub fn light_trust_views_gaze_and_foveation(make: Make) -> Option<String> {
     println!("exposure: off by {off} of the largest channel");
     // A gain follows where rounding to 9 bits exceeds its expected error, as it does in bright light.
     assert!(off < 0.01, "{off}: detail is lost");
-    // A trust of 0 shows what a reset would; elsewhere it changes nothing.
+    // A trust of 0 gives the same output as a reset. It does not change other pixels.
     let gaze = |index: u64| [40.0 + index as f32, 30.0];
     let (mut post, mut plain) = (make(smr(SIZE))?, make(smr(SIZE))?);
     let is_distrusted = |px: [u32; 2]| (px[0] / 5).is_multiple_of(3);
@@ -110,7 +110,7 @@ pub fn light_trust_views_gaze_and_foveation(make: Make) -> Option<String> {
     let history = squared_error(&other, &fresh, |px| !is_distrusted(px));
     println!("trusted pixels differ by {trusted:.3e}, history is worth {history:.3e}");
     assert!(trusted < 0.1 * history, "fewer samples are compared, no more");
-    // Two views know nothing of each other.
+    // Two views do not affect each other.
     let both = ContextDesc { view_count: 2, ..smr(SIZE) };
     let (mut pair, mut left, mut right) = (make(both)?, make(smr(SIZE))?, make(smr(SIZE))?);
     for index in 0..8 {

@@ -42,7 +42,7 @@ pub fn starved_positions(make: Make) -> Option<String> {
     ))
 }
 
-/// Lattices that hardly are any.
+/// Degenerate lattices.
 pub fn degenerate_lattices(make: Make) -> Option<String> {
     let far = |offset| Lattice::covering(8, [0, 0], SIZE, offset);
     let stack = |lattices: &[Lattice]| Lattices::new(lattices).unwrap();
@@ -163,7 +163,7 @@ pub fn borders(make: Make) -> Option<String> {
     let [seam, _, far, _] = sums;
     println!("least {least:.2} dB at borders; squared error there over the periphery's {:.3}", seam / far);
     assert!(least > 0.0, "{least:.2} dB at borders");
-    // A seam would be an error that the coarser side has not.
+    // At a seam, the error would exceed the error of the coarser side.
     assert!(seam < far, "{seam} at borders, {far} in the periphery");
     Some(format!(
         "fovea bit for bit in 80 frames; still: exact across borders wherever sampled; gliding: squared error at borders {:.2} of the periphery's, {least:+.1} dB against foveated at least",

@@ -57,7 +57,7 @@ pub type Color = Image<[f32; 3]>;
 /// Pixels to repair.
 pub type Mask = Image<bool>;
 
-/// One view of one frame, and what is said of the frame.
+/// One view of one frame, and the description of the frame.
 #[derive(Clone)]
 pub struct Shot {
     pub view: View,
@@ -181,7 +181,7 @@ pub fn smr(size: [u32; 2]) -> ContextDesc {
     ContextDesc { settings, ..ContextDesc::new(size) }
 }
 
-/// The foveated frame alone: what is shown without a history.
+/// The foveated frame alone: the output without history.
 pub fn none(shot: &Shot) -> Color {
     let desc = smr(shot.facts.geometry.size_px());
     let settings = Settings { method: Method::None, ..desc.settings };
@@ -198,7 +198,7 @@ pub fn waves(size: [u32; 2], shift_px: [f32; 2]) -> Color {
     Image::from_fn(size, |[x, y]| wave([x as f32 - shift_px[0], y as f32 - shift_px[1]]))
 }
 
-/// Colors of pixels that have nothing in common with their neighbours', from 1/8 to 7/8.
+/// Random colors from 1/8 to 7/8, independent of the neighbours' colors.
 pub fn noise(size: [u32; 2], name: &str) -> Color {
     let mut draws = Draws::new(name);
     Image::from_fn(size, |_| [0; 3].map(|_| draws.range(0.125, 0.875)))

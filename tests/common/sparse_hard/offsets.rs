@@ -14,7 +14,7 @@ fn with_offsets(index: u64, offset_px: impl Fn(&Lattice) -> [u32; 2]) -> Lattice
     Lattices::new(&stack.as_slice().iter().map(moved).collect::<Vec<_>>()).unwrap()
 }
 
-/// Lattices that stand still, and such that show every offset three times.
+/// Lattices that stand still, and lattices that show every offset three times.
 pub fn repeated_offsets(make: Make) -> Option<String> {
     let (mut least, mut mean) = ([f64::INFINITY; 3], [0.0; 3]);
     for (i, speed_px) in [[0.0; 2], [0.37, 0.21], [1.6, -0.7]].into_iter().enumerate() {
@@ -46,7 +46,7 @@ pub fn repeated_offsets(make: Make) -> Option<String> {
             assert_eq!(wrong == 0, index >= frames * (TURN - 1), "{frames}, frame {index}: {wrong}");
         }
     }
-    // Motion shows other points of the surfaces to samples that stand.
+    // With motion, samples at fixed places show other points of the surfaces.
     assert!(mean[1] > 6.0 && mean[2] > 6.0, "{mean:?}");
     // Storage rounds to 9 bits.
     assert!(least.iter().all(|&gain| gain > -0.01), "worse than the foveated frame: {least:?}");

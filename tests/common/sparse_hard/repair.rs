@@ -14,7 +14,7 @@ fn repairing(budget: f32) -> ContextDesc {
     ContextDesc { settings: Settings { method, ..desc.settings }, ..desc }
 }
 
-/// A frame whose gaze is known, and the color of which is that of any planned pixel, too.
+/// A frame with a known gaze, whose color also contains the samples of planned pixels.
 fn shot(color: Color, index: u64) -> Shot {
     let mut shot = Shot::foveated(color.clone(), &foveation(), GAZE, index);
     shot.facts.gaze = Gaze::At { px: GAZE };
@@ -99,8 +99,8 @@ pub fn half_uncovered(make: Make) -> Option<String> {
             if index < from {
                 continue;
             }
-            // A quad wants as much as the pixel nearest to the gaze of those that are asked and have no sample, in this
-            // frame neither.
+            // A quad has the priority of the pixel nearest to the gaze, among its tested pixels that have had no sample
+            // so far and have none in this frame.
             let wants = |px| pixel(&unseen, px) && !is_sample(&shot, px);
             let ring_of = |[x, y]: [u32; 2]| {
                 let asked = [0, 1].map(|i| asked_px(i, x / 2, y / 2, index as u32)).into_iter();

@@ -72,9 +72,9 @@ fn mse(shown: &Color, means: &[([f64; 3], f64)], light: f64) -> f64 {
     shown.pixels().iter().zip(means).map(of).sum::<f64>() / means.len() as f64
 }
 
-/// The mean of N independent samples has a variance of 1/N of theirs; samples of low discrepancy have less. With a step
-/// of 4, neighbours that judge a sample lie 4 pixels apart: this picture's detail makes some means start again, and the
-/// last number is a floor, not that law.
+/// The mean of N independent samples has 1/N of the variance of one sample. Samples of low discrepancy have a lower
+/// variance. With a step of 4, neighbours that judge a sample lie 4 pixels apart: this picture's detail makes some
+/// means start again, and the last number is a lower bound instead of 1/N.
 #[test]
 fn the_mean_of_a_still_is_the_mean_over_the_pixel_within_its_statistics() {
     let means = box_means();
@@ -156,8 +156,8 @@ fn nearer([x, y]: [f32; 2]) -> bool {
     0.83 * x + 0.55 * y < 17.3
 }
 
-/// Depth and motion of an edge tremble with the jitter. Were history rejected as disoccluded whenever that has a pixel
-/// on the other side, the pixels of the edge would stay single samples.
+/// Depth and motion of an edge tremble with the jitter. If history were rejected as disoccluded whenever the trembling
+/// edge moves across a pixel, the pixels of the edge would stay single samples.
 #[test]
 fn a_silhouette_is_a_mean_of_both_surfaces() {
     let points = points(32);
@@ -232,7 +232,7 @@ fn shown_contrast(method: Method, step: u32, velocity_px: [f32; 2]) -> [[f64; 2]
         for (i, shown) in out.pixels().iter().enumerate().filter(|_| index >= 40) {
             let at = [i % SMALL[0] as usize, i / SMALL[0] as usize].map(|v| v as f32);
             let edge_px = (at[0] + 0.1 * at[1] - now.edge_px).abs();
-            // What comes into view from the sides has little history.
+            // Surfaces that come into view from the sides have little history.
             if edge_px < 2.5 || !(4.0..28.0).contains(&at[0]) {
                 continue;
             }
@@ -266,7 +266,7 @@ fn bars_beside_an_edge_are_not_softer_than_elsewhere() {
     }
 }
 
-/// Depth is that of pixel centres. A sample beside a silhouette that shows the other surface would stay as a dot where
+/// Depth is given at pixel centres. A sample beside a silhouette that shows the other surface would stay as a dot where
 /// the silhouette moves away.
 #[test]
 fn a_moving_silhouette_leaves_no_dots() {

@@ -1,4 +1,4 @@
-//! Repair of sparse frames: which pixels a plan asks for, and what their samples show.
+//! Repair of sparse frames: the pixels that a plan chooses, and their output.
 
 use super::*;
 use crate::any_frame::{self, any_frame};
@@ -112,7 +112,7 @@ fn the_mask_has_the_verdicts_of_process() {
                 if index < 2 * TURN && index > 0 {
                     continue;
                 }
-                // Nothing is coarse: the frame before was settled, or there was none.
+                // No history is coarse: the previous frame was settled, or history is empty.
                 let wants = |x: usize, y: usize| {
                     let t = trace.at(x, y);
                     let unexplained = t.verdict != Verdict::Valid || t.survival == 0.0;

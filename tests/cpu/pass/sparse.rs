@@ -1,4 +1,4 @@
-//! Sparse frames, filled for the methods that read whole ones.
+//! Sparse frames, filled for the methods that read whole frames.
 
 use super::*;
 use afterimage::{Filter, Foveation, Lattice, Lattices};

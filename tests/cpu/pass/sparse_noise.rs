@@ -1,4 +1,5 @@
-//! Noisy sparse frames: averaging lowers the variance and keeps the mean, noise is no change, a change is no noise.
+//! Noisy sparse frames: averaging lowers the variance and keeps the mean; noise does not count as a change, nor a
+//! change as noise.
 
 use super::*;
 use afterimage::kernel::noise::unpack_noise;
@@ -12,7 +13,7 @@ fn settings() -> Settings {
     Settings { foveation, ..Settings::traced() }
 }
 
-/// Shows frame `index` of a still view: the sample at a pixel, if there is one, is the mean of two draws.
+/// Shows frame `index` of a still view: a sample is the mean of two draws.
 fn frame(post: &mut CpuAfterimage, index: u64, lattices: Lattices, draw: impl FnMut([u32; 2]) -> f32) -> Color {
     one(post, index, &sampled(SIZE, draw).sparse(lattices)).0
 }

@@ -40,7 +40,7 @@ enum Planted {
     ElsewhereFirst,
     /// The order is the same in every frame.
     SameOrder,
-    /// What is planned is not shown.
+    /// Repaired samples are not shown.
     Unrepaired,
     /// Repaired samples are shown, but not stored.
     Forgotten,
@@ -53,7 +53,7 @@ struct Executor {
 }
 
 impl Executor {
-    /// What the executor is given instead of a frame.
+    /// Frame that the executor gets instead of the given one.
     fn changed(&self, shot: &Shot) -> Shot {
         let mut shot = shot.clone();
         match self.planted {

@@ -1,4 +1,4 @@
-//! Temporal upsampling: what it makes of samples whose places it knows.
+//! Temporal upsampling: its output from samples at known places.
 
 use super::*;
 use afterimage::{Filter, Foveation, Method};

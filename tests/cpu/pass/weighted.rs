@@ -51,7 +51,7 @@ fn detail_outlives_a_fixation_and_the_next_one_is_fresh() {
     println!("weighted: {kept:.4} from the detail that was seen, {count} of {fovea} pixels of the fovea fresh");
     assert!(kept < 0.02, "{kept}");
     assert!(count * 100 >= fovea * 99, "{count} of {fovea}");
-    // The literal gate and weights lose the detail: what the preset is measured against.
+    // The published gate and weights lose the detail. The preset is compared with them.
     let paper = difference(&run(Settings::paper()).1, &sharp, LEFT, 8.0);
     assert!(paper > 5.0 * kept, "paper: {paper}");
 

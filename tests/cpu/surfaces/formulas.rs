@@ -269,7 +269,7 @@ fn taa_agrees_with_f64_and_stays_in_its_box() {
         let stored = taa::confidence_of(taa::lod_of(confidence));
         assert!((stored - confidence).abs() < 1e-5, "{confidence} is stored as {stored}");
     }
-    // History that is off by as much as jitter explains keeps 16 samples, that of another light none.
+    // History keeps 16 samples if jitter explains its difference, and none after a change of light.
     let lumas = [0.2, 0.4, 0.6];
     let (sum, squares) = (lumas.iter().sum::<f32>(), lumas.iter().map(|v| v * v).sum::<f32>());
     let third_of_deviation = (0.08_f32 / 3.0).sqrt() / 3.0;

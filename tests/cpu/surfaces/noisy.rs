@@ -1,5 +1,5 @@
 //! Noisy candidates: the mean of many frames has the variance that its weights predict, and no bias; noise does not
-//! pass for a change, nor a change for noise.
+//! count as a change, nor a change as noise.
 
 use super::rig::{Draws, SIZE, View, context_of, settings, sharp, step};
 use crate::pass::sparse_noise::{self, moments, promised};
@@ -69,7 +69,7 @@ fn rare_bright_samples_are_neither_lost_nor_doubled() {
     let mean: f64 = sum / frames;
     let error = ((squares / frames - mean * mean) / (frames - 1.0)).sqrt();
     println!("shown {mean:.4}, truth {truth:.4}, standard error {error:.4}");
-    // Where the gate rejects history by chance, there is no bias: the candidate has the same mean.
+    // History that the gate rejects by chance causes no bias: the candidate has the same mean.
     assert!((mean - truth).abs() < 5.0 * error + 0.01 * truth, "{mean} for {truth}");
 }
 

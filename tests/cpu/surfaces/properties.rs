@@ -94,7 +94,7 @@ fn s2_without_a_valid_history_the_candidate_and_its_level_are_shown_and_stored()
                 // A NaN vector is unlike its neighbours'.
                 let nowhere = input.motion.as_ref().is_some_and(|m| m.pixels()[0][0].is_nan());
                 let expected = match method {
-                    // Its confidence: that of one sample.
+                    // It has the confidence of one sample.
                     MethodKind::Taa | MethodKind::Taau => 6.0,
                     _ if nowhere => MAX_LOD,
                     _ => stored_lod(lod),
@@ -133,7 +133,8 @@ fn a_vector_unlike_its_neighbours_leads_nowhere_and_is_not_kept() {
     }
 }
 
-/// A few frames with all colors times `ratio` from frame `from` on; `is_declared`: the frame's exposure says so.
+/// A few frames with all colors times `ratio` from frame `from` on; `is_declared`: whether the frame's exposure states
+/// this ratio.
 fn exposed(method: MethodKind, ratio: f32, from: u64, is_declared: bool) -> Vec<Made> {
     let mut post = context(method);
     let mut frame = |index: u64| {

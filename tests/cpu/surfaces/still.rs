@@ -6,8 +6,8 @@ use afterimage::{Method, Smr};
 #[test]
 fn s3_the_chain_is_read_where_and_as_coarse_as_the_candidate_is() {
     // Smooth pictures have almost no contrast, which adds tolerance, so history fits only if the same low-pass is
-    // compared: a slope of 1.5 % a pixel is distinguished from its shifted copy.
-    // Nor may it pass for a change of light.
+    // compared: a slope of 1.5 % a pixel is distinguished from its shifted copy. The shift must not count as a change
+    // of light either.
     let method = Method::Smr(Smr { relight: false, ..Smr::default() });
     let mut post = context_of(SIZE, Settings { method, ..settings(MethodKind::Smr) });
     let slope = Image::from_fn(SIZE, |[x, _]| [0.02 + 0.015 * x as f32; 3]);
@@ -55,8 +55,8 @@ fn s9_frames_that_repeat_change_nothing_where_history_is_shown_wholly() {
 
 #[test]
 fn s9_a_coarse_candidate_that_repeats_settles_next_to_itself() {
-    // Nothing finer is known: history of the same level is accumulated. It is compared after another low-pass, which
-    // coarse history does not need, so that some of it is taken for a change of light; and what is stored is rounded,
+    // History is not finer than the candidate, so it is accumulated. It is compared after another low-pass, which
+    // coarse history does not need, so that a part of the difference counts as a change of light. Storage rounds colors
     // by up to 2^-10.
     let mut post = context(MethodKind::Smr);
     let coarse = LowPass::new(&noise(SIZE, "s9 coarse"), 4).render(&Image::filled(SIZE, 2.0));
@@ -78,8 +78,8 @@ fn s9_a_coarse_candidate_that_repeats_settles_next_to_itself() {
     };
     println!("off by {:.5} of the color after a frame, {:.5} after 29", off(&frames[1]), off(&frames[29]));
     println!("mean: {:.5} after 29", mean(&frames[29]));
-    // Measured: 0.0023 and 0.0153 in one pixel that is taken for relit, 0.00031 in the mean, and nothing changes from
-    // the 10th frame on.
+    // Measured: 0.0023 and 0.0153 in one pixel that counts as relit, 0.00031 in the mean, and nothing changes from the
+    // 10th frame on.
     assert!(off(&frames[29]) < 0.02);
     assert!(mean(&frames[29]) < 0.0004);
     assert!(frames[10..].iter().all(|made| made.words == frames[10].words));
@@ -103,7 +103,7 @@ fn accumulation_shows_nine_tenths_of_equally_coarse_history() {
 
 #[test]
 fn h53_half_a_pixel_is_read_between_texels() {
-    // Waves of twelve pixels, half a pixel further each frame: what is shown is the wave where it should be, sharp.
+    // Waves of twelve pixels, half a pixel further each frame: the output is the sharp wave at its true position.
     let wave = |x: f64| 0.5 + 0.3 * (std::f64::consts::TAU * x / 12.0).sin();
     let picture = |shift: f64| Image::from_fn(SIZE, |[x, _]| [wave(f64::from(x) + shift) as f32; 3]);
     for sign in [1.0, -1.0] {

@@ -1,4 +1,4 @@
-//! Sparse frames: filled for the methods that read whole ones, and read as they are by taau.
+//! Sparse frames: filled for the methods that read whole frames, and read without filling by taau.
 
 use super::rig::{Rig, View, make_texture, noise, noise_view};
 use afterimage::gpu::{Afterimage, Frame, Region, Textures};

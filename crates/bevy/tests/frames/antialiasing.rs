@@ -55,9 +55,9 @@ fn a_still_view_becomes_that_of_many_samples_a_pixel() {
     let [without, with] = [false, true].map(|antialias| sparse(antialias, right));
     let wrong = sparse(true, Planted { jitter: true, ..right });
     println!(
-        "one sample a pixel {one:.2} dB, sparse {without:.2} dB, antialiased {with:.2} dB, told the opposite jitter \
+        "one sample a pixel {one:.2} dB, sparse {without:.2} dB, antialiased {with:.2} dB, with the opposite jitter \
          {wrong:.2} dB"
     );
     assert!(with > one + 3.0, "one sample a pixel {one:.2} dB, antialiased {with:.2} dB");
-    assert!(with > wrong + 1.0, "{with:.2} dB, told the opposite jitter {wrong:.2} dB");
+    assert!(with > wrong + 1.0, "{with:.2} dB, with the opposite jitter {wrong:.2} dB");
 }

@@ -47,9 +47,10 @@ pub struct FoveatedFrame {
     /// Level of detail: log2 of the sample spacing in pixels.
     pub lod: Image<f32>,
     /// Noise of the color at its level of detail: standard error of its luma (linear), and number of samples averaged.
-    /// `None`: the methods get no such input.
+    /// `None`: the methods get no noise input.
     pub noise: Option<Image<[f32; 2]>>,
-    /// Where the samples lie, if the frame is not reconstructed between them. Only samples then have a color.
+    /// Where the samples lie, if the frame is not reconstructed between them. In such a frame only samples have a
+    /// color.
     pub lattices: Option<Lattices>,
     /// Number of samples in each ring.
     pub samples: Vec<u64>,

@@ -27,13 +27,13 @@ pub struct RenderedFrame {
     /// Jitter of the content's projection in pixels, as in
     /// [`FrameRequest::jitter_px`](crate::source::FrameRequest::jitter_px); 0 without jitter.
     pub jitter_px: [f32; 2],
-    /// Where depth and motion are defined. If only at the samples of content on a device, the methods get them in place
-    /// of the reference's.
+    /// Where depth and motion are defined. Content on a device may define them at its samples only. The methods then
+    /// get them instead of the reference's depth and motion.
     pub geometry: SparseGeometry,
     /// Number of camera samples of the content; `None` if it is the full-rate frame.
     pub samples: Option<u64>,
     /// Time of rendering the content until it was complete on its device: posing the scene, recording and drawing or
-    /// tracing, without reading back. `None` if the source renders nothing.
+    /// tracing, without reading back. `None` if the source does not render.
     pub render: Option<Elapsed>,
     /// Time of rendering the full-rate frame with as many samples a pixel, if it was rendered.
     pub full_rate: Option<Elapsed>,
@@ -92,7 +92,7 @@ impl Content {
 }
 
 impl RenderedFrame {
-    /// Whether a simulator foveates the frame, which has every pixel at full rate.
+    /// Whether every pixel of the frame is at full rate, so that a simulator foveates it.
     pub fn is_simulated(&self) -> bool {
         matches!(self.content, Content::FullRate | Content::Jittered(_))
     }

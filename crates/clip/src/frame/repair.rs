@@ -23,20 +23,21 @@ impl Wish {
     }
 }
 
-/// The pixels of a [`Wish`], in an image of the frame's size. Others are not defined.
+/// The pixels of a [`Wish`], in an image of the frame's size. Other pixels are not defined.
 #[derive(Clone, Debug)]
 pub struct Shaded {
     /// Linear color.
     pub color: ShadedColor,
     /// Noise of the color, as in [`FoveatedFrame::noise`](super::FoveatedFrame::noise), with 0 samples at other pixels.
-    /// `None`: there is no noise, or the source has written it into the noise of its frame on the device.
+    /// `None`: the color has no noise, or the source has written the noise into its frame on the device.
     pub noise: Option<Image<[f32; 2]>>,
     /// Time of shading.
     pub took: Elapsed,
 }
 
 impl Shaded {
-    /// `of_frame`, the noise of the frame, with the noise of these pixels inserted; `None` if either is missing.
+    /// The noise of the frame, `of_frame`, in which the noise of these pixels replaces the frame's own; `None` if
+    /// either is missing.
     pub fn noise_in(&self, of_frame: Option<&Image<[f32; 2]>>) -> Option<Image<[f32; 2]>> {
         let mut noise = of_frame?.clone();
         for (noise, &own) in noise.pixels_mut().iter_mut().zip(self.noise.as_ref()?.pixels()) {

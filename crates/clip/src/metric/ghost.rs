@@ -104,15 +104,15 @@ impl GhostShares {
         self.sums.iter().enumerate().filter(|(_, s)| s.1 > 0.0).map(|(age, s)| (age, s.0 / s.1))
     }
 
-    /// Ghost energy in frames: sum of the squared shares over all ages. Output that keeps the old color for n frames
-    /// has n. `None` if nothing changed.
+    /// Ghost energy in frames: sum of the squared shares over all ages. An output that keeps the old color for n frames
+    /// has an energy of n. `None` if nothing changed.
     pub fn energy(&self) -> Option<f64> {
         self.shares().next()?;
         Some(self.shares().map(|(_, share)| share.max(0.0).powi(2)).sum())
     }
 
-    /// Number of frames until the share falls to half of its value in the first frame; `None` if it does not, or if
-    /// there is no ghosting in the first frame.
+    /// Number of frames until the share falls to half of its value in the first frame; `None` if it does not, or if the
+    /// first frame has no ghosting.
     pub fn half_frames(&self) -> Option<u32> {
         let first = self.shares().next().filter(|&(age, share)| age == 0 && share > 0.0)?.1;
         self.shares().find(|&(_, share)| share <= 0.5 * first).map(|(age, _)| age as u32)

@@ -109,7 +109,7 @@ impl Histogram {
         }
     }
 
-    /// Quantile: upper end of the bin that contains it; 0 for the first bin. `None` if there are no values.
+    /// Quantile: upper end of the bin that contains it; 0 for the first bin. `None` without values.
     pub fn quantile(&self, share: f64) -> Option<f64> {
         let all: u64 = self.counts.iter().sum();
         let rank = ((share * all as f64).ceil() as u64).clamp(1, all.max(1));
@@ -118,7 +118,7 @@ impl Histogram {
             passed += count;
             passed >= rank
         })?;
-        // Equal images have a difference of 0, not of a bin width.
+        // The first bin counts as 0, so that equal images have a difference of 0 and not of a bin width.
         Some(if bin == 0 { 0.0 } else { (bin + 1) as f64 * f64::from(Self::BIN) })
     }
 }

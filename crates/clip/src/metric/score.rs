@@ -67,7 +67,7 @@ pub struct BandScores {
     pub ssim: Option<f64>,
     /// Mean FLIP error, 0 to 1; `None` if the references have no FLIP.
     pub flip: Option<f64>,
-    /// Just-objectionable differences: 10 for none. `None` if the references have no JOD.
+    /// Just-objectionable differences: 10 means no difference. `None` if the references have no JOD.
     #[serde(default)]
     pub jod: Option<f64>,
 }
@@ -128,7 +128,7 @@ pub struct FrameErrors {
     pub mse: f64,
     /// MSE by eccentricity, from the gaze outwards; `None` for a band without pixels.
     pub band_mse: [Option<f64>; 3],
-    /// MSE over retained pixels; `None` if there are none.
+    /// MSE over retained pixels; `None` without retained pixels.
     pub retained_mse: Option<f64>,
     /// JOD of the frame; `None` if the reference has none.
     pub jod: Option<f64>,
@@ -190,7 +190,7 @@ impl Scorer {
         }
     }
 
-    /// Where the last frame differs visibly, in JOD; `None` if the references have no JOD.
+    /// Map of the visible differences of the last frame, in JOD; `None` if the references have no JOD.
     pub fn visible_jod(&self) -> Option<Image<f32>> {
         self.video.heat_map()
     }

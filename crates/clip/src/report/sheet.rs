@@ -60,7 +60,7 @@ impl Sheet<'_> {
     /// Draws the contact sheet.
     ///
     /// # Panics
-    /// If there is no column.
+    /// If the sheet has no column.
     pub fn draw(&self) -> RgbImage {
         let reference = self.columns[0].shown;
         let panel = panel_size(reference.size());

@@ -91,8 +91,8 @@ impl FrameGaze {
         self.held(index).map(|(_, px)| px)
     }
 
-    /// Gaze that is known in frame `index` of a tracker whose samples arrive `latency_s` seconds late. Before the first
-    /// valid sample arrives, it is that sample, as if the eye had rested there.
+    /// Last known gaze in frame `index`, from a tracker whose samples arrive `latency_s` seconds late. Until the first
+    /// valid sample arrives, it is the position of that sample, as if the eye had rested there.
     pub fn late_px(&self, index: u64, latency_s: f64) -> Option<[f32; 2]> {
         self.held_at(self.time_s(index) - latency_s).or(self.valid.first().copied()).map(|(_, px)| px)
     }

@@ -1,4 +1,4 @@
-//! The path of a head as that of a camera.
+//! Camera path that follows the poses of a head.
 
 use super::{HeadPose, Scanpath};
 use crate::error::InputError;
@@ -40,7 +40,7 @@ impl HeadPath {
     }
 
     /// Pose at a time in seconds after the start: between the two samples around it, straight and at a constant speed.
-    /// Before the first and after the last sample, it is that sample's pose.
+    /// Before the first sample it is the first pose, and after the last sample the last pose.
     pub fn pose(&self, time_s: f64) -> HeadPose {
         let (samples, poses) = (self.path.samples(), self.path.poses().expect("checked when made"));
         let now_s = samples[0].t_s + self.start_s + time_s;

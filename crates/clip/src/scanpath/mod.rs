@@ -1,9 +1,9 @@
 //! Scanpaths: recorded and synthetic gaze over time, and its resampling to frames.
 //!
-//! A [`Scanpath`] comes from a CSV file ([`read_csv`]), from a model of the eye before a screen ([`generate`]) or from
-//! one of eye and head ([`generate_head`]); [`FrameGaze`] resamples it to one gaze point per frame. Lost gaze is `None`
-//! in samples, and is never filled in by interpolation. A scanpath of a headset has a [`HeadPose`] for each sample,
-//! from which [`HeadPath`] makes a camera path.
+//! A [`Scanpath`] comes from a CSV file ([`read_csv`]), from a model of an eye that looks at a screen ([`generate`]),
+//! or from a model of eye and head ([`generate_head`]); [`FrameGaze`] resamples it to one gaze point per frame. Lost
+//! gaze is `None` in samples, and is never filled in by interpolation. A scanpath of a headset has a [`HeadPose`] for
+//! each sample, from which [`HeadPath`] makes a camera path.
 
 mod frames;
 mod head;
@@ -119,18 +119,18 @@ pub struct Scanpath {
     screen: Screen,
     about: About,
     samples: Vec<Sample>,
-    /// One for each sample, or none at all.
+    /// One pose for each sample; empty without poses.
     poses: Vec<HeadPose>,
 }
 
 impl Scanpath {
-    /// A scanpath from its parts. Samples whose coordinates are not finite become lost; nothing else is altered. `name`
-    /// is the name in errors, usually the file's path.
+    /// A scanpath from its parts. Samples whose coordinates are not finite become lost. All other data stay unchanged.
+    /// `name` is the name in errors, usually the file's path.
     ///
     /// # Errors
     /// [`Invalid`](InputError::Invalid) if the screen has no pixels or a size that is not positive, the rate is not a
     /// positive number, a note is not one line of `key: value` or uses a reserved key, times are not finite and
-    /// increasing, there is no sample, or none is valid.
+    /// increasing, or no sample is valid.
     pub fn new(
         name: impl Into<String>,
         screen: Screen,
@@ -230,7 +230,8 @@ impl Scanpath {
     }
 }
 
-/// Normalises metadata to the form in which it is read from a file, so that writing and reading is the identity.
+/// Normalises metadata to the form in which it is read from a file, so that a scanpath that is written and read again
+/// is unchanged.
 fn normalize(about: &mut About) -> Result<(), (String, &'static str)> {
     const ONE_LINE: &str = "a header line is `# key: value` on one line, each key once";
     about.task = about.task.take().map(|t| t.trim().to_owned()).filter(|t| !t.is_empty() && t != UNKNOWN);

@@ -62,7 +62,7 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<Scanpath, InputError> {
     if meta.len() > MAX_FILE_BYTES {
         return Err(too_large(Some(meta.len())));
     }
-    // Devices and pipes report no length: bound the read as well.
+    // Devices and pipes report no length, so the read is bounded, too.
     let mut bytes = Vec::new();
     file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
@@ -83,8 +83,8 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<Scanpath, InputError> {
 ///
 /// # Errors
 /// [`Invalid`](InputError::Invalid). With the line number: bytes that are not UTF-8, a header line or row that cannot
-/// be parsed, a row without exactly the columns named, times that do not increase, an invalid pose. Without: no column
-/// names, and the errors of [`Scanpath::new`].
+/// be parsed, a row without exactly the columns named, times that do not increase, an invalid pose. Without a line
+/// number: missing column names, and the errors of [`Scanpath::new`].
 pub fn parse_csv(name: &str, bytes: &[u8]) -> Result<Scanpath, InputError> {
     let text = utf8(name, bytes)?;
     let mut header = Header::default();

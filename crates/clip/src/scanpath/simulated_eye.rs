@@ -90,7 +90,7 @@ impl<T: Iterator<Item = f64>> SimulatedEye<T> {
         self.note_rest(EventKind::Fixation, start_s, start);
     }
 
-    /// Simulates a saccade to a new target, and a landing and corrective if it falls too short.
+    /// Simulates a saccade to a new target. If the saccade falls too short, a landing and a corrective follow.
     pub(super) fn look_elsewhere(&mut self) {
         let (towards, intended_deg) = self.choose_target();
         let target = turn(self.gaze, towards, intended_deg);

@@ -89,7 +89,7 @@ impl SyntheticOptions {
 /// A generated scanpath and its ground truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Synthetic {
-    /// Samples; none is lost.
+    /// Samples. No sample is lost.
     pub path: Scanpath,
     /// Events by begin. All but microsaccades are contiguous, from 0 s to past the last sample.
     pub events: Vec<Event>,

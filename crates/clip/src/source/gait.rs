@@ -1,4 +1,4 @@
-//! Head of a walking person, as an offset from a pose that stands still.
+//! Head of a walking person, as an offset from a pose at rest.
 
 use std::f64::consts::TAU;
 
@@ -10,7 +10,7 @@ const LEG_S: f64 = 3.0;
 const YAW: Swing = Swing { most: 45.0 / (0.5 * TAU), hz: 0.5 };
 const NOD: Swing = Swing { most: 4.5, hz: 2.0 };
 const ROLL: Swing = Swing { most: 5.0, hz: 1.0 };
-/// It rises with every step and sways with every second one; metres.
+/// Amplitudes in metres: the head rises with every step and sways with every second one.
 const BOB: Swing = Swing { most: 0.03, hz: 2.0 };
 const SWAY: Swing = Swing { most: 0.02, hz: 1.0 };
 

@@ -64,7 +64,8 @@ pub trait FrameSource {
     }
 
     /// Shades pixels of `frame`, which was rendered last, at full rate and with one sample each. `None`: the source
-    /// cannot. Sources whose frames a simulator foveates do not need this, because their frames contain these pixels.
+    /// cannot shade single pixels. Sources whose frames a simulator foveates do not need this, because their frames
+    /// contain these pixels.
     ///
     /// # Errors
     /// As for `render`.

@@ -9,7 +9,7 @@ struct Shear {
     z: vec3<f32>,
 }
 
-// t is 0 if there is no intersection.
+// t is 0 without an intersection.
 struct Intersection {
     t: f32,
     u: f32,

@@ -29,7 +29,7 @@ struct Composition {
 
 @group(0) @binding(0) var<storage, read> composition: Composition;
 @group(0) @binding(1) var color_in: texture_2d_array<f32>;
-// Near plane over distance; 0 where there is nothing.
+// Near plane over distance; 0 for pixels without a surface.
 @group(0) @binding(2) var depth_in: texture_2d_array<f32>;
 @group(0) @binding(3) var motion_in: texture_2d_array<f32>;
 @group(0) @binding(4) var color_out: texture_storage_2d_array<rgba32float, write>;

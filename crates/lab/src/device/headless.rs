@@ -27,8 +27,8 @@ impl Headless {
         pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY))
     }
 
-    /// The first hardware GPU; with `software`, a software adapter if there is none. `None` if no such adapter creates
-    /// a device with default limits.
+    /// The first hardware GPU; with `software`, a software adapter if the machine has no GPU. `None` if no such adapter
+    /// creates a device with default limits.
     pub fn find(software: bool) -> Option<Arc<Self>> {
         Self::find_with(software, |_| wgpu::Limits::default())
     }

@@ -26,7 +26,7 @@ pub enum Backend {
 }
 
 impl Backend {
-    /// The device, if it is one.
+    /// The device; `None` for the CPU.
     pub fn device(&self) -> Option<&Arc<Headless>> {
         match self {
             Self::Cpu => None,

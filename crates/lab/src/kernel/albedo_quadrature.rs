@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 
 /// Quadrature points along the cosine and over half a turn of azimuth; the other half is its mirror image.
 const POINTS: [usize; 2] = [24, 12];
-/// Quadrature points for refraction. More than for reflection, as total internal reflection has an edge.
+/// Quadrature points for refraction. There are more than for reflection, because total internal reflection has an edge.
 const GLASS_POINTS: [usize; 2] = [32, 16];
 /// Quadrature points for anisotropic GGX. Its table holds small differences, so fewer suffice.
 const ANISOTROPIC_POINTS: [usize; 2] = [16, 10];

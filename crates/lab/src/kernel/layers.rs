@@ -13,8 +13,8 @@ use std::f32::consts::FRAC_1_PI;
 /// Index of refraction of the clear coat (glTF KHR_materials_clearcoat).
 const COAT_IOR: f32 = 1.5;
 
-/// Smallest index of refraction that bends rays. Volumes with a smaller one are treated as thin sheets, as the
-/// refraction half vector degenerates towards 1.
+/// Smallest index of refraction that bends rays. Volumes with a smaller index are treated as thin sheets, because the
+/// refraction half vector degenerates as the index approaches 1.
 pub const MIN_REFRACTING_IOR: f32 = 1.03;
 
 /// Largest index of refraction used for bending rays.

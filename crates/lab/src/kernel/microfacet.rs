@@ -101,8 +101,8 @@ pub fn reflectance_at_normal(ior: f32) -> f32 {
     r * r
 }
 
-/// Fresnel reflectance of unpolarized light at `cosine` >= 0. `eta` is the index of refraction behind the boundary over
-/// that in front. 1 under total internal reflection.
+/// Fresnel reflectance of unpolarized light at `cosine` >= 0. `eta` is the ratio of the indices of refraction behind
+/// and in front of the boundary. 1 under total internal reflection.
 #[inline]
 pub fn fresnel_dielectric(cosine: f32, eta: f32) -> f32 {
     let c = cosine.clamp(0.0, 1.0);
@@ -116,7 +116,7 @@ pub fn fresnel_dielectric(cosine: f32, eta: f32) -> f32 {
     0.5 * (s * s + p * p)
 }
 
-/// Squared cosine of the refracted ray, from that of the incident ray (Snell). Not positive under total internal
+/// Squared cosine of the refracted ray, from the cosine of the incident ray (Snell). Not positive under total internal
 /// reflection.
 #[inline]
 pub fn refraction_discriminant(cosine: f32, eta: f32) -> f32 {

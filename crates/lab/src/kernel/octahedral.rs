@@ -9,7 +9,7 @@ pub const DIRECTION_STEPS: f32 = 32767.0;
 /// Folds the octahedron's lower half outwards; its own inverse.
 #[inline]
 fn folded(x: f32, y: f32) -> f32 {
-    // Not the negated difference, whose 0 would be negative: devices differ there.
+    // This is not written as the negated difference, because its zero would be negative, and devices differ there.
     if x < 0.0 { y.abs() - 1.0 } else { 1.0 - y.abs() }
 }
 

@@ -12,14 +12,13 @@ use glam::{Vec3, Vec3A};
 
 /// Offset of a secondary ray's origin from its surface, as a share of the largest vertex coordinate. A hit point from
 /// barycentrics is off by at most 7 * 2^-24 of that coordinate (Pharr, Jakob and Humphreys, "Physically Based
-/// Rendering", 4th edition, 6.8.5), and the test's distance by as much; this is 32 times 2^-23.
+/// Rendering", 4th edition, 6.8.5), and the test's distance by as much. The constant is 32 times 2^-23.
 pub const ORIGIN_OFFSET: f32 = 1.0 / 262_144.0;
 
 /// Triangles whose edge functions sum to less than this count as having no area: the products have become denormal.
 pub const MIN_DET: f32 = 1e-36;
 
-/// Upper bound for the lower corner of a sheared triangle's bounds. Across the ray it is 0; along the ray there is
-/// none.
+/// Upper bound for the lower corner of a sheared triangle's bounds. It is 0 across the ray, and unbounded along it.
 const ACROSS: Vec3A = Vec3A::new(0.0, 0.0, f32::MAX);
 
 /// Columns of the matrix that shears a ray's direction to (0, 0, 1).
@@ -36,7 +35,7 @@ pub struct Shear {
 /// Intersection of a ray with a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Intersection {
-    /// Distance in units of the ray direction's length; 0 if there is no intersection.
+    /// Distance in units of the ray direction's length; 0 without an intersection.
     pub t: f32,
     /// Barycentric weight of the second vertex.
     pub u: f32,

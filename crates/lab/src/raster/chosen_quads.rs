@@ -64,8 +64,8 @@ impl ChunkTest {
         }
     }
 
-    /// Records the choice of those of `calls`, whose triangles lie in boxes, that may touch a quad of `list`, seen by
-    /// `view`.
+    /// Records the choice of the draw calls that may touch a quad of `list`. `calls`: all draw calls, with boxes around
+    /// their triangles; `view`: the camera.
     pub fn record(
         &self,
         device: &Device,
@@ -86,7 +86,7 @@ impl ChunkTest {
                 Chunk { first_vertex: call.vertices.start, vertices, low, high }
             })
             .collect();
-        // An empty array has no binding.
+        // wgpu cannot bind an empty array.
         chunks.resize(chunks.len().max(1), Chunk::zeroed());
         let empty = |bytes, usage| {
             device.create_buffer(&wgpu::BufferDescriptor {

@@ -102,7 +102,7 @@ impl Composer {
         self.shader.dispatch(device, &mut pass, &[], &group, size, 1);
     }
 
-    /// Color, distance, motion and level of detail of the frame that was composed last.
+    /// Color, distance, motion and level of detail of the last composed frame.
     pub fn frame(&self) -> &[Texture; 4] {
         &self.frame
     }

@@ -8,12 +8,12 @@
 //! | target | format | contents |
 //! |---|---|---|
 //! | color | `Rgba16Float` | linear, scene-referred; alpha 1 |
-//! | depth | `Depth32Float` | reversed, infinite far: [`near`](Raster::near) / distance along the view axis, 0 where there is no surface |
+//! | depth | `Depth32Float` | reversed, infinite far: [`near`](Raster::near) / distance along the view axis, 0 without a surface |
 //! | motion | `Rg32Float` | pixels, y down, previous minus current; 1e6 for points behind the previous camera |
 //!
 //! These match [`DepthConvention::Reversed`](afterimage::DepthConvention) and the default
-//! [`MotionConvention`](afterimage::MotionConvention). Motion includes the camera's and the vertices' (rigid, skinned,
-//! morphing); the sky's is the camera's rotation.
+//! [`MotionConvention`](afterimage::MotionConvention). Motion contains the motion of the camera and of the vertices
+//! (rigid, skinned, morphing). The sky moves by the camera's rotation.
 //!
 //! [`record_foveated`](Raster::record_foveated) draws the samples of a sparse frame alone, each lattice as a small view
 //! of its own in an atlas. [`record_quad_views`](Raster::record_quad_views) draws regions as views without moving
@@ -27,7 +27,8 @@
 //! - **Light.** Punctual lights and the sun as in the tracer, up to 64; only the sun casts shadows. Emissive triangles
 //!   become one disk per material and direction, at most 32, without shadows, in their pose at time 0. The sky is not
 //!   occluded: irradiance from six faces, reflections from a mip level by roughness. In scenes without a sky, indirect
-//!   light is that of an integrating sphere with the area of the scene's bounding box and the scene's openness.
+//!   light is computed as in an integrating sphere that has the area of the scene's bounding box and the scene's
+//!   openness.
 //! - **Refraction** is not simulated: glass shows what is straight behind it, dimmed by the base color's luminance.
 
 mod bounce;
@@ -90,11 +91,11 @@ pub struct Raster {
     pipelines: Pipelines,
     /// Pipelines of lattices with one sample per pixel; none before the first foveated frame.
     point_pipelines: OnceCell<ColorPipelines>,
-    /// None before the first frame with drawing to chosen quads.
+    /// `None` before the first frame that draws to chosen quads.
     chunk_test: OnceCell<ChunkTest>,
     effects: Effects,
     materials: Vec<BindGroup>,
-    /// Bind group of the color pass. It includes the shadow map, so it is not bound while that is drawn.
+    /// Bind group of the color pass. It includes the shadow map, so it is not bound while the shadow map is drawn.
     lighting_maps: BindGroup,
     shadow: TextureView,
     lighting: Lighting,

@@ -134,7 +134,7 @@ impl Pipelines {
             make(Recipe {
                 constants: &base,
                 format: None,
-                // Depth bias away from the sun, larger on surfaces that are steep to it.
+                // Depth bias away from the sun, larger on surfaces at a grazing angle to the sun.
                 bias: DepthBiasState { constant: -2, slope_scale: -2.0, clamp: 0.0 },
                 ..Recipe::new(&sun, "shadow_vertex", fragment, COLOR_FORMAT)
             })

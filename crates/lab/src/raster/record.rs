@@ -72,7 +72,7 @@ impl Raster {
     /// lattice shows the full-rate frame's pixel `first_px + step * (i, j)`; motion is in pixels of the full-rate
     /// frame. `view` and `previous` are those of the full-rate frame.
     ///
-    /// Lattices of step 1 have `samples` a pixel; the others one, at the pixel's centre.
+    /// Lattices of step 1 have `samples` a pixel. Other lattices have one sample at the pixel's centre.
     ///
     /// # Panics
     /// If the atlas is larger than `targets`.

@@ -11,7 +11,7 @@ use wgpu::{Device, Texture, TextureFormat, TextureUsages, TextureView};
 pub struct Targets {
     /// Linear color.
     pub color: Texture,
-    /// Near plane divided by distance; 0 where there is no surface.
+    /// Near plane divided by distance; 0 for pixels without a surface.
     pub depth: Texture,
     /// Motion in pixels, y down, previous minus current.
     pub motion: Texture,
@@ -35,7 +35,7 @@ impl Targets {
         read_color(device, &self.color)
     }
 
-    /// Waits for all submitted work, then reads distance along the view axis in metres; infinity where there is no
+    /// Waits for all submitted work, then reads distance along the view axis in metres; infinity for pixels without a
     /// surface. `near` is [`Raster::near`](super::Raster::near).
     pub fn read_distance(&self, device: &Headless, near: f32) -> Image<f32> {
         read_distance(device, &self.depth, near)

@@ -126,7 +126,7 @@ impl GroupedTriangles {
     }
 }
 
-/// Triangles of a chunk. Fewer leave out more, at more draw calls and tests.
+/// Triangles of a chunk. A smaller number leaves out more triangles, but needs more draw calls and tests.
 const CHUNK: u32 = 256;
 
 /// Bounding boxes of successive triangles of a vertex buffer, for leaving out those outside a view.
@@ -146,7 +146,7 @@ impl Chunks {
         let bounds = |&(first, end): &(u32, u32)| {
             let of_chunk = &vertices[first as usize..end.min(first + 3 * CHUNK) as usize];
             let positions = of_chunk.iter().map(|v| Vec3::from(v.position).as_dvec3());
-            // A position that is not finite makes its box so: Vec3::min would ignore it.
+            // A position that is not finite makes its box non-finite, which Vec3::min alone would not do.
             let is_finite = positions.clone().all(|p| p.is_finite());
             let low = positions.clone().fold(DVec3::INFINITY, DVec3::min);
             let high = positions.fold(DVec3::NEG_INFINITY, DVec3::max);

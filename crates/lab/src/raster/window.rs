@@ -23,8 +23,7 @@ pub enum AtlasLayout {
 }
 
 impl AtlasLayout {
-    /// `lattices` in an atlas, finest first, and the atlas's size in texels. `size`: that of the full-rate frame in
-    /// pixels.
+    /// `lattices` in an atlas, finest first, and the atlas's size in texels. `size`: the full-rate frame's, in pixels.
     pub fn place(self, lattices: &Lattices, size: [u32; 2]) -> (Lattices, [u32; 2]) {
         let mut placed = lattices.as_slice().to_vec();
         let mut used = self.start(size);
@@ -85,8 +84,9 @@ pub(super) struct Window {
     /// Pixel of the full-rate frame at the viewport's corner.
     pub first_px: [f32; 2],
     pub step: f32,
-    /// Whether pixels are samples of the full-rate frame's: one sample each, with its textures' level of detail. Else
-    /// they have four samples and the level of detail of their own resolution.
+    /// Whether pixels are pixels of the full-rate frame: they have one sample each, and textures have the full-rate
+    /// frame's level of detail. Otherwise pixels have four samples, and textures the level of detail of the window's
+    /// own resolution.
     pub is_point: bool,
     /// Rectangle of the full-rate frame that is visible, pixel centres at integers.
     visible_px: [[f64; 2]; 2],

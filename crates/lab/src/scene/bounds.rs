@@ -21,7 +21,7 @@ const ELEVATION_DEG: f64 = 20.0;
 const MARGIN: f64 = 1.05;
 
 impl Triangles {
-    /// Bounding box; `None` if there are no triangles.
+    /// Bounding box; `None` without triangles.
     pub fn bounds(&self) -> Option<Bounds> {
         let first = self.positions.first()?[0];
         let start = Bounds { min: first, max: first };
@@ -30,7 +30,7 @@ impl Triangles {
 }
 
 impl Scene {
-    /// Bounding box of all triangles at time 0; `None` if there are none.
+    /// Bounding box of all triangles at time 0; `None` without triangles.
     pub fn bounds(&self) -> Option<Bounds> {
         match (self.still.bounds(), self.rest.moving.bounds()) {
             (Some(a), Some(b)) => Some(Bounds { min: a.min.min(b.min), max: a.max.max(b.max) }),

@@ -53,7 +53,7 @@ pub struct Cameras {
 }
 
 impl Cameras {
-    /// Reads `folder/cameras.json`; `None` if there is no such file.
+    /// Reads `folder/cameras.json`; `None` without such a file.
     ///
     /// # Errors
     /// [`Io`](InputError::Io) if the file cannot be read, [`Limit`](InputError::Limit) if it is too large,
@@ -125,7 +125,7 @@ impl Cameras {
     }
 
     /// Index of the pose of every frame: by the number in the frame's file name, or in order if a pose or a file has no
-    /// number. `None` if there are no matrices.
+    /// number. `None` without matrices.
     pub(crate) fn assign(&self, file_numbers: &[Option<u64>]) -> Result<Option<Vec<usize>>, InputError> {
         if self.poses.is_empty() {
             return Ok(None);

@@ -213,7 +213,7 @@ fn transformed_tangent(m: Mat3, tangent: Vec4, mirrored: bool) -> Vec4 {
     direction.extend(if mirrored { -tangent.w } else { tangent.w })
 }
 
-/// The tangent made orthogonal to the normal; an arbitrary orthogonal direction if there is no usable tangent.
+/// The tangent made orthogonal to the normal; an arbitrary orthogonal direction if the tangent is not usable.
 fn orthogonal_tangent(normal: Vec3, tangent: Vec4) -> Vec4 {
     let t = tangent.truncate();
     let flat = t - normal * normal.dot(t);

@@ -6,7 +6,7 @@ use crate::error::{Bound, Exceeded, InputError};
 /// memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SceneLimits {
-    /// Largest number of triangles, every instance of a mesh counted. Default 50 million, about 10 GB.
+    /// Largest number of triangles, counting every instance of a mesh. Default 50 million, about 10 GB.
     pub max_triangles: u64,
     /// Largest number of texels of all textures together. Default 256 million, 1 GB.
     pub max_texels: u64,

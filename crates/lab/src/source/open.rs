@@ -92,7 +92,7 @@ fn scene_error(input: &str) -> InputError {
     )
 }
 
-/// File name extension in lower case, without the dot; empty if there is none.
+/// File name extension in lower case, without the dot; empty without extension.
 pub(super) fn extension(path: &Path) -> String {
     path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
 }

@@ -90,7 +90,7 @@ impl RasterSource {
         ViewedScene::open(&choice)?.on(device)
     }
 
-    /// [`ViewedScene::new`], on a device with these settings.
+    /// As [`ViewedScene::new`], on a device with these settings.
     ///
     /// # Errors
     /// As for [`ViewedScene::new`] and [`ViewedScene::on`].
@@ -363,7 +363,7 @@ fn quad_list(device: &Device, quads: &Image<bool>) -> Buffer {
     let quads: Vec<u32> = chosen.map(|(i, _): (usize, _)| (i % width) as u32 | (((i / width) as u32) << 16)).collect();
     let count = quads.len() as u32;
     let header = [6, count, 0, 0, count.div_ceil(64), 1, 1, count];
-    // An empty array has no binding.
+    // wgpu cannot bind an empty array.
     let words: Vec<u32> = header.into_iter().chain(quads).chain([0]).collect();
     filled(device, "quads", bytemuck::cast_slice(&words), BufferUsages::STORAGE | BufferUsages::INDIRECT)
 }

@@ -64,7 +64,7 @@ enum CameraPath {
     },
     /// A recorded or generated head.
     Head {
-        /// World from the space of its poses.
+        /// Transform to the world from the space of the head's poses.
         world_from_space: DMat4,
         path: HeadPath,
     },
@@ -160,8 +160,9 @@ impl SceneCamera {
         Ok(Self { path: CameraPath::Head { world_from_space: Self::head_space(scene), path }, ..still })
     }
 
-    /// World from the space that poses of a head refer to: its origin and its direction ahead are those of the scene's
-    /// first camera, else of a person in the middle of its floor. It is level even if the camera looks up or down.
+    /// Transform to the world from the space of head poses. This space has the position and the direction of the
+    /// scene's first camera; in a scene without cameras, those of a person in the middle of the floor. It is level even
+    /// if the camera looks up or down.
     pub fn head_space(scene: &Scene) -> DMat4 {
         let first = scene.pose(0.0).cameras.into_iter().next();
         let from = first.unwrap_or_else(|| standing(scene, scene.framing_camera(1.0))).world_from_camera;
@@ -169,7 +170,7 @@ impl SceneCamera {
         DMat4::from_cols(DVec3::Y.cross(back).extend(0.0), DVec3::Y.extend(0.0), back.extend(0.0), from.w_axis)
     }
 
-    /// Poses of the head that the camera follows, if it does.
+    /// Poses of the head that the camera follows; `None` for other paths.
     pub fn head_path(&self) -> Option<&HeadPath> {
         match &self.path {
             CameraPath::Head { path, .. } => Some(path),
@@ -297,7 +298,7 @@ fn standing(scene: &Scene, camera: Camera) -> Camera {
     Camera { world_from_camera: DMat4::from_rotation_translation(turn, eye), ..camera }
 }
 
-/// Level direction in which a camera looks. A camera that looks straight up or down has no such direction: then -z.
+/// Level direction in which a camera looks. For a camera that looks straight up or down it is -z.
 fn heading(from: &DMat4) -> DVec3 {
     (-from.z_axis.truncate() * DVec3::new(1.0, 0.0, 1.0)).normalize_or(DVec3::NEG_Z)
 }

@@ -125,7 +125,7 @@ impl FrameSource for SequenceSource {
 /// Direction of playback that leads to a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Step {
-    /// There is no previous frame.
+    /// The frame is the first one.
     First,
     /// The previous frame is the file before.
     Forward,
@@ -188,7 +188,7 @@ fn check_gaps(subject: &str, numbers: &[Option<u64>]) -> Result<(), InputError> 
     };
     let steps: Vec<u64> = numbers.windows(2).map(|w| w[1] - w[0]).collect();
     let smallest = steps.iter().copied().min().unwrap_or(0);
-    // Repeated numbers mean that they do not count frames.
+    // If numbers repeat, they are not frame numbers.
     match steps.iter().position(|&s| s != smallest) {
         Some(at) if smallest > 0 => Err(InputError::invalid(
             subject,

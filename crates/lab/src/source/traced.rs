@@ -227,7 +227,7 @@ impl FrameSource for TracedSource {
         self.of.info()
     }
 
-    /// Frames of its own sampling pattern, if there is one; else the full-rate frame.
+    /// Renders a frame by the source's own sampling pattern. A source without a pattern renders the full-rate frame.
     fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
         let &FrameRequest { index, gaze_px, .. } = request;
         let Some(sampling) = self.samples.foveated else {
@@ -266,7 +266,7 @@ impl FrameSource for TracedSource {
     /// Each pixel has as many samples as a point of its lattice, and independent paths. If the frame's samples are on
     /// the device, these stay there, and their noise is written into the frame's.
     fn shade(&mut self, frame: &RenderedFrame, wish: &Wish) -> Result<Option<Shaded>, InputError> {
-        // The scene is posed: the frame was rendered last.
+        // The scene still has the pose of the frame, because that frame was rendered last.
         let ([view, _], _) = self.of.views(frame.index);
         let seed_frame = SHADED_FRAMES + frame.index;
         let held = match (&self.tracer, OnDevice::of(&frame.content)) {

@@ -123,7 +123,7 @@ impl Bvh {
         self.dropped
     }
 
-    /// Stack entries that the deepest traversal needs, of the 32 there are.
+    /// Number of the 32 stack entries that the deepest traversal uses.
     pub fn stack_needed(&self) -> usize {
         stack_needed(&self.nodes)
     }
@@ -152,8 +152,8 @@ impl Bvh {
         PreparedRay::new(ray).is_some_and(|p| self.traverse::<true>(&p, 0, &mut hit, &mut accept))
     }
 
-    /// Replaces `hit` by the nearest hit if that is nearer, and returns whether it did. With `ANY`, stops at the first
-    /// hit. Triangle indices start at `first`.
+    /// Replaces `hit` by the nearest hit of the ray if that is nearer than `hit`, and returns whether it replaced it.
+    /// With `ANY`, stops at the first hit. Triangle indices start at `first`.
     #[inline]
     pub(super) fn traverse<const ANY: bool>(
         &self,
@@ -228,8 +228,8 @@ fn bounds(corners: &[Vec3; 3]) -> Aabb {
 }
 
 /// Wide nodes, and box indices in leaf order. Falls back to halving by count if traversal of the SAH tree would
-/// overflow the stack: halving has at most 32 levels, of which the last has no inner nodes, so it always fits. No known
-/// scene needs the fallback.
+/// overflow the stack: halving has at most 32 levels, and the last level has no inner nodes, so its traversal always
+/// fits. No known scene needs the fallback.
 fn hierarchy(boxes: &[Aabb]) -> (Vec<CwBvhNode>, Vec<u32>) {
     for halve in [false, true] {
         let binary = bvh2::build(boxes, halve);

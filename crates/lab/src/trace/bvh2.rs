@@ -35,12 +35,12 @@ pub(super) fn build(boxes: &[Aabb], halve: bool) -> Bvh2 {
 }
 
 /// A node to be built, and the parts of the tree's arrays for its subtree. Splits by the heuristic end at [`MAX_DEPTH`]
-/// and halving takes at most 32 levels more, so that recursion is shallow.
+/// and halving takes at most 32 levels more, so recursion is shallow.
 struct Subtree<'a> {
     root: &'a mut Bvh2Node,
     /// The other nodes: the two children, then the descendants of the left one, then those of the right one.
     descendants: &'a mut [Bvh2Node],
-    /// Index of the first of them in the tree.
+    /// Index of the first of these other nodes in the tree.
     first: usize,
     boxes: &'a mut [Aabb],
     indices: &'a mut [u32],

@@ -1,8 +1,8 @@
 //! Rendering effects that a scene needs; kernels are compiled with only those.
 //!
-//! An effect that is left out costs nothing, as its code is not compiled. Leaving it out is safe because a kernel with
-//! more effects than the scene needs gives the same image, bit for bit: unused parameters are exact zeros and ones, and
-//! every random number belongs to a purpose, not to a place in a sequence.
+//! An effect that is left out costs nothing, because its code is not compiled. It is safe to leave it out, because a
+//! kernel with more effects than the scene needs gives the same image, bit for bit: unused parameters are exact zeros
+//! and ones, and every random number belongs to a purpose, not to a place in a sequence.
 
 use crate::scene::{Alpha, Environment, Material, PunctualLight, Scene};
 

@@ -84,7 +84,7 @@ impl Film {
         first[1] * size[0] + first[0]
     }
 
-    /// Mean radiance; black where there are no samples.
+    /// Mean radiance; black for pixels without samples.
     pub fn color(&self) -> Image<[f32; 3]> {
         self.moments.map(|m| m.mean.to_array())
     }
@@ -94,8 +94,8 @@ impl Film {
         self.moments.map(|m| m.variance_of_mean().to_array())
     }
 
-    /// Noise of a pixel's mean: standard error of its luma, and number of samples (0 where there are none). For a
-    /// single sample the error is the spread of the 3x3 neighbourhood, which also counts detail as noise.
+    /// Noise of a pixel's mean: standard error of its luma, and number of samples. For a single sample the error is the
+    /// spread of the 3x3 neighbourhood, which also counts detail as noise.
     pub fn noise_at(&self, pixel: [u32; 2]) -> [f32; 2] {
         let own = self.at(pixel);
         let error = match own.count {
@@ -117,7 +117,7 @@ impl Film {
     fn spread(&self, [x, y]: [u32; 2]) -> f32 {
         let mut lumas = Moments::default();
         for (dx, dy) in (0..9).map(|i| (i % 3, i / 3)) {
-            // Coordinates left of or above the image wrap to pixels that no film holds.
+            // Coordinates left of or above the image wrap to pixels outside every film.
             let near = self.at([x.wrapping_add(dx).wrapping_sub(1), y.wrapping_add(dy).wrapping_sub(1)]);
             if near.count > 0 {
                 lumas.add(Vec3::splat(luma(near.mean)));

@@ -11,8 +11,8 @@ use obvhs::cwbvh::node::CwBvhNode;
 
 /// Widening of boxes, as a share of the distance from the ray's origin to the node's far side. Rounding with u = 2^-24:
 /// 4 u from the planes and their distances, 2 u from quantization, 7 u from the triangle test, whose shear moves a
-/// vertex across the ray. These are 13 u. With Vulkan's largest error of division (2.5 ulp) it is twice as much: 26 u.
-/// This is 32 u.
+/// vertex across the ray. The sum is 13 u. Vulkan's largest error of division (2.5 ulp) doubles it to 26 u. The
+/// constant is 32 u.
 const SLACK: f32 = 1.0 / 524_288.0;
 
 /// Smallest magnitude of a direction component; smaller ones are raised to it, so that reciprocals and their products

@@ -256,7 +256,7 @@ impl SceneBuffer {
         self.rewrite(Section::MovingPrevious, moving.previous())
     }
 
-    /// Rows from the first moving section to the end; empty if there is none.
+    /// Rows from the first moving section to the end; empty without moving sections.
     pub fn moving_rows(&self) -> std::ops::Range<u32> {
         let first = self.places.iter().find(|p| p.section.is_moving());
         first.map_or(self.rows(), |p| p.base >> self.width_log2)..self.rows()

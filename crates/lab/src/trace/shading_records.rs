@@ -7,7 +7,7 @@ use crate::kernel::texel;
 use crate::scene::{Alpha, Material, PunctualKind, PunctualLight, Texture, TextureRef, Wrap};
 use bytemuck::{Pod, Zeroable};
 
-/// Index that stands for no texture.
+/// Texture index of a material that has no such texture.
 pub const NO_TEXTURE: u32 = u32::MAX;
 
 /// Alpha mode MASK: the surface is absent where opacity is below the cutoff.
@@ -80,7 +80,7 @@ impl MaterialRecord {
         let (phong_specular, phong_exponent) =
             m.phong.map_or((derived, 2.0 / (alpha * alpha) - 2.0), |p| (p.specular, p.exponent));
         let diffuse_share = 1.0 - m.metallic;
-        // A surface that transmits nothing has no interior to absorb.
+        // A surface that does not transmit light has no interior that absorbs it.
         let absorption = if m.volume && m.transmission > 0.0 { m.absorption } else { [0.0; 3] };
         Self {
             base_color: m.base_color,

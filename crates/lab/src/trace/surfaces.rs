@@ -53,7 +53,8 @@ impl Surfaces {
     }
 }
 
-/// Distance in metres from a point to the first surface in a direction, a unit vector; `None` if there is none.
+/// Distance in metres from a point to the first surface in a direction, a unit vector; `None` if the ray hits no
+/// surface.
 pub fn distance_m(world: &World, from: DVec3, direction: DVec3) -> Option<f64> {
     let seen = first_surface(world, from.as_vec3(), unit(direction.as_vec3()), world.needs)?;
     Some(seen.current.distance(from))

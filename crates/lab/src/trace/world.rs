@@ -25,13 +25,13 @@ pub struct World {
     pub textures: Vec<TextureRecord>,
     /// Texels of all textures, four bytes each, red lowest. Every texture begins at a multiple of four texels.
     pub texels: Vec<u32>,
-    /// Alias table over all lights; empty if there are none.
+    /// Alias table over all lights; empty without lights.
     pub picks: Vec<PickRecord>,
     /// Punctual lights.
     pub punctual: Vec<PunctualRecord>,
     /// Radiance of a constant environment; black if there is an environment map.
     pub sky: Vec3,
-    /// Width and height of the environment map in texels; 0 if there is none.
+    /// Width and height of the environment map in texels; 0 without a map.
     pub map_size: [u32; 2],
     /// Texels of the environment map, row by row.
     pub map: Vec<MapRecord>,
@@ -41,8 +41,8 @@ pub struct World {
     pub tables: AlbedoTables,
     /// Effects that the scene needs.
     pub needs: Effects,
-    /// Capacity: largest number of moving triangles and of lights at any time. Triangles count even while they have no
-    /// area.
+    /// Capacity: largest number of moving triangles and of lights at any time. Triangles without area at a time count,
+    /// too.
     pub(super) max_moving: usize,
     pub(super) max_lights: usize,
     /// Luminance that each material emits, summed over both sides if it is double-sided.
@@ -214,8 +214,8 @@ fn mean_radiance(map: &Image<[f32; 3]>) -> f64 {
     rows.sum()
 }
 
-/// Environment texels with probabilities proportional to radiance times solid angle. Neighbours contribute, as bilinear
-/// filtering reaches into them.
+/// Environment texels with probabilities proportional to radiance times solid angle. The neighbours of a texel add to
+/// its probability, because bilinear filtering reads them.
 fn map_records(map: &Image<[f32; 3]>) -> Vec<MapRecord> {
     let [w, h] = [map.width(), map.height()];
     let at = |x: usize, y: usize| f64::from(luma(Vec3::from(map.at(x % w, y.min(h - 1)))));

@@ -1,4 +1,4 @@
-//! Analytic scenes, foveated and put together again: what is won, and that nothing is lost.
+//! Analytic scenes, foveated and reconstructed: the gain, and that no detail is lost.
 
 use crate::depth_hard::{Color, Steps};
 use crate::images::View;

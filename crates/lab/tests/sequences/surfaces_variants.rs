@@ -58,7 +58,7 @@ fn told_levels_of_detail_agree_bit_for_bit() {
         let desc = ContextDesc::new(SIZE);
         agree("occluder", desc, settings, |index, v, _| View { lod: Some(lod_of(index, SIZE)), ..v });
     }
-    // taa knows nothing of them.
+    // taa ignores them.
     agree("still", ContextDesc::new(SIZE), settings(MethodKind::Taa), |index, v, _| View {
         lod: Some(lod_of(index, SIZE)),
         ..v

@@ -230,7 +230,7 @@ impl Controls {
         Ok((set, Self { trigger, grip, hands }))
     }
 
-    /// Poses of the hands; where there are no controllers, they move by themselves.
+    /// Poses of the hands; without controllers, they move by themselves.
     fn hands(&self, frame: &mut HeadsetFrame<'_>) -> Result<Hands, afterimage_openxr::Error> {
         let time_s = frame.time_s as f32;
         let mut hands = [-1.0, 1.0].map(|side| {

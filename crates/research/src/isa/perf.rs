@@ -1,6 +1,6 @@
-//! What ACO thinks that each instruction takes (`ACO_DEBUG=perfinfo`), added up with known numbers of rounds: ACO
-//! itself takes every loop for 8 rounds, an inner one for 32, and every branch for taken half or three quarters of the
-//! time.
+//! Sums of ACO's estimate for each instruction (`ACO_DEBUG=perfinfo`), with the known number of rounds of each loop.
+//! ACO itself assumes 8 rounds for every loop and 32 for an inner one, and that every branch is taken half or three
+//! quarters of the time.
 
 use super::gpu::Gpu;
 use std::collections::BTreeMap;

@@ -70,7 +70,7 @@ impl Radv {
 
     /// Compiles a shader; its statistics.
     pub fn compile(&self, shader: &Shader) -> Result<Map<String, Value>> {
-        // SAFETY: as above; the pipeline outlives what is asked of it.
+        // SAFETY: as above; the pipeline outlives these calls.
         unsafe {
             let set_info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&shader.bindings);
             let sets = [self.device.create_descriptor_set_layout(&set_info, None)?];

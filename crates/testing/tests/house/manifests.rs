@@ -13,7 +13,8 @@ const WITHOUT_WGPU: [&str; 2] = ["crates/clip/", "crates/metric/"];
 /// Files that every package includes, as patterns of its list; shaders if it has any.
 const REQUIRED: [&str; 4] = ["/src", "/shaders", "/README.md", "/LICENSE-*"];
 
-/// Entries of the `include` list that are not there, or that name nothing. `entries`: the package's files and folders.
+/// Required entries that the `include` list lacks, and entries that name no file. `entries`: the package's files and
+/// folders.
 fn wrong_includes(manifest: &Table, entries: &BTreeSet<&str>) -> Vec<String> {
     let list = included(manifest);
     let names_nothing = |pattern: &str| {

@@ -5,7 +5,7 @@ use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::source::is_scene;
 use clap::ValueEnum;
 
-/// Message when there is no adapter.
+/// Message if the machine has no adapter.
 pub const NO_ADAPTER: &str = "there is no adapter; install a Vulkan driver (software: mesa-vulkan-drivers)";
 
 /// Values of `--backend`.

@@ -59,7 +59,7 @@ pub enum SourceName {
     Trace,
 }
 
-/// Settings of renderers that are no options of the input.
+/// Settings of renderers that are not options of the input.
 pub struct Rendering {
     pub backend: Backend,
     pub seed: u64,

@@ -4,7 +4,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 /// An enum whose values have names on the command line.
 pub trait Named: Copy + PartialEq + Send + Sync + 'static {
-    /// All values in the order of `--help`, each with its name and what `--help` says of it.
+    /// All values in the order of `--help`, each with its name and its text in `--help`.
     fn rows() -> Vec<(Self, &'static str, &'static str)>;
 
     /// Name on the command line and in reports, and name of folders.

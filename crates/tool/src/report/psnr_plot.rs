@@ -42,7 +42,7 @@ pub struct PsnrPlot<'a> {
 /// A method's values: a point a frame, in a scale or in the row of exact frames.
 struct Curve<'a> {
     method: &'a str,
-    /// Height of each frame's point; `None` where the frame is exact or its error no number.
+    /// Height of each frame's point; `None` where the frame is exact or its error is not a number.
     heights: Vec<Option<f64>>,
     /// Whether each frame is exact.
     exact: Vec<bool>,

@@ -153,7 +153,7 @@ fn bounds(
     bounds
 }
 
-/// Rounds up to three significant digits, so that the printed bound is the one that was compared with.
+/// Rounds up to three significant digits, so that the printed bound is the bound of the comparison.
 fn round_up_ms(ms: f64) -> f64 {
     if ms <= 0.0 {
         return 0.0;

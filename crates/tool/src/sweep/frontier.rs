@@ -12,7 +12,7 @@ pub struct Standing {
 }
 
 impl Standing {
-    /// Whether no part is greater than that of `other`, and at least one is smaller.
+    /// Whether no part is greater than the same part of `other`, and at least one is smaller.
     fn dominates(&self, other: &Self) -> bool {
         let (a, b) = (self.parts(), other.parts());
         a.iter().zip(&b).all(|(a, b)| a <= b) && a != b

@@ -32,7 +32,7 @@ pub struct Measurement {
     /// Time of rendering the frame that the method gets: foveated where the renderer foveates, at full rate where a
     /// simulator does. `None` for frames that are not rendered.
     pub render_ms: Option<Quartiles>,
-    /// Median CPU time of rendering it.
+    /// Median CPU time of rendering that frame.
     pub render_cpu_ms: Option<f64>,
     /// Samples of the foveated frame divided by those of the full-rate frame.
     pub samples_share: f64,

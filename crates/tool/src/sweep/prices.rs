@@ -21,9 +21,9 @@ pub struct Price {
     pub switched: String,
     /// Milliseconds of the pass, without it and with it.
     pub pass_ms: [f64; 2],
-    /// Time of the pass with the switch divided by that without it. Median and quartiles of the per-frame ratios if
-    /// both points were measured in the same round, which cancels differences between frames; else from the quartiles
-    /// of both times.
+    /// Time of the pass with the switch, divided by its time without the switch. Median and quartiles of the per-frame
+    /// ratios if both points were measured in the same round, which cancels differences between frames; else from the
+    /// quartiles of both times.
     pub time_ratio: Quartiles,
     /// Bytes per pixel that the pass reads and writes, without it and with it.
     pub bytes_per_pixel: [Option<u32>; 2],

@@ -37,7 +37,7 @@ pub struct Row {
     pub render_cpu_ms: Option<f64>,
     /// CPU time of the pass.
     pub post_cpu_ms: Option<f64>,
-    /// Both together.
+    /// CPU time of rendering and of the pass together.
     pub total_cpu_ms: Option<f64>,
     /// Samples of the foveated frame divided by those of the full-rate frame.
     pub samples_share: f64,

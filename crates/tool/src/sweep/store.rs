@@ -44,7 +44,7 @@ impl Store {
     /// Opens an existing folder.
     ///
     /// # Errors
-    /// If the folder is not that of a sweep.
+    /// If the folder does not belong to a sweep.
     pub fn open(root: &Path) -> Result<Self, InputError> {
         if !root.join("points").is_dir() {
             let remedy = "expected the --out folder of an earlier afterimage sweep";
@@ -91,7 +91,7 @@ impl Store {
     /// All measurements, in the order of their points.
     ///
     /// # Errors
-    /// If a file cannot be read or is no measurement.
+    /// If a file cannot be read, or does not contain a measurement.
     pub fn load(&self) -> Result<Vec<Measurement>, InputError> {
         let folder = self.root.join("points");
         let wrong = |path: &Path, problem: String| {

@@ -1,12 +1,12 @@
 //! Constants of the coordination of head and eye, with their sources, and events that the model generates besides
 //! samples.
 //!
-//! Values marked *chosen* have no published source that was at hand. The published figures beside them agree with these
-//! values.
+//! Values marked *chosen* were chosen here, because no published source was at hand. They agree with the published
+//! figures beside them.
 
 /// Amplitude of a gaze shift in degrees: exponential with [`SHIFT_SCALE_DEG`], truncated to this range. The lower end
-/// is that of saccades on a screen. All subjects of Guitton & Volle 1987 made shifts as large as the upper end (up to
-/// 160).
+/// is the same as for saccades on a screen. All subjects of Guitton & Volle 1987 made shifts as large as the upper end
+/// (up to 160).
 pub(super) const SHIFT_DEG: [f64; 2] = [2.5, 100.0];
 
 /// Scale of the amplitude in degrees; chosen. 65 % of the shifts are then below 15 degrees, where Malinov et al. 2000
@@ -57,10 +57,10 @@ pub(super) const EYE_LIMIT_DEG: f64 = 45.0;
 /// close to 1 in the light: gaze then slips by 1 degree a second when the head turns by 50.
 pub(super) const ROTATION_GAIN: f64 = 0.98;
 
-/// The same for the head's translation: about 0.6 for near and far targets (Liao et al. 2009).
+/// Gain of the reflex for the head's translation: about 0.6 for near and far targets (Liao et al. 2009).
 pub(super) const TRANSLATION_GAIN: f64 = 0.6;
 
-/// The same for the motion of a pursued object; chosen.
+/// Gain of the eye for the motion of a pursued object; chosen.
 pub(super) const PURSUIT_GAIN: f64 = 0.95;
 
 /// Time in seconds in which gaze approaches its target by a factor e, by slow eye movements; chosen. Slip and drift
@@ -82,8 +82,8 @@ pub(super) const PURSUIT_HEAD: f64 = 0.6;
 pub(super) const NECK_TO_EYE_M: [f64; 2] = [0.075, 0.0805];
 
 /// Distance in metres of a point ahead at which the head of a walking person keeps aiming. The head pitches and yaws to
-/// compensate for the vertical and sideways motion of the steps (Imai et al. 2001). Of the order of Hirasaki et al.
-/// 1999; chosen.
+/// compensate for the vertical and sideways motion of the steps (Imai et al. 2001). The value is chosen; Hirasaki et
+/// al. 1999 measured distances of this order.
 pub(super) const HEAD_FIXATION_M: f64 = 1.0;
 
 /// A rotation of the head: ground truth behind the samples. Turns may overlap; their angles then add up.

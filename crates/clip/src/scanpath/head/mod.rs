@@ -8,8 +8,9 @@
 //! rest:        on a point of the space, not of a screen: the eye makes up for rotation and translation of the head
 //! ```
 //!
-//! Fixations, drift, microsaccades, undershoot and correctives are those of the eye on a screen (`viewing`). The result
-//! is a [`Scanpath`] on a screen that is fixed to the head, with a [`HeadPose`](super::HeadPose) for each sample.
+//! Fixations, drift, microsaccades, undershoot and correctives follow the model of the eye on a screen (`viewing`). The
+//! result is a [`Scanpath`] on a screen that is fixed to the head, with a [`HeadPose`](super::HeadPose) for each
+//! sample.
 //!
 //! Sources: Bischof et al. 2020, J. Vision 20(7):23. Chen et al. 2012, PLoS ONE 7(11):e47565. Freedman & Sparks 1997,
 //! J. Neurophysiol. 77:2328. Goossens & Van Opstal 1997, Exp. Brain Res. 114:542. Guitton & Volle 1987, J.
@@ -41,7 +42,7 @@ const SCREEN_DEG: f32 = 100.0;
 /// A generated head and eye, and the ground truth behind it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SyntheticHead {
-    /// Samples with poses; none is lost.
+    /// Samples with poses. No sample is lost.
     pub path: Scanpath,
     /// Events by begin. All but microsaccades are contiguous, from 0 s to past the last sample. Saccades are gaze
     /// shifts, with or without the head.
@@ -52,8 +53,8 @@ pub struct SyntheticHead {
     pub regarded: Vec<Regarded>,
 }
 
-/// Generates a scanpath of a person who looks around in surroundings with these distances: [`in_a_room`], or those of a
-/// scene. It begins with head and gaze straight ahead.
+/// Generates a scanpath of a person who looks around in surroundings with these distances: [`in_a_room`], or the
+/// distances in a scene. It begins with head and gaze straight ahead.
 ///
 /// # Errors
 /// Those of [`HeadOptions::validate`].

@@ -141,7 +141,7 @@ impl<'a, T: Iterator<Item = f64>> Simulation<'a, T> {
         self.note(EventKind::Pursuit, start_s, start);
     }
 
-    /// Shifts the gaze to a new target, with a landing and a corrective if it falls too short.
+    /// Shifts the gaze to a new target. If the shift falls too short, a landing and a corrective follow.
     pub(super) fn look_elsewhere(&mut self) {
         let (towards, intended_deg) = self.choose_target();
         let target = self.seen_along(turn(self.gaze, towards, intended_deg));
@@ -184,8 +184,8 @@ impl<'a, T: Iterator<Item = f64>> Simulation<'a, T> {
         Thing { start_s: self.now_s, point: eye + direction * distance_m, velocity: DVec3::ZERO }
     }
 
-    /// Plans the head's turn of a gaze shift: by the part of the target's angle that the eye does not cover alone. The
-    /// angle is measured from the planned resting direction of the head (Goossens & Van Opstal 1997).
+    /// Plans the turn of the head in a gaze shift: the part of the target's angle that the eye does not cover alone.
+    /// The angle is measured from the planned resting direction of the head (Goossens & Van Opstal 1997).
     fn turn_head_to(&mut self, target: &Thing) {
         let eye = self.neck.pose(self.now_s).0;
         let error_deg = azimuth_elevation_deg((target.point - eye).normalize()) - self.neck.goal_deg();
@@ -312,7 +312,7 @@ impl<'a, T: Iterator<Item = f64>> Simulation<'a, T> {
         let (eye, orientation) = self.neck.pose(t_s);
         let pose = HeadPose::new(eye, orientation);
         let in_head = orientation.inverse() * gaze;
-        // Gaze stays within the eye's range of 45 degrees, and a little slip.
+        // Gaze stays within the eye's range of 45 degrees, except for a little slip.
         let ahead = -in_head.z;
         self.samples.push((t_s, [in_head.x / ahead, -in_head.y / ahead], pose));
     }

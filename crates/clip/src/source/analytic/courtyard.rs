@@ -187,8 +187,8 @@ pub(super) fn occluder() -> Scene {
     scene
 }
 
-/// `spin`: a box turns in front of the wall and sways. There is hardly any light but the sun's, so each
-/// side comes out of near-black shadow as it turns to the left.
+/// `spin`: a box turns in front of the wall and sways. Nearly all light comes from the sun, so each side comes out of
+/// near-black shadow as it turns to the left.
 pub(super) fn spin() -> Scene {
     let mut objects = walls();
     objects.push(Object {

@@ -255,12 +255,12 @@ impl AnalyticSource {
         SourceFrame { trust: self.trust(index), ..frame }
     }
 
-    /// History confidence: none on the panel without motion vectors.
+    /// History confidence: 0 on the panel without motion vectors.
     fn trust(&self, index: u64) -> Option<Image<f32>> {
         self.panel_mask(index).map(|mask| mask.map(|panel| if panel { 0.0 } else { 1.0 }))
     }
 
-    /// A frame of `light-step` in the light of frame `index`. Frames of other scenes stay unchanged.
+    /// The frame in the light of frame `index`, for `light-step`. Frames of other scenes stay unchanged.
     fn lit(&self, mut frame: SourceFrame, index: u64) -> SourceFrame {
         let [from, until] = LIGHT_STEP_SECONDS;
         if self.kind == Kind::LightStep && (from..until).contains(&(index as f64 / self.fps)) {

@@ -65,7 +65,7 @@ fn corners(x: i32, y: i32, seed: u32) -> [f32; 4] {
         let mut h = base.wrapping_add(step);
         h = (h ^ (h >> 15)).wrapping_mul(0x2c1b_3c6d);
         h ^= h >> 13;
-        // A signed conversion: baseline x86 has no other.
+        // The conversion is signed, because baseline x86 has no unsigned one.
         (h >> 8) as i32 as f32 * (1.0 / 16_777_216.0)
     })
 }

@@ -44,7 +44,7 @@ impl Camera {
     /// Row-major matrix from this view's space to the other camera's.
     pub fn to(&self, other: &Self) -> [[f32; 4]; 4] {
         let (turn, shift) = if self.axes == other.axes {
-            // Exact, where the product is the identity only up to rounding.
+            // The identity is exact; the product of both matrices would equal it only up to rounding.
             (Mat3::IDENTITY, other.view(self.origin))
         } else {
             (other.axes.transpose() * self.axes, other.view(self.origin))

@@ -1,4 +1,4 @@
-//! Culling for small squares of pixels: the objects visible in them, and the shadow casters of those.
+//! Culling for small squares of pixels: the objects visible in them, and the objects that cast shadows on these.
 
 use super::light;
 use super::scene::{Camera, Placed, Stage, may_shade};

@@ -148,7 +148,7 @@ impl<'a> Accessors<'a> {
                 let (bytes, stride) = self.strided(view, offset, accessor.count, N * S).ok_or_else(outside)?;
                 bytes.chunks(stride).take(accessor.count.0 as usize).map(element).collect()
             }
-            // Without a buffer view all elements are zero. A count above the file's bytes has no legitimate use.
+            // Without a buffer view all elements are zero. No valid file has a count above its number of bytes.
             None if accessor.count.0 <= self.document.buffers.total_bytes => {
                 vec![[T::default(); N]; accessor.count.0 as usize]
             }

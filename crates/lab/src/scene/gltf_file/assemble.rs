@@ -57,7 +57,7 @@ pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -
     };
     let mut meshes = placed.chunk_by(|a, b| a.mesh == b.mesh);
     let mut decoded = None;
-    // Images are decoded on other threads meanwhile.
+    // Other threads decode the images in the meantime.
     rayon::in_place_scope(|scope| {
         scope.spawn(|_| decoded = Some(textures.load(file)));
         meshes.try_for_each(|uses| stage.add_mesh(&primitives, uses, &mut warnings))

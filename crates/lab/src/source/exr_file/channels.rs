@@ -65,7 +65,7 @@ pub(super) struct Roles {
 }
 
 impl Roles {
-    /// Assigns channels; `None` if there is no color.
+    /// Assigns channels; `None` without color channels.
     pub fn find(channels: &[ChannelName]) -> Option<Self> {
         Some(Self {
             color: find_color(channels)?,

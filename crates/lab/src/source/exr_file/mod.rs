@@ -4,7 +4,7 @@
 //! Scan-line and tiled files, one or several parts, half, float and unsigned samples, and every compression that the
 //! `exr` crate decodes. Mip and rip maps are read at full resolution only. The data window must equal the display
 //! window (at any origin): cropped and overscanned frames are not supported, because missing pixels have neither color
-//! nor motion. Nor are subsampled channels and deep data.
+//! nor motion. Subsampled channels and deep data are not supported either.
 //!
 //! # Channel names
 //! Names are looked up over all parts; a part's name counts as a prefix of its channel names. Case is ignored.

@@ -163,8 +163,8 @@ pub(super) fn sky(world: &World, direction: Vec3, effects: Effects) -> Vec3 {
     top * (1.0 - t) + bottom * t
 }
 
-/// Density in 1/sr with which [`sample_light`] would sample this direction of the environment. `cosine` is that of the
-/// direction to the shading normal.
+/// Density in 1/sr with which [`sample_light`] would sample this direction of the environment. `cosine` is the cosine
+/// between the direction and the shading normal.
 pub(super) fn sky_pdf(world: &World, direction: Vec3, cosine: f32, effects: Effects) -> f32 {
     if !has_map(world, effects) {
         return world.sky_probability * cosine_hemisphere_pdf(cosine);
@@ -178,8 +178,8 @@ pub(super) fn sky_pdf(world: &World, direction: Vec3, cosine: f32, effects: Effe
     world.sky_probability * map_pdf(probability, world.map.len() as f32, sine)
 }
 
-/// Density in 1/sr with which [`sample_light`] would sample the point where a path hit triangle `index`, at `distance`
-/// and with `cosine` to the triangle's normal.
+/// Density in 1/sr with which [`sample_light`] would sample the point where a path hit triangle `index`, at `distance`.
+/// `cosine` is the cosine between the ray and the triangle's normal.
 pub(super) fn triangle_pdf(world: &World, index: u32, distance: f32, cosine: f32) -> f32 {
     let light = world.geometry.triangle(index);
     let Some(row) = light.light() else { return 0.0 };

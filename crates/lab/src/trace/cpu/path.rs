@@ -185,8 +185,8 @@ fn any_positive(v: Vec3) -> bool {
     v.x.max(v.y.max(v.z)) > 0.0
 }
 
-/// Origin of a ray leaving `p` along `direction`, whose cosine to the shading normal is `cosine`. `None` where shading
-/// and geometric normal disagree about the side, as light would leak through.
+/// Origin of a ray leaving `p` along `direction`, whose cosine to the shading normal is `cosine`. `None` where the
+/// direction lies on different sides of the shading and of the geometric normal: light would leak through the surface.
 fn spawn_origin(p: &SurfacePoint, direction: Vec3, cosine: f32) -> Option<Vec3> {
     let side = p.geometric.dot(direction);
     if side * cosine <= 0.0 {

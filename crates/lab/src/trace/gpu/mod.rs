@@ -50,7 +50,7 @@ pub struct GpuTracer {
     /// Compiled at its first use.
     place: OnceLock<Place>,
     paths: Paths,
-    /// Time spent compiling kernels, as far as the driver compiles them at creation.
+    /// Time spent compiling kernels. It does not contain compilation that the driver defers to the first use.
     pub compile_time: Duration,
 }
 
@@ -205,7 +205,7 @@ impl GpuTracer {
     }
 
     /// Traces samples `work` of points of a lattice and leaves them on the device: writes `points` to their pixels in
-    /// `samples`, with NaN for those without work. Nothing is read back. `view` is the view on the lattice.
+    /// `samples`; points without work become NaN. No result is read back. `view` is the view on the lattice.
     pub fn trace_in_place(
         &self,
         world: &World,
@@ -292,7 +292,7 @@ fn scene_buffer(
     limits: super::scene_buffer::SceneBufferLimits,
 ) -> Result<SceneBuffer, SceneBufferError> {
     let tables: Vec<[u32; 4]> = world.tables.words().collect();
-    // Reserves room for one triangle even if nothing moves. A zeroed node has no children.
+    // Reserves room for one triangle even if no triangle moves. A zeroed node has no children.
     let max_moving = if effects.has(Effect::MovingObjects) { world.max_moving.max(1) } else { 0 };
     let mut builder = SceneBufferBuilder::default();
     builder

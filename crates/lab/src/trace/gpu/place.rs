@@ -18,7 +18,7 @@ const COLUMNS: u32 = 4096;
 pub struct SampledPoint {
     /// x in the low 16 bits, y in the high 16 bits.
     pub point: u32,
-    /// Distance along the view axis in metres; infinity where there is no surface.
+    /// Distance along the view axis in metres; infinity where the ray hits no surface.
     pub depth: f32,
     /// Pixels, y down, previous minus current.
     pub motion: [f32; 2],
@@ -52,7 +52,7 @@ impl Place {
     }
 
     /// Writes `points` of a lattice to `samples`. `film`: their film, whose window is `film_first` and `film_size`;
-    /// points without samples there are NaN.
+    /// points without samples in the film become NaN.
     pub fn submit(
         &self,
         gpu: &Headless,

@@ -53,8 +53,8 @@ impl Acuity {
 }
 
 /// Dither threshold in \[0, 1) of a pixel in a frame. Over pixels it is the additive recurrence of Roberts' R2
-/// sequence, so pixels below any bound keep their distance from each other. Over frames it advances by the golden
-/// ratio, so a pixel's turns are evenly spread in time.
+/// sequence, so the pixels below any threshold are evenly spread. Over frames it advances by the golden ratio, so a
+/// pixel's turns are evenly spread in time.
 fn threshold(x: u32, y: u32, frame: u64) -> f32 {
     // Fixed-point fractions of 2^32, exact for any coordinate and frame.
     const ALONG_X: u32 = 3_242_174_889;

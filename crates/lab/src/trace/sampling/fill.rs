@@ -53,8 +53,8 @@ impl Around {
     }
 }
 
-/// Value of the film at a pixel. Points without samples are skipped; the bicubic filter falls back to bilinear if it
-/// lacks one.
+/// Value of the film at a pixel. Points without samples are skipped; the bicubic filter becomes bilinear if one of its
+/// points has no sample.
 #[inline]
 pub(super) fn value_at(film: &Film, filter: Filter, x: &Around, y: &Around) -> Vec3 {
     let part = [x.part, y.part];
@@ -127,7 +127,7 @@ pub(super) fn pull_push(film: &Film) -> Image<[f32; 3]> {
     coarse.map(|c| c.to_array())
 }
 
-/// Noise of scattered samples; pixels without samples take the mean of those around them.
+/// Noise of scattered samples; pixels without samples take the mean noise of the samples around them.
 pub(super) fn noise_between(film: &Film) -> Image<[f32; 2]> {
     let mut as_means = Film::new(film.moments.size());
     as_means.moments = Image::from_fn_parallel(film.moments.size(), |pixel| {

@@ -1,7 +1,7 @@
 //! Foveated sampling: sample density over the frame for a gaze, and reconstruction between samples.
 //!
 //! A frame is traced on lattices, in rings around the gaze. A tracer treats a lattice as a small frame of its own
-//! ([`View::on_lattice`]) and traces a list of its points, at no cost for the others.
+//! ([`View::on_lattice`]) and traces a list of its points. The other points cost nothing.
 
 mod acuity;
 mod circle;

@@ -62,7 +62,7 @@ pub(super) struct Blended {
 }
 
 /// Distance in pixels from the borders of rings within which a pixel's distance to the gaze is computed. Farther away,
-/// the closed-form runs of a row give its ring. Larger than any rounding error.
+/// the closed-form runs of a row give its ring. It is larger than any rounding error.
 const MARGIN_PX: f32 = 1e-3;
 
 /// Blends the rings into one frame. Outside the lens, black without noise.
@@ -154,7 +154,7 @@ impl<'a> Blend<'a> {
         self.films[i].of_window(&self.noise[i], [self.columns[i][x as usize].nearest, row[i].nearest])
     }
 
-    /// Color, level of detail and noise at any pixel. The noise is that of the ring with the larger weight.
+    /// Color, level of detail and noise at any pixel. The noise comes from the ring with the larger weight.
     fn near_border(&self, [x, y]: [u32; 2], row: &[Around]) -> (Vec3, f32, [f32; 2]) {
         let px = [x as f32, y as f32];
         let distance = (px[0] - self.gaze_px[0]).hypot(px[1] - self.gaze_px[1]);
@@ -243,7 +243,7 @@ mod tests {
             let gaze_px = size_px.map(|s| rng.random_range(-reach..s as f32 + reach));
             let rings = if case % 2 == 0 {
                 let blocks = [rng.random_range(1..5), rng.random_range(1..8)];
-                // Also regions without a fovea, and with a middle that is all blend.
+                // The patterns include regions without a fovea, and regions whose middle consists of blends alone.
                 Regions { blocks, radius_scale: f32::from(case % 5 != 0), ..Regions::default() }.rings(&geometry)
             } else {
                 let lens_deg = (case % 4 == 1).then(|| rng.random_range(5.0..40.0));

@@ -149,8 +149,8 @@ impl SparsePlan {
         stack.flat_map(|(lattice, (points, &n))| points.iter().map(move |&point| (px_of(lattice, point), n)))
     }
 
-    /// Traces the samples. Pixels without samples are NaN: the post-process does not read them, and any code that did
-    /// would be noticed. Their noise is that of the nearest sample of their lattice.
+    /// Traces the samples. Pixels without samples are NaN. The post-process does not read them, and NaN shows any code
+    /// that does. Such a pixel has the noise of the nearest sample of its lattice.
     pub fn trace(&self, tracer: &Tracer, world: &World, view: &View, frame: u64) -> FoveatedFrame {
         let mut color = Image::filled(self.size_px, [f32::NAN; 3]);
         let mut noise: Vec<Image<[f32; 2]>> = vec![];
@@ -212,9 +212,9 @@ impl SparsePlan {
         (samples.lattices, samples.samples) = (self.lattices, self.samples());
     }
 
-    /// Traces the pixels of chosen quads of 2x2 pixels. Each has as many samples as a point of its lattice, even if it
-    /// is no point of the lattice. `frame` seeds the samples: a number that no frame has makes them independent.
-    /// Returns color and noise of these pixels; other pixels are NaN, with a noise of 0 samples.
+    /// Traces the pixels of chosen quads of 2x2 pixels. Each pixel has as many samples as a point of its lattice, even
+    /// if it lies between the points. `frame` seeds the samples. They are independent of all frames if no frame has
+    /// this number. Returns color and noise of these pixels; other pixels are NaN, with a noise of 0 samples.
     pub fn trace_quads(
         &self,
         tracer: &Tracer,
@@ -242,7 +242,7 @@ impl SparsePlan {
     }
 
     /// As [`trace_quads`](Self::trace_quads), but writes to color and noise of `samples` on the tracer's device. Other
-    /// pixels of these keep their values.
+    /// pixels keep their color and noise.
     pub fn trace_quads_in_place(
         &self,
         tracer: &GpuTracer,
@@ -318,8 +318,8 @@ impl SparsePlan {
         of_points
     }
 
-    /// Noise of every pixel: its own where it was traced, else that of the nearest point of its lattice. `of_points`:
-    /// noise of the points of each lattice.
+    /// Noise of every pixel: its own noise if it was traced, else the noise of the nearest point of its lattice.
+    /// `of_points`: noise of the points of each lattice.
     fn noise(&self, of_points: &[Image<[f32; 2]>]) -> Image<[f32; 2]> {
         let mut noise = self.spread(of_points);
         let width = self.size_px[0] as usize;

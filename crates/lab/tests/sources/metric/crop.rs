@@ -1,4 +1,4 @@
-//! Worst crop: planted losses are found where they are, and what nobody sees is no loss.
+//! Worst crop: a planted loss is found at its place, and an invisible error does not count as a loss.
 
 use super::noise;
 use afterimage::Image;

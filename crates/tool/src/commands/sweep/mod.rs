@@ -133,7 +133,7 @@ pub fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     }
 }
 
-/// Measures missing points and writes the report; `None` if there are no points.
+/// Measures missing points and writes the report; `None` without points.
 pub fn execute(args: &SweepArgs) -> Result<Option<Table>, Failure> {
     let store = if !args.merge.is_empty() {
         merge(args)?

@@ -97,7 +97,7 @@ impl Jod {
     }
 }
 
-/// Scores a burst frame by frame. Ends early if the device is lost or nobody wants the scores any more.
+/// Scores a burst frame by frame. Ends early if the device is lost or the scores are not wanted any more.
 fn score(burst: &Burst, scores: &Sender<Vec<f64>>) -> Option<()> {
     let Burst { geometry, fps, frames } = burst;
     let mut reference = ReferenceVideo::new(Viewing { geometry: *geometry, display: Display::default(), fps: *fps });

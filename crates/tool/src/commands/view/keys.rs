@@ -13,7 +13,7 @@ enum Held {
     ControlShift,
 }
 
-/// Value of a row of the panel; `None`: there is no row now.
+/// Value of a row of the panel; `None`: the panel does not show the row now.
 type Value = fn(&State) -> Option<String>;
 
 /// A key, and others that do the same.

@@ -1,4 +1,4 @@
-//! Elements of a drawing: text, lines, marks. Their classes are those that the page of a sweep gives colors.
+//! Elements of a drawing: text, lines, marks. The page of a sweep gives colors to their classes.
 
 use super::marks::Mark;
 use svg::node::element::{Line, Path, Text};

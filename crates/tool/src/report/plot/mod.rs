@@ -1,4 +1,4 @@
-//! What the plots share: their page, axes, scales, marks, labels, text, and the pixels of an SVG.
+//! Parts that all plots share: page, axes, scales, marks, labels, text, and the pixels of an SVG.
 
 mod axes;
 mod elements;

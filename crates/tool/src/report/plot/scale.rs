@@ -41,7 +41,7 @@ impl Scale {
         Self { low, high, is_log: false, least_step: 1.0, from_px, to_px }
     }
 
-    /// The same axis in another unit, `factor` of it for one of this.
+    /// The same axis in another unit, of which `factor` make one unit of this axis.
     pub fn in_unit(&self, factor: f64) -> Self {
         Self { low: factor * self.low, high: factor * self.high, least_step: 0.0, ..*self }
     }
