@@ -1,6 +1,7 @@
 //! `cargo research foveated`: what of the samples that foveated path tracing saves becomes saved time.
 //!
-//! Makes the table of `docs/performance.md`, "Saved samples as saved time"; the commands are there. Half a minute on the CPU.
+//! Makes the table of `docs/performance.md`, "Saved samples as saved time"; the commands are there. Half a minute on
+//! the CPU.
 
 use crate::options::TracedArgs;
 use afterimage_cli::commands::bench::foveated::{PatternReport, measure, one_path, regions};
