@@ -45,8 +45,12 @@ pub struct SafeguardsArgs {
     #[arg(long, default_value_t = 8, value_name = "N")]
     pub rate_far: u32,
     /// Share of the pixels of each foveated frame that are NaN, infinite, huge or negative, 0 to 1
-    #[arg(long, default_value_t = 0.0001, value_name = "SHARE")]
+    #[arg(long, default_value_t = 0.0001, value_name = "SHARE", value_parser = share)]
     pub invalid: f32,
+}
+
+fn share(text: &str) -> Result<f32, String> {
+    text.parse().ok().filter(|share| (0.0..=1.0).contains(share)).ok_or_else(|| "expected a share, 0 to 1".into())
 }
 
 /// The whole method, then the method without each of its parts.

@@ -1,9 +1,8 @@
 //! Bursts of consecutive frames: what both sides show, and the full-rate frame. The device packs their luminance, which
 //! is read back a few frames later, without a stall.
 
-use super::device;
-use super::shader::SHADERS;
-use afterimage::wgpu::{self, BindGroupEntry, Buffer, BufferUsages, ComputePipeline, Texture};
+use super::measuring_pass::MeasuringPass;
+use afterimage::wgpu::{self, Buffer, Texture};
 use afterimage::{Image, ViewGeometry};
 use afterimage_lab::device::{Headless, mapped};
 use bytemuck::{Pod, Zeroable};
@@ -71,9 +70,8 @@ fn packed_bytes(size: [u32; 2], pictures: usize) -> u64 {
 /// Records bursts.
 pub struct BurstRecorder {
     geometry: ViewGeometry,
-    pipeline: ComputePipeline,
-    /// Packed luminance of one frame's pictures.
-    packed: Buffer,
+    /// Packs the luminance of one frame's pictures.
+    pass: MeasuringPass,
     frames: Vec<BurstFrame>,
     /// Times of the first and the last frame.
     span: Option<[Instant; 2]>,
@@ -83,56 +81,20 @@ pub struct BurstRecorder {
 
 impl BurstRecorder {
     pub fn new(gpu: &Headless, geometry: ViewGeometry) -> Self {
-        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("view luminance"),
-            source: wgpu::ShaderSource::Wgsl(SHADERS.compose("view_luminance").source.into()),
-        });
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("view luminance"),
-            layout: None,
-            module: &module,
-            entry_point: Some("main"),
-            compilation_options: Default::default(),
-            cache: None,
-        });
-        let bytes = packed_bytes(geometry.size_px(), MAX_PICTURES);
-        let packed = buffer(gpu, bytes, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-        Self { geometry, pipeline, packed, frames: vec![], span: None, arrived: Arc::default() }
+        let pass = MeasuringPass::new(gpu, "view_luminance", packed_bytes(geometry.size_px(), MAX_PICTURES));
+        Self { geometry, pass, frames: vec![], span: None, arrived: Arc::default() }
     }
 
     /// Adds the frame that is shown now, unless the burst is complete.
     pub fn push(&mut self, gpu: &Headless, full: &Texture, sides: &[&Texture], gaze_px: [f32; 2], gain: f32) {
-        let size = self.geometry.size_px();
-        let bytes = packed_bytes(size, 1 + sides.len());
         if self.is_complete() {
             return;
         }
-        let constants = device::constants(gpu, "view luminance", &LuminanceConstants { size, gain, padding: 0 });
-        let (left, right) = (sides[0], sides[sides.len() - 1]);
-        let [full, left, right] = [full, left, right].map(|t| t.create_view(&Default::default()));
-        let resources = [
-            constants.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&full),
-            wgpu::BindingResource::TextureView(&left),
-            wgpu::BindingResource::TextureView(&right),
-            self.packed.as_entire_binding(),
-        ];
-        let entries: Vec<_> =
-            (0..).zip(resources).map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("view luminance"),
-            layout: &self.pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        });
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups(row_words(size).div_ceil(TILE_WORDS), size[1], 1 + sides.len() as u32);
-        drop(pass);
-        let packed = buffer(gpu, bytes, BufferUsages::MAP_READ | BufferUsages::COPY_DST);
-        encoder.copy_buffer_to_buffer(&self.packed, 0, &packed, 0, bytes);
-        gpu.queue.submit([encoder.finish()]);
+        let size = self.geometry.size_px();
+        let packed = self.pass.readback(gpu, packed_bytes(size, 1 + sides.len()));
+        let constants = LuminanceConstants { size, gain, padding: 0 };
+        let workgroups = [row_words(size).div_ceil(TILE_WORDS), size[1], 1 + sides.len() as u32];
+        self.pass.run(gpu, &constants, &[full, sides[0], sides[sides.len() - 1]], workgroups, &packed);
         let arrived = self.arrived.clone();
         packed.map_async(wgpu::MapMode::Read, .., move |r| _ = arrived.fetch_add(r.is_ok().into(), Ordering::Release));
         // A software device would take this work for that of the next pass that is timed.
@@ -173,9 +135,4 @@ impl BurstRecorder {
         self.clear();
         Some(burst)
     }
-}
-
-fn buffer(gpu: &Headless, size: u64, usage: BufferUsages) -> Buffer {
-    let label = Some("view luminance");
-    gpu.device.create_buffer(&wgpu::BufferDescriptor { label, size, usage, mapped_at_creation: false })
 }

@@ -12,6 +12,7 @@ mod graph;
 mod jod;
 mod keys;
 mod layout;
+mod measuring_pass;
 mod panel;
 mod panel_stats;
 mod pictures;

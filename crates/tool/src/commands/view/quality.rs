@@ -1,11 +1,10 @@
 //! PSNR of each side in the periphery. Squared errors are summed on the device and read back a few frames later,
 //! without a stall.
 
-use super::device;
-use super::shader::SHADERS;
+use super::measuring_pass::MeasuringPass;
 use super::state::Side;
 use afterimage::ViewGeometry;
-use afterimage::wgpu::{self, BindGroupEntry, Buffer, BufferUsages, ComputePipeline, Texture};
+use afterimage::wgpu::{self, Buffer, Texture};
 use afterimage_lab::device::{Headless, mapped};
 use afterimage_lab::metric::psnr_db;
 use bytemuck::{Pod, Zeroable};
@@ -43,8 +42,8 @@ pub struct Viewing<'a> {
 
 /// Measures the PSNR of both sides.
 pub struct Quality {
-    pipeline: ComputePipeline,
-    sums: Buffer,
+    /// Sums the squared errors of tiles.
+    pass: MeasuringPass,
     sides: [Readback; 2],
 }
 
@@ -57,25 +56,10 @@ struct Readback {
 impl Quality {
     /// Creates the pass for outputs of `size`.
     pub fn new(gpu: &Headless, size: [u32; 2]) -> Self {
-        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("view quality"),
-            source: wgpu::ShaderSource::Wgsl(SHADERS.compose("view_quality").source.into()),
-        });
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("view quality"),
-            layout: None,
-            module: &module,
-            entry_point: Some("main"),
-            compilation_options: Default::default(),
-            cache: None,
-        });
         let bytes = 8 * [0, 1].map(|i| u64::from(size[i].div_ceil(TILE[i]))).iter().product::<u64>();
-        let buffer = |usage| {
-            let label = Some("view quality");
-            gpu.device.create_buffer(&wgpu::BufferDescriptor { label, size: bytes, usage, mapped_at_creation: false })
-        };
-        let readback = || Readback { buffer: buffer(BufferUsages::MAP_READ | BufferUsages::COPY_DST), done: None };
-        Self { pipeline, sums: buffer(BufferUsages::STORAGE | BufferUsages::COPY_SRC), sides: [readback(), readback()] }
+        let pass = MeasuringPass::new(gpu, "view_quality", bytes);
+        let sides = [0, 1].map(|_| Readback { buffer: pass.readback(gpu, bytes), done: None });
+        Self { pass, sides }
     }
 
     /// Starts to measure a side's output, unless a measurement of that side is pending.
@@ -94,29 +78,8 @@ impl Quality {
             gain: viewing.gain,
             from_deg: PERIPHERY_DEG,
         };
-        let constants = device::constants(gpu, "view quality", &constants);
-        let [full, shown] = [full, shown].map(|t| t.create_view(&Default::default()));
-        let resources = [
-            constants.as_entire_binding(),
-            wgpu::BindingResource::TextureView(&full),
-            wgpu::BindingResource::TextureView(&shown),
-            self.sums.as_entire_binding(),
-        ];
-        let entries: Vec<_> =
-            (0..).zip(resources).map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("view quality"),
-            layout: &self.pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        });
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups(size[0].div_ceil(TILE[0]), size[1].div_ceil(TILE[1]), 1);
-        drop(pass);
-        encoder.copy_buffer_to_buffer(&self.sums, 0, &readback.buffer, 0, self.sums.size());
-        gpu.queue.submit([encoder.finish()]);
+        let workgroups = [size[0].div_ceil(TILE[0]), size[1].div_ceil(TILE[1]), 1];
+        self.pass.run(gpu, &constants, &[full, shown], workgroups, &readback.buffer);
         let done = Arc::new(AtomicBool::new(false));
         let is_mapped = done.clone();
         readback.buffer.map_async(wgpu::MapMode::Read, .., move |r| is_mapped.store(r.is_ok(), Ordering::Release));
