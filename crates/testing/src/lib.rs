@@ -7,6 +7,7 @@ extern crate wgpu_29 as wgpu;
 #[cfg(all(feature = "wgpu-30", not(feature = "wgpu-29")))]
 extern crate wgpu_30 as wgpu;
 
+mod alone;
 #[cfg(any(feature = "wgpu-29", feature = "wgpu-30"))]
 pub mod gpu;
 pub mod hard_case;
@@ -15,6 +16,7 @@ pub mod planted;
 pub mod program;
 pub mod resident;
 
+pub use alone::alone;
 #[cfg(feature = "wgpu-30")]
 pub use naga;
 

@@ -50,7 +50,7 @@ fn damaged_copies_are_refused_or_sound() {
             }
             let outcome = catch_unwind(AssertUnwindSafe(|| target(&bytes)));
             if outcome.is_err() {
-                let found = std::env::temp_dir().join(format!("afterimage-found-{name}-{copy}"));
+                let found = std::env::temp_dir().join(format!("afterimage-found-{}-{name}-{copy}", std::process::id()));
                 fs::write(&found, &bytes).unwrap();
                 panic!("{name}: see above; the bytes are in {}", found.display());
             }

@@ -9,20 +9,22 @@ use std::sync::{Arc, OnceLock};
 
 /// One device shared by all tests; without an adapter, prints that and returns `None`.
 pub fn device() -> Option<Arc<Headless>> {
-    static DEVICE: OnceLock<Arc<Headless>> = OnceLock::new();
+    static DEVICE: OnceLock<Option<Arc<Headless>>> = OnceLock::new();
+    DEVICE.get_or_init(device_of_its_own).clone()
+}
+
+/// A device for one test, which counts its readbacks.
+pub fn device_of_its_own() -> Option<Arc<Headless>> {
     let adapter = afterimage_testing::gpu::adapter()?;
-    let open = || {
-        let offered = adapter.limits();
-        // Sponza exceeds the default limits.
-        let required_limits = wgpu::Limits {
-            max_texture_dimension_2d: offered.max_texture_dimension_2d,
-            max_buffer_size: offered.max_buffer_size,
-            max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
-            ..wgpu::Limits::default()
-        };
-        Headless::on(adapter, required_limits).expect("a device with these limits")
+    let offered = adapter.limits();
+    // Sponza exceeds the default limits.
+    let required_limits = wgpu::Limits {
+        max_texture_dimension_2d: offered.max_texture_dimension_2d,
+        max_buffer_size: offered.max_buffer_size,
+        max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
+        ..wgpu::Limits::default()
     };
-    Some(DEVICE.get_or_init(open).clone())
+    Some(Headless::on(adapter, required_limits).expect("a device with these limits"))
 }
 
 pub fn open(path: &Path) -> Scene {

@@ -16,6 +16,11 @@ const OPTIONS: SceneOptions = SceneOptions { size: Some(SIZE), hfov_deg: None, f
 
 #[test]
 fn rasterised_frames_state_the_time_of_rendering_alone() {
+    // A software device spends CPU time of the process.
+    afterimage_testing::alone(time_rasterised_frames);
+}
+
+fn time_rasterised_frames() {
     if afterimage_testing::gpu::adapter().is_none() {
         return;
     }

@@ -74,8 +74,8 @@ pub fn png(bytes: &[u8]) {
 }
 
 fn image(extension: &str, bytes: &[u8]) {
-    let path = file(extension, bytes);
-    let opened = afterimage_lab::source::open(path.to_str().unwrap(), &IMAGES, &SceneOptions::default());
+    let file = file(extension, bytes);
+    let opened = afterimage_lab::source::open(file.path(), &IMAGES, &SceneOptions::default());
     let Some(mut source) = sound(opened) else { return };
     let [width, height] = source.info().size;
     assert!(u64::from(width) * u64::from(height) <= IMAGES.max_pixels);
@@ -86,8 +86,8 @@ fn image(extension: &str, bytes: &[u8]) {
 
 /// A scene in a single file.
 pub fn gltf(bytes: &[u8]) {
-    let path = file(if bytes.starts_with(b"glTF") { "glb" } else { "gltf" }, bytes);
-    let Some(scene) = sound(Scene::open(path.to_str().unwrap(), &SCENES)) else { return };
+    let file = file(if bytes.starts_with(b"glTF") { "glb" } else { "gltf" }, bytes);
+    let Some(scene) = sound(Scene::open(file.path(), &SCENES)) else { return };
     sound_scene::assert_sound(&scene);
     let mut world = World::new(&scene);
     world.pose(&scene, 0.5, 0.0);
@@ -260,13 +260,32 @@ fn sound<T>(read: Result<T, InputError>) -> Option<T> {
     }
 }
 
-/// Writes the bytes to a file of this process, one per kind, in memory where the system supports it.
-fn file(extension: &str, bytes: &[u8]) -> PathBuf {
+/// A file in a folder of its own, which is removed when this is dropped.
+struct Written {
+    folder: PathBuf,
+    path: PathBuf,
+}
+
+impl Drop for Written {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.folder);
+    }
+}
+
+impl Written {
+    fn path(&self) -> &str {
+        self.path.to_str().expect("a path in UTF-8")
+    }
+}
+
+/// Writes the bytes to a file, in memory where the system supports it. Tests of a program run on threads, each with a
+/// folder of its own.
+fn file(extension: &str, bytes: &[u8]) -> Written {
     let memory = PathBuf::from("/dev/shm");
-    let folder = if memory.is_dir() { memory } else { std::env::temp_dir() };
-    let folder = folder.join(format!("afterimage-fuzz-{}", std::process::id()));
+    let place = if memory.is_dir() { memory } else { std::env::temp_dir() };
+    let folder = place.join(format!("afterimage-fuzz-{}-{:?}", std::process::id(), std::thread::current().id()));
     fs::create_dir_all(&folder).unwrap();
     let path = folder.join(format!("fuzz.{extension}"));
     fs::write(&path, bytes).unwrap();
-    path
+    Written { folder, path }
 }

@@ -37,10 +37,40 @@ fn figures(out: &str) -> BTreeMap<String, String> {
     .collect()
 }
 
+/// The finished points in the folder of a sweep.
+fn points(out: &Path) -> Vec<String> {
+    let place = out.join("points");
+    let names = if place.is_dir() { files(&place) } else { vec![] };
+    names.into_iter().filter(|name| name.ends_with(".json") && !name.starts_with('.')).collect()
+}
+
+/// Kills a sweep once a round of it is finished. False if it ended first.
+fn is_killed(out: &Path) -> bool {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_afterimage"))
+        .args(sweep(out.to_str().unwrap(), &[]))
+        .current_dir(afterimage_testing::workspace())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    // Rounds have at most three points, so at least one is complete then, on any machine.
+    let patience = Instant::now();
+    while points(out).len() < 3 && child.try_wait().unwrap().is_none() {
+        assert!(patience.elapsed() < Duration::from_secs(120), "no round was ever finished");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let kept = points(out).len();
+    println!("killed with {kept} of 7 points");
+    assert!(kept >= 3, "a round was finished");
+    kept < 7
+}
+
 #[test]
 fn a_sweep_that_is_killed_goes_on_and_ends_with_the_same_tables() {
     let folder = Folder::new();
-    let (whole, killed) = (folder.text("whole"), folder.text("killed"));
+    let whole = folder.text("whole");
     let said = run(&whole, &[]);
     assert!(said.contains("7 points, 7 to measure in 3 rounds"), "{said}");
     assert_eq!(figures(&whole).len(), 7);
@@ -48,30 +78,13 @@ fn a_sweep_that_is_killed_goes_on_and_ends_with_the_same_tables() {
         assert!(folder.path("whole").join(name).exists(), "{name}");
     }
 
-    let mut child = Command::new(env!("CARGO_BIN_EXE_afterimage"))
-        .args(sweep(&killed, &[]))
-        .current_dir(afterimage_testing::workspace())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    let points = || {
-        let place = folder.path("killed/points");
-        let names = if place.is_dir() { files(&place) } else { vec![] };
-        names.into_iter().filter(|name| name.ends_with(".json") && !name.starts_with('.')).collect::<Vec<_>>()
-    };
-    // Rounds have at most three points, so at least one is complete then, on any machine.
-    let patience = Instant::now();
-    while points().len() < 3 && child.try_wait().unwrap().is_none() {
-        assert!(patience.elapsed() < Duration::from_secs(120), "no round was ever finished");
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
-    let kept = points().len();
-    println!("killed with {kept} of 7 points");
-    assert!((3..7).contains(&kept), "killed in the middle");
-    assert!(!folder.path("killed/sweep.json").exists());
+    // On a busy machine, a sweep may end before it is killed: then another one is.
+    let names = ["killed", "killed again", "killed once more"];
+    let name =
+        names.into_iter().find(|name| is_killed(&folder.path(name))).expect("a sweep that is killed in the middle");
+    let killed = folder.text(name);
+    let points = || points(&folder.path(name));
+    assert!(!folder.path(name).join("sweep.json").exists());
     let said = run(&killed, &[]);
     assert!(!said.contains("7 to measure"), "what was finished is not measured again: {said}");
     assert_eq!(figures(&killed), figures(&whole));
@@ -79,7 +92,7 @@ fn a_sweep_that_is_killed_goes_on_and_ends_with_the_same_tables() {
     assert!(run(&killed, &[]).contains("0 to measure"));
     // A round that was killed between writing its points is measured again completely, so that its times are from one
     // run.
-    fs::remove_file(folder.path("killed/points").join(&points()[0])).unwrap();
+    fs::remove_file(folder.path(name).join("points").join(&points()[0])).unwrap();
     let said = run(&killed, &[]);
     assert!(said.contains("in 1 rounds") && !said.contains(", 1 to measure"), "{said}");
     assert_eq!(figures(&killed), figures(&whole));

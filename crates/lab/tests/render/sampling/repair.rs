@@ -1,7 +1,7 @@
 //! Pixels that are traced beside the lattices of a sparse frame.
 
 use super::super::trace::statistics::{p_of_means, p_of_pixels};
-use crate::given::device;
+use crate::given::device_of_its_own;
 use afterimage::{Image, wgpu};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::{DeviceSamples, OnDevice, RenderedFrame, ShadedColor, Wish};
@@ -149,7 +149,7 @@ fn noise_of(device: &Headless, frame: &DeviceSamples) -> Image<[u32; 2]> {
 
 #[test]
 fn the_device_traces_the_same_pixels_and_reads_nothing_back() {
-    let Some(device) = device() else { return };
+    let Some(device) = device_of_its_own() else { return };
     let samples = [3, 2, 1];
     let [mut cpu, mut gpu] =
         [Backend::Cpu, Backend::Gpu(device.clone())].map(|backend| source("builtin:courtyard", &backend, samples, 1));

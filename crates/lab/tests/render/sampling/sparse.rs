@@ -2,7 +2,7 @@
 //! nothing else is traced.
 
 use super::fills::Yard;
-use crate::given::device;
+use crate::given::device_of_its_own;
 use afterimage::{Filter, Foveation, Image, Lattices, Method, MethodKind, Repair, Settings, Smr, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::{Content, OnDevice, RenderedFrame, Shaded, SourceFrame, Wish};
@@ -208,7 +208,7 @@ fn shaded(source: &mut TracedSource, frame: &RenderedFrame, wish: &Wish) -> Resu
 
 #[test]
 fn samples_that_stay_on_the_device_are_those_of_the_memory() {
-    let Some(device) = device() else { return };
+    let Some(device) = device_of_its_own() else { return };
     let backend = Backend::Gpu(device.clone());
     let kinds = [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Taau, MethodKind::Smr];
     let repaired = Method::Smr(Smr { repair: Some(Repair { budget: 0.05 }), ..Smr::default() });

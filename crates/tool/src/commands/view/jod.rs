@@ -118,7 +118,7 @@ mod tests {
     use afterimage::Image;
     use afterimage::wgpu::{TextureFormat, TextureUsages};
     use afterimage_lab::metric::encode;
-    use std::time::Duration;
+    use std::time::{Duration, Instant};
 
     /// No multiple of four wide.
     const SIZE: [u32; 2] = [150, 70];
@@ -131,8 +131,8 @@ mod tests {
     }
 
     /// The metric itself, on a still picture.
-    fn expected(geometry: ViewGeometry, full: &Image<[f32; 3]>, shown: &Image<[f32; 3]>) -> f64 {
-        let mut reference = ReferenceVideo::new(Viewing { geometry, display: Display::default(), fps: 60.0 });
+    fn expected(geometry: ViewGeometry, fps: f32, full: &Image<[f32; 3]>, shown: &Image<[f32; 3]>) -> f64 {
+        let mut reference = ReferenceVideo::new(Viewing { geometry, display: Display::default(), fps });
         let full_rate = reference.push(&encode(full, EXPOSURE_EV), Some(GAZE_PX));
         TestVideo::default().push(&full_rate, &encode(shown, EXPOSURE_EV)).jod
     }
@@ -157,15 +157,18 @@ mod tests {
             jod.push(&gpu, &textures[0], sides, GAZE_PX, EXPOSURE_EV.exp2());
             std::thread::sleep(Duration::from_millis(10));
         };
+        let begun = Instant::now();
         while jod.last().is_none() {
             push(&mut jod, &[&textures[1], &textures[0]]);
         }
         let RunningJod { sides, fps } = jod.last().unwrap().clone();
-        let expected = expected(geometry, &images[0], &images[1]);
+        let expected = expected(geometry, fps, &images[0], &images[1]);
         println!("{sides:?} at {fps} fps, expected {expected}");
         assert!((sides[0] - expected).abs() < 0.02 && expected < 9.5);
         assert_eq!((sides.len(), sides[1]), (2, 10.0), "the full-rate frame is no different from itself");
-        assert!(fps > 1.0 && fps < 100.0, "frames are at least 10 ms apart");
+        // How long a frame takes depends on what else the machine does.
+        let least = 1.0 / begun.elapsed().as_secs_f32();
+        assert!((least..100.0).contains(&fps), "frames are at least 10 ms apart");
 
         jod.reset();
         assert_eq!(jod.last(), None);
