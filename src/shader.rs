@@ -75,6 +75,7 @@ pub static MODULES: &[Module] = &[
     module!("pass", "lattices"),
     module!("pass", "none_pass"),
     module!("pass", "origin"),
+    module!("pass", "past_frame"),
     module!("pass", "output"),
     module!("pass", "output_and_view"),
     module!("pass", "previous"),

@@ -1,11 +1,8 @@
-//#use pack
+//#use surface
 // Twin of src/kernel/kept.rs, which documents the layout.
 
 const MAX_COLOR: f32 = 65408.0;
-const EMPTY_KEPT: u32 = 63u;
 const SMALLEST_EXPONENT: u32 = 111u;
-const KEPT_LOD_STEPS: f32 = 7.0;
-const MAX_KEPT_LOD: f32 = 62.0 * (1.0 / KEPT_LOD_STEPS);
 const PLACE_STEPS: f32 = 24.0;
 const FARTHEST_PX: f32 = 1.2;
 const EXACT_PX: f32 = 0.5f / PLACE_STEPS;
@@ -65,9 +62,9 @@ fn unpack_place(bits: u32) -> f32 {
 
 // kept::pack_kept
 fn pack_kept(s: Kept) -> vec2<u32> {
-    var lod = EMPTY_KEPT;
+    var lod = EMPTY_LOD;
     if s.lod >= 0.0 {
-        lod = u32(min(s.lod, MAX_KEPT_LOD) * KEPT_LOD_STEPS + 0.5);
+        lod = u32(min(s.lod, MAX_LOD) * LOD_STEPS + 1.5);
     }
     let code = disparity_code(s.disparity);
     // The last code stands for an unknown disparity.
@@ -88,7 +85,7 @@ fn unpack_kept(words: vec2<u32>) -> Kept {
 
 // kept::is_empty
 fn is_empty(words: vec2<u32>) -> bool {
-    return (words.y & 63u) == EMPTY_KEPT;
+    return (words.y & 63u) == EMPTY_LOD;
 }
 
 // kept::code_word
@@ -102,7 +99,7 @@ fn unpack_full(words: vec2<u32>) -> Kept {
     return Kept(
         unpack_color(words.x),
         // The limit keeps compilers from merging this factor with later ones.
-        min(f32(words.y & 63u) * (1.0f / KEPT_LOD_STEPS), MAX_KEPT_LOD),
+        min(lod_value(words.y & 63u), MAX_LOD),
         select(disparity_value(code << 2u), -1.0, code == 0x3fffu),
         vec2<f32>(unpack_place(words.y >> 20u), unpack_place(words.y >> 26u)),
     );

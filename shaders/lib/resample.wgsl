@@ -122,7 +122,7 @@ fn surface_tap(words: vec2<u32>, codes: vec2<u32>, any_code: bool) -> Tap {
     let code = lod_code(words);
     return Tap(
         surface_color(words),
-        f32(code) * (1.0f / LOD_STEPS),
+        lod_value(code),
         select(has_code(words.y, codes), code != EMPTY_LOD, any_code),
     );
 }

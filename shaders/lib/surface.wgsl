@@ -1,8 +1,8 @@
 //#use pack
 // Twin of src/kernel/surface.rs, which documents the layout.
 
-const EMPTY_LOD: u32 = 63u;
-const EMPTY_SURFACE: vec2<u32> = vec2<u32>(0xf0000000u, 0xffffc000u);
+const EMPTY_LOD: u32 = 0u;
+const EMPTY_SURFACE: vec2<u32> = vec2<u32>(0u, 0xffff0000u);
 const MAX_FLOAT14: f32 = 65472.0;
 const LOD_STEPS: f32 = 7.0;
 const MAX_LOD: f32 = 62.0 * (1.0 / LOD_STEPS);
@@ -32,7 +32,7 @@ fn float14_value(code: u32) -> f32 {
 fn pack_surface(s: Surface) -> vec2<u32> {
     var lod = EMPTY_LOD;
     if s.lod >= 0.0 {
-        lod = u32(min(s.lod, MAX_LOD) * LOD_STEPS + 0.5);
+        lod = u32(min(s.lod, MAX_LOD) * LOD_STEPS + 1.5);
     }
     let words = vec2<u32>(
         float14_bits(s.color.x) | (float14_bits(s.color.y) << 14u) | (lod << 28u),
@@ -44,6 +44,11 @@ fn pack_surface(s: Surface) -> vec2<u32> {
 // surface::lod_code
 fn lod_code(words: vec2<u32>) -> u32 {
     return (words.x >> 28u) | ((words.y >> 10u) & 0x30u);
+}
+
+// surface::lod_value
+fn lod_value(code: u32) -> f32 {
+    return f32(code - 1u) * (1.0f / LOD_STEPS);
 }
 
 // surface::surface_color
@@ -61,7 +66,7 @@ fn unpack_surface(words: vec2<u32>) -> Surface {
     let is_empty = code == EMPTY_LOD;
     return Surface(
         select(surface_color(words), vec3<f32>(0.0), is_empty),
-        select(f32(code) * (1.0f / LOD_STEPS), -1.0, is_empty),
+        select(lod_value(code), -1.0, is_empty),
         select(disparity_value(words.y >> 16u), -1.0, is_empty),
     );
 }

@@ -24,7 +24,7 @@ override VIEW: u32 = 0u;
 // src/gpu/uniforms.rs: FrameUniforms, which documents the fields
 struct FrameUniforms {
     size: vec2<u32>,
-    reset: u32,
+    past_frame: u32,
     frame_low: u32,
     fovea_radius_deg: f32,
     inv_density_at_fovea: f32,
@@ -47,6 +47,9 @@ struct FrameUniforms {
     mip_levels: u32,
     views: array<ViewUniforms, 4>,
 }
+
+// Value of `FrameUniforms::past_frame` in a frame without history.
+const NO_FRAME: u32 = 0xffffffffu;
 
 @group(0) @binding(0) var<uniform> frame: FrameUniforms;
 @group(0) @binding(1) var color_in: texture_2d_array<f32>;

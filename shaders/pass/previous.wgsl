@@ -1,5 +1,6 @@
 //#use inputs
 //#use matched
+//#use past_frame
 // Previous position of a pixel's surface; shared by the methods that store surfaces. CPU twin: src/cpu/inputs.rs.
 
 // All fields but the verdict are valid only if that is VERDICT_VALID or VERDICT_DISOCCLUDED.
@@ -13,7 +14,7 @@ struct Previous {
 
 // Texel of history that is nearest to a surface's previous position.
 fn reprojected(px: vec2<u32>, motion: vec2<f32>) -> Reprojection {
-    if frame.reset != 0u {
+    if !has_history() {
         return Reprojection(VERDICT_RESET, vec2<u32>(0u));
     }
     return nearest(px.x, px.y, motion, frame.size);

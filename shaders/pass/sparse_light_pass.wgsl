@@ -1,4 +1,5 @@
 //#use antialias
+//#use past_frame
 //#use sparse_samples
 // Gain and fit of history around the samples of a sparse frame. CPU twin: `light` in src/cpu/sparse_pass/mod.rs. One
 // invocation a sample of lattice `frame.lattice`; z is the view.
@@ -68,7 +69,7 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     var scatter = 0.0;
     var sum = Light(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, 0.0, 0.0);
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
-    let taps = select(0u, 9u, frame.reset == 0u);
+    let taps = select(0u, 9u, has_history());
     for (var tap = 0u; tap < taps; tap++) {
         let near = neighbour(tap, point, lattice, view, own, own_disparity);
         if near.spatial > 0.0 {

@@ -2,6 +2,7 @@
 //#use inputs
 //#use output
 //#use pack
+//#use past_frame
 //#use resample
 //#use rng
 //#use wrs
@@ -71,7 +72,7 @@ fn resampled(at: vec2<f32>, view: u32, expected: f32, nearest_color: vec3<f32>) 
 
 // Reservoir of the pixel's surface in the previous frame and age of its sample, or the reason for its rejection.
 fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, disparity_now: f32) -> History {
-    if frame.reset != 0u {
+    if !has_history() {
         return no_history(VERDICT_RESET);
     }
     let source = nearest(px.x, px.y, motion, frame.size);

@@ -91,7 +91,10 @@ impl History {
     pub(super) fn resized(&self, resize: &Resize, desc: &ContextDesc) -> Self {
         let mut next = Self::new(desc);
         next.held = self.held.iter().map(|held| resize.held(*held)).collect();
-        next.filled = self.filled;
+        if !self.filled {
+            return next;
+        }
+        next.filled = true;
         let past = &self.previous;
         let len = self.view_len;
         next.previous.reservoirs = past.reservoirs.chunks(len).flat_map(|v| resize.nearest(v)).collect();

@@ -3,7 +3,7 @@
 
 use super::compute::{ComputeShader, float_texture, storage_texture, uint_texture, uniform};
 use super::history::array_view;
-use super::method_pass::{Placeholders, input_overrides};
+use super::method_pass::{PAST_FRAME_BINDING, Placeholders, input_overrides};
 use super::stage::{Job, Passes};
 use super::textures::batches;
 use super::{Textures, Variant};
@@ -93,6 +93,7 @@ impl GeometryPass {
             (17, uniform()),
             (18, depth),
             (19, motion),
+            (PAST_FRAME_BINDING, uniform()),
         ];
         Self {
             shader: ComputeShader::with_bindings(device, "fill_geometry_pass", source, &bindings),
@@ -138,6 +139,7 @@ impl GeometryPass {
                     lattices.as_entire_binding(),
                     BindingResource::TextureView(&depth_out),
                     BindingResource::TextureView(&motion_out),
+                    history.split().0.frame.as_entire_binding(),
                 ],
             );
             let count = batch.views.len() as u32;

@@ -1,15 +1,25 @@
 //! State between frames: two sets of textures, the previous frame's to read and the current one's to write, which swap
 //! after each frame.
+//!
+//! A frame that was recorded may never run, because its encoder was dropped. So each set has the number of the frame
+//! that wrote it in a buffer on the device. A frame states in its uniforms which number it expects
+//! (`shaders/pass/past_frame.wgsl`), and starts without history if the device has another.
 
+use super::buffer::filled;
 use super::mip_chain::{self, Candidates, MipLevel};
 use crate::frame::ContextDesc;
 use crate::kernel::foveate::level_len;
 use crate::method::HistoryLayout;
 use crate::uniforms::Held;
 use wgpu::{
-    Device, Extent3d, Texture, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
-    TextureViewDescriptor, TextureViewDimension,
+    Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Device, Extent3d, Texture, TextureDescriptor,
+    TextureDimension, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
 };
+
+/// `NO_FRAME` in `shaders/pass/inputs.wgsl`: the number of no frame.
+pub(super) const NO_FRAME: u32 = u32::MAX;
+/// Bytes of a frame number.
+const NUMBER_BYTES: u64 = 4;
 
 /// Textures of one frame.
 #[derive(Debug)]
@@ -21,6 +31,8 @@ pub(super) struct Planes {
     pub targets: Vec<TextureView>,
     /// Dispatches that fill the other levels.
     pub mip_levels: Vec<MipLevel>,
+    /// Number of the frame that wrote the textures, on the device; 0 before one did.
+    pub frame: Buffer,
 }
 
 /// Textures of the previous and the current frame, and the held state of the views.
@@ -32,6 +44,8 @@ pub(super) struct History {
     pub candidates: Option<Candidates>,
     past: usize,
     filled: bool,
+    /// Number of the last recorded frame; 0 before the first one.
+    frame: u32,
     pub held: Vec<Held>,
 }
 
@@ -43,10 +57,16 @@ impl History {
             let textures: Vec<_> = plan(desc, layout).iter().map(|p| p.create(device, desc)).collect();
             let views = textures.iter().map(|t| levels_view(t, 0, None, None)).collect();
             let targets = textures.iter().map(array_view).collect();
-            Planes { textures, views, targets, mip_levels: vec![] }
+            let frame = device.create_buffer(&BufferDescriptor {
+                label: Some("afterimage frame number"),
+                size: 4 * NUMBER_BYTES,
+                usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            });
+            Planes { textures, views, targets, mip_levels: vec![], frame }
         };
         let held = vec![Held::default(); desc.view_count as usize];
-        Self { layout, sets: [planes(), planes()], candidates: None, past: 0, filled: false, held }
+        Self { layout, sets: [planes(), planes()], candidates: None, past: 0, filled: false, frame: 0, held }
     }
 
     pub fn layout(&self) -> HistoryLayout {
@@ -69,8 +89,33 @@ impl History {
         (&self.sets[self.past], &self.sets[1 - self.past])
     }
 
-    /// Makes the written frame the previous one.
-    pub fn swap(&mut self) {
+    /// Number that the device must have for the previous frame's textures, for the current frame to read them.
+    pub fn past_frame(&self) -> u32 {
+        if self.filled { self.frame } else { NO_FRAME }
+    }
+
+    /// Makes the written frame the previous one: records its number into `encoder`, which has its passes.
+    pub fn finish(&mut self, device: &Device, encoder: &mut CommandEncoder) {
+        // 1 to NO_FRAME - 1: another number than that of textures that were never written.
+        self.frame = self.frame % (NO_FRAME - 1) + 1;
+        let number = filled(device, "afterimage frame number", &self.frame.to_le_bytes(), BufferUsages::COPY_SRC);
+        self.number_next(encoder, &number);
+        self.swap();
+    }
+
+    /// Makes the written textures the previous frame's: those of `old`, resampled by passes that `encoder` has. If the
+    /// previous frame itself never ran, its number in `old` is another, and so it is here.
+    pub fn finish_resampled(&mut self, encoder: &mut CommandEncoder, old: &Self) {
+        self.frame = old.frame;
+        self.number_next(encoder, &old.split().0.frame);
+        self.swap();
+    }
+
+    fn number_next(&self, encoder: &mut CommandEncoder, number: &Buffer) {
+        encoder.copy_buffer_to_buffer(number, 0, &self.split().1.frame, 0, NUMBER_BYTES);
+    }
+
+    fn swap(&mut self) {
         self.past = 1 - self.past;
         self.filled = true;
     }

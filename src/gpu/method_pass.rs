@@ -26,6 +26,8 @@ use wgpu::{
 const DEBUG_BINDING: u32 = 16;
 /// Binding number of the lattices in `shaders/pass/lattices.wgsl`.
 const LATTICES_BINDING: u32 = 17;
+/// Binding number of the stored frame's number in `shaders/pass/past_frame.wgsl`.
+pub(super) const PAST_FRAME_BINDING: u32 = 21;
 
 /// The pass, with placeholders for absent inputs.
 #[derive(Debug)]
@@ -150,6 +152,7 @@ impl MethodPass {
             ],
         };
         let lattices = job.lattices.as_ref().filter(|_| self.pass_shader.reads_samples);
+        let past_frame = (self.history != HistoryLayout::Nothing).then(|| &history.split().0.frame);
         let counters = BindingResource::Buffer(BufferBinding {
             buffer: target.counters.unwrap_or(&self.no_counters),
             offset: 0,
@@ -160,6 +163,7 @@ impl MethodPass {
             .chain([counters, BindingResource::TextureView(&noise)])
             .chain(history_views.into_iter().map(BindingResource::TextureView))
             .chain(lattices.map(Buffer::as_entire_binding))
+            .chain(past_frame.map(Buffer::as_entire_binding))
             .chain(debug.as_ref().map(BindingResource::TextureView));
         shader.group(device, resources)
     }
@@ -261,5 +265,6 @@ fn bindings(pass: PassShader, output: TextureFormat, history: HistoryLayout) -> 
         HistoryLayout::Surfaces { .. } => vec![float, words, float, first, second, words, float, third],
     });
     let lattices = pass.reads_samples.then(|| (LATTICES_BINDING, uniform()));
-    (0..).zip(types).chain(lattices).collect()
+    let past_frame = (history != HistoryLayout::Nothing).then(|| (PAST_FRAME_BINDING, uniform()));
+    (0..).zip(types).chain(lattices).chain(past_frame).collect()
 }

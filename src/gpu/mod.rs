@@ -69,7 +69,10 @@ use wgpu::{Buffer, CommandEncoder, ComputePassDescriptor, Device, Limits, Textur
 /// The [crate's first page](crate) has an example. `examples/02_engine.rs` is an engine's loop with resize, cuts,
 /// pauses, lost gaze and changes of exposure; `examples/03_stereo.rs` has two views.
 ///
-/// Several frames can be recorded into one encoder; they are processed in that order.
+/// Several frames can be recorded into one encoder; they are processed in that order. Submit recorded frames once, in
+/// the order in which they were recorded. A frame may also be dropped with its encoder, if the surface is outdated, for
+/// example: the device knows which frame its history is of, and the frame after a dropped one starts without history,
+/// as after [`Reset::All`](crate::Reset::All).
 #[derive(Debug)]
 pub struct Afterimage {
     desc: ContextDesc,
@@ -214,7 +217,8 @@ impl Afterimage {
     /// edges should stay the same. Reservoirs of wrs, and kept samples of sparse frames with their places, are taken
     /// from the nearest pixel. Surfaces of taa, taau and smr are filtered. Levels of detail follow the scale.
     ///
-    /// Records a pass into `encoder`. The first call compiles its pipeline. Without history it records nothing.
+    /// Records a pass into `encoder`. The first call compiles its pipeline. Without history it records nothing. If
+    /// `encoder` is dropped, the next frame has no history.
     ///
     /// # Errors
     /// As for [`resize`](Self::resize).
@@ -239,7 +243,7 @@ impl Afterimage {
                 pass.record(device, encoder, &resize, self.desc.view_count, planes);
             }
             self.stages.complete(device, encoder, &history);
-            history.swap();
+            history.finish_resampled(encoder, &self.history);
         }
         self.history = history;
         Ok(())
@@ -260,8 +264,9 @@ impl Afterimage {
         }
     }
 
-    /// Discards history and held gaze positions: the next frame is processed like the first one.
-    /// [`Reset::All`](crate::Reset::All) does the same as part of a frame, but keeps the gaze.
+    /// Discards history and held gaze positions: the next frame is processed like the first one. For another scene or
+    /// another user; no frame need follow. [`Reset::All`](crate::Reset::All) does the same as part of a frame, but
+    /// keeps the gaze. What was discarded never comes back, even if the next recorded frame is never submitted.
     pub fn forget(&mut self) {
         self.unplan();
         self.history.forget();
@@ -333,6 +338,9 @@ impl Afterimage {
     /// Records one frame into `encoder`: reads the frame's inputs and the history, and writes `target` (an output
     /// texture, or a [`Target`]) and the history. Recoverable problems are returned as warnings, which may be ignored.
     ///
+    /// From then on this is the previous frame. If `encoder` is dropped, or submitted after a later frame, the next
+    /// frame has no history; nothing else has to be done.
+    ///
     /// # Errors
     /// [`FrameError`] if a texture, buffer or value does not fit the context; then nothing was recorded and history is
     /// unchanged.
@@ -350,7 +358,7 @@ impl Afterimage {
         self.unplan();
         self.history.held = prepared.held;
         if self.desc.settings.history_layout() != HistoryLayout::Nothing {
-            self.history.swap();
+            self.history.finish(device, encoder);
         }
         Ok(prepared.recorded)
     }
@@ -536,7 +544,7 @@ impl Afterimage {
             after.push(held.with(view));
             recorded.note_gaze(i, view, held.gaze_px);
         }
-        let uniforms = FrameUniforms::new(&self.desc, frame, target, &after, self.history.is_filled());
+        let uniforms = FrameUniforms::new(&self.desc, frame, target, &after, self.history.past_frame());
         Prepared { uniforms, held: after, recorded }
     }
 }

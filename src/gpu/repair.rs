@@ -9,7 +9,7 @@ use super::Variant;
 use super::buffer::filled;
 use super::compute::{ComputeShader, float_texture, storage_buffer, storage_texture, uint_texture, uniform};
 use super::history::array_view;
-use super::method_pass::{Placeholders, input_overrides};
+use super::method_pass::{PAST_FRAME_BINDING, Placeholders, input_overrides};
 use super::stage::Job;
 use super::textures::Batch;
 use crate::frame::ContextDesc;
@@ -107,7 +107,13 @@ impl RepairPasses {
     ) -> Self {
         // Numbers in `inputs`, `kept_history`, `lattices`, `repair_state`, `repair_list` and the passes.
         let depth_to_trust = (2..5).map(|number| (number, float_texture()));
-        let own = [(8, uint_texture()), (17, uniform()), (18, storage_texture(FORMAT)), (19, storage_buffer(false))];
+        let own = [
+            (8, uint_texture()),
+            (17, uniform()),
+            (18, storage_texture(FORMAT)),
+            (19, storage_buffer(false)),
+            (PAST_FRAME_BINDING, uniform()),
+        ];
         let key_bindings: Vec<_> = std::iter::once((0, uniform())).chain(depth_to_trust).chain(own).collect();
         let threshold_bindings = [(0, uniform()), (19, storage_buffer(false)), (20, storage_buffer(false))];
         let mask_bindings = [
@@ -199,14 +205,15 @@ impl RepairPasses {
         let inputs = [job.frame.depth, job.frame.motion, job.frame.trust]
             .map(|textures| textures.map_or_else(|| self.absent.float.clone(), |textures| textures.bind(&batch)));
         let uniforms = job.uniforms.buffer(device, first, 0);
-        let past = &job.history.split().0.views[0];
+        let past = job.history.split().0;
         let resources = std::iter::once(uniforms.as_entire_binding())
             .chain(inputs.iter().map(BindingResource::TextureView))
             .chain([
-                BindingResource::TextureView(past),
+                BindingResource::TextureView(&past.views[0]),
                 lattices.as_entire_binding(),
                 BindingResource::TextureView(&self.quads.keys),
                 self.quads.states[view].as_entire_binding(),
+                past.frame.as_entire_binding(),
             ]);
         self.key.group(device, resources)
     }

@@ -3,8 +3,8 @@
 
 use super::buffer::filled;
 use super::compute::{ComputeShader, float_texture, storage_texture, uint_texture, uniform};
-use super::history::array_view;
-use super::method_pass::{Placeholders, input_overrides};
+use super::history::{Planes, array_view};
+use super::method_pass::{PAST_FRAME_BINDING, Placeholders, input_overrides};
 use super::stage::{Job, Passes};
 use super::textures::{Batch, batches};
 use super::uniforms::{LatticeUniforms, SparseUniforms, ViewLattices};
@@ -55,6 +55,7 @@ impl SamplePasses {
             (11, uint_texture()),
             (17, uniform()),
             (18, storage_texture(FORMAT)),
+            (PAST_FRAME_BINDING, uniform()),
         ];
         let bindings: Vec<_> = std::iter::once((0, uniform())).chain(color_to_trust).chain(own).collect();
         let [observed, lights] = [(); 2].map(|()| array_view(&results(device, desc)));
@@ -88,7 +89,7 @@ impl Passes for SamplePasses {
         let Some(lattices) = &job.lattices else { return };
         let (desc, variant) = (*desc, *variant);
         let overrides = overrides(desc, variant);
-        let past = &history.split().0.views;
+        let Planes { views: past, frame: past_frame, .. } = history.split().0;
         let past_noise = past.get(1).unwrap_or(&self.absent.word);
         for batch in batches(frame.views.len(), variant.regions) {
             let optional = |textures: Option<Textures<'_>>| {
@@ -116,6 +117,7 @@ impl Passes for SamplePasses {
                             BindingResource::TextureView(past_noise),
                             lattices.as_entire_binding(),
                             BindingResource::TextureView(written),
+                            past_frame.as_entire_binding(),
                         ]);
                     let group = shader.group(device, resources);
                     shader.dispatch(device, pass, overrides, &group, *points, batch.views.len() as u32);

@@ -1,6 +1,7 @@
 //! Uniforms of a frame. A test checks order, offsets and sizes against the WGSL.
 
 use super::buffer::filled;
+use super::history::NO_FRAME;
 use super::{Frame, Target, Textures};
 use crate::frame::{ContextDesc, Reset};
 use crate::method::{HistoryLayout, inv_density_at_fovea, smr_params, wrs_params};
@@ -18,8 +19,8 @@ pub const MAX_VIEWS: usize = 4;
 pub struct FrameUniforms {
     /// Width and height of a view in pixels.
     pub size: [u32; 2],
-    /// 1 without history, otherwise 0.
-    pub reset: u32,
+    /// Number of the frame that history must be of, or `NO_FRAME`.
+    pub past_frame: u32,
     /// Low word of the frame counter.
     pub frame_low: u32,
     /// Radius of the fovea in degrees.
@@ -66,14 +67,14 @@ pub struct FrameUniforms {
 }
 
 impl FrameUniforms {
-    /// Uniforms of a frame and its target, if it has one. `held`: state of the views after this frame. `has_history`:
-    /// whether a frame was recorded before.
+    /// Uniforms of a frame and its target, if it has one. `held`: state of the views after this frame. `past_frame`:
+    /// number of the previous frame, or [`NO_FRAME`].
     pub(super) fn new(
         desc: &ContextDesc,
         frame: &Frame<'_>,
         target: Option<&Target<'_>>,
         held: &[Held],
-        has_history: bool,
+        past_frame: u32,
     ) -> Self {
         let settings = &desc.settings;
         let (wrs, smr) = (wrs_params(settings), smr_params(settings));
@@ -81,7 +82,7 @@ impl FrameUniforms {
         let test = settings.depth_test.unwrap_or_default();
         let mut uniforms = Self {
             size: desc.size_px,
-            reset: u32::from(frame.reset != Reset::None || !has_history),
+            past_frame: if frame.reset == Reset::None { past_frame } else { NO_FRAME },
             frame_low: frame.index as u32,
             fovea_radius_deg: settings.foveation.fovea_radius_deg(),
             inv_density_at_fovea: inv_density_at_fovea(settings),

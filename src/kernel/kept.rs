@@ -8,26 +8,22 @@
 //! |---|---|---|
 //! | 0 | 0-26 | red, green, blue: 9 bits each, multiples of 2^(exponent - 24) |
 //! | 0 | 27-31 | exponent that the three share |
-//! | 1 | 0-5 | level of detail, as in [`surface`](super::surface) |
+//! | 1 | 0-5 | code of the level of detail, as in [`surface`](super::surface) |
 //! | 1 | 6-19 | disparity: [`disparity_code`] without its last two bits |
 //! | 1 | 20-25 | x of the place, in 1/24 pixel, plus 32 |
 //! | 1 | 26-31 | y of the place |
 //!
-//! Packing an unpacked sample gives the same words.
+//! Packing an unpacked sample gives the same words. All zeros are an empty texel.
 
 use super::pack::{disparity_code, disparity_value};
-use super::surface::MAX_LOD;
+use super::surface::{EMPTY_LOD, LOD_STEPS, MAX_LOD, lod_value};
 use glam::{Vec2, Vec3};
 
 /// Largest stored color: 511/512 of 2^16.
 pub const MAX_COLOR: f32 = 65408.0;
 
-/// Code of the level of detail of an empty texel.
-const EMPTY: u32 = 63;
 /// Smallest exponent of the largest channel; a smaller channel is stored with fewer bits.
 const SMALLEST_EXPONENT: u32 = 111;
-/// Stored steps a level of detail.
-const LOD_STEPS: f32 = 7.0;
 /// Stored steps a pixel of a sample's place.
 const PLACE_STEPS: f32 = 24.0;
 
@@ -119,7 +115,7 @@ pub fn unpack_place(bits: u32) -> f32 {
 /// Packs a sample. The color must not be NaN.
 #[inline]
 pub fn pack_kept(s: Kept) -> [u32; 2] {
-    let lod = if s.lod < 0.0 { EMPTY } else { (s.lod.min(MAX_LOD) * LOD_STEPS + 0.5) as u32 };
+    let lod = if s.lod < 0.0 { EMPTY_LOD } else { (s.lod.min(MAX_LOD) * LOD_STEPS + 1.5) as u32 };
     let disparity = disparity_code(s.disparity);
     // The last code stands for an unknown disparity.
     let disparity = if disparity == 0xffff { 0x3fff } else { ((disparity + 2) >> 2).min(0x3ffe) };
@@ -135,7 +131,7 @@ pub fn unpack_kept(words: [u32; 2]) -> Kept {
 /// Whether a texel is empty.
 #[inline]
 pub fn is_empty(words: [u32; 2]) -> bool {
-    words[1] & 63 == EMPTY
+    words[1] & 63 == EMPTY_LOD
 }
 
 /// Word for [`has_code`](super::resample::has_code), with the code of a sample's disparity in its high half.
@@ -151,7 +147,7 @@ pub fn unpack_full(words: [u32; 2]) -> Kept {
     Kept {
         color: unpack_color(words[0]),
         // The limit keeps compilers from merging this factor with later ones.
-        lod: ((words[1] & 63) as f32 * (1.0 / LOD_STEPS)).min(MAX_LOD),
+        lod: lod_value(words[1] & 63).min(MAX_LOD),
         disparity: if disparity == 0x3fff { -1.0 } else { disparity_value(disparity << 2) },
         place_px: Vec2::new(unpack_place(words[1] >> 20), unpack_place(words[1] >> 26)),
     }

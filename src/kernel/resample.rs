@@ -1,7 +1,7 @@
 //! Resampling of stored surfaces at positions between texels.
 
 use super::pack::disparity_code;
-use super::surface::{EMPTY_LOD, LOD_STEPS, Surface, lod_code, surface_color};
+use super::surface::{EMPTY_LOD, Surface, lod_code, lod_value, surface_color};
 use glam::Vec3;
 
 /// Relative difference of disparity within which texels are filtered together: wide enough for slopes, narrow enough
@@ -158,7 +158,7 @@ pub struct Tap {
 pub fn surface_tap(words: [u32; 2], codes: [u32; 2], any_code: bool) -> Tap {
     let lod = lod_code(words);
     let same = if any_code { lod != EMPTY_LOD } else { has_code(words[1], codes) };
-    Tap { color: surface_color(words), lod: lod as f32 * (1.0 / LOD_STEPS), same }
+    Tap { color: surface_color(words), lod: lod_value(lod), same }
 }
 
 /// Sums over the taps around a position.

@@ -4,21 +4,22 @@
 //! |---|---|---|
 //! | 0 | 0-13 | red, [`float14_bits`] |
 //! | 0 | 14-27 | green |
-//! | 0 | 28-31 | level of detail, low 4 bits of its code |
+//! | 0 | 28-31 | level of detail, low 4 bits of its code: 0 for an empty texel, otherwise 1 + 7 x level |
 //! | 1 | 0-13 | blue |
 //! | 1 | 14-15 | level of detail, high 2 bits |
 //! | 1 | 16-31 | disparity, [`disparity_code`] |
 //!
-//! Packing an unpacked sample gives the same words.
+//! Packing an unpacked sample gives the same words. All zeros are an empty texel, as textures are before anything is
+//! written to them.
 
 use super::pack::{disparity_code, disparity_value, half_bits, half_value};
 use glam::{Vec3, Vec4};
 
 /// Code of the level of detail of an empty texel.
-pub const EMPTY_LOD: u32 = 63;
+pub const EMPTY_LOD: u32 = 0;
 
-/// Words of an empty texel.
-const EMPTY_SURFACE: [u32; 2] = [0xf000_0000, 0xffff_c000];
+/// Words of an empty texel, with the code of an unknown disparity.
+const EMPTY_SURFACE: [u32; 2] = [0, 0xffff_0000];
 
 /// Largest 14-bit float.
 pub const MAX_FLOAT14: f32 = 65472.0;
@@ -73,17 +74,23 @@ pub fn pack_surface(s: Surface) -> [u32; 2] {
     if s.lod < 0.0 {
         return EMPTY_SURFACE;
     }
-    let lod = (s.lod.min(MAX_LOD) * LOD_STEPS + 0.5) as u32;
+    let lod = (s.lod.min(MAX_LOD) * LOD_STEPS + 1.5) as u32;
     [
         float14_bits(s.color.x) | float14_bits(s.color.y) << 14 | lod << 28,
         float14_bits(s.color.z) | (lod >> 4) << 14 | disparity_code(s.disparity) << 16,
     ]
 }
 
-/// Code of the level of detail, 63 for an empty texel.
+/// Code of the level of detail; [`EMPTY_LOD`] for an empty texel.
 #[inline]
 pub fn lod_code(words: [u32; 2]) -> u32 {
     words[0] >> 28 | ((words[1] >> 10) & 0x30)
+}
+
+/// Level of detail of a code. That of an empty texel is finite and has no meaning.
+#[inline]
+pub fn lod_value(code: u32) -> f32 {
+    code.wrapping_sub(1) as f32 * (1.0 / LOD_STEPS)
 }
 
 /// Color of a sample.
@@ -100,11 +107,7 @@ pub fn unpack_surface(words: [u32; 2]) -> Surface {
     if lod == EMPTY_LOD {
         return Surface::EMPTY;
     }
-    Surface {
-        color: surface_color(words),
-        lod: lod as f32 * (1.0 / LOD_STEPS),
-        disparity: disparity_value(words[1] >> 16),
-    }
+    Surface { color: surface_color(words), lod: lod_value(lod), disparity: disparity_value(words[1] >> 16) }
 }
 
 /// Texel of level 0 of the mip chain: the color and a coverage of 1; zeros for an empty texel.

@@ -34,7 +34,7 @@ fn view_uniforms() -> (Vec<(String, usize)>, usize) {
 fn constants_have_one_layout() {
     let composed = SHADERS.compose("wrs_pass");
     let module = naga::front::wgsl::parse_str(&composed.source).unwrap();
-    let frame = rust!(FrameUniforms: size, reset, frame_low, fovea_radius_deg, inv_density_at_fovea, exponential_survival,
+    let frame = rust!(FrameUniforms: size, past_frame, frame_low, fovea_radius_deg, inv_density_at_fovea, exponential_survival,
         gate_offset, inv_gate_divisor, depth_relative, depth_slope_px, exposure, motion_scale, mid_radius_deg,
         blend_deg, coarse_mid, coarse_far, smr_accumulate, smr_accumulate_tolerance, smr_tolerance, first_view, lattice,
         mip_levels, views);

@@ -14,5 +14,6 @@ mod reservoirs;
 pub mod rig;
 mod sparse;
 mod sparse_hard;
+mod submission;
 mod surfaces;
 mod surfaces_hard;

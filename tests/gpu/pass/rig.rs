@@ -24,6 +24,8 @@ pub struct Rig {
     pub exposure: Exposure,
     /// Whether inputs and outputs are regions of larger textures, one texture a view, in the frames to come.
     pub scattered: bool,
+    /// Whether the encoders of frames and resizes to come are dropped instead of submitted.
+    pub drops: bool,
     /// Debug view to draw beside the next frames, and what it showed.
     pub beside: Option<DebugView>,
     textures: [Texture; 9],
@@ -104,6 +106,7 @@ impl Rig {
             gpu: afterimage_testing::gpu::validated(&device, "new", made).unwrap(),
             textures: make_textures(&device, &context),
             scattered: false,
+            drops: false,
             beside: None,
             counters: device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("counters"),
@@ -131,7 +134,7 @@ impl Rig {
         afterimage_testing::gpu::validated(&self.device, "resize", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
             self.gpu.resize_keeping_history(&self.device, &mut encoder, size).unwrap();
-            self.queue.submit([encoder.finish()]);
+            submit(&self.queue, self.drops, encoder);
         });
         self.remake_textures(size);
     }
@@ -275,7 +278,7 @@ impl Rig {
                 Some(view) => self.gpu.record_view(&self.device, &mut encoder, &frame, target, view).unwrap(),
             };
             all.iter().skip(OUTPUT).for_each(|output| output.copy(&mut encoder, false));
-            self.queue.submit([encoder.finish()]);
+            submit(&self.queue, self.drops, encoder);
         });
     }
 
@@ -365,6 +368,13 @@ impl Rig {
 
     fn read_texture(&self, texture: &Texture) -> Vec<u32> {
         afterimage_testing::gpu::read_texture(&self.device, &self.queue, texture)
+    }
+}
+
+/// Submits what an encoder has, or drops it.
+fn submit(queue: &Queue, drops: bool, encoder: wgpu::CommandEncoder) {
+    if !drops {
+        queue.submit([encoder.finish()]);
     }
 }
 

@@ -134,7 +134,7 @@ pub const PROBES: &[Probe] = &[
         }
     })),
     probe!(kept::unpack_kept, |rows| rows.random(|d, row| row.extend([bits(d), bits(d)]))),
-    probe!(kept::is_empty, |rows| rows.random(|d, row| row.extend([bits(d), bits(d) | (d.bits() & 63)]))),
+    probe!(kept::is_empty, |rows| rows.random(|d, row| row.extend([bits(d), bits(d) & (d.bits() | !63)]))),
     probe!(kept::code_word, |rows| rows.random(|d, row| row.extend([bits(d), bits(d)]))),
     probe!(kept::unpack_full, |rows| rows.random(|d, row| row.extend([bits(d), bits(d)]))),
     probe!(kept::moved_kept, |rows| rows.random(|d, row| {

@@ -34,7 +34,7 @@ fn push_tap(d: &mut Draws, row: &mut Vec<u32>, color: [f32; 3], same: bool) {
 /// Two words of arbitrary bits; with every code of a level of detail, also that of an empty texel.
 fn packed_rows(rows: Rows) -> Rows {
     let edges = [words(), vec![0x3dff, 0x3e00, 0x3fff, 0xc000, 0xf7ff_fdff, 0xffff_0000]].concat();
-    let empty = |d: &mut Draws, row: &mut Vec<u32>| row.extend([bits(d) | 0xf000_0000, bits(d) | 0xc000]);
+    let empty = |d: &mut Draws, row: &mut Vec<u32>| row.extend([bits(d) & 0x0fff_ffff, bits(d) & !0xc000]);
     rows.cross(&[&edges, &edges]).random(|d, row| row.extend([bits(d), bits(d)])).random_of("empty", empty)
 }
 
@@ -93,6 +93,7 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(surface::unpack_surface, packed_rows),
     probe!(surface::lod_code, packed_rows),
+    probe!(surface::lod_value, |rows| rows.cross(&[&(0..64).collect::<Vec<_>>()])),
     probe!(surface::surface_color, packed_rows),
     probe!(surface::mip_texel, packed_rows),
     probe!(surface::round_mip, |rows| {
@@ -149,7 +150,7 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(resample::surface_tap, |rows| {
         rows.random(|d, row| {
-            let words = [bits(d) | [0, 0xf000_0000][d.bits() as usize % 2], bits(d) | 0xc000];
+            let words = [bits(d) & [u32::MAX, 0x0fff_ffff][d.bits() as usize % 2], bits(d) & !0xc000];
             row.extend(words);
             row.extend([(words[1] >> 16).saturating_sub(d.bits() % 4), d.bits() % 4, d.bits() % 2]);
         })

@@ -26,7 +26,7 @@ impl Row {
 }
 
 /// All rows, in order.
-pub const ROWS: [Row; 102] = [
+pub const ROWS: [Row; 103] = [
     // Reservoir arithmetic
     row(
         "H01",
@@ -486,4 +486,10 @@ pub const ROWS: [Row; 102] = [
         BOTH,
     )
     .but("where light changes by 1.5, history is not coarse for it: then nothing is planned, and repair changes nothing."),
+    row(
+        "H103",
+        "recorded frames, resizes and cuts that never run (dropped encoders), alone and in a row, or run out of order",
+        "as if only what ran had been recorded, with a reset after what did not, bit for bit; zeroed history is empty",
+        GPU,
+    ),
 ];

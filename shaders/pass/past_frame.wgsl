@@ -1,0 +1,11 @@
+//#use inputs
+// Whether the frame has history: whether the stored textures are those of the previous frame. They are not if that
+// frame never ran, because its encoder was dropped. src/gpu/history.rs writes the number; the CPU has no twin, because
+// it processes a frame at once.
+
+// Number of the frame that wrote the stored textures.
+@group(0) @binding(21) var<uniform> stored_frame: u32;
+
+fn has_history() -> bool {
+    return stored_frame == frame.past_frame;
+}

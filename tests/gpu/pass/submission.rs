@@ -1,0 +1,186 @@
+//! Recorded frames that never run, or run late: what the device has of history decides, not what was recorded.
+
+use super::rig::{Rig, View, make_texture, noise_view};
+use super::sparse;
+use crate::settings::ungated_of;
+use crate::surfaces_hard;
+use afterimage::gpu::Frame;
+use afterimage::shader::SHADERS;
+use afterimage::wgpu::{CommandBuffer, Texture, TextureFormat, TextureUsages};
+use afterimage::{ContextDesc, Image, MethodKind, Reset, Sampler, Settings, Wrs};
+use afterimage_testing::{Draws, holds};
+
+const SIZE: [u32; 2] = [37, 23];
+const METHODS: [MethodKind; 4] = [MethodKind::Wrs, MethodKind::Smr, MethodKind::Taa, MethodKind::Taau];
+/// The check of the frame number, and what is there without it.
+const CHECK: (&str, &str) = ("stored_frame == frame.past_frame", "frame.past_frame != NO_FRAME");
+
+/// Every layout of history.
+fn all_settings() -> Vec<Settings> {
+    let keyed = crate::settings::wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() });
+    let of_whole_frames = METHODS.map(ungated_of).into_iter().chain([keyed, Settings::weighted(), Settings::traced()]);
+    let of_sparse = [MethodKind::Smr, MethodKind::Taau].map(sparse::settings);
+    let noisy = Settings { noisy: true, ..sparse::settings(MethodKind::Smr) };
+    of_whole_frames.chain(of_sparse).chain([noisy]).collect()
+}
+
+/// A view of the rig's size that moves, over two depths; foveated, or sparse if the settings are.
+fn view(rig: &Rig, index: u64) -> View {
+    let (size, settings) = (rig.context.size_px, rig.context.settings);
+    let gaze_px = [(index * 11 % 37) as f32, (index * 7 % 23) as f32];
+    let mut view = noise_view(&format!("submission {index}"), &rig.context);
+    view.facts.gaze = afterimage::Gaze::At { px: gaze_px };
+    view.motion = Some(Image::from_fn(size, |[x, _]| if x % 16 < 8 { [1.0, 0.0] } else { [0.5, -0.25] }));
+    view.noise = settings.noisy.then(|| Image::filled(size, [0.05, 2.0]));
+    if settings.foveation.filter == afterimage::Filter::Sparse {
+        return view.foveated(&settings.foveation, gaze_px, index);
+    }
+    view
+}
+
+/// Frames, resizes and cuts at random, of which the device gets some. The CPU gets these alone, and a reset where the
+/// frame before was dropped. Returns the number of frames compared, of those after a dropped one, and of differences.
+fn run(rig: &mut Rig, name: &str, frames: u64) -> [usize; 3] {
+    let mut draws = Draws::new(name);
+    let (mut is_broken, mut compared, mut after_drop, mut differences) = (false, 0, 0, 0);
+    for index in 0..frames {
+        rig.drops = draws.uniform() < 0.3;
+        match draws.bits() % 12 {
+            0 => {
+                rig.gpu.forget();
+                rig.cpu.forget();
+            }
+            1 => rig.resize([SIZE, [18, 40]][draws.bits() as usize % 2]),
+            2 => {
+                rig.resize_keeping_history([SIZE, [40, 18]][draws.bits() as usize % 2]);
+                is_broken |= rig.drops;
+            }
+            _ => {}
+        }
+        let reset = if draws.bits() % 10 == 0 { Reset::All } else { Reset::None };
+        let view = view(rig, index);
+        let gpu = rig.on_gpu(index, reset, std::slice::from_ref(&view));
+        if rig.drops {
+            is_broken = true;
+            continue;
+        }
+        let (cpu, _) = rig.on_cpu(index, if is_broken { Reset::All } else { reset }, &[view]);
+        compared += 1;
+        after_drop += usize::from(is_broken);
+        differences += usize::from(gpu != cpu);
+        is_broken = false;
+    }
+    [compared, after_drop, differences]
+}
+
+#[test]
+fn h103_a_frame_after_one_that_never_ran_has_no_history() {
+    let (mut frames, mut alone) = (0, 0);
+    for (i, settings) in all_settings().into_iter().enumerate() {
+        let desc = ContextDesc::new(SIZE);
+        let Some(mut rig) = Rig::new(desc, settings) else { return };
+        let [compared, after_drop, differences] = run(&mut rig, &format!("dropped {i}"), 48);
+        assert_eq!(differences, 0, "{settings:?}");
+        assert!(after_drop > 5);
+        (frames, alone) = (frames + compared, alone + after_drop);
+        // Planted error: history is read as the host believes it to be.
+        let source = SHADERS.compose(settings_pass(&settings)).source;
+        assert!(source.contains(CHECK.0));
+        let mut wrong = Rig::with_shader(desc, settings, &source.replace(CHECK.0, CHECK.1)).unwrap();
+        assert!(run(&mut wrong, &format!("dropped {i}"), 48)[2] > 2, "{settings:?}: the planted error");
+    }
+    holds!(
+        "H103",
+        Gpu,
+        "{frames} frames of ten settings, {alone} of them after dropped frames, resizes and cuts: as if only what ran had been recorded, with a reset, bit for bit"
+    );
+}
+
+/// Name of the method's pass.
+fn settings_pass(settings: &Settings) -> &'static str {
+    let is_sparse = settings.foveation.filter == afterimage::Filter::Sparse;
+    match settings.method.kind() {
+        MethodKind::Smr if is_sparse => "sparse_pass",
+        MethodKind::Smr => "smr_pass",
+        MethodKind::Taa => "taa_pass",
+        MethodKind::Taau => "taau_pass",
+        _ => "wrs_pass",
+    }
+}
+
+/// Without the check, too: where nothing was ever written, nothing is stored.
+#[test]
+fn zeroed_history_is_empty() {
+    for settings in all_settings() {
+        let source = SHADERS.compose(settings_pass(&settings)).source.replace(CHECK.0, CHECK.1);
+        let desc = ContextDesc::new(SIZE);
+        let Some(mut rig) = Rig::with_shader(desc, settings, &source) else { return };
+        let is_sparse = settings_pass(&settings) == "sparse_pass";
+        if is_sparse {
+            let sources = ["sparse_observe_pass", "sparse_light_pass"]
+                .map(|name| SHADERS.compose(name).source.replace(CHECK.0, CHECK.1));
+            rig.gpu.set_sample_shaders(&rig.device, &sources[0], &sources[1]);
+        }
+        rig.drops = true;
+        let views = [view(&rig, 0)];
+        rig.on_gpu(0, Reset::None, &views);
+        rig.drops = false;
+        let first = rig.on_gpu(1, Reset::None, &views);
+        let (expected, _) = rig.on_cpu(1, Reset::None, &views);
+        assert!(first.shown == expected.shown && first.words == expected.words, "{settings:?}");
+        assert_ne!(first.stats, expected.stats, "history was looked at: it was empty, not reset");
+    }
+}
+
+/// A recorded frame that was not submitted yet.
+fn recorded(rig: &mut Rig, index: u64, [color, output]: &[Texture; 2]) -> CommandBuffer {
+    let views = [view(rig, index)];
+    let texels: Vec<f32> = views[0].color.pixels().iter().flat_map(|c| [c[0], c[1], c[2], 1.0]).collect();
+    afterimage_testing::gpu::write_layer(&rig.queue, color, 0, bytemuck::cast_slice(&texels));
+    let facts = [views[0].facts];
+    let mut encoder = rig.device.create_command_encoder(&Default::default());
+    rig.gpu.record(&rig.device, &mut encoder, &Frame::new(color, &facts, index), output).unwrap();
+    encoder.finish()
+}
+
+/// What `order` of six recorded frames shows, and the CPU for the frames `expected`, each with or without history.
+#[track_caller]
+fn ordered(method: MethodKind, order: &[&[usize]], expected: &[(u64, Reset)]) {
+    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), surfaces_hard::settings(method)) else { return };
+    let texture = |usage| make_texture(&rig.device, &rig.context, TextureFormat::Rgba32Float, usage);
+    let textures = [0; 6].map(|_| {
+        let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+        [texture(read), texture(TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC)]
+    });
+    let mut buffers: Vec<_> = (0..).zip(&textures).map(|(i, t)| Some(recorded(&mut rig, i, t))).collect();
+    for submission in order {
+        let submission: Vec<_> = submission.iter().map(|&i| buffers[i].take().unwrap()).collect();
+        rig.queue.submit(submission);
+    }
+    for &(index, reset) in expected {
+        let view = view(&rig, index).with(|view| (view.depth, view.motion) = (None, None));
+        let (cpu, _) = rig.on_cpu(index, reset, &[view]);
+        let shown = afterimage_testing::gpu::read_texture(&rig.device, &rig.queue, &textures[index as usize][1]);
+        let shown: Vec<[u32; 3]> = shown.chunks_exact(4).map(|c| [c[0], c[1], c[2]]).collect();
+        assert!(shown == cpu.shown, "{method:?}, frame {index} of {order:?}");
+    }
+}
+
+#[test]
+fn frames_that_run_out_of_order_have_no_history() {
+    use Reset::{All, None};
+    for method in METHODS {
+        // In order: in one submission, in three, and in one of several command buffers.
+        let all = [0, 1, 2, 3, 4, 5].map(|i| (i, None));
+        ordered(method, &[&[0, 1, 2, 3, 4, 5]], &all);
+        ordered(method, &[&[0, 1], &[2], &[3, 4, 5]], &all);
+        // The third before the second: both are without history, and the fourth continues the third.
+        ordered(method, &[&[0, 2], &[1, 3, 4]], &[(0, None), (2, All), (3, None), (4, None)]);
+        ordered(method, &[&[0], &[2, 1, 3, 4]], &[(1, All)]);
+        // The second a whole turn late, over what the fourth stored.
+        ordered(method, &[&[0], &[2, 3], &[1], &[4, 5]], &[(2, All), (3, None), (4, All), (5, None)]);
+        // Two and three in a row that never run.
+        ordered(method, &[&[0], &[3], &[4, 5]], &[(0, None), (3, All), (4, None), (5, None)]);
+        ordered(method, &[&[0, 4, 5]], &[(0, None), (4, All), (5, None)]);
+    }
+}
