@@ -196,6 +196,8 @@ pub enum FrameError {
 pub enum FrameValue {
     /// Color input of a foveation that the receiver does not process.
     Color,
+    /// [`FrameInputs::depth`](crate::FrameInputs::depth).
+    Depth,
     /// [`ViewFrame::depth`](crate::ViewFrame::depth).
     DepthConvention,
     /// [`ViewFrame::jitter_px`](crate::ViewFrame::jitter_px).
@@ -229,6 +231,7 @@ impl Display for FrameValue {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         f.write_str(match *self {
             Self::Color => "color",
+            Self::Depth => "depth",
             Self::DepthConvention => "depth convention",
             Self::Jitter => "jitter_px",
             Self::VisibleBounds => "visible_px",

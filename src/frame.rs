@@ -1,13 +1,14 @@
 //! Descriptions of a context, of a frame and of its views, for both executors.
 
+use crate::camera::{ORTHOGRAPHIC_TURN, camera_motion, checked_pose, pose_motion};
 use crate::convention::{DepthConvention, MotionConvention};
 use crate::error::{FrameError, FrameValue, SettingsError};
 use crate::foveation::Filter;
-use crate::geometry::{ViewGeometry, camera_motion, checked_pose, pose_motion};
+use crate::geometry::ViewGeometry;
 use crate::lattice::Lattices;
 use crate::method::smr_sparse_repair;
 use crate::settings::{Repair, Settings};
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use std::fmt::Debug;
 
 /// Largest accepted jitter of a projection along an axis, in pixels.
@@ -62,7 +63,7 @@ impl Gaze {
     /// units of `origin`. Use the distance of the surface under the gaze, or the distance at which the rays of the two
     /// eyes meet; infinite is allowed. `world_from_view`: pose of the view, a rotation and a translation by columns; y
     /// up, -z forward, as in OpenXR. A ray, a distance or a pose that is not finite or not in that form counts as
-    /// [`Lost`](Self::Lost).
+    /// [`Lost`](Self::Lost). `T` is `f32` or `f64`: far from the world's origin a float holds no centimetres.
     ///
     /// ```
     /// use afterimage::Gaze;
@@ -74,9 +75,15 @@ impl Gaze {
     /// let far = Gaze::on_ray([0.0; 3], [0.0, 0.0, -1.0], f32::INFINITY, left_eye);
     /// assert_eq!(far, Gaze::Direction { view: [0.0, 0.0, 1.0] });
     /// ```
-    pub fn on_ray(origin: [f32; 3], direction: [f32; 3], distance: f32, world_from_view: [[f32; 4]; 4]) -> Self {
+    pub fn on_ray<T: Copy + Into<f64> + Debug>(
+        origin: [T; 3],
+        direction: [T; 3],
+        distance: f32,
+        world_from_view: [[T; 4]; 4],
+    ) -> Self {
         let Ok(pose) = checked_pose("world_from_view", world_from_view) else { return Self::Lost };
-        let (origin, direction) = (Vec3::from(origin).as_dvec3(), Vec3::from(direction).as_dvec3().normalize_or_zero());
+        let double = |vector: [T; 3]| DVec3::from(vector.map(Into::into));
+        let (origin, direction) = (double(origin), double(direction).normalize_or_zero());
         let view_from_world = pose.inverse();
         let seen = if distance == f32::INFINITY {
             view_from_world.transform_vector3(direction)
@@ -134,9 +141,13 @@ pub struct ViewFrame {
     /// Gaze position.
     pub gaze: Gaze,
     /// Camera motion: the matrix that transforms a point from this frame's view space (x right, y down, z forward) to
-    /// the previous frame's. Row-major, for column vectors; perspective views only. `None`: the depth test expects
-    /// unchanged distances, so that history is rejected on surfaces that the camera approaches or leaves fast.
-    /// [`moved`](Self::moved) computes it from an engine's matrices.
+    /// the previous frame's. Row-major, for column vectors. Lengths have the unit of depth. `None`: the depth test
+    /// expects unchanged distances, so that history is rejected on surfaces that the camera approaches or leaves fast.
+    /// [`moved`](Self::moved) and [`posed`](Self::posed) compute it from an engine's matrices.
+    ///
+    /// With [`DepthConvention::Orthographic`] only the motion along the view axis counts, and a camera that turns away
+    /// is refused. If vectors lack the camera's motion ([`MotionConvention::camera`]), it is required, except in frames
+    /// with [`Reset::All`].
     pub previous_from_current: Option<[[f32; 4]; 4]>,
     /// Jitter of the projection in pixels, for renderers that jitter it for antialiasing: a point that the projection
     /// without jitter puts at `p` is drawn at `p + jitter_px`; y down. (0, 0) without jitter.
@@ -180,7 +191,12 @@ impl ViewFrame {
     /// jitter.
     ///
     /// The matrices are right-handed with y up and -z forward, stored by columns (`to_cols_array_2d` of glam), for any
-    /// depth range, reversed and infinite ones, too. See [`ViewGeometry::from_projection`].
+    /// depth range, reversed and infinite ones, and oblique near planes, too. The previous frame may have another field
+    /// of view. A mirror's view may mirror, in both frames. See [`ViewGeometry::from_projection`].
+    ///
+    /// `T` is `f32` or `f64`. A float has steps of 0.06 at 1e6, so that the motion of a frame is lost there: far from
+    /// the world's origin give `f64`, or matrices whose world begins at a point near the camera, the same point for
+    /// both.
     ///
     /// ```
     /// # use afterimage::{Gaze, ViewFrame, ViewGeometry};
@@ -193,12 +209,12 @@ impl ViewFrame {
     /// ```
     ///
     /// # Errors
-    /// [`SettingsError`] if a matrix is not that of a perspective camera, is not finite, or cannot be inverted.
-    pub fn moved(
+    /// [`SettingsError`] if a matrix is not that of a perspective camera or is not finite, or if only one view mirrors.
+    pub fn moved<T: Copy + Into<f64> + Debug + PartialEq>(
         self,
-        clip_from_view: [[f32; 4]; 4],
-        clip_from_world: [[f32; 4]; 4],
-        previous_clip_from_world: [[f32; 4]; 4],
+        clip_from_view: [[T; 4]; 4],
+        clip_from_world: [[T; 4]; 4],
+        previous_clip_from_world: [[T; 4]; 4],
     ) -> Result<Self, SettingsError> {
         let matrix = camera_motion(clip_from_view, clip_from_world, previous_clip_from_world)?;
         Ok(Self { previous_from_current: Some(matrix), ..self })
@@ -207,6 +223,9 @@ impl ViewFrame {
     /// This view with the camera motion between two poses: the transforms `world_from_view` of this frame and of the
     /// previous one, each a rotation and a translation by columns; y up, -z forward, as in OpenXR. "Previous" is the
     /// last frame that was recorded, not the last one that was displayed.
+    ///
+    /// `T` is `f32` or `f64`. A float has steps of 0.06 at 1e6, so that the motion of a frame is lost there: far from
+    /// the world's origin give `f64`, or poses relative to a point near the camera, the same point for both.
     ///
     /// ```
     /// # use afterimage::{Gaze, ViewFrame, ViewGeometry};
@@ -220,11 +239,11 @@ impl ViewFrame {
     /// ```
     ///
     /// # Errors
-    /// [`SettingsError`] if a matrix is not a rotation and a translation of finite numbers.
-    pub fn posed(
+    /// [`SettingsError`] if a matrix is not a rotation and a translation of finite numbers, or mirrors.
+    pub fn posed<T: Copy + Into<f64> + Debug + PartialEq>(
         self,
-        world_from_view: [[f32; 4]; 4],
-        previous_world_from_view: [[f32; 4]; 4],
+        world_from_view: [[T; 4]; 4],
+        previous_world_from_view: [[T; 4]; 4],
     ) -> Result<Self, SettingsError> {
         let matrix = pose_motion(world_from_view, previous_world_from_view)?;
         Ok(Self { previous_from_current: Some(matrix), ..self })
@@ -276,17 +295,50 @@ impl ViewFrame {
         let Some(matrix) = self.previous_from_current else {
             return Ok(());
         };
-        if matches!(self.depth_convention(desc), DepthConvention::Orthographic { .. }) {
-            let expected = "None: rays of an orthographic view are not known here";
-            return refuse(FrameValue::CameraMotion, "given with orthographic depth".into(), expected);
+        if let Some(v) = matrix.iter().flatten().find(|v| !v.is_finite()) {
+            let expected = "finite numbers, or None if the camera's motion is not known";
+            return refuse(FrameValue::CameraMotion, format!("a matrix that holds {v}"), expected);
         }
-        match matrix.iter().flatten().find(|v| !v.is_finite()) {
-            Some(v) => {
-                let expected = "finite numbers, or None if the camera's motion is not known";
-                refuse(FrameValue::CameraMotion, format!("a matrix that holds {v}"), expected)
-            }
-            None => Ok(()),
+        let [x, y, z, _] = matrix[2];
+        let turns = [x, y, z - 1.0].iter().any(|v| v.abs() > ORTHOGRAPHIC_TURN);
+        if turns && matches!(self.depth_convention(desc), DepthConvention::Orthographic { .. }) {
+            let expected = "a third row (0, 0, 1, shift) with orthographic depth: where a pixel lies across the view is \
+                            not known in the unit of depth; or None";
+            return refuse(FrameValue::CameraMotion, "that of a camera that turns away".into(), expected);
         }
+        Ok(())
+    }
+
+    /// Checks what the context's motion convention and a depth input ask of a view. `is_cut`: whether no history is
+    /// read.
+    fn check_motion(&self, view: usize, desc: &ContextDesc, has_depth: bool, is_cut: bool) -> Result<(), FrameError> {
+        let convention = self.depth_convention(desc);
+        let refuse = |value, found, expected| Err(FrameError::Value { value, view, found, expected });
+        let is_buffer = matches!(convention, DepthConvention::Forward { .. } | DepthConvention::Reversed { .. });
+        if has_depth && is_buffer && self.geometry.is_oblique() {
+            let expected = "Linear: a depth buffer holds other values beyond an oblique near plane; give distances, or \
+                            no depth";
+            return refuse(FrameValue::DepthConvention, format!("{convention:?}"), expected);
+        }
+        if !desc.motion.camera.is_missing() || is_cut {
+            return Ok(());
+        }
+        if !has_depth {
+            let expected = "given: the camera's motion is added to vectors (MotionConvention::camera), for which \
+                            distances must be known";
+            return refuse(FrameValue::Depth, "None".into(), expected);
+        }
+        if matches!(convention, DepthConvention::Orthographic { .. }) {
+            let expected = "that of a perspective view, or CameraMotion::Included: the camera's motion is added to \
+                            vectors (MotionConvention::camera), and rays of an orthographic view are not known";
+            return refuse(FrameValue::DepthConvention, format!("{convention:?}"), expected);
+        }
+        if self.previous_from_current.is_none() {
+            let expected = "given, as by ViewFrame::moved or posed, because the camera's motion is added to vectors \
+                            (MotionConvention::camera); or Reset::All";
+            return refuse(FrameValue::CameraMotion, "None".into(), expected);
+        }
+        Ok(())
     }
 }
 
@@ -378,7 +430,8 @@ pub struct FrameInputs<'a, E: Executor> {
     pub color: E::Colors<'a>,
     /// Depth in the context's convention. On a GPU a depth format or `R32Float`. `None`: no depth test.
     pub depth: Option<E::Scalars<'a>>,
-    /// Motion vectors in the context's convention. On a GPU `Rg16Float`, `Rg32Float` or wider. `None`: no motion.
+    /// Motion vectors in the context's convention. On a GPU `Rg16Float`, `Rg32Float` or wider. `None`: nothing moves, or only the camera
+    /// ([`MotionConvention::camera`]).
     pub motion: Option<E::Vectors<'a>>,
     /// Trust mask: confidence in history, 0 to 1. 0 rejects history; use it for content that changes without motion
     /// vectors (video panels, particles, reflections). It is about 1 minus FSR2's reactive mask. On a GPU any float or
@@ -470,6 +523,7 @@ impl<'a, E: Executor> FrameInputs<'a, E> {
         }
         for (i, view) in self.views.iter().enumerate() {
             view.check(i, desc)?;
+            view.check_motion(i, desc, self.depth.is_some(), self.reset != Reset::None)?;
         }
         self.check_lattices(&desc.settings)?;
         self.exposure.check()

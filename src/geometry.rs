@@ -1,10 +1,11 @@
 //! View geometry: rays through pixels, and angles between them.
 
+use crate::camera::Projection;
 use crate::error::SettingsError;
 #[cfg(feature = "cpu")]
 use crate::image::Image;
 use crate::kernel::acuity;
-use glam::{DMat3, DMat4, DVec4, Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 use std::f32::consts::FRAC_PI_2;
 
 /// Geometry of a view: the map from pixels to rays of a perspective camera, symmetric or off-axis (one eye of a
@@ -32,6 +33,7 @@ pub struct ViewGeometry {
     size_px: [u32; 2],
     scale: Vec2,
     offset: Vec2,
+    is_oblique: bool,
 }
 
 impl ViewGeometry {
@@ -72,7 +74,7 @@ impl ViewGeometry {
         let size = Vec2::new(size_px[0].max(1) as f32, size_px[1].max(1) as f32);
         let scale = Vec2::new(span("tan_x", tan_x)?, span("tan_y", tan_y)?) / size;
         let offset = Vec2::new(tan_x[0], tan_y[0]) + 0.5 * scale;
-        Ok(Self { size_px, scale, offset })
+        Ok(Self { size_px, scale, offset, is_oblique: false })
     }
 
     /// A view of `size_px` from the angles at its edges in radians, as OpenXR gives an eye's field of view (`XrFovf`):
@@ -103,8 +105,11 @@ impl ViewGeometry {
     }
 
     /// A view of `size_px` from an engine's projection matrix, without jitter: right-handed with y up and -z forward,
-    /// stored by columns (`to_cols_array_2d` of glam). It may be symmetric or off-axis. The depth range does not
-    /// matter: 0 to 1 or -1 to 1, reversed or infinite.
+    /// stored by columns (`to_cols_array_2d` of glam). It may be symmetric or off-axis. The row of depth does not
+    /// matter: 0 to 1 or -1 to 1, reversed, infinite, or with the oblique near plane of a mirror or a portal. The depth
+    /// buffer of an oblique projection is refused later, because its values depend on x and y, too: give distances
+    /// ([`DepthConvention::Linear`](crate::DepthConvention::Linear)) instead. What rounding leaves of a product with a
+    /// view and its inverse is accepted.
     ///
     /// ```
     /// use afterimage::ViewGeometry;
@@ -117,15 +122,19 @@ impl ViewGeometry {
     /// ```
     ///
     /// # Errors
-    /// [`SettingsError`] if the matrix is not that of a perspective camera: orthographic, left-handed or y down (negate
-    /// the row or column that is flipped), rotated, not finite.
+    /// [`SettingsError`] if the matrix is not that of a perspective camera: orthographic, left-handed, y down or
+    /// mirrored (negate the row or column that is flipped), rotated, not finite.
     pub fn from_projection(size_px: [u32; 2], clip_from_view: [[f32; 4]; 4]) -> Result<Self, SettingsError> {
-        let [x, y, z, _] = checked_projection(clip_from_view)?;
-        // A ray (t, u, -1) has the clip coordinates (x.0 t - z.0, y.1 u - z.1) and w = 1; clip y is up, u is up.
-        let tangent = |clip: f32, scale: f32, shift: f32| (clip + shift) / scale;
-        let tan_x = [tangent(-1.0, x[0], z[0]), tangent(1.0, x[0], z[0])];
-        let tan_y = [-tangent(1.0, y[1], z[1]), -tangent(-1.0, y[1], z[1])];
-        Self::off_axis(size_px, tan_x, tan_y)
+        let Projection { scale, shift, is_oblique } = Projection::of(clip_from_view)?;
+        // A ray (t, u, -1) has the clip coordinates (scale.x t - shift.x, scale.y u - shift.y) and w = 1; both y are up.
+        let tangent = |i: usize, clip: f64| ((clip + shift[i]) / scale[i]) as f32;
+        let view = Self::off_axis(size_px, [tangent(0, -1.0), tangent(0, 1.0)], [-tangent(1, 1.0), -tangent(1, -1.0)])?;
+        Ok(Self { is_oblique, ..view })
+    }
+
+    /// Whether depth values of the projection depend on x and y, too.
+    pub(crate) fn is_oblique(&self) -> bool {
+        self.is_oblique
     }
 
     /// Width and height in pixels.
@@ -220,87 +229,4 @@ impl ViewGeometry {
     pub fn eccentricity_map(&self, gaze_px: [f32; 2]) -> Image<f32> {
         Image::from_fn_parallel(self.size_px, |[x, y]| self.eccentricity_deg([x as f32, y as f32], gaze_px))
     }
-}
-
-/// The columns of a projection matrix, if [`ViewGeometry::from_projection`] accepts it.
-fn checked_projection(columns: [[f32; 4]; 4]) -> Result<[[f32; 4]; 4], SettingsError> {
-    let refuse = |expected: &str| {
-        Err(SettingsError { setting: "clip_from_view", found: format!("{columns:?}"), expected: expected.into() })
-    };
-    let [x, y, z, w] = columns;
-    if columns.iter().flatten().any(|v| !v.is_finite()) {
-        return refuse("finite numbers");
-    }
-    if w[2].abs() == 1.0 && z[3].abs() != 1.0 {
-        return refuse("a matrix stored by columns; transpose this one");
-    }
-    if z[3] == 0.0 && w[3] != 0.0 {
-        return refuse("a perspective projection; this one is orthographic");
-    }
-    if x[3] == 0.0 && y[3] == 0.0 && z[3] > 0.0 {
-        return refuse("a right-handed projection with -z forward; negate the third column of a left-handed one");
-    }
-    if [x[3], y[3], w[3]] == [0.0; 3] && z[3] == -1.0 && x[0] > 0.0 && y[1] < 0.0 {
-        return refuse("clip space with y up; negate the second column of a projection for y down");
-    }
-    let zeros = [x[1], x[2], x[3], y[0], y[2], y[3], w[0], w[1], w[3]];
-    if zeros != [0.0; 9] || z[3] != -1.0 || x[0] <= 0.0 || y[1] <= 0.0 {
-        return refuse("a perspective projection alone, not multiplied by a view");
-    }
-    Ok(columns)
-}
-
-/// Transform from this frame's view space (x right, y down, z forward) to the previous frame's, by rows, from a
-/// projection and two view-projection matrices (y up, -z forward, by columns).
-pub(crate) fn camera_motion(
-    clip_from_view: [[f32; 4]; 4],
-    clip_from_world: [[f32; 4]; 4],
-    previous_clip_from_world: [[f32; 4]; 4],
-) -> Result<[[f32; 4]; 4], SettingsError> {
-    let matrix = |setting, columns: [[f32; 4]; 4]| {
-        // Doubles: a world position of kilometres leaves few digits of a float for the motion of a frame.
-        let matrix = DMat4::from_cols_array_2d(&columns.map(|c| c.map(f64::from)));
-        if matrix.is_finite() && matrix.determinant() != 0.0 {
-            return Ok(matrix);
-        }
-        let expected = "finite numbers, and an inverse".into();
-        Err(SettingsError { setting, found: format!("{columns:?}"), expected })
-    };
-    let projection = matrix("clip_from_view", checked_projection(clip_from_view)?)?;
-    let world_from_clip = matrix("clip_from_world", clip_from_world)?.inverse();
-    let previous = matrix("previous_clip_from_world", previous_clip_from_world)?;
-    // The depth test needs only the distance, which is the previous clip w. It does not change if the previous frame's
-    // projection differs in field of view or planes.
-    Ok(rows_y_down(projection.inverse() * previous * world_from_clip * projection))
-}
-
-/// The same from two poses: the transforms from this frame's view space and from the previous frame's to the world.
-pub(crate) fn pose_motion(
-    world_from_view: [[f32; 4]; 4],
-    previous_world_from_view: [[f32; 4]; 4],
-) -> Result<[[f32; 4]; 4], SettingsError> {
-    let current = checked_pose("world_from_view", world_from_view)?;
-    let previous = checked_pose("previous_world_from_view", previous_world_from_view)?;
-    Ok(rows_y_down(previous.inverse() * current))
-}
-
-/// The matrix as a pose, if it is one: a rotation and a translation.
-pub(crate) fn checked_pose(setting: &'static str, columns: [[f32; 4]; 4]) -> Result<DMat4, SettingsError> {
-    // Doubles: a position of kilometres leaves few digits of a float for the motion of a frame.
-    let pose = DMat4::from_cols_array_2d(&columns.map(|c| c.map(f64::from)));
-    let rotation = DMat3::from_mat4(pose);
-    let is_rotation =
-        (rotation.transpose() * rotation).abs_diff_eq(DMat3::IDENTITY, 1e-3) && rotation.determinant() > 0.0;
-    if is_rotation && pose.w_axis.is_finite() && pose.row(3) == DVec4::W {
-        return Ok(pose);
-    }
-    let expected = "a rotation and a translation, stored by columns; normalise the quaternion of a pose".into();
-    Err(SettingsError { setting, found: format!("{columns:?}"), expected })
-}
-
-/// Converts a motion between view spaces with y up and -z forward to view spaces with y down and z forward, by rows.
-fn rows_y_down(previous_from_current: DMat4) -> [[f32; 4]; 4] {
-    let flip = DMat4::from_diagonal(DVec4::new(1.0, -1.0, -1.0, 1.0));
-    let rows = (flip * previous_from_current * flip).transpose();
-    rows.to_cols_array_2d().map(|row| row.map(|v| v as f32))
 }

@@ -97,6 +97,7 @@ pub extern crate wgpu_29 as wgpu;
 #[cfg(all(feature = "gpu", not(feature = "wgpu-29")))]
 pub extern crate wgpu_30 as wgpu;
 
+mod camera;
 mod convention;
 #[cfg(feature = "cpu")]
 pub mod cpu;
@@ -126,7 +127,7 @@ mod stats;
 mod uniforms;
 mod warning;
 
-pub use convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
+pub use convention::{CameraMotion, DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
 pub use error::{CreateError, FrameError, FrameValue, SettingsError};
 pub use foveation::{Filter, Foveation};
 pub use frame::{ContextDesc, Executor, Exposure, FrameInputs, Gaze, Reset, ViewFrame};

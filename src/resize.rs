@@ -27,6 +27,9 @@ impl Resize {
             gaze_px: held.gaze_px.map(position),
             jitter_px: vector(held.jitter_px),
             previous_jitter_px: vector(held.previous_jitter_px),
+            // The view directions at the edges stay the same.
+            rays: None,
+            previous_rays: None,
         }
     }
 }

@@ -6,9 +6,12 @@ use crate::frame::{ContextDesc, ViewFrame};
 use crate::kernel::foveate::level_len;
 #[cfg(feature = "cpu")]
 use crate::kernel::lattice::{Between, between};
+#[cfg(feature = "cpu")]
+use crate::kernel::reproject::ViewMotion;
 use crate::kernel::rng::{self, Purpose};
 use crate::lattice::{Lattice, Lattices};
 use crate::settings::Sampler;
+use glam::DVec2;
 
 /// Twin of `ViewUniforms` in `shaders/pass/view_uniforms.wgsl`; a test compares their layouts.
 #[repr(C)]
@@ -61,6 +64,83 @@ pub struct ViewUniforms {
     pub highest_px: [f32; 4],
 }
 
+/// Camera motion of a view, for pixels whose vectors lack it. Twin of `CameraUniforms` in
+/// `shaders/pass/view_uniforms.wgsl`; a test compares their layouts.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+pub struct CameraUniforms {
+    /// `ViewMotion::x`.
+    pub x: [f32; 4],
+    /// `ViewMotion::y`.
+    pub y: [f32; 4],
+    /// `ViewMotion::z`.
+    pub z: [f32; 4],
+    /// `ViewMotion::per_tangent`.
+    pub per_tangent: [f32; 2],
+    /// `ViewMotion::zoom`.
+    pub zoom: [f32; 2],
+    /// `ViewMotion::shift_px`.
+    pub shift_px: [f32; 2],
+    /// `ViewMotion::ahead`.
+    pub ahead: f32,
+    /// `ViewMotion::sky`.
+    pub sky: f32,
+    /// Vector, as given, of pixels that have none.
+    pub no_vector: [f32; 2],
+    /// Padding to a multiple of 16 bytes.
+    pub unused: [u32; 2],
+}
+
+impl CameraUniforms {
+    /// Constants of a view. `held`: the view's state [after](Held::with) this frame.
+    pub(crate) fn new(desc: &ContextDesc, view: &ViewFrame, held: &Held) -> Self {
+        let rays = view.geometry.scale_offset();
+        let (scale, offset) = rays;
+        let (old_scale, old_offset) = held.previous_rays.unwrap_or(rays);
+        // Doubles: differences of nearly equal numbers.
+        let double = |values: [f32; 2]| DVec2::from(values.map(f64::from));
+        let [scale, offset, old_scale, old_offset] = [scale, offset, old_scale, old_offset].map(double);
+        let mut rows = view.previous_from_current.unwrap_or(IDENTITY);
+        let ahead = rows[2][2];
+        (0..3).for_each(|i| rows[i][i] -= 1.0);
+        Self {
+            x: rows[0],
+            y: rows[1],
+            z: rows[2],
+            per_tangent: old_scale.recip().as_vec2().into(),
+            zoom: (old_scale.recip() - scale.recip()).as_vec2().into(),
+            shift_px: (offset / scale - old_offset / old_scale).as_vec2().into(),
+            ahead,
+            sky: view.depth_convention(desc).sky_disparity(),
+            no_vector: desc.motion.camera.no_vector(),
+            unused: [0; 2],
+        }
+    }
+
+    /// These constants as the kernel takes them.
+    #[cfg(feature = "cpu")]
+    pub(crate) fn motion(&self) -> ViewMotion {
+        ViewMotion {
+            x: self.x.into(),
+            y: self.y.into(),
+            z: self.z.into(),
+            per_tangent: self.per_tangent.into(),
+            zoom: self.zoom.into(),
+            shift_px: self.shift_px.into(),
+            ahead: self.ahead,
+            sky: self.sky,
+        }
+    }
+}
+
+/// Camera motion of a camera that stands still.
+const IDENTITY: [[f32; 4]; 4] =
+    [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+
+/// Scale and offset of the rays of a view.
+type Rays = ([f32; 2], [f32; 2]);
+
 /// State of a view that a context holds from frame to frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Held {
@@ -70,6 +150,10 @@ pub(crate) struct Held {
     pub jitter_px: [f32; 2],
     /// Jitter of the previous frame.
     pub previous_jitter_px: [f32; 2],
+    /// Rays of this frame, without jitter.
+    pub rays: Option<Rays>,
+    /// Rays of the previous frame, if it had the same size.
+    pub previous_rays: Option<Rays>,
 }
 
 impl Held {
@@ -79,6 +163,8 @@ impl Held {
             gaze_px: Some(view.gaze.resolve(self.gaze_px, &view.geometry)),
             jitter_px: view.jitter_px,
             previous_jitter_px: self.jitter_px,
+            rays: Some(view.geometry.scale_offset()),
+            previous_rays: self.rays,
         }
     }
 }

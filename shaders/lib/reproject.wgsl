@@ -33,3 +33,48 @@ fn nearest(x: u32, y: u32, motion: vec2<f32>, size: vec2<u32>) -> Reprojection {
     }
     return Reprojection(VERDICT_OFF_SCREEN, vec2<u32>(0u));
 }
+
+const MAX_CAMERA_PX: f32 = 32768.0;
+
+const UNKNOWN_VECTOR_PX: f32 = 131072.0;
+
+// reproject::ViewMotion, which documents the fields
+struct ViewMotion {
+    x: vec4<f32>,
+    y: vec4<f32>,
+    z: vec4<f32>,
+    per_tangent: vec2<f32>,
+    zoom: vec2<f32>,
+    shift_px: vec2<f32>,
+    ahead: f32,
+    sky: f32,
+}
+
+// reproject::camera_vector
+fn camera_vector(ray: vec2<f32>, disparity: f32, motion: ViewMotion) -> vec2<f32> {
+    if disparity < 0.0 {
+        return vec2<f32>(UNKNOWN_VECTOR_PX);
+    }
+    let x = motion.x;
+    let y = motion.y;
+    let z = motion.z;
+    let d = select(disparity, 0.0, disparity <= motion.sky);
+    let distance = z.x * ray.x + (z.y * ray.y + (z.w * d + motion.ahead));
+    // The point was behind the previous camera.
+    if distance <= 1e-6 {
+        return vec2<f32>(MAX_CAMERA_PX);
+    }
+    let change = vec3<f32>(
+        x.x * ray.x + (x.y * ray.y + (x.w * d + x.z)),
+        y.x * ray.x + (y.y * ray.y + (y.w * d + y.z)),
+        z.x * ray.x + (z.y * ray.y + (z.w * d + z.z)),
+    );
+    let tangent = (change.xy - ray * change.z) / distance;
+    let vector = tangent * motion.per_tangent + (ray * motion.zoom + motion.shift_px);
+    return clamp(vector, vec2<f32>(-MAX_CAMERA_PX), vec2<f32>(MAX_CAMERA_PX));
+}
+
+// reproject::has_no_vector
+fn has_no_vector(given: vec2<f32>, none: vec2<f32>) -> bool {
+    return !(is_finite(given.x) && is_finite(given.y)) || all(given == none);
+}

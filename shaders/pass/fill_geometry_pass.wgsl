@@ -21,9 +21,10 @@ struct GeometrySample {
 fn geometry_at(tap: u32, near: Around, lattice: LatticeUniforms, view: u32) -> GeometrySample {
     let right = tap & 1u;
     let below = tap >> 1u;
-    let texel = texel_of_point(vec2<u32>(near.x.points[right], near.y.points[below]), lattice);
+    let point = vec2<u32>(near.x.points[right], near.y.points[below]);
+    let texel = texel_of_point(point, lattice);
     let share = point_weight(near.x.fraction, right) * point_weight(near.y.fraction, below);
-    return GeometrySample(disparity_at(texel, view), motion_at(texel, view), share);
+    return GeometrySample(disparity_at(texel, view), motion_of(px_of_point(point, lattice), texel, view), share);
 }
 
 // Whether history confirms that a pixel shows a sample's surface: history must have the expected disparity at the

@@ -12,6 +12,8 @@
 // for features that are off is not compiled.
 override HAS_DEPTH: u32 = 1u;
 override HAS_MOTION: u32 = 1u;
+// Which vectors lack the camera's motion: 0 none, 1 those that are `no_vector` or not finite, 2 all.
+override CAMERA_MOTION: u32 = 0u;
 override HAS_TRUST: u32 = 1u;
 override DEPTH_TEST: u32 = 1u;
 override NOISY: u32 = 0u;
@@ -46,6 +48,7 @@ struct FrameUniforms {
     lattice: u32,
     mip_levels: u32,
     views: array<ViewUniforms, 4>,
+    cameras: array<CameraUniforms, 4>,
 }
 
 // Value of `FrameUniforms::past_frame` in a frame without history.
@@ -105,13 +108,41 @@ fn ray_at(px: vec2<u32>, view: u32) -> vec3<f32> {
     return vec3<f32>(vec2<f32>(px) * frame.views[view].ray_scale + frame.views[view].ray_offset, 1.0);
 }
 
-// Motion vector: previous minus current position in pixels, y down, without jitter.
+// Motion vector of a pixel: previous minus current position in pixels, y down, without jitter, with the camera's motion.
 fn motion_at(px: vec2<u32>, view: u32) -> vec2<f32> {
-    if HAS_MOTION == 0u {
-        return vec2<f32>(0.0);
+    return motion_of(px, px, view);
+}
+
+// Motion vector of the pixel `px`, whose vector and depth lie at `texel`.
+fn motion_of(px: vec2<u32>, texel: vec2<u32>, view: u32) -> vec2<f32> {
+    var own = vec2<f32>(0.0);
+    if HAS_MOTION != 0u {
+        let given = textureLoad(motion_in, texel_of(texel, frame.views[view].motion_origin), layer_of(view), 0).xy;
+        own = given * frame.motion_scale + frame.views[view].motion_offset;
+        if CAMERA_MOTION == 1u {
+            if !has_no_vector(given, frame.cameras[view].no_vector) {
+                return own;
+            }
+            own = vec2<f32>(0.0);
+        }
     }
-    let given = textureLoad(motion_in, texel_of(px, frame.views[view].motion_origin), layer_of(view), 0).xy;
-    return given * frame.motion_scale + frame.views[view].motion_offset;
+    if CAMERA_MOTION == 0u {
+        return own;
+    }
+    let camera = frame.cameras[view];
+    let motion = ViewMotion(
+        camera.x,
+        camera.y,
+        camera.z,
+        camera.per_tangent,
+        camera.zoom,
+        camera.shift_px,
+        camera.ahead,
+        camera.sky,
+    );
+    // An object's own motion ends where the camera would have seen it without moving.
+    let ray = (vec2<f32>(px) + own) * frame.views[view].ray_scale + frame.views[view].ray_offset;
+    return own + camera_vector(ray, disparity_at(texel, view), motion);
 }
 
 // Noise of the candidate; valid only if NOISY is set.

@@ -60,7 +60,12 @@ fn around(px: vec2<u32>, lattice: LatticeUniforms) -> Around {
     );
 }
 
-// Texel of sample `point` in the color input.
+// Pixel of a sample.
+fn px_of_point(point: vec2<u32>, lattice: LatticeUniforms) -> vec2<u32> {
+    return lattice.first_px + (point << vec2<u32>(lattice.level));
+}
+
+// Texel of a sample in the view's color input.
 fn texel_of_point(point: vec2<u32>, lattice: LatticeUniforms) -> vec2<u32> {
     return lattice.texel + (point << vec2<u32>(lattice.texel_level));
 }

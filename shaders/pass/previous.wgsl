@@ -55,7 +55,7 @@ fn previous_of(
 
 // Whether a neighbour in the 2x2 block has the same motion as the pixel.
 fn is_coherent(px: vec2<u32>, view: u32, own: vec2<f32>) -> bool {
-    if HAS_MOTION == 0u {
+    if HAS_MOTION == 0u && CAMERA_MOTION == 0u {
         return true;
     }
     // At an odd border the pixel is its own neighbour.

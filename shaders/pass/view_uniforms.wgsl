@@ -27,3 +27,18 @@ struct ViewUniforms {
     lowest_px: vec4<f32>,
     highest_px: vec4<f32>,
 }
+
+// src/uniforms.rs: CameraUniforms, which documents the fields
+struct CameraUniforms {
+    x: vec4<f32>,
+    y: vec4<f32>,
+    z: vec4<f32>,
+    per_tangent: vec2<f32>,
+    zoom: vec2<f32>,
+    shift_px: vec2<f32>,
+    ahead: f32,
+    sky: f32,
+    no_vector: vec2<f32>,
+    unused_0: u32,
+    unused_1: u32,
+}

@@ -51,11 +51,12 @@ pub(super) fn with_filled<R>(
     let motions: Vec<_> = filled.iter().map(|g| &g.motion).collect();
     // The filled geometry is in internal conventions.
     let views: Vec<_> = frame.views.iter().map(|view| ViewFrame { depth: None, ..*view }).collect();
+    let adds_camera = desc.motion.camera.is_missing();
     let desc = ContextDesc { depth: DepthConvention::Linear, motion: MotionConvention::default(), ..*desc };
     let whole = frame.with_color(frame.color);
     let whole = Frame {
         depth: whole.depth.is_some().then_some(&depths[..]),
-        motion: whole.motion.is_some().then_some(&motions[..]),
+        motion: (whole.motion.is_some() || adds_camera).then_some(&motions[..]),
         views: &views,
         ..whole
     };
@@ -82,9 +83,14 @@ impl View<'_> {
         let Some([x, y]) = lattice.around(px) else { return (distance_of(INVALID_DISPARITY), [0.0; 2]) };
         let sample = |tap: u32| {
             let (right, below) = (tap & 1, tap >> 1);
-            let [u, v] = lattice.texel_of([x.points[right as usize], y.points[below as usize]]);
+            let point = [x.points[right as usize], y.points[below as usize]];
+            let [u, v] = lattice.texel_of(point);
             let share = point_weight(x.fraction, right) * point_weight(y.fraction, below);
-            Sample { disparity: self.inputs.disparity(u, v), motion: self.inputs.motion(u, v), share }
+            Sample {
+                disparity: self.inputs.disparity(u, v),
+                motion: self.inputs.motion_of(lattice.px_of(point), [u, v]),
+                share,
+            }
         };
         let ray = self.inputs.ray(px[0], px[1]);
         let mut own = sample(0);

@@ -1,6 +1,7 @@
 //! Inputs of the pixels of one view, in internal conventions; shared by all methods. Twin: `shaders/pass/inputs.wgsl`.
 
 use super::Frame;
+use crate::convention::CameraMotion;
 use crate::foveation::Foveation;
 use crate::frame::{ContextDesc, Reset};
 use crate::image::Image;
@@ -8,12 +9,12 @@ use crate::kernel::depth;
 use crate::kernel::depth::DisparityMap;
 use crate::kernel::matched::moves_alike;
 use crate::kernel::noise::{Noise, candidate_noise};
-use crate::kernel::reproject::Verdict;
+use crate::kernel::reproject::{Verdict, camera_vector, has_no_vector};
 use crate::kernel::surface::MAX_LOD;
 use crate::kernel::{acuity, lens, reproject, sanitize};
 use crate::settings::DepthTest;
 use crate::stats::FrameStats;
-use crate::uniforms::{Held, LatticeUniforms, ViewLattices, ViewUniforms};
+use crate::uniforms::{CameraUniforms, Held, LatticeUniforms, ViewLattices, ViewUniforms};
 use glam::{Vec2, Vec3};
 
 /// Previous position of a pixel's surface.
@@ -45,6 +46,8 @@ pub(super) struct Inputs<'a> {
     /// Whether the view starts without history.
     pub reset: bool,
     motion_scale: [f32; 2],
+    camera: CameraMotion,
+    camera_uniforms: CameraUniforms,
     disparity_map: DisparityMap,
     depth_test: Option<DepthTest>,
 }
@@ -69,6 +72,8 @@ impl<'a> Inputs<'a> {
             exposure: frame.exposure.factor(),
             reset: frame.reset != Reset::None || !has_history,
             motion_scale: desc.motion.to_internal(desc.size_px),
+            camera: desc.motion.camera,
+            camera_uniforms: CameraUniforms::new(desc, view, held),
             disparity_map: view.depth_convention(desc).disparity_map(),
             depth_test: desc.settings.depth_test.filter(|_| frame.depth.is_some()),
         }
@@ -122,7 +127,7 @@ impl<'a> Inputs<'a> {
     /// Whether a neighbour in the 2x2 block has the same motion as the pixel (x, y).
     #[inline(always)]
     pub fn is_coherent(&self, x: u32, y: u32, own: [f32; 2]) -> bool {
-        if self.motion.is_none() {
+        if self.motion.is_none() && !self.camera.is_missing() {
             return true;
         }
         let [width, height] = self.size;
@@ -155,13 +160,41 @@ impl<'a> Inputs<'a> {
         }
     }
 
+    /// Motion vector of a pixel: previous minus current position in pixels, y down, without jitter, with the camera's
+    /// motion.
     #[inline(always)]
     pub fn motion(&self, x: u32, y: u32) -> [f32; 2] {
-        self.motion.map_or([0.0; 2], |m| {
-            let v = m.at(x as usize, y as usize);
+        self.motion_of([x, y], [x, y])
+    }
+
+    /// Motion vector of the pixel `px`, whose vector and depth lie at `texel`.
+    #[inline(always)]
+    pub fn motion_of(&self, px: [u32; 2], texel: [u32; 2]) -> [f32; 2] {
+        let mut own = [0.0; 2];
+        if let Some(motion) = self.motion {
+            let given = motion.at(texel[0] as usize, texel[1] as usize);
             let [offset_x, offset_y] = self.uniforms.motion_offset;
-            [v[0] * self.motion_scale[0] + offset_x, v[1] * self.motion_scale[1] + offset_y]
-        })
+            own = [given[0] * self.motion_scale[0] + offset_x, given[1] * self.motion_scale[1] + offset_y];
+            if let CameraMotion::IncludedExcept { .. } = self.camera {
+                if !has_no_vector(Vec2::from(given), self.camera_uniforms.no_vector.into()) {
+                    return own;
+                }
+                own = [0.0; 2];
+            }
+        }
+        if !self.camera.is_missing() {
+            return own;
+        }
+        self.with_camera(px, texel, own)
+    }
+
+    /// An object's `own` motion and the camera's. The object's ends where the camera would have seen it without moving.
+    fn with_camera(&self, px: [u32; 2], texel: [u32; 2], own: [f32; 2]) -> [f32; 2] {
+        let own = Vec2::from(own);
+        let at = Vec2::new(px[0] as f32, px[1] as f32) + own;
+        let ray = at * Vec2::from(self.uniforms.ray_scale) + Vec2::from(self.uniforms.ray_offset);
+        let disparity = self.disparity(texel[0], texel[1]);
+        (own + camera_vector(ray, disparity, self.camera_uniforms.motion())).into()
     }
 
     /// Noise of the candidate; `None` without a noise input.

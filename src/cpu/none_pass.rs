@@ -1,6 +1,7 @@
 //! No method: outputs the sanitized candidate.
 
 use super::Pass;
+use super::inputs::Inputs;
 use crate::image::Image;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::reproject::Verdict;
@@ -9,9 +10,8 @@ use crate::stats::FrameStats;
 use glam::Vec3;
 
 pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
-    let Pass { desc, frame, output, mut traces, .. } = pass;
+    let Pass { desc, history, frame, output, mut traces, .. } = pass;
     let mut stats = FrameStats::default();
-    let [sx, sy] = desc.motion.to_internal(desc.size_px);
     for (i, (color, out)) in frame.color.iter().zip(output).enumerate() {
         for (src, dst) in color.pixels().iter().zip(out.pixels_mut()) {
             let (color, valid) = sanitize::color(Vec3::from(*src));
@@ -19,14 +19,9 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
             stats.nonfinite += u64::from(!valid);
         }
         if let Some(traces) = &mut traces {
-            // Without history the previous jitter counts as 0.
-            let [dx, dy] = desc.motion.jitter_offset(frame.views[i].jitter_px, [0.0; 2]);
-            traces[i] = match frame.motion {
-                Some(motion) => {
-                    motion[i].map(|m| PixelTrace { motion: [m[0] * sx + dx, m[1] * sy + dy], ..PixelTrace::default() })
-                }
-                None => Image::filled(desc.size_px, PixelTrace::default()),
-            };
+            let inputs = Inputs::new(desc, frame, i, &history.held_after(i, &frame.views[i]), false);
+            let traced = |[x, y]: [u32; 2]| PixelTrace { motion: inputs.motion(x, y), ..PixelTrace::default() };
+            traces[i] = Image::from_fn(desc.size_px, traced);
         }
         stats.pixels += color.pixels().len() as u64;
     }

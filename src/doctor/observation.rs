@@ -26,6 +26,7 @@ pub(crate) struct Description {
     /// Whether the gaze is known in this frame.
     pub has_gaze: bool,
     pub has_depth: bool,
+    /// Whether there are vectors, and all contain the camera's motion.
     pub has_motion: bool,
     pub has_lod: bool,
     /// Whether the doctor also saw the previous frame, without a cut between the two.

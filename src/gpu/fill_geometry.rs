@@ -115,7 +115,8 @@ impl GeometryPass {
         }
         let [depth, motion] = &self.textures;
         job.frame.depth = job.frame.depth.map(|_| Textures::Layers(depth));
-        job.frame.motion = job.frame.motion.map(|_| Textures::Layers(motion));
+        let has_motion = job.frame.motion.is_some() || job.desc.motion.camera.is_missing();
+        job.frame.motion = has_motion.then_some(Textures::Layers(motion));
     }
 
     fn record(&self, device: &Device, pass: &mut ComputePass<'_>, job: &Job<'_>) {
@@ -160,7 +161,7 @@ impl GeometryPass {
 
 /// Override values. The pass reads no trust mask.
 fn overrides(desc: &ContextDesc, variant: Variant) -> Overrides {
-    let mut list = input_overrides(desc, Variant { trust: false, ..variant });
+    let mut list = input_overrides(desc, Variant { trust: false, geometry_at_samples: false, ..variant });
     list.push(("HAS_KEPT", u32::from(is_kept(desc))));
     list
 }

@@ -6,7 +6,7 @@ use super::{Frame, Target, Textures};
 use crate::frame::{ContextDesc, Reset};
 use crate::method::{HistoryLayout, inv_density_at_fovea, smr_params, wrs_params};
 use crate::uniforms::Held;
-pub use crate::uniforms::{LatticeUniforms, ViewLattices, ViewUniforms};
+pub use crate::uniforms::{CameraUniforms, LatticeUniforms, ViewLattices, ViewUniforms};
 use bytemuck::{Pod, Zeroable};
 use wgpu::{Buffer, BufferUsages, Device};
 
@@ -64,6 +64,8 @@ pub struct FrameUniforms {
     pub mip_levels: u32,
     /// One entry a view.
     pub views: [ViewUniforms; MAX_VIEWS],
+    /// Camera motion of each view.
+    pub cameras: [CameraUniforms; MAX_VIEWS],
 }
 
 impl FrameUniforms {
@@ -120,6 +122,7 @@ impl FrameUniforms {
                 debug_origin: origin(target.and_then(|t| t.debug).map(|d| d.output), i),
                 ..ViewUniforms::new(desc, view, held, i, frame.index)
             };
+            uniforms.cameras[i] = CameraUniforms::new(desc, view, held);
         }
         uniforms
     }

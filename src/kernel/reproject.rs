@@ -1,5 +1,8 @@
 //! Reprojection: a pixel's position in the previous frame, and verdicts on its history.
 
+use super::sanitize::is_finite;
+use glam::{Vec2, Vec3, Vec4};
+
 /// Largest valid component of a motion vector, in pixels.
 pub const MAX_MOTION_PX: f32 = 65536.0;
 
@@ -56,4 +59,63 @@ pub fn nearest(x: u32, y: u32, motion: [f32; 2], size: [u32; 2]) -> Result<[u32;
     } else {
         Err(Verdict::OffScreen)
     }
+}
+
+/// Longest vector that [`camera_vector`] returns, along an axis. It leads out of every view.
+pub const MAX_CAMERA_PX: f32 = 32768.0;
+
+/// Vector of a pixel whose distance is not known. No such vector is valid.
+pub const UNKNOWN_VECTOR_PX: f32 = 131072.0;
+
+/// Motion of a view between two frames, for vectors of surfaces that stand still in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewMotion {
+    /// First row of the current-to-previous view transform, less 1 on the diagonal.
+    pub x: Vec4,
+    /// The same of the second row.
+    pub y: Vec4,
+    /// The same of the third row.
+    pub z: Vec4,
+    /// Pixels of the previous frame for a change of a ray's x and y.
+    pub per_tangent: Vec2,
+    /// How many pixels more the previous frame has for a ray's x and y than this one. 0 unless the field of view
+    /// changes.
+    pub zoom: Vec2,
+    /// How far the straight ray lies from where it was in the previous frame, in pixels. 0 unless the field of view
+    /// changes.
+    pub shift_px: Vec2,
+    /// Third element of the third row.
+    pub ahead: f32,
+    /// Disparity of the far plane. What lies there is infinitely far away.
+    pub sky: f32,
+}
+
+/// Motion vector of a surface that stands still in the world, at the ray (`ray`, 1): previous minus current position in
+/// pixels. A surface of disparity 0, as the sky, follows the camera's turns alone. Exactly 0 while the camera is still.
+#[inline]
+pub fn camera_vector(ray: Vec2, disparity: f32, motion: ViewMotion) -> Vec2 {
+    if disparity < 0.0 {
+        return Vec2::splat(UNKNOWN_VECTOR_PX);
+    }
+    let ViewMotion { x, y, z, .. } = motion;
+    let d = if disparity <= motion.sky { 0.0 } else { disparity };
+    let distance = z.x * ray.x + (z.y * ray.y + (z.w * d + motion.ahead));
+    // The point was behind the previous camera.
+    if distance <= 1e-6 {
+        return Vec2::splat(MAX_CAMERA_PX);
+    }
+    let change = Vec3::new(
+        x.x * ray.x + (x.y * ray.y + (x.w * d + x.z)),
+        y.x * ray.x + (y.y * ray.y + (y.w * d + y.z)),
+        z.x * ray.x + (z.y * ray.y + (z.w * d + z.z)),
+    );
+    let tangent = (Vec2::new(change.x, change.y) - ray * change.z) / distance;
+    let vector = tangent * motion.per_tangent + (ray * motion.zoom + motion.shift_px);
+    vector.clamp(Vec2::splat(-MAX_CAMERA_PX), Vec2::splat(MAX_CAMERA_PX))
+}
+
+/// Whether a pixel of a motion input has no vector: it is `none`, or not finite.
+#[inline]
+pub fn has_no_vector(given: Vec2, none: Vec2) -> bool {
+    !(is_finite(given.x) && is_finite(given.y)) || given == none
 }

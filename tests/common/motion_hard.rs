@@ -1,8 +1,9 @@
-//! Hard cases of motion, H51 to H54 and H58 to H60: laws that hold on either executor.
+//! Hard cases of motion, H51 to H54, H58 to H60 and H112: laws that hold on either executor.
 
 use crate::depth_hard::{METHODS, Make, SIZE, of, still};
 use crate::images::{View, noise};
-use afterimage::{Image, MethodKind, Verdict};
+use afterimage::{CameraMotion, DepthConvention, Image, MethodKind, Verdict, ViewFrame, ViewGeometry};
+use glam::{DMat4, DVec2, DVec3};
 
 /// The laws as tests of an executor. `$held` runs one, and returns what it measured.
 macro_rules! motion_laws {
@@ -15,6 +16,7 @@ macro_rules! motion_laws {
             h58_nothing_bleeds_over_a_depth_edge: "H58", depth_edge;
             h59_a_zoom_leaves_no_hole: "H59", zoom;
             h60_a_turn_is_a_full_reset: "H60", turn;
+            h112_what_has_no_vector_follows_the_camera: "H112", camera_motion;
         }
     };
 }
@@ -176,4 +178,122 @@ pub fn turn(make: Make<'_>) -> Option<String> {
         assert_eq!((out, stats.rejected()), (turn.color, 64 * 48), "{method:?}");
     }
     Some("wrs and smr: all 3072 pixels are the candidate, bit for bit".into())
+}
+
+const REVERSED: DepthConvention = DepthConvention::Reversed { near: 0.1, far: 100.0 };
+const JITTER_PX: [f32; 2] = [0.25, -0.3];
+
+/// Pose of a camera that turns and moves; y up, -z forward. A million metres from the origin.
+fn pose(index: u64) -> DMat4 {
+    let turn = DMat4::from_rotation_y(0.02 * index as f64) * DMat4::from_rotation_x(-0.01 * index as f64);
+    DMat4::from_translation(DVec3::new(1e6 + 0.05 * index as f64, 1.6, -2e6 - 0.08 * index as f64)) * turn
+}
+
+/// Distance of a pixel's surface; infinite for the sky.
+fn distance(x: u32, y: u32) -> f64 {
+    if y < 12 { f64::INFINITY } else { 1.0 + f64::from((x / 8) * (y / 6)) }
+}
+
+/// Whether a pixel shows the object that moves.
+fn is_object(x: u32, y: u32) -> bool {
+    (20..30).contains(&x) && (20..30).contains(&y)
+}
+
+/// The object's own motion in pixels.
+const OWN_PX: [f32; 2] = [3.0, -1.0];
+
+/// Motion vector of a pixel by its definition, in doubles: where the point that it shows was in the previous frame.
+fn expected_vector(px: [u32; 2], own: [f32; 2], now: &ViewGeometry, before: &ViewGeometry) -> DVec2 {
+    let rays = |geometry: &ViewGeometry| {
+        let (scale, offset) = geometry.scale_offset();
+        [scale, offset].map(|v| DVec2::from(v.map(f64::from)))
+    };
+    let ([scale, offset], [old_scale, old_offset]) = (rays(now), rays(before));
+    let shown = DVec2::new(f64::from(px[0]), f64::from(px[1])) - DVec2::from(JITTER_PX.map(f64::from));
+    let tangent = (shown + DVec2::from(own.map(f64::from))) * scale + offset;
+    let z = distance(px[0], px[1]);
+    // y up, -z forward.
+    let ray = DVec3::new(tangent.x, -tangent.y, -1.0);
+    let previous_from_current = pose(0).inverse() * pose(1);
+    let seen = if z.is_finite() {
+        previous_from_current.transform_point3(ray * z)
+    } else {
+        previous_from_current.transform_vector3(ray)
+    };
+    let old_tangent = DVec2::new(seen.x, -seen.y) / -seen.z;
+    (old_tangent - old_offset) / old_scale - shown
+}
+
+/// Vectors that lack the camera's motion: all, those of what stands still, or without a motion input.
+pub fn camera_motion(make: Make<'_>) -> Option<String> {
+    let none = [7.0, -2.5];
+    let [now, before] = [70.0, 72.0].map(|hfov_deg| ViewGeometry::flat(SIZE, hfov_deg).unwrap());
+    let object = |vector: [f32; 2], still: [f32; 2]| {
+        Some(Image::from_fn(SIZE, |[x, y]| if is_object(x, y) { vector } else { still }))
+    };
+    let except = CameraMotion::IncludedExcept { none };
+    // The vectors of the object: complete ones, or its own motion.
+    let inputs = [
+        (CameraMotion::Excluded, None, None),
+        (except, None, None),
+        (except, object([5.0, 2.0], none), Some([5.0, 2.0])),
+        (except, object([5.0, 2.0], [f32::NAN, 0.0]), Some([5.0, 2.0])),
+        (CameraMotion::Excluded, object(OWN_PX, [0.0; 2]), None),
+    ];
+    let (mut largest, mut zero) = (0.0_f64, 0.0_f64);
+    for method in METHODS {
+        for (camera, motion, complete) in &inputs {
+            let mut desc = of(method);
+            (desc.motion.camera, desc.depth) = (*camera, REVERSED);
+            let mut post = make(desc)?;
+            let depth = Image::from_fn(SIZE, |[x, y]| ((1.0 / distance(x, y) - 0.01) / 9.99).max(0.0) as f32);
+            let view = |index: u64, geometry: ViewGeometry| {
+                let mut view = View { depth: Some(depth.clone()), ..still(noise(SIZE, &format!("camera {index}"))) };
+                let [pose, previous] = [index, index.saturating_sub(1)].map(|i| pose(i).to_cols_array_2d());
+                view.facts = ViewFrame { geometry, ..view.facts }.posed(pose, previous).unwrap();
+                View { motion: motion.clone(), ..view }
+            };
+            post.step(0, &view(0, before));
+            let mut second = view(1, now);
+            second.facts.jitter_px = JITTER_PX;
+            // A pixel without distance.
+            second.depth.as_mut().unwrap().pixels_mut()[40 * 64 + 3] = f32::NAN;
+            let (.., trace) = post.step(1, &second);
+            assert_eq!(trace.at(3, 40).verdict, Verdict::BadMotion);
+            for [x, y] in (0..48).flat_map(|y| (0..64).map(move |x| [x, y])).filter(|&at| at != [3, 40]) {
+                let found = DVec2::from(trace.at(x as usize, y as usize).motion.map(f64::from));
+                let own = if motion.is_some() && is_object(x, y) { OWN_PX } else { [0.0; 2] };
+                let expected = match complete {
+                    Some(vector) if is_object(x, y) => DVec2::from(vector.map(f64::from)),
+                    _ => expected_vector([x, y], own, &now, &before),
+                };
+                largest = largest.max((found - expected).length());
+                // The planted error: nothing moves.
+                zero = zero.max(expected.length());
+            }
+        }
+    }
+    assert!(largest < 1e-3 && zero > 2.0, "{largest} px, {zero} px");
+    still_camera(make)?;
+    Some(format!(
+        "wrs and smr, 1e6 m from the origin, turning, moving, zooming, sky: vectors within {largest:.0e} px; a still \
+         camera's are 0; zero vectors are {zero:.1} px off"
+    ))
+}
+
+/// The vectors of a camera that stands still are exactly 0.
+fn still_camera(make: Make<'_>) -> Option<()> {
+    let mut desc = of(MethodKind::Smr);
+    desc.motion.camera = CameraMotion::Excluded;
+    let mut post = make(desc)?;
+    let pose = pose(9).to_cols_array_2d();
+    for index in 0..3 {
+        let depth = Image::from_fn(SIZE, |[x, y]| distance(x, y) as f32);
+        let mut view = View { depth: Some(depth), ..still(noise(SIZE, "still camera")) };
+        view.facts = view.facts.posed(pose, pose).unwrap();
+        view.facts.jitter_px = JITTER_PX;
+        let (.., trace) = post.step(index, &view);
+        assert!(index == 0 || trace.pixels().iter().all(|t| t.motion == [0.0; 2] && t.verdict == Verdict::Valid));
+    }
+    Some(())
 }

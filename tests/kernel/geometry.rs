@@ -4,7 +4,7 @@ use afterimage::{ContextDesc, Gaze, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
 use glam::camera::rh::proj::{directx, opengl};
 use glam::camera::rh::view::look_to_mat4;
-use glam::{Mat4, Quat, Vec3, Vec4};
+use glam::{DMat4, DVec3, Mat4, Quat, Vec3, Vec4};
 
 const SIZE: [u32; 2] = [1600, 900];
 
@@ -130,6 +130,9 @@ fn poses_give_the_motion_of_their_matrices() {
         assert_eq!(error.setting, "previous_world_from_view");
         assert!(error.expected.contains("a rotation and a translation"), "{error}");
     }
+    assert!(view.posed(mirrored, mirrored).unwrap_err().expected.contains("mirror"));
+    assert!(view.posed(by_rows, by_rows).unwrap_err().expected.contains("transpose"));
+    assert!(view.posed(scaled, scaled).unwrap_err().expected.contains("without scale"));
 }
 
 #[test]
@@ -178,6 +181,9 @@ fn matrices_that_are_no_perspective_projection_are_refused() {
         refused(glam::camera::lh::proj::directx::perspective_infinite_reverse(1.0, 1.5, 0.1)).contains("left-handed")
     );
     assert!(refused(Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * good).contains("y down"));
+    assert!(refused(Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0)) * good).contains("a mirrored projection"));
+    assert!(refused(good * Mat4::from_translation(Vec3::new(0.03, 0.0, 0.0))).contains("not multiplied by a view"));
+    assert!(refused(good * Mat4::from_rotation_y(0.001)).contains("not multiplied by a view"));
     assert!(refused(good.transpose()).contains("transpose this one"));
     assert!(refused(good * Mat4::from_rotation_y(0.3)).contains("not multiplied by a view"));
     assert!(refused(Mat4::NAN).contains("finite"));
@@ -191,7 +197,8 @@ fn camera_motion_leads_a_point_to_where_it_was() {
     for projection in projections(1.0, 16.0 / 9.0).into_iter().chain([off_axis([-1.2, 0.9], [-1.0, 1.1])]) {
         // Far from the world's origin, as in large worlds.
         let eye = Vec3::new(number(-500.0, 500.0), number(-500.0, 500.0), number(-500.0, 500.0));
-        let view = |eye: Vec3, yaw: f32| look_to_mat4(eye, Vec3::new(yaw.sin(), 0.1, -yaw.cos()), Vec3::Y);
+        let ahead = |yaw: f32| Vec3::new(yaw.sin(), 0.1, -yaw.cos()).normalize();
+        let view = |eye: Vec3, yaw: f32| look_to_mat4(eye, ahead(yaw), Vec3::Y);
         let (now, before) = (view(eye, 0.30), view(eye + Vec3::new(0.2, -0.1, 0.15), 0.27));
         let geometry = ViewGeometry::from_projection(SIZE, projection.to_cols_array_2d()).unwrap();
         let [projection, vp, previous] =
@@ -213,8 +220,151 @@ fn camera_motion_leads_a_point_to_where_it_was() {
     let projection = directx::perspective_infinite_reverse(1.0, 1.5, 0.1).to_cols_array_2d();
     let view = ViewFrame::new(ViewGeometry::from_projection(SIZE, projection).unwrap(), Gaze::Lost);
     let singular = view.moved(projection, [[0.0; 4]; 4], projection).unwrap_err();
-    assert_eq!((singular.setting, singular.expected.as_str()), ("clip_from_world", "finite numbers, and an inverse"));
+    assert_eq!(singular.setting, "clip_from_world");
+    assert!(singular.expected.contains("clip_from_view times a view"), "{singular}");
     assert_eq!(view.moved(projection, projection, [[f32::NAN; 4]; 4]).unwrap_err().setting, "previous_clip_from_world");
+}
+
+/// Oblique near plane of a mirror (Lengyel 2005): the row of depth is a clip plane.
+fn oblique(projection: Mat4) -> Mat4 {
+    let mut columns = projection.to_cols_array_2d();
+    for (column, z) in columns.iter_mut().zip([0.06, 0.1, -0.16, -0.24]) {
+        column[2] = z;
+    }
+    Mat4::from_cols_array_2d(&columns)
+}
+
+#[test]
+fn h111_far_cameras_oblique_near_planes_and_mirrors_are_right_or_refused() {
+    use afterimage::cpu::{CpuAfterimage, Frame};
+    use afterimage::{DepthConvention, Image};
+    let good = directx::perspective_infinite_reverse(1.0, 1.5, 0.1);
+    let geometry = |matrix: Mat4| ViewGeometry::from_projection(SIZE, matrix.to_cols_array_2d());
+    // A projection that was divided out of a product in floats.
+    let mut rounded = good;
+    (rounded.y_axis.x, rounded.z_axis.w, rounded.w_axis.x) = (-1.9e-9, -0.999_999_94, -4.8e-7);
+    assert_same(geometry(rounded).unwrap(), geometry(good).unwrap());
+    assert_same(geometry(oblique(good)).unwrap(), geometry(good).unwrap());
+
+    // 1e6 m from the origin: doubles hold the motion, floats do not (the planted error).
+    let view = ViewFrame::new(geometry(good).unwrap(), Gaze::Lost);
+    let at = |z: f64| DMat4::from_translation(DVec3::new(0.0, 1.6, z));
+    let shift = |view: ViewFrame| view.previous_from_current.unwrap()[2][3];
+    let (now, before) = (at(1e6), at(1e6 + 0.02));
+    assert!((shift(view.posed(now.to_cols_array_2d(), before.to_cols_array_2d()).unwrap()) - 0.02).abs() < 1e-6);
+    let floats = |pose: DMat4| pose.as_mat4().to_cols_array_2d();
+    assert!((shift(view.posed(floats(now), floats(before)).unwrap()) - 0.02).abs() > 0.01);
+    let projection = good.as_dmat4();
+    let clip = |projection: DMat4, pose: DMat4| (projection * pose.inverse()).to_cols_array_2d();
+    let moved = |projection: DMat4, before: DMat4| {
+        view.moved(projection.to_cols_array_2d(), clip(projection, now), clip(projection, before))
+    };
+    assert!((shift(moved(projection, before).unwrap()) - 0.02).abs() < 1e-6);
+    // Relative to a point near the camera, floats do.
+    let near = DMat4::from_translation(DVec3::new(0.0, 0.0, -1e6));
+    assert!((shift(view.posed(floats(near * now), floats(near * before)).unwrap()) - 0.02).abs() < 1e-6);
+    // A gaze on a point 1 m ahead, 3 cm to the right of the eye.
+    let gaze = Gaze::on_ray([0.03, 1.6, 1e6], [0.0, 0.0, -1.0], 1.0, now.to_cols_array_2d());
+    assert!(matches!(gaze, Gaze::Direction { view: [x, y, z] } if (x - 0.03).abs() < 1e-6 && y == 0.0 && z == 1.0));
+
+    // An oblique near plane and another field of view leave the motion as it is.
+    let turned = before * DMat4::from_rotation_y(0.05);
+    let plain = moved(projection, turned).unwrap().previous_from_current.unwrap();
+    let slanted = oblique(good).as_dmat4();
+    assert_eq!(moved(slanted, turned).unwrap().previous_from_current.unwrap(), plain);
+    let zoomed = directx::perspective_infinite_reverse(0.7, 1.5, 0.1).as_dmat4();
+    let zoom = view.moved(projection.to_cols_array_2d(), clip(projection, now), clip(zoomed, turned)).unwrap();
+    let differences = zoom.previous_from_current.unwrap().into_iter().flatten().zip(plain.into_iter().flatten());
+    assert!(differences.into_iter().all(|(a, b)| (a - b).abs() < 1e-6));
+    // A camera that stands still, whatever its matrices round to.
+    assert_eq!(moved(projection, now).unwrap().previous_from_current.unwrap(), Mat4::IDENTITY.to_cols_array_2d());
+
+    // A mirror in the plane x = 0: what is drawn moves as in the mirrored view.
+    let mirror = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+    let through = |before: DMat4| {
+        let clips = [now, before].map(|pose| (projection * pose.inverse() * mirror).to_cols_array_2d());
+        view.moved(projection.to_cols_array_2d(), clips[0], clips[1])
+    };
+    assert_eq!(through(turned).unwrap().previous_from_current.unwrap(), plain);
+    let cut = view.moved(projection.to_cols_array_2d(), clip(projection, now), clip(projection, mirror * turned));
+    assert!(cut.unwrap_err().to_string().contains("both views mirrored or neither"));
+
+    // Depth buffers of an oblique projection are refused, distances are not.
+    let size = [8, 6];
+    let geometry = ViewGeometry::from_projection(size, oblique(good).to_cols_array_2d()).unwrap();
+    let (color, depth) = (Image::filled(size, [0.5; 3]), Image::filled(size, 0.5));
+    let process = |depth_convention| {
+        let view = ViewFrame { depth: Some(depth_convention), ..ViewFrame::new(geometry, Gaze::Lost) };
+        let mut post = CpuAfterimage::new(&ContextDesc::new(size)).unwrap();
+        let (colors, depths, views) = ([&color], [&depth], [view]);
+        post.process(&Frame { depth: Some(&depths), ..Frame::new(&colors, &views, 0) }, &mut [color.clone()])
+    };
+    let error = process(DepthConvention::Reversed { near: 0.1, far: f32::INFINITY }).unwrap_err().to_string();
+    assert!(
+        error.starts_with("depth convention of view 0 is Reversed") && error.contains("oblique near plane"),
+        "{error}"
+    );
+    process(DepthConvention::Linear).unwrap();
+    afterimage_testing::holds!(
+        "H111",
+        Cpu,
+        "1e6 m away 0.02 m are 0.02 m in f64, and in f32 relative to a near point; oblique planes and mirrors right, \
+         their depth buffers and mirrored poses refused by name"
+    );
+}
+
+#[test]
+fn an_orthographic_camera_moves_along_its_axis() {
+    use afterimage::cpu::{CpuAfterimage, Frame};
+    use afterimage::{DepthConvention, Image, Verdict};
+    let size = [64, 64];
+    let mut desc = ContextDesc::new(size);
+    desc.depth = DepthConvention::Orthographic { near: 0.0, far: 100.0 };
+    let rejected = |is_told: bool| {
+        let mut post = CpuAfterimage::new(&desc).unwrap();
+        let (color, mut shown) = (Image::filled(size, [0.5; 3]), [Image::filled(size, [0.0; 3])]);
+        let mut rejected = 0;
+        for index in 0..3 {
+            // 10 m, and 0.3 m less in each frame.
+            let depth = Image::filled(size, 0.1 - 0.003 * index as f32);
+            let at = |frame: f32| Mat4::from_translation(Vec3::new(0.0, 0.0, -0.3 * frame)).to_cols_array_2d();
+            let mut view = ViewFrame::new(ViewGeometry::flat(size, 60.0).unwrap(), Gaze::Lost);
+            if is_told {
+                view = view.posed(at(index as f32), at(index as f32 - 1.0)).unwrap();
+            }
+            let (colors, depths, views) = ([&color], [&depth], [view]);
+            let frame = Frame { depth: Some(&depths), ..Frame::new(&colors, &views, index) };
+            rejected = post.process(&frame, &mut shown).unwrap().verdicts[Verdict::Disoccluded as usize];
+        }
+        rejected
+    };
+    assert_eq!((rejected(true), rejected(false)), (0, 64 * 64));
+}
+
+#[test]
+fn vectors_without_the_cameras_motion_need_depth_and_the_camera() {
+    use afterimage::cpu::{CpuAfterimage, Frame};
+    use afterimage::{CameraMotion, DepthConvention, Image, Reset};
+    let size = [8, 6];
+    let mut desc = ContextDesc::new(size);
+    desc.motion.camera = CameraMotion::Excluded;
+    let still = ViewFrame::new(ViewGeometry::flat(size, 70.0).unwrap(), Gaze::Lost);
+    let known = ViewFrame { previous_from_current: Some(Mat4::IDENTITY.to_cols_array_2d()), ..still };
+    let flat = ViewFrame { depth: Some(DepthConvention::Orthographic { near: 0.1, far: 9.0 }), ..known };
+    let (color, depth) = (Image::filled(size, [0.5; 3]), Image::filled(size, 0.5));
+    let process = |view: ViewFrame, has_depth: bool, reset| {
+        let (colors, depths, views) = ([&color], [&depth], [view]);
+        let depth = has_depth.then_some(&depths[..]);
+        let mut post = CpuAfterimage::new(&desc).unwrap();
+        post.process(&Frame { depth, reset, ..Frame::new(&colors, &views, 0) }, &mut [color.clone()])
+            .map_err(|error| error.to_string())
+    };
+    let refused = |view, has_depth| process(view, has_depth, Reset::None).unwrap_err();
+    assert!(refused(known, false).starts_with("depth of view 0 is None: expected given"));
+    assert!(refused(still, true).starts_with("previous_from_current of view 0 is None: expected given"));
+    assert!(refused(flat, true).contains("rays of an orthographic view are not known"));
+    process(known, true, Reset::None).unwrap();
+    process(still, false, Reset::All).unwrap();
 }
 
 #[test]
@@ -269,6 +419,7 @@ fn wrong_jitters_and_depth_conventions_are_refused() {
     let text = refusal(ViewFrame { depth: Some(DepthConvention::Reversed { near: 0.0, far: 1.0 }), ..good });
     assert!(text.starts_with("depth convention of view 0 is near 0, far 1: expected planes"), "{text}");
     let flat = Some(DepthConvention::Orthographic { near: 0.1, far: 9.0 });
-    let text = refusal(ViewFrame { depth: flat, previous_from_current: Some([[0.0; 4]; 4]), ..good });
-    assert!(text.contains("given with orthographic depth"), "{text}");
+    let turned = Mat4::from_rotation_y(0.01).transpose().to_cols_array_2d();
+    let text = refusal(ViewFrame { depth: flat, previous_from_current: Some(turned), ..good });
+    assert!(text.contains("a camera that turns away") && text.contains("orthographic depth"), "{text}");
 }

@@ -14,7 +14,7 @@ fn every_motion_convention_means_the_same_shift() {
     for unit in [MotionUnit::Pixels, MotionUnit::Uv, MotionUnit::Ndc] {
         for direction in [MotionDirection::PreviousMinusCurrent, MotionDirection::CurrentMinusPrevious] {
             for y_axis in [YAxis::Down, YAxis::Up] {
-                let convention = MotionConvention { unit, direction, y_axis, jittered: false };
+                let convention = MotionConvention { unit, direction, y_axis, ..MotionConvention::default() };
                 let scale = convention.to_internal(SIZE);
                 let vector = [3.0 / scale[0], -2.0 / scale[1]];
                 let desc = ContextDesc { motion: convention, ..ContextDesc::new(SIZE) };
@@ -37,7 +37,7 @@ fn every_motion_convention_means_the_same_shift() {
         unit: MotionUnit::Uv,
         direction: MotionDirection::CurrentMinusPrevious,
         y_axis: YAxis::Up,
-        jittered: false,
+        ..MotionConvention::default()
     };
     assert_eq!(uv.to_internal([64, 48]), [-64.0, 48.0]);
     let ndc = MotionConvention { unit: MotionUnit::Ndc, ..MotionConvention::default() };

@@ -1,7 +1,8 @@
 //! Uniform structs of Rust and WGSL agree: names, order, offsets, sizes.
 
 use afterimage::gpu::uniforms::{
-    CandidateUniforms, FrameUniforms, LatticeUniforms, MAX_VIEWS, SparseUniforms, ViewLattices, ViewUniforms,
+    CameraUniforms, CandidateUniforms, FrameUniforms, LatticeUniforms, MAX_VIEWS, SparseUniforms, ViewLattices,
+    ViewUniforms,
 };
 use afterimage::shader::SHADERS;
 use afterimage::simulator::gpu::uniforms::FoveationUniforms;
@@ -37,7 +38,9 @@ fn constants_have_one_layout() {
     let frame = rust!(FrameUniforms: size, past_frame, frame_low, fovea_radius_deg, inv_density_at_fovea, exponential_survival,
         gate_offset, inv_gate_divisor, depth_relative, depth_slope_px, exposure, motion_scale, mid_radius_deg,
         blend_deg, coarse_mid, coarse_far, smr_accumulate, smr_accumulate_tolerance, smr_tolerance, first_view, lattice,
-        mip_levels, views);
+        mip_levels, views, cameras);
+    let cameras = rust!(CameraUniforms: x, y, z, per_tangent, zoom, shift_px, ahead, sky, no_vector);
+    assert_eq!(wgsl(&module, "CameraUniforms"), cameras);
     assert_eq!(wgsl(&module, "FrameUniforms"), frame);
     assert_eq!(wgsl(&module, "ViewUniforms"), view_uniforms());
     assert!(composed.source.contains(&format!("array<ViewUniforms, {MAX_VIEWS}>")));

@@ -52,7 +52,7 @@ fn every_convention_agrees() {
     for unit in [MotionUnit::Pixels, MotionUnit::Uv, MotionUnit::Ndc] {
         for direction in [MotionDirection::PreviousMinusCurrent, MotionDirection::CurrentMinusPrevious] {
             for y_axis in [YAxis::Down, YAxis::Up] {
-                let motion = MotionConvention { unit, direction, y_axis, jittered: false };
+                let motion = MotionConvention { unit, direction, y_axis, ..MotionConvention::default() };
                 agree(ContextDesc { motion, ..ContextDesc::new(SIZE) }, Settings::paper(), 4);
             }
         }

@@ -5,8 +5,8 @@ use afterimage::gpu::{Afterimage, Frame, Region, Textures};
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{
-    ContextDesc, Exposure, Filter, Foveation, Image, Lattice, Lattices, Method, MethodKind, Reset, Sampler, Settings,
-    Smr, ViewGeometry, Wrs,
+    CameraMotion, ContextDesc, Exposure, Filter, Foveation, Image, Lattice, Lattices, Method, MethodKind,
+    MotionConvention, Reset, Sampler, Settings, Smr, ViewGeometry, Wrs,
 };
 use afterimage_testing::Draws;
 use afterimage_testing::planted::all_caught;
@@ -625,6 +625,32 @@ fn geometry_at_samples_is_filled_bit_equal() {
             rig.both(index, Reset::None, &views);
         }
         assert_eq!(rig.gpu.memory_bytes() - Afterimage::memory_bytes_of(rig.gpu.desc()), 12 * 2 * 70 * 41);
+    }
+}
+
+#[test]
+fn sparse_frames_whose_vectors_lack_the_cameras_motion_are_bit_equal() {
+    let moved =
+        [[0.999, -0.02, 0.01, 0.05], [0.02, 0.999, -0.01, 0.0], [-0.01, 0.01, 0.999, 0.1], [0.0, 0.0, 0.0, 1.0]];
+    let none = CameraMotion::IncludedExcept { none: [0.0; 2] };
+    for (method, camera) in METHODS.into_iter().flat_map(|m| [(m, none), (m, CameraMotion::Excluded)]) {
+        let settings = settings(method);
+        let motion = MotionConvention { camera, ..desc().motion };
+        let Some(mut rig) = Rig::new(ContextDesc { motion, ..desc() }, settings) else { return };
+        for index in 0..6 {
+            rig.scattered = index % 4 == 3;
+            let mut views = at_samples(index, &settings);
+            for view in &mut views {
+                view.facts.previous_from_current = Some(moved);
+                if index % 3 == 2 {
+                    view.motion = None;
+                }
+                if index % 2 == 1 {
+                    view.facts.lattices = gliding_view(index, 0, &settings).facts.lattices;
+                }
+            }
+            rig.both(index, Reset::None, &views);
+        }
     }
 }
 

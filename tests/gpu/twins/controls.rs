@@ -15,6 +15,13 @@ const PLANTED: &[(&str, &str, &str)] = &[
     // A flipped motion sign.
     ("reproject::nearest", "f32(x) + motion.x", "f32(x) - motion.x"),
     ("reproject::nearest", "f32(y) + motion.y", "f32(y) - motion.y"),
+    // The sky moves with the camera's place; a previous position behind the camera; a turn without its tangent.
+    ("reproject::camera_vector", "disparity <= motion.sky", "disparity < motion.sky"),
+    ("reproject::camera_vector", "distance <= 1e-6", "distance <= -1.0"),
+    ("reproject::camera_vector", "change.xy - ray * change.z", "change.xy"),
+    ("reproject::camera_vector", "ray * motion.zoom + ", ""),
+    ("reproject::has_no_vector", "all(given == none)", "any(given == none)"),
+    ("reproject::has_no_vector", "is_finite(given.x) && is_finite(given.y)", "is_finite(given.x)"),
     // Sloppy means and references.
     ("wrs::sharpen", "w *= candidate_w;", "w *= w;"),
     ("wrs::at_rate", "-2.0 * f32(exponent)", "-2.5 * f32(exponent)"),

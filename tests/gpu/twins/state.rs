@@ -4,15 +4,16 @@ use super::probe::{Probe, probe};
 use super::shape::*;
 use super::values::*;
 use afterimage::kernel::pack::Stored;
-use afterimage::kernel::reproject::Verdict;
+use afterimage::kernel::reproject::{Verdict, ViewMotion};
 use afterimage::kernel::reservoir::Reservoir;
 use afterimage::kernel::rng::Purpose;
 use afterimage::kernel::{pack, reproject, reservoir, rng, sanitize};
 use afterimage_testing::Draws;
-use glam::Vec3;
+use glam::{Vec2, Vec3, Vec4};
 
 code!(Purpose: Select, Key, Path);
 shape!(Stored { color: Vec3, disparity: f32, w_sum: f32, age: u32 });
+shape!(ViewMotion { x: Vec4, y: Vec4, z: Vec4, per_tangent: Vec2, zoom: Vec2, shift_px: Vec2, ahead: f32, sky: f32 });
 shape!(Reservoir { w_sum: f32, count: u32 });
 
 pub fn draw(d: &mut Draws) -> u32 {
@@ -113,6 +114,29 @@ pub const PROBES: &[Probe] = &[
                 })
         }
     ),
+    probe!(reproject::camera_vector, |rows| {
+        let camera = |d: &mut Draws, row: &mut Vec<u32>, turn: f32| {
+            row.extend([range(d, -1.5, 1.5), range(d, -1.5, 1.5)]);
+            let disparities = [0.0, 0.01, -1.0, d.uniform(), 10.0 * d.uniform()];
+            row.push(disparities[d.bits() as usize % 5].to_bits());
+            for i in 0..12 {
+                row.push(if i % 4 == 3 { range(d, -0.5, 0.5) } else { range(d, -turn, turn) });
+            }
+            row.extend([range(d, 100.0, 2000.0), range(d, 100.0, 2000.0)]);
+            let zoomed = d.bits() & 1 == 1;
+            row.extend((0..4).map(|_| if zoomed { range(d, -20.0, 20.0) } else { 0 }));
+            row.extend([range(d, 1.0 - turn, 1.0 + turn), [0, 0.01_f32.to_bits()][d.bits() as usize % 2]]);
+        };
+        rows.random(|d, row| camera(d, row, 0.01)).random_of("large turns", |d, row| camera(d, row, 1.5))
+    }),
+    probe!(reproject::has_no_vector, |rows| {
+        let none = floats(&[0.0, -1.0, 0.5, f32::MAX]);
+        let given = [any(), none.clone()].concat();
+        rows.mixed(&[&given, &given, &none, &none]).random(|d, row| {
+            let none = [range(d, -9.0, 9.0), range(d, -9.0, 9.0)];
+            row.extend([if d.bits() & 1 == 0 { none[0] } else { 0 }, none[1], none[0], none[1]]);
+        })
+    }),
     probe!(
         reservoir::update,
         |mut r: Reservoir, w: f32, draw: f32| (reservoir::update(&mut r, w, draw), r),

@@ -47,7 +47,12 @@ pub fn conventions() -> impl Iterator<Item = MotionConvention> {
     let directions = [MotionDirection::PreviousMinusCurrent, MotionDirection::CurrentMinusPrevious];
     units.into_iter().flat_map(move |unit| {
         directions.into_iter().flat_map(move |direction| {
-            [YAxis::Down, YAxis::Up].map(|y_axis| MotionConvention { unit, direction, y_axis, jittered: false })
+            [YAxis::Down, YAxis::Up].map(|y_axis| MotionConvention {
+                unit,
+                direction,
+                y_axis,
+                ..MotionConvention::default()
+            })
         })
     })
 }
