@@ -133,9 +133,6 @@ impl App {
         let [output, screen] = [&self.output, &target.texture].map(|t| t.create_view(&Default::default()));
         self.blitter.copy(&self.device, &mut encoder, &output, &screen);
         self.queue.submit([encoder.finish()]);
-        #[cfg(feature = "wgpu-29")]
-        target.present();
-        #[cfg(not(feature = "wgpu-29"))]
         self.queue.present(target);
         self.index += 1;
         Ok(())

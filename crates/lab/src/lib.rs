@@ -9,10 +9,6 @@
 //! - [`lattices`]: sparse frames, their order of samples and their geometry.
 //! - [`device`]: a graphics device without a window. [`error`]: errors of inputs.
 
-// Gives the chosen version the name `wgpu`.
-#[cfg(feature = "wgpu-29")]
-extern crate wgpu_29 as wgpu;
-#[cfg(feature = "wgpu-30")]
 extern crate wgpu_30 as wgpu;
 
 pub use afterimage_clip::{clock, lattices, metric, picture, quad_views, scanpath, whole_file};

@@ -19,15 +19,17 @@ fn say(line: &str) {
 fn find_adapter() -> Option<wgpu::Adapter> {
     let mut desc = wgpu::InstanceDescriptor::new_without_display_handle();
     desc.backends = wgpu::Backends::VULKAN;
+    // Without wgpu's debugging flags: with them, naga searches the line of every expression from the start of the source, a
+    // fifth of the tests' CPU time. WGPU_DEBUG=1 switches them on.
+    desc.flags = wgpu::InstanceFlags::empty().with_env();
     let instance = wgpu::Instance::new(desc);
     let options =
         wgpu::RequestAdapterOptions { power_preference: wgpu::PowerPreference::HighPerformance, ..Default::default() };
     match pollster::block_on(instance.request_adapter(&options)) {
         Ok(adapter) => {
             let info = adapter.get_info();
-            let wgpu = if cfg!(feature = "wgpu-29") { "wgpu 29" } else { "wgpu 30" };
             let (name, driver, version, backend) = (&info.name, &info.driver, &info.driver_info, info.backend);
-            say(&format!("adapter: {name}, {driver}, {version}, {backend:?}, {wgpu}"));
+            say(&format!("adapter: {name}, {driver}, {version}, {backend:?}"));
             Some(adapter)
         }
         Err(error) => {
@@ -71,7 +73,6 @@ pub fn device_with(desc: &wgpu::DeviceDescriptor<'_>) -> Option<(wgpu::Device, w
 /// Where a device of this test is recorded: everything that it is asked to do, and everything that is read back. Folder
 /// `AFTERIMAGE_RECORD`, if it is set, and one in it for each device, named after the test. `tests/web.sh` repeats the
 /// recordings on another implementation of WebGPU.
-#[cfg(feature = "wgpu-30")]
 fn recording() -> wgpu::Trace {
     use std::sync::atomic::{AtomicU32, Ordering};
     static COUNT: AtomicU32 = AtomicU32::new(0);
@@ -81,11 +82,6 @@ fn recording() -> wgpu::Trace {
     let folder = std::path::Path::new(folder).join(format!("{test}.{number}"));
     std::fs::create_dir_all(&folder).expect("a folder for the recording");
     wgpu::Trace::Directory(folder)
-}
-
-#[cfg(not(feature = "wgpu-30"))]
-fn recording() -> wgpu::Trace {
-    wgpu::Trace::Off
 }
 
 /// Whether devices are recorded.

@@ -1,14 +1,9 @@
 //! Helpers shared by tests: statistical tests with printed p-values, independent seeds, GPU access, the register of
 //! hard cases.
 
-// The name `wgpu` for the chosen version.
-#[cfg(feature = "wgpu-29")]
-extern crate wgpu_29 as wgpu;
-#[cfg(all(feature = "wgpu-30", not(feature = "wgpu-29")))]
 extern crate wgpu_30 as wgpu;
 
 mod alone;
-#[cfg(any(feature = "wgpu-29", feature = "wgpu-30"))]
 pub mod gpu;
 pub mod hard_case;
 pub mod panics;
@@ -17,7 +12,6 @@ pub mod program;
 pub mod resident;
 
 pub use alone::alone;
-#[cfg(feature = "wgpu-30")]
 pub use naga;
 
 use proptest::test_runner::{Config as ProptestConfig, RngSeed};

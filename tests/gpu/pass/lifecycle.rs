@@ -169,12 +169,6 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
         lost.device.destroy();
         // Until the caller learns of it, recording continues without a panic, whatever the context has to create.
         record(&mut lost, textures_before);
-        // wgpu 29 reports views of textures that were created on the lost device. The default handler panics.
-        #[cfg(feature = "wgpu-29")]
-        lost.device.on_uncaptured_error(Arc::new(|error| {
-            let text = error.to_string();
-            assert!(text.contains("create_view") && text.contains("is invalid"), "{text}");
-        }));
         let textures_after = textures(&lost);
         record(&mut lost, textures_after);
         lost.gpu.resize(&lost.device, [33, 17]).unwrap();

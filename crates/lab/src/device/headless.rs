@@ -21,10 +21,17 @@ pub struct Headless {
 }
 
 impl Headless {
+    /// An instance of wgpu without its debugging flags, in dev builds too: with them, naga searches the line of every
+    /// expression from the start of the source. `WGPU_DEBUG=1` switches them on.
+    pub fn instance() -> wgpu::Instance {
+        let mut desc = wgpu::InstanceDescriptor::new_without_display_handle();
+        desc.flags = wgpu::InstanceFlags::empty().with_env();
+        wgpu::Instance::new(desc)
+    }
+
     /// All adapters of this machine.
     pub fn adapters() -> Vec<wgpu::Adapter> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-        pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY))
+        pollster::block_on(Self::instance().enumerate_adapters(wgpu::Backends::PRIMARY))
     }
 
     /// The first hardware GPU; with `software`, a software adapter if the machine has no GPU. `None` if no such adapter

@@ -1,4 +1,4 @@
-//! Contents of a mapped buffer, for either version of wgpu.
+//! Contents of a mapped buffer.
 
 use std::sync::mpsc;
 use std::time::Duration;
@@ -7,14 +7,9 @@ use wgpu::{Buffer, BufferView, Device};
 /// Time in which the callback of a mapping must arrive once all work is complete; exceeded only by a failing device.
 const CALLBACK_LIMIT: Duration = Duration::from_secs(60);
 
-/// Contents of a buffer after `map_async` has reported success. `None` if it is not mapped; wgpu 29 panics then.
+/// Contents of a buffer after `map_async` has reported success. `None` if it is not mapped.
 pub fn mapped(buffer: &Buffer) -> Option<BufferView> {
-    let view = buffer.get_mapped_range(..);
-    #[cfg(feature = "wgpu-29")]
-    let view = Some(view);
-    #[cfg(not(feature = "wgpu-29"))]
-    let view = view.ok();
-    view
+    buffer.get_mapped_range(..).ok()
 }
 
 /// Maps a buffer with usage `MAP_READ`, waits for all submitted work and for the mapping, and returns the contents.

@@ -15,7 +15,6 @@ mod shape;
 #[path = "../../../../tests/gpu/twins/values.rs"]
 mod values;
 
-#[cfg(feature = "wgpu-30")]
 mod backends;
 mod controls;
 mod facets;

@@ -27,7 +27,7 @@ pub struct Device {
 impl Device {
     /// Opens the best device that can draw to `window`; software devices come last.
     pub fn open(window: &Arc<Window>) -> Result<Self, Failure> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        let instance = Headless::instance();
         let surface = create_surface(&instance, window)?;
         let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
         adapters.retain(|adapter| adapter.is_surface_supported(&surface));

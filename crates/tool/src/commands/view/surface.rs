@@ -37,7 +37,6 @@ impl Surface {
         let config = SurfaceConfiguration {
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
             format,
-            #[cfg(not(feature = "wgpu-29"))]
             color_space: wgpu::SurfaceColorSpace::Auto,
             width: size[0].max(1),
             height: size[1].max(1),

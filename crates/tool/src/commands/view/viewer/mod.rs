@@ -197,9 +197,6 @@ impl Viewer {
         self.measure_jod();
         self.draw(&target.texture.create_view(&Default::default()))?;
         self.window.pre_present_notify();
-        #[cfg(feature = "wgpu-29")]
-        target.present();
-        #[cfg(not(feature = "wgpu-29"))]
         self.resources.device.gpu.queue.present(target);
         self.resources.times.end(&self.resources.device.gpu);
         self.is_stale = false;
