@@ -57,7 +57,7 @@ fn run(rig: &mut Rig, name: &str, frames: u64) -> [usize; 3] {
             }
             _ => {}
         }
-        let reset = if draws.bits() % 10 == 0 { Reset::All } else { Reset::None };
+        let reset = if draws.bits().is_multiple_of(10) { Reset::All } else { Reset::None };
         let view = view(rig, index);
         let gpu = rig.on_gpu(index, reset, std::slice::from_ref(&view));
         if rig.drops {
