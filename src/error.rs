@@ -71,9 +71,9 @@ pub enum CreateError {
         /// Name in `wgpu::Limits`.
         limit: &'static str,
         /// Limit of the device.
-        found: u32,
+        found: u64,
         /// Limit that the context needs.
-        needed: u32,
+        needed: u64,
     },
     /// The output format is not supported. Render to a supported format, and draw that to the screen.
     #[cfg(feature = "gpu")]
@@ -83,6 +83,17 @@ pub enum CreateError {
         found: wgpu::TextureFormat,
         /// Supported formats.
         expected: &'static str,
+    },
+    /// The device's backend cannot write textures of a format that history has, as wgpu's GL backend cannot.
+    #[cfg(feature = "gpu")]
+    #[error(
+        "the device's backend, {backend:?}, cannot store textures of format {needed:?}, which history has: expected Vulkan, Metal, DirectX 12 or a browser's WebGPU"
+    )]
+    HistoryFormat {
+        /// Format that history has.
+        needed: wgpu::TextureFormat,
+        /// Backend of the device.
+        backend: wgpu::Backend,
     },
 }
 
@@ -136,11 +147,12 @@ pub enum FrameError {
         expected: usize,
     },
     /// The size of a context is 0 or too large.
-    #[error("size is {}x{}: expected at least 1x1 and at most {max} pixels a side; skip frames while the window is minimised", size[0], size[1])]
+    #[error("size is {}x{}: expected {}", size[0], size[1], expected_size(*size, *max))]
     Extent {
         /// Requested size, in pixels.
         size: [u32; 2],
-        /// Largest side, in pixels.
+        /// Largest side, in pixels: [`ContextDesc::MAX_SIDE`](crate::ContextDesc::MAX_SIDE), or what the device
+        /// allows (`max_texture_dimension_2d`).
         max: u32,
     },
     /// A texture has the wrong dimension, number of layers or samples, format or usage.
@@ -165,7 +177,8 @@ pub enum FrameError {
         /// Supported buffers.
         expected: &'static str,
     },
-    /// The graphics device was lost. It executes no more work.
+    /// The graphics device was lost. It executes no more work. `gpu::Afterimage::record` returns this, except in a
+    /// browser, where only the application learns of the loss.
     #[error("the graphics device was lost: create a new device and a new context on it; history starts empty")]
     DeviceLost,
     /// A value of the frame's description is invalid.
@@ -180,6 +193,14 @@ pub enum FrameError {
         /// Accepted values.
         expected: &'static str,
     },
+}
+
+/// What is expected instead of a rejected size.
+pub(crate) fn expected_size(size: [u32; 2], max: u32) -> String {
+    if size.contains(&0) {
+        return "at least 1x1; skip frames while the window is minimised".into();
+    }
+    format!("at most {max} pixels a side")
 }
 
 /// A value in the description of a frame that [`FrameError::Value`] rejects, for programs that match on it. It displays

@@ -111,12 +111,12 @@ impl Foveation {
     /// # Errors
     /// [`SettingsError`] for the first field that is out of range or contradicts another.
     pub fn validate(&self) -> Result<(), SettingsError> {
-        check("fovea", self.fovea_deg, 0.0..=180.0, "degrees")?;
-        check("mid", self.mid_deg, 0.0..=180.0, "degrees")?;
-        check("blend", self.blend_deg, 0.0..=90.0, "degrees")?;
+        check("fovea_deg", self.fovea_deg, 0.0..=180.0, "degrees")?;
+        check("mid_deg", self.mid_deg, 0.0..=180.0, "degrees")?;
+        check("blend_deg", self.blend_deg, 0.0..=90.0, "degrees")?;
         if self.fovea_deg > self.mid_deg {
             return Err(SettingsError {
-                setting: "fovea",
+                setting: "fovea_deg",
                 found: format!("{} degrees", self.fovea_deg),
                 expected: format!(
                     "at most the middle region's {} degrees; widen the middle region or narrow the fovea",

@@ -2,7 +2,7 @@
 
 use crate::camera::{ORTHOGRAPHIC_TURN, camera_motion, checked_pose, pose_motion};
 use crate::convention::{DepthConvention, MotionConvention};
-use crate::error::{FrameError, FrameValue, SettingsError};
+use crate::error::{FrameError, FrameValue, SettingsError, expected_size};
 use crate::foveation::Filter;
 use crate::geometry::ViewGeometry;
 use crate::lattice::Lattices;
@@ -247,6 +247,40 @@ impl ViewFrame {
     ) -> Result<Self, SettingsError> {
         let matrix = pose_motion(world_from_view, previous_world_from_view)?;
         Ok(Self { previous_from_current: Some(matrix), ..self })
+    }
+
+    /// This view with the jitter of a projection: that of [`geometry`](Self::geometry), moved by a part of a pixel, as
+    /// the frame was drawn with. The matrix is as in [`ViewGeometry::from_projection`]. Jitter is exact to 1e-3 pixels.
+    ///
+    /// ```
+    /// # use afterimage::{Gaze, ViewFrame, ViewGeometry};
+    /// # let clip_from_view = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.8, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], [0.0, 0.0, 0.1, 0.0]];
+    /// let geometry = ViewGeometry::from_projection([1920, 1080], clip_from_view)?;
+    /// // FSR2's recipe: a translation of clip space by (2 x / width, -2 y / height), here by (0.25, -0.375) pixels.
+    /// let mut jittered = clip_from_view;
+    /// jittered[2][0] -= 2.0 * 0.25 / 1920.0;
+    /// jittered[2][1] -= -2.0 * -0.375 / 1080.0;
+    /// let [x, y] = ViewFrame::new(geometry, Gaze::Lost).jittered(jittered)?.jitter_px;
+    /// assert!((x - 0.25).abs() < 1e-3 && (y + 0.375).abs() < 1e-3);
+    /// # Ok::<(), afterimage::SettingsError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SettingsError`] if the matrix is not that of a perspective camera, has another field of view, or is moved by
+    /// more than 16 pixels.
+    pub fn jittered(self, jittered_clip_from_view: [[f32; 4]; 4]) -> Result<Self, SettingsError> {
+        let jittered = ViewGeometry::from_projection(self.geometry.size_px(), jittered_clip_from_view)?;
+        let ((scale, plain), (other_scale, drawn)) = (self.geometry.scale_offset(), jittered.scale_offset());
+        let is_same = [0, 1].iter().all(|&i| (other_scale[i] / scale[i] - 1.0).abs() < 1e-3);
+        let jitter_px = [0, 1].map(|i| (plain[i] - drawn[i]) / scale[i]);
+        if !is_same || jitter_px.iter().any(|px| px.abs() > MAX_JITTER_PX) {
+            return Err(SettingsError {
+                setting: "jittered_clip_from_view",
+                found: format!("{jittered_clip_from_view:?}"),
+                expected: format!("the projection of the geometry, moved by at most {MAX_JITTER_PX} pixels"),
+            });
+        }
+        Ok(Self { jitter_px, ..self })
     }
 
     /// Third row of [`previous_from_current`](Self::previous_from_current), which gives the previous distance.
@@ -644,10 +678,10 @@ impl ContextDesc {
     pub(crate) fn validate(&self) -> Result<(), SettingsError> {
         self.settings.validate()?;
         self.depth.validate()?;
-        check_size(self.size_px).map_err(|e| SettingsError {
+        check_size(self.size_px).map_err(|_| SettingsError {
             setting: "size_px",
             found: format!("{}x{}", self.size_px[0], self.size_px[1]),
-            expected: e.to_string(),
+            expected: expected_size(self.size_px, Self::MAX_SIDE),
         })?;
         if self.view_count == 0 {
             return Err(SettingsError { setting: "view_count", found: "0".into(), expected: "at least 1 view".into() });

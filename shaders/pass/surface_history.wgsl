@@ -52,7 +52,12 @@ fn source_of(px: vec2<u32>, view: u32, motion: vec2<f32>, disparity_now: f32) ->
         previous.verdict = VERDICT_VALID;
         previous.nearest_at = vec2<u32>(other_at);
     }
-    return Source(previous, texel, fraction, unpack_surface(select(words, other_words, stands_in)));
+    let chosen = Surface(
+        surface_color(select(words, other_words, stands_in)),
+        select(stored.lod, other.lod, stands_in),
+        select(stored.disparity, other.disparity, stands_in),
+    );
+    return Source(previous, texel, fraction, chosen);
 }
 
 fn tap(texel: vec2<i32>, view: u32, codes: vec2<u32>) -> Tap {

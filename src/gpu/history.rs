@@ -5,8 +5,9 @@
 //! that wrote it in a buffer on the device. A frame states in its uniforms which number it expects
 //! (`shaders/pass/past_frame.wgsl`), and starts without history if the device has another.
 
-use super::buffer::filled;
+use super::buffer::filled_if_alive;
 use super::mip_chain::{self, Candidates, MipLevel};
+use crate::error::FrameError;
 use crate::frame::ContextDesc;
 use crate::kernel::foveate::level_len;
 use crate::method::HistoryLayout;
@@ -94,12 +95,18 @@ impl History {
         if self.filled { self.frame } else { NO_FRAME }
     }
 
-    /// Makes the written frame the previous one: records its number into `encoder`, which has its passes.
-    pub fn finish(&mut self, device: &Device, encoder: &mut CommandEncoder) {
-        // 1 to NO_FRAME - 1: another number than that of textures that were never written.
-        self.frame = self.frame % (NO_FRAME - 1) + 1;
-        let number = filled(device, "afterimage frame number", &self.frame.to_le_bytes(), BufferUsages::COPY_SRC);
-        self.number_next(encoder, &number);
+    /// The number of the next frame, on the device; an error if wgpu knows that the device is lost.
+    pub fn next_number(&self, device: &Device) -> Result<Buffer, FrameError> {
+        let (label, bytes) = ("afterimage frame number", next(self.frame).to_le_bytes());
+        let (number, is_alive) = filled_if_alive(device, label, &bytes, BufferUsages::COPY_SRC);
+        if is_alive { Ok(number) } else { Err(FrameError::DeviceLost) }
+    }
+
+    /// Makes the written frame the previous one: records its [`next_number`](Self::next_number) into `encoder`, which
+    /// has its passes.
+    pub fn finish(&mut self, encoder: &mut CommandEncoder, number: &Buffer) {
+        self.frame = next(self.frame);
+        self.number_next(encoder, number);
         self.swap();
     }
 
@@ -121,11 +128,22 @@ impl History {
     }
 }
 
+/// Number of the frame after that of number `frame`, 1 to `NO_FRAME - 1`. Textures that were never written have 0.
+fn next(frame: u32) -> u32 {
+    frame % (NO_FRAME - 1) + 1
+}
+
 /// Bytes that a context holds between frames.
 pub(super) fn memory_bytes(desc: &ContextDesc) -> u64 {
     let layout = desc.settings.history_layout();
     let sets: u64 = plan(desc, layout).iter().map(|p| 2 * p.bytes(desc)).sum();
     sets + candidate_plan(desc).map_or(0, |p| p.bytes(desc))
+}
+
+/// Size of the largest texture, along x and y.
+pub(super) fn largest_size(desc: &ContextDesc) -> [u32; 2] {
+    let plans = plan(desc, desc.settings.history_layout());
+    plans.iter().fold([0; 2], |size, p| [0, 1].map(|i| size[i].max(p.size_px[i])))
 }
 
 /// A texture of history.

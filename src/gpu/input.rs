@@ -21,8 +21,10 @@ pub(super) fn check(
     }
     let expected = "the output format given to Afterimage::new; or create a context for this one";
     check_output(desc, "output", target.output, output_format, expected)?;
+    check_apart("output", target.output, frame)?;
     let Some(debug) = target.debug else { return Ok(()) };
     check_output(desc, "debug view", debug.output, DEBUG_FORMAT, "Rgba16Float")?;
+    check_apart("debug view", debug.output, frame)?;
     let found = device.limits().max_storage_textures_per_shader_stage;
     if found < STORAGE_TEXTURES_WITH_VIEW {
         return Err(FrameError::Value {
@@ -38,26 +40,48 @@ pub(super) fn check(
 /// Checks a frame without its target.
 pub(super) fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
     frame.check(desc)?;
-    let shaded = [
-        ("color", Some(frame.color), 3),
-        ("lod", frame.lod, 1),
-        ("noise", frame.noise, 2),
-        ("repaired", frame.repaired, 3),
-    ];
-    check_each(desc, frame, shaded)?;
+    check_each(desc, frame, shaded(frame))?;
     check_geometry(desc, frame)
+}
+
+/// An input: name, textures if given, and least number of channels.
+type Input<'a> = (&'static str, Option<Textures<'a>>, u8);
+
+/// Inputs that the shading of a frame gives.
+fn shaded<'a>(frame: &Frame<'a>) -> [Input<'a>; 4] {
+    [("color", Some(frame.color), 3), ("lod", frame.lod, 1), ("noise", frame.noise, 2), ("repaired", frame.repaired, 3)]
+}
+
+/// Inputs that are known before a frame is shaded.
+fn geometry<'a>(frame: &Frame<'a>) -> [Input<'a>; 3] {
+    [("depth", frame.depth, 1), ("motion", frame.motion, 2), ("trust", frame.trust, 1)]
+}
+
+/// Checks that an output shares no layer of a texture with an input: a pass cannot read a layer and write it, not even
+/// other regions of it.
+fn check_apart(output: &'static str, written: Textures<'_>, frame: &Frame<'_>) -> Result<(), FrameError> {
+    let inputs = shaded(frame).into_iter().chain(geometry(frame));
+    for (input, read) in inputs.filter_map(|(input, read, _)| Some((input, read?))) {
+        let meets = |layers: [Option<u32>; 2]| layers.contains(&None) || layers[0] == layers[1];
+        let shared = written.layers().find(|&(a, i)| read.layers().any(|(b, j)| a == b && meets([i, j])));
+        if let Some((texture, _)) = shared {
+            let problem = format!("which is also the texture of {input}");
+            return Err(refuse(output, texture, problem, "a texture of its own, or another layer than any input's"));
+        }
+    }
+    Ok(())
 }
 
 /// Checks the parts of a frame that are known before it is shaded.
 pub(super) fn check_geometry(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
-    check_each(desc, frame, [("depth", frame.depth, 1), ("motion", frame.motion, 2), ("trust", frame.trust, 1)])
+    check_each(desc, frame, geometry(frame))
 }
 
-/// Checks inputs: name, textures if given, and least number of channels.
+/// Checks place, usage and format of inputs.
 fn check_each<'a>(
     desc: &ContextDesc,
     frame: &Frame<'_>,
-    inputs: impl IntoIterator<Item = (&'static str, Option<Textures<'a>>, u8)>,
+    inputs: impl IntoIterator<Item = Input<'a>>,
 ) -> Result<(), FrameError> {
     for (input, textures, channels) in inputs {
         let Some(textures) = textures else { continue };

@@ -3,8 +3,9 @@
 //! The caller owns device, queue, encoder, submission, and every input and output texture. [`Afterimage`] owns its
 //! history and pipelines. [`Afterimage::record`] never submits, polls, maps or waits.
 //!
-//! No device features are needed, and no limits beyond WebGPU's defaults except for frames larger than 8192 pixels
-//! ([`Afterimage::required_limits`]). Any number of contexts can share a device.
+//! No device features are needed, and no limits beyond WebGPU's defaults except for frames larger than 8192 pixels;
+//! [`Afterimage::required_limits`] says what a context needs at least. Any number of contexts can share a device.
+//! wgpu's GL backend cannot store history, and is refused.
 
 mod buffer;
 // For this workspace's other crates.
@@ -20,6 +21,7 @@ mod method_pass;
 mod mip_chain;
 mod output;
 mod repair;
+mod requirements;
 // For the tests, which compare struct layouts.
 #[doc(hidden)]
 pub mod resize;
@@ -38,13 +40,14 @@ pub use frame::{DebugTarget, Frame, Recorded, Target, Timestamps, Variant};
 #[doc(hidden)]
 pub use history::array_view;
 pub(crate) use input::{check_readable, check_texture};
-pub(crate) use output::{texel, validate};
+pub(crate) use output::texel;
+pub(crate) use requirements::validate;
 pub use textures::{Region, Textures};
 pub use uniforms::MAX_VIEWS;
 
 use crate::error::{CreateError, FrameError, SettingsError};
 use crate::foveation::Filter;
-use crate::frame::{ContextDesc, Executor, Gaze, check_size};
+use crate::frame::{ContextDesc, Executor, Gaze};
 use crate::geometry::ViewGeometry;
 use crate::kernel::debug_view::DebugView;
 use crate::method::{HistoryLayout, PassShader, Stage, smr_sparse_repair};
@@ -112,8 +115,8 @@ impl Afterimage {
     /// shader modules; pipelines are compiled by [`prewarm`](Self::prewarm), or at the first frame that needs them.
     ///
     /// # Errors
-    /// [`CreateError`] if the description is out of range, the output format is not supported, or a limit of the device
-    /// is too low.
+    /// [`CreateError`] if the description is out of range, the output format is not supported, a limit of the device is
+    /// too low, or its backend cannot store history. Then nothing was made.
     pub fn new(device: &Device, desc: &ContextDesc, output_format: TextureFormat) -> Result<Self, CreateError> {
         let source = SHADERS.compose(desc.settings.pass_shader().name).source;
         Self::with_shader(device, desc, output_format, &source)
@@ -128,6 +131,7 @@ impl Afterimage {
         source: &str,
     ) -> Result<Self, CreateError> {
         validate(device, desc, output_format)?;
+        requirements::check_history(device, desc)?;
         let stages = Stages::new(device, desc, output_format, source);
         let history = stages.history(device, desc);
         let pass_shader = desc.settings.pass_shader();
@@ -161,18 +165,21 @@ impl Afterimage {
         self.repair = Some(RepairPasses::with_shaders(device, &self.desc, repair, sources));
     }
 
-    /// Limits that a device needs for a context: WebGPU's defaults, with a larger texture size for large frames.
+    /// Limits that a device needs at least for a context of this size: those of small devices
+    /// (`Limits::downlevel_defaults`), with textures as large as the context's. Request them together with what the
+    /// rest of the program needs, such as WebGPU's defaults, and with those of the largest size if the size changes.
     ///
     /// ```
     /// use afterimage::gpu::Afterimage;
     /// use afterimage::{ContextDesc, wgpu};
     ///
-    /// let desc = ContextDesc::new([1920, 1080]);
-    /// let device = wgpu::DeviceDescriptor { required_limits: Afterimage::required_limits(&desc), ..Default::default() };
-    /// assert_eq!(device.required_limits, wgpu::Limits::default());
+    /// let least = Afterimage::required_limits(&ContextDesc::new([1920, 1080]));
+    /// assert_eq!(least.max_texture_dimension_2d, 1920);
+    /// let both = least.or_better_values_from(&wgpu::Limits::default());
+    /// assert_eq!(both, wgpu::Limits::default());
     /// ```
     pub fn required_limits(desc: &ContextDesc) -> Limits {
-        output::required_limits(desc)
+        requirements::required_limits(desc)
     }
 
     /// Description of the context, with its current size and settings.
@@ -205,9 +212,10 @@ impl Afterimage {
     /// [`resize_keeping_history`](Self::resize_keeping_history) keeps it.
     ///
     /// # Errors
-    /// [`FrameError::Extent`] if a side is 0 or above [`ContextDesc::MAX_SIDE`]; then nothing changes.
+    /// [`FrameError::Extent`] if a side is 0 or above [`ContextDesc::MAX_SIDE`] or what the device allows; then nothing
+    /// changes.
     pub fn resize(&mut self, device: &Device, size_px: [u32; 2]) -> Result<(), FrameError> {
-        check_size(size_px)?;
+        requirements::check_resize(device, &self.desc, size_px)?;
         self.set_size(device, size_px);
         self.history = self.stages.history(device, &self.desc);
         Ok(())
@@ -228,7 +236,7 @@ impl Afterimage {
         encoder: &mut CommandEncoder,
         size_px: [u32; 2],
     ) -> Result<(), FrameError> {
-        check_size(size_px)?;
+        requirements::check_resize(device, &self.desc, size_px)?;
         let resize = Resize::new(self.desc.size_px, size_px);
         self.set_size(device, size_px);
         let mut history = self.stages.history(device, &self.desc);
@@ -342,8 +350,9 @@ impl Afterimage {
     /// frame has no history; nothing else has to be done.
     ///
     /// # Errors
-    /// [`FrameError`] if a texture, buffer or value does not fit the context; then nothing was recorded and history is
-    /// unchanged.
+    /// [`FrameError`] if a texture, buffer or value does not fit the context, or if an output shares a layer of a
+    /// texture with an input; [`FrameError::DeviceLost`] if the device was lost, which wgpu does not know in a browser.
+    /// Then nothing was recorded and history is unchanged.
     pub fn record<'a>(
         &mut self,
         device: &Device,
@@ -353,12 +362,13 @@ impl Afterimage {
     ) -> Result<Recorded, FrameError> {
         let target = target.into();
         self.check(device, frame, &target)?;
+        let number = self.history.next_number(device)?;
         let prepared = self.prepare(frame, Some(&target));
         self.dispatch(device, encoder, frame, &target, None, prepared.uniforms);
         self.unplan();
         self.history.held = prepared.held;
         if self.desc.settings.history_layout() != HistoryLayout::Nothing {
-            self.history.finish(device, encoder);
+            self.history.finish(encoder, &number);
         }
         Ok(prepared.recorded)
     }

@@ -1,9 +1,9 @@
-//! Requirements of a context: output formats and device limits.
+//! Output formats, and formats that a device can store.
 
-use super::MAX_VIEWS;
-use crate::error::{CreateError, SettingsError};
-use crate::frame::ContextDesc;
-use wgpu::{Device, Features, Limits, TextureFormat, TextureUsages};
+use crate::error::CreateError;
+use std::future::Future;
+use std::task::{Context, Poll, Waker};
+use wgpu::{Device, ErrorFilter, Extent3d, Features, TextureDescriptor, TextureFormat, TextureUsages};
 
 /// Format of a debug view beside the output.
 pub(super) const DEBUG_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
@@ -43,38 +43,40 @@ pub(crate) fn texel(device: &Device, format: TextureFormat) -> Result<&'static s
         _ if !storable => {
             refuse("a device with Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES, or the format Rgba16Float")
         }
+        _ if !is_storable(device, format) => refuse("a format that this adapter can store; Rgba16Float suits most"),
         _ => Ok(name),
     }
 }
 
-/// Checks a description and an output format against a device.
-pub(crate) fn validate(device: &Device, desc: &ContextDesc, output: TextureFormat) -> Result<(), CreateError> {
-    desc.validate()?;
-    texel(device, output)?;
-    if desc.view_count as usize > MAX_VIEWS {
-        return Err(CreateError::Settings(SettingsError {
-            setting: "view_count",
-            found: desc.view_count.to_string(),
-            expected: format!("at most {MAX_VIEWS} views"),
-        }));
-    }
-    let (limits, needed) = (device.limits(), required_limits(desc));
-    let checks = [
-        ("max_texture_dimension_2d", limits.max_texture_dimension_2d, needed.max_texture_dimension_2d),
-        (
-            "max_storage_textures_per_shader_stage",
-            limits.max_storage_textures_per_shader_stage,
-            needed.max_storage_textures_per_shader_stage,
-        ),
-    ];
-    match checks.into_iter().find(|(_, found, needed)| found < needed) {
-        Some((limit, found, needed)) => Err(CreateError::Limit { limit, found, needed }),
-        None => Ok(()),
-    }
+/// Whether compute shaders can write textures of a format. The device says what its features guarantee, but not what
+/// its adapter lacks of WebGPU, so that this makes a texture of one texel.
+pub(super) fn is_storable(device: &Device, format: TextureFormat) -> bool {
+    let scope = device.push_error_scope(ErrorFilter::Validation);
+    let _ = device.create_texture(&TextureDescriptor {
+        label: Some("afterimage format"),
+        size: Extent3d::default(),
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: TextureUsages::STORAGE_BINDING | TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    });
+    // In a browser the answer comes later. WebGPU guarantees the formats there.
+    let error = std::pin::pin!(scope.pop()).poll(&mut Context::from_waker(Waker::noop()));
+    !matches!(error, Poll::Ready(Some(_)))
 }
 
-pub(super) fn required_limits(desc: &ContextDesc) -> Limits {
-    let defaults = Limits::default();
-    let side = desc.size_px[0].max(desc.size_px[1]);
-    Limits { max_texture_dimension_2d: side.max(defaults.max_texture_dimension_2d), ..defaults }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formats_that_cannot_be_stored_are_found() {
+        let (device, _) = Device::noop(&wgpu::DeviceDescriptor::default());
+        assert!(is_storable(&device, TextureFormat::Rg32Uint));
+        // As Rg32Uint on wgpu's GL backend.
+        assert!(!is_storable(&device, TextureFormat::Rgba8UnormSrgb));
+        assert!(!is_storable(&device, TextureFormat::Rg16Float));
+    }
 }

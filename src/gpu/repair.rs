@@ -225,7 +225,7 @@ fn size_quads(desc: &ContextDesc) -> [u32; 2] {
 }
 
 /// Bytes of a view's list.
-fn list_bytes(desc: &ContextDesc, repair: Repair) -> u64 {
+pub(super) fn list_bytes(desc: &ContextDesc, repair: Repair) -> u64 {
     // A binding holds the header and a whole vec4 of the array.
     LIST_HEADER_BYTES + 4 * u64::from(budget_quads(repair.budget, size_quads(desc)).max(4))
 }

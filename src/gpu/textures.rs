@@ -56,13 +56,18 @@ impl<'a> From<&'a Texture> for Textures<'a> {
 }
 
 impl<'a> Textures<'a> {
-    /// Textures of all views.
-    pub(super) fn iter(self) -> impl Iterator<Item = &'a Texture> {
+    /// Textures of all views, and the layer of each; `None`: all layers.
+    pub(super) fn layers(self) -> impl Iterator<Item = (&'a Texture, Option<u32>)> {
         let (layers, regions) = match self {
-            Self::Layers(texture) => (Some(texture), &[][..]),
+            Self::Layers(texture) => (Some((texture, None)), &[][..]),
             Self::Regions(regions) => (None, regions),
         };
-        layers.into_iter().chain(regions.iter().map(|r| r.texture))
+        layers.into_iter().chain(regions.iter().map(|r| (r.texture, Some(r.layer))))
+    }
+
+    /// Textures of all views.
+    pub(super) fn iter(self) -> impl Iterator<Item = &'a Texture> {
+        self.layers().map(|(texture, _)| texture)
     }
 
     /// Whether the views are regions.

@@ -165,19 +165,19 @@ impl Wrs {
 
     pub(super) fn validate(&self) -> Result<(), SettingsError> {
         if let Bias::Exponential { lambda } = self.bias {
-            check("bias lambda", lambda, 0.0..=80.0, "per frame")?;
+            check("bias.lambda", lambda, 0.0..=80.0, "per frame")?;
         }
         check("weight_exponent", self.weight_exponent as f32, 1.0..=8.0, "")?;
         check("rate_exponent", self.rate_exponent as f32, 0.0..=4.0, "")?;
         let Some(gate) = self.gate else { return Ok(()) };
         if gate.scale == GateScale::Candidate && self.sampler == Sampler::AEs {
             return Err(SettingsError {
-                setting: "gate scale",
+                setting: "gate.scale",
                 found: "the candidate's with the sampler A-ES".into(),
                 expected: "the sample's, or another sampler: keys are stored in the place of references".into(),
             });
         }
-        check("gate divisor", gate.divisor, 1e-3..=1e6, "Delta E")?;
-        check("gate offset", gate.offset, 0.0..=1e6, "Delta E")
+        check("gate.divisor", gate.divisor, 1e-3..=1e6, "Delta E")?;
+        check("gate.offset", gate.offset, 0.0..=1e6, "Delta E")
     }
 }

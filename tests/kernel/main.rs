@@ -6,6 +6,7 @@ mod depth;
 mod elementary;
 mod geometry;
 mod hard;
+mod jitter;
 mod kept;
 #[path = "../common/kernel_hard.rs"]
 mod kernel_hard;

@@ -13,7 +13,7 @@ use afterimage::{
 };
 use openxr as xr;
 use std::time::{Duration, Instant};
-use wgpu_30::{CommandEncoder, Device, PollType, Queue, Texture, TextureFormat, TextureUsages};
+use wgpu_30::{CommandEncoder, Device, Limits, PollType, Queue, Texture, TextureFormat, TextureUsages};
 use xr::sys;
 
 /// Time in which nothing was to be shown after which history is discarded.
@@ -177,7 +177,8 @@ impl Headset {
             settings: desc.settings,
             ..ContextDesc::new(size)
         };
-        let gpu = Gpu::new(&instance, system, Afterimage::required_limits(&context))?;
+        let limits = Afterimage::required_limits(&context).or_better_values_from(&Limits::default());
+        let gpu = Gpu::new(&instance, system, limits)?;
         let post = Afterimage::new(&gpu.device, &context, TextureFormat::Rgba16Float)?;
         let tracker = Tracker::new(&instance, system)?;
         let sets = match desc.actions {

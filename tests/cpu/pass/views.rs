@@ -39,15 +39,26 @@ fn settings_are_checked_and_named() {
     let base = Settings::paper();
     let fovea = |fovea_deg| Foveation { fovea_deg, ..Foveation::default() };
     for (settings, name) in [
-        (Settings { foveation: fovea(-1.0), ..base }, "fovea"),
-        (Settings { foveation: fovea(f32::NAN), ..base }, "fovea"),
-        (wrs(Wrs { bias: Bias::Exponential { lambda: -0.1 }, ..Wrs::default() }), "bias lambda"),
+        (Settings { foveation: fovea(-1.0), ..base }, "fovea_deg"),
+        (Settings { foveation: fovea(f32::NAN), ..base }, "fovea_deg"),
+        (wrs(Wrs { bias: Bias::Exponential { lambda: -0.1 }, ..Wrs::default() }), "bias.lambda"),
         (Settings { depth_test: Some(DepthTest { relative: 0.0, slope_px: 1.0 }), ..base }, "depth_test.relative"),
     ] {
         let error = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) }).unwrap_err();
         assert_eq!(error.setting, name);
+        assert!(error.to_string().starts_with(&format!("{name} is ")), "{error}");
         let mut post = context(base);
         assert!(post.set_settings(settings).is_err());
         assert_eq!(post.desc().settings, base);
     }
+}
+
+#[test]
+fn a_size_that_cannot_be_is_said_once() {
+    let message = |size| CpuAfterimage::new(&ContextDesc::new(size)).unwrap_err().to_string();
+    assert_eq!(message([0, 0]), "size_px is 0x0: expected at least 1x1; skip frames while the window is minimised");
+    assert_eq!(message([16385, 1]), "size_px is 16385x1: expected at most 16384 pixels a side");
+    let mut post = CpuAfterimage::new(&ContextDesc::new(SIZE)).unwrap();
+    let error = post.resize([0, 5]).unwrap_err().to_string();
+    assert_eq!(error, "size is 0x5: expected at least 1x1; skip frames while the window is minimised");
 }

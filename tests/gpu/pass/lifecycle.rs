@@ -10,7 +10,7 @@ use crate::surfaces_hard;
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::{self, Texture, TextureFormat, TextureUsages};
 use afterimage::{
-    ContextDesc, CreateError, DepthConvention, Exposure, Filter, Foveation, FrameError, Gaze, MethodKind,
+    ContextDesc, CreateError, DebugView, DepthConvention, Exposure, Filter, Foveation, FrameError, Gaze, MethodKind,
     MotionConvention, MotionDirection, MotionUnit, Reset, Sampler, Settings, ViewFrame, ViewGeometry, Wrs, YAxis,
 };
 use afterimage_testing::holds;
@@ -162,12 +162,15 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
         let record = |rig: &mut Rig, (color, output): (Texture, Texture)| {
             let facts = [noise_view("lost", &rig.context).facts];
             let mut encoder = rig.device.create_command_encoder(&Default::default());
-            rig.gpu.record(&rig.device, &mut encoder, &Frame::new(&color, &facts, 4), &output).unwrap();
+            let frame = Frame::new(&color, &facts, 4);
+            rig.gpu.record_view(&rig.device, &mut encoder, &frame, &output, DebugView::Age).unwrap();
+            let error = rig.gpu.record(&rig.device, &mut encoder, &frame, &output).unwrap_err();
+            assert_eq!(error, FrameError::DeviceLost);
             rig.queue.submit([encoder.finish()]);
         };
         let textures_before = textures(&lost);
         lost.device.destroy();
-        // Until the caller learns of it, recording continues without a panic, whatever the context has to create.
+        // A frame says it. Nothing panics, whatever the context has to create.
         record(&mut lost, textures_before);
         let textures_after = textures(&lost);
         record(&mut lost, textures_after);
@@ -190,11 +193,7 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
         assert!(made[0].shown.iter().zip(candidate.pixels()).all(|(a, b)| *a == b.map(f32::to_bits)), "{method:?}");
         assert!(made == run(&mut fresh().unwrap(), 4..8));
     }
-    holds!(
-        "H77",
-        Gpu,
-        "wrs, taa, smr: a lost device gives DeviceLostReason and BufferAsyncError, no panic; a new one starts afresh"
-    );
+    holds!("H77", Gpu, "wrs, taa, smr: a lost device gives FrameError::DeviceLost, no panic; a new one starts afresh");
 }
 
 #[test]

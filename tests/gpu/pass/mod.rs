@@ -6,6 +6,7 @@ mod gaze;
 mod layout;
 mod lifecycle;
 mod light;
+mod limits;
 mod motion;
 mod properties;
 mod repair;

@@ -42,7 +42,7 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     );
     refuses(&run(still, &out, &["--start=-1"]), &["start"]);
     refuses(&run(still, &out, &["--wrs-bias", "exponential:x"]), &["LAMBDA"]);
-    refuses(&run(still, &out, &["--gate-divisor", "0"]), &["gate divisor"]);
+    refuses(&run(still, &out, &["--gate-divisor", "0"]), &["gate.divisor"]);
     refuses(&run(still, &out, &["--gaze", "1,x"]), &["X,Y"]);
     refuses(&run(still, &out, &["--gaze", "synthetic:x"]), &["SEED"]);
     refuses(&run(still, &out, &["--camera", "lateral"]), &["--camera", "scene"]);

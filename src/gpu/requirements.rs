@@ -1,0 +1,82 @@
+//! Requirements of a context: device limits, and storage of its history.
+
+use super::method_pass::written;
+use super::output::{is_storable, texel};
+use super::{MAX_VIEWS, history, repair};
+use crate::error::{CreateError, FrameError, SettingsError};
+use crate::frame::{ContextDesc, check_size};
+use crate::method::smr_sparse_repair;
+use crate::uniforms::results_size;
+use wgpu::{Device, Limits, TextureFormat};
+
+/// Checks a description and an output format against a device.
+pub(crate) fn validate(device: &Device, desc: &ContextDesc, output: TextureFormat) -> Result<(), CreateError> {
+    desc.validate()?;
+    texel(device, output)?;
+    if desc.view_count as usize > MAX_VIEWS {
+        return Err(CreateError::Settings(SettingsError {
+            setting: "view_count",
+            found: desc.view_count.to_string(),
+            expected: format!("at most {MAX_VIEWS} views"),
+        }));
+    }
+    let (limits, needed) = (device.limits(), required_limits(desc));
+    let checks = compared(&limits).into_iter().zip(compared(&needed));
+    match checks.map(|((limit, found), (_, needed))| (limit, found, needed)).find(|(_, found, needed)| found < needed) {
+        Some((limit, found, needed)) => Err(CreateError::Limit { limit, found, needed }),
+        None => Ok(()),
+    }
+}
+
+/// Checks that `device` can have the history of a context in its storage textures. wgpu's GL backend cannot.
+pub(super) fn check_history(device: &Device, desc: &ContextDesc) -> Result<(), CreateError> {
+    let formats = written(desc.settings.history_layout());
+    match formats.into_iter().find(|&format| !is_storable(device, format)) {
+        Some(needed) => Err(CreateError::HistoryFormat { needed, backend: device.adapter_info().backend }),
+        None => Ok(()),
+    }
+}
+
+/// Checks a new size of a context's views against the device.
+pub(super) fn check_resize(device: &Device, desc: &ContextDesc, size_px: [u32; 2]) -> Result<(), FrameError> {
+    check_size(size_px)?;
+    let max = device.limits().max_texture_dimension_2d;
+    let is_within = largest_side(&ContextDesc { size_px, ..*desc }) <= max;
+    if is_within { Ok(()) } else { Err(FrameError::Extent { size: size_px, max }) }
+}
+
+/// The limits that a context can exceed, by name.
+fn compared(limits: &Limits) -> [(&'static str, u64); 10] {
+    [
+        ("max_texture_dimension_2d", limits.max_texture_dimension_2d.into()),
+        ("max_texture_array_layers", limits.max_texture_array_layers.into()),
+        ("max_sampled_textures_per_shader_stage", limits.max_sampled_textures_per_shader_stage.into()),
+        ("max_storage_textures_per_shader_stage", limits.max_storage_textures_per_shader_stage.into()),
+        ("max_storage_buffers_per_shader_stage", limits.max_storage_buffers_per_shader_stage.into()),
+        ("max_uniform_buffers_per_shader_stage", limits.max_uniform_buffers_per_shader_stage.into()),
+        ("max_storage_buffer_binding_size", limits.max_storage_buffer_binding_size),
+        ("max_buffer_size", limits.max_buffer_size),
+        ("max_compute_invocations_per_workgroup", limits.max_compute_invocations_per_workgroup.into()),
+        ("max_compute_workgroups_per_dimension", limits.max_compute_workgroups_per_dimension.into()),
+    ]
+}
+
+pub(super) fn required_limits(desc: &ContextDesc) -> Limits {
+    let least = Limits::downlevel_defaults();
+    let list = smr_sparse_repair(&desc.settings).map_or(0, |repair| repair::list_bytes(desc, repair));
+    Limits {
+        max_texture_dimension_2d: largest_side(desc),
+        max_texture_array_layers: desc.view_count,
+        max_storage_buffer_binding_size: list.max(least.max_storage_buffer_binding_size),
+        max_buffer_size: list.max(least.max_buffer_size),
+        // One workgroup a row of pixels.
+        max_compute_workgroups_per_dimension: desc.size_px[1].max(least.max_compute_workgroups_per_dimension),
+        ..least
+    }
+}
+
+/// Largest side of the textures of a context, in texels.
+fn largest_side(desc: &ContextDesc) -> u32 {
+    let sides = [desc.size_px, results_size(desc.size_px), history::largest_size(desc)];
+    sides.into_iter().flatten().fold(1, u32::max)
+}
