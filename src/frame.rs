@@ -464,8 +464,8 @@ pub struct FrameInputs<'a, E: Executor> {
     pub color: E::Colors<'a>,
     /// Depth in the context's convention. On a GPU a depth format or `R32Float`. `None`: no depth test.
     pub depth: Option<E::Scalars<'a>>,
-    /// Motion vectors in the context's convention. On a GPU `Rg16Float`, `Rg32Float` or wider. `None`: nothing moves, or only the camera
-    /// ([`MotionConvention::camera`]).
+    /// Motion vectors in the context's convention. On a GPU `Rg16Float`, `Rg32Float` or wider. `None`: nothing moves,
+    /// or only the camera ([`MotionConvention::camera`]).
     pub motion: Option<E::Vectors<'a>>,
     /// Trust mask: confidence in history, 0 to 1. 0 rejects history; use it for content that changes without motion
     /// vectors (video panels, particles, reflections). It is about 1 minus FSR2's reactive mask. On a GPU any float or

@@ -126,7 +126,7 @@ impl ViewGeometry {
     /// mirrored (negate the row or column that is flipped), rotated, not finite.
     pub fn from_projection(size_px: [u32; 2], clip_from_view: [[f32; 4]; 4]) -> Result<Self, SettingsError> {
         let Projection { scale, shift, is_oblique } = Projection::of(clip_from_view)?;
-        // A ray (t, u, -1) has the clip coordinates (scale.x t - shift.x, scale.y u - shift.y) and w = 1; both y are up.
+        // A ray (t, u, -1) has the clip coordinates (scale.x t - shift.x, scale.y u - shift.y), w = 1; both y are up.
         let tangent = |i: usize, clip: f64| ((clip + shift[i]) / scale[i]) as f32;
         let view = Self::off_axis(size_px, [tangent(0, -1.0), tangent(0, 1.0)], [-tangent(1, 1.0), -tangent(1, -1.0)])?;
         Ok(Self { is_oblique, ..view })

@@ -108,7 +108,8 @@ fn ray_at(px: vec2<u32>, view: u32) -> vec3<f32> {
     return vec3<f32>(vec2<f32>(px) * frame.views[view].ray_scale + frame.views[view].ray_offset, 1.0);
 }
 
-// Motion vector of a pixel: previous minus current position in pixels, y down, without jitter, with the camera's motion.
+// Motion vector of a pixel: previous minus current position in pixels, y down, without jitter, with the camera's
+// motion.
 fn motion_at(px: vec2<u32>, view: u32) -> vec2<f32> {
     return motion_of(px, px, view);
 }
