@@ -5,14 +5,14 @@
 //! SCENE: courtyard; small (the courtyard at 640x360); triangles (with a million triangles more); shadows (with two
 //! lamps that have shadow maps); both (and the triangles cast shadows); cheap (both, without other lamps, so that
 //! pixels are cheap); worst (cheap at 640x360); grille (the courtyard with thin bars and edges at slopes); grille-slow
-//! (camera at a fifth of the speed).
+//! (camera at a fifth of the speed). SCENE@WIDTHxHEIGHT has another size.
 //!
 //! MODE: full, prepass (full rate with a depth prepass), msaa (full rate, Bevy's MSAA
 //! of 4), taa:SCALE (Bevy's temporal antialiasing at SCALE of both sides, enlarged bilinearly), quad, sparse (the
 //! default), sparse:PERCENT (with repair of at most PERCENT of the pixels), sparse48 (rates of 4 and 8), antialiased
 //! (sparse), reference (full rate with four samples a pixel).
 //!
-//! Prints CPU time of the process per frame. With FOLDER writes the frames there as PNG, and the gaze as `gaze.csv`.
+//! Prints the time of a frame, from its start until the device has finished it, and CPU time of the process. With FOLDER writes the frames there as PNG, and the gaze as `gaze.csv`.
 //!
 //! `cargo run --release --example measure -- psnr FOLDER REFERENCE`
 //!
@@ -31,6 +31,7 @@ use common::scene::{Mover, ScenePlugin, TONEMAPPING, stroll};
 use rustix::time::{ClockId, clock_gettime};
 use std::error::Error;
 use std::path::Path;
+use std::time::Instant;
 
 const LAMPS: usize = 12;
 /// Start in the scanpath, in seconds.
@@ -88,8 +89,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         ["psnr", folder, reference] => score(Path::new(folder), Path::new(reference)),
         [scene, mode, scanpath, frames, folder @ ..] => {
             let names = SCENES.iter().map(|known| known.name).collect::<Vec<_>>().join(", ");
-            let known = SCENES.into_iter().find(|known| known.name == *scene);
-            let scene = known.ok_or_else(|| format!("SCENE is one of {names}"))?;
+            let (name, size) = scene.split_once('@').map_or((*scene, None), |(name, size)| (name, Some(size)));
+            let known = SCENES.into_iter().find(|known| known.name == name);
+            let mut scene = known.ok_or_else(|| format!("SCENE is one of {names}"))?;
+            if let Some(size) = size {
+                let (width, height) = size.split_once('x').ok_or("a size is WIDTHxHEIGHT, in pixels")?;
+                scene.size = UVec2::new(width.parse()?, height.parse()?);
+            }
             let folder = folder.first().map(Path::new);
             measure(scene, mode, &Scanpath::read(scanpath)?, frames.parse()?, folder)
         }
@@ -120,7 +126,7 @@ fn measure(
     };
     spawn_camera(&mut headless, scene.camera, mode)?;
 
-    let mut spent_ms = 0.0;
+    let (mut spent_ms, mut waited_ms) = (0.0, 0.0);
     let mut gazes = "frame,x_px,y_px\n".to_owned();
     let mut cameras = headless.app.world_mut().query::<&mut Camera>();
     for frame in 0..frames + scene.warm_up {
@@ -130,11 +136,12 @@ fn measure(
         }
         let uv = scanpath.at(START_S + frame as f64 * FRAME.as_secs_f64());
         headless.app.world_mut().resource_mut::<Gaze>().set(uv);
-        let began_ms = cpu_ms();
+        let (began_ms, began) = (cpu_ms(), Instant::now());
         headless.frames(1);
         headless.wait();
         let Some(index) = frame.checked_sub(scene.warm_up) else { continue };
         spent_ms += cpu_ms() - began_ms;
+        waited_ms += 1e3 * began.elapsed().as_secs_f64();
         if let Some(folder) = folder {
             let shot = resized(&headless.read(), size, shown);
             write_png(&folder.join(format!("{index:06}.png")), shown, &shot)?;
@@ -142,7 +149,9 @@ fn measure(
             gazes += &format!("{index},{},{}\n", px.x, px.y);
         }
     }
-    println!("{}, {mode}: {:.1} ms of CPU time a frame, {}", scene.name, spent_ms / frames as f64, headless.adapter());
+    let [spent_ms, waited_ms] = [spent_ms, waited_ms].map(|ms| ms / frames as f64);
+    let (name, adapter) = (scene.name, headless.adapter());
+    println!("{name} {size}, {mode}: {waited_ms:.1} ms a frame, {spent_ms:.1} ms of CPU time, {adapter}");
     if let Some(folder) = folder {
         std::fs::write(folder.join("gaze.csv"), gazes)?;
     }
