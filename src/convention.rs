@@ -43,67 +43,8 @@ pub enum YAxis {
     Up,
 }
 
-/// Which motion vectors contain the camera's motion. Default: [`Included`](Self::Included).
-///
-/// Where the camera's motion is missing, it is added from [`depth`](crate::FrameInputs::depth) and
-/// [`ViewFrame::previous_from_current`](crate::ViewFrame::previous_from_current), which are then required. What lies at
-/// the far plane or at infinity, as the sky, follows the camera's turns alone.
-///
-/// ```
-/// use afterimage::{CameraMotion, ContextDesc, MotionConvention};
-///
-/// let mut desc = ContextDesc::new([1920, 1080]);
-/// // Objects that move write vectors into a texture that was cleared to 0.
-/// desc.motion = MotionConvention { camera: CameraMotion::IncludedExcept { none: [0.0; 2] }, ..MotionConvention::UNREAL };
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
-#[non_exhaustive]
-pub enum CameraMotion {
-    /// Every vector contains the camera's motion. A vector that is not finite rejects the pixel's history. Without a
-    /// motion input nothing moves.
-    #[default]
-    Included,
-    /// Vectors contain the camera's motion, but some pixels have no vector: they belong to surfaces that stand still.
-    /// Without a motion input, no pixel has one.
-    IncludedExcept {
-        /// The vector of pixels that have none, as the texture holds it, such as its clear value. A vector that is not
-        /// finite always means none.
-        none: [f32; 2],
-    },
-    /// No vector contains the camera's motion: each is the object's own motion, as this frame's camera would see it,
-    /// and 0 for what stands still. Without a motion input, everything stands still in the world.
-    Excluded,
-}
-
-impl CameraMotion {
-    /// Whether the post-process adds the camera's motion somewhere.
-    pub(crate) fn is_missing(self) -> bool {
-        self != Self::Included
-    }
-
-    /// `CAMERA_MOTION` of the shaders.
-    #[cfg(feature = "gpu")]
-    pub(crate) fn code(self) -> u32 {
-        match self {
-            Self::Included => 0,
-            Self::IncludedExcept { .. } => 1,
-            Self::Excluded => 2,
-        }
-    }
-
-    /// Vector of pixels that have none; finite.
-    pub(crate) fn no_vector(self) -> [f32; 2] {
-        match self {
-            // A motion of this size is none, too.
-            Self::IncludedExcept { none } if none.iter().all(|v| v.is_finite()) => none,
-            _ => [f32::MAX; 2],
-        }
-    }
-}
-
 /// Convention of motion vectors. Default: previous minus current position in pixels, y down, without jitter, with the
-/// camera's motion.
+/// camera's motion, at every pixel.
 ///
 /// A wrong convention shows as history that is rejected or smeared in motion, while a still view looks right.
 ///
@@ -114,6 +55,8 @@ impl CameraMotion {
 /// desc.motion = MotionConvention::BEVY;
 /// // An upscaler's vectors, but in texture coordinates (FSR2 with a motionVectorScale of the frame's size).
 /// desc.motion = MotionConvention { unit: MotionUnit::Uv, ..MotionConvention::FSR2 };
+/// // Objects that move write vectors into a texture that was cleared to 0.
+/// desc.motion = MotionConvention { no_vector: Some([0.0; 2]), ..MotionConvention::FSR2 };
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
@@ -127,8 +70,20 @@ pub struct MotionConvention {
     /// Whether vectors contain the jitter of the projection: differences of jittered positions. The jitter of each
     /// frame is [`ViewFrame::jitter_px`](crate::ViewFrame::jitter_px). Default: false, as in all engines named here.
     pub jittered: bool,
-    /// Which vectors contain the camera's motion. Default: all.
-    pub camera: CameraMotion,
+    /// Whether no vector contains the camera's motion: each is the object's own motion, as this frame's camera would
+    /// see it, and 0 for what stands still. Without a motion input, everything stands still in the world. Default:
+    /// false.
+    ///
+    /// Where the camera's motion is missing, here or because of [`no_vector`](Self::no_vector), it is added from
+    /// [`depth`](crate::FrameInputs::depth) and
+    /// [`ViewFrame::previous_from_current`](crate::ViewFrame::previous_from_current), which are then required. What
+    /// lies at the far plane or at infinity, as the sky, follows the camera's turns alone.
+    pub without_camera: bool,
+    /// The vector of pixels that have none, as the texture holds it, such as its clear value; a vector that is not
+    /// finite then means none, too. Such a pixel belongs to a surface that stands still in the world. Without a motion
+    /// input, no pixel has a vector. `None`: every pixel has one, and one that is not finite rejects the pixel's
+    /// history. Default: `None`.
+    pub no_vector: Option<[f32; 2]>,
 }
 
 impl MotionConvention {
@@ -144,14 +99,15 @@ impl MotionConvention {
     pub const UNITY: Self = Self::BEVY;
 
     /// Unreal's velocity after `DecodeVelocityFromTexture`: current minus previous in normalised device coordinates,
-    /// y up. Decode the texture before you pass it. Pixels that hold no velocity need a vector such as NaN, which
-    /// [`camera`](Self::camera) then declares ([`CameraMotion::IncludedExcept`]).
+    /// y up. Decode the texture before you pass it. Write NaN to its pixels without velocity, and set
+    /// [`no_vector`](Self::no_vector).
     pub const UNREAL: Self = Self {
         unit: MotionUnit::Ndc,
         direction: MotionDirection::CurrentMinusPrevious,
         y_axis: YAxis::Up,
         jittered: false,
-        camera: CameraMotion::Included,
+        without_camera: false,
+        no_vector: None,
     };
 
     /// FSR2 after its `motionVectorScale`: previous minus current in pixels, y down. XeSS (with low-resolution vectors
@@ -161,7 +117,8 @@ impl MotionConvention {
         direction: MotionDirection::PreviousMinusCurrent,
         y_axis: YAxis::Down,
         jittered: false,
-        camera: CameraMotion::Included,
+        without_camera: false,
+        no_vector: None,
     };
 
     /// Factors that convert a vector of this convention to the default convention, for a frame of `size_px`. They leave
@@ -183,6 +140,23 @@ impl MotionConvention {
             YAxis::Up => -1.0,
         };
         [sign * sx, sign * flip * sy]
+    }
+
+    /// Whether the post-process adds the camera's motion somewhere.
+    pub(crate) fn lacks_camera(self) -> bool {
+        self.without_camera || self.no_vector.is_some()
+    }
+
+    /// `CAMERA_MOTION` of the shaders.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn camera_code(self) -> u32 {
+        u32::from(self.no_vector.is_some()) | u32::from(self.without_camera) << 1
+    }
+
+    /// Vector of pixels that have none; finite.
+    pub(crate) fn finite_no_vector(self) -> [f32; 2] {
+        // No motion is that large.
+        self.no_vector.filter(|none| none.iter().all(|v| v.is_finite())).unwrap_or([f32::MAX; 2])
     }
 
     /// Vector in pixels, y down, to add to a converted vector so that it contains no jitter, for the jitters in pixels

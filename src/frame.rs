@@ -146,8 +146,8 @@ pub struct ViewFrame {
     /// [`moved`](Self::moved) and [`posed`](Self::posed) compute it from an engine's matrices.
     ///
     /// With [`DepthConvention::Orthographic`] only the motion along the view axis counts, and a camera that turns away
-    /// is refused. If vectors lack the camera's motion ([`MotionConvention::camera`]), it is required, except in frames
-    /// with [`Reset::All`].
+    /// is refused. If vectors lack the camera's motion ([`MotionConvention::without_camera`],
+    /// [`no_vector`](MotionConvention::no_vector)), it is required, except in frames with [`Reset::All`].
     pub previous_from_current: Option<[[f32; 4]; 4]>,
     /// Jitter of the projection in pixels, for renderers that jitter it for antialiasing: a point that the projection
     /// without jitter puts at `p` is drawn at `p + jitter_px`; y down. (0, 0) without jitter.
@@ -354,22 +354,22 @@ impl ViewFrame {
                             no depth";
             return refuse(FrameValue::DepthConvention, format!("{convention:?}"), expected);
         }
-        if !desc.motion.camera.is_missing() || is_cut {
+        if !desc.motion.lacks_camera() || is_cut {
             return Ok(());
         }
         if !has_depth {
-            let expected = "given: the camera's motion is added to vectors (MotionConvention::camera), for which \
+            let expected = "given: the camera's motion is added to vectors (ContextDesc::motion), for which \
                             distances must be known";
             return refuse(FrameValue::Depth, "None".into(), expected);
         }
         if matches!(convention, DepthConvention::Orthographic { .. }) {
-            let expected = "that of a perspective view, or CameraMotion::Included: the camera's motion is added to \
-                            vectors (MotionConvention::camera), and rays of an orthographic view are not known";
+            let expected = "that of a perspective view, or complete vectors: the camera's motion is added to \
+                            vectors (ContextDesc::motion), and rays of an orthographic view are not known";
             return refuse(FrameValue::DepthConvention, format!("{convention:?}"), expected);
         }
         if self.previous_from_current.is_none() {
             let expected = "given, as by ViewFrame::moved or posed, because the camera's motion is added to vectors \
-                            (MotionConvention::camera); or Reset::All";
+                            (ContextDesc::motion); or Reset::All";
             return refuse(FrameValue::CameraMotion, "None".into(), expected);
         }
         Ok(())
@@ -465,7 +465,7 @@ pub struct FrameInputs<'a, E: Executor> {
     /// Depth in the context's convention. On a GPU a depth format or `R32Float`. `None`: no depth test.
     pub depth: Option<E::Scalars<'a>>,
     /// Motion vectors in the context's convention. On a GPU `Rg16Float`, `Rg32Float` or wider. `None`: nothing moves,
-    /// or only the camera ([`MotionConvention::camera`]).
+    /// or only the camera ([`MotionConvention::without_camera`]).
     pub motion: Option<E::Vectors<'a>>,
     /// Trust mask: confidence in history, 0 to 1. 0 rejects history; use it for content that changes without motion
     /// vectors (video panels, particles, reflections). It is about 1 minus FSR2's reactive mask. On a GPU any float or

@@ -127,7 +127,7 @@ mod stats;
 mod uniforms;
 mod warning;
 
-pub use convention::{CameraMotion, DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
+pub use convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
 pub use error::{CreateError, FrameError, FrameValue, SettingsError};
 pub use foveation::{Filter, Foveation};
 pub use frame::{ContextDesc, Executor, Exposure, FrameInputs, Gaze, Reset, ViewFrame};

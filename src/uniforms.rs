@@ -113,7 +113,7 @@ impl CameraUniforms {
             shift_px: (offset / scale - old_offset / old_scale).as_vec2().into(),
             ahead,
             sky: view.depth_convention(desc).sky_disparity(),
-            no_vector: desc.motion.camera.no_vector(),
+            no_vector: desc.motion.finite_no_vector(),
             unused: [0; 2],
         }
     }

@@ -12,7 +12,7 @@
 // for features that are off is not compiled.
 override HAS_DEPTH: u32 = 1u;
 override HAS_MOTION: u32 = 1u;
-// Which vectors lack the camera's motion: 0 none, 1 those that are `no_vector` or not finite, 2 all.
+// Bit 0: pixels whose vector is `no_vector` or not finite have none. Bit 1: no vector contains the camera's motion.
 override CAMERA_MOTION: u32 = 0u;
 override HAS_TRUST: u32 = 1u;
 override DEPTH_TEST: u32 = 1u;
@@ -120,11 +120,12 @@ fn motion_of(px: vec2<u32>, texel: vec2<u32>, view: u32) -> vec2<f32> {
     if HAS_MOTION != 0u {
         let given = textureLoad(motion_in, texel_of(texel, frame.views[view].motion_origin), layer_of(view), 0).xy;
         own = given * frame.motion_scale + frame.views[view].motion_offset;
-        if CAMERA_MOTION == 1u {
-            if !has_no_vector(given, frame.cameras[view].no_vector) {
+        if (CAMERA_MOTION & 1u) != 0u {
+            let is_missing = has_no_vector(given, frame.cameras[view].no_vector);
+            if !is_missing && CAMERA_MOTION == 1u {
                 return own;
             }
-            own = vec2<f32>(0.0);
+            own = select(own, vec2<f32>(0.0), is_missing);
         }
     }
     if CAMERA_MOTION == 0u {

@@ -79,7 +79,7 @@ impl Doctor {
         let past = self.past.take().filter(|_| continues(frame));
         let now = Description {
             has_depth: frame.depth.is_some(),
-            has_motion: frame.motion.is_some() && !desc.motion.camera.is_missing(),
+            has_motion: frame.motion.is_some() && !desc.motion.lacks_camera(),
             has_lod: frame.lod.is_some(),
             ..Description::new(desc, facts, gaze_px, past.as_ref().map(|p| p.gaze_px))
         };

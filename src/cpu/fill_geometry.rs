@@ -51,7 +51,7 @@ pub(super) fn with_filled<R>(
     let motions: Vec<_> = filled.iter().map(|g| &g.motion).collect();
     // The filled geometry is in internal conventions.
     let views: Vec<_> = frame.views.iter().map(|view| ViewFrame { depth: None, ..*view }).collect();
-    let adds_camera = desc.motion.camera.is_missing();
+    let adds_camera = desc.motion.lacks_camera();
     let desc = ContextDesc { depth: DepthConvention::Linear, motion: MotionConvention::default(), ..*desc };
     let whole = frame.with_color(frame.color);
     let whole = Frame {

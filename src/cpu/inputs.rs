@@ -1,7 +1,7 @@
 //! Inputs of the pixels of one view, in internal conventions; shared by all methods. Twin: `shaders/pass/inputs.wgsl`.
 
 use super::Frame;
-use crate::convention::CameraMotion;
+use crate::convention::MotionConvention;
 use crate::foveation::Foveation;
 use crate::frame::{ContextDesc, Reset};
 use crate::image::Image;
@@ -46,7 +46,7 @@ pub(super) struct Inputs<'a> {
     /// Whether the view starts without history.
     pub reset: bool,
     motion_scale: [f32; 2],
-    camera: CameraMotion,
+    convention: MotionConvention,
     camera_uniforms: CameraUniforms,
     disparity_map: DisparityMap,
     depth_test: Option<DepthTest>,
@@ -72,7 +72,7 @@ impl<'a> Inputs<'a> {
             exposure: frame.exposure.factor(),
             reset: frame.reset != Reset::None || !has_history,
             motion_scale: desc.motion.to_internal(desc.size_px),
-            camera: desc.motion.camera,
+            convention: desc.motion,
             camera_uniforms: CameraUniforms::new(desc, view, held),
             disparity_map: view.depth_convention(desc).disparity_map(),
             depth_test: desc.settings.depth_test.filter(|_| frame.depth.is_some()),
@@ -127,7 +127,7 @@ impl<'a> Inputs<'a> {
     /// Whether a neighbour in the 2x2 block has the same motion as the pixel (x, y).
     #[inline(always)]
     pub fn is_coherent(&self, x: u32, y: u32, own: [f32; 2]) -> bool {
-        if self.motion.is_none() && !self.camera.is_missing() {
+        if self.motion.is_none() && !self.convention.lacks_camera() {
             return true;
         }
         let [width, height] = self.size;
@@ -175,14 +175,15 @@ impl<'a> Inputs<'a> {
             let given = motion.at(texel[0] as usize, texel[1] as usize);
             let [offset_x, offset_y] = self.uniforms.motion_offset;
             own = [given[0] * self.motion_scale[0] + offset_x, given[1] * self.motion_scale[1] + offset_y];
-            if let CameraMotion::IncludedExcept { .. } = self.camera {
-                if !has_no_vector(Vec2::from(given), self.camera_uniforms.no_vector.into()) {
+            if self.convention.no_vector.is_some() {
+                let is_missing = has_no_vector(Vec2::from(given), self.camera_uniforms.no_vector.into());
+                if !is_missing && !self.convention.without_camera {
                     return own;
                 }
-                own = [0.0; 2];
+                own = if is_missing { [0.0; 2] } else { own };
             }
         }
-        if !self.camera.is_missing() {
+        if !self.convention.lacks_camera() {
             return own;
         }
         self.with_camera(px, texel, own)

@@ -52,8 +52,11 @@ fn compare(tiles: &[[f64; HYPOTHESES as usize]], a: usize, b: usize) -> Comparis
 }
 
 pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> Finding {
-    if desc.motion.camera.is_missing() {
-        return Finding::cannot_tell(Check::Motion, "some vectors lack the camera's motion (MotionConvention::camera)");
+    if desc.motion.lacks_camera() {
+        return Finding::cannot_tell(
+            Check::Motion,
+            "some vectors lack the camera's motion (MotionConvention::without_camera, no_vector)",
+        );
     }
     if !observations.iter().any(|o| o.now.has_motion) {
         return Finding::cannot_tell(Check::Motion, "no motion vectors");

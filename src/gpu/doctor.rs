@@ -127,7 +127,7 @@ impl Doctor {
         let past = self.past.filter(|_| continues(frame));
         let now = Description {
             has_depth: frame.depth.is_some(),
-            has_motion: frame.motion.is_some() && !self.desc.motion.camera.is_missing(),
+            has_motion: frame.motion.is_some() && !self.desc.motion.lacks_camera(),
             has_lod: frame.lod.is_some(),
             ..Description::new(&self.desc, view, gaze_px, past.map(|p| p.gaze_px))
         };

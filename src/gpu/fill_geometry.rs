@@ -115,7 +115,7 @@ impl GeometryPass {
         }
         let [depth, motion] = &self.textures;
         job.frame.depth = job.frame.depth.map(|_| Textures::Layers(depth));
-        let has_motion = job.frame.motion.is_some() || job.desc.motion.camera.is_missing();
+        let has_motion = job.frame.motion.is_some() || job.desc.motion.lacks_camera();
         job.frame.motion = has_motion.then_some(Textures::Layers(motion));
     }
 

@@ -212,13 +212,12 @@ fn overrides(desc: &ContextDesc, variant: Variant, view: Option<DebugView>) -> O
 /// Which inputs the passes of a frame read.
 pub(super) fn input_overrides(desc: &ContextDesc, variant: Variant) -> Overrides {
     let flag = u32::from;
-    let camera = desc.motion.camera;
     // The vectors of filled geometry contain the camera's motion.
     let is_filled = variant.geometry_at_samples;
     vec![
         ("HAS_DEPTH", flag(variant.depth)),
-        ("HAS_MOTION", flag(variant.motion || is_filled && camera.is_missing())),
-        ("CAMERA_MOTION", if is_filled { 0 } else { camera.code() }),
+        ("HAS_MOTION", flag(variant.motion || is_filled && desc.motion.lacks_camera())),
+        ("CAMERA_MOTION", if is_filled { 0 } else { desc.motion.camera_code() }),
         ("HAS_TRUST", flag(variant.trust)),
         ("DEPTH_TEST", flag(variant.depth && desc.settings.depth_test.is_some())),
         ("REGIONS", flag(variant.regions)),

@@ -2,7 +2,7 @@
 
 use crate::depth_hard::{METHODS, Make, SIZE, of, still};
 use crate::images::{View, noise};
-use afterimage::{CameraMotion, DepthConvention, Image, MethodKind, Verdict, ViewFrame, ViewGeometry};
+use afterimage::{DepthConvention, Image, MethodKind, MotionConvention, Verdict, ViewFrame, ViewGeometry};
 use glam::{DMat4, DVec2, DVec3};
 
 /// The laws as tests of an executor. `$held` runs one, and returns what it measured.
@@ -231,20 +231,23 @@ pub fn camera_motion(make: Make<'_>) -> Option<String> {
     let object = |vector: [f32; 2], still: [f32; 2]| {
         Some(Image::from_fn(SIZE, |[x, y]| if is_object(x, y) { vector } else { still }))
     };
-    let except = CameraMotion::IncludedExcept { none };
+    let except = MotionConvention { no_vector: Some(none), ..MotionConvention::default() };
+    let excluded = MotionConvention { without_camera: true, ..MotionConvention::default() };
+    let both = MotionConvention { no_vector: Some(none), ..excluded };
     // The vectors of the object: complete ones, or its own motion.
     let inputs = [
-        (CameraMotion::Excluded, None, None),
+        (excluded, None, None),
         (except, None, None),
         (except, object([5.0, 2.0], none), Some([5.0, 2.0])),
         (except, object([5.0, 2.0], [f32::NAN, 0.0]), Some([5.0, 2.0])),
-        (CameraMotion::Excluded, object(OWN_PX, [0.0; 2]), None),
+        (excluded, object(OWN_PX, [0.0; 2]), None),
+        (both, object(OWN_PX, none), None),
     ];
     let (mut largest, mut zero) = (0.0_f64, 0.0_f64);
     for method in METHODS {
-        for (camera, motion, complete) in &inputs {
+        for (convention, motion, complete) in &inputs {
             let mut desc = of(method);
-            (desc.motion.camera, desc.depth) = (*camera, REVERSED);
+            (desc.motion, desc.depth) = (*convention, REVERSED);
             let mut post = make(desc)?;
             let depth = Image::from_fn(SIZE, |[x, y]| ((1.0 / distance(x, y) - 0.01) / 9.99).max(0.0) as f32);
             let view = |index: u64, geometry: ViewGeometry| {
@@ -284,7 +287,7 @@ pub fn camera_motion(make: Make<'_>) -> Option<String> {
 /// The vectors of a camera that stands still are exactly 0.
 fn still_camera(make: Make<'_>) -> Option<()> {
     let mut desc = of(MethodKind::Smr);
-    desc.motion.camera = CameraMotion::Excluded;
+    desc.motion.without_camera = true;
     let mut post = make(desc)?;
     let pose = pose(9).to_cols_array_2d();
     for index in 0..3 {

@@ -344,10 +344,10 @@ fn an_orthographic_camera_moves_along_its_axis() {
 #[test]
 fn vectors_without_the_cameras_motion_need_depth_and_the_camera() {
     use afterimage::cpu::{CpuAfterimage, Frame};
-    use afterimage::{CameraMotion, DepthConvention, Image, Reset};
+    use afterimage::{DepthConvention, Image, Reset};
     let size = [8, 6];
     let mut desc = ContextDesc::new(size);
-    desc.motion.camera = CameraMotion::Excluded;
+    desc.motion.without_camera = true;
     let still = ViewFrame::new(ViewGeometry::flat(size, 70.0).unwrap(), Gaze::Lost);
     let known = ViewFrame { previous_from_current: Some(Mat4::IDENTITY.to_cols_array_2d()), ..still };
     let flat = ViewFrame { depth: Some(DepthConvention::Orthographic { near: 0.1, far: 9.0 }), ..known };

@@ -1,7 +1,7 @@
 //! Motion vectors without the camera's motion: none at all, or those of moving objects alone.
 //!
 //! smr on frames of a moving camera, with the right vectors, with zero vectors, and with the camera's motion added from
-//! depth (`MotionConvention::camera`), against the full-rate frame.
+//! depth (`MotionConvention::without_camera`, `no_vector`), against the full-rate frame.
 //!
 //! `cargo run --release -p afterimage-research --example camera_motion`
 //!
@@ -10,13 +10,13 @@
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::color::srgb_encode;
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::{CameraMotion, ContextDesc, Foveation, Gaze, Image, Settings, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, Foveation, Gaze, Image, MotionConvention, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::source::FrameSource;
 use afterimage_lab::source::analytic::AnalyticSource;
 
 const SIZE: [u32; 2] = [320, 180];
 const FRAMES: u64 = 48;
-const ROWS: [&str; 5] = ["foveated", "right vectors", "zero vectors", "no vectors, Excluded", "objects' alone"];
+const ROWS: [&str; 5] = ["foveated", "right vectors", "zero vectors", "no vectors", "objects' alone"];
 /// Vectors that differ by less are the camera's motion alone.
 const SAME_PX: f32 = 0.05;
 
@@ -36,10 +36,10 @@ fn foveated(frame: &Color, geometry: &ViewGeometry, gaze_px: [f32; 2]) -> Color 
 struct Pass(CpuAfterimage);
 
 impl Pass {
-    fn new(camera: CameraMotion) -> Result<Self, Box<dyn std::error::Error>> {
+    fn new(motion: MotionConvention) -> Result<Self, Box<dyn std::error::Error>> {
         let mut desc = ContextDesc::new(SIZE);
         desc.settings = Settings { foveation: foveation(), ..Settings::default() };
-        desc.motion.camera = camera;
+        desc.motion = motion;
         Ok(Self(CpuAfterimage::new(&desc)?))
     }
 
@@ -83,9 +83,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for scene in ["lateral", "turn", "walk", "occluder"] {
         let mut source = AnalyticSource::new(scene, SIZE, 70.0, 60.0)?;
         let geometry = *source.view();
-        let none = CameraMotion::IncludedExcept { none: [f32::NAN; 2] };
-        let [mut right, mut zero] = [Pass::new(CameraMotion::Included)?, Pass::new(CameraMotion::Included)?];
-        let [mut excluded, mut objects] = [Pass::new(CameraMotion::Excluded)?, Pass::new(none)?];
+        let plain = MotionConvention::default();
+        let none = MotionConvention { no_vector: Some([f32::NAN; 2]), ..plain };
+        let without = MotionConvention { without_camera: true, ..plain };
+        let [mut right, mut zero] = [Pass::new(plain)?, Pass::new(plain)?];
+        let [mut excluded, mut objects] = [Pass::new(without)?, Pass::new(none)?];
         let mut sums = [0.0; ROWS.len()];
         for index in 0..FRAMES {
             // The gaze jumps every 12 frames.

@@ -5,8 +5,8 @@ use afterimage::gpu::{Afterimage, Frame, Region, Textures};
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{
-    CameraMotion, ContextDesc, Exposure, Filter, Foveation, Image, Lattice, Lattices, Method, MethodKind,
-    MotionConvention, Reset, Sampler, Settings, Smr, ViewGeometry, Wrs,
+    ContextDesc, Exposure, Filter, Foveation, Image, Lattice, Lattices, Method, MethodKind, MotionConvention, Reset,
+    Sampler, Settings, Smr, ViewGeometry, Wrs,
 };
 use afterimage_testing::Draws;
 use afterimage_testing::planted::all_caught;
@@ -632,10 +632,11 @@ fn geometry_at_samples_is_filled_bit_equal() {
 fn sparse_frames_whose_vectors_lack_the_cameras_motion_are_bit_equal() {
     let moved =
         [[0.999, -0.02, 0.01, 0.05], [0.02, 0.999, -0.01, 0.0], [-0.01, 0.01, 0.999, 0.1], [0.0, 0.0, 0.0, 1.0]];
-    let none = CameraMotion::IncludedExcept { none: [0.0; 2] };
-    for (method, camera) in METHODS.into_iter().flat_map(|m| [(m, none), (m, CameraMotion::Excluded)]) {
+    let plain = desc().motion;
+    let none = MotionConvention { no_vector: Some([0.0; 2]), ..plain };
+    let excluded = MotionConvention { without_camera: true, ..plain };
+    for (method, motion) in METHODS.into_iter().flat_map(|m| [(m, none), (m, excluded)]) {
         let settings = settings(method);
-        let motion = MotionConvention { camera, ..desc().motion };
         let Some(mut rig) = Rig::new(ContextDesc { motion, ..desc() }, settings) else { return };
         for index in 0..6 {
             rig.scattered = index % 4 == 3;
