@@ -1,4 +1,4 @@
-//! Hard cases of motion, H51 to H54, H58 to H60 and H112: laws that hold on either executor.
+//! Hard cases of motion, H51 to H54, H58 to H60 and H105: laws that hold on either executor.
 
 use crate::depth_hard::{METHODS, Make, SIZE, of, still};
 use crate::images::{View, noise};
@@ -16,7 +16,7 @@ macro_rules! motion_laws {
             h58_nothing_bleeds_over_a_depth_edge: "H58", depth_edge;
             h59_a_zoom_leaves_no_hole: "H59", zoom;
             h60_a_turn_is_a_full_reset: "H60", turn;
-            h112_what_has_no_vector_follows_the_camera: "H112", camera_motion;
+            h105_what_has_no_vector_follows_the_camera: "H105", camera_motion;
         }
     };
 }

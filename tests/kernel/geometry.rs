@@ -235,7 +235,7 @@ fn oblique(projection: Mat4) -> Mat4 {
 }
 
 #[test]
-fn h111_far_cameras_oblique_near_planes_and_mirrors_are_right_or_refused() {
+fn h104_far_cameras_oblique_near_planes_and_mirrors_are_right_or_refused() {
     use afterimage::cpu::{CpuAfterimage, Frame};
     use afterimage::{DepthConvention, Image};
     let good = directx::perspective_infinite_reverse(1.0, 1.5, 0.1);
@@ -306,7 +306,7 @@ fn h111_far_cameras_oblique_near_planes_and_mirrors_are_right_or_refused() {
     );
     process(DepthConvention::Linear).unwrap();
     afterimage_testing::holds!(
-        "H111",
+        "H104",
         Cpu,
         "1e6 m away 0.02 m are 0.02 m in f64, and in f32 relative to a near point; oblique planes and mirrors right, \
          their depth buffers and mirrored poses refused by name"

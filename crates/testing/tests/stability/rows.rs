@@ -26,7 +26,7 @@ impl Row {
 }
 
 /// All rows, in order.
-pub const ROWS: [Row; 103] = [
+pub const ROWS: [Row; 105] = [
     // Reservoir arithmetic
     row(
         "H01",
@@ -491,5 +491,17 @@ pub const ROWS: [Row; 103] = [
         "recorded frames, resizes and cuts that never run (dropped encoders), alone and in a row, or run out of order",
         "as if only what ran had been recorded, with a reset after what did not, bit for bit; zeroed history is empty",
         GPU,
+    ),
+    row(
+        "H104",
+        "camera 1e6 m from the origin; oblique near plane; mirrored view",
+        "right, or refused with the right reason",
+        CPU,
+    ),
+    row(
+        "H105",
+        "vectors for no pixel, for objects alone, or without the camera's motion; camera turns, moves, zooms; sky; jitter",
+        "within 1e-3 px of the definition; exactly 0 for a still camera",
+        BOTH,
     ),
 ];
