@@ -99,8 +99,8 @@ pub fn steady_gaze(make: Make<'_>) -> Option<String> {
     Some(format!("smr: mip and gauss at three rates with lamps up to 64 times brighter: off by {worst:.5}, rounding"))
 }
 
-/// Lights and gaze that change in every frame, and then rest. Each gain costs a stored step of detail at least, so that a
-/// sample gets few of them: a color that does not move towards the candidate becomes coarser.
+/// Lights and gaze that change in every frame, and then rest. Each gain costs a stored step of detail at least, so that
+/// a sample gets few of them: a color that does not move towards the candidate becomes coarser.
 pub fn rest(make: Make<'_>) -> Option<String> {
     let mut draws = Draws::new("gains rest");
     let (mut most, mut moved) = (0.0_f32, [0; 2]);

@@ -12,7 +12,8 @@
 //! default), sparse:PERCENT (with repair of at most PERCENT of the pixels), sparse48 (rates of 4 and 8), antialiased
 //! (sparse), reference (full rate with four samples a pixel).
 //!
-//! Prints the time of a frame, from its start until the device has finished it, and CPU time of the process. With FOLDER writes the frames there as PNG, and the gaze as `gaze.csv`.
+//! Prints the time of a frame, from its start until the device has finished it, and CPU time of the process. With
+//! FOLDER writes the frames there as PNG, and the gaze as `gaze.csv`.
 //!
 //! `cargo run --release --example measure -- psnr FOLDER REFERENCE`
 //!

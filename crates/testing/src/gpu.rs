@@ -19,8 +19,8 @@ fn say(line: &str) {
 fn find_adapter() -> Option<wgpu::Adapter> {
     let mut desc = wgpu::InstanceDescriptor::new_without_display_handle();
     desc.backends = wgpu::Backends::VULKAN;
-    // Without wgpu's debugging flags: with them, naga searches the line of every expression from the start of the source, a
-    // fifth of the tests' CPU time. WGPU_DEBUG=1 switches them on.
+    // Without wgpu's debugging flags: with them, naga searches the line of every expression from the start of the
+    // source, a fifth of the CPU time of tests of passes. WGPU_DEBUG=1 switches them on.
     desc.flags = wgpu::InstanceFlags::empty().with_env();
     let instance = wgpu::Instance::new(desc);
     let options =
