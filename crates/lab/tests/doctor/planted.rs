@@ -1,7 +1,7 @@
 //! Errors in a description of frames, one at a time, and what must be said about each.
 
 use super::clips::{Clip, Delivery, FORWARD, REVERSED, stored};
-use afterimage::MotionUnit::{Ndc, Pixels, Uv};
+use afterimage::MotionUnit::{Ndc, Uv};
 use afterimage::doctor::Fault::*;
 use afterimage::doctor::{Check, Fault};
 use afterimage::kernel::color::srgb_encode;
@@ -91,12 +91,7 @@ pub fn contain_jitter(delivery: &mut Delivery) {
     }
 }
 
-const PIXELS: MotionConvention = MotionConvention {
-    unit: Pixels,
-    direction: afterimage::MotionDirection::PreviousMinusCurrent,
-    y_axis: afterimage::YAxis::Down,
-    jittered: false,
-};
+const PIXELS: MotionConvention = MotionConvention::FSR2;
 const UV: MotionConvention = MotionConvention { unit: Uv, ..PIXELS };
 const NDC: MotionConvention = MotionConvention { unit: Ndc, ..PIXELS };
 
