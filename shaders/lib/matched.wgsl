@@ -1,4 +1,5 @@
 //#use approx
+//#use surface
 // Twin of src/kernel/matched.rs, which explains the constants.
 
 const QUALITY_WIDTH: f32 = 0.1;
@@ -14,6 +15,7 @@ const CORRECTION_BLOCKS: f32 = 0.1;
 const ALIKE_CONTRAST: f32 = 0.5;
 const GAIN_LEAST: f32 = 0.2;
 const GAIN_MOST: f32 = 5.0;
+const LEAST_WORN: f32 = 0.5 / LOD_STEPS;
 const DARK: f32 = 0.002;
 const COHERENT_PX: f32 = 0.5;
 const COHERENT_SHARE: f32 = 0.1;
@@ -77,10 +79,22 @@ fn gain(observed: f32, predicted: f32, changed: f32) -> f32 {
     return (1.0 - share) + ratio * share;
 }
 
+// matched::strongest_gain
+fn strongest_gain(gains: vec3<f32>) -> f32 {
+    let least = min(min(gains.x, gains.y), gains.z);
+    let most = max(max(gains.x, gains.y), gains.z);
+    return select(most, least, least * most < 1.0);
+}
+
 // matched::relight_from
 fn relight_from(contrast: f32, blocks: bool, noise: f32) -> f32 {
     let relight = select(RELIGHT, RELIGHT_BLOCKS, blocks);
     return (relight.x + relight.y * contrast) + noise;
+}
+
+// matched::may_relight
+fn may_relight(finer: f32, noisy: bool) -> bool {
+    return finer == 1.0 || noisy;
 }
 
 // matched::is_changed
@@ -123,7 +137,8 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     var worn = 0.0;
     if p.relight {
         let low = relight_from(contrast, p.blocks, e.noise);
-        let changed = smooth_step(low, low, root_difference(e.observed, e.predicted));
+        let share = select(0.0, 1.0, may_relight(reuse.finer, p.noisy));
+        let changed = smooth_step(low, low, root_difference(e.observed, e.predicted)) * share;
         let gains = vec3<f32>(
             gain(e.observed.x, e.predicted.x, changed),
             gain(e.observed.y, e.predicted.y, changed),
@@ -131,12 +146,14 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
         );
         let unlit = root_difference(e.compared_coarser, e.matched_coarser);
         let relit = root_difference(e.compared_coarser, gains * e.matched_coarser);
-        if relit < unlit * select(RELIT, RELIT_BLOCKS, p.blocks) {
+        let strongest = strongest_gain(gains);
+        let doublings = abs(ln(strongest) * LOG2_E);
+        let costs = select(doublings, LEAST_WORN, p.noisy) >= LEAST_WORN;
+        if relit < unlit * select(RELIT, RELIT_BLOCKS, p.blocks) && costs {
             d = relit;
             k = gains;
-            let mean = (gains.x + gains.y + gains.z) * (1.0f / 3.0f);
-            contrast *= sqrt(mean);
-            worn = select(abs(ln(mean) * LOG2_E), 0.0, p.noisy);
+            contrast *= sqrt(strongest);
+            worn = select(doublings, 0.0, p.noisy);
         }
     }
     let width = p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * reuse.finer;

@@ -137,7 +137,15 @@ fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, lod: f32, needed:
     return mean;
 }
 
-fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, source: Source, history: Resampled) -> Matched {
+fn matched_pixel(
+    px: vec2<u32>,
+    view: u32,
+    candidate: vec3<f32>,
+    lod: f32,
+    source: Source,
+    history: Resampled,
+    finer: f32,
+) -> Matched {
     // Point samples alias at their own scale: compare one level coarser.
     let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);
     let past = past_read(source.previous.at, lod + shift, history.smooth_color, view);
@@ -147,7 +155,9 @@ fn matched_pixel(px: vec2<u32>, view: u32, candidate: vec3<f32>, lod: f32, sourc
     let blocks = FILTER == FILTER_BLOCK;
     // Levels of history are means of blocks, not Gaussian blurs: the two agree better one level coarser.
     let gauss = FILTER == FILTER_GAUSS;
-    let changed = RELIGHT_ON != 0u && is_changed(candidate, matched, whole_level, next_level);
+    // The second operand of && is a branch, in which differences would be computed once more than in `decide`.
+    let differs = is_changed(candidate, matched, whole_level, next_level);
+    let changed = differs && RELIGHT_ON != 0u && may_relight(finer, false);
     let around = candidates_around(px, view, candidate, lod, blocks || changed);
     var predicted = matched;
     if FILTER == FILTER_BLOCK {
@@ -269,8 +279,11 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
             let averaged = averaged_pixel(px, view, candidate.color, noise, lod, source, history);
             result = averaged.result;
             noise = averaged.noise;
-        } else if lod > 0.0 && reuse_weight(lod, history.lod, frame.smr_accumulate, false, vec2<f32>(1.0)).share > 0.0 {
-            result = matched_pixel(px, view, candidate.color, lod, source, history);
+        } else if lod > 0.0 {
+            let reuse = reuse_weight(lod, history.lod, frame.smr_accumulate, false, vec2<f32>(1.0));
+            if reuse.share > 0.0 {
+                result = matched_pixel(px, view, candidate.color, lod, source, history, reuse.finer);
+            }
         }
     }
     // With gains, and with the overshoot of Catmull-Rom, colors may exceed the largest half.

@@ -107,7 +107,8 @@ impl Smr {
         source: &Source,
     ) -> Matched {
         let history = view.resample(source);
-        if matched::reuse_weight(lod, history.lod, self.params.accumulate, false, [1.0; 2]).share == 0.0 {
+        let reuse = matched::reuse_weight(lod, history.lod, self.params.accumulate, false, [1.0; 2]);
+        if reuse.share == 0.0 {
             return Matched { color: candidate, lod, share: 0.0, fit: 1.0 };
         }
         // Point samples alias at their own scale: compare one level coarser.
@@ -119,7 +120,9 @@ impl Smr {
         let blocks = self.params.blocks;
         // Levels of history are means of blocks, not Gaussian blurs: the two agree better one level coarser.
         let gauss = self.settings.foveation.filter == Filter::Gauss;
-        let changed = self.params.relight && matched::is_changed(candidate, matched, level, next_level);
+        let changed = self.params.relight
+            && matched::may_relight(reuse.finer, false)
+            && matched::is_changed(candidate, matched, level, next_level);
         let around = if blocks || changed { self.around(view, x, y, candidate, radius) } else { Vec3::ZERO };
         let predicted = if blocks { view.expose(view.sampled(source, [x, y], lod)) } else { matched };
         let evidence = Evidence {

@@ -2,6 +2,7 @@
 //! explains the candidate when low-passed to the candidate's level of detail. `docs/method.md` derives the equations.
 
 use super::approx;
+use super::surface::LOD_STEPS;
 use glam::{Vec3, Vec4};
 use std::f32::consts::LOG2_E;
 
@@ -31,6 +32,9 @@ const CORRECTION_BLOCKS: f32 = 0.1;
 const ALIKE_CONTRAST: f32 = 0.5;
 /// Smallest and largest gain of relighting.
 const GAIN: [f32; 2] = [0.2, 5.0];
+/// Least levels of detail that a gain costs: half a stored step, which storage rounds up. A smaller gain would cost
+/// nothing, and is not used.
+const LEAST_WORN: f32 = 0.5 / LOD_STEPS;
 /// Added to linear values to keep ratios and slopes of dark colors finite.
 pub(super) const DARK: f32 = 0.002;
 /// Tolerance of motion coherence: in pixels, and as a share of the vector's length.
@@ -122,12 +126,28 @@ pub fn gain(observed: f32, predicted: f32, changed: f32) -> f32 {
     (1.0 - share) + ratio * share
 }
 
+/// The largest gain or the smallest one, whichever is farther from 1 by its logarithm.
+#[inline(always)]
+pub fn strongest_gain(gains: Vec3) -> f32 {
+    let (least, most) = (gains.min_element(), gains.max_element());
+    if least * most < 1.0 { least } else { most }
+}
+
 /// Difference at which relighting starts, in units of [`root_difference`]. `noise`: difference that noise alone can
 /// cause.
 #[inline]
 pub fn relight_from(contrast: f32, blocks: bool, noise: f32) -> f32 {
     let relight = if blocks { RELIGHT_BLOCKS } else { RELIGHT };
     (relight[0] + relight[1] * contrast) + noise
+}
+
+/// Whether history may be relit: only if it is finer than the candidate by more than storage rounds levels of detail.
+/// Equally coarse history was delivered as coarse as the candidate. Low-passed once more it differs from the candidate
+/// even if nothing changed, and a gain of this difference would grow from frame to frame. Means of
+/// noisy candidates have no such limit. `finer`: of [`ReuseWeight`].
+#[inline(always)]
+pub fn may_relight(finer: f32, noisy: bool) -> bool {
+    finer == 1.0 || noisy
 }
 
 /// Whether candidate and history differ by more than contrast explains. Relighting needs the candidate's neighbours
@@ -200,23 +220,28 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     let mut contrast = root_difference(e.level, e.next_level);
     let mut d = root_difference(e.compared, e.matched);
     let mut k = Vec3::ONE;
-    // Levels of detail that history loses by relighting, because a gain also multiplies history's errors.
     let mut worn = 0.0;
     if p.relight {
         let from = relight_from(contrast, p.blocks, e.noise);
-        let changed = smooth_step(from, from, root_difference(e.observed, e.predicted));
+        let share = if may_relight(reuse.finer, p.noisy) { 1.0 } else { 0.0 };
+        let changed = smooth_step(from, from, root_difference(e.observed, e.predicted)) * share;
         let (c, h) = (e.observed, e.predicted);
         let gains = Vec3::new(gain(c.x, h.x, changed), gain(c.y, h.y, changed), gain(c.z, h.z, changed));
         // History after the gain agrees by construction with the colors from which the gain was computed. The gain is
         // therefore judged by other colors.
         let unlit = root_difference(e.compared_coarser, e.matched_coarser);
         let relit = root_difference(e.compared_coarser, gains * e.matched_coarser);
-        if relit < unlit * (if p.blocks { RELIT_BLOCKS } else { RELIT }) {
+        // Levels of detail that history loses. A gain multiplies history's errors, too, and its product is stored, so
+        // that wrong gains would multiply from frame to frame. A sample that pays for each of them gets few before the
+        // candidate replaces it.
+        let strongest = strongest_gain(gains);
+        let doublings = (approx::ln(strongest) * LOG2_E).abs();
+        let helps = relit < unlit * (if p.blocks { RELIT_BLOCKS } else { RELIT });
+        if helps && (p.noisy || doublings >= LEAST_WORN) {
             d = relit;
             k = gains;
-            let mean = (gains.x + gains.y + gains.z) * (1.0 / 3.0);
-            contrast *= mean.sqrt();
-            worn = if p.noisy { 0.0 } else { (approx::ln(mean) * LOG2_E).abs() };
+            contrast *= strongest.sqrt();
+            worn = if p.noisy { 0.0 } else { doublings };
         }
     }
     let width = p.accumulate_tolerance + (1.0 - p.accumulate_tolerance) * reuse.finer;

@@ -4,6 +4,8 @@
 mod any_frame;
 #[path = "../common/depth_hard.rs"]
 mod depth_hard;
+#[path = "../common/feedback_hard.rs"]
+mod feedback_hard;
 #[path = "../common/gaze_hard.rs"]
 mod gaze_hard;
 #[allow(dead_code, reason = "the device's tests use all of it")]

@@ -5,6 +5,8 @@
 mod any_frame;
 #[path = "../common/depth_hard.rs"]
 mod depth_hard;
+#[path = "../common/feedback_hard.rs"]
+mod feedback_hard;
 #[path = "../common/gaze_hard.rs"]
 mod gaze_hard;
 #[path = "../common/images.rs"]

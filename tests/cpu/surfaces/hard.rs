@@ -6,3 +6,12 @@ use crate::surfaces_hard::*;
 use afterimage_testing::holds;
 
 surfaces_laws!(Cpu, held);
+
+mod feedback {
+    use crate::feedback_hard::*;
+    use crate::laws::laws;
+    use crate::pass::held;
+    use afterimage_testing::holds;
+
+    feedback_laws!(Cpu, held);
+}

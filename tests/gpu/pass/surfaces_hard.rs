@@ -6,3 +6,12 @@ use crate::surfaces_hard::*;
 use afterimage_testing::holds;
 
 surfaces_laws!(Gpu, held);
+
+mod feedback {
+    use super::super::surfaces::held;
+    use crate::feedback_hard::*;
+    use crate::laws::laws;
+    use afterimage_testing::holds;
+
+    feedback_laws!(Gpu, held);
+}

@@ -17,6 +17,9 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("reproject::nearest", "f32(y) + motion.y", "f32(y) - motion.y"),
     // Sloppy means and references.
     ("wrs::sharpen", "w *= candidate_w;", "w *= w;"),
+    ("matched::decide", " && costs", ""),
+    ("matched::strongest_gain", "least * most < 1.0", "least < 1.0"),
+    ("matched::may_relight", "finer == 1.0 || noisy", "true"),
     ("wrs::at_rate", "-2.0 * f32(exponent)", "-2.5 * f32(exponent)"),
     ("wrs::combined", "|| candidate_w == decision.w_sum", ""),
     ("wrs::compared", "reference.color, level != NO_LEVEL && ", "reference.color, "),
@@ -113,7 +116,7 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("matched::gain", "(observed + DARK) / (predicted + DARK)", "(predicted + DARK) / (observed + DARK)"),
     ("matched::decide", "if relit < unlit *", "if relit > unlit *"),
     ("matched::decide", "missed * finer + k * e.history", "k * e.history"),
-    ("matched::decide", "abs(ln(mean) * LOG2_E)", "0.0"),
+    ("matched::decide", "select(doublings, 0.0, p.noisy)", "0.0"),
     ("matched::decide", "let fit = 1.0 -", "let fit = 0.99 -"),
     ("matched::mip_mean", "(a + b + c + d)", "(a + b + c + c)"),
     ("matched::mip_bilinear", "(b - t) * fraction.y", "(b - t) * fraction.x"),

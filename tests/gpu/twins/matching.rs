@@ -170,6 +170,14 @@ pub const PROBES: &[Probe] = &[
             push(row, &[c * [1.0, 0.3, 4.0][d.bits() as usize % 3], h, d.uniform()]);
         })
     }),
+    probe!(matched::strongest_gain, |rows| {
+        let g = [floats(&[0.2, 0.5, 1.0, 2.0, 5.0]), around(&[1.0, 1.1])].concat();
+        rows.cross(&[&g, &g, &g]).random(|d, row| row.extend((0..3).map(|_| range(d, 0.2, 5.0))))
+    }),
+    probe!(matched::may_relight, |rows| {
+        rows.cross(&[&around(&[0.0, 0.7, 1.0]), &[0, 1]])
+            .random(|d, row| row.extend([range(d, 0.0, 1.0), d.bits() & 1]))
+    }),
     probe!(matched::relight_from, |rows| {
         rows.cross(&[&positive(), &[0, 1], &positive()]).random(|d, row| {
             push(row, &[d.range(0.0, 150.0)]);

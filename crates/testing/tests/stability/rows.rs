@@ -335,7 +335,7 @@ pub const ROWS: [Row; 102] = [
         BOTH,
     ),
     row("H74", "strobing light 1 frame on/off", "no permanent bias", BOTH)
-    .but("smr accumulates history of the same level of detail in 10-bit storage: the residue of a weak strobe stalls at up to 1.5 / 1024 / (1 - accumulate) of the color, 1.5 % by default (measured 1.1 %). wrs and taa leave no residue."),
+    .but("smr accumulates history of the same level of detail in 10-bit storage: the residue of a weak strobe stalls at up to 1.5 / 1024 / (1 - accumulate) of the color, 1.5 % by default. wrs and taa leave no residue."),
     row("H75", "alternating black/white frames", "output is one of the two, mean over time unbiased", BOTH),
     row("H76", "resize, odd to even, DPI change, 0x0 minimise", "no panic; reset or resample; bounds valid", BOTH),
     row("H77", "pause 10 s then resume; device lost", "treated as cut; no stale image for even one frame", BOTH),
