@@ -22,6 +22,7 @@ const GATE_LIGHTNESS: u32 = 2u;
 const NO_LEVEL: u32 = 63u;
 const LEAST_EXPONENT: u32 = 112u;
 const CHANNEL_BITS: u32 = 7u;
+const FAR_FROM_CANDIDATE: f32 = 0.5;
 
 struct Reference {
     color: vec3<f32>,
@@ -117,6 +118,18 @@ fn scale_by_trust(past: Past, history_trust: f32, sampler_code: u32) -> Past {
 // wrs::expose
 fn expose(stored_color: vec3<f32>, ratio: f32) -> vec3<f32> {
     return clamp(stored_color * ratio, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));
+}
+
+// wrs::luma_root
+fn luma_root(c: vec3<f32>) -> f32 {
+    return sqrt(max(luma(c), 0.0));
+}
+
+// wrs::unspread
+fn unspread(candidate: vec3<f32>, nearest_color: vec3<f32>, resampled_color: vec3<f32>) -> vec3<f32> {
+    let root = luma_root(candidate);
+    let far = abs(root - luma_root(nearest_color)) + FAR_FROM_CANDIDATE;
+    return select(resampled_color, nearest_color, abs(root - luma_root(resampled_color)) > far);
 }
 
 // wrs::gate (eq. 7): 1 - |dL|

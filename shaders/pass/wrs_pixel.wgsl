@@ -42,11 +42,19 @@ fn tap(texel: vec2<i32>, view: u32, codes: vec2<u32>) -> Tap {
     return Tap(stored.color, 0.0, stored.valid && (DEPTH_TEST == 0u || has_code(words.y, codes)));
 }
 
-// Mean of history at a position, by Catmull-Rom weights. At the centre of a pixel it is exactly `nearest_color`.
-fn resampled(at: vec2<f32>, view: u32, expected: f32, nearest_color: vec3<f32>) -> vec3<f32> {
+// Mean of history at a position, by Catmull-Rom weights, in this frame's exposure. At the centre of a pixel it is
+// exactly `nearest_color`.
+fn resampled(
+    at: vec2<f32>,
+    view: u32,
+    expected: f32,
+    nearest_color: vec3<f32>,
+    candidate: vec3<f32>,
+) -> vec3<f32> {
     let whole = floor(at);
     let fraction = at - whole;
-    var mean = nearest_color;
+    let nearest_exposed = expose(nearest_color, frame.exposure);
+    var mean = nearest_exposed;
     // Variable counts on purpose: Mesa would unroll a constant one and reorder its sums of products.
     let rounds = select(ROUNDS, 0u, fraction.x == 0.0 && fraction.y == 0.0);
     for (var once = 0u; once < min(rounds, 1u); once++) {
@@ -64,13 +72,21 @@ fn resampled(at: vec2<f32>, view: u32, expected: f32, nearest_color: vec3<f32>) 
                 four,
             );
         }
-        mean = resolve(gathered, sharp_sum(taps), Surface(nearest_color, 0.0, expected)).sharp;
+        let resolved = resolve(gathered, sharp_sum(taps), Surface(nearest_color, 0.0, expected)).sharp;
+        mean = unspread(candidate, nearest_exposed, expose(resolved, frame.exposure));
     }
     return mean;
 }
 
 // Reservoir of the pixel's surface in the previous frame and age of its sample, or the reason for its rejection.
-fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, disparity_now: f32) -> History {
+fn history_of(
+    px: vec2<u32>,
+    view: u32,
+    candidate: vec3<f32>,
+    ray: vec3<f32>,
+    motion: vec2<f32>,
+    disparity_now: f32,
+) -> History {
     if frame.reset != 0u {
         return no_history(VERDICT_RESET);
     }
@@ -97,10 +113,10 @@ fn history_of(px: vec2<u32>, view: u32, ray: vec3<f32>, motion: vec2<f32>, dispa
     if !is_same_surface(px, view, disparity_now, expected, stored.disparity) {
         return no_history(VERDICT_DISOCCLUDED);
     }
-    if SAMPLER == SAMPLER_A_CHAO_MEAN && HAS_MOTION != 0u {
-        past.color = resampled(vec2<f32>(px) + motion, view, expected, stored.color);
-    }
     past.color = expose(past.color, frame.exposure);
+    if SAMPLER == SAMPLER_A_CHAO_MEAN && HAS_MOTION != 0u {
+        past.color = resampled(vec2<f32>(px) + motion, view, expected, stored.color, candidate);
+    }
     var reference = Reference(vec3<f32>(0.0), NO_LEVEL);
     if HAS_REFERENCES != 0u {
         reference = unpack_reference(textureLoad(past_extras, source.at, view, 0).x);
@@ -146,7 +162,7 @@ fn pixel(px: vec2<u32>, view: u32, place: Place) {
         gate_offset += sample_difference(noise, luma(candidate.color));
     }
     let disparity_now = disparity_at(px, view);
-    let history = history_of(px, view, ray, motion, disparity_now);
+    let history = history_of(px, view, candidate.color, ray, motion, disparity_now);
     let valid = history.verdict == VERDICT_VALID;
     let params = WrsParams(SAMPLER, BIAS, frame.exponential_survival, GATE, gate_offset, frame.inv_gate_divisor);
     let draw = unit_draw(bits(px.x, px.y, frame.frame_low, constants.key));

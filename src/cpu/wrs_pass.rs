@@ -153,7 +153,7 @@ impl ViewPass<'_> {
         }
         let disparity = inputs.disparity(x, y);
         let motion = inputs.motion(x, y);
-        let (verdict, history) = match self.history(x, y, ray, motion, disparity) {
+        let (verdict, history) = match self.history([x, y], candidate, ray, motion, disparity) {
             Ok(history) => (Verdict::Valid, history),
             Err(verdict) => (verdict, History::EMPTY),
         };
@@ -227,7 +227,14 @@ impl ViewPass<'_> {
 
     /// History of the pixel's surface, or the verdict that rejects it.
     #[inline(always)]
-    fn history(&self, x: u32, y: u32, ray: Vec3, motion: [f32; 2], disparity: f32) -> Result<History, Verdict> {
+    fn history(
+        &self,
+        [x, y]: [u32; 2],
+        candidate: Vec3,
+        ray: Vec3,
+        motion: [f32; 2],
+        disparity: f32,
+    ) -> Result<History, Verdict> {
         let inputs = &self.inputs;
         if inputs.reset {
             return Err(Verdict::Reset);
@@ -250,10 +257,11 @@ impl ViewPass<'_> {
         if inputs.tests_depth() && !inputs.same_surface(x, y, disparity, expected, stored.disparity) {
             return Err(Verdict::Disoccluded);
         }
-        if self.params.sampler == SamplerCode::AChaoMean {
-            past.color = self.resampled([x as f32 + motion[0], y as f32 + motion[1]], expected, stored.color);
-        }
         past.color = wrs::expose(past.color, inputs.exposure);
+        if self.params.sampler == SamplerCode::AChaoMean {
+            let mean = self.resampled([x as f32 + motion[0], y as f32 + motion[1]], expected, stored.color);
+            past.color = wrs::unspread(candidate, past.color, wrs::expose(mean, inputs.exposure));
+        }
         let stored_reference = self.past.references.get(at).copied().map_or(Reference::NONE, wrs::unpack_reference);
         let reference = Reference { color: wrs::expose(stored_reference.color, inputs.exposure), ..stored_reference };
         Ok(History { past, age: stored.age, reference })

@@ -65,6 +65,10 @@ const LEAST_EXPONENT: u32 = 127 - 15;
 /// Mantissa bits of a packed channel.
 const CHANNEL_BITS: u32 = 7;
 
+/// Largest difference that interpolation of history may add to that of the nearest reservoir from the candidate, in
+/// [`luma_root`]: half of that from black to white. Smaller ones are edges.
+const FAR_FROM_CANDIDATE: f32 = 0.5;
+
 /// Reference of the gate: the first candidate of the present level of detail since the sample was taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
@@ -191,6 +195,22 @@ pub fn scale_by_trust(past: Past, trust: f32, sampler: SamplerCode) -> Past {
 #[inline]
 pub fn expose(stored: Vec3, ratio: f32) -> Vec3 {
     (stored * ratio).clamp(Vec3::splat(-MAX_HALF), Vec3::splat(MAX_HALF))
+}
+
+/// Square root of a color's luma; 0 for negative ones.
+#[inline]
+pub fn luma_root(c: Vec3) -> f32 {
+    color::luma(c).max(0.0).sqrt()
+}
+
+/// History's mean at a position between reservoirs: `resampled`, or the color of the `nearest` reservoir where the
+/// interpolation moves it away from the candidate by more than [`FAR_FROM_CANDIDATE`]. The gate judges the nearest
+/// reservoir alone. A firefly in a reservoir beside it would otherwise spread past the gate.
+#[inline]
+pub fn unspread(candidate: Vec3, nearest: Vec3, resampled: Vec3) -> Vec3 {
+    let root = luma_root(candidate);
+    let far = (root - luma_root(nearest)).abs() + FAR_FROM_CANDIDATE;
+    if (root - luma_root(resampled)).abs() > far { nearest } else { resampled }
 }
 
 /// Gate value `1 - |dL|` of eq. 7: 1 up to `offset`, 0 from `offset + 1 / inv_divisor` on. `difference` in Delta E.

@@ -1,7 +1,7 @@
 //! Hard cases of light that changes, H72 to H75, for wrs: laws that hold on either executor.
 
 use crate::depth_hard::{Color, Make, SIZE, Steps, desc, still};
-use crate::images::noise;
+use crate::images::{View, noise};
 use crate::settings::ungated;
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::{ContextDesc, Exposure, Image, Settings};
@@ -14,6 +14,7 @@ macro_rules! light_laws {
             h72_without_the_ratio_the_gate_recovers_within_3_frames: "H72", undeclared_exposure;
             h73_a_firefly_lives_one_frame: "H73", gated_firefly;
             h73_without_the_gate_a_firefly_is_drawn_and_dies_as_the_law_says: "H73", ungated_firefly;
+            h73_a_firefly_beside_a_gliding_pixel_does_not_spread: "H73", gliding_firefly;
             h74_a_strobe_leaves_nothing_behind: "H74", strobe;
             h75_black_and_white_by_turns_keep_their_mean: "H75", black_and_white;
         }
@@ -151,6 +152,28 @@ pub fn ungated_firefly(make: Make<'_>) -> Option<String> {
     Some(format!(
         "wrs, no gate: light shown over light brought {shown:.3} (by the law {energy:.3}), gone after {last} frames"
     ))
+}
+
+/// A firefly of one frame in means of weighted samples, while everything glides by a part of a pixel.
+pub fn gliding_firefly(make: Make<'_>) -> Option<String> {
+    let mut worst = 0.0_f32;
+    for light in [10.0, 100.0, 65504.0] {
+        let mut post = make(desc(Settings::weighted()))?;
+        for index in 0..17 {
+            let mut color = Image::filled(SIZE, [0.5; 3]);
+            if index == 5 {
+                color.pixels_mut()[16 * SIZE[0] as usize + 50] = [light; 3];
+            }
+            let view = View { motion: Some(Image::filled(SIZE, [0.37, 0.0])), ..still(color) };
+            let (shown, ..) = post.step(index, &view);
+            let brightest = shown.pixels().iter().flatten().fold(0.0_f32, |m, &v| m.max(v));
+            // The planted error: the firefly's own frame.
+            assert_eq!(index == 5, brightest >= light, "{brightest} of {light} in frame {index}");
+            worst = if index == 15 { worst.max(brightest) } else { worst };
+        }
+    }
+    assert!(worst < 0.6, "{worst}");
+    Some(format!("wrs, means, gliding: {worst:.3} in a picture of 0.5, ten frames after fireflies of 10 to 65504"))
 }
 
 /// A strobe of one frame on and one off.

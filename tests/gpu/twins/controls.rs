@@ -17,6 +17,7 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("reproject::nearest", "f32(y) + motion.y", "f32(y) - motion.y"),
     // Sloppy means and references.
     ("wrs::sharpen", "w *= candidate_w;", "w *= w;"),
+    ("wrs::unspread", "+ FAR_FROM_CANDIDATE", ""),
     ("matched::decide", " && costs", ""),
     ("matched::strongest_gain", "least * most < 1.0", "least < 1.0"),
     ("matched::may_relight", "finer == 1.0 || noisy", "true"),

@@ -1,5 +1,6 @@
 //! Functions of weighted reservoirs beyond the paper: sharper weights, means, references of the gate.
 
+use super::matching::{like, push, stored_color};
 use super::probe::{Probe, probe};
 use super::shape::*;
 use super::values::*;
@@ -16,6 +17,15 @@ fn channel(d: &mut Draws) -> u32 {
 shape!(Reference { color: Vec3, level: u32 });
 
 pub const PROBES: &[Probe] = &[
+    probe!(wrs::luma_root, |rows| rows.random(|d, row| push(row, &stored_color(d)))),
+    probe!(wrs::unspread, |rows| {
+        rows.random(|d, row| {
+            let candidate = stored_color(d);
+            let [nearest, mean] =
+                [0; 2].map(|_| like(d, candidate).map(|x| x.max(0.0) * [1.0, 1.0, 8.0][d.bits() as usize % 3]));
+            push(row, &[candidate, nearest, mean].concat());
+        })
+    }),
     probe!(wrs::sharpen, |rows| {
         let weights = [floats(&[0.0, 0.003, 0.5]), around(&[1.0])].concat();
         rows.cross(&[&weights, &[1, 2, 3, 8]]).random(|d, row| row.extend([scaled(d, -8, 0), 1 + d.bits() % 8]))
