@@ -148,7 +148,8 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
         let relit = root_difference(e.compared_coarser, gains * e.matched_coarser);
         let strongest = strongest_gain(gains);
         let doublings = abs(ln(strongest) * LOG2_E);
-        if relit < unlit * select(RELIT, RELIT_BLOCKS, p.blocks) && doublings >= LEAST_WORN {
+        let costs = select(doublings, LEAST_WORN, p.noisy) >= LEAST_WORN;
+        if relit < unlit * select(RELIT, RELIT_BLOCKS, p.blocks) && costs {
             d = relit;
             k = gains;
             contrast *= sqrt(strongest);

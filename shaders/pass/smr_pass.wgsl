@@ -155,7 +155,9 @@ fn matched_pixel(
     let blocks = FILTER == FILTER_BLOCK;
     // Levels of history are means of blocks, not Gaussian blurs: the two agree better one level coarser.
     let gauss = FILTER == FILTER_GAUSS;
-    let changed = RELIGHT_ON != 0u && may_relight(finer, false) && is_changed(candidate, matched, whole_level, next_level);
+    // The second operand of && is a branch, in which differences would be computed once more than in `decide`.
+    let differs = is_changed(candidate, matched, whole_level, next_level);
+    let changed = differs && RELIGHT_ON != 0u && may_relight(finer, false);
     let around = candidates_around(px, view, candidate, lod, blocks || changed);
     var predicted = matched;
     if FILTER == FILTER_BLOCK {

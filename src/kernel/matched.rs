@@ -143,8 +143,8 @@ pub fn relight_from(contrast: f32, blocks: bool, noise: f32) -> f32 {
 
 /// Whether history may be relit: only if it is finer than the candidate by more than storage rounds levels of detail.
 /// Equally coarse history was delivered as coarse as the candidate. Low-passed once more it differs from the candidate
-/// even if nothing changed, and a gain of this difference would grow from frame to frame. Noisy candidates
-/// are compared at a scale at which both are means. `finer`: of [`ReuseWeight`].
+/// even if nothing changed, and a gain of this difference would grow from frame to frame. Means of
+/// noisy candidates have no such limit. `finer`: of [`ReuseWeight`].
 #[inline(always)]
 pub fn may_relight(finer: f32, noisy: bool) -> bool {
     finer == 1.0 || noisy
@@ -236,7 +236,8 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
         // candidate replaces it.
         let strongest = strongest_gain(gains);
         let doublings = (approx::ln(strongest) * LOG2_E).abs();
-        if relit < unlit * (if p.blocks { RELIT_BLOCKS } else { RELIT }) && doublings >= LEAST_WORN {
+        let helps = relit < unlit * (if p.blocks { RELIT_BLOCKS } else { RELIT });
+        if helps && (p.noisy || doublings >= LEAST_WORN) {
             d = relit;
             k = gains;
             contrast *= strongest.sqrt();

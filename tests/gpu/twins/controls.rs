@@ -25,7 +25,7 @@ const PLANTED: &[(&str, &str, &str)] = &[
     // Sloppy means and references.
     ("wrs::sharpen", "w *= candidate_w;", "w *= w;"),
     ("wrs::unspread", "+ FAR_FROM_CANDIDATE", ""),
-    ("matched::decide", " && doublings >= LEAST_WORN", ""),
+    ("matched::decide", " && costs", ""),
     ("matched::strongest_gain", "least * most < 1.0", "least < 1.0"),
     ("matched::may_relight", "finer == 1.0 || noisy", "true"),
     ("wrs::at_rate", "-2.0 * f32(exponent)", "-2.5 * f32(exponent)"),
