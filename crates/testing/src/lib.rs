@@ -7,6 +7,7 @@ extern crate wgpu_29 as wgpu;
 #[cfg(all(feature = "wgpu-30", not(feature = "wgpu-29")))]
 extern crate wgpu_30 as wgpu;
 
+pub mod agree;
 mod alone;
 #[cfg(any(feature = "wgpu-29", feature = "wgpu-30"))]
 pub mod gpu;

@@ -1,6 +1,7 @@
 //! Sparse frames in the pipeline: lattices that move, geometry at samples, and both executors alike.
 
 use afterimage::kernel::lattice::offset_px;
+use afterimage::wgpu;
 use afterimage::{Filter, Foveation, MethodKind, Settings};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
@@ -41,10 +42,8 @@ fn steps(scene: &str, geometry: SparseGeometry, order: SampleOrder, backend: &Ba
 
 #[test]
 fn both_executors_agree_on_sparse_frames() {
-    if afterimage_testing::gpu::adapter().is_none() {
-        return;
-    }
-    let gpu = Backend::Gpu(Headless::find(true).expect("there is an adapter"));
+    let Some(adapter) = afterimage_testing::gpu::adapter() else { return };
+    let gpu = Backend::Gpu(Headless::on(adapter, wgpu::Limits::default()).expect("a device with default limits"));
     for scene in ["occluder", "still"] {
         for geometry in [SparseGeometry::Full, SparseGeometry::Samples] {
             let of = |backend| steps(scene, geometry, SampleOrder::Sobol, backend);
