@@ -5,8 +5,9 @@ use afterimage::wgpu;
 use afterimage::{Filter, Foveation, MethodKind, Settings};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
-use afterimage_lab::pipeline::{Pipeline, RunKind, Step};
+use afterimage_lab::pipeline::{MethodOutput, Pipeline, RunKind, Step};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
+use afterimage_testing::agree;
 use std::collections::HashSet;
 
 const SIZE: [u32; 2] = [160, 90];
@@ -50,8 +51,12 @@ fn both_executors_agree_on_sparse_frames() {
             for (index, (cpu, gpu)) in of(&Backend::Cpu).iter().zip(&of(&gpu)).enumerate() {
                 for (method, (cpu, gpu)) in METHODS.iter().zip(cpu.outputs.iter().zip(&gpu.outputs)) {
                     let at = format!("{scene}, {geometry:?}, {method:?}, frame {index}");
-                    assert_eq!(cpu.image, gpu.image, "{at}");
-                    assert_eq!(cpu.stats, gpu.stats, "{at}");
+                    let bits =
+                        |o: &MethodOutput| o.image.pixels().iter().map(|c| c.map(f32::to_bits)).collect::<Vec<_>>();
+                    assert_eq!(agree::colors(&bits(gpu), &bits(cpu)), Ok(()), "{at}");
+                    if afterimage_testing::gpu::rounds_as_the_cpu() {
+                        assert_eq!(cpu.stats, gpu.stats, "{at}");
+                    }
                 }
             }
         }
