@@ -1,15 +1,14 @@
 //! Rasterised frames leak nothing. Alone in its file, for a process of its own.
 
-use afterimage_lab::device::Headless;
+#[path = "common/roomy.rs"]
+mod roomy;
+
 use afterimage_lab::source::{RasterSource, ReadLimits, SceneOptions};
 
 /// Seven times a frame its pipelines change; where Mesa 22.3 compiles one anew each time, that is 13 MiB a frame.
 #[test]
 fn forty_frames_of_many_materials_leak_nothing() {
-    if afterimage_testing::gpu::adapter().is_none() {
-        return;
-    }
-    let device = Headless::find_roomy(true).unwrap();
+    let Some(device) = roomy::roomy_device() else { return };
     let options = SceneOptions { size: Some([64, 36]), ..Default::default() };
     let limits = ReadLimits::default();
     let mut source = RasterSource::open("builtin:cubes", &limits, &options, None, device.clone()).unwrap();

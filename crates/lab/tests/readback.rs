@@ -1,16 +1,14 @@
 //! Readbacks of several threads from one device.
 
 use afterimage::Image;
-use afterimage::wgpu::{TextureFormat, TextureUsages};
+use afterimage::wgpu::{self, TextureFormat, TextureUsages};
 use afterimage_lab::device::Headless;
 
 /// A thread's poll may hand its mapping to another thread, whose callback comes later than the poll ends.
 #[test]
 fn threads_that_share_a_device_all_get_their_pixels() {
-    if afterimage_testing::gpu::adapter().is_none() {
-        return;
-    }
-    let gpu = Headless::find(true).unwrap();
+    let Some(adapter) = afterimage_testing::gpu::adapter() else { return };
+    let gpu = Headless::on(adapter, wgpu::Limits::default()).unwrap();
     let usage = TextureUsages::COPY_DST | TextureUsages::COPY_SRC;
     std::thread::scope(|scope| {
         for thread in 0..8 {

@@ -21,7 +21,9 @@ fn passes_give_the_bits_of_the_cpu_and_the_adapter_says_how_it_computes() {
         assert!(!of(what).is_empty());
     }
     let (wrs, smr) = (of("wrs against the CPU"), of("smr against the CPU"));
-    assert!(wrs.starts_with("equal bits") && wrs == smr);
+    if afterimage_testing::gpu::rounds_as_the_cpu() {
+        assert!(wrs.starts_with("equal bits") && wrs == smr);
+    }
     let name = &device.info.name;
     holds!("H84", Gpu, "{name}: wrs, smr {wrs}; denormals {}, two-sum {}", of("denormals"), of("two-sum"));
 }

@@ -3,6 +3,7 @@
 
 extern crate wgpu_30 as wgpu;
 
+pub mod agree;
 mod alone;
 pub mod gpu;
 pub mod hard_case;

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// A program, by its path: `env!("CARGO_BIN_EXE_...")`. It runs in the root of the workspace.
+/// A program, by its path: `env!("CARGO_BIN_EXE_...")`. It runs in the root of the workspace, on the adapter that the
+/// tests take.
 #[derive(Clone, Copy, Debug)]
 pub struct Program(pub &'static str);
 
@@ -14,6 +15,7 @@ impl Program {
             .args(args)
             // Silences a message of Mesa about windows.
             .env("NODEVICE_SELECT", "1")
+            .envs(crate::gpu::choice())
             .current_dir(crate::workspace())
             .output()
             .expect("the program starts")

@@ -12,6 +12,13 @@ const TOOL: &str = env!("CARGO_BIN_EXE_afterimage");
 const PATIENCE: Duration = Duration::from_secs(60);
 const SIZE: [u32; 2] = [320, 180];
 
+/// The tool, on the adapter that the tests take.
+fn tool() -> Command {
+    let mut tool = Command::new(TOOL);
+    tool.envs(afterimage_testing::gpu::choice());
+    tool
+}
+
 /// Not eprintln!, which the test harness captures: skips must be visible in a passing run.
 fn say(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
@@ -106,7 +113,7 @@ struct Viewer<'a> {
 impl<'a> Viewer<'a> {
     fn open(display: &'a Display, folder: &Path, words: &[&str]) -> Self {
         let file = |name| File::create(folder.join(name)).unwrap();
-        let mut child = Command::new(TOOL)
+        let mut child = tool()
             .args(["view", "still.png", "--internal-scale", "1", "--record", "gaze.csv", "--screenshot", "shown.png"])
             .args(words)
             .current_dir(folder)
@@ -232,7 +239,7 @@ impl<'a> Viewer<'a> {
     /// Checks that the picture equals that of `run` with the recorded gaze.
     fn is_as_of_run(&mut self, method: &str) {
         let frames = self.picture();
-        let out = Command::new(TOOL)
+        let out = tool()
             .args(["run", "still.png", "--gaze", "gaze.csv", "--backend", "gpu", "--no-flip", "--out", "run"])
             .args(["--method", method, "--frames", &frames.to_string()])
             .current_dir(&self.folder)
@@ -324,7 +331,7 @@ fn playback_shows_what_run_writes_on_both_sides_of_the_divider() {
     let folder = tempfile::tempdir().unwrap();
     write_still(folder.path());
     let run = |words: &[&str]| {
-        let tool = Command::new(TOOL).args(words).current_dir(folder.path()).env("DISPLAY", &display.name).output();
+        let tool = self::tool().args(words).current_dir(folder.path()).env("DISPLAY", &display.name).output();
         let out = tool.unwrap();
         assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
     };
@@ -350,7 +357,7 @@ fn a_scene_is_rendered_foveated_for_the_gaze_and_nothing_is_read_back() {
     let Some(display) = Display::open() else { return };
     let folder = tempfile::tempdir().unwrap();
     let tool = |words: &[&str]| {
-        let tool = Command::new(TOOL).args(words).current_dir(folder.path()).env("DISPLAY", &display.name).output();
+        let tool = self::tool().args(words).current_dir(folder.path()).env("DISPLAY", &display.name).output();
         let out = tool.unwrap();
         assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
         String::from_utf8(out.stdout).unwrap()
@@ -401,10 +408,8 @@ fn what_is_shown_has_a_running_jod() {
     let view = |words: &[&str]| {
         let common =
             ["view", "analytic:lateral", "--size", "320x180", "--internal-scale", "1", "--gaze", "synthetic:3"];
-        let tool = Command::new(TOOL)
-            .args([&common[..], &["--frames", "60"], words].concat())
-            .env("DISPLAY", &display.name)
-            .output();
+        let tool =
+            tool().args([&common[..], &["--frames", "60"], words].concat()).env("DISPLAY", &display.name).output();
         let out = tool.unwrap();
         assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
         String::from_utf8(out.stdout).unwrap()
@@ -429,7 +434,7 @@ fn without_a_display_it_says_so_in_one_line() {
     let folder = tempfile::tempdir().unwrap();
     write_still(folder.path());
     for display in [None, Some(":4099")] {
-        let mut tool = Command::new(TOOL);
+        let mut tool = self::tool();
         tool.args(["view", "still.png"]).current_dir(folder.path());
         tool.env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET").env_remove("DISPLAY");
         let out = tool.envs(display.map(|d| ("DISPLAY", d))).output().unwrap();
@@ -454,7 +459,7 @@ fn what_it_cannot_show_is_refused_before_any_window() {
         (&["builtin:courtyard", "--foveation", "mip", "--jitter", "halton"], "--foveation sparse"),
     ];
     for (words, expected) in refused {
-        let out = Command::new(TOOL).arg("view").args(words).current_dir(folder.path()).output().unwrap();
+        let out = tool().arg("view").args(words).current_dir(folder.path()).output().unwrap();
         let text = String::from_utf8(out.stderr).unwrap();
         assert_eq!((out.status.code(), text.lines().count()), (Some(2), 1), "{words:?}: {text}");
         assert!(text.contains(expected), "{words:?}: {text}");

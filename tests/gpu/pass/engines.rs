@@ -385,7 +385,8 @@ fn resized_history_agrees() {
         for size in [[70, 41], [64, 36], [96, 54], [35, 21], [131, 77]] {
             rig.resize_keeping_history(size);
             let [cpu, gpu] = rig.histories();
-            if settings.method != Method::None {
+            // An adapter that rounds otherwise may store neighbours; what it shows is compared below.
+            if settings.method != Method::None && afterimage_testing::gpu::rounds_as_the_cpu() {
                 assert!(cpu == gpu, "{:?} at {size:?}", settings.method);
             }
             let desc = ContextDesc { size_px: size, ..desc };

@@ -20,7 +20,7 @@ fn caught(filter: Filter, errors: &[(&str, &str)]) {
         let (device, queue) = afterimage_testing::gpu::device()?;
         let source = |name: &str| sources[PASSES.iter().position(|pass| *pass == name).unwrap()].clone();
         let mut rig = Rig::with_shaders(device, queue, &desc(size, 2, foveation), FORMAT, source);
-        Some(rig.on_gpu(&scene) != scene.on_cpu(&foveation))
+        Some(rig.on_gpu(&scene).agrees(&scene.on_cpu(&foveation)).is_err())
     });
 }
 

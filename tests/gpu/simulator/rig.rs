@@ -6,7 +6,7 @@ use afterimage::simulator::Pyramid;
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::wgpu::{Device, Queue, Texture, TextureFormat, TextureUsages};
 use afterimage::{ContextDesc, Filter, Foveation, Gaze, Image, Settings, ViewFrame, ViewGeometry};
-use afterimage_testing::Draws;
+use afterimage_testing::{Draws, agree};
 
 /// Full-rate frames and gazes, one a view.
 #[derive(Clone)]
@@ -70,6 +70,18 @@ impl Scene {
             made.lods.extend(lods.pixels().iter().map(|l| l.to_bits()));
         }
         made
+    }
+}
+
+impl Made {
+    /// Whether the device's result is the CPU's.
+    ///
+    /// # Errors
+    /// How it differs.
+    pub fn agrees(&self, cpu: &Self) -> Result<(), String> {
+        let levels = |made: &Self| made.lods.iter().map(|&lod| [lod; 3]).collect::<Vec<_>>();
+        agree::colors(&self.shown, &cpu.shown)?;
+        agree::colors(&levels(self), &levels(cpu))
     }
 }
 
@@ -164,6 +176,9 @@ pub fn assert_equal(what: &str, size: [u32; 2], gpu: &Made, cpu: &Made) {
         format!("{what}: view {view}, pixel ({}, {})", i % size[0], i / size[0])
     };
     assert_eq!((gpu.shown.len(), gpu.lods.len()), (cpu.shown.len(), cpu.lods.len()), "{what}");
+    if !afterimage_testing::gpu::rounds_as_the_cpu() {
+        return gpu.agrees(cpu).unwrap_or_else(|difference| panic!("{what}: {difference}"));
+    }
     let float = f32::from_bits;
     for (i, (g, c)) in gpu.lods.iter().zip(&cpu.lods).enumerate() {
         assert!(g == c, "{}: level {} on the GPU, {} on the CPU", place(i), float(*g), float(*c));

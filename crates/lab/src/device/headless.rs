@@ -34,8 +34,18 @@ impl Headless {
         pollster::block_on(Self::instance().enumerate_adapters(wgpu::Backends::PRIMARY))
     }
 
+    /// Sorts adapters from the best to the last, which are software. If the environment variable `AFTERIMAGE_ADAPTER`
+    /// is set, removes those without this text in the name, in any case.
+    pub fn sort(adapters: &mut Vec<wgpu::Adapter>) {
+        if let Ok(wish) = std::env::var("AFTERIMAGE_ADAPTER") {
+            adapters.retain(|adapter| is_wished(&adapter.get_info(), &wish));
+        }
+        adapters.sort_by_key(rank);
+    }
+
     /// The first hardware GPU; with `software`, a software adapter if the machine has no GPU. `None` if no such adapter
-    /// creates a device with default limits.
+    /// creates a device with default limits. The environment variable `AFTERIMAGE_ADAPTER` chooses by a part of the
+    /// name.
     pub fn find(software: bool) -> Option<Arc<Self>> {
         Self::find_with(software, |_| wgpu::Limits::default())
     }
@@ -51,14 +61,8 @@ impl Headless {
     }
 
     fn find_with(software: bool, limits: impl Fn(&wgpu::Limits) -> wgpu::Limits) -> Option<Arc<Self>> {
-        let rank = |adapter: &wgpu::Adapter| match adapter.get_info().device_type {
-            wgpu::DeviceType::DiscreteGpu => 0,
-            wgpu::DeviceType::IntegratedGpu => 1,
-            wgpu::DeviceType::VirtualGpu | wgpu::DeviceType::Other => 2,
-            wgpu::DeviceType::Cpu => 3,
-        };
         let mut adapters = Self::adapters();
-        adapters.sort_by_key(rank);
+        Self::sort(&mut adapters);
         adapters.retain(|a| software || rank(a) < 3);
         adapters.iter().find_map(|adapter| Self::on(adapter, limits(&adapter.limits())).ok())
     }
@@ -208,4 +212,19 @@ impl Headless {
             vec![0; size as usize]
         })
     }
+}
+
+/// Place among adapters: the lower, the better.
+fn rank(adapter: &wgpu::Adapter) -> u32 {
+    match adapter.get_info().device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu | wgpu::DeviceType::Other => 2,
+        wgpu::DeviceType::Cpu => 3,
+    }
+}
+
+/// Whether the text stands in the name of the adapter or of its driver.
+fn is_wished(info: &wgpu::AdapterInfo, wish: &str) -> bool {
+    [&info.name, &info.driver].iter().any(|name| name.to_lowercase().contains(&wish.to_lowercase()))
 }

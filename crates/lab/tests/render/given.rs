@@ -1,7 +1,7 @@
 //! What all tests are given: the device, built-in scenes, and scenes made by others.
 
+use crate::roomy::roomy_device;
 use crate::shared_data::shared_data;
-use afterimage::wgpu;
 use afterimage_lab::device::Headless;
 use afterimage_lab::scene::{Scene, SceneLimits};
 use std::path::{Path, PathBuf};
@@ -15,16 +15,7 @@ pub fn device() -> Option<Arc<Headless>> {
 
 /// A device for one test, which counts its readbacks.
 pub fn device_of_its_own() -> Option<Arc<Headless>> {
-    let adapter = afterimage_testing::gpu::adapter()?;
-    let offered = adapter.limits();
-    // Sponza exceeds the default limits.
-    let required_limits = wgpu::Limits {
-        max_texture_dimension_2d: offered.max_texture_dimension_2d,
-        max_buffer_size: offered.max_buffer_size,
-        max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
-        ..wgpu::Limits::default()
-    };
-    Some(Headless::on(adapter, required_limits).expect("a device with these limits"))
+    roomy_device()
 }
 
 pub fn open(path: &Path) -> Scene {

@@ -1,5 +1,6 @@
 //! Jittered frames, and references that are sums of them.
 
+use crate::roomy::roomy_device;
 use afterimage::kernel::color::luma;
 use afterimage::{Filter, Foveation, Image, Method, Settings, Smr, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
@@ -15,8 +16,7 @@ const SIZE: [u32; 2] = [96, 54];
 
 /// Rasterised cubes, which move; `None` without an adapter.
 fn cubes() -> Option<(RasterSource, Arc<Headless>)> {
-    afterimage_testing::gpu::adapter()?;
-    let device = Headless::find_roomy(true).unwrap();
+    let device = roomy_device()?;
     let options = SceneOptions { size: Some(SIZE), hfov_deg: None, fps: None };
     let source = RasterSource::open("builtin:cubes", &ReadLimits::default(), &options, None, device.clone());
     Some((source.unwrap(), device))
@@ -175,12 +175,9 @@ fn a_jittered_still_converges_to_the_antialiased_reference_on_both_processors() 
     let ([shown, single], on_cpu) = errors(&mut source, &Backend::Cpu, 64);
     println!("mean squared error {shown:.6}, of one sample a pixel {single:.6}");
     assert!(shown < 0.4 * single, "{shown} of {single}");
-    if afterimage_testing::gpu::adapter().is_none() {
-        return;
-    }
-    let device = Headless::find_roomy(true).unwrap();
+    let Some(device) = roomy_device() else { return };
     let (_, on_gpu) = errors(&mut source, &Backend::Gpu(device.clone()), 64);
-    if device.is_software() {
+    if afterimage_testing::gpu::rounds_as_the_cpu() {
         assert_eq!(on_cpu.pixels(), on_gpu.pixels(), "twins");
     }
 }

@@ -4,6 +4,8 @@
 mod explained;
 #[path = "../common/hostile.rs"]
 mod hostile;
+#[path = "../common/roomy.rs"]
+mod roomy;
 #[path = "../common/shared_data.rs"]
 mod shared_data;
 

@@ -1,8 +1,9 @@
 //! Time that sources state for what they render.
 
+use crate::roomy::roomy_device;
 use afterimage::{Filter, Foveation, ViewGeometry};
 use afterimage_lab::clock::Stopwatch;
-use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::device::Backend;
 use afterimage_lab::lattices::SparseGeometry;
 use afterimage_lab::source::{
     AnalyticSource, FrameRequest, FrameSource, RasterSource, ReadLimits, SceneOptions, TracedSamples, TracedSource,
@@ -21,10 +22,7 @@ fn rasterised_frames_state_the_time_of_rendering_alone() {
 }
 
 fn time_rasterised_frames() {
-    if afterimage_testing::gpu::adapter().is_none() {
-        return;
-    }
-    let device = Headless::find_roomy(true).unwrap();
+    let Some(device) = roomy_device() else { return };
     let mut source =
         RasterSource::open("builtin:cubes", &ReadLimits::default(), &OPTIONS, None, device.clone()).unwrap();
     let watch = Stopwatch::start();

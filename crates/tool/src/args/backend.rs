@@ -6,7 +6,7 @@ use afterimage_lab::source::is_scene;
 use clap::ValueEnum;
 
 /// Message if the machine has no adapter.
-pub const NO_ADAPTER: &str = "there is no adapter; install a Vulkan driver (software: mesa-vulkan-drivers)";
+pub const NO_ADAPTER: &str = "there is no adapter, or none that AFTERIMAGE_ADAPTER names; install a Vulkan driver (software: mesa-vulkan-drivers)";
 
 /// Values of `--backend`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

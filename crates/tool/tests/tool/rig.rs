@@ -69,8 +69,7 @@ pub fn same_on_both_backends(name: &str, input: &str, more: &[&str]) -> [Value; 
         succeeds(&run(input, &folder.text(backend), &[&rest, more].concat()));
         read_json(&folder.path(backend).join("report.json"))
     });
-    // Other devices round differently.
-    if reports[1]["backend"]["name"].as_str().unwrap().contains("llvmpipe") {
+    if afterimage_testing::gpu::rounds_as_the_cpu() {
         let [cpu, gpu] = ["cpu", "gpu"].map(|backend| frames(&folder.path(backend)));
         assert!(cpu.len() > 1 && cpu.keys().eq(gpu.keys()), "{name}: {:?}", cpu.keys());
         for (file, bytes) in &cpu {

@@ -31,12 +31,7 @@ impl Device {
         let surface = create_surface(&instance, window)?;
         let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
         adapters.retain(|adapter| adapter.is_surface_supported(&surface));
-        adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
-            wgpu::DeviceType::DiscreteGpu => 0,
-            wgpu::DeviceType::IntegratedGpu => 1,
-            wgpu::DeviceType::VirtualGpu | wgpu::DeviceType::Other => 2,
-            wgpu::DeviceType::Cpu => 3,
-        });
+        Headless::sort(&mut adapters);
         let limits = |offered: wgpu::Limits| wgpu::Limits {
             max_texture_dimension_2d: offered.max_texture_dimension_2d,
             // For scenes.

@@ -90,11 +90,8 @@ mod tests {
 
     /// Faults found in frames that move to the right by 2 pixels, with vectors of that sign. `waits`: for each frame.
     fn faults(waits: bool) -> Option<Vec<Fault>> {
-        let Some(gpu) = Headless::find(true) else {
-            assert!(std::env::var("AFTERIMAGE_GPU").is_err(), "AFTERIMAGE_GPU is set, but there is no adapter");
-            eprintln!("SKIPPED: no adapter");
-            return None;
-        };
+        let adapter = afterimage_testing::gpu::adapter()?;
+        let gpu = Headless::on(adapter, wgpu::Limits::default()).unwrap();
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
         let [color, motion] = [(); 2].map(|()| gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, usage));
         gpu.write_rgb(&motion, 0, &Image::filled(SIZE, [2.0, 0.0, 0.0]));

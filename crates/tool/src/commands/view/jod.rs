@@ -116,7 +116,7 @@ fn score(burst: &Burst, scores: &Sender<Vec<f64>>) -> Option<()> {
 mod tests {
     use super::*;
     use afterimage::Image;
-    use afterimage::wgpu::{TextureFormat, TextureUsages};
+    use afterimage::wgpu::{self, TextureFormat, TextureUsages};
     use afterimage_lab::metric::encode;
     use std::time::{Duration, Instant};
 
@@ -139,11 +139,8 @@ mod tests {
 
     #[test]
     fn a_burst_of_a_still_has_the_score_of_the_picture_and_a_reset_forgets_it() {
-        let Some(gpu) = Headless::find(true) else {
-            assert!(std::env::var("AFTERIMAGE_GPU").is_err(), "AFTERIMAGE_GPU is set, but there is no adapter");
-            eprintln!("SKIPPED: no adapter");
-            return;
-        };
+        let Some(adapter) = afterimage_testing::gpu::adapter() else { return };
+        let gpu = Headless::on(adapter, wgpu::Limits::default()).unwrap();
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
         let images = [pattern(0), pattern(5)];
         let textures = images.each_ref().map(|image| {

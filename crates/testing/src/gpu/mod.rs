@@ -1,8 +1,12 @@
 //! GPU tests: one adapter per test program, a fresh device per test, and probes that run a WGSL entry point over a
 //! table of inputs.
 
+mod adapter;
+mod arithmetic;
+
+pub use adapter::{adapter, choice};
+pub use arithmetic::{Arithmetic, arithmetic, rounds_as_the_cpu};
 use std::borrow::Cow;
-use std::io::Write;
 use std::sync::{OnceLock, mpsc};
 
 /// Initial value of every word of a probe's output. A word that keeps it was not written, and fails the comparison.
@@ -10,53 +14,6 @@ pub const SENTINEL: u32 = 0xdead_beef;
 
 /// Threads in a workgroup of a probe.
 pub const WORKGROUP: u32 = 64;
-
-fn say(line: &str) {
-    // Not eprintln!, which the test harness captures: skips must be visible in a passing run.
-    let _ = writeln!(std::io::stderr().lock(), "{line}");
-}
-
-fn find_adapter() -> Option<wgpu::Adapter> {
-    let mut desc = wgpu::InstanceDescriptor::new_without_display_handle();
-    desc.backends = wgpu::Backends::VULKAN;
-    // Without wgpu's debugging flags: with them, naga searches the line of every expression from the start of the
-    // source, a fifth of the CPU time of tests of passes. WGPU_DEBUG=1 switches them on.
-    desc.flags = wgpu::InstanceFlags::empty().with_env();
-    let instance = wgpu::Instance::new(desc);
-    let options =
-        wgpu::RequestAdapterOptions { power_preference: wgpu::PowerPreference::HighPerformance, ..Default::default() };
-    match pollster::block_on(instance.request_adapter(&options)) {
-        Ok(adapter) => {
-            let info = adapter.get_info();
-            let (name, driver, version, backend) = (&info.name, &info.driver, &info.driver_info, info.backend);
-            say(&format!("adapter: {name}, {driver}, {version}, {backend:?}"));
-            Some(adapter)
-        }
-        Err(error) => {
-            say(&format!("no Vulkan adapter: {error}"));
-            None
-        }
-    }
-}
-
-/// The Vulkan adapter of this run. Without an adapter, prints a line and returns `None`.
-///
-/// # Panics
-/// Without an adapter, if `AFTERIMAGE_GPU=require` is set, as in CI.
-pub fn adapter() -> Option<&'static wgpu::Adapter> {
-    static ADAPTER: OnceLock<Option<wgpu::Adapter>> = OnceLock::new();
-    let adapter = ADAPTER.get_or_init(find_adapter).as_ref();
-    if adapter.is_none() {
-        let required = std::env::var("AFTERIMAGE_GPU").is_ok_and(|v| v == "require");
-        assert!(
-            !required,
-            "AFTERIMAGE_GPU=require, but there is no Vulkan adapter: install mesa-vulkan-drivers (software Vulkan) or a driver"
-        );
-        let test = std::thread::current().name().unwrap_or("a test").to_owned();
-        say(&format!("SKIPPED {test}: no Vulkan adapter (install mesa-vulkan-drivers)"));
-    }
-    adapter
-}
 
 /// A fresh device with default limits. Uncaptured errors panic.
 pub fn device() -> Option<(wgpu::Device, wgpu::Queue)> {
