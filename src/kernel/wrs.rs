@@ -204,7 +204,7 @@ pub fn luma_root(c: Vec3) -> f32 {
 }
 
 /// History's mean at a position between reservoirs: `resampled`, or the color of the `nearest` reservoir where the
-/// interpolation moves it away from the candidate by more than [`FAR_FROM_CANDIDATE`]. The gate judges the nearest
+/// interpolation moves it away from the candidate by more than `FAR_FROM_CANDIDATE`. The gate judges the nearest
 /// reservoir alone. A firefly in a reservoir beside it would otherwise spread past the gate.
 #[inline]
 pub fn unspread(candidate: Vec3, nearest: Vec3, resampled: Vec3) -> Vec3 {
