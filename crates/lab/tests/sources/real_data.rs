@@ -105,7 +105,7 @@ fn sponza_still_none_wrs_and_oracle_in_order() {
     let Some(path) = shared_data("sequences/sponza_still") else { return };
     let outcome = play(
         open(&path).as_mut(),
-        &Clip { frames: 12, ..Clip::default() },
+        &Clip { frames: 12, start_s: 1.2, ..Clip::default() },
         &[run_of(MethodKind::None), run_of(MethodKind::Wrs), RunKind::Oracle],
     );
     assert_eq!(outcome.scores[0].bands[0].mse, Some(0.0), "the fovea is shown as it is");

@@ -45,7 +45,7 @@ fn repair_keeps_to_its_budget_and_shows_what_is_uncovered() {
     let mut before = None;
     for budget in ["0", "2", "10"] {
         let out = folder.text(budget);
-        let small = ["--size", "240x135", "--frames", "16", "--backend", "cpu", "--gaze", "90,75", "--no-flip"];
+        let small = ["--size", "240x136", "--frames", "16", "--backend", "cpu", "--gaze", "90,75", "--no-flip"];
         succeeds(&run("analytic:occluder", &out, &repaired(budget, &small)));
         let methods = &read_json(&folder.path(budget).join("report.json"))["methods"];
         assert!(methods["none"]["repaired_share"].is_null(), "only smr repairs");

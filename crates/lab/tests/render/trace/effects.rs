@@ -197,7 +197,7 @@ fn unneeded_effects_change_no_bit_on_the_gpu() {
 #[test]
 fn a_needed_effect_that_is_left_out_is_missed() {
     let mut missed = Effects::NONE;
-    for number in 0..60 {
+    for number in 0..40 {
         let rig = Rig::new(random_scene(number), SIZE);
         let film = rig.cpu(settings(rig.world.needs, number), SPP);
         for effect in rig.world.needs.without(missed).iter() {
