@@ -129,7 +129,7 @@ fn every_planted_error_in_smr_is_caught() {
         &[
             // Candidate and history swapped: in the output, the comparison and the gain.
             ("e.candidate + (history - e.candidate) * share", "history + (e.candidate - history) * share"),
-            ("root_difference(e.compared, e.matched)", "root_difference(e.compared, e.history)"),
+            ("past_difference(e.compared, e.matched)", "past_difference(e.compared, e.history)"),
             ("(observed + DARK) / (predicted + DARK)", "(predicted + DARK) / (observed + DARK)"),
             // Fit, gate and gain 1 % off.
             ("let fit = 1.0 - smooth_step", "let fit = 1.0 - 1.01 * smooth_step"),
