@@ -1,6 +1,6 @@
 //! Scale of light, H106: laws of smr that hold on either executor.
 
-use crate::depth_hard::{Color, Made, Make, Steps};
+use crate::depth_hard::{Color, Made, Make};
 use crate::images::View;
 use afterimage::simulator::Pyramid;
 use afterimage::{ContextDesc, Exposure, Filter, Foveation, Image, Reset, Settings};
