@@ -109,9 +109,8 @@ pub fn times_a_constant(make: Make<'_>) -> Option<String> {
 }
 
 /// Light left behind the edge of a shadow that moves by 2 px a frame without vectors, as a share of the step of light.
-fn light_left(make: Make<'_>, factor: f32) -> Option<f64> {
-    let size = [160, 90];
-    let settings = settings(Filter::Mip);
+fn light_left(make: Make<'_>, settings: Settings, exponent: i32) -> Option<f64> {
+    let (size, factor) = ([160, 90], 2.0_f32.powi(exponent));
     let mut post = make(ContextDesc { settings, ..ContextDesc::new(size) })?;
     let (mut left, mut step) = (0.0, 0.0);
     for index in 0..56_u64 {
@@ -120,7 +119,10 @@ fn light_left(make: Make<'_>, factor: f32) -> Option<f64> {
         let edge = 60 + 2 * index.saturating_sub(16) as u32;
         let light = |x: u32| if x > 50 && x < edge { 0.1 } else { 0.4 };
         let full = Image::from_fn(size, |[x, y]| [light(x) * (0.75 + 0.25 * ((x + y) % 3) as f32); 3]);
-        let view = delivered(&settings, &full, gaze_px);
+        let view = match settings.foveation.filter {
+            Filter::Sparse => View::still(full.clone(), gaze_px).foveated(&settings.foveation, gaze_px, index),
+            _ => delivered(&settings, &full, gaze_px),
+        };
         let lit = View { color: times(&view.color, factor), ..view };
         let shown = post.make(index, &lit, Exposure::Same, Reset::None).shown;
         if index >= 30 {
@@ -135,24 +137,26 @@ fn light_left(make: Make<'_>, factor: f32) -> Option<f64> {
 
 /// The same in a bright frame and in dark ones.
 pub fn moving_shadow(make: Make<'_>) -> Option<String> {
-    let mut left = vec![];
-    for exponent in [3, 0, -6, -10] {
-        left.push(light_left(make, 2.0_f32.powi(exponent))?);
-    }
-    let third = light_left(make, 0.001)?;
-    assert!(left.iter().chain([&third]).all(|&l| l < 0.06), "{left:?} {third}");
-    // The planted error: the gate does not follow light below the smallest normal half.
-    let absolute = light_left(make, 2.0_f32.powi(-20))?;
+    let left = |settings: Settings, exponents: &[i32]| {
+        exponents.iter().map(|&exponent| light_left(make, settings, exponent)).collect::<Option<Vec<_>>>()
+    };
+    let smr = left(settings(Filter::Mip), &[4, 0, -6, -10])?;
+    assert!(smr.iter().all(|&l| l < 0.06), "{smr:?}");
+    // The planted error: below the smallest normal half the gate does not follow light.
+    let absolute = light_left(make, settings(Filter::Mip), -20)?;
     assert!(absolute > 0.3, "{absolute}");
-    let [bright, one, dark, darkest] = left[..] else { unreachable!("four") };
+    // Gates that are absolute: they hold in this range, and not below.
+    let weighted = left(Settings { foveation: settings(Filter::Mip).foveation, ..Settings::weighted() }, &[2, -2, -4])?;
+    assert!(weighted[0] < 0.1 && weighted[1] < 0.1, "{weighted:?}");
+    let sparse = left(settings(Filter::Sparse), &[4, -6, -10])?;
+    assert!((sparse[0] - sparse[1]).abs() < 0.05, "{sparse:?}");
+    let percent = |left: &[f64]| left.iter().map(|l| format!("{:.1}", 100.0 * l)).collect::<Vec<_>>().join(", ");
     Some(format!(
-        "smr: light left behind the edge at 8, 1, 2^-6, 2^-10 and 0.001 of the light: {:.1}, {:.1}, {:.1}, {:.1} and \
-         {:.1} %; at 2^-20 {:.0} %",
-        100.0 * bright,
-        100.0 * one,
-        100.0 * dark,
-        100.0 * darkest,
-        100.0 * third,
-        100.0 * absolute
+        "light left behind the edge in percent, smr at 2^4, 1, 2^-6, 2^-10 of the light: {}, at 2^-20: {:.0}; wrs \
+         weighted at 4, 1/4, 1/16: {}; sparse smr at 2^4, 2^-6, 2^-10: {}",
+        percent(&smr),
+        100.0 * absolute,
+        percent(&weighted),
+        percent(&sparse)
     ))
 }

@@ -40,8 +40,9 @@ fn the_table_has_every_row() {
 /// executors share.
 #[test]
 fn the_tests_of_the_table_exist() {
-    let shared = ["depth", "feedback", "gaze", "kernel", "lifecycle", "light", "motion", "simulator", "surfaces"]
-        .map(|of| format!("{of}_hard.rs"));
+    let shared =
+        ["depth", "feedback", "gaze", "kernel", "lifecycle", "light", "motion", "scale", "simulator", "surfaces"]
+            .map(|of| format!("{of}_hard.rs"));
     let shared = shared.into_iter().chain(["sparse_hard/mod.rs".into()]);
     let shared = shared.map(|file| fs::read_to_string(workspace().join("tests/common").join(file)).unwrap());
     let shared = shared.collect::<String>();

@@ -509,5 +509,8 @@ pub const ROWS: [Row; 106] = [
         "colors times a constant, from 2^-10 to 2^12; a shadow that moves without vectors in a dark frame",
         "decisions as without it, the picture times it: powers of two bit for bit; at most 6 % of the light left behind",
         BOTH,
+    )
+    .but(
+        "smr, on frames that are neither sparse nor noisy. wrs, sparse frames and noise compare colors by constants for white at about 1.",
     ),
 ];
