@@ -166,8 +166,8 @@ fn every_planted_error_in_smr_of_other_filters_is_caught() {
         false,
         &[
             ("let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);", "let shift = 0.0;"),
-            ("select(candidate, around, blocks)", "candidate"),
-            ("predicted = exposed(past_sampled(source, px, lod, view));", ""),
+            ("select(own, around, blocks)", "own"),
+            ("predicted = past_sampled(source, px, lod, view) * per_stored;", ""),
             ("const RELIGHT_BLOCKS: vec2<f32> = vec2<f32>(8.0, 0.5);", "const RELIGHT_BLOCKS: vec2<f32> = RELIGHT;"),
             ("let scale = select(1.0, 4.0, p.blocks);", "let scale = 1.0;"),
         ],
