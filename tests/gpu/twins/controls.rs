@@ -110,11 +110,17 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("resample::resolve", "g.complete);", "true);"),
     // A wrong match.
     ("matched::smooth_step", "3.0 - 2.0 * t", "3.0 - 2.01 * t"),
-    ("matched::root_difference", "luma * luma + 0.5 * chroma", "luma * luma + chroma"),
+    ("matched::distance_of_roots", "luma * luma + 0.5 * chroma", "luma * luma + chroma"),
+    ("matched::past_difference", "past_roots(past)", "past"),
+    ("matched::past_contrast", "past_roots(next_level)", "next_level"),
+    ("matched::light_unit", "then * exposure", "then"),
+    ("matched::light_unit", ", LEAST_LIGHT)", ", 0.0)"),
     ("matched::moves_alike", "abs(other.y - own.y) <= within", "abs(other.y - own.x) <= within"),
     ("matched::reuse_weight", "(history_lod - lod) / COARSER_WIDTH", "(lod - history_lod) / COARSER_WIDTH"),
     ("matched::gain", "(observed + DARK) / (predicted + DARK)", "(predicted + DARK) / (observed + DARK)"),
     ("matched::decide", "if relit < unlit *", "if relit > unlit *"),
+    ("matched::decide", "(correction * e.unit)", "correction"),
+    ("noise::noise_difference", "deviations * inverse_unit", "deviations"),
     ("matched::mip_mean", "(a + b + c + d)", "(a + b + c + c)"),
     ("matched::mip_bilinear", "(b - t) * fraction.y", "(b - t) * fraction.x"),
     // A wrong lens.

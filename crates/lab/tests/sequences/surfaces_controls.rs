@@ -121,7 +121,7 @@ fn every_planted_error_in_smr_is_caught() {
         &[
             // Candidate and history swapped: in the output, the comparison and the gain.
             ("e.candidate + (history - e.candidate) * share", "history + (e.candidate - history) * share"),
-            ("root_difference(e.compared, e.matched)", "root_difference(e.compared, e.history)"),
+            ("past_difference(e.compared, e.matched)", "past_difference(e.compared, e.history)"),
             ("(observed + DARK) / (predicted + DARK)", "(predicted + DARK) / (observed + DARK)"),
             // Fit, gate and gain 1 % off.
             ("let fit = 1.0 - smooth_step", "let fit = 1.0 - 1.01 * smooth_step"),
@@ -158,8 +158,8 @@ fn every_planted_error_in_smr_of_other_filters_is_caught() {
         false,
         &[
             ("let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);", "let shift = 0.0;"),
-            ("select(candidate, around, blocks)", "candidate"),
-            ("predicted = exposed(past_sampled(source, px, lod, view));", ""),
+            ("select(own, around, blocks)", "own"),
+            ("predicted = past_sampled(source, px, lod, view) * per_stored;", ""),
             ("const RELIGHT_BLOCKS: vec2<f32> = vec2<f32>(8.0, 0.5);", "const RELIGHT_BLOCKS: vec2<f32> = RELIGHT;"),
             ("let scale = select(1.0, 4.0, p.blocks);", "let scale = 1.0;"),
         ],
