@@ -94,10 +94,24 @@ impl Made {
             let first = (0..cpu.shown.len()).find(differs);
             return if self == cpu { Ok(()) } else { Err(format!("first at pixel {first:?}")) };
         }
-        let counted = [self, cpu].map(|made| [made.stats.replaced, made.stats.nonfinite, made.stats.rejected()]);
-        agree::counts(&counted[0], &counted[1], cpu.stats.pixels)?;
+        same_counts(&self.stats, &cpu.stats)?;
         agree::pictures(&self.shown, &cpu.shown)
     }
+}
+
+/// Whether the device counts as the CPU does: exactly, or, on an adapter that rounds otherwise, nearly as many pixels.
+///
+/// # Errors
+/// How they differ.
+pub fn same_counts(gpu: &FrameStats, cpu: &FrameStats) -> Result<(), String> {
+    if gpu == cpu {
+        return Ok(());
+    }
+    if afterimage_testing::gpu::rounds_as_the_cpu() {
+        return Err(format!("{gpu:?}, not {cpu:?}"));
+    }
+    let counted = [gpu, cpu].map(|stats| [stats.replaced, stats.nonfinite, stats.rejected()]);
+    agree::counts(&counted[0], &counted[1], cpu.pixels)
 }
 
 impl Rig {

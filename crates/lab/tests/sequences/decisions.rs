@@ -1,7 +1,7 @@
 //! What is known of decisions: counters, debug views, warnings. They agree with the CPU's, cost no state, and can be
 //! left out.
 
-use super::rig::{Rig, View, make_texture};
+use super::rig::{Rig, View, make_texture, same_counts};
 use super::sequences::{SIZE, reset, surfaces, trust, view};
 use afterimage::gpu::{Frame, Recorded, Target};
 use afterimage::kernel::debug_view::view_color;
@@ -11,6 +11,7 @@ use afterimage::{
     ViewFrame, Warning, Wrs,
 };
 use afterimage_lab::source::AnalyticSource;
+use afterimage_testing::agree;
 
 fn source(scene: &str) -> AnalyticSource {
     AnalyticSource::new(scene, SIZE, 70.0, 60.0).unwrap()
@@ -43,15 +44,18 @@ fn debug_views_draw_what_record_decides_next_and_move_nothing() {
             let pictures = DebugView::ALL.map(|v| rig.decisions(index, reset(index), &views, v));
             let counted = rig.read().stats;
             let (cpu, trace) = rig.on_cpu(index, reset(index), &views);
-            assert_eq!(counted, cpu.stats, "a view counts, too");
+            same_counts(&counted, &cpu.stats).expect("a view counts, too");
             for (view, picture) in DebugView::ALL.into_iter().zip(&pictures) {
                 let expected: Vec<[u32; 3]> =
                     trace[0].pixels().iter().map(|t| view_color(view, t).to_array().map(f32::to_bits)).collect();
-                assert!(*picture == expected, "{settings:?}, {view:?}, frame {index}");
+                let same = agree::colors(picture, &expected);
+                same.unwrap_or_else(|error| panic!("{settings:?}, {view:?}, frame {index}: {error}"));
             }
             let after = rig.on_gpu(index, reset(index), &views);
             assert!(after == undisturbed.on_gpu(index, reset(index), &views), "frame {index}");
-            assert!((&after.shown, after.stats) == (&cpu.shown, cpu.stats), "frame {index}");
+            after.agrees(&cpu).unwrap_or_else(|error| panic!("frame {index}: {error}"));
+            rig.goes_on_from(index, &cpu);
+            undisturbed.goes_on_from(index, &cpu);
             for (sum, n) in seen.iter_mut().zip(cpu.stats.verdicts) {
                 *sum += n;
             }
