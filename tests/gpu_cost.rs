@@ -120,7 +120,8 @@ fn frame_textures(device: &Device) -> [Texture; 7] {
 fn record_us(settings: Settings, has_all: bool, is_new: bool) -> [f64; 2] {
     let (device, queue) = Device::noop(&wgpu::DeviceDescriptor::default());
     let mut post =
-        Afterimage::new(&device, &ContextDesc { settings, ..ContextDesc::new(SIZE) }, TextureFormat::Rgba16Float).unwrap();
+        Afterimage::new(&device, &ContextDesc { settings, ..ContextDesc::new(SIZE) }, TextureFormat::Rgba16Float)
+            .unwrap();
     let mut textures = [(); 2].map(|()| frame_textures(&device));
     let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
     let gaze_px = [160.0, 90.0];
@@ -137,7 +138,8 @@ fn record_us(settings: Settings, has_all: bool, is_new: bool) -> [f64; 2] {
             lattices: is_sparse.then(|| settings.foveation.lattices(&geometry, gaze_px, index)),
             ..ViewFrame::new(geometry, Gaze::At { px: gaze_px })
         }];
-        let usual = Frame { depth: Some(depth.into()), motion: Some(motion.into()), ..Frame::new(color, &views, index) };
+        let usual =
+            Frame { depth: Some(depth.into()), motion: Some(motion.into()), ..Frame::new(color, &views, index) };
         let frame = if has_all {
             Frame { trust: Some(trust.into()), lod: Some(lod.into()), noise: Some(noise.into()), ..usual }
         } else {
@@ -164,8 +166,11 @@ fn recording_costs_little_cpu_time() {
     let sparse = Foveation { filter: Filter::Sparse, ..Foveation::default() };
     let sparse = Settings { foveation: sparse, ..smr };
     let noisy = Settings { noisy: true, ..smr };
-    for (name, settings, has_all) in [("smr", smr, false), ("smr, sparse", sparse, false), ("all inputs", noisy, true)] {
+    for (name, settings, has_all) in [("smr", smr, false), ("smr, sparse", sparse, false), ("all inputs", noisy, true)]
+    {
         let ([record, submit], [new, _]) = (record_us(settings, has_all, false), record_us(settings, has_all, true));
-        println!("{name}: record {record:.1} us, finish and submit {submit:.1} us; record with new textures {new:.1} us");
+        println!(
+            "{name}: record {record:.1} us, finish and submit {submit:.1} us; record with new textures {new:.1} us"
+        );
     }
 }

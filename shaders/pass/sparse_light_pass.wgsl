@@ -9,8 +9,8 @@
 override RELIGHT_ON: u32 = 1u;
 override ANTIALIAS: u32 = 0u;
 
-@group(0) @binding(8) var observed: texture_2d_array<u32>;
-@group(0) @binding(18) var lights_out: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(21) var observed: texture_2d_array<u32>;
+@group(0) @binding(23) var lights_out: texture_storage_2d_array<rg32uint, write>;
 
 struct Neighbour {
     observation: Observation,

@@ -6,11 +6,11 @@
 // Reconstruction of sparse frames from history that keeps samples in their places (smr). CPU twin: `pixel` in
 // src/cpu/sparse_pass/mod.rs; docs/method.md has the equations. One invocation a pixel; z is the view.
 
-@group(0) @binding(9) var next_kept: texture_storage_2d_array<rg32uint, write>;
-@group(0) @binding(10) var lights: texture_2d_array<u32>;
-@group(0) @binding(12) var next_noise: texture_storage_2d_array<r32uint, write>;
-@group(0) @binding(13) var repaired_in: texture_2d_array<f32>;
-@group(0) @binding(14) var repair_mask: texture_2d_array<u32>;
+@group(0) @binding(7) var repaired_in: texture_2d_array<f32>;
+@group(0) @binding(18) var next_kept: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(19) var next_noise: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(21) var lights: texture_2d_array<u32>;
+@group(0) @binding(22) var repair_mask: texture_2d_array<u32>;
 
 // Whether the frame has samples of the pixels that a plan chose.
 override REPAIR: u32 = 0u;
@@ -236,7 +236,7 @@ fn repaired(px: vec2<u32>, view: u32, level: u32) -> Repaired {
         return Repaired(vec3<f32>(0.0), 1.0, false);
     }
     let chosen = textureLoad(repair_mask, px >> vec2<u32>(1u), view, 0).x != 0u && level > 0u;
-    let given = textureLoad(repaired_in, texel_of(px, frame.views[view].repaired_origin), layer_of(view), 0);
+    let given = textureLoad(repaired_in, texel_of(px, view, REPAIRED_IN), layer_of(view), 0);
     let own = color(given.xyz);
     return Repaired(own.color, given.w, chosen && own.usable);
 }

@@ -1,6 +1,7 @@
 //! Sparse frames: filled for the methods that read whole frames, and read without filling by taau.
 
 use super::rig::{Rig, View, make_texture, noise, noise_view};
+use afterimage::gpu::compute::Sources;
 use afterimage::gpu::{Afterimage, Frame, Region, Textures};
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{TextureFormat, TextureUsages};
@@ -112,8 +113,9 @@ pub(super) fn all_caught_in_samples(
     let names = ["sparse_observe_pass", "sparse_light_pass", "sparse_pass"];
     let right = names.map(|name| SHADERS.compose(name).source);
     all_caught(&right, planted, |sources: &[String; 3]| {
-        let mut rig = Rig::with_shader(desc, settings, &sources[2])?;
-        rig.gpu.set_sample_shaders(&rig.device, &sources[0], &sources[1]);
+        let texts = names.into_iter().zip(sources);
+        let sources = texts.fold(Sources::default(), |all, (name, text)| all.with(name, text));
+        let mut rig = Rig::with_sources(desc, settings, sources)?;
         Some((0..frames).any(|index| {
             let views = views(index, &mut rig);
             rig.differs(index, Reset::None, &views)
@@ -141,7 +143,7 @@ fn wrong_noise_is_caught() {
         ),
         ("noise = mean_noise(noises);", ""),
         ("if is_own {", "if false {"),
-        ("frame.views[view].noise_origin", "frame.views[0].noise_origin"),
+        (", view, NOISE_IN)", ", 0u, NOISE_IN)"),
         ("left = min(left, mean_fit(sum, sure));", ""),
         ("sure = noisy_lod_confidence(", "sure = 0.0 * noisy_lod_confidence("),
         // Full rate: judged by another lattice or by none, at another sample, not averaged.
@@ -233,12 +235,11 @@ fn a_wrong_fill_is_caught() {
         ("index < LATTICES - 1u", "index < 1u"),
         ("all(px < sparse.views[view][index].high_px)", "all(px <= sparse.views[view][index].high_px)"),
         ("let view = frame.first_view + group.z;", "let view = group.z;"),
-        ("frame.views[view].color_origin", "frame.views[0].color_origin"),
+        (", view, COLOR_IN)", ", 0u, COLOR_IN)"),
     ];
     let settings = settings(MethodKind::None);
     all_caught(&[right], &planted, |[source]| {
-        let mut rig = Rig::new(desc(), settings)?;
-        rig.gpu.set_fill_shader(&rig.device, source);
+        let mut rig = Rig::with_sources(desc(), settings, Sources::default().with("fill_pass", source))?;
         Some((0..4).any(|index| {
             rig.scattered = index > 1;
             rig.differs(index, Reset::None, &sparse_views(index, &settings))
@@ -339,7 +340,7 @@ fn a_wrong_upsampling_is_caught() {
         ("tail(confidence * source.previous.trust)", "tail(0.0)"),
         ("sampled.usable {", "true {"),
         ("let lattice = lattice_at(px, view);", "let lattice = sparse.views[view][0];"),
-        ("frame.views[view].color_origin", "frame.views[0].color_origin"),
+        (", view, COLOR_IN)", ", 0u, COLOR_IN)"),
     ];
     let settings = settings(MethodKind::Taau);
     all_caught(&[right], &planted, |[source]| {
@@ -710,8 +711,7 @@ fn a_wrong_fill_of_geometry_is_caught() {
     ];
     let settings = settings(MethodKind::Smr);
     all_caught(&[right], &planted, |[source]| {
-        let mut rig = Rig::new(desc(), settings)?;
-        rig.gpu.set_geometry_shader(&rig.device, source);
+        let mut rig = Rig::with_sources(desc(), settings, Sources::default().with("fill_geometry_pass", source))?;
         Some((0..6).any(|index| rig.differs(index, Reset::None, &at_samples(index, &settings))))
     });
 }
