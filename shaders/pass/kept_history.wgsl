@@ -4,7 +4,7 @@
 //#use sparse
 //#use wrs
 // Stored samples around the previous position of a pixel's surface, for smr on sparse frames. CPU twin:
-// src/cpu/sparse_pass/mod.rs.
+// src/cpu/sparse_pass/kept_history.rs.
 
 // Whether frames are jittered and history stores means of samples.
 override ANTIALIAS: u32 = 0u;

@@ -163,24 +163,23 @@ fn matched_pixel(
     if FILTER == FILTER_BLOCK {
         predicted = exposed(past_sampled(source, px, lod, view));
     }
-    let evidence = Evidence(
-        candidate,
-        select(candidate, around, blocks),
-        select(around, candidate, gauss),
-        select(candidate, around, gauss),
-        lod,
-        exposed(history.sharp),
-        history.lod,
-        any(source.fraction != vec2<f32>(0.0)) && !gauss,
-        matched,
-        whole_level,
-        next_level,
-        select(next_level, matched, blocks || gauss),
-        select(predicted, next_level, gauss),
-        source.previous.trust,
-        0.0,
-        vec2<f32>(1.0),
-    );
+    var evidence: Evidence;
+    evidence.candidate = candidate;
+    evidence.compared = select(candidate, around, blocks);
+    evidence.compared_coarser = select(around, candidate, gauss);
+    evidence.observed = select(candidate, around, gauss);
+    evidence.lod = lod;
+    evidence.history = exposed(history.sharp);
+    evidence.history_lod = history.lod;
+    evidence.resampled = any(source.fraction != vec2<f32>(0.0)) && !gauss;
+    evidence.matched = matched;
+    evidence.level = whole_level;
+    evidence.next_level = next_level;
+    evidence.matched_coarser = select(next_level, matched, blocks || gauss);
+    evidence.predicted = select(predicted, next_level, gauss);
+    evidence.trust = source.previous.trust;
+    evidence.noise = 0.0;
+    evidence.confidence = vec2<f32>(1.0);
     return decide(evidence, params_with(frame.smr_accumulate));
 }
 
@@ -224,24 +223,23 @@ fn averaged_pixel(
     let past = past_read(source.previous.at, lod + NOISY_LEVELS, history.smooth_color, view);
     let matched = exposed(past.matched);
     let noise_around = Noise(noise.samples, around.compared.w * noise.samples);
-    let evidence = Evidence(
-        candidate,
-        around.compared.xyz,
-        around.coarser.xyz,
-        around.compared.xyz,
-        lod,
-        shown,
-        history.lod,
-        any(source.fraction != vec2<f32>(0.0)),
-        matched,
-        exposed(past.level),
-        exposed(past.next_level),
-        exposed(past.next_level),
-        matched,
-        source.previous.trust,
-        noise_difference(past_noise, noise_around, luma(matched)),
-        confidence,
-    );
+    var evidence: Evidence;
+    evidence.candidate = candidate;
+    evidence.compared = around.compared.xyz;
+    evidence.compared_coarser = around.coarser.xyz;
+    evidence.observed = around.compared.xyz;
+    evidence.lod = lod;
+    evidence.history = shown;
+    evidence.history_lod = history.lod;
+    evidence.resampled = any(source.fraction != vec2<f32>(0.0));
+    evidence.matched = matched;
+    evidence.level = exposed(past.level);
+    evidence.next_level = exposed(past.next_level);
+    evidence.matched_coarser = exposed(past.next_level);
+    evidence.predicted = matched;
+    evidence.trust = source.previous.trust;
+    evidence.noise = noise_difference(past_noise, noise_around, luma(matched));
+    evidence.confidence = confidence;
     let result = decide(evidence, params);
     let acceptance = result.fit * source.previous.trust;
     return Averaged(result, noise_after(past_noise, noise_around, result.share, reuse.finer * acceptance));

@@ -78,7 +78,7 @@ pub fn used_by(pass: &str) -> Option<&'static [Binding]> {
         "sparse_observe_pass" => {
             &[Uniforms, Color, Depth, Motion, Trust, Noise, Lattices, PastFrame, Past, PastSecond, Write]
         }
-        "sparse_light_pass" => &[Uniforms, Color, Depth, Motion, Trust, Noise, Lattices, PastFrame, Read, Write],
+        "sparse_light_pass" => &[Uniforms, Color, Depth, Lattices, PastFrame, Read, Write],
         "repair_key_pass" => &[Uniforms, Depth, Motion, Trust, Lattices, PastFrame, Past, Write, State],
         _ => return None,
     })

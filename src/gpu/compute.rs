@@ -45,9 +45,12 @@ struct Pipelines {
     generation: u64,
 }
 
+/// Function from the name of a pass's module to its WGSL text.
+type Text = dyn Fn(&str) -> Cow<'static, str> + Send + Sync;
+
 /// WGSL texts of the passes, by the names of their modules.
 #[derive(Clone)]
-pub struct Sources(Arc<dyn Fn(&str) -> Cow<'static, str> + Send + Sync>);
+pub struct Sources(Arc<Text>);
 
 impl Sources {
     /// Texts that `text` gives: for tests that plant errors, and for benchmarks.

@@ -214,8 +214,7 @@ impl Doctor {
         pass.dispatch_workgroups(now.tiles.len() as u32, 1, 1);
     }
 
-    /// Words of the frames read so far, for the tests.
-    #[doc(hidden)]
+    /// Words of the frames read so far, oldest first.
     pub fn words(&self) -> Vec<&[u32]> {
         self.chart.words()
     }

@@ -8,10 +8,8 @@
 //! wgpu's GL backend cannot store history, and is refused.
 
 mod binding;
-mod buffer;
-// For this workspace's other crates, and for tests.
-#[doc(hidden)]
-pub mod compute;
+pub(crate) mod buffer;
+pub(crate) mod compute;
 mod doctor;
 mod fill;
 mod fill_geometry;
@@ -22,31 +20,22 @@ mod input;
 mod method_pass;
 mod mip_chain;
 mod output;
-mod plane;
+pub(crate) mod plane;
 mod recorder;
 mod repair;
 mod requirements;
-// For the tests, which compare struct layouts.
-#[doc(hidden)]
-pub mod resize;
+mod resize;
 mod sparse;
 mod stage;
 mod stages;
 mod textures;
-// For the tests, which compare struct layouts.
-#[doc(hidden)]
-pub mod uniforms;
+pub(crate) mod uniforms;
 
 pub use crate::uniforms::MAX_VIEWS;
-#[doc(hidden)]
-pub use buffer::filled;
 pub use doctor::Doctor;
 pub use frame::{DebugTarget, Frame, Recorded, Target, Timestamps, Variant};
 pub(crate) use input::{check_readable, check_texture};
 pub(crate) use output::texel;
-#[doc(hidden)]
-pub use plane::array_view;
-pub(crate) use plane::{Plane, PlaneDesc};
 pub(crate) use requirements::validate;
 pub use textures::{Region, Textures};
 
@@ -101,26 +90,10 @@ impl Executor for Afterimage {
     type Vectors<'a> = Textures<'a>;
 }
 
+// For tests, the lab and benchmarks.
+#[doc(hidden)]
 impl Afterimage {
-    /// Usage that every input texture needs.
-    pub const INPUT_USAGE: TextureUsages = TextureUsages::TEXTURE_BINDING;
-    /// Usage that output textures need.
-    pub const OUTPUT_USAGE: TextureUsages = TextureUsages::STORAGE_BINDING;
-
-    /// A context without history, for outputs of `output_format`: one with red, green and blue that compute shaders can
-    /// write. These are `Rgba16Float`, `Rgba32Float`, `Rgba8Unorm` and `Rgba8Snorm`; `Bgra8Unorm`, `Rgba16Unorm` and
-    /// `Rgba16Snorm` with their device features; `Rgb10a2Unorm` and `Rg11b10Ufloat` on adapters that can. Creates
-    /// shader modules; pipelines are compiled by [`prewarm`](Self::prewarm), or at the first frame that needs them.
-    ///
-    /// # Errors
-    /// [`CreateError`] if the description is out of range, the output format is not supported, a limit of the device is
-    /// too low, or its backend cannot store history. Then nothing was made.
-    pub fn new(device: &Device, desc: &ContextDesc, output_format: TextureFormat) -> Result<Self, CreateError> {
-        Self::with_sources(device, desc, output_format, Sources::default())
-    }
-
     /// A context with other texts of its passes: for tests that plant errors, and for benchmarks.
-    #[doc(hidden)]
     pub fn with_sources(
         device: &Device,
         desc: &ContextDesc,
@@ -142,6 +115,44 @@ impl Afterimage {
         };
         context.update_repair(device);
         Ok(context)
+    }
+
+    /// Shader module and override values of each compiled pipeline, for tests and for tools that count instructions.
+    pub fn pipelines(&self) -> Vec<(&'static str, Vec<(&'static str, u32)>)> {
+        let resize = self.resize.as_ref().map(ResizePass::pipelines);
+        let repair = self.repair.iter().flat_map(RepairPasses::pipelines);
+        self.stages.pipelines().chain(resize.into_iter().flatten()).chain(repair).collect()
+    }
+
+    /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
+    ///
+    /// For smr on sparse frames the packed samples ([`kept`](crate::kernel::kept), `Rg32Uint`).
+    ///
+    /// For wrs the packed reservoirs ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`),
+    /// and with A-ES the keys, or the gate's references (`R32Uint`). For taa and smr the packed surfaces
+    /// ([`surface`](crate::kernel::surface), `Rg32Uint`); for smr also their mip chain (`Rgba16Float`), and for noisy
+    /// candidates the packed noise ([`noise`](crate::kernel::noise), `R32Uint`).
+    pub fn history_textures(&self) -> Vec<Texture> {
+        self.history.split().0.planes.iter().map(|plane| plane.texture.clone()).collect()
+    }
+}
+
+impl Afterimage {
+    /// Usage that every input texture needs.
+    pub const INPUT_USAGE: TextureUsages = TextureUsages::TEXTURE_BINDING;
+    /// Usage that output textures need.
+    pub const OUTPUT_USAGE: TextureUsages = TextureUsages::STORAGE_BINDING;
+
+    /// A context without history, for outputs of `output_format`: one with red, green and blue that compute shaders can
+    /// write. These are `Rgba16Float`, `Rgba32Float`, `Rgba8Unorm` and `Rgba8Snorm`; `Bgra8Unorm`, `Rgba16Unorm` and
+    /// `Rgba16Snorm` with their device features; `Rgb10a2Unorm` and `Rg11b10Ufloat` on adapters that can. Creates
+    /// shader modules; pipelines are compiled by [`prewarm`](Self::prewarm), or at the first frame that needs them.
+    ///
+    /// # Errors
+    /// [`CreateError`] if the description is out of range, the output format is not supported, a limit of the device is
+    /// too low, or its backend cannot store history. Then nothing was made.
+    pub fn new(device: &Device, desc: &ContextDesc, output_format: TextureFormat) -> Result<Self, CreateError> {
+        Self::with_sources(device, desc, output_format, Sources::default())
     }
 
     /// Limits that a device needs at least for a context of this size: those of small devices
@@ -297,14 +308,6 @@ impl Afterimage {
         }
     }
 
-    /// Shader module and override values of each compiled pipeline, for tests and for tools that count instructions.
-    #[doc(hidden)]
-    pub fn pipelines(&self) -> Vec<(&'static str, Vec<(&'static str, u32)>)> {
-        let resize = self.resize.as_ref().map(ResizePass::pipelines);
-        let repair = self.repair.iter().flat_map(RepairPasses::pipelines);
-        self.stages.pipelines().chain(resize.into_iter().flatten()).chain(repair).collect()
-    }
-
     /// Size in bytes of the textures that the context holds between frames.
     pub fn memory_bytes(&self) -> u64 {
         Self::memory_bytes_of(&self.desc) + self.stages.added_bytes()
@@ -323,19 +326,6 @@ impl Afterimage {
     pub fn memory_bytes_of(desc: &ContextDesc) -> u64 {
         let repair = smr_sparse_repair(&desc.settings).map_or(0, |repair| repair::memory_bytes(desc, repair));
         history::memory_bytes(desc) + stages::memory_bytes_of(desc) + repair
-    }
-
-    /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
-    ///
-    /// For smr on sparse frames the packed samples ([`kept`](crate::kernel::kept), `Rg32Uint`).
-    ///
-    /// For wrs the packed reservoirs ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`),
-    /// and with A-ES the keys, or the gate's references (`R32Uint`). For taa and smr the packed surfaces
-    /// ([`surface`](crate::kernel::surface), `Rg32Uint`); for smr also their mip chain (`Rgba16Float`), and for noisy
-    /// candidates the packed noise ([`noise`](crate::kernel::noise), `R32Uint`).
-    #[doc(hidden)]
-    pub fn history_textures(&self) -> Vec<Texture> {
-        self.history.split().0.planes.iter().map(|plane| plane.texture.clone()).collect()
     }
 
     /// Records one frame into `encoder`: reads the frame's inputs and the history, and writes `target` (an output

@@ -82,7 +82,7 @@ impl Specialization {
 
     /// Override values of shaders that use the set `bound` of bindings.
     fn overrides(&self, desc: &ContextDesc, bound: u32) -> Overrides {
-        use Binding::{Counters, Debug, Depth, Lod, Motion, Noise, Output, Past, Repaired, Trust, Uniforms};
+        use Binding::{Counters, Debug, Depth, Lod, Motion, Output, Past, Repaired, Trust, Uniforms};
         let has = |binding| u32::from(self.has(binding));
         let settings = &desc.settings;
         let is_tested = self.has(Depth) && settings.depth_test.is_some();
@@ -97,7 +97,7 @@ impl Specialization {
             (Motion, "CAMERA_MOTION", if self.is_filled { 0 } else { desc.motion.camera_code() }),
             (Trust, "HAS_TRUST", has(Trust)),
             (Lod, "HAS_LOD", has(Lod)),
-            (Noise, "NOISY", u32::from(settings.noisy)),
+            (Uniforms, "NOISY", u32::from(settings.noisy)),
             (Repaired, "REPAIR", has(Repaired)),
             (Counters, "COUNT", has(Counters)),
             (Past, "HAS_KEPT", u32::from(is_kept)),

@@ -1,8 +1,9 @@
 //! Mip levels of a full-rate frame on the GPU.
 
 use crate::frame::ContextDesc;
+use crate::gpu::buffer::filled;
 use crate::gpu::compute::{ComputeShader, Sources};
-use crate::gpu::{Plane, PlaneDesc, filled};
+use crate::gpu::plane::{Plane, PlaneDesc};
 use crate::kernel::foveate::level_len;
 use wgpu::{BindingResource, Buffer, BufferUsages, ComputePass, Device, TextureFormat, TextureView};
 

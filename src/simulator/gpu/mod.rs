@@ -2,15 +2,15 @@
 //! `Foveation::lod_map`, bit-equal to them on software Vulkan.
 
 mod mip_chain;
-// For the tests, which compare struct layouts.
-#[doc(hidden)]
-pub mod uniforms;
+pub(crate) mod uniforms;
 
 use crate::error::{CreateError, FrameError};
 use crate::foveation::Filter;
 use crate::frame::{ContextDesc, ViewFrame};
+use crate::gpu::buffer::filled;
 use crate::gpu::compute::{ComputeShader, Sources};
-use crate::gpu::{Plane, PlaneDesc, Timestamps, array_view, check_readable, check_texture, filled, texel, validate};
+use crate::gpu::plane::{Plane, PlaneDesc, array_view};
+use crate::gpu::{Timestamps, check_readable, check_texture, texel, validate};
 use crate::kernel::foveate::block_sample_level;
 use crate::uniforms::Held;
 use mip_chain::MipChain;
@@ -131,18 +131,6 @@ impl GpuSimulator {
             held: vec![Held::default(); desc.view_count as usize],
             no_lod: plane(TextureFormat::R32Float, [1, 1], 1),
         })
-    }
-
-    /// Bytes of memory traffic a pixel that a filter needs, to outputs of halves and without levels of detail; `None`:
-    /// full-rate frames are copied. For benchmarks.
-    #[doc(hidden)]
-    pub fn traffic(filter: Filter) -> Option<u32> {
-        match filter {
-            Filter::Mip => Some(27),
-            Filter::Gauss => Some(48),
-            Filter::Block => Some(25),
-            Filter::Off | Filter::Sparse => None,
-        }
     }
 
     /// Description that the simulator was created with.

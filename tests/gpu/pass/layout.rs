@@ -1,11 +1,11 @@
 //! Uniform structs of Rust and WGSL agree: names, order, offsets, sizes.
 
 use afterimage::gpu::MAX_VIEWS;
-use afterimage::gpu::uniforms::{
+use afterimage::internal::FoveationUniforms;
+use afterimage::internal::{
     CameraUniforms, FrameUniforms, LatticeUniforms, SparseUniforms, ViewLattices, ViewUniforms,
 };
 use afterimage::shader::SHADERS;
-use afterimage::simulator::gpu::uniforms::FoveationUniforms;
 use afterimage::wgpu::naga;
 use std::mem::offset_of;
 

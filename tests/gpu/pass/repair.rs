@@ -2,8 +2,8 @@
 
 use super::rig::{Rig, View};
 use super::sparse::{SIZE, desc, gliding_view, settings};
-use afterimage::gpu::compute::Sources;
 use afterimage::gpu::{Afterimage, Frame};
+use afterimage::internal::Sources;
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::TextureFormat;
 use afterimage::{ContextDesc, Foveation, Gaze, Image, Lattices, Method, MethodKind, Repair, Reset, Settings, Smr};

@@ -3,8 +3,8 @@
 use crate::images::{Images, OneView, held_words};
 pub use crate::images::{View, noise};
 use afterimage::cpu::CpuAfterimage;
-use afterimage::gpu::compute::{Sources, method_pass};
 use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target};
+use afterimage::internal::{Sources, method_pass};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack;
 use afterimage::wgpu::{self, Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};

@@ -1,8 +1,8 @@
 //! Sparse frames: filled for the methods that read whole frames, and read without filling by taau.
 
 use super::rig::{Rig, View, make_texture, noise, noise_view};
-use afterimage::gpu::compute::Sources;
 use afterimage::gpu::{Afterimage, Frame, Region, Textures};
+use afterimage::internal::Sources;
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{

@@ -5,7 +5,7 @@ use super::sparse;
 use crate::settings::ungated_of;
 use crate::surfaces_hard;
 use afterimage::gpu::Frame;
-use afterimage::gpu::compute::{Sources, method_pass};
+use afterimage::internal::{Sources, method_pass};
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{CommandBuffer, Texture, TextureFormat, TextureUsages};
 use afterimage::{ContextDesc, Image, MethodKind, Reset, Sampler, Settings, Wrs};

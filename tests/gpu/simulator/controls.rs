@@ -2,7 +2,7 @@
 //! planted in tests/gpu/twins/controls.rs.
 
 use super::rig::*;
-use afterimage::gpu::compute::Sources;
+use afterimage::internal::Sources;
 use afterimage::shader::SHADERS;
 use afterimage::{Filter, Foveation};
 use afterimage_testing::planted::all_caught;

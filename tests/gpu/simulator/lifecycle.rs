@@ -2,7 +2,7 @@
 
 use super::rig::*;
 use afterimage::gpu::Timestamps;
-use afterimage::gpu::compute::Sources;
+use afterimage::internal::Sources;
 use afterimage::kernel::pack::half_bits;
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::wgpu::{self, TextureFormat, TextureUsages};

@@ -1,7 +1,7 @@
 //! A frame through the simulators of both executors, and their results.
 
 pub use crate::pass::rig::make_texture as texture;
-use afterimage::gpu::compute::Sources;
+use afterimage::internal::Sources;
 use afterimage::simulator::Pyramid;
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::wgpu::{Device, Queue, Texture, TextureFormat, TextureUsages};

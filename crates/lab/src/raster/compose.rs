@@ -3,8 +3,8 @@
 use super::targets::Targets;
 use crate::quad_views::{QuadView, QuadViews};
 use crate::shader::SHADERS;
-use afterimage::gpu::compute::ComputeShader;
-use afterimage::gpu::{array_view, filled};
+use afterimage::internal::ComputeShader;
+use afterimage::internal::{array_view, filled};
 use bytemuck::{Pod, Zeroable};
 use wgpu::{
     BindingResource, BufferUsages, CommandEncoder, Device, Extent3d, Texture, TextureDescriptor, TextureDimension,

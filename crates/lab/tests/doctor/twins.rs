@@ -1,7 +1,7 @@
 //! The words of both executors, bit for bit, on clips that are damaged here and there; planted errors in the shader.
 
 use super::clips::{Clip, Delivered, Delivery, foveations};
-use afterimage::gpu::compute::Sources;
+use afterimage::internal::Sources;
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, BufferUsages, TextureFormat, TextureUsages};
 use afterimage::{Image, Reset, cpu, gpu};

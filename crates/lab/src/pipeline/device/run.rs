@@ -2,8 +2,8 @@
 
 use super::{DeviceFormats, WRITTEN};
 use crate::device::Headless;
-use afterimage::gpu::compute::{Sources, method_pass};
 use afterimage::gpu::{Afterimage, Frame, Recorded, Target, Timestamps};
+use afterimage::internal::{Sources, method_pass};
 use afterimage::{ContextDesc, CreateError, DebugView, FrameError, FrameStats};
 use std::sync::Arc;
 use wgpu::{Buffer, CommandEncoder, Texture};
