@@ -460,6 +460,12 @@ pub trait Executor {
 pub struct FrameInputs<'a, E: Executor> {
     /// Foveated frame: linear scene-referred color in Rec. 709 primaries, before tone mapping. Pixels that are NaN or
     /// infinite show their history, or black, and are counted. On a GPU any float format.
+    ///
+    /// Channels are 0 to 65504; larger ones are clamped, and smr, taa and taau store negative ones as 0. For smr the
+    /// unit is free on frames that are neither sparse nor noisy: colors times a constant give the picture times it.
+    /// This holds for channels from 2^-14 (6e-5) on; darker ones are stored with fewer digits, and light that changes
+    /// there leaves ghosts. wrs, sparse frames and noise ([`Self::noise`]) compare colors by constants for white at
+    /// about 1: multiply darker frames by an exposure, and say when it changes ([`Self::exposure`]).
     pub color: E::Colors<'a>,
     /// Depth in the context's convention. On a GPU a depth format or `R32Float`. `None`: no depth test.
     pub depth: Option<E::Scalars<'a>>,

@@ -26,7 +26,7 @@ limited() {
 }
 
 run() {
-    local afterimage="$1/afterimage" measure="$1/measure" table="$2" work
+    local afterimage="$1/afterimage" measure="$1/measure" table="$2"
     work="$(mktemp -d)"
     trap 'rm -rf "$work"' EXIT
     mkdir -p "$(dirname "$table")"

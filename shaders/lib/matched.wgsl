@@ -17,6 +17,8 @@ const GAIN_LEAST: f32 = 0.2;
 const GAIN_MOST: f32 = 5.0;
 const LEAST_WORN: f32 = 0.5 / LOD_STEPS;
 const DARK: f32 = 0.002;
+const MIDDLE: f32 = 0.5;
+const LEAST_LIGHT: f32 = 0x1p-14;
 const COHERENT_PX: f32 = 0.5;
 const COHERENT_SHARE: f32 = 0.1;
 
@@ -37,7 +39,22 @@ fn smooth_step(low: f32, width: f32, x: f32) -> f32 {
 
 // matched::root_difference
 fn root_difference(x: vec3<f32>, y: vec3<f32>) -> f32 {
-    let d = roots(x) - roots(y);
+    return distance_of_roots(roots(x), roots(y));
+}
+
+// matched::past_difference
+fn past_difference(x: vec3<f32>, past: vec3<f32>) -> f32 {
+    return distance_of_roots(roots(x), past_roots(past));
+}
+
+// matched::past_contrast
+fn past_contrast(level: vec3<f32>, next_level: vec3<f32>) -> f32 {
+    return distance_of_roots(past_roots(level), past_roots(next_level));
+}
+
+// matched::distance_of_roots
+fn distance_of_roots(x: vec3<f32>, y: vec3<f32>) -> f32 {
+    let d = x - y;
     let outer = 0.25 * (d.x + d.z);
     let inner = 0.5 * d.y;
     let luma = outer + inner;
@@ -49,7 +66,19 @@ fn root_difference(x: vec3<f32>, y: vec3<f32>) -> f32 {
 
 // matched::roots
 fn roots(c: vec3<f32>) -> vec3<f32> {
-    return sqrt(max(c, vec3<f32>(0.0)));
+    return past_roots(max(c, vec3<f32>(0.0)));
+}
+
+// matched::past_roots
+fn past_roots(c: vec3<f32>) -> vec3<f32> {
+    return sqrt(c);
+}
+
+// matched::light_unit
+fn light_unit(compared: vec3<f32>, matched: vec3<f32>, exposure: f32) -> f32 {
+    let now = max(max(compared.x, compared.y), compared.z);
+    let then = max(max(matched.x, matched.y), matched.z);
+    return max(max(now, then * exposure), LEAST_LIGHT) * (1.0f / MIDDLE);
 }
 
 // matched::moves_alike
@@ -99,11 +128,12 @@ fn may_relight(finer: f32, noisy: bool) -> bool {
 
 // matched::is_changed
 fn is_changed(compared: vec3<f32>, matched: vec3<f32>, level: vec3<f32>, next_level: vec3<f32>) -> bool {
-    return root_difference(compared, matched) > relight_from(root_difference(level, next_level), false, 0.0);
+    return past_difference(compared, matched) > relight_from(past_contrast(level, next_level), false, 0.0);
 }
 
 struct Evidence {
     candidate: vec3<f32>,
+    unit: f32,
     compared: vec3<f32>,
     compared_coarser: vec3<f32>,
     observed: vec3<f32>,
@@ -131,21 +161,21 @@ struct Matched {
 // matched::decide
 fn decide(e: Evidence, p: SmrParams) -> Matched {
     let reuse = reuse_weight(e.lod, e.history_lod, p.accumulate, p.noisy, e.confidence);
-    var contrast = root_difference(e.level, e.next_level);
-    var d = root_difference(e.compared, e.matched);
+    var contrast = past_contrast(e.level, e.next_level);
+    var d = past_difference(e.compared, e.matched);
     var k = vec3<f32>(1.0);
     var worn = 0.0;
     if p.relight {
         let low = relight_from(contrast, p.blocks, e.noise);
         let share = select(0.0, 1.0, may_relight(reuse.finer, p.noisy));
-        let changed = smooth_step(low, low, root_difference(e.observed, e.predicted)) * share;
+        let changed = smooth_step(low, low, past_difference(e.observed, e.predicted)) * share;
         let gains = vec3<f32>(
             gain(e.observed.x, e.predicted.x, changed),
             gain(e.observed.y, e.predicted.y, changed),
             gain(e.observed.z, e.predicted.z, changed),
         );
-        let unlit = root_difference(e.compared_coarser, e.matched_coarser);
-        let relit = root_difference(e.compared_coarser, gains * e.matched_coarser);
+        let unlit = past_difference(e.compared_coarser, e.matched_coarser);
+        let relit = past_difference(e.compared_coarser, gains * e.matched_coarser);
         let strongest = strongest_gain(gains);
         let doublings = abs(ln(strongest) * LOG2_E);
         let costs = select(doublings, LEAST_WORN, p.noisy) >= LEAST_WORN;
@@ -165,7 +195,7 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     let share = acceptance * reuse.share;
     let correction = select(CORRECTION, CORRECTION_BLOCKS, p.blocks);
     let finer = select(0.0, reuse.finer, e.resampled && !p.noisy);
-    let missed = (e.observed - k * e.predicted) * correction;
+    let missed = (e.observed - k * e.predicted) * (correction * e.unit);
     let history = max(missed * finer + k * e.history, vec3<f32>(0.0));
     let shown = select(e.candidate + (history - e.candidate) * share, history, share == 1.0);
     var lod = e.lod;

@@ -86,10 +86,11 @@ fn root_slope(around: f32) -> f32 {
 }
 
 // noise::noise_difference
-fn noise_difference(history: Noise, candidate: Noise, around: f32) -> f32 {
+fn noise_difference(history: Noise, candidate: Noise, around: f32, inverse_unit: f32) -> f32 {
     let sample_variance = pooled_variance(history, candidate);
     let inverse_samples = 1.0 / candidate.samples + 1.0 / max(history.samples, 1.0);
-    return root_slope(around) * sqrt((sample_variance * (SIGMAS * SIGMAS / COMPARED_CANDIDATES)) * inverse_samples);
+    let deviations = sqrt((sample_variance * (SIGMAS * SIGMAS / COMPARED_CANDIDATES)) * inverse_samples);
+    return root_slope(around) * (deviations * inverse_unit);
 }
 
 // noise::noise_visibility

@@ -120,9 +120,9 @@ fn candidate_near(px: vec2<u32>, view: u32, own: vec3<f32>, offset: vec2<f32>) -
     return select(own, near.color, near.usable);
 }
 
-// Mean of the four candidates at diagonal offsets of 3/4 of a block of level `lod`; black unless `needed`, by a loop
-// with zero iterations.
-fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, lod: f32, needed: bool) -> vec3<f32> {
+// Mean of the four candidates at diagonal offsets of 3/4 of a block of level `lod`, times a factor; black unless
+// `needed`, by a loop with zero iterations.
+fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, lod: f32, factor: f32, needed: bool) -> vec3<f32> {
     var mean = vec3<f32>(0.0);
     let rounds = select(0u, 1u, needed);
     for (var i = 0u; i < rounds; i++) {
@@ -132,7 +132,7 @@ fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, lod: f32, needed:
             candidate_near(px, view, own, vec2<f32>(radius, -radius)),
             candidate_near(px, view, own, vec2<f32>(-radius, radius)),
             candidate_near(px, view, own, vec2<f32>(radius, radius)),
-        );
+        ) * factor;
     }
     return mean;
 }
@@ -149,25 +149,30 @@ fn matched_pixel(
     // Point samples alias at their own scale: compare one level coarser.
     let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);
     let past = past_read(source.previous.at, lod + shift, history.smooth_color, view);
-    let matched = exposed(past.matched);
-    let whole_level = exposed(past.level);
-    let next_level = exposed(past.next_level);
+    let unit = light_unit(candidate, past.matched, frame.exposure);
+    let inverse_unit = 1.0 / unit;
+    let per_stored = frame.exposure * inverse_unit;
+    let matched = past.matched * per_stored;
+    let whole_level = past.level * per_stored;
+    let next_level = past.next_level * per_stored;
+    let own = candidate * inverse_unit;
     let blocks = FILTER == FILTER_BLOCK;
     // Levels of history are means of blocks, not Gaussian blurs: the two agree better one level coarser.
     let gauss = FILTER == FILTER_GAUSS;
     // The second operand of && is a branch, in which differences would be computed once more than in `decide`.
-    let differs = is_changed(candidate, matched, whole_level, next_level);
+    let differs = is_changed(own, matched, whole_level, next_level);
     let changed = differs && RELIGHT_ON != 0u && may_relight(finer, false);
-    let around = candidates_around(px, view, candidate, lod, blocks || changed);
+    let around = candidates_around(px, view, candidate, lod, inverse_unit, blocks || changed);
     var predicted = matched;
     if FILTER == FILTER_BLOCK {
-        predicted = exposed(past_sampled(source, px, lod, view));
+        predicted = past_sampled(source, px, lod, view) * per_stored;
     }
     var evidence: Evidence;
     evidence.candidate = candidate;
-    evidence.compared = select(candidate, around, blocks);
-    evidence.compared_coarser = select(around, candidate, gauss);
-    evidence.observed = select(candidate, around, gauss);
+    evidence.unit = unit;
+    evidence.compared = select(own, around, blocks);
+    evidence.compared_coarser = select(around, own, gauss);
+    evidence.observed = select(own, around, gauss);
     evidence.lod = lod;
     evidence.history = exposed(history.sharp);
     evidence.history_lod = history.lod;
@@ -221,24 +226,30 @@ fn averaged_pixel(
     }
     let around = candidates_read(vec2<f32>(px), lod + NOISY_LEVELS, view);
     let past = past_read(source.previous.at, lod + NOISY_LEVELS, history.smooth_color, view);
-    let matched = exposed(past.matched);
+    let unit = light_unit(around.compared.xyz, past.matched, frame.exposure);
+    let inverse_unit = 1.0 / unit;
+    let per_stored = frame.exposure * inverse_unit;
+    let matched = past.matched * per_stored;
+    let next_level = past.next_level * per_stored;
+    let mean = around.compared.xyz * inverse_unit;
     let noise_around = Noise(noise.samples, around.compared.w * noise.samples);
     var evidence: Evidence;
     evidence.candidate = candidate;
-    evidence.compared = around.compared.xyz;
-    evidence.compared_coarser = around.coarser.xyz;
-    evidence.observed = around.compared.xyz;
+    evidence.unit = unit;
+    evidence.compared = mean;
+    evidence.compared_coarser = around.coarser.xyz * inverse_unit;
+    evidence.observed = mean;
     evidence.lod = lod;
     evidence.history = shown;
     evidence.history_lod = history.lod;
     evidence.resampled = any(source.fraction != vec2<f32>(0.0));
     evidence.matched = matched;
-    evidence.level = exposed(past.level);
-    evidence.next_level = exposed(past.next_level);
-    evidence.matched_coarser = exposed(past.next_level);
+    evidence.level = past.level * per_stored;
+    evidence.next_level = next_level;
+    evidence.matched_coarser = next_level;
     evidence.predicted = matched;
     evidence.trust = source.previous.trust;
-    evidence.noise = noise_difference(past_noise, noise_around, luma(matched));
+    evidence.noise = noise_difference(past_noise, noise_around, luma(matched), inverse_unit);
     evidence.confidence = confidence;
     let result = decide(evidence, params);
     let acceptance = result.fit * source.previous.trust;

@@ -114,22 +114,28 @@ impl Smr {
         // Point samples alias at their own scale: compare one level coarser.
         let shift = if self.params.blocks { 1.0 } else { 0.0 };
         let mip_chain = view.past.mip_chain.expect("smr stores a mip chain");
-        let [matched, level, next_level] =
-            mip_chain.read(source.at, lod + shift, history.smooth).map(|c| view.expose(c));
+        let past = mip_chain.read(source.at, lod + shift, history.smooth);
+        let unit = matched::light_unit(candidate, past[0], view.inputs.exposure);
+        let inverse_unit = 1.0 / unit;
+        let per_stored = view.inputs.exposure * inverse_unit;
+        let [matched, level, next_level] = past.map(|c| c * per_stored);
+        let own = candidate * inverse_unit;
         let radius = 0.75 * approx::exp2(lod);
         let blocks = self.params.blocks;
         // Levels of history are means of blocks, not Gaussian blurs: the two agree better one level coarser.
         let gauss = self.settings.foveation.filter == Filter::Gauss;
         let changed = self.params.relight
             && matched::may_relight(reuse.finer, false)
-            && matched::is_changed(candidate, matched, level, next_level);
+            && matched::is_changed(own, matched, level, next_level);
         let around = if blocks || changed { self.around(view, x, y, candidate, radius) } else { Vec3::ZERO };
-        let predicted = if blocks { view.expose(view.sampled(source, [x, y], lod)) } else { matched };
+        let around = around * inverse_unit;
+        let predicted = if blocks { view.sampled(source, [x, y], lod) * per_stored } else { matched };
         let evidence = Evidence {
             candidate,
-            compared: if blocks { around } else { candidate },
-            compared_coarser: if gauss { candidate } else { around },
-            observed: if gauss { around } else { candidate },
+            unit,
+            compared: if blocks { around } else { own },
+            compared_coarser: if gauss { own } else { around },
+            observed: if gauss { around } else { own },
             lod,
             history: view.expose(history.sharp),
             history_lod: history.lod,
@@ -174,14 +180,19 @@ impl Smr {
         let candidates = view.past.candidates.expect("noisy candidates have a mip chain");
         let [compared, coarser] = candidates.read_candidates([x as f32, y as f32], compared_lod);
         let mip_chain = view.past.mip_chain.expect("smr stores a mip chain");
-        let [matched, level, next_level] =
-            mip_chain.read(source.at, compared_lod, history.smooth).map(|c| view.expose(c));
+        let stored = mip_chain.read(source.at, compared_lod, history.smooth);
+        let unit = matched::light_unit(compared.truncate(), stored[0], view.inputs.exposure);
+        let inverse_unit = 1.0 / unit;
+        let per_stored = view.inputs.exposure * inverse_unit;
+        let [matched, level, next_level] = stored.map(|c| c * per_stored);
+        let [mean, coarser] = [compared, coarser].map(|c| c.truncate() * inverse_unit);
         let around = Noise { samples: noise.samples, variance: compared.w * noise.samples };
         let evidence = Evidence {
             candidate,
-            compared: compared.truncate(),
-            compared_coarser: coarser.truncate(),
-            observed: compared.truncate(),
+            unit,
+            compared: mean,
+            compared_coarser: coarser,
+            observed: mean,
             lod,
             history: exposed,
             history_lod: history.lod,
@@ -193,7 +204,7 @@ impl Smr {
             predicted: matched,
             trust: source.trust,
             confidence,
-            noise: noise::noise_difference(past, around, color::luma(matched)),
+            noise: noise::noise_difference(past, around, color::luma(matched), inverse_unit),
         };
         let result = matched::decide(&evidence, &params);
         let acceptance = result.fit * source.trust;

@@ -37,6 +37,12 @@ const GAIN: [f32; 2] = [0.2, 5.0];
 const LEAST_WORN: f32 = 0.5 / LOD_STEPS;
 /// Added to linear values to keep ratios and slopes of dark colors finite.
 pub(super) const DARK: f32 = 0.002;
+/// Largest channel of compared colors in units of [`light_unit`]. At this brightness the units are those of the frame,
+/// for which the gate's constants were chosen.
+const MIDDLE: f32 = 0.5;
+/// Least brightness that [`light_unit`] follows: the smallest normal half. Darker colors are stored in steps that are
+/// large in comparison.
+const LEAST_LIGHT: f32 = 1.0 / 16384.0;
 /// Tolerance of motion coherence: in pixels, and as a share of the vector's length.
 const COHERENT: [f32; 2] = [0.5, 0.1];
 
@@ -69,7 +75,25 @@ pub fn smooth_step(from: f32, width: f32, x: f32) -> f32 {
 /// squared chroma at half weight. Exactly 0 for equal colors. Cheaper than Delta E, which needs cube roots.
 #[inline(always)]
 pub fn root_difference(x: Vec3, y: Vec3) -> f32 {
-    let d = roots(x) - roots(y);
+    distance_of_roots(roots(x), roots(y))
+}
+
+/// As [`root_difference`], of a color and of history, which is at least 0.
+#[inline(always)]
+pub fn past_difference(x: Vec3, past: Vec3) -> f32 {
+    distance_of_roots(roots(x), past_roots(past))
+}
+
+/// Contrast of history: [`root_difference`] of two of its levels.
+#[inline(always)]
+pub fn past_contrast(level: Vec3, next_level: Vec3) -> f32 {
+    distance_of_roots(past_roots(level), past_roots(next_level))
+}
+
+/// [`root_difference`] from the square roots of two colors.
+#[inline(always)]
+pub fn distance_of_roots(x: Vec3, y: Vec3) -> f32 {
+    let d = x - y;
     let outer = 0.25 * (d.x + d.z);
     let inner = 0.5 * d.y;
     let luma = outer + inner;
@@ -82,7 +106,22 @@ pub fn root_difference(x: Vec3, y: Vec3) -> f32 {
 /// Square roots of a color's channels; 0 for negative ones.
 #[inline(always)]
 pub fn roots(c: Vec3) -> Vec3 {
-    Vec3::new(c.x.max(0.0).sqrt(), c.y.max(0.0).sqrt(), c.z.max(0.0).sqrt())
+    past_roots(c.max(Vec3::ZERO))
+}
+
+/// Square roots of the channels of history, which is at least 0.
+#[inline(always)]
+pub fn past_roots(c: Vec3) -> Vec3 {
+    Vec3::new(c.x.sqrt(), c.y.sqrt(), c.z.sqrt())
+}
+
+/// Unit of the colors that the gate compares, linear: twice the largest channel of candidate and history. Colors that
+/// are divided by it do not depend on the scale of light, so that a frame times a constant is shown as that constant
+/// times the frame. `matched` is history before its factor `exposure`.
+#[inline(always)]
+pub fn light_unit(compared: Vec3, matched: Vec3, exposure: f32) -> f32 {
+    let largest = compared.max_element().max(matched.max_element() * exposure);
+    largest.max(LEAST_LIGHT) * (1.0 / MIDDLE)
 }
 
 /// Whether two motion vectors, in pixels, can belong to one surface. A pixel that moves like neither neighbour in its
@@ -154,14 +193,17 @@ pub fn may_relight(finer: f32, noisy: bool) -> bool {
 /// only in this case.
 #[inline(always)]
 pub fn is_changed(compared: Vec3, matched: Vec3, level: Vec3, next_level: Vec3) -> bool {
-    root_difference(compared, matched) > relight_from(root_difference(level, next_level), false, 0.0)
+    past_difference(compared, matched) > relight_from(past_contrast(level, next_level), false, 0.0)
 }
 
-/// Inputs of [`decide`] for one pixel.
+/// Inputs of [`decide`] for one pixel. Colors are linear; those that are compared, corrected by or relit by, from
+/// `compared` to `observed` and from `matched` to `predicted`, are divided by `unit`.
 #[derive(Clone, Copy, Debug)]
 pub struct Evidence {
     /// The candidate.
     pub candidate: Vec3,
+    /// [`light_unit`] of candidate and history.
+    pub unit: f32,
     /// Color that is compared with history: the candidate, or a mean of its neighbourhood where it is a point sample or
     /// noisy.
     pub compared: Vec3,
@@ -217,20 +259,20 @@ pub struct Matched {
 pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     let reuse = reuse_weight(e.lod, e.history_lod, p.accumulate, p.noisy, e.confidence);
     // Contrast of detail finer than the candidate. Where it is high, resampling and aliasing alone cause differences.
-    let mut contrast = root_difference(e.level, e.next_level);
-    let mut d = root_difference(e.compared, e.matched);
+    let mut contrast = past_contrast(e.level, e.next_level);
+    let mut d = past_difference(e.compared, e.matched);
     let mut k = Vec3::ONE;
     let mut worn = 0.0;
     if p.relight {
         let from = relight_from(contrast, p.blocks, e.noise);
         let share = if may_relight(reuse.finer, p.noisy) { 1.0 } else { 0.0 };
-        let changed = smooth_step(from, from, root_difference(e.observed, e.predicted)) * share;
+        let changed = smooth_step(from, from, past_difference(e.observed, e.predicted)) * share;
         let (c, h) = (e.observed, e.predicted);
         let gains = Vec3::new(gain(c.x, h.x, changed), gain(c.y, h.y, changed), gain(c.z, h.z, changed));
         // History after the gain agrees by construction with the colors from which the gain was computed. The gain is
         // therefore judged by other colors.
-        let unlit = root_difference(e.compared_coarser, e.matched_coarser);
-        let relit = root_difference(e.compared_coarser, gains * e.matched_coarser);
+        let unlit = past_difference(e.compared_coarser, e.matched_coarser);
+        let relit = past_difference(e.compared_coarser, gains * e.matched_coarser);
         // Levels of detail that history loses. A gain multiplies history's errors, too, and its product is stored, so
         // that wrong gains would multiply from frame to frame. A sample that pays for each of them gets few before the
         // candidate replaces it.
@@ -256,7 +298,7 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     // frames is not corrected either, because accumulation averages the noise.
     let finer = if e.resampled && !p.noisy { reuse.finer } else { 0.0 };
     // The constant is multiplied with the first factor, because shader compilers order such products this way.
-    let missed = (e.observed - k * e.predicted) * correction;
+    let missed = (e.observed - k * e.predicted) * (correction * e.unit);
     let history = (missed * finer + k * e.history).max(Vec3::ZERO);
     // A share of 1 gives history bit for bit, a share of 0 the candidate.
     let color = if share == 1.0 { history } else { e.candidate + (history - e.candidate) * share };

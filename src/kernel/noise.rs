@@ -120,12 +120,14 @@ pub fn root_slope(luma: f32) -> f32 {
 }
 
 /// Largest difference of the compared means of candidates and of history that noise alone explains: three standard
-/// deviations at a luma, in units of [`root_difference`](super::matched::root_difference).
+/// deviations at a luma, in units of [`root_difference`](super::matched::root_difference). `luma` is in units of
+/// [`light_unit`](super::matched::light_unit), whose inverse is `inverse_unit`.
 #[inline]
-pub fn noise_difference(history: Noise, candidate: Noise, luma: f32) -> f32 {
+pub fn noise_difference(history: Noise, candidate: Noise, luma: f32, inverse_unit: f32) -> f32 {
     let sample_variance = pooled_variance(history, candidate);
     let inverse_samples = 1.0 / candidate.samples + 1.0 / history.samples.max(1.0);
-    root_slope(luma) * ((sample_variance * (SIGMAS * SIGMAS / COMPARED_CANDIDATES)) * inverse_samples).sqrt()
+    let deviations = ((sample_variance * (SIGMAS * SIGMAS / COMPARED_CANDIDATES)) * inverse_samples).sqrt();
+    root_slope(luma) * (deviations * inverse_unit)
 }
 
 /// Degree to which the noise of a color at a luma is visible, in \[0, 1\].

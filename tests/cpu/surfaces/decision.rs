@@ -29,6 +29,7 @@ fn evidence(draws: &mut Draws) -> Evidence {
     let matched = near(draws, candidate) * light;
     Evidence {
         candidate,
+        unit: 1.0,
         compared: candidate,
         compared_coarser: near(draws, candidate),
         observed: near(draws, candidate),
@@ -170,6 +171,7 @@ fn relit(draws: &mut Draws, step: Vec3) -> Evidence {
 fn unlike(history: Vec3, candidate: Vec3) -> Evidence {
     Evidence {
         candidate,
+        unit: 1.0,
         compared: candidate,
         compared_coarser: candidate,
         observed: candidate,

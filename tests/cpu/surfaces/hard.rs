@@ -15,3 +15,12 @@ mod feedback {
 
     feedback_laws!(Cpu, held);
 }
+
+mod scale {
+    use crate::laws::laws;
+    use crate::pass::held;
+    use crate::scale_hard::*;
+    use afterimage_testing::holds;
+
+    scale_laws!(Cpu, held);
+}

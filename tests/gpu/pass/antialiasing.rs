@@ -41,49 +41,34 @@ fn a_wrong_mean_is_caught() {
     let planted = [
         // Surfaces: without the nearer one, that of another texel, or its motion alone.
         ("nearest_at = select(nearest_at, texel, near > nearest_disparity);", ""),
-        ("surface = PixelSurface(nearest_disparity, motion,", "surface = PixelSurface(own, motion,"),
         ("own_motion, motion, level == 0u)", "own_motion, motion, true)"),
-        ("next.disparity = surface.stored_disparity;", "next.disparity = disparity_now;"),
         // Mixtures of surfaces: never, always, of fewer surfaces, stored as another.
         ("surface.mixes = true;", ""),
-        ("own >= 0.0 && move_together(own_motion, motion, motion_at(farthest_at, view))", "own >= 0.0"),
         ("farthest_at = select(farthest_at, texel, is_farther);", ""),
-        ("surface.farthest = farthest_disparity;", ""),
         ("surface.nearest = nearest_disparity;", ""),
-        ("surface.stored_disparity = own;", ""),
         ("previous.verdict = VERDICT_VALID;\n    }", "}"),
         // Doubtful samples: none, those on the other side, those of surfaces that move as one, too; compared with
         // history, interpolated, averaged.
         ("doubtful = doubtful || may_show(own, near, place_px, vec2<f32>(offset) - 1.0);", ""),
-        ("let place_px = -frame.views[view].jitter_px;", "let place_px = frame.views[view].jitter_px;"),
         ("own >= 0.0 && !surface.mixes;", "own >= 0.0;"),
-        ("select(-1.0, DOUBTFUL, surface.is_doubtful)", "-1.0"),
         ("usable && !surface.is_doubtful;", "usable;"),
-        ("ANTIALIAS != 0u && own.error == DOUBTFUL", "false"),
         ("own.usable && (ANTIALIAS == 0u || same);", "own.usable;"),
         // History: fewer or other texels, another reach, another number of samples.
         ("columns = 3u;", "columns = 2u;"),
-        ("floor(previous.at + 0.5)) - 1", "floor(previous.at)) - 1"),
         ("inverse_reach = INVERSE_MEAN_REACH;", ""),
-        ("samples = select(samples, mean.samples, around.cost < cost);", ""),
         ("stored.lod = mean.lod;", ""),
         // Comparison: at the pixel's centre, by the model alone.
         ("source.previous.at -= frame.views[view].jitter_px;", ""),
-        ("error = scattered_error(sum, scatter);", ""),
         // Means: another place, no clip, samples of other pixels, other numbers of samples.
         (
             "return average(inputs, samples, -frame.views[view].jitter_px, left);",
             "return average(inputs, samples, frame.views[view].jitter_px, left);",
         ),
-        ("next.place_px = -frame.views[view].jitter_px;", ""),
         ("inputs.nearest.color = clipped(inputs.nearest.color, by.change);", ""),
-        ("left = by.kept;", ""),
         ("vec2<u32>(tap % 3u, tap / 3u);\n        let sampled", "vec2<u32>(tap / 3u, tap / 3u);\n        let sampled"),
-        ("return kept_mean(given, reconstruct(given), samples);", "return kept_mean(given, reconstruct(given), 1.0);"),
         ("samples = averaged.samples;", ""),
         // Storage: without chance, or with that of another view.
         ("pack_color_by(next.color, draw)", "pack_color_by(next.color, 0.5)"),
-        ("frame.frame_low, frame.views[view].key", "frame.frame_low, frame.views[1u - view].key"),
     ];
     all_caught_in_samples(desc(), settings, 12, &planted, |index, rig| {
         arrange(index, rig);

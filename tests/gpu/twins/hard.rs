@@ -8,6 +8,7 @@ use crate::laws::laws;
 use afterimage::kernel::wrs::{BiasCode, GateCode, Past, SamplerCode, WrsParams};
 use afterimage::kernel::{rng, wrs};
 use afterimage::shader::SHADERS;
+use afterimage_testing::gpu::rounds_as_the_cpu;
 use afterimage_testing::{accept, holds, p_of_z};
 use glam::Vec3;
 
@@ -84,7 +85,9 @@ fn h03_candidates_of_weight_0_change_nothing() {
 #[test]
 fn h08_a_million_frames_in_f32_follow_the_closed_form() {
     let Some((_, s, _)) = streamed(999_999, 0, 1.0, 1.0, 0.0) else { return };
-    assert!((s - 1412.7).abs() < 0.5, "{s}");
+    // Rounding in f32 sums up to -1.5 on the CPU; elsewhere it may fall otherwise.
+    let (expected, within) = if rounds_as_the_cpu() { (1412.7, 0.5) } else { (2e6_f32.sqrt(), 2.0) };
+    assert!((s - expected).abs() < within, "{s}");
     holds!("H08", Gpu, "s = {s:.2} after 1e6 frames, sqrt(2n) = {:.2}", 2e6_f32.sqrt());
 }
 

@@ -47,6 +47,21 @@ fn pair_rows(rows: Rows) -> Rows {
     })
 }
 
+/// Channels of history.
+fn past_channels() -> Vec<u32> {
+    floats(&[0.0, 6e-8, 0.002, 0.18, 1.0, 65504.0])
+}
+
+/// Two colors of history.
+fn past_rows(rows: Rows) -> Rows {
+    let c = past_channels();
+    rows.mixed(&[&c, &c, &c, &c, &c, &c]).random(|d, row| {
+        let a = stored_color(d);
+        let b = like(d, a).map(|x| x.max(0.0));
+        push(row, &[a, b].concat());
+    })
+}
+
 /// Texels of the mip chain: color times coverage, and coverage.
 fn chain_rows(rows: Rows, fractions: usize) -> Rows {
     let (c, cover) = (floats(&[0.0, 0.18, 1.0, 65504.0, 6e-5]), floats(&[0.0, 0.25, 0.5, 1.0]));
@@ -64,6 +79,7 @@ fn chain_rows(rows: Rows, fractions: usize) -> Rows {
 
 shape!(Evidence {
     candidate: Vec3,
+    unit: f32,
     compared: Vec3,
     compared_coarser: Vec3,
     observed: Vec3,
@@ -97,7 +113,10 @@ fn decide_rows(rows: Rows, flags: Option<[u32; 3]>) -> Rows {
     let (blocks, relight, noisy) = (flag(0), flag(1), flag(2));
     let noise = floats(&[0.0, 1e-30, 0.5, 3.0, 100.0]);
     let confidence = floats(&[0.0, 0.25, 1.0]);
-    let mut lists: Vec<&[u32]> = vec![&c; 12];
+    let unit = floats(&[1.0 / 8192.0, 0.3, 1.0, 131008.0]);
+    let mut lists: Vec<&[u32]> = vec![&c; 3];
+    lists.push(&unit);
+    lists.extend([&c[..]; 9]);
     lists.extend([&l[..], &h, &h, &h, &l, &[0, 1]]);
     lists.extend([&h[..]; 15]);
     lists.extend([&trust[..], &noise, &confidence, &confidence, &share, &tolerance, &tolerance]);
@@ -109,7 +128,9 @@ fn decide_rows(rows: Rows, flags: Option<[u32; 3]>) -> Rows {
         let [coarser, history, matched, whole, dimmer] = [0; 5].map(|_| like(d, candidate).map(|x| (x * lit).max(0.0)));
         let level = lod(d);
         let past = if d.bits() & 1 == 0 { level } else { lod(d) };
-        push(row, &[candidate, compared, coarser, observed].concat());
+        push(row, &candidate);
+        row.push(unit[d.bits() as usize % unit.len()]);
+        push(row, &[compared, coarser, observed].concat());
         push(row, &[&[level][..], &history, &[past]].concat());
         row.push(d.bits() & 1);
         let [matched_coarser, other] = [0; 2].map(|_| like(d, matched).map(|x| x.max(0.0)));
@@ -134,10 +155,26 @@ pub const PROBES: &[Probe] = &[
         rows.cross(&[&low, &width, &x]).random(|d, row| row.extend([0.0, 0.1, 0.0].map(|l| range(d, l, 20.0))))
     }),
     probe!(matched::root_difference, pair_rows),
+    probe!(matched::past_difference, past_rows),
+    probe!(matched::past_contrast, past_rows),
+    probe!(matched::distance_of_roots, pair_rows),
+    probe!(matched::past_roots, |rows| {
+        rows.mixed(&[&past_channels(), &past_channels(), &past_channels()])
+            .random(|d, row| row.extend((0..3).map(|_| range(d, 0.0, 8.0))))
+    }),
     probe!(matched::roots, |rows| {
         // A root of a denormal is a normal number, unless a device flushes it.
         let c: Vec<u32> = finite().into_iter().filter(|&x| x & 0x7fff_ffff == 0 || x & 0x7f80_0000 != 0).collect();
         rows.mixed(&[&c, &c, &c]).random(|d, row| row.extend((0..3).map(|_| signed(d, -24, 17))))
+    }),
+    probe!(matched::light_unit, |rows| {
+        let (c, exposure) = (channels(), floats(&[0.3, 1.0, 4.0]));
+        rows.mixed(&[&c, &c, &c, &c, &c, &c, &exposure]).random(|d, row| {
+            let a = stored_color(d);
+            let b = like(d, a);
+            push(row, &[a, b].concat());
+            push(row, &[d.range(0.1, 10.0)]);
+        })
     }),
     probe!(matched::moves_alike, |rows| {
         let v = [finite(), around(&[0.5, -0.5, 16.0])].concat();

@@ -91,7 +91,7 @@ pub const PROBES: &[Probe] = &[
             push(row, &[luma]);
         })
     }),
-    probe!(noise::noise_difference, |rows| pair_rows(rows, &[&channels()])),
+    probe!(noise::noise_difference, |rows| pair_rows(rows, &[&channels(), &floats(&[0.01, 0.7, 1.0, 8192.0])])),
     probe!(noise::expected_noise, |rows| pair_rows(rows, &[&channels()])),
     probe!(noise::add_noise, |rows| rows.random(|d, row| {
         let n = noise(d);

@@ -15,16 +15,14 @@ enum Fate {
 
 /// Clips of the workspace, and those of the shared data that are there.
 fn clips() -> Vec<Clip> {
-    let scene = |name: &str| Clip::open(name, Some([320, 180]), 1, 6);
+    let scene = |name: &str| Clip::open(name, Some([240, 135]), 1, 6);
     let mut clips = vec![
         Clip::open("fixtures/sequences/lateral_160x90", None, 0, 6),
         scene("analytic:lateral"),
         scene("analytic:turn"),
         scene("analytic:occluder"),
     ];
-    for name in ["sequences/sponza_lateral", "sequences/sponza_object"] {
-        clips.extend(shared_data(name).map(|path| Clip::open(path.to_str().unwrap(), None, 1, 6)));
-    }
+    clips.extend(shared_data("sequences/sponza_object").map(|path| Clip::open(path.to_str().unwrap(), None, 1, 6)));
     clips
 }
 

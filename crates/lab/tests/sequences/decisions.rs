@@ -36,8 +36,8 @@ fn debug_views_draw_what_record_decides_next_and_move_nothing() {
         let Some(mut undisturbed) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
         let mut source = source("occluder");
         let mut seen = [0; Verdict::COUNT];
-        for index in 0..28 {
-            rig.exposure = if index == 20 { Exposure::Changed { ratio: 2.0 } } else { Exposure::Same };
+        for index in 0..14 {
+            rig.exposure = if index == 10 { Exposure::Changed { ratio: 2.0 } } else { Exposure::Same };
             undisturbed.exposure = rig.exposure;
             let views = [masked(&mut source, index)];
             let pictures = DebugView::ALL.map(|v| rig.decisions(index, reset(index), &views, v));

@@ -1,4 +1,4 @@
-//! Analytic scenes with resets, broken pixels and garbage vectors, 26 or 40 frames each, through every variant.
+//! Analytic scenes with resets, broken pixels and garbage vectors, 14 or 20 frames each, through every variant.
 
 use super::rig::{Rig, View};
 use afterimage::simulator::Pyramid;
@@ -21,8 +21,8 @@ pub fn foveated(source: &mut AnalyticSource, index: u64, foveation: &Foveation) 
     let mut draws = Draws::new(&format!("damage {index}"));
     let frame = source.frame(index).unwrap();
     let geometry = *source.view();
-    // The eye drifts, and jumps every ten frames; it is lost for a while.
-    let jump = (index / 10) as f32;
+    // The eye drifts, and jumps every five frames; it is lost for a while.
+    let jump = (index / 5) as f32;
     let px = [30.0 + 25.0 * jump + 0.3 * index as f32, 60.0 - 12.0 * jump];
     let lods = foveation.lod_map(&geometry, px, &geometry.eccentricity_map(px));
     let mut color = foveation.render(&Pyramid::new(frame.color, foveation.max_level()), &lods);
@@ -37,7 +37,7 @@ pub fn foveated(source: &mut AnalyticSource, index: u64, foveation: &Foveation) 
             _ => depth.pixels_mut()[i] = bad,
         }
     }
-    let gaze = if (13..17).contains(&index) { Gaze::Lost } else { Gaze::At { px } };
+    let gaze = if (7..9).contains(&index) { Gaze::Lost } else { Gaze::At { px } };
     let facts = ViewFrame { previous_from_current: frame.previous_from_current, ..ViewFrame::new(geometry, gaze) };
     View { facts, color, depth: Some(depth), motion: Some(motion), trust: None, lod: None, noise: None, repaired: None }
 }
@@ -49,7 +49,7 @@ pub fn trust(index: u64) -> Image<f32> {
 }
 
 pub fn reset(index: u64) -> Reset {
-    if index == 24 { Reset::All } else { Reset::None }
+    if index == 12 { Reset::All } else { Reset::None }
 }
 
 pub fn settings(method: MethodKind) -> Settings {
@@ -62,10 +62,10 @@ pub fn surfaces() -> [Settings; 3] {
     [MethodKind::Taa, MethodKind::Smr, MethodKind::Taau].map(settings)
 }
 
-/// Runs 26 frames of a damaged scene through both, which must agree in every bit of what they show, keep and count.
+/// Runs 14 frames of a damaged scene through both, which must agree in every bit of what they show, keep and count.
 #[track_caller]
 pub fn agree(scene: &str, desc: ContextDesc, settings: Settings, change: impl Fn(u64, View, &mut Rig) -> View) {
-    agree_for(26, scene, desc, settings, change);
+    agree_for(14, scene, desc, settings, change);
 }
 
 /// The same for another number of frames.
@@ -95,9 +95,9 @@ fn agree_for(
     assert!(kept > 1000 || settings.method == Method::None, "history must play a part");
 }
 
-/// 40 frames as they are.
+/// 20 frames as they are.
 fn agree_as_is(scene: &str, settings: Settings) {
-    agree_for(40, scene, ContextDesc::new(SIZE), settings, |_, v, _| v);
+    agree_for(20, scene, ContextDesc::new(SIZE), settings, |_, v, _| v);
 }
 
 /// Some stops up and down, thirds of stops, a fade to nothing, and no change.
@@ -146,7 +146,7 @@ fn every_variant_agrees_bit_for_bit() {
 
 #[test]
 fn absent_inputs_are_switched_off() {
-    for (frames, base) in [(40, Settings::paper())].into_iter().chain(surfaces().map(|s| (26, s))) {
+    for (frames, base) in [(20, Settings::paper())].into_iter().chain(surfaces().map(|s| (14, s))) {
         let desc = ContextDesc::new(SIZE);
         agree_for(frames, "lateral", desc, base, |_, v, _| View { depth: None, ..v });
         agree_for(frames, "still", desc, base, |_, v, _| View { motion: None, ..v });
@@ -159,8 +159,8 @@ fn absent_inputs_are_switched_off() {
 fn trust_and_exposure_agree_bit_for_bit() {
     let ungated = Wrs { gate: None, ..Wrs::default() };
     let wrs = [Wrs::default(), ungated, Wrs { sampler: Sampler::AEs, ..ungated }];
-    let wrs = wrs.map(|wrs| (40, Settings { method: Method::Wrs(wrs), ..Settings::default() }));
-    for (frames, settings) in wrs.into_iter().chain(surfaces().map(|s| (26, s))) {
+    let wrs = wrs.map(|wrs| (20, Settings { method: Method::Wrs(wrs), ..Settings::default() }));
+    for (frames, settings) in wrs.into_iter().chain(surfaces().map(|s| (14, s))) {
         let desc = ContextDesc::new(SIZE);
         // The mask has NaN, infinity, numbers below 0 and above 1.
         let masked = |index, v| View { trust: Some(trust(index)), ..v };

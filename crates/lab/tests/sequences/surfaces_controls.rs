@@ -52,7 +52,7 @@ fn all_caught(pass: &str, settings: Settings, has_lod: bool, errors: &[(&str, &s
     planted::all_caught_once(right, errors, |source| differs(settings, source, has_lod));
 }
 
-/// Errors in the code that both methods share.
+/// Errors in the code that all three methods share, planted in smr's pass.
 const SHARED: &[(&str, &str)] = &[
     // Motion with the opposite sign: of the nearest texel, and of the resampling position.
     ("f32(x) + motion.x", "f32(x) - motion.x"),
@@ -79,46 +79,38 @@ const SHARED: &[(&str, &str)] = &[
 #[test]
 fn every_planted_error_in_taa_is_caught() {
     let errors = [
-        SHARED,
-        &[
-            // Candidate and history swapped; a blend factor 1 % too large.
-            ("clipped + (roots(candidate) - clipped)", "roots(candidate) + (clipped - roots(candidate))"),
-            ("(roots(candidate) - clipped) * alpha", "(roots(candidate) - clipped) * (1.01 * alpha)"),
-            // A neighbor omitted, a wider clipping box, non-finite candidates stored as valid.
-            ("vec2<i32>(tap % 3, tap / 3) - 1", "vec2<i32>(tap % 3, min(tap / 3, 1)) - 1"),
-            ("BOX_SIGMAS: vec2<f32> = vec2<f32>(2.0, 5.0)", "BOX_SIGMAS: vec2<f32> = vec2<f32>(2.02, 5.0)"),
-            ("select(-1.0, lod_of(confidence), candidate.usable || valid)", "lod_of(confidence)"),
-            // Settled history that does not agree with its neighbourhood, and samples counted one too many.
-            ("confidence = min(confidence, agreeing(", "confidence = max(confidence, agreeing("),
-            ("confidence = 1.0 / alpha;", "confidence = 1.0 / alpha + 1.0;"),
-        ],
-    ]
-    .concat();
+        // Candidate and history swapped; a blend factor 1 % too large.
+        ("clipped + (roots(candidate) - clipped)", "roots(candidate) + (clipped - roots(candidate))"),
+        ("(roots(candidate) - clipped) * alpha", "(roots(candidate) - clipped) * (1.01 * alpha)"),
+        // A neighbor omitted, a wider clipping box, non-finite candidates stored as valid.
+        ("vec2<i32>(tap % 3, tap / 3) - 1", "vec2<i32>(tap % 3, min(tap / 3, 1)) - 1"),
+        ("BOX_SIGMAS: vec2<f32> = vec2<f32>(2.0, 5.0)", "BOX_SIGMAS: vec2<f32> = vec2<f32>(2.02, 5.0)"),
+        ("select(-1.0, lod_of(confidence), candidate.usable || valid)", "lod_of(confidence)"),
+        // Settled history that does not agree with its neighbourhood, and samples counted one too many.
+        ("confidence = min(confidence, agreeing(", "confidence = max(confidence, agreeing("),
+        ("confidence = 1.0 / alpha;", "confidence = 1.0 / alpha + 1.0;"),
+    ];
     all_caught("taa_pass", settings(MethodKind::Taa, Filter::Mip), false, &errors);
 }
 
 #[test]
 fn every_planted_error_in_taau_is_caught() {
     let errors = [
-        SHARED,
-        &[
-            // Confidence ignored or not limited, samples and history swapped, non-finite candidates stored as valid.
-            ("min(confidence_of(resampled.lod), confidence_limit(source.fraction, UPSAMPLED_SPREAD))", "1.0"),
-            (
-                "min(confidence_of(resampled.lod), confidence_limit(source.fraction, UPSAMPLED_SPREAD))",
-                "confidence_of(resampled.lod)",
-            ),
-            (
-                "clipped + (roots(upsampled(a, centre)) - clipped) * share",
-                "roots(upsampled(a, centre)) + (clipped - roots(upsampled(a, centre))) * share",
-            ),
-            // Settled history that does not agree with its neighbourhood.
-            ("confidence = min(confidence, agreeing(near.", "confidence = max(confidence, agreeing(near."),
-            ("vec2<i32>(tap % 3, tap / 3) - 1", "vec2<i32>(tap % 3, min(tap / 3, 1)) - 1"),
-            ("select(-1.0, lod_of(result.confidence), sampled || valid)", "lod_of(result.confidence)"),
-        ],
-    ]
-    .concat();
+        // Confidence ignored or not limited, samples and history swapped, non-finite candidates stored as valid.
+        ("min(confidence_of(resampled.lod), confidence_limit(source.fraction, UPSAMPLED_SPREAD))", "1.0"),
+        (
+            "min(confidence_of(resampled.lod), confidence_limit(source.fraction, UPSAMPLED_SPREAD))",
+            "confidence_of(resampled.lod)",
+        ),
+        (
+            "clipped + (roots(upsampled(a, centre)) - clipped) * share",
+            "roots(upsampled(a, centre)) + (clipped - roots(upsampled(a, centre))) * share",
+        ),
+        // Settled history that does not agree with its neighbourhood.
+        ("confidence = min(confidence, agreeing(near.", "confidence = max(confidence, agreeing(near."),
+        ("vec2<i32>(tap % 3, tap / 3) - 1", "vec2<i32>(tap % 3, min(tap / 3, 1)) - 1"),
+        ("select(-1.0, lod_of(result.confidence), sampled || valid)", "lod_of(result.confidence)"),
+    ];
     all_caught("taau_pass", settings(MethodKind::Taau, Filter::Mip), false, &errors);
 }
 
@@ -129,7 +121,7 @@ fn every_planted_error_in_smr_is_caught() {
         &[
             // Candidate and history swapped: in the output, the comparison and the gain.
             ("e.candidate + (history - e.candidate) * share", "history + (e.candidate - history) * share"),
-            ("root_difference(e.compared, e.matched)", "root_difference(e.compared, e.history)"),
+            ("past_difference(e.compared, e.matched)", "past_difference(e.compared, e.history)"),
             ("(observed + DARK) / (predicted + DARK)", "(predicted + DARK) / (observed + DARK)"),
             // Fit, gate and gain 1 % off.
             ("let fit = 1.0 - smooth_step", "let fit = 1.0 - 1.01 * smooth_step"),
@@ -166,8 +158,8 @@ fn every_planted_error_in_smr_of_other_filters_is_caught() {
         false,
         &[
             ("let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);", "let shift = 0.0;"),
-            ("select(candidate, around, blocks)", "candidate"),
-            ("predicted = exposed(past_sampled(source, px, lod, view));", ""),
+            ("select(own, around, blocks)", "own"),
+            ("predicted = past_sampled(source, px, lod, view) * per_stored;", ""),
             ("const RELIGHT_BLOCKS: vec2<f32> = vec2<f32>(8.0, 0.5);", "const RELIGHT_BLOCKS: vec2<f32> = RELIGHT;"),
             ("let scale = select(1.0, 4.0, p.blocks);", "let scale = 1.0;"),
         ],

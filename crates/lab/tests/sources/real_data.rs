@@ -105,7 +105,7 @@ fn sponza_still_none_wrs_and_oracle_in_order() {
     let Some(path) = shared_data("sequences/sponza_still") else { return };
     let outcome = play(
         open(&path).as_mut(),
-        &Clip::default(),
+        &Clip { frames: 12, start_s: 1.2, ..Clip::default() },
         &[run_of(MethodKind::None), run_of(MethodKind::Wrs), RunKind::Oracle],
     );
     assert_eq!(outcome.scores[0].bands[0].mse, Some(0.0), "the fovea is shown as it is");
@@ -151,7 +151,7 @@ fn sponza_sequences_reproject_and_reject_history_as_they_should() {
     for (name, most_rejected) in [("sequences/sponza_lateral", 0.05), ("sequences/sponza_object", 0.05)] {
         let Some(path) = shared_data(name) else { return };
         let clip = Clip {
-            frames: 40,
+            frames: 16,
             foveation: Foveation { rate_mid: 2, rate_far: 4, ..Foveation::default() },
             ..Clip::default()
         };
@@ -171,7 +171,7 @@ fn sponza_sequences_reproject_and_reject_history_as_they_should() {
 fn a_4k_page_is_read_with_a_recorded_eye() {
     let Some(path) = shared_data("text/page_3840x2160.png") else { return };
     let clip =
-        Clip { frames: 3, hfov_deg: Some(80.0), scanpath: "scanpaths/reading_1250hz_clean.csv", ..Clip::default() };
+        Clip { frames: 2, hfov_deg: Some(80.0), scanpath: "scanpaths/reading_1250hz_clean.csv", ..Clip::default() };
     let outcome =
         play(open(&path).as_mut(), &clip, &[run_of(MethodKind::None), run_of(MethodKind::Wrs), RunKind::Oracle]);
     assert!(psnr(&outcome, 2) >= psnr(&outcome, 0));

@@ -26,7 +26,7 @@ impl Row {
 }
 
 /// All rows, in order.
-pub const ROWS: [Row; 105] = [
+pub const ROWS: [Row; 106] = [
     // Reservoir arithmetic
     row(
         "H01",
@@ -503,5 +503,14 @@ pub const ROWS: [Row; 105] = [
         "vectors for no pixel, for objects alone, or without the camera's motion; camera turns, moves, zooms; sky; jitter",
         "within 1e-3 px of the definition; exactly 0 for a still camera",
         BOTH,
+    ),
+    row(
+        "H106",
+        "colors times a constant, from 2^-10 to 2^12; a shadow that moves without vectors in a dark frame",
+        "decisions as without it, the picture times it: powers of two bit for bit; at most 6 % of the light left behind",
+        BOTH,
+    )
+    .but(
+        "smr, on frames that are neither sparse nor noisy. wrs, sparse frames and noise compare colors by constants for white at about 1.",
     ),
 ];

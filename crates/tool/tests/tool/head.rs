@@ -16,32 +16,46 @@ fn rows(path: &Path) -> Vec<Vec<f64>> {
 #[test]
 fn a_generated_head_moves_the_camera_and_its_scanpath_repeats_the_run() {
     let folder = Folder::new();
-    let head = ["--camera", "head-walk", "--gaze", "synthetic:4", "--frames", "24", "--start", "1", "--format", "exr"];
-    succeeds(&run("builtin:courtyard", &folder.text("a"), &[SMALL, &head].concat()));
+    let head = [
+        "--camera",
+        "head-walk",
+        "--gaze",
+        "synthetic:4",
+        "--frames",
+        "8",
+        "--fps",
+        "20",
+        "--start",
+        "1",
+        "--format",
+        "exr",
+    ];
+    succeeds(&run("builtin:cornell", &folder.text("a"), &[SMALL, &head].concat()));
     let a = folder.path("a");
     assert!(["pose.csv", "scanpath.csv", "gaze.csv"].iter().all(|f| files(&a).contains(&(*f).to_owned())));
     let (poses, gaze) = (rows(&a.join("pose.csv")), rows(&a.join("gaze.csv")));
-    assert_eq!((poses.len(), gaze.len(), poses[0].len()), (24, 24, 8));
+    assert_eq!((poses.len(), gaze.len(), poses[0].len()), (8, 8, 8));
     // It walks at 0.9 m/s, and looks around.
     let step = |a: &[f64], b: &[f64]| (1..4).map(|k| (b[k] - a[k]).powi(2)).sum::<f64>().sqrt();
-    let way = step(&poses[0], &poses[23]);
-    assert!((0.25..0.5).contains(&way), "{way} m in 0.38 s");
+    let way = step(&poses[0], &poses[7]);
+    assert!((0.25..0.5).contains(&way), "{way} m in 0.35 s");
     assert!(poses.iter().all(|p| (p[4..].iter().map(|q| q * q).sum::<f64>() - 1.0).abs() < 1e-6));
     let moves = gaze.windows(2).map(|w| step(&[0.0, w[0][1], w[0][2], 0.0], &[0.0, w[1][1], w[1][2], 0.0]));
     assert!(moves.fold(0.0, f64::max) > 2.0);
     assert_eq!(read_json(&a.join("report.json"))["gaze_map"], "angle");
 
     let path = folder.text("a/scanpath.csv");
-    let again = ["--camera", "head", "--gaze", &path, "--frames", "24", "--start", "1", "--format", "exr"];
-    succeeds(&run("builtin:courtyard", &folder.text("b"), &[SMALL, &again].concat()));
-    for file in ["pose.csv", "scanpath.csv", "gaze.csv", "cameras.json", "none/000023.exr"] {
+    let again =
+        ["--camera", "head", "--gaze", &path, "--frames", "8", "--fps", "20", "--start", "1", "--format", "exr"];
+    succeeds(&run("builtin:cornell", &folder.text("b"), &[SMALL, &again].concat()));
+    for file in ["pose.csv", "scanpath.csv", "gaze.csv", "cameras.json", "none/000007.exr"] {
         assert_eq!(fs::read(a.join(file)).unwrap(), fs::read(folder.path("b").join(file)).unwrap(), "{file}");
     }
     // The cameras lie beside the frames, too; a run without a head leaves none behind.
     let frames = read_json(&a.join("none/cameras.json"));
-    assert_eq!((frames["frames"].as_array().unwrap().len(), &frames["width"]), (24, &96.into()));
+    assert_eq!((frames["frames"].as_array().unwrap().len(), &frames["width"]), (8, &96.into()));
     assert_eq!(fs::read(a.join("none/cameras.json")).unwrap(), fs::read(a.join("cameras.json")).unwrap());
-    succeeds(&run("builtin:courtyard", &folder.text("b"), &[SMALL, &["--frames", "1", "--camera", "walk"]].concat()));
+    succeeds(&run("builtin:cornell", &folder.text("b"), &[SMALL, &["--frames", "1", "--camera", "walk"]].concat()));
     assert!(
         !["pose.csv", "scanpath.csv", "cameras.json", "none/cameras.json"]
             .iter()

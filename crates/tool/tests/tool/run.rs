@@ -94,15 +94,14 @@ fn both_backends_write_the_same_bytes() {
         return;
     }
     let debug = format!("--size 160x90 --frames 4 --wrs-sampler a-es --debug {DEBUG}");
-    let sparse = "--size 160x90 --frames 4 --method none,taa,wrs --foveation sparse --geometry";
+    let sparse = "--size 160x90 --frames 4 --method none,taa,wrs --foveation sparse --geometry samples";
     let quads = "--size 160x90 --frames 4 --method none,taa,wrs,smr --rate-mid 2 --rate-far 4 --reference-samples 1 \
                  --no-flip --foveation";
     let traced = "--source trace --sampling regions --region-spp 2,1,1 --foveation sparse --reference-spp 2 \
                   --method none,taa,taau,smr --frames 3 --size 64x36 --gaze 20,12";
     for (input, line, simulator, geometry) in [
         ("analytic:occluder", &debug, "mip", None),
-        ("analytic:occluder", &format!("{sparse} full"), "sparse", Some("full")),
-        ("analytic:occluder", &format!("{sparse} samples"), "sparse", Some("samples")),
+        ("analytic:occluder", &sparse.to_owned(), "sparse", Some("samples")),
         ("builtin:cubes", &format!("{quads} layers --geometry samples"), "layers", Some("samples")),
         ("builtin:cubes", &format!("{quads} uniform --scale 1.5"), "uniform", Some("samples")),
         ("builtin:cubes", &traced.to_owned(), "regions", Some("samples")),
@@ -271,7 +270,7 @@ fn the_time_of_a_frame_is_that_of_the_renderer_and_the_post_process() {
     for (name, more) in kinds {
         let out = folder.text(name);
         let source = if name == "traced" { &[][..] } else { &["--source", "raster", "--reference-samples", "2"] };
-        let small = ["--size", "320x180", "--frames", "5", "--method", "none,smr", "--backend", "cpu", "--no-flip"];
+        let small = ["--size", "160x90", "--frames", "5", "--method", "none,smr", "--backend", "cpu", "--no-flip"];
         let said = succeeds(&run("builtin:cubes", &out, &[source, more, &small].concat()));
         assert!(said.contains("render +   post =  total ms"), "{said}");
         let report = read_json(&folder.path(name).join("report.json"));

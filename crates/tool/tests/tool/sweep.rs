@@ -273,7 +273,7 @@ fn rasterised_scenes_are_compared_by_the_time_of_the_whole_frame() {
     let out = folder.text("out");
     let line = format!(
         "sweep builtin:cubes --out {out} --axis method=none,smr --axis foveation+geometry=sparse+samples,mip+- \
-         --source raster --size 320x180 --frames 38 --backend gpu --set no-flip --set reference-samples=1"
+         --source raster --size 160x90 --frames 38 --backend gpu --set no-flip --set reference-samples=1"
     );
     let said = succeeds(&words(&line));
     assert!(said.contains("whole frame, render + post"), "{said}");

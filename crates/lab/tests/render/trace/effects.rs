@@ -164,7 +164,7 @@ fn supersets(needed: Effects, number: u32) -> Vec<Effects> {
 
 #[test]
 fn unneeded_effects_change_no_bit_on_the_cpu() {
-    for number in 0..200 {
+    for number in 0..80 {
         let rig = Rig::new(random_scene(number), SIZE);
         let needed = rig.world.needs;
         let film = rig.cpu(settings(needed, number), SPP);
@@ -180,12 +180,13 @@ fn unneeded_effects_change_no_bit_on_the_cpu() {
 #[test]
 fn unneeded_effects_change_no_bit_on_the_gpu() {
     let Some(device) = device() else { return };
-    for number in 0..6 {
+    // Each set compiles a kernel of its own.
+    for number in 0..3 {
         let rig = Rig::new(random_scene(number), SIZE);
         let needed = rig.world.needs;
         let film = rig.cpu(settings(needed, number), SPP);
-        let sets = supersets(needed, number);
-        for effects in [needed, sets[number as usize % 3]] {
+        let superset = supersets(needed, number)[number as usize];
+        for effects in if number == 0 { vec![needed, superset] } else { vec![superset] } {
             let count = differing(&film, &rig.gpu(&device, settings(effects, number), Storage::Texture, SPP));
             let beside: Vec<_> = effects.without(needed).iter().map(Effect::name).collect();
             assert_eq!(count, 0, "{} differs from the CPU's with {beside:?}", rig.name);
@@ -196,7 +197,7 @@ fn unneeded_effects_change_no_bit_on_the_gpu() {
 #[test]
 fn a_needed_effect_that_is_left_out_is_missed() {
     let mut missed = Effects::NONE;
-    for number in 0..60 {
+    for number in 0..40 {
         let rig = Rig::new(random_scene(number), SIZE);
         let film = rig.cpu(settings(rig.world.needs, number), SPP);
         for effect in rig.world.needs.without(missed).iter() {

@@ -1,0 +1,162 @@
+//! Scale of light, H106: laws of smr that hold on either executor.
+
+use crate::depth_hard::{Color, Made, Make};
+use crate::images::View;
+use afterimage::simulator::Pyramid;
+use afterimage::{ContextDesc, Exposure, Filter, Foveation, Image, Reset, Settings};
+use afterimage_testing::Draws;
+
+/// The laws as tests of an executor. `$held` runs one, and returns what it measured.
+macro_rules! scale_laws {
+    ($side:ident, $held:ident) => {
+        laws! { $side, $held,
+            h106_colors_times_a_constant_are_shown_as_the_picture_times_it: "H106", times_a_constant;
+            h106_a_shadow_that_moves_leaves_as_little_light_in_dark_frames: "H106", moving_shadow;
+        }
+    };
+}
+pub(crate) use scale_laws;
+
+fn settings(filter: Filter) -> Settings {
+    let foveation = Foveation { filter, rate_mid: 4, rate_far: 8, ..Foveation::default() };
+    Settings { foveation, ..Settings::default() }
+}
+
+/// What a foveating renderer delivers of a picture.
+fn delivered(settings: &Settings, full: &Color, gaze_px: [f32; 2]) -> View {
+    let view = View::still(full.clone(), gaze_px);
+    let (f, geometry) = (&settings.foveation, view.facts.geometry);
+    let lods = f.lod_map(&geometry, gaze_px, &geometry.eccentricity_map(gaze_px));
+    View { color: f.render(&Pyramid::new(full.clone(), f.max_level()), &lods), ..view }
+}
+
+fn times(color: &Color, factor: f32) -> Color {
+    color.map(|c| c.map(|v| v * factor))
+}
+
+/// The frames times a factor through an executor.
+fn run(make: Make<'_>, settings: Settings, views: &[View], factor: f32) -> Option<Vec<Made>> {
+    let mut post = make(ContextDesc { settings, ..ContextDesc::new(views[0].color.size()) })?;
+    let step = |(index, view): (usize, &View)| {
+        let lit = View { color: times(&view.color, factor), ..view.clone() };
+        post.make(index as u64, &lit, Exposure::Same, Reset::None)
+    };
+    Some(views.iter().enumerate().map(step).collect())
+}
+
+/// A rough picture with a new gaze, light and shadow in every frame. No channel is darker than 1/16 after resampling:
+/// 2^-10 of it is a normal half.
+fn clip(draws: &mut Draws, settings: &Settings, speed_px: [f32; 2]) -> Vec<View> {
+    const SIZE: [u32; 2] = [64, 48];
+    let wall = Image::from_fn(SIZE, |_| [0; 3].map(|_| 0.5 + 0.3 * draws.uniform()));
+    let frame = |_| {
+        let (light, edge) = (draws.range(0.8, 1.25), draws.range(0.0, 64.0));
+        let gaze_px = SIZE.map(|side| draws.range(0.0, side as f32 - 1.0));
+        let lit = |x: u32| if x as f32 > edge { light } else { 0.7 * light };
+        let full = Image::from_fn(SIZE, |[x, y]| wall.at(x as usize, y as usize).map(|v| v * lit(x)));
+        let view = delivered(settings, &full, gaze_px);
+        if speed_px == [0.0; 2] { view } else { view.moving(speed_px) }
+    };
+    (0..12).map(frame).collect()
+}
+
+/// Whether pictures and decisions are those of the frames without the factor, times the factor, bit for bit.
+fn scales(plain: &[Made], scaled: &[Made], factor: f32) -> bool {
+    let same = |(a, b): (&Made, &Made)| times(&a.shown, factor) == b.shown && a.trace == b.trace && a.stats == b.stats;
+    plain.iter().zip(scaled).all(same)
+}
+
+/// Share of channels that differ by more than one percent.
+fn off(plain: &[Made], scaled: &[Made], factor: f32) -> f64 {
+    let pixels =
+        |made: &[Made]| -> Vec<f32> { made.iter().flat_map(|m| m.shown.pixels().to_vec()).flatten().collect() };
+    let (a, b) = (pixels(plain), pixels(scaled));
+    let differs = |&(a, b): &(&f32, &f32)| (b / factor - a).abs() > 0.01 * a;
+    a.iter().zip(&b).filter(differs).count() as f64 / a.len() as f64
+}
+
+/// Colors times a constant give decisions as without it, and the picture times it.
+pub fn times_a_constant(make: Make<'_>) -> Option<String> {
+    let mut draws = Draws::new("scale of light");
+    let mut worst = 0.0_f64;
+    for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
+        for speed_px in [[0.0, 0.0], [0.3, -1.4]] {
+            let settings = settings(filter);
+            let views = clip(&mut draws, &settings, speed_px);
+            let plain = run(make, settings, &views, 1.0)?;
+            let reused = plain.iter().flat_map(|m| m.trace.pixels()).filter(|t| t.survival > 0.5).count();
+            let gated = plain.iter().flat_map(|m| m.trace.pixels()).filter(|t| t.gate < 1.0).count();
+            assert!(reused > 1000 && gated > 1000, "{filter:?}: {reused} and {gated}");
+            for exponent in [-10, -3, 6, 12] {
+                let factor = 2.0_f32.powi(exponent);
+                let scaled = run(make, settings, &views, factor)?;
+                assert!(scales(&plain, &scaled, factor), "{filter:?} {speed_px:?}: 2^{exponent}");
+            }
+            for factor in [1.0 / 700.0, 0.3, 3.0, 50.0] {
+                let scaled = run(make, settings, &views, factor)?;
+                worst = worst.max(off(&plain, &scaled, factor));
+                // The planted error: a factor that halves round.
+                assert!(!scales(&plain, &scaled, factor), "{filter:?} {speed_px:?}: {factor}");
+            }
+        }
+    }
+    assert!(worst < 0.01, "{worst}");
+    Some(format!(
+        "smr: mip, gauss and block, light and gaze new in each frame: bit for bit from 2^-10 to 2^12; by other factors \
+         {:.3} % of the channels differ by 1 %",
+        100.0 * worst
+    ))
+}
+
+/// Light left behind the edge of a shadow that moves by 2 px a frame without vectors, as a share of the step of light.
+fn light_left(make: Make<'_>, settings: Settings, exponent: i32) -> Option<f64> {
+    let (size, factor) = ([160, 90], 2.0_f32.powi(exponent));
+    let mut post = make(ContextDesc { settings, ..ContextDesc::new(size) })?;
+    let (mut left, mut step) = (0.0, 0.0);
+    for index in 0..56_u64 {
+        // The eye sees the wall in light, and rests while the shadow comes.
+        let gaze_px = if index < 16 { [10.0 * index as f32, 45.0] } else { [10.0, 45.0] };
+        let edge = 60 + 2 * index.saturating_sub(16) as u32;
+        let light = |x: u32| if x > 50 && x < edge { 0.1 } else { 0.4 };
+        let full = Image::from_fn(size, |[x, y]| [light(x) * (0.75 + 0.25 * ((x + y) % 3) as f32); 3]);
+        let view = match settings.foveation.filter {
+            Filter::Sparse => View::still(full.clone(), gaze_px).foveated(&settings.foveation, gaze_px, index),
+            _ => delivered(&settings, &full, gaze_px),
+        };
+        let lit = View { color: times(&view.color, factor), ..view };
+        let shown = post.make(index, &lit, Exposure::Same, Reset::None).shown;
+        if index >= 30 {
+            for (x, y) in (edge - 10..edge - 4).flat_map(|x| (0..90).map(move |y| (x as usize, y))) {
+                left += f64::from(shown.at(x, y)[1] / factor - full.at(x, y)[1]);
+                step += f64::from(full.at(x, y)[1]) * 3.0;
+            }
+        }
+    }
+    Some(left / step)
+}
+
+/// The same in a bright frame and in dark ones.
+pub fn moving_shadow(make: Make<'_>) -> Option<String> {
+    let left = |settings: Settings, exponents: &[i32]| {
+        exponents.iter().map(|&exponent| light_left(make, settings, exponent)).collect::<Option<Vec<_>>>()
+    };
+    let smr = left(settings(Filter::Mip), &[4, 0, -6, -10])?;
+    assert!(smr.iter().all(|&l| l < 0.06), "{smr:?}");
+    // The planted error: below the smallest normal half the gate does not follow light.
+    let absolute = light_left(make, settings(Filter::Mip), -20)?;
+    assert!(absolute > 0.3, "{absolute}");
+    // Gates that are absolute: they hold in this range, and not below.
+    let weighted = left(Settings { foveation: settings(Filter::Mip).foveation, ..Settings::weighted() }, &[2, -2, -4])?;
+    assert!(weighted[0] < 0.1 && weighted[1] < 0.1, "{weighted:?}");
+    let sparse = left(settings(Filter::Sparse), &[4, -6, -10])?;
+    assert!((sparse[0] - sparse[1]).abs() < 0.05, "{sparse:?}");
+    let percent = |left: &[f64]| left.iter().map(|l| format!("{:.1}", 100.0 * l)).collect::<Vec<_>>().join(", ");
+    Some(format!(
+        "light left behind the edge in percent, smr at 2^4, 1, 2^-6, 2^-10 of the light: {}, at 2^-20: {:.0}; wrs \
+         weighted at 4, 1/4, 1/16: {}; sparse smr at 2^4, 2^-6, 2^-10: {}",
+        percent(&smr),
+        100.0 * absolute,
+        percent(&weighted),
+        percent(&sparse)
+    ))
+}
