@@ -122,8 +122,7 @@ impl MotionConvention {
     };
 
     /// Factors that convert a vector of this convention to the default convention, for a frame of `size_px`. They leave
-    /// the jitter in the vector; [`jitter_offset`](Self::jitter_offset) removes it.
-    #[doc(hidden)]
+    /// the jitter in the vector.
     pub fn to_internal(self, size_px: [u32; 2]) -> [f32; 2] {
         let [w, h] = size_px.map(|s| s as f32);
         let [sx, sy] = match self.unit {
@@ -241,7 +240,6 @@ impl DepthConvention {
     }
 
     /// Map from a stored value to a disparity. For perspective buffers it is affine: `(1 - d) / near + d / far`.
-    #[doc(hidden)]
     pub fn disparity_map(self) -> DisparityMap {
         let (a, b, invert, clamp) = match self {
             Self::Linear => (1.0, 0.0, true, false),

@@ -115,7 +115,6 @@ impl Gaze {
     }
 
     /// Position in pixels to use: this one if it is known, else `held`, else the middle of the view.
-    #[doc(hidden)]
     pub fn resolve(self, held: Option<[f32; 2]>, geometry: &ViewGeometry) -> [f32; 2] {
         let middle = geometry.size_px().map(|s| 0.5 * s as f32 - 0.5);
         self.known_px(geometry).or(held).unwrap_or(middle)

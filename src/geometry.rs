@@ -188,7 +188,6 @@ impl ViewGeometry {
     }
 
     /// Scale and offset of rays: `ray.xy = px * scale + offset`.
-    #[doc(hidden)]
     pub fn scale_offset(&self) -> ([f32; 2], [f32; 2]) {
         (self.scale.to_array(), self.offset.to_array())
     }

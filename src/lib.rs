@@ -112,6 +112,8 @@ pub mod gpu;
 mod image;
 // For this workspace's other crates and for research; not part of the stable API.
 #[doc(hidden)]
+pub mod internal;
+#[doc(hidden)]
 pub mod kernel;
 mod lattice;
 mod method;

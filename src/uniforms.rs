@@ -13,6 +13,13 @@ use crate::lattice::{Lattice, Lattices};
 use crate::settings::Sampler;
 use glam::DVec2;
 
+/// Largest number of views of a context ([`ContextDesc::view_count`]) on a GPU.
+#[cfg(feature = "gpu")]
+pub const MAX_VIEWS: usize = 4;
+
+/// Numbers of the bindings of a frame's inputs and outputs are below this one.
+pub const ORIGINS: usize = 12;
+
 /// Twin of `ViewUniforms` in `shaders/pass/view_uniforms.wgsl`; a test compares their layouts.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
@@ -36,28 +43,11 @@ pub struct ViewUniforms {
     pub disparity_flags: u32,
     /// Vector in pixels to add to a converted motion vector, so that it contains no jitter.
     pub motion_offset: [f32; 2],
-    /// First pixel of the view in the color input: x in the low half, y in the high half.
-    pub color_origin: u32,
-    /// The same for depth.
-    pub depth_origin: u32,
-    /// The same for motion vectors.
-    pub motion_origin: u32,
-    /// The same for the trust mask.
-    pub trust_origin: u32,
-    /// The same for levels of detail.
-    pub lod_origin: u32,
-    /// The same for noise.
-    pub noise_origin: u32,
-    /// The same for the output.
-    pub output_origin: u32,
-    /// The same for the debug view.
-    pub debug_origin: u32,
     /// Jitter of this frame.
     pub jitter_px: [f32; 2],
-    /// First pixel of the view in the input of repaired samples: x in the low half, y in the high half.
-    pub repaired_origin: u32,
-    /// Padding to a multiple of 16 bytes.
-    pub unused: [u32; 3],
+    /// First pixel of the view in each input and output, by the number of its binding: x in the low half, y in the high
+    /// half.
+    pub origins: [u32; ORIGINS],
     /// Lowest x, y, x + y and x - y of the visible pixels.
     pub lowest_px: [f32; 4],
     /// Highest x, y, x + y and x - y of the visible pixels.

@@ -4,6 +4,11 @@
 //#use noise
 // Twin of src/kernel/sparse.rs, which documents the functions.
 
+const LIGHT_RELATIVE: f32 = 0.1;
+const SAMPLE_RELATIVE: f32 = 0.05;
+const OTHER_SURFACE: f32 = 1e-3;
+const BY_NEIGHBOURS: f32 = 1e-3;
+const LEAST_SHARE: f32 = 1e-4;
 const STILL_ERROR: f32 = 0.3;
 const MOVED_ERROR: f32 = 0.6;
 const CONTRAST_ERROR: f32 = 0.375;

@@ -5,12 +5,12 @@
 
 override HAS_LOD: u32 = 0u;
 
-@group(0) @binding(8) var lod_in: texture_2d_array<f32>;
+@group(0) @binding(5) var lod_in: texture_2d_array<f32>;
 
 // Level of detail of the candidate of a pixel at eccentricity `e_deg`.
 fn candidate_lod(px: vec2<u32>, view: u32, e_deg: f32) -> f32 {
     if HAS_LOD != 0u {
-        let given = textureLoad(lod_in, texel_of(px, frame.views[view].lod_origin), layer_of(view), 0).x;
+        let given = textureLoad(lod_in, texel_of(px, view, LOD_IN), layer_of(view), 0).x;
         // The test is on the bits: NaN gives 0.
         return select(0.0, clamp(given, 0.0, MAX_LOD), (bitcast<u32>(given) & 0x7fffffffu) <= 0x7f800000u);
     }

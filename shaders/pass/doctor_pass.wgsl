@@ -26,11 +26,11 @@ struct DoctorUniforms {
 @group(0) @binding(1) var color_in: texture_2d_array<f32>;
 @group(0) @binding(2) var depth_in: texture_2d_array<f32>;
 @group(0) @binding(3) var motion_in: texture_2d_array<f32>;
-@group(0) @binding(4) var light_now: texture_2d_array<f32>;
-@group(0) @binding(5) var light_past: texture_2d_array<f32>;
+@group(0) @binding(21) var light_now: texture_2d_array<f32>;
+@group(0) @binding(22) var light_past: texture_2d_array<f32>;
 // First pixel, level of the lattice.
-@group(0) @binding(6) var<storage, read> tiles: array<vec4<u32>>;
-@group(0) @binding(7) var<storage, read_write> words: array<u32>;
+@group(0) @binding(25) var<storage, read> tiles: array<vec4<u32>>;
+@group(0) @binding(26) var<storage, read_write> words: array<u32>;
 
 var<workgroup> sums: array<atomic<u32>, SUMS>;
 

@@ -9,8 +9,8 @@
 // Whether history can confirm a sample's surface.
 override HAS_KEPT: u32 = 0u;
 
-@group(0) @binding(18) var depth_out: texture_storage_2d_array<r32float, write>;
-@group(0) @binding(19) var motion_out: texture_storage_2d_array<rg32float, write>;
+@group(0) @binding(23) var depth_out: texture_storage_2d_array<r32float, write>;
+@group(0) @binding(24) var motion_out: texture_storage_2d_array<rg32float, write>;
 
 struct GeometrySample {
     disparity: f32,

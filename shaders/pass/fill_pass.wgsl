@@ -5,7 +5,7 @@
 //
 // Up to 4 reads and 1 write a pixel: the samples, and 16 bytes a pixel written.
 
-@group(0) @binding(18) var filled: texture_storage_2d_array<rgba32float, write>;
+@group(0) @binding(23) var filled: texture_storage_2d_array<rgba32float, write>;
 
 fn pixel(px: vec2<u32>, view: u32) -> vec4<f32> {
     let lattice = lattice_at(px, view);

@@ -54,13 +54,24 @@ struct FrameUniforms {
 // Value of `FrameUniforms::past_frame` in a frame without history.
 const NO_FRAME: u32 = 0xffffffffu;
 
+// Numbers of the bindings of inputs and outputs, and of their entries in `ViewUniforms::origins`: src/gpu/binding.rs.
+const COLOR_IN: u32 = 1u;
+const DEPTH_IN: u32 = 2u;
+const MOTION_IN: u32 = 3u;
+const TRUST_IN: u32 = 4u;
+const LOD_IN: u32 = 5u;
+const NOISE_IN: u32 = 6u;
+const REPAIRED_IN: u32 = 7u;
+const COLOR_OUT: u32 = 10u;
+const DEBUG_OUT: u32 = 11u;
+
 @group(0) @binding(0) var<uniform> frame: FrameUniforms;
 @group(0) @binding(1) var color_in: texture_2d_array<f32>;
 @group(0) @binding(2) var depth_in: texture_2d_array<f32>;
 @group(0) @binding(3) var motion_in: texture_2d_array<f32>;
 @group(0) @binding(4) var trust_in: texture_2d_array<f32>;
-@group(0) @binding(6) var<storage, read_write> counters: array<atomic<u32>, COUNTERS>;
-@group(0) @binding(7) var noise_in: texture_2d_array<f32>;
+@group(0) @binding(6) var noise_in: texture_2d_array<f32>;
+@group(0) @binding(12) var<storage, read_write> counters: array<atomic<u32>, COUNTERS>;
 
 // Layout of the counters; FrameStats::from_counters in src/stats.rs reads them.
 const COUNT_NONFINITE: u32 = 0u;
@@ -73,12 +84,12 @@ const COUNTERS: u32 = COUNT_VERDICTS + VERDICT_COUNT;
 // Counts of a workgroup. They need one global atomic for each counter and workgroup, instead of one for each pixel.
 var<workgroup> group_counters: array<atomic<u32>, COUNTERS>;
 
-// Texel of an input or output whose view begins at `origin`.
-fn texel_of(px: vec2<u32>, origin: u32) -> vec2<u32> {
+// Texel of an input or output, of number `binding`.
+fn texel_of(px: vec2<u32>, view: u32, binding: u32) -> vec2<u32> {
     if REGIONS == 0u {
         return px;
     }
-    return from_origin(px, origin);
+    return from_origin(px, frame.views[view].origins[binding / 4u][binding % 4u]);
 }
 
 // Layer of an input or output.
@@ -91,12 +102,12 @@ fn layer_of(view: u32) -> u32 {
 
 // Color and alpha, as the renderer wrote them.
 fn color_at(px: vec2<u32>, view: u32) -> vec4<f32> {
-    return textureLoad(color_in, texel_of(px, frame.views[view].color_origin), layer_of(view), 0);
+    return textureLoad(color_in, texel_of(px, view, COLOR_IN), layer_of(view), 0);
 }
 
 // Trust mask, not sanitized.
 fn trust_at(px: vec2<u32>, view: u32) -> f32 {
-    return textureLoad(trust_in, texel_of(px, frame.views[view].trust_origin), layer_of(view), 0).x;
+    return textureLoad(trust_in, texel_of(px, view, TRUST_IN), layer_of(view), 0).x;
 }
 
 // Whether the lens shows a pixel.
@@ -118,7 +129,7 @@ fn motion_at(px: vec2<u32>, view: u32) -> vec2<f32> {
 fn motion_of(px: vec2<u32>, texel: vec2<u32>, view: u32) -> vec2<f32> {
     var own = vec2<f32>(0.0);
     if HAS_MOTION != 0u {
-        let given = textureLoad(motion_in, texel_of(texel, frame.views[view].motion_origin), layer_of(view), 0).xy;
+        let given = textureLoad(motion_in, texel_of(texel, view, MOTION_IN), layer_of(view), 0).xy;
         own = given * frame.motion_scale + frame.views[view].motion_offset;
         if (CAMERA_MOTION & 1u) != 0u {
             let is_missing = has_no_vector(given, frame.cameras[view].no_vector);
@@ -149,7 +160,7 @@ fn motion_of(px: vec2<u32>, texel: vec2<u32>, view: u32) -> vec2<f32> {
 
 // Noise of the candidate; valid only if NOISY is set.
 fn noise_at(px: vec2<u32>, view: u32) -> Noise {
-    return candidate_noise(textureLoad(noise_in, texel_of(px, frame.views[view].noise_origin), layer_of(view), 0).xy);
+    return candidate_noise(textureLoad(noise_in, texel_of(px, view, NOISE_IN), layer_of(view), 0).xy);
 }
 
 fn disparity_at(px: vec2<u32>, view: u32) -> f32 {
@@ -158,7 +169,7 @@ fn disparity_at(px: vec2<u32>, view: u32) -> f32 {
     }
     let constants = frame.views[view];
     let map = DisparityMap(constants.disparity_a, constants.disparity_b, constants.disparity_flags);
-    return disparity(textureLoad(depth_in, texel_of(px, constants.depth_origin), layer_of(view), 0).x, map);
+    return disparity(textureLoad(depth_in, texel_of(px, view, DEPTH_IN), layer_of(view), 0).x, map);
 }
 
 // depth::slope: change of the surface's disparity a pixel; 0 unless `needed`. It is a loop with zero iterations for

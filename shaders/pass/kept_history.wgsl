@@ -4,12 +4,12 @@
 //#use sparse
 //#use wrs
 // Stored samples around the previous position of a pixel's surface, for smr on sparse frames. CPU twin:
-// src/cpu/sparse_pass/mod.rs.
+// src/cpu/sparse_pass/kept_history.rs.
 
 // Whether frames are jittered and history stores means of samples.
 override ANTIALIAS: u32 = 0u;
 
-@group(0) @binding(8) var past_kept: texture_2d_array<u32>;
+@group(0) @binding(15) var past_kept: texture_2d_array<u32>;
 
 fn kept_words(texel: vec2<i32>, view: u32) -> vec2<u32> {
     return textureLoad(past_kept, clamp(texel, vec2<i32>(0), vec2<i32>(frame.size) - 1), view, 0).xy;

@@ -1,7 +1,7 @@
 //#use inputs
-// Noise of the stored samples of sparse frames. CPU twin: src/cpu/sparse_pass/mod.rs.
+// Noise of the stored samples of sparse frames. CPU twin: src/cpu/sparse_pass/kept_history.rs.
 
-@group(0) @binding(11) var past_noise: texture_2d_array<u32>;
+@group(0) @binding(16) var past_noise: texture_2d_array<u32>;
 
 // Noise of a stored sample, in this frame's exposure; valid only if NOISY is set.
 fn stored_noise(texel: vec2<i32>, view: u32) -> Noise {

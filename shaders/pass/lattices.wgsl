@@ -26,7 +26,7 @@ struct SparseUniforms {
     views: array<array<LatticeUniforms, 4>, 4>,
 }
 
-@group(0) @binding(17) var<uniform> sparse: SparseUniforms;
+@group(0) @binding(13) var<uniform> sparse: SparseUniforms;
 
 const LATTICES: u32 = 4u;
 
@@ -73,5 +73,5 @@ fn texel_of_point(point: vec2<u32>, lattice: LatticeUniforms) -> vec2<u32> {
 // Color and alpha of sample `point`, as the renderer wrote them.
 fn sample_at(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec4<f32> {
     let texel = texel_of_point(point, lattice);
-    return textureLoad(color_in, texel_of(texel, frame.views[view].color_origin), layer_of(view), 0);
+    return textureLoad(color_in, texel_of(texel, view, COLOR_IN), layer_of(view), 0);
 }

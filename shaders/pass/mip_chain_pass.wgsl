@@ -12,8 +12,8 @@ override CANDIDATES: u32 = 0u;
 
 // Size of the finer level; its texture may be larger.
 @group(0) @binding(0) var<uniform> fine_size: vec2<u32>;
-@group(0) @binding(1) var fine: texture_2d_array<f32>;
-@group(0) @binding(2) var coarse: texture_storage_2d_array<rgba16float, write>;
+@group(0) @binding(21) var fine: texture_2d_array<f32>;
+@group(0) @binding(23) var coarse: texture_storage_2d_array<rgba16float, write>;
 
 fn texel(at: vec2<u32>, view: u32) -> vec4<f32> {
     return textureLoad(fine, min(at, fine_size - 1u), view, 0);

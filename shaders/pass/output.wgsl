@@ -5,11 +5,11 @@
 // Whether the output has the candidate's alpha instead of 1.
 override KEEP_ALPHA: u32 = 1u;
 
-@group(0) @binding(5) var color_out: texture_storage_2d_array<rgba16float, write>;
+@group(0) @binding(10) var color_out: texture_storage_2d_array<rgba16float, write>;
 
 // Writes the output color, or the debug view of the decision. `alpha`: the candidate's, as the renderer wrote it.
 fn write_output(px: vec2<u32>, view: u32, shown: vec3<f32>, alpha: f32, traced: PixelTrace) {
-    let at = texel_of(px, frame.views[view].output_origin);
+    let at = texel_of(px, view, COLOR_OUT);
     if VIEW != 0u {
         textureStore(color_out, at, layer_of(view), vec4<f32>(view_color(VIEW, traced), 1.0));
     } else {

@@ -7,12 +7,12 @@ override KEEP_ALPHA: u32 = 1u;
 // A VIEW_* code.
 override DEBUG_VIEW: u32 = 1u;
 
-@group(0) @binding(5) var color_out: texture_storage_2d_array<rgba16float, write>;
-@group(0) @binding(16) var debug_out: texture_storage_2d_array<rgba16float, write>;
+@group(0) @binding(10) var color_out: texture_storage_2d_array<rgba16float, write>;
+@group(0) @binding(11) var debug_out: texture_storage_2d_array<rgba16float, write>;
 
 fn write_output(px: vec2<u32>, view: u32, shown: vec3<f32>, alpha: f32, traced: PixelTrace) {
     let kept = select(1.0, alpha, KEEP_ALPHA != 0u && is_finite(alpha));
-    textureStore(color_out, texel_of(px, frame.views[view].output_origin), layer_of(view), vec4<f32>(shown, kept));
+    textureStore(color_out, texel_of(px, view, COLOR_OUT), layer_of(view), vec4<f32>(shown, kept));
     let drawn = vec4<f32>(view_color(DEBUG_VIEW, traced), 1.0);
-    textureStore(debug_out, texel_of(px, frame.views[view].debug_origin), layer_of(view), drawn);
+    textureStore(debug_out, texel_of(px, view, DEBUG_OUT), layer_of(view), drawn);
 }

@@ -4,7 +4,7 @@
 // it processes a frame at once.
 
 // Number of the frame that wrote the stored textures.
-@group(0) @binding(21) var<uniform> stored_frame: u32;
+@group(0) @binding(14) var<uniform> stored_frame: u32;
 
 fn has_history() -> bool {
     return stored_frame == frame.past_frame;

@@ -7,7 +7,7 @@
 // 8 reads and 1 write a quad: depth, motion, trust and a stored sample of two pixels. A pixel that is not settled needs
 // up to 14 more reads of depth and motion and 9 more of stored samples, and its quad 1 atomic sum.
 
-@group(0) @binding(18) var keys_out: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(23) var keys_out: texture_storage_2d_array<r32uint, write>;
 
 // Whether the stored sample nearest to a pixel's previous position is fine and belongs to the pixel's surface.
 fn is_settled(px: vec2<u32>, view: u32) -> bool {

@@ -7,4 +7,4 @@ struct RepairList {
     quads: array<u32>,
 }
 
-@group(0) @binding(20) var<storage, read_write> list: RepairList;
+@group(0) @binding(26) var<storage, read_write> list: RepairList;

@@ -11,8 +11,8 @@ struct RepairQuads {
 }
 
 @group(0) @binding(0) var<uniform> quads: RepairQuads;
-@group(0) @binding(8) var keys: texture_2d_array<u32>;
-@group(0) @binding(18) var mask_out: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(21) var keys: texture_2d_array<u32>;
+@group(0) @binding(23) var mask_out: texture_storage_2d_array<r32uint, write>;
 
 @compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) quad: vec3<u32>) {

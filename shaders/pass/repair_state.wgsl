@@ -10,4 +10,4 @@ struct RepairState {
     listed: atomic<u32>,
 }
 
-@group(0) @binding(19) var<storage, read_write> state: RepairState;
+@group(0) @binding(25) var<storage, read_write> state: RepairState;

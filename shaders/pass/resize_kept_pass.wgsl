@@ -4,10 +4,10 @@
 // Kept samples of history resampled to another size. Each pixel takes the nearest sample, which keeps its place. CPU
 // twin: src/cpu/resize.rs. One invocation a pixel; z is the view.
 
-@group(0) @binding(1) var past_kept: texture_2d_array<u32>;
-@group(0) @binding(2) var past_noise: texture_2d_array<u32>;
-@group(0) @binding(3) var next_kept: texture_storage_2d_array<rg32uint, write>;
-@group(0) @binding(4) var next_noise: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(15) var past_kept: texture_2d_array<u32>;
+@group(0) @binding(16) var past_noise: texture_2d_array<u32>;
+@group(0) @binding(18) var next_kept: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(19) var next_noise: texture_storage_2d_array<r32uint, write>;
 
 override NOISY: u32 = 0u;
 // Whether the kept samples are means of samples.

@@ -4,12 +4,12 @@
 
 override HAS_EXTRAS: u32 = 0u;
 
-@group(0) @binding(1) var past_colors: texture_2d_array<u32>;
-@group(0) @binding(2) var past_weights: texture_2d_array<u32>;
-@group(0) @binding(3) var past_extras: texture_2d_array<u32>;
-@group(0) @binding(4) var next_colors: texture_storage_2d_array<rg32uint, write>;
-@group(0) @binding(5) var next_weights: texture_storage_2d_array<r32uint, write>;
-@group(0) @binding(6) var next_extras: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(15) var past_colors: texture_2d_array<u32>;
+@group(0) @binding(16) var past_weights: texture_2d_array<u32>;
+@group(0) @binding(17) var past_extras: texture_2d_array<u32>;
+@group(0) @binding(18) var next_colors: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(19) var next_weights: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(20) var next_extras: texture_storage_2d_array<r32uint, write>;
 
 @compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {

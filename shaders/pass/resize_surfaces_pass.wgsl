@@ -8,11 +8,11 @@
 override NOISY: u32 = 0u;
 override HAS_MIPS: u32 = 1u;
 
-@group(0) @binding(1) var past_surfaces: texture_2d_array<u32>;
-@group(0) @binding(2) var past_noise: texture_2d_array<u32>;
-@group(0) @binding(3) var next_surfaces: texture_storage_2d_array<rg32uint, write>;
-@group(0) @binding(4) var next_mips: texture_storage_2d_array<rgba16float, write>;
-@group(0) @binding(5) var next_noise: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(15) var past_surfaces: texture_2d_array<u32>;
+@group(0) @binding(17) var past_noise: texture_2d_array<u32>;
+@group(0) @binding(18) var next_surfaces: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(19) var next_mips: texture_storage_2d_array<rgba16float, write>;
+@group(0) @binding(20) var next_noise: texture_storage_2d_array<r32uint, write>;
 
 fn surface_at(texel: vec2<i32>, view: u32) -> Surface {
     let at = clamp(texel, vec2<i32>(0), vec2<i32>(resize.old_size) - 1);

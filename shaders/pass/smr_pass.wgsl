@@ -167,25 +167,24 @@ fn matched_pixel(
     if FILTER == FILTER_BLOCK {
         predicted = past_sampled(source, px, lod, view) * per_stored;
     }
-    let evidence = Evidence(
-        candidate,
-        unit,
-        select(own, around, blocks),
-        select(around, own, gauss),
-        select(own, around, gauss),
-        lod,
-        exposed(history.sharp),
-        history.lod,
-        any(source.fraction != vec2<f32>(0.0)) && !gauss,
-        matched,
-        whole_level,
-        next_level,
-        select(next_level, matched, blocks || gauss),
-        select(predicted, next_level, gauss),
-        source.previous.trust,
-        0.0,
-        vec2<f32>(1.0),
-    );
+    var evidence: Evidence;
+    evidence.candidate = candidate;
+    evidence.unit = unit;
+    evidence.compared = select(own, around, blocks);
+    evidence.compared_coarser = select(around, own, gauss);
+    evidence.observed = select(own, around, gauss);
+    evidence.lod = lod;
+    evidence.history = exposed(history.sharp);
+    evidence.history_lod = history.lod;
+    evidence.resampled = any(source.fraction != vec2<f32>(0.0)) && !gauss;
+    evidence.matched = matched;
+    evidence.level = whole_level;
+    evidence.next_level = next_level;
+    evidence.matched_coarser = select(next_level, matched, blocks || gauss);
+    evidence.predicted = select(predicted, next_level, gauss);
+    evidence.trust = source.previous.trust;
+    evidence.noise = 0.0;
+    evidence.confidence = vec2<f32>(1.0);
     return decide(evidence, params_with(frame.smr_accumulate));
 }
 
@@ -234,25 +233,24 @@ fn averaged_pixel(
     let next_level = past.next_level * per_stored;
     let mean = around.compared.xyz * inverse_unit;
     let noise_around = Noise(noise.samples, around.compared.w * noise.samples);
-    let evidence = Evidence(
-        candidate,
-        unit,
-        mean,
-        around.coarser.xyz * inverse_unit,
-        mean,
-        lod,
-        shown,
-        history.lod,
-        any(source.fraction != vec2<f32>(0.0)),
-        matched,
-        past.level * per_stored,
-        next_level,
-        next_level,
-        matched,
-        source.previous.trust,
-        noise_difference(past_noise, noise_around, luma(matched), inverse_unit),
-        confidence,
-    );
+    var evidence: Evidence;
+    evidence.candidate = candidate;
+    evidence.unit = unit;
+    evidence.compared = mean;
+    evidence.compared_coarser = around.coarser.xyz * inverse_unit;
+    evidence.observed = mean;
+    evidence.lod = lod;
+    evidence.history = shown;
+    evidence.history_lod = history.lod;
+    evidence.resampled = any(source.fraction != vec2<f32>(0.0));
+    evidence.matched = matched;
+    evidence.level = past.level * per_stored;
+    evidence.next_level = next_level;
+    evidence.matched_coarser = next_level;
+    evidence.predicted = matched;
+    evidence.trust = source.previous.trust;
+    evidence.noise = noise_difference(past_noise, noise_around, luma(matched), inverse_unit);
+    evidence.confidence = confidence;
     let result = decide(evidence, params);
     let acceptance = result.fit * source.previous.trust;
     return Averaged(result, noise_after(past_noise, noise_around, result.share, reuse.finer * acceptance));

@@ -1,7 +1,7 @@
 //#use antialias
 //#use past_frame
 //#use sparse_samples
-// Gain and fit of history around the samples of a sparse frame. CPU twin: `light` in src/cpu/sparse_pass/mod.rs. One
+// Gain and fit of history around the samples of a sparse frame. CPU twin: `light` in src/cpu/sparse_pass/light.rs. One
 // invocation a sample of lattice `frame.lattice`; z is the view.
 //
 // 27 reads and 1 write a sample: color, depth and observation of itself and its eight neighbours; 8 bytes written.
@@ -9,8 +9,8 @@
 override RELIGHT_ON: u32 = 1u;
 override ANTIALIAS: u32 = 0u;
 
-@group(0) @binding(8) var observed: texture_2d_array<u32>;
-@group(0) @binding(18) var lights_out: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(21) var observed: texture_2d_array<u32>;
+@group(0) @binding(23) var lights_out: texture_storage_2d_array<rg32uint, write>;
 
 struct Neighbour {
     observation: Observation,

@@ -2,12 +2,12 @@
 //#use kept_noise
 //#use sparse_samples
 // Comparison of the samples of a sparse frame with history at their pixels. CPU twin: `observe` in
-// src/cpu/sparse_pass/mod.rs. One invocation a sample of lattice `frame.lattice`; z is the view.
+// src/cpu/sparse_pass/observe.rs. One invocation a sample of lattice `frame.lattice`; z is the view.
 //
 // 9 reads and 1 write a sample: color, depth, motion, trust, 5 stored samples; 8 bytes written. With noise, 2 more
 // reads.
 
-@group(0) @binding(18) var observed_out: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(23) var observed_out: texture_storage_2d_array<rg32uint, write>;
 
 fn observe(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     let px = px_of(point, lattice);

@@ -4,13 +4,13 @@
 //#use rng
 //#use sparse_samples
 // Reconstruction of sparse frames from history that keeps samples in their places (smr). CPU twin: `pixel` in
-// src/cpu/sparse_pass/mod.rs; docs/method.md has the equations. One invocation a pixel; z is the view.
+// src/cpu/sparse_pass/pixel.rs; docs/method.md has the equations. One invocation a pixel; z is the view.
 
-@group(0) @binding(9) var next_kept: texture_storage_2d_array<rg32uint, write>;
-@group(0) @binding(10) var lights: texture_2d_array<u32>;
-@group(0) @binding(12) var next_noise: texture_storage_2d_array<r32uint, write>;
-@group(0) @binding(13) var repaired_in: texture_2d_array<f32>;
-@group(0) @binding(14) var repair_mask: texture_2d_array<u32>;
+@group(0) @binding(7) var repaired_in: texture_2d_array<f32>;
+@group(0) @binding(18) var next_kept: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(19) var next_noise: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(21) var lights: texture_2d_array<u32>;
+@group(0) @binding(22) var repair_mask: texture_2d_array<u32>;
 
 // Whether the frame has samples of the pixels that a plan chose.
 override REPAIR: u32 = 0u;
@@ -33,9 +33,14 @@ struct Candidate {
     is_own: bool,
 }
 
+// A candidate without samples; the other fields are 0.
 fn no_candidate() -> Candidate {
-    let zero = vec3<f32>(0.0);
-    return Candidate(zero, false, 0.0, zero, zero, vec3<f32>(1.0), 1.0, 1.0, Noise(1.0, 0.0), false);
+    var none: Candidate;
+    none.gains = vec3<f32>(1.0);
+    none.fit = 1.0;
+    none.alpha = 1.0;
+    none.noise = Noise(1.0, 0.0);
+    return none;
 }
 
 // Squared distances of a pixel from two others along an axis.
@@ -104,18 +109,12 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
     }
     if level == 0u {
         let none = no_candidate();
-        return Candidate(
-            own.color,
-            own.usable,
-            0.0,
-            none.lowest,
-            none.highest,
-            none.gains,
-            1.0,
-            own_alpha,
-            none.noise,
-            own.usable,
-        );
+        var candidate = none;
+        candidate.color = own.color;
+        candidate.usable = own.usable;
+        candidate.alpha = own_alpha;
+        candidate.is_own = own.usable;
+        return candidate;
     }
     if weights == 0.0 {
         return no_candidate();
@@ -133,18 +132,18 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
             noise = noise_at(px, view);
         }
     }
-    return Candidate(
-        select(mean.xyz, own.color, is_own),
-        true,
-        lod,
-        lowest,
-        highest,
-        gain_sum * known,
-        min(fit_sum * known, select(1.0, unpack_lit(own_words).own_fit, is_own)),
-        select(mean.w, own_alpha, is_own),
-        noise,
-        is_own,
-    );
+    var candidate: Candidate;
+    candidate.color = select(mean.xyz, own.color, is_own);
+    candidate.usable = true;
+    candidate.lod = lod;
+    candidate.lowest = lowest;
+    candidate.highest = highest;
+    candidate.gains = gain_sum * known;
+    candidate.fit = min(fit_sum * known, select(1.0, unpack_lit(own_words).own_fit, is_own));
+    candidate.alpha = select(mean.w, own_alpha, is_own);
+    candidate.noise = noise;
+    candidate.is_own = is_own;
+    return candidate;
 }
 
 // The lattice by which a pixel is shaded, and the lattice whose samples give the fit of history. For noisy pixels at
@@ -236,7 +235,7 @@ fn repaired(px: vec2<u32>, view: u32, level: u32) -> Repaired {
         return Repaired(vec3<f32>(0.0), 1.0, false);
     }
     let chosen = textureLoad(repair_mask, px >> vec2<u32>(1u), view, 0).x != 0u && level > 0u;
-    let given = textureLoad(repaired_in, texel_of(px, frame.views[view].repaired_origin), layer_of(view), 0);
+    let given = textureLoad(repaired_in, texel_of(px, view, REPAIRED_IN), layer_of(view), 0);
     let own = color(given.xyz);
     return Repaired(own.color, given.w, chosen && own.usable);
 }
@@ -302,20 +301,19 @@ fn pixel(px: vec2<u32>, view: u32) {
     var noise = candidate.noise;
     if history.lod >= 0.0 {
         if candidate.usable {
-            let inputs = Reconstruction(
-                candidate.color,
-                candidate.lod,
-                candidate.lowest,
-                candidate.highest,
-                history.color,
-                history.lod,
-                history.nearest,
-                has_moved(vec2<f32>(0.0), history.nearest.place_px),
-                candidate.gains,
-                candidate.fit,
-                previous.trust,
-                frame.smr_accumulate,
-            );
+            var inputs: Reconstruction;
+            inputs.candidate = candidate.color;
+            inputs.lod = candidate.lod;
+            inputs.lowest = candidate.lowest;
+            inputs.highest = candidate.highest;
+            inputs.history = history.color;
+            inputs.history_lod = history.lod;
+            inputs.nearest = history.nearest;
+            inputs.moved = has_moved(vec2<f32>(0.0), history.nearest.place_px);
+            inputs.gains = candidate.gains;
+            inputs.fit = candidate.fit;
+            inputs.trust = previous.trust;
+            inputs.accumulate = frame.smr_accumulate;
             var result: Reconstructed;
             if NOISY != 0u {
                 let accumulated = accumulate(inputs, stored_noise(kept.texel, view), candidate.noise);

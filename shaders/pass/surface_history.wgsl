@@ -4,13 +4,13 @@
 // Stored history of a pixel's surface, at its previous position; shared by the methods that store surfaces (smr, taa).
 // CPU twin: src/cpu/surface_history.rs.
 
-@group(0) @binding(9) var past_surfaces: texture_2d_array<u32>;
-@group(0) @binding(10) var past_mips: texture_2d_array<f32>;
-@group(0) @binding(11) var next_surfaces: texture_storage_2d_array<rg32uint, write>;
-@group(0) @binding(12) var next_mips: texture_storage_2d_array<rgba16float, write>;
-@group(0) @binding(13) var past_noise: texture_2d_array<u32>;
-@group(0) @binding(14) var candidate_mips: texture_2d_array<f32>;
-@group(0) @binding(15) var next_noise: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(15) var past_surfaces: texture_2d_array<u32>;
+@group(0) @binding(16) var past_mips: texture_2d_array<f32>;
+@group(0) @binding(17) var past_noise: texture_2d_array<u32>;
+@group(0) @binding(18) var next_surfaces: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(19) var next_mips: texture_storage_2d_array<rgba16float, write>;
+@group(0) @binding(20) var next_noise: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(21) var candidate_mips: texture_2d_array<f32>;
 
 // All fields but the verdict are valid only if that is VERDICT_VALID.
 struct Source {

@@ -18,12 +18,12 @@ override RATE_EXPONENT: u32 = 0u;
 override HAS_REFERENCES: u32 = 0u;
 
 // Extras are the bits of log keys with A-ES, packed references with HAS_REFERENCES.
-@group(0) @binding(9) var past_colors: texture_2d_array<u32>;
-@group(0) @binding(10) var past_weights: texture_2d_array<u32>;
-@group(0) @binding(11) var past_extras: texture_2d_array<u32>;
-@group(0) @binding(12) var next_colors: texture_storage_2d_array<rg32uint, write>;
-@group(0) @binding(13) var next_weights: texture_storage_2d_array<r32uint, write>;
-@group(0) @binding(14) var next_extras: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(15) var past_colors: texture_2d_array<u32>;
+@group(0) @binding(16) var past_weights: texture_2d_array<u32>;
+@group(0) @binding(17) var past_extras: texture_2d_array<u32>;
+@group(0) @binding(18) var next_colors: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(19) var next_weights: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(20) var next_extras: texture_storage_2d_array<r32uint, write>;
 
 // History of a pixel. All fields but the verdict are valid only if that is VERDICT_VALID.
 struct History {

@@ -102,8 +102,7 @@ impl Doctor {
         self.chart.findings(&self.desc)
     }
 
-    /// Words of the frames seen so far, for the tests.
-    #[doc(hidden)]
+    /// Words of the frames seen so far, oldest first.
     pub fn words(&self) -> Vec<&[u32]> {
         self.chart.words()
     }

@@ -7,7 +7,7 @@ mod doctor;
 mod doctor_pass;
 mod fill;
 mod fill_geometry;
-mod history;
+pub(crate) mod history;
 mod inputs;
 mod mip_chain;
 mod none_pass;
@@ -23,8 +23,7 @@ mod wrs_pass;
 
 pub use crate::kernel::debug_view::PixelTrace;
 pub use doctor::Doctor;
-#[doc(hidden)]
-pub use history::History;
+use history::History;
 
 use crate::error::{FrameError, SettingsError};
 use crate::frame::{ContextDesc, Executor, Gaze, ViewFrame, check_size};
@@ -106,6 +105,24 @@ struct Pass<'a, 'f> {
     traces: Option<&'a mut [Image<PixelTrace>]>,
 }
 
+// For tests and the lab.
+#[doc(hidden)]
+impl CpuAfterimage {
+    /// History.
+    pub fn history(&self) -> &History {
+        &self.history
+    }
+
+    /// Overwrites history with packed reservoirs ([`pack`](crate::kernel::pack)), for tests that start from a known
+    /// state.
+    ///
+    /// # Panics
+    /// If `words` and the history differ in length.
+    pub fn restore_history(&mut self, words: &[[u32; 3]]) {
+        self.history.restore(words);
+    }
+}
+
 impl CpuAfterimage {
     /// A context without history.
     ///
@@ -183,22 +200,6 @@ impl CpuAfterimage {
     pub fn forget(&mut self) {
         self.planned = None;
         self.history.forget();
-    }
-
-    /// History, for tests and the lab.
-    #[doc(hidden)]
-    pub fn history(&self) -> &History {
-        &self.history
-    }
-
-    /// Overwrites history with packed reservoirs ([`pack`](crate::kernel::pack)), for tests that start from a known
-    /// state.
-    ///
-    /// # Panics
-    /// If `words` and the history differ in length.
-    #[doc(hidden)]
-    pub fn restore_history(&mut self, words: &[[u32; 3]]) {
-        self.history.restore(words);
     }
 
     /// Size in bytes of the buffers that the context holds between frames. It is larger than on a GPU, because the CPU

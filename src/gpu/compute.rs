@@ -1,13 +1,20 @@
-//! Builder of compute pipelines: a shader, its bindings, and a pipeline for each set of override values.
+//! Builder of compute pipelines: a shader, the bindings that its text declares, and a pipeline for each set of override
+//! values.
 
+use super::binding::used_by;
+use super::output::format_of;
 use crate::method::Overrides;
+use crate::settings::Settings;
+use crate::shader::SHADERS;
+use std::borrow::Cow;
 use std::collections::HashMap;
-use std::sync::{Mutex, PoisonError};
+use std::fmt::Debug;
+use std::sync::{Arc, Mutex, PoisonError};
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
     BindingResource, BindingType, BufferBindingType, ComputePass, ComputePipeline, ComputePipelineDescriptor, Device,
     PipelineCompilationOptions, PipelineLayout, PipelineLayoutDescriptor, ShaderModule, ShaderModuleDescriptor,
-    ShaderSource, ShaderStages, StorageTextureAccess, TextureFormat, TextureSampleType, TextureViewDimension,
+    ShaderSource, ShaderStages, StorageTextureAccess, TextureSampleType, TextureViewDimension,
 };
 
 /// Width of a workgroup in invocations; its height is 1. Equal to `@workgroup_size` in the shaders.
@@ -19,55 +26,130 @@ pub struct ComputeShader {
     name: &'static str,
     /// Label of the shader's objects on the device, for captures of a frame.
     label: String,
-    /// Binding numbers, in the order of the resources of a [`group`](Self::group).
-    numbers: Vec<u32>,
-    bindings: BindGroupLayout,
+    /// Numbers and types of the bindings, by number.
+    bindings: Vec<(u32, BindingType)>,
+    group_layout: BindGroupLayout,
     layout: PipelineLayout,
     module: ShaderModule,
-    /// Pipelines by override values, compiled at their first use.
-    pipelines: Mutex<HashMap<Overrides, ComputePipeline>>,
+    /// Names of the overrides that the shader has.
+    overrides: Vec<String>,
+    pipelines: Mutex<Pipelines>,
+}
+
+/// Compiled pipelines.
+#[derive(Debug, Default)]
+struct Pipelines {
+    list: Vec<(Overrides, ComputePipeline)>,
+    /// Pipelines of keys, as long as the settings are those of `generation`.
+    by_key: HashMap<u64, ComputePipeline>,
+    generation: u64,
+}
+
+/// Function from the name of a pass's module to its WGSL text.
+type Text = dyn Fn(&str) -> Cow<'static, str> + Send + Sync;
+
+/// WGSL texts of the passes, by the names of their modules.
+#[derive(Clone)]
+pub struct Sources(Arc<Text>);
+
+impl Sources {
+    /// Texts that `text` gives: for tests that plant errors, and for benchmarks.
+    pub fn new(text: impl Fn(&str) -> Cow<'static, str> + Send + Sync + 'static) -> Self {
+        Self(Arc::new(text))
+    }
+
+    /// These texts with `text` for one pass.
+    #[must_use]
+    pub fn with(self, name: &'static str, text: &str) -> Self {
+        let text = text.to_owned();
+        Self::new(move |other| if other == name { text.clone().into() } else { self.text(other) })
+    }
+
+    /// The text of a pass.
+    pub fn text(&self, name: &str) -> Cow<'static, str> {
+        (self.0)(name)
+    }
+
+    /// The shader of a pass.
+    pub fn shader(&self, device: &Device, name: &'static str) -> ComputeShader {
+        ComputeShader::new(device, name, &self.text(name))
+    }
+}
+
+impl Default for Sources {
+    fn default() -> Self {
+        Self::new(|name| SHADERS.compose(name).source.into())
+    }
+}
+
+impl Debug for Sources {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Sources")
+    }
+}
+
+/// Module of the method's pass.
+pub fn method_pass(settings: &Settings) -> &'static str {
+    settings.pass_shader().name
+}
+
+/// Key of a pipeline among those of a shader.
+#[derive(Clone, Copy, Debug)]
+pub struct PipelineKey {
+    pub bits: u64,
+    /// Number of the settings, which increases with each change.
+    pub generation: u64,
 }
 
 impl ComputeShader {
-    /// A shader with bindings of `types`, numbered from 0.
-    pub fn new(device: &Device, name: &'static str, source: String, types: &[BindingType]) -> Self {
-        let bindings: Vec<_> = (0..).zip(types.iter().copied()).collect();
-        Self::with_bindings(device, name, source, &bindings)
-    }
-
-    /// A shader with numbered bindings.
-    pub fn with_bindings(device: &Device, name: &'static str, source: String, bindings: &[(u32, BindingType)]) -> Self {
+    /// A shader with the bindings of its text, or with those of them that its pass uses.
+    pub fn new(device: &Device, name: &'static str, source: &str) -> Self {
+        let mut bindings = declared(source);
+        if let Some(used) = used_by(name) {
+            bindings.retain(|(number, _)| used.iter().any(|&binding| binding as u32 == *number));
+        }
         let label = format!("afterimage {name}");
         let module = device.create_shader_module(ShaderModuleDescriptor {
             label: Some(&label),
             source: ShaderSource::Wgsl(source.into()),
         });
-        let numbers = bindings.iter().map(|(number, _)| *number).collect();
-        let entries: Vec<_> = bindings
-            .iter()
-            .map(|&(binding, ty)| BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None })
-            .collect();
-        let bindings =
+        let entry =
+            |&(binding, ty): &_| BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None };
+        let entries: Vec<_> = bindings.iter().map(entry).collect();
+        let group_layout =
             device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(&label), entries: &entries });
         let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
             label: Some(&label),
-            bind_group_layouts: &[Some(&bindings)],
+            bind_group_layouts: &[Some(&group_layout)],
             ..PipelineLayoutDescriptor::default()
         });
-        Self { name, label, numbers, bindings, layout, module, pipelines: Mutex::default() }
+        let overrides = source.lines().filter_map(|line| line.strip_prefix("override ")?.split_once(':'));
+        let overrides = overrides.map(|(name, _)| name.to_owned()).collect();
+        Self { name, label, bindings, group_layout, layout, module, overrides, pipelines: Mutex::default() }
     }
 
-    /// A bind group of `resources`, in the order of the bindings.
+    /// Name of the shader's module.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// Numbers and types of the bindings, by number.
+    pub fn bindings(&self) -> &[(u32, BindingType)] {
+        &self.bindings
+    }
+
+    /// Layout of the bind groups.
+    pub fn group_layout(&self) -> &BindGroupLayout {
+        &self.group_layout
+    }
+
+    /// A bind group of `resources`, by number.
     pub fn group<'a>(&self, device: &Device, resources: impl IntoIterator<Item = BindingResource<'a>>) -> BindGroup {
-        let entries: Vec<_> = self
-            .numbers
-            .iter()
-            .zip(resources)
-            .map(|(&binding, resource)| BindGroupEntry { binding, resource })
-            .collect();
+        let entry = |(&(binding, _), resource)| BindGroupEntry { binding, resource };
+        let entries: Vec<_> = self.bindings.iter().zip(resources).map(entry).collect();
         device.create_bind_group(&BindGroupDescriptor {
             label: Some(&self.label),
-            layout: &self.bindings,
+            layout: &self.group_layout,
             entries: &entries,
         })
     }
@@ -76,7 +158,38 @@ impl ComputeShader {
     pub fn pipeline(&self, device: &Device, overrides: &[(&'static str, u32)]) -> ComputePipeline {
         // A poisoned lock is harmless: a thread that panicked here inserted nothing.
         let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(pipeline) = pipelines.get(overrides) {
+        self.find_or_compile(device, &mut pipelines, overrides)
+    }
+
+    /// The pipeline of a key, which says what `overrides` are. The shader need not have all of them.
+    pub fn keyed_pipeline(
+        &self,
+        device: &Device,
+        key: PipelineKey,
+        overrides: impl FnOnce() -> Overrides,
+    ) -> ComputePipeline {
+        let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
+        if pipelines.generation != key.generation {
+            pipelines.by_key.clear();
+            pipelines.generation = key.generation;
+        }
+        if let Some(pipeline) = pipelines.by_key.get(&key.bits) {
+            return pipeline.clone();
+        }
+        let mut list = overrides();
+        list.retain(|(name, _)| self.overrides.iter().any(|own| own == name));
+        let pipeline = self.find_or_compile(device, &mut pipelines, &list);
+        pipelines.by_key.insert(key.bits, pipeline.clone());
+        pipeline
+    }
+
+    fn find_or_compile(
+        &self,
+        device: &Device,
+        pipelines: &mut Pipelines,
+        overrides: &[(&'static str, u32)],
+    ) -> ComputePipeline {
+        if let Some((_, pipeline)) = pipelines.list.iter().find(|(list, _)| list == overrides) {
             return pipeline.clone();
         }
         let constants: Vec<_> = overrides.iter().map(|&(name, value)| (name, f64::from(value))).collect();
@@ -92,14 +205,14 @@ impl ComputeShader {
             },
             cache: None,
         });
-        pipelines.insert(overrides.to_vec(), pipeline.clone());
+        pipelines.list.push((overrides.to_vec(), pipeline.clone()));
         pipeline
     }
 
     /// Name of the shader, and override values, of each compiled pipeline.
     pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
         let pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
-        pipelines.keys().map(|overrides| (self.name, overrides.clone())).collect()
+        pipelines.list.iter().map(|(overrides, _)| (self.name, overrides.clone())).collect()
     }
 
     /// Dispatches one invocation a texel, for `width` x `height` texels in each of `layers` layers.
@@ -118,39 +231,35 @@ impl ComputeShader {
     }
 }
 
-/// Binding type of a uniform buffer.
-pub fn uniform() -> BindingType {
-    BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None }
+/// Bindings of group 0 that a WGSL text declares, by number.
+pub(super) fn declared(source: &str) -> Vec<(u32, BindingType)> {
+    let mut bindings: Vec<_> = source.lines().filter_map(declaration).collect();
+    bindings.sort_by_key(|&(number, _)| number);
+    bindings
 }
 
-/// Binding type of a storage buffer.
-pub fn storage_buffer(read_only: bool) -> BindingType {
-    BindingType::Buffer {
-        ty: BufferBindingType::Storage { read_only },
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    }
-}
-
-/// Binding type of a 2D array texture of floats to read.
-pub fn float_texture() -> BindingType {
-    sampled(TextureSampleType::Float { filterable: false })
-}
-
-/// Binding type of a 2D array texture of unsigned integers to read.
-pub fn uint_texture() -> BindingType {
-    sampled(TextureSampleType::Uint)
-}
-
-fn sampled(sample_type: TextureSampleType) -> BindingType {
-    BindingType::Texture { sample_type, view_dimension: TextureViewDimension::D2Array, multisampled: false }
-}
-
-/// Binding type of a 2D array texture to write.
-pub fn storage_texture(format: TextureFormat) -> BindingType {
-    BindingType::StorageTexture {
-        access: StorageTextureAccess::WriteOnly,
-        format,
-        view_dimension: TextureViewDimension::D2Array,
-    }
+/// Number and type of the binding that a line declares: `@group(0) @binding(1) var color_in: texture_2d_array<f32>;`.
+fn declaration(line: &str) -> Option<(u32, BindingType)> {
+    let (number, rest) = line.strip_prefix("@group(0) @binding(")?.split_once(") var")?;
+    let (variable, ty) = rest.trim_end_matches(';').split_once(": ")?;
+    let buffer = |ty, has_dynamic_offset| BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None };
+    let view_dimension = TextureViewDimension::D2Array;
+    let texture = |sample_type| BindingType::Texture { sample_type, view_dimension, multisampled: false };
+    let ty = match ty {
+        // A dispatch says where in the buffer its uniforms are.
+        _ if variable.starts_with("<uniform>") => buffer(BufferBindingType::Uniform, ty == "FrameUniforms"),
+        _ if variable.starts_with("<storage, read>") => buffer(BufferBindingType::Storage { read_only: true }, false),
+        _ if variable.starts_with("<storage") => buffer(BufferBindingType::Storage { read_only: false }, false),
+        "texture_2d_array<f32>" => texture(TextureSampleType::Float { filterable: false }),
+        "texture_2d_array<u32>" => texture(TextureSampleType::Uint),
+        _ => {
+            let format = ty.strip_prefix("texture_storage_2d_array<")?.strip_suffix(", write>")?;
+            BindingType::StorageTexture {
+                access: StorageTextureAccess::WriteOnly,
+                format: format_of(format)?,
+                view_dimension,
+            }
+        }
+    };
+    Some((number.parse().ok()?, ty))
 }

@@ -1,23 +1,18 @@
 //! Checker of a renderer's inputs, recorded into the caller's command encoder.
 
 use super::buffer::filled;
-use super::compute::{ComputeShader, float_texture, storage_buffer, storage_texture, uniform};
-use super::history::array_view;
+use super::compute::{ComputeShader, Sources};
 use super::input::{check_inputs, check_words};
-use super::textures::Batch;
+use super::plane::{Plane, PlaneDesc, layer_view};
 use super::{Frame, MAX_VIEWS, Textures};
 use crate::doctor::{Chart, Description, Finding, Observation, check_view, continues, maps, tile_count};
 use crate::error::{CreateError, FrameError};
 use crate::frame::ContextDesc;
 use crate::kernel::doctor::{HYPOTHESES, WORDS};
 use crate::kernel::foveate::level_len;
-use crate::shader::SHADERS;
 use bytemuck::{Pod, Zeroable};
 use std::collections::VecDeque;
-use wgpu::{
-    BindingResource, Buffer, BufferUsages, CommandEncoder, ComputePassDescriptor, Device, Texture, TextureFormat,
-    TextureUsages, TextureView,
-};
+use wgpu::{BindingResource, Buffer, BufferUsages, CommandEncoder, ComputePassDescriptor, Device, TextureFormat};
 
 /// Largest number of frames that may be recorded before the words of the first one are read.
 const PENDING: usize = 16;
@@ -53,8 +48,8 @@ pub struct Doctor {
     light_pass: ComputeShader,
     pass: ComputeShader,
     /// Light of the last frame, and of the frame before it.
-    light: [TextureView; 2],
-    absent: TextureView,
+    light: [Plane; 2],
+    absent: Plane,
     past: Option<Past>,
     pending: VecDeque<Observation>,
     chart: Chart,
@@ -73,27 +68,29 @@ impl Doctor {
     /// # Errors
     /// [`CreateError`] if the description is out of range, or has no such view, or a limit of the device is too low.
     pub fn new(device: &Device, desc: &ContextDesc, view: usize) -> Result<Self, CreateError> {
-        Self::with_shader(device, desc, view, &SHADERS.compose("doctor_pass").source)
+        Self::with_sources(device, desc, view, &Sources::default())
     }
 
-    /// A doctor with another shader, for tests that plant errors.
+    /// A doctor with other texts of its passes, for tests that plant errors.
     #[doc(hidden)]
-    pub fn with_shader(device: &Device, desc: &ContextDesc, view: usize, source: &str) -> Result<Self, CreateError> {
+    pub fn with_sources(
+        device: &Device,
+        desc: &ContextDesc,
+        view: usize,
+        sources: &Sources,
+    ) -> Result<Self, CreateError> {
         super::validate(device, desc, TextureFormat::Rgba16Float)?;
         check_view(desc, view)?;
         debug_assert!(view < MAX_VIEWS);
-        let float = float_texture();
-        let light = [uniform(), float, storage_texture(TextureFormat::R32Float)];
-        let types = [uniform(), float, float, float, float, float, storage_buffer(true), storage_buffer(false)];
-        let light_source = SHADERS.compose("doctor_light_pass").source;
+        let light = |size| PlaneDesc::new("afterimage doctor light", TextureFormat::R32Float, size, 1).create(device);
         let half = desc.size_px.map(|s| level_len(s, 1));
         Ok(Self {
             desc: *desc,
             view,
-            light_pass: ComputeShader::new(device, "doctor_light_pass", light_source, &light),
-            pass: ComputeShader::new(device, "doctor_pass", source.to_owned(), &types),
-            light: [half; 2].map(|size| array_view(&light_texture(device, size))),
-            absent: array_view(&light_texture(device, [1, 1])),
+            light_pass: sources.shader(device, "doctor_light_pass"),
+            pass: sources.shader(device, "doctor_pass"),
+            light: [half; 2].map(light),
+            absent: light([1, 1]),
             past: None,
             pending: VecDeque::new(),
             chart: Chart::default(),
@@ -168,12 +165,13 @@ impl Doctor {
     ) {
         let mut pass = encoder
             .begin_compute_pass(&ComputePassDescriptor { label: Some("afterimage doctor"), timestamp_writes: None });
-        let first = self.view as u32;
-        let batch = Batch { views: first..first + 1, regions: true };
-        let color = frame.color.bind(&batch);
+        let bind = |textures: Textures<'_>| {
+            let (texture, layer) = textures.layers().nth(if textures.is_regions() { self.view } else { 0 })?;
+            Some(layer_view(texture, layer.or(Some(self.view as u32))))
+        };
         let optional =
-            |textures: Option<Textures<'_>>| textures.map_or_else(|| self.absent.clone(), |t| t.bind(&batch));
-        let (depth, motion) = (optional(frame.depth), optional(frame.motion));
+            |textures: Option<Textures<'_>>| textures.and_then(bind).unwrap_or_else(|| self.absent.whole.clone());
+        let [color, depth, motion] = [Some(frame.color), frame.depth, frame.motion].map(optional);
         let origin = |textures: Option<Textures<'_>>| textures.map_or(0, |t| t.packed_origin(self.view));
         let [w, h] = self.desc.size_px;
         let bytes = [w, h, origin(Some(frame.color)), 0];
@@ -181,7 +179,7 @@ impl Doctor {
         let resources = [
             view.as_entire_binding(),
             BindingResource::TextureView(&color),
-            BindingResource::TextureView(&self.light[0]),
+            BindingResource::TextureView(&self.light[0].whole),
         ];
         let group = self.light_pass.group(device, resources);
         let half = [w, h].map(|s| level_len(s, 1));
@@ -203,8 +201,8 @@ impl Doctor {
         }
         let tiles = filled(device, "afterimage doctor tiles", bytemuck::cast_slice(&tiles), BufferUsages::STORAGE);
         // The first frame is compared with itself, and the result is not used.
-        let past = if now.has_past { &self.light[1] } else { &self.light[0] };
-        let textures = [&color, &depth, &motion, &self.light[0], past];
+        let past = &self.light[usize::from(now.has_past)].whole;
+        let textures = [&color, &depth, &motion, &self.light[0].whole, past];
         let resources = std::iter::once(uniforms.as_entire_binding())
             .chain(textures.map(BindingResource::TextureView))
             .chain([tiles.as_entire_binding(), words.as_entire_binding()]);
@@ -216,22 +214,8 @@ impl Doctor {
         pass.dispatch_workgroups(now.tiles.len() as u32, 1, 1);
     }
 
-    /// Words of the frames read so far, for the tests.
-    #[doc(hidden)]
+    /// Words of the frames read so far, oldest first.
     pub fn words(&self) -> Vec<&[u32]> {
         self.chart.words()
     }
-}
-
-fn light_texture(device: &Device, size: [u32; 2]) -> Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("afterimage doctor light"),
-        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: TextureFormat::R32Float,
-        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING,
-        view_formats: &[],
-    })
 }

@@ -1,8 +1,10 @@
 //! Inputs and outputs of one frame on a GPU.
 
-use super::{Afterimage, MAX_VIEWS, Textures};
+use super::binding::Binding;
+use super::{Afterimage, Textures};
 use crate::frame::ViewFrame;
 use crate::kernel::debug_view::DebugView;
+use crate::uniforms::{MAX_VIEWS, ORIGINS};
 use crate::warning::Warning;
 use wgpu::{Buffer, QuerySet, Texture};
 
@@ -18,24 +20,22 @@ impl<'a> Frame<'a> {
         Self::of_color(color.into(), views, index)
     }
 
-    /// This frame with another color input, whose lifetime may be shorter. `..*self` would not allow that.
-    pub(super) fn with_color<'b>(&self, color: Textures<'b>) -> Frame<'b>
-    where
-        'a: 'b,
-    {
-        let Self { depth, motion, trust, lod, noise, repaired, views, index, reset, exposure, .. } = *self;
-        Frame { color, depth, motion, trust, lod, noise, repaired, views, index, reset, exposure }
+    /// Inputs, by the numbers of their bindings.
+    pub(super) fn textures(&self) -> [Option<Textures<'a>>; ORIGINS] {
+        let mut all = [None; ORIGINS];
+        all[Binding::Color as usize] = Some(self.color);
+        all[Binding::Depth as usize] = self.depth;
+        all[Binding::Motion as usize] = self.motion;
+        all[Binding::Trust as usize] = self.trust;
+        all[Binding::Lod as usize] = self.lod;
+        all[Binding::Noise as usize] = self.noise;
+        all[Binding::Repaired as usize] = self.repaired;
+        all
     }
 
     /// Whether depth and motion are given at samples only.
     pub(super) fn has_geometry_at_samples(&self) -> bool {
         self.views.iter().any(|view| view.lattices.is_some_and(|lattices| lattices.has_geometry_at_samples()))
-    }
-
-    /// Whether an input consists of regions.
-    pub(super) fn has_regions(&self) -> bool {
-        let optional = [self.depth, self.motion, self.trust, self.lod, self.noise, self.repaired];
-        self.color.is_regions() || optional.iter().flatten().any(Textures::is_regions)
     }
 }
 
@@ -156,7 +156,7 @@ impl Variant {
             trust: frame.trust.is_some(),
             lod: frame.lod.is_some(),
             counters: target.counters.is_some(),
-            regions: frame.has_regions() || target.has_regions(),
+            regions: frame.textures().iter().flatten().any(Textures::is_regions) || target.has_regions(),
             geometry_at_samples: frame.has_geometry_at_samples(),
             repaired: frame.repaired.is_some(),
             debug: target.debug.map(|d| d.view),

@@ -5,33 +5,25 @@
 //! that wrote it in a buffer on the device. A frame states in its uniforms which number it expects
 //! (`shaders/pass/past_frame.wgsl`), and starts without history if the device has another.
 
-use super::buffer::filled_if_alive;
-use super::mip_chain::{self, Candidates, MipLevel};
-use crate::error::FrameError;
+use super::binding::Binding;
+use super::groups::Resource;
+use super::plane::{Plane, PlaneDesc};
+use super::recorder::NUMBER;
+use super::uniforms::NO_FRAME;
 use crate::frame::ContextDesc;
 use crate::kernel::foveate::level_len;
 use crate::method::HistoryLayout;
 use crate::uniforms::Held;
-use wgpu::{
-    Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Device, Extent3d, Texture, TextureDescriptor,
-    TextureDimension, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor, TextureViewDimension,
-};
+use wgpu::{Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Device, TextureFormat, TextureUsages};
 
-/// `NO_FRAME` in `shaders/pass/inputs.wgsl`: the number of no frame.
-pub(super) const NO_FRAME: u32 = u32::MAX;
 /// Bytes of a frame number.
 const NUMBER_BYTES: u64 = 4;
 
 /// Textures of one frame.
 #[derive(Debug)]
 pub(super) struct Planes {
-    pub textures: Vec<Texture>,
-    /// Views of all levels, to read.
-    pub views: Vec<TextureView>,
-    /// Views of the first level, to write.
-    pub targets: Vec<TextureView>,
-    /// Dispatches that fill the other levels.
-    pub mip_levels: Vec<MipLevel>,
+    /// The mip chain, if any, is the second.
+    pub planes: Vec<Plane>,
     /// Number of the frame that wrote the textures, on the device; 0 before one did.
     pub frame: Buffer,
 }
@@ -42,7 +34,7 @@ pub(super) struct History {
     layout: HistoryLayout,
     pub sets: [Planes; 2],
     /// Mip chain of noisy candidates, if there is one.
-    pub candidates: Option<Candidates>,
+    pub candidates: Option<Plane>,
     past: usize,
     filled: bool,
     /// Number of the last recorded frame; 0 before the first one.
@@ -51,23 +43,21 @@ pub(super) struct History {
 }
 
 impl History {
-    /// Empty history, without the textures that stages [add](super::stage::Passes::extend).
+    /// Empty history.
     pub fn new(device: &Device, desc: &ContextDesc) -> Self {
         let layout = desc.settings.history_layout();
-        let planes = || {
-            let textures: Vec<_> = plan(desc, layout).iter().map(|p| p.create(device, desc)).collect();
-            let views = textures.iter().map(|t| levels_view(t, 0, None, None)).collect();
-            let targets = textures.iter().map(array_view).collect();
-            let frame = device.create_buffer(&BufferDescriptor {
+        let planes = || Planes {
+            planes: plan(desc).iter().map(|plane| plane.create(device)).collect(),
+            frame: device.create_buffer(&BufferDescriptor {
                 label: Some("afterimage frame number"),
                 size: 4 * NUMBER_BYTES,
                 usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
-            });
-            Planes { textures, views, targets, mip_levels: vec![], frame }
+            }),
         };
         let held = vec![Held::default(); desc.view_count as usize];
-        Self { layout, sets: [planes(), planes()], candidates: None, past: 0, filled: false, frame: 0, held }
+        let candidates = candidate_plan(desc).map(|plane| plane.create(device));
+        Self { layout, sets: [planes(), planes()], candidates, past: 0, filled: false, frame: 0, held }
     }
 
     pub fn layout(&self) -> HistoryLayout {
@@ -95,18 +85,16 @@ impl History {
         if self.filled { self.frame } else { NO_FRAME }
     }
 
-    /// The number of the next frame, on the device; an error if wgpu knows that the device is lost.
-    pub fn next_number(&self, device: &Device) -> Result<Buffer, FrameError> {
-        let (label, bytes) = ("afterimage frame number", next(self.frame).to_le_bytes());
-        let (number, is_alive) = filled_if_alive(device, label, &bytes, BufferUsages::COPY_SRC);
-        if is_alive { Ok(number) } else { Err(FrameError::DeviceLost) }
+    /// Number of the next frame.
+    pub fn next_number(&self) -> u32 {
+        next(self.frame)
     }
 
-    /// Makes the written frame the previous one: records its [`next_number`](Self::next_number) into `encoder`, which
+    /// Makes the written frame the previous one: its [`next_number`](Self::next_number) is in `upload`, and `encoder`
     /// has its passes.
-    pub fn finish(&mut self, encoder: &mut CommandEncoder, number: &Buffer) {
-        self.frame = next(self.frame);
-        self.number_next(encoder, number);
+    pub fn finish(&mut self, encoder: &mut CommandEncoder, upload: &Buffer) {
+        self.frame = self.next_number();
+        self.number_next(encoder, upload, NUMBER as u64);
         self.swap();
     }
 
@@ -114,12 +102,18 @@ impl History {
     /// previous frame itself never ran, its number in `old` is another, and so it is here.
     pub fn finish_resampled(&mut self, encoder: &mut CommandEncoder, old: &Self) {
         self.frame = old.frame;
-        self.number_next(encoder, &old.split().0.frame);
+        self.number_next(encoder, &old.split().0.frame, 0);
         self.swap();
     }
 
-    fn number_next(&self, encoder: &mut CommandEncoder, number: &Buffer) {
-        encoder.copy_buffer_to_buffer(number, 0, &self.split().1.frame, 0, NUMBER_BYTES);
+    fn number_next(&self, encoder: &mut CommandEncoder, number: &Buffer, offset: u64) {
+        encoder.copy_buffer_to_buffer(number, offset, &self.split().1.frame, 0, NUMBER_BYTES);
+    }
+
+    /// What passes bind by a number, if it is of this history.
+    pub fn bound(&self, number: u32) -> Option<Resource> {
+        let (past, next) = self.split();
+        bound(past, next, number)
     }
 
     fn swap(&mut self) {
@@ -133,108 +127,63 @@ fn next(frame: u32) -> u32 {
     frame % (NO_FRAME - 1) + 1
 }
 
+/// What passes bind by a number, if it is of a history that has `past` to read and `next` to write.
+pub(super) fn bound(past: &Planes, next: &Planes, number: u32) -> Option<Resource> {
+    let place = |first: Binding| number.checked_sub(first as u32).filter(|&i| i < 3).map(|i| i as usize);
+    if number == Binding::PastFrame as u32 {
+        Some((&past.frame).into())
+    } else if let Some(i) = place(Binding::Past) {
+        past.planes.get(i).map(|plane| (&plane.whole).into())
+    } else {
+        next.planes.get(place(Binding::Next)?).map(|plane| (&plane.levels[0]).into())
+    }
+}
+
 /// Bytes that a context holds between frames.
 pub(super) fn memory_bytes(desc: &ContextDesc) -> u64 {
-    let layout = desc.settings.history_layout();
-    let sets: u64 = plan(desc, layout).iter().map(|p| 2 * p.bytes(desc)).sum();
-    sets + candidate_plan(desc).map_or(0, |p| p.bytes(desc))
+    let sets: u64 = plan(desc).iter().map(|plane| 2 * plane.bytes()).sum();
+    sets + candidate_plan(desc).map_or(0, |plane| plane.bytes())
 }
 
 /// Size of the largest texture, along x and y.
 pub(super) fn largest_size(desc: &ContextDesc) -> [u32; 2] {
-    let plans = plan(desc, desc.settings.history_layout());
-    plans.iter().fold([0; 2], |size, p| [0, 1].map(|i| size[i].max(p.size_px[i])))
+    plan(desc).iter().fold([0; 2], |size, plane| [0, 1].map(|i| size[i].max(plane.size_px[i])))
 }
 
-/// A texture of history.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Plan {
-    format: TextureFormat,
-    size_px: [u32; 2],
-    levels: u32,
-}
-
-/// Textures of one frame's history. The mip chain, if any, is the second.
-fn plan(desc: &ContextDesc, layout: HistoryLayout) -> Vec<Plan> {
-    let full = |format| Plan { format, size_px: desc.size_px, levels: 1 };
-    match layout {
+/// Textures of one frame's history.
+fn plan(desc: &ContextDesc) -> Vec<PlaneDesc> {
+    use TextureFormat::{R32Uint, Rg32Uint};
+    let full = |format| plane(desc, format);
+    match desc.settings.history_layout() {
         HistoryLayout::Nothing => vec![],
-        HistoryLayout::Reservoirs { keys, references } => {
-            let formats = [TextureFormat::Rg32Uint, TextureFormat::R32Uint, TextureFormat::R32Uint];
-            formats.into_iter().take(if keys || references { 3 } else { 2 }).map(full).collect()
-        }
-        HistoryLayout::Kept { noisy, .. } => {
-            let formats = [TextureFormat::Rg32Uint, TextureFormat::R32Uint];
-            formats.into_iter().take(if noisy { 2 } else { 1 }).map(full).collect()
-        }
-        HistoryLayout::Surfaces { levels, noisy } => {
-            let mip_chain = (levels > 0).then(|| mip_chain_plan(desc, levels));
-            let noise = (levels > 0 && noisy).then(|| full(TextureFormat::R32Uint));
-            [Some(full(TextureFormat::Rg32Uint)), mip_chain, noise].into_iter().flatten().collect()
+        HistoryLayout::Reservoirs { keys: false, references: false } => [Rg32Uint, R32Uint].map(full).into(),
+        HistoryLayout::Reservoirs { .. } => [Rg32Uint, R32Uint, R32Uint].map(full).into(),
+        HistoryLayout::Kept { noisy: false, .. } => vec![full(Rg32Uint)],
+        HistoryLayout::Kept { noisy: true, .. } => [Rg32Uint, R32Uint].map(full).into(),
+        HistoryLayout::Surfaces { levels: 0, .. } => vec![full(Rg32Uint)],
+        HistoryLayout::Surfaces { levels, noisy: false } => vec![full(Rg32Uint), mip_chain(desc, levels)],
+        HistoryLayout::Surfaces { levels, noisy: true } => {
+            vec![full(Rg32Uint), mip_chain(desc, levels), full(R32Uint)]
         }
     }
 }
 
 /// Mip chain of noisy candidates, if the layout has one.
-pub(super) fn candidate_plan(desc: &ContextDesc) -> Option<Plan> {
+fn candidate_plan(desc: &ContextDesc) -> Option<PlaneDesc> {
     match desc.settings.history_layout() {
-        HistoryLayout::Surfaces { levels, noisy: true } => Some(mip_chain_plan(desc, levels)),
+        HistoryLayout::Surfaces { levels, noisy: true } => Some(mip_chain(desc, levels)),
         _ => None,
     }
 }
 
-/// Texture for levels 1 to `levels` of a mip chain.
-fn mip_chain_plan(desc: &ContextDesc, levels: u32) -> Plan {
+fn plane(desc: &ContextDesc, format: TextureFormat) -> PlaneDesc {
+    let usage = TextureUsages::COPY_SRC | TextureUsages::COPY_DST;
+    PlaneDesc { usage, ..PlaneDesc::new("afterimage history", format, desc.size_px, desc.view_count) }
+}
+
+/// Levels 1 to `levels` of a mip chain.
+fn mip_chain(desc: &ContextDesc, levels: u32) -> PlaneDesc {
     // Mip sizes of a texture round down, levels of the mip chain round up. With padding they agree.
-    let multiple = 1 << (levels - 1);
-    let size_px = desc.size_px.map(|s| level_len(s, 1).next_multiple_of(multiple));
-    Plan { format: mip_chain::FORMAT, size_px, levels }
-}
-
-impl Plan {
-    pub fn create(self, device: &Device, desc: &ContextDesc) -> Texture {
-        let [width, height] = self.size_px;
-        device.create_texture(&TextureDescriptor {
-            label: Some("afterimage history"),
-            size: Extent3d { width, height, depth_or_array_layers: desc.view_count },
-            mip_level_count: self.levels,
-            sample_count: 1,
-            dimension: TextureDimension::D2,
-            format: self.format,
-            usage: TextureUsages::TEXTURE_BINDING
-                | TextureUsages::STORAGE_BINDING
-                | TextureUsages::COPY_SRC
-                | TextureUsages::COPY_DST,
-            view_formats: &[],
-        })
-    }
-
-    fn bytes(self, desc: &ContextDesc) -> u64 {
-        let texel = u64::from(self.format.block_copy_size(None).unwrap_or(0));
-        let texels = |level: u32| self.size_px.map(|s| u64::from(s >> level)).iter().product::<u64>();
-        texel * (0..self.levels).map(texels).sum::<u64>() * u64::from(desc.view_count)
-    }
-}
-
-/// View of all layers of a texture's first level as a 2D array. Textures with one layer also get a 2D array view,
-/// because the shaders bind arrays.
-pub fn array_view(texture: &Texture) -> TextureView {
-    levels_view(texture, 0, Some(1), None)
-}
-
-/// View of one layer, or of all, as a 2D array, of `count` levels from `first` on; `None`: of all levels from `first`
-/// on.
-pub(super) fn levels_view(texture: &Texture, first: u32, count: Option<u32>, layer: Option<u32>) -> TextureView {
-    let aspect =
-        if texture.format().has_depth_aspect() { wgpu::TextureAspect::DepthOnly } else { wgpu::TextureAspect::All };
-    texture.create_view(&TextureViewDescriptor {
-        label: Some("afterimage"),
-        dimension: Some(TextureViewDimension::D2Array),
-        aspect,
-        base_mip_level: first,
-        mip_level_count: count,
-        base_array_layer: layer.unwrap_or(0),
-        array_layer_count: layer.map(|_| 1),
-        ..TextureViewDescriptor::default()
-    })
+    let size_px = desc.size_px.map(|s| level_len(s, 1).next_multiple_of(1 << (levels - 1)));
+    PlaneDesc { levels, size_px, ..plane(desc, TextureFormat::Rgba16Float) }
 }

@@ -1,5 +1,6 @@
 //! Validation of a frame before its passes are recorded.
 
+use super::binding::{Binding, INPUTS, Input};
 use super::output::DEBUG_FORMAT;
 use super::{Afterimage, Frame, Target, Textures};
 use crate::error::{FrameError, FrameValue};
@@ -40,32 +41,18 @@ pub(super) fn check(
 /// Checks a frame without its target.
 pub(super) fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
     frame.check(desc)?;
-    check_each(desc, frame, shaded(frame))?;
-    check_geometry(desc, frame)
-}
-
-/// An input: name, textures if given, and least number of channels.
-type Input<'a> = (&'static str, Option<Textures<'a>>, u8);
-
-/// Inputs that the shading of a frame gives.
-fn shaded<'a>(frame: &Frame<'a>) -> [Input<'a>; 4] {
-    [("color", Some(frame.color), 3), ("lod", frame.lod, 1), ("noise", frame.noise, 2), ("repaired", frame.repaired, 3)]
-}
-
-/// Inputs that are known before a frame is shaded.
-fn geometry<'a>(frame: &Frame<'a>) -> [Input<'a>; 3] {
-    [("depth", frame.depth, 1), ("motion", frame.motion, 2), ("trust", frame.trust, 1)]
+    INPUTS.iter().try_for_each(|input| check_input(desc, frame, input))
 }
 
 /// Checks that an output shares no layer of a texture with an input: a pass cannot read a layer and write it, not even
 /// other regions of it.
 fn check_apart(output: &'static str, written: Textures<'_>, frame: &Frame<'_>) -> Result<(), FrameError> {
-    let inputs = shaded(frame).into_iter().chain(geometry(frame));
-    for (input, read) in inputs.filter_map(|(input, read, _)| Some((input, read?))) {
+    let textures = frame.textures();
+    for (Input { name, .. }, read) in INPUTS.iter().filter_map(|i| Some((i, textures[i.binding as usize]?))) {
         let meets = |layers: [Option<u32>; 2]| layers.contains(&None) || layers[0] == layers[1];
         let shared = written.layers().find(|&(a, i)| read.layers().any(|(b, j)| a == b && meets([i, j])));
         if let Some((texture, _)) = shared {
-            let problem = format!("which is also the texture of {input}");
+            let problem = format!("which is also the texture of {name}");
             return Err(refuse(output, texture, problem, "a texture of its own, or another layer than any input's"));
         }
     }
@@ -74,29 +61,20 @@ fn check_apart(output: &'static str, written: Textures<'_>, frame: &Frame<'_>) -
 
 /// Checks the parts of a frame that are known before it is shaded.
 pub(super) fn check_geometry(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
-    check_each(desc, frame, geometry(frame))
+    INPUTS.iter().filter(|input| input.is_geometry).try_for_each(|input| check_input(desc, frame, input))
 }
 
-/// Checks place, usage and format of inputs.
-fn check_each<'a>(
-    desc: &ContextDesc,
-    frame: &Frame<'_>,
-    inputs: impl IntoIterator<Item = Input<'a>>,
-) -> Result<(), FrameError> {
-    for (input, textures, channels) in inputs {
-        let Some(textures) = textures else { continue };
-        let of_samples = match input {
-            "color" => true,
-            "depth" | "motion" => frame.has_geometry_at_samples(),
-            _ => false,
-        };
-        let views = if of_samples { frame.views } else { &[] };
-        check_textures(desc, input, textures, Afterimage::INPUT_USAGE, views)?;
-        for texture in textures.iter() {
-            check_readable(input, texture, channels)?;
-        }
-    }
-    Ok(())
+/// Checks place, usage and format of an input.
+fn check_input(desc: &ContextDesc, frame: &Frame<'_>, input: &Input) -> Result<(), FrameError> {
+    let Some(textures) = frame.textures()[input.binding as usize] else { return Ok(()) };
+    let of_samples = match input.binding {
+        Binding::Color => true,
+        Binding::Depth | Binding::Motion => frame.has_geometry_at_samples(),
+        _ => false,
+    };
+    let views = if of_samples { frame.views } else { &[] };
+    check_textures(desc, input.name, textures, Afterimage::INPUT_USAGE, views)?;
+    textures.iter().try_for_each(|texture| check_readable(input.name, texture, input.channels))
 }
 
 /// Storage textures of a pass that also writes a debug view: output, view, and at most three of history.

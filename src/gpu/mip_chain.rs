@@ -1,113 +1,94 @@
 //! Mip chains of stored surfaces and of noisy candidates.
 
-use super::Variant;
+use super::binding::Binding;
 use super::buffer::filled;
-use super::compute::{ComputeShader, WORKGROUP_WIDTH, float_texture, storage_texture, uniform};
-use super::history::{History, array_view, candidate_plan, levels_view};
-use super::stage::{Job, Passes};
-use super::textures::batches;
-use super::uniforms::CandidateUniforms;
+use super::compute::{ComputeShader, Sources, WORKGROUP_WIDTH};
+use super::groups::Resource;
+use super::history::History;
+use super::plane::Plane;
+use super::recorder::Recorder;
+use super::stage::{Job, Passes, Specialization};
 use crate::frame::ContextDesc;
 use crate::kernel::foveate::level_len;
 use crate::method::Overrides;
-use crate::shader::SHADERS;
-use wgpu::{BindGroup, BindingResource, BufferUsages, ComputePass, Device, Texture, TextureFormat, TextureView};
+use std::num::NonZeroU64;
+use wgpu::{Buffer, BufferUsages, Device};
 
-/// Format of the levels.
-pub(super) const FORMAT: TextureFormat = TextureFormat::Rgba16Float;
-
-/// Content of a mip chain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum MipChainKind {
-    /// Stored surfaces.
-    Surfaces,
-    /// Noisy candidates.
-    Candidates,
-}
+/// Bytes from the size of one level to that of the next: at most 256 on every device.
+const ALIGNMENT: usize = 256;
+/// Levels that a mip chain can have.
+const LEVELS: u32 = 16;
 
 /// Pass that fills a level of a mip chain from the next finer one.
 #[derive(Debug)]
 pub(super) struct MipChainPass {
     shader: ComputeShader,
-    kind: MipChainKind,
-}
-
-/// Dispatch that fills one level.
-#[derive(Debug)]
-pub(super) struct MipLevel {
-    group: BindGroup,
-    workgroups: [u32; 3],
+    overrides: [(&'static str, u32); 1],
+    size_px: [u32; 2],
+    /// Size of each level.
+    sizes: Buffer,
 }
 
 impl MipChainPass {
-    pub fn new(device: &Device, kind: MipChainKind) -> Self {
-        let source = SHADERS.compose("mip_chain_pass").source;
-        let types = [uniform(), float_texture(), storage_texture(FORMAT)];
-        Self { shader: ComputeShader::new(device, "mip_chain_pass", source, &types), kind }
+    /// The pass for stored surfaces, or for noisy candidates.
+    pub fn new(device: &Device, desc: &ContextDesc, sources: &Sources, of_candidates: bool) -> Self {
+        Self {
+            shader: sources.shader(device, "mip_chain_pass"),
+            overrides: [("CANDIDATES", u32::from(of_candidates))],
+            size_px: desc.size_px,
+            sizes: sizes(device, desc.size_px),
+        }
     }
 
-    /// The dispatches that fill `texture`, the mip chain of views of `size_px`, from its second level on.
-    pub fn levels(&self, device: &Device, texture: &Texture, size_px: [u32; 2]) -> Vec<MipLevel> {
-        (1..texture.mip_level_count())
-            .map(|coarse| {
-                // Mip 0 of the texture is level 1 of the mip chain.
-                let fine_size = size_px.map(|s| level_len(s, coarse));
-                let [width, height] = size_px.map(|s| level_len(s, coarse + 1));
-                let bytes = bytemuck::bytes_of(&fine_size);
-                let buffer = filled(device, "afterimage uniforms", bytes, BufferUsages::UNIFORM);
-                let [fine, target] = [coarse - 1, coarse].map(|level| levels_view(texture, level, Some(1), None));
-                let resources = [
-                    buffer.as_entire_binding(),
-                    BindingResource::TextureView(&fine),
-                    BindingResource::TextureView(&target),
-                ];
-                let layers = texture.depth_or_array_layers();
-                MipLevel {
-                    group: self.shader.group(device, resources),
-                    workgroups: [width.div_ceil(WORKGROUP_WIDTH), height, layers],
-                }
-            })
-            .collect()
-    }
-
-    fn overrides(&self) -> [(&'static str, u32); 1] {
-        [("CANDIDATES", u32::from(self.kind == MipChainKind::Candidates))]
-    }
-
-    /// Records the dispatches of `levels`.
-    fn fill(&self, device: &Device, pass: &mut ComputePass<'_>, levels: &[MipLevel]) {
-        pass.set_pipeline(&self.shader.pipeline(device, &self.overrides()));
-        for level in levels {
-            pass.set_bind_group(0, &level.group, &[]);
-            let [x, y, z] = level.workgroups;
-            pass.dispatch_workgroups(x, y, z);
+    /// Adds the dispatches that fill a mip chain from its second level on.
+    fn fill(&self, device: &Device, recorder: &mut Recorder, chain: &Plane) {
+        for (i, levels) in chain.levels.windows(2).enumerate() {
+            // The first level of the texture is level 1 of the mip chain.
+            let level = i as u32 + 1;
+            let resource = |number: u32| {
+                Some(match number {
+                    _ if number == Binding::Read as u32 => (&levels[0]).into(),
+                    _ if number == Binding::Write as u32 => (&levels[1]).into(),
+                    _ => Resource::Buffer(self.sizes.clone(), u64::from(level) * ALIGNMENT as u64, NonZeroU64::new(8)),
+                })
+            };
+            let [width, height] = self.size_px.map(|s| level_len(s, level + 1));
+            let workgroups = [width.div_ceil(WORKGROUP_WIDTH), height, chain.desc.layers];
+            let pipeline = self.shader.pipeline(device, &self.overrides);
+            recorder.add(device, (&self.shader, pipeline), None, resource, workgroups);
         }
     }
 }
 
+fn sizes(device: &Device, size_px: [u32; 2]) -> Buffer {
+    let mut bytes = vec![0; LEVELS as usize * ALIGNMENT];
+    for (level, slot) in (0..).zip(bytes.chunks_mut(ALIGNMENT)) {
+        slot[..8].copy_from_slice(bytemuck::bytes_of(&size_px.map(|s| level_len(s, level))));
+    }
+    filled(device, "afterimage mip levels", &bytes, BufferUsages::UNIFORM)
+}
+
 impl Passes for MipChainPass {
-    fn extend(&self, device: &Device, desc: &ContextDesc, history: &mut History) {
-        for planes in &mut history.sets {
-            planes.mip_levels = self.levels(device, &planes.textures[1], desc.size_px);
-        }
+    fn resize(&mut self, device: &Device, desc: &ContextDesc) {
+        (self.size_px, self.sizes) = (desc.size_px, sizes(device, desc.size_px));
     }
 
-    fn prewarm(&self, device: &Device, _: &ContextDesc, _: Variant) {
-        self.shader.pipeline(device, &self.overrides());
+    fn prewarm(&self, device: &Device, _: &ContextDesc, _: &mut Specialization) {
+        self.shader.pipeline(device, &self.overrides);
     }
 
     fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
         self.shader.pipelines()
     }
 
-    fn record<'a>(&'a self, device: &Device, pass: &mut ComputePass<'_>, job: &mut Job<'a>) {
-        if job.view.is_none() {
-            self.complete(device, pass, job.history);
+    fn record<'a>(&'a self, job: &mut Job<'a>) {
+        if job.special.view.is_none() {
+            self.complete(job.device, job.recorder, job.history);
         }
     }
 
-    fn complete(&self, device: &Device, pass: &mut ComputePass<'_>, history: &History) {
-        self.fill(device, pass, &history.split().1.mip_levels);
+    fn complete(&self, device: &Device, recorder: &mut Recorder, history: &History) {
+        self.fill(device, recorder, &history.split().1.planes[1]);
     }
 }
 
@@ -118,72 +99,32 @@ pub(super) struct CandidatePass {
     rest: MipChainPass,
 }
 
-/// Mip chain of a frame's noisy candidates.
-#[derive(Debug)]
-pub(super) struct Candidates {
-    /// View of all levels, to read.
-    pub view: TextureView,
-    target: TextureView,
-    levels: Vec<MipLevel>,
-}
-
 impl CandidatePass {
-    pub fn new(device: &Device) -> Self {
-        let source = SHADERS.compose("candidate_pass").source;
-        let types = [uniform(), float_texture(), float_texture(), storage_texture(FORMAT)];
-        Self {
-            first: ComputeShader::new(device, "candidate_pass", source, &types),
-            rest: MipChainPass::new(device, MipChainKind::Candidates),
-        }
+    pub fn new(device: &Device, desc: &ContextDesc, sources: &Sources) -> Self {
+        Self { first: sources.shader(device, "candidate_pass"), rest: MipChainPass::new(device, desc, sources, true) }
     }
 }
 
 impl Passes for CandidatePass {
-    /// An empty mip chain for each view.
-    fn extend(&self, device: &Device, desc: &ContextDesc, history: &mut History) {
-        history.candidates = candidate_plan(desc).map(|plan| {
-            let texture = plan.create(device, desc);
-            Candidates {
-                view: levels_view(&texture, 0, None, None),
-                target: array_view(&texture),
-                levels: self.rest.levels(device, &texture, desc.size_px),
-            }
-        });
+    fn resize(&mut self, device: &Device, desc: &ContextDesc) {
+        self.rest.resize(device, desc);
     }
 
-    fn prewarm(&self, device: &Device, desc: &ContextDesc, variant: Variant) {
-        self.first.pipeline(device, &[]);
-        self.rest.prewarm(device, desc, variant);
+    fn prewarm(&self, device: &Device, desc: &ContextDesc, special: &mut Specialization) {
+        special.pipeline(device, desc, &self.first);
+        self.rest.prewarm(device, desc, special);
     }
 
     fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
         [self.first.pipelines(), self.rest.pipelines()].concat()
     }
 
-    fn record<'a>(&'a self, device: &Device, pass: &mut ComputePass<'_>, job: &mut Job<'a>) {
-        let frame = &job.frame;
-        let (Some(noise), Some(candidates)) = (frame.noise, &job.history.candidates) else { return };
-        let size = frame.views[0].geometry.size_px();
-        for batch in batches(frame.views.len(), frame.color.is_regions() || noise.is_regions()) {
-            let first = batch.views.start as usize;
-            let uniforms = CandidateUniforms {
-                size,
-                color_origin: frame.color.packed_origin(first),
-                noise_origin: noise.packed_origin(first),
-                first_view: batch.views.start,
-                ..CandidateUniforms::default()
-            };
-            let buffer = filled(device, "afterimage uniforms", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
-            let [color, noise] = [frame.color, noise].map(|textures| textures.bind(&batch));
-            let resources = [
-                buffer.as_entire_binding(),
-                BindingResource::TextureView(&color),
-                BindingResource::TextureView(&noise),
-                BindingResource::TextureView(&candidates.target),
-            ];
-            let group = self.first.group(device, resources);
-            self.first.dispatch(device, pass, &[], &group, size.map(|s| level_len(s, 1)), batch.views.len() as u32);
+    fn record<'a>(&'a self, job: &mut Job<'a>) {
+        let Some(candidates) = &job.history.candidates else { return };
+        for batch in job.batches() {
+            let own = [(Binding::Write, (&candidates.levels[0]).into())];
+            job.dispatch(&self.first, &batch, &own, job.desc.size_px.map(|s| level_len(s, 1)));
         }
-        self.rest.fill(device, pass, &candidates.levels);
+        self.rest.fill(job.device, job.recorder, candidates);
     }
 }

@@ -7,64 +7,56 @@
 //! [`Afterimage::required_limits`] says what a context needs at least. Any number of contexts can share a device.
 //! wgpu's GL backend cannot store history, and is refused.
 
-mod buffer;
-// For this workspace's other crates.
-#[doc(hidden)]
-pub mod compute;
+mod binding;
+pub(crate) mod buffer;
+pub(crate) mod compute;
 mod doctor;
 mod fill;
 mod fill_geometry;
 mod frame;
+mod groups;
 mod history;
 mod input;
 mod method_pass;
 mod mip_chain;
 mod output;
+pub(crate) mod plane;
+mod recorder;
 mod repair;
 mod requirements;
-// For the tests, which compare struct layouts.
-#[doc(hidden)]
-pub mod resize;
+mod resize;
 mod sparse;
 mod stage;
 mod stages;
 mod textures;
-// For the tests, which compare struct layouts.
-#[doc(hidden)]
-pub mod uniforms;
+pub(crate) mod uniforms;
 
-#[doc(hidden)]
-pub use buffer::filled;
+pub use crate::uniforms::MAX_VIEWS;
 pub use doctor::Doctor;
 pub use frame::{DebugTarget, Frame, Recorded, Target, Timestamps, Variant};
-#[doc(hidden)]
-pub use history::array_view;
 pub(crate) use input::{check_readable, check_texture};
 pub(crate) use output::texel;
 pub(crate) use requirements::validate;
 pub use textures::{Region, Textures};
-pub use uniforms::MAX_VIEWS;
 
 use crate::error::{CreateError, FrameError, SettingsError};
-use crate::foveation::Filter;
 use crate::frame::{ContextDesc, Executor, Gaze};
 use crate::geometry::ViewGeometry;
 use crate::kernel::debug_view::DebugView;
-use crate::method::{HistoryLayout, PassShader, Stage, smr_sparse_repair};
+use crate::method::{HistoryLayout, PassShader, smr_sparse_repair};
 use crate::resize::Resize;
 use crate::settings::Settings;
-use crate::shader::SHADERS;
 use crate::stats::FrameStats;
 use crate::uniforms::Held;
-use fill::Fill;
-use fill_geometry::GeometryFill;
+use binding::Binding;
+use compute::Sources;
 use history::History;
+use recorder::Recorder;
 use repair::RepairPasses;
 use resize::ResizePass;
-use sparse::SamplePasses;
-use stage::Job;
+use stage::{Job, Specialization};
 use stages::Stages;
-use uniforms::FrameUniforms;
+use uniforms::{FrameUniforms, SparseUniforms};
 use wgpu::{Buffer, CommandEncoder, ComputePassDescriptor, Device, Limits, Texture, TextureFormat, TextureUsages};
 
 /// The post-process on a GPU: a context with its settings, history and pipelines.
@@ -83,6 +75,9 @@ pub struct Afterimage {
     pass_shader: PassShader,
     stages: Stages,
     history: History,
+    recorder: Recorder,
+    /// Number of the settings, which increases with each change.
+    generation: u64,
     /// Pass that resamples history; created at the first change of size that keeps history.
     resize: Option<ResizePass>,
     /// Passes of repair, if the settings ask for it.
@@ -95,12 +90,51 @@ impl Executor for Afterimage {
     type Vectors<'a> = Textures<'a>;
 }
 
-/// Uniforms of a frame, and other state that follows from its description.
-struct Prepared {
-    uniforms: FrameUniforms,
-    /// State of the views that is held for the next frame.
-    held: Vec<Held>,
-    recorded: Recorded,
+// For tests, the lab and benchmarks.
+#[doc(hidden)]
+impl Afterimage {
+    /// A context with other texts of its passes: for tests that plant errors, and for benchmarks.
+    pub fn with_sources(
+        device: &Device,
+        desc: &ContextDesc,
+        output_format: TextureFormat,
+        sources: Sources,
+    ) -> Result<Self, CreateError> {
+        validate(device, desc, output_format)?;
+        requirements::check_history(device)?;
+        let mut context = Self {
+            desc: *desc,
+            output_format,
+            pass_shader: desc.settings.pass_shader(),
+            stages: Stages::new(device, desc, output_format, sources),
+            history: History::new(device, desc),
+            recorder: Recorder::new(device, desc),
+            generation: 0,
+            resize: None,
+            repair: None,
+        };
+        context.update_repair(device);
+        Ok(context)
+    }
+
+    /// Shader module and override values of each compiled pipeline, for tests and for tools that count instructions.
+    pub fn pipelines(&self) -> Vec<(&'static str, Vec<(&'static str, u32)>)> {
+        let resize = self.resize.as_ref().map(ResizePass::pipelines);
+        let repair = self.repair.iter().flat_map(RepairPasses::pipelines);
+        self.stages.pipelines().chain(resize.into_iter().flatten()).chain(repair).collect()
+    }
+
+    /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
+    ///
+    /// For smr on sparse frames the packed samples ([`kept`](crate::kernel::kept), `Rg32Uint`).
+    ///
+    /// For wrs the packed reservoirs ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`),
+    /// and with A-ES the keys, or the gate's references (`R32Uint`). For taa and smr the packed surfaces
+    /// ([`surface`](crate::kernel::surface), `Rg32Uint`); for smr also their mip chain (`Rgba16Float`), and for noisy
+    /// candidates the packed noise ([`noise`](crate::kernel::noise), `R32Uint`).
+    pub fn history_textures(&self) -> Vec<Texture> {
+        self.history.split().0.planes.iter().map(|plane| plane.texture.clone()).collect()
+    }
 }
 
 impl Afterimage {
@@ -118,51 +152,7 @@ impl Afterimage {
     /// [`CreateError`] if the description is out of range, the output format is not supported, a limit of the device is
     /// too low, or its backend cannot store history. Then nothing was made.
     pub fn new(device: &Device, desc: &ContextDesc, output_format: TextureFormat) -> Result<Self, CreateError> {
-        let source = SHADERS.compose(desc.settings.pass_shader().name).source;
-        Self::with_shader(device, desc, output_format, &source)
-    }
-
-    /// A context with another shader for the method's pass: for tests that plant errors, and for benchmarks.
-    #[doc(hidden)]
-    pub fn with_shader(
-        device: &Device,
-        desc: &ContextDesc,
-        output_format: TextureFormat,
-        source: &str,
-    ) -> Result<Self, CreateError> {
-        validate(device, desc, output_format)?;
-        requirements::check_history(device, desc)?;
-        let stages = Stages::new(device, desc, output_format, source);
-        let history = stages.history(device, desc);
-        let pass_shader = desc.settings.pass_shader();
-        let repair = smr_sparse_repair(&desc.settings).map(|repair| RepairPasses::new(device, desc, repair));
-        Ok(Self { desc: *desc, output_format, pass_shader, stages, history, resize: None, repair })
-    }
-
-    /// Another shader for the pass that fills sparse frames, for tests that plant errors.
-    #[doc(hidden)]
-    pub fn set_fill_shader(&mut self, device: &Device, source: &str) {
-        self.stages.replace(Stage::Fill, Fill::with_shader(device, &self.desc, source.to_owned()));
-    }
-
-    /// Another shader for the pass that fills geometry, for tests that plant errors.
-    #[doc(hidden)]
-    pub fn set_geometry_shader(&mut self, device: &Device, source: &str) {
-        self.stages.replace(Stage::Geometry, GeometryFill::with_shader(device, &self.desc, source.to_owned()));
-    }
-
-    /// Other shaders for the passes over the samples of sparse frames, for tests that plant errors.
-    #[doc(hidden)]
-    pub fn set_sample_shaders(&mut self, device: &Device, observe: &str, light: &str) {
-        let sources = [observe, light].map(str::to_owned);
-        self.stages.replace(Stage::Samples, SamplePasses::with_shaders(device, &self.desc, sources));
-    }
-
-    /// Other shaders for the passes of a plan, for tests that plant errors.
-    #[doc(hidden)]
-    pub fn set_repair_shaders(&mut self, device: &Device, sources: [String; 3]) {
-        let repair = smr_sparse_repair(&self.desc.settings).expect("the settings ask for repair");
-        self.repair = Some(RepairPasses::with_shaders(device, &self.desc, repair, sources));
+        Self::with_sources(device, desc, output_format, Sources::default())
     }
 
     /// Limits that a device needs at least for a context of this size: those of small devices
@@ -200,9 +190,11 @@ impl Afterimage {
         let has_same_pass = settings.pass_shader() == self.pass_shader;
         let same_history = settings.history_layout() == self.history.layout();
         (self.desc.settings, self.pass_shader) = (settings, settings.pass_shader());
-        self.stages.update(device, &self.desc, self.output_format, has_same_pass);
+        self.stages.update(device, &self.desc, has_same_pass);
+        self.generation += 1;
+        self.recorder.clear();
         if !(has_same_pass && same_history) {
-            self.history = self.stages.history(device, &self.desc);
+            self.history = History::new(device, &self.desc);
         }
         self.update_repair(device);
         Ok(())
@@ -217,7 +209,7 @@ impl Afterimage {
     pub fn resize(&mut self, device: &Device, size_px: [u32; 2]) -> Result<(), FrameError> {
         requirements::check_resize(device, &self.desc, size_px)?;
         self.set_size(device, size_px);
-        self.history = self.stages.history(device, &self.desc);
+        self.history = History::new(device, &self.desc);
         Ok(())
     }
 
@@ -239,18 +231,23 @@ impl Afterimage {
         requirements::check_resize(device, &self.desc, size_px)?;
         let resize = Resize::new(self.desc.size_px, size_px);
         self.set_size(device, size_px);
-        let mut history = self.stages.history(device, &self.desc);
+        let mut history = History::new(device, &self.desc);
         history.held = self.history.held.iter().map(|held| resize.held(*held)).collect();
         if self.history.is_filled() {
             let layout = history.layout();
             if self.resize.as_ref().is_none_or(|pass| pass.layout() != layout) {
-                self.resize = ResizePass::new(device, layout);
+                self.resize = ResizePass::new(device, layout, self.stages.sources());
             }
+            let recorder = &mut self.recorder;
+            recorder.begin(&SparseUniforms::default(), 0);
             if let Some(pass) = &self.resize {
                 let planes = [self.history.split().0, history.split().1];
-                pass.record(device, encoder, &resize, self.desc.view_count, planes);
+                pass.record(device, recorder, &resize, self.desc.view_count, planes);
             }
-            self.stages.complete(device, encoder, &history);
+            self.stages.complete(device, recorder, &history);
+            let label = Some("afterimage resize");
+            recorder.record(&mut encoder.begin_compute_pass(&ComputePassDescriptor { label, ..Default::default() }));
+            recorder.clear();
             history.finish_resampled(encoder, &self.history);
         }
         self.history = history;
@@ -260,6 +257,7 @@ impl Afterimage {
     fn set_size(&mut self, device: &Device, size_px: [u32; 2]) {
         self.desc.size_px = size_px;
         self.stages.resize(device, &self.desc);
+        self.recorder.clear();
         self.update_repair(device);
     }
 
@@ -268,7 +266,10 @@ impl Afterimage {
         let (desc, repair) = (&self.desc, smr_sparse_repair(&self.desc.settings));
         match (&mut self.repair, repair) {
             (Some(passes), Some(repair)) => passes.update(device, desc, repair),
-            (_, repair) => self.repair = repair.map(|repair| RepairPasses::new(device, desc, repair)),
+            (_, repair) => {
+                let sources = self.stages.sources();
+                self.repair = repair.map(|repair| RepairPasses::new(device, desc, repair, sources));
+            }
         }
     }
 
@@ -277,6 +278,7 @@ impl Afterimage {
     /// keeps the gaze. What was discarded never comes back, even if the next recorded frame is never submitted.
     pub fn forget(&mut self) {
         self.unplan();
+        self.recorder.clear();
         self.history.forget();
     }
 
@@ -295,19 +297,15 @@ impl Afterimage {
     /// force that, too.
     pub fn prewarm(&self, device: &Device, variants: impl IntoIterator<Item = Variant>) {
         for variant in variants {
-            self.stages.prewarm(device, &self.desc, variant);
+            let mut special = Specialization::new(variant, None, self.generation);
+            self.stages.prewarm(device, &self.desc, special);
             if let Some(repair) = self.repair.as_ref().filter(|_| variant.repaired) {
-                repair.prewarm(device, &self.desc, variant);
+                if variant.geometry_at_samples {
+                    special.fill(&self.desc);
+                }
+                repair.prewarm(device, &self.desc, special);
             }
         }
-    }
-
-    /// Shader module and override values of each compiled pipeline, for tests and for tools that count instructions.
-    #[doc(hidden)]
-    pub fn pipelines(&self) -> Vec<(&'static str, Vec<(&'static str, u32)>)> {
-        let resize = self.resize.as_ref().map(ResizePass::pipelines);
-        let repair = self.repair.iter().flat_map(RepairPasses::pipelines);
-        self.stages.pipelines().chain(resize.into_iter().flatten()).chain(repair).collect()
     }
 
     /// Size in bytes of the textures that the context holds between frames.
@@ -330,19 +328,6 @@ impl Afterimage {
         history::memory_bytes(desc) + stages::memory_bytes_of(desc) + repair
     }
 
-    /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
-    ///
-    /// For smr on sparse frames the packed samples ([`kept`](crate::kernel::kept), `Rg32Uint`).
-    ///
-    /// For wrs the packed reservoirs ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`),
-    /// and with A-ES the keys, or the gate's references (`R32Uint`). For taa and smr the packed surfaces
-    /// ([`surface`](crate::kernel::surface), `Rg32Uint`); for smr also their mip chain (`Rgba16Float`), and for noisy
-    /// candidates the packed noise ([`noise`](crate::kernel::noise), `R32Uint`).
-    #[doc(hidden)]
-    pub fn history_textures(&self) -> &[Texture] {
-        &self.history.split().0.textures
-    }
-
     /// Records one frame into `encoder`: reads the frame's inputs and the history, and writes `target` (an output
     /// texture, or a [`Target`]) and the history. Recoverable problems are returned as warnings, which may be ignored.
     ///
@@ -362,15 +347,13 @@ impl Afterimage {
     ) -> Result<Recorded, FrameError> {
         let target = target.into();
         self.check(device, frame, &target)?;
-        let number = self.history.next_number(device)?;
-        let prepared = self.prepare(frame, Some(&target));
-        self.dispatch(device, encoder, frame, &target, None, prepared.uniforms);
+        let (recorded, held, upload) = self.dispatch(device, encoder, frame, &target, None)?;
         self.unplan();
-        self.history.held = prepared.held;
+        self.history.held = held;
         if self.desc.settings.history_layout() != HistoryLayout::Nothing {
-            self.history.finish(encoder, &number);
+            self.history.finish(encoder, &upload);
         }
-        Ok(prepared.recorded)
+        Ok(recorded)
     }
 
     /// Records, into `encoder`, the choice of pixels of a sparse frame to repair with a sample of their own: quads of
@@ -409,22 +392,33 @@ impl Afterimage {
     pub fn plan(&mut self, device: &Device, encoder: &mut CommandEncoder, frame: &Frame<'_>) -> Result<(), FrameError> {
         frame.check_plan(&self.desc)?;
         input::check_geometry(&self.desc, frame)?;
-        let frame = Frame { noise: None, repaired: None, ..frame.with_color(frame.color) };
-        let uniforms = self.prepare(&frame, None).uniforms;
-        // A placeholder: a plan writes nothing to it.
-        let target = Target::new(frame.color);
-        let mut job = self.job(device, frame, &target, None, uniforms);
-        if let Some(repair) = &self.repair {
-            repair.clear(encoder);
-            let mut pass = encoder
-                .begin_compute_pass(&ComputePassDescriptor { label: Some("afterimage plan"), timestamp_writes: None });
-            self.stages.record_geometry(device, &mut pass, &mut job);
-            repair.record(device, &mut pass, &job);
-        }
-        let index = frame.index;
-        if let Some(repair) = &mut self.repair {
-            repair.planned = Some(index);
-        }
+        let (uniforms, ..) = self.prepare(frame);
+        // The color is not read, but its regions decide how views are processed.
+        let variant = Variant::of(frame, &Target::new(frame.color));
+        let special = Specialization::new(variant, None, self.generation);
+        self.recorder.begin(&SparseUniforms::new(frame.views, self.desc.size_px), 0);
+        let Some(repair) = &mut self.repair else { return Ok(()) };
+        let mut job = Job {
+            device,
+            desc: &self.desc,
+            views: frame.views,
+            textures: frame.textures(),
+            counters: None,
+            special,
+            uniforms,
+            history: &self.history,
+            lights: None,
+            repair_mask: None,
+            recorder: &mut self.recorder,
+        };
+        self.stages.record_geometry(&mut job);
+        repair.record(&mut job);
+        let upload = self.recorder.upload(device)?;
+        repair.clear(encoder);
+        self.recorder.copy(encoder, &upload);
+        let label = Some("afterimage plan");
+        self.recorder.record(&mut encoder.begin_compute_pass(&ComputePassDescriptor { label, ..Default::default() }));
+        repair.planned = Some(frame.index);
         Ok(())
     }
 
@@ -433,7 +427,7 @@ impl Afterimage {
     /// `COPY_SRC`. `None` without [`repair`](crate::Smr::repair) in the settings. Changes of size and settings replace
     /// it.
     pub fn repair_mask(&self) -> Option<&Texture> {
-        self.repair.as_ref().map(RepairPasses::mask)
+        self.repair.as_ref().map(|repair| &repair.mask().texture)
     }
 
     /// The quads of a view that the last [`plan`](Self::plan) chose, as a list on the device; usages `STORAGE`,
@@ -491,48 +485,50 @@ impl Afterimage {
     ) -> Result<Recorded, FrameError> {
         let target = Target { debug: None, ..target.into() };
         self.check(device, frame, &target)?;
-        let prepared = self.prepare(frame, Some(&target));
-        self.dispatch(device, encoder, frame, &target, Some(view), prepared.uniforms);
-        Ok(prepared.recorded)
+        let (recorded, ..) = self.dispatch(device, encoder, frame, &target, Some(view))?;
+        Ok(recorded)
     }
 
+    /// Records the passes of a frame. Returns its warnings, the state of the views that is held for the next frame, and
+    /// the values that were uploaded.
     fn dispatch(
-        &self,
+        &mut self,
         device: &Device,
         encoder: &mut CommandEncoder,
         frame: &Frame<'_>,
         target: &Target<'_>,
         view: Option<DebugView>,
-        uniforms: FrameUniforms,
-    ) {
+    ) -> Result<(Recorded, Vec<Held>, Buffer), FrameError> {
+        let (uniforms, held, recorded) = self.prepare(frame);
+        let mut textures = frame.textures();
+        textures[Binding::Output as usize] = Some(target.output);
+        textures[Binding::Debug as usize] = target.debug.map(|debug| debug.output);
+        self.recorder.begin(&SparseUniforms::new(frame.views, self.desc.size_px), self.history.next_number());
+        self.stages.record(&mut Job {
+            device,
+            desc: &self.desc,
+            views: frame.views,
+            textures,
+            counters: target.counters,
+            special: Specialization::new(Variant::of(frame, target), view, self.generation),
+            uniforms,
+            history: &self.history,
+            lights: None,
+            repair_mask: self.repair.as_ref().map(|repair| &repair.mask().whole),
+            recorder: &mut self.recorder,
+        });
+        let upload = self.recorder.upload(device)?;
         if let Some(counters) = target.counters {
             encoder.clear_buffer(counters, 0, Some(FrameStats::COUNTERS_BYTES));
         }
-        let job = self.job(device, frame.with_color(frame.color), target, view, uniforms);
-        self.stages.record(device, encoder, job);
-    }
-
-    fn job<'a>(
-        &'a self,
-        device: &Device,
-        frame: Frame<'a>,
-        target: &'a Target<'a>,
-        view: Option<DebugView>,
-        uniforms: FrameUniforms,
-    ) -> Job<'a> {
-        let reads_samples = self.pass_shader.reads_samples || self.desc.settings.foveation.filter == Filter::Sparse;
-        Job {
-            desc: &self.desc,
-            target,
-            variant: Variant::of(&frame, target),
-            view,
-            uniforms,
-            history: &self.history,
-            lattices: reads_samples.then(|| sparse::lattices(device, &frame, uniforms.size)),
-            lights: None,
-            repair_mask: self.repair.as_ref().map(RepairPasses::mask_view),
-            frame,
-        }
+        self.recorder.copy(encoder, &upload);
+        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+            label: Some("afterimage"),
+            timestamp_writes: target.timestamps.map(|t| t.writes()),
+        });
+        self.recorder.record(&mut pass);
+        drop(pass);
+        Ok((recorded, held, upload))
     }
 
     fn check(&self, device: &Device, frame: &Frame<'_>, target: &Target<'_>) -> Result<(), FrameError> {
@@ -547,14 +543,14 @@ impl Afterimage {
         }
     }
 
-    fn prepare(&self, frame: &Frame<'_>, target: Option<&Target<'_>>) -> Prepared {
+    /// Uniforms of a frame, the state of the views after it, and its warnings.
+    fn prepare(&self, frame: &Frame<'_>) -> (FrameUniforms, Vec<Held>, Recorded) {
         let mut recorded = Recorded::default();
         let mut after = vec![];
         for (i, (view, held)) in frame.views.iter().zip(&self.history.held).enumerate() {
             after.push(held.with(view));
             recorded.note_gaze(i, view, held.gaze_px);
         }
-        let uniforms = FrameUniforms::new(&self.desc, frame, target, &after, self.history.past_frame());
-        Prepared { uniforms, held: after, recorded }
+        (FrameUniforms::new(&self.desc, frame, &after, self.history.past_frame()), after, recorded)
     }
 }

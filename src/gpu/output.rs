@@ -8,25 +8,40 @@ use wgpu::{Device, ErrorFilter, Extent3d, Features, TextureDescriptor, TextureFo
 /// Format of a debug view beside the output.
 pub(super) const DEBUG_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
+/// Formats that shaders write, and their names in WGSL. The first ones are those of outputs.
+const FORMATS: [(TextureFormat, &str); 13] = [
+    (TextureFormat::Rgba16Float, "rgba16float"),
+    (TextureFormat::Rgba32Float, "rgba32float"),
+    (TextureFormat::Rgba8Unorm, "rgba8unorm"),
+    (TextureFormat::Rgba8Snorm, "rgba8snorm"),
+    (TextureFormat::Bgra8Unorm, "bgra8unorm"),
+    (TextureFormat::Rgb10a2Unorm, "rgb10a2unorm"),
+    (TextureFormat::Rg11b10Ufloat, "rg11b10ufloat"),
+    (TextureFormat::Rgba16Unorm, "rgba16unorm"),
+    (TextureFormat::Rgba16Snorm, "rgba16snorm"),
+    (TextureFormat::R32Float, "r32float"),
+    (TextureFormat::Rg32Float, "rg32float"),
+    (TextureFormat::R32Uint, "r32uint"),
+    (TextureFormat::Rg32Uint, "rg32uint"),
+];
+/// Number of formats of outputs.
+const OUTPUTS: usize = 9;
+
+/// Format of a WGSL name.
+pub(super) fn format_of(name: &str) -> Option<TextureFormat> {
+    FORMATS.iter().find(|(_, other)| *other == name).map(|(format, _)| *format)
+}
+
 /// WGSL name of an output format: one with red, green and blue that compute shaders can write on `device`.
 pub(crate) fn texel(device: &Device, format: TextureFormat) -> Result<&'static str, CreateError> {
     let refuse = |expected| Err(CreateError::OutputFormat { found: format, expected });
-    let name = match format {
-        TextureFormat::Rgba16Float => "rgba16float",
-        TextureFormat::Rgba32Float => "rgba32float",
-        TextureFormat::Rgba8Unorm => "rgba8unorm",
-        TextureFormat::Rgba8Snorm => "rgba8snorm",
-        TextureFormat::Bgra8Unorm => "bgra8unorm",
-        TextureFormat::Rgb10a2Unorm => "rgb10a2unorm",
-        TextureFormat::Rg11b10Ufloat => "rg11b10ufloat",
-        TextureFormat::Rgba16Unorm => "rgba16unorm",
-        TextureFormat::Rgba16Snorm => "rgba16snorm",
-        TextureFormat::Rgba8UnormSrgb | TextureFormat::Bgra8UnormSrgb => {
-            return refuse(
-                "a format without sRGB encoding, which compute shaders cannot write; Rgba16Float suits most, tone-mapped to the screen afterwards",
-            );
-        }
-        _ => return refuse("Rgba16Float, Rgba32Float, Rgba8Unorm or another storable format with red, green and blue"),
+    let Some((_, name)) = FORMATS[..OUTPUTS].iter().find(|(other, _)| *other == format) else {
+        return refuse(match format {
+            TextureFormat::Rgba8UnormSrgb | TextureFormat::Bgra8UnormSrgb => {
+                "a format without sRGB encoding, which compute shaders cannot write; Rgba16Float suits most, tone-mapped to the screen afterwards"
+            }
+            _ => "Rgba16Float, Rgba32Float, Rgba8Unorm or another storable format with red, green and blue",
+        });
     };
     let specific = Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
     let usages = format.guaranteed_format_features(device.features()).allowed_usages;

@@ -5,25 +5,18 @@
 //! quad's key; it skips pixels that are settled. The second, once a view, finds the smallest key that the budget pays
 //! for. The third chooses the quads whose keys are at least that large.
 
-use super::Variant;
+use super::binding::Binding;
 use super::buffer::filled;
-use super::compute::{ComputeShader, float_texture, storage_buffer, storage_texture, uint_texture, uniform};
-use super::history::array_view;
-use super::method_pass::{PAST_FRAME_BINDING, Placeholders, input_overrides};
-use super::stage::Job;
-use super::textures::Batch;
+use super::compute::{ComputeShader, Sources, WORKGROUP_WIDTH};
+use super::groups::Resource;
+use super::plane::{Plane, PlaneDesc};
+use super::stage::{Job, Specialization};
 use crate::frame::ContextDesc;
 use crate::kernel::repair::{KEYS, budget_quads};
-use crate::method::{HistoryLayout, Overrides, smr_sparse_antialiases};
+use crate::method::Overrides;
 use crate::settings::Repair;
-use crate::shader::SHADERS;
-use wgpu::{
-    BindingResource, Buffer, BufferUsages, CommandEncoder, ComputePass, Device, Extent3d, Texture, TextureDescriptor,
-    TextureDimension, TextureFormat, TextureUsages, TextureView,
-};
+use wgpu::{Buffer, BufferUsages, CommandEncoder, Device, TextureFormat, TextureUsages};
 
-/// Format of keys and masks.
-const FORMAT: TextureFormat = TextureFormat::R32Uint;
 /// Bytes of a list before its quads.
 const LIST_HEADER_BYTES: u64 = 32;
 /// Bytes of a view's counts by key, threshold and number of listed quads.
@@ -36,7 +29,6 @@ pub(super) struct RepairPasses {
     threshold: ComputeShader,
     mask: ComputeShader,
     quads: Quads,
-    absent: Placeholders,
     /// Index of the last planned frame; `None` once it is recorded.
     pub planned: Option<u64>,
 }
@@ -44,91 +36,56 @@ pub(super) struct RepairPasses {
 /// Textures and buffers for the quads of a frame of one size.
 #[derive(Debug)]
 struct Quads {
-    budget: u32,
-    keys: TextureView,
-    mask: Texture,
-    mask_view: TextureView,
-    /// One for each view, like the lists.
-    states: Vec<Buffer>,
-    lists: Vec<Buffer>,
+    budget: Buffer,
+    keys: Plane,
+    mask: Plane,
+    views: Vec<ViewQuads>,
+}
+
+/// Buffers for the quads of a view.
+#[derive(Debug)]
+struct ViewQuads {
+    /// `RepairQuads` in `shaders/pass/repair_mask_pass.wgsl`.
+    uniforms: Buffer,
+    state: Buffer,
+    list: Buffer,
 }
 
 impl Quads {
     fn new(device: &Device, desc: &ContextDesc, repair: Repair) -> Self {
         let size = size_quads(desc);
-        let image = |usage| {
-            device.create_texture(&TextureDescriptor {
+        let uniforms =
+            |words: [u32; 4]| filled(device, "afterimage uniforms", bytemuck::bytes_of(&words), BufferUsages::UNIFORM);
+        let buffer = |size, usage| {
+            device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("afterimage repair"),
-                size: Extent3d { width: size[0], height: size[1], depth_or_array_layers: desc.view_count },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: TextureDimension::D2,
-                format: FORMAT,
-                usage: TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | usage,
-                view_formats: &[],
+                size,
+                usage: BufferUsages::STORAGE | usage,
+                mapped_at_creation: false,
             })
         };
-        let buffers = |bytes, usage| {
-            let buffer = |_| {
-                device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("afterimage repair"),
-                    size: bytes,
-                    usage: BufferUsages::STORAGE | usage,
-                    mapped_at_creation: false,
-                })
-            };
-            (0..desc.view_count).map(buffer).collect()
+        let view = |view| ViewQuads {
+            uniforms: uniforms([size[0], size[1], view, 0]),
+            state: buffer(STATE_BYTES, BufferUsages::COPY_DST),
+            list: buffer(list_bytes(desc, repair), BufferUsages::INDIRECT | BufferUsages::COPY_SRC),
         };
-        let mask = image(TextureUsages::COPY_SRC);
+        let plane = plane(desc);
         Self {
-            budget: budget_quads(repair.budget, size),
-            keys: array_view(&image(TextureUsages::empty())),
-            mask_view: array_view(&mask),
-            mask,
-            states: buffers(STATE_BYTES, BufferUsages::COPY_DST),
-            lists: buffers(list_bytes(desc, repair), BufferUsages::INDIRECT | BufferUsages::COPY_SRC),
+            budget: uniforms([budget_quads(repair.budget, size), 0, 0, 0]),
+            keys: plane.create(device),
+            mask: PlaneDesc { usage: TextureUsages::COPY_SRC, ..plane }.create(device),
+            views: (0..desc.view_count).map(view).collect(),
         }
     }
 }
 
 impl RepairPasses {
-    /// The passes for contexts of `desc`.
-    pub fn new(device: &Device, desc: &ContextDesc, repair: Repair) -> Self {
-        let sources = ["repair_key_pass", "repair_threshold_pass", "repair_mask_pass"];
-        Self::with_shaders(device, desc, repair, sources.map(|name| SHADERS.compose(name).source))
-    }
-
-    /// The passes of the WGSL texts `key`, `threshold` and `mask`.
-    pub fn with_shaders(
-        device: &Device,
-        desc: &ContextDesc,
-        repair: Repair,
-        [key, threshold, mask]: [String; 3],
-    ) -> Self {
-        // Numbers in `inputs`, `kept_history`, `lattices`, `repair_state`, `repair_list` and the passes.
-        let depth_to_trust = (2..5).map(|number| (number, float_texture()));
-        let own = [
-            (8, uint_texture()),
-            (17, uniform()),
-            (18, storage_texture(FORMAT)),
-            (19, storage_buffer(false)),
-            (PAST_FRAME_BINDING, uniform()),
-        ];
-        let key_bindings: Vec<_> = std::iter::once((0, uniform())).chain(depth_to_trust).chain(own).collect();
-        let threshold_bindings = [(0, uniform()), (19, storage_buffer(false)), (20, storage_buffer(false))];
-        let mask_bindings = [
-            (0, uniform()),
-            (8, uint_texture()),
-            (18, storage_texture(FORMAT)),
-            (19, storage_buffer(false)),
-            (20, storage_buffer(false)),
-        ];
+    pub fn new(device: &Device, desc: &ContextDesc, repair: Repair, sources: &Sources) -> Self {
         Self {
-            key: ComputeShader::with_bindings(device, "repair_key_pass", key, &key_bindings),
-            threshold: ComputeShader::with_bindings(device, "repair_threshold_pass", threshold, &threshold_bindings),
-            mask: ComputeShader::with_bindings(device, "repair_mask_pass", mask, &mask_bindings),
+            key: sources.shader(device, "repair_key_pass"),
+            threshold: sources.shader(device, "repair_threshold_pass"),
+            mask: sources.shader(device, "repair_mask_pass"),
             quads: Quads::new(device, desc, repair),
-            absent: Placeholders::new(device, HistoryLayout::Kept { noisy: false, means: false }),
             planned: None,
         }
     }
@@ -140,8 +97,8 @@ impl RepairPasses {
     }
 
     /// Compiles the pipelines of a variant.
-    pub fn prewarm(&self, device: &Device, desc: &ContextDesc, variant: Variant) {
-        self.key.pipeline(device, &overrides(desc, variant));
+    pub fn prewarm(&self, device: &Device, desc: &ContextDesc, special: Specialization) {
+        special.pipeline(device, desc, &self.key);
         self.threshold.pipeline(device, &[]);
         self.mask.pipeline(device, &[]);
     }
@@ -151,71 +108,44 @@ impl RepairPasses {
         [&self.key, &self.threshold, &self.mask].into_iter().flat_map(ComputeShader::pipelines)
     }
 
-    pub fn mask(&self) -> &Texture {
+    pub fn mask(&self) -> &Plane {
         &self.quads.mask
-    }
-
-    pub fn mask_view(&self) -> &TextureView {
-        &self.quads.mask_view
     }
 
     /// List of the chosen quads of a view.
     pub fn list(&self, view: usize) -> Option<&Buffer> {
-        self.quads.lists.get(view)
+        self.quads.views.get(view).map(|view| &view.list)
     }
 
     /// Clears the counts of the last frame.
     pub fn clear(&self, encoder: &mut CommandEncoder) {
-        self.quads.states.iter().for_each(|state| encoder.clear_buffer(state, 0, None));
+        self.quads.views.iter().for_each(|view| encoder.clear_buffer(&view.state, 0, None));
     }
 
-    /// Records the passes of a frame.
-    pub fn record(&self, device: &Device, pass: &mut ComputePass<'_>, job: &Job<'_>) {
-        let Some(lattices) = &job.lattices else { return };
+    /// Adds the dispatches of a frame.
+    pub fn record(&self, job: &mut Job<'_>) {
+        let Quads { budget, keys, mask, views } = &self.quads;
         let size = size_quads(job.desc);
-        let budget = [self.quads.budget, 0, 0, 0];
-        let budget = filled(device, "afterimage uniforms", bytemuck::bytes_of(&budget), BufferUsages::UNIFORM);
-        for view in 0..job.frame.views.len() {
-            let (state, list) = (&self.quads.states[view], &self.quads.lists[view]);
-            let group = self.key_group(device, job, lattices, view);
-            self.key.dispatch(device, pass, &overrides(job.desc, job.variant), &group, size, 1);
-
-            let group = self
-                .threshold
-                .group(device, [budget.as_entire_binding(), state.as_entire_binding(), list.as_entire_binding()]);
-            self.threshold.dispatch(device, pass, &[], &group, [1, 1], 1);
-
-            let quads = [size[0], size[1], view as u32, 0];
-            let quads = filled(device, "afterimage uniforms", bytemuck::bytes_of(&quads), BufferUsages::UNIFORM);
-            let resources = [
-                quads.as_entire_binding(),
-                BindingResource::TextureView(&self.quads.keys),
-                BindingResource::TextureView(&self.quads.mask_view),
-                state.as_entire_binding(),
-                list.as_entire_binding(),
-            ];
-            let group = self.mask.group(device, resources);
-            self.mask.dispatch(device, pass, &[], &group, size, 1);
+        let rows = [size[0].div_ceil(WORKGROUP_WIDTH), size[1], 1];
+        for (view, ViewQuads { uniforms, state, list }) in (0..).zip(views) {
+            let own = [(Binding::Write, (&keys.whole).into()), (Binding::State, state.into())];
+            job.dispatch(&self.key, &job.batch_of(view), &own, size);
+            for (shader, uniforms, workgroups) in [(&self.threshold, budget, [1; 3]), (&self.mask, uniforms, rows)] {
+                let resource = |number: u32| {
+                    let of = |binding: Binding| number == binding as u32;
+                    let resource: Resource = match () {
+                        () if of(Binding::Read) => (&keys.whole).into(),
+                        () if of(Binding::Write) => (&mask.whole).into(),
+                        () if of(Binding::State) => state.into(),
+                        () if of(Binding::List) => list.into(),
+                        () => uniforms.into(),
+                    };
+                    Some(resource)
+                };
+                let pipeline = shader.pipeline(job.device, &[]);
+                job.recorder.add(job.device, (shader, pipeline), None, resource, workgroups);
+            }
         }
-    }
-
-    fn key_group(&self, device: &Device, job: &Job<'_>, lattices: &Buffer, view: usize) -> wgpu::BindGroup {
-        let first = view as u32;
-        let batch = Batch { views: first..first + 1, regions: job.variant.regions };
-        let inputs = [job.frame.depth, job.frame.motion, job.frame.trust]
-            .map(|textures| textures.map_or_else(|| self.absent.float.clone(), |textures| textures.bind(&batch)));
-        let uniforms = job.uniforms.buffer(device, first, 0);
-        let past = job.history.split().0;
-        let resources = std::iter::once(uniforms.as_entire_binding())
-            .chain(inputs.iter().map(BindingResource::TextureView))
-            .chain([
-                BindingResource::TextureView(&past.views[0]),
-                lattices.as_entire_binding(),
-                BindingResource::TextureView(&self.quads.keys),
-                self.quads.states[view].as_entire_binding(),
-                past.frame.as_entire_binding(),
-            ]);
-        self.key.group(device, resources)
     }
 }
 
@@ -232,14 +162,10 @@ pub(super) fn list_bytes(desc: &ContextDesc, repair: Repair) -> u64 {
 
 /// Bytes of the textures and buffers of a plan.
 pub(super) fn memory_bytes(desc: &ContextDesc, repair: Repair) -> u64 {
-    let [columns, rows] = size_quads(desc).map(u64::from);
-    let images = 2 * u64::from(FORMAT.block_copy_size(None).unwrap_or(0)) * columns * rows;
-    u64::from(desc.view_count) * (images + STATE_BYTES + list_bytes(desc, repair))
+    2 * plane(desc).bytes() + u64::from(desc.view_count) * (STATE_BYTES + list_bytes(desc, repair))
 }
 
-/// Override values of the pass over the keys.
-fn overrides(desc: &ContextDesc, variant: Variant) -> Overrides {
-    let mut list = input_overrides(desc, variant);
-    list.push(("ANTIALIAS", u32::from(smr_sparse_antialiases(&desc.settings))));
-    list
+/// Keys of the quads, or the mask.
+fn plane(desc: &ContextDesc) -> PlaneDesc {
+    PlaneDesc::new("afterimage repair", TextureFormat::R32Uint, size_quads(desc), desc.view_count)
 }

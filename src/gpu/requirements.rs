@@ -1,12 +1,12 @@
 //! Requirements of a context: device limits, and storage of its history.
 
-use super::method_pass::written;
 use super::output::{is_storable, texel};
-use super::{MAX_VIEWS, history, repair};
+use super::recorder::STORED;
+use super::{history, repair};
 use crate::error::{CreateError, FrameError, SettingsError};
 use crate::frame::{ContextDesc, check_size};
 use crate::method::smr_sparse_repair;
-use crate::uniforms::results_size;
+use crate::uniforms::{MAX_VIEWS, results_size};
 use wgpu::{Device, Limits, TextureFormat};
 
 /// Checks a description and an output format against a device.
@@ -28,10 +28,9 @@ pub(crate) fn validate(device: &Device, desc: &ContextDesc, output: TextureForma
     }
 }
 
-/// Checks that `device` can have the history of a context in its storage textures. wgpu's GL backend cannot.
-pub(super) fn check_history(device: &Device, desc: &ContextDesc) -> Result<(), CreateError> {
-    let formats = written(desc.settings.history_layout());
-    match formats.into_iter().find(|&format| !is_storable(device, format)) {
+/// Checks that `device` can have history in its storage textures. wgpu's GL backend cannot.
+pub(super) fn check_history(device: &Device) -> Result<(), CreateError> {
+    match STORED.into_iter().find(|&format| !is_storable(device, format)) {
         Some(needed) => Err(CreateError::HistoryFormat { needed, backend: device.adapter_info().backend }),
         None => Ok(()),
     }

@@ -1,32 +1,162 @@
 //! Stages of a frame: the interface that their passes share.
 
+use super::binding::Binding;
+use super::compute::{ComputeShader, PipelineKey, WORKGROUP_WIDTH};
+use super::groups::Resource;
 use super::history::History;
+use super::recorder::Recorder;
+use super::textures::{Batch, batches};
 use super::uniforms::FrameUniforms;
-use super::{Frame, Target, Variant};
-use crate::frame::ContextDesc;
+use super::{Textures, Variant};
+use crate::frame::{ContextDesc, ViewFrame};
 use crate::kernel::debug_view::DebugView;
-use crate::method::Overrides;
+use crate::method::{HistoryLayout, Overrides};
+use crate::uniforms::ORIGINS;
 use std::fmt::Debug;
-use wgpu::{Buffer, ComputePass, Device, Texture, TextureView};
+use wgpu::{Buffer, Device, Texture, TextureView};
+
+/// Which inputs and outputs a frame has, and other properties that its pipelines are specialized to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Specialization {
+    /// Set of [bits](Binding::bit).
+    present: u32,
+    has_regions: bool,
+    /// Whether depth and motion are filled, with the camera's motion.
+    is_filled: bool,
+    /// Whether depth and motion are given at samples only.
+    pub is_at_samples: bool,
+    /// View to output in place of the frame, without storing anything.
+    pub view: Option<DebugView>,
+    pub debug: Option<DebugView>,
+    /// Number of the settings.
+    generation: u64,
+}
+
+impl Specialization {
+    pub fn new(variant: Variant, view: Option<DebugView>, generation: u64) -> Self {
+        let present = [
+            (Binding::Depth, variant.depth),
+            (Binding::Motion, variant.motion),
+            (Binding::Trust, variant.trust),
+            (Binding::Lod, variant.lod),
+            (Binding::Repaired, variant.repaired),
+            (Binding::Counters, variant.counters),
+        ];
+        let bit = |(binding, is_present): (Binding, bool)| if is_present { binding.bit() } else { 0 };
+        Self {
+            present: present.map(bit).iter().sum(),
+            has_regions: variant.regions,
+            is_filled: false,
+            is_at_samples: variant.geometry_at_samples,
+            view,
+            debug: variant.debug,
+            generation,
+        }
+    }
+
+    /// Follows a stage that fills depth and motion; whether there is motion then.
+    pub fn fill(&mut self, desc: &ContextDesc) -> bool {
+        self.is_filled = true;
+        if desc.motion.lacks_camera() {
+            self.present |= Binding::Motion.bit();
+        }
+        self.has(Binding::Motion)
+    }
+
+    fn has(&self, binding: Binding) -> bool {
+        self.present & binding.bit() != 0
+    }
+
+    /// The pipeline of `shader` for such frames.
+    pub fn pipeline(&self, device: &Device, desc: &ContextDesc, shader: &ComputeShader) -> wgpu::ComputePipeline {
+        let bound = shader.bindings().iter().fold(0, |set, (number, _)| set | 1_u32 << number);
+        let code = |view: Option<DebugView>| view.map_or(0, |view| view as u64);
+        let bits = u64::from(self.present & bound)
+            | u64::from(self.has_regions) << 32
+            | u64::from(self.is_filled) << 33
+            | code(self.view) << 40
+            | code(self.debug) << 48;
+        let key = PipelineKey { bits, generation: self.generation };
+        shader.keyed_pipeline(device, key, || self.overrides(desc, bound))
+    }
+
+    /// Override values of shaders that use the set `bound` of bindings.
+    fn overrides(&self, desc: &ContextDesc, bound: u32) -> Overrides {
+        use Binding::{Counters, Debug, Depth, Lod, Motion, Output, Past, Repaired, Trust, Uniforms};
+        let has = |binding| u32::from(self.has(binding));
+        let settings = &desc.settings;
+        let is_tested = self.has(Depth) && settings.depth_test.is_some();
+        let is_kept = matches!(settings.history_layout(), HistoryLayout::Kept { .. });
+        let code = |view: Option<DebugView>| view.map_or(0, |view| view as u32);
+        let list = [
+            (Uniforms, "REGIONS", u32::from(self.has_regions)),
+            (Depth, "HAS_DEPTH", has(Depth)),
+            (Depth, "DEPTH_TEST", u32::from(is_tested)),
+            (Motion, "HAS_MOTION", has(Motion)),
+            // Filled vectors contain the camera's motion.
+            (Motion, "CAMERA_MOTION", if self.is_filled { 0 } else { desc.motion.camera_code() }),
+            (Trust, "HAS_TRUST", has(Trust)),
+            (Lod, "HAS_LOD", has(Lod)),
+            (Uniforms, "NOISY", u32::from(settings.noisy)),
+            (Repaired, "REPAIR", has(Repaired)),
+            (Counters, "COUNT", has(Counters)),
+            (Past, "HAS_KEPT", u32::from(is_kept)),
+            (Output, "VIEW", code(self.view)),
+            (Output, "KEEP_ALPHA", u32::from(desc.keep_alpha)),
+            (Debug, "DEBUG_VIEW", code(self.debug)),
+        ];
+        let list = list.into_iter().filter(|(binding, ..)| binding.bit() & bound != 0);
+        list.map(|(_, name, value)| (name, value)).chain(settings.overrides()).collect()
+    }
+}
 
 /// A frame to record: its description, and state that follows from it. A stage that fills an input replaces that input
 /// here.
 pub(super) struct Job<'a> {
+    pub device: &'a Device,
     pub desc: &'a ContextDesc,
-    pub frame: Frame<'a>,
-    pub target: &'a Target<'a>,
-    /// Variant of the frame as the caller gave it, so that prewarmed pipelines suffice.
-    pub variant: Variant,
-    /// View to output in place of the frame, without storing anything.
-    pub view: Option<DebugView>,
+    pub views: &'a [ViewFrame],
+    /// Inputs and outputs, by the numbers of their bindings.
+    pub textures: [Option<Textures<'a>>; ORIGINS],
+    pub counters: Option<&'a Buffer>,
+    pub special: Specialization,
     pub uniforms: FrameUniforms,
     pub history: &'a History,
-    /// Lattices, if a stage reads samples.
-    pub lattices: Option<Buffer>,
     /// Gain and fit for each sample, for smr.
-    pub lights: Option<TextureView>,
+    pub lights: Option<&'a TextureView>,
     /// Quads that a plan chose, if it planned anything.
     pub repair_mask: Option<&'a TextureView>,
+    pub recorder: &'a mut Recorder,
+}
+
+impl Job<'_> {
+    /// Views that are processed in one dispatch.
+    pub fn batches(&self) -> impl Iterator<Item = Batch> + use<> {
+        batches(self.views.len(), self.special.has_regions)
+    }
+
+    /// The view `view` alone.
+    pub fn batch_of(&self, view: u32) -> Batch {
+        Batch { views: view..view + 1, regions: self.special.has_regions }
+    }
+
+    /// Adds a dispatch of a pass with one invocation for each texel of `size`. `own`: what the pass binds in addition
+    /// to what all share; what the frame does not have is a placeholder.
+    pub fn dispatch(&mut self, shader: &ComputeShader, batch: &Batch, own: &[(Binding, Resource)], size: [u32; 2]) {
+        let mut uniforms = FrameUniforms { first_view: batch.views.start, ..self.uniforms };
+        for (i, view) in uniforms.views.iter_mut().enumerate().take(self.views.len()) {
+            view.origins = self.textures.map(|textures| textures.map_or(0, |textures| textures.packed_origin(i)));
+        }
+        let pipeline = self.special.pipeline(self.device, self.desc, shader);
+        let resource = |number: u32| match own.iter().find(|(binding, _)| *binding as u32 == number) {
+            Some((_, resource)) => Some(resource.clone()),
+            None if number == Binding::Counters as u32 => self.counters.map(Resource::from),
+            None if (number as usize) < ORIGINS => Some(self.textures[number as usize]?.bind(batch)),
+            None => self.history.bound(number),
+        };
+        let workgroups = [size[0].div_ceil(WORKGROUP_WIDTH), size[1], batch.views.len() as u32];
+        self.recorder.add(self.device, (shader, pipeline), Some(&uniforms), resource, workgroups);
+    }
 }
 
 /// A stage on the device.
@@ -34,11 +164,8 @@ pub(super) trait Passes: Debug + wgpu::WasmNotSendSync {
     /// Follows a change of the context's size.
     fn resize(&mut self, _device: &Device, _desc: &ContextDesc) {}
 
-    /// Adds the stage's own textures to a new history.
-    fn extend(&self, _device: &Device, _desc: &ContextDesc, _history: &mut History) {}
-
     /// Compiles the pipelines of a variant.
-    fn prewarm(&self, device: &Device, desc: &ContextDesc, variant: Variant);
+    fn prewarm(&self, device: &Device, desc: &ContextDesc, special: &mut Specialization);
 
     /// Shader and override values of each compiled pipeline.
     fn pipelines(&self) -> Vec<(&'static str, Overrides)>;
@@ -54,9 +181,9 @@ pub(super) trait Passes: Debug + wgpu::WasmNotSendSync {
         None
     }
 
-    /// Records the passes of a frame.
-    fn record<'a>(&'a self, device: &Device, pass: &mut ComputePass<'_>, job: &mut Job<'a>);
+    /// Adds the dispatches of a frame.
+    fn record<'a>(&'a self, job: &mut Job<'a>);
 
-    /// Completes a history that passes outside a frame have written, such as a resize.
-    fn complete(&self, _device: &Device, _pass: &mut ComputePass<'_>, _history: &History) {}
+    /// Adds the dispatches that complete a history which passes outside a frame have written, such as a resize.
+    fn complete(&self, _device: &Device, _recorder: &mut Recorder, _history: &History) {}
 }

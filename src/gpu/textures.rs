@@ -1,8 +1,8 @@
 //! Where the views of an input or output are.
 
-use super::history::{array_view, levels_view};
+use super::groups::Resource;
 use std::ops::Range;
-use wgpu::{Texture, TextureView};
+use wgpu::Texture;
 
 /// Textures of an input or output: where its views are.
 ///
@@ -75,13 +75,15 @@ impl<'a> Textures<'a> {
         matches!(self, Self::Regions(_))
     }
 
-    /// Texture view to bind for a batch of views.
-    pub(super) fn bind(&self, batch: &Batch) -> TextureView {
+    /// What to bind for a batch of views.
+    pub(super) fn bind(&self, batch: &Batch) -> Resource {
         let view = batch.views.start;
         match self {
-            Self::Layers(texture) if !batch.regions => array_view(texture),
-            Self::Layers(texture) => layer_view(texture, view),
-            Self::Regions(regions) => layer_view(regions[view as usize].texture, regions[view as usize].layer),
+            Self::Layers(texture) => Resource::Texture((*texture).clone(), batch.regions.then_some(view)),
+            Self::Regions(regions) => {
+                let Region { texture, layer, .. } = regions[view as usize];
+                Resource::Texture(texture.clone(), Some(layer))
+            }
         }
     }
 
@@ -95,11 +97,6 @@ impl<'a> Textures<'a> {
             }
         }
     }
-}
-
-/// View of one layer's first level as a 2D array.
-fn layer_view(texture: &Texture, layer: u32) -> TextureView {
-    levels_view(texture, 0, Some(1), Some(layer))
 }
 
 /// Views that are processed in one dispatch.

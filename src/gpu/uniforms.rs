@@ -1,17 +1,14 @@
 //! Uniforms of a frame. A test checks order, offsets and sizes against the WGSL.
 
-use super::buffer::filled;
-use super::history::NO_FRAME;
-use super::{Frame, Target, Textures};
-use crate::frame::{ContextDesc, Reset};
+use super::Frame;
+use crate::frame::{ContextDesc, Reset, ViewFrame};
 use crate::method::{HistoryLayout, inv_density_at_fovea, smr_params, wrs_params};
-use crate::uniforms::Held;
 pub use crate::uniforms::{CameraUniforms, LatticeUniforms, ViewLattices, ViewUniforms};
+use crate::uniforms::{Held, MAX_VIEWS};
 use bytemuck::{Pod, Zeroable};
-use wgpu::{Buffer, BufferUsages, Device};
 
-/// Largest number of views of a context ([`ContextDesc::view_count`]) on a GPU.
-pub const MAX_VIEWS: usize = 4;
+/// `NO_FRAME` in `shaders/pass/inputs.wgsl`: the number of no frame.
+pub(super) const NO_FRAME: u32 = u32::MAX;
 
 /// `FrameUniforms` in `shaders/pass/inputs.wgsl`.
 #[repr(C)]
@@ -69,15 +66,9 @@ pub struct FrameUniforms {
 }
 
 impl FrameUniforms {
-    /// Uniforms of a frame and its target, if it has one. `held`: state of the views after this frame. `past_frame`:
-    /// number of the previous frame, or [`NO_FRAME`].
-    pub(super) fn new(
-        desc: &ContextDesc,
-        frame: &Frame<'_>,
-        target: Option<&Target<'_>>,
-        held: &[Held],
-        past_frame: u32,
-    ) -> Self {
+    /// Uniforms of a frame, without the origins of its views. `held`: state of the views after this frame.
+    /// `past_frame`: number of the previous frame, or [`NO_FRAME`].
+    pub(super) fn new(desc: &ContextDesc, frame: &Frame<'_>, held: &[Held], past_frame: u32) -> Self {
         let settings = &desc.settings;
         let (wrs, smr) = (wrs_params(settings), smr_params(settings));
         let [coarse_mid, coarse_far] = settings.foveation.coarseness();
@@ -108,30 +99,11 @@ impl FrameUniforms {
             },
             ..Self::default()
         };
-        let origin = |textures: Option<Textures<'_>>, view| textures.map_or(0, |t| t.packed_origin(view));
-        for (i, ((to, view), held)) in uniforms.views.iter_mut().zip(frame.views).zip(held).enumerate() {
-            *to = ViewUniforms {
-                color_origin: origin(Some(frame.color), i),
-                depth_origin: origin(frame.depth, i),
-                motion_origin: origin(frame.motion, i),
-                trust_origin: origin(frame.trust, i),
-                lod_origin: origin(frame.lod, i),
-                noise_origin: origin(frame.noise, i),
-                repaired_origin: origin(frame.repaired, i),
-                output_origin: origin(target.map(|t| t.output), i),
-                debug_origin: origin(target.and_then(|t| t.debug).map(|d| d.output), i),
-                ..ViewUniforms::new(desc, view, held, i, frame.index)
-            };
+        for (i, (view, held)) in frame.views.iter().zip(held).enumerate() {
+            uniforms.views[i] = ViewUniforms::new(desc, view, held, i, frame.index);
             uniforms.cameras[i] = CameraUniforms::new(desc, view, held);
         }
         uniforms
-    }
-
-    /// These uniforms on the device, for a dispatch from view `first_view` on. Each has a buffer of its own, so that
-    /// one submission can contain several. `lattice`: the lattice whose samples the dispatch processes, if any.
-    pub(super) fn buffer(self, device: &Device, first_view: u32, lattice: u32) -> Buffer {
-        let uniforms = Self { first_view, lattice, ..self };
-        filled(device, "afterimage uniforms", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM)
     }
 }
 
@@ -149,27 +121,11 @@ pub struct SparseUniforms {
 
 impl SparseUniforms {
     /// Uniforms of a frame with views of `size_px`; without lattices every pixel is a sample.
-    pub(super) fn new(frame: &Frame<'_>, size_px: [u32; 2]) -> Self {
+    pub(super) fn new(views: &[ViewFrame], size_px: [u32; 2]) -> Self {
         let mut uniforms = Self { missing: f32::NAN.to_bits(), ..Self::default() };
-        for (to, view) in uniforms.views.iter_mut().zip(frame.views) {
+        for (to, view) in uniforms.views.iter_mut().zip(views) {
             *to = LatticeUniforms::of_view_or_full(view.lattices.as_ref(), size_px);
         }
         uniforms
     }
-}
-
-/// `CandidateUniforms` in `shaders/pass/candidate_pass.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct CandidateUniforms {
-    /// Width and height of a view in pixels.
-    pub size: [u32; 2],
-    /// First pixel of the view in the color input: x in the low half, y in the high half.
-    pub color_origin: u32,
-    /// The same for noise.
-    pub noise_origin: u32,
-    /// First view of the dispatch.
-    pub first_view: u32,
-    /// Padding to a multiple of 16 bytes.
-    pub unused: [u32; 3],
 }

@@ -15,6 +15,18 @@ use super::pack::{disparity_code, disparity_value};
 use glam::Vec3;
 use std::f32::consts::LOG2_E;
 
+/// Relative difference of disparity within which neighbouring samples share an estimate of light.
+pub const LIGHT_RELATIVE: f32 = 0.1;
+/// Relative difference of disparity within which a sample is interpolated for a pixel.
+pub const SAMPLE_RELATIVE: f32 = 0.05;
+/// Weight of a sample of another surface. It is so small that such a sample counts only where no sample near the pixel
+/// shows the pixel's own surface.
+pub const OTHER_SURFACE: f32 = 1e-3;
+/// Factor on the weight of a sample's gain and fit if they come from its neighbours only, because the sample itself was
+/// not compared with history.
+pub const BY_NEIGHBOURS: f32 = 1e-3;
+/// Least weight of one of the four samples around a pixel.
+pub const LEAST_SHARE: f32 = 1e-4;
 /// Expected difference between a sample and history that has not moved. The precision of storage causes it. In units of
 /// [`root_difference`].
 const STILL_ERROR: f32 = 0.3;

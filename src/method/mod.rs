@@ -141,9 +141,8 @@ pub(crate) struct Entry {
     /// Memory traffic of history and noise, in bytes a pixel.
     pub history_traffic_bytes: fn(&Settings) -> u32,
     pub shader: fn(&Settings) -> PassShader,
-    /// Values of the shader's own overrides, in addition to those of `shaders/pass/inputs.wgsl`. The `bool` states
-    /// whether the frame has a level-of-detail input.
-    pub overrides: fn(&Settings, bool) -> Overrides,
+    /// Values of the shaders' own overrides, in addition to those of `shaders/pass/inputs.wgsl`.
+    pub overrides: fn(&Settings) -> Overrides,
 }
 
 /// Shader of a method's pass.
@@ -153,8 +152,6 @@ pub(crate) struct PassShader {
     pub name: &'static str,
     /// Edge in pixels of the block that an invocation processes.
     pub block_px: u32,
-    /// Whether it reads the samples of lattices, for which `shaders/pass/lattices.wgsl` is bound.
-    pub reads_samples: bool,
 }
 
 /// Names and values of a shader's overrides.
@@ -212,9 +209,9 @@ impl Settings {
         (self.entry().shader)(self)
     }
 
-    /// Values of the method's own overrides. `has_lod`: whether the frame has a level-of-detail input.
-    pub(crate) fn overrides(&self, has_lod: bool) -> Overrides {
-        (self.entry().overrides)(self, has_lod)
+    /// Values of the method's own overrides.
+    pub(crate) fn overrides(&self) -> Overrides {
+        (self.entry().overrides)(self)
     }
 
     /// Layout of the history.

@@ -9,6 +9,6 @@ pub(super) static ENTRY: Entry = Entry {
     stages: whole_frames,
     history: |_| HistoryLayout::Nothing,
     history_traffic_bytes: |_| 0,
-    shader: |_| PassShader { name: "none_pass", block_px: 1, reads_samples: false },
-    overrides: |_, _| vec![],
+    shader: |_| PassShader { name: "none_pass", block_px: 1 },
+    overrides: |_| vec![],
 };

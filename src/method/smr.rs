@@ -17,13 +17,9 @@ pub(super) static ENTRY: Entry = Entry {
     history,
     history_traffic_bytes,
     // An invocation processes 2x2 pixels, so that it can also write their mean, the first level of the mip chain.
-    shader: |_| PassShader { name: "smr_pass", block_px: 2, reads_samples: false },
-    overrides: |settings, has_lod| {
-        vec![
-            ("HAS_LOD", u32::from(has_lod)),
-            ("FILTER", filter(settings) as u32),
-            ("RELIGHT_ON", u32::from(settings.method.smr().relight)),
-        ]
+    shader: |_| PassShader { name: "smr_pass", block_px: 2 },
+    overrides: |settings| {
+        vec![("FILTER", filter(settings) as u32), ("RELIGHT_ON", u32::from(settings.method.smr().relight))]
     },
 };
 

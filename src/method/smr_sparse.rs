@@ -19,8 +19,13 @@ pub(super) static ENTRY: Entry = Entry {
         // The noise of samples (4) and the noise of history (4) are read. The noise of history is written (4).
         2 * 8 + samples + if settings.noisy { 4 + 2 * 4 } else { 0 }
     },
-    shader: |_| PassShader { name: "sparse_pass", block_px: 1, reads_samples: true },
-    overrides: |settings, _| vec![("ANTIALIAS", u32::from(smr_sparse_antialiases(settings)))],
+    shader: |_| PassShader { name: "sparse_pass", block_px: 1 },
+    overrides: |settings| {
+        vec![
+            ("ANTIALIAS", u32::from(smr_sparse_antialiases(settings))),
+            ("RELIGHT_ON", u32::from(smr_sparse_relights(settings))),
+        ]
+    },
 };
 
 /// Whether history stores means of jittered samples. Noisy samples are averaged in another way.

@@ -9,6 +9,6 @@ pub(super) static ENTRY: Entry = Entry {
     stages: whole_frames,
     history: |_| HistoryLayout::Surfaces { levels: 0, noisy: false },
     history_traffic_bytes: |_| 2 * 8,
-    shader: |_| PassShader { name: "taa_pass", block_px: 1, reads_samples: false },
-    overrides: |_, _| vec![],
+    shader: |_| PassShader { name: "taa_pass", block_px: 1 },
+    overrides: |_| vec![],
 };

@@ -13,6 +13,6 @@ pub(super) static ENTRY: Entry = Entry {
     },
     history: |_| HistoryLayout::Surfaces { levels: 0, noisy: false },
     history_traffic_bytes: |_| 2 * 8,
-    shader: |_| PassShader { name: "taau_pass", block_px: 1, reads_samples: true },
-    overrides: |_, _| vec![],
+    shader: |_| PassShader { name: "taau_pass", block_px: 1 },
+    overrides: |_| vec![],
 };

@@ -20,10 +20,10 @@ pub(super) static ENTRY: Entry = Entry {
         2 * reservoir + noise
     },
     shader: |settings| match settings.foveation.filter {
-        Filter::Sparse => PassShader { name: "wrs_sparse_pass", block_px: 1, reads_samples: true },
-        _ => PassShader { name: "wrs_pass", block_px: 1, reads_samples: false },
+        Filter::Sparse => PassShader { name: "wrs_sparse_pass", block_px: 1 },
+        _ => PassShader { name: "wrs_pass", block_px: 1 },
     },
-    overrides: |settings, has_lod| {
+    overrides: |settings| {
         let params = wrs_params(settings);
         vec![
             ("SAMPLER", params.sampler as u32),
@@ -32,7 +32,6 @@ pub(super) static ENTRY: Entry = Entry {
             ("WEIGHT_EXPONENT", settings.method.wrs().weight_exponent),
             ("RATE_EXPONENT", settings.method.wrs().rate_exponent),
             ("HAS_REFERENCES", u32::from(has_references(settings))),
-            ("HAS_LOD", u32::from(has_lod)),
             ("FILTER", settings.foveation.filter as u32),
         ]
     },

@@ -51,8 +51,10 @@ impl Pyramid {
     }
 
     /// Bilinear lookup in `level` at position `px` in pixels of level 0, clamped at the borders.
-    #[doc(hidden)]
-    pub fn bilinear(&self, px: [f32; 2], level: usize) -> Vec3 {
+    ///
+    /// # Panics
+    /// If `level` is above the `max_level` of [`new`](Self::new).
+    pub fn bilinear(&self, px: [f32; 2], level: usize) -> [f32; 3] {
         let image = &self.levels[level];
         let axis = |i: usize| {
             let len = image.size()[i];
@@ -61,7 +63,7 @@ impl Pyramid {
         };
         let ((x0, x1, fx), (y0, y1, fy)) = (axis(0), axis(1));
         let row = |y| [Vec3::from(image.at(x0, y)), Vec3::from(image.at(x1, y))];
-        foveate::bilinear(row(y0), row(y1), [fx, fy])
+        foveate::bilinear(row(y0), row(y1), [fx, fy]).to_array()
     }
 
     /// Trilinear lookup at the pixel `px` and level of detail `lod`: linear blend of bilinear lookups in the two levels
@@ -79,12 +81,12 @@ impl Pyramid {
             }
             sanitize::color(Vec3::from(full)).0
         } else {
-            self.bilinear(px, level)
+            self.bilinear(px, level).into()
         };
         if fraction == 0.0 {
             return fine.to_array();
         }
-        foveate::blend(fine, self.bilinear(px, level + 1), fraction).to_array()
+        foveate::blend(fine, self.bilinear(px, level + 1).into(), fraction).to_array()
     }
 }
 

@@ -11,8 +11,7 @@ mod cpu;
 #[cfg(feature = "cpu")]
 mod gaussian;
 #[cfg(feature = "gpu")]
-#[doc(hidden)]
-pub mod gpu;
+pub(crate) mod gpu;
 #[cfg(feature = "cpu")]
 mod mip;
 

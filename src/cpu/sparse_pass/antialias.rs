@@ -1,12 +1,15 @@
 //! Antialiasing in the pass for jittered frames: history stores means of samples instead of single samples.
 
-use super::Surroundings;
-use super::{
-    Kept, Mean, Reconstruction, Vec2, Vec3, View, pack_color_by, pack_kept, reconstruct, rng, sanitize, stored_lod,
-};
+use super::kept_history::Surroundings;
+use super::view::View;
 use crate::kernel::antialias::{
-    Averaged, Near, add_near, average, clip, clipped, kept_mean, may_show, move_together, stands_before,
+    Averaged, Mean, Near, add_near, average, clip, clipped, kept_mean, may_show, move_together, stands_before,
+    stored_lod,
 };
+use crate::kernel::kept::{Kept, pack_color_by, pack_kept};
+use crate::kernel::sparse::{Reconstruction, reconstruct};
+use crate::kernel::{rng, sanitize};
+use glam::{Vec2, Vec3};
 
 impl View<'_> {
     /// Place of this frame's samples in their pixels: a pixel shows the point at its position minus the jitter.

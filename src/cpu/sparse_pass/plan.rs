@@ -5,9 +5,10 @@
 //! pixels that are settled. The second chooses the pixels whose quad has at least the smallest key that the budget pays
 //! for.
 
-use super::{Inputs, LatticeUniforms, View};
+use super::view::View;
 use crate::cpu::Frame;
 use crate::cpu::history::History;
+use crate::cpu::inputs::Inputs;
 use crate::frame::ContextDesc;
 use crate::image::Image;
 use crate::kernel::antialias::mean_of;
@@ -16,6 +17,7 @@ use crate::kernel::repair::{KEYS, WANTED_LOD, asked_px, budget_quads, priority, 
 use crate::kernel::reproject::nearest;
 use crate::kernel::sanitize;
 use crate::settings::Repair;
+use crate::uniforms::LatticeUniforms;
 
 /// Pixels to repair, view by view.
 pub(in crate::cpu) fn plan(

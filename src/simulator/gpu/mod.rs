@@ -2,23 +2,21 @@
 //! `Foveation::lod_map`, bit-equal to them on software Vulkan.
 
 mod mip_chain;
-// For the tests, which compare struct layouts.
-#[doc(hidden)]
-pub mod uniforms;
+pub(crate) mod uniforms;
 
 use crate::error::{CreateError, FrameError};
 use crate::foveation::Filter;
 use crate::frame::{ContextDesc, ViewFrame};
-use crate::gpu::compute::{ComputeShader, float_texture, storage_texture, uniform};
-use crate::gpu::{Timestamps, array_view, check_readable, check_texture, filled, texel, validate};
+use crate::gpu::buffer::filled;
+use crate::gpu::compute::{ComputeShader, Sources};
+use crate::gpu::plane::{Plane, PlaneDesc, array_view};
+use crate::gpu::{Timestamps, check_readable, check_texture, texel, validate};
 use crate::kernel::foveate::block_sample_level;
-use crate::shader::SHADERS;
 use crate::uniforms::Held;
-use mip_chain::{MipChain, texture};
+use mip_chain::MipChain;
 use uniforms::FoveationUniforms;
 use wgpu::{
-    BindingResource, BufferUsages, CommandEncoder, ComputePassDescriptor, Device, Texture, TextureFormat,
-    TextureUsages, TextureView,
+    BindingResource, BufferUsages, CommandEncoder, ComputePassDescriptor, Device, Texture, TextureFormat, TextureUsages,
 };
 
 /// Inputs and outputs of a simulated frame. Example: [`GpuSimulator`].
@@ -75,14 +73,14 @@ pub struct GpuSimulator {
     steps: Steps,
     held: Vec<Held>,
     /// Placeholder for frames without levels of detail; not written.
-    no_lod: TextureView,
+    no_lod: Plane,
 }
 
 /// Passes of a filter, and their intermediate textures.
 #[derive(Debug)]
 enum Steps {
     Levels { mip_chain: MipChain, show: ComputeShader },
-    Axes { across: ComputeShader, between: TextureView, down: ComputeShader },
+    Axes { across: ComputeShader, between: Plane, down: ComputeShader },
 }
 
 impl GpuSimulator {
@@ -94,70 +92,45 @@ impl GpuSimulator {
     /// [`CreateError`] if the description is out of range, the output format is not supported, or a limit of the device
     /// is too low.
     pub fn new(device: &Device, desc: &ContextDesc, output_format: TextureFormat) -> Result<Self, CreateError> {
-        Self::with_shaders(device, desc, output_format, |name| SHADERS.compose(name).source)
+        Self::with_sources(device, desc, output_format, &Sources::default())
     }
 
-    /// A simulator with other shaders, for tests that plant errors.
+    /// A simulator with other texts of its passes, for tests that plant errors.
     #[doc(hidden)]
-    pub fn with_shaders(
+    pub fn with_sources(
         device: &Device,
         desc: &ContextDesc,
         output_format: TextureFormat,
-        source: impl Fn(&str) -> String,
+        sources: &Sources,
     ) -> Result<Self, CreateError> {
         validate(device, desc, output_format)?;
         let texel = texel(device, output_format)?;
         // In WGSL the texel format of a storage texture is part of its type.
-        let writing = |name, texel| source(name).replace("rgba16float", texel);
-        let foveation = desc.settings.foveation;
-        let output = storage_texture(output_format);
-        let lod = storage_texture(TextureFormat::R32Float);
-        let levels = |coarsest, name| {
-            let types = [uniform(), float_texture(), float_texture(), output, lod];
-            Steps::Levels {
-                mip_chain: MipChain::new(device, desc, coarsest, source("mip_level")),
-                show: ComputeShader::new(device, name, writing(name, texel), &types),
-            }
+        let writing = |name, texel| ComputeShader::new(device, name, &sources.text(name).replace("rgba16float", texel));
+        let plane = |format, size, layers| PlaneDesc::new("afterimage foveation", format, size, layers).create(device);
+        let levels = |coarsest, name| Steps::Levels {
+            mip_chain: MipChain::new(device, desc, coarsest, sources),
+            show: writing(name, texel),
         };
+        let foveation = desc.settings.foveation;
         let steps = match foveation.filter {
             Filter::Mip => levels(foveation.max_level(), "mip_show"),
             Filter::Block => levels(block_sample_level(foveation.max_level()), "block_show"),
             // Blocks of one pixel copy the full-rate frame: the post-process reads only the samples of a sparse frame.
             Filter::Off | Filter::Sparse => levels(0, "block_show"),
-            Filter::Gauss => {
-                let format = TextureFormat::Rgba32Float;
-                let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING;
-                let axis = |texel, output| {
-                    let types = [uniform(), float_texture(), output, lod];
-                    ComputeShader::new(device, "gauss_axis", writing("gauss_axis", texel), &types)
-                };
-                Steps::Axes {
-                    across: axis("rgba32float", storage_texture(format)),
-                    between: array_view(&texture(device, desc.size_px, desc.view_count, 1, format, usage)),
-                    down: axis(texel, output),
-                }
-            }
+            Filter::Gauss => Steps::Axes {
+                across: writing("gauss_axis", "rgba32float"),
+                between: plane(TextureFormat::Rgba32Float, desc.size_px, desc.view_count),
+                down: writing("gauss_axis", texel),
+            },
         };
-        let no_lod = texture(device, [1, 1], 1, 1, TextureFormat::R32Float, TextureUsages::STORAGE_BINDING);
         Ok(Self {
             desc: *desc,
             output_format,
             steps,
             held: vec![Held::default(); desc.view_count as usize],
-            no_lod: array_view(&no_lod),
+            no_lod: plane(TextureFormat::R32Float, [1, 1], 1),
         })
-    }
-
-    /// Bytes of memory traffic a pixel that a filter needs, to outputs of halves and without levels of detail; `None`:
-    /// full-rate frames are copied. For benchmarks.
-    #[doc(hidden)]
-    pub fn traffic(filter: Filter) -> Option<u32> {
-        match filter {
-            Filter::Mip => Some(27),
-            Filter::Gauss => Some(48),
-            Filter::Block => Some(25),
-            Filter::Off | Filter::Sparse => None,
-        }
     }
 
     /// Description that the simulator was created with.
@@ -183,7 +156,7 @@ impl GpuSimulator {
         let uniforms = || uniforms.as_entire_binding();
         let view = BindingResource::TextureView;
         let (full, output) = (array_view(frame.full), array_view(frame.output));
-        let lod = frame.lod.map_or_else(|| self.no_lod.clone(), array_view);
+        let lod = frame.lod.map_or_else(|| self.no_lod.whole.clone(), array_view);
         let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
             label: Some("afterimage foveation"),
             timestamp_writes: frame.timestamps.map(Timestamps::writes),
@@ -193,14 +166,15 @@ impl GpuSimulator {
         match &self.steps {
             Steps::Levels { mip_chain, show } => {
                 mip_chain.record(device, &mut pass, &full);
-                let resources = [uniforms(), view(&full), view(&mip_chain.levels), view(&output), view(&lod)];
+                let resources = [uniforms(), view(&full), view(&mip_chain.levels.whole), view(&output), view(&lod)];
                 let group = show.group(device, resources);
                 show.dispatch(device, &mut pass, &[write_lod], &group, size, layers);
             }
             Steps::Axes { across, between, down } => {
-                let group = across.group(device, [uniforms(), view(&full), view(between), view(&self.no_lod)]);
+                let group =
+                    across.group(device, [uniforms(), view(&full), view(&between.whole), view(&self.no_lod.whole)]);
                 across.dispatch(device, &mut pass, &[("AXIS", 0), ("WRITE_LOD", 0)], &group, size, layers);
-                let group = down.group(device, [uniforms(), view(between), view(&output), view(&lod)]);
+                let group = down.group(device, [uniforms(), view(&between.whole), view(&output), view(&lod)]);
                 down.dispatch(device, &mut pass, &[("AXIS", 1), write_lod], &group, size, layers);
             }
         }

@@ -52,12 +52,12 @@ fn a_wrong_origin_is_caught() {
     let desc = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
     // Reads and writes at another input's origin.
     let planted = [
-        (".color_origin), layer", ".noise_origin), layer"),
-        (".depth_origin), layer", ".noise_origin), layer"),
-        (".motion_origin), layer", ".noise_origin), layer"),
-        (".trust_origin), layer", ".noise_origin), layer"),
-        (".lod_origin), layer", ".noise_origin), layer"),
-        (".output_origin);", ".noise_origin);"),
+        ("COLOR_IN), layer", "NOISE_IN), layer"),
+        ("DEPTH_IN), layer", "NOISE_IN), layer"),
+        ("MOTION_IN), layer", "NOISE_IN), layer"),
+        ("TRUST_IN), layer", "NOISE_IN), layer"),
+        ("LOD_IN), layer", "NOISE_IN), layer"),
+        ("COLOR_OUT);", "NOISE_IN);"),
     ];
     all_caught_once(SHADERS.compose("smr_pass").source, &planted, |source| {
         let mut rig = Rig::with_shader(desc, Settings::default(), source)?;

@@ -1,11 +1,11 @@
 //! Uniform structs of Rust and WGSL agree: names, order, offsets, sizes.
 
-use afterimage::gpu::uniforms::{
-    CameraUniforms, CandidateUniforms, FrameUniforms, LatticeUniforms, MAX_VIEWS, SparseUniforms, ViewLattices,
-    ViewUniforms,
+use afterimage::gpu::MAX_VIEWS;
+use afterimage::internal::FoveationUniforms;
+use afterimage::internal::{
+    CameraUniforms, FrameUniforms, LatticeUniforms, SparseUniforms, ViewLattices, ViewUniforms,
 };
 use afterimage::shader::SHADERS;
-use afterimage::simulator::gpu::uniforms::FoveationUniforms;
 use afterimage::wgpu::naga;
 use std::mem::offset_of;
 
@@ -27,8 +27,7 @@ macro_rules! rust {
 
 fn view_uniforms() -> (Vec<(String, usize)>, usize) {
     rust!(ViewUniforms: ray_scale, ray_offset, gaze_ray, depth_row, key, disparity_a, disparity_b, disparity_flags,
-        motion_offset, color_origin, depth_origin, motion_origin, trust_origin, lod_origin, noise_origin,
-        output_origin, debug_origin, jitter_px, repaired_origin, lowest_px, highest_px)
+        motion_offset, jitter_px, origins, lowest_px, highest_px)
 }
 
 #[test]
@@ -44,13 +43,6 @@ fn constants_have_one_layout() {
     assert_eq!(wgsl(&module, "FrameUniforms"), frame);
     assert_eq!(wgsl(&module, "ViewUniforms"), view_uniforms());
     assert!(composed.source.contains(&format!("array<ViewUniforms, {MAX_VIEWS}>")));
-}
-
-#[test]
-fn constants_of_the_candidates_have_one_layout() {
-    let module = naga::front::wgsl::parse_str(&SHADERS.compose("candidate_pass").source).unwrap();
-    let candidates = rust!(CandidateUniforms: size, color_origin, noise_origin, first_view);
-    assert_eq!(wgsl(&module, "CandidateUniforms"), candidates);
 }
 
 #[test]

@@ -164,9 +164,10 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
             let facts = [noise_view("lost", &rig.context).facts];
             let mut encoder = rig.device.create_command_encoder(&Default::default());
             let frame = Frame::new(&color, &facts, 4);
-            rig.gpu.record_view(&rig.device, &mut encoder, &frame, &output, DebugView::Age).unwrap();
-            let error = rig.gpu.record(&rig.device, &mut encoder, &frame, &output).unwrap_err();
-            assert_eq!(error, FrameError::DeviceLost);
+            let viewed = rig.gpu.record_view(&rig.device, &mut encoder, &frame, &output, DebugView::Age);
+            assert_eq!(viewed, Err(FrameError::DeviceLost));
+            let recorded = rig.gpu.record(&rig.device, &mut encoder, &frame, &output);
+            assert_eq!(recorded, Err(FrameError::DeviceLost));
             rig.queue.submit([encoder.finish()]);
         };
         let textures_before = textures(&lost);

@@ -57,9 +57,9 @@ fn a_history_of_any_bits_shows_numbers_and_heals_in_a_frame() {
             for texture in rig.gpu.history_textures() {
                 let words = (texture.width() * texture.height() * texture.format().block_copy_size(None).unwrap()) / 4;
                 let random: Vec<u32> = (0..words).map(|_| draws.bits()).collect();
-                afterimage_testing::gpu::write_layer(&rig.queue, texture, 0, bytemuck::cast_slice(&random));
+                afterimage_testing::gpu::write_layer(&rig.queue, &texture, 0, bytemuck::cast_slice(&random));
                 for level in 1..texture.mip_level_count() {
-                    afterimage_testing::gpu::fill_level(&rig.queue, texture, level, draws.bits() as u8);
+                    afterimage_testing::gpu::fill_level(&rig.queue, &texture, level, draws.bits() as u8);
                 }
             }
             for (index, frame) in frames[1..].iter().enumerate() {

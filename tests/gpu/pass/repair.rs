@@ -3,6 +3,7 @@
 use super::rig::{Rig, View};
 use super::sparse::{SIZE, desc, gliding_view, settings};
 use afterimage::gpu::{Afterimage, Frame};
+use afterimage::internal::Sources;
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::TextureFormat;
 use afterimage::{ContextDesc, Foveation, Gaze, Image, Lattices, Method, MethodKind, Repair, Reset, Settings, Smr};
@@ -227,9 +228,9 @@ fn a_wrong_plan_is_caught() {
     let names = ["repair_key_pass", "repair_threshold_pass", "repair_mask_pass", "sparse_pass"];
     let right = names.map(|name| SHADERS.compose(name).source);
     let differs = |sources: &[String; 4]| {
-        let [key, threshold, mask, pass] = sources.clone();
-        let mut rig = Rig::with_shader(desc(), settings, &pass)?;
-        rig.gpu.set_repair_shaders(&rig.device, [key, threshold, mask]);
+        let texts = names.into_iter().zip(sources);
+        let sources = texts.fold(Sources::default(), |all, (name, text)| all.with(name, text));
+        let mut rig = Rig::with_sources(desc(), settings, sources)?;
         Some((0..FRAMES).any(|index| {
             let reset = rig_of(index, &mut rig);
             let views = views(index, &settings);

@@ -4,13 +4,11 @@ use crate::images::{Images, OneView, held_words};
 pub use crate::images::{View, noise};
 use afterimage::cpu::CpuAfterimage;
 use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target};
+use afterimage::internal::{Sources, method_pass};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack;
-use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};
-use afterimage::{
-    ContextDesc, DebugView, DepthConvention, Exposure, Filter, FrameStats, Image, Method, Reset, Settings, ViewFrame,
-};
+use afterimage::{ContextDesc, DebugView, DepthConvention, Exposure, FrameStats, Image, Reset, Settings, ViewFrame};
 use afterimage_testing::{Draws, agree};
 
 /// A device with textures of one size, and both executors.
@@ -117,22 +115,22 @@ pub fn same_counts(gpu: &FrameStats, cpu: &FrameStats) -> Result<(), String> {
 impl Rig {
     /// `None`, after a message, without an adapter.
     pub fn new(context: ContextDesc, settings: Settings) -> Option<Self> {
-        let pass = match (settings.method, settings.foveation.filter) {
-            (Method::Smr(_), Filter::Sparse) => "sparse_pass".to_owned(),
-            (Method::Wrs(_), Filter::Sparse) => "wrs_sparse_pass".to_owned(),
-            (method, _) => format!("{}_pass", method.name()),
-        };
-        Self::with_shader(context, settings, &SHADERS.compose(&pass).source)
+        Self::with_sources(context, settings, Sources::default())
     }
 
-    /// With another text of the pass on the GPU.
+    /// With another text of the method's pass on the GPU.
     pub fn with_shader(context: ContextDesc, settings: Settings, source: &str) -> Option<Self> {
+        Self::with_sources(context, settings, Sources::default().with(method_pass(&settings), source))
+    }
+
+    /// With other texts of the passes on the GPU.
+    pub fn with_sources(context: ContextDesc, settings: Settings, sources: Sources) -> Option<Self> {
         // One storage texture more than WebGPU's default, for views beside the frame.
         let required_limits = wgpu::Limits { max_storage_textures_per_shader_stage: 5, ..wgpu::Limits::default() };
         let desc = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
         let (device, queue) = afterimage_testing::gpu::device_with(&desc)?;
         let context = ContextDesc { settings, ..context };
-        let made = || Afterimage::with_shader(&device, &context, TextureFormat::Rgba32Float, source);
+        let made = || Afterimage::with_sources(&device, &context, TextureFormat::Rgba32Float, sources.clone());
         Some(Self {
             cpu: CpuAfterimage::new(&context).unwrap(),
             gpu: afterimage_testing::gpu::validated(&device, "new", made).unwrap(),
@@ -207,7 +205,7 @@ impl Rig {
     fn restore_gpu(&self, words: &[[u32; 3]]) {
         let (textures, len) = (self.gpu.history_textures(), words.len() / self.context.view_count as usize);
         // Weights of reservoirs, or noise of surfaces.
-        let third = match textures.get(1).map(|texture| texture.format()) {
+        let third = match textures.get(1).map(Texture::format) {
             Some(TextureFormat::R32Uint) => textures.get(1),
             _ => textures.get(2),
         };
@@ -358,7 +356,7 @@ impl Rig {
     pub fn poison(&self) {
         for texture in self.gpu.history_textures() {
             for level in 0..texture.mip_level_count() {
-                afterimage_testing::gpu::fill_level(&self.queue, texture, level, 0xff);
+                afterimage_testing::gpu::fill_level(&self.queue, &texture, level, 0xff);
             }
         }
     }

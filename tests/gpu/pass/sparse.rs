@@ -2,6 +2,7 @@
 
 use super::rig::{Rig, View, make_texture, noise, noise_view};
 use afterimage::gpu::{Afterimage, Frame, Region, Textures};
+use afterimage::internal::Sources;
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{TextureFormat, TextureUsages};
 use afterimage::{
@@ -112,8 +113,9 @@ pub(super) fn all_caught_in_samples(
     let names = ["sparse_observe_pass", "sparse_light_pass", "sparse_pass"];
     let right = names.map(|name| SHADERS.compose(name).source);
     all_caught(&right, planted, |sources: &[String; 3]| {
-        let mut rig = Rig::with_shader(desc, settings, &sources[2])?;
-        rig.gpu.set_sample_shaders(&rig.device, &sources[0], &sources[1]);
+        let texts = names.into_iter().zip(sources);
+        let sources = texts.fold(Sources::default(), |all, (name, text)| all.with(name, text));
+        let mut rig = Rig::with_sources(desc, settings, sources)?;
         Some((0..frames).any(|index| {
             let views = views(index, &mut rig);
             rig.differs(index, Reset::None, &views)
@@ -131,7 +133,7 @@ fn wrong_noise_is_caught() {
         // Noise of samples: not expected in comparisons, of another pixel, not summed.
         ("error += expected_noise(", "error += 0.0 * expected_noise("),
         ("noise = mean_noise(noises);", ""),
-        ("frame.views[view].noise_origin", "frame.views[0].noise_origin"),
+        (", view, NOISE_IN)", ", 0u, NOISE_IN)"),
         ("sure = noisy_lod_confidence(", "sure = 0.0 * noisy_lod_confidence("),
         // Full rate: judged by another lattice or by none, at another sample, not averaged.
         ("own.level == 0u && next > index", "false"),
@@ -213,12 +215,11 @@ fn a_wrong_fill_is_caught() {
         ("bitcast<f32>(sparse.missing)", "0.0"),
         ("+ (point << vec2<u32>(lattice.texel_level))", "+ point"),
         ("all(px < sparse.views[view][index].high_px)", "all(px <= sparse.views[view][index].high_px)"),
-        ("frame.views[view].color_origin", "frame.views[0].color_origin"),
+        (", view, COLOR_IN)", ", 0u, COLOR_IN)"),
     ];
     let settings = settings(MethodKind::None);
     all_caught(&[right], &planted, |[source]| {
-        let mut rig = Rig::new(desc(), settings)?;
-        rig.gpu.set_fill_shader(&rig.device, source);
+        let mut rig = Rig::with_sources(desc(), settings, Sources::default().with("fill_pass", source))?;
         Some((0..4).any(|index| {
             rig.scattered = index > 1;
             rig.differs(index, Reset::None, &sparse_views(index, &settings))
@@ -664,8 +665,7 @@ fn a_wrong_fill_of_geometry_is_caught() {
     ];
     let settings = settings(MethodKind::Smr);
     all_caught(&[right], &planted, |[source]| {
-        let mut rig = Rig::new(desc(), settings)?;
-        rig.gpu.set_geometry_shader(&rig.device, source);
+        let mut rig = Rig::with_sources(desc(), settings, Sources::default().with("fill_geometry_pass", source))?;
         Some((0..6).any(|index| rig.differs(index, Reset::None, &at_samples(index, &settings))))
     });
 }

@@ -5,6 +5,7 @@ use super::sparse;
 use crate::settings::ungated_of;
 use crate::surfaces_hard;
 use afterimage::gpu::Frame;
+use afterimage::internal::{Sources, method_pass};
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{CommandBuffer, Texture, TextureFormat, TextureUsages};
 use afterimage::{ContextDesc, Image, MethodKind, Reset, Sampler, Settings, Wrs};
@@ -85,7 +86,7 @@ fn h103_a_frame_after_one_that_never_ran_has_no_history() {
         assert!(after_drop > 5);
         (frames, alone) = (frames + compared, alone + after_drop);
         // Planted error: history is read as the host believes it to be.
-        let source = SHADERS.compose(settings_pass(&settings)).source;
+        let source = SHADERS.compose(method_pass(&settings)).source;
         assert!(source.contains(CHECK.0));
         let mut wrong = Rig::with_shader(desc, settings, &source.replace(CHECK.0, CHECK.1)).unwrap();
         assert!(run(&mut wrong, &format!("dropped {i}"), 48)[2] > 2, "{settings:?}: the planted error");
@@ -97,31 +98,12 @@ fn h103_a_frame_after_one_that_never_ran_has_no_history() {
     );
 }
 
-/// Name of the method's pass.
-fn settings_pass(settings: &Settings) -> &'static str {
-    let is_sparse = settings.foveation.filter == afterimage::Filter::Sparse;
-    match settings.method.kind() {
-        MethodKind::Smr if is_sparse => "sparse_pass",
-        MethodKind::Smr => "smr_pass",
-        MethodKind::Taa => "taa_pass",
-        MethodKind::Taau => "taau_pass",
-        _ => "wrs_pass",
-    }
-}
-
 /// Without the check, too: where nothing was ever written, nothing is stored.
 #[test]
 fn zeroed_history_is_empty() {
     for settings in all_settings() {
-        let source = SHADERS.compose(settings_pass(&settings)).source.replace(CHECK.0, CHECK.1);
-        let desc = ContextDesc::new(SIZE);
-        let Some(mut rig) = Rig::with_shader(desc, settings, &source) else { return };
-        let is_sparse = settings_pass(&settings) == "sparse_pass";
-        if is_sparse {
-            let sources = ["sparse_observe_pass", "sparse_light_pass"]
-                .map(|name| SHADERS.compose(name).source.replace(CHECK.0, CHECK.1));
-            rig.gpu.set_sample_shaders(&rig.device, &sources[0], &sources[1]);
-        }
+        let sources = Sources::new(|name| SHADERS.compose(name).source.replace(CHECK.0, CHECK.1).into());
+        let Some(mut rig) = Rig::with_sources(ContextDesc::new(SIZE), settings, sources) else { return };
         rig.drops = true;
         let views = [view(&rig, 0)];
         rig.on_gpu(0, Reset::None, &views);

@@ -2,6 +2,7 @@
 //! planted in tests/gpu/twins/controls.rs.
 
 use super::rig::*;
+use afterimage::internal::Sources;
 use afterimage::shader::SHADERS;
 use afterimage::{Filter, Foveation};
 use afterimage_testing::planted::all_caught;
@@ -18,8 +19,9 @@ fn caught(filter: Filter, errors: &[(&str, &str)]) {
     let scene = Scene::stereo(size, [[20.0, 30.0], [70.0, 10.0]]);
     all_caught(&PASSES.map(|name| SHADERS.compose(name).source), errors, |sources| {
         let (device, queue) = afterimage_testing::gpu::device()?;
-        let source = |name: &str| sources[PASSES.iter().position(|pass| *pass == name).unwrap()].clone();
-        let mut rig = Rig::with_shaders(device, queue, &desc(size, 2, foveation), FORMAT, source);
+        let texts = PASSES.into_iter().zip(sources);
+        let sources = texts.fold(Sources::default(), |all, (name, text)| all.with(name, text));
+        let mut rig = Rig::with_sources(device, queue, &desc(size, 2, foveation), FORMAT, &sources);
         Some(rig.on_gpu(&scene).agrees(&scene.on_cpu(&foveation)).is_err())
     });
 }

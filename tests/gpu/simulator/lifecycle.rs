@@ -2,8 +2,8 @@
 
 use super::rig::*;
 use afterimage::gpu::Timestamps;
+use afterimage::internal::Sources;
 use afterimage::kernel::pack::half_bits;
-use afterimage::shader::SHADERS;
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::wgpu::{self, TextureFormat, TextureUsages};
 use afterimage::{CreateError, Filter, Foveation, FrameError, Gaze, ViewGeometry};
@@ -137,7 +137,7 @@ fn the_device_times_all_passes_of_a_filter() {
     };
     let (device, queue) = pollster::block_on(adapter.request_device(&request)).unwrap();
     let desc = desc([640, 360], 1, foveation(Filter::Gauss, [8, 16]));
-    let mut rig = Rig::with_shaders(device, queue, &desc, FORMAT, |name| SHADERS.compose(name).source);
+    let mut rig = Rig::with_sources(device, queue, &desc, FORMAT, &Sources::default());
     let queries = rig.device.create_query_set(&wgpu::QuerySetDescriptor {
         label: None,
         ty: wgpu::QueryType::Timestamp,

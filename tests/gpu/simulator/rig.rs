@@ -1,7 +1,7 @@
 //! A frame through the simulators of both executors, and their results.
 
 pub use crate::pass::rig::make_texture as texture;
-use afterimage::shader::SHADERS;
+use afterimage::internal::Sources;
 use afterimage::simulator::Pyramid;
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::wgpu::{Device, Queue, Texture, TextureFormat, TextureUsages};
@@ -94,21 +94,21 @@ impl Rig {
     /// With inputs and outputs of a format.
     pub fn with_format(desc: &ContextDesc, format: TextureFormat) -> Option<Self> {
         let (device, queue) = afterimage_testing::gpu::device()?;
-        Some(Self::with_shaders(device, queue, desc, format, |name| SHADERS.compose(name).source))
+        Some(Self::with_sources(device, queue, desc, format, &Sources::default()))
     }
 
-    pub fn with_shaders(
+    pub fn with_sources(
         device: Device,
         queue: Queue,
         desc: &ContextDesc,
         format: TextureFormat,
-        source: impl Fn(&str) -> String,
+        sources: &Sources,
     ) -> Self {
         let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
         let written = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
         Self {
             post: afterimage_testing::gpu::validated(&device, "new", || {
-                GpuSimulator::with_shaders(&device, desc, format, source)
+                GpuSimulator::with_sources(&device, desc, format, sources)
             })
             .unwrap(),
             full: texture(&device, desc, format, read),

@@ -5,8 +5,8 @@ use super::pixels::Pixels;
 use super::window::DrawCall;
 use crate::shader::SHADERS;
 use crate::trace::view::View;
-use afterimage::gpu::compute::{ComputeShader, storage_buffer, uniform};
-use afterimage::gpu::filled;
+use afterimage::internal::ComputeShader;
+use afterimage::internal::filled;
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, CommandEncoder, Device};
@@ -56,12 +56,8 @@ impl ChosenQuads {
 
 impl ChunkTest {
     pub fn new(device: &Device) -> Self {
-        let shader = |name, types: &[_]| ComputeShader::new(device, name, SHADERS.compose(name).source, types);
-        let [read, write] = [true, false].map(storage_buffer);
-        Self {
-            tile: shader("tile_pass", &[uniform(), read, write]),
-            chunk: shader("chunk_pass", &[uniform(), read, read, write]),
-        }
+        let shader = |name| ComputeShader::new(device, name, &SHADERS.compose(name).source);
+        Self { tile: shader("tile_pass"), chunk: shader("chunk_pass") }
     }
 
     /// Records the choice of the draw calls that may touch a quad of `list`. `calls`: all draw calls, with boxes around

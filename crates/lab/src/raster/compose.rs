@@ -3,8 +3,8 @@
 use super::targets::Targets;
 use crate::quad_views::{QuadView, QuadViews};
 use crate::shader::SHADERS;
-use afterimage::gpu::compute::{ComputeShader, float_texture, storage_buffer, storage_texture};
-use afterimage::gpu::{array_view, filled};
+use afterimage::internal::ComputeShader;
+use afterimage::internal::{array_view, filled};
 use bytemuck::{Pod, Zeroable};
 use wgpu::{
     BindingResource, BufferUsages, CommandEncoder, Device, Extent3d, Texture, TextureDescriptor, TextureDimension,
@@ -63,8 +63,6 @@ impl From<&QuadView> for QuadViewRecord {
 impl Composer {
     /// A composer of frames of `size` pixels.
     pub fn new(device: &Device, [width, height]: [u32; 2]) -> Self {
-        let inputs = [storage_buffer(true), float_texture(), float_texture(), float_texture()];
-        let types: Vec<_> = inputs.into_iter().chain(FORMATS.map(storage_texture)).collect();
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
         let texture = |format| {
             device.create_texture(&TextureDescriptor {
@@ -79,7 +77,7 @@ impl Composer {
             })
         };
         Self {
-            shader: ComputeShader::new(device, "compose", SHADERS.compose("compose_pass").source, &types),
+            shader: ComputeShader::new(device, "compose", &SHADERS.compose("compose_pass").source),
             frame: FORMATS.map(texture),
         }
     }

@@ -11,7 +11,7 @@ use super::{Raster, VertexSet};
 use crate::quad_views::QuadViews;
 use crate::trace::view::View;
 use afterimage::Lattices;
-use afterimage::gpu::filled;
+use afterimage::internal::filled;
 use glam::DVec3;
 use std::ops::Range;
 use wgpu::{

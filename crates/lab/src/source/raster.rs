@@ -19,7 +19,7 @@ use crate::raster::{
 };
 use crate::scene::Scene;
 use crate::trace::view::View;
-use afterimage::gpu::filled;
+use afterimage::internal::filled;
 use afterimage::{Image, Lattice, Lattices};
 use glam::DMat4;
 use std::sync::Arc;

@@ -1,6 +1,7 @@
 //! The words of both executors, bit for bit, on clips that are damaged here and there; planted errors in the shader.
 
 use super::clips::{Clip, Delivered, Delivery, foveations};
+use afterimage::internal::Sources;
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, BufferUsages, TextureFormat, TextureUsages};
 use afterimage::{Image, Reset, cpu, gpu};
@@ -67,7 +68,8 @@ fn on_gpu((delivery, lods): &(Delivery, Vec<Image<f32>>), given: Given, source: 
         [TextureFormat::Rgba32Float, TextureFormat::R32Float, TextureFormat::Rg32Float, TextureFormat::R32Float]
             .map(|format| device.texture(delivery.desc.size_px, 1, format, usage));
     let mut doctor = afterimage_testing::gpu::validated(&device.device, "new", || {
-        gpu::Doctor::with_shader(&device.device, &delivery.desc, 0, source).unwrap()
+        let sources = Sources::default().with("doctor_pass", source);
+        gpu::Doctor::with_sources(&device.device, &delivery.desc, 0, &sources).unwrap()
     });
     let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
     let size = doctor.words_bytes();

@@ -12,12 +12,10 @@ const CRATES: [&str; 6] =
 const OPTIONS: &str = "A subcommand's file begins with its options, as `--help` does, and its parts read them.";
 
 /// Uses that close a circle, and why they stay: crate, user or folder of users, used, reason.
-const ALLOWED: [[&str; 4]; 13] = [
+const ALLOWED: [[&str; 4]; 11] = [
     ["src/", "method/", "method/mod.rs", "Entries are values of the type that the table lists."],
     ["src/", "cpu/", "cpu/mod.rs", "Passes read the frame, which is described beside the executor that is given it."],
     ["src/", "gpu/", "gpu/mod.rs", "Checks of a frame say the limits of the executor that is given it."],
-    ["src/", "gpu/uniforms.rs", "gpu/frame.rs", "Uniforms describe a frame, which may have as many views as they do."],
-    ["src/", "gpu/history.rs", "gpu/mip_chain.rs", "The history keeps the passes that fill its levels."],
     [
         "crates/clip/src/",
         "source/analytic/light.rs",

@@ -13,10 +13,10 @@ override HAS_REFERENCES: u32 = 0u;
 override HAS_LOD: u32 = 0u;
 override FILTER: u32 = 0u;
 
-@group(0) @binding(9) var past_colors: texture_2d_array<u32>;
-@group(0) @binding(10) var past_weights: texture_2d_array<u32>;
-@group(0) @binding(12) var next_colors: texture_storage_2d_array<rg32uint, write>;
-@group(0) @binding(13) var next_weights: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(15) var past_colors: texture_2d_array<u32>;
+@group(0) @binding(16) var past_weights: texture_2d_array<u32>;
+@group(0) @binding(18) var next_colors: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(19) var next_weights: texture_storage_2d_array<r32uint, write>;
 
 @compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {

@@ -5,8 +5,9 @@ use crate::device::Headless;
 use crate::frame::{ComposedFrame, Content, DeviceFrame, DeviceSamples, OnDevice, RenderedFrame, SourceFrame};
 use crate::lattices::SparseGeometry;
 use crate::shader::SHADERS;
-use afterimage::gpu::compute::{ComputeShader, float_texture, storage_texture, uniform};
-use afterimage::gpu::{Frame, Timestamps, array_view, filled};
+use afterimage::gpu::{Frame, Timestamps};
+use afterimage::internal::ComputeShader;
+use afterimage::internal::{array_view, filled};
 use afterimage::kernel::pack::half_bits;
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::{ContextDesc, CreateError, FrameError, Image, Reset, ViewFrame};
@@ -176,16 +177,9 @@ impl DeviceInputs {
     /// Records the conversion of a rasterized frame's color and depth.
     fn import(&mut self, encoder: &mut CommandEncoder, frame: &DeviceFrame, to: [&Texture; 2]) {
         let device = &self.gpu.device;
-        let import = self.import.get_or_insert_with(|| {
-            let types = [
-                uniform(),
-                float_texture(),
-                float_texture(),
-                storage_texture(self.formats.color),
-                storage_texture(TextureFormat::R32Float),
-            ];
-            ComputeShader::new(device, "import", SHADERS.compose("import_pass").source, &types)
-        });
+        let import = self
+            .import
+            .get_or_insert_with(|| ComputeShader::new(device, "import", &SHADERS.compose("import_pass").source));
         let near = filled(device, "near", &frame.near.to_ne_bytes(), BufferUsages::UNIFORM);
         let views = [&frame.color, &frame.depth, to[0], to[1]].map(array_view);
         let resources = std::iter::once(near.as_entire_binding()).chain(views.iter().map(BindingResource::TextureView));

@@ -3,6 +3,7 @@
 use super::{DeviceFormats, WRITTEN};
 use crate::device::Headless;
 use afterimage::gpu::{Afterimage, Frame, Recorded, Target, Timestamps};
+use afterimage::internal::{Sources, method_pass};
 use afterimage::{ContextDesc, CreateError, DebugView, FrameError, FrameStats};
 use std::sync::Arc;
 use wgpu::{Buffer, CommandEncoder, Texture};
@@ -36,7 +37,8 @@ impl DeviceRun {
         formats: DeviceFormats,
         source: &str,
     ) -> Result<Self, CreateError> {
-        Ok(Self::of(gpu, Afterimage::with_shader(&gpu.device, desc, formats.color, source)?, formats))
+        let sources = Sources::default().with(method_pass(&desc.settings), source);
+        Ok(Self::of(gpu, Afterimage::with_sources(&gpu.device, desc, formats.color, sources)?, formats))
     }
 
     fn of(gpu: &Arc<Headless>, post: Afterimage, formats: DeviceFormats) -> Self {

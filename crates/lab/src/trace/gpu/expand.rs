@@ -4,7 +4,7 @@ use super::compute::{Kernel, bind_group, empty_buffer};
 use super::passes::WORKGROUP;
 use crate::shader::SHADERS;
 use crate::trace::work::{Spans, Work, WorkItem};
-use afterimage::gpu::filled;
+use afterimage::internal::filled;
 use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages;
 

@@ -19,7 +19,7 @@ use super::work::{Spans, Work};
 use super::world::World;
 use crate::device::{DeviceClock, Headless};
 use crate::frame::DeviceSamples;
-use afterimage::gpu::filled;
+use afterimage::internal::filled;
 use afterimage::{FrameError, Image, Lattice};
 pub use expand::BATCH;
 use expand::{Expand, batches};

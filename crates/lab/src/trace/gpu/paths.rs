@@ -4,7 +4,7 @@ use super::compute::{bind_group, empty_buffer};
 use super::passes::{Passes, WORKGROUP};
 use crate::device::Headless;
 use crate::trace::gpu::scene_buffer::GpuSceneBuffer;
-use afterimage::gpu::filled;
+use afterimage::internal::filled;
 use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages;
 

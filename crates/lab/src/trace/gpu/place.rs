@@ -4,10 +4,10 @@ use crate::device::Headless;
 use crate::frame::DeviceSamples;
 use crate::shader::SHADERS;
 use afterimage::Lattice;
-use afterimage::gpu::compute::{ComputeShader, storage_buffer, storage_texture, uniform};
-use afterimage::gpu::{array_view, filled};
+use afterimage::internal::ComputeShader;
+use afterimage::internal::{array_view, filled};
 use bytemuck::{Pod, Zeroable};
-use wgpu::{BindingResource, BufferUsages, TextureFormat};
+use wgpu::{BindingResource, BufferUsages};
 
 /// Points along x of a dispatch; twin of `COLUMNS` in `shaders/trace/place_pass.wgsl`.
 const COLUMNS: u32 = 4096;
@@ -45,10 +45,7 @@ pub(super) struct Place {
 
 impl Place {
     pub fn new(device: &wgpu::Device) -> Self {
-        let [color, depth] = [TextureFormat::Rgba32Float, TextureFormat::R32Float].map(storage_texture);
-        let pairs = storage_texture(TextureFormat::Rg32Float);
-        let types = [uniform(), storage_buffer(true), storage_buffer(true), color, pairs, depth, pairs];
-        Self { shader: ComputeShader::new(device, "place", SHADERS.compose("place_pass").source, &types) }
+        Self { shader: ComputeShader::new(device, "place", &SHADERS.compose("place_pass").source) }
     }
 
     /// Writes `points` of a lattice to `samples`. `film`: their film, whose window is `film_first` and `film_size`;

@@ -1,0 +1,126 @@
+//! Stored samples around the previous position of a pixel's surface.
+
+use super::view::{NO_NOISE, View};
+use crate::cpu::inputs::Previous;
+use crate::kernel::antialias::{Mean, is_of_surfaces, mean_of};
+use crate::kernel::kept::{
+    Around, EXACT_PX, INVERSE_MEAN_REACH, INVERSE_REACH, Interpolated, Kept, add_kept, code_word, interpolate,
+    is_empty, stands_in, unpack_full, unpack_kept,
+};
+use crate::kernel::noise::{Noise, expose_noise, unpack_noise};
+use crate::kernel::reproject::Verdict;
+use crate::kernel::resample::{has_code, tap_codes, tap_codes_between};
+use crate::kernel::wrs::expose;
+use glam::{Vec2, Vec3};
+
+/// The surface whose history a pixel continues.
+#[derive(Clone, Copy)]
+pub(super) struct Surroundings {
+    pub disparity: f32,
+    pub motion: [f32; 2],
+    /// Disparity to store with the pixel.
+    pub stored: f32,
+    /// Disparities of the farthest and the nearest surface around the pixel, if history may show any of them.
+    pub mixed: Option<[f32; 2]>,
+    /// Whether this frame's sample at the pixel may show another surface.
+    pub is_doubtful: bool,
+}
+
+/// Where a pixel's history is.
+pub(super) struct Source {
+    pub previous: Previous,
+    /// Whether the nearest stored sample belongs to the surface.
+    pub is_same: bool,
+    /// Codes of the disparities that history may have.
+    pub codes: [u32; 2],
+}
+
+/// History at a previous position.
+pub(super) struct Found {
+    pub history: Interpolated,
+    /// Noise of the sample to keep.
+    pub noise: Noise,
+    /// Number of samples in the texel to keep.
+    pub samples: f32,
+}
+
+impl View<'_> {
+    #[inline(always)]
+    pub(super) fn stored_words(&self, x: i32, y: i32) -> [u32; 2] {
+        let [width, height] = self.inputs.size.map(|s| s as i32);
+        self.words[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize]
+    }
+
+    /// Noise of a stored sample, in this frame's exposure.
+    #[inline(always)]
+    pub(super) fn stored_noise(&self, [x, y]: [i32; 2]) -> Noise {
+        if !self.is_noisy() {
+            return NO_NOISE;
+        }
+        let [width, height] = self.inputs.size.map(|s| s as i32);
+        let word = self.noise[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize];
+        expose_noise(unpack_noise(word), self.inputs.exposure)
+    }
+
+    /// Previous position of a pixel's surface, or the verdict that rejects its history.
+    #[inline(always)]
+    pub(super) fn source(&self, [x, y]: [u32; 2], surface: &Surroundings) -> Result<Source, Verdict> {
+        let mut found = 0.0;
+        let (previous, is_same) = self.inputs.reprojected(x, y, surface.motion, surface.disparity, |[qx, qy]| {
+            let stored = unpack_kept(self.stored_words(qx as i32, qy as i32));
+            found = stored.disparity;
+            [stored.lod, stored.disparity]
+        })?;
+        let Some(mixed) = surface.mixed else {
+            return Ok(Source { previous, is_same, codes: tap_codes(previous.expected) });
+        };
+        let [farthest, nearest] = mixed.map(|disparity| self.inputs.expected_disparity(x, y, disparity));
+        let is_same = is_same || is_of_surfaces(found, farthest, nearest);
+        Ok(Source { previous, is_same, codes: tap_codes_between(farthest, nearest) })
+    }
+
+    /// History at a previous position, in this frame's exposure. At a silhouette the nearest stored sample may belong
+    /// to another surface (`is_same` is false). Samples beside it then replace it if they are near enough.
+    #[inline(always)]
+    pub(super) fn interpolated(&self, Source { previous, is_same, codes }: &Source) -> Found {
+        // The place of a mean may lie anywhere around its texel's centre, so that the eight texels around the nearest
+        // one also count.
+        let (columns, [x, y]) = match self.antialiases {
+            true => (3, previous.at.map(|v| (v + 0.5).floor() as i32 - 1)),
+            false => (2, previous.at.map(|v| v.floor() as i32)),
+        };
+        let inverse_reach = if self.antialiases { INVERSE_MEAN_REACH } else { INVERSE_REACH };
+        let mut around = Around::NOTHING;
+        let mut nearest_texel = [x, y];
+        let mut samples = 1.0;
+        for tap in 0..columns * columns {
+            let (tx, ty) = (x + tap % columns, y + tap / columns);
+            let words = self.stored_words(tx, ty);
+            let same = !is_empty(words) && (!self.inputs.tests_depth() || has_code(code_word(words), *codes));
+            let texel_px = Vec2::new(tx as f32 - previous.at[0], ty as f32 - previous.at[1]);
+            let cost = around.cost;
+            let mut stored = unpack_full(words);
+            let mut mean = Mean { lod: stored.lod, samples: 1.0 };
+            if self.antialiases {
+                mean = mean_of(stored.lod);
+                stored.lod = mean.lod;
+            }
+            around = add_kept(around, stored, texel_px, same, inverse_reach);
+            if around.cost < cost {
+                (nearest_texel, samples) = ([tx, ty], mean.samples);
+            }
+        }
+        let found = interpolate(if *is_same || stands_in(around) { around } else { Around::NOTHING });
+        let exposed = |c: Vec3| expose(c, self.inputs.exposure);
+        let nearest = Kept { color: exposed(found.nearest.color), ..found.nearest };
+        let history = Interpolated { color: exposed(found.color), range: found.range.map(exposed), nearest, ..found };
+        Found { history, noise: self.stored_noise(nearest_texel), samples }
+    }
+}
+
+/// Whether history has moved since its samples were shaded, by more than the resolution of their stored places.
+#[inline(always)]
+pub(super) fn has_moved(motion: [f32; 2], place_px: Vec2) -> bool {
+    let farthest = |x: f32, y: f32| x.abs().max(y.abs()) > EXACT_PX;
+    farthest(motion[0], motion[1]) || farthest(place_px.x, place_px.y)
+}

@@ -1,0 +1,68 @@
+//! Gain and fit of history around the samples of lattices.
+
+use super::view::{Samples, View};
+use crate::kernel::antialias::scattered_error;
+use crate::kernel::depth::INVALID_DISPARITY;
+use crate::kernel::matched::root_difference;
+use crate::kernel::sparse::{
+    LIGHT_RELATIVE, Light, Lit, Observation, add_light, agreement, errors_left, fit, mean_error, mean_fit,
+    neighbour_weight, own_fit, pack_lit, relight,
+};
+use glam::Vec3;
+
+impl View<'_> {
+    /// Gain and fit around a sample, packed ([`pack_lit`]).
+    #[inline(always)]
+    pub(super) fn light(&self, lattice: usize, point: [u32; 2], observed: &[Samples]) -> [u32; 2] {
+        let own = self.observation(lattice, point, observed);
+        let grid = &self.lattices[lattice];
+        let disparity_of = |point: [u32; 2]| {
+            let [x, y] = grid.px_of(point);
+            self.inputs.disparity(x, y)
+        };
+        let disparity = disparity_of(point);
+        let neighbours = || {
+            (0..9).filter_map(|tap| {
+                let offset = [tap % 3 - 1, tap / 3 - 1];
+                let at = [0, 1].map(|i| point[i].checked_add_signed(offset[i]).filter(|&v| v < grid.points[i]));
+                let [Some(x), Some(y)] = at else { return None };
+                let other = self.observation(lattice, [x, y], observed)?;
+                let alike = self.alike(disparity, disparity_of([x, y]), LIGHT_RELATIVE);
+                let spatial = neighbour_weight(offset);
+                alike.then(|| (other, own.map_or(spatial * other.sure, |own| agreement(own, other, spatial)), spatial))
+            })
+        };
+        let light = neighbours().fold(Light::default(), |l, (o, weight, spatial)| add_light(l, o, weight, spatial));
+        // A single noisy sample does not show whether history fits.
+        let judged = own.filter(|_| !self.is_noisy());
+        let fit_of_own = |gain| judged.map_or(1.0, |own| own_fit(own, gain));
+        // A sample without disparity is interpolated only where no other sample is near.
+        let disparity = if self.is_doubtful(lattice, point, observed) { INVALID_DISPARITY } else { disparity };
+        let unlit = Lit { gain: Vec3::ONE, fit: 1.0, own_fit: fit_of_own(Vec3::ONE), is_own: own.is_some(), disparity };
+        if light.weight < 1e-6 {
+            return pack_lit(unlit);
+        }
+        let errors = |gain| neighbours().fold(0.0, |sum, (o, weight, _)| sum + errors_left(o, gain) * weight);
+        let without = errors(Vec3::ONE);
+        let error = match self.antialiases {
+            true => scattered_error(light, neighbours().fold(0.0, |sum, (o, weight, _)| add_scatter(sum, o, weight))),
+            false => mean_error(light),
+        };
+        let gain = if self.relights { relight(light, error) } else { Vec3::ONE };
+        let with_gain = if gain == Vec3::ONE { without } else { errors(gain) };
+        let (gain, left) = if with_gain <= without { (gain, with_gain) } else { (Vec3::ONE, without) };
+        let sure = (light.weight / light.spatial).min(1.0);
+        let mut fit = fit(left / light.weight, sure);
+        if self.is_noisy() {
+            fit = fit.min(mean_fit(light, sure));
+        }
+        pack_lit(Lit { gain, fit, own_fit: fit_of_own(gain), ..unlit })
+    }
+}
+
+/// Weighted sum of squared differences between samples and history, with one more sample added.
+#[inline(always)]
+fn add_scatter(sum: f32, o: Observation, weight: f32) -> f32 {
+    let difference = root_difference(o.sampled, o.history).min(1e6);
+    sum + (difference * difference) * weight
+}

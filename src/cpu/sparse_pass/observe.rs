@@ -1,0 +1,75 @@
+//! Comparison of the samples of lattices with history at their pixels.
+
+use super::kept_history::{Found, has_moved};
+use super::view::{Samples, View};
+use crate::kernel::antialias::DOUBTFUL;
+use crate::kernel::color::luma;
+use crate::kernel::kept::{pack_color, unpack_color};
+use crate::kernel::matched::root_difference;
+use crate::kernel::noise::expected_noise;
+use crate::kernel::pack::{half_bits, half_value};
+use crate::kernel::sparse::{Observation, expected_error, lod_confidence, noisy_lod_confidence};
+use glam::Vec3;
+
+/// Observation in two words: history's color, expected error and confidence as halves.
+pub(super) fn pack_observation(o: Option<Observation>) -> [u32; 2] {
+    match o {
+        Some(o) => [pack_color(o.history), half_bits(o.error) | half_bits(o.sure) << 16],
+        None => [0, half_bits(-1.0)],
+    }
+}
+
+impl View<'_> {
+    /// Comparison of a sample with history at its pixel; `None` if either is missing.
+    #[inline(always)]
+    pub(super) fn observe(&self, lattice: usize, point: [u32; 2]) -> Option<Observation> {
+        let lattice = &self.lattices[lattice];
+        let (sampled, usable) = self.sampled(lattice, point);
+        let px = lattice.px_of(point);
+        let surface = self.surface(px, lattice.level);
+        if surface.is_doubtful {
+            return Some(Observation { sampled, history: Vec3::ZERO, error: DOUBTFUL, sure: 0.0 });
+        }
+        let mut source = self.source(px, &surface).ok().filter(|_| usable)?;
+        if self.antialiases {
+            // History is read at the sample's place in its pixel.
+            let [x, y] = self.inputs.uniforms.jitter_px;
+            source.previous.at = [source.previous.at[0] - x, source.previous.at[1] - y];
+        }
+        let Found { history, noise: past, .. } = self.interpolated(&source);
+        if history.lod < 0.0 {
+            return None;
+        }
+        let moved = self.antialiases || has_moved(surface.motion, history.nearest.place_px);
+        let [low, high] = history.range;
+        let mut error = expected_error(history.lod, root_difference(low, high), moved);
+        let mut sure = lod_confidence(history.lod);
+        if self.is_noisy() {
+            let around = luma(history.color);
+            error += expected_noise(past, self.sample_noise(px), around);
+            sure = noisy_lod_confidence(history.lod, past, around);
+        }
+        Some(Observation { sampled, history: history.color, error, sure })
+    }
+
+    /// Unpacks an observation.
+    #[inline(always)]
+    pub(super) fn observation(&self, lattice: usize, point: [u32; 2], observed: &[Samples]) -> Option<Observation> {
+        let own = &self.lattices[lattice];
+        let words = observed[lattice][(point[1] * own.points[0] + point[0]) as usize];
+        let error = half_value(words[1]);
+        (error >= 0.0).then(|| Observation {
+            sampled: self.sampled(own, point).0,
+            history: unpack_color(words[0]),
+            error,
+            sure: half_value(words[1] >> 16),
+        })
+    }
+
+    /// Whether a sample may show a surface other than its pixel's.
+    #[inline(always)]
+    pub(super) fn is_doubtful(&self, lattice: usize, [x, y]: [u32; 2], observed: &[Samples]) -> bool {
+        let words = observed[lattice][(y * self.lattices[lattice].points[0] + x) as usize];
+        self.antialiases && half_value(words[1]) == DOUBTFUL
+    }
+}

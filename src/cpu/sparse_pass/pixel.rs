@@ -1,0 +1,280 @@
+//! Reconstruction of pixels from history, and from the samples around them and their light.
+
+use super::kept_history::{Found, Source, has_moved};
+use super::view::{NO_NOISE, Samples, View};
+use crate::cpu::surface_pass::{Pixel, ProcessPixel};
+use crate::kernel::approx;
+use crate::kernel::debug_view::PixelTrace;
+use crate::kernel::kept::{Kept, pack_kept};
+use crate::kernel::lattice::point_weight;
+use crate::kernel::noise::{Noise, NoiseSum, add_noise, mean_noise, pack_noise};
+use crate::kernel::reproject::Verdict;
+use crate::kernel::resample::{codes_between, has_code};
+use crate::kernel::sanitize;
+use crate::kernel::sparse::{
+    BY_NEIGHBOURS, LEAST_SHARE, Lit, OTHER_SURFACE, Reconstruction, SAMPLE_RELATIVE, accumulate, candidate_level,
+    reconstruct, unpack_lit,
+};
+use crate::stats::FrameStats;
+use crate::uniforms::LatticeUniforms;
+use glam::{Vec2, Vec3};
+
+/// A view, and the light at the samples of its lattices.
+pub(super) struct LitView<'a> {
+    pub view: &'a View<'a>,
+    pub lights: &'a [Samples],
+}
+
+impl ProcessPixel for LitView<'_> {
+    #[inline(always)]
+    fn process(&self, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
+        self.view.pixel(x, y, self.lights, stats)
+    }
+}
+
+/// [`codes_between`] of the samples that are interpolated for a pixel with the disparity `disparity`.
+#[inline(always)]
+fn sample_codes(disparity: f32) -> [u32; 2] {
+    codes_between(disparity, 1.0 - SAMPLE_RELATIVE, 1.0 / (1.0 - SAMPLE_RELATIVE))
+}
+
+/// Squared distance of two pixels along an axis.
+#[inline(always)]
+fn offset_px2(a: u32, b: u32) -> f32 {
+    let offset = a as f32 - b as f32;
+    offset * offset
+}
+
+impl View<'_> {
+    /// Sample of a repaired pixel, if it is usable.
+    #[inline(always)]
+    fn repaired(&self, x: u32, y: u32) -> Option<Vec3> {
+        let [x, y] = [x as usize, y as usize];
+        let (colors, _) = self.repaired.filter(|(_, mask)| mask.at(x, y))?;
+        let (color, usable) = sanitize::color(Vec3::from(colors.at(x, y)));
+        usable.then_some(color)
+    }
+
+    /// Processes one pixel and counts it in `stats`.
+    #[inline(always)]
+    fn pixel(&self, x: u32, y: u32, lights: &[Samples], stats: &mut FrameStats) -> Pixel {
+        let inputs = &self.inputs;
+        if !inputs.is_visible(x, y) {
+            // Outside the visible area: black, without stored history.
+            let (surface, noise) = (pack_kept(Kept::EMPTY), pack_noise(NO_NOISE));
+            return Pixel { output: Vec3::ZERO, surface, noise, trace: PixelTrace::default() };
+        }
+        let disparity = inputs.disparity(x, y);
+        let index = LatticeUniforms::index_at(&self.lattices, [x, y]);
+        let level = self.lattices[index].level;
+        let mut candidate = self.candidate(index, [x, y], disparity, lights);
+        // Pixels of the full-rate lattice always have a sample of their own.
+        let repaired = if level > 0 { self.repaired(x, y) } else { None };
+        if let Some(color) = repaired {
+            // The samples around the pixel still give gain and fit.
+            let noise = self.sample_noise([x, y]);
+            candidate = Candidate { color, usable: true, lod: 0.0, noise, is_own: true, ..candidate };
+        }
+        let is_full_rate = level == 0 || repaired.is_some();
+        let surface = self.surface([x, y], level);
+        let source = self.source([x, y], &surface);
+        let is_final = candidate.usable && is_full_rate && !self.is_noisy() && !self.antialiases;
+        let history = source.as_ref().ok().filter(|_| !is_final).map(|source| self.interpolated(source));
+        let history = history.filter(|found| found.history.lod >= 0.0);
+        let verdict = match &source {
+            Err(verdict) => *verdict,
+            Ok(Source { is_same: false, .. }) if history.is_none() => Verdict::Disoccluded,
+            Ok(_) => Verdict::Valid,
+        };
+        inputs.count(x, y, candidate.usable, disparity, verdict, stats);
+
+        let mut output = candidate.color;
+        let mut kept = Kept {
+            color: candidate.color,
+            lod: if candidate.usable { candidate.lod } else { -1.0 },
+            disparity: surface.stored,
+            place_px: if self.antialiases && candidate.is_own { self.sample_place_px() } else { Vec2::ZERO },
+        };
+        let mut samples = 1.0;
+        let (mut share, mut fits) = (0.0, 1.0);
+        let mut noise = candidate.noise;
+        if let (Ok(Source { previous, .. }), Some(found)) = (source, history) {
+            let Found { history, noise: past, samples: found_samples } = found;
+            if !candidate.usable {
+                (output, share, noise, samples) = (history.color, 1.0, past, found_samples);
+                kept = Kept { disparity: surface.stored, ..history.nearest };
+            } else {
+                let inputs = Reconstruction {
+                    candidate: candidate.color,
+                    lod: candidate.lod,
+                    range: candidate.range,
+                    history: history.color,
+                    history_lod: history.lod,
+                    nearest: history.nearest,
+                    moved: has_moved([0.0; 2], history.nearest.place_px),
+                    gain: candidate.gain,
+                    fit: candidate.fit,
+                    trust: previous.trust,
+                    accumulate: self.accumulate,
+                };
+                let result = if self.is_noisy() {
+                    let accumulated = accumulate(&inputs, past, candidate.noise);
+                    noise = accumulated.noise;
+                    accumulated.result
+                } else if self.antialiases {
+                    let averaged = self.antialiased([x, y], level, inputs, found_samples, candidate.is_own);
+                    samples = averaged.samples;
+                    averaged.result
+                } else {
+                    reconstruct(&inputs)
+                };
+                (output, share, fits) = (result.color, result.share, candidate.fit);
+                kept = Kept { disparity: surface.stored, ..result.kept };
+            }
+        }
+        // Means of colors may exceed the largest half.
+        output = output.clamp(Vec3::splat(-sanitize::MAX_HALF), Vec3::splat(sanitize::MAX_HALF));
+        stats.replaced += u64::from(verdict == Verdict::Valid && share == 0.0);
+        let trace = PixelTrace {
+            verdict,
+            weight: approx::exp2(-candidate.lod),
+            quality: approx::exp2(-kept.lod.max(0.0)),
+            age: 0,
+            survival: share,
+            gate: fits,
+            take: share == 0.0,
+            motion: surface.motion,
+        };
+        let stored = if self.antialiases { self.packed_mean([x, y], kept, samples) } else { pack_kept(kept) };
+        Pixel { output, surface: stored, noise: pack_noise(noise), trace }
+    }
+
+    /// Candidate of a pixel, and its gain and fit, from the samples around it.
+    #[inline(always)]
+    fn candidate(&self, index: usize, px: [u32; 2], disparity: f32, lights: &[Samples]) -> Candidate {
+        let lattice = &self.lattices[index];
+        let Some([x, y]) = lattice.around(px) else { return Candidate::NONE };
+        let is_sample = x.fraction == 0.0 && y.fraction == 0.0;
+        if lattice.level == 0 {
+            let (color, usable) = self.sampled(lattice, [x.points[0], y.points[0]]);
+            let noise = if usable { self.sample_noise(px) } else { NO_NOISE };
+            let own = Candidate { color, usable, lod: 0.0, noise, is_own: usable, ..Candidate::NONE };
+            let coarser = index + 1;
+            if !self.is_noisy()
+                || !usable
+                || coarser == self.lattices.len()
+                || self.lattices[coarser].points.contains(&0)
+            {
+                return own;
+            }
+            // The fit of history comes from the samples of the next lattice.
+            return Candidate { fit: self.candidate(coarser, px, disparity, lights).fit, ..own };
+        }
+        let mut sums = Sums::default();
+        let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::ZERO);
+        let mut nearest_px2 = f32::MAX;
+        let mut own = None;
+        let mut noises = NoiseSum::default();
+        let codes = sample_codes(disparity);
+        let px2 = [(px[0], lattice.first_px[0], x.points), (px[1], lattice.first_px[1], y.points)]
+            .map(|(px, first, points)| points.map(|point| offset_px2(px, first + (point << lattice.level))));
+        // The pixel's own sample last, as in the shader.
+        for tap in (0..4).rev() {
+            let (right, below) = (tap & 1, tap >> 1);
+            let point = [x.points[right as usize], y.points[below as usize]];
+            let (color, usable) = self.sampled(lattice, point);
+            if !usable {
+                continue;
+            }
+            let at = lattice.px_of(point);
+            let words = lights[index][(point[1] * lattice.points[0] + point[0]) as usize];
+            let lit = unpack_lit(words);
+            let alike = !self.inputs.tests_depth() || has_code(words[1], codes);
+            let share = point_weight(x.fraction, right) * point_weight(y.fraction, below);
+            let weight = share.max(LEAST_SHARE) * if alike { 1.0 } else { OTHER_SURFACE };
+            sums.add(color, weight, lit);
+            if self.is_noisy() {
+                noises = add_noise(noises, self.sample_noise(at), weight);
+            }
+            (low, high) = (low.min(color), high.max(color));
+            if alike {
+                nearest_px2 = nearest_px2.min(px2[0][right as usize] + px2[1][below as usize]);
+            }
+            if is_sample && tap == 0 && (alike || !self.antialiases || disparity < 0.0) {
+                own = Some((color, lit.own_fit));
+            }
+        }
+        if sums.weight == 0.0 {
+            return Candidate::NONE;
+        }
+        let coarsest = lattice.level as f32;
+        let is_own = own.is_some();
+        let (color, own_fit) = own.unwrap_or((sums.color * (1.0 / sums.weight), 1.0));
+        let noise = if !self.is_noisy() {
+            NO_NOISE
+        } else if is_own {
+            self.sample_noise(px)
+        } else {
+            mean_noise(noises)
+        };
+        Candidate {
+            color,
+            usable: true,
+            lod: if nearest_px2 == f32::MAX { coarsest + 1.0 } else { candidate_level(nearest_px2.sqrt(), coarsest) },
+            range: [low, high],
+            gain: sums.gain * (1.0 / sums.valid),
+            fit: (sums.fit * (1.0 / sums.valid)).min(own_fit),
+            noise,
+            is_own,
+        }
+    }
+}
+
+/// Candidate of a pixel.
+struct Candidate {
+    color: Vec3,
+    usable: bool,
+    lod: f32,
+    /// Smallest and largest color of the samples around the pixel.
+    range: [Vec3; 2],
+    gain: Vec3,
+    fit: f32,
+    noise: Noise,
+    /// Whether the candidate is this pixel's own sample.
+    is_own: bool,
+}
+
+impl Candidate {
+    const NONE: Self = Self {
+        color: Vec3::ZERO,
+        usable: false,
+        lod: 0.0,
+        range: [Vec3::ZERO; 2],
+        gain: Vec3::ONE,
+        fit: 1.0,
+        noise: NO_NOISE,
+        is_own: false,
+    };
+}
+
+/// Sums over the samples around a pixel.
+#[derive(Default)]
+struct Sums {
+    color: Vec3,
+    weight: f32,
+    gain: Vec3,
+    fit: f32,
+    valid: f32,
+}
+
+impl Sums {
+    #[inline(always)]
+    fn add(&mut self, color: Vec3, weight: f32, lit: Lit) {
+        let known = weight * if lit.is_own { 1.0 } else { BY_NEIGHBOURS };
+        self.color += color * weight;
+        self.weight += weight;
+        self.gain += lit.gain * known;
+        self.fit += lit.fit * known;
+        self.valid += known;
+    }
+}

@@ -1,0 +1,95 @@
+//! Inputs, history and lattices of a view, for the loops over its samples and pixels.
+
+use crate::cpu::Frame;
+use crate::cpu::inputs::Inputs;
+use crate::frame::ContextDesc;
+use crate::image::Image;
+use crate::kernel::depth::same_surface;
+use crate::kernel::noise::Noise;
+use crate::kernel::sanitize;
+use crate::parallel::collect;
+use crate::uniforms::{LatticeUniforms, ViewLattices};
+use glam::Vec3;
+
+/// Noise of candidates without a noise input.
+pub(super) const NO_NOISE: Noise = Noise { samples: 1.0, variance: 0.0 };
+
+/// Packed results for the samples of a lattice, row by row.
+pub(super) type Samples = Vec<[u32; 2]>;
+
+/// Inputs, history and lattices of one view of a frame.
+pub(super) struct View<'a> {
+    pub inputs: Inputs<'a>,
+    pub words: &'a [[u32; 2]],
+    /// Packed noise of the stored samples; empty unless candidates are noisy.
+    pub noise: &'a [u32],
+    pub lattices: ViewLattices,
+    pub accumulate: f32,
+    pub relights: bool,
+    /// Whether frames are jittered and history stores means of samples.
+    pub antialiases: bool,
+    /// Low word of the frame counter.
+    pub frame_low: u32,
+    /// Samples of repaired pixels, and the mask of these pixels.
+    pub repaired: Option<(&'a Image<[f32; 3]>, &'a Image<bool>)>,
+}
+
+impl<'a> View<'a> {
+    /// View `index` of a frame with its inputs, and history's samples and their noise.
+    pub fn new(
+        desc: &ContextDesc,
+        frame: &Frame<'_>,
+        index: usize,
+        inputs: Inputs<'a>,
+        words: &'a [[u32; 2]],
+        noise: &'a [u32],
+    ) -> Self {
+        let lattices = frame.views[index].lattices.as_ref().expect("the frame was checked to have lattices");
+        Self {
+            inputs,
+            words,
+            noise,
+            lattices: LatticeUniforms::of_view(lattices, desc.size_px),
+            accumulate: desc.settings.method.smr().accumulate,
+            relights: crate::method::smr_sparse_relights(&desc.settings),
+            antialiases: crate::method::smr_sparse_antialiases(&desc.settings),
+            frame_low: frame.index as u32,
+            repaired: None,
+        }
+    }
+}
+
+impl View<'_> {
+    /// Results of `f` for each sample of each lattice of step 2 and more.
+    pub fn for_samples(&self, f: impl Fn(usize, [u32; 2]) -> [u32; 2] + Sync) -> Vec<Samples> {
+        let of = |(index, lattice): (usize, &LatticeUniforms)| {
+            let [columns, rows] = if lattice.level == 0 { [0, 0] } else { lattice.points };
+            collect(columns * rows, |i| f(index, [i % columns, i / columns]))
+        };
+        self.lattices.iter().enumerate().map(of).collect()
+    }
+
+    /// Color of a sample, and whether it is usable.
+    #[inline(always)]
+    pub fn sampled(&self, lattice: &LatticeUniforms, point: [u32; 2]) -> (Vec3, bool) {
+        let [x, y] = lattice.texel_of(point);
+        sanitize::color(Vec3::from(self.inputs.color.at(x as usize, y as usize)))
+    }
+
+    #[inline(always)]
+    pub fn is_noisy(&self) -> bool {
+        !self.noise.is_empty()
+    }
+
+    /// Noise of the sample at a pixel.
+    #[inline(always)]
+    pub fn sample_noise(&self, [x, y]: [u32; 2]) -> Noise {
+        self.inputs.noise(x, y).filter(|_| self.is_noisy()).unwrap_or(NO_NOISE)
+    }
+
+    /// Whether two disparities of this frame can belong to one surface.
+    #[inline(always)]
+    pub fn alike(&self, a: f32, b: f32, relative: f32) -> bool {
+        !self.inputs.tests_depth() || same_surface(a, b, relative, 0.0)
+    }
+}

@@ -1,0 +1,16 @@
+//! For this workspace's other crates and for tests; not part of the stable API.
+
+#[cfg(feature = "cpu")]
+pub use crate::cpu::history::History;
+#[cfg(feature = "gpu")]
+pub use crate::gpu::buffer::filled;
+#[cfg(feature = "gpu")]
+pub use crate::gpu::compute::{ComputeShader, Sources, method_pass};
+#[cfg(feature = "gpu")]
+pub use crate::gpu::plane::array_view;
+#[cfg(feature = "gpu")]
+pub use crate::gpu::uniforms::{
+    CameraUniforms, FrameUniforms, LatticeUniforms, SparseUniforms, ViewLattices, ViewUniforms,
+};
+#[cfg(feature = "gpu")]
+pub use crate::simulator::gpu::uniforms::FoveationUniforms;
