@@ -88,7 +88,7 @@ fn s9_a_coarse_candidate_that_repeats_settles_next_to_itself() {
 #[test]
 fn accumulation_shows_nine_tenths_of_equally_coarse_history() {
     // Within the tolerance of equally coarse history.
-    let [a, b] = [0.25_f32, 0.254];
+    let [a, b] = [0.25_f32, 0.2525];
     for accumulate in [0.0, 0.5, 0.9] {
         let method = Method::Smr(Smr { accumulate, ..Smr::default() });
         let mut post = context_of(SIZE, Settings { method, ..settings(MethodKind::Smr) });
