@@ -27,6 +27,7 @@ impl<'a> Frame<'a> {
         all[Binding::Depth as usize] = self.depth;
         all[Binding::Motion as usize] = self.motion;
         all[Binding::Trust as usize] = self.trust;
+        all[Binding::Reactive as usize] = self.reactive;
         all[Binding::Lod as usize] = self.lod;
         all[Binding::Noise as usize] = self.noise;
         all[Binding::Repaired as usize] = self.repaired;
@@ -124,6 +125,8 @@ pub struct Variant {
     pub motion: bool,
     /// Whether there is a trust mask.
     pub trust: bool,
+    /// Whether there is a reactive mask.
+    pub reactive: bool,
     /// Whether there are levels of detail.
     pub lod: bool,
     /// Whether there is a buffer for counters.
@@ -154,6 +157,7 @@ impl Variant {
             depth: frame.depth.is_some(),
             motion: frame.motion.is_some(),
             trust: frame.trust.is_some(),
+            reactive: frame.reactive.is_some(),
             lod: frame.lod.is_some(),
             counters: target.counters.is_some(),
             regions: frame.textures().iter().flatten().any(Textures::is_regions) || target.has_regions(),

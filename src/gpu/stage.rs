@@ -38,6 +38,7 @@ impl Specialization {
             (Binding::Depth, variant.depth),
             (Binding::Motion, variant.motion),
             (Binding::Trust, variant.trust),
+            (Binding::Reactive, variant.reactive),
             (Binding::Lod, variant.lod),
             (Binding::Repaired, variant.repaired),
             (Binding::Counters, variant.counters),
@@ -82,7 +83,7 @@ impl Specialization {
 
     /// Override values of shaders that use the set `bound` of bindings.
     fn overrides(&self, desc: &ContextDesc, bound: u32) -> Overrides {
-        use Binding::{Counters, Debug, Depth, Lod, Motion, Output, Past, Repaired, Trust, Uniforms};
+        use Binding::{Counters, Debug, Depth, Lod, Motion, Output, Past, Reactive, Repaired, Trust, Uniforms};
         let has = |binding| u32::from(self.has(binding));
         let settings = &desc.settings;
         let is_tested = self.has(Depth) && settings.depth_test.is_some();
@@ -95,7 +96,8 @@ impl Specialization {
             (Motion, "HAS_MOTION", has(Motion)),
             // Filled vectors contain the camera's motion.
             (Motion, "CAMERA_MOTION", if self.is_filled { 0 } else { desc.motion.camera_code() }),
-            (Trust, "HAS_TRUST", has(Trust)),
+            (Trust, "HAS_TRUST", has(Trust) | has(Reactive)),
+            (Reactive, "HAS_REACTIVE", has(Reactive)),
             (Lod, "HAS_LOD", has(Lod)),
             (Uniforms, "NOISY", u32::from(settings.noisy)),
             (Repaired, "REPAIR", has(Repaired)),

@@ -22,6 +22,8 @@ pub struct Rig {
     pub exposure: Exposure,
     /// Whether inputs and outputs are regions of larger textures, one texture a view, in the frames to come.
     pub scattered: bool,
+    /// Whether the GPU gets trust masks as reactive masks in the frames to come.
+    pub reactive: bool,
     /// Whether the encoders of frames and resizes to come are dropped instead of submitted.
     pub drops: bool,
     /// Debug view to draw beside the next frames, and what it showed.
@@ -55,7 +57,7 @@ fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 9] {
 }
 
 /// Texels of each input that a view has.
-fn texels(view: &View) -> [Option<Vec<f32>>; OUTPUT] {
+fn texels(view: &View, reactive: bool) -> [Option<Vec<f32>>; OUTPUT] {
     let one = |image: &Image<f32>| image.pixels().to_vec();
     let two = |image: &Image<[f32; 2]>| image.pixels().as_flattened().to_vec();
     let four = |image: &Image<[f32; 3]>| image.pixels().iter().flat_map(|c| [c[0], c[1], c[2], 1.0]).collect();
@@ -63,7 +65,7 @@ fn texels(view: &View) -> [Option<Vec<f32>>; OUTPUT] {
         Some(four(&view.color)),
         view.depth.as_ref().map(one),
         view.motion.as_ref().map(two),
-        view.trust.as_ref().map(one),
+        view.trust.as_ref().map(|trust| one(&trust.map(|t| if reactive { 1.0 - t } else { t }))),
         view.lod.as_ref().map(one),
         view.noise.as_ref().map(two),
         view.repaired.as_ref().map(four),
@@ -136,6 +138,7 @@ impl Rig {
             gpu: afterimage_testing::gpu::validated(&device, "new", made).unwrap(),
             textures: make_textures(&device, &context),
             scattered: false,
+            reactive: false,
             drops: false,
             beside: None,
             counters: device.create_buffer(&wgpu::BufferDescriptor {
@@ -309,7 +312,8 @@ impl Rig {
         let frame = Frame {
             depth: views[0].depth.is_some().then_some(depth),
             motion: views[0].motion.is_some().then_some(motion),
-            trust: views[0].trust.is_some().then_some(trust),
+            trust: (views[0].trust.is_some() && !self.reactive).then_some(trust),
+            reactive: (views[0].trust.is_some() && self.reactive).then_some(trust),
             lod: views[0].lod.is_some().then_some(lod),
             noise: views[0].noise.is_some().then_some(noise),
             repaired: views[0].repaired.is_some().then_some(repaired),
@@ -402,7 +406,7 @@ impl Rig {
 
     fn upload(&self, views: &[View]) {
         for (layer, view) in views.iter().enumerate() {
-            for (texture, texels) in self.textures.iter().zip(texels(view)) {
+            for (texture, texels) in self.textures.iter().zip(texels(view, self.reactive)) {
                 let Some(texels) = texels else { continue };
                 if texture.format() == TextureFormat::Rg16Float {
                     let halves: Vec<_> = texels.iter().map(|&v| pack::half_bits(v) as u16).collect();
