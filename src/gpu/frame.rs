@@ -143,7 +143,7 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// All combinations without regions, geometry at samples, repaired samples and debug views: 32.
+    /// All combinations without reactive masks, regions, geometry at samples, repaired samples and debug views: 32.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..32_u32).map(|bits| {
             let bit = |i: u32| bits >> i & 1 == 1;

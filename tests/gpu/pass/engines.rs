@@ -440,20 +440,3 @@ fn resizing_keeps_what_restarting_loses() {
     println!("mean squared error: kept {kept:.5}, restarted {restarted:.5}");
     assert!(kept < 0.1 * restarted);
 }
-
-/// A reactive mask on the device is 1 minus the CPU's trust mask.
-#[test]
-fn a_reactive_mask_is_the_inverse_of_trust() {
-    let desc = ContextDesc::new(SIZE);
-    for settings in [MethodKind::Smr, MethodKind::Wrs, MethodKind::Taa].map(crate::settings::ungated_of) {
-        let Some(mut rig) = Rig::new(desc, settings) else { return };
-        rig.reactive = true;
-        for index in 0..3 {
-            let name = format!("reactive {index}");
-            // Multiples of 1/256, whose difference from 1 is exact; beyond 0 and 1, too.
-            let trust = Image::from_fn(SIZE, |[x, y]| ((x * 7 + y * 3) % 300) as f32 / 256.0);
-            let view = View { trust: Some(trust), ..noise_view(&name, &desc) };
-            rig.both(index, Reset::None, &[view]);
-        }
-    }
-}

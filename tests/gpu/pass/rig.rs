@@ -1,9 +1,9 @@
 //! Frames through both executors, and the device's results.
 
-use crate::images::{Images, OneView, held_words};
+use crate::images::{Images, held_words};
 pub use crate::images::{View, noise};
 use afterimage::cpu::CpuAfterimage;
-use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target};
+use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target, Textures};
 use afterimage::internal::{Sources, method_pass};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack;
@@ -22,28 +22,27 @@ pub struct Rig {
     pub exposure: Exposure,
     /// Whether inputs and outputs are regions of larger textures, one texture a view, in the frames to come.
     pub scattered: bool,
-    /// Whether the GPU gets trust masks as reactive masks in the frames to come.
-    pub reactive: bool,
     /// Whether the encoders of frames and resizes to come are dropped instead of submitted.
     pub drops: bool,
     /// Debug view to draw beside the next frames, and what it showed.
     pub beside: Option<DebugView>,
-    textures: [Texture; 9],
+    textures: [Texture; 10],
     counters: Buffer,
 }
 
-// Places of textures: color, depth, motion, trust, levels of detail, noise and repaired samples; output, debug view.
+// Places of textures: color, depth, motion, trust and reactive masks, levels of detail, noise and repaired samples;
+// output, debug view.
 const COLOR: usize = 0;
 const MOTION: usize = 2;
-const NOISE: usize = 5;
-const REPAIRED: usize = 6;
-const OUTPUT: usize = 7;
-const DEBUG: usize = 8;
+const NOISE: usize = 6;
+const REPAIRED: usize = 7;
+const OUTPUT: usize = 8;
+const DEBUG: usize = 9;
 
 const READ: TextureUsages =
     TextureUsages::TEXTURE_BINDING.union(TextureUsages::COPY_DST).union(TextureUsages::COPY_SRC);
 
-fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 9] {
+fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 10] {
     std::array::from_fn(|i| {
         let format = match i {
             COLOR | REPAIRED | OUTPUT => TextureFormat::Rgba32Float,
@@ -57,7 +56,7 @@ fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 9] {
 }
 
 /// Texels of each input that a view has.
-fn texels(view: &View, reactive: bool) -> [Option<Vec<f32>>; OUTPUT] {
+fn texels(view: &View) -> [Option<Vec<f32>>; OUTPUT] {
     let one = |image: &Image<f32>| image.pixels().to_vec();
     let two = |image: &Image<[f32; 2]>| image.pixels().as_flattened().to_vec();
     let four = |image: &Image<[f32; 3]>| image.pixels().iter().flat_map(|c| [c[0], c[1], c[2], 1.0]).collect();
@@ -65,11 +64,27 @@ fn texels(view: &View, reactive: bool) -> [Option<Vec<f32>>; OUTPUT] {
         Some(four(&view.color)),
         view.depth.as_ref().map(one),
         view.motion.as_ref().map(two),
-        view.trust.as_ref().map(|trust| one(&trust.map(|t| if reactive { 1.0 - t } else { t }))),
+        view.trust.as_ref().map(one),
+        view.reactive.as_ref().map(one),
         view.lod.as_ref().map(one),
         view.noise.as_ref().map(two),
         view.repaired.as_ref().map(four),
     ]
+}
+
+/// The frame with those of the textures that the view has.
+fn given<'a>(view: &View, textures: [Textures<'a>; 10], frame: Frame<'a>) -> Frame<'a> {
+    let [_, depth, motion, trust, reactive, lod, noise, repaired, ..] = textures;
+    Frame {
+        depth: view.depth.is_some().then_some(depth),
+        motion: view.motion.is_some().then_some(motion),
+        trust: view.trust.is_some().then_some(trust),
+        reactive: view.reactive.is_some().then_some(reactive),
+        lod: view.lod.is_some().then_some(lod),
+        noise: view.noise.is_some().then_some(noise),
+        repaired: view.repaired.is_some().then_some(repaired),
+        ..frame
+    }
 }
 
 /// Result of a frame: output colors and packed history, view after view.
@@ -138,7 +153,6 @@ impl Rig {
             gpu: afterimage_testing::gpu::validated(&device, "new", made).unwrap(),
             textures: make_textures(&device, &context),
             scattered: false,
-            reactive: false,
             drops: false,
             beside: None,
             counters: device.create_buffer(&wgpu::BufferDescriptor {
@@ -276,12 +290,12 @@ impl Rig {
     /// Errors of both executors for a frame that they must reject.
     pub fn refusal(&mut self, view: &View) -> String {
         self.upload(std::slice::from_ref(view));
-        let [color, .., noise, _, output, _] = &self.textures;
-        let noise = view.noise.is_some().then_some(noise.into());
-        let frame = Frame { noise, ..Frame::new(color, std::slice::from_ref(&view.facts), 0) };
+        let textures = self.textures.each_ref().map(Textures::from);
+        let frame = given(view, textures, Frame::new(textures[0], std::slice::from_ref(&view.facts), 0));
+        let output = &self.textures[OUTPUT];
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let gpu = self.gpu.record(&self.device, &mut encoder, &frame, output).unwrap_err().to_string();
-        let images = Images::of(&[OneView { noise: view.noise.as_ref(), ..OneView::new(view.facts, &view.color) }]);
+        let images = Images::of(&[view.one()]);
         let mut output = [Image::filled(self.context.size_px, [0.0; 3])];
         let cpu = self.cpu.process(&images.frame(0), &mut output).unwrap_err().to_string();
         assert_eq!(gpu, cpu);
@@ -306,20 +320,13 @@ impl Rig {
         let all = (0..).zip(&self.textures).filter(|_| self.scattered);
         let all: Vec<_> = all.map(|(i, texture)| Scattered::new(&self.device, &self.queue, texture, i)).collect();
         let regions: Vec<_> = all.iter().map(Scattered::regions).collect();
-        let [color, depth, motion, trust, lod, noise, repaired, output, debug] = std::array::from_fn(|i| {
-            regions.get(i).map_or((&self.textures[i]).into(), |r| afterimage::gpu::Textures::Regions(r))
-        });
+        let textures: [_; 10] =
+            std::array::from_fn(|i| regions.get(i).map_or((&self.textures[i]).into(), |r| Textures::Regions(r)));
+        let [.., output, debug] = textures;
         let frame = Frame {
-            depth: views[0].depth.is_some().then_some(depth),
-            motion: views[0].motion.is_some().then_some(motion),
-            trust: (views[0].trust.is_some() && !self.reactive).then_some(trust),
-            reactive: (views[0].trust.is_some() && self.reactive).then_some(trust),
-            lod: views[0].lod.is_some().then_some(lod),
-            noise: views[0].noise.is_some().then_some(noise),
-            repaired: views[0].repaired.is_some().then_some(repaired),
             exposure: self.exposure,
             reset,
-            ..Frame::new(color, &facts, index)
+            ..given(&views[0], textures, Frame::new(textures[0], &facts, index))
         };
         let debug = self.beside.map(|view| DebugTarget { view, output: debug });
         let target = Target { debug, counters: count.then_some(&self.counters), ..Target::new(output) };
@@ -406,7 +413,7 @@ impl Rig {
 
     fn upload(&self, views: &[View]) {
         for (layer, view) in views.iter().enumerate() {
-            for (texture, texels) in self.textures.iter().zip(texels(view, self.reactive)) {
+            for (texture, texels) in self.textures.iter().zip(texels(view)) {
                 let Some(texels) = texels else { continue };
                 if texture.format() == TextureFormat::Rg16Float {
                     let halves: Vec<_> = texels.iter().map(|&v| pack::half_bits(v) as u16).collect();
