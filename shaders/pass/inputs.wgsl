@@ -14,9 +14,10 @@ override HAS_DEPTH: u32 = 1u;
 override HAS_MOTION: u32 = 1u;
 // Bit 0: pixels whose vector is `no_vector` or not finite have none. Bit 1: no vector contains the camera's motion.
 override CAMERA_MOTION: u32 = 0u;
-override HAS_TRUST: u32 = 1u;
-// Whether the trust mask is 1 minus a reactive mask.
+override HAS_TRUST_MASK: u32 = 1u;
+// Whether there is a reactive mask: the trust is 1 minus it.
 override HAS_REACTIVE: u32 = 0u;
+override HAS_TRUST: u32 = HAS_TRUST_MASK | HAS_REACTIVE;
 override DEPTH_TEST: u32 = 1u;
 override NOISY: u32 = 0u;
 override COUNT: u32 = 0u;

@@ -46,18 +46,20 @@ pub struct Input {
     pub channels: u8,
     /// Whether it is known before the frame is shaded.
     pub is_geometry: bool,
+    /// `override` of the shaders that says whether a frame has it, if they need to know.
+    pub has: Option<&'static str>,
 }
 
 /// The inputs of a frame.
 pub const INPUTS: [Input; 8] = [
-    Input { binding: Binding::Color, name: "color", channels: 3, is_geometry: false },
-    Input { binding: Binding::Depth, name: "depth", channels: 1, is_geometry: true },
-    Input { binding: Binding::Motion, name: "motion", channels: 2, is_geometry: true },
-    Input { binding: Binding::Trust, name: "trust", channels: 1, is_geometry: true },
-    Input { binding: Binding::Reactive, name: "reactive", channels: 1, is_geometry: true },
-    Input { binding: Binding::Lod, name: "lod", channels: 1, is_geometry: false },
-    Input { binding: Binding::Noise, name: "noise", channels: 2, is_geometry: false },
-    Input { binding: Binding::Repaired, name: "repaired", channels: 3, is_geometry: false },
+    Input { binding: Binding::Color, name: "color", channels: 3, is_geometry: false, has: None },
+    Input { binding: Binding::Depth, name: "depth", channels: 1, is_geometry: true, has: Some("HAS_DEPTH") },
+    Input { binding: Binding::Motion, name: "motion", channels: 2, is_geometry: true, has: Some("HAS_MOTION") },
+    Input { binding: Binding::Trust, name: "trust", channels: 1, is_geometry: true, has: Some("HAS_TRUST_MASK") },
+    Input { binding: Binding::Reactive, name: "reactive", channels: 1, is_geometry: true, has: Some("HAS_REACTIVE") },
+    Input { binding: Binding::Lod, name: "lod", channels: 1, is_geometry: false, has: Some("HAS_LOD") },
+    Input { binding: Binding::Noise, name: "noise", channels: 2, is_geometry: false, has: None },
+    Input { binding: Binding::Repaired, name: "repaired", channels: 3, is_geometry: false, has: Some("REPAIR") },
 ];
 
 impl Binding {

@@ -151,6 +151,20 @@ impl Variant {
         })
     }
 
+    /// Its optional inputs, and counters: a set of [bits](Binding::bit).
+    pub(super) fn bindings(self) -> u32 {
+        let list = [
+            (Binding::Depth, self.depth),
+            (Binding::Motion, self.motion),
+            (Binding::Trust, self.trust),
+            (Binding::Reactive, self.reactive),
+            (Binding::Lod, self.lod),
+            (Binding::Repaired, self.repaired),
+            (Binding::Counters, self.counters),
+        ];
+        list.iter().map(|&(binding, is_present)| if is_present { binding.bit() } else { 0 }).sum()
+    }
+
     /// Variant of a frame and its target.
     pub fn of(frame: &Frame<'_>, target: &Target<'_>) -> Self {
         Self {
