@@ -10,8 +10,8 @@ use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
 
 const SPP: u32 = 2;
 
-/// Ways of tracing. Each compiles a kernel of its own for every set of effects, which takes most of the time: scenes take
-/// turns.
+/// Ways of tracing. Each compiles a kernel of its own for every set of effects, which takes most of the time: scenes
+/// take turns.
 const WAYS: [(Integrator, Bsdf, Storage); 6] = [
     (Integrator::Mis, Bsdf::Principled, Storage::Buffer),
     (Integrator::Nee, Bsdf::Phong, Storage::Buffer),
