@@ -233,6 +233,8 @@ pub enum FrameValue {
     Lod,
     /// [`FrameInputs::noise`](crate::FrameInputs::noise).
     Noise,
+    /// [`FrameInputs::reactive`](crate::FrameInputs::reactive).
+    Reactive,
     /// [`FrameInputs::repaired`](crate::FrameInputs::repaired).
     Repaired,
     /// [`FrameInputs::exposure`](crate::FrameInputs::exposure).
@@ -260,6 +262,7 @@ impl Display for FrameValue {
             Self::Lattices => "lattices",
             Self::Lod => "lod",
             Self::Noise => "noise",
+            Self::Reactive => "reactive",
             Self::Repaired => "repaired",
             Self::Exposure => "exposure ratio",
             Self::Repair => "Smr::repair",

@@ -473,9 +473,13 @@ pub struct FrameInputs<'a, E: Executor> {
     /// or only the camera ([`MotionConvention::without_camera`]).
     pub motion: Option<E::Vectors<'a>>,
     /// Trust mask: confidence in history, 0 to 1. 0 rejects history; use it for content that changes without motion
-    /// vectors (video panels, particles, reflections). It is about 1 minus FSR2's reactive mask. On a GPU any float or
-    /// normalised format. `None`: 1 everywhere.
+    /// vectors (video panels, particles, reflections). It is about 1 minus FSR2's reactive mask. Values beyond 0 and 1
+    /// are clamped; NaN counts as 0. On a GPU any float or normalised format. `None`: 1 everywhere.
     pub trust: Option<E::Scalars<'a>>,
+    /// Reactive mask as FSR2 has it: 0 to 1, 1 rejects history. The trust is 1 minus this mask, so that a frame with
+    /// both is an error. Values beyond 0 and 1 are clamped; NaN counts as 1. On a GPU any float or normalised format.
+    /// `None`: `trust` says it.
+    pub reactive: Option<E::Scalars<'a>>,
     /// Level of detail of the foveated frame: log2 of the block edge in pixels. On a GPU any float format. `None`:
     /// computed from gaze and [`Settings::foveation`]. Sparse frames have the levels of their lattices instead, and no
     /// such input. `foveation.rate_far` must be the coarsest block edge even with this input, because history is not
@@ -518,6 +522,7 @@ impl<E: Executor> Debug for FrameInputs<'_, E> {
             .field("depth", &self.depth)
             .field("motion", &self.motion)
             .field("trust", &self.trust)
+            .field("reactive", &self.reactive)
             .field("lod", &self.lod)
             .field("noise", &self.noise)
             .field("repaired", &self.repaired)
@@ -537,6 +542,7 @@ impl<'a, E: Executor> FrameInputs<'a, E> {
             depth: None,
             motion: None,
             trust: None,
+            reactive: None,
             lod: None,
             noise: None,
             repaired: None,
@@ -563,6 +569,10 @@ impl<'a, E: Executor> FrameInputs<'a, E> {
         for (i, view) in self.views.iter().enumerate() {
             view.check(i, desc)?;
             view.check_motion(i, desc, self.depth.is_some(), self.reset != Reset::None)?;
+        }
+        if self.trust.is_some() && self.reactive.is_some() {
+            let expected = "None, because trust is given, and is 1 minus this mask";
+            return Err(FrameError::Value { value: FrameValue::Reactive, view: 0, found: "given".into(), expected });
         }
         self.check_lattices(&desc.settings)?;
         self.exposure.check()

@@ -27,7 +27,7 @@ pub struct FrameStats {
     pub nonfinite: u64,
     /// Pixels whose depth was NaN or a distance that is not positive; 0 without a depth input.
     pub bad_depth: u64,
-    /// Pixels whose trust was NaN or infinite; 0 without a trust input.
+    /// Pixels whose trust or reactive mask was NaN or infinite; 0 without such a mask.
     pub bad_trust: u64,
     /// Pixels with valid history whose sample the candidate replaced.
     pub replaced: u64,

@@ -14,7 +14,10 @@ override HAS_DEPTH: u32 = 1u;
 override HAS_MOTION: u32 = 1u;
 // Bit 0: pixels whose vector is `no_vector` or not finite have none. Bit 1: no vector contains the camera's motion.
 override CAMERA_MOTION: u32 = 0u;
-override HAS_TRUST: u32 = 1u;
+override HAS_TRUST_MASK: u32 = 1u;
+// Whether there is a reactive mask: the trust is 1 minus it.
+override HAS_REACTIVE: u32 = 0u;
+override HAS_TRUST: u32 = HAS_TRUST_MASK | HAS_REACTIVE;
 override DEPTH_TEST: u32 = 1u;
 override NOISY: u32 = 0u;
 override COUNT: u32 = 0u;
@@ -62,6 +65,7 @@ const TRUST_IN: u32 = 4u;
 const LOD_IN: u32 = 5u;
 const NOISE_IN: u32 = 6u;
 const REPAIRED_IN: u32 = 7u;
+const REACTIVE_IN: u32 = 8u;
 const COLOR_OUT: u32 = 10u;
 const DEBUG_OUT: u32 = 11u;
 
@@ -71,6 +75,7 @@ const DEBUG_OUT: u32 = 11u;
 @group(0) @binding(3) var motion_in: texture_2d_array<f32>;
 @group(0) @binding(4) var trust_in: texture_2d_array<f32>;
 @group(0) @binding(6) var noise_in: texture_2d_array<f32>;
+@group(0) @binding(8) var reactive_in: texture_2d_array<f32>;
 @group(0) @binding(12) var<storage, read_write> counters: array<atomic<u32>, COUNTERS>;
 
 // Layout of the counters; FrameStats::from_counters in src/stats.rs reads them.
@@ -107,6 +112,9 @@ fn color_at(px: vec2<u32>, view: u32) -> vec4<f32> {
 
 // Trust mask, not sanitized.
 fn trust_at(px: vec2<u32>, view: u32) -> f32 {
+    if HAS_REACTIVE != 0u {
+        return 1.0 - textureLoad(reactive_in, texel_of(px, view, REACTIVE_IN), layer_of(view), 0).x;
+    }
     return textureLoad(trust_in, texel_of(px, view, TRUST_IN), layer_of(view), 0).x;
 }
 

@@ -35,6 +35,7 @@ pub(super) struct Inputs<'a> {
     depth: Option<&'a Image<f32>>,
     motion: Option<&'a Image<[f32; 2]>>,
     trust: Option<&'a Image<f32>>,
+    reactive: Option<&'a Image<f32>>,
     noise: Option<&'a Image<[f32; 2]>>,
     pub size: [u32; 2],
     /// Lattices of the samples: those of a sparse frame, otherwise one of full rate.
@@ -64,6 +65,7 @@ impl<'a> Inputs<'a> {
             depth: frame.depth.map(|d| d[index]),
             motion: frame.motion.map(|m| m[index]),
             trust: frame.trust.map(|t| t[index]),
+            reactive: frame.reactive.map(|r| r[index]),
             noise: frame.noise.map(|n| n[index]),
             size: desc.size_px,
             lattices: LatticeUniforms::of_view_or_full(view.lattices.as_ref(), desc.size_px),
@@ -204,10 +206,11 @@ impl<'a> Inputs<'a> {
         self.noise.map(|n| candidate_noise(n.at(x as usize, y as usize)))
     }
 
-    /// Trust mask, not sanitized; `None` without a trust input.
+    /// Trust mask, not sanitized; `None` without a trust input and a reactive mask.
     #[inline(always)]
     pub fn trust(&self, x: u32, y: u32) -> Option<f32> {
-        self.trust.map(|t| t.at(x as usize, y as usize))
+        let [x, y] = [x as usize, y as usize];
+        self.reactive.map(|r| 1.0 - r.at(x, y)).or_else(|| self.trust.map(|t| t.at(x, y)))
     }
 
     /// Whether there is a depth test.

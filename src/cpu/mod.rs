@@ -62,8 +62,8 @@ impl<'a> Frame<'a> {
     where
         'a: 'b,
     {
-        let Self { depth, motion, trust, lod, noise, repaired, views, index, reset, exposure, .. } = *self;
-        Frame { color, depth, motion, trust, lod, noise, repaired, views, index, reset, exposure }
+        let Self { depth, motion, trust, reactive, lod, noise, repaired, views, index, reset, exposure, .. } = *self;
+        Frame { color, depth, motion, trust, reactive, lod, noise, repaired, views, index, reset, exposure }
     }
 }
 
@@ -285,7 +285,8 @@ fn check_geometry(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameErro
     let geometry = |view| ViewFrame::atlas(view).filter(|atlas| atlas.has_geometry_at_samples());
     check_samples(desc, "depth", frame.depth.map(|d| d.iter().map(|i| i.size())), frame.views, geometry)?;
     check_samples(desc, "motion", frame.motion.map(|m| m.iter().map(|i| i.size())), frame.views, geometry)?;
-    check_sizes(desc, "trust", frame.trust.map(|t| t.iter().map(|i| i.size())))
+    check_sizes(desc, "trust", frame.trust.map(|t| t.iter().map(|i| i.size())))?;
+    check_sizes(desc, "reactive", frame.reactive.map(|r| r.iter().map(|i| i.size())))
 }
 
 /// Checks the sizes of an input that may be an atlas of samples. `atlas`: the lattices of a view if its samples lie in

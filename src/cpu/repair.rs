@@ -25,8 +25,8 @@ impl CpuAfterimage {
     /// successive rings around the gaze.
     ///
     /// Give it the frame that will be processed, with the parts that are known before shading: views with their
-    /// lattices, depth, motion, trust, index and reset. Its colors, noise and repaired samples are not read, and the
-    /// colors may be an empty slice. History is unchanged: the same call gives the same masks.
+    /// lattices, depth, motion, trust or reactive mask, index and reset. Its colors, noise and repaired samples are not
+    /// read, and the colors may be an empty slice. History is unchanged: the same call gives the same masks.
     ///
     /// ```
     /// use afterimage::cpu::{CpuAfterimage, Frame};

@@ -16,6 +16,7 @@ pub enum Binding {
     Lod,
     Noise,
     Repaired,
+    Reactive,
     Output = 10,
     /// Debug view beside the output.
     Debug,
@@ -45,17 +46,20 @@ pub struct Input {
     pub channels: u8,
     /// Whether it is known before the frame is shaded.
     pub is_geometry: bool,
+    /// `override` of the shaders that says whether a frame has it, if they need to know.
+    pub has: Option<&'static str>,
 }
 
 /// The inputs of a frame.
-pub const INPUTS: [Input; 7] = [
-    Input { binding: Binding::Color, name: "color", channels: 3, is_geometry: false },
-    Input { binding: Binding::Depth, name: "depth", channels: 1, is_geometry: true },
-    Input { binding: Binding::Motion, name: "motion", channels: 2, is_geometry: true },
-    Input { binding: Binding::Trust, name: "trust", channels: 1, is_geometry: true },
-    Input { binding: Binding::Lod, name: "lod", channels: 1, is_geometry: false },
-    Input { binding: Binding::Noise, name: "noise", channels: 2, is_geometry: false },
-    Input { binding: Binding::Repaired, name: "repaired", channels: 3, is_geometry: false },
+pub const INPUTS: [Input; 8] = [
+    Input { binding: Binding::Color, name: "color", channels: 3, is_geometry: false, has: None },
+    Input { binding: Binding::Depth, name: "depth", channels: 1, is_geometry: true, has: Some("HAS_DEPTH") },
+    Input { binding: Binding::Motion, name: "motion", channels: 2, is_geometry: true, has: Some("HAS_MOTION") },
+    Input { binding: Binding::Trust, name: "trust", channels: 1, is_geometry: true, has: Some("HAS_TRUST_MASK") },
+    Input { binding: Binding::Reactive, name: "reactive", channels: 1, is_geometry: true, has: Some("HAS_REACTIVE") },
+    Input { binding: Binding::Lod, name: "lod", channels: 1, is_geometry: false, has: Some("HAS_LOD") },
+    Input { binding: Binding::Noise, name: "noise", channels: 2, is_geometry: false, has: None },
+    Input { binding: Binding::Repaired, name: "repaired", channels: 3, is_geometry: false, has: Some("REPAIR") },
 ];
 
 impl Binding {
@@ -68,18 +72,18 @@ impl Binding {
 /// Bindings that a pass uses, of those that its text declares. `None`: all.
 pub fn used_by(pass: &str) -> Option<&'static [Binding]> {
     use Binding::{
-        Color, Depth, Lattices, Motion, Noise, Past, PastFrame, PastSecond, Read, State, Trust, Uniforms, Write,
-        WriteSecond,
+        Color, Depth, Lattices, Motion, Noise, Past, PastFrame, PastSecond, Reactive, Read, State, Trust, Uniforms,
+        Write, WriteSecond,
     };
     Some(match pass {
         "candidate_pass" => &[Uniforms, Color, Noise, Write],
         "fill_pass" => &[Uniforms, Color, Lattices, Write],
         "fill_geometry_pass" => &[Uniforms, Depth, Motion, Lattices, PastFrame, Past, Write, WriteSecond],
         "sparse_observe_pass" => {
-            &[Uniforms, Color, Depth, Motion, Trust, Noise, Lattices, PastFrame, Past, PastSecond, Write]
+            &[Uniforms, Color, Depth, Motion, Trust, Reactive, Noise, Lattices, PastFrame, Past, PastSecond, Write]
         }
         "sparse_light_pass" => &[Uniforms, Color, Depth, Lattices, PastFrame, Read, Write],
-        "repair_key_pass" => &[Uniforms, Depth, Motion, Trust, Lattices, PastFrame, Past, Write, State],
+        "repair_key_pass" => &[Uniforms, Depth, Motion, Trust, Reactive, Lattices, PastFrame, Past, Write, State],
         _ => return None,
     })
 }

@@ -27,6 +27,7 @@ impl<'a> Frame<'a> {
         all[Binding::Depth as usize] = self.depth;
         all[Binding::Motion as usize] = self.motion;
         all[Binding::Trust as usize] = self.trust;
+        all[Binding::Reactive as usize] = self.reactive;
         all[Binding::Lod as usize] = self.lod;
         all[Binding::Noise as usize] = self.noise;
         all[Binding::Repaired as usize] = self.repaired;
@@ -124,6 +125,8 @@ pub struct Variant {
     pub motion: bool,
     /// Whether there is a trust mask.
     pub trust: bool,
+    /// Whether there is a reactive mask.
+    pub reactive: bool,
     /// Whether there are levels of detail.
     pub lod: bool,
     /// Whether there is a buffer for counters.
@@ -140,12 +143,26 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// All combinations without regions, geometry at samples, repaired samples and debug views: 32.
+    /// All combinations without reactive masks, regions, geometry at samples, repaired samples and debug views: 32.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..32_u32).map(|bits| {
             let bit = |i: u32| bits >> i & 1 == 1;
             Self { depth: bit(0), motion: bit(1), trust: bit(2), lod: bit(3), counters: bit(4), ..Self::default() }
         })
+    }
+
+    /// Its optional inputs, and counters: a set of [bits](Binding::bit).
+    pub(super) fn bindings(self) -> u32 {
+        let list = [
+            (Binding::Depth, self.depth),
+            (Binding::Motion, self.motion),
+            (Binding::Trust, self.trust),
+            (Binding::Reactive, self.reactive),
+            (Binding::Lod, self.lod),
+            (Binding::Repaired, self.repaired),
+            (Binding::Counters, self.counters),
+        ];
+        list.iter().map(|&(binding, is_present)| if is_present { binding.bit() } else { 0 }).sum()
     }
 
     /// Variant of a frame and its target.
@@ -154,6 +171,7 @@ impl Variant {
             depth: frame.depth.is_some(),
             motion: frame.motion.is_some(),
             trust: frame.trust.is_some(),
+            reactive: frame.reactive.is_some(),
             lod: frame.lod.is_some(),
             counters: target.counters.is_some(),
             regions: frame.textures().iter().flatten().any(Textures::is_regions) || target.has_regions(),

@@ -367,8 +367,8 @@ impl Afterimage {
     /// successive rings around the gaze.
     ///
     /// Give it the frame that will be recorded, with the parts that are known before shading: views with their
-    /// lattices, depth, motion, trust, index and reset. Its colors, noise and repaired samples are not read. History is
-    /// unchanged.
+    /// lattices, depth, motion, trust or reactive mask, index and reset. Its colors, noise and repaired samples are not
+    /// read. History is unchanged.
     ///
     /// ```no_run
     /// # use afterimage::{wgpu, ViewFrame};

@@ -1,6 +1,6 @@
 //! Stages of a frame: the interface that their passes share.
 
-use super::binding::Binding;
+use super::binding::{Binding, INPUTS};
 use super::compute::{ComputeShader, PipelineKey, WORKGROUP_WIDTH};
 use super::groups::Resource;
 use super::history::History;
@@ -34,17 +34,8 @@ pub(super) struct Specialization {
 
 impl Specialization {
     pub fn new(variant: Variant, view: Option<DebugView>, generation: u64) -> Self {
-        let present = [
-            (Binding::Depth, variant.depth),
-            (Binding::Motion, variant.motion),
-            (Binding::Trust, variant.trust),
-            (Binding::Lod, variant.lod),
-            (Binding::Repaired, variant.repaired),
-            (Binding::Counters, variant.counters),
-        ];
-        let bit = |(binding, is_present): (Binding, bool)| if is_present { binding.bit() } else { 0 };
         Self {
-            present: present.map(bit).iter().sum(),
+            present: variant.bindings(),
             has_regions: variant.regions,
             is_filled: false,
             is_at_samples: variant.geometry_at_samples,
@@ -82,7 +73,7 @@ impl Specialization {
 
     /// Override values of shaders that use the set `bound` of bindings.
     fn overrides(&self, desc: &ContextDesc, bound: u32) -> Overrides {
-        use Binding::{Counters, Debug, Depth, Lod, Motion, Output, Past, Repaired, Trust, Uniforms};
+        use Binding::{Counters, Debug, Depth, Motion, Output, Past, Uniforms};
         let has = |binding| u32::from(self.has(binding));
         let settings = &desc.settings;
         let is_tested = self.has(Depth) && settings.depth_test.is_some();
@@ -90,22 +81,18 @@ impl Specialization {
         let code = |view: Option<DebugView>| view.map_or(0, |view| view as u32);
         let list = [
             (Uniforms, "REGIONS", u32::from(self.has_regions)),
-            (Depth, "HAS_DEPTH", has(Depth)),
             (Depth, "DEPTH_TEST", u32::from(is_tested)),
-            (Motion, "HAS_MOTION", has(Motion)),
             // Filled vectors contain the camera's motion.
             (Motion, "CAMERA_MOTION", if self.is_filled { 0 } else { desc.motion.camera_code() }),
-            (Trust, "HAS_TRUST", has(Trust)),
-            (Lod, "HAS_LOD", has(Lod)),
             (Uniforms, "NOISY", u32::from(settings.noisy)),
-            (Repaired, "REPAIR", has(Repaired)),
             (Counters, "COUNT", has(Counters)),
             (Past, "HAS_KEPT", u32::from(is_kept)),
             (Output, "VIEW", code(self.view)),
             (Output, "KEEP_ALPHA", u32::from(desc.keep_alpha)),
             (Debug, "DEBUG_VIEW", code(self.debug)),
         ];
-        let list = list.into_iter().filter(|(binding, ..)| binding.bit() & bound != 0);
+        let inputs = INPUTS.iter().filter_map(|input| Some((input.binding, input.has?, has(input.binding))));
+        let list = inputs.chain(list).filter(|(binding, ..)| binding.bit() & bound != 0);
         list.map(|(_, name, value)| (name, value)).chain(settings.overrides()).collect()
     }
 }

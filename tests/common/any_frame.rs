@@ -43,6 +43,7 @@ pub fn any_frame(draws: &mut Draws, wild: f32) -> View {
         depth: Some(Image::from_fn(SIZE, |_| number(d, wild, 3.0, 3.05))),
         motion: Some(Image::from_fn(SIZE, |_| shift.map(|v| vector(d, v)))),
         trust: Some(Image::from_fn(SIZE, |_| number(d, wild, 0.5, 1.0))),
+        reactive: None,
         lod: Some(Image::from_fn(SIZE, |_| number(d, wild, 0.0, 4.0))),
         noise: Some(Image::from_fn(SIZE, |_| [number(d, wild, 0.0, 0.3), number(d, wild, 1.0, 16.0)])),
         repaired: None,

@@ -12,6 +12,7 @@ pub struct View {
     pub depth: Option<Image<f32>>,
     pub motion: Option<Image<[f32; 2]>>,
     pub trust: Option<Image<f32>>,
+    pub reactive: Option<Image<f32>>,
     /// Level-of-detail input, if any.
     pub lod: Option<Image<f32>>,
     /// Standard errors and numbers of samples of noisy frames.
@@ -24,7 +25,8 @@ impl View {
     /// Without optional inputs, under 70 degrees.
     pub fn still(color: Image<[f32; 3]>, gaze_px: [f32; 2]) -> Self {
         let facts = ViewFrame::new(ViewGeometry::flat(color.size(), 70.0).unwrap(), Gaze::At { px: gaze_px });
-        Self { facts, color, depth: None, motion: None, trust: None, lod: None, noise: None, repaired: None }
+        let (trust, reactive) = (None, None);
+        Self { facts, color, depth: None, motion: None, trust, reactive, lod: None, noise: None, repaired: None }
     }
 
     /// With other images or facts.
@@ -81,6 +83,7 @@ impl View {
             depth: self.depth.as_ref(),
             motion: self.motion.as_ref(),
             trust: self.trust.as_ref(),
+            reactive: self.reactive.as_ref(),
             lod: self.lod.as_ref(),
             noise: self.noise.as_ref(),
             ..OneView::new(self.facts, &self.color)
@@ -96,6 +99,7 @@ pub struct OneView<'a> {
     pub depth: Option<&'a Image<f32>>,
     pub motion: Option<&'a Image<[f32; 2]>>,
     pub trust: Option<&'a Image<f32>>,
+    pub reactive: Option<&'a Image<f32>>,
     pub lod: Option<&'a Image<f32>>,
     pub noise: Option<&'a Image<[f32; 2]>>,
 }
@@ -103,7 +107,7 @@ pub struct OneView<'a> {
 impl<'a> OneView<'a> {
     /// Without optional inputs.
     pub fn new(facts: ViewFrame, color: &'a Image<[f32; 3]>) -> Self {
-        Self { facts, color, depth: None, motion: None, trust: None, lod: None, noise: None }
+        Self { facts, color, depth: None, motion: None, trust: None, reactive: None, lod: None, noise: None }
     }
 }
 
@@ -114,6 +118,7 @@ pub struct Images<'a> {
     depth: Vec<&'a Image<f32>>,
     motion: Vec<&'a Image<[f32; 2]>>,
     trust: Vec<&'a Image<f32>>,
+    reactive: Vec<&'a Image<f32>>,
     lod: Vec<&'a Image<f32>>,
     noise: Vec<&'a Image<[f32; 2]>>,
 }
@@ -126,6 +131,7 @@ impl<'a> Images<'a> {
             depth: views.iter().filter_map(|v| v.depth).collect(),
             motion: views.iter().filter_map(|v| v.motion).collect(),
             trust: views.iter().filter_map(|v| v.trust).collect(),
+            reactive: views.iter().filter_map(|v| v.reactive).collect(),
             lod: views.iter().filter_map(|v| v.lod).collect(),
             noise: views.iter().filter_map(|v| v.noise).collect(),
         }
@@ -136,6 +142,7 @@ impl<'a> Images<'a> {
             depth: given(&self.depth),
             motion: given(&self.motion),
             trust: given(&self.trust),
+            reactive: given(&self.reactive),
             lod: given(&self.lod),
             noise: given(&self.noise),
             ..Frame::new(&self.color, &self.views, index)

@@ -22,6 +22,8 @@ mod low_pass;
 #[path = "../common/motion_hard.rs"]
 mod motion_hard;
 mod pass;
+#[path = "../common/reactive.rs"]
+mod reactive;
 #[path = "../common/scale_hard.rs"]
 mod scale_hard;
 #[path = "../common/settings.rs"]

@@ -1,5 +1,6 @@
 //! Errors planted in an executor, each of which the laws of hard cases must catch.
 
+use crate::reactive::reactive_is_the_inverse_of_trust;
 use crate::sparse_hard::*;
 use afterimage::{ContextDesc, Exposure, Gaze, Image, Method, Repair, Reset, Settings, Smr};
 use std::cell::Cell;
@@ -20,6 +21,10 @@ enum Planted {
     NoExposure,
     /// Trust masks are ignored.
     NoTrust,
+    /// Reactive masks are ignored.
+    NoReactive,
+    /// Reactive masks are read as trust masks.
+    ReactiveAsTrust,
     /// The first view is shown for all.
     FirstView,
     /// The gaze changes what is shown.
@@ -62,6 +67,8 @@ impl Executor {
             Planted::NoDepth => shot.depth = None,
             Planted::NoExposure => shot.exposure = Exposure::Same,
             Planted::NoTrust => shot.trust = None,
+            Planted::NoReactive => shot.reactive = None,
+            Planted::ReactiveAsTrust => shot.trust = shot.trust.take().or(shot.reactive.take()),
             Planted::Unrepaired | Planted::Forgotten => shot.repaired = None,
             Planted::ElsewhereFirst => shot.facts.gaze = Gaze::At { px: [80.0, 60.0] },
             _ => (),
@@ -157,7 +164,7 @@ fn holds_with(law: fn(Make) -> Option<String>, planted: Planted) -> bool {
 fn planted_errors_are_caught_by_the_laws_of_sparse_frames() {
     type Law = fn(Make) -> Option<String>;
     use Planted::*;
-    let laws: [(&str, Law, &[Planted]); 17] = [
+    let laws: [(&str, Law, &[Planted]); 18] = [
         ("H86", starved_positions, &[Foveated, Nan, Beside]),
         ("H87", degenerate_lattices, &[Beside, Foveated]),
         ("H88", restarts_of_the_order, &[NoReset, Foveated]),
@@ -174,6 +181,7 @@ fn planted_errors_are_caught_by_the_laws_of_sparse_frames() {
         ("H99", half_uncovered, &[OverBudget, ElsewhereFirst, Unrepaired, Forgotten, NoDepth]),
         ("H100", order_without_flicker, &[OverBudget, SameOrder, Unrepaired, Forgotten]),
         ("H101", thin_occluders, &[OverBudget, Unrepaired, NoDepth, NoMotion]),
+        ("reactive masks", reactive_is_the_inverse_of_trust, &[NoReactive, ReactiveAsTrust]),
         ("H102", light_and_contradictions, &[OverBudget, NoTrust, Forgotten, Nan]),
     ];
     let mut missed = vec![];

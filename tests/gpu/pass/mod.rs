@@ -9,6 +9,7 @@ mod light;
 mod limits;
 mod motion;
 mod properties;
+mod reactive;
 mod repair;
 mod reservoirs;
 #[allow(dead_code, reason = "the lab's tests on analytic scenes use all of it")]

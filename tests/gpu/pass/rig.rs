@@ -1,9 +1,9 @@
 //! Frames through both executors, and the device's results.
 
-use crate::images::{Images, OneView, held_words};
+use crate::images::{Images, held_words};
 pub use crate::images::{View, noise};
 use afterimage::cpu::CpuAfterimage;
-use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target};
+use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target, Textures};
 use afterimage::internal::{Sources, method_pass};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack;
@@ -26,22 +26,23 @@ pub struct Rig {
     pub drops: bool,
     /// Debug view to draw beside the next frames, and what it showed.
     pub beside: Option<DebugView>,
-    textures: [Texture; 9],
+    textures: [Texture; 10],
     counters: Buffer,
 }
 
-// Places of textures: color, depth, motion, trust, levels of detail, noise and repaired samples; output, debug view.
+// Places of textures: color, depth, motion, trust and reactive masks, levels of detail, noise and repaired samples;
+// output, debug view.
 const COLOR: usize = 0;
 const MOTION: usize = 2;
-const NOISE: usize = 5;
-const REPAIRED: usize = 6;
-const OUTPUT: usize = 7;
-const DEBUG: usize = 8;
+const NOISE: usize = 6;
+const REPAIRED: usize = 7;
+const OUTPUT: usize = 8;
+const DEBUG: usize = 9;
 
 const READ: TextureUsages =
     TextureUsages::TEXTURE_BINDING.union(TextureUsages::COPY_DST).union(TextureUsages::COPY_SRC);
 
-fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 9] {
+fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 10] {
     std::array::from_fn(|i| {
         let format = match i {
             COLOR | REPAIRED | OUTPUT => TextureFormat::Rgba32Float,
@@ -64,10 +65,26 @@ fn texels(view: &View) -> [Option<Vec<f32>>; OUTPUT] {
         view.depth.as_ref().map(one),
         view.motion.as_ref().map(two),
         view.trust.as_ref().map(one),
+        view.reactive.as_ref().map(one),
         view.lod.as_ref().map(one),
         view.noise.as_ref().map(two),
         view.repaired.as_ref().map(four),
     ]
+}
+
+/// The frame with those of the textures that the view has.
+fn given<'a>(view: &View, textures: [Textures<'a>; 10], frame: Frame<'a>) -> Frame<'a> {
+    let [_, depth, motion, trust, reactive, lod, noise, repaired, ..] = textures;
+    Frame {
+        depth: view.depth.is_some().then_some(depth),
+        motion: view.motion.is_some().then_some(motion),
+        trust: view.trust.is_some().then_some(trust),
+        reactive: view.reactive.is_some().then_some(reactive),
+        lod: view.lod.is_some().then_some(lod),
+        noise: view.noise.is_some().then_some(noise),
+        repaired: view.repaired.is_some().then_some(repaired),
+        ..frame
+    }
 }
 
 /// Result of a frame: output colors and packed history, view after view.
@@ -273,12 +290,12 @@ impl Rig {
     /// Errors of both executors for a frame that they must reject.
     pub fn refusal(&mut self, view: &View) -> String {
         self.upload(std::slice::from_ref(view));
-        let [color, .., noise, _, output, _] = &self.textures;
-        let noise = view.noise.is_some().then_some(noise.into());
-        let frame = Frame { noise, ..Frame::new(color, std::slice::from_ref(&view.facts), 0) };
+        let textures = self.textures.each_ref().map(Textures::from);
+        let frame = given(view, textures, Frame::new(textures[0], std::slice::from_ref(&view.facts), 0));
+        let output = &self.textures[OUTPUT];
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let gpu = self.gpu.record(&self.device, &mut encoder, &frame, output).unwrap_err().to_string();
-        let images = Images::of(&[OneView { noise: view.noise.as_ref(), ..OneView::new(view.facts, &view.color) }]);
+        let images = Images::of(&[view.one()]);
         let mut output = [Image::filled(self.context.size_px, [0.0; 3])];
         let cpu = self.cpu.process(&images.frame(0), &mut output).unwrap_err().to_string();
         assert_eq!(gpu, cpu);
@@ -303,19 +320,13 @@ impl Rig {
         let all = (0..).zip(&self.textures).filter(|_| self.scattered);
         let all: Vec<_> = all.map(|(i, texture)| Scattered::new(&self.device, &self.queue, texture, i)).collect();
         let regions: Vec<_> = all.iter().map(Scattered::regions).collect();
-        let [color, depth, motion, trust, lod, noise, repaired, output, debug] = std::array::from_fn(|i| {
-            regions.get(i).map_or((&self.textures[i]).into(), |r| afterimage::gpu::Textures::Regions(r))
-        });
+        let textures: [_; 10] =
+            std::array::from_fn(|i| regions.get(i).map_or((&self.textures[i]).into(), |r| Textures::Regions(r)));
+        let [.., output, debug] = textures;
         let frame = Frame {
-            depth: views[0].depth.is_some().then_some(depth),
-            motion: views[0].motion.is_some().then_some(motion),
-            trust: views[0].trust.is_some().then_some(trust),
-            lod: views[0].lod.is_some().then_some(lod),
-            noise: views[0].noise.is_some().then_some(noise),
-            repaired: views[0].repaired.is_some().then_some(repaired),
             exposure: self.exposure,
             reset,
-            ..Frame::new(color, &facts, index)
+            ..given(&views[0], textures, Frame::new(textures[0], &facts, index))
         };
         let debug = self.beside.map(|view| DebugTarget { view, output: debug });
         let target = Target { debug, counters: count.then_some(&self.counters), ..Target::new(output) };

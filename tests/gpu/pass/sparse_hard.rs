@@ -45,7 +45,7 @@ impl Drop for Both {
 }
 
 /// What a law measured; `None`, after a message, without an adapter.
-fn held(law: fn(Make) -> Option<String>) -> Option<String> {
+pub(super) fn held(law: fn(Make) -> Option<String>) -> Option<String> {
     let pool: Rc<RefCell<Vec<Rig>>> = Rc::default();
     law(&|desc: ContextDesc| {
         let fits = |rig: &Rig| (rig.context.size_px, rig.context.view_count) == (desc.size_px, desc.view_count);

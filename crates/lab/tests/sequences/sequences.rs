@@ -39,7 +39,7 @@ pub fn foveated(source: &mut AnalyticSource, index: u64, foveation: &Foveation) 
     }
     let gaze = if (7..9).contains(&index) { Gaze::Lost } else { Gaze::At { px } };
     let facts = ViewFrame { previous_from_current: frame.previous_from_current, ..ViewFrame::new(geometry, gaze) };
-    View { facts, color, depth: Some(depth), motion: Some(motion), trust: None, lod: None, noise: None, repaired: None }
+    View { facts, depth: Some(depth), motion: Some(motion), ..View::still(color, [0.0; 2]) }
 }
 
 /// A mask that moves over the frame: full trust, none, some, and numbers that are none.

@@ -148,6 +148,7 @@ pub fn settings(bytes: &[u8]) {
             depth: has(1).then_some(&depth),
             motion: has(2).then_some(&motion),
             trust: has(3).then_some(&trust),
+            reactive: has(11).then_some(&trust),
             lod: has(4).then_some(&lod),
             noise: post.desc().settings.noisy.then_some(&noise),
             reset: if has(5) { Reset::All } else { Reset::None },
