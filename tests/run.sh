@@ -11,7 +11,8 @@ cd "$(dirname "$0")/.."
 everything=(--locked --workspace --features cpu,serde,view)
 target="${CARGO_TARGET_DIR:-target}"
 # Incremental compilation pays off in later builds only, and costs time in this one. So do symbols for debuggers.
-export CARGO_INCREMENTAL=0 CARGO_PROFILE_DEV_DEBUG=none
+# Backtraces of errors that a library keeps (wgpu, at each lock) cost up to half of the time of recording.
+export CARGO_INCREMENTAL=0 CARGO_PROFILE_DEV_DEBUG=none RUST_LIB_BACKTRACE=0
 
 step "Vulkan driver"
 has_icd() { ls /usr/share/vulkan/icd.d/*.json /etc/vulkan/icd.d/*.json "${VK_DRIVER_FILES:-/nonexistent}" 2>/dev/null | grep -q .; }

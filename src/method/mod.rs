@@ -13,7 +13,9 @@ mod taau;
 mod wrs;
 
 pub(crate) use smr::smr_params;
-pub(crate) use smr_sparse::{smr_sparse_antialiases, smr_sparse_relights, smr_sparse_repair};
+pub(crate) use smr_sparse::smr_sparse_repair;
+#[cfg(feature = "cpu")]
+pub(crate) use smr_sparse::{smr_sparse_antialiases, smr_sparse_relights};
 #[cfg(feature = "cpu")]
 pub(crate) use wrs::has_references;
 pub(crate) use wrs::{inv_density_at_fovea, wrs_params};
