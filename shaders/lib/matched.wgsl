@@ -18,9 +18,7 @@ const GAIN_MOST: f32 = 5.0;
 const LEAST_WORN: f32 = 0.5 / LOD_STEPS;
 const DARK: f32 = 0.002;
 const MIDDLE: f32 = 0.5;
-const ROOT_OF_MIDDLE: f32 = 1.41421356237;
 const LEAST_LIGHT: f32 = 0x1p-14;
-const LEAST_ROOT: f32 = 0x1p-7;
 const COHERENT_PX: f32 = 0.5;
 const COHERENT_SHARE: f32 = 0.1;
 
@@ -81,11 +79,6 @@ fn light_unit(compared: vec3<f32>, matched: vec3<f32>, exposure: f32) -> f32 {
     let now = max(max(compared.x, compared.y), compared.z);
     let then = max(max(matched.x, matched.y), matched.z);
     return max(max(now, then * exposure), LEAST_LIGHT) * (1.0f / MIDDLE);
-}
-
-// matched::root_unit
-fn root_unit(square_roots: vec3<f32>) -> f32 {
-    return max(max(max(square_roots.x, square_roots.y), square_roots.z), LEAST_ROOT) * ROOT_OF_MIDDLE;
 }
 
 // matched::moves_alike

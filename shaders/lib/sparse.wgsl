@@ -41,13 +41,10 @@ struct Observation {
 }
 
 // sparse::expected_error
-fn expected_error(lod: f32, lowest: vec3<f32>, highest: vec3<f32>, moved: bool) -> f32 {
-    let high = past_roots(highest);
-    let contrast = distance_of_roots(past_roots(lowest), high);
+fn expected_error(lod: f32, contrast: f32, moved: bool) -> f32 {
     let coarse = clamp(lod, 0.0, 1.0);
     let by_motion = select(0.0, CONTRAST_ERROR, moved);
-    let least = select(STILL_ERROR, MOVED_ERROR, moved);
-    return least * root_unit(high) + contrast * (by_motion + CONTRAST_ERROR * coarse);
+    return select(STILL_ERROR, MOVED_ERROR, moved) + contrast * (by_motion + CONTRAST_ERROR * coarse);
 }
 
 // sparse::lod_confidence
@@ -61,39 +58,19 @@ fn noisy_lod_confidence(lod: f32, past: Noise, around: f32) -> f32 {
 }
 
 // sparse::ratio
-fn ratio(observed: f32, predicted: f32, dark: f32) -> f32 {
-    return clamp((observed + dark) / (predicted + dark), SAMPLE_GAIN.x, SAMPLE_GAIN.y);
+fn ratio(observed: f32, predicted: f32) -> f32 {
+    return clamp((observed + DARK) / (predicted + DARK), SAMPLE_GAIN.x, SAMPLE_GAIN.y);
 }
 
 // sparse::ratios
-fn ratios(observed: vec3<f32>, predicted: vec3<f32>, dark: f32) -> vec3<f32> {
-    return vec3<f32>(
-        ratio(observed.x, predicted.x, dark),
-        ratio(observed.y, predicted.y, dark),
-        ratio(observed.z, predicted.z, dark),
-    );
-}
-
-struct Own {
-    ratios: vec3<f32>,
-    agree: f32,
-    gate: f32,
-    dark: f32,
-}
-
-// sparse::own_light
-fn own_light(own: Observation) -> Own {
-    let unit = light_unit(own.sampled, own.history, 1.0);
-    let root = sqrt(unit);
-    let dark = DARK * unit;
-    let own_ratios = ratios(own.sampled, own.history, dark);
-    return Own(own_ratios, AGREE_ERRORS * own.error + AGREE_ERROR * root, GATE_ERROR * root, dark);
+fn ratios(observed: vec3<f32>, predicted: vec3<f32>) -> vec3<f32> {
+    return vec3<f32>(ratio(observed.x, predicted.x), ratio(observed.y, predicted.y), ratio(observed.z, predicted.z));
 }
 
 // sparse::agreement
-fn agreement(own: Own, other: Observation, spatial: f32) -> f32 {
-    let difference = root_difference(other.sampled, own.ratios * other.history);
-    let errors = min(difference, 1e6) / (AGREE_ERRORS * other.error + own.agree);
+fn agreement(own: Observation, other: Observation, spatial: f32) -> f32 {
+    let difference = root_difference(other.sampled, ratios(own.sampled, own.history) * other.history);
+    let errors = min(difference, 1e6) / (AGREE_ERRORS * (own.error + other.error) + AGREE_ERROR);
     return (spatial * other.sure) / (1.0 + errors * errors);
 }
 
@@ -129,7 +106,7 @@ fn mean_error(l: Light) -> f32 {
 }
 
 // sparse::relight
-fn relight(l: Light, error: f32, dark: f32) -> vec3<f32> {
+fn relight(l: Light, error: f32) -> vec3<f32> {
     if l.weight < 1e-6 {
         return vec3<f32>(1.0);
     }
@@ -140,12 +117,12 @@ fn relight(l: Light, error: f32, dark: f32) -> vec3<f32> {
     let start = (error * (sqrt(l.squared) * inverse)) * RELIGHT_ERRORS;
     let changed = smooth_step(start, start, root_difference(sampled, history));
     // A share of 1 gives the ratio bit for bit.
-    return ratios(sampled, history, dark) * changed + (1.0 - changed);
+    return ratios(sampled, history) * changed + (1.0 - changed);
 }
 
 // sparse::errors_left
-fn errors_left(o: Observation, gains: vec3<f32>, gate: f32) -> f32 {
-    return root_difference(o.sampled, gains * o.history) / (o.error + gate);
+fn errors_left(o: Observation, gains: vec3<f32>) -> f32 {
+    return root_difference(o.sampled, gains * o.history) / (o.error + GATE_ERROR);
 }
 
 // sparse::fit
@@ -154,8 +131,8 @@ fn fit(errors: f32, sure: f32) -> f32 {
 }
 
 // sparse::own_fit
-fn own_fit(own: Observation, gains: vec3<f32>, gate: f32) -> f32 {
-    return fit(errors_left(own, gains, gate), own.sure);
+fn own_fit(own: Observation, gains: vec3<f32>) -> f32 {
+    return fit(errors_left(own, gains), own.sure);
 }
 
 // sparse::mean_fit

@@ -34,8 +34,7 @@ fn neighbour(
     point: vec2<u32>,
     lattice: LatticeUniforms,
     view: u32,
-    own: Own,
-    is_own: bool,
+    own: Observation,
     own_disparity: f32,
 ) -> Neighbour {
     let offset = vec2<i32>(vec2<u32>(tap % 3u, tap / 3u)) - 1;
@@ -49,24 +48,22 @@ fn neighbour(
         return Neighbour(other, 0.0, 0.0);
     }
     let spatial = neighbour_weight(offset);
-    if is_own {
+    if own.error >= 0.0 {
         return Neighbour(other, agreement(own, other, spatial), spatial);
     }
     return Neighbour(other, spatial * other.sure, spatial);
 }
 
 // Fit at the sample's own pixel. A single noisy sample does not show whether history fits.
-fn fit_at_sample(own: Observation, gains: vec3<f32>, gate: f32) -> f32 {
+fn fit_at_sample(own: Observation, gains: vec3<f32>) -> f32 {
     if NOISY != 0u || own.error < 0.0 {
         return 1.0;
     }
-    return own_fit(own, gains, gate);
+    return own_fit(own, gains);
 }
 
 fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     let own = observation_at(point, lattice, view);
-    let is_own = own.error >= 0.0;
-    let measure = own_light(own);
     let own_disparity = disparity_of(point, lattice, view);
     var without = 0.0;
     var scatter = 0.0;
@@ -74,20 +71,21 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
     let taps = select(0u, 9u, has_history());
     for (var tap = 0u; tap < taps; tap++) {
-        let near = neighbour(tap, point, lattice, view, measure, is_own, own_disparity);
+        let near = neighbour(tap, point, lattice, view, own, own_disparity);
         if near.spatial > 0.0 {
             sum = add_light(sum, near.observation, near.weight, near.spatial);
-            without += errors_left(near.observation, vec3<f32>(1.0), measure.gate) * near.weight;
+            without += errors_left(near.observation, vec3<f32>(1.0)) * near.weight;
             if ANTIALIAS != 0u {
                 let difference = min(root_difference(near.observation.sampled, near.observation.history), 1e6);
                 scatter += (difference * difference) * near.weight;
             }
         }
     }
+    let is_own = own.error >= 0.0;
     // A sample without disparity is interpolated only where no other sample is near.
     let own_surface = select(own_disparity, INVALID_DISPARITY, ANTIALIAS != 0u && own.error == DOUBTFUL);
     if sum.weight < 1e-6 {
-        let fit_unlit = fit_at_sample(own, vec3<f32>(1.0), measure.gate);
+        let fit_unlit = fit_at_sample(own, vec3<f32>(1.0));
         return pack_lit(Lit(vec3<f32>(1.0), 1.0, fit_unlit, is_own, own_surface));
     }
     var gains = vec3<f32>(1.0);
@@ -96,14 +94,14 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
         if ANTIALIAS != 0u {
             error = scattered_error(sum, scatter);
         }
-        gains = relight(sum, error, measure.dark);
+        gains = relight(sum, error);
     }
     let is_relit = any(gains != vec3<f32>(1.0));
     var with_gain = 0.0;
     for (var tap = 0u; tap < select(0u, taps, is_relit); tap++) {
-        let near = neighbour(tap, point, lattice, view, measure, is_own, own_disparity);
+        let near = neighbour(tap, point, lattice, view, own, own_disparity);
         if near.spatial > 0.0 {
-            with_gain += errors_left(near.observation, gains, measure.gate) * near.weight;
+            with_gain += errors_left(near.observation, gains) * near.weight;
         }
     }
     if !is_relit || with_gain > without {
@@ -115,7 +113,7 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     if NOISY != 0u {
         left = min(left, mean_fit(sum, sure));
     }
-    return pack_lit(Lit(gains, left, fit_at_sample(own, gains, measure.gate), is_own, own_surface));
+    return pack_lit(Lit(gains, left, fit_at_sample(own, gains), is_own, own_surface));
 }
 
 @compute @workgroup_size(64, 1)

@@ -26,8 +26,9 @@ fn observe(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     if !needed || history.lod < 0.0 {
         return nothing;
     }
+    let contrast = root_difference(history.lowest, history.highest);
     let moved = ANTIALIAS != 0u || has_moved(motion, history.nearest.place_px);
-    var error = expected_error(history.lod, history.lowest, history.highest, moved);
+    var error = expected_error(history.lod, contrast, moved);
     var sure = lod_confidence(history.lod);
     if NOISY != 0u {
         let past = stored_noise(kept.texel, view);

@@ -40,13 +40,9 @@ pub(super) const DARK: f32 = 0.002;
 /// Largest channel of compared colors in units of [`light_unit`]. At this brightness the units are those of the frame,
 /// for which the gate's constants were chosen.
 const MIDDLE: f32 = 0.5;
-/// Square root of `1 / MIDDLE`.
-const ROOT_OF_MIDDLE: f32 = std::f32::consts::SQRT_2;
 /// Least brightness that [`light_unit`] follows: the smallest normal half. Darker colors are stored in steps that are
 /// large in comparison.
 const LEAST_LIGHT: f32 = 1.0 / 16384.0;
-/// Square root of it.
-const LEAST_ROOT: f32 = 1.0 / 128.0;
 /// Tolerance of motion coherence: in pixels, and as a share of the vector's length.
 const COHERENT: [f32; 2] = [0.5, 0.1];
 
@@ -126,12 +122,6 @@ pub fn past_roots(c: Vec3) -> Vec3 {
 pub fn light_unit(compared: Vec3, matched: Vec3, exposure: f32) -> f32 {
     let largest = compared.max_element().max(matched.max_element() * exposure);
     largest.max(LEAST_LIGHT) * (1.0 / MIDDLE)
-}
-
-/// Square root of a [`light_unit`], from the square roots of the color it is the unit of.
-#[inline(always)]
-pub fn root_unit(roots: Vec3) -> f32 {
-    roots.max_element().max(LEAST_ROOT) * ROOT_OF_MIDDLE
 }
 
 /// Whether two motion vectors, in pixels, can belong to one surface. A pixel that moves like neither neighbour in its

@@ -9,9 +9,7 @@
 use super::approx;
 use super::color::luma;
 use super::kept::{Kept, pack_color, unpack_color};
-use super::matched::{
-    COARSER_WIDTH, DARK, distance_of_roots, light_unit, past_roots, root_difference, root_unit, smooth_step,
-};
+use super::matched::{COARSER_WIDTH, DARK, root_difference, smooth_step};
 use super::noise::{Noise, history_share, noise_after, noise_confidence, noise_visibility};
 use super::pack::{disparity_code, disparity_value};
 use glam::Vec3;
@@ -30,8 +28,7 @@ pub const BY_NEIGHBOURS: f32 = 1e-3;
 /// Least weight of one of the four samples around a pixel.
 pub const LEAST_SHARE: f32 = 1e-4;
 /// Expected difference between a sample and history that has not moved. The precision of storage causes it. In units of
-/// [`root_difference`], as are the other differences, for colors whose [`light_unit`] is 1: they grow with the square
-/// root of the unit.
+/// [`root_difference`].
 const STILL_ERROR: f32 = 0.3;
 /// Expected difference between a sample and history that has moved.
 const MOVED_ERROR: f32 = 0.6;
@@ -44,7 +41,7 @@ const GATE_ERROR: f32 = 0.7;
 const RELIGHT_ERRORS: f32 = 2.5;
 /// Expected errors within which neighbours agree with a sample's own gain.
 const AGREE_ERRORS: f32 = 4.0;
-/// Added to the expected errors when a neighbour is compared with a sample's own gain.
+/// Added to the expected errors when a neighbour is compared with a sample's own gain, in units of [`root_difference`].
 const AGREE_ERROR: f32 = 0.8;
 /// Gate: mean difference at which the fit starts to fall, and width over which it falls to 0, in expected errors.
 const GATE: [f32; 2] = [2.0, 4.0];
@@ -89,15 +86,12 @@ pub struct Observation {
     pub sure: f32,
 }
 
-/// Expected difference between a sample and history of level of detail `lod`. `range`: smallest and largest color of
-/// history around. Four times as bright a history has twice the difference.
+/// Expected difference between a sample and history of level of detail `lod` with local contrast `contrast`.
 #[inline]
-pub fn expected_error(lod: f32, range: [Vec3; 2], moved: bool) -> f32 {
-    let [low, high] = range.map(past_roots);
+pub fn expected_error(lod: f32, contrast: f32, moved: bool) -> f32 {
     let coarse = lod.clamp(0.0, 1.0);
     let by_motion = if moved { CONTRAST_ERROR } else { 0.0 };
-    let least = if moved { MOVED_ERROR } else { STILL_ERROR };
-    least * root_unit(high) + distance_of_roots(low, high) * (by_motion + CONTRAST_ERROR * coarse)
+    (if moved { MOVED_ERROR } else { STILL_ERROR }) + contrast * (by_motion + CONTRAST_ERROR * coarse)
 }
 
 /// Confidence in a difference from history at level of detail `lod`, in \[0, 1\].
@@ -113,52 +107,24 @@ pub fn noisy_lod_confidence(lod: f32, past: Noise, luma: f32) -> f32 {
     lod_confidence(lod).max(noise_visibility(past, luma))
 }
 
-/// Gain for one channel, limited. `dark` keeps the ratio of dark colors finite.
+/// Gain for one channel, limited.
 #[inline]
-pub fn ratio(observed: f32, predicted: f32, dark: f32) -> f32 {
-    ((observed + dark) / (predicted + dark)).clamp(GAIN[0], GAIN[1])
+pub fn ratio(observed: f32, predicted: f32) -> f32 {
+    ((observed + DARK) / (predicted + DARK)).clamp(GAIN[0], GAIN[1])
 }
 
 /// Per-channel ratios of two colors, limited.
 #[inline]
-pub fn ratios(observed: Vec3, predicted: Vec3, dark: f32) -> Vec3 {
-    let of = |i: usize| ratio(observed[i], predicted[i], dark);
-    Vec3::new(of(0), of(1), of(2))
-}
-
-/// A sample as the measure of its neighbours.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Own {
-    /// Ratios of the sample and history.
-    pub ratios: Vec3,
-    /// Its part of the difference up to which neighbours agree with these ratios.
-    pub agree: f32,
-    /// Added to expected errors where the gate compares single samples.
-    pub gate: f32,
-    /// Added to the colors of ratios.
-    pub dark: f32,
-}
-
-/// The sample's own ratios and tolerances, from its observation. Without history the tolerances are those of the
-/// sample's brightness.
-#[inline]
-pub fn own_light(own: Observation) -> Own {
-    let unit = light_unit(own.sampled, own.history, 1.0);
-    let (root, dark) = (unit.sqrt(), DARK * unit);
-    Own {
-        ratios: ratios(own.sampled, own.history, dark),
-        agree: AGREE_ERRORS * own.error + AGREE_ERROR * root,
-        gate: GATE_ERROR * root,
-        dark,
-    }
+pub fn ratios(observed: Vec3, predicted: Vec3) -> Vec3 {
+    Vec3::new(ratio(observed.x, predicted.x), ratio(observed.y, predicted.y), ratio(observed.z, predicted.z))
 }
 
 /// Weight of a neighbour's observation in a sample's estimate: smaller if it contradicts the sample's own gain, as at
 /// the edge of a shadow. `spatial`: weight by position.
 #[inline]
-pub fn agreement(own: Own, other: Observation, spatial: f32) -> f32 {
-    let difference = root_difference(other.sampled, own.ratios * other.history);
-    let errors = difference.min(1e6) / (AGREE_ERRORS * other.error + own.agree);
+pub fn agreement(own: Observation, other: Observation, spatial: f32) -> f32 {
+    let difference = root_difference(other.sampled, ratios(own.sampled, own.history) * other.history);
+    let errors = difference.min(1e6) / (AGREE_ERRORS * (own.error + other.error) + AGREE_ERROR);
     (spatial * other.sure) / (1.0 + errors * errors)
 }
 
@@ -205,9 +171,9 @@ pub fn mean_error(l: Light) -> f32 {
 }
 
 /// Gain of the light around a sample: the ratio of the means of samples and of history at the same pixels, blended to 1
-/// where chance explains the difference of the means. `error`: expected difference of one sample; `dark`: of [`Own`].
+/// where chance explains the difference of the means. `error`: expected difference of one sample.
 #[inline]
-pub fn relight(l: Light, error: f32, dark: f32) -> Vec3 {
+pub fn relight(l: Light, error: f32) -> Vec3 {
     if l.weight < 1e-6 {
         return Vec3::ONE;
     }
@@ -217,20 +183,20 @@ pub fn relight(l: Light, error: f32, dark: f32) -> Vec3 {
     let from = (error * (l.squared.sqrt() * inverse)) * RELIGHT_ERRORS;
     let changed = smooth_step(from, from, root_difference(sampled, history));
     // A share of 1 gives the ratio bit for bit.
-    ratios(sampled, history, dark) * changed + Vec3::splat(1.0 - changed)
+    ratios(sampled, history) * changed + Vec3::splat(1.0 - changed)
 }
 
-/// Difference between a sample and history after a gain, in expected errors. `gate`: of [`Own`].
+/// Difference between a sample and history after a gain, in expected errors.
 #[inline]
-pub fn errors_left(o: Observation, gain: Vec3, gate: f32) -> f32 {
-    root_difference(o.sampled, gain * o.history) / (o.error + gate)
+pub fn errors_left(o: Observation, gain: Vec3) -> f32 {
+    root_difference(o.sampled, gain * o.history) / (o.error + GATE_ERROR)
 }
 
 /// Degree to which history after a gain fits at a sample's own pixel, in \[0, 1\]. It limits the fit of the
 /// neighbourhood: a sample that hit a sparkle, for example, contradicts history even where its neighbours agree.
 #[inline]
-pub fn own_fit(own: Observation, gain: Vec3, gate: f32) -> f32 {
-    fit(errors_left(own, gain, gate), own.sure)
+pub fn own_fit(own: Observation, gain: Vec3) -> f32 {
+    fit(errors_left(own, gain), own.sure)
 }
 
 /// Degree to which history fits the samples, in \[0, 1\], from the mean of [`errors_left`]. `sure`: confidence in that

@@ -5,6 +5,7 @@ use super::view::{Samples, View};
 use crate::kernel::antialias::DOUBTFUL;
 use crate::kernel::color::luma;
 use crate::kernel::kept::{pack_color, unpack_color};
+use crate::kernel::matched::root_difference;
 use crate::kernel::noise::expected_noise;
 use crate::kernel::pack::{half_bits, half_value};
 use crate::kernel::sparse::{Observation, expected_error, lod_confidence, noisy_lod_confidence};
@@ -40,7 +41,8 @@ impl View<'_> {
             return None;
         }
         let moved = self.antialiases || has_moved(surface.motion, history.nearest.place_px);
-        let mut error = expected_error(history.lod, history.range, moved);
+        let [low, high] = history.range;
+        let mut error = expected_error(history.lod, root_difference(low, high), moved);
         let mut sure = lod_confidence(history.lod);
         if self.is_noisy() {
             let around = luma(history.color);

@@ -263,7 +263,7 @@ fn a_wrong_reconstruction_is_caught() {
         // Light: neighbours beyond the edge, of other surfaces, and without observation; gains that fit worse.
         ("if !(inside && same && other.error >= 0.0) {", "if !(same && other.error >= 0.0) {"),
         ("if !(inside && same && other.error >= 0.0) {", "if !(inside && same) {"),
-        ("without += errors_left(near.observation, vec3<f32>(1.0), measure.gate) * near.weight;", ""),
+        ("without += errors_left(near.observation, vec3<f32>(1.0)) * near.weight;", ""),
         // Pixels: other weights, alpha aside; what is stored.
         ("max(share, LEAST_SHARE) * select(OTHER_SURFACE, 1.0, same)", "max(share, LEAST_SHARE)"),
         ("select(mean.xyz, own.color, is_own)", "mean.xyz"),
@@ -281,10 +281,8 @@ fn a_wrong_fit_at_a_samples_own_pixel_is_caught() {
     let mut settings = settings(MethodKind::Smr);
     (settings.foveation.rate_mid, settings.foveation.rate_far) = (2, 2);
     let picture = noise(SIZE, "a sparkle");
-    let planted = [
-        ("select(1.0, unpack_lit(own_words).own_fit, is_own)", "1.0"),
-        ("return own_fit(own, gains, gate);", "return 1.0;"),
-    ];
+    let planted =
+        [("select(1.0, unpack_lit(own_words).own_fit, is_own)", "1.0"), ("return own_fit(own, gains);", "return 1.0;")];
     all_caught_in_samples(ContextDesc::new(SIZE), settings, 12, &planted, |index, _| {
         // Sampled in frame 5, and again in frame 9.
         let is_bright = |px| index == 5 && px == [51, 31];

@@ -115,7 +115,6 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("matched::past_contrast", "past_roots(next_level)", "next_level"),
     ("matched::light_unit", "then * exposure", "then"),
     ("matched::light_unit", ", LEAST_LIGHT)", ", 0.0)"),
-    ("matched::root_unit", ", LEAST_ROOT)", ", 0.0)"),
     ("matched::moves_alike", "abs(other.y - own.y) <= within", "abs(other.y - own.x) <= within"),
     ("matched::reuse_weight", "(history_lod - lod) / COARSER_WIDTH", "(lod - history_lod) / COARSER_WIDTH"),
     ("matched::gain", "(observed + DARK) / (predicted + DARK)", "(predicted + DARK) / (observed + DARK)"),
@@ -174,9 +173,7 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("kept::interpolate", "distance <= EXACT_PX", "distance < 0.0"),
     ("sparse::candidate_level", "1.0 + 2.0 * px", "1.0 + 2.01 * px"),
     ("sparse::expected_error", "by_motion + CONTRAST_ERROR * coarse", "by_motion + CONTRAST_ERROR"),
-    ("sparse::expected_error", "least * root_unit(high)", "least"),
-    ("sparse::agreement", "AGREE_ERRORS * other.error + own.agree", "AGREE_ERRORS * other.error"),
-    ("sparse::own_light", "GATE_ERROR * root", "GATE_ERROR"),
+    ("sparse::agreement", "own.error + other.error", "own.error + own.error"),
     (
         "sparse::relight",
         "(sqrt(l.squared) * inverse)) * RELIGHT_ERRORS",

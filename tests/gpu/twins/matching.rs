@@ -176,10 +176,6 @@ pub const PROBES: &[Probe] = &[
             push(row, &[d.range(0.1, 10.0)]);
         })
     }),
-    probe!(matched::root_unit, |rows| {
-        let c = channels();
-        rows.mixed(&[&c, &c, &c]).random(|d, row| row.extend((0..3).map(|_| scaled(d, -12, 8))))
-    }),
     probe!(matched::moves_alike, |rows| {
         let v = [finite(), around(&[0.5, -0.5, 16.0])].concat();
         rows.mixed(&[&v, &v, &v, &v]).random(|d, row| {

@@ -25,7 +25,6 @@ shape!(Around {
 });
 shape!(kept::Interpolated { color: Vec3, lod: f32, range: [Vec3; 2], nearest: kept::Kept });
 shape!(sparse::Observation { sampled: Vec3, history: Vec3, error: f32, sure: f32 });
-shape!(sparse::Own { ratios: Vec3, agree: f32, gate: f32, dark: f32 });
 shape!(sparse::Light { sampled: Vec3, history: Vec3, error: f32, weight: f32, squared: f32, spatial: f32 });
 shape!(sparse::Lit { gain as "gains": Vec3, fit: f32, own_fit: f32, is_own: bool, disparity: f32 });
 shape!(Reconstruction {
@@ -186,43 +185,22 @@ pub const PROBES: &[Probe] = &[
     ),
     probe!(sparse::candidate_level, |rows| rows
         .random(|d, row| row.extend([range(d, 0.0, 200.0), range(d, 0.0, 8.0)]))),
-    probe!(
-        sparse::expected_error,
-        |lod: f32, low: Vec3, high: Vec3, moved: bool| sparse::expected_error(lod, [low, high], moved),
-        "expected_error($0, $1, $2, $3)",
-        |rows| rows.random(|d, row| {
-            row.push(range(d, 0.0, 3.0));
-            let (low, more) = (color(d), color(d));
-            row.extend(low);
-            row.extend((0..3).map(|i| (f32::from_bits(low[i]) + f32::from_bits(more[i])).to_bits()));
-            row.push(d.bits() % 2);
-        })
-    ),
+    probe!(sparse::expected_error, |rows| rows
+        .random(|d, row| { row.extend([range(d, 0.0, 3.0), range(d, 0.0, 100.0), d.bits() % 2]) })),
     probe!(sparse::lod_confidence, |rows| rows.random(|d, row| row.push(range(d, 0.0, 3.0)))),
     probe!(sparse::noisy_lod_confidence, |rows| rows.random(|d, row| {
         row.extend([range(d, 0.0, 3.0), range(d, 1.0, 80.0), range(d, 0.0, 0.01), range(d, 0.0, 2.0)]);
     })),
-    probe!(sparse::ratio, |rows| rows.random(|d, row| {
-        row.extend([scaled(d, -14, 6), scaled(d, -14, 6), scaled(d, -22, 0)]);
-    })),
+    probe!(sparse::ratio, |rows| rows.random(|d, row| row.extend([scaled(d, -14, 6), scaled(d, -14, 6)]))),
     probe!(sparse::ratios, |rows| rows.random(|d, row| {
         row.extend(color(d));
         row.extend(color(d));
-        row.push(scaled(d, -22, 0));
     })),
-    probe!(sparse::own_light, |rows| rows.random(|d, row| push_observation(d, row))),
-    probe!(
-        sparse::agreement,
-        |own: sparse::Observation, other: sparse::Observation, spatial: f32| {
-            sparse::agreement(sparse::own_light(own), other, spatial)
-        },
-        "agreement(own_light($0), $1, $2)",
-        |rows| rows.random(|d, row| {
-            push_observation(d, row);
-            push_observation(d, row);
-            row.push(range(d, 0.0, 4.0));
-        })
-    ),
+    probe!(sparse::agreement, |rows| rows.random(|d, row| {
+        push_observation(d, row);
+        push_observation(d, row);
+        row.push(range(d, 0.0, 4.0));
+    })),
     probe!(sparse::neighbour_weight, |rows| rows.cross(&[&[!0, 0, 1], &[!0, 0, 1]])),
     probe!(sparse::add_light, |rows| rows.random(|d, row| {
         push_light(d, row);
@@ -231,24 +209,19 @@ pub const PROBES: &[Probe] = &[
     })),
     probe!(
         sparse::relight,
-        |l: sparse::Light, dark: f32| sparse::relight(l, sparse::mean_error(l), dark),
-        "let l = $0; relight(l, mean_error(l), $1)",
-        |rows| rows.random(|d, row| {
-            push_light(d, row);
-            row.push(scaled(d, -22, 0));
-        })
+        |l: sparse::Light| sparse::relight(l, sparse::mean_error(l)),
+        "let l = $0; relight(l, mean_error(l))",
+        |rows| rows.random(push_light)
     ),
     probe!(sparse::mean_error, |rows| rows.random(push_light)),
     probe!(sparse::errors_left, |rows| rows.random(|d, row| {
         push_observation(d, row);
         row.extend([0; 3].map(|_| range(d, 0.2, 5.0)));
-        row.push(range(d, 0.01, 2.0));
     })),
     probe!(sparse::fit, |rows| rows.random(|d, row| row.extend([range(d, 0.0, 10.0), range(d, 0.0, 1.0)]))),
     probe!(sparse::own_fit, |rows| rows.random(|d, row| {
         push_observation(d, row);
         row.extend([0; 3].map(|_| range(d, 0.2, 5.0)));
-        row.push(range(d, 0.01, 2.0));
     })),
     probe!(sparse::mean_fit, |rows| {
         rows.random(|d, row| {

@@ -511,6 +511,6 @@ pub const ROWS: [Row; 106] = [
         BOTH,
     )
     .but(
-        "smr, on frames that are not noisy or antialiased. Sparse frames: powers of four bit for bit, and 39 % of the light left at any scale, since samples contradict history only where they lie. wrs and noise compare colors by constants for white at about 1.",
+        "smr, on frames that are neither sparse nor noisy. wrs, sparse frames and noise compare colors by constants for white at about 1.",
     ),
 ];
