@@ -56,7 +56,7 @@ run() {
 
     if [ -x "$measure" ]; then
         for size in 1920x1080 3840x2160; do
-            for scene in courtyard cheap worst both; do
+            for scene in courtyard cheap both; do
                 step "Bevy: $scene, $size"
                 for mode in full prepass sparse; do
                     limited 40 "$measure" "$scene@$size" $mode fixtures/scanpath_viewing.csv 60 | tail -n 1 | tee -a "$work/bevy.txt"
