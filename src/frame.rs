@@ -473,7 +473,7 @@ pub struct FrameInputs<'a, E: Executor> {
     /// or only the camera ([`MotionConvention::without_camera`]).
     pub motion: Option<E::Vectors<'a>>,
     /// Trust mask: confidence in history, 0 to 1. 0 rejects history; use it for content that changes without motion
-    /// vectors (video panels, particles, reflections). It is about 1 minus FSR2's reactive mask. Values beyond 0 and 1
+    /// vectors (video panels, particles, reflections). 1 minus `reactive`. Values beyond 0 and 1
     /// are clamped; NaN counts as 0. On a GPU any float or normalised format. `None`: 1 everywhere.
     pub trust: Option<E::Scalars<'a>>,
     /// Reactive mask as FSR2 has it: 0 to 1, 1 rejects history. The trust is 1 minus this mask, so that a frame with

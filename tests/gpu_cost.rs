@@ -20,18 +20,7 @@ fn clock_ns(is_software: bool) -> f64 {
 fn h60_a_turn_costs_no_more_than_any_other_frame() {
     let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
     let is_software = afterimage_testing::gpu::adapter().unwrap().get_info().device_type == wgpu::DeviceType::Cpu;
-    let texture = |format, usage| {
-        device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage,
-            view_formats: &[],
-        })
-    };
+    let texture = |format, usage| frame_texture(&device, format, usage);
     let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
     let [color, depth, motion] = [TextureFormat::Rgba32Float, TextureFormat::R32Float, TextureFormat::Rg32Float]
         .map(|format| texture(format, read));

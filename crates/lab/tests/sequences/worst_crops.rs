@@ -40,17 +40,11 @@ fn worst<const N: usize>(scene: &str, filter: Filter, rates: [u32; 2], runs: [Sm
 
 #[test]
 fn h85_no_crop_of_smr_is_visibly_worse_than_the_foveated_frame() {
-    let (mut least, mut coarse) = (f64::INFINITY, 0.0);
+    let mut least = f64::INFINITY;
     for scene in ["still", "lateral", "turn", "walk", "light-step", "spin"] {
         for rates in [[2, 4], [4, 8], [8, 16]] {
             let [smr] = worst(scene, Filter::Mip, rates, [Smr::default()]);
             println!("{scene} {rates:?}: {smr:?}");
-            if scene == "spin" && rates[0] == 8 {
-                // Misses the law: see the row. Measured: -0.67.
-                assert!(smr.delta_db > -0.8, "{smr:?}");
-                coarse = smr.delta_db;
-                continue;
-            }
             assert!(smr.delta_db > -0.3, "{scene} {rates:?}: {smr:?}");
             least = least.min(smr.delta_db);
         }
@@ -66,7 +60,7 @@ fn h85_no_crop_of_smr_is_visibly_worse_than_the_foveated_frame() {
     holds!(
         "H85",
         Cpu,
-        "6 scenes at rates 2/4, 4/8, 8/16: least {least:.2} dB, but spin at 8/16 {coarse:.2} and with point samples {:.1}; with an open gate {:.1}",
+        "6 scenes at rates 2/4, 4/8, 8/16: least {least:.2} dB; spin with point samples {:.1}, with an open gate {:.1}",
         blocks.delta_db,
         open.delta_db
     );
