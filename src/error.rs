@@ -241,6 +241,8 @@ pub enum FrameValue {
     Exposure,
     /// [`Smr::repair`](crate::Smr::repair), which planning needs.
     Repair,
+    /// Plan of a frame that is shaded by quads: [`Filter::Quads`](crate::Filter::Quads).
+    Plan,
     /// A rectangle of a texture that is larger than the view.
     Region {
         /// Name of the input or output.
@@ -266,6 +268,7 @@ impl Display for FrameValue {
             Self::Repaired => "repaired",
             Self::Exposure => "exposure ratio",
             Self::Repair => "Smr::repair",
+            Self::Plan => "plan",
             Self::Region { input } => input,
             Self::DebugView => "debug view",
         })

@@ -27,11 +27,15 @@ pub enum Filter {
     /// ([`Foveation::lattices`]): renderers that draw small, jittered views. Regions are rectangles, without blends.
     /// Frames need [`ViewFrame::lattices`](crate::ViewFrame::lattices).
     Sparse,
+    /// Quads of 2x2 pixels of one full-rate view, which the post-process chooses before shading (`plan` of either
+    /// executor): all in the fovea, one quad a block of an even pattern that moves from frame to frame, and a
+    /// [`budget`](Foveation::budget) of quads where history lacks something. Depth and motion are given at every pixel.
+    Quads,
 }
 
 impl Filter {
     /// All filters, in the order of the command-line tool.
-    pub const ALL: [Self; 5] = [Self::Mip, Self::Gauss, Self::Block, Self::Sparse, Self::Off];
+    pub const ALL: [Self; 6] = [Self::Mip, Self::Gauss, Self::Block, Self::Sparse, Self::Quads, Self::Off];
 
     /// Short name in lower case, such as `mip`.
     pub fn name(self) -> &'static str {
@@ -49,6 +53,7 @@ impl Filter {
             Self::Gauss => ("gauss", "Gaussian blur that grows with eccentricity"),
             Self::Block => ("block", "One point sample per block"),
             Self::Sparse => ("sparse", "One point sample per block that moves every frame, in regions without blends"),
+            Self::Quads => ("quads", "Quads of 2x2 pixels of a full-rate view that the post-process chooses"),
             Self::Off => ("off", "Full rate everywhere"),
         }
     }
@@ -94,17 +99,35 @@ pub struct Foveation {
     /// Block edge in the periphery, outside the middle region, in pixels: a power of two from `rate_mid` to
     /// [`MAX_RATE`](Self::MAX_RATE). Default 16.
     pub rate_far: u32,
+    /// With [`Filter::Quads`]: share of the pixels that smr shades by need in a frame, beside the fovea and the even
+    /// pattern, 0 to 1. Default 0.025.
+    pub budget: f32,
 }
 
 impl Default for Foveation {
     fn default() -> Self {
-        Self { filter: Filter::Mip, fovea_deg: 5.0, mid_deg: 15.0, blend_deg: 1.0, rate_mid: 8, rate_far: 16 }
+        Self { filter: Filter::Mip, fovea_deg: 5.0, mid_deg: 15.0, blend_deg: 1.0, rate_mid: 8, rate_far: 16, budget: 0.025 }
     }
 }
 
 impl Foveation {
     /// Largest block edge, in pixels.
     pub const MAX_RATE: u32 = 256;
+
+    /// Largest block edge with [`Filter::Quads`], in pixels.
+    pub const MAX_QUADS_RATE: u32 = 8;
+
+    /// Foveation by quads: all within `fovea_deg` (a diameter in degrees), beyond it one quad in a block of 4x4 pixels
+    /// within 15 degrees and one in two blocks of 8x8 pixels in the periphery, and the default budget.
+    ///
+    /// ```
+    /// use afterimage::Foveation;
+    ///
+    /// assert!(Foveation::quads().validate().is_ok());
+    /// ```
+    pub fn quads() -> Self {
+        Self { filter: Filter::Quads, rate_mid: 4, rate_far: 8, ..Self::default() }
+    }
 
     /// Checks the range of every field.
     ///
@@ -124,16 +147,19 @@ impl Foveation {
                 ),
             });
         }
-        for (setting, rate, least) in [("rate_mid", self.rate_mid, 1), ("rate_far", self.rate_far, self.rate_mid)] {
-            if !rate.is_power_of_two() || rate < least || rate > Self::MAX_RATE {
+        let [smallest, largest] = if self.filter == Filter::Quads { [2, Self::MAX_QUADS_RATE] } else { [1, Self::MAX_RATE] };
+        for (setting, rate, least) in
+            [("rate_mid", self.rate_mid, smallest), ("rate_far", self.rate_far, self.rate_mid.max(smallest))]
+        {
+            if !rate.is_power_of_two() || rate < least || rate > largest {
                 return Err(SettingsError {
                     setting,
                     found: rate.to_string(),
-                    expected: format!("a power of two from {least} to {}", Self::MAX_RATE),
+                    expected: format!("a power of two from {least} to {largest}"),
                 });
             }
         }
-        Ok(())
+        check("budget", self.budget, 0.0..=1.0, "of the pixels")
     }
 
     /// Coarsest level of detail: log2 of `rate_far`.
@@ -174,7 +200,7 @@ impl Foveation {
         match self.filter {
             Filter::Off => 0.0,
             Filter::Gauss => foveate::blur_lod(e_deg, fovea, mid, self.sigma_mid_px(), self.sigma_far_px()),
-            Filter::Mip | Filter::Block | Filter::Sparse => {
+            Filter::Mip | Filter::Block | Filter::Sparse | Filter::Quads => {
                 foveate::region_lod(e_deg, fovea, mid, self.blend_deg, self.lod_mid(), self.lod_far())
             }
         }
@@ -187,7 +213,7 @@ impl Foveation {
         match self.filter {
             Filter::Off => [0.0, 0.0],
             Filter::Gauss => [self.sigma_mid_px(), self.sigma_far_px()],
-            Filter::Mip | Filter::Block | Filter::Sparse => [self.lod_mid(), self.lod_far()],
+            Filter::Mip | Filter::Block | Filter::Sparse | Filter::Quads => [self.lod_mid(), self.lod_far()],
         }
     }
 }

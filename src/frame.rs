@@ -595,27 +595,40 @@ impl<'a, E: Executor> FrameInputs<'a, E> {
             let expected = "depth and motion at samples for all views, or at every pixel for all";
             return Err(FrameError::Value { value: FrameValue::Lattices, view, found, expected });
         }
-        if is_sparse && self.lod.is_some() {
-            let (found, expected) = ("given".into(), "None: the lattices say how coarse a sparse frame is");
+        let is_sampled = is_sparse || settings.foveation.filter == Filter::Quads;
+        if is_sampled && self.lod.is_some() {
+            let (found, expected) = ("given".into(), "None: the places of the samples say how coarse the frame is");
             return Err(FrameError::Value { value: FrameValue::Lod, view: 0, found, expected });
         }
         Ok(())
     }
 
-    /// Checks the values of a frame whose repair is to be planned, and returns the repair settings.
-    pub(crate) fn check_plan(&self, desc: &ContextDesc) -> Result<Repair, FrameError> {
-        let Some(repair) = smr_sparse_repair(&desc.settings) else {
-            let expected = "given, to plan repairs, and Filter::Sparse in Settings::foveation";
-            return Err(FrameError::Value { value: FrameValue::Repair, view: 0, found: "None".into(), expected });
+    /// Checks the values of a frame whose quads are to be planned.
+    pub(crate) fn check_plan(&self, desc: &ContextDesc) -> Result<Planning, FrameError> {
+        let planning = match smr_sparse_repair(&desc.settings) {
+            _ if desc.settings.foveation.filter == Filter::Quads => Planning::Quads,
+            Some(repair) => Planning::Repair(repair),
+            None => {
+                let expected = "given, to plan repairs of Filter::Sparse; or set Filter::Quads in Settings::foveation";
+                return Err(FrameError::Value { value: FrameValue::Repair, view: 0, found: "None".into(), expected });
+            }
         };
         self.check_facts(desc)?;
-        Ok(repair)
+        Ok(planning)
     }
 
-    /// Rejects repaired samples of a frame for which no repair was planned. `planned`: index of the frame that was
-    /// planned.
-    pub(crate) fn check_planned(&self, planned: Option<u64>) -> Result<(), FrameError> {
-        if self.repaired.is_none() || planned == Some(self.index) {
+    /// Rejects a frame that is shaded by quads, or has repaired samples, for which nothing was planned. `planned`:
+    /// index of the frame that was planned.
+    pub(crate) fn check_planned(&self, desc: &ContextDesc, planned: Option<u64>) -> Result<(), FrameError> {
+        if planned == Some(self.index) {
+            return Ok(());
+        }
+        if desc.settings.foveation.filter == Filter::Quads {
+            let found = planned.map_or("missing".into(), |index| format!("that of frame {index}"));
+            let expected = "the plan of this frame: call plan before the frame is shaded";
+            return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
+        }
+        if self.repaired.is_none() {
             return Ok(());
         }
         let expected = "None, or that plan was called with this frame";
@@ -640,6 +653,15 @@ impl<'a, E: Executor> FrameInputs<'a, E> {
         };
         Err(FrameError::Value { value: FrameValue::Noise, view: 0, found: found.into(), expected })
     }
+}
+
+/// What a plan chooses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Planning {
+    /// Quads to shade.
+    Quads,
+    /// Quads to repair, beside the lattices of a sparse frame.
+    Repair(Repair),
 }
 
 /// Description of a context: size and number of views, conventions of its inputs, and settings. Size and settings can

@@ -2,14 +2,19 @@
 //! are linear interpolations of the finite ones. Twin: `shaders/pass/fill_pass.wgsl`.
 
 use super::Frame;
+use super::sparse_pass::Quads;
 use crate::image::Image;
 use crate::kernel::lattice::{SampleMean, add_sample, point_weight, sample_mean};
 use crate::kernel::sanitize;
 use crate::uniforms::{LatticeUniforms, ViewLattices};
 use glam::Vec3;
 
-/// Filled colors of all views; empty unless the frame is sparse.
-pub(super) fn filled(frame: &Frame<'_>, size_px: [u32; 2]) -> Vec<Image<[f32; 3]>> {
+/// Filled colors of all views; empty unless the frame is sparse. `quads`: of a frame shaded by quads, one a view.
+pub(super) fn filled(frame: &Frame<'_>, size_px: [u32; 2], quads: &[Quads]) -> Vec<Image<[f32; 3]>> {
+    if !quads.is_empty() {
+        let views = quads.iter().zip(frame.color);
+        return views.map(|(quads, color)| Image::from_fn_parallel(size_px, |px| quads.filled(color, px))).collect();
+    }
     let views = frame.views.iter().zip(frame.color);
     let filled = views.filter_map(|(view, color)| {
         let lattices = LatticeUniforms::of_view(view.lattices.as_ref()?, size_px);

@@ -101,6 +101,8 @@ struct Pass<'a, 'f> {
     frame: &'a Frame<'f>,
     /// Masks of the repaired pixels, one a view; empty if the frame repairs no pixel.
     repaired: &'a [Image<bool>],
+    /// Shaded quads, one a view; empty unless the frame is shaded by quads.
+    quads: &'a [sparse_pass::Quads],
     output: &'a mut [Image<[f32; 3]>],
     traces: Option<&'a mut [Image<PixelTrace>]>,
 }
@@ -238,17 +240,18 @@ impl CpuAfterimage {
         traces: Option<&mut [Image<PixelTrace>]>,
     ) -> Result<FrameStats, FrameError> {
         check_inputs(&self.desc, frame)?;
-        let repaired = repair::masks(self.planned.as_ref(), frame)?;
+        let repaired = repair::masks(&self.desc, self.planned.as_ref(), frame)?;
+        let quads = self.planned.as_ref().map_or(&[][..], |planned| &planned.quads);
         check_sizes(&self.desc, "output", Some(output.iter().map(Image::size)))?;
         check_sizes(&self.desc, "traces", traces.as_deref().map(|t| t.iter().map(Image::size)))?;
         let fills = self.desc.settings.stages().contains(&Stage::Fill);
-        let filled = if fills { fill::filled(frame, self.desc.size_px) } else { vec![] };
+        let filled = if fills { fill::filled(frame, self.desc.size_px, quads) } else { vec![] };
         let filled: Vec<_> = filled.iter().collect();
         let whole = frame.with_color(if filled.is_empty() { frame.color } else { &filled });
         let geometry = fill_geometry::filled(&self.desc, frame, &self.history);
         let history = &mut self.history;
         let stats = fill_geometry::with_filled(geometry.as_deref(), &self.desc, &whole, |desc, frame| {
-            let pass = Pass { desc, history, frame, repaired, output, traces };
+            let pass = Pass { desc, history, frame, repaired, quads, output, traces };
             match desc.settings.algorithm() {
                 Algorithm::None => none_pass::run(pass),
                 Algorithm::Taa => surface_pass::run(pass, &taa_pass::Taa),

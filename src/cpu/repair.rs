@@ -3,6 +3,7 @@
 
 use super::{CpuAfterimage, Frame, check_geometry, check_sizes, fill_geometry, sparse_pass};
 use crate::error::FrameError;
+use crate::frame::{ContextDesc, Planning};
 use crate::image::Image;
 
 /// Pixels that were chosen for a frame.
@@ -12,6 +13,8 @@ pub(super) struct Planned {
     index: u64,
     /// One mask a view.
     masks: Vec<Image<bool>>,
+    /// The quads of a frame shaded by quads, one a view.
+    pub quads: Vec<sparse_pass::Quads>,
 }
 
 impl CpuAfterimage {
@@ -53,22 +56,34 @@ impl CpuAfterimage {
     /// [`FrameError`] if the settings have no [`repair`](crate::Smr::repair) or the foveation is not
     /// [`Sparse`](crate::Filter::Sparse), and as for `process`.
     pub fn plan(&mut self, frame: &Frame<'_>) -> Result<&[Image<bool>], FrameError> {
-        let repair = frame.check_plan(&self.desc)?;
+        let planning = frame.check_plan(&self.desc)?;
         check_geometry(&self.desc, frame)?;
         check_sizes(&self.desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
         let unshaded = Image::filled([1, 1], [0.0; 3]);
         let colors = vec![&unshaded; frame.views.len()];
         let frame = Frame { noise: None, repaired: None, ..frame.with_color(&colors) };
+        let repair = match planning {
+            Planning::Repair(repair) => repair,
+            Planning::Quads => {
+                let quads = sparse_pass::plan_quads(&self.desc, &self.history, &frame);
+                let masks = quads.iter().map(sparse_pass::Quads::pixels).collect();
+                return Ok(&self.planned.insert(Planned { index: frame.index, masks, quads }).masks);
+            }
+        };
         let geometry = fill_geometry::filled(&self.desc, &frame, &self.history);
         let masks = fill_geometry::with_filled(geometry.as_deref(), &self.desc, &frame, |desc, frame| {
             sparse_pass::plan(desc, &self.history, frame, repair)
         });
-        Ok(&self.planned.insert(Planned { index: frame.index, masks }).masks)
+        Ok(&self.planned.insert(Planned { index: frame.index, masks, quads: vec![] }).masks)
     }
 }
 
 /// Masks of the pixels that a frame repairs, one a view; empty if it repairs no pixel.
-pub(super) fn masks<'a>(planned: Option<&'a Planned>, frame: &Frame<'_>) -> Result<&'a [Image<bool>], FrameError> {
-    frame.check_planned(planned.map(|planned| planned.index))?;
+pub(super) fn masks<'a>(
+    desc: &ContextDesc,
+    planned: Option<&'a Planned>,
+    frame: &Frame<'_>,
+) -> Result<&'a [Image<bool>], FrameError> {
+    frame.check_planned(desc, planned.map(|planned| planned.index))?;
     Ok(planned.filter(|_| frame.repaired.is_some()).map_or(&[], |planned| &planned.masks))
 }

@@ -71,9 +71,10 @@ pub(crate) fn continues<E: Executor>(frame: &FrameInputs<'_, E>) -> bool {
 
 /// Rejects sparse frames, which the rules do not cover yet, and the index of a view that a context does not have.
 pub(crate) fn check_view(desc: &ContextDesc, view: usize) -> Result<(), SettingsError> {
-    if desc.settings.foveation.filter == Filter::Sparse {
+    let filter = desc.settings.foveation.filter;
+    if matches!(filter, Filter::Sparse | Filter::Quads) {
         let expected = "another filter: the doctor does not know sparse frames yet".into();
-        return Err(SettingsError { setting: "foveation filter", found: "sparse".into(), expected });
+        return Err(SettingsError { setting: "foveation filter", found: filter.name().into(), expected });
     }
     if view < desc.view_count as usize {
         return Ok(());

@@ -533,7 +533,7 @@ impl Afterimage {
 
     fn check(&self, device: &Device, frame: &Frame<'_>, target: &Target<'_>) -> Result<(), FrameError> {
         input::check(device, &self.desc, self.output_format, frame, target)?;
-        frame.check_planned(self.repair.as_ref().and_then(|repair| repair.planned))
+        frame.check_planned(&self.desc, self.repair.as_ref().and_then(|repair| repair.planned))
     }
 
     /// Discards the last plan.

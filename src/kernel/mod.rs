@@ -19,6 +19,7 @@ pub mod lens;
 pub mod matched;
 pub mod noise;
 pub mod pack;
+pub mod quads;
 pub mod repair;
 pub mod reproject;
 pub mod resample;

@@ -8,6 +8,7 @@
 
 use super::approx;
 use super::color::luma;
+use super::depth::INVALID_DISPARITY;
 use super::kept::{Kept, pack_color, unpack_color};
 use super::matched::{COARSER_WIDTH, DARK, root_difference, smooth_step};
 use super::noise::{Noise, history_share, noise_after, noise_confidence, noise_visibility};
@@ -246,6 +247,48 @@ pub fn unpack_lit(words: [u32; 2]) -> Lit {
         is_own: words[1] >> 9 & 1 != 0,
         disparity: disparity_value(words[1] >> 16),
     }
+}
+
+/// Estimate of light at a shaded quad of 2x2 pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct QuadLit {
+    /// Factor on history's color.
+    pub gain: Vec3,
+    /// Fit of history after the gain: 0 to 1.
+    pub fit: f32,
+    /// Fit at each pixel: 0 to 1.
+    pub own_fits: [f32; 4],
+    /// Whether a pixel of the quad was compared with history; otherwise only its neighbours were.
+    pub is_own: bool,
+    /// Disparity of each pixel.
+    pub disparities: [f32; 4],
+}
+
+/// Four words: gain ([`pack_color`]); fit in 256ths in bits 0 to 8, `is_own` in bit 9, own fits in 16ths from bit 10 on;
+/// disparities ([`disparity_code`]). Fits of 0 and 1 are exact.
+pub fn pack_quad_lit(l: QuadLit) -> [u32; 4] {
+    let own = |i: usize| ((l.own_fits[i] * 16.0 + 0.5) as u32) << (10 + 5 * i);
+    let codes = |i: usize| disparity_code(l.disparities[i]) | disparity_code(l.disparities[i + 1]) << 16;
+    let fits = (l.fit * 256.0 + 0.5) as u32 | u32::from(l.is_own) << 9 | own(0) | own(1) | own(2) | own(3);
+    [pack_color(l.gain), fits, codes(0), codes(2)]
+}
+
+/// Light at pixel `i` of a quad, without its disparity.
+pub fn quad_lit(words: [u32; 4], i: u32) -> Lit {
+    Lit {
+        gain: unpack_color(words[0]),
+        fit: (words[1] & 511) as f32 * (1.0 / 256.0),
+        own_fit: (words[1] >> (10 + 5 * i) & 31) as f32 * (1.0 / 16.0),
+        is_own: words[1] >> 9 & 1 != 0,
+        disparity: INVALID_DISPARITY,
+    }
+}
+
+/// Word for [`has_code`](super::resample::has_code) of pixel `i` of a quad.
+#[inline]
+pub fn quad_code(words: [u32; 4], i: u32) -> u32 {
+    let pair = words[2 + (i >> 1) as usize];
+    if i & 1 == 0 { pair << 16 } else { pair & 0xffff_0000 }
 }
 
 /// Inputs of [`reconstruct`] for one pixel.

@@ -126,6 +126,7 @@ pub(crate) enum Stage {
 fn whole_frames(settings: &Settings) -> Vec<Stage> {
     match settings.foveation.filter {
         Filter::Sparse => vec![Stage::Fill, Stage::Geometry, Stage::Method],
+        Filter::Quads => vec![Stage::Fill, Stage::Method],
         _ => vec![Stage::Method],
     }
 }
@@ -191,7 +192,7 @@ impl Settings {
     /// The entry of these settings. smr on sparse frames is an algorithm of its own.
     fn entry(&self) -> &'static Entry {
         match self.method {
-            Method::Smr(_) if self.foveation.filter == Filter::Sparse => &smr_sparse::ENTRY,
+            Method::Smr(_) if matches!(self.foveation.filter, Filter::Sparse | Filter::Quads) => &smr_sparse::ENTRY,
             method => method.kind().entry(),
         }
     }

@@ -9,6 +9,7 @@ pub(super) static ENTRY: Entry = Entry {
     algorithm: Algorithm::Taau,
     stages: |settings| match settings.foveation.filter {
         Filter::Sparse => vec![Stage::Geometry, Stage::Method],
+        Filter::Quads => vec![Stage::Fill, Stage::Method],
         _ => vec![Stage::Method],
     },
     history: |_| HistoryLayout::Surfaces { levels: 0, noisy: false },

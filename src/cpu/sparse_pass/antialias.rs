@@ -1,6 +1,7 @@
 //! Antialiasing in the pass for jittered frames: history stores means of samples instead of single samples.
 
 use super::kept_history::Surroundings;
+use super::quads::Quads;
 use super::view::View;
 use crate::kernel::antialias::{
     Averaged, Mean, Near, add_near, average, clip, clipped, kept_mean, may_show, move_together, stands_before,
@@ -56,7 +57,8 @@ impl View<'_> {
             surface = Surroundings { stored: own, mixed: Some([farthest, nearest]), ..surface };
         }
         // Where surfaces move together, a pixel is the mean of both, and samples of either surface belong to it.
-        surface.is_doubtful = doubtful && own >= 0.0 && surface.mixed.is_none();
+        // Depth of quads is that of their samples.
+        surface.is_doubtful = doubtful && own >= 0.0 && surface.mixed.is_none() && self.quads.is_none();
         surface
     }
 
@@ -86,6 +88,9 @@ impl View<'_> {
     /// Sums over the nine samples around a pixel of full rate, whose own sample is usable.
     #[inline(always)]
     fn near(&self, [x, y]: [u32; 2]) -> Near {
+        if let Some(quads) = self.quads {
+            return self.near_in_quads(quads, [x, y]);
+        }
         let lattice = &self.lattices[0];
         let [first, last] = [lattice.first_px, lattice.points];
         let mut near = Near::default();
@@ -95,6 +100,21 @@ impl View<'_> {
             let [u, v] = lattice.texel_of([column, row]);
             let (color, usable) = sanitize::color(Vec3::from(self.inputs.color.at(u as usize, v as usize)));
             if usable {
+                near = add_near(near, color);
+            }
+        }
+        near
+    }
+
+    /// The same for a frame shaded by quads.
+    #[inline(always)]
+    fn near_in_quads(&self, quads: &Quads, [x, y]: [u32; 2]) -> Near {
+        let [width, height] = self.inputs.size;
+        let mut near = Near::default();
+        for tap in 0..9 {
+            let at = [(x + tap % 3).max(1).min(width) - 1, (y + tap / 3).max(1).min(height) - 1];
+            let (color, usable) = self.color_px(at);
+            if usable && quads.is_shaded(at) {
                 near = add_near(near, color);
             }
         }

@@ -62,7 +62,7 @@ impl View<'_> {
 
 /// Weighted sum of squared differences between samples and history, with one more sample added.
 #[inline(always)]
-fn add_scatter(sum: f32, o: Observation, weight: f32) -> f32 {
+pub(super) fn add_scatter(sum: f32, o: Observation, weight: f32) -> f32 {
     let difference = root_difference(o.sampled, o.history).min(1e6);
     sum + (difference * difference) * weight
 }

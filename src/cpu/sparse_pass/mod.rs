@@ -12,21 +12,24 @@ mod light;
 mod observe;
 mod pixel;
 mod plan;
+mod quad_samples;
+mod quads;
 mod view;
 
-pub(super) use plan::plan;
+pub(super) use plan::{plan, plan_quads};
+pub(super) use quads::Quads;
 
 use super::Pass;
 use super::inputs::Inputs;
 use super::surface_pass::{Targets, for_pixels};
 use crate::stats::FrameStats;
 use observe::pack_observation;
-use pixel::LitView;
+use pixel::{Lights, LitView};
 use view::View;
 
 /// Runs the three loops for every view.
 pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
-    let Pass { desc, history, frame, repaired, output, mut traces } = pass;
+    let Pass { desc, history, frame, repaired, quads, output, mut traces } = pass;
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
@@ -35,11 +38,21 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
         let (past, next, next_noise) = history.split_surfaces(i);
         let mut view = View::new(desc, frame, i, inputs, past.words, past.noise);
         view.repaired = frame.repaired.map(|colors| colors[i]).zip(repaired.get(i));
-        let observed = view.for_samples(|lattice, point| pack_observation(view.observe(lattice, point)));
-        let lights = view.for_samples(|lattice, point| view.light(lattice, point, &observed));
+        view.quads = quads.get(i);
         let traces = traces.as_mut().map(|t| &mut t[i]);
         let targets = Targets { surfaces: next, noise: next_noise, output: &mut output[i], traces };
-        stats = stats.add(for_pixels(targets, &LitView { view: &view, lights: &lights }));
+        let of_view = match view.quads {
+            Some(quads) => {
+                let lights = view.light_quads(quads, &view.observe_quads(quads));
+                for_pixels(targets, &LitView { view: &view, lights: Lights::Quads(&lights) })
+            }
+            None => {
+                let observed = view.for_samples(|lattice, point| pack_observation(view.observe(lattice, point)));
+                let lights = view.for_samples(|lattice, point| view.light(lattice, point, &observed));
+                for_pixels(targets, &LitView { view: &view, lights: Lights::Lattices(&lights) })
+            }
+        };
+        stats = stats.add(of_view);
     }
     stats
 }

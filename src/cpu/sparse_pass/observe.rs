@@ -19,14 +19,37 @@ pub(super) fn pack_observation(o: Option<Observation>) -> [u32; 2] {
     }
 }
 
+/// Inverse of [`pack_observation`], with the sample's color.
+#[inline(always)]
+pub(super) fn unpack_observation(words: [u32; 2], sampled: impl FnOnce() -> Vec3) -> Option<Observation> {
+    let error = half_value(words[1]);
+    (error >= 0.0).then(|| Observation {
+        sampled: sampled(),
+        history: unpack_color(words[0]),
+        error,
+        sure: half_value(words[1] >> 16),
+    })
+}
+
 impl View<'_> {
     /// Comparison of a sample with history at its pixel; `None` if either is missing.
     #[inline(always)]
     pub(super) fn observe(&self, lattice: usize, point: [u32; 2]) -> Option<Observation> {
         let lattice = &self.lattices[lattice];
         let (sampled, usable) = self.sampled(lattice, point);
-        let px = lattice.px_of(point);
-        let surface = self.surface(px, lattice.level);
+        self.observe_px(lattice.px_of(point), lattice.level, sampled, usable)
+    }
+
+    /// The same for the sample of a pixel.
+    #[inline(always)]
+    pub(super) fn observe_px(
+        &self,
+        px: [u32; 2],
+        level: u32,
+        sampled: Vec3,
+        usable: bool,
+    ) -> Option<Observation> {
+        let surface = self.surface(px, level);
         if surface.is_doubtful {
             return Some(Observation { sampled, history: Vec3::ZERO, error: DOUBTFUL, sure: 0.0 });
         }
@@ -57,13 +80,7 @@ impl View<'_> {
     pub(super) fn observation(&self, lattice: usize, point: [u32; 2], observed: &[Samples]) -> Option<Observation> {
         let own = &self.lattices[lattice];
         let words = observed[lattice][(point[1] * own.points[0] + point[0]) as usize];
-        let error = half_value(words[1]);
-        (error >= 0.0).then(|| Observation {
-            sampled: self.sampled(own, point).0,
-            history: unpack_color(words[0]),
-            error,
-            sure: half_value(words[1] >> 16),
-        })
+        unpack_observation(words, || self.sampled(own, point).0)
     }
 
     /// Whether a sample may show a surface other than its pixel's.

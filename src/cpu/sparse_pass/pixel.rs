@@ -1,6 +1,7 @@
 //! Reconstruction of pixels from history, and from the samples around them and their light.
 
 use super::kept_history::{Found, Source, has_moved};
+use super::quad_samples::QuadLights;
 use super::view::{NO_NOISE, Samples, View};
 use crate::cpu::surface_pass::{Pixel, ProcessPixel};
 use crate::kernel::approx;
@@ -19,10 +20,17 @@ use crate::stats::FrameStats;
 use crate::uniforms::LatticeUniforms;
 use glam::{Vec2, Vec3};
 
-/// A view, and the light at the samples of its lattices.
+/// A view, and the light at its samples.
 pub(super) struct LitView<'a> {
     pub view: &'a View<'a>,
-    pub lights: &'a [Samples],
+    pub lights: Lights<'a>,
+}
+
+/// Light at the samples of a view.
+#[derive(Clone, Copy)]
+pub(super) enum Lights<'a> {
+    Lattices(&'a [Samples]),
+    Quads(&'a QuadLights),
 }
 
 impl ProcessPixel for LitView<'_> {
@@ -34,13 +42,13 @@ impl ProcessPixel for LitView<'_> {
 
 /// [`codes_between`] of the samples that are interpolated for a pixel with the disparity `disparity`.
 #[inline(always)]
-fn sample_codes(disparity: f32) -> [u32; 2] {
+pub(super) fn sample_codes(disparity: f32) -> [u32; 2] {
     codes_between(disparity, 1.0 - SAMPLE_RELATIVE, 1.0 / (1.0 - SAMPLE_RELATIVE))
 }
 
 /// Squared distance of two pixels along an axis.
 #[inline(always)]
-fn offset_px2(a: u32, b: u32) -> f32 {
+pub(super) fn offset_px2(a: u32, b: u32) -> f32 {
     let offset = a as f32 - b as f32;
     offset * offset
 }
@@ -57,7 +65,7 @@ impl View<'_> {
 
     /// Processes one pixel and counts it in `stats`.
     #[inline(always)]
-    fn pixel(&self, x: u32, y: u32, lights: &[Samples], stats: &mut FrameStats) -> Pixel {
+    fn pixel(&self, x: u32, y: u32, lights: Lights<'_>, stats: &mut FrameStats) -> Pixel {
         let inputs = &self.inputs;
         if !inputs.is_visible(x, y) {
             // Outside the visible area: black, without stored history.
@@ -65,9 +73,14 @@ impl View<'_> {
             return Pixel { output: Vec3::ZERO, surface, noise, trace: PixelTrace::default() };
         }
         let disparity = inputs.disparity(x, y);
-        let index = LatticeUniforms::index_at(&self.lattices, [x, y]);
-        let level = self.lattices[index].level;
-        let mut candidate = self.candidate(index, [x, y], disparity, lights);
+        let level = self.level_at([x, y]);
+        let mut candidate = match (lights, self.quads) {
+            (Lights::Quads(lights), Some(quads)) => self.quad_candidate(quads, [x, y], disparity, lights),
+            (Lights::Lattices(lights), _) => {
+                self.candidate(LatticeUniforms::index_at(&self.lattices, [x, y]), [x, y], disparity, lights)
+            }
+            (Lights::Quads(_), None) => Candidate::NONE,
+        };
         // Pixels of the full-rate lattice always have a sample of their own.
         let repaired = if level > 0 { self.repaired(x, y) } else { None };
         if let Some(color) = repaired {
@@ -231,21 +244,21 @@ impl View<'_> {
 }
 
 /// Candidate of a pixel.
-struct Candidate {
-    color: Vec3,
-    usable: bool,
-    lod: f32,
+pub(super) struct Candidate {
+    pub color: Vec3,
+    pub usable: bool,
+    pub lod: f32,
     /// Smallest and largest color of the samples around the pixel.
-    range: [Vec3; 2],
-    gain: Vec3,
-    fit: f32,
-    noise: Noise,
+    pub range: [Vec3; 2],
+    pub gain: Vec3,
+    pub fit: f32,
+    pub noise: Noise,
     /// Whether the candidate is this pixel's own sample.
-    is_own: bool,
+    pub is_own: bool,
 }
 
 impl Candidate {
-    const NONE: Self = Self {
+    pub const NONE: Self = Self {
         color: Vec3::ZERO,
         usable: false,
         lod: 0.0,
@@ -259,17 +272,17 @@ impl Candidate {
 
 /// Sums over the samples around a pixel.
 #[derive(Default)]
-struct Sums {
-    color: Vec3,
-    weight: f32,
-    gain: Vec3,
-    fit: f32,
-    valid: f32,
+pub(super) struct Sums {
+    pub color: Vec3,
+    pub weight: f32,
+    pub gain: Vec3,
+    pub fit: f32,
+    pub valid: f32,
 }
 
 impl Sums {
     #[inline(always)]
-    fn add(&mut self, color: Vec3, weight: f32, lit: Lit) {
+    pub fn add(&mut self, color: Vec3, weight: f32, lit: Lit) {
         let known = weight * if lit.is_own { 1.0 } else { BY_NEIGHBOURS };
         self.color += color * weight;
         self.weight += weight;

@@ -5,6 +5,7 @@
 //! pixels that are settled. The second chooses the pixels whose quad has at least the smallest key that the budget pays
 //! for.
 
+use super::quads::Quads;
 use super::view::View;
 use crate::cpu::Frame;
 use crate::cpu::history::History;
@@ -29,6 +30,16 @@ pub(in crate::cpu) fn plan(
     let of_view = |i: usize| {
         let inputs = Inputs::new(desc, frame, i, &history.held_after(i, &frame.views[i]), history.is_filled());
         View::new(desc, frame, i, inputs, history.kept(i), &[]).plan(repair)
+    };
+    (0..frame.views.len()).map(of_view).collect()
+}
+
+/// Quads to shade, view by view.
+pub(in crate::cpu) fn plan_quads(desc: &ContextDesc, history: &History, frame: &Frame<'_>) -> Vec<Quads> {
+    let of_view = |i: usize| {
+        let inputs = Inputs::new(desc, frame, i, &history.held_after(i, &frame.views[i]), history.is_filled());
+        let foveation = &desc.settings.foveation;
+        View::new(desc, frame, i, inputs, history.kept(i), &[]).plan_quads(foveation, frame.index)
     };
     (0..frame.views.len()).map(of_view).collect()
 }

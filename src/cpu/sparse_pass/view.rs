@@ -1,6 +1,7 @@
 //! Inputs, history and lattices of a view, for the loops over its samples and pixels.
 
 use crate::cpu::Frame;
+use super::quads::Quads;
 use crate::cpu::inputs::Inputs;
 use crate::frame::ContextDesc;
 use crate::image::Image;
@@ -32,6 +33,8 @@ pub(super) struct View<'a> {
     pub frame_low: u32,
     /// Samples of repaired pixels, and the mask of these pixels.
     pub repaired: Option<(&'a Image<[f32; 3]>, &'a Image<bool>)>,
+    /// Shaded quads, of a frame shaded by quads. Such a frame has no lattices.
+    pub quads: Option<&'a Quads>,
 }
 
 impl<'a> View<'a> {
@@ -44,17 +47,17 @@ impl<'a> View<'a> {
         words: &'a [[u32; 2]],
         noise: &'a [u32],
     ) -> Self {
-        let lattices = frame.views[index].lattices.as_ref().expect("the frame was checked to have lattices");
         Self {
             inputs,
             words,
             noise,
-            lattices: LatticeUniforms::of_view(lattices, desc.size_px),
+            lattices: LatticeUniforms::of_view_or_full(frame.views[index].lattices.as_ref(), desc.size_px),
             accumulate: desc.settings.method.smr().accumulate,
             relights: crate::method::smr_sparse_relights(&desc.settings),
             antialiases: crate::method::smr_sparse_antialiases(&desc.settings),
             frame_low: frame.index as u32,
             repaired: None,
+            quads: None,
         }
     }
 }
@@ -85,6 +88,15 @@ impl View<'_> {
     #[inline(always)]
     pub fn sample_noise(&self, [x, y]: [u32; 2]) -> Noise {
         self.inputs.noise(x, y).filter(|_| self.is_noisy()).unwrap_or(NO_NOISE)
+    }
+
+    /// log2 of the distance of samples in pixels, where a pixel lies.
+    #[inline(always)]
+    pub fn level_at(&self, px: [u32; 2]) -> u32 {
+        match self.quads {
+            Some(quads) => quads.level_at(px),
+            None => self.lattices[LatticeUniforms::index_at(&self.lattices, px)].level,
+        }
     }
 
     /// Whether two disparities of this frame can belong to one surface.

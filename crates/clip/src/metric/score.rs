@@ -140,6 +140,13 @@ impl Scorer {
         Self { skip_ssim: true, ..Self::default() }
     }
 
+    /// Forgets the scores so far: the next frame continues the clip, as the first that counts.
+    pub fn restart(&mut self) {
+        self.video.restart();
+        let (video, luma_error) = (std::mem::take(&mut self.video), self.luma_error.take());
+        *self = Self { video, luma_error, skip_ssim: self.skip_ssim, ..Self::default() };
+    }
+
     /// Adds a frame: its reference, the method's sRGB-encoded output, correspondence to the previous frame, and
     /// eccentricities in degrees. Returns the frame's own errors.
     ///

@@ -51,6 +51,11 @@ impl TestVideo {
         score
     }
 
+    /// Forgets the scores of the frames so far, but not the temporal filters' state: the next frame continues the video.
+    pub fn restart(&mut self) {
+        self.frames.clear();
+    }
+
     /// Score of the frames so far; `None` before the first.
     pub fn score(&self) -> Option<VideoScore> {
         pool::video_score(&self.frames)

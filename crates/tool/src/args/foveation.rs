@@ -1,6 +1,6 @@
 //! Options of the foveation simulator.
 
-use super::number::parse_scale;
+use super::number::{parse_percent, parse_scale};
 use super::{Named, by_name};
 use crate::failure::Failure;
 use afterimage::{Filter, Foveation, Method, Settings};
@@ -26,12 +26,16 @@ pub struct FoveationArgs {
     /// Width of the linear blend outside each radius, degrees
     #[arg(long, default_value_t = 1.0, value_name = "DEG")]
     pub blend: f32,
-    /// Block edge in the middle region, pixels, a power of two
-    #[arg(long, default_value_t = 8, value_name = "N")]
-    pub rate_mid: u32,
-    /// Block edge beyond the middle region, pixels, a power of two
-    #[arg(long, default_value_t = 16, value_name = "N")]
-    pub rate_far: u32,
+    /// Block edge in the middle region, pixels, a power of two; quads: 2 to 8; default: 8, for quads 4
+    #[arg(long, value_name = "N")]
+    pub rate_mid: Option<u32>,
+    /// Block edge beyond the middle region, pixels, a power of two; quads: 2 to 8; default: 16, for quads 8
+    #[arg(long, value_name = "N")]
+    pub rate_far: Option<u32>,
+    /// With --foveation quads: pixels a frame that smr shades by need, beside the even pattern, percent, 0 to 100;
+    /// default: 2.5
+    #[arg(long, value_parser = parse_percent, value_name = "PERCENT")]
+    pub budget: Option<f32>,
     /// Side of the pixels of --foveation uniform, in pixels of the full-rate frame, 1 to 256; need not be whole;
     /// default: 2
     #[arg(long, value_parser = parse_scale, value_name = "S")]
@@ -74,7 +78,7 @@ impl FoveationArgs {
     pub fn with_defaults(self, is_sparse: bool, is_rendered: bool) -> Self {
         if self.is_jittered() && self.filter() == FilterName::Of(Filter::Off) {
             let filter = Some(FilterName::Of(Filter::Sparse));
-            let sparse = Self { filter, fovea: 0.0, mid: 0.0, rate_mid: 1, rate_far: 1, ..self };
+            let sparse = Self { filter, fovea: 0.0, mid: 0.0, rate_mid: Some(1), rate_far: Some(1), ..self };
             return sparse.with_defaults(is_sparse, is_rendered);
         }
         let filter = FilterName::Of(if is_sparse { Filter::Sparse } else { Filter::Mip });
@@ -99,7 +103,8 @@ impl FoveationArgs {
     /// The settings, with history that is antialiased where frames are jittered.
     pub fn antialiased(&self, mut settings: Settings) -> Settings {
         if let Method::Smr(smr) = &mut settings.method {
-            smr.antialias = self.is_jittered() && settings.foveation.filter == Filter::Sparse;
+            let has_samples = matches!(settings.foveation.filter, Filter::Sparse | Filter::Quads);
+            smr.antialias = self.is_jittered() && has_samples;
         }
         settings
     }
@@ -111,7 +116,7 @@ impl FoveationArgs {
 
     /// The sampling pattern whose lattices are those of `--foveation sparse`, with `spp` paths a point.
     pub fn regions(&self, spp: u32) -> Result<Sampling, Failure> {
-        let blocks = [self.rate_mid, self.rate_far];
+        let blocks = self.rates();
         let regions =
             Regions { samples: [spp; 3], blocks, diameters_deg: [self.fovea, self.mid], ..Regions::default() };
         let sampling = Sampling::Regions(regions);
@@ -129,6 +134,7 @@ impl FoveationArgs {
             let no_region = Foveation { fovea_deg: 0.0, mid_deg: 0.0, blend_deg: 0.0, ..Foveation::default() };
             return Foveation { rate_mid: rate, rate_far: rate, ..no_region };
         }
+        let [rate_mid, rate_far] = self.rates();
         Foveation {
             filter: match self.filter() {
                 FilterName::Of(filter) => filter,
@@ -138,9 +144,21 @@ impl FoveationArgs {
             fovea_deg: self.fovea,
             mid_deg: self.mid,
             blend_deg: self.blend,
-            rate_mid: self.rate_mid,
-            rate_far: self.rate_far,
+            rate_mid,
+            rate_far,
+            budget: self.budget.map_or(Foveation::default().budget, |percent| percent / 100.0),
         }
+    }
+
+    /// Block edges in the middle region and beyond it.
+    fn rates(&self) -> [u32; 2] {
+        let defaults = if self.is_quads() { Foveation::quads() } else { Foveation::default() };
+        [self.rate_mid.unwrap_or(defaults.rate_mid), self.rate_far.unwrap_or(defaults.rate_far)]
+    }
+
+    /// Whether frames are shaded by quads that methods choose.
+    pub fn is_quads(&self) -> bool {
+        self.filter() == FilterName::Of(Filter::Quads)
     }
 
     /// Side of a pixel of uniform frames, in pixels.
@@ -175,6 +193,9 @@ impl FoveationArgs {
                 "--foveation {name}: renders views of a scene; give a scene (.gltf, .glb, builtin:NAME) with --source raster, \
                  or use another --foveation"
             ));
+        }
+        if self.budget.is_some() && !self.is_quads() {
+            return refuse("--budget: applies to frames shaded by quads only; add --foveation quads".into());
         }
         if self.scale.is_some() && self.filter() != FilterName::Uniform {
             return refuse("--scale: applies to uniform frames only; add --foveation uniform".into());

@@ -28,6 +28,7 @@ fn foveation(foveation: &Foveation) -> String {
         .field("blend_deg", |f| format!("{:?}", f.blend_deg))
         .field("rate_mid", |f| f.rate_mid.to_string())
         .field("rate_far", |f| f.rate_far.to_string())
+        .field("budget", |f| format!("{:?}", f.budget))
         .end()
 }
 

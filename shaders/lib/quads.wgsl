@@ -1,0 +1,111 @@
+//#use rng
+// Twin of src/kernel/quads.rs, which documents the functions.
+
+const FULL: u32 = 0u;
+const MIDDLE: u32 = 1u;
+const PERIPHERY: u32 = 2u;
+const BLOCK: u32 = 4u;
+const REACH: i32 = 8;
+const NOWHERE: u32 = 0x88u;
+const NOTHING: f32 = 60.0;
+const COARSE_CONTRAST: f32 = 4.0;
+const COARSEST: f32 = 2.0;
+const MOST_CONTRAST: f32 = 60.0;
+const FEW_CONTRAST: f32 = 1.0;
+const FEW_ERROR: f32 = 0.4;
+const HALF_DEG: f32 = 20.0;
+const CLUMPED: f32 = 0.0625;
+const HASH_BITS: u32 = 8u;
+const KEYS: u32 = 63u << HASH_BITS;
+const CODE_OF_ONE: i32 = 36;
+
+// quads::region
+fn region(e_deg: f32, fovea_radius_deg: f32, mid_radius_deg: f32) -> u32 {
+    if e_deg < fovea_radius_deg {
+        return FULL;
+    }
+    return select(PERIPHERY, MIDDLE, e_deg < mid_radius_deg);
+}
+
+// quads::in_pattern
+fn in_pattern(x: u32, y: u32, step_quads: u32, offset: vec2<u32>) -> bool {
+    return (x & (step_quads - 1u)) == offset.x && (y & (step_quads - 1u)) == offset.y;
+}
+
+// quads::in_turn
+fn in_turn(x: u32, y: u32, step_quads: u32, turn: u32) -> bool {
+    return (((x / step_quads) ^ (y / step_quads) ^ turn) & 1u) == 0u;
+}
+
+// quads::asked_px
+fn asked_px(x: u32, y: u32, frame_low: u32) -> vec2<u32> {
+    return vec2<u32>(2u * x + ((frame_low ^ x ^ y) & 1u), 2u * y + ((frame_low >> 1u) & 1u));
+}
+
+// quads::need
+fn need(lod: f32, samples: f32, contrast: f32) -> f32 {
+    let limited = min(contrast, MOST_CONTRAST);
+    let coarse = (limited + COARSE_CONTRAST) * min(lod, COARSEST);
+    let single = limited + FEW_CONTRAST;
+    let few = (single * single) * (FEW_ERROR / (samples * (samples + 1.0)));
+    return select(coarse * coarse + few, NOTHING, lod < 0.0);
+}
+
+// quads::acuity
+fn acuity(e_deg: f32) -> f32 {
+    let share = 1.0 / (1.0 + e_deg * (1.0f / HALF_DEG));
+    return share * share;
+}
+
+// quads::share_in_block
+fn share_in_block(needs: vec4<f32>, i: u32) -> f32 {
+    var share = 1.0;
+    for (var other = 0u; other < 4u; other++) {
+        let is_larger = needs[other] > needs[i] || (needs[other] == needs[i] && other < i);
+        share *= select(1.0, CLUMPED, other != i && is_larger);
+    }
+    return share;
+}
+
+// quads::quad_key
+fn quad_key(needed: f32, x: u32, y: u32, frame_low: u32, key: u32) -> u32 {
+    let hash = bits(x, y, frame_low, ~key) >> (32u - HASH_BITS);
+    let halves = i32(bitcast<u32>(needed) >> 22u) - 254 + CODE_OF_ONE;
+    return select(0u, (u32(clamp(halves, 1, 62)) << HASH_BITS) | hash, needed > 0.0);
+}
+
+// quads::quadrant
+fn quadrant(x: i32, y: i32) -> u32 {
+    if x > 0 && y >= 0 {
+        return 0u;
+    }
+    if x <= 0 && y > 0 {
+        return 1u;
+    }
+    return select(3u, 2u, x < 0);
+}
+
+// quads::octant
+fn octant(x: i32, y: i32) -> u32 {
+    let wide = abs(x);
+    let high = abs(y);
+    if 5 * high <= 2 * wide {
+        return select(4u, 0u, x > 0);
+    }
+    if 5 * wide <= 2 * high {
+        return select(6u, 2u, y > 0);
+    }
+    return select(select(5u, 7u, x > 0), select(3u, 1u, x > 0), y > 0);
+}
+
+// quads::neighbour
+fn neighbour(x: i32, y: i32) -> u32 {
+    let inside = x >= -REACH && y >= -REACH && x < REACH && y < REACH;
+    let code = (u32(x * x + y * y) << 8u) | u32(x + REACH) | (u32(y + REACH) << 4u);
+    return select(0xffffffffu, code, inside);
+}
+
+// quads::neighbour_offset
+fn neighbour_offset(code: u32) -> vec2<i32> {
+    return vec2<i32>(vec2<u32>(code & 15u, (code >> 4u) & 15u)) - REACH;
+}

@@ -1,0 +1,216 @@
+//! Samples of shaded quads: their comparison with history, gain and fit around them, and candidates of pixels.
+
+use super::observe::{pack_observation, unpack_observation};
+use super::pixel::{Candidate, Sums, offset_px2, sample_codes};
+use super::quads::{Quads, nearest_px};
+use super::view::{NO_NOISE, Samples, View};
+use crate::kernel::antialias::scattered_error;
+use crate::kernel::depth::INVALID_DISPARITY;
+use crate::kernel::resample::has_code;
+use crate::kernel::sanitize;
+use crate::kernel::sparse::{
+    LIGHT_RELATIVE, Light, OTHER_SURFACE, Observation, QuadLit, add_light, agreement, candidate_level, errors_left, fit,
+    mean_error, own_fit, pack_quad_lit, quad_code, quad_lit, relight,
+};
+use crate::parallel::collect;
+use glam::Vec3;
+
+/// Light of the shaded quads, quad by quad ([`pack_quad_lit`]).
+pub(super) type QuadLights = Vec<[u32; 4]>;
+
+/// Effective number of samples in a quad's four: they lie beside each other, and err alike.
+const SAMPLES_IN_QUAD: f32 = 2.0;
+
+/// Observations around a quad.
+struct Near {
+    observation: Observation,
+    weight: f32,
+    spatial: f32,
+}
+
+impl View<'_> {
+    /// Pixels of a quad inside the frame.
+    #[inline(always)]
+    fn pixels_of(&self, [x, y]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> + use<> {
+        let [width, height] = self.inputs.size;
+        (0..4).map(move |i| [2 * x + i % 2, 2 * y + i / 2]).filter(move |px| px[0] < width && px[1] < height)
+    }
+
+    /// Color of a pixel, and whether it is usable.
+    #[inline(always)]
+    pub(super) fn color_px(&self, [x, y]: [u32; 2]) -> (Vec3, bool) {
+        sanitize::color(Vec3::from(self.inputs.color.at(x as usize, y as usize)))
+    }
+
+    /// Comparisons of the pixels of shaded quads outside the fovea, pixel by pixel.
+    pub(super) fn observe_quads(&self, quads: &Quads) -> Samples {
+        let [width, height] = self.inputs.size;
+        collect(width * height, |i| {
+            let px = [i % width, i / width];
+            let level = quads.level_at(px);
+            if level == 0 || !quads.is_shaded(px) {
+                return pack_observation(None);
+            }
+            let (sampled, usable) = self.color_px(px);
+            pack_observation(self.observe_px(px, level, sampled, usable))
+        })
+    }
+
+    #[inline(always)]
+    fn observation_px(&self, px: [u32; 2], observed: &Samples) -> Option<Observation> {
+        unpack_observation(observed[(px[1] * self.inputs.size[0] + px[0]) as usize], || self.color_px(px).0)
+    }
+
+    /// Gain and fit around each shaded quad outside the fovea.
+    pub(super) fn light_quads(&self, quads: &Quads, observed: &Samples) -> QuadLights {
+        let [columns, rows] = quads.size();
+        collect(columns * rows, |i| {
+            let quad = [i % columns, i / columns];
+            let px = quad.map(|v| 2 * v);
+            if quads.is_shaded(px) && quads.level_at(px) > 0 { self.light_quad(quads, quad, observed) } else { [0; 4] }
+        })
+    }
+
+    fn light_quad(&self, quads: &Quads, quad: [u32; 2], observed: &Samples) -> [u32; 4] {
+        // The quad's own comparison is a mean of those of one surface: that of its first compared pixel.
+        let first = self.pixels_of(quad).find(|&px| self.observation_px(px, observed).is_some());
+        let disparity_of = |[x, y]: [u32; 2]| self.inputs.disparity(x, y);
+        let disparity = disparity_of(first.unwrap_or(quad.map(|v| 2 * v)));
+        let alike = |px: [u32; 2]| self.alike(disparity, disparity_of(px), LIGHT_RELATIVE);
+        let mut own: Option<Observation> = None;
+        if first.is_some() {
+            let all = self.pixels_of(quad).filter(|&px| alike(px)).filter_map(|px| self.observation_px(px, observed));
+            let mut sum = Light::default();
+            let mut sure = 0.0;
+            for o in all {
+                sum = add_light(sum, o, 1.0, 1.0);
+                sure += o.sure;
+            }
+            let inverse = 1.0 / sum.weight;
+            own = Some(Observation {
+                sampled: sum.sampled * inverse,
+                history: sum.history * inverse,
+                error: sum.error * inverse,
+                sure: sure * inverse,
+            });
+        }
+        let distance2 = |other: [u32; 2]| offset_px2(other[0], quad[0]) + offset_px2(other[1], quad[1]);
+        let least = quads.around(quad).map(distance2).fold(f32::MAX, f32::min);
+        let mut near: Vec<Near> = vec![];
+        for other in quads.around(quad).chain([quad]) {
+            let spatial = 1.0 / (1.0 + distance2(other) / least);
+            for px in self.pixels_of(other) {
+                let Some(observation) = self.observation_px(px, observed) else { continue };
+                if alike(px) {
+                    let weight =
+                        own.map_or(spatial * observation.sure, |own| agreement(own, observation, spatial));
+                    near.push(Near { observation, weight, spatial });
+                }
+            }
+        }
+        let mut light = near.iter().fold(Light::default(), |l, n| add_light(l, n.observation, n.weight, n.spatial));
+        light.squared *= crate::kernel::quads::t(6);
+        let (mut gain, mut fits) = (Vec3::ONE, 1.0);
+        if light.weight >= 1e-6 {
+            let errors = |gain| near.iter().fold(0.0, |sum, n| sum + errors_left(n.observation, gain) * n.weight);
+            let without = errors(Vec3::ONE);
+            let error = match self.antialiases {
+                true => {
+                    let scatter = near.iter().fold(0.0, |sum, n| super::light::add_scatter(sum, n.observation, n.weight));
+                    scattered_error(light, scatter)
+                }
+                false => mean_error(light),
+            };
+            gain = if self.relights { relight(light, error) } else { Vec3::ONE };
+            let with_gain = if gain == Vec3::ONE { without } else { errors(gain) };
+            let enough = with_gain <= without * crate::kernel::quads::t(10);
+            let left = if enough { with_gain } else { without };
+            if !enough {
+                gain = Vec3::ONE;
+            }
+            fits = fit(left / light.weight, (light.weight / light.spatial).min(1.0));
+        }
+        let mut own_fits = [1.0; 4];
+        let mut disparities = [INVALID_DISPARITY; 4];
+        for px in self.pixels_of(quad) {
+            let i = (px[0] & 1 | (px[1] & 1) << 1) as usize;
+            own_fits[i] = self.observation_px(px, observed).map_or(1.0, |own| own_fit(own, gain));
+            disparities[i] = disparity_of(px);
+        }
+        pack_quad_lit(QuadLit { gain, fit: fits, own_fits, is_own: own.is_some(), disparities })
+    }
+
+    /// Candidate of a pixel, and its gain and fit, from the shaded quads around it.
+    #[inline(always)]
+    pub(super) fn quad_candidate(
+        &self,
+        quads: &Quads,
+        px: [u32; 2],
+        disparity: f32,
+        lights: &QuadLights,
+    ) -> Candidate {
+        let level = quads.level_at(px);
+        let is_shaded = quads.is_shaded(px);
+        if level == 0 {
+            if !is_shaded {
+                return Candidate::NONE;
+            }
+            let (color, usable) = self.color_px(px);
+            return Candidate { color, usable, is_own: usable, ..Candidate::NONE };
+        }
+        let codes = sample_codes(disparity);
+        let mut sums = Sums::default();
+        let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::ZERO);
+        let mut nearest_px2 = f32::MAX;
+        let mut own = None;
+        let quad = px.map(|v| v / 2);
+        let columns = quads.size()[0];
+        let mut add = |at: [u32; 2]| {
+            let (color, usable) = self.color_px(at);
+            if !usable {
+                return;
+            }
+            let words = lights[Quads::index(at.map(|v| v / 2), columns)];
+            let place = at[0] & 1 | (at[1] & 1) << 1;
+            let lit = quad_lit(words, place);
+            let alike = !self.inputs.tests_depth() || has_code(quad_code(words, place), codes);
+            let px2 = offset_px2(at[0], px[0]) + offset_px2(at[1], px[1]);
+            let share = if at == px { 1.0 } else { 1.0 / px2 };
+            let weight = share * if alike { 1.0 } else { OTHER_SURFACE };
+            sums.add(color, weight, lit);
+            (low, high) = (low.min(color), high.max(color));
+            if alike {
+                nearest_px2 = nearest_px2.min(px2);
+            }
+            if at == px {
+                own = Some((color, lit.own_fit));
+            }
+        };
+        if is_shaded {
+            self.pixels_of(quad).for_each(&mut add);
+        } else {
+            quads.around(quad).for_each(|other| add(nearest_px(other, px, self.inputs.size)));
+        }
+        if sums.weight == 0.0 {
+            return Candidate::NONE;
+        }
+        let coarsest = level as f32;
+        let is_own = own.is_some();
+        let (color, own_fit) = own.unwrap_or((sums.color * (1.0 / sums.weight), 1.0));
+        let nearest_lod = candidate_level(nearest_px2.sqrt(), coarsest);
+        Candidate {
+            color,
+            usable: true,
+            lod: match nearest_px2 {
+                _ if is_own => 0.0,
+                f32::MAX => coarsest + 1.0,
+                _ => nearest_lod,
+            },
+            range: [low, high],
+            gain: sums.gain * (1.0 / sums.valid),
+            fit: (sums.fit * (1.0 / sums.valid)).min(own_fit),
+            noise: NO_NOISE,
+            is_own,
+        }
+    }
+}

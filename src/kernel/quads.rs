@@ -1,0 +1,204 @@
+//! Frames shaded by quads: which quads of 2x2 pixels are shaded, and which shaded quads are around a pixel.
+//!
+//! Everything in the fovea is shaded. Outside it an even pattern moves from frame to frame and visits every quad. A
+//! budget of further quads goes where history lacks something: each quad has a *need*, the reduction of its squared
+//! error that a sample is expected to bring. All quads whose key reaches a threshold are shaded. A histogram of the keys
+//! gives the threshold, without sorting and without exceeding the budget.
+
+use super::rng;
+
+/// Region of the fovea: every quad is shaded.
+pub const FULL: u32 = 0;
+/// Middle region.
+pub const MIDDLE: u32 = 1;
+/// Periphery.
+pub const PERIPHERY: u32 = 2;
+
+/// Quads along a block of quads, whose shaded quads are the bits of a word.
+pub const BLOCK: u32 = 4;
+/// Shaded quads are found from this many quads before a quad to one less after it, along each axis.
+const REACH: i32 = 8;
+/// Code of no neighbour.
+pub const NOWHERE: u32 = 0x88;
+
+/// Need of a pixel without history, in squared units of [`root_difference`](super::matched::root_difference).
+const NOTHING: f32 = 225.0;
+/// Added to the contrast of coarse history.
+const COARSE_CONTRAST: f32 = 4.0;
+/// Share of the contrast by which history errs for each level of detail.
+const COARSE_ERROR: f32 = 0.5;
+/// Largest level of detail that counts.
+const COARSEST: f32 = 2.0;
+/// Largest contrast that counts.
+const MOST_CONTRAST: f32 = 60.0;
+/// Added to the contrast of a mean of few samples.
+const FEW_CONTRAST: f32 = 1.0;
+/// Squared share of the contrast by which a single sample errs.
+const FEW_ERROR: f32 = 0.1;
+/// Eccentricity in degrees at which an error counts half as much as at the gaze.
+const HALF_DEG: f32 = 20.0;
+
+/// Bits of the hash in a key. The unused part of the budget is less than the quads of one key.
+const HASH_BITS: u32 = 8;
+/// Number of keys; every key is below it.
+pub const KEYS: u32 = 63 << HASH_BITS;
+/// Code of a need of 1.
+const CODE_OF_ONE: u32 = 36;
+
+/// Temporary tunables.
+pub const DEFAULTS: [f32; 12] = [60.0, 4.0, 0.4, 20.0, 0.0625, 1.0, 1.0, 0.5, 60.0, 2.0, 0.8, 0.0];
+pub static TUNE: std::sync::RwLock<[f32; 12]> = std::sync::RwLock::new(DEFAULTS);
+pub fn t(i: usize) -> f32 {
+    TUNE.read().unwrap()[i]
+}
+
+/// Region of a quad at `e_deg` degrees from the gaze.
+#[inline]
+pub fn region(e_deg: f32, fovea_radius_deg: f32, mid_radius_deg: f32) -> u32 {
+    if e_deg < fovea_radius_deg {
+        FULL
+    } else if e_deg < mid_radius_deg {
+        MIDDLE
+    } else {
+        PERIPHERY
+    }
+}
+
+/// Whether the even pattern has quad (`x`, `y`): one quad in each block of `step` x `step` quads (a power of two), at
+/// `offset` in its block ([`offset_px`](super::lattice::offset_px)).
+#[inline]
+pub fn in_pattern(x: u32, y: u32, step: u32, offset: [u32; 2]) -> bool {
+    (x & (step - 1)) == offset[0] && (y & (step - 1)) == offset[1]
+}
+
+/// Whether a frame's pattern has the block of quad (`x`, `y`), of blocks in a checkerboard that alternates: half of the
+/// blocks a frame. `turn`: 0 or 1.
+#[inline]
+pub fn in_turn(x: u32, y: u32, step: u32, turn: u32) -> bool {
+    t(5) == 0.0 || ((x / step) ^ (y / step) ^ turn) & 1 == 0
+}
+
+/// Reduction of a pixel's squared error that a sample of its own is expected to bring, from history of level of detail
+/// `lod` (negative without history), of `samples` samples and with the local contrast `contrast`. In squared units of
+/// [`root_difference`](super::matched::root_difference).
+#[inline]
+pub fn need(lod: f32, samples: f32, contrast: f32) -> f32 {
+    if lod < 0.0 {
+        return t(0);
+    }
+    let contrast = contrast.min(t(8));
+    let coarse = (contrast + t(1)) * (t(7) * lod.min(t(9)));
+    let single = contrast + FEW_CONTRAST;
+    let few = (single * single) * (t(2) / (samples * (samples + 1.0)));
+    coarse * coarse + few
+}
+
+/// Share of a squared error that counts at `e_deg` degrees from the gaze.
+#[inline]
+pub fn acuity(e_deg: f32) -> f32 {
+    let share = 1.0 / (1.0 + e_deg * (1.0 / t(3)));
+    share * share
+}
+
+/// Key of a quad of the need `need`, 0 for none: its binary logarithm in half steps, then a hash, which gives another
+/// order in every frame, so that equal quads beyond the budget are spread evenly. `frame` and `key` select the view's
+/// random stream ([`rng::bits`]).
+#[inline]
+pub fn quad_key(need: f32, x: u32, y: u32, frame: u32, key: u32) -> u32 {
+    // The inverted key selects a random stream other than the pixels'.
+    let hash = rng::bits(x, y, frame, !key) >> (32 - HASH_BITS);
+    // Exponent and first bit of the mantissa.
+    let halves = (need.to_bits() >> 22) as i32 - 2 * 127 + CODE_OF_ONE as i32;
+    if need > 0.0 { (halves.clamp(1, 62) as u32) << HASH_BITS | hash } else { 0 }
+}
+
+/// Number of quads that `budget` pays for: a share, 0 to 1, of `columns` x `rows` quads.
+pub fn budget_quads(budget: f32, [columns, rows]: [u32; 2]) -> u32 {
+    // In f64, so that the product is not rounded up.
+    (f64::from(budget) * f64::from(columns) * f64::from(rows)) as u32
+}
+
+/// Smallest key, at least 1, such that at most `budget` quads have this key or a larger one. `counts`: number of quads
+/// by key.
+pub fn threshold(counts: &[u32], budget: u32) -> u32 {
+    let mut key = counts.len();
+    let mut left = budget;
+    while key > 1 && counts[key - 1] <= left {
+        key -= 1;
+        left -= counts[key];
+    }
+    key as u32
+}
+
+/// Quadrant of a direction, which is not 0. The half-axis that begins a quadrant belongs to it.
+#[inline]
+pub fn quadrant(x: i32, y: i32) -> u32 {
+    if x > 0 && y >= 0 {
+        0
+    } else if x <= 0 && y > 0 {
+        1
+    } else if x < 0 {
+        2
+    } else {
+        3
+    }
+}
+
+/// Octant of a direction, which is not 0; octants lie around the axes and the diagonals.
+#[inline]
+pub fn octant(x: i32, y: i32) -> u32 {
+    let (wide, high) = (x.abs(), y.abs());
+    // 2/5 is about the tangent of 22.5 degrees.
+    if 5 * high <= 2 * wide {
+        if x > 0 { 0 } else { 4 }
+    } else if 5 * wide <= 2 * high {
+        if y > 0 { 2 } else { 6 }
+    } else if y > 0 {
+        if x > 0 { 1 } else { 3 }
+    } else if x > 0 {
+        7
+    } else {
+        5
+    }
+}
+
+/// Code of a neighbour at an offset in quads, in eight bits, below its squared distance: the smallest of some
+/// neighbours is the nearest. `u32::MAX`: out of reach.
+#[inline]
+pub fn neighbour(x: i32, y: i32) -> u32 {
+    if x < -REACH || y < -REACH || x >= REACH || y >= REACH {
+        return u32::MAX;
+    }
+    ((x * x + y * y) as u32) << 8 | (x + REACH) as u32 | ((y + REACH) as u32) << 4
+}
+
+/// Offset in quads of the neighbour with a code.
+#[inline]
+pub fn neighbour_offset(code: u32) -> [i32; 2] {
+    [(code & 15) as i32 - REACH, (code >> 4 & 15) as i32 - REACH]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn octants_are_those_of_angles() {
+        for (x, y) in (-8..8).flat_map(|x| (-8..8).map(move |y| (x, y))).filter(|&o| o != (0, 0)) {
+            let angle = f64::from(y).atan2(f64::from(x)) / std::f64::consts::FRAC_PI_4;
+            assert_eq!(octant(x, y), (angle.round() as i32).rem_euclid(8) as u32, "{x}, {y}");
+        }
+    }
+
+    #[test]
+    fn nearer_neighbours_have_smaller_codes() {
+        let all: Vec<_> = (-8..8).flat_map(|x| (-8..8).map(move |y| (x, y))).collect();
+        for &(x, y) in &all {
+            assert_eq!(neighbour_offset(neighbour(x, y)), [x, y]);
+            for &(u, v) in all.iter().filter(|(u, v)| u * u + v * v < x * x + y * y) {
+                assert!(neighbour(u, v) < neighbour(x, y));
+            }
+        }
+        assert_eq!(neighbour_offset(NOWHERE), [0, 0]);
+    }
+}
