@@ -3,6 +3,7 @@
 
 use crate::error::{SettingsError, check};
 use crate::kernel::foveate;
+use crate::kernel::lattice::offset_px;
 #[cfg(feature = "bevy-0-19")]
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
@@ -106,7 +107,15 @@ pub struct Foveation {
 
 impl Default for Foveation {
     fn default() -> Self {
-        Self { filter: Filter::Mip, fovea_deg: 5.0, mid_deg: 15.0, blend_deg: 1.0, rate_mid: 8, rate_far: 16, budget: 0.025 }
+        Self {
+            filter: Filter::Mip,
+            fovea_deg: 5.0,
+            mid_deg: 15.0,
+            blend_deg: 1.0,
+            rate_mid: 8,
+            rate_far: 16,
+            budget: 0.025,
+        }
     }
 }
 
@@ -147,7 +156,8 @@ impl Foveation {
                 ),
             });
         }
-        let [smallest, largest] = if self.filter == Filter::Quads { [2, Self::MAX_QUADS_RATE] } else { [1, Self::MAX_RATE] };
+        let [smallest, largest] =
+            if self.filter == Filter::Quads { [2, Self::MAX_QUADS_RATE] } else { [1, Self::MAX_RATE] };
         for (setting, rate, least) in
             [("rate_mid", self.rate_mid, smallest), ("rate_far", self.rate_far, self.rate_mid.max(smallest))]
         {
@@ -165,6 +175,14 @@ impl Foveation {
     /// Coarsest level of detail: log2 of `rate_far`.
     pub fn max_level(&self) -> u32 {
         self.rate_far.ilog2()
+    }
+
+    /// Places in their blocks of the quads of the even pattern of frame `index`, in quads: x and y in the middle region,
+    /// x and y in the periphery. There a frame has every second block.
+    pub(crate) fn quad_offsets(&self, index: u64) -> [u32; 4] {
+        let [mid_x, mid_y] = offset_px(index, self.rate_mid / 2);
+        let [far_x, far_y] = offset_px(index / 2, self.rate_far / 2);
+        [mid_x, mid_y, far_x, far_y]
     }
 
     pub(crate) fn fovea_radius_deg(&self) -> f32 {

@@ -1,9 +1,9 @@
 //#use rng
 // Twin of src/kernel/quads.rs, which documents the functions.
 
-const FULL: u32 = 0u;
-const MIDDLE: u32 = 1u;
-const PERIPHERY: u32 = 2u;
+const IN_FOVEA: u32 = 0u;
+const IN_MIDDLE: u32 = 1u;
+const IN_PERIPHERY: u32 = 2u;
 const BLOCK: u32 = 4u;
 const REACH: i32 = 8;
 const NOWHERE: u32 = 0x88u;
@@ -18,13 +18,14 @@ const CLUMPED: f32 = 0.0625;
 const HASH_BITS: u32 = 8u;
 const KEYS: u32 = 63u << HASH_BITS;
 const CODE_OF_ONE: i32 = 36;
+const GROUPS_PER_ROW: u32 = 32768u;
 
 // quads::region
 fn region(e_deg: f32, fovea_radius_deg: f32, mid_radius_deg: f32) -> u32 {
     if e_deg < fovea_radius_deg {
-        return FULL;
+        return IN_FOVEA;
     }
-    return select(PERIPHERY, MIDDLE, e_deg < mid_radius_deg);
+    return select(IN_PERIPHERY, IN_MIDDLE, e_deg < mid_radius_deg);
 }
 
 // quads::in_pattern

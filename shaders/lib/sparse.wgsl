@@ -1,4 +1,5 @@
 //#use color
+//#use depth
 //#use kept
 //#use matched
 //#use noise
@@ -26,6 +27,7 @@ const KEEP_SHARE: f32 = 0.9;
 const MEAN_ERRORS: f32 = 3.0;
 const BLURRED_FRAMES: f32 = 8.0;
 const STAY_SHARE: f32 = 0.5;
+const RELIT_ERRORS: f32 = 0.8;
 
 // sparse::candidate_level
 fn candidate_level(px: f32, coarsest: f32) -> f32 {
@@ -167,6 +169,40 @@ fn unpack_lit(words: vec2<u32>) -> Lit {
         (words.y & 512u) != 0u,
         disparity_value(words.y >> 16u),
     );
+}
+
+struct QuadLit {
+    gains: vec3<f32>,
+    fit: f32,
+    own_fits: vec4<f32>,
+    is_own: bool,
+    disparities: vec4<f32>,
+}
+
+// sparse::pack_quad_lit
+fn pack_quad_lit(l: QuadLit) -> vec4<u32> {
+    let own = vec4<u32>(l.own_fits * 16.0 + 0.5) << vec4<u32>(10u, 15u, 20u, 25u);
+    let fits = u32(l.fit * 256.0 + 0.5) | select(0u, 512u, l.is_own) | own.x | own.y | own.z | own.w;
+    let first = disparity_code(l.disparities.x) | (disparity_code(l.disparities.y) << 16u);
+    let second = disparity_code(l.disparities.z) | (disparity_code(l.disparities.w) << 16u);
+    return vec4<u32>(pack_color(l.gains), fits, first, second);
+}
+
+// sparse::quad_lit
+fn quad_lit(words: vec4<u32>, i: u32) -> Lit {
+    return Lit(
+        unpack_color(words.x),
+        f32(words.y & 511u) * (1.0f / 256.0),
+        f32((words.y >> (10u + 5u * i)) & 31u) * (1.0f / 16.0),
+        (words.y & 512u) != 0u,
+        INVALID_DISPARITY,
+    );
+}
+
+// sparse::quad_code
+fn quad_code(words: vec4<u32>, i: u32) -> u32 {
+    let pair = select(words.z, words.w, i >= 2u);
+    return select(pair & 0xffff0000u, pair << 16u, (i & 1u) == 0u);
 }
 
 struct Reconstruction {

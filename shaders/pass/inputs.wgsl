@@ -50,6 +50,7 @@ struct FrameUniforms {
     first_view: u32,
     lattice: u32,
     mip_levels: u32,
+    quad_offsets: vec4<u32>,
     views: array<ViewUniforms, 4>,
     cameras: array<CameraUniforms, 4>,
 }

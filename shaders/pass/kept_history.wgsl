@@ -8,6 +8,8 @@
 
 // Whether frames are jittered and history stores means of samples.
 override ANTIALIAS: u32 = 0u;
+// Whether depth is that of the samples, not of the pixels' centres.
+override SAMPLE_DEPTH: u32 = 0u;
 
 @group(0) @binding(15) var past_kept: texture_2d_array<u32>;
 
@@ -70,7 +72,7 @@ fn surface_of(px: vec2<u32>, view: u32, level: u32) -> PixelSurface {
         surface.mixes = true;
     }
     // Where surfaces move together, a pixel is the mean of both, and samples of either surface belong to it.
-    surface.is_doubtful = doubtful && own >= 0.0 && !surface.mixes;
+    surface.is_doubtful = SAMPLE_DEPTH == 0u && doubtful && own >= 0.0 && !surface.mixes;
     return surface;
 }
 

@@ -1,14 +1,9 @@
-//#use kept_history
-//#use kept_noise
-//#use output
-//#use rng
+//#use sparse_pixel
 //#use sparse_samples
-// Reconstruction of sparse frames from history that keeps samples in their places (smr). CPU twin: `pixel` in
+// Reconstruction of sparse frames: candidates of pixels from the samples of lattices. CPU twin: `candidate` in
 // src/cpu/sparse_pass/pixel.rs; docs/method.md has the equations. One invocation a pixel; z is the view.
 
 @group(0) @binding(7) var repaired_in: texture_2d_array<f32>;
-@group(0) @binding(18) var next_kept: texture_storage_2d_array<rg32uint, write>;
-@group(0) @binding(19) var next_noise: texture_storage_2d_array<r32uint, write>;
 @group(0) @binding(21) var lights: texture_2d_array<u32>;
 @group(0) @binding(22) var repair_mask: texture_2d_array<u32>;
 
@@ -17,31 +12,6 @@ override REPAIR: u32 = 0u;
 
 // Squared distance in pixels that stands for a missing sample.
 const NO_PX2: f32 = 1e30;
-
-// Candidate of a pixel, and its gain and fit.
-struct Candidate {
-    color: vec3<f32>,
-    usable: bool,
-    lod: f32,
-    lowest: vec3<f32>,
-    highest: vec3<f32>,
-    gains: vec3<f32>,
-    fit: f32,
-    alpha: f32,
-    noise: Noise,
-    // Whether the candidate is this pixel's own sample.
-    is_own: bool,
-}
-
-// A candidate without samples; the other fields are 0.
-fn no_candidate() -> Candidate {
-    var none: Candidate;
-    none.gains = vec3<f32>(1.0);
-    none.fit = 1.0;
-    none.alpha = 1.0;
-    none.noise = Noise(1.0, 0.0);
-    return none;
-}
 
 // Squared distances of a pixel from two others along an axis.
 fn offset_px2(px: u32, others: vec2<u32>) -> vec2<f32> {
@@ -197,31 +167,6 @@ fn samples_near(px: vec2<u32>, lattice: LatticeUniforms, view: u32, needed: bool
     return near;
 }
 
-// Result at a pixel that has history and a usable candidate, of jittered frames.
-fn antialiased(
-    px: vec2<u32>,
-    view: u32,
-    lattice: LatticeUniforms,
-    given: Reconstruction,
-    samples: f32,
-    is_own: bool,
-) -> Averaged {
-    let full_rate = is_own && lattice.level == 0u;
-    let near = samples_near(px, lattice, view, full_rate);
-    if !is_own {
-        return kept_mean(given, reconstruct(given), samples);
-    }
-    var inputs = given;
-    var left = 1.0;
-    if full_rate {
-        let by = clip(near, inputs.history);
-        inputs.history = clipped(inputs.history, by.change);
-        inputs.nearest.color = clipped(inputs.nearest.color, by.change);
-        left = by.kept;
-    }
-    return average(inputs, samples, -frame.views[view].jitter_px, left);
-}
-
 // Color and alpha of a pixel's repaired sample.
 struct Repaired {
     color: vec3<f32>,
@@ -238,19 +183,6 @@ fn repaired(px: vec2<u32>, view: u32, level: u32) -> Repaired {
     let given = textureLoad(repaired_in, texel_of(px, view, REPAIRED_IN), layer_of(view), 0);
     let own = color(given.xyz);
     return Repaired(own.color, given.w, chosen && own.usable);
-}
-
-// Pixels outside the visible area: black, without stored history.
-fn hidden_pixel(px: vec2<u32>, view: u32) {
-    let trace = PixelTrace(VERDICT_RESET, 0.0, 0.0, 0u, 0.0, 1.0, true, vec2<f32>(0.0));
-    write_output(px, view, vec3<f32>(0.0), 1.0, trace);
-    if VIEW == 0u {
-        let empty = pack_kept(Kept(vec3<f32>(0.0), -1.0, -1.0, vec2<f32>(0.0)));
-        textureStore(next_kept, px, view, vec4<u32>(empty, 0u, 0u));
-        if NOISY != 0u {
-            textureStore(next_noise, px, view, vec4<u32>(pack_noise(Noise(1.0, 0.0)), 0u, 0u, 0u));
-        }
-    }
 }
 
 fn pixel(px: vec2<u32>, view: u32) {
@@ -277,94 +209,10 @@ fn pixel(px: vec2<u32>, view: u32) {
             candidate.noise = noise_at(px, view);
         }
     }
-    let surface = surface_of(px, view, lattice.level);
-    let motion = surface.motion;
-    let source = kept_source(px, view, surface);
-    let previous = source.previous;
     let is_full_rate = lattice.level == 0u || repair.usable;
-    let is_final = candidate.usable && is_full_rate && NOISY == 0u && ANTIALIAS == 0u;
-    let kept = kept_history(source, view, may_have_history(previous) && !is_final);
-    let history = kept.found;
-    let verdict = select(previous.verdict, VERDICT_VALID, history.lod >= 0.0);
-    let valid = verdict == VERDICT_VALID;
-    count_pixel(px, view, candidate.usable, disparity_now, verdict);
-
-    var shown = candidate.color;
-    let candidate_lod = select(-1.0, candidate.lod, candidate.usable);
-    var next = Kept(candidate.color, candidate_lod, surface.stored_disparity, vec2<f32>(0.0));
-    var samples = 1.0;
-    if ANTIALIAS != 0u && candidate.is_own {
-        next.place_px = -frame.views[view].jitter_px;
-    }
-    var share = 0.0;
-    var fits = 1.0;
-    var noise = candidate.noise;
-    if history.lod >= 0.0 {
-        if candidate.usable {
-            var inputs: Reconstruction;
-            inputs.candidate = candidate.color;
-            inputs.lod = candidate.lod;
-            inputs.lowest = candidate.lowest;
-            inputs.highest = candidate.highest;
-            inputs.history = history.color;
-            inputs.history_lod = history.lod;
-            inputs.nearest = history.nearest;
-            inputs.moved = has_moved(vec2<f32>(0.0), history.nearest.place_px);
-            inputs.gains = candidate.gains;
-            inputs.fit = candidate.fit;
-            inputs.trust = previous.trust;
-            inputs.accumulate = frame.smr_accumulate;
-            var result: Reconstructed;
-            if NOISY != 0u {
-                let accumulated = accumulate(inputs, stored_noise(kept.texel, view), candidate.noise);
-                result = accumulated.result;
-                noise = accumulated.noise;
-            } else if ANTIALIAS != 0u {
-                let averaged = antialiased(px, view, lattice, inputs, kept.samples, candidate.is_own);
-                result = averaged.result;
-                samples = averaged.samples;
-            } else {
-                result = reconstruct(inputs);
-            }
-            shown = result.color;
-            share = result.share;
-            fits = candidate.fit;
-            next = result.kept;
-        } else {
-            shown = history.color;
-            share = 1.0;
-            next = history.nearest;
-            samples = kept.samples;
-            if NOISY != 0u {
-                noise = stored_noise(kept.texel, view);
-            }
-        }
-        next.disparity = surface.stored_disparity;
-    }
-    // Means of colors may exceed the largest half.
-    shown = clamp(shown, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));
-    count_if(valid && share == 0.0, COUNT_REPLACED);
-    let sharpness = exp2(-max(next.lod, 0.0));
-    write_output(
-        px,
-        view,
-        shown,
-        candidate.alpha,
-        PixelTrace(verdict, exp2(-candidate.lod), sharpness, 0u, share, fits, share == 0.0, motion),
-    );
-    if VIEW == 0u {
-        var words = pack_kept(next);
-        if ANTIALIAS != 0u {
-            // The color is rounded stochastically.
-            let draw = unit_draw(bits(px.x, px.y, frame.frame_low, frame.views[view].key));
-            let stored = Kept(next.color, stored_lod(Mean(next.lod, samples)), next.disparity, next.place_px);
-            words = vec2<u32>(pack_color_by(next.color, draw), pack_kept(stored).y);
-        }
-        textureStore(next_kept, px, view, vec4<u32>(words, 0u, 0u));
-        if NOISY != 0u {
-            textureStore(next_noise, px, view, vec4<u32>(pack_noise(noise), 0u, 0u, 0u));
-        }
-    }
+    let has_near = ANTIALIAS != 0u && candidate.is_own && lattice.level == 0u;
+    let near = samples_near(px, lattice, view, has_near);
+    show_pixel(px, view, lattice.level, disparity_now, candidate, is_full_rate, near);
 }
 
 @compute @workgroup_size(64, 1)

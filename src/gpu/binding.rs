@@ -36,6 +36,9 @@ pub enum Binding {
     WriteSecond,
     State,
     List,
+    /// Which quads are shaded, and the shaded quads around each.
+    QuadMask,
+    QuadAround,
 }
 
 /// An input of a frame.
@@ -88,7 +91,7 @@ pub fn used_by(pass: &str) -> Option<&'static [Binding]> {
     })
 }
 
-const _: () = assert!((Binding::Debug as usize) < ORIGINS && (Binding::List as u32) < 32);
+const _: () = assert!((Binding::Debug as usize) < ORIGINS && (Binding::QuadAround as u32) < 32);
 
 #[cfg(test)]
 mod tests {
@@ -110,6 +113,8 @@ mod tests {
             "stored_frame" => Binding::PastFrame,
             "state" => Binding::State,
             "list" => Binding::List,
+            "quad_mask" => Binding::QuadMask,
+            "quad_around" => Binding::QuadAround,
             _ => input?.binding,
         };
         Some(other as u32)

@@ -5,6 +5,7 @@ use super::binding::Binding;
 use super::compute::{ComputeShader, Sources};
 use super::plane::{Plane, PlaneDesc};
 use super::stage::{Job, Passes, Specialization};
+use crate::foveation::Filter;
 use crate::frame::ContextDesc;
 use crate::method::Overrides;
 use wgpu::{Device, TextureFormat};
@@ -18,7 +19,7 @@ pub(super) struct Fill {
 
 impl Fill {
     pub fn new(device: &Device, desc: &ContextDesc, sources: &Sources) -> Self {
-        Self { shader: sources.shader(device, "fill_pass"), color: color(desc).create(device) }
+        Self { shader: shader(device, desc, sources), color: color(desc).create(device) }
     }
 }
 
@@ -41,6 +42,12 @@ impl Passes for Fill {
         }
         job.textures[Binding::Color as usize] = Some(Textures::Layers(&self.color.texture));
     }
+}
+
+/// The pass of the samples that frames have.
+fn shader(device: &Device, desc: &ContextDesc, sources: &Sources) -> ComputeShader {
+    let by_quads = desc.settings.foveation.filter == Filter::Quads;
+    sources.shader(device, if by_quads { "quads_fill_pass" } else { "fill_pass" })
 }
 
 /// The filled color, whose format stores samples bit for bit.

@@ -21,6 +21,8 @@ mod method_pass;
 mod mip_chain;
 mod output;
 pub(crate) mod plane;
+mod quad_samples;
+mod quads;
 mod recorder;
 mod repair;
 mod requirements;
@@ -40,6 +42,7 @@ pub(crate) use requirements::validate;
 pub use textures::{Region, Textures};
 
 use crate::error::{CreateError, FrameError, SettingsError};
+use crate::foveation::Filter;
 use crate::frame::{ContextDesc, Executor, Gaze};
 use crate::geometry::ViewGeometry;
 use crate::kernel::debug_view::DebugView;
@@ -51,6 +54,7 @@ use crate::uniforms::Held;
 use binding::Binding;
 use compute::Sources;
 use history::History;
+use quads::QuadPasses;
 use recorder::Recorder;
 use repair::RepairPasses;
 use resize::ResizePass;
@@ -82,6 +86,8 @@ pub struct Afterimage {
     resize: Option<ResizePass>,
     /// Passes of repair, if the settings ask for it.
     repair: Option<RepairPasses>,
+    /// Passes that plan frames shaded by quads, if frames are.
+    quads: Option<QuadPasses>,
 }
 
 impl Executor for Afterimage {
@@ -112,8 +118,9 @@ impl Afterimage {
             generation: 0,
             resize: None,
             repair: None,
+            quads: None,
         };
-        context.update_repair(device);
+        context.update_plan(device);
         Ok(context)
     }
 
@@ -121,7 +128,8 @@ impl Afterimage {
     pub fn pipelines(&self) -> Vec<(&'static str, Vec<(&'static str, u32)>)> {
         let resize = self.resize.as_ref().map(ResizePass::pipelines);
         let repair = self.repair.iter().flat_map(RepairPasses::pipelines);
-        self.stages.pipelines().chain(resize.into_iter().flatten()).chain(repair).collect()
+        let quads = self.quads.iter().flat_map(QuadPasses::pipelines);
+        self.stages.pipelines().chain(resize.into_iter().flatten()).chain(repair).chain(quads).collect()
     }
 
     /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
@@ -196,7 +204,7 @@ impl Afterimage {
         if !(has_same_pass && same_history) {
             self.history = History::new(device, &self.desc);
         }
-        self.update_repair(device);
+        self.update_plan(device);
         Ok(())
     }
 
@@ -258,11 +266,16 @@ impl Afterimage {
         self.desc.size_px = size_px;
         self.stages.resize(device, &self.desc);
         self.recorder.clear();
-        self.update_repair(device);
+        self.update_plan(device);
     }
 
     /// Follows a change of settings or size.
-    fn update_repair(&mut self, device: &Device) {
+    fn update_plan(&mut self, device: &Device) {
+        let by_quads = self.desc.settings.foveation.filter == Filter::Quads;
+        match &mut self.quads {
+            Some(quads) if by_quads => quads.update(device, &self.desc),
+            quads => *quads = by_quads.then(|| QuadPasses::new(device, &self.desc, self.stages.sources())),
+        }
         let (desc, repair) = (&self.desc, smr_sparse_repair(&self.desc.settings));
         match (&mut self.repair, repair) {
             (Some(passes), Some(repair)) => passes.update(device, desc, repair),
@@ -305,6 +318,9 @@ impl Afterimage {
                 }
                 repair.prewarm(device, &self.desc, special);
             }
+            if let Some(quads) = &self.quads {
+                quads.prewarm(device, &self.desc, special);
+            }
         }
     }
 
@@ -325,7 +341,9 @@ impl Afterimage {
     /// ```
     pub fn memory_bytes_of(desc: &ContextDesc) -> u64 {
         let repair = smr_sparse_repair(&desc.settings).map_or(0, |repair| repair::memory_bytes(desc, repair));
-        history::memory_bytes(desc) + stages::memory_bytes_of(desc) + repair
+        let by_quads = desc.settings.foveation.filter == Filter::Quads;
+        let quads = if by_quads { quads::memory_bytes(desc) } else { 0 };
+        history::memory_bytes(desc) + stages::memory_bytes_of(desc) + repair + quads
     }
 
     /// Records one frame into `encoder`: reads the frame's inputs and the history, and writes `target` (an output
@@ -397,7 +415,6 @@ impl Afterimage {
         let variant = Variant::of(frame, &Target::new(frame.color));
         let special = Specialization::new(variant, None, self.generation);
         self.recorder.begin(&SparseUniforms::new(frame.views, self.desc.size_px), 0);
-        let Some(repair) = &mut self.repair else { return Ok(()) };
         let mut job = Job {
             device,
             desc: &self.desc,
@@ -409,16 +426,30 @@ impl Afterimage {
             history: &self.history,
             lights: None,
             repair_mask: None,
+            quads: None,
             recorder: &mut self.recorder,
         };
-        self.stages.record_geometry(&mut job);
-        repair.record(&mut job);
+        if let Some(quads) = &self.quads {
+            quads.record(&mut job);
+        } else if let Some(repair) = &self.repair {
+            self.stages.record_geometry(&mut job);
+            repair.record(&mut job);
+        }
         let upload = self.recorder.upload(device)?;
-        repair.clear(encoder);
+        match (&mut self.quads, &mut self.repair) {
+            (Some(quads), _) => {
+                quads.clear(encoder);
+                quads.planned = Some(frame.index);
+            }
+            (None, Some(repair)) => {
+                repair.clear(encoder);
+                repair.planned = Some(frame.index);
+            }
+            (None, None) => {}
+        }
         self.recorder.copy(encoder, &upload);
         let label = Some("afterimage plan");
         self.recorder.record(&mut encoder.begin_compute_pass(&ComputePassDescriptor { label, ..Default::default() }));
-        repair.planned = Some(frame.index);
         Ok(())
     }
 
@@ -438,6 +469,21 @@ impl Afterimage {
     /// replace it.
     pub fn repair_quads(&self, view: usize) -> Option<&Buffer> {
         self.repair.as_ref().and_then(|repair| repair.list(view))
+    }
+
+    /// The quads that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::Filter::Quads) chose: an
+    /// `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bit 0 says that the quad is shaded, and an array
+    /// layer for each view; usages `TEXTURE_BINDING` and `COPY_SRC`. `None` with another filter. Changes of size and
+    /// settings replace it.
+    pub fn quad_mask(&self) -> Option<&Texture> {
+        self.quads.as_ref().map(|quads| &quads.quads.mask.texture)
+    }
+
+    /// The shaded quads of a view as a list on the device, in the form of [`repair_quads`](Self::repair_quads).
+    /// `None` with another filter than [`Quads`](crate::Filter::Quads). Changes of size
+    /// and settings replace it.
+    pub fn quad_list(&self, view: usize) -> Option<&Buffer> {
+        self.quads.as_ref().and_then(|quads| quads.quads.views.get(view)).map(|view| &view.list)
     }
 
     /// Distance of every pixel along the view axis, interpolated from the depth at the samples, for composition layers
@@ -515,6 +561,7 @@ impl Afterimage {
             history: &self.history,
             lights: None,
             repair_mask: self.repair.as_ref().map(|repair| &repair.mask().whole),
+            quads: self.quads.as_ref().map(|quads| &quads.quads),
             recorder: &mut self.recorder,
         });
         let upload = self.recorder.upload(device)?;
@@ -533,13 +580,20 @@ impl Afterimage {
 
     fn check(&self, device: &Device, frame: &Frame<'_>, target: &Target<'_>) -> Result<(), FrameError> {
         input::check(device, &self.desc, self.output_format, frame, target)?;
-        frame.check_planned(&self.desc, self.repair.as_ref().and_then(|repair| repair.planned))
+        let planned = match &self.quads {
+            Some(quads) => quads.planned,
+            None => self.repair.as_ref().and_then(|repair| repair.planned),
+        };
+        frame.check_planned(&self.desc, planned)
     }
 
     /// Discards the last plan.
     fn unplan(&mut self) {
         if let Some(repair) = &mut self.repair {
             repair.planned = None;
+        }
+        if let Some(quads) = &mut self.quads {
+            quads.planned = None;
         }
     }
 

@@ -9,7 +9,7 @@ use wgpu::{Device, ErrorFilter, Extent3d, Features, TextureDescriptor, TextureFo
 pub(super) const DEBUG_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
 /// Formats that shaders write, and their names in WGSL. The first ones are those of outputs.
-const FORMATS: [(TextureFormat, &str); 13] = [
+const FORMATS: [(TextureFormat, &str); 14] = [
     (TextureFormat::Rgba16Float, "rgba16float"),
     (TextureFormat::Rgba32Float, "rgba32float"),
     (TextureFormat::Rgba8Unorm, "rgba8unorm"),
@@ -23,6 +23,7 @@ const FORMATS: [(TextureFormat, &str); 13] = [
     (TextureFormat::Rg32Float, "rg32float"),
     (TextureFormat::R32Uint, "r32uint"),
     (TextureFormat::Rg32Uint, "rg32uint"),
+    (TextureFormat::Rgba32Uint, "rgba32uint"),
 ];
 /// Number of formats of outputs.
 const OUTPUTS: usize = 9;

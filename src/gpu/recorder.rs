@@ -34,6 +34,19 @@ const STRIDE: usize = size_of::<FrameUniforms>().next_multiple_of(ALIGNMENT);
 /// Different uniforms for each view: those of filled colors and geometry, and of samples of each lattice.
 const DISPATCHES_PER_VIEW: usize = 8;
 
+/// Size of a dispatch: numbers of workgroups, or the place of these numbers in a buffer.
+#[derive(Debug)]
+pub enum Workgroups {
+    Direct([u32; 3]),
+    Indirect(Buffer, u64),
+}
+
+impl From<[u32; 3]> for Workgroups {
+    fn from(numbers: [u32; 3]) -> Self {
+        Self::Direct(numbers)
+    }
+}
+
 /// A dispatch to record.
 #[derive(Debug)]
 struct Dispatch {
@@ -41,7 +54,7 @@ struct Dispatch {
     group: BindGroup,
     /// Offset of the frame's uniforms, if the shader reads them.
     uniforms: Option<u32>,
-    workgroups: [u32; 3],
+    workgroups: Workgroups,
 }
 
 /// Recorder of a context.
@@ -138,7 +151,7 @@ impl Recorder {
         (shader, pipeline): (&ComputeShader, ComputePipeline),
         uniforms: Option<&FrameUniforms>,
         resource: impl Fn(u32) -> Option<Resource>,
-        workgroups: [u32; 3],
+        workgroups: impl Into<Workgroups>,
     ) {
         let uniforms = uniforms.map(|uniforms| self.place(uniforms));
         let bytes = |bytes: usize| Some(Resource::Buffer(self.uniforms.clone(), 0, NonZeroU64::new(bytes as u64)));
@@ -152,7 +165,7 @@ impl Recorder {
         };
         let resources = shader.bindings().iter().map(bound).collect();
         let group = self.groups.get(device, shader, resources);
-        self.dispatches.push(Dispatch { pipeline, group, uniforms, workgroups });
+        self.dispatches.push(Dispatch { pipeline, group, uniforms, workgroups: workgroups.into() });
     }
 
     /// The values of the uniforms on the device; an error if wgpu knows that the device is lost.
@@ -176,8 +189,10 @@ impl Recorder {
             }
             last = Some(&dispatch.pipeline);
             pass.set_bind_group(0, &dispatch.group, dispatch.uniforms.as_slice());
-            let [x, y, z] = dispatch.workgroups;
-            pass.dispatch_workgroups(x, y, z);
+            match &dispatch.workgroups {
+                &Workgroups::Direct([x, y, z]) => pass.dispatch_workgroups(x, y, z),
+                Workgroups::Indirect(buffer, offset) => pass.dispatch_workgroups_indirect(buffer, *offset),
+            }
         }
     }
 }

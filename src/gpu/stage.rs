@@ -4,7 +4,8 @@ use super::binding::{Binding, INPUTS};
 use super::compute::{ComputeShader, PipelineKey, WORKGROUP_WIDTH};
 use super::groups::Resource;
 use super::history::History;
-use super::recorder::Recorder;
+use super::quads::Quads;
+use super::recorder::{Recorder, Workgroups};
 use super::textures::{Batch, batches};
 use super::uniforms::FrameUniforms;
 use super::{Textures, Variant};
@@ -113,6 +114,8 @@ pub(super) struct Job<'a> {
     pub lights: Option<&'a TextureView>,
     /// Quads that a plan chose, if it planned anything.
     pub repair_mask: Option<&'a TextureView>,
+    /// Shaded quads, of a frame shaded by quads.
+    pub quads: Option<&'a Quads>,
     pub recorder: &'a mut Recorder,
 }
 
@@ -130,6 +133,22 @@ impl Job<'_> {
     /// Adds a dispatch of a pass with one invocation for each texel of `size`. `own`: what the pass binds in addition
     /// to what all share; what the frame does not have is a placeholder.
     pub fn dispatch(&mut self, shader: &ComputeShader, batch: &Batch, own: &[(Binding, Resource)], size: [u32; 2]) {
+        let workgroups = [size[0].div_ceil(WORKGROUP_WIDTH), size[1], batch.views.len() as u32];
+        self.add(shader, batch, own, workgroups.into());
+    }
+
+    /// Adds a dispatch whose numbers of workgroups are in a buffer, at a place in bytes.
+    pub fn dispatch_indirect(
+        &mut self,
+        shader: &ComputeShader,
+        batch: &Batch,
+        own: &[(Binding, Resource)],
+        (buffer, place): (&Buffer, u64),
+    ) {
+        self.add(shader, batch, own, Workgroups::Indirect(buffer.clone(), place));
+    }
+
+    fn add(&mut self, shader: &ComputeShader, batch: &Batch, own: &[(Binding, Resource)], workgroups: Workgroups) {
         let mut uniforms = FrameUniforms { first_view: batch.views.start, ..self.uniforms };
         for (i, view) in uniforms.views.iter_mut().enumerate().take(self.views.len()) {
             view.origins = self.textures.map(|textures| textures.map_or(0, |textures| textures.packed_origin(i)));
@@ -137,11 +156,12 @@ impl Job<'_> {
         let pipeline = self.special.pipeline(self.device, self.desc, shader);
         let resource = |number: u32| match own.iter().find(|(binding, _)| *binding as u32 == number) {
             Some((_, resource)) => Some(resource.clone()),
+            None if number == Binding::QuadMask as u32 => Some((&self.quads?.mask.whole).into()),
+            None if number == Binding::QuadAround as u32 => Some((&self.quads?.around.whole).into()),
             None if number == Binding::Counters as u32 => self.counters.map(Resource::from),
             None if (number as usize) < ORIGINS => Some(self.textures[number as usize]?.bind(batch)),
             None => self.history.bound(number),
         };
-        let workgroups = [size[0].div_ceil(WORKGROUP_WIDTH), size[1], batch.views.len() as u32];
         self.recorder.add(self.device, (shader, pipeline), Some(&uniforms), resource, workgroups);
     }
 }

@@ -6,10 +6,11 @@ use super::fill_geometry::GeometryFill;
 use super::history::History;
 use super::method_pass::MethodPass;
 use super::mip_chain::{CandidatePass, MipChainPass};
+use super::quad_samples::QuadSamplePasses;
 use super::recorder::Recorder;
 use super::sparse::SamplePasses;
 use super::stage::{Job, Passes, Specialization};
-use super::{fill, sparse};
+use super::{fill, quad_samples, sparse};
 use crate::frame::ContextDesc;
 use crate::method::{Overrides, Stage};
 use wgpu::{Device, Texture, TextureFormat};
@@ -54,6 +55,7 @@ impl Stages {
             Stage::Fill => Box::new(Fill::new(device, desc, sources)),
             Stage::Geometry => Box::new(GeometryFill::new(sources)),
             Stage::Samples => Box::new(SamplePasses::new(device, desc, sources)),
+            Stage::Quads => Box::new(QuadSamplePasses::new(device, desc, sources)),
             Stage::Method => Box::new(MethodPass::new(device, &desc.settings, self.output, sources)),
             Stage::MipChain => Box::new(MipChainPass::new(device, desc, sources, false)),
         }
@@ -110,6 +112,7 @@ pub(super) fn memory_bytes_of(desc: &ContextDesc) -> u64 {
     let bytes = |stage| match stage {
         Stage::Fill => fill::color(desc).bytes(),
         Stage::Samples => 2 * sparse::results(desc).bytes(),
+        Stage::Quads => quad_samples::lights(desc).bytes(),
         Stage::Geometry | Stage::Candidates | Stage::Method | Stage::MipChain => 0,
     };
     desc.settings.stages().into_iter().map(bytes).sum()

@@ -59,6 +59,8 @@ pub struct FrameUniforms {
     pub lattice: u32,
     /// Levels of the mip chains of surfaces and of noisy candidates, above the full-rate one; 0 without.
     pub mip_levels: u32,
+    /// Places in their blocks of the quads of the even pattern, in the middle region and in the periphery, in quads.
+    pub quad_offsets: [u32; 4],
     /// One entry a view.
     pub views: [ViewUniforms; MAX_VIEWS],
     /// Camera motion of each view.
@@ -97,6 +99,7 @@ impl FrameUniforms {
                 HistoryLayout::Surfaces { levels, .. } => levels,
                 _ => 0,
             },
+            quad_offsets: settings.foveation.quad_offsets(frame.index),
             ..Self::default()
         };
         for (i, (view, held)) in frame.views.iter().zip(held).enumerate() {

@@ -8,11 +8,11 @@
 use super::rng;
 
 /// Region of the fovea: every quad is shaded.
-pub const FULL: u32 = 0;
+pub const IN_FOVEA: u32 = 0;
 /// Middle region.
-pub const MIDDLE: u32 = 1;
+pub const IN_MIDDLE: u32 = 1;
 /// Periphery.
-pub const PERIPHERY: u32 = 2;
+pub const IN_PERIPHERY: u32 = 2;
 
 /// Quads along a block of quads, whose shaded quads are the bits of a word.
 pub const BLOCK: u32 = 4;
@@ -22,11 +22,9 @@ const REACH: i32 = 8;
 pub const NOWHERE: u32 = 0x88;
 
 /// Need of a pixel without history, in squared units of [`root_difference`](super::matched::root_difference).
-const NOTHING: f32 = 225.0;
-/// Added to the contrast of coarse history.
+const NOTHING: f32 = 60.0;
+/// Added to the contrast of coarse history, which errs by as much for each level of detail.
 const COARSE_CONTRAST: f32 = 4.0;
-/// Share of the contrast by which history errs for each level of detail.
-const COARSE_ERROR: f32 = 0.5;
 /// Largest level of detail that counts.
 const COARSEST: f32 = 2.0;
 /// Largest contrast that counts.
@@ -34,33 +32,31 @@ const MOST_CONTRAST: f32 = 60.0;
 /// Added to the contrast of a mean of few samples.
 const FEW_CONTRAST: f32 = 1.0;
 /// Squared share of the contrast by which a single sample errs.
-const FEW_ERROR: f32 = 0.1;
+const FEW_ERROR: f32 = 0.4;
 /// Eccentricity in degrees at which an error counts half as much as at the gaze.
 const HALF_DEG: f32 = 20.0;
+
+/// Share of its need that counts for each quad with a larger need in its block of 2x2 quads.
+const CLUMPED: f32 = 0.0625;
 
 /// Bits of the hash in a key. The unused part of the budget is less than the quads of one key.
 const HASH_BITS: u32 = 8;
 /// Number of keys; every key is below it.
 pub const KEYS: u32 = 63 << HASH_BITS;
 /// Code of a need of 1.
-const CODE_OF_ONE: u32 = 36;
-
-/// Temporary tunables.
-pub const DEFAULTS: [f32; 12] = [60.0, 4.0, 0.4, 20.0, 0.0625, 1.0, 1.0, 0.5, 60.0, 2.0, 0.8, 0.0];
-pub static TUNE: std::sync::RwLock<[f32; 12]> = std::sync::RwLock::new(DEFAULTS);
-pub fn t(i: usize) -> f32 {
-    TUNE.read().unwrap()[i]
-}
+const CODE_OF_ONE: i32 = 36;
+/// Largest number of workgroups along x of a dispatch whose size the plan computes; further ones lie along y.
+pub const GROUPS_PER_ROW: u32 = 32768;
 
 /// Region of a quad at `e_deg` degrees from the gaze.
 #[inline]
 pub fn region(e_deg: f32, fovea_radius_deg: f32, mid_radius_deg: f32) -> u32 {
     if e_deg < fovea_radius_deg {
-        FULL
+        IN_FOVEA
     } else if e_deg < mid_radius_deg {
-        MIDDLE
+        IN_MIDDLE
     } else {
-        PERIPHERY
+        IN_PERIPHERY
     }
 }
 
@@ -75,7 +71,13 @@ pub fn in_pattern(x: u32, y: u32, step: u32, offset: [u32; 2]) -> bool {
 /// blocks a frame. `turn`: 0 or 1.
 #[inline]
 pub fn in_turn(x: u32, y: u32, step: u32, turn: u32) -> bool {
-    t(5) == 0.0 || ((x / step) ^ (y / step) ^ turn) & 1 == 0
+    ((x / step) ^ (y / step) ^ turn) & 1 == 0
+}
+
+/// The pixel of quad (`x`, `y`) that is tested in a frame: each of the four in four frames. Neighbouring quads alternate.
+#[inline]
+pub fn asked_px(x: u32, y: u32, frame: u32) -> [u32; 2] {
+    [2 * x + ((frame ^ x ^ y) & 1), 2 * y + (frame >> 1 & 1)]
 }
 
 /// Reduction of a pixel's squared error that a sample of its own is expected to bring, from history of level of detail
@@ -84,20 +86,32 @@ pub fn in_turn(x: u32, y: u32, step: u32, turn: u32) -> bool {
 #[inline]
 pub fn need(lod: f32, samples: f32, contrast: f32) -> f32 {
     if lod < 0.0 {
-        return t(0);
+        return NOTHING;
     }
-    let contrast = contrast.min(t(8));
-    let coarse = (contrast + t(1)) * (t(7) * lod.min(t(9)));
+    let contrast = contrast.min(MOST_CONTRAST);
+    let coarse = (contrast + COARSE_CONTRAST) * lod.min(COARSEST);
     let single = contrast + FEW_CONTRAST;
-    let few = (single * single) * (t(2) / (samples * (samples + 1.0)));
+    let few = (single * single) * (FEW_ERROR / (samples * (samples + 1.0)));
     coarse * coarse + few
 }
 
 /// Share of a squared error that counts at `e_deg` degrees from the gaze.
 #[inline]
 pub fn acuity(e_deg: f32) -> f32 {
-    let share = 1.0 / (1.0 + e_deg * (1.0 / t(3)));
+    let share = 1.0 / (1.0 + e_deg * (1.0 / HALF_DEG));
     share * share
+}
+
+/// Share of the need of quad `i` that counts, of a block of 2x2 quads with these needs: less for each quad whose need is
+/// larger, so that chosen quads do not clump.
+#[inline]
+pub fn share_in_block(needs: [f32; 4], i: usize) -> f32 {
+    let mut share = 1.0;
+    for other in 0..4 {
+        let is_larger = needs[other] > needs[i] || (needs[other] == needs[i] && other < i);
+        share *= if other != i && is_larger { CLUMPED } else { 1.0 };
+    }
+    share
 }
 
 /// Key of a quad of the need `need`, 0 for none: its binary logarithm in half steps, then a hash, which gives another
@@ -108,7 +122,7 @@ pub fn quad_key(need: f32, x: u32, y: u32, frame: u32, key: u32) -> u32 {
     // The inverted key selects a random stream other than the pixels'.
     let hash = rng::bits(x, y, frame, !key) >> (32 - HASH_BITS);
     // Exponent and first bit of the mantissa.
-    let halves = (need.to_bits() >> 22) as i32 - 2 * 127 + CODE_OF_ONE as i32;
+    let halves = (need.to_bits() >> 22) as i32 - 2 * 127 + CODE_OF_ONE;
     if need > 0.0 { (halves.clamp(1, 62) as u32) << HASH_BITS | hash } else { 0 }
 }
 

@@ -46,6 +46,8 @@ const AGREE_ERRORS: f32 = 4.0;
 const AGREE_ERROR: f32 = 0.8;
 /// Gate: mean difference at which the fit starts to fall, and width over which it falls to 0, in expected errors.
 const GATE: [f32; 2] = [2.0, 4.0];
+/// Share of the errors without a gain that a gain of quads must leave at most, or it is not used.
+pub const RELIT_ERRORS: f32 = 0.8;
 /// Smallest and largest gain.
 const GAIN: [f32; 2] = [0.2, 5.0];
 /// Levels of detail that history loses when light doubles: history that has moved, and history that has not.

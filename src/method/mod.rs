@@ -116,6 +116,8 @@ pub(crate) enum Stage {
     Geometry,
     /// Compares the samples of a sparse frame with history.
     Samples,
+    /// Compares the samples of shaded quads with history.
+    Quads,
     /// The pass that writes the output and the history.
     Method,
     /// Fills the mip chain of the written history.

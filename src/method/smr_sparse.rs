@@ -9,7 +9,10 @@ pub(super) static ENTRY: Entry = Entry {
     name: "smr-sparse",
     summary: "scale-matched reservoirs of sparse frames",
     algorithm: Algorithm::SmrSparse,
-    stages: |_| vec![Stage::Geometry, Stage::Samples, Stage::Method],
+    stages: |settings| match settings.foveation.filter {
+        Filter::Quads => vec![Stage::Quads, Stage::Method],
+        _ => vec![Stage::Geometry, Stage::Samples, Stage::Method],
+    },
     history: |settings| HistoryLayout::Kept { noisy: settings.noisy, means: smr_sparse_antialiases(settings) },
     history_traffic_bytes: |settings| {
         // Samples of history: 8 bytes read, 8 written. At most a third of the pixels (1/4 + 1/16 + ...) have samples of
@@ -19,11 +22,15 @@ pub(super) static ENTRY: Entry = Entry {
         // The noise of samples (4) and the noise of history (4) are read. The noise of history is written (4).
         2 * 8 + samples + if settings.noisy { 4 + 2 * 4 } else { 0 }
     },
-    shader: |_| PassShader { name: "sparse_pass", block_px: 1 },
+    shader: |settings| match settings.foveation.filter {
+        Filter::Quads => PassShader { name: "quads_pass", block_px: 1 },
+        _ => PassShader { name: "sparse_pass", block_px: 1 },
+    },
     overrides: |settings| {
         vec![
             ("ANTIALIAS", u32::from(smr_sparse_antialiases(settings))),
             ("RELIGHT_ON", u32::from(smr_sparse_relights(settings))),
+            ("SAMPLE_DEPTH", u32::from(settings.foveation.filter == Filter::Quads)),
         ]
     },
 };

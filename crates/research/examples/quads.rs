@@ -53,24 +53,25 @@ fn quads(fovea_deg: f32, mid_deg: f32, [rate_mid, rate_far]: [u32; 2], budget: f
 /// Rows of a table, by its name.
 fn rows(set: &str, size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure> {
     let mut rows = vec![];
-    let mut add_tuned = |name: &str, foveation: Foveation, repair: Option<Repair>, change: &[(usize, f32)]| -> Result<(), Failure> {
-        let method = Method::Smr(Smr { antialias, repair, ..Smr::default() });
-        let settings = Settings { method, foveation, ..Settings::default() };
-        let mut tune = afterimage::kernel::quads::DEFAULTS;
-        change.iter().for_each(|&(i, v)| tune[i] = v);
-        rows.push(Row {
-            name: name.into(),
-            foveation,
-            repair,
-            post: CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(size) })?,
-            scorer: Scorer::default(),
-            shaded: 0.0,
-            shown: Image::filled(size, [0.0; 3]),
-            mask: None,
-            tune,
-        });
-        Ok(())
-    };
+    let mut add_tuned =
+        |name: &str, foveation: Foveation, repair: Option<Repair>, change: &[(usize, f32)]| -> Result<(), Failure> {
+            let method = Method::Smr(Smr { antialias, repair, ..Smr::default() });
+            let settings = Settings { method, foveation, ..Settings::default() };
+            let mut tune = afterimage::kernel::quads::DEFAULTS;
+            change.iter().for_each(|&(i, v)| tune[i] = v);
+            rows.push(Row {
+                name: name.into(),
+                foveation,
+                repair,
+                post: CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(size) })?,
+                scorer: Scorer::default(),
+                shaded: 0.0,
+                shown: Image::filled(size, [0.0; 3]),
+                mask: None,
+                tune,
+            });
+            Ok(())
+        };
     let mut add = |name: &str, foveation: Foveation, change: &[(usize, f32)]| add_tuned(name, foveation, None, change);
     match set {
         "second" => {
@@ -113,7 +114,11 @@ fn rows(set: &str, size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure>
                 let budget = if half == 0.0 { 0.020 } else { 0.051 };
                 for few in [0.5, 1.0, 2.0] {
                     for corr in [1.0, 1.4] {
-                        add(&format!("{name} few {few} corr {corr}"), quads(5.0, 5.0, [8, 8], budget), &[(5, half), (0, 60.0), (2, few), (6, corr)])?;
+                        add(
+                            &format!("{name} few {few} corr {corr}"),
+                            quads(5.0, 5.0, [8, 8], budget),
+                            &[(5, half), (0, 60.0), (2, few), (6, corr)],
+                        )?;
                     }
                 }
             }
@@ -121,7 +126,11 @@ fn rows(set: &str, size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure>
         "grid2" => {
             for few in [0.25, 0.5] {
                 for corr in [1.0, 1.2] {
-                    add(&format!("few {few} corr {corr}"), quads(5.0, 5.0, [8, 8], 0.051), &[(0, 60.0), (2, few), (6, corr)])?;
+                    add(
+                        &format!("few {few} corr {corr}"),
+                        quads(5.0, 5.0, [8, 8], 0.051),
+                        &[(0, 60.0), (2, few), (6, corr)],
+                    )?;
                 }
             }
             add("n30", quads(5.0, 5.0, [8, 8], 0.051), &[(0, 30.0), (2, 0.5), (6, 1.0)])?;
@@ -129,7 +138,7 @@ fn rows(set: &str, size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure>
         }
         "ratio" => {
             for ratio in [1.0, 0.95, 0.9, 0.8, 0.7, 0.5] {
-                    add(&format!("ratio {ratio}"), quads(5.0, 5.0, [8, 8], 0.051), &[(10, ratio)])?;
+                add(&format!("ratio {ratio}"), quads(5.0, 5.0, [8, 8], 0.051), &[(10, ratio)])?;
             }
             add("asked", quads(5.0, 5.0, [8, 8], 0.051), &[(11, 1.0)])?;
         }
@@ -188,7 +197,6 @@ fn rows(set: &str, size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure>
 impl Row {
     /// Shows a frame; the share of the pixels that are shaded.
     fn show(&mut self, frame: &SourceFrame, view: &ViewFrame, index: u64) -> Result<f64, Failure> {
-        *afterimage::kernel::quads::TUNE.write().unwrap() = self.tune;
         let size = frame.color.size();
         let (depth, motion) = (frame.depth.as_ref().ok_or("no depth")?, frame.motion.as_ref().ok_or("no motion")?);
         let is_sparse = self.foveation.filter == Filter::Sparse;
@@ -197,8 +205,7 @@ impl Row {
         let (colors, depths, motions) = ([&frame.color], [depth], [motion]);
         let views = [ViewFrame { lattices, ..*view }];
         let reset = if frame.cut { Reset::All } else { Reset::None };
-        let input =
-            Frame { depth: Some(&depths), motion: Some(&motions), reset, ..Frame::new(&colors, &views, index) };
+        let input = Frame { depth: Some(&depths), motion: Some(&motions), reset, ..Frame::new(&colors, &views, index) };
         let is_planned = !is_sparse || self.repair.is_some();
         let mask = if is_planned { Some(self.post.plan(&input)?[0].clone()) } else { None };
         let repaired = self.repair.map(|_| &colors[..]);

@@ -42,13 +42,7 @@ impl View<'_> {
 
     /// The same for the sample of a pixel.
     #[inline(always)]
-    pub(super) fn observe_px(
-        &self,
-        px: [u32; 2],
-        level: u32,
-        sampled: Vec3,
-        usable: bool,
-    ) -> Option<Observation> {
+    pub(super) fn observe_px(&self, px: [u32; 2], level: u32, sampled: Vec3, usable: bool) -> Option<Observation> {
         let surface = self.surface(px, level);
         if surface.is_doubtful {
             return Some(Observation { sampled, history: Vec3::ZERO, error: DOUBTFUL, sure: 0.0 });

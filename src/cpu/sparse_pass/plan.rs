@@ -17,6 +17,7 @@ use crate::kernel::kept::unpack_kept;
 use crate::kernel::repair::{KEYS, WANTED_LOD, asked_px, budget_quads, priority, quad_key, threshold};
 use crate::kernel::reproject::nearest;
 use crate::kernel::sanitize;
+use crate::method::HistoryLayout;
 use crate::settings::Repair;
 use crate::uniforms::LatticeUniforms;
 
@@ -39,7 +40,8 @@ pub(in crate::cpu) fn plan_quads(desc: &ContextDesc, history: &History, frame: &
     let of_view = |i: usize| {
         let inputs = Inputs::new(desc, frame, i, &history.held_after(i, &frame.views[i]), history.is_filled());
         let foveation = &desc.settings.foveation;
-        View::new(desc, frame, i, inputs, history.kept(i), &[]).plan_quads(foveation, frame.index)
+        let has_memory = matches!(history.layout(), HistoryLayout::Kept { .. });
+        View::new(desc, frame, i, inputs, history.kept(i), &[]).plan_quads(foveation, frame.index, has_memory)
     };
     (0..frame.views.len()).map(of_view).collect()
 }

@@ -9,17 +9,14 @@ use crate::kernel::depth::INVALID_DISPARITY;
 use crate::kernel::resample::has_code;
 use crate::kernel::sanitize;
 use crate::kernel::sparse::{
-    LIGHT_RELATIVE, Light, OTHER_SURFACE, Observation, QuadLit, add_light, agreement, candidate_level, errors_left, fit,
-    mean_error, own_fit, pack_quad_lit, quad_code, quad_lit, relight,
+    LIGHT_RELATIVE, Light, OTHER_SURFACE, Observation, QuadLit, RELIT_ERRORS, add_light, agreement, candidate_level,
+    errors_left, fit, mean_error, own_fit, pack_quad_lit, quad_code, quad_lit, relight,
 };
 use crate::parallel::collect;
 use glam::Vec3;
 
 /// Light of the shaded quads, quad by quad ([`pack_quad_lit`]).
 pub(super) type QuadLights = Vec<[u32; 4]>;
-
-/// Effective number of samples in a quad's four: they lie beside each other, and err alike.
-const SAMPLES_IN_QUAD: f32 = 2.0;
 
 /// Observations around a quad.
 struct Near {
@@ -61,13 +58,13 @@ impl View<'_> {
         unpack_observation(observed[(px[1] * self.inputs.size[0] + px[0]) as usize], || self.color_px(px).0)
     }
 
-    /// Gain and fit around each shaded quad outside the fovea.
+    /// Gain and fit around each shaded quad. Quads of the fovea are not compared.
     pub(super) fn light_quads(&self, quads: &Quads, observed: &Samples) -> QuadLights {
         let [columns, rows] = quads.size();
         collect(columns * rows, |i| {
             let quad = [i % columns, i / columns];
             let px = quad.map(|v| 2 * v);
-            if quads.is_shaded(px) && quads.level_at(px) > 0 { self.light_quad(quads, quad, observed) } else { [0; 4] }
+            if quads.is_shaded(px) { self.light_quad(quads, quad, observed) } else { [0; 4] }
         })
     }
 
@@ -97,33 +94,33 @@ impl View<'_> {
         let distance2 = |other: [u32; 2]| offset_px2(other[0], quad[0]) + offset_px2(other[1], quad[1]);
         let least = quads.around(quad).map(distance2).fold(f32::MAX, f32::min);
         let mut near: Vec<Near> = vec![];
-        for other in quads.around(quad).chain([quad]) {
+        let is_compared = quads.level_at(quad.map(|v| 2 * v)) > 0;
+        for other in quads.around(quad).chain([quad]).filter(|_| is_compared) {
             let spatial = 1.0 / (1.0 + distance2(other) / least);
             for px in self.pixels_of(other) {
                 let Some(observation) = self.observation_px(px, observed) else { continue };
                 if alike(px) {
-                    let weight =
-                        own.map_or(spatial * observation.sure, |own| agreement(own, observation, spatial));
+                    let weight = own.map_or(spatial * observation.sure, |own| agreement(own, observation, spatial));
                     near.push(Near { observation, weight, spatial });
                 }
             }
         }
-        let mut light = near.iter().fold(Light::default(), |l, n| add_light(l, n.observation, n.weight, n.spatial));
-        light.squared *= crate::kernel::quads::t(6);
+        let light = near.iter().fold(Light::default(), |l, n| add_light(l, n.observation, n.weight, n.spatial));
         let (mut gain, mut fits) = (Vec3::ONE, 1.0);
         if light.weight >= 1e-6 {
             let errors = |gain| near.iter().fold(0.0, |sum, n| sum + errors_left(n.observation, gain) * n.weight);
             let without = errors(Vec3::ONE);
             let error = match self.antialiases {
                 true => {
-                    let scatter = near.iter().fold(0.0, |sum, n| super::light::add_scatter(sum, n.observation, n.weight));
+                    let scatter =
+                        near.iter().fold(0.0, |sum, n| super::light::add_scatter(sum, n.observation, n.weight));
                     scattered_error(light, scatter)
                 }
                 false => mean_error(light),
             };
             gain = if self.relights { relight(light, error) } else { Vec3::ONE };
             let with_gain = if gain == Vec3::ONE { without } else { errors(gain) };
-            let enough = with_gain <= without * crate::kernel::quads::t(10);
+            let enough = with_gain <= without * RELIT_ERRORS;
             let left = if enough { with_gain } else { without };
             if !enough {
                 gain = Vec3::ONE;
@@ -142,13 +139,7 @@ impl View<'_> {
 
     /// Candidate of a pixel, and its gain and fit, from the shaded quads around it.
     #[inline(always)]
-    pub(super) fn quad_candidate(
-        &self,
-        quads: &Quads,
-        px: [u32; 2],
-        disparity: f32,
-        lights: &QuadLights,
-    ) -> Candidate {
+    pub(super) fn quad_candidate(&self, quads: &Quads, px: [u32; 2], disparity: f32, lights: &QuadLights) -> Candidate {
         let level = quads.level_at(px);
         let is_shaded = quads.is_shaded(px);
         if level == 0 {

@@ -7,11 +7,10 @@ use crate::foveation::Foveation;
 use crate::image::Image;
 use crate::kernel::antialias::mean_of;
 use crate::kernel::kept::{code_word, is_empty, unpack_full};
-use crate::kernel::lattice::offset_px;
 use crate::kernel::matched::root_difference;
 use crate::kernel::quads::{
-    BLOCK, FULL, KEYS, MIDDLE, NOWHERE, acuity, budget_quads, in_pattern, in_turn, need, neighbour, neighbour_offset,
-    octant, quad_key, quadrant, region, threshold,
+    BLOCK, IN_FOVEA, IN_MIDDLE, KEYS, NOWHERE, acuity, asked_px, budget_quads, in_pattern, in_turn, need, neighbour,
+    neighbour_offset, octant, quad_key, quadrant, region, share_in_block, threshold,
 };
 use crate::kernel::reproject::nearest;
 use crate::kernel::resample::{has_code, tap_codes};
@@ -140,10 +139,8 @@ fn search(blocks: &Image<u32>, at: [u32; 2], sector: impl Fn(i32, i32) -> u32) -
         while left != 0 {
             let bit = left.trailing_zeros();
             left &= left - 1;
-            let offset = [
-                (x * BLOCK + bit % BLOCK) as i32 - at[0] as i32,
-                (y * BLOCK + bit / BLOCK) as i32 - at[1] as i32,
-            ];
+            let offset =
+                [(x * BLOCK + bit % BLOCK) as i32 - at[0] as i32, (y * BLOCK + bit / BLOCK) as i32 - at[1] as i32];
             if offset != [0, 0] {
                 let of_sector = &mut best[sector(offset[0], offset[1]) as usize];
                 *of_sector = (*of_sector).min(neighbour(offset[0], offset[1]));
@@ -155,8 +152,8 @@ fn search(blocks: &Image<u32>, at: [u32; 2], sector: impl Fn(i32, i32) -> u32) -
 }
 
 impl View<'_> {
-    /// Chooses the quads of a frame.
-    pub(super) fn plan_quads(&self, foveation: &Foveation, index: u64) -> Quads {
+    /// Chooses the quads of a frame. `has_memory`: whether the method has history to choose by.
+    pub(super) fn plan_quads(&self, foveation: &Foveation, index: u64, has_memory: bool) -> Quads {
         let size = self.inputs.size.map(|side| side.div_ceil(2));
         let radii = [foveation.fovea_radius_deg(), foveation.mid_radius_deg()];
         let regions = Image::from_fn_parallel(size, |[x, y]| {
@@ -169,11 +166,15 @@ impl View<'_> {
             self.is_visible_quad(quad) && pattern.has(quad, region)
         });
         let needs = Image::from_fn_parallel(size, |quad| {
-            if even.at(quad[0] as usize, quad[1] as usize) { 0.0 } else { self.need_of(quad) }
+            let [x, y] = quad.map(|v| v as usize);
+            if !has_memory || even.at(x, y) || regions.at(x, y) == IN_FOVEA { 0.0 } else { self.need_of(quad) }
         });
         let keys = Image::from_fn_parallel(size, |[x, y]| {
-            let share = share_in_block(&needs, [x, y]);
-            let need = needs.at(x as usize, y as usize) * share;
+            let in_block = [0, 1, 2, 3].map(|i| [x & !1 | i & 1, y & !1 | i >> 1]);
+            let is_inside = |[u, v]: [u32; 2]| u < size[0] && v < size[1];
+            let of_block = in_block.map(|q| if is_inside(q) { needs.at(q[0] as usize, q[1] as usize) } else { 0.0 });
+            let own = (x & 1 | (y & 1) << 1) as usize;
+            let need = of_block[own] * share_in_block(of_block, own);
             quad_key(need, x, y, self.frame_low, self.inputs.uniforms.key)
         });
         let mut counts = vec![0; KEYS as usize];
@@ -190,23 +191,19 @@ impl View<'_> {
 
     fn is_visible_quad(&self, [x, y]: [u32; 2]) -> bool {
         let [width, height] = self.inputs.size;
-        (0..4).map(|i| [2 * x + i % 2, 2 * y + i / 2]).any(|[x, y]| x < width && y < height && self.inputs.is_visible(x, y))
+        (0..4)
+            .map(|i| [2 * x + i % 2, 2 * y + i / 2])
+            .any(|[x, y]| x < width && y < height && self.inputs.is_visible(x, y))
     }
 
-    /// Need of a quad.
+    /// Need of a quad outside the fovea.
     fn need_of(&self, [x, y]: [u32; 2]) -> f32 {
         let [width, height] = self.inputs.size;
-        let px = crate::kernel::repair::asked_px;
-        let mut sum = 0.0;
-        let mode = crate::kernel::quads::t(11);
-        let list: &[u32] = if mode == 1.0 { &[0, 1, 2, 3] } else if mode == 2.0 { &[0] } else { &[0, 1] };
-        for &i in list {
-            let [u, v] = if mode == 1.0 { [2 * x + (i & 1), 2 * y + (i >> 1)] } else { px(i, x, y, self.frame_low) };
-            if u < width && v < height && self.inputs.is_visible(u, v) {
-                sum += self.need_at([u, v]);
-            }
+        let [u, v] = asked_px(x, y, self.frame_low);
+        if u >= width || v >= height || !self.inputs.is_visible(u, v) {
+            return 0.0;
         }
-        sum * acuity(self.inputs.eccentricity_deg(self.inputs.ray(2 * x, 2 * y)))
+        self.need_at([u, v]) * acuity(self.inputs.eccentricity_deg(self.inputs.ray(2 * x, 2 * y)))
     }
 
     /// Need of a pixel, from the four stored samples around its previous position.
@@ -244,25 +241,6 @@ impl View<'_> {
     }
 }
 
-/// Share of a quad's need that counts: less for each quad of its block of 2x2 quads whose need is larger, so that
-/// chosen quads do not clump.
-fn share_in_block(needs: &Image<f32>, [x, y]: [u32; 2]) -> f32 {
-    let [columns, rows] = needs.size();
-    let own = needs.at(x as usize, y as usize);
-    let mut share = 1.0;
-    for i in 0..4 {
-        let other = [x & !1 | i & 1, y & !1 | i >> 1];
-        if other == [x, y] || other[0] >= columns || other[1] >= rows {
-            continue;
-        }
-        let need = needs.at(other[0] as usize, other[1] as usize);
-        if need > own || (need == own && i < (x & 1 | (y & 1) << 1)) {
-            share *= crate::kernel::quads::t(4);
-        }
-    }
-    share
-}
-
 /// The even pattern of a frame.
 struct Pattern {
     /// Distance of its quads in quads, in the middle region and in the periphery.
@@ -274,14 +252,15 @@ struct Pattern {
 impl Pattern {
     fn new(foveation: &Foveation, index: u64) -> Self {
         let steps = [foveation.rate_mid, foveation.rate_far].map(|rate| rate / 2);
-        let offsets = [offset_px(index, steps[0]), offset_px(if crate::kernel::quads::t(5) == 0.0 { index } else { index / 2 }, steps[1])];
+        let [mid_x, mid_y, far_x, far_y] = foveation.quad_offsets(index);
+        let offsets = [[mid_x, mid_y], [far_x, far_y]];
         Self { steps, offsets, turn: (index & 1) as u32 }
     }
 
     fn has(&self, [x, y]: [u32; 2], region: u32) -> bool {
         match region {
-            FULL => true,
-            MIDDLE => in_pattern(x, y, self.steps[0], self.offsets[0]),
+            IN_FOVEA => true,
+            IN_MIDDLE => in_pattern(x, y, self.steps[0], self.offsets[0]),
             _ => in_pattern(x, y, self.steps[1], self.offsets[1]) && in_turn(x, y, self.steps[1], self.turn),
         }
     }

@@ -1,7 +1,7 @@
 //! Inputs, history and lattices of a view, for the loops over its samples and pixels.
 
-use crate::cpu::Frame;
 use super::quads::Quads;
+use crate::cpu::Frame;
 use crate::cpu::inputs::Inputs;
 use crate::frame::ContextDesc;
 use crate::image::Image;

@@ -36,7 +36,11 @@ impl FoveationUniforms {
         let [mid, far] = foveation.coarseness();
         let mut uniforms = Self {
             size: desc.size_px,
-            coarsest: if matches!(foveation.filter, Filter::Off | Filter::Sparse | Filter::Quads) { 0 } else { foveation.max_level() },
+            coarsest: if matches!(foveation.filter, Filter::Off | Filter::Sparse | Filter::Quads) {
+                0
+            } else {
+                foveation.max_level()
+            },
             fovea_radius_deg: foveation.fovea_radius_deg(),
             mid_radius_deg: foveation.mid_radius_deg(),
             blend_deg: foveation.blend_deg,

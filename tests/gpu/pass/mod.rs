@@ -9,6 +9,7 @@ mod light;
 mod limits;
 mod motion;
 mod properties;
+mod quads;
 mod reactive;
 mod repair;
 mod reservoirs;

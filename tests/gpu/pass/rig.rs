@@ -8,7 +8,9 @@ use afterimage::internal::{Sources, method_pass};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack;
 use afterimage::wgpu::{self, Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, DebugView, DepthConvention, Exposure, FrameStats, Image, Reset, Settings, ViewFrame};
+use afterimage::{
+    ContextDesc, DebugView, DepthConvention, Exposure, Filter, FrameStats, Image, Reset, Settings, ViewFrame,
+};
 use afterimage_testing::{Draws, agree};
 
 /// A device with textures of one size, and both executors.
@@ -107,7 +109,8 @@ impl Made {
         if afterimage_testing::gpu::rounds_as_the_cpu() {
             let differs = |&i: &usize| self.words.get(i) != cpu.words.get(i) || self.shown[i] != cpu.shown[i];
             let first = (0..cpu.shown.len()).find(differs);
-            return if self == cpu { Ok(()) } else { Err(format!("first at pixel {first:?}")) };
+            let quads = self.quads.iter().zip(&cpu.quads).filter(|(gpu, cpu)| gpu != cpu).count();
+            return if self == cpu { Ok(()) } else { Err(format!("first at pixel {first:?}, {quads} quads")) };
         }
         same_counts(&self.stats, &cpu.stats)?;
         agree::pictures(&self.shown, &cpu.shown)
@@ -191,6 +194,11 @@ impl Rig {
         self.textures = make_textures(&self.device, &self.context);
     }
 
+    /// Whether frames are shaded by quads.
+    fn is_by_quads(&self) -> bool {
+        self.cpu.desc().settings.foveation.filter == Filter::Quads
+    }
+
     /// Stored history of both executors.
     pub fn histories(&self) -> [Vec<[u32; 3]>; 2] {
         [held_words(&self.cpu), self.read().words]
@@ -265,9 +273,9 @@ impl Rig {
         let frame = afterimage::cpu::Frame { reset, exposure: self.exposure, ..images.frame(index) };
         let repaired: Vec<_> = views.iter().filter_map(|v| v.repaired.as_ref()).collect();
         let repaired = (!repaired.is_empty()).then_some(&repaired[..]);
-        let quads = match repaired {
-            Some(_) => self.cpu.plan(&frame).unwrap().iter().flat_map(quads_of).collect(),
-            None => vec![],
+        let quads = match repaired.is_some() || self.is_by_quads() {
+            true => self.cpu.plan(&frame).unwrap().iter().flat_map(quads_of).collect(),
+            false => vec![],
         };
         let frame = afterimage::cpu::Frame { repaired, ..frame };
         let stats = self.cpu.process_traced(&frame, &mut output, &mut trace).unwrap();
@@ -330,10 +338,11 @@ impl Rig {
         };
         let debug = self.beside.map(|view| DebugTarget { view, output: debug });
         let target = Target { debug, counters: count.then_some(&self.counters), ..Target::new(output) };
+        let is_planned = frame.repaired.is_some() || self.is_by_quads();
         afterimage_testing::gpu::validated(&self.device, "record", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
             all.iter().take(OUTPUT).for_each(|input| input.copy(&mut encoder, true));
-            if frame.repaired.is_some() {
+            if is_planned {
                 self.gpu.plan(&self.device, &mut encoder, &frame).unwrap();
             }
             match view {
@@ -401,7 +410,10 @@ impl Rig {
                 [] => vec![],
             },
             // As it was planned last.
-            quads: self.gpu.repair_mask().map_or_else(Vec::new, |mask| self.read_texture(mask)),
+            quads: match self.gpu.quad_mask() {
+                Some(mask) => self.read_texture(mask).iter().map(|word| word & 1).collect(),
+                None => self.gpu.repair_mask().map_or_else(Vec::new, |mask| self.read_texture(mask)),
+            },
             stats: self.read_counters(),
         }
     }

@@ -1,0 +1,123 @@
+//#use kept_history
+//#use quad_state
+// Region, even pattern and key of the quads of a frame, before it is shaded. CPU twin: `plan_quads` in
+// src/cpu/sparse_pass/quads.rs. One invocation a block of 2x2 quads of view `frame.first_view`.
+//
+// Up to 7 reads and 1 write a quad: depth, motion, trust and four stored samples of one pixel; 1 atomic sum a quad.
+
+// Whether the method has history to choose by.
+override HAS_KEPT: u32 = 0u;
+
+@group(0) @binding(23) var keys_out: texture_storage_2d_array<r32uint, write>;
+
+// Quads of the workgroup that are of the fovea or the even pattern.
+var<workgroup> group_even: atomic<u32>;
+
+// Need of a pixel, from the four stored samples around its previous position.
+fn need_at(px: vec2<u32>, view: u32) -> f32 {
+    let motion = motion_at(px, view);
+    var is_valid = reprojected(px, motion).verdict == VERDICT_VALID;
+    if HAS_TRUST != 0u {
+        is_valid = is_valid && trust(trust_at(px, view)) > 0.0;
+    }
+    let codes = tap_codes(expected_disparity(view, ray_at(px, view), disparity_at(px, view)));
+    let at = vec2<f32>(px) + motion;
+    let first = floor(at);
+    var nearest_px2 = 0x1p126;
+    var lod = -1.0;
+    var samples = 1.0;
+    var lowest = vec3<f32>(MAX_COLOR);
+    var highest = vec3<f32>(0.0);
+    let taps = select(0u, 4u, is_valid);
+    for (var tap = 0u; tap < taps; tap++) {
+        let texel = first + vec2<f32>(vec2<u32>(tap & 1u, tap >> 1u));
+        let words = kept_words(vec2<i32>(texel), view);
+        if !is_empty(words) && (DEPTH_TEST == 0u || has_code(code_word(words), codes)) {
+            let stored = unpack_full(words);
+            lowest = min(lowest, stored.color);
+            highest = max(highest, stored.color);
+            let offset = texel - at;
+            let px2 = offset.x * offset.x + offset.y * offset.y;
+            if px2 < nearest_px2 {
+                nearest_px2 = px2;
+                lod = stored.lod;
+                if ANTIALIAS != 0u {
+                    let mean = mean_of(stored.lod);
+                    lod = mean.lod;
+                    samples = mean.samples;
+                }
+            }
+        }
+    }
+    return need(lod, samples, root_difference(lowest, highest));
+}
+
+// Whether the lens shows a pixel of a quad.
+fn is_seen_quad(quad: vec2<u32>, view: u32) -> bool {
+    var seen = false;
+    for (var i = 0u; i < 4u; i++) {
+        let px = 2u * quad + vec2<u32>(i & 1u, i >> 1u);
+        seen = seen || (all(px < frame.size) && is_seen(px, view));
+    }
+    return seen;
+}
+
+// Whether the even pattern of the frame has a quad.
+fn is_even(quad: vec2<u32>, region_now: u32) -> bool {
+    let steps = vec2<u32>(1u << (u32(frame.coarse_mid) - 1u), 1u << (u32(frame.coarse_far) - 1u));
+    if region_now == IN_MIDDLE {
+        return in_pattern(quad.x, quad.y, steps.x, frame.quad_offsets.xy);
+    }
+    return region_now == IN_FOVEA
+        || (in_pattern(quad.x, quad.y, steps.y, frame.quad_offsets.zw)
+            && in_turn(quad.x, quad.y, steps.y, frame.frame_low & 1u));
+}
+
+fn block(at: vec2<u32>, view: u32) {
+    var needs = vec4<f32>(0.0);
+    var flags = vec4<u32>(0u);
+    let quads = (frame.size + 1u) / 2u;
+    for (var i = 0u; i < 4u; i++) {
+        let quad = 2u * at + vec2<u32>(i & 1u, i >> 1u);
+        if any(quad >= quads) {
+            continue;
+        }
+        let e_deg = eccentricity_deg(ray_at(2u * quad, view), frame.views[view].gaze_ray.xyz);
+        let region_now = region(e_deg, frame.fovea_radius_deg, frame.mid_radius_deg);
+        let even = is_seen_quad(quad, view) && is_even(quad, region_now);
+        flags[i] = (region_now << 16u) | (u32(even) << 18u);
+        let px = asked_px(quad.x, quad.y, frame.frame_low);
+        if even {
+            atomicAdd(&group_even, 1u);
+        } else if HAS_KEPT != 0u && region_now != IN_FOVEA && all(px < frame.size) && is_seen(px, view) {
+            needs[i] = need_at(px, view) * acuity(e_deg);
+        }
+    }
+    for (var i = 0u; i < 4u; i++) {
+        let quad = 2u * at + vec2<u32>(i & 1u, i >> 1u);
+        if any(quad >= quads) {
+            continue;
+        }
+        let needed = needs[i] * share_in_block(needs, i);
+        let key = quad_key(needed, quad.x, quad.y, frame.frame_low, frame.views[view].key);
+        if key > 0u {
+            atomicAdd(&state.counts[key], 1u);
+        }
+        textureStore(keys_out, quad, view, vec4<u32>(key | flags[i], 0u, 0u, 0u));
+    }
+}
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) invocation: u32) {
+    if invocation == 0u {
+        atomicStore(&group_even, 0u);
+    }
+    workgroupBarrier();
+    if all(4u * id.xy < frame.size) {
+        block(id.xy, frame.first_view);
+    }
+    workgroupBarrier();
+    if invocation == 0u {
+        atomicAdd(&state.even, atomicLoad(&group_even));
+    }
+}

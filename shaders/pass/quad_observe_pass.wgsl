@@ -1,0 +1,46 @@
+//#use kept_history
+//#use quad_plan
+//#use quad_samples
+// Comparison of the samples of shaded quads with history at their pixels. CPU twin: `observe_quads` in
+// src/cpu/sparse_pass/quad_samples.rs. One invocation a pixel of a shaded quad; those of
+// the fovea are not compared.
+//
+// With ANTIALIAS 29 reads and 1 write a sample: color, 9 of depth, 3 of motion, trust, 10 stored samples, list and
+// mask; 8 bytes written.
+
+@group(0) @binding(23) var observed_out: texture_storage_2d_array<rg32uint, write>;
+
+fn observe(px: vec2<u32>, view: u32) -> vec2<u32> {
+    let nothing = vec2<u32>(0u, half_bits(-1.0));
+    let level = level_of(mask_at(px, view));
+    if level == 0u {
+        return nothing;
+    }
+    let surface = surface_of(px, view, level);
+    var source = kept_source(px, view, surface);
+    if ANTIALIAS != 0u {
+        // History is read at the sample's place in its pixel.
+        source.previous.at -= frame.views[view].jitter_px;
+    }
+    let needed = may_have_history(source.previous) && color(color_at(px, view).xyz).usable;
+    let history = kept_history(source, view, needed).found;
+    if !needed || history.lod < 0.0 {
+        return nothing;
+    }
+    let contrast = root_difference(history.lowest, history.highest);
+    let moved = ANTIALIAS != 0u || has_moved(surface.motion, history.nearest.place_px);
+    let error = expected_error(history.lod, contrast, moved);
+    return vec2<u32>(pack_color(history.color), half_bits(error) | (half_bits(lod_confidence(history.lod)) << 16u));
+}
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) invocation: u32) {
+    let view = frame.first_view;
+    let i = invocation_of(group, invocation);
+    if i < 4u * quad_count() {
+        let px = px_of_quad(listed_quad(i >> 2u), i & 3u);
+        if all(px < frame.size) {
+            textureStore(observed_out, px, view, vec4<u32>(observe(px, view), 0u, 0u));
+        }
+    }
+}

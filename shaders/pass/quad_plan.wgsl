@@ -1,0 +1,27 @@
+//#use quads
+// List of the shaded quads of a view, for the passes over their samples.
+
+// `QuadList`, to read.
+struct PlannedList {
+    draw: vec4<u32>,
+    dispatch: vec4<u32>,
+    quads: array<u32>,
+}
+
+@group(0) @binding(26) var<storage, read> list: PlannedList;
+
+// Number of shaded quads.
+fn quad_count() -> u32 {
+    return list.dispatch.w;
+}
+
+// Quad `i` of the list.
+fn listed_quad(i: u32) -> vec2<u32> {
+    let word = list.quads[i];
+    return vec2<u32>(word & 0xffffu, word >> 16u);
+}
+
+// Number of an invocation of a dispatch whose size the plan computed.
+fn invocation_of(group: vec3<u32>, invocation: u32) -> u32 {
+    return 64u * (group.y * GROUPS_PER_ROW + group.x) + invocation;
+}

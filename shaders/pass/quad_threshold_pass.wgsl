@@ -1,0 +1,53 @@
+//#use quad_list
+//#use quad_state
+// Smallest key that the budget pays for, and the arguments of draws and dispatches of the shaded quads. CPU twin:
+// `threshold` in src/kernel/quads.rs, which goes through all keys; here 64 invocations sum them first. One workgroup.
+
+const INVOCATIONS: u32 = 64u;
+// Number of keys that an invocation sums. The last invocation's keys have no quads.
+const RUN: u32 = 1u << HASH_BITS;
+
+@group(0) @binding(0) var<uniform> budget_quads: vec4<u32>;
+
+// Number of quads of each invocation's keys.
+var<workgroup> of_run: array<u32, INVOCATIONS>;
+
+// Arguments of a dispatch of at least `invocations` invocations.
+fn groups(invocations: u32) -> array<u32, 3> {
+    let count = (invocations + INVOCATIONS - 1u) / INVOCATIONS;
+    return array<u32, 3>(min(count, GROUPS_PER_ROW), (count + GROUPS_PER_ROW - 1u) / GROUPS_PER_ROW, 1u);
+}
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(local_invocation_index) run: u32) {
+    var sum = 0u;
+    for (var key = run * RUN; key < min((run + 1u) * RUN, KEYS); key++) {
+        sum += atomicLoad(&state.counts[key]);
+    }
+    of_run[run] = sum;
+    workgroupBarrier();
+    if run > 0u {
+        return;
+    }
+    let budget = budget_quads.x;
+    var chosen = 0u;
+    var first = INVOCATIONS;
+    while first > 0u && of_run[first - 1u] <= budget - chosen {
+        first--;
+        chosen += of_run[first];
+    }
+    // The budget ends within the keys of the run before `first`, unless `first` is 0. No quad is counted at key 0.
+    var key = first * RUN;
+    while key > 1u && atomicLoad(&state.counts[key - 1u]) <= budget - chosen {
+        key--;
+        chosen += atomicLoad(&state.counts[key]);
+    }
+    state.threshold = max(key, 1u);
+    let all = chosen + atomicLoad(&state.even);
+    atomicStore(&state.listed, 0u);
+    state.pixel_groups = groups(4u * all);
+    state.quad_groups = groups(all);
+    // Two triangles a quad, and an invocation a quad.
+    list.draw = vec4<u32>(6u, all, 0u, 0u);
+    list.dispatch = vec4<u32>((all + INVOCATIONS - 1u) / INVOCATIONS, 1u, 1u, all);
+}

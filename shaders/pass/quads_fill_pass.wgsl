@@ -1,0 +1,52 @@
+//#use inputs
+//#use quad_samples
+// Fills every pixel of a frame shaded by quads, for methods that read whole frames: shaded pixels stay unchanged, and
+// others are means of the shaded quads around them by the inverse squared distance. CPU twin: `filled` in
+// src/cpu/sparse_pass/quads.rs. One invocation a pixel; z is the view.
+//
+// Up to 6 reads and 1 write a pixel: mask, neighbours and samples; 16 bytes written.
+
+@group(0) @binding(13) var<uniform> sparse: Missing;
+@group(0) @binding(23) var filled: texture_storage_2d_array<rgba32float, write>;
+
+// First word of `SparseUniforms` in src/gpu/uniforms.rs: bits of a NaN, which shaders cannot write themselves.
+struct Missing {
+    missing: vec4<u32>,
+}
+
+fn pixel(px: vec2<u32>, view: u32) -> vec4<f32> {
+    if (mask_at(px, view) & 1u) != 0u {
+        return color_at(px, view);
+    }
+    let quad = px >> vec2<u32>(1u);
+    let around = textureLoad(quad_around, quad, view, 0).xy;
+    var sum = vec4<f32>(0.0);
+    var weight = 0.0;
+    for (var i = 0u; i < 4u; i++) {
+        let code = code_of(around, i);
+        let other = vec2<u32>(vec2<i32>(quad) + neighbour_offset(code));
+        let at = min(clamp(px, 2u * other, 2u * other + 1u), frame.size - 1u);
+        let given = color_at(at, view);
+        let sampled = color(given.xyz);
+        if code != NOWHERE && sampled.usable {
+            let x = f32(at.x) - f32(px.x);
+            let y = f32(at.y) - f32(px.y);
+            let w = 1.0 / max(x * x + y * y, 1.0);
+            let alpha = select(1.0, given.w, is_finite(given.w));
+            sum += vec4<f32>(sampled.color, alpha) * w;
+            weight += w;
+        }
+    }
+    if weight == 0.0 {
+        return vec4<f32>(bitcast<f32>(sparse.missing.x));
+    }
+    return sum * (1.0 / weight);
+}
+
+@compute @workgroup_size(64, 1)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+    if id.x < frame.size.x && id.y < frame.size.y {
+        let view = frame.first_view + group.z;
+        textureStore(filled, id.xy, view, pixel(id.xy, view));
+    }
+}

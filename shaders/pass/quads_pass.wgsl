@@ -1,0 +1,138 @@
+//#use quad_samples
+//#use sparse_pixel
+// Reconstruction of frames shaded by quads: candidates of pixels from the shaded quads around them. CPU twin:
+// `quad_candidate` in src/cpu/sparse_pass/quad_samples.rs. One invocation a pixel; z is the view.
+
+@group(0) @binding(21) var lights: texture_2d_array<u32>;
+
+// Squared distance in pixels that stands for a missing sample.
+const NO_PX2: f32 = 1e30;
+
+// Pixel of a quad that is nearest to another pixel.
+fn nearest_px(quad: vec2<u32>, px: vec2<u32>) -> vec2<u32> {
+    return min(clamp(px, 2u * quad, 2u * quad + 1u), frame.size - 1u);
+}
+
+// Candidate from the pixels of a shaded quad, or from the nearest pixels of the quads around.
+fn candidate_at(px: vec2<u32>, view: u32, mask_word: u32, disparity_now: f32) -> Candidate {
+    let quad = px >> vec2<u32>(1u);
+    let is_shaded = (mask_word & 1u) != 0u;
+    let around = textureLoad(quad_around, quad, view, 0).xy;
+    let coarsest = f32(level_of(mask_word));
+    let codes = codes_between(disparity_now, 1.0f - SAMPLE_RELATIVE, 1.0f / (1.0f - SAMPLE_RELATIVE));
+    var candidate = no_candidate();
+    candidate.lowest = vec3<f32>(MAX_HALF);
+    var sum = vec4<f32>(0.0);
+    var weights = 0.0;
+    var gain_sum = vec3<f32>(0.0);
+    var fit_sum = 0.0;
+    var valid_sum = 0.0;
+    var nearest_px2 = NO_PX2;
+    var own = vec4<f32>(0.0);
+    var own_fits = 1.0;
+    // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
+    let taps = select(0u, 4u, coarsest > 0.0);
+    for (var tap = 0u; tap < taps; tap++) {
+        let code = code_of(around, tap);
+        let other = select(vec2<u32>(vec2<i32>(quad) + neighbour_offset(code)), quad, is_shaded);
+        let at = select(nearest_px(other, px), px_of_quad(quad, tap), is_shaded);
+        let is_there = select(code != NOWHERE, all(at < frame.size), is_shaded);
+        let given = color_at(min(at, frame.size - 1u), view);
+        let sampled = color(given.xyz);
+        if is_there && sampled.usable {
+            let words = textureLoad(lights, other, view, 0);
+            let place = (at.x & 1u) | ((at.y & 1u) << 1u);
+            let lit = quad_lit(words, place);
+            let same = DEPTH_TEST == 0u || has_code(quad_code(words, place), codes);
+            let is_own = all(at == px);
+            let x = f32(at.x) - f32(px.x);
+            let y = f32(at.y) - f32(px.y);
+            let px2 = x * x + y * y;
+            let weight = select(1.0 / max(px2, 1.0), 1.0, is_own) * select(OTHER_SURFACE, 1.0, same);
+            let known = weight * select(BY_NEIGHBOURS, 1.0, lit.is_own);
+            let alpha = select(1.0, given.w, is_finite(given.w));
+            sum += vec4<f32>(sampled.color, alpha) * weight;
+            weights += weight;
+            gain_sum += lit.gains * known;
+            fit_sum += lit.fit * known;
+            valid_sum += known;
+            candidate.lowest = min(candidate.lowest, sampled.color);
+            candidate.highest = max(candidate.highest, sampled.color);
+            nearest_px2 = select(nearest_px2, min(nearest_px2, px2), same);
+            if is_own {
+                candidate.is_own = true;
+                own = vec4<f32>(sampled.color, given.w);
+                own_fits = lit.own_fit;
+            }
+        }
+    }
+    if weights == 0.0 {
+        return no_candidate();
+    }
+    let mean = sum * (1.0 / weights);
+    let known = 1.0 / valid_sum;
+    let lod = select(candidate_level(sqrt(nearest_px2), coarsest), coarsest + 1.0, nearest_px2 == NO_PX2);
+    candidate.color = select(mean.xyz, own.xyz, candidate.is_own);
+    candidate.alpha = select(mean.w, own.w, candidate.is_own);
+    candidate.usable = true;
+    candidate.lod = select(lod, 0.0, candidate.is_own);
+    candidate.gains = gain_sum * known;
+    candidate.fit = min(fit_sum * known, own_fits);
+    return candidate;
+}
+
+// Candidate of a pixel in the fovea.
+fn full_rate_candidate(px: vec2<u32>, view: u32, mask_word: u32) -> Candidate {
+    let given = color_at(px, view);
+    let own = color(given.xyz);
+    let usable = own.usable && (mask_word & 1u) != 0u;
+    var candidate = no_candidate();
+    candidate.color = select(vec3<f32>(0.0), own.color, usable);
+    candidate.alpha = select(1.0, given.w, usable);
+    candidate.usable = usable;
+    candidate.is_own = usable;
+    return candidate;
+}
+
+// Sums over the nine pixels around a pixel of the fovea, as far as they are shaded; without any unless `needed`. A
+// variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
+fn samples_near(px: vec2<u32>, view: u32, needed: bool) -> Near {
+    var near = Near(vec3<f32>(0.0), vec3<f32>(0.0), 0.0);
+    let taps = select(0u, 9u, needed);
+    for (var tap = 0u; tap < taps; tap++) {
+        let at = clamp(px + vec2<u32>(tap % 3u, tap / 3u), vec2<u32>(1u), frame.size) - 1u;
+        let sampled = color(color_at(at, view).xyz);
+        if sampled.usable && (mask_at(at, view) & 1u) != 0u {
+            near = add_near(near, sampled.color);
+        }
+    }
+    return near;
+}
+
+fn pixel(px: vec2<u32>, view: u32) {
+    if !is_seen(px, view) {
+        hidden_pixel(px, view);
+        return;
+    }
+    let disparity_now = disparity_at(px, view);
+    let mask_word = mask_at(px, view);
+    let level = level_of(mask_word);
+    var candidate = candidate_at(px, view, mask_word, disparity_now);
+    if level == 0u {
+        candidate = full_rate_candidate(px, view, mask_word);
+    }
+    let near = samples_near(px, view, ANTIALIAS != 0u && candidate.is_own && level == 0u);
+    show_pixel(px, view, level, disparity_now, candidate, level == 0u, near);
+}
+
+@compute @workgroup_size(64, 1)
+fn main(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) invocation: u32,
+) {
+    if id.x < frame.size.x && id.y < frame.size.y {
+        pixel(id.xy, frame.first_view + group.z);
+    }
+    add_counts(invocation);
+}

@@ -1,0 +1,175 @@
+//#use kept_history
+//#use kept_noise
+//#use output
+//#use rng
+//#use sparse
+// Reconstruction of a pixel from history that keeps samples in their places, and from the candidate that the samples
+// around it give (smr); shared by frames of lattices and of quads. CPU twin: `pixel` in src/cpu/sparse_pass/pixel.rs;
+// docs/method.md has the equations.
+
+@group(0) @binding(18) var next_kept: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(19) var next_noise: texture_storage_2d_array<r32uint, write>;
+
+// Candidate of a pixel, and its gain and fit.
+struct Candidate {
+    color: vec3<f32>,
+    usable: bool,
+    lod: f32,
+    lowest: vec3<f32>,
+    highest: vec3<f32>,
+    gains: vec3<f32>,
+    fit: f32,
+    alpha: f32,
+    noise: Noise,
+    // Whether the candidate is this pixel's own sample.
+    is_own: bool,
+}
+
+// A candidate without samples; the other fields are 0.
+fn no_candidate() -> Candidate {
+    var none: Candidate;
+    none.gains = vec3<f32>(1.0);
+    none.fit = 1.0;
+    none.alpha = 1.0;
+    none.noise = Noise(1.0, 0.0);
+    return none;
+}
+
+// Result at a pixel that has history and a usable candidate, of jittered frames. `near`: sums over the nine samples
+// around a pixel of full rate.
+fn antialiased(
+    px: vec2<u32>,
+    view: u32,
+    level: u32,
+    given: Reconstruction,
+    samples: f32,
+    is_own: bool,
+    near: Near,
+) -> Averaged {
+    if !is_own {
+        return kept_mean(given, reconstruct(given), samples);
+    }
+    var inputs = given;
+    var left = 1.0;
+    if level == 0u {
+        let by = clip(near, inputs.history);
+        inputs.history = clipped(inputs.history, by.change);
+        inputs.nearest.color = clipped(inputs.nearest.color, by.change);
+        left = by.kept;
+    }
+    return average(inputs, samples, -frame.views[view].jitter_px, left);
+}
+
+// Pixels outside the visible area: black, without stored history.
+fn hidden_pixel(px: vec2<u32>, view: u32) {
+    let trace = PixelTrace(VERDICT_RESET, 0.0, 0.0, 0u, 0.0, 1.0, true, vec2<f32>(0.0));
+    write_output(px, view, vec3<f32>(0.0), 1.0, trace);
+    if VIEW == 0u {
+        let empty = pack_kept(Kept(vec3<f32>(0.0), -1.0, -1.0, vec2<f32>(0.0)));
+        textureStore(next_kept, px, view, vec4<u32>(empty, 0u, 0u));
+        if NOISY != 0u {
+            textureStore(next_noise, px, view, vec4<u32>(pack_noise(Noise(1.0, 0.0)), 0u, 0u, 0u));
+        }
+    }
+}
+
+// Processes a visible pixel. `level`: log2 of the distance of the samples around it. `is_full_rate`: whether it has a
+// sample in every frame, or was repaired. `near`: sums over the nine samples around a pixel of level 0, of jittered
+// frames.
+fn show_pixel(
+    px: vec2<u32>,
+    view: u32,
+    level: u32,
+    disparity_now: f32,
+    candidate: Candidate,
+    is_full_rate: bool,
+    near: Near,
+) {
+    let surface = surface_of(px, view, level);
+    let motion = surface.motion;
+    let source = kept_source(px, view, surface);
+    let previous = source.previous;
+    let is_final = candidate.usable && is_full_rate && NOISY == 0u && ANTIALIAS == 0u;
+    let kept = kept_history(source, view, may_have_history(previous) && !is_final);
+    let history = kept.found;
+    let verdict = select(previous.verdict, VERDICT_VALID, history.lod >= 0.0);
+    let valid = verdict == VERDICT_VALID;
+    count_pixel(px, view, candidate.usable, disparity_now, verdict);
+
+    var shown = candidate.color;
+    let candidate_lod = select(-1.0, candidate.lod, candidate.usable);
+    var next = Kept(candidate.color, candidate_lod, surface.stored_disparity, vec2<f32>(0.0));
+    var samples = 1.0;
+    if ANTIALIAS != 0u && candidate.is_own {
+        next.place_px = -frame.views[view].jitter_px;
+    }
+    var share = 0.0;
+    var fits = 1.0;
+    var noise = candidate.noise;
+    if history.lod >= 0.0 {
+        if candidate.usable {
+            var inputs: Reconstruction;
+            inputs.candidate = candidate.color;
+            inputs.lod = candidate.lod;
+            inputs.lowest = candidate.lowest;
+            inputs.highest = candidate.highest;
+            inputs.history = history.color;
+            inputs.history_lod = history.lod;
+            inputs.nearest = history.nearest;
+            inputs.moved = has_moved(vec2<f32>(0.0), history.nearest.place_px);
+            inputs.gains = candidate.gains;
+            inputs.fit = candidate.fit;
+            inputs.trust = previous.trust;
+            inputs.accumulate = frame.smr_accumulate;
+            var result: Reconstructed;
+            if NOISY != 0u {
+                let accumulated = accumulate(inputs, stored_noise(kept.texel, view), candidate.noise);
+                result = accumulated.result;
+                noise = accumulated.noise;
+            } else if ANTIALIAS != 0u {
+                let averaged = antialiased(px, view, level, inputs, kept.samples, candidate.is_own, near);
+                result = averaged.result;
+                samples = averaged.samples;
+            } else {
+                result = reconstruct(inputs);
+            }
+            shown = result.color;
+            share = result.share;
+            fits = candidate.fit;
+            next = result.kept;
+        } else {
+            shown = history.color;
+            share = 1.0;
+            next = history.nearest;
+            samples = kept.samples;
+            if NOISY != 0u {
+                noise = stored_noise(kept.texel, view);
+            }
+        }
+        next.disparity = surface.stored_disparity;
+    }
+    // Means of colors may exceed the largest half.
+    shown = clamp(shown, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));
+    count_if(valid && share == 0.0, COUNT_REPLACED);
+    let sharpness = exp2(-max(next.lod, 0.0));
+    write_output(
+        px,
+        view,
+        shown,
+        candidate.alpha,
+        PixelTrace(verdict, exp2(-candidate.lod), sharpness, 0u, share, fits, share == 0.0, motion),
+    );
+    if VIEW == 0u {
+        var words = pack_kept(next);
+        if ANTIALIAS != 0u {
+            // The color is rounded stochastically.
+            let draw = unit_draw(bits(px.x, px.y, frame.frame_low, frame.views[view].key));
+            let stored = Kept(next.color, stored_lod(Mean(next.lod, samples)), next.disparity, next.place_px);
+            words = vec2<u32>(pack_color_by(next.color, draw), pack_kept(stored).y);
+        }
+        textureStore(next_kept, px, view, vec4<u32>(words, 0u, 0u));
+        if NOISY != 0u {
+            textureStore(next_noise, px, view, vec4<u32>(pack_noise(noise), 0u, 0u, 0u));
+        }
+    }
+}

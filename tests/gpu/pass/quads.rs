@@ -1,0 +1,145 @@
+//! Frames shaded by quads: plans and pictures of both executors, the lists on the device, and planted errors.
+
+use super::rig::{Rig, View};
+use super::sparse::{SIZE, arrange, desc, gliding_view};
+use afterimage::gpu::{Afterimage, Frame};
+use afterimage::internal::Sources;
+use afterimage::shader::SHADERS;
+use afterimage::wgpu::TextureFormat;
+use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, MethodKind, Reset, Settings, Smr};
+
+const FRAMES: u64 = 12;
+
+fn settings(antialias: bool) -> Settings {
+    let foveation = Foveation { fovea_deg: 12.0, mid_deg: 30.0, budget: 0.1, ..Foveation::quads() };
+    let method = Method::Smr(Smr { antialias, ..Smr::default() });
+    Settings { method, foveation, ..Settings::default() }
+}
+
+/// Two views that glide, with colors at every pixel, of which some are not numbers. In the second view surfaces part, and
+/// its gaze is lost in every fifth frame.
+fn views(index: u64, settings: &Settings) -> [View; 2] {
+    [0, 1].map(|v| {
+        let mut view = gliding_view(index, v, settings);
+        view.facts.lattices = None;
+        let trust = view.trust.take().unwrap();
+        let at = |x: u32, y: u32| trust.at(x as usize, y as usize);
+        view.trust = Some(Image::from_fn(SIZE, |[x, y]| if y == 5 { 0.0 } else { at(x, y) }));
+        let antialias = matches!(settings.method, Method::Smr(Smr { antialias: true, .. }));
+        view.facts.jitter_px = if antialias { Foveation::jitter_px(index) } else { [0.0; 2] };
+        if v == 1 {
+            view.motion = view.motion.map(|motion| motion.map(|[x, y]| [x, -y]));
+            view.facts.gaze = if index % 5 == 4 { Gaze::Lost } else { view.facts.gaze };
+        }
+        if index > 8 {
+            view.facts.visible_px = Some([[2.0, 1.0, 12.0, -30.0], [66.0, 39.0, 100.0, 60.0]]);
+        }
+        let color = &view.color;
+        let at = |[x, y]: [u32; 2]| color.at(x as usize, y as usize);
+        view.color = Image::from_fn(SIZE, |[x, y]| {
+            let [r, g, b] = at([x, y]);
+            [if (x + 3 * y).is_multiple_of(29) { f32::NAN } else { r }, g, b]
+        });
+        view
+    })
+}
+
+fn reset_of(index: u64, rig: &mut Rig) -> Reset {
+    arrange(index, rig);
+    if index == 7 { Reset::All } else { Reset::None }
+}
+
+#[test]
+fn frames_by_quads_are_bit_equal_on_both_executors() {
+    let with = |method: MethodKind| Settings { method: method.into(), ..settings(false) };
+    let others = [MethodKind::None, MethodKind::Taa, MethodKind::Taau, MethodKind::Wrs].map(with);
+    for settings in [settings(false), settings(true)].into_iter().chain(others) {
+        let Some(mut rig) = Rig::new(desc(), settings) else { return };
+        let counts: Vec<u32> = (0..FRAMES)
+            .map(|index| {
+                let reset = reset_of(index, &mut rig);
+                let (made, _) = rig.both(index, reset, &views(index, &settings));
+                assert_lists_are_masks(&rig, &made.quads);
+                made.quads.iter().sum()
+            })
+            .collect();
+        println!("{:?}: quads shaded {counts:?}", settings.method);
+        assert!(counts.iter().all(|&n| n > 100 && n < 900));
+    }
+}
+
+/// Lists of the device, view by view, against a mask of all views.
+fn assert_lists_are_masks(rig: &Rig, mask: &[u32]) {
+    let [columns, rows] = SIZE.map(|side| side.div_ceil(2));
+    for (view, mask) in mask.chunks((columns * rows) as usize).enumerate() {
+        let words: Vec<u32> =
+            afterimage_testing::gpu::read_buffer(&rig.device, &rig.queue, rig.gpu.quad_list(view).unwrap());
+        let count = mask.iter().sum::<u32>();
+        assert_eq!(words[..8], [6, count, 0, 0, count.div_ceil(64), 1, 1, count], "view {view}");
+        let mut listed = words[8..8 + count as usize].to_vec();
+        listed.sort_unstable_by_key(|quad| (quad >> 16, quad & 0xffff));
+        let shaded =
+            (0..).zip(mask).filter(|(_, shaded)| **shaded == 1).map(|(i, _)| (i % columns) | ((i / columns) << 16));
+        assert_eq!(listed, shaded.collect::<Vec<_>>(), "view {view}");
+    }
+}
+
+#[test]
+fn what_was_not_planned_is_refused() {
+    let desc = ContextDesc { settings: settings(false), ..ContextDesc::new(SIZE) };
+    let Some(rig) = Rig::new(ContextDesc::new(SIZE), desc.settings) else { return };
+    let mut post = Afterimage::new(&rig.device, &desc, TextureFormat::Rgba16Float).unwrap();
+    let texture = |usage| super::rig::make_texture(&rig.device, &desc, TextureFormat::Rgba16Float, usage);
+    let (color, output) = (texture(Afterimage::INPUT_USAGE), texture(Afterimage::OUTPUT_USAGE));
+    let facts = [views(0, &desc.settings)[0].facts];
+    let mut encoder = rig.device.create_command_encoder(&Default::default());
+    let frame = Frame::new(&color, &facts, 3);
+    let mut refused = |post: &mut Afterimage, frame: &Frame<'_>| {
+        post.record(&rig.device, &mut encoder, frame, &output).map(|_| ()).map_err(|error| error.to_string())
+    };
+    let expected = "expected the plan of this frame: call plan before the frame is shaded";
+    assert_eq!(refused(&mut post, &frame), Err(format!("plan of view 0 is missing: {expected}")));
+    let mut encoder = rig.device.create_command_encoder(&Default::default());
+    post.plan(&rig.device, &mut encoder, &frame).unwrap();
+    let later = Frame { index: 4, ..frame };
+    assert_eq!(refused(&mut post, &later), Err(format!("plan of view 0 is that of frame 3: {expected}")));
+    assert_eq!(refused(&mut post, &frame), Ok(()));
+    assert_eq!(refused(&mut post, &frame), Err(format!("plan of view 0 is missing: {expected}")));
+}
+
+#[test]
+fn a_wrong_pass_is_caught() {
+    let settings = settings(true);
+    let names = [
+        "quad_key_pass",
+        "quad_threshold_pass",
+        "quad_mask_pass",
+        "quad_around_pass",
+        "quad_observe_pass",
+        "quad_light_pass",
+        "quads_pass",
+    ];
+    let right = names.map(|name| SHADERS.compose(name).source);
+    let differs = |sources: &[String; 7]| {
+        let texts = names.into_iter().zip(sources);
+        let sources = texts.fold(Sources::default(), |all, (name, text)| all.with(name, text));
+        let mut rig = Rig::with_sources(desc(), settings, sources)?;
+        Some((0..FRAMES).any(|index| {
+            let reset = reset_of(index, &mut rig);
+            let views = views(index, &settings);
+            rig.differs(index, reset, &views)
+        }))
+    };
+    let planted = [
+        ("highest = max(highest, stored.color);", ""),
+        ("needs[i] = need_at(px, view) * acuity(e_deg);", "needs[i] = need_at(px, view);"),
+        ("of_run[first - 1u] <= budget - chosen", "of_run[first - 1u] <= budget"),
+        ("    if level == 0u {\n        return nothing;\n    }\n", ""),
+        ("vec2<u32>(tap % 5u, tap / 5u)) - 2;", "vec2<u32>(tap % 5u, tap / 5u)) - 1;"),
+        ("source.previous.at -= frame.views[view].jitter_px;", ""),
+        ("own.observation.error >= 0.0 {\n        near.weight", "false {\n        near.weight"),
+        ("candidate.fit = min(fit_sum * known, own_fits);", "candidate.fit = fit_sum * known;"),
+        ("sampled.usable && (mask_at(at, view) & 1u) != 0u", "sampled.usable"),
+    ];
+    afterimage_testing::planted::all_caught(&right, &planted, differs);
+}
