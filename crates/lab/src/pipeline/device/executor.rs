@@ -5,8 +5,8 @@ use crate::clock::{Elapsed, Stopwatch};
 use crate::device::{Headless, PassClock};
 use crate::frame::{Content, DeviceHandle, RenderedFrame, Shaded, ShadedColor, Wish};
 use afterimage::gpu::Frame;
-use afterimage::{ContextDesc, CreateError, DebugView, FrameError};
-use afterimage_clip::pipeline::{Candidate, Executor, MethodOutput, Repaired, RunKind, Shade, Shot, repairs};
+use afterimage::{ContextDesc, CreateError, DebugView, Filter, FrameError, SettingsError};
+use afterimage_clip::pipeline::{Candidate, Choice, Chosen, Executor, MethodOutput, RunKind, Shade, Shot};
 use std::slice::from_ref;
 use std::sync::Arc;
 use wgpu::Texture;
@@ -38,6 +38,10 @@ impl DeviceExecutor {
 
 impl Executor for DeviceExecutor {
     fn add(&mut self, kind: &RunKind, desc: &ContextDesc) -> Result<(), CreateError> {
+        if desc.settings.foveation.filter == Filter::Quads {
+            let expected = "another one on a device, or methods on the CPU".into();
+            Err(SettingsError { setting: "foveation filter", found: "quads".into(), expected })?;
+        }
         self.runs.push(match kind {
             RunKind::WithShader(_, shader) => DeviceRun::with_shader(&self.gpu, desc, DeviceFormats::EXACT, shader)?,
             _ => DeviceRun::new(&self.gpu, desc, DeviceFormats::EXACT)?,
@@ -68,10 +72,8 @@ impl Executor for DeviceExecutor {
         let (gpu, run) = (&self.gpu, &mut self.runs[run]);
         let views = from_ref(&shot.candidate.view);
         let frame = self.inputs.frame(views, shot.frame.index, shot.reset(), shot.use_trust);
-        let planned = match repairs(&run.post().desc().settings) {
-            true => Some(plan(gpu, &self.clock, run, &frame)?),
-            false => None,
-        };
+        let choice = Choice::of(&run.post().desc().settings);
+        let planned = choice.map(|_| plan(gpu, &self.clock, run, &frame)).transpose()?;
         let is_simulated = shot.frame.is_simulated();
         let shaded = planned.as_ref().filter(|_| !is_simulated).and_then(|(wish, _)| shade(wish));
         let repaired = match &shaded {
@@ -108,7 +110,8 @@ impl Executor for DeviceExecutor {
         let output = MethodOutput {
             image: gpu.read_rgb(run.output(), 0),
             elapsed: planned.as_ref().map_or(elapsed, |(_, planning)| elapsed.and(*planning)),
-            repaired: planned.as_ref().filter(|_| repaired.is_some()).map(|(wish, _)| Repaired {
+            chosen: choice.zip(planned).filter(|_| repaired.is_some()).map(|(choice, (wish, _))| Chosen {
+                choice,
                 share: wish.share(run.post().desc().size_px),
                 shading: shaded.as_ref().map(|shaded| shaded.took),
             }),
