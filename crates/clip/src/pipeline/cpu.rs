@@ -7,7 +7,7 @@ use crate::clock::{Elapsed, Stopwatch};
 use crate::frame::{DeviceHandle, RenderedFrame, Shaded, ShadedColor, Wish};
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
 use afterimage::kernel::debug_view::view_color;
-use afterimage::{ContextDesc, CreateError, FrameError, FrameValue, Image};
+use afterimage::{ContextDesc, CreateError, FrameError, Image};
 use std::slice::from_ref;
 
 /// Methods on the CPU.
@@ -64,7 +64,7 @@ impl Executor for CpuExecutor {
         let noise = noise.as_ref().or(given.noise);
         let frame = Frame { noise: noise.as_ref().map(from_ref), ..frame };
         let frame = match planned.as_ref().map(|planned| planned.choice) {
-            Some(Choice::Shaded) => Frame { color: from_ref(pixels.as_ref().ok_or_else(unshaded)?), ..frame },
+            Some(Choice::Shaded) => Frame { color: from_ref(pixels.as_ref().ok_or_else(Choice::unshaded)?), ..frame },
             Some(Choice::Repaired) => Frame { repaired: pixels.as_ref().map(from_ref), ..frame },
             None => frame,
         };
@@ -116,10 +116,4 @@ impl Planned {
         let quads = Image::from_fn(size, |[x, y]| pixels.at(2 * x as usize, 2 * y as usize));
         Ok(Some(Self { choice, wish: Wish { quads, on_device: None }, took }))
     }
-}
-
-/// Error for a frame whose source shades no quads.
-fn unshaded() -> FrameError {
-    let (found, expected) = ("a frame that its source shades before pixels are chosen".into(), "one of surfaces alone");
-    FrameError::Value { value: FrameValue::Color, view: 0, found, expected }
 }

@@ -1,7 +1,7 @@
 //! Runs of a pipeline: kinds and outputs.
 
 use crate::clock::Elapsed;
-use afterimage::{Filter, FrameStats, Image, Method, Settings, SettingsError, Smr};
+use afterimage::{Filter, FrameError, FrameStats, FrameValue, Image, Method, Settings, SettingsError, Smr};
 use std::sync::Arc;
 
 /// Kind of a run: how it processes the foveated frames.
@@ -49,6 +49,12 @@ impl Choice {
             (Filter::Sparse, Method::Smr(Smr { repair: Some(_), .. })) => Some(Self::Repaired),
             _ => None,
         }
+    }
+
+    /// Error for a frame of which all shaded pixels are chosen, and whose source shades none.
+    pub fn unshaded() -> FrameError {
+        let found = "none: the source shades no chosen pixels".into();
+        FrameError::Value { value: FrameValue::Color, view: 0, found, expected: "a source that shades quads" }
     }
 }
 

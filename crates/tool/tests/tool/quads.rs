@@ -22,16 +22,16 @@ fn report(input: &str, budget: &str, more: &[&str]) -> (Value, [Vec<f64>; 3]) {
     (read_json(&folder.path("out").join("report.json")), shares)
 }
 
-/// Whether each method's share is the mean of its frames, smr's alone has the budget, and no frame exceeds it.
+/// Whether each method's share is the mean of its frames, smr spends most of the budget, and no frame exceeds it.
 fn is_consistent(report: &Value, shares: &[Vec<f64>; 3], even: &[Vec<f64>; 3], budget: f64) -> bool {
     let is_mean = METHODS.iter().zip(shares).all(|(method, shares)| {
         let mean = shares.iter().sum::<f64>() / shares.len() as f64;
         (report["methods"][method]["shaded_share"].as_f64().unwrap() - mean).abs() < 1e-5
     });
-    let spent: Vec<f64> = shares[2].iter().zip(&even[2]).map(|(all, even)| all - even).collect();
-    // Half of a quad may lie beyond the edge.
-    let is_spent = spent.iter().all(|&spent| spent <= 1.01 * budget && spent >= 0.5 * budget);
-    is_mean && is_spent && shares[..2] == even[..2]
+    let spent = |method: usize| shares[method].iter().zip(&even[0]).map(|(all, even)| all - even);
+    // A part of the quads at the lower edge lies beyond it.
+    let is_within = (0..3).flat_map(spent).all(|spent| (0.0..=1.02 * budget).contains(&spent));
+    is_mean && is_within && spent(2).all(|spent| spent >= 0.6 * budget)
 }
 
 #[test]
@@ -46,7 +46,10 @@ fn reports_say_how_much_was_shaded() {
         assert!(is_consistent(&report, &shares, &even, budget), "{shares:?}, {even:?}");
         assert!(!is_consistent(&report, &shares, &even, 2.1 * budget), "a planted error: half the budget");
         let foveation = &report["foveation"];
-        assert_eq!((&foveation["simulator"], &foveation["rate_mid"], &foveation["rate_far"]), (&"quads".into(), &4.into(), &8.into()));
+        assert_eq!(
+            (&foveation["simulator"], &foveation["rate_mid"], &foveation["rate_far"]),
+            (&"quads".into(), &4.into(), &8.into())
+        );
         assert_eq!(foveation["budget_percent"].as_f64(), percent.parse().ok());
         let smr = &report["methods"]["smr"];
         assert!(smr["repaired_share"].is_null() && report["samples"].is_null());
@@ -80,7 +83,7 @@ fn scenes_are_shaded_by_quads() {
     succeeds(&run("builtin:cubes", &out, &quads(&[SMALL, &more].concat())));
     let report = read_json(&folder.path("out").join("report.json"));
     let share = |method: &str| report["methods"][method]["shaded_share"].as_f64().unwrap();
-    assert!(share("smr") > share("none") + 0.025 && share("smr") < share("none") + 0.051 && share("none") > 0.02);
+    assert!((0.03..0.2).contains(&share("smr")), "{}", share("smr"));
     for method in METHODS {
         let [shaded, times] = ["shaded_share", "render_ms"].map(|key| column(&folder.path("out"), method, key));
         assert!(shaded.len() == 4 && shaded.iter().chain(&times).all(|v| v.unwrap() > 0.0), "{shaded:?}, {times:?}");

@@ -76,7 +76,7 @@ impl Executor for DeviceExecutor {
         let planned = choice.map(|_| plan(gpu, &self.clock, run, &frame)).transpose()?;
         let is_simulated = shot.frame.is_simulated();
         let shaded = planned.as_ref().filter(|_| !is_simulated).and_then(|(wish, _)| shade(wish));
-        let repaired = match &shaded {
+        let pixels = match &shaded {
             Some(Shaded { color: ShadedColor::OnDevice(color), .. }) => color.downcast_ref::<Texture>(),
             Some(Shaded { color: ShadedColor::InMemory(color), .. }) => {
                 let of_frame = shot.candidate.in_memory.as_ref().and_then(|given| given.noise);
@@ -85,7 +85,10 @@ impl Executor for DeviceExecutor {
             }
             None => planned.as_ref().filter(|_| is_simulated).map(|_| self.inputs.full()),
         };
-        let frame = Frame { repaired: repaired.map(Into::into), ..frame };
+        let frame = match choice {
+            Some(Choice::Shaded) => Frame { color: pixels.ok_or_else(Choice::unshaded)?.into(), ..frame },
+            _ => Frame { repaired: pixels.map(Into::into), ..frame },
+        };
         let encoder = || gpu.device.create_command_encoder(&Default::default());
         let mut debug_views = vec![];
         // Counters come from a debug view. If no view is requested, one is drawn for the counters and not read back.
@@ -110,7 +113,7 @@ impl Executor for DeviceExecutor {
         let output = MethodOutput {
             image: gpu.read_rgb(run.output(), 0),
             elapsed: planned.as_ref().map_or(elapsed, |(_, planning)| elapsed.and(*planning)),
-            chosen: choice.zip(planned).filter(|_| repaired.is_some()).map(|(choice, (wish, _))| Chosen {
+            chosen: choice.zip(planned).filter(|_| pixels.is_some()).map(|(choice, (wish, _))| Chosen {
                 choice,
                 share: wish.share(run.post().desc().size_px),
                 shading: shaded.as_ref().map(|shaded| shaded.took),
@@ -127,7 +130,7 @@ impl Executor for DeviceExecutor {
     }
 }
 
-/// The quads that a method chooses to repair, and the time of choosing them.
+/// The quads that a method chooses, and the time of choosing them.
 fn plan(
     gpu: &Headless,
     clock: &PassClock,

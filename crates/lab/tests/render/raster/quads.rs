@@ -144,5 +144,5 @@ fn a_source_that_shades_no_quads_is_refused() {
     let frame = source.render(&request).unwrap();
     let mut shade = |wish: &_| -> Result<_, Box<dyn Error>> { Ok(source.shade(&frame, wish)?) };
     let error = twins.rendered.step_with(&frame, &mut shade).unwrap_err().to_string();
-    assert!(error.contains("color") && error.contains("surfaces"), "{error}");
+    assert!(error.contains("color") && error.contains("a source that shades quads"), "{error}");
 }
