@@ -63,11 +63,7 @@ impl Executor for CpuExecutor {
         let noise = shaded.as_ref().and_then(|shaded| shaded.noise_in(given.noise));
         let noise = noise.as_ref().or(given.noise);
         let frame = Frame { noise: noise.as_ref().map(from_ref), ..frame };
-        let frame = match planned.as_ref().map(|planned| planned.choice) {
-            Some(Choice::Shaded) => Frame { color: from_ref(pixels.as_ref().ok_or_else(Choice::unshaded)?), ..frame },
-            Some(Choice::Repaired) => Frame { repaired: pixels.as_ref().map(from_ref), ..frame },
-            None => frame,
-        };
+        let frame = with_pixels(frame, planned.as_ref(), pixels.as_ref().map(from_ref))?;
         let watch = Stopwatch::start();
         let stats = match &mut traces {
             Some(traces) => post.process_traced(&frame, &mut output, traces)?,
@@ -95,6 +91,19 @@ impl Executor for CpuExecutor {
     fn memory_bytes(&self, run: usize) -> usize {
         self.0[run].memory_bytes()
     }
+}
+
+/// The frame with the colors of chosen pixels; `None`: its source did not shade them.
+fn with_pixels<'a>(
+    frame: Frame<'a>,
+    planned: Option<&Planned>,
+    pixels: Option<&'a [&'a Image<[f32; 3]>]>,
+) -> Result<Frame<'a>, FrameError> {
+    Ok(match planned.map(|planned| planned.choice) {
+        Some(Choice::Shaded) => Frame { color: pixels.ok_or_else(Choice::unshaded)?, ..frame },
+        Some(Choice::Repaired) => Frame { repaired: pixels, ..frame },
+        None => frame,
+    })
 }
 
 /// The quads that a method chose.
