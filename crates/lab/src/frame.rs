@@ -22,8 +22,8 @@ pub enum OnDevice {
     Surfaces(DeviceFrame),
 }
 
-/// A frame of the rasterizer: the full-rate frame, an atlas of the samples of a sparse one, or surfaces whose pixels are
-/// shaded later.
+/// A frame of the rasterizer: the full-rate frame, an atlas of the samples of a sparse one, or surfaces whose pixels
+/// are shaded later.
 #[derive(Clone, Debug)]
 pub struct DeviceFrame {
     /// The device.

@@ -177,8 +177,8 @@ impl Raster {
         self.point_pipelines.get_or_init(new)
     }
 
-    /// Records depth and motion of a full-rate frame, without its color, in `targets` or, if that is `None`, in those of
-    /// full-rate frames.
+    /// Records depth and motion of a full-rate frame, without its color, in `targets` or, if that is `None`, in those
+    /// of full-rate frames.
     pub fn record_surfaces(
         &mut self,
         device: &Device,
