@@ -3,7 +3,7 @@
 use crate::clock::Quartiles;
 use crate::frame::RenderedFrame;
 use crate::metric::{Crops, FrameErrors, Reference, Scorer, Scores, WorstCrop, psnr_db};
-use crate::pipeline::{MethodOutput, Step};
+use crate::pipeline::{Choice, MethodOutput, Step};
 use crate::times::{FrameTime, RenderTime, Times};
 use afterimage::Image;
 use serde::{Deserialize, Serialize};
@@ -39,6 +39,9 @@ pub struct MethodReport {
     /// Mean share of the pixels that a frame repaired; `None` if the method repairs none.
     #[serde(default)]
     pub repaired_share: Option<f64>,
+    /// Mean share of the pixels that were shaded; `None` unless the method chooses all pixels that are shaded.
+    #[serde(default)]
+    pub shaded_share: Option<f64>,
     /// Bytes per pixel and frame that the pass reads and writes, for half-float inputs.
     pub bytes_per_pixel: Option<u32>,
     /// Bytes per pixel that are kept between frames.
@@ -74,6 +77,7 @@ pub struct MethodAccumulator {
     times: Times,
     render: Times,
     repaired: Vec<f64>,
+    shaded: Vec<f64>,
     nonfinite_in: u64,
     nonfinite_out: u64,
     pixels: u64,
@@ -104,10 +108,16 @@ impl MethodAccumulator {
         }
         self.traffic = shown.traffic_bytes_per_pixel;
         self.times.push(shown.elapsed);
-        let shading = shown.repaired.and_then(|repaired| repaired.shading);
+        let shading = shown.chosen.and_then(|chosen| chosen.shading);
         let render = frame.render.map(|render| shading.map_or(render, |shading| render.and(shading)));
         render.into_iter().for_each(|elapsed| self.render.push(elapsed));
-        self.repaired.extend(shown.repaired.map(|repaired| repaired.share));
+        if let Some(chosen) = shown.chosen {
+            let shares = match chosen.choice {
+                Choice::Shaded => &mut self.shaded,
+                Choice::Repaired => &mut self.repaired,
+            };
+            shares.push(chosen.share);
+        }
         let frame = &frame.reference;
         self.nonfinite_in += frame.nonfinite + shown.stats.nonfinite;
         let bad = |c: &&[f32; 3]| !c.iter().all(|v| v.is_finite());
@@ -135,7 +145,7 @@ impl MethodAccumulator {
         &self.times
     }
 
-    /// Times of rendering the method's input: the frame, and the pixels to repair.
+    /// Times of rendering the method's input: the frame, and the pixels that the method chose.
     pub fn render(&self) -> &Times {
         &self.render
     }
@@ -157,15 +167,16 @@ impl MethodAccumulator {
         let times = [cpu_ms, render_ms, render_cpu_ms, sum(render_ms, ms), sum(render_cpu_ms, cpu_ms)];
         let number = |v: Option<f64>| v.map_or(String::new(), |v| format!("{v:.3}"));
         let (ms, times) = (number(ms), times.map(number).join(","));
-        let repaired = self.repaired.last().map_or(String::new(), |share| format!("{share:.6}"));
+        let last = |shares: &[f64]| shares.last().map_or(String::new(), |share| format!("{share:.6}"));
+        let (repaired, shaded) = (last(&self.repaired), last(&self.shaded));
         let jod = self.last.and_then(|e| e.jod).map_or(String::new(), |jod| format!("{jod:.4}"));
-        format!("{index},{name},{psnr},{retained},{ms},{fovea},{mid},{periphery},{times},{repaired},{jod}")
+        format!("{index},{name},{psnr},{retained},{ms},{fovea},{mid},{periphery},{times},{repaired},{jod},{shaded}")
     }
 
     /// The results of the method.
     pub fn report(&self, persistent_bytes_per_pixel: f64) -> MethodReport {
         let share = |part: u64, whole: u64| (whole > 0).then(|| part as f64 / whole as f64);
-        let repaired = (self.repaired.iter().sum::<f64>(), self.repaired.len());
+        let mean = |shares: &[f64]| (!shares.is_empty()).then(|| shares.iter().sum::<f64>() / shares.len() as f64);
         MethodReport {
             share_of_oracle: None,
             ms: self.times.wall_ms(),
@@ -178,7 +189,8 @@ impl MethodAccumulator {
             nonfinite_out: self.nonfinite_out,
             flushed: share(self.flushed, self.pixels),
             replaced: share(self.replaced, self.with_history),
-            repaired_share: (repaired.1 > 0).then(|| repaired.0 / repaired.1 as f64),
+            repaired_share: mean(&self.repaired),
+            shaded_share: mean(&self.shaded),
             bytes_per_pixel: self.traffic,
             persistent_bytes_per_pixel,
         }

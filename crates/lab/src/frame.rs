@@ -18,9 +18,12 @@ pub enum OnDevice {
     Samples(DeviceSamples),
     /// Composed of quad views, at full size.
     Composed(ComposedFrame),
+    /// Depth and motion of every pixel. The color has only pixels that were chosen and shaded later.
+    Surfaces(DeviceFrame),
 }
 
-/// A frame of the rasterizer: the full-rate frame, or an atlas of the samples of a sparse one.
+/// A frame of the rasterizer: the full-rate frame, an atlas of the samples of a sparse one, or surfaces whose pixels
+/// are shaded later.
 #[derive(Clone, Debug)]
 pub struct DeviceFrame {
     /// The device.

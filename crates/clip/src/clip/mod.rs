@@ -18,7 +18,7 @@ use crate::quad_views::QuadViewLayout;
 use crate::report::sheet::{Column, Sheet};
 use crate::source::FrameSource;
 use crate::times::{RenderTime, Times};
-use afterimage::{DebugView, Foveation, Image, MethodKind, ViewGeometry};
+use afterimage::{DebugView, Filter, Foveation, Image, MethodKind, ViewGeometry};
 use afterimage_metric::{Display, Viewing};
 use rayon::prelude::*;
 
@@ -132,8 +132,12 @@ pub fn title(name: &str, size: [u32; 2], frames: usize, fps: f32, foveation: &st
 
 /// Regions of a foveation in words.
 pub fn foveation_words(foveation: &Foveation, simulator: &str) -> String {
-    let Foveation { fovea_deg, rate_mid, rate_far, .. } = foveation;
-    format!("fovea {fovea_deg} deg, blocks {rate_mid} and {rate_far} px, {simulator}")
+    let Foveation { filter, fovea_deg, rate_mid, rate_far, budget, .. } = foveation;
+    let budget = match filter {
+        Filter::Quads => format!(" and {} % by need", 100.0 * budget),
+        _ => String::new(),
+    };
+    format!("fovea {fovea_deg} deg, blocks {rate_mid} and {rate_far} px, {simulator}{budget}")
 }
 
 impl Playback<'_> {
@@ -149,7 +153,7 @@ impl Playback<'_> {
         let mut table = out.table(
             "frames.csv",
             "frame,method,psnr_db,retained_psnr_db,ms,fovea_psnr_db,mid_psnr_db,periphery_psnr_db,\
-             cpu_ms,render_ms,render_cpu_ms,total_ms,total_cpu_ms,repaired_share,jod",
+             cpu_ms,render_ms,render_cpu_ms,total_ms,total_cpu_ms,repaired_share,jod,shaded_share",
         )?;
         let pipeline = self.play(&mut |result| {
             let encoded = clip.score_and_write(result, &mut accumulators, out)?;

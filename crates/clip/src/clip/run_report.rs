@@ -7,6 +7,7 @@ use crate::method_report::MethodReport;
 use crate::output::Output;
 use crate::pipeline::ProcessorInfo;
 use crate::times::RenderTime;
+use afterimage::Filter;
 use afterimage_metric::Display;
 use serde::Serialize;
 
@@ -89,6 +90,8 @@ struct FoveationReport {
     blend_deg: f32,
     rate_mid: u32,
     rate_far: u32,
+    /// Pixels that a frame shades by need, percent; null unless methods choose the pixels that are shaded.
+    budget_percent: Option<f32>,
     /// Side of the pixels of uniform frames, pixels of the full-rate frame; null for other frames.
     scale: Option<f32>,
     ms: Option<Quartiles>,
@@ -126,6 +129,7 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
             blend_deg: foveation.blend_deg,
             rate_mid: foveation.rate_mid,
             rate_far: foveation.rate_far,
+            budget_percent: (foveation.filter == Filter::Quads).then_some(100.0 * foveation.budget),
             scale: facts.scale,
             ms: report.foveation_ms,
         },

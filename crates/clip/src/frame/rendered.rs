@@ -61,10 +61,11 @@ pub trait DeviceContent: Any + Debug + Send + Sync {
     /// Whether a path tracer foveated the frame.
     fn is_traced(&self) -> bool;
 
-    /// Level of detail of every pixel of a frame of `size_px`.
-    fn lods(&self, size_px: [u32; 2]) -> Image<f32>;
+    /// Level of detail of every pixel of a frame of `size_px`. `None`: the pixels that methods choose are shaded later,
+    /// and depth and motion of every pixel are those of this content.
+    fn lods(&self, size_px: [u32; 2]) -> Option<Image<f32>>;
 
-    /// Reads the color; `None` if it stays on the device.
+    /// Reads the color, which is empty before pixels are shaded; `None` if it stays on the device.
     fn read_color(&self) -> Option<Image<[f32; 3]>>;
 
     /// Reads depth and motion vectors; `None` if they stay on the device.

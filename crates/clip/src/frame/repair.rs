@@ -1,10 +1,11 @@
-//! Pixels that a method requests from a source while a frame is processed.
+//! Pixels that a method chooses while a frame is processed, and that its source shades.
 
 use super::DeviceHandle;
 use crate::clock::Elapsed;
 use afterimage::Image;
 
-/// Pixels of a sparse frame that a method's history lacks, and that the source should shade at full rate.
+/// Pixels that a method chose, and that the source should shade at full rate: of a sparse frame those that the method's
+/// history lacks.
 #[derive(Clone, Debug)]
 pub struct Wish {
     /// Whether the pixels of each quad of 2x2 pixels are requested.

@@ -22,7 +22,7 @@ pub trait Executor: Send {
     /// [`FrameError`] if the frame does not match the methods.
     fn set(&mut self, frame: &RenderedFrame, candidate: &Candidate<'_>) -> Result<(), FrameError>;
 
-    /// Runs a method on the current frame. `shade` shades the pixels to repair, for frames that no simulator foveates.
+    /// Runs a method on the current frame. `shade` shades chosen pixels, for frames that no simulator foveates.
     ///
     /// # Errors
     /// As for [`set`](Self::set).
@@ -32,7 +32,7 @@ pub trait Executor: Send {
     fn memory_bytes(&self, run: usize) -> usize;
 }
 
-/// Shades the pixels that a method repairs.
+/// Shades the pixels that a method chooses.
 pub type Shade<'a> = &'a mut dyn FnMut(&Wish) -> Option<Shaded>;
 
 /// The current frame, and the options of its processing.

@@ -59,7 +59,7 @@ impl Foveator {
                 let view = self.view(frame);
                 Candidate { view, lods: foveated.lod.clone(), in_memory: Some(color), pyramid: None }
             }
-            Content::OnDevice(content) => self.on_device(frame, content.as_ref(), is_read),
+            Content::OnDevice(content) => self.on_device(frame, content.as_ref(), ecc_deg, is_read),
         }
     }
 
@@ -73,9 +73,10 @@ impl Foveator {
         let is_still = self.is_still && matches!(frame.content, Content::FullRate);
         let pyramid = is_read.then(|| match self.still.take().filter(|_| is_still) {
             Some(pyramid) => pyramid,
-            // Methods read only the samples of sparse frames.
+            // Methods read only the samples of sparse frames, and the shaded quads of others.
             None => {
-                let most = if lattices.is_some() { 0 } else { self.foveation.max_level() };
+                let is_sampled = lattices.is_some() || self.foveation.filter == Filter::Quads;
+                let most = if is_sampled { 0 } else { self.foveation.max_level() };
                 Pyramid::new(frame.given().color.clone(), most)
             }
         });
@@ -88,15 +89,24 @@ impl Foveator {
     }
 
     /// A frame that its source foveated on a device. It is read back only if a method runs elsewhere.
-    fn on_device<'a>(&self, frame: &RenderedFrame, content: &dyn DeviceContent, is_read: bool) -> Candidate<'a> {
+    fn on_device<'a>(
+        &self,
+        frame: &RenderedFrame,
+        content: &dyn DeviceContent,
+        ecc_deg: &Image<f32>,
+        is_read: bool,
+    ) -> Candidate<'a> {
         let color = if is_read { content.read_color() } else { None };
+        let lods = content.lods(self.geometry.size_px());
+        let is_shaded = lods.is_some();
         let in_memory = color.map(|color| {
-            let has_geometry = frame.geometry == SparseGeometry::Samples;
+            let has_geometry = frame.geometry == SparseGeometry::Samples || !is_shaded;
             let geometry = if has_geometry { content.read_geometry() } else { None };
             // The levels of detail of a sparse frame follow from its lattices.
-            InMemory { has_lod: content.lattices().is_none(), geometry, ..InMemory::new(Cow::Owned(color)) }
+            let has_lod = is_shaded && content.lattices().is_none();
+            InMemory { has_lod, geometry, ..InMemory::new(Cow::Owned(color)) }
         });
-        let lods = content.lods(self.geometry.size_px());
+        let lods = lods.unwrap_or_else(|| self.foveation.lod_map(&self.geometry, frame.gaze_px, ecc_deg));
         Candidate { view: self.view(frame), lods, in_memory, pyramid: None }
     }
 

@@ -11,7 +11,7 @@ mod run;
 pub use candidate::{Candidate, InMemory, needs_lod};
 pub use executor::{Executor, Shade, Shot};
 pub use processor::{Cpu, Processor, ProcessorInfo};
-pub use run::{MethodOutput, Repaired, RunKind, repairs};
+pub use run::{Choice, Chosen, MethodOutput, RunKind};
 
 use crate::clock::Stopwatch;
 use crate::frame::{RenderedFrame, Shaded, Wish};
@@ -150,6 +150,7 @@ impl Pipeline {
             (Some(layout), None) => {
                 Wanted::QuadViews(layout.views(&self.foveator.foveation, &self.foveator.geometry, gaze_px))
             }
+            (None, None) if self.foveator.foveation.filter == Filter::Quads => Wanted::Surfaces,
             (None, None) => Wanted::FullRate,
         };
         FrameRequest {
@@ -180,8 +181,8 @@ impl Pipeline {
         self.step_with(frame, &mut |_| Ok(None))
     }
 
-    /// As [`step`](Self::step), for methods that repair frames: `shade` shades the pixels to repair, for frames that no
-    /// simulator foveates; it gives `None` for no repair.
+    /// As [`step`](Self::step), for methods that choose pixels: `shade` shades these, for frames that no simulator
+    /// foveates. `None`: the source cannot shade them; sparse frames are then not repaired.
     ///
     /// # Errors
     /// As for `step`, and those of `shade`.
@@ -207,8 +208,9 @@ impl Pipeline {
         };
         let mut failed = None;
         let mut shade = |wish: &Wish| shade(wish).unwrap_or_else(|error| (failed = Some(error), None).1);
-        let outputs = self.run(frame, &candidate, &mut shade)?;
+        let outputs = self.run(frame, &candidate, &mut shade);
         failed.map_or(Ok(()), Err)?;
+        let outputs = outputs?;
         let Candidate { lods, pyramid, .. } = candidate;
         self.foveator.keep(pyramid);
         Ok(Step { gaze_px, ecc_deg, lods, tracked, outputs, foveation_ms })
@@ -269,9 +271,9 @@ impl Pipeline {
 }
 
 fn check_oracle(foveation: &Foveation) -> Result<(), CreateError> {
-    if foveation.filter == Filter::Sparse {
+    if matches!(foveation.filter, Filter::Sparse | Filter::Quads) {
         let expected = "another one: the oracle's best level of detail is not defined for moving samples".into();
-        Err(SettingsError { setting: "foveation filter", found: "sparse".into(), expected })?;
+        Err(SettingsError { setting: "foveation filter", found: foveation.filter.name().into(), expected })?;
     }
     Ok(())
 }

@@ -34,7 +34,7 @@ impl Oracle {
         Ok(MethodOutput {
             image,
             elapsed: watch.elapsed(),
-            repaired: None,
+            chosen: None,
             stats: FrameStats::default(),
             traffic_bytes_per_pixel: None,
             debug: vec![],

@@ -1,7 +1,7 @@
 //! Runs of a pipeline: kinds and outputs.
 
 use crate::clock::Elapsed;
-use afterimage::{Filter, FrameStats, Image, Method, Settings, SettingsError, Smr};
+use afterimage::{Filter, FrameError, FrameStats, FrameValue, Image, Method, Settings, SettingsError, Smr};
 use std::sync::Arc;
 
 /// Kind of a run: how it processes the foveated frames.
@@ -20,10 +20,10 @@ pub enum RunKind {
 pub struct MethodOutput {
     /// Displayed frame, linear.
     pub image: Image<[f32; 3]>,
-    /// Time of the pass, and of choosing the pixels to repair.
+    /// Time of the pass, and of choosing pixels.
     pub elapsed: Elapsed,
-    /// Pixels that were repaired; `None` if the method repairs none, or the source cannot shade any.
-    pub repaired: Option<Repaired>,
+    /// Pixels that the method chose and got; `None` if it chooses none, or the source cannot shade any.
+    pub chosen: Option<Chosen>,
     /// Counters of the pass; all 0 for the oracle.
     pub stats: FrameStats,
     /// Bytes per pixel that the pass reads and writes; `None` for the oracle.
@@ -32,19 +32,41 @@ pub struct MethodOutput {
     pub debug: Vec<Image<[f32; 3]>>,
 }
 
-/// Repair of a sparse frame.
+/// Pixels that a method chooses before a frame is shaded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// All pixels that are shaded: frames of [`Filter::Quads`].
+    Shaded,
+    /// Pixels that are shaded beside the samples of a sparse frame: [`Smr::repair`].
+    Repaired,
+}
+
+impl Choice {
+    /// What runs of these settings choose; `None` for nothing.
+    pub fn of(settings: &Settings) -> Option<Self> {
+        match (settings.foveation.filter, settings.method) {
+            (Filter::Quads, _) => Some(Self::Shaded),
+            (Filter::Sparse, Method::Smr(Smr { repair: Some(_), .. })) => Some(Self::Repaired),
+            _ => None,
+        }
+    }
+
+    /// Error for a frame of which all shaded pixels are chosen, and whose source shades none.
+    pub fn unshaded() -> FrameError {
+        let found = "none: the source shades no chosen pixels".into();
+        FrameError::Value { value: FrameValue::Color, view: 0, found, expected: "a source that shades quads" }
+    }
+}
+
+/// Pixels of a frame that a method chose.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Repaired {
+pub struct Chosen {
+    /// What they are.
+    pub choice: Choice,
     /// Share of the pixels.
     pub share: f64,
     /// Time of shading the pixels; `None` if they came from a simulator's full-rate frame.
     pub shading: Option<Elapsed>,
-}
-
-/// Whether runs of these settings choose pixels to repair.
-pub fn repairs(settings: &Settings) -> bool {
-    let has_budget = matches!(settings.method, Method::Smr(Smr { repair: Some(_), .. }));
-    has_budget && settings.foveation.filter == Filter::Sparse
 }
 
 impl RunKind {

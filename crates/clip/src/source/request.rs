@@ -37,6 +37,9 @@ pub enum Wanted {
     Lattices(Lattices),
     /// These quad views, composed.
     QuadViews(QuadViews),
+    /// Depth and motion of every pixel. The pixels that a method chooses are shaded then
+    /// ([`FrameSource::shade`](super::FrameSource::shade)).
+    Surfaces,
 }
 
 impl FrameRequest {
@@ -62,6 +65,10 @@ impl FrameRequest {
     /// Whether the full-rate frame must be rendered even if it is not requested as a reference: as input of a
     /// simulator, or for depth and motion of every pixel.
     pub fn needs_full_rate(&self) -> bool {
-        self.wanted == Wanted::FullRate || self.geometry == SparseGeometry::Full
+        match self.wanted {
+            Wanted::FullRate => true,
+            Wanted::Lattices(_) | Wanted::QuadViews(_) => self.geometry == SparseGeometry::Full,
+            Wanted::Surfaces => false,
+        }
     }
 }

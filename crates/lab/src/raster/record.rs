@@ -177,11 +177,20 @@ impl Raster {
         self.point_pipelines.get_or_init(new)
     }
 
-    /// Records depth and motion of a full-rate frame, without its color.
-    pub fn record_surfaces(&mut self, device: &Device, encoder: &mut CommandEncoder, view: &View, previous: &View) {
+    /// Records depth and motion of a full-rate frame, without its color, in `targets` or, if that is `None`, in those
+    /// of full-rate frames.
+    pub fn record_surfaces(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        [view, previous]: [&View; 2],
+        targets: Option<&FoveatedTargets>,
+    ) {
         self.upload(device, encoder);
-        let section = self.section(device, [view, previous], Window::full(view.geometry().size_px()));
-        let Targets { views: [_, depth, motion], .. } = &self.targets;
+        let window = Window::full(view.geometry().size_px());
+        let window = if targets.is_some() { window.with_points() } else { window };
+        let section = self.section(device, [view, previous], window);
+        let Targets { views: [_, depth, motion], .. } = targets.map_or(&self.targets, |targets| &targets.atlas);
         self.surface_pass(encoder, [depth, motion], &[section]);
     }
 

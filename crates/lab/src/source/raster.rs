@@ -164,13 +164,15 @@ impl RasterSource {
                 let sparse = self.record_lattices(encoder, views, (lattices, pixel_samples), layout);
                 let points =
                     lattices.as_slice().iter().map(|l| l.points.iter().map(|&n| u64::from(n)).product::<u64>());
-                (OnDevice::Atlas(sparse), points.sum())
+                (OnDevice::Atlas(sparse), Some(points.sum()))
             }
             Wanted::QuadViews(quads) => {
-                (OnDevice::Composed(self.record_quad_views(encoder, views, quads, layout)), quads.pixels())
+                (OnDevice::Composed(self.record_quad_views(encoder, views, quads, layout)), Some(quads.pixels()))
             }
+            // Each method chooses its own samples.
+            Wanted::Surfaces => (OnDevice::Surfaces(self.record_surfaces(encoder, views)), None),
         };
-        RenderedFrame { content: content.into(), jitter_px, samples: Some(samples), ..frame }
+        RenderedFrame { content: content.into(), jitter_px, samples, ..frame }
     }
 
     /// The full-rate frame, read back.
@@ -302,6 +304,14 @@ impl RasterSource {
         SparseFrame { atlas: on_device(&self.device, &targets.atlas, self.raster.near()), lattices }
     }
 
+    /// Depth and motion of every pixel, with one sample a pixel.
+    fn record_surfaces(&mut self, encoder: &mut CommandEncoder, views: [&View; 2]) -> DeviceFrame {
+        let device = &self.device.device;
+        let targets = fitted(&mut self.points, device, self.of.info().size);
+        self.raster.record_surfaces(device, encoder, views, Some(targets));
+        on_device(&self.device, &targets.atlas, self.raster.near())
+    }
+
     fn record_quad_views(
         &mut self,
         encoder: &mut CommandEncoder,
@@ -404,7 +414,7 @@ impl FrameSource for RasterSource {
             let frame = source.record_content(encoder, request, [view, previous], AtlasLayout::InPlace);
             // If lattices need depth and motion at every pixel, these are drawn again, so that the time includes them.
             if matches!(request.wanted, Wanted::Lattices(_)) && request.geometry == SparseGeometry::Full {
-                source.raster.record_surfaces(&source.device.device, encoder, &view, &previous);
+                source.raster.record_surfaces(&source.device.device, encoder, [&view, &previous], None);
             }
             frame
         })?;

@@ -13,6 +13,7 @@ mod analytic;
 mod fixtures;
 mod jitter;
 mod metric;
+mod quads;
 mod real_data;
 mod render_time;
 mod scanpath;

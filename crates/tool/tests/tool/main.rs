@@ -4,6 +4,7 @@ mod bench;
 mod head;
 mod info;
 mod latency;
+mod quads;
 mod refusals;
 mod repair;
 mod rig;

@@ -1,22 +1,11 @@
 //! `afterimage run --repair`.
 
-use super::rig::{Folder, SMALL, read_json, refuses, run, same_on_both_backends, succeeds, words};
-use std::fs;
-use std::path::Path;
+use super::rig::{Folder, SMALL, column, read_json, refuses, run, same_on_both_backends, succeeds, words};
 
 /// Sparse frames of smr with a budget in percent.
 fn repaired<'a>(budget: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     let sparse = ["--foveation", "sparse", "--rate-mid", "2", "--rate-far", "4", "--method", "none,smr"];
     [&sparse[..], &["--repair", budget], more].concat()
-}
-
-/// A column of a `frames.csv` by frame; `None` where cells are empty.
-fn column(folder: &Path, method: &str, name: &str) -> Vec<Option<f64>> {
-    let csv = fs::read_to_string(folder.join("frames.csv")).unwrap();
-    let mut lines = csv.lines();
-    let place = lines.next().unwrap().split(',').position(|head| head == name).unwrap();
-    let rows = lines.map(|line| line.split(',').collect::<Vec<_>>()).filter(|cells| cells[1] == method);
-    rows.map(|cells| cells[place].parse().ok()).collect()
 }
 
 #[test]

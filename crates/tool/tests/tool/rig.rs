@@ -44,6 +44,15 @@ pub fn run<'a>(input: &'a str, out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     [&["run", input, "--out", out][..], more].concat()
 }
 
+/// A column of a `frames.csv` by frame; `None` where cells are empty.
+pub fn column(folder: &Path, method: &str, name: &str) -> Vec<Option<f64>> {
+    let csv = fs::read_to_string(folder.join("frames.csv")).unwrap();
+    let mut lines = csv.lines();
+    let place = lines.next().unwrap().split(',').position(|head| head == name).unwrap();
+    let rows = lines.map(|line| line.split(',').collect::<Vec<_>>()).filter(|cells| cells[1] == method);
+    rows.map(|cells| cells[place].parse().ok()).collect()
+}
+
 /// The numbered frames of a run, by their path in its folder.
 fn frames(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut all = BTreeMap::new();

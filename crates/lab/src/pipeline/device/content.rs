@@ -26,7 +26,7 @@ impl DeviceContent for OnDevice {
         match self {
             Self::Atlas(frame) => Some(frame.lattices),
             Self::Samples(frame) => Some(frame.lattices),
-            Self::Composed(_) => None,
+            Self::Composed(_) | Self::Surfaces(_) => None,
         }
     }
 
@@ -34,11 +34,12 @@ impl DeviceContent for OnDevice {
         matches!(self, Self::Samples(_))
     }
 
-    fn lods(&self, size_px: [u32; 2]) -> Image<f32> {
+    fn lods(&self, size_px: [u32; 2]) -> Option<Image<f32>> {
         match self {
-            Self::Atlas(frame) => levels(&frame.lattices, size_px),
-            Self::Samples(frame) => levels(&frame.lattices, size_px),
-            Self::Composed(frame) => frame.read_lod(),
+            Self::Atlas(frame) => Some(levels(&frame.lattices, size_px)),
+            Self::Samples(frame) => Some(levels(&frame.lattices, size_px)),
+            Self::Composed(frame) => Some(frame.read_lod()),
+            Self::Surfaces(_) => None,
         }
     }
 
@@ -51,12 +52,14 @@ impl DeviceContent for OnDevice {
             }
             Self::Samples(_) => None,
             Self::Composed(frame) => Some(frame.read_color()),
+            Self::Surfaces(_) => Some(Image::filled([0; 2], [0.0; 3])),
         }
     }
 
     fn read_geometry(&self) -> Option<(Image<f32>, Image<[f32; 2]>)> {
         match self {
-            Self::Atlas(SparseFrame { atlas: DeviceFrame { device, depth, motion, near, .. }, .. }) => {
+            Self::Atlas(SparseFrame { atlas: DeviceFrame { device, depth, motion, near, .. }, .. })
+            | Self::Surfaces(DeviceFrame { device, depth, motion, near, .. }) => {
                 Some((raster::read_distance(device, depth, *near), device.read(motion, 0)))
             }
             Self::Samples(_) => None,

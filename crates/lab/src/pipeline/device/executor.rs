@@ -5,8 +5,8 @@ use crate::clock::{Elapsed, Stopwatch};
 use crate::device::{Headless, PassClock};
 use crate::frame::{Content, DeviceHandle, RenderedFrame, Shaded, ShadedColor, Wish};
 use afterimage::gpu::Frame;
-use afterimage::{ContextDesc, CreateError, DebugView, FrameError};
-use afterimage_clip::pipeline::{Candidate, Executor, MethodOutput, Repaired, RunKind, Shade, Shot, repairs};
+use afterimage::{ContextDesc, CreateError, DebugView, Filter, FrameError, SettingsError};
+use afterimage_clip::pipeline::{Candidate, Choice, Chosen, Executor, MethodOutput, RunKind, Shade, Shot};
 use std::slice::from_ref;
 use std::sync::Arc;
 use wgpu::Texture;
@@ -38,6 +38,10 @@ impl DeviceExecutor {
 
 impl Executor for DeviceExecutor {
     fn add(&mut self, kind: &RunKind, desc: &ContextDesc) -> Result<(), CreateError> {
+        if desc.settings.foveation.filter == Filter::Quads {
+            let expected = "another one on a device, or methods on the CPU".into();
+            Err(SettingsError { setting: "foveation filter", found: "quads".into(), expected })?;
+        }
         self.runs.push(match kind {
             RunKind::WithShader(_, shader) => DeviceRun::with_shader(&self.gpu, desc, DeviceFormats::EXACT, shader)?,
             _ => DeviceRun::new(&self.gpu, desc, DeviceFormats::EXACT)?,
@@ -68,13 +72,11 @@ impl Executor for DeviceExecutor {
         let (gpu, run) = (&self.gpu, &mut self.runs[run]);
         let views = from_ref(&shot.candidate.view);
         let frame = self.inputs.frame(views, shot.frame.index, shot.reset(), shot.use_trust);
-        let planned = match repairs(&run.post().desc().settings) {
-            true => Some(plan(gpu, &self.clock, run, &frame)?),
-            false => None,
-        };
+        let choice = Choice::of(&run.post().desc().settings);
+        let planned = choice.map(|_| plan(gpu, &self.clock, run, &frame)).transpose()?;
         let is_simulated = shot.frame.is_simulated();
         let shaded = planned.as_ref().filter(|_| !is_simulated).and_then(|(wish, _)| shade(wish));
-        let repaired = match &shaded {
+        let pixels = match &shaded {
             Some(Shaded { color: ShadedColor::OnDevice(color), .. }) => color.downcast_ref::<Texture>(),
             Some(Shaded { color: ShadedColor::InMemory(color), .. }) => {
                 let of_frame = shot.candidate.in_memory.as_ref().and_then(|given| given.noise);
@@ -83,7 +85,10 @@ impl Executor for DeviceExecutor {
             }
             None => planned.as_ref().filter(|_| is_simulated).map(|_| self.inputs.full()),
         };
-        let frame = Frame { repaired: repaired.map(Into::into), ..frame };
+        let frame = match choice {
+            Some(Choice::Shaded) => Frame { color: pixels.ok_or_else(Choice::unshaded)?.into(), ..frame },
+            _ => Frame { repaired: pixels.map(Into::into), ..frame },
+        };
         let encoder = || gpu.device.create_command_encoder(&Default::default());
         let mut debug_views = vec![];
         // Counters come from a debug view. If no view is requested, one is drawn for the counters and not read back.
@@ -108,7 +113,8 @@ impl Executor for DeviceExecutor {
         let output = MethodOutput {
             image: gpu.read_rgb(run.output(), 0),
             elapsed: planned.as_ref().map_or(elapsed, |(_, planning)| elapsed.and(*planning)),
-            repaired: planned.as_ref().filter(|_| repaired.is_some()).map(|(wish, _)| Repaired {
+            chosen: choice.zip(planned).filter(|_| pixels.is_some()).map(|(choice, (wish, _))| Chosen {
+                choice,
                 share: wish.share(run.post().desc().size_px),
                 shading: shaded.as_ref().map(|shaded| shaded.took),
             }),
@@ -124,7 +130,7 @@ impl Executor for DeviceExecutor {
     }
 }
 
-/// The quads that a method chooses to repair, and the time of choosing them.
+/// The quads that a method chooses, and the time of choosing them.
 fn plan(
     gpu: &Headless,
     clock: &PassClock,

@@ -115,8 +115,10 @@ impl DeviceInputs {
             }
             content @ Content::OnDevice(_) => {
                 let content = OnDevice::of(content).expect("this crate has no other frames on devices");
+                let has_geometry =
+                    frame.geometry == SparseGeometry::Samples || matches!(content, OnDevice::Surfaces(_));
                 let content = self.take(encoder, content);
-                self.given = if frame.geometry == SparseGeometry::Samples {
+                self.given = if has_geometry {
                     content
                 } else {
                     self.set_reference(encoder, frame);
@@ -149,6 +151,11 @@ impl DeviceInputs {
                 let [color, depth] = self.import_atlas(encoder, &sparse.atlas);
                 let motion = Some(sparse.atlas.motion.clone());
                 Given { depth: Some(depth), motion, ..Given::color(&color) }
+            }
+            OnDevice::Surfaces(surfaces) => {
+                // The color is replaced when pixels are shaded.
+                let [color, depth] = self.import_atlas(encoder, surfaces);
+                Given { depth: Some(depth), motion: Some(surfaces.motion.clone()), ..Given::color(&color) }
             }
             OnDevice::Samples(DeviceSamples { color, noise, depth, motion, .. }) => {
                 let (depth, motion) = (Some(depth.clone()), Some(motion.clone()));

@@ -6,6 +6,7 @@ mod head;
 mod light;
 mod methods;
 mod quad_views;
+mod quads;
 mod real;
 mod repair;
 mod rig;

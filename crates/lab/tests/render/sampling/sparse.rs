@@ -248,8 +248,8 @@ fn samples_that_stay_on_the_device_are_those_of_the_memory() {
             let b = on_device.step_with(&samples, &mut |wish| shaded(&mut source, &samples, wish)).unwrap();
             // The outputs, which the metrics need, the counters, and the mask of the pixels to repair, for their share.
             assert_eq!(device.readbacks() - before, 2 * methods.len() as u64 + 1);
-            assert!(a.outputs[5].repaired.unwrap().share > 0.01, "frame {index}");
-            assert_eq!(a.outputs[5].repaired.unwrap().share, b.outputs[5].repaired.unwrap().share, "frame {index}");
+            assert!(a.outputs[5].chosen.unwrap().share > 0.01, "frame {index}");
+            assert_eq!(a.outputs[5].chosen.unwrap().share, b.outputs[5].chosen.unwrap().share, "frame {index}");
             assert_eq!((&a.lods, &a.ecc_deg), (&b.lods, &b.ecc_deg));
             for (method, (a, b)) in methods.iter().zip(a.outputs.iter().zip(&b.outputs)) {
                 let bits = |image: &Image<[f32; 3]>| image.map(|c| c.map(f32::to_bits));

@@ -39,6 +39,9 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
     }
     let foveation = foveation(args)?;
     args.foveation.check(args.input.is_rasterised(), args.input.is_analytic())?;
+    if args.foveation.is_quads() {
+        check_quads(args, &backend)?;
+    }
     let fps = args.input.fps(info);
     let geometry = args.input.geometry(info)?;
     let mut methods: Vec<(&'static str, RunKind)> = vec![];
@@ -125,7 +128,7 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
             let text = "--method oracle: needs simulated foveation; leave out --sampling";
             return Err(Failure::Input(text.into()));
         }
-        MethodName::Oracle if foveation.filter == Filter::Sparse => {
+        MethodName::Oracle if matches!(foveation.filter, Filter::Sparse | Filter::Quads) => {
             let text = "--method oracle: is not defined for moving samples; use another --foveation, or leave it out";
             return Err(Failure::Input(text.into()));
         }
@@ -149,8 +152,24 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
     Ok(RunKind::PostProcess(settings))
 }
 
+/// Refuses renderers and devices that do not shade single quads.
+fn check_quads(args: &RunArgs, backend: &Backend) -> Result<(), Failure> {
+    if args.input.is_scene() && !args.input.is_rasterised() {
+        let text = "--foveation quads: is not traced; use --source raster, or --foveation sparse";
+        return Err(Failure::Input(text.into()));
+    }
+    if matches!(backend, Backend::Gpu(_)) {
+        return Err(Failure::Input("--foveation quads runs on the CPU: add --backend cpu".into()));
+    }
+    Ok(())
+}
+
 /// Refuses frames whose pixels cannot be shaded one by one.
 fn check_repair(args: &RunArgs) -> Result<(), Failure> {
+    if args.foveation.is_quads() {
+        let text = "--repair: --foveation quads shades what history lacks by its own --budget; leave --repair out";
+        return Err(Failure::Input(text.into()));
+    }
     if !args.is_sparse() {
         return Err(Failure::Input("--repair: applies to sparse frames only; add --foveation sparse".into()));
     }

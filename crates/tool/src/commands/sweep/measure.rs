@@ -109,7 +109,7 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
             control_ms: timed(&sums.control_ms[WARM_UP..]),
             render_ms: Quartiles::of(&render.cost_ms()),
             render_cpu_ms: render.cpu_ms(),
-            samples_share: sums.samples_share / sums.frames as f64,
+            samples_share: figures.shaded_share.unwrap_or(sums.samples_share / sums.frames as f64),
             samples_per_pixel: sums.samples.map(|all| all as f64 / (sums.frames as f64 * pixels)),
             copy_ms: copy_ms_per_byte * f64::from(figures.bytes_per_pixel.unwrap_or(0)) * pixels,
             figures,

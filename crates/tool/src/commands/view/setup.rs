@@ -43,6 +43,9 @@ impl Setup {
             return refuse(format!("--internal-scale {scale}: expected above 0 and at most 1"));
         }
         args.foveation.check(args.input.is_rasterised(), args.input.is_analytic())?;
+        if args.foveation.is_quads() {
+            return refuse("--foveation quads: the viewer does not show it yet; use run".into());
+        }
         let is_sparse = args.foveation.filter() == FilterName::Of(Filter::Sparse);
         if args.foveation.is_jittered() && !(args.input.is_rasterised() && is_sparse) {
             return refuse(

@@ -139,7 +139,8 @@ impl State {
             }
             Action::Filter => {
                 self.filter = next(self.filter);
-                while self.filter.is_quad_views() && !self.is_rasterised {
+                let is_quads = |filter| filter == FilterName::Of(Filter::Quads);
+                while is_quads(self.filter) || self.filter.is_quad_views() && !self.is_rasterised {
                     self.filter = next(self.filter);
                 }
                 return Effect::Update;

@@ -1,0 +1,116 @@
+//! `afterimage run --foveation quads`.
+
+use super::rig::{Folder, SMALL, column, read_json, refuses, run, succeeds, words};
+use serde_json::Value;
+
+const METHODS: [&str; 3] = ["none", "wrs", "smr"];
+
+/// The arguments of a run on the CPU.
+fn quads<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    [&["--foveation", "quads", "--backend", "cpu", "--no-flip"], more].concat()
+}
+
+/// Runs with a budget in percent; the report, and the shaded shares of each method by frame.
+fn report(input: &str, budget: &str, more: &[&str]) -> (Value, [Vec<f64>; 3]) {
+    let folder = Folder::new();
+    let out = folder.text("out");
+    succeeds(&run(input, &out, &quads(&[&["--budget", budget], more].concat())));
+    let shares = METHODS.map(|method| {
+        let shares = column(&folder.path("out"), method, "shaded_share");
+        shares.into_iter().map(|share| share.expect("every frame has a share")).collect()
+    });
+    (read_json(&folder.path("out").join("report.json")), shares)
+}
+
+/// Whether each method's share is the mean of its frames, smr spends most of the budget, and no frame exceeds it.
+fn is_consistent(report: &Value, shares: &[Vec<f64>; 3], even: &[Vec<f64>; 3], budget: f64) -> bool {
+    let is_mean = METHODS.iter().zip(shares).all(|(method, shares)| {
+        let mean = shares.iter().sum::<f64>() / shares.len() as f64;
+        (report["methods"][method]["shaded_share"].as_f64().unwrap() - mean).abs() < 1e-5
+    });
+    let spent = |method: usize| shares[method].iter().zip(&even[0]).map(|(all, even)| all - even);
+    // A part of the quads at the lower edge lies beyond it.
+    let is_within = (0..3).flat_map(spent).all(|spent| (0.0..=1.02 * budget).contains(&spent));
+    is_mean && is_within && spent(2).all(|spent| spent >= 0.6 * budget)
+}
+
+#[test]
+fn reports_say_how_much_was_shaded() {
+    let small = words("--size 240x135 --frames 6 --gaze 90,75 --jitter halton --reference-samples 2");
+    let (even_report, even) = report("analytic:occluder", "0", &small);
+    assert!(is_consistent(&even_report, &even, &even, 0.0));
+    let mut before = even_report["methods"]["smr"]["psnr_db"].as_f64().unwrap();
+    for percent in ["3", "12"] {
+        let (report, shares) = report("analytic:occluder", percent, &small);
+        let budget = percent.parse::<f64>().unwrap() / 100.0;
+        assert!(is_consistent(&report, &shares, &even, budget), "{shares:?}, {even:?}");
+        assert!(!is_consistent(&report, &shares, &even, 2.1 * budget), "a planted error: half the budget");
+        let foveation = &report["foveation"];
+        assert_eq!(
+            (&foveation["simulator"], &foveation["rate_mid"], &foveation["rate_far"]),
+            (&"quads".into(), &4.into(), &8.into())
+        );
+        assert_eq!(foveation["budget_percent"].as_f64(), percent.parse().ok());
+        let smr = &report["methods"]["smr"];
+        assert!(smr["repaired_share"].is_null() && report["samples"].is_null());
+        let psnr_db = smr["psnr_db"].as_f64().unwrap();
+        println!("budget {percent} %: {psnr_db:.2} dB, {} shaded", smr["shaded_share"]);
+        assert!(psnr_db > before + 0.1, "{percent} %: {psnr_db} after {before}");
+        before = psnr_db;
+    }
+}
+
+#[test]
+fn other_frames_have_no_shaded_share() {
+    let folder = Folder::new();
+    let out = folder.text("out");
+    succeeds(&run("analytic:still", &out, &[SMALL, &["--backend", "cpu", "--no-flip"]].concat()));
+    let report = read_json(&folder.path("out").join("report.json"));
+    assert!(METHODS.iter().all(|method| report["methods"][method]["shaded_share"].is_null()));
+    assert!(report["foveation"]["budget_percent"].is_null());
+    assert!(METHODS.iter().all(|method| column(&folder.path("out"), method, "shaded_share") == [None; 4]));
+}
+
+/// The renderer's time is that of depth and motion and of the quads that each method asked for.
+#[test]
+fn scenes_are_shaded_by_quads() {
+    if afterimage_testing::gpu::adapter().is_none() {
+        return;
+    }
+    let folder = Folder::new();
+    let out = folder.text("out");
+    let more = words("--jitter halton --reference-samples 1 --budget 5");
+    succeeds(&run("builtin:cubes", &out, &quads(&[SMALL, &more].concat())));
+    let report = read_json(&folder.path("out").join("report.json"));
+    let share = |method: &str| report["methods"][method]["shaded_share"].as_f64().unwrap();
+    assert!((0.03..0.2).contains(&share("smr")), "{}", share("smr"));
+    for method in METHODS {
+        let [shaded, times] = ["shaded_share", "render_ms"].map(|key| column(&folder.path("out"), method, key));
+        assert!(shaded.len() == 4 && shaded.iter().chain(&times).all(|v| v.unwrap() > 0.0), "{shaded:?}, {times:?}");
+    }
+}
+
+#[test]
+fn what_quads_cannot_do_is_refused() {
+    let folder = Folder::new();
+    let out = folder.text("out");
+    let still = "analytic:still";
+    let refused = |input: &str, more: &[&str], expected: &[&str]| refuses(&run(input, &out, &quads(more)), expected);
+    refused(still, &["--repair", "3"], &["--repair", "--budget"]);
+    refused(still, &["--method", "oracle"], &["oracle", "moving samples"]);
+    refused(still, &["--geometry", "samples"], &["--geometry samples", "--foveation sparse"]);
+    refused(still, &["--order", "sobol"], &["--order sobol", "--foveation sparse"]);
+    refused(still, &["--rate-far", "16"], &["rate_far", "power of two from 4 to 8"]);
+    refused("builtin:cubes", &["--source", "trace"], &["--foveation quads", "--source raster"]);
+    for budget in ["-1", "101", "NaN", "much"] {
+        refused(still, &[&format!("--budget={budget}")], &["--budget", "0 to 100 percent"]);
+    }
+    refuses(&run(still, &out, &["--budget", "3"]), &["--budget", "--foveation quads"]);
+    refuses(&["view", still, "--foveation", "quads"], &["--foveation quads", "run"]);
+    refuses(&["bench", "--foveation", "quads"], &["--foveation"]);
+    if afterimage_testing::gpu::adapter().is_some() {
+        let gpu = ["--foveation", "quads", "--backend", "gpu"];
+        refuses(&run(still, &out, &gpu), &["--foveation quads runs on the CPU", "--backend cpu"]);
+    }
+    assert!(!folder.path("out").exists(), "nothing was written");
+}
