@@ -1,7 +1,7 @@
 //#use quad_list
 //#use quad_state
 // Shaded quads of a view: a mask, an unordered list, and a word for each block of 4x4 quads. CPU twin: `plan_quads` in
-// src/cpu/sparse_pass/quads.rs. One invocation a block.
+// src/cpu/sparse_pass/quad_plan.rs. One invocation a block.
 
 struct QuadSize {
     // Number of quads along x and y.

@@ -47,7 +47,7 @@ impl Passes for Fill {
 /// The pass of the samples that frames have.
 fn shader(device: &Device, desc: &ContextDesc, sources: &Sources) -> ComputeShader {
     let by_quads = desc.settings.foveation.filter == Filter::Quads;
-    sources.shader(device, if by_quads { "quads_fill_pass" } else { "fill_pass" })
+    sources.shader(device, if by_quads { "quad_fill_pass" } else { "fill_pass" })
 }
 
 /// The filled color, whose format stores samples bit for bit.

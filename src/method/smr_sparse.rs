@@ -23,7 +23,7 @@ pub(super) static ENTRY: Entry = Entry {
         2 * 8 + samples + if settings.noisy { 4 + 2 * 4 } else { 0 }
     },
     shader: |settings| match settings.foveation.filter {
-        Filter::Quads => PassShader { name: "quads_pass", block_px: 1 },
+        Filter::Quads => PassShader { name: "quad_pass", block_px: 1 },
         _ => PassShader { name: "sparse_pass", block_px: 1 },
     },
     overrides: |settings| {

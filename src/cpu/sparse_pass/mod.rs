@@ -7,11 +7,13 @@
 //! pixel's previous position, and blends.
 
 mod antialias;
+mod candidate;
 mod kept_history;
 mod light;
 mod observe;
 mod pixel;
 mod plan;
+mod quad_plan;
 mod quad_samples;
 mod quads;
 mod view;

@@ -1,20 +1,21 @@
 //! Reconstruction of pixels from history, and from the samples around them and their light.
 
+use super::candidate::{Candidate, Sums, sample_codes};
 use super::kept_history::{Found, Source, has_moved};
 use super::quad_samples::QuadLights;
+use super::quads::offset_px2;
 use super::view::{NO_NOISE, Samples, View};
 use crate::cpu::surface_pass::{Pixel, ProcessPixel};
 use crate::kernel::approx;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::kept::{Kept, pack_kept};
 use crate::kernel::lattice::point_weight;
-use crate::kernel::noise::{Noise, NoiseSum, add_noise, mean_noise, pack_noise};
+use crate::kernel::noise::{NoiseSum, add_noise, mean_noise, pack_noise};
 use crate::kernel::reproject::Verdict;
-use crate::kernel::resample::{codes_between, has_code};
+use crate::kernel::resample::has_code;
 use crate::kernel::sanitize;
 use crate::kernel::sparse::{
-    BY_NEIGHBOURS, LEAST_SHARE, Lit, OTHER_SURFACE, Reconstruction, SAMPLE_RELATIVE, accumulate, candidate_level,
-    reconstruct, unpack_lit,
+    LEAST_SHARE, OTHER_SURFACE, Reconstruction, accumulate, candidate_level, reconstruct, unpack_lit,
 };
 use crate::stats::FrameStats;
 use crate::uniforms::LatticeUniforms;
@@ -38,19 +39,6 @@ impl ProcessPixel for LitView<'_> {
     fn process(&self, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
         self.view.pixel(x, y, self.lights, stats)
     }
-}
-
-/// [`codes_between`] of the samples that are interpolated for a pixel with the disparity `disparity`.
-#[inline(always)]
-pub(super) fn sample_codes(disparity: f32) -> [u32; 2] {
-    codes_between(disparity, 1.0 - SAMPLE_RELATIVE, 1.0 / (1.0 - SAMPLE_RELATIVE))
-}
-
-/// Squared distance of two pixels along an axis.
-#[inline(always)]
-pub(super) fn offset_px2(a: u32, b: u32) -> f32 {
-    let offset = a as f32 - b as f32;
-    offset * offset
 }
 
 impl View<'_> {
@@ -240,54 +228,5 @@ impl View<'_> {
             noise,
             is_own,
         }
-    }
-}
-
-/// Candidate of a pixel.
-pub(super) struct Candidate {
-    pub color: Vec3,
-    pub usable: bool,
-    pub lod: f32,
-    /// Smallest and largest color of the samples around the pixel.
-    pub range: [Vec3; 2],
-    pub gain: Vec3,
-    pub fit: f32,
-    pub noise: Noise,
-    /// Whether the candidate is this pixel's own sample.
-    pub is_own: bool,
-}
-
-impl Candidate {
-    pub const NONE: Self = Self {
-        color: Vec3::ZERO,
-        usable: false,
-        lod: 0.0,
-        range: [Vec3::ZERO; 2],
-        gain: Vec3::ONE,
-        fit: 1.0,
-        noise: NO_NOISE,
-        is_own: false,
-    };
-}
-
-/// Sums over the samples around a pixel.
-#[derive(Default)]
-pub(super) struct Sums {
-    pub color: Vec3,
-    pub weight: f32,
-    pub gain: Vec3,
-    pub fit: f32,
-    pub valid: f32,
-}
-
-impl Sums {
-    #[inline(always)]
-    pub fn add(&mut self, color: Vec3, weight: f32, lit: Lit) {
-        let known = weight * if lit.is_own { 1.0 } else { BY_NEIGHBOURS };
-        self.color += color * weight;
-        self.weight += weight;
-        self.gain += lit.gain * known;
-        self.fit += lit.fit * known;
-        self.valid += known;
     }
 }

@@ -1,8 +1,8 @@
 //! Samples of shaded quads: their comparison with history, gain and fit around them, and candidates of pixels.
 
+use super::candidate::{Candidate, Sums, sample_codes};
 use super::observe::{pack_observation, unpack_observation};
-use super::pixel::{Candidate, Sums, offset_px2, sample_codes};
-use super::quads::{Quads, nearest_px};
+use super::quads::{Quads, nearest_px, offset_px2};
 use super::view::{NO_NOISE, Samples, View};
 use crate::kernel::antialias::scattered_error;
 use crate::kernel::depth::INVALID_DISPARITY;

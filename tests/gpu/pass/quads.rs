@@ -117,7 +117,7 @@ fn a_wrong_pass_is_caught() {
         "quad_around_pass",
         "quad_observe_pass",
         "quad_light_pass",
-        "quads_pass",
+        "quad_pass",
     ];
     let right = names.map(|name| SHADERS.compose(name).source);
     let differs = |sources: &[String; 7]| {

@@ -5,7 +5,7 @@ use crate::clock::{Elapsed, Stopwatch};
 use crate::device::{Headless, PassClock};
 use crate::frame::{Content, DeviceHandle, RenderedFrame, Shaded, ShadedColor, Wish};
 use afterimage::gpu::Frame;
-use afterimage::{ContextDesc, CreateError, DebugView, Filter, FrameError, SettingsError};
+use afterimage::{ContextDesc, CreateError, DebugView, FrameError};
 use afterimage_clip::pipeline::{Candidate, Choice, Chosen, Executor, MethodOutput, RunKind, Shade, Shot};
 use std::slice::from_ref;
 use std::sync::Arc;
@@ -38,10 +38,6 @@ impl DeviceExecutor {
 
 impl Executor for DeviceExecutor {
     fn add(&mut self, kind: &RunKind, desc: &ContextDesc) -> Result<(), CreateError> {
-        if desc.settings.foveation.filter == Filter::Quads {
-            let expected = "another one on a device, or methods on the CPU".into();
-            Err(SettingsError { setting: "foveation filter", found: "quads".into(), expected })?;
-        }
         self.runs.push(match kind {
             RunKind::WithShader(_, shader) => DeviceRun::with_shader(&self.gpu, desc, DeviceFormats::EXACT, shader)?,
             _ => DeviceRun::new(&self.gpu, desc, DeviceFormats::EXACT)?,
@@ -145,8 +141,9 @@ fn plan(
     clock.end(&mut encoder);
     gpu.queue.submit([encoder.finish()]);
     let elapsed = clock.elapsed(gpu, &watch);
-    let planned = run.post().repair_mask().zip(run.post().repair_quads(0));
-    let (mask, list) = planned.expect("the settings ask for repair");
-    let quads = gpu.read::<u32>(mask, 0).map(|chosen| chosen != 0);
+    let post = run.post();
+    let planned = post.quad_mask().zip(post.quad_list(0)).or_else(|| post.repair_mask().zip(post.repair_quads(0)));
+    let (mask, list) = planned.expect("the settings ask for a plan");
+    let quads = gpu.read::<u32>(mask, 0).map(|chosen| chosen & 1 != 0);
     Ok((Wish { quads, on_device: Some(Arc::new(list.clone())) }, elapsed))
 }

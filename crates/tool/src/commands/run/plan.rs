@@ -40,7 +40,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
     let foveation = foveation(args)?;
     args.foveation.check(args.input.is_rasterised(), args.input.is_analytic())?;
     if args.foveation.is_quads() {
-        check_quads(args, &backend)?;
+        check_quads(args)?;
     }
     let fps = args.input.fps(info);
     let geometry = args.input.geometry(info)?;
@@ -152,14 +152,11 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
     Ok(RunKind::PostProcess(settings))
 }
 
-/// Refuses renderers and devices that do not shade single quads.
-fn check_quads(args: &RunArgs, backend: &Backend) -> Result<(), Failure> {
+/// Refuses renderers that do not shade single quads.
+fn check_quads(args: &RunArgs) -> Result<(), Failure> {
     if args.input.is_scene() && !args.input.is_rasterised() {
         let text = "--foveation quads: is not traced; use --source raster, or --foveation sparse";
         return Err(Failure::Input(text.into()));
-    }
-    if matches!(backend, Backend::Gpu(_)) {
-        return Err(Failure::Input("--foveation quads runs on the CPU: add --backend cpu".into()));
     }
     Ok(())
 }

@@ -1,0 +1,98 @@
+//! Plan of a frame shaded by quads: which quads are shaded, and the shaded quads around each. CPU twin:
+//! `src/cpu/sparse_pass/quad_plan.rs`.
+//!
+//! Three passes a view and one for all. The first gives each quad its region, the even pattern, and a key by its need.
+//! The second finds the smallest key that the budget pays for, and the third chooses the quads and lists them. The
+//! fourth finds the shaded quads around each.
+
+use super::binding::Binding;
+use super::compute::{ComputeShader, Sources, WORKGROUP_WIDTH};
+use super::groups::Resource;
+use super::quads::{Quads, ViewQuads, size_quads};
+use super::stage::{Job, Specialization};
+use crate::frame::ContextDesc;
+use crate::kernel::quads::BLOCK;
+use crate::method::Overrides;
+use wgpu::{CommandEncoder, Device};
+
+/// The passes, and the quads that they chose.
+#[derive(Debug)]
+pub(super) struct QuadPasses {
+    key: ComputeShader,
+    threshold: ComputeShader,
+    mask: ComputeShader,
+    around: ComputeShader,
+    pub quads: Quads,
+    /// Index of the last planned frame; `None` once it is recorded.
+    pub planned: Option<u64>,
+}
+
+impl QuadPasses {
+    pub fn new(device: &Device, desc: &ContextDesc, sources: &Sources) -> Self {
+        Self {
+            key: sources.shader(device, "quad_key_pass"),
+            threshold: sources.shader(device, "quad_threshold_pass"),
+            mask: sources.shader(device, "quad_mask_pass"),
+            around: sources.shader(device, "quad_around_pass"),
+            quads: Quads::new(device, desc),
+            planned: None,
+        }
+    }
+
+    /// Follows a change of the context's size or of the settings.
+    pub fn update(&mut self, device: &Device, desc: &ContextDesc) {
+        self.quads = Quads::new(device, desc);
+        self.planned = None;
+    }
+
+    /// Compiles the pipelines of a variant.
+    pub fn prewarm(&self, device: &Device, desc: &ContextDesc, special: Specialization) {
+        special.pipeline(device, desc, &self.key);
+        special.pipeline(device, desc, &self.around);
+        self.threshold.pipeline(device, &[]);
+        self.mask.pipeline(device, &[]);
+    }
+
+    /// Shader and override values of each compiled pipeline.
+    pub fn pipelines(&self) -> impl Iterator<Item = (&'static str, Overrides)> + '_ {
+        [&self.key, &self.threshold, &self.mask, &self.around].into_iter().flat_map(ComputeShader::pipelines)
+    }
+
+    /// Records the clearing of the counts, before the dispatches of a frame.
+    pub fn clear(&self, encoder: &mut CommandEncoder) {
+        self.quads.views.iter().for_each(|view| encoder.clear_buffer(&view.state, 0, None));
+    }
+
+    /// Adds the dispatches of a frame.
+    pub fn record(&self, job: &mut Job<'_>) {
+        let Quads { budget, keys, mask, blocks, around, views } = &self.quads;
+        let size = size_quads(job.desc);
+        let in_blocks = size.map(|side| side.div_ceil(BLOCK));
+        let rows = [in_blocks[0].div_ceil(WORKGROUP_WIDTH), in_blocks[1], 1];
+        for (view, ViewQuads { uniforms, state, list }) in (0..).zip(views) {
+            let own = [(Binding::Write, (&keys.whole).into()), (Binding::State, state.into())];
+            job.dispatch(&self.key, &job.batch_of(view), &own, size.map(|side| side.div_ceil(2)));
+            for (shader, uniforms, workgroups) in [(&self.threshold, budget, [1; 3]), (&self.mask, uniforms, rows)] {
+                let resource = |number: u32| {
+                    let of = |binding: Binding| number == binding as u32;
+                    let resource: Resource = match () {
+                        () if of(Binding::Read) => (&keys.whole).into(),
+                        () if of(Binding::Write) => (&mask.whole).into(),
+                        () if of(Binding::WriteSecond) => (&blocks.whole).into(),
+                        () if of(Binding::State) => state.into(),
+                        () if of(Binding::List) => list.into(),
+                        () => uniforms.into(),
+                    };
+                    Some(resource)
+                };
+                let pipeline = shader.pipeline(job.device, &[]);
+                job.recorder.add(job.device, (shader, pipeline), None, resource, workgroups);
+            }
+        }
+        let own = [(Binding::Read, &mask.whole), (Binding::ReadSecond, &blocks.whole), (Binding::Write, &around.whole)];
+        let own = own.map(|(binding, view)| (binding, view.into()));
+        for batch in job.batches() {
+            job.dispatch(&self.around, &batch, &own, size);
+        }
+    }
+}
