@@ -257,17 +257,22 @@ async function perform_all(browser, load, planted) {
         },
         PushDebugGroup() {},
         PopDebugGroup() {},
-        RunComputePass(encoder, { pass: { commands } }) {
+        RunComputePass(encoder, { pass: { commands, dynamic_offsets } }) {
             const pass = encoder.beginComputePass();
+            // Dynamic offsets of all bind groups lie in one list, in the order of the commands.
+            let used = 0;
             for (const command of commands) {
                 const [kind, content] = variant(command);
                 switch (kind) {
                     case "SetPipeline":
                         pass.setPipeline(get(content[0]).pipeline);
                         break;
-                    case "SetBindGroup":
-                        pass.setBindGroup(content.index, get(content.bind_group));
+                    case "SetBindGroup": {
+                        const offsets = dynamic_offsets.slice(used, used + content.num_dynamic_offsets);
+                        used += offsets.length;
+                        pass.setBindGroup(content.index, get(content.bind_group), offsets);
                         break;
+                    }
                     case "DispatchWorkgroups":
                         pass.dispatchWorkgroups(...content[0]);
                         break;
