@@ -42,11 +42,12 @@ export class Browser {
         return this.#shared(this.#layouts, JSON.stringify(entries), make);
     }
 
-    // `groups`: entries of the layouts of the bind groups; without, they follow from the shader.
+    // Resolves to a pipeline: several compile at the same time. `groups`: entries of the layouts of the bind groups;
+    // without, they follow from the shader.
     pipeline(code, entryPoint, constants, groups) {
         return this.#shared(this.#pipelines, JSON.stringify([code, entryPoint, constants, groups]), () => {
             const bindGroupLayouts = groups?.map((entries) => this.layout(entries));
-            return this.device.createComputePipeline({
+            return this.device.createComputePipelineAsync({
                 layout: groups ? this.device.createPipelineLayout({ bindGroupLayouts }) : "auto",
                 compute: { module: this.module(code), entryPoint, constants },
             });
@@ -152,6 +153,9 @@ async function perform_all(browser, load, planted) {
         const [kind, file] = variant(content);
         return kind === "File" ? load(file[0]) : unknown(`data ${kind}`);
     };
+    // Pipelines that no submission waited for yet.
+    const compiling = [];
+    const allCompiled = () => Promise.all(compiling.splice(0));
     // Buffer of the last copy that was made to read it.
     let read;
     // What takes memory.
@@ -188,7 +192,8 @@ async function perform_all(browser, load, planted) {
         CreateBindGroupLayout([to, { entries }]) {
             things.set(id(to), { entries: entries.map(layoutEntry) });
         },
-        GetComputePipelineBindGroupLayout({ id: to, pipeline, index }) {
+        async GetComputePipelineBindGroupLayout({ id: to, pipeline, index }) {
+            await allCompiled();
             things.set(id(to), { layout: get(pipeline).pipeline.getBindGroupLayout(index) });
         },
         CreatePipelineLayout([to, { bind_group_layouts }]) {
@@ -216,7 +221,10 @@ async function perform_all(browser, load, planted) {
             const { code } = get(stage.module);
             const constants = stage.constants instanceof Map ? Object.fromEntries(stage.constants) : stage.constants;
             const groups = layout ? get(layout).groups : undefined;
-            things.set(id(to), { pipeline: browser.pipeline(code, stage.entry_point ?? undefined, constants, groups) });
+            const thing = {};
+            things.set(id(to), thing);
+            const compiled = browser.pipeline(code, stage.entry_point ?? undefined, constants, groups);
+            compiling.push(compiled.then((pipeline) => (thing.pipeline = pipeline)));
         },
         async WriteBuffer({ id: to, data: content, offset }) {
             const bytes = await data(content);
@@ -228,6 +236,7 @@ async function perform_all(browser, load, planted) {
             device.queue.writeTexture(copied(to, get), await data(content), laidOut(layout), size);
         },
         async Submit([, commands]) {
+            await allCompiled();
             const encoder = device.createCommandEncoder();
             for (const command of commands) {
                 const [kind, content] = variant(command);
@@ -315,6 +324,7 @@ async function perform_all(browser, load, planted) {
             await (perform[kind] ?? unknown(`action ${kind}`))(content);
         }
     }
+    await allCompiled();
     made.forEach((thing) => thing.destroy());
     return result;
 }

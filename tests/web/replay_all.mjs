@@ -45,10 +45,14 @@ try {
     console.log(`adapter: ${await browser.evaluate("open_browser()")}`);
     const run = (...args) => browser.evaluate(`replay(${args.map((arg) => JSON.stringify(arg)).join(",")})`);
     const sum = { recordings: 0, reads: 0, words: 0, different: 0, pipelines: 0 };
+    // Seconds of each test, whose recordings differ by the number at their end.
+    const took = new Map();
     for (const name of names) {
         const start = performance.now();
         const result = await run(name);
         const seconds = (performance.now() - start) / 1000;
+        const test = name.replace(/\.\d+$/, "");
+        took.set(test, (took.get(test) ?? 0) + seconds);
         const exception = EXCEPTIONS.find(([start]) => name.startsWith(start));
         if (result.reads === 0 && !UNREAD.some((start) => name.startsWith(start))) result.error = "nothing is read";
         const outcome = result.error ?? (result.different > 0 ? `${result.different} differ: ${result.faults.slice(0, 8).join("; ")}` : "equal");
@@ -62,10 +66,15 @@ try {
         sum.pipelines = result.pipelines ?? sum.pipelines;
     }
     console.log(`${sum.recordings} recordings, ${sum.reads} reads, ${sum.words} words, ${sum.different} differ; ${sum.pipelines} pipelines`);
+    const longest = [...took].sort(([, a], [, b]) => b - a).slice(0, 20);
+    console.log(`longest tests:${longest.map(([test, seconds]) => `\n${seconds.toFixed(1).padStart(7)} s ${test}`).join("")}`);
     for (const [start, right, wrong] of part === "" ? PLANTED : []) {
-        const results = [];
-        for (const name of names.filter((name) => name.startsWith(start))) results.push(await run(name, right, wrong));
-        const isCaught = results.some((result) => result.planted && result.different > 0);
+        let isCaught = false;
+        for (const name of names.filter((name) => name.startsWith(start))) {
+            const result = await run(name, right, wrong);
+            isCaught = result.planted && result.different > 0;
+            if (isCaught) break;
+        }
         console.log(`planted in ${start}, ${wrong}: ${isCaught ? "caught" : "NOT CAUGHT"}`);
         if (!isCaught) failed++;
     }
