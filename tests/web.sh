@@ -28,12 +28,12 @@ cargo test "${everything[@]}" --test twins -- --nocapture backends::
 step "recordings of the tests: twins, sequences, simulators"
 recordings="$PWD/target/recordings"
 rm -rf "$recordings"
-# Not here: planted errors, which have their own below; views beside the frame and their targets, which need five storage
-# textures; and sequences whose many frames take minutes on SwiftShader and show nothing that shorter ones do not; lists,
-# whose order is not the same twice.
+# Not here: planted errors, which have their own below; views beside the frame and their targets, which need five
+# storage textures; and sequences whose many frames take minutes on SwiftShader and show nothing that shorter ones do not;
+# lists, whose order is not the same twice.
 long=(thousand h07 h11 h12 h53 h91 h92 h95 h96 h97 h99 h100 h101 h102)
-# The same passes with fewer frames: h74 as h73 and h75; a still picture and gains as h51 under a steady gaze; h72 as with
-# the ratio; h88 as h78 and h93; h103 as frames out of order; h106 as the same picture at one level of light.
+# The same passes with fewer frames: h74 as h73 and h75; a still picture and gains as h51 under a steady gaze; h72 as
+# with the ratio; h88 as h78 and h93; h103 as frames out of order; h106 as other pictures, at one level of light.
 long+=(h74_a_strobe h51_a_still_picture_stays h51_what_gains h73_a_light h72_without h88 h103 h106)
 skipped=(caught planted refused beside is_no_output record_compiles lost_device lists_have "${long[@]}")
 # Rows of twins with NaN or with numbers below 2^-64 are left out of recordings (tests/gpu/twins/probe.rs): devices may
