@@ -42,11 +42,12 @@ export class Browser {
         return this.#shared(this.#layouts, JSON.stringify(entries), make);
     }
 
-    // `groups`: entries of the layouts of the bind groups; without, they follow from the shader.
+    // Resolves to a pipeline: several compile at the same time. `groups`: entries of the layouts of the bind groups;
+    // without, they follow from the shader.
     pipeline(code, entryPoint, constants, groups) {
         return this.#shared(this.#pipelines, JSON.stringify([code, entryPoint, constants, groups]), () => {
             const bindGroupLayouts = groups?.map((entries) => this.layout(entries));
-            return this.device.createComputePipeline({
+            return this.device.createComputePipelineAsync({
                 layout: groups ? this.device.createPipelineLayout({ bindGroupLayouts }) : "auto",
                 compute: { module: this.module(code), entryPoint, constants },
             });
@@ -148,10 +149,20 @@ async function perform_all(browser, load, planted) {
     const result = { reads: 0, words: 0, different: 0, faults: [] };
     const things = new Map();
     const get = (pointer) => things.get(id(pointer)) ?? unknown(`object ${id(pointer)}`);
-    const data = async (content) => {
-        const [kind, file] = variant(content);
-        return kind === "File" ? load(file[0]) : unknown(`data ${kind}`);
+    // Data are asked for some actions before their turn: waiting for each alone takes a quarter of the time.
+    const AHEAD = 64;
+    let asked = 0;
+    const ask = (end) => {
+        for (; asked < Math.min(end, actions.length); asked++) {
+            const [, content] = variant(actions[asked]);
+            if (!content?.data) continue;
+            const [kind, file] = variant(content.data);
+            content.data = kind === "File" ? load(file[0]) : unknown(`data ${kind}`);
+        }
     };
+    // Pipelines that no submission waited for yet.
+    const compiling = [];
+    const allCompiled = () => Promise.all(compiling.splice(0));
     // Buffer of the last copy that was made to read it.
     let read;
     // What takes memory.
@@ -188,7 +199,8 @@ async function perform_all(browser, load, planted) {
         CreateBindGroupLayout([to, { entries }]) {
             things.set(id(to), { entries: entries.map(layoutEntry) });
         },
-        GetComputePipelineBindGroupLayout({ id: to, pipeline, index }) {
+        async GetComputePipelineBindGroupLayout({ id: to, pipeline, index }) {
+            await allCompiled();
             things.set(id(to), { layout: get(pipeline).pipeline.getBindGroupLayout(index) });
         },
         CreatePipelineLayout([to, { bind_group_layouts }]) {
@@ -210,24 +222,28 @@ async function perform_all(browser, load, planted) {
             things.set(id(to), group);
         },
         async CreateShaderModule({ id: to, data: content }) {
-            things.set(id(to), { code: planted(decoder.decode(await data(content))) });
+            things.set(id(to), { code: planted(decoder.decode(await content)) });
         },
         CreateComputePipeline({ id: to, desc: { layout, stage } }) {
             const { code } = get(stage.module);
             const constants = stage.constants instanceof Map ? Object.fromEntries(stage.constants) : stage.constants;
             const groups = layout ? get(layout).groups : undefined;
-            things.set(id(to), { pipeline: browser.pipeline(code, stage.entry_point ?? undefined, constants, groups) });
+            const thing = {};
+            things.set(id(to), thing);
+            const compiled = browser.pipeline(code, stage.entry_point ?? undefined, constants, groups);
+            compiling.push(compiled.then((pipeline) => (thing.pipeline = pipeline)));
         },
         async WriteBuffer({ id: to, data: content, offset }) {
-            const bytes = await data(content);
+            const bytes = await content;
             const buffer = get(to);
             if (buffer.expected) await compare(bytes);
             else device.queue.writeBuffer(buffer, offset, bytes);
         },
         async WriteTexture({ to, data: content, layout, size }) {
-            device.queue.writeTexture(copied(to, get), await data(content), laidOut(layout), size);
+            device.queue.writeTexture(copied(to, get), await content, laidOut(layout), size);
         },
         async Submit([, commands]) {
+            await allCompiled();
             const encoder = device.createCommandEncoder();
             for (const command of commands) {
                 const [kind, content] = variant(command);
@@ -257,17 +273,22 @@ async function perform_all(browser, load, planted) {
         },
         PushDebugGroup() {},
         PopDebugGroup() {},
-        RunComputePass(encoder, { pass: { commands } }) {
+        RunComputePass(encoder, { pass: { commands, dynamic_offsets } }) {
             const pass = encoder.beginComputePass();
+            // Dynamic offsets of all bind groups lie in one list, in the order of the commands.
+            let used = 0;
             for (const command of commands) {
                 const [kind, content] = variant(command);
                 switch (kind) {
                     case "SetPipeline":
                         pass.setPipeline(get(content[0]).pipeline);
                         break;
-                    case "SetBindGroup":
-                        pass.setBindGroup(content.index, get(content.bind_group));
+                    case "SetBindGroup": {
+                        const offsets = dynamic_offsets.slice(used, used + content.num_dynamic_offsets);
+                        used += offsets.length;
+                        pass.setBindGroup(content.index, get(content.bind_group), offsets);
                         break;
+                    }
                     case "DispatchWorkgroups":
                         pass.dispatchWorkgroups(...content[0]);
                         break;
@@ -303,13 +324,17 @@ async function perform_all(browser, load, planted) {
         read.unmap();
     }
 
-    for (const action of actions) {
+    for (const [index, action] of actions.entries()) {
+        ask(index + AHEAD);
         const [kind, content] = variant(action);
         // What wgpu drops may still be used by commands that are submitted later.
         if (!kind.startsWith("Drop") && !kind.startsWith("Destroy") && kind !== "Init" && kind !== "FailedCommands") {
             await (perform[kind] ?? unknown(`action ${kind}`))(content);
         }
+        // Its data go.
+        actions[index] = undefined;
     }
+    await allCompiled();
     made.forEach((thing) => thing.destroy());
     return result;
 }

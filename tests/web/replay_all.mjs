@@ -16,11 +16,12 @@ const EXCEPTIONS = [
     ["simulator.lifecycle.the_fovea_of_a_half_float_frame", 8000, "a device rounds to halves as it likes"],
 ];
 
-// Recordings that read nothing, by the start of their name: of tests about what is refused, and about memory. In every
-// other one something must be read, or nothing is compared.
+// Recordings that read nothing, by the start of their name: of tests about what is refused, what is allowed, and memory.
+// In every other one something must be read, or nothing is compared.
 const UNREAD = [
     "pass.engines.every_storable_format_is_written_and_others_say_what_to_change",
     "pass.lifecycle.memory_bytes_is_what_is_made",
+    "pass.limits.every_method_runs_on_the_smallest_device",
     "pass.repair.plans_follow_size_and_settings",
 ];
 
@@ -45,16 +46,20 @@ try {
     console.log(`adapter: ${await browser.evaluate("open_browser()")}`);
     const run = (...args) => browser.evaluate(`replay(${args.map((arg) => JSON.stringify(arg)).join(",")})`);
     const sum = { recordings: 0, reads: 0, words: 0, different: 0, pipelines: 0 };
+    // Seconds of each test, whose recordings differ by the number at their end.
+    const took = new Map();
     for (const name of names) {
         const start = performance.now();
         const result = await run(name);
         const seconds = (performance.now() - start) / 1000;
+        const test = name.replace(/\.\d+$/, "");
+        took.set(test, (took.get(test) ?? 0) + seconds);
         const exception = EXCEPTIONS.find(([start]) => name.startsWith(start));
         if (result.reads === 0 && !UNREAD.some((start) => name.startsWith(start))) result.error = "nothing is read";
         const outcome = result.error ?? (result.different > 0 ? `${result.different} differ: ${result.faults.slice(0, 8).join("; ")}` : "equal");
         const is_expected = !result.error && result.different <= (exception?.[1] ?? 0);
         if (outcome !== "equal" || seconds > 5) {
-            console.log(`${name}: ${result.words} words, ${outcome} (${seconds.toFixed(1)} s)${exception && is_expected ? `; expected: ${exception[2]}` : ""}`);
+            console.log(`${name}: ${result.words ?? 0} words, ${outcome} (${seconds.toFixed(1)} s)${exception && is_expected ? `; expected: ${exception[2]}` : ""}`);
         }
         if (!is_expected) failed++;
         sum.recordings++;
@@ -62,10 +67,15 @@ try {
         sum.pipelines = result.pipelines ?? sum.pipelines;
     }
     console.log(`${sum.recordings} recordings, ${sum.reads} reads, ${sum.words} words, ${sum.different} differ; ${sum.pipelines} pipelines`);
+    const longest = [...took].sort(([, a], [, b]) => b - a).slice(0, 20);
+    console.log(`longest tests:${longest.map(([test, seconds]) => `\n${seconds.toFixed(1).padStart(7)} s ${test}`).join("")}`);
     for (const [start, right, wrong] of part === "" ? PLANTED : []) {
-        const results = [];
-        for (const name of names.filter((name) => name.startsWith(start))) results.push(await run(name, right, wrong));
-        const isCaught = results.some((result) => result.planted && result.different > 0);
+        let isCaught = false;
+        for (const name of names.filter((name) => name.startsWith(start))) {
+            const result = await run(name, right, wrong);
+            isCaught = result.planted && result.different > 0;
+            if (isCaught) break;
+        }
         console.log(`planted in ${start}, ${wrong}: ${isCaught ? "caught" : "NOT CAUGHT"}`);
         if (!isCaught) failed++;
     }
