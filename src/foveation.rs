@@ -177,8 +177,8 @@ impl Foveation {
         self.rate_far.ilog2()
     }
 
-    /// Places in their blocks of the quads of the even pattern of frame `index`, in quads: x and y in the middle region,
-    /// x and y in the periphery. There a frame has every second block.
+    /// Places in their blocks of the quads of the even pattern of frame `index`, in quads: x and y in the middle
+    /// region, x and y in the periphery. There a frame has every second block.
     pub(crate) fn quad_offsets(&self, index: u64) -> [u32; 4] {
         let [mid_x, mid_y] = offset_px(index, self.rate_mid / 2);
         let [far_x, far_y] = offset_px(index / 2, self.rate_far / 2);

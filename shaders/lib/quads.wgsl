@@ -13,6 +13,7 @@ const COARSEST: f32 = 2.0;
 const MOST_CONTRAST: f32 = 60.0;
 const FEW_CONTRAST: f32 = 1.0;
 const FEW_ERROR: f32 = 0.4;
+const ENOUGH_SAMPLES: f32 = 16.0;
 const HALF_DEG: f32 = 20.0;
 const CLUMPED: f32 = 0.0625;
 const HASH_BITS: u32 = 8u;
@@ -49,7 +50,7 @@ fn need(lod: f32, samples: f32, contrast: f32) -> f32 {
     let coarse = (limited + COARSE_CONTRAST) * min(lod, COARSEST);
     let single = limited + FEW_CONTRAST;
     let few = (single * single) * (FEW_ERROR / (samples * (samples + 1.0)));
-    return select(coarse * coarse + few, NOTHING, lod < 0.0);
+    return select(coarse * coarse + select(0.0, few, samples < ENOUGH_SAMPLES), NOTHING, lod < 0.0);
 }
 
 // quads::acuity

@@ -182,7 +182,7 @@ struct QuadLit {
 // sparse::pack_quad_lit
 fn pack_quad_lit(l: QuadLit) -> vec4<u32> {
     let own = vec4<u32>(l.own_fits * 16.0 + 0.5) << vec4<u32>(10u, 15u, 20u, 25u);
-    let fits = u32(l.fit * 256.0 + 0.5) | select(0u, 512u, l.is_own) | own.x | own.y | own.z | own.w;
+    let fits = u32(0.5 + l.fit * 256.0) | select(0u, 512u, l.is_own) | own.x | own.y | own.z | own.w;
     let first = disparity_code(l.disparities.x) | (disparity_code(l.disparities.y) << 16u);
     let second = disparity_code(l.disparities.z) | (disparity_code(l.disparities.w) << 16u);
     return vec4<u32>(pack_color(l.gains), fits, first, second);

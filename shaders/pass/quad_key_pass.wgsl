@@ -25,7 +25,7 @@ fn need_at(px: vec2<u32>, view: u32) -> f32 {
     let first = floor(at);
     var nearest_px2 = 0x1p126;
     var lod = -1.0;
-    var samples = 1.0;
+    var samples = ENOUGH_SAMPLES;
     var lowest = vec3<f32>(MAX_COLOR);
     var highest = vec3<f32>(0.0);
     let taps = select(0u, 4u, is_valid);

@@ -473,9 +473,9 @@ impl Afterimage {
     }
 
     /// The quads that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::Filter::Quads) chose: an
-    /// `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bit 0 says that the quad is shaded, and an array
-    /// layer for each view; usages `TEXTURE_BINDING` and `COPY_SRC`. `None` with another filter. Changes of size and
-    /// settings replace it.
+    /// `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bit 0 says that the quad is shaded, and an
+    /// array layer for each view; usages `TEXTURE_BINDING` and `COPY_SRC`. `None` with another filter. Changes of size
+    /// and settings replace it.
     pub fn quad_mask(&self) -> Option<&Texture> {
         self.quads.as_ref().map(|quads| &quads.quads.mask.texture)
     }

@@ -2,8 +2,8 @@
 //!
 //! Everything in the fovea is shaded. Outside it an even pattern moves from frame to frame and visits every quad. A
 //! budget of further quads goes where history lacks something: each quad has a *need*, the reduction of its squared
-//! error that a sample is expected to bring. All quads whose key reaches a threshold are shaded. A histogram of the keys
-//! gives the threshold, without sorting and without exceeding the budget.
+//! error that a sample is expected to bring. All quads whose key reaches a threshold are shaded. A histogram of the
+//! keys gives the threshold, without sorting and without exceeding the budget.
 
 use super::rng;
 
@@ -33,6 +33,8 @@ const MOST_CONTRAST: f32 = 60.0;
 const FEW_CONTRAST: f32 = 1.0;
 /// Squared share of the contrast by which a single sample errs.
 const FEW_ERROR: f32 = 0.4;
+/// Number of samples from which a mean needs no more. History without antialiasing counts as such a mean.
+pub const ENOUGH_SAMPLES: f32 = 16.0;
 /// Eccentricity in degrees at which an error counts half as much as at the gaze.
 const HALF_DEG: f32 = 20.0;
 
@@ -74,7 +76,8 @@ pub fn in_turn(x: u32, y: u32, step: u32, turn: u32) -> bool {
     ((x / step) ^ (y / step) ^ turn) & 1 == 0
 }
 
-/// The pixel of quad (`x`, `y`) that is tested in a frame: each of the four in four frames. Neighbouring quads alternate.
+/// The pixel of quad (`x`, `y`) that is tested in a frame: each of the four in four frames. Neighbouring quads
+/// alternate.
 #[inline]
 pub fn asked_px(x: u32, y: u32, frame: u32) -> [u32; 2] {
     [2 * x + ((frame ^ x ^ y) & 1), 2 * y + (frame >> 1 & 1)]
@@ -92,7 +95,7 @@ pub fn need(lod: f32, samples: f32, contrast: f32) -> f32 {
     let coarse = (contrast + COARSE_CONTRAST) * lod.min(COARSEST);
     let single = contrast + FEW_CONTRAST;
     let few = (single * single) * (FEW_ERROR / (samples * (samples + 1.0)));
-    coarse * coarse + few
+    coarse * coarse + if samples < ENOUGH_SAMPLES { few } else { 0.0 }
 }
 
 /// Share of a squared error that counts at `e_deg` degrees from the gaze.
@@ -102,13 +105,14 @@ pub fn acuity(e_deg: f32) -> f32 {
     share * share
 }
 
-/// Share of the need of quad `i` that counts, of a block of 2x2 quads with these needs: less for each quad whose need is
-/// larger, so that chosen quads do not clump.
+/// Share of the need of quad `i` that counts, of a block of 2x2 quads with these needs: less for each quad whose need
+/// is larger, so that chosen quads do not clump.
 #[inline]
-pub fn share_in_block(needs: [f32; 4], i: usize) -> f32 {
+pub fn share_in_block(needs: [f32; 4], i: u32) -> f32 {
+    let own = needs[i as usize];
     let mut share = 1.0;
-    for other in 0..4 {
-        let is_larger = needs[other] > needs[i] || (needs[other] == needs[i] && other < i);
+    for (other, need) in (0..).zip(needs) {
+        let is_larger = need > own || (need == own && other < i);
         share *= if other != i && is_larger { CLUMPED } else { 1.0 };
     }
     share

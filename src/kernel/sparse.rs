@@ -266,8 +266,8 @@ pub struct QuadLit {
     pub disparities: [f32; 4],
 }
 
-/// Four words: gain ([`pack_color`]); fit in 256ths in bits 0 to 8, `is_own` in bit 9, own fits in 16ths from bit 10 on;
-/// disparities ([`disparity_code`]). Fits of 0 and 1 are exact.
+/// Four words: gain ([`pack_color`]); fit in 256ths in bits 0 to 8, `is_own` in bit 9, own fits in 16ths from bit 10
+/// on; disparities ([`disparity_code`]). Fits of 0 and 1 are exact.
 pub fn pack_quad_lit(l: QuadLit) -> [u32; 4] {
     let own = |i: usize| ((l.own_fits[i] * 16.0 + 0.5) as u32) << (10 + 5 * i);
     let codes = |i: usize| disparity_code(l.disparities[i]) | disparity_code(l.disparities[i + 1]) << 16;

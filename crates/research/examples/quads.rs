@@ -4,14 +4,12 @@
 //! and FLIP, over the frames from `--warm` on; jittered frames against a supersampled reference.
 //!
 //! `cargo run --release -p afterimage-research --example quads -- SCENE [--size WxH] [--frames N] [--warm N]
-//! [--set NAME] [--camera NAME] [--offset N] [--jitter off] [--gaze fixed] [--out FOLDER]`
+//! [--camera NAME] [--offset N] [--jitter off] [--gaze fixed] [--out FOLDER]`
 //!
-//! Makes tables of `docs/quads.md`; a minute a clip of 320x180.
+//! Makes the table of `docs/quads.md`; half a minute a clip of 320x180, ten minutes for Sponza.
 
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::{
-    ContextDesc, Filter, Foveation, Gaze, Image, Method, Repair, Reset, Settings, Smr, ViewFrame, ViewGeometry,
-};
+use afterimage::{ContextDesc, Filter, Foveation, Gaze, Image, Method, Reset, Settings, Smr, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{Flip, References, Scorer, Tracker, encode};
@@ -32,14 +30,12 @@ const FRAMES_PER_GAZE: u64 = 16;
 struct Row {
     name: String,
     foveation: Foveation,
-    repair: Option<Repair>,
     post: CpuAfterimage,
     scorer: Scorer,
     /// Sum over frames of the share of the pixels that were shaded.
     shaded: f64,
     shown: Image<[f32; 3]>,
     mask: Option<Image<bool>>,
-    tune: [f32; 12],
 }
 
 fn sparse(fovea_deg: f32, mid_deg: f32, rate_mid: u32, rate_far: u32) -> Foveation {
@@ -50,147 +46,28 @@ fn quads(fovea_deg: f32, mid_deg: f32, [rate_mid, rate_far]: [u32; 2], budget: f
     Foveation { fovea_deg, mid_deg, rate_mid, rate_far, budget, ..Foveation::quads() }
 }
 
-/// Rows of a table, by its name.
-fn rows(set: &str, size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure> {
+/// Rows of the table.
+fn rows(size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure> {
     let mut rows = vec![];
-    let mut add_tuned =
-        |name: &str, foveation: Foveation, repair: Option<Repair>, change: &[(usize, f32)]| -> Result<(), Failure> {
-            let method = Method::Smr(Smr { antialias, repair, ..Smr::default() });
-            let settings = Settings { method, foveation, ..Settings::default() };
-            let mut tune = afterimage::kernel::quads::DEFAULTS;
-            change.iter().for_each(|&(i, v)| tune[i] = v);
-            rows.push(Row {
-                name: name.into(),
-                foveation,
-                repair,
-                post: CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(size) })?,
-                scorer: Scorer::default(),
-                shaded: 0.0,
-                shown: Image::filled(size, [0.0; 3]),
-                mask: None,
-                tune,
-            });
-            Ok(())
-        };
-    let mut add = |name: &str, foveation: Foveation, change: &[(usize, f32)]| add_tuned(name, foveation, None, change);
-    match set {
-        "second" => {
-            add("pixels 1/2/4", sparse(5.0, 15.0, 2, 4), &[])?;
-            add("a", quads(5.0, 5.0, [8, 8], 0.050), &[])?;
-            add("mid 4/8", quads(5.0, 15.0, [4, 8], 0.037), &[])?;
-            add("whole", quads(5.0, 5.0, [8, 8], 0.019), &[(5, 0.0)])?;
-            add("none 900", quads(5.0, 5.0, [8, 8], 0.050), &[(0, 900.0)])?;
-            add("none 60", quads(5.0, 5.0, [8, 8], 0.050), &[(0, 60.0)])?;
-            add("few .3", quads(5.0, 5.0, [8, 8], 0.050), &[(2, 0.3)])?;
-            add("few .03", quads(5.0, 5.0, [8, 8], 0.050), &[(2, 0.03)])?;
-            add("coarse contrast 10", quads(5.0, 5.0, [8, 8], 0.050), &[(1, 10.0)])?;
-            add("half deg 8", quads(5.0, 5.0, [8, 8], 0.050), &[(3, 8.0)])?;
-            add("half deg 100", quads(5.0, 5.0, [8, 8], 0.050), &[(3, 100.0)])?;
-            add("block 1", quads(5.0, 5.0, [8, 8], 0.050), &[(4, 1.0)])?;
-            add("block .25", quads(5.0, 5.0, [8, 8], 0.050), &[(4, 0.25)])?;
-            add("block 0", quads(5.0, 5.0, [8, 8], 0.050), &[(4, 0.0)])?;
-            add("corr 1", quads(5.0, 5.0, [8, 8], 0.050), &[(6, 1.0)])?;
-            add("corr 4", quads(5.0, 5.0, [8, 8], 0.050), &[(6, 4.0)])?;
-        }
-        "third" => {
-            add("pixels 1/2/4", sparse(5.0, 15.0, 2, 4), &[])?;
-            add("a", quads(5.0, 5.0, [8, 8], 0.051), &[])?;
-            add("mid 4/8", quads(5.0, 15.0, [4, 8], 0.038), &[])?;
-            add("whole", quads(5.0, 5.0, [8, 8], 0.020), &[(5, 0.0)])?;
-            add("none 60", quads(5.0, 5.0, [8, 8], 0.051), &[(0, 60.0)])?;
-            add("n60 cc10 few.2", quads(5.0, 5.0, [8, 8], 0.051), &[(0, 60.0), (1, 10.0), (2, 0.2)])?;
-        }
-        "light" => {
-            add("pixels 1/2/4", sparse(5.0, 15.0, 2, 4), &[])?;
-            add("none 60", quads(5.0, 5.0, [8, 8], 0.051), &[(0, 60.0)])?;
-            add("whole n60", quads(5.0, 5.0, [8, 8], 0.020), &[(5, 0.0), (0, 60.0)])?;
-            add("whole n60 few 1", quads(5.0, 5.0, [8, 8], 0.020), &[(5, 0.0), (0, 60.0), (2, 1.0)])?;
-            add("whole n60 corr1", quads(5.0, 5.0, [8, 8], 0.020), &[(5, 0.0), (0, 60.0), (6, 1.0)])?;
-            add("whole n60 corr4", quads(5.0, 5.0, [8, 8], 0.020), &[(5, 0.0), (0, 60.0), (6, 4.0)])?;
-            add("whole even", quads(5.0, 15.0, [4, 8], 0.0), &[(5, 0.0)])?;
-        }
-        "grid" => {
-            for (name, half) in [("whole", 0.0), ("half", 1.0)] {
-                let budget = if half == 0.0 { 0.020 } else { 0.051 };
-                for few in [0.5, 1.0, 2.0] {
-                    for corr in [1.0, 1.4] {
-                        add(
-                            &format!("{name} few {few} corr {corr}"),
-                            quads(5.0, 5.0, [8, 8], budget),
-                            &[(5, half), (0, 60.0), (2, few), (6, corr)],
-                        )?;
-                    }
-                }
-            }
-        }
-        "grid2" => {
-            for few in [0.25, 0.5] {
-                for corr in [1.0, 1.2] {
-                    add(
-                        &format!("few {few} corr {corr}"),
-                        quads(5.0, 5.0, [8, 8], 0.051),
-                        &[(0, 60.0), (2, few), (6, corr)],
-                    )?;
-                }
-            }
-            add("n30", quads(5.0, 5.0, [8, 8], 0.051), &[(0, 30.0), (2, 0.5), (6, 1.0)])?;
-            add("cc10", quads(5.0, 5.0, [8, 8], 0.051), &[(0, 60.0), (1, 10.0), (2, 0.5), (6, 1.0)])?;
-        }
-        "ratio" => {
-            for ratio in [1.0, 0.95, 0.9, 0.8, 0.7, 0.5] {
-                add(&format!("ratio {ratio}"), quads(5.0, 5.0, [8, 8], 0.051), &[(10, ratio)])?;
-            }
-            add("asked", quads(5.0, 5.0, [8, 8], 0.051), &[(11, 1.0)])?;
-        }
-        "four" => {
-            let q = |fovea, mid, budget| quads(fovea, mid, [8, 8], budget);
-            add("default", q(5.0, 5.0, 0.051), &[])?;
-            add("coarse 1", q(5.0, 5.0, 0.051), &[(7, 1.0)])?;
-            add("coarse .3", q(5.0, 5.0, 0.051), &[(7, 0.3)])?;
-            add("lod 3", q(5.0, 5.0, 0.051), &[(9, 3.0)])?;
-            add("corr .7", q(5.0, 5.0, 0.051), &[(6, 0.7)])?;
-            add("hd 10", q(5.0, 5.0, 0.051), &[(3, 10.0)])?;
-            add("fovea 0", q(0.0, 0.0, 0.058), &[])?;
-            add("fovea 8", q(8.0, 8.0, 0.040), &[])?;
-            add("block .02", q(5.0, 5.0, 0.051), &[(4, 0.02)])?;
-        }
-        "five" => {
-            let q = |fovea, mid, budget| quads(fovea, mid, [8, 8], budget);
-            add("c1", q(5.0, 5.0, 0.051), &[(7, 1.0)])?;
-            add("c2", q(5.0, 5.0, 0.051), &[(7, 2.0)])?;
-            add("c1 cc10", q(5.0, 5.0, 0.051), &[(7, 1.0), (1, 10.0)])?;
-            add("c1 cc1", q(5.0, 5.0, 0.051), &[(7, 1.0), (1, 1.0)])?;
-            add("c1 few.2", q(5.0, 5.0, 0.051), &[(7, 1.0), (2, 0.2)])?;
-            add("c1 few.8", q(5.0, 5.0, 0.051), &[(7, 1.0), (2, 0.8)])?;
-            add("c1 n200", q(5.0, 5.0, 0.051), &[(7, 1.0), (0, 200.0)])?;
-            add("c1 corr1.4", q(5.0, 5.0, 0.051), &[(7, 1.0), (6, 1.4)])?;
-        }
-        "six" => {
-            let q = |fovea, mid, budget| quads(fovea, mid, [8, 8], budget);
-            add("c1 half", q(5.0, 5.0, 0.051), &[(7, 1.0)])?;
-            add("c1 whole", q(5.0, 5.0, 0.0203), &[(7, 1.0), (5, 0.0)])?;
-            add("c1 whole few 1", q(5.0, 5.0, 0.0203), &[(7, 1.0), (5, 0.0), (2, 1.0)])?;
-            add("c1 half 4 px", q(5.0, 5.0, 0.051), &[(7, 1.0), (11, 1.0)])?;
-            add("c1 half 1 px", q(5.0, 5.0, 0.051), &[(7, 1.0), (11, 2.0)])?;
-        }
-        "scene" => {
-            let q = |fovea, mid, budget| quads(fovea, mid, [8, 8], budget);
-            add("pixels 1/2/4", sparse(5.0, 15.0, 2, 4), &[])?;
-            add("c1 half", q(5.0, 5.0, 0.051), &[(7, 1.0)])?;
-            add("c1 whole", q(5.0, 5.0, 0.0203), &[(7, 1.0), (5, 0.0)])?;
-            add("c1 half few .2", q(5.0, 5.0, 0.051), &[(7, 1.0), (2, 0.2)])?;
-            add("c1 half 1 px", q(5.0, 5.0, 0.051), &[(7, 1.0), (11, 2.0)])?;
-            add("half mid 4", quads(5.0, 15.0, [4, 8], 0.038), &[(7, 1.0)])?;
-        }
-        "first" => {
-            add("pixels 1/2/4", sparse(5.0, 15.0, 2, 4), &[])?;
-            add("quads 8, budget 4.7", quads(5.0, 5.0, [8, 8], 0.047), &[])?;
-            add("quads 4/8, budget 3.2", quads(5.0, 15.0, [4, 8], 0.032), &[])?;
-            add("quads 4/8, budget 2.5", quads(5.0, 15.0, [4, 8], 0.025), &[])?;
-            add("quads 8 whole, 1.7", quads(5.0, 5.0, [8, 8], 0.017), &[(5, 0.0)])?;
-        }
-        _ => return Err(format!("no table {set}").into()),
-    }
+    let mut add = |name: &str, foveation: Foveation| -> Result<(), Failure> {
+        let method = Method::Smr(Smr { antialias, ..Smr::default() });
+        let settings = Settings { method, foveation, ..Settings::default() };
+        rows.push(Row {
+            name: name.into(),
+            foveation,
+            post: CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(size) })?,
+            scorer: Scorer::default(),
+            shaded: 0.0,
+            shown: Image::filled(size, [0.0; 3]),
+            mask: None,
+        });
+        Ok(())
+    };
+    add("lattices 1/2/4", sparse(5.0, 15.0, 2, 4))?;
+    add("quads, budget 5.1 %", quads(5.0, 5.0, [8, 8], 0.051))?;
+    add("quads, as by default", Foveation::quads())?;
+    add("one pixel in 4", sparse(0.0, 0.0, 2, 2))?;
+    add("uniform 25 %", quads(0.0, 0.0, [4, 4], 0.125))?;
     Ok(rows)
 }
 
@@ -206,11 +83,9 @@ impl Row {
         let views = [ViewFrame { lattices, ..*view }];
         let reset = if frame.cut { Reset::All } else { Reset::None };
         let input = Frame { depth: Some(&depths), motion: Some(&motions), reset, ..Frame::new(&colors, &views, index) };
-        let is_planned = !is_sparse || self.repair.is_some();
-        let mask = if is_planned { Some(self.post.plan(&input)?[0].clone()) } else { None };
-        let repaired = self.repair.map(|_| &colors[..]);
+        let mask = if !is_sparse { Some(self.post.plan(&input)?[0].clone()) } else { None };
         let mut shown = [Image::filled(size, [0.0; 3])];
-        self.post.process(&Frame { repaired, ..input }, &mut shown)?;
+        self.post.process(&input, &mut shown)?;
         let [shown] = shown;
         self.shown = encode(&shown, 0.0);
         let points = lattices.map_or(0, |l| l.as_slice().iter().map(|l| l.points[0] * l.points[1]).sum::<u32>());
@@ -246,7 +121,7 @@ fn main() -> Result<(), Failure> {
     let is_jittered = option("--jitter", "halton") == "halton" && !is_folder;
     let moves = option("--gaze", "moving") == "moving";
     let geometry = ViewGeometry::flat(size, info.hfov_deg.unwrap_or(70.0))?;
-    let mut rows = rows(&option("--set", "first"), size, is_jittered)?;
+    let mut rows = rows(size, is_jittered)?;
     let viewing = Viewing { geometry, display: Display::default(), fps: info.fps.unwrap_or(60.0) };
     let mut references = References::with_flip(Flip::for_view(&geometry)).with_jod(viewing);
     let mut tracker = Tracker::default();

@@ -9,8 +9,8 @@ use crate::kernel::antialias::mean_of;
 use crate::kernel::kept::{code_word, is_empty, unpack_full};
 use crate::kernel::matched::root_difference;
 use crate::kernel::quads::{
-    IN_FOVEA, IN_MIDDLE, KEYS, acuity, asked_px, budget_quads, in_pattern, in_turn, need, quad_key, region,
-    share_in_block, threshold,
+    ENOUGH_SAMPLES, IN_FOVEA, IN_MIDDLE, KEYS, acuity, asked_px, budget_quads, in_pattern, in_turn, need, quad_key,
+    region, share_in_block, threshold,
 };
 use crate::kernel::reproject::nearest;
 use crate::kernel::resample::{has_code, tap_codes};
@@ -39,8 +39,8 @@ impl View<'_> {
             let in_block = [0, 1, 2, 3].map(|i| [x & !1 | i & 1, y & !1 | i >> 1]);
             let is_inside = |[u, v]: [u32; 2]| u < size[0] && v < size[1];
             let of_block = in_block.map(|q| if is_inside(q) { needs.at(q[0] as usize, q[1] as usize) } else { 0.0 });
-            let own = (x & 1 | (y & 1) << 1) as usize;
-            let need = of_block[own] * share_in_block(of_block, own);
+            let own = x & 1 | (y & 1) << 1;
+            let need = of_block[own as usize] * share_in_block(of_block, own);
             quad_key(need, x, y, self.frame_low, self.inputs.uniforms.key)
         });
         let mut counts = vec![0; KEYS as usize];
@@ -87,7 +87,7 @@ impl View<'_> {
         let codes = tap_codes(inputs.expected_disparity(x, y, inputs.disparity(x, y)));
         let at = [x as f32 + motion[0], y as f32 + motion[1]];
         let first = at.map(|v| v.floor());
-        let mut best = (f32::MAX, -1.0, 1.0);
+        let mut best = (f32::MAX, -1.0, ENOUGH_SAMPLES);
         let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::ZERO);
         for tap in 0..4 {
             let [tx, ty] = [first[0] + (tap & 1) as f32, first[1] + (tap >> 1) as f32];
@@ -100,7 +100,7 @@ impl View<'_> {
             let px2 = (tx - at[0]) * (tx - at[0]) + (ty - at[1]) * (ty - at[1]);
             if px2 < best.0 {
                 let mean = mean_of(stored.lod);
-                best = if self.antialiases { (px2, mean.lod, mean.samples) } else { (px2, stored.lod, 1.0) };
+                best = if self.antialiases { (px2, mean.lod, mean.samples) } else { (px2, stored.lod, ENOUGH_SAMPLES) };
             }
         }
         need(best.1, best.2, root_difference(low, high))

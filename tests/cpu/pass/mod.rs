@@ -1,5 +1,5 @@
 //! Whole passes on the CPU: conventions, history rejection, determinism, lifecycle; hard cases H19, H22, H29, H46-H60,
-//! H63, H66, H77-H79.
+//! H63, H66, H77-H79, H107, H108.
 
 mod depth;
 mod lifecycle;
@@ -7,6 +7,7 @@ mod light;
 mod means;
 mod nan;
 mod properties;
+mod quads;
 mod repair;
 mod reprojection;
 mod reservoirs;

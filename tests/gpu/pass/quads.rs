@@ -16,8 +16,8 @@ fn settings(antialias: bool) -> Settings {
     Settings { method, foveation, ..Settings::default() }
 }
 
-/// Two views that glide, with colors at every pixel, of which some are not numbers. In the second view surfaces part, and
-/// its gaze is lost in every fifth frame.
+/// Two views that glide, with colors at every pixel, of which some are not numbers. In the second view surfaces part,
+/// and its gaze is lost in every fifth frame.
 fn views(index: u64, settings: &Settings) -> [View; 2] {
     [0, 1].map(|v| {
         let mut view = gliding_view(index, v, settings);

@@ -129,6 +129,11 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("repair::priority", "RINGS - 1u", "RINGS"),
     ("repair::asked_px", "i ^ frame_low ^ x ^ y", "i ^ x ^ y"),
     ("repair::quad_key", "~key", "key"),
+    // Wrong quads.
+    ("quads::need", "min(lod, COARSEST)", "lod"),
+    ("quads::octant", "5 * high <= 2 * wide", "5 * high < 2 * wide"),
+    ("quads::share_in_block", "other < i", "other > i"),
+    ("sparse::quad_lit", "10u + 5u * i", "10u"),
     // A wrong size.
     ("resize::old_position", "* ratio - 0.5", "* ratio"),
     ("resize::resized_lod", "lod + shift", "lod - shift"),

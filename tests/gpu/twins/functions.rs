@@ -29,6 +29,7 @@ bit_equal! {
     foveate_is_bit_equal_h69_h71: "foveate";
     antialias_is_bit_equal: "antialias";
     lens_is_bit_equal: "lens";
+    quads_is_bit_equal: "quads";
     repair_is_bit_equal: "repair";
     kept_is_bit_equal: "kept";
     sparse_is_bit_equal: "sparse";

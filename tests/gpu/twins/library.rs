@@ -2,7 +2,7 @@
 
 use super::probe::Probe;
 use super::{
-    antialias, decisions, doctor, foveation, lattice, lens, matching, mathematics, noise, repair, sparse, state,
+    antialias, decisions, doctor, foveation, lattice, lens, matching, mathematics, noise, quads, repair, sparse, state,
     surfaces, upsampling, weighted,
 };
 pub use afterimage::shader::SHADERS;
@@ -21,6 +21,8 @@ pub const RUST_ONLY: &[(&str, &str)] = &[
     ("depth", "slope"),
     ("lattice", "jitter_px"),
     ("lattice", "offset_px"),
+    ("quads", "budget_quads"),
+    ("quads", "threshold"),
     ("repair", "budget_quads"),
     ("repair", "threshold"),
     ("resample", "gather_around"),
@@ -41,6 +43,7 @@ pub fn probes() -> impl Iterator<Item = &'static Probe> {
         noise::PROBES,
         mathematics::PROBES,
         antialias::PROBES,
+        quads::PROBES,
         repair::PROBES,
         sparse::PROBES,
         state::PROBES,

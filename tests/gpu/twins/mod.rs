@@ -19,6 +19,7 @@ mod modules;
 mod noise;
 mod order;
 mod probe;
+mod quads;
 mod repair;
 mod shape;
 mod sparse;

@@ -27,6 +27,13 @@ shape!(kept::Interpolated { color: Vec3, lod: f32, range: [Vec3; 2], nearest: ke
 shape!(sparse::Observation { sampled: Vec3, history: Vec3, error: f32, sure: f32 });
 shape!(sparse::Light { sampled: Vec3, history: Vec3, error: f32, weight: f32, squared: f32, spatial: f32 });
 shape!(sparse::Lit { gain as "gains": Vec3, fit: f32, own_fit: f32, is_own: bool, disparity: f32 });
+shape!(sparse::QuadLit {
+    gain as "gains": Vec3,
+    fit: f32,
+    own_fits: [f32; 4],
+    is_own: bool,
+    disparities: [f32; 4]
+});
 shape!(Reconstruction {
     candidate: Vec3,
     lod: f32,
@@ -244,6 +251,26 @@ pub const PROBES: &[Probe] = &[
             row.extend([range(d, 0.0, 1.0), d.bits() % 2, scaled(d, -20, 20), range(d, 0.0, 1.0)]);
         })
     ),
+    probe!(sparse::pack_quad_lit, |rows| {
+        rows.random(|d, row| {
+            row.extend([0; 3].map(|_| range(d, 0.2, 5.0)));
+            row.extend([0; 5].map(|_| range(d, 0.0, 1.0)));
+            row.push(d.bits() % 2);
+            row.extend([0; 4].map(|_| scaled(d, -20, 20)));
+        })
+    }),
+    probe!(sparse::quad_lit, |rows| {
+        rows.random(|d, row| {
+            row.extend([0; 4].map(|_| d.bits()));
+            row.push(d.bits() % 4);
+        })
+    }),
+    probe!(sparse::quad_code, |rows| {
+        rows.random(|d, row| {
+            row.extend([0; 4].map(|_| d.bits()));
+            row.push(d.bits() % 4);
+        })
+    }),
     probe!(sparse::unpack_lit, |rows| rows.random(|d, row| row.extend([bits(d), bits(d)]))),
     probe!(sparse::relit, |rows| rows.random(|d, row| {
         row.extend(color(d));

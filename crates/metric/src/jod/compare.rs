@@ -51,7 +51,8 @@ impl TestVideo {
         score
     }
 
-    /// Forgets the scores of the frames so far, but not the temporal filters' state: the next frame continues the video.
+    /// Forgets the scores of the frames so far, but not the state of the temporal filters: the next frame continues the
+    /// video.
     pub fn restart(&mut self) {
         self.frames.clear();
     }

@@ -26,7 +26,7 @@ impl Row {
 }
 
 /// All rows, in order.
-pub const ROWS: [Row; 106] = [
+pub const ROWS: [Row; 108] = [
     // Reservoir arithmetic
     row(
         "H01",
@@ -512,5 +512,17 @@ pub const ROWS: [Row; 106] = [
     )
     .but(
         "smr, on frames that are neither sparse nor noisy. wrs, sparse frames and noise compare colors by constants for white at about 1.",
+    ),
+    row(
+        "H107",
+        "plan of quads under any needs: none, flickering light, one corner, depth that is no number, no trust",
+        "budget never exceeded; every quad shaded within the pattern's period; a settled still asks for the pattern alone",
+        CPU,
+    ),
+    row(
+        "H108",
+        "the renderer shades fewer quads than planned, or more, or leaves its clear color between them",
+        "planned and finite pixels count, all else is ignored, bit for bit",
+        CPU,
     ),
 ];

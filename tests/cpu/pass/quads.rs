@@ -1,0 +1,177 @@
+//! Frames shaded by quads: laws of the plan, and what the renderer shades beside it.
+
+use super::*;
+use crate::images::View;
+use afterimage::{Filter, Foveation, Smr};
+use afterimage_testing::holds;
+
+/// Frames in which the even pattern visits every quad of the periphery: 4x4 quads a block, every second block a frame.
+const PERIOD: u64 = 32;
+const BUDGET: f32 = 0.03;
+
+type Mask = Image<bool>;
+
+fn settings(budget: f32, antialias: bool) -> Settings {
+    let foveation = Foveation { fovea_deg: 8.0, mid_deg: 20.0, budget, ..Foveation::quads() };
+    let method = Method::Smr(Smr { antialias, ..Smr::default() });
+    Settings { method, foveation, ..Settings::default() }
+}
+
+fn context(budget: f32, antialias: bool) -> CpuAfterimage {
+    let settings = settings(budget, antialias);
+    CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) }).unwrap()
+}
+
+/// What a plan has to work with.
+#[derive(Clone, Copy, Debug)]
+enum Needs {
+    Settled,
+    Flickering,
+    OneCorner,
+    BadDepth,
+    NoTrust,
+}
+
+/// A wall with a smooth pattern, whose need is as it is named.
+fn wall(index: u64, needs: Needs) -> View {
+    let strobe = if matches!(needs, Needs::Flickering) && index % 2 == 1 { 4.0 } else { 1.0 };
+    let color =
+        |[x, y]: [u32; 2]| [(0.5 * x as f32).sin(), (0.4 * y as f32).cos(), 0.2].map(|v| strobe * (0.5 + 0.3 * v));
+    let corner = |[x, y]: [u32; 2]| if x < 12 && y < 12 { 0.0 } else { 1.0 };
+    let depth = |[x, y]: [u32; 2]| if (x + y) % 3 == index as u32 % 3 { f32::NAN } else { 5.0 };
+    View::still(Image::from_fn(SIZE, color), [30.0, 20.0]).with(|view| {
+        view.depth = Some(match needs {
+            Needs::BadDepth => Image::from_fn(SIZE, depth),
+            _ => Image::filled(SIZE, 5.0),
+        });
+        view.trust = match needs {
+            Needs::OneCorner => Some(Image::from_fn(SIZE, corner)),
+            Needs::NoTrust => Some(Image::filled(SIZE, 0.0)),
+            _ => None,
+        };
+    })
+}
+
+/// Mask and output of a frame, in which the renderer shades `color` of the planned pixels.
+fn show_shaded(
+    post: &mut CpuAfterimage,
+    index: u64,
+    view: &View,
+    color: impl Fn(bool, [u32; 2]) -> [f32; 3],
+) -> (Mask, Color) {
+    let images = Images::of(&[view.one()]);
+    let frame = images.frame(index);
+    let mask = post.plan(&frame).unwrap()[0].clone();
+    let shaded = Image::from_fn(SIZE, |[x, y]| color(mask.at(x as usize, y as usize), [x, y]));
+    let mut shown = [Image::filled(SIZE, [0.0; 3])];
+    post.process(&Frame { color: &[&shaded], ..frame }, &mut shown).unwrap();
+    let [shown] = shown;
+    (mask, shown)
+}
+
+/// Mask and output of a frame that is shaded as it was planned.
+fn show(post: &mut CpuAfterimage, index: u64, view: &View) -> (Mask, Color) {
+    show_shaded(post, index, view, |_, [x, y]| view.color.at(x as usize, y as usize))
+}
+
+fn quads_of(mask: &Mask) -> usize {
+    let size = mask.size().map(|side| side.div_ceil(2) as usize);
+    (0..size[0] * size[1]).filter(|i| mask.at(2 * (i % size[0]), 2 * (i / size[0]))).count()
+}
+
+/// Largest number of quads beyond the even pattern's in a frame, and of the last frame; frames until the last quad was
+/// shaded.
+fn measured(masks: &[Mask], even: &[Mask]) -> (usize, usize, usize) {
+    let spent: Vec<_> = masks.iter().zip(even).map(|(all, even)| quads_of(all) - quads_of(even)).collect();
+    let all = even[0].pixels().len();
+    let first = |i: usize| masks.iter().position(|mask| mask.pixels()[i]).unwrap_or(usize::MAX);
+    (spent.iter().copied().max().unwrap(), spent[spent.len() - 1], (0..all).map(first).max().unwrap())
+}
+
+#[test]
+fn h107_the_budget_is_never_exceeded_and_every_quad_has_its_turn() {
+    let size = SIZE.map(|side| side.div_ceil(2));
+    let budget = (BUDGET * (size[0] * size[1]) as f32) as usize;
+    let mut texts = vec![];
+    for needs in [Needs::Settled, Needs::Flickering, Needs::OneCorner, Needs::BadDepth, Needs::NoTrust] {
+        let (mut post, mut even) = (context(BUDGET, false), context(0.0, false));
+        let frames: Vec<_> = (0..3 * PERIOD).map(|index| wall(index, needs)).collect();
+        let run = |post: &mut CpuAfterimage| -> Vec<Mask> {
+            (0..).zip(&frames).map(|(index, view)| show(post, index, view).0).collect()
+        };
+        let (masks, even) = (run(&mut post), run(&mut even));
+        let (most, last, turn) = measured(&masks, &even);
+        assert!(most <= budget && most > budget / 2, "{needs:?}: {most} of {budget}");
+        // The pattern alone visits every quad, whatever is chosen beside it.
+        assert_eq!(measured(&even, &even).2 as u64, PERIOD - 1, "{needs:?}");
+        assert!((turn as u64) < PERIOD, "{needs:?}: {turn}");
+        match needs {
+            Needs::Settled => assert_eq!(last, 0, "settled"),
+            _ => assert!(last > 0, "{needs:?}"),
+        }
+        texts.push(format!("{needs:?} {most}"));
+        // Planted errors: a plan of twice the budget, and a pattern that leaves out a quad.
+        let (generous, _, _) = measured(&run(&mut context(2.5 * BUDGET, false)), &even);
+        assert!(generous > budget, "{needs:?}: {generous}");
+        let holed: Vec<_> = even
+            .iter()
+            .map(|mask| Image::from_fn(SIZE, |[x, y]| x + y > 1 && mask.at(x as usize, y as usize)))
+            .collect();
+        assert_eq!(measured(&holed, &holed).2, usize::MAX);
+    }
+    holds!("H107", Cpu, "most quads by need of {budget}: {}", texts.join(", "));
+}
+
+#[test]
+fn h108_what_was_not_asked_for_is_not_read_and_what_is_missing_is_not_shown() {
+    for antialias in [false, true] {
+        let [mut whole, mut bare, mut short, mut planted] = [(); 4].map(|()| context(BUDGET, antialias));
+        let (mut missing, mut caught) = (0, false);
+        for index in 0..PERIOD {
+            let view = wall(index, Needs::OneCorner);
+            let (mask, shown) = show(&mut whole, index, &view);
+            let at = |[x, y]: [u32; 2]| view.color.at(x as usize, y as usize);
+            // The renderer leaves its clear color, or shades more than was asked for.
+            let beside = |[x, _]: [u32; 2]| [[9.0; 3], [f32::NAN; 3]][x as usize % 2];
+            let bare_color = |asked, px| if asked { at(px) } else { beside(px) };
+            let (same, bare_shown) = show_shaded(&mut bare, index, &view, bare_color);
+            assert!(same == mask && bare_shown == shown, "frame {index}");
+            // It leaves out some of what was asked for.
+            let is_left_out = |[x, y]: [u32; 2]| (x / 2 + y / 2) % 5 == 0;
+            let (_, without) = show_shaded(&mut short, index, &view, |asked, px| match asked {
+                true if is_left_out(px) => [f32::NAN; 3],
+                true => at(px),
+                false => beside(px),
+            });
+            let finite = without.pixels().iter().flatten().all(|v| v.is_finite() && (0.0..9.0).contains(v));
+            assert!(finite, "frame {index}: the clear color shows");
+            missing += without.pixels().iter().zip(shown.pixels()).filter(|(a, b)| a != b).count();
+            // A planted error: a renderer whose clear color counts.
+            let (_, wrong) =
+                show_shaded(
+                    &mut planted,
+                    index,
+                    &view,
+                    |asked, px| if asked && !is_left_out(px) { at(px) } else { [9.0; 3] },
+                );
+            caught |= !wrong.pixels().iter().flatten().all(|v| (0.0..9.0).contains(v));
+        }
+        assert!(missing > 0 && caught, "what is missing makes a difference");
+        holds!("H108", Cpu, "antialias {antialias}: outputs equal bit for bit; with a fifth missing, none of it shows");
+    }
+}
+
+#[test]
+fn settings_that_quads_cannot_have_are_refused() {
+    let with = |change: fn(&mut Settings)| {
+        let mut settings = settings(BUDGET, false);
+        change(&mut settings);
+        settings.validate().map_err(|error| error.to_string())
+    };
+    assert_eq!(with(|_| ()), Ok(()));
+    assert!(with(|s| s.foveation.rate_far = 16).unwrap_err().contains("power of two from 4 to 8"));
+    assert!(with(|s| s.foveation.rate_mid = 1).unwrap_err().contains("power of two from 2 to 8"));
+    assert!(with(|s| s.foveation.budget = 1.5).unwrap_err().contains("budget"));
+    assert!(with(|s| s.noisy = true).unwrap_err().contains("noisy"));
+    assert_eq!(Foveation::quads().filter, Filter::Quads);
+}
