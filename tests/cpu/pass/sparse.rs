@@ -104,6 +104,6 @@ fn levels_of_detail_beside_lattices_are_refused() {
     let (color, lod) = (noise(SIZE, "lod"), Image::filled(SIZE, 1.0));
     let images = Images::of(&[OneView { lod: Some(&lod), ..OneView::new(facts, &color) }]);
     let error = post.process(&images.frame(0), &mut [Image::filled(SIZE, [0.0; 3])]).unwrap_err().to_string();
-    assert_eq!(error, "lod of view 0 is given: expected None: the lattices say how coarse a sparse frame is");
+    assert_eq!(error, "lod of view 0 is given: expected None: the places of the samples say how coarse the frame is");
     assert!(!post.history().is_filled());
 }
