@@ -18,6 +18,7 @@ const FOVEATION: Foveation = Foveation {
     blend_deg: 2.0,
     rate_mid: 4,
     rate_far: 8,
+    budget: 0.0,
 };
 
 fn settings_of(method: MethodKind) -> Settings {
