@@ -138,6 +138,21 @@ impl Foveation {
         Self { filter: Filter::Quads, rate_mid: 4, rate_far: 8, ..Self::default() }
     }
 
+    /// Quads without a gaze: `share` of the pixels, 0 to 1, everywhere alike, half of a share of 0.25 in an even pattern
+    /// and the rest by need. It is a temporal upscaler with depth and motion at full rate. Below 0.25 the even pattern
+    /// takes 1/32 of the pixels.
+    ///
+    /// ```
+    /// use afterimage::Foveation;
+    ///
+    /// assert_eq!(Foveation::uniform(0.25).budget, 0.125);
+    /// ```
+    pub fn uniform(share: f32) -> Self {
+        let (rate, even) = if share >= 0.25 { (4, 1.0 / 8.0) } else { (8, 1.0 / 32.0) };
+        let budget = (share - even).clamp(0.0, 1.0);
+        Self { fovea_deg: 0.0, mid_deg: 0.0, rate_mid: rate, rate_far: rate, budget, ..Self::quads() }
+    }
+
     /// Checks the range of every field.
     ///
     /// # Errors

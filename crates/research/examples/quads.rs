@@ -67,7 +67,7 @@ fn rows(size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure> {
     add("quads, budget 5.1 %", quads(5.0, 5.0, [8, 8], 0.051))?;
     add("quads, as by default", Foveation::quads())?;
     add("one pixel in 4", sparse(0.0, 0.0, 2, 2))?;
-    add("uniform 25 %", quads(0.0, 0.0, [4, 4], 0.125))?;
+    add("uniform 25 %", Foveation::uniform(0.25))?;
     Ok(rows)
 }
 
