@@ -206,6 +206,7 @@ impl Bits<'_> {
             blend_deg: self.around(0.0, 10.0),
             rate_mid: 1 << (pick >> 4 & 3),
             rate_far: 1 << (pick >> 6 & 7),
+            budget: 0.025,
         };
         let smr = Smr {
             accumulate: self.around(0.0, 0.98),
