@@ -14,6 +14,7 @@ pub const FOVEATION: Foveation = Foveation {
     blend_deg: 2.0,
     rate_mid: 4,
     rate_far: 8,
+    budget: 0.0,
 };
 
 type Foveated = (Image<[f32; 3]>, Image<f32>);
