@@ -23,6 +23,7 @@ const UNREAD = [
     "pass.lifecycle.memory_bytes_is_what_is_made",
     "pass.limits.every_method_runs_on_the_smallest_device",
     "pass.repair.plans_follow_size_and_settings",
+    "pass.quads.plans_follow_size_and_settings",
 ];
 
 // Planted errors: a recording by the start of its name, what its shaders contain, and what is put in its place.

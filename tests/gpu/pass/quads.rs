@@ -59,13 +59,42 @@ fn frames_by_quads_are_bit_equal_on_both_executors() {
             .map(|index| {
                 let reset = reset_of(index, &mut rig);
                 let (made, _) = rig.both(index, reset, &views(index, &settings));
-                assert_lists_are_masks(&rig, &made.quads);
                 made.quads.iter().sum()
             })
             .collect();
         println!("{:?}: quads shaded {counts:?}", settings.method);
         assert!(counts.iter().all(|&n| n > 100 && n < 900));
     }
+}
+
+#[test]
+fn lists_have_the_quads_of_the_masks() {
+    let settings = settings(true);
+    let Some(mut rig) = Rig::new(desc(), settings) else { return };
+    for index in 0..FRAMES {
+        let reset = reset_of(index, &mut rig);
+        let made = rig.on_gpu(index, reset, &views(index, &settings));
+        assert_lists_are_masks(&rig, &made.quads);
+    }
+}
+
+/// Bytes of a context, and that changes of size and settings replace mask and lists.
+#[test]
+fn plans_follow_size_and_settings() {
+    let settings = settings(true);
+    let Some(mut rig) = Rig::new(desc(), settings) else { return };
+    let desc = ContextDesc { settings, ..ContextDesc::new([1920, 1080]) };
+    let bytes = Afterimage::memory_bytes_of(&desc) as f64 / (1920.0 * 1080.0);
+    println!("{bytes:.2} bytes a pixel");
+    assert!(bytes < 25.2);
+    let size = |rig: &Rig| rig.gpu.quad_mask().map(|mask| [mask.width(), mask.height()]);
+    assert_eq!(size(&rig), Some([35, 21]));
+    rig.gpu.set_settings(&rig.device, Settings::default()).unwrap();
+    assert!(size(&rig).is_none() && rig.gpu.quad_list(0).is_none());
+    rig.gpu.set_settings(&rig.device, settings).unwrap();
+    rig.gpu.resize(&rig.device, [64, 64]).unwrap();
+    assert_eq!(size(&rig), Some([32, 32]));
+    assert!(rig.gpu.quad_list(1).is_some() && rig.gpu.quad_list(2).is_none());
 }
 
 /// Lists of the device, view by view, against a mask of all views.
