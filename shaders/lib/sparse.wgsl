@@ -194,7 +194,7 @@ fn quad_lit(words: vec4<u32>, i: u32) -> Lit {
         unpack_color(words.x),
         f32(words.y & 511u) * (1.0f / 256.0),
         f32((words.y >> (10u + 5u * i)) & 31u) * (1.0f / 16.0),
-        (words.y & 512u) != 0u,
+        ((words.y >> 9u) & 1u) != 0u,
         INVALID_DISPARITY,
     );
 }
