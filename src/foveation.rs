@@ -138,9 +138,9 @@ impl Foveation {
         Self { filter: Filter::Quads, rate_mid: 4, rate_far: 8, ..Self::default() }
     }
 
-    /// Quads without a gaze: `share` of the pixels, 0 to 1, everywhere alike. An even pattern takes 1/8 of the pixels, or
-    /// 1/32 of them if `share` is below 0.25; the rest goes by need. It is a temporal upscaler with depth and motion at
-    /// full rate.
+    /// Quads without a gaze: `share` of the pixels, 0 to 1, everywhere alike. An even pattern takes 1/8 of the pixels,
+    /// or 1/32 of them if `share` is below 0.25; the rest goes by need. It is a temporal upscaler with depth and motion
+    /// at full rate.
     ///
     /// ```
     /// use afterimage::Foveation;
