@@ -14,9 +14,8 @@ use clap::Args;
 pub struct FoveationArgs {
     /// How frames are foveated. sparse: one moving sample a block, which scenes render alone; given frames simulate it.
     /// quads: one full-rate view, of which each method chooses the quads of 2x2 pixels that are shaded; given frames
-    /// simulate it; with --backend cpu. mip, gauss and block simulate blur on full-rate frames; layers and uniform
-    /// render views of rasterised scenes.
-    /// Default: sparse for scenes without --sampling, else mip
+    /// simulate it. mip, gauss and block simulate blur on full-rate frames; layers and uniform render views of
+    /// rasterised scenes. Default: sparse for scenes without --sampling, else mip
     #[arg(long = "foveation", value_parser = by_name::<FilterName>())]
     pub filter: Option<FilterName>,
     /// Diameter of the full-rate region, degrees
