@@ -159,11 +159,11 @@ impl CpuAfterimage {
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
         self.planned = None;
-        let same_algorithm = settings.algorithm() == self.desc.settings.algorithm();
+        let has_same_pass = settings.pass_shader() == self.desc.settings.pass_shader();
         self.desc.settings = settings;
         if settings.history_layout() != self.history.layout() {
             self.history = History::new(&self.desc);
-        } else if !same_algorithm {
+        } else if !has_same_pass {
             self.history.forget();
         }
         Ok(())

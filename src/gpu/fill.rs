@@ -10,16 +10,26 @@ use crate::frame::ContextDesc;
 use crate::method::Overrides;
 use wgpu::{Device, TextureFormat};
 
-/// Pass that fills sparse frames, and the filled color of the current one.
+/// Passes that fill frames of lattices and of quads, and the filled color of the current one.
 #[derive(Debug)]
 pub(super) struct Fill {
-    shader: ComputeShader,
+    lattices: ComputeShader,
+    quads: ComputeShader,
     color: Plane,
 }
 
 impl Fill {
     pub fn new(device: &Device, desc: &ContextDesc, sources: &Sources) -> Self {
-        Self { shader: shader(device, desc, sources), color: color(desc).create(device) }
+        Self {
+            lattices: sources.shader(device, "fill_pass"),
+            quads: sources.shader(device, "quad_fill_pass"),
+            color: color(desc).create(device),
+        }
+    }
+
+    /// The pass of the frames that the settings describe.
+    fn shader(&self, desc: &ContextDesc) -> &ComputeShader {
+        if desc.settings.foveation.filter == Filter::Quads { &self.quads } else { &self.lattices }
     }
 }
 
@@ -29,25 +39,24 @@ impl Passes for Fill {
     }
 
     fn prewarm(&self, device: &Device, desc: &ContextDesc, special: &mut Specialization) {
-        special.pipeline(device, desc, &self.shader);
+        special.pipeline(device, desc, self.shader(desc));
     }
 
     fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
-        self.shader.pipelines()
+        [&self.lattices, &self.quads].into_iter().flat_map(ComputeShader::pipelines).collect()
     }
 
     fn record<'a>(&'a self, job: &mut Job<'a>) {
         for batch in job.batches() {
-            job.dispatch(&self.shader, &batch, &[(Binding::Write, (&self.color.whole).into())], job.desc.size_px);
+            job.dispatch(
+                self.shader(job.desc),
+                &batch,
+                &[(Binding::Write, (&self.color.whole).into())],
+                job.desc.size_px,
+            );
         }
         job.textures[Binding::Color as usize] = Some(Textures::Layers(&self.color.texture));
     }
-}
-
-/// The pass of the samples that frames have.
-fn shader(device: &Device, desc: &ContextDesc, sources: &Sources) -> ComputeShader {
-    let by_quads = desc.settings.foveation.filter == Filter::Quads;
-    sources.shader(device, if by_quads { "quad_fill_pass" } else { "fill_pass" })
 }
 
 /// The filled color, whose format stores samples bit for bit.

@@ -97,6 +97,25 @@ fn plans_follow_size_and_settings() {
     assert!(rig.gpu.quad_list(1).is_some() && rig.gpu.quad_list(2).is_none());
 }
 
+/// Lattices, quads and lattices again, in one context: what history and passes follow.
+#[test]
+fn filters_may_change_from_frame_to_frame() {
+    for method in [MethodKind::Smr, MethodKind::Taa, MethodKind::Wrs] {
+        let quads = Settings { method: method.into(), ..settings(false) };
+        let lattices = super::sparse::settings(method);
+        let Some(mut rig) = Rig::new(desc(), lattices) else { return };
+        for (index, settings) in [lattices, lattices, quads, quads, lattices].into_iter().enumerate() {
+            rig.cpu.set_settings(settings).unwrap();
+            rig.gpu.set_settings(&rig.device, settings).unwrap();
+            let mut seen = views(index as u64, &settings);
+            if settings == lattices {
+                seen = [0, 1].map(|v| gliding_view(index as u64, v, &settings));
+            }
+            rig.both(index as u64, Reset::None, &seen);
+        }
+    }
+}
+
 /// Lists of the device, view by view, against a mask of all views.
 fn assert_lists_are_masks(rig: &Rig, mask: &[u32]) {
     let [columns, rows] = SIZE.map(|side| side.div_ceil(2));
