@@ -42,6 +42,7 @@ skipped=(caught planted refused beside is_no_output record_compiles lost_device 
 AFTERIMAGE_RECORD="$recordings" cargo test "${everything[@]}" --test gpu --test twins -- \
     functions:: pass:: simulator:: "${skipped[@]/#/--skip=}"
 
+# Every pipeline in two of them; with a part of a name behind the folder, all whose name contains it.
 step "the recordings in Chromium"
 node tests/web/replay_all.mjs "$recordings"
 rm -rf "$recordings"

@@ -1,7 +1,7 @@
 // Repeats what wgpu recorded of a device (`gpu::recording` in crates/testing), on this browser's WebGPU, and compares
 // everything that is read back with what was read back then.
 
-import { parseRon } from "./ron.mjs";
+import { constantsOf, parseRon } from "./ron.mjs";
 
 // Name and content of a variant.
 function variant(value) {
@@ -226,7 +226,7 @@ async function perform_all(browser, load, planted) {
         },
         CreateComputePipeline({ id: to, desc: { layout, stage } }) {
             const { code } = get(stage.module);
-            const constants = stage.constants instanceof Map ? Object.fromEntries(stage.constants) : stage.constants;
+            const constants = constantsOf(stage);
             const groups = layout ? get(layout).groups : undefined;
             const thing = {};
             things.set(id(to), thing);

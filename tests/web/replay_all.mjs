@@ -2,14 +2,17 @@
 // wgpu, naga and llvmpipe. Every word that the tests read must be the same.
 //
 // node replay_all.mjs FOLDER [PART OF A NAME]
+//
+// Without a part: the smallest recordings in which every pipeline runs twice. With one: all whose name contains it.
 
 import { readdirSync } from "node:fs";
-import { dirname, join } from "node:path";
+import { dirname } from "node:path";
 import { fileURLToPath } from "node:url";
 import { launch, serve } from "./chromium.mjs";
+import { covering } from "./covering.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const [folder, part = ""] = process.argv.slice(2);
+const [folder, part] = process.argv.slice(2);
 
 // Recordings that differ: the start of their name, the most words that do, and why.
 const EXCEPTIONS = [
@@ -17,7 +20,7 @@ const EXCEPTIONS = [
 ];
 
 // Recordings that read nothing, by the start of their name: of tests about what is refused, what is allowed, and memory.
-// In every other one something must be read, or nothing is compared.
+// They are left out; in every other one something must be read, or nothing is compared.
 const UNREAD = [
     "pass.engines.every_storable_format_is_written_and_others_say_what_to_change",
     "pass.lifecycle.memory_bytes_is_what_is_made",
@@ -35,8 +38,10 @@ const PLANTED = [
     ["simulator.equal", "3.0 * sigma_px", "2.0 * sigma_px"],
 ];
 
-const names = readdirSync(folder).filter((name) => name.includes(part)).sort();
+const all = readdirSync(folder).filter((name) => !UNREAD.some((start) => name.startsWith(start))).sort();
+const names = part === undefined ? covering(folder, all, 2) : all.filter((name) => name.includes(part));
 if (names.length === 0) throw new Error(`no recordings in ${folder}`);
+console.log(`${names.length} of ${all.length} recordings`);
 const server = await serve({ page: here, recordings: folder });
 const browser = await launch();
 let failed = 0;
@@ -56,7 +61,7 @@ try {
         const test = name.replace(/\.\d+$/, "");
         took.set(test, (took.get(test) ?? 0) + seconds);
         const exception = EXCEPTIONS.find(([start]) => name.startsWith(start));
-        if (result.reads === 0 && !UNREAD.some((start) => name.startsWith(start))) result.error = "nothing is read";
+        if (result.reads === 0) result.error = "nothing is read";
         const outcome = result.error ?? (result.different > 0 ? `${result.different} differ: ${result.faults.slice(0, 8).join("; ")}` : "equal");
         const is_expected = !result.error && result.different <= (exception?.[1] ?? 0);
         if (outcome !== "equal" || seconds > 5) {
@@ -70,9 +75,9 @@ try {
     console.log(`${sum.recordings} recordings, ${sum.reads} reads, ${sum.words} words, ${sum.different} differ; ${sum.pipelines} pipelines`);
     const longest = [...took].sort(([, a], [, b]) => b - a).slice(0, 20);
     console.log(`longest tests:${longest.map(([test, seconds]) => `\n${seconds.toFixed(1).padStart(7)} s ${test}`).join("")}`);
-    for (const [start, right, wrong] of part === "" ? PLANTED : []) {
+    for (const [start, right, wrong] of part === undefined ? PLANTED : []) {
         let isCaught = false;
-        for (const name of names.filter((name) => name.startsWith(start))) {
+        for (const name of all.filter((name) => name.startsWith(start))) {
             const result = await run(name, right, wrong);
             isCaught = result.planted && result.different > 0;
             if (isCaught) break;

@@ -70,3 +70,9 @@ export function parseRon(text) {
     }
     return value();
 }
+
+// The constants of a pipeline in the order of their names: wgpu records them in any.
+export function constantsOf({ constants }) {
+    const entries = constants instanceof Map ? [...constants] : Object.entries(constants);
+    return Object.fromEntries(entries.sort(([a], [b]) => (a < b ? -1 : 1)));
+}
