@@ -235,12 +235,8 @@ pub enum FrameValue {
     Noise,
     /// [`FrameInputs::reactive`](crate::FrameInputs::reactive).
     Reactive,
-    /// [`FrameInputs::repaired`](crate::FrameInputs::repaired).
-    Repaired,
     /// [`FrameInputs::exposure`](crate::FrameInputs::exposure).
     Exposure,
-    /// [`Smr::repair`](crate::Smr::repair), which planning needs.
-    Repair,
     /// Plan of a frame that is shaded by quads: [`Filter::Quads`](crate::Filter::Quads).
     Plan,
     /// A rectangle of a texture that is larger than the view.
@@ -265,9 +261,7 @@ impl Display for FrameValue {
             Self::Lod => "lod",
             Self::Noise => "noise",
             Self::Reactive => "reactive",
-            Self::Repaired => "repaired",
             Self::Exposure => "exposure ratio",
-            Self::Repair => "Smr::repair",
             Self::Plan => "plan",
             Self::Region { input } => input,
             Self::DebugView => "debug view",

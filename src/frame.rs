@@ -6,8 +6,7 @@ use crate::error::{FrameError, FrameValue, SettingsError, expected_size};
 use crate::foveation::Filter;
 use crate::geometry::ViewGeometry;
 use crate::lattice::Lattices;
-use crate::method::smr_sparse_repair;
-use crate::settings::{Repair, Settings};
+use crate::settings::Settings;
 use glam::DVec3;
 use std::fmt::Debug;
 
@@ -161,8 +160,8 @@ pub struct ViewFrame {
     pub depth: Option<DepthConvention>,
     /// The part of the view that a headset's lens shows: an octagon, given by the lowest and the highest x, y, x + y
     /// and x - y of its pixels ([`ViewGeometry::visible_px`] computes it from a visibility mask). On sparse frames smr
-    /// does not process pixels outside it, repairs none of them, and shows them black; other methods process every
-    /// pixel. `None`: every pixel is visible.
+    /// does not process pixels outside it, and shows them black; other methods process every pixel. `None`: every pixel
+    /// is visible.
     pub visible_px: Option<[[f32; 4]; 2]>,
     /// Where the samples of a sparse frame lie ([`Filter::Sparse`](crate::Filter::Sparse)): the lattices that the
     /// renderer drew, for the gaze that it used. The color input has the context's size, and only its samples are read;
@@ -487,15 +486,8 @@ pub struct FrameInputs<'a, E: Executor> {
     pub lod: Option<E::Scalars<'a>>,
     /// Noise of the color: standard error of its luma (linear), and the number of samples that were averaged into the
     /// color, at its level of detail. On a GPU `Rg16Float`, `Rg32Float` or wider. Required if [`Settings::noisy`] is
-    /// set, otherwise `None`. In sparse frames it is read only at the pixels of samples and at repaired pixels.
+    /// set, otherwise `None`. In sparse frames it is read only at the pixels of samples.
     pub noise: Option<E::Vectors<'a>>,
-    /// Samples of single pixels of a sparse frame, shaded at full rate: linear colors of the context's size, with the
-    /// frame's jitter. The post-process reads only the pixels that `plan` chose for this frame
-    /// (`gpu::Afterimage::plan`, `cpu::CpuAfterimage::plan`). Such a pixel is shown, and its sample is stored, like a
-    /// pixel of the full-rate lattice. A sample is ignored if it is NaN or infinite, so a renderer may leave out some
-    /// of the chosen pixels. It is also ignored where the full-rate lattice has a sample. `None`: no pixels are
-    /// repaired.
-    pub repaired: Option<E::Colors<'a>>,
     /// Descriptions of the views, one for each view of the context.
     pub views: &'a [ViewFrame],
     /// Frame counter, which seeds the random numbers: the same index and [`Settings::seed`] give the same bytes.
@@ -525,7 +517,6 @@ impl<E: Executor> Debug for FrameInputs<'_, E> {
             .field("reactive", &self.reactive)
             .field("lod", &self.lod)
             .field("noise", &self.noise)
-            .field("repaired", &self.repaired)
             .field("views", &self.views)
             .field("index", &self.index)
             .field("reset", &self.reset)
@@ -545,7 +536,6 @@ impl<'a, E: Executor> FrameInputs<'a, E> {
             reactive: None,
             lod: None,
             noise: None,
-            repaired: None,
             views,
             index,
             reset: Reset::None,
@@ -556,8 +546,7 @@ impl<'a, E: Executor> FrameInputs<'a, E> {
     /// Checks all fields except the images.
     pub(crate) fn check(&self, desc: &ContextDesc) -> Result<(), FrameError> {
         self.check_facts(desc)?;
-        self.check_noise(&desc.settings)?;
-        self.check_repaired(&desc.settings)
+        self.check_noise(&desc.settings)
     }
 
     /// Checks the parts of a frame that are known before it is shaded.
@@ -604,44 +593,22 @@ impl<'a, E: Executor> FrameInputs<'a, E> {
     }
 
     /// Checks the values of a frame whose quads are to be planned.
-    pub(crate) fn check_plan(&self, desc: &ContextDesc) -> Result<Planning, FrameError> {
-        let planning = match smr_sparse_repair(&desc.settings) {
-            _ if desc.settings.foveation.filter == Filter::Quads => Planning::Quads,
-            Some(repair) => Planning::Repair(repair),
-            None => {
-                let expected = "given, to plan repairs of Filter::Sparse; or set Filter::Quads in Settings::foveation";
-                return Err(FrameError::Value { value: FrameValue::Repair, view: 0, found: "None".into(), expected });
-            }
-        };
-        self.check_facts(desc)?;
-        Ok(planning)
+    pub(crate) fn check_plan(&self, desc: &ContextDesc) -> Result<(), FrameError> {
+        if desc.settings.foveation.filter != Filter::Quads {
+            let (found, expected) = ("asked for".into(), "Filter::Quads in Settings::foveation");
+            return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
+        }
+        self.check_facts(desc)
     }
 
-    /// Rejects a frame that is shaded by quads, or has repaired samples, for which nothing was planned. `planned`:
-    /// index of the frame that was planned.
+    /// Rejects a frame shaded by quads that was not planned. `planned`: index of the frame that was planned.
     pub(crate) fn check_planned(&self, desc: &ContextDesc, planned: Option<u64>) -> Result<(), FrameError> {
-        if planned == Some(self.index) {
-            return Ok(());
-        }
-        if desc.settings.foveation.filter == Filter::Quads {
+        if desc.settings.foveation.filter == Filter::Quads && planned != Some(self.index) {
             let found = planned.map_or("missing".into(), |index| format!("that of frame {index}"));
             let expected = "the plan of this frame: call plan before the frame is shaded";
             return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
         }
-        if self.repaired.is_none() {
-            return Ok(());
-        }
-        let expected = "None, or that plan was called with this frame";
-        Err(FrameError::Value { value: FrameValue::Repaired, view: 0, found: "given".into(), expected })
-    }
-
-    /// Rejects repaired samples that the settings do not expect.
-    fn check_repaired(&self, settings: &Settings) -> Result<(), FrameError> {
-        if self.repaired.is_none() || smr_sparse_repair(settings).is_some() {
-            return Ok(());
-        }
-        let expected = "None; or set Smr::repair, and Filter::Sparse in Settings::foveation";
-        Err(FrameError::Value { value: FrameValue::Repaired, view: 0, found: "given".into(), expected })
+        Ok(())
     }
 
     /// Rejects a missing noise input if the settings require one, and a noise input if they do not.
@@ -653,15 +620,6 @@ impl<'a, E: Executor> FrameInputs<'a, E> {
         };
         Err(FrameError::Value { value: FrameValue::Noise, view: 0, found: found.into(), expected })
     }
-}
-
-/// What a plan chooses.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Planning {
-    /// Quads to shade.
-    Quads,
-    /// Quads to repair, beside the lattices of a sparse frame.
-    Repair(Repair),
 }
 
 /// Description of a context: size and number of views, conventions of its inputs, and settings. Size and settings can

@@ -139,8 +139,6 @@ pub use image::Image;
 pub use kernel::debug_view::DebugView;
 pub use kernel::reproject::Verdict;
 pub use lattice::{Lattice, Lattices};
-pub use settings::{
-    Bias, DepthTest, Gate, GateMetric, GateScale, Method, MethodKind, Repair, Sampler, Settings, Smr, Wrs,
-};
+pub use settings::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, MethodKind, Sampler, Settings, Smr, Wrs};
 pub use stats::FrameStats;
 pub use warning::Warning;

@@ -31,7 +31,7 @@ rm -rf "$recordings"
 # Not here: planted errors, which have their own below; views beside the frame and their targets, which need five
 # storage textures; and sequences whose many frames take minutes on SwiftShader and show nothing that shorter ones do not;
 # lists, whose order is not the same twice.
-long=(thousand h07 h11 h12 h53 h91 h92 h95 h96 h97 h99 h100 h101 h102)
+long=(thousand h07 h11 h12 h53 h91 h92 h95 h96 h97)
 # The same passes with fewer frames: h74 as h73 and h75; a still picture and gains as h51 under a steady gaze; h72 as
 # with the ratio; h106 as other pictures, at one level of light. Not h88 and h103, long as they are: they alone have taau
 # of sparse frames with vectors, and noisy history that is kept at another size.

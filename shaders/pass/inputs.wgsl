@@ -65,7 +65,6 @@ const MOTION_IN: u32 = 3u;
 const TRUST_IN: u32 = 4u;
 const LOD_IN: u32 = 5u;
 const NOISE_IN: u32 = 6u;
-const REPAIRED_IN: u32 = 7u;
 const REACTIVE_IN: u32 = 8u;
 const COLOR_OUT: u32 = 10u;
 const DEBUG_OUT: u32 = 11u;

@@ -122,7 +122,7 @@ fn pixel(px: vec2<u32>, view: u32) {
         candidate = full_rate_candidate(px, view, mask_word);
     }
     let near = samples_near(px, view, ANTIALIAS != 0u && candidate.is_own && level == 0u);
-    show_pixel(px, view, level, disparity_now, candidate, level == 0u, near);
+    show_pixel(px, view, level, disparity_now, candidate, near);
 }
 
 @compute @workgroup_size(64, 1)

@@ -3,12 +3,7 @@
 // Reconstruction of sparse frames: candidates of pixels from the samples of lattices. CPU twin: `candidate` in
 // src/cpu/sparse_pass/pixel.rs; docs/method.md has the equations. One invocation a pixel; z is the view.
 
-@group(0) @binding(7) var repaired_in: texture_2d_array<f32>;
 @group(0) @binding(21) var lights: texture_2d_array<u32>;
-@group(0) @binding(22) var repair_mask: texture_2d_array<u32>;
-
-// Whether the frame has samples of the pixels that a plan chose.
-override REPAIR: u32 = 0u;
 
 // Squared distance in pixels that stands for a missing sample.
 const NO_PX2: f32 = 1e30;
@@ -167,24 +162,6 @@ fn samples_near(px: vec2<u32>, lattice: LatticeUniforms, view: u32, needed: bool
     return near;
 }
 
-// Color and alpha of a pixel's repaired sample.
-struct Repaired {
-    color: vec3<f32>,
-    alpha: f32,
-    usable: bool,
-}
-
-// Sample of a pixel that a plan chose. Pixels of the full-rate lattice always have a sample of their own.
-fn repaired(px: vec2<u32>, view: u32, level: u32) -> Repaired {
-    if REPAIR == 0u {
-        return Repaired(vec3<f32>(0.0), 1.0, false);
-    }
-    let chosen = textureLoad(repair_mask, px >> vec2<u32>(1u), view, 0).x != 0u && level > 0u;
-    let given = textureLoad(repaired_in, texel_of(px, view, REPAIRED_IN), layer_of(view), 0);
-    let own = color(given.xyz);
-    return Repaired(own.color, given.w, chosen && own.usable);
-}
-
 fn pixel(px: vec2<u32>, view: u32) {
     if !is_seen(px, view) {
         hidden_pixel(px, view);
@@ -197,22 +174,9 @@ fn pixel(px: vec2<u32>, view: u32) {
     if NOISY != 0u && lattice.level == 0u {
         candidate = full_rate_candidate(px, lattice, view, candidate.fit);
     }
-    let repair = repaired(px, view, lattice.level);
-    if repair.usable {
-        // The samples around the pixel still give gain and fit.
-        candidate.color = repair.color;
-        candidate.alpha = repair.alpha;
-        candidate.usable = true;
-        candidate.lod = 0.0;
-        candidate.is_own = true;
-        if NOISY != 0u {
-            candidate.noise = noise_at(px, view);
-        }
-    }
-    let is_full_rate = lattice.level == 0u || repair.usable;
     let has_near = ANTIALIAS != 0u && candidate.is_own && lattice.level == 0u;
     let near = samples_near(px, lattice, view, has_near);
-    show_pixel(px, view, lattice.level, disparity_now, candidate, is_full_rate, near);
+    show_pixel(px, view, lattice.level, disparity_now, candidate, near);
 }
 
 @compute @workgroup_size(64, 1)

@@ -73,23 +73,21 @@ fn hidden_pixel(px: vec2<u32>, view: u32) {
     }
 }
 
-// Processes a visible pixel. `level`: log2 of the distance of the samples around it. `is_full_rate`: whether it has a
-// sample in every frame, or was repaired. `near`: sums over the nine samples around a pixel of level 0, of jittered
-// frames.
+// Processes a visible pixel. `level`: log2 of the distance of the samples around it; at level 0 it has a sample in
+// every frame. `near`: sums over the nine samples around a pixel of level 0, of jittered frames.
 fn show_pixel(
     px: vec2<u32>,
     view: u32,
     level: u32,
     disparity_now: f32,
     candidate: Candidate,
-    is_full_rate: bool,
     near: Near,
 ) {
     let surface = surface_of(px, view, level);
     let motion = surface.motion;
     let source = kept_source(px, view, surface);
     let previous = source.previous;
-    let is_final = candidate.usable && is_full_rate && NOISY == 0u && ANTIALIAS == 0u;
+    let is_final = candidate.usable && level == 0u && NOISY == 0u && ANTIALIAS == 0u;
     let kept = kept_history(source, view, may_have_history(previous) && !is_final);
     let history = kept.found;
     let verdict = select(previous.verdict, VERDICT_VALID, history.lod >= 0.0);

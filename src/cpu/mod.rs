@@ -11,7 +11,7 @@ pub(crate) mod history;
 mod inputs;
 mod mip_chain;
 mod none_pass;
-mod repair;
+mod plan;
 mod resize;
 mod smr_pass;
 mod sparse_pass;
@@ -34,7 +34,7 @@ use crate::method::{Algorithm, HistoryLayout, Stage};
 use crate::resize::Resize;
 use crate::settings::Settings;
 use crate::stats::FrameStats;
-use repair::Planned;
+use plan::Planned;
 
 /// A frame whose inputs are slices with one image a view; fields are at [`FrameInputs`](crate::FrameInputs).
 ///
@@ -62,8 +62,8 @@ impl<'a> Frame<'a> {
     where
         'a: 'b,
     {
-        let Self { depth, motion, trust, reactive, lod, noise, repaired, views, index, reset, exposure, .. } = *self;
-        Frame { color, depth, motion, trust, reactive, lod, noise, repaired, views, index, reset, exposure }
+        let Self { depth, motion, trust, reactive, lod, noise, views, index, reset, exposure, .. } = *self;
+        Frame { color, depth, motion, trust, reactive, lod, noise, views, index, reset, exposure }
     }
 }
 
@@ -99,8 +99,6 @@ struct Pass<'a, 'f> {
     desc: &'a ContextDesc,
     history: &'a mut History,
     frame: &'a Frame<'f>,
-    /// Masks of the repaired pixels, one a view; empty if the frame repairs no pixel.
-    repaired: &'a [Image<bool>],
     /// Shaded quads, one a view; empty unless the frame is shaded by quads.
     quads: &'a [sparse_pass::Quads],
     output: &'a mut [Image<[f32; 3]>],
@@ -240,7 +238,7 @@ impl CpuAfterimage {
         traces: Option<&mut [Image<PixelTrace>]>,
     ) -> Result<FrameStats, FrameError> {
         check_inputs(&self.desc, frame)?;
-        let repaired = repair::masks(&self.desc, self.planned.as_ref(), frame)?;
+        frame.check_planned(&self.desc, self.planned.as_ref().map(|planned| planned.index))?;
         let quads = self.planned.as_ref().map_or(&[][..], |planned| &planned.quads);
         check_sizes(&self.desc, "output", Some(output.iter().map(Image::size)))?;
         check_sizes(&self.desc, "traces", traces.as_deref().map(|t| t.iter().map(Image::size)))?;
@@ -251,7 +249,7 @@ impl CpuAfterimage {
         let geometry = fill_geometry::filled(&self.desc, frame, &self.history);
         let history = &mut self.history;
         let stats = fill_geometry::with_filled(geometry.as_deref(), &self.desc, &whole, |desc, frame| {
-            let pass = Pass { desc, history, frame, repaired, quads, output, traces };
+            let pass = Pass { desc, history, frame, quads, output, traces };
             match desc.settings.algorithm() {
                 Algorithm::None => none_pass::run(pass),
                 Algorithm::Taa => surface_pass::run(pass, &taa_pass::Taa),
@@ -279,8 +277,7 @@ fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError>
     check_samples(desc, "color", Some(frame.color.iter().map(|i| i.size())), frame.views, ViewFrame::atlas)?;
     check_geometry(desc, frame)?;
     check_sizes(desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
-    check_sizes(desc, "noise", frame.noise.map(|n| n.iter().map(|i| i.size())))?;
-    check_sizes(desc, "repaired", frame.repaired.map(|r| r.iter().map(|i| i.size())))
+    check_sizes(desc, "noise", frame.noise.map(|n| n.iter().map(|i| i.size())))
 }
 
 /// Checks the sizes of the inputs that are known before a frame is shaded.

@@ -15,8 +15,7 @@ pub enum Binding {
     Trust,
     Lod,
     Noise,
-    Repaired,
-    Reactive,
+    Reactive = 8,
     Output = 10,
     /// Debug view beside the output.
     Debug,
@@ -54,7 +53,7 @@ pub struct Input {
 }
 
 /// The inputs of a frame.
-pub const INPUTS: [Input; 8] = [
+pub const INPUTS: [Input; 7] = [
     Input { binding: Binding::Color, name: "color", channels: 3, is_geometry: false, has: None },
     Input { binding: Binding::Depth, name: "depth", channels: 1, is_geometry: true, has: Some("HAS_DEPTH") },
     Input { binding: Binding::Motion, name: "motion", channels: 2, is_geometry: true, has: Some("HAS_MOTION") },
@@ -62,7 +61,6 @@ pub const INPUTS: [Input; 8] = [
     Input { binding: Binding::Reactive, name: "reactive", channels: 1, is_geometry: true, has: Some("HAS_REACTIVE") },
     Input { binding: Binding::Lod, name: "lod", channels: 1, is_geometry: false, has: Some("HAS_LOD") },
     Input { binding: Binding::Noise, name: "noise", channels: 2, is_geometry: false, has: None },
-    Input { binding: Binding::Repaired, name: "repaired", channels: 3, is_geometry: false, has: Some("REPAIR") },
 ];
 
 impl Binding {
@@ -75,8 +73,8 @@ impl Binding {
 /// Bindings that a pass uses, of those that its text declares. `None`: all.
 pub fn used_by(pass: &str) -> Option<&'static [Binding]> {
     use Binding::{
-        Color, Depth, Lattices, Motion, Noise, Past, PastFrame, PastSecond, Reactive, Read, State, Trust, Uniforms,
-        Write, WriteSecond,
+        Color, Depth, Lattices, Motion, Noise, Past, PastFrame, PastSecond, Reactive, Read, Trust, Uniforms, Write,
+        WriteSecond,
     };
     Some(match pass {
         "candidate_pass" => &[Uniforms, Color, Noise, Write],
@@ -86,7 +84,6 @@ pub fn used_by(pass: &str) -> Option<&'static [Binding]> {
             &[Uniforms, Color, Depth, Motion, Trust, Reactive, Noise, Lattices, PastFrame, Past, PastSecond, Write]
         }
         "sparse_light_pass" => &[Uniforms, Color, Depth, Lattices, PastFrame, Read, Write],
-        "repair_key_pass" => &[Uniforms, Depth, Motion, Trust, Reactive, Lattices, PastFrame, Past, Write, State],
         _ => return None,
     })
 }

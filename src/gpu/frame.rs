@@ -30,7 +30,6 @@ impl<'a> Frame<'a> {
         all[Binding::Reactive as usize] = self.reactive;
         all[Binding::Lod as usize] = self.lod;
         all[Binding::Noise as usize] = self.noise;
-        all[Binding::Repaired as usize] = self.repaired;
         all
     }
 
@@ -136,14 +135,12 @@ pub struct Variant {
     /// Whether depth and motion are given at samples only
     /// ([`Lattices::with_geometry_at_samples`](crate::Lattices::with_geometry_at_samples)).
     pub geometry_at_samples: bool,
-    /// Whether there are repaired samples, which need additional pipelines for [`Afterimage::plan`].
-    pub repaired: bool,
     /// View of the [`DebugTarget`], if any.
     pub debug: Option<DebugView>,
 }
 
 impl Variant {
-    /// All combinations without reactive masks, regions, geometry at samples, repaired samples and debug views: 32.
+    /// All combinations without reactive masks, regions, geometry at samples and debug views: 32.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..32_u32).map(|bits| {
             let bit = |i: u32| bits >> i & 1 == 1;
@@ -159,7 +156,6 @@ impl Variant {
             (Binding::Trust, self.trust),
             (Binding::Reactive, self.reactive),
             (Binding::Lod, self.lod),
-            (Binding::Repaired, self.repaired),
             (Binding::Counters, self.counters),
         ];
         list.iter().map(|&(binding, is_present)| if is_present { binding.bit() } else { 0 }).sum()
@@ -176,7 +172,6 @@ impl Variant {
             counters: target.counters.is_some(),
             regions: frame.textures().iter().flatten().any(Textures::is_regions) || target.has_regions(),
             geometry_at_samples: frame.has_geometry_at_samples(),
-            repaired: frame.repaired.is_some(),
             debug: target.debug.map(|d| d.view),
         }
     }

@@ -52,8 +52,7 @@ impl Passes for MethodPass {
     fn record<'a>(&'a self, job: &mut Job<'a>) {
         let shader = self.shader(job.device, job.special);
         let read = job.lights.or(job.history.candidates.as_ref().map(|candidates| &candidates.whole));
-        let own = [(Binding::Read, read), (Binding::ReadSecond, job.repair_mask)];
-        let own: Vec<_> = own.into_iter().filter_map(|(binding, view)| Some((binding, view?.into()))).collect();
+        let own: Vec<_> = read.map(|view| (Binding::Read, view.into())).into_iter().collect();
         let blocks = job.desc.size_px.map(|s| s.div_ceil(self.pass.block_px));
         for batch in job.batches() {
             job.dispatch(shader, &batch, &own, blocks);

@@ -25,7 +25,6 @@ mod quad_plan;
 mod quad_samples;
 mod quads;
 mod recorder;
-mod repair;
 mod requirements;
 mod resize;
 mod sparse;
@@ -47,7 +46,7 @@ use crate::foveation::Filter;
 use crate::frame::{ContextDesc, Executor, Gaze};
 use crate::geometry::ViewGeometry;
 use crate::kernel::debug_view::DebugView;
-use crate::method::{HistoryLayout, PassShader, smr_sparse_repair};
+use crate::method::{HistoryLayout, PassShader};
 use crate::resize::Resize;
 use crate::settings::Settings;
 use crate::stats::FrameStats;
@@ -57,7 +56,6 @@ use compute::Sources;
 use history::History;
 use quad_plan::QuadPasses;
 use recorder::Recorder;
-use repair::RepairPasses;
 use resize::ResizePass;
 use stage::{Job, Specialization};
 use stages::Stages;
@@ -85,8 +83,6 @@ pub struct Afterimage {
     generation: u64,
     /// Pass that resamples history; created at the first change of size that keeps history.
     resize: Option<ResizePass>,
-    /// Passes of repair, if the settings ask for it.
-    repair: Option<RepairPasses>,
     /// Passes that plan frames shaded by quads, if frames are.
     quads: Option<QuadPasses>,
 }
@@ -118,7 +114,6 @@ impl Afterimage {
             recorder: Recorder::new(device, desc),
             generation: 0,
             resize: None,
-            repair: None,
             quads: None,
         };
         context.update_plan(device);
@@ -128,9 +123,8 @@ impl Afterimage {
     /// Shader module and override values of each compiled pipeline, for tests and for tools that count instructions.
     pub fn pipelines(&self) -> Vec<(&'static str, Vec<(&'static str, u32)>)> {
         let resize = self.resize.as_ref().map(ResizePass::pipelines);
-        let repair = self.repair.iter().flat_map(RepairPasses::pipelines);
         let quads = self.quads.iter().flat_map(QuadPasses::pipelines);
-        self.stages.pipelines().chain(resize.into_iter().flatten()).chain(repair).chain(quads).collect()
+        self.stages.pipelines().chain(resize.into_iter().flatten()).chain(quads).collect()
     }
 
     /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
@@ -277,14 +271,6 @@ impl Afterimage {
             Some(quads) if by_quads => quads.update(device, &self.desc),
             quads => *quads = by_quads.then(|| QuadPasses::new(device, &self.desc, self.stages.sources())),
         }
-        let (desc, repair) = (&self.desc, smr_sparse_repair(&self.desc.settings));
-        match (&mut self.repair, repair) {
-            (Some(passes), Some(repair)) => passes.update(device, desc, repair),
-            (_, repair) => {
-                let sources = self.stages.sources();
-                self.repair = repair.map(|repair| RepairPasses::new(device, desc, repair, sources));
-            }
-        }
     }
 
     /// Discards history and held gaze positions: the next frame is processed like the first one. For another scene or
@@ -311,14 +297,8 @@ impl Afterimage {
     /// force that, too.
     pub fn prewarm(&self, device: &Device, variants: impl IntoIterator<Item = Variant>) {
         for variant in variants {
-            let mut special = Specialization::new(variant, None, self.generation);
+            let special = Specialization::new(variant, None, self.generation);
             self.stages.prewarm(device, &self.desc, special);
-            if let Some(repair) = self.repair.as_ref().filter(|_| variant.repaired) {
-                if variant.geometry_at_samples {
-                    special.fill(&self.desc);
-                }
-                repair.prewarm(device, &self.desc, special);
-            }
             if let Some(quads) = &self.quads {
                 quads.prewarm(device, &self.desc, special);
             }
@@ -341,10 +321,9 @@ impl Afterimage {
     /// assert_eq!(bytes / (1920 * 1080), 21);
     /// ```
     pub fn memory_bytes_of(desc: &ContextDesc) -> u64 {
-        let repair = smr_sparse_repair(&desc.settings).map_or(0, |repair| repair::memory_bytes(desc, repair));
         let by_quads = desc.settings.foveation.filter == Filter::Quads;
         let quads = if by_quads { quads::memory_bytes(desc) } else { 0 };
-        history::memory_bytes(desc) + stages::memory_bytes_of(desc) + repair + quads
+        history::memory_bytes(desc) + stages::memory_bytes_of(desc) + quads
     }
 
     /// Records one frame into `encoder`: reads the frame's inputs and the history, and writes `target` (an output
@@ -375,39 +354,36 @@ impl Afterimage {
         Ok(recorded)
     }
 
-    /// Records, into `encoder`, the choice of pixels of a sparse frame to repair with a sample of their own: quads of
-    /// 2x2 pixels whose history is missing or coarse, and in which the frame's lattices have no sample. The renderer
-    /// reads it from [`repair_mask`](Self::repair_mask) or [`repair_quads`](Self::repair_quads), shades these pixels at
-    /// full rate, and gives them to [`record`](Self::record) of the same frame
-    /// ([`FrameInputs::repaired`](crate::FrameInputs::repaired)).
+    /// Records, into `encoder`, the choice of the quads of 2x2 pixels to shade of a frame [shaded by
+    /// quads](crate::Filter::Quads). The renderer reads it from [`quad_mask`](Self::quad_mask) or
+    /// [`quad_list`](Self::quad_list), shades these quads at full rate, and gives a color of the context's size with
+    /// them to [`record`](Self::record) of the same frame.
     ///
-    /// At most the share [`Repair::budget`](crate::Repair::budget) of a view's quads is chosen: those without history
-    /// first, then those whose history is coarse, each from the gaze outwards. After a cut, successive frames repair
-    /// successive rings around the gaze.
+    /// All quads of the fovea are chosen, an even pattern outside it that visits every quad in turn, and at most the
+    /// share [`Foveation::budget`](crate::Foveation::budget) of a view's quads where history lacks most.
     ///
-    /// Give it the frame that will be recorded, with the parts that are known before shading: views with their
-    /// lattices, depth, motion, trust or reactive mask, index and reset. Its colors, noise and repaired samples are not
-    /// read. History is unchanged.
+    /// Give it the frame that will be recorded, with the parts that are known before shading: views, depth, motion,
+    /// trust or reactive mask, index and reset. Its colors and noise are not read. History is unchanged.
     ///
     /// ```no_run
     /// # use afterimage::{wgpu, ViewFrame};
     /// # fn example(
     /// #     post: &mut afterimage::gpu::Afterimage, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder,
-    /// #     [color, depth, motion, shaded, output]: [&wgpu::Texture; 5], views: &[ViewFrame], index: u64,
+    /// #     [color, depth, motion, output]: [&wgpu::Texture; 4], views: &[ViewFrame], index: u64,
     /// # ) -> Result<(), afterimage::FrameError> {
     /// use afterimage::gpu::Frame;
     ///
     /// let frame = Frame { depth: Some(depth.into()), motion: Some(motion.into()), ..Frame::new(color, views, index) };
     /// post.plan(device, encoder, &frame)?;
-    /// // Here the renderer shades the samples of the lattices into `color`, and the chosen pixels into `shaded`.
-    /// post.record(device, encoder, &Frame { repaired: Some(shaded.into()), ..frame }, output)?;
+    /// // Here the renderer shades the chosen quads into `color`.
+    /// post.record(device, encoder, &frame, output)?;
     /// # Ok(())
     /// # }
     /// ```
     ///
     /// # Errors
-    /// [`FrameError`] if the settings have no [`repair`](crate::Smr::repair) or the foveation is not
-    /// [`Sparse`](crate::Filter::Sparse), and as for `record`; then nothing was recorded.
+    /// [`FrameError`] if the foveation is not [`Quads`](crate::Filter::Quads), and as for `record`; then nothing was
+    /// recorded.
     pub fn plan(&mut self, device: &Device, encoder: &mut CommandEncoder, frame: &Frame<'_>) -> Result<(), FrameError> {
         frame.check_plan(&self.desc)?;
         input::check_geometry(&self.desc, frame)?;
@@ -426,50 +402,21 @@ impl Afterimage {
             uniforms,
             history: &self.history,
             lights: None,
-            repair_mask: None,
             quads: None,
             recorder: &mut self.recorder,
         };
         if let Some(quads) = &self.quads {
             quads.record(&mut job);
-        } else if let Some(repair) = &self.repair {
-            self.stages.record_geometry(&mut job);
-            repair.record(&mut job);
         }
         let upload = self.recorder.upload(device)?;
-        match (&mut self.quads, &mut self.repair) {
-            (Some(quads), _) => {
-                quads.clear(encoder);
-                quads.planned = Some(frame.index);
-            }
-            (None, Some(repair)) => {
-                repair.clear(encoder);
-                repair.planned = Some(frame.index);
-            }
-            (None, None) => {}
+        if let Some(quads) = &mut self.quads {
+            quads.clear(encoder);
+            quads.planned = Some(frame.index);
         }
         self.recorder.copy(encoder, &upload);
         let label = Some("afterimage plan");
         self.recorder.record(&mut encoder.begin_compute_pass(&ComputePassDescriptor { label, ..Default::default() }));
         Ok(())
-    }
-
-    /// The quads that the last [`plan`](Self::plan) chose: an `R32Uint` texture with a texel for each quad of 2x2
-    /// pixels, 1 if the quad was chosen and otherwise 0, and an array layer for each view; usages `TEXTURE_BINDING` and
-    /// `COPY_SRC`. `None` without [`repair`](crate::Smr::repair) in the settings. Changes of size and settings replace
-    /// it.
-    pub fn repair_mask(&self) -> Option<&Texture> {
-        self.repair.as_ref().map(|repair| &repair.mask().texture)
-    }
-
-    /// The quads of a view that the last [`plan`](Self::plan) chose, as a list on the device; usages `STORAGE`,
-    /// `INDIRECT` and `COPY_SRC`. 32-bit words: at byte 0 the arguments of `draw_indirect` with 6 vertices and an
-    /// instance for each quad, at byte 16 those of `dispatch_workgroups_indirect` with 64 invocations a workgroup and
-    /// one for each quad, at byte 28 the number of quads, from byte 32 on the quads, x + 65536 y in quads, in no
-    /// particular order. `None` without [`repair`](crate::Smr::repair) in the settings. Changes of size and settings
-    /// replace it.
-    pub fn repair_quads(&self, view: usize) -> Option<&Buffer> {
-        self.repair.as_ref().and_then(|repair| repair.list(view))
     }
 
     /// The quads that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::Filter::Quads) chose: an
@@ -480,9 +427,12 @@ impl Afterimage {
         self.quads.as_ref().map(|quads| &quads.quads.mask.texture)
     }
 
-    /// The shaded quads of a view as a list on the device, in the form of [`repair_quads`](Self::repair_quads).
-    /// `None` with another filter than [`Quads`](crate::Filter::Quads). Changes of size
-    /// and settings replace it.
+    /// The quads of a view that the last [`plan`](Self::plan) chose, as a list on the device; usages `STORAGE`,
+    /// `INDIRECT` and `COPY_SRC`. 32-bit words: at byte 0 the arguments of `draw_indirect` with 6 vertices and an
+    /// instance for each quad, at byte 16 those of `dispatch_workgroups_indirect` with 64 invocations a workgroup and
+    /// one for each quad, at byte 28 the number of quads, from byte 32 on the quads, x + 65536 y in quads, in no
+    /// particular order. `None` with another filter than [`Quads`](crate::Filter::Quads). Changes of size and settings
+    /// replace it.
     pub fn quad_list(&self, view: usize) -> Option<&Buffer> {
         self.quads.as_ref().and_then(|quads| quads.quads.views.get(view)).map(|view| &view.list)
     }
@@ -561,7 +511,6 @@ impl Afterimage {
             uniforms,
             history: &self.history,
             lights: None,
-            repair_mask: self.repair.as_ref().map(|repair| &repair.mask().whole),
             quads: self.quads.as_ref().map(|quads| &quads.quads),
             recorder: &mut self.recorder,
         });
@@ -581,18 +530,11 @@ impl Afterimage {
 
     fn check(&self, device: &Device, frame: &Frame<'_>, target: &Target<'_>) -> Result<(), FrameError> {
         input::check(device, &self.desc, self.output_format, frame, target)?;
-        let planned = match &self.quads {
-            Some(quads) => quads.planned,
-            None => self.repair.as_ref().and_then(|repair| repair.planned),
-        };
-        frame.check_planned(&self.desc, planned)
+        frame.check_planned(&self.desc, self.quads.as_ref().and_then(|quads| quads.planned))
     }
 
     /// Discards the last plan.
     fn unplan(&mut self) {
-        if let Some(repair) = &mut self.repair {
-            repair.planned = None;
-        }
         if let Some(quads) = &mut self.quads {
             quads.planned = None;
         }

@@ -2,11 +2,10 @@
 
 use super::output::{is_storable, texel};
 use super::recorder::STORED;
-use super::{history, quads, repair};
+use super::{history, quads};
 use crate::error::{CreateError, FrameError, SettingsError};
 use crate::foveation::Filter;
 use crate::frame::{ContextDesc, check_size};
-use crate::method::smr_sparse_repair;
 use crate::uniforms::{MAX_VIEWS, results_size};
 use wgpu::{Device, Limits, TextureFormat};
 
@@ -63,11 +62,8 @@ fn compared(limits: &Limits) -> [(&'static str, u64); 10] {
 
 pub(super) fn required_limits(desc: &ContextDesc) -> Limits {
     let least = Limits::downlevel_defaults();
-    let list = match smr_sparse_repair(&desc.settings) {
-        _ if desc.settings.foveation.filter == Filter::Quads => quads::list_bytes(desc),
-        Some(repair) => repair::list_bytes(desc, repair),
-        None => 0,
-    };
+    let by_quads = desc.settings.foveation.filter == Filter::Quads;
+    let list = if by_quads { quads::list_bytes(desc) } else { 0 };
     Limits {
         max_texture_dimension_2d: largest_side(desc),
         max_texture_array_layers: desc.view_count,

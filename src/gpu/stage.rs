@@ -112,8 +112,6 @@ pub(super) struct Job<'a> {
     pub history: &'a History,
     /// Gain and fit for each sample, for smr.
     pub lights: Option<&'a TextureView>,
-    /// Quads that a plan chose, if it planned anything.
-    pub repair_mask: Option<&'a TextureView>,
     /// Shaded quads, of a frame shaded by quads.
     pub quads: Option<&'a Quads>,
     pub recorder: &'a mut Recorder,

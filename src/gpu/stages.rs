@@ -91,12 +91,6 @@ impl Stages {
         self.passes().for_each(|passes| passes.record(job));
     }
 
-    /// Adds the dispatches that fill depth and motion of a frame that has them at its samples only.
-    pub fn record_geometry<'a>(&'a self, job: &mut Job<'a>) {
-        let geometry = self.stages.iter().filter(|(stage, _)| *stage == Stage::Geometry);
-        geometry.for_each(|(_, passes)| passes.record(job));
-    }
-
     /// Adds the dispatches that complete a history that was resampled.
     pub fn complete(&self, device: &Device, recorder: &mut Recorder, history: &History) {
         self.passes().for_each(|passes| passes.complete(device, recorder, history));

@@ -20,7 +20,6 @@ pub mod matched;
 pub mod noise;
 pub mod pack;
 pub mod quads;
-pub mod repair;
 pub mod reproject;
 pub mod resample;
 pub mod reservoir;

@@ -13,7 +13,6 @@ mod taau;
 mod wrs;
 
 pub(crate) use smr::smr_params;
-pub(crate) use smr_sparse::smr_sparse_repair;
 #[cfg(feature = "cpu")]
 pub(crate) use smr_sparse::{smr_sparse_antialiases, smr_sparse_relights};
 #[cfg(feature = "cpu")]

@@ -3,7 +3,7 @@
 
 use super::{Algorithm, Entry, HistoryLayout, PassShader, Stage};
 use crate::foveation::Filter;
-use crate::settings::{Repair, Settings};
+use crate::settings::Settings;
 
 pub(super) static ENTRY: Entry = Entry {
     name: "smr-sparse",
@@ -38,11 +38,6 @@ pub(super) static ENTRY: Entry = Entry {
 /// Whether history stores means of jittered samples. Noisy samples are averaged in another way.
 pub(crate) fn smr_sparse_antialiases(settings: &Settings) -> bool {
     settings.method.smr().antialias && !settings.noisy
-}
-
-/// Repair of sparse frames, if the renderer asks for it.
-pub(crate) fn smr_sparse_repair(settings: &Settings) -> Option<Repair> {
-    settings.method.smr().repair.filter(|_| settings.foveation.filter == Filter::Sparse)
 }
 
 /// Whether history is relit. Noisy frames are not relit: a gain is a ratio of means of nine samples, so relighting

@@ -97,16 +97,11 @@ pub struct Smr {
     /// of samples instead of single ones. Set it in place of other temporal antialiasing, and only for jittered frames.
     /// It has no effect on noisy frames, which are averaged in any case, or on frames without lattices. Default false.
     pub antialias: bool,
-    /// Whether sparse frames are repaired: before shading, the renderer asks which pixels have no usable history
-    /// (`gpu::Afterimage::plan`, `cpu::CpuAfterimage::plan`), and shades these at full rate
-    /// ([`FrameInputs::repaired`](crate::FrameInputs::repaired)). No effect on frames without lattices. Default `None`:
-    /// no frame has repaired samples.
-    pub repair: Option<Repair>,
 }
 
 impl Default for Smr {
     fn default() -> Self {
-        Self { accumulate: 0.9, tolerance: 1.0, relight: true, antialias: false, repair: None }
+        Self { accumulate: 0.9, tolerance: 1.0, relight: true, antialias: false }
     }
 }
 
@@ -123,35 +118,7 @@ impl Smr {
 
     fn validate(&self) -> Result<(), SettingsError> {
         check("smr.accumulate", self.accumulate, 0.0..=0.98, "")?;
-        check("smr.tolerance", self.tolerance, 0.1..=10.0, "")?;
-        self.repair.map_or(Ok(()), |repair| check("smr.repair.budget", repair.budget, 0.0..=1.0, "of the pixels"))
-    }
-}
-
-/// Repair of sparse frames: pixels without usable history get a sample of their own.
-///
-/// ```
-/// use afterimage::{Method, Repair, Settings, Smr};
-///
-/// // At most one pixel in ten.
-/// let method = Method::Smr(Smr { repair: Some(Repair { budget: 0.1 }), ..Smr::default() });
-/// let settings = Settings { method, ..Settings::default() };
-/// settings.validate()?;
-/// # Ok::<(), afterimage::SettingsError>(())
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
-#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
-pub struct Repair {
-    /// Largest share of a view's pixels to repair in a frame: 0 to 1. A quad of 2x2 pixels counts as four. A larger
-    /// budget completes the picture sooner after cuts and behind moving objects. It costs at most that share of a
-    /// full-rate frame. Default 0.03.
-    pub budget: f32,
-}
-
-impl Default for Repair {
-    fn default() -> Self {
-        Self { budget: 0.03 }
+        check("smr.tolerance", self.tolerance, 0.1..=10.0, "")
     }
 }
 

@@ -46,6 +46,5 @@ pub fn any_frame(draws: &mut Draws, wild: f32) -> View {
         reactive: None,
         lod: Some(Image::from_fn(SIZE, |_| number(d, wild, 0.0, 4.0))),
         noise: Some(Image::from_fn(SIZE, |_| [number(d, wild, 0.0, 0.3), number(d, wild, 1.0, 16.0)])),
-        repaired: None,
     }
 }

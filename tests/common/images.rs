@@ -17,8 +17,6 @@ pub struct View {
     pub lod: Option<Image<f32>>,
     /// Standard errors and numbers of samples of noisy frames.
     pub noise: Option<Image<[f32; 2]>>,
-    /// Colors of the pixels that a plan chooses, if the frame is planned.
-    pub repaired: Option<Image<[f32; 3]>>,
 }
 
 impl View {
@@ -26,7 +24,7 @@ impl View {
     pub fn still(color: Image<[f32; 3]>, gaze_px: [f32; 2]) -> Self {
         let facts = ViewFrame::new(ViewGeometry::flat(color.size(), 70.0).unwrap(), Gaze::At { px: gaze_px });
         let (trust, reactive) = (None, None);
-        Self { facts, color, depth: None, motion: None, trust, reactive, lod: None, noise: None, repaired: None }
+        Self { facts, color, depth: None, motion: None, trust, reactive, lod: None, noise: None }
     }
 
     /// With other images or facts.

@@ -2,19 +2,19 @@
 
 use crate::any_frame::number;
 use crate::sparse_hard::{Make, SIZE, Shot, foveation, smr, waves};
-use afterimage::{ContextDesc, Foveation, Image, Method, MethodKind, Repair, Settings, Smr};
+use afterimage::{ContextDesc, Foveation, Image, Method, MethodKind, Settings};
 use afterimage_testing::Draws;
 
-/// Contexts whose passes read the mask in a way of their own: of whole frames, of sparse frames, with repair.
+/// Contexts whose passes read the mask in a way of their own: of whole frames, of sparse ones, of
+/// frames shaded by quads.
 fn contexts() -> Vec<ContextDesc> {
     let of = |method: Method, foveation| ContextDesc {
         settings: Settings { method, foveation, ..Settings::default() },
         ..smr(SIZE)
     };
     let methods = [MethodKind::Smr, MethodKind::Wrs, MethodKind::Taa, MethodKind::Taau].map(Method::from);
-    let repair = Method::Smr(Smr { repair: Some(Repair { budget: 0.1 }), ..Smr::default() });
     let both = methods.into_iter().flat_map(|method| [Foveation::default(), foveation()].map(|f| of(method, f)));
-    both.chain([of(repair, foveation())]).collect()
+    both.chain([of(MethodKind::Smr.into(), Foveation::quads())]).collect()
 }
 
 /// A reactive mask gives what the trust 1 minus it gives, bit for bit: values in and beyond 0 to 1, NaN and infinity.
@@ -28,11 +28,9 @@ pub fn reactive_is_the_inverse_of_trust(make: Make) -> Option<String> {
         for index in 0..6 {
             let speed_px = [0.4, -0.3];
             let full = waves(SIZE, speed_px.map(|v| v * index as f32));
-            let shot = Shot::foveated(full.clone(), &foveation, [30.0, 25.0], index).moving(speed_px);
-            let shot = shot.with(|view| match method {
-                _ if foveation != self::foveation() => view.facts.lattices = None,
-                Method::Smr(Smr { repair: Some(_), .. }) => view.repaired = Some(full),
-                _ => (),
+            let shot = Shot::foveated(full, &foveation, [30.0, 25.0], index).moving(speed_px);
+            let shot = shot.with(|view| {
+                view.facts.lattices = view.facts.lattices.filter(|_| foveation == self::foveation());
             });
             let mask = Image::from_fn(SIZE, |_| number(&mut draws, 0.1, -0.2, 1.2));
             let trust = mask.map(|r| 1.0 - r);

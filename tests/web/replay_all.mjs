@@ -25,7 +25,6 @@ const UNREAD = [
     "pass.engines.every_storable_format_is_written_and_others_say_what_to_change",
     "pass.lifecycle.memory_bytes_is_what_is_made",
     "pass.limits.every_method_runs_on_the_smallest_device",
-    "pass.repair.plans_follow_size_and_settings",
     "pass.quads.plans_follow_size_and_settings",
 ];
 

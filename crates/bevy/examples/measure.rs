@@ -9,8 +9,7 @@
 //!
 //! MODE: full, prepass (full rate with a depth prepass), msaa (full rate, Bevy's MSAA
 //! of 4), taa:SCALE (Bevy's temporal antialiasing at SCALE of both sides, enlarged bilinearly), quad, sparse (the
-//! default), sparse:PERCENT (with repair of at most PERCENT of the pixels), sparse48 (rates of 4 and 8), antialiased
-//! (sparse), reference (full rate with four samples a pixel).
+//! default), sparse48 (rates of 4 and 8), antialiased (sparse), reference (full rate with four samples a pixel).
 //!
 //! Prints the time of a frame, from its start until the device has finished it, and CPU time of the process. With
 //! FOLDER writes the frames there as PNG, and the gaze as `gaze.csv`.
@@ -177,15 +176,11 @@ fn spawn_camera(headless: &mut Headless, mover: Mover, mode: &str) -> Result<(),
         "sparse" => camera.insert(foveated(FoveationKind::Sparse, [2, 4], false)),
         "sparse48" => camera.insert(foveated(FoveationKind::Sparse, [4, 8], false)),
         "antialiased" => camera.insert(foveated(FoveationKind::Sparse, [2, 4], true)),
-        _ if mode.starts_with("sparse:") => {
-            let repair = mode["sparse:".len()..].parse::<f32>()? / 100.0;
-            camera.insert((Afterimage { repair, ..default() }, Foveated::default()))
-        }
         _ if mode.starts_with("taa:") => camera.insert(TemporalAntiAliasing::default()),
         _ => {
             return Err(format!(
-                "mode is {mode}: expected full, prepass, msaa, taa:SCALE, quad, sparse, sparse:PERCENT, sparse48, \
-                 antialiased or reference"
+                "mode is {mode}: expected full, prepass, msaa, taa:SCALE, quad, sparse, sparse48, antialiased or \
+                 reference"
             )
             .into());
         }

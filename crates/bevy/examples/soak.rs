@@ -158,8 +158,7 @@ fn event(headless: &mut Headless, random: &mut Random, size: &mut UVec2) -> &'st
             let method = random.of(&[MethodKind::None, MethodKind::Taa, MethodKind::Taau, MethodKind::Smr]);
             let settings = (random.below(2) == 0).then(|| Settings { method: method.into(), ..default() });
             let (antialias, reset) = (random.below(2) == 0, random.below(2) == 0);
-            let repair = random.of(&[0.0, 0.0, 0.02, 0.3, 1.0]);
-            entity.insert(Afterimage { preset, settings, antialias, repair, reset });
+            entity.insert(Afterimage { preset, settings, antialias, reset });
             "settings"
         }
         9 => {

@@ -1,6 +1,6 @@
 //! Components of a camera, and the components that these require.
 
-use afterimage::{DebugView, DepthConvention, Filter, Method, Repair, Settings};
+use afterimage::{DebugView, DepthConvention, Filter, Method, Settings};
 use bevy::camera::{CameraMainTextureUsages, Hdr};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass};
 use bevy::prelude::*;
@@ -30,19 +30,14 @@ use bevy::render::render_resource::TextureUsages;
 pub struct Afterimage {
     /// Settings by name.
     pub preset: Preset,
-    /// Settings in full, instead of the preset. Their `foveation`, `Smr::antialias` and `Smr::repair` are ignored:
-    /// [`Foveated`], [`antialias`](Self::antialias) and [`repair`](Self::repair) say them.
+    /// Settings in full, instead of the preset. Their `foveation` and `Smr::antialias` are ignored:
+    /// [`Foveated`] and [`antialias`](Self::antialias) say them.
     pub settings: Option<Settings>,
     /// Antialiases [`FoveationKind::Sparse`] with the method smr, in place of temporal antialiasing and MSAA: the
     /// projection of what is shaded moves by a part of a pixel each frame, and history stores means of samples. Better
     /// where little moves; frays thin things that move far from the gaze. Not for cameras with `TemporalJitter`, which
     /// temporal antialiasing and upscaling add. Default false.
     pub antialias: bool,
-    /// Repairs [`FoveationKind::Sparse`] with the method smr: largest share of the pixels, 0 to 1, that the camera
-    /// itself shades where history has nothing, as behind what has moved away. Better there; costs the meshes' vertices
-    /// once more, and a pass that asks history. Not with [`antialias`](Self::antialias), because the camera itself does
-    /// not jitter. Default 0.
-    pub repair: f32,
     /// Discards history in the next frame, for camera cuts and teleports. Becomes false when that frame is drawn.
     pub reset: bool,
 }
@@ -55,14 +50,10 @@ impl Afterimage {
             Preset::Weighted => Settings::weighted(),
             Preset::Paper => Settings::paper(),
         });
-        let mut method = match foveated.kind {
+        let method = match foveated.kind {
             FoveationKind::QuadViews => Method::None,
             _ => settings.method,
         };
-        if let Method::Smr(smr) = &mut method {
-            let is_asked = self.repair != 0.0 && foveated.kind == FoveationKind::Sparse;
-            smr.repair = is_asked.then_some(Repair { budget: self.repair });
-        }
         Settings { method, foveation: foveated.foveation(), ..settings }
     }
 }

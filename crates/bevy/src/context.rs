@@ -46,8 +46,6 @@ pub(crate) struct Context {
     spare_debug: Option<wgpu::Texture>,
     pub counters: Option<Counters>,
     exposure: Option<f32>,
-    /// The repair of this frame is planned.
-    pub planned: bool,
 }
 
 #[derive(Debug)]
@@ -81,8 +79,6 @@ pub(crate) struct Output<'a> {
     /// What the frame is to be written to.
     pub texture: &'a wgpu::Texture,
     pub view: &'a wgpu::TextureView,
-    /// What the camera has drawn, if that is a repair.
-    pub repaired: Option<&'a wgpu::Texture>,
     pub origin_px: [u32; 2],
 }
 
@@ -117,14 +113,12 @@ impl Context {
             spare_debug: None,
             counters: None,
             exposure: None,
-            planned: false,
         })
     }
 
     /// Makes settings and textures those of the frame.
     pub fn prepare(&mut self, device: &Device, frame: &ExtractedAfterimage) -> Result<(), String> {
         self.copied = 0;
-        self.planned = false;
         if self.post.desc().settings != frame.desc.settings {
             self.post.set_settings(device, frame.desc.settings).map_err(|error| error.to_string())?;
         }
@@ -198,40 +192,6 @@ impl Context {
         self.copied += 1;
     }
 
-    /// Records the choice of pixels to repair: gives the list of their quads.
-    pub fn plan(
-        &mut self,
-        device: &Device,
-        encoder: &mut CommandEncoder,
-        (frame, facts): (&ExtractedAfterimage, Facts),
-        geometry: Geometry<'_>,
-        origin_px: [u32; 2],
-    ) -> Result<&wgpu::Buffer, String> {
-        let Some(color) = &self.color.clone() else { return Err("it has no color".into()) };
-        self.resize(device, encoder, frame)?;
-        let views = [ViewFrame { jitter_px: facts.jitter_px, ..frame.view }];
-        let [depth, motion] = geometry.regions(origin_px);
-        let described = Frame {
-            depth: Some(Textures::Regions(&depth)),
-            motion: Some(Textures::Regions(&motion)),
-            reset: reset(frame),
-            ..Frame::new(color, &views, facts.index)
-        };
-        self.post.plan(device, encoder, &described).map_err(|error| error.to_string())?;
-        self.planned = true;
-        self.chosen().ok_or_else(|| "its settings have no repair".into())
-    }
-
-    /// List of the quads that were chosen last.
-    pub fn chosen(&self) -> Option<&wgpu::Buffer> {
-        self.post.repair_quads(0)
-    }
-
-    /// Mask of the quads that were chosen last.
-    pub fn mask(&self) -> Option<&wgpu::Texture> {
-        self.post.repair_mask()
-    }
-
     /// Records the post-process of the color input, and writes the frame to `output`. After an error nothing is
     /// written.
     pub fn record(
@@ -266,7 +226,6 @@ impl Context {
             }
         }
 
-        let repaired = output.repaired.map(|texture| [Region::new(texture, output.origin_px)]);
         let regions = geometry.map(|geometry| geometry.regions(output.origin_px));
         let [depth, motion] = match &regions {
             Some(regions) => regions.each_ref().map(|region| Some(Textures::Regions(region))),
@@ -276,7 +235,6 @@ impl Context {
         let described = Frame {
             depth,
             motion,
-            repaired: repaired.as_ref().map(|region| Textures::Regions(region)),
             reset: reset(frame),
             exposure: if ratio != 1.0 && ratio.is_finite() { Exposure::Changed { ratio } } else { Exposure::Same },
             ..Frame::new(color, &views, facts.index)

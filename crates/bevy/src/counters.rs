@@ -26,7 +26,7 @@ pub struct AfterimageStats {
     pub rejected: u64,
     /// Pixels whose color was NaN or infinite.
     pub nonfinite: u64,
-    /// Pixels at which meshes are shaded, without those that are repaired. All pixels, if nothing is foveated.
+    /// Pixels at which meshes are shaded. All pixels, if nothing is foveated.
     pub shaded: u64,
     /// Meshes in the camera's view.
     pub meshes: u64,

@@ -34,12 +34,7 @@ pub(crate) struct ExtractedAfterimage {
 impl ExtractedAfterimage {
     /// Lattice cameras draw all meshes.
     pub fn hides_meshes(&self) -> bool {
-        !self.samples.is_empty() && !self.repairs()
-    }
-
-    /// The camera itself shades pixels that history lacks.
-    pub fn repairs(&self) -> bool {
-        !self.samples.is_empty() && matches!(self.desc.settings.method, Method::Smr(smr) if smr.repair.is_some())
+        !self.samples.is_empty()
     }
 }
 
@@ -132,7 +127,6 @@ fn extract(mut commands: Commands, mut world: ResMut<MainWorld>) {
         let told_px = jitter_px.unwrap_or_default().map(|px| if planted.jitter { -px } else { px });
         if let Method::Smr(smr) = &mut desc.settings.method {
             smr.antialias = jitter_px.is_some();
-            smr.repair = smr.repair.filter(|_| placed.is_some_and(|(_, placed)| placed.repairs));
         }
         let frame = ExtractedAfterimage {
             kind: foveated.kind,

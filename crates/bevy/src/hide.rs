@@ -1,5 +1,5 @@
 //! Divides what is drawn: lattice cameras draw samples of meshes, and the camera that shows them everything else, as
-//! gizmos, at full rate. Of meshes it draws depth and motion alone, in its prepasses, unless it repairs (`pass.rs`).
+//! gizmos, at full rate. Of meshes it draws depth and motion alone, in its prepasses (`pass.rs`).
 
 use crate::frame::ExtractedAfterimage;
 use bevy::core_pipeline::core_3d::Transparent3d;

@@ -68,8 +68,6 @@ pub(crate) struct Placed {
     pub gaze_px: [f32; 2],
     /// Jitter of the projection, with which history antialiases.
     pub jitter_px: Option<[f32; 2]>,
-    /// The camera itself shades pixels that history lacks.
-    pub repairs: bool,
 }
 
 /// Systems of lattice cameras, in order, in `PostUpdate`.
@@ -339,14 +337,8 @@ fn lattices(
     }
     let antialiases =
         afterimage.antialias && foveated.kind == FoveationKind::Sparse && matches!(settings.method, Method::Smr(_));
-    let is_asked = matches!(settings.method, Method::Smr(smr) if smr.repair.is_some());
-    if antialiases && is_asked {
-        warn_once!(
-            "Afterimage does not repair where it antialiases: set Afterimage::repair to 0, or antialias to false"
-        );
-    }
     let jitter_px = antialiases.then(|| Foveation::jitter_px(state.index));
-    Ok(Placed { lattices, gaze_px, jitter_px, repairs: is_asked && !antialiases })
+    Ok(Placed { lattices, gaze_px, jitter_px })
 }
 
 /// Counts shaded pixels and mesh draws of each camera.

@@ -21,9 +21,8 @@
 //! [`FoveationKind::Sparse`], the default: the plugin gives the camera up to three children, the [lattice
 //! cameras](LatticeCamera). Each draws the samples of a rectangle as a small view: a crop of the camera's projection,
 //! shifted so that the middles of its texels are those of the samples. The camera itself draws depth and motion vectors
-//! of every pixel, and shades no mesh but where [`Afterimage::repair`] asks it to. Before what else it draws, as
-//! gizmos, the post-process writes the frame into its main texture, so that those stay at full rate. Post-processing
-//! effects and UI follow as usual.
+//! of every pixel, and shades no mesh. Before what else it draws, as gizmos, the post-process writes the frame into its
+//! main texture, so that those stay at full rate. Post-processing effects and UI follow as usual.
 //!
 //! An application's queries for its camera find that alone: lattice cameras are hidden from systems in `First` to
 //! `Update`, and in `PostUpdate` before `TransformSystems::Propagate`. Later ones, as in `Last`, need
@@ -40,7 +39,6 @@ mod hide;
 mod lattice;
 mod mirror;
 mod pass;
-mod prime;
 mod scanpath;
 mod shadow;
 #[doc(hidden)]

@@ -24,16 +24,17 @@ impl Plugin for ShadowPlugin {
 }
 
 /// Gives lattice cameras the camera's cascades: shadows do not depend on the gaze, and are the same in all lattices.
-/// The camera itself has none where it shades no meshes.
+/// The camera itself has none, because it shades no meshes.
 fn share_cascades(cameras: Query<(Entity, &LatticeCameras)>, mut lights: Query<&mut Cascades>) {
     for (camera, lattices) in &cameras {
-        let Some(placed) = &lattices.placed else { continue };
+        if lattices.placed.is_none() {
+            continue;
+        }
         for mut cascades in &mut lights {
             let cascades = &mut cascades.cascades;
             // The entry stays: Bevy expects one of each camera.
             let Some(shared) = cascades.get_mut(&camera).map(std::mem::take) else { continue };
-            let shading = lattices.entities.iter().chain(placed.repairs.then_some(&camera));
-            for entity in shading {
+            for entity in &lattices.entities {
                 if let Some(own) = cascades.get_mut(entity) {
                     own.clone_from(&shared);
                 }
@@ -43,12 +44,11 @@ fn share_cascades(cameras: Query<(Entity, &LatticeCameras)>, mut lights: Query<&
 }
 
 /// Draws the maps for the first lattice camera alone. Bevy has one texture for the maps of all cameras, so that they
-/// are still in it when the next lattice camera is drawn, directly afterwards, and then the camera itself.
-fn share_maps(cameras: Query<(Entity, &ExtractedAfterimage)>, mut lights: Query<&mut ViewLightEntities>) {
-    for (camera, frame) in &cameras {
-        let views = frame.samples.iter().map(|samples| samples.camera).chain(frame.repairs().then_some(camera));
-        for view in views.skip(1) {
-            if let Ok(mut lights) = lights.get_mut(view) {
+/// are still in it when the next lattice camera is drawn, directly afterwards.
+fn share_maps(cameras: Query<&ExtractedAfterimage>, mut lights: Query<&mut ViewLightEntities>) {
+    for frame in &cameras {
+        for samples in frame.samples.iter().skip(1) {
+            if let Ok(mut lights) = lights.get_mut(samples.camera) {
                 lights.lights.clear();
             }
         }

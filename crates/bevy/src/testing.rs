@@ -28,8 +28,6 @@ pub struct Recorded {
     pub motion: wgpu::Texture,
     /// The camera's main texture.
     pub output: wgpu::Texture,
-    /// Mask of repaired quads, if the settings have repair.
-    pub mask: Option<wgpu::Texture>,
 }
 
 /// What the post-processes of the last frame were given.
@@ -41,12 +39,12 @@ pub fn recorded(render_world: &mut World) -> Vec<Recorded> {
         .iter(render_world)
         .filter_map(|(camera, frame, target, prepass)| {
             let context = contexts.get(&camera)?;
-            let (color, mask) = (context.color.clone()?, context.mask().cloned());
+            let color = context.color.clone()?;
             let [depth, motion] = [&prepass.depth, &prepass.motion_vectors]
                 .map(|attachment| attachment.as_ref().map(|attachment| (*attachment.texture.texture).clone()));
             let (depth, motion) = depth.zip(motion)?;
             let output = (**target.main_texture()).clone();
-            Some(Recorded { camera, desc: frame.desc, view: frame.view, index, color, depth, motion, output, mask })
+            Some(Recorded { camera, desc: frame.desc, view: frame.view, index, color, depth, motion, output })
         })
         .collect()
 }

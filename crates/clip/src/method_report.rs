@@ -3,7 +3,7 @@
 use crate::clock::Quartiles;
 use crate::frame::RenderedFrame;
 use crate::metric::{Crops, FrameErrors, Reference, Scorer, Scores, WorstCrop, psnr_db};
-use crate::pipeline::{Choice, MethodOutput, Step};
+use crate::pipeline::{MethodOutput, Step};
 use crate::times::{FrameTime, RenderTime, Times};
 use afterimage::Image;
 use serde::{Deserialize, Serialize};
@@ -36,9 +36,6 @@ pub struct MethodReport {
     pub flushed: Option<f64>,
     /// Share of replaced samples among pixels with valid history.
     pub replaced: Option<f64>,
-    /// Mean share of the pixels that a frame repaired; `None` if the method repairs none.
-    #[serde(default)]
-    pub repaired_share: Option<f64>,
     /// Mean share of the pixels that were shaded; `None` unless the method chooses all pixels that are shaded.
     #[serde(default)]
     pub shaded_share: Option<f64>,
@@ -76,7 +73,6 @@ pub struct MethodAccumulator {
     crops: Crops,
     times: Times,
     render: Times,
-    repaired: Vec<f64>,
     shaded: Vec<f64>,
     nonfinite_in: u64,
     nonfinite_out: u64,
@@ -112,11 +108,7 @@ impl MethodAccumulator {
         let render = frame.render.map(|render| shading.map_or(render, |shading| render.and(shading)));
         render.into_iter().for_each(|elapsed| self.render.push(elapsed));
         if let Some(chosen) = shown.chosen {
-            let shares = match chosen.choice {
-                Choice::Shaded => &mut self.shaded,
-                Choice::Repaired => &mut self.repaired,
-            };
-            shares.push(chosen.share);
+            self.shaded.push(chosen.share);
         }
         let frame = &frame.reference;
         self.nonfinite_in += frame.nonfinite + shown.stats.nonfinite;
@@ -168,9 +160,9 @@ impl MethodAccumulator {
         let number = |v: Option<f64>| v.map_or(String::new(), |v| format!("{v:.3}"));
         let (ms, times) = (number(ms), times.map(number).join(","));
         let last = |shares: &[f64]| shares.last().map_or(String::new(), |share| format!("{share:.6}"));
-        let (repaired, shaded) = (last(&self.repaired), last(&self.shaded));
+        let shaded = last(&self.shaded);
         let jod = self.last.and_then(|e| e.jod).map_or(String::new(), |jod| format!("{jod:.4}"));
-        format!("{index},{name},{psnr},{retained},{ms},{fovea},{mid},{periphery},{times},{repaired},{jod},{shaded}")
+        format!("{index},{name},{psnr},{retained},{ms},{fovea},{mid},{periphery},{times},{jod},{shaded}")
     }
 
     /// The results of the method.
@@ -189,7 +181,6 @@ impl MethodAccumulator {
             nonfinite_out: self.nonfinite_out,
             flushed: share(self.flushed, self.pixels),
             replaced: share(self.replaced, self.with_history),
-            repaired_share: mean(&self.repaired),
             shaded_share: mean(&self.shaded),
             bytes_per_pixel: self.traffic,
             persistent_bytes_per_pixel,

@@ -1,17 +1,15 @@
-//! Plans of frames shaded by quads, and of repairs of sparse frames: what they cost beside the passes of smr, on a
-//! device.
+//! Plans of frames shaded by quads: what they cost beside the passes of smr, on a device.
 //!
 //! CPU time of the process on software Vulkan, otherwise wall time; medians of frames with settled history. Depth,
-//! motion and samples are those of analytic clips, 640x360 at 70 degrees. Quads: as by default. Repairs: steps 2 and 4,
-//! budget 3 %.
+//! motion and samples are those of analytic clips, 640x360 at 70 degrees, with quads as by default.
 //!
 //! `cargo run --release -p afterimage-research --example plan_cost`
 //!
-//! Makes figures of `docs/quads.md` and of `docs/method.md`, "Repair"; two minutes.
+//! Makes figures of `docs/quads.md`; a minute.
 
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::{CommandEncoder, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Filter, Foveation, Gaze, Method, Repair, Settings, Smr, ViewFrame};
+use afterimage::{ContextDesc, Foveation, Gaze, Method, Settings, Smr, ViewFrame};
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::Headless;
 use afterimage_lab::source::FrameSource;
@@ -19,7 +17,7 @@ use afterimage_lab::source::analytic::AnalyticSource;
 
 const SIZE: [u32; 2] = [640, 360];
 const GAZE_PX: [f32; 2] = [320.0, 180.0];
-/// Frames before the first that is timed: the lattices have visited every pixel.
+/// Frames before the first that is timed: history has settled where quads are dense.
 const WARM_UP: u64 = 18;
 const FRAMES: u64 = 40;
 
@@ -27,25 +25,20 @@ type Failure = Box<dyn std::error::Error>;
 
 fn main() -> Result<(), Failure> {
     let gpu = Headless::find(true).ok_or("no adapter was found")?;
-    println!("{:7} {:9} {:>9} {:>8} {:>8} {:>6}", "frames", "scene", "antialias", "plan ms", "smr ms", "ratio");
-    let sparse = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..Foveation::default() };
-    for foveation in [Foveation::quads(), sparse] {
-        for scene in ["still", "lateral", "walk", "occluder"] {
-            for antialias in [false, true] {
-                let [plan, record] = times(&gpu, scene, foveation, antialias)?;
-                let name = foveation.filter.name();
-                println!("{name:7} {scene:9} {antialias:>9} {plan:8.1} {record:8.1} {:6.2}", plan / record);
-            }
+    println!("{:9} {:>9} {:>8} {:>8} {:>6}", "scene", "antialias", "plan ms", "smr ms", "ratio");
+    for scene in ["still", "lateral", "walk", "occluder"] {
+        for antialias in [false, true] {
+            let [plan, record] = times(&gpu, scene, antialias)?;
+            println!("{scene:9} {antialias:>9} {plan:8.1} {record:8.1} {:6.2}", plan / record);
         }
     }
     Ok(())
 }
 
 /// Median times of `plan` and `record` in milliseconds.
-fn times(gpu: &Headless, scene: &str, foveation: Foveation, antialias: bool) -> Result<[f64; 2], Failure> {
-    let is_sparse = foveation.filter == Filter::Sparse;
-    let smr = Smr { repair: is_sparse.then_some(Repair { budget: 0.03 }), antialias, ..Smr::default() };
-    let settings = Settings { method: Method::Smr(smr), foveation, ..Settings::default() };
+fn times(gpu: &Headless, scene: &str, antialias: bool) -> Result<[f64; 2], Failure> {
+    let smr = Smr { antialias, ..Smr::default() };
+    let settings = Settings { method: Method::Smr(smr), foveation: Foveation::quads(), ..Settings::default() };
     let desc = ContextDesc { settings, ..ContextDesc::new(SIZE) };
     let mut post = Afterimage::new(&gpu.device, &desc, TextureFormat::Rgba16Float)?;
     let input = |format| gpu.texture(SIZE, 1, format, TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST);
@@ -62,7 +55,6 @@ fn times(gpu: &Headless, scene: &str, foveation: Foveation, antialias: bool) -> 
         gpu.write(&motion, 0, full.motion.as_ref().ok_or("no motion")?);
         let views = [ViewFrame {
             previous_from_current: full.previous_from_current,
-            lattices: is_sparse.then(|| foveation.lattices(&geometry, GAZE_PX, index)),
             jitter_px: if antialias { Foveation::jitter_px(index) } else { [0.0; 2] },
             ..ViewFrame::new(geometry, Gaze::At { px: GAZE_PX })
         }];
@@ -72,8 +64,7 @@ fn times(gpu: &Headless, scene: &str, foveation: Foveation, antialias: bool) -> 
         gpu.queue.submit([]);
         gpu.wait();
         let plan = timed(gpu, |encoder| post.plan(&gpu.device, encoder, &frame))?;
-        let repaired = Frame { repaired: is_sparse.then_some((&color).into()), ..frame };
-        let record = timed(gpu, |encoder| post.record(&gpu.device, encoder, &repaired, &output).map(|_| ()))?;
+        let record = timed(gpu, |encoder| post.record(&gpu.device, encoder, &frame, &output).map(|_| ()))?;
         if index >= WARM_UP {
             times[0].push(plan);
             times[1].push(record);

@@ -12,13 +12,12 @@ mod kept_history;
 mod light;
 mod observe;
 mod pixel;
-mod plan;
 mod quad_plan;
 mod quad_samples;
 mod quads;
 mod view;
 
-pub(super) use plan::{plan, plan_quads};
+pub(super) use quad_plan::plan_quads;
 pub(super) use quads::Quads;
 
 use super::Pass;
@@ -31,7 +30,7 @@ use view::View;
 
 /// Runs the three loops for every view.
 pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
-    let Pass { desc, history, frame, repaired, quads, output, mut traces } = pass;
+    let Pass { desc, history, frame, quads, output, mut traces } = pass;
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
@@ -39,7 +38,6 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
         let inputs = Inputs::new(desc, frame, i, &held, has_history);
         let (past, next, next_noise) = history.split_surfaces(i);
         let mut view = View::new(desc, frame, i, inputs, past.words, past.noise);
-        view.repaired = frame.repaired.map(|colors| colors[i]).zip(repaired.get(i));
         view.quads = quads.get(i);
         let traces = traces.as_mut().map(|t| &mut t[i]);
         let targets = Targets { surfaces: next, noise: next_noise, output: &mut output[i], traces };

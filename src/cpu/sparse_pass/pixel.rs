@@ -42,15 +42,6 @@ impl ProcessPixel for LitView<'_> {
 }
 
 impl View<'_> {
-    /// Sample of a repaired pixel, if it is usable.
-    #[inline(always)]
-    fn repaired(&self, x: u32, y: u32) -> Option<Vec3> {
-        let [x, y] = [x as usize, y as usize];
-        let (colors, _) = self.repaired.filter(|(_, mask)| mask.at(x, y))?;
-        let (color, usable) = sanitize::color(Vec3::from(colors.at(x, y)));
-        usable.then_some(color)
-    }
-
     /// Processes one pixel and counts it in `stats`.
     #[inline(always)]
     fn pixel(&self, x: u32, y: u32, lights: Lights<'_>, stats: &mut FrameStats) -> Pixel {
@@ -62,24 +53,16 @@ impl View<'_> {
         }
         let disparity = inputs.disparity(x, y);
         let level = self.level_at([x, y]);
-        let mut candidate = match (lights, self.quads) {
+        let candidate = match (lights, self.quads) {
             (Lights::Quads(lights), Some(quads)) => self.quad_candidate(quads, [x, y], disparity, lights),
             (Lights::Lattices(lights), _) => {
                 self.candidate(LatticeUniforms::index_at(&self.lattices, [x, y]), [x, y], disparity, lights)
             }
             (Lights::Quads(_), None) => Candidate::NONE,
         };
-        // Pixels of the full-rate lattice always have a sample of their own.
-        let repaired = if level > 0 { self.repaired(x, y) } else { None };
-        if let Some(color) = repaired {
-            // The samples around the pixel still give gain and fit.
-            let noise = self.sample_noise([x, y]);
-            candidate = Candidate { color, usable: true, lod: 0.0, noise, is_own: true, ..candidate };
-        }
-        let is_full_rate = level == 0 || repaired.is_some();
         let surface = self.surface([x, y], level);
         let source = self.source([x, y], &surface);
-        let is_final = candidate.usable && is_full_rate && !self.is_noisy() && !self.antialiases;
+        let is_final = candidate.usable && level == 0 && !self.is_noisy() && !self.antialiases;
         let history = source.as_ref().ok().filter(|_| !is_final).map(|source| self.interpolated(source));
         let history = history.filter(|found| found.history.lod >= 0.0);
         let verdict = match &source {

@@ -3,7 +3,11 @@
 
 use super::quads::Quads;
 use super::view::View;
+use crate::cpu::Frame;
+use crate::cpu::history::History;
+use crate::cpu::inputs::Inputs;
 use crate::foveation::Foveation;
+use crate::frame::ContextDesc;
 use crate::image::Image;
 use crate::kernel::antialias::mean_of;
 use crate::kernel::kept::{code_word, is_empty, unpack_full};
@@ -15,11 +19,23 @@ use crate::kernel::quads::{
 use crate::kernel::reproject::nearest;
 use crate::kernel::resample::{has_code, tap_codes};
 use crate::kernel::sanitize;
+use crate::method::HistoryLayout;
 use glam::Vec3;
+
+/// Quads to shade, view by view.
+pub(in crate::cpu) fn plan_quads(desc: &ContextDesc, history: &History, frame: &Frame<'_>) -> Vec<Quads> {
+    let of_view = |i: usize| {
+        let inputs = Inputs::new(desc, frame, i, &history.held_after(i, &frame.views[i]), history.is_filled());
+        let foveation = &desc.settings.foveation;
+        let has_memory = matches!(history.layout(), HistoryLayout::Kept { .. });
+        View::new(desc, frame, i, inputs, history.kept(i), &[]).plan_quads(foveation, frame.index, has_memory)
+    };
+    (0..frame.views.len()).map(of_view).collect()
+}
 
 impl View<'_> {
     /// Chooses the quads of a frame. `has_memory`: whether the method has history to choose by.
-    pub(super) fn plan_quads(&self, foveation: &Foveation, index: u64, has_memory: bool) -> Quads {
+    fn plan_quads(&self, foveation: &Foveation, index: u64, has_memory: bool) -> Quads {
         let size = self.inputs.size.map(|side| side.div_ceil(2));
         let radii = [foveation.fovea_radius_deg(), foveation.mid_radius_deg()];
         let regions = Image::from_fn_parallel(size, |[x, y]| {

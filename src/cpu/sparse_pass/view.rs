@@ -4,7 +4,6 @@ use super::quads::Quads;
 use crate::cpu::Frame;
 use crate::cpu::inputs::Inputs;
 use crate::frame::ContextDesc;
-use crate::image::Image;
 use crate::kernel::depth::same_surface;
 use crate::kernel::noise::Noise;
 use crate::kernel::sanitize;
@@ -31,8 +30,6 @@ pub(super) struct View<'a> {
     pub antialiases: bool,
     /// Low word of the frame counter.
     pub frame_low: u32,
-    /// Samples of repaired pixels, and the mask of these pixels.
-    pub repaired: Option<(&'a Image<[f32; 3]>, &'a Image<bool>)>,
     /// Shaded quads, of a frame shaded by quads. Such a frame has no lattices.
     pub quads: Option<&'a Quads>,
 }
@@ -56,7 +53,6 @@ impl<'a> View<'a> {
             relights: crate::method::smr_sparse_relights(&desc.settings),
             antialiases: crate::method::smr_sparse_antialiases(&desc.settings),
             frame_low: frame.index as u32,
-            repaired: None,
             quads: None,
         }
     }

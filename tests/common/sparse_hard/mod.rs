@@ -6,14 +6,12 @@ mod cuts;
 mod inputs;
 mod lattices;
 mod offsets;
-mod repair;
 
 pub use content::{fast_motion, silhouettes, sparkles, thin_lines};
 pub use cuts::{announced_and_unannounced_cuts, restarts_of_the_order};
 pub use inputs::{invalid_samples, light_trust_views_gaze_and_foveation};
 pub use lattices::{borders, degenerate_lattices, starved_positions};
 pub use offsets::{offsets_off_by_one, repeated_offsets};
-pub use repair::{half_uncovered, light_and_contradictions, order_without_flicker, thin_occluders};
 
 use crate::images::{Images, View};
 use afterimage::cpu::{CpuAfterimage, Frame};
@@ -40,10 +38,6 @@ macro_rules! sparse_laws {
             h96_repeated_offsets_do_no_harm: "H96", repeated_offsets;
             h97_offsets_off_by_one_cost_little: "H97", offsets_off_by_one;
             h98_light_trust_views_gaze_and_foveation: "H98", light_trust_views_gaze_and_foveation;
-            h99_half_a_screen_uncovered_is_repaired_from_the_gaze_outwards: "H99", half_uncovered;
-            h100_the_order_of_a_budget_does_not_flicker: "H100", order_without_flicker;
-            h101_trails_of_thin_occluders_are_no_ghosts: "H101", thin_occluders;
-            h102_a_step_of_light_is_followed_while_much_is_repaired: "H102", light_and_contradictions;
         }
     };
 }
@@ -54,8 +48,6 @@ pub const SIZE: [u32; 2] = [94, 70];
 /// Frames in which lattices of steps 2 and 4 visit every position.
 pub const TURN: u64 = 16;
 pub type Color = Image<[f32; 3]>;
-/// Pixels to repair.
-pub type Mask = Image<bool>;
 
 /// One view of one frame, and the description of the frame.
 #[derive(Clone)]
@@ -114,9 +106,6 @@ pub trait Shows {
     /// Outputs of a frame. Reset and exposure are those of the first view.
     fn show(&mut self, index: u64, shots: &[Shot]) -> Vec<Color>;
 
-    /// Pixels that a frame of one view, not shown yet, wants to have shaded.
-    fn plan(&mut self, index: u64, shot: &Shot) -> Mask;
-
     fn set_settings(&mut self, settings: Settings);
 
     /// Output of a frame of one view.
@@ -134,20 +123,11 @@ impl Shows for CpuAfterimage {
         let views: Vec<_> = shots.iter().map(|shot| shot.one()).collect();
         let images = Images::of(&views);
         let frame = Frame { reset: shots[0].reset, exposure: shots[0].exposure, ..images.frame(index) };
-        let repaired: Vec<_> = shots.iter().filter_map(|shot| shot.repaired.as_ref()).collect();
-        let repaired = (!repaired.is_empty()).then_some(&repaired[..]);
-        if repaired.is_some() {
-            CpuAfterimage::plan(self, &frame).unwrap();
+        if self.desc().settings.foveation.filter == Filter::Quads {
+            self.plan(&frame).unwrap();
         }
-        self.process(&Frame { repaired, ..frame }, &mut out).unwrap();
+        self.process(&frame, &mut out).unwrap();
         out
-    }
-
-    fn plan(&mut self, index: u64, shot: &Shot) -> Mask {
-        let views = [shot.one()];
-        let images = Images::of(&views);
-        let frame = Frame { reset: shot.reset, exposure: shot.exposure, ..images.frame(index) };
-        CpuAfterimage::plan(self, &frame).unwrap()[0].clone()
     }
 
     fn set_settings(&mut self, settings: Settings) {

@@ -8,7 +8,6 @@ mod means;
 mod nan;
 mod properties;
 mod quads;
-mod repair;
 mod reprojection;
 mod reservoirs;
 mod sparse;

@@ -1,7 +1,9 @@
 //! Frames shaded by quads: laws of the plan, and what the renderer shades beside it.
 
 use super::*;
+use crate::any_frame::{self, any_frame};
 use crate::images::View;
+use afterimage::kernel::quads::threshold;
 use afterimage::{Filter, Foveation, Smr};
 use afterimage_testing::holds;
 
@@ -174,4 +176,57 @@ fn settings_that_quads_cannot_have_are_refused() {
     assert!(with(|s| s.foveation.budget = 1.5).unwrap_err().contains("budget"));
     assert!(with(|s| s.noisy = true).unwrap_err().contains("noisy"));
     assert_eq!(Foveation::quads().filter, Filter::Quads);
+}
+
+#[test]
+fn plans_of_other_frames_are_refused() {
+    let mut post = CpuAfterimage::new(&ContextDesc::new(SIZE)).unwrap();
+    let view = wall(0, Needs::Settled);
+    let images = Images::of(&[view.one()]);
+    let error = post.plan(&images.frame(0)).unwrap_err().to_string();
+    assert_eq!(error, "plan of view 0 is asked for: expected Filter::Quads in Settings::foveation");
+}
+
+proptest! {
+    #![proptest_config(afterimage_testing::property("quads", 200))]
+
+    #[test]
+    fn a_budget_is_never_exceeded_and_used_up_to_one_key(counts in prop::collection::vec(0u32..50, 2..200), budget in 0u32..3000) {
+        let key = threshold(&counts, budget) as usize;
+        let chosen = |key: usize| counts[key..].iter().sum::<u32>();
+        prop_assert!(key >= 1 && chosen(key) <= budget);
+        prop_assert!(key == 1 || chosen(key - 1) > budget);
+    }
+
+    #[test]
+    fn any_frames_are_within_the_budget(name in any::<u64>(), wild in prop::sample::select(vec![0.0, 0.1, 1.0]), budget in 0.0f32..=1.0, antialias in any::<bool>()) {
+        let mut draws = Draws::new(&name.to_string());
+        let size = any_frame::SIZE;
+        let made = |budget| {
+            let desc = ContextDesc { settings: settings(budget, antialias), view_count: 2, ..ContextDesc::new(size) };
+            CpuAfterimage::new(&desc).unwrap()
+        };
+        let (mut post, mut even) = (made(budget), made(0.0));
+        for index in 0..4 {
+            let frames = [0; 2].map(|_| any_frame(&mut draws, wild));
+            let views = frames.each_ref().map(|f| OneView { lod: None, noise: None, ..f.one() });
+            let images = Images::of(&views);
+            let reset = if draws.uniform() < 0.2 { Reset::All } else { Reset::None };
+            let frame = Frame { reset, ..images.frame(index) };
+            let before = post.clone();
+            let masks = post.plan(&frame).unwrap().to_vec();
+            prop_assert_eq!(post.plan(&Frame { color: &[], ..frame }).unwrap(), &masks);
+            prop_assert!(post.history() == before.history());
+            for (mask, even) in masks.iter().zip(even.plan(&frame).unwrap()) {
+                let by_need = quads_of(mask) - quads_of(even);
+                let all = size.map(|side| f64::from(side.div_ceil(2))).iter().product::<f64>();
+                prop_assert!(by_need as f64 <= f64::from(budget) * all);
+            }
+            let mut out = vec![Image::filled(size, [f32::NAN; 3]); 2];
+            for post in [&mut post, &mut even] {
+                post.process(&frame, &mut out).unwrap();
+                prop_assert!(out.iter().flat_map(|o| o.pixels()).flatten().all(|v| v.is_finite()));
+            }
+        }
+    }
 }

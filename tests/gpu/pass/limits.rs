@@ -6,7 +6,7 @@ use crate::surfaces_hard;
 use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target, Textures};
 use afterimage::wgpu::{self, Device, Limits, Texture, TextureFormat, TextureUsages};
 use afterimage::{
-    ContextDesc, CreateError, DebugView, FrameError, Gaze, Method, MethodKind, Repair, Settings, Smr, ViewFrame,
+    ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, Gaze, MethodKind, Settings, ViewFrame,
     ViewGeometry,
 };
 
@@ -20,10 +20,16 @@ fn noop(required_limits: Limits) -> (Device, wgpu::Queue) {
 
 fn all_settings() -> Vec<Settings> {
     let kinds = [MethodKind::None, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taa, MethodKind::Taau];
-    let repair = Smr { repair: Some(Repair { budget: 1.0 }), ..Smr::default() };
     let sparse_frames = kinds.map(sparse::settings);
-    let repairing = Settings { method: Method::Smr(repair), ..sparse::settings(MethodKind::Smr) };
-    kinds.map(surfaces_hard::settings).into_iter().chain([Settings::traced(), repairing]).chain(sparse_frames).collect()
+    let by_quads =
+        kinds.map(|kind| Settings { method: kind.into(), foveation: Foveation::quads(), ..Settings::default() });
+    kinds
+        .map(surfaces_hard::settings)
+        .into_iter()
+        .chain([Settings::traced()])
+        .chain(sparse_frames)
+        .chain(by_quads)
+        .collect()
 }
 
 fn described(size: [u32; 2], settings: Settings) -> ContextDesc {
@@ -74,7 +80,7 @@ fn every_method_runs_on_the_smallest_device() {
         let Some((device, queue)) = afterimage_testing::gpu::device_with(&descriptor) else { return };
         let texture = |format, usage| make_texture(&device, &desc, format, usage | TextureUsages::COPY_DST);
         let read = TextureUsages::TEXTURE_BINDING;
-        let [color, repaired] = [0; 2].map(|_| texture(FORMAT, read));
+        let color = texture(FORMAT, read);
         let noise_texture = texture(TextureFormat::Rg32Float, read);
         let output = texture(FORMAT, TextureUsages::STORAGE_BINDING);
         let texels: Vec<f32> = noise(size, "small").pixels().iter().flat_map(|c| [c[0], c[1], c[2], 1.0]).collect();
@@ -82,8 +88,7 @@ fn every_method_runs_on_the_smallest_device() {
             afterimage_testing::gpu::write_layer(&queue, &color, layer, bytemuck::cast_slice(&texels));
         }
         let geometry = ViewGeometry::flat(size, 70.0).unwrap();
-        let is_sparse = settings.foveation.filter == afterimage::Filter::Sparse;
-        let repairs = is_sparse && matches!(settings.method, Method::Smr(Smr { repair: Some(_), .. }));
+        let is_sparse = settings.foveation.filter == Filter::Sparse;
         afterimage_testing::gpu::validated(&device, "frames", || {
             let mut post = Afterimage::new(&device, &desc, FORMAT).unwrap();
             for index in 0..3 {
@@ -95,10 +100,9 @@ fn every_method_runs_on_the_smallest_device() {
                     ..Frame::new(&color, &views, index)
                 };
                 let mut encoder = device.create_command_encoder(&Default::default());
-                if repairs {
+                if settings.foveation.filter == Filter::Quads {
                     post.plan(&device, &mut encoder, &frame).unwrap();
                 }
-                let frame = Frame { repaired: repairs.then_some((&repaired).into()), ..frame };
                 post.record(&device, &mut encoder, &frame, &output).unwrap();
                 queue.submit([encoder.finish()]);
             }

@@ -4,6 +4,7 @@ mod antialiasing;
 mod engines;
 mod gaze;
 mod layout;
+mod lens;
 mod lifecycle;
 mod light;
 mod limits;
@@ -11,7 +12,6 @@ mod motion;
 mod properties;
 mod quads;
 mod reactive;
-mod repair;
 mod reservoirs;
 #[allow(dead_code, reason = "the lab's tests on analytic scenes use all of it")]
 pub mod rig;

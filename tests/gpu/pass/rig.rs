@@ -28,26 +28,24 @@ pub struct Rig {
     pub drops: bool,
     /// Debug view to draw beside the next frames, and what it showed.
     pub beside: Option<DebugView>,
-    textures: [Texture; 10],
+    textures: [Texture; 9],
     counters: Buffer,
 }
 
-// Places of textures: color, depth, motion, trust and reactive masks, levels of detail, noise and repaired samples;
-// output, debug view.
+// Places of textures: color, depth, motion, trust and reactive masks, levels of detail and noise; output, debug view.
 const COLOR: usize = 0;
 const MOTION: usize = 2;
 const NOISE: usize = 6;
-const REPAIRED: usize = 7;
-const OUTPUT: usize = 8;
-const DEBUG: usize = 9;
+const OUTPUT: usize = 7;
+const DEBUG: usize = 8;
 
 const READ: TextureUsages =
     TextureUsages::TEXTURE_BINDING.union(TextureUsages::COPY_DST).union(TextureUsages::COPY_SRC);
 
-fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 10] {
+fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 9] {
     std::array::from_fn(|i| {
         let format = match i {
-            COLOR | REPAIRED | OUTPUT => TextureFormat::Rgba32Float,
+            COLOR | OUTPUT => TextureFormat::Rgba32Float,
             DEBUG => TextureFormat::Rgba16Float,
             MOTION | NOISE => TextureFormat::Rg32Float,
             _ => TextureFormat::R32Float,
@@ -70,13 +68,12 @@ fn texels(view: &View) -> [Option<Vec<f32>>; OUTPUT] {
         view.reactive.as_ref().map(one),
         view.lod.as_ref().map(one),
         view.noise.as_ref().map(two),
-        view.repaired.as_ref().map(four),
     ]
 }
 
 /// The frame with those of the textures that the view has.
-fn given<'a>(view: &View, textures: [Textures<'a>; 10], frame: Frame<'a>) -> Frame<'a> {
-    let [_, depth, motion, trust, reactive, lod, noise, repaired, ..] = textures;
+fn given<'a>(view: &View, textures: [Textures<'a>; 9], frame: Frame<'a>) -> Frame<'a> {
+    let [_, depth, motion, trust, reactive, lod, noise, ..] = textures;
     Frame {
         depth: view.depth.is_some().then_some(depth),
         motion: view.motion.is_some().then_some(motion),
@@ -84,7 +81,6 @@ fn given<'a>(view: &View, textures: [Textures<'a>; 10], frame: Frame<'a>) -> Fra
         reactive: view.reactive.is_some().then_some(reactive),
         lod: view.lod.is_some().then_some(lod),
         noise: view.noise.is_some().then_some(noise),
-        repaired: view.repaired.is_some().then_some(repaired),
         ..frame
     }
 }
@@ -271,13 +267,10 @@ impl Rig {
         let cpu_views: Vec<_> = views.iter().map(View::one).collect();
         let images = Images::of(&cpu_views);
         let frame = afterimage::cpu::Frame { reset, exposure: self.exposure, ..images.frame(index) };
-        let repaired: Vec<_> = views.iter().filter_map(|v| v.repaired.as_ref()).collect();
-        let repaired = (!repaired.is_empty()).then_some(&repaired[..]);
-        let quads = match repaired.is_some() || self.is_by_quads() {
+        let quads = match self.is_by_quads() {
             true => self.cpu.plan(&frame).unwrap().iter().flat_map(quads_of).collect(),
             false => vec![],
         };
-        let frame = afterimage::cpu::Frame { repaired, ..frame };
         let stats = self.cpu.process_traced(&frame, &mut output, &mut trace).unwrap();
         let shown = output.iter().flat_map(|o| o.pixels()).map(|c| c.map(f32::to_bits)).collect();
         (Made { shown, words: held_words(&self.cpu), quads, stats }, trace)
@@ -328,7 +321,7 @@ impl Rig {
         let all = (0..).zip(&self.textures).filter(|_| self.scattered);
         let all: Vec<_> = all.map(|(i, texture)| Scattered::new(&self.device, &self.queue, texture, i)).collect();
         let regions: Vec<_> = all.iter().map(Scattered::regions).collect();
-        let textures: [_; 10] =
+        let textures: [_; 9] =
             std::array::from_fn(|i| regions.get(i).map_or((&self.textures[i]).into(), |r| Textures::Regions(r)));
         let [.., output, debug] = textures;
         let frame = Frame {
@@ -338,7 +331,7 @@ impl Rig {
         };
         let debug = self.beside.map(|view| DebugTarget { view, output: debug });
         let target = Target { debug, counters: count.then_some(&self.counters), ..Target::new(output) };
-        let is_planned = frame.repaired.is_some() || self.is_by_quads();
+        let is_planned = self.is_by_quads();
         afterimage_testing::gpu::validated(&self.device, "record", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
             all.iter().take(OUTPUT).for_each(|input| input.copy(&mut encoder, true));
@@ -410,10 +403,10 @@ impl Rig {
                 [] => vec![],
             },
             // As it was planned last.
-            quads: match self.gpu.quad_mask() {
-                Some(mask) => self.read_texture(mask).iter().map(|word| word & 1).collect(),
-                None => self.gpu.repair_mask().map_or_else(Vec::new, |mask| self.read_texture(mask)),
-            },
+            quads: self
+                .gpu
+                .quad_mask()
+                .map_or_else(Vec::new, |mask| self.read_texture(mask).iter().map(|word| word & 1).collect()),
             stats: self.read_counters(),
         }
     }

@@ -26,11 +26,6 @@ impl Shows for Both {
         pixels.map(|p| Image::from_pixels(size, p.iter().map(|c| c.map(f32::from_bits)).collect()).unwrap()).collect()
     }
 
-    /// The CPU's, which that of the frame on the GPU must equal.
-    fn plan(&mut self, index: u64, shot: &Shot) -> Mask {
-        Shows::plan(&mut self.rig.as_mut().unwrap().cpu, index, shot)
-    }
-
     fn set_settings(&mut self, settings: Settings) {
         let rig = self.rig.as_mut().unwrap();
         rig.cpu.set_settings(settings).unwrap();

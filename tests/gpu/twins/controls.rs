@@ -125,10 +125,6 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("matched::mip_bilinear", "(b - t) * fraction.y", "(b - t) * fraction.x"),
     // A wrong lens.
     ("lens::is_visible", "f32(x) - f32(y)", "f32(y) - f32(x)"),
-    // A wrong repair.
-    ("repair::priority", "RINGS - 1u", "RINGS"),
-    ("repair::asked_px", "i ^ frame_low ^ x ^ y", "i ^ x ^ y"),
-    ("repair::quad_key", "~key", "key"),
     // Wrong quads.
     ("quads::need", "min(lod, COARSEST)", "lod"),
     ("quads::octant", "5 * high <= 2 * wide", "5 * high < 2 * wide"),

@@ -30,7 +30,6 @@ bit_equal! {
     antialias_is_bit_equal: "antialias";
     lens_is_bit_equal: "lens";
     quads_is_bit_equal: "quads";
-    repair_is_bit_equal: "repair";
     kept_is_bit_equal: "kept";
     sparse_is_bit_equal: "sparse";
     lattice_is_bit_equal: "lattice";

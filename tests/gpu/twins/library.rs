@@ -2,7 +2,7 @@
 
 use super::probe::Probe;
 use super::{
-    antialias, decisions, doctor, foveation, lattice, lens, matching, mathematics, noise, quads, repair, sparse, state,
+    antialias, decisions, doctor, foveation, lattice, lens, matching, mathematics, noise, quads, sparse, state,
     surfaces, upsampling, weighted,
 };
 pub use afterimage::shader::SHADERS;
@@ -23,8 +23,6 @@ pub const RUST_ONLY: &[(&str, &str)] = &[
     ("lattice", "offset_px"),
     ("quads", "budget_quads"),
     ("quads", "threshold"),
-    ("repair", "budget_quads"),
-    ("repair", "threshold"),
     ("resample", "gather_around"),
 ];
 
@@ -44,7 +42,6 @@ pub fn probes() -> impl Iterator<Item = &'static Probe> {
         mathematics::PROBES,
         antialias::PROBES,
         quads::PROBES,
-        repair::PROBES,
         sparse::PROBES,
         state::PROBES,
         surfaces::PROBES,

@@ -20,7 +20,6 @@ mod noise;
 mod order;
 mod probe;
 mod quads;
-mod repair;
 mod shape;
 mod sparse;
 mod state;

@@ -80,9 +80,6 @@ fn settings_and_kinds_change_while_it_runs() {
     for preset in [Preset::Responsive, Preset::Weighted, Preset::Paper, Preset::Steady] {
         change(&mut headless, &|afterimage, _| afterimage.preset = preset);
     }
-    for repair in [0.05, 1.0, f32::NAN, 0.0] {
-        change(&mut headless, &|afterimage, _| afterimage.repair = repair);
-    }
     change(&mut headless, &|_, foveated| (foveated.rate_mid, foveated.rate_far) = (4, 8));
     change(&mut headless, &|_, foveated| (foveated.rate_mid, foveated.rate_far) = (4, 4));
     change(&mut headless, &|_, foveated| (foveated.rate_mid, foveated.rate_far) = (1, 2));

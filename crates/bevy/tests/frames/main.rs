@@ -9,7 +9,6 @@ mod conventions;
 mod events;
 mod pixels;
 mod reflection;
-mod repair;
 
 use bevy::camera::Hdr;
 use bevy::core_pipeline::tonemapping::Tonemapping;

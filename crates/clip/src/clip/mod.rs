@@ -153,7 +153,7 @@ impl Playback<'_> {
         let mut table = out.table(
             "frames.csv",
             "frame,method,psnr_db,retained_psnr_db,ms,fovea_psnr_db,mid_psnr_db,periphery_psnr_db,\
-             cpu_ms,render_ms,render_cpu_ms,total_ms,total_cpu_ms,repaired_share,jod,shaded_share",
+             cpu_ms,render_ms,render_cpu_ms,total_ms,total_cpu_ms,jod,shaded_share",
         )?;
         let pipeline = self.play(&mut |result| {
             let encoded = clip.score_and_write(result, &mut accumulators, out)?;

@@ -1,10 +1,10 @@
 //! Frames that sources produce and methods process, in memory or on a device.
 
 mod rendered;
-mod repair;
+mod shaded;
 
 pub use rendered::{Content, DeviceContent, DeviceHandle, RenderedFrame};
-pub use repair::{Shaded, ShadedColor, Wish};
+pub use shaded::{Shaded, ShadedColor, Wish};
 
 use afterimage::{Image, Lattices};
 

@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::executor::{Executor, Shade, Shot};
-use super::run::{Choice, Chosen, MethodOutput, RunKind};
+use super::run::{Chosen, MethodOutput, RunKind, chooses, unshaded};
 use crate::clock::{Elapsed, Stopwatch};
 use crate::frame::{DeviceHandle, RenderedFrame, Shaded, ShadedColor, Wish};
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
@@ -60,10 +60,10 @@ impl Executor for CpuExecutor {
             Some(Shaded { color: ShadedColor::InMemory(color), .. }) => Some(color),
             _ => planned.as_ref().filter(|_| is_simulated).map(|_| &full_rate.color),
         };
-        let noise = shaded.as_ref().and_then(|shaded| shaded.noise_in(given.noise));
-        let noise = noise.as_ref().or(given.noise);
-        let frame = Frame { noise: noise.as_ref().map(from_ref), ..frame };
-        let frame = with_pixels(frame, planned.as_ref(), pixels.as_ref().map(from_ref))?;
+        let frame = match planned {
+            Some(_) => Frame { color: pixels.as_ref().map(from_ref).ok_or_else(unshaded)?, ..frame },
+            None => frame,
+        };
         let watch = Stopwatch::start();
         let stats = match &mut traces {
             Some(traces) => post.process_traced(&frame, &mut output, traces)?,
@@ -75,8 +75,7 @@ impl Executor for CpuExecutor {
         Ok(MethodOutput {
             image,
             elapsed: planned.as_ref().map_or(elapsed, |planned| elapsed.and(planned.took)),
-            chosen: planned.filter(|_| pixels.is_some()).map(|planned| Chosen {
-                choice: planned.choice,
+            chosen: planned.map(|planned| Chosen {
                 share: planned.wish.share(size),
                 shading: shaded.as_ref().map(|shaded| shaded.took),
             }),
@@ -93,22 +92,8 @@ impl Executor for CpuExecutor {
     }
 }
 
-/// The frame with the colors of chosen pixels; `None`: its source did not shade them.
-fn with_pixels<'a>(
-    frame: Frame<'a>,
-    planned: Option<&Planned>,
-    pixels: Option<&'a [&'a Image<[f32; 3]>]>,
-) -> Result<Frame<'a>, FrameError> {
-    Ok(match planned.map(|planned| planned.choice) {
-        Some(Choice::Shaded) => Frame { color: pixels.ok_or_else(Choice::unshaded)?, ..frame },
-        Some(Choice::Repaired) => Frame { repaired: pixels, ..frame },
-        None => frame,
-    })
-}
-
 /// The quads that a method chose.
 struct Planned {
-    choice: Choice,
     wish: Wish,
     /// Time of choosing them.
     took: Elapsed,
@@ -117,12 +102,14 @@ struct Planned {
 impl Planned {
     /// Chooses the quads of a frame; `None` if the method chooses none.
     fn new(post: &mut CpuAfterimage, frame: &Frame<'_>) -> Result<Option<Self>, FrameError> {
-        let Some(choice) = Choice::of(&post.desc().settings) else { return Ok(None) };
+        if !chooses(&post.desc().settings) {
+            return Ok(None);
+        }
         let watch = Stopwatch::start();
         let pixels = &post.plan(frame)?[0];
         let took = watch.elapsed();
         let size = pixels.size().map(|side| side.div_ceil(2));
         let quads = Image::from_fn(size, |[x, y]| pixels.at(2 * x as usize, 2 * y as usize));
-        Ok(Some(Self { choice, wish: Wish { quads, on_device: None }, took }))
+        Ok(Some(Self { wish: Wish { quads, on_device: None }, took }))
     }
 }

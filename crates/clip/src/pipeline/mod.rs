@@ -11,7 +11,7 @@ mod run;
 pub use candidate::{Candidate, InMemory, needs_lod};
 pub use executor::{Executor, Shade, Shot};
 pub use processor::{Cpu, Processor, ProcessorInfo};
-pub use run::{Choice, Chosen, MethodOutput, RunKind};
+pub use run::{Chosen, MethodOutput, RunKind, chooses, unshaded};
 
 use crate::clock::Stopwatch;
 use crate::frame::{RenderedFrame, Shaded, Wish};
@@ -182,7 +182,7 @@ impl Pipeline {
     }
 
     /// As [`step`](Self::step), for methods that choose pixels: `shade` shades these, for frames that no simulator
-    /// foveates. `None`: the source cannot shade them; sparse frames are then not repaired.
+    /// foveates. `None`: the source cannot shade them; the step then fails.
     ///
     /// # Errors
     /// As for `step`, and those of `shade`.

@@ -1,7 +1,7 @@
 //! Runs of a pipeline: kinds and outputs.
 
 use crate::clock::Elapsed;
-use afterimage::{Filter, FrameError, FrameStats, FrameValue, Image, Method, Settings, SettingsError, Smr};
+use afterimage::{Filter, FrameError, FrameStats, FrameValue, Image, Settings, SettingsError};
 use std::sync::Arc;
 
 /// Kind of a run: how it processes the foveated frames.
@@ -32,37 +32,20 @@ pub struct MethodOutput {
     pub debug: Vec<Image<[f32; 3]>>,
 }
 
-/// Pixels that a method chooses before a frame is shaded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Choice {
-    /// All pixels that are shaded: frames of [`Filter::Quads`].
-    Shaded,
-    /// Pixels that are shaded beside the samples of a sparse frame: [`Smr::repair`].
-    Repaired,
+/// Whether runs of these settings choose all pixels that are shaded: frames of [`Filter::Quads`].
+pub fn chooses(settings: &Settings) -> bool {
+    settings.foveation.filter == Filter::Quads
 }
 
-impl Choice {
-    /// What runs of these settings choose; `None` for nothing.
-    pub fn of(settings: &Settings) -> Option<Self> {
-        match (settings.foveation.filter, settings.method) {
-            (Filter::Quads, _) => Some(Self::Shaded),
-            (Filter::Sparse, Method::Smr(Smr { repair: Some(_), .. })) => Some(Self::Repaired),
-            _ => None,
-        }
-    }
-
-    /// Error for a frame of which all shaded pixels are chosen, and whose source shades none.
-    pub fn unshaded() -> FrameError {
-        let found = "none: the source shades no chosen pixels".into();
-        FrameError::Value { value: FrameValue::Color, view: 0, found, expected: "a source that shades quads" }
-    }
+/// Error for a frame whose source shades no chosen pixels.
+pub fn unshaded() -> FrameError {
+    let found = "none: the source shades no chosen pixels".into();
+    FrameError::Value { value: FrameValue::Color, view: 0, found, expected: "a source that shades quads" }
 }
 
-/// Pixels of a frame that a method chose.
+/// Pixels of a frame that a method chose before it was shaded: all that were shaded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chosen {
-    /// What they are.
-    pub choice: Choice,
     /// Share of the pixels.
     pub share: f64,
     /// Time of shading the pixels; `None` if they came from a simulator's full-rate frame.

@@ -2,7 +2,7 @@
 // Depth of chosen quads of 2x2 pixels: the far plane. The rest of the target is at the near plane, where the depth test
 // rejects whatever is drawn then.
 
-// The list of gpu::Afterimage::repair_quads.
+// The list of gpu::Afterimage::quad_list.
 @group(1) @binding(0) var<storage, read> list: array<u32>;
 
 @vertex

@@ -4,7 +4,7 @@
 const TILE_QUADS_LOG2: u32 = 3u;
 
 @group(0) @binding(0) var<uniform> words_per_row: vec4<u32>;
-// The list of gpu::Afterimage::repair_quads.
+// The list of gpu::Afterimage::quad_list.
 @group(0) @binding(1) var<storage, read> list: array<u32>;
 // A bit a tile.
 @group(0) @binding(2) var<storage, read_write> tiles: array<atomic<u32>>;

@@ -41,7 +41,7 @@ pub(super) struct ChunkTest {
 /// Chosen quads, and arguments of the draw calls that may touch them.
 #[derive(Debug)]
 pub(super) struct ChosenQuads {
-    /// The quads, in the form of `gpu::Afterimage::repair_quads`.
+    /// The quads, in the form of `gpu::Afterimage::quad_list`.
     pub list: Buffer,
     pub group: BindGroup,
     draws: Buffer,

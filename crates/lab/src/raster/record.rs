@@ -146,7 +146,7 @@ impl Raster {
     }
 
     /// Records the color of some quads of 2x2 pixels of the full-rate frame, with one sample per pixel, into the color
-    /// of `targets`. Other pixels are black. `list`: the quads, in the form of `gpu::Afterimage::repair_quads`.
+    /// of `targets`. Other pixels are black. `list`: the quads, in the form of `gpu::Afterimage::quad_list`.
     pub fn record_quads(
         &mut self,
         device: &Device,

@@ -366,7 +366,7 @@ fn finite(color: Image<[f32; 3]>) -> (Image<[f32; 3]>, u64) {
     (color, nonfinite)
 }
 
-/// List of quads in the form of `gpu::Afterimage::repair_quads`.
+/// List of quads in the form of `gpu::Afterimage::quad_list`.
 fn quad_list(device: &Device, quads: &Image<bool>) -> Buffer {
     let width = quads.width();
     let chosen = (0..).zip(quads.pixels()).filter(|(_, chosen)| **chosen);
@@ -439,7 +439,7 @@ impl FrameSource for RasterSource {
             Some(_) => ShadedColor::OnDevice(Arc::new(color.clone())),
             None => ShadedColor::InMemory(read_color(&self.device, color)),
         };
-        Ok(Some(Shaded { color, noise: None, took }))
+        Ok(Some(Shaded { color, took }))
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

@@ -7,7 +7,7 @@ use super::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo};
 use crate::clock::Elapsed;
 use crate::device::{Backend, SpanClock};
 use crate::error::InputError;
-use crate::frame::{DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, Shaded, ShadedColor, SourceFrame, Wish};
+use crate::frame::{DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, SourceFrame};
 use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
@@ -25,8 +25,6 @@ use std::sync::Arc;
 const STEP: u32 = 1 << 20;
 /// Offset of the frame numbers that seed full-rate frames, so that their noise is independent of the foveated frames'.
 const FULL_RATE_FRAMES: u64 = 1 << 31;
-/// Offset for the pixels that [`shade`](FrameSource::shade) traces.
-const SHADED_FRAMES: u64 = 1 << 32;
 
 /// Sample counts and distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,8 +55,6 @@ pub struct TracedSource {
     clock: SpanClock,
     /// Samples of the last sparse frame on the tracer's device.
     on_device: Option<DeviceSamples>,
-    /// Samples of single pixels on the tracer's device.
-    repaired: Option<DeviceSamples>,
 }
 
 impl TracedSource {
@@ -95,16 +91,7 @@ impl TracedSource {
         let world = World::new(&of.scene);
         let tracer = Tracer::new(backend, &world, settings)
             .map_err(|e| InputError::device(&of.scene.name, e.to_string(), "trace it on the CPU"))?;
-        Ok(Self {
-            of,
-            world,
-            tracer,
-            samples,
-            still: None,
-            clock: SpanClock::new(backend),
-            on_device: None,
-            repaired: None,
-        })
+        Ok(Self { of, world, tracer, samples, still: None, clock: SpanClock::new(backend), on_device: None })
     }
 
     /// Features of the scene file that are ignored or approximated.
@@ -261,35 +248,6 @@ impl FrameSource for TracedSource {
         let frame: FoveatedFrame = frame?;
         self.check()?;
         Ok(RenderedFrame { render: Some(took), ..request.answer(reference).foveated(frame) })
-    }
-
-    /// Each pixel has as many samples as a point of its lattice, and independent paths. If the frame's samples are on
-    /// the device, these stay there, and their noise is written into the frame's.
-    fn shade(&mut self, frame: &RenderedFrame, wish: &Wish) -> Result<Option<Shaded>, InputError> {
-        // The scene still has the pose of the frame, because that frame was rendered last.
-        let ([view, _], _) = self.of.views(frame.index);
-        let seed_frame = SHADED_FRAMES + frame.index;
-        let held = match (&self.tracer, OnDevice::of(&frame.content)) {
-            (Tracer::Gpu(tracer), Some(OnDevice::Samples(of_frame))) => {
-                let held = self.repaired.take();
-                let held = held.unwrap_or_else(|| DeviceSamples::new(tracer.device(), self.of.info().size));
-                Some(DeviceSamples { noise: of_frame.noise.clone(), ..held })
-            }
-            _ => None,
-        };
-        let (shaded, took) = self.clock.time(|| {
-            let Some(plan) = self.sparse_plan(&view, frame.index, frame.gaze_px)? else { return Ok(None) };
-            if let (Tracer::Gpu(tracer), Some(held)) = (&self.tracer, &held) {
-                plan.trace_quads_in_place(tracer, &self.world, &view, seed_frame, &wish.quads, held);
-                return Ok(Some((ShadedColor::OnDevice(Arc::new(held.color.clone())), None)));
-            }
-            let (color, noise) = plan.trace_quads(&self.tracer, &self.world, &view, seed_frame, &wish.quads);
-            Ok(Some((ShadedColor::InMemory(color), Some(noise))))
-        });
-        let shaded: Option<_> = shaded?;
-        self.check()?;
-        self.repaired = held;
-        Ok(shaded.map(|(color, noise)| Shaded { color, noise, took }))
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

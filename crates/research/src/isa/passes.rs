@@ -5,8 +5,7 @@ use afterimage::gpu::{Afterimage, Variant};
 use afterimage::shader::{Composer, Module, SHADERS};
 use afterimage::wgpu::{Device, DeviceDescriptor, TextureFormat};
 use afterimage::{
-    ContextDesc, Filter, Foveation, Gaze, Method, MethodKind, Repair, Sampler, Settings, Smr, ViewFrame, ViewGeometry,
-    Wrs,
+    ContextDesc, Filter, Foveation, Gaze, Method, MethodKind, Sampler, Settings, Smr, ViewFrame, ViewGeometry, Wrs,
 };
 
 /// Size of the frames of the roofline.
@@ -52,10 +51,6 @@ pub fn methods() -> Result<Vec<MethodPasses>> {
     let noisy = |settings: Settings| Settings { noisy: true, ..settings };
     let antialias =
         |settings: Settings| Settings { method: Method::Smr(Smr { antialias: true, ..Smr::default() }), ..settings };
-    let repair = |settings: Settings| {
-        let repair = Some(Repair { budget: 0.03 });
-        Settings { method: Method::Smr(Smr { repair, ..Smr::default() }), ..settings }
-    };
     [
         ("copy", full(MethodKind::Wrs)),
         ("none", full(MethodKind::None)),
@@ -66,7 +61,6 @@ pub fn methods() -> Result<Vec<MethodPasses>> {
         ("smr noisy", noisy(full(MethodKind::Smr))),
         ("sparse smr", sparse(MethodKind::Smr)),
         ("sparse smr antialias", antialias(sparse(MethodKind::Smr))),
-        ("sparse smr repair", repair(sparse(MethodKind::Smr))),
         ("sparse smr noisy", noisy(sparse(MethodKind::Smr))),
         ("sparse taau", sparse(MethodKind::Taau)),
         ("sparse wrs", sparse(MethodKind::Wrs)),
@@ -82,8 +76,7 @@ fn method(name: &'static str, settings: &Settings) -> Result<MethodPasses> {
     let (device, _queue) = Device::noop(&DeviceDescriptor::default());
     let desc = ContextDesc { settings: *settings, ..ContextDesc::new([64, 64]) };
     let post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float)?;
-    let repaired = matches!(settings.method, Method::Smr(Smr { repair: Some(_), .. }));
-    post.prewarm(&device, [Variant { depth: true, motion: true, repaired, ..Variant::default() }]);
+    post.prewarm(&device, [Variant { depth: true, motion: true, ..Variant::default() }]);
     let pass = |(module, overrides): (&'static str, Vec<_>)| -> Result<Pass> {
         if name == "copy" {
             let text = WITH_COPY.compose("copy_pass").source;
@@ -95,7 +88,7 @@ fn method(name: &'static str, settings: &Settings) -> Result<MethodPasses> {
             text: SHADERS.compose(module).source,
             overrides,
             share: share(module, settings)?,
-            pixels: if ["smr_pass", "repair_key_pass", "repair_mask_pass"].contains(&module) { 4.0 } else { 1.0 },
+            pixels: if module == "smr_pass" { 4.0 } else { 1.0 },
             loops: loops(module, settings),
         })
     };
@@ -112,8 +105,6 @@ fn share(module: &str, settings: &Settings) -> Result<f64> {
         // Level 2 has a sixteenth of the pixels, the others a third of that.
         "mip_chain_pass" => 1.0 / 12.0,
         "sparse_observe_pass" | "sparse_light_pass" => samples_share(settings)?,
-        // One workgroup.
-        "repair_threshold_pass" => 64.0 / SIZE_PX.map(f64::from).iter().product::<f64>(),
         _ => 1.0,
     })
 }
@@ -150,8 +141,6 @@ fn loops(module: &str, settings: &Settings) -> &'static [&'static str] {
         "sparse_light_pass" => &["around", "around relit"],
         "sparse_pass" if is_antialiased(settings) => &["lattice", "four", "slope", "around", "near"],
         "sparse_pass" => &["lattice", "four", "slope", "four"],
-        "repair_key_pass" => &["closer", "lattice", "slope", "four"],
-        "repair_threshold_pass" => &["keys", "runs", "keys"],
         "taa_pass" => &["slope", "guard", "resample", "around"],
         "smr_pass" if settings.noisy => &["block", "slope", "guard", "resample"],
         "smr_pass" => &["block", "slope", "guard", "resample", "relight"],

@@ -26,7 +26,7 @@ impl Row {
 }
 
 /// All rows, in order.
-pub const ROWS: [Row; 108] = [
+pub const ROWS: [Row; 104] = [
     // Reservoir arithmetic
     row(
         "H01",
@@ -460,32 +460,6 @@ pub const ROWS: [Row; 108] = [
         "detail kept within 1 %; the candidate; as each view alone and as with any gaze, bit for bit; never worse than foveated",
         BOTH,
     ),
-    row(
-        "H99",
-        "repair: half of the screen is uncovered at once, or all of it is new; budgets of 0.2 to 20 %",
-        "budget never exceeded; finite; nearest to the gaze first; whole one frame after the budget has paid for these quads; what was sampled stays; no frame worse than without repair",
-        BOTH,
-    ),
-    row(
-        "H100",
-        "repair: a still after a cut, with another order of a ring's quads in each frame; budget 5 %",
-        "what was repaired never changes again; change falls to rounding, by every four frames; in sum no more than without repair",
-        BOTH,
-    )
-    .but("change does not fall from each frame to the next, with or without repair, because of the order in which lattices visit pixels. A frame may change by more than without repair, since more of it is put right."),
-    row(
-        "H101",
-        "repair: bars of one pixel that move by 1, 3 and 7 px a frame over a wall; budget 10 %",
-        "trails 10 dB nearer to the wall than without repair (120 dB: exact), a tenth as many of their pixels look like the bar; bars kept (60 dB)",
-        BOTH,
-    ),
-    row(
-        "H102",
-        "repair: light x0.4 and x1.5 in one frame, undeclared, with and without half of the pixels distrusted; budget 10 %",
-        "budget never exceeded; no frame farther from the light than without repair; nothing wanted after 12 frames",
-        BOTH,
-    )
-    .but("where light changes by 1.5, history is not coarse for it: then nothing is planned, and repair changes nothing."),
     row(
         "H103",
         "recorded frames, resizes and cuts that never run (dropped encoders), alone and in a row, or run out of order",

@@ -38,10 +38,6 @@ fn smr(smr: &Smr) -> String {
         .field("tolerance", |s| format!("{:?}", s.tolerance))
         .field("relight", |s| s.relight.to_string())
         .field("antialias", |s| s.antialias.to_string())
-        .field("repair", |s| match s.repair {
-            None => "None".into(),
-            Some(r) => format!("Some(Repair {{ budget: {:?} }})", r.budget),
-        })
         .end()
 }
 

@@ -213,7 +213,6 @@ impl Bits<'_> {
             tolerance: self.around(0.1, 10.0),
             relight: pick >> 9 & 1 == 1,
             antialias: pick >> 31 & 1 == 1,
-            repair: None,
         };
         let wrs = self.wrs(pick);
         Settings {

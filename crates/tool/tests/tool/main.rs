@@ -6,7 +6,6 @@ mod info;
 mod latency;
 mod quads;
 mod refusals;
-mod repair;
 mod rig;
 mod run;
 mod sweep;

@@ -52,7 +52,7 @@ fn reports_say_how_much_was_shaded() {
         );
         assert_eq!(foveation["budget_percent"].as_f64(), percent.parse().ok());
         let smr = &report["methods"]["smr"];
-        assert!(smr["repaired_share"].is_null() && report["samples"].is_null());
+        assert!(report["samples"].is_null());
         let psnr_db = smr["psnr_db"].as_f64().unwrap();
         println!("budget {percent} %: {psnr_db:.2} dB, {} shaded", smr["shaded_share"]);
         assert!(psnr_db > before + 0.1, "{percent} %: {psnr_db} after {before}");
@@ -106,7 +106,6 @@ fn what_quads_cannot_do_is_refused() {
     let out = folder.text("out");
     let still = "analytic:still";
     let refused = |input: &str, more: &[&str], expected: &[&str]| refuses(&run(input, &out, &quads(more)), expected);
-    refused(still, &["--repair", "3"], &["--repair", "--budget"]);
     refused(still, &["--method", "oracle"], &["oracle", "moving samples"]);
     refused(still, &["--geometry", "samples"], &["--geometry samples", "--foveation sparse"]);
     refused(still, &["--order", "sobol"], &["--order sobol", "--foveation sparse"]);

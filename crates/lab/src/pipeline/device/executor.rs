@@ -6,7 +6,7 @@ use crate::device::{Headless, PassClock};
 use crate::frame::{Content, DeviceHandle, RenderedFrame, Shaded, ShadedColor, Wish};
 use afterimage::gpu::Frame;
 use afterimage::{ContextDesc, CreateError, DebugView, FrameError};
-use afterimage_clip::pipeline::{Candidate, Choice, Chosen, Executor, MethodOutput, RunKind, Shade, Shot};
+use afterimage_clip::pipeline::{Candidate, Chosen, Executor, MethodOutput, RunKind, Shade, Shot, chooses, unshaded};
 use std::slice::from_ref;
 use std::sync::Arc;
 use wgpu::Texture;
@@ -68,22 +68,17 @@ impl Executor for DeviceExecutor {
         let (gpu, run) = (&self.gpu, &mut self.runs[run]);
         let views = from_ref(&shot.candidate.view);
         let frame = self.inputs.frame(views, shot.frame.index, shot.reset(), shot.use_trust);
-        let choice = Choice::of(&run.post().desc().settings);
-        let planned = choice.map(|_| plan(gpu, &self.clock, run, &frame)).transpose()?;
+        let planned = chooses(&run.post().desc().settings).then(|| plan(gpu, &self.clock, run, &frame)).transpose()?;
         let is_simulated = shot.frame.is_simulated();
         let shaded = planned.as_ref().filter(|_| !is_simulated).and_then(|(wish, _)| shade(wish));
         let pixels = match &shaded {
             Some(Shaded { color: ShadedColor::OnDevice(color), .. }) => color.downcast_ref::<Texture>(),
-            Some(Shaded { color: ShadedColor::InMemory(color), .. }) => {
-                let of_frame = shot.candidate.in_memory.as_ref().and_then(|given| given.noise);
-                let noise = shaded.as_ref().and_then(|shaded| shaded.noise_in(of_frame));
-                Some(self.inputs.upload_repaired(color, noise.as_ref()))
-            }
+            Some(Shaded { color: ShadedColor::InMemory(color), .. }) => Some(self.inputs.upload_shaded(color)),
             None => planned.as_ref().filter(|_| is_simulated).map(|_| self.inputs.full()),
         };
-        let frame = match choice {
-            Some(Choice::Shaded) => Frame { color: pixels.ok_or_else(Choice::unshaded)?.into(), ..frame },
-            _ => Frame { repaired: pixels.map(Into::into), ..frame },
+        let frame = match planned {
+            Some(_) => Frame { color: pixels.ok_or_else(unshaded)?.into(), ..frame },
+            None => frame,
         };
         let encoder = || gpu.device.create_command_encoder(&Default::default());
         let mut debug_views = vec![];
@@ -109,8 +104,7 @@ impl Executor for DeviceExecutor {
         let output = MethodOutput {
             image: gpu.read_rgb(run.output(), 0),
             elapsed: planned.as_ref().map_or(elapsed, |(_, planning)| elapsed.and(*planning)),
-            chosen: choice.zip(planned).filter(|_| pixels.is_some()).map(|(choice, (wish, _))| Chosen {
-                choice,
+            chosen: planned.map(|(wish, _)| Chosen {
                 share: wish.share(run.post().desc().size_px),
                 shading: shaded.as_ref().map(|shaded| shaded.took),
             }),
@@ -142,8 +136,7 @@ fn plan(
     gpu.queue.submit([encoder.finish()]);
     let elapsed = clock.elapsed(gpu, &watch);
     let post = run.post();
-    let planned = post.quad_mask().zip(post.quad_list(0)).or_else(|| post.repair_mask().zip(post.repair_quads(0)));
-    let (mask, list) = planned.expect("the settings ask for a plan");
+    let (mask, list) = post.quad_mask().zip(post.quad_list(0)).expect("the settings ask for a plan");
     let quads = gpu.read::<u32>(mask, 0).map(|chosen| chosen & 1 != 0);
     Ok((Wish { quads, on_device: Some(Arc::new(list.clone())) }, elapsed))
 }

@@ -226,13 +226,9 @@ impl DeviceInputs {
         }
     }
 
-    /// Uploads samples of single pixels, and the noise of the frame with the noise of these samples. They are written
-    /// to the texture of the full-rate frame, which foveated frames do not use.
-    pub(super) fn upload_repaired(&self, color: &Image<[f32; 3]>, noise: Option<&Image<[f32; 2]>>) -> &Texture {
+    /// Uploads shaded pixels to the texture of the full-rate frame, which foveated frames do not use.
+    pub(super) fn upload_shaded(&self, color: &Image<[f32; 3]>) -> &Texture {
         self.write_rgb(&self.full, color);
-        if let Some(noise) = noise {
-            self.uploaded(&self.noise, noise);
-        }
         &self.full
     }
 

@@ -13,7 +13,6 @@ use crate::trace::work::Spans;
 use crate::trace::world::World;
 use afterimage::{Filter, Foveation, Image, Lattices, SettingsError, ViewGeometry};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 
 /// Samples of a sparse frame: lattices of the post-process, and the number of samples a point.
 ///
@@ -210,73 +209,6 @@ impl SparsePlan {
             tracer.trace_in_place(world, &view, frame, &self.work(i), (lattice, &points), samples);
         }
         (samples.lattices, samples.samples) = (self.lattices, self.samples());
-    }
-
-    /// Traces the pixels of chosen quads of 2x2 pixels. Each pixel has as many samples as a point of its lattice, even
-    /// if it lies between the points. `frame` seeds the samples. They are independent of all frames if no frame has
-    /// this number. Returns color and noise of these pixels; other pixels are NaN, with a noise of 0 samples.
-    pub fn trace_quads(
-        &self,
-        tracer: &Tracer,
-        world: &World,
-        view: &View,
-        frame: u64,
-        quads: &Image<bool>,
-    ) -> (Image<[f32; 3]>, Image<[f32; 2]>) {
-        let mut color = Image::filled(self.size_px, [f32::NAN; 3]);
-        let mut noise = Image::filled(self.size_px, [0.0; 2]);
-        let width = self.size_px[0];
-        for work in self.work_of_quads(quads) {
-            let ([left, top], [columns, rows]) = work.window();
-            let mut film = Film::window([left, top], [columns, rows]);
-            tracer.trace(world, view, frame, &work, &mut film);
-            for [x, y] in (top..top + rows).flat_map(|y| (left..left + columns).map(move |x| [x, y])) {
-                if film.at([x, y]).count > 0 {
-                    let index = (y * width + x) as usize;
-                    color.pixels_mut()[index] = film.at([x, y]).mean.to_array();
-                    noise.pixels_mut()[index] = film.noise_at([x, y]);
-                }
-            }
-        }
-        (color, noise)
-    }
-
-    /// As [`trace_quads`](Self::trace_quads), but writes to color and noise of `samples` on the tracer's device. Other
-    /// pixels keep their color and noise.
-    pub fn trace_quads_in_place(
-        &self,
-        tracer: &GpuTracer,
-        world: &World,
-        view: &View,
-        frame: u64,
-        quads: &Image<bool>,
-        samples: &DeviceSamples,
-    ) {
-        let whole = afterimage::Lattice::covering(1, [0; 2], self.size_px, [0; 2]);
-        for work in self.work_of_quads(quads) {
-            let pixels = work.spans().iter().flat_map(|span| span.pixel..span.pixel + span.count);
-            let points: Vec<_> = pixels.map(|point| SampledPoint { point, depth: 0.0, motion: [0.0; 2] }).collect();
-            tracer.trace_in_place(world, view, frame, &work, (&whole, &points), samples);
-        }
-    }
-
-    /// Samples of the pixels of chosen quads: a list for each number of samples a pixel.
-    fn work_of_quads(&self, quads: &Image<bool>) -> Vec<Spans> {
-        let [width, height] = self.size_px;
-        let all = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
-        let mut pixels = BTreeMap::<u32, Vec<[u32; 2]>>::new();
-        for px in all.filter(|&[x, y]| quads.at(x as usize / 2, y as usize / 2)) {
-            if let Some(samples) = self.samples_at(px) {
-                pixels.entry(samples).or_default().push(px);
-            }
-        }
-        pixels.into_iter().map(|(samples, pixels)| Spans::new(pixels, 0..samples)).collect()
-    }
-
-    /// Samples of a point of the lattice that a pixel is read from.
-    fn samples_at(&self, px: [u32; 2]) -> Option<u32> {
-        let lattices = self.lattices.as_slice().iter().zip(&self.samples);
-        lattices.into_iter().find(|(lattice, _)| lattice.covers(px)).map(|(_, &samples)| samples)
     }
 
     /// Traces the points of a lattice.

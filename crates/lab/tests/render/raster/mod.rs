@@ -8,6 +8,6 @@ mod methods;
 mod quad_views;
 mod quads;
 mod real;
-mod repair;
 mod rig;
+mod shaded;
 mod stereo;

@@ -3,5 +3,4 @@
 mod acuity;
 mod fills;
 mod papers;
-mod repair;
 mod sparse;

@@ -3,9 +3,9 @@
 
 use super::fills::Yard;
 use crate::given::device_of_its_own;
-use afterimage::{Filter, Foveation, Image, Lattices, Method, MethodKind, Repair, Settings, Smr, ViewGeometry};
+use afterimage::{Filter, Foveation, Image, Lattices, Method, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
-use afterimage_lab::frame::{Content, OnDevice, RenderedFrame, Shaded, SourceFrame, Wish};
+use afterimage_lab::frame::{Content, OnDevice, RenderedFrame, SourceFrame};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::source::{FrameRequest, FrameSource, ReadLimits, SceneOptions, TracedSamples, TracedSource};
@@ -14,7 +14,6 @@ use afterimage_lab::trace::sampling::{Acuity, Lattice, Layers, Regions, Sampling
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::work::WorkItem;
 use std::collections::{HashMap, HashSet};
-use std::error::Error;
 
 const SIZE: [u32; 2] = [160, 90];
 
@@ -202,19 +201,13 @@ fn the_device_traces_the_same_samples() {
     }
 }
 
-fn shaded(source: &mut TracedSource, frame: &RenderedFrame, wish: &Wish) -> Result<Option<Shaded>, Box<dyn Error>> {
-    Ok(source.shade(frame, wish)?)
-}
-
 #[test]
 fn samples_that_stay_on_the_device_are_those_of_the_memory() {
     let Some(device) = device_of_its_own() else { return };
     let backend = Backend::Gpu(device.clone());
     let kinds = [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Taau, MethodKind::Smr];
-    let repaired = Method::Smr(Smr { repair: Some(Repair { budget: 0.05 }), ..Smr::default() });
-    let methods: Vec<Method> = kinds.into_iter().map(Method::from).chain([repaired]).collect();
-    let kinds: Vec<_> =
-        methods.iter().map(|&method| RunKind::PostProcess(Settings { method, ..Settings::traced() })).collect();
+    let methods = kinds.map(Method::from);
+    let kinds = methods.map(|method| RunKind::PostProcess(Settings { method, ..Settings::traced() }));
     for (sampling, geometry) in patterns().into_iter().zip([SparseGeometry::Samples, SparseGeometry::Full]) {
         let order = SampleOrder::Sobol;
         let samples = TracedSamples { foveated: Some(sampling), sparse: Some(order), samples: 2, full_rate_samples: 1 };
@@ -243,13 +236,11 @@ fn samples_that_stay_on_the_device_are_those_of_the_memory() {
             assert_eq!(device.readbacks(), before, "samples stay on the device");
             let samples = RenderedFrame { reference: made.reference.clone(), ..samples };
             assert_eq!((made.content.lattices(), made.samples), (samples.content.lattices(), samples.samples));
-            let a = memory.step_with(&made, &mut |wish| shaded(&mut source, &made, wish)).unwrap();
+            let a = memory.step(&made).unwrap();
             let before = device.readbacks();
-            let b = on_device.step_with(&samples, &mut |wish| shaded(&mut source, &samples, wish)).unwrap();
-            // The outputs, which the metrics need, the counters, and the mask of the pixels to repair, for their share.
-            assert_eq!(device.readbacks() - before, 2 * methods.len() as u64 + 1);
-            assert!(a.outputs[5].chosen.unwrap().share > 0.01, "frame {index}");
-            assert_eq!(a.outputs[5].chosen.unwrap().share, b.outputs[5].chosen.unwrap().share, "frame {index}");
+            let b = on_device.step(&samples).unwrap();
+            // The outputs, which the metrics need, and the counters.
+            assert_eq!(device.readbacks() - before, 2 * methods.len() as u64);
             assert_eq!((&a.lods, &a.ecc_deg), (&b.lods, &b.ecc_deg));
             for (method, (a, b)) in methods.iter().zip(a.outputs.iter().zip(&b.outputs)) {
                 let bits = |image: &Image<[f32; 3]>| image.map(|c| c.map(f32::to_bits));

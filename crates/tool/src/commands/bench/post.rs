@@ -9,8 +9,8 @@ use afterimage::shader::{Composer, Module};
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::wgpu::{Texture, TextureUsages};
 use afterimage::{
-    ContextDesc, CreateError, Filter, Foveation, Gaze, Image, Method, MethodKind, Repair, Reset, Settings, Smr,
-    ViewFrame, ViewGeometry,
+    ContextDesc, CreateError, Filter, Foveation, Gaze, Image, Method, MethodKind, Reset, Settings, Smr, ViewFrame,
+    ViewGeometry,
 };
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::{Headless, PassClock};
@@ -69,8 +69,6 @@ enum PassKind {
     Post(Settings),
     /// A method on sparse frames.
     Sparse(Settings),
-    /// The plan of repairs before smr on sparse frames.
-    Plan(Settings),
     Foveate(Filter),
 }
 
@@ -79,12 +77,6 @@ fn sparse_settings(method: MethodKind) -> Settings {
     let paper = Settings::paper();
     let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..paper.foveation };
     Settings { method: method.into(), foveation, ..paper }
-}
-
-/// smr on sparse frames that are repaired, and jittered or not.
-fn repairing(antialias: bool) -> Settings {
-    let smr = Smr { repair: Some(Repair { budget: 0.03 }), antialias, ..Smr::default() };
-    Settings { method: Method::Smr(smr), ..sparse_settings(MethodKind::Smr) }
 }
 
 impl PassSpec {
@@ -96,18 +88,13 @@ impl PassSpec {
     fn sparse(name: &'static str, settings: Settings) -> Self {
         Self { kind: PassKind::Sparse(settings), ..Self::new(name, settings) }
     }
-
-    fn plan(name: &'static str, settings: Settings) -> Self {
-        // Depth, motion, history; a key is written and read, and a mask is written, for each four pixels.
-        Self { name, bytes_per_pixel: 4 + 4 + 8 + 3, kind: PassKind::Plan(settings) }
-    }
 }
 
 impl PassSpec {
     /// The views of frame `index`, with lattices if it is sparse.
     fn views(&self, views: &[ViewFrame; 1], index: u64) -> [ViewFrame; 1] {
         views.map(|mut view| {
-            let (PassKind::Sparse(settings) | PassKind::Plan(settings)) = self.kind else { return view };
+            let PassKind::Sparse(settings) = self.kind else { return view };
             if let Gaze::At { px } = view.gaze {
                 view.lattices = Some(settings.foveation.lattices(&view.geometry, px, index));
             }
@@ -125,9 +112,7 @@ fn all_passes() -> Vec<PassSpec> {
     let sparse = sparse_settings(MethodKind::Smr);
     let antialiased = Settings { method: Method::Smr(Smr { antialias: true, ..Smr::default() }), ..sparse };
     passes.push(PassSpec::sparse("smr-sparse", sparse));
-    passes.push(PassSpec::plan("smr-plan", repairing(false)));
     passes.push(PassSpec::sparse("smr-antialias", antialiased));
-    passes.push(PassSpec::plan("smr-antialias-plan", repairing(true)));
     passes.extend(Filter::ALL.into_iter().filter_map(|filter| {
         let bytes_per_pixel = simulator_traffic(filter)?;
         Some(PassSpec { name: filter.name(), bytes_per_pixel, kind: PassKind::Foveate(filter) })
@@ -149,12 +134,7 @@ fn simulator_traffic(filter: Filter) -> Option<u32> {
 /// A pass, created on the device.
 enum CreatedPass {
     Post(Box<DeviceRun>),
-    /// A run whose plan is timed, and which is recorded then.
-    Plan(Box<DeviceRun>),
-    Foveate {
-        simulator: Box<GpuSimulator>,
-        output: Texture,
-    },
+    Foveate { simulator: Box<GpuSimulator>, output: Texture },
 }
 
 impl CreatedPass {
@@ -168,10 +148,6 @@ impl CreatedPass {
             PassKind::Post(settings) | PassKind::Sparse(settings) => {
                 desc.settings = settings;
                 Self::Post(Box::new(DeviceRun::new(gpu, &desc, DeviceFormats::ENGINE)?))
-            }
-            PassKind::Plan(settings) => {
-                desc.settings = settings;
-                Self::Plan(Box::new(DeviceRun::new(gpu, &desc, DeviceFormats::ENGINE)?))
             }
             PassKind::Foveate(filter) => {
                 desc.settings.foveation.filter = filter;
@@ -301,12 +277,6 @@ fn time(
         CreatedPass::Post(run) => {
             run.record(&mut encoder, &inputs.frame(views, index, Reset::None, false), clock.timestamps())?;
         }
-        CreatedPass::Plan(run) => {
-            let frame = inputs.frame(views, index, Reset::None, false);
-            clock.begin(&mut encoder);
-            run.post_mut().plan(&gpu.device, &mut encoder, &frame)?;
-            clock.end(&mut encoder);
-        }
         CreatedPass::Foveate { simulator, output } => {
             let frame =
                 SimulatorFrame { timestamps: clock.timestamps(), ..SimulatorFrame::new(inputs.full(), output, views) };
@@ -316,14 +286,7 @@ fn time(
     clock.resolve(&mut encoder);
     gpu.queue.submit([encoder.finish()]);
     gpu.wait();
-    let ms = clock.read_ms(gpu, &watch);
-    if let CreatedPass::Plan(run) = pass {
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        run.record(&mut encoder, &inputs.frame(views, index, Reset::None, false), None)?;
-        gpu.queue.submit([encoder.finish()]);
-        gpu.wait();
-    }
-    Ok(ms)
+    Ok(clock.read_ms(gpu, &watch))
 }
 
 /// A view whose gaze moves on a circle.

@@ -10,7 +10,7 @@ use crate::args::input::{FoveatedSampling, InputArgs, Rendering, SourceName};
 use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
     FilterName, FormatName, FoveationArgs, MethodArgs, MethodName, Named, by_name, parse_exposure, parse_frames,
-    parse_latency, parse_percent, parse_samples,
+    parse_latency, parse_samples,
 };
 use crate::clip::run_report::{RunFacts, write_report};
 use crate::clip::{ClipReport, REPORTS};
@@ -71,10 +71,6 @@ pub struct RunArgs {
     pub method: Vec<MethodName>,
     #[command(flatten)]
     pub wrs: MethodArgs,
-    /// With --foveation sparse and the method smr: budget of pixels, percent of a frame, that are shaded at full rate
-    /// because history lacks them (uncovered, entered at the edge, never sampled); 0 to 100, 0: none
-    #[arg(long, default_value_t = 0.0, value_parser = parse_percent, value_name = "PERCENT")]
-    pub repair: f32,
     /// Give the methods a mask of pixels that move without motion vectors, if the scene has one (analytic:scroll)
     #[arg(long)]
     pub trust: bool,

@@ -7,7 +7,7 @@ use crate::args::pattern::SamplingName;
 use crate::args::{MethodName, Named};
 use crate::clip::{self, Clip, title};
 use crate::failure::Failure;
-use afterimage::{Filter, Foveation, Method, MethodKind, Repair, Settings};
+use afterimage::{Filter, Foveation, MethodKind, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::pipeline::RunKind;
 use afterimage_lab::quad_views::QuadViewLayout;
@@ -34,9 +34,6 @@ pub fn simulator(args: &RunArgs) -> &'static str {
 /// Plans a run on an input, whose camera may be that of a head.
 pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&HeadPath>) -> Result<Plan, Failure> {
     let refuse = |text: String| Err(Failure::Input(text));
-    if args.repair > 0.0 && !args.method.contains(&MethodName::Post(MethodKind::Smr)) {
-        return refuse("--repair: only smr repairs frames; add smr to --method, or leave it out".into());
-    }
     let foveation = foveation(args)?;
     args.foveation.check(args.input.is_rasterised(), args.input.is_analytic())?;
     if args.foveation.is_quads() {
@@ -141,13 +138,7 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
         }
     };
     let settings = Settings { foveation, ..args.wrs.settings(method, args.seed, sampling.is_some()) };
-    let mut settings = args.foveation.antialiased(settings);
-    if args.repair > 0.0 {
-        check_repair(args)?;
-        if let Method::Smr(smr) = &mut settings.method {
-            smr.repair = Some(Repair { budget: args.repair / 100.0 });
-        }
-    }
+    let settings = args.foveation.antialiased(settings);
     settings.validate()?;
     Ok(RunKind::PostProcess(settings))
 }
@@ -157,18 +148,6 @@ fn check_quads(args: &RunArgs) -> Result<(), Failure> {
     if args.input.is_scene() && !args.input.is_rasterised() {
         let text = "--foveation quads: is not traced; use --source raster, or --foveation sparse";
         return Err(Failure::Input(text.into()));
-    }
-    Ok(())
-}
-
-/// Refuses frames whose pixels cannot be shaded one by one.
-fn check_repair(args: &RunArgs) -> Result<(), Failure> {
-    if args.foveation.is_quads() {
-        let text = "--repair: --foveation quads shades what history lacks by its own --budget; leave --repair out";
-        return Err(Failure::Input(text.into()));
-    }
-    if !args.is_sparse() {
-        return Err(Failure::Input("--repair: applies to sparse frames only; add --foveation sparse".into()));
     }
     Ok(())
 }

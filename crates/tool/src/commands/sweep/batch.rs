@@ -29,7 +29,6 @@ const OF_METHODS: &[(&str, Option<MethodKind>)] = &[
     ("smr-accumulate", Some(MethodKind::Smr)),
     ("smr-tolerance", Some(MethodKind::Smr)),
     ("no-relight", Some(MethodKind::Smr)),
-    ("repair", Some(MethodKind::Smr)),
     ("depth-relative", None),
     ("depth-slope", None),
     ("no-depth-test", None),

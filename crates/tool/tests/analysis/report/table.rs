@@ -108,7 +108,6 @@ pub fn measurement(point: Point, ms: f64, bytes: u32, share: f64, error: f64) ->
         nonfinite_out: 0,
         flushed: Some(0.02),
         replaced: Some(0.1),
-        repaired_share: None,
         shaded_share: None,
         bytes_per_pixel: (point.method != "oracle").then_some(bytes),
         persistent_bytes_per_pixel: 8.0,

@@ -4,13 +4,12 @@ use super::DeviceHandle;
 use crate::clock::Elapsed;
 use afterimage::Image;
 
-/// Pixels that a method chose, and that the source should shade at full rate: of a sparse frame those that the method's
-/// history lacks.
+/// Pixels that a method chose, and that the source should shade.
 #[derive(Clone, Debug)]
 pub struct Wish {
     /// Whether the pixels of each quad of 2x2 pixels are requested.
     pub quads: Image<bool>,
-    /// The same as a list on the method's device, in the form of `gpu::Afterimage::repair_quads`; `None` for methods on
+    /// The same as a list on the method's device, in the form of `gpu::Afterimage::quad_list`; `None` for methods on
     /// the CPU.
     pub on_device: Option<DeviceHandle>,
 }
@@ -29,25 +28,8 @@ impl Wish {
 pub struct Shaded {
     /// Linear color.
     pub color: ShadedColor,
-    /// Noise of the color, as in [`FoveatedFrame::noise`](super::FoveatedFrame::noise), with 0 samples at other pixels.
-    /// `None`: the color has no noise, or the source has written the noise into its frame on the device.
-    pub noise: Option<Image<[f32; 2]>>,
     /// Time of shading.
     pub took: Elapsed,
-}
-
-impl Shaded {
-    /// The noise of the frame, `of_frame`, in which the noise of these pixels replaces the frame's own; `None` if
-    /// either is missing.
-    pub fn noise_in(&self, of_frame: Option<&Image<[f32; 2]>>) -> Option<Image<[f32; 2]>> {
-        let mut noise = of_frame?.clone();
-        for (noise, &own) in noise.pixels_mut().iter_mut().zip(self.noise.as_ref()?.pixels()) {
-            if own[1] > 0.0 {
-                *noise = own;
-            }
-        }
-        Some(noise)
-    }
 }
 
 /// Where shaded pixels are.

@@ -1,0 +1,60 @@
+//! Plans of frames shaded by quads: before shading, the renderer asks which quads to shade.
+
+use super::{CpuAfterimage, Frame, check_geometry, check_sizes, sparse_pass};
+use crate::error::FrameError;
+use crate::image::Image;
+
+/// Quads that were chosen for a frame.
+#[derive(Clone, Debug)]
+pub(super) struct Planned {
+    /// Number of the frame.
+    pub index: u64,
+    /// One mask of pixels a view.
+    masks: Vec<Image<bool>>,
+    /// One a view.
+    pub quads: Vec<sparse_pass::Quads>,
+}
+
+impl CpuAfterimage {
+    /// Pixels to shade of a frame [shaded by quads](crate::Filter::Quads), one mask a view: whole quads of 2x2 pixels.
+    /// Give the frame to [`process`](Self::process) with a color of the context's size, in which these pixels are
+    /// shaded.
+    ///
+    /// All quads of the fovea are chosen, an even pattern outside it that visits every quad in turn, and at most the
+    /// share [`Foveation::budget`](crate::Foveation::budget) of a view's quads where history lacks most.
+    ///
+    /// Give it the frame that will be processed, with the parts that are known before shading: views, depth, motion,
+    /// trust or reactive mask, index and reset. Its colors and noise are not read, and the colors may be an empty
+    /// slice. History is unchanged: the same call gives the same masks.
+    ///
+    /// ```
+    /// use afterimage::cpu::{CpuAfterimage, Frame};
+    /// use afterimage::{ContextDesc, Foveation, Gaze, Image, ViewFrame, ViewGeometry};
+    ///
+    /// let size = [64, 36];
+    /// let mut desc = ContextDesc::new(size);
+    /// desc.settings.foveation = Foveation::quads();
+    /// let mut post = CpuAfterimage::new(&desc)?;
+    /// let views = [ViewFrame::new(ViewGeometry::flat(size, 70.0)?, Gaze::At { px: [40.0, 18.0] })];
+    /// let masks = post.plan(&Frame::new(&[], &views, 0))?;
+    /// // Here the renderer shades the pixels of the mask.
+    /// let shaded = Image::filled(size, [0.5; 3]);
+    /// let mut shown = [Image::filled(size, [0.0; 3])];
+    /// post.process(&Frame::new(&[&shaded], &views, 0), &mut shown)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`FrameError`] if the foveation is not [`Quads`](crate::Filter::Quads), and as for `process`.
+    pub fn plan(&mut self, frame: &Frame<'_>) -> Result<&[Image<bool>], FrameError> {
+        frame.check_plan(&self.desc)?;
+        check_geometry(&self.desc, frame)?;
+        check_sizes(&self.desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
+        let unshaded = Image::filled([1, 1], [0.0; 3]);
+        let colors = vec![&unshaded; frame.views.len()];
+        let frame = Frame { noise: None, ..frame.with_color(&colors) };
+        let quads = sparse_pass::plan_quads(&self.desc, &self.history, &frame);
+        let masks = quads.iter().map(sparse_pass::Quads::pixels).collect();
+        Ok(&self.planned.insert(Planned { index: frame.index, masks, quads }).masks)
+    }
+}
