@@ -86,6 +86,7 @@ pub static MODULES: &[Module] = &[
     module!("pass", "quad_mask_pass"),
     module!("pass", "quad_observe_pass"),
     module!("pass", "quad_plan"),
+    module!("pass", "quad_prime_pass"),
     module!("pass", "quad_samples"),
     module!("pass", "quad_state"),
     module!("pass", "quad_threshold_pass"),

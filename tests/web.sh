@@ -30,13 +30,13 @@ recordings="$PWD/target/recordings"
 rm -rf "$recordings"
 # Not here: planted errors, which have their own below; views beside the frame and their targets, which need five
 # storage textures; and sequences whose many frames take minutes on SwiftShader and show nothing that shorter ones do not;
-# lists, whose order is not the same twice.
+# lists, whose order is not the same twice; and prime, which draws.
 long=(thousand h07 h11 h12 h53 h91 h92 h95 h96 h97)
 # The same passes with fewer frames: h74 as h73 and h75; a still picture and gains as h51 under a steady gaze; h72 as
 # with the ratio; h106 as other pictures, at one level of light. Not h88 and h103, long as they are: they alone have taau
 # of sparse frames with vectors, and noisy history that is kept at another size.
 long+=(h74_a_strobe h51_a_still_picture_stays h51_what_gains h73_a_light h72_without h106)
-skipped=(caught planted refused beside is_no_output record_compiles lost_device lists_have "${long[@]}")
+skipped=(caught planted refused beside is_no_output record_compiles lost_device lists_have prime:: "${long[@]}")
 # Rows of twins with NaN or with numbers below 2^-64 are left out of recordings (tests/gpu/twins/probe.rs): devices may
 # flush denormals, and NaN has many bits. The passes' hostile inputs are not left out.
 AFTERIMAGE_RECORD="$recordings" cargo test "${everything[@]}" --test gpu --test twins -- \

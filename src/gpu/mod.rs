@@ -21,6 +21,7 @@ mod method_pass;
 mod mip_chain;
 mod output;
 pub(crate) mod plane;
+mod prime;
 mod quad_plan;
 mod quad_samples;
 mod quads;
@@ -38,10 +39,11 @@ pub use doctor::Doctor;
 pub use frame::{DebugTarget, Frame, Recorded, Target, Timestamps, Variant};
 pub(crate) use input::{check_readable, check_texture};
 pub(crate) use output::texel;
+pub use prime::Prime;
 pub(crate) use requirements::validate;
 pub use textures::{Region, Textures};
 
-use crate::error::{CreateError, FrameError, SettingsError};
+use crate::error::{CreateError, FrameError, FrameValue, SettingsError};
 use crate::foveation::Filter;
 use crate::frame::{ContextDesc, Executor, Gaze};
 use crate::geometry::ViewGeometry;
@@ -417,6 +419,34 @@ impl Afterimage {
         let label = Some("afterimage plan");
         self.recorder.record(&mut encoder.begin_compute_pass(&ComputePassDescriptor { label, ..Default::default() }));
         Ok(())
+    }
+
+    /// Records a pass, after [`plan`](Self::plan), that closes the depth buffer of view `view` wherever no quad was
+    /// chosen: it writes the near plane there, so that the depth test rejects what the renderer draws, before it is
+    /// shaded. Chosen quads keep their depth. Copy the depth of the prepass first, if something else reads it.
+    ///
+    /// # Errors
+    /// [`FrameError`] if there is no plan of the frame that comes next, or if the target does not fit. Then nothing was
+    /// recorded.
+    pub fn prime(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        view: usize,
+        prime: &Prime<'_>,
+    ) -> Result<(), FrameError> {
+        let size_px = self.desc.size_px;
+        match &mut self.quads {
+            Some(quads) if quads.planned.is_some() && view < quads.quads.views.len() => {
+                quads.prime.record(device, encoder, (view as u32, size_px, &quads.quads.mask.whole), prime)
+            }
+            _ => Err(FrameError::Value {
+                value: FrameValue::Plan,
+                view,
+                found: "missing".into(),
+                expected: "a plan of the same frame before prime",
+            }),
+        }
     }
 
     /// The quads that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::Filter::Quads) chose: an

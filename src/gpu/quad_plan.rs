@@ -8,6 +8,7 @@
 use super::binding::Binding;
 use super::compute::{ComputeShader, Sources, WORKGROUP_WIDTH};
 use super::groups::Resource;
+use super::prime::PrimePass;
 use super::quads::{Quads, ViewQuads, size_quads};
 use super::stage::{Job, Specialization};
 use crate::frame::ContextDesc;
@@ -22,6 +23,7 @@ pub(super) struct QuadPasses {
     threshold: ComputeShader,
     mask: ComputeShader,
     around: ComputeShader,
+    pub prime: PrimePass,
     pub quads: Quads,
     /// Index of the last planned frame; `None` once it is recorded.
     pub planned: Option<u64>,
@@ -34,6 +36,7 @@ impl QuadPasses {
             threshold: sources.shader(device, "quad_threshold_pass"),
             mask: sources.shader(device, "quad_mask_pass"),
             around: sources.shader(device, "quad_around_pass"),
+            prime: PrimePass::new(device, sources),
             quads: Quads::new(device, desc),
             planned: None,
         }

@@ -1,0 +1,31 @@
+// Closes what a frame shaded by quads does not shade: a full-screen triangle, which is discarded at shaded quads and
+// elsewhere has the depth of the near plane. It reads no depth and writes none of its own, so that it fits every depth
+// format and leaves hierarchical depth on.
+
+// Depth of the near plane.
+override NEAR: f32 = 0.0;
+
+struct PrimedView {
+    // First pixel of the view in the target, and its size.
+    origin: vec2<u32>,
+    size: vec2<u32>,
+    view: u32,
+}
+
+@group(0) @binding(0) var<uniform> primed: PrimedView;
+@group(0) @binding(27) var mask: texture_2d_array<u32>;
+
+@vertex
+fn corner(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
+    let at = vec2<f32>(f32(vertex & 1u), f32(vertex >> 1u));
+    return vec4<f32>(4.0 * at - vec2<f32>(1.0), NEAR, 1.0);
+}
+
+@fragment
+fn close(@builtin(position) position: vec4<f32>) {
+    let at = vec2<u32>(position.xy) - primed.origin;
+    // Some devices do not clip single samples at the scissor's edges.
+    if any(at >= primed.size) || (textureLoad(mask, at >> vec2<u32>(1u), primed.view, 0).x & 1u) != 0u {
+        discard;
+    }
+}

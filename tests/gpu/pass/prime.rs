@@ -1,0 +1,228 @@
+//! Depth and stencil buffers that are closed where a plan shades nothing, of every format, direction and number of
+//! samples: what is then drawn over the whole target appears at chosen quads, and beside the view.
+
+use super::sparse::SIZE;
+use afterimage::gpu::{Afterimage, Frame, Prime};
+use afterimage::internal::Sources;
+use afterimage::shader::SHADERS;
+use afterimage::wgpu::{self, CompareFunction, Device, Queue, TextureFormat, TextureUsages};
+use afterimage::{ContextDesc, Foveation, FrameError, Gaze, Settings, ViewFrame, ViewGeometry};
+
+const ORIGIN_PX: [u32; 2] = [3, 5];
+const TARGET: [u32; 2] = [SIZE[0] + 9, SIZE[1] + 6];
+const COLOR: TextureFormat = TextureFormat::Rgba8Unorm;
+/// Depth of the prepass, and of what is drawn.
+const DEPTH: f32 = 0.5;
+
+/// A target: its format, number of samples, depth of the near plane, and stencil.
+type Case = (TextureFormat, u32, f32, Option<u8>);
+
+fn cases() -> Vec<Case> {
+    use TextureFormat::{Depth16Unorm, Depth24Plus, Depth24PlusStencil8, Depth32Float};
+    let depths = [Depth16Unorm, Depth24Plus, Depth24PlusStencil8, Depth32Float];
+    let of = |format| [1, 4].into_iter().flat_map(move |n| [0.0, 1.0].map(|near| (format, n, near, None)));
+    let stencils = [1, 4].map(|n| (Depth24PlusStencil8, n, 0.0, Some(7)));
+    depths.into_iter().flat_map(of).chain(stencils).collect()
+}
+
+fn texture(
+    device: &Device,
+    size: [u32; 2],
+    format: TextureFormat,
+    samples: u32,
+    usage: TextureUsages,
+) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: samples,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage,
+        view_formats: &[],
+    })
+}
+
+/// A pipeline that draws white over the whole target, at the depth of the prepass.
+fn white(device: &Device, (format, samples, near, stencil): Case) -> wgpu::RenderPipeline {
+    let source = "@vertex fn v(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
+            return vec4<f32>(4.0 * vec2<f32>(f32(i & 1u), f32(i >> 1u)) - 1.0, 0.5, 1.0);
+        }
+        @fragment fn f() -> @location(0) vec4<f32> { return vec4<f32>(1.0); }";
+    let source = wgpu::ShaderSource::Wgsl(source.into());
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+    let face = wgpu::StencilFaceState {
+        compare: if stencil.is_some() { CompareFunction::Equal } else { CompareFunction::Always },
+        ..wgpu::StencilFaceState::IGNORE
+    };
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: None,
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: None,
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(if near > DEPTH { CompareFunction::GreaterEqual } else { CompareFunction::LessEqual }),
+            stencil: wgpu::StencilState { front: face, back: face, read_mask: 0xff, write_mask: 0 },
+            bias: Default::default(),
+        }),
+        multisample: wgpu::MultisampleState { count: samples, ..Default::default() },
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: None,
+            compilation_options: Default::default(),
+            targets: &[Some(COLOR.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// A context with one view, its frame's color, and the view.
+struct Planned {
+    post: Afterimage,
+    color: wgpu::Texture,
+    views: [ViewFrame; 1],
+}
+
+impl Planned {
+    fn new(device: &Device, sources: Sources) -> Self {
+        let foveation = Foveation { fovea_deg: 12.0, mid_deg: 30.0, ..Foveation::quads() };
+        let desc = ContextDesc { settings: Settings { foveation, ..Settings::default() }, ..ContextDesc::new(SIZE) };
+        let post = Afterimage::with_sources(device, &desc, TextureFormat::Rgba32Float, sources).unwrap();
+        let color = texture(device, SIZE, TextureFormat::Rgba16Float, 1, Afterimage::INPUT_USAGE);
+        let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
+        Self { post, color, views: [ViewFrame::new(geometry, Gaze::At { px: [20.0, 15.0] })] }
+    }
+
+    fn plan(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder) {
+        self.post.plan(device, encoder, &Frame::new(&self.color, &self.views, 3)).unwrap();
+    }
+}
+
+/// Which pixels of the target are drawn, and which should be.
+fn drawn(device: &Device, queue: &Queue, sources: Sources, case: Case) -> [Vec<bool>; 2] {
+    let (format, samples, near_depth, stencil) = case;
+    let mut planned = Planned::new(device, sources);
+    let attachment = TextureUsages::RENDER_ATTACHMENT;
+    let depth = texture(device, TARGET, format, samples, attachment);
+    let many = texture(device, TARGET, COLOR, samples, attachment | TextureUsages::COPY_SRC);
+    let one = texture(device, TARGET, COLOR, 1, attachment | TextureUsages::COPY_SRC);
+    let [depth_view, many_view, one_view] = [&depth, &many, &one].map(|t| t.create_view(&Default::default()));
+    let white = white(device, case);
+    let mut encoder = device.create_command_encoder(&Default::default());
+    planned.plan(device, &mut encoder);
+    for is_draw in [false, true] {
+        let ops = |value: f32| wgpu::Operations {
+            load: if is_draw { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(value) },
+            store: wgpu::StoreOp::Store,
+        };
+        let stencil_ops = wgpu::Operations {
+            load: if is_draw { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(0) },
+            store: wgpu::StoreOp::Store,
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: if samples > 1 { &many_view } else { &one_view },
+                depth_slice: None,
+                resolve_target: (samples > 1).then_some(&one_view),
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            })],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &depth_view,
+                depth_ops: Some(ops(DEPTH)),
+                stencil_ops: format.has_stencil_aspect().then_some(stencil_ops),
+            }),
+            ..Default::default()
+        });
+        if is_draw {
+            pass.set_pipeline(&white);
+            pass.draw(0..3, 0..1);
+        }
+        drop(pass);
+        if !is_draw {
+            let prime = Prime { target: &depth_view, origin_px: ORIGIN_PX, near_depth, stencil };
+            planned.post.prime(device, &mut encoder, 0, &prime).unwrap();
+        }
+    }
+    queue.submit([encoder.finish()]);
+    let mask = afterimage_testing::gpu::read_texture(device, queue, planned.post.quad_mask().unwrap());
+    let pixels = afterimage_testing::gpu::read_texture(device, queue, &one);
+    let expected = (0..TARGET[0] * TARGET[1]).map(|i| {
+        let [x, y] = [i % TARGET[0], i / TARGET[0]].map(i64::from);
+        let [x, y] = [x - i64::from(ORIGIN_PX[0]), y - i64::from(ORIGIN_PX[1])];
+        let is_inside = (0..i64::from(SIZE[0])).contains(&x) && (0..i64::from(SIZE[1])).contains(&y);
+        !is_inside || mask[(y as usize / 2) * SIZE[0].div_ceil(2) as usize + x as usize / 2] & 1 != 0
+    });
+    let shown = pixels.iter().map(|&word| word & 0xff == 0xff);
+    [shown.collect(), expected.collect()]
+}
+
+#[test]
+fn what_is_drawn_appears_at_chosen_quads_alone() {
+    let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
+    for case in cases() {
+        let [shown, expected] = drawn(&device, &queue, Sources::default(), case);
+        let count = expected.iter().filter(|&&is| is).count();
+        println!("{case:?}: {count} of {} pixels", expected.len());
+        assert!(count > 700 && count < expected.len() - 700, "{count}");
+        assert!(shown == expected, "{case:?}");
+    }
+}
+
+#[test]
+fn planted_errors_of_closing_are_caught() {
+    let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
+    let right = [SHADERS.compose("quad_prime_pass").source];
+    let differs = |[source]: &[String; 1]| {
+        let sources = Sources::default().with("quad_prime_pass", source);
+        let [shown, expected] = drawn(&device, &queue, sources, cases()[1]);
+        Some(shown != expected)
+    };
+    let planted = [
+        ("vec2<u32>(position.xy) - primed.origin", "vec2<u32>(position.xy)"),
+        ("primed.view, 0).x & 1u) != 0u", "primed.view, 0).x & 1u) == 0u"),
+        ("vec2<f32>(1.0), NEAR, 1.0)", "vec2<f32>(1.0), 1.0 - NEAR, 1.0)"),
+    ];
+    afterimage_testing::planted::all_caught(&right, &planted, differs);
+}
+
+#[test]
+fn targets_that_do_not_fit_are_refused() {
+    let Some((device, _queue)) = afterimage_testing::gpu::device() else { return };
+    let mut planned = Planned::new(&device, Sources::default());
+    let mut encoder = device.create_command_encoder(&Default::default());
+    let attachment = TextureUsages::RENDER_ATTACHMENT;
+    let view = |size, format, usage| texture(&device, size, format, 1, usage).create_view(&Default::default());
+    let target = view(TARGET, TextureFormat::Depth32Float, attachment);
+    let right = Prime { target: &target, origin_px: ORIGIN_PX, near_depth: 0.0, stencil: None };
+    let mut message = |planned: &mut Planned, view, prime: &Prime<'_>| {
+        let error: FrameError = planned.post.prime(&device, &mut encoder, view, prime).unwrap_err();
+        error.to_string()
+    };
+    let missing = "plan of view 0 is missing: expected a plan of the same frame before prime";
+    assert_eq!(message(&mut planned, 0, &right), missing);
+    let mut planning = device.create_command_encoder(&Default::default());
+    planned.plan(&device, &mut planning);
+    assert!(message(&mut planned, 1, &right).starts_with("plan of view 1 is missing"));
+    assert_eq!(
+        message(&mut planned, 0, &Prime { stencil: Some(1), ..right }),
+        "target of prime is a texture of format Depth32Float, usage TextureUsages(RENDER_ATTACHMENT): \
+         expected a format with a stencil"
+    );
+    let color = view(TARGET, COLOR, attachment);
+    assert!(message(&mut planned, 0, &Prime { target: &color, ..right }).ends_with("expected a depth format"));
+    let read = view(TARGET, TextureFormat::Depth32Float, TextureUsages::TEXTURE_BINDING);
+    assert!(message(&mut planned, 0, &Prime { target: &read, ..right }).ends_with("the usage RENDER_ATTACHMENT"));
+    for origin_px in [[10, 5], [u32::MAX, 0]] {
+        let found = message(&mut planned, 0, &Prime { origin_px, ..right });
+        assert!(found.ends_with("expected a target that contains the view"), "{found}");
+    }
+}
