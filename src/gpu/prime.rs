@@ -1,5 +1,6 @@
 //! Depth or stencil of a frame shaded by quads: closed where nothing is to be shaded.
 
+use super::binding::Binding;
 use super::buffer::filled;
 use super::compute::Sources;
 use crate::error::{FrameError, FrameValue};
@@ -57,7 +58,8 @@ impl PrimePass {
     /// Records the pass for view `view` of `size_px`, whose shaded quads are in `mask`.
     ///
     /// # Errors
-    /// [`FrameError`] if the target has no depth or stencil to write, or is too small.
+    /// [`FrameError`] if the target has no depth or stencil to write or is too small, or if the near plane's depth is out
+    /// of range.
     pub fn record(
         &mut self,
         device: &Device,
@@ -80,7 +82,7 @@ impl PrimePass {
             layout: &pipeline.get_bind_group_layout(0),
             entries: &[
                 BindGroupEntry { binding: 0, resource: words.as_entire_binding() },
-                BindGroupEntry { binding: 27, resource: BindingResource::TextureView(mask) },
+                BindGroupEntry { binding: Binding::QuadMask as u32, resource: BindingResource::TextureView(mask) },
             ],
         });
         let depth_ops = format.has_depth_aspect().then_some(Operations { load: LoadOp::Load, store: StoreOp::Store });
@@ -116,6 +118,10 @@ fn check(view: u32, size_px: [u32; 2], prime: &Prime<'_>) -> Result<(), FrameErr
         let problem = format!("usage {:?}", texture.usage());
         let expected = if has_it { "the usage RENDER_ATTACHMENT" } else { expected };
         return Err(FrameError::Texture { input: "target of prime", format: format!("{format:?}"), problem, expected });
+    }
+    if !(0.0..=1.0).contains(&prime.near_depth) {
+        let (found, expected) = (format!("closed with a depth of {}", prime.near_depth), "near_depth from 0 to 1");
+        return Err(FrameError::Value { value: FrameValue::Plan, view: view as usize, found, expected });
     }
     let found = [texture.width(), texture.height()];
     let fits = |i: usize| prime.origin_px[i].checked_add(size_px[i]).is_some_and(|end| end <= found[i]);

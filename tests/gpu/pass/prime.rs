@@ -221,6 +221,10 @@ fn targets_that_do_not_fit_are_refused() {
     assert!(message(&mut planned, 0, &Prime { target: &color, ..right }).ends_with("expected a depth format"));
     let read = view(TARGET, TextureFormat::Depth32Float, TextureUsages::TEXTURE_BINDING);
     assert!(message(&mut planned, 0, &Prime { target: &read, ..right }).ends_with("the usage RENDER_ATTACHMENT"));
+    for near_depth in [-0.5, 2.0, f32::NAN] {
+        let found = message(&mut planned, 0, &Prime { near_depth, ..right });
+        assert!(found.ends_with("expected near_depth from 0 to 1"), "{found}");
+    }
     for origin_px in [[10, 5], [u32::MAX, 0]] {
         let found = message(&mut planned, 0, &Prime { origin_px, ..right });
         assert!(found.ends_with("expected a target that contains the view"), "{found}");
