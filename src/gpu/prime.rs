@@ -58,8 +58,8 @@ impl PrimePass {
     /// Records the pass for view `view` of `size_px`, whose shaded quads are in `mask`.
     ///
     /// # Errors
-    /// [`FrameError`] if the target has no depth or stencil to write or is too small, or if the near plane's depth is out
-    /// of range.
+    /// [`FrameError`] if the target has no depth or stencil to write or is too small, or if the depth of the near plane
+    /// is out of range.
     pub fn record(
         &mut self,
         device: &Device,
