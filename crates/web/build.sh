@@ -33,7 +33,7 @@ if [ ! -d "$(rustc --print target-libdir --target $wasm 2>/dev/null)" ]; then
     # build-std is not stable; Debian's compiler is a stable one.
     export RUSTC_BOOTSTRAP=1 CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER
     CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER=$(echo "$debian"/usr/bin/wasm-ld-*)
-    std=(-Zbuild-std=std,panic_abort)
+    std=(-Zbuild-std=std,panic_abort -Zbuild-std-features=optimize_for_size)
 fi
 
 # Messages of panics name files, of this machine without this.
@@ -42,13 +42,18 @@ remapped="--remap-path-prefix=$home/registry/src= --remap-path-prefix=$target= -
 bindgen=(env -u RUSTC -u LD_LIBRARY_PATH -u RUSTC_BOOTSTRAP CARGO_PROFILE_RELEASE_OPT_LEVEL=1 CARGO_PROFILE_RELEASE_LTO=off
     CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 cargo run --locked --release --package afterimage-web-bindgen --)
 
+# The page has no frames shaded by quads.
+shopt -s extglob
+pass=../../shaders/pass
+shaders=(shaders/*.wgsl ../../shaders/{foveation,lib}/*.wgsl $pass/!(quad_*).wgsl --without $pass/quad_*.wgsl)
+
 mkdir -p "$to"
 # library NAME OPTIONS...: a library and its bindings.
 library() {
     local name=$1
     shift
     RUSTFLAGS="$remapped" cargo build --locked --release --target $wasm "${std[@]}" "$@"
-    "${bindgen[@]}" "$target/$wasm/release/afterimage_web.wasm" "$to" "$name" shaders/*.wgsl ../../shaders/*/*.wgsl
+    "${bindgen[@]}" "$target/$wasm/release/afterimage_web.wasm" "$to" "$name" "${shaders[@]}"
 }
 library afterimage_web
 library compare --features compare

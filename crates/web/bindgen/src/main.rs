@@ -1,5 +1,6 @@
-//! `bindgen LIBRARY.wasm FOLDER NAME SHADERS...`: the WebAssembly that a browser loads, and the JavaScript that calls
-//! it. `SHADERS`: files whose texts are in the library.
+//! `bindgen LIBRARY.wasm FOLDER NAME SHADERS... [--without SHADERS...]`: the WebAssembly that a browser loads, and the
+//! JavaScript that calls it. `SHADERS`: files whose texts are in the library; behind `--without` those that the page
+//! never asks for, which weigh nothing.
 
 use std::env::args;
 use std::path::Path;
@@ -29,19 +30,45 @@ fn write(library: &str, folder: &Path, name: &str, shaders: &[String]) -> Result
     bindgen.web(true)?.generate(folder)?;
     let file = folder.join(format!("{name}_bg.wasm"));
     let mut wasm = fs::read(&file)?;
-    for shader in shaders {
-        blank_comments(&mut wasm, &fs::read(shader)?);
+    let used = shaders.iter().position(|word| word == "--without").unwrap_or(shaders.len());
+    for shader in &shaders[..used] {
+        let text = fs::read(shader)?;
+        replace(&mut wasm, &text, &compact(&text));
+    }
+    for shader in shaders.iter().skip(used + 1) {
+        let text = fs::read(shader)?;
+        replace(&mut wasm, &text, &[]);
     }
     Ok(fs::write(file, wasm)?)
 }
 
-/// Comments in a shader's text become spaces, which weigh nothing when compressed. `//#use` lines are instructions.
-fn blank_comments(wasm: &mut [u8], text: &[u8]) {
-    let Some(start) = wasm.windows(text.len()).position(|window| window == text) else { return };
-    for line in wasm[start..start + text.len()].split_mut(|&byte| byte == b'\n') {
+/// `text` in `wasm` becomes the shorter `by`; line ends behind it keep its length.
+fn replace(wasm: &mut [u8], text: &[u8], by: &[u8]) {
+    if let Some(start) = wasm.windows(text.len()).position(|window| window == text) {
+        let (new, rest) = wasm[start..start + text.len()].split_at_mut(by.len());
+        new.copy_from_slice(by);
+        rest.fill(b'\n');
+    }
+}
+
+/// A shader's text without comments, indentation, and spaces beside punctuation. The library itself reads lines of
+/// `//#use`, `@group` and `override`: these stay.
+fn compact(text: &[u8]) -> Vec<u8> {
+    let mut short = Vec::with_capacity(text.len());
+    for line in text.split(|&byte| byte == b'\n') {
         let comment = line.windows(2).position(|pair| pair == b"//").unwrap_or(line.len());
-        if !line[comment..].starts_with(b"//#use ") {
-            line[comment..].fill(b' ');
+        let code = if line[comment..].starts_with(b"//#use ") { line } else { &line[..comment] };
+        let code = code.trim_ascii();
+        let is_read = [&b"//"[..], b"@", b"override"].iter().any(|start| code.starts_with(start));
+        // Not beside operators: `a - -b` and `array<f32, 4> =` need theirs.
+        let is_spare = |at: usize| {
+            let beside = [code[at - 1], *code.get(at + 1).unwrap_or(&b' ')];
+            code[at] == b' ' && !is_read && beside.iter().any(|byte| b" ,;:(){}".contains(byte))
+        };
+        if !code.is_empty() {
+            short.extend((0..code.len()).filter(|&at| at == 0 || !is_spare(at)).map(|at| code[at]));
+            short.push(b'\n');
         }
     }
+    short
 }
