@@ -58,7 +58,7 @@ run() {
         for size in 1920x1080 3840x2160; do
             for scene in courtyard cheap both; do
                 step "Bevy: $scene, $size"
-                for mode in full prepass sparse; do
+                for mode in full prepass quads; do
                     limited 40 "$measure" "$scene@$size" $mode fixtures/scanpath_viewing.csv 60 | tail -n 1 | tee -a "$work/bevy.txt"
                 done
             done

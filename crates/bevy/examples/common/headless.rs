@@ -44,7 +44,13 @@ impl Headless {
         note_problems(&mut app);
         start(&mut app);
         let target = app.world_mut().resource_mut::<Assets<Image>>().add(target_image(size));
-        Self { app, target }
+        let mut headless = Self { app, target };
+        // Bevy loads its shaders on other threads: with them there from the first frame, runs are alike.
+        for _ in 0..8 {
+            headless.frames(1);
+            std::thread::sleep(Duration::from_millis(25));
+        }
+        headless
     }
 
     /// What a camera needs to render to the image.

@@ -1,4 +1,4 @@
-//! Sparse frames with a jitter are those of a renderer with several samples a pixel.
+//! Frames of quads with a jitter are those of a renderer with several samples a pixel.
 
 use crate::common::grille::GrillePlugin;
 use crate::common::headless::{Headless, psnr_db};
@@ -48,14 +48,13 @@ fn a_still_view_becomes_that_of_many_samples_a_pixel() {
     let reference = averaged(&still(SIZE * SAMPLES, (), 3, right));
     let psnr = |shot: Vec<u8>| psnr_db(&shot, &reference);
     let one = psnr(still(SIZE, kind(FoveationKind::Off), 3, right));
-    // Each pixel of a block of 4 x 4 is sampled six times.
-    let sparse = |antialias, planted| {
+    let quads = |antialias, planted| {
         psnr(still(SIZE, (Afterimage { antialias, ..default() }, Foveated::default()), 96, planted))
     };
-    let [without, with] = [false, true].map(|antialias| sparse(antialias, right));
-    let wrong = sparse(true, Planted { jitter: true, ..right });
+    let [without, with] = [false, true].map(|antialias| quads(antialias, right));
+    let wrong = quads(true, Planted { jitter: true, ..right });
     println!(
-        "one sample a pixel {one:.2} dB, sparse {without:.2} dB, antialiased {with:.2} dB, with the opposite jitter \
+        "one sample a pixel {one:.2} dB, quads {without:.2} dB, antialiased {with:.2} dB, with the opposite jitter \
          {wrong:.2} dB"
     );
     assert!(with > one + 3.0, "one sample a pixel {one:.2} dB, antialiased {with:.2} dB");

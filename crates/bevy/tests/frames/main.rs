@@ -8,6 +8,7 @@ mod applications;
 mod conventions;
 mod events;
 mod pixels;
+mod quads;
 mod reflection;
 
 use bevy::camera::Hdr;
