@@ -94,10 +94,15 @@ static SUBMITTED_NS: AtomicU64 = AtomicU64::new(0);
 
 /// CPU time of all threads but the software renderer's, less submissions. 0 where threads cannot be listed.
 fn own_ms() -> f64 {
+    let process = std::process::id().to_string();
+    let own_name = std::fs::read_to_string("/proc/self/comm").unwrap_or_default();
     let entries = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
     let of_thread = |entry: std::fs::DirEntry| -> Option<f64> {
         let read = |file| std::fs::read_to_string(entry.path().join(file)).ok();
-        if read("comm")?.contains("llvmpipe") {
+        let name = read("comm")?;
+        // Bevy names its threads. The driver's have its own name, or that of the process.
+        let is_driver = name == own_name && entry.file_name().to_str() != Some(&process);
+        if is_driver || name.contains("llvmpipe") {
             return None;
         }
         read("schedstat")?.split(' ').next()?.parse().ok()
