@@ -116,8 +116,12 @@ impl RunArgs {
     #[must_use]
     pub fn with_defaults(self) -> Self {
         let is_scene = self.input.is_scene();
-        let is_sparse = is_scene && self.sampling.sampling == SamplingName::Uniform;
-        Self { foveation: self.foveation.with_defaults(is_sparse, is_scene), ..self }
+        let default = match is_scene && self.sampling.sampling == SamplingName::Uniform {
+            true if self.input.is_rasterised() => Filter::Quads,
+            true => Filter::Sparse,
+            false => Filter::Mip,
+        };
+        Self { foveation: self.foveation.with_defaults(default, is_scene), ..self }
     }
 
     /// The head that moves the camera, with `--camera head`.

@@ -32,6 +32,7 @@ use crate::args::backend::BackendName;
 use crate::args::input::{InputArgs, Rendering};
 use crate::args::{FoveationArgs, MethodArgs, by_name, parse_exposure, parse_frames};
 use crate::failure::Failure;
+use afterimage::Filter;
 use afterimage_lab::scanpath::GazeMap;
 use app::App;
 use clap::Args;
@@ -102,7 +103,8 @@ pub struct ViewArgs {
 /// The subcommand.
 pub fn view(args: &ViewArgs) -> Result<(), Failure> {
     let is_rendered = args.input.is_rasterised();
-    let foveation = args.foveation.clone().with_defaults(is_rendered, is_rendered);
+    let default = if is_rendered { Filter::Quads } else { Filter::Mip };
+    let foveation = args.foveation.clone().with_defaults(default, is_rendered);
     // A key switches to other foveations, whose geometry may have another default.
     let foveation = FoveationArgs { geometry: args.foveation.geometry, ..foveation };
     let args = &ViewArgs { foveation, ..args.clone() };
