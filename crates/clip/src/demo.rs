@@ -69,6 +69,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         ],
         gaze,
         late_gaze: None,
+        score_from: 0,
         exposure_ev: 0.0,
         write_frame: write_png,
         write_reference: true,

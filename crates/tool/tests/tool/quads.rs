@@ -115,7 +115,6 @@ fn what_quads_cannot_do_is_refused() {
         refused(still, &[&format!("--budget={budget}")], &["--budget", "0 to 100 percent"]);
     }
     refuses(&run(still, &out, &["--budget", "3"]), &["--budget", "--foveation quads"]);
-    refuses(&["view", still, "--foveation", "quads"], &["--foveation quads", "run"]);
     refuses(&["bench", "--foveation", "quads"], &["--foveation"]);
     assert!(!folder.path("out").exists(), "nothing was written");
 }

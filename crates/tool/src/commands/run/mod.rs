@@ -56,6 +56,10 @@ pub struct RunArgs {
     /// --sampling, else what the input has
     #[arg(long, alias = "reference-spp", value_parser = parse_samples, value_name = "N")]
     pub reference_samples: Option<u32>,
+    /// First frame that counts in scores; frames.csv and the pictures have all. Without history, the first frames of a
+    /// clip are another question
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pub score_from: usize,
     /// Latency of the eye tracker, milliseconds: the renderer and the methods see the gaze of so long ago, scores and
     /// gaze.csv have the true one; at most 1000
     #[arg(long, default_value_t = 0.0, value_parser = parse_latency, value_name = "MS")]
