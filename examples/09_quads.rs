@@ -1,5 +1,5 @@
-//! Foveated rendering of one ordinary view: the post-process chooses the quads of 2x2 pixels that are shaded, and the depth
-//! test rejects the rest before it is shaded. Camera, shaders and draw calls stay as they are.
+//! Foveated rendering of one ordinary view: the post-process chooses the quads of 2x2 pixels that are shaded, and the
+//! depth test rejects the rest before it is shaded. Camera, shaders and draw calls stay as they are.
 //!
 //! What a renderer adds to its prepass of depth and motion and to its color pass: `plan` between the two, a copy of the
 //! depth buffer, and `prime`.

@@ -312,8 +312,8 @@ impl RasterSource {
         on_device(&self.device, &targets.atlas, self.raster.near())
     }
 
-    /// Records the color of chosen quads of frame `index`, whose depth and motion were rendered last. `list`: the quads,
-    /// in the form of `gpu::Afterimage::quad_list`. The texture is drawn to again with the next frame.
+    /// Records the color of chosen quads of frame `index`, whose depth and motion were rendered last. `list`: the
+    /// quads, in the form of `gpu::Afterimage::quad_list`. The texture is drawn to again with the next frame.
     pub fn record_quads(
         &mut self,
         encoder: &mut CommandEncoder,

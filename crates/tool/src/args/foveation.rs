@@ -12,8 +12,8 @@ use clap::Args;
 /// Foveation simulator, and the resolution by eccentricity.
 #[derive(Args, Clone, Debug)]
 pub struct FoveationArgs {
-    /// How frames are foveated. quads: one full-rate view, of which each method chooses the quads of 2x2 pixels that are
-    /// shaded; given frames simulate it. sparse: one moving sample a block, which scenes render alone; given frames
+    /// How frames are foveated. quads: one full-rate view, of which each method chooses the quads of 2x2 pixels that
+    /// are shaded; given frames simulate it. sparse: one moving sample a block, which scenes render alone; given frames
     /// simulate it. mip, gauss and block simulate blur on full-rate frames; layers and uniform render views of
     /// rasterised scenes. Default: quads for rasterised scenes (sparse with --order, --geometry or a rate above 8),
     /// sparse for traced ones without --sampling, else mip
