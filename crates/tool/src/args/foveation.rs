@@ -38,6 +38,10 @@ pub struct FoveationArgs {
     /// default: 2.5
     #[arg(long, value_parser = parse_percent, value_name = "PERCENT")]
     pub budget: Option<f32>,
+    /// With --foveation quads: shades this share of the pixels everywhere alike, without a gaze, percent, 0 to 100; a
+    /// temporal upscaler, for example with 25. --fovea, --mid, the rates and --budget follow from it
+    #[arg(long, value_parser = parse_percent, value_name = "PERCENT", conflicts_with_all = ["fovea", "mid", "rate_mid", "rate_far", "budget"])]
+    pub share: Option<f32>,
     /// Side of the pixels of --foveation uniform, in pixels of the full-rate frame, 1 to 256; need not be whole;
     /// default: 2
     #[arg(long, value_parser = parse_scale, value_name = "S")]
@@ -142,6 +146,9 @@ impl FoveationArgs {
             let no_region = Foveation { fovea_deg: 0.0, mid_deg: 0.0, blend_deg: 0.0, ..Foveation::default() };
             return Foveation { rate_mid: rate, rate_far: rate, ..no_region };
         }
+        if let Some(percent) = self.share.filter(|_| self.is_quads()) {
+            return Foveation::uniform(percent / 100.0);
+        }
         let [rate_mid, rate_far] = self.rates();
         Foveation {
             filter: match self.filter() {
@@ -204,6 +211,9 @@ impl FoveationArgs {
         }
         if self.budget.is_some() && !self.is_quads() {
             return refuse("--budget: applies to frames shaded by quads only; add --foveation quads".into());
+        }
+        if self.share.is_some() && !self.is_quads() {
+            return refuse("--share: applies to frames shaded by quads only; add --foveation quads".into());
         }
         if self.scale.is_some() && self.filter() != FilterName::Uniform {
             return refuse("--scale: applies to uniform frames only; add --foveation uniform".into());
