@@ -102,6 +102,7 @@ fn execute(out: &Path) -> Result<ClipReport, Failure> {
     let out = Output::create(out, &folders, &REPORTS)?;
     let report = playback.write(&out)?;
     write_report(&facts, &clip, &report, &out)?;
+    out.finish()?;
     Ok(report)
 }
 

@@ -115,7 +115,9 @@ impl InputArgs {
 
     /// Opens an input that needs no renderer.
     pub fn read(&self) -> Result<Box<dyn FrameSource + Send>, Failure> {
-        Ok(source::open(&self.name, &self.limits(), &self.scene_options())?)
+        let source = source::open(&self.name, &self.limits(), &self.scene_options())?;
+        warn(source.warnings());
+        Ok(source)
     }
 
     /// Opens a scene for rasterization: on the methods' device, or, since it needs one, on any if they run on the CPU.

@@ -90,6 +90,8 @@ fn frames_info(source: &mut dyn FrameSource) -> Result<(), InputError> {
         None => say!("frames: endless"),
     }
     say!("still: {}", if info.still { "yes" } else { "no" });
+    source.contents().iter().for_each(|line| say!("{line}"));
+    source.warnings().iter().for_each(|line| say!("warning: {line}"));
     say!("frames per second: {}", known(info.fps));
     say!("horizontal field of view, degrees: {}", known(info.hfov_deg));
     let first = source.frame(0)?;

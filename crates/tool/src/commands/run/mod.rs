@@ -231,6 +231,7 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
         gaze_latency_ms: args.gaze_latency,
     };
     write_report(&facts, &plan.clip, &report, &out)?;
+    out.finish()?;
     Ok(report)
 }
 

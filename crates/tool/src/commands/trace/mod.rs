@@ -168,7 +168,8 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
         previous = Some(head);
     }
     bar.finish_and_clear();
-    finish(args, &out, &setup, &report, &eyes, &gaze)
+    finish(args, &out, &setup, &report, &eyes, &gaze)?;
+    out.finish()
 }
 
 /// Gaze of the head and of each eye, per frame, in pixels; empty with uniform sampling.
