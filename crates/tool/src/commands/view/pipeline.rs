@@ -213,7 +213,7 @@ impl ViewPipeline {
                 };
                 times.span(gpu, pass, |encoder| {
                     let color = plan(gpu, encoder, run, &frame, &mut shade)?;
-                    let frame = Frame { color: (&color).into(), ..frame.clone() };
+                    let frame = Frame { color: (&color).into(), ..frame };
                     if let Some(debug) = state.debug {
                         run.record_view(encoder, &frame, debug)?;
                     }
