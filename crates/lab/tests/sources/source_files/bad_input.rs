@@ -230,10 +230,10 @@ fn cameras_that_do_not_belong() {
         ("{".to_owned(), "not the expected JSON"),
         (r#"{"fps":"fast"}"#.to_owned(), "not the expected JSON"),
         (r#"{"fps":0}"#.to_owned(), "fps is 0"),
-        (r#"{"horizontal_fov_deg":180}"#.to_owned(), "horizontal_fov_deg is 180"),
+        (r#"{"horizontal_fov_deg":180}"#.to_owned(), "horizontal field of view is 180"),
         (r#"{"width":4,"height":8}"#.to_owned(), "4x8"),
         (frames(&[frame(0, one), frame(7, one)]), "no camera for frame 1"),
-        (frames(&[frame(0, one), frame(1, bent)]), "camera_to_world of frame 1 scales or shears"),
+        (frames(&[frame(0, one), frame(1, bent)]), "camera_to_world of frame 1 shears"),
         (frames(&[frame(0, one), r#"{"frame":1}"#.to_owned()]), "1 of its 2 frames"),
     ];
     for (text, word) in cases {

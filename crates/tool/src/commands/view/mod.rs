@@ -29,6 +29,7 @@ mod times;
 mod viewer;
 
 use crate::args::backend::BackendName;
+use crate::args::gaze_log::GazeLogArgs;
 use crate::args::input::{InputArgs, Rendering};
 use crate::args::{FoveationArgs, MethodArgs, by_name, parse_exposure, parse_frames};
 use crate::failure::Failure;
@@ -59,7 +60,7 @@ pub struct ViewArgs {
         long, value_parser = by_name::<Shows>(), value_delimiter = ',', conflicts_with = "method", value_name = "A,B"
     )]
     pub split: Vec<Shows>,
-    /// Scanpath to play instead of following the mouse: screen pixels (FILE.csv), one fixed frame pixel (X,Y), or
+    /// Scanpath to play instead of following the mouse: FILE, as for run, one fixed frame pixel (X,Y), or
     /// synthetic[:SEED]. One position per frame, at most --fps frames a second, so that pictures are the same as with
     /// run; key P
     #[arg(long, value_name = "GAZE", allow_hyphen_values = true)]
@@ -68,6 +69,8 @@ pub struct ViewArgs {
     /// geometry
     #[arg(long, value_parser = by_name::<GazeMap>())]
     pub gaze_map: Option<GazeMap>,
+    #[command(flatten)]
+    pub log: GazeLogArgs,
     /// Start time in the scanpath, seconds
     #[arg(long, default_value_t = 0.0, value_name = "S")]
     pub start: f64,

@@ -29,7 +29,7 @@ pub fn head(args: &ViewArgs) -> Result<Option<HeadPath>, Failure> {
 
 fn gaze(args: &ViewArgs) -> GazeArgs {
     let gaze = args.gaze.clone().unwrap_or_else(|| "synthetic:0".into());
-    GazeArgs { gaze, gaze_map: args.gaze_map, start: args.start }
+    GazeArgs { gaze, gaze_map: args.gaze_map, start: args.start, log: args.log.clone() }
 }
 
 impl Setup {
