@@ -100,7 +100,7 @@ impl Counters {
                 None
             }
             MAPPED => {
-                let stats = FrameStats::from_counters(&self.copy.get_mapped_range(..).ok()?);
+                let stats = FrameStats::from_counters(&self.copy.get_mapped_range(..));
                 self.copy.unmap();
                 self.state.store(FREE, Ordering::Release);
                 stats
