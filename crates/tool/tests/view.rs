@@ -290,7 +290,8 @@ fn a_window_shows_what_run_writes_whatever_happens_to_it() {
     }
 
     // Toggle methods, debug views, filters, split and panel, and back.
-    for key in ["1", "2", "5", "shift+2", "v", "v", "f", "f", "f", "f", "f", "minus", "equal", "h", "h", "g", "g"] {
+    for key in ["1", "2", "5", "shift+2", "v", "v", "f", "f", "f", "f", "f", "f", "minus", "equal", "h", "h", "g", "g"]
+    {
         viewer.key(key);
     }
     for key in ["v", "v", "v", "v", "v", "Tab", "4"] {
