@@ -13,7 +13,7 @@ build() {
     step "build of the tool"
     cargo build --locked --release -p afterimage-cli --bin afterimage
     step "build of Bevy's example"
-    (cd crates/bevy && cargo build --locked --release --example measure)
+    (cd crates/bevy && cargo build --locked --ignore-rust-version --release --example measure)
     mkdir -p "$1"
     cp "${CARGO_TARGET_DIR:-target}/release/afterimage" "${CARGO_TARGET_DIR:-crates/bevy/target}/release/examples/measure" "$1/"
 }

@@ -239,16 +239,22 @@ mod tests {
     use super::*;
     use bevy::camera::CameraProjection;
 
+    /// A projection whose depth is 0 at `near` and 1 at `far`.
+    fn perspective(near: f32, far: f32) -> Mat4 {
+        let depth = far / (near - far);
+        Mat4::from_cols(Vec4::X, Vec4::Y, Vec4::new(0.0, 0.0, depth, -1.0), Vec4::new(0.0, 0.0, depth * near, 0.0))
+    }
+
     #[test]
     fn depth_is_that_of_bevys_projections() {
         let projection = PerspectiveProjection { near: 0.25, ..default() };
         let infinite = DepthConvention::Reversed { near: 0.25, far: f32::INFINITY };
         assert_eq!(depth_convention(projection.get_clip_from_view()), Ok(infinite));
         // Reversed, with a far plane: the planes are swapped.
-        let finite = Mat4::perspective_rh(1.0, 1.5, 100.0, 0.25);
+        let finite = perspective(100.0, 0.25);
         let Ok(DepthConvention::Reversed { near, far }) = depth_convention(finite) else { panic!("not reversed") };
         assert!((near - 0.25).abs() < 1e-4 && (far - 100.0).abs() < 0.1, "{near} {far}");
-        let forward = Mat4::perspective_rh(1.0, 1.5, 0.25, 100.0);
+        let forward = perspective(0.25, 100.0);
         assert!(depth_convention(forward).is_err_and(|problem| problem.contains("reversed")));
         let orthographic = OrthographicProjection::default_3d().get_clip_from_view();
         assert!(depth_convention(orthographic).is_err_and(|problem| problem.contains("orthographic")));

@@ -100,7 +100,7 @@ impl Counters {
                 None
             }
             MAPPED => {
-                let stats = FrameStats::from_counters(&self.copy.get_mapped_range(..));
+                let stats = FrameStats::from_counters(&self.copy.get_mapped_range(..).ok()?);
                 self.copy.unmap();
                 self.state.store(FREE, Ordering::Release);
                 stats

@@ -56,7 +56,7 @@ pub struct Planted {
 }
 
 // The camera's own component is what makes this one disappear with it.
-impl SyncComponent<FramePlugin> for Afterimage {
+impl SyncComponent<RenderApp, FramePlugin> for Afterimage {
     type Target = ExtractedAfterimage;
 }
 

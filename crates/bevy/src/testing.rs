@@ -40,9 +40,8 @@ pub fn recorded(render_world: &mut World) -> Vec<Recorded> {
         .filter_map(|(camera, frame, target, prepass)| {
             let context = contexts.get(&camera)?;
             let color = context.color.clone()?;
-            let [depth, motion] = [&prepass.depth, &prepass.motion_vectors]
-                .map(|attachment| attachment.as_ref().map(|attachment| (*attachment.texture.texture).clone()));
-            let (depth, motion) = depth.zip(motion)?;
+            let depth = (*prepass.depth.as_ref()?.texture.texture).clone();
+            let motion = (*prepass.motion_vectors.as_ref()?.texture.texture).clone();
             let output = (**target.main_texture()).clone();
             Some(Recorded { camera, desc: frame.desc, view: frame.view, index, color, depth, motion, output })
         })

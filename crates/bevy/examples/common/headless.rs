@@ -1,7 +1,7 @@
 //! An application without a window that renders to an image, frame by frame.
 
 use afterimage::wgpu;
-use bevy::app::{Plugins, PluginsState};
+use bevy::app::{PluginGroupBuilder, Plugins, PluginsState};
 use bevy::asset::{RenderAssetUsages, UnapprovedPathMode};
 use bevy::camera::RenderTarget;
 use bevy::log::LogPlugin;
@@ -9,6 +9,7 @@ use bevy::prelude::*;
 use bevy::render::RenderApp;
 use bevy::render::RenderPlugin;
 use bevy::render::error_handler::{RenderErrorHandler, RenderErrorPolicy};
+use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
 use bevy::render::render_asset::RenderAssets;
 use bevy::render::render_resource::{TextureFormat, TextureUsages};
 use bevy::render::renderer::{RenderAdapterInfo, RenderDevice, RenderQueue};
@@ -39,14 +40,8 @@ impl Headless {
     pub fn new<M>(size: UVec2, scene: impl Plugins<M>) -> Self {
         let mut app = App::new();
         add_default_plugins(&mut app);
-        app.add_plugins(AfterimagePlugin)
-            .add_plugins(scene)
-            .insert_resource(TimeUpdateStrategy::ManualDuration(FRAME))
-            .init_resource::<Problems>()
-            .insert_resource(RenderErrorHandler(|error, main, _| {
-                main.resource_mut::<Problems>().0.push(error.description.clone());
-                RenderErrorPolicy::Ignore
-            }));
+        app.add_plugins(AfterimagePlugin).add_plugins(scene);
+        note_problems(&mut app);
         start(&mut app);
         let target = app.world_mut().resource_mut::<Assets<Image>>().add(target_image(size));
         Self { app, target }
@@ -114,7 +109,7 @@ impl Headless {
         queue.submit([encoder.finish()]);
         buffer.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
         device.poll(wgpu::PollType::wait_indefinitely()).expect("the device");
-        let bytes = buffer.get_mapped_range(..);
+        let bytes = buffer.get_mapped_range(..).expect("mapped");
         bytes.chunks(stride as usize).flat_map(|row| &row[..4 * w as usize]).copied().collect()
     }
 
@@ -124,21 +119,35 @@ impl Headless {
     }
 }
 
-/// Adds Bevy's default plugins, without a window.
+/// Adds Bevy's default plugins, without a window, and without a thread of its own for the renderer: it would take
+/// [`RenderApp`] with it.
 pub fn add_default_plugins(app: &mut App) {
+    app.add_plugins(default_plugins().disable::<PipelinedRenderingPlugin>());
+}
+
+/// Bevy's default plugins, without a window.
+pub fn default_plugins() -> PluginGroupBuilder {
     let settings = WgpuSettings { backends: Some(Backends::VULKAN), ..default() };
-    app.add_plugins(
-        DefaultPlugins
-            .set(RenderPlugin {
-                render_creation: RenderCreation::Automatic(Box::new(settings)),
-                // Otherwise the first frames lack what is not compiled yet.
-                synchronous_pipeline_compilation: true,
-                ..default()
-            })
-            // Models may lie anywhere.
-            .set(AssetPlugin { unapproved_path_mode: UnapprovedPathMode::Allow, ..default() })
-            .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
-            .disable::<LogPlugin>(),
+    DefaultPlugins
+        .set(RenderPlugin {
+            render_creation: RenderCreation::Automatic(Box::new(settings)),
+            // Otherwise the first frames lack what is not compiled yet.
+            synchronous_pipeline_compilation: true,
+            ..default()
+        })
+        // Models may lie anywhere.
+        .set(AssetPlugin { unapproved_path_mode: UnapprovedPathMode::Allow, ..default() })
+        .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
+        .disable::<LogPlugin>()
+}
+
+/// Notes validation errors, and has frames follow each other in the scene's time.
+pub fn note_problems(app: &mut App) {
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(FRAME)).init_resource::<Problems>().insert_resource(
+        RenderErrorHandler(|error, main, _| {
+            main.resource_mut::<Problems>().0.push(error.description.clone());
+            RenderErrorPolicy::Ignore
+        }),
     );
 }
 
@@ -151,7 +160,7 @@ pub fn start(app: &mut App) {
     app.cleanup();
 }
 
-fn target_image(size: UVec2) -> Image {
+pub fn target_image(size: UVec2) -> Image {
     let mut image = Image::new_target_texture(size.x, size.y, TextureFormat::Rgba8UnormSrgb, None);
     image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
     image.asset_usage = RenderAssetUsages::default();

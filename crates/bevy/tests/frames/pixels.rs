@@ -70,7 +70,7 @@ fn read(headless: &Headless, texture: &wgpu::Texture) -> Vec<u8> {
     queue.submit([encoder.finish()]);
     buffer.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
     device.poll(wgpu::PollType::wait_indefinitely()).expect("the device");
-    let bytes = buffer.get_mapped_range(..);
+    let bytes = buffer.get_mapped_range(..).expect("mapped");
     bytes.chunks(stride as usize).flat_map(|row| &row[..8 * texture.width() as usize]).copied().collect()
 }
 
