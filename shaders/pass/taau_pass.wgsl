@@ -6,6 +6,11 @@
 // Temporal upsampling. CPU twin: src/cpu/taau_pass.rs, which lists the reads and writes. One invocation a pixel; z is
 // the view.
 
+// Whether the frame is shaded by quads: what was filled between them is no sample.
+override BY_QUADS: u32 = 0u;
+
+@group(0) @binding(27) var quad_mask: texture_2d_array<u32>;
+
 struct Samples {
     around: SamplesAround,
     // Color and alpha of the nearest sample, as the renderer wrote them.
@@ -14,6 +19,11 @@ struct Samples {
     nearest: Sanitized,
     // Sum of history's lumas at the samples' pixels; 0 if history is not compared.
     past_luma: f32,
+}
+
+fn is_shaded(point: vec2<i32>, view: u32) -> bool {
+    let px = vec2<u32>(clamp(point, vec2<i32>(0), vec2<i32>(frame.size) - 1));
+    return (textureLoad(quad_mask, px >> vec2<u32>(1u), view, 0).x & 1u) != 0u;
 }
 
 fn sample_near(point: vec2<i32>, lattice: LatticeUniforms, view: u32) -> vec4<f32> {
@@ -46,7 +56,11 @@ fn samples(px: vec2<u32>, view: u32, kernel: vec2<f32>, source: Source, compared
             let x = point_offset_px(px.x, first.x, level, point.x);
             let y = point_offset_px(px.y, first.y, level, point.y);
             let offset = vec2<f32>(x, y) - frame.views[view].jitter_px;
-            let weights = sample_weights(offset, level, kernel.x, kernel.y);
+            var weights = sample_weights(offset, level, kernel.x, kernel.y);
+            // They still tell what is around.
+            if BY_QUADS != 0u && !is_shaded(point, view) {
+                weights = vec2<f32>(0.0);
+            }
             around = add_around(around, nearest.color, sampled.color, weights);
             if compared {
                 past_luma += luma_beside(source, vec2<i32>(vec2<f32>(x, y)), view);
@@ -83,6 +97,8 @@ fn pixel(px: vec2<u32>, view: u32) {
         result = accumulate(near.around, near.nearest.color, history, confidence, source.previous.trust);
     } else if sampled {
         result = Accumulated(upsampled(near.around, near.nearest.color), near.around.weights.y, 1.0, 1.0);
+    } else if BY_QUADS != 0u && !valid && near.nearest.usable {
+        result = Accumulated(near.nearest.color, LEAST_SAMPLE_WEIGHT, 1.0, 1.0);
     }
     // With the overshoot of Catmull-Rom, colors may exceed the largest half.
     let shown = min(result.color, vec3<f32>(MAX_HALF));
@@ -93,7 +109,8 @@ fn pixel(px: vec2<u32>, view: u32) {
     if VIEW != 0u {
         return;
     }
-    let lod = select(-1.0, lod_of(result.confidence), sampled || valid);
+    let is_filled = BY_QUADS != 0u && near.nearest.usable;
+    let lod = select(-1.0, lod_of(result.confidence), sampled || valid || is_filled);
     let words = pack_surface(Surface(shown, lod, disparity_now));
     textureStore(next_surfaces, px, view, vec4<u32>(words, 0u, 0u));
 }

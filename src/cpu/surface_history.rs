@@ -3,6 +3,7 @@
 
 use super::history::PastSurfaces;
 use super::inputs::{Inputs, Previous};
+use super::sparse_pass::Quads;
 use crate::kernel::foveate::{block_sample, block_sample_level, split};
 use crate::kernel::matched::mip_bilinear;
 use crate::kernel::noise::{Noise, expose_noise, unpack_noise};
@@ -19,6 +20,8 @@ use glam::Vec3;
 /// Inputs and history of one view of a frame.
 pub(super) struct SurfaceHistory<'a> {
     pub inputs: Inputs<'a>,
+    /// Shaded quads, of a frame shaded by quads.
+    pub quads: Option<&'a Quads>,
     pub past: PastSurfaces<'a>,
 }
 

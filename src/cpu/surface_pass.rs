@@ -65,7 +65,7 @@ impl<M: SurfaceMethod> ProcessPixel for InView<'_, M> {
 
 /// Runs a method for every pixel of every view.
 pub(super) fn run(pass: Pass<'_, '_>, method: &impl SurfaceMethod) -> FrameStats {
-    let Pass { desc, history, frame, output, mut traces, .. } = pass;
+    let Pass { desc, history, frame, quads, output, mut traces } = pass;
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
@@ -76,7 +76,7 @@ pub(super) fn run(pass: Pass<'_, '_>, method: &impl SurfaceMethod) -> FrameStats
             candidate_texel(color, usable, inputs.noise(x, y).expect("the frame was checked to have noise"))
         });
         let (past, surfaces, noise) = history.split_surfaces(i);
-        let view = SurfaceHistory { inputs, past };
+        let view = SurfaceHistory { inputs, quads: quads.get(i), past };
         let traces = traces.as_mut().map(|t| &mut t[i]);
         let targets = Targets { surfaces, noise, output: &mut output[i], traces };
         stats = stats.add(for_pixels(targets, &InView { method, view }));

@@ -2,7 +2,8 @@
 //! Twin: `shaders/pass/taau_pass.wgsl`.
 //!
 //! Each pixel reads its motion and depth, nine samples and twelve stored surfaces (neighbours share most of these
-//! reads), and writes one surface and one color. Frames without lattices have a sample in every pixel.
+//! reads), and writes one surface and one color. Frames without lattices have a sample in every pixel. Frames shaded by
+//! quads have one in each shaded pixel: the others are filled before, and tell only what is around.
 
 use super::surface_history::{Source, SurfaceHistory};
 use super::surface_pass::{Pixel, SurfaceMethod};
@@ -48,16 +49,19 @@ impl SurfaceMethod for Taau {
         inputs.count(x, y, usable, disparity, verdict, stats);
 
         let sampled = around.weights.y >= taau::LEAST_SAMPLE_WEIGHT;
+        let is_filled = view.quads.is_some() && usable;
         let mut result = Accumulated { color: history, confidence, share: 0.0, kept: 1.0 };
         if sampled && source.is_ok() {
             result = taau::accumulate(around, nearest, history, confidence, trust);
         } else if sampled {
             let color = taau::upsampled(around, nearest);
             result = Accumulated { color, confidence: around.weights.y, share: 1.0, kept: 1.0 };
+        } else if is_filled && source.is_err() {
+            result = Accumulated { color: nearest, confidence: taau::LEAST_SAMPLE_WEIGHT, share: 1.0, kept: 1.0 };
         }
         // With the overshoot of Catmull-Rom, colors may exceed the largest half.
         let output = result.color.min(Vec3::splat(MAX_HALF));
-        let lod = if sampled || source.is_ok() { taa::lod_of(result.confidence) } else { -1.0 };
+        let lod = if sampled || source.is_ok() || is_filled { taa::lod_of(result.confidence) } else { -1.0 };
         let trace = PixelTrace {
             verdict,
             weight: result.share,
@@ -113,7 +117,12 @@ fn samples(view: &SurfaceHistory<'_>, px: [u32; 2], kernel: &Kernel, past: Optio
             // A sample shows the point at its pixel minus the jitter.
             let at = [0, 1].map(|i| point_offset_px(px[i], first[i], level, point[i]));
             let offset = Vec2::from(at) - Vec2::from(inputs.uniforms.jitter_px);
-            let weights = taau::sample_weights(offset, level, kernel.tail, kernel.narrowing);
+            let mut weights = taau::sample_weights(offset, level, kernel.tail, kernel.narrowing);
+            // What was filled between shaded quads is no sample. It still tells what is around.
+            let inside = [0, 1].map(|i| point[i].clamp(0, inputs.size[i] as i32 - 1) as u32);
+            if view.quads.is_some_and(|quads| !quads.is_shaded(inside)) {
+                weights = Vec2::ZERO;
+            }
             found.around = taau::add_around(found.around, found.nearest, color, weights);
             if let Some(source) = past {
                 found.past_luma += view.luma_beside(source, at.map(|v| v as i32));

@@ -365,7 +365,8 @@ impl Afterimage {
     /// share [`Foveation::budget`](crate::Foveation::budget) of a view's quads where history lacks most.
     ///
     /// Give it the frame that will be recorded, with the parts that are known before shading: views, depth, motion,
-    /// trust or reactive mask, index and reset. Its colors and noise are not read. History is unchanged.
+    /// trust or reactive mask, index and reset. Its colors and noise are not read. History is unchanged. If its encoder
+    /// is never submitted, plan again before `record`.
     ///
     /// ```no_run
     /// # use afterimage::{wgpu, ViewFrame};

@@ -15,5 +15,5 @@ pub(super) static ENTRY: Entry = Entry {
     history: |_| HistoryLayout::Surfaces { levels: 0, noisy: false },
     history_traffic_bytes: |_| 2 * 8,
     shader: |_| PassShader { name: "taau_pass", block_px: 1 },
-    overrides: |_| vec![],
+    overrides: |settings| vec![("BY_QUADS", u32::from(settings.foveation.filter == Filter::Quads))],
 };

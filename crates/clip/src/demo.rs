@@ -69,6 +69,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         ],
         gaze,
         late_gaze: None,
+        score_from: 0,
         exposure_ev: 0.0,
         write_frame: write_png,
         write_reference: true,
@@ -101,6 +102,7 @@ fn execute(out: &Path) -> Result<ClipReport, Failure> {
     let out = Output::create(out, &folders, &REPORTS)?;
     let report = playback.write(&out)?;
     write_report(&facts, &clip, &report, &out)?;
+    out.finish()?;
     Ok(report)
 }
 

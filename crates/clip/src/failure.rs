@@ -75,12 +75,25 @@ fn with_option(error: &InputError) -> String {
             let megapixels = exceeded.needed_megapixels().map_or("N".to_owned(), |n| n.to_string());
             format!("{error} with --max-megapixels {megapixels}")
         }
+        InputError::Request(message) if message.remedy.contains('`') => with_gaze_options(&error.to_string()),
         // If a camera does not exist, the error's subject is "camera NAME".
         InputError::Request(message) if message.subject.starts_with("camera ") => format!("--{error}"),
         // These remedies end with the suggestion to use the CPU.
         InputError::Device(_) => format!("{error} (--backend cpu)"),
         _ => error.to_string(),
     }
+}
+
+/// `text` with the options of gaze logs instead of the names of their fields.
+pub fn with_gaze_options(text: &str) -> String {
+    let options = [
+        ("`screen_px`", "--screen-px WxH"),
+        ("`screen_mm`", "--screen-mm WxH"),
+        ("`distance_mm`", "--distance-mm D"),
+        ("`eye`", "--eye"),
+        ("the gaze map `fit`", "--gaze-map fit"),
+    ];
+    options.iter().fold(text.to_owned(), |text, (field, option)| text.replace(field, option))
 }
 
 impl From<SettingsError> for Failure {

@@ -122,6 +122,14 @@ impl MethodAccumulator {
         }
     }
 
+    /// Forgets scores and shares so far: the next frame continues the clip, as the first that counts. Times and counts
+    /// of pixels are those of all frames.
+    pub fn restart(&mut self) {
+        self.scorer.restart();
+        self.crops.restart();
+        self.shaded.clear();
+    }
+
     /// Scores of the frames so far.
     pub fn scores(&self) -> Scores {
         self.scorer.scores()

@@ -8,7 +8,11 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Output folder of a run.
+/// Marks the folder of a run that has not ended.
+const UNFINISHED: &str = ".afterimage.unfinished";
+
+/// Output folder of a run. Unless its run ends, a file marks it as unfinished, so that the next run replaces what is
+/// left.
 pub struct Output {
     root: PathBuf,
 }
@@ -22,7 +26,7 @@ pub struct Table {
 
 impl Output {
     /// Creates the folder and its subfolders `parts`. Removes frames and `reports` of an earlier run, if the first of
-    /// these (`report.json` or `trace.json`) shows that this tool wrote them.
+    /// these (`report.json` or `trace.json`) shows that this tool wrote them, or that it was about to.
     pub fn create(root: &Path, parts: &[String], reports: &[&str]) -> Result<Self, Failure> {
         let refuse = |path: &Path, error: &dyn std::fmt::Display| {
             Failure::Input(format!(
@@ -34,6 +38,9 @@ impl Output {
         let ours = reports.first().is_some_and(|report| {
             fs::read_to_string(root.join(report)).is_ok_and(|text| text.contains("\"tool\": \"afterimage\""))
         });
+        // A run that was aborted leaves this file, and no report.
+        let unfinished = root.join(UNFINISHED);
+        let ours = ours || unfinished.exists();
         let mut stale = vec![];
         for part in parts {
             stale.extend(numbered_frames(&root.join(part)));
@@ -53,6 +60,7 @@ impl Output {
         for path in stale {
             fs::remove_file(&path).map_err(|e| refuse(&path, &e))?;
         }
+        File::create(&unfinished).map_err(|e| refuse(&unfinished, &e))?;
         for part in parts {
             let folder = root.join(part);
             fs::create_dir_all(&folder).map_err(|e| refuse(&folder, &e))?;
@@ -90,6 +98,12 @@ impl Output {
     pub fn text(&self, name: &str, text: &str) -> Result<(), Failure> {
         let path = self.root.join(name);
         write_whole(&path, |file| file.write_all(text.as_bytes())).map_err(|e| Failure::writing(&path, e))
+    }
+
+    /// Ends the run: the folder is whole.
+    pub fn finish(self) -> Result<(), Failure> {
+        let unfinished = self.root.join(UNFINISHED);
+        fs::remove_file(&unfinished).map_err(|e| Failure::writing(&unfinished, e))
     }
 
     /// Starts a CSV table under a temporary name.

@@ -290,7 +290,8 @@ fn a_window_shows_what_run_writes_whatever_happens_to_it() {
     }
 
     // Toggle methods, debug views, filters, split and panel, and back.
-    for key in ["1", "2", "5", "shift+2", "v", "v", "f", "f", "f", "f", "f", "minus", "equal", "h", "h", "g", "g"] {
+    for key in ["1", "2", "5", "shift+2", "v", "v", "f", "f", "f", "f", "f", "f", "minus", "equal", "h", "h", "g", "g"]
+    {
         viewer.key(key);
     }
     for key in ["v", "v", "v", "v", "v", "Tab", "4"] {
@@ -363,9 +364,12 @@ fn a_scene_is_rendered_foveated_for_the_gaze_and_nothing_is_read_back() {
         String::from_utf8(out.stdout).unwrap()
     };
     let pixels = |path: &str| image::open(folder.path().join(path)).unwrap().into_rgb8();
-    for (foveation, jitter, methods) in
-        [("sparse", "halton", "taau,smr"), ("layers", "off", "none,smr"), ("mip", "off", "none,smr")]
-    {
+    for (foveation, jitter, methods) in [
+        ("quads", "halton", "taau,smr"),
+        ("sparse", "halton", "taau,smr"),
+        ("layers", "off", "none,smr"),
+        ("mip", "off", "none,smr"),
+    ] {
         let scene = ["builtin:cubes", "--size", "320x180", "--camera", "walk", "--frames", "6"];
         let regions = ["--foveation", foveation, "--fovea", "12", "--mid", "30", "--rate-mid", "2", "--rate-far", "4"];
         let common = [&scene[..], &regions, &["--jitter", jitter]].concat();
@@ -374,7 +378,11 @@ fn a_scene_is_rendered_foveated_for_the_gaze_and_nothing_is_read_back() {
         assert!(said.starts_with("6 frames, 0 read back\n"), "{said}");
         let run = ["run", "--method", methods, "--source", "raster", "--backend", "gpu", "--no-flip", "--out", "run"];
         // Full-rate frames of both have four samples a pixel, in other places.
-        let (geometry, samples) = if foveation == "mip" { ("full", "4") } else { ("samples", "1") };
+        let (geometry, samples) = if matches!(foveation, "mip" | "quads") {
+            ("full", if foveation == "mip" { "4" } else { "1" })
+        } else {
+            ("samples", "1")
+        };
         let run = [&run[..], &["--reference-samples", samples]].concat();
         let psnr_db = |gaze: &str| {
             tool(&[&run[..], &common, &["--geometry", geometry, "--gaze", gaze]].concat());
@@ -453,7 +461,7 @@ fn what_it_cannot_show_is_refused_before_any_window() {
         (&["still.png", "--fovea=-1"], "fovea"),
         (&["still.png", "--gaze", "none.csv"], "none.csv"),
         (&["analytic:still", "--jitter", "halton"], "of scenes only"),
-        (&["builtin:courtyard", "--foveation", "mip", "--jitter", "halton"], "--foveation sparse"),
+        (&["builtin:courtyard", "--foveation", "mip", "--jitter", "halton"], "--foveation quads"),
     ];
     for (words, expected) in refused {
         let out = tool().arg("view").args(words).current_dir(folder.path()).output().unwrap();

@@ -10,7 +10,8 @@ use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, MethodKind, Reset,
 
 const FRAMES: u64 = 12;
 
-fn settings(antialias: bool) -> Settings {
+/// Of smr, in two regions and with a budget.
+pub fn settings(antialias: bool) -> Settings {
     let foveation = Foveation { fovea_deg: 12.0, mid_deg: 30.0, budget: 0.1, ..Foveation::quads() };
     let method = Method::Smr(Smr { antialias, ..Smr::default() });
     Settings { method, foveation, ..Settings::default() }

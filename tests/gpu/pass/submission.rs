@@ -22,7 +22,8 @@ fn all_settings() -> Vec<Settings> {
     let of_whole_frames = METHODS.map(ungated_of).into_iter().chain([keyed, Settings::weighted(), Settings::traced()]);
     let of_sparse = [MethodKind::Smr, MethodKind::Taau].map(sparse::settings);
     let noisy = Settings { noisy: true, ..sparse::settings(MethodKind::Smr) };
-    of_whole_frames.chain(of_sparse).chain([noisy]).collect()
+    let by_quads = [false, true].map(super::quads::settings);
+    of_whole_frames.chain(of_sparse).chain([noisy]).chain(by_quads).collect()
 }
 
 /// A view of the rig's size that moves, over two depths; foveated, or sparse if the settings are.
@@ -94,7 +95,7 @@ fn h103_a_frame_after_one_that_never_ran_has_no_history() {
     holds!(
         "H103",
         Gpu,
-        "{frames} frames of ten settings, {alone} of them after dropped frames, resizes and cuts: as if only what ran had been recorded, with a reset, bit for bit"
+        "{frames} frames of twelve settings, {alone} of them after dropped frames, resizes and cuts: as if only what ran had been recorded, with a reset, bit for bit"
     );
 }
 

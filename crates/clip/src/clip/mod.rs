@@ -50,6 +50,8 @@ pub struct Clip {
     /// Gaze that the renderer and the methods get in each frame, delayed by a tracker's latency; scores use the true
     /// gaze. `None`: no latency.
     pub late_gaze: Option<Vec<Option<[f32; 2]>>>,
+    /// First frame that counts in scores.
+    pub score_from: usize,
     /// Exposure before sRGB encoding, stops.
     pub exposure_ev: f32,
     /// Writes a frame in the format of the run.
@@ -156,6 +158,9 @@ impl Playback<'_> {
              cpu_ms,render_ms,render_cpu_ms,total_ms,total_cpu_ms,jod,shaded_share",
         )?;
         let pipeline = self.play(&mut |result| {
+            if result.index == clip.score_from {
+                accumulators.iter_mut().for_each(MethodAccumulator::restart);
+            }
             let encoded = clip.score_and_write(result, &mut accumulators, out)?;
             for ((name, _), accumulator) in clip.methods.iter().zip(&accumulators) {
                 table.row(&accumulator.row(result.index, name))?;

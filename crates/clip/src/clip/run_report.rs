@@ -56,6 +56,8 @@ struct RunReport<'a> {
     jitter: bool,
     /// Samples a pixel of the rasterised or analytic reference; null: as many as the input has.
     reference_samples: Option<u32>,
+    /// First frame that counts in scores.
+    score_from: usize,
     gaze: &'a str,
     gaze_map: &'a str,
     start_s: f64,
@@ -136,6 +138,7 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
         samples: (report.samples > 0).then_some(report.samples),
         jitter: clip.jitter,
         reference_samples: clip.reference_samples,
+        score_from: clip.score_from,
         gaze: facts.gaze,
         gaze_map: facts.gaze_map,
         start_s: facts.start_s,

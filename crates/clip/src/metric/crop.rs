@@ -67,6 +67,11 @@ impl Crops {
         }
     }
 
+    /// Forgets the worst crop so far.
+    pub fn restart(&mut self) {
+        self.worst = None;
+    }
+
     /// The worst crop so far; the earliest of equally bad ones. `None` before frame [`CROP_FROM_FRAME`].
     pub fn worst(&self) -> Option<WorstCrop> {
         self.worst

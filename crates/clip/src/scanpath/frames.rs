@@ -132,7 +132,7 @@ fn mapping(
             InputError::request(
                 path.name(),
                 "visual angles are unknown, because the screen's size in cm or its distance is",
-                "use the gaze map `fit`, or add `# screen_cm: WxH` and `# distance_cm: D` to the file",
+                "use the gaze map `fit`, or state the screen's size and distance: `screen_mm` and `distance_mm`",
             )
         })?),
     };

@@ -1,11 +1,14 @@
 //! Scanpaths: recorded and synthetic gaze over time, and its resampling to frames.
 //!
-//! A [`Scanpath`] comes from a CSV file ([`read_csv`]), from a model of an eye that looks at a screen ([`generate`]),
-//! or from a model of eye and head ([`generate_head`]); [`FrameGaze`] resamples it to one gaze point per frame. Lost
-//! gaze is `None` in samples, and is never filled in by interpolation. A scanpath of a headset has a [`HeadPose`] for
-//! each sample, from which [`HeadPath`] makes a camera path.
+//! A [`Scanpath`] comes from a CSV file ([`read_csv`]), from the export of an eye tracker ([`read_gaze_log`]), from a
+//! model of an eye that looks at a screen ([`generate`]), or from a model of eye and head ([`generate_head`]);
+//! [`FrameGaze`] resamples it to one gaze point per frame. Lost gaze is `None` in samples, and is never filled in by
+//! interpolation. A scanpath of a headset has a [`HeadPose`] for each sample, from which [`HeadPath`] makes a camera
+//! path.
 
+mod doubts;
 mod frames;
+mod gaze_log;
 mod head;
 mod head_path;
 mod kinematics;
@@ -13,9 +16,11 @@ mod pose;
 mod recorded;
 mod simulated_eye;
 mod synthetic;
+mod table;
 mod viewing;
 
 pub use frames::{FrameGaze, GazeMap};
+pub use gaze_log::{Eye, GazeLog, GazeLogOptions, Vendor, parse_gaze_log, read_gaze_log};
 pub use head::{DistanceOf, HeadOptions, HeadTurn, Regarded, SyntheticHead, generate_head, in_a_room};
 pub use head_path::HeadPath;
 pub use pose::HeadPose;

@@ -18,6 +18,7 @@
 //! 0.000,1000,1000,1,0,0,0,0,0,0,1
 //! ```
 
+use super::table::{Column, Columns, FILL, LineError, Row, bad, comment, decode, is_missing, number, quote, truth};
 use super::{About, HeadPose, RESERVED_KEYS, Sample, Scanpath, Screen, UNKNOWN};
 use crate::error::{Bound, Exceeded, InputError};
 use std::fs::File;
@@ -32,16 +33,18 @@ const COLUMNS: &str = "t_s,x_px,y_px,valid";
 /// Further columns of a scanpath with poses of the head.
 const POSE_COLUMNS: &str = "head_x_m,head_y_m,head_z_m,head_qx,head_qy,head_qz,head_qw";
 
-/// Number of columns without and with poses.
-const COUNTS: [usize; 2] = [4, 11];
-
 /// Reads a scanpath file; its path becomes the scanpath's name.
 ///
 /// # Errors
 /// [`Io`](InputError::Io) if the file is missing or unreadable, [`Request`](InputError::Request) if it is a folder,
 /// [`Limit`](InputError::Limit) if it is larger than [`MAX_FILE_BYTES`], and those of [`parse_csv`].
 pub fn read_csv(path: impl AsRef<Path>) -> Result<Scanpath, InputError> {
-    let path = path.as_ref();
+    let (name, bytes) = bytes_of(path.as_ref())?;
+    parse_csv(&name, &bytes)
+}
+
+/// Name and contents of a file of at most [`MAX_FILE_BYTES`].
+pub(super) fn bytes_of(path: &Path) -> Result<(String, Vec<u8>), InputError> {
     let name = path.display().to_string();
     let unreadable = |e: std::io::Error| {
         InputError::io(&name, format!("cannot be read ({e})"), "give the path of a scanpath CSV file")
@@ -68,51 +71,54 @@ pub fn read_csv(path: impl AsRef<Path>) -> Result<Scanpath, InputError> {
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(too_large(None));
     }
-    parse_csv(&name, &bytes)
+    Ok((name, bytes))
 }
 
 /// Parses the contents of a scanpath file; `name` is its name in errors.
 ///
-/// Columns are `t_s,x_px,y_px,valid`: seconds, screen pixels from the top left corner (y down), 1 or 0. A sample is
-/// lost if `valid` is 0 or a coordinate is empty, `nan` or infinite. Valid samples off the screen are kept unchanged. A
+/// Columns are found by name, in any order, and further ones are ignored: `t_s`, `x_px` and `y_px`, seconds and screen
+/// pixels from the top left corner (y down), and `valid`, 1 or 0 (`TRUE`, `false`, `1.0`), which may be absent. They
+/// end at commas, tabs, semicolons or spaces; decimal commas and quotes are accepted, and so are blank lines, a byte
+/// order mark, UTF-16 and CRLF. A sample is lost if `valid` is 0 or a coordinate is empty, `nan`, `NA`, `.` or
+/// infinite. Valid samples off the screen are kept unchanged. Of samples with equal times, the last valid one counts. A
 /// measure in the header may be followed by a remark (`1024x768 (inferred)`), which becomes the note `screen_px_note`,
-/// or be `unknown`; only `screen_px` must be known. Blank lines, a byte order mark and CRLF are accepted.
+/// or be `unknown`; only `screen_px` must be known.
 ///
-/// The columns `head_x_m,head_y_m,head_z_m` and `head_qx,head_qy,head_qz,head_qw` may follow: the [`HeadPose`] in every
-/// row, also where the gaze is lost. The screen is then fixed to the head.
+/// With the columns `head_x_m,head_y_m,head_z_m` and `head_qx,head_qy,head_qz,head_qw`, every row has a [`HeadPose`],
+/// also where the gaze is lost. The screen is then fixed to the head.
 ///
 /// # Errors
-/// [`Invalid`](InputError::Invalid). With the line number: bytes that are not UTF-8, a header line or row that cannot
-/// be parsed, a row without exactly the columns named, times that do not increase, an invalid pose. Without a line
-/// number: missing column names, and the errors of [`Scanpath::new`].
+/// [`Invalid`](InputError::Invalid). With the line number: bytes that are not text, a header line or row that cannot be
+/// parsed, a row without exactly the columns named, times that go back, an invalid pose. Without a line number: missing
+/// column names, and the errors of [`Scanpath::new`].
 pub fn parse_csv(name: &str, bytes: &[u8]) -> Result<Scanpath, InputError> {
-    let text = utf8(name, bytes)?;
+    parse_table(name, &decode(name, bytes)?, &|screen| screen).map(|(path, _)| path)
+}
+
+/// Size of a screen whose header does not state it, before it is replaced.
+const NO_SIZE: [u32; 2] = [0; 2];
+
+/// Parses the text of a scanpath file. `replaced` is the screen that counts, from that of the header. Also returns what
+/// was assumed.
+pub(super) fn parse_table(
+    name: &str,
+    text: &str,
+    replaced: &dyn Fn(Screen) -> Screen,
+) -> Result<(Scanpath, Vec<String>), InputError> {
     let mut header = Header::default();
-    let mut samples: Vec<Sample> = Vec::new();
-    let mut poses: Vec<HeadPose> = Vec::new();
-    // Number of columns, once their names are read.
-    let mut columns: Option<usize> = None;
-    for (index, line) in text.lines().enumerate() {
-        let line = line.trim();
-        let parsed = if line.is_empty() {
+    let mut merged = Merged::default();
+    let mut columns: Option<Own> = None;
+    let mut lines = text.lines().enumerate().map(|(index, line)| (index, line.trim_matches(['\r', ' ']))).peekable();
+    while let Some((index, line)) = lines.next() {
+        let parsed = if line.trim().is_empty() {
             Ok(())
-        } else if let Some(comment) = line.strip_prefix('#') {
-            header.line(comment)
-        } else if let Some(count) = columns {
-            row(line, count, samples.last()).map(|(sample, pose)| {
-                samples.push(sample);
-                poses.extend(pose);
-            })
-        } else if let Some(count) = named_columns(line) {
-            columns = Some(count);
-            Ok(())
+        } else if let Some(said) = comment(line) {
+            header.line(said)
+        } else if let Some(columns) = &columns {
+            columns.row(line, merged.samples.last()).map(|(sample, pose)| merged.push(sample, pose))
         } else {
-            Err(bad(
-                format!("{} instead of the column names", quote(line)),
-                format!(
-                    "the first line without # must be {COLUMNS}, or with poses of the head {COLUMNS},{POSE_COLUMNS}"
-                ),
-            ))
+            let first_row = lines.peek().map_or("", |(_, row)| row);
+            Own::new(line, first_row).map(|found| columns = Some(found))
         };
         parsed
             .map_err(|(problem, remedy)| InputError::invalid(format!("{name}, line {}", index + 1), problem, remedy))?;
@@ -124,29 +130,116 @@ pub fn parse_csv(name: &str, bytes: &[u8]) -> Result<Scanpath, InputError> {
             format!("the first line without # must be {COLUMNS}"),
         ));
     };
-    let Some(size_px) = header.size_px else {
+    let size_px = header.size_px.unwrap_or(NO_SIZE);
+    let screen = replaced(Screen { size_px, size_cm: header.size_cm, distance_cm: header.distance_cm });
+    if screen.size_px == NO_SIZE {
         return Err(InputError::invalid(
             name,
             "the screen's size is missing",
             "state it in the header as `# screen_px: WIDTHxHEIGHT`",
         ));
-    };
-    let screen = Screen { size_px, size_cm: header.size_cm, distance_cm: header.distance_cm };
-    let path = Scanpath::new(name, screen, header.about, samples)?;
-    if columns == COUNTS[1] { path.with_poses(poses) } else { Ok(path) }
+    }
+    let warnings = merged.warning(name).into_iter().collect();
+    let path = Scanpath::new(name, screen, header.about, merged.samples)?;
+    Ok((if columns.pose.is_some() { path.with_poses(merged.poses)? } else { path }, warnings))
 }
 
-/// Number of columns, if a line has their names.
-fn named_columns(line: &str) -> Option<usize> {
-    let names = || line.split(',').map(str::trim);
-    let count = if names().eq(COLUMNS.split(',')) {
-        COUNTS[0]
-    } else if names().eq(COLUMNS.split(',').chain(POSE_COLUMNS.split(','))) {
-        COUNTS[1]
-    } else {
-        return None;
-    };
-    Some(count)
+/// Samples by time; of those with equal times, the last valid one counts.
+#[derive(Default)]
+pub(super) struct Merged {
+    pub samples: Vec<Sample>,
+    poses: Vec<HeadPose>,
+    equal: usize,
+}
+
+impl Merged {
+    /// Adds a sample that is not before the last one.
+    pub fn push(&mut self, sample: Sample, pose: Option<HeadPose>) {
+        match self.samples.last_mut() {
+            Some(last) if last.t_s == sample.t_s => {
+                self.equal += 1;
+                if sample.px.is_some() || last.px.is_none() {
+                    *last = sample;
+                    if let (Some(last), Some(pose)) = (self.poses.last_mut(), pose) {
+                        *last = pose;
+                    }
+                }
+            }
+            _ => {
+                self.samples.push(sample);
+                self.poses.extend(pose);
+            }
+        }
+    }
+
+    /// What to say of equal times.
+    pub fn warning(&self, name: &str) -> Option<String> {
+        (self.equal > 0).then(|| {
+            format!("{name} has {} samples at the time of the one before; the last valid one counts", self.equal)
+        })
+    }
+}
+
+/// Columns of a scanpath file.
+struct Own {
+    columns: Columns,
+    time: Column,
+    at: [Column; 2],
+    valid: Option<Column>,
+    pose: Option<[Column; 7]>,
+}
+
+impl Own {
+    fn new(line: &str, first_row: &str) -> Result<Self, LineError> {
+        let columns = Columns::new(line, first_row);
+        let find = |name: &str| columns.find(name).map(|(_, column)| column);
+        let poses: Vec<Column> = POSE_COLUMNS.split(',').filter_map(find).collect();
+        match (find("t_s"), find("x_px"), find("y_px")) {
+            (Some(time), Some(x), Some(y)) if poses.is_empty() || poses.len() == 7 => {
+                let (at, valid, pose) = ([x, y], find("valid"), poses.try_into().ok());
+                Ok(Self { columns, time, at, valid, pose })
+            }
+            _ => Err(bad(
+                format!("{} instead of the column names", quote(line)),
+                format!(
+                    "the first line without # must be {COLUMNS}, or with poses of the head {COLUMNS},{POSE_COLUMNS}"
+                ),
+            )),
+        }
+    }
+
+    /// A row, not before the `previous` sample. The pose is `None` without columns for it.
+    fn row(&self, line: &str, previous: Option<&Sample>) -> Result<(Sample, Option<HeadPose>), LineError> {
+        let (row, expected) = (self.columns.row(line), self.columns.count());
+        let count = row.count(expected);
+        if count != expected {
+            return Err(bad(format!("{count} columns in {}", quote(line)), format!("expected {expected} columns")));
+        }
+        let text = row.cell(self.time);
+        let t_s: f64 = number(text)
+            .filter(|t: &f64| t.is_finite())
+            .ok_or_else(|| bad(format!("t_s is {}", quote(text)), "expected a time in seconds"))?;
+        if let Some(previous) = previous.filter(|p| t_s < p.t_s) {
+            return Err(bad(format!("t_s is {t_s} after {}", previous.t_s), "times must increase from row to row"));
+        }
+        let coordinate = |column: &str, text: &str| match number(text) {
+            Some(value) => Ok(value),
+            None if is_missing(text) => Ok(f32::NAN),
+            None => Err(bad(
+                format!("{column} is {}", quote(text)),
+                "expected a number of pixels, or nan where the gaze was lost",
+            )),
+        };
+        let px = [coordinate("x_px", row.cell(self.at[0]))?, coordinate("y_px", row.cell(self.at[1]))?];
+        let valid = match self.valid.map(|column| row.cell(column)) {
+            Some(text) if is_missing(text) => false,
+            Some(text) => truth(text)
+                .ok_or_else(|| bad(format!("valid is {}", quote(text)), "expected 1, or 0 where the gaze was lost"))?,
+            None => true,
+        };
+        let pose = self.pose.map(|columns| pose(&row, columns)).transpose()?;
+        Ok((Sample { t_s, px: (valid && px.iter().all(|v| v.is_finite())).then_some(px) }, pose))
+    }
 }
 
 /// Writes the format that [`read_csv`] reads. Numbers have as many digits as an exact round trip needs, and lost
@@ -188,30 +281,6 @@ pub fn write_csv(path: &Scanpath, out: &mut impl Write) -> std::io::Result<()> {
         writeln!(out)?;
     }
     out.flush()
-}
-
-/// Problem and remedy of a line.
-type LineError = (String, String);
-
-fn bad(problem: impl Into<String>, remedy: impl Into<String>) -> LineError {
-    (problem.into(), remedy.into())
-}
-
-/// A piece of the file for a one-line message: escaped and truncated.
-fn quote(text: &str) -> String {
-    const LONGEST: usize = 40;
-    let cut: String = text.chars().take(LONGEST).collect();
-    let dots = if cut.len() < text.len() { "..." } else { "" };
-    format!("{cut:?}{dots}")
-}
-
-fn utf8<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, InputError> {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    std::str::from_utf8(bytes).map_err(|e| {
-        let before = &bytes[..e.valid_up_to()];
-        let line = 1 + before.iter().filter(|&&b| b == b'\n').count();
-        InputError::invalid(format!("{name}, line {line}"), "not UTF-8 text", "give a scanpath as CSV text")
-    })
 }
 
 /// Header lines read so far.
@@ -262,6 +331,7 @@ impl Header {
         example: &str,
         parse: impl Fn(&str) -> Option<T>,
     ) -> Result<Option<T>, LineError> {
+        let value = value.trim_end_matches(FILL);
         let (word, remark) = value.split_once(char::is_whitespace).unwrap_or((value, ""));
         if !remark.trim().is_empty() {
             let note = format!("{key}_note");
@@ -292,62 +362,16 @@ fn pair<T: std::str::FromStr + Into<f64> + Copy>(text: &str) -> Option<[T; 2]> {
     Some([positive(a)?, positive(b)?])
 }
 
-/// A row of `expected` columns. The pose is `None` without columns for it.
-fn row(line: &str, expected: usize, previous: Option<&Sample>) -> Result<(Sample, Option<HeadPose>), LineError> {
-    let mut fields = [""; COUNTS[1]];
-    let mut count = 0;
-    for field in line.split(',') {
-        if let Some(slot) = fields.get_mut(count) {
-            *slot = field.trim();
-        }
-        count += 1;
-    }
-    if count != expected {
-        let names = if expected == COUNTS[0] { COLUMNS.to_owned() } else { format!("{COLUMNS},{POSE_COLUMNS}") };
-        return Err(bad(
-            format!("{count} columns in {}", quote(line)),
-            format!("expected the {expected} columns {names}"),
-        ));
-    }
-    let t_s: f64 = number(fields[0])
-        .filter(|t: &f64| t.is_finite())
-        .ok_or_else(|| bad(format!("t_s is {}", quote(fields[0])), "expected a time in seconds"))?;
-    if let Some(previous) = previous.filter(|p| t_s <= p.t_s) {
-        return Err(bad(format!("t_s is {t_s} after {}", previous.t_s), "times must increase from row to row"));
-    }
-    let coordinate = |column: &str, text: &str| {
-        if text.is_empty() {
-            return Ok(f32::NAN);
-        }
-        number(text).ok_or_else(|| {
-            bad(format!("{column} is {}", quote(text)), "expected a number of pixels, or nan where the gaze was lost")
-        })
-    };
-    let px = [coordinate("x_px", fields[1])?, coordinate("y_px", fields[2])?];
-    let valid = match fields[3] {
-        "1" => px.iter().all(|v| v.is_finite()),
-        "0" => false,
-        other => {
-            return Err(bad(format!("valid is {}", quote(other)), "expected 1, or 0 where the gaze was lost"));
-        }
-    };
-    let pose = if expected == COUNTS[1] { Some(pose(&fields[COUNTS[0]..])?) } else { None };
-    Ok((Sample { t_s, px: valid.then_some(px) }, pose))
-}
-
 /// Pose of the head from its seven columns.
-fn pose(fields: &[&str]) -> Result<HeadPose, LineError> {
+fn pose(row: &Row, columns: [Column; 7]) -> Result<HeadPose, LineError> {
     let mut values = [0.0; 7];
-    for ((value, text), column) in values.iter_mut().zip(fields).zip(POSE_COLUMNS.split(',')) {
+    for ((value, column), name) in values.iter_mut().zip(columns).zip(POSE_COLUMNS.split(',')) {
+        let text = row.cell(column);
         *value = number(text)
             .filter(|v: &f32| v.is_finite())
-            .ok_or_else(|| bad(format!("{column} is {}", quote(text)), HeadPose::EXPECTED))?;
+            .ok_or_else(|| bad(format!("{name} is {}", quote(text)), HeadPose::EXPECTED))?;
     }
     let [x, y, z, qx, qy, qz, qw] = values;
     let pose = HeadPose { position_m: [x, y, z], orientation: [qx, qy, qz, qw] };
     pose.fault().map_or(Ok(pose), |fault| Err(bad(fault, HeadPose::EXPECTED)))
-}
-
-fn number<T: std::str::FromStr>(text: &str) -> Option<T> {
-    text.parse().ok()
 }

@@ -47,6 +47,16 @@ pub trait FrameSource {
     /// Properties that hold for all frames.
     fn info(&self) -> &SourceInfo;
 
+    /// What was left out or assumed when the input was opened, a line each.
+    fn warnings(&self) -> &[String] {
+        &[]
+    }
+
+    /// What is read of the input's files, a line each.
+    fn contents(&self) -> &[String] {
+        &[]
+    }
+
     /// The frame that `request` asks for. Positions may come in any order.
     ///
     /// # Errors

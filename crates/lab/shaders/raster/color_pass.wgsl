@@ -117,6 +117,10 @@ fn shade(in: ColorVarying, @builtin(front_facing) front: bool) -> @location(0) v
     var opacity = 1.0;
     if (material.flags & FLAG_MASK) != 0u {
         opacity = clamp((base.w - material.cutoff) / edge + 0.5, 0.0, 1.0);
+        // What has the cutoff's alpha is opaque.
+        if abs(base.w - material.cutoff) <= ALPHA_ROUNDING {
+            opacity = 1.0;
+        }
     } else if (material.flags & FLAG_BLEND) != 0u {
         opacity = clamp(base.w, 0.0, 1.0);
     }

@@ -74,10 +74,13 @@ fn base_at(uv: vec2<f32>, color: vec4<f32>) -> vec4<f32> {
     return base;
 }
 
+// Interpolated colors of vertices may round below the value that all of them have; less than a step of 8 bits.
+const ALPHA_ROUNDING: f32 = 0x1p-11;
+
 // Alpha test: cutoff for MASK, more than half opaque for BLEND.
 fn passes_alpha_test(opacity: f32) -> bool {
     if (material.flags & FLAG_MASK) != 0u {
-        return opacity >= material.cutoff;
+        return opacity >= material.cutoff - ALPHA_ROUNDING;
     }
     return (material.flags & FLAG_BLEND) == 0u || opacity > 0.5;
 }

@@ -2,6 +2,7 @@
 
 use crate::error::InputError;
 use crate::error::one_line;
+use crate::scene::camera_forms::EXPECTED;
 use crate::scene::cameras;
 use crate::scene::cameras::Cameras;
 use glam::{DMat3, DMat4, DVec3};
@@ -16,6 +17,7 @@ pub struct CameraFile {
     pub fps: Option<f32>,
     /// Horizontal field of view in degrees, if the file states it.
     pub hfov_deg: Option<f32>,
+    kind: &'static str,
     path: CameraPath,
 }
 
@@ -44,7 +46,8 @@ struct KeyframesForm {
 }
 
 impl CameraFile {
-    /// Reads a `cameras.json` (poses in Blender's axes, z up) or keyframes in the scene's axes:
+    /// Reads a `cameras.json` (poses in Blender's axes, z up), the camera files of other programs (`docs/cameras.md`),
+    /// or keyframes in the scene's axes:
     /// `{"keyframes": [{"time_s": 0, "position": [x, y, z], "target": [x, y, z]}, ...]}`. The camera follows a smooth
     /// curve through the keyframes, with y up.
     ///
@@ -62,15 +65,12 @@ impl CameraFile {
     /// [`Invalid`](InputError::Invalid) if the text is neither form, has no camera, or has numbers out of range.
     pub fn parse(subject: &str, text: &[u8]) -> Result<Self, InputError> {
         let error = |problem: String| {
-            InputError::invalid(
-                subject,
-                problem,
-                "expected a cameras.json with camera_to_world for each frame, or {keyframes: [{time_s, position, target}]}",
-            )
+            let expected = format!("{EXPECTED}, or {{keyframes: [{{time_s, position, target}}]}}");
+            InputError::invalid(subject, one_line(&problem), expected)
         };
-        let form: serde_json::Value =
-            serde_json::from_slice(text).map_err(|e| error(one_line(&format!("is not JSON ({e})"))))?;
-        if form.get("keyframes").is_none() {
+        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+        let form: serde_json::Value = serde_json::from_slice(text).map_err(|e| error(format!("is not JSON ({e})")))?;
+        if form.get("keyframes").is_none() || form.get("camera_path").is_some() {
             let file = Cameras::parse(subject, text)?;
             // From Blender's axes (x, y, z) to the scene's (x, z, -y).
             let turn = DMat4::from_cols(
@@ -83,10 +83,18 @@ impl CameraFile {
             if poses.is_empty() {
                 return Err(error("has no camera".into()));
             }
-            return Ok(Self { fps: file.fps, hfov_deg: file.hfov_deg, path: CameraPath::Frames(poses) });
+            return Ok(Self {
+                fps: file.fps,
+                hfov_deg: file.hfov_deg,
+                kind: file.kind,
+                path: CameraPath::Frames(poses),
+            });
+        }
+        if form["keyframes"].get(0).is_some_and(|key| key.get("matrix").is_some()) {
+            return Err(error("has keyframes of nerfstudio and no camera_path; render the path in its viewer".into()));
         }
         let form: KeyframesForm =
-            serde_json::from_value(form).map_err(|e| error(one_line(&format!("is not the expected JSON ({e})"))))?;
+            serde_json::from_value(form).map_err(|e| error(format!("is not the expected JSON ({e})")))?;
         let hfov_deg = form.horizontal_fov_deg.map(|v| v as f32);
         if hfov_deg.is_some_and(|v| !(v > 0.0 && v < 180.0)) {
             return Err(error("has a horizontal_fov_deg that is not above 0 and below 180".into()));
@@ -107,7 +115,12 @@ impl CameraFile {
         if let Some(i) = keys.iter().position(|k| looking(DVec3::from(k.position), DVec3::from(k.target)).is_none()) {
             return Err(error(format!("has keyframe {i} whose target gives no direction to look in")));
         }
-        Ok(Self { fps, hfov_deg, path: CameraPath::Keyframes(keys) })
+        Ok(Self { fps, hfov_deg, kind: "keyframes", path: CameraPath::Keyframes(keys) })
+    }
+
+    /// What the file is, in words.
+    pub fn kind(&self) -> &'static str {
+        self.kind
     }
 
     /// Number of frames with a pose; `None` for keyframes, which define any number of frames.

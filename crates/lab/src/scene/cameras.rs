@@ -1,8 +1,8 @@
 //! `cameras.json`: frame rate, field of view and camera poses of a sequence.
 
+use super::camera_forms::{self, EXPECTED, FrameForm};
 use crate::error::{Bound, Exceeded, InputError, io_error, one_line};
 use glam::{DMat3, DMat4, DVec3};
-use serde::Deserialize;
 use std::fs;
 use std::path::Path;
 
@@ -15,23 +15,6 @@ const MAX_BYTES: u64 = 256 << 20;
 /// Tolerance for orthonormality of a rotation, and for a pair of matrices being inverse to each other. Rounding to
 /// eight digits errs by 1e-8; a scaled or sheared camera by far more than this tolerance.
 const RIGID_TOLERANCE: f64 = 1e-3;
-
-#[derive(Deserialize)]
-struct FileForm {
-    width: Option<u32>,
-    height: Option<u32>,
-    fps: Option<f64>,
-    horizontal_fov_deg: Option<f64>,
-    #[serde(default)]
-    frames: Vec<FrameForm>,
-}
-
-#[derive(Deserialize)]
-struct FrameForm {
-    frame: Option<u64>,
-    camera_to_world: Option<[[f64; 4]; 4]>,
-    world_to_camera: Option<[[f64; 4]; 4]>,
-}
 
 #[derive(Clone, Copy, Debug)]
 struct Pose {
@@ -46,6 +29,8 @@ pub struct Cameras {
     pub fps: Option<f32>,
     /// Horizontal field of view in degrees, above 0 and below 180.
     pub hfov_deg: Option<f32>,
+    /// What the file is.
+    pub(crate) kind: &'static str,
     subject: String,
     size: Option<[u32; 2]>,
     numbers: Vec<Option<u64>>,
@@ -70,13 +55,10 @@ impl Cameras {
     }
 
     pub(crate) fn parse(subject: &str, text: &[u8]) -> Result<Self, InputError> {
-        let form: FileForm = serde_json::from_slice(text).map_err(|e| {
-            InputError::invalid(
-                subject,
-                one_line(&format!("is not the expected JSON ({e})")),
-                "expected {fps, horizontal_fov_deg, width, height, frames: [{frame, camera_to_world, world_to_camera}]}, all optional",
-            )
-        })?;
+        let error = |problem: String| InputError::invalid(subject, one_line(&problem), EXPECTED);
+        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+        let value = serde_json::from_slice(text).map_err(|e| error(format!("is not the expected JSON ({e})")))?;
+        let form = camera_forms::read(value).map_err(error)?;
         let in_range = |name: &str, value: Option<f64>, max: f64| match value {
             Some(v) if !(v > 0.0 && v < max) => Err(InputError::invalid(
                 subject,
@@ -99,9 +81,10 @@ impl Cameras {
         }
         Ok(Self {
             fps: in_range("fps", form.fps, 100_000.0)?,
-            hfov_deg: in_range("horizontal_fov_deg", form.horizontal_fov_deg, 180.0)?,
+            hfov_deg: in_range("horizontal field of view", form.hfov_deg, 180.0)?,
+            kind: form.kind,
             subject: subject.to_owned(),
-            size: form.width.zip(form.height).map(|(w, h)| [w, h]),
+            size: form.size,
             numbers: form.frames.iter().map(|f| f.frame).collect(),
             poses,
         })
@@ -177,52 +160,58 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, InputError> {
 }
 
 fn pose(subject: &str, number: u64, frame: &FrameForm) -> Result<Option<Pose>, InputError> {
-    let load = |name: &str, rows: Option<[[f64; 4]; 4]>| {
-        rows.map(|rows| {
-            let matrix = DMat4::from_cols_array_2d(&rows).transpose();
-            match why_not_rigid(matrix) {
-                None => Ok(matrix),
-                Some(why) => Err(InputError::invalid(
-                    subject,
-                    format!("{name} of frame {number} {why}"),
-                    "expected a rotation and a translation, row-major, for column vectors",
-                )),
-            }
-        })
-        .transpose()
+    let (Some(pose), name) = (match (frame.camera_to_world, frame.world_to_camera) {
+        (None, Some(m)) => (Some(m.inverse()), "world_to_camera"),
+        (pose, _) => (pose, "camera_to_world"),
+    }) else {
+        return Ok(None);
     };
-    let world_from_camera = load("camera_to_world", frame.camera_to_world)?;
-    let camera_from_world = load("world_to_camera", frame.world_to_camera)?;
-    let (world_from_camera, camera_from_world) = match (world_from_camera, camera_from_world) {
-        (None, None) => return Ok(None),
-        (Some(m), None) => (m, m.inverse()),
-        (None, Some(m)) => (m.inverse(), m),
-        (Some(a), Some(b)) => (a, b),
-    };
-    let distance = world_from_camera.w_axis.truncate().length();
-    if !(world_from_camera * camera_from_world).abs_diff_eq(DMat4::IDENTITY, RIGID_TOLERANCE * (1.0 + distance)) {
-        return Err(InputError::invalid(
+    let world_from_camera = rigid(pose).map_err(|why| {
+        InputError::invalid(
             subject,
-            format!("camera_to_world and world_to_camera of frame {number} are not inverse to each other"),
-            "correct one of them, or remove it",
-        ));
+            format!("{name} of frame {number} {why}"),
+            "expected a rotation and a translation, row by row, for column vectors",
+        )
+    })?;
+    if let (Some(a), Some(b)) = (frame.camera_to_world, frame.world_to_camera) {
+        let distance = a.w_axis.truncate().length();
+        if !(a * b).abs_diff_eq(DMat4::IDENTITY, RIGID_TOLERANCE * (1.0 + distance)) {
+            return Err(InputError::invalid(
+                subject,
+                format!("camera_to_world and world_to_camera of frame {number} are not inverse to each other"),
+                "correct one of them, or remove it",
+            ));
+        }
     }
-    Ok(Some(Pose { world_from_camera, camera_from_world }))
+    let stated = frame.world_to_camera.filter(|_| pose == world_from_camera);
+    Ok(Some(Pose { world_from_camera, camera_from_world: stated.unwrap_or_else(|| world_from_camera.inverse()) }))
 }
 
-fn why_not_rigid(m: DMat4) -> Option<&'static str> {
+/// A pose without the scale of its axes, which moves no pixel; the error says why no camera has it.
+fn rigid(m: DMat4) -> Result<DMat4, &'static str> {
     let rotation = DMat3::from_mat4(m);
     if !m.is_finite() {
-        Some("is not finite")
-    } else if m.row(3).to_array() != [0.0, 0.0, 0.0, 1.0] {
-        Some("has a last row other than 0 0 0 1")
-    } else if !(rotation.transpose() * rotation).abs_diff_eq(DMat3::IDENTITY, RIGID_TOLERANCE) {
-        Some("scales or shears")
-    } else if rotation.determinant() < 0.0 {
-        Some("mirrors")
-    } else {
-        None
+        return Err("is not finite");
     }
+    if m.row(3).to_array() != [0.0, 0.0, 0.0, 1.0] {
+        return Err("has a last row other than 0 0 0 1");
+    }
+    let is_rigid = |r: DMat3| (r.transpose() * r).abs_diff_eq(DMat3::IDENTITY, RIGID_TOLERANCE);
+    let axes = [rotation.x_axis, rotation.y_axis, rotation.z_axis].map(DVec3::try_normalize);
+    let [Some(x), Some(y), Some(z)] = axes else {
+        return Err("has an axis of length 0, as no camera has");
+    };
+    let unscaled = DMat3::from_cols(x, y, z);
+    if !is_rigid(unscaled) {
+        return Err("shears");
+    }
+    if unscaled.determinant() < 0.0 {
+        return Err("mirrors");
+    }
+    if is_rigid(rotation) {
+        return Ok(m);
+    }
+    Ok(DMat4::from_cols(x.extend(0.0), y.extend(0.0), z.extend(0.0), m.w_axis))
 }
 
 #[cfg(test)]
@@ -247,7 +236,9 @@ mod tests {
     #[test]
     fn matrices_that_no_camera_has_are_refused() {
         for (bad, word) in [
-            ("[[2,0,0,0],[0,2,0,0],[0,0,2,0],[0,0,0,1]]", "scales"),
+            ("[[1,0.2,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]", "shears"),
+            ("[[1,0,0,0],[0,0,0,0],[0,0,1,0],[0,0,0,1]]", "length 0"),
+            ("[[1,0,0,0],[0,1,0],[0,0,1,0],[0,0,0,1]]", "rows of 4 numbers"),
             ("[[-1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]", "mirrors"),
             ("[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,1,0]]", "last row"),
             ("[[1,0,0,1e308],[0,1,0,0],[0,0,1,0],[0,0,0,1e400]]", "JSON"),

@@ -31,6 +31,7 @@ mod bounds;
 pub mod builtin;
 pub mod camera;
 pub mod camera_file;
+mod camera_forms;
 pub mod cameras;
 mod geometry;
 mod gltf_file;

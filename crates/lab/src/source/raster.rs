@@ -23,7 +23,7 @@ use afterimage::internal::filled;
 use afterimage::{Image, Lattice, Lattices};
 use glam::DMat4;
 use std::sync::Arc;
-use wgpu::{Buffer, BufferUsages, CommandEncoder, Device};
+use wgpu::{Buffer, BufferUsages, CommandEncoder, Device, Texture};
 
 impl ViewedScene {
     /// Uploads the scene to a device. Texture filtering is anisotropic except on software devices.
@@ -312,6 +312,24 @@ impl RasterSource {
         on_device(&self.device, &targets.atlas, self.raster.near())
     }
 
+    /// Records the color of chosen quads of frame `index`, whose depth and motion were rendered last. `list`: the
+    /// quads, in the form of `gpu::Afterimage::quad_list`. The texture is drawn to again with the next frame.
+    pub fn record_quads(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        index: u64,
+        jitter_px: [f32; 2],
+        list: &Buffer,
+    ) -> Texture {
+        let (views, _) = self.of.views(index);
+        let is_jittered = jitter_px != [0.0; 2];
+        let [view, previous] = views.map(|view| if is_jittered { view.jittered(jitter_px) } else { view });
+        let device = &self.device.device;
+        let targets = fitted(&mut self.points, device, self.of.info().size);
+        self.raster.record_quads(device, encoder, [&view, &previous], list, targets);
+        targets.atlas.color.clone()
+    }
+
     fn record_quad_views(
         &mut self,
         encoder: &mut CommandEncoder,
@@ -426,18 +444,12 @@ impl FrameSource for RasterSource {
     fn shade(&mut self, frame: &RenderedFrame, wish: &Wish) -> Result<Option<Shaded>, InputError> {
         let list = wish.on_device.as_ref().and_then(|list| list.downcast_ref::<Buffer>()).cloned();
         let list = list.unwrap_or_else(|| quad_list(&self.device.device, &wish.quads));
-        let ((), took) = self.submit_timed(|source, encoder| {
-            let (views, _) = source.of.views(frame.index);
-            let is_jittered = frame.jitter_px != [0.0; 2];
-            let [view, previous] = views.map(|v| if is_jittered { v.jittered(frame.jitter_px) } else { v });
-            let device = &source.device.device;
-            let targets = fitted(&mut source.points, device, source.of.info().size);
-            source.raster.record_quads(device, encoder, [&view, &previous], &list, targets);
-        })?;
-        let color = &self.points.as_ref().expect("they were drawn to").atlas.color;
+        let shade =
+            |source: &mut Self, encoder: &mut _| source.record_quads(encoder, frame.index, frame.jitter_px, &list);
+        let (color, took) = self.submit_timed(shade)?;
         let color = match wish.on_device {
-            Some(_) => ShadedColor::OnDevice(Arc::new(color.clone())),
-            None => ShadedColor::InMemory(read_color(&self.device, color)),
+            Some(_) => ShadedColor::OnDevice(Arc::new(color)),
+            None => ShadedColor::InMemory(read_color(&self.device, &color)),
         };
         Ok(Some(Shaded { color, took }))
     }

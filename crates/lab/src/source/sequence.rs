@@ -11,7 +11,7 @@ use crate::scene::cameras::Cameras;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A folder of `.exr` frames, sorted by the last number in their names (then by name), with an optional `cameras.json`.
+/// A folder of `.exr` frames, sorted by the number in their names that varies, with an optional `cameras.json`.
 /// Opening checks every header; pixels are decoded on request and not cached.
 ///
 /// A folder with a single frame is a still.
@@ -23,6 +23,8 @@ pub struct SequenceSource {
     has_depth: bool,
     cameras: Option<(Cameras, Vec<usize>)>,
     still: Option<StillSource>,
+    warnings: Vec<String>,
+    contents: Vec<String>,
 }
 
 impl SequenceSource {
@@ -30,15 +32,14 @@ impl SequenceSource {
     ///
     /// # Errors
     /// - [`Io`](InputError::Io): the folder or a file cannot be read.
-    /// - [`Request`](InputError::Request): the folder has no `.exr`.
+    /// - [`Request`](InputError::Request): the folder has no `.exr`, or frames of several sequences.
     /// - [`Limit`](InputError::Limit) and [`NotSupported`](InputError::NotSupported): as of [`ExrHeader::open`].
     /// - [`Invalid`](InputError::Invalid): a frame is damaged, truncated or without color; differs from the first in
     ///   size, or in whether it has depth or motion; a frame number is missing; several frames have no motion vectors;
     ///   or `cameras.json` is invalid or belongs to other frames.
     pub fn open(folder: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
         let name = folder.display().to_string();
-        let files = exr_files(folder)?;
-        let numbers: Vec<_> = files.iter().map(|f| frame_number(f)).collect();
+        let (files, numbers) = numbered_files(&name, exr_files(folder)?)?;
         if let [file] = files.as_slice() {
             let still = StillSource::open(file, limits)?.named(name);
             return Ok(Self {
@@ -46,6 +47,8 @@ impl SequenceSource {
                 limits: *limits,
                 has_depth: false,
                 cameras: None,
+                warnings: still.warnings().to_vec(),
+                contents: still.contents().to_vec(),
                 still: Some(still),
                 files,
             });
@@ -56,6 +59,7 @@ impl SequenceSource {
         if let Some(c) = &cameras {
             c.check_size(first.size())?;
         }
+        let (warnings, contents) = (first.warnings().to_vec(), first.contents().to_vec());
         let info = SourceInfo {
             name,
             size: first.size(),
@@ -68,7 +72,16 @@ impl SequenceSource {
             Some(c) => c.assign(&numbers)?.map(|poses| (c, poses)),
             None => None,
         };
-        Ok(Self { info, limits: *limits, has_depth: first.has_depth(), cameras, still: None, files })
+        Ok(Self {
+            info,
+            limits: *limits,
+            has_depth: first.has_depth(),
+            cameras,
+            still: None,
+            files,
+            warnings,
+            contents,
+        })
     }
 
     /// Paths of the frames in playback order.
@@ -80,6 +93,14 @@ impl SequenceSource {
 impl FrameSource for SequenceSource {
     fn info(&self) -> &SourceInfo {
         &self.info
+    }
+
+    fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    fn contents(&self) -> &[String] {
+        &self.contents
     }
 
     fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
@@ -147,7 +168,7 @@ fn playback(index: u64, n: u64) -> (usize, Step) {
     (file as usize, step)
 }
 
-/// The `.exr` files of a folder in playback order. Hidden files are skipped.
+/// The `.exr` files of a folder, by name. Hidden files are skipped.
 fn exr_files(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
     let subject = folder.display().to_string();
     let mut files = Vec::new();
@@ -165,20 +186,77 @@ fn exr_files(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
             "expected a folder of EXR frames, or the path of one image",
         ));
     }
-    files.sort_by_cached_key(|f| {
-        let number = frame_number(f);
-        (number.is_none(), number, f.file_name().map(|n| n.to_owned()))
-    });
+    files.sort();
     Ok(files)
 }
 
-/// The last run of digits in the file name, extension excluded.
-fn frame_number(path: &Path) -> Option<u64> {
-    let stem = path.file_stem()?.to_string_lossy();
-    let digits = |c: char| c.is_ascii_digit();
-    let end = stem.rfind(digits)? + 1;
-    let start = stem[..end].rfind(|c| !digits(c)).map_or(0, |i| i + stem[i..].chars().next().map_or(1, char::len_utf8));
-    stem[start..end].parse().ok()
+/// A file's name without its ending: the text around its numbers, in lower case, and the numbers.
+fn parts_of(file: &Path) -> (String, Vec<u64>) {
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
+    let (mut text, mut numbers, mut rest) = (String::new(), vec![], stem.as_str());
+    while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
+        let end = rest[start..].find(|c: char| !c.is_ascii_digit()).map_or(rest.len(), |n| start + n);
+        text.push_str(&rest[..start]);
+        match rest[start..end].parse() {
+            Ok(number) => {
+                text.push('#');
+                numbers.push(number);
+            }
+            // Longer than any frame number.
+            Err(_) => text.push_str(&rest[start..end]),
+        }
+        rest = &rest[end..];
+    }
+    text.push_str(rest);
+    (text, numbers)
+}
+
+/// Files in playback order, and their frame numbers: of the numbers in their names, the one that is another in every
+/// file. If several are, the last that has even steps, or else the last. Files without numbers are in order of their
+/// names.
+fn numbered_files(subject: &str, files: Vec<PathBuf>) -> Result<(Vec<PathBuf>, Vec<Option<u64>>), InputError> {
+    let parts: Vec<(String, Vec<u64>)> = files.iter().map(|file| parts_of(file)).collect();
+    if files.len() < 2 || parts.iter().all(|(_, numbers)| numbers.is_empty()) {
+        let numbers = vec![None; files.len()];
+        return Ok((files, numbers));
+    }
+    let file_name = |i: usize| files[i].file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let refuse = |problem: String| {
+        Err(InputError::request(subject, problem, "expected the frames of one sequence; keep one sequence in a folder"))
+    };
+    if let Some(other) = (1..files.len()).find(|&i| parts[i].0 != parts[0].0) {
+        let (a, b) = (file_name(0), file_name(other));
+        return refuse(format!("holds two sequences: {a} and {b} differ in more than numbers"));
+    }
+    let column = |place: usize| parts.iter().map(move |(_, numbers)| numbers[place]);
+    let sorted = |place: usize| {
+        let mut numbers: Vec<u64> = column(place).collect();
+        numbers.sort_unstable();
+        numbers
+    };
+    let places = 0..parts[0].1.len();
+    let varying: Vec<usize> = places.clone().filter(|&place| sorted(place).windows(2).all(|w| w[0] < w[1])).collect();
+    let is_even = |&&place: &&usize| {
+        let numbers = sorted(place);
+        numbers.windows(2).all(|w| w[1] - w[0] == numbers[1] - numbers[0])
+    };
+    let Some(&place) = varying.iter().rev().find(is_even).or(varying.last()) else {
+        let distinct = |&place: &usize| {
+            let mut numbers = sorted(place);
+            numbers.dedup();
+            numbers.len()
+        };
+        let place = places.max_by_key(distinct).unwrap_or(0);
+        let numbers: Vec<u64> = column(place).collect();
+        let pairs = (0..numbers.len()).flat_map(|i| (0..i).map(move |j| [j, i]));
+        let [a, b] = pairs.into_iter().find(|&[a, b]| numbers[a] == numbers[b]).unwrap_or([0, 1]);
+        let number = numbers[a];
+        return refuse(format!("has two frames of number {number}: {} and {}", file_name(a), file_name(b)));
+    };
+    let numbers: Vec<u64> = column(place).collect();
+    let mut order: Vec<usize> = (0..files.len()).collect();
+    order.sort_by_key(|&i| numbers[i]);
+    Ok((order.iter().map(|&i| files[i].clone()).collect(), order.iter().map(|&i| Some(numbers[i])).collect()))
 }
 
 /// Refuses a sequence with a missing frame, because the motion vectors of the frame after it refer to the missing one.
@@ -188,16 +266,15 @@ fn check_gaps(subject: &str, numbers: &[Option<u64>]) -> Result<(), InputError> 
     };
     let steps: Vec<u64> = numbers.windows(2).map(|w| w[1] - w[0]).collect();
     let smallest = steps.iter().copied().min().unwrap_or(0);
-    // If numbers repeat, they are not frame numbers.
     match steps.iter().position(|&s| s != smallest) {
-        Some(at) if smallest > 0 => Err(InputError::invalid(
+        Some(at) => Err(InputError::invalid(
             subject,
             format!("its frame numbers jump from {} to {}", numbers[at], numbers[at + 1]),
             format!(
                 "expected steps of {smallest}; add the missing frames, or put each unbroken run into a folder of its own"
             ),
         )),
-        _ => Ok(()),
+        None => Ok(()),
     }
 }
 
@@ -258,15 +335,40 @@ mod tests {
         assert_eq!(playback(u64::MAX, 2).0, 1);
     }
 
+    /// Frame numbers of files in playback order, or the error.
+    fn numbered(names: &[&str]) -> Result<Vec<(String, Option<u64>)>, String> {
+        let files = names.iter().map(PathBuf::from).collect();
+        let (files, numbers) = numbered_files("d", files).map_err(|e| e.to_string())?;
+        Ok(files.iter().map(|file| file.display().to_string()).zip(numbers).collect())
+    }
+
     #[test]
-    fn the_last_number_in_a_name_counts() {
-        let n = |s: &str| frame_number(Path::new(s));
-        assert_eq!(n("take2_shot10_0042.exr"), Some(42));
-        assert_eq!(n("frame0007_beauty.exr"), Some(7));
-        assert_eq!(n("ünï12.exr"), Some(12));
-        assert_eq!(n("12.exr"), Some(12));
-        assert_eq!(n("beauty.exr"), None);
-        assert_eq!(n("99999999999999999999999.exr"), None);
+    fn the_number_that_varies_counts() {
+        let numbers = |names: &[&str]| numbered(names).unwrap().into_iter().map(|(_, n)| n).collect::<Vec<_>>();
+        assert_eq!(numbers(&["t2_0041.exr", "t2_0043.exr", "t2_0042.exr"]), [Some(41), Some(42), Some(43)]);
+        assert_eq!(numbers(&["f0008_v2.exr", "f0010_v2.exr", "f0009_v2.exr"]), [Some(8), Some(9), Some(10)]);
+        // A time stamp beside the number, in the same order.
+        assert_eq!(numbers(&["1700000100_1.exr", "1700000233_2.exr", "1700000310_3.exr"]), [Some(1), Some(2), Some(3)]);
+        assert_eq!(numbers(&["1_1700000100.exr", "2_1700000233.exr", "3_1700000310.exr"]), [Some(1), Some(2), Some(3)]);
+        assert_eq!(numbers(&["9.exr", "10.exr", "11.exr"]), [Some(9), Some(10), Some(11)]);
+        assert_eq!(numbers(&["\u{fc}n\u{ef}12.exr", "\u{fc}n\u{ef}13.EXR"]), [Some(12), Some(13)]);
+        assert_eq!(numbers(&["b.exr", "a.exr"]), [None, None]);
+        assert_eq!(numbers(&["beauty.exr"]), [None]);
+    }
+
+    #[test]
+    fn two_sequences_in_a_folder_are_refused_by_name() {
+        for (names, expected) in [
+            (["a_1.exr", "b_1.exr"], "a_1.exr and b_1.exr"),
+            (["frame_1.L.exr", "frame_1.R.exr"], "frame_1.l.exr"),
+            (["f1.exr", "f01.exr"], "number 1: f1.exr and f01.exr"),
+            (["f-1.exr", "f1.exr"], "f-1.exr and f1.exr"),
+        ] {
+            let error = numbered(&names).unwrap_err();
+            assert!(error.to_lowercase().contains(expected), "{names:?}: {error}");
+        }
+        let error = numbered(&["shot1_1.exr", "shot1_2.exr", "shot2_1.exr", "shot2_2.exr"]).unwrap_err();
+        assert!(error.contains("two frames of number"), "{error}");
     }
 
     #[test]
@@ -274,7 +376,6 @@ mod tests {
         let gap = |v: &[u64]| check_gaps("d", &v.iter().map(|&n| Some(n)).collect::<Vec<_>>());
         assert!(gap(&[3, 4, 5]).is_ok());
         assert!(gap(&[0, 10, 20]).is_ok());
-        assert!(gap(&[1, 1, 2, 2]).is_ok());
         let e = gap(&[1, 2, 4]).unwrap_err().to_string();
         assert!(e.contains("from 2 to 4"), "{e}");
     }

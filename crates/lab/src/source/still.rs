@@ -9,6 +9,7 @@ use crate::error::one_line;
 use crate::frame::{RenderedFrame, SourceFrame};
 use crate::scene::cameras::Cameras;
 use afterimage::Image;
+use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use std::fs;
 use std::io::{Cursor, ErrorKind};
@@ -16,13 +17,15 @@ use std::path::Path;
 
 /// A still image, decoded once.
 ///
-/// PNG and JPEG are read as sRGB: gamma, color profiles, the orientation tag and alpha are ignored, and grey is
-/// replicated to all three channels. EXR is linear; its depth is used, its motion is ignored, and a `cameras.json` in
-/// its folder gives the field of view.
+/// PNG and JPEG are read as sRGB, or by a PNG's gamma; color profiles are ignored, and grey is replicated to all three
+/// channels. The orientation tag turns the picture. Transparent pixels are over black. EXR is linear; its depth is
+/// used, its motion is ignored, and a `cameras.json` in its folder gives the field of view.
 #[derive(Clone, Debug)]
 pub struct StillSource {
     info: SourceInfo,
     frame: SourceFrame,
+    warnings: Vec<String>,
+    contents: Vec<String>,
 }
 
 impl StillSource {
@@ -43,7 +46,7 @@ impl StillSource {
         match super::open::extension(path).as_str() {
             "exr" => Self::open_exr(path, subject, limits),
             "png" | "jpg" | "jpeg" => {
-                let color = guarded(&subject, || decode_8_or_16_bit(path, &subject, limits))?;
+                let (color, warnings) = guarded(&subject, || decode_8_or_16_bit(path, &subject, limits))?;
                 let frame = SourceFrame {
                     color,
                     depth: None,
@@ -53,7 +56,7 @@ impl StillSource {
                     cut: false,
                     nonfinite: 0,
                 };
-                Ok(Self::new(subject, frame, None))
+                Ok(Self { warnings, ..Self::new(subject, frame, None) })
             }
             _ => Err(InputError::not_supported(
                 subject,
@@ -80,7 +83,8 @@ impl StillSource {
             cut: false,
             nonfinite: exr.nonfinite,
         };
-        Ok(Self::new(name, frame, cameras))
+        let (warnings, contents) = (header.warnings().to_vec(), header.contents().to_vec());
+        Ok(Self { warnings, contents, ..Self::new(name, frame, cameras) })
     }
 
     fn new(name: String, frame: SourceFrame, cameras: Option<Cameras>) -> Self {
@@ -92,7 +96,7 @@ impl StillSource {
             hfov_deg: cameras.as_ref().and_then(|c| c.hfov_deg),
             still: true,
         };
-        Self { info, frame }
+        Self { info, frame, warnings: vec![], contents: vec![] }
     }
 
     /// Replaces the name.
@@ -107,6 +111,14 @@ impl FrameSource for StillSource {
         &self.info
     }
 
+    fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    fn contents(&self) -> &[String] {
+        &self.contents
+    }
+
     fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
         let frame = SourceFrame { cut: request.index == 0, ..self.frame.clone() };
         Ok(RenderedFrame::full_rate(request.index, request.gaze_px, frame))
@@ -118,7 +130,12 @@ const PIXEL_BYTES: u64 = 24;
 /// Memory of the decoders that does not depend on the image's size.
 const FIXED_BYTES: u64 = 1 << 24;
 
-fn decode_8_or_16_bit(path: &Path, subject: &str, limits: &ReadLimits) -> Result<Image<[f32; 3]>, InputError> {
+/// Linear color, and what was assumed.
+fn decode_8_or_16_bit(
+    path: &Path,
+    subject: &str,
+    limits: &ReadLimits,
+) -> Result<(Image<[f32; 3]>, Vec<String>), InputError> {
     let io = |e: std::io::Error| io_error(subject, &e);
     let most_bytes = limits.max_pixels.saturating_mul(PIXEL_BYTES).saturating_add(FIXED_BYTES);
     let mut allowed = Limits::no_limits();
@@ -150,11 +167,44 @@ fn decode_8_or_16_bit(path: &Path, subject: &str, limits: &ReadLimits) -> Result
     let error = |e: ImageError| image_error(subject, e, limits);
     let mut decoder = reader.into_decoder().map_err(error)?;
     let (w, h) = decoder.dimensions();
-    let size = limits.check(subject, u64::from(w), u64::from(h))?;
+    limits.check(subject, u64::from(w), u64::from(h))?;
     decoder.set_limits(allowed).map_err(error)?;
-    let decoded = DynamicImage::from_decoder(decoder).map_err(error)?;
-    Image::from_pixels(size, linear(decoded))
-        .map_err(|e| InputError::invalid(subject, e.to_string(), "export it again"))
+    // A damaged tag says nothing.
+    let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
+    let mut decoded = DynamicImage::from_decoder(decoder).map_err(error)?;
+    decoded.apply_orientation(orientation);
+    let mut warnings = vec![];
+    let gamma = png_gamma(&bytes);
+    if let Some(gamma) = gamma {
+        warnings.push(format!("its gamma is {gamma}, not that of sRGB; it is read by it"));
+    }
+    let size = [decoded.width(), decoded.height()];
+    let (pixels, is_transparent) = linear(decoded, gamma);
+    if is_transparent {
+        warnings.push("it has transparent pixels, which are read over black".into());
+    }
+    let image = Image::from_pixels(size, pixels);
+    let image = image.map_err(|e| InputError::invalid(subject, e.to_string(), "export it again"))?;
+    Ok((image, warnings))
+}
+
+/// Exponent of a PNG that states one other than that of sRGB: its values are light to the power of it. A chunk of sRGB
+/// or of a color profile takes precedence.
+fn png_gamma(bytes: &[u8]) -> Option<f64> {
+    let mut rest = bytes.strip_prefix(b"\x89PNG\r\n\x1a\n")?;
+    let mut gamma = None;
+    while let Some((head, after)) = rest.split_first_chunk::<8>() {
+        let length = u32::from_be_bytes([head[0], head[1], head[2], head[3]]) as usize;
+        match &head[4..] {
+            b"sRGB" | b"iCCP" => return None,
+            b"gAMA" => gamma = after.first_chunk::<4>().map(|value| f64::from(u32::from_be_bytes(*value)) / 1e5),
+            b"IDAT" => break,
+            _ => {}
+        }
+        rest = after.get(length.checked_add(4)?..)?;
+    }
+    // 1/2.2 stands for sRGB.
+    gamma.filter(|gamma| (0.1..=10.0).contains(gamma) && (gamma - 1.0 / 2.2).abs() > 0.01)
 }
 
 /// Whether a JPEG has an end marker after its first scan. The decoder silently fills missing data with grey.
@@ -177,8 +227,9 @@ fn jpeg_is_whole(bytes: &[u8]) -> bool {
     false
 }
 
-/// Linear pixels of a decoded sRGB image.
-fn linear(decoded: DynamicImage) -> Vec<[f32; 3]> {
+/// Linear pixels of a decoded image, over black, and whether any was transparent. `gamma`: exponent of its values, if
+/// they are not sRGB.
+fn linear(decoded: DynamicImage, gamma: Option<f64>) -> (Vec<[f32; 3]>, bool) {
     let deep = matches!(
         decoded,
         DynamicImage::ImageLuma16(_)
@@ -186,18 +237,38 @@ fn linear(decoded: DynamicImage) -> Vec<[f32; 3]> {
             | DynamicImage::ImageRgb16(_)
             | DynamicImage::ImageRgba16(_)
     );
-    if deep {
-        linear_pixels(decoded.into_rgb16().as_raw(), u32::from(u16::MAX))
-    } else {
-        linear_pixels(decoded.into_rgb8().as_raw(), u32::from(u8::MAX))
+    match (deep, decoded.color().has_alpha()) {
+        (true, false) => (linear_pixels(decoded.into_rgb16().as_raw(), u16::MAX.into(), gamma), false),
+        (false, false) => (linear_pixels(decoded.into_rgb8().as_raw(), u8::MAX.into(), gamma), false),
+        (true, true) => over_black(decoded.into_rgba16().as_raw(), u16::MAX.into(), gamma),
+        (false, true) => over_black(decoded.into_rgba8().as_raw(), u8::MAX.into(), gamma),
     }
 }
 
+/// Linear value of each encoded one from 0 to `max`.
+fn table(max: u32, gamma: Option<f64>) -> Vec<f32> {
+    let decode = |v: f64| gamma.map_or_else(|| srgb_to_linear(v), |gamma| v.powf(1.0 / gamma));
+    (0..=max).map(|i| decode(f64::from(i) / f64::from(max)) as f32).collect()
+}
+
 /// Linear values of encoded RGB samples from 0 to `max`.
-fn linear_pixels<T: Copy + Into<u32>>(encoded: &[T], max: u32) -> Vec<[f32; 3]> {
-    let table: Vec<f32> = (0..=max).map(|i| srgb_to_linear(f64::from(i) / f64::from(max)) as f32).collect();
+fn linear_pixels<T: Copy + Into<u32>>(encoded: &[T], max: u32, gamma: Option<f64>) -> Vec<[f32; 3]> {
+    let table = table(max, gamma);
     let pixels = encoded.chunks_exact(3);
     pixels.map(|p| [p[0], p[1], p[2]].map(|c| table[c.into() as usize])).collect()
+}
+
+/// Linear values of encoded RGBA samples from 0 to `max`, over black, and whether any is transparent.
+fn over_black<T: Copy + Into<u32>>(encoded: &[T], max: u32, gamma: Option<f64>) -> (Vec<[f32; 3]>, bool) {
+    let table = table(max, gamma);
+    let mut is_transparent = false;
+    let pixels = encoded.chunks_exact(4).map(|p| {
+        let alpha: u32 = p[3].into();
+        is_transparent |= alpha < max;
+        let coverage = alpha as f32 / max as f32;
+        [p[0], p[1], p[2]].map(|c| table[c.into() as usize] * coverage)
+    });
+    (pixels.collect(), is_transparent)
 }
 
 /// IEC 61966-2-1, for values from 0 to 1.

@@ -109,7 +109,7 @@ fn every_planted_error_in_taau_is_caught() {
         // Settled history that does not agree with its neighbourhood.
         ("confidence = min(confidence, agreeing(near.", "confidence = max(confidence, agreeing(near."),
         ("vec2<i32>(tap % 3, tap / 3) - 1", "vec2<i32>(tap % 3, min(tap / 3, 1)) - 1"),
-        ("select(-1.0, lod_of(result.confidence), sampled || valid)", "lod_of(result.confidence)"),
+        ("select(-1.0, lod_of(result.confidence), sampled || valid || is_filled)", "lod_of(result.confidence)"),
     ];
     all_caught("taau_pass", settings(MethodKind::Taau, Filter::Mip), false, &errors);
 }

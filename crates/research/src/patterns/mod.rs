@@ -152,6 +152,7 @@ pub fn bench(args: &PatternsArgs) -> Result<(), Failure> {
     let reports = stage.compare(&patterns, &stage.display(&linear), args.frames, &out)?;
     let table = markdown(&reports);
     out.text("patterns.md", &table)?;
+    out.finish()?;
     let report = Report {
         tool: "afterimage",
         version: env!("CARGO_PKG_VERSION"),

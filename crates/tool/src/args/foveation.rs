@@ -12,10 +12,11 @@ use clap::Args;
 /// Foveation simulator, and the resolution by eccentricity.
 #[derive(Args, Clone, Debug)]
 pub struct FoveationArgs {
-    /// How frames are foveated. sparse: one moving sample a block, which scenes render alone; given frames simulate it.
-    /// quads: one full-rate view, of which each method chooses the quads of 2x2 pixels that are shaded; given frames
+    /// How frames are foveated. quads: one full-rate view, of which each method chooses the quads of 2x2 pixels that
+    /// are shaded; given frames simulate it. sparse: one moving sample a block, which scenes render alone; given frames
     /// simulate it. mip, gauss and block simulate blur on full-rate frames; layers and uniform render views of
-    /// rasterised scenes. Default: sparse for scenes without --sampling, else mip
+    /// rasterised scenes. Default: quads for rasterised scenes (sparse with --order, --geometry or a rate above 8),
+    /// sparse for traced ones without --sampling, else mip
     #[arg(long = "foveation", value_parser = by_name::<FilterName>())]
     pub filter: Option<FilterName>,
     /// Diameter of the full-rate region, degrees
@@ -37,6 +38,10 @@ pub struct FoveationArgs {
     /// default: 2.5
     #[arg(long, value_parser = parse_percent, value_name = "PERCENT")]
     pub budget: Option<f32>,
+    /// With --foveation quads: shades this share of the pixels everywhere alike, without a gaze, percent, 0 to 100; a
+    /// temporal upscaler, for example with 25. --fovea, --mid, the rates and --budget follow from it
+    #[arg(long, value_parser = parse_percent, value_name = "PERCENT", conflicts_with_all = ["fovea", "mid", "rate_mid", "rate_far", "budget"])]
+    pub share: Option<f32>,
     /// Side of the pixels of --foveation uniform, in pixels of the full-rate frame, 1 to 256; need not be whole;
     /// default: 2
     #[arg(long, value_parser = parse_scale, value_name = "S")]
@@ -73,22 +78,28 @@ impl Named for Jitter {
 }
 
 impl FoveationArgs {
-    /// Fills in defaults that depend on the input. `is_sparse`: whether frames are sparse by default. `is_rendered`:
+    /// Fills in defaults that depend on the input. `default`: how its frames are foveated by default. `is_rendered`:
     /// whether samples are rendered, not taken from given frames.
     #[must_use]
-    pub fn with_defaults(self, is_sparse: bool, is_rendered: bool) -> Self {
+    pub fn with_defaults(self, default: Filter, is_rendered: bool) -> Self {
         if self.is_jittered() && self.filter() == FilterName::Of(Filter::Off) {
             let filter = Some(FilterName::Of(Filter::Sparse));
             let sparse = Self { filter, fovea: 0.0, mid: 0.0, rate_mid: Some(1), rate_far: Some(1), ..self };
-            return sparse.with_defaults(is_sparse, is_rendered);
+            return sparse.with_defaults(default, is_rendered);
         }
-        let filter = FilterName::Of(if is_sparse { Filter::Sparse } else { Filter::Mip });
-        let named = Self { filter: Some(self.filter.unwrap_or(filter)), ..self };
+        let default = if default == Filter::Quads && self.needs_lattices() { Filter::Sparse } else { default };
+        let named = Self { filter: Some(self.filter.unwrap_or(FilterName::Of(default))), ..self };
         let geometry = match named.may_lack_geometry() && is_rendered {
             true => SparseGeometry::Samples,
             false => SparseGeometry::Full,
         };
         Self { geometry: Some(named.geometry.unwrap_or(geometry)), ..named }
+    }
+
+    /// Whether an option says how samples of lattices lie, or how coarse they are.
+    fn needs_lattices(&self) -> bool {
+        let is_coarse = [self.rate_mid, self.rate_far].into_iter().flatten().any(|rate| rate > 8);
+        is_coarse || self.geometry.is_some() || self.order != SampleOrder::Bayer
     }
 
     /// How frames are foveated.
@@ -134,6 +145,9 @@ impl FoveationArgs {
             let rate = (self.scale().ceil() as u32).next_power_of_two();
             let no_region = Foveation { fovea_deg: 0.0, mid_deg: 0.0, blend_deg: 0.0, ..Foveation::default() };
             return Foveation { rate_mid: rate, rate_far: rate, ..no_region };
+        }
+        if let Some(percent) = self.share.filter(|_| self.is_quads()) {
+            return Foveation::uniform(percent / 100.0);
         }
         let [rate_mid, rate_far] = self.rates();
         Foveation {
@@ -197,6 +211,9 @@ impl FoveationArgs {
         }
         if self.budget.is_some() && !self.is_quads() {
             return refuse("--budget: applies to frames shaded by quads only; add --foveation quads".into());
+        }
+        if self.share.is_some() && !self.is_quads() {
+            return refuse("--share: applies to frames shaded by quads only; add --foveation quads".into());
         }
         if self.scale.is_some() && self.filter() != FilterName::Uniform {
             return refuse("--scale: applies to uniform frames only; add --foveation uniform".into());

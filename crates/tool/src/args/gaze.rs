@@ -1,9 +1,10 @@
 //! `--gaze`, `--gaze-map`, `--start`: resolved to one position per frame.
 
+use super::gaze_log::{GazeLogArgs, warn};
 use super::{Named, by_name};
 use crate::failure::Failure;
 use afterimage::ViewGeometry;
-use afterimage_lab::scanpath::{FrameGaze, GazeMap, HeadPath, Scanpath, Screen, SyntheticOptions, generate, read_csv};
+use afterimage_lab::scanpath::{FrameGaze, GazeMap, HeadPath, Scanpath, Screen, SyntheticOptions, generate};
 use clap::Args;
 use std::path::Path;
 
@@ -13,7 +14,7 @@ pub(super) const DEFAULT_SECONDS: f64 = 5.0;
 /// Gaze of a clip.
 #[derive(Args, Clone, Debug)]
 pub struct GazeArgs {
-    /// Scanpath in screen pixels (FILE.csv), one fixed frame pixel (X,Y), or synthetic[:SEED]
+    /// Scanpath or export of an eye tracker (FILE; docs/gaze-logs.md), one fixed frame pixel (X,Y), or synthetic[:SEED]
     #[arg(long, default_value = "synthetic:0", value_name = "GAZE", allow_hyphen_values = true)]
     pub gaze: String,
     /// Map from screen to frame: keep visual angles, or stretch; default: angle if the file states the screen's
@@ -23,6 +24,8 @@ pub struct GazeArgs {
     /// Start time in the scanpath, seconds
     #[arg(long, default_value_t = 0.0, value_name = "S")]
     pub start: f64,
+    #[command(flatten)]
+    pub log: GazeLogArgs,
 }
 
 impl Named for GazeMap {
@@ -59,21 +62,31 @@ impl GazeArgs {
         let is_late = latency_ms > 0.0;
         let default_frames = (DEFAULT_SECONDS * f64::from(fps)).ceil() as u64;
         if let Some(px) = fixed(&self.gaze)? {
+            self.log.refuse_for(&format!("--gaze {}", self.gaze))?;
             let count = frames.unwrap_or(default_frames) as usize;
             let px = vec![Some(px); count];
             return Ok(Track { late_px: is_late.then(|| px.clone()), px, map: "none" });
         }
         let synthetic = synthetic_seed(&self.gaze)?;
+        if synthetic.is_some() {
+            self.log.refuse_for(&format!("--gaze {}", self.gaze))?;
+        }
+        let mut warnings = vec![];
         let path = match (head, synthetic) {
             (Some(head), _) => head.scanpath().clone(),
             (None, Some(seed)) => {
                 let seconds = frames.unwrap_or(default_frames) as f64 / f64::from(fps) + self.start;
                 make_synthetic(seed, seconds + 0.1, view)?.into()
             }
-            (None, None) => read_csv(Path::new(&self.gaze))?.into(),
+            (None, None) => {
+                let log = self.log.read(&self.gaze, None)?;
+                warnings = log.warnings;
+                log.scanpath.into()
+            }
         };
         let map = self.gaze_map.unwrap_or_else(|| GazeMap::default_for(path.screen()));
         let gaze = FrameGaze::new(&path, view, map, self.start, f64::from(fps))?;
+        warn(&warnings);
         let available = if synthetic.is_some() { default_frames } else { gaze.frames() };
         let count = frames.unwrap_or(available);
         let px: Vec<_> = (0..count).map(|i| gaze.px(i)).collect();

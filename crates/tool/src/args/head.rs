@@ -1,11 +1,11 @@
 //! `--camera head`: the scanpath that moves the camera, and gives the gaze in it.
 
 use super::gaze::{DEFAULT_SECONDS, GazeArgs, fixed, synthetic_seed};
+use super::gaze_log::warn;
 use crate::failure::Failure;
-use afterimage_lab::scanpath::{HeadOptions, HeadPath, read_csv};
+use afterimage_lab::scanpath::{HeadOptions, HeadPath};
 use afterimage_lab::scene::{Scene, SceneLimits};
 use afterimage_lab::source::{head_in_scene, is_scene};
-use std::path::Path;
 
 /// Smallest number of samples per second of a generated head.
 const LEAST_RATE_HZ: f64 = 500.0;
@@ -49,7 +49,11 @@ pub fn head_path(
                 gaze.gaze
             )));
         }
-        None => read_csv(Path::new(&gaze.gaze))?,
+        None => {
+            let log = gaze.log.read(&gaze.gaze, None)?;
+            warn(&log.warnings);
+            log.scanpath
+        }
     };
     Ok(Some(HeadPath::new(path.into(), gaze.start)?))
 }

@@ -39,10 +39,10 @@ pub struct InputArgs {
     pub spp: u32,
     #[command(flatten)]
     pub paths: PathArgs,
-    /// Camera of a scene: one of its cameras by name, a .json file (a cameras.json, or a path of keyframes), or
-    /// lateral, orbit, walk (the head of a walking person), framing, head (the poses of the head in --gaze FILE.csv, or
-    /// somebody who looks around with head and eye with --gaze synthetic:SEED), head-walk (the same, walking); default:
-    /// the scene's first camera, which glides sideways if nothing in the scene moves
+    /// Camera of a scene: one of its cameras by name, a .json file (cameras.json, transforms.json, keyframes ...;
+    /// docs/cameras.md), or lateral, orbit, walk (the head of a walking person), framing, head (the poses of the head
+    /// in --gaze FILE.csv, or somebody who looks around with head and eye with --gaze synthetic:SEED), head-walk (the
+    /// same, walking); default: the scene's first camera, which glides sideways if nothing in the scene moves
     #[arg(long, value_name = "NAME|FILE.json")]
     pub camera: Option<String>,
     /// Limit on the size of input images, million pixels
@@ -115,7 +115,9 @@ impl InputArgs {
 
     /// Opens an input that needs no renderer.
     pub fn read(&self) -> Result<Box<dyn FrameSource + Send>, Failure> {
-        Ok(source::open(&self.name, &self.limits(), &self.scene_options())?)
+        let source = source::open(&self.name, &self.limits(), &self.scene_options())?;
+        warn(source.warnings());
+        Ok(source)
     }
 
     /// Opens a scene for rasterization: on the methods' device, or, since it needs one, on any if they run on the CPU.

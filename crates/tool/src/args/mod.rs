@@ -3,6 +3,7 @@
 pub mod backend;
 mod foveation;
 pub mod gaze;
+pub mod gaze_log;
 pub mod head;
 pub mod input;
 mod method;
@@ -16,6 +17,7 @@ pub use foveation::{FilterName, FoveationArgs};
 pub use method::{MethodArgs, MethodName};
 pub use named::{Named, by_name};
 pub use number::{
-    parse_exposure, parse_fps, parse_frames, parse_hfov, parse_latency, parse_percent, parse_samples, parse_size,
+    parse_distance_mm, parse_exposure, parse_fps, parse_frames, parse_hfov, parse_latency, parse_percent,
+    parse_samples, parse_size, parse_size_mm,
 };
 pub use picture::FormatName;

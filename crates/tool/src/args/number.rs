@@ -12,6 +12,19 @@ pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
+/// `WxH` in millimetres.
+pub fn parse_size_mm(text: &str) -> Result<[f32; 2], String> {
+    let expected = "expected WxH in millimeters, such as 531x299";
+    let (w, h) = text.split_once('x').ok_or(expected)?;
+    let side = |text: &str| text.parse().ok().filter(|v: &f32| v.is_finite() && *v > 0.0);
+    side(w).zip(side(h)).map(|(w, h)| [w, h]).ok_or_else(|| expected.into())
+}
+
+/// A distance in millimetres.
+pub fn parse_distance_mm(text: &str) -> Result<f32, String> {
+    within(text, "above 0 and at most 1000000 millimeters", |v| *v > 0.0 && *v <= 1e6)
+}
+
 /// Samples per pixel.
 pub fn parse_samples(text: &str) -> Result<u32, String> {
     within(text, "1 to 1048576 samples", |v| (1..=1 << 20).contains(v))

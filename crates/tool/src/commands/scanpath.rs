@@ -1,22 +1,37 @@
-//! `afterimage scanpath`: write a synthetic scanpath.
+//! `afterimage scanpath`: write a synthetic scanpath, or that of an eye tracker's export.
 
-use crate::args::parse_size;
+use crate::args::gaze_log::{GazeLogArgs, warn};
+use crate::args::{Named, by_name, parse_size};
 use crate::failure::Failure;
 use afterimage_lab::scanpath::{
-    Event, EventKind, HeadOptions, Scanpath, Screen, SyntheticOptions, generate, generate_head, in_a_room, write_csv,
+    Event, EventKind, HeadOptions, Scanpath, Screen, SyntheticOptions, Vendor, generate, generate_head, in_a_room,
+    write_csv,
 };
 use afterimage_lab::whole_file::write_whole;
 use clap::Args;
 use std::path::PathBuf;
 
-/// Write a synthetic scanpath: fixations, drift, microsaccades, saccades; of eye and head with --head
+/// Write a synthetic scanpath: fixations, drift, microsaccades, saccades; of eye and head with --head. Or convert an
+/// eye tracker's export
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:\n  afterimage scanpath --seconds 10 --seed 3 --out viewing.csv\n  \
     afterimage scanpath --head --walk --seconds 10 --rate 90 --out head.csv\n  \
-    afterimage run scene.glb --camera head --gaze head.csv --hfov 90 --out out/head\n\n\
+    afterimage run scene.glb --camera head --gaze head.csv --hfov 90 --out out/head\n  \
+    afterimage scanpath --from tobii recording.tsv --screen-px 1920x1080 --out viewing.csv\n\n\
     With --head, seven columns are added: position of the head (head_x_m ..., meters) and its orientation (head_qx ...,\n\
     a quaternion) with x right, y up, -z ahead. The screen is then fixed to the head: 2000x2000 pixels, 100 degrees wide.")]
 pub struct ScanpathArgs {
+    /// Gaze log to convert: an eye tracker's export as it is (docs/gaze-logs.md), or a scanpath of any dialect
+    #[arg(
+        value_name = "FILE",
+        conflicts_with_all = ["seconds", "rate", "screen", "hfov", "head", "walk", "pursuits", "seed"]
+    )]
+    pub file: Option<String>,
+    /// Whose export FILE is
+    #[arg(long, value_parser = by_name::<From>(), default_value = "auto", requires = "file", value_name = "NAME")]
+    pub from: From,
+    #[command(flatten)]
+    pub log: GazeLogArgs,
     /// Duration, seconds
     #[arg(long, default_value_t = 5.0, value_name = "S")]
     pub seconds: f64,
@@ -46,15 +61,40 @@ pub struct ScanpathArgs {
     pub out: PathBuf,
 }
 
+/// Values of `--from`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum From {
+    /// Found out by the file's columns.
+    Auto,
+    /// The export of a vendor.
+    Of(Vendor),
+}
+
+impl Named for From {
+    fn rows() -> Vec<(Self, &'static str, &'static str)> {
+        let text = |vendor| match vendor {
+            Vendor::Tobii => "Tobii Pro Lab, Tobii Studio, Tobii Pro SDK",
+            Vendor::Pupil => "Pupil Core: gaze_positions.csv, also of a surface",
+            Vendor::Neon => "Neon and Pupil Invisible: gaze.csv, also of Pupil Cloud's mappers",
+            Vendor::Gazepoint => "Gazepoint Analysis: all_gaze.csv",
+            Vendor::Varjo => "Varjo Base: varjo_gaze_output",
+            Vendor::Sranipal => "Vive Pro Eye with SRanipal: gaze_direct_L.x ...",
+            Vendor::Eyelink => "EyeLink: ASC text, sample report",
+            Vendor::Webgazer => "WebGazer: x, y in pixels of the page, t in milliseconds",
+        };
+        let vendors = Vendor::ALL.into_iter().map(|vendor| (Self::Of(vendor), vendor.name(), text(vendor)));
+        [(Self::Auto, "auto", "Found out by the columns")].into_iter().chain(vendors).collect()
+    }
+}
+
 /// The subcommand.
 pub fn scanpath(args: &ScanpathArgs) -> Result<(), Failure> {
+    if let Some(file) = &args.file {
+        return converted(args, file);
+    }
+    args.log.refuse_for("a generated scanpath")?;
     let (path, events) = if args.head { with_head(args)? } else { on_screen(args)? };
-    write_whole(&args.out, |file| write_csv(&path, file)).map_err(|e| {
-        Failure::Input(format!(
-            "{}: cannot be written ({e}); give --out a file in a folder that can be written",
-            args.out.display()
-        ))
-    })?;
+    write(args, &path)?;
     let count = |kind| events.iter().filter(|e| e.kind == kind).count();
     say!(
         "{}: {} s, {} fixations, {} saccades, {} microsaccades",
@@ -65,6 +105,35 @@ pub fn scanpath(args: &ScanpathArgs) -> Result<(), Failure> {
         count(EventKind::Microsaccade)
     );
     Ok(())
+}
+
+/// Converts a gaze log.
+fn converted(args: &ScanpathArgs, file: &str) -> Result<(), Failure> {
+    let from = match args.from {
+        From::Auto => None,
+        From::Of(vendor) => Some(vendor),
+    };
+    let log = args.log.read(file, from)?;
+    warn(&log.warnings);
+    write(args, &log.scanpath)?;
+    say!(
+        "{}: {:.3} s, {} samples ({} lost), from {}",
+        args.out.display(),
+        log.scanpath.duration_s(),
+        log.scanpath.samples().len(),
+        log.scanpath.lost(),
+        log.vendor.map_or("a scanpath", Vendor::name)
+    );
+    Ok(())
+}
+
+fn write(args: &ScanpathArgs, path: &Scanpath) -> Result<(), Failure> {
+    write_whole(&args.out, |file| write_csv(path, file)).map_err(|e| {
+        Failure::Input(format!(
+            "{}: cannot be written ({e}); give --out a file in a folder that can be written",
+            args.out.display()
+        ))
+    })
 }
 
 fn on_screen(args: &ScanpathArgs) -> Result<(Scanpath, Vec<Event>), Failure> {

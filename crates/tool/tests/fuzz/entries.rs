@@ -11,7 +11,7 @@ use afterimage::{
 };
 use afterimage_cli::sweep::Plan;
 use afterimage_lab::error::InputError;
-use afterimage_lab::scanpath::{FrameGaze, GazeMap, parse_csv, write_csv};
+use afterimage_lab::scanpath::{FrameGaze, GazeLogOptions, GazeMap, parse_csv, parse_gaze_log, write_csv};
 use afterimage_lab::scene::camera_file::CameraFile;
 use afterimage_lab::scene::{Scene, SceneLimits};
 use afterimage_lab::source::{ReadLimits, SceneOptions};
@@ -44,8 +44,13 @@ const IMAGES: ReadLimits = ReadLimits { max_pixels: 1 << 16 };
 const SCENES: SceneLimits =
     SceneLimits { max_triangles: 2000, max_texels: 1 << 16, max_file_bytes: 1 << 20, max_json_bytes: 1 << 20 };
 
-/// A scanpath (CSV).
+/// A scanpath (CSV), or an eye tracker's export.
 pub fn scanpath(bytes: &[u8]) {
+    let options = GazeLogOptions { screen_px: Some([64, 36]), ..GazeLogOptions::default() };
+    if let Some(log) = sound(parse_gaze_log("fuzz.csv", bytes, &options)) {
+        assert!(log.scanpath.samples().is_sorted_by(|a, b| a.t_s < b.t_s));
+        assert!(log.warnings.iter().all(|warning| !warning.contains('\n')));
+    }
     let Some(path) = sound(parse_csv("fuzz.csv", bytes)) else { return };
     let samples = path.samples();
     assert!(samples.iter().all(|s| s.t_s.is_finite()) && samples.is_sorted_by(|a, b| a.t_s < b.t_s));

@@ -1,6 +1,8 @@
 //! The command-line tool as a process: files and errors.
 
 mod bench;
+mod cameras;
+mod gaze_logs;
 mod head;
 mod info;
 mod latency;

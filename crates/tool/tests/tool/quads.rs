@@ -60,6 +60,21 @@ fn reports_say_how_much_was_shaded() {
     }
 }
 
+/// Without a gaze: as much everywhere, in every frame.
+#[test]
+fn a_share_is_shaded_everywhere_alike() {
+    let folder = Folder::new();
+    let out = folder.text("out");
+    let more = words("--size 240x135 --frames 6 --share 25 --jitter halton --reference-samples 1");
+    succeeds(&run("analytic:occluder", &out, &quads(&more)));
+    let report = read_json(&folder.path("out").join("report.json"));
+    let foveation = ["fovea_deg", "mid_deg", "rate_mid", "rate_far", "budget_percent"];
+    assert_eq!(foveation.map(|key| report["foveation"][key].as_f64().unwrap()), [0.0, 0.0, 4.0, 4.0, 12.5]);
+    let shares = column(&folder.path("out"), "smr", "shaded_share");
+    println!("shares {shares:?}");
+    assert!(shares.iter().all(|share| (0.2..0.255).contains(&share.unwrap())), "{shares:?}");
+}
+
 #[test]
 fn other_frames_have_no_shaded_share() {
     let folder = Folder::new();
@@ -115,7 +130,8 @@ fn what_quads_cannot_do_is_refused() {
         refused(still, &[&format!("--budget={budget}")], &["--budget", "0 to 100 percent"]);
     }
     refuses(&run(still, &out, &["--budget", "3"]), &["--budget", "--foveation quads"]);
-    refuses(&["view", still, "--foveation", "quads"], &["--foveation quads", "run"]);
+    refused(still, &["--share", "25", "--budget", "3"], &["--share", "--budget"]);
+    refuses(&run(still, &out, &["--share", "25"]), &["--share", "--foveation quads"]);
     refuses(&["bench", "--foveation", "quads"], &["--foveation"]);
     assert!(!folder.path("out").exists(), "nothing was written");
 }

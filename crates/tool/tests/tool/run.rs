@@ -127,16 +127,40 @@ fn both_backends_write_the_same_bytes() {
     }
 }
 
-/// Scenes render samples, and given frames simulate blur, unless the command line says otherwise.
 #[test]
-fn scenes_are_sparse_by_default_and_given_frames_are_blurred() {
+fn frames_before_the_first_that_counts_are_shown_and_not_scored() {
+    let folder = Folder::new();
+    let scored = |from: &str| {
+        let out = folder.text(from);
+        succeeds(&run("analytic:lateral", &out, &[SMALL, &["--method", "none", "--score-from", from]].concat()));
+        let table = fs::read_to_string(folder.path(from).join("frames.csv")).unwrap();
+        let psnr: Vec<f64> = table.lines().skip(1).map(|row| row.split(',').nth(2).unwrap().parse().unwrap()).collect();
+        (psnr, read_json(&folder.path(from).join("report.json"))["methods"]["none"].clone())
+    };
+    let ((frames, whole), (_, last)) = (scored("0"), scored("3"));
+    let pooled =
+        |psnr: &[f64]| -10.0 * (psnr.iter().map(|db| 10_f64.powf(-db / 10.0)).sum::<f64>() / psnr.len() as f64).log10();
+    assert!((whole["psnr_db"].as_f64().unwrap() - pooled(&frames)).abs() < 1e-3, "{whole}, {frames:?}");
+    assert!((last["psnr_db"].as_f64().unwrap() - frames[3]).abs() < 1e-3, "{last}, {frames:?}");
+    assert!((frames[3] - pooled(&frames)).abs() > 1e-2, "otherwise this test cannot fail");
+    refuses(
+        &run("analytic:lateral", &folder.text("out"), &[SMALL, &["--score-from", "4"]].concat()),
+        &["--score-from 4", "4 frames"],
+    );
+}
+
+/// Rasterised scenes are shaded by quads, traced ones have lattices, and given frames simulate blur, unless the command
+/// line says otherwise.
+#[test]
+fn scenes_have_few_samples_by_default_and_given_frames_are_blurred() {
     if afterimage_testing::gpu::adapter().is_none() {
         return;
     }
     let folder = Folder::new();
     let traced = ["--source", "trace", "--spp", "1", "--reference-spp", "1"];
-    let cases: [(&str, &[&str], [&str; 2]); 5] = [
-        ("builtin:cubes", &[], ["sparse", "samples"]),
+    let cases: [(&str, &[&str], [&str; 2]); 6] = [
+        ("builtin:cubes", &[], ["quads", ""]),
+        ("builtin:cubes", &["--rate-far", "16"], ["sparse", "samples"]),
         ("builtin:cubes", &traced, ["sparse", "samples"]),
         ("builtin:cubes", &["--geometry", "full"], ["sparse", "full"]),
         ("builtin:cubes", &["--foveation", "mip"], ["mip", ""]),

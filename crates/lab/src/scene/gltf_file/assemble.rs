@@ -16,7 +16,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -> Result<Scene, InputError> {
-    let mut warnings = Warnings::default();
+    let mut warnings = file.warnings.clone();
     extensions::warn_of_unsupported(&document.root.extensions_used, &mut warnings);
     let accessors = Accessors::new(document);
     let mut textures = Textures::new(document);

@@ -1,7 +1,8 @@
 //! The container: `.gltf` or `.glb`, its JSON, and the checks of version and required extensions.
 
 use super::errors::{damaged, printable};
-use super::extensions;
+use super::warnings::Warnings;
+use super::{complete, extensions};
 use crate::error::InputError;
 use crate::scene::SceneLimits;
 use gltf::json::Root;
@@ -21,6 +22,8 @@ pub(super) struct Container {
     /// The whole file. `binary` is the range of its binary chunk.
     pub bytes: Vec<u8>,
     pub binary: Option<Range<usize>>,
+    /// What was left out before the JSON was parsed.
+    pub warnings: Warnings,
 }
 
 /// Version and required extensions, which are checked before the rest is parsed.
@@ -41,20 +44,30 @@ pub(super) fn read(input: &str, limits: &SceneLimits) -> Result<Container, Input
     let bytes = read_file(path, input, limits.max_file_bytes, limits)?;
     let (json, binary) = if bytes.starts_with(b"glTF") { split(input, &bytes)? } else { (0..bytes.len(), None) };
     limits.check_json_bytes(input, json.len() as u64)?;
-    let json = &bytes[json];
+    let json = without_padding(&bytes[json]);
     let unreadable = |e: serde_json::Error| {
         let problem = format!("is not a glTF 2.0 file: {}", printable(&e.to_string()));
         InputError::invalid(input, problem, "expected JSON as the glTF 2.0 specification describes it; export it again")
     };
-    let preamble: Preamble = serde_json::from_slice(json).map_err(unreadable)?;
+    let mut value: serde_json::Value = serde_json::from_slice(json).map_err(unreadable)?;
+    let preamble = Preamble::deserialize(&value).map_err(unreadable)?;
     if !preamble.asset.version.starts_with("2.") {
         let problem = format!("is of glTF version {}", printable(&preamble.asset.version));
         return Err(InputError::not_supported(input, problem, "expected version 2.0; convert it"));
     }
     extensions::check_required(input, &preamble.extensions_required)?;
-    let root = Root::from_slice(json).map_err(unreadable)?;
+    let mut warnings = Warnings::default();
+    complete::complete(&mut value, &mut warnings);
+    let root: Root = serde_json::from_value(value).map_err(unreadable)?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
-    Ok(Container { subject: input.to_owned(), folder, root, bytes, binary })
+    Ok(Container { subject: input.to_owned(), folder, root, bytes, binary, warnings })
+}
+
+/// JSON without a byte order mark in front, and without the NUL bytes that some writers pad it with.
+fn without_padding(json: &[u8]) -> &[u8] {
+    let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
+    let end = json.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
+    &json[..end]
 }
 
 /// Reads a whole file of at most `allowed` bytes. Pipes and devices are refused, because they may be endless.

@@ -41,10 +41,14 @@ impl<'a> Textures<'a> {
         Self { document, uses: Vec::new(), indices: HashMap::new() }
     }
 
-    /// Registers a texture of the file as used.
-    pub fn use_texture(&mut self, index: Index<json::Texture>) -> Result<TextureRef, InputError> {
+    /// Registers a texture of the file as used. `None` if it has no image, of which the file's warnings tell.
+    pub fn use_texture(&mut self, index: Index<json::Texture>) -> Result<Option<TextureRef>, InputError> {
         let root = self.document.root;
         let texture = self.document.look_up(&root.textures, index, "texture")?;
+        // The crate's value of a source that is not there.
+        if texture.source.value() == u32::MAX as usize {
+            return Ok(None);
+        }
         self.document.look_up(&root.images, texture.source, "image")?;
         let sampler = match texture.sampler {
             Some(sampler) => Some(self.document.look_up(&root.samplers, sampler, "sampler")?),
@@ -65,7 +69,7 @@ impl<'a> Textures<'a> {
                 nearest: sampler.is_some_and(|s| matches!(s.mag_filter, Some(Checked::Valid(MagFilter::Nearest)))),
             });
         }
-        Ok(TextureRef { texture })
+        Ok(Some(TextureRef { texture }))
     }
 
     /// Reads and decodes the images in use. Sizes are checked against the limits before any image is decoded.

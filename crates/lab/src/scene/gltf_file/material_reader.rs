@@ -23,7 +23,7 @@ impl Reader<'_, '_> {
     pub fn texture(&mut self, info: Option<&json::texture::Info>) -> Result<Option<TextureRef>, InputError> {
         let Some(info) = info else { return Ok(None) };
         self.sources.push(UvSource::of(info));
-        self.textures.use_texture(info.index).map(Some)
+        self.textures.use_texture(info.index)
     }
 
     /// A factor clamped to its range, with a warning if it is outside.

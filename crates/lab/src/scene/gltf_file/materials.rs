@@ -67,7 +67,7 @@ fn surface(
     r.material.roughness = r.clamped(pbr.roughness_factor.0, 0.0, 1.0);
     r.material.metallic_roughness_texture = r.texture(pbr.metallic_roughness_texture.as_ref())?;
     if let Some(normal) = &json.normal_texture {
-        r.material.normal_texture = Some(r.textures.use_texture(normal.index)?);
+        r.material.normal_texture = r.textures.use_texture(normal.index)?;
         r.material.normal_scale = r.clamped(normal.scale, -1e3, 1e3);
         let transform = normal.extensions.as_ref().and_then(|e| e.others.get("KHR_texture_transform"));
         r.sources.push(UvSource::of_value(normal.tex_coord, transform));

@@ -8,6 +8,7 @@ mod accessors;
 mod animation;
 mod assemble;
 mod buffers;
+mod complete;
 mod container;
 mod document;
 mod errors;

@@ -32,9 +32,11 @@ pub(super) fn resolve(subject: &str, folder: &Path, uri: &str) -> Result<Resolve
     };
     if let Some(rest) = uri.strip_prefix("data:") {
         let (kind, data) = rest.split_once(',').ok_or_else(|| damaged("has no data"))?;
+        let data = percent_decoded(data).ok_or_else(|| damaged("is not percent-encoded data"))?;
         if !kind.ends_with(";base64") {
-            return Ok(Resolved::Data(percent_decoded(data).ok_or_else(|| damaged("is not percent-encoded data"))?));
+            return Ok(Resolved::Data(data));
         }
+        let data: Vec<u8> = data.into_iter().filter(|byte| !byte.is_ascii_whitespace()).collect();
         let data = BASE64.decode(data).map_err(|_| damaged("is not base64 data"))?;
         return Ok(Resolved::Data(data));
     }
@@ -45,16 +47,36 @@ pub(super) fn resolve(subject: &str, folder: &Path, uri: &str) -> Result<Resolve
             "a scene may only read files in its own folder; copy them there",
         )
     };
+    // A name may be written as it is, with percent signs that are no escapes, and with the separators of Windows.
     let decoded = percent_decoded(uri).and_then(|bytes| String::from_utf8(bytes).ok());
-    let decoded = decoded.ok_or_else(|| damaged("is not percent-encoded UTF-8"))?;
-    if decoded.is_empty() || decoded.contains('\0') {
-        return Err(damaged("names no file"));
+    let mut first_error = None;
+    for name in decoded.as_deref().into_iter().chain([uri]) {
+        let found = file(subject, folder, uri, &name.replace('\\', "/"), &refused);
+        match found {
+            Ok(path) => return Ok(Resolved::File(path)),
+            Err(error) => _ = first_error.get_or_insert(error),
+        }
     }
-    // A colon marks a scheme or, on Windows, a drive or a stream; a backslash separates folders there.
-    if decoded.contains([':', '\\']) {
-        return Err(refused("has a scheme, a drive or a backslash"));
+    Err(first_error.expect("the URI itself was tried"))
+}
+
+/// Canonical path of the file of a relative path.
+fn file(
+    subject: &str,
+    folder: &Path,
+    uri: &str,
+    name: &str,
+    refused: &dyn Fn(&str) -> InputError,
+) -> Result<PathBuf, InputError> {
+    if name.is_empty() || name.contains('\0') {
+        let problem = format!("the URI \"{}\" names no file", printable(uri));
+        return Err(InputError::invalid(subject, problem, "export the scene again"));
     }
-    let relative = Path::new(&decoded);
+    // A colon marks a scheme or, on Windows, a drive or a stream.
+    if name.contains(':') {
+        return Err(refused("has a scheme or a drive"));
+    }
+    let relative = Path::new(name);
     for part in relative.components() {
         match part {
             Component::Normal(_) | Component::CurDir => {}
@@ -74,7 +96,7 @@ pub(super) fn resolve(subject: &str, folder: &Path, uri: &str) -> Result<Resolve
     if !path.starts_with(&folder) {
         return Err(refused("is a link out of the folder"));
     }
-    Ok(Resolved::File(path))
+    Ok(path)
 }
 
 /// Percent-decoded bytes; `None` if an escape is not hexadecimal.

@@ -6,11 +6,12 @@ use std::fmt::Write;
 const NAMED: usize = 3;
 
 /// Warnings, each text once, with the names of the objects concerned.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Warnings {
     entries: Vec<Entry>,
 }
 
+#[derive(Clone)]
 struct Entry {
     text: String,
     names: Vec<String>,

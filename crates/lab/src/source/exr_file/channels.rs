@@ -9,8 +9,10 @@ pub(super) struct ChannelName {
     pub index: usize,
     /// Full name for messages: prefixed with the part's name, unless the channel's name starts with it.
     pub full_name: String,
-    /// Components of the full name except the last, in lower case.
+    /// Components of the full name except the last and a stereo view, in lower case.
     layer: Vec<String>,
+    /// View of a stereo picture: left (or the only one) 0, right 1.
+    view: u8,
     /// Last component, in lower case.
     leaf: String,
     /// Whether the channel's own name has no layer prefix.
@@ -27,7 +29,18 @@ impl ChannelName {
         };
         let mut layer: Vec<String> = full_name.to_lowercase().split('.').map(str::to_owned).collect();
         let leaf = layer.pop().unwrap_or_default();
-        Self { part, index, full_name, layer, leaf, plain: !name.contains('.') }
+        let view = match layer.last().map(String::as_str) {
+            Some("left") => Some(0),
+            Some("right") => Some(1),
+            _ => None,
+        };
+        layer.truncate(layer.len() - usize::from(view.is_some()));
+        Self { part, index, full_name, layer, view: view.unwrap_or(0), leaf, plain: !name.contains('.') }
+    }
+
+    /// Name of the layer for messages.
+    fn layer_name(&self) -> &str {
+        self.full_name.rsplit_once('.').map_or("the unnamed layer", |(layer, _)| layer)
     }
 
     fn in_layer(&self, last: &str) -> bool {
@@ -62,18 +75,109 @@ pub(super) struct Roles {
     pub color: [ChannelId; 3],
     pub depth: Option<ChannelId>,
     pub motion: Option<MotionChannels>,
+    /// What was chosen among several, a line each.
+    pub warnings: Vec<String>,
 }
 
 impl Roles {
-    /// Assigns channels; `None` without color channels.
+    /// Assigns channels; `None` without color channels. Of a stereo picture, the channels of one view are read.
     pub fn find(channels: &[ChannelName]) -> Option<Self> {
+        let mut warnings = vec![];
+        let (color, view) = find_color(channels, &mut warnings)?;
+        if channels.iter().any(|c| c.view != view) {
+            let side = ["left", "right"][usize::from(view)];
+            warnings.push(format!("it has two views; the {side} one is read"));
+        }
+        let of_view: Vec<ChannelName> = channels.iter().filter(|c| c.view == view).cloned().collect();
         Some(Self {
-            color: find_color(channels)?,
-            depth: find_depth(channels),
-            motion: find_motion(channels, "vector", VectorForm::Blender)
-                .or_else(|| find_motion(channels, "motion", VectorForm::Plain)),
+            color,
+            depth: find_depth(&of_view),
+            motion: find_motion(&of_view, "vector", VectorForm::Blender)
+                .or_else(|| find_motion(&of_view, "motion", VectorForm::Plain)),
+            warnings,
         })
     }
+
+    /// Channels that have a role.
+    pub fn channels(&self) -> Vec<ChannelId> {
+        let motion = self.motion.iter().flat_map(|m| m.to_previous.into_iter().chain(m.to_next.into_iter().flatten()));
+        self.color.into_iter().chain(self.depth).chain(motion).collect()
+    }
+}
+
+/// Layers that hold the picture, the best first; the unnamed layer comes after the first.
+const PICTURES: [&str; 12] = [
+    "combined",
+    "beauty",
+    "image",
+    "rgba",
+    "rgb",
+    "color",
+    "colour",
+    "composite",
+    "final",
+    "render",
+    "main",
+    "default",
+];
+/// Parts of names of layers that hold something else.
+const OTHERS: [&str; 37] = [
+    "albedo",
+    "ambient",
+    "ao",
+    "bounce",
+    "coat",
+    "crypto",
+    "depth",
+    "diff",
+    "direct",
+    "emission",
+    "emit",
+    "env",
+    "filter",
+    "gi",
+    "gloss",
+    "id",
+    "index",
+    "light",
+    "mask",
+    "matte",
+    "mist",
+    "motion",
+    "normal",
+    "object",
+    "occlusion",
+    "pos",
+    "reflect",
+    "refract",
+    "shadow",
+    "sheen",
+    "spec",
+    "sss",
+    "subsurface",
+    "trans",
+    "uv",
+    "variance",
+    "vol",
+];
+
+/// How well a layer's name fits the picture; less is better. Layers of the same rank are not told apart.
+fn color_rank(c: &ChannelName) -> usize {
+    // A renderer's noisy image is the last choice.
+    if c.layer.iter().any(|l| l.contains("noisy") || l.contains("denois")) {
+        return 100;
+    }
+    let Some(last) = c.layer.last() else { return 1 };
+    if let Some(place) = PICTURES.iter().position(|name| name == last) {
+        return if place == 0 { 0 } else { 1 + place };
+    }
+    let words = last.split(|c: char| !c.is_ascii_alphabetic());
+    // Short names are whole words: "ao" is not a part of "chaos".
+    let is_other = OTHERS.iter().any(|other| match other.len() {
+        ..=3 => words.clone().any(|word| word == *other),
+        _ => last.contains(other),
+    });
+    if is_other { 50 } else { 30 }
 }
 
 fn id(c: &ChannelName) -> ChannelId {
@@ -82,22 +186,37 @@ fn id(c: &ChannelName) -> ChannelId {
 
 /// The channel `leaf` of the same part and layer as `of`.
 fn sibling(channels: &[ChannelName], of: &ChannelName, leaf: &str) -> Option<ChannelId> {
-    channels.iter().find(|c| c.part == of.part && c.layer == of.layer && c.plain == of.plain && c.leaf == leaf).map(id)
+    channels
+        .iter()
+        .find(|c| {
+            c.part == of.part && c.layer == of.layer && c.view == of.view && c.plain == of.plain && c.leaf == leaf
+        })
+        .map(id)
 }
 
-fn find_color(channels: &[ChannelName]) -> Option<[ChannelId; 3]> {
+/// The color, and the view of a stereo picture that it belongs to.
+fn find_color(channels: &[ChannelName], warnings: &mut Vec<String>) -> Option<([ChannelId; 3], u8)> {
     let complete = channels.iter().filter(|c| c.leaf == "r").filter_map(|r| {
         let g = sibling(channels, r, "g")?;
         let b = sibling(channels, r, "b")?;
-        // A renderer's noisy image is the last choice.
-        let noisy = r.layer.iter().any(|l| l.contains("noisy") || l.contains("denois"));
-        let rank = (!r.in_layer("combined"), !r.plain, noisy, r.layer.len());
-        Some((rank, [id(r), g, b]))
+        Some((r, [id(r), g, b]))
     });
-    complete.min_by_key(|&(rank, _)| rank).map(|(_, color)| color).or_else(|| {
-        let grey = channels.iter().find(|c| c.plain && c.leaf == "y" && sibling(channels, c, "x").is_none())?;
-        Some([id(grey); 3])
-    })
+    let complete: Vec<_> = complete.collect();
+    let best = complete.iter().min_by_key(|(r, _)| (color_rank(r), r.view, !r.plain, r.layer.len()));
+    if let Some((best, color)) = best {
+        let rank = color_rank(best);
+        let rivals = complete.iter().filter(|(r, _)| color_rank(r) == rank && r.view == best.view);
+        let names: Vec<&str> = rivals.map(|(r, _)| r.layer_name()).take(4).collect();
+        if names.len() > 1 {
+            let read = best.layer_name();
+            warnings.push(format!("several layers may be the picture ({}); {read} is read", names.join(", ")));
+        } else if rank >= 50 {
+            warnings.push(format!("no layer is named as the picture; {} is read", best.layer_name()));
+        }
+        return Some((*color, best.view));
+    }
+    let grey = channels.iter().find(|c| c.plain && c.leaf == "y" && sibling(channels, c, "x").is_none())?;
+    Some(([id(grey); 3], grey.view))
 }
 
 fn find_depth(channels: &[ChannelName]) -> Option<ChannelId> {

@@ -1,7 +1,7 @@
 //! Decodes the chunks of a checked EXR file into a frame.
 
 use super::channels::{ChannelId, VectorForm};
-use super::header::{ExrHeader, Vectors, chunk_header_bytes, full_resolution_chunks};
+use super::header::{ExrHeader, Vectors, Window, chunk_header_bytes, full_resolution_chunks};
 use super::{exr_error, guarded};
 use crate::error::InputError;
 use crate::error::io_error;
@@ -50,7 +50,9 @@ impl ExrHeader {
         for part in planes.parts() {
             self.read_part(&mut file, part, &mut planes)?;
         }
-        planes.finish(self.size).map_err(|e| InputError::invalid(&self.subject, e.to_string(), "export it again"))
+        planes
+            .finish(self.size, self.window)
+            .map_err(|e| InputError::invalid(&self.subject, e.to_string(), "export it again"))
     }
 
     fn read_part(&self, file: &mut File, part: usize, planes: &mut Planes) -> Result<(), InputError> {
@@ -71,7 +73,7 @@ impl ExrHeader {
                 .collect::<Result<Vec<_>, _>>()
                 .map_err(|e| exr_error(&self.subject, e))?;
             for block in &blocks {
-                planes.scatter(part, block, &header.channels, self.size[0] as usize);
+                planes.scatter(part, block, &header.channels, self.window.stored_px[0] as usize);
             }
         }
         Ok(())
@@ -199,7 +201,7 @@ impl Planes {
             };
             slots.extend((0..2).map(|i| (ids[i], Slot::Motion(i, signs[i]))));
         }
-        let pixels = header.size[0] as usize * header.size[1] as usize;
+        let pixels = header.window.stored_px.iter().map(|&side| side as usize).product();
         Ok(Self {
             slots,
             color: vec![[0.0; 3]; pixels],
@@ -257,7 +259,13 @@ impl Planes {
         }
     }
 
-    fn finish(mut self, size: [u32; 2]) -> Result<ExrFrame, FrameError> {
+    /// The frame, cut to its own window.
+    fn finish(mut self, size: [u32; 2], window: Window) -> Result<ExrFrame, FrameError> {
+        if !window.is_whole(size) {
+            self.color = cut(&self.color, [0.0; 3], size, window);
+            self.depth = self.depth.map(|depth| cut(&depth, f32::NAN, size, window));
+            self.motion = self.motion.map(|motion| cut(&motion, [0.0; 2], size, window));
+        }
         let nonfinite = blacken_nonfinite(&mut self.color);
         for d in self.depth.iter_mut().flatten() {
             if d.is_nan() || *d <= 0.0 {
@@ -271,6 +279,12 @@ impl Planes {
             nonfinite,
         })
     }
+}
+
+/// Pixels of the frame; `absent` where nothing is stored.
+fn cut<T: Copy>(stored: &[T], absent: T, [width, height]: [u32; 2], window: Window) -> Vec<T> {
+    let at = |y: u32| (0..width).map(move |x| window.stored([x, y]).map_or(absent, |i| stored[i]));
+    (0..height).flat_map(at).collect()
 }
 
 /// Sets pixels with a NaN or an infinity to black, and returns their number.

@@ -29,6 +29,8 @@ pub struct ExrHeader {
     pub(super) path: PathBuf,
     pub(super) subject: String,
     pub(super) size: [u32; 2],
+    /// Where the frame lies in what is stored.
+    pub(super) window: Window,
     pub(super) meta: MetaData,
     pub(super) roles: Roles,
     /// File offsets of the full-resolution chunks of each part, row by row.
@@ -37,6 +39,17 @@ pub struct ExrHeader {
     pub(super) first_lines: Vec<i32>,
     pub(super) file_bytes: u64,
     channel_names: Vec<String>,
+    warnings: Vec<String>,
+    contents: Vec<String>,
+}
+
+/// The stored pixels (data window) beside those of the frame (display window).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Window {
+    /// Width and height of what is stored.
+    pub stored_px: [u32; 2],
+    /// The frame's first pixel in what is stored.
+    pub first_px: [i64; 2],
 }
 
 impl ExrHeader {
@@ -46,8 +59,8 @@ impl ExrHeader {
     /// # Errors
     /// - [`Io`](InputError::Io): the file is missing or cannot be read.
     /// - [`Invalid`](InputError::Invalid): it is not EXR, truncated, or without color.
-    /// - [`NotSupported`](InputError::NotSupported): it is cropped or overscanned, subsampled, deep, or has parts of
-    ///   different sizes.
+    /// - [`NotSupported`](InputError::NotSupported): it is subsampled, deep, has parts of different sizes, or nothing
+    ///   of its display window.
     /// - [`Limit`](InputError::Limit): the image, or one block of it, is larger than `limits` allows.
     pub fn open(path: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
         let subject = path.display().to_string();
@@ -69,7 +82,9 @@ impl ExrHeader {
         let names = channel_names(&meta);
         let full_names: Vec<String> = names.iter().map(|n| n.full_name.clone()).collect();
         let roles = Roles::find(&names).ok_or_else(|| missing_color(subject, &full_names))?;
-        let size = checked_size(subject, &meta, &roles, limits)?;
+        let (size, window) = checked_size(subject, &meta, &roles, limits)?;
+        let warnings = roles.warnings.iter().cloned().chain(window.warning(size)).collect();
+        let contents = contents(&names, &roles);
         MetaData::validate(&meta.headers, false).map_err(invalid)?;
         let tables = read_tables(&mut reader, subject, &meta, header_end, file_bytes)?;
         let windows = meta.headers.iter();
@@ -82,6 +97,9 @@ impl ExrHeader {
             path: path.to_owned(),
             subject: subject.to_owned(),
             size,
+            window,
+            warnings,
+            contents,
             chunk_offsets: tables,
             first_lines,
             meta,
@@ -99,6 +117,16 @@ impl ExrHeader {
     /// Names of all channels, in file order.
     pub fn channel_names(&self) -> &[String] {
         &self.channel_names
+    }
+
+    /// What was chosen among several layers or views, or cut to the frame, a line each.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Which channels are read, and which are left out, a line each.
+    pub fn contents(&self) -> &[String] {
+        &self.contents
     }
 
     /// Whether there is a depth channel.
@@ -145,16 +173,21 @@ fn missing_color(subject: &str, names: &[String]) -> InputError {
     )
 }
 
-/// Checks every part in use, and returns their common size.
-fn checked_size(subject: &str, meta: &MetaData, roles: &Roles, limits: &ReadLimits) -> Result<[u32; 2], InputError> {
-    let mut size = None;
+/// Checks every part in use, and returns the frame's size, and where it lies in what all of them store.
+fn checked_size(
+    subject: &str,
+    meta: &MetaData,
+    roles: &Roles,
+    limits: &ReadLimits,
+) -> Result<([u32; 2], Window), InputError> {
+    let mut found = None;
     for part in used_parts(roles) {
         let header = &meta.headers[part];
         let Vec2(w, h) = header.layer_size;
-        let this = limits.check(subject, w as u64, h as u64)?;
-        check_window(subject, header)?;
+        let stored_px = limits.check(subject, w as u64, h as u64)?;
+        let this = frame_window(subject, header, stored_px, limits)?;
         check_blocks(subject, header, limits)?;
-        if *size.get_or_insert(this) != this {
+        if *found.get_or_insert(this) != this {
             return Err(InputError::not_supported(
                 subject,
                 "has parts of different sizes",
@@ -162,7 +195,7 @@ fn checked_size(subject: &str, meta: &MetaData, roles: &Roles, limits: &ReadLimi
             ));
         }
     }
-    size.ok_or_else(|| missing_color(subject, &[]))
+    found.ok_or_else(|| missing_color(subject, &[]))
 }
 
 /// Parts with an assigned channel, in file order.
@@ -174,20 +207,69 @@ pub(super) fn used_parts(roles: &Roles) -> Vec<usize> {
     parts
 }
 
-fn check_window(subject: &str, header: &Header) -> Result<(), InputError> {
+/// Size of the frame, which is the display window, and where it lies in the data window.
+fn frame_window(
+    subject: &str,
+    header: &Header,
+    stored_px: [u32; 2],
+    limits: &ReadLimits,
+) -> Result<([u32; 2], Window), InputError> {
     let data = header.data_window();
     let display = header.shared_attributes.display_window;
-    if data == display {
-        return Ok(());
+    let size = limits.check(subject, display.size.0 as u64, display.size.1 as u64)?;
+    let first = |display: i32, data: i32| i64::from(display) - i64::from(data);
+    let first_px = [first(display.position.0, data.position.0), first(display.position.1, data.position.1)];
+    let overlaps = |i: usize| first_px[i] < i64::from(stored_px[i]) && first_px[i] + i64::from(size[i]) > 0;
+    if !(overlaps(0) && overlaps(1)) {
+        return Err(InputError::not_supported(
+            subject,
+            "its data window lies beside its display window",
+            "expected pixels of the frame; export it again",
+        ));
     }
-    let text = |b: exr::meta::attribute::IntegerBounds| {
-        format!("{}x{} at ({}, {})", b.size.0, b.size.1, b.position.0, b.position.1)
+    Ok((size, Window { stored_px, first_px }))
+}
+
+impl Window {
+    /// The stored pixel of a pixel of the frame; `None` if it is not stored.
+    pub fn stored(&self, px: [u32; 2]) -> Option<usize> {
+        let at = [0, 1].map(|i| i64::from(px[i]) + self.first_px[i]);
+        let is_inside = (0..2).all(|i| (0..i64::from(self.stored_px[i])).contains(&at[i]));
+        is_inside.then(|| at[1] as usize * self.stored_px[0] as usize + at[0] as usize)
+    }
+
+    /// Whether the frame is all that is stored.
+    pub fn is_whole(&self, size: [u32; 2]) -> bool {
+        self.first_px == [0; 2] && self.stored_px == size
+    }
+
+    fn warning(&self, size: [u32; 2]) -> Option<String> {
+        let lacks = self.stored([0, 0]).is_none() || self.stored(size.map(|v| v - 1)).is_none();
+        let [w, h] = self.stored_px;
+        match (self.is_whole(size), lacks) {
+            (true, _) => None,
+            (_, true) => Some(format!("it stores {w}x{h} of {}x{} pixels; the others are black", size[0], size[1])),
+            (_, false) => Some(format!("its overscan ({w}x{h} pixels are stored) is cut off")),
+        }
+    }
+}
+
+/// Which channels are read and which are left out.
+fn contents(names: &[ChannelName], roles: &Roles) -> Vec<String> {
+    const LISTED: usize = 24;
+    let read = roles.channels();
+    let list = |is_read: bool| {
+        let wanted: Vec<&str> = names
+            .iter()
+            .filter(|name| read.contains(&(name.part, name.index)) == is_read)
+            .map(|name| name.full_name.as_str())
+            .collect();
+        let more = wanted.len().saturating_sub(LISTED);
+        let listed = crate::error::one_line(&wanted[..wanted.len() - more].join(", "));
+        if more > 0 { format!("{listed} and {more} more") } else { listed }
     };
-    Err(InputError::not_supported(
-        subject,
-        format!("its data window is {} but its display window is {}", text(data), text(display)),
-        "expected the whole frame; export it without crop or overscan",
-    ))
+    let line = |what: &str, list: String| (!list.is_empty()).then(|| format!("channels {what}: {list}"));
+    line("read", list(true)).into_iter().chain(line("left out", list(false))).collect()
 }
 
 /// Refuses subsampled channels, and blocks that decode to far more memory than the frame.

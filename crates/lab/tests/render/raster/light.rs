@@ -11,12 +11,12 @@ use serde_json::{Value, json};
 use std::f32::consts::PI;
 
 /// A 2x2 m quad facing +z, with more properties of its Lambertian material, under a directional light of irradiance 2
-/// at 60 degrees to its normal. Vertex alpha grows from 0 on the left to 1 on the right.
-fn quad(more: &[(&str, Value)]) -> Scene {
+/// at 60 degrees to its normal. `alpha`: of the vertices on the left and on the right.
+fn quad(alpha: [f32; 2], more: &[(&str, Value)]) -> Scene {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
     let mut file = Gltf::new();
     let attributes = json!({"POSITION": file.floats(&corners.map(|[x, y]| [x, y, 0.0])),
-        "COLOR_0": file.floats(&corners.map(|[x, _]| [1.0, 1.0, 1.0, 0.5 + 0.5 * x]))});
+        "COLOR_0": file.floats(&corners.map(|[x, _]| [1.0, 1.0, 1.0, alpha[usize::from(x > 0.0)]]))});
     let indices = file.indices(&[0, 1, 2, 0, 2, 3]);
     let mut material = json!({"pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.4, 0.2, 1], "metallicFactor": 0},
         "extensions": {"KHR_materials_specular": {"specularFactor": 0}}});
@@ -34,9 +34,9 @@ fn quad(more: &[(&str, Value)]) -> Scene {
 }
 
 /// Colors of the middle row seen from the front, and which pixels have a surface.
-fn middle_row(more: &[(&str, Value)]) -> Option<(Vec<[f32; 3]>, Vec<bool>)> {
+fn middle_row(alpha: [f32; 2], more: &[(&str, Value)]) -> Option<(Vec<[f32; 3]>, Vec<bool>)> {
     let device = device()?;
-    let scene = quad(more);
+    let scene = quad(alpha, more);
     // tan(26.565 degrees) = 1/2: the quad exactly fills the image's width.
     let geometry = ViewGeometry::flat([128, 64], 53.130_1).unwrap();
     let view = View::new(geometry, DMat4::from_translation(DVec3::Z * 2.0));
@@ -53,16 +53,35 @@ fn off(found: [f32; 3], expected: [f32; 3]) -> f32 {
 
 #[test]
 fn a_lambert_quad_under_one_light() {
-    let Some((row, _)) = middle_row(&[]) else { return };
+    let Some((row, _)) = middle_row([0.0, 1.0], &[]) else { return };
     // Half floats have 11 significant bits.
     assert!(row.iter().all(|&c| off(c, EXPECTED) < 1.0 / 1024.0), "{:?} not {EXPECTED:?}", row[64]);
     // Planted error: a different angle.
     assert!(off(row[64], EXPECTED.map(|v| v * 0.866 / 0.5)) > 0.1);
 }
 
+/// glTF: what has the cutoff's alpha is opaque. The color factor's alpha is the cutoff, or it is that of all vertices.
+#[test]
+fn alpha_equal_to_the_cutoff_is_opaque() {
+    for cutoff in [1.0, 0.5, 0.3_f32] {
+        let mask = [("alphaMode", json!("MASK")), ("alphaCutoff", json!(cutoff))];
+        let Some((row, there)) = middle_row([cutoff; 2], &mask) else { return };
+        assert!(there.iter().all(|&there| there), "cutoff {cutoff}");
+        let wrong: Vec<_> = (0..128).filter(|&x| off(row[x], EXPECTED) >= 1.0 / 1024.0).map(|x| (x, row[x])).collect();
+        assert!(wrong.is_empty(), "cutoff {cutoff}: {wrong:?}");
+        // Planted: less alpha, by a step of 8 bits.
+        let (row, there) = middle_row([cutoff - 1.0 / 255.0; 2], &mask).unwrap();
+        let seen = row.iter().filter(|&&c| c != [0.0; 3]).count();
+        assert!(seen < 8 && !there.iter().any(|&there| there), "cutoff {cutoff}: {seen} pixels");
+    }
+}
+
 #[test]
 fn masks_cut_at_their_cutoff() {
-    let Some((row, there)) = middle_row(&[("alphaMode", json!("MASK")), ("alphaCutoff", json!(0.75))]) else { return };
+    let Some((row, there)) = middle_row([0.0, 1.0], &[("alphaMode", json!("MASK")), ("alphaCutoff", json!(0.75))])
+    else {
+        return;
+    };
     // Alpha of column x is (x + 0.5) / 128; a cutoff of 3/4 removes three quarters of the columns.
     for x in 0..128 {
         assert_eq!(there[x], x >= 96, "column {x}");
@@ -75,7 +94,7 @@ fn masks_cut_at_their_cutoff() {
 
 #[test]
 fn blended_surfaces_are_there_where_they_are_more_than_half() {
-    let Some((row, there)) = middle_row(&[("alphaMode", json!("BLEND"))]) else { return };
+    let Some((row, there)) = middle_row([0.0, 1.0], &[("alphaMode", json!("BLEND"))]) else { return };
     for x in 0..128 {
         let alpha = (x as f32 + 0.5) / 128.0;
         assert_eq!(there[x], alpha > 0.5, "column {x}");

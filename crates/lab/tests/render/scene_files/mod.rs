@@ -6,6 +6,7 @@ mod sound_scene;
 mod bad_input;
 pub mod builder;
 mod builtin;
+mod complete;
 mod features;
 mod framing;
 mod limits;

@@ -34,6 +34,25 @@ fn files_in_the_folder_are_read_under_their_percent_encoded_names() {
     }
 }
 
+/// Percent signs that are no escapes, names that look like escapes, and the separators of Windows.
+#[test]
+fn names_that_are_written_as_they_are_are_read_too() {
+    for (address, name) in [
+        ("example 10%.bin", "example 10%.bin"),
+        ("100%sure.bin", "100%sure.bin"),
+        ("a%20b.bin", "a%20b.bin"),
+        ("data\\a.bin", "data/a.bin"),
+        (".\\data\\my%20a.bin", "data/my a.bin"),
+        ("data%5ca.bin", "data/a.bin"),
+    ] {
+        let (written, bytes) = with_buffer(address);
+        let target = written.folder.path().join("scene").join(name);
+        std::fs::create_dir_all(target.parent().unwrap()).unwrap();
+        std::fs::write(target, bytes).unwrap();
+        assert_eq!(open(&written.path).unwrap().still().len(), 1, "{address}");
+    }
+}
+
 #[test]
 fn data_addresses_are_read_with_and_without_padding() {
     let (_, bytes) = with_buffer("");
@@ -43,6 +62,8 @@ fn data_addresses_are_read_with_and_without_padding() {
         format!("data:application/octet-stream;base64,{padded}"),
         format!("data:;base64,{}", padded.trim_end_matches('=')),
         format!("data:application/gltf-buffer,{percent}"),
+        format!("data:;base64, {}\n\t{} \r\n", &padded[..8], &padded[8..]),
+        format!("data:;base64,{}", padded.replace('=', "%3D").replace('+', "%2B").replace('/', "%2F")),
     ] {
         assert_eq!(open(&with_buffer(&address).0.path).unwrap().still().len(), 1);
     }

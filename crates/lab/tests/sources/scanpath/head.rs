@@ -358,8 +358,8 @@ fn poses_that_no_head_has_are_refused_in_one_line() {
             "{rows:?}: {error}"
         );
     }
-    let swapped = HEADER.replace("head_qx,head_qy", "head_qy,head_qx");
-    let error = parse_csv("head.csv", swapped.as_bytes()).unwrap_err().to_string();
+    let lacking = HEADER.replace("head_qx,head_qy", "head_qy");
+    let error = parse_csv("head.csv", lacking.as_bytes()).unwrap_err().to_string();
     assert!(error.contains("instead of the column names") && error.contains("head_qx"), "{error}");
     let few = path.clone().with_poses(path.poses().unwrap()[..1].to_vec()).unwrap_err().to_string();
     assert!(few.contains("1 poses of the head for 2 samples"), "{few}");

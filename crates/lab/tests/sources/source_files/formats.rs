@@ -36,20 +36,23 @@ fn png_is_decoded_exactly() {
         assert_eq!(frame.color.at(x, 1), e);
     }
 
-    let rgba16 = ImageBuffer::from_fn(64, 64, |x, y| Rgba([(x * 1000) as u16, (y * 1000 + 7) as u16, 65535, 3]));
-    DynamicImage::ImageRgba16(rgba16).save_with_format(&path, image::ImageFormat::Png).unwrap();
-    let frame = still(&path);
-    let e = [5000.0, 9007.0, 65535.0].map(|v: f64| srgb(v / 65535.0));
-    assert_eq!(frame.color.at(5, 9), e);
+    for alpha in [65535, 3] {
+        let rgba16 =
+            ImageBuffer::from_fn(64, 64, |x, y| Rgba([(x * 1000) as u16, (y * 1000 + 7) as u16, 65535, alpha]));
+        DynamicImage::ImageRgba16(rgba16).save_with_format(&path, image::ImageFormat::Png).unwrap();
+        let frame = still(&path);
+        let e = [5000.0, 9007.0, 65535.0].map(|v: f64| srgb(v / 65535.0) * (f32::from(alpha) / 65535.0));
+        assert_eq!(frame.color.at(5, 9), e);
+    }
 }
 
 #[test]
-fn grey_counts_for_all_channels_and_alpha_for_none() {
+fn grey_counts_for_all_channels_and_transparent_pixels_are_over_black() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.png");
     let images = [
         DynamicImage::ImageLuma8(ImageBuffer::from_pixel(2, 2, Luma([128]))),
-        DynamicImage::ImageLumaA8(ImageBuffer::from_pixel(2, 2, LumaA([128, 0]))),
+        DynamicImage::ImageLumaA8(ImageBuffer::from_pixel(2, 2, LumaA([128, 255]))),
         DynamicImage::ImageLuma16(ImageBuffer::from_pixel(2, 2, Luma([128 * 257]))),
     ];
     for image in images {
@@ -57,6 +60,10 @@ fn grey_counts_for_all_channels_and_alpha_for_none() {
         let e = srgb(128.0 / 255.0);
         assert_eq!(still(&path).color.at(1, 1), [e; 3]);
     }
+    DynamicImage::ImageLumaA8(ImageBuffer::from_pixel(2, 2, LumaA([128, 51]))).save(&path).unwrap();
+    let source = StillSource::open(&path, &limits()).unwrap();
+    assert!(source.warnings()[0].contains("over black"), "{:?}", source.warnings());
+    assert_eq!(still(&path).color.at(1, 1), [srgb(128.0 / 255.0) * 0.2; 3]);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! File sources: stills, EXR sequences, their motion vectors and cameras, and damaged files.
 
 mod bad_input;
+mod conventions;
 mod data;
 mod formats;
 mod motion;

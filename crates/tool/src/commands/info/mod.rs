@@ -1,18 +1,19 @@
 //! `afterimage info`: describe an input, or list the adapters.
 
 mod adapters;
+mod camera;
+mod gaze;
 mod scene;
 
+use crate::args::gaze_log::GazeLogArgs;
 use crate::failure::Failure;
 use afterimage::{ContextDesc, Filter, Gaze, Reset, ViewFrame, ViewGeometry, cpu};
 use afterimage_lab::error::InputError;
-use afterimage_lab::scanpath::{GazeMap, read_csv};
 use afterimage_lab::source;
 use afterimage_lab::source::motion_check;
 use afterimage_lab::source::motion_check::Verdict;
 use afterimage_lab::source::{FrameSource, ReadLimits, SceneOptions};
 use clap::Args;
-use std::path::Path;
 
 /// Describe an input, or list the adapters
 #[derive(Args, Clone, Debug)]
@@ -21,7 +22,8 @@ use std::path::Path;
                   afterimage info adapters --self-test"
 )]
 pub struct InfoArgs {
-    /// An input of `run`, a scene (.gltf, .glb, builtin:NAME), a scanpath (.csv), or the word adapters
+    /// An input of `run`, a scene (.gltf, .glb, builtin:NAME), a gaze log (a scanpath, or an eye tracker's export), a
+    /// camera file (.json), or the word adapters
     pub input: String,
     /// Limit on the size of input images, million pixels
     #[arg(long, default_value_t = 64, value_name = "N")]
@@ -30,6 +32,8 @@ pub struct InfoArgs {
     /// software devices)
     #[arg(long)]
     pub self_test: bool,
+    #[command(flatten)]
+    pub log: GazeLogArgs,
 }
 
 /// The subcommand.
@@ -40,44 +44,20 @@ pub fn info(args: &InfoArgs) -> Result<(), Failure> {
     if args.self_test {
         return Err(Failure::Input(format!("--self-test: expected the word adapters, not {}", args.input)));
     }
-    if Path::new(&args.input).extension().is_some_and(|e| e == "csv") {
-        return Ok(scanpath_info(&args.input)?);
+    if gaze::is_log(&args.input) {
+        return gaze::gaze_info(&args.input, &args.log);
     }
+    args.log.refuse_for(&args.input)?;
     if source::is_scene(&args.input) {
         return Ok(scene::scene_info(&args.input)?);
+    }
+    if camera::is_camera_file(&args.input) {
+        return Ok(camera::camera_info(&args.input)?);
     }
     let limits = ReadLimits::from_megapixels(args.max_megapixels);
     let mut source = source::open(&args.input, &limits, &SceneOptions::default())?;
     frames_info(source.as_mut())?;
     inputs_look(source.as_mut())
-}
-
-fn scanpath_info(path: &str) -> Result<(), InputError> {
-    let scanpath = read_csv(Path::new(path))?;
-    let screen = scanpath.screen();
-    let lost = scanpath.samples().iter().filter(|s| s.px.is_none()).count();
-    say!("scanpath of {:.3} s", scanpath.duration_s());
-    say!("samples: {} ({lost} lost)", scanpath.samples().len());
-    if scanpath.poses().is_some() {
-        say!("head: a pose at every sample; use it with --camera head");
-    }
-    say!("screen: {}x{} px", screen.size_px[0], screen.size_px[1]);
-    match (screen.size_cm, screen.distance_cm) {
-        (Some([w, h]), Some(d)) => say!("geometry: {w}x{h} cm seen from {d} cm"),
-        _ => say!("geometry: not known"),
-    }
-    let map = match GazeMap::default_for(screen) {
-        GazeMap::Angle => "angle",
-        GazeMap::Fit => "fit",
-    };
-    say!("default --gaze-map: {map}");
-    if let Some(task) = &scanpath.about().task {
-        say!("task: {task}");
-    }
-    for (key, value) in &scanpath.about().notes {
-        say!("{key}: {value}");
-    }
-    Ok(())
 }
 
 fn frames_info(source: &mut dyn FrameSource) -> Result<(), InputError> {
@@ -90,6 +70,8 @@ fn frames_info(source: &mut dyn FrameSource) -> Result<(), InputError> {
         None => say!("frames: endless"),
     }
     say!("still: {}", if info.still { "yes" } else { "no" });
+    source.contents().iter().for_each(|line| say!("{line}"));
+    source.warnings().iter().for_each(|line| say!("warning: {line}"));
     say!("frames per second: {}", known(info.fps));
     say!("horizontal field of view, degrees: {}", known(info.hfov_deg));
     let first = source.frame(0)?;

@@ -56,6 +56,10 @@ pub struct RunArgs {
     /// --sampling, else what the input has
     #[arg(long, alias = "reference-spp", value_parser = parse_samples, value_name = "N")]
     pub reference_samples: Option<u32>,
+    /// First frame that counts in scores; frames.csv and the pictures have all. Without history, the first frames of a
+    /// clip are another question
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pub score_from: usize,
     /// Latency of the eye tracker, milliseconds: the renderer and the methods see the gaze of so long ago, scores and
     /// gaze.csv have the true one; at most 1000
     #[arg(long, default_value_t = 0.0, value_parser = parse_latency, value_name = "MS")]
@@ -116,8 +120,12 @@ impl RunArgs {
     #[must_use]
     pub fn with_defaults(self) -> Self {
         let is_scene = self.input.is_scene();
-        let is_sparse = is_scene && self.sampling.sampling == SamplingName::Uniform;
-        Self { foveation: self.foveation.with_defaults(is_sparse, is_scene), ..self }
+        let default = match is_scene && self.sampling.sampling == SamplingName::Uniform {
+            true if self.input.is_rasterised() => Filter::Quads,
+            true => Filter::Sparse,
+            false => Filter::Mip,
+        };
+        Self { foveation: self.foveation.with_defaults(default, is_scene), ..self }
     }
 
     /// The head that moves the camera, with `--camera head`.
@@ -223,6 +231,7 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
         gaze_latency_ms: args.gaze_latency,
     };
     write_report(&facts, &plan.clip, &report, &out)?;
+    out.finish()?;
     Ok(report)
 }
 

@@ -49,6 +49,13 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
         methods.push((method.name(), run_kind(args, method, info.still)?));
     }
     let track = args.gaze.resolve(&geometry, fps, input::frames(args.frames, info), head, args.gaze_latency)?;
+    let frames = track.px.len();
+    if args.score_from >= frames {
+        return refuse(format!(
+            "--score-from {}: the clip has {frames} frames; choose an earlier one",
+            args.score_from
+        ));
+    }
     Ok(Plan {
         input: info.name.clone(),
         fps,
@@ -65,6 +72,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
             methods,
             gaze: track.px,
             late_gaze: track.late_px,
+            score_from: args.score_from,
             exposure_ev: args.exposure,
             write_frame: args.format.writer(),
             write_reference: args.reference,

@@ -57,8 +57,8 @@ pub struct TraceArgs {
     pub hfov: Option<f32>,
     /// A camera of the scene by name; still (the scene's first camera, else one that frames the scene), lateral, orbit,
     /// walk, head (the poses of the head in --gaze FILE.csv, or somebody who looks around with head and eye with --gaze
-    /// synthetic:SEED), head-walk (the same, walking); or a file: a cameras.json, or a path {"keyframes": [{"time_s",
-    /// "position", "target"}]}; default: still
+    /// synthetic:SEED), head-walk (the same, walking); or a .json file (cameras.json, transforms.json,
+    /// keyframes ...; docs/cameras.md); default: still
     #[arg(long, value_name = "NAME|FILE.json")]
     pub camera: Option<String>,
     /// Animation of the scene to play, by name or number; default: the first
@@ -168,7 +168,8 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
         previous = Some(head);
     }
     bar.finish_and_clear();
-    finish(args, &out, &setup, &report, &eyes, &gaze)
+    finish(args, &out, &setup, &report, &eyes, &gaze)?;
+    out.finish()
 }
 
 /// Gaze of the head and of each eye, per frame, in pixels; empty with uniform sampling.

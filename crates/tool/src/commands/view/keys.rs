@@ -54,7 +54,7 @@ const KEYS: &[Key] = &[
     key(&[KeyCode::Tab], "Tab", Action::Split, "splits the picture (drag the divider with the left button)")
         .row("split", |state| on_off(state.is_split)),
     key(&[KeyCode::KeyF], "F", Action::Filter, "foveation").row("foveation", |state| text(state.filter.name())),
-    key(&[KeyCode::KeyT], "T", Action::Render, "renders a scene's samples, quad views or full rate")
+    key(&[KeyCode::KeyT], "T", Action::Render, "renders a scene's chosen quads, samples, quad views or full rate")
         .row("rendered", rendered),
     key(LARGER, "- =", Action::Fovea(FOVEA_STEP), "fovea diameter")
         .row("fovea", |state| Some(format!("{:.1} deg", state.fovea_deg))),
@@ -106,6 +106,7 @@ fn on_off(is_on: bool) -> Option<String> {
 
 fn rendered(state: &State) -> Option<String> {
     let value = match state.filter {
+        FilterName::Of(Filter::Quads) => "chosen quads",
         FilterName::Of(Filter::Sparse) => "samples",
         filter if filter.is_quad_views() => "quad views",
         _ => "full rate",

@@ -29,9 +29,11 @@ mod times;
 mod viewer;
 
 use crate::args::backend::BackendName;
+use crate::args::gaze_log::GazeLogArgs;
 use crate::args::input::{InputArgs, Rendering};
 use crate::args::{FoveationArgs, MethodArgs, by_name, parse_exposure, parse_frames};
 use crate::failure::Failure;
+use afterimage::Filter;
 use afterimage_lab::scanpath::GazeMap;
 use app::App;
 use clap::Args;
@@ -58,7 +60,7 @@ pub struct ViewArgs {
         long, value_parser = by_name::<Shows>(), value_delimiter = ',', conflicts_with = "method", value_name = "A,B"
     )]
     pub split: Vec<Shows>,
-    /// Scanpath to play instead of following the mouse: screen pixels (FILE.csv), one fixed frame pixel (X,Y), or
+    /// Scanpath to play instead of following the mouse: FILE, as for run, one fixed frame pixel (X,Y), or
     /// synthetic[:SEED]. One position per frame, at most --fps frames a second, so that pictures are the same as with
     /// run; key P
     #[arg(long, value_name = "GAZE", allow_hyphen_values = true)]
@@ -67,6 +69,8 @@ pub struct ViewArgs {
     /// geometry
     #[arg(long, value_parser = by_name::<GazeMap>())]
     pub gaze_map: Option<GazeMap>,
+    #[command(flatten)]
+    pub log: GazeLogArgs,
     /// Start time in the scanpath, seconds
     #[arg(long, default_value_t = 0.0, value_name = "S")]
     pub start: f64,
@@ -102,7 +106,8 @@ pub struct ViewArgs {
 /// The subcommand.
 pub fn view(args: &ViewArgs) -> Result<(), Failure> {
     let is_rendered = args.input.is_rasterised();
-    let foveation = args.foveation.clone().with_defaults(is_rendered, is_rendered);
+    let default = if is_rendered { Filter::Quads } else { Filter::Mip };
+    let foveation = args.foveation.clone().with_defaults(default, is_rendered);
     // A key switches to other foveations, whose geometry may have another default.
     let foveation = FoveationArgs { geometry: args.foveation.geometry, ..foveation };
     let args = &ViewArgs { foveation, ..args.clone() };

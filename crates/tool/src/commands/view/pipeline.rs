@@ -7,9 +7,10 @@ use super::state::{Shows, Side, State};
 use super::times::{Pass, PassTimes};
 use crate::failure::Failure;
 use afterimage::doctor::Finding;
-use afterimage::wgpu::{CommandEncoder, Texture};
+use afterimage::gpu::Frame;
+use afterimage::wgpu::{Buffer, CommandEncoder, Texture};
 use afterimage::{
-    ContextDesc, Filter, Foveation, Gaze, Lattices, MethodKind, Reset, Settings, ViewFrame, ViewGeometry,
+    ContextDesc, Filter, Foveation, FrameError, Gaze, Lattices, MethodKind, Reset, Settings, ViewFrame, ViewGeometry,
 };
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::{Content, RenderedFrame};
@@ -17,6 +18,7 @@ use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun};
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::source::{FrameRequest, RasterSource, Wanted};
+use std::convert::Infallible;
 use std::sync::Arc;
 
 /// Same formats as in `run`, so that both give the same pictures.
@@ -163,15 +165,15 @@ impl ViewPipeline {
         gaze_px: [f32; 2],
         again: bool,
         state: &State,
-        renderer: Option<&mut RasterSource>,
+        mut renderer: Option<&mut RasterSource>,
         times: &mut PassTimes,
     ) -> Result<(), Failure> {
         let foveation = &self.desc.settings.foveation;
-        let is_sparse = foveation.filter == Filter::Sparse;
+        let [is_sparse, by_quads] = [Filter::Sparse, Filter::Quads].map(|filter| foveation.filter == filter);
         let simulated = is_sparse.then(|| self.sample_order.lattices(foveation, &self.geometry, gaze_px, self.index));
         // Rendered frames are shown again only after a reset of the history, which needs no motion.
         let again = again && renderer.is_none();
-        let rendered = renderer.map(|renderer| self.render(renderer, gaze_px, simulated, state, times));
+        let rendered = renderer.as_deref_mut().map(|renderer| self.render(renderer, gaze_px, simulated, state, times));
         let is_simulated = rendered.as_ref().is_none_or(|(content, _)| matches!(content, Content::FullRate));
         let (lattices, jitter_px) =
             rendered.map_or((simulated, [0.0; 2]), |(content, jitter_px)| (content.lattices(), jitter_px));
@@ -182,7 +184,7 @@ impl ViewPipeline {
             ..ViewFrame::new(self.geometry, Gaze::At { px: gaze_px })
         }];
         let gpu = &self.gpu;
-        if is_simulated {
+        if is_simulated && !by_quads {
             times.pass(gpu, Pass::Foveation, |encoder, timestamps| self.inputs.foveate(encoder, &views, timestamps))?;
         }
         // A cut resets the history once, not again each time its frame is shown.
@@ -190,8 +192,8 @@ impl ViewPipeline {
         let reset = if cut || self.index == 0 { Reset::All } else { Reset::None };
         let frame = self.inputs.frame(&views, self.index, reset, false);
         let frame = if again { self.inputs.again(frame) } else { frame };
-        // The doctor does not know sparse frames.
-        if state.is_examined && !is_sparse {
+        // The doctor does not know frames with few samples.
+        if state.is_examined && !is_sparse && !by_quads {
             let examiner = match &mut self.examiner {
                 Some(examiner) => examiner,
                 none => none.insert(Examiner::new(gpu, &self.desc)?),
@@ -202,6 +204,23 @@ impl ViewPipeline {
         }
         for (side, pass) in self.runs.iter_mut().zip([Pass::Left, Pass::Right]) {
             let Some(run) = &mut side.run else { continue };
+            if by_quads {
+                // Of a given frame, the quads are those of its full-rate picture.
+                let full = self.inputs.full();
+                let mut shade = |encoder: &mut CommandEncoder, list: &Buffer| match renderer.as_deref_mut() {
+                    Some(renderer) => renderer.record_quads(encoder, self.position, jitter_px, list),
+                    None => full.clone(),
+                };
+                times.span(gpu, pass, |encoder| {
+                    let color = plan(gpu, encoder, run, &frame, &mut shade)?;
+                    let frame = Frame { color: (&color).into(), ..frame };
+                    if let Some(debug) = state.debug {
+                        run.record_view(encoder, &frame, debug)?;
+                    }
+                    run.record(encoder, &frame, None).map(drop)
+                })?;
+                continue;
+            }
             if let Some(debug) = state.debug {
                 let mut encoder = gpu.device.create_command_encoder(&Default::default());
                 run.record_view(&mut encoder, &frame, debug)?;
@@ -227,8 +246,11 @@ impl ViewPipeline {
             .quad_views
             .map(|layout| Wanted::QuadViews(layout.views(&self.desc.settings.foveation, &self.geometry, gaze_px)));
         // As in run: the sequence starts with a corner of the pixel.
-        let jitter_px = (self.is_jittered && lattices.is_some()).then(|| Foveation::jitter_px(self.index + 1));
-        let wanted = quad_views.or(lattices.map(Wanted::Lattices)).unwrap_or(Wanted::FullRate);
+        let by_quads = self.desc.settings.foveation.filter == Filter::Quads;
+        let is_jittered = self.is_jittered && (lattices.is_some() || by_quads);
+        let jitter_px = is_jittered.then(|| Foveation::jitter_px(self.index + 1));
+        let otherwise = if by_quads { Wanted::Surfaces } else { Wanted::FullRate };
+        let wanted = quad_views.or(lattices.map(Wanted::Lattices)).unwrap_or(otherwise);
         let full_rate = FrameRequest { reference: false, ..FrameRequest::full_rate(self.position) };
         let request = FrameRequest { gaze_px, wanted, jitter_px, geometry: self.sparse_geometry, ..full_rate.clone() };
         self.has_full = request.needs_full_rate();
@@ -243,12 +265,14 @@ impl ViewPipeline {
             self.has_full = true;
         }
         let mut rendered = (Content::FullRate, [0.0; 2]);
-        times.span(&self.gpu, Pass::Render, |encoder| {
+        let timed = times.span(&self.gpu, Pass::Render, |encoder| {
             let frame = renderer.record(encoder, &request);
             self.inputs.set(encoder, &frame);
             self.previous_from_current = frame.reference.previous_from_current;
             rendered = (frame.content, frame.jitter_px);
+            Ok::<(), Infallible>(())
         });
+        let Ok(()) = timed;
         rendered
     }
 
@@ -284,4 +308,16 @@ impl ViewPipeline {
             None => (self.picture(side), false),
         }
     }
+}
+
+/// Records the choice of a method's quads, and their shading; the shaded frame.
+fn plan(
+    gpu: &Headless,
+    encoder: &mut CommandEncoder,
+    run: &mut DeviceRun,
+    frame: &Frame<'_>,
+    shade: &mut dyn FnMut(&mut CommandEncoder, &Buffer) -> Texture,
+) -> Result<Texture, FrameError> {
+    run.post_mut().plan(&gpu.device, encoder, frame)?;
+    Ok(shade(encoder, run.post().quad_list(0).expect("the settings ask for a plan")))
 }

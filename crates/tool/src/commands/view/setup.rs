@@ -29,7 +29,7 @@ pub fn head(args: &ViewArgs) -> Result<Option<HeadPath>, Failure> {
 
 fn gaze(args: &ViewArgs) -> GazeArgs {
     let gaze = args.gaze.clone().unwrap_or_else(|| "synthetic:0".into());
-    GazeArgs { gaze, gaze_map: args.gaze_map, start: args.start }
+    GazeArgs { gaze, gaze_map: args.gaze_map, start: args.start, log: args.log.clone() }
 }
 
 impl Setup {
@@ -43,14 +43,11 @@ impl Setup {
             return refuse(format!("--internal-scale {scale}: expected above 0 and at most 1"));
         }
         args.foveation.check(args.input.is_rasterised(), args.input.is_analytic())?;
-        if args.foveation.is_quads() {
-            return refuse("--foveation quads: the viewer does not show it yet; use run".into());
-        }
-        let is_sparse = args.foveation.filter() == FilterName::Of(Filter::Sparse);
-        if args.foveation.is_jittered() && !(args.input.is_rasterised() && is_sparse) {
+        let has_samples = matches!(args.foveation.filter(), FilterName::Of(Filter::Sparse | Filter::Quads));
+        if args.foveation.is_jittered() && !(args.input.is_rasterised() && has_samples) {
             return refuse(
-                "--jitter halton: the viewer jitters sparse frames of scenes only; give a scene (.gltf, .glb, \
-                 builtin:NAME) and --foveation sparse, or use run"
+                "--jitter halton: the viewer jitters single samples of scenes only; give a scene (.gltf, .glb, \
+                 builtin:NAME) and --foveation quads or sparse, or use run"
                     .into(),
             );
         }
@@ -107,7 +104,12 @@ impl Setup {
     }
 
     fn foveation(&self, state: &State) -> FoveationArgs {
-        FoveationArgs { filter: Some(state.filter), fovea: state.fovea_deg, ..self.args.foveation.clone() }
+        let args = FoveationArgs { filter: Some(state.filter), fovea: state.fovea_deg, ..self.args.foveation.clone() };
+        // Rates that suit blocks need not suit quads.
+        match args.is_quads() && !self.args.foveation.is_quads() {
+            true => FoveationArgs { rate_mid: None, rate_far: None, ..args },
+            false => args,
+        }
     }
 
     /// View geometry at a factor on the input's resolution.

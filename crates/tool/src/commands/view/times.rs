@@ -98,8 +98,13 @@ impl PassTimes {
     }
 
     /// Records, submits and times passes that take no timestamps of their own: empty passes before and after take them.
-    pub fn span(&mut self, gpu: &Headless, pass: Pass, record: impl FnOnce(&mut CommandEncoder)) {
-        let timed = self.pass(gpu, pass, |encoder, timestamps| {
+    pub fn span<E>(
+        &mut self,
+        gpu: &Headless,
+        pass: Pass,
+        record: impl FnOnce(&mut CommandEncoder) -> Result<(), E>,
+    ) -> Result<(), E> {
+        self.pass(gpu, pass, |encoder, timestamps| {
             let mark = |encoder: &mut CommandEncoder, is_end: bool| {
                 let Some(Timestamps { queries, begin, end }) = timestamps else { return };
                 let timestamp_writes = Some(wgpu::ComputePassTimestampWrites {
@@ -110,11 +115,10 @@ impl PassTimes {
                 encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("time"), timestamp_writes });
             };
             mark(encoder, false);
-            record(encoder);
+            record(encoder)?;
             mark(encoder, true);
-            Ok::<(), std::convert::Infallible>(())
-        });
-        let Ok(()) = timed;
+            Ok(())
+        })
     }
 
     /// Ends a frame: starts to read its timestamps back.

@@ -1,0 +1,68 @@
+//! Files that are legal, and that the crate `gltf` alone would refuse.
+
+use super::builder::{Gltf, TRIANGLE};
+use super::open;
+use serde_json::json;
+
+/// An animation with a channel of a node and others without one.
+#[test]
+fn channels_without_a_node_are_left_out() {
+    let mut file = Gltf::new();
+    file.soup(&TRIANGLE);
+    let (times, values) = (file.floats(&[[0.0], [1.0]]), file.floats(&[[0.0_f32; 3], [1.0, 0.0, 0.0]]));
+    let with_node = json!({"sampler": 0, "target": {"node": 0, "path": "translation"}});
+    let without = json!({"sampler": 0, "target": {"path": "translation"}});
+    let pointer = json!({"sampler": 0, "target": {
+        "path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": "/nodes/0/translation"}}
+    }});
+    let samplers = json!([{"input": times, "output": values}]);
+    file.push("animations", json!({"name": "a", "samplers": samplers, "channels": [without, with_node, pointer]}));
+    file.push("animations", json!({"samplers": samplers, "channels": [without]}));
+    let scene = file.open();
+    assert_eq!(scene.duration_s(), 1.0, "the channel of the node is there");
+    let warning = scene.warnings.iter().find(|line| line.contains("without a node")).unwrap();
+    assert!(warning.contains("animation 0 (a), animation 1"), "{warning}");
+}
+
+#[test]
+fn textures_without_an_image_are_left_out() {
+    for texture in [json!({}), json!({"extensions": {"EXT_texture_webp": {"source": 0}}})] {
+        let factor = json!([0.5, 0.25, 1.0, 1.0]);
+        let info = json!({"index": 0});
+        let core = json!({"baseColorTexture": info, "metallicRoughnessTexture": info, "baseColorFactor": factor});
+        let material = json!({"pbrMetallicRoughness": core, "normalTexture": info, "emissiveTexture": info});
+        let mut file = Gltf::with_material(material);
+        file.push("images", json!({"uri": "gone.webp"}));
+        file.push("textures", texture.clone());
+        let scene = file.open();
+        assert_eq!(scene.textures.len(), 0);
+        let warning = scene.warnings.iter().find(|line| line.contains("without an image")).unwrap();
+        assert_eq!(warning.contains("EXT_texture_webp"), texture.get("extensions").is_some(), "{warning}");
+    }
+}
+
+#[test]
+fn scenes_may_be_empty() {
+    let mut file = Gltf::new();
+    file.json["scenes"] = json!([{"name": "nothing"}]);
+    assert_eq!(file.open().still().len(), 0);
+}
+
+/// Byte order mark in front; NUL bytes and spaces behind, in both containers.
+#[test]
+fn padding_around_the_json_is_skipped() {
+    let mut file = Gltf::new();
+    file.soup(&TRIANGLE);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.glb");
+    for (before, after) in [("", "\0\0\0"), ("\u{feff}", ""), ("", " \n\0"), ("\u{feff}", "  \0")] {
+        file.json["buffers"] = json!([{"byteLength": file.bin.len()}]);
+        let mut json = format!("{before}{}{after}", file.json).into_bytes();
+        json.resize(json.len().next_multiple_of(4), if after.contains('\0') { 0 } else { b' ' });
+        let chunk = |kind: &[u8; 4], data: &[u8]| [&(data.len() as u32).to_le_bytes()[..], kind, data].concat();
+        let chunks = [chunk(b"JSON", &json), chunk(b"BIN\0", &file.bin)].concat();
+        let head = [&b"glTF"[..], &2_u32.to_le_bytes(), &(12 + chunks.len() as u32).to_le_bytes()].concat();
+        std::fs::write(&path, [head, chunks].concat()).unwrap();
+        assert_eq!(open(&path).unwrap().still().len(), 1, "{before:?}, {after:?}");
+    }
+}

@@ -1,0 +1,95 @@
+//! Gaze logs of eye trackers on the command line.
+
+use super::rig::{Folder, refuses, succeeds, tool};
+use std::fs;
+
+const SDK: &[u8] = b"device_time_stamp,left_gaze_point_on_display_area_x,left_gaze_point_on_display_area_y,\
+    left_gaze_point_validity\n1000000,0.5,0.25,1\n1010000,0.25,0.75,1\n1020000,nan,nan,0\n";
+
+/// Output and errors of a command that succeeds.
+#[track_caller]
+fn both(args: &[&str]) -> (String, String) {
+    let output = tool(args);
+    assert!(output.status.success(), "{output:?}");
+    (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap())
+}
+
+#[test]
+fn an_export_is_read_as_it_is_and_converted() {
+    let folder = Folder::new();
+    let log = folder.write("recording.CSV", SDK);
+    let out = folder.text("out.csv");
+    let command = ["scanpath", "--from", "tobii", &log, "--out", &out];
+    let (text, errors) = both(&command);
+    assert!(text.contains("0.020 s, 3 samples (1 lost), from tobii"), "{text}");
+    assert!(errors.contains("give --screen-mm WxH and --distance-mm D"), "{errors}");
+    let screen = ["--screen-px", "2000x1000", "--screen-mm", "500x250", "--distance-mm", "700"];
+    let (_, errors) = both(&[&command[..], &screen].concat());
+    assert_eq!(errors, "");
+    let written = fs::read_to_string(&out).unwrap();
+    assert!(written.contains("# screen_px: 2000x1000\n# screen_cm: 50x25\n# distance_cm: 70\n"), "{written}");
+    assert!(written.ends_with("t_s,x_px,y_px,valid\n0,1000,250,1\n0.01,500,750,1\n0.02,nan,nan,0\n"), "{written}");
+    let run =
+        ["run", "analytic:scroll", "--size", "64x36", "--frames", "2", "--method", "none", "--no-jod", "--no-flip"];
+    let gaze = |file: &str, out: &str| {
+        both(&[&run[..], &["--gaze", file, "--out", out, "--gaze-map", "fit"]].concat());
+        fs::read_to_string(format!("{out}/gaze.csv")).unwrap()
+    };
+    // The log itself and what it was converted to give the same gaze: 0.5, 0.25 of 64x36 from the middle of a pixel.
+    let (direct, converted) = (gaze(&log, &folder.text("a")), gaze(&out, &folder.text("b")));
+    assert_eq!(direct, converted);
+    assert!(direct.contains("0,31.500,8.500"), "{direct}");
+    let text = succeeds(&["info", &log]);
+    assert!(
+        text.contains("--from tobii") && text.contains("samples: 3 (1 lost)") && text.contains("warning: "),
+        "{text}"
+    );
+}
+
+#[test]
+fn what_a_log_lacks_is_asked_for_in_one_line() {
+    let folder = Folder::new();
+    let page = folder.write("page.csv", b"x,y,t\n960,540,0\n970,540,33.3\n");
+    let out = folder.text("out.csv");
+    for command in [&["scanpath", &page, "--out", &out][..], &["info", &page]] {
+        refuses(command, &["page.csv", "size of the screen", "--screen-px WxH", "--screen-mm WxH"]);
+    }
+    refuses(&["run", "analytic:scroll", "--gaze", &page, "--out", &folder.text("run")], &["--screen-px WxH"]);
+    succeeds(&["info", &page, "--screen-px", "1920x1080"]);
+    refuses(&["scanpath", "--from", "eyelink", &page, "--out", &out], &["no time and gaze of eyelink", "ASC"]);
+    refuses(&["scanpath", &page, "--screen-px", "8x8", "--eye", "left", "--out", &out], &["left eye", "--eye"]);
+    let angle = ["run", "analytic:scroll", "--gaze", &page, "--screen-px", "1920x1080", "--gaze-map", "angle"];
+    refuses(&[&angle[..], &["--out", &folder.text("run")]].concat(), &["--gaze-map fit", "--screen-mm WxH"]);
+    refuses(&["scanpath", "--from", "pupil", "--out", &out], &["FILE"]);
+    refuses(&["scanpath", &page, "--seconds", "3", "--out", &out], &["--seconds"]);
+    refuses(&["scanpath", "--screen-mm", "5x5", "--out", &out], &["--screen-mm", "not a gaze log"]);
+    refuses(&["run", "analytic:scroll", "--gaze", "3,4", "--eye", "left", "--out", &out], &["--eye", "--gaze 3,4"]);
+    refuses(&["info", "analytic:scroll", "--screen-px", "8x8"], &["--screen-px", "analytic:scroll"]);
+    refuses(&["scanpath", &page, "--screen-mm", "5", "--out", &out], &["WxH in millimeters"]);
+}
+
+#[test]
+fn info_reads_logs_of_any_ending_and_says_what_looks_wrong() {
+    let folder = Folder::new();
+    let head = "# screen_px: 1920x1080\n# screen_cm: 53x30\n# distance_cm: 65\nt_s,x_px,y_px,valid\n";
+    let rows = |row: &dyn Fn(u32) -> String| (0..20).map(row).collect::<String>();
+    let usual = format!("{head}{}", rows(&|i| format!("{},{},500,1\n", f64::from(i) * 0.02, 900 + i)));
+    for name in ["a.csv", "A.CSV", "a.tsv", "a.Txt", "a.log", "a"] {
+        let text = if name == "a.tsv" { usual.replace(',', "\t") } else { usual.clone() };
+        let said = succeeds(&["info", &folder.write(name, text.as_bytes())]);
+        assert!(said.starts_with("scanpath of 0.380 s\nsamples: 20 (0 lost)\n") && !said.contains("warning"), "{said}");
+    }
+    let asc = "** CONVERTED FROM a.edf using edfapi\nMSG\t1 DISPLAY_COORDS 0 0 1279 1023\nSTART\t5 \tLEFT\tSAMPLES\n\
+        5\t 100.0\t 200.0\t 700.0\t...\n7\t .\t .\t 0.0\t...\n";
+    let said = succeeds(&["info", &folder.write("a.asc", asc.as_bytes())]);
+    assert!(said.contains("--from eyelink") && said.contains("1280x1024 px") && said.contains("2 (1 lost)"), "{said}");
+    let milliseconds = format!("{head}{}", rows(&|i| format!("{},{},500,1\n", i * 20, 900 + i)));
+    let shares = format!("{head}{}", rows(&|i| format!("{},0.{i},0.5,1\n", f64::from(i) * 0.02)));
+    for (text, word) in [(milliseconds, "are the times milliseconds?"), (shares, "are the coordinates 0 to 1?")] {
+        let file = folder.write("odd.csv", text.as_bytes());
+        assert!(succeeds(&["info", &file]).contains(word));
+        let (_, errors) = both(&["scanpath", &file, "--out", &folder.text("out.csv")]);
+        assert!(errors.contains(word) && errors.lines().count() == 1, "{errors}");
+    }
+    refuses(&["info", &folder.write("prose.txt", b"It was a dark night.\n")], &["prose.txt", "column names", "tobii"]);
+}

@@ -1,0 +1,169 @@
+//! Foveated rendering of one ordinary view: the post-process chooses the quads of 2x2 pixels that are shaded, and the
+//! depth test rejects the rest before it is shaded. Camera, shaders and draw calls stay as they are.
+//!
+//! What a renderer adds to its prepass of depth and motion and to its color pass: `plan` between the two, a copy of the
+//! depth buffer, and `prime`.
+//!
+//! `cargo run --release --example 09_quads` (any adapter; software Vulkan: mesa-vulkan-drivers)
+
+mod headless;
+
+use afterimage::gpu::{Afterimage, Frame, Prime};
+use afterimage::wgpu::util::{BufferInitDescriptor, DeviceExt};
+use afterimage::wgpu::{self, CommandEncoder, LoadOp, RenderPipeline, Texture, TextureFormat, TextureUsages};
+use afterimage::{ContextDesc, DepthConvention, Foveation, Gaze, Settings, ViewFrame, ViewGeometry};
+use headless::Headless;
+
+const SIZE: [u32; 2] = [640, 360];
+const NEAR: f32 = 0.1;
+const DEPTH: TextureFormat = TextureFormat::Depth32Float;
+const COLOR: TextureFormat = TextureFormat::Rgba32Float;
+const MOTION: TextureFormat = TextureFormat::Rg32Float;
+
+/// A floor of tiles, seen by a camera that moves to the right. `fwidth` sees whole quads, as at full rate.
+const SHADER: &str = "
+struct Camera { time: f32, aspect: f32, size: vec2<f32> }
+@group(0) @binding(0) var<uniform> camera: Camera;
+struct Varying { @invariant @builtin(position) position: vec4<f32>, @location(0) floor: vec2<f32>, @location(1) now: vec4<f32>, @location(2) before: vec4<f32> }
+
+fn projected(world: vec3<f32>, time: f32) -> vec4<f32> {
+    let p = world - vec3<f32>(0.03 * time, 1.5, 0.0);
+    return vec4<f32>(p.x / 0.7, p.y / 0.7 * camera.aspect, 0.1, -p.z);
+}
+
+@vertex fn vertex(@builtin(vertex_index) i: u32) -> Varying {
+    let corner = vec2<f32>(f32(i & 1u), f32(i >> 1u));
+    let world = vec3<f32>(corner.x * 120.0 - 60.0, 0.0, -1.0 - 60.0 * corner.y);
+    let now = projected(world, camera.time);
+    return Varying(now, world.xz, now, projected(world, camera.time - 1.0));
+}
+
+@fragment fn motion(in: Varying) -> @location(0) vec2<f32> {
+    let ndc = in.before.xy / in.before.w - in.now.xy / in.now.w;
+    return ndc * vec2<f32>(0.5, -0.5) * camera.size;
+}
+
+@fragment fn color(in: Varying) -> @location(0) vec4<f32> {
+    let wave = sin(in.floor * 12.0) * (1.0 - smoothstep(vec2<f32>(0.1), vec2<f32>(0.25), fwidth(in.floor)));
+    return vec4<f32>(vec3<f32>(0.5, 0.45, 0.4) + 0.3 * wave.x * wave.y, 1.0);
+}";
+
+/// A pipeline of the renderer: `entry` is its fragment shader.
+fn pipeline(gpu: &Headless, entry: &str, format: TextureFormat, is_prepass: bool) -> RenderPipeline {
+    let source = wgpu::ShaderSource::Wgsl(SHADER.into());
+    let module = &gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: None,
+        layout: None,
+        vertex: wgpu::VertexState { module, entry_point: None, compilation_options: Default::default(), buffers: &[] },
+        primitive: wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() },
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH,
+            depth_write_enabled: Some(is_prepass),
+            depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
+            stencil: Default::default(),
+            bias: Default::default(),
+        }),
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            targets: &[Some(format.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// Draws the scene into `target`, on the depth buffer as it is or on a cleared one.
+fn draw(
+    gpu: &Headless,
+    encoder: &mut CommandEncoder,
+    pipeline: &RenderPipeline,
+    [target, depth]: [&Texture; 2],
+    (depth_load, time): (LoadOp<f32>, u64),
+) {
+    let words = [time as f32, SIZE[0] as f32 / SIZE[1] as f32, SIZE[0] as f32, SIZE[1] as f32];
+    let (contents, usage) = (bytemuck::bytes_of(&words), wgpu::BufferUsages::UNIFORM);
+    let uniforms = gpu.device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
+    let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniforms.as_entire_binding() }],
+    });
+    let [target, depth] = [target, depth].map(|texture| texture.create_view(&Default::default()));
+    let ops = wgpu::Operations { load: LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store };
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &target,
+            depth_slice: None,
+            resolve_target: None,
+            ops,
+        })],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: &depth,
+            depth_ops: Some(wgpu::Operations { load: depth_load, store: wgpu::StoreOp::Store }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    });
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, &group, &[]);
+    pass.draw(0..4, 0..1);
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let gpu = Headless::new()?;
+    let prepass = pipeline(&gpu, "motion", MOTION, true);
+    let shading = pipeline(&gpu, "color", COLOR, false);
+
+    // `Foveation::uniform(0.25)`, without an eye tracker: a temporal upscaler.
+    let foveation = Foveation::quads();
+    let desc = ContextDesc {
+        settings: Settings { foveation, ..Settings::default() },
+        depth: DepthConvention::Reversed { near: NEAR, far: f32::INFINITY },
+        ..ContextDesc::new(SIZE)
+    };
+    let attachment = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
+    let texture = |format| gpu.texture(SIZE, 1, format, attachment);
+    let [color, motion, depth, full] = [COLOR, MOTION, DEPTH, COLOR].map(texture);
+    let primed = gpu.texture(SIZE, 1, DEPTH, TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_DST);
+    let primed_view = primed.create_view(&Default::default());
+    let output = gpu.texture(SIZE, 1, COLOR, TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC);
+    let mut post = Afterimage::new(&gpu.device, &desc, COLOR)?;
+    let geometry = ViewGeometry::flat(SIZE, 2.0 * 0.7_f32.atan().to_degrees())?;
+    for index in 0..48 {
+        let gaze_px = [150.0 + 7.0 * index as f32, 200.0];
+        let views = [ViewFrame::new(geometry, Gaze::At { px: gaze_px })];
+        let frame =
+            Frame { depth: Some((&depth).into()), motion: Some((&motion).into()), ..Frame::new(&color, &views, index) };
+        let mut encoder = gpu.encoder();
+        // The renderer's prepass; 0 is the far plane.
+        draw(&gpu, &mut encoder, &prepass, [&motion, &depth], (LoadOp::Clear(0.0), index));
+        post.plan(&gpu.device, &mut encoder, &frame)?;
+        // Both the methods and the color pass read depth; prime closes a copy of it.
+        encoder.copy_texture_to_texture(depth.as_image_copy(), primed.as_image_copy(), depth.size());
+        let prime = Prime { target: &primed_view, origin_px: [0, 0], near_depth: 1.0, stencil: None };
+        post.prime(&gpu.device, &mut encoder, 0, &prime)?;
+        // The renderer's color pass.
+        draw(&gpu, &mut encoder, &shading, [&color, &primed], (LoadOp::Load, index));
+        post.record(&gpu.device, &mut encoder, &frame, &output)?;
+        gpu.submit(encoder);
+        if index % 16 == 15 {
+            let mut encoder = gpu.encoder();
+            draw(&gpu, &mut encoder, &shading, [&full, &depth], (LoadOp::Load, index));
+            gpu.submit(encoder);
+            let (shown, expected) = (gpu.read(&output, 0), gpu.read(&full, 0));
+            let squares: f32 = shown.iter().zip(&expected).map(|(a, b)| (a[0] - b[0]).powi(2)).sum();
+            let list = gpu.read_buffer(post.quad_list(0).expect("the filter is Quads"));
+            let quads = u32::from_le_bytes([list[28], list[29], list[30], list[31]]);
+            println!(
+                "frame {index}: {:.1} % of the pixels are shaded, PSNR {:.1} dB",
+                400.0 * quads as f32 / (SIZE[0] * SIZE[1]) as f32,
+                -10.0 * (squares / shown.len() as f32).log10()
+            );
+        }
+    }
+    Ok(())
+}
