@@ -106,7 +106,8 @@ fn event(headless: &mut Headless, random: &mut Random, size: &mut UVec2) -> &'st
                     camera.viewport = None;
                 }
             });
-            headless.resize(*size);
+            let target = headless.target.clone();
+            headless.resize(&target, *size);
             "resize"
         }
         4 => {

@@ -64,16 +64,26 @@ impl Headless {
         format!("{} ({})", info.name, info.driver_info)
     }
 
+    /// Adds an asset.
+    pub fn asset<A: Asset>(&mut self, asset: A) -> Handle<A> {
+        self.app.world_mut().resource_mut::<Assets<A>>().add(asset)
+    }
+
+    /// Another image that cameras can render to.
+    pub fn add_target(&mut self, size: UVec2) -> Handle<Image> {
+        self.asset(target_image(size))
+    }
+
     /// Renders frames.
     pub fn frames(&mut self, count: usize) {
         (0..count).for_each(|_| self.app.update());
     }
 
-    /// Makes the image that cameras render to another size, as a window's.
-    pub fn resize(&mut self, size: UVec2) {
+    /// Makes an image that cameras render to another size, as a window's.
+    pub fn resize(&mut self, target: &Handle<Image>, size: UVec2) {
         let image = target_image(size);
         let world = self.app.world_mut();
-        world.resource_mut::<Assets<Image>>().insert(&self.target, image).expect("the target exists");
+        world.resource_mut::<Assets<Image>>().insert(target, image).expect("the target exists");
         // Cameras learn of a window's new size at once, of an image's one frame later; but when projections change,
         // too.
         let mut projections = world.query::<&mut Projection>();
@@ -94,9 +104,14 @@ impl Headless {
 
     /// Reads the image.
     pub fn read(&self) -> Vec<u8> {
+        self.read_target(&self.target)
+    }
+
+    /// Reads an image that cameras render to.
+    pub fn read_target(&self, target: &Handle<Image>) -> Vec<u8> {
         let world = self.app.sub_app(RenderApp).world();
         let (device, queue) = (world.resource::<RenderDevice>().wgpu_device(), world.resource::<RenderQueue>());
-        let image = world.resource::<RenderAssets<GpuImage>>().get(&self.target).expect("a rendered image");
+        let image = world.resource::<RenderAssets<GpuImage>>().get(target).expect("a rendered image");
         let [w, h] = [image.texture.width(), image.texture.height()];
         let stride = (4 * w).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {

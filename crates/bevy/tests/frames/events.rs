@@ -2,27 +2,20 @@
 
 use crate::common::headless::Headless;
 use crate::common::scene::{ScenePlugin, TONEMAPPING, stroll};
-use crate::{SIZE, courtyard, kind, psnr_db, wander};
+use crate::{SIZE, compared, courtyard, courtyards, kind, psnr_db, wander};
 use bevy::prelude::*;
 use bevy_afterimage::afterimage::{DebugView, Method, Settings, Wrs};
 use bevy_afterimage::{Afterimage, AfterimageDebug, Foveated, FoveationKind, Gaze, Preset};
 
 #[test]
 fn frames_of_another_size_are_good_again() {
-    let [wide, tall] = [UVec2::new(400, 200), UVec2::new(160, 220)];
-    for size in [wide, tall, SIZE * 2] {
-        let blind = Settings { method: Method::None, ..default() };
-        let shots = [(FoveationKind::Off, None), (FoveationKind::Quads, Some(blind)), (FoveationKind::Quads, None)];
-        let shots = shots.map(|(foveation, settings)| {
-            let mut headless = courtyard(kind(foveation));
-            let mut cameras = headless.app.world_mut().query::<&mut Afterimage>();
-            cameras.single_mut(headless.app.world_mut()).unwrap().settings = settings;
-            headless.frames(4);
-            headless.resize(size);
-            headless.frames(14);
-            assert_eq!(headless.problems(), &[] as &[String]);
-            headless.read()
-        });
+    let (mut headless, targets) = courtyards(compared());
+    headless.frames(4);
+    for size in [UVec2::new(400, 200), UVec2::new(160, 220), SIZE * 3 / 2] {
+        targets.iter().for_each(|target| headless.resize(target, size));
+        headless.frames(14);
+        assert_eq!(headless.problems(), &[] as &[String]);
+        let shots = targets.each_ref().map(|target| headless.read_target(target));
         assert_eq!(shots[2].len(), 4 * size.element_product() as usize);
         let [blind, quads] = [&shots[1], &shots[2]].map(|shot| psnr_db(shot, &shots[0]));
         println!("{size}: without history {blind:.2} dB, with {quads:.2} dB");

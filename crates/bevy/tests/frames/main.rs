@@ -11,9 +11,10 @@ mod pixels;
 mod quads;
 mod reflection;
 
-use bevy::camera::Hdr;
+use bevy::camera::{Hdr, RenderTarget};
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
+use bevy_afterimage::afterimage::{Method, Settings};
 use bevy_afterimage::{Afterimage, Foveated, FoveationKind, Gaze};
 use common::headless::{Headless, psnr_db};
 use common::scene::{Mover, ScenePlugin, TONEMAPPING, stroll};
@@ -31,6 +32,38 @@ fn courtyard(components: impl Bundle) -> Headless {
         .insert((TONEMAPPING, Msaa::Off))
         .insert(components);
     headless
+}
+
+/// The courtyard, and cameras that stroll through it on the same way, each with components and an image of its own.
+fn courtyards<const N: usize>(cameras: [(Afterimage, Foveated); N]) -> (Headless, [Handle<Image>; N]) {
+    let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: true });
+    let targets = cameras.map(|components| {
+        let image = headless.add_target(SIZE);
+        let target = RenderTarget::from(image.clone());
+        headless
+            .app
+            .world_mut()
+            .spawn((Camera3d::default(), target, stroll(0.0), Mover::Stroll))
+            .insert((TONEMAPPING, Msaa::Off))
+            .insert(components);
+        image
+    });
+    (headless, targets)
+}
+
+/// At every pixel, by quads without history, and by quads.
+fn compared() -> [(Afterimage, Foveated); 3] {
+    let every = Foveated { kind: FoveationKind::Off, ..default() };
+    let blind = Settings { method: Method::None, ..default() };
+    let blind = Afterimage { settings: Some(blind), ..default() };
+    [(Afterimage::default(), every), (blind, Foveated::default()), default()]
+}
+
+/// Has the camera be shown otherwise from now on, without history.
+fn change(headless: &mut Headless, (afterimage, foveated): (Afterimage, Foveated)) {
+    let world = headless.app.world_mut();
+    let camera = world.query_filtered::<Entity, With<Camera3d>>().single(world).expect("a camera");
+    world.entity_mut(camera).insert((Afterimage { reset: true, ..afterimage }, foveated));
 }
 
 fn kind(kind: FoveationKind) -> impl Bundle {

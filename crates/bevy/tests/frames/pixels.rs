@@ -2,10 +2,10 @@
 
 use crate::common::headless::{Headless, afterimage};
 use crate::common::scene::{Mover, ScenePlugin, TONEMAPPING, stroll};
-use crate::{SIZE, clip, clip_psnr_db, courtyard, kind, linear, psnr_db, wander};
+use crate::{SIZE, change, clip_psnr_db, compared, courtyard, courtyards, kind, linear, psnr_db, wander};
 use afterimage::gpu::{Frame, Region, Textures};
 use afterimage::{ViewFrame, wgpu};
-use bevy::camera::{CameraProjection, SubCameraView, Viewport};
+use bevy::camera::{CameraProjection, RenderTarget, SubCameraView, Viewport};
 use bevy::math::Vec3A;
 use bevy::prelude::*;
 use bevy::render::RenderApp;
@@ -13,33 +13,38 @@ use bevy::render::renderer::{RenderDevice, RenderQueue};
 use bevy_afterimage::testing::recorded;
 use bevy_afterimage::{Afterimage, AfterimageStats, CameraGaze, Foveated, FoveationKind, Gaze};
 
-/// Quads without history, for comparison.
-fn blind() -> impl Bundle {
-    Afterimage { settings: Some(none()), ..default() }
-}
-
 #[test]
 fn history_is_better_than_interpolation_in_motion() {
-    let [off, blind, quads] = [
-        clip(&mut courtyard(kind(FoveationKind::Off)), 24, 12),
-        clip(&mut courtyard(blind()), 24, 12),
-        clip(&mut courtyard(kind(FoveationKind::Quads)), 24, 12),
-    ];
-    let [blind, quads] = [blind, quads].map(|shots| clip_psnr_db(&shots, &off));
+    let (mut headless, targets) = courtyards(compared());
+    let mut shots = [const { Vec::new() }; 3];
+    for frame in 0..24 {
+        wander(&mut headless, frame);
+        headless.frames(1);
+        if frame >= 12 {
+            shots.iter_mut().zip(&targets).for_each(|(shots, target)| shots.push(headless.read_target(target)));
+        }
+    }
+    assert_eq!(headless.problems(), &[] as &[String]);
+    let [blind, quads] = [&shots[1], &shots[2]].map(|of| clip_psnr_db(of, &shots[0]));
     println!("without history {blind:.2} dB, with {quads:.2} dB");
     assert!(quads > blind + 2.0, "without history {blind:.2} dB, with {quads:.2} dB");
 }
 
-/// A frame of a still courtyard, after some.
-fn settled(components: impl Bundle, is_hdr: bool, frames: usize, gaze: Vec2) -> Vec<u8> {
+/// A still courtyard.
+fn still(is_hdr: bool) -> Headless {
     let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: false });
     let target = headless.render_target();
     let camera = (Camera3d::default(), Msaa::Off, target, TONEMAPPING, stroll(1.0));
     let mut camera = headless.app.world_mut().spawn(camera);
-    camera.insert(components);
     if is_hdr {
         camera.insert(linear());
     }
+    headless
+}
+
+/// A frame of the camera with `components`, after some.
+fn settled(headless: &mut Headless, components: (Afterimage, Foveated), frames: usize, gaze: Vec2) -> Vec<u8> {
+    change(headless, components);
     headless.app.world_mut().resource_mut::<Gaze>().set(gaze);
     headless.frames(frames);
     assert_eq!(headless.problems(), &[] as &[String]);
@@ -50,10 +55,12 @@ fn settled(components: impl Bundle, is_hdr: bool, frames: usize, gaze: Vec2) -> 
 fn a_still_view_becomes_that_of_full_rate_with_and_without_hdr() {
     let at = Vec2::new(0.3, 0.5);
     for is_hdr in [false, true] {
-        let full = settled(kind(FoveationKind::Off), is_hdr, 3, at);
-        let blind = psnr_db(&settled(blind(), is_hdr, 8, at), &full);
+        let mut headless = still(is_hdr);
+        let [full, blind, quads] = compared();
+        let full = settled(&mut headless, full, 3, at);
+        let blind = psnr_db(&settled(&mut headless, blind, 8, at), &full);
         // 32 frames until each quad of the periphery was shaded, and a few more.
-        let quads = psnr_db(&settled(kind(FoveationKind::Quads), is_hdr, 40, at), &full);
+        let quads = psnr_db(&settled(&mut headless, quads, 40, at), &full);
         println!("hdr {is_hdr}: without history {blind:.2} dB, with {quads:.2} dB");
         assert!(quads > 38.0 && quads > blind + 8.0, "hdr {is_hdr}: without {blind:.2} dB, with {quads:.2} dB");
     }
@@ -61,9 +68,13 @@ fn a_still_view_becomes_that_of_full_rate_with_and_without_hdr() {
 
 #[test]
 fn without_a_gaze_a_still_view_becomes_that_of_full_rate_wherever_one_looks() {
-    let uniform = || (Afterimage::default(), Foveated::uniform(0.25));
-    let full = settled(kind(FoveationKind::Off), false, 3, Vec2::splat(0.5));
-    let [left, right] = [0.1, 0.9].map(|x| settled(uniform(), false, 20, Vec2::new(x, 0.5)));
+    let mut headless = still(false);
+    let [full, ..] = compared();
+    let full = settled(&mut headless, full, 3, Vec2::splat(0.5));
+    let [left, right] = [0.1, 0.9].map(|x| {
+        let uniform = (Afterimage::default(), Foveated::uniform(0.25));
+        settled(&mut headless, uniform, 20, Vec2::new(x, 0.5))
+    });
     let psnr = psnr_db(&left, &full);
     println!("uniform, 25 %: {psnr:.2} dB, {:.2} dB between gazes", psnr_db(&left, &right));
     assert!(psnr > 38.0, "{psnr:.2} dB");
@@ -147,29 +158,26 @@ fn compare_with_the_drop_in(antialias: bool) {
 
 #[test]
 fn gizmos_are_drawn_at_full_rate_and_hidden_by_meshes() {
-    // The line at a distance before the camera, and behind the wall.
-    let [before, behind] = [3.0, -9.0].map(|z| {
-        // The jitter of meshes does not move them.
-        let antialias = Afterimage { antialias: true, ..default() };
-        [(FoveationKind::Off, default()), (FoveationKind::Quads, antialias)].map(|(foveation, afterimage)| {
-            let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: false });
-            let target = headless.render_target();
-            let camera = (Camera3d::default(), Msaa::Off, target, TONEMAPPING, stroll(1.0), kind(foveation));
-            headless.app.world_mut().spawn(camera).insert(afterimage);
-            headless.app.add_systems(Update, move |mut gizmos: Gizmos<'_, '_>| {
-                gizmos.line(Vec3::new(-2.0, 2.0, z), Vec3::new(2.0, 2.3, z), Color::srgb(1.0, 0.0, 1.0));
-            });
-            headless.frames(8);
-            assert_eq!(headless.problems(), &[] as &[String]);
-            let shot = headless.read();
-            shot.chunks(4).map(|pixel| pixel[0].min(pixel[2]) > pixel[1].saturating_add(100)).collect::<Vec<bool>>()
-        })
+    let mut headless = still(false);
+    // One line before the meshes, and one behind the wall.
+    headless.app.add_systems(Update, |mut gizmos: Gizmos<'_, '_>| {
+        for (z, color) in [(3.0, Color::srgb(1.0, 0.0, 1.0)), (-9.0, Color::srgb(0.0, 1.0, 0.0))] {
+            gizmos.line(Vec3::new(-2.0, 2.0, z), Vec3::new(2.0, 2.3, z), color);
+        }
     });
-    let counts = before.each_ref().map(|shot| shot.iter().filter(|is_line| **is_line).count());
+    // The jitter of meshes does not move them.
+    let antialias = Afterimage { antialias: true, ..default() };
+    let [full, ..] = compared();
+    let lines = [full, (antialias, Foveated::default())].map(|components| {
+        let shot = settled(&mut headless, components, 8, Vec2::splat(0.5));
+        let green = shot.chunks(4).filter(|pixel| pixel[1] > pixel[0].max(pixel[2]).saturating_add(100)).count();
+        assert_eq!(green, 0, "pixels of the line behind the wall");
+        shot.chunks(4).map(|pixel| pixel[0].min(pixel[2]) > pixel[1].saturating_add(100)).collect::<Vec<bool>>()
+    });
+    let counts = lines.each_ref().map(|shot| shot.iter().filter(|is_line| **is_line).count());
     println!("pixels of the line: {counts:?} at full rate and antialiased by history");
     assert!(counts[0] > 100);
-    assert!(before[0] == before[1]);
-    assert!(behind.iter().flatten().all(|is_line| !is_line));
+    assert!(lines[0] == lines[1]);
 }
 
 #[test]
@@ -257,13 +265,11 @@ impl CameraProjection for Eye {
 #[test]
 fn two_eyes_with_a_gaze_each() {
     let half = UVec2::new(SIZE.x / 2, SIZE.y);
-    let with = |kind, settings| (Afterimage { settings, ..default() }, Foveated { kind, ..default() });
-    let shots =
-        [with(FoveationKind::Off, None), with(FoveationKind::Quads, Some(none())), with(FoveationKind::Quads, None)];
-    let shots = shots.map(|foveated| {
-        let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: true });
+    let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: true });
+    let targets = compared().map(|components| {
+        let image = headless.add_target(SIZE);
         for (side, [left, right]) in [(0_u32, [-0.8, 0.5]), (1, [-0.5, 0.8])] {
-            let target = headless.render_target();
+            let target = RenderTarget::from(image.clone());
             let viewport =
                 Viewport { physical_position: UVec2::new(side * half.x, 0), physical_size: half, ..default() };
             let projection = Projection::custom(Eye { left, right, aspect: 1.0 });
@@ -272,14 +278,15 @@ fn two_eyes_with_a_gaze_each() {
             headless.app.world_mut().spawn((
                 Camera3d::default(),
                 Camera { order: side as isize, viewport: Some(viewport), ..default() },
-                (projection, target, TONEMAPPING, Msaa::Off, foveated.clone(), gaze),
+                (projection, target, TONEMAPPING, Msaa::Off, components.clone(), gaze),
                 head.with_translation(head.translation + Vec3::X * 0.064 * (side as f32 - 0.5)),
             ));
         }
-        headless.frames(30);
-        assert_eq!(headless.problems(), &[] as &[String]);
-        headless.read()
+        image
     });
+    headless.frames(30);
+    assert_eq!(headless.problems(), &[] as &[String]);
+    let shots = targets.map(|target| headless.read_target(&target));
     let [blind, quads] = [&shots[1], &shots[2]].map(|shot| psnr_db(shot, &shots[0]));
     println!("two eyes: without history {blind:.2} dB, with {quads:.2} dB");
     assert!(quads > blind + 2.0, "without history {blind:.2} dB, with {quads:.2} dB");
@@ -311,8 +318,4 @@ fn a_reset_discards_history_and_is_done_once() {
     headless.frames(6);
     let after = stats(&mut headless);
     assert!(after.kept + after.replaced > after.pixels / 2);
-}
-
-fn none() -> afterimage::Settings {
-    afterimage::Settings { method: afterimage::Method::None, ..Default::default() }
 }
