@@ -31,8 +31,8 @@ pub(crate) struct ExtractedAfterimage {
     pub has_planted_jitter: bool,
 }
 
-/// Errors that tests plant ([`crate::testing`]), to see that they are noticed.
-#[derive(Resource, Clone, Copy, Debug, Default)]
+/// Errors that tests plant ([`crate::testing`]) in a camera, to see that they are noticed.
+#[derive(Component, Clone, Copy, Debug, Default)]
 pub struct Planted {
     /// Another convention of motion vectors than Bevy's.
     pub motion: Option<MotionConvention>,
@@ -69,6 +69,7 @@ struct MainCamera {
     previous: Option<&'static PreviousViewData>,
     gaze: Option<&'static CameraGaze>,
     debug: Option<&'static AfterimageDebug>,
+    planted: Option<&'static Planted>,
     counts: Has<AfterimageStats>,
     beside: Beside,
 }
@@ -87,7 +88,6 @@ struct Beside {
 
 fn extract(mut commands: Commands, mut world: ResMut<MainWorld>, mut said: Local<EntityHashMap<String>>) {
     let gaze = *world.resource::<Gaze>();
-    let planted = *world.resource::<Planted>();
     let index = u64::from(world.resource::<FrameCount>().0);
     let is_supported = world.contains_resource::<AfterimageSupported>();
     let mut cameras = world.query::<MainCamera>();
@@ -110,6 +110,7 @@ fn extract(mut commands: Commands, mut world: ResMut<MainWorld>, mut said: Local
             }
         };
         said.remove(&camera.main);
+        let planted = camera.planted.copied().unwrap_or_default();
         desc.motion = planted.motion.unwrap_or(desc.motion);
         if let Method::Smr(smr) = &mut desc.settings.method {
             smr.antialias = camera.afterimage.antialias && !camera.beside.jitters;

@@ -54,14 +54,8 @@ pub struct AfterimagePlugin;
 
 impl Plugin for AfterimagePlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Gaze>().init_resource::<testing::Planted>().register_type::<(
-            Afterimage,
-            AfterimageDebug,
-            AfterimageStats,
-            CameraGaze,
-            Foveated,
-            Gaze,
-        )>();
+        app.init_resource::<Gaze>()
+            .register_type::<(Afterimage, AfterimageDebug, AfterimageStats, CameraGaze, Foveated, Gaze)>();
         if app.get_sub_app(RenderApp).is_none() {
             return;
         }

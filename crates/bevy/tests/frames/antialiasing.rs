@@ -49,9 +49,9 @@ fn a_still_view_becomes_that_of_many_samples_a_pixel() {
     let mut headless = still(SIZE, full);
     let one = psnr_db(&shot(&mut headless, 3), &reference);
     let [with, wrong] = [false, true].map(|jitter| {
-        headless.app.insert_resource(Planted { jitter, ..default() });
+        let camera = change(&mut headless, (Afterimage { antialias: true, ..default() }, Foveated::uniform(0.25)));
+        headless.app.world_mut().entity_mut(camera).insert(Planted { jitter, ..default() });
         // Each pixel is sampled a dozen times.
-        change(&mut headless, (Afterimage { antialias: true, ..default() }, Foveated::uniform(0.25)));
         psnr_db(&shot(&mut headless, 64), &reference)
     });
     println!("one sample a pixel {one:.2} dB, antialiased {with:.2} dB, with the opposite jitter {wrong:.2} dB");

@@ -35,7 +35,7 @@ fn courtyard(components: impl Bundle) -> Headless {
 }
 
 /// The courtyard, and cameras that stroll through it on the same way, each with components and an image of its own.
-fn courtyards<const N: usize>(cameras: [(Afterimage, Foveated); N]) -> (Headless, [Handle<Image>; N]) {
+fn courtyards<const N: usize>(cameras: [impl Bundle; N]) -> (Headless, [Handle<Image>; N]) {
     let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: true });
     let targets = cameras.map(|components| {
         let image = headless.add_target(SIZE);
@@ -60,10 +60,10 @@ fn compared() -> [(Afterimage, Foveated); 3] {
 }
 
 /// Has the camera be shown otherwise from now on, without history.
-fn change(headless: &mut Headless, (afterimage, foveated): (Afterimage, Foveated)) {
+fn change(headless: &mut Headless, (afterimage, foveated): (Afterimage, Foveated)) -> Entity {
     let world = headless.app.world_mut();
     let camera = world.query_filtered::<Entity, With<Camera3d>>().single(world).expect("a camera");
-    world.entity_mut(camera).insert((Afterimage { reset: true, ..afterimage }, foveated));
+    world.entity_mut(camera).insert((Afterimage { reset: true, ..afterimage }, foveated)).id()
 }
 
 fn kind(kind: FoveationKind) -> impl Bundle {
@@ -77,14 +77,20 @@ fn wander(headless: &mut Headless, frame: usize) {
     headless.app.world_mut().resource_mut::<Gaze>().set(uv);
 }
 
-/// Frames of the wandering gaze, without the first `skipped`.
-fn clip(headless: &mut Headless, frames: usize, skipped: usize) -> Vec<Vec<u8>> {
-    let shots = (0..frames).filter_map(|frame| {
-        wander(headless, frame);
-        let shot = headless.shot();
-        (frame >= skipped).then_some(shot)
-    });
-    let shots = shots.collect();
+/// Frames of the wandering gaze in each image, without the first `skipped`.
+fn clips<const N: usize>(
+    (mut headless, targets): (Headless, [Handle<Image>; N]),
+    frames: usize,
+    skipped: usize,
+) -> [Vec<Vec<u8>>; N] {
+    let mut shots = [const { vec![] }; N];
+    for frame in 0..frames {
+        wander(&mut headless, frame);
+        headless.frames(1);
+        if frame >= skipped {
+            shots.iter_mut().zip(&targets).for_each(|(shots, target)| shots.push(headless.read_target(target)));
+        }
+    }
     assert_eq!(headless.problems(), &[] as &[String], "validation");
     shots
 }

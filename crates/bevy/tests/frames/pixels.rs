@@ -2,7 +2,7 @@
 
 use crate::common::headless::{Headless, afterimage};
 use crate::common::scene::{Mover, ScenePlugin, TONEMAPPING, stroll};
-use crate::{SIZE, change, clip_psnr_db, compared, courtyard, courtyards, kind, linear, psnr_db, wander};
+use crate::{SIZE, change, clip_psnr_db, clips, compared, courtyard, courtyards, kind, linear, psnr_db, wander};
 use afterimage::gpu::{Frame, Region, Textures};
 use afterimage::{ViewFrame, wgpu};
 use bevy::camera::{CameraProjection, RenderTarget, SubCameraView, Viewport};
@@ -15,16 +15,7 @@ use bevy_afterimage::{Afterimage, AfterimageStats, CameraGaze, Foveated, Foveati
 
 #[test]
 fn history_is_better_than_interpolation_in_motion() {
-    let (mut headless, targets) = courtyards(compared());
-    let mut shots = [const { Vec::new() }; 3];
-    for frame in 0..24 {
-        wander(&mut headless, frame);
-        headless.frames(1);
-        if frame >= 12 {
-            shots.iter_mut().zip(&targets).for_each(|(shots, target)| shots.push(headless.read_target(target)));
-        }
-    }
-    assert_eq!(headless.problems(), &[] as &[String]);
+    let shots = clips(courtyards(compared()), 24, 12);
     let [blind, quads] = [&shots[1], &shots[2]].map(|of| clip_psnr_db(of, &shots[0]));
     println!("without history {blind:.2} dB, with {quads:.2} dB");
     assert!(quads > blind + 2.0, "without history {blind:.2} dB, with {quads:.2} dB");
