@@ -15,8 +15,8 @@ step "lints"
 cargo clippy --locked --ignore-rust-version --all-targets --features window -- -D warnings
 
 step "tests"
-# One after the other: each has an application and a software renderer with threads of its own.
-cargo test --locked --ignore-rust-version -- --test-threads 1
+# Two at a time: each has an application and a software renderer with threads of its own.
+cargo test --locked --ignore-rust-version -- --test-threads 2
 
 step "examples"
 cargo run --locked --ignore-rust-version --example headless_png -- "$target/headless.png"

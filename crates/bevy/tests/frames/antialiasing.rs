@@ -3,10 +3,12 @@
 use crate::common::grille::GrillePlugin;
 use crate::common::headless::{Headless, psnr_db};
 use crate::common::scene::{ScenePlugin, TONEMAPPING, stroll};
-use crate::{SIZE, change, compared};
+use crate::{change, compared};
 use bevy::prelude::*;
 use bevy_afterimage::testing::Planted;
 use bevy_afterimage::{Afterimage, Foveated};
+
+const SIZE: UVec2 = UVec2::new(240, 136);
 
 /// Samples a pixel along each side, of the reference.
 const SAMPLES: u32 = 4;

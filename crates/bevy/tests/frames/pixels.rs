@@ -15,7 +15,7 @@ use bevy_afterimage::{Afterimage, AfterimageStats, CameraGaze, Foveated, Foveati
 
 #[test]
 fn history_is_better_than_interpolation_in_motion() {
-    let shots = clips(courtyards(compared()), 24, 12);
+    let shots = clips(courtyards(compared()), 16, 8);
     let [blind, quads] = [&shots[1], &shots[2]].map(|of| clip_psnr_db(of, &shots[0]));
     println!("without history {blind:.2} dB, with {quads:.2} dB");
     assert!(quads > blind + 2.0, "without history {blind:.2} dB, with {quads:.2} dB");
@@ -275,7 +275,7 @@ fn two_eyes_with_a_gaze_each() {
         }
         image
     });
-    headless.frames(30);
+    headless.frames(16);
     assert_eq!(headless.problems(), &[] as &[String]);
     let shots = targets.map(|target| headless.read_target(&target));
     let [blind, quads] = [&shots[1], &shots[2]].map(|shot| psnr_db(shot, &shots[0]));
