@@ -232,7 +232,8 @@ impl SceneCamera {
     /// Camera pose in frame `index`, at `time_s`.
     pub fn camera_pose(&self, scene: &Scene, index: u64, time_s: f64) -> CameraPose {
         let (radius, _) = middle(scene);
-        CameraPose { world_from_camera: self.view(scene, index, time_s).world_from_camera(), speed_m_s: radius / 5.0 }
+        let world_from_camera = self.view(scene, index, time_s).world_from_camera();
+        CameraPose { world_from_camera, origin: scene.origin, speed_m_s: radius / 5.0 }
     }
 
     /// View of frame `index`, at `time_s`.
@@ -243,7 +244,7 @@ impl SceneCamera {
         let world_from_camera = match &self.path {
             CameraPath::Scene(camera) => scene.pose(time_s).cameras[*camera].world_from_camera,
             CameraPath::Framing(camera) => camera.world_from_camera,
-            CameraPath::File(file) => file.world_from_camera(index, time_s),
+            CameraPath::File(file) => DMat4::from_translation(-scene.origin) * file.world_from_camera(index, time_s),
             CameraPath::Lateral { from, speed } => {
                 let aside = speed * LATERAL_SECONDS * (time_s / LATERAL_SECONDS).sin();
                 DMat4::from_translation(from.x_axis.truncate() * aside) * *from

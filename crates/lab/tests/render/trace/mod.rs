@@ -4,6 +4,7 @@
 mod agree;
 mod chance;
 mod closed_form;
+mod coordinates;
 mod effects;
 mod equal;
 mod frames;

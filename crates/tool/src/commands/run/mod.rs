@@ -24,6 +24,7 @@ use afterimage_lab::scanpath::{HeadPath, write_csv};
 use afterimage_lab::source::FrameSource;
 use afterimage_lab::trace::sampling::Sampling;
 use clap::{Args, Parser};
+use glam::DMat4;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -250,7 +251,11 @@ fn write_head(
     write_csv(head.scanpath(), &mut csv).map_err(|e| Failure::Work(format!("scanpath.csv: {e}")))?;
     out.text("scanpath.csv", &String::from_utf8_lossy(&csv))?;
     let frames = 0..plan.clip.gaze.len() as u64;
-    let poses: Vec<_> = frames.filter_map(|frame| Some(source.camera_pose(frame)?.world_from_camera)).collect();
+    let pose = |frame| {
+        let pose = source.camera_pose(frame)?;
+        Some(DMat4::from_translation(pose.origin) * pose.world_from_camera)
+    };
+    let poses: Vec<_> = frames.filter_map(pose).collect();
     let mut table = out.table("pose.csv", "frame,x_m,y_m,z_m,qx,qy,qz,qw")?;
     for (frame, pose) in poses.iter().enumerate() {
         let (_, q, p) = pose.to_scale_rotation_translation();
