@@ -2,6 +2,7 @@
 
 use crate::clip::run_report::{RunFacts, write_report};
 use crate::clip::{Clip, ClipReport, REPORTS, foveation_words, title, write_png};
+use crate::exposure::Exposure;
 use crate::failure::Failure;
 use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::method_report::MethodReport;
@@ -70,7 +71,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         gaze,
         late_gaze: None,
         score_from: 0,
-        exposure_ev: 0.0,
+        exposure: Exposure::Stops(0.0),
         write_frame: write_png,
         write_reference: true,
         debug: vec![],

@@ -120,7 +120,7 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
         fps: facts.fps,
         hfov_deg: clip.geometry.hfov_deg(),
         seed: facts.seed,
-        exposure_ev: clip.exposure_ev,
+        exposure_ev: report.exposure_ev,
         backend: clip.processor.info(),
         foveation: FoveationReport {
             simulator: facts.simulator,

@@ -36,6 +36,7 @@ pub mod camera;
 pub mod camera_file;
 mod camera_forms;
 pub mod cameras;
+mod colmap;
 mod geometry;
 mod gltf_file;
 pub mod light;

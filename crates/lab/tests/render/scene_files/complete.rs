@@ -48,6 +48,23 @@ fn scenes_may_be_empty() {
     assert_eq!(file.open().still().len(), 0);
 }
 
+/// Extensions describe what they decompress by buffers without bytes.
+#[test]
+fn a_buffer_without_bytes_is_legal_until_something_reads_it() {
+    let with = |reads: bool| {
+        let mut file = Gltf::new();
+        file.soup(&TRIANGLE);
+        file.json["buffers"] = json!([{"byteLength": file.bin.len()}, {"byteLength": 40}]);
+        if reads {
+            file.json["bufferViews"][0]["buffer"] = json!(1);
+        }
+        file
+    };
+    let scene = with(false).open();
+    assert_eq!((scene.still().len(), scene.warnings.len()), (1, 0));
+    with(true).assert_refused(&["buffer 1 has neither an address nor a binary chunk"]);
+}
+
 /// Byte order mark in front; NUL bytes and spaces behind, in both containers.
 #[test]
 fn padding_around_the_json_is_skipped() {

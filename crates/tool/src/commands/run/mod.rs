@@ -10,7 +10,7 @@ use crate::args::input::{FoveatedSampling, InputArgs, Rendering, SourceName};
 use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
     FilterName, FormatName, FoveationArgs, MethodArgs, MethodName, Named, by_name, parse_exposure, parse_frames,
-    parse_latency, parse_samples,
+    parse_latency, parse_samples, tell_exposure,
 };
 use crate::clip::run_report::{RunFacts, write_report};
 use crate::clip::{ClipReport, REPORTS};
@@ -18,6 +18,7 @@ use crate::failure::Failure;
 use crate::output::Output;
 use crate::report::cameras::cameras_json;
 use afterimage::{DebugView, Filter};
+use afterimage_clip::exposure::Exposure;
 use afterimage_lab::device::Backend;
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::scanpath::{HeadPath, write_csv};
@@ -88,9 +89,9 @@ pub struct RunArgs {
     /// File format of frames: 8-bit sRGB PNG, or linear half-float EXR
     #[arg(long, value_enum, default_value = "png")]
     pub format: FormatName,
-    /// Exposure before sRGB encoding, stops
-    #[arg(long, default_value_t = 0.0, value_parser = parse_exposure, value_name = "EV", allow_negative_numbers = true)]
-    pub exposure: f32,
+    /// Exposure before sRGB encoding, stops, or auto: what makes the mean of the first frame middle grey
+    #[arg(long, default_value = "0", value_parser = parse_exposure, value_name = "EV|auto", allow_negative_numbers = true)]
+    pub exposure: Exposure,
     /// Also write the full-rate frames
     #[arg(long)]
     pub reference: bool,
@@ -207,6 +208,7 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let plan = plan::plan(args, source.info(), backend, head.as_ref())?;
     // The input can be read, or nothing is written.
     let playback = plan.clip.start(source.as_mut())?;
+    tell_exposure(playback.exposure());
     let cameras: Vec<String> = folders(args).iter().map(|folder| format!("{folder}/cameras.json")).collect();
     let reports: Vec<&str> = REPORTS.into_iter().chain(OF_HEAD).chain(cameras.iter().map(String::as_str)).collect();
     let out = Output::create(&args.out, &folders(args), &reports)?;

@@ -73,7 +73,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
             gaze: track.px,
             late_gaze: track.late_px,
             score_from: args.score_from,
-            exposure_ev: args.exposure,
+            exposure: args.exposure,
             write_frame: args.format.writer(),
             write_reference: args.reference,
             debug: args.debug.iter().map(|&view| (view.name(), view)).collect(),
