@@ -50,6 +50,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         gaze_map: "angle",
         start_s: 0.0,
         gaze_latency_ms: 0.0,
+        fixed_fovea: false,
     };
     let post_process =
         |method: MethodKind| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() });

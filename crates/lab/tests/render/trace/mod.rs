@@ -9,6 +9,7 @@ mod effects;
 mod equal;
 mod frames;
 mod hard;
+mod quads;
 mod radiosity;
 mod rig;
 mod scenes;

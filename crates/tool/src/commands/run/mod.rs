@@ -66,6 +66,10 @@ pub struct RunArgs {
     /// gaze.csv have the true one; at most 1000
     #[arg(long, default_value_t = 0.0, value_parser = parse_latency, value_name = "MS")]
     pub gaze_latency: f64,
+    /// Keep the fovea in the middle of the frame, as without an eye tracker: the renderer and the methods see that gaze,
+    /// scores and gaze.csv have the true one
+    #[arg(long, conflicts_with = "gaze_latency")]
+    pub fixed_fovea: bool,
     #[command(flatten)]
     pub sampling: SamplingArgs,
     #[command(flatten)]
@@ -137,7 +141,9 @@ impl RunArgs {
 
     /// Settings for rendering a scene on `backend`.
     pub fn rendering(&self, backend: &Backend, head: Option<&HeadPath>) -> Result<Rendering, Failure> {
-        let foveated = self.sampling()?.map(|pattern| FoveatedSampling {
+        // Methods choose the pixels of quads; a pattern has none of its own.
+        let pattern = self.sampling()?.or(self.foveation.is_quads().then_some(Sampling::Uniform));
+        let foveated = pattern.map(|pattern| FoveatedSampling {
             pattern,
             sparse: self.is_sparse().then_some(self.foveation.order),
             reference_spp: self.reference_samples.unwrap_or(64),
@@ -232,6 +238,7 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
         gaze_map: plan.gaze_map,
         start_s: args.gaze.start,
         gaze_latency_ms: args.gaze_latency,
+        fixed_fovea: args.fixed_fovea,
     };
     write_report(&facts, &plan.clip, &report, &out)?;
     out.finish()?;
