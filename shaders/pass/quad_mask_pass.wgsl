@@ -1,7 +1,7 @@
 //#use quad_list
 //#use quad_state
-// Shaded quads of a view: a mask, an unordered list, and a word for each run of 16 quads of a row. CPU twins: `plan_quads`
-// in src/cpu/sparse_pass/quad_plan.rs, `runs` in src/cpu/sparse_pass/quads.rs. One invocation a run.
+// Shaded quads of a view: a mask, an unordered list, and a word for each run of 16 quads of a row. CPU twins:
+// `plan_quads` in src/cpu/sparse_pass/quad_plan.rs, `runs` in src/cpu/sparse_pass/quads.rs. One invocation a run.
 //
 // 2 reads and 1 write a quad: its key, for its own run and for one beside it; 4.25 bytes written.
 

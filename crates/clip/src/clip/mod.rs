@@ -48,8 +48,8 @@ pub struct Clip {
     pub methods: Vec<(&'static str, RunKind)>,
     /// Gaze position per frame, in frame pixels; `None`: tracking lost.
     pub gaze: Vec<Option<[f32; 2]>>,
-    /// Gaze that the renderer and the methods get in each frame: delayed by a tracker's latency, or fixed; scores use the
-    /// true gaze. `None`: the true gaze.
+    /// Gaze that the renderer and the methods get in each frame: delayed by a tracker's latency, or fixed. Scores use
+    /// the true gaze. `None`: the true gaze.
     pub late_gaze: Option<Vec<Option<[f32; 2]>>>,
     /// First frame that counts in scores.
     pub score_from: usize,

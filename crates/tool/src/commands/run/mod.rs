@@ -66,8 +66,8 @@ pub struct RunArgs {
     /// gaze.csv have the true one; at most 1000
     #[arg(long, default_value_t = 0.0, value_parser = parse_latency, value_name = "MS")]
     pub gaze_latency: f64,
-    /// Keep the fovea in the middle of the frame, as without an eye tracker: the renderer and the methods see that gaze,
-    /// scores and gaze.csv have the true one
+    /// Keep the fovea in the middle of the frame, as without an eye tracker: the renderer and the methods see that
+    /// gaze, scores and gaze.csv have the true one
     #[arg(long, conflicts_with = "gaze_latency")]
     pub fixed_fovea: bool,
     #[command(flatten)]
