@@ -1,6 +1,6 @@
 //! Features of meshes, nodes, lights and cameras.
 
-use super::builder::{Gltf, TRIANGLE};
+use super::builder::{Gltf, TRIANGLE, written};
 use afterimage_lab::scene::PunctualKind;
 use glam::{Vec2, Vec3, Vec4};
 use serde_json::json;
@@ -34,6 +34,17 @@ fn lists_strips_and_fans_give_the_same_square() {
         assert!(triangles.normals.iter().flatten().all(|n| *n == Vec3::Z));
         assert!(scene.warnings.is_empty());
     }
+}
+
+#[test]
+fn a_binary_scene_with_another_ending_is_read_by_its_first_bytes() {
+    let file = with_mode(&SQUARE, Some(&[0, 1, 2, 1, 3, 2]), 4);
+    for name in ["SCENE.GLB", "scene.bin", "download"] {
+        let file = written(name, &file.glb());
+        assert!(afterimage_lab::source::is_scene(file.path.to_str().unwrap()), "{name}");
+        assert_eq!(super::open(&file.path).unwrap().still().len(), 2, "{name}");
+    }
+    assert!(!afterimage_lab::source::is_scene(written("scene.bin", b"words").path.to_str().unwrap()));
 }
 
 #[test]
