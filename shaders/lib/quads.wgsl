@@ -4,7 +4,7 @@
 const IN_FOVEA: u32 = 0u;
 const IN_MIDDLE: u32 = 1u;
 const IN_PERIPHERY: u32 = 2u;
-const BLOCK: u32 = 4u;
+const RUN_QUADS: u32 = 16u;
 const REACH: i32 = 8;
 const NOWHERE: u32 = 0x88u;
 const NOTHING: f32 = 60.0;
@@ -76,35 +76,38 @@ fn quad_key(needed: f32, x: u32, y: u32, frame_low: u32, key: u32) -> u32 {
     return select(0u, (u32(clamp(halves, 1, 62)) << HASH_BITS) | hash, needed > 0.0);
 }
 
-// quads::quadrant
-fn quadrant(x: i32, y: i32) -> u32 {
-    if x > 0 && y >= 0 {
-        return 0u;
-    }
-    if x <= 0 && y > 0 {
-        return 1u;
-    }
-    return select(3u, 2u, x < 0);
-}
-
-// quads::octant
-fn octant(x: i32, y: i32) -> u32 {
-    let wide = abs(x);
-    let high = abs(y);
-    if 5 * high <= 2 * wide {
-        return select(4u, 0u, x > 0);
-    }
-    if 5 * wide <= 2 * high {
-        return select(6u, 2u, y > 0);
-    }
-    return select(select(5u, 7u, x > 0), select(3u, 1u, x > 0), y > 0);
-}
-
 // quads::neighbour
 fn neighbour(x: i32, y: i32) -> u32 {
     let inside = x >= -REACH && y >= -REACH && x < REACH && y < REACH;
     let code = (u32(x * x + y * y) << 8u) | u32(x + REACH) | (u32(y + REACH) << 4u);
     return select(0xffffffffu, code, inside);
+}
+
+// quads::window
+fn window(word: u32, x: u32) -> u32 {
+    return (word >> (x % RUN_QUADS)) & 0xffffu;
+}
+
+// quads::offset_bits
+fn offset_bits(low: i32, high: i32) -> u32 {
+    return (0xffffu << u32(low + REACH)) & (0xffffu >> u32(REACH - 1 - high));
+}
+
+// quads::first_of
+fn first_of(window: u32, low: i32, high: i32, y: i32) -> u32 {
+    let bits = window & offset_bits(low, high);
+    return select(neighbour(i32(firstTrailingBit(bits)) - REACH, y), 0xffffffffu, bits == 0u);
+}
+
+// quads::last_of
+fn last_of(window: u32, low: i32, high: i32, y: i32) -> u32 {
+    let bits = window & offset_bits(low, high);
+    return select(neighbour(i32(firstLeadingBit(bits)) - REACH, y), 0xffffffffu, bits == 0u);
+}
+
+// quads::octant_offsets
+fn octant_offsets(rows: i32) -> vec2<i32> {
+    return vec2<i32>(2 * rows / 5, (5 * rows + 1) / 2);
 }
 
 // quads::neighbour_offset

@@ -1,7 +1,9 @@
 //#use quad_list
 //#use quad_state
-// Shaded quads of a view: a mask, an unordered list, and a word for each block of 4x4 quads. CPU twin: `plan_quads` in
-// src/cpu/sparse_pass/quad_plan.rs. One invocation a block.
+// Shaded quads of a view: a mask, an unordered list, and a word for each run of 16 quads of a row. CPU twins:
+// `plan_quads` in src/cpu/sparse_pass/quad_plan.rs, `runs` in src/cpu/sparse_pass/quads.rs. One invocation a run.
+//
+// 2 reads and 1 write a quad: its key, for its own run and for one beside it; 4.25 bytes written.
 
 struct QuadSize {
     // Number of quads along x and y.
@@ -13,31 +15,39 @@ struct QuadSize {
 @group(0) @binding(0) var<uniform> quads: QuadSize;
 @group(0) @binding(21) var keys: texture_2d_array<u32>;
 @group(0) @binding(23) var mask_out: texture_storage_2d_array<r32uint, write>;
-@group(0) @binding(24) var blocks_out: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(24) var runs_out: texture_storage_2d_array<r32uint, write>;
 
-@compute @workgroup_size(64, 1)
+@compute @workgroup_size(16, 4)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let first = BLOCK * id.xy;
+    let first = vec2<u32>(RUN_QUADS * id.x, id.y);
     if any(first >= quads.size) {
         return;
     }
     var shaded = 0u;
-    for (var i = 0u; i < BLOCK * BLOCK; i++) {
-        let quad = first + vec2<u32>(i % BLOCK, i / BLOCK);
-        if all(quad < quads.size) {
+    for (var i = 0u; i < 2u * RUN_QUADS; i++) {
+        // Wraps to a large number before the first column.
+        let quad = vec2<u32>(first.x + i - u32(REACH), first.y);
+        if quad.x < quads.size.x {
             let word = textureLoad(keys, quad, quads.view, 0).x;
-            let region_now = (word >> 16u) & 3u;
             let is_shaded = (word & 0x40000u) != 0u || (word & 0xffffu) >= state.threshold;
             shaded |= u32(is_shaded) << i;
-            textureStore(mask_out, quad, quads.view, vec4<u32>(u32(is_shaded) | (region_now << 1u), 0u, 0u, 0u));
+            if is_own(i) {
+                let region_now = (word >> 16u) & 3u;
+                textureStore(mask_out, quad, quads.view, vec4<u32>(u32(is_shaded) | (region_now << 1u), 0u, 0u, 0u));
+            }
         }
     }
-    textureStore(blocks_out, id.xy, quads.view, vec4<u32>(shaded, 0u, 0u, 0u));
-    var place = atomicAdd(&state.listed, countOneBits(shaded));
-    for (var left = shaded; left != 0u; left &= left - 1u) {
-        let i = firstTrailingBit(left);
-        let quad = first + vec2<u32>(i % BLOCK, i / BLOCK);
-        list.quads[place] = quad.x | (quad.y << 16u);
+    textureStore(runs_out, id.xy, quads.view, vec4<u32>(shaded, 0u, 0u, 0u));
+    var left = (shaded >> u32(REACH)) & 0xffffu;
+    var place = atomicAdd(&state.listed, countOneBits(left));
+    while left != 0u {
+        list.quads[place] = (first.x + firstTrailingBit(left)) | (first.y << 16u);
+        left &= left - 1u;
         place++;
     }
+}
+
+// Whether bit `i` of a run's word is one of its own quads.
+fn is_own(i: u32) -> bool {
+    return i - u32(REACH) < RUN_QUADS;
 }

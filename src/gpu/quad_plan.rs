@@ -6,15 +6,18 @@
 //! fourth finds the shaded quads around each.
 
 use super::binding::Binding;
-use super::compute::{ComputeShader, Sources, WORKGROUP_WIDTH};
+use super::compute::{ComputeShader, Sources};
 use super::groups::Resource;
 use super::prime::PrimePass;
 use super::quads::{Quads, ViewQuads, size_quads};
 use super::stage::{Job, Specialization};
 use crate::frame::ContextDesc;
-use crate::kernel::quads::BLOCK;
+use crate::kernel::quads::RUN_QUADS;
 use crate::method::Overrides;
 use wgpu::{CommandEncoder, Device};
+
+/// Invocations of a workgroup of `shaders/pass/quad_mask_pass.wgsl` along x and y.
+const MASK_WORKGROUP: [u32; 2] = [16, 4];
 
 /// The passes, and the quads that they chose.
 #[derive(Debug)]
@@ -68,20 +71,20 @@ impl QuadPasses {
 
     /// Adds the dispatches of a frame.
     pub fn record(&self, job: &mut Job<'_>) {
-        let Quads { budget, keys, mask, blocks, around, views } = &self.quads;
+        let Quads { budget, keys, mask, runs, around, views } = &self.quads;
         let size = size_quads(job.desc);
-        let in_blocks = size.map(|side| side.div_ceil(BLOCK));
-        let rows = [in_blocks[0].div_ceil(WORKGROUP_WIDTH), in_blocks[1], 1];
+        let [width, height] = MASK_WORKGROUP;
+        let of_mask = [size[0].div_ceil(RUN_QUADS).div_ceil(width), size[1].div_ceil(height), 1];
         for (view, ViewQuads { uniforms, state, list }) in (0..).zip(views) {
             let own = [(Binding::Write, (&keys.whole).into()), (Binding::State, state.into())];
             job.dispatch(&self.key, &job.batch_of(view), &own, size.map(|side| side.div_ceil(2)));
-            for (shader, uniforms, workgroups) in [(&self.threshold, budget, [1; 3]), (&self.mask, uniforms, rows)] {
+            for (shader, uniforms, workgroups) in [(&self.threshold, budget, [1; 3]), (&self.mask, uniforms, of_mask)] {
                 let resource = |number: u32| {
                     let of = |binding: Binding| number == binding as u32;
                     let resource: Resource = match () {
                         () if of(Binding::Read) => (&keys.whole).into(),
                         () if of(Binding::Write) => (&mask.whole).into(),
-                        () if of(Binding::WriteSecond) => (&blocks.whole).into(),
+                        () if of(Binding::WriteSecond) => (&runs.whole).into(),
                         () if of(Binding::State) => state.into(),
                         () if of(Binding::List) => list.into(),
                         () => uniforms.into(),
@@ -92,7 +95,7 @@ impl QuadPasses {
                 job.recorder.add(job.device, (shader, pipeline), None, resource, workgroups);
             }
         }
-        let own = [(Binding::Read, &mask.whole), (Binding::ReadSecond, &blocks.whole), (Binding::Write, &around.whole)];
+        let own = [(Binding::Read, &mask.whole), (Binding::ReadSecond, &runs.whole), (Binding::Write, &around.whole)];
         let own = own.map(|(binding, view)| (binding, view.into()));
         for batch in job.batches() {
             job.dispatch(&self.around, &batch, &own, size);

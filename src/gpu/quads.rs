@@ -3,7 +3,7 @@
 use super::buffer::filled;
 use super::plane::{Plane, PlaneDesc};
 use crate::frame::ContextDesc;
-use crate::kernel::quads::{BLOCK, KEYS, budget_quads};
+use crate::kernel::quads::{KEYS, RUN_QUADS, budget_quads};
 use wgpu::{Buffer, BufferUsages, Device, TextureFormat, TextureUsages};
 
 /// Bytes of a list before its quads.
@@ -23,7 +23,8 @@ pub(super) struct Quads {
     pub keys: Plane,
     /// Bit 0: whether a quad is shaded; bits 1 and 2: its region.
     pub mask: Plane,
-    pub blocks: Plane,
+    /// Shaded quads of the runs of each row.
+    pub runs: Plane,
     /// Codes of the shaded quads around each.
     pub around: Plane,
     pub views: Vec<ViewQuads>,
@@ -56,12 +57,12 @@ impl Quads {
             state: buffer(STATE_BYTES, BufferUsages::COPY_DST),
             list: buffer(list_bytes(desc), BufferUsages::COPY_SRC),
         };
-        let [keys, mask, blocks, around] = planes(desc);
+        let [keys, mask, runs, around] = planes(desc);
         Self {
             budget: uniforms([budget_quads(desc.settings.foveation.budget, size), 0, 0, 0]),
             keys: keys.create(device),
             mask: mask.create(device),
-            blocks: blocks.create(device),
+            runs: runs.create(device),
             around: around.create(device),
             views: (0..desc.view_count).map(view).collect(),
         }
@@ -86,7 +87,7 @@ pub(super) fn memory_bytes(desc: &ContextDesc) -> u64 {
     planes + u64::from(desc.view_count) * (STATE_BYTES + list_bytes(desc))
 }
 
-/// Keys, mask, blocks, and the shaded quads around each.
+/// Keys, mask, runs, and the shaded quads around each.
 fn planes(desc: &ContextDesc) -> [PlaneDesc; 4] {
     use TextureFormat::{R32Uint, Rg32Uint};
     let size = size_quads(desc);
@@ -94,7 +95,7 @@ fn planes(desc: &ContextDesc) -> [PlaneDesc; 4] {
     [
         plane(R32Uint, size),
         PlaneDesc { usage: TextureUsages::COPY_SRC, ..plane(R32Uint, size) },
-        plane(R32Uint, size.map(|side| side.div_ceil(BLOCK))),
+        plane(R32Uint, [size[0].div_ceil(RUN_QUADS), size[1]]),
         plane(Rg32Uint, size),
     ]
 }

@@ -14,10 +14,10 @@ pub const IN_MIDDLE: u32 = 1;
 /// Periphery.
 pub const IN_PERIPHERY: u32 = 2;
 
-/// Quads along a block of quads, whose shaded quads are the bits of a word.
-pub const BLOCK: u32 = 4;
+/// Quads of a row that share a word. Bit `i` of the word is the quad `i - 8` after the first of them.
+pub const RUN_QUADS: u32 = 16;
 /// Shaded quads are found from this many quads before a quad to one less after it, along each axis.
-const REACH: i32 = 8;
+pub const REACH: i32 = 8;
 /// Code of no neighbour.
 pub const NOWHERE: u32 = 0x88;
 
@@ -148,38 +148,6 @@ pub fn threshold(counts: &[u32], budget: u32) -> u32 {
     key as u32
 }
 
-/// Quadrant of a direction, which is not 0. The half-axis that begins a quadrant belongs to it.
-#[inline]
-pub fn quadrant(x: i32, y: i32) -> u32 {
-    if x > 0 && y >= 0 {
-        0
-    } else if x <= 0 && y > 0 {
-        1
-    } else if x < 0 {
-        2
-    } else {
-        3
-    }
-}
-
-/// Octant of a direction, which is not 0; octants lie around the axes and the diagonals.
-#[inline]
-pub fn octant(x: i32, y: i32) -> u32 {
-    let (wide, high) = (x.abs(), y.abs());
-    // 2/5 is about the tangent of 22.5 degrees.
-    if 5 * high <= 2 * wide {
-        if x > 0 { 0 } else { 4 }
-    } else if 5 * wide <= 2 * high {
-        if y > 0 { 2 } else { 6 }
-    } else if y > 0 {
-        if x > 0 { 1 } else { 3 }
-    } else if x > 0 {
-        7
-    } else {
-        5
-    }
-}
-
 /// Code of a neighbour at an offset in quads, in eight bits, below its squared distance: the smallest of some
 /// neighbours is the nearest. `u32::MAX`: out of reach.
 #[inline]
@@ -188,6 +156,42 @@ pub fn neighbour(x: i32, y: i32) -> u32 {
         return u32::MAX;
     }
     ((x * x + y * y) as u32) << 8 | (x + REACH) as u32 | ((y + REACH) as u32) << 4
+}
+
+/// Bits of the shaded quads within reach of the quad in column `x`, of the word of its run: bit `i` is the quad at the
+/// offset `i - 8`.
+#[inline]
+pub fn window(word: u32, x: u32) -> u32 {
+    word >> (x % RUN_QUADS) & 0xffff
+}
+
+/// Bits of a window at the offsets from `low` (-8 to 20) to `high` (-20 to 7).
+#[inline]
+pub fn offset_bits(low: i32, high: i32) -> u32 {
+    (0xffff << (low + REACH)) & (0xffff >> (REACH - 1 - high))
+}
+
+/// Code of the first shaded quad of a window, `y` rows below, at the offsets from `low` to `high`;
+/// `u32::MAX` without one.
+#[inline]
+pub fn first_of(window: u32, low: i32, high: i32, y: i32) -> u32 {
+    let bits = window & offset_bits(low, high);
+    if bits == 0 { u32::MAX } else { neighbour(bits.trailing_zeros() as i32 - REACH, y) }
+}
+
+/// Code of the last such quad.
+#[inline]
+pub fn last_of(window: u32, low: i32, high: i32, y: i32) -> u32 {
+    let bits = window & offset_bits(low, high);
+    if bits == 0 { u32::MAX } else { neighbour(bits.ilog2() as i32 - REACH, y) }
+}
+
+/// Offsets in a row that is `rows` away, above 0: the largest one of the octant around the column, and the smallest one
+/// of those around the row. Octants lie around the axes and the diagonals.
+#[inline]
+pub fn octant_offsets(rows: i32) -> [i32; 2] {
+    // 2/5 is about the tangent of 22.5 degrees.
+    [2 * rows / 5, (5 * rows + 1) / 2]
 }
 
 /// Offset in quads of the neighbour with a code.
@@ -202,9 +206,37 @@ mod tests {
 
     #[test]
     fn octants_are_those_of_angles() {
-        for (x, y) in (-8..8).flat_map(|x| (-8..8).map(move |y| (x, y))).filter(|&o| o != (0, 0)) {
+        for (x, y) in (1..9).flat_map(|x| (1..9).map(move |y| (x, y))) {
             let angle = f64::from(y).atan2(f64::from(x)) / std::f64::consts::FRAC_PI_4;
-            assert_eq!(octant(x, y), (angle.round() as i32).rem_euclid(8) as u32, "{x}, {y}");
+            let [vertical, horizontal] = octant_offsets(y);
+            let octant = if x <= vertical {
+                2
+            } else if x >= horizontal {
+                0
+            } else {
+                1
+            };
+            assert_eq!(octant, angle.round() as i32, "{x}, {y}");
+        }
+    }
+
+    #[test]
+    fn rows_are_searched_from_both_sides() {
+        // Offsets -8, -3, 0, 7.
+        let all = window(0b1000_0001_0010_0001 << 5, 16 + 5);
+        let at = |code: u32, y: i32| {
+            (code != u32::MAX).then(|| neighbour_offset(code & 255)).inspect(|o| assert_eq!(o[1], y)).map(|o| o[0])
+        };
+        for (low, high, first, last) in [
+            (-8, 7, Some(-8), Some(7)),
+            (-7, 6, Some(-3), Some(0)),
+            (1, 7, Some(7), Some(7)),
+            (1, 6, None, None),
+            (8, 7, None, None),
+            (20, 7, None, None),
+            (-8, -20, None, None),
+        ] {
+            assert_eq!((at(first_of(all, low, high, 2), 2), at(last_of(all, low, high, -4), -4)), (first, last));
         }
     }
 

@@ -23,7 +23,7 @@ cargo run --locked --ignore-rust-version --example headless_png -- "$target/head
 cargo run --locked --ignore-rust-version --example soak -- 20
 
 step "documentation"
-# With the lints' feature, so that they share what is checked.
-RUSTDOCFLAGS="-D warnings" cargo doc --locked --ignore-rust-version --no-deps --features window
+# With the lints' features and those of examples, so that they share what is checked.
+RUSTDOCFLAGS="-D warnings" cargo doc --locked --ignore-rust-version --no-deps --lib --examples --features window
 
 step "all checks passed"

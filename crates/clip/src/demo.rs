@@ -2,6 +2,7 @@
 
 use crate::clip::run_report::{RunFacts, write_report};
 use crate::clip::{Clip, ClipReport, REPORTS, foveation_words, title, write_png};
+use crate::exposure::Exposure;
 use crate::failure::Failure;
 use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::method_report::MethodReport;
@@ -49,6 +50,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         gaze_map: "angle",
         start_s: 0.0,
         gaze_latency_ms: 0.0,
+        fixed_fovea: false,
     };
     let post_process =
         |method: MethodKind| RunKind::PostProcess(Settings { method: method.into(), ..Settings::default() });
@@ -70,7 +72,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         gaze,
         late_gaze: None,
         score_from: 0,
-        exposure_ev: 0.0,
+        exposure: Exposure::Stops(0.0),
         write_frame: write_png,
         write_reference: true,
         debug: vec![],

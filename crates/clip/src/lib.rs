@@ -20,6 +20,7 @@ pub mod clip;
 pub mod clock;
 pub mod demo;
 pub mod error;
+pub mod exposure;
 pub mod failure;
 pub mod frame;
 pub mod lattices;

@@ -55,6 +55,7 @@ impl Output {
         let probe = root.join(".afterimage.partial");
         File::create(&probe).and_then(|_| fs::remove_file(&probe)).map_err(|e| refuse(root, &e))?;
         if ours {
+            stale.extend(parts.iter().flat_map(|part| cut_off(&root.join(part))));
             stale.extend(reports.iter().map(|report| root.join(report)).filter(|path| path.exists()));
         }
         for path in stale {
@@ -132,15 +133,26 @@ impl Table {
     }
 }
 
+/// Temporary files of writes that were cut off.
+fn cut_off(folder: &Path) -> Vec<PathBuf> {
+    let is_part = |path: &PathBuf| {
+        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        name.starts_with('.') && name.ends_with(".part")
+    };
+    entries(folder).filter(is_part).collect()
+}
+
+/// Paths in a folder; none if it does not exist.
+fn entries(folder: &Path) -> impl Iterator<Item = PathBuf> {
+    fs::read_dir(folder).into_iter().flatten().filter_map(|e| Some(e.ok()?.path()))
+}
+
 /// Files such as `000000.png` in a folder; empty if the folder does not exist.
 fn numbered_frames(folder: &Path) -> Vec<PathBuf> {
-    let Ok(entries) = fs::read_dir(folder) else {
-        return vec![];
-    };
     let is_frame = |path: &PathBuf| {
         let ending = path.extension().and_then(|e| e.to_str());
         let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or_default();
         matches!(ending, Some("png" | "exr")) && stem.len() == 6 && stem.bytes().all(|b| b.is_ascii_digit())
     };
-    entries.filter_map(|e| Some(e.ok()?.path())).filter(is_frame).collect()
+    entries(folder).filter(is_frame).collect()
 }

@@ -15,6 +15,7 @@ pub use afterimage_clip::{clock, lattices, metric, picture, quad_views, scanpath
 
 pub mod device;
 pub mod error;
+mod file_kind;
 pub mod frame;
 pub mod kernel;
 pub mod pipeline;

@@ -18,6 +18,9 @@ pub enum Error {
     /// The Vulkan device could not be created.
     #[error("the Vulkan device: {0}")]
     Device(String),
+    /// A frame was submitted without a choice of its quads: [`HeadsetFrame::choose`](crate::HeadsetFrame::choose).
+    #[error("the quads of the frame were not chosen: call HeadsetFrame::choose between the prepass and the color pass")]
+    NotChosen,
     /// Settings are out of range, or a view of the runtime is none.
     #[error(transparent)]
     Settings(#[from] SettingsError),

@@ -7,9 +7,10 @@ use crate::present::Present;
 use crate::session::{HiddenMesh, Session, VIEWS};
 use crate::targets::{Targets, layers};
 use crate::vulkan::Gpu;
-use afterimage::gpu::{Afterimage, Frame};
+use afterimage::gpu::{Afterimage, Frame, Prime};
 use afterimage::{
-    ContextDesc, DepthConvention, Filter, Foveation, Gaze, Method, Reset, Settings, Smr, ViewFrame, ViewGeometry,
+    ContextDesc, DepthConvention, Filter, Foveation, Gaze, Method, Reset, Settings, SettingsError, Smr, ViewFrame,
+    ViewGeometry,
 };
 use openxr as xr;
 use std::time::{Duration, Instant};
@@ -29,8 +30,9 @@ pub type ActionsFn = Box<dyn FnOnce(&xr::Instance) -> Result<Vec<xr::ActionSet>,
 
 /// Description of a headset. Create it with `..HeadsetDesc::default()`.
 pub struct HeadsetDesc {
-    /// Method and foveation, whose filter must be [`Filter::Sparse`]. Default: smr; fovea 10 degrees, middle region 30
-    /// degrees with every second pixel along both axes, beyond it every fourth.
+    /// Method and foveation, whose filter must be [`Filter::Quads`]. Default: smr; all quads within a diameter of 10
+    /// degrees, then one in each block of 4x4 pixels within 15 degrees, and one in two blocks of 8x8 pixels beyond;
+    /// 2.5 % of the pixels by need.
     pub settings: Settings,
     /// Distance of the near plane in metres, above 0. Default 0.05.
     pub near_m: f32,
@@ -47,14 +49,7 @@ pub struct HeadsetDesc {
 
 impl Default for HeadsetDesc {
     fn default() -> Self {
-        let foveation = Foveation {
-            filter: Filter::Sparse,
-            fovea_deg: 10.0,
-            mid_deg: 30.0,
-            rate_mid: 2,
-            rate_far: 4,
-            ..Foveation::default()
-        };
+        let foveation = Foveation { fovea_deg: 10.0, ..Foveation::quads() };
         Self {
             settings: Settings { foveation, ..Settings::default() },
             near_m: 0.05,
@@ -92,7 +87,7 @@ pub struct Headset {
     post: Afterimage,
     present: Present,
     output: Texture,
-    targets: Option<Targets>,
+    targets: Targets,
     lenses: [Lens; 2],
     gaze_fn: Option<GazeFn>,
     gaze_distance_m: f32,
@@ -108,7 +103,8 @@ pub struct Headset {
     gpu: Gpu,
 }
 
-/// A frame to draw and to submit. A frame that is dropped is not shown, and leaves history as it was.
+/// A frame to draw and to submit: prepass, [`choose`](Self::choose), color pass, [`submit`](Self::submit). A frame that
+/// is dropped is not shown, and leaves history as it was.
 pub struct HeadsetFrame<'a> {
     /// Records the frame: the application's passes, then the post-process.
     pub encoder: CommandEncoder,
@@ -126,6 +122,7 @@ pub struct HeadsetFrame<'a> {
     poses: [Posed; 2],
     views: Vec<xr::View>,
     time: xr::Time,
+    is_chosen: bool,
 }
 
 /// What a submitted frame was made of: for pictures and measurements.
@@ -134,6 +131,8 @@ pub struct Shown<'a> {
     pub output: &'a Texture,
     /// What was drawn.
     pub targets: &'a Targets,
+    /// The post-process, whose `quad_mask` and `quad_list` say what was shaded.
+    pub post: &'a Afterimage,
     /// Descriptions of both views.
     pub views: [ViewFrame; 2],
     /// Counter of submitted frames.
@@ -146,6 +145,7 @@ impl Headset {
     /// # Errors
     /// [`Error`] without a loader, a runtime or a headset, or if the settings are out of range.
     pub fn new(name: &str, desc: HeadsetDesc) -> Result<Self, Error> {
+        check_filter(&desc.settings)?;
         let entry = load()?;
         let available = entry.enumerate_extensions()?;
         if !available.khr_vulkan_enable2 {
@@ -190,6 +190,7 @@ impl Headset {
         let present = Present::new(&gpu.device, image.format());
         let mut headset = Self {
             output: output(&gpu.device, size),
+            targets: Targets::new(&gpu.device, size),
             session: Some(session),
             tracker,
             sets,
@@ -197,7 +198,6 @@ impl Headset {
             system,
             post,
             present,
-            targets: None,
             lenses: Default::default(),
             gaze_fn: desc.gaze,
             gaze_distance_m: desc.gaze_distance_m,
@@ -252,8 +252,9 @@ impl Headset {
     /// Changes method and foveation from the next frame on.
     ///
     /// # Errors
-    /// [`Error::Settings`] if a setting is out of range; then nothing changes.
+    /// [`Error::Settings`] if a setting is out of range, or the filter is not [`Filter::Quads`]; then nothing changes.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), Error> {
+        check_filter(&settings)?;
         Ok(self.post.set_settings(&self.gpu.device, settings)?)
     }
 
@@ -270,7 +271,7 @@ impl Headset {
         self.post.resize_keeping_history(&self.gpu.device, &mut encoder, size_px)?;
         self.gpu.queue.submit([encoder.finish()]);
         self.output = output(&self.gpu.device, size_px);
-        self.targets = None;
+        self.targets = Targets::new(&self.gpu.device, size_px);
         Ok(())
     }
 
@@ -337,8 +338,7 @@ impl Headset {
             (None, Some(gaze)) => gaze(seconds(time)).and_then(|direction| from_head(&views, direction)),
             (None, None) => from_head(&views, [0.0, 0.0, -1.0]),
         };
-        let settings = self.post.desc().settings;
-        let jitter_px = match settings.method {
+        let jitter_px = match self.post.desc().settings.method {
             Method::Smr(Smr { antialias: true, .. }) => Foveation::jitter_px(self.index),
             _ => [0.0; 2],
         };
@@ -346,19 +346,8 @@ impl Headset {
         let geometries = [geometry(0)?, geometry(1)?];
         let eyes = [0, 1].map(|i| {
             let gaze_px = self.post.gaze_px(i, &geometries[i], self.gaze_of(ray, &poses[i]));
-            let at = (self.index, jitter_px);
-            Eye::new(i as u32, geometries[i], [&poses[i], &before[i]], gaze_px, &settings.foveation, at)
+            Eye::new(i as u32, geometries[i], [&poses[i], &before[i]], gaze_px, jitter_px)
         });
-        let fits = |size: [u32; 2]| {
-            eyes.iter().flat_map(|eye| eye.lattices.as_slice()).all(|lattice| {
-                let [x, y] = lattice.atlas_texel.unwrap_or_default();
-                x + lattice.points[0] <= size[0] && y + lattice.points[1] <= size[1]
-            })
-        };
-        if !self.targets.as_ref().is_some_and(|targets| fits(targets.size())) {
-            let [a, b] = geometries.map(|geometry| settings.foveation.max_atlas_px(&geometry));
-            self.targets = Some(Targets::new(&self.gpu.device, [a[0].max(b[0]), a[1].max(b[1])]));
-        }
         Ok(HeadsetFrame {
             encoder: self.gpu.device.create_command_encoder(&Default::default()),
             eyes,
@@ -369,6 +358,7 @@ impl Headset {
             poses,
             views,
             time,
+            is_chosen: false,
             headset: self,
         })
     }
@@ -463,7 +453,13 @@ impl<'a> HeadsetFrame<'a> {
 
     /// The encoder, and what to draw into.
     pub fn encoder_and_targets(&mut self) -> (&mut CommandEncoder, &Targets) {
-        (&mut self.encoder, self.headset.targets.as_ref().expect("a frame has targets"))
+        (&mut self.encoder, &self.headset.targets)
+    }
+
+    /// The post-process, whose `quad_mask` and `quad_list` say, after [`choose`](Self::choose), what to shade: for
+    /// renderers that dispatch or draw over a list.
+    pub fn post(&self) -> &Afterimage {
+        &self.headset.post
     }
 
     /// The session of the frame, for the state of the application's actions. Objects that are made in it must not be
@@ -488,28 +484,51 @@ impl<'a> HeadsetFrame<'a> {
         self.time
     }
 
+    /// Chooses the quads of both eyes that are to be shaded, from the depth and the motion vectors that the prepass of
+    /// this frame drew, and closes [`Targets::primed`] everywhere else: the color pass, on this depth and with the test
+    /// `GreaterEqual`, shades nothing there.
+    ///
+    /// # Errors
+    /// [`Error::Frame`] if the post-process refuses the frame. Then nothing was recorded.
+    pub fn choose(&mut self) -> Result<(), Error> {
+        let views = self.described()?;
+        let Headset { gpu, post, targets, index, .. } = &mut *self.headset;
+        post.plan(&gpu.device, &mut self.encoder, &described_frame(targets, &views, *index, self.reset))?;
+        let (from, to) = (targets.depth.as_image_copy(), targets.primed.as_image_copy());
+        self.encoder.copy_texture_to_texture(from, to, targets.depth.size());
+        for (view, layers) in targets.views.iter().enumerate() {
+            let prime = Prime { target: &layers.primed, origin_px: [0, 0], near_depth: 1.0, stencil: None };
+            post.prime(&gpu.device, &mut self.encoder, view, &prime)?;
+        }
+        self.is_chosen = true;
+        Ok(())
+    }
+
+    /// Both views, for the post-process.
+    fn described(&self) -> Result<[ViewFrame; 2], SettingsError> {
+        let headset = &*self.headset;
+        let described = |i: usize| {
+            let eye = &self.eyes[i];
+            let gaze = headset.gaze_of(self.gaze, &self.poses[i]);
+            let visible_px = eye.geometry.visible_px(headset.lenses[i].outline.iter().copied());
+            eye.view_frame(gaze, headset.past.as_ref().map(|past| &past.poses[i]), visible_px)
+        };
+        Ok([described(0)?, described(1)?])
+    }
+
     /// Makes whole frames of what was drawn, and shows them.
     ///
     /// # Errors
-    /// [`Error::Frame`] if the post-process refuses the frame, [`Error::OpenXr`] if the runtime fails. A session that
-    /// is lost meanwhile is not an error: [`Headset::next_frame`] replaces it.
+    /// [`Error::NotChosen`] without [`choose`](Self::choose), [`Error::Frame`] if the post-process refuses the frame,
+    /// [`Error::OpenXr`] if the runtime fails. A session that is lost meanwhile is not an error:
+    /// [`Headset::next_frame`] replaces it.
     pub fn submit(self) -> Result<Shown<'a>, Error> {
-        let Self { mut encoder, eyes, gaze, reset, headset, poses, views, time, .. } = self;
-        let before = headset.past.map(|past| past.poses);
-        let described = |i: usize| {
-            let gaze = headset.gaze_of(gaze, &poses[i]);
-            let lens = &headset.lenses[i];
-            let visible_px = eyes[i].geometry.visible_px(lens.outline.iter().copied());
-            eyes[i].view_frame(gaze, before.as_ref().map(|before| &before[i]), visible_px)
-        };
-        let described = [described(0)?, described(1)?];
-        let targets = headset.targets.as_ref().expect("a frame has targets");
-        let frame = Frame {
-            depth: Some((&targets.depth).into()),
-            motion: Some((&targets.motion).into()),
-            reset,
-            ..Frame::new(&targets.color, &described, headset.index)
-        };
+        if !self.is_chosen {
+            return Err(Error::NotChosen);
+        }
+        let described = self.described()?;
+        let Self { mut encoder, reset, headset, poses, views, time, .. } = self;
+        let frame = described_frame(&headset.targets, &described, headset.index, reset);
         headset.post.record(&headset.gpu.device, &mut encoder, &frame, &headset.output)?;
         let index = headset.index;
         headset.index += 1;
@@ -524,7 +543,29 @@ impl<'a> HeadsetFrame<'a> {
             Err(error) if is_lost(error) => {}
             Err(error) => return Err(error.into()),
         }
-        Ok(Shown { output: &headset.output, targets, views: described, index })
+        Ok(Shown { output: &headset.output, targets: &headset.targets, post: &headset.post, views: described, index })
+    }
+}
+
+/// What `choose` and `submit` give the post-process.
+fn described_frame<'a>(targets: &'a Targets, views: &'a [ViewFrame; 2], index: u64, reset: Reset) -> Frame<'a> {
+    Frame {
+        depth: Some((&targets.depth).into()),
+        motion: Some((&targets.motion).into()),
+        reset,
+        ..Frame::new(&targets.color, views, index)
+    }
+}
+
+/// Refuses what a headset's frames are not.
+fn check_filter(settings: &Settings) -> Result<(), SettingsError> {
+    match settings.foveation.filter {
+        Filter::Quads => Ok(()),
+        filter => Err(SettingsError {
+            setting: "filter",
+            found: filter.name().into(),
+            expected: "quads: Foveation::quads() or Foveation::uniform(share)".into(),
+        }),
     }
 }
 
@@ -549,4 +590,21 @@ fn none_if_lost<T>(error: sys::Result) -> Result<Option<T>, sys::Result> {
 fn load() -> Result<xr::Entry, Error> {
     // SAFETY: the library that the system calls its OpenXR loader.
     unsafe { xr::Entry::load(&()) }.map_err(|e| Error::Loader(e.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Said before a runtime is asked, so without one.
+    #[test]
+    fn filters_without_quads_are_refused() {
+        for filter in Filter::ALL {
+            let foveation = Foveation { filter, ..Foveation::quads() };
+            let settings = Settings { foveation, ..Settings::default() };
+            let found = Headset::new("test", HeadsetDesc { settings, ..HeadsetDesc::default() }).err();
+            let is_refused = matches!(&found, Some(Error::Settings(error)) if error.setting == "filter");
+            assert_eq!(is_refused, filter != Filter::Quads, "{filter:?}: {found:?}");
+        }
+    }
 }

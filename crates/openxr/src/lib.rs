@@ -1,9 +1,8 @@
-//! Foveated rendering with memory in headsets: an OpenXR session whose two views are drawn as sparse lattices around
-//! the gaze, and made whole by [`afterimage`].
+//! Foveated rendering with memory in headsets: an OpenXR session with one ordinary view an eye. The application shades
+//! the quads of 2x2 pixels that [`afterimage`] chooses, and afterimage makes whole frames of them.
 //!
 //! [`Headset`] creates the device through the runtime, waits for frames, follows the session's states, asks the eye
-//! tracker, places the lattices, and shows the result. The application draws: for each eye, for each of its
-//! [`Draw`]s, its scene into a rectangle of the atlas.
+//! tracker, chooses the quads of both eyes, and shows the result. The application draws.
 //!
 //! ```no_run
 //! # #[cfg(feature = "wgpu-30")]
@@ -11,14 +10,17 @@
 //! # struct Renderer;
 //! # impl Renderer {
 //! #     fn new(_: &afterimage_openxr::wgpu::Device) -> Self { Self }
-//! #     fn draw(&mut self, _: &mut afterimage_openxr::HeadsetFrame<'_>) {}
+//! #     fn draw_depth_and_motion(&mut self, _: &mut afterimage_openxr::HeadsetFrame<'_>) {}
+//! #     fn draw_colors(&mut self, _: &mut afterimage_openxr::HeadsetFrame<'_>) {}
 //! # }
 //! use afterimage_openxr::{Headset, HeadsetDesc};
 //!
 //! let mut headset = Headset::new("my game", HeadsetDesc::default())?;
 //! let mut renderer = Renderer::new(headset.device());
 //! while let Some(mut frame) = headset.next_frame()? {
-//!     renderer.draw(&mut frame);
+//!     renderer.draw_depth_and_motion(&mut frame);
+//!     frame.choose()?;
+//!     renderer.draw_colors(&mut frame);
 //!     frame.submit()?;
 //! }
 //! # Ok(())
@@ -27,12 +29,19 @@
 //! # fn main() {}
 //! ```
 //!
-//! # What `draw` does
+//! # What the application draws
 //!
-//! For each eye, one render pass over the attachments of [`Targets::views`], with depth cleared to 0 (it is reversed)
-//! and, for each [`Draw`], its viewport and scissor, its matrix and its bias of textures' level of detail. Motion
-//! vectors are previous minus current position in pixels of the whole view, y down, from [`Eye::clip_from_world`] and
-//! [`Eye::previous_clip_from_world`]. `examples/headset` is a whole program.
+//! For each eye, into its layers of [`Targets::views`], with [`Eye::jittered_clip_from_world`]:
+//!
+//! 1. **The prepass**: `depth`, cleared to 0 (it is reversed), and `motion`, previous minus current position in pixels,
+//!    y down, from [`Eye::clip_from_world`] and [`Eye::previous_clip_from_world`]. First what the lens hides
+//!    ([`Headset::hidden_mesh`]), at the near plane.
+//! 2. [`HeadsetFrame::choose`], once for both eyes.
+//! 3. **The color pass**: `color`, cleared, on `primed`, loaded, with the depth test `GreaterEqual` and without writing
+//!    depth. Vertex positions must be those of the prepass, bit for bit (`@invariant` in WGSL), and surfaces with holes
+//!    discard in both passes. What is transparent follows on the same depth.
+//!
+//! `examples/headset` is a whole program.
 
 #![cfg(feature = "wgpu-30")]
 
@@ -48,9 +57,9 @@ mod vulkan;
 pub use afterimage;
 pub use afterimage::wgpu;
 pub use error::Error;
-pub use eye::{Draw, Eye};
+pub use eye::Eye;
 pub use gaze::Ray;
 pub use headset::{ActionsFn, GazeFn, Headset, HeadsetDesc, HeadsetFrame, Shown};
 pub use openxr;
 pub use session::HiddenMesh;
-pub use targets::Targets;
+pub use targets::{TargetViews, Targets};

@@ -6,17 +6,32 @@ use wgpu_30::{
     TextureViewDescriptor, TextureViewDimension,
 };
 
-/// Atlas of the lattices, with a layer for each eye: what an application draws into.
+/// What an application draws into: the whole views, with a layer for each eye.
 #[derive(Debug)]
 pub struct Targets {
     /// Linear color, before tone mapping: [`COLOR`](Self::COLOR).
     pub color: Texture,
-    /// Reversed depth: [`DEPTH`](Self::DEPTH).
+    /// Reversed depth of the prepass: [`DEPTH`](Self::DEPTH).
     pub depth: Texture,
-    /// Motion vectors, previous minus current position in pixels of the whole view, y down: [`MOTION`](Self::MOTION).
+    /// Motion vectors, previous minus current position in pixels, y down: [`MOTION`](Self::MOTION).
     pub motion: Texture,
-    /// Color, depth and motion of the left eye, then of the right one: attachments of a render pass.
-    pub views: [[TextureView; 3]; 2],
+    /// Depth of the prepass, with the near plane, 1, where nothing is to be shaded: [`DEPTH`](Self::DEPTH).
+    pub primed: Texture,
+    /// Layers of the left and of the right eye.
+    pub views: [TargetViews; 2],
+}
+
+/// Layers of an eye in [`Targets`]: attachments of render passes.
+#[derive(Debug)]
+pub struct TargetViews {
+    /// Of the color pass.
+    pub color: TextureView,
+    /// Depth of the prepass.
+    pub depth: TextureView,
+    /// Of the prepass.
+    pub motion: TextureView,
+    /// Depth of the color pass: load it, and test with `GreaterEqual`.
+    pub primed: TextureView,
 }
 
 impl Targets {
@@ -27,19 +42,21 @@ impl Targets {
     /// Format of motion vectors.
     pub const MOTION: TextureFormat = TextureFormat::Rg16Float;
 
-    /// Targets of `size` texels a layer. The headset makes those of its frames; others are for comparison, such as
+    /// Targets of `size` pixels a layer. The headset makes those of its frames; others are for comparison, such as
     /// full-rate frames.
     pub fn new(device: &Device, size: [u32; 2]) -> Self {
-        let usage = TextureUsages::RENDER_ATTACHMENT | Afterimage::INPUT_USAGE | TextureUsages::COPY_SRC;
+        let input = TextureUsages::RENDER_ATTACHMENT | Afterimage::INPUT_USAGE | TextureUsages::COPY_SRC;
         let [color, depth, motion] =
-            [Self::COLOR, Self::DEPTH, Self::MOTION].map(|format| layers(device, "atlas", size, format, usage));
-        let views = [0, 1].map(|eye| [layer(&color, eye), layer(&depth, eye), layer(&motion, eye)]);
-        Self { color, depth, motion, views }
-    }
-
-    /// Size of a layer in texels.
-    pub fn size(&self) -> [u32; 2] {
-        [self.color.width(), self.color.height()]
+            [Self::COLOR, Self::DEPTH, Self::MOTION].map(|format| layers(device, "headset", size, format, input));
+        let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::COPY_DST;
+        let primed = layers(device, "primed depth", size, Self::DEPTH, usage);
+        let views = [0, 1].map(|eye| TargetViews {
+            color: layer(&color, eye),
+            depth: layer(&depth, eye),
+            motion: layer(&motion, eye),
+            primed: layer(&primed, eye),
+        });
+        Self { color, depth, motion, primed, views }
     }
 }
 

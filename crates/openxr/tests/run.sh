@@ -82,8 +82,8 @@ silent() {
 # gain FRAME: dB that memory gains in a checked frame.
 gain() { awk -v at="frame $1:" 'index($0, at) == 1 {for (i = 1; i < NF; i++) if ($i == "dB," ) v[n++] = $(i - 1); print v[0] - v[1]}' "$log"; }
 gains() { awk -v g="$(gain "$1")" -v least="$2" 'BEGIN {exit !(g != "" && g > least)}' || fail "frame $1: memory gains $(gain "$1") dB, at least $2 expected"; }
-# loses FRAME: whether memory makes a checked frame worse.
-loses() { awk -v g="$(gain "$1")" 'BEGIN {exit !(g != "" && g < 0)}'; }
+# loses FRAME: whether memory gains less than half of what it must gain in a checked frame of the scanpath.
+loses() { awk -v g="$(gain "$1")" 'BEGIN {exit !(g != "" && g < 3)}'; }
 has_reset() { grep -q "^frame $1: All" "$log" || fail "frame $1: no reset after $2"; }
 
 if [ "${1:-}" = soak ]; then
@@ -109,7 +109,7 @@ run scanpath 120 -- --gaze /xr/scanpath_viewing.csv --frames 46 --check 15
 silent scanpath
 grep -q "eye tracker: no" "$log" || fail "a tracker that nobody plays"
 has_reset 0 "the start"
-for frame in 30 45; do gains "$frame" 0.7; done
+for frame in 30 45; do gains "$frame" 6; done
 
 # Every frame is checked. Taken off for 105 periods of 1/90 s or more: a pause, which discards history. Frames that are shown count
 # on without those. Blinks are in the scanpath.
@@ -120,7 +120,7 @@ grep -q "eye tracker: yes" "$log" || fail "the tracker is not used"
 # At the start, by recentring, after the pause, in the new session. Not by half a second without frames, and not by blinks.
 resets=$(grep -c "^frame [0-9]*: All" "$log")
 [ "$resets" = 4 ] || fail "$resets resets instead of 4"
-for frame in 28 56 78 92 112 143 165; do gains "$frame" 0.4; done
+for frame in 28 56 78 92 112 143 165; do gains "$frame" 2; done
 gazes() { awk -v low="$1" -v high="$2" '/^frame/ {n = $2 + 0; if (n >= low && n <= high) {sub(/.*gaze/, ""); print}}' "$log" | sort -u | wc -l; }
 [ "$(gazes 5 25)" -gt 3 ] || fail "the gaze does not move"
 [ "$(gazes 82 92)" = 1 ] || fail "a lost gaze is not held"
@@ -134,5 +134,9 @@ run planted-eyes 60 -- --gaze /xr/scanpath_viewing.csv --frames 31 --check 15 --
 loses 30 || fail "swapped eyes are not seen"
 run planted-motion 60 -- --gaze /xr/scanpath_viewing.csv --frames 31 --check 15 --plant motion
 loses 30 || fail "wrong motion vectors are not seen"
+run planted-quads 60 -- --gaze /xr/scanpath_viewing.csv --frames 31 --check 15 --plant quads
+loses 30 || fail "quads of the other eye are not seen"
+(run planted-choice 60 -- --frames 2 --plant choice) >/dev/null && fail "a frame whose quads were not chosen is shown"
+grep -q "^headset: .* call HeadsetFrame::choose" "$root/xr/planted-choice.log" || fail "no error without a choice of quads"
 
 step "all checks passed"

@@ -53,7 +53,7 @@ enum Command {
     Bench(bench::BenchArgs),
     /// Measure a grid of methods and options: error against time, and what each switch costs
     Sweep(Box<sweep_command::SweepArgs>),
-    /// Write a synthetic scanpath
+    /// Write a synthetic scanpath, or convert a gaze log
     Scanpath(scanpath::ScanpathArgs),
     /// Describe an input, or list the adapters
     Info(info::InfoArgs),

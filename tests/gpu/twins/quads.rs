@@ -3,10 +3,18 @@
 use super::probe::{Probe, probe};
 use super::values::*;
 use afterimage::kernel::quads;
+use afterimage_testing::Draws;
 
 /// Offsets of quads, beyond the reach of neighbours, too.
 fn offsets() -> Vec<u32> {
     (-10..10).map(|v: i32| v as u32).collect()
+}
+
+/// A window with few quads, two offsets in any order, and a row.
+fn in_window(d: &mut Draws, row: &mut Vec<u32>) {
+    let offset = |d: &mut Draws, low: i32, count: u32| (low + (d.bits() % count) as i32) as u32;
+    row.push(d.bits() & d.bits() & d.bits() & 0xffff);
+    row.extend([offset(d, -8, 29), offset(d, -20, 28), offset(d, -10, 20)]);
 }
 
 pub const PROBES: &[Probe] = &[
@@ -41,8 +49,14 @@ pub const PROBES: &[Probe] = &[
             row.push(d.bits() % 4);
         })
     }),
-    probe!(quads::quadrant, |rows| { rows.cross(&[&offsets(), &offsets()]) }),
-    probe!(quads::octant, |rows| { rows.cross(&[&offsets(), &offsets()]) }),
+    probe!(quads::window, |rows| { rows.random(|d, row| row.extend([d.bits(), d.bits() % 4096])) }),
+    probe!(quads::offset_bits, |rows| {
+        let all = |range: std::ops::RangeInclusive<i32>| range.map(|v| v as u32).collect::<Vec<_>>();
+        rows.cross(&[&all(-8..=20), &all(-20..=7)])
+    }),
+    probe!(quads::first_of, |rows| { rows.random(in_window) }),
+    probe!(quads::last_of, |rows| { rows.random(in_window) }),
+    probe!(quads::octant_offsets, |rows| { rows.cross(&[&(0..=8).collect::<Vec<_>>()]) }),
     probe!(quads::neighbour, |rows| { rows.cross(&[&offsets(), &offsets()]) }),
     probe!(quads::neighbour_offset, |rows| { rows.cross(&[&(0..256).collect::<Vec<_>>()]) }),
     probe!(quads::quad_key, |rows| {

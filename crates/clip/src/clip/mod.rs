@@ -4,6 +4,7 @@
 pub mod run_report;
 
 use crate::clock::Quartiles;
+use crate::exposure::{Chosen, Exposure};
 use crate::failure::Failure;
 use crate::frame::RenderedFrame;
 use crate::lattices::{SampleOrder, SparseGeometry};
@@ -47,13 +48,13 @@ pub struct Clip {
     pub methods: Vec<(&'static str, RunKind)>,
     /// Gaze position per frame, in frame pixels; `None`: tracking lost.
     pub gaze: Vec<Option<[f32; 2]>>,
-    /// Gaze that the renderer and the methods get in each frame, delayed by a tracker's latency; scores use the true
-    /// gaze. `None`: no latency.
+    /// Gaze that the renderer and the methods get in each frame: delayed by a tracker's latency, or fixed. Scores use
+    /// the true gaze. `None`: the true gaze.
     pub late_gaze: Option<Vec<Option<[f32; 2]>>>,
     /// First frame that counts in scores.
     pub score_from: usize,
-    /// Exposure before sRGB encoding, stops.
-    pub exposure_ev: f32,
+    /// Exposure before sRGB encoding.
+    pub exposure: Exposure,
     /// Writes a frame in the format of the run.
     pub write_frame: WriteFrame,
     /// Whether the full-rate frames are written, too.
@@ -94,6 +95,7 @@ pub struct Playback<'a> {
     source: &'a mut dyn FrameSource,
     pipeline: Pipeline,
     first: RenderedFrame,
+    exposure: Chosen,
 }
 
 /// One frame of a clip, and the outputs of all methods for it.
@@ -106,6 +108,8 @@ pub struct FrameResult<'a> {
     pub reference: &'a Reference<'a>,
     /// The foveated frame and the outputs.
     pub step: &'a Step,
+    /// Exposure before sRGB encoding, stops.
+    pub exposure_ev: f32,
 }
 
 /// Results of a clip.
@@ -121,6 +125,8 @@ pub struct ClipReport {
     pub samples: u64,
     /// Device that ran the methods, for messages.
     pub backend: String,
+    /// Exposure before sRGB encoding, stops.
+    pub exposure_ev: f32,
     /// Gaze position used for each frame, in frame pixels.
     pub gaze_px: Vec<[f32; 2]>,
     /// Mean squared error of each method's frames.
@@ -143,12 +149,18 @@ pub fn foveation_words(foveation: &Foveation, simulator: &str) -> String {
 }
 
 impl Playback<'_> {
+    /// The exposure, which may follow from the first frame.
+    pub fn exposure(&self) -> &Chosen {
+        &self.exposure
+    }
+
     /// Runs the clip and writes everything but `report.json`.
     pub fn write(self, out: &Output) -> Result<ClipReport, Failure> {
         let clip = self.clip;
         let mut accumulators: Vec<MethodAccumulator> =
             clip.methods.iter().map(|_| MethodAccumulator::default()).collect();
-        let mut report = ClipReport { backend: clip.backend_name(), ..ClipReport::default() };
+        let exposure_ev = self.exposure.ev;
+        let mut report = ClipReport { backend: clip.backend_name(), exposure_ev, ..ClipReport::default() };
         let mut foveation_ms = vec![];
         let mut full_rate = Times::default();
         let bar = progress::bar(clip.gaze.len() as u64, "frame {pos}/{len}");
@@ -194,7 +206,7 @@ impl Playback<'_> {
     /// Runs all methods over the clip and calls `each` after every frame. Returns the pipeline in its state after the
     /// last frame.
     pub fn play(self, each: &mut dyn FnMut(&FrameResult<'_>) -> Result<(), Failure>) -> Result<Pipeline, Failure> {
-        let Self { clip, source, mut pipeline, first } = self;
+        let Self { clip, source, mut pipeline, first, exposure } = self;
         let mut first = Some(first);
         let mut references = clip.references();
         for index in 0..clip.gaze.len() {
@@ -202,11 +214,12 @@ impl Playback<'_> {
                 Some(first) => first,
                 None => source.render(&pipeline.request(index as u64, clip.known_gaze(index)))?,
             };
-            let full = metric::encode(&frame.reference.color, clip.exposure_ev);
+            let full = metric::encode(&frame.reference.color, exposure.ev);
             pipeline.look_at(clip.gaze[index].filter(|_| clip.late_gaze.is_some()));
             let step = pipeline.step_with(&frame, &mut |wish| Ok::<_, Failure>(source.shade(&frame, wish)?))?;
             let reference = references.next(&full, &step.tracked, &step.ecc_deg);
-            each(&FrameResult { index, frame: &frame, reference: &reference, step: &step })?;
+            let exposure_ev = exposure.ev;
+            each(&FrameResult { index, frame: &frame, reference: &reference, step: &step, exposure_ev })?;
         }
         Ok(pipeline)
     }
@@ -230,7 +243,8 @@ impl Clip {
             pipeline = pipeline.with_trust();
         }
         let first = source.render(&pipeline.request(0, self.known_gaze(0)))?;
-        Ok(Playback { clip: self, source, pipeline, first })
+        let exposure = self.exposure.choose(&first.reference.color, 1.0);
+        Ok(Playback { clip: self, source, pipeline, first, exposure })
     }
 
     /// Gaze that the renderer and the methods get in a frame.
@@ -273,12 +287,11 @@ impl Clip {
         accumulators: &mut [MethodAccumulator],
         out: &Output,
     ) -> Result<Vec<Image<[f32; 3]>>, Failure> {
-        let &FrameResult { index, frame, reference, step, .. } = result;
+        let &FrameResult { index, frame, reference, step, exposure_ev } = result;
         if self.write_reference {
             (self.write_frame)(out, "reference", index, &frame.reference.color, reference.encoded())?;
         }
-        let encoded: Vec<_> =
-            step.outputs.par_iter().map(|shown| metric::encode(&shown.image, self.exposure_ev)).collect();
+        let encoded: Vec<_> = step.outputs.par_iter().map(|shown| metric::encode(&shown.image, exposure_ev)).collect();
         let foveated = self.methods.iter().position(|m| m.0 == MethodKind::None.name()).map(|i| &encoded[i]);
         accumulators.par_iter_mut().zip(&self.methods).zip(step.outputs.par_iter().zip(&encoded)).try_for_each(
             |((accumulator, (name, _)), (shown, encoded))| {

@@ -35,6 +35,8 @@ pub struct RunFacts<'a> {
     pub start_s: f64,
     /// Latency of the eye tracker, milliseconds.
     pub gaze_latency_ms: f64,
+    /// Whether the fovea stays in the middle of the frame.
+    pub fixed_fovea: bool,
 }
 
 #[derive(Serialize)]
@@ -62,6 +64,7 @@ struct RunReport<'a> {
     gaze_map: &'a str,
     start_s: f64,
     gaze_latency_ms: f64,
+    fixed_fovea: bool,
     /// FLIP's viewing distance, in pixels per degree of visual angle; null without FLIP.
     flip_pixels_per_degree: Option<f32>,
     /// The display of JOD; null without JOD.
@@ -120,7 +123,7 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
         fps: facts.fps,
         hfov_deg: clip.geometry.hfov_deg(),
         seed: facts.seed,
-        exposure_ev: clip.exposure_ev,
+        exposure_ev: report.exposure_ev,
         backend: clip.processor.info(),
         foveation: FoveationReport {
             simulator: facts.simulator,
@@ -143,6 +146,7 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
         gaze_map: facts.gaze_map,
         start_s: facts.start_s,
         gaze_latency_ms: facts.gaze_latency_ms,
+        fixed_fovea: facts.fixed_fovea,
         flip_pixels_per_degree: clip.flip().map(|flip| flip.pixels_per_degree()),
         jod_display: clip.viewing().map(|viewing| {
             let Display { peak_nits, contrast } = viewing.display;

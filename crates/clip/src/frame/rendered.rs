@@ -49,6 +49,9 @@ pub enum Content {
     Jittered(SourceFrame),
     /// A frame that its source foveated, in memory.
     Foveated(FoveatedFrame),
+    /// Depth and motion of every pixel, those of the full-rate frame, in memory. The pixels that methods choose are
+    /// shaded later.
+    Surfaces,
     /// A frame that its source foveated, on a device.
     OnDevice(Arc<dyn DeviceContent>),
 }
@@ -76,7 +79,7 @@ impl Content {
     /// Where the samples lie, if the source gave no colors between them.
     pub fn lattices(&self) -> Option<Lattices> {
         match self {
-            Self::FullRate | Self::Jittered(_) => None,
+            Self::FullRate | Self::Jittered(_) | Self::Surfaces => None,
             Self::Foveated(frame) => frame.lattices,
             Self::OnDevice(content) => content.lattices(),
         }
@@ -85,7 +88,7 @@ impl Content {
     /// Whether a path tracer foveated the frame.
     pub fn is_traced(&self) -> bool {
         match self {
-            Self::FullRate | Self::Jittered(_) => false,
+            Self::FullRate | Self::Jittered(_) | Self::Surfaces => false,
             Self::Foveated(_) => true,
             Self::OnDevice(content) => content.is_traced(),
         }

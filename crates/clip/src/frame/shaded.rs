@@ -15,11 +15,15 @@ pub struct Wish {
 }
 
 impl Wish {
+    /// The pixels, of a frame of `size_px`, ordered by row.
+    pub fn pixels(&self, [width, height]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> + '_ {
+        let pixels = (0..height).flat_map(move |y| (0..width).map(move |x| [x, y]));
+        pixels.filter(|&[x, y]| self.quads.at(x as usize / 2, y as usize / 2))
+    }
+
     /// Share of the pixels of a frame of `size_px`. Half of a quad may lie beyond the edge.
     pub fn share(&self, size_px: [u32; 2]) -> f64 {
-        let [width, height] = size_px.map(|side| side as usize);
-        let wanted = |y: usize| (0..width).filter(|x| self.quads.at(x / 2, y / 2)).count();
-        (0..height).map(wanted).sum::<usize>() as f64 / (width * height) as f64
+        self.pixels(size_px).count() as f64 / size_px.iter().map(|&side| f64::from(side)).product::<f64>()
     }
 }
 

@@ -59,6 +59,11 @@ impl Foveator {
                 let view = self.view(frame);
                 Candidate { view, lods: foveated.lod.clone(), in_memory: Some(color), pyramid: None }
             }
+            Content::Surfaces => {
+                let lods = self.foveation.lod_map(&self.geometry, frame.gaze_px, ecc_deg);
+                let unshaded = InMemory::new(Cow::Owned(Image::filled([0; 2], [0.0; 3])));
+                Candidate { view: self.view(frame), lods, in_memory: Some(unshaded), pyramid: None }
+            }
             Content::OnDevice(content) => self.on_device(frame, content.as_ref(), ecc_deg, is_read),
         }
     }

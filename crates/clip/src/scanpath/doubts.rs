@@ -14,7 +14,7 @@ impl Scanpath {
     /// What looks wrong, one line each: all gaze within a pixel of a corner (coordinates from 0 to 1?), fewer than ten
     /// samples a second (milliseconds?), more than half of the gaze lost.
     pub fn warnings(&self) -> Vec<String> {
-        [self.corner(), self.rate(), self.loss()]
+        [self.corner(), self.doubt_of_times(), self.loss()]
             .into_iter()
             .flatten()
             .map(|doubt| format!("{}: {doubt}", self.name()))
@@ -39,7 +39,8 @@ impl Scanpath {
         })
     }
 
-    fn rate(&self) -> Option<String> {
+    /// The warning of fewer than ten samples a second, without the name of the scanpath.
+    pub fn doubt_of_times(&self) -> Option<String> {
         let samples = self.samples();
         let mut steps: Vec<f64> = samples.windows(2).map(|pair| pair[1].t_s - pair[0].t_s).collect();
         if steps.is_empty() {

@@ -11,7 +11,7 @@ pub use request::{FrameRequest, Wanted};
 
 use crate::error::InputError;
 use crate::frame::{RenderedFrame, Shaded, SourceFrame, Wish};
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 
 /// Properties of a source that are known before its first frame is read.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +35,8 @@ pub struct SourceInfo {
 pub struct CameraPose {
     /// Camera-to-world matrix: x right, y up, looking along -z.
     pub world_from_camera: DMat4,
+    /// To be added to positions for those in the coordinates of the scene's file, in metres.
+    pub origin: DVec3,
     /// Walking speed that suits the scene, in m/s: it crosses the scene in about ten seconds.
     pub speed_m_s: f64,
 }

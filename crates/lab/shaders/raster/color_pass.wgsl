@@ -22,7 +22,7 @@ struct ColorVarying {
     @location(1) relative: vec3<f32>,
     @location(2) normal: vec3<f32>,
     @location(3) tangent: vec4<f32>,
-    @location(4) uv: vec2<f32>,
+    @location(4) uvs: vec4<f32>,
     @location(5) color: vec4<f32>,
 }
 
@@ -30,11 +30,11 @@ struct ColorVarying {
 fn shade_vertex(vertex: Vertex) -> ColorVarying {
     let relative = from_eye(frame.current, vertex.position);
     let position = clip(homogeneous_px(frame.current, relative));
-    return ColorVarying(position, vertex.position, relative, vertex.normal, vertex.tangent, vertex.uv, vertex.color);
+    return ColorVarying(position, vertex.position, relative, vertex.normal, vertex.tangent, vertex.uvs, vertex.color);
 }
 
 // BSDF parameters with textures and tints applied, as in trace/surface_point.wgsl.
-fn surface_of(base: vec3<f32>, uv: vec2<f32>, front: bool) -> BsdfSurface {
+fn surface_of(base: vec3<f32>, uvs: vec4<f32>, front: bool) -> BsdfSurface {
     var s: BsdfSurface;
     s.base_color = base;
     s.metallic = material.metallic;
@@ -51,22 +51,22 @@ fn surface_of(base: vec3<f32>, uv: vec2<f32>, front: bool) -> BsdfSurface {
     s.thin = (material.flags & FLAG_VOLUME) == 0u;
     s.entering = front;
     if SURFACE_TEXTURE {
-        let surface = textureSampleBias(metallic_roughness_map, metallic_roughness_sampler, uv, frame.texture_bias);
+        let surface = textureSampleBias(metallic_roughness_map, metallic_roughness_sampler, uv_of(1u, uvs), frame.texture_bias);
         s.roughness *= surface.y;
         s.metallic *= surface.z;
-        s.specular *= textureSampleBias(specular_map, base_color_sampler, uv, frame.texture_bias).w;
-        s.specular_color *= textureSampleBias(specular_color_map, base_color_sampler, uv, frame.texture_bias).xyz;
+        s.specular *= textureSampleBias(specular_map, base_color_sampler, uv_of(4u, uvs), frame.texture_bias).w;
+        s.specular_color *= textureSampleBias(specular_color_map, base_color_sampler, uv_of(5u, uvs), frame.texture_bias).xyz;
     }
     if SURFACE_TEXTURE && LOBE_CLEARCOAT {
-        s.clearcoat *= textureSampleBias(clearcoat_map, base_color_sampler, uv, frame.texture_bias).x;
-        s.clearcoat_roughness *= textureSampleBias(clearcoat_roughness_map, base_color_sampler, uv, frame.texture_bias).y;
+        s.clearcoat *= textureSampleBias(clearcoat_map, base_color_sampler, uv_of(6u, uvs), frame.texture_bias).x;
+        s.clearcoat_roughness *= textureSampleBias(clearcoat_roughness_map, base_color_sampler, uv_of(7u, uvs), frame.texture_bias).y;
     }
     if SURFACE_TEXTURE && LOBE_SHEEN {
-        s.sheen_color *= textureSampleBias(sheen_color_map, base_color_sampler, uv, frame.texture_bias).xyz;
-        s.sheen_roughness *= textureSampleBias(sheen_roughness_map, base_color_sampler, uv, frame.texture_bias).w;
+        s.sheen_color *= textureSampleBias(sheen_color_map, base_color_sampler, uv_of(8u, uvs), frame.texture_bias).xyz;
+        s.sheen_roughness *= textureSampleBias(sheen_roughness_map, base_color_sampler, uv_of(9u, uvs), frame.texture_bias).w;
     }
     if SURFACE_TEXTURE && LOBE_TRANSMISSION {
-        s.transmission *= textureSampleBias(transmission_map, base_color_sampler, uv, frame.texture_bias).x;
+        s.transmission *= textureSampleBias(transmission_map, base_color_sampler, uv_of(10u, uvs), frame.texture_bias).x;
     }
     s.specular_color *= tint(base, material.specular_tint);
     s.sheen_color *= tint(base, material.sheen_tint);
@@ -110,7 +110,7 @@ fn incoming(light: RasterLight, position: vec3<f32>) -> Incoming {
 
 @fragment
 fn shade(in: ColorVarying, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    let base = base_at(in.uv, in.color);
+    let base = base_at(in.uvs, in.color);
     let across = cross(dpdx(in.relative), dpdy(in.relative));
     // An alpha-tested edge is widened to one pixel, for alpha to coverage.
     let edge = max(fwidth(base.w) * frame.per_step, 1e-4);
@@ -124,14 +124,14 @@ fn shade(in: ColorVarying, @builtin(front_facing) front: bool) -> @location(0) v
     } else if (material.flags & FLAG_BLEND) != 0u {
         opacity = clamp(base.w, 0.0, 1.0);
     }
-    let surface = surface_of(base.xyz, in.uv, front);
+    let surface = surface_of(base.xyz, in.uvs, front);
     var mapped = vec3<f32>(0.5, 0.5, 1.0);
     if NORMAL_MAP {
-        mapped = textureSampleBias(normal_map, normal_sampler, in.uv, frame.texture_bias).xyz;
+        mapped = textureSampleBias(normal_map, normal_sampler, uv_of(2u, in.uvs), frame.texture_bias).xyz;
     }
     var emitted = material.emissive;
     if EMISSIVE_TEXTURE {
-        emitted *= textureSampleBias(emissive_map, emissive_sampler, in.uv, frame.texture_bias).xyz;
+        emitted *= textureSampleBias(emissive_map, emissive_sampler, uv_of(3u, in.uvs), frame.texture_bias).xyz;
     }
     if !front && (material.flags & FLAG_DOUBLE_SIDED) == 0u {
         emitted = vec3<f32>(0.0);

@@ -79,7 +79,8 @@ struct Vertex {
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) tangent: vec4<f32>,
-    @location(3) uv: vec2<f32>,
+    // First and second texture coordinates.
+    @location(3) uvs: vec4<f32>,
     @location(4) color: vec4<f32>,
     @location(5) before: vec3<f32>,
 }

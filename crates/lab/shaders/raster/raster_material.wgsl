@@ -2,6 +2,8 @@
 // Group 1: a material in the tracer's layout, with its textures; white where it has none.
 
 override BASE_COLOR_TEXTURE: bool = true;
+// Whether textures transform texture coordinates.
+override TEXTURE_COORDINATES: bool = true;
 
 const NO_TEXTURE: u32 = 0xffffffffu;
 const FLAG_MASK: u32 = 1u;
@@ -9,7 +11,7 @@ const FLAG_BLEND: u32 = 2u;
 const FLAG_DOUBLE_SIDED: u32 = 4u;
 const FLAG_VOLUME: u32 = 8u;
 
-// Twin of MaterialRecord in src/trace/shading_records.rs.
+// MaterialRecord in src/trace/shading_records.rs, and the coordinates of the textures.
 struct RasterMaterial {
     base_color: vec3<f32>,
     opacity: f32,
@@ -46,6 +48,9 @@ struct RasterMaterial {
     transmission_texture: u32,
     phong_diffuse: f32,
     unused: vec2<f32>,
+    // Of each texture, in the order of their bindings: rows of the transform; the fourth element of the first row is 1
+    // for the second texture coordinates.
+    coordinates: array<array<vec4<f32>, 2>, 11>,
 }
 
 @group(1) @binding(0) var<storage, read> material: RasterMaterial;
@@ -65,11 +70,22 @@ struct RasterMaterial {
 @group(1) @binding(14) var sheen_roughness_map: texture_2d<f32>;
 @group(1) @binding(15) var transmission_map: texture_2d<f32>;
 
+// Texture coordinates of the texture of slot `slot`.
+fn uv_of(slot: u32, uvs: vec4<f32>) -> vec2<f32> {
+    if !TEXTURE_COORDINATES {
+        return uvs.xy;
+    }
+    let r0 = material.coordinates[slot][0];
+    let r1 = material.coordinates[slot][1];
+    let uv = select(uvs.xy, uvs.zw, r0.w != 0.0);
+    return vec2<f32>((r0.x * uv.x + r0.z) + r0.y * uv.y, (r1.x * uv.x + r1.z) + r1.y * uv.y);
+}
+
 // Base color and opacity.
-fn base_at(uv: vec2<f32>, color: vec4<f32>) -> vec4<f32> {
+fn base_at(uvs: vec4<f32>, color: vec4<f32>) -> vec4<f32> {
     var base = vec4<f32>(material.base_color, material.opacity) * color;
     if BASE_COLOR_TEXTURE {
-        base *= textureSampleBias(base_color_map, base_color_sampler, uv, frame.texture_bias);
+        base *= textureSampleBias(base_color_map, base_color_sampler, uv_of(0u, uvs), frame.texture_bias);
     }
     return base;
 }

@@ -4,7 +4,7 @@
 
 struct ShadowVarying {
     @builtin(position) position: vec4<f32>,
-    @location(0) uv: vec2<f32>,
+    @location(0) uvs: vec4<f32>,
     @location(1) color: vec4<f32>,
 }
 
@@ -12,12 +12,12 @@ struct ShadowVarying {
 fn shadow_vertex(vertex: Vertex) -> ShadowVarying {
     let at = vec4<f32>(vertex.position, 1.0);
     let place = vec3<f32>(dot(lights.sun[0], at), dot(lights.sun[1], at), dot(lights.sun[2], at));
-    return ShadowVarying(vec4<f32>(place, 1.0), vertex.uv, vertex.color);
+    return ShadowVarying(vec4<f32>(place, 1.0), vertex.uvs, vertex.color);
 }
 
 @fragment
 fn alpha_test(in: ShadowVarying) {
-    if !passes_alpha_test(base_at(in.uv, in.color).w) {
+    if !passes_alpha_test(base_at(in.uvs, in.color).w) {
         discard;
     }
 }

@@ -10,7 +10,7 @@ struct MotionVarying {
     @builtin(position) position: vec4<f32>,
     @location(0) now: vec3<f32>,
     @location(1) before: vec3<f32>,
-    @location(2) uv: vec2<f32>,
+    @location(2) uvs: vec4<f32>,
     @location(3) color: vec4<f32>,
 }
 
@@ -18,7 +18,7 @@ struct MotionVarying {
 fn motion_vertex(vertex: Vertex) -> MotionVarying {
     let now = homogeneous_px(frame.current, from_eye(frame.current, vertex.position));
     let before = homogeneous_px(frame.previous, from_eye(frame.previous, vertex.before));
-    return MotionVarying(clip(now), now, before, vertex.uv, vertex.color);
+    return MotionVarying(clip(now), now, before, vertex.uvs, vertex.color);
 }
 
 fn moved(now: vec3<f32>, before: vec3<f32>) -> vec2<f32> {
@@ -33,7 +33,7 @@ fn moved(now: vec3<f32>, before: vec3<f32>) -> vec2<f32> {
 // and this way both positions have the same error.
 @fragment
 fn motion(in: MotionVarying) -> @location(0) vec2<f32> {
-    if !passes_alpha_test(base_at(in.uv, in.color).w) {
+    if !passes_alpha_test(base_at(in.uvs, in.color).w) {
         discard;
     }
     return moved(in.now, in.before);

@@ -10,6 +10,7 @@ override EFFECT_BASE_COLOR: bool = true;
 override EFFECT_SURFACE_TEXTURE: bool = true;
 override EFFECT_NORMAL_MAP: bool = true;
 override EFFECT_EMISSIVE_TEXTURE: bool = true;
+override EFFECT_TEXTURE_COORDINATES: bool = true;
 override EFFECT_EMISSIVE_TRIANGLES: bool = true;
 override EFFECT_PUNCTUAL_LIGHTS: bool = true;
 override EFFECT_ENVIRONMENT: bool = true;

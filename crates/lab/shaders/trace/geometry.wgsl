@@ -6,6 +6,8 @@
 override ATTRIBUTES: u32 = 0u;
 override MOVING_ATTRIBUTES: u32 = 0u;
 override MOVING_PREVIOUS: u32 = 0u;
+override SECOND_UVS: u32 = 0u;
+override MOVING_SECOND_UVS: u32 = 0u;
 
 const FLAG_EMISSIVE: u32 = 0x2000000u;
 const FLAG_TRANSMISSIVE: u32 = 0x4000000u;
@@ -28,6 +30,8 @@ struct Attributes {
     bitangent_sign: f32,
     uv: vec2<f32>,
     color: vec4<f32>,
+    // Zero unless place_at reads it.
+    second_uv: vec2<f32>,
 }
 
 fn is_moving(triangle: u32) -> bool {
@@ -72,5 +76,18 @@ fn attributes_at(triangle: u32, u: f32, v: f32) -> Attributes {
     let c = bitcast<vec2<f32>>(uv1.yz);
     let color0 = texel_value(normals.w);
     let color = (color0 + (texel_value(tangents.w) - color0) * u) + (texel_value(uv0.w) - color0) * v;
-    return Attributes(normal, tangent, select(1.0, -1.0, (tangents.x & 1u) != 0u), (a * w + b * u) + c * v, color);
+    return Attributes(normal, tangent, select(1.0, -1.0, (tangents.x & 1u) != 0u), (a * w + b * u) + c * v, color, vec2<f32>(0.0));
+}
+
+// SecondUvRecord::at
+fn second_uv_at(triangle: u32, u: f32, v: f32) -> vec2<f32> {
+    // No section but that of the nodes begins at 0: there is none.
+    if select(SECOND_UVS, MOVING_SECOND_UVS, is_moving(triangle)) == 0u {
+        return vec2<f32>(0.0);
+    }
+    let at = record_at(triangle, SECOND_UVS, MOVING_SECOND_UVS, 2u);
+    let ab = bitcast<vec4<f32>>(load(at));
+    let c = bitcast<vec2<f32>>(load(at + 1u).xy);
+    let w = (1.0 - u) - v;
+    return (ab.xy * w + ab.zw * u) + c * v;
 }

@@ -9,6 +9,7 @@ override PICKS: u32 = 0u;
 override PUNCTUAL: u32 = 0u;
 
 const MATERIAL_ROWS: u32 = 12u;
+const TEXTURE_ROWS: u32 = 3u;
 const PUNCTUAL_ROWS: u32 = 4u;
 const MAP_ROWS: u32 = 2u;
 const NO_TEXTURE: u32 = 0xffffffffu;

@@ -21,6 +21,19 @@ struct SurfacePoint {
     phong: PhongSurface,
 }
 
+// Geometry::attributes_at
+fn place_at(triangle: u32, u: f32, v: f32) -> Attributes {
+    var place = attributes_at(triangle, u, v);
+    if EFFECT_TEXTURE_COORDINATES {
+        place.second_uv = second_uv_at(triangle, u, v);
+    }
+    return place;
+}
+
+fn uvs_of(place: Attributes) -> vec4<f32> {
+    return vec4<f32>(place.uv, place.second_uv);
+}
+
 // surface::base
 fn base_of(material: u32, place: Attributes) -> vec4<f32> {
     var base = bitcast<vec4<f32>>(material_row(material, 0u));
@@ -28,7 +41,7 @@ fn base_of(material: u32, place: Attributes) -> vec4<f32> {
         base *= place.color;
         let id = material_row(material, 8u).z;
         if id != NO_TEXTURE {
-            base *= texture_value(id, place.uv, true);
+            base *= texture_value(id, uvs_of(place), true);
         }
     }
     return base;
@@ -37,7 +50,7 @@ fn base_of(material: u32, place: Attributes) -> vec4<f32> {
 // surface::passes_alpha_test
 fn passes_alpha_test(triangle: u32, u: f32, v: f32, draw: f32) -> bool {
     let material = triangle_at(triangle).material;
-    let place = attributes_at(triangle, u, v);
+    let place = place_at(triangle, u, v);
     let opacity = base_of(material, place).w;
     let flags = material_row(material, 8u).x;
     if (flags & FLAG_MASK) != 0u {
@@ -47,12 +60,12 @@ fn passes_alpha_test(triangle: u32, u: f32, v: f32, draw: f32) -> bool {
 }
 
 // surface::emission
-fn emission(material: u32, uv: vec2<f32>) -> vec3<f32> {
+fn emission(material: u32, uvs: vec4<f32>) -> vec3<f32> {
     var radiance = bitcast<vec3<f32>>(material_row(material, 1u).xyz);
     if EFFECT_EMISSIVE_TEXTURE {
         let id = material_row(material, 9u).y;
         if id != NO_TEXTURE {
-            radiance *= texture_value(id, uv, true).xyz;
+            radiance *= texture_value(id, uvs, true).xyz;
         }
     }
     return radiance;
@@ -61,16 +74,16 @@ fn emission(material: u32, uv: vec2<f32>) -> vec3<f32> {
 // surface::emission_at
 fn emission_at(triangle: u32, material: u32, u: f32, v: f32) -> vec3<f32> {
     if EFFECT_EMISSIVE_TEXTURE {
-        return emission(material, attributes_at(triangle, u, v).uv);
+        return emission(material, uvs_of(place_at(triangle, u, v)));
     }
-    return emission(material, vec2<f32>(0.0));
+    return emission(material, vec4<f32>(0.0));
 }
 
-fn optional_texture(id: u32, uv: vec2<f32>, is_color: bool) -> vec4<f32> {
+fn optional_texture(id: u32, uvs: vec4<f32>, is_color: bool) -> vec4<f32> {
     if id == NO_TEXTURE {
         return vec4<f32>(1.0);
     }
-    return texture_value(id, uv, is_color);
+    return texture_value(id, uvs, is_color);
 }
 
 // surface::resolve
@@ -112,23 +125,23 @@ fn resolve_surface(material: u32, place: Attributes, front: bool) -> BsdfSurface
         s.transmission = row.w;
     }
     if EFFECT_SURFACE_TEXTURE {
-        let metallic_roughness = optional_texture(words.w, place.uv, false);
+        let metallic_roughness = optional_texture(words.w, uvs_of(place), false);
         s.roughness *= metallic_roughness.y;
         s.metallic *= metallic_roughness.z;
         let ids = material_row(material, 9u);
-        s.specular *= optional_texture(ids.z, place.uv, false).w;
-        s.specular_color *= optional_texture(ids.w, place.uv, true).xyz;
+        s.specular *= optional_texture(ids.z, uvs_of(place), false).w;
+        s.specular_color *= optional_texture(ids.w, uvs_of(place), true).xyz;
         let more = material_row(material, 10u);
         if EFFECT_CLEARCOAT {
-            s.clearcoat *= optional_texture(more.x, place.uv, false).x;
-            s.clearcoat_roughness *= optional_texture(more.y, place.uv, false).y;
+            s.clearcoat *= optional_texture(more.x, uvs_of(place), false).x;
+            s.clearcoat_roughness *= optional_texture(more.y, uvs_of(place), false).y;
         }
         if EFFECT_SHEEN {
-            s.sheen_color *= optional_texture(more.z, place.uv, true).xyz;
-            s.sheen_roughness *= optional_texture(more.w, place.uv, false).w;
+            s.sheen_color *= optional_texture(more.z, uvs_of(place), true).xyz;
+            s.sheen_roughness *= optional_texture(more.w, uvs_of(place), false).w;
         }
         if EFFECT_TRANSMISSION {
-            s.transmission *= optional_texture(material_row(material, 11u).x, place.uv, false).x;
+            s.transmission *= optional_texture(material_row(material, 11u).x, uvs_of(place), false).x;
         }
     }
     if EFFECT_DIELECTRIC {
@@ -151,7 +164,7 @@ fn surface_point(hit: Hit, direction: vec3<f32>) -> SurfacePoint {
     let v0 = c.corners[0];
     let v1 = c.corners[1];
     let v2 = c.corners[2];
-    let place = attributes_at(hit.triangle, hit.u, hit.v);
+    let place = place_at(hit.triangle, hit.u, hit.v);
     let toward = -direction;
 
     let face = unit(cross(v1 - v0, v2 - v0));
@@ -166,7 +179,7 @@ fn surface_point(hit: Hit, direction: vec3<f32>) -> SurfacePoint {
     if EFFECT_NORMAL_MAP {
         let id = material_row(c.material, 9u).x;
         if id != NO_TEXTURE {
-            let texel = texture_value(id, place.uv, false).xyz;
+            let texel = texture_value(id, uvs_of(place), false).xyz;
             let scale = bitcast<f32>(material_row(c.material, 6u).w);
             normal = mapped_normal(normal, place.tangent, place.bitangent_sign, texel, scale);
         }
@@ -193,7 +206,7 @@ fn surface_point(hit: Hit, direction: vec3<f32>) -> SurfacePoint {
     p.emitted = vec3<f32>(0.0);
     if EFFECT_EMISSIVE_TRIANGLES {
         if front || (flags & FLAG_DOUBLE_SIDED) != 0u {
-            p.emitted = emission(c.material, place.uv);
+            p.emitted = emission(c.material, uvs_of(place));
         }
     }
     p.absorption = vec3<f32>(0.0);

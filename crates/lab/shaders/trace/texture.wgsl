@@ -1,9 +1,13 @@
 //#use color
 //#use texel
 //#use records
+//#use effects
 // Texture lookup. Twin of trace/cpu/texture.rs.
 
 const NEAREST: u32 = 16u;
+const SECOND: u32 = 32u;
+// Bound of transformed texture coordinates, which keeps them finite.
+const MAX_COORDINATE: f32 = 1e9;
 
 struct TextureRecord {
     first: u32,
@@ -22,9 +26,25 @@ fn texture_texel(t: TextureRecord, i: i32, j: i32, is_color: bool) -> vec4<f32> 
     return value;
 }
 
-// texture::texture
-fn texture_value(id: u32, uv: vec2<f32>, is_color: bool) -> vec4<f32> {
-    let record = load(TEXTURES + id);
+// Coordinates::of
+fn coordinates_of(id: u32, uv: vec2<f32>) -> vec2<f32> {
+    let r0 = bitcast<vec4<f32>>(load(TEXTURES + id * TEXTURE_ROWS + 1u));
+    let r1 = bitcast<vec4<f32>>(load(TEXTURES + id * TEXTURE_ROWS + 2u));
+    // In the order to which Mesa would bring it.
+    let at = vec2<f32>((r0.x * uv.x + r0.z) + r0.y * uv.y, (r1.x * uv.x + r1.z) + r1.y * uv.y);
+    return clamp(at, vec2<f32>(-MAX_COORDINATE), vec2<f32>(MAX_COORDINATE));
+}
+
+// texture::texture. `uvs` has the first and the second texture coordinates.
+fn texture_value(id: u32, uvs: vec4<f32>, is_color: bool) -> vec4<f32> {
+    let record = load(TEXTURES + id * TEXTURE_ROWS);
+    var uv = uvs.xy;
+    if EFFECT_TEXTURE_COORDINATES {
+        if (record.w & SECOND) != 0u {
+            uv = uvs.zw;
+        }
+        uv = coordinates_of(id, uv);
+    }
     let wrap = vec2<u32>(record.w & 3u, (record.w >> 2u) & 3u);
     let t = TextureRecord(record.x, record.yz, wrap, (record.w & NEAREST) != 0u);
     let x = wrap_coordinate(uv.x, wrap.x) * f32(t.size.x);

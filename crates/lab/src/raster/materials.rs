@@ -2,7 +2,7 @@
 
 use super::mipmaps::levels;
 use super::pipelines::{Layouts, SLOTS, slot_binding};
-use crate::scene::{Material, Scene, Texture, TextureRef, Wrap};
+use crate::scene::{Coordinates, Material, Scene, Texture, TextureRef, Wrap};
 use crate::trace::shading_records::MaterialRecord;
 use afterimage::Image;
 use std::collections::HashMap;
@@ -35,8 +35,8 @@ pub(super) fn bind_groups(
             }
         }
     }
-    let stride = 256_u64.max(u64::from(device.limits().min_storage_buffer_offset_alignment));
-    let bytes = size_of::<MaterialRecord>() as u64;
+    let bytes = (size_of::<MaterialRecord>() + size_of::<SlotCoordinates>()) as u64;
+    let stride = bytes.next_multiple_of(256.max(u64::from(device.limits().min_storage_buffer_offset_alignment)));
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("materials"),
         size: stride * materials.len() as u64,
@@ -47,6 +47,12 @@ pub(super) fn bind_groups(
         let record = MaterialRecord::new(m);
         queue.write_buffer(&buffer, stride * i as u64, bytemuck::bytes_of(&record));
         let slots = slots(m);
+        let coordinates: SlotCoordinates = slots.map(|(slot, _)| {
+            let texture = slot.and_then(|r| scene.textures.get(r.texture as usize));
+            rows(texture.map(|t| t.coordinates).unwrap_or_default())
+        });
+        let after = stride * i as u64 + size_of::<MaterialRecord>() as u64;
+        queue.write_buffer(&buffer, after, bytemuck::bytes_of(&coordinates));
         for (slot, _) in slots {
             let (key, description) = addressing(slot.and_then(|r| scene.textures.get(r.texture as usize)), anisotropy);
             samplers.entry(key).or_insert_with(|| device.create_sampler(&description));
@@ -76,6 +82,14 @@ pub(super) fn bind_groups(
         })
     });
     groups.collect()
+}
+
+/// Rows of the coordinates of all textures of a material, as `raster_material.wgsl` has them.
+type SlotCoordinates = [[[f32; 4]; 2]; SLOTS];
+
+fn rows(coordinates: Coordinates) -> [[f32; 4]; 2] {
+    let [[a, b, c], [d, e, f]] = coordinates.rows;
+    [[a, b, c, f32::from(u8::from(coordinates.second))], [d, e, f, 0.0]]
 }
 
 /// Textures in the order of their bindings, and whether each holds colors.

@@ -93,7 +93,7 @@ mod tests {
     use crate::scene::Wrap;
 
     fn texture(size: [u32; 2], texels: Vec<[u8; 4]>) -> Texture {
-        Texture { size, texels, wrap: [Wrap::Repeat; 2], nearest: false }
+        Texture { size, texels, wrap: [Wrap::Repeat; 2], nearest: false, coordinates: Default::default() }
     }
 
     #[test]

@@ -62,6 +62,7 @@ impl ColorPipelines {
                 ("SURFACE_TEXTURE", Effect::SurfaceTexture),
                 ("NORMAL_MAP", Effect::NormalMap),
                 ("EMISSIVE_TEXTURE", Effect::EmissiveTexture),
+                ("TEXTURE_COORDINATES", Effect::TextureCoordinates),
                 ("LOBE_RETRO", Effect::Dielectric),
                 ("LOBE_SPECULAR", Effect::Dielectric),
                 ("LOBE_METAL", Effect::Metal),
@@ -124,7 +125,8 @@ impl Pipelines {
 
     pub fn new(device: &Device, layouts: &Layouts, effects: Effects, has_sun: bool) -> Self {
         let [surface, sun, quads] = ["surface_pass", "sun_pass", "quads_pass"].map(|name| shader(device, name));
-        let base = constants(effects, &[("BASE_COLOR_TEXTURE", Effect::BaseColor)]);
+        let coordinates = ("TEXTURE_COORDINATES", Effect::TextureCoordinates);
+        let base = constants(effects, &[("BASE_COLOR_TEXTURE", Effect::BaseColor), coordinates]);
         let two = [Some(&layouts.frame), Some(&layouts.material)];
         let make = |recipe: Recipe<'_>| recipe.make(device, &two);
         let motion = |fragment, depth| {

@@ -14,7 +14,8 @@ pub(super) struct Vertex {
     pub position: [f32; 3],
     normal: [f32; 3],
     tangent: [f32; 4],
-    uv: [f32; 2],
+    /// First and second texture coordinates.
+    uvs: [f32; 4],
     /// Unsigned normalized.
     color: [u16; 4],
 }
@@ -28,7 +29,7 @@ pub(super) const LAYOUTS: [wgpu::VertexBufferLayout<'static>; 2] = [
         array_stride: STRIDE,
         step_mode: wgpu::VertexStepMode::Vertex,
         attributes: &wgpu::vertex_attr_array![
-            0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x2, 4 => Unorm16x4
+            0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x4, 4 => Unorm16x4
         ],
     },
     wgpu::VertexBufferLayout {
@@ -37,6 +38,13 @@ pub(super) const LAYOUTS: [wgpu::VertexBufferLayout<'static>; 2] = [
         attributes: &wgpu::vertex_attr_array![5 => Float32x3],
     },
 ];
+
+/// Texture coordinates of a corner; zero where a triangle has no second ones.
+fn uvs(triangles: &Triangles, i: usize, corner: usize) -> [f32; 4] {
+    let [u, v] = triangles.uvs[i][corner].to_array();
+    let [s, t] = triangles.second_uvs.get(i).map_or([0.0; 2], |uvs| uvs[corner].to_array());
+    [u, v, s, t]
+}
 
 /// Alpha mode of a draw, in drawing order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -104,7 +112,7 @@ impl GroupedTriangles {
                     position: triangles.positions[i][k].to_array(),
                     normal: triangles.normals[i][k].to_array(),
                     tangent: triangles.tangents[i][k].to_array(),
-                    uv: triangles.uvs[i][k].to_array(),
+                    uvs: uvs(triangles, i, k),
                     color: triangles.colors[i][k].to_array().map(|v| (v.clamp(0.0, 1.0) * 65535.0).round() as u16),
                 };
             }

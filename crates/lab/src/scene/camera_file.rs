@@ -5,6 +5,7 @@ use crate::error::one_line;
 use crate::scene::camera_forms::EXPECTED;
 use crate::scene::cameras;
 use crate::scene::cameras::Cameras;
+use crate::scene::colmap;
 use glam::{DMat3, DMat4, DVec3};
 use serde::Deserialize;
 use std::cmp::Ordering;
@@ -47,7 +48,7 @@ struct KeyframesForm {
 
 impl CameraFile {
     /// Reads a `cameras.json` (poses in Blender's axes, z up), the camera files of other programs (`docs/cameras.md`),
-    /// or keyframes in the scene's axes:
+    /// COLMAP's `images.txt` with the `cameras.txt` beside it, or keyframes in the scene's axes:
     /// `{"keyframes": [{"time_s": 0, "position": [x, y, z], "target": [x, y, z]}, ...]}`. The camera follows a smooth
     /// curve through the keyframes, with y up.
     ///
@@ -56,7 +57,41 @@ impl CameraFile {
     /// [`CameraFile::parse`].
     pub fn open(path: &Path) -> Result<Self, InputError> {
         let subject = path.display().to_string();
-        Self::parse(&subject, &cameras::read(path)?)
+        let text = cameras::read(path)?;
+        if !Self::is_colmap(path) {
+            return Self::parse(&subject, &text);
+        }
+        let beside = path.with_file_name("cameras.txt");
+        let beside = if beside.is_file() { Some(cameras::read(&beside)?) } else { None };
+        let beside = beside.as_deref().map(String::from_utf8_lossy);
+        let form = colmap::read(&String::from_utf8_lossy(&text), beside.as_deref())
+            .map_err(|problem| InputError::invalid(&subject, one_line(&problem), "export the model as text again"))?;
+        let has_none = || InputError::invalid(&subject, "has no camera", "expected the images.txt of COLMAP");
+        Self::of_poses(Cameras::of(&subject, form)?).ok_or_else(has_none)
+    }
+
+    /// Whether a file is COLMAP's `images.txt`, by its name.
+    pub fn is_colmap(path: &Path) -> bool {
+        path.file_name().is_some_and(|name| name.eq_ignore_ascii_case("images.txt"))
+    }
+
+    /// The poses of a file in the scene's axes; `None` without any.
+    fn of_poses(file: Cameras) -> Option<Self> {
+        // From Blender's axes (x, y, z) to the scene's (x, z, -y).
+        let turn = DMat4::from_cols(
+            DVec3::X.extend(0.0),
+            (-DVec3::Z).extend(0.0),
+            DVec3::Y.extend(0.0),
+            DVec3::ZERO.extend(1.0),
+        );
+        let poses: Vec<DMat4> = file.world_from_camera().map(|m| turn * m).collect();
+        let path = CameraPath::Frames(poses);
+        (file.world_from_camera().len() > 0).then_some(Self {
+            fps: file.fps,
+            hfov_deg: file.hfov_deg,
+            kind: file.kind,
+            path,
+        })
     }
 
     /// Parses the text of a camera file; `subject` is the file's name in errors.
@@ -72,23 +107,7 @@ impl CameraFile {
         let form: serde_json::Value = serde_json::from_slice(text).map_err(|e| error(format!("is not JSON ({e})")))?;
         if form.get("keyframes").is_none() || form.get("camera_path").is_some() {
             let file = Cameras::parse(subject, text)?;
-            // From Blender's axes (x, y, z) to the scene's (x, z, -y).
-            let turn = DMat4::from_cols(
-                DVec3::X.extend(0.0),
-                (-DVec3::Z).extend(0.0),
-                DVec3::Y.extend(0.0),
-                DVec3::ZERO.extend(1.0),
-            );
-            let poses: Vec<DMat4> = file.world_from_camera().map(|m| turn * m).collect();
-            if poses.is_empty() {
-                return Err(error("has no camera".into()));
-            }
-            return Ok(Self {
-                fps: file.fps,
-                hfov_deg: file.hfov_deg,
-                kind: file.kind,
-                path: CameraPath::Frames(poses),
-            });
+            return Self::of_poses(file).ok_or_else(|| error("has no camera".into()));
         }
         if form["keyframes"].get(0).is_some_and(|key| key.get("matrix").is_some()) {
             return Err(error("has keyframes of nerfstudio and no camera_path; render the path in its viewer".into()));

@@ -208,7 +208,7 @@ fn no_matrix(name: &str, frame: u64) -> String {
 }
 
 /// Twice the angle in degrees of a tangent.
-fn angle_deg(tangent: f64) -> f64 {
+pub(super) fn angle_deg(tangent: f64) -> f64 {
     2.0 * tangent.atan().to_degrees()
 }
 

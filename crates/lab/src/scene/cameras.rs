@@ -1,6 +1,6 @@
 //! `cameras.json`: frame rate, field of view and camera poses of a sequence.
 
-use super::camera_forms::{self, EXPECTED, FrameForm};
+use super::camera_forms::{self, EXPECTED, FileForm, FrameForm};
 use crate::error::{Bound, Exceeded, InputError, io_error, one_line};
 use glam::{DMat3, DMat4, DVec3};
 use std::fs;
@@ -58,7 +58,11 @@ impl Cameras {
         let error = |problem: String| InputError::invalid(subject, one_line(&problem), EXPECTED);
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
         let value = serde_json::from_slice(text).map_err(|e| error(format!("is not the expected JSON ({e})")))?;
-        let form = camera_forms::read(value).map_err(error)?;
+        Self::of(subject, camera_forms::read(value).map_err(error)?)
+    }
+
+    /// Checks what a file says.
+    pub(super) fn of(subject: &str, form: FileForm) -> Result<Self, InputError> {
         let in_range = |name: &str, value: Option<f64>, max: f64| match value {
             Some(v) if !(v > 0.0 && v < max) => Err(InputError::invalid(
                 subject,

@@ -19,6 +19,8 @@ pub(crate) struct Geometry {
     /// Empty: the material needs none.
     pub tangents: Vec<Vec4>,
     pub uvs: Vec<Vec2>,
+    /// Empty: no texture takes them.
+    pub second_uvs: Vec<Vec2>,
     pub colors: Vec<Vec4>,
     pub indices: Vec<[u32; 3]>,
     pub material: u32,
@@ -107,6 +109,7 @@ impl Geometry {
         corners(&mut self.normals, &indices);
         corners(&mut self.tangents, &indices);
         corners(&mut self.uvs, &indices);
+        corners(&mut self.second_uvs, &indices);
         corners(&mut self.colors, &indices);
         for target in &mut self.targets {
             corners(&mut target.positions, &indices);
@@ -181,6 +184,10 @@ impl Geometry {
             out.positions.push(positions);
             out.normals.push(normals);
             out.tangents.push(tangents);
+            if !self.second_uvs.is_empty() {
+                out.second_uvs.resize(out.uvs.len(), [Vec2::ZERO; 3]);
+                out.second_uvs.push(triangle.map(|i| self.second_uvs[i]));
+            }
             out.uvs.push(triangle.map(|i| self.uvs.get(i).copied().unwrap_or_default()));
             out.colors.push(triangle.map(|i| self.colors.get(i).copied().unwrap_or(Vec4::ONE)));
             out.materials.push(self.material);

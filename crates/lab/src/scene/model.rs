@@ -7,6 +7,7 @@ use super::pose::Pose;
 use super::texture::Texture;
 use super::triangles::Triangles;
 use crate::error::InputError;
+use glam::DVec3;
 use std::sync::Arc;
 
 /// A scene: geometry, materials, lights, cameras and one animation.
@@ -24,6 +25,9 @@ pub struct Scene {
     pub animations: Vec<String>,
     /// Features of the file that are ignored or approximated, each once.
     pub warnings: Vec<String>,
+    /// Point of the file's coordinates that is the origin here, in metres. Not zero in files whose contents lie far
+    /// from their origin, where floats are coarse: add it to positions that leave the scene.
+    pub origin: DVec3,
     pub(crate) still: Triangles,
     /// Animated triangles, lights and cameras at time 0.
     pub(crate) rest: Pose,
@@ -60,6 +64,7 @@ impl Scene {
             environment,
             animations: vec![],
             warnings: vec![],
+            origin: DVec3::ZERO,
             still,
             rest: pose,
             animated: None,

@@ -4,6 +4,7 @@ use super::limits::SceneLimits;
 use super::model::Scene;
 use super::{builtin, gltf_file};
 use crate::error::InputError;
+use crate::file_kind::kind;
 use std::path::Path;
 
 impl Scene {
@@ -42,9 +43,8 @@ impl Scene {
                 }
             };
         }
-        let extension = Path::new(input).extension().map(|e| e.to_string_lossy().to_lowercase());
-        match extension.as_deref() {
-            Some("gltf" | "glb") => gltf_file::open(input, clip, limits),
+        match kind(Path::new(input)).as_str() {
+            "gltf" | "glb" => gltf_file::open(input, clip, limits),
             _ => Err(InputError::not_supported(
                 input,
                 "is not a supported kind of scene",

@@ -11,6 +11,9 @@ pub struct Triangles {
     pub normals: Vec<[Vec3; 3]>,
     /// Texture coordinates, (0, 0) at the first texel's corner.
     pub uvs: Vec<[Vec2; 3]>,
+    /// Second texture coordinates. Triangles after the last one that has them have none, so that they are empty where
+    /// no texture takes them.
+    pub second_uvs: Vec<[Vec2; 3]>,
     /// Unit tangent in the direction of increasing u; w is the sign of the bitangent `cross(normal, tangent) * w`,
     /// which is the direction of a normal map's green channel (up in the image, decreasing v). An arbitrary direction
     /// orthogonal to the normal if the material needs no tangent.
@@ -52,6 +55,10 @@ impl Triangles {
     pub fn extend(&mut self, other: &Self) {
         self.positions.extend_from_slice(&other.positions);
         self.normals.extend_from_slice(&other.normals);
+        if !other.second_uvs.is_empty() {
+            self.second_uvs.resize(self.uvs.len(), [Vec2::ZERO; 3]);
+            self.second_uvs.extend_from_slice(&other.second_uvs);
+        }
         self.uvs.extend_from_slice(&other.uvs);
         self.tangents.extend_from_slice(&other.tangents);
         self.colors.extend_from_slice(&other.colors);

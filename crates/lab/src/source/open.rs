@@ -3,15 +3,17 @@
 use super::analytic::{self, AnalyticSource};
 use super::{FrameSource, ReadLimits, SceneOptions, SequenceSource, StillSource};
 use crate::error::InputError;
+use crate::file_kind::kind;
 use afterimage::FrameError;
 use std::path::Path;
 
 /// Whether `input` names a scene, which needs a renderer (`RasterSource`, `TracedSource`), and not a file of frames.
 pub fn is_scene(input: &str) -> bool {
-    input.starts_with("builtin:") || matches!(extension(Path::new(input)).as_str(), "gltf" | "glb")
+    input.starts_with("builtin:") || matches!(kind(Path::new(input)).as_str(), "gltf" | "glb")
 }
 
-/// Opens a folder of EXR frames, a still (`.exr`, `.png`, `.jpg`, `.jpeg`), or `analytic:NAME`.
+/// Opens a folder of EXR frames, a still (`.exr`, `.png`, `.jpg`, `.jpeg`; with another ending, by its first bytes), or
+/// `analytic:NAME`.
 ///
 /// # Errors
 /// - [`Io`](InputError::Io): the file or folder does not exist or cannot be read.
@@ -39,7 +41,7 @@ pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Bo
     if path.is_dir() {
         return Ok(Box::new(SequenceSource::open(path, limits)?));
     }
-    match extension(path).as_str() {
+    match kind(path).as_str() {
         "exr" | "png" | "jpg" | "jpeg" => Ok(Box::new(StillSource::open(path, limits)?)),
         _ if !path.exists() => Err(InputError::io(
             input,
@@ -90,9 +92,4 @@ fn scene_error(input: &str) -> InputError {
         "is a scene, and scenes need a renderer",
         "expected EXR frames or a still; open it as a RasterSource or a TracedSource",
     )
-}
-
-/// File name extension in lower case, without the dot; empty without extension.
-pub(super) fn extension(path: &Path) -> String {
-    path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
 }

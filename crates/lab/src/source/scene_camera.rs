@@ -3,7 +3,7 @@
 use super::CameraPose;
 use crate::error::InputError;
 use crate::scene::camera_file::CameraFile;
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Scene, SceneLimits};
 use crate::trace::view::View;
 use afterimage::ViewGeometry;
 use afterimage_clip::scanpath::HeadPath;
@@ -11,6 +11,7 @@ use afterimage_clip::source::gait::Head;
 use glam::{DMat4, DQuat, DVec3};
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Horizontal field of view in degrees of camera files that do not state one.
 const DEFAULT_HFOV_DEG: f32 = 70.0;
@@ -48,6 +49,8 @@ enum CameraPath {
     /// A static camera.
     Framing(Camera),
     File(CameraFile),
+    /// The first camera of another scene, which may be animated.
+    Other(Arc<Scene>),
     /// Sideways oscillation with a largest speed of `speed` m/s.
     Lateral {
         from: DMat4,
@@ -71,7 +74,8 @@ enum CameraPath {
 }
 
 impl SceneCamera {
-    /// Selects a camera by name: a camera of the scene, a `.json` file ([`CameraFile`]), or one of
+    /// Selects a camera by name: a camera of the scene, a `.json` file ([`CameraFile`]), the first camera of another
+    /// scene (`.gltf` or `.glb`), or one of
     ///
     /// - `still`: the scene's first camera, else `framing`;
     /// - `framing`: a static camera with all of the scene in view;
@@ -89,7 +93,7 @@ impl SceneCamera {
     ///
     /// # Errors
     /// [`Request`](InputError::Request) if there is no such camera, or the size or the field of view is out of range;
-    /// those of [`CameraFile::open`].
+    /// those of [`CameraFile::open`] and [`Scene::open`].
     pub fn choose(
         scene: &Scene,
         name: Option<&str>,
@@ -117,11 +121,14 @@ impl SceneCamera {
                 let camera = scene.framing_camera(aspect);
                 (CameraPath::Framing(camera.clone()), camera)
             }
-            Some(file) if file.to_lowercase().ends_with(".json") => {
+            Some(file) if file.to_lowercase().ends_with(".json") || CameraFile::is_colmap(Path::new(file)) => {
                 let file = CameraFile::open(Path::new(file))?;
                 let hfov_deg = hfov_deg.or(file.hfov_deg).unwrap_or(DEFAULT_HFOV_DEG);
                 let geometry = flat(scene, size_px, hfov_deg)?;
                 return Ok(Self { path: CameraPath::File(file), geometry, steering: None });
+            }
+            Some(file) if [".gltf", ".glb"].iter().any(|ending| file.to_lowercase().ends_with(ending)) => {
+                other_scene(file)?
             }
             Some("head") => {
                 return Err(InputError::request(
@@ -137,7 +144,8 @@ impl SceneCamera {
                     format!("camera {name}"),
                     "the scene has no such camera",
                     format!(
-                        "expected still, lateral, orbit, walk, framing, a .json file, or one of its cameras: {listed}"
+                        "expected still, lateral, orbit, walk, framing, a .json file, another scene, or one of its \
+                         cameras: {listed}"
                     ),
                 ));
             }
@@ -211,6 +219,7 @@ impl SceneCamera {
             CameraPath::Scene(_) => scene.duration_s() <= 0.0,
             CameraPath::Framing(_) => true,
             CameraPath::File(file) => file.is_still(),
+            CameraPath::Other(other) => other.duration_s() <= 0.0,
             CameraPath::Lateral { .. }
             | CameraPath::Orbit { .. }
             | CameraPath::Walk { .. }
@@ -232,7 +241,8 @@ impl SceneCamera {
     /// Camera pose in frame `index`, at `time_s`.
     pub fn camera_pose(&self, scene: &Scene, index: u64, time_s: f64) -> CameraPose {
         let (radius, _) = middle(scene);
-        CameraPose { world_from_camera: self.view(scene, index, time_s).world_from_camera(), speed_m_s: radius / 5.0 }
+        let world_from_camera = self.view(scene, index, time_s).world_from_camera();
+        CameraPose { world_from_camera, origin: scene.origin, speed_m_s: radius / 5.0 }
     }
 
     /// View of frame `index`, at `time_s`.
@@ -243,7 +253,10 @@ impl SceneCamera {
         let world_from_camera = match &self.path {
             CameraPath::Scene(camera) => scene.pose(time_s).cameras[*camera].world_from_camera,
             CameraPath::Framing(camera) => camera.world_from_camera,
-            CameraPath::File(file) => file.world_from_camera(index, time_s),
+            CameraPath::File(file) => DMat4::from_translation(-scene.origin) * file.world_from_camera(index, time_s),
+            CameraPath::Other(other) => {
+                DMat4::from_translation(other.origin - scene.origin) * other.pose(time_s).cameras[0].world_from_camera
+            }
             CameraPath::Lateral { from, speed } => {
                 let aside = speed * LATERAL_SECONDS * (time_s / LATERAL_SECONDS).sin();
                 DMat4::from_translation(from.x_axis.truncate() * aside) * *from
@@ -257,6 +270,16 @@ impl SceneCamera {
         };
         View::new(self.geometry, world_from_camera)
     }
+}
+
+/// The first camera of another scene.
+fn other_scene(file: &str) -> Result<(CameraPath, Camera), InputError> {
+    let other = Scene::open(file, &SceneLimits::default())?;
+    let camera =
+        other.pose(0.0).cameras.first().cloned().ok_or_else(|| {
+            InputError::request(format!("camera {file}"), "the file has no camera", "export it with one")
+        })?;
+    Ok((CameraPath::Other(Arc::new(other)), camera))
 }
 
 /// Path of the scene's first camera, or a static one with the pose of `framing`.

@@ -6,6 +6,7 @@ use super::still::StillSource;
 use super::{FrameRequest, FrameSource, SourceInfo};
 use crate::error::InputError;
 use crate::error::io_error;
+use crate::file_kind::ending;
 use crate::frame::{RenderedFrame, SourceFrame};
 use crate::scene::cameras::Cameras;
 use std::fs;
@@ -175,7 +176,7 @@ fn exr_files(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
     for entry in fs::read_dir(folder).map_err(|e| io_error(&subject, &e))? {
         let path = entry.map_err(|e| io_error(&subject, &e))?.path();
         let hidden = path.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
-        if !hidden && super::open::extension(&path) == "exr" && path.is_file() {
+        if !hidden && ending(&path) == "exr" && path.is_file() {
             files.push(path);
         }
     }

@@ -6,6 +6,7 @@ use super::{FrameRequest, FrameSource, SourceInfo};
 use crate::error::InputError;
 use crate::error::io_error;
 use crate::error::one_line;
+use crate::file_kind::kind;
 use crate::frame::{RenderedFrame, SourceFrame};
 use crate::scene::cameras::Cameras;
 use afterimage::Image;
@@ -29,7 +30,8 @@ pub struct StillSource {
 }
 
 impl StillSource {
-    /// Opens and decodes `path`, by its extension: `.png`, `.jpg`, `.jpeg` (8 or 16 bit) or `.exr`.
+    /// Opens and decodes `path`, by its ending: `.png`, `.jpg`, `.jpeg` (8 or 16 bit) or `.exr`; with another ending, by
+    /// its first bytes.
     ///
     /// # Errors
     /// - [`Io`](InputError::Io): the file is missing or cannot be read.
@@ -43,7 +45,7 @@ impl StillSource {
         if path.is_dir() {
             return Err(InputError::request(subject, "is a folder", "expected an image file"));
         }
-        match super::open::extension(path).as_str() {
+        match kind(path).as_str() {
             "exr" => Self::open_exr(path, subject, limits),
             "png" | "jpg" | "jpeg" => {
                 let (color, warnings) = guarded(&subject, || decode_8_or_16_bit(path, &subject, limits))?;

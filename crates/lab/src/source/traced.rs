@@ -3,11 +3,13 @@
 use super::CameraPose;
 use super::open::device_lost;
 use super::viewed_scene::{Light, SceneChoice, ViewedScene};
-use super::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo};
+use super::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo, Wanted};
 use crate::clock::Elapsed;
 use crate::device::{Backend, SpanClock};
 use crate::error::InputError;
-use crate::frame::{DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, SourceFrame};
+use crate::frame::{
+    Content, DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, Shaded, ShadedColor, SourceFrame, Wish,
+};
 use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
@@ -179,6 +181,15 @@ impl TracedSource {
         SourceFrame { depth: Some(seen.depth), motion: Some(seen.motion), ..frame }
     }
 
+    /// Depth and motion of every pixel, from rays on the CPU.
+    fn surfaces(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
+        let reference = if request.reference { Some(self.kept_full_rate(request)?.0) } else { None };
+        let views = self.pose(request)?;
+        let (seen, took) = self.clock.time(|| self.without_color(request.index, &views, true));
+        let reference = SourceFrame { color: reference.map_or(seen.color, |frame| frame.color), ..seen };
+        Ok(RenderedFrame { content: Content::Surfaces, render: Some(took), ..request.answer(reference) })
+    }
+
     /// The samples of a sparse frame, which stay on the tracer's device, and the time of tracing them. `None` unless
     /// the frame is sparse and the methods run on that device.
     fn samples_on_device(
@@ -214,9 +225,13 @@ impl FrameSource for TracedSource {
         self.of.info()
     }
 
-    /// Renders a frame by the source's own sampling pattern. A source without a pattern renders the full-rate frame.
+    /// Renders a frame by the source's own sampling pattern, or its depth and motion alone if methods choose the pixels
+    /// that are traced. A source without a pattern renders the full-rate frame.
     fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
         let &FrameRequest { index, gaze_px, .. } = request;
+        if request.wanted == Wanted::Surfaces {
+            return self.surfaces(request);
+        }
         let Some(sampling) = self.samples.foveated else {
             let (frame, took) = self.kept_full_rate(request)?;
             return Ok(RenderedFrame { render: Some(took), full_rate: Some(took), ..request.answer(frame) });
@@ -248,6 +263,22 @@ impl FrameSource for TracedSource {
         let frame: FoveatedFrame = frame?;
         self.check()?;
         Ok(RenderedFrame { render: Some(took), ..request.answer(reference).foveated(frame) })
+    }
+
+    /// Traces all samples of each chosen pixel, with draws that differ from those of the full-rate frame.
+    fn shade(&mut self, frame: &RenderedFrame, wish: &Wish) -> Result<Option<Shaded>, InputError> {
+        let [view, _] = self.of.views(frame.index).0;
+        let mut film = Film::new(self.of.info().size);
+        let samples = self.samples.samples.max(1);
+        let ((), took) = self.clock.time(|| {
+            let pixels: Vec<_> = wish.pixels(self.of.info().size).collect();
+            for pixels in pixels.chunks((STEP / samples).max(1) as usize) {
+                let spans = Spans::new(pixels.iter().copied(), 0..samples);
+                self.tracer.trace(&self.world, &view, frame.index, &spans, &mut film);
+            }
+        });
+        self.check()?;
+        Ok(Some(Shaded { color: ShadedColor::InMemory(film.color()), took }))
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

@@ -2,7 +2,7 @@
 
 use super::bvh2;
 use super::node::NodeRay;
-use super::triangle_records::{AttributeRecord, PreviousRecord, TriangleFlags, TriangleRecord};
+use super::triangle_records::{AttributeRecord, PreviousRecord, SecondUvRecord, TriangleFlags, TriangleRecord};
 use crate::kernel::triangle::{Shear, intersect, shear};
 use crate::scene::{Material, Triangles};
 use glam::{Vec3, Vec3A};
@@ -75,6 +75,7 @@ pub struct Bvh {
     pub(super) nodes: Vec<CwBvhNode>,
     pub(super) triangles: Vec<TriangleRecord>,
     attributes: Vec<AttributeRecord>,
+    second_uvs: Option<Vec<SecondUvRecord>>,
     previous: Vec<PreviousRecord>,
     dropped: u32,
 }
@@ -98,6 +99,8 @@ impl Bvh {
             nodes,
             triangles: sources.par_iter().map(|&i| TriangleRecord::new(triangles, i, materials)).collect(),
             attributes: sources.par_iter().map(|&i| AttributeRecord::new(triangles, i as usize)).collect(),
+            second_uvs: (!triangles.second_uvs.is_empty())
+                .then(|| sources.par_iter().map(|&i| SecondUvRecord::new(triangles, i as usize)).collect()),
             previous,
             dropped: count - sources.len() as u32,
         }
@@ -111,6 +114,11 @@ impl Bvh {
     /// Shading attributes of the triangles, in leaf order.
     pub fn attributes(&self) -> &[AttributeRecord] {
         &self.attributes
+    }
+
+    /// Second texture coordinates, in leaf order; `None` if no input triangle has them.
+    pub fn second_uvs(&self) -> Option<&[SecondUvRecord]> {
+        self.second_uvs.as_deref()
     }
 
     /// Corner positions in the previous frame, in leaf order; empty if none were given.

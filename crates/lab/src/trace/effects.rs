@@ -4,7 +4,7 @@
 //! kernel with more effects than the scene needs gives the same image, bit for bit: unused parameters are exact zeros
 //! and ones, and every random number belongs to a purpose, not to a place in a sequence.
 
-use crate::scene::{Alpha, Environment, Material, PunctualLight, Scene};
+use crate::scene::{Alpha, Coordinates, Environment, Material, PunctualLight, Scene};
 
 macro_rules! effects {
     ($($name:ident $text:literal $reason:literal,)*) => {
@@ -43,6 +43,7 @@ effects! {
     SurfaceTexture "surface-texture" "metallic, roughness or a layer's strength from a texture",
     NormalMap "normal-map" "a normal map",
     EmissiveTexture "emissive-texture" "an emissive texture",
+    TextureCoordinates "texture-coordinates" "textures of one material with different texture coordinates",
     Alpha "alpha" "an alpha-tested or partly transparent surface",
     EmissiveTriangles "emissive-triangles" "a surface that emits light",
     PunctualLights "punctual-lights" "a point, spot or directional light",
@@ -110,6 +111,7 @@ impl Effects {
             .union(if colored { Self::NONE.set(Effect::BaseColor, true) } else { Self::NONE })
             .union(Self::of_light(&rest.lights, &scene.environment))
             .set(Effect::MovingObjects, !rest.moving.is_empty())
+            .set(Effect::TextureCoordinates, scene.textures.iter().any(|t| t.coordinates != Coordinates::default()))
     }
 
     fn of_material(m: &Material) -> Self {

@@ -1,7 +1,7 @@
 //! All triangles of a scene: static and moving.
 
 use super::bvh::{Bvh, Hit, PreparedRay, Ray};
-use super::triangle_records::{AttributeRecord, PreviousRecord, TriangleRecord};
+use super::triangle_records::{AttributeRecord, AttributesAt, PreviousRecord, TriangleRecord};
 
 /// Static and moving triangles, each under a hierarchy of its own. Indices of moving triangles follow those of static
 /// ones.
@@ -56,6 +56,20 @@ impl Geometry {
     pub fn attributes(&self, index: u32) -> &AttributeRecord {
         let (bvh, i) = self.place(index);
         &bvh.attributes()[i]
+    }
+
+    /// Attributes at a point of a triangle; its second texture coordinates only if `second` (and there are some).
+    ///
+    /// # Panics
+    /// If the index is out of range.
+    #[inline]
+    pub fn attributes_at(&self, index: u32, u: f32, v: f32, second: bool) -> AttributesAt {
+        let (bvh, i) = self.place(index);
+        let mut place = bvh.attributes()[i].at(u, v);
+        if second && let Some(records) = bvh.second_uvs() {
+            place.second_uv = records[i].at(u, v);
+        }
+        place
     }
 
     /// Corner positions in the previous frame; `None` if the triangle is static or they are unknown.

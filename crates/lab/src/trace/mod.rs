@@ -32,4 +32,6 @@ pub mod world;
 pub use bvh::{Bvh, Hit, Ray};
 pub use geometry::Geometry;
 pub use tracer::Tracer;
-pub use triangle_records::{AttributeRecord, Attributes, AttributesAt, PreviousRecord, TriangleFlags, TriangleRecord};
+pub use triangle_records::{
+    AttributeRecord, Attributes, AttributesAt, PreviousRecord, SecondUvRecord, TriangleFlags, TriangleRecord,
+};

@@ -20,9 +20,11 @@ pub enum Section {
     Triangles,
     /// [`AttributeRecord`](super::AttributeRecord)s, four elements each.
     Attributes,
+    /// [`SecondUvRecord`](super::SecondUvRecord)s, two elements each; absent where no triangle has them.
+    SecondUvs,
     /// [`MaterialRecord`](super::shading_records::MaterialRecord)s.
     Materials,
-    /// [`TextureRecord`](super::shading_records::TextureRecord)s.
+    /// [`TextureRecord`](super::shading_records::TextureRecord)s, three elements each.
     Textures,
     /// Texels of all textures, four per element.
     Texels,
@@ -36,6 +38,8 @@ pub enum Section {
     MovingTriangles,
     /// Attributes of the moving triangles, as `Attributes`.
     MovingAttributes,
+    /// Second texture coordinates of the moving triangles, as `SecondUvs`.
+    MovingSecondUvs,
     /// [`PreviousRecord`](super::PreviousRecord)s, three elements each.
     MovingPrevious,
     /// [`PickRecord`](super::shading_records::PickRecord)s: the alias table over all lights, which may move.
@@ -136,6 +140,12 @@ impl<'a> SceneBufferBuilder<'a> {
         self.reserve(Section::Nodes, &still.nodes, NODE_ELEMENTS)
             .fill(Section::Triangles, still.triangles())
             .fill(Section::Attributes, still.attributes());
+        if let Some(records) = still.second_uvs() {
+            self.fill(Section::SecondUvs, records);
+        }
+        if let Some(records) = moving.second_uvs().filter(|_| max_moving > 0) {
+            self.reserve(Section::MovingSecondUvs, records, max_moving * 2);
+        }
         if max_moving > 0 {
             // Every node has at least two children, except the root of a single triangle; so there are at most as many
             // nodes as triangles.
@@ -253,6 +263,7 @@ impl SceneBuffer {
         self.rewrite(Section::MovingNodes, nodes)?;
         self.rewrite(Section::MovingTriangles, moving.triangles())?;
         self.rewrite(Section::MovingAttributes, moving.attributes())?;
+        self.rewrite(Section::MovingSecondUvs, moving.second_uvs().unwrap_or_default())?;
         self.rewrite(Section::MovingPrevious, moving.previous())
     }
 

@@ -122,16 +122,22 @@ impl MaterialRecord {
     }
 }
 
-/// A texture's location and addressing, one row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+/// Bit of [`TextureRecord::addressing`]: the second texture coordinates.
+pub const ADDRESSING_SECOND: u32 = 32;
+
+/// A texture's location, addressing and coordinates, three rows.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct TextureRecord {
     /// Row of its first texel, relative to the texels' section; four texels per row.
     pub first: u32,
     pub width: u32,
     pub height: u32,
-    /// Wrap mode along u in bits 0 and 1, along v in bits 2 and 3; bit 4 selects nearest filtering.
+    /// Wrap mode along u in bits 0 and 1, along v in bits 2 and 3; bit 4 selects nearest filtering, bit 5 the second
+    /// texture coordinates.
     pub addressing: u32,
+    /// Rows of the transform of texture coordinates; the fourth element is unused.
+    pub coordinates: [[f32; 4]; 2],
 }
 
 impl TextureRecord {
@@ -143,7 +149,9 @@ impl TextureRecord {
             Wrap::Clamp => texel::WRAP_CLAMP,
         };
         let addressing = wrap(t.wrap[0]) | wrap(t.wrap[1]) << 2 | u32::from(t.nearest) << 4;
-        Self { first, width: t.size[0], height: t.size[1], addressing }
+        let addressing = addressing | if t.coordinates.second { ADDRESSING_SECOND } else { 0 };
+        let coordinates = t.coordinates.rows.map(|[a, b, c]| [a, b, c, 0.0]);
+        Self { first, width: t.size[0], height: t.size[1], addressing, coordinates }
     }
 }
 

@@ -143,6 +143,30 @@ pub struct Attributes {
     pub colors: [Vec4; 3],
 }
 
+/// Second texture coordinates of a triangle: two elements of the scene buffer, u then v of each vertex.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct SecondUvRecord {
+    uvs: [[f32; 2]; 4],
+}
+
+impl SecondUvRecord {
+    pub(super) fn new(triangles: &Triangles, source: usize) -> Self {
+        let finite = |uv: Vec2| uv.to_array().map(|x| if x.is_finite() { x } else { 0.0 });
+        let [a, b, c] = triangles.second_uvs.get(source).copied().unwrap_or_default().map(finite);
+        Self { uvs: [a, b, c, [0.0; 2]] }
+    }
+
+    /// At barycentric weights `u` (second corner) and `v` (third corner). Twin: `second_uv_at` in
+    /// `shaders/trace/geometry.wgsl`.
+    #[inline]
+    pub fn at(&self, u: f32, v: f32) -> Vec2 {
+        let [a, b, c, _] = self.uvs.map(Vec2::from_array);
+        let w = (1.0 - u) - v;
+        (a * w + b * u) + c * v
+    }
+}
+
 /// Interpolated attributes at a point of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AttributesAt {
@@ -154,8 +178,18 @@ pub struct AttributesAt {
     pub bitangent_sign: f32,
     /// Texture coordinates.
     pub uv: Vec2,
+    /// Second texture coordinates; zero unless [`Geometry::attributes_at`](super::Geometry::attributes_at) reads them.
+    pub second_uv: Vec2,
     /// Factors of base color and alpha.
     pub color: Vec4,
+}
+
+impl AttributesAt {
+    /// First and second texture coordinates.
+    #[inline(always)]
+    pub(super) fn uvs(&self) -> [Vec2; 2] {
+        [self.uv, self.second_uv]
+    }
 }
 
 /// Word index of each texture coordinate component.
@@ -194,6 +228,7 @@ impl AttributeRecord {
             tangent: (t[0].truncate() * w + t[1].truncate() * u) + t[2].truncate() * v,
             bitangent_sign: t[0].w,
             uv: (uvs[0] * w + uvs[1] * u) + uvs[2] * v,
+            second_uv: Vec2::ZERO,
             // This form returns exactly the corners' color if all three are equal, so white vertex colors change
             // nothing.
             color: (c[0] + (c[1] - c[0]) * u) + (c[2] - c[0]) * v,

@@ -1,4 +1,4 @@
-//! A room in a headset: sparse lattices around the gaze of either eye, objects in the hands, a page to read.
+//! A room in a headset: quads around the gaze of either eye, objects in the hands, a page to read.
 //!
 //! `cargo run --release -p afterimage-openxr --example headset -- --help`
 
@@ -15,12 +15,13 @@ use plant::Plant;
 use room::{Hands, Room};
 use std::io::BufRead;
 use std::path::PathBuf;
+use std::process::ExitCode;
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
 type Failure = Box<dyn std::error::Error>;
 
-/// A room in a headset, drawn as sparse lattices around the gaze
+/// A room in a headset, shaded by quads around the gaze
 ///
 /// While it runs, a line on standard input chooses: 1 smr, 2 taau, 3 nothing, a antialiased smr, q the end. The trigger
 /// of a controller chooses the next of these.
@@ -67,8 +68,17 @@ struct Controls {
     hands: [xr::Path; 2],
 }
 
-fn main() -> Result<(), Failure> {
-    let options = Options::parse();
+fn main() -> ExitCode {
+    match show(&Options::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("headset: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn show(options: &Options) -> Result<(), Failure> {
     let page = image::load_from_memory(include_bytes!("../../../../fixtures/text_page.png"))?.into_luma8();
     let (created, controls) = channel();
     let mut settings = HeadsetDesc::default().settings;
@@ -97,7 +107,7 @@ fn main() -> Result<(), Failure> {
     if let Some(plant) = options.plant {
         plant.before(&headset);
     }
-    let measure = measure::Measure::new(headset.device(), headset.queue());
+    let mut measure = measure::Measure::new(headset.device(), headset.queue(), settings.foveation);
     let keys = keys();
     let began = Instant::now();
     let mut hands_before: Option<Hands> = None;
@@ -113,9 +123,16 @@ fn main() -> Result<(), Failure> {
         let (eyes, reset) = (frame.eyes, frame.reset);
         let queue = frame.queue().clone();
         let (encoder, targets) = frame.encoder_and_targets();
-        for eye in &eyes {
-            let draws: Vec<_> = eye.draws().collect();
-            room.draw(&queue, encoder, targets, eye, &draws, moved);
+        for (eye, views) in eyes.iter().zip(&targets.views) {
+            room.prepass(&queue, encoder, views, eye, moved);
+        }
+        if options.plant != Some(Plant::Choice) {
+            frame.choose()?;
+        }
+        let (encoder, targets) = frame.encoder_and_targets();
+        for (i, eye) in eyes.iter().enumerate() {
+            let depth_of = options.plant.map_or(i, |plant| plant.depth_of(i));
+            room.colors(encoder, eye, &targets.views[i].color, &targets.views[depth_of].primed);
         }
         let shown = frame.submit()?;
         let index = shown.index;
@@ -124,10 +141,10 @@ fn main() -> Result<(), Failure> {
         if dump.is_some() || options.check.is_some_and(|every| index.is_multiple_of(every)) {
             let found = measure.frame(&shown, &room, &eyes, moved)?;
             println!(
-                "frame {index}: {reset:?}, shown {:.2} dB, without memory {:.2} dB, {:.1} % of the pixels drawn, gaze {:.0?}",
+                "frame {index}: {reset:?}, shown {:.2} dB, without memory {:.2} dB, {:.1} % of the pixels shaded, gaze {:.0?}",
                 found.shown_db,
                 found.none_db,
-                found.drawn_percent,
+                found.shaded_percent,
                 eyes.map(|eye| eye.gaze_px)
             );
             if let Some(path) = dump {

@@ -3,22 +3,24 @@
 use crate::room::{Hands, Room, encoded};
 use afterimage_openxr::afterimage::gpu::{Afterimage, Frame};
 use afterimage_openxr::afterimage::{
-    ContextDesc, DepthConvention, Filter, Foveation, Lattice, Lattices, MethodKind, Settings,
+    ContextDesc, CreateError, DepthConvention, Foveation, Gaze, MethodKind, Reset, Settings, ViewFrame,
 };
 use afterimage_openxr::wgpu::{self, TextureFormat, TextureUsages};
-use afterimage_openxr::{Draw, Eye, Shown, Targets};
+use afterimage_openxr::{Eye, Shown, Targets};
 
 pub struct Measure {
     device: wgpu::Device,
     queue: wgpu::Queue,
+    foveation: Foveation,
+    none: Option<Afterimage>,
 }
 
 pub struct Found {
     /// PSNR of both eyes against full rate.
     pub shown_db: f64,
-    /// The same of the samples without memory.
+    /// The same of the fovea and the even pattern, without memory.
     pub none_db: f64,
-    pub drawn_percent: f64,
+    pub shaded_percent: f64,
     /// Left and right eye: what is shown, without memory, full rate.
     pub sheet: image::RgbaImage,
 }
@@ -27,25 +29,21 @@ pub struct Found {
 type Pixels = Vec<[u8; 3]>;
 
 impl Measure {
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
-        Self { device: device.clone(), queue: queue.clone() }
+    /// `foveation`: that of the headset.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, foveation: Foveation) -> Self {
+        Self { device: device.clone(), queue: queue.clone(), foveation, none: None }
     }
 
     pub fn frame(
-        &self,
+        &mut self,
         shown: &Shown<'_>,
         room: &Room,
         eyes: &[Eye; 2],
         hands: [Hands; 2],
     ) -> Result<Found, Box<dyn std::error::Error>> {
         let size = eyes[0].geometry.size_px();
-        let images = [
-            self.read(shown.output),
-            self.read(&self.without_memory(shown, size)?),
-            self.full_rate(room, eyes, hands)?,
-        ];
-        let samples =
-            eyes.iter().flat_map(Eye::draws).map(|draw| u64::from(draw.viewport[2] * draw.viewport[3])).sum::<u64>();
+        let without_memory = self.without_memory(shown, eyes)?;
+        let images = [self.read(shown.output), self.read(&without_memory), self.full_rate(room, eyes, hands)];
         let mut sheet = image::RgbaImage::new(2 * size[0], 3 * size[1]);
         for (row, both) in (0..).zip(&images) {
             for (eye, pixels) in (0..).zip(both) {
@@ -58,21 +56,23 @@ impl Measure {
         Ok(Found {
             shown_db: self.psnr(&images[0], &images[2], shown, eyes),
             none_db: self.psnr(&images[1], &images[2], shown, eyes),
-            drawn_percent: 100.0 * samples as f64 / f64::from(2 * size[0] * size[1]),
+            shaded_percent: 100.0 * 4.0 * f64::from(self.quads(shown)) / f64::from(2 * size[0] * size[1]),
             sheet,
         })
     }
 
-    /// The same sparse frame, interpolated.
-    fn without_memory(&self, shown: &Shown<'_>, size: [u32; 2]) -> Result<wgpu::Texture, Box<dyn std::error::Error>> {
-        let foveation = Foveation { filter: Filter::Sparse, ..Foveation::default() };
-        let desc = ContextDesc {
-            view_count: 2,
-            depth: DepthConvention::Reversed { near: 0.05, far: f32::INFINITY },
-            settings: Settings { method: MethodKind::None.into(), foveation, ..Settings::default() },
-            ..ContextDesc::new(size)
+    /// The same frame without memory: interpolated between the fovea and the even pattern, which it has in common with
+    /// the frame that was shown.
+    fn without_memory(
+        &mut self,
+        shown: &Shown<'_>,
+        eyes: &[Eye; 2],
+    ) -> Result<wgpu::Texture, Box<dyn std::error::Error>> {
+        let size = eyes[0].geometry.size_px();
+        let mut none = match self.none.take().filter(|none| none.desc().size_px == size) {
+            Some(none) => none,
+            None => self.method_without_memory(size)?,
         };
-        let mut none = Afterimage::new(&self.device, &desc, TextureFormat::Rgba16Float)?;
         let output = self.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("without memory"),
             usage: Afterimage::OUTPUT_USAGE | TextureUsages::COPY_SRC,
@@ -83,53 +83,92 @@ impl Measure {
             format: TextureFormat::Rgba16Float,
             view_formats: &[],
         });
+        // A lost gaze is held by the headset alone.
+        let views = [0, 1].map(|i| ViewFrame { gaze: Gaze::At { px: eyes[i].gaze_px }, ..shown.views[i] });
         let frame = Frame {
             depth: Some((&shown.targets.depth).into()),
             motion: Some((&shown.targets.motion).into()),
-            ..Frame::new(&shown.targets.color, &shown.views, shown.index)
+            reset: Reset::All,
+            ..Frame::new(&shown.targets.color, &views, shown.index)
         };
         let mut encoder = self.device.create_command_encoder(&Default::default());
+        none.plan(&self.device, &mut encoder, &frame)?;
         none.record(&self.device, &mut encoder, &frame, &output)?;
         self.queue.submit([encoder.finish()]);
+        self.none = Some(none);
         Ok(output)
     }
 
-    fn full_rate(
-        &self,
-        room: &Room,
-        eyes: &[Eye; 2],
-        hands: [Hands; 2],
-    ) -> Result<[Pixels; 2], Box<dyn std::error::Error>> {
-        let size = eyes[0].geometry.size_px();
-        let targets = Targets::new(&self.device, size);
-        let lattices = Lattices::new(&[Lattice::covering(1, [0, 0], size, [0, 0])])?.in_atlas().0;
+    fn method_without_memory(&self, size: [u32; 2]) -> Result<Afterimage, CreateError> {
+        let settings = Settings { method: MethodKind::None.into(), foveation: self.foveation, ..Settings::default() };
+        let desc = ContextDesc {
+            view_count: 2,
+            depth: DepthConvention::Reversed { near: 0.05, far: f32::INFINITY },
+            settings,
+            ..ContextDesc::new(size)
+        };
+        Afterimage::new(&self.device, &desc, TextureFormat::Rgba16Float)
+    }
+
+    fn full_rate(&self, room: &Room, eyes: &[Eye; 2], hands: [Hands; 2]) -> [Pixels; 2] {
+        let targets = Targets::new(&self.device, eyes[0].geometry.size_px());
         let mut encoder = self.device.create_command_encoder(&Default::default());
-        for eye in eyes {
-            let draws: Vec<Draw> = Eye { lattices, jitter_px: [0.0; 2], ..*eye }.draws().collect();
-            room.draw(&self.queue, &mut encoder, &targets, eye, &draws, hands);
+        for (eye, views) in eyes.iter().zip(&targets.views) {
+            let eye = Eye {
+                jittered_clip_from_world: eye.clip_from_world,
+                jittered_clip_from_view: eye.clip_from_view,
+                ..*eye
+            };
+            room.prepass(&self.queue, &mut encoder, views, &eye, hands);
+            room.colors(&mut encoder, &eye, &views.color, &views.depth);
         }
         self.queue.submit([encoder.finish()]);
-        Ok(self.read(&targets.color))
+        self.read(&targets.color)
+    }
+
+    /// Number of quads that were shaded of both eyes.
+    fn quads(&self, shown: &Shown<'_>) -> u32 {
+        let of_eye = |eye| {
+            let list = shown.post.quad_list(eye).expect("the filter is Quads");
+            let mut encoder = self.device.create_command_encoder(&Default::default());
+            let buffer = self.buffer(4);
+            // Their number is at byte 28.
+            encoder.copy_buffer_to_buffer(list, 28, &buffer, 0, 4);
+            self.queue.submit([encoder.finish()]);
+            let bytes = self.bytes(&buffer);
+            u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])
+        };
+        of_eye(0) + of_eye(1)
+    }
+
+    /// A buffer to read back.
+    fn buffer(&self, size: u64) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        })
+    }
+
+    /// What was copied into such a buffer.
+    fn bytes(&self, buffer: &wgpu::Buffer) -> Vec<u8> {
+        buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
+        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device works");
+        buffer.slice(..).get_mapped_range().expect("mapped").to_vec()
     }
 
     /// Both layers of an `Rgba16Float` texture, sRGB-encoded.
     fn read(&self, texture: &wgpu::Texture) -> [Pixels; 2] {
         let [width, height] = [texture.width(), texture.height()];
         let row = (8 * width).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: u64::from(2 * row * height),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
+        let buffer = self.buffer(u64::from(2 * row * height));
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: Some(height) };
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let to = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
         encoder.copy_texture_to_buffer(texture.as_image_copy(), to, texture.size());
         self.queue.submit([encoder.finish()]);
-        buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device works");
-        let bytes = buffer.slice(..).get_mapped_range().expect("mapped").to_vec();
+        let bytes = self.bytes(&buffer);
         [0, 1].map(|eye| {
             let rows = bytes.chunks_exact(row as usize).skip((eye * height) as usize).take(height as usize);
             let texels = rows.flat_map(|row| row[..8 * width as usize].chunks_exact(8));

@@ -13,6 +13,10 @@ pub enum Plant {
     Eyes,
     /// Motion vectors of a head that does not move.
     Motion,
+    /// Each eye shades where the other one's quads were chosen.
+    Quads,
+    /// A frame is submitted without a choice of its quads.
+    Choice,
 }
 
 impl Plant {
@@ -30,14 +34,22 @@ impl Plant {
         }
         let [left, right] = &mut frame.eyes;
         match self {
-            Self::Eyes => std::mem::swap(&mut left.clip_from_world, &mut right.clip_from_world),
+            Self::Eyes => {
+                std::mem::swap(&mut left.clip_from_world, &mut right.clip_from_world);
+                std::mem::swap(&mut left.jittered_clip_from_world, &mut right.jittered_clip_from_world);
+            }
             Self::Motion => {
                 for eye in [left, right] {
                     eye.previous_clip_from_world = eye.clip_from_world;
                 }
             }
-            Self::Vulkan | Self::Openxr => {}
+            Self::Vulkan | Self::Openxr | Self::Quads | Self::Choice => {}
         }
+    }
+
+    /// The eye in whose depth an eye's colors are drawn.
+    pub fn depth_of(self, eye: usize) -> usize {
+        if self == Self::Quads { 1 - eye } else { eye }
     }
 }
 

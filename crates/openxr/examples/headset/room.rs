@@ -2,13 +2,11 @@
 
 use afterimage_openxr::wgpu::util::{BufferInitDescriptor, DeviceExt};
 use afterimage_openxr::wgpu::{self, TextureFormat, TextureUsages};
-use afterimage_openxr::{Draw, Eye, HiddenMesh, Targets};
+use afterimage_openxr::{Eye, HiddenMesh, TargetViews, Targets};
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
 
-/// Draws of both eyes: up to four lattices and their hidden meshes.
-const MAX_DRAWS: u64 = 16;
-/// Distance of two draws' constants in bytes.
+/// Distance of the constants of two eyes in bytes.
 const STRIDE: u64 = 1024;
 const SIDE: u32 = 1024;
 
@@ -16,11 +14,12 @@ const SIDE: u32 = 1024;
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct Uniforms {
     clip_from_world: [[f32; 4]; 4],
+    clip_from_view: [[f32; 4]; 4],
     now: [[f32; 4]; 4],
     before: [[f32; 4]; 4],
     moved: [[[f32; 4]; 4]; 3],
     moved_before: [[[f32; 4]; 4]; 3],
-    size_bias: [f32; 4],
+    size: [f32; 4],
 }
 
 #[repr(C)]
@@ -36,7 +35,8 @@ struct Vertex {
 pub type Hands = [Mat4; 2];
 
 pub struct Room {
-    scene: wgpu::RenderPipeline,
+    prepass: wgpu::RenderPipeline,
+    color: wgpu::RenderPipeline,
     hidden: wgpu::RenderPipeline,
     vertices: wgpu::Buffer,
     count: u32,
@@ -74,19 +74,7 @@ impl Room {
                 entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
             ],
         });
-        let pipeline = |entry_point, attributes: &[wgpu::VertexAttribute], array_stride, is_scene: bool| {
-            let color = wgpu::ColorTargetState::from(Targets::COLOR);
-            let motion = wgpu::ColorTargetState::from(Targets::MOTION);
-            let write_mask = wgpu::ColorWrites::empty();
-            let masked = |target: wgpu::ColorTargetState| wgpu::ColorTargetState { write_mask, ..target };
-            let fragment = wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fragment"),
-                compilation_options: Default::default(),
-                targets: &[Some(color), Some(motion)],
-            };
-            let targets = [Some(masked(Targets::COLOR.into())), Some(masked(Targets::MOTION.into()))];
-            let nothing = wgpu::FragmentState { entry_point: Some("nothing"), targets: &targets, ..fragment.clone() };
+        let pipeline = |[vertex, fragment]: [&str; 2], format: TextureFormat, attributes: &[wgpu::VertexAttribute]| {
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("room"),
                 layout: Some(&device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -96,10 +84,10 @@ impl Room {
                 })),
                 vertex: wgpu::VertexState {
                     module: &module,
-                    entry_point: Some(entry_point),
+                    entry_point: Some(vertex),
                     compilation_options: Default::default(),
                     buffers: &[Some(wgpu::VertexBufferLayout {
-                        array_stride,
+                        array_stride: attributes.iter().map(|attribute| attribute.format.size()).sum(),
                         step_mode: wgpu::VertexStepMode::Vertex,
                         attributes,
                     })],
@@ -107,20 +95,26 @@ impl Room {
                 primitive: Default::default(),
                 depth_stencil: Some(wgpu::DepthStencilState {
                     format: Targets::DEPTH,
-                    depth_write_enabled: Some(true),
+                    depth_write_enabled: Some(format == Targets::MOTION),
                     depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
                     stencil: Default::default(),
                     bias: Default::default(),
                 }),
                 multisample: Default::default(),
-                fragment: Some(if is_scene { fragment } else { nothing }),
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some(fragment),
+                    compilation_options: Default::default(),
+                    targets: &[Some(format.into())],
+                }),
                 multiview_mask: None,
                 cache: None,
             })
         };
         let attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x2, 2 => Float32x3, 3 => Uint32x2];
-        let scene = pipeline("vertex", &attributes, size_of::<Vertex>() as u64, true);
-        let hidden = pipeline("hidden", &wgpu::vertex_attr_array![0 => Float32x2], 8, false);
+        let prepass = pipeline(["vertex", "motion"], Targets::MOTION, &attributes);
+        let color = pipeline(["vertex", "color"], Targets::COLOR, &attributes);
+        let hidden = pipeline(["hidden", "still"], Targets::MOTION, &wgpu::vertex_attr_array![0 => Float32x2]);
         let vertices = geometry();
         let count = vertices.len() as u32;
         let contents = bytemuck::cast_slice(&vertices);
@@ -128,7 +122,7 @@ impl Room {
         let vertices = device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
         let uniforms = device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
-            size: MAX_DRAWS * STRIDE,
+            size: 2 * STRIDE,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
@@ -160,7 +154,7 @@ impl Room {
                 wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&sampler) },
             ],
         });
-        Self { scene, hidden, vertices, count, uniforms, group, meshes: [None, None] }
+        Self { prepass, color, hidden, vertices, count, uniforms, group, meshes: [None, None] }
     }
 
     /// What the lens of an eye hides.
@@ -177,62 +171,77 @@ impl Room {
         });
     }
 
-    /// Draws one eye: each of `draws` into its rectangle of the targets. `hands`: now and in the last frame.
-    pub fn draw(
+    /// Draws depth and motion vectors of an eye. `hands`: now and in the last frame.
+    pub fn prepass(
         &self,
         queue: &wgpu::Queue,
         encoder: &mut wgpu::CommandEncoder,
-        targets: &Targets,
+        views: &TargetViews,
         eye: &Eye,
-        draws: &[Draw],
         hands: [Hands; 2],
     ) {
-        let layer = eye.layer as usize;
-        let [color, depth, motion] = &targets.views[layer];
-        let target = |view| {
-            let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store };
-            Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
+        let poses = |[left, right]: Hands| [Mat4::IDENTITY, left, right].map(|pose| pose.to_cols_array_2d());
+        let [width, height] = eye.geometry.size_px().map(|n| n as f32);
+        let uniforms = Uniforms {
+            clip_from_world: eye.jittered_clip_from_world,
+            clip_from_view: eye.jittered_clip_from_view,
+            now: eye.clip_from_world,
+            before: eye.previous_clip_from_world,
+            moved: poses(hands[0]),
+            moved_before: poses(hands[1]),
+            size: [width, height, 0.0, 0.0],
         };
+        queue.write_buffer(&self.uniforms, u64::from(eye.layer) * STRIDE, bytemuck::bytes_of(&uniforms));
+        // 0 is far away.
+        let mut pass = self.pass(encoder, eye.layer, &views.motion, &views.depth, wgpu::LoadOp::Clear(0.0));
+        if let Some((vertices, indices, count)) = &self.meshes[eye.layer as usize] {
+            pass.set_pipeline(&self.hidden);
+            pass.set_vertex_buffer(0, vertices.slice(..));
+            pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..*count, 0, 0..1);
+        }
+        pass.set_pipeline(&self.prepass);
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.draw(0..self.count, 0..1);
+    }
+
+    /// Draws colors after the prepass of the eye, where `depth` lets them pass.
+    pub fn colors(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        eye: &Eye,
+        color: &wgpu::TextureView,
+        depth: &wgpu::TextureView,
+    ) {
+        let mut pass = self.pass(encoder, eye.layer, color, depth, wgpu::LoadOp::Load);
+        pass.set_pipeline(&self.color);
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.draw(0..self.count, 0..1);
+    }
+
+    /// A pass over `view`, cleared, with the constants of an eye.
+    fn pass<'a>(
+        &self,
+        encoder: &'a mut wgpu::CommandEncoder,
+        layer: u32,
+        view: &wgpu::TextureView,
+        depth: &wgpu::TextureView,
+        depth_load: wgpu::LoadOp<f32>,
+    ) -> wgpu::RenderPass<'a> {
+        let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store };
+        let attachment = wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("room"),
-            color_attachments: &[target(color), target(motion)],
+            color_attachments: &[Some(attachment)],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
+                depth_ops: Some(wgpu::Operations { load: depth_load, store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),
             ..Default::default()
         });
-        let size = eye.geometry.size_px().map(|n| n as f32);
-        let poses = |[left, right]: Hands| [Mat4::IDENTITY, left, right].map(|pose| pose.to_cols_array_2d());
-        for (i, draw) in draws.iter().enumerate() {
-            let [x, y, w, h] = draw.viewport;
-            pass.set_viewport(x as f32, y as f32, w as f32, h as f32, 0.0, 1.0);
-            pass.set_scissor_rect(x, y, w, h);
-            let uniforms = Uniforms {
-                clip_from_world: draw.clip_from_world,
-                now: eye.clip_from_world,
-                before: eye.previous_clip_from_world,
-                moved: poses(hands[0]),
-                moved_before: poses(hands[1]),
-                size_bias: [size[0], size[1], draw.lod_bias, 0.0],
-            };
-            let offset = |kind: u64| ((layer as u64 * 2 + kind) * 4 + i as u64) * STRIDE;
-            if let Some((vertices, indices, count)) = &self.meshes[layer] {
-                let of_view = Uniforms { clip_from_world: draw.clip_from_view, ..uniforms };
-                queue.write_buffer(&self.uniforms, offset(1), bytemuck::bytes_of(&of_view));
-                pass.set_pipeline(&self.hidden);
-                pass.set_bind_group(0, &self.group, &[offset(1) as u32]);
-                pass.set_vertex_buffer(0, vertices.slice(..));
-                pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
-                pass.draw_indexed(0..*count, 0, 0..1);
-            }
-            queue.write_buffer(&self.uniforms, offset(0), bytemuck::bytes_of(&uniforms));
-            pass.set_pipeline(&self.scene);
-            pass.set_bind_group(0, &self.group, &[offset(0) as u32]);
-            pass.set_vertex_buffer(0, self.vertices.slice(..));
-            pass.draw(0..self.count, 0..1);
-        }
+        pass.set_bind_group(0, &self.group, &[layer * STRIDE as u32]);
+        pass
     }
 }
 

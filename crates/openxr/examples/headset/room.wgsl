@@ -1,14 +1,15 @@
 struct Uniforms {
-    // Clip space of the lattice's rectangle, with jitter.
+    // Clip space with jitter, of the world and of the view.
     clip_from_world: mat4x4<f32>,
-    // Clip space of the whole view, without jitter: now and in the last frame.
+    clip_from_view: mat4x4<f32>,
+    // Clip space of the world without jitter: now and in the last frame.
     now: mat4x4<f32>,
     before: mat4x4<f32>,
     // Poses of what moves: world, left hand, right hand.
     moved: array<mat4x4<f32>, 3>,
     moved_before: array<mat4x4<f32>, 3>,
-    // Size of the whole view in pixels, and the bias of textures' level of detail.
-    size_bias: vec4<f32>,
+    // Size of the view in pixels.
+    size: vec4<f32>,
 }
 @group(0) @binding(0) var<uniform> u: Uniforms;
 @group(0) @binding(1) var maps: texture_2d_array<f32>;
@@ -22,14 +23,14 @@ struct Vertex {
     @location(3) map_pose: vec2<u32>,
 }
 struct Varying {
-    @builtin(position) position: vec4<f32>,
+    // Invariant: both passes must find the same depth.
+    @invariant @builtin(position) position: vec4<f32>,
     @location(0) uv: vec2<f32>,
     @location(1) tint: vec3<f32>,
     @location(2) now: vec4<f32>,
     @location(3) before: vec4<f32>,
     @location(4) @interpolate(flat) map: u32,
 }
-struct Targets { @location(0) color: vec4<f32>, @location(1) motion: vec2<f32> }
 
 @vertex fn vertex(v: Vertex) -> Varying {
     let world = u.moved[v.map_pose.y] * vec4<f32>(v.position, 1.0);
@@ -37,17 +38,20 @@ struct Targets { @location(0) color: vec4<f32>, @location(1) motion: vec2<f32> }
     return Varying(u.clip_from_world * world, v.uv, v.tint, u.now * world, u.before * world_before, v.map_pose.x);
 }
 
-@fragment fn fragment(in: Varying) -> Targets {
-    let color = textureSampleBias(maps, map_sampler, in.uv, in.map, u.size_bias.z).rgb * in.tint;
+@fragment fn motion(in: Varying) -> @location(0) vec2<f32> {
     let ndc = in.before.xy / in.before.w - in.now.xy / in.now.w;
-    return Targets(vec4<f32>(color, 1.0), ndc * vec2<f32>(0.5, -0.5) * u.size_bias.xy);
+    return ndc * vec2<f32>(0.5, -0.5) * u.size.xy;
+}
+
+@fragment fn color(in: Varying) -> @location(0) vec4<f32> {
+    return vec4<f32>(textureSample(maps, map_sampler, in.uv, in.map).rgb * in.tint, 1.0);
 }
 
 // What the lens hides, at the near plane: nothing behind it is shaded. Vertices are in view space.
 @vertex fn hidden(@location(0) position: vec2<f32>) -> @builtin(position) vec4<f32> {
-    let clip = u.clip_from_world * vec4<f32>(position, -1.0, 1.0);
+    let clip = u.clip_from_view * vec4<f32>(position, -1.0, 1.0);
     return vec4<f32>(clip.xy, clip.w, clip.w);
 }
-@fragment fn nothing() -> Targets {
-    return Targets(vec4<f32>(0.0), vec2<f32>(0.0));
+@fragment fn still() -> @location(0) vec2<f32> {
+    return vec2<f32>(0.0);
 }

@@ -7,7 +7,7 @@ mod equal;
 use afterimage::kernel::debug_view::heat;
 use afterimage::{Image, ViewGeometry};
 use afterimage_cli::args::backend::BackendName;
-use afterimage_cli::args::{parse_exposure, parse_samples, parse_size};
+use afterimage_cli::args::{parse_samples, parse_size, parse_stops};
 use afterimage_cli::commands::bench::write_json;
 use afterimage_cli::failure::Failure;
 use afterimage_cli::output::Output;
@@ -67,7 +67,7 @@ pub struct PatternsArgs {
     #[arg(long, value_name = "FILE.exr")]
     reference: Option<PathBuf>,
     /// Exposure before tone mapping (x / (1 + x)), stops
-    #[arg(long, default_value_t = 0.0, value_parser = parse_exposure, value_name = "EV", allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.0, value_parser = parse_stops, value_name = "EV", allow_negative_numbers = true)]
     exposure: f32,
     /// Device that traces
     #[arg(long, value_enum, default_value = "auto")]

@@ -10,6 +10,8 @@ use std::path::Path;
 
 /// Duration of a fixed or synthetic gaze, seconds.
 pub(super) const DEFAULT_SECONDS: f64 = 5.0;
+/// Frames up to which a recording counts whose times are hardly seconds: a minute of 60 frames a second.
+const MOST_FRAMES_IN_DOUBT: u64 = 3600;
 
 /// Gaze of a clip.
 #[derive(Args, Clone, Debug)]
@@ -86,9 +88,16 @@ impl GazeArgs {
         };
         let map = self.gaze_map.unwrap_or_else(|| GazeMap::default_for(path.screen()));
         let gaze = FrameGaze::new(&path, view, map, self.start, f64::from(fps))?;
-        warn(&warnings);
         let available = if synthetic.is_some() { default_frames } else { gaze.frames() };
         let count = frames.unwrap_or(available);
+        if frames.is_none()
+            && count > MOST_FRAMES_IN_DOUBT
+            && let Some(doubt) = path.doubt_of_times()
+        {
+            let name = &self.gaze;
+            return Err(Failure::Input(format!("{name}: {doubt}, or give --frames ({count} for all of it)")));
+        }
+        warn(&warnings);
         let px: Vec<_> = (0..count).map(|i| gaze.px(i)).collect();
         if px.iter().all(Option::is_none) {
             return Err(Failure::Input(format!(

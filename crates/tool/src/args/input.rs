@@ -39,11 +39,12 @@ pub struct InputArgs {
     pub spp: u32,
     #[command(flatten)]
     pub paths: PathArgs,
-    /// Camera of a scene: one of its cameras by name, a .json file (cameras.json, transforms.json, keyframes ...;
-    /// docs/cameras.md), or lateral, orbit, walk (the head of a walking person), framing, head (the poses of the head
-    /// in --gaze FILE.csv, or somebody who looks around with head and eye with --gaze synthetic:SEED), head-walk (the
-    /// same, walking); default: the scene's first camera, which glides sideways if nothing in the scene moves
-    #[arg(long, value_name = "NAME|FILE.json")]
+    /// Camera of a scene: one of its cameras by name, a camera file (cameras.json, transforms.json, keyframes, COLMAP's
+    /// images.txt ...; docs/cameras.md), another scene (.gltf, .glb) for its first camera, or lateral, orbit, walk (the
+    /// head of a walking person), framing, head (the poses of the head in --gaze FILE.csv, or somebody who looks around
+    /// with head and eye with --gaze synthetic:SEED), head-walk (the same, walking); default: the scene's first camera,
+    /// which glides sideways if nothing in the scene moves
+    #[arg(long, value_name = "NAME|FILE")]
     pub camera: Option<String>,
     /// Limit on the size of input images, million pixels
     #[arg(long, default_value_t = 64, value_name = "N")]

@@ -1,5 +1,6 @@
 //! Parsers of numbers with ranges.
 
+use afterimage_clip::exposure::{Chosen, Exposure};
 use std::str::FromStr;
 
 /// `WxH` in pixels.
@@ -60,9 +61,27 @@ pub fn parse_latency(text: &str) -> Result<f64, String> {
     within(text, "0 to 1000 milliseconds", |v| (0.0..=1000.0).contains(v))
 }
 
+/// Exposure in stops, or `auto`.
+pub fn parse_exposure(text: &str) -> Result<Exposure, String> {
+    if text == "auto" {
+        return Ok(Exposure::Auto);
+    }
+    parse_stops(text).map(Exposure::Stops).map_err(|e| e + ", or auto")
+}
+
 /// Exposure in stops.
-pub fn parse_exposure(text: &str) -> Result<f32, String> {
+pub fn parse_stops(text: &str) -> Result<f32, String> {
     within(text, "-64 to 64 stops", |v| (-64.0..=64.0).contains(v))
+}
+
+/// Says which exposure was found, or which one fits better.
+pub fn tell_exposure(chosen: &Chosen) {
+    if chosen.found {
+        say!("exposure: {} stops, from the first frame", chosen.ev);
+    }
+    if let Some(hint) = &chosen.hint {
+        eprintln!("afterimage: warning: {hint}");
+    }
 }
 
 fn within<T: FromStr>(text: &str, range: &str, is_within: impl Fn(&T) -> bool) -> Result<T, String> {

@@ -1,4 +1,4 @@
-//! `afterimage scanpath`: write a synthetic scanpath, or that of an eye tracker's export.
+//! `afterimage scanpath`: write a synthetic scanpath, or convert a gaze log.
 
 use crate::args::gaze_log::{GazeLogArgs, warn};
 use crate::args::{Named, by_name, parse_size};
@@ -11,8 +11,10 @@ use afterimage_lab::whole_file::write_whole;
 use clap::Args;
 use std::path::PathBuf;
 
-/// Write a synthetic scanpath: fixations, drift, microsaccades, saccades; of eye and head with --head. Or convert an
-/// eye tracker's export
+/// Write a synthetic scanpath, or convert a gaze log
+///
+/// A synthetic scanpath has fixations, drift, microsaccades and saccades, of eye and head with --head. A gaze log is an
+/// eye tracker's export, or a scanpath of any dialect.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:\n  afterimage scanpath --seconds 10 --seed 3 --out viewing.csv\n  \
     afterimage scanpath --head --walk --seconds 10 --rate 90 --out head.csv\n  \

@@ -44,6 +44,16 @@ fn camera_files_of_other_programs_show_the_same_picture() {
         let picture = fs::read(format!("{out}/color/000000.exr")).unwrap();
         assert!(*first.get_or_insert_with(|| picture.clone()) == picture, "{kind}");
     }
+    // COLMAP: two files, a world with y down, and images in the order of their names.
+    folder.write("cameras.txt", b"# models\n4 PINHOLE 100 50 86.60254037844387 86 50 25\n");
+    let colmap = folder.write("images.txt", b"# images\n9 1 0 0 0 0 1 4 4 0.png\n1 2 3\n");
+    let said = succeeds(&["info", &colmap]);
+    assert!(said.starts_with("camera file: images.txt of COLMAP\nframes: 1, all alike\n"), "{said}");
+    assert!(said.contains("(y up): 0.0000, 1.0000, 4.0000\nit looks along: 0.0000, 0.0000, -1.0000\n"), "{said}");
+    let out = folder.text("colmap");
+    let size = ["--size", "24x16", "--spp", "1", "--backend", "cpu", "--format", "exr"];
+    succeeds(&[&["trace", "builtin:cubes", "--camera", &colmap, "--out", &out][..], &size].concat());
+    assert!(fs::read(format!("{out}/color/000000.exr")).unwrap() == *first.as_ref().unwrap());
     // Planted: half of the field of view is another picture.
     let other = folder.write("other.json", FILES[0].1.replace("60", "30").as_bytes());
     let out = folder.text("other");
@@ -53,4 +63,26 @@ fn camera_files_of_other_programs_show_the_same_picture() {
     let bad = folder.write("bad.json", br#"{"path":[]}"#);
     refuses(&["info", &bad], &["bad.json", "has no camera", "transforms.json"]);
     refuses(&["trace", "builtin:cubes", "--camera", &bad, "--out", &folder.text("bad")], &["bad.json", "nerfstudio"]);
+}
+
+/// The first camera of another scene, which may move. Its own geometry is not shown.
+#[test]
+fn a_camera_may_be_that_of_another_scene() {
+    let folder = Folder::new();
+    let other = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+        "nodes":[{"camera":0,"translation":[0,1,4]}],
+        "cameras":[{"type":"perspective","perspective":{"yfov":0.7,"znear":0.1}}]}"#;
+    let other = folder.write("other.GLTF", other.as_bytes());
+    let own = folder.write("own.json", FILES[0].1.as_bytes());
+    let picture = |camera: &str, out: &str| {
+        let size = ["--hfov", "60", "--size", "24x16", "--spp", "1", "--backend", "cpu", "--format", "exr"];
+        succeeds(&[&["trace", "builtin:cubes", "--camera", camera, "--out", out][..], &size].concat());
+        fs::read(format!("{out}/color/000000.exr")).unwrap()
+    };
+    let [a, b] = [(&other, "a"), (&own, "b")].map(|(camera, out)| picture(camera, &folder.text(out)));
+    assert!(a == b);
+    let none = folder.write("none.gltf", br#"{"asset":{"version":"2.0"}}"#);
+    refuses(&["trace", "builtin:cubes", "--camera", &none, "--out", &folder.text("c")], &["none.gltf", "no camera"]);
+    let missing = folder.text("missing.glb");
+    refuses(&["trace", "builtin:cubes", "--camera", &missing, "--out", &folder.text("c")], &["missing.glb", "exist"]);
 }

@@ -1,6 +1,6 @@
 //! Gaze logs of eye trackers on the command line.
 
-use super::rig::{Folder, refuses, succeeds, tool};
+use super::rig::{Folder, refuses, succeeds, tool, words};
 use std::fs;
 
 const SDK: &[u8] = b"device_time_stamp,left_gaze_point_on_display_area_x,left_gaze_point_on_display_area_y,\
@@ -56,6 +56,14 @@ fn what_a_log_lacks_is_asked_for_in_one_line() {
     }
     refuses(&["run", "analytic:scroll", "--gaze", &page, "--out", &folder.text("run")], &["--screen-px WxH"]);
     succeeds(&["info", &page, "--screen-px", "1920x1080"]);
+    let sweep = "sweep analytic:scroll --backend cpu --size 32x18 --frames 38 --axis method=none";
+    let points = folder.text("sweep");
+    let sweep = [&words(sweep)[..], &["--gaze", &page, "--out", &points]].concat();
+    // It says its plan before it reads the log.
+    let refused = tool(&sweep);
+    let errors = String::from_utf8_lossy(&refused.stderr);
+    assert!(refused.status.code() == Some(2) && errors.contains("--screen-px WxH"), "{errors}");
+    both(&[&sweep[..], &["--screen-px", "1920x1080"]].concat());
     refuses(&["scanpath", "--from", "eyelink", &page, "--out", &out], &["no time and gaze of eyelink", "ASC"]);
     refuses(&["scanpath", &page, "--screen-px", "8x8", "--eye", "left", "--out", &out], &["left eye", "--eye"]);
     let angle = ["run", "analytic:scroll", "--gaze", &page, "--screen-px", "1920x1080", "--gaze-map", "angle"];
@@ -92,4 +100,30 @@ fn info_reads_logs_of_any_ending_and_says_what_looks_wrong() {
         assert!(errors.contains(word) && errors.lines().count() == 1, "{errors}");
     }
     refuses(&["info", &folder.write("prose.txt", b"It was a dark night.\n")], &["prose.txt", "column names", "tobii"]);
+}
+
+/// Times in milliseconds would be a clip of an hour: `run` says so before it makes the folder.
+#[test]
+fn a_run_does_not_start_with_times_that_are_hardly_seconds() {
+    let folder = Folder::new();
+    let head = "# screen_px: 1920x1080\n# screen_cm: 53x30\n# distance_cm: 65\nt_s,x_px,y_px,valid\n";
+    let log = |name: &str, step: f64| {
+        let rows: String = (0..90).map(|i| format!("{},{},500,1\n", f64::from(i) * step, 900 + i)).collect();
+        folder.write(name, format!("{head}{rows}").as_bytes())
+    };
+    let (milliseconds, seconds, slow) = (log("ms.csv", 16.0), log("s.csv", 0.016), log("slow.csv", 0.5));
+    let out = folder.text("out");
+    let command = format!("run analytic:still --size 32x18 --method none --backend cpu --no-jod --no-flip --out {out}");
+    let command = words(&command);
+    let said =
+        ["ms.csv: 90 samples in 1424.000 s are 0.06 a second", "milliseconds?", "--frames (85441 for all of it)"];
+    refuses(&[&command[..], &["--gaze", &milliseconds]].concat(), &said);
+    assert!(!folder.path("out").exists());
+    // A number of frames, times in seconds, and few samples in a short clip.
+    for (gaze, more, warned) in
+        [(&milliseconds, &["--frames", "2"][..], true), (&seconds, &[], false), (&slow, &["--start", "44"], true)]
+    {
+        let (_, errors) = both(&[&command[..], &["--gaze", gaze], more].concat());
+        assert_eq!(errors.contains("milliseconds?"), warned, "{errors}");
+    }
 }

@@ -1,4 +1,4 @@
-//! `run --gaze-latency`.
+//! `run --gaze-latency` and `--fixed-fovea`.
 
 use super::rig::{Folder, read_json, refuses, run, succeeds, words};
 use std::fs;
@@ -76,4 +76,26 @@ fn no_latency_and_a_fixed_gaze_change_nothing() {
     let rested = from("e", "0", "0");
     assert_eq!(from("f", "0", "1000"), rested);
     assert_ne!(from("g", "1.1", "0"), rested);
+}
+
+/// The frames are those of a gaze in the middle, and the scores those of the eye.
+#[test]
+fn a_fixed_fovea_stays_in_the_middle_and_scores_follow_the_eye() {
+    let folder = Folder::new();
+    let clip = |name: &str, gaze: &str, more: &[&str]| {
+        let line = "--size 160x90 --frames 4 --method smr --no-flip --backend cpu --foveation mip --fovea 10";
+        succeeds(&run("analytic:lateral", &folder.text(name), &[&words(line)[..], &["--gaze", gaze], more].concat()));
+        let report = read_json(&folder.path(name).join("report.json"));
+        let db = report["methods"]["smr"]["bands"]["fovea"]["psnr_db"].as_f64().unwrap_or(f64::INFINITY);
+        (fs::read(folder.path(name).join("smr/000003.png")).unwrap(), report["fixed_fovea"].clone(), db)
+    };
+    let (fixed, is_fixed, beside) = clip("fixed", "20,20", &["--fixed-fovea"]);
+    let (middle, is_tracked, within) = clip("middle", "79.5,44.5", &[]);
+    assert!(fixed == middle && is_fixed == true && is_tracked == false);
+    println!("fovea {within} dB where the frame is sharp, {beside} dB where the eye looks");
+    assert!(beside < within - 3.0);
+    // A planted error: the fovea follows the eye.
+    assert_ne!(clip("tracked", "20,20", &[]).0, fixed);
+    let both = ["--fixed-fovea", "--gaze-latency", "20"];
+    refuses(&run("analytic:still", &folder.text("both"), &both), &["--fixed-fovea", "--gaze-latency"]);
 }

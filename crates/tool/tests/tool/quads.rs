@@ -115,6 +115,22 @@ fn scenes_are_shaded_by_quads() {
     }
 }
 
+/// Traced pixels are chosen as rasterised ones are, and those that are not chosen cost nothing.
+#[test]
+fn scenes_are_traced_by_quads() {
+    let folder = Folder::new();
+    let out = folder.text("out");
+    let more = words("--source trace --spp 4 --reference-samples 8");
+    succeeds(&run("builtin:cubes", &out, &quads(&[SMALL, &more].concat())));
+    let report = read_json(&folder.path("out").join("report.json"));
+    let share = report["methods"]["smr"]["shaded_share"].as_f64().unwrap();
+    assert!((0.03..0.2).contains(&share), "{share}");
+    for method in METHODS {
+        let times = column(&folder.path("out"), method, "render_ms");
+        assert!(times.len() == 4 && times.iter().all(|v| v.unwrap() > 0.0), "{times:?}");
+    }
+}
+
 #[test]
 fn what_quads_cannot_do_is_refused() {
     let folder = Folder::new();
@@ -125,7 +141,8 @@ fn what_quads_cannot_do_is_refused() {
     refused(still, &["--geometry", "samples"], &["--geometry samples", "--foveation sparse"]);
     refused(still, &["--order", "sobol"], &["--order sobol", "--foveation sparse"]);
     refused(still, &["--rate-far", "16"], &["rate_far", "power of two from 4 to 8"]);
-    refused("builtin:cubes", &["--source", "trace"], &["--foveation quads", "--source raster"]);
+    let pattern = ["--source", "trace", "--sampling", "regions"];
+    refused("builtin:cubes", &pattern, &["--foveation quads", "--sampling regions"]);
     for budget in ["-1", "101", "NaN", "much"] {
         refused(still, &[&format!("--budget={budget}")], &["--budget", "0 to 100 percent"]);
     }

@@ -113,6 +113,7 @@ impl DeviceInputs {
                 self.given.lod = foveated.lattices.is_none().then(|| self.uploaded(&self.lod, &foveated.lod));
                 self.given.noise = foveated.noise.as_ref().map(|noise| self.uploaded(&self.noise, noise));
             }
+            Content::Surfaces => self.given = self.upload_geometry(&frame.reference),
             content @ Content::OnDevice(_) => {
                 let content = OnDevice::of(content).expect("this crate has no other frames on devices");
                 let has_geometry =

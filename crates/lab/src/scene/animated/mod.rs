@@ -58,6 +58,8 @@ pub(crate) struct Skin {
 #[derive(Clone, Debug)]
 pub(crate) struct Mesh {
     pub node: u32,
+    /// Node whose weights it has: `node`, or the one of which that is an instance.
+    pub owner: u32,
     pub geometry: Arc<Geometry>,
     /// Index into the skins. A skinned mesh ignores its node's transform.
     pub skin: Option<u32>,
@@ -114,7 +116,7 @@ impl Animated {
 
     /// Vertices of a mesh in an animation state.
     pub fn posed(&self, mesh: &Mesh, state: &AnimationState) -> Posed {
-        let weights = state.weights.get(&mesh.node).map_or(&*mesh.weights, |w| w);
+        let weights = state.weights.get(&mesh.owner).map_or(&*mesh.weights, |w| w);
         match mesh.skin {
             Some(skin) => mesh.geometry.skinned(&state.joints[skin as usize], weights),
             None => mesh.geometry.transformed(&state.worlds[mesh.node as usize], weights),

@@ -9,6 +9,8 @@ pub(crate) struct Nodes {
     pub locals: Vec<Local>,
     /// All nodes, parents before their children.
     pub order: Vec<u32>,
+    /// Point that the world transforms take to zero.
+    pub origin: DVec3,
 }
 
 /// Transform of a node relative to its parent.
@@ -55,7 +57,7 @@ impl Nodes {
             let local = locals[node].affine();
             worlds[node] = match self.parents[node] {
                 Some(parent) => worlds[parent as usize] * local,
-                None => local,
+                None => DAffine3 { translation: local.translation - self.origin, ..local },
             };
         }
     }

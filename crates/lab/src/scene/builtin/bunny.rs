@@ -60,6 +60,7 @@ fn scene(name: &str, detail: &Detail) -> Scene {
         environment: Environment::Constant([0.35, 0.45, 0.6]),
         animations: vec![],
         warnings: Vec::new(),
+        origin: DVec3::ZERO,
         still,
         rest: Pose {
             lights: vec![sun],

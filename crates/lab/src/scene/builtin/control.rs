@@ -13,6 +13,7 @@ pub(super) fn scene() -> Scene {
         environment: Environment::Constant([0.5, 0.7, 1.0]),
         animations: vec![],
         warnings: Vec::new(),
+        origin: DVec3::ZERO,
         still: Triangles::default(),
         rest: Pose { cameras, ..Pose::default() },
         animated: None,

@@ -45,6 +45,7 @@ pub(super) fn scene() -> Scene {
         environment: Environment::Constant([0.4, 0.5, 0.65]),
         animations: vec![],
         warnings: Vec::new(),
+        origin: DVec3::ZERO,
         still,
         rest: Pose {
             lights: vec![sun],

@@ -39,6 +39,7 @@ pub(super) fn scene() -> Scene {
         environment: Environment::Constant([0.0; 3]),
         animations: vec![],
         warnings: Vec::new(),
+        origin: DVec3::ZERO,
         still,
         rest: Pose {
             cameras: vec![Camera::look_at(DVec3::new(0.0, 1.5, 2.7), DVec3::new(0.0, 0.9, -1.0), 60.0)],

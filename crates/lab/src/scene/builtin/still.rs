@@ -18,6 +18,7 @@ pub(super) fn still(
         environment,
         animations: vec![],
         warnings: vec![],
+        origin: DVec3::ZERO,
         still,
         rest: Pose { cameras: vec![camera], ..Pose::default() },
         animated: None,

@@ -5,12 +5,14 @@ use super::container::Container;
 use super::document::Document;
 use super::images::Textures;
 use super::mesh::Primitives;
+use super::placed::Placed;
 use super::warnings::Warnings;
-use super::{animation, extensions, materials, nodes, skins, viewpoints};
+use super::{animation, extensions, materials, nodes, origin, placed, skins, viewpoints};
 use crate::error::InputError;
 use crate::scene::animated::{Animated, AnimationState, Mesh, Property, Skin};
 use crate::scene::geometry::{Geometry, MAX_COORDINATE};
 use crate::scene::{Environment, Scene, Triangles};
+use glam::DVec3;
 use gltf::json::{self, Index};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -21,18 +23,24 @@ pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -
     let accessors = Accessors::new(document);
     let mut textures = Textures::new(document);
     let surfaces = materials::read(document, &mut textures, &mut warnings)?;
-    let (nodes, shown) = nodes::tree(document, &mut warnings)?;
+    let (mut nodes, shown) = nodes::tree(document, &mut warnings)?;
     let channels = animation::channels(document, &accessors, clip, &mut warnings)?;
 
     let set = channels.iter().filter(|c| c.property != Property::Weights).map(|c| c.node);
-    let moving = nodes.moving(set);
     let mut morphed = vec![false; shown.len()];
     for channel in channels.iter().filter(|c| c.property == Property::Weights) {
         morphed[channel.node as usize] = true;
     }
     let duration_s = channels.iter().filter_map(|c| c.curve.times.last()).fold(0.0f64, |a, &t| a.max(t.into()));
-    let placed: Vec<Placed> = placed(document, &shown)?;
+    let placed: Vec<Placed> = placed::placed(document, &accessors, &shown, &mut nodes)?;
+    nodes.origin = origin::origin(document, &nodes.worlds(), &placed, &shown);
+    let origin = nodes.origin;
+    if origin != DVec3::ZERO {
+        let [x, y, z] = origin.to_array();
+        warnings.add(format!("it lies far from the origin; what is at ({x}, {y}, {z}) m is shown there instead"));
+    }
     let (skins, skin_of) = used_skins(document, &accessors, &placed)?;
+    let moving = nodes.moving(set);
     let animated = Animated {
         rest_worlds: nodes.worlds(),
         moving_order: nodes.order.iter().copied().filter(|&n| moving[n as usize]).collect(),
@@ -89,31 +97,9 @@ pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -
         warnings: warnings.into_lines(),
         still,
         rest,
+        origin,
         animated: moves.then(|| Arc::new(animated)),
     })
-}
-
-/// An instance of a mesh: a node of the scene that refers to it.
-struct Placed {
-    node: u32,
-    mesh: usize,
-    skin: Option<usize>,
-}
-
-/// All mesh instances of the scene, sorted by mesh.
-fn placed(document: &Document, shown: &[bool]) -> Result<Vec<Placed>, InputError> {
-    let root = document.root;
-    let mut placed = Vec::new();
-    for (i, node) in root.nodes.iter().enumerate().filter(|(i, _)| shown[*i]) {
-        let Some(mesh) = node.mesh else { continue };
-        document.look_up(&root.meshes, mesh, "mesh")?;
-        if let Some(skin) = node.skin {
-            document.look_up(&root.skins, skin, "skin")?;
-        }
-        placed.push(Placed { node: i as u32, mesh: mesh.value(), skin: node.skin.map(|s| s.value()) });
-    }
-    placed.sort_by_key(|p| p.mesh);
-    Ok(placed)
 }
 
 /// Skins in use, and a map from the file's skin indices to theirs.
@@ -192,9 +178,9 @@ impl Stage<'_> {
         geometry: &Arc<Geometry>,
         mesh: &json::Mesh,
     ) -> Result<(), InputError> {
-        let node = used.node as usize;
+        let (node, owner) = (used.node as usize, used.owner as usize);
         let skin = used.skin.filter(|_| geometry.influences.per_vertex > 0).map(|s| self.skin_of[&s]);
-        let mut moves = self.morphed[node];
+        let mut moves = self.morphed[owner];
         if let Some(skin) = skin {
             let skin = &self.animated.skins[skin as usize];
             skins::check_joints(document, &geometry.influences, skin)?;
@@ -202,10 +188,11 @@ impl Stage<'_> {
         } else {
             moves |= self.moving[node];
         }
-        let own: &json::Node = document.look_up(&document.root.nodes, Index::new(used.node), "node")?;
+        let own: &json::Node = document.look_up(&document.root.nodes, Index::new(used.owner), "node")?;
         let weights = own.weights.as_ref().or(mesh.weights.as_ref());
         let weights = weights.map_or(&[][..], Vec::as_slice);
-        let placed = Mesh { node: used.node, geometry: geometry.clone(), skin, weights: weights.into() };
+        let placed =
+            Mesh { node: used.node, owner: used.owner, geometry: geometry.clone(), skin, weights: weights.into() };
         if moves {
             self.animated.meshes.push(placed);
         } else {

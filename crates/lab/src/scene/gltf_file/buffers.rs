@@ -28,6 +28,11 @@ pub(super) fn load(file: &Container, limits: &SceneLimits) -> Result<Buffers, In
                 bytes
             }
             (None, Some(binary)) if i == 0 => file.bytes[binary.clone()].to_vec(),
+            // Legal where nothing reads it: extensions describe what they decompress by such buffers.
+            (None, _) if file.root.buffer_views.iter().all(|view| view.buffer.value() != i) => {
+                buffers.push(Vec::new());
+                continue;
+            }
             (None, _) => return Err(damaged(subject, format!("buffer {i} has neither an address nor a binary chunk"))),
         };
         let claimed = buffer.byte_length.0;

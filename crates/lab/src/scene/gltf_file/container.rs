@@ -30,8 +30,8 @@ pub(super) struct Container {
 #[derive(Deserialize)]
 struct Preamble {
     asset: Asset,
-    #[serde(default, rename = "extensionsRequired")]
-    extensions_required: Vec<String>,
+    #[serde(rename = "extensionsRequired")]
+    extensions_required: Option<Vec<String>>,
 }
 
 #[derive(Deserialize)]
@@ -45,6 +45,9 @@ pub(super) fn read(input: &str, limits: &SceneLimits) -> Result<Container, Input
     let (json, binary) = if bytes.starts_with(b"glTF") { split(input, &bytes)? } else { (0..bytes.len(), None) };
     limits.check_json_bytes(input, json.len() as u64)?;
     let json = without_padding(&bytes[json]);
+    if matches!(json, [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..]) {
+        return Err(InputError::invalid(input, "is UTF-16 text", "expected UTF-8; save it in this encoding"));
+    }
     let unreadable = |e: serde_json::Error| {
         let problem = format!("is not a glTF 2.0 file: {}", printable(&e.to_string()));
         InputError::invalid(input, problem, "expected JSON as the glTF 2.0 specification describes it; export it again")
@@ -55,10 +58,14 @@ pub(super) fn read(input: &str, limits: &SceneLimits) -> Result<Container, Input
         let problem = format!("is of glTF version {}", printable(&preamble.asset.version));
         return Err(InputError::not_supported(input, problem, "expected version 2.0; convert it"));
     }
-    extensions::check_required(input, &preamble.extensions_required)?;
+    extensions::check_required(input, preamble.extensions_required.as_deref().unwrap_or_default())?;
     let mut warnings = Warnings::default();
     complete::complete(&mut value, &mut warnings);
-    let root: Root = serde_json::from_value(value).map_err(unreadable)?;
+    let root = match Root::deserialize(&value) {
+        Err(_) if complete::make_plain(&mut value, &mut warnings) => serde_json::from_value(value),
+        first => first,
+    };
+    let root = root.map_err(unreadable)?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
     Ok(Container { subject: input.to_owned(), folder, root, bytes, binary, warnings })
 }

@@ -5,12 +5,14 @@ use super::warnings::Warnings;
 use crate::error::InputError;
 use std::collections::BTreeSet;
 
-const SUPPORTED: [&str; 12] = [
+const SUPPORTED: [&str; 14] = [
+    "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
+    "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_sheen",
     "KHR_materials_specular",
     "KHR_materials_transmission",

@@ -5,7 +5,7 @@ use super::container::Container;
 use super::document::Document;
 use super::errors::{named, printable};
 use crate::error::InputError;
-use crate::scene::{Texture, TextureRef, Wrap};
+use crate::scene::{Coordinates, Texture, TextureRef, Wrap};
 use gltf::json::texture::{MagFilter, WrappingMode};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
@@ -15,18 +15,60 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::io::Cursor;
 
-/// Textures in use, each pair of image and sampler once.
+/// Source of a texture that states none, in the crate `gltf`.
+const NO_IMAGE: usize = u32::MAX as usize;
+
+/// Textures in use, each image with a sampler and a conversion once.
 pub(super) struct Textures<'a> {
     document: &'a Document<'a>,
     uses: Vec<TextureUse>,
-    indices: HashMap<(usize, Option<usize>), u32>,
+    indices: HashMap<Use, u32>,
 }
 
-/// Image and sampler of a texture.
+/// Image, sampler, conversion and coordinates of a texture.
+type Use = (usize, Option<usize>, Option<u32>, [u32; 7]);
+
+/// Texels of a texture.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Texels {
+    /// Those of its image.
+    OfImage,
+    /// Roughness in G, for a glossiness of `factor` times the image's alpha.
+    RoughnessOfGlossiness { factor: f32 },
+}
+
+impl Texels {
+    /// The bits of the factor of a conversion.
+    fn key(self) -> Option<u32> {
+        match self {
+            Self::OfImage => None,
+            Self::RoughnessOfGlossiness { factor } => Some(factor.to_bits()),
+        }
+    }
+
+    fn convert(self, texels: &mut [[u8; 4]]) {
+        if let Self::RoughnessOfGlossiness { factor } = self {
+            for texel in texels {
+                let rough = 1.0 - factor * f32::from(texel[3]) / 255.0;
+                *texel = [255, (rough * 255.0 + 0.5) as u8, 255, 255];
+            }
+        }
+    }
+}
+
+/// A texture in use.
 struct TextureUse {
     image: usize,
+    texels: Texels,
+    coordinates: Coordinates,
     wrap: [Wrap; 2],
     nearest: bool,
+}
+
+/// The bits of coordinates.
+fn key_of(coordinates: &Coordinates) -> [u32; 7] {
+    let [[a, b, c], [d, e, f]] = coordinates.rows.map(|row| row.map(f32::to_bits));
+    [u32::from(coordinates.second), a, b, c, d, e, f]
 }
 
 /// An encoded image whose header was read.
@@ -41,12 +83,21 @@ impl<'a> Textures<'a> {
         Self { document, uses: Vec::new(), indices: HashMap::new() }
     }
 
+    /// Whether a texture has an image that can be read.
+    pub fn has_image(&self, index: Index<json::Texture>) -> bool {
+        self.document.root.textures.get(index.value()).is_some_and(|t| t.source.value() != NO_IMAGE)
+    }
+
     /// Registers a texture of the file as used. `None` if it has no image, of which the file's warnings tell.
-    pub fn use_texture(&mut self, index: Index<json::Texture>) -> Result<Option<TextureRef>, InputError> {
+    pub fn use_texture(
+        &mut self,
+        index: Index<json::Texture>,
+        texels: Texels,
+        coordinates: Coordinates,
+    ) -> Result<Option<TextureRef>, InputError> {
         let root = self.document.root;
         let texture = self.document.look_up(&root.textures, index, "texture")?;
-        // The crate's value of a source that is not there.
-        if texture.source.value() == u32::MAX as usize {
+        if texture.source.value() == NO_IMAGE {
             return Ok(None);
         }
         self.document.look_up(&root.images, texture.source, "image")?;
@@ -54,7 +105,8 @@ impl<'a> Textures<'a> {
             Some(sampler) => Some(self.document.look_up(&root.samplers, sampler, "sampler")?),
             None => None,
         };
-        let key = (texture.source.value(), texture.sampler.map(|s| s.value()));
+        let sampler_index = texture.sampler.map(|s| s.value());
+        let key = (texture.source.value(), sampler_index, texels.key(), key_of(&coordinates));
         let next = self.uses.len() as u32;
         let texture = *self.indices.entry(key).or_insert(next);
         if texture == next {
@@ -65,6 +117,8 @@ impl<'a> Textures<'a> {
             };
             self.uses.push(TextureUse {
                 image: key.0,
+                texels,
+                coordinates,
                 wrap: [wrap(sampler.map(|s| &s.wrap_s)), wrap(sampler.map(|s| &s.wrap_t))],
                 nearest: sampler.is_some_and(|s| matches!(s.mag_filter, Some(Checked::Valid(MagFilter::Nearest)))),
             });
@@ -101,8 +155,9 @@ impl<'a> Textures<'a> {
             let place = place_of_image[&used.image];
             remaining[place] -= 1;
             let (size, texels) = &mut decoded[place];
-            let texels = if remaining[place] == 0 { std::mem::take(texels) } else { texels.clone() };
-            Texture { size: *size, texels, wrap: used.wrap, nearest: used.nearest }
+            let mut texels = if remaining[place] == 0 { std::mem::take(texels) } else { texels.clone() };
+            used.texels.convert(&mut texels);
+            Texture { size: *size, texels, wrap: used.wrap, nearest: used.nearest, coordinates: used.coordinates }
         };
         Ok(self.uses.iter().map(texture).collect())
     }

@@ -102,14 +102,17 @@ fn factor(r: &mut Reader, extension: &Value, name: &str) -> f32 {
     r.clamped(extension.get(name).and_then(Value::as_f64).unwrap_or(0.0) as f32, 0.0, 1.0)
 }
 
-/// Numbers of a JSON array; `None` unless it has exactly `N` numbers.
+/// Texture of an extension that the crate `gltf` leaves as JSON.
 fn texture_of(r: &mut Reader, extension: &Value, name: &str) -> Result<Option<TextureRef>, InputError> {
-    let Some(value) = extension.get(name) else { return Ok(None) };
-    match serde_json::from_value::<texture::Info>(value.clone()) {
-        Ok(info) => r.texture(Some(&info)),
-        Err(_) => {
-            r.warn("textures that do not conform to glTF 2.0 are left out");
-            Ok(None)
-        }
+    let info = texture_info(r, extension, name);
+    r.texture(info.as_ref())
+}
+
+pub(super) fn texture_info(r: &mut Reader, extension: &Value, name: &str) -> Option<texture::Info> {
+    let value = extension.get(name)?;
+    let info = serde_json::from_value::<texture::Info>(value.clone()).ok();
+    if info.is_none() {
+        r.warn("textures that do not conform to glTF 2.0 are left out");
     }
+    info
 }

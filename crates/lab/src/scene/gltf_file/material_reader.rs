@@ -1,11 +1,11 @@
 //! State of reading one material, for its core and its extensions.
 
-use super::images::Textures;
-use super::uv::UvSource;
+use super::images::{Texels, Textures};
+use super::uv::{UvPlan, UvSource};
 use super::warnings::Warnings;
 use crate::error::InputError;
 use crate::scene::{Material, TextureRef};
-use gltf::json;
+use gltf::json::{self, Index, texture};
 
 /// State of reading one material.
 pub(super) struct Reader<'a, 'b> {
@@ -16,14 +16,50 @@ pub(super) struct Reader<'a, 'b> {
     pub tangent_turn: f32,
     /// Coordinates of its textures.
     pub sources: Vec<UvSource>,
+    /// How they are found; `None` while the sources are collected, and no texture is registered.
+    pub plan: Option<UvPlan>,
 }
 
-impl Reader<'_, '_> {
+impl<'a, 'b> Reader<'a, 'b> {
+    pub fn new(
+        json: &json::Material,
+        textures: &'b mut Textures<'a>,
+        warnings: &'b mut Warnings,
+        name: String,
+        plan: Option<UvPlan>,
+    ) -> Self {
+        let own = json.name.clone().unwrap_or_default();
+        let material = Material { name: own, double_sided: json.double_sided, ..Material::default() };
+        Self { textures, warnings, name, material, tangent_turn: 0.0, sources: Vec::new(), plan }
+    }
+
     /// Registers a texture and its source of coordinates.
-    pub fn texture(&mut self, info: Option<&json::texture::Info>) -> Result<Option<TextureRef>, InputError> {
+    pub fn texture(&mut self, info: Option<&texture::Info>) -> Result<Option<TextureRef>, InputError> {
         let Some(info) = info else { return Ok(None) };
-        self.sources.push(UvSource::of(info));
-        self.textures.use_texture(info.index)
+        self.converted_texture(info, Texels::OfImage)
+    }
+
+    /// The same for a texture whose texels are converted.
+    pub fn converted_texture(
+        &mut self,
+        info: &texture::Info,
+        texels: Texels,
+    ) -> Result<Option<TextureRef>, InputError> {
+        self.sourced_texture(info.index, UvSource::of(info), texels)
+    }
+
+    /// The same for a texture with this source of coordinates.
+    pub fn sourced_texture(
+        &mut self,
+        index: Index<json::Texture>,
+        source: UvSource,
+        texels: Texels,
+    ) -> Result<Option<TextureRef>, InputError> {
+        let Some(plan) = &self.plan else {
+            self.sources.extend(self.textures.has_image(index).then_some(source));
+            return Ok(None);
+        };
+        self.textures.use_texture(index, texels, plan.coordinates(&source))
     }
 
     /// A factor clamped to its range, with a warning if it is outside.

@@ -2,13 +2,13 @@
 
 use super::document::Document;
 use super::errors::named;
-use super::images::Textures;
-use super::lobes;
+use super::images::{Texels, Textures};
 use super::material_reader::Reader;
-use super::uv::{PLAIN, UvSource, common_source};
+use super::uv::{PLAIN_PLAN, UvPlan, UvSource};
 use super::warnings::Warnings;
+use super::{lobes, spec_gloss};
 use crate::error::InputError;
-use crate::scene::{Alpha, Material};
+use crate::scene::{Alpha, Coordinates, Material};
 use gltf::json;
 use gltf::json::material::AlphaMode;
 use gltf::json::validation::Checked;
@@ -19,7 +19,9 @@ const MAX_EMISSION: f32 = 1e12;
 /// A material, and the vertex attributes that it needs.
 pub(super) struct Surface {
     pub material: Material,
-    pub uv: UvSource,
+    pub uv: UvPlan,
+    /// Coordinates along which tangents point.
+    pub tangents: Coordinates,
     pub textured: bool,
     pub needs_tangents: bool,
     /// Rotation of tangents about the normal, in radians.
@@ -29,7 +31,14 @@ pub(super) struct Surface {
 /// glTF's default material, for primitives without one.
 pub(super) fn default() -> Surface {
     let material = Material { metallic: 1.0, double_sided: false, ..Material::default() };
-    Surface { material, uv: PLAIN, textured: false, needs_tangents: false, tangent_turn: 0.0 }
+    Surface {
+        material,
+        uv: PLAIN_PLAN,
+        tangents: Coordinates::default(),
+        textured: false,
+        needs_tangents: false,
+        tangent_turn: 0.0,
+    }
 }
 
 /// All materials of the file, in its order.
@@ -48,29 +57,40 @@ fn surface(
     textures: &mut Textures,
     warnings: &mut Warnings,
 ) -> Result<Surface, InputError> {
-    let name = json.name.clone().unwrap_or_default();
-    let mut r = Reader {
-        textures,
-        warnings,
-        name: named("material", index, Some(&name)),
-        material: Material { name, double_sided: json.double_sided, ..Material::default() },
-        tangent_turn: 0.0,
-        sources: Vec::new(),
-    };
-    let pbr = &json.pbr_metallic_roughness;
-    let [red, green, blue, opacity] = pbr.base_color_factor.0;
-    r.material.base_color = [red, green, blue].map(|c| r.clamped(c, 0.0, 1.0));
-    r.material.opacity = r.clamped(opacity, 0.0, 1.0);
-    // The base color texture first: all textures of the material use the first one's coordinates.
-    r.material.base_color_texture = r.texture(pbr.base_color_texture.as_ref())?;
-    r.material.metallic = r.clamped(pbr.metallic_factor.0, 0.0, 1.0);
-    r.material.roughness = r.clamped(pbr.roughness_factor.0, 0.0, 1.0);
-    r.material.metallic_roughness_texture = r.texture(pbr.metallic_roughness_texture.as_ref())?;
+    let name = named("material", index, json.name.as_deref());
+    // Read twice: how a texture finds its coordinates depends on all of them.
+    let mut unheard = Warnings::default();
+    let mut collected = Reader::new(json, textures, &mut unheard, name.clone(), None);
+    let normal = material(&mut collected, json)?;
+    let sources = collected.sources;
+    let plan = UvPlan::of(&sources, warnings, || name.clone());
+    let mut r = Reader::new(json, textures, warnings, name, Some(plan));
+    material(&mut r, json)?;
+    let normal = normal.filter(|_| r.material.normal_texture.is_some()).or(sources.first().copied());
+    Ok(Surface {
+        uv: plan,
+        tangents: normal.map(|source| plan.coordinates(&source)).unwrap_or_default(),
+        textured: !sources.is_empty(),
+        needs_tangents: r.material.normal_texture.is_some() || r.material.anisotropy > 0.0,
+        tangent_turn: r.tangent_turn,
+        material: r.material,
+    })
+}
+
+/// Reads all of a material, and returns the source of its normal map's coordinates.
+fn material(r: &mut Reader, json: &json::Material) -> Result<Option<UvSource>, InputError> {
+    // The base color texture first: its coordinates are the first ones.
+    match json.extensions.as_ref().and_then(|e| e.others.get(spec_gloss::NAME)) {
+        Some(extension) => spec_gloss::read(r, extension)?,
+        None => metallic_roughness(r, &json.pbr_metallic_roughness)?,
+    }
+    let mut of_normals = None;
     if let Some(normal) = &json.normal_texture {
-        r.material.normal_texture = r.textures.use_texture(normal.index)?;
-        r.material.normal_scale = r.clamped(normal.scale, -1e3, 1e3);
         let transform = normal.extensions.as_ref().and_then(|e| e.others.get("KHR_texture_transform"));
-        r.sources.push(UvSource::of_value(normal.tex_coord, transform));
+        let source = UvSource::of_value(normal.tex_coord, transform);
+        of_normals = Some(source);
+        r.material.normal_texture = r.sourced_texture(normal.index, source, Texels::OfImage)?;
+        r.material.normal_scale = r.clamped(normal.scale, -1e3, 1e3);
     }
     r.material.emissive = json.emissive_factor.0;
     r.material.emissive_texture = r.texture(json.emissive_texture.as_ref())?;
@@ -80,20 +100,24 @@ fn surface(
         Checked::Valid(AlphaMode::Blend) => Alpha::Blend,
         Checked::Valid(AlphaMode::Opaque) => Alpha::Opaque,
         Checked::Invalid => {
-            r.warnings.about("materials with an unknown alphaMode are opaque", || r.name.clone());
+            r.warn("materials with an unknown alphaMode are opaque");
             Alpha::Opaque
         }
     };
     if let Some(extensions) = &json.extensions {
-        lobes::read(&mut r, extensions)?;
+        lobes::read(r, extensions)?;
     }
     r.material.emissive = r.material.emissive.map(|c| r.clamped(c, 0.0, MAX_EMISSION));
-    let uv = common_source(&r.sources, r.warnings, || r.name.clone());
-    Ok(Surface {
-        uv,
-        textured: !r.sources.is_empty(),
-        needs_tangents: r.material.normal_texture.is_some() || r.material.anisotropy > 0.0,
-        tangent_turn: r.tangent_turn,
-        material: r.material,
-    })
+    Ok(of_normals)
+}
+
+fn metallic_roughness(r: &mut Reader, pbr: &json::material::PbrMetallicRoughness) -> Result<(), InputError> {
+    let [red, green, blue, opacity] = pbr.base_color_factor.0;
+    r.material.base_color = [red, green, blue].map(|c| r.clamped(c, 0.0, 1.0));
+    r.material.opacity = r.clamped(opacity, 0.0, 1.0);
+    r.material.base_color_texture = r.texture(pbr.base_color_texture.as_ref())?;
+    r.material.metallic = r.clamped(pbr.metallic_factor.0, 0.0, 1.0);
+    r.material.roughness = r.clamped(pbr.roughness_factor.0, 0.0, 1.0);
+    r.material.metallic_roughness_texture = r.texture(pbr.metallic_roughness_texture.as_ref())?;
+    Ok(())
 }

@@ -6,6 +6,7 @@ use super::errors::named;
 use super::materials::Surface;
 use super::skins;
 use super::tangents;
+use super::uv::PLAIN;
 use super::warnings::Warnings;
 use crate::error::InputError;
 use crate::scene::geometry::{Geometry, Target, is_usable};
@@ -89,13 +90,24 @@ impl Primitives<'_> {
             geometry.tangents =
                 read.vectors(tangents, "tangents", Some(n))?.into_iter().map(Vec4::from_array).collect();
         }
-        match attribute(primitive, Semantic::TexCoords(surface.uv.set)) {
+        let first = &surface.uv.first;
+        let coordinates = |set| attribute(primitive, Semantic::TexCoords(set));
+        match coordinates(first.set) {
             Some(uvs) => {
                 let uvs = read.vectors(uvs, "texture coordinates", Some(n))?;
-                geometry.uvs = uvs.into_iter().map(|uv| Vec2::from_array(surface.uv.apply(uv))).collect();
+                geometry.uvs = uvs.into_iter().map(|uv| Vec2::from_array(first.apply(uv))).collect();
             }
             None if surface.textured => warnings.about("textures without texture coordinates show one texel", name),
             None => {}
+        }
+        if let Some(set) = surface.uv.second {
+            match coordinates(set) {
+                Some(uvs) => {
+                    let uvs = read.vectors(uvs, "texture coordinates", Some(n))?;
+                    geometry.second_uvs = uvs.into_iter().map(|uv| Vec2::from_array(PLAIN.apply(uv))).collect();
+                }
+                None => warnings.about("textures without texture coordinates show one texel", name),
+            }
         }
         if let Some(colors) = attribute(primitive, Semantic::Colors(0)) {
             geometry.colors = self.colors(colors, n)?;
@@ -149,8 +161,11 @@ fn finish(geometry: &mut Geometry, surface: &Surface) {
         let sign = if tangent.w < 0.0 { -1.0 } else { 1.0 };
         *tangent = tangent.truncate().normalize_or_zero().extend(sign);
     }
-    if surface.needs_tangents && geometry.tangents.is_empty() && !geometry.uvs.is_empty() {
-        tangents::generate(geometry);
+    let coordinates = &surface.tangents;
+    let along = if coordinates.second { &geometry.second_uvs } else { &geometry.uvs };
+    if surface.needs_tangents && geometry.tangents.is_empty() && !along.is_empty() {
+        let along = along.iter().map(|&uv| coordinates.of(uv)).collect();
+        tangents::generate(geometry, along);
     }
     if surface.tangent_turn != 0.0 {
         let (sin, cos) = surface.tangent_turn.sin_cos();

@@ -31,7 +31,7 @@ pub(super) fn tree(document: &Document, warnings: &mut Warnings) -> Result<(Node
         shown[node as usize] = true;
     }
     let locals = nodes.iter().map(local).collect();
-    Ok((Nodes { parents, locals, order }, shown))
+    Ok((Nodes { parents, locals, order, origin: DVec3::ZERO }, shown))
 }
 
 /// Nodes and all their descendants, each once. Parents come before children if no given node is a descendant of

@@ -2,18 +2,20 @@
 
 use crate::scene::geometry::{Geometry, face_normal};
 use bevy_mikktspace::{Geometry as Faces, TangentSpace, generate_tangents};
-use glam::{Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 use std::collections::HashMap;
 
 /// Largest number of corners at one position for MikkTSpace, whose time grows with its square.
 const MAX_VALENCE: u32 = 512;
 
-/// Gives every corner its own vertex with a tangent. The mesh must have texture coordinates.
+/// Gives every corner its own vertex with a tangent towards growing u of `along`, the coordinates of the vertices.
 ///
 /// The sign in w is the opposite of MikkTSpace's: a glTF normal map's green channel points up in the image, towards
 /// decreasing v.
-pub(super) fn generate(geometry: &mut Geometry) {
+pub(super) fn generate(geometry: &mut Geometry, along: Vec<Vec2>) {
+    let of_corners = geometry.indices.iter().flatten().map(|&i| along[i as usize]).collect();
     geometry.unweld();
+    let uvs = std::mem::replace(&mut geometry.uvs, of_corners);
     geometry.tangents = vec![Vec4::ZERO; geometry.positions.len()];
     let flat = geometry.normals.is_empty();
     if flat {
@@ -22,6 +24,7 @@ pub(super) fn generate(geometry: &mut Geometry) {
         geometry.normals = faces.flat_map(|n| [n; 3]).collect();
     }
     fill(geometry);
+    geometry.uvs = uvs;
     if flat {
         geometry.normals.clear();
     }

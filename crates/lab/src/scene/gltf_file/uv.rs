@@ -1,6 +1,8 @@
-//! Texture coordinates: one set and one transform per material, baked into its triangles.
+//! Texture coordinates. Where all textures of a material share a set and a transform, these are baked into its
+//! triangles; else triangles have up to two sets, and each texture its transform.
 
 use super::warnings::Warnings;
+use crate::scene::Coordinates;
 use gltf::json::texture;
 use serde_json::Value;
 
@@ -45,15 +47,51 @@ impl UvSource {
         let transformed = [cos * u + sin * v + self.offset[0], cos * v - sin * u + self.offset[1]];
         transformed.map(|x| if x.is_finite() { x } else { 0.0 })
     }
+
+    /// The same as a matrix. Elements that are not finite become 0.
+    fn rows(&self) -> [[f32; 3]; 2] {
+        let (sin, cos) = self.rotation.sin_cos();
+        let ([x, y], [u, v]) = (self.scale, self.offset);
+        let rows = [[cos * x, sin * y, u], [-sin * x, cos * y, v]];
+        rows.map(|row| row.map(|x| if x.is_finite() { x } else { 0.0 }))
+    }
 }
 
-/// Common source of all textures of a material: the first of `sources`, with a warning if they differ.
-pub(super) fn common_source(sources: &[UvSource], warnings: &mut Warnings, name: impl FnOnce() -> String) -> UvSource {
-    let Some(&first) = sources.first() else { return PLAIN };
-    if sources.iter().any(|s| *s != first) {
-        warnings.about("textures of one material with different texture coordinates all take the first one's", name);
+/// How the textures of a material find their coordinates among those of its triangles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct UvPlan {
+    /// First coordinates of the triangles: the set, and its transform where all textures share one.
+    pub first: UvSource,
+    /// Set of the second coordinates.
+    pub second: Option<u32>,
+    /// Whether the textures differ, so that each transforms the coordinates itself.
+    each: bool,
+}
+
+/// The first coordinates as they are.
+pub(super) const PLAIN_PLAN: UvPlan = UvPlan { first: PLAIN, second: None, each: false };
+
+impl UvPlan {
+    /// Plan for textures with these sources; a warning if they take more than two sets.
+    pub fn of(sources: &[UvSource], warnings: &mut Warnings, name: impl FnOnce() -> String) -> Self {
+        let Some(&first) = sources.first() else { return PLAIN_PLAN };
+        if sources.iter().all(|s| *s == first) {
+            return Self { first, second: None, each: false };
+        }
+        let second = sources.iter().map(|s| s.set).find(|&set| set != first.set);
+        if sources.iter().any(|s| s.set != first.set && Some(s.set) != second) {
+            warnings.about("textures with a third set of texture coordinates take the first one", name);
+        }
+        Self { first: UvSource { set: first.set, ..PLAIN }, second, each: true }
     }
-    first
+
+    /// Coordinates of a texture with this source.
+    pub fn coordinates(&self, source: &UvSource) -> Coordinates {
+        if !self.each {
+            return Coordinates::default();
+        }
+        Coordinates { second: self.second == Some(source.set), rows: source.rows() }
+    }
 }
 
 /// Numbers of a JSON array of that length.

@@ -39,7 +39,7 @@ pub(super) struct SurfacePoint {
 /// Surface point at `hit` of a ray with unit `direction`.
 pub(super) fn surface_point(world: &World, hit: &Hit, direction: Vec3, effects: Effects) -> SurfacePoint {
     let triangle = world.geometry.triangle(hit.triangle);
-    let place = world.geometry.attributes(hit.triangle).at(hit.u, hit.v);
+    let place = world.geometry.attributes_at(hit.triangle, hit.u, hit.v, effects.has(Effect::TextureCoordinates));
     let material = &world.materials[triangle.material() as usize];
     let [v0, v1, v2] = triangle.positions();
     let toward = -direction;
@@ -55,7 +55,7 @@ pub(super) fn surface_point(world: &World, hit: &Hit, direction: Vec3, effects: 
         normal = face;
     }
     if effects.has(Effect::NormalMap) && material.normal_texture != NO_TEXTURE {
-        let texel = texture(world, material.normal_texture, place.uv, false).truncate();
+        let texel = texture(world, material.normal_texture, place.uvs(), false, effects).truncate();
         normal = mapped_normal(normal, place.tangent, place.bitangent_sign, texel, material.normal_scale);
     }
     let normal = visible_normal(normal * side, geometric, toward);
@@ -73,7 +73,7 @@ pub(super) fn surface_point(world: &World, hit: &Hit, direction: Vec3, effects: 
 
     let mut emitted = Vec3::ZERO;
     if effects.has(Effect::EmissiveTriangles) && (front || material.flags & FLAG_DOUBLE_SIDED != 0) {
-        emitted = emission(world, material, place.uv, effects);
+        emitted = emission(world, material, place.uvs(), effects);
     }
     let mut absorption = Vec3::ZERO;
     if effects.has(Effect::Transmission) && material.flags & FLAG_VOLUME != 0 {
@@ -97,7 +97,7 @@ fn base(world: &World, material: &MaterialRecord, place: &AttributesAt, effects:
     if effects.has(Effect::BaseColor) {
         base *= place.color;
         if material.base_color_texture != NO_TEXTURE {
-            base *= texture(world, material.base_color_texture, place.uv, true);
+            base *= texture(world, material.base_color_texture, place.uvs(), true, effects);
         }
     }
     base
@@ -106,7 +106,7 @@ fn base(world: &World, material: &MaterialRecord, place: &AttributesAt, effects:
 /// Alpha test: opacity against the cutoff (MASK) or against the random `draw` (BLEND).
 pub(super) fn passes_alpha_test(world: &World, triangle: u32, u: f32, v: f32, draw: f32, effects: Effects) -> bool {
     let material = &world.materials[world.geometry.triangle(triangle).material() as usize];
-    let place = world.geometry.attributes(triangle).at(u, v);
+    let place = world.geometry.attributes_at(triangle, u, v, effects.has(Effect::TextureCoordinates));
     let opacity = base(world, material, &place, effects).w;
     if material.flags & FLAG_MASK != 0 {
         return opacity >= material.cutoff;
@@ -114,11 +114,11 @@ pub(super) fn passes_alpha_test(world: &World, triangle: u32, u: f32, v: f32, dr
     material.flags & FLAG_BLEND == 0 || draw < opacity
 }
 
-/// Radiance that a material emits at texture coordinates `uv`.
-fn emission(world: &World, material: &MaterialRecord, uv: Vec2, effects: Effects) -> Vec3 {
+/// Radiance that a material emits at these texture coordinates.
+fn emission(world: &World, material: &MaterialRecord, uvs: [Vec2; 2], effects: Effects) -> Vec3 {
     let mut radiance = Vec3::from(material.emissive);
     if effects.has(Effect::EmissiveTexture) && material.emissive_texture != NO_TEXTURE {
-        radiance *= texture(world, material.emissive_texture, uv, true).truncate();
+        radiance *= texture(world, material.emissive_texture, uvs, true, effects).truncate();
     }
     radiance
 }
@@ -126,8 +126,8 @@ fn emission(world: &World, material: &MaterialRecord, uv: Vec2, effects: Effects
 /// Radiance that a triangle emits at barycentric weights `u` and `v`.
 pub(super) fn emission_at(world: &World, triangle: u32, u: f32, v: f32, effects: Effects) -> Vec3 {
     let material = &world.materials[world.geometry.triangle(triangle).material() as usize];
-    let place = world.geometry.attributes(triangle).at(u, v);
-    emission(world, material, place.uv, effects)
+    let place = world.geometry.attributes_at(triangle, u, v, effects.has(Effect::TextureCoordinates));
+    emission(world, material, place.uvs(), effects)
 }
 
 /// BSDF parameters with textures and tints applied.
@@ -151,7 +151,7 @@ fn resolve(world: &World, m: &MaterialRecord, place: &AttributesAt, front: bool,
     };
     if effects.has(Effect::SurfaceTexture) {
         let of = |id: u32, is_color: bool| {
-            if id == NO_TEXTURE { Vec4::ONE } else { texture(world, id, place.uv, is_color) }
+            if id == NO_TEXTURE { Vec4::ONE } else { texture(world, id, place.uvs(), is_color, effects) }
         };
         let metallic_roughness = of(m.metallic_roughness_texture, false);
         s.roughness *= metallic_roughness.y;

@@ -1,13 +1,25 @@
 //! Texture lookup. Twin of `shaders/trace/texture.wgsl`.
 
 use crate::kernel::texel::{texel_value, wrap_coordinate, wrap_texel};
+use crate::scene::Coordinates;
+use crate::trace::effects::{Effect, Effects};
+use crate::trace::shading_records::ADDRESSING_SECOND;
 use crate::trace::world::World;
 use afterimage::kernel::color::srgb_decode;
 use glam::{Vec2, Vec4};
 
-/// Texture value at `uv`: bilinear, or the nearest texel if the texture asks for that. Colors are decoded from sRGB.
-pub(super) fn texture(world: &World, id: u32, uv: Vec2, is_color: bool) -> Vec4 {
+/// Texture value at the first or second of `uvs`: bilinear, or the nearest texel if the texture asks for that. Colors
+/// are decoded from sRGB.
+pub(super) fn texture(world: &World, id: u32, uvs: [Vec2; 2], is_color: bool, effects: Effects) -> Vec4 {
     let t = world.textures[id as usize];
+    let mut uv = uvs[0];
+    if effects.has(Effect::TextureCoordinates) {
+        if t.addressing & ADDRESSING_SECOND != 0 {
+            uv = uvs[1];
+        }
+        let [[a, b, c, _], [d, e, f, _]] = t.coordinates;
+        uv = Coordinates { second: false, rows: [[a, b, c], [d, e, f]] }.of(uv);
+    }
     let (wrap_u, wrap_v) = (t.addressing & 3, t.addressing >> 2 & 3);
     let x = wrap_coordinate(uv.x, wrap_u) * t.width as f32;
     let y = wrap_coordinate(uv.y, wrap_v) * t.height as f32;

@@ -326,6 +326,8 @@ fn constants(
         ("PUNCTUAL", Section::Punctual),
         ("ATTRIBUTES", Section::Attributes),
         ("MOVING_ATTRIBUTES", Section::MovingAttributes),
+        ("SECOND_UVS", Section::SecondUvs),
+        ("MOVING_SECOND_UVS", Section::MovingSecondUvs),
     ] {
         constants.push((name, f64::from(scene_buffer.base(section))));
     }
@@ -339,6 +341,7 @@ fn constants(
         ("EFFECT_SURFACE_TEXTURE", Effect::SurfaceTexture),
         ("EFFECT_NORMAL_MAP", Effect::NormalMap),
         ("EFFECT_EMISSIVE_TEXTURE", Effect::EmissiveTexture),
+        ("EFFECT_TEXTURE_COORDINATES", Effect::TextureCoordinates),
         ("EFFECT_EMISSIVE_TRIANGLES", Effect::EmissiveTriangles),
         ("EFFECT_PUNCTUAL_LIGHTS", Effect::PunctualLights),
         ("EFFECT_ENVIRONMENT", Effect::Environment),

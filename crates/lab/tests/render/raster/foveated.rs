@@ -40,7 +40,13 @@ pub(super) fn noise() -> Scene {
     let environment = Environment::Constant([1.0; 3]);
     let mut scene = Scene::from_parts("noise", vec![material], triangles, Pose::default(), environment).unwrap();
     let wrap = [Wrap::Repeat; 2];
-    scene.textures = vec![Texture { size: [256; 2], texels: texels.collect(), wrap, nearest: false }];
+    scene.textures = vec![Texture {
+        size: [256; 2],
+        texels: texels.collect(),
+        wrap,
+        nearest: false,
+        coordinates: Default::default(),
+    }];
     scene
 }
 

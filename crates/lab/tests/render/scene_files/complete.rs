@@ -1,7 +1,7 @@
 //! Files that are legal, and that the crate `gltf` alone would refuse.
 
-use super::builder::{Gltf, TRIANGLE};
-use super::open;
+use super::builder::{Gltf, TRIANGLE, written};
+use super::{assert_refused, open};
 use serde_json::json;
 
 /// An animation with a channel of a node and others without one.
@@ -48,6 +48,47 @@ fn scenes_may_be_empty() {
     assert_eq!(file.open().still().len(), 0);
 }
 
+/// Extensions describe what they decompress by buffers without bytes.
+#[test]
+fn a_buffer_without_bytes_is_legal_until_something_reads_it() {
+    let with = |reads: bool| {
+        let mut file = Gltf::new();
+        file.soup(&TRIANGLE);
+        file.json["buffers"] = json!([{"byteLength": file.bin.len()}, {"byteLength": 40}]);
+        if reads {
+            file.json["bufferViews"][0]["buffer"] = json!(1);
+        }
+        file
+    };
+    let scene = with(false).open();
+    assert_eq!((scene.still().len(), scene.warnings.len()), (1, 0));
+    with(true).assert_refused(&["buffer 1 has neither an address nor a binary chunk"]);
+}
+
+/// The schema allows `3.0` as an integer; some exporters write `null` for what is absent.
+#[test]
+fn whole_numbers_may_have_a_point_and_absent_properties_be_null() {
+    let triangle = || {
+        let mut file = Gltf::new();
+        file.soup(&TRIANGLE);
+        file
+    };
+    let mut file = triangle();
+    file.json["accessors"][0]["componentType"] = json!(5126.0);
+    file.json["accessors"][0]["count"] = json!(3.0);
+    file.json["scene"] = json!(0.0);
+    let scene = file.open();
+    assert_eq!((scene.still().len(), scene.warnings.len()), (1, 0));
+    let mut file = triangle();
+    file.json["extensionsRequired"] = json!(null);
+    file.json["nodes"][0]["extensions"] = json!(null);
+    file.json["animations"] = json!(null);
+    let scene = file.open();
+    assert_eq!(scene.still().len(), 1);
+    assert_eq!(scene.warnings, ["properties that are null are taken as absent"]);
+    triangle().with("/accessors/0/count", json!(2.5)).assert_refused(&["not a glTF 2.0 file"]);
+}
+
 /// Byte order mark in front; NUL bytes and spaces behind, in both containers.
 #[test]
 fn padding_around_the_json_is_skipped() {
@@ -65,4 +106,10 @@ fn padding_around_the_json_is_skipped() {
         std::fs::write(&path, [head, chunks].concat()).unwrap();
         assert_eq!(open(&path).unwrap().still().len(), 1, "{before:?}, {after:?}");
     }
+}
+
+#[test]
+fn the_other_encodings_of_json_are_named() {
+    let wide: Vec<u8> = [0xFEFF].into_iter().chain("{}".encode_utf16()).flat_map(u16::to_le_bytes).collect();
+    assert_refused(&written("scene.gltf", &wide).path, &["UTF-16", "UTF-8"]);
 }

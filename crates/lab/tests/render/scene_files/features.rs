@@ -1,6 +1,6 @@
 //! Features of meshes, nodes, lights and cameras.
 
-use super::builder::{Gltf, TRIANGLE};
+use super::builder::{Gltf, TRIANGLE, written};
 use afterimage_lab::scene::PunctualKind;
 use glam::{Vec2, Vec3, Vec4};
 use serde_json::json;
@@ -34,6 +34,17 @@ fn lists_strips_and_fans_give_the_same_square() {
         assert!(triangles.normals.iter().flatten().all(|n| *n == Vec3::Z));
         assert!(scene.warnings.is_empty());
     }
+}
+
+#[test]
+fn a_binary_scene_with_another_ending_is_read_by_its_first_bytes() {
+    let file = with_mode(&SQUARE, Some(&[0, 1, 2, 1, 3, 2]), 4);
+    for name in ["SCENE.GLB", "scene.bin", "download"] {
+        let file = written(name, &file.glb());
+        assert!(afterimage_lab::source::is_scene(file.path.to_str().unwrap()), "{name}");
+        assert_eq!(super::open(&file.path).unwrap().still().len(), 2, "{name}");
+    }
+    assert!(!afterimage_lab::source::is_scene(written("scene.bin", b"words").path.to_str().unwrap()));
 }
 
 #[test]
@@ -232,4 +243,69 @@ fn builtin_and_unknown_names_are_told_apart() {
         let error = afterimage_lab::scene::Scene::open(input, &limits).unwrap_err().to_string();
         assert!(error.contains(word) && error.starts_with(input), "{error}");
     }
+}
+
+/// A triangle under a node at (0, 0, 1) that turns by 90 degrees about z, with this instancing.
+fn instanced(attributes: serde_json::Value, make: impl FnOnce(&mut Gltf)) -> Gltf {
+    let mut file = Gltf::new();
+    let mesh = file.triangle();
+    make(&mut file);
+    let turn = [0.0, 0.0, 0.5f64.sqrt(), 0.5f64.sqrt()];
+    let instancing = json!({"EXT_mesh_gpu_instancing": {"attributes": attributes}});
+    file.node(json!({"mesh": mesh, "translation": [0, 0, 1], "rotation": turn, "extensions": instancing}));
+    file.json["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
+    file
+}
+
+#[test]
+fn instances_stand_below_their_node() {
+    let moved = [[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [0.0, 0.0, -2.0f32]];
+    let mut file = instanced(json!({"TRANSLATION": 1, "SCALE": 2, "ROTATION": 3}), |file| {
+        assert_eq!(file.floats(&moved), 1);
+        file.floats(&[[1.0; 3], [2.0; 3], [1.0, 1.0, -1.0]]);
+        // Half a turn about x in the last one, in normalised bytes.
+        let turns = [[0, 0, 0, 127], [0, 0, 0, 127], [127, 0, 0, 0u8]];
+        let turns = file.accessor(turns.as_flattened(), 3, "VEC4", 5120);
+        file.json["accessors"][turns]["normalized"] = json!(true);
+    });
+    let scene = file.open();
+    assert_eq!(scene.warnings, [""; 0]);
+    let world = |p: [f32; 3]| [-p[1], p[0], p[2] + 1.0];
+    let expected = [
+        TRIANGLE.map(world),
+        TRIANGLE.map(|p| world([2.0 * p[0] + 5.0, 2.0 * p[1], 2.0 * p[2]])),
+        // Mirrored: two corners change places.
+        [0, 2, 1].map(|i| TRIANGLE[i]).map(|p| world([p[0], -p[1], -2.0])),
+    ];
+    assert_eq!(scene.still().len(), 3);
+    for (triangle, expected) in scene.still().positions.iter().zip(expected) {
+        for (found, expected) in triangle.iter().zip(expected) {
+            assert!(found.distance(expected.into()) < 1e-6, "{triangle:?} not {expected:?}");
+        }
+    }
+    // With the node in motion, its instances move with it.
+    file.animate(0, "translation", "LINEAR", &[0.0, 1.0], &[[0.0, 0.0, 1.0], [0.0, 0.0, 3.0]]);
+    let moving = file.open();
+    let (now, later) = (moving.pose(0.0).moving, moving.pose(0.5).moving);
+    assert_eq!((now.len(), moving.still().len()), (3, 0));
+    for (a, b) in now.positions.iter().flatten().zip(later.positions.iter().flatten()) {
+        assert!(b.distance(*a + glam::Vec3::Z) < 1e-6);
+    }
+}
+
+#[test]
+fn instances_of_a_wrong_number_are_refused_and_none_are_none() {
+    let two = |file: &mut Gltf| {
+        file.floats(&[[0.0f32; 3]; 2]);
+        file.floats(&[[1.0f32; 3]; 3]);
+    };
+    instanced(json!({"TRANSLATION": 1, "SCALE": 2}), two).assert_refused(&["scales of instances", "expected 2"]);
+    instanced(json!({"TRANSLATION": 9}), two).assert_refused(&["accessor 9"]);
+    instanced(json!({"TRANSLATION": "x"}), two).assert_refused(&["TRANSLATION"]);
+    instanced(json!({"ROTATION": 1}), two).assert_refused(&["rotations of instances"]);
+    let huge = instanced(json!({"SCALE": 1}), two).with("/accessors/1/count", json!(u64::MAX));
+    huge.assert_refused(&[]);
+    assert_eq!(instanced(json!({"SCALE": 2}), two).open().still().len(), 3);
+    assert_eq!(instanced(json!({}), two).open().still().len(), 1, "no attributes");
+    assert_eq!(instanced(json!({"_ID": 1}), two).open().still().len(), 1, "an attribute of an application");
 }

@@ -1,7 +1,7 @@
 //! Materials, their extensions, their textures and texture coordinates.
 
 use super::builder::{Gltf, encoded, png};
-use afterimage_lab::scene::{Alpha, Material, Wrap};
+use afterimage_lab::scene::{Alpha, Coordinates, Material, Wrap};
 use glam::Vec2;
 use image::DynamicImage;
 use serde_json::{Value, json};
@@ -196,7 +196,7 @@ fn extension_textures_are_taken_and_images_shared() {
 }
 
 #[test]
-fn texture_transforms_are_baked_and_disagreement_is_named() {
+fn texture_transforms_that_agree_are_baked_and_others_are_the_textures() {
     let transform = |rotation: f64| {
         json!({"index": 0, "extensions": {"KHR_texture_transform":
         {"offset": [0.25, 0.5], "rotation": rotation, "scale": [2.0, 4.0]}}})
@@ -212,8 +212,25 @@ fn texture_transforms_are_baked_and_disagreement_is_named() {
     for (found, expected) in scene.still().uvs[0].iter().zip(expected) {
         assert!(found.abs_diff_eq(expected, 1e-6), "{found} {expected}");
     }
+    assert_eq!(scene.textures.iter().map(|t| t.coordinates).collect::<Vec<_>>(), [Coordinates::default()]);
     file.json["materials"][0]["normalTexture"] = transform(0.0);
-    assert!(file.open().warnings[0].contains("different texture coordinates"));
+    let scene = file.open();
+    assert_eq!(scene.warnings, [""; 0]);
+    assert_eq!(scene.still().uvs[0], [Vec2::ZERO, Vec2::X, Vec2::Y]);
+    let [base, normal] = [0, 1].map(|i| scene.textures[i].coordinates);
+    assert_eq!(normal, Coordinates { second: false, rows: [[2.0, 0.0, 0.25], [0.0, 4.0, 0.5]] });
+    for (found, expected) in base.rows.as_flattened().iter().zip([0.0, 4.0, 0.25, -2.0, 0.0, 0.5]) {
+        assert!((found - expected).abs() < 1e-6, "{base:?}");
+    }
+    assert_eq!(scene.textures[0].texels, scene.textures[1].texels);
+    // Of three sets, the third is named.
+    let uv = |set: u32| json!({"index": 0, "texCoord": set});
+    file.json["materials"][0] = json!({"pbrMetallicRoughness": {"baseColorTexture": uv(0)}, "normalTexture": uv(1),
+        "emissiveTexture": uv(2)});
+    file.set("TEXCOORD_1", &[[0.5, 0.5]; 3]);
+    let scene = file.open();
+    assert!(scene.warnings[0].contains("third set of texture coordinates"), "{:?}", scene.warnings);
+    assert_eq!(scene.still().second_uvs, [[Vec2::splat(0.5); 3]]);
 }
 
 #[test]
@@ -225,4 +242,41 @@ fn the_second_set_of_coordinates_is_found() {
     let scene = file.open();
     assert_eq!(scene.warnings, [""; 0]);
     assert_eq!(scene.still().uvs[0], [Vec2::splat(0.5), Vec2::new(0.6, 0.5), Vec2::ZERO]);
+}
+
+#[test]
+fn specular_glossiness_is_converted() {
+    let name = "KHR_materials_pbrSpecularGlossiness";
+    let read = |value: Value| extension(name, value);
+    let m = read(
+        json!({"diffuseFactor": [0.8, 0.2, 0.1, 0.5], "specularFactor": [0.04, 0.08, 0], "glossinessFactor": 0.3}),
+    );
+    assert_eq!((m.base_color, m.opacity, m.metallic, m.roughness), ([0.8, 0.2, 0.1], 0.5, 0.0, 0.7));
+    for (found, expected) in m.specular_color.iter().zip([1.0, 2.0, 0.0]) {
+        assert!((found - expected).abs() < 1e-6, "{:?}", m.specular_color);
+    }
+    // Its defaults: white, and a mirror.
+    let m = read(json!({}));
+    assert_eq!((m.base_color, m.opacity, m.roughness), ([1.0; 3], 1.0, 0.0));
+    assert!((m.specular_color[0] * 0.04 - 1.0).abs() < 1e-6);
+    // Textures: glossiness in alpha becomes roughness in G, the specular color stays.
+    let spec_gloss = json!({"diffuseTexture": {"index": 0}, "specularGlossinessTexture": {"index": 0},
+        "glossinessFactor": 0.5, "specularFactor": [0.5, 0.5, 0.5]});
+    let mut file = Gltf::with_material(json!({"extensions": {name: spec_gloss},
+        "pbrMetallicRoughness": {"baseColorFactor": [0, 1, 0, 1], "metallicFactor": 1}}));
+    file.texture(&png([2, 1], |x, _| [10, 20, 30, if x == 0 { 255 } else { 51 }]));
+    file.json["extensionsUsed"] = json!([name]);
+    let scene = file.open();
+    assert_eq!(scene.warnings, [""; 0]);
+    let m = &scene.materials[0];
+    let texels =
+        |t: Option<afterimage_lab::scene::TextureRef>| scene.textures[t.unwrap().texture as usize].texels.clone();
+    assert_eq!(texels(m.base_color_texture)[1], [10, 20, 30, 51]);
+    assert_eq!(m.specular_color_texture, m.base_color_texture, "one texture");
+    let rough: Vec<u8> = texels(m.metallic_roughness_texture).iter().map(|t| t[1]).collect();
+    assert_eq!(rough, [128, 230]);
+    assert_eq!((m.base_color, m.metallic, m.roughness), ([1.0; 3], 0.0, 1.0));
+    // A required extension is supported, too.
+    file.json["extensionsRequired"] = json!([name]);
+    file.open();
 }

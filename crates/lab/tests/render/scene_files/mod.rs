@@ -7,6 +7,7 @@ mod bad_input;
 pub mod builder;
 mod builtin;
 mod complete;
+mod far;
 mod features;
 mod framing;
 mod limits;

@@ -5,8 +5,8 @@ use super::scenes::DARK;
 use crate::given::device;
 use afterimage::Image;
 use afterimage_lab::scene::{
-    Alpha, Camera, Environment, Material, Pose, PunctualKind, PunctualLight, Scene, Texture, TextureRef, Triangles,
-    Wrap,
+    Alpha, Camera, Coordinates, Environment, Material, Pose, PunctualKind, PunctualLight, Scene, Texture, TextureRef,
+    Triangles, Wrap,
 };
 use afterimage_lab::trace::effects::{Effect, Effects};
 use afterimage_lab::trace::gpu::scene_buffer::Storage;
@@ -45,7 +45,13 @@ fn texture(d: &mut Draws) -> Texture {
     let wrap = || [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
     let texels = (0..size[0] * size[1]).map(|_| d.bits().to_le_bytes()).collect();
     let wrap = [wrap()[d.bits() as usize % 3], wrap()[d.bits() as usize % 3]];
-    Texture { size, texels, wrap, nearest: d.bits().is_multiple_of(4) }
+    let nearest = d.bits().is_multiple_of(4);
+    let mut coordinates = Coordinates::default();
+    if chance(d, 0.2) {
+        coordinates.second = chance(d, 0.5);
+        coordinates.rows = std::array::from_fn(|_| std::array::from_fn(|_| d.range(-2.0, 2.0)));
+    }
+    Texture { size, texels, wrap, nearest, coordinates }
 }
 
 fn material(d: &mut Draws) -> Material {
@@ -111,6 +117,10 @@ fn triangles(d: &mut Draws, count: u32, materials: u32, colored: bool) -> Triang
         t.tangents[i] =
             t.normals[i].map(|n| n.any_orthonormal_vector().extend(if chance(d, 0.5) { 1.0 } else { -1.0 }));
         t.uvs[i] = std::array::from_fn(|_| Vec2::new(d.range(-2.0, 2.0), d.range(-2.0, 2.0)));
+        if chance(d, 0.3) {
+            t.second_uvs.resize(i, [Vec2::ZERO; 3]);
+            t.second_uvs.push(std::array::from_fn(|_| Vec2::new(d.range(-2.0, 2.0), d.range(-2.0, 2.0))));
+        }
         if colored {
             t.colors[i] = std::array::from_fn(|_| Vec4::from_array(std::array::from_fn(|_| d.uniform())));
         }

@@ -4,10 +4,12 @@
 mod agree;
 mod chance;
 mod closed_form;
+mod coordinates;
 mod effects;
 mod equal;
 mod frames;
 mod hard;
+mod quads;
 mod radiosity;
 mod rig;
 mod scenes;

@@ -138,6 +138,12 @@ pub fn under_a_screen() -> Scene {
     let mut scene = made("a screen", materials, t, Pose { cameras: vec![camera], ..Pose::default() }, DARK);
     let texels =
         (0..12).map(|i| [(i * 21) as u8, 255 - (i * 13) as u8, if i % 3 == 0 { 255 } else { 0 }, 255]).collect();
-    scene.textures.push(Texture { size: [4, 3], texels, wrap: [Wrap::Repeat; 2], nearest: false });
+    scene.textures.push(Texture {
+        size: [4, 3],
+        texels,
+        wrap: [Wrap::Repeat; 2],
+        nearest: false,
+        coordinates: Default::default(),
+    });
     scene
 }

@@ -79,6 +79,39 @@ fn jpeg_is_read() {
     }
 }
 
+/// A browser, a camera or a chat may name a file as it likes.
+#[test]
+fn a_file_with_another_ending_is_read_by_its_first_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let size = [37, 19];
+    let color = picture(size);
+    let exr = folder.path().join("a.exr");
+    let frame =
+        FrameToWrite { color: &color, format: ColorFormat::Float, depth: None, motion: None, motion_to_next: None };
+    write(&exr, &frame).unwrap();
+    let flat = DynamicImage::ImageRgb8(ImageBuffer::from_pixel(16, 8, Rgb([200, 100, 50])));
+    let [png, jpeg] = ["a.png", "a.jpg"].map(|name| folder.path().join(name));
+    flat.save(&png).unwrap();
+    flat.save(&jpeg).unwrap();
+    for path in [exr, png, jpeg] {
+        let read = still(&path).color;
+        for name in ["download", "a.dat", "a.exr.part", "a.42"] {
+            let other = folder.path().join(name);
+            std::fs::copy(&path, &other).unwrap();
+            assert!(still(&other).color == read, "{path:?} as {name}");
+        }
+    }
+    // A known ending is believed, so that the message names what was meant.
+    let broken = folder.path().join("b.png");
+    std::fs::copy(folder.path().join("a.exr"), &broken).unwrap();
+    for (name, expected) in [("b.png", "neither a PNG nor a JPEG"), ("text.dat", "not supported"), ("none", "exist")] {
+        std::fs::write(folder.path().join("text.dat"), "words").unwrap();
+        let path = folder.path().join(name);
+        let error = open(path.to_str().unwrap(), &limits(), &SceneOptions::default()).err().unwrap().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
 #[test]
 fn what_is_written_is_read_back() {
     let folder = tempfile::tempdir().unwrap();

@@ -6,7 +6,7 @@ use std::path::Path;
 
 /// Whether an input is a camera file, by its ending.
 pub fn is_camera_file(input: &str) -> bool {
-    input.to_lowercase().ends_with(".json")
+    input.to_lowercase().ends_with(".json") || CameraFile::is_colmap(Path::new(input))
 }
 
 /// Describes a camera file.

@@ -8,6 +8,7 @@ mod scene;
 use crate::args::gaze_log::GazeLogArgs;
 use crate::failure::Failure;
 use afterimage::{ContextDesc, Filter, Gaze, Reset, ViewFrame, ViewGeometry, cpu};
+use afterimage_clip::exposure::Exposure;
 use afterimage_lab::error::InputError;
 use afterimage_lab::source;
 use afterimage_lab::source::motion_check;
@@ -23,7 +24,7 @@ use clap::Args;
 )]
 pub struct InfoArgs {
     /// An input of `run`, a scene (.gltf, .glb, builtin:NAME), a gaze log (a scanpath, or an eye tracker's export), a
-    /// camera file (.json), or the word adapters
+    /// camera file (.json, images.txt), or the word adapters
     pub input: String,
     /// Limit on the size of input images, million pixels
     #[arg(long, default_value_t = 64, value_name = "N")]
@@ -44,7 +45,7 @@ pub fn info(args: &InfoArgs) -> Result<(), Failure> {
     if args.self_test {
         return Err(Failure::Input(format!("--self-test: expected the word adapters, not {}", args.input)));
     }
-    if gaze::is_log(&args.input) {
+    if gaze::is_log(&args.input) && !camera::is_camera_file(&args.input) {
         return gaze::gaze_info(&args.input, &args.log);
     }
     args.log.refuse_for(&args.input)?;
@@ -78,6 +79,9 @@ fn frames_info(source: &mut dyn FrameSource) -> Result<(), InputError> {
     say!("non-finite pixels in frame 0: {}", first.nonfinite);
     let brightest = first.color.pixels().iter().flatten().fold(0.0_f32, |a, &b| a.max(b));
     say!("brightest channel in frame 0, linear: {brightest}");
+    if let Some(hint) = Exposure::Stops(0.0).choose(&first.color, 1.0).hint {
+        say!("warning: {hint}");
+    }
     match &first.depth {
         None => say!("depth: none"),
         Some(depth) => {

@@ -14,7 +14,13 @@ pub fn scene_info(input: &str) -> Result<(), InputError> {
     say!("triangles: {} ({} animated)", scene.still().len() + pose.moving.len(), pose.moving.len());
     match scene.bounds() {
         Some(b) => {
-            say!("bounds, m: x {} to {}, y {} to {}, z {} to {}", b.min.x, b.max.x, b.min.y, b.max.y, b.min.z, b.max.z)
+            let (o, ends) = (scene.origin.to_array(), [b.min.to_array(), b.max.to_array()]);
+            // In the file's coordinates.
+            let range = |i: usize| match o[i] {
+                0.0 => format!("{} to {}", ends[0][i], ends[1][i]),
+                o => format!("{:.3} to {:.3}", o + f64::from(ends[0][i]), o + f64::from(ends[1][i])),
+            };
+            say!("bounds, m: x {}, y {}, z {}", range(0), range(1), range(2));
         }
         None => say!("bounds: none"),
     }

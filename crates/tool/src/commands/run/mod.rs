@@ -10,7 +10,7 @@ use crate::args::input::{FoveatedSampling, InputArgs, Rendering, SourceName};
 use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
     FilterName, FormatName, FoveationArgs, MethodArgs, MethodName, Named, by_name, parse_exposure, parse_frames,
-    parse_latency, parse_samples,
+    parse_latency, parse_samples, tell_exposure,
 };
 use crate::clip::run_report::{RunFacts, write_report};
 use crate::clip::{ClipReport, REPORTS};
@@ -18,12 +18,14 @@ use crate::failure::Failure;
 use crate::output::Output;
 use crate::report::cameras::cameras_json;
 use afterimage::{DebugView, Filter};
+use afterimage_clip::exposure::Exposure;
 use afterimage_lab::device::Backend;
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::scanpath::{HeadPath, write_csv};
 use afterimage_lab::source::FrameSource;
 use afterimage_lab::trace::sampling::Sampling;
 use clap::{Args, Parser};
+use glam::DMat4;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -64,6 +66,10 @@ pub struct RunArgs {
     /// gaze.csv have the true one; at most 1000
     #[arg(long, default_value_t = 0.0, value_parser = parse_latency, value_name = "MS")]
     pub gaze_latency: f64,
+    /// Keep the fovea in the middle of the frame, as without an eye tracker: the renderer and the methods see that
+    /// gaze, scores and gaze.csv have the true one
+    #[arg(long, conflicts_with = "gaze_latency")]
+    pub fixed_fovea: bool,
     #[command(flatten)]
     pub sampling: SamplingArgs,
     #[command(flatten)]
@@ -87,9 +93,9 @@ pub struct RunArgs {
     /// File format of frames: 8-bit sRGB PNG, or linear half-float EXR
     #[arg(long, value_enum, default_value = "png")]
     pub format: FormatName,
-    /// Exposure before sRGB encoding, stops
-    #[arg(long, default_value_t = 0.0, value_parser = parse_exposure, value_name = "EV", allow_negative_numbers = true)]
-    pub exposure: f32,
+    /// Exposure before sRGB encoding, stops, or auto: what makes the mean of the first frame middle grey
+    #[arg(long, default_value = "0", value_parser = parse_exposure, value_name = "EV|auto", allow_negative_numbers = true)]
+    pub exposure: Exposure,
     /// Also write the full-rate frames
     #[arg(long)]
     pub reference: bool,
@@ -135,7 +141,9 @@ impl RunArgs {
 
     /// Settings for rendering a scene on `backend`.
     pub fn rendering(&self, backend: &Backend, head: Option<&HeadPath>) -> Result<Rendering, Failure> {
-        let foveated = self.sampling()?.map(|pattern| FoveatedSampling {
+        // Methods choose the pixels of quads; a pattern has none of its own.
+        let pattern = self.sampling()?.or(self.foveation.is_quads().then_some(Sampling::Uniform));
+        let foveated = pattern.map(|pattern| FoveatedSampling {
             pattern,
             sparse: self.is_sparse().then_some(self.foveation.order),
             reference_spp: self.reference_samples.unwrap_or(64),
@@ -206,6 +214,7 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let plan = plan::plan(args, source.info(), backend, head.as_ref())?;
     // The input can be read, or nothing is written.
     let playback = plan.clip.start(source.as_mut())?;
+    tell_exposure(playback.exposure());
     let cameras: Vec<String> = folders(args).iter().map(|folder| format!("{folder}/cameras.json")).collect();
     let reports: Vec<&str> = REPORTS.into_iter().chain(OF_HEAD).chain(cameras.iter().map(String::as_str)).collect();
     let out = Output::create(&args.out, &folders(args), &reports)?;
@@ -229,6 +238,7 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
         gaze_map: plan.gaze_map,
         start_s: args.gaze.start,
         gaze_latency_ms: args.gaze_latency,
+        fixed_fovea: args.fixed_fovea,
     };
     write_report(&facts, &plan.clip, &report, &out)?;
     out.finish()?;
@@ -250,7 +260,11 @@ fn write_head(
     write_csv(head.scanpath(), &mut csv).map_err(|e| Failure::Work(format!("scanpath.csv: {e}")))?;
     out.text("scanpath.csv", &String::from_utf8_lossy(&csv))?;
     let frames = 0..plan.clip.gaze.len() as u64;
-    let poses: Vec<_> = frames.filter_map(|frame| Some(source.camera_pose(frame)?.world_from_camera)).collect();
+    let pose = |frame| {
+        let pose = source.camera_pose(frame)?;
+        Some(DMat4::from_translation(pose.origin) * pose.world_from_camera)
+    };
+    let poses: Vec<_> = frames.filter_map(pose).collect();
     let mut table = out.table("pose.csv", "frame,x_m,y_m,z_m,qx,qy,qz,qw")?;
     for (frame, pose) in poses.iter().enumerate() {
         let (_, q, p) = pose.to_scale_rotation_translation();

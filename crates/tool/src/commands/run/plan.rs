@@ -50,6 +50,9 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
     }
     let track = args.gaze.resolve(&geometry, fps, input::frames(args.frames, info), head, args.gaze_latency)?;
     let frames = track.px.len();
+    // Pixels lie at whole numbers.
+    let middle_px = geometry.size_px().map(|side| 0.5 * (side as f32 - 1.0));
+    let fixed = args.fixed_fovea.then(|| vec![Some(middle_px); frames]);
     if args.score_from >= frames {
         return refuse(format!(
             "--score-from {}: the clip has {frames} frames; choose an earlier one",
@@ -71,9 +74,9 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
             reference_samples: args.reference_samples()?,
             methods,
             gaze: track.px,
-            late_gaze: track.late_px,
+            late_gaze: fixed.or(track.late_px),
             score_from: args.score_from,
-            exposure_ev: args.exposure,
+            exposure: args.exposure,
             write_frame: args.format.writer(),
             write_reference: args.reference,
             debug: args.debug.iter().map(|&view| (view.name(), view)).collect(),
@@ -151,11 +154,13 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
     Ok(RunKind::PostProcess(settings))
 }
 
-/// Refuses renderers that do not shade single quads.
+/// Refuses sampling patterns, which choose pixels themselves.
 fn check_quads(args: &RunArgs) -> Result<(), Failure> {
-    if args.input.is_scene() && !args.input.is_rasterised() {
-        let text = "--foveation quads: is not traced; use --source raster, or --foveation sparse";
-        return Err(Failure::Input(text.into()));
+    if args.sampling.sampling != SamplingName::Uniform {
+        let name = args.sampling.sampling.name();
+        return Err(Failure::Input(format!(
+            "--foveation quads: methods choose the pixels, and --sampling {name} chooses them, too; leave one of the two out"
+        )));
     }
     Ok(())
 }

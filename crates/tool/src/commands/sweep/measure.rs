@@ -153,9 +153,9 @@ fn play(
         sums.samples = result.frame.samples.map(|now| sums.samples.unwrap_or(0) + now).or(sums.samples);
         sums.frames += 1;
         let foveated = batch.subjects.iter().position(|s| s.method.name() == MethodKind::None.name());
-        let foveated = foveated.map(|i| metric::encode(&result.step.outputs[i + 1].image, clip.exposure_ev));
+        let foveated = foveated.map(|i| metric::encode(&result.step.outputs[i + 1].image, result.exposure_ev));
         let of_subject = |(accumulator, (subject, shown)): (&mut MethodAccumulator, (&Planned, &MethodOutput))| {
-            let encoded = metric::encode(&shown.image, clip.exposure_ev);
+            let encoded = metric::encode(&shown.image, result.exposure_ev);
             accumulator.push(result.frame, result.reference, &encoded, foveated.as_ref(), shown, result.step);
             if is_last { pictures(store, subject, result.reference.encoded(), &encoded, &flip) } else { Ok(()) }
         };

@@ -58,9 +58,21 @@ pub struct SweepArgs {
     /// Frames of each point, at least 38: 8 to warm up and 30 timed
     #[arg(long, value_name = "N")]
     pub frames: Option<u64>,
-    /// Scanpath, fixed pixel, or synthetic[:SEED], as for run
+    /// Scanpath, export of an eye tracker, fixed pixel, or synthetic[:SEED], as for run
     #[arg(long, value_name = "GAZE", allow_hyphen_values = true)]
     pub gaze: Option<String>,
+    /// Screen of a gaze log, pixels, as for run
+    #[arg(long, value_name = "WxH")]
+    pub screen_px: Option<String>,
+    /// Screen of a gaze log, millimeters, as for run
+    #[arg(long, value_name = "WxH")]
+    pub screen_mm: Option<String>,
+    /// Distance of the screen of a gaze log, millimeters, as for run
+    #[arg(long, value_name = "D")]
+    pub distance_mm: Option<String>,
+    /// Gaze of a log with both eyes, as for run
+    #[arg(long, value_name = "NAME")]
+    pub eye: Option<String>,
     /// Start time in the scanpath, seconds
     #[arg(long, value_name = "S")]
     pub start: Option<f64>,
@@ -96,6 +108,10 @@ impl SweepArgs {
         let given = [
             ("frames", self.frames.map(|v| v.to_string())),
             ("gaze", self.gaze.clone()),
+            ("screen-px", self.screen_px.clone()),
+            ("screen-mm", self.screen_mm.clone()),
+            ("distance-mm", self.distance_mm.clone()),
+            ("eye", self.eye.clone()),
             ("start", self.start.map(|v| v.to_string())),
             ("size", self.size.clone()),
             ("source", self.source.clone()),

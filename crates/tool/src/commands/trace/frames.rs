@@ -37,13 +37,30 @@ pub fn folders(args: &TraceArgs, eye: &str) -> Vec<String> {
     folders
 }
 
-/// Writes the files of frame `index` of an eye, with its views in this frame and the previous one.
+/// Which frame, and how it is exposed.
+pub struct Place<'a> {
+    pub eye: &'a str,
+    pub index: usize,
+    pub exposure_ev: f32,
+}
+
+impl TraceArgs {
+    /// Linear value that is white in the files: all but 1 with Reinhard's curve.
+    pub fn white(&self) -> f64 {
+        let default = if self.format == Some(FormatName::Exr) { TonemapName::None } else { TonemapName::Reinhard };
+        match self.tonemap.unwrap_or(default) {
+            TonemapName::Reinhard => 100.0,
+            TonemapName::None => 1.0,
+        }
+    }
+}
+
+/// Writes the files of a frame of an eye, with its views in this frame and the previous one.
 pub fn write(
     args: &TraceArgs,
     out: &Output,
     setup: &Setup,
-    eye: &str,
-    index: usize,
+    &Place { eye, index, exposure_ev }: &Place,
     picture: &Picture,
     [view, previous]: [&View; 2],
 ) -> Result<(), Failure> {
@@ -56,7 +73,7 @@ pub fn write(
         depth = wants(AovName::Depth).then(|| seen.depth.map(|d| if d.is_finite() { d } else { BACKGROUND_M }));
         motion = wants(AovName::Motion).then_some(seen.motion);
     }
-    let scale = args.exposure.exp2();
+    let scale = exposure_ev.exp2();
     let mapped = |name: Option<TonemapName>, default: TonemapName| {
         let reinhard = name.unwrap_or(default) == TonemapName::Reinhard;
         color.map(|c| c.map(|v| if reinhard { v * scale / (1.0 + v * scale) } else { v * scale }))

@@ -9,17 +9,18 @@ pub mod setup;
 use crate::args::backend::BackendName;
 use crate::args::paths::PathArgs;
 use crate::args::pattern::PatternArgs;
-use crate::args::{parse_exposure, parse_fps, parse_frames, parse_hfov, parse_samples, parse_size};
+use crate::args::{parse_exposure, parse_fps, parse_frames, parse_hfov, parse_samples, parse_size, tell_exposure};
 use crate::failure::Failure;
 use crate::output::Output;
 use crate::progress;
+use afterimage_clip::exposure::Exposure;
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::trace::sampling::Sampling;
 use afterimage_lab::trace::view::View;
 use clap::{Args, ValueEnum};
 use eye_frame::EyeFrame;
 use eyes::{Eyes, below, scanpath_csv};
-use frames::{folders, write};
+use frames::{Place, folders, write};
 use report::Report;
 use setup::Setup;
 use std::path::PathBuf;
@@ -58,8 +59,8 @@ pub struct TraceArgs {
     /// A camera of the scene by name; still (the scene's first camera, else one that frames the scene), lateral, orbit,
     /// walk, head (the poses of the head in --gaze FILE.csv, or somebody who looks around with head and eye with --gaze
     /// synthetic:SEED), head-walk (the same, walking); or a .json file (cameras.json, transforms.json,
-    /// keyframes ...; docs/cameras.md); default: still
-    #[arg(long, value_name = "NAME|FILE.json")]
+    /// keyframes ...; docs/cameras.md), or another scene (.gltf, .glb) for its first camera; default: still
+    #[arg(long, value_name = "NAME|FILE")]
     pub camera: Option<String>,
     /// Animation of the scene to play, by name or number; default: the first
     #[arg(long, value_name = "NAME")]
@@ -91,9 +92,9 @@ pub struct TraceArgs {
     /// File format of color: linear half-float EXR or 8-bit sRGB PNG; default: both
     #[arg(long, value_enum)]
     pub format: Option<crate::args::FormatName>,
-    /// Exposure before tone mapping, stops
-    #[arg(long, default_value_t = 0.0, value_parser = parse_exposure, value_name = "EV", allow_negative_numbers = true)]
-    pub exposure: f32,
+    /// Exposure before tone mapping and encoding, stops, or auto: what makes the mean of the first frame middle grey
+    #[arg(long, default_value = "0", value_parser = parse_exposure, value_name = "EV|auto", allow_negative_numbers = true)]
+    pub exposure: Exposure,
     /// Tone mapping; default: reinhard for png, none for exr
     #[arg(long, value_enum)]
     pub tonemap: Option<TonemapName>,
@@ -138,6 +139,7 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
     let bar = progress::bar(args.frames * eyes.names().len() as u64 * u64::from(args.size[1]), "{percent} %");
     let mut previous: Option<View> = None;
     let mut gaze = GazeTracks::default();
+    let mut exposure_ev = None;
     for frame in 0..args.frames {
         let time_s = frame as f64 / f64::from(setup.of.fps);
         let head = setup.pose(frame, time_s)?;
@@ -162,7 +164,13 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
             };
             setup.tracer.check()?;
             report.count(eye, &counts, &clock);
-            write(args, &out, &setup, name, frame as usize, &picture, [&views[eye], &before[eye]])?;
+            let exposure_ev = *exposure_ev.get_or_insert_with(|| {
+                let chosen = args.exposure.choose(&picture.color, args.white());
+                bar.suspend(|| tell_exposure(&chosen));
+                chosen.ev
+            });
+            let place = Place { eye: name, index: frame as usize, exposure_ev };
+            write(args, &out, &setup, &place, &picture, [&views[eye], &before[eye]])?;
         }
         report.heads.push(head);
         previous = Some(head);

@@ -10,6 +10,7 @@ use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
 use afterimage_lab::trace::effects::Effects;
 use afterimage_lab::trace::view::View;
+use glam::DMat4;
 use serde::Serialize;
 
 /// Sums over the frames.
@@ -213,7 +214,8 @@ impl Report {
     /// Camera poses as a cameras.json (z up), which `run` reads with the frames and `--camera` accepts. `view_of` maps
     /// the head's view to the camera.
     pub fn cameras_json(&self, args: &TraceArgs, setup: &Setup, view_of: impl Fn(&View) -> View) -> String {
-        let poses = self.heads.iter().map(|head| view_of(head).world_from_camera());
+        let to_file = DMat4::from_translation(setup.of.scene.origin);
+        let poses = self.heads.iter().map(|head| to_file * view_of(head).world_from_camera());
         cameras_json(args.size, setup.of.fps, self.hfov_deg(), poses)
     }
 

@@ -31,7 +31,7 @@ mod viewer;
 use crate::args::backend::BackendName;
 use crate::args::gaze_log::GazeLogArgs;
 use crate::args::input::{InputArgs, Rendering};
-use crate::args::{FoveationArgs, MethodArgs, by_name, parse_exposure, parse_frames};
+use crate::args::{FoveationArgs, MethodArgs, by_name, parse_frames, parse_stops};
 use crate::failure::Failure;
 use afterimage::Filter;
 use afterimage_lab::scanpath::GazeMap;
@@ -85,7 +85,7 @@ pub struct ViewArgs {
     #[arg(long, default_value_t = 0, value_name = "N")]
     pub seed: u64,
     /// Exposure before sRGB encoding, stops
-    #[arg(long, default_value_t = 0.0, value_parser = parse_exposure, value_name = "EV", allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.0, value_parser = parse_stops, value_name = "EV", allow_negative_numbers = true)]
     pub exposure: f32,
     /// Rendering resolution as a factor on the input's, above 0 and at most 1; default: 1, lowered on a software device
     /// that is too slow
