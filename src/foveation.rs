@@ -4,13 +4,13 @@
 use crate::error::{SettingsError, check};
 use crate::kernel::foveate;
 use crate::kernel::lattice::offset_px;
-#[cfg(feature = "bevy-0-19")]
+#[cfg(feature = "bevy-0-20")]
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
 /// Filter by which a renderer shades coarse regions. Default: [`Mip`](Self::Mip). Example: [`Foveation`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
-#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
+#[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 #[non_exhaustive]
 pub enum Filter {
     /// Mip levels of linear light (means of 2x2 pixels), trilinear between levels: renderers that shade fewer pixels
@@ -85,7 +85,7 @@ impl Filter {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
-#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
+#[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 pub struct Foveation {
     /// Filter of coarse regions. Default [`Filter::Mip`].
     pub filter: Filter,

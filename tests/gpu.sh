@@ -13,7 +13,7 @@ build() {
     step "build of the tool"
     cargo build --locked --release -p afterimage-cli --bin afterimage
     step "build of Bevy's example"
-    (cd crates/bevy && cargo build --locked --release --example measure)
+    (cd crates/bevy && cargo build --locked --ignore-rust-version --release --example measure)
     mkdir -p "$1"
     cp "${CARGO_TARGET_DIR:-target}/release/afterimage" "${CARGO_TARGET_DIR:-crates/bevy/target}/release/examples/measure" "$1/"
 }
@@ -58,7 +58,7 @@ run() {
         for size in 1920x1080 3840x2160; do
             for scene in courtyard cheap both; do
                 step "Bevy: $scene, $size"
-                for mode in full prepass sparse; do
+                for mode in full prepass quads; do
                     limited 40 "$measure" "$scene@$size" $mode fixtures/scanpath_viewing.csv 60 | tail -n 1 | tee -a "$work/bevy.txt"
                 done
             done

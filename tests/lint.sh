@@ -18,7 +18,7 @@ step "lints: every target, and the combinations of features that users build"
 cargo clippy "${everything[@]}" --all-targets -- -D warnings
 cargo clippy --locked -p afterimage -- -D warnings
 cargo clippy --locked -p afterimage --no-default-features --features cpu -- -D warnings
-# The tests of the plugin for Bevy run the drop-in on wgpu 29.
+# For engines on wgpu 29: nothing here uses it otherwise.
 cargo clippy --locked -p afterimage --no-default-features --features wgpu-29 -- -D warnings
 # What `cargo demo` builds.
 cargo clippy --locked -p afterimage-clip -- -D warnings

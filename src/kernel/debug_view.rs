@@ -4,14 +4,14 @@
 use super::color::srgb_decode;
 use super::reproject::Verdict;
 use super::sanitize::is_finite;
-#[cfg(feature = "bevy-0-19")]
+#[cfg(feature = "bevy-0-20")]
 use bevy_reflect::Reflect;
 use glam::Vec3;
 
 /// Debug view: an image of one quantity of the decision at each pixel. `gpu::Afterimage::record_view` draws it and has
 /// an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "bevy-0-19", derive(Reflect))]
+#[cfg_attr(feature = "bevy-0-20", derive(Reflect))]
 #[repr(u32)]
 #[non_exhaustive]
 pub enum DebugView {

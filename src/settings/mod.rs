@@ -6,7 +6,7 @@ pub use wrs::{Bias, Gate, GateMetric, GateScale, Sampler, Wrs};
 
 use crate::error::{SettingsError, check};
 use crate::foveation::{Filter, Foveation};
-#[cfg(feature = "bevy-0-19")]
+#[cfg(feature = "bevy-0-20")]
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
 /// Method with its settings: how history is stored and combined with the foveated frame. Default:
@@ -21,7 +21,7 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
-#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
+#[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 #[non_exhaustive]
 pub enum Method {
     /// No method: the foveated frame unchanged, except that non-finite pixels are black. No history.
@@ -82,7 +82,7 @@ pub enum MethodKind {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
-#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
+#[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 pub struct Smr {
     /// Share of equally coarse history in the output: 0 to 0.98. A larger share reduces the flicker of coarse regions
     /// in motion, and follows changes of light later. Default 0.9.
@@ -135,7 +135,7 @@ impl Smr {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
-#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
+#[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 pub struct DepthTest {
     /// Largest relative difference of distance within one surface: 0.0001 to 0.999. Less rejects valid history where
     /// motion or depth is imprecise; more lets surfaces at similar distance bleed into each other. Default 0.02.
@@ -166,7 +166,7 @@ impl Default for DepthTest {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
-#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
+#[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 pub struct Settings {
     /// Method with its settings: how history is stored and combined with the frame. Default [`Method::Smr`].
     pub method: Method,

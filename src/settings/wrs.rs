@@ -1,7 +1,7 @@
 //! Settings of weighted reservoirs.
 
 use crate::error::{SettingsError, check};
-#[cfg(feature = "bevy-0-19")]
+#[cfg(feature = "bevy-0-20")]
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
 /// Sampler of [`Method::Wrs`](super::Method::Wrs): rule by which a reservoir chooses between its sample and the
@@ -9,7 +9,7 @@ use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 /// [`Wrs`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
-#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
+#[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 #[non_exhaustive]
 pub enum Sampler {
     /// A-Chao, as in the paper: each frame draws anew against the ratio of weight sums.
@@ -28,7 +28,7 @@ pub enum Sampler {
 /// ever be taken. Default: [`Bernoulli`](Self::Bernoulli). Example: [`Wrs`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
-#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
+#[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 #[non_exhaustive]
 pub enum Bias {
     /// Bernoulli survival (eq. 5 of the paper): weight sums grow like a square root instead of linearly.
@@ -46,7 +46,7 @@ pub enum Bias {
 /// Color difference that a [`Gate`] measures. Default: [`DeltaE94`](Self::DeltaE94). Example: [`Gate`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
-#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
+#[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 #[non_exhaustive]
 pub enum GateMetric {
     /// Delta E 94: lightness, chroma and hue.
@@ -59,7 +59,7 @@ pub enum GateMetric {
 /// Scale at which a [`Gate`] compares colors. Default: [`Sample`](Self::Sample). Example: [`Gate`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
-#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
+#[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 #[non_exhaustive]
 pub enum GateScale {
     /// Compares the stored sample with the candidate, as in the paper. A sharp sample differs from the blurred
@@ -87,7 +87,7 @@ pub enum GateScale {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
-#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
+#[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 pub struct Gate {
     /// Measure of the color difference. Default [`GateMetric::DeltaE94`].
     pub metric: GateMetric,
@@ -120,7 +120,7 @@ impl Default for Gate {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default, deny_unknown_fields))]
-#[cfg_attr(feature = "bevy-0-19", derive(Reflect), reflect(Default))]
+#[cfg_attr(feature = "bevy-0-20", derive(Reflect), reflect(Default))]
 pub struct Wrs {
     /// Rule by which a reservoir chooses. Default [`Sampler::AChao`].
     pub sampler: Sampler,

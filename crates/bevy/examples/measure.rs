@@ -7,12 +7,14 @@
 //! pixels are cheap); worst (cheap at 640x360); grille (the courtyard with thin bars and edges at slopes); grille-slow
 //! (camera at a fifth of the speed). SCENE@WIDTHxHEIGHT has another size.
 //!
-//! MODE: full, prepass (full rate with a depth prepass), msaa (full rate, Bevy's MSAA
-//! of 4), taa:SCALE (Bevy's temporal antialiasing at SCALE of both sides, enlarged bilinearly), quad, sparse (the
-//! default), sparse48 (rates of 4 and 8), antialiased (sparse), reference (full rate with four samples a pixel).
+//! MODE: full; prepass (full rate with depth and motion prepasses); msaa (full rate, Bevy's MSAA of 4); taa:SCALE
+//! (Bevy's temporal antialiasing at SCALE of both sides, enlarged bilinearly); quads (foveated, the default);
+//! uniform:SHARE (without a gaze); quads+aa, uniform:SHARE+aa (antialiased); reference (full rate with four samples a
+//! pixel).
 //!
-//! Prints the time of a frame, from its start until the device has finished it, and CPU time of the process. With
-//! FOLDER writes the frames there as PNG, and the gaze as `gaze.csv`.
+//! Prints the time of a frame, from its start until the device has finished it; CPU time of the process; and on Linux
+//! CPU time of all but the software renderer's threads and the submission to it: what the application itself costs.
+//! Systems run one after the other. With FOLDER writes the frames there as PNG, and the gaze as `gaze.csv`.
 //!
 //! `cargo run --release --example measure -- psnr FOLDER REFERENCE`
 //!
@@ -22,8 +24,11 @@ mod common;
 
 use bevy::anti_alias::taa::TemporalAntiAliasing;
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass};
+use bevy::ecs::schedule::{Schedules, SingleThreadedExecutor};
 use bevy::prelude::*;
-use bevy_afterimage::{Afterimage, Foveated, FoveationKind, Gaze, Scanpath};
+use bevy::render::RenderApp;
+use bevy::render::renderer::{RenderGraph, RenderGraphSystems};
+use bevy_afterimage::{Afterimage, AfterimageStats, Foveated, Gaze, Scanpath};
 use common::crowd::CrowdPlugin;
 use common::grille::GrillePlugin;
 use common::headless::{FRAME, Headless, psnr_db, read_png, write_png};
@@ -31,6 +36,7 @@ use common::scene::{Mover, ScenePlugin, TONEMAPPING, stroll};
 use rustix::time::{ClockId, clock_gettime};
 use std::error::Error;
 use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 const LAMPS: usize = 12;
@@ -78,9 +84,56 @@ const fn crowd(side: usize, casts_shadows: bool, lamps: usize) -> Extra {
     Extra::Crowd(CrowdPlugin { side, casts_shadows, lamps })
 }
 
-fn cpu_ms() -> f64 {
-    let time = clock_gettime(ClockId::ProcessCPUTime);
+fn ms(clock: ClockId) -> f64 {
+    let time = clock_gettime(clock);
     1e3 * time.tv_sec as f64 + 1e-6 * time.tv_nsec as f64
+}
+
+/// CPU time of submissions so far, in nanoseconds. Software drivers draw in them.
+static SUBMITTED_NS: AtomicU64 = AtomicU64::new(0);
+
+/// CPU time of all threads but the software renderer's, less submissions. 0 where threads cannot be listed.
+fn own_ms() -> f64 {
+    let process = std::process::id().to_string();
+    let own_name = std::fs::read_to_string("/proc/self/comm").unwrap_or_default();
+    let entries = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
+    let of_thread = |entry: std::fs::DirEntry| -> Option<f64> {
+        let read = |file| std::fs::read_to_string(entry.path().join(file)).ok();
+        let name = read("comm")?;
+        // Bevy names its threads. The driver's have its own name, or that of the process.
+        let is_driver = name == own_name && entry.file_name().to_str() != Some(&process);
+        if is_driver || name.contains("llvmpipe") {
+            return None;
+        }
+        read("schedstat")?.split(' ').next()?.parse().ok()
+    };
+    let all_ns: f64 = entries.filter_map(of_thread).sum();
+    1e-6 * (all_ns - SUBMITTED_NS.load(Ordering::Relaxed) as f64)
+}
+
+/// Has systems run one after the other, on the main thread, and submissions timed.
+fn run_in_order(app: &mut App) {
+    let submit = |sign: f64| {
+        move || {
+            let now_ns = (sign * 1e6 * ms(ClockId::ThreadCPUTime)) as i64;
+            SUBMITTED_NS.fetch_add(now_ns as u64, Ordering::Relaxed);
+        }
+    };
+    let render = app.sub_app_mut(RenderApp);
+    render.add_systems(
+        RenderGraph,
+        (
+            submit(-1.0).after(RenderGraphSystems::Render).before(RenderGraphSystems::Submit),
+            submit(1.0).after(RenderGraphSystems::Submit).before(RenderGraphSystems::Finish),
+        ),
+    );
+    let in_order = |world: &mut World| {
+        world.resource_mut::<Schedules>().iter_mut().for_each(|(_, schedule)| {
+            schedule.set_executor(SingleThreadedExecutor::new());
+        });
+    };
+    in_order(app.world_mut());
+    in_order(app.sub_app_mut(RenderApp).world_mut());
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -124,9 +177,10 @@ fn measure(
         Extra::Grille => Headless::new(size, (courtyard, GrillePlugin)),
         Extra::Crowd(crowd) => Headless::new(size, (courtyard, crowd)),
     };
+    run_in_order(&mut headless.app);
     spawn_camera(&mut headless, scene.camera, mode)?;
 
-    let (mut spent_ms, mut waited_ms) = (0.0, 0.0);
+    let [mut spent_ms, mut waited_ms, mut own] = [0.0; 3];
     let mut gazes = "frame,x_px,y_px\n".to_owned();
     let mut cameras = headless.app.world_mut().query::<&mut Camera>();
     for frame in 0..frames + scene.warm_up {
@@ -136,11 +190,12 @@ fn measure(
         }
         let uv = scanpath.at(START_S + frame as f64 * FRAME.as_secs_f64());
         headless.app.world_mut().resource_mut::<Gaze>().set(uv);
-        let (began_ms, began) = (cpu_ms(), Instant::now());
+        let (began_ms, began_own_ms, began) = (ms(ClockId::ProcessCPUTime), own_ms(), Instant::now());
         headless.frames(1);
         headless.wait();
         let Some(index) = frame.checked_sub(scene.warm_up) else { continue };
-        spent_ms += cpu_ms() - began_ms;
+        spent_ms += ms(ClockId::ProcessCPUTime) - began_ms;
+        own += own_ms() - began_own_ms;
         waited_ms += 1e3 * began.elapsed().as_secs_f64();
         if let Some(folder) = folder {
             let shot = resized(&headless.read(), size, shown);
@@ -149,9 +204,25 @@ fn measure(
             gazes += &format!("{index},{},{}\n", px.x, px.y);
         }
     }
-    let [spent_ms, waited_ms] = [spent_ms, waited_ms].map(|ms| ms / frames as f64);
+    let [spent_ms, waited_ms, own_ms] = [spent_ms, waited_ms, own].map(|ms| ms / frames as f64);
     let (name, adapter) = (scene.name, headless.adapter());
-    println!("{name} {size}, {mode}: {waited_ms:.1} ms a frame, {spent_ms:.1} ms of CPU time, {adapter}");
+    // Counting is not measured.
+    let world = headless.app.world_mut();
+    let cameras: Vec<Entity> = world.query_filtered::<Entity, With<Afterimage>>().iter(world).collect();
+    cameras.iter().for_each(|&camera| {
+        world.entity_mut(camera).insert(AfterimageStats::default());
+    });
+    (0..4).for_each(|_| {
+        headless.frames(1);
+        headless.wait();
+    });
+    let world = headless.app.world_mut();
+    let shaded = world.query::<&AfterimageStats>().iter(world).next().map(|stats| stats.shaded);
+    let share = shaded.map_or(100.0, |shaded| 100.0 * shaded as f64 / f64::from(size.element_product()));
+    println!(
+        "{name} {size}, {mode}: {waited_ms:.1} ms a frame, {spent_ms:.1} ms of CPU time, {own_ms:.2} ms without the \
+         renderer's, {share:.1} % of the pixels shaded, {adapter}"
+    );
     if let Some(folder) = folder {
         std::fs::write(folder.join("gaze.csv"), gazes)?;
     }
@@ -162,27 +233,23 @@ fn spawn_camera(headless: &mut Headless, mover: Mover, mode: &str) -> Result<(),
     let target = headless.render_target();
     let mut camera =
         headless.app.world_mut().spawn((Camera3d::default(), Msaa::Off, TONEMAPPING, target, stroll(0.0), mover));
-    let foveated = |kind, [rate_mid, rate_far]: [u32; 2], antialias| {
-        (Afterimage { antialias, ..default() }, Foveated { kind, rate_mid, rate_far, ..default() })
-    };
-    match mode {
+    let (name, antialias) = mode.strip_suffix("+aa").map_or((mode, false), |name| (name, true));
+    let foveated = |foveated| (Afterimage { antialias, ..default() }, foveated);
+    match name {
         "full" | "reference" => &mut camera,
-        "prepass" => camera.insert(DepthPrepass),
+        "prepass" => camera.insert((DepthPrepass, MotionVectorPrepass)),
         "msaa" => camera.insert(Msaa::Sample4),
-        // Without history it needs no prepass.
-        "quad" => camera
-            .insert(foveated(FoveationKind::QuadViews, [2, 4], false))
-            .remove::<(DepthPrepass, MotionVectorPrepass)>(),
-        "sparse" => camera.insert(foveated(FoveationKind::Sparse, [2, 4], false)),
-        "sparse48" => camera.insert(foveated(FoveationKind::Sparse, [4, 8], false)),
-        "antialiased" => camera.insert(foveated(FoveationKind::Sparse, [2, 4], true)),
-        _ if mode.starts_with("taa:") => camera.insert(TemporalAntiAliasing::default()),
+        "quads" => camera.insert(foveated(Foveated::default())),
+        _ if name.starts_with("taa:") => camera.insert(TemporalAntiAliasing::default()),
         _ => {
-            return Err(format!(
-                "mode is {mode}: expected full, prepass, msaa, taa:SCALE, quad, sparse, sparse48, antialiased or \
-                 reference"
-            )
-            .into());
+            let share = name.strip_prefix("uniform:").and_then(|share| share.parse().ok());
+            let share = share.ok_or_else(|| {
+                format!(
+                    "mode is {mode}: expected full, prepass, msaa, taa:SCALE, quads, uniform:SHARE, reference, or one \
+                     that chooses quads with +aa"
+                )
+            })?;
+            camera.insert(foveated(Foveated::uniform(share)))
         }
     };
     Ok(())

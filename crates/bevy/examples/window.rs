@@ -1,7 +1,7 @@
 //! A courtyard in a window. The mouse is the gaze.
 //!
-//! Keys: 1 full rate, 2 quad views, 3 sparse with history, 4 simulated; A antialiasing of 3; D debug views; S stats; R
-//! resets history.
+//! Keys: 1 full rate; 2 foveated by the mouse; 3 one pixel in 4 everywhere, without a gaze; A antialiasing; D debug
+//! views; S stats; R resets history.
 //!
 //! `cargo run --release --features window --example window`
 
@@ -36,14 +36,13 @@ type Switched<'a> = (Entity, &'a mut Foveated, &'a mut Afterimage, Option<&'a Af
 
 fn keys(mut commands: Commands, keys: Res<ButtonInput<KeyCode>>, camera: Single<Switched<'_>>) {
     let (entity, mut foveated, mut afterimage, debug, counts) = camera.into_inner();
-    for (key, kind) in [
-        (KeyCode::Digit1, FoveationKind::Off),
-        (KeyCode::Digit2, FoveationKind::QuadViews),
-        (KeyCode::Digit3, FoveationKind::Sparse),
-        (KeyCode::Digit4, FoveationKind::Simulated),
+    for (key, chosen) in [
+        (KeyCode::Digit1, Foveated { kind: FoveationKind::Off, ..default() }),
+        (KeyCode::Digit2, Foveated::default()),
+        (KeyCode::Digit3, Foveated::uniform(0.25)),
     ] {
         if keys.just_pressed(key) {
-            foveated.kind = kind;
+            *foveated = chosen;
         }
     }
     if keys.just_pressed(KeyCode::KeyR) {
@@ -78,5 +77,10 @@ fn title(
         diagnostics.get(&FrameTimeDiagnosticsPlugin::FRAME_TIME).and_then(|d| d.smoothed()).unwrap_or_default();
     let kept =
         stats.map_or(String::new(), |s| format!(", kept {:.0} %", 100.0 * s.kept as f64 / s.pixels.max(1) as f64));
-    window.title = format!("{:?}: {frame_ms:.1} ms{kept} (1-4, A, D, S, R)", foveated.kind);
+    let name = match (foveated.kind, foveated.fovea_deg) {
+        (FoveationKind::Off, _) => "full rate",
+        (FoveationKind::Quads, 0.0) => "uniform",
+        _ => "foveated",
+    };
+    window.title = format!("{name}: {frame_ms:.1} ms{kept} (1-3, A, D, S, R)");
 }

@@ -1,6 +1,6 @@
 //! Components of a camera, and the components that these require.
 
-use afterimage::{DebugView, DepthConvention, Filter, Method, Settings};
+use afterimage::{DebugView, DepthConvention, Filter, Foveation, Settings};
 use bevy::camera::{CameraMainTextureUsages, Hdr};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass};
 use bevy::prelude::*;
@@ -8,8 +8,8 @@ use bevy::render::render_resource::TextureUsages;
 
 /// Runs the post-process for this camera: a `Camera3d` with a perspective projection, symmetric or off-axis.
 ///
-/// Sets [`Msaa::Off`] while it runs, because samples of a foveated frame have no neighbours to average with. Requires
-/// `DepthPrepass` and `MotionVectorPrepass`, which history needs; they stay when this component is removed.
+/// Requires `DepthPrepass` and `MotionVectorPrepass`, by which quads are chosen; they stay when this component is
+/// removed. Sets [`Msaa::Off`] while it runs, because most pixels have no samples to average.
 ///
 /// All of it may change at any time, through reflection, too: an inspector such as `bevy-inspector-egui` shows
 /// [`settings`](field@Self::settings) down to each number, as it does the fields of [`Foveated`].
@@ -33,10 +33,9 @@ pub struct Afterimage {
     /// Settings in full, instead of the preset. Their `foveation` and `Smr::antialias` are ignored:
     /// [`Foveated`] and [`antialias`](Self::antialias) say them.
     pub settings: Option<Settings>,
-    /// Antialiases [`FoveationKind::Sparse`] with the method smr, in place of temporal antialiasing and MSAA: the
-    /// projection of what is shaded moves by a part of a pixel each frame, and history stores means of samples. Better
-    /// where little moves; frays thin things that move far from the gaze. Not for cameras with `TemporalJitter`, which
-    /// temporal antialiasing and upscaling add. Default false.
+    /// Antialiases with the method smr, in place of temporal antialiasing and MSAA: the camera's projection moves by a
+    /// part of a pixel each frame, and history stores means of samples. Not for cameras with a `TemporalJitter` of
+    /// their own, which temporal antialiasing and upscaling add. Default false.
     pub antialias: bool,
     /// Discards history in the next frame, for camera cuts and teleports. Becomes false when that frame is drawn.
     pub reset: bool,
@@ -50,11 +49,7 @@ impl Afterimage {
             Preset::Weighted => Settings::weighted(),
             Preset::Paper => Settings::paper(),
         });
-        let method = match foveated.kind {
-            FoveationKind::QuadViews => Method::None,
-            _ => settings.method,
-        };
-        Settings { method, foveation: foveated.foveation(), ..settings }
+        Settings { foveation: foveated.foveation(), ..settings }
     }
 }
 
@@ -73,72 +68,64 @@ pub enum Preset {
     Paper,
 }
 
-/// How a camera with [`Afterimage`] foveates; without that it does nothing. Angles are visual angles of the camera: its
-/// field of view is taken for the one that the screen fills.
+/// Which quads of 2x2 pixels a camera with [`Afterimage`] shades in a frame; without that it does nothing. Angles are
+/// visual angles of the camera: its field of view is taken for the one that the screen fills.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct Foveated {
-    /// What is rendered. Default [`FoveationKind::Sparse`].
+    /// Whether pixels are left out. Default [`FoveationKind::Quads`].
     pub kind: FoveationKind,
     /// Diameter of the full-rate region in degrees: 0 to 180, at most `mid_deg`. Default 10.
     pub fovea_deg: f32,
-    /// Diameter of the middle region in degrees: 0 to 180. Default 25.
+    /// Diameter of the middle region in degrees: 0 to 180. Default 15.
     pub mid_deg: f32,
-    /// Edge in pixels of the blocks of which one pixel is shaded, in the middle region: a power of two, at most 256.
-    /// Default 2.
+    /// Edge in pixels of the blocks of which one quad is shaded in a frame, in the middle region: 2, 4 or 8. Default 4.
     pub rate_mid: u32,
-    /// The same in the periphery: a power of two from `rate_mid` to 256. Default 4.
+    /// The same in the periphery: 2, 4 or 8, at least `rate_mid`. Every second block has a quad in a frame. Default 8.
     pub rate_far: u32,
+    /// Share of the pixels that are shaded because history lacks something there: 0 to 1. Default 0.025.
+    pub budget: f32,
 }
 
 impl Default for Foveated {
     fn default() -> Self {
-        Self { kind: FoveationKind::default(), fovea_deg: 10.0, mid_deg: 25.0, rate_mid: 2, rate_far: 4 }
+        let Foveation { mid_deg, rate_mid, rate_far, budget, .. } = Foveation::quads();
+        Self { kind: FoveationKind::Quads, fovea_deg: 10.0, mid_deg, rate_mid, rate_far, budget }
     }
 }
 
 impl Foveated {
-    fn foveation(&self) -> afterimage::Foveation {
-        let filter = match self.kind {
-            FoveationKind::Sparse | FoveationKind::QuadViews => Filter::Sparse,
-            FoveationKind::Simulated => Filter::Mip,
-            FoveationKind::Off => Filter::Off,
-        };
-        let Self { fovea_deg, mid_deg, rate_mid, rate_far, .. } = *self;
-        afterimage::Foveation { filter, fovea_deg, mid_deg, rate_mid, rate_far, ..Default::default() }
+    /// No fovea, and no gaze needed: `share` of the pixels, 0 to 1, everywhere alike. A temporal upscaler with depth
+    /// and motion at full rate.
+    ///
+    /// ```
+    /// use bevy_afterimage::Foveated;
+    ///
+    /// assert_eq!(Foveated::uniform(0.25).fovea_deg, 0.0);
+    /// ```
+    pub fn uniform(share: f32) -> Self {
+        let Foveation { fovea_deg, mid_deg, rate_mid, rate_far, budget, .. } = Foveation::uniform(share);
+        Self { kind: FoveationKind::Quads, fovea_deg, mid_deg, rate_mid, rate_far, budget }
+    }
+
+    fn foveation(&self) -> Foveation {
+        let Self { fovea_deg, mid_deg, rate_mid, rate_far, budget, .. } = *self;
+        Foveation { filter: Filter::Quads, fovea_deg, mid_deg, rate_mid, rate_far, budget, ..Default::default() }
     }
 }
 
-/// What a camera with [`Foveated`] renders.
+/// Whether a camera with [`Foveated`] leaves pixels out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default)]
 pub enum FoveationKind {
-    /// One pixel of each block, another one in each frame; the post-process fills the rest from history. Saves time.
+    /// The post-process chooses quads of 2x2 pixels before they are shaded, and fills the rest from history.
     #[default]
-    Sparse,
-    /// The pixel in the middle of each block, interpolated, without history: quad views, for comparison. Saves time.
-    QuadViews,
-    /// The renderer shades every pixel. Means of blocks replace the colors, as if it had shaded blocks, and history
-    /// adds their detail again. Saves nothing; shows what the post-process does.
-    Simulated,
+    Quads,
     /// Every pixel, without post-process: for comparison.
     Off,
 }
 
-impl FoveationKind {
-    /// Whether lattice cameras render instead of the camera itself.
-    pub(crate) fn has_lattices(self) -> bool {
-        matches!(self, Self::Sparse | Self::QuadViews)
-    }
-
-    /// Whether the post-process has history, and needs depth and motion vectors for it.
-    pub(crate) fn has_history(self) -> bool {
-        matches!(self, Self::Sparse | Self::Simulated)
-    }
-}
-
-/// Shows a view of the post-process's decisions instead of the frame. Not with [`FoveationKind::QuadViews`], which
-/// decides nothing.
+/// Shows a view of the post-process's decisions instead of the frame.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component)]
 pub struct AfterimageDebug(pub DebugView);
@@ -182,7 +169,7 @@ impl Plugin for CameraPlugin {
         // Before what reads these components in this frame.
         app.add_systems(
             PostUpdate,
-            (replace_msaa, add_storage)
+            (replace_msaa, add_usages)
                 .run_if(resource_exists::<AfterimageSupported>)
                 .before(bevy::camera::CameraUpdateSystems),
         );
@@ -202,7 +189,10 @@ fn replace_msaa(mut commands: Commands, mut cameras: Query<Multisampled<'_>, Swi
     for (entity, mut msaa, replaced, foveated, has_afterimage) in &mut cameras {
         let is_foveated = has_afterimage && foveated.is_some_and(|foveated| foveated.kind != FoveationKind::Off);
         if is_foveated && *msaa != Msaa::Off {
-            warn_once!("Afterimage sets Msaa::Off: samples of a foveated frame have no neighbours to average with");
+            // Bevy's default was hardly chosen.
+            if *msaa != Msaa::default() {
+                warn_once!("Afterimage sets Msaa::Off: most pixels of a foveated frame have no samples to average");
+            }
             commands.entity(entity).insert(ReplacedMsaa(*msaa));
             *msaa = Msaa::Off;
         } else if let Some(replaced) = replaced.filter(|_| !is_foveated) {
@@ -216,13 +206,14 @@ fn replace_msaa(mut commands: Commands, mut cameras: Query<Multisampled<'_>, Swi
 #[derive(Component)]
 struct AddedStorage;
 
-type Storage<'a> = (Entity, &'a mut CameraMainTextureUsages, Has<Afterimage>, Has<Hdr>, Has<AddedStorage>);
+type Used<'a> =
+    (Entity, &'a mut CameraMainTextureUsages, &'a mut Camera3d, Has<Afterimage>, Has<Hdr>, Has<AddedStorage>);
 
 /// Has the post-process write the main texture itself where compute shaders can: not sRGB-encoded formats, which
-/// cameras without `Hdr` have.
-fn add_storage(mut commands: Commands, mut cameras: Query<Storage<'_>>) {
+/// cameras without `Hdr` have. Has the depth that it closes be restored.
+fn add_usages(mut commands: Commands, mut cameras: Query<Used<'_>>) {
     let storage = TextureUsages::STORAGE_BINDING;
-    for (entity, mut usages, has_afterimage, is_hdr, is_added) in &mut cameras {
+    for (entity, mut usages, mut camera, has_afterimage, is_hdr, is_added) in &mut cameras {
         let needed = has_afterimage && is_hdr;
         if needed && !usages.0.contains(storage) {
             usages.0.insert(storage);
@@ -230,6 +221,10 @@ fn add_storage(mut commands: Commands, mut cameras: Query<Storage<'_>>) {
         } else if !needed && is_added {
             usages.0.remove(storage);
             commands.entity(entity).remove::<AddedStorage>();
+        }
+        let depth = TextureUsages::from(camera.depth_texture_usages);
+        if has_afterimage && !depth.contains(TextureUsages::COPY_DST) {
+            camera.depth_texture_usages = (depth | TextureUsages::COPY_DST).into();
         }
     }
 }
@@ -239,16 +234,22 @@ mod tests {
     use super::*;
     use bevy::camera::CameraProjection;
 
+    /// A projection whose depth is 0 at `near` and 1 at `far`.
+    fn perspective(near: f32, far: f32) -> Mat4 {
+        let depth = far / (near - far);
+        Mat4::from_cols(Vec4::X, Vec4::Y, Vec4::new(0.0, 0.0, depth, -1.0), Vec4::new(0.0, 0.0, depth * near, 0.0))
+    }
+
     #[test]
     fn depth_is_that_of_bevys_projections() {
         let projection = PerspectiveProjection { near: 0.25, ..default() };
         let infinite = DepthConvention::Reversed { near: 0.25, far: f32::INFINITY };
         assert_eq!(depth_convention(projection.get_clip_from_view()), Ok(infinite));
         // Reversed, with a far plane: the planes are swapped.
-        let finite = Mat4::perspective_rh(1.0, 1.5, 100.0, 0.25);
+        let finite = perspective(100.0, 0.25);
         let Ok(DepthConvention::Reversed { near, far }) = depth_convention(finite) else { panic!("not reversed") };
         assert!((near - 0.25).abs() < 1e-4 && (far - 100.0).abs() < 0.1, "{near} {far}");
-        let forward = Mat4::perspective_rh(1.0, 1.5, 0.25, 100.0);
+        let forward = perspective(0.25, 100.0);
         assert!(depth_convention(forward).is_err_and(|problem| problem.contains("reversed")));
         let orthographic = OrthographicProjection::default_3d().get_clip_from_view();
         assert!(depth_convention(orthographic).is_err_and(|problem| problem.contains("orthographic")));

@@ -1,8 +1,7 @@
 //! Counters of the post-process, read back and shown among Bevy's diagnostics.
 
-use crate::counters::{AfterimageStats, Counters};
+use crate::counters::{AfterimageStats, Counters, Counts};
 use crate::pass::Contexts;
-use afterimage::FrameStats;
 use bevy::diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnostic};
 use bevy::prelude::*;
 use bevy::render::sync_world::MainEntity;
@@ -16,7 +15,7 @@ const KEPT: DiagnosticPath = DiagnosticPath::const_new("afterimage/kept");
 const DISOCCLUDED: DiagnosticPath = DiagnosticPath::const_new("afterimage/disoccluded");
 
 /// Counts that arrived, by main-world camera.
-type Arrived = (Entity, FrameStats);
+type Arrived = (Entity, Counts);
 
 #[derive(Resource)]
 struct Arrivals(Mutex<Receiver<Arrived>>);
@@ -53,7 +52,7 @@ fn receive(arrivals: Res<Arrivals>, mut cameras: Query<&mut AfterimageStats>, mu
 }
 
 fn read_back(mut contexts: ResMut<Contexts>, departures: Res<Departures>, cameras: Query<&MainEntity>) {
-    for (&camera, context) in &mut contexts.by_camera {
+    for (&camera, context) in &mut contexts.0 {
         let stats = context.counters.as_mut().and_then(Counters::poll);
         if let (Some(stats), Ok(main)) = (stats, cameras.get(camera)) {
             // The receiver lives as long as the application.

@@ -1,8 +1,8 @@
 //! Foveated rendering with memory for Bevy, in one plugin.
 //!
-//! A camera with [`Afterimage`] shades every pixel only around the gaze. Elsewhere it shades one pixel of each block,
-//! and another one in the next frame. A temporal post-process, the crate [`afterimage`], fills the rest from what was
-//! shaded before.
+//! A camera with [`Afterimage`] shades few of its pixels in a frame: those around the gaze, an even pattern that moves,
+//! and those where history lacks something. A temporal post-process, the crate [`afterimage`], fills the rest from
+//! what was shaded before. Without an eye tracker, [`Foveated::uniform`] spreads them evenly.
 //!
 //! ```no_run
 //! use bevy::prelude::*;
@@ -18,15 +18,11 @@
 //!
 //! # How a frame is made
 //!
-//! [`FoveationKind::Sparse`], the default: the plugin gives the camera up to three children, the [lattice
-//! cameras](LatticeCamera). Each draws the samples of a rectangle as a small view: a crop of the camera's projection,
-//! shifted so that the middles of its texels are those of the samples. The camera itself draws depth and motion vectors
-//! of every pixel, and shades no mesh. Before what else it draws, as gizmos, the post-process writes the frame into its
-//! main texture, so that those stay at full rate. Post-processing effects and UI follow as usual.
-//!
-//! An application's queries for its camera find that alone: lattice cameras are hidden from systems in `First` to
-//! `Update`, and in `PostUpdate` before `TransformSystems::Propagate`. Later ones, as in `Last`, need
-//! `Without<LatticeCamera>`.
+//! 1. Bevy draws depth and motion vectors of every pixel, in its prepasses.
+//! 2. The post-process chooses quads of 2x2 pixels, and closes the depth buffer elsewhere.
+//! 3. Bevy draws opaque and alpha-masked meshes and the sky as always; the depth test skips what is closed.
+//! 4. The post-process makes the frame, and opens the depth buffer again.
+//! 5. Bevy draws what transmits light, what is transparent, particles and gizmos at every pixel, and its effects.
 
 mod blit;
 mod camera;
@@ -35,12 +31,8 @@ mod counters;
 mod diagnostics;
 mod frame;
 mod gaze;
-mod hide;
-mod lattice;
-mod mirror;
 mod pass;
 mod scanpath;
-mod shadow;
 #[doc(hidden)]
 pub mod testing;
 mod warnings;
@@ -49,8 +41,6 @@ pub use afterimage;
 pub use camera::{Afterimage, AfterimageDebug, AfterimageSupported, Foveated, FoveationKind, Preset};
 pub use counters::AfterimageStats;
 pub use gaze::{CameraGaze, CursorGazePlugin, Gaze};
-pub use lattice::LatticeCamera;
-pub use mirror::MirrorPlugin;
 pub use scanpath::{Scanpath, ScanpathError, ScanpathPlugin};
 
 use bevy::prelude::*;
@@ -64,23 +54,13 @@ pub struct AfterimagePlugin;
 
 impl Plugin for AfterimagePlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Gaze>().init_resource::<testing::Planted>().register_type::<(
-            Afterimage,
-            AfterimageDebug,
-            AfterimageStats,
-            CameraGaze,
-            Foveated,
-            Gaze,
-        )>();
+        app.init_resource::<Gaze>()
+            .register_type::<(Afterimage, AfterimageDebug, AfterimageStats, CameraGaze, Foveated, Gaze)>();
         if app.get_sub_app(RenderApp).is_none() {
             return;
         }
         app.init_resource::<AfterimageSupported>().add_plugins((
             camera::CameraPlugin,
-            lattice::LatticePlugin,
-            mirror::MirrorDefaultsPlugin,
-            shadow::ShadowPlugin,
-            hide::HidePlugin,
             frame::FramePlugin,
             pass::PassPlugin,
             diagnostics::DiagnosticsPlugin,

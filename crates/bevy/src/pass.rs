@@ -1,24 +1,30 @@
 //! Systems that run the post-process in Bevy's render graph.
 
 use crate::blit::BlitPass;
-use crate::camera::FoveationKind;
-use crate::context::{Context, Drawn, Facts, Geometry, Output};
+use crate::context::{Context, Drawn, Facts};
 use crate::frame::ExtractedAfterimage;
+use afterimage::wgpu;
 use bevy::core_pipeline::Core3dSystems;
+use bevy::core_pipeline::core_3d::{main_opaque_pass_3d, main_transparent_pass_3d};
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
 use bevy::core_pipeline::schedule::Core3d;
-use bevy::core_pipeline::skybox::SkyboxBindGroup;
 use bevy::diagnostic::FrameCount;
 use bevy::ecs::entity::EntityHashMap;
-use bevy::ecs::query::QueryItem;
+use bevy::ecs::query::QueryData;
+use bevy::pbr::main_transmissive_pass_3d;
 use bevy::prelude::*;
 use bevy::render::camera::{ExtractedCamera, TemporalJitter};
 use bevy::render::diagnostic::RecordDiagnostics;
 use bevy::render::renderer::{RenderContext, RenderDevice, ViewQuery};
-use bevy::render::view::ViewTarget;
+use bevy::render::view::{ExtractedView, ViewDepthStencilTexture, ViewTarget, ViewUniformOffset, ViewUniforms};
 use bevy::render::{GpuResourceAppExt, Render, RenderApp, RenderSystems};
+use wgpu::util::DeviceExt;
 
 pub(crate) struct PassPlugin;
+
+/// What runs between the opaque meshes and those that blend with them.
+#[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
+struct ShowQuads;
 
 impl Plugin for PassPlugin {
     fn build(&self, app: &mut App) {
@@ -26,33 +32,25 @@ impl Plugin for PassPlugin {
         render_app
             .init_gpu_resource::<Contexts>()
             .init_gpu_resource::<Passes>()
-            .add_systems(
-                Render,
-                (
-                    prepare.in_set(RenderSystems::PrepareResources),
-                    hide_sky.after(RenderSystems::PrepareBindGroups).before(RenderSystems::Render),
-                ),
+            .add_systems(Render, prepare.in_set(RenderSystems::PrepareResources))
+            .configure_sets(
+                Core3d,
+                ShowQuads
+                    .after(main_opaque_pass_3d)
+                    .before(main_transmissive_pass_3d)
+                    .before(main_transparent_pass_3d)
+                    .before(Core3dSystems::EarlyPostProcess),
             )
             .add_systems(
                 Core3d,
-                (
-                    gather.after(Core3dSystems::MainPass).before(Core3dSystems::EarlyPostProcess),
-                    // Before what the camera draws at full rate.
-                    show_samples.after(Core3dSystems::Prepass).before(Core3dSystems::MainPass),
-                    // Before temporal antialiasing and upscaling, which are in the early post-process set.
-                    simulate.after(Core3dSystems::MainPass).before(Core3dSystems::EarlyPostProcess),
-                ),
+                (plan.after(Core3dSystems::Prepass).before(Core3dSystems::MainPass), show.in_set(ShowQuads)),
             );
     }
 }
 
 /// Post-processes of the cameras, by render entity.
 #[derive(Resource, Default)]
-pub(crate) struct Contexts {
-    pub by_camera: EntityHashMap<Context>,
-    /// By lattice camera: the camera that shows it, and its place in `samples`.
-    owners: EntityHashMap<(Entity, usize)>,
-}
+pub(crate) struct Contexts(pub EntityHashMap<Context>);
 
 /// Passes that cameras share.
 #[derive(Resource, Default)]
@@ -63,156 +61,130 @@ struct Passes {
 
 fn prepare(mut contexts: ResMut<Contexts>, device: Res<RenderDevice>, cameras: Query<(Entity, &ExtractedAfterimage)>) {
     let device = device.wgpu_device();
-    let Contexts { by_camera, owners } = &mut *contexts;
-    by_camera.retain(|&camera, _| cameras.contains(camera));
-    owners.clear();
+    let contexts = &mut contexts.0;
+    contexts.retain(|&camera, _| cameras.contains(camera));
     for (camera, frame) in &cameras {
-        let prepared = match by_camera.get_mut(&camera) {
+        let prepared = match contexts.get_mut(&camera) {
             Some(context) => context.prepare(device, frame),
-            None => Context::new(device, frame).and_then(|mut context| {
-                context.prepare(device, frame)?;
-                by_camera.insert(camera, context);
-                Ok(())
+            None => Context::new(device, frame).map(|context| {
+                contexts.insert(camera, context);
             }),
         };
         if let Err(problem) = prepared {
             error_once!("Afterimage of camera {camera}: {problem}");
-            by_camera.remove(&camera);
-        }
-        owners.extend(frame.samples.iter().enumerate().map(|(i, samples)| (samples.camera, (camera, i))));
-    }
-}
-
-/// A sky drawn by the camera would cover the samples' frame: lattice cameras draw it.
-fn hide_sky(mut commands: Commands, cameras: Query<(Entity, &ExtractedAfterimage), With<SkyboxBindGroup>>) {
-    for (camera, frame) in &cameras {
-        if frame.hides_meshes() {
-            commands.entity(camera).remove::<SkyboxBindGroup>();
+            contexts.remove(&camera);
         }
     }
 }
 
-/// Copies what a lattice camera has drawn into the atlas.
-fn gather(
-    view: ViewQuery<&ViewTarget>,
-    mut contexts: ResMut<Contexts>,
-    frames: Query<&ExtractedAfterimage>,
-    mut ctx: RenderContext,
-) {
-    let Some(&(camera, place)) = contexts.owners.get(&view.entity()) else { return };
-    let (Some(context), Ok(frame)) = (contexts.by_camera.get_mut(&camera), frames.get(camera)) else { return };
-    let lattice = &frame.samples[place].lattice;
-    let drawn = Drawn {
-        color: view.into_inner().main_texture(),
-        from_px: [0, 0],
-        to_px: lattice.atlas_texel.unwrap_or_default(),
-        size_px: lattice.points,
-    };
-    let device = ctx.render_device().clone();
-    context.copy(device.wgpu_device(), ctx.command_encoder(), frame, &drawn);
+#[derive(QueryData)]
+struct Camera {
+    frame: &'static ExtractedAfterimage,
+    camera: &'static ExtractedCamera,
+    view: &'static ExtractedView,
+    uniforms: &'static ViewUniformOffset,
+    target: &'static ViewTarget,
+    depth: &'static ViewDepthStencilTexture,
+    prepass: &'static ViewPrepassTextures,
+    jitter: Option<&'static TemporalJitter>,
 }
 
-type Camera<'a> = (
-    &'a ExtractedAfterimage,
-    &'a ExtractedCamera,
-    &'a ViewTarget,
-    Option<&'a ViewPrepassTextures>,
-    Option<&'a TemporalJitter>,
-);
+impl<'a> CameraItem<'a, '_> {
+    fn drawn(&self) -> Option<Drawn<'a>> {
+        Some(Drawn {
+            color: self.target.main_texture(),
+            depth: &self.prepass.depth.as_ref()?.texture.texture,
+            motion: &self.prepass.motion_vectors.as_ref()?.texture.texture,
+            origin_px: self.camera.viewport.as_ref().map_or([0, 0], |viewport| viewport.physical_position.into()),
+        })
+    }
 
-/// Shows the frame that the samples and history make.
-fn show_samples(
-    view: ViewQuery<Camera<'_>>,
-    mut contexts: ResMut<Contexts>,
-    mut passes: ResMut<Passes>,
-    count: Res<FrameCount>,
-    mut ctx: RenderContext,
-) {
-    let entity = view.entity();
-    let camera = view.into_inner();
-    let (frame, ..) = camera;
-    if frame.hides_meshes()
-        && let Some(context) = complete(&mut contexts, entity, frame)
-    {
-        record(context, camera, count.0, &mut passes.blit, &mut ctx);
+    fn facts(&self, count: &FrameCount) -> Facts {
+        // Bevy's offset moves the camera; content moves the other way.
+        let sign = if self.frame.has_planted_jitter { 1.0 } else { -1.0 };
+        let jitter_px = self.jitter.map_or([0.0, 0.0], |jitter| (sign * jitter.offset).to_array());
+        Facts { index: count.0.into(), exposure: self.camera.exposure, jitter_px }
     }
 }
 
-/// Foveates the camera's frame, and shows the output of the post-process.
-fn simulate(
-    view: ViewQuery<Camera<'_>>,
-    mut contexts: ResMut<Contexts>,
-    mut passes: ResMut<Passes>,
-    count: Res<FrameCount>,
-    mut ctx: RenderContext,
-) {
+/// Chooses the quads that the camera shades, and closes its depth elsewhere. Where that fails, it shades every pixel.
+fn plan(view: ViewQuery<Camera>, mut contexts: ResMut<Contexts>, count: Res<FrameCount>, mut ctx: RenderContext) {
     let entity = view.entity();
     let camera = view.into_inner();
-    let (frame, extracted, target, ..) = camera;
-    let Some(context) = contexts.by_camera.get_mut(&entity) else { return };
-    if frame.kind != FoveationKind::Simulated {
+    let (Some(context), Some(drawn)) = (contexts.0.get_mut(&entity), camera.drawn()) else { return };
+    let tested = camera.depth.attachment.depth_stencil_views().attachment_view();
+    let copies = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
+    // In the frame in which `Afterimage` comes, Bevy's textures may be those of the camera without it.
+    if tested.texture().sample_count() > 1 || !tested.texture().usage().contains(copies) {
         return;
     }
-    let drawn =
-        Drawn { color: target.main_texture(), from_px: origin(extracted), to_px: [0, 0], size_px: frame.desc.size_px };
-    let device = ctx.render_device().clone();
-    context.copy(device.wgpu_device(), ctx.command_encoder(), frame, &drawn);
-    record(context, camera, count.0, &mut passes.blit, &mut ctx);
-}
-
-/// Post-process of a camera, if all its samples are drawn.
-fn complete<'a>(contexts: &'a mut Contexts, camera: Entity, frame: &ExtractedAfterimage) -> Option<&'a mut Context> {
-    let context = contexts.by_camera.get_mut(&camera)?;
-    if context.copied < frame.samples.len() {
-        warn_once!("Afterimage of camera {camera}: a lattice camera did not draw; is its order or target changed?");
-        return None;
-    }
-    Some(context)
-}
-
-fn origin(camera: &ExtractedCamera) -> [u32; 2] {
-    camera.viewport.as_ref().map_or([0, 0], |viewport| viewport.physical_position.into())
-}
-
-fn facts((frame, camera, .., jitter): QueryItem<'_, '_, Camera<'static>>, index: u32) -> Facts {
-    // Bevy adds the offset to the projection's z column, whose factor is negative.
-    let jitter_px = jitter.map_or(frame.view.jitter_px, |jitter| (-jitter.offset).to_array());
-    Facts { index: index.into(), exposure: camera.exposure, jitter_px }
-}
-
-fn geometry<'a>(frame: &ExtractedAfterimage, prepass: Option<&'a ViewPrepassTextures>) -> Option<Geometry<'a>> {
-    let prepass = prepass.filter(|_| frame.kind != FoveationKind::QuadViews)?;
-    let (depth, motion) = (prepass.depth.as_ref()?, prepass.motion_vectors.as_ref()?);
-    Some(Geometry { depth: &depth.texture.texture, motion: &motion.texture.texture })
-}
-
-fn record(
-    context: &mut Context,
-    view: QueryItem<'_, '_, Camera<'static>>,
-    index: u32,
-    blit: &mut Option<BlitPass>,
-    ctx: &mut RenderContext,
-) {
-    let (frame, camera, target, prepass, _) = view;
-    let output = Output {
-        texture: target.main_texture_other(),
-        view: target.main_texture_other_view(),
-        origin_px: origin(camera),
-    };
-    let facts = facts(view, index);
-    let geometry = geometry(frame, prepass);
+    let facts = camera.facts(&count);
     let device = ctx.render_device().clone();
     let diagnostics = ctx.diagnostic_recorder();
     let diagnostics = diagnostics.as_deref();
     let encoder = ctx.command_encoder();
+    let span = diagnostics.time_span(encoder, "afterimage_plan");
+    let planned = context.plan(device.wgpu_device(), encoder, (camera.frame, facts), drawn, tested);
+    span.end(encoder);
+    if let Err(problem) = planned {
+        error_once!("camera {entity} renders every pixel, without Afterimage: {problem}");
+    }
+}
+
+/// Shows the frame that the quads and history make, and opens depth again, for what is drawn at every pixel.
+fn show(
+    view: ViewQuery<Camera>,
+    mut contexts: ResMut<Contexts>,
+    mut passes: ResMut<Passes>,
+    count: Res<FrameCount>,
+    uniforms: Res<ViewUniforms>,
+    mut ctx: RenderContext,
+) {
+    let entity = view.entity();
+    let camera = view.into_inner();
+    let (Some(context), Some(drawn)) = (contexts.0.get_mut(&entity), camera.drawn()) else { return };
+    if !context.is_planned {
+        return;
+    }
+    let (facts, target) = (camera.facts(&count), camera.target);
+    let output: (&wgpu::Texture, &wgpu::TextureView) = (target.main_texture_other(), target.main_texture_other_view());
+    let device = ctx.render_device().clone();
+    let device = device.wgpu_device();
+    let diagnostics = ctx.diagnostic_recorder();
+    let diagnostics = diagnostics.as_deref();
+    let encoder = ctx.command_encoder();
     let span = diagnostics.time_span(encoder, "afterimage");
-    let recorded = context.record(device.wgpu_device(), encoder, (frame, facts), geometry, output, blit);
+    let recorded = context.record(device, encoder, (camera.frame, facts), drawn, output, &mut passes.blit);
+    context.open(encoder, camera.depth.texture());
     span.end(encoder);
     match recorded {
         // Only now is the other texture the main one.
         Ok(()) => drop(target.post_process_write()),
         Err(problem) => {
-            error_once!("Afterimage shows the frame without history: {problem}");
+            error_once!("Afterimage of camera {entity} shows the quads alone: {problem}");
         }
     }
+    if camera.jitter.is_some()
+        && let Some(buffer) = uniforms.uniforms.buffer()
+    {
+        stop_jitter(device, encoder, buffer, &camera);
+    }
+}
+
+/// Takes the jitter from the projection of what is drawn from here on, which no history averages: the first matrix of
+/// the view's uniforms is `clip_from_world`.
+fn stop_jitter(
+    device: &wgpu::Device,
+    encoder: &mut wgpu::CommandEncoder,
+    uniforms: &wgpu::Buffer,
+    camera: &CameraItem<'_, '_>,
+) {
+    let clip_from_world = camera.view.clip_from_view * camera.view.world_from_view.to_matrix().inverse();
+    let contents: Vec<u8> = clip_from_world.to_cols_array().iter().flat_map(|value| value.to_ne_bytes()).collect();
+    let still = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some("afterimage view"),
+        contents: &contents,
+        usage: wgpu::BufferUsages::COPY_SRC,
+    });
+    encoder.copy_buffer_to_buffer(&still, 0, uniforms, camera.uniforms.offset.into(), still.size());
 }

@@ -7,6 +7,7 @@ use afterimage::{ContextDesc, ViewFrame, wgpu};
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
 use bevy::diagnostic::FrameCount;
 use bevy::prelude::*;
+use bevy::render::camera::TemporalJitter;
 use bevy::render::view::ViewTarget;
 
 /// What the post-process of a camera was given in the last frame, and its output.
@@ -20,8 +21,10 @@ pub struct Recorded {
     pub view: ViewFrame,
     /// Frame counter.
     pub index: u64,
-    /// Color input.
+    /// Color input, of which the quads of the mask are read, if no effect of the camera has overwritten it.
     pub color: wgpu::Texture,
+    /// Quads that were shaded: a texel each, of which bit 0 says it.
+    pub mask: wgpu::Texture,
     /// Depth input, of which the camera's viewport is read.
     pub depth: wgpu::Texture,
     /// Motion vectors, likewise.
@@ -32,19 +35,24 @@ pub struct Recorded {
 
 /// What the post-processes of the last frame were given.
 pub fn recorded(render_world: &mut World) -> Vec<Recorded> {
-    let mut cameras = render_world.query::<(Entity, &ExtractedAfterimage, &ViewTarget, &ViewPrepassTextures)>();
+    type Camera<'a> =
+        (Entity, &'a ExtractedAfterimage, &'a ViewTarget, &'a ViewPrepassTextures, Option<&'a TemporalJitter>);
+    let mut cameras = render_world.query::<Camera<'_>>();
     let index = render_world.resource::<FrameCount>().0.into();
-    let contexts = &render_world.resource::<Contexts>().by_camera;
+    let contexts = &render_world.resource::<Contexts>().0;
     cameras
         .iter(render_world)
-        .filter_map(|(camera, frame, target, prepass)| {
+        .filter_map(|(camera, frame, target, prepass, jitter)| {
             let context = contexts.get(&camera)?;
-            let color = context.color.clone()?;
-            let [depth, motion] = [&prepass.depth, &prepass.motion_vectors]
-                .map(|attachment| attachment.as_ref().map(|attachment| (*attachment.texture.texture).clone()));
-            let (depth, motion) = depth.zip(motion)?;
+            let mask = context.mask()?.clone();
+            let jitter_px = jitter.map_or([0.0, 0.0], |jitter| (-jitter.offset).to_array());
+            let view = ViewFrame { jitter_px, ..frame.view };
+            // Without effects after the post-process the camera's textures were swapped once.
+            let color = (**target.main_texture_other()).clone();
+            let depth = (*prepass.depth.as_ref()?.texture.texture).clone();
+            let motion = (*prepass.motion_vectors.as_ref()?.texture.texture).clone();
             let output = (**target.main_texture()).clone();
-            Some(Recorded { camera, desc: frame.desc, view: frame.view, index, color, depth, motion, output })
+            Some(Recorded { camera, desc: frame.desc, view, index, color, mask, depth, motion, output })
         })
         .collect()
 }

@@ -1,70 +1,44 @@
-//! Warnings about components and materials that sparse frames render wrongly: one line in the log each.
+//! What foveated frames render wrongly, or as dear as ever: one line in the log each.
 
 use crate::camera::{Afterimage, Foveated, FoveationKind};
-use crate::lattice::{LatticeCameras, LatticeSystems};
-use bevy::light::VolumetricFog;
-use bevy::pbr::{ScreenSpaceAmbientOcclusion, ScreenSpaceReflections};
+use crate::frame::ExtractedAfterimage;
+use bevy::asset::UntypedAssetId;
+use bevy::core_pipeline::core_3d::{AlphaMask3d, Opaque3d};
+use bevy::material::{MaterialProperties, RenderPhaseType};
+use bevy::pbr::PreparedMaterial;
+use bevy::platform::collections::HashSet;
 use bevy::prelude::*;
 use bevy::render::camera::TemporalJitter;
+use bevy::render::erased_render_asset::ErasedRenderAssets;
+use bevy::render::render_phase::{BinnedPhaseItem, BinnedRenderPhase, ViewBinnedRenderPhases};
+use bevy::render::render_resource::{
+    CachedRenderPipelineId, CompareFunction, PipelineCache, PipelineDescriptor, RenderPipelineDescriptor,
+};
+use bevy::render::view::ExtractedView;
+use bevy::render::{Extract, ExtractSchedule, RenderApp};
+use bevy::shader::{Shader, Source};
 
 pub(crate) struct WarningsPlugin;
 
 impl Plugin for WarningsPlugin {
     fn build(&self, app: &mut App) {
-        let systems = (warn_of_components, warn_of_transmission, warn_of_unused).after(LatticeSystems::Spawn);
-        app.add_systems(PostUpdate, systems);
-    }
-}
-
-type Components<'a> = (
-    Has<ScreenSpaceAmbientOcclusion>,
-    Has<ScreenSpaceReflections>,
-    Has<VolumetricFog>,
-    Has<TemporalJitter>,
-    &'a Afterimage,
-);
-
-/// Components that a camera has and its lattice cameras cannot have.
-fn warn_of_components(cameras: Query<(Entity, Components<'_>), With<LatticeCameras>>) {
-    for (camera, (occlusion, reflections, fog, jitter, afterimage)) in &cameras {
-        if occlusion {
-            warn_once!(
-                "camera {camera}: ScreenSpaceAmbientOcclusion does not reach meshes beside Afterimage. Remove it"
-            );
-        }
-        if reflections {
-            warn_once!("camera {camera}: ScreenSpaceReflections are not drawn beside Afterimage. Remove them");
-        }
-        if fog {
-            warn_once!("camera {camera}: VolumetricFog is not drawn beside Afterimage. Use DistanceFog");
-        }
-        // With `antialias` another line says so (`lattice.rs`).
-        if jitter && !afterimage.antialias {
-            warn_once!(
-                "camera {camera}: TemporalJitter, which temporal antialiasing adds, blurs beside Afterimage. Remove \
-                 temporal antialiasing, or set FoveationKind::Simulated"
-            );
+        app.add_systems(PostUpdate, (warn_of_jitter, warn_of_unused));
+        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+            // In extraction, because the text of shaders is in the main world. Phases are those of the last frame.
+            render_app.add_systems(ExtractSchedule, (warn_of_pipelines, warn_of_materials));
         }
     }
 }
 
-/// Transmission reads what the camera has drawn so far; a lattice camera has drawn one sample a block.
-fn warn_of_transmission(
-    mut is_said: Local<bool>,
-    materials: Option<Res<Assets<StandardMaterial>>>,
-    server: Res<AssetServer>,
-    cameras: Query<Ref<LatticeCameras>>,
-) {
-    let Some(materials) = materials.filter(|_| !*is_said && !cameras.is_empty()) else { return };
-    if !materials.is_changed() && !cameras.iter().any(|camera| camera.is_added()) {
-        return;
-    }
-    if let Some((material, _)) = materials.iter().find(|(_, material)| material.specular_transmission > 0.0) {
-        *is_said = true;
-        let material = server.get_path(material).map_or("a material".into(), |path| format!("material {path}"));
-        warn!(
-            "{material} has specular_transmission, which is wrong beside Afterimage: behind it stand samples, \
-             blurred. Set it to 0 and use AlphaMode::Blend. Models of glTF may bring it (KHR_materials_transmission)"
+fn warn_of_jitter(cameras: Query<(Entity, &Afterimage, &Foveated), With<TemporalJitter>>) {
+    // With `antialias` another line says so (`frame.rs`).
+    let is_used = |(_, afterimage, foveated): &(Entity, &Afterimage, &Foveated)| {
+        !afterimage.antialias && foveated.kind != FoveationKind::Off
+    };
+    if let Some((camera, ..)) = cameras.iter().find(is_used) {
+        warn_once!(
+            "camera {camera}: TemporalJitter, which temporal antialiasing adds, blurs beside Afterimage. Remove \
+             temporal antialiasing, and set Afterimage::antialias"
         );
     }
 }
@@ -74,5 +48,83 @@ type WithoutAfterimage = (Without<Afterimage>, With<Camera>);
 fn warn_of_unused(cameras: Query<(Entity, Ref<Foveated>), WithoutAfterimage>) {
     if let Some((camera, _)) = cameras.iter().find(|(_, f)| f.is_added() && f.kind != FoveationKind::Off) {
         warn_once!("camera {camera} has Foveated, but not Afterimage: it renders every pixel. Add Afterimage, too");
+    }
+}
+
+/// Shaders for which the depth test comes too late: they shade every pixel.
+fn warn_of_pipelines(
+    cameras: Query<&ExtractedView, With<ExtractedAfterimage>>,
+    opaque: Res<ViewBinnedRenderPhases<Opaque3d>>,
+    masked: Res<ViewBinnedRenderPhases<AlphaMask3d>>,
+    cache: Res<PipelineCache>,
+    shaders: Extract<Option<Res<Assets<Shader>>>>,
+    mut known: Local<HashSet<CachedRenderPipelineId>>,
+) {
+    let Some(shaders) = shaders.as_ref() else { return };
+    let mut drawn = vec![];
+    for view in &cameras {
+        let view = &view.retained_view_entity;
+        drawn.extend(opaque.get(view).into_iter().flat_map(|phase| keys(phase).map(|key| key.pipeline)));
+        drawn.extend(masked.get(view).into_iter().flat_map(|phase| keys(phase).map(|key| key.pipeline)));
+    }
+    for id in drawn {
+        if known.contains(&id) {
+            continue;
+        }
+        let Some(pipeline) = cache.pipelines().nth(id.id()) else { continue };
+        let PipelineDescriptor::RenderPipelineDescriptor(descriptor) = &pipeline.descriptor else { continue };
+        known.insert(id);
+        let shader = descriptor.fragment.as_ref().and_then(|fragment| shaders.get(&fragment.shader));
+        if let Some(reason) = why_late(descriptor, shader) {
+            let path = shader.map_or("of a material", |shader| shader.path.as_str());
+            warn!("shader {path}: {reason}, so that it is run for every pixel, with Afterimage or without");
+        }
+    }
+}
+
+/// What a phase draws.
+fn keys<I: BinnedPhaseItem>(phase: &BinnedRenderPhase<I>) -> impl Iterator<Item = &I::BatchSetKey> {
+    let single = phase.batchable_meshes.keys().chain(phase.unbatchable_meshes.keys());
+    phase.multidrawable_meshes.keys().chain(single.chain(phase.non_mesh_items.keys()).map(|(key, _)| key))
+}
+
+/// Why the depth test does not keep a pipeline from being run.
+fn why_late(descriptor: &RenderPipelineDescriptor, shader: Option<&Shader>) -> Option<&'static str> {
+    let compared = descriptor.depth_stencil.as_ref().and_then(|depth| depth.depth_compare);
+    if compared.is_none_or(|compared| compared == CompareFunction::Always) {
+        return Some("its pipeline compares no depth (depth_compare)");
+    }
+    let (Source::Wgsl(text) | Source::Wesl(text)) = &shader?.source else { return None };
+    let has = |word| text.lines().any(|line| line.split("//").next().is_some_and(|code| code.contains(word)));
+    match () {
+        () if has("early_depth_test(force)") => None,
+        () if has("frag_depth") => Some("it writes frag_depth"),
+        () if has("read_write") || has("textureStore") => Some("it writes to storage without @early_depth_test(force)"),
+        () => None,
+    }
+}
+
+/// Materials that are in the main passes alone: depth and motion are those of what is behind them.
+fn warn_of_materials(
+    cameras: Query<Ref<ExtractedAfterimage>>,
+    materials: Option<Res<ErasedRenderAssets<PreparedMaterial>>>,
+    mut is_said: Local<bool>,
+) {
+    let Some(materials) = materials.filter(|_| !*is_said && !cameras.is_empty()) else { return };
+    if !materials.is_changed() && !cameras.iter().any(|camera| camera.is_added()) {
+        return;
+    }
+    let lacks = |properties: &MaterialProperties| {
+        let is_solid = matches!(properties.render_phase_type, RenderPhaseType::Opaque | RenderPhaseType::AlphaMask);
+        is_solid && !properties.prepass_enabled
+    };
+    let found: Option<UntypedAssetId> =
+        materials.iter().find(|(_, material)| lacks(&material.properties)).map(|(id, _)| id);
+    if let Some(material) = found {
+        *is_said = true;
+        warn!(
+            "material {material:?} has no prepass (Material::enable_prepass), by which Afterimage chooses quads: it \
+             tears and trails. Enable its prepass, or give it AlphaMode::Blend"
+        );
     }
 }

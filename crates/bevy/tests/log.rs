@@ -3,17 +3,27 @@
 #[path = "../examples/common/mod.rs"]
 mod common;
 
+use bevy::asset::RenderAssetUsages;
+use bevy::asset::uuid::Uuid;
 use bevy::camera::ClearColorConfig;
 use bevy::core_pipeline::prepass::DeferredPrepass;
-use bevy::light::VolumetricFog;
 use bevy::log::tracing_subscriber;
+use bevy::mesh::MeshVertexBufferLayoutRef;
+use bevy::pbr::{MaterialPipeline, MaterialPipelineKey};
 use bevy::prelude::*;
+use bevy::reflect::TypePath;
 use bevy::render::camera::TemporalJitter;
+use bevy::render::render_resource::{
+    AsBindGroup, CompareFunction, RenderPipelineDescriptor, SpecializedMeshPipelineError,
+};
+use bevy::render::storage::ShaderBuffer;
+use bevy::shader::{Shader, ShaderRef};
 use bevy_afterimage::{Afterimage, AfterimagePlugin, AfterimageSupported, CameraGaze, Foveated};
 use common::headless::{self, Headless};
 use common::scene::{ScenePlugin, TONEMAPPING, stroll};
 use std::io::Write;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 static LOG: Mutex<Vec<u8>> = Mutex::new(vec![]);
 
@@ -30,11 +40,12 @@ impl Write for Log {
 }
 
 /// How many lines contain `word` after a few frames of a camera with `components`.
-fn lines_about(word: &str, components: impl Bundle) -> usize {
-    let mut headless = Headless::new(UVec2::new(64, 36), ScenePlugin { lamps: 0, moves: false });
-    let target = headless.render_target();
-    headless.app.world_mut().spawn((Camera3d::default(), target, TONEMAPPING, stroll(1.0), components));
+fn lines_about(headless: &mut Headless, word: &str, components: impl Bundle) -> usize {
+    let camera = (Camera3d::default(), headless.render_target(), TONEMAPPING, stroll(1.0), components);
+    let camera = headless.app.world_mut().spawn(camera).id();
     headless.frames(4);
+    headless.app.world_mut().despawn(camera);
+    headless.frames(1);
     lines(word)
 }
 
@@ -45,18 +56,132 @@ fn lines(word: &str) -> usize {
     log.lines().filter(|line| line.contains("bevy_afterimage") && line.contains(word)).count()
 }
 
-/// A material that lets the light of what is behind it through.
-fn glass(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>, mut materials: ResMut<Assets<StandardMaterial>>) {
-    let material = StandardMaterial { specular_transmission: 0.9, ..default() };
-    commands.spawn((Mesh3d(meshes.add(Cuboid::default())), MeshMaterial3d(materials.add(material))));
+/// Materials that the depth test does not spare, or that have no prepass.
+#[derive(Asset, TypePath, AsBindGroup, Clone)]
+#[bind_group_data(Kind)]
+struct Special {
+    #[storage(0)]
+    buffer: Handle<ShaderBuffer>,
+    kind: Kind,
 }
 
-fn lines_of_glass() -> usize {
-    let mut headless = Headless::new(UVec2::new(64, 36), ScenePlugin { lamps: 0, moves: false });
-    headless.app.add_systems(Startup, glass);
-    let target = headless.render_target();
-    headless.app.world_mut().spawn((Camera3d::default(), Msaa::Off, target, TONEMAPPING, Afterimage::default()));
-    headless.frames(4);
+/// What a material does, in words.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Kind(&'static str);
+
+impl Kind {
+    const ALL: [&str; 6] = ["plain", "depth", "always", "storage", "storage forced", "bare"];
+
+    fn is(self, word: &str) -> bool {
+        self.0.split(' ').any(|own| own == word)
+    }
+
+    fn shader(self) -> Handle<Shader> {
+        let number = Self::ALL.iter().position(|kind| *kind == self.0).expect("a kind");
+        Uuid::from_u128(SHADER + number as u128).into()
+    }
+
+    fn text(self) -> String {
+        let forced = if self.is("forced") { "@early_depth_test(force)" } else { "" };
+        let write = if self.is("storage") { "counts[0] = 1u;" } else { "" };
+        let access = if self.is("storage") { "read_write" } else { "read" };
+        let (output, depth) = match self.is("depth") {
+            true => ("@builtin(frag_depth) depth: f32,", "out.depth = in.position.z;"),
+            false => ("", ""),
+        };
+        format!(
+            "#import bevy_pbr::forward_io::VertexOutput
+            // A comment on frag_depth and read_write is none of it.
+            @group(#{{MATERIAL_BIND_GROUP}}) @binding(0) var<storage, {access}> counts: array<u32, 4>;
+            struct Out {{ @location(0) color: vec4<f32>, {output} }}
+            @fragment {forced}
+            fn fragment(in: VertexOutput) -> Out {{
+                var out: Out;
+                {write}
+                {depth}
+                out.color = vec4(in.uv, f32(counts[1]), 1.0);
+                return out;
+            }}"
+        )
+    }
+}
+
+impl From<&Special> for Kind {
+    fn from(material: &Special) -> Self {
+        material.kind
+    }
+}
+
+/// The first shader; others follow it.
+const SHADER: u128 = 0x9d1c8d2e_5a2f_4a8e_9a4f_0b6a3a1f2c66;
+
+/// Whether the material that is made now has no prepass.
+static IS_BARE: AtomicBool = AtomicBool::new(false);
+
+impl Material for Special {
+    fn fragment_shader() -> ShaderRef {
+        Kind(Kind::ALL[0]).shader().into()
+    }
+
+    fn enable_prepass() -> bool {
+        !IS_BARE.load(Ordering::Relaxed)
+    }
+
+    fn specialize(
+        _: &MaterialPipeline,
+        descriptor: &mut RenderPipelineDescriptor,
+        _: &MeshVertexBufferLayoutRef,
+        key: MaterialPipelineKey<Self>,
+    ) -> Result<(), SpecializedMeshPipelineError> {
+        let kind = key.bind_group_data;
+        // Prepasses have shaders of their own.
+        if let Some(fragment) = descriptor.fragment.as_mut().filter(|own| own.shader == Kind(Kind::ALL[0]).shader()) {
+            fragment.shader = kind.shader();
+        }
+        if kind.is("always")
+            && let Some(depth) = &mut descriptor.depth_stencil
+        {
+            depth.depth_compare = Some(CompareFunction::Always);
+        }
+        Ok(())
+    }
+}
+
+fn add_shaders(mut shaders: ResMut<Assets<Shader>>) {
+    for kind in Kind::ALL.map(Kind) {
+        shaders.insert(kind.shader().id(), Shader::from_wgsl(kind.text(), "special.wgsl")).expect("inserted");
+    }
+}
+
+/// How many lines contain `word` after frames that show a mesh with a material of `kind`.
+fn lines_of_material(headless: &mut Headless, kind: &'static str, word: &str) -> usize {
+    let before = lines("");
+    IS_BARE.store(kind == "bare", Ordering::Relaxed);
+    let buffer = headless.asset(ShaderBuffer::new(vec![0_u32; 4], RenderAssetUsages::default()));
+    let material = MeshMaterial3d(headless.asset(Special { buffer, kind: Kind(kind) }));
+    show_mesh(headless, Rectangle::new(4.0, 3.0), material);
+    let log = LOG.lock().expect("the log");
+    let log = String::from_utf8_lossy(&log);
+    let ours = log.lines().filter(|line| line.contains("bevy_afterimage")).skip(before);
+    let (about, others): (Vec<_>, Vec<_>) = ours.partition(|line| line.contains(word));
+    assert!(others.is_empty(), "{kind}: {others:?}");
+    about.len()
+}
+
+/// Shows a mesh for a few frames, without errors.
+fn show_mesh(headless: &mut Headless, mesh: impl Into<Mesh>, material: impl Bundle) {
+    let mesh = Mesh3d(headless.asset(mesh.into()));
+    let mesh = headless.app.world_mut().spawn((mesh, material, Transform::from_xyz(0.0, 1.5, 0.0))).id();
+    lines_about(headless, "", (Msaa::Off, Afterimage::default()));
+    headless.app.world_mut().despawn(mesh);
+    assert_eq!(headless.problems(), &[] as &[String]);
+}
+
+/// A material that lets the light of what is behind it through.
+fn lines_of_glass(headless: &mut Headless) -> usize {
+    let material = StandardMaterial { specular_transmission: 0.9, ..default() };
+    let material = MeshMaterial3d(headless.asset(material));
+    show_mesh(headless, Cuboid::default(), material);
     lines("specular_transmission")
 }
 
@@ -74,26 +199,40 @@ fn lines_of_a_wrong_order() -> usize {
 #[test]
 fn what_is_not_drawn_as_it_should_is_said_once() {
     tracing_subscriber::fmt().with_writer(|| Log).init();
-    let msaa = |msaa: Msaa| lines_about("Msaa", (msaa, Afterimage::default()));
-    assert_eq!([Msaa::Off, Msaa::Sample4, Msaa::Sample2].map(msaa), [0, 1, 1]);
-    let jitter = |antialias| {
+    let headless = &mut Headless::new(
+        UVec2::new(64, 36),
+        (ScenePlugin { lamps: 0, moves: false }, MaterialPlugin::<Special>::default(), |app: &mut App| {
+            app.add_systems(Startup, add_shaders);
+        }),
+    );
+    let msaa = [Msaa::Off, Msaa::default(), Msaa::Sample2];
+    let msaa = msaa.map(|msaa| lines_about(headless, "Msaa", (msaa, Afterimage::default())));
+    assert_eq!(msaa, [0, 0, 1]);
+    let jitter = [false, false, true, true].map(|antialias| {
         let afterimage = Afterimage { antialias, ..default() };
-        lines_about("TemporalJitter", (Msaa::Off, TemporalJitter::default(), afterimage))
-    };
-    assert_eq!([false, false, true, true].map(jitter), [1, 1, 2, 2]);
+        lines_about(headless, "TemporalJitter", (Msaa::Off, TemporalJitter::default(), afterimage))
+    });
+    assert_eq!(jitter, [1, 1, 2, 2]);
 
-    assert_eq!([lines_about("Add Afterimage", Msaa::Off), lines_about("Add Afterimage", Foveated::default())], [0, 1]);
-    assert_eq!(lines_about("Use DistanceFog", (Msaa::Off, Afterimage::default(), VolumetricFog::default())), 1);
+    assert_eq!(lines_about(headless, "Add Afterimage", Msaa::Off), 0);
+    assert_eq!(lines_about(headless, "Add Afterimage", Foveated::default()), 1);
     let uncleared = Camera { clear_color: ClearColorConfig::None, ..default() };
-    assert_eq!(lines_about("ClearColorConfig::None", (Msaa::Off, Afterimage::default(), uncleared)), 1);
+    assert_eq!(lines_about(headless, "ClearColorConfig::None", (Msaa::Off, Afterimage::default(), uncleared)), 1);
     let deferred = (Msaa::Off, Afterimage::default(), DeferredPrepass);
-    assert_eq!(lines_about("DeferredPrepass", deferred), 1);
+    assert_eq!(lines_about(headless, "DeferredPrepass", deferred), 1);
     let flat = Projection::from(OrthographicProjection { scale: 0.03, ..OrthographicProjection::default_3d() });
-    assert_eq!(lines_about("projection is orthographic", (Msaa::Off, Afterimage::default(), flat)), 1);
-    assert_eq!([lines_of_glass(), lines_of_glass()], [1, 2]);
+    assert_eq!(lines_about(headless, "projection is orthographic", (Msaa::Off, Afterimage::default(), flat)), 1);
+    // Drawn at every pixel, over the whole frame.
+    assert_eq!(lines_of_glass(headless), 0);
+    assert_eq!(lines_of_material(headless, "plain", "special"), 0);
+    assert_eq!(lines_of_material(headless, "depth", "special.wgsl: it writes frag_depth"), 1);
+    assert_eq!(lines_of_material(headless, "always", "special.wgsl: its pipeline compares no depth"), 1);
+    assert_eq!(lines_of_material(headless, "storage", "special.wgsl: it writes to storage"), 1);
+    assert_eq!(lines_of_material(headless, "storage forced", "special"), 0);
+    assert_eq!(lines_of_material(headless, "bare", "has no prepass"), 1);
     assert_eq!(lines_of_a_wrong_order(), 1);
     // What is right is not complained about.
     let before = lines("");
-    lines_about("", (Msaa::Off, Afterimage::default(), CameraGaze::default()));
+    lines_about(headless, "", (Msaa::Off, Afterimage::default(), CameraGaze::default()));
     assert_eq!(lines(""), before);
 }

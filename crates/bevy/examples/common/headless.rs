@@ -1,7 +1,7 @@
 //! An application without a window that renders to an image, frame by frame.
 
 use afterimage::wgpu;
-use bevy::app::{Plugins, PluginsState};
+use bevy::app::{PluginGroupBuilder, Plugins, PluginsState};
 use bevy::asset::{RenderAssetUsages, UnapprovedPathMode};
 use bevy::camera::RenderTarget;
 use bevy::log::LogPlugin;
@@ -9,6 +9,7 @@ use bevy::prelude::*;
 use bevy::render::RenderApp;
 use bevy::render::RenderPlugin;
 use bevy::render::error_handler::{RenderErrorHandler, RenderErrorPolicy};
+use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
 use bevy::render::render_asset::RenderAssets;
 use bevy::render::render_resource::{TextureFormat, TextureUsages};
 use bevy::render::renderer::{RenderAdapterInfo, RenderDevice, RenderQueue};
@@ -39,17 +40,17 @@ impl Headless {
     pub fn new<M>(size: UVec2, scene: impl Plugins<M>) -> Self {
         let mut app = App::new();
         add_default_plugins(&mut app);
-        app.add_plugins(AfterimagePlugin)
-            .add_plugins(scene)
-            .insert_resource(TimeUpdateStrategy::ManualDuration(FRAME))
-            .init_resource::<Problems>()
-            .insert_resource(RenderErrorHandler(|error, main, _| {
-                main.resource_mut::<Problems>().0.push(error.description.clone());
-                RenderErrorPolicy::Ignore
-            }));
+        app.add_plugins(AfterimagePlugin).add_plugins(scene);
+        note_problems(&mut app);
         start(&mut app);
         let target = app.world_mut().resource_mut::<Assets<Image>>().add(target_image(size));
-        Self { app, target }
+        let mut headless = Self { app, target };
+        // Bevy loads its shaders on other threads: with them there from the first frame, runs are alike.
+        for _ in 0..8 {
+            headless.frames(1);
+            std::thread::sleep(Duration::from_millis(25));
+        }
+        headless
     }
 
     /// What a camera needs to render to the image.
@@ -63,16 +64,26 @@ impl Headless {
         format!("{} ({})", info.name, info.driver_info)
     }
 
+    /// Adds an asset.
+    pub fn asset<A: Asset>(&mut self, asset: A) -> Handle<A> {
+        self.app.world_mut().resource_mut::<Assets<A>>().add(asset)
+    }
+
+    /// Another image that cameras can render to.
+    pub fn add_target(&mut self, size: UVec2) -> Handle<Image> {
+        self.asset(target_image(size))
+    }
+
     /// Renders frames.
     pub fn frames(&mut self, count: usize) {
         (0..count).for_each(|_| self.app.update());
     }
 
-    /// Makes the image that cameras render to another size, as a window's.
-    pub fn resize(&mut self, size: UVec2) {
+    /// Makes an image that cameras render to another size, as a window's.
+    pub fn resize(&mut self, target: &Handle<Image>, size: UVec2) {
         let image = target_image(size);
         let world = self.app.world_mut();
-        world.resource_mut::<Assets<Image>>().insert(&self.target, image).expect("the target exists");
+        world.resource_mut::<Assets<Image>>().insert(target, image).expect("the target exists");
         // Cameras learn of a window's new size at once, of an image's one frame later; but when projections change,
         // too.
         let mut projections = world.query::<&mut Projection>();
@@ -93,9 +104,14 @@ impl Headless {
 
     /// Reads the image.
     pub fn read(&self) -> Vec<u8> {
+        self.read_target(&self.target)
+    }
+
+    /// Reads an image that cameras render to.
+    pub fn read_target(&self, target: &Handle<Image>) -> Vec<u8> {
         let world = self.app.sub_app(RenderApp).world();
         let (device, queue) = (world.resource::<RenderDevice>().wgpu_device(), world.resource::<RenderQueue>());
-        let image = world.resource::<RenderAssets<GpuImage>>().get(&self.target).expect("a rendered image");
+        let image = world.resource::<RenderAssets<GpuImage>>().get(target).expect("a rendered image");
         let [w, h] = [image.texture.width(), image.texture.height()];
         let stride = (4 * w).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
@@ -114,7 +130,7 @@ impl Headless {
         queue.submit([encoder.finish()]);
         buffer.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
         device.poll(wgpu::PollType::wait_indefinitely()).expect("the device");
-        let bytes = buffer.get_mapped_range(..);
+        let bytes = buffer.get_mapped_range(..).expect("mapped");
         bytes.chunks(stride as usize).flat_map(|row| &row[..4 * w as usize]).copied().collect()
     }
 
@@ -124,21 +140,35 @@ impl Headless {
     }
 }
 
-/// Adds Bevy's default plugins, without a window.
+/// Adds Bevy's default plugins, without a window, and without a thread of its own for the renderer: it would take
+/// [`RenderApp`] with it.
 pub fn add_default_plugins(app: &mut App) {
+    app.add_plugins(default_plugins().disable::<PipelinedRenderingPlugin>());
+}
+
+/// Bevy's default plugins, without a window.
+pub fn default_plugins() -> PluginGroupBuilder {
     let settings = WgpuSettings { backends: Some(Backends::VULKAN), ..default() };
-    app.add_plugins(
-        DefaultPlugins
-            .set(RenderPlugin {
-                render_creation: RenderCreation::Automatic(Box::new(settings)),
-                // Otherwise the first frames lack what is not compiled yet.
-                synchronous_pipeline_compilation: true,
-                ..default()
-            })
-            // Models may lie anywhere.
-            .set(AssetPlugin { unapproved_path_mode: UnapprovedPathMode::Allow, ..default() })
-            .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
-            .disable::<LogPlugin>(),
+    DefaultPlugins
+        .set(RenderPlugin {
+            render_creation: RenderCreation::Automatic(Box::new(settings)),
+            // Otherwise the first frames lack what is not compiled yet.
+            synchronous_pipeline_compilation: true,
+            ..default()
+        })
+        // Models may lie anywhere.
+        .set(AssetPlugin { unapproved_path_mode: UnapprovedPathMode::Allow, ..default() })
+        .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
+        .disable::<LogPlugin>()
+}
+
+/// Notes validation errors, and has frames follow each other in the scene's time.
+pub fn note_problems(app: &mut App) {
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(FRAME)).init_resource::<Problems>().insert_resource(
+        RenderErrorHandler(|error, main, _| {
+            main.resource_mut::<Problems>().0.push(error.description.clone());
+            RenderErrorPolicy::Ignore
+        }),
     );
 }
 
@@ -151,7 +181,7 @@ pub fn start(app: &mut App) {
     app.cleanup();
 }
 
-fn target_image(size: UVec2) -> Image {
+pub fn target_image(size: UVec2) -> Image {
     let mut image = Image::new_target_texture(size.x, size.y, TextureFormat::Rgba8UnormSrgb, None);
     image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
     image.asset_usage = RenderAssetUsages::default();

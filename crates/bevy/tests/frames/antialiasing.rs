@@ -1,27 +1,29 @@
-//! Sparse frames with a jitter are those of a renderer with several samples a pixel.
+//! Frames of quads with a jitter are those of a renderer with several samples a pixel.
 
 use crate::common::grille::GrillePlugin;
 use crate::common::headless::{Headless, psnr_db};
 use crate::common::scene::{ScenePlugin, TONEMAPPING, stroll};
-use crate::{SIZE, kind};
+use crate::{change, compared};
 use bevy::prelude::*;
 use bevy_afterimage::testing::Planted;
-use bevy_afterimage::{Afterimage, Foveated, FoveationKind, Gaze};
+use bevy_afterimage::{Afterimage, Foveated};
+
+const SIZE: UVec2 = UVec2::new(240, 136);
 
 /// Samples a pixel along each side, of the reference.
 const SAMPLES: u32 = 4;
 
-/// A frame of a still camera, after `frames`, with or without an error.
-fn still(size: UVec2, components: impl Bundle, frames: usize, planted: Planted) -> Vec<u8> {
+/// A still camera.
+fn still(size: UVec2, components: (Afterimage, Foveated)) -> Headless {
     let mut headless = Headless::new(size, (ScenePlugin { lamps: 4, moves: false }, GrillePlugin));
     let target = headless.render_target();
+    let camera = (Camera3d::default(), Msaa::Off, target, TONEMAPPING, stroll(1.0), components);
+    headless.app.world_mut().spawn(camera);
     headless
-        .app
-        .world_mut()
-        .spawn((Camera3d::default(), Msaa::Off, target, TONEMAPPING, stroll(1.0)))
-        .insert(components);
-    headless.app.insert_resource(planted);
-    headless.app.world_mut().resource_mut::<Gaze>().set(Vec2::new(0.3, 0.5));
+}
+
+/// Its frame after `frames`.
+fn shot(headless: &mut Headless, frames: usize) -> Vec<u8> {
     headless.frames(frames);
     assert_eq!(headless.problems(), &[] as &[String]);
     headless.read()
@@ -44,20 +46,17 @@ fn averaged(rgba: &[u8]) -> Vec<u8> {
 
 #[test]
 fn a_still_view_becomes_that_of_many_samples_a_pixel() {
-    let right = Planted::default();
-    let reference = averaged(&still(SIZE * SAMPLES, (), 3, right));
-    let psnr = |shot: Vec<u8>| psnr_db(&shot, &reference);
-    let one = psnr(still(SIZE, kind(FoveationKind::Off), 3, right));
-    // Each pixel of a block of 4 x 4 is sampled six times.
-    let sparse = |antialias, planted| {
-        psnr(still(SIZE, (Afterimage { antialias, ..default() }, Foveated::default()), 96, planted))
-    };
-    let [without, with] = [false, true].map(|antialias| sparse(antialias, right));
-    let wrong = sparse(true, Planted { jitter: true, ..right });
-    println!(
-        "one sample a pixel {one:.2} dB, sparse {without:.2} dB, antialiased {with:.2} dB, with the opposite jitter \
-         {wrong:.2} dB"
-    );
+    let [full, ..] = compared();
+    let reference = averaged(&shot(&mut still(SIZE * SAMPLES, full.clone()), 3));
+    let mut headless = still(SIZE, full);
+    let one = psnr_db(&shot(&mut headless, 3), &reference);
+    let [with, wrong] = [false, true].map(|jitter| {
+        let camera = change(&mut headless, (Afterimage { antialias: true, ..default() }, Foveated::uniform(0.25)));
+        headless.app.world_mut().entity_mut(camera).insert(Planted { jitter, ..default() });
+        // Each pixel is sampled a dozen times.
+        psnr_db(&shot(&mut headless, 64), &reference)
+    });
+    println!("one sample a pixel {one:.2} dB, antialiased {with:.2} dB, with the opposite jitter {wrong:.2} dB");
     assert!(with > one + 3.0, "one sample a pixel {one:.2} dB, antialiased {with:.2} dB");
     assert!(with > wrong + 1.0, "{with:.2} dB, with the opposite jitter {wrong:.2} dB");
 }

@@ -1,55 +1,30 @@
 //! Each wrong convention of motion vectors is worse than Bevy's.
 
-use crate::common::headless::Headless;
-use crate::{clip, clip_psnr_db, courtyard, kind};
+use crate::{clip_psnr_db, clips, compared, courtyards};
 use bevy::prelude::*;
-use bevy_afterimage::FoveationKind;
 use bevy_afterimage::afterimage::{MotionConvention, MotionDirection, MotionUnit, YAxis};
 use bevy_afterimage::testing::Planted;
 
-const FRAMES: usize = 20;
-const SKIPPED: usize = 8;
-
-fn planted(foveation: FoveationKind, planted: Planted) -> Headless {
-    let mut headless = courtyard(kind(foveation));
-    headless.app.insert_resource(planted);
-    headless
-}
-
-/// PSNR with Bevy's convention, and with errors planted, by name.
-fn compare(foveation: FoveationKind, errors: &[(&str, Planted)]) {
-    let reference = clip(&mut courtyard(kind(FoveationKind::Off)), FRAMES, SKIPPED);
-    let psnr = |errors| clip_psnr_db(&clip(&mut planted(foveation, errors), FRAMES, SKIPPED), &reference);
-    let right = psnr(Planted::default());
-    println!("{foveation:?}: {right:.2} dB");
-    for (name, error) in errors {
-        let wrong = psnr(*error);
-        println!("{foveation:?}, {name}: {wrong:.2} dB");
-        assert!(wrong < right - 0.15, "{foveation:?}, {name}: {wrong:.2} dB, right {right:.2} dB");
+#[test]
+fn motion_has_the_right_sign_axis_and_unit() {
+    let bevy = MotionConvention::BEVY;
+    let errors = [
+        ("direction", MotionConvention { direction: MotionDirection::PreviousMinusCurrent, ..bevy }),
+        ("vertical axis", MotionConvention { y_axis: YAxis::Up, ..bevy }),
+        ("pixels", MotionConvention { unit: MotionUnit::Pixels, ..bevy }),
+        ("half", MotionConvention { unit: MotionUnit::Ndc, ..bevy }),
+    ];
+    let [full, _, quads] = compared();
+    let right = [(full, Planted::default()), (quads.clone(), Planted::default())];
+    let wrong = errors.map(|(_, motion)| (quads.clone(), Planted { motion: Some(motion), ..default() }));
+    let [a, b] = right;
+    let [c, d, e, f] = wrong;
+    let [reference, right, wrong @ ..] = clips(courtyards([a, b, c, d, e, f]), 20, 8);
+    let right = clip_psnr_db(&right, &reference);
+    println!("{right:.2} dB");
+    for ((name, _), wrong) in errors.into_iter().zip(wrong) {
+        let wrong = clip_psnr_db(&wrong, &reference);
+        println!("{name}: {wrong:.2} dB");
+        assert!(wrong < right - 0.15, "{name}: {wrong:.2} dB, right {right:.2} dB");
     }
-}
-
-fn motion(convention: MotionConvention) -> Planted {
-    Planted { motion: Some(convention), ..default() }
-}
-
-#[test]
-fn motion_of_samples_has_the_right_sign_axis_and_unit() {
-    let bevy = MotionConvention::BEVY;
-    compare(
-        FoveationKind::Sparse,
-        &[
-            ("direction", motion(MotionConvention { direction: MotionDirection::PreviousMinusCurrent, ..bevy })),
-            ("vertical axis", motion(MotionConvention { y_axis: YAxis::Up, ..bevy })),
-            ("pixels", motion(MotionConvention { unit: MotionUnit::Pixels, ..bevy })),
-            ("half", motion(MotionConvention { unit: MotionUnit::Ndc, ..bevy })),
-        ],
-    );
-}
-
-#[test]
-fn motion_of_whole_frames_has_the_right_sign() {
-    let bevy = MotionConvention::BEVY;
-    let backwards = MotionConvention { direction: MotionDirection::PreviousMinusCurrent, ..bevy };
-    compare(FoveationKind::Simulated, &[("direction", motion(backwards))]);
 }

@@ -2,34 +2,31 @@
 
 use crate::common::headless::Headless;
 use crate::common::scene::{ScenePlugin, TONEMAPPING, stroll};
-use crate::{SIZE, courtyard, kind, psnr_db, wander};
+use crate::{SIZE, compared, courtyard, courtyards, kind, psnr_db, wander};
 use bevy::prelude::*;
 use bevy_afterimage::afterimage::{DebugView, Method, Settings, Wrs};
-use bevy_afterimage::{Afterimage, AfterimageDebug, Foveated, FoveationKind, Gaze, LatticeCamera, Preset};
+use bevy_afterimage::{Afterimage, AfterimageDebug, Foveated, FoveationKind, Gaze, Preset};
 
 #[test]
 fn frames_of_another_size_are_good_again() {
-    let [wide, tall] = [UVec2::new(400, 200), UVec2::new(160, 220)];
-    for size in [wide, tall, SIZE * 2] {
-        let shots = [FoveationKind::Off, FoveationKind::QuadViews, FoveationKind::Sparse].map(|foveation| {
-            let mut headless = courtyard(kind(foveation));
-            headless.frames(4);
-            headless.resize(size);
-            headless.frames(14);
-            assert_eq!(headless.problems(), &[] as &[String]);
-            headless.read()
-        });
+    let (mut headless, targets) = courtyards(compared());
+    headless.frames(4);
+    for size in [UVec2::new(400, 200), UVec2::new(160, 220), SIZE * 3 / 2] {
+        targets.iter().for_each(|target| headless.resize(target, size));
+        headless.frames(8);
+        assert_eq!(headless.problems(), &[] as &[String]);
+        let shots = targets.each_ref().map(|target| headless.read_target(target));
         assert_eq!(shots[2].len(), 4 * size.element_product() as usize);
-        let [quad, sparse] = [&shots[1], &shots[2]].map(|shot| psnr_db(shot, &shots[0]));
-        println!("{size}: quad views {quad:.2} dB, sparse {sparse:.2} dB");
-        assert!(sparse > quad, "{size}: sparse {sparse:.2} dB, quad views {quad:.2} dB");
+        let [blind, quads] = [&shots[1], &shots[2]].map(|shot| psnr_db(shot, &shots[0]));
+        println!("{size}: without history {blind:.2} dB, with {quads:.2} dB");
+        assert!(quads > blind, "{size}: without history {blind:.2} dB, with {quads:.2} dB");
     }
 }
 
 #[test]
 fn msaa_is_switched_off() {
     let [without, with] = [Msaa::Off, Msaa::Sample4].map(|msaa| {
-        let mut headless = courtyard((kind(FoveationKind::Sparse), msaa));
+        let mut headless = courtyard((kind(FoveationKind::Quads), msaa));
         headless.frames(5);
         assert_eq!(headless.problems(), &[] as &[String]);
         let mut cameras = headless.app.world_mut().query::<&Msaa>();
@@ -42,7 +39,7 @@ fn msaa_is_switched_off() {
 #[test]
 fn a_lost_gaze_stays_where_it_was() {
     let [held, lost, centred] = [Some(Vec2::new(0.2, 0.7)), None, Some(Vec2::splat(0.5))].map(|later| {
-        let mut headless = courtyard(kind(FoveationKind::Sparse));
+        let mut headless = courtyard(kind(FoveationKind::Quads));
         headless.app.world_mut().resource_mut::<Gaze>().set(Vec2::new(0.2, 0.7));
         headless.frames(3);
         headless.app.world_mut().resource_mut::<Gaze>().set(later);
@@ -55,7 +52,7 @@ fn a_lost_gaze_stays_where_it_was() {
 
 #[test]
 fn settings_and_kinds_change_while_it_runs() {
-    let mut headless = courtyard(kind(FoveationKind::Sparse));
+    let mut headless = courtyard(kind(FoveationKind::Quads));
     let mut cameras = headless.app.world_mut().query::<(Entity, &mut Afterimage, &mut Foveated)>();
     let mut frame = 0;
     let mut change = |headless: &mut Headless, to: &dyn Fn(&mut Afterimage, &mut Foveated)| {
@@ -72,25 +69,21 @@ fn settings_and_kinds_change_while_it_runs() {
         assert!(mean > 80, "a dark frame: {mean}");
         shot
     };
-    let lattices = |headless: &mut Headless| {
-        headless.app.world_mut().query_filtered::<(), With<LatticeCamera>>().iter(headless.app.world()).count()
-    };
     change(&mut headless, &|_, _| {});
-    assert_eq!(lattices(&mut headless), 3);
     for preset in [Preset::Responsive, Preset::Weighted, Preset::Paper, Preset::Steady] {
         change(&mut headless, &|afterimage, _| afterimage.preset = preset);
     }
-    change(&mut headless, &|_, foveated| (foveated.rate_mid, foveated.rate_far) = (4, 8));
-    change(&mut headless, &|_, foveated| (foveated.rate_mid, foveated.rate_far) = (4, 4));
-    change(&mut headless, &|_, foveated| (foveated.rate_mid, foveated.rate_far) = (1, 2));
-    change(&mut headless, &|_, foveated| *foveated = Foveated::default());
-    for kind in [FoveationKind::Simulated, FoveationKind::Off, FoveationKind::QuadViews, FoveationKind::Sparse] {
-        change(&mut headless, &|_, foveated| foveated.kind = kind);
-        assert_eq!(
-            lattices(&mut headless),
-            if matches!(kind, FoveationKind::Simulated | FoveationKind::Off) { 0 } else { 3 }
-        );
+    change(&mut headless, &|_, foveated| (foveated.rate_mid, foveated.rate_far) = (2, 4));
+    change(&mut headless, &|_, foveated| (foveated.rate_mid, foveated.rate_far) = (8, 8));
+    change(&mut headless, &|_, foveated| foveated.budget = 1.0);
+    for share in [0.0, 0.1, 0.25, 1.0] {
+        change(&mut headless, &|_, foveated| *foveated = Foveated::uniform(share));
     }
+    for kind in [FoveationKind::Off, FoveationKind::Quads] {
+        change(&mut headless, &|_, foveated| foveated.kind = kind);
+    }
+    change(&mut headless, &|afterimage, _| afterimage.antialias = true);
+    change(&mut headless, &|afterimage, _| afterimage.antialias = false);
     // Settings out of range: every pixel is rendered, until they are mended.
     let method = Method::Wrs(Wrs { weight_exponent: 99, ..Wrs::default() });
     let broken = Settings { method, ..Settings::default() };
@@ -104,7 +97,7 @@ fn settings_and_kinds_change_while_it_runs() {
 
 #[test]
 fn debug_views_are_shown_instead_of_the_frame() {
-    let mut headless = courtyard(kind(FoveationKind::Sparse));
+    let mut headless = courtyard(kind(FoveationKind::Quads));
     headless.frames(8);
     let camera =
         headless.app.world_mut().query_filtered::<Entity, With<Afterimage>>().single(headless.app.world()).unwrap();
@@ -124,14 +117,12 @@ fn debug_views_are_shown_instead_of_the_frame() {
 
 #[test]
 fn cameras_come_and_go() {
-    let mut headless = courtyard(kind(FoveationKind::Sparse));
+    let mut headless = courtyard(kind(FoveationKind::Quads));
     headless.frames(3);
     let world = headless.app.world_mut();
     let camera = world.query_filtered::<Entity, With<Afterimage>>().single(world).unwrap();
     world.entity_mut(camera).remove::<Afterimage>();
     headless.frames(3);
-    let world = headless.app.world_mut();
-    assert_eq!(world.query::<&LatticeCamera>().iter(world).count(), 0);
     assert!(headless.read().iter().any(|&byte| byte > 150), "the camera renders every pixel itself");
     headless.app.world_mut().entity_mut(camera).insert(Afterimage::default());
     headless.frames(3);
@@ -141,8 +132,6 @@ fn cameras_come_and_go() {
     headless.frames(2);
     headless.app.world_mut().entity_mut(camera).despawn();
     headless.frames(2);
-    let world = headless.app.world_mut();
-    assert_eq!(world.query::<&LatticeCamera>().iter(world).count(), 0);
     assert_eq!(headless.problems(), &[] as &[String]);
 }
 
@@ -152,7 +141,7 @@ fn an_orthographic_camera_renders_every_pixel() {
     let target = headless.render_target();
     let projection = Projection::from(OrthographicProjection { scale: 0.03, ..OrthographicProjection::default_3d() });
     let camera = (Camera3d::default(), Msaa::Off, projection, target, TONEMAPPING, stroll(1.0));
-    let camera = headless.app.world_mut().spawn((camera, kind(FoveationKind::Sparse))).id();
+    let camera = headless.app.world_mut().spawn((camera, kind(FoveationKind::Quads))).id();
     headless.frames(4);
     let foveated = headless.read();
     headless.app.world_mut().entity_mut(camera).remove::<Afterimage>();

@@ -8,11 +8,13 @@ mod applications;
 mod conventions;
 mod events;
 mod pixels;
+mod quads;
 mod reflection;
 
-use bevy::camera::Hdr;
+use bevy::camera::{Hdr, RenderTarget};
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
+use bevy_afterimage::afterimage::{Method, Settings};
 use bevy_afterimage::{Afterimage, Foveated, FoveationKind, Gaze};
 use common::headless::{Headless, psnr_db};
 use common::scene::{Mover, ScenePlugin, TONEMAPPING, stroll};
@@ -32,6 +34,38 @@ fn courtyard(components: impl Bundle) -> Headless {
     headless
 }
 
+/// The courtyard, and cameras that stroll through it on the same way, each with components and an image of its own.
+fn courtyards<const N: usize>(cameras: [impl Bundle; N]) -> (Headless, [Handle<Image>; N]) {
+    let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: true });
+    let targets = cameras.map(|components| {
+        let image = headless.add_target(SIZE);
+        let target = RenderTarget::from(image.clone());
+        headless
+            .app
+            .world_mut()
+            .spawn((Camera3d::default(), target, stroll(0.0), Mover::Stroll))
+            .insert((TONEMAPPING, Msaa::Off))
+            .insert(components);
+        image
+    });
+    (headless, targets)
+}
+
+/// At every pixel, by quads without history, and by quads.
+fn compared() -> [(Afterimage, Foveated); 3] {
+    let every = Foveated { kind: FoveationKind::Off, ..default() };
+    let blind = Settings { method: Method::None, ..default() };
+    let blind = Afterimage { settings: Some(blind), ..default() };
+    [(Afterimage::default(), every), (blind, Foveated::default()), default()]
+}
+
+/// Has the camera be shown otherwise from now on, without history.
+fn change(headless: &mut Headless, (afterimage, foveated): (Afterimage, Foveated)) -> Entity {
+    let world = headless.app.world_mut();
+    let camera = world.query_filtered::<Entity, With<Camera3d>>().single(world).expect("a camera");
+    world.entity_mut(camera).insert((Afterimage { reset: true, ..afterimage }, foveated)).id()
+}
+
 fn kind(kind: FoveationKind) -> impl Bundle {
     (Afterimage::default(), Foveated { kind, ..default() })
 }
@@ -43,14 +77,20 @@ fn wander(headless: &mut Headless, frame: usize) {
     headless.app.world_mut().resource_mut::<Gaze>().set(uv);
 }
 
-/// Frames of the wandering gaze, without the first `skipped`.
-fn clip(headless: &mut Headless, frames: usize, skipped: usize) -> Vec<Vec<u8>> {
-    let shots = (0..frames).filter_map(|frame| {
-        wander(headless, frame);
-        let shot = headless.shot();
-        (frame >= skipped).then_some(shot)
-    });
-    let shots = shots.collect();
+/// Frames of the wandering gaze in each image, without the first `skipped`.
+fn clips<const N: usize>(
+    (mut headless, targets): (Headless, [Handle<Image>; N]),
+    frames: usize,
+    skipped: usize,
+) -> [Vec<Vec<u8>>; N] {
+    let mut shots = [const { vec![] }; N];
+    for frame in 0..frames {
+        wander(&mut headless, frame);
+        headless.frames(1);
+        if frame >= skipped {
+            shots.iter_mut().zip(&targets).for_each(|(shots, target)| shots.push(headless.read_target(target)));
+        }
+    }
     assert_eq!(headless.problems(), &[] as &[String], "validation");
     shots
 }

@@ -2,10 +2,10 @@
 
 use crate::common::headless::{Headless, afterimage};
 use crate::common::scene::{Mover, ScenePlugin, TONEMAPPING, stroll};
-use crate::{SIZE, clip, clip_psnr_db, courtyard, kind, linear, psnr_db, wander};
+use crate::{SIZE, change, clip_psnr_db, clips, compared, courtyard, courtyards, kind, linear, psnr_db, wander};
 use afterimage::gpu::{Frame, Region, Textures};
 use afterimage::{ViewFrame, wgpu};
-use bevy::camera::{CameraProjection, SubCameraView, Viewport};
+use bevy::camera::{CameraProjection, RenderTarget, SubCameraView, Viewport};
 use bevy::math::Vec3A;
 use bevy::prelude::*;
 use bevy::render::RenderApp;
@@ -14,42 +14,63 @@ use bevy_afterimage::testing::recorded;
 use bevy_afterimage::{Afterimage, AfterimageStats, CameraGaze, Foveated, FoveationKind, Gaze};
 
 #[test]
-fn history_is_better_than_quad_views_in_motion() {
-    let [off, quad, sparse] = [FoveationKind::Off, FoveationKind::QuadViews, FoveationKind::Sparse]
-        .map(|foveation| clip(&mut courtyard(kind(foveation)), 24, 12));
-    let [quad, sparse] = [quad, sparse].map(|shots| clip_psnr_db(&shots, &off));
-    println!("quad views {quad:.2} dB, sparse {sparse:.2} dB");
-    assert!(sparse > quad + 1.0, "sparse {sparse:.2} dB, quad views {quad:.2} dB");
+fn history_is_better_than_interpolation_in_motion() {
+    let shots = clips(courtyards(compared()), 16, 8);
+    let [blind, quads] = [&shots[1], &shots[2]].map(|of| clip_psnr_db(of, &shots[0]));
+    println!("without history {blind:.2} dB, with {quads:.2} dB");
+    assert!(quads > blind + 2.0, "without history {blind:.2} dB, with {quads:.2} dB");
+}
+
+/// A still courtyard.
+fn still(is_hdr: bool) -> Headless {
+    let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: false });
+    let target = headless.render_target();
+    let camera = (Camera3d::default(), Msaa::Off, target, TONEMAPPING, stroll(1.0));
+    let mut camera = headless.app.world_mut().spawn(camera);
+    if is_hdr {
+        camera.insert(linear());
+    }
+    headless
+}
+
+/// A frame of the camera with `components`, after some.
+fn settled(headless: &mut Headless, components: (Afterimage, Foveated), frames: usize, gaze: Vec2) -> Vec<u8> {
+    change(headless, components);
+    headless.app.world_mut().resource_mut::<Gaze>().set(gaze);
+    headless.frames(frames);
+    assert_eq!(headless.problems(), &[] as &[String]);
+    headless.read()
 }
 
 #[test]
 fn a_still_view_becomes_that_of_full_rate_with_and_without_hdr() {
+    let at = Vec2::new(0.3, 0.5);
     for is_hdr in [false, true] {
-        let frame = |foveation| {
-            let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: false });
-            let target = headless.render_target();
-            let mut camera = headless.app.world_mut().spawn((
-                Camera3d::default(),
-                Msaa::Off,
-                target,
-                TONEMAPPING,
-                stroll(1.0),
-                kind(foveation),
-            ));
-            if is_hdr {
-                camera.insert(linear());
-            }
-            headless.app.world_mut().resource_mut::<Gaze>().set(Vec2::new(0.3, 0.5));
-            // 16 positions in a block of 4 x 4, and a few frames more.
-            headless.frames(36);
-            assert_eq!(headless.problems(), &[] as &[String]);
-            headless.read()
-        };
-        let [full, quad, sparse] = [FoveationKind::Off, FoveationKind::QuadViews, FoveationKind::Sparse].map(frame);
-        let [quad, sparse] = [quad, sparse].map(|shot| psnr_db(&shot, &full));
-        println!("hdr {is_hdr}: quad views {quad:.2} dB, sparse {sparse:.2} dB");
-        assert!(sparse > 38.0 && sparse > quad + 8.0, "hdr {is_hdr}: sparse {sparse:.2} dB, quad views {quad:.2} dB");
+        let mut headless = still(is_hdr);
+        let [full, blind, quads] = compared();
+        let full = settled(&mut headless, full, 3, at);
+        let blind = psnr_db(&settled(&mut headless, blind, 8, at), &full);
+        // 32 frames until each quad of the periphery was shaded, and a few more.
+        let quads = psnr_db(&settled(&mut headless, quads, 40, at), &full);
+        println!("hdr {is_hdr}: without history {blind:.2} dB, with {quads:.2} dB");
+        assert!(quads > 38.0 && quads > blind + 8.0, "hdr {is_hdr}: without {blind:.2} dB, with {quads:.2} dB");
     }
+}
+
+#[test]
+fn without_a_gaze_a_still_view_becomes_that_of_full_rate_wherever_one_looks() {
+    let mut headless = still(false);
+    let [full, ..] = compared();
+    let full = settled(&mut headless, full, 3, Vec2::splat(0.5));
+    let [left, right] = [0.1, 0.9].map(|x| {
+        let uniform = (Afterimage::default(), Foveated::uniform(0.25));
+        settled(&mut headless, uniform, 20, Vec2::new(x, 0.5))
+    });
+    let psnr = psnr_db(&left, &full);
+    println!("uniform, 25 %: {psnr:.2} dB, {:.2} dB between gazes", psnr_db(&left, &right));
+    assert!(psnr > 38.0, "{psnr:.2} dB");
+    // Where history lacks nothing, the gaze decides nothing.
+    assert!(psnr_db(&left, &right) > 45.0);
 }
 
 /// Reads a texture of 8 bytes a pixel.
@@ -70,7 +91,7 @@ fn read(headless: &Headless, texture: &wgpu::Texture) -> Vec<u8> {
     queue.submit([encoder.finish()]);
     buffer.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
     device.poll(wgpu::PollType::wait_indefinitely()).expect("the device");
-    let bytes = buffer.get_mapped_range(..);
+    let bytes = buffer.get_mapped_range(..).expect("mapped");
     bytes.chunks(stride as usize).flat_map(|row| &row[..8 * texture.width() as usize]).copied().collect()
 }
 
@@ -107,54 +128,47 @@ fn compare_with_the_drop_in(antialias: bool) {
             motion: Some(Textures::Regions(&motion)),
             ..Frame::new(&given.color, &views, given.index)
         };
-        let mut encoder = device.create_command_encoder(&Default::default());
-        post.record(&device, &mut encoder, &described, &output).unwrap();
-        render_world.resource::<RenderQueue>().submit([encoder.finish()]);
-        let [shown, expected] = [&given.output, &output].map(|texture| read(&headless, texture));
+        let mut show = |described: &Frame<'_>| {
+            let mut encoder = device.create_command_encoder(&Default::default());
+            post.plan(&device, &mut encoder, described).unwrap();
+            post.record(&device, &mut encoder, described, &output).unwrap();
+            headless.app.sub_app(RenderApp).world().resource::<RenderQueue>().submit([encoder.finish()]);
+            read(&headless, &output)
+        };
+        let expected = show(&described);
+        let shown = read(&headless, &given.output);
         assert!(shown.iter().any(|&byte| byte != 0), "frame {frame} is black");
         assert!(shown == expected, "frame {frame} differs");
         // The comparison notices a view that is described otherwise.
         if frame == 5 {
-            let views = [ViewFrame { previous_from_current: None, gaze: afterimage::Gaze::Lost, ..given.view }];
-            let described = Frame { views: &views, depth: None, ..described };
-            let mut encoder = device.create_command_encoder(&Default::default());
-            let refused = post.record(&device, &mut encoder, &described, &output);
-            let differs = refused.is_err() || {
-                let world = headless.app.sub_app(RenderApp).world();
-                world.resource::<RenderQueue>().submit([encoder.finish()]);
-                read(&headless, &output) != shown
-            };
-            assert!(differs);
+            let views = [ViewFrame { gaze: afterimage::Gaze::Uv { uv: [0.1, 0.1] }, ..given.view }];
+            assert!(show(&Frame { views: &views, ..described }) != shown);
         }
     }
 }
 
 #[test]
 fn gizmos_are_drawn_at_full_rate_and_hidden_by_meshes() {
-    // The line at a distance before the camera, and behind the wall.
-    let [before, behind] = [3.0, -9.0].map(|z| {
-        let sparse = FoveationKind::Sparse;
-        // The jitter of samples does not move them.
-        let antialias = Afterimage { antialias: true, ..default() };
-        [(FoveationKind::Off, default()), (sparse, antialias)].map(|(foveation, afterimage)| {
-            let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: false });
-            let target = headless.render_target();
-            let camera = (Camera3d::default(), Msaa::Off, target, TONEMAPPING, stroll(1.0), kind(foveation));
-            headless.app.world_mut().spawn(camera).insert(afterimage);
-            headless.app.add_systems(Update, move |mut gizmos: Gizmos<'_, '_>| {
-                gizmos.line(Vec3::new(-2.0, 2.0, z), Vec3::new(2.0, 2.3, z), Color::srgb(1.0, 0.0, 1.0));
-            });
-            headless.frames(8);
-            assert_eq!(headless.problems(), &[] as &[String]);
-            let shot = headless.read();
-            shot.chunks(4).map(|pixel| pixel[0].min(pixel[2]) > pixel[1].saturating_add(100)).collect::<Vec<bool>>()
-        })
+    let mut headless = still(false);
+    // One line before the meshes, and one behind the wall.
+    headless.app.add_systems(Update, |mut gizmos: Gizmos<'_, '_>| {
+        for (z, color) in [(3.0, Color::srgb(1.0, 0.0, 1.0)), (-9.0, Color::srgb(0.0, 1.0, 0.0))] {
+            gizmos.line(Vec3::new(-2.0, 2.0, z), Vec3::new(2.0, 2.3, z), color);
+        }
     });
-    let counts = before.each_ref().map(|shot| shot.iter().filter(|is_line| **is_line).count());
-    println!("pixels of the line: {counts:?} at full rate and with lattices");
+    // The jitter of meshes does not move them.
+    let antialias = Afterimage { antialias: true, ..default() };
+    let [full, ..] = compared();
+    let lines = [full, (antialias, Foveated::default())].map(|components| {
+        let shot = settled(&mut headless, components, 8, Vec2::splat(0.5));
+        let green = shot.chunks(4).filter(|pixel| pixel[1] > pixel[0].max(pixel[2]).saturating_add(100)).count();
+        assert_eq!(green, 0, "pixels of the line behind the wall");
+        shot.chunks(4).map(|pixel| pixel[0].min(pixel[2]) > pixel[1].saturating_add(100)).collect::<Vec<bool>>()
+    });
+    let counts = lines.each_ref().map(|shot| shot.iter().filter(|is_line| **is_line).count());
+    println!("pixels of the line: {counts:?} at full rate and antialiased by history");
     assert!(counts[0] > 100);
-    assert!(before[0] == before[1]);
-    assert!(behind.iter().flatten().all(|is_line| !is_line));
+    assert!(lines[0] == lines[1]);
 }
 
 #[test]
@@ -242,10 +256,11 @@ impl CameraProjection for Eye {
 #[test]
 fn two_eyes_with_a_gaze_each() {
     let half = UVec2::new(SIZE.x / 2, SIZE.y);
-    let shots = [FoveationKind::Off, FoveationKind::QuadViews, FoveationKind::Sparse].map(|foveation| {
-        let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: true });
+    let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: true });
+    let targets = compared().map(|components| {
+        let image = headless.add_target(SIZE);
         for (side, [left, right]) in [(0_u32, [-0.8, 0.5]), (1, [-0.5, 0.8])] {
-            let target = headless.render_target();
+            let target = RenderTarget::from(image.clone());
             let viewport =
                 Viewport { physical_position: UVec2::new(side * half.x, 0), physical_size: half, ..default() };
             let projection = Projection::custom(Eye { left, right, aspect: 1.0 });
@@ -254,22 +269,23 @@ fn two_eyes_with_a_gaze_each() {
             headless.app.world_mut().spawn((
                 Camera3d::default(),
                 Camera { order: side as isize, viewport: Some(viewport), ..default() },
-                (projection, target, TONEMAPPING, Msaa::Off, kind(foveation), gaze),
+                (projection, target, TONEMAPPING, Msaa::Off, components.clone(), gaze),
                 head.with_translation(head.translation + Vec3::X * 0.064 * (side as f32 - 0.5)),
             ));
         }
-        headless.frames(30);
-        assert_eq!(headless.problems(), &[] as &[String]);
-        headless.read()
+        image
     });
-    let [quad, sparse] = [&shots[1], &shots[2]].map(|shot| psnr_db(shot, &shots[0]));
-    println!("two eyes: quad views {quad:.2} dB, sparse {sparse:.2} dB");
-    assert!(sparse > quad + 2.0, "sparse {sparse:.2} dB, quad views {quad:.2} dB");
+    headless.frames(16);
+    assert_eq!(headless.problems(), &[] as &[String]);
+    let shots = targets.map(|target| headless.read_target(&target));
+    let [blind, quads] = [&shots[1], &shots[2]].map(|shot| psnr_db(shot, &shots[0]));
+    println!("two eyes: without history {blind:.2} dB, with {quads:.2} dB");
+    assert!(quads > blind + 2.0, "without history {blind:.2} dB, with {quads:.2} dB");
 }
 
 #[test]
 fn a_reset_discards_history_and_is_done_once() {
-    let mut headless = courtyard((kind(FoveationKind::Sparse), AfterimageStats::default()));
+    let mut headless = courtyard((kind(FoveationKind::Quads), AfterimageStats::default()));
     let stats = |headless: &mut Headless| {
         // Counts arrive a few frames later.
         headless.frames(3);
@@ -293,29 +309,4 @@ fn a_reset_discards_history_and_is_done_once() {
     headless.frames(6);
     let after = stats(&mut headless);
     assert!(after.kept + after.replaced > after.pixels / 2);
-}
-
-#[test]
-fn full_rate_pixels_of_the_fovea_are_those_of_a_full_rate_frame() {
-    let fovea = |foveation| {
-        let mut headless = courtyard((
-            Afterimage { settings: Some(none()), ..default() },
-            Foveated { kind: foveation, fovea_deg: 30.0, mid_deg: 40.0, ..default() },
-        ));
-        headless.app.world_mut().resource_mut::<Gaze>().set(Vec2::splat(0.5));
-        headless.frames(3);
-        let shot = headless.read();
-        let row = 4 * SIZE.x as usize;
-        let [low, high] = [SIZE * 7 / 16, SIZE * 9 / 16];
-        let lines = shot.chunks(row).skip(low.y as usize).take((high.y - low.y) as usize);
-        lines.flat_map(|line| line[4 * low.x as usize..4 * high.x as usize].to_vec()).collect::<Vec<u8>>()
-    };
-    let psnr = psnr_db(&fovea(FoveationKind::Sparse), &fovea(FoveationKind::Off));
-    println!("fovea: {psnr:.2} dB");
-    // The crop of clip space rounds otherwise than the whole projection.
-    assert!(psnr > 45.0, "{psnr:.2} dB");
-}
-
-fn none() -> afterimage::Settings {
-    afterimage::Settings { method: afterimage::Method::None, ..Default::default() }
 }

