@@ -19,7 +19,7 @@ const MOST_STOPS: f32 = 64.0;
 pub enum Exposure {
     /// In stops.
     Stops(f32),
-    /// What [`Tones::fitting_ev`] finds in the first frame.
+    /// Found from the first frame: its logarithmic mean becomes mid-grey, unless too much would be white.
     Auto,
 }
 

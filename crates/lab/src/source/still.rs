@@ -30,8 +30,8 @@ pub struct StillSource {
 }
 
 impl StillSource {
-    /// Opens and decodes `path`, by its ending: `.png`, `.jpg`, `.jpeg` (8 or 16 bit) or `.exr`; with another ending, by
-    /// its first bytes.
+    /// Opens and decodes `path`, by its ending: `.png`, `.jpg`, `.jpeg` (8 or 16 bit) or `.exr`; with another
+    /// ending, by its first bytes.
     ///
     /// # Errors
     /// - [`Io`](InputError::Io): the file is missing or cannot be read.
