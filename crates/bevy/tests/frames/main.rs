@@ -14,23 +14,26 @@ mod reflection;
 use bevy::camera::{Hdr, RenderTarget};
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::prelude::*;
-use bevy_afterimage::afterimage::{Method, Settings};
+use bevy::render::RenderApp;
+use bevy::render::renderer::{RenderDevice, RenderQueue};
+use bevy_afterimage::afterimage::{Method, Settings, wgpu};
 use bevy_afterimage::{Afterimage, Foveated, FoveationKind, Gaze};
 use common::headless::{Headless, psnr_db};
 use common::scene::{Mover, ScenePlugin, TONEMAPPING, stroll};
 
 const SIZE: UVec2 = UVec2::new(320, 180);
 
+/// Adds a camera with `components` that strolls through the courtyard.
+fn add_stroller(headless: &mut Headless, target: RenderTarget, components: impl Bundle) {
+    let camera = (Camera3d::default(), target, stroll(0.0), Mover::Stroll, TONEMAPPING, Msaa::Off);
+    headless.app.world_mut().spawn(camera).insert(components);
+}
+
 /// The courtyard, and a camera with `components` that strolls through it.
 fn courtyard(components: impl Bundle) -> Headless {
     let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: true });
     let target = headless.render_target();
-    headless
-        .app
-        .world_mut()
-        .spawn((Camera3d::default(), target, stroll(0.0), Mover::Stroll))
-        .insert((TONEMAPPING, Msaa::Off))
-        .insert(components);
+    add_stroller(&mut headless, target, components);
     headless
 }
 
@@ -39,16 +42,33 @@ fn courtyards<const N: usize>(cameras: [impl Bundle; N]) -> (Headless, [Handle<I
     let mut headless = Headless::new(SIZE, ScenePlugin { lamps: 4, moves: true });
     let targets = cameras.map(|components| {
         let image = headless.add_target(SIZE);
-        let target = RenderTarget::from(image.clone());
-        headless
-            .app
-            .world_mut()
-            .spawn((Camera3d::default(), target, stroll(0.0), Mover::Stroll))
-            .insert((TONEMAPPING, Msaa::Off))
-            .insert(components);
+        add_stroller(&mut headless, RenderTarget::from(image.clone()), components);
         image
     });
     (headless, targets)
+}
+
+/// Reads a texture of the device.
+fn read(headless: &Headless, texture: &wgpu::Texture) -> Vec<u8> {
+    let world = headless.app.sub_app(RenderApp).world();
+    let (device, queue) = (world.resource::<RenderDevice>().wgpu_device(), world.resource::<RenderQueue>());
+    let row_bytes = texture.format().block_copy_size(None).expect("a color format") * texture.width();
+    let stride = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: u64::from(stride * texture.height()),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = device.create_command_encoder(&Default::default());
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride), rows_per_image: None };
+    let copy = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
+    encoder.copy_texture_to_buffer(texture.as_image_copy(), copy, texture.size());
+    queue.submit([encoder.finish()]);
+    buffer.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
+    device.poll(wgpu::PollType::wait_indefinitely()).expect("the device");
+    let bytes = buffer.get_mapped_range(..).expect("mapped");
+    bytes.chunks(stride as usize).flat_map(|row| &row[..row_bytes as usize]).copied().collect()
 }
 
 /// At every pixel, by quads without history, and by quads.

@@ -2,7 +2,7 @@
 
 use crate::common::headless::{Headless, afterimage};
 use crate::common::scene::{Mover, ScenePlugin, TONEMAPPING, stroll};
-use crate::{SIZE, change, clip_psnr_db, clips, compared, courtyard, courtyards, kind, linear, psnr_db, wander};
+use crate::{SIZE, change, clip_psnr_db, clips, compared, courtyard, courtyards, kind, linear, psnr_db, read, wander};
 use afterimage::gpu::{Frame, Region, Textures};
 use afterimage::{ViewFrame, wgpu};
 use bevy::camera::{CameraProjection, RenderTarget, SubCameraView, Viewport};
@@ -71,28 +71,6 @@ fn without_a_gaze_a_still_view_becomes_that_of_full_rate_wherever_one_looks() {
     assert!(psnr > 38.0, "{psnr:.2} dB");
     // Where history lacks nothing, the gaze decides nothing.
     assert!(psnr_db(&left, &right) > 45.0);
-}
-
-/// Reads a texture of 8 bytes a pixel.
-fn read(headless: &Headless, texture: &wgpu::Texture) -> Vec<u8> {
-    let world = headless.app.sub_app(RenderApp).world();
-    let (device, queue) = (world.resource::<RenderDevice>().wgpu_device(), world.resource::<RenderQueue>());
-    let stride = (8 * texture.width()).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: u64::from(stride * texture.height()),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let mut encoder = device.create_command_encoder(&Default::default());
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride), rows_per_image: None };
-    let copy = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
-    encoder.copy_texture_to_buffer(texture.as_image_copy(), copy, texture.size());
-    queue.submit([encoder.finish()]);
-    buffer.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
-    device.poll(wgpu::PollType::wait_indefinitely()).expect("the device");
-    let bytes = buffer.get_mapped_range(..).expect("mapped");
-    bytes.chunks(stride as usize).flat_map(|row| &row[..8 * texture.width() as usize]).copied().collect()
 }
 
 #[test]

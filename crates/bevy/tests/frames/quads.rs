@@ -1,13 +1,11 @@
 //! Which pixels the camera shades, and what it draws on top of them.
 
-use crate::common::headless::{Headless, afterimage};
-use crate::{SIZE, change, kind, wander};
-use afterimage::wgpu;
+use crate::common::headless::Headless;
+use crate::{SIZE, change, kind, read, wander};
 use bevy::prelude::*;
 use bevy::reflect::TypePath;
 use bevy::render::RenderApp;
 use bevy::render::render_resource::AsBindGroup;
-use bevy::render::renderer::{RenderDevice, RenderQueue};
 use bevy::shader::{Shader, ShaderRef};
 use bevy_afterimage::testing::recorded;
 use bevy_afterimage::{Afterimage, Foveated, FoveationKind, Gaze};
@@ -86,28 +84,6 @@ fn scene(components: impl Bundle, has_panes: bool) -> Headless {
         .spawn((Camera3d::default(), target, Msaa::Off, tonemapping, Transform::from_xyz(0.0, 0.5, 0.0)))
         .insert(components);
     headless
-}
-
-/// Reads a texture of 4 bytes a pixel.
-fn read(headless: &Headless, texture: &wgpu::Texture) -> Vec<u8> {
-    let world = headless.app.sub_app(RenderApp).world();
-    let (device, queue) = (world.resource::<RenderDevice>().wgpu_device(), world.resource::<RenderQueue>());
-    let stride = (4 * texture.width()).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: u64::from(stride * texture.height()),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let mut encoder = device.create_command_encoder(&Default::default());
-    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride), rows_per_image: None };
-    let copy = wgpu::TexelCopyBufferInfo { buffer: &buffer, layout };
-    encoder.copy_texture_to_buffer(texture.as_image_copy(), copy, texture.size());
-    queue.submit([encoder.finish()]);
-    buffer.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped"));
-    device.poll(wgpu::PollType::wait_indefinitely()).expect("the device");
-    let bytes = buffer.get_mapped_range(..).expect("mapped");
-    bytes.chunks(stride as usize).flat_map(|row| &row[..4 * texture.width() as usize]).copied().collect()
 }
 
 /// Largest difference of a channel of two pixels.
