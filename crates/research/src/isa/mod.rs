@@ -1,6 +1,6 @@
 //! `cargo research isa`: a cycle model of the compute passes on three AMD GPUs.
 //!
-//! Makes the tables of `docs/performance.md` that name it. Mesa's RADV makes a device without hardware
+//! Makes the tables of `docs/cycles.tsv`. Mesa's RADV makes a device without hardware
 //! (`RADV_FORCE_FAMILY`), compiles for it, and says how many cycles it expects of each instruction. This adds them up
 //! along the paths of a wave. A model: no memory system, no divergence within a wave. Ten
 //! seconds.
@@ -19,11 +19,10 @@ use failure::Result;
 use gpu::GPUS;
 use passes::{Pass, methods};
 use std::io::Write;
-use std::path::Path;
-use table::{Figures, page_changes, rewritten};
+use table::Figures;
 
-/// Page with the tables.
-const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/performance.md");
+/// File with the tables.
+const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cycles.tsv");
 
 /// Cycles of the passes on AMD GPUs, modelled from the code of Mesa's driver
 #[derive(Args, Clone, Debug)]
@@ -35,9 +34,9 @@ pub struct IsaArgs {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Action {
-    /// Compare the tables with docs/performance.md
+    /// Compare the tables with docs/cycles.tsv
     Check,
-    /// Rewrite the tables of docs/performance.md
+    /// Rewrite docs/cycles.tsv
     Bless,
     /// Compile the passes for the GPU that RADV_FORCE_FAMILY names, in a process of its own
     #[value(hide = true)]
@@ -62,23 +61,20 @@ fn run(action: Option<Action>) -> Result<()> {
         figures.add(gpu, &passes, gpu.compile(&icd, passes.len())?)?;
     }
     match action {
-        None | Some(Action::Compile) => print!("{}", table::all(&methods, &figures)),
+        None | Some(Action::Compile) => print!("{}", table::file(&methods, &figures)),
         Some(Action::Check) => {
-            let page = std::fs::read_to_string(PAGE)?;
-            let known = table::driver_of(&page).ok_or("docs/performance.md names no driver of the tables")?;
+            let file = std::fs::read_to_string(FILE)?;
+            let known = table::driver_of(&file).ok_or("docs/cycles.tsv names no driver in its first line")?;
             if known != figures.driver {
-                return skip(&format!("the page has figures of {known}, this is {}", figures.driver));
+                return skip(&format!("docs/cycles.tsv has figures of {known}, this is {}", figures.driver));
             }
-            let changes = page_changes(&page, &figures);
+            let changes = table::file_changes(&file, &figures);
             if !changes.is_empty() {
                 let how = "cargo research isa bless accepts them";
-                return Err(format!("cycles differ from docs/performance.md; {how}:\n{}", changes.join("\n")).into());
+                return Err(format!("cycles differ from docs/cycles.tsv; {how}:\n{}", changes.join("\n")).into());
             }
         }
-        Some(Action::Bless) => {
-            let page = std::fs::read_to_string(PAGE)?;
-            std::fs::write(Path::new(PAGE), rewritten(&page, &methods, &figures))?;
-        }
+        Some(Action::Bless) => std::fs::write(FILE, table::file(&methods, &figures))?,
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! The tables of docs/performance.md, and what differs from them.
+//! The tables of docs/cycles.tsv, and what differs from them.
 
 use super::failure::Result;
 use super::gpu::{Compiled, GPUS, Gpu};
@@ -6,8 +6,11 @@ use super::passes::{MethodPasses, Pass, SIZE_PX};
 use super::perf::{PATHS, Path, Program};
 use serde_json::Value;
 
-const MARKER: &str = "<!-- generated: cargo research isa, ";
-/// Change of a pass's cycles that the page need not follow.
+/// Begins the file's first line, before the driver.
+const HEAD: &str = "# cargo research isa, ";
+/// Begins the line above the figures of the passes.
+const PASSES_HEAD: &str = "gpu\tpass\t";
+/// Change of a pass's cycles that the file need not follow.
 const TOLERANCE: f64 = 0.03;
 
 /// All figures.
@@ -60,49 +63,55 @@ impl Row {
         self.paths[path].cycles / self.pixels
     }
 
-    /// Name and cycles, as the page has them.
+    /// Name and cycles, as the file has them.
     fn line(&self) -> String {
         let s = |name: &str| self.statistics[name].as_u64().unwrap_or(0);
         let cycles: Vec<String> = (0..PATHS.len()).map(|path| format!("{:.0}", self.cycles(path))).collect();
         let loads = [0, 1].map(|path| format!("{:.3}", self.paths[path].loads / self.pixels));
         let loads = loads.each_ref().map(|l| l.trim_end_matches('0').trim_end_matches('.'));
         format!(
-            "| {} | {} | {} | {} | {} | {} | {} | {}, {} |\n",
+            "{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n",
             self.family,
             self.pass,
             s("Instructions"),
             s("VGPRs"),
             s("Spilled VGPRs") + s("Spilled SGPRs"),
             self.waves,
-            cycles.join(" | "),
+            cycles.join("\t"),
             loads[0],
             loads[1],
         )
     }
 }
 
-/// Both tables.
-pub fn all(methods: &[MethodPasses], figures: &Figures) -> String {
-    format!("{}\n{}", passes(figures), roofline(methods, figures))
+/// The whole file: the driver, figures of the passes, and times of a frame.
+pub fn file(methods: &[MethodPasses], figures: &Figures) -> String {
+    format!("{HEAD}{}\n\n{}\n{}", figures.driver, passes(figures), roofline(methods, figures))
 }
 
-/// Figures of the passes. The head of its first column names the driver.
+/// Figures of the passes.
 fn passes(figures: &Figures) -> String {
-    let head = format!(
-        "| {} | pass | instructions | VGPRs | spills | waves | {} | loads, still and moving |\n",
-        figures.driver,
-        PATHS.join(" | ")
-    );
+    let paths = PATHS.join("\t");
+    let head = format!("{PASSES_HEAD}instructions\tVGPRs\tspills\twaves\t{paths}\tloads, still\tloads, moving\n");
     let rows: String = figures.rows.iter().map(Row::line).collect();
-    format!("{head}{}|\n{rows}", "|---".repeat(10))
+    head + &rows
 }
 
 /// Times of a frame of all passes: of arithmetic, of memory, and the longer one.
 fn roofline(methods: &[MethodPasses], figures: &Figures) -> String {
     let [width, height] = SIZE_PX.map(f64::from);
-    let head =
-        "| card | method | memory ms | arithmetic ms, still | moving | relit | frame ms, still | moving | relit |\n";
-    let mut table = format!("{head}{}|\n", "|---".repeat(9));
+    let head = [
+        "card",
+        "method",
+        "memory ms",
+        "arithmetic ms, still",
+        "arithmetic ms, moving",
+        "arithmetic ms, relit",
+        "frame ms, still",
+        "frame ms, moving",
+        "frame ms, relit",
+    ];
+    let mut table = head.join("\t") + "\n";
     for gpu in &GPUS {
         for method in methods {
             let arithmetic_ms = [0, 1, 2].map(|path| {
@@ -116,58 +125,36 @@ fn roofline(methods: &[MethodPasses], figures: &Figures) -> String {
             let memory_ms = f64::from(method.bytes) * width * height / (gpu.gigabytes * 1e6);
             let cells = [memory_ms].into_iter().chain(arithmetic_ms).chain(arithmetic_ms.map(|ms| ms.max(memory_ms)));
             let cells: Vec<String> = cells.map(|ms| format!("{ms:.2}")).collect();
-            table += &format!("| {} | {} | {} |\n", gpu.card, method.name, cells.join(" | "));
+            table += &format!("{}\t{}\t{}\n", gpu.card, method.name, cells.join("\t"));
         }
     }
     table
 }
 
-/// The page with its tables generated anew.
-pub fn rewritten(page: &str, methods: &[MethodPasses], figures: &Figures) -> String {
-    let mut output = String::new();
-    let mut is_replaced = false;
-    for line in page.lines() {
-        is_replaced = is_replaced && line.starts_with('|');
-        if is_replaced {
-            continue;
-        }
-        output += line;
-        output.push('\n');
-        if let Some(kind) = line.strip_prefix(MARKER) {
-            output += &if kind.starts_with("roofline") { roofline(methods, figures) } else { passes(figures) };
-            is_replaced = true;
-        }
-    }
-    output
+/// Rows of the figures of the passes.
+fn rows_of(file: &str) -> Vec<Vec<&str>> {
+    let rows = file.lines().skip_while(|l| !l.starts_with(PASSES_HEAD)).skip(1);
+    rows.take_while(|l| !l.is_empty()).map(|l| l.split('\t').collect()).collect()
 }
 
-/// Lines of the table of passes.
-fn lines_of(page: &str) -> impl Iterator<Item = Vec<&str>> {
-    let lines = page.lines().skip_while(|l| !l.starts_with(&format!("{MARKER}passes"))).skip(1);
-    lines.take_while(|l| l.starts_with('|')).map(|l| l.trim_matches('|').split('|').map(str::trim).collect())
+/// Driver of the file's figures.
+pub fn driver_of(file: &str) -> Option<&str> {
+    file.lines().next()?.strip_prefix(HEAD)
 }
 
-/// Driver of the page's figures.
-pub fn driver_of(page: &str) -> Option<String> {
-    Some(lines_of(page).next()?.first()?.to_string())
+/// Passes whose cycles are not those of the file.
+pub fn file_changes(file: &str, figures: &Figures) -> Vec<String> {
+    changes(&rows_of(file), &rows_of(&passes(figures)))
 }
 
-/// Passes whose cycles are not those of the page.
-pub fn page_changes(page: &str, figures: &Figures) -> Vec<String> {
-    let now = passes(figures);
-    let now = format!("{MARKER}passes -->\n{now}");
-    changes(lines_of(page).collect(), lines_of(&now).collect())
-}
-
-/// Changes between rows; the first two are head and rule.
-fn changes(page: Vec<Vec<&str>>, now: Vec<Vec<&str>>) -> Vec<String> {
-    let [page, now] = [page, now].map(|rows| rows.into_iter().skip(2).collect::<Vec<_>>());
+/// Changes between rows.
+fn changes(file: &[Vec<&str>], now: &[Vec<&str>]) -> Vec<String> {
     // Behind the GPU and the pass: instructions, registers, spills, waves.
     let cycles = |cells: &[&str], path: usize| cells.get(6 + path).and_then(|c| c.parse::<f64>().ok());
     let mut changes = vec![];
-    for row in &now {
+    for row in now {
         let name = row[..2].join(" ");
-        let Some(before) = page.iter().find(|r| r[..2] == row[..2]) else {
+        let Some(before) = file.iter().find(|r| r[..2] == row[..2]) else {
             changes.push(format!("{name} is new"));
             continue;
         };
@@ -182,7 +169,7 @@ fn changes(page: Vec<Vec<&str>>, now: Vec<Vec<&str>>) -> Vec<String> {
             }
         }
     }
-    let gone = page.iter().filter(|r| !now.iter().any(|n| n[..2] == r[..2]));
+    let gone = file.iter().filter(|r| !now.iter().any(|n| n[..2] == r[..2]));
     changes.extend(gone.map(|r| format!("{} is gone", r[..2].join(" "))));
     changes
 }
@@ -191,21 +178,21 @@ fn changes(page: Vec<Vec<&str>>, now: Vec<Vec<&str>>) -> Vec<String> {
 mod tests {
     use super::*;
 
-    const PAGE: &str = "<!-- generated: cargo research isa, passes -->\n| radv 1 | pass | instructions | VGPRs | spills \
-        | waves | still | moving | relit | loads |\n|---|\n| g | a | 9 | 9 | 0 | 16 | 100 | 200 | 300 | 5, 5 |\n\
-        | g | b | 9 | 9 | 0 | 16 | 100 | 200 | 300 | 5, 5 |\n\ntext\n";
+    const FILE: &str = "# cargo research isa, radv 1\n\ngpu\tpass\tinstructions\tVGPRs\tspills\twaves\tstill\tmoving\trelit\n\
+        g\ta\t9\t9\t0\t16\t100\t200\t300\ng\tb\t9\t9\t0\t16\t100\t200\t300\n\ncard\tmethod\n";
 
     #[test]
     fn a_change_is_found() {
-        assert_eq!(driver_of(PAGE).as_deref(), Some("radv 1"));
-        let compare = |now: &str| changes(lines_of(PAGE).collect(), lines_of(now).collect());
-        assert_eq!(compare(PAGE), Vec::<String>::new());
-        let within = PAGE.replace("| a | 9 | 9 | 0 | 16 | 100 | 200 |", "| a | 9 | 9 | 0 | 16 | 103 | 194 |");
+        assert_eq!(driver_of(FILE), Some("radv 1"));
+        assert_eq!(rows_of(FILE).len(), 2);
+        let compare = |now: &str| changes(&rows_of(FILE), &rows_of(now));
+        assert_eq!(compare(FILE), Vec::<String>::new());
+        let within = FILE.replace("a\t9\t9\t0\t16\t100\t200", "a\t9\t9\t0\t16\t103\t194");
         assert_eq!(compare(&within), Vec::<String>::new());
-        let grown = PAGE.replace("| a | 9 | 9 | 0 | 16 | 100 | 200 |", "| a | 9 | 9 | 0 | 16 | 104 | 193 |");
+        let grown = FILE.replace("a\t9\t9\t0\t16\t100\t200", "a\t9\t9\t0\t16\t104\t193");
         let expected = ["g a, still: 100 to 104 cycles (+4.0 %)", "g a, moving: 200 to 193 cycles (-3.5 %)"];
         assert_eq!(compare(&grown), expected);
-        assert_eq!(compare(&PAGE.replace("| b |", "| c |")), ["g c is new", "g b is gone"]);
-        assert_eq!(compare(&PAGE.replace("| a | 9 | 9 | 0 | 16 | 100", "| a | 9 | 9 | 0 | 16 | x")).len(), 1);
+        assert_eq!(compare(&FILE.replace("g\tb", "g\tc")), ["g c is new", "g b is gone"]);
+        assert_eq!(compare(&FILE.replace("a\t9\t9\t0\t16\t100", "a\t9\t9\t0\t16\tx")).len(), 1);
     }
 }
