@@ -6,7 +6,7 @@
 //! is what `run --gaze-latency` uses. The bound knows the true gaze whenever the last samples are of a saccade: no
 //! predictor that begins at a saccade's begin errs less.
 //!
-//! Makes the table of predictors in `docs/equal-time.md`, "Late gaze"; a second.
+//! Makes the figures of predictors in `docs/equal-time.md`, "Late gaze"; a second.
 
 use afterimage_lab::scanpath::{Scanpath, read_csv};
 use std::error::Error;
