@@ -178,7 +178,8 @@ fn removals(report: &Report, out: &mut String) -> std::fmt::Result {
     writeln!(out, "| scene | none removed | largest of an effect | all of them |")?;
     writeln!(out, "|---|---|---|---|")?;
     let cell = |price: Option<&Price>| {
-        let interval = price.and_then(|p| p.interval).map_or("-".into(), |[low, high]| format!("{low:.3} to {high:.3}"));
+        let interval =
+            price.and_then(|p| p.interval).map_or("-".into(), |[low, high]| format!("{low:.3} to {high:.3}"));
         format!("{} ({interval})", median(price.and_then(|p| p.ratio), 3))
     };
     for scene in &report.scenes {
