@@ -83,12 +83,8 @@ fn tables(report: &Report, out: &mut String) -> std::fmt::Result {
     writeln!(out, "{w}x{h}, 1 sample per pixel, depth {}, {} frames per value;", report.max_depth, report.frames)?;
     let names: Vec<_> = report.backends.iter().map(|b| format!("{}: {} ({})", b.kind, b.name, b.driver)).collect();
     writeln!(out, "{}; {}. Kernels are compiled {}.\n", report.machine, names.join("; "), cache_state(report))?;
-    summary(report, out)?;
-    for scene in &report.scenes {
-        writeln!(out, "\n### {}\n", scene.scene)?;
-        writeln!(out, "{} triangles; needs {}.\n", scene.triangles, scene.needs.join(", "))?;
-        one_scene(report, scene, out)?;
-    }
+    increases(report, out)?;
+    kernels(report, out)?;
     removals(report, out)?;
     write!(out, "{END}")
 }
@@ -108,97 +104,95 @@ fn is_beyond_noise(price: &Price, noise: f64) -> bool {
     price.interval.is_some_and(|[low, _]| low > 1.0 + noise)
 }
 
-/// Summary with one row per effect and one column per scene.
-fn summary(report: &Report, out: &mut String) -> std::fmt::Result {
-    for (b, backend) in report.backends.iter().enumerate() {
-        writeln!(out, "Increase of the frame time, {}, in percent; bold beyond noise:\n", backend.kind)?;
-        let names: Vec<_> = report.scenes.iter().map(|s| s.scene.as_str()).collect();
-        writeln!(out, "| effect added | {} |", names.join(" | "))?;
-        writeln!(out, "|---|{}", "---|".repeat(names.len()))?;
-        let cells = |what: &str| -> Vec<String> {
-            let cell = |s: &SceneReport| {
-                let prices = &s.prices[b];
-                let Some(price) = prices.iter().find(|p| p.what == what) else { return "needed".to_owned() };
-                let Some(ratio) = price.ratio else { return "-".to_owned() };
-                let percent = format!("{:+.1}", 100.0 * (ratio.median - 1.0));
-                let is_bold = what != "again" && is_beyond_noise(price, noise(prices));
-                if is_bold { format!("**{percent}**") } else { percent }
-            };
-            report.scenes.iter().map(cell).collect()
+/// One row per effect and one column per scene, with a value per backend.
+fn increases(report: &Report, out: &mut String) -> std::fmt::Result {
+    let kinds: Vec<_> = report.backends.iter().map(|b| b.kind).collect();
+    writeln!(out, "Increase of the frame time in percent, {}; bold beyond noise:\n", kinds.join(", "))?;
+    let names: Vec<_> = report.scenes.iter().map(|s| s.scene.as_str()).collect();
+    writeln!(out, "| effect added | {} |", names.join(" | "))?;
+    writeln!(out, "|---|{}", "---|".repeat(names.len()))?;
+    let row = |cell: &dyn Fn(&SceneReport) -> String| -> String {
+        let cells: Vec<_> = report.scenes.iter().map(cell).collect();
+        cells.join(" | ")
+    };
+    for effect in Effect::ALL {
+        writeln!(out, "| {} | {} |", effect.name(), row(&|s| increase(s, effect.name())))?;
+    }
+    writeln!(out, "| all of them | {} |", row(&|s| increase(s, "all")))?;
+    let noises = |s: &SceneReport| of_each(s, |prices| format!("{:.1}", 100.0 * noise(prices)));
+    writeln!(out, "| noise: no effect added | {} |\n", row(&noises))
+}
+
+/// A cell with a value per backend.
+fn of_each(scene: &SceneReport, value: impl Fn(&[Price]) -> String) -> String {
+    let values: Vec<_> = scene.prices.iter().map(|prices| value(prices)).collect();
+    values.join(", ")
+}
+
+/// Increase of the frame time in percent, per backend; "needed" for an effect that the scene uses.
+fn increase(scene: &SceneReport, what: &str) -> String {
+    if scene.needs.contains(&what) {
+        return "needed".to_owned();
+    }
+    of_each(scene, |prices| {
+        let Some((price, ratio)) = find(prices, what).and_then(|p| Some((p, p.ratio?))) else { return "-".to_owned() };
+        let percent = format!("{:+.1}", 100.0 * (ratio.median - 1.0));
+        if is_beyond_noise(price, noise(prices)) { format!("**{percent}**") } else { percent }
+    })
+}
+
+fn find<'a>(prices: &'a [Price], what: &str) -> Option<&'a Price> {
+    prices.iter().find(|p| p.what == what)
+}
+
+/// One row per scene: times of the kernels with the effects that the scene needs, and with all effects.
+fn kernels(report: &Report, out: &mut String) -> std::fmt::Result {
+    let kinds = report.backends.iter().map(|b| format!(" {}, ms: auto, all |", b.kind));
+    writeln!(out, "| scene | triangles | needs |{} compile ms: auto, all |", kinds.collect::<String>())?;
+    writeln!(out, "|---|---|---|---|{}", "---|".repeat(report.backends.len()))?;
+    for scene in &report.scenes {
+        write!(out, "| {} | {} | {} |", scene.scene, scene.triangles, scene.needs.join(", "))?;
+        let both = |prices: &[Price], ms: fn(&Price) -> Option<Quartiles>, digits: usize| {
+            ["auto", "all"].map(|what| median(find(prices, what).and_then(ms), digits)).join(", ")
         };
-        for effect in Effect::ALL {
-            writeln!(out, "| {} | {} |", effect.name(), cells(effect.name()).join(" | "))?;
+        for prices in &scene.prices {
+            write!(out, " {} |", both(prices, |p| p.ms, 1))?;
         }
-        writeln!(out, "| all of them | {} |", cells("all").join(" | "))?;
-        let noise = |s: &SceneReport| format!("{:.1}", 100.0 * noise(&s.prices[b]));
-        let noise: Vec<_> = report.scenes.iter().map(noise).collect();
-        writeln!(out, "| noise: no effect added | {} |\n", noise.join(" | "))?;
+        // The CPU compiles nothing.
+        let compiled = scene.prices.last().map_or_else(String::new, |prices| both(prices, |p| p.compile_ms, 0));
+        writeln!(out, " {compiled} |")?;
     }
     Ok(())
 }
 
-fn one_scene(report: &Report, scene: &SceneReport, out: &mut String) -> std::fmt::Result {
-    write!(out, "| kernels |")?;
-    for backend in &report.backends {
-        write!(out, " {0}, ms | quartiles | {0}, ratio to auto |", backend.kind)?;
-        if backend.kind == "gpu" {
-            write!(out, " compile ms |")?;
-        }
-    }
-    writeln!(out)?;
-    let columns: usize = report.backends.iter().map(|b| if b.kind == "gpu" { 4 } else { 3 }).sum();
-    writeln!(out, "|---|{}", "---|".repeat(columns))?;
-    let rows = scene.prices.first().map_or(0, Vec::len);
-    for row in 0..rows {
-        let what = &scene.prices[0][row].what;
-        let name = match what.as_str() {
-            "auto" => "auto".to_owned(),
-            "again" => "auto again".to_owned(),
-            "all" => "all".to_owned(),
-            effect => format!("auto and {effect}"),
-        };
-        write!(out, "| {name} |")?;
-        for (prices, backend) in scene.prices.iter().zip(&report.backends) {
-            let price = &prices[row];
-            write!(out, " {} | {} |", median(price.ms, 1), quartiles(price.ms))?;
-            write!(out, " {} |", median(price.ratio, 3))?;
-            if backend.kind == "gpu" {
-                write!(out, " {} |", median(price.compile_ms, 0))?;
-            }
-        }
-        writeln!(out)?;
-    }
-    Ok(())
-}
-
+/// One row per scene: the control, the effect with the largest ratio, and all effects.
 fn removals(report: &Report, out: &mut String) -> std::fmt::Result {
     if report.scenes.iter().all(|s| s.removals.is_empty()) {
         return Ok(());
     }
-    writeln!(out, "\n### Switched off or removed\n")?;
     writeln!(
         out,
-        "Frame time with the effect switched off by an `override` constant, divided by that with its text \
-         removed; gpu.\n"
+        "\nFrame time with an effect switched off by an `override` constant, divided by that with its text removed;\n\
+         gpu, with the 99.9 % interval of the median:\n"
     )?;
-    writeln!(out, "| scene | effect | off / removed | quartiles | 99.9 % interval of the median |")?;
-    writeln!(out, "|---|---|---|---|---|")?;
+    writeln!(out, "| scene | none removed | largest of an effect | all of them |")?;
+    writeln!(out, "|---|---|---|---|")?;
+    let cell = |price: Option<&Price>| {
+        let interval =
+            price.and_then(|p| p.interval).map_or("-".into(), |[low, high]| format!("{low:.3} to {high:.3}"));
+        format!("{} ({interval})", median(price.and_then(|p| p.ratio), 3))
+    };
     for scene in &report.scenes {
-        for price in &scene.removals {
-            let name = if price.what == "again" { "none removed" } else { price.what.as_str() };
-            let quartiles = price.ratio.map_or("-".into(), |q| format!("{:.3} to {:.3}", q.p25, q.p75));
-            let interval = price.interval.map_or("-".into(), |[low, high]| format!("{low:.3} to {high:.3}"));
-            let ratio = median(price.ratio, 3);
-            writeln!(out, "| {} | {name} | {ratio} | {quartiles} | {interval} |", scene.scene)?;
-        }
+        let effects = scene.removals.iter().filter(|p| !["again", "all of them"].contains(&p.what.as_str()));
+        let ratio = |p: &Price| p.ratio.map_or(0.0, |q| q.median);
+        let largest = effects.max_by(|a, b| ratio(a).total_cmp(&ratio(b)));
+        let [control, all] = ["again", "all of them"].map(|what| cell(find(&scene.removals, what)));
+        let name = largest.map_or("-", |p| p.what.as_str());
+        writeln!(out, "| {} | {control} | {name} {} | {all} |", scene.scene, cell(largest))?;
     }
     Ok(())
 }
 
 fn median(q: Option<Quartiles>, digits: usize) -> String {
     q.map_or("-".into(), |q| format!("{:.digits$}", q.median))
-}
-
-fn quartiles(q: Option<Quartiles>) -> String {
-    q.map_or("-".into(), |q| format!("{:.1} to {:.1}", q.p25, q.p75))
 }
