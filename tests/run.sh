@@ -45,7 +45,7 @@ step "build of the tests"
 cargo test "${everything[@]}" --no-run
 
 step "tests"
-# Tests of hard cases write what they measure here. When all have run, it is compared with the table in docs/stability.md.
+# Tests of hard cases write what they measure here. When all have run, it is compared with docs/stability.csv.
 export AFTERIMAGE_STABILITY="$PWD/target/stability"
 rm -rf "$AFTERIMAGE_STABILITY"
 mkdir -p target

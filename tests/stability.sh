@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes docs/stability.md: runs all tests, collects what they measured for the hard cases, and prints the table.
+# Writes docs/stability.csv and docs/stability.md: runs all tests, and collects what they measured for the hard cases.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export AFTERIMAGE_GPU=require NODEVICE_SELECT=1 AFTERIMAGE_STABILITY="$PWD/target/stability"

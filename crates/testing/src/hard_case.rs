@@ -1,6 +1,6 @@
 //! Register of hard cases: a test records which row of the contract it proves, on which side, and what it measured.
 //!
-//! `crates/testing/tests/stability/` collects the records into docs/stability.md.
+//! `crates/testing/tests/stability/` collects the records into docs/stability.csv and docs/stability.md.
 
 use std::fmt::{self, Display};
 use std::fs;

@@ -9,6 +9,7 @@ mod lifecycle;
 mod light;
 mod limits;
 mod motion;
+mod objects;
 mod prime;
 mod properties;
 mod quads;

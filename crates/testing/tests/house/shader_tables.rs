@@ -29,11 +29,13 @@ impl Shader {
         comment.split(|l| l.is_empty()).next().unwrap_or(&[]).join(" ")
     }
 
-    /// First sentence of the comment at the top.
+    /// First sentence of the comment at the top, to its first colon or semicolon unless that follows one or two words.
     fn purpose(&self) -> String {
         let header = self.header();
         let sentence = header.split(". ").next().unwrap_or_default();
-        sentence.trim_end_matches(['.', ':']).replace('|', "\\|")
+        let clause = sentence.split([':', ';']).next().unwrap_or_default();
+        let purpose = if clause.split(' ').count() > 2 { clause } else { sentence };
+        purpose.trim_end_matches(['.', ':']).replace('|', "\\|")
     }
 
     /// What the comment at the top names as the twin, if anything.
@@ -41,12 +43,12 @@ impl Shader {
         let header = self.header();
         let phrases = ["CPU twin: ", "Twin on the CPU: ", "Twin of "];
         let rest = phrases.iter().find_map(|p| header.split_once(p)).map_or("", |(_, rest)| rest);
-        let twin = rest.split(' ').next().unwrap_or_default().trim_end_matches(['.', ',', ';', ':']);
+        let twin = rest.split(' ').next().unwrap_or_default().trim_matches(['.', ',', ';', ':', '`']);
         if twin.is_empty() { String::new() } else { format!("`{twin}`") }
     }
 
-    /// Names of functions without the attributes of an entry point, in order; with `entries`, those with them.
-    fn functions(&self, entries: bool) -> Vec<&str> {
+    /// Names of functions without the attributes of an entry point, in order.
+    fn functions(&self) -> Vec<&str> {
         let mut before = "";
         let mut names = vec![];
         for line in self.text.lines() {
@@ -56,7 +58,7 @@ impl Shader {
                 let is_entry = [before, attributes]
                     .iter()
                     .any(|a| ["@compute", "@vertex", "@fragment"].iter().any(|e| a.starts_with(e)));
-                if is_entry == entries {
+                if !is_entry {
                     names.push(function.split('(').next().expect("split has an item"));
                 }
             }
@@ -65,21 +67,16 @@ impl Shader {
         names
     }
 
-    /// `group.binding name` of each binding.
+    /// `group.binding:name` of each binding.
     fn bindings(&self) -> Vec<String> {
         let binding = |line: &str| {
             let (group, rest) = line.strip_prefix("@group(")?.split_once(") @binding(")?;
             let (binding, rest) = rest.split_once(") var")?;
             // After `<storage, read>`, if that is there.
             let name = rest.split_once("> ").map_or(rest, |(_, name)| name).trim().split(':').next()?;
-            Some(format!("{group}.{binding} `{name}`"))
+            Some(format!("`{group}.{binding}:{name}`"))
         };
         self.text.lines().filter_map(binding).collect()
-    }
-
-    fn overrides(&self) -> Vec<&str> {
-        let names = self.text.lines().filter_map(|l| l.strip_prefix("override "));
-        names.map(|l| l.split([':', ' ', ';']).next().expect("split has an item")).collect()
     }
 }
 
@@ -91,12 +88,10 @@ fn quoted(names: &[&str]) -> String {
 fn table(kind: &str, shaders: &[Shader]) -> String {
     let (head, row): (&str, fn(&Shader) -> Vec<String>) = match kind {
         "functions" => {
-            ("module|uses|functions", |s| vec![format!("`{}`", s.name), quoted(&s.uses()), quoted(&s.functions(false))])
+            ("module|uses|functions", |s| vec![format!("`{}`", s.name), quoted(&s.uses()), quoted(&s.functions())])
         }
-        "bindings" => ("file|purpose|twin|entry points|bindings|overrides", |s| {
-            let overrides = quoted(&s.overrides());
-            let entries = quoted(&s.functions(true));
-            vec![format!("`{}`", s.name), s.purpose(), s.twin(), entries, s.bindings().join(", "), overrides]
+        "bindings" => ("file|purpose|twin|bindings", |s| {
+            vec![format!("`{}`", s.name), s.purpose(), s.twin(), s.bindings().join(", ")]
         }),
         _ => panic!("a table of {kind} is not known"),
     };
@@ -170,7 +165,7 @@ fn tables_of_shaders_are_those_of_the_sources() {
 
 #[test]
 fn a_table_follows_its_sources() {
-    let text = "//#use a\n//#use b\n// Blends levels. CPU twin:\n// src/mix.rs, which counts.\n\noverride AXIS: u32 = 0u;\noverride QUESTION: u32;\n\
+    let text = "//#use a\n//#use b\n// Blends two levels: linearly. CPU twin:\n// `src/mix.rs`, which counts.\n\noverride AXIS: u32 = 0u;\n\
         @group(0) @binding(1) var full: texture_2d<f32>;\n@group(2) @binding(0) var<storage, read> plan: array<u32>;\n\
         // a fn of c\nfn first(x: f32) {\n}\n@compute @workgroup_size(64)\nfn main() {\n}\n\
         @fragment fn shade() {\n}\nfn second() {}\n";
@@ -178,16 +173,15 @@ fn a_table_follows_its_sources() {
     let page = "# Page\n\n<!-- generated: functions of lib -->\n| old |\n\n<!-- generated: bindings of pass -->\n| old |\ntext\n";
     let expected = "# Page\n\n<!-- generated: functions of lib -->\n\
         | module | uses | functions |\n| --- | --- | --- |\n| `mix` | `a`, `b` | `first`, `second` |\n\n\
-        <!-- generated: bindings of pass -->\n| file | purpose | twin | entry points | bindings | overrides |\n\
-        | --- | --- | --- | --- | --- | --- |\n\
-        | `mix` | Blends levels | `src/mix.rs` | `main`, `shade` | 0.1 `full`, 2.0 `plan` | `AXIS`, `QUESTION` |\ntext\n";
+        <!-- generated: bindings of pass -->\n| file | purpose | twin | bindings |\n\
+        | --- | --- | --- | --- |\n\
+        | `mix` | Blends two levels | `src/mix.rs` | `0.1:full`, `2.0:plan` |\ntext\n";
     let generated = regenerated(page, |_| shaders(text));
     assert_eq!(generated, expected);
     assert_eq!(regenerated(&generated, |_| shaders(text)), generated);
-    // Planted: a function, a binding, or an override that the page does not name.
-    for added in
-        ["fn third() {\n}\n", "@group(0) @binding(9) var more: texture_2d<f32>;\n", "override MORE: u32 = 1u;\n"]
-    {
+    assert_eq!(shaders("// Filter: linear; slow. Fast.\n")[0].purpose(), "Filter: linear; slow");
+    // Planted: a function or a binding that the page does not name.
+    for added in ["fn third() {\n}\n", "@group(0) @binding(9) var more: texture_2d<f32>;\n"] {
         assert_ne!(regenerated(&generated, |_| shaders(&format!("{text}{added}"))), generated, "{added}");
     }
 }

@@ -1,0 +1,78 @@
+//! Objects that a frame makes on the device: none while its textures are known.
+
+use afterimage::gpu::{Afterimage, Frame};
+use afterimage::wgpu::{self, Device, Texture, TextureFormat, TextureUsages};
+use afterimage::{ContextDesc, Filter, Foveation, Gaze, Settings, ViewFrame, ViewGeometry};
+
+const SIZE: [u32; 2] = [64, 48];
+
+/// Textures of a frame: color, depth, motion, and the output.
+fn textures(device: &Device) -> [Texture; 4] {
+    use TextureFormat::{R32Float, Rg16Float, Rgba16Float};
+    let texture = |format, usage| {
+        device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
+    };
+    let [color, depth, motion] =
+        [Rgba16Float, R32Float, Rg16Float].map(|format| texture(format, TextureUsages::TEXTURE_BINDING));
+    [color, depth, motion, texture(Rgba16Float, TextureUsages::STORAGE_BINDING)]
+}
+
+/// Bind groups, views and buffers that the last of some frames made. Frames have two sets of textures that alternate,
+/// or new ones each.
+fn made(settings: Settings, is_new: bool) -> [usize; 3] {
+    let folder = tempfile::tempdir().unwrap();
+    let trace = wgpu::Trace::Directory(folder.path().to_owned());
+    let (device, queue) = Device::noop(&wgpu::DeviceDescriptor { trace, ..Default::default() });
+    let desc = ContextDesc { settings, ..ContextDesc::new(SIZE) };
+    let mut post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float).unwrap();
+    let mut sets = [(); 2].map(|()| textures(&device));
+    let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
+    let gaze_px = [32.0, 24.0];
+    let is_sparse = settings.foveation.filter == Filter::Sparse;
+    let count = || {
+        let trace = std::fs::read_to_string(folder.path().join("trace.ron")).unwrap();
+        ["CreateBindGroup(", "CreateTextureView", "CreateBuffer("].map(|call| trace.matches(call).count())
+    };
+    let mut before = [0; 3];
+    for index in 0..20 {
+        let set = &mut sets[(index % 2) as usize];
+        if is_new {
+            *set = textures(&device);
+        }
+        let [color, depth, motion, output] = &*set;
+        let views = [ViewFrame {
+            lattices: is_sparse.then(|| settings.foveation.lattices(&geometry, gaze_px, index)),
+            ..ViewFrame::new(geometry, Gaze::At { px: gaze_px })
+        }];
+        let frame =
+            Frame { depth: Some(depth.into()), motion: Some(motion.into()), ..Frame::new(color, &views, index) };
+        before = count();
+        let mut encoder = device.create_command_encoder(&Default::default());
+        post.record(&device, &mut encoder, &frame, output).unwrap();
+        queue.submit([encoder.finish()]);
+        device.poll(wgpu::PollType::Poll).unwrap();
+    }
+    let after = count();
+    std::array::from_fn(|i| after[i] - before[i])
+}
+
+#[test]
+fn frames_of_known_textures_make_no_bind_groups_and_views() {
+    let smr = Settings::default();
+    let sparse = Foveation { filter: Filter::Sparse, ..Foveation::default() };
+    for settings in [smr, Settings { foveation: sparse, ..smr }] {
+        let (known, new) = (made(settings, false), made(settings, true));
+        println!("bind groups, views, buffers: {known:?}; new textures: {new:?}");
+        assert_eq!(known, [0; 3]);
+        assert!(new[0] > 0 && new[1] > 0, "{new:?}");
+    }
+}
