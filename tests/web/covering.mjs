@@ -26,8 +26,8 @@ function pipelinesOf(folder) {
     return pipelines;
 }
 
-// Those of `names` that, taken from the smallest on, have every pipeline `times` times, or as often as there is.
-export function covering(folder, names, times) {
+// Those of `names` that, taken from the smallest on, have every pipeline.
+export function covering(folder, names) {
     const recordings = names.map((name) => {
         const path = join(folder, name);
         const bytes = readdirSync(path).reduce((sum, file) => sum + statSync(join(path, file)).size, 0);
@@ -39,13 +39,13 @@ export function covering(folder, names, times) {
         for (const key of recording.pipelines) count.set(key, (count.get(key) ?? 0) + by);
     };
     const kept = recordings.filter((recording) => {
-        const isNew = [...recording.pipelines].some((key) => (count.get(key) ?? 0) < times);
+        const isNew = [...recording.pipelines].some((key) => (count.get(key) ?? 0) === 0);
         if (isNew) add(recording, 1);
         return isNew;
     });
     // A larger one may have made smaller ones unnecessary.
     const enough = kept.filter((recording) => {
-        const isEnough = [...recording.pipelines].every((key) => count.get(key) > times);
+        const isEnough = [...recording.pipelines].every((key) => count.get(key) > 1);
         if (isEnough) add(recording, -1);
         return !isEnough;
     });

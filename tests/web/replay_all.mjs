@@ -3,7 +3,7 @@
 //
 // node replay_all.mjs FOLDER [PART OF A NAME]
 //
-// Without a part: the smallest recordings in which every pipeline runs twice. With one: all whose name contains it.
+// Without a part: the smallest recordings in which every pipeline runs. With one: all whose name contains it.
 
 import { readdirSync } from "node:fs";
 import { dirname } from "node:path";
@@ -23,8 +23,6 @@ const EXCEPTIONS = [
 // They are left out; in every other one something must be read, or nothing is compared.
 const UNREAD = [
     "pass.engines.every_storable_format_is_written_and_others_say_what_to_change",
-    "pass.lifecycle.memory_bytes_is_what_is_made",
-    "pass.limits.every_method_runs_on_the_smallest_device",
     "pass.quads.plans_follow_size_and_settings",
 ];
 
@@ -38,7 +36,7 @@ const PLANTED = [
 ];
 
 const all = readdirSync(folder).filter((name) => !UNREAD.some((start) => name.startsWith(start))).sort();
-const names = part === undefined ? covering(folder, all, 2) : all.filter((name) => name.includes(part));
+const names = part === undefined ? covering(folder, all) : all.filter((name) => name.includes(part));
 if (names.length === 0) throw new Error(`no recordings in ${folder}`);
 console.log(`${names.length} of ${all.length} recordings`);
 const server = await serve({ page: here, recordings: folder });
