@@ -13,7 +13,6 @@ use crate::kernel::depth::distance_of;
 use crate::kernel::kept::unpack_kept;
 use crate::kernel::lattice::{nearest_point, point_offset_px};
 use crate::kernel::noise::unpack_noise;
-use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::{ROUNDS, Tap, TapsAround, sharp_sum, taps_of};
 use crate::kernel::surface::unpack_surface;
 use crate::notes::{Note, NoteStage, Notes, PixelNotes};
@@ -158,25 +157,12 @@ pub(super) fn note_taps<N: Notes>(taps: &TapsAround, tap: impl Fn([i32; 2]) -> T
 
 /// Notes the decision.
 pub(super) fn note_trace(trace: &PixelTrace, notes: &mut Vec<Note>) {
-    notes.note(NoteStage::Verdict, "history", verdict(trace.verdict), "");
+    notes.note(NoteStage::Verdict, "history", trace.verdict.in_words(), "");
     notes.note(NoteStage::Decision, "weight of the candidate", trace.weight, "");
     notes.note(NoteStage::Decision, "agreement of history and candidate", trace.agreement, "");
     notes.note(NoteStage::Decision, "history's share", trace.history_share, "");
     notes.note(NoteStage::Decision, "candidate replaces history", trace.is_replaced, "");
     notes.note(NoteStage::Decision, "quality of what is stored", trace.quality, "");
-}
-
-/// A verdict and its reason.
-fn verdict(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Valid => "kept: it belongs to this surface",
-        Verdict::Reset => "none: first frame, reset, or outside the lens",
-        Verdict::BadMotion => "rejected: the motion vector is NaN, infinite or longer than 65536 px",
-        Verdict::OffScreen => "rejected: the surface was outside the previous frame",
-        Verdict::Empty => "none: nothing is stored at the previous position",
-        Verdict::Disoccluded => "rejected: another surface was there (depth), or motion vectors of two are mixed",
-        Verdict::Distrusted => "rejected: the trust mask is 0",
-    }
 }
 
 /// Notes the stored surface of taa, taau and smr.

@@ -340,7 +340,12 @@ fn note_evidence(e: &Evidence, reuse: ReuseWeight, notes: &mut impl Notes) {
     notes.note(NoteStage::Comparison, "unit of light", e.unit, "linear light; the compared colors are divided by it");
     notes.note(NoteStage::Comparison, "candidate that is compared", e.compared, "units of light");
     notes.note(NoteStage::Comparison, "history at its scale", e.matched, "units of light");
-    notes.note(NoteStage::Comparison, "candidate, coarser", e.compared_coarser, "units of light");
+    notes.note(
+        NoteStage::Comparison,
+        "candidate, coarser",
+        e.compared_coarser,
+        "units of light; black unless light changed",
+    );
     notes.note(NoteStage::Comparison, "history at that scale", e.matched_coarser, "units of light");
     notes.note(NoteStage::Comparison, "history is finer", reuse.finer, "");
     notes.note(NoteStage::Comparison, "difference that noise explains", e.noise, OF_DIFFERENCE);
