@@ -12,5 +12,6 @@ pub use crate::gpu::plane::array_view;
 pub use crate::gpu::uniforms::{
     CameraUniforms, FrameUniforms, LatticeUniforms, SparseUniforms, ViewLattices, ViewUniforms,
 };
+pub use crate::notes::{Note, NoteStage, NoteValues, PixelNotes};
 #[cfg(feature = "gpu")]
 pub use crate::simulator::gpu::uniforms::FoveationUniforms;

@@ -117,6 +117,7 @@ pub mod internal;
 pub mod kernel;
 mod lattice;
 mod method;
+mod notes;
 #[cfg(feature = "cpu")]
 mod parallel;
 mod resize;

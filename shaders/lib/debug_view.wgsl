@@ -16,9 +16,9 @@ struct PixelTrace {
     weight: f32,
     quality: f32,
     age: u32,
-    survival: f32,
-    gate: f32,
-    take: bool,
+    history_share: f32,
+    agreement: f32,
+    is_replaced: bool,
     motion: vec2<f32>,
 }
 
@@ -70,11 +70,11 @@ fn motion_color(motion: vec2<f32>) -> vec3<f32> {
 
 // debug_view::view_color, linear
 fn view_color(view: u32, traced: PixelTrace) -> vec3<f32> {
-    var encoded = vec3<f32>(traced.gate);
+    var encoded = vec3<f32>(traced.agreement);
     switch view {
         case VIEW_QUALITY: { encoded = heat(traced.quality); }
         case VIEW_AGE: { encoded = heat(sqrt(f32(traced.age) * (1.0f / 255.0))); }
-        case VIEW_SURVIVAL: { encoded = heat(traced.survival); }
+        case VIEW_SURVIVAL: { encoded = heat(traced.history_share); }
         case VIEW_REJECTION: { encoded = verdict_color(traced.verdict); }
         case VIEW_MOTION: { encoded = motion_color(traced.motion); }
         default: {}

@@ -12,6 +12,7 @@ use crate::kernel::noise::{Noise, candidate_noise};
 use crate::kernel::reproject::{Verdict, camera_vector, has_no_vector};
 use crate::kernel::surface::MAX_LOD;
 use crate::kernel::{acuity, lens, reproject, sanitize};
+use crate::notes::{NoteStage, Notes};
 use crate::settings::DepthTest;
 use crate::stats::FrameStats;
 use crate::uniforms::{CameraUniforms, Held, LatticeUniforms, ViewLattices, ViewUniforms};
@@ -98,12 +99,18 @@ impl<'a> Inputs<'a> {
         motion: [f32; 2],
         disparity: f32,
         stored: impl FnOnce([u32; 2]) -> [f32; 2],
+        notes: &mut impl Notes,
     ) -> Result<(Previous, bool), Verdict> {
         if self.reset {
             return Err(Verdict::Reset);
         }
+        let at = [x as f32 + motion[0], y as f32 + motion[1]];
+        notes.note(NoteStage::Reprojection, "previous position", at, "px");
         let nearest_px = reproject::nearest(x, y, motion, self.size)?;
         let [lod, stored_disparity] = stored(nearest_px);
+        notes.note(NoteStage::Reprojection, "nearest texel", nearest_px.map(|v| v as f32), "px");
+        notes.note(NoteStage::Reprojection, "its level of detail", lod, "log2 px, below 0: empty");
+        notes.note(NoteStage::Reprojection, "its disparity", stored_disparity, "1/distance");
         if lod < 0.0 {
             return Err(Verdict::Empty);
         }
@@ -113,7 +120,10 @@ impl<'a> Inputs<'a> {
         }
         let expected = self.expected_disparity(x, y, disparity);
         let is_same = self.same_surface(x, y, disparity, expected, stored_disparity);
-        Ok((Previous { at: [x as f32 + motion[0], y as f32 + motion[1]], expected, trust }, is_same))
+        notes.note(NoteStage::Reprojection, "expected disparity", expected, "1/distance");
+        notes.note(NoteStage::Reprojection, "same surface", is_same, "");
+        notes.note(NoteStage::Reprojection, "trust in history", trust, "");
+        Ok((Previous { at, expected, trust }, is_same))
     }
 
     /// Level of detail of the candidate at pixel (x, y), `e_deg` from the gaze: the frame's input, or by eccentricity.

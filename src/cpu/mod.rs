@@ -5,6 +5,7 @@
 
 mod doctor;
 mod doctor_pass;
+mod explain;
 mod fill;
 mod fill_geometry;
 pub(crate) mod history;
@@ -31,6 +32,7 @@ use crate::geometry::ViewGeometry;
 use crate::image::Image;
 use crate::lattice::Lattices;
 use crate::method::{Algorithm, HistoryLayout, Stage};
+use crate::notes::PixelNotes;
 use crate::resize::Resize;
 use crate::settings::Settings;
 use crate::stats::FrameStats;
@@ -103,6 +105,8 @@ struct Pass<'a, 'f> {
     quads: &'a [sparse_pass::Quads],
     output: &'a mut [Image<[f32; 3]>],
     traces: Option<&'a mut [Image<PixelTrace>]>,
+    /// A pixel to explain.
+    noted: Option<&'a mut PixelNotes>,
 }
 
 // For tests and the lab.
@@ -120,6 +124,20 @@ impl CpuAfterimage {
     /// If `words` and the history differ in length.
     pub fn restore_history(&mut self, words: &[[u32; 3]]) {
         self.history.restore(words);
+    }
+
+    /// Processes one frame as [`process_traced`](Self::process_traced) does, and notes all that is known of one pixel.
+    ///
+    /// # Errors
+    /// As for `process`.
+    pub fn process_noted(
+        &mut self,
+        frame: &Frame<'_>,
+        output: &mut [Image<[f32; 3]>],
+        traces: Option<&mut [Image<PixelTrace>]>,
+        pixel: &mut PixelNotes,
+    ) -> Result<FrameStats, FrameError> {
+        self.run(frame, output, traces, Some(pixel))
     }
 }
 
@@ -214,7 +232,7 @@ impl CpuAfterimage {
     /// [`FrameError`] if a size, a number of images or a value does not fit the context; then nothing is written and
     /// history is unchanged.
     pub fn process(&mut self, frame: &Frame<'_>, output: &mut [Image<[f32; 3]>]) -> Result<FrameStats, FrameError> {
-        self.run(frame, output, None)
+        self.run(frame, output, None, None)
     }
 
     /// Processes one frame as [`process`](Self::process) does, and writes the decision at each pixel to `traces`, one
@@ -228,7 +246,7 @@ impl CpuAfterimage {
         output: &mut [Image<[f32; 3]>],
         traces: &mut [Image<PixelTrace>],
     ) -> Result<FrameStats, FrameError> {
-        self.run(frame, output, Some(traces))
+        self.run(frame, output, Some(traces), None)
     }
 
     fn run(
@@ -236,6 +254,7 @@ impl CpuAfterimage {
         frame: &Frame<'_>,
         output: &mut [Image<[f32; 3]>],
         traces: Option<&mut [Image<PixelTrace>]>,
+        mut noted: Option<&mut PixelNotes>,
     ) -> Result<FrameStats, FrameError> {
         check_inputs(&self.desc, frame)?;
         frame.check_planned(&self.desc, self.planned.as_ref().map(|planned| planned.index))?;
@@ -247,9 +266,14 @@ impl CpuAfterimage {
         let filled: Vec<_> = filled.iter().collect();
         let whole = frame.with_color(if filled.is_empty() { frame.color } else { &filled });
         let geometry = fill_geometry::filled(&self.desc, frame, &self.history);
-        let history = &mut self.history;
+        let (given, history) = (frame, &mut self.history);
         let stats = fill_geometry::with_filled(geometry.as_deref(), &self.desc, &whole, |desc, frame| {
-            let pass = Pass { desc, history, frame, quads, output, traces };
+            if let Some(pixel) = &mut noted {
+                pixel.notes.clear();
+                explain::note_inputs(desc, given, frame, history, quads, pixel);
+            }
+            let noted = noted.as_deref_mut();
+            let pass = Pass { desc, history, frame, quads, output, traces, noted };
             match desc.settings.algorithm() {
                 Algorithm::None => none_pass::run(pass),
                 Algorithm::Taa => surface_pass::run(pass, &taa_pass::Taa),
@@ -259,6 +283,9 @@ impl CpuAfterimage {
                 Algorithm::Wrs => wrs_pass::run(pass),
             }
         });
+        if let Some(pixel) = noted {
+            pixel.notes.sort_by_key(|note| note.stage);
+        }
         self.planned = None;
         if self.history.layout() == HistoryLayout::Nothing {
             for (i, view) in frame.views.iter().enumerate() {

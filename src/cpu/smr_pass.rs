@@ -23,6 +23,7 @@ use crate::kernel::reproject::Verdict;
 use crate::kernel::sanitize::MAX_HALF;
 use crate::kernel::surface::{MAX_LOD, Surface, pack_surface};
 use crate::method::smr_params;
+use crate::notes::{NoteStage, Notes};
 use crate::settings::Settings;
 use crate::stats::FrameStats;
 use glam::Vec3;
@@ -35,7 +36,14 @@ pub(super) struct Smr {
 
 impl SurfaceMethod for Smr {
     #[inline(always)]
-    fn pixel(&self, view: &SurfaceHistory<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
+    fn pixel(
+        &self,
+        view: &SurfaceHistory<'_>,
+        x: u32,
+        y: u32,
+        stats: &mut FrameStats,
+        notes: &mut impl Notes,
+    ) -> Pixel {
         let inputs = &view.inputs;
         let noise = inputs.noise(x, y);
         let (candidate, usable) = inputs.candidate(x, y);
@@ -44,7 +52,11 @@ impl SurfaceMethod for Smr {
         let e_deg = inputs.eccentricity_deg(inputs.ray(x, y));
         let lod = inputs.candidate_lod(&self.settings.foveation, x, y, e_deg);
         let coherent_motion = inputs.is_coherent(x, y, motion);
-        let mut source = view.source(x, y, motion, disparity);
+        notes.note(NoteStage::Candidate, "color", candidate, "linear light");
+        notes.note(NoteStage::Candidate, "usable", usable, "");
+        notes.note(NoteStage::Candidate, "level of detail", lod, "log2 px");
+        notes.note(NoteStage::Reprojection, "a neighbour moves alike", coherent_motion, "");
+        let mut source = view.source(x, y, motion, disparity, notes);
         if source.is_ok() && !coherent_motion {
             source = Err(Verdict::Disoccluded);
         }
@@ -55,14 +67,16 @@ impl SurfaceMethod for Smr {
         let mut output_noise = noise;
         if let Ok(source) = source {
             if !usable {
-                let history = view.resample(&source);
+                let history = view.resample(&source, notes);
                 result = Matched { color: view.expose(history.sharp), lod: history.lod, share: 1.0, fit: 1.0 };
                 output_noise = noise.map(|_| view.noise(&source));
             } else if let Some(noise) = noise {
-                let (averaged, after) = self.averaged(view, [x, y], candidate, noise, lod, &source);
+                let (averaged, after) = self.averaged(view, [x, y], (candidate, noise), lod, &source, notes);
                 (result, output_noise) = (averaged, Some(after));
             } else if lod > 0.0 {
-                result = self.matched(view, x, y, candidate, lod, &source);
+                result = self.matched(view, [x, y], candidate, lod, &source, notes);
+            } else {
+                notes.note(NoteStage::Decision, "a full-rate candidate replaces history", true, "");
             }
         }
         // With gains, and with the overshoot of Catmull-Rom, colors may exceed the largest half.
@@ -76,9 +90,9 @@ impl SurfaceMethod for Smr {
             weight: approx::exp2(-lod),
             quality: approx::exp2(-result.lod.max(0.0)),
             age: 0,
-            survival: result.share,
-            gate: result.fit,
-            take: result.share == 0.0,
+            history_share: result.share,
+            agreement: result.fit,
+            is_replaced: result.share == 0.0,
             motion,
         };
         Pixel {
@@ -100,15 +114,17 @@ impl Smr {
     fn matched(
         &self,
         view: &SurfaceHistory<'_>,
-        x: u32,
-        y: u32,
+        [x, y]: [u32; 2],
         candidate: Vec3,
         lod: f32,
         source: &Source,
+        notes: &mut impl Notes,
     ) -> Matched {
-        let history = view.resample(source);
+        let history = view.resample(source, notes);
+        notes.note(NoteStage::History, "level of detail", history.lod, "log2 px");
         let reuse = matched::reuse_weight(lod, history.lod, self.params.accumulate, false, [1.0; 2]);
         if reuse.share == 0.0 {
+            notes.note(NoteStage::Decision, "history is too coarse to be of use", true, "");
             return Matched { color: candidate, lod, share: 0.0, fit: 1.0 };
         }
         // Point samples alias at their own scale: compare one level coarser.
@@ -149,7 +165,7 @@ impl Smr {
             noise: 0.0,
             confidence: [1.0; 2],
         };
-        matched::decide(&evidence, &self.params)
+        matched::decide_noted(&evidence, &self.params, notes)
     }
 
     /// Output color for a noisy candidate, and its noise.
@@ -158,13 +174,15 @@ impl Smr {
         &self,
         view: &SurfaceHistory<'_>,
         [x, y]: [u32; 2],
-        candidate: Vec3,
-        noise: Noise,
+        (candidate, noise): (Vec3, Noise),
         lod: f32,
         source: &Source,
+        notes: &mut impl Notes,
     ) -> (Matched, Noise) {
-        let history = view.resample(source);
+        let history = view.resample(source, notes);
         let past = view.noise(source);
+        notes.note(NoteStage::History, "level of detail", history.lod, "log2 px");
+        notes.note(NoteStage::History, "noise", [past.samples, past.variance], "samples, variance of one");
         let exposed = view.expose(history.sharp);
         let luma = color::luma(exposed);
         let confidence =
@@ -174,6 +192,7 @@ impl Smr {
             SmrParams { accumulate: noise::history_share(discounted, noise, self.params.accumulate), ..self.params };
         let reuse = matched::reuse_weight(lod, history.lod, params.accumulate, true, confidence);
         if reuse.share == 0.0 {
+            notes.note(NoteStage::Decision, "history is too coarse to be of use", true, "");
             return (Matched { color: candidate, lod, share: 0.0, fit: 1.0 }, noise);
         }
         let compared_lod = lod + NOISY_LEVELS;
@@ -206,7 +225,7 @@ impl Smr {
             confidence,
             noise: noise::noise_difference(past, around, color::luma(matched), inverse_unit),
         };
-        let result = matched::decide(&evidence, &params);
+        let result = matched::decide_noted(&evidence, &params, notes);
         let acceptance = result.fit * source.trust;
         (result, noise::noise_after(past, around, result.share, reuse.finer * acceptance))
     }

@@ -1,6 +1,7 @@
 //! Stored history of a pixel's surface, at its previous position; shared by the methods that store surfaces (smr, taa).
 //! Twin: `shaders/pass/surface_history.wgsl`.
 
+use super::explain::note_taps;
 use super::history::PastSurfaces;
 use super::inputs::{Inputs, Previous};
 use super::sparse_pass::Quads;
@@ -15,6 +16,7 @@ use crate::kernel::resample::{
 use crate::kernel::surface::{Surface, mip_texel, unpack_surface};
 use crate::kernel::taa::root_luma;
 use crate::kernel::wrs::expose;
+use crate::notes::{NoteStage, Notes};
 use glam::Vec3;
 
 /// Inputs and history of one view of a frame.
@@ -47,19 +49,29 @@ pub(super) struct Source {
 impl SurfaceHistory<'_> {
     /// Previous position of the surface of pixel (x, y), or the verdict that rejects its history.
     #[inline(always)]
-    pub fn source(&self, x: u32, y: u32, motion: [f32; 2], disparity: f32) -> Result<Source, Verdict> {
+    pub fn source(
+        &self,
+        x: u32,
+        y: u32,
+        motion: [f32; 2],
+        disparity: f32,
+        notes: &mut impl Notes,
+    ) -> Result<Source, Verdict> {
         let mut nearest = Surface::EMPTY;
         let mut index = 0;
-        let (previous, is_same) = self.inputs.reprojected(x, y, motion, disparity, |[qx, qy]| {
+        let stored = |[qx, qy]: [u32; 2]| {
             index = qy as usize * self.inputs.size[0] as usize + qx as usize;
             nearest = unpack_surface(self.past.words[index]);
             [nearest.lod, nearest.disparity]
-        })?;
+        };
+        let (previous, is_same) = self.inputs.reprojected(x, y, motion, disparity, stored, notes)?;
         let Previous { at, expected, trust, .. } = previous;
         let whole = at.map(f32::floor);
         let (texel, fraction) = (whole.map(|v| v as i32), [at[0] - whole[0], at[1] - whole[1]]);
         if !is_same {
-            (nearest, index) = self.stand_in(texel, fraction, expected).ok_or(Verdict::Disoccluded)?;
+            let stand_in = self.stand_in(texel, fraction, expected);
+            notes.note(NoteStage::Reprojection, "a neighbour replaces the nearest texel", stand_in.is_some(), "");
+            (nearest, index) = stand_in.ok_or(Verdict::Disoccluded)?;
         }
         Ok(Source { texel, fraction, at, nearest, index, expected, trust })
     }
@@ -92,17 +104,26 @@ impl SurfaceHistory<'_> {
 
     /// History resampled at a position; a position exactly on a texel reads that texel.
     #[inline(always)]
-    pub fn resample(&self, source: &Source) -> Resampled {
+    pub fn resample(&self, source: &Source, notes: &mut impl Notes) -> Resampled {
+        let resampled = self.read(source, notes);
+        notes.note(NoteStage::History, "color", self.expose(resampled.sharp), "linear light");
+        resampled
+    }
+
+    #[inline(always)]
+    fn read(&self, source: &Source, notes: &mut impl Notes) -> Resampled {
         let [fx, fy] = source.fraction;
         if fx == 0.0 && fy == 0.0 {
             let s = source.nearest;
+            notes.note(NoteStage::History, "filter", "none: the position is the texel's centre", "");
             return Resampled { sharp: s.color, smooth: s.color, lod: s.lod };
         }
         let taps = taps_around(source.texel, source.fraction, self.inputs.size);
         let (codes, any_code) = (tap_codes(source.expected), !self.inputs.tests_depth());
         let width = self.inputs.size[0] as i32;
-        let gathered =
-            gather_around(&taps, |[x, y]| surface_tap(self.past.words[(y * width + x) as usize], codes, any_code));
+        let tap = |[x, y]: [i32; 2]| surface_tap(self.past.words[(y * width + x) as usize], codes, any_code);
+        let gathered = gather_around(&taps, tap);
+        note_taps(&taps, tap, notes);
         resolve(gathered, sharp_sum(&taps), source.nearest)
     }
 

@@ -1,11 +1,13 @@
 //! Loop over pixels for the methods that store surfaces (smr, taa).
 
 use super::Pass;
+use super::explain::{explain, note_surface, of_view};
 use super::inputs::Inputs;
 use super::surface_history::SurfaceHistory;
 use crate::image::Image;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::noise::candidate_texel;
+use crate::notes::{NoNotes, Notes};
 use crate::parallel::{ProcessRow, process_rows};
 use crate::stats::FrameStats;
 use glam::Vec3;
@@ -39,15 +41,16 @@ struct Row<'a> {
 
 /// A pass that computes one pixel at a time.
 pub(super) trait ProcessPixel: Sync {
-    /// Processes pixel (x, y) and counts it in `stats`. Always inlined into the loop over a row, which is compiled for
-    /// several instruction sets.
-    fn process(&self, x: u32, y: u32, stats: &mut FrameStats) -> Pixel;
+    /// Processes pixel (x, y), counts it in `stats` and takes `notes`. Always inlined into the loop over a row, which is
+    /// compiled for several instruction sets.
+    fn process(&self, x: u32, y: u32, stats: &mut FrameStats, notes: &mut impl Notes) -> Pixel;
 }
 
 /// A method that reads and stores surfaces.
 pub(super) trait SurfaceMethod: Sync {
     /// Processes pixel (x, y) of a view, as [`ProcessPixel::process`].
-    fn pixel(&self, view: &SurfaceHistory<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel;
+    fn pixel(&self, view: &SurfaceHistory<'_>, x: u32, y: u32, stats: &mut FrameStats, notes: &mut impl Notes)
+    -> Pixel;
 }
 
 /// A method and a view.
@@ -58,14 +61,14 @@ struct InView<'a, M> {
 
 impl<M: SurfaceMethod> ProcessPixel for InView<'_, M> {
     #[inline(always)]
-    fn process(&self, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
-        self.method.pixel(&self.view, x, y, stats)
+    fn process(&self, x: u32, y: u32, stats: &mut FrameStats, notes: &mut impl Notes) -> Pixel {
+        self.method.pixel(&self.view, x, y, stats, notes)
     }
 }
 
 /// Runs a method for every pixel of every view.
 pub(super) fn run(pass: Pass<'_, '_>, method: &impl SurfaceMethod) -> FrameStats {
-    let Pass { desc, history, frame, quads, output, mut traces } = pass;
+    let Pass { desc, history, frame, quads, output, mut traces, mut noted } = pass;
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
@@ -76,10 +79,13 @@ pub(super) fn run(pass: Pass<'_, '_>, method: &impl SurfaceMethod) -> FrameStats
             candidate_texel(color, usable, inputs.noise(x, y).expect("the frame was checked to have noise"))
         });
         let (past, surfaces, noise) = history.split_surfaces(i);
-        let view = SurfaceHistory { inputs, quads: quads.get(i), past };
+        let in_view = InView { method, view: SurfaceHistory { inputs, quads: quads.get(i), past } };
         let traces = traces.as_mut().map(|t| &mut t[i]);
         let targets = Targets { surfaces, noise, output: &mut output[i], traces };
-        stats = stats.add(for_pixels(targets, &InView { method, view }));
+        stats = stats.add(for_pixels(targets, &in_view));
+        if let Some(pixel) = of_view(&mut noted, i) {
+            explain(&in_view, note_surface, pixel);
+        }
         history.build_mip_chain(i);
     }
     stats
@@ -109,7 +115,7 @@ impl<P: ProcessPixel> ProcessRow<Row<'_>> for P {
     fn process(&self, y: u32, row: &mut Row<'_>) -> FrameStats {
         let mut stats = FrameStats::default();
         for x in 0..row.out.len() {
-            let pixel = ProcessPixel::process(self, x as u32, y, &mut stats);
+            let pixel = ProcessPixel::process(self, x as u32, y, &mut stats, &mut NoNotes);
             row.out[x] = pixel.output.to_array();
             row.surfaces[x] = pixel.surface;
             if let Some(noise) = &mut row.noise {

@@ -11,6 +11,7 @@ use crate::kernel::reproject::Verdict;
 use crate::kernel::sanitize::MAX_HALF;
 use crate::kernel::surface::{Surface, pack_surface};
 use crate::kernel::taa;
+use crate::notes::{NoteStage, Notes};
 use crate::stats::FrameStats;
 use glam::Vec3;
 
@@ -19,20 +20,30 @@ pub(super) struct Taa;
 
 impl SurfaceMethod for Taa {
     #[inline(always)]
-    fn pixel(&self, view: &SurfaceHistory<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
+    fn pixel(
+        &self,
+        view: &SurfaceHistory<'_>,
+        x: u32,
+        y: u32,
+        stats: &mut FrameStats,
+        notes: &mut impl Notes,
+    ) -> Pixel {
         let inputs = &view.inputs;
         let (candidate, usable) = inputs.candidate(x, y);
         let disparity = inputs.disparity(x, y);
         let motion = inputs.motion(x, y);
-        let source = view.source(x, y, motion, disparity);
+        let source = view.source(x, y, motion, disparity, notes);
         let verdict = source.err().unwrap_or(Verdict::Valid);
         inputs.count(x, y, usable, disparity, verdict, stats);
+        notes.note(NoteStage::Candidate, "color", candidate, "linear light");
+        notes.note(NoteStage::Candidate, "usable", usable, "");
 
         let (mut output, mut share, mut confidence) = (candidate, 0.0, 1.0);
         if let Ok(source) = source {
-            let resampled = view.resample(&source);
+            let resampled = view.resample(&source, notes);
             let history = view.expose(resampled.sharp);
             confidence = taa::confidence_of(resampled.lod).min(taa::confidence_limit(source.fraction, taa::SPREAD));
+            notes.note(NoteStage::History, "confidence", confidence, "samples");
             (output, share) = (history, 1.0);
             if usable {
                 let past = (confidence > taa::SETTLED).then_some(&source);
@@ -41,7 +52,13 @@ impl SurfaceMethod for Taa {
                     confidence = confidence.min(taa::agreeing(sum.x, squares.x, past_luma, 9.0));
                 }
                 let alpha = taa::candidate_share(confidence, source.trust);
-                output = taa::blend_clipped(candidate, history, sum, squares, alpha, confidence);
+                notes.note(
+                    NoteStage::Comparison,
+                    "confidence that agrees with the samples around",
+                    confidence,
+                    "samples",
+                );
+                output = taa::blend_clipped_noted(candidate, history, sum, squares, alpha, confidence, notes);
                 share = 1.0 - alpha;
                 confidence = 1.0 / alpha;
             }
@@ -54,9 +71,9 @@ impl SurfaceMethod for Taa {
             weight: 1.0 - share,
             quality: 0.0,
             age: 0,
-            survival: share,
-            gate: 1.0,
-            take: verdict != Verdict::Valid,
+            history_share: share,
+            agreement: 1.0,
+            is_replaced: verdict != Verdict::Valid,
             motion,
         };
         let surface = pack_surface(Surface { color: output, lod: stored_lod, disparity });

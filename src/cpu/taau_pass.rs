@@ -16,6 +16,7 @@ use crate::kernel::surface::{Surface, pack_surface};
 use crate::kernel::taa;
 use crate::kernel::taau;
 use crate::kernel::taau::{Accumulated, SamplesAround};
+use crate::notes::{NoteStage, Notes};
 use crate::stats::FrameStats;
 use crate::uniforms::LatticeUniforms;
 use glam::{Vec2, Vec3};
@@ -25,40 +26,58 @@ pub(super) struct Taau;
 
 impl SurfaceMethod for Taau {
     #[inline(always)]
-    fn pixel(&self, view: &SurfaceHistory<'_>, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
+    fn pixel(
+        &self,
+        view: &SurfaceHistory<'_>,
+        x: u32,
+        y: u32,
+        stats: &mut FrameStats,
+        notes: &mut impl Notes,
+    ) -> Pixel {
         let inputs = &view.inputs;
         let disparity = inputs.disparity(x, y);
         let motion = inputs.motion(x, y);
-        let source = view.source(x, y, motion, disparity);
+        let source = view.source(x, y, motion, disparity, notes);
         let verdict = source.err().unwrap_or(Verdict::Valid);
 
         let (mut history, mut confidence, mut trust) = (Vec3::ZERO, 0.0, 0.0);
         if let Ok(source) = source {
-            let resampled = view.resample(&source);
+            let resampled = view.resample(&source, notes);
             history = view.expose(resampled.sharp);
             confidence =
                 taa::confidence_of(resampled.lod).min(taa::confidence_limit(source.fraction, taau::UPSAMPLED_SPREAD));
             trust = source.trust;
+            notes.note(NoteStage::History, "confidence", confidence, "samples at the pixel");
         }
         let past = source.as_ref().ok().filter(|_| confidence > taa::SETTLED);
         let kernel = Kernel { tail: taau::tail(confidence * trust), narrowing: taau::narrowing(confidence) };
-        let Samples { around, nearest, usable, past_luma } = samples(view, [x, y], &kernel, past);
+        let Samples { around, nearest, usable, past_luma } = samples(view, [x, y], &kernel, past, notes);
         if past.is_some() {
             confidence = confidence.min(taa::agreeing(around.sum.x, around.squares.x, past_luma, around.count));
+            notes.note(NoteStage::Comparison, "confidence that agrees with the samples around", confidence, "samples");
         }
+        notes.note(NoteStage::Candidate, "nearest sample", nearest, "linear light");
+        notes.note(NoteStage::Candidate, "usable", usable, "");
+        notes.note(
+            NoteStage::Candidate,
+            "weight of the samples",
+            around.weights,
+            "at the pixel, and with interpolation",
+        );
         inputs.count(x, y, usable, disparity, verdict, stats);
 
         let sampled = around.weights.y >= taau::LEAST_SAMPLE_WEIGHT;
         let is_filled = view.quads.is_some() && usable;
         let mut result = Accumulated { color: history, confidence, share: 0.0, kept: 1.0 };
         if sampled && source.is_ok() {
-            result = taau::accumulate(around, nearest, history, confidence, trust);
+            result = taau::accumulate_noted(around, nearest, history, confidence, trust, notes);
         } else if sampled {
             let color = taau::upsampled(around, nearest);
             result = Accumulated { color, confidence: around.weights.y, share: 1.0, kept: 1.0 };
         } else if is_filled && source.is_err() {
             result = Accumulated { color: nearest, confidence: taau::LEAST_SAMPLE_WEIGHT, share: 1.0, kept: 1.0 };
         }
+        notes.note(NoteStage::Decision, "confidence", result.confidence, "samples at the pixel");
         // With the overshoot of Catmull-Rom, colors may exceed the largest half.
         let output = result.color.min(Vec3::splat(MAX_HALF));
         let lod = if sampled || source.is_ok() || is_filled { taa::lod_of(result.confidence) } else { -1.0 };
@@ -67,9 +86,9 @@ impl SurfaceMethod for Taau {
             weight: result.share,
             quality: (0.5 * result.confidence).min(1.0),
             age: 0,
-            survival: if source.is_ok() { 1.0 - result.share } else { 0.0 },
-            gate: result.kept,
-            take: verdict != Verdict::Valid,
+            history_share: if source.is_ok() { 1.0 - result.share } else { 0.0 },
+            agreement: result.kept,
+            is_replaced: verdict != Verdict::Valid,
             motion,
         };
         Pixel { output, surface: pack_surface(Surface { color: output, lod, disparity }), noise: 0, trace }
@@ -96,7 +115,13 @@ struct Samples {
 /// Nine samples around a pixel, of its lattice. At the lattice's border the last samples repeat at positions beyond it.
 /// `past`: position of the history to compare with, if any.
 #[inline(always)]
-fn samples(view: &SurfaceHistory<'_>, px: [u32; 2], kernel: &Kernel, past: Option<&Source>) -> Samples {
+fn samples(
+    view: &SurfaceHistory<'_>,
+    px: [u32; 2],
+    kernel: &Kernel,
+    past: Option<&Source>,
+    notes: &mut impl Notes,
+) -> Samples {
     let inputs = &view.inputs;
     let lattice = &inputs.lattices[LatticeUniforms::index_at(&inputs.lattices, px)];
     let (first, level) = (lattice.first_px, lattice.level);
@@ -123,6 +148,8 @@ fn samples(view: &SurfaceHistory<'_>, px: [u32; 2], kernel: &Kernel, past: Optio
             if view.quads.is_some_and(|quads| !quads.is_shaded(inside)) {
                 weights = Vec2::ZERO;
             }
+            let values = [offset.x, offset.y, weights.x, weights.y, color.x, color.y, color.z];
+            notes.note(NoteStage::Candidate, "sample", values, "x y px, two weights, linear light");
             found.around = taau::add_around(found.around, found.nearest, color, weights);
             if let Some(source) = past {
                 found.past_luma += view.luma_beside(source, at.map(|v| v as i32));

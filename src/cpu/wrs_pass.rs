@@ -7,6 +7,7 @@
 //! references (`GateScale::Candidate`) take 8 more bytes.
 
 use super::Pass;
+use super::explain::{note_taps, note_trace, of_view};
 use super::history::{NextView, PastView};
 use super::inputs::Inputs;
 use crate::foveation::{Filter, Foveation};
@@ -25,6 +26,7 @@ use crate::kernel::surface::Surface;
 use crate::kernel::wrs;
 use crate::kernel::wrs::{Past, Reference, SamplerCode, WrsParams};
 use crate::method::{has_references, inv_density_at_fovea, wrs_params};
+use crate::notes::{NoNotes, Note, NoteStage, Notes, PixelNotes};
 use crate::parallel::{ProcessRow, process_rows};
 use crate::stats::FrameStats;
 use crate::uniforms::LatticeUniforms;
@@ -59,6 +61,32 @@ impl History {
     const EMPTY: Self = Self { past: Past::EMPTY, age: 0, reference: Reference::NONE };
 }
 
+/// Result of a pixel.
+struct Pixel {
+    output: Vec3,
+    /// Packed reservoir.
+    words: [u32; 3],
+    log_key: f32,
+    /// Packed reference of the gate; 0 if there is none.
+    reference: u32,
+    trace: PixelTrace,
+}
+
+impl Pixel {
+    fn note(&self, notes: &mut Vec<Note>) {
+        let Stored { color, disparity, w_sum, age } = pack::unpack(self.words);
+        note_trace(&self.trace, notes);
+        notes.note(NoteStage::Shown, "color", self.output, "linear light");
+        notes.note(NoteStage::Stored, "words", self.words, "");
+        notes.note(NoteStage::Stored, "color", color, "linear light");
+        notes.note(NoteStage::Stored, "disparity", disparity, "1/distance, below 0: unknown");
+        notes.note(NoteStage::Stored, "weight sum", w_sum, "");
+        notes.note(NoteStage::Stored, "age", age as f32, "frames");
+        notes.note(NoteStage::Stored, "log key", self.log_key, "A-ES only");
+        notes.note(NoteStage::Stored, "gate's reference", [self.reference], "weighted wrs only");
+    }
+}
+
 struct Row<'a> {
     words: &'a mut [[u32; 3]],
     out: &'a mut [[f32; 3]],
@@ -68,7 +96,7 @@ struct Row<'a> {
 }
 
 pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
-    let Pass { desc, history, frame, output, mut traces, .. } = pass;
+    let Pass { desc, history, frame, output, mut traces, mut noted, .. } = pass;
     let settings = &desc.settings;
     let wrs = settings.method.wrs();
     let has_history = history.is_filled();
@@ -91,6 +119,9 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
         let trace = traces.as_mut().map(|t| t[i].pixels_mut());
         let mut rows = split_rows(desc.size_px, next, output[i].pixels_mut(), trace);
         stats = stats.add(process_rows(&mut rows, &pass));
+        if let Some(PixelNotes { px: [x, y], notes, .. }) = of_view(&mut noted, i) {
+            pass.pixel(*x, *y, &mut FrameStats::default(), notes).note(notes);
+        }
     }
     stats
 }
@@ -123,7 +154,19 @@ impl ProcessRow<Row<'_>> for ViewPass<'_> {
     fn process(&self, y: u32, row: &mut Row<'_>) -> FrameStats {
         let mut stats = FrameStats::default();
         for x in 0..self.inputs.size[0] {
-            self.pixel(x, y, row, &mut stats);
+            let i = x as usize;
+            let pixel = self.pixel(x, y, &mut stats, &mut NoNotes);
+            row.out[i] = pixel.output.to_array();
+            row.words[i] = pixel.words;
+            if let Some(keys) = &mut row.log_keys {
+                keys[i] = pixel.log_key;
+            }
+            if let Some(references) = &mut row.references {
+                references[i] = pixel.reference;
+            }
+            if let Some(trace) = &mut row.trace {
+                trace[i] = pixel.trace;
+            }
         }
         stats
     }
@@ -131,8 +174,7 @@ impl ProcessRow<Row<'_>> for ViewPass<'_> {
 
 impl ViewPass<'_> {
     #[inline(always)]
-    fn pixel(&self, x: u32, y: u32, row: &mut Row<'_>, stats: &mut FrameStats) {
-        let i = x as usize;
+    fn pixel<N: Notes>(&self, x: u32, y: u32, stats: &mut FrameStats, notes: &mut N) -> Pixel {
         let inputs = &self.inputs;
         let (candidate, usable) = inputs.candidate(x, y);
         let ray = inputs.ray(x, y);
@@ -153,44 +195,50 @@ impl ViewPass<'_> {
         }
         let disparity = inputs.disparity(x, y);
         let motion = inputs.motion(x, y);
-        let (verdict, history) = match self.history([x, y], candidate, ray, motion, disparity) {
+        notes.note(NoteStage::Candidate, "color", candidate, "linear light");
+        notes.note(NoteStage::Candidate, "usable", usable, "");
+        let (verdict, history) = match self.history([x, y], candidate, ray, motion, disparity, notes) {
             Ok(history) => (Verdict::Valid, history),
             Err(verdict) => (verdict, History::EMPTY),
         };
         let History { past, reference, .. } = history;
         let level = self.level(x, y, e_deg, sample_px == [x, y]);
         let compared = if self.has_references { wrs::compared(candidate, level, reference) } else { past.color };
+        if N::ON {
+            let difference = wrs::difference(candidate, compared, params.gate);
+            notes.note(NoteStage::Comparison, "color that the gate compares", compared, "linear light");
+            notes.note(NoteStage::Comparison, "difference", difference, "Delta E 94, or L*");
+            notes.note(NoteStage::Comparison, "difference up to which the gate is 1", params.gate_offset, "the same");
+        }
         let draw = rng::unit_draw(rng::bits(x, y, self.frame_low, inputs.uniforms.key));
         let decision = wrs::step(candidate, weight, Past { color: compared, ..past }, &params, draw);
 
         let color = wrs::combined(candidate, weight, past.color, &decision, params.sampler);
         let age = if decision.take { 0 } else { (history.age + 1).min(pack::MAX_AGE) };
-        row.out[i] = color.to_array();
-        row.words[i] = pack::pack(Stored { color, disparity, w_sum: decision.w_sum, age });
+        let mut words = pack::pack(Stored { color, disparity, w_sum: decision.w_sum, age });
         if self.params.sampler == SamplerCode::AChaoMean && decision.w_sum == 0.0 {
-            row.words[i] = pack::EMPTY_WORDS;
+            words = pack::EMPTY_WORDS;
         }
-        if let Some(keys) = &mut row.log_keys {
-            keys[i] = decision.log_key;
-        }
-        if let Some(references) = &mut row.references {
-            let next = if usable { wrs::next_reference(candidate, level, decision.take, reference) } else { reference };
-            references[i] = wrs::pack_reference(next);
-        }
-        if let Some(trace) = &mut row.trace {
-            trace[i] = PixelTrace {
-                verdict,
-                weight,
-                quality: decision.w_sum * (1.0 / 16.0),
-                age,
-                survival: if verdict == Verdict::Valid { decision.survival } else { 0.0 },
-                gate: decision.gate,
-                take: decision.take,
-                motion,
-            };
+        let mut next = reference;
+        if self.has_references && usable {
+            next = wrs::next_reference(candidate, level, decision.take, reference);
         }
         inputs.count(x, y, usable, disparity, verdict, stats);
         stats.replaced += u64::from(verdict == Verdict::Valid && decision.take);
+        notes.note(NoteStage::Decision, "random draw", draw, "");
+        notes.note(NoteStage::Decision, "weight sum", decision.w_sum, "");
+        let trace = PixelTrace {
+            verdict,
+            weight,
+            quality: decision.w_sum * (1.0 / 16.0),
+            age,
+            history_share: if verdict == Verdict::Valid { decision.survival } else { 0.0 },
+            agreement: decision.gate,
+            is_replaced: decision.take,
+            motion,
+        };
+        let reference = if self.has_references { wrs::pack_reference(next) } else { 0 };
+        Pixel { output: color, words, log_key: decision.log_key, reference, trace }
     }
 
     #[inline(always)]
@@ -234,14 +282,20 @@ impl ViewPass<'_> {
         ray: Vec3,
         motion: [f32; 2],
         disparity: f32,
+        notes: &mut impl Notes,
     ) -> Result<History, Verdict> {
         let inputs = &self.inputs;
         if inputs.reset {
             return Err(Verdict::Reset);
         }
+        let previous_px = [x as f32 + motion[0], y as f32 + motion[1]];
+        notes.note(NoteStage::Reprojection, "previous position", previous_px, "px");
         let [qx, qy] = reproject::nearest(x, y, motion, inputs.size)?;
         let at = qy as usize * inputs.size[0] as usize + qx as usize;
         let stored = pack::unpack(self.past.words[at]);
+        notes.note(NoteStage::Reprojection, "nearest texel", [qx as f32, qy as f32], "px");
+        notes.note(NoteStage::Reprojection, "its weight sum", stored.w_sum, "0: empty");
+        notes.note(NoteStage::Reprojection, "its disparity", stored.disparity, "1/distance");
         if stored.w_sum == 0.0 {
             return Err(Verdict::Empty);
         }
@@ -254,23 +308,27 @@ impl ViewPass<'_> {
             }
         }
         let expected = inputs.previous_disparity(ray, disparity);
+        notes.note(NoteStage::Reprojection, "expected disparity", expected, "1/distance");
         if inputs.tests_depth() && !inputs.same_surface(x, y, disparity, expected, stored.disparity) {
             return Err(Verdict::Disoccluded);
         }
         past.color = wrs::expose(past.color, inputs.exposure);
         if self.params.sampler == SamplerCode::AChaoMean {
-            let mean = self.resampled([x as f32 + motion[0], y as f32 + motion[1]], expected, stored.color);
+            let mean = self.resampled(previous_px, expected, stored.color, notes);
             past.color = wrs::unspread(candidate, past.color, wrs::expose(mean, inputs.exposure));
         }
         let stored_reference = self.past.references.get(at).copied().map_or(Reference::NONE, wrs::unpack_reference);
         let reference = Reference { color: wrs::expose(stored_reference.color, inputs.exposure), ..stored_reference };
+        notes.note(NoteStage::History, "color", past.color, "linear light");
+        notes.note(NoteStage::History, "weight sum", past.w_sum, "");
+        notes.note(NoteStage::History, "age", stored.age as f32, "frames");
         Ok(History { past, age: stored.age, reference })
     }
 
     /// Mean of history at a position, by Catmull-Rom weights. At the centre of a pixel it is exactly the color of
     /// `nearest`.
     #[inline(always)]
-    fn resampled(&self, at: [f32; 2], expected: f32, nearest: Vec3) -> Vec3 {
+    fn resampled(&self, at: [f32; 2], expected: f32, nearest: Vec3, notes: &mut impl Notes) -> Vec3 {
         let whole = at.map(f32::floor);
         let [fx, fy] = [at[0] - whole[0], at[1] - whole[1]];
         if fx == 0.0 && fy == 0.0 {
@@ -279,11 +337,13 @@ impl ViewPass<'_> {
         let taps = taps_around(whole.map(|v| v as i32), [fx, fy], self.inputs.size);
         let (codes, any_code) = (tap_codes(expected), !self.inputs.tests_depth());
         let width = self.inputs.size[0] as i32;
-        let gathered = gather_around(&taps, |[x, y]| {
+        let tap = |[x, y]: [i32; 2]| {
             let [colors, more, _] = self.past.words[(y * width + x) as usize];
             let (color, _, valid) = pack::unpack_sample([colors, more]);
             Tap { color, lod: 0.0, same: valid && (any_code || has_code(more, codes)) }
-        });
+        };
+        let gathered = gather_around(&taps, tap);
+        note_taps(&taps, tap, notes);
         let nearest = Surface { color: nearest, lod: 0.0, disparity: expected };
         resolve(gathered, sharp_sum(&taps), nearest).sharp
     }

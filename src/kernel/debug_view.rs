@@ -74,11 +74,11 @@ pub struct PixelTrace {
     /// Frames since the shown sample was shaded, up to 255 ([`DebugView::Age`]).
     pub age: u32,
     /// History's share, in \[0, 1\] ([`DebugView::Survival`]); 0 without history.
-    pub survival: f32,
+    pub history_share: f32,
     /// Agreement of candidate and history, in \[0, 1\] ([`DebugView::Gate`]); 1 if they look alike.
-    pub gate: f32,
+    pub agreement: f32,
     /// Whether the candidate replaced the history.
-    pub take: bool,
+    pub is_replaced: bool,
     /// Motion vector: previous minus current position in pixels, y down.
     pub motion: [f32; 2],
 }
@@ -91,9 +91,9 @@ impl Default for PixelTrace {
             weight: 0.0,
             quality: 0.0,
             age: 0,
-            survival: 0.0,
-            gate: 1.0,
-            take: true,
+            history_share: 0.0,
+            agreement: 1.0,
+            is_replaced: true,
             motion: [0.0; 2],
         }
     }
@@ -158,9 +158,9 @@ pub fn view_color(view: DebugView, trace: &PixelTrace) -> Vec3 {
     let encoded = match view {
         DebugView::Quality => heat(trace.quality),
         DebugView::Age => heat((trace.age as f32 * (1.0 / 255.0)).sqrt()),
-        DebugView::Survival => heat(trace.survival),
+        DebugView::Survival => heat(trace.history_share),
         DebugView::Rejection => verdict_color(trace.verdict),
-        DebugView::Gate => Vec3::splat(trace.gate),
+        DebugView::Gate => Vec3::splat(trace.agreement),
         DebugView::Motion => motion_color(trace.motion),
     };
     Vec3::new(srgb_decode(encoded.x), srgb_decode(encoded.y), srgb_decode(encoded.z))

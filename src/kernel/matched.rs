@@ -3,6 +3,7 @@
 
 use super::approx;
 use super::surface::LOD_STEPS;
+use crate::notes::{NoNotes, NoteStage, Notes};
 use glam::{Vec3, Vec4};
 use std::f32::consts::LOG2_E;
 
@@ -257,7 +258,14 @@ pub struct Matched {
 /// History is relit if only the light changed.
 #[inline(always)]
 pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
+    decide_noted(e, p, &mut NoNotes)
+}
+
+/// The same, with notes.
+#[inline(always)]
+pub(crate) fn decide_noted(e: &Evidence, p: &SmrParams, notes: &mut impl Notes) -> Matched {
     let reuse = reuse_weight(e.lod, e.history_lod, p.accumulate, p.noisy, e.confidence);
+    note_evidence(e, reuse, notes);
     // Contrast of detail finer than the candidate. Where it is high, resampling and aliasing alone cause differences.
     let mut contrast = past_contrast(e.level, e.next_level);
     let mut d = past_difference(e.compared, e.matched);
@@ -279,6 +287,10 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
         let strongest = strongest_gain(gains);
         let doublings = (approx::ln(strongest) * LOG2_E).abs();
         let helps = relit < unlit * (if p.blocks { RELIT_BLOCKS } else { RELIT });
+        notes.note(NoteStage::Light, "difference at which relighting starts", from, OF_DIFFERENCE);
+        notes.note(NoteStage::Light, "change of light", changed, "");
+        notes.note(NoteStage::Light, "gains", gains, "");
+        notes.note(NoteStage::Light, "coarser difference without and with gains", [unlit, relit], OF_DIFFERENCE);
         if helps && (p.noisy || doublings >= LEAST_WORN) {
             d = relit;
             k = gains;
@@ -293,6 +305,13 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     let fit = 1.0 - smooth_step(keep + e.noise, (p.tolerance * (GATE[1] * scale)) * width, d);
     let acceptance = fit * e.trust;
     let share = acceptance * reuse.share;
+    notes.note(NoteStage::Light, "gains that are used", k, "");
+    notes.note(NoteStage::Light, "levels of detail that they cost", worn, "log2 px");
+    notes.note(NoteStage::Comparison, "difference", d, OF_DIFFERENCE);
+    notes.note(NoteStage::Comparison, "contrast of history", contrast, OF_DIFFERENCE);
+    notes.note(NoteStage::Comparison, "difference up to which history fits", keep + e.noise, OF_DIFFERENCE);
+    notes.note(NoteStage::Decision, "fit", fit, "");
+    notes.note(NoteStage::Decision, "history's share if it fits", reuse.share, "");
     let correction = if p.blocks { CORRECTION_BLOCKS } else { CORRECTION };
     // History that was not resampled is not corrected, because it is unchanged since it was stored. History of noisy
     // frames is not corrected either, because accumulation averages the noise.
@@ -300,6 +319,7 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
     // The constant is multiplied with the first factor, because shader compilers order such products this way.
     let missed = (e.observed - k * e.predicted) * (correction * e.unit);
     let history = (missed * finer + k * e.history).max(Vec3::ZERO);
+    notes.note(NoteStage::Decision, "history after gains and correction", history, "linear light");
     // A share of 1 gives history bit for bit, a share of 0 the candidate.
     let color = if share == 1.0 { history } else { e.candidate + (history - e.candidate) * share };
     let lod = if reuse.finer > 0.0 {
@@ -310,6 +330,25 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
         e.lod
     };
     Matched { color, lod, share, fit }
+}
+
+/// Unit of [`root_difference`] in notes.
+const OF_DIFFERENCE: &str = "100 from black to white";
+
+#[inline(always)]
+fn note_evidence(e: &Evidence, reuse: ReuseWeight, notes: &mut impl Notes) {
+    notes.note(NoteStage::Comparison, "unit of light", e.unit, "linear light; the compared colors are divided by it");
+    notes.note(NoteStage::Comparison, "candidate that is compared", e.compared, "units of light");
+    notes.note(NoteStage::Comparison, "history at its scale", e.matched, "units of light");
+    notes.note(
+        NoteStage::Comparison,
+        "candidate, coarser",
+        e.compared_coarser,
+        "units of light; black unless light changed",
+    );
+    notes.note(NoteStage::Comparison, "history at that scale", e.matched_coarser, "units of light");
+    notes.note(NoteStage::Comparison, "history is finer", reuse.finer, "");
+    notes.note(NoteStage::Comparison, "difference that noise explains", e.noise, OF_DIFFERENCE);
 }
 
 /// Mean of four texels of the mip chain: color times coverage, and coverage.

@@ -35,6 +35,20 @@ impl Verdict {
     /// Number of verdicts; every discriminant is below it.
     pub const COUNT: usize = 7;
 
+    /// The verdict and its reason, for notes.
+    #[cfg(feature = "cpu")]
+    pub(crate) fn in_words(self) -> &'static str {
+        match self {
+            Self::Valid => "kept: it belongs to this surface",
+            Self::Reset => "none: first frame, reset, or outside the lens",
+            Self::BadMotion => "rejected: the motion vector is NaN, infinite or longer than 65536 px",
+            Self::OffScreen => "rejected: the surface was outside the previous frame",
+            Self::Empty => "none: nothing is stored at the previous position",
+            Self::Disoccluded => "rejected: another surface was there (depth), or motion vectors of two are mixed",
+            Self::Distrusted => "rejected: the trust mask is 0",
+        }
+    }
+
     /// Verdicts that reject existing history.
     pub const REJECTED: [Self; 4] = [Self::BadMotion, Self::OffScreen, Self::Disoccluded, Self::Distrusted];
 }

@@ -3,6 +3,7 @@
 //! 2014). Confidence is the number of samples that history counts for; resampling and bias limit it.
 
 use super::matched::roots;
+use crate::notes::{NoNotes, NoteStage, Notes};
 use glam::Vec3;
 
 /// Largest confidence of history, in samples at the pixel: a mean of 16 jittered samples has a quarter of the error of
@@ -124,11 +125,28 @@ pub fn box_sigmas(moving: f32, still: f32, confidence: f32) -> f32 {
 /// over the 3x3 neighbourhood in YCoCg of colors and of their squares.
 #[inline]
 pub fn blend_clipped(candidate: Vec3, history: Vec3, sum: Vec3, squares: Vec3, alpha: f32, confidence: f32) -> Vec3 {
+    blend_clipped_noted(candidate, history, sum, squares, alpha, confidence, &mut NoNotes)
+}
+
+/// The same, with notes.
+#[inline]
+pub(crate) fn blend_clipped_noted(
+    candidate: Vec3,
+    history: Vec3,
+    sum: Vec3,
+    squares: Vec3,
+    alpha: f32,
+    confidence: f32,
+    notes: &mut impl Notes,
+) -> Vec3 {
     let mean = sum * (1.0 / 9.0);
     let variance = (squares * 9.0 - sum * sum) * (1.0 / 81.0);
     let sigmas = box_sigmas(BOX_SIGMAS[0], BOX_SIGMAS[1], confidence);
     let extent = roots(variance) * sigmas + Vec3::splat(ROUNDING);
     let clipped = roots_of_ycocg(clip_to_box(to_ycocg(history), mean, extent));
+    notes.note(NoteStage::Comparison, "mean of the colors around", mean, "YCoCg of square roots");
+    notes.note(NoteStage::Comparison, "box of history around it", extent, "half widths, YCoCg of square roots");
+    notes.note(NoteStage::Comparison, "history in the box", clipped * clipped, "linear light");
     let shown = clipped + (roots(candidate) - clipped) * alpha;
     shown * shown
 }

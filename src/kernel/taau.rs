@@ -5,6 +5,7 @@
 
 use super::matched::roots;
 use super::taa::{ROUNDING, box_sigmas, clip_to_box, roots_of_ycocg, settled, to_ycocg};
+use crate::notes::{NoNotes, NoteStage, Notes};
 use glam::{Vec2, Vec3};
 
 /// Weight of interpolation between samples where history has no confidence, relative to a sample at the pixel. A larger
@@ -117,6 +118,19 @@ pub struct Accumulated {
 /// the frame's mask, in \[0, 1\].
 #[inline]
 pub fn accumulate(a: SamplesAround, centre: Vec3, history: Vec3, confidence: f32, trust: f32) -> Accumulated {
+    accumulate_noted(a, centre, history, confidence, trust, &mut NoNotes)
+}
+
+/// The same, with notes.
+#[inline]
+pub(crate) fn accumulate_noted(
+    a: SamplesAround,
+    centre: Vec3,
+    history: Vec3,
+    confidence: f32,
+    trust: f32,
+    notes: &mut impl Notes,
+) -> Accumulated {
     let inverse = 1.0 / a.count;
     let variance = (a.squares * a.count - a.sum * a.sum) * (inverse * inverse);
     let past = to_ycocg(history);
@@ -128,6 +142,10 @@ pub fn accumulate(a: SamplesAround, centre: Vec3, history: Vec3, confidence: f32
     let distance = clip.x.abs().max(clip.y.abs()).max(clip.z.abs());
     let kept = 1.0 - (distance * CLIP_COST / past.x.max(1.0)).min(1.0) * strength;
     let clipped = roots_of_ycocg(past + clip * strength);
+    notes.note(NoteStage::Comparison, "mean of the samples around", a.sum * inverse, "YCoCg of square roots");
+    notes.note(NoteStage::Comparison, "box of history around it", extent, "half widths, YCoCg of square roots");
+    notes.note(NoteStage::Comparison, "share of the clip", strength, "");
+    notes.note(NoteStage::Comparison, "history after the clip", clipped * clipped, "linear light");
     let share = (a.weights.y / (confidence * kept + a.weights.y)).max(1.0 - trust);
     let shown = clipped + (roots(upsampled(a, centre)) - clipped) * share;
     Accumulated { color: shown * shown, confidence: a.weights.y / share, share, kept }

@@ -66,14 +66,14 @@ pub fn declared_exposure(make: Make<'_>) -> Option<String> {
         let bright = frame(0, ratio);
         let (out, stats, trace) = post.exposed(10, &still(bright.clone()), Exposure::Changed { ratio });
         assert_eq!((out, stats.rejected()), (bright, 0));
-        assert!(trace.pixels().iter().all(|t| t.gate == 1.0));
-        assert!(share(&trace, |_, t| !t.take) > 0.7, "and is kept");
+        assert!(trace.pixels().iter().all(|t| t.agreement == 1.0));
+        assert!(share(&trace, |_, t| !t.is_replaced) > 0.7, "and is kept");
     }
     // The planted error: the inverse of the ratio.
     let mut post = make(gated(true))?;
     post.step(0, &still(frame(0, 1.0)));
     let (_, _, trace) = post.exposed(1, &still(frame(0, EXPOSED)), Exposure::Changed { ratio: 1.0 / EXPOSED });
-    assert!(share(&trace, |_, t| t.gate == 0.0) > 0.9);
+    assert!(share(&trace, |_, t| t.agreement == 0.0) > 0.9);
     Some(
         "wrs, x256 and /256 declared: 20 frames the same as unexposed ones times the ratio, bit for bit; 0 rejected"
             .into(),

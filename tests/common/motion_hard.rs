@@ -41,7 +41,7 @@ pub fn still_frames(make: Make<'_>) -> Option<String> {
             colors.insert(input.color.pixels()[i].map(f32::to_bits));
             assert!(colors.contains(&out.pixels()[i].map(f32::to_bits)), "frame {index}, pixel {i}");
         }
-        kept += trace.pixels().iter().filter(|t| !t.take).count();
+        kept += trace.pixels().iter().filter(|t| !t.is_replaced).count();
     }
     Some(format!("wrs, 1000 frames of noise over 200 depths: {kept} samples kept, each at its own pixel, bit for bit"))
 }
@@ -85,7 +85,7 @@ pub fn half_pixels(make: Make<'_>) -> Option<String> {
         let input = View { motion: Some(Image::filled(SIZE, [-0.5, 0.5])), ..still(color) };
         let (out, _, trace) = post.step(index, &input);
         assert!(out.pixels().iter().all(|c| known.contains(&c.map(f32::to_bits))), "H22: no invented colors");
-        kept += trace.pixels().iter().filter(|t| !t.take).count();
+        kept += trace.pixels().iter().filter(|t| !t.is_replaced).count();
     }
     Some(format!("wrs, 0.5 px x 200: {kept} samples kept, no color that no frame brought; nearest, nothing is mixed"))
 }
@@ -149,7 +149,7 @@ pub fn zoom(make: Make<'_>) -> Option<String> {
                 let [qx, qy] = [source(x, 32.0), source(y, 24.0)];
                 let t = trace.at(x, y);
                 if (0.0..64.0).contains(&qx) && (0.0..48.0).contains(&qy) {
-                    assert_eq!((out.at(x, y), t.age, t.take), (before.at(qx as usize, qy as usize), 1, false));
+                    assert_eq!((out.at(x, y), t.age, t.is_replaced), (before.at(qx as usize, qy as usize), 1, false));
                     sources.insert((qx as usize, qy as usize));
                     kept += 1;
                 } else {

@@ -84,8 +84,8 @@ pub fn times_a_constant(make: Make<'_>) -> Option<String> {
             let settings = settings(filter);
             let views = clip(&mut draws, &settings, speed_px);
             let plain = run(make, settings, &views, 1.0)?;
-            let reused = plain.iter().flat_map(|m| m.trace.pixels()).filter(|t| t.survival > 0.5).count();
-            let gated = plain.iter().flat_map(|m| m.trace.pixels()).filter(|t| t.gate < 1.0).count();
+            let reused = plain.iter().flat_map(|m| m.trace.pixels()).filter(|t| t.history_share > 0.5).count();
+            let gated = plain.iter().flat_map(|m| m.trace.pixels()).filter(|t| t.agreement < 1.0).count();
             assert!(reused > 1000 && gated > 1000, "{filter:?}: {reused} and {gated}");
             for exponent in [-10, -3, 6, 12] {
                 let factor = 2.0_f32.powi(exponent);

@@ -120,7 +120,7 @@ pub fn still_picture(make: Make<'_>) -> Option<String> {
             let made = step(&mut post, index, &at_lods(low_pass.render(&lods), lods));
             assert_eq!(made.words, first.words, "{name}, frame {index}");
             assert_eq!(made.shown, stored, "{name}, frame {index}");
-            assert!(made.trace.pixels().iter().all(|t| t.survival == 1.0 && t.gate == 1.0));
+            assert!(made.trace.pixels().iter().all(|t| t.history_share == 1.0 && t.agreement == 1.0));
             assert_eq!(made.stats.rejected(), 0);
         }
     }
@@ -142,7 +142,7 @@ pub fn whole_shift(make: Make<'_>) -> Option<String> {
         let made = step(&mut post, 1, &view);
         let as_expected = (0..41_usize).flat_map(|y| (0..52_usize).map(move |x| (x, y))).all(|(x, y)| {
             if x + 3 < 52 && y >= 2 {
-                made.shown.at(x, y) == before.at(x + 3, y - 2) && made.trace.at(x, y).survival == 1.0
+                made.shown.at(x, y) == before.at(x + 3, y - 2) && made.trace.at(x, y).history_share == 1.0
             } else {
                 made.shown.at(x, y) == color.at(x, y) && made.trace.at(x, y).verdict == Verdict::OffScreen
             }
@@ -247,7 +247,7 @@ pub fn zoom(make: Make<'_>) -> Option<String> {
                 continue;
             }
             // On texels the sample itself, with its quality; between texels within the overshoot of the resampling.
-            if qx.fract() == 0.0 && qy.fract() == 0.0 && t.survival == 1.0 {
+            if qx.fract() == 0.0 && qy.fract() == 0.0 && t.history_share == 1.0 {
                 assert_eq!(shown, before.at(qx as usize, qy as usize));
                 assert_eq!(surfaces[y * 52 + x].lod, 0.0);
                 kept += 1;

@@ -76,6 +76,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         write_frame: write_png,
         write_reference: true,
         debug: vec![],
+        pixel: None,
         trust: false,
         flip: false,
         jod: false,

@@ -257,6 +257,30 @@ impl<'a> Viewer<'a> {
         assert_eq!((shown.dimensions(), differ), (expected.dimensions(), 0), "{method}");
     }
 
+    /// Freezes the picture, and follows the command for the pixel at a quarter of its width and half of its height: the
+    /// frame is the picture.
+    fn explains_the_pixel(&mut self) {
+        self.look_along(&[[0.25, 0.5]]);
+        self.key("space");
+        self.picture();
+        let [x, y] = [SIZE[0] / 4, SIZE[1] / 2];
+        self.key("x");
+        wait_for("a command", || (self.said() > self.pictures).then_some(()));
+        self.pictures = self.said();
+        let said = fs::read_to_string(self.folder.join("said.txt")).unwrap();
+        let command = said.lines().last().unwrap();
+        say(command);
+        let (words, frame) = (command.strip_prefix("afterimage ").unwrap(), self.record().len() - 1);
+        assert!(words.contains(&format!("--pixel {x},{y} --pixel-frames {frame}..{frame} ")), "{command}");
+        let out = tool().args(words.split(' ')).current_dir(&self.folder).output().unwrap();
+        assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+        assert!(String::from_utf8_lossy(&out.stdout).contains(&format!("frame {frame}, pixel {x},{y}, wrs")));
+        let pixels = |path: &str| image::open(self.folder.join(path)).unwrap().into_rgb8();
+        let (shown, repeated) = (pixels("shown.png"), pixels(&format!("out/pixel/wrs/{frame:06}.png")));
+        assert!(shown == repeated, "the command shows another picture");
+        self.key("space");
+    }
+
     /// Quits by key; checks that stderr contains the `expected` lines only.
     fn close(mut self, expected: &[&str]) {
         self.key("Escape");
@@ -284,6 +308,7 @@ fn a_window_shows_what_run_writes_whatever_happens_to_it() {
     let mut viewer = Viewer::open(&display, folder.path(), &["--method", "wrs", "--no-panel"]);
     viewer.look_along(&[[0.2, 0.3], [0.4, 0.6], [0.8, 0.5], [0.6, 0.2], [0.3, 0.8]]);
     viewer.is_as_of_run("wrs");
+    viewer.explains_the_pixel();
 
     for by in [[-440, -260], [360, 240], [90, -200]] {
         viewer.looks_in_the_next_frame(by);

@@ -10,6 +10,7 @@ use crate::kernel::antialias::{
 use crate::kernel::kept::{Kept, pack_color_by, pack_kept};
 use crate::kernel::sparse::{Reconstruction, reconstruct};
 use crate::kernel::{rng, sanitize};
+use crate::notes::{NoteStage, Notes};
 use glam::{Vec2, Vec3};
 
 impl View<'_> {
@@ -71,6 +72,7 @@ impl View<'_> {
         mut inputs: Reconstruction,
         samples: f32,
         is_own: bool,
+        notes: &mut impl Notes,
     ) -> Averaged {
         if !is_own {
             return kept_mean(&inputs, reconstruct(&inputs), samples);
@@ -81,6 +83,8 @@ impl View<'_> {
             inputs.history = clipped(inputs.history, clip.change);
             inputs.nearest.color = clipped(inputs.nearest.color, clip.change);
             kept = clip.kept;
+            notes.note(NoteStage::Comparison, "history clipped to the samples around", inputs.history, "linear light");
+            notes.note(NoteStage::Comparison, "share of its samples that it keeps", kept, "");
         }
         average(&inputs, samples, self.sample_place_px(), kept)
     }

@@ -5,12 +5,13 @@ use crate::cpu::inputs::Previous;
 use crate::kernel::antialias::{Mean, is_of_surfaces, mean_of};
 use crate::kernel::kept::{
     Around, EXACT_PX, INVERSE_MEAN_REACH, INVERSE_REACH, Interpolated, Kept, add_kept, code_word, interpolate,
-    is_empty, stands_in, unpack_full, unpack_kept,
+    is_empty, kept_weight, stands_in, unpack_full, unpack_kept,
 };
 use crate::kernel::noise::{Noise, expose_noise, unpack_noise};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::{has_code, tap_codes, tap_codes_between};
 use crate::kernel::wrs::expose;
+use crate::notes::{NoteStage, Notes};
 use glam::{Vec2, Vec3};
 
 /// The surface whose history a pixel continues.
@@ -24,6 +25,15 @@ pub(super) struct Surroundings {
     pub mixed: Option<[f32; 2]>,
     /// Whether this frame's sample at the pixel may show another surface.
     pub is_doubtful: bool,
+}
+
+impl Surroundings {
+    #[inline(always)]
+    pub fn note(&self, notes: &mut impl Notes) {
+        notes.note(NoteStage::Reprojection, "motion of the surface that is continued", self.motion, "px");
+        notes.note(NoteStage::Reprojection, "its disparity now", self.disparity, "1/distance");
+        notes.note(NoteStage::Candidate, "may show another surface", self.is_doubtful, "");
+    }
 }
 
 /// Where a pixel's history is.
@@ -64,25 +74,32 @@ impl View<'_> {
 
     /// Previous position of a pixel's surface, or the verdict that rejects its history.
     #[inline(always)]
-    pub(super) fn source(&self, [x, y]: [u32; 2], surface: &Surroundings) -> Result<Source, Verdict> {
+    pub(super) fn source(
+        &self,
+        [x, y]: [u32; 2],
+        surface: &Surroundings,
+        notes: &mut impl Notes,
+    ) -> Result<Source, Verdict> {
         let mut found = 0.0;
-        let (previous, is_same) = self.inputs.reprojected(x, y, surface.motion, surface.disparity, |[qx, qy]| {
+        let stored = |[qx, qy]: [u32; 2]| {
             let stored = unpack_kept(self.stored_words(qx as i32, qy as i32));
             found = stored.disparity;
             [stored.lod, stored.disparity]
-        })?;
+        };
+        let (previous, is_same) = self.inputs.reprojected(x, y, surface.motion, surface.disparity, stored, notes)?;
         let Some(mixed) = surface.mixed else {
             return Ok(Source { previous, is_same, codes: tap_codes(previous.expected) });
         };
         let [farthest, nearest] = mixed.map(|disparity| self.inputs.expected_disparity(x, y, disparity));
         let is_same = is_same || is_of_surfaces(found, farthest, nearest);
+        notes.note(NoteStage::Reprojection, "one of the surfaces around, which move together", is_same, "");
         Ok(Source { previous, is_same, codes: tap_codes_between(farthest, nearest) })
     }
 
     /// History at a previous position, in this frame's exposure. At a silhouette the nearest stored sample may belong
     /// to another surface (`is_same` is false). Samples beside it then replace it if they are near enough.
     #[inline(always)]
-    pub(super) fn interpolated(&self, Source { previous, is_same, codes }: &Source) -> Found {
+    pub(super) fn interpolated<N: Notes>(&self, Source { previous, is_same, codes }: &Source, notes: &mut N) -> Found {
         // The place of a mean may lie anywhere around its texel's centre, so that the eight texels around the nearest
         // one also count.
         let (columns, [x, y]) = match self.antialiases {
@@ -105,15 +122,32 @@ impl View<'_> {
                 mean = mean_of(stored.lod);
                 stored.lod = mean.lod;
             }
+            if N::ON {
+                let place = texel_px + stored.place_px;
+                let weight = kept_weight(place.x * place.x + place.y * place.y, inverse_reach);
+                let values = [tx as f32, ty as f32, place.x, place.y, weight, stored.lod, f32::from(same)];
+                notes.note(
+                    NoteStage::History,
+                    "texel",
+                    values,
+                    "x y px, sample from position px, weight, log2 px, same surface",
+                );
+            }
             around = add_kept(around, stored, texel_px, same, inverse_reach);
             if around.cost < cost {
                 (nearest_texel, samples) = ([tx, ty], mean.samples);
             }
         }
+        notes.note(NoteStage::History, "sum of weights", around.weight, "");
         let found = interpolate(if *is_same || stands_in(around) { around } else { Around::NOTHING });
         let exposed = |c: Vec3| expose(c, self.inputs.exposure);
         let nearest = Kept { color: exposed(found.nearest.color), ..found.nearest };
         let history = Interpolated { color: exposed(found.color), range: found.range.map(exposed), nearest, ..found };
+        notes.note(NoteStage::History, "color", history.color, "linear light");
+        notes.note(NoteStage::History, "level of detail", history.lod, "log2 px, below 0: none");
+        notes.note(NoteStage::History, "sample to keep", nearest.color, "linear light");
+        notes.note(NoteStage::History, "its place", nearest.place_px, "px from the position");
+        notes.note(NoteStage::History, "its number of samples", samples, "");
         Found { history, noise: self.stored_noise(nearest_texel), samples }
     }
 }

@@ -21,6 +21,7 @@ pub(super) use quad_plan::plan_quads;
 pub(super) use quads::Quads;
 
 use super::Pass;
+use super::explain::{explain, note_kept, note_kept_mean, of_view};
 use super::inputs::Inputs;
 use super::surface_pass::{Targets, for_pixels};
 use crate::stats::FrameStats;
@@ -30,7 +31,7 @@ use view::View;
 
 /// Runs the three loops for every view.
 pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
-    let Pass { desc, history, frame, quads, output, mut traces } = pass;
+    let Pass { desc, history, frame, quads, output, mut traces, mut noted } = pass;
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
@@ -41,18 +42,23 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
         view.quads = quads.get(i);
         let traces = traces.as_mut().map(|t| &mut t[i]);
         let targets = Targets { surfaces: next, noise: next_noise, output: &mut output[i], traces };
-        let of_view = match view.quads {
+        let (quad_lights, lights);
+        let lights = match view.quads {
             Some(quads) => {
-                let lights = view.light_quads(quads, &view.observe_quads(quads));
-                for_pixels(targets, &LitView { view: &view, lights: Lights::Quads(&lights) })
+                quad_lights = view.light_quads(quads, &view.observe_quads(quads));
+                Lights::Quads(&quad_lights)
             }
             None => {
                 let observed = view.for_samples(|lattice, point| pack_observation(view.observe(lattice, point)));
-                let lights = view.for_samples(|lattice, point| view.light(lattice, point, &observed));
-                for_pixels(targets, &LitView { view: &view, lights: Lights::Lattices(&lights) })
+                lights = view.for_samples(|lattice, point| view.light(lattice, point, &observed));
+                Lights::Lattices(&lights)
             }
         };
-        stats = stats.add(of_view);
+        let lit = LitView { view: &view, lights };
+        stats = stats.add(for_pixels(targets, &lit));
+        if let Some(pixel) = of_view(&mut noted, i) {
+            explain(&lit, if view.antialiases { note_kept_mean } else { note_kept }, pixel);
+        }
     }
     stats
 }

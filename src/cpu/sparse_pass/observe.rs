@@ -9,6 +9,7 @@ use crate::kernel::matched::root_difference;
 use crate::kernel::noise::expected_noise;
 use crate::kernel::pack::{half_bits, half_value};
 use crate::kernel::sparse::{Observation, expected_error, lod_confidence, noisy_lod_confidence};
+use crate::notes::NoNotes;
 use glam::Vec3;
 
 /// Observation in two words: history's color, expected error and confidence as halves.
@@ -47,13 +48,13 @@ impl View<'_> {
         if surface.is_doubtful {
             return Some(Observation { sampled, history: Vec3::ZERO, error: DOUBTFUL, sure: 0.0 });
         }
-        let mut source = self.source(px, &surface).ok().filter(|_| usable)?;
+        let mut source = self.source(px, &surface, &mut NoNotes).ok().filter(|_| usable)?;
         if self.antialiases {
             // History is read at the sample's place in its pixel.
             let [x, y] = self.inputs.uniforms.jitter_px;
             source.previous.at = [source.previous.at[0] - x, source.previous.at[1] - y];
         }
-        let Found { history, noise: past, .. } = self.interpolated(&source);
+        let Found { history, noise: past, .. } = self.interpolated(&source, &mut NoNotes);
         if history.lod < 0.0 {
             return None;
         }

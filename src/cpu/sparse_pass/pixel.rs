@@ -1,6 +1,6 @@
 //! Reconstruction of pixels from history, and from the samples around them and their light.
 
-use super::candidate::{Candidate, Sums, sample_codes};
+use super::candidate::{Candidate, Sums, note_sample, sample_codes};
 use super::kept_history::{Found, Source, has_moved};
 use super::quad_samples::QuadLights;
 use super::quads::offset_px2;
@@ -15,8 +15,9 @@ use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::has_code;
 use crate::kernel::sanitize;
 use crate::kernel::sparse::{
-    LEAST_SHARE, OTHER_SURFACE, Reconstruction, accumulate, candidate_level, reconstruct, unpack_lit,
+    LEAST_SHARE, OTHER_SURFACE, Reconstruction, accumulate, candidate_level, reconstruct, relit, unpack_lit,
 };
+use crate::notes::{NoteStage, Notes};
 use crate::stats::FrameStats;
 use crate::uniforms::LatticeUniforms;
 use glam::{Vec2, Vec3};
@@ -36,15 +37,15 @@ pub(super) enum Lights<'a> {
 
 impl ProcessPixel for LitView<'_> {
     #[inline(always)]
-    fn process(&self, x: u32, y: u32, stats: &mut FrameStats) -> Pixel {
-        self.view.pixel(x, y, self.lights, stats)
+    fn process(&self, x: u32, y: u32, stats: &mut FrameStats, notes: &mut impl Notes) -> Pixel {
+        self.view.pixel(x, y, self.lights, stats, notes)
     }
 }
 
 impl View<'_> {
     /// Processes one pixel and counts it in `stats`.
     #[inline(always)]
-    fn pixel(&self, x: u32, y: u32, lights: Lights<'_>, stats: &mut FrameStats) -> Pixel {
+    fn pixel<N: Notes>(&self, x: u32, y: u32, lights: Lights<'_>, stats: &mut FrameStats, notes: &mut N) -> Pixel {
         let inputs = &self.inputs;
         if !inputs.is_visible(x, y) {
             // Outside the visible area: black, without stored history.
@@ -54,16 +55,18 @@ impl View<'_> {
         let disparity = inputs.disparity(x, y);
         let level = self.level_at([x, y]);
         let candidate = match (lights, self.quads) {
-            (Lights::Quads(lights), Some(quads)) => self.quad_candidate(quads, [x, y], disparity, lights),
+            (Lights::Quads(lights), Some(quads)) => self.quad_candidate(quads, [x, y], disparity, lights, notes),
             (Lights::Lattices(lights), _) => {
-                self.candidate(LatticeUniforms::index_at(&self.lattices, [x, y]), [x, y], disparity, lights)
+                self.candidate(LatticeUniforms::index_at(&self.lattices, [x, y]), [x, y], disparity, lights, notes)
             }
             (Lights::Quads(_), None) => Candidate::NONE,
         };
         let surface = self.surface([x, y], level);
-        let source = self.source([x, y], &surface);
+        candidate.note(notes);
+        surface.note(notes);
+        let source = self.source([x, y], &surface, notes);
         let is_final = candidate.usable && level == 0 && !self.is_noisy() && !self.antialiases;
-        let history = source.as_ref().ok().filter(|_| !is_final).map(|source| self.interpolated(source));
+        let history = source.as_ref().ok().filter(|_| !is_final).map(|source| self.interpolated(source, notes));
         let history = history.filter(|found| found.history.lod >= 0.0);
         let verdict = match &source {
             Err(verdict) => *verdict,
@@ -101,12 +104,17 @@ impl View<'_> {
                     trust: previous.trust,
                     accumulate: self.accumulate,
                 };
+                if N::ON {
+                    let history = relit(inputs.history, inputs.gain, inputs.range);
+                    notes.note(NoteStage::Light, "history after the gain", history, "linear light");
+                    notes.note(NoteStage::Decision, "fit", inputs.fit, "");
+                }
                 let result = if self.is_noisy() {
                     let accumulated = accumulate(&inputs, past, candidate.noise);
                     noise = accumulated.noise;
                     accumulated.result
                 } else if self.antialiases {
-                    let averaged = self.antialiased([x, y], level, inputs, found_samples, candidate.is_own);
+                    let averaged = self.antialiased([x, y], level, inputs, found_samples, candidate.is_own, notes);
                     samples = averaged.samples;
                     averaged.result
                 } else {
@@ -124,9 +132,9 @@ impl View<'_> {
             weight: approx::exp2(-candidate.lod),
             quality: approx::exp2(-kept.lod.max(0.0)),
             age: 0,
-            survival: share,
-            gate: fits,
-            take: share == 0.0,
+            history_share: share,
+            agreement: fits,
+            is_replaced: share == 0.0,
             motion: surface.motion,
         };
         let stored = if self.antialiases { self.packed_mean([x, y], kept, samples) } else { pack_kept(kept) };
@@ -135,7 +143,14 @@ impl View<'_> {
 
     /// Candidate of a pixel, and its gain and fit, from the samples around it.
     #[inline(always)]
-    fn candidate(&self, index: usize, px: [u32; 2], disparity: f32, lights: &[Samples]) -> Candidate {
+    fn candidate<N: Notes>(
+        &self,
+        index: usize,
+        px: [u32; 2],
+        disparity: f32,
+        lights: &[Samples],
+        notes: &mut N,
+    ) -> Candidate {
         let lattice = &self.lattices[index];
         let Some([x, y]) = lattice.around(px) else { return Candidate::NONE };
         let is_sample = x.fraction == 0.0 && y.fraction == 0.0;
@@ -152,7 +167,7 @@ impl View<'_> {
                 return own;
             }
             // The fit of history comes from the samples of the next lattice.
-            return Candidate { fit: self.candidate(coarser, px, disparity, lights).fit, ..own };
+            return Candidate { fit: self.candidate(coarser, px, disparity, lights, notes).fit, ..own };
         }
         let mut sums = Sums::default();
         let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::ZERO);
@@ -177,6 +192,9 @@ impl View<'_> {
             let share = point_weight(x.fraction, right) * point_weight(y.fraction, below);
             let weight = share.max(LEAST_SHARE) * if alike { 1.0 } else { OTHER_SURFACE };
             sums.add(color, weight, lit);
+            if N::ON {
+                note_sample(notes, at, weight, color, lit, self.observe(index, point));
+            }
             if self.is_noisy() {
                 noises = add_noise(noises, self.sample_noise(at), weight);
             }

@@ -1,6 +1,6 @@
 //! Samples of shaded quads: their comparison with history, gain and fit around them, and candidates of pixels.
 
-use super::candidate::{Candidate, Sums, sample_codes};
+use super::candidate::{Candidate, Sums, note_sample, sample_codes};
 use super::observe::{pack_observation, unpack_observation};
 use super::quads::{Quads, nearest_px, offset_px2};
 use super::view::{NO_NOISE, Samples, View};
@@ -12,6 +12,7 @@ use crate::kernel::sparse::{
     LIGHT_RELATIVE, Light, OTHER_SURFACE, Observation, QuadLit, RELIT_ERRORS, add_light, agreement, candidate_level,
     errors_left, fit, mean_error, own_fit, pack_quad_lit, quad_code, quad_lit, relight,
 };
+use crate::notes::Notes;
 use crate::parallel::collect;
 use glam::Vec3;
 
@@ -139,7 +140,14 @@ impl View<'_> {
 
     /// Candidate of a pixel, and its gain and fit, from the shaded quads around it.
     #[inline(always)]
-    pub(super) fn quad_candidate(&self, quads: &Quads, px: [u32; 2], disparity: f32, lights: &QuadLights) -> Candidate {
+    pub(super) fn quad_candidate<N: Notes>(
+        &self,
+        quads: &Quads,
+        px: [u32; 2],
+        disparity: f32,
+        lights: &QuadLights,
+        notes: &mut N,
+    ) -> Candidate {
         let level = quads.level_at(px);
         let is_shaded = quads.is_shaded(px);
         if level == 0 {
@@ -169,6 +177,9 @@ impl View<'_> {
             let share = if at == px { 1.0 } else { 1.0 / px2 };
             let weight = share * if alike { 1.0 } else { OTHER_SURFACE };
             sums.add(color, weight, lit);
+            if N::ON {
+                note_sample(notes, at, weight, color, lit, self.observe_px(at, level, color, usable));
+            }
             (low, high) = (low.min(color), high.max(color));
             if alike {
                 nearest_px2 = nearest_px2.min(px2);

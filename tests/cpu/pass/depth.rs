@@ -26,7 +26,7 @@ fn a_disoccluded_wall_is_rejected_and_only_it() {
     let second = View { depth: Some(two_walls(24, 1.0, 5.0)), motion: Some(motion), ..still(noise(SIZE, "y")) };
     let (_, stats, trace) = one(&mut post.clone(), 1, &second);
     assert_eq!(stats.verdicts[Verdict::Disoccluded as usize], 8 * 48);
-    assert!((24..32).all(|x| trace.at(x, 3).verdict == Verdict::Disoccluded && trace.at(x, 3).take));
+    assert!((24..32).all(|x| trace.at(x, 3).verdict == Verdict::Disoccluded && trace.at(x, 3).is_replaced));
     // Without the test they keep the wrong wall's samples.
     post.set_settings(Settings { depth_test: None, ..post.desc().settings }).unwrap();
     let (_, stats, _) = one(&mut post, 1, &second);

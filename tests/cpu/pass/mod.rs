@@ -6,6 +6,7 @@ mod lifecycle;
 mod light;
 mod means;
 mod nan;
+mod noted;
 mod properties;
 mod quads;
 mod reprojection;

@@ -70,6 +70,6 @@ fn h18_a_nonfinite_candidate_shows_history() {
         let (out, stats, trace) = one(&mut post, index, &broken);
         assert_eq!(out, good, "frame {index}");
         assert_eq!((stats.nonfinite, stats.replaced), (64 * 48, 0));
-        assert!(trace.pixels().iter().all(|t| t.weight == 0.0 && u64::from(t.age) == index && t.survival == 1.0));
+        assert!(trace.pixels().iter().all(|t| t.weight == 0.0 && u64::from(t.age) == index && t.history_share == 1.0));
     }
 }

@@ -67,7 +67,7 @@ fn h17_h18_broken_candidates_leave_the_reservoir_as_it_was_and_are_counted() {
     for (index, bad) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY].into_iter().enumerate() {
         let broken = still(Image::filled(SIZE, [0.5, bad, 0.5]));
         let (_, stats, trace) = one(&mut post, 5 + index as u64, &broken);
-        assert!(trace.pixels().iter().all(|t| t.weight == 0.0 && !t.take));
+        assert!(trace.pixels().iter().all(|t| t.weight == 0.0 && !t.is_replaced));
         assert!(stats.warnings().any(|w| w == Warning::NonfiniteColor { pixels: 64 * 48 }));
         for (was, &word) in before.iter().zip(post.history().words()) {
             let is = pack::unpack(word);

@@ -59,7 +59,7 @@ fn h18_trust_that_is_no_number_counts_as_none_and_is_counted() {
     let input = View { trust: Some(mask), ..still(noise(SIZE, "b")) };
     let (_, stats, trace) = one(&mut post, 1, &input);
     let distrusted = |x: usize| (0..48).all(|y| trace.at(x, y).verdict == Verdict::Distrusted);
-    let kept = |x: usize| (0..48).all(|y| trace.at(x, y).verdict == Verdict::Valid && !trace.at(x, y).take);
+    let kept = |x: usize| (0..48).all(|y| trace.at(x, y).verdict == Verdict::Valid && !trace.at(x, y).is_replaced);
     assert!((0..40).all(distrusted) && (40..64).all(kept));
     assert_eq!((stats.bad_trust, stats.rejected()), (2 * 8 * 48, 40 * 48));
     assert!(stats.warnings().any(|w| w == Warning::BadTrust { pixels: 2 * 8 * 48 }));

@@ -107,7 +107,7 @@ fn the_gate_compares_candidates_of_one_level_by_the_frames_input() {
         one(&mut post, 0, &View { lod: lod(0.0), ..still(sharp.clone()) });
         let coarse = View { lod: lod(4.0), ..still(Image::filled(SIZE, [0.5; 3])) };
         let trace = one(&mut post, 1, &coarse).2;
-        trace.pixels().iter().map(|t| t.gate).sum::<f32>() / trace.pixels().len() as f32
+        trace.pixels().iter().map(|t| t.agreement).sum::<f32>() / trace.pixels().len() as f32
     };
     assert_eq!(survived(true), 1.0, "another level: nothing is known of a change");
     assert!(survived(false) < 0.5, "the same level: the color changed");

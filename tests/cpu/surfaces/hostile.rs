@@ -110,7 +110,7 @@ proptest! {
                     prop_assert!(s.color.is_finite() && s.color.min_element() >= 0.0);
                 }
                 for t in made.trace.pixels() {
-                    prop_assert!((0.0..=1.0).contains(&t.survival) && (0.0..=1.0).contains(&t.gate) && t.quality.is_finite());
+                    prop_assert!((0.0..=1.0).contains(&t.history_share) && (0.0..=1.0).contains(&t.agreement) && t.quality.is_finite());
                 }
             }
         }
@@ -130,7 +130,7 @@ fn resampled_and_relit_highlights_stay_within_halves() {
             let brightest = made.shown.pixels().iter().flatten().fold(0.0_f32, |m, &v| m.max(v));
             println!("{method:?}, frame {index}: at the most {brightest}");
             assert!(brightest <= 65504.0);
-            assert!(made.trace.pixels().iter().any(|t| t.survival > 0.0));
+            assert!(made.trace.pixels().iter().any(|t| t.history_share > 0.0));
         }
     }
 }

@@ -131,7 +131,7 @@ fn half_the_trust_is_half_the_history() {
     let mut post = context(MethodKind::Taa);
     step(&mut post, 0, &frame(0));
     let input = View { trust: Some(Image::filled(SIZE, 0.25)), ..frame(1) };
-    assert!(step(&mut post, 1, &input).trace.pixels().iter().all(|t| t.survival == 0.25));
+    assert!(step(&mut post, 1, &input).trace.pixels().iter().all(|t| t.history_share == 0.25));
 }
 
 #[test]

@@ -37,7 +37,7 @@ fn s1_inside_the_fovea_the_candidate_is_shown_bit_for_bit() {
             // Stored as sharp, except where the motion vector is on a silhouette.
             assert!(surfaces[i].lod == 0.0 || surfaces[i].lod == MAX_LOD && lod == &0.0);
         }
-        assert!(index == 0 || made.trace.pixels().iter().any(|t| t.survival > 0.0), "history is used elsewhere");
+        assert!(index == 0 || made.trace.pixels().iter().any(|t| t.history_share > 0.0), "history is used elsewhere");
     }
     assert!(foveal > 10_000);
 }
@@ -179,7 +179,7 @@ fn s8_the_index_of_a_frame_and_the_number_of_threads_do_not_matter() {
         };
         let first = run(0, 0, 1);
         assert!(first == run(1 << 40, 99, 3), "{method:?}");
-        assert!(first.iter().skip(1).all(|m| m.trace.pixels().iter().any(|t| t.survival > 0.0)));
+        assert!(first.iter().skip(1).all(|m| m.trace.pixels().iter().any(|t| t.history_share > 0.0)));
     }
 }
 
@@ -217,7 +217,7 @@ fn s8_a_picture_16_pixels_further_becomes_the_same_16_pixels_further() {
                 let (h, t) = ((y + 32) * 208 + x + 16, y * 208 + x);
                 assert_eq!(here.shown.pixels()[h], there.shown.pixels()[t], "{method:?} ({x}, {y})");
                 assert_eq!(here.words[h], there.words[t]);
-                used += usize::from(there.trace.pixels()[t].survival > 0.0);
+                used += usize::from(there.trace.pixels()[t].history_share > 0.0);
             }
         }
         assert!(used > 500, "{used} use history");

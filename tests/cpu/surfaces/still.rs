@@ -18,7 +18,7 @@ fn s3_the_chain_is_read_where_and_as_coarse_as_the_candidate_is() {
             let color = Image::from_fn(SIZE, |[x, y]| low_pass.at([f64::from(x) + shift, f64::from(y)], lod));
             step(&mut post.clone(), 1, &at_lod(color, lod))
         };
-        let fit = |made: &Made| made.trace.pixels().iter().map(|t| f64::from(t.gate)).sum::<f64>() / (52.0 * 41.0);
+        let fit = |made: &Made| made.trace.pixels().iter().map(|t| f64::from(t.agreement)).sum::<f64>() / (52.0 * 41.0);
         let (right, shifted) = (at(0.0), at(12.0));
         println!("lod {lod}: fit {:.4}, of a picture 12 pixels further {:.4}", fit(&right), fit(&shifted));
         assert_eq!(right.shown, first.stored());
@@ -42,7 +42,12 @@ fn s9_frames_that_repeat_change_nothing_where_history_is_shown_wholly() {
         let made = step(&mut post, index, &input);
         for i in 0..made.words.len() {
             let (old, new) = (before.trace.pixels()[i], made.trace.pixels()[i]);
-            if old.survival == 1.0 && new.survival == 1.0 && old.gate == 1.0 && new.gate == 1.0 && i % 52 < 18 {
+            if old.history_share == 1.0
+                && new.history_share == 1.0
+                && old.agreement == 1.0
+                && new.agreement == 1.0
+                && i % 52 < 18
+            {
                 assert_eq!(made.shown.pixels()[i], before.shown.pixels()[i], "frame {index}");
                 assert_eq!(made.words[i], before.words[i]);
                 settled += 1;
@@ -97,7 +102,7 @@ fn accumulation_shows_nine_tenths_of_equally_coarse_history() {
         for shown in made.shown.pixels() {
             assert!((shown[0] - (b + accumulate * (a - b))).abs() < 1e-6, "{accumulate}: {shown:?}");
         }
-        assert!(made.trace.pixels().iter().all(|t| t.survival == accumulate));
+        assert!(made.trace.pixels().iter().all(|t| t.history_share == accumulate));
     }
 }
 

@@ -26,7 +26,7 @@ fn agree(desc: ContextDesc, settings: Settings, frames: u64) {
         let views: Vec<View> = (0..desc.view_count).map(|v| noise_view(&format!("{index} {v}"), &desc)).collect();
         let (cpu, trace) = rig.on_cpu(index, Reset::None, &views);
         assert_eq!(rig.on_gpu(index, Reset::None, &views).agrees(&cpu), Ok(()), "{desc:?}, frame {index}");
-        kept += trace.iter().flat_map(|t| t.pixels()).filter(|t| !t.take).count();
+        kept += trace.iter().flat_map(|t| t.pixels()).filter(|t| !t.is_replaced).count();
     }
     assert!(kept > 100, "history must play a part");
 }
@@ -208,7 +208,7 @@ fn two_frames_in_one_submission_see_their_own_constants() {
         view.facts = second;
         let (expected, trace) = rig.on_cpu(1, Reset::None, &[view.clone()]);
         assert_eq!(rig.on_gpu_in_one_submission(&view, &[first, second]).agrees(&expected), Ok(()), "{method:?}");
-        assert!(trace[0].pixels().iter().any(|t| !t.take), "the second frame has a past");
+        assert!(trace[0].pixels().iter().any(|t| !t.is_replaced), "the second frame has a past");
     }
 }
 

@@ -81,8 +81,8 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(
         debug_view::view_color,
-        |quality: f32, age: u32, survival: f32, verdict: Verdict, gate: f32, motion: [f32; 2], view: u32| {
-            let trace = PixelTrace { quality, age, survival, verdict, gate, motion, ..PixelTrace::default() };
+        |quality: f32, age: u32, history_share: f32, verdict: Verdict, agreement: f32, motion: [f32; 2], view: u32| {
+            let trace = PixelTrace { quality, age, history_share, verdict, agreement, motion, ..PixelTrace::default() };
             debug_view::view_color(*DebugView::ALL.iter().find(|&&v| v as u32 == view).unwrap(), &trace)
         },
         "view_color($6, PixelTrace($3, 0.0, $0, $1, $2, $4, true, $5))",

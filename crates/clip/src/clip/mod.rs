@@ -1,6 +1,7 @@
 //! Runs the pipeline over a clip, frame by frame, and writes frames and scores to disk. Shared by `run`, `demo` and
 //! `sweep`.
 
+pub mod pixel;
 pub mod run_report;
 
 use crate::clock::Quartiles;
@@ -11,7 +12,7 @@ use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::method_report::{MethodAccumulator, MethodReport, Share};
 use crate::metric;
 use crate::metric::{Flip, Reference, References};
-use crate::output::Output;
+use crate::output::{Output, Table};
 use crate::picture::to_rgb8;
 use crate::pipeline::{Pipeline, Processor, ProcessorInfo, RunKind, Step};
 use crate::progress;
@@ -21,10 +22,11 @@ use crate::source::FrameSource;
 use crate::times::{RenderTime, Times};
 use afterimage::{DebugView, Filter, Foveation, Image, MethodKind, ViewGeometry};
 use afterimage_metric::{Display, Viewing};
+use pixel::ExplainedPixel;
 use rayon::prelude::*;
 
 /// Files that describe a whole clip. The first one marks the folder. `demo` draws no plot.
-pub const REPORTS: [&str; 3] = ["report.json", "psnr.svg", "psnr.png"];
+pub const REPORTS: [&str; 4] = ["report.json", "psnr.svg", "psnr.png", pixel::FILE];
 
 /// Settings of a clip: foveation, methods, gaze, and files to write.
 pub struct Clip {
@@ -61,6 +63,8 @@ pub struct Clip {
     pub write_reference: bool,
     /// Debug views to write, each with the name of its folder.
     pub debug: Vec<(&'static str, DebugView)>,
+    /// Pixel to explain; methods must run on the CPU.
+    pub pixel: Option<ExplainedPixel>,
     /// Whether the methods get the source's trust mask (history confidence).
     pub trust: bool,
     /// Whether FLIP is measured.
@@ -169,6 +173,7 @@ impl Playback<'_> {
             "frame,method,psnr_db,retained_psnr_db,ms,fovea_psnr_db,mid_psnr_db,periphery_psnr_db,\
              cpu_ms,render_ms,render_cpu_ms,total_ms,total_cpu_ms,jod,shaded_share",
         )?;
+        let mut pixel_table = clip.pixel.as_ref().map(|_| out.table(pixel::FILE, pixel::HEADER)).transpose()?;
         let pipeline = self.play(&mut |result| {
             if result.index == clip.score_from {
                 accumulators.iter_mut().for_each(MethodAccumulator::restart);
@@ -176,6 +181,12 @@ impl Playback<'_> {
             let encoded = clip.score_and_write(result, &mut accumulators, out)?;
             for ((name, _), accumulator) in clip.methods.iter().zip(&accumulators) {
                 table.row(&accumulator.row(result.index, name))?;
+            }
+            if let (Some(pixel), Some(table)) = (&clip.pixel, &mut pixel_table) {
+                for ((name, _), output) in clip.methods.iter().zip(&result.step.outputs) {
+                    bar.suspend(|| pixel.say(result.index, name, &output.notes));
+                    pixel.write(result.index, name, &output.notes, table)?;
+                }
             }
             report.samples += result.frame.samples.unwrap_or(0);
             result.frame.full_rate.into_iter().for_each(|elapsed| full_rate.push(elapsed));
@@ -189,6 +200,7 @@ impl Playback<'_> {
         })?;
         bar.finish_and_clear();
         table.finish()?;
+        pixel_table.map_or(Ok(()), Table::finish)?;
         out.gaze("gaze.csv", &report.gaze_px)?;
         let pixels = clip.geometry.size_px().iter().map(|&s| f64::from(s)).product::<f64>();
         let of = |(i, accumulator): (usize, &MethodAccumulator)| {
@@ -216,6 +228,7 @@ impl Playback<'_> {
             };
             let full = metric::encode(&frame.reference.color, exposure.ev);
             pipeline.look_at(clip.gaze[index].filter(|_| clip.late_gaze.is_some()));
+            pipeline.explain(clip.pixel.as_ref().and_then(|pixel| pixel.in_frame(index)));
             let step = pipeline.step_with(&frame, &mut |wish| Ok::<_, Failure>(source.shade(&frame, wish)?))?;
             let reference = references.next(&full, &step.tracked, &step.ecc_deg);
             let exposure_ev = exposure.ev;

@@ -6,6 +6,7 @@ use super::run::{Chosen, MethodOutput, RunKind, chooses, unshaded};
 use crate::clock::{Elapsed, Stopwatch};
 use crate::frame::{DeviceHandle, RenderedFrame, Shaded, ShadedColor, Wish};
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
+use afterimage::internal::PixelNotes;
 use afterimage::kernel::debug_view::view_color;
 use afterimage::{ContextDesc, CreateError, FrameError, Image};
 use std::slice::from_ref;
@@ -64,10 +65,15 @@ impl Executor for CpuExecutor {
             Some(_) => Frame { color: pixels.as_ref().map(from_ref).ok_or_else(unshaded)?, ..frame },
             None => frame,
         };
+        let mut pixel = shot.pixel.map(|px| PixelNotes::new(0, px));
         let watch = Stopwatch::start();
-        let stats = match &mut traces {
-            Some(traces) => post.process_traced(&frame, &mut output, traces)?,
-            None => post.process(&frame, &mut output)?,
+        let stats = match (&mut pixel, &mut traces) {
+            (Some(pixel), traces) => {
+                let traces = traces.as_mut().map(|traces| &mut traces[..]);
+                post.process_noted(&frame, &mut output, traces, pixel)?
+            }
+            (None, Some(traces)) => post.process_traced(&frame, &mut output, traces)?,
+            (None, None) => post.process(&frame, &mut output)?,
         };
         let elapsed = watch.elapsed();
         let given = [depth.is_some(), motion.is_some(), trust.is_some()];
@@ -80,6 +86,7 @@ impl Executor for CpuExecutor {
                 shading: shaded.as_ref().map(|shaded| shaded.took),
             }),
             stats,
+            notes: pixel.map_or_else(Vec::new, |pixel| pixel.notes),
             traffic_bytes_per_pixel: Some(post.desc().settings.traffic_bytes_per_pixel(given)),
             debug: traces.map_or_else(Vec::new, |[trace]| {
                 shot.debug.iter().map(|&view| trace.map(|t| view_color(view, &t).to_array())).collect()

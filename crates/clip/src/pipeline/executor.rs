@@ -45,6 +45,8 @@ pub struct Shot<'a> {
     pub debug: &'a [DebugView],
     /// Whether the methods get the source's trust mask.
     pub use_trust: bool,
+    /// Pixel whose notes are taken, on the CPU.
+    pub pixel: Option<[u32; 2]>,
 }
 
 impl Shot<'_> {

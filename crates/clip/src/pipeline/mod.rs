@@ -61,6 +61,7 @@ pub struct Pipeline {
     true_gaze: Option<[f32; 2]>,
     debug: Vec<DebugView>,
     use_trust: bool,
+    pixel: Option<[u32; 2]>,
     quad_views: Option<QuadViewLayout>,
     is_jittered: bool,
     reference_samples: Option<u32>,
@@ -102,6 +103,7 @@ impl Pipeline {
             true_gaze: None,
             debug: debug.to_vec(),
             use_trust: false,
+            pixel: None,
             quad_views: None,
             is_jittered: false,
             reference_samples: None,
@@ -169,6 +171,11 @@ impl Pipeline {
     /// true one.
     pub fn look_at(&mut self, true_gaze: Option<[f32; 2]>) {
         self.true_gaze = true_gaze;
+    }
+
+    /// Takes notes about a pixel in the next steps: [`MethodOutput::notes`]. Methods must run on the CPU.
+    pub fn explain(&mut self, pixel: Option<[u32; 2]>) {
+        self.pixel = pixel;
     }
 
     /// Foveates a frame, unless its source did, and runs all methods on it. The runs' settings must be
@@ -239,7 +246,7 @@ impl Pipeline {
         candidate: &Candidate<'_>,
         shade: Shade<'_>,
     ) -> Result<Vec<MethodOutput>, FrameError> {
-        let shot = Shot { frame, candidate, debug: &self.debug, use_trust: self.use_trust };
+        let shot = Shot { frame, candidate, debug: &self.debug, use_trust: self.use_trust, pixel: self.pixel };
         let mut outputs: Vec<Option<MethodOutput>> = vec![None; self.runs.len()];
         // Rotate the order of runs each frame, because the foveation's data in the caches favor or slow down the first
         // run.

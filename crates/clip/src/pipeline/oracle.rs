@@ -38,6 +38,7 @@ impl Oracle {
             stats: FrameStats::default(),
             traffic_bytes_per_pixel: None,
             debug: vec![],
+            notes: vec![],
         })
     }
 

@@ -1,6 +1,7 @@
 //! Runs of a pipeline: kinds and outputs.
 
 use crate::clock::Elapsed;
+use afterimage::internal::Note;
 use afterimage::{Filter, FrameError, FrameStats, FrameValue, Image, Settings, SettingsError};
 use std::sync::Arc;
 
@@ -30,6 +31,8 @@ pub struct MethodOutput {
     pub traffic_bytes_per_pixel: Option<u32>,
     /// Debug views, linear, in the order of the request; empty for the oracle.
     pub debug: Vec<Image<[f32; 3]>>,
+    /// Notes about the pixel to explain; empty without one, on a device and for the oracle.
+    pub notes: Vec<Note>,
 }
 
 /// Whether runs of these settings choose all pixels that are shaded: frames of [`Filter::Quads`].

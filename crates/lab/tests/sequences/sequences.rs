@@ -88,7 +88,7 @@ fn agree_for(
         };
         let view = change(index, view, &mut rig);
         let (_, trace) = rig.both(index, reset(index), &[view]);
-        kept += trace[0].pixels().iter().filter(|t| !t.take).count();
+        kept += trace[0].pixels().iter().filter(|t| !t.is_replaced).count();
         flushed += trace[0].pixels().iter().filter(|t| t.verdict as u32 > 1).count();
     }
     println!("{settings:?}, {scene}: {kept} kept and {flushed} flushed pixels agree");

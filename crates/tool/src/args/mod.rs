@@ -17,7 +17,7 @@ pub use foveation::{FilterName, FoveationArgs};
 pub use method::{MethodArgs, MethodName};
 pub use named::{Named, by_name};
 pub use number::{
-    parse_distance_mm, parse_exposure, parse_fps, parse_frames, parse_hfov, parse_latency, parse_percent,
-    parse_samples, parse_size, parse_size_mm, parse_stops, tell_exposure,
+    parse_distance_mm, parse_exposure, parse_fps, parse_frame_range, parse_frames, parse_hfov, parse_latency,
+    parse_percent, parse_pixel, parse_samples, parse_size, parse_size_mm, parse_stops, tell_exposure,
 };
 pub use picture::FormatName;

@@ -13,6 +13,18 @@ pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
+/// `X,Y`, a pixel.
+pub fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
+    let pixel = text.split_once(',').and_then(|(x, y)| Some([x.parse().ok()?, y.parse().ok()?]));
+    pixel.ok_or_else(|| "expected X,Y, whole pixels from 0 on, such as 320,180".into())
+}
+
+/// `A..B`, frames from A to B.
+pub fn parse_frame_range(text: &str) -> Result<[usize; 2], String> {
+    let range = text.split_once("..").and_then(|(a, b)| Some([a.parse().ok()?, b.parse().ok()?]));
+    range.filter(|[a, b]| a <= b).ok_or_else(|| "expected A..B, frames from A to B, such as 10..12".into())
+}
+
 /// `WxH` in millimetres.
 pub fn parse_size_mm(text: &str) -> Result<[f32; 2], String> {
     let expected = "expected WxH in millimeters, such as 531x299";

@@ -7,6 +7,7 @@ mod gaze_logs;
 mod head;
 mod info;
 mod latency;
+mod pixel;
 mod quads;
 mod refusals;
 mod rig;

@@ -111,6 +111,7 @@ impl Executor for DeviceExecutor {
             stats: run.stats(),
             traffic_bytes_per_pixel: Some(run.post().desc().settings.traffic_bytes_per_pixel(given)),
             debug: debug_views,
+            notes: vec![],
         };
         gpu.check().map(|()| output)
     }

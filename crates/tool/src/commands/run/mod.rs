@@ -9,8 +9,8 @@ use crate::args::head::head_path;
 use crate::args::input::{FoveatedSampling, InputArgs, Rendering, SourceName};
 use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
-    FilterName, FormatName, FoveationArgs, MethodArgs, MethodName, Named, by_name, parse_exposure, parse_frames,
-    parse_latency, parse_samples, tell_exposure,
+    FilterName, FormatName, FoveationArgs, MethodArgs, MethodName, Named, by_name, parse_exposure, parse_frame_range,
+    parse_frames, parse_latency, parse_pixel, parse_samples, tell_exposure,
 };
 use crate::clip::run_report::{RunFacts, write_report};
 use crate::clip::{ClipReport, REPORTS};
@@ -34,7 +34,8 @@ use std::path::PathBuf;
 #[command(
     after_help = "Example:\n  afterimage run frames/ --gaze viewing.csv --start 1 --frames 120 --method none,wrs --out out/run\n  \
     afterimage run scene.glb --foveation layers --rate-mid 2 --rate-far 4 --frames 60 --method none,smr --out out/layers\n  \
-    afterimage run scene.glb --foveation uniform --scale 1.5 --frames 60 --method none --out out/uniform\n\n\
+    afterimage run scene.glb --foveation uniform --scale 1.5 --frames 60 --method none --out out/uniform\n  \
+    afterimage run frames/ --frames 60 --method smr --pixel 320,180 --pixel-frames 58..59 --out out/pixel\n\n\
     Writes OUT/<method>/000000.png ..., OUT/sheet.png, OUT/psnr.svg and OUT/psnr.png (PSNR by\n\
     frame), OUT/gaze.csv, OUT/frames.csv and OUT/report.json. Of scenes, the latter two also have the time of rendering\n\
     the frames and that of the whole frame, renderer and method. With --camera head also OUT/scanpath.csv, the\n\
@@ -108,6 +109,14 @@ pub struct RunArgs {
     /// Debug views to write as images, separated by commas
     #[arg(long, value_parser = by_name::<DebugView>(), value_delimiter = ',', value_name = "LIST")]
     pub debug: Vec<DebugView>,
+    /// Print how each method computes this pixel, value by value: inputs, texels of history, verdict, comparison, gains,
+    /// shares, what is shown and stored; also into OUT/pixel.csv. (0,0) is the top-left pixel, y down. Methods run on
+    /// the CPU
+    #[arg(long, value_parser = parse_pixel, value_name = "X,Y", allow_hyphen_values = true)]
+    pub pixel: Option<[u32; 2]>,
+    /// Frames in which --pixel is printed, from A to B, both included; default: the last one
+    #[arg(long, value_parser = parse_frame_range, requires = "pixel", value_name = "A..B")]
+    pub pixel_frames: Option<[usize; 2]>,
 }
 
 impl RunArgs {
@@ -208,10 +217,10 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
 
 /// Runs the clip and writes its files; prints nothing.
 fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
-    let backend = args.backend.open_for(&args.input.name)?;
+    let Backends { renderer, methods } = Backends::open(args)?;
     let head = args.head()?;
-    let mut source = args.input.open(&args.rendering(&backend, head.as_ref())?)?;
-    let plan = plan::plan(args, source.info(), backend, head.as_ref())?;
+    let mut source = args.input.open(&args.rendering(&renderer, head.as_ref())?)?;
+    let plan = plan::plan(args, source.info(), methods, head.as_ref())?;
     // The input can be read, or nothing is written.
     let playback = plan.clip.start(source.as_mut())?;
     tell_exposure(playback.exposure());
@@ -243,6 +252,30 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     write_report(&facts, &plan.clip, &report, &out)?;
     out.finish()?;
     Ok(report)
+}
+
+/// Devices of a run.
+struct Backends {
+    renderer: Backend,
+    methods: Backend,
+}
+
+impl Backends {
+    /// Opens them. A pixel is explained on the CPU; scenes may still be rendered on a device.
+    fn open(args: &RunArgs) -> Result<Self, Failure> {
+        if args.pixel.is_none() {
+            let renderer = args.backend.open_for(&args.input.name)?;
+            return Ok(Self { methods: renderer.clone(), renderer });
+        }
+        if args.backend == BackendName::Gpu {
+            let text = "--pixel: the CPU explains a pixel, and its frames equal those of --backend gpu bit for bit on \
+                        software Vulkan; leave --backend gpu out";
+            return Err(Failure::Input(text.into()));
+        }
+        let renders = args.input.is_scene();
+        let renderer = if renders { args.backend.open_for(&args.input.name)? } else { Backend::Cpu };
+        Ok(Self { renderer, methods: Backend::Cpu })
+    }
 }
 
 /// Files of a run whose camera is a head.

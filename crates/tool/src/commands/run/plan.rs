@@ -5,6 +5,7 @@ use crate::args::backend::BackendName;
 use crate::args::input;
 use crate::args::pattern::SamplingName;
 use crate::args::{MethodName, Named};
+use crate::clip::pixel::ExplainedPixel;
 use crate::clip::{self, Clip, title};
 use crate::failure::Failure;
 use afterimage::{Filter, Foveation, MethodKind, Settings};
@@ -59,6 +60,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
             args.score_from
         ));
     }
+    let pixel = explained_pixel(args, geometry.size_px(), frames)?;
     Ok(Plan {
         input: info.name.clone(),
         fps,
@@ -80,17 +82,40 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
             write_frame: args.format.writer(),
             write_reference: args.reference,
             debug: args.debug.iter().map(|&view| (view.name(), view)).collect(),
+            pixel,
             trust: args.trust,
             flip: !args.no_flip,
             jod: !args.no_jod,
             fps,
             backend_note: match (args.backend, &backend) {
+                _ if args.pixel.is_some() => "; --pixel",
                 (BackendName::Auto, Backend::Cpu) => "; no GPU was found",
                 _ => "",
             },
             processor: Box::new(backend),
         },
     })
+}
+
+/// The pixel of `--pixel`, and its frames, which must be in the clip.
+fn explained_pixel(args: &RunArgs, size_px: [u32; 2], frames: usize) -> Result<Option<ExplainedPixel>, Failure> {
+    let Some(px @ [x, y]) = args.pixel else { return Ok(None) };
+    let [width, height] = size_px;
+    if x >= width || y >= height {
+        return Err(Failure::Input(format!(
+            "--pixel {x},{y}: frames have {width}x{height} pixels; expected x from 0 to {} and y from 0 to {}",
+            width - 1,
+            height - 1
+        )));
+    }
+    let [first, last] = args.pixel_frames.unwrap_or([frames - 1; 2]);
+    if last >= frames {
+        return Err(Failure::Input(format!(
+            "--pixel-frames {first}..{last}: the clip has {frames} frames; expected frames from 0 to {}",
+            frames - 1
+        )));
+    }
+    Ok(Some(ExplainedPixel { px, frames: first..=last }))
 }
 
 /// Foveation of the frames: the simulator's, or the equivalent of the sampling pattern.

@@ -73,7 +73,7 @@ pub fn measure(batch: &Batch, common: &Options, store: &Store, bar: &ProgressBar
     for subject in &batch.subjects {
         methods.push((subject.method.name(), plan::run_kind(&subject.args, subject.method, source.info().still)?));
     }
-    let clip = Clip { methods, debug: vec![], ..plan.clip };
+    let clip = Clip { methods, debug: vec![], pixel: None, ..plan.clip };
     check_frames(args, clip.gaze.len() as u64)?;
     let copy_ms_per_byte = copy_ms_per_byte(&backend);
     let (sums, memory_bytes) = play(batch, &clip, source.as_mut(), store, bar)?;

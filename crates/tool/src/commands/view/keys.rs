@@ -75,6 +75,8 @@ const KEYS: &[Key] = &[
     )
     .row("camera", |state| text(if state.is_flying? { "WASD, drag" } else { "on its path" })),
     key(&[KeyCode::KeyR], "R", Action::Restart, "restarts").row("restart", |_| text("")),
+    key(&[KeyCode::KeyX], "X", Action::Explain, "prints the command that explains the pixel under the mouse")
+        .row("explain pixel", |_| text("")),
     key(&[KeyCode::F12], "F12", Action::Picture, "saves the picture").row("picture", |_| text("")),
     key(&[KeyCode::F12], "Shift F12", Action::Window, "the window").held(Held::Shift).row("window", |_| text("")),
     key(&[KeyCode::KeyH], "H", Action::Panel, "hides the panel").row("panel", |_| text("")),

@@ -27,6 +27,13 @@ impl Layout {
         [0, 1].map(|i| ((at[i] - self.corner[i]) / self.scale - 0.5).clamp(0.0, self.size[i] as f32 - 1.0))
     }
 
+    /// The pixel of the picture at a position in the window; `None` beside the picture.
+    pub fn pixel(&self, at: [f32; 2]) -> Option<[u32; 2]> {
+        let px = [0, 1].map(|i| ((at[i] - self.corner[i]) / self.scale).floor());
+        let is_inside = (0..2).all(|i| px[i] >= 0.0 && px[i] < self.size[i] as f32);
+        is_inside.then(|| px.map(|v| v as u32))
+    }
+
     /// A position in the window as a fraction of the picture's width, clamped to 0.02..0.98.
     pub fn share(&self, x: f32) -> f32 {
         ((x - self.corner[0]) / (self.scale * self.size[0] as f32)).clamp(0.02, 0.98)
@@ -68,6 +75,8 @@ mod tests {
         let wide = Layout::new([640, 360], [1480, 720]);
         assert_eq!((wide.corner, wide.scale), ([100.0, 0.0], 2.0));
         assert_eq!(wide.picture_px([0.0, 719.9]), [0.0, 359.0], "beside it, the nearest pixel");
+        assert_eq!((wide.pixel([101.9, 719.9]), wide.pixel([102.0, 0.0])), (Some([0, 359]), Some([1, 0])));
+        assert_eq!((wide.pixel([99.9, 0.0]), wide.pixel([1380.0, 0.0])), (None, None), "beside it, none");
         assert!(wide.grips(738.0, 0.5) && !wide.grips(730.0, 0.5) && wide.share(740.0) == 0.5);
     }
 

@@ -5,6 +5,7 @@ mod auto_scale;
 mod burst;
 mod device;
 mod examiner;
+mod explain;
 mod fly_camera;
 mod frame_loader;
 mod frames;

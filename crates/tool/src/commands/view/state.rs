@@ -62,6 +62,8 @@ pub enum Action {
     Mark,
     Panel,
     Restart,
+    /// Print the command that explains the pixel under the pointer.
+    Explain,
     /// Save the picture at its own resolution, without overlays.
     Picture,
     /// Save the contents of the window.
@@ -79,6 +81,8 @@ pub enum Effect {
     Update,
     /// Start again at the input's first frame.
     Restart,
+    /// Print the command that explains the pixel under the pointer.
+    Explain,
     /// Save the picture.
     Picture,
     /// Save the window.
@@ -179,6 +183,7 @@ impl State {
                 self.is_frozen = false;
                 return Effect::Restart;
             }
+            Action::Explain => return Effect::Explain,
             Action::Picture => return Effect::Picture,
             Action::Window => return Effect::Window,
             Action::LoseDevice => return Effect::LoseDevice,

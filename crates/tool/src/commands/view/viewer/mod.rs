@@ -3,6 +3,7 @@
 mod output;
 
 use super::auto_scale::AutoScale;
+use super::explain::{Repeatable, ShownFrame};
 use super::fly_camera::FlyCamera;
 use super::frames::{Frames, NextFrame};
 use super::layout::Layout;
@@ -52,6 +53,7 @@ pub struct Viewer {
     position: u64,
     /// Gaze of the frames since the last history reset.
     record: Record,
+    repeatable: Repeatable,
     /// Camera of the current frame.
     camera_pose: Option<CameraPose>,
     /// Pose (world from camera) to which the user steers the camera.
@@ -84,6 +86,7 @@ impl Viewer {
             pointer: None,
             position: 0,
             record: Record::default(),
+            repeatable: Repeatable::default(),
             camera_pose: None,
             pose: None,
             is_stale: true,
@@ -113,6 +116,7 @@ impl Viewer {
                 self.reset_history();
                 self.refetch();
             }
+            Effect::Explain => self.explain()?,
             effect @ (Effect::Picture | Effect::Window) => self.to_save.push(effect),
             Effect::LoseDevice => self.resources.device.gpu.device.destroy(),
             Effect::Quit => return Ok(false),
@@ -135,6 +139,7 @@ impl Viewer {
     pub fn reset_history(&mut self) {
         self.resources.pipeline.forget();
         self.record.clear();
+        self.repeatable = Repeatable::default();
         self.auto_scale = AutoScale::default();
         self.stats.clear();
         self.resources.jod.reset();
@@ -190,6 +195,15 @@ impl Viewer {
             self.update_gaze();
             let DeviceResources { pipeline, renderer, times, is_new, .. } = &mut self.resources;
             pipeline.show(self.gaze_px, !*is_new, &self.state, renderer.as_mut(), times)?;
+            self.repeatable.push(&ShownFrame {
+                number: self.record.len() as u64,
+                position: self.position,
+                is_new: self.resources.is_new,
+                is_still: self.setup.info.still,
+                is_played: self.state.is_playing,
+                is_steered: self.state.is_flying == Some(true) || self.pose.is_some(),
+                scale: self.scale,
+            });
             self.record.push(self.gaze_px);
             self.advance();
         }

@@ -111,6 +111,30 @@ impl Viewer {
         pictures::write(&picture, None)
     }
 
+    /// Prints the command that explains the pixel under the mouse, or why there is none.
+    pub(super) fn explain(&self) -> Result<(), Failure> {
+        let pixel = self.pointer.and_then(|at| Some((self.layout().pixel(at)?, at[0])));
+        let Some((px, x)) = pixel.filter(|_| self.record.len() > 0) else {
+            eprintln!("afterimage: no pixel is under the mouse; move it over the picture");
+            return Ok(());
+        };
+        let is_right = self.state.is_split && x >= self.layout().divider_x(self.state.divider) as f32;
+        let side = if is_right { Side::Right } else { Side::Left };
+        let file = std::env::temp_dir().join("afterimage-gaze.csv");
+        let file = self.setup.args.record.clone().unwrap_or(file);
+        let words: Vec<String> = std::env::args().collect();
+        let at = (px, self.record.len());
+        let (args, fps) = (&self.setup.args, self.setup.fps);
+        match self.repeatable.command(&words, args, (&self.state, side), at, (&file, fps)) {
+            Ok(command) => {
+                self.record.write(&file, self.resources.pipeline.geometry().size_px(), f64::from(fps))?;
+                say!("{command}");
+            }
+            Err(reason) => eprintln!("afterimage: run cannot repeat these frames: {reason}"),
+        }
+        Ok(())
+    }
+
     /// Saves the gaze record, if --record is given and there are frames.
     fn write_record(&self) -> Result<(), Failure> {
         match &self.setup.args.record {

@@ -1,0 +1,207 @@
+//! Notes of a pixel that all methods share: inputs, texels that are filtered, decision, result. What a method alone
+//! computes, its pass notes.
+
+use super::Frame;
+use super::history::History;
+use super::inputs::Inputs;
+use super::sparse_pass::Quads;
+use super::surface_pass::{Pixel, ProcessPixel};
+use crate::frame::{ContextDesc, Reset};
+use crate::kernel::antialias::mean_of;
+use crate::kernel::debug_view::PixelTrace;
+use crate::kernel::depth::distance_of;
+use crate::kernel::kept::unpack_kept;
+use crate::kernel::lattice::{nearest_point, point_offset_px};
+use crate::kernel::noise::unpack_noise;
+use crate::kernel::resample::{ROUNDS, Tap, TapsAround, sharp_sum, taps_of};
+use crate::kernel::surface::unpack_surface;
+use crate::notes::{Note, NoteStage, Notes, PixelNotes};
+use crate::stats::FrameStats;
+use crate::uniforms::LatticeUniforms;
+
+/// The pixel to explain, if it lies in view `view`.
+pub(super) fn of_view<'a>(noted: &'a mut Option<&mut PixelNotes>, view: usize) -> Option<&'a mut PixelNotes> {
+    noted.as_deref_mut().filter(|pixel| pixel.view == view && !pixel.notes.is_empty())
+}
+
+/// Computes a pixel once more, with notes. `stored`: notes what its words hold.
+pub(super) fn explain(pass: &impl ProcessPixel, stored: fn(&Pixel, &mut Vec<Note>), pixel: &mut PixelNotes) {
+    let PixelNotes { px: [x, y], notes, .. } = pixel;
+    let result = pass.process(*x, *y, &mut FrameStats::default(), notes);
+    note_trace(&result.trace, notes);
+    notes.note(NoteStage::Shown, "color", result.output, "linear light");
+    notes.note(NoteStage::Stored, "words", result.surface, "");
+    stored(&result, notes);
+}
+
+/// Notes what a frame gives for a pixel, unless it lies outside the frame. `given`: the frame before its colors and its
+/// geometry were filled between samples.
+pub(super) fn note_inputs(
+    desc: &ContextDesc,
+    given: &Frame<'_>,
+    frame: &Frame<'_>,
+    history: &History,
+    quads: &[Quads],
+    pixel: &mut PixelNotes,
+) {
+    let PixelNotes { view, px: [x, y], notes } = pixel;
+    let (view, x, y) = (*view, *x, *y);
+    if view >= frame.views.len() || x >= desc.size_px[0] || y >= desc.size_px[1] {
+        return;
+    }
+    let facts = &frame.views[view];
+    let held = history.held_after(view, facts);
+    let inputs = Inputs::new(desc, frame, view, &held, history.is_filled());
+    let stage = NoteStage::Input;
+    let (u, v) = (x as usize, y as usize);
+    let e_deg = inputs.eccentricity_deg(inputs.ray(x, y));
+    notes.note(stage, "gaze", facts.gaze.resolve(held.gaze_px, &facts.geometry), "px");
+    notes.note(stage, "distance from the gaze", e_deg, "deg");
+    notes.note(stage, "jitter", inputs.uniforms.jitter_px, "px");
+    notes.note(stage, "visible in the lens", inputs.is_visible(x, y), "");
+    notes.note(stage, "exposure by that of the previous frame", inputs.exposure, "");
+    notes.note(stage, "history starts here", frame.reset != Reset::None || !history.is_filled(), "");
+    if frame.color[view].size() == desc.size_px {
+        notes.note(stage, "color", frame.color[view].at(u, v), "linear light");
+    }
+    match (quads.get(view), &facts.lattices) {
+        (Some(quads), _) => {
+            notes.note(stage, "shaded", quads.is_shaded([x, y]), "");
+            notes.note(stage, "distance of the even pattern's quads", (1 << quads.level_at([x, y])) as f32, "px");
+        }
+        (None, Some(_)) => note_sample(given, view, &inputs, [x, y], notes),
+        (None, None) => {
+            let lod = inputs.candidate_lod(&desc.settings.foveation, x, y, e_deg);
+            notes.note(stage, "level of detail", lod, "log2 px");
+        }
+    }
+    note_geometry(desc, given, frame, &inputs, view, [x, y], notes);
+    if let Some(noise) = inputs.noise(x, y) {
+        notes.note(stage, "noise", [noise.samples, noise.variance], "samples, variance of one");
+    }
+    if let Some(trust) = inputs.trust(x, y) {
+        notes.note(stage, "trust", trust, "");
+    }
+}
+
+/// Depth and motion of a pixel, as given and in internal conventions.
+fn note_geometry(
+    desc: &ContextDesc,
+    given: &Frame<'_>,
+    frame: &Frame<'_>,
+    inputs: &Inputs<'_>,
+    view: usize,
+    [x, y]: [u32; 2],
+    notes: &mut Vec<Note>,
+) {
+    let (stage, at) = (NoteStage::Input, (x as usize, y as usize));
+    let is_filled = given.views[view].lattices.as_ref().is_some_and(|lattices| lattices.has_geometry_at_samples());
+    if is_filled {
+        notes.note(stage, "depth and motion", "filled between samples", "");
+    }
+    if let Some(depth) = given.depth.map(|d| d[view]).filter(|_| !is_filled) {
+        notes.note(stage, "depth as given", depth.at(at.0, at.1), "in the frame's convention");
+    }
+    if frame.depth.is_some() {
+        let disparity = inputs.disparity(x, y);
+        notes.note(stage, "distance", distance_of(disparity), "below 0: unknown");
+        notes.note(stage, "disparity", disparity, "1/distance");
+    }
+    if let Some(motion) = given.motion.map(|m| m[view]).filter(|_| !is_filled) {
+        notes.note(stage, "motion as given", motion.at(at.0, at.1), "in the frame's convention");
+    }
+    notes.note(stage, "motion", inputs.motion(x, y), "px, previous minus current position, y down");
+    if let Some(test) = desc.settings.depth_test.filter(|_| inputs.tests_depth()) {
+        notes.note(stage, "tolerance of the depth test", test.relative, "relative");
+    }
+}
+
+/// The sample of a sparse frame that is nearest to a pixel.
+fn note_sample(given: &Frame<'_>, view: usize, inputs: &Inputs<'_>, px: [u32; 2], notes: &mut Vec<Note>) {
+    let stage = NoteStage::Input;
+    let lattice = &inputs.lattices[LatticeUniforms::index_at(&inputs.lattices, px)];
+    notes.note(stage, "distance of samples", (1 << lattice.level) as f32, "px");
+    if lattice.points.contains(&0) {
+        return;
+    }
+    let (first, level) = (lattice.first_px, lattice.level);
+    let point = [0, 1].map(|i| nearest_point(px[i], first[i], level).clamp(0, lattice.points[i] as i32 - 1));
+    let offset = [0, 1].map(|i| point_offset_px(px[i], first[i], level, point[i]));
+    let [u, v] = lattice.texel_of(point.map(|v| v as u32));
+    notes.note(stage, "nearest sample", offset, "px from the pixel");
+    notes.note(stage, "its texel", [u as f32, v as f32], "px");
+    notes.note(stage, "its color", given.color[view].at(u as usize, v as usize), "linear light");
+}
+
+/// Notes the texels of history that are filtered.
+#[inline(always)]
+pub(super) fn note_taps<N: Notes>(taps: &TapsAround, tap: impl Fn([i32; 2]) -> Tap, notes: &mut N) {
+    if !N::ON {
+        return;
+    }
+    let sum = sharp_sum(taps);
+    let mut complete = true;
+    for four in (0..ROUNDS).map(|round| taps_of(taps, round)) {
+        for (i, texel) in four.texels.into_iter().enumerate() {
+            let Tap { same, .. } = tap(texel);
+            complete &= same;
+            let sharp = four.sharp_x[i] * four.sharp_rows[i / 2] / sum;
+            let linear = if i == 1 || i == 2 { four.linear_x[i - 1] * four.linear_row } else { 0.0 };
+            let values = [texel[0] as f32, texel[1] as f32, sharp, linear, f32::from(same)];
+            notes.note(NoteStage::History, "texel", values, "x y px, Catmull-Rom and linear weight, same surface");
+        }
+    }
+    let filter = if complete { "Catmull-Rom" } else { "linear, texels of the surface alone" };
+    notes.note(NoteStage::History, "filter", filter, "");
+}
+
+/// Notes the decision.
+pub(super) fn note_trace(trace: &PixelTrace, notes: &mut Vec<Note>) {
+    notes.note(NoteStage::Verdict, "history", trace.verdict.in_words(), "");
+    notes.note(NoteStage::Decision, "weight of the candidate", trace.weight, "");
+    notes.note(NoteStage::Decision, "agreement of history and candidate", trace.agreement, "");
+    notes.note(NoteStage::Decision, "history's share", trace.history_share, "");
+    notes.note(NoteStage::Decision, "candidate replaces history", trace.is_replaced, "");
+    notes.note(NoteStage::Decision, "quality of what is stored", trace.quality, "");
+}
+
+/// Notes the stored surface of taa, taau and smr.
+pub(super) fn note_surface(pixel: &Pixel, notes: &mut Vec<Note>) {
+    let stored = unpack_surface(pixel.surface);
+    notes.note(NoteStage::Stored, "color", stored.color, "linear light");
+    notes.note(
+        NoteStage::Stored,
+        "level of detail",
+        stored.lod,
+        "log2 px (taa, taau: of the confidence), below 0: empty",
+    );
+    notes.note(NoteStage::Stored, "disparity", stored.disparity, "1/distance, below 0: unknown");
+    note_noise(pixel, notes);
+}
+
+/// Notes the stored sample of smr on sparse frames.
+pub(super) fn note_kept(pixel: &Pixel, notes: &mut Vec<Note>) {
+    let stored = unpack_kept(pixel.surface);
+    notes.note(NoteStage::Stored, "color", stored.color, "linear light");
+    notes.note(NoteStage::Stored, "level of detail", stored.lod, "log2 px, below 0: empty");
+    notes.note(NoteStage::Stored, "disparity", stored.disparity, "1/distance, below 0: unknown");
+    notes.note(NoteStage::Stored, "place", stored.place_px, "px from the pixel's centre");
+    note_noise(pixel, notes);
+}
+
+/// The same where history stores means of jittered samples.
+pub(super) fn note_kept_mean(pixel: &Pixel, notes: &mut Vec<Note>) {
+    note_kept(pixel, notes);
+    let mean = mean_of(unpack_kept(pixel.surface).lod);
+    notes.note(NoteStage::Stored, "mean", [mean.lod, mean.samples], "level of detail in log2 px, samples");
+}
+
+fn note_noise(pixel: &Pixel, notes: &mut Vec<Note>) {
+    let noise = unpack_noise(pixel.noise);
+    notes.note(
+        NoteStage::Stored,
+        "noise",
+        [noise.samples, noise.variance],
+        "samples, variance of one; noisy frames only",
+    );
+}
