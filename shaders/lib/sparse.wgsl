@@ -27,6 +27,7 @@ const KEEP_SHARE: f32 = 0.9;
 const MEAN_ERRORS: f32 = 3.0;
 const BLURRED_FRAMES: f32 = 8.0;
 const STAY_SHARE: f32 = 0.5;
+const AGREED: vec2<f32> = vec2<f32>(0.6, 6.0);
 const RELIT_ERRORS: f32 = 0.8;
 
 // sparse::candidate_level
@@ -88,6 +89,7 @@ struct Light {
     weight: f32,
     squared: f32,
     spatial: f32,
+    known: f32,
 }
 
 // sparse::add_light
@@ -99,12 +101,18 @@ fn add_light(l: Light, o: Observation, weight: f32, spatial: f32) -> Light {
         l.weight + weight,
         l.squared + weight * weight,
         l.spatial + spatial,
+        l.known + spatial * o.sure,
     );
 }
 
 // sparse::mean_error
 fn mean_error(l: Light) -> f32 {
     return l.error * (1.0 / l.weight);
+}
+
+// sparse::agreed
+fn agreed(l: Light) -> f32 {
+    return clamp((l.weight - l.known * AGREED.x) * (AGREED.y / max(l.known, 1e-6)), 0.0, 1.0);
 }
 
 // sparse::relight
@@ -117,7 +125,7 @@ fn relight(l: Light, error: f32) -> vec3<f32> {
     let history = l.history * inverse;
     // The standard error of a weighted mean.
     let start = (error * (sqrt(l.squared) * inverse)) * RELIGHT_ERRORS;
-    let changed = smooth_step(start, start, root_difference(sampled, history));
+    let changed = smooth_step(start, start, root_difference(sampled, history)) * agreed(l);
     // A share of 1 gives the ratio bit for bit.
     return ratios(sampled, history) * changed + (1.0 - changed);
 }

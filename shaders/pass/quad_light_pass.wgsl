@@ -42,7 +42,7 @@ fn own_of(quad: vec2<u32>, view: u32) -> Own {
         first = select(first, left - 1u, is_compared(px_of_quad(quad, left - 1u), view));
     }
     let disparity_now = disparity_at(px_of_quad(quad, first & 3u), view);
-    var sum = Light(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, 0.0, 0.0);
+    var sum = Light(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
     var sure = 0.0;
     let taps = select(4u, 0u, first == 4u);
     for (var i = 0u; i < taps; i++) {
@@ -93,7 +93,7 @@ fn light(quad: vec2<u32>, view: u32) -> vec4<u32> {
         let offset = neighbour_offset(code);
         least = select(least, min(least, f32(offset.x * offset.x + offset.y * offset.y)), code != NOWHERE);
     }
-    var sum = Light(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, 0.0, 0.0);
+    var sum = Light(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
     var without = 0.0;
     var scatter = 0.0;
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.

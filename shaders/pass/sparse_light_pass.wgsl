@@ -67,7 +67,7 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     let own_disparity = disparity_of(point, lattice, view);
     var without = 0.0;
     var scatter = 0.0;
-    var sum = Light(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, 0.0, 0.0);
+    var sum = Light(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
     let taps = select(0u, 9u, has_history());
     for (var tap = 0u; tap < taps; tap++) {

@@ -46,6 +46,9 @@ const AGREE_ERRORS: f32 = 4.0;
 const AGREE_ERROR: f32 = 0.8;
 /// Gate: mean difference at which the fit starts to fall, and width over which it falls to 0, in expected errors.
 const GATE: [f32; 2] = [2.0, 4.0];
+/// Share of the confident samples around that agrees with a gain, from which on it is used, and the slope from there to
+/// the complete gain. A square of four of nine samples is 0.56, a straight edge 0.75.
+const AGREED: [f32; 2] = [0.6, 6.0];
 /// Share of the errors without a gain that a gain of quads must leave at most, or it is not used.
 pub const RELIT_ERRORS: f32 = 0.8;
 /// Smallest and largest gain.
@@ -152,6 +155,8 @@ pub struct Light {
     pub squared: f32,
     /// Weights by position alone.
     pub spatial: f32,
+    /// Weights by position and confidence.
+    pub known: f32,
 }
 
 /// Adds an observation of `weight`.
@@ -164,6 +169,7 @@ pub fn add_light(l: Light, o: Observation, weight: f32, spatial: f32) -> Light {
         weight: l.weight + weight,
         squared: l.squared + weight * weight,
         spatial: l.spatial + spatial,
+        known: l.known + spatial * o.sure,
     }
 }
 
@@ -173,8 +179,17 @@ pub fn mean_error(l: Light) -> f32 {
     l.error * (1.0 / l.weight)
 }
 
+/// Degree to which the samples around agree on a gain, in \[0, 1\]. All pixels around a sample are multiplied by its
+/// gain. If the confident samples around contradict it, as beside a small lamp of one frame or beside what it left, that
+/// gain spreads marks. Where nobody else is confident, a single sample is enough.
+#[inline]
+pub fn agreed(l: Light) -> f32 {
+    ((l.weight - l.known * AGREED[0]) * (AGREED[1] / l.known.max(1e-6))).clamp(0.0, 1.0)
+}
+
 /// Gain of the light around a sample: the ratio of the means of samples and of history at the same pixels, blended to 1
-/// where chance explains the difference of the means. `error`: expected difference of one sample.
+/// where chance explains the difference of the means, or where other samples contradict it ([`agreed`]). `error`:
+/// expected difference of one sample.
 #[inline]
 pub fn relight(l: Light, error: f32) -> Vec3 {
     if l.weight < 1e-6 {
@@ -184,7 +199,7 @@ pub fn relight(l: Light, error: f32) -> Vec3 {
     let (sampled, history) = (l.sampled * inverse, l.history * inverse);
     // The standard error of a weighted mean.
     let from = (error * (l.squared.sqrt() * inverse)) * RELIGHT_ERRORS;
-    let changed = smooth_step(from, from, root_difference(sampled, history));
+    let changed = smooth_step(from, from, root_difference(sampled, history)) * agreed(l);
     // A share of 1 gives the ratio bit for bit.
     ratios(sampled, history) * changed + Vec3::splat(1.0 - changed)
 }

@@ -8,7 +8,7 @@ use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack;
 use afterimage::kernel::surface::{Surface, unpack_surface};
 use afterimage::{
-    ContextDesc, DepthConvention, DepthTest, Exposure, FrameStats, Image, MethodKind, Reset, Settings, Verdict,
+    ContextDesc, DepthConvention, DepthTest, Exposure, Filter, FrameStats, Image, MethodKind, Reset, Settings, Verdict,
 };
 use afterimage_testing::Draws;
 
@@ -97,6 +97,9 @@ impl Steps for CpuAfterimage {
         let (mut out, mut trace) = ([Image::filled(size, [f32::NAN; 3])], [Image::filled(size, PixelTrace::default())]);
         let images = Images::of(&[view.one()]);
         let frame = Frame { exposure, reset, ..images.frame(index) };
+        if self.desc().settings.foveation.filter == Filter::Quads {
+            self.plan(&frame).unwrap();
+        }
         let stats = self.process_traced(&frame, &mut out, &mut trace).unwrap();
         let ([shown], [trace]) = (out, trace);
         Made { shown, words: held_words(self), trace, stats }

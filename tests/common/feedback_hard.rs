@@ -14,6 +14,7 @@ macro_rules! feedback_laws {
             h51_a_still_picture_under_a_steady_gaze_is_shown_as_it_came: "H51", steady_gaze;
             h51_what_gains_did_ends_when_pictures_and_gaze_rest: "H51", rest;
             h73_a_light_of_one_frame_leaves_no_mark: "H73", flash;
+            h73_a_light_of_one_frame_leaves_no_mark_on_sparse_frames: "H73", sparse_flash;
         }
     };
 }
@@ -195,6 +196,46 @@ pub fn flash(make: Make<'_>) -> Option<String> {
     assert!(worst <= 2, "{worst}");
     Some(format!(
         "smr, steady gaze: a lamp of one frame, up to 100 times the wall, leaves {worst} px off by 0.05 after 4 frames"
+    ))
+}
+
+/// The same on frames that are sampled sparsely: with relighting no more is left of the lamp than without.
+pub fn sparse_flash(make: Make<'_>) -> Option<String> {
+    let mut draws = Draws::new("sparse flash");
+    let (mut most, mut staying) = (i64::MIN, i64::MIN);
+    let lattices = [[2, 4], [4, 8]].map(|rates| settings(Filter::Sparse, rates));
+    let quads = Settings { foveation: Foveation::quads(), ..Settings::default() };
+    for relit in lattices.into_iter().chain([quads]) {
+        for light in [1.0, 4.0] {
+            let unlit = Settings { method: Method::Smr(Smr { relight: false, ..Smr::default() }), ..relit };
+            let wall = Image::from_fn(SIZE, |_| [0.2 + 0.2 * draws.uniform(); 3]);
+            let lamp = |x: u32, y: u32| (60..68).contains(&x) && (30..38).contains(&y);
+            let at = |[x, y]: [u32; 2]| if lamp(x, y) { [light; 3] } else { wall.at(x as usize, y as usize) };
+            let lit = Image::from_fn(SIZE, at);
+            let left = |settings: Settings, until: u64| -> Option<i64> {
+                let mut post = executor(make, settings)?;
+                let mut shown = wall.clone();
+                for index in 0..79 {
+                    let full = if (74..until).contains(&index) { &lit } else { &wall };
+                    let view = View::still(full.clone(), [20.0, 20.0]);
+                    let view = match settings.foveation.filter {
+                        Filter::Sparse => view.foveated(&settings.foveation, [20.0, 20.0], index),
+                        _ => view,
+                    };
+                    shown = step(&mut post, index, &view).shown;
+                }
+                Some(marks(&shown, &wall) as i64)
+            };
+            let without = left(unlit, 75)?;
+            most = most.max(left(relit, 75)? - without);
+            // The planted error: a lamp that stays on.
+            staying = staying.max(left(relit, 79)? - without);
+        }
+    }
+    assert!(most <= 8 && staying > 8, "{most}, {staying}");
+    Some(format!(
+        "sparse smr, lattices and quads, steady gaze: a lamp of one frame leaves {most} px more off by 0.05 after 4 \
+         frames with relighting than without"
     ))
 }
 

@@ -180,6 +180,7 @@ const PLANTED: &[(&str, &str, &str)] = &[
         "(sqrt(l.squared) * inverse)) * RELIGHT_ERRORS",
         "(sqrt(l.weight) * inverse)) * RELIGHT_ERRORS",
     ),
+    ("sparse::agreed", "l.known * AGREED.x", "l.spatial * AGREED.x"),
     ("sparse::fit", "1.0 - sure * smooth_step(FIT_ERRORS.x", "1.0 - smooth_step(FIT_ERRORS.x"),
     ("sparse::mean_fit", "sqrt(l.squared) * inverse)) * MEAN_ERRORS", "inverse)) * MEAN_ERRORS"),
     ("sparse::noisy_lod_confidence", "max(lod_confidence(lod), noise", "max(0.0 * lod_confidence(lod), noise"),

@@ -25,7 +25,7 @@ shape!(Around {
 });
 shape!(kept::Interpolated { color: Vec3, lod: f32, range: [Vec3; 2], nearest: kept::Kept });
 shape!(sparse::Observation { sampled: Vec3, history: Vec3, error: f32, sure: f32 });
-shape!(sparse::Light { sampled: Vec3, history: Vec3, error: f32, weight: f32, squared: f32, spatial: f32 });
+shape!(sparse::Light { sampled: Vec3, history: Vec3, error: f32, weight: f32, squared: f32, spatial: f32, known: f32 });
 shape!(sparse::Lit { gain as "gains": Vec3, fit: f32, own_fit: f32, is_own: bool, disparity: f32 });
 shape!(sparse::QuadLit {
     gain as "gains": Vec3,
@@ -220,6 +220,7 @@ pub const PROBES: &[Probe] = &[
         "let l = $0; relight(l, mean_error(l))",
         |rows| rows.random(push_light)
     ),
+    probe!(sparse::agreed, |rows| rows.random(push_light)),
     probe!(sparse::mean_error, |rows| rows.random(push_light)),
     probe!(sparse::errors_left, |rows| rows.random(|d, row| {
         push_observation(d, row);
@@ -293,7 +294,7 @@ pub const PROBES: &[Probe] = &[
     ),
 ];
 
-/// Ten words of sums over neighbours, whose means are often close to each other.
+/// Eleven words of sums over neighbours, whose means are often close to each other.
 pub(super) fn push_light(d: &mut Draws, row: &mut Vec<u32>) {
     let weight = range(d, 0.0, 16.0);
     let (mean, near) = (color(d), d.bits().is_multiple_of(2));
@@ -305,4 +306,5 @@ pub(super) fn push_light(d: &mut Draws, row: &mut Vec<u32>) {
     }
     row.push(times(weight, range(d, 0.0, 20.0)));
     row.extend([weight, times(times(weight, weight), range(d, 0.11, 1.0)), range(d, 0.0, 16.0)]);
+    row.push(times(weight, range(d, 1.0, 3.0)));
 }
