@@ -423,7 +423,7 @@ fn a_scene_is_rendered_foveated_for_the_gaze_and_nothing_is_read_back() {
         let same = psnr_db("200,60");
         say(&format!("{foveation}, jitter {jitter}, {methods}: {same:.1} dB of run's pictures"));
         assert!(same > 45.0);
-        if jitter == "halton" {
+        if foveation == "quads" {
             // Planted: another gaze.
             let planted = psnr_db("120,110");
             say(&format!("for another gaze {planted:.1} dB"));

@@ -3,7 +3,9 @@
 use super::clips::{Clip, Delivery, foveations};
 use super::planted::{PLANTED, Planted};
 use crate::shared_data::shared_data;
+use afterimage::Foveation;
 use afterimage::doctor::{Finding, Outcome};
+use rayon::prelude::*;
 
 /// How an error fared on a clip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,49 +50,57 @@ fn fate(planted: &Planted, findings: &[Finding]) -> Fate {
     fate
 }
 
+/// A column of the table: a clip under a foveation.
+struct Column {
+    is_right: bool,
+    fates: Vec<Fate>,
+    misnamed: Vec<String>,
+}
+
+fn column(clip: &Clip, foveation: Foveation) -> Column {
+    let delivery = Delivery::right(clip, foveation);
+    let context = format!("{} {:?}", clip.name, foveation.filter);
+    let findings = delivery.findings();
+    let accused = findings.iter().filter(|f| f.fault().is_some());
+    let mut misnamed: Vec<_> = accused.map(|f| format!("{context}: right input: {f}")).collect();
+    let is_right = misnamed.is_empty();
+    let mut fates = vec![];
+    for planted in &PLANTED {
+        let mut wrong = delivery.clone();
+        (planted.plant)(clip, &mut wrong);
+        let findings = wrong.findings();
+        let fate = fate(planted, &findings);
+        fates.push(fate);
+        let lines = || findings.iter().map(|f| format!("\n    {f}")).collect::<String>();
+        if fate == Fate::Misnamed {
+            misnamed.push(format!("{context}: {}: {fate:?}{}", planted.name, lines()));
+        } else if std::env::var_os("DOCTOR_VERBOSE").is_some() {
+            println!("{context}: {}: {fate:?}{}", planted.name, lines());
+        }
+    }
+    Column { is_right, fates, misnamed }
+}
+
 #[test]
 fn planted_errors_are_named_and_none_is_misnamed() {
     let clips = clips();
-    let mut misnamed = vec![];
-    let (mut named, mut all) = (0, 0);
-    let mut rows: Vec<String> = PLANTED.iter().map(|p| format!("{:37}", p.name)).collect();
-    let mut right = String::from("right input                          ");
-    for clip in &clips {
-        for foveation in foveations() {
-            let delivery = Delivery::right(clip, foveation);
-            let context = format!("{} {:?}", clip.name, foveation.filter);
-            let findings = delivery.findings();
-            let accused: Vec<_> = findings.iter().filter(|f| f.fault().is_some()).collect();
-            right += if accused.is_empty() { "  ok" } else { "  XX" };
-            misnamed.extend(accused.iter().map(|f| format!("{context}: right input: {f}")));
-            for (planted, row) in PLANTED.iter().zip(&mut rows) {
-                let mut wrong = delivery.clone();
-                (planted.plant)(clip, &mut wrong);
-                let findings = wrong.findings();
-                let fate = fate(planted, &findings);
-                *row += match fate {
-                    Fate::Named => "   +",
-                    Fate::CannotTell => "   .",
-                    Fate::Misnamed => "   X",
-                };
-                all += 1;
-                named += usize::from(fate == Fate::Named);
-                if fate == Fate::Misnamed || std::env::var_os("DOCTOR_VERBOSE").is_some() {
-                    let lines = findings.iter().map(|f| format!("\n    {f}"));
-                    let text = format!("{context}: {}: {fate:?}{}", planted.name, lines.collect::<String>());
-                    if fate == Fate::Misnamed {
-                        misnamed.push(text);
-                    } else {
-                        println!("{text}");
-                    }
-                }
-            }
-        }
-    }
+    let cases: Vec<_> = clips.iter().flat_map(|clip| foveations().map(|f| (clip, f))).collect();
+    let columns: Vec<_> = cases.into_par_iter().map(|(clip, foveation)| column(clip, foveation)).collect();
     println!("columns: each clip with mip levels, then with blocks; + named, . cannot tell, X misnamed");
     clips.iter().for_each(|c| println!("  {}", c.name));
-    println!("{right}");
-    rows.iter().for_each(|row| println!("{row}"));
+    let right = columns.iter().map(|c| if c.is_right { "   +" } else { "   X" });
+    println!("{:37}{}", "right input", right.collect::<String>());
+    for (i, planted) in PLANTED.iter().enumerate() {
+        let row = columns.iter().map(|column| match column.fates[i] {
+            Fate::Named => "   +",
+            Fate::CannotTell => "   .",
+            Fate::Misnamed => "   X",
+        });
+        println!("{:37}{}", planted.name, row.collect::<String>());
+    }
+    let fates = || columns.iter().flat_map(|c| &c.fates);
+    let (named, all) = (fates().filter(|f| **f == Fate::Named).count(), fates().count());
+    let misnamed: Vec<_> = columns.iter().flat_map(|c| c.misnamed.iter().map(String::as_str)).collect();
     println!("{named} of {all} named, {} misnamed", misnamed.len());
     assert!(misnamed.is_empty(), "{}", misnamed.join("\n"));
     assert!(10 * named > 7 * all, "{named} of {all}");
