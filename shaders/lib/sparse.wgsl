@@ -145,6 +145,19 @@ fn own_fit(own: Observation, gains: vec3<f32>) -> f32 {
     return fit(errors_left(own, gains), own.sure);
 }
 
+// sparse::capped_error
+fn capped_error(o: Observation, errors: f32, spatial: f32) -> f32 {
+    return min(errors, FIT_ERRORS.x + FIT_ERRORS.y) * (spatial * o.sure);
+}
+
+// sparse::fit_around
+fn fit_around(l: Light, left: f32, capped: f32) -> f32 {
+    let by_own = fit(left / l.weight, min(l.weight / l.spatial, 1.0));
+    let by_all = fit(capped / max(l.known, 1e-6), min(l.known / l.spatial, 1.0));
+    let share = agreed(l);
+    return by_own * share + by_all * (1.0 - share);
+}
+
 // sparse::mean_fit
 fn mean_fit(l: Light, sure: f32) -> f32 {
     let inverse = 1.0 / l.weight;

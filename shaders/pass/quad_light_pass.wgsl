@@ -95,6 +95,7 @@ fn light(quad: vec2<u32>, view: u32) -> vec4<u32> {
     }
     var sum = Light(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
     var without = 0.0;
+    var capped = 0.0;
     var scatter = 0.0;
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
     let is_compared_quad = level_of(textureLoad(quad_mask, quad, view, 0).x) > 0u;
@@ -103,7 +104,9 @@ fn light(quad: vec2<u32>, view: u32) -> vec4<u32> {
         let near = neighbour_at(tap, quad, view, own, around, least);
         if near.spatial > 0.0 {
             sum = add_light(sum, near.observation, near.weight, near.spatial);
-            without += errors_left(near.observation, vec3<f32>(1.0)) * near.weight;
+            let errors = errors_left(near.observation, vec3<f32>(1.0));
+            without += errors * near.weight;
+            capped += capped_error(near.observation, errors, near.spatial);
             if ANTIALIAS != 0u {
                 let difference = min(root_difference(near.observation.sampled, near.observation.history), 1e6);
                 scatter += (difference * difference) * near.weight;
@@ -131,7 +134,7 @@ fn light(quad: vec2<u32>, view: u32) -> vec4<u32> {
             lit.gains = vec3<f32>(1.0);
             with_gain = without;
         }
-        lit.fit = fit(with_gain / sum.weight, min(sum.weight / sum.spatial, 1.0));
+        lit.fit = fit_around(sum, with_gain, capped);
     }
     for (var i = 0u; i < 4u; i++) {
         let px = px_of_quad(quad, i);

@@ -66,6 +66,7 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     let own = observation_at(point, lattice, view);
     let own_disparity = disparity_of(point, lattice, view);
     var without = 0.0;
+    var capped = 0.0;
     var scatter = 0.0;
     var sum = Light(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
@@ -74,7 +75,9 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
         let near = neighbour(tap, point, lattice, view, own, own_disparity);
         if near.spatial > 0.0 {
             sum = add_light(sum, near.observation, near.weight, near.spatial);
-            without += errors_left(near.observation, vec3<f32>(1.0)) * near.weight;
+            let errors = errors_left(near.observation, vec3<f32>(1.0));
+            without += errors * near.weight;
+            capped += capped_error(near.observation, errors, near.spatial);
             if ANTIALIAS != 0u {
                 let difference = min(root_difference(near.observation.sampled, near.observation.history), 1e6);
                 scatter += (difference * difference) * near.weight;
@@ -108,12 +111,12 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
         gains = vec3<f32>(1.0);
         with_gain = without;
     }
-    let sure = min(sum.weight / sum.spatial, 1.0);
-    var left = fit(with_gain / sum.weight, sure);
+    var fit_now = fit_around(sum, with_gain, capped);
     if NOISY != 0u {
-        left = min(left, mean_fit(sum, sure));
+        let sure = min(sum.weight / sum.spatial, 1.0);
+        fit_now = min(fit(with_gain / sum.weight, sure), mean_fit(sum, sure));
     }
-    return pack_lit(Lit(gains, left, fit_at_sample(own, gains), is_own, own_surface));
+    return pack_lit(Lit(gains, fit_now, fit_at_sample(own, gains), is_own, own_surface));
 }
 
 @compute @workgroup_size(64, 1)

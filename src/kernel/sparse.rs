@@ -224,6 +224,24 @@ pub fn fit(errors: f32, sure: f32) -> f32 {
     1.0 - sure * smooth_step(GATE[0], GATE[1], errors)
 }
 
+/// An error of [`errors_left`], weighted, for [`fit_around`]: at most the error at which the fit is 0.
+#[inline]
+pub fn capped_error(o: Observation, errors: f32, spatial: f32) -> f32 {
+    errors.min(GATE[0] + GATE[1]) * (spatial * o.sure)
+}
+
+/// Degree to which history fits around a sample, in \[0, 1\]. `left`: [`errors_left`] with the gain, times weights;
+/// `capped`: sum of [`capped_error`] without a gain. Where the samples around contradict the sample ([`agreed`]), they
+/// count in full and the sample is only one of them: a pixel that was a sparkle's is replaced alone ([`own_fit`]), and
+/// the history around it stays.
+#[inline]
+pub fn fit_around(l: Light, left: f32, capped: f32) -> f32 {
+    let by_own = fit(left / l.weight, (l.weight / l.spatial).min(1.0));
+    let by_all = fit(capped / l.known.max(1e-6), (l.known / l.spatial).min(1.0));
+    let share = agreed(l);
+    by_own * share + by_all * (1.0 - share)
+}
+
 /// As [`fit`], for noisy samples, from the difference of the means of samples and of history. Nine samples together
 /// distinguish smaller changes from noise than a single sample.
 #[inline]

@@ -5,8 +5,8 @@ use crate::kernel::antialias::scattered_error;
 use crate::kernel::depth::INVALID_DISPARITY;
 use crate::kernel::matched::root_difference;
 use crate::kernel::sparse::{
-    LIGHT_RELATIVE, Light, Lit, Observation, add_light, agreement, errors_left, fit, mean_error, mean_fit,
-    neighbour_weight, own_fit, pack_lit, relight,
+    LIGHT_RELATIVE, Light, Lit, Observation, add_light, agreement, capped_error, errors_left, fit, fit_around,
+    mean_error, mean_fit, neighbour_weight, own_fit, pack_lit, relight,
 };
 use glam::Vec3;
 
@@ -52,10 +52,13 @@ impl View<'_> {
         let with_gain = if gain == Vec3::ONE { without } else { errors(gain) };
         let (gain, left) = if with_gain <= without { (gain, with_gain) } else { (Vec3::ONE, without) };
         let sure = (light.weight / light.spatial).min(1.0);
-        let mut fit = fit(left / light.weight, sure);
-        if self.is_noisy() {
-            fit = fit.min(mean_fit(light, sure));
-        }
+        let fit = if self.is_noisy() {
+            fit(left / light.weight, sure).min(mean_fit(light, sure))
+        } else {
+            let capped = neighbours()
+                .fold(0.0, |sum, (o, _, spatial)| sum + capped_error(o, errors_left(o, Vec3::ONE), spatial));
+            fit_around(light, left, capped)
+        };
         pack_lit(Lit { gain, fit, own_fit: fit_of_own(gain), ..unlit })
     }
 }

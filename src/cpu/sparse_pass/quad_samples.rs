@@ -10,7 +10,7 @@ use crate::kernel::resample::has_code;
 use crate::kernel::sanitize;
 use crate::kernel::sparse::{
     LIGHT_RELATIVE, Light, OTHER_SURFACE, Observation, QuadLit, RELIT_ERRORS, add_light, agreement, candidate_level,
-    errors_left, fit, mean_error, own_fit, pack_quad_lit, quad_code, quad_lit, relight,
+    capped_error, errors_left, fit_around, mean_error, own_fit, pack_quad_lit, quad_code, quad_lit, relight,
 };
 use crate::notes::Notes;
 use crate::parallel::collect;
@@ -126,7 +126,8 @@ impl View<'_> {
             if !enough {
                 gain = Vec3::ONE;
             }
-            fits = fit(left / light.weight, (light.weight / light.spatial).min(1.0));
+            let capped = |n: &Near| capped_error(n.observation, errors_left(n.observation, Vec3::ONE), n.spatial);
+            fits = fit_around(light, left, near.iter().fold(0.0, |sum, n| sum + capped(n)));
         }
         let mut own_fits = [1.0; 4];
         let mut disparities = [INVALID_DISPARITY; 4];

@@ -182,6 +182,8 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ),
     ("sparse::agreed", "l.known * AGREED.x", "l.spatial * AGREED.x"),
     ("sparse::fit", "1.0 - sure * smooth_step(FIT_ERRORS.x", "1.0 - smooth_step(FIT_ERRORS.x"),
+    ("sparse::capped_error", "min(errors, FIT_ERRORS.x + FIT_ERRORS.y)", "errors"),
+    ("sparse::fit_around", "capped / max(l.known, 1e-6)", "capped / l.weight"),
     ("sparse::mean_fit", "sqrt(l.squared) * inverse)) * MEAN_ERRORS", "inverse)) * MEAN_ERRORS"),
     ("sparse::noisy_lod_confidence", "max(lod_confidence(lod), noise", "max(0.0 * lod_confidence(lod), noise"),
     ("sparse::own_fit", "own.sure);", "1.0);"),

@@ -231,6 +231,16 @@ pub const PROBES: &[Probe] = &[
         push_observation(d, row);
         row.extend([0; 3].map(|_| range(d, 0.2, 5.0)));
     })),
+    probe!(sparse::capped_error, |rows| rows.random(|d, row| {
+        push_observation(d, row);
+        row.extend([range(d, 0.0, 12.0), range(d, 0.0, 4.0)]);
+    })),
+    probe!(sparse::fit_around, |rows| {
+        rows.random(|d, row| {
+            push_light(d, row);
+            row.extend([range(d, 0.0, 60.0), range(d, 0.0, 120.0)]);
+        })
+    }),
     probe!(sparse::mean_fit, |rows| {
         rows.random(|d, row| {
             push_light(d, row);
