@@ -263,7 +263,8 @@ fn a_wrong_reconstruction_is_caught() {
         // Light: neighbours beyond the edge, of other surfaces, and without observation; gains that fit worse.
         ("if !(inside && same && other.error >= 0.0) {", "if !(same && other.error >= 0.0) {"),
         ("if !(inside && same && other.error >= 0.0) {", "if !(inside && same) {"),
-        ("without += errors_left(near.observation, vec3<f32>(1.0)) * near.weight;", ""),
+        ("without += errors * near.weight;", ""),
+        ("capped += capped_error(near.observation, errors, near.spatial);", ""),
         // Pixels: other weights, alpha aside; what is stored.
         ("max(share, LEAST_SHARE) * select(OTHER_SURFACE, 1.0, same)", "max(share, LEAST_SHARE)"),
         ("select(mean.xyz, own.color, is_own)", "mean.xyz"),
