@@ -265,7 +265,7 @@ pub fn decide(e: &Evidence, p: &SmrParams) -> Matched {
 #[inline(always)]
 pub(crate) fn decide_noted(e: &Evidence, p: &SmrParams, notes: &mut impl Notes) -> Matched {
     let reuse = reuse_weight(e.lod, e.history_lod, p.accumulate, p.noisy, e.confidence);
-    note_evidence(e, reuse, notes);
+    e.note(reuse, notes);
     // Contrast of detail finer than the candidate. Where it is high, resampling and aliasing alone cause differences.
     let mut contrast = past_contrast(e.level, e.next_level);
     let mut d = past_difference(e.compared, e.matched);
@@ -335,20 +335,20 @@ pub(crate) fn decide_noted(e: &Evidence, p: &SmrParams, notes: &mut impl Notes) 
 /// Unit of [`root_difference`] in notes.
 const OF_DIFFERENCE: &str = "100 from black to white";
 
-#[inline(always)]
-fn note_evidence(e: &Evidence, reuse: ReuseWeight, notes: &mut impl Notes) {
-    notes.note(NoteStage::Comparison, "unit of light", e.unit, "linear light; the compared colors are divided by it");
-    notes.note(NoteStage::Comparison, "candidate that is compared", e.compared, "units of light");
-    notes.note(NoteStage::Comparison, "history at its scale", e.matched, "units of light");
-    notes.note(
-        NoteStage::Comparison,
-        "candidate, coarser",
-        e.compared_coarser,
-        "units of light; black unless light changed",
-    );
-    notes.note(NoteStage::Comparison, "history at that scale", e.matched_coarser, "units of light");
-    notes.note(NoteStage::Comparison, "history is finer", reuse.finer, "");
-    notes.note(NoteStage::Comparison, "difference that noise explains", e.noise, OF_DIFFERENCE);
+impl Evidence {
+    #[inline(always)]
+    fn note(&self, reuse: ReuseWeight, notes: &mut impl Notes) {
+        const OF_LIGHT: &str = "units of light";
+        let mut compared = |name, value: Vec3, unit| notes.note(NoteStage::Comparison, name, value, unit);
+        compared("candidate that is compared", self.compared, OF_LIGHT);
+        compared("history at its scale", self.matched, OF_LIGHT);
+        compared("candidate, coarser", self.compared_coarser, "units of light; black unless light changed");
+        compared("history at that scale", self.matched_coarser, OF_LIGHT);
+        let unit = "linear light; the compared colors are divided by it";
+        notes.note(NoteStage::Comparison, "unit of light", self.unit, unit);
+        notes.note(NoteStage::Comparison, "history is finer", reuse.finer, "");
+        notes.note(NoteStage::Comparison, "difference that noise explains", self.noise, OF_DIFFERENCE);
+    }
 }
 
 /// Mean of four texels of the mip chain: color times coverage, and coverage.
