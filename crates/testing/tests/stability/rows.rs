@@ -155,7 +155,7 @@ pub const ROWS: [Row; 104] = [
     row("H92", "20 and 200 px a frame", "no frame > 0.1 dB below foveated", BOTH)
     .but("with motion vectors; otherwise each frame is an unannounced cut (H93)."),
     row("H93", "cuts in each frame, announced or not; one after a turn", "announced: foveated frame; unannounced: close, no ghost", BOTH)
-    .but("without reset, vectors and change of depth, cuts show a ghost: up to 3.5 dB below foveated if in each frame; after one, 2.3 dB in its frame, then less than 0.4."),
+    .but("without reset, vectors and change of depth, cuts show a ghost: up to 3.7 dB below foveated if in each frame; after one, none."),
     row("H94", "depth and motion at samples only, moving silhouettes", "better than foveated, near silhouettes too", BOTH),
     row("H95", "NaN or infinity in a sample of a coarse lattice", "never shown; complete history unchanged, otherwise two steps at most", BOTH),
     row("H96", "lattices that stand still; offsets three times each", "no worse than foveated; rebuilt after three turns", BOTH),
