@@ -180,8 +180,8 @@ pub fn mean_error(l: Light) -> f32 {
 }
 
 /// Degree to which the samples around agree on a gain, in \[0, 1\]. All pixels around a sample are multiplied by its
-/// gain. If the confident samples around contradict it, as beside a small lamp of one frame or beside what it left, that
-/// gain spreads marks. Where nobody else is confident, a single sample is enough.
+/// gain. If the confident samples around contradict it, as beside a small lamp of one frame or beside what it left,
+/// that gain spreads marks. Where no other sample is confident, a single one is enough.
 #[inline]
 pub fn agreed(l: Light) -> f32 {
     ((l.weight - l.known * AGREED[0]) * (AGREED[1] / l.known.max(1e-6))).clamp(0.0, 1.0)
