@@ -1,7 +1,7 @@
 //! Notes about one pixel: the values that its pass computes, named and in order.
 //!
-//! A pass is generic over [`Notes`]. The frame's pixels are computed with [`NoNotes`], which compiles to nothing; a pixel
-//! to explain is then computed once more, from the same inputs, with a list of notes.
+//! A pass is generic over [`Notes`]. The frame's pixels are computed with [`NoNotes`], which compiles to nothing; a
+//! pixel to explain is then computed once more, from the same inputs, with a list of notes.
 
 use glam::{Vec2, Vec3};
 

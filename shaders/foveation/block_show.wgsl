@@ -1,8 +1,8 @@
 //#use foveate
 //#use foveated_views
 //#use sanitize
-// Block filter: the frame as coarse shading hardware renders it, one point sample a block. CPU twin:
-// src/simulator/block.rs. One invocation a pixel; z is the view.
+// Block filter: one point sample a block, as coarse shading hardware renders. CPU twin: src/simulator/block.rs. One
+// invocation a pixel; z is the view.
 //
 // 1 read and 1 write a pixel, 2 writes with levels of detail; up to one eccentricity a level. All pixels of a block
 // read the same texel: under 1 byte a pixel read, 8 written, and 4 more with levels of detail.

@@ -1,8 +1,8 @@
 //#use foveate
 //#use foveated_views
 //#use sanitize
-// Gaussian blur along one axis, of the width at the written pixel; dispatched for x, then for y. CPU twin: blur_axis in
-// src/simulator/gaussian.rs. One invocation a pixel; z is the view.
+// Gaussian blur along one axis; its width is that at the written pixel. Dispatched for x, then for y. CPU twin:
+// blur_axis in src/simulator/gaussian.rs. One invocation a pixel; z is the view.
 //
 // 2 gauss_radius + 1 reads a pixel, 47 for a standard deviation of 7.5 pixels; 1 write, 2 with levels of detail. With a
 // frame of 8 bytes a pixel and an intermediate texture of 16, both axes together read 8 + 16 and write 16 + 8 bytes a

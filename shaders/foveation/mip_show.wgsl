@@ -1,9 +1,9 @@
 //#use foveate
 //#use foveated_views
 //#use sanitize
-// Mip filter: the frame as a renderer delivers it that shades fewer pixels and upscales. Trilinear: a blend of the two
-// mip levels around each pixel's level of detail. CPU twin: Pyramid::trilinear in src/simulator/mip.rs. One invocation
-// a pixel; z is the view.
+// Mip filter: the frame as a renderer upscales it from fewer pixels. Trilinear: a blend of the two mip levels around
+// each pixel's level of detail. CPU twin: Pyramid::trilinear in src/simulator/mip.rs. One invocation a pixel; z is the
+// view.
 //
 // At most 9 reads a pixel (the pixel itself, 4 texels of each level); 1 write, 2 with levels of detail. Most pixels
 // read the two coarsest levels: under 1 byte a pixel read, 8 written, and 4 more with levels of detail.

@@ -1,7 +1,6 @@
 //#use doctor
 //#use origin
-// Roots of the mean signal of 2x2 pixels of a view, for the comparison of frames. CPU twin: light in
-// src/cpu/doctor_pass.rs. One invocation a texel.
+// Roots of the mean signal of 2x2 pixels. CPU twin: light in src/cpu/doctor_pass.rs. One invocation a texel.
 //
 // 4 reads of a color and 1 write of 4 bytes a texel.
 

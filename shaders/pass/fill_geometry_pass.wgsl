@@ -1,7 +1,7 @@
 //#use kept_history
 //#use lattices
-// Depth and motion of every pixel of a sparse frame that has them at its samples only. CPU twin:
-// src/cpu/fill_geometry.rs, which explains the choice of the surface. One invocation a pixel; z is the view.
+// Depth and motion between samples. CPU twin: src/cpu/fill_geometry.rs, which explains the choice of the surface. One
+// invocation a pixel; z is the view.
 //
 // Up to 20 reads and 2 writes a pixel: depth and motion of the samples twice, a stored sample for each; 12 bytes
 // written.

@@ -1,7 +1,6 @@
 //#use lattices
-// Fills every pixel of a sparse frame, for methods that read whole frames: samples stay unchanged, and pixels between
-// them are linear interpolations of the finite samples. CPU twin: src/cpu/fill.rs. One invocation a pixel; z is the
-// view.
+// Colors between samples, for methods that read whole frames: samples stay unchanged, and pixels between them are
+// linear interpolations of the finite samples. CPU twin: src/cpu/fill.rs. One invocation a pixel; z is the view.
 //
 // Up to 4 reads and 1 write a pixel: the samples, and 16 bytes a pixel written.
 

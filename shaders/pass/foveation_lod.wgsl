@@ -1,6 +1,6 @@
 //#use foveate
 //#use inputs
-// Level of detail of a candidate by its eccentricity. CPU twin: Foveation::lod in src/foveation.rs.
+// Level of detail by eccentricity. CPU twin: Foveation::lod in src/foveation.rs.
 
 // Filters of the foveation: src/foveation.rs. FILTER_OFF is full rate everywhere.
 const FILTER_MIP: u32 = 0u;

@@ -6,7 +6,7 @@
 //#use reproject
 //#use sanitize
 //#use view_uniforms
-// Inputs of a pixel in internal conventions, and its counters; shared by all methods. CPU twin: src/cpu/inputs.rs.
+// Inputs of a pixel, and its counters; shared by all methods. CPU twin: src/cpu/inputs.rs.
 
 // Which inputs the frame has, and which features are on. They are constants of a pipeline: code for absent inputs and
 // for features that are off is not compiled.

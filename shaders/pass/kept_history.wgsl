@@ -3,8 +3,7 @@
 //#use resample
 //#use sparse
 //#use wrs
-// Stored samples around the previous position of a pixel's surface, for smr on sparse frames. CPU twin:
-// src/cpu/sparse_pass/kept_history.rs.
+// Stored samples around the previous position of a pixel's surface. CPU twin: src/cpu/sparse_pass/kept_history.rs.
 
 // Whether frames are jittered and history stores means of samples.
 override ANTIALIAS: u32 = 0u;

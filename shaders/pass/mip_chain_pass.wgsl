@@ -1,9 +1,9 @@
 //#use matched
 //#use noise
 //#use surface
-// Next level of the mip chain of stored surfaces or of noisy candidates: means of 2x2 texels; at odd borders a missing
-// texel is replaced by its neighbour. CPU twin: MipChain::fill in src/cpu/mip_chain.rs. One invocation a texel of the
-// coarser level; z is the view.
+// Next level of a mip chain of surfaces or noisy candidates: means of 2x2 texels; at odd borders a missing texel is
+// replaced by its neighbour. CPU twin: MipChain::fill in src/cpu/mip_chain.rs. One invocation a texel of the coarser
+// level; z is the view.
 //
 // 4 reads and 1 write of 8 bytes a texel; all levels from the second on together read 2.7 bytes a pixel and write 0.7.
 

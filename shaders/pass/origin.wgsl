@@ -1,4 +1,4 @@
-// First pixel of a view in a texture, for views that are regions of larger textures.
+// First pixel of a view in a larger texture.
 
 // Texel of pixel `px` of a view whose `origin` has x in its low half and y in its high half.
 fn from_origin(px: vec2<u32>, origin: u32) -> vec2<u32> {

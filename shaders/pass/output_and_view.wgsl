@@ -1,7 +1,6 @@
 //#use debug_view
 //#use inputs
-// Output of a pixel and, beside it, a debug view of its decision. Takes the place of output, which has the same
-// functions.
+// Output of a pixel, and a debug view of its decision. Takes the place of output, which has the same functions.
 
 override KEEP_ALPHA: u32 = 1u;
 // A VIEW_* code.

@@ -1,8 +1,8 @@
 //#use inputs
 //#use quad_samples
-// Fills every pixel of a frame shaded by quads, for methods that read whole frames: shaded pixels stay unchanged, and
-// others are means of the shaded quads around them by the inverse squared distance. CPU twin: `filled` in
-// src/cpu/sparse_pass/quads.rs. One invocation a pixel; z is the view.
+// Colors between shaded quads, for methods that read whole frames: shaded pixels stay unchanged, and others are means
+// of the shaded quads around them by the inverse squared distance. CPU twin: `filled` in src/cpu/sparse_pass/quads.rs.
+// One invocation a pixel; z is the view.
 //
 // Up to 6 reads and 1 write a pixel: mask, neighbours and samples; 16 bytes written.
 

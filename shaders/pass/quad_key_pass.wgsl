@@ -1,7 +1,7 @@
 //#use kept_history
 //#use quad_state
-// Region, even pattern and key of the quads of a frame, before it is shaded. CPU twin: `plan_quads` in
-// src/cpu/sparse_pass/quad_plan.rs. One invocation a block of 2x2 quads of view `frame.first_view`.
+// Region, even pattern and key of the quads of a frame. CPU twin: `plan_quads` in src/cpu/sparse_pass/quad_plan.rs. One
+// invocation a block of 2x2 quads of view `frame.first_view`.
 //
 // Up to 7 reads and 1 write a quad: depth, motion, trust and four stored samples of one pixel; 1 atomic sum a quad.
 

@@ -1,9 +1,8 @@
 //#use kept_history
 //#use quad_plan
 //#use quad_samples
-// Comparison of the samples of shaded quads with history at their pixels. CPU twin: `observe_quads` in
-// src/cpu/sparse_pass/quad_samples.rs. One invocation a pixel of a shaded quad; those of
-// the fovea are not compared.
+// Comparison of shaded quads with history. CPU twin: `observe_quads` in src/cpu/sparse_pass/quad_samples.rs. One
+// invocation a pixel of a shaded quad; those of the fovea are not compared.
 //
 // With ANTIALIAS 29 reads and 1 write a sample: color, 9 of depth, 3 of motion, trust, 10 stored samples, list and
 // mask; 8 bytes written.

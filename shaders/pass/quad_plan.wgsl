@@ -1,5 +1,5 @@
 //#use quads
-// List of the shaded quads of a view, for the passes over their samples.
+// List of the shaded quads, for passes over samples.
 
 // `QuadList`, to read.
 struct PlannedList {

@@ -1,4 +1,4 @@
-// Closes what a frame shaded by quads does not shade: a full-screen triangle, which is discarded at shaded quads and
+// Depth that hides unshaded quads from later draws: a full-screen triangle, which is discarded at shaded quads and
 // elsewhere has the depth of the near plane. It reads no depth and writes none of its own, so that it fits every depth
 // format and leaves hierarchical depth on.
 

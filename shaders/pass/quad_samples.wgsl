@@ -1,7 +1,7 @@
 //#use inputs
 //#use quads
 //#use sparse
-// Shaded quads of a frame, and where their samples are. CPU twin: src/cpu/sparse_pass/quad_samples.rs.
+// Shaded quads and their samples. CPU twin: src/cpu/sparse_pass/quad_samples.rs.
 
 // Bit 0: whether a quad is shaded; bits 1 and 2: its region.
 @group(0) @binding(27) var quad_mask: texture_2d_array<u32>;

@@ -1,7 +1,7 @@
 //#use quad_list
 //#use quad_state
-// Smallest key that the budget pays for, and the arguments of draws and dispatches of the shaded quads. CPU twin:
-// `threshold` in src/kernel/quads.rs, which goes through all keys; here 64 invocations sum them first. One workgroup.
+// Smallest key within the budget, and arguments of draws and dispatches. CPU twin: `threshold` in src/kernel/quads.rs,
+// which goes through all keys; here 64 invocations sum them first. One workgroup.
 
 const INVOCATIONS: u32 = 64u;
 // Number of keys that an invocation sums. The last invocation's keys have no quads.

@@ -1,8 +1,8 @@
 //#use antialias
 //#use kept
 //#use resize_uniforms
-// Kept samples of history resampled to another size. Each pixel takes the nearest sample, which keeps its place. CPU
-// twin: src/cpu/resize.rs. One invocation a pixel; z is the view.
+// Kept samples of history at another size. Each pixel takes the nearest sample, which keeps its place. CPU twin:
+// src/cpu/resize.rs. One invocation a pixel; z is the view.
 
 @group(0) @binding(15) var past_kept: texture_2d_array<u32>;
 @group(0) @binding(16) var past_noise: texture_2d_array<u32>;

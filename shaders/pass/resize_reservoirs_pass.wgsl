@@ -1,6 +1,6 @@
 //#use resize_uniforms
-// Reservoirs of history resampled to another size. Each pixel takes the nearest reservoir, because samples are never
-// mixed. CPU twin: src/cpu/resize.rs. One invocation a pixel; z is the view.
+// Reservoirs of history at another size. Each pixel takes the nearest reservoir, because samples are never mixed. CPU
+// twin: src/cpu/resize.rs. One invocation a pixel; z is the view.
 
 override HAS_EXTRAS: u32 = 0u;
 

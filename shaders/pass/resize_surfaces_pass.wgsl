@@ -2,8 +2,8 @@
 //#use resample
 //#use resize_uniforms
 //#use sanitize
-// Surfaces of history resampled to another size, with the first level of their mip chain. CPU twin: src/cpu/resize.rs.
-// One invocation a block of 2x2 pixels; z is the view.
+// Surfaces of history, and their first mip level, at another size. CPU twin: src/cpu/resize.rs. One invocation a block
+// of 2x2 pixels; z is the view.
 
 override NOISY: u32 = 0u;
 override HAS_MIPS: u32 = 1u;

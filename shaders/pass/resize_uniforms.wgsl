@@ -1,5 +1,5 @@
 //#use resize
-// Uniforms of the passes that resample history to another size.
+// Uniforms of the passes that resample history.
 
 // src/gpu/resize.rs: ResizeUniforms, which documents the fields
 struct ResizeUniforms {

@@ -1,7 +1,6 @@
 //#use surface_history
 //#use taa
-// Luma of history, by which settled history is compared with samples; shared by taa and taau. CPU twin:
-// src/cpu/surface_history.rs.
+// Luma of settled history: to compare it with samples; shared by taa and taau. CPU twin: src/cpu/surface_history.rs.
 
 // Luma of history at `offset_px` from the texel nearest to a position, regardless of its surface.
 fn luma_beside(source: Source, offset_px: vec2<i32>, view: u32) -> f32 {

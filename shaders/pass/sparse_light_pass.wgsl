@@ -1,8 +1,8 @@
 //#use antialias
 //#use past_frame
 //#use sparse_samples
-// Gain and fit of history around the samples of a sparse frame. CPU twin: `light` in src/cpu/sparse_pass/light.rs. One
-// invocation a sample of lattice `frame.lattice`; z is the view.
+// Gain and fit of history around samples. CPU twin: `light` in src/cpu/sparse_pass/light.rs. One invocation a sample of
+// lattice `frame.lattice`; z is the view.
 //
 // 27 reads and 1 write a sample: color, depth and observation of itself and its eight neighbours; 8 bytes written.
 

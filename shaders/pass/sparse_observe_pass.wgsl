@@ -1,8 +1,8 @@
 //#use kept_history
 //#use kept_noise
 //#use sparse_samples
-// Comparison of the samples of a sparse frame with history at their pixels. CPU twin: `observe` in
-// src/cpu/sparse_pass/observe.rs. One invocation a sample of lattice `frame.lattice`; z is the view.
+// Comparison of the samples of a sparse frame with history. CPU twin: `observe` in src/cpu/sparse_pass/observe.rs. One
+// invocation a sample of lattice `frame.lattice`; z is the view.
 //
 // 9 reads and 1 write a sample: color, depth, motion, trust, 5 stored samples; 8 bytes written. With noise, 2 more
 // reads.

@@ -3,9 +3,8 @@
 //#use output
 //#use rng
 //#use sparse
-// Reconstruction of a pixel from history that keeps samples in their places, and from the candidate that the samples
-// around it give (smr); shared by frames of lattices and of quads. CPU twin: `pixel` in src/cpu/sparse_pass/pixel.rs;
-// docs/method.md has the equations.
+// Pixel of smr from kept samples of history and the candidate around it; shared by frames of lattices and of quads. CPU
+// twin: `pixel` in src/cpu/sparse_pass/pixel.rs; docs/method.md has the equations.
 
 @group(0) @binding(18) var next_kept: texture_storage_2d_array<rg32uint, write>;
 @group(0) @binding(19) var next_noise: texture_storage_2d_array<r32uint, write>;

@@ -1,6 +1,6 @@
 //#use lattices
 //#use sparse
-// Samples of a sparse frame, and where the results for them lie. CPU twin: src/cpu/sparse_pass/mod.rs.
+// Samples of a sparse frame, and places of their results. CPU twin: src/cpu/sparse_pass/mod.rs.
 
 // Pixel of a sample.
 fn px_of(point: vec2<u32>, lattice: LatticeUniforms) -> vec2<u32> {

@@ -1,8 +1,8 @@
 //#use previous
 //#use resample
 //#use wrs
-// Stored history of a pixel's surface, at its previous position; shared by the methods that store surfaces (smr, taa).
-// CPU twin: src/cpu/surface_history.rs.
+// Stored history of a pixel's surface; shared by the methods that store surfaces (smr, taa). CPU twin:
+// src/cpu/surface_history.rs.
 
 @group(0) @binding(15) var past_surfaces: texture_2d_array<u32>;
 @group(0) @binding(16) var past_mips: texture_2d_array<f32>;

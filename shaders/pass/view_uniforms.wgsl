@@ -1,4 +1,4 @@
-// Uniforms of a view, shared by the passes of the methods and of the simulators.
+// Uniforms of a view; shared by methods and simulators.
 
 // src/uniforms.rs: ViewUniforms, which documents the fields
 struct ViewUniforms {

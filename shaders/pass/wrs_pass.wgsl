@@ -1,5 +1,5 @@
 //#use wrs_pixel
-// Weighted reservoirs over frames with a color in every pixel. One invocation a pixel; z is the view.
+// Weighted reservoirs over whole frames. One invocation a pixel; z is the view.
 
 @compute @workgroup_size(64, 1)
 fn main(

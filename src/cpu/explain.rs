@@ -4,8 +4,8 @@
 use super::Frame;
 use super::history::History;
 use super::inputs::Inputs;
+use super::pixel::{Pixel, ProcessPixel};
 use super::sparse_pass::Quads;
-use super::surface_pass::{Pixel, ProcessPixel};
 use crate::frame::{ContextDesc, Reset};
 use crate::kernel::antialias::mean_of;
 use crate::kernel::debug_view::PixelTrace;

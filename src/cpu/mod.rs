@@ -12,6 +12,7 @@ pub(crate) mod history;
 mod inputs;
 mod mip_chain;
 mod none_pass;
+mod pixel;
 mod plan;
 mod resize;
 mod smr_pass;

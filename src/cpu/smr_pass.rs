@@ -8,8 +8,9 @@
 //! noise, the noise of one surface and eight texels of the candidates' mip chain, and writes one word of noise: 80
 //! bytes a pixel, including the passes that compute that mip chain.
 
+use super::pixel::Pixel;
 use super::surface_history::{Source, SurfaceHistory};
-use super::surface_pass::{Pixel, SurfaceMethod};
+use super::surface_pass::SurfaceMethod;
 use crate::foveation::Filter;
 use crate::kernel::approx;
 use crate::kernel::color;

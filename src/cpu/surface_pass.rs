@@ -3,6 +3,7 @@
 use super::Pass;
 use super::explain::{explain, note_surface, of_view};
 use super::inputs::Inputs;
+use super::pixel::{Pixel, ProcessPixel};
 use super::surface_history::SurfaceHistory;
 use crate::image::Image;
 use crate::kernel::debug_view::PixelTrace;
@@ -10,18 +11,6 @@ use crate::kernel::noise::candidate_texel;
 use crate::notes::{NoNotes, Notes};
 use crate::parallel::{ProcessRow, process_rows};
 use crate::stats::FrameStats;
-use glam::Vec3;
-
-/// Result of a pixel.
-pub(super) struct Pixel {
-    /// Color for the frame's output.
-    pub output: Vec3,
-    /// Packed surface to store.
-    pub surface: [u32; 2],
-    /// Packed noise of the surface; stored only for noisy candidates.
-    pub noise: u32,
-    pub trace: PixelTrace,
-}
 
 /// Images of a view that a pass writes: `noise` is empty without noisy candidates.
 pub(super) struct Targets<'a> {
@@ -37,13 +26,6 @@ struct Row<'a> {
     noise: Option<&'a mut [u32]>,
     out: &'a mut [[f32; 3]],
     trace: Option<&'a mut [PixelTrace]>,
-}
-
-/// A pass that computes one pixel at a time.
-pub(super) trait ProcessPixel: Sync {
-    /// Processes pixel (x, y), counts it in `stats` and takes `notes`. Always inlined into the loop over a row, which is
-    /// compiled for several instruction sets.
-    fn process(&self, x: u32, y: u32, stats: &mut FrameStats, notes: &mut impl Notes) -> Pixel;
 }
 
 /// A method that reads and stores surfaces.

@@ -4,8 +4,9 @@
 //! Each pixel reads its motion and depth, nine colors and twelve stored surfaces (neighbours share most of these
 //! reads), and writes one surface and one color. Memory traffic: 40 bytes a pixel with color and motion as halves.
 
+use super::pixel::Pixel;
 use super::surface_history::{Source, SurfaceHistory};
-use super::surface_pass::{Pixel, SurfaceMethod};
+use super::surface_pass::SurfaceMethod;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::sanitize::MAX_HALF;

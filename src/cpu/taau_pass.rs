@@ -5,8 +5,9 @@
 //! reads), and writes one surface and one color. Frames without lattices have a sample in every pixel. Frames shaded by
 //! quads have one in each shaded pixel: the others are filled before, and tell only what is around.
 
+use super::pixel::Pixel;
 use super::surface_history::{Source, SurfaceHistory};
-use super::surface_pass::{Pixel, SurfaceMethod};
+use super::surface_pass::SurfaceMethod;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::lattice::{nearest_point, point_offset_px};
 use crate::kernel::reproject::Verdict;

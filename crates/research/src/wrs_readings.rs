@@ -141,7 +141,7 @@ fn outcomes(args: &WrsTableArgs, backend: &Backend, scanpath: &str, map: GazeMap
 
 fn cell(outcome: &Outcome) -> String {
     let Outcome { mean_gain_db, last_gain_db, fresh } = outcome;
-    format!(" {mean_gain_db:+.2} / {last_gain_db:+.2}; {:.1} % |", 100.0 * fresh)
+    format!(" {mean_gain_db:+.2}/{last_gain_db:+.2}; {:.1} % |", 100.0 * fresh)
 }
 
 /// The table in Markdown.

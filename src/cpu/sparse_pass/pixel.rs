@@ -5,7 +5,7 @@ use super::kept_history::{Found, Source, has_moved};
 use super::quad_samples::QuadLights;
 use super::quads::offset_px2;
 use super::view::{NO_NOISE, Samples, View};
-use crate::cpu::surface_pass::{Pixel, ProcessPixel};
+use crate::cpu::pixel::{Pixel, ProcessPixel};
 use crate::kernel::approx;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::kept::{Kept, pack_kept};

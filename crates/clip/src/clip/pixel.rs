@@ -58,7 +58,8 @@ impl ExplainedPixel {
     }
 }
 
-/// Values with spaces between them: numbers with as many digits as tell the float from all others, words in hexadecimal.
+/// Values with spaces between them: numbers with as many digits as tell the float from all others, words in
+/// hexadecimal.
 fn values(values: &NoteValues) -> String {
     match values {
         NoteValues::Numbers(numbers) => numbers.iter().map(|&v| number(v)).collect::<Vec<_>>().join(" "),

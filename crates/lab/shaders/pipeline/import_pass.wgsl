@@ -1,7 +1,6 @@
 //#use sanitize
-// A rasterized frame in the form that the pipeline gives to simulators and methods: color without non-finite pixels,
-// distance along the view axis. Twin on the CPU: RasterSource::frame in crates/lab/src/source/raster.rs. One invocation
-// a pixel.
+// A rasterized frame in the pipeline's form: color without non-finite pixels, distance along the view axis. Twin on the
+// CPU: RasterSource::frame in crates/lab/src/source/raster.rs. One invocation a pixel.
 //
 // Reads 8 + 4 bytes and writes 16 + 4 bytes a pixel.
 

@@ -5,8 +5,8 @@
 //#use raster_material
 //#use lighting_maps
 //#use shading
-// Color of surfaces lit by punctual lights, panels, the sun and the sky, with the tracer's scattering functions.
-// Indirect light is an estimate (`bounced`). Color is premultiplied by opacity.
+// Color of surfaces by the tracer's scattering functions; lit by punctual lights, panels, the sun and the sky. Indirect
+// light is an estimate (`bounced`). Color is premultiplied by opacity.
 
 override SURFACE_TEXTURE: bool = true;
 override NORMAL_MAP: bool = true;

@@ -1,5 +1,5 @@
 //#use raster_frame
-// Group 1: a material in the tracer's layout, with its textures; white where it has none.
+// Group 1: a material in the tracer's layout, and its textures, white by default.
 
 override BASE_COLOR_TEXTURE: bool = true;
 // Whether textures transform texture coordinates.

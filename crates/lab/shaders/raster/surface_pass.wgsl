@@ -1,7 +1,6 @@
 //#use raster_frame
 //#use raster_material
-// Depth and motion of the first surface at each pixel's centre. Motion is previous minus current position in pixels, y
-// down.
+// Depth and motion of the first surface. Motion is previous minus current position in pixels, y down.
 
 // Motion of points behind the previous camera.
 const OFF_FRAME_PX: f32 = 1e6;

@@ -1,5 +1,5 @@
 //#use frame
-// Turns list lengths into counts of live paths and of workgroups, between the other kernels.
+// Counts of live paths and of workgroups, from list lengths; runs between the other kernels.
 
 @group(2) @binding(0) var<storage, read_write> plan: array<u32, 9>;
 

@@ -1,4 +1,4 @@
-// Expands spans of pixels into the list of a batch's samples, one invocation per sample.
+// Expands spans of pixels into a batch's samples; one invocation per sample.
 
 struct Span {
     pixel: u32,

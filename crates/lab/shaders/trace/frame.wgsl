@@ -1,4 +1,4 @@
-// Bindings that all kernels of a frame share, and the layout of path state. Twin of trace/gpu/paths.rs.
+// Bindings of all kernels, and the layout of path state. Twin of trace/gpu/paths.rs.
 
 struct TraceFrame {
     origin: vec3<f32>,

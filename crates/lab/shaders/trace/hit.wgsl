@@ -1,4 +1,4 @@
-// Hits, and where triangles are in the scene buffer.
+// Hits, and triangles in the scene buffer.
 
 // First elements of the static and the moving triangles.
 override TRIANGLES: u32 = 0u;

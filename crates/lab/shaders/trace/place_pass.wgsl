@@ -1,6 +1,5 @@
 //#use color
-// The samples of a lattice from their film to their pixels. Twin of SparsePlan::trace and Film::noise_at. One
-// invocation a point.
+// Samples of a lattice from film to pixels. Twin of SparsePlan::trace and Film::noise_at. One invocation a point.
 //
 // Reads 16 bytes and the film, and writes 16 + 8 + 4 + 8 bytes a point.
 

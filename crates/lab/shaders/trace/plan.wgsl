@@ -1,5 +1,5 @@
 //#use frame
-// Bounce and number of live paths, as `count_pass` wrote them.
+// Bounce and number of live paths.
 
 @group(2) @binding(0) var<storage, read> plan: array<u32, 9>;
 

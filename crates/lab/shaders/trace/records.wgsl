@@ -1,4 +1,4 @@
-// Offsets of materials, textures and lights in the scene buffer, and their constants. Twin of trace/shading_records.rs.
+// Offsets of materials, textures and lights in the scene buffer. Twin of trace/shading_records.rs.
 
 override MATERIALS: u32 = 0u;
 override TEXTURES: u32 = 0u;

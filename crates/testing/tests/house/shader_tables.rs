@@ -17,11 +17,6 @@ struct Shader {
 }
 
 impl Shader {
-    /// Names in the `//#use` lines.
-    fn uses(&self) -> Vec<&str> {
-        self.text.lines().map_while(|l| l.strip_prefix("//#use ")).map(str::trim).collect()
-    }
-
     /// First paragraph of the comment at the top.
     fn header(&self) -> String {
         let lines = self.text.lines().skip_while(|l| l.starts_with("//#use "));
@@ -87,9 +82,7 @@ fn quoted(names: &[&str]) -> String {
 /// A table of modules, with a line feed after each row.
 fn table(kind: &str, shaders: &[Shader]) -> String {
     let (head, row): (&str, fn(&Shader) -> Vec<String>) = match kind {
-        "functions" => {
-            ("module|uses|functions", |s| vec![format!("`{}`", s.name), quoted(&s.uses()), quoted(&s.functions())])
-        }
+        "functions" => ("module|functions", |s| vec![format!("`{}`", s.name), quoted(&s.functions())]),
         "bindings" => ("file|purpose|twin|bindings", |s| {
             vec![format!("`{}`", s.name), s.purpose(), s.twin(), s.bindings().join(", ")]
         }),
@@ -172,7 +165,7 @@ fn a_table_follows_its_sources() {
     let shaders = |text: &str| vec![Shader { name: "mix".to_owned(), text: text.to_owned() }];
     let page = "# Page\n\n<!-- generated: functions of lib -->\n| old |\n\n<!-- generated: bindings of pass -->\n| old |\ntext\n";
     let expected = "# Page\n\n<!-- generated: functions of lib -->\n\
-        | module | uses | functions |\n| --- | --- | --- |\n| `mix` | `a`, `b` | `first`, `second` |\n\n\
+        | module | functions |\n| --- | --- |\n| `mix` | `first`, `second` |\n\n\
         <!-- generated: bindings of pass -->\n| file | purpose | twin | bindings |\n\
         | --- | --- | --- | --- |\n\
         | `mix` | Blends two levels | `src/mix.rs` | `0.1:full`, `2.0:plan` |\ntext\n";

@@ -31,19 +31,19 @@ pub const ROWS: [Row; 104] = [
     row("H01", "R1 empty, R2 w > 0, draw exactly 0", "R2 chosen", BOTH),
     row("H02", "R1 empty, R2 w = 0", "R2's color with w_sum 0; no NaN, not black", BOTH),
     row("H03", "w = 0 for 1e5 frames on valid history", "history and w_sum unchanged", BOTH),
-    row("H04", "w_sum and w denormal (1e-40)", "selected with w/(w_sum+w), or consistently taken as 0", BOTH),
+    row("H04", "w_sum and w denormal (1e-40)", "selected with w/(w_sum+w), or taken as 0", BOTH),
     row("H05", "w_sum = 65504 in half storage, w = 1", "no Inf; saturates; documented selection floor", BOTH)
     .but("stored sums have 16 significant bits, up to 2^100; a sum of ones grows to 65536."),
     row("H06", "plain A-Chao, f16 w_sum, w = 1", "no stall at 2048, where halves stall", BOTH)
     .but("a stored sum of ones stalls at 65536."),
-    row("H07", "biased recurrence, f16, w = 1", "stalls at 32.8 after 574 frames; replacement probability >= stated floor", BOTH)
+    row("H07", "biased recurrence, f16, w = 1", "stalls at 32.8; replacement probability >= stated floor", BOTH)
     .but("no cap: stored sums stall at 256 to 363 times the weight."),
     row("H08", "H07 in f32, 1e6 frames", "s = 1412.7 +- 0.5, as in f64", BOTH)
     .but("arithmetic alone; stored sums stall (H07)."),
-    row("H09", "H07 with w = 0.05", "stalls at 2.83 after 1401 frames; s(w)/w equal for all w", CPU)
-    .but("arithmetic alone: exact for powers of two, to 3e-5 for other weights."),
+    row("H09", "H07 with w = 0.05", "stalls at 2.83; s(w)/w equal for all w", CPU)
+    .but("arithmetic alone; exact for powers of two, else to 3e-5."),
     row("H10", "1e9 frames", "incremental sum within 1e-3 of the closed form", CPU)
-    .but("in f64. In f32 for 1.2e6 frames; the sum stalls at 4096 times the weight, earlier if stored (H07)."),
+    .but("in f64; in f32 for 1.2e6 frames, and stored sums stall (H07)."),
     row("H11", "constant weights, no bias, N frames", "each selected with p = 1/N", BOTH),
     row("H12", "weights 1, 2, 3, 4", "selection frequency w_i / (sum of w)", BOTH),
     row("H13", "order permuted", "unbiased: same distribution; biased: documented recency", CPU),
@@ -52,7 +52,7 @@ pub const ROWS: [Row; 104] = [
     row("H16", "history cap 8, 32, infinite", "half-life of a step equals theory +- 5 %", CPU)
     .but("if the kernel's caller caps the sum; no setting does."),
     row("H17", "negative weight", "taken as 0, counted, warned of; w_sum never negative", BOTH)
-    .but("callers cannot pass weights: invalid candidates are counted and warned of, and the kernel is silent."),
+    .but("callers cannot pass weights; invalid candidates are counted and warned of."),
     row("H18", "weight NaN or +-Inf", "taken as 0; previous reservoir survives", BOTH),
     row("H19", "stored w_sum NaN, Inf or negative", "that pixel alone as if reset, for one frame", BOTH),
     row("H20", "1 - abs(Delta E) with Delta E > 1", "clamped to 0; w_sum >= 0", BOTH),
@@ -64,7 +64,7 @@ pub const ROWS: [Row; 104] = [
     row("H24", "seed = pixel + frame", "forbidden: abs rho < 4 / sqrt N at every shift", CPU)
     .but("31x31 shifts of 128x128 pixels; over many more, chance exceeds it."),
     row("H25", "hash of (x, y, frame, purpose), 2^24 samples", "mean, variance, chi-squared, lag 1 inside CI", CPU),
-    row("H26", "widths 1, 3, 4095, 4097; frame 2^32", "no period at row length; frame counter continues without reset", BOTH),
+    row("H26", "widths 1, 3, 4095, 4097; frame 2^32", "no period at row length; frame counter continues", BOTH),
     row("H27", "two eyes, same frame", "streams independent, or identical by option", CPU)
     .but("no such option: always independent."),
     row("H28", "CPU and GPU", "same integer stream for 1e6 (x,y,frame)", BOTH),
@@ -72,7 +72,7 @@ pub const ROWS: [Row; 104] = [
     // Color difference
     row("H30", "Delta H^2 of near-equal hues in f32", "no NaN", BOTH),
     row("H31", "two greys", "Delta E 94 = abs(Delta L) / kL; gradient finite", BOTH),
-    row("H32", "Delta E 94 of (a,b) and (b,a)", "asymmetric: reference side fixed and documented", CPU),
+    row("H32", "Delta E 94 of (a,b) and (b,a)", "asymmetric: reference side documented", CPU),
     row("H33", "Y at 216/24389 +- 1 ulp", "continuous; slope 903.3 on both sides", BOTH),
     row("H34", "dark noise, linear sigma = 0.002", "Delta L* about 1.8 does not reject history", CPU),
     row("H35", "8-bit linear step near black", "Delta L* 3.54 must not look like change", CPU)
@@ -86,17 +86,17 @@ pub const ROWS: [Row; 104] = [
     row("H41", "sky: d = 0 in reversed infinite depth", "never Inf; sky never rejects sky, always objects", BOTH),
     row("H42", "d slightly beyond 0 or 1", "clamped; finite", BOTH),
     row("H43", "half-float depth, 1 to 1e5 m", "no permanent rejection or acceptance", CPU)
-    .but("farther than 65504 m is sky. Reversed halves with near = 0.1 m: depth noise rejects single frames beyond 16.4 km."),
-    row("H44", "grazing plane, static camera", "history never rejected up to 89.9 degrees", BOTH),
+    .but("farther than 65504 m is sky; with reversed halves and near = 0.1 m, depth noise rejects single frames beyond 16.4 km."),
+    row("H44", "grazing plane, static camera", "never rejected up to 89.9 degrees", BOTH),
     row("H45", "camera 1 m toward a wall", "motion alone rejects no history", BOTH),
-    row("H46", "1-px wire over far wall, jittered", "rejections bounded, no alternate-frame blinking", BOTH)
-    .but("columns that jitter alternates show the candidate. Others are constant with wrs, and blink by less than 1e-3 of the wire's energy with smr."),
+    row("H46", "1-px wire over far wall, jittered", "rejections bounded, no blinking", BOTH)
+    .but("columns that jitter alternates show the candidate; with smr, others blink by less than 1e-3 of the wire's energy."),
     row("H47", "depth NaN in 1 px", "rejected there, neighbours unchanged", BOTH),
     row("H48", "near or far plane changes", "comparison unaffected, history valid", CPU)
     .but("planes are fixed per context: pass distances, or create a new context."),
     row("H49", "orthographic projection", "linear depth", CPU),
     row("H50", "two coplanar z-fighting surfaces", "ages bounded, no color outside inputs", BOTH)
-    .but("smr: single pixels with a false coarse level of detail can exceed the inputs, by a gain of up to 5."),
+    .but("smr: single pixels with a false level of detail can exceed the inputs, by a gain of up to 5."),
     // Motion and reprojection
     row("H51", "static camera, 1e3 frames", "reprojection is the identity, bit for bit", BOTH),
     row("H52", "shift by (3,-2) px", "history moves exactly; border is new", BOTH),
@@ -114,11 +114,11 @@ pub const ROWS: [Row; 104] = [
     row("H62", "gaze off-centre, view of 110 degrees", "angles of rays, not screen distance", CPU),
     row("H63", "gaze off-screen, NaN or lost", "held, then centred; weights finite", BOTH),
     row("H64", "r_f = 0", "w = 1 at the gaze point alone; no 0/0", BOTH),
-    row("H65", "e >= 90 degrees", "w >= floor (0.0013 for r_f = 2.5 degrees); above f16's least normal", BOTH),
+    row("H65", "e >= 90 degrees", "w >= 0.0013 (r_f = 2.5 degrees), above f16's least normal", BOTH),
     row("H66", "saccade of 20 degrees", "old fovea stays, decays as in theory", BOTH),
     row("H67", "microsaccades, +-0.5 degrees at 1 kHz", "effective fovea >= predicted union", CPU),
     row("H68", "latency of 0 to 150 ms", "JOD monotone", CPU)
-    .but("by weighted PSNR and error in the true fovea: JOD needs FovVideoVDP, which is no dependency."),
+    .but("by weighted PSNR and error in the true fovea, not JOD."),
     row("H69", "simulator: constant image, odd sizes", "constant at every LOD", BOTH),
     row("H70", "simulator: energy", "mean preserved within 1e-3", BOTH),
     row("H71", "simulator: ring boundary", "continuous; gradient jump bounded", BOTH),
@@ -140,7 +140,7 @@ pub const ROWS: [Row; 104] = [
     row("H83", "ends of all sampling ranges; furnace test", "no NaN; energy 1.000 +- CI; MIS weights sum to 1", BOTH)
     .but("sheen, brushed metal and rough glass are off by up to 0.5 %, 3.7 % and 5 % at single angles (docs/path-tracing.md)."),
     row("H84", "other drivers and APIs, fast-math", "difference <= published tolerance; self-test", GPU)
-    .but("0 on software Vulkan; others must reach 60 dB against the CPU (`afterimage info adapters --self-test`)."),
+    .but("0 on software Vulkan; others must reach 60 dB (`afterimage info adapters --self-test`)."),
     // Quality
     row("H85", "analytic scenes; a box that turns into light", "smr: no 64x64 crop > 0.3 dB below foveated", CPU)
     .but("mip levels at 320x180; point-sampled blocks miss it by several dB (docs/method.md)."),
@@ -148,16 +148,16 @@ pub const ROWS: [Row; 104] = [
     row("H86", "gaze in step with offsets: positions never sampled", "there better than foveated; others exact after a turn", BOTH),
     row("H87", "lattices beyond the view, of one pixel, without samples", "samples bit for bit; without any, history; no points: refused", BOTH),
     row("H88", "reset within the order of offsets; order begun anew", "a fresh context, bit for bit; rebuilt after a turn", BOTH),
-    row("H89", "borders between rates, moving gaze", "fovea is the candidate; samples exact; no more error than in the periphery", BOTH),
+    row("H89", "borders between rates, moving gaze", "fovea and samples exact; no more error than in the periphery", BOTH),
     row("H90", "lines of 1 px in the periphery", "still: exact after a turn; gliding: no frame > 0.3 dB below foveated", BOTH),
     row("H91", "pixel of light 2 or 65504 in one frame", "gone when sampled again; at most 1.25 of its light", BOTH)
-    .but("until then it is shown; interpolated light around it fades. A gain may exceed the samples by a quarter of their range."),
+    .but("it is shown until then; a gain may exceed the samples by a quarter of their range."),
     row("H92", "20 and 200 px a frame", "no frame > 0.1 dB below foveated", BOTH)
     .but("with motion vectors; otherwise each frame is an unannounced cut (H93)."),
     row("H93", "cuts in each frame, announced or not; one after a turn", "announced: foveated frame; unannounced: close, no ghost", BOTH)
-    .but("without reset, vectors and change of depth, cuts show a ghost: up to 3.7 dB below foveated if in each frame; after one, none."),
+    .but("unannounced cuts without vectors and change of depth show a ghost: up to 3.7 dB below foveated if in each frame; after one, none."),
     row("H94", "depth and motion at samples only, moving silhouettes", "better than foveated, near silhouettes too", BOTH),
-    row("H95", "NaN or infinity in a sample of a coarse lattice", "never shown; complete history unchanged, otherwise two steps at most", BOTH),
+    row("H95", "NaN or infinity in a sample of a coarse lattice", "never shown; complete history unchanged, else two steps at most", BOTH),
     row("H96", "lattices that stand still; offsets three times each", "no worse than foveated; rebuilt after three turns", BOTH),
     row("H97", "samples beside the claimed place, or one frame late", "at most 3.1 dB below foveated (still), 1 dB (gliding)", BOTH),
     row("H98", "exposure steps, trust 0, two views, lost gaze, new foveations", "detail within 1 %; views independent; never below foveated", BOTH),
@@ -165,7 +165,7 @@ pub const ROWS: [Row; 104] = [
     row("H104", "camera 1e6 m away; oblique near plane; mirrors", "right, or refused by name", CPU),
     row("H105", "vectors for no pixel, for objects, without camera", "within 1e-3 px; 0 for a still camera", BOTH),
     row("H106", "colors times 2^-10 to 2^12; shadow without vectors", "picture times it; at most 6 % of the light left behind", BOTH)
-    .but("smr, neither sparse nor noisy. The others compare colors by constants for white at about 1."),
+    .but("smr on whole frames without noise; other methods expect white at about 1."),
     row("H107", "plan of quads under any needs", "budget never exceeded; every quad shaded in its period", CPU),
     row("H108", "other quads shaded than planned", "only planned, finite pixels count", CPU),
 ];

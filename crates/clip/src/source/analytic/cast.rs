@@ -171,7 +171,8 @@ impl<'a> Caster<'a> {
         let surface = object.shape.surface(point, ray.direction);
         let spot = self.spot(ray, t, point, &surface, object);
         let albedo = object.material.albedo(&spot);
-        albedo * light::arriving(self.stage, tile, index, point, surface.normal)
+        let occluders = light::Occluders { casters: &tile.casters[index], standing: &tile.standing };
+        albedo * light::arriving(self.stage, &occluders, index, point, surface.normal)
     }
 
     /// Texture coordinates and the sample's footprint there.

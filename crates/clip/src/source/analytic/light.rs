@@ -5,7 +5,6 @@ use super::courtyard::{BACK, FLOOR, LEFT, RIGHT};
 use super::noise::{fbm, pulse, smoothstep};
 use super::scene::{Stage, TO_SUN};
 use super::shape::{Ray, Shape};
-use super::tile::Tile;
 use glam::{Vec2, Vec3};
 
 /// Shadow ray offset in metres, which avoids self-shadowing.
@@ -17,12 +16,21 @@ const BOUNCE: Vec3 = Vec3::new(0.26, 0.21, 0.16);
 /// Reach of the ambient occlusion around an object, in radii of its occluder.
 const REACH: f32 = 4.0;
 
+/// Objects that may take light from a point.
+pub(super) struct Occluders<'a> {
+    /// They may shade it.
+    pub casters: &'a [u16],
+    /// They stand on the floor around it.
+    pub standing: &'a [u16],
+}
+
 /// Irradiance over pi at a point of object `index` with normal `n`: the factor of the albedo.
-pub(super) fn arriving(stage: &Stage, tile: &Tile, index: usize, point: Vec3, n: Vec3) -> Vec3 {
+pub(super) fn arriving(stage: &Stage, occluders: &Occluders<'_>, index: usize, point: Vec3, n: Vec3) -> Vec3 {
     let facing = n.dot(TO_SUN);
-    let sun = if facing > 0.0 { facing * sunlight(stage, &tile.casters[index], point + n * NEAR) } else { 0.0 };
+    let sun = if facing > 0.0 { facing * sunlight(stage, occluders.casters, point + n * NEAR) } else { 0.0 };
     let upward = 0.5 - 0.5 * n.y;
-    let open = if index == stage.floor { open_floor(stage, &tile.standing, point) } else { corner(FLOOR - point.y) };
+    let open =
+        if index == stage.floor { open_floor(stage, occluders.standing, point) } else { corner(FLOOR - point.y) };
     BOUNCE.lerp(SKY, upward) * (open * stage.ambient) + SUN * sun
 }
 

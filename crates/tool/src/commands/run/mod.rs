@@ -109,9 +109,9 @@ pub struct RunArgs {
     /// Debug views to write as images, separated by commas
     #[arg(long, value_parser = by_name::<DebugView>(), value_delimiter = ',', value_name = "LIST")]
     pub debug: Vec<DebugView>,
-    /// Print how each method computes this pixel, value by value: inputs, texels of history, verdict, comparison, gains,
-    /// shares, what is shown and stored; also into OUT/pixel.csv. (0,0) is the top-left pixel, y down. Methods run on
-    /// the CPU
+    /// Print how each method computes this pixel, value by value: inputs, texels of history, verdict, comparison,
+    /// gains, shares, what is shown and stored; also into OUT/pixel.csv. (0,0) is the top-left pixel, y down. Methods
+    /// run on the CPU
     #[arg(long, value_parser = parse_pixel, value_name = "X,Y", allow_hyphen_values = true)]
     pub pixel: Option<[u32; 2]>,
     /// Frames in which --pixel is printed, from A to B, both included; default: the last one
