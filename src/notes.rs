@@ -98,6 +98,7 @@ impl PixelNotes {
 /// Takes notes about a pixel, or none.
 pub(crate) trait Notes {
     /// Whether notes are taken. A constant, so that work for notes alone is compiled out where none are.
+    #[cfg_attr(not(feature = "cpu"), allow(dead_code, reason = "only passes on the CPU ask"))]
     const ON: bool;
 
     /// Takes a note.
