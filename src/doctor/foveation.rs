@@ -102,6 +102,9 @@ fn largest<T>(counts: &[(T, f64)]) -> &(T, f64) {
 /// Findings on the gaze and on the foveation.
 pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> [Finding; 2] {
     let neither = |why| [Check::Gaze, Check::Foveation].map(|check| Finding::cannot_tell(check, why));
+    if desc.settings.foveation.filter == Filter::Quads {
+        return neither("every pixel is shaded at full rate here, in place of chosen quads");
+    }
     if observations.iter().any(|o| o.now.has_lod) {
         return neither("levels of detail are given, so that gaze and foveation are not used");
     }

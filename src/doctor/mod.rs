@@ -69,11 +69,11 @@ pub(crate) fn continues<E: Executor>(frame: &FrameInputs<'_, E>) -> bool {
     frame.reset == Reset::None && frame.exposure == Exposure::Same
 }
 
-/// Rejects sparse frames, which the rules do not cover yet, and the index of a view that a context does not have.
+/// Rejects lattices, which the rules do not cover yet, and the index of a view that a context does not have.
 pub(crate) fn check_view(desc: &ContextDesc, view: usize) -> Result<(), SettingsError> {
     let filter = desc.settings.foveation.filter;
-    if matches!(filter, Filter::Sparse | Filter::Quads) {
-        let expected = "another filter: the doctor does not know sparse frames yet".into();
+    if filter == Filter::Sparse {
+        let expected = "another filter: the doctor does not know lattices yet".into();
         return Err(SettingsError { setting: "foveation filter", found: filter.name().into(), expected });
     }
     if view < desc.view_count as usize {

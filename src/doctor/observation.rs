@@ -1,6 +1,7 @@
 //! Evidence on a frame: its description, and the words of its tiles, which an executor computes.
 
 use crate::convention::MotionUnit;
+use crate::foveation::Filter;
 use crate::frame::{ContextDesc, ViewFrame};
 use crate::kernel::doctor::{DEPTH, DEPTHS, HYPOTHESES, MOTION, TILE_PX, WORDS};
 
@@ -82,10 +83,14 @@ impl Evidence<'_> {
 
 impl Description {
     /// Description of view `view` of a frame for a gaze at `gaze_px`, with tiles that fit the foveation that `desc`
-    /// states. `past_gaze_px`: gaze of the frame before, if that was seen.
+    /// states; frames by quads are at full rate here. `past_gaze_px`: gaze of the frame before, if that was seen.
     pub fn new(desc: &ContextDesc, view: ViewFrame, gaze_px: [f32; 2], past_gaze_px: Option<[f32; 2]>) -> Self {
         let has_gaze = view.gaze.known_px(&view.geometry).is_some();
-        let lod = |center, gaze| desc.settings.foveation.lod(view.geometry.eccentricity_deg(center, gaze));
+        let foveation = desc.settings.foveation;
+        let lod = |center, gaze| match foveation.filter {
+            Filter::Quads => 0.0,
+            _ => foveation.lod(view.geometry.eccentricity_deg(center, gaze)),
+        };
         let tiles = origins(desc.size_px).map(|origin_px| {
             let center = origin_px.map(|o| (o + TILE_PX / 2) as f32);
             let now = lod(center, gaze_px);

@@ -450,6 +450,18 @@ impl Afterimage {
         }
     }
 
+    /// Compiles the pipeline of [`prime`](Self::prime) for the format, samples and near plane of a target, in place of
+    /// the first frame. No effect with filters other than [`Filter::Quads`](crate::Filter::Quads).
+    ///
+    /// # Errors
+    /// [`FrameError`] if the target does not fit, as for `prime`.
+    pub fn prewarm_prime(&mut self, device: &Device, prime: &Prime<'_>) -> Result<(), FrameError> {
+        if let Some(quads) = &mut self.quads {
+            quads.prime.prewarm(device, self.desc.size_px, prime)?;
+        }
+        Ok(())
+    }
+
     /// The quads that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::Filter::Quads) chose: an
     /// `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bit 0 says that the quad is shaded, and an
     /// array layer for each view; usages `TEXTURE_BINDING` and `COPY_SRC`. `None` with another filter. Changes of size

@@ -55,6 +55,23 @@ impl PrimePass {
         Self { module, pipelines: HashMap::new() }
     }
 
+    /// Compiles the pipeline for a target.
+    ///
+    /// # Errors
+    /// As for [`record`](Self::record).
+    pub fn prewarm(&mut self, device: &Device, size_px: [u32; 2], prime: &Prime<'_>) -> Result<(), FrameError> {
+        check(0, size_px, prime)?;
+        self.pipeline(device, prime);
+        Ok(())
+    }
+
+    fn pipeline(&mut self, device: &Device, prime: &Prime<'_>) -> &RenderPipeline {
+        let texture = prime.target.texture();
+        let key = (texture.format(), texture.sample_count(), prime.near_depth.to_bits(), prime.stencil.is_some());
+        let module = &self.module;
+        self.pipelines.entry(key).or_insert_with(|| pipeline(device, module, key))
+    }
+
     /// Records the pass for view `view` of `size_px`, whose shaded quads are in `mask`.
     ///
     /// # Errors
@@ -68,12 +85,8 @@ impl PrimePass {
         prime: &Prime<'_>,
     ) -> Result<(), FrameError> {
         check(view, size_px, prime)?;
-        let texture = prime.target.texture();
-        let format = texture.format();
-        let is_stencil = prime.stencil.is_some();
-        let key = (format, texture.sample_count(), prime.near_depth.to_bits(), is_stencil);
-        let module = &self.module;
-        let pipeline = self.pipelines.entry(key).or_insert_with(|| pipeline(device, module, key));
+        let format = prime.target.texture().format();
+        let pipeline = self.pipeline(device, prime);
         let [x, y] = prime.origin_px;
         let words = [x, y, size_px[0], size_px[1], view, 0, 0, 0];
         let words = filled(device, "afterimage prime", bytemuck::bytes_of(&words), BufferUsages::UNIFORM);

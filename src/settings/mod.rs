@@ -156,7 +156,8 @@ impl Default for DepthTest {
 /// executor).
 ///
 /// The default is [`Settings::steady`], which measures best on real frames. Other presets are
-/// [`responsive`](Self::responsive), [`traced`](Self::traced), [`weighted`](Self::weighted) and [`paper`](Self::paper).
+/// [`responsive`](Self::responsive), [`traced`](Self::traced), [`weighted`](Self::weighted) and [`paper`](Self::paper);
+/// of frames shaded by quads, [`screen`](Self::screen) and [`headset`](Self::headset).
 ///
 /// ```
 /// use afterimage::{ContextDesc, Settings};
@@ -230,6 +231,19 @@ impl Settings {
     /// ([`FrameInputs::noise`](crate::FrameInputs::noise)).
     pub fn traced() -> Self {
         Self { method: Method::Smr(Smr::traced()), noisy: true, ..Self::default() }
+    }
+
+    /// smr on quads ([`Foveation::quads`]) of antialiased frames, for screens about 40 degrees wide: 11 % of the pixels
+    /// are shaded. Frames must be jittered ([`Foveation::jitter_px`]).
+    pub fn screen() -> Self {
+        let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
+        Self { method, foveation: Foveation::quads(), ..Self::default() }
+    }
+
+    /// The same for headsets, about 100 degrees wide: a wider fovea, which costs few pixels there.
+    pub fn headset() -> Self {
+        let foveation = Foveation { fovea_deg: 10.0, ..Foveation::quads() };
+        Self { foveation, ..Self::screen() }
     }
 
     /// Checks the range of every setting.

@@ -79,11 +79,11 @@ pub struct Foveated {
     pub fovea_deg: f32,
     /// Diameter of the middle region in degrees: 0 to 180. Default 15.
     pub mid_deg: f32,
-    /// Edge in pixels of the blocks of which one quad is shaded in a frame, in the middle region: 2, 4 or 8. Default 4.
+    /// Edge in pixels of the blocks of which one quad is shaded in a frame, in the middle region: 2, 4 or 8. Default 8.
     pub rate_mid: u32,
     /// The same in the periphery: 2, 4 or 8, at least `rate_mid`. Every second block has a quad in a frame. Default 8.
     pub rate_far: u32,
-    /// Share of the pixels that are shaded because history lacks something there: 0 to 1. Default 0.025.
+    /// Share of the pixels that are shaded because history lacks something there: 0 to 1. Default 0.05.
     pub budget: f32,
 }
 

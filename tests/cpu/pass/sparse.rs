@@ -90,10 +90,10 @@ fn an_atlas_is_read_where_its_lattices_are() {
 }
 
 #[test]
-fn the_doctor_refuses_sparse_frames() {
+fn the_doctor_refuses_lattices() {
     let desc = ContextDesc { settings: settings(MethodKind::Wrs), ..ContextDesc::new(SIZE) };
     let error = afterimage::cpu::Doctor::new(&desc, 0).unwrap_err().to_string();
-    assert!(error.contains("the doctor does not know sparse frames yet"), "{error}");
+    assert!(error.contains("the doctor does not know lattices yet"), "{error}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Objects that a frame makes on the device: no bind groups and views while its textures are known.
 
-use afterimage::gpu::{Afterimage, Frame};
+use afterimage::gpu::{Afterimage, Frame, Prime};
 use afterimage::wgpu::{self, Device, Texture, TextureFormat, TextureUsages};
 use afterimage::{ContextDesc, Filter, Foveation, Gaze, Settings, ViewFrame, ViewGeometry};
 
@@ -76,4 +76,46 @@ fn frames_of_known_textures_make_no_bind_groups_and_views() {
         assert_eq!(known, [0, 0, 1]);
         assert!(new[0] > 0 && new[1] > 0, "{new:?}");
     }
+}
+
+/// Render pipelines of `prime` that exist before its first frame, and after it.
+fn pipelines_of_prime(is_prewarmed: bool) -> [usize; 2] {
+    let folder = tempfile::tempdir().unwrap();
+    let trace = wgpu::Trace::Directory(folder.path().to_owned());
+    let (device, _queue) = Device::noop(&wgpu::DeviceDescriptor { trace, ..Default::default() });
+    let settings = Settings { foveation: Foveation::quads(), ..Settings::default() };
+    let desc = ContextDesc { settings, ..ContextDesc::new(SIZE) };
+    let mut post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float).unwrap();
+    let [color, depth, motion, _] = textures(&device);
+    let target = device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: depth.size(),
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: TextureFormat::Depth32Float,
+        usage: TextureUsages::RENDER_ATTACHMENT,
+        view_formats: &[],
+    });
+    let target = target.create_view(&Default::default());
+    let prime = Prime { target: &target, origin_px: [0, 0], near_depth: 1.0, stencil: None };
+    let count = || {
+        std::fs::read_to_string(folder.path().join("trace.ron")).unwrap().matches("CreateGeneralRenderPipeline").count()
+    };
+    if is_prewarmed {
+        post.prewarm_prime(&device, &prime).unwrap();
+    }
+    let before = count();
+    let views = [ViewFrame::new(ViewGeometry::flat(SIZE, 70.0).unwrap(), Gaze::At { px: [32.0, 24.0] })];
+    let frame = Frame { depth: Some((&depth).into()), motion: Some((&motion).into()), ..Frame::new(&color, &views, 0) };
+    let mut encoder = device.create_command_encoder(&Default::default());
+    post.plan(&device, &mut encoder, &frame).unwrap();
+    post.prime(&device, &mut encoder, 0, &prime).unwrap();
+    [before, count()]
+}
+
+#[test]
+fn a_prewarmed_prime_compiles_nothing_in_its_first_frame() {
+    assert_eq!(pipelines_of_prime(true), [1, 1]);
+    assert_eq!(pipelines_of_prime(false), [0, 1]);
 }

@@ -218,6 +218,7 @@ fn targets_that_do_not_fit_are_refused() {
          expected a format with a stencil"
     );
     let color = view(TARGET, COLOR, attachment);
+    assert!(planned.post.prewarm_prime(&device, &Prime { target: &color, ..right }).is_err());
     assert!(message(&mut planned, 0, &Prime { target: &color, ..right }).ends_with("expected a depth format"));
     let read = view(TARGET, TextureFormat::Depth32Float, TextureUsages::TEXTURE_BINDING);
     assert!(message(&mut planned, 0, &Prime { target: &read, ..right }).ends_with("the usage RENDER_ATTACHMENT"));

@@ -122,13 +122,16 @@ impl Delivery {
     }
 }
 
-/// A full-rate frame as a foveating renderer would have delivered it.
+/// A full-rate frame as a foveating renderer would have delivered it. The doctor sees frames by quads at full rate.
 pub fn foveated(
     full: &Image<[f32; 3]>,
     foveation: &Foveation,
     geometry: &ViewGeometry,
     gaze_px: [f32; 2],
 ) -> Image<[f32; 3]> {
+    if foveation.filter == Filter::Quads {
+        return full.clone();
+    }
     let lods = foveation.lod_map(geometry, gaze_px, &geometry.eccentricity_map(gaze_px));
     foveation.render(&Pyramid::new(full.clone(), foveation.max_level()), &lods)
 }

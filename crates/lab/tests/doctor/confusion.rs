@@ -4,7 +4,7 @@ use super::clips::{Clip, Delivery, foveations};
 use super::planted::{PLANTED, Planted};
 use crate::shared_data::shared_data;
 use afterimage::Foveation;
-use afterimage::doctor::{Finding, Outcome};
+use afterimage::doctor::{Check, Finding, Outcome};
 use rayon::prelude::*;
 
 /// How an error fared on a clip.
@@ -104,4 +104,27 @@ fn planted_errors_are_named_and_none_is_misnamed() {
     println!("{named} of {all} named, {} misnamed", misnamed.len());
     assert!(misnamed.is_empty(), "{}", misnamed.join("\n"));
     assert!(10 * named > 7 * all, "{named} of {all}");
+}
+
+/// Frames by quads are given at full rate: right ones are not accused, and errors of everything but gaze and foveation
+/// are named.
+#[test]
+fn frames_by_quads_are_examined_at_full_rate() {
+    let clip = Clip::open("analytic:turn", Some([240, 135]), 1, 6);
+    let right = Delivery::right(&clip, Foveation::quads());
+    for finding in right.findings() {
+        assert_eq!(finding.fault(), None, "{finding}");
+        let has_evidence = !matches!(finding.check, Check::Gaze | Check::Foveation);
+        assert!(has_evidence || matches!(finding.outcome, Outcome::CannotTell(_)), "{finding}");
+    }
+    let mut named = 0;
+    for planted in PLANTED.iter().filter(|p| !matches!(p.check(), Check::Gaze | Check::Foveation)) {
+        let mut wrong = right.clone();
+        (planted.plant)(&clip, &mut wrong);
+        let fate = fate(planted, &wrong.findings());
+        println!("{:37}{fate:?}", planted.name);
+        named += u32::from(fate == Fate::Named);
+        assert_ne!(fate, Fate::Misnamed, "{}", planted.name);
+    }
+    assert!(named > 12, "{named}");
 }

@@ -19,6 +19,7 @@ fn is_not_accused(what: &str, delivery: &Delivery) {
 
 fn all_foveations() -> Vec<Foveation> {
     let mut all = foveations().to_vec();
+    all.push(Foveation::quads());
     let default = Foveation::default();
     all.extend([Filter::Mip, Filter::Block, Filter::Gauss, Filter::Off].map(|filter| Foveation { filter, ..default }));
     all

@@ -28,14 +28,14 @@ pub struct FoveationArgs {
     /// Width of the linear blend outside each radius, degrees
     #[arg(long, default_value_t = 1.0, value_name = "DEG")]
     pub blend: f32,
-    /// Block edge in the middle region, pixels, a power of two; quads: 2 to 8; default: 8, for quads 4
+    /// Block edge in the middle region, pixels, a power of two; quads: 2 to 8; default: 8, or that of a finer --rate-far
     #[arg(long, value_name = "N")]
     pub rate_mid: Option<u32>,
-    /// Block edge beyond the middle region, pixels, a power of two; quads: 2 to 8; default: 16, for quads 8
+    /// Block edge beyond the middle region, pixels, a power of two; quads: 2 to 8; default: 16, for quads 8, or that of a coarser --rate-mid
     #[arg(long, value_name = "N")]
     pub rate_far: Option<u32>,
     /// With --foveation quads: pixels a frame that smr shades by need, beside the even pattern, percent, 0 to 100;
-    /// default: 2.5
+    /// default: 5
     #[arg(long, value_parser = parse_percent, value_name = "PERCENT")]
     pub budget: Option<f32>,
     /// With --foveation quads: shades this share of the pixels everywhere alike, without a gaze, percent, 0 to 100; a
@@ -168,7 +168,11 @@ impl FoveationArgs {
     /// Block edges in the middle region and beyond it.
     fn rates(&self) -> [u32; 2] {
         let defaults = if self.is_quads() { Foveation::quads() } else { Foveation::default() };
-        [self.rate_mid.unwrap_or(defaults.rate_mid), self.rate_far.unwrap_or(defaults.rate_far)]
+        let (mid, far) = (self.rate_mid, self.rate_far);
+        [
+            mid.unwrap_or(defaults.rate_mid.min(far.unwrap_or(defaults.rate_far))),
+            far.unwrap_or(defaults.rate_far.max(mid.unwrap_or(defaults.rate_mid))),
+        ]
     }
 
     /// Whether frames are shaded by quads that methods choose.
