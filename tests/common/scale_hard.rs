@@ -175,7 +175,7 @@ pub fn radiance(make: Make<'_>) -> Option<String> {
         let reused = plain.iter().flat_map(|m| m.trace.pixels()).filter(|t| t.history_share > 0.5).count();
         assert!(reused > 1000 || settings.method.kind() == MethodKind::None, "{settings:?}: {reused}");
         let stored = |a: &[Made], b: &[Made]| a.iter().zip(b).all(|(a, b)| a.words == b.words);
-        for exponent in [-10, -3, 6, 12] {
+        for exponent in [-30, -10, -3, 6, 12, 24] {
             let unit = 2.0_f32.powi(exponent);
             let scaled = of_unit(&mut *post, &views, |_| unit, |_| Exposure::Scene { exposure: 1.0 / unit });
             assert!(scales(&plain, &scaled, unit) && stored(&plain, &scaled), "{settings:?}: 2^{exponent}");
@@ -184,7 +184,15 @@ pub fn radiance(make: Make<'_>) -> Option<String> {
         let exposure = |i: usize| 2.0_f32.powi([0, -1, -1, 2, 5, -3][i % 6]);
         let changed = |i: usize| Exposure::Changed { ratio: if i == 0 { 1.0 } else { exposure(i) / exposure(i - 1) } };
         let by_hand = of_unit(&mut *post, &views, exposure, changed);
-        let given = of_unit(&mut *post, &views, |_| 1.0, |i| Exposure::Scene { exposure: exposure(i) });
+        let given = of_unit(
+            &mut *post,
+            &views,
+            |_| 1.0,
+            |i| match exposure(i) {
+                1.0 => Exposure::Same,
+                exposure => Exposure::Scene { exposure },
+            },
+        );
         let is_same = |i: usize| scales(&given[i..=i], &by_hand[i..=i], exposure(i));
         assert!((0..views.len()).all(is_same) && stored(&by_hand, &given), "{settings:?}: exposures that change");
         let odd = of_unit(&mut *post, &views, |_| 700.0, |_| Exposure::Scene { exposure: 1.0 / 700.0 });
@@ -198,8 +206,8 @@ pub fn radiance(make: Make<'_>) -> Option<String> {
     }
     assert!(worst < 0.01, "{worst}");
     Some(format!(
-        "radiance with its exposure, {} settings of all methods, on whole frames, lattices and quads: at 2^-10 to \
-         2^12, and with exposures that change, pictures, decisions and history as of exposed colors, bit for bit; at \
+        "radiance with its exposure, {} settings of all methods, on whole frames, lattices and quads: at 2^-30 to \
+         2^24, and with exposures that change, pictures, decisions and history as of exposed colors, bit for bit; at \
          1/700 {:.3} % of the channels differ by 1 %",
         all.len(),
         100.0 * worst
