@@ -263,9 +263,9 @@ pub fn moving_shadow(make: Make<'_>) -> Option<String> {
     assert!(weighted[2] > 0.5 && sparse[2] > sparse[0] + 0.2, "{weighted:?}, {sparse:?}");
     let percent = |left: &[f64]| left.iter().map(|l| format!("{:.1}", 100.0 * l)).collect::<Vec<_>>().join(", ");
     Some(format!(
-        "light left behind the edge in percent, smr at 2^4, 1, 2^-6, 2^-10 of the light: {}, at 2^-20: {:.0}; wrs \
-         weighted at 1, 1/4, 1/16: {}; sparse smr at 1, 2^-6, 2^-10: {}; both at 2^-10 with its exposure as at 1",
-        percent(&smr),
+        "percent of the light left behind the edge: smr at 2^4 to 2^-10 of the light {:.1}, at 2^-20 {:.0}; weighted \
+         wrs at 1, 1/4, 1/16 {}; sparse smr at 1, 2^-6, 2^-10 {}; both at 2^-10 with its exposure as at 1",
+        100.0 * smr.iter().copied().fold(0.0, f64::max),
         100.0 * absolute,
         percent(&weighted),
         percent(&sparse)
