@@ -261,7 +261,7 @@ impl Display for FrameValue {
             Self::Lod => "lod",
             Self::Noise => "noise",
             Self::Reactive => "reactive",
-            Self::Exposure => "exposure ratio",
+            Self::Exposure => "exposure",
             Self::Plan => "plan",
             Self::Region { input } => input,
             Self::DebugView => "debug view",

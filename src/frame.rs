@@ -385,42 +385,63 @@ pub enum Reset {
     All,
 }
 
-/// Change of exposure between the previous frame and this one, for renderers whose colors are multiplied by an
-/// exposure. Stored colors are scaled by the ratio. Default: [`Same`](Self::Same). `examples/02_engine.rs` uses it.
+/// Exposure of a frame's colors. Stored colors follow its changes. Default: [`Same`](Self::Same).
+/// `examples/02_engine.rs` uses it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Exposure {
-    /// Unchanged exposure.
+    /// Colors are multiplied by an exposure already, or need none: white is at about 1. It is unchanged.
     #[default]
     Same,
-    /// Changed exposure.
+    /// The same, but the exposure has changed since the previous frame.
     Changed {
         /// This frame's exposure divided by the previous frame's: above 0 and finite.
         ratio: f32,
     },
+    /// Colors are radiance in any unit, and are shown in it. The context knows the previous frame's exposure, which is
+    /// 1 for [`Same`](Self::Same) and [`Changed`](Self::Changed), and follows its changes.
+    Scene {
+        /// Factor by which colors have white at about 1: 2^-40 to 2^40. Noise ([`FrameInputs::noise`]) has the unit of
+        /// the colors, and is multiplied, too. On a GPU, frames with it have pipelines of their own
+        /// (`gpu::Variant::exposure`).
+        exposure: f32,
+    },
 }
 
 impl Exposure {
-    /// Rejects a ratio that is not above 0 and finite.
+    /// Largest exposure, and inverse of the smallest one: the range of [`expose`](crate::kernel::wrs::expose).
+    const LIMIT: f32 = (1_u64 << 40) as f32;
+
+    /// Rejects a ratio that is not above 0 and finite, and an exposure out of range.
     pub(crate) fn check(self) -> Result<(), FrameError> {
+        let (found, expected) = match self {
+            Self::Changed { ratio } if !(ratio.is_finite() && ratio > 0.0) => {
+                (ratio, "a number above 0 and finite: this frame's exposure divided by the previous frame's")
+            }
+            Self::Scene { exposure } if !(1.0 / Self::LIMIT..=Self::LIMIT).contains(&exposure) => {
+                (exposure, "a number from 2^-40 to 2^40 by which the colors have white at about 1")
+            }
+            _ => return Ok(()),
+        };
+        Err(FrameError::Value { value: FrameValue::Exposure, view: 0, found: found.to_string(), expected })
+    }
+
+    /// Factor on given colors.
+    pub(crate) fn of_colors(self) -> f32 {
         match self {
-            Self::Changed { ratio } if !(ratio.is_finite() && ratio > 0.0) => Err(FrameError::Value {
-                value: FrameValue::Exposure,
-                view: 0,
-                found: ratio.to_string(),
-                expected: "a number above 0 and finite: this frame's exposure divided by the previous frame's",
-            }),
-            _ => Ok(()),
+            Self::Same | Self::Changed { .. } => 1.0,
+            Self::Scene { exposure } => exposure,
         }
     }
 
-    /// Factor on stored colors, clamped to the range of [`expose`](crate::kernel::wrs::expose).
-    pub(crate) fn factor(self) -> f32 {
-        const LIMIT: f32 = (1_u64 << 40) as f32;
-        match self {
-            Self::Same => 1.0,
-            Self::Changed { ratio } => ratio.clamp(1.0 / LIMIT, LIMIT),
-        }
+    /// Factor on stored colors. `before`: [factor](Self::of_colors) on the colors of the previous frame, if any.
+    pub(crate) fn of_stored(self, before: Option<f32>) -> f32 {
+        let ratio = match self {
+            Self::Changed { ratio } => ratio,
+            Self::Same | Self::Scene { .. } => 1.0,
+        };
+        let now = self.of_colors();
+        (ratio * (now / before.unwrap_or(now))).clamp(1.0 / Self::LIMIT, Self::LIMIT)
     }
 }
 
@@ -464,7 +485,8 @@ pub struct FrameInputs<'a, E: Executor> {
     /// unit is free on frames that are neither sparse nor noisy: colors times a constant give the picture times it.
     /// This holds for channels from 2^-14 (6e-5) on; darker ones are stored with fewer digits, and light that changes
     /// there leaves ghosts. wrs, sparse frames and noise ([`Self::noise`]) compare colors by constants for white at
-    /// about 1: multiply darker frames by an exposure, and say when it changes ([`Self::exposure`]).
+    /// about 1. Of colors in other units say the exposure ([`Exposure::Scene`]): then the range and these constants are
+    /// for colors times it.
     pub color: E::Colors<'a>,
     /// Depth in the context's convention. On a GPU a depth format or `R32Float`. `None`: no depth test.
     pub depth: Option<E::Scalars<'a>>,
@@ -494,7 +516,7 @@ pub struct FrameInputs<'a, E: Executor> {
     pub index: u64,
     /// Reset of history.
     pub reset: Reset,
-    /// Change of exposure since the previous frame.
+    /// Exposure of the colors, or its change since the previous frame.
     pub exposure: Exposure,
 }
 

@@ -30,6 +30,8 @@ impl Resize {
             // The view directions at the edges stay the same.
             rays: None,
             previous_rays: None,
+            exposure: held.exposure,
+            previous_exposure: held.previous_exposure,
         }
     }
 }

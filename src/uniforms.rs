@@ -2,7 +2,7 @@
 
 #[cfg(feature = "gpu")]
 use crate::foveation::Foveation;
-use crate::frame::{ContextDesc, ViewFrame};
+use crate::frame::{ContextDesc, Executor, Exposure, FrameInputs, Reset, ViewFrame};
 use crate::kernel::foveate::level_len;
 #[cfg(feature = "cpu")]
 use crate::kernel::lattice::{Between, between};
@@ -144,18 +144,29 @@ pub(crate) struct Held {
     pub rays: Option<Rays>,
     /// Rays of the previous frame, if it had the same size.
     pub previous_rays: Option<Rays>,
+    /// Factor on the colors of this frame.
+    pub exposure: Option<f32>,
+    /// Factor on the colors of the previous frame.
+    pub previous_exposure: Option<f32>,
 }
 
 impl Held {
     /// This state after a frame with this description of the view.
-    pub fn with(self, view: &ViewFrame) -> Self {
+    pub fn with(self, view: &ViewFrame, exposure: Exposure) -> Self {
         Self {
             gaze_px: Some(view.gaze.resolve(self.gaze_px, &view.geometry)),
             jitter_px: view.jitter_px,
             previous_jitter_px: self.jitter_px,
             rays: Some(view.geometry.scale_offset()),
             previous_rays: self.rays,
+            exposure: Some(exposure.of_colors()),
+            previous_exposure: self.exposure,
         }
+    }
+
+    /// Factor of the frame on stored colors. This is the state [after](Self::with) it.
+    pub fn stored_exposure<E: Executor>(&self, frame: &FrameInputs<'_, E>) -> f32 {
+        frame.exposure.of_stored(self.previous_exposure.filter(|_| frame.reset == Reset::None))
     }
 }
 

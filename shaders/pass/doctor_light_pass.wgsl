@@ -4,13 +4,14 @@
 //
 // 4 reads of a color and 1 write of 4 bytes a texel.
 
-// Width and height in pixels; first pixel of the view, x in the low half, y in the high half.
+// Width and height in pixels; first pixel of the view, x in the low half, y in the high half; bits of the factor on
+// colors.
 @group(0) @binding(0) var<uniform> view: vec4<u32>;
 @group(0) @binding(1) var color_in: texture_2d_array<f32>;
 @group(0) @binding(23) var light_out: texture_storage_2d_array<r32float, write>;
 
 fn signal_at(at: vec2<u32>) -> f32 {
-    return signal(textureLoad(color_in, from_origin(min(at, view.xy - 1u), view.z), 0, 0).y);
+    return signal(textureLoad(color_in, from_origin(min(at, view.xy - 1u), view.z), 0, 0).y * bitcast<f32>(view.w));
 }
 
 @compute @workgroup_size(64, 1)

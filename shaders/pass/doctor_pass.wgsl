@@ -16,9 +16,9 @@ struct DoctorUniforms {
     color_origin: u32,
     depth_origin: u32,
     motion_origin: u32,
+    exposure: f32,
     unused_0: u32,
     unused_1: u32,
-    unused_2: u32,
     maps: array<vec4<f32>, HYPOTHESES>,
 }
 
@@ -124,7 +124,8 @@ fn match_sample(px: vec2<u32>, level: u32) {
 
 fn signal_at(px: vec2<u32>, axis: vec2<i32>, offset: i32) -> f32 {
     let at = clamp(vec2<i32>(px) + axis * offset, vec2<i32>(0), vec2<i32>(frame.size) - 1);
-    return signal(textureLoad(color_in, from_origin(vec2<u32>(at), frame.color_origin), 0, 0).y);
+    let green = textureLoad(color_in, from_origin(vec2<u32>(at), frame.color_origin), 0, 0).y;
+    return signal(green * frame.exposure);
 }
 
 // Adds the differences of a pixel from its neighbours along both axes.

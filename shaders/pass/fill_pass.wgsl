@@ -1,6 +1,7 @@
 //#use lattices
 // Colors between samples, for methods that read whole frames: samples stay unchanged, and pixels between them are
-// linear interpolations of the finite samples. CPU twin: src/cpu/fill.rs. One invocation a pixel; z is the view.
+// linear interpolations of the finite samples, in the unit of the color input. CPU twin: src/cpu/fill.rs. One
+// invocation a pixel; z is the view.
 //
 // Up to 4 reads and 1 write a pixel: the samples, and 16 bytes a pixel written.
 
@@ -10,7 +11,7 @@ fn pixel(px: vec2<u32>, view: u32) -> vec4<f32> {
     let lattice = lattice_at(px, view);
     let near = around(px, lattice);
     if near.any && near.x.fraction == 0.0 && near.y.fraction == 0.0 {
-        return sample_at(vec2<u32>(near.x.points.x, near.y.points.x), lattice, view);
+        return given_at(texel_of_point(vec2<u32>(near.x.points.x, near.y.points.x), lattice), view);
     }
     var mean = SampleMean(vec4<f32>(0.0), 0.0);
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
@@ -28,7 +29,8 @@ fn pixel(px: vec2<u32>, view: u32) -> vec4<f32> {
     if mean.weight == 0.0 {
         return vec4<f32>(bitcast<f32>(sparse.missing));
     }
-    return sample_mean(mean);
+    let filled_color = sample_mean(mean);
+    return vec4<f32>(unexposed(filled_color.xyz), filled_color.w);
 }
 
 @compute @workgroup_size(64, 1)

@@ -20,6 +20,8 @@ override HAS_REACTIVE: u32 = 0u;
 override HAS_TRUST: u32 = HAS_TRUST_MASK | HAS_REACTIVE;
 override DEPTH_TEST: u32 = 1u;
 override NOISY: u32 = 0u;
+// Whether colors are radiance, which the passes multiply by an exposure.
+override EXPOSED: u32 = 0u;
 override COUNT: u32 = 0u;
 // 0: inputs and outputs have one layer a view. 1: each view has a region of its own; they are bound view by view.
 override REGIONS: u32 = 0u;
@@ -50,6 +52,10 @@ struct FrameUniforms {
     first_view: u32,
     lattice: u32,
     mip_levels: u32,
+    color_exposure: f32,
+    inverse_exposure: f32,
+    largest_shown: f32,
+    unused: u32,
     quad_offsets: vec4<u32>,
     views: array<ViewUniforms, 4>,
     cameras: array<CameraUniforms, 4>,
@@ -105,9 +111,34 @@ fn layer_of(view: u32) -> u32 {
     return 0u;
 }
 
-// Color and alpha, as the renderer wrote them.
-fn color_at(px: vec2<u32>, view: u32) -> vec4<f32> {
-    return textureLoad(color_in, texel_of(px, view, COLOR_IN), layer_of(view), 0);
+// Color and alpha of a texel, as the renderer wrote them.
+fn given_at(texel: vec2<u32>, view: u32) -> vec4<f32> {
+    return textureLoad(color_in, texel_of(texel, view, COLOR_IN), layer_of(view), 0);
+}
+
+// The same with the color in this frame's exposure.
+fn color_at(texel: vec2<u32>, view: u32) -> vec4<f32> {
+    let given = given_at(texel, view);
+    if EXPOSED == 0u {
+        return given;
+    }
+    return vec4<f32>(given.xyz * frame.color_exposure, given.w);
+}
+
+// A color in this frame's exposure, in the unit of the color input.
+fn unexposed(exposed: vec3<f32>) -> vec3<f32> {
+    if EXPOSED == 0u {
+        return exposed;
+    }
+    return exposed * frame.inverse_exposure;
+}
+
+// The same, clamped to what the output can hold.
+fn delivered(exposed: vec3<f32>) -> vec3<f32> {
+    if EXPOSED == 0u {
+        return exposed;
+    }
+    return clamp(unexposed(exposed), vec3<f32>(-frame.largest_shown), vec3<f32>(frame.largest_shown));
 }
 
 // Trust mask, not sanitized.
@@ -168,7 +199,11 @@ fn motion_of(px: vec2<u32>, texel: vec2<u32>, view: u32) -> vec2<f32> {
 
 // Noise of the candidate; valid only if NOISY is set.
 fn noise_at(px: vec2<u32>, view: u32) -> Noise {
-    return candidate_noise(textureLoad(noise_in, texel_of(px, view, NOISE_IN), layer_of(view), 0).xy);
+    let given = textureLoad(noise_in, texel_of(px, view, NOISE_IN), layer_of(view), 0).xy;
+    if EXPOSED == 0u {
+        return candidate_noise(given);
+    }
+    return candidate_noise(vec2<f32>(given.x * frame.color_exposure, given.y));
 }
 
 fn disparity_at(px: vec2<u32>, view: u32) -> f32 {

@@ -70,8 +70,7 @@ fn texel_of_point(point: vec2<u32>, lattice: LatticeUniforms) -> vec2<u32> {
     return lattice.texel + (point << vec2<u32>(lattice.texel_level));
 }
 
-// Color and alpha of sample `point`, as the renderer wrote them.
+// Color, in this frame's exposure, and alpha of sample `point`.
 fn sample_at(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec4<f32> {
-    let texel = texel_of_point(point, lattice);
-    return textureLoad(color_in, texel_of(texel, view, COLOR_IN), layer_of(view), 0);
+    return color_at(texel_of_point(point, lattice), view);
 }

@@ -14,6 +14,6 @@ fn write_output(px: vec2<u32>, view: u32, shown: vec3<f32>, alpha: f32, traced: 
         textureStore(color_out, at, layer_of(view), vec4<f32>(view_color(VIEW, traced), 1.0));
     } else {
         let kept = select(1.0, alpha, KEEP_ALPHA != 0u && is_finite(alpha));
-        textureStore(color_out, at, layer_of(view), vec4<f32>(shown, kept));
+        textureStore(color_out, at, layer_of(view), vec4<f32>(delivered(shown), kept));
     }
 }

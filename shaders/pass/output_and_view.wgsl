@@ -11,7 +11,7 @@ override DEBUG_VIEW: u32 = 1u;
 
 fn write_output(px: vec2<u32>, view: u32, shown: vec3<f32>, alpha: f32, traced: PixelTrace) {
     let kept = select(1.0, alpha, KEEP_ALPHA != 0u && is_finite(alpha));
-    textureStore(color_out, texel_of(px, view, COLOR_OUT), layer_of(view), vec4<f32>(shown, kept));
+    textureStore(color_out, texel_of(px, view, COLOR_OUT), layer_of(view), vec4<f32>(delivered(shown), kept));
     let drawn = vec4<f32>(view_color(DEBUG_VIEW, traced), 1.0);
     textureStore(debug_out, texel_of(px, view, DEBUG_OUT), layer_of(view), drawn);
 }

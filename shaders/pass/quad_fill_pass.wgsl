@@ -1,8 +1,8 @@
 //#use inputs
 //#use quad_samples
 // Colors between shaded quads, for methods that read whole frames: shaded pixels stay unchanged, and others are means
-// of the shaded quads around them by the inverse squared distance. CPU twin: `filled` in src/cpu/sparse_pass/quads.rs.
-// One invocation a pixel; z is the view.
+// of the shaded quads around them by the inverse squared distance. All are in the unit of the color input. CPU twin:
+// `filled` in src/cpu/sparse_pass/quads.rs. One invocation a pixel; z is the view.
 //
 // Up to 6 reads and 1 write a pixel: mask, neighbours and samples; 16 bytes written.
 
@@ -16,7 +16,7 @@ struct Missing {
 
 fn pixel(px: vec2<u32>, view: u32) -> vec4<f32> {
     if (mask_at(px, view) & 1u) != 0u {
-        return color_at(px, view);
+        return given_at(px, view);
     }
     let quad = px >> vec2<u32>(1u);
     let around = textureLoad(quad_around, quad, view, 0).xy;
@@ -40,7 +40,8 @@ fn pixel(px: vec2<u32>, view: u32) -> vec4<f32> {
     if weight == 0.0 {
         return vec4<f32>(bitcast<f32>(sparse.missing.x));
     }
-    return sum * (1.0 / weight);
+    let mean = sum * (1.0 / weight);
+    return vec4<f32>(unexposed(mean.xyz), mean.w);
 }
 
 @compute @workgroup_size(64, 1)

@@ -42,7 +42,7 @@ pub struct Doctor {
     desc: ContextDesc,
     view: usize,
     chart: Chart,
-    /// Light, gaze and jitter of the last frame.
+    /// Light, gaze, jitter and exposure of the last frame.
     past: Option<Past>,
 }
 
@@ -51,6 +51,7 @@ struct Past {
     light: Image<f32>,
     gaze_px: [f32; 2],
     jitter_px: [f32; 2],
+    exposure: f32,
 }
 
 impl Doctor {
@@ -76,9 +77,10 @@ impl Doctor {
         let jitter_px = facts.jitter_px;
         self.desc.depth = facts.depth_convention(&self.desc);
         let desc = &self.desc;
-        let light = doctor_pass::light(frame.color[view]);
+        let exposure = frame.exposure.of_colors();
+        let light = doctor_pass::light(frame.color[view], exposure);
         let gaze_px = facts.gaze.resolve(self.past.as_ref().map(|p| p.gaze_px), &facts.geometry);
-        let past = self.past.take().filter(|_| continues(frame));
+        let past = self.past.take().filter(|past| continues(frame, past.exposure));
         let now = Description {
             has_depth: frame.depth.is_some(),
             has_motion: frame.motion.is_some() && !desc.motion.lacks_camera(),
@@ -87,6 +89,7 @@ impl Doctor {
         };
         let examined = Examined {
             color: frame.color[view],
+            exposure,
             depth: frame.depth.map(|d| d[view]),
             motion: frame.motion.map(|m| m[view]),
             now: &light,
@@ -95,7 +98,7 @@ impl Doctor {
         };
         let words = doctor_pass::words(&examined, &now.tiles);
         self.chart.add(Observation { now, past_jitter_px: past.map(|p| p.jitter_px), words });
-        self.past = Some(Past { light, gaze_px, jitter_px });
+        self.past = Some(Past { light, gaze_px, jitter_px, exposure });
         Ok(())
     }
 

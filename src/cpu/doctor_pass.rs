@@ -10,6 +10,8 @@ use crate::parallel::collect;
 /// Inputs of the pass.
 pub(super) struct Examined<'a> {
     pub color: &'a Image<[f32; 3]>,
+    /// Factor on its colors.
+    pub exposure: f32,
     pub depth: Option<&'a Image<f32>>,
     pub motion: Option<&'a Image<[f32; 2]>>,
     /// [`light`] of this frame and of the previous one.
@@ -19,13 +21,13 @@ pub(super) struct Examined<'a> {
     pub maps: &'a [[f32; 4]],
 }
 
-/// Roots of the mean signal of 2x2 pixels.
-pub(super) fn light(color: &Image<[f32; 3]>) -> Image<f32> {
+/// Roots of the mean signal of 2x2 pixels of colors times `exposure`.
+pub(super) fn light(color: &Image<[f32; 3]>, exposure: f32) -> Image<f32> {
     let size = color.size();
     Image::from_fn_parallel(size.map(|s| foveate::level_len(s, 1)), |[x, y]| {
         let at = |dx: u32, dy: u32| {
             let [x, y] = [(2 * x + dx).min(size[0] - 1), (2 * y + dy).min(size[1] - 1)];
-            signal(color.at(x as usize, y as usize)[1])
+            signal(color.at(x as usize, y as usize)[1] * exposure)
         };
         root_mean(at(0, 0), at(1, 0), at(0, 1), at(1, 1))
     })
@@ -98,7 +100,7 @@ impl Examined<'_> {
         let mut at = px;
         let last = self.color.size()[axis] as i32 - 1;
         at[axis] = (px[axis] as i32 + offset).clamp(0, last) as u32;
-        signal(self.color.at(at[0] as usize, at[1] as usize)[1])
+        signal(self.color.at(at[0] as usize, at[1] as usize)[1] * self.exposure)
     }
 
     /// Copies stored depths and motion.

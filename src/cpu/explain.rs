@@ -29,7 +29,7 @@ pub(super) fn explain(pass: &impl ProcessPixel, stored: fn(&Pixel, &mut Vec<Note
     let PixelNotes { px: [x, y], notes, .. } = pixel;
     let result = pass.process(*x, *y, &mut FrameStats::default(), notes);
     note_trace(&result.trace, notes);
-    notes.note(NoteStage::Shown, "color", result.output, "linear light");
+    notes.note(NoteStage::Shown, "color", result.output, "linear light, in the unit of the given colors");
     notes.note(NoteStage::Stored, "words", result.surface, "");
     stored(&result, notes);
 }
@@ -50,7 +50,7 @@ pub(super) fn note_inputs(
         return;
     }
     let facts = &frame.views[view];
-    let held = history.held_after(view, facts);
+    let held = history.held_after(view, given);
     let inputs = Inputs::new(desc, frame, view, &held, history.is_filled());
     let stage = NoteStage::Input;
     let (u, v) = (x as usize, y as usize);
@@ -59,10 +59,11 @@ pub(super) fn note_inputs(
     notes.note(stage, "distance from the gaze", e_deg, "deg");
     notes.note(stage, "jitter", inputs.uniforms.jitter_px, "px");
     notes.note(stage, "visible in the lens", inputs.is_visible(x, y), "");
+    notes.note(stage, "exposure", inputs.color_exposure, "factor on colors and noise as given");
     notes.note(stage, "exposure by that of the previous frame", inputs.exposure, "");
     notes.note(stage, "history starts here", frame.reset != Reset::None || !history.is_filled(), "");
     if frame.color[view].size() == desc.size_px {
-        notes.note(stage, "color", frame.color[view].at(u, v), "linear light");
+        notes.note(stage, "color", frame.color[view].at(u, v), "linear light, as given");
     }
     match (quads.get(view), &facts.lattices) {
         (Some(quads), _) => {
@@ -130,7 +131,7 @@ fn note_sample(given: &Frame<'_>, view: usize, inputs: &Inputs<'_>, px: [u32; 2]
     let [u, v] = lattice.texel_of(point.map(|v| v as u32));
     notes.note(stage, "nearest sample", offset, "px from the pixel");
     notes.note(stage, "its texel", [u as f32, v as f32], "px");
-    notes.note(stage, "its color", given.color[view].at(u as usize, v as usize), "linear light");
+    notes.note(stage, "its color", given.color[view].at(u as usize, v as usize), "linear light, as given");
 }
 
 /// Notes the texels of history that are filtered.

@@ -31,7 +31,7 @@ pub(super) fn filled(desc: &ContextDesc, frame: &Frame<'_>, history: &History) -
     for (i, view) in frame.views.iter().enumerate() {
         let lattices = view.lattices.as_ref().filter(|lattices| lattices.has_geometry_at_samples())?;
         let lattices = LatticeUniforms::of_view(lattices, desc.size_px);
-        let inputs = Inputs::new(desc, frame, i, &history.held_after(i, view), history.is_filled());
+        let inputs = Inputs::new(desc, frame, i, &history.held_after(i, frame), history.is_filled());
         let view = View { words: if inputs.reset { &[] } else { history.kept(i) }, inputs, lattices };
         let pixels = Image::from_fn_parallel(desc.size_px, |px| view.pixel(px));
         views.push(Geometry { depth: pixels.map(|(depth, _)| depth), motion: pixels.map(|(_, motion)| motion) });

@@ -1,7 +1,8 @@
 //! State between frames: the previous and the current frame's buffers, which swap after each frame.
 
+use super::Frame;
 use super::mip_chain::MipChain;
-use crate::frame::{ContextDesc, ViewFrame};
+use crate::frame::ContextDesc;
 use crate::method::HistoryLayout;
 use crate::resize::Resize;
 use crate::uniforms::Held;
@@ -132,9 +133,9 @@ impl History {
         self.filled
     }
 
-    /// Updates the held state of a view (gaze and jitter) with this frame, and returns it.
-    pub(super) fn hold(&mut self, index: usize, view: &ViewFrame) -> Held {
-        let held = self.held[index].with(view);
+    /// Updates the held state of view `index` with this frame, and returns it.
+    pub(super) fn hold(&mut self, index: usize, frame: &Frame<'_>) -> Held {
+        let held = self.held_after(index, frame);
         self.held[index] = held;
         held
     }
@@ -145,8 +146,8 @@ impl History {
     }
 
     /// The state that [`hold`](Self::hold) would return, without changing anything.
-    pub(super) fn held_after(&self, index: usize, view: &ViewFrame) -> Held {
-        self.held[index].with(view)
+    pub(super) fn held_after(&self, index: usize, frame: &Frame<'_>) -> Held {
+        self.held[index].with(&frame.views[index], frame.exposure)
     }
 
     /// Previous packed samples of `view`; empty except for smr on sparse frames, and without history.

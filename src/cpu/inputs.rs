@@ -31,7 +31,7 @@ pub(super) struct Previous {
 
 /// Inputs and constants of one view of a frame.
 pub(super) struct Inputs<'a> {
-    pub color: &'a Image<[f32; 3]>,
+    color: &'a Image<[f32; 3]>,
     lod: Option<&'a Image<f32>>,
     depth: Option<&'a Image<f32>>,
     motion: Option<&'a Image<[f32; 2]>>,
@@ -45,6 +45,10 @@ pub(super) struct Inputs<'a> {
     gaze_ray: Vec3,
     /// Factor on stored colors.
     pub exposure: f32,
+    /// Factor on given colors.
+    pub color_exposure: f32,
+    /// Its inverse, a factor on shown colors.
+    inverse_exposure: f32,
     /// Whether the view starts without history.
     pub reset: bool,
     motion_scale: [f32; 2],
@@ -72,7 +76,9 @@ impl<'a> Inputs<'a> {
             lattices: LatticeUniforms::of_view_or_full(view.lattices.as_ref(), desc.size_px),
             uniforms,
             gaze_ray: Vec3::new(x, y, z),
-            exposure: frame.exposure.factor(),
+            exposure: held.stored_exposure(frame),
+            color_exposure: frame.exposure.of_colors(),
+            inverse_exposure: 1.0 / frame.exposure.of_colors(),
             reset: frame.reset != Reset::None || !has_history,
             motion_scale: desc.motion.to_internal(desc.size_px),
             convention: desc.motion,
@@ -148,10 +154,22 @@ impl<'a> Inputs<'a> {
         moves_alike(own, self.motion(across_x, y)) || moves_alike(own, self.motion(x, across_y))
     }
 
+    /// Color of a texel of the color input, in this frame's exposure, not sanitized.
+    #[inline(always)]
+    pub fn color_at(&self, [x, y]: [u32; 2]) -> Vec3 {
+        Vec3::from(self.color.at(x as usize, y as usize)) * self.color_exposure
+    }
+
+    /// A color in this frame's exposure, in the unit of the color input.
+    #[inline(always)]
+    pub fn unexposed(&self, color: Vec3) -> Vec3 {
+        color * self.inverse_exposure
+    }
+
     /// Sanitized candidate, and whether it is usable.
     #[inline(always)]
     pub fn candidate(&self, x: u32, y: u32) -> (Vec3, bool) {
-        sanitize::color(Vec3::from(self.color.at(x as usize, y as usize)))
+        sanitize::color(self.color_at([x, y]))
     }
 
     #[inline(always)]
@@ -213,7 +231,9 @@ impl<'a> Inputs<'a> {
     /// Noise of the candidate; `None` without a noise input.
     #[inline(always)]
     pub fn noise(&self, x: u32, y: u32) -> Option<Noise> {
-        self.noise.map(|n| candidate_noise(n.at(x as usize, y as usize)))
+        let noise = self.noise?;
+        let [error, samples] = noise.at(x as usize, y as usize);
+        Some(candidate_noise([error * self.color_exposure, samples]))
     }
 
     /// Trust mask, not sanitized; `None` without a trust input and a reactive mask.

@@ -289,8 +289,8 @@ impl CpuAfterimage {
         }
         self.planned = None;
         if self.history.layout() == HistoryLayout::Nothing {
-            for (i, view) in frame.views.iter().enumerate() {
-                self.history.hold(i, view);
+            for i in 0..frame.views.len() {
+                self.history.hold(i, frame);
             }
         } else {
             self.history.swap();

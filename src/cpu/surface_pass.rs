@@ -44,7 +44,8 @@ struct InView<'a, M> {
 impl<M: SurfaceMethod> ProcessPixel for InView<'_, M> {
     #[inline(always)]
     fn process(&self, x: u32, y: u32, stats: &mut FrameStats, notes: &mut impl Notes) -> Pixel {
-        self.method.pixel(&self.view, x, y, stats, notes)
+        let pixel = self.method.pixel(&self.view, x, y, stats, notes);
+        Pixel { output: self.view.inputs.unexposed(pixel.output), ..pixel }
     }
 }
 
@@ -54,7 +55,7 @@ pub(super) fn run(pass: Pass<'_, '_>, method: &impl SurfaceMethod) -> FrameStats
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
-        let held = history.hold(i, &frame.views[i]);
+        let held = history.hold(i, frame);
         let inputs = Inputs::new(desc, frame, i, &held, has_history);
         history.build_candidates(i, |x, y| {
             let (color, usable) = inputs.candidate(x, y);

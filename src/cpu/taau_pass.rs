@@ -128,8 +128,8 @@ fn samples(
     let (first, level) = (lattice.first_px, lattice.level);
     let middle = [0, 1].map(|i| nearest_point(px[i], first[i], level));
     let sample_at = |point: [i32; 2]| {
-        let [x, y] = lattice.texel_of([0, 1].map(|i| point[i].clamp(0, lattice.points[i] as i32 - 1) as u32));
-        sanitize::color(Vec3::from(inputs.color.at(x as usize, y as usize)))
+        let inside = [0, 1].map(|i| point[i].clamp(0, lattice.points[i] as i32 - 1) as u32);
+        sanitize::color(inputs.color_at(lattice.texel_of(inside)))
     };
     let mut found = Samples { around: SamplesAround::default(), nearest: Vec3::ZERO, usable: false, past_luma: 0.0 };
     if lattice.points.contains(&0) {

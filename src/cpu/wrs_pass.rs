@@ -76,7 +76,7 @@ impl Pixel {
     fn note(&self, notes: &mut Vec<Note>) {
         let Stored { color, disparity, w_sum, age } = pack::unpack(self.words);
         note_trace(&self.trace, notes);
-        notes.note(NoteStage::Shown, "color", self.output, "linear light");
+        notes.note(NoteStage::Shown, "color", self.output, "linear light, in the unit of the given colors");
         notes.note(NoteStage::Stored, "words", self.words, "");
         notes.note(NoteStage::Stored, "color", color, "linear light");
         notes.note(NoteStage::Stored, "disparity", disparity, "1/distance, below 0: unknown");
@@ -102,7 +102,7 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
-        let held = history.hold(i, &frame.views[i]);
+        let held = history.hold(i, frame);
         let (past, next) = history.split(i);
         let pass = ViewPass {
             inputs: Inputs::new(desc, frame, i, &held, has_history),
@@ -238,7 +238,7 @@ impl ViewPass<'_> {
             motion,
         };
         let reference = if self.has_references { wrs::pack_reference(next) } else { 0 };
-        Pixel { output: color, words, log_key: decision.log_key, reference, trace }
+        Pixel { output: inputs.unexposed(color), words, log_key: decision.log_key, reference, trace }
     }
 
     #[inline(always)]

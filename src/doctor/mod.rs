@@ -64,9 +64,10 @@ impl Chart {
     }
 }
 
-/// Whether a frame can be compared with the one before.
-pub(crate) fn continues<E: Executor>(frame: &FrameInputs<'_, E>) -> bool {
-    frame.reset == Reset::None && frame.exposure == Exposure::Same
+/// Whether a frame can be compared with the one before, whose colors had the exposure `before`.
+pub(crate) fn continues<E: Executor>(frame: &FrameInputs<'_, E>, before: f32) -> bool {
+    let has_changed = matches!(frame.exposure, Exposure::Changed { .. }) || frame.exposure.of_colors() != before;
+    frame.reset == Reset::None && !has_changed
 }
 
 /// Rejects lattices, which the rules do not cover yet, and the index of a view that a context does not have.

@@ -29,8 +29,10 @@ struct DoctorUniforms {
     depth_origin: u32,
     /// The same for motion vectors.
     motion_origin: u32,
+    /// Factor on colors.
+    exposure: f32,
     /// Padding to a multiple of 16 bytes.
-    unused: [u32; 3],
+    unused: [u32; 2],
     /// Maps of the hypotheses.
     maps: [[f32; 4]; HYPOTHESES as usize],
 }
@@ -61,6 +63,7 @@ pub struct Doctor {
 struct Past {
     gaze_px: [f32; 2],
     jitter_px: [f32; 2],
+    exposure: f32,
 }
 
 impl Doctor {
@@ -122,7 +125,7 @@ impl Doctor {
         let jitter_px = view.jitter_px;
         let gaze_px = view.gaze.resolve(self.past.map(|p| p.gaze_px), &view.geometry);
         self.desc.depth = view.depth_convention(&self.desc);
-        let past = self.past.filter(|_| continues(frame));
+        let past = self.past.filter(|past| continues(frame, past.exposure));
         let now = Description {
             has_depth: frame.depth.is_some(),
             has_motion: frame.motion.is_some() && !self.desc.motion.lacks_camera(),
@@ -131,7 +134,7 @@ impl Doctor {
         };
         self.dispatch(device, encoder, frame, &now, words);
         self.light.swap(0, 1);
-        self.past = Some(Past { gaze_px, jitter_px });
+        self.past = Some(Past { gaze_px, jitter_px, exposure: frame.exposure.of_colors() });
         if self.pending.len() == PENDING {
             self.pending.pop_front();
         }
@@ -175,7 +178,8 @@ impl Doctor {
         let [color, depth, motion] = [Some(frame.color), frame.depth, frame.motion].map(optional);
         let origin = |textures: Option<Textures<'_>>| textures.map_or(0, |t| t.packed_origin(self.view));
         let [w, h] = self.desc.size_px;
-        let bytes = [w, h, origin(Some(frame.color)), 0];
+        let exposure = frame.exposure.of_colors();
+        let bytes = [w, h, origin(Some(frame.color)), exposure.to_bits()];
         let view = filled(device, "afterimage doctor view", bytemuck::bytes_of(&bytes), BufferUsages::UNIFORM);
         let resources = [
             view.as_entire_binding(),
@@ -191,7 +195,8 @@ impl Doctor {
             color_origin: origin(Some(frame.color)),
             depth_origin: origin(frame.depth),
             motion_origin: origin(frame.motion),
-            unused: [0; 3],
+            exposure,
+            unused: [0; 2],
             maps: maps(&self.desc),
         };
         let uniforms = filled(device, "afterimage doctor", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);

@@ -2,7 +2,7 @@
 
 use super::binding::Binding;
 use super::{Afterimage, Textures};
-use crate::frame::ViewFrame;
+use crate::frame::{Exposure, ViewFrame};
 use crate::kernel::debug_view::DebugView;
 use crate::uniforms::{MAX_VIEWS, ORIGINS};
 use crate::warning::Warning;
@@ -135,12 +135,14 @@ pub struct Variant {
     /// Whether depth and motion are given at samples only
     /// ([`Lattices::with_geometry_at_samples`](crate::Lattices::with_geometry_at_samples)).
     pub geometry_at_samples: bool,
+    /// Whether colors are radiance ([`Exposure::Scene`](crate::Exposure::Scene)).
+    pub exposure: bool,
     /// View of the [`DebugTarget`], if any.
     pub debug: Option<DebugView>,
 }
 
 impl Variant {
-    /// All combinations without reactive masks, regions, geometry at samples and debug views: 32.
+    /// All combinations without reactive masks, regions, geometry at samples, exposures and debug views: 32.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..32_u32).map(|bits| {
             let bit = |i: u32| bits >> i & 1 == 1;
@@ -172,6 +174,7 @@ impl Variant {
             counters: target.counters.is_some(),
             regions: frame.textures().iter().flatten().any(Textures::is_regions) || target.has_regions(),
             geometry_at_samples: frame.has_geometry_at_samples(),
+            exposure: matches!(frame.exposure, Exposure::Scene { .. }),
             debug: target.debug.map(|d| d.view),
         }
     }

@@ -588,9 +588,11 @@ impl Afterimage {
         let mut recorded = Recorded::default();
         let mut after = vec![];
         for (i, (view, held)) in frame.views.iter().zip(&self.history.held).enumerate() {
-            after.push(held.with(view));
+            after.push(held.with(view, frame.exposure));
             recorded.note_gaze(i, view, held.gaze_px);
         }
-        (FrameUniforms::new(&self.desc, frame, &after, self.history.past_frame()), after, recorded)
+        let uniforms = FrameUniforms::new(&self.desc, frame, &after, self.history.past_frame());
+        let largest_shown = output::largest(self.output_format);
+        (FrameUniforms { largest_shown, ..uniforms }, after, recorded)
     }
 }

@@ -1,6 +1,7 @@
 //! Output formats, and formats that a device can store.
 
 use crate::error::CreateError;
+use crate::kernel::sanitize::MAX_HALF;
 use std::future::Future;
 use std::task::{Context, Poll, Waker};
 use wgpu::{Device, ErrorFilter, Extent3d, Features, TextureDescriptor, TextureFormat, TextureUsages};
@@ -62,6 +63,11 @@ pub(crate) fn texel(device: &Device, format: TextureFormat) -> Result<&'static s
         _ if !is_storable(device, format) => refuse("a format that this adapter can store; Rgba16Float suits most"),
         _ => Ok(name),
     }
+}
+
+/// Largest magnitude of a color in an output: of floats of 32 bits all that they can hold, otherwise that of halves.
+pub(super) fn largest(format: TextureFormat) -> f32 {
+    if format == TextureFormat::Rgba32Float { f32::MAX } else { MAX_HALF }
 }
 
 /// Whether compute shaders can write textures of a format. The device says what its features guarantee, but not what

@@ -22,6 +22,8 @@ pub(super) struct Specialization {
     /// Set of [bits](Binding::bit).
     present: u32,
     has_regions: bool,
+    /// Whether colors are radiance.
+    is_exposed: bool,
     /// Whether depth and motion are filled, with the camera's motion.
     is_filled: bool,
     /// Whether depth and motion are given at samples only.
@@ -38,6 +40,7 @@ impl Specialization {
         Self {
             present: variant.bindings(),
             has_regions: variant.regions,
+            is_exposed: variant.exposure,
             is_filled: false,
             is_at_samples: variant.geometry_at_samples,
             view,
@@ -66,6 +69,7 @@ impl Specialization {
         let bits = u64::from(self.present & bound)
             | u64::from(self.has_regions) << 32
             | u64::from(self.is_filled) << 33
+            | u64::from(self.is_exposed) << 34
             | code(self.view) << 40
             | code(self.debug) << 48;
         let key = PipelineKey { bits, generation: self.generation };
@@ -74,7 +78,7 @@ impl Specialization {
 
     /// Override values of shaders that use the set `bound` of bindings.
     fn overrides(&self, desc: &ContextDesc, bound: u32) -> Overrides {
-        use Binding::{Counters, Debug, Depth, Motion, Output, Past, Uniforms};
+        use Binding::{Color, Counters, Debug, Depth, Motion, Output, Past, Uniforms};
         let has = |binding| u32::from(self.has(binding));
         let settings = &desc.settings;
         let is_tested = self.has(Depth) && settings.depth_test.is_some();
@@ -82,6 +86,7 @@ impl Specialization {
         let code = |view: Option<DebugView>| view.map_or(0, |view| view as u32);
         let list = [
             (Uniforms, "REGIONS", u32::from(self.has_regions)),
+            (Color, "EXPOSED", u32::from(self.is_exposed)),
             (Depth, "DEPTH_TEST", u32::from(is_tested)),
             // Filled vectors contain the camera's motion.
             (Motion, "CAMERA_MOTION", if self.is_filled { 0 } else { desc.motion.camera_code() }),

@@ -59,6 +59,14 @@ pub struct FrameUniforms {
     pub lattice: u32,
     /// Levels of the mip chains of surfaces and of noisy candidates, above the full-rate one; 0 without.
     pub mip_levels: u32,
+    /// Factor on given colors.
+    pub color_exposure: f32,
+    /// Its inverse, a factor on shown colors.
+    pub inverse_exposure: f32,
+    /// Largest magnitude of a shown color.
+    pub largest_shown: f32,
+    /// Padding to a multiple of 16 bytes.
+    pub unused: u32,
     /// Places in their blocks of the quads of the even pattern, in the middle region and in the periphery, in quads.
     pub quad_offsets: [u32; 4],
     /// One entry a view.
@@ -68,8 +76,8 @@ pub struct FrameUniforms {
 }
 
 impl FrameUniforms {
-    /// Uniforms of a frame, without the origins of its views. `held`: state of the views after this frame.
-    /// `past_frame`: number of the previous frame, or [`NO_FRAME`].
+    /// Uniforms of a frame, without the origins of its views and the largest shown color. `held`: state of the views
+    /// after this frame. `past_frame`: number of the previous frame, or [`NO_FRAME`].
     pub(super) fn new(desc: &ContextDesc, frame: &Frame<'_>, held: &[Held], past_frame: u32) -> Self {
         let settings = &desc.settings;
         let (wrs, smr) = (wrs_params(settings), smr_params(settings));
@@ -87,7 +95,7 @@ impl FrameUniforms {
             depth_relative: test.relative,
             depth_slope_px: test.slope_px,
             motion_scale: desc.motion.to_internal(desc.size_px),
-            exposure: frame.exposure.factor(),
+            exposure: held[0].stored_exposure(frame),
             mid_radius_deg: settings.foveation.mid_radius_deg(),
             blend_deg: settings.foveation.blend_deg,
             coarse_mid,
@@ -99,6 +107,8 @@ impl FrameUniforms {
                 HistoryLayout::Surfaces { levels, .. } => levels,
                 _ => 0,
             },
+            color_exposure: frame.exposure.of_colors(),
+            inverse_exposure: 1.0 / frame.exposure.of_colors(),
             quad_offsets: settings.foveation.quad_offsets(frame.index),
             ..Self::default()
         };

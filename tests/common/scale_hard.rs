@@ -1,9 +1,11 @@
-//! Scale of light, H106: laws of smr that hold on either executor.
+//! Scale of light, H106: laws that hold on either executor.
 
-use crate::depth_hard::{Color, Made, Make};
+use crate::depth_hard::{Color, Made, Make, Steps};
 use crate::images::View;
 use afterimage::simulator::Pyramid;
-use afterimage::{ContextDesc, Exposure, Filter, Foveation, Image, Reset, Settings};
+use afterimage::{
+    ContextDesc, Exposure, Filter, Foveation, Image, Method, MethodKind, Reset, Sampler, Settings, Smr, Wrs,
+};
 use afterimage_testing::Draws;
 
 /// The laws as tests of an executor. `$held` runs one, and returns what it measured.
@@ -11,21 +13,34 @@ macro_rules! scale_laws {
     ($side:ident, $held:ident) => {
         laws! { $side, $held,
             h106_colors_times_a_constant_are_shown_as_the_picture_times_it: "H106", times_a_constant;
+            h106_radiance_with_its_exposure_is_shown_as_the_picture_in_its_unit: "H106", radiance;
             h106_a_shadow_that_moves_leaves_as_little_light_in_dark_frames: "H106", moving_shadow;
         }
     };
 }
 pub(crate) use scale_laws;
 
+/// Frames of a clip.
+const FRAMES: u64 = 12;
+
 fn settings(filter: Filter) -> Settings {
     let foveation = Foveation { filter, rate_mid: 4, rate_far: 8, ..Foveation::default() };
     Settings { foveation, ..Settings::default() }
 }
 
-/// What a foveating renderer delivers of a picture.
-fn delivered(settings: &Settings, full: &Color, gaze_px: [f32; 2]) -> View {
-    let view = View::still(full.clone(), gaze_px);
+/// What a foveating renderer delivers of a picture. Of a frame shaded by quads, only the chosen ones are read.
+fn delivered(settings: &Settings, full: &Color, gaze_px: [f32; 2], index: u64) -> View {
+    let mut view = View::still(full.clone(), gaze_px);
+    if matches!(settings.method, Method::Smr(Smr { antialias: true, .. })) {
+        view.facts.jitter_px = Foveation::jitter_px(index);
+    }
+    view.noise = settings.noisy.then(|| full.map(|c| [0.05 * c[1], 2.0]));
     let (f, geometry) = (&settings.foveation, view.facts.geometry);
+    match f.filter {
+        Filter::Sparse => return view.foveated(f, gaze_px, index),
+        Filter::Quads => return view,
+        _ => {}
+    }
     let lods = f.lod_map(&geometry, gaze_px, &geometry.eccentricity_map(gaze_px));
     View { color: f.render(&Pyramid::new(full.clone(), f.max_level()), &lods), ..view }
 }
@@ -34,14 +49,28 @@ fn times(color: &Color, factor: f32) -> Color {
     color.map(|c| c.map(|v| v * factor))
 }
 
+/// A view with its light in another unit.
+fn in_unit(view: &View, factor: f32) -> View {
+    let noise = view.noise.as_ref().map(|noise| noise.map(|[error, samples]| [error * factor, samples]));
+    View { color: times(&view.color, factor), noise, ..view.clone() }
+}
+
 /// The frames times a factor through an executor.
 fn run(make: Make<'_>, settings: Settings, views: &[View], factor: f32) -> Option<Vec<Made>> {
     let mut post = make(ContextDesc { settings, ..ContextDesc::new(views[0].color.size()) })?;
-    let step = |(index, view): (usize, &View)| {
-        let lit = View { color: times(&view.color, factor), ..view.clone() };
-        post.make(index as u64, &lit, Exposure::Same, Reset::None)
-    };
-    Some(views.iter().enumerate().map(step).collect())
+    Some(of_unit(&mut *post, views, |_| factor, |_| Exposure::Same))
+}
+
+/// The frames in units that may differ, with their exposures, through an executor without history.
+fn of_unit(
+    post: &mut dyn Steps,
+    views: &[View],
+    unit: impl Fn(usize) -> f32,
+    exposure: impl Fn(usize) -> Exposure,
+) -> Vec<Made> {
+    post.forget();
+    let views = views.iter().enumerate();
+    views.map(|(i, view)| post.make(i as u64, &in_unit(view, unit(i)), exposure(i), Reset::None)).collect()
 }
 
 /// A rough picture with a new gaze, light and shadow in every frame. No channel is darker than 1/16 after resampling:
@@ -49,15 +78,15 @@ fn run(make: Make<'_>, settings: Settings, views: &[View], factor: f32) -> Optio
 fn clip(draws: &mut Draws, settings: &Settings, speed_px: [f32; 2]) -> Vec<View> {
     const SIZE: [u32; 2] = [64, 48];
     let wall = Image::from_fn(SIZE, |_| [0; 3].map(|_| 0.5 + 0.3 * draws.uniform()));
-    let frame = |_| {
+    let frame = |index| {
         let (light, edge) = (draws.range(0.8, 1.25), draws.range(0.0, 64.0));
         let gaze_px = SIZE.map(|side| draws.range(0.0, side as f32 - 1.0));
         let lit = |x: u32| if x as f32 > edge { light } else { 0.7 * light };
         let full = Image::from_fn(SIZE, |[x, y]| wall.at(x as usize, y as usize).map(|v| v * lit(x)));
-        let view = delivered(settings, &full, gaze_px);
+        let view = delivered(settings, &full, gaze_px, index);
         if speed_px == [0.0; 2] { view } else { view.moving(speed_px) }
     };
-    (0..12).map(frame).collect()
+    (0..FRAMES).map(frame).collect()
 }
 
 /// Whether pictures and decisions are those of the frames without the factor, times the factor, bit for bit.
@@ -108,8 +137,85 @@ pub fn times_a_constant(make: Make<'_>) -> Option<String> {
     ))
 }
 
+/// Settings of all methods and kinds of frames, and whether they compare colors by constants.
+fn all_settings() -> Vec<(Settings, bool)> {
+    let regions = Foveation { fovea_deg: 20.0, mid_deg: 40.0, rate_mid: 2, rate_far: 4, ..Foveation::default() };
+    let lattices = Foveation { filter: Filter::Sparse, ..regions };
+    let quads = Foveation { fovea_deg: 20.0, mid_deg: 40.0, ..Foveation::quads() };
+    let of = |method, foveation| Settings { method, foveation, ..Settings::default() };
+    let smr = |antialias| Method::Smr(Smr { antialias, ..Smr::default() });
+    let wrs = |sampler| Method::Wrs(Wrs { sampler, ..Wrs::default() });
+    let absolute = [
+        of(smr(false), lattices),
+        of(smr(true), lattices),
+        of(smr(false), quads),
+        of(smr(true), quads),
+        Settings { foveation: regions, ..Settings::traced() },
+        Settings { foveation: lattices, ..Settings::traced() },
+        of(wrs(Sampler::AChao), regions),
+        of(wrs(Sampler::AEs), regions),
+        Settings { foveation: regions, ..Settings::weighted() },
+        Settings { foveation: lattices, ..Settings::weighted() },
+        Settings { foveation: regions, ..Settings::paper() },
+    ];
+    let others =
+        [of(smr(false), regions), of(Method::Taa, quads), of(Method::Taau, lattices), of(Method::None, lattices)];
+    absolute.map(|settings| (settings, true)).into_iter().chain(others.map(|settings| (settings, false))).collect()
+}
+
+/// Radiance with its exposure is decided on as the exposed colors are, and shown in its own unit.
+pub fn radiance(make: Make<'_>) -> Option<String> {
+    let mut draws = Draws::new("exposure of a scene");
+    let (mut worst, all) = (0.0_f64, all_settings());
+    for (settings, is_absolute) in &all {
+        let views = clip(&mut draws, settings, [0.3, -1.4]);
+        let mut post = make(ContextDesc { settings: *settings, ..ContextDesc::new(views[0].color.size()) })?;
+        let same = |_: usize| Exposure::Same;
+        let plain = of_unit(&mut *post, &views, |_| 1.0, same);
+        let reused = plain.iter().flat_map(|m| m.trace.pixels()).filter(|t| t.history_share > 0.5).count();
+        assert!(reused > 1000 || settings.method.kind() == MethodKind::None, "{settings:?}: {reused}");
+        let stored = |a: &[Made], b: &[Made]| a.iter().zip(b).all(|(a, b)| a.words == b.words);
+        for exponent in [-30, -10, -3, 6, 12, 24] {
+            let unit = 2.0_f32.powi(exponent);
+            let scaled = of_unit(&mut *post, &views, |_| unit, |_| Exposure::Scene { exposure: 1.0 / unit });
+            assert!(scales(&plain, &scaled, unit) && stored(&plain, &scaled), "{settings:?}: 2^{exponent}");
+        }
+        // An exposure that changes: as if the renderer multiplied its colors, and said so.
+        let exposure = |i: usize| 2.0_f32.powi([0, -1, -1, 2, 5, -3][i % 6]);
+        let changed = |i: usize| Exposure::Changed { ratio: if i == 0 { 1.0 } else { exposure(i) / exposure(i - 1) } };
+        let by_hand = of_unit(&mut *post, &views, exposure, changed);
+        let given = of_unit(
+            &mut *post,
+            &views,
+            |_| 1.0,
+            |i| match exposure(i) {
+                1.0 => Exposure::Same,
+                exposure => Exposure::Scene { exposure },
+            },
+        );
+        let is_same = |i: usize| scales(&given[i..=i], &by_hand[i..=i], exposure(i));
+        assert!((0..views.len()).all(is_same) && stored(&by_hand, &given), "{settings:?}: exposures that change");
+        let odd = of_unit(&mut *post, &views, |_| 700.0, |_| Exposure::Scene { exposure: 1.0 / 700.0 });
+        worst = worst.max(off(&plain, &odd, 700.0));
+        // The planted errors: no exposure, and one that is applied twice.
+        let (dark, twice) = (2.0_f32.powi(-10), Exposure::Scene { exposure: 2.0_f32.powi(20) });
+        for wrong in [Exposure::Same, twice] {
+            let scaled = of_unit(&mut *post, &views, |_| dark, |_| wrong);
+            assert!(!is_absolute || !scales(&plain, &scaled, dark), "{settings:?}: {wrong:?}");
+        }
+    }
+    assert!(worst < 0.01, "{worst}");
+    Some(format!(
+        "radiance with its exposure, {} settings of all methods, on whole frames, lattices and quads: at 2^-30 to \
+         2^24, and with exposures that change, pictures, decisions and history as of exposed colors, bit for bit; at \
+         1/700 {:.3} % of the channels differ by 1 %",
+        all.len(),
+        100.0 * worst
+    ))
+}
+
 /// Light left behind the edge of a shadow that moves by 2 px a frame without vectors, as a share of the step of light.
-fn light_left(make: Make<'_>, settings: Settings, exponent: i32) -> Option<f64> {
+fn light_left(make: Make<'_>, settings: Settings, exponent: i32, exposure: Exposure) -> Option<f64> {
     let (size, factor) = ([160, 90], 2.0_f32.powi(exponent));
     let mut post = make(ContextDesc { settings, ..ContextDesc::new(size) })?;
     let (mut left, mut step) = (0.0, 0.0);
@@ -119,12 +225,8 @@ fn light_left(make: Make<'_>, settings: Settings, exponent: i32) -> Option<f64> 
         let edge = 60 + 2 * index.saturating_sub(16) as u32;
         let light = |x: u32| if x > 50 && x < edge { 0.1 } else { 0.4 };
         let full = Image::from_fn(size, |[x, y]| [light(x) * (0.75 + 0.25 * ((x + y) % 3) as f32); 3]);
-        let view = match settings.foveation.filter {
-            Filter::Sparse => View::still(full.clone(), gaze_px).foveated(&settings.foveation, gaze_px, index),
-            _ => delivered(&settings, &full, gaze_px),
-        };
-        let lit = View { color: times(&view.color, factor), ..view };
-        let shown = post.make(index, &lit, Exposure::Same, Reset::None).shown;
+        let view = in_unit(&delivered(&settings, &full, gaze_px, index), factor);
+        let shown = post.make(index, &view, exposure, Reset::None).shown;
         if index >= 30 {
             for (x, y) in (edge - 10..edge - 4).flat_map(|x| (0..90).map(move |y| (x as usize, y))) {
                 left += f64::from(shown.at(x, y)[1] / factor - full.at(x, y)[1]);
@@ -138,23 +240,32 @@ fn light_left(make: Make<'_>, settings: Settings, exponent: i32) -> Option<f64> 
 /// The same in a bright frame and in dark ones.
 pub fn moving_shadow(make: Make<'_>) -> Option<String> {
     let left = |settings: Settings, exponents: &[i32]| {
-        exponents.iter().map(|&exponent| light_left(make, settings, exponent)).collect::<Option<Vec<_>>>()
+        exponents
+            .iter()
+            .map(|&exponent| light_left(make, settings, exponent, Exposure::Same))
+            .collect::<Option<Vec<_>>>()
     };
     let smr = left(settings(Filter::Mip), &[4, 0, -6, -10])?;
     assert!(smr.iter().all(|&l| l < 0.06), "{smr:?}");
     // The planted error: below the smallest normal half the gate does not follow light.
-    let absolute = light_left(make, settings(Filter::Mip), -20)?;
+    let absolute = light_left(make, settings(Filter::Mip), -20, Exposure::Same)?;
     assert!(absolute > 0.3, "{absolute}");
-    // Gates that are absolute: they hold in this range, and not below.
-    let weighted = left(Settings { foveation: settings(Filter::Mip).foveation, ..Settings::weighted() }, &[2, -2, -4])?;
+    // Gates that are absolute: they hold in this range, and below it with an exposure.
+    let gated = Settings { foveation: settings(Filter::Mip).foveation, ..Settings::weighted() };
+    let weighted = left(gated, &[0, -2, -4])?;
     assert!(weighted[0] < 0.1 && weighted[1] < 0.1, "{weighted:?}");
-    let sparse = left(settings(Filter::Sparse), &[4, -6, -10])?;
+    let sparse = left(settings(Filter::Sparse), &[0, -6, -10])?;
     assert!((sparse[0] - sparse[1]).abs() < 0.05, "{sparse:?}");
+    let exposure = Exposure::Scene { exposure: 1024.0 };
+    let exposed = |settings: Settings| light_left(make, settings, -10, exposure);
+    assert_eq!([exposed(gated)?, exposed(settings(Filter::Sparse))?], [weighted[0], sparse[0]]);
+    // The planted error: no exposure.
+    assert!(weighted[2] > 0.5 && sparse[2] > sparse[0] + 0.2, "{weighted:?}, {sparse:?}");
     let percent = |left: &[f64]| left.iter().map(|l| format!("{:.1}", 100.0 * l)).collect::<Vec<_>>().join(", ");
     Some(format!(
-        "light left behind the edge in percent, smr at 2^4, 1, 2^-6, 2^-10 of the light: {}, at 2^-20: {:.0}; wrs \
-         weighted at 4, 1/4, 1/16: {}; sparse smr at 2^4, 2^-6, 2^-10: {}",
-        percent(&smr),
+        "percent of the light left behind the edge: smr at 2^4 to 2^-10 of the light {:.1}, at 2^-20 {:.0}; weighted \
+         wrs at 1, 1/4, 1/16 {}; sparse smr at 1, 2^-6, 2^-10 {}; both at 2^-10 with its exposure as at 1",
+        100.0 * smr.iter().copied().fold(0.0, f64::max),
         100.0 * absolute,
         percent(&weighted),
         percent(&sparse)

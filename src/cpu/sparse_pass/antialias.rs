@@ -8,10 +8,10 @@ use crate::kernel::antialias::{
     stored_lod,
 };
 use crate::kernel::kept::{Kept, pack_color_by, pack_kept};
+use crate::kernel::rng;
 use crate::kernel::sparse::{Reconstruction, reconstruct};
-use crate::kernel::{rng, sanitize};
 use crate::notes::{NoteStage, Notes};
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 impl View<'_> {
     /// Place of this frame's samples in their pixels: a pixel shows the point at its position minus the jitter.
@@ -101,8 +101,7 @@ impl View<'_> {
         for tap in 0..9 {
             let column = (x - first[0] + tap % 3).max(1).min(last[0]) - 1;
             let row = (y - first[1] + tap / 3).max(1).min(last[1]) - 1;
-            let [u, v] = lattice.texel_of([column, row]);
-            let (color, usable) = sanitize::color(Vec3::from(self.inputs.color.at(u as usize, v as usize)));
+            let (color, usable) = self.sampled(lattice, [column, row]);
             if usable {
                 near = add_near(near, color);
             }

@@ -35,7 +35,7 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
-        let held = history.hold(i, &frame.views[i]);
+        let held = history.hold(i, frame);
         let inputs = Inputs::new(desc, frame, i, &held, has_history);
         let (past, next, next_noise) = history.split_surfaces(i);
         let mut view = View::new(desc, frame, i, inputs, past.words, past.noise);

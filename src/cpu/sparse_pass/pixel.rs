@@ -38,7 +38,8 @@ pub(super) enum Lights<'a> {
 impl ProcessPixel for LitView<'_> {
     #[inline(always)]
     fn process(&self, x: u32, y: u32, stats: &mut FrameStats, notes: &mut impl Notes) -> Pixel {
-        self.view.pixel(x, y, self.lights, stats, notes)
+        let pixel = self.view.pixel(x, y, self.lights, stats, notes);
+        Pixel { output: self.view.inputs.unexposed(pixel.output), ..pixel }
     }
 }
 

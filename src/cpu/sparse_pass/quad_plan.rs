@@ -25,7 +25,7 @@ use glam::Vec3;
 /// Quads to shade, view by view.
 pub(in crate::cpu) fn plan_quads(desc: &ContextDesc, history: &History, frame: &Frame<'_>) -> Vec<Quads> {
     let of_view = |i: usize| {
-        let inputs = Inputs::new(desc, frame, i, &history.held_after(i, &frame.views[i]), history.is_filled());
+        let inputs = Inputs::new(desc, frame, i, &history.held_after(i, frame), history.is_filled());
         let foveation = &desc.settings.foveation;
         let has_memory = matches!(history.layout(), HistoryLayout::Kept { .. });
         View::new(desc, frame, i, inputs, history.kept(i), &[]).plan_quads(foveation, frame.index, has_memory)

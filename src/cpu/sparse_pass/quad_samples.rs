@@ -36,8 +36,8 @@ impl View<'_> {
 
     /// Color of a pixel, and whether it is usable.
     #[inline(always)]
-    pub(super) fn color_px(&self, [x, y]: [u32; 2]) -> (Vec3, bool) {
-        sanitize::color(Vec3::from(self.inputs.color.at(x as usize, y as usize)))
+    pub(super) fn color_px(&self, px: [u32; 2]) -> (Vec3, bool) {
+        sanitize::color(self.inputs.color_at(px))
     }
 
     /// Comparisons of the pixels of shaded quads outside the fovea, pixel by pixel.

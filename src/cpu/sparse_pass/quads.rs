@@ -1,6 +1,7 @@
 //! Quads of a view that are shaded, and the shaded quads around each quad. Mathematics: `src/kernel/quads.rs`.
 
 use crate::foveation::Foveation;
+use crate::frame::Exposure;
 use crate::image::Image;
 use crate::kernel::quads::{NOWHERE, REACH, RUN_QUADS, first_of, last_of, neighbour_offset, octant_offsets, window};
 use crate::kernel::sanitize;
@@ -81,22 +82,26 @@ impl Quads {
 
 impl Quads {
     /// Color of a pixel: its own if it is shaded, otherwise a mean of the shaded quads around it by the inverse squared
-    /// distance.
-    pub fn filled(&self, color: &Image<[f32; 3]>, px: [u32; 2]) -> [f32; 3] {
+    /// distance, in the unit of the color input.
+    pub fn filled(&self, color: &Image<[f32; 3]>, px: [u32; 2], exposure: Exposure) -> [f32; 3] {
         if self.is_shaded(px) {
             return color.at(px[0] as usize, px[1] as usize);
         }
         let (mut sum, mut weight) = (Vec3::ZERO, 0.0);
         for quad in self.around(px.map(|v| v / 2)) {
             let [x, y] = nearest_px(quad, px, self.size_px);
-            let (color, usable) = sanitize::color(Vec3::from(color.at(x as usize, y as usize)));
+            let given = Vec3::from(color.at(x as usize, y as usize));
+            let (color, usable) = sanitize::color(given * exposure.of_colors());
             if usable {
                 let w = 1.0 / (offset_px2(x, px[0]) + offset_px2(y, px[1]));
                 sum += color * w;
                 weight += w;
             }
         }
-        if weight == 0.0 { [f32::NAN; 3] } else { (sum * (1.0 / weight)).to_array() }
+        if weight == 0.0 {
+            return [f32::NAN; 3];
+        }
+        ((sum * (1.0 / weight)) * (1.0 / exposure.of_colors())).to_array()
     }
 }
 

@@ -71,8 +71,7 @@ impl View<'_> {
     /// Color of a sample, and whether it is usable.
     #[inline(always)]
     pub fn sampled(&self, lattice: &LatticeUniforms, point: [u32; 2]) -> (Vec3, bool) {
-        let [x, y] = lattice.texel_of(point);
-        sanitize::color(Vec3::from(self.inputs.color.at(x as usize, y as usize)))
+        sanitize::color(self.inputs.color_at(lattice.texel_of(point)))
     }
 
     #[inline(always)]

@@ -6,7 +6,7 @@ pub(crate) mod uniforms;
 
 use crate::error::{CreateError, FrameError};
 use crate::foveation::Filter;
-use crate::frame::{ContextDesc, ViewFrame};
+use crate::frame::{ContextDesc, Exposure, ViewFrame};
 use crate::gpu::buffer::filled;
 use crate::gpu::compute::{ComputeShader, Sources};
 use crate::gpu::plane::{Plane, PlaneDesc, array_view};
@@ -210,7 +210,7 @@ impl GpuSimulator {
     /// Uniforms of a frame. Also stores its gaze positions, for later frames in which the gaze is lost.
     fn uniforms(&mut self, views: &[ViewFrame]) -> FoveationUniforms {
         for (view, held) in views.iter().zip(&mut self.held) {
-            *held = held.with(view);
+            *held = held.with(view, Exposure::Same);
         }
         FoveationUniforms::new(&self.desc, views, &self.held)
     }

@@ -66,9 +66,11 @@ fn a_frame_that_is_refused_changes_nothing() {
         assert!(out[0].pixels().iter().all(|&c| c == [0.5; 3]), "nothing was written");
     }
     assert_eq!(bad(view, &mut [], &mut mixed), FrameError::ViewCount { found: 0, expected: 1 });
-    for ratio in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+    let changed = [0.0, -1.0, f32::NAN, f32::INFINITY].map(|ratio| Exposure::Changed { ratio });
+    let of_scene = [0.0, -1.0, f32::NAN, f32::INFINITY, 2.0_f32.powi(-41), 2.0_f32.powi(41)];
+    for exposure in changed.into_iter().chain(of_scene.map(|exposure| Exposure::Scene { exposure })) {
         let images = Images::of(&[view]);
-        let frame = Frame { exposure: Exposure::Changed { ratio }, ..images.frame(3) };
+        let frame = Frame { exposure, ..images.frame(3) };
         let error = mixed.process(&frame, &mut [right.clone()]).unwrap_err();
         assert!(matches!(error, FrameError::Value { value: FrameValue::Exposure, .. }), "{error}");
     }

@@ -180,7 +180,8 @@ fn record_compiles_nothing_after_prewarm() {
         let beside = Variant { depth: true, debug: Some(DebugView::Gate), regions: true, ..Variant::default() };
         let usual = Variant { depth: true, motion: true, ..Variant::default() };
         let rest = Variant { trust: true, lod: true, counters: true, ..usual };
-        let mut variants = vec![Variant::default(), usual, rest, beside];
+        let exposed = Variant { exposure: true, ..usual };
+        let mut variants = vec![Variant::default(), usual, rest, beside, exposed];
         if settings.method == Method::None {
             // All of them only for the method that compiles fastest.
             variants.extend(Variant::all());
@@ -194,7 +195,11 @@ fn record_compiles_nothing_after_prewarm() {
                 trust: variant.trust.then_some((&one).into()),
                 lod: variant.lod.then_some((&one).into()),
                 noise: settings.noisy.then_some((&two).into()),
-                exposure: if index.is_multiple_of(3) { Exposure::Changed { ratio: 2.0 } } else { Exposure::Same },
+                exposure: match index {
+                    _ if variant.exposure => Exposure::Scene { exposure: 0.5 },
+                    i if i.is_multiple_of(3) => Exposure::Changed { ratio: 2.0 },
+                    _ => Exposure::Same,
+                },
                 reset: if index.is_multiple_of(5) { Reset::All } else { Reset::None },
                 ..Frame::new(
                     if variant.regions { Textures::Regions(&region) } else { (&color).into() },
@@ -439,4 +444,30 @@ fn resizing_keeps_what_restarting_loses() {
     let (kept, restarted) = (error(&kept.shown, large), error(&restarted.shown, large));
     println!("mean squared error: kept {kept:.5}, restarted {restarted:.5}");
     assert!(kept < 0.1 * restarted);
+}
+
+#[test]
+fn radiance_beyond_halves_is_shown_as_far_as_the_output_holds_it() {
+    let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
+    let desc =
+        ContextDesc { settings: Settings { method: Method::None, ..Settings::default() }, ..ContextDesc::new([16, 8]) };
+    let usage = Afterimage::INPUT_USAGE | TextureUsages::COPY_DST;
+    let color = make_texture(&device, &desc, TextureFormat::Rgba32Float, usage);
+    let radiance = [[1e6_f32, 3.0, 1e30, 1.0]; 128];
+    afterimage_testing::gpu::write_layer(&queue, &color, 0, bytemuck::cast_slice(&radiance));
+    let views = [View::still(noise([16, 8], "facts"), [3.0, 4.0]).facts];
+    let shown = |format| {
+        let mut post = Afterimage::new(&device, &desc, format).unwrap();
+        let output = make_texture(&device, &desc, format, Afterimage::OUTPUT_USAGE | TextureUsages::COPY_SRC);
+        let exposure = Exposure::Scene { exposure: 2.0_f32.powi(-12) };
+        let mut encoder = device.create_command_encoder(&Default::default());
+        post.record(&device, &mut encoder, &Frame { exposure, ..Frame::new(&color, &views, 0) }, &output).unwrap();
+        queue.submit([encoder.finish()]);
+        afterimage_testing::gpu::read_texture(&device, &queue, &output)
+    };
+    let floats = shown(TextureFormat::Rgba32Float);
+    let largest = 65504.0 * 4096.0;
+    assert_eq!(floats[..4], [1e6, 3.0, largest, 1.0].map(f32::to_bits));
+    // Halves, two in a word: 65504 and 3, 65504 and 1.
+    assert_eq!(shown(TextureFormat::Rgba16Float)[..2], [0x4200_7bff, 0x3c00_7bff]);
 }

@@ -248,6 +248,9 @@ fn good_bad_good_equals_good_good() {
         Frame { exposure: Exposure::Changed { ratio: -2.0 }, ..good },
         Frame { exposure: Exposure::Changed { ratio: f32::NAN }, ..good },
         Frame { exposure: Exposure::Changed { ratio: f32::INFINITY }, ..good },
+        Frame { exposure: Exposure::Scene { exposure: 0.0 }, ..good },
+        Frame { exposure: Exposure::Scene { exposure: f32::NAN }, ..good },
+        Frame { exposure: Exposure::Scene { exposure: 2.0_f32.powi(41) }, ..good },
         Frame { views: &[], ..good },
         Frame { views: &elsewhere, ..good },
     ];

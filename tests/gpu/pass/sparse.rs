@@ -210,7 +210,10 @@ fn lattices_without_a_sample_in_the_frame_have_no_candidates() {
 fn a_wrong_fill_is_caught() {
     let right = SHADERS.compose("fill_pass").source;
     let planted = [
-        ("return sample_at(vec2<u32>(near.x.points.x, near.y.points.x), lattice, view);", "return vec4<f32>(0.5);"),
+        (
+            "return given_at(texel_of_point(vec2<u32>(near.x.points.x, near.y.points.x), lattice), view);",
+            "return vec4<f32>(0.5);",
+        ),
         ("point_weight(near.y.fraction, below)", "point_weight(near.y.fraction, right)"),
         ("bitcast<f32>(sparse.missing)", "0.0"),
         ("+ (point << vec2<u32>(lattice.texel_level))", "+ point"),

@@ -8,7 +8,7 @@ use afterimage::gpu::Frame;
 use afterimage::internal::{Sources, method_pass};
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{CommandBuffer, Texture, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Image, MethodKind, Reset, Sampler, Settings, Wrs};
+use afterimage::{ContextDesc, Exposure, Image, MethodKind, Reset, Sampler, Settings, Wrs};
 use afterimage_testing::{Draws, agree, holds};
 
 const SIZE: [u32; 2] = [37, 23];
@@ -47,6 +47,7 @@ fn run(rig: &mut Rig, name: &str, frames: u64) -> [usize; 3] {
     let (mut is_broken, mut compared, mut after_drop, mut differences) = (false, 0, 0, 0);
     for index in 0..frames {
         rig.drops = draws.uniform() < 0.3;
+        rig.exposure = Exposure::Scene { exposure: [1.0, 0.7, 3.0][index as usize % 3] };
         match draws.bits() % 12 {
             0 => {
                 rig.gpu.forget();

@@ -4,7 +4,7 @@ use super::clips::{Clip, Delivered, Delivery, foveations};
 use afterimage::internal::Sources;
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, BufferUsages, TextureFormat, TextureUsages};
-use afterimage::{Image, Reset, cpu, gpu};
+use afterimage::{Exposure, Image, Reset, cpu, gpu};
 use afterimage_lab::device::Headless;
 use afterimage_testing::Draws;
 
@@ -33,26 +33,39 @@ fn damaged() -> (Delivery, Vec<Image<f32>>) {
     (delivery, lods)
 }
 
-/// Optional inputs that a frame has.
+/// Optional inputs that a frame has, and the unit of its light, of which its exposure is the inverse.
 #[derive(Clone, Copy)]
 struct Given {
     depth: bool,
     motion: bool,
     lod: bool,
+    unit: f32,
 }
 
-const ALL: Given = Given { depth: true, motion: true, lod: true };
+const ALL: Given = Given { depth: true, motion: true, lod: true, unit: 1.0 };
+
+impl Given {
+    fn lit(&self, color: &Image<[f32; 3]>) -> Image<[f32; 3]> {
+        color.map(|c| c.map(|v| v * self.unit))
+    }
+
+    fn exposure(&self) -> Exposure {
+        Exposure::Scene { exposure: 1.0 / self.unit }
+    }
+}
 
 fn on_cpu((delivery, lods): &(Delivery, Vec<Image<f32>>), given: Given) -> Vec<Vec<u32>> {
     let mut doctor = cpu::Doctor::new(&delivery.desc, 0).unwrap();
     for (i, (f, lod)) in delivery.frames.iter().zip(lods).enumerate() {
-        let (color, views, lod) = ([&f.color], [f.view], [lod]);
+        let lit = given.lit(&f.color);
+        let (color, views, lod) = ([&lit], [f.view], [lod]);
         let (depth, motion) = ([f.depth.as_ref().unwrap()], [f.motion.as_ref().unwrap()]);
         let frame = cpu::Frame {
             depth: given.depth.then_some(&depth[..]),
             motion: given.motion.then_some(&motion[..]),
             lod: given.lod.then_some(&lod[..]),
             reset: if i == 0 { Reset::All } else { Reset::None },
+            exposure: given.exposure(),
             ..cpu::Frame::new(&color, &views, i as u64)
         };
         doctor.observe(&frame).unwrap();
@@ -78,7 +91,7 @@ fn on_gpu((delivery, lods): &(Delivery, Vec<Image<f32>>), given: Given, source: 
     for (i, (Delivered { color: c, depth: d, motion: m, view, .. }, lod)) in
         delivery.frames.iter().zip(lods).enumerate()
     {
-        device.write_rgb(&color, 0, c);
+        device.write_rgb(&color, 0, &given.lit(c));
         device.write(&depth, 0, d.as_ref().unwrap());
         device.write(&motion, 0, m.as_ref().unwrap());
         device.write(&lod_in, 0, lod);
@@ -88,6 +101,7 @@ fn on_gpu((delivery, lods): &(Delivery, Vec<Image<f32>>), given: Given, source: 
             motion: given.motion.then_some((&motion).into()),
             lod: given.lod.then_some((&lod_in).into()),
             reset: if i == 0 { Reset::All } else { Reset::None },
+            exposure: given.exposure(),
             ..gpu::Frame::new(&color, &views, i as u64)
         };
         afterimage_testing::gpu::validated(&device.device, "record", || {
@@ -111,8 +125,8 @@ fn differences(a: &[Vec<u32>], b: &[Vec<u32>]) -> (usize, usize) {
 fn words_are_equal_bit_for_bit() {
     let clip = damaged();
     let source = SHADERS.compose("doctor_pass").source;
-    let none = Given { depth: false, motion: false, lod: false };
-    for given in [ALL, Given { depth: false, ..ALL }, Given { motion: false, ..ALL }, none] {
+    let none = Given { depth: false, motion: false, lod: false, unit: 2.0_f32.powi(-10) };
+    for given in [ALL, Given { depth: false, ..ALL }, Given { motion: false, unit: 3.0, ..ALL }, none] {
         let cpu = on_cpu(&clip, given);
         let Some(gpu) = on_gpu(&clip, given, &source) else { return };
         let (different, all) = differences(&cpu, &gpu);
@@ -130,7 +144,8 @@ fn words_are_equal_bit_for_bit() {
 #[test]
 fn errors_planted_in_the_shader_are_caught() {
     let clip = damaged();
-    let cpu = on_cpu(&clip, ALL);
+    let given = Given { unit: 3.0, ..ALL };
+    let cpu = on_cpu(&clip, given);
     let source = SHADERS.compose("doctor_pass").source;
     let planted = [
         ("at.x + moved.x * map.x", "at.x - moved.x * map.x"),
@@ -139,9 +154,21 @@ fn errors_planted_in_the_shader_are_caught() {
         ("bend(srgb_decode(before), srgb_decode(at), srgb_decode(after))", "bend(before, at, after)"),
         ("kept_depth(px + vec2<u32>(0u, step))", "kept_depth(px)"),
         ("t * (1.0f / 3.0f)", "t * 0.5"),
+        ("signal(green * frame.exposure)", "signal(green)"),
         ("if !(is_finite(given.x) && is_finite(given.y))", "if !is_finite(given.x)"),
     ];
     afterimage_testing::planted::all_caught_once(source, &planted, |source| {
-        Some(differences(&cpu, &on_gpu(&clip, ALL, source)?).0 > 0)
+        Some(differences(&cpu, &on_gpu(&clip, given, source)?).0 > 0)
     });
+}
+
+#[test]
+fn radiance_with_its_exposure_has_the_words_of_exposed_colors() {
+    let clip = damaged();
+    let words = on_cpu(&clip, ALL);
+    let dark = |unit| on_cpu(&clip, Given { unit, ..ALL });
+    assert_eq!(dark(2.0_f32.powi(-10)), words);
+    assert_eq!(dark(2.0_f32.powi(6)), words);
+    // The planted error: an exposure that rounds.
+    assert_ne!(dark(3.0), words);
 }

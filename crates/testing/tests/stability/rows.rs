@@ -164,8 +164,8 @@ pub const ROWS: [Row; 104] = [
     row("H103", "recorded frames that never run, or out of order", "as if only what ran were recorded, with a reset", GPU),
     row("H104", "camera 1e6 m away; oblique near plane; mirrors", "right, or refused by name", CPU),
     row("H105", "vectors for no pixel, for objects, without camera", "within 1e-3 px; 0 for a still camera", BOTH),
-    row("H106", "colors times 2^-10 to 2^12; shadow without vectors", "picture times it; at most 6 % of the light left behind", BOTH)
-    .but("smr on whole frames without noise; other methods expect white at about 1."),
+    row("H106", "colors times 2^-10 to 2^12, without or with their exposure; shadow without vectors", "picture times it; at most 6 % of the light left behind", BOTH)
+    .but("without an exposure smr alone, on whole frames without noise."),
     row("H107", "plan of quads under any needs", "budget never exceeded; every quad shaded in its period", CPU),
     row("H108", "other quads shaded than planned", "only planned, finite pixels count", CPU),
 ];
