@@ -237,7 +237,8 @@ fn rings_in_a_wide_view_have_about_the_loss_that_fovvideovdp_gives_them() {
     }
     let mean = sum / rows.len() as f64;
     println!("mean difference {mean:.3}");
-    assert!(mean < 0.25, "{mean}");
+    // 0.255 without the magnification off the axis, 1.08 with the loss of thresholds.
+    assert!(mean < 0.18, "{mean}");
 }
 
 /// JOD of FovVideoVDP 1.2.2 for gratings and edges of 160x90 pixels at 8 pixels a degree, gaze in the middle, 250

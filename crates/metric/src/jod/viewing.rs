@@ -24,7 +24,7 @@ impl Viewing {
         pixels_per_degree(&self.geometry)
     }
 
-    /// How many times as many pixels a degree has at `x_px`, `y_px` as in the middle of the view: the geometric mean of
+    /// How many times as many pixels a degree has at `x_px`, `y_px` as on the axis: the geometric mean of
     /// 1 / cos^2 a outwards and 1 / cos a around, at `a` degrees from the axis of a flat view.
     #[inline(always)]
     pub(super) fn pixels_per_degree_times(&self, [x_px, y_px]: [f32; 2]) -> f32 {
