@@ -67,7 +67,8 @@ impl ChannelSensitivity {
             cpd_nits: self.cpd_nits,
             // The parabola is one of log10; this one is of log2 and gives log2.
             curvature: 1.0 / (LOG2_10 * self.width),
-            log2_per_deg: LOG2_10 * (base + slope * cycles_per_degree),
+            log2_per_deg: [LOG2_10 * base, LOG2_10 * slope * cycles_per_degree],
+            tilt: 0.0,
         }
     }
 }
@@ -80,30 +81,38 @@ pub struct SensitivityAt {
     log2_above_peak: f32,
     cpd_nits: [f32; 2],
     curvature: f32,
-    log2_per_deg: f32,
+    /// Loss a degree of eccentricity: at frequency 0, and what this frequency adds.
+    log2_per_deg: [f32; 2],
+    /// Exponent of frequency by which sensitivity is multiplied.
+    tilt: f32,
 }
 
 impl SensitivityAt {
-    /// The sensitivity, `factor` times as high.
-    pub fn scaled(self, factor: f32) -> Self {
-        Self { log2_peak: self.log2_peak + factor.log2(), ..self }
+    /// The sensitivity times a power of the frequency over 2 cycles per degree; `cycles_per_degree` is that of
+    /// [`ChannelSensitivity::at`].
+    pub fn tilted(self, exponent: f32, cycles_per_degree: f32) -> Self {
+        let log2_peak = self.log2_peak + exponent * (0.5 * cycles_per_degree).log2();
+        Self { log2_peak, tilt: self.tilt + exponent, ..self }
     }
 
-    /// log2 of the contrast sensitivity at a luminance in cd/m2 and an eccentricity in degrees.
+    /// log2 of the contrast sensitivity at a luminance in cd/m2 and an eccentricity in degrees, to a frequency `times`
+    /// as high, at least 1, in a patch of as many cycles.
     #[inline(always)]
-    pub fn log2(&self, nits: f32, eccentricity_deg: f32) -> f32 {
+    pub fn log2(&self, nits: f32, eccentricity_deg: f32, times: f32) -> f32 {
+        let octaves = log2(times);
         let [knee, exponent] = self.peak_nits;
-        let peak = self.log2_peak - exponent * log2(1.0 + knee / nits);
+        let peak = self.log2_peak + self.tilt * octaves - exponent * log2(1.0 + knee / nits);
         let [knee, exponent] = self.cpd_nits;
         // Frequency over the best frequency, which is lower in the dark.
-        let above = (self.log2_above_peak + exponent * log2(1.0 + knee / nits)).max(0.0);
-        peak - self.curvature * above * above - self.log2_per_deg * eccentricity_deg
+        let above = (self.log2_above_peak + octaves + exponent * log2(1.0 + knee / nits)).max(0.0);
+        let [base, slope] = self.log2_per_deg;
+        peak - self.curvature * above * above - (base + slope * times) * eccentricity_deg
     }
 
-    /// The contrast sensitivity at a luminance in cd/m2 and an eccentricity in degrees.
+    /// The contrast sensitivity; arguments are those of [`Self::log2`].
     #[inline(always)]
-    pub fn sensitivity(&self, nits: f32, eccentricity_deg: f32) -> f32 {
-        approx::exp2(self.log2(nits, eccentricity_deg))
+    pub fn sensitivity(&self, nits: f32, eccentricity_deg: f32, times: f32) -> f32 {
+        approx::exp2(self.log2(nits, eccentricity_deg, times))
     }
 }
 
@@ -129,7 +138,8 @@ pub fn transient_response(hz: f32, nits: f32) -> f32 {
 
 /// Sensitivity of the eye, the sum of both channels, to a patch of `area_deg2` of a grating that is modulated in time.
 pub fn sensitivity(cycles_per_degree: f32, hz: f32, eccentricity_deg: f32, nits: f32, area_deg2: f32) -> f32 {
-    let of =
-        |channel: &ChannelSensitivity| channel.at(cycles_per_degree, area_deg2).sensitivity(nits, eccentricity_deg);
+    let of = |channel: &ChannelSensitivity| {
+        channel.at(cycles_per_degree, area_deg2).sensitivity(nits, eccentricity_deg, 1.0)
+    };
     sustained_response(hz) * of(&SUSTAINED) + transient_response(hz, nits) * of(&TRANSIENT)
 }

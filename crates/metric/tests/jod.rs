@@ -172,18 +172,20 @@ fn what_the_eye_looks_at_counts_most_and_a_mirrored_gaze_is_caught() {
     assert_eq!(far.bands[0], Some(10.0));
 }
 
-/// The contrast that one detects in half of the cases must cost little, and about the same everywhere.
+/// The contrast that one detects in half of the cases must cost little, in a patch 6 degrees wide.
 #[test]
 fn a_grating_at_its_threshold_is_just_seen_at_any_eccentricity() {
-    let pixels_per_degree = viewing().pixels_per_degree();
+    let (cpd, geometry) = (1.0, viewing().geometry);
     let losses = [0.0, 5.0, 10.0, 20.0].map(|ecc_deg: f32| {
-        let cpd = 1.0;
-        let area = viewing().geometry.hfov_deg().powi(2) * 0.6;
-        let threshold = 1.0 / sensitivity(cpd, 0.0, ecc_deg, 50.0, area);
-        let gaze = [80.0 + ecc_deg * pixels_per_degree, 48.0];
+        let threshold = 1.0 / sensitivity(cpd, 0.0, ecc_deg, 50.0, std::f32::consts::PI * 9.0);
+        let gaze = [80.0 + 80.0 * ecc_deg.to_radians().tan() / 15.0_f32.to_radians().tan(), 48.0];
         let loss = |times: f32| {
-            let test = |_| grating(times * threshold, cpd);
-            10.0 - score_seen(viewing(), 2, |_| Some(gaze), |_| grating(0.0, cpd), test).jod
+            let (grey, all) = (grating(0.0, cpd), grating(times * threshold, cpd));
+            let test = Image::from_fn(SIZE, |[x, y]| {
+                let is_inside = geometry.eccentricity_deg([x as f32 + 0.5, y as f32 + 0.5], MIDDLE) < 3.0;
+                if is_inside { &all } else { &grey }.at(x as usize, y as usize)
+            });
+            10.0 - score_seen(viewing(), 2, |_| Some(gaze), |_| grey.clone(), |_| test.clone()).jod
         };
         [loss(1.0), loss(4.0)]
     });
@@ -191,6 +193,52 @@ fn a_grating_at_its_threshold_is_just_seen_at_any_eccentricity() {
     for [one, four] in losses {
         assert!(one > 0.0005 && one < 0.5 && four > 3.0 * one, "{losses:?}");
     }
+}
+
+/// JOD lost by FovVideoVDP 1.2.2 for a grating of contrast 0.25 in a ring 8 degrees wide around the gaze: eccentricity in
+/// degrees, cycles per degree in the middle, gaze in degrees to the right. 640x200 pixels over 110 degrees, two frames.
+#[test]
+fn rings_in_a_wide_view_have_about_the_loss_that_fovvideovdp_gives_them() {
+    let size = [640, 200];
+    let geometry = ViewGeometry::flat(size, 110.0).unwrap();
+    let viewing = Viewing { geometry, ..viewing() };
+    let encode = afterimage::kernel::color::srgb_encode;
+    let grey = Image::filled(size, [encode(0.2); 3]);
+    let rows = [
+        (0.0, 0.5, 0.0, 0.845),
+        (10.0, 0.5, 0.0, 1.899),
+        (20.0, 0.5, 0.0, 2.567),
+        (30.0, 0.5, 0.0, 2.509),
+        (40.0, 0.5, 0.0, 2.291),
+        (50.0, 0.5, 0.0, 1.776),
+        (0.0, 1.0, 0.0, 0.768),
+        (10.0, 1.0, 0.0, 1.681),
+        (20.0, 1.0, 0.0, 1.933),
+        (30.0, 1.0, 0.0, 1.481),
+        (40.0, 1.0, 0.0, 1.113),
+        (50.0, 1.0, 0.0, 0.420),
+        (0.0, 1.0, 45.0, 0.924),
+        (20.0, 1.0, 45.0, 1.227),
+        (20.0, 0.5, 45.0, 2.071),
+        (40.0, 1.0, 45.0, 0.812_f64),
+    ];
+    let mut sum = 0.0;
+    for (ecc_deg, cpd, gaze_deg, theirs) in rows {
+        let tangent: f32 = (gaze_deg as f32).to_radians().tan() / 55.0_f32.to_radians().tan();
+        let gaze = [320.0 + 320.0 * tangent, 100.0];
+        let test = Image::from_fn(size, |[x, y]| {
+            let off: f32 = geometry.eccentricity_deg([x as f32 + 0.5, y as f32 + 0.5], gaze) - ecc_deg;
+            let wave = (TAU * cpd * x as f32 / viewing.pixels_per_degree()).sin();
+            [encode(0.2 * (1.0 + if off.abs() < 4.0 { 0.25 * wave } else { 0.0 })); 3]
+        });
+        let ours = 10.0 - score_seen(viewing, 2, |_| Some(gaze), |_| grey.clone(), |_| test.clone()).jod;
+        println!("{cpd} cpd at {ecc_deg} degrees, gaze {gaze_deg}: loses {ours:.3}, FovVideoVDP {theirs:.3}");
+        sum += (ours - theirs).abs();
+    }
+    let mean = sum / rows.len() as f64;
+    println!("mean difference {mean:.3}");
+    // 0.255 without the magnification off the axis, 1.08 with the loss of thresholds.
+    assert!(mean < 0.18, "{mean}");
 }
 
 /// JOD of FovVideoVDP 1.2.2 for gratings and edges of 160x90 pixels at 8 pixels a degree, gaze in the middle, 250

@@ -20,8 +20,9 @@
 //! The model follows FovVideoVDP (Mantiuk et al., "FovVideoVDP: A visible difference predictor for wide field-of-view
 //! video", 2021) in its steps: luminance of the display, a sustained and a transient temporal channel, a Laplacian
 //! pyramid of local contrasts, sensitivity by frequency, luminance and eccentricity, mutual masking, and pooling. It
-//! sees luminance only. The constants are our own, fitted to the scores of FovVideoVDP for 171 pairs of videos;
-//! `docs/metrics.md` has its agreement with 171 other pairs.
+//! sees luminance only. The constants are our own, fitted to the scores of FovVideoVDP; `docs/metrics.md` has
+//! its agreement on clips that were set aside. Eccentricity is the true visual angle. Off the axis of a flat view a
+//! degree has more pixels, which raises frequencies.
 //!
 //! Memory: the luminance of 250 ms of frames, for the reference and for each test, four bytes a pixel, and about 120
 //! bytes a pixel for the frame at hand. The score does not depend on the number of threads.

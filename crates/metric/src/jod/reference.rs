@@ -1,6 +1,6 @@
 //! Reference frames, prepared once for all tests.
 
-use super::constants::{ECCENTRICITY, LEAST_NITS};
+use super::constants::LEAST_NITS;
 use super::{CHANNELS, Viewing};
 use crate::csf::SensitivityAt;
 use crate::pyramid::{Doubler, Levels, Plane, ROWS};
@@ -119,8 +119,9 @@ impl ReferenceVideo {
         let rows = ROWS * coarse.width;
         (s0.values.par_chunks_mut(rows), s1.values.par_chunks_mut(rows)).into_par_iter().enumerate().for_each(
             |(strip, (s0, s1))| {
-                let (curves, first) = (&self.bands[level], strip * ROWS);
-                Arch::new().dispatch(Sense { coarse, curves, level: level + 1, first, ecc_deg, sensitivity: [s0, s1] });
+                let Self { viewing, bands, .. } = self;
+                let (curves, first, level) = (&bands[level], strip * ROWS, level + 1);
+                Arch::new().dispatch(Sense { viewing, coarse, curves, level, first, ecc_deg, sensitivity: [s0, s1] });
             },
         );
         [s0, s1]
@@ -129,6 +130,7 @@ impl ReferenceVideo {
 
 /// Rows of the sensitivity of a band.
 struct Sense<'a> {
+    viewing: &'a Viewing,
     coarse: &'a Plane,
     curves: &'a [SensitivityAt; CHANNELS],
     level: usize,
@@ -142,15 +144,20 @@ impl WithSimd for Sense<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { coarse, curves, level, first, ecc_deg, sensitivity } = self;
+        let Self { viewing, coarse, curves, level, first, ecc_deg, sensitivity } = self;
         let width = coarse.width;
-        let mut e_deg = vec![0.0; width];
-        for (c, sensitivity) in sensitivity.into_iter().enumerate() {
-            for (i, sensitivity) in sensitivity.chunks_exact_mut(width).enumerate() {
-                ecc_row(ecc_deg, level, first + i, &mut e_deg);
-                for ((sensitivity, &nits), &e_deg) in sensitivity.iter_mut().zip(coarse.row(first + i)).zip(&e_deg) {
-                    let e_deg = ECCENTRICITY.scale[c] * e_deg / (1.0 + e_deg / ECCENTRICITY.knee_deg);
-                    *sensitivity = curves[c].sensitivity(nits.max(LEAST_NITS), e_deg);
+        let [mut e_deg, mut times] = [0; 2].map(|_| vec![0.0; width]);
+        let [s0, s1] = sensitivity;
+        for (i, (s0, s1)) in s0.chunks_exact_mut(width).zip(s1.chunks_exact_mut(width)).enumerate() {
+            let y = first + i;
+            ecc_row(ecc_deg, level, y, &mut e_deg);
+            for (x, times) in times.iter_mut().enumerate() {
+                *times = viewing.pixels_per_degree_times([x, y].map(|v| ((v << level) as f32) + 0.5));
+            }
+            for (c, sensitivity) in [s0, s1].into_iter().enumerate() {
+                let of = sensitivity.iter_mut().zip(coarse.row(y)).zip(e_deg.iter().zip(&times));
+                for ((sensitivity, &nits), (&e_deg, &times)) in of {
+                    *sensitivity = curves[c].sensitivity(nits.max(LEAST_NITS), e_deg, times);
                 }
             }
         }

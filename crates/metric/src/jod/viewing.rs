@@ -1,7 +1,7 @@
 //! How a video is seen: geometry, photometry and rate, and the pyramid's bands that follow from them.
 
 use super::CHANNELS;
-use super::constants::{BAND_TILT, LEAST_CPD, RADIUS_CYCLES};
+use super::constants::{BAND_TILT, DECADES_PER_DEG, LEAST_CPD, RADIUS_CYCLES};
 use crate::csf::{ChannelSensitivity, SUSTAINED, SensitivityAt, TRANSIENT};
 use crate::display::Display;
 use afterimage::ViewGeometry;
@@ -24,6 +24,16 @@ impl Viewing {
         pixels_per_degree(&self.geometry)
     }
 
+    /// How many times as many pixels a degree has at `x_px`, `y_px` as on the axis: the geometric mean of
+    /// 1 / cos^2 a outwards and 1 / cos a around, at `a` degrees from the axis of a flat view.
+    #[inline(always)]
+    pub(super) fn pixels_per_degree_times(&self, [x_px, y_px]: [f32; 2]) -> f32 {
+        let (scale, offset) = self.geometry.scale_offset();
+        let [x, y] = [x_px * scale[0] + offset[0], y_px * scale[1] + offset[1]];
+        let root = (1.0 + x * x + y * y).sqrt();
+        root * root.sqrt()
+    }
+
     /// Sensitivity of both channels in each band of the pyramid, the finest first.
     pub(super) fn bands(&self) -> Vec<[SensitivityAt; CHANNELS]> {
         let pixels_per_degree = self.pixels_per_degree();
@@ -35,10 +45,11 @@ impl Viewing {
             .map(|(_, cpd)| {
                 let radius_deg = RADIUS_CYCLES / cpd;
                 let area_deg2 = PI * radius_deg * radius_deg;
-                let of = |channel: &ChannelSensitivity, c: usize| {
-                    channel.at(cpd, area_deg2).scaled((0.5 * cpd).powf(BAND_TILT[c]))
+                let of = |channel: ChannelSensitivity, c: usize| {
+                    let channel = ChannelSensitivity { decades_per_deg: DECADES_PER_DEG[c], ..channel };
+                    channel.at(cpd, area_deg2).tilted(BAND_TILT[c], cpd)
                 };
-                [of(&SUSTAINED, 0), of(&TRANSIENT, 1)]
+                [of(SUSTAINED, 0), of(TRANSIENT, 1)]
             })
             .collect()
     }
