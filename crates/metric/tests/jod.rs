@@ -195,8 +195,9 @@ fn a_grating_at_its_threshold_is_just_seen_at_any_eccentricity() {
     }
 }
 
-/// JOD lost by FovVideoVDP 1.2.2 for a grating of contrast 0.25 in a ring 8 degrees wide around the gaze: eccentricity in
-/// degrees, cycles per degree in the middle, gaze in degrees to the right. 640x200 pixels over 110 degrees, two frames.
+/// JOD lost by FovVideoVDP 1.2.2 for a grating of contrast 0.25 in a ring 8 degrees wide around the gaze: eccentricity
+/// in degrees, cycles per degree in the middle, gaze in degrees to the right. 640x200 pixels over 110 degrees, two
+/// frames.
 #[test]
 fn rings_in_a_wide_view_have_about_the_loss_that_fovvideovdp_gives_them() {
     let size = [640, 200];
