@@ -172,18 +172,14 @@ impl Foveation {
                 ),
             });
         }
-        let [smallest, largest] =
-            if self.filter == Filter::Quads { [2, Self::MAX_QUADS_RATE] } else { [1, Self::MAX_RATE] };
-        for (setting, rate, least) in
-            [("rate_mid", self.rate_mid, smallest), ("rate_far", self.rate_far, self.rate_mid.max(smallest))]
-        {
-            if !rate.is_power_of_two() || rate < least || rate > largest {
-                return Err(SettingsError {
-                    setting,
-                    found: rate.to_string(),
-                    expected: format!("a power of two from {least} to {largest}"),
-                });
-            }
+        let range = if self.filter == Filter::Quads { 2..=Self::MAX_QUADS_RATE } else { 1..=Self::MAX_RATE };
+        for (setting, rate) in [("rate_mid", self.rate_mid), ("rate_far", self.rate_far)] {
+            let expected = match rate.is_power_of_two() && range.contains(&rate) {
+                true if rate >= self.rate_mid => continue,
+                true => format!("at least rate_mid, {}", self.rate_mid),
+                false => format!("a power of two from {} to {}", range.start(), range.end()),
+            };
+            return Err(SettingsError { setting, found: rate.to_string(), expected });
         }
         check("budget", self.budget, 0.0..=1.0, "of the pixels")
     }

@@ -79,18 +79,18 @@ pub struct Foveated {
     pub fovea_deg: f32,
     /// Diameter of the middle region in degrees: 0 to 180. Default 15.
     pub mid_deg: f32,
-    /// Edge in pixels of the blocks of which one quad is shaded in a frame, in the middle region: 2, 4 or 8. Default 8.
+    /// Edge in pixels of the blocks of which one quad is shaded in a frame, in the middle region: 2, 4 or 8. Default 4.
     pub rate_mid: u32,
     /// The same in the periphery: 2, 4 or 8, at least `rate_mid`. Every second block has a quad in a frame. Default 8.
     pub rate_far: u32,
-    /// Share of the pixels that are shaded because history lacks something there: 0 to 1. Default 0.05.
+    /// Share of the pixels that are shaded because history lacks something there: 0 to 1. Default 0.025.
     pub budget: f32,
 }
 
 impl Default for Foveated {
     fn default() -> Self {
-        let Foveation { mid_deg, rate_mid, rate_far, budget, .. } = Foveation::quads();
-        Self { kind: FoveationKind::Quads, fovea_deg: 10.0, mid_deg, rate_mid, rate_far, budget }
+        let kind = FoveationKind::Quads;
+        Self { kind, fovea_deg: 10.0, mid_deg: 15.0, rate_mid: 4, rate_far: 8, budget: 0.025 }
     }
 }
 

@@ -49,8 +49,9 @@ pub struct HeadsetDesc {
 
 impl Default for HeadsetDesc {
     fn default() -> Self {
+        let foveation = Foveation { fovea_deg: 10.0, rate_mid: 4, budget: 0.025, ..Foveation::quads() };
         Self {
-            settings: Settings { foveation: Settings::headset().foveation, ..Settings::default() },
+            settings: Settings { foveation, ..Settings::default() },
             near_m: 0.05,
             size_px: None,
             gaze_distance_m: 2.0,

@@ -42,10 +42,6 @@ fn sparse(fovea_deg: f32, mid_deg: f32, rate_mid: u32, rate_far: u32) -> Foveati
     Foveation { filter: Filter::Sparse, fovea_deg, mid_deg, rate_mid, rate_far, ..Foveation::default() }
 }
 
-fn quads(fovea_deg: f32, mid_deg: f32, [rate_mid, rate_far]: [u32; 2], budget: f32) -> Foveation {
-    Foveation { fovea_deg, mid_deg, rate_mid, rate_far, budget, ..Foveation::quads() }
-}
-
 /// Rows of the table.
 fn rows(size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure> {
     let mut rows = vec![];
@@ -64,8 +60,8 @@ fn rows(size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure> {
         Ok(())
     };
     add("lattices 1/2/4", sparse(5.0, 15.0, 2, 4))?;
-    add("quads, budget 5.1 %", quads(5.0, 5.0, [8, 8], 0.051))?;
-    add("quads, as by default", Foveation::quads())?;
+    add("quads", Foveation::quads())?;
+    add("quads 1/4/8, 2.5 %", Foveation { rate_mid: 4, budget: 0.025, ..Foveation::quads() })?;
     add("one pixel in 4", sparse(0.0, 0.0, 2, 2))?;
     add("uniform 25 %", Foveation::uniform(0.25))?;
     Ok(rows)

@@ -13,7 +13,7 @@ const FRAMES: u64 = 24;
 fn all_kinds() -> Vec<Settings> {
     let regions = Foveation { fovea_deg: 20.0, mid_deg: 40.0, rate_mid: 2, rate_far: 4, ..Foveation::default() };
     let sparse = Foveation { filter: Filter::Sparse, ..regions };
-    let quads = Foveation { fovea_deg: 20.0, mid_deg: 40.0, ..Foveation::quads() };
+    let quads = Foveation { fovea_deg: 20.0, mid_deg: 40.0, rate_mid: 4, ..Foveation::quads() };
     let mut all = all_settings();
     for foveation in [sparse, quads] {
         let smr = |antialias| Method::Smr(Smr { antialias, ..Smr::default() });

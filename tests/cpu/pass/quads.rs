@@ -14,7 +14,7 @@ const BUDGET: f32 = 0.03;
 type Mask = Image<bool>;
 
 fn settings(budget: f32, antialias: bool) -> Settings {
-    let foveation = Foveation { fovea_deg: 8.0, mid_deg: 20.0, budget, ..Foveation::quads() };
+    let foveation = Foveation { fovea_deg: 8.0, mid_deg: 20.0, rate_mid: 4, budget, ..Foveation::quads() };
     let method = Method::Smr(Smr { antialias, ..Smr::default() });
     Settings { method, foveation, ..Settings::default() }
 }
@@ -171,7 +171,8 @@ fn settings_that_quads_cannot_have_are_refused() {
         settings.validate().map_err(|error| error.to_string())
     };
     assert_eq!(with(|_| ()), Ok(()));
-    assert!(with(|s| s.foveation.rate_far = 16).unwrap_err().contains("power of two from 4 to 8"));
+    assert!(with(|s| s.foveation.rate_far = 16).unwrap_err().contains("power of two from 2 to 8"));
+    assert!(with(|s| s.foveation.rate_far = 2).unwrap_err().contains("at least rate_mid, 4"));
     assert!(with(|s| s.foveation.rate_mid = 1).unwrap_err().contains("power of two from 2 to 8"));
     assert!(with(|s| s.foveation.budget = 1.5).unwrap_err().contains("budget"));
     assert!(with(|s| s.noisy = true).unwrap_err().contains("noisy"));

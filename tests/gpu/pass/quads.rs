@@ -12,7 +12,7 @@ const FRAMES: u64 = 12;
 
 /// Of smr, in two regions and with a budget.
 pub fn settings(antialias: bool) -> Settings {
-    let foveation = Foveation { fovea_deg: 12.0, mid_deg: 30.0, budget: 0.1, ..Foveation::quads() };
+    let foveation = Foveation { fovea_deg: 12.0, mid_deg: 30.0, rate_mid: 4, budget: 0.1, ..Foveation::quads() };
     let method = Method::Smr(Smr { antialias, ..Smr::default() });
     Settings { method, foveation, ..Settings::default() }
 }

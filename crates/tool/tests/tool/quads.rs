@@ -48,7 +48,7 @@ fn reports_say_how_much_was_shaded() {
         let foveation = &report["foveation"];
         assert_eq!(
             (&foveation["simulator"], &foveation["rate_mid"], &foveation["rate_far"]),
-            (&"quads".into(), &4.into(), &8.into())
+            (&"quads".into(), &8.into(), &8.into())
         );
         assert_eq!(foveation["budget_percent"].as_f64(), percent.parse().ok());
         let smr = &report["methods"]["smr"];
@@ -140,7 +140,8 @@ fn what_quads_cannot_do_is_refused() {
     refused(still, &["--method", "oracle"], &["oracle", "moving samples"]);
     refused(still, &["--geometry", "samples"], &["--geometry samples", "--foveation sparse"]);
     refused(still, &["--order", "sobol"], &["--order sobol", "--foveation sparse"]);
-    refused(still, &["--rate-far", "16"], &["rate_far", "power of two from 4 to 8"]);
+    refused(still, &["--rate-far", "16"], &["rate_far", "power of two from 2 to 8"]);
+    refused(still, &["--rate-mid", "8", "--rate-far", "4"], &["rate_far is 4", "at least rate_mid, 8"]);
     let pattern = ["--source", "trace", "--sampling", "regions"];
     refused("builtin:cubes", &pattern, &["--foveation quads", "--sampling regions"]);
     for budget in ["-1", "101", "NaN", "much"] {
