@@ -451,7 +451,7 @@ impl Afterimage {
     }
 
     /// Compiles the pipeline of [`prime`](Self::prime) for the format, samples and near plane of a target, in place of
-    /// the first frame. No effect with filters other than [`Filter::Quads`](crate::Filter::Quads).
+    /// the first frame. No effect with filters other than [`Filter::Quads`].
     ///
     /// # Errors
     /// [`FrameError`] if the target does not fit, as for `prime`.
