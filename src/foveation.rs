@@ -101,7 +101,7 @@ pub struct Foveation {
     /// [`MAX_RATE`](Self::MAX_RATE). Default 16.
     pub rate_far: u32,
     /// With [`Filter::Quads`]: share of the pixels that smr shades by need in a frame, beside the fovea and the even
-    /// pattern, 0 to 1. Default 0.05.
+    /// pattern, 0 to 1. Default 0.025.
     pub budget: f32,
 }
 
@@ -114,7 +114,7 @@ impl Default for Foveation {
             blend_deg: 1.0,
             rate_mid: 8,
             rate_far: 16,
-            budget: 0.05,
+            budget: 0.025,
         }
     }
 }
@@ -126,9 +126,9 @@ impl Foveation {
     /// Largest block edge with [`Filter::Quads`], in pixels.
     pub const MAX_QUADS_RATE: u32 = 8;
 
-    /// Foveation by quads: all in a fovea of 5 degrees, one quad in a block of 8x8 pixels within 15 degrees and one in
-    /// two blocks in the periphery, and the default budget. For screens; [`Settings::screen`](crate::Settings::screen)
-    /// and [`Settings::headset`](crate::Settings::headset) were chosen by the scores of `docs/quads.md`.
+    /// Foveation by quads: all within `fovea_deg` (a diameter in degrees), beyond it one quad in a block of 4x4 pixels
+    /// within 15 degrees and one in two blocks of 8x8 pixels in the periphery, and the default budget.
+    /// [`Settings::screen`](crate::Settings::screen) and [`Settings::headset`](crate::Settings::headset) score better.
     ///
     /// ```
     /// use afterimage::Foveation;
@@ -136,7 +136,7 @@ impl Foveation {
     /// assert!(Foveation::quads().validate().is_ok());
     /// ```
     pub fn quads() -> Self {
-        Self { filter: Filter::Quads, rate_mid: 8, rate_far: 8, ..Self::default() }
+        Self { filter: Filter::Quads, rate_mid: 4, rate_far: 8, ..Self::default() }
     }
 
     /// Quads without a gaze: `share` of the pixels, 0 to 1, everywhere alike. An even pattern takes 1/8 of the pixels,

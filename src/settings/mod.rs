@@ -233,17 +233,19 @@ impl Settings {
         Self { method: Method::Smr(Smr::traced()), noisy: true, ..Self::default() }
     }
 
-    /// smr on quads ([`Foveation::quads`]) of antialiased frames, for screens about 40 degrees wide: 11 % of the pixels
-    /// are shaded. Frames must be jittered ([`Foveation::jitter_px`]).
+    /// smr on antialiased frames shaded by quads ([`Filter::Quads`]), for screens about 40 degrees wide: a coarser even
+    /// pattern and twice the budget of [`Foveation::quads`], 11 % of the pixels. Frames must be jittered
+    /// ([`Foveation::jitter_px`]). `docs/quads.md` has the scores.
     pub fn screen() -> Self {
         let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
-        Self { method, foveation: Foveation::quads(), ..Self::default() }
+        let foveation = Foveation { rate_mid: 8, budget: 0.05, ..Foveation::quads() };
+        Self { method, foveation, ..Self::default() }
     }
 
     /// The same for headsets, about 100 degrees wide: a wider fovea, which costs few pixels there.
     pub fn headset() -> Self {
-        let foveation = Foveation { fovea_deg: 10.0, ..Foveation::quads() };
-        Self { foveation, ..Self::screen() }
+        let screen = Self::screen();
+        Self { foveation: Foveation { fovea_deg: 10.0, ..screen.foveation }, ..screen }
     }
 
     /// Checks the range of every setting.

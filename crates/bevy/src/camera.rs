@@ -89,8 +89,8 @@ pub struct Foveated {
 
 impl Default for Foveated {
     fn default() -> Self {
-        let kind = FoveationKind::Quads;
-        Self { kind, fovea_deg: 10.0, mid_deg: 15.0, rate_mid: 4, rate_far: 8, budget: 0.025 }
+        let Foveation { mid_deg, rate_mid, rate_far, budget, .. } = Foveation::quads();
+        Self { kind: FoveationKind::Quads, fovea_deg: 10.0, mid_deg, rate_mid, rate_far, budget }
     }
 }
 

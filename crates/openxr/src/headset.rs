@@ -49,7 +49,7 @@ pub struct HeadsetDesc {
 
 impl Default for HeadsetDesc {
     fn default() -> Self {
-        let foveation = Foveation { fovea_deg: 10.0, rate_mid: 4, budget: 0.025, ..Foveation::quads() };
+        let foveation = Foveation { fovea_deg: 10.0, ..Foveation::quads() };
         Self {
             settings: Settings { foveation, ..Settings::default() },
             near_m: 0.05,

@@ -60,8 +60,8 @@ fn rows(size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure> {
         Ok(())
     };
     add("lattices 1/2/4", sparse(5.0, 15.0, 2, 4))?;
-    add("quads", Foveation::quads())?;
-    add("quads 1/4/8, 2.5 %", Foveation { rate_mid: 4, budget: 0.025, ..Foveation::quads() })?;
+    add("quads, Settings::screen", Settings::screen().foveation)?;
+    add("quads, as by default", Foveation::quads())?;
     add("one pixel in 4", sparse(0.0, 0.0, 2, 2))?;
     add("uniform 25 %", Foveation::uniform(0.25))?;
     Ok(rows)

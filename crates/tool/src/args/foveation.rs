@@ -28,7 +28,8 @@ pub struct FoveationArgs {
     /// Width of the linear blend outside each radius, degrees
     #[arg(long, default_value_t = 1.0, value_name = "DEG")]
     pub blend: f32,
-    /// Block edge in the middle region, pixels, a power of two; quads: 2 to 8; default: 8, at most --rate-far
+    /// Block edge in the middle region, pixels, a power of two; quads: 2 to 8; default: 8, for quads 4, at
+    /// most --rate-far
     #[arg(long, value_name = "N")]
     pub rate_mid: Option<u32>,
     /// Block edge beyond the middle region, pixels, a power of two; quads: 2 to 8; default: 16, for quads 8, at least
@@ -36,7 +37,7 @@ pub struct FoveationArgs {
     #[arg(long, value_name = "N")]
     pub rate_far: Option<u32>,
     /// With --foveation quads: pixels a frame that smr shades by need, beside the even pattern, percent, 0 to 100;
-    /// default: 5
+    /// default: 2.5
     #[arg(long, value_parser = parse_percent, value_name = "PERCENT")]
     pub budget: Option<f32>,
     /// With --foveation quads: shades this share of the pixels everywhere alike, without a gaze, percent, 0 to 100; a

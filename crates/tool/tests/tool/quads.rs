@@ -48,7 +48,7 @@ fn reports_say_how_much_was_shaded() {
         let foveation = &report["foveation"];
         assert_eq!(
             (&foveation["simulator"], &foveation["rate_mid"], &foveation["rate_far"]),
-            (&"quads".into(), &8.into(), &8.into())
+            (&"quads".into(), &4.into(), &8.into())
         );
         assert_eq!(foveation["budget_percent"].as_f64(), percent.parse().ok());
         let smr = &report["methods"]["smr"];
