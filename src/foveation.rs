@@ -4,6 +4,7 @@
 use crate::error::{SettingsError, check};
 use crate::kernel::foveate;
 use crate::kernel::lattice::offset_px;
+use crate::kernel::quads::NEW_STEP;
 #[cfg(feature = "bevy-0-20")]
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
@@ -195,6 +196,13 @@ impl Foveation {
         let [mid_x, mid_y] = offset_px(index, self.rate_mid / 2);
         let [far_x, far_y] = offset_px(index / 2, self.rate_far / 2);
         [mid_x, mid_y, far_x, far_y]
+    }
+
+    /// Place in its block of [`NEW_STEP`] quads of the quad that frame `index` chooses first where history has nothing,
+    /// in quads.
+    pub(crate) fn first_quad(index: u64) -> [u32; 2] {
+        // Not of the frame itself, whose quad an even pattern of this step has already.
+        offset_px(index + 1, NEW_STEP)
     }
 
     pub(crate) fn fovea_radius_deg(&self) -> f32 {

@@ -8,6 +8,8 @@ const RUN_QUADS: u32 = 16u;
 const REACH: i32 = 8;
 const NOWHERE: u32 = 0x88u;
 const NOTHING: f32 = 60.0;
+const NOT_IN_TURN: f32 = 0.25;
+const NEW_STEP: u32 = 4u;
 const COARSE_CONTRAST: f32 = 4.0;
 const COARSEST: f32 = 2.0;
 const MOST_CONTRAST: f32 = 60.0;
@@ -44,13 +46,18 @@ fn asked_px(x: u32, y: u32, frame_low: u32) -> vec2<u32> {
     return vec2<u32>(2u * x + ((frame_low ^ x ^ y) & 1u), 2u * y + ((frame_low >> 1u) & 1u));
 }
 
+// quads::need_of_new
+fn need_of_new(x: u32, y: u32, offset: vec2<u32>) -> f32 {
+    return select(NOT_IN_TURN * NOTHING, NOTHING, in_pattern(x, y, NEW_STEP, offset));
+}
+
 // quads::need
 fn need(lod: f32, samples: f32, contrast: f32) -> f32 {
     let limited = min(contrast, MOST_CONTRAST);
     let coarse = (limited + COARSE_CONTRAST) * min(lod, COARSEST);
     let single = limited + FEW_CONTRAST;
     let few = (single * single) * (FEW_ERROR / (samples * (samples + 1.0)));
-    return select(coarse * coarse + select(0.0, few, samples < ENOUGH_SAMPLES), NOTHING, lod < 0.0);
+    return coarse * coarse + select(0.0, few, samples < ENOUGH_SAMPLES);
 }
 
 // quads::acuity

@@ -55,7 +55,7 @@ struct FrameUniforms {
     color_exposure: f32,
     inverse_exposure: f32,
     largest_shown: f32,
-    unused: u32,
+    first_quad: u32,
     quad_offsets: vec4<u32>,
     views: array<ViewUniforms, 4>,
     cameras: array<CameraUniforms, 4>,

@@ -13,7 +13,7 @@ override HAS_KEPT: u32 = 0u;
 // Quads of the workgroup that are of the fovea or the even pattern.
 var<workgroup> group_even: atomic<u32>;
 
-// Need of a pixel, from the four stored samples around its previous position.
+// Need of a pixel, from the four stored samples around its previous position; negative without history.
 fn need_at(px: vec2<u32>, view: u32) -> f32 {
     let motion = motion_at(px, view);
     var is_valid = reprojected(px, motion).verdict == VERDICT_VALID;
@@ -49,7 +49,7 @@ fn need_at(px: vec2<u32>, view: u32) -> f32 {
             }
         }
     }
-    return need(lod, samples, root_difference(lowest, highest));
+    return select(need(lod, samples, root_difference(lowest, highest)), -1.0, lod < 0.0);
 }
 
 // Whether the lens shows a pixel of a quad.
@@ -90,7 +90,9 @@ fn block(at: vec2<u32>, view: u32) {
         if even {
             atomicAdd(&group_even, 1u);
         } else if HAS_KEPT != 0u && region_now != IN_FOVEA && all(px < frame.size) && is_seen(px, view) {
-            needs[i] = need_at(px, view) * acuity(e_deg);
+            let needed = need_at(px, view);
+            let first = vec2<u32>(frame.first_quad & 0xffffu, frame.first_quad >> 16u);
+            needs[i] = select(needed * acuity(e_deg), need_of_new(quad.x, quad.y, first), needed < 0.0);
         }
     }
     for (var i = 0u; i < 4u; i++) {

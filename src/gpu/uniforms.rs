@@ -1,6 +1,7 @@
 //! Uniforms of a frame. A test checks order, offsets and sizes against the WGSL.
 
 use super::Frame;
+use crate::foveation::Foveation;
 use crate::frame::{ContextDesc, Reset, ViewFrame};
 use crate::method::{HistoryLayout, inv_density_at_fovea, smr_params, wrs_params};
 pub use crate::uniforms::{CameraUniforms, LatticeUniforms, ViewLattices, ViewUniforms};
@@ -65,8 +66,9 @@ pub struct FrameUniforms {
     pub inverse_exposure: f32,
     /// Largest magnitude of a shown color.
     pub largest_shown: f32,
-    /// Padding to a multiple of 16 bytes.
-    pub unused: u32,
+    /// Place in its block of the quad that is chosen first without history, in quads: x in the low half, y in the high
+    /// half.
+    pub first_quad: u32,
     /// Places in their blocks of the quads of the even pattern, in the middle region and in the periphery, in quads.
     pub quad_offsets: [u32; 4],
     /// One entry a view.
@@ -83,6 +85,7 @@ impl FrameUniforms {
         let (wrs, smr) = (wrs_params(settings), smr_params(settings));
         let [coarse_mid, coarse_far] = settings.foveation.coarseness();
         let test = settings.depth_test.unwrap_or_default();
+        let [first_x, first_y] = Foveation::first_quad(frame.index);
         let mut uniforms = Self {
             size: desc.size_px,
             past_frame: if frame.reset == Reset::None { past_frame } else { NO_FRAME },
@@ -109,6 +112,7 @@ impl FrameUniforms {
             },
             color_exposure: frame.exposure.of_colors(),
             inverse_exposure: 1.0 / frame.exposure.of_colors(),
+            first_quad: first_x | first_y << 16,
             quad_offsets: settings.foveation.quad_offsets(frame.index),
             ..Self::default()
         };

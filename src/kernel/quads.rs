@@ -21,8 +21,13 @@ pub const REACH: i32 = 8;
 /// Code of no neighbour.
 pub const NOWHERE: u32 = 0x88;
 
-/// Need of a pixel without history, in squared units of [`root_difference`](super::matched::root_difference).
+/// Need without history of the quad of its block whose turn it is, in squared units of
+/// [`root_difference`](super::matched::root_difference).
 const NOTHING: f32 = 60.0;
+/// Share of it that counts for the other quads of the block.
+const NOT_IN_TURN: f32 = 0.25;
+/// Quads along a side of such a block.
+pub const NEW_STEP: u32 = 4;
 /// Added to the contrast of coarse history, which errs by as much for each level of detail.
 const COARSE_CONTRAST: f32 = 4.0;
 /// Largest level of detail that counts.
@@ -83,14 +88,19 @@ pub fn asked_px(x: u32, y: u32, frame: u32) -> [u32; 2] {
     [2 * x + ((frame ^ x ^ y) & 1), 2 * y + (frame >> 1 & 1)]
 }
 
+/// Need of quad (`x`, `y`) without history. It is the same at any eccentricity, since the next gaze may be there. The
+/// quad at `offset` in each block of [`NEW_STEP`] quads along each axis comes first, so that samples are spread evenly
+/// from the first frame on.
+#[inline]
+pub fn need_of_new(x: u32, y: u32, offset: [u32; 2]) -> f32 {
+    if in_pattern(x, y, NEW_STEP, offset) { NOTHING } else { NOT_IN_TURN * NOTHING }
+}
+
 /// Reduction of a pixel's squared error that a sample of its own is expected to bring, from history of level of detail
-/// `lod` (negative without history), of `samples` samples and with the local contrast `contrast`. In squared units of
+/// `lod`, of `samples` samples and with the local contrast `contrast`. In squared units of
 /// [`root_difference`](super::matched::root_difference).
 #[inline]
 pub fn need(lod: f32, samples: f32, contrast: f32) -> f32 {
-    if lod < 0.0 {
-        return NOTHING;
-    }
     let contrast = contrast.min(MOST_CONTRAST);
     let coarse = (contrast + COARSE_CONTRAST) * lod.min(COARSEST);
     let single = contrast + FEW_CONTRAST;

@@ -13,8 +13,8 @@ use crate::kernel::antialias::mean_of;
 use crate::kernel::kept::{code_word, is_empty, unpack_full};
 use crate::kernel::matched::root_difference;
 use crate::kernel::quads::{
-    ENOUGH_SAMPLES, IN_FOVEA, IN_MIDDLE, KEYS, acuity, asked_px, budget_quads, in_pattern, in_turn, need, quad_key,
-    region, share_in_block, threshold,
+    ENOUGH_SAMPLES, IN_FOVEA, IN_MIDDLE, KEYS, acuity, asked_px, budget_quads, in_pattern, in_turn, need, need_of_new,
+    quad_key, region, share_in_block, threshold,
 };
 use crate::kernel::reproject::nearest;
 use crate::kernel::resample::{has_code, tap_codes};
@@ -47,9 +47,10 @@ impl View<'_> {
             let region = regions.at(quad[0] as usize, quad[1] as usize);
             self.is_visible_quad(quad) && pattern.has(quad, region)
         });
+        let first = Foveation::first_quad(index);
         let needs = Image::from_fn_parallel(size, |quad| {
             let [x, y] = quad.map(|v| v as usize);
-            if !has_memory || even.at(x, y) || regions.at(x, y) == IN_FOVEA { 0.0 } else { self.need_of(quad) }
+            if !has_memory || even.at(x, y) || regions.at(x, y) == IN_FOVEA { 0.0 } else { self.need_of(quad, first) }
         });
         let keys = Image::from_fn_parallel(size, |[x, y]| {
             let in_block = [0, 1, 2, 3].map(|i| [x & !1 | i & 1, y & !1 | i >> 1]);
@@ -78,27 +79,27 @@ impl View<'_> {
             .any(|[x, y]| x < width && y < height && self.inputs.is_visible(x, y))
     }
 
-    /// Need of a quad outside the fovea.
-    fn need_of(&self, [x, y]: [u32; 2]) -> f32 {
+    /// Need of a quad outside the fovea. `first`: place in its block of the quad that comes first without history.
+    fn need_of(&self, [x, y]: [u32; 2], first: [u32; 2]) -> f32 {
         let [width, height] = self.inputs.size;
         let [u, v] = asked_px(x, y, self.frame_low);
         if u >= width || v >= height || !self.inputs.is_visible(u, v) {
             return 0.0;
         }
-        self.need_at([u, v]) * acuity(self.inputs.eccentricity_deg(self.inputs.ray(2 * x, 2 * y)))
+        let e_deg = self.inputs.eccentricity_deg(self.inputs.ray(2 * x, 2 * y));
+        self.need_at([u, v]).map_or(need_of_new(x, y, first), |need| need * acuity(e_deg))
     }
 
-    /// Need of a pixel, from the four stored samples around its previous position.
-    fn need_at(&self, [x, y]: [u32; 2]) -> f32 {
-        let nothing = need(-1.0, 1.0, 0.0);
+    /// Need of a pixel, from the four stored samples around its previous position; `None` without history.
+    fn need_at(&self, [x, y]: [u32; 2]) -> Option<f32> {
         let inputs = &self.inputs;
         if inputs.reset || self.words.is_empty() {
-            return nothing;
+            return None;
         }
         let motion = inputs.motion(x, y);
         let trusted = inputs.trust(x, y).is_none_or(|trust| sanitize::trust(trust) > 0.0);
         if nearest(x, y, motion, inputs.size).is_err() || !trusted {
-            return nothing;
+            return None;
         }
         let codes = tap_codes(inputs.expected_disparity(x, y, inputs.disparity(x, y)));
         let at = [x as f32 + motion[0], y as f32 + motion[1]];
@@ -119,7 +120,7 @@ impl View<'_> {
                 best = if self.antialiases { (px2, mean.lod, mean.samples) } else { (px2, stored.lod, ENOUGH_SAMPLES) };
             }
         }
-        need(best.1, best.2, root_difference(low, high))
+        (best.1 >= 0.0).then(|| need(best.1, best.2, root_difference(low, high)))
     }
 }
 

@@ -124,6 +124,30 @@ fn h107_the_budget_is_never_exceeded_and_every_quad_has_its_turn() {
     holds!("H107", Cpu, "most quads by need of {budget}: {}", texts.join(", "));
 }
 
+/// Largest number of quads of a block of 4x4 quads that were chosen beyond the even pattern.
+fn most_in_a_block(mask: &Mask, even: &Mask) -> usize {
+    let [columns, rows] = SIZE.map(|side| side as usize / 2);
+    let mut counts = vec![0; columns.div_ceil(4) * rows.div_ceil(4)];
+    for (x, y) in (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))) {
+        if mask.at(2 * x, 2 * y) && !even.at(2 * x, 2 * y) {
+            counts[y / 4 * columns.div_ceil(4) + x / 4] += 1;
+        }
+    }
+    counts.into_iter().max().unwrap()
+}
+
+#[test]
+fn without_history_the_budget_is_spread_evenly_over_the_view() {
+    for index in 0..PERIOD {
+        let view = wall(index, Needs::Settled);
+        let plan = |budget: f32| show(&mut context(budget, true), index, &view).0;
+        let even = plan(0.0);
+        assert_eq!(most_in_a_block(&plan(BUDGET), &even), 1, "frame {index}");
+        // A budget above one quad in 16 has to choose others, too.
+        assert!(most_in_a_block(&plan(0.2), &even) > 1, "frame {index}");
+    }
+}
+
 #[test]
 fn h108_what_was_not_asked_for_is_not_read_and_what_is_missing_is_not_shown() {
     for antialias in [false, true] {

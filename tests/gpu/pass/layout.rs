@@ -37,7 +37,7 @@ fn constants_have_one_layout() {
     let frame = rust!(FrameUniforms: size, past_frame, frame_low, fovea_radius_deg, inv_density_at_fovea, exponential_survival,
         gate_offset, inv_gate_divisor, depth_relative, depth_slope_px, exposure, motion_scale, mid_radius_deg,
         blend_deg, coarse_mid, coarse_far, smr_accumulate, smr_accumulate_tolerance, smr_tolerance, first_view, lattice,
-        mip_levels, color_exposure, inverse_exposure, largest_shown, quad_offsets, views, cameras);
+        mip_levels, color_exposure, inverse_exposure, largest_shown, first_quad, quad_offsets, views, cameras);
     let cameras = rust!(CameraUniforms: x, y, z, per_tangent, zoom, shift_px, ahead, sky, no_vector);
     assert_eq!(wgsl(&module, "CameraUniforms"), cameras);
     assert_eq!(wgsl(&module, "FrameUniforms"), frame);

@@ -181,7 +181,8 @@ fn a_wrong_pass_is_caught() {
     };
     let planted = [
         ("highest = max(highest, stored.color);", ""),
-        ("needs[i] = need_at(px, view) * acuity(e_deg);", "needs[i] = need_at(px, view);"),
+        ("needed * acuity(e_deg)", "needed"),
+        ("need_of_new(quad.x, quad.y, first)", "need_of_new(quad.y, quad.x, first)"),
         ("of_run[first - 1u] <= budget - chosen", "of_run[first - 1u] <= budget"),
         ("    if level == 0u {\n        return nothing;\n    }\n", ""),
         ("last_of(above, -8, -1, -rows)", "last_of(above, -7, -1, -rows)"),

@@ -127,6 +127,7 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("lens::is_visible", "f32(x) - f32(y)", "f32(y) - f32(x)"),
     // Wrong quads.
     ("quads::need", "min(lod, COARSEST)", "lod"),
+    ("quads::need_of_new", "NOT_IN_TURN * NOTHING", "NOTHING"),
     ("quads::octant_offsets", "(5 * rows + 1) / 2", "5 * rows / 2"),
     ("quads::share_in_block", "other < i", "other > i"),
     ("sparse::quad_lit", "10u + 5u * i", "10u"),

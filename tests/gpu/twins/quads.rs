@@ -31,8 +31,13 @@ pub const PROBES: &[Probe] = &[
             row.extend([d.bits() % 4096, d.bits() % 4096, d.bits()]);
         })
     }),
+    probe!(quads::need_of_new, |rows| {
+        rows.random(|d, row| {
+            row.extend([d.bits() % 16, d.bits() % 16, d.bits() % 4, d.bits() % 4]);
+        })
+    }),
     probe!(quads::need, |rows| {
-        let lods = floats(&[-1.0, 0.0, 0.2, 2.0, 8.0]);
+        let lods = floats(&[0.0, 0.2, 2.0, 8.0]);
         rows.cross(&[&lods, &floats(&[1.0, 15.0, 16.0]), &floats(&[0.0, 60.0, 61.0])]).random(|d, row| {
             row.extend([range(d, 0.0, 4.0), range(d, 1.0, 31.0), range(d, 0.0, 90.0)]);
         })
