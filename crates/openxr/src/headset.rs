@@ -30,9 +30,8 @@ pub type ActionsFn = Box<dyn FnOnce(&xr::Instance) -> Result<Vec<xr::ActionSet>,
 
 /// Description of a headset. Create it with `..HeadsetDesc::default()`.
 pub struct HeadsetDesc {
-    /// Method and foveation, whose filter must be [`Filter::Quads`]. Default: smr; all quads within a diameter of 10
-    /// degrees, then one in each block of 4x4 pixels within 15 degrees, and one in two blocks of 8x8 pixels beyond;
-    /// 2.5 % of the pixels by need.
+    /// Method and foveation, whose filter must be [`Filter::Quads`]. Default: smr, with the foveation of
+    /// [`Settings::headset`], which antialiases in addition.
     pub settings: Settings,
     /// Distance of the near plane in metres, above 0. Default 0.05.
     pub near_m: f32,
@@ -49,9 +48,8 @@ pub struct HeadsetDesc {
 
 impl Default for HeadsetDesc {
     fn default() -> Self {
-        let foveation = Foveation { fovea_deg: 10.0, ..Foveation::quads() };
         Self {
-            settings: Settings { foveation, ..Settings::default() },
+            settings: Settings { foveation: Settings::headset().foveation, ..Settings::default() },
             near_m: 0.05,
             size_px: None,
             gaze_distance_m: 2.0,
