@@ -14,7 +14,10 @@ pub enum Error {
     Runtime(&'static str),
     /// A call of OpenXR failed. `ERROR_FORM_FACTOR_UNAVAILABLE`: no headset is connected.
     #[error("OpenXR: {0}")]
-    OpenXr(#[from] openxr::sys::Result),
+    OpenXr(openxr::sys::Result),
+    /// The runtime ends or was ended: it restarts after an update, or crashed.
+    #[error("the OpenXR runtime was lost: drop the headset and create another one")]
+    InstanceLost,
     /// The Vulkan device could not be created.
     #[error("the Vulkan device: {0}")]
     Device(String),
@@ -30,4 +33,13 @@ pub enum Error {
     /// The post-process refused a frame.
     #[error(transparent)]
     Frame(#[from] FrameError),
+}
+
+impl From<openxr::sys::Result> for Error {
+    fn from(error: openxr::sys::Result) -> Self {
+        match error {
+            openxr::sys::Result::ERROR_INSTANCE_LOST => Self::InstanceLost,
+            error => Self::OpenXr(error),
+        }
+    }
 }

@@ -90,6 +90,8 @@ pub struct Headset {
     gaze_fn: Option<GazeFn>,
     gaze_distance_m: f32,
     near_m: f32,
+    /// Whether the application chose the size of the views.
+    has_own_size: bool,
     past: Option<Past>,
     /// From each of these times on the world's origin is another one.
     recentred_at: Vec<xr::Time>,
@@ -152,6 +154,7 @@ impl Headset {
         let mut extensions = xr::ExtensionSet::default();
         extensions.khr_vulkan_enable2 = true;
         extensions.khr_visibility_mask = available.khr_visibility_mask;
+        extensions.khr_composition_layer_depth = available.khr_composition_layer_depth;
         extensions.ext_eye_gaze_interaction = available.ext_eye_gaze_interaction;
         let app = xr::ApplicationInfo {
             application_name: name,
@@ -166,9 +169,10 @@ impl Headset {
             .enumerate_environment_blend_modes(system, VIEWS)?
             .first()
             .ok_or(Error::Runtime("has no stereo views"))?;
-        let recommended = instance.enumerate_view_configuration_views(system, VIEWS)?;
-        let [left, _] = recommended[..] else { return Err(Error::Runtime("has no stereo views")) };
-        let size = desc.size_px.unwrap_or([left.recommended_image_rect_width, left.recommended_image_rect_height]);
+        let size = match desc.size_px {
+            Some(size) => size,
+            None => recommended_size(&instance, system)?,
+        };
         let context = ContextDesc {
             view_count: 2,
             depth: DepthConvention::Reversed { near: desc.near_m, far: f32::INFINITY },
@@ -184,8 +188,8 @@ impl Headset {
             None => vec![],
         };
         let session = Session::new(&instance, system, &gpu, size)?;
-        let image = session.images.first().ok_or(Error::Runtime("has no swapchain images"))?;
-        let present = Present::new(&gpu.device, image.format());
+        let formats = session.formats();
+        let present = Present::new(&gpu.device, formats.color.texture, formats.depth.map(|depth| depth.texture));
         let mut headset = Self {
             output: output(&gpu.device, size),
             targets: Targets::new(&gpu.device, size),
@@ -200,6 +204,7 @@ impl Headset {
             gaze_fn: desc.gaze,
             gaze_distance_m: desc.gaze_distance_m,
             near_m: desc.near_m,
+            has_own_size: desc.size_px.is_some(),
             past: None,
             recentred_at: vec![],
             begun_at: None,
@@ -256,11 +261,23 @@ impl Headset {
         Ok(self.post.set_settings(&self.gpu.device, settings)?)
     }
 
-    /// Changes the size of the views from the next frame on. History is resampled.
+    /// Whether the runtime takes the depth of what is shown, by which it corrects for the head's movement since the
+    /// frame was drawn (`XR_KHR_composition_layer_depth`).
+    pub fn has_depth_layer(&self) -> bool {
+        self.session.as_ref().is_some_and(|session| session.formats().depth.is_some())
+    }
+
+    /// Changes the size of the views from the next frame on. History is resampled. From then on the size no longer
+    /// follows the runtime's recommendation.
     ///
     /// # Errors
     /// [`Error`] if the runtime or the post-process refuses the size.
     pub fn resize(&mut self, size_px: [u32; 2]) -> Result<(), Error> {
+        self.has_own_size = true;
+        self.set_size(size_px)
+    }
+
+    fn set_size(&mut self, size_px: [u32; 2]) -> Result<(), Error> {
         self.wait()?;
         if let Some(session) = &mut self.session {
             session.resize(&self.gpu, size_px)?;
@@ -286,10 +303,11 @@ impl Headset {
 
     /// Waits for the next frame to draw; `None` when the session is over. While the headset shows nothing (it is taken
     /// off, a menu covers it) there is no frame to draw, and the call goes on waiting. A session that the runtime loses
-    /// is replaced by another one, without history.
+    /// is replaced by another one, without history. When a session begins and the runtime recommends another size than
+    /// before, the views have it, unless the application chose their size.
     ///
     /// # Errors
-    /// [`Error`] if the runtime fails.
+    /// [`Error::InstanceLost`] if the runtime ends: create another headset. [`Error`] if it fails.
     pub fn next_frame(&mut self) -> Result<Option<HeadsetFrame<'_>>, Error> {
         let (time, views) = loop {
             match self.follow() {
@@ -381,6 +399,7 @@ impl Headset {
                             session.session.begin(VIEWS)?;
                             session.is_running = true;
                             self.past = None;
+                            self.follow_recommended_size()?;
                         }
                         (xr::SessionState::STOPPING, Some(session)) => {
                             session.session.end()?;
@@ -394,11 +413,20 @@ impl Headset {
                 // The world moves under every pose from then on.
                 xr::Event::ReferenceSpaceChangePending(event) => self.recentred_at.push(event.change_time()),
                 xr::Event::VisibilityMaskChangedKHR(_) => self.ask_lenses(),
-                xr::Event::InstanceLossPending(_) => return Ok(false),
+                xr::Event::InstanceLossPending(_) => return Err(Error::InstanceLost),
                 _ => {}
             }
         }
         Ok(true)
+    }
+
+    /// The size that the runtime recommends now, unless the application chose one.
+    fn follow_recommended_size(&mut self) -> Result<(), Error> {
+        if self.has_own_size {
+            return Ok(());
+        }
+        let size = recommended_size(&self.instance, self.system)?;
+        if size == self.size_px() { Ok(()) } else { self.set_size(size) }
     }
 
     /// Another session in place of one that was lost.
@@ -532,11 +560,12 @@ impl<'a> HeadsetFrame<'a> {
         headset.index += 1;
         headset.past = Some(Past { poses, time });
         let session = headset.session.as_mut().expect("a frame has a session");
-        let shown = session.show(|image| {
-            headset.present.record(&headset.gpu.device, &mut encoder, &headset.output, image);
+        let shown = session.show(|color, depth| {
+            let from = [&headset.output, &headset.targets.depth];
+            headset.present.record(&headset.gpu.device, &mut encoder, from, color, depth);
             headset.gpu.queue.submit([encoder.finish()]);
         });
-        match shown.and_then(|()| session.end(time, headset.blend, &views)) {
+        match shown.and_then(|()| session.end(time, headset.blend, &views, headset.near_m)) {
             Ok(()) => {}
             Err(error) if is_lost(error) => {}
             Err(error) => return Err(error.into()),
@@ -565,6 +594,13 @@ fn check_filter(settings: &Settings) -> Result<(), SettingsError> {
             expected: "quads: Foveation::quads() or Foveation::uniform(share)".into(),
         }),
     }
+}
+
+/// Size of a view in pixels that the runtime recommends.
+fn recommended_size(instance: &xr::Instance, system: xr::SystemId) -> Result<[u32; 2], Error> {
+    let recommended = instance.enumerate_view_configuration_views(system, VIEWS)?;
+    let [left, _] = recommended[..] else { return Err(Error::Runtime("has no stereo views")) };
+    Ok([left.recommended_image_rect_width, left.recommended_image_rect_height])
 }
 
 /// Linear color of whole frames.

@@ -45,6 +45,7 @@
 
 #![cfg(feature = "wgpu-30")]
 
+mod chain;
 mod error;
 mod eye;
 mod gaze;

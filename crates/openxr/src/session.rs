@@ -1,7 +1,8 @@
-//! A session: its swapchain, its space, its frames. A headset begins another one when the runtime loses it.
+//! A session: its swapchains, its space, its frames. A headset begins another one when the runtime loses it.
 
+use crate::chain::Chain;
 use crate::error::Error;
-use crate::vulkan::{Gpu, srgb_format};
+use crate::vulkan::{DEPTH, Format, Gpu, srgb_format};
 use openxr as xr;
 use wgpu_30::Texture;
 use xr::sys;
@@ -20,31 +21,64 @@ pub struct HiddenMesh {
 
 /// Dropped in this order.
 pub(crate) struct Session {
-    pub images: Vec<Texture>,
-    pub swapchain: xr::Swapchain<xr::Vulkan>,
+    color: Chain,
+    /// Depth of what is shown, if the runtime takes it.
+    depth: Option<Chain>,
     pub space: xr::Space,
     /// Of the application's pose actions, each made at its first use.
     poses: Vec<(sys::Action, xr::Path, xr::Space)>,
     pub stream: xr::FrameStream<xr::Vulkan>,
     pub waiter: xr::FrameWaiter,
     pub session: xr::Session<xr::Vulkan>,
-    pub size: [u32; 2],
+    formats: Formats,
     pub is_running: bool,
+}
+
+/// Formats of a session's swapchains.
+#[derive(Clone, Copy)]
+pub(crate) struct Formats {
+    pub color: Format,
+    /// `None` if the runtime takes no depth.
+    pub depth: Option<Format>,
+}
+
+impl Formats {
+    fn new(instance: &xr::Instance, session: &xr::Session<xr::Vulkan>) -> Result<Self, Error> {
+        let available = session.enumerate_swapchain_formats()?;
+        let color = srgb_format(&available).ok_or(Error::Runtime("has no swapchain of 8 bits and sRGB"))?;
+        let takes_depth = instance.exts().khr_composition_layer_depth.is_some() && available.contains(&DEPTH.raw);
+        Ok(Self { color, depth: takes_depth.then_some(DEPTH) })
+    }
+
+    fn chains(
+        self,
+        session: &xr::Session<xr::Vulkan>,
+        gpu: &Gpu,
+        size: [u32; 2],
+    ) -> Result<(Chain, Option<Chain>), Error> {
+        let chain = |format| Chain::new(session, gpu, size, format);
+        Ok((chain(self.color)?, self.depth.map(chain).transpose()?))
+    }
 }
 
 impl Session {
     pub fn new(instance: &xr::Instance, system: xr::SystemId, gpu: &Gpu, size: [u32; 2]) -> Result<Self, Error> {
         let (session, waiter, stream) = gpu.session(instance, system)?;
         let space = session.create_reference_space(xr::ReferenceSpaceType::LOCAL, xr::Posef::IDENTITY)?;
-        let (swapchain, images) = swapchain(&session, gpu, size)?;
-        Ok(Self { images, swapchain, space, poses: vec![], stream, waiter, session, size, is_running: false })
+        let formats = Formats::new(instance, &session)?;
+        let (color, depth) = formats.chains(&session, gpu, size)?;
+        Ok(Self { color, depth, space, poses: vec![], stream, waiter, session, formats, is_running: false })
     }
 
-    /// A swapchain of another size.
+    /// Swapchains of another size.
     pub fn resize(&mut self, gpu: &Gpu, size: [u32; 2]) -> Result<(), Error> {
-        (self.swapchain, self.images) = swapchain(&self.session, gpu, size)?;
-        self.size = size;
+        (self.color, self.depth) = self.formats.chains(&self.session, gpu, size)?;
         Ok(())
+    }
+
+    /// Formats of the images that [`show`](Self::show) draws.
+    pub fn formats(&self) -> Formats {
+        self.formats
     }
 
     /// Pose of an action in the world; `None` where it is not tracked.
@@ -95,27 +129,41 @@ impl Session {
         Ok(None)
     }
 
-    /// Draws the next image of the swapchain.
-    pub fn show(&mut self, draw: impl FnOnce(&Texture)) -> Result<(), sys::Result> {
-        let image = self.swapchain.acquire_image()? as usize;
-        self.swapchain.wait_image(xr::Duration::INFINITE)?;
-        draw(&self.images[image]);
-        self.swapchain.release_image()
+    /// Draws the next images of the swapchains: color, and depth if the runtime takes it.
+    pub fn show(&mut self, draw: impl FnOnce(&Texture, Option<&Texture>)) -> Result<(), sys::Result> {
+        let color = self.color.acquire()?;
+        draw(color, self.depth.as_mut().map(Chain::acquire).transpose()?);
+        self.color.release()?;
+        self.depth.as_mut().map_or(Ok(()), Chain::release)
     }
 
-    /// Shows the image that was drawn last, as two layers.
+    /// Shows the images that were drawn last, as two layers. `near_m`: distance of the near plane.
+    #[expect(unsafe_code, reason = "the crate of OpenXR has no builder for the depth of a layer")]
     pub fn end(
         &mut self,
         time: xr::Time,
         blend: xr::EnvironmentBlendMode,
         views: &[xr::View],
+        near_m: f32,
     ) -> Result<(), sys::Result> {
-        let [width, height] = self.size.map(|n| n as i32);
-        let rect = xr::Rect2Di { offset: xr::Offset2Di { x: 0, y: 0 }, extent: xr::Extent2Di { width, height } };
+        let depths = self.depth.as_ref().map(|depth| {
+            [0, 1].map(|eye| sys::CompositionLayerDepthInfoKHR {
+                ty: sys::CompositionLayerDepthInfoKHR::TYPE,
+                next: std::ptr::null(),
+                sub_image: depth.layer(eye).into_raw(),
+                min_depth: 0.0,
+                max_depth: 1.0,
+                // Depth is reversed: 0 is infinitely far away.
+                near_z: f32::INFINITY,
+                far_z: near_m,
+            })
+        });
         let eye = |i: usize| {
-            let image =
-                xr::SwapchainSubImage::new().swapchain(&self.swapchain).image_array_index(i as u32).image_rect(rect);
-            xr::CompositionLayerProjectionView::new().pose(views[i].pose).fov(views[i].fov).sub_image(image)
+            let view = xr::CompositionLayerProjectionView::new();
+            let mut raw = view.pose(views[i].pose).fov(views[i].fov).sub_image(self.color.layer(i)).into_raw();
+            raw.next = depths.as_ref().map_or(std::ptr::null(), |depths| std::ptr::from_ref(&depths[i]).cast());
+            // SAFETY: `depths` and both swapchains outlive the call that the view is given to.
+            unsafe { xr::CompositionLayerProjectionView::from_raw(raw) }
         };
         let eyes = [eye(0), eye(1)];
         let layer = xr::CompositionLayerProjection::new().space(&self.space).views(&eyes);
@@ -132,26 +180,4 @@ impl Session {
         let mesh = HiddenMesh { vertices: points(&hidden.vertices), indices: hidden.indices };
         (!mesh.indices.is_empty() && !shown.vertices.is_empty()).then(|| (mesh, points(&shown.vertices)))
     }
-}
-
-fn swapchain(
-    session: &xr::Session<xr::Vulkan>,
-    gpu: &Gpu,
-    size: [u32; 2],
-) -> Result<(xr::Swapchain<xr::Vulkan>, Vec<Texture>), Error> {
-    let formats = session.enumerate_swapchain_formats()?;
-    let (raw_format, format) = srgb_format(&formats).ok_or(Error::Runtime("has no swapchain of 8 bits and sRGB"))?;
-    let swapchain = session.create_swapchain(&xr::SwapchainCreateInfo {
-        create_flags: xr::SwapchainCreateFlags::EMPTY,
-        usage_flags: xr::SwapchainUsageFlags::COLOR_ATTACHMENT,
-        format: raw_format,
-        sample_count: 1,
-        width: size[0],
-        height: size[1],
-        face_count: 1,
-        array_size: 2,
-        mip_count: 1,
-    })?;
-    let images = gpu.textures(&swapchain, size, format)?;
-    Ok((swapchain, images))
 }

@@ -128,14 +128,16 @@ impl Gpu {
     pub fn textures(
         &self,
         swapchain: &xr::Swapchain<xr::Vulkan>,
-        [width, height]: [u32; 2],
-        format: TextureFormat,
+        size: [u32; 2],
+        format: Format,
     ) -> Result<Vec<Texture>, xr::sys::Result> {
         let images = swapchain.enumerate_images()?;
-        Ok(images.into_iter().map(|image| self.texture(vk::Image::from_raw(image), [width, height], format)).collect())
+        Ok(images.into_iter().map(|image| self.texture(vk::Image::from_raw(image), size, format)).collect())
     }
 
-    fn texture(&self, image: vk::Image, [width, height]: [u32; 2], format: TextureFormat) -> Texture {
+    fn texture(&self, image: vk::Image, [width, height]: [u32; 2], format: Format) -> Texture {
+        let drawn = if format.is_depth() { TextureUses::DEPTH_STENCIL_WRITE } else { TextureUses::COLOR_TARGET };
+        let format = format.texture;
         let size = Extent3d { width, height, depth_or_array_layers: 2 };
         let hal_desc = hal::TextureDescriptor {
             label: Some("swapchain"),
@@ -144,7 +146,7 @@ impl Gpu {
             sample_count: 1,
             dimension: TextureDimension::D2,
             format,
-            usage: TextureUses::COLOR_TARGET,
+            usage: drawn,
             memory_flags: hal::MemoryFlags::empty(),
             view_formats: vec![],
         };
@@ -164,18 +166,38 @@ impl Gpu {
             let device = self.device.as_hal::<Vulkan>().expect("created as a Vulkan device");
             device.texture_from_raw(image, &hal_desc, Some(Box::new(|| {})), vulkan::TextureMemory::External)
         };
-        // SAFETY: the texture is of this device. OpenXR hands out color images as COLOR_ATTACHMENT_OPTIMAL and wants
-        // them back so, which is what a draw leaves.
-        unsafe { self.device.create_texture_from_hal::<Vulkan>(texture, &desc, TextureUses::COLOR_TARGET) }
+        // SAFETY: the texture is of this device. OpenXR hands out images as COLOR_ATTACHMENT_OPTIMAL and
+        // DEPTH_STENCIL_ATTACHMENT_OPTIMAL and wants them back so, which is what a draw leaves.
+        unsafe { self.device.create_texture_from_hal::<Vulkan>(texture, &desc, drawn) }
     }
 }
 
-/// Formats of swapchains that encode sRGB, as the runtime numbers them.
-pub(crate) fn srgb_format(available: &[u32]) -> Option<(u32, TextureFormat)> {
+/// Format of a swapchain.
+#[derive(Clone, Copy)]
+pub(crate) struct Format {
+    /// As the runtime numbers it.
+    pub raw: u32,
+    pub texture: TextureFormat,
+}
+
+impl Format {
+    const fn new(raw: vk::Format, texture: TextureFormat) -> Self {
+        Self { raw: raw.as_raw() as u32, texture }
+    }
+
+    pub fn is_depth(self) -> bool {
+        self.texture.is_depth_stencil_format()
+    }
+}
+
+/// Depth of [`Targets`](crate::Targets).
+pub(crate) const DEPTH: Format = Format::new(vk::Format::D32_SFLOAT, TextureFormat::Depth32Float);
+
+/// The first format of swapchains that encodes sRGB.
+pub(crate) fn srgb_format(available: &[u32]) -> Option<Format> {
     let known = [
-        (vk::Format::R8G8B8A8_SRGB, TextureFormat::Rgba8UnormSrgb),
-        (vk::Format::B8G8R8A8_SRGB, TextureFormat::Bgra8UnormSrgb),
+        Format::new(vk::Format::R8G8B8A8_SRGB, TextureFormat::Rgba8UnormSrgb),
+        Format::new(vk::Format::B8G8R8A8_SRGB, TextureFormat::Bgra8UnormSrgb),
     ];
-    let known = known.map(|(raw, format)| (raw.as_raw() as u32, format));
-    available.iter().find_map(|available| known.into_iter().find(|(raw, _)| raw == available))
+    available.iter().find_map(|available| known.into_iter().find(|format| format.raw == *available))
 }

@@ -3,9 +3,11 @@
 // PLAYER_CSV: an eye tracker plays this scanpath through XR_EXT_eye_gaze_interaction.
 // PLAYER_EVENTS: what happens after how many xrWaitFrame, as "60:recentre,90:off,110:on,120:blind,140:see,150:lose": the
 // world's origin changes; the headset is taken off (nothing is to be rendered) and put on; the tracker loses the eyes and
-// finds them; the session is lost. PLAYER_LOOP: after so many xrWaitFrame, they happen again.
+// finds them; the session is lost; "size": the runtime recommends other views; "gone": the runtime ends. PLAYER_LOOP: after
+// so many xrWaitFrame, they happen again. PLAYER_SIZES=A,B: the recommended side in pixels, before and after "size".
+// It says once that it was given depth, and in what range.
 //
-// One instance, one session at a time, one gaze action.
+// One instance and one session at a time, one gaze action.
 #include <openxr/openxr.h>
 #include <openxr/openxr_loader_negotiation.h>
 #include <math.h>
@@ -24,9 +26,11 @@ static PFN_xrCreateReferenceSpace reference_space;
 static PFN_xrWaitFrame next_wait;
 static PFN_xrPollEvent next_poll;
 static PFN_xrCreateSession next_session;
+static PFN_xrEnumerateViewConfigurationViews next_views;
+static PFN_xrEndFrame next_end;
 static XrInstance instance;
 static XrSession session;
-static int is_off, is_blind;
+static int is_off, is_blind, is_resized, has_said_depth;
 static long frames;
 static XrTime last_time;
 static XrEventDataBuffer queued[16];
@@ -145,6 +149,11 @@ static void happen(const char *what) {
     } else if (!strcmp(what, "blind")) is_blind = 1;
     else if (!strcmp(what, "see")) is_blind = 0;
     else if (!strcmp(what, "lose")) put_state(XR_SESSION_STATE_LOSS_PENDING);
+    else if (!strcmp(what, "size")) is_resized = 1;
+    else if (!strcmp(what, "gone")) {
+        XrEventDataInstanceLossPending event = {XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING, NULL, last_time};
+        put(&event, sizeof event);
+    }
     else { fprintf(stderr, "player: unknown event %s\n", what); abort(); }
 }
 
@@ -177,6 +186,28 @@ static XrResult create_session(XrInstance i, const XrSessionCreateInfo *info, Xr
     return result;
 }
 
+static XrResult views(XrInstance i, XrSystemId system, XrViewConfigurationType type, uint32_t capacity, uint32_t *found, XrViewConfigurationView *out) {
+    XrResult result = next_views(i, system, type, capacity, found, out);
+    int sides[2];
+    const char *text = getenv("PLAYER_SIZES");
+    if (XR_FAILED(result) || !text || sscanf(text, "%d,%d", &sides[0], &sides[1]) != 2) return result;
+    for (uint32_t k = 0; k < capacity; k++) out[k].recommendedImageRectWidth = out[k].recommendedImageRectHeight = sides[is_resized];
+    return result;
+}
+
+static XrResult end_frame(XrSession s, const XrFrameEndInfo *info) {
+    for (uint32_t k = 0; k < info->layerCount && !has_said_depth; k++) {
+        if (info->layers[k]->type != XR_TYPE_COMPOSITION_LAYER_PROJECTION) continue;
+        const XrCompositionLayerProjectionView *eyes = ((const XrCompositionLayerProjection *)info->layers[k])->views;
+        const XrCompositionLayerDepthInfoKHR *depth[2] = {eyes[0].next, eyes[1].next};
+        if (!depth[0] || !depth[1] || depth[0]->type != XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR) continue;
+        has_said_depth = 1;
+        fprintf(stderr, "player: depth of layers %d and %d, %g to %g is %g to %g m\n", depth[0]->subImage.imageArrayIndex,
+            depth[1]->subImage.imageArrayIndex, depth[0]->minDepth, depth[0]->maxDepth, depth[0]->nearZ, depth[0]->farZ);
+    }
+    return next_end(s, info);
+}
+
 static XrResult proc(XrInstance i, const char *name, PFN_xrVoidFunction *function) {
     static const struct { const char *name; PFN_xrVoidFunction function; } mine[] = {
         {"xrGetSystemProperties", (PFN_xrVoidFunction)get_properties},
@@ -187,6 +218,8 @@ static XrResult proc(XrInstance i, const char *name, PFN_xrVoidFunction *functio
         {"xrWaitFrame", (PFN_xrVoidFunction)wait_frame},
         {"xrPollEvent", (PFN_xrVoidFunction)poll_event},
         {"xrCreateSession", (PFN_xrVoidFunction)create_session},
+        {"xrEnumerateViewConfigurationViews", (PFN_xrVoidFunction)views},
+        {"xrEndFrame", (PFN_xrVoidFunction)end_frame},
     };
     for (size_t k = 0; k < sizeof mine / sizeof *mine; k++)
         if (!strcmp(name, mine[k].name)) { *function = mine[k].function; return XR_SUCCESS; }
@@ -209,9 +242,12 @@ static XrResult create(const XrInstanceCreateInfo *info, const XrApiLayerCreateI
     GET("xrWaitFrame", next_wait);
     GET("xrPollEvent", next_poll);
     GET("xrCreateSession", next_session);
+    GET("xrEnumerateViewConfigurationViews", next_views);
+    GET("xrEndFrame", next_end);
+    queue_first = queue_end = 0;
     GET("xrPathToString", path_to_string);
     GET("xrCreateReferenceSpace", reference_space);
-    read_scanpath();
+    if (!count) read_scanpath();
     return result;
 }
 

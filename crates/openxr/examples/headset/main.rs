@@ -8,7 +8,7 @@ mod room;
 
 use afterimage_clip::scanpath::{Scanpath, read_csv};
 use afterimage_openxr::afterimage::{Method, MethodKind, Smr};
-use afterimage_openxr::{Headset, HeadsetDesc, HeadsetFrame, openxr as xr};
+use afterimage_openxr::{Error, Headset, HeadsetDesc, HeadsetFrame, openxr as xr};
 use clap::Parser;
 use glam::{Mat4, Quat, Vec3};
 use plant::Plant;
@@ -69,16 +69,26 @@ struct Controls {
 }
 
 fn main() -> ExitCode {
-    match show(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("headset: {error}");
-            ExitCode::FAILURE
+    let (options, keys) = (Options::parse(), keys());
+    let mut shown_frames = 0;
+    loop {
+        match show(&options, &keys, &mut shown_frames) {
+            Ok(()) => {
+                println!("{shown_frames} frames shown");
+                return ExitCode::SUCCESS;
+            }
+            // A runtime that restarts.
+            Err(error) if matches!(error.downcast_ref(), Some(Error::InstanceLost)) => println!("again: {error}"),
+            Err(error) => {
+                eprintln!("headset: {error}");
+                return ExitCode::FAILURE;
+            }
         }
     }
 }
 
-fn show(options: &Options) -> Result<(), Failure> {
+/// Shows frames on a headset until the end, and counts them.
+fn show(options: &Options, keys: &Receiver<String>, shown_frames: &mut u64) -> Result<(), Failure> {
     let page = image::load_from_memory(include_bytes!("../../../../fixtures/text_page.png"))?.into_luma8();
     let (created, controls) = channel();
     let mut settings = HeadsetDesc::default().settings;
@@ -97,7 +107,9 @@ fn show(options: &Options) -> Result<(), Failure> {
     let controls = controls.recv()?;
     println!("runtime: {}", headset.instance().properties()?.runtime_name);
     println!("eye tracker: {}", if headset.has_eye_tracker() { "yes" } else { "no" });
-    println!("views: {:?} pixels each", headset.size_px());
+    println!("depth layer: {}", if headset.has_depth_layer() { "yes" } else { "no" });
+    let mut size = headset.size_px();
+    println!("views: {size:?} pixels each");
     let mut room = Room::new(headset.device(), headset.queue(), &page);
     for eye in 0..2 {
         let hidden = headset.hidden_mesh(eye).cloned();
@@ -108,10 +120,9 @@ fn show(options: &Options) -> Result<(), Failure> {
         plant.before(&headset);
     }
     let mut measure = measure::Measure::new(headset.device(), headset.queue(), settings.foveation);
-    let keys = keys();
     let began = Instant::now();
     let mut hands_before: Option<Hands> = None;
-    let (mut shown_frames, mut is_over) = (0, false);
+    let mut is_over = false;
     while let Some(mut frame) = headset.next_frame()? {
         let hands = controls.hands(&mut frame)?;
         let pressed = controls.is_pressed(&frame)?;
@@ -152,12 +163,16 @@ fn show(options: &Options) -> Result<(), Failure> {
                 println!("wrote {}", path.display());
             }
         }
-        shown_frames += 1;
+        *shown_frames += 1;
         if options.stall == Some(index) {
             std::thread::sleep(Duration::from_millis(500));
         }
         if let Some(resize) = options.resize.as_ref().filter(|resize| resize[0] == index) {
             headset.resize([resize[1] as u32; 2])?;
+        }
+        if headset.size_px() != size {
+            size = headset.size_px();
+            println!("views: {size:?} pixels each, from frame {} on", index + 1);
         }
         let key = keys.try_recv().ok().or_else(|| pressed.then(|| "next".into()));
         if let Some(chosen) = key.filter(|key| {
@@ -171,12 +186,11 @@ fn show(options: &Options) -> Result<(), Failure> {
             println!("method: {}", settings.method.kind().name());
         }
         is_over |= options.seconds.is_some_and(|seconds| began.elapsed().as_secs() >= seconds);
-        if is_over || options.frames.is_some_and(|frames| shown_frames >= frames) {
+        if is_over || options.frames.is_some_and(|frames| *shown_frames >= frames) {
             headset.exit()?;
             is_over = true;
         }
     }
-    println!("{shown_frames} frames shown");
     Ok(())
 }
 
