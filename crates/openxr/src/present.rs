@@ -1,5 +1,5 @@
-//! Linear color to a swapchain's image. Its format encodes sRGB, which compute shaders cannot write, so this is a draw. It
-//! also writes depth, for runtimes that take it.
+//! Linear color to a swapchain's image. Its format encodes sRGB, which compute shaders cannot write, so this is a draw.
+//! It also writes depth, for runtimes that take it.
 
 use crate::targets::layer;
 use wgpu_30::{
