@@ -21,12 +21,12 @@ pub const REACH: i32 = 8;
 /// Code of no neighbour.
 pub const NOWHERE: u32 = 0x88;
 
-/// Need without history of the quad of its block whose turn it is, in squared units of
+/// Need of a quad without history, if it comes first in its block in this frame; in squared units of
 /// [`root_difference`](super::matched::root_difference).
 const NOTHING: f32 = 60.0;
-/// Share of it that counts for the other quads of the block.
+/// Share of that need for the other quads of the block.
 const NOT_IN_TURN: f32 = 0.25;
-/// Quads along a side of such a block.
+/// Quads along each side of a block, of which one comes first.
 pub const NEW_STEP: u32 = 4;
 /// Added to the contrast of coarse history, which errs by as much for each level of detail.
 const COARSE_CONTRAST: f32 = 4.0;
@@ -88,9 +88,9 @@ pub fn asked_px(x: u32, y: u32, frame: u32) -> [u32; 2] {
     [2 * x + ((frame ^ x ^ y) & 1), 2 * y + (frame >> 1 & 1)]
 }
 
-/// Need of quad (`x`, `y`) without history. It is the same at any eccentricity, since the next gaze may be there. The
-/// quad at `offset` in each block of [`NEW_STEP`] quads along each axis comes first, so that samples are spread evenly
-/// from the first frame on.
+/// Need of quad (`x`, `y`) without history. It does not fall with eccentricity: without history every part of the view
+/// is far off. In each block of [`NEW_STEP`] quads along each axis the quad at `offset` comes first, so that samples
+/// are spread evenly from the first frame on.
 #[inline]
 pub fn need_of_new(x: u32, y: u32, offset: [u32; 2]) -> f32 {
     if in_pattern(x, y, NEW_STEP, offset) { NOTHING } else { NOT_IN_TURN * NOTHING }

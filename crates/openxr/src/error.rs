@@ -15,7 +15,7 @@ pub enum Error {
     /// A call of OpenXR failed. `ERROR_FORM_FACTOR_UNAVAILABLE`: no headset is connected.
     #[error("OpenXR: {0}")]
     OpenXr(openxr::sys::Result),
-    /// The runtime ends or was ended: it restarts after an update, or crashed.
+    /// The runtime ends, to restart after an update, or crashed.
     #[error("the OpenXR runtime was lost: drop the headset and create another one")]
     InstanceLost,
     /// The Vulkan device could not be created.
