@@ -41,6 +41,7 @@ const MUTANTS = [
     ["transparent is black", "a_picture_of_ones_own", "pictures.js", 'surface.fillStyle = "#fff";', 'surface.fillStyle = "#000";'],
     ["refusals silent", "a_picture_of_ones_own", "main.js", '$("notice").textContent = text;', ""],
     ["Try again dead", "a_lost_device_is_replaced", "main.js", "location.reload()", "{}"],
+    ["loading moves the button", "a_lost_device_is_replaced", "style.css", "    aspect-ratio: 16/9;\n", ""],
     ["raw error as reason", "a_lost_device_is_replaced", "trouble.js", '$("raw").hidden = !raw;', '$("reason").textContent = raw;\n    $("raw").hidden = !raw;'],
     ["no recording", "without_webgpu_there_is_a_recording", "trouble.js", '$("clip").src = "clip.webm";', ""],
     ["nothing without JavaScript", "without_javascript_there_is_a_picture", "index.html", '<img src="card.jpg"', "<img"],

@@ -479,6 +479,11 @@ const tests = {
         const reason = await page.text("reason");
         check(/driver/.test(reason) && !/Destroyed|Device/.test(reason), `in a sentence: ${reason}`);
         check((await page.text("raw")).length > 30, "with the browser's words for a report");
+        await page.until("document.getElementById('clip').readyState >= 1", 10);
+        const loaded = await page.box("#again");
+        await page.evaluate("document.getElementById('clip').removeAttribute('src'); document.getElementById('clip').load()");
+        const empty = await page.box("#again");
+        check(loaded.top === empty.top, `the button stays where it is while the recording loads: ${empty.top}, ${loaded.top}`);
         await page.evaluate("window.is_old = true");
         await page.click("#again");
         await wait(500);
