@@ -1,5 +1,5 @@
-// The last step of build.sh: node pack.mjs FOLDER minifies the bindings and compresses what a server may send
-// compressed. Without a registry of packages the bindings stay as they are.
+// The last step of build.sh: node pack.mjs FOLDER minifies the bindings, leaves out comments and compresses what
+// a server may send compressed. Without a registry of packages the bindings stay as they are.
 
 import { spawnSync } from "node:child_process";
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
@@ -13,7 +13,14 @@ const options = ["--minify", "--format=esm", `--outdir=${folder}`, "--allow-over
 const { status } = spawnSync("npx", ["--yes", ESBUILD, ...bindings, ...options], { stdio: "inherit", timeout: 120_000 });
 if (status !== 0) console.log(`${ESBUILD} could not run: the bindings are not minified`);
 
+// Comments are for readers of the repository: lines of nothing else are not sent.
+const COMMENTS = { ".css": /^ *\/\*[^]*?\*\/\n/gm, ".js": /^ *\/\/.*\n/gm };
+
 for (const name of readdirSync(folder)) {
+    if (COMMENTS[extname(name)]) {
+        const text = readFileSync(join(folder, name), "utf8");
+        writeFileSync(join(folder, name), text.replace(COMMENTS[extname(name)], ""));
+    }
     if (![".css", ".csv", ".html", ".js", ".txt", ".wasm"].includes(extname(name))) continue;
     const bytes = readFileSync(join(folder, name));
     const params = { [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length };

@@ -23,23 +23,31 @@ pub const WORKGROUP_WIDTH: u32 = 64;
 /// A compute shader with the entry point `main` and one bind group.
 #[derive(Debug)]
 pub struct ComputeShader {
+    compiled: Arc<Compiled>,
+    pipelines: Mutex<Pipelines>,
+}
+
+/// What a device has made of a text. Shaders of one text share it.
+#[derive(Debug)]
+struct Compiled {
     name: &'static str,
-    /// Label of the shader's objects on the device, for captures of a frame.
+    /// Label of the objects, for captures of a frame.
     label: String,
-    /// Numbers and types of the bindings, by number.
+    /// Numbers and types of the bindings that the pass uses, by number.
     bindings: Vec<(u32, BindingType)>,
     group_layout: BindGroupLayout,
     layout: PipelineLayout,
     module: ShaderModule,
     /// Names of the overrides that the shader has.
     overrides: Vec<String>,
-    pipelines: Mutex<Pipelines>,
+    pipelines: Mutex<Vec<(Overrides, ComputePipeline)>>,
 }
 
-/// Compiled pipelines.
+/// Pipelines of a shader.
 #[derive(Debug, Default)]
 struct Pipelines {
-    list: Vec<(Overrides, ComputePipeline)>,
+    /// Override values that the shader was asked for.
+    list: Vec<Overrides>,
     /// Pipelines of keys, as long as the settings are those of `generation`.
     by_key: HashMap<u64, ComputePipeline>,
     generation: u64,
@@ -48,31 +56,51 @@ struct Pipelines {
 /// Function from the name of a pass's module to its WGSL text.
 type Text = dyn Fn(&str) -> Cow<'static, str> + Send + Sync;
 
-/// WGSL texts of the passes, by the names of their modules.
+/// A device, a text, and what the device has made of it.
+type Known = (Device, String, Arc<Compiled>);
+
+/// WGSL texts of the passes, by the names of their modules. Clones share what devices have compiled: a pass that comes
+/// back with other settings, or in another context, compiles nothing that was compiled before.
 #[derive(Clone)]
-pub struct Sources(Arc<Text>);
+pub struct Sources {
+    text: Arc<Text>,
+    known: Arc<Mutex<Vec<Known>>>,
+}
 
 impl Sources {
     /// Texts that `text` gives: for tests that plant errors, and for benchmarks.
     pub fn new(text: impl Fn(&str) -> Cow<'static, str> + Send + Sync + 'static) -> Self {
-        Self(Arc::new(text))
+        Self { text: Arc::new(text), known: Arc::default() }
     }
 
     /// These texts with `text` for one pass.
     #[must_use]
     pub fn with(self, name: &'static str, text: &str) -> Self {
-        let text = text.to_owned();
-        Self::new(move |other| if other == name { text.clone().into() } else { self.text(other) })
+        let (text, texts) = (text.to_owned(), self.text);
+        let texts = move |other: &str| if other == name { text.clone().into() } else { texts(other) };
+        Self { text: Arc::new(texts), known: self.known }
     }
 
     /// The text of a pass.
     pub fn text(&self, name: &str) -> Cow<'static, str> {
-        (self.0)(name)
+        (self.text)(name)
     }
 
     /// The shader of a pass.
     pub fn shader(&self, device: &Device, name: &'static str) -> ComputeShader {
-        ComputeShader::new(device, name, &self.text(name))
+        self.shader_of(device, name, &self.text(name))
+    }
+
+    /// The shader of a pass with the text `source`.
+    pub fn shader_of(&self, device: &Device, name: &'static str, source: &str) -> ComputeShader {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_same = |(on, text, compiled): &&Known| on == device && text == source && compiled.name == name;
+        if let Some((.., compiled)) = known.iter().find(is_same) {
+            return Arc::clone(compiled).into();
+        }
+        let compiled = Arc::new(Compiled::new(device, name, source));
+        known.push((device.clone(), source.to_owned(), Arc::clone(&compiled)));
+        compiled.into()
     }
 }
 
@@ -101,55 +129,40 @@ pub struct PipelineKey {
     pub generation: u64,
 }
 
+impl From<Arc<Compiled>> for ComputeShader {
+    fn from(compiled: Arc<Compiled>) -> Self {
+        Self { compiled, pipelines: Mutex::default() }
+    }
+}
+
 impl ComputeShader {
     /// A shader with the bindings of its text, or with those of them that its pass uses.
     pub fn new(device: &Device, name: &'static str, source: &str) -> Self {
-        let mut bindings = declared(source);
-        if let Some(used) = used_by(name) {
-            bindings.retain(|(number, _)| used.iter().any(|&binding| binding as u32 == *number));
-        }
-        let label = format!("afterimage {name}");
-        let module = device.create_shader_module(ShaderModuleDescriptor {
-            label: Some(&label),
-            source: ShaderSource::Wgsl(source.into()),
-        });
-        let entry =
-            |&(binding, ty): &_| BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None };
-        let entries: Vec<_> = bindings.iter().map(entry).collect();
-        let group_layout =
-            device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(&label), entries: &entries });
-        let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
-            label: Some(&label),
-            bind_group_layouts: &[Some(&group_layout)],
-            ..PipelineLayoutDescriptor::default()
-        });
-        let overrides = source.lines().filter_map(|line| line.strip_prefix("override ")?.split_once(':'));
-        let overrides = overrides.map(|(name, _)| name.to_owned()).collect();
-        Self { name, label, bindings, group_layout, layout, module, overrides, pipelines: Mutex::default() }
+        Arc::new(Compiled::new(device, name, source)).into()
     }
 
     /// Name of the shader's module.
     pub fn name(&self) -> &'static str {
-        self.name
+        self.compiled.name
     }
 
     /// Numbers and types of the bindings, by number.
     pub fn bindings(&self) -> &[(u32, BindingType)] {
-        &self.bindings
+        &self.compiled.bindings
     }
 
     /// Layout of the bind groups.
     pub fn group_layout(&self) -> &BindGroupLayout {
-        &self.group_layout
+        &self.compiled.group_layout
     }
 
     /// A bind group of `resources`, by number.
     pub fn group<'a>(&self, device: &Device, resources: impl IntoIterator<Item = BindingResource<'a>>) -> BindGroup {
         let entry = |(&(binding, _), resource)| BindGroupEntry { binding, resource };
-        let entries: Vec<_> = self.bindings.iter().zip(resources).map(entry).collect();
+        let entries: Vec<_> = self.compiled.bindings.iter().zip(resources).map(entry).collect();
         device.create_bind_group(&BindGroupDescriptor {
-            label: Some(&self.label),
-            layout: &self.group_layout,
+            label: Some(&self.compiled.label),
+            layout: &self.compiled.group_layout,
             entries: &entries,
         })
     }
@@ -177,7 +190,7 @@ impl ComputeShader {
             return pipeline.clone();
         }
         let mut list = overrides();
-        list.retain(|(name, _)| self.overrides.iter().any(|own| own == name));
+        list.retain(|(name, _)| self.compiled.overrides.iter().any(|own| own == name));
         let pipeline = self.find_or_compile(device, &mut pipelines, &list);
         pipelines.by_key.insert(key.bits, pipeline.clone());
         pipeline
@@ -189,30 +202,16 @@ impl ComputeShader {
         pipelines: &mut Pipelines,
         overrides: &[(&'static str, u32)],
     ) -> ComputePipeline {
-        if let Some((_, pipeline)) = pipelines.list.iter().find(|(list, _)| list == overrides) {
-            return pipeline.clone();
+        if !pipelines.list.iter().any(|list| list == overrides) {
+            pipelines.list.push(overrides.to_vec());
         }
-        let constants: Vec<_> = overrides.iter().map(|&(name, value)| (name, f64::from(value))).collect();
-        let pipeline = device.create_compute_pipeline(&ComputePipelineDescriptor {
-            label: Some(&self.label),
-            layout: Some(&self.layout),
-            module: &self.module,
-            entry_point: Some("main"),
-            compilation_options: PipelineCompilationOptions {
-                constants: &constants,
-                // Only counters use workgroup memory, and zeroing it costs a barrier.
-                zero_initialize_workgroup_memory: !overrides.contains(&("COUNT", 0)),
-            },
-            cache: None,
-        });
-        pipelines.list.push((overrides.to_vec(), pipeline.clone()));
-        pipeline
+        self.compiled.pipeline(device, overrides)
     }
 
-    /// Name of the shader, and override values, of each compiled pipeline.
+    /// Name of the shader, and override values, of each compiled pipeline that it was asked for.
     pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
         let pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
-        pipelines.list.iter().map(|(overrides, _)| (self.name, overrides.clone())).collect()
+        pipelines.list.iter().map(|overrides| (self.name(), overrides.clone())).collect()
     }
 
     /// Dispatches one invocation a texel, for `width` x `height` texels in each of `layers` layers.
@@ -228,6 +227,56 @@ impl ComputeShader {
         pass.set_pipeline(&self.pipeline(device, overrides));
         pass.set_bind_group(0, group, &[]);
         pass.dispatch_workgroups(width.div_ceil(WORKGROUP_WIDTH), height, layers);
+    }
+}
+
+impl Compiled {
+    fn new(device: &Device, name: &'static str, source: &str) -> Self {
+        let mut bindings = declared(source);
+        if let Some(used) = used_by(name) {
+            bindings.retain(|(number, _)| used.iter().any(|&binding| binding as u32 == *number));
+        }
+        let label = format!("afterimage {name}");
+        let module = device.create_shader_module(ShaderModuleDescriptor {
+            label: Some(&label),
+            source: ShaderSource::Wgsl(source.into()),
+        });
+        let entry =
+            |&(binding, ty): &_| BindGroupLayoutEntry { binding, visibility: ShaderStages::COMPUTE, ty, count: None };
+        let entries: Vec<_> = bindings.iter().map(entry).collect();
+        let group_layout =
+            device.create_bind_group_layout(&BindGroupLayoutDescriptor { label: Some(&label), entries: &entries });
+        let layout = device.create_pipeline_layout(&PipelineLayoutDescriptor {
+            label: Some(&label),
+            bind_group_layouts: &[Some(&group_layout)],
+            ..PipelineLayoutDescriptor::default()
+        });
+        let overrides = source.lines().filter_map(|line| line.strip_prefix("override ")?.split_once(':'));
+        let overrides = overrides.map(|(name, _)| name.to_owned()).collect();
+        Self { name, label, bindings, group_layout, layout, module, overrides, pipelines: Mutex::default() }
+    }
+
+    /// The pipeline for a set of override values, compiled at its first use.
+    fn pipeline(&self, device: &Device, overrides: &[(&'static str, u32)]) -> ComputePipeline {
+        let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, pipeline)) = pipelines.iter().find(|(list, _)| list == overrides) {
+            return pipeline.clone();
+        }
+        let constants: Vec<_> = overrides.iter().map(|&(name, value)| (name, f64::from(value))).collect();
+        let pipeline = device.create_compute_pipeline(&ComputePipelineDescriptor {
+            label: Some(&self.label),
+            layout: Some(&self.layout),
+            module: &self.module,
+            entry_point: Some("main"),
+            compilation_options: PipelineCompilationOptions {
+                constants: &constants,
+                // Only counters use workgroup memory, and zeroing it costs a barrier.
+                zero_initialize_workgroup_memory: !overrides.contains(&("COUNT", 0)),
+            },
+            cache: None,
+        });
+        pipelines.push((overrides.to_vec(), pipeline.clone()));
+        pipeline
     }
 }
 

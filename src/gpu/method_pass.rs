@@ -19,14 +19,15 @@ pub(super) struct MethodPass {
     with_view: OnceLock<ComputeShader>,
     pass: PassShader,
     output: TextureFormat,
+    sources: Sources,
 }
 
 impl MethodPass {
     /// The pass for outputs of format `output`.
     pub fn new(device: &Device, settings: &Settings, output: TextureFormat, sources: &Sources) -> Self {
         let pass = settings.pass_shader();
-        let shader = ComputeShader::new(device, pass.name, &writing(device, &sources.text(pass.name), output));
-        Self { shader, with_view: OnceLock::new(), pass, output }
+        let shader = sources.shader_of(device, pass.name, &writing(device, &sources.text(pass.name), output));
+        Self { shader, with_view: OnceLock::new(), pass, output, sources: sources.clone() }
     }
 
     fn shader(&self, device: &Device, special: Specialization) -> &ComputeShader {
@@ -35,7 +36,7 @@ impl MethodPass {
         }
         self.with_view.get_or_init(|| {
             let source = SHADERS.compose_replacing(self.pass.name, ("output", "output_and_view")).source;
-            ComputeShader::new(device, self.pass.name, &writing(device, &source, self.output))
+            self.sources.shader_of(device, self.pass.name, &writing(device, &source, self.output))
         })
     }
 }

@@ -106,7 +106,7 @@ impl GpuSimulator {
         validate(device, desc, output_format)?;
         let texel = texel(device, output_format)?;
         // In WGSL the texel format of a storage texture is part of its type.
-        let writing = |name, texel| ComputeShader::new(device, name, &sources.text(name).replace("rgba16float", texel));
+        let writing = |name, texel| sources.shader_of(device, name, &sources.text(name).replace("rgba16float", texel));
         let plane = |format, size, layers| PlaneDesc::new("afterimage foveation", format, size, layers).create(device);
         let levels = |coarsest, name| Steps::Levels {
             mip_chain: MipChain::new(device, desc, coarsest, sources),

@@ -171,8 +171,8 @@ fn a_wrong_pass_is_caught() {
     let right = names.map(|name| SHADERS.compose(name).source);
     let differs = |sources: &[String; 7]| {
         let texts = names.into_iter().zip(sources);
-        let sources = texts.fold(Sources::default(), |all, (name, text)| all.with(name, text));
-        let mut rig = Rig::with_sources(desc(), settings, sources)?;
+        let planted = |right| texts.fold(right, |all: Sources, (name, text)| all.with(name, text));
+        let mut rig = Rig::with_sources(desc(), settings, planted)?;
         Some((0..FRAMES).any(|index| {
             let reset = reset_of(index, &mut rig);
             let views = views(index, &settings);

@@ -12,6 +12,10 @@ use afterimage::{
     ContextDesc, DebugView, DepthConvention, Exposure, Filter, FrameStats, Image, Reset, Settings, ViewFrame,
 };
 use afterimage_testing::{Draws, agree};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Devices that no test uses now, and what they have compiled: half of the time of these tests was compilation.
+static IDLE: Mutex<Vec<(Device, Queue, Sources)>> = Mutex::new(vec![]);
 
 /// A device with textures of one size, and both executors.
 pub struct Rig {
@@ -30,6 +34,34 @@ pub struct Rig {
     pub beside: Option<DebugView>,
     textures: [Texture; 9],
     counters: Buffer,
+    /// What the device has compiled; `None` once it is of no use to other tests.
+    compiled: Option<Sources>,
+}
+
+impl Drop for Rig {
+    fn drop(&mut self) {
+        // A recording is of one test.
+        let is_reusable = !std::thread::panicking() && !afterimage_testing::gpu::is_recorded();
+        if let Some(compiled) = self.compiled.take().filter(|_| is_reusable) {
+            idle().push((self.device.clone(), self.queue.clone(), compiled));
+        }
+    }
+}
+
+fn idle() -> MutexGuard<'static, Vec<(Device, Queue, Sources)>> {
+    IDLE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A device that no test uses now. Uncaptured errors panic.
+fn idle_device() -> Option<(Device, Queue, Sources)> {
+    let idle = idle().pop();
+    idle.or_else(|| {
+        // One storage texture more than WebGPU's default, for views beside the frame.
+        let required_limits = wgpu::Limits { max_storage_textures_per_shader_stage: 5, ..wgpu::Limits::default() };
+        let desc = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
+        let (device, queue) = afterimage_testing::gpu::device_with(&desc)?;
+        Some((device, queue, Sources::default()))
+    })
 }
 
 // Places of textures: color, depth, motion, trust and reactive masks, levels of detail and noise; output, debug view.
@@ -131,20 +163,22 @@ pub fn same_counts(gpu: &FrameStats, cpu: &FrameStats) -> Result<(), String> {
 impl Rig {
     /// `None`, after a message, without an adapter.
     pub fn new(context: ContextDesc, settings: Settings) -> Option<Self> {
-        Self::with_sources(context, settings, Sources::default())
+        Self::with_sources(context, settings, |sources| sources)
     }
 
     /// With another text of the method's pass on the GPU.
     pub fn with_shader(context: ContextDesc, settings: Settings, source: &str) -> Option<Self> {
-        Self::with_sources(context, settings, Sources::default().with(method_pass(&settings), source))
+        Self::with_sources(context, settings, |sources| sources.with(method_pass(&settings), source))
     }
 
     /// With other texts of the passes on the GPU.
-    pub fn with_sources(context: ContextDesc, settings: Settings, sources: Sources) -> Option<Self> {
-        // One storage texture more than WebGPU's default, for views beside the frame.
-        let required_limits = wgpu::Limits { max_storage_textures_per_shader_stage: 5, ..wgpu::Limits::default() };
-        let desc = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
-        let (device, queue) = afterimage_testing::gpu::device_with(&desc)?;
+    pub fn with_sources(
+        context: ContextDesc,
+        settings: Settings,
+        change: impl FnOnce(Sources) -> Sources,
+    ) -> Option<Self> {
+        let (device, queue, compiled) = idle_device()?;
+        let sources = change(compiled.clone());
         let context = ContextDesc { settings, ..context };
         let made = || Afterimage::with_sources(&device, &context, TextureFormat::Rgba32Float, sources.clone());
         Some(Self {
@@ -161,10 +195,17 @@ impl Rig {
                 mapped_at_creation: false,
             }),
             exposure: Exposure::Same,
+            compiled: Some(compiled),
             context,
             device,
             queue,
         })
+    }
+
+    /// Loses the device.
+    pub fn lose(&mut self) {
+        self.compiled = None;
+        self.device.destroy();
     }
 
     /// Changes the size of both executors and of the textures.

@@ -114,8 +114,8 @@ pub(super) fn all_caught_in_samples(
     let right = names.map(|name| SHADERS.compose(name).source);
     all_caught(&right, planted, |sources: &[String; 3]| {
         let texts = names.into_iter().zip(sources);
-        let sources = texts.fold(Sources::default(), |all, (name, text)| all.with(name, text));
-        let mut rig = Rig::with_sources(desc, settings, sources)?;
+        let planted = |right| texts.fold(right, |all: Sources, (name, text)| all.with(name, text));
+        let mut rig = Rig::with_sources(desc, settings, planted)?;
         Some((0..frames).any(|index| {
             let views = views(index, &mut rig);
             rig.differs(index, Reset::None, &views)
@@ -222,7 +222,7 @@ fn a_wrong_fill_is_caught() {
     ];
     let settings = settings(MethodKind::None);
     all_caught(&[right], &planted, |[source]| {
-        let mut rig = Rig::with_sources(desc(), settings, Sources::default().with("fill_pass", source))?;
+        let mut rig = Rig::with_sources(desc(), settings, |right| right.with("fill_pass", source))?;
         Some((0..4).any(|index| {
             rig.scattered = index > 1;
             rig.differs(index, Reset::None, &sparse_views(index, &settings))
@@ -669,7 +669,7 @@ fn a_wrong_fill_of_geometry_is_caught() {
     ];
     let settings = settings(MethodKind::Smr);
     all_caught(&[right], &planted, |[source]| {
-        let mut rig = Rig::with_sources(desc(), settings, Sources::default().with("fill_geometry_pass", source))?;
+        let mut rig = Rig::with_sources(desc(), settings, |right| right.with("fill_geometry_pass", source))?;
         Some((0..6).any(|index| rig.differs(index, Reset::None, &at_samples(index, &settings))))
     });
 }

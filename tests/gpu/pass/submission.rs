@@ -105,7 +105,7 @@ fn h103_a_frame_after_one_that_never_ran_has_no_history() {
 fn zeroed_history_is_empty() {
     for settings in all_settings() {
         let sources = Sources::new(|name| SHADERS.compose(name).source.replace(CHECK.0, CHECK.1).into());
-        let Some(mut rig) = Rig::with_sources(ContextDesc::new(SIZE), settings, sources) else { return };
+        let Some(mut rig) = Rig::with_sources(ContextDesc::new(SIZE), settings, |_| sources) else { return };
         rig.drops = true;
         let views = [view(&rig, 0)];
         rig.on_gpu(0, Reset::None, &views);

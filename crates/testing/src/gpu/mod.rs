@@ -1,4 +1,4 @@
-//! GPU tests: one adapter per test program, a fresh device per test, and probes that run a WGSL entry point over a
+//! GPU tests: one adapter per test program, devices of single tests, and probes that run a WGSL entry point over a
 //! table of inputs.
 
 mod adapter;
