@@ -277,3 +277,21 @@ fn truncated_png_and_jpeg_are_refused() {
         }
     }
 }
+
+/// A DWA chunk starts with counters that its decoder trusts: one of 32 GB would abort the process.
+#[test]
+fn dwa_counters_do_not_set_memory_aside() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("dwaa_lines.exr");
+    let whole = std::fs::read(afterimage_testing::workspace().join("fixtures/fuzz/exr/dwaa_lines.exr")).unwrap();
+    // The only chunk is at the offset in the table's only entry; its data follows the line number and the size.
+    let word = |at: usize| u64::from_le_bytes(whole[at..at + 8].try_into().unwrap());
+    let chunk = (8..whole.len() - 8).find(|&at| word(at - 8) == at as u64).unwrap();
+    for counter in 1..10 {
+        let mut bytes = whole.clone();
+        let at = chunk + 8 + 8 * counter;
+        bytes[at..at + 8].copy_from_slice(&(1u64 << 35).to_le_bytes());
+        std::fs::write(&path, &bytes).unwrap();
+        assert_says(&refused(&path), &["dwaa_lines.exr", "damaged"]);
+    }
+}

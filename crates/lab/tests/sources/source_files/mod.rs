@@ -5,7 +5,6 @@ mod conventions;
 mod data;
 mod formats;
 mod motion;
-mod mutation;
 
 use afterimage::Image;
 use afterimage_lab::error::InputError;

@@ -125,9 +125,3 @@ fn it_answers_in_sentences_that_hold() {
         }
     }
 }
-
-#[test]
-fn an_empty_table_makes_a_page() {
-    let page = page(&of(&[], None), &nothing);
-    assert!(page.contains("</html>"));
-}
