@@ -96,19 +96,3 @@ fn every_order_samples_each_pixel_of_a_block_once() {
     let quarters: HashSet<_> = (0..4).map(|i| of(i).map(|v| v / 4)).collect();
     assert_eq!(quarters.len(), 4);
 }
-
-#[test]
-fn lattices_of_every_order_cover_the_view() {
-    let source = source("still");
-    for order in SampleOrder::ALL {
-        for index in 0..16 {
-            let plain = foveation().lattices(source.view(), [10.0, 80.0], index);
-            let moved = order.lattices(&foveation(), source.view(), [10.0, 80.0], index);
-            let same = |a: &[afterimage::Lattice], b: &[afterimage::Lattice]| {
-                a.iter().zip(b).all(|(a, b)| a.covered_px() == b.covered_px() && a.points == b.points)
-            };
-            assert!(same(plain.as_slice(), moved.as_slice()));
-            assert!(order != SampleOrder::Bayer || plain == moved);
-        }
-    }
-}

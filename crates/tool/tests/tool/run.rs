@@ -83,15 +83,11 @@ fn both_backends_write_the_same_bytes() {
         return;
     }
     let debug = format!("--size 160x90 --frames 4 --wrs-sampler a-es --no-jod --debug {DEBUG}");
-    let views = "--size 160x90 --frames 4 --method none,taa,wrs,smr --rate-mid 2 --rate-far 4 --reference-samples 1 \
-                 --no-flip --no-jod --foveation layers --geometry samples";
     let traced = "--source trace --sampling regions --region-spp 2,1,1 --foveation sparse --reference-spp 2 --no-jod \
                   --method none,taa,taau,smr --frames 3 --size 64x36 --gaze 20,12";
-    for (input, line, simulator, geometry) in [
-        ("analytic:occluder", &debug[..], "mip", None),
-        ("builtin:cubes", views, "layers", Some("samples")),
-        ("builtin:cubes", traced, "regions", Some("samples")),
-    ] {
+    for (input, line, simulator, geometry) in
+        [("analytic:occluder", &debug[..], "mip", None), ("builtin:cubes", traced, "regions", Some("samples"))]
+    {
         let [cpu, gpu] = same_on_both_backends(line, input, &words(line));
         assert_eq!((&cpu["backend"]["kind"], &gpu["backend"]["kind"]), (&"cpu".into(), &"gpu".into()));
         let foveation = &cpu["foveation"];

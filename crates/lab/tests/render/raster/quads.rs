@@ -102,7 +102,7 @@ impl Twins {
 #[test]
 fn rendered_quads_show_what_a_simulator_shows_that_has_the_whole_frame() {
     let Some(device) = device() else { return };
-    for (name, is_jittered) in [("courtyard", true), ("cubes", false), ("mirror-room", true)] {
+    for (name, is_jittered) in [("courtyard", true), ("cubes", false)] {
         let mut twins = Twins::new(&device, builtin(name), is_jittered);
         for index in 0..4 {
             let (outputs, chosen) = twins.next(index, false);
@@ -117,6 +117,6 @@ fn rendered_quads_show_what_a_simulator_shows_that_has_the_whole_frame() {
 fn surfaces_of_pixel_centres_show_something_else() {
     let Some(device) = device() else { return };
     let mut twins = Twins::new(&device, builtin("courtyard"), true);
-    let wrong: Vec<f32> = (0..4).flat_map(|index| twins.next(index, true).0).collect();
+    let wrong: Vec<f32> = (0..2).flat_map(|index| twins.next(index, true).0).collect();
     assert!(wrong.iter().any(|&d| d > 1.0 / 255.0), "a planted error is seen: {wrong:?}");
 }

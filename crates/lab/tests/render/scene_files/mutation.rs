@@ -34,8 +34,8 @@ fn every_number_of_the_description_replaced() {
     let mut paths = Vec::new();
     numbers_of(&file.json, String::new(), &mut paths);
     assert!(paths.len() > 80, "{}", paths.len());
-    let numbers = json!([0, 1, 2, -1, 255, 5126, 5121, 1u64 << 31, u64::MAX, 1e38, -1e300, 0.5]);
-    let others = json!([null, "x", [], {}]);
+    let numbers = json!([0, 1, -1, 5126, 1u64 << 31, u64::MAX, 1e38, 0.5]);
+    let others = json!([null, []]);
     let values = [numbers, others].map(|v| v.as_array().unwrap().clone()).concat();
     let mut read = 0;
     for pointer in &paths {

@@ -84,21 +84,6 @@ fn gazes_converge_as_ipd_f_over_z() {
 }
 
 #[test]
-fn eyes_are_parallel_where_there_is_nothing() {
-    let sky = Environment::Constant([1.0; 3]);
-    let world = World::new(&made("nothing", vec![], Triangles::default(), Pose::default(), sky));
-    let head = head(DVec3::new(1.0, 2.0, 3.0), DVec3::new(-4.0, 0.0, 1.0));
-    for gaze in [[199.5, 149.5], [17.0, 260.5]] {
-        let point = GazePoint::seen(&world, &head, gaze, Effects::all());
-        assert!(matches!(point, GazePoint::Far(_)), "{point:?}");
-        for eye in head.stereo(IPD_M) {
-            let px = point.px(&eye).unwrap();
-            assert!((px[0] - gaze[0]).abs() < 1e-3 && (px[1] - gaze[1]).abs() < 1e-3, "{px:?} for {gaze:?}");
-        }
-    }
-}
-
-#[test]
 fn behind_the_eyes_there_is_no_pixel() {
     let head = head(DVec3::ZERO, DVec3::NEG_Z);
     for eye in head.stereo(IPD_M) {

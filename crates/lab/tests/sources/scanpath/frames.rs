@@ -88,20 +88,6 @@ proptest! {
     }
 }
 
-/// H63: no gaze before the first valid sample; then held during a blink, over NaN, and to the end.
-#[test]
-fn lost_gaze_is_held_and_its_age_grows() {
-    let path =
-        parse("5.0,0,0,0\n5.1,512,384,1\n5.2,nan,nan,1\n5.3,0.00,0.00,0\n5.4,-4000,384,1\n5.5,nan,nan,0\n").unwrap();
-    let gaze = FrameGaze::new(&path, &view(), GazeMap::Fit, 0.0, 10.0).unwrap();
-    assert_eq!(gaze.frames(), 6);
-    let x: Vec<_> = (0..8).map(|i| gaze.px(i).map(|p| p[0])).collect();
-    let (middle, off) = (Some(319.5), Some(-2500.5));
-    assert_eq!(x, [None, middle, middle, middle, off, off, off, off]);
-    let age = |i| gaze.age_s(i).map(|a| (a * 10.0).round());
-    assert_eq!([age(0), age(1), age(3), age(5), age(7)], [None, Some(0.0), Some(2.0), Some(1.0), Some(3.0)]);
-}
-
 #[test]
 fn impossible_time_windows_and_maps_are_refused() {
     let path = parse("0,1,2,1\n2.0,1,2,1\n").unwrap();

@@ -1,7 +1,7 @@
 //! Invalid inputs: the error names the file and a remedy.
 
 use super::{
-    ALL, Extras, assert_needs_megapixels, assert_says, error_of, folder_of, limits, picture, save, write_frame,
+    ALL, Extras, assert_needs_megapixels, assert_says, error_of, folder_of, limits, patch, picture, save, write_frame,
 };
 use crate::hostile::claim_size;
 use afterimage_lab::error::InputError;
@@ -113,16 +113,6 @@ fn missing_color_lists_what_is_there() {
         &refused(folder.path()),
         &["frame_0001.exr", "no color", "ViewLayer.Depth.Z, ViewLayer.Mist.Z", "Combined.R/G/B"],
     );
-}
-
-/// Overwrites the data of attribute `name` of type `kind` with `value`.
-fn patch(bytes: &mut [u8], name: &str, kind: &str, value: &[i32]) {
-    let key = format!("{name}\0{kind}\0");
-    let at = bytes.windows(key.len()).position(|w| w == key.as_bytes()).unwrap();
-    for (i, v) in value.iter().enumerate() {
-        let start = at + key.len() + 4 + 4 * i;
-        bytes[start..start + 4].copy_from_slice(&v.to_le_bytes());
-    }
 }
 
 #[test]

@@ -1,17 +1,12 @@
 //! Every supported kind of file, written here pixel by pixel and read back.
 
-use super::{ALL, Extras, folder_of, limits, picture, vectors};
+use super::{ALL, Extras, folder_of, limits, picture, srgb, vectors};
 use afterimage::Image;
 use afterimage_lab::source::exr_file::{ColorFormat, ExrHeader, FrameToWrite, Vectors, write};
 use afterimage_lab::source::{FrameSource, SceneOptions, SequenceSource, StillSource, open};
 use exr::prelude::*;
 use image::{DynamicImage, ImageBuffer, Luma, LumaA, Rgb, Rgba};
 use std::path::Path;
-
-fn srgb(v: f64) -> f32 {
-    let linear = if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
-    linear as f32
-}
 
 fn still(path: &Path) -> afterimage_lab::frame::SourceFrame {
     let mut source = open(path.to_str().unwrap(), &limits(), &SceneOptions::default()).unwrap();

@@ -1,7 +1,6 @@
 //! The plot of PSNR by frame: points where the axes say, gaps, labels, saccades.
 
 use super::drawn::{assert_ends_before_the_border, has_text, mark_at, number, points, with_class};
-use afterimage_cli::report::plot::png;
 use afterimage_cli::report::psnr_plot::PsnrPlot;
 use resvg::usvg::roxmltree::{Document, Node};
 
@@ -109,29 +108,6 @@ fn exact_frames_are_gaps_and_marks_at_the_top() {
     assert!(has_text(&document, "PSNR is infinite") && has_text(&document, "error is no number"));
     let document_without = self::svg(&[("none", &plain)], &[0.0; 12]);
     assert!(!document_without.contains("infinite") && !document_without.contains("no number"), "nothing to explain");
-}
-
-#[test]
-fn odd_runs_make_a_plot() {
-    // A single frame, a single method, exact frames alone, no frames.
-    let [one, exact, lone] = [vec![mse(30.0)], vec![0.0; 3], vec![0.0, mse(31.0), 0.0]];
-    let runs: [&[(&str, &[f64])]; 5] =
-        [&[("none", &one), ("smr", &one)], &[("smr", &exact)], &[("smr", &lone)], &[("none", &[]), ("smr", &[])], &[]];
-    for methods in runs {
-        let svg = svg(methods, &[0.0]);
-        assert!(!svg.contains("NaN") && !svg.contains("inf\""), "{svg}");
-        let document = Document::parse(&svg).unwrap();
-        assert_eq!(with_class(&document, "curve").count(), methods.len());
-        for (method, errors) in methods {
-            assert_eq!(marks(&document, method).is_empty(), errors.is_empty(), "a lone point is a mark");
-        }
-        png(&svg);
-    }
-    let svg = svg(&[("smr", &one)], &[0.0]);
-    let document = Document::parse(&svg).unwrap();
-    let x = ticks(&document, "x");
-    assert_eq!((x.len(), x[0].0), (1, 0.0), "frame 0 alone");
-    assert!((line(&document, "smr")[0][0] - x[0].1).abs() < 0.5);
 }
 
 #[test]

@@ -92,13 +92,3 @@ fn a_path_of_keyframes_moves_the_camera_and_a_sky_may_be_a_picture() {
     assert_ne!(moved.bytes("motion/000000.exr"), moved.bytes("motion/000001.exr"));
     assert!(moved.report()["effects"].as_array().unwrap().contains(&"environment-map".into()));
 }
-
-#[test]
-fn a_scene_of_nothing_gives_a_frame() {
-    let folder = Folder::new();
-    let path = folder.write("nothing.gltf", br#"{"asset": {"version": "2.0"}}"#);
-    let t = Traced::new(&path, &["--aov", "depth,motion,variance"]);
-    // A scene without light gets a white sky.
-    assert!(picture(&t.path("color/000000.exr")).pixels().iter().all(|c| *c == [1.0; 3]));
-    assert_eq!(t.report()["triangles"], 0);
-}
