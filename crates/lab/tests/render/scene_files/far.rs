@@ -79,6 +79,16 @@ fn what_lies_far_away_is_moved_to_the_origin() {
 }
 
 #[test]
+fn what_lies_near_or_is_large_stays_where_it_is() {
+    for at in [[0.0, 0.0, 0.0], [0.0, 0.0, 90.0], [0.0, 300.0, 0.0]] {
+        for with_camera in [false, true] {
+            let scene = file(at, with_camera, false, false).open();
+            assert_eq!((scene.origin, scene.warnings.len()), (DVec3::ZERO, 0), "{at:?}");
+        }
+    }
+}
+
+#[test]
 fn cameras_of_files_are_in_the_coordinates_of_the_scenes_file() {
     let scene = file([1e6, 0.0, 0.0], true, false, false).open();
     let folder = tempfile::tempdir().unwrap();
