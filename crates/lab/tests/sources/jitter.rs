@@ -2,13 +2,13 @@
 
 use crate::roomy::roomy_device;
 use afterimage::kernel::color::luma;
-use afterimage::{Filter, Foveation, Image, Method, Settings, Smr, ViewGeometry};
+use afterimage::{Filter, Foveation, Image, Method, Settings, Smr};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::{Content, RenderedFrame};
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::pipeline::{Pipeline, Processor, RunKind};
 use afterimage_lab::source::{
-    AnalyticSource, FrameRequest, FrameSource, RasterSource, ReadLimits, SceneOptions, Wanted, reference_offsets_px,
+    AnalyticSource, FrameRequest, FrameSource, RasterSource, ReadLimits, SceneOptions, reference_offsets_px,
 };
 use std::sync::Arc;
 
@@ -99,49 +99,6 @@ fn references_are_means_of_jittered_frames() {
     if let Some((mut source, _)) = cubes() {
         is_the_mean_of_jittered_frames(&mut source, 4);
     }
-}
-
-#[test]
-fn samples_of_jittered_lattices_are_those_of_the_jittered_full_rate_frame() {
-    let Some((mut source, _)) = cubes() else { return };
-    let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..Foveation::default() };
-    let geometry = ViewGeometry::flat(SIZE, source.info().hfov_deg.unwrap()).unwrap();
-    let lattices = foveation.lattices(&geometry, [48.0, 27.0], 4);
-    let jitter_px = Some([0.3, -0.4]);
-    let full = jittered(&mut source, 4, [0.3, -0.4]);
-    let request = FrameRequest {
-        wanted: Wanted::Lattices(lattices),
-        geometry: SparseGeometry::Samples,
-        jitter_px,
-        ..FrameRequest::full_rate(4)
-    };
-    let sparse = source.render(&request).unwrap();
-    assert_eq!(sparse.jitter_px, [0.3, -0.4]);
-    let Content::OnDevice(content) = &sparse.content else { panic!("lattices stay on the device") };
-    let (color, (depth, motion)) = (content.read_color().unwrap(), content.read_geometry().unwrap());
-    let (mut wrong, mut all) = (0, 0);
-    for lattice in content.lattices().unwrap().as_slice() {
-        let texel = lattice.atlas_texel.unwrap();
-        for j in 0..lattice.points[1] {
-            for i in 0..lattice.points[0] {
-                let px = [lattice.first_px[0] + lattice.step * i, lattice.first_px[1] + lattice.step * j];
-                if px[0] >= SIZE[0] || px[1] >= SIZE[1] {
-                    continue;
-                }
-                let [px, at] = [px, [texel[0] + i, texel[1] + j]].map(|px| px.map(|v| v as usize));
-                let full = full.given();
-                let (d0, d1) = (full.depth.as_ref().unwrap().at(px[0], px[1]), depth.at(at[0], at[1]));
-                let (m0, m1) = (full.motion.as_ref().unwrap().at(px[0], px[1]), motion.at(at[0], at[1]));
-                let is_same = (d0 == d1 || (d0 - d1).abs() < 1e-3 * d0.min(1e6))
-                    && (0..2).all(|i| (m0[i] - m1[i]).abs() < 1e-2)
-                    && (luma(full.color.at(px[0], px[1]).into()) - luma(color.at(at[0], at[1]).into())).abs() < 0.01;
-                wrong += usize::from(!is_same);
-                all += 1;
-            }
-        }
-    }
-    println!("{wrong} of {all} samples differ");
-    assert!(all > 400 && wrong * 100 <= all, "{wrong} of {all}");
 }
 
 /// Mean squared errors after some jittered frames: of what smr shows, and of one sample a pixel.

@@ -2,6 +2,7 @@
 
 #[path = "../common/explained.rs"]
 mod explained;
+#[allow(dead_code, reason = "tests of scenes use the rest")]
 #[path = "../common/hostile.rs"]
 mod hostile;
 #[path = "../common/roomy.rs"]
@@ -13,8 +14,5 @@ mod analytic;
 mod fixtures;
 mod jitter;
 mod metric;
-mod quads;
-mod real_data;
-mod render_time;
 mod scanpath;
 mod source_files;

@@ -1,6 +1,6 @@
-//! Probes of scattering functions that read tables: albedo, bsdf. Also: unused lobes change no bit.
+//! Probes of scattering functions that read tables: albedo, bsdf.
 
-use crate::probe::{Probe, Row, Rows, named, probe};
+use crate::probe::{Probe, Rows, probe};
 use crate::scattering::{above, anywhere, put, share};
 use crate::shape::*;
 use crate::values::*;
@@ -166,49 +166,3 @@ pub const PROBES: &[Probe] = &[
         |rows| surfaces(rows, |d, row| (0..4).for_each(|_| row.push(one_draw(d))))
     ),
 ];
-
-type Switch = (&'static str, fn(&Lobes) -> bool);
-
-/// Override of each lobe, and whether a surface needs it.
-const SWITCHES: [Switch; 7] = [
-    ("LOBE_RETRO", |l| l.retro),
-    ("LOBE_SPECULAR", |l| l.specular),
-    ("LOBE_METAL", |l| l.metal),
-    ("LOBE_ANISOTROPY", |l| l.anisotropy),
-    ("LOBE_CLEARCOAT", |l| l.clearcoat),
-    ("LOBE_SHEEN", |l| l.sheen),
-    ("LOBE_TRANSMISSION", |l| l.transmission),
-];
-
-/// Rows of `probe` whose surfaces need none of the lobes in `off`, and their differences between a device without these
-/// lobes and Rust with all lobes.
-fn without(probe: &Probe, off: &[usize]) -> Option<(usize, Vec<String>)> {
-    let mut source = probe.source();
-    for &k in off {
-        let on = format!("override {}: bool = true;", SWITCHES[k].0);
-        assert_eq!(source.matches(&on).count(), 1);
-        source = source.replace(&on, &on.replace("true", "false"));
-    }
-    let (device, queue) = afterimage_testing::gpu::device()?;
-    let keep = |r: &Row<'_>| {
-        let used = Lobes::used_by(&Surface::read(r, 0));
-        off.iter().all(|&k| !SWITCHES[k].1(&used))
-    };
-    let rows = probe.table().within(keep);
-    Some(probe.differences_of(&device, &queue, &source, &rows))
-}
-
-#[test]
-fn a_lobe_that_is_not_used_can_be_left_out_bit_for_bit() {
-    let all = [0, 1, 2, 3, 4, 5, 6];
-    let sets = [vec![0, 1], vec![2], vec![3], vec![4], vec![5], vec![6], vec![3, 4, 5], all[2..].to_vec()];
-    for name in ["eval", "sample"] {
-        let probe = named(PROBES, name);
-        for off in &sets {
-            let Some((count, lines)) = without(probe, off) else { return };
-            println!("{name} without {off:?}: {} of {count} rows differ", lines.len());
-            assert!(count > 100);
-            assert!(lines.is_empty(), "{name} without {off:?}: {:#?}", &lines[..lines.len().min(3)]);
-        }
-    }
-}

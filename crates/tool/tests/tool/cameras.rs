@@ -23,6 +23,13 @@ const FILES: [(&str, &str); 4] = [
     ),
 ];
 
+/// The bytes of a scene's picture by a camera.
+fn picture(camera: &str, out: &str, more: &[&str]) -> Vec<u8> {
+    let size = ["--size", "24x16", "--spp", "1", "--backend", "cpu", "--format", "exr"];
+    succeeds(&[&["trace", "builtin:cubes", "--camera", camera, "--out", out], &size[..], more].concat());
+    fs::read(format!("{out}/color/000000.exr")).unwrap()
+}
+
 #[test]
 fn camera_files_of_other_programs_show_the_same_picture() {
     let folder = Folder::new();
@@ -38,10 +45,7 @@ fn camera_files_of_other_programs_show_the_same_picture() {
         ] {
             assert!(said.contains(line), "{said}");
         }
-        let out = folder.text(&format!("out{i}"));
-        let size = ["--size", "24x16", "--spp", "1", "--backend", "cpu", "--format", "exr"];
-        succeeds(&[&["trace", "builtin:cubes", "--camera", &file, "--out", &out][..], &size].concat());
-        let picture = fs::read(format!("{out}/color/000000.exr")).unwrap();
+        let picture = picture(&file, &folder.text(&format!("out{i}")), &[]);
         assert!(*first.get_or_insert_with(|| picture.clone()) == picture, "{kind}");
     }
     // COLMAP: two files, a world with y down, and images in the order of their names.
@@ -50,16 +54,10 @@ fn camera_files_of_other_programs_show_the_same_picture() {
     let said = succeeds(&["info", &colmap]);
     assert!(said.starts_with("camera file: images.txt of COLMAP\nframes: 1, all alike\n"), "{said}");
     assert!(said.contains("(y up): 0.0000, 1.0000, 4.0000\nit looks along: 0.0000, 0.0000, -1.0000\n"), "{said}");
-    let out = folder.text("colmap");
-    let size = ["--size", "24x16", "--spp", "1", "--backend", "cpu", "--format", "exr"];
-    succeeds(&[&["trace", "builtin:cubes", "--camera", &colmap, "--out", &out][..], &size].concat());
-    assert!(fs::read(format!("{out}/color/000000.exr")).unwrap() == *first.as_ref().unwrap());
+    assert!(picture(&colmap, &folder.text("colmap"), &[]) == *first.as_ref().unwrap());
     // Planted: half of the field of view is another picture.
     let other = folder.write("other.json", FILES[0].1.replace("60", "30").as_bytes());
-    let out = folder.text("other");
-    let size = ["--size", "24x16", "--spp", "1", "--backend", "cpu", "--format", "exr"];
-    succeeds(&[&["trace", "builtin:cubes", "--camera", &other, "--out", &out][..], &size].concat());
-    assert!(fs::read(format!("{out}/color/000000.exr")).unwrap() != first.unwrap());
+    assert!(picture(&other, &folder.text("other"), &[]) != first.unwrap());
     let bad = folder.write("bad.json", br#"{"path":[]}"#);
     refuses(&["info", &bad], &["bad.json", "has no camera", "transforms.json"]);
     refuses(&["trace", "builtin:cubes", "--camera", &bad, "--out", &folder.text("bad")], &["bad.json", "nerfstudio"]);
@@ -74,12 +72,8 @@ fn a_camera_may_be_that_of_another_scene() {
         "cameras":[{"type":"perspective","perspective":{"yfov":0.7,"znear":0.1}}]}"#;
     let other = folder.write("other.GLTF", other.as_bytes());
     let own = folder.write("own.json", FILES[0].1.as_bytes());
-    let picture = |camera: &str, out: &str| {
-        let size = ["--hfov", "60", "--size", "24x16", "--spp", "1", "--backend", "cpu", "--format", "exr"];
-        succeeds(&[&["trace", "builtin:cubes", "--camera", camera, "--out", out][..], &size].concat());
-        fs::read(format!("{out}/color/000000.exr")).unwrap()
-    };
-    let [a, b] = [(&other, "a"), (&own, "b")].map(|(camera, out)| picture(camera, &folder.text(out)));
+    let [a, b] =
+        [(&other, "a"), (&own, "b")].map(|(camera, out)| picture(camera, &folder.text(out), &["--hfov", "60"]));
     assert!(a == b);
     let none = folder.write("none.gltf", br#"{"asset":{"version":"2.0"}}"#);
     refuses(&["trace", "builtin:cubes", "--camera", &none, "--out", &folder.text("c")], &["none.gltf", "no camera"]);

@@ -1,11 +1,11 @@
 //! `scanpath --head` and `--camera head`.
 
-use super::rig::{Folder, files, read_json, refuses, run, succeeds};
+use super::rig::{Folder, files, read_json, refuses, run, succeeds, words};
 use std::fs;
 use std::path::Path;
 
 const SMALL: &[&str] =
-    &["--size", "96x96", "--hfov", "90", "--method", "none", "--no-flip", "--reference-samples", "1"];
+    &["--size", "96x96", "--hfov", "90", "--method", "none", "--no-flip", "--no-jod", "--reference-samples", "1"];
 
 /// Rows of a table without its names, as numbers.
 fn rows(path: &Path) -> Vec<Vec<f64>> {
@@ -16,20 +16,7 @@ fn rows(path: &Path) -> Vec<Vec<f64>> {
 #[test]
 fn a_generated_head_moves_the_camera_and_its_scanpath_repeats_the_run() {
     let folder = Folder::new();
-    let head = [
-        "--camera",
-        "head-walk",
-        "--gaze",
-        "synthetic:4",
-        "--frames",
-        "8",
-        "--fps",
-        "20",
-        "--start",
-        "1",
-        "--format",
-        "exr",
-    ];
+    let head = words("--camera head-walk --gaze synthetic:4 --frames 8 --fps 20 --start 1 --format exr");
     succeeds(&run("builtin:cornell", &folder.text("a"), &[SMALL, &head].concat()));
     let a = folder.path("a");
     assert!(["pose.csv", "scanpath.csv", "gaze.csv"].iter().all(|f| files(&a).contains(&(*f).to_owned())));

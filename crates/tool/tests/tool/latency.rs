@@ -20,7 +20,7 @@ fn a_late_gaze_foveates_elsewhere_and_scores_know_the_true_one() {
     let gaze = folder.write("gaze.csv", stepping().as_bytes());
     let clip = |name: &str, start: &str, latency: &str, foveation: &str| {
         let line = format!(
-            "--size 160x90 --frames 8 --method none,smr --no-flip --foveation {foveation} --gaze {gaze} --gaze-map fit \
+            "--size 160x90 --frames 8 --method none,smr --no-flip --no-jod --foveation {foveation} --gaze {gaze} --gaze-map fit \
              --start {start} --gaze-latency {latency} --backend cpu"
         );
         succeeds(&run("analytic:lateral", &folder.text(name), &words(&line)));
@@ -58,32 +58,12 @@ fn a_late_gaze_foveates_elsewhere_and_scores_know_the_true_one() {
     }
 }
 
-#[test]
-fn no_latency_and_a_fixed_gaze_change_nothing() {
-    let folder = Folder::new();
-    let clip = |name: &str, more: &[&str]| {
-        let words = ["--size", "96x54", "--frames", "3", "--method", "smr", "--no-flip", "--backend", "cpu"];
-        succeeds(&run("analytic:turn", &folder.text(name), &[&words, more].concat()));
-        fs::read(folder.path(name).join("smr/000002.png")).unwrap()
-    };
-    assert_eq!(clip("a", &["--gaze", "synthetic:3"]), clip("b", &["--gaze", "synthetic:3", "--gaze-latency", "0"]));
-    assert_eq!(clip("c", &["--gaze", "30,20"]), clip("d", &["--gaze", "30,20", "--gaze-latency", "80"]));
-    // Before the first sample arrives, the eye is taken to have rested there: at this gaze, which rests for a second.
-    let gaze = folder.write("gaze.csv", stepping().as_bytes());
-    let from = |name: &str, start: &str, latency: &str| {
-        clip(name, &["--gaze", &gaze, "--gaze-map", "fit", "--start", start, "--gaze-latency", latency])
-    };
-    let rested = from("e", "0", "0");
-    assert_eq!(from("f", "0", "1000"), rested);
-    assert_ne!(from("g", "1.1", "0"), rested);
-}
-
 /// The frames are those of a gaze in the middle, and the scores those of the eye.
 #[test]
 fn a_fixed_fovea_stays_in_the_middle_and_scores_follow_the_eye() {
     let folder = Folder::new();
     let clip = |name: &str, gaze: &str, more: &[&str]| {
-        let line = "--size 160x90 --frames 4 --method smr --no-flip --backend cpu --foveation mip --fovea 10";
+        let line = "--size 160x90 --frames 4 --method smr --no-flip --no-jod --backend cpu --foveation mip --fovea 10";
         succeeds(&run("analytic:lateral", &folder.text(name), &[&words(line)[..], &["--gaze", gaze], more].concat()));
         let report = read_json(&folder.path(name).join("report.json"));
         let db = report["methods"]["smr"]["bands"]["fovea"]["psnr_db"].as_f64().unwrap_or(f64::INFINITY);

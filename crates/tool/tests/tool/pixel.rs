@@ -33,7 +33,7 @@ fn a_pixel_is_explained_frame_by_frame_for_every_method() {
     for (foveation, methods) in [("mip", "none,wrs,smr,taa,taau"), ("sparse", "wrs,smr"), ("quads", "taau,smr")] {
         let folder = Folder::new();
         let out = folder.text("out");
-        let asked = ["--method", methods, "--foveation", foveation, "--gaze", "100,60", "--no-jod", "--no-flip"];
+        let asked = ["--method", methods, "--foveation", foveation, "--gaze", "100,60", "--no-flip"];
         let pixel = ["--pixel", "40,30", "--pixel-frames", "2..3"];
         let said = succeeds(&run("analytic:lateral", &out, &[SMALL, &asked, &pixel].concat()));
         let csv = fs::read_to_string(folder.path("out/pixel.csv")).unwrap();

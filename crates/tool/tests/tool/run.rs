@@ -58,17 +58,6 @@ fn run_writes_what_the_contract_says() {
 }
 
 #[test]
-fn run_leaves_flip_out_when_told() {
-    let folder = Folder::new();
-    let out = folder.text("out");
-    succeeds(&run("analytic:lateral", &out, &[SMALL, &["--method", "none", "--no-flip"]].concat()));
-    let report = read_json(&folder.path("out").join("report.json"));
-    let none = &report["methods"]["none"];
-    assert!(none["flip"].is_null() && none["bands"]["mid"]["flip"].is_null() && none["psnr_db"].is_number());
-    assert!(report["flip_pixels_per_degree"].is_null());
-}
-
-#[test]
 fn the_same_seed_gives_the_same_bytes_on_any_number_of_threads() {
     let folder = Folder::new();
     let frames = |name: &str, threads: &str, seed: &str| {
@@ -93,24 +82,16 @@ fn both_backends_write_the_same_bytes() {
         refuses(&run("analytic:still", &folder.text("out"), &["--backend", "gpu"]), &["mesa-vulkan-drivers"]);
         return;
     }
-    let debug = format!("--size 160x90 --frames 4 --wrs-sampler a-es --debug {DEBUG}");
-    let sparse = "--size 160x90 --frames 4 --method none,taa,wrs --foveation sparse --geometry samples";
-    let quads = "--size 160x90 --frames 4 --method none,taa,wrs,smr --rate-mid 2 --rate-far 4 --reference-samples 1 \
-                 --no-flip --foveation";
-    let traced = "--source trace --sampling regions --region-spp 2,1,1 --foveation sparse --reference-spp 2 \
+    let debug = format!("--size 160x90 --frames 4 --wrs-sampler a-es --no-jod --debug {DEBUG}");
+    let traced = "--source trace --sampling regions --region-spp 2,1,1 --foveation sparse --reference-spp 2 --no-jod \
                   --method none,taa,taau,smr --frames 3 --size 64x36 --gaze 20,12";
-    for (input, line, simulator, geometry) in [
-        ("analytic:occluder", &debug, "mip", None),
-        ("analytic:occluder", &sparse.to_owned(), "sparse", Some("samples")),
-        ("builtin:cubes", &format!("{quads} layers --geometry samples"), "layers", Some("samples")),
-        ("builtin:cubes", &format!("{quads} uniform --scale 1.5"), "uniform", Some("samples")),
-        ("builtin:cubes", &traced.to_owned(), "regions", Some("samples")),
-    ] {
+    for (input, line, simulator, geometry) in
+        [("analytic:occluder", &debug[..], "mip", None), ("builtin:cubes", traced, "regions", Some("samples"))]
+    {
         let [cpu, gpu] = same_on_both_backends(line, input, &words(line));
         assert_eq!((&cpu["backend"]["kind"], &gpu["backend"]["kind"]), (&"cpu".into(), &"gpu".into()));
         let foveation = &cpu["foveation"];
         assert_eq!((&foveation["simulator"], foveation["geometry"].as_str()), (&simulator.into(), geometry), "{line}");
-        assert_eq!(foveation["scale"].as_f64(), (simulator == "uniform").then_some(1.5));
         match simulator {
             "mip" => {
                 assert!(cpu["methods"]["wrs"]["flushed"].is_number());
@@ -119,7 +100,6 @@ fn both_backends_write_the_same_bytes() {
                     assert_eq!(of(&cpu), of(&gpu), "{method}");
                 }
             }
-            "uniform" => assert_eq!(cpu["samples"], 4 * 107 * 60, "107 x 60 pixels a frame"),
             // Kept samples and their noise, of two frames.
             "regions" => assert_eq!(cpu["methods"]["smr"]["persistent_bytes_per_pixel"], 24.0),
             _ => {}
@@ -168,26 +148,12 @@ fn scenes_have_few_samples_by_default_and_given_frames_are_blurred() {
     ];
     for (i, (input, more, expected)) in cases.into_iter().enumerate() {
         let out = folder.text(&i.to_string());
-        let small = ["--size", "64x36", "--frames", "2", "--method", "none", "--no-flip"];
+        let small = ["--size", "64x36", "--frames", "2", "--method", "none", "--no-flip", "--no-jod"];
         succeeds(&run(input, &out, &[&small, more].concat()));
         let foveation = &read_json(&folder.path(&format!("{i}/report.json")))["foveation"];
         let found = ["simulator", "geometry"].map(|key| foveation[key].as_str().unwrap_or_default());
         assert_eq!(found, expected, "{input}, {more:?}");
     }
-}
-
-/// Uniform frames with moving samples: one lattice.
-#[test]
-fn a_sparse_frame_without_a_fovea_is_one_lattice() {
-    if afterimage_testing::gpu::adapter().is_none() {
-        return;
-    }
-    let folder = Folder::new();
-    let out = folder.text("out");
-    let one = ["--foveation", "sparse", "--fovea", "0", "--rate-mid", "2", "--rate-far", "2", "--method", "none,taau"];
-    // A gaze between pixels, where a region of 0 degrees has a pixel.
-    succeeds(&run("builtin:cubes", &out, &[SMALL, &one, &["--gaze", "80,45"]].concat()));
-    assert_eq!(read_json(&folder.path("out/report.json"))["samples"], 4 * 80 * 45);
 }
 
 #[test]
@@ -196,7 +162,7 @@ fn a_rerun_replaces_the_frames_of_the_run_before_and_nothing_else() {
     let out = folder.text("out");
     succeeds(&run("analytic:still", &out, SMALL));
     fs::write(folder.path("out/wrs/notes.txt"), "mine").unwrap();
-    succeeds(&run("analytic:still", &out, &["--size", "160x90", "--frames", "2"]));
+    succeeds(&run("analytic:still", &out, &["--size", "160x90", "--frames", "2", "--no-jod"]));
     assert_eq!(files(&folder.path("out/wrs")), ["000000.png", "000001.png", "notes.txt"]);
     // The plot is that of the new run: lines of two points.
     let plot = fs::read_to_string(folder.path("out/psnr.svg")).unwrap();
@@ -218,7 +184,7 @@ fn a_run_that_fails_leaves_no_plot_of_the_run_before() {
         fs::copy(sequence.join(&name), folder.path("frames").join(&name)).unwrap();
     }
     let (frames, out) = (folder.text("frames"), folder.text("out"));
-    let more = ["--frames", "6", "--no-flip"];
+    let more = ["--frames", "6", "--no-flip", "--no-jod"];
     succeeds(&run(&frames, &out, &more));
     assert!(folder.path("out/psnr.svg").is_file() && folder.path("out/psnr.png").is_file());
     let last = folder.path("frames/frame_0005.exr");
@@ -236,38 +202,16 @@ fn a_run_that_fails_leaves_no_plot_of_the_run_before() {
 }
 
 #[test]
-fn scenes_are_rasterised_and_go_through_every_method() {
-    let folder = Folder::new();
-    let line = "--source raster --size 96x54 --frames 3 --fps 30 --method none,taa,wrs,smr --backend cpu";
-    let out = folder.text("out");
-    let args = run("builtin:cubes", &out, &words(line));
-    if afterimage_testing::gpu::adapter().is_none() {
-        refuses(&args, &["adapter"]);
-        return;
-    }
-    succeeds(&args);
-    let report = read_json(&folder.path("out/report.json"));
-    assert_eq!((&report["fps"], &report["frames"]), (&serde_json::json!(30.0), &serde_json::json!(3)));
-    for method in ["none", "taa", "wrs", "smr"] {
-        assert!(folder.path(&format!("out/{method}/000002.png")).is_file());
-        assert_eq!(report["methods"][method]["nonfinite_out"], 0);
-    }
-    refuses(&["run", "builtin:cubes", "--camera", "left", "--out", &folder.text("none")], &["left", "lateral"]);
-    refuses(&["run", "builtin:none", "--out", &folder.text("none")], &["builtin:none", "courtyard"]);
-    refuses(&["run", "no/such.glb", "--out", &folder.text("none")], &["such.glb"]);
-}
-
-#[test]
 fn a_still_from_a_picture_file_works_without_depth_and_motion() {
     let folder = Folder::new();
     let picture = folder.text("still.png");
     image::RgbImage::from_fn(33, 21, |x, y| image::Rgb([x as u8 * 7, y as u8 * 11, 90])).save(&picture).unwrap();
     let out = folder.text("out");
-    succeeds(&run(&picture, &out, &["--frames", "3", "--method", "none,wrs,oracle", "--gaze", "5,5"]));
+    succeeds(&run(&picture, &out, &["--frames", "3", "--method", "none,wrs,oracle", "--gaze", "5,5", "--no-jod"]));
     let report = read_json(&folder.path("out/report.json"));
     assert!(report["methods"]["oracle"]["bytes_per_pixel"].is_null());
     assert!(report["methods"]["oracle"]["share_of_oracle"]["psnr"].is_null(), "the eye did not move: nothing to gain");
-    let more = ["--size", "160x90", "--frames", "60", "--method", "none,wrs,oracle"];
+    let more = words("--size 160x90 --frames 40 --method none,wrs,oracle --no-jod --no-flip");
     succeeds(&run("analytic:still", &folder.text("moving eye"), &more));
     let methods = &read_json(&folder.path("moving eye/report.json"))["methods"];
     let share = |method: &str| methods[method]["share_of_oracle"]["psnr"].as_f64().unwrap();
@@ -294,7 +238,7 @@ fn the_time_of_a_frame_is_that_of_the_renderer_and_the_post_process() {
     for (name, more) in kinds {
         let out = folder.text(name);
         let source = if name == "traced" { &[][..] } else { &["--source", "raster", "--reference-samples", "2"] };
-        let small = ["--size", "160x90", "--frames", "5", "--method", "none,smr", "--backend", "cpu", "--no-flip"];
+        let small = words("--size 160x90 --frames 5 --method none,smr --backend cpu --no-flip --no-jod");
         let said = succeeds(&run("builtin:cubes", &out, &[source, more, &small].concat()));
         assert!(said.contains("render +   post =  total ms"), "{said}");
         let report = read_json(&folder.path(name).join("report.json"));
@@ -333,12 +277,14 @@ fn the_time_of_a_frame_is_that_of_the_renderer_and_the_post_process() {
 
     // Frames that are read have no renderer.
     let out = folder.text("given");
-    succeeds(&run("analytic:lateral", &out, &[SMALL, &["--method", "smr", "--no-flip", "--no-jod"]].concat()));
+    succeeds(&run("analytic:lateral", &out, &[SMALL, &["--method", "smr", "--no-flip"]].concat()));
     let report = read_json(&folder.path("given").join("report.json"));
     for key in ["render_ms", "render_cpu_ms", "total_ms", "total_cpu_ms"] {
         assert!(report["methods"]["smr"].get(key).is_some_and(Value::is_null), "{key}");
     }
     assert!(report["full_rate"].is_null());
+    let none = &report["methods"]["smr"];
+    assert!(none["flip"].is_null() && none["bands"]["mid"]["flip"].is_null() && none["psnr_db"].is_number());
     let csv = fs::read_to_string(folder.path("given").join("frames.csv")).unwrap();
     assert!(csv.lines().nth(1).unwrap().ends_with(",,,,,,"), "{csv}");
 }

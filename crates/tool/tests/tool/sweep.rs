@@ -68,7 +68,7 @@ fn is_killed(out: &Path) -> bool {
 }
 
 #[test]
-fn a_sweep_that_is_killed_goes_on_and_ends_with_the_same_tables() {
+fn a_whole_sweep_is_that_of_parts_and_recommends_what_fits() {
     let folder = Folder::new();
     let whole = folder.text("whole");
     let said = run(&whole, &[]);
@@ -77,7 +77,12 @@ fn a_sweep_that_is_killed_goes_on_and_ends_with_the_same_tables() {
     for name in ["sweep.csv", "sweep.json"] {
         assert!(folder.path("whole").join(name).exists(), "{name}");
     }
+    one_that_is_killed_goes_on_and_ends_with_the_same_tables(&folder, &whole);
+    shards_that_are_merged_are_the_whole_sweep(&folder, &whole);
+    it_recommends_what_fits(&folder, &whole);
+}
 
+fn one_that_is_killed_goes_on_and_ends_with_the_same_tables(folder: &Folder, whole: &str) {
     // On a busy machine, a sweep may end before it is killed: then another one is.
     let names = ["killed", "killed again", "killed once more"];
     let name =
@@ -87,7 +92,7 @@ fn a_sweep_that_is_killed_goes_on_and_ends_with_the_same_tables() {
     assert!(!folder.path(name).join("sweep.json").exists());
     let said = run(&killed, &[]);
     assert!(!said.contains("7 to measure"), "what was finished is not measured again: {said}");
-    assert_eq!(figures(&killed), figures(&whole));
+    assert_eq!(figures(&killed), figures(whole));
     // Another run has nothing to do.
     assert!(run(&killed, &[]).contains("0 to measure"));
     // A round that was killed between writing its points is measured again completely, so that its times are from one
@@ -95,12 +100,10 @@ fn a_sweep_that_is_killed_goes_on_and_ends_with_the_same_tables() {
     fs::remove_file(folder.path(name).join("points").join(&points()[0])).unwrap();
     let said = run(&killed, &[]);
     assert!(said.contains("in 1 rounds") && !said.contains(", 1 to measure"), "{said}");
-    assert_eq!(figures(&killed), figures(&whole));
+    assert_eq!(figures(&killed), figures(whole));
 }
 
-#[test]
-fn shards_that_are_merged_are_the_whole_sweep() {
-    let folder = Folder::new();
+fn shards_that_are_merged_are_the_whole_sweep(folder: &Folder, whole: &str) {
     let parts = ["1/2", "2/2"].map(|shard| {
         let part = folder.text(&shard.replace('/', "of"));
         run(&part, &["--shard", shard]);
@@ -108,10 +111,9 @@ fn shards_that_are_merged_are_the_whole_sweep() {
     });
     let counts = parts.each_ref().map(|part| figures(part).len());
     assert!(counts.iter().all(|&n| n > 0) && counts.iter().sum::<usize>() == 7, "{counts:?}");
-    let [merged, whole, other] = ["merged", "whole", "other"].map(|name| folder.text(name));
+    let [merged, other] = ["merged", "other"].map(|name| folder.text(name));
     succeeds(&["sweep", "--merge", &parts[0], &parts[1], "--out", &merged]);
-    run(&whole, &[]);
-    assert_eq!(figures(&merged), figures(&whole));
+    assert_eq!(figures(&merged), figures(whole));
     let pictures = |name: &str| files(&folder.path(name).join("pictures")).len();
     assert_eq!(pictures("merged"), pictures("whole"));
 
@@ -120,11 +122,7 @@ fn shards_that_are_merged_are_the_whole_sweep() {
     refuses(&args, &["other", "is part of another sweep"]);
 }
 
-#[test]
-fn it_recommends_what_fits() {
-    let folder = Folder::new();
-    let out = folder.text("out");
-    run(&out, &[]);
+fn it_recommends_what_fits(folder: &Folder, whole: &str) {
     for (line, expected) in [
         ("--budget-ms 1e9 --renderer-ms 0", "afterimage run analytic:lateral --method smr"),
         ("--budget-ms 1e9 --renderer-ms 0", "let settings = Settings { foveation: Foveation {"),
@@ -133,12 +131,12 @@ fn it_recommends_what_fits() {
         ("--by psnr_db --target 1 --renderer-ms 0", "--method none"),
         ("--target-flip 0 --renderer-ms 0", "nothing is as good; the best is"),
     ] {
-        let said = succeeds(&[&["sweep", "--out", &out], &words(line)[..]].concat());
+        let said = succeeds(&[&["sweep", "--out", whole], &words(line)[..]].concat());
         assert!(said.contains(expected), "{line}: {said}");
     }
 
     // The printed command gives the printed scores.
-    let table = table(&out);
+    let table = table(whole);
     let row = table["rows"].as_array().unwrap().iter().find(|r| r["method"] == "smr").unwrap();
     let command = format!("{} --out {}", row["command"].as_str().unwrap(), folder.text("again"));
     succeeds(&words(&command)[1..]);
@@ -197,7 +195,7 @@ fn traced_patterns_converge_with_samples() {
     let out = folder.text("out");
     let line = format!(
         "sweep builtin:cornell --preset convergence --size 32x24 --gaze 16,12 --frames 38 --backend cpu \
-         --set reference-spp=1024 --set no-flip --out {out}"
+         --set reference-spp=1024 --set no-flip --set no-jod --out {out}"
     );
     succeeds(&words(&line));
     let table = table(&out);
@@ -261,51 +259,4 @@ fn a_full_disk_and_an_unwritable_folder_are_clear_errors() {
     assert_eq!(["out/points", "out/pictures"].map(|part| files(&folder.path(part))), [[""; 0]; 2]);
     run(&out, &one);
     assert_eq!(figures(&out).len(), 1);
-}
-
-/// On scenes, time is that of the whole frame: measured for sparse frames and for full-rate ones under a simulator.
-#[test]
-fn rasterised_scenes_are_compared_by_the_time_of_the_whole_frame() {
-    if afterimage_testing::gpu::adapter().is_none() {
-        return;
-    }
-    let folder = Folder::new();
-    let out = folder.text("out");
-    let line = format!(
-        "sweep builtin:cubes --out {out} --axis method=none,smr --axis foveation+geometry=sparse+samples,mip+- \
-         --source raster --size 160x90 --frames 38 --backend gpu --set no-flip --set reference-samples=1"
-    );
-    let said = succeeds(&words(&line));
-    assert!(said.contains("whole frame, render + post"), "{said}");
-    let table = table(&out);
-    let rows = table["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 4);
-    let mut render_ms = BTreeMap::new();
-    for row in rows {
-        let of = |key: &str| row[key].as_f64().unwrap_or_else(|| panic!("{key} of {row}"));
-        let adds = |a: &str, b: &str, total: &str| {
-            assert!((of(a) + of(b) - of(total)).abs() < 1e-9 * of(total), "{total} of {}", row["label"]);
-        };
-        adds("render_ms", "post_ms", "total_ms");
-        adds("render_ms", "post_ms", "cost_ms");
-        if cfg!(unix) {
-            adds("render_cpu_ms", "post_cpu_ms", "total_cpu_ms");
-        }
-        assert_eq!(row["post_ms"], row["pass_ms"]["median"]);
-        render_ms.insert(row["options"]["foveation"].as_str().unwrap(), of("render_ms"));
-    }
-    println!("{render_ms:?}");
-    assert!(render_ms["sparse"] < render_ms["mip"], "a simulator needs the full-rate frame: {render_ms:?}");
-    let csv = fs::read_to_string(folder.path("out/sweep.csv")).unwrap();
-    let header = csv.lines().next().unwrap();
-    assert!(header.starts_with("input,label,method,seeds,cost_ms,pass_ms,pass_p25_ms,pass_p75_ms,render_ms,"));
-    assert!(header.ends_with(",frontier,command,post_ms,total_ms,render_cpu_ms,post_cpu_ms,total_cpu_ms"), "{header}");
-    assert!(fs::read_to_string(folder.path("out/pareto.svg")).unwrap().contains("whole frame: renderer and pass"));
-    // The user's renderer replaces ours.
-    succeeds(&["sweep", "--out", &out, "--renderer-ms", "1000"]);
-    let rows = self::table(&out)["rows"].clone();
-    for row in rows.as_array().unwrap() {
-        let expected = 1000.0 * row["samples_share"].as_f64().unwrap();
-        assert!((row["render_ms"].as_f64().unwrap() - expected).abs() < 1e-9 * expected);
-    }
 }

@@ -10,7 +10,6 @@ use afterimage_lab::scene::{Environment, Material, Pose, Scene, Texture, Texture
 use afterimage_lab::source::SceneCamera;
 use afterimage_lab::trace::view::View;
 use glam::{DMat4, DQuat, DVec3, Vec2, vec3};
-use proptest::prelude::*;
 use std::sync::Arc;
 
 const SIZE: [u32; 2] = [320, 180];
@@ -250,89 +249,6 @@ fn samples_are_pixels_of_the_full_rate_frame() {
             seen.atlas.motion = seen.atlas.motion.map(|m| m.map(|v| v / far.step as f32));
             let planted = difference(&full, &seen.atlas, &far, 0);
             assert!(planted.motion_px > 100.0 * MOTION_PX, "{planted:?}");
-        }
-    }
-}
-
-/// A small frame with the samples' rays, whose texture level of detail is that of its own pixels: planted error.
-#[test]
-fn a_view_without_the_texture_bias_is_caught() {
-    let Some(device) = device() else { return };
-    let (scene, views) = (noise(), views(flat(SIZE)));
-    let mut rig = Rig::new(&device, &scene, SIZE);
-    let full = rig.full(&views);
-    for step in [4, 8] {
-        let lattice = Lattice::covering(step, [0, 0], SIZE, [1, 2]);
-        let seen = rig.foveated(&views, &Lattices::new(&[lattice]).unwrap(), AtlasLayout::Compact);
-        let lattice = seen.lattices.as_slice()[0];
-        let ([sx, sy], [ox, oy]) = views[0].geometry().scale_offset();
-        let tan = |scale: f32, offset: f32, i: usize| {
-            let first = offset + scale * (lattice.first_px[i] as f32 - 0.5 * step as f32);
-            [first, first + scale * (step * lattice.points[i]) as f32]
-        };
-        let small = ViewGeometry::off_axis(lattice.points, tan(sx, ox, 0), tan(sy, oy, 1)).unwrap();
-        let small_views = [0, 1].map(|i| View::new(small, views[i].world_from_camera()));
-        let blurred = Rig::new(&device, &scene, lattice.points).full(&small_views);
-        let [d, planted] = [&seen.atlas, &blurred].map(|frame| difference(&full, frame, &lattice, 0));
-        println!(
-            "step {step}: {d:?}
-without the bias: {planted:?}"
-        );
-        assert!(d.is_small());
-        // The same rays, with the same distances.
-        assert!(planted.distance <= DISTANCE && planted.smooth_db < SMOOTH_DB - 10.0);
-    }
-}
-
-#[test]
-fn lattices_may_reach_beyond_the_frame() {
-    let Some(device) = device() else { return };
-    let (scene, views) = (noise(), views(flat(SIZE)));
-    let mut rig = Rig::new(&device, &scene, SIZE);
-    let full = rig.full(&views);
-    let stack = [
-        Lattice { step: 1, first_px: [300, 170], points: [60, 40], atlas_texel: None },
-        Lattice { step: 2, first_px: [281, 150], points: [40, 33], atlas_texel: None },
-        Lattice { step: 8, first_px: [163, 4], points: [30, 20], atlas_texel: None },
-        Lattice { step: 16, first_px: [15, 14], points: [20, 12], atlas_texel: None },
-    ];
-    for layout in [AtlasLayout::Compact, AtlasLayout::InPlace] {
-        let seen = rig.foveated(&views, &Lattices::new(&stack).unwrap(), layout);
-        let [fovea, coarse @ ..] = seen.lattices.as_slice() else { unreachable!() };
-        let d = difference(&full, &seen.atlas, fovea, 0);
-        println!("{layout:?} {d:?}");
-        assert!(d.samples == 200 && d.psnr_db > 60.0 && (layout == AtlasLayout::Compact || d.bits == [0; 3]));
-        for lattice in coarse {
-            let d = difference(&full, &seen.atlas, lattice, 0);
-            println!("step {}: {d:?}", lattice.step);
-            assert!(d.is_small());
-        }
-    }
-}
-
-proptest! {
-    #![proptest_config(afterimage_testing::property("foveated rasterizer", 12))]
-
-    #[test]
-    fn samples_are_those_pixels_for_any_gaze_and_steps(
-        gaze in [-40.0_f32..200.0, -40.0_f32..140.0],
-        index in 0_u64..5000,
-        steps in (1_u32..3, 1_u32..3),
-        fovea_deg in 5.0_f32..40.0,
-    ) {
-        const SMALL: [u32; 2] = [159, 91];
-        let Some(device) = device() else { return Ok(()) };
-        let views = views(flat(SMALL));
-        let mut rig = Rig::new(&device, &noise(), SMALL);
-        let full = rig.full(&views);
-        let (rate_mid, rate_far) = (1 << steps.0, 1 << (steps.0 + steps.1));
-        let foveation = Foveation { rate_mid, rate_far, fovea_deg, ..Foveation::default() };
-        let lattices = foveation.lattices(views[0].geometry(), gaze, index);
-        let seen = rig.foveated(&views, &lattices, AtlasLayout::InPlace);
-        for lattice in seen.lattices.as_slice() {
-            let d = difference(&full, &seen.atlas, lattice, 0);
-            prop_assert!(lattice.step > 1 || d.bits == [0; 3], "step 1: {:?}", d);
-            prop_assert!(d.smooth == 0 || d.is_small(), "step {}: {:?}", lattice.step, d);
         }
     }
 }

@@ -10,4 +10,3 @@ mod quads;
 mod real;
 mod rig;
 mod shaded;
-mod stereo;

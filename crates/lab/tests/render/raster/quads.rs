@@ -4,7 +4,6 @@ use super::rig::FAST;
 use crate::given::{builtin, device};
 use afterimage::{Foveation, Image, Method, MethodKind, Settings, Smr};
 use afterimage_lab::device::{Backend, Headless};
-use afterimage_lab::error::InputError;
 use afterimage_lab::frame::{Content, RenderedFrame};
 use afterimage_lab::metric::encode;
 use afterimage_lab::pipeline::{Pipeline, RunKind};
@@ -103,7 +102,7 @@ impl Twins {
 #[test]
 fn rendered_quads_show_what_a_simulator_shows_that_has_the_whole_frame() {
     let Some(device) = device() else { return };
-    for (name, is_jittered) in [("courtyard", true), ("cubes", false), ("mirror-room", true)] {
+    for (name, is_jittered) in [("courtyard", true), ("cubes", false)] {
         let mut twins = Twins::new(&device, builtin(name), is_jittered);
         for index in 0..4 {
             let (outputs, chosen) = twins.next(index, false);
@@ -118,31 +117,6 @@ fn rendered_quads_show_what_a_simulator_shows_that_has_the_whole_frame() {
 fn surfaces_of_pixel_centres_show_something_else() {
     let Some(device) = device() else { return };
     let mut twins = Twins::new(&device, builtin("courtyard"), true);
-    let wrong: Vec<f32> = (0..4).flat_map(|index| twins.next(index, true).0).collect();
+    let wrong: Vec<f32> = (0..2).flat_map(|index| twins.next(index, true).0).collect();
     assert!(wrong.iter().any(|&d| d > 1.0 / 255.0), "a planted error is seen: {wrong:?}");
-}
-
-/// A source that shades before anything is chosen.
-struct Shaded(RasterSource);
-
-impl FrameSource for Shaded {
-    fn info(&self) -> &afterimage_lab::source::SourceInfo {
-        self.0.info()
-    }
-
-    fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
-        self.0.render(request)
-    }
-}
-
-#[test]
-fn a_source_that_shades_no_quads_is_refused() {
-    let Some(device) = device() else { return };
-    let mut twins = Twins::new(&device, builtin("cubes"), false);
-    let mut source = Shaded(twins.source);
-    let request = twins.rendered.request(0, None);
-    let frame = source.render(&request).unwrap();
-    let mut shade = |wish: &_| -> Result<_, Box<dyn Error>> { Ok(source.shade(&frame, wish)?) };
-    let error = twins.rendered.step_with(&frame, &mut shade).unwrap_err().to_string();
-    assert!(error.contains("color") && error.contains("a source that shades quads"), "{error}");
 }

@@ -2,13 +2,8 @@
 //! nothing else is traced.
 
 use super::fills::Yard;
-use crate::given::device_of_its_own;
-use afterimage::{Filter, Foveation, Image, Lattices, Method, MethodKind, Settings, ViewGeometry};
-use afterimage_lab::device::Backend;
-use afterimage_lab::frame::{Content, OnDevice, RenderedFrame, SourceFrame};
-use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
-use afterimage_lab::pipeline::{Pipeline, RunKind};
-use afterimage_lab::source::{FrameRequest, FrameSource, ReadLimits, SceneOptions, TracedSamples, TracedSource};
+use afterimage::{Image, Lattices, ViewGeometry};
+use afterimage_lab::lattices::SampleOrder;
 use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::sampling::{Acuity, Lattice, Layers, Regions, Sampling};
 use afterimage_lab::trace::settings::TraceSettings;
@@ -63,26 +58,6 @@ fn what_the_post_process_reads_is_traced_and_little_else() {
 }
 
 #[test]
-fn lattices_are_those_of_the_sparse_simulator() {
-    let geometry = *Yard::new(SIZE, TraceSettings::default()).geometry();
-    let [regions, layers] = patterns();
-    for order in SampleOrder::ALL {
-        for frame in 0..16 {
-            let gaze = [20.0 + 7.0 * frame as f32, 40.0];
-            let plan = regions.sparse_plan(&geometry, gaze, 1, frame, order).unwrap();
-            let foveation = Foveation { filter: Filter::Sparse, ..regions.foveation() };
-            assert_eq!(*plan.lattices(), order.lattices(&foveation, &geometry, gaze, frame));
-            let plan = layers.sparse_plan(&geometry, gaze, 1, frame, order).unwrap();
-            let steps: Vec<u32> = plan.lattices().as_slice().iter().map(|l| l.step).collect();
-            assert_eq!(steps, [1, 2, 4, 8]);
-            for lattice in plan.lattices().as_slice() {
-                assert_eq!(lattice.offset_px(), order.offset_px(frame, lattice.step), "{order:?}, frame {frame}");
-            }
-        }
-    }
-}
-
-#[test]
 fn samples_have_the_colors_traced_at_their_places() {
     let yard = Yard::new(SIZE, TraceSettings::default());
     for sampling in patterns() {
@@ -119,135 +94,6 @@ fn samples_have_the_colors_traced_at_their_places() {
             }
         }
         assert!(seen * 10 > traced.len() * 9, "{seen} of {}", traced.len());
-    }
-}
-
-#[test]
-fn samples_show_what_is_at_their_pixels() {
-    // Many samples a point, against many samples of all pixels: the places agree better than any shifted by a pixel.
-    let yard = Yard::new(SIZE, TraceSettings { max_depth: 1, ..Default::default() });
-    let full =
-        Sampling::Uniform.plan(yard.geometry(), [0.0; 2], 24, 0).trace(&yard.tracer, &yard.world, &yard.view, 0).color;
-    let sampling = Sampling::Regions(Regions { samples: [24; 3], ..Regions::default() });
-    for frame in [1, 6] {
-        let plan = sampling.sparse_plan(yard.geometry(), [60.0, 50.0], 2, frame, SampleOrder::Bayer).unwrap();
-        let made = plan.trace(&yard.tracer, &yard.world, &yard.view, frame).color;
-        let error = |shift: [i32; 2]| -> f64 {
-            let of = |[x, y]: [u32; 2]| {
-                let at = [x as i32 + shift[0], y as i32 + shift[1]];
-                let [x2, y2] =
-                    [at[0].clamp(0, SIZE[0] as i32 - 1) as usize, at[1].clamp(0, SIZE[1] as i32 - 1) as usize];
-                let (a, b) = (made.at(x as usize, y as usize), full.at(x2, y2));
-                (0..3).map(|i| f64::from((a[i].max(0.0).sqrt() - b[i].max(0.0).sqrt()).powi(2))).sum::<f64>()
-            };
-            plan.pixels().map(|(px, _)| of(px)).sum()
-        };
-        let shifts = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]].map(error);
-        println!("frame {frame}: {shifts:.1?}");
-        assert!(shifts[1..].iter().all(|&e| e > 1.25 * shifts[0]), "{shifts:?}");
-    }
-}
-
-#[test]
-fn the_post_process_shows_the_samples_and_reads_nothing_between() {
-    let yard = Yard::new(SIZE, TraceSettings::default());
-    let [regions, _] = patterns();
-    let foveation = Foveation { filter: Filter::Sparse, ..regions.foveation() };
-    let methods = [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Taau, MethodKind::Smr];
-    let kinds = methods.map(|method| RunKind::PostProcess(Settings { method: method.into(), ..Settings::traced() }));
-    let mut pipeline = Pipeline::new(*yard.geometry(), foveation, &kinds, false, &[], &Backend::Cpu).unwrap();
-    for frame in 0..4 {
-        let gaze = [40.0 + 20.0 * frame as f32, 45.0];
-        let made = regions.sparse_plan(yard.geometry(), gaze, 2, frame, SampleOrder::Bayer).unwrap().trace(
-            &yard.tracer,
-            &yard.world,
-            &yard.view,
-            frame,
-        );
-        let (color, lattices) = (made.color.clone(), made.lattices.unwrap());
-        let source = SourceFrame {
-            color: color.map(|_| [0.0; 3]),
-            depth: None,
-            motion: None,
-            trust: None,
-            previous_from_current: None,
-            cut: frame == 0,
-            nonfinite: 0,
-        };
-        let step = pipeline.step(&RenderedFrame::full_rate(frame, gaze, source).foveated(made)).unwrap();
-        for (method, output) in methods.iter().zip(&step.outputs) {
-            assert!(output.image.pixels().iter().flatten().all(|v| v.is_finite()), "{method:?}");
-            assert_eq!(output.stats.nonfinite, 0, "{method:?}, frame {frame}");
-            let shows = *method == MethodKind::None || frame == 0;
-            for (i, shown) in output.image.pixels().iter().enumerate().filter(|_| shows) {
-                let px = [i as u32 % SIZE[0], i as u32 / SIZE[0]];
-                if lattices.at(px).unwrap().samples(px) {
-                    assert_eq!(*shown, color.pixels()[i], "{method:?}, frame {frame}, {px:?}");
-                }
-            }
-        }
-    }
-}
-
-#[test]
-fn the_device_traces_the_same_samples() {
-    let Some((yard, on_device)) = Yard::new(SIZE, TraceSettings::default()).on_both() else { return };
-    for sampling in patterns() {
-        let plan = sampling.sparse_plan(yard.geometry(), [60.0, 50.0], 2, 5, SampleOrder::Bayer).unwrap();
-        let [a, b] = [&yard.tracer, &on_device].map(|tracer| plan.trace(tracer, &yard.world, &yard.view, 5));
-        let bits = |image: &Image<[f32; 3]>| image.map(|c| c.map(f32::to_bits));
-        assert_eq!((&a.samples, a.rays), (&b.samples, b.rays), "{sampling:?}");
-        assert!(bits(&a.color) == bits(&b.color) && a.noise == b.noise, "{sampling:?}");
-    }
-}
-
-#[test]
-fn samples_that_stay_on_the_device_are_those_of_the_memory() {
-    let Some(device) = device_of_its_own() else { return };
-    let backend = Backend::Gpu(device.clone());
-    let kinds = [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Taau, MethodKind::Smr];
-    let methods = kinds.map(Method::from);
-    let kinds = methods.map(|method| RunKind::PostProcess(Settings { method, ..Settings::traced() }));
-    for (sampling, geometry) in patterns().into_iter().zip([SparseGeometry::Samples, SparseGeometry::Full]) {
-        let order = SampleOrder::Sobol;
-        let samples = TracedSamples { foveated: Some(sampling), sparse: Some(order), samples: 2, full_rate_samples: 1 };
-        let options = SceneOptions { size: Some(SIZE), ..SceneOptions::default() };
-        let (limits, settings) = (ReadLimits::default(), TraceSettings::default());
-        let camera = Some("lateral");
-        let mut source =
-            TracedSource::open("builtin:courtyard", &limits, &options, camera, &backend, settings, samples).unwrap();
-        let view = Yard::new(SIZE, TraceSettings::default()).view;
-        let foveation = Foveation { filter: Filter::Sparse, ..sampling.foveation() };
-        let pipeline = || {
-            let pipeline = Pipeline::new(*view.geometry(), foveation, &kinds, false, &[], &backend).unwrap();
-            pipeline.with_sparse(geometry, order)
-        };
-        let (mut memory, mut on_device) = (pipeline(), pipeline());
-        for index in 0..4 {
-            let gaze = [40.0 + 20.0 * index as f32, 45.0];
-            let request = FrameRequest { device: None, ..memory.request(index, Some(gaze)) };
-            let made = source.render(&request).unwrap();
-            assert!(matches!(made.content, Content::Foveated(_)));
-            let request = on_device.request(index, Some(gaze));
-            assert!(request.device.is_some(), "the runs work on the device");
-            let before = device.readbacks();
-            let samples = source.render(&FrameRequest { reference: false, ..request.clone() }).unwrap();
-            assert!(matches!(OnDevice::of(&samples.content), Some(OnDevice::Samples(_))));
-            assert_eq!(device.readbacks(), before, "samples stay on the device");
-            let samples = RenderedFrame { reference: made.reference.clone(), ..samples };
-            assert_eq!((made.content.lattices(), made.samples), (samples.content.lattices(), samples.samples));
-            let a = memory.step(&made).unwrap();
-            let before = device.readbacks();
-            let b = on_device.step(&samples).unwrap();
-            // The outputs, which the metrics need, and the counters.
-            assert_eq!(device.readbacks() - before, 2 * methods.len() as u64);
-            assert_eq!((&a.lods, &a.ecc_deg), (&b.lods, &b.ecc_deg));
-            for (method, (a, b)) in methods.iter().zip(a.outputs.iter().zip(&b.outputs)) {
-                let bits = |image: &Image<[f32; 3]>| image.map(|c| c.map(f32::to_bits));
-                assert!(bits(&a.image) == bits(&b.image), "{method:?}, {sampling:?}, {geometry:?}, frame {index}");
-                assert_eq!(a.stats, b.stats, "{method:?}, frame {index}");
-            }
-        }
     }
 }
 

@@ -179,11 +179,3 @@ fn no_surface_makes_light() {
         assert!(mean.iter().all(|&m| m < 1.0 + TABLE_ERROR + z * error.max(0.02)), "{surface:?}: {mean:?} +- {error}");
     }
 }
-
-#[test]
-fn tables_are_computed_once_and_alike() {
-    let start = std::time::Instant::now();
-    let again = afterimage_lab::kernel::albedo::AlbedoTables::compute();
-    println!("tables: {:?}, {} bytes", start.elapsed(), again.words().count() * 16);
-    assert_eq!(again, *TABLES);
-}

@@ -41,13 +41,6 @@ fn textures_without_an_image_are_left_out() {
     }
 }
 
-#[test]
-fn scenes_may_be_empty() {
-    let mut file = Gltf::new();
-    file.json["scenes"] = json!([{"name": "nothing"}]);
-    assert_eq!(file.open().still().len(), 0);
-}
-
 /// Extensions describe what they decompress by buffers without bytes.
 #[test]
 fn a_buffer_without_bytes_is_legal_until_something_reads_it() {

@@ -57,13 +57,6 @@ fn points_and_lines_are_named() {
 }
 
 #[test]
-fn a_list_that_is_cut_short_loses_its_last_corners() {
-    assert_eq!(with_mode(&SQUARE, None, 4).open().still().len(), 1);
-    assert_eq!(with_mode(&SQUARE, Some(&[]), 5).open().still().len(), 0);
-    assert_eq!(with_mode(&SQUARE, Some(&[0, 1]), 6).open().still().len(), 0);
-}
-
-#[test]
 fn integer_attributes_are_scaled_where_they_are_normalised() {
     let mut file = Gltf::new();
     let positions: Vec<u8> = [[0i16, 0, 0], [300, 0, 0], [0, -32768, 0]]
@@ -230,19 +223,6 @@ fn lights_and_cameras_follow_their_nodes() {
     // Scales of nodes do not affect the camera.
     let looks = camera.world_from_camera.transform_vector3(-glam::DVec3::Z);
     assert!(looks.abs_diff_eq(-glam::DVec3::X, 1e-7), "{looks}");
-}
-
-#[test]
-fn builtin_and_unknown_names_are_told_apart() {
-    let limits = afterimage_lab::scene::SceneLimits::default();
-    for (input, word) in [
-        ("builtin:nothing", "built-in"),
-        ("scene.obj", "not a supported kind of scene"),
-        ("nowhere.glb", "does not exist"),
-    ] {
-        let error = afterimage_lab::scene::Scene::open(input, &limits).unwrap_err().to_string();
-        assert!(error.contains(word) && error.starts_with(input), "{error}");
-    }
 }
 
 /// A triangle under a node at (0, 0, 1) that turns by 90 degrees about z, with this instancing.

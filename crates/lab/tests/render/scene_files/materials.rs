@@ -171,31 +171,6 @@ fn textures_keep_texels_and_samplers() {
 }
 
 #[test]
-fn extension_textures_are_taken_and_images_shared() {
-    let info = json!({"index": 0});
-    let mut file = Gltf::with_material(json!({"extensions": {
-        "KHR_materials_clearcoat": {"clearcoatFactor": 1.0, "clearcoatTexture": info, "clearcoatRoughnessTexture": info},
-        "KHR_materials_sheen": {"sheenColorTexture": info, "sheenRoughnessTexture": info},
-        "KHR_materials_specular": {"specularTexture": info, "specularColorTexture": info},
-        "KHR_materials_transmission": {"transmissionTexture": info}
-    }}));
-    file.texture(&png([2, 2], |_, _| [1, 2, 3, 4]));
-    let scene = file.open();
-    assert_eq!(scene.textures.len(), 1);
-    let m = &scene.materials[0];
-    let all = [
-        m.clearcoat_texture,
-        m.clearcoat_roughness_texture,
-        m.sheen_color_texture,
-        m.sheen_roughness_texture,
-        m.specular_texture,
-        m.specular_color_texture,
-        m.transmission_texture,
-    ];
-    assert!(all.iter().all(|t| t.is_some_and(|t| t.texture == 0)));
-}
-
-#[test]
 fn texture_transforms_that_agree_are_baked_and_others_are_the_textures() {
     let transform = |rotation: f64| {
         json!({"index": 0, "extensions": {"KHR_texture_transform":
@@ -231,17 +206,6 @@ fn texture_transforms_that_agree_are_baked_and_others_are_the_textures() {
     let scene = file.open();
     assert!(scene.warnings[0].contains("third set of texture coordinates"), "{:?}", scene.warnings);
     assert_eq!(scene.still().second_uvs, [[Vec2::splat(0.5); 3]]);
-}
-
-#[test]
-fn the_second_set_of_coordinates_is_found() {
-    let mut file = Gltf::with_material(json!({"emissiveTexture": {"index": 0, "texCoord": 1}}));
-    file.texture(&png([2, 2], |_, _| [1, 2, 3, 4]));
-    assert!(file.open().warnings[0].contains("without texture coordinates"));
-    file.set("TEXCOORD_1", &[[0.5, 0.5], [0.6, 0.5], [0.5, f32::NAN]]);
-    let scene = file.open();
-    assert_eq!(scene.warnings, [""; 0]);
-    assert_eq!(scene.still().uvs[0], [Vec2::splat(0.5), Vec2::new(0.6, 0.5), Vec2::ZERO]);
 }
 
 #[test]

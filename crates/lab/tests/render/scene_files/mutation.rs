@@ -1,9 +1,9 @@
-//! Damaged files: changed bytes must give an error or a sound scene, never a panic, a hang or excessive memory.
+//! Damaged descriptions must give an error or a sound scene, never a panic, a hang or excessive memory. For changed
+//! bytes see `crates/tool/tests/fuzz_replay.rs`.
 
 use super::assert_sound;
 use super::bad_input::everything;
 use afterimage_lab::scene::{Scene, SceneLimits};
-use afterimage_testing::Draws;
 use serde_json::{Value, json};
 
 /// Small, so that a damaged file that is accepted takes little memory.
@@ -27,34 +27,6 @@ fn survives(bytes: &[u8], path: &std::path::Path) -> bool {
 }
 
 #[test]
-fn flipped_lost_and_added_bytes() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("damaged.glb");
-    let whole = everything().glb();
-    assert!(survives(&whole, &path));
-    let mut draws = Draws::new("flipped bytes");
-    let mut read = 0;
-    for _ in 0..6000 {
-        let mut bytes = whole.clone();
-        for _ in 0..1 + draws.bits() % 2 {
-            let i = draws.bits() as usize % bytes.len();
-            match draws.bits() % 12 {
-                0 => bytes[i] = draws.bits() as u8,
-                1 => bytes[i] ^= 1 << (draws.bits() % 8),
-                2 => bytes[i] = 0xff,
-                3 | 6..=11 => bytes[i] = b'0' + (draws.bits() % 10) as u8,
-                4 => drop(bytes.remove(i)),
-                _ => bytes.insert(i, draws.bits() as u8),
-            }
-        }
-        read += u32::from(survives(&bytes, &path));
-    }
-    println!("{read} of 6000 damaged files were still scenes");
-    // Otherwise only the first checks are tested.
-    assert!(read > 600, "{read}");
-}
-
-#[test]
 fn every_number_of_the_description_replaced() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("damaged.glb");
@@ -62,8 +34,8 @@ fn every_number_of_the_description_replaced() {
     let mut paths = Vec::new();
     numbers_of(&file.json, String::new(), &mut paths);
     assert!(paths.len() > 80, "{}", paths.len());
-    let numbers = json!([0, 1, 2, -1, 255, 5126, 5121, 1u64 << 31, u64::MAX, 1e38, -1e300, 0.5]);
-    let others = json!([null, "x", [], {}]);
+    let numbers = json!([0, 1, -1, 5126, 1u64 << 31, u64::MAX, 1e38, 0.5]);
+    let others = json!([null, []]);
     let values = [numbers, others].map(|v| v.as_array().unwrap().clone()).concat();
     let mut read = 0;
     for pointer in &paths {
@@ -82,19 +54,5 @@ fn numbers_of(value: &Value, at: String, out: &mut Vec<String>) {
         Value::Array(list) => list.iter().enumerate().for_each(|(i, v)| numbers_of(v, format!("{at}/{i}"), out)),
         Value::Object(map) => map.iter().for_each(|(k, v)| numbers_of(v, format!("{at}/{k}"), out)),
         _ => {}
-    }
-}
-
-#[test]
-fn every_four_bytes_of_the_buffer_replaced() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("damaged.glb");
-    let file = everything();
-    for at in (0..file.bin.len() - 3).step_by(4) {
-        for word in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, 1e-40, -0.0, f32::from_bits(u32::MAX)] {
-            let mut damaged = file.clone();
-            damaged.bin[at..at + 4].copy_from_slice(&word.to_le_bytes());
-            survives(&damaged.glb(), &path);
-        }
     }
 }

@@ -174,7 +174,7 @@ fn supersets(needed: Effects, number: u32) -> Vec<Effects> {
 
 #[test]
 fn unneeded_effects_change_no_bit_on_the_cpu() {
-    for number in 0..80 {
+    for number in 0..40 {
         let rig = Rig::new(random_scene(number), SIZE);
         let needed = rig.world.needs;
         let film = rig.cpu(settings(needed, number), SPP);

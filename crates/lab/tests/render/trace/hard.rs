@@ -2,7 +2,7 @@
 
 use super::rig::{Rig, differing};
 use super::scenes::{DARK, made, stage};
-use crate::given::{builtin, device};
+use crate::given::device;
 use afterimage::Image;
 use afterimage_lab::scene::{Camera, Environment, Material, Pose, PunctualKind, PunctualLight, Scene, Triangles};
 use afterimage_lab::trace::Bvh;
@@ -154,19 +154,6 @@ fn every_scene_gives_the_same_image_on_the_gpu() {
     holds!("H81", Gpu, "{said}");
     holds!("H82", Gpu, "{said}");
     holds!("H83", Gpu, "{said}");
-}
-
-#[test]
-fn without_light_it_is_dark_and_without_surfaces_it_is_sky() {
-    let black = |name: &str| {
-        let rig = Rig::new(scenes().into_iter().find(|s| s.name == name).unwrap(), SIZE);
-        rig.cpu(TraceSettings::default(), 2).moments.pixels().iter().all(|m| m.mean == Vec3::ZERO)
-    };
-    assert!(black("nothing") && black("one triangle without light") && black("nothing but a lamp"));
-    assert!(!black("one triangle that glows"));
-    let film = Rig::new(builtin("control"), SIZE).cpu(TraceSettings::default(), 2);
-    assert!(film.moments.pixels().iter().all(|m| m.mean == Vec3::new(0.5, 0.7, 1.0)));
-    assert_eq!(film.rays, 16 * 12 * 2);
 }
 
 #[test]

@@ -2,7 +2,6 @@
 //! depth and motion, invalid input; hard cases H80-H84.
 
 mod agree;
-mod chance;
 mod closed_form;
 mod coordinates;
 mod effects;
@@ -10,7 +9,6 @@ mod equal;
 mod frames;
 mod hard;
 mod quads;
-mod radiosity;
 mod rig;
 mod scenes;
 pub mod statistics;

@@ -2,7 +2,6 @@
 
 use afterimage_lab::trace::film::{Film, Moments};
 use afterimage_testing::p_of_z;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Relative rounding error of means in f32: allowed difference of films without noise.
 const ROUNDING: f64 = 2e-6;
@@ -13,29 +12,6 @@ fn mean(m: &Moments, channel: usize) -> f64 {
 
 fn variance(m: &Moments, channel: usize) -> f64 {
     f64::from(m.variance_of_mean()[channel])
-}
-
-/// Smallest p-value over pixels and channels (Welch's t-test, as variances are estimated), corrected for the number of
-/// tests.
-pub fn p_of_pixels(a: &Film, b: &Film) -> f64 {
-    let pairs = a.moments.pixels().iter().zip(b.moments.pixels());
-    let mut lowest: f64 = 1.0;
-    for (a, b) in pairs {
-        for k in 0..3 {
-            let [va, vb] = [variance(a, k), variance(b, k)];
-            let rounding = ROUNDING * mean(a, k).abs();
-            let se = (va + vb).sqrt().max(rounding);
-            let off = (mean(a, k) - mean(b, k)).abs();
-            if off == 0.0 {
-                continue;
-            }
-            let squares = va * va / f64::from(a.count - 1) + vb * vb / f64::from(b.count - 1);
-            let freedom = if squares > 0.0 { (va + vb).powi(2) / squares } else { 1e6 };
-            let t = StudentsT::new(0.0, 1.0, freedom.max(1.0)).unwrap();
-            lowest = lowest.min(2.0 * t.sf(off / se));
-        }
-    }
-    (lowest * 3.0 * a.moments.pixels().len() as f64).min(1.0)
 }
 
 /// p-value for the difference of sums over the pixels selected by `is_in`, channels together.

@@ -5,7 +5,6 @@ mod brute_force;
 mod degenerate;
 mod on_gpu;
 mod records;
-mod records_on_gpu;
 mod scenes;
 mod self_intersection;
 mod watertight;

@@ -1,11 +1,8 @@
 //! Packing and unpacking of triangle records.
 
 use super::scenes::{dressed, soup};
-use afterimage_lab::scene::{Alpha, Material};
-use afterimage_lab::trace::scene_buffer::{
-    SceneBuffer, SceneBufferBuilder, SceneBufferError, SceneBufferLimits, Section,
-};
-use afterimage_lab::trace::{Bvh, Geometry, TriangleFlags};
+use afterimage_lab::trace::scene_buffer::{SceneBufferBuilder, SceneBufferError, SceneBufferLimits, Section};
+use afterimage_lab::trace::{Bvh, Geometry};
 use glam::{Vec2, Vec3, Vec4};
 
 #[test]
@@ -42,54 +39,6 @@ fn bad_attributes_become_harmless() {
     assert_eq!(got.uvs, [Vec2::ZERO, Vec2::ZERO, Vec2::ONE]);
     assert_eq!(got.colors, [Vec4::ZERO, Vec4::ZERO, Vec4::ONE]);
     assert_eq!(bvh.triangles()[0].material(), 0);
-}
-
-#[test]
-fn flags_say_what_a_material_needs() {
-    let plain = Material::default();
-    assert_eq!(TriangleFlags::of(&plain), 0);
-    for (material, flag) in [
-        (Material { alpha: Alpha::Mask { cutoff: 0.5 }, ..plain.clone() }, TriangleFlags::ALPHA),
-        (Material { alpha: Alpha::Blend, ..plain.clone() }, TriangleFlags::ALPHA),
-        (Material { emissive: [0.0, 0.1, 0.0], ..plain.clone() }, TriangleFlags::EMISSIVE),
-        (Material { transmission: 0.1, ..plain.clone() }, TriangleFlags::TRANSMISSIVE),
-    ] {
-        assert_eq!(TriangleFlags::of(&material), flag);
-    }
-}
-
-#[test]
-fn moving_triangles_are_rewritten_where_they_were_reserved() {
-    let mut first =
-        Geometry { still: Bvh::build(&soup("still", 300, Vec3::ZERO, 1.0), None, &[]), ..Geometry::default() };
-    let pose = |name| soup(name, 100, Vec3::ZERO, 1.0);
-    let (before, now) = (pose("before"), pose("now"));
-    first.moving = Bvh::build(&before, Some(&before.positions), &[]);
-    let limits = SceneBufferLimits { rows: 8192, elements: 1 << 26 };
-    let mut packed = SceneBufferBuilder::default().geometry(&first, 100).finish(limits).unwrap();
-    let resting = packed.elements()[..packed.base(Section::MovingNodes) as usize].to_vec();
-
-    let mut second = first.clone();
-    second.moving = Bvh::build(&now, Some(&before.positions), &[]);
-    packed.rewrite_moving(&second).unwrap();
-    let afresh = SceneBufferBuilder::default().geometry(&second, 100).finish(limits).unwrap();
-    assert_eq!(packed.elements()[..resting.len()], resting);
-    for section in [Section::MovingTriangles, Section::MovingAttributes, Section::MovingPrevious] {
-        let of = |packed: &SceneBuffer| {
-            packed.elements()[packed.base(section) as usize..][..packed.capacity(section) as usize].to_vec()
-        };
-        assert_eq!(of(&packed), of(&afresh), "{section:?}");
-    }
-    assert_eq!(packed.moving_rows().start << packed.width_log2(), packed.base(Section::MovingNodes));
-    for (record, previous) in second.moving.triangles().iter().zip(second.moving.previous()) {
-        assert_eq!(previous.positions(), before.positions[record.source() as usize]);
-    }
-
-    // First nothing moves any more, then more than was reserved.
-    second.moving = Bvh::default();
-    packed.rewrite_moving(&second).unwrap();
-    second.moving = Bvh::build(&soup("more", 500, Vec3::ZERO, 1.0), None, &[]);
-    assert!(matches!(packed.rewrite_moving(&second), Err(SceneBufferError::Full { .. })));
 }
 
 #[test]

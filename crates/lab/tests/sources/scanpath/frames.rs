@@ -89,52 +89,6 @@ proptest! {
 }
 
 #[test]
-fn centre_goes_to_centre_and_fit_puts_corners_on_corners() {
-    let one = |px, map| {
-        let path = path_of(vec![at(0.0, px)]).unwrap();
-        FrameGaze::new(&path, &view(), map, 0.0, 60.0).unwrap().px(0).unwrap()
-    };
-    for map in [GazeMap::Angle, GazeMap::Fit] {
-        let [x, y] = one([512.0, 384.0], map);
-        assert!((x - 319.5).abs() < 1e-4 && (y - 179.5).abs() < 1e-4, "{map:?}: {x}, {y}");
-    }
-    // The corner of the screen is the outer corner of the corner pixel, half a pixel from its centre.
-    assert_eq!(one([0.0, 0.0], GazeMap::Fit), [-0.5, -0.5]);
-    assert_eq!(one([1024.0, 768.0], GazeMap::Fit), [639.5, 359.5]);
-    // The centre of the screen's first pixel is inside the frame's.
-    let first = one([0.8, 768.0 / 360.0 * 0.5], GazeMap::Fit);
-    assert!(first.iter().all(|v| v.abs() < 1e-6), "{first:?}");
-}
-
-#[test]
-fn a_screen_made_for_the_view_makes_both_maps_the_same() {
-    let view = view();
-    let path = Scanpath::new("v", Screen::of_view(&view), About::default(), vec![at(0.0, [33.25, 301.5])]).unwrap();
-    for map in [GazeMap::Angle, GazeMap::Fit] {
-        let px = FrameGaze::new(&path, &view, map, 0.0, 60.0).unwrap().px(0).unwrap();
-        assert!((px[0] - 32.75).abs() < 1e-3 && (px[1] - 301.0).abs() < 1e-3, "{map:?}: {px:?}");
-    }
-    let default = Screen::default();
-    let [slope_x, slope_y] = default.tangent_per_px().unwrap();
-    assert!(((slope_x * 960.0).atan().to_degrees() - 35.0).abs() < 1e-4);
-    assert!((slope_x / slope_y - 1.0).abs() < 1e-6, "square pixels");
-}
-
-/// H63: no gaze before the first valid sample; then held during a blink, over NaN, and to the end.
-#[test]
-fn lost_gaze_is_held_and_its_age_grows() {
-    let path =
-        parse("5.0,0,0,0\n5.1,512,384,1\n5.2,nan,nan,1\n5.3,0.00,0.00,0\n5.4,-4000,384,1\n5.5,nan,nan,0\n").unwrap();
-    let gaze = FrameGaze::new(&path, &view(), GazeMap::Fit, 0.0, 10.0).unwrap();
-    assert_eq!(gaze.frames(), 6);
-    let x: Vec<_> = (0..8).map(|i| gaze.px(i).map(|p| p[0])).collect();
-    let (middle, off) = (Some(319.5), Some(-2500.5));
-    assert_eq!(x, [None, middle, middle, middle, off, off, off, off]);
-    let age = |i| gaze.age_s(i).map(|a| (a * 10.0).round());
-    assert_eq!([age(0), age(1), age(3), age(5), age(7)], [None, Some(0.0), Some(2.0), Some(1.0), Some(3.0)]);
-}
-
-#[test]
 fn impossible_time_windows_and_maps_are_refused() {
     let path = parse("0,1,2,1\n2.0,1,2,1\n").unwrap();
     let make =

@@ -316,24 +316,6 @@ pub fn fixture_path() -> Scanpath {
 }
 
 #[test]
-fn surroundings_of_any_kind_are_looked_at() {
-    for distance in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300] {
-        for one in [Some(distance), None] {
-            let options = HeadOptions { duration_s: 5.0, is_walking: true, pursuits: 0.3, ..Default::default() };
-            let path = generate_head(&options, &|_, _| one).unwrap().path;
-            assert!(
-                path.lost() == 0 && path.poses().unwrap().iter().all(|p| p.position_m.iter().all(|v| v.is_finite()))
-            );
-        }
-    }
-    // Distances in the room, in closed form.
-    assert_eq!(in_a_room([0.0; 3], [0.0, 0.0, -1.0]), Some(9.0));
-    assert_eq!(in_a_room([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]), Some(2.0));
-    let down = in_a_room([0.0; 3], [0.0, -0.8, -0.6]).unwrap();
-    assert!((down - 2.0).abs() < 1e-12);
-}
-
-#[test]
 fn poses_that_no_head_has_are_refused_in_one_line() {
     const HEADER: &str = "# screen_px: 2000x2000\n\
         t_s,x_px,y_px,valid,head_x_m,head_y_m,head_z_m,head_qx,head_qy,head_qz,head_qw\n";

@@ -169,17 +169,6 @@ fn missing_folder_and_oversized_files_are_refused_before_reading() {
     assert!(error(&big).contains("larger than 256 MiB"));
 }
 
-#[test]
-fn remarks_unknowns_crlf_and_a_byte_order_mark_are_read() {
-    let text = "\u{feff}# screen_px: 1024x768 (inferred: words)\r\n# screen_cm: unknown\r\n# odd line\r\n\r\n\
-                t_s, x_px, y_px, valid\r\n0, 1.5, -2e3, 1\r\n1,,,0\r\n";
-    let path = parse_csv("x", text.as_bytes()).unwrap();
-    assert_eq!(path.screen().size_px, [1024, 768]);
-    assert_eq!(path.screen().size_cm, None);
-    assert_eq!(path.about().notes, [("screen_px_note".to_owned(), "(inferred: words)".to_owned())]);
-    assert_eq!(path.samples(), [at(0.0, [1.5, -2e3]), Sample { t_s: 1.0, px: None }]);
-}
-
 fn any_samples() -> impl Strategy<Value = Vec<Sample>> {
     let px = prop::option::weighted(0.7, [-2e3f32..4e3, -2e3f32..4e3]);
     prop::collection::vec((1e-4f64..0.1, px), 1..60).prop_map(|steps| {
@@ -192,25 +181,8 @@ fn any_samples() -> impl Strategy<Value = Vec<Sample>> {
     })
 }
 
-/// A damaged file, strange text and garbage below a right header, and garbage alone.
-fn hostile() -> impl Strategy<Value = Vec<u8>> {
-    let below_header = |rows: &[u8]| [HEADER.as_bytes(), rows].concat();
-    let damaged = prop::collection::vec((0usize..400, any::<u8>(), any::<bool>()), 1..12).prop_map(move |edits| {
-        let mut bytes = below_header(b"0,1,2,1\n0.1,nan,nan,0\n0.2,-5,6e9,1\n");
-        for (place, byte, insert) in edits {
-            let place = place % bytes.len();
-            if insert { bytes.insert(place, byte) } else { bytes[place] = byte }
-        }
-        bytes
-    });
-    let garbage = || prop::collection::vec(any::<u8>(), 0..300);
-    let text = "(\\PC{0,60}\n){1,3}".prop_map(move |rows| below_header(rows.as_bytes()));
-    prop_oneof![damaged, text, garbage(), garbage().prop_map(move |rows| below_header(&rows))]
-}
-
-// Four kinds of hostile files share the cases.
 proptest! {
-    #![proptest_config(afterimage_testing::property("scanpath", 1024))]
+    #![proptest_config(afterimage_testing::property("scanpath", 256))]
 
     #[test]
     fn writing_and_reading_gives_the_same_scanpath(
@@ -225,22 +197,6 @@ proptest! {
             return Ok(()); // All samples lost, or two equal keys after trimming.
         };
         prop_assert_eq!(parse_csv("n", &csv(&path)).unwrap(), path);
-    }
-
-    #[test]
-    fn hostile_files_never_panic_and_errors_stay_on_one_line(bytes in hostile()) {
-        match parse_csv("g", &bytes) {
-            Ok(path) => prop_assert!(path.lost() < path.samples().len()),
-            Err(e) => prop_assert!(!e.to_string().contains('\n')),
-        }
-    }
-
-    #[test]
-    fn a_broken_row_is_named_by_its_line(before in 0usize..20, junk in "[a-z;,]{1,12}") {
-        let mut rows: String = (0..before).map(|i| format!("{i},1,2,1\n")).collect();
-        rows += &junk;
-        let error = parse(&rows).unwrap_err().to_string();
-        prop_assert!(error.starts_with(&format!("gaze.csv, line {}: ", before + 5)), "{}", error);
     }
 }
 

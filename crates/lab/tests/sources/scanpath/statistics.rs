@@ -81,19 +81,6 @@ fn fixations_landings_undershoot_and_microsaccades_are_distributed_as_claimed() 
 }
 
 #[test]
-fn two_to_four_saccades_a_second_with_and_without_correctives() {
-    for made in MADE.iter() {
-        let count = |kind| made.events.iter().filter(|e| e.kind == kind).count() as f64;
-        let saccades = count(EventKind::Saccade) / DURATION_S;
-        let all = saccades + count(EventKind::Corrective) / DURATION_S;
-        assert!((2.0..4.0).contains(&saccades) && (2.0..4.0).contains(&all), "{saccades} {all}");
-        assert_eq!(count(EventKind::Landing), count(EventKind::Corrective));
-    }
-    let per_s = |kind| of(kind).len() as f64 / (RUNS as f64 * DURATION_S);
-    println!("saccades/s {:.3}, correctives/s {:.3}", per_s(EventKind::Saccade), per_s(EventKind::Corrective));
-}
-
-#[test]
 fn events_tile_the_time_and_follow_the_grammar() {
     for made in MADE.iter() {
         let main: Vec<_> = made.events.iter().filter(|e| e.kind != EventKind::Microsaccade).collect();
@@ -137,58 +124,6 @@ fn angle_deg(a: [f64; 3], b: [f64; 3]) -> f64 {
     (2.0 * (0.5 * chord).asin()).to_degrees()
 }
 
-/// From the samples alone: the duration of the middle 80 % of a saccade follows the main sequence. A minimum-jerk
-/// profile spends a fixed share of its time there, so time against amplitude has that share of the main sequence's
-/// slope and intercept.
-#[test]
-fn the_main_sequence_is_in_the_samples() {
-    let mut points = Vec::new();
-    for seed in 0..10 {
-        let made = generate(&SyntheticOptions { seed, rate_hz: 5_000.0, ..Default::default() }).unwrap();
-        let samples = made.path.samples();
-        for e in made.events.iter().filter(|e| e.kind == EventKind::Saccade) {
-            let during = during(samples, e);
-            if during.end == samples.len() {
-                continue;
-            }
-            let start = ray(&made.path, &samples[during.start]);
-            let way: Vec<f64> = samples[during].iter().map(|s| angle_deg(start, ray(&made.path, s))).collect();
-            let whole = *way.last().unwrap();
-            assert!((whole - e.amplitude_deg).abs() < 0.01, "{whole} {}", e.amplitude_deg);
-            let crossing = |share: f64| {
-                let i = way.partition_point(|w| *w < share * whole);
-                let within = (share * whole - way[i - 1]) / (way[i] - way[i - 1]);
-                (i as f64 - 1.0 + within) / 5_000.0
-            };
-            points.push((whole, crossing(0.9) - crossing(0.1)));
-        }
-    }
-    let (mx, my) = (mean(points.iter().map(|p| p.0)), mean(points.iter().map(|p| p.1)));
-    let sxx: f64 = points.iter().map(|p| (p.0 - mx).powi(2)).sum();
-    let slope = points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum::<f64>() / sxx;
-    let intercept = my - slope * mx;
-    let profile = 1.0 - 2.0 * time_of_a_tenth();
-    println!(
-        "profile {profile:.5}; {} saccades: {:.4} ms + {:.4} ms/deg",
-        points.len(),
-        1e3 * intercept / profile,
-        1e3 * slope / profile
-    );
-    // Not random: the remaining error is that of f32 pixels and of linear interpolation between samples 0.2 ms apart.
-    assert!((slope / profile - 0.0022).abs() < 0.0022 * 5e-3 && (intercept / profile - 0.021).abs() < 0.021 * 5e-3);
-}
-
-/// Solution of 10 u^3 - 15 u^4 + 6 u^5 = 0.1, by bisection.
-fn time_of_a_tenth() -> f64 {
-    let (mut low, mut high) = (0.0f64, 0.5f64);
-    for _ in 0..60 {
-        let u = 0.5 * (low + high);
-        let s = 10.0 * u.powi(3) - 15.0 * u.powi(4) + 6.0 * u.powi(5);
-        if s < 0.1 { low = u } else { high = u }
-    }
-    low
-}
-
 /// From the samples alone: squared steps within fixations, in units of half their claimed mean, are chi-squared with
 /// two degrees of freedom each.
 #[test]
@@ -224,7 +159,7 @@ fn gaze_stays_on_the_screen_and_visits_all_of_it() {
     for (size_cm, distance) in [([84.0, 47.3], 60.0), ([38.0, 30.0], 67.0), ([8.5, 8.5], 60.0)] {
         let screen = Screen { size_px: [1000, 800], size_cm: Some(size_cm), distance_cm: Some(distance) };
         // Many hours at a low rate, because excursions to the edge are rare.
-        let made = generate(&SyntheticOptions { seed: 7, screen, duration_s: 20_000.0, rate_hz: 50.0 }).unwrap();
+        let made = generate(&SyntheticOptions { seed: 7, screen, duration_s: 5_000.0, rate_hz: 50.0 }).unwrap();
         let mut quarters = [0usize; 4];
         for sample in made.path.samples() {
             let r = ray(&made.path, sample);

@@ -1,7 +1,7 @@
 //! Invalid inputs: the error names the file and a remedy.
 
 use super::{
-    ALL, Extras, assert_needs_megapixels, assert_says, error_of, folder_of, limits, picture, save, write_frame,
+    ALL, Extras, assert_needs_megapixels, assert_says, error_of, folder_of, limits, patch, picture, save, write_frame,
 };
 use crate::hostile::claim_size;
 use afterimage_lab::error::InputError;
@@ -113,16 +113,6 @@ fn missing_color_lists_what_is_there() {
         &refused(folder.path()),
         &["frame_0001.exr", "no color", "ViewLayer.Depth.Z, ViewLayer.Mist.Z", "Combined.R/G/B"],
     );
-}
-
-/// Overwrites the data of attribute `name` of type `kind` with `value`.
-fn patch(bytes: &mut [u8], name: &str, kind: &str, value: &[i32]) {
-    let key = format!("{name}\0{kind}\0");
-    let at = bytes.windows(key.len()).position(|w| w == key.as_bytes()).unwrap();
-    for (i, v) in value.iter().enumerate() {
-        let start = at + key.len() + 4 + 4 * i;
-        bytes[start..start + 4].copy_from_slice(&v.to_le_bytes());
-    }
 }
 
 #[test]
@@ -275,5 +265,23 @@ fn truncated_png_and_jpeg_are_refused() {
             std::fs::write(&path, &whole[..length]).unwrap();
             assert_says(&refused(&path), &[name]);
         }
+    }
+}
+
+/// A DWA chunk starts with counters that its decoder trusts: one of 32 GB would abort the process.
+#[test]
+fn dwa_counters_do_not_set_memory_aside() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("dwaa_lines.exr");
+    let whole = std::fs::read(afterimage_testing::workspace().join("fixtures/fuzz/exr/dwaa_lines.exr")).unwrap();
+    // The only chunk is at the offset in the table's only entry; its data follows the line number and the size.
+    let word = |at: usize| u64::from_le_bytes(whole[at..at + 8].try_into().unwrap());
+    let chunk = (8..whole.len() - 8).find(|&at| word(at - 8) == at as u64).unwrap();
+    for counter in 1..10 {
+        let mut bytes = whole.clone();
+        let at = chunk + 8 + 8 * counter;
+        bytes[at..at + 8].copy_from_slice(&(1u64 << 35).to_le_bytes());
+        std::fs::write(&path, &bytes).unwrap();
+        assert_says(&refused(&path), &["dwaa_lines.exr", "damaged"]);
     }
 }

@@ -1,6 +1,7 @@
 //! What files leave to their readers: orientation, gamma, windows, and which layer is the picture.
 
-use super::{ALL, folder_of, limits, save};
+use super::{ALL, folder_of, limits, patch, save, srgb};
+use crate::hostile::crc32;
 use afterimage_lab::source::{FrameSource, StillSource};
 use exr::prelude::*;
 use image::{DynamicImage, ImageBuffer, Rgb};
@@ -8,10 +9,6 @@ use std::path::Path;
 
 fn color(path: &Path) -> afterimage::Image<[f32; 3]> {
     StillSource::open(path, &limits()).unwrap().frame(0).unwrap().color
-}
-
-fn srgb(v: f64) -> f32 {
-    (if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }) as f32
 }
 
 /// A tag of EXIF: turned by 90 degrees, as phones write it.
@@ -43,14 +40,8 @@ fn the_gamma_of_a_png_counts_unless_it_says_srgb() {
     DynamicImage::ImageRgb8(ImageBuffer::from_pixel(2, 2, Rgb([128; 3]))).save(&path).unwrap();
     let plain = std::fs::read(&path).unwrap();
     let chunk = |name: &[u8; 4], data: &[u8]| {
-        let mut checked = name.to_vec();
-        checked.extend(data);
-        let mut crc = !0_u32;
-        for byte in &checked {
-            crc ^= u32::from(*byte);
-            (0..8).for_each(|_| crc = if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 });
-        }
-        [&(data.len() as u32).to_be_bytes()[..], &checked, &(!crc).to_be_bytes()].concat()
+        let checked = [&name[..], data].concat();
+        [&(data.len() as u32).to_be_bytes()[..], &checked, &crc32(&checked).to_be_bytes()].concat()
     };
     let with = |chunks: &[u8]| {
         std::fs::write(&path, [&plain[..33], chunks, &plain[33..]].concat()).unwrap();
@@ -70,16 +61,8 @@ fn overscan_is_cut_and_what_is_not_stored_is_black() {
     let path = folder.path().join("frame_0000.exr");
     let whole = StillSource::open(&path, &limits()).unwrap().frame(0).unwrap().color;
     let mut bytes = std::fs::read(&path).unwrap();
-    let window = |bytes: &mut [u8], values: [i32; 4]| {
-        let key = b"displayWindow\0box2i\0";
-        let at = bytes.windows(key.len()).position(|w| w == key).unwrap() + key.len() + 4;
-        values
-            .iter()
-            .enumerate()
-            .for_each(|(i, v)| bytes[at + 4 * i..at + 4 * i + 4].copy_from_slice(&v.to_le_bytes()));
-    };
     for (values, expected) in [([2, 1, 6, 3], "overscan"), ([-1, -2, 4, 5], "black")] {
-        window(&mut bytes, values);
+        patch(&mut bytes, "displayWindow", "box2i", &values);
         std::fs::write(&path, &bytes).unwrap();
         let mut source = StillSource::open(&path, &limits()).unwrap();
         assert!(source.warnings().iter().any(|line| line.contains(expected)), "{:?}", source.warnings());

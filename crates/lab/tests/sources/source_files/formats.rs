@@ -1,17 +1,12 @@
 //! Every supported kind of file, written here pixel by pixel and read back.
 
-use super::{ALL, Extras, folder_of, limits, picture, vectors};
+use super::{ALL, Extras, folder_of, limits, picture, srgb, vectors};
 use afterimage::Image;
 use afterimage_lab::source::exr_file::{ColorFormat, ExrHeader, FrameToWrite, Vectors, write};
 use afterimage_lab::source::{FrameSource, SceneOptions, SequenceSource, StillSource, open};
 use exr::prelude::*;
 use image::{DynamicImage, ImageBuffer, Luma, LumaA, Rgb, Rgba};
 use std::path::Path;
-
-fn srgb(v: f64) -> f32 {
-    let linear = if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };
-    linear as f32
-}
 
 fn still(path: &Path) -> afterimage_lab::frame::SourceFrame {
     let mut source = open(path.to_str().unwrap(), &limits(), &SceneOptions::default()).unwrap();
@@ -207,52 +202,6 @@ fn ramp(n: usize, scale: f32) -> FlatSamples {
 
 fn encoding(compression: Compression, blocks: Blocks) -> Encoding {
     Encoding { compression, blocks, line_order: LineOrder::Increasing }
-}
-
-#[test]
-fn every_compression_tiles_and_sample_types_give_the_same_pixels() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("f.exr");
-    let (w, h) = (70usize, 45usize);
-    let n = w * h;
-    let scan_lines = Blocks::ScanLines;
-    let tiles = Blocks::Tiles(Vec2(32, 16));
-    for compression in [
-        Compression::Uncompressed,
-        Compression::RLE,
-        Compression::ZIP1,
-        Compression::ZIP16,
-        Compression::PIZ,
-        Compression::PXR24,
-    ] {
-        for blocks in [scan_lines, tiles] {
-            let channels = SmallVec::from_vec(vec![
-                channel("A", ramp(n, 1.0)),
-                channel("B", FlatSamples::F16((0..n).map(|i| f16::from_f32((i % 512) as f32)).collect())),
-                channel("G", FlatSamples::U32((0..n as u32).collect())),
-                channel("R", ramp(n, 0.5)),
-                channel("Z", ramp(n, 2.0)),
-            ]);
-            let layer = Layer::new(
-                (w, h),
-                LayerAttributes::named("beauty").with_position(Vec2(-12, -7)),
-                encoding(compression, blocks),
-                AnyChannels::sort(channels),
-            );
-            // Data windows away from the origin, on both sides of it.
-            let mut exr = exr::prelude::Image::from_layer(layer);
-            exr.attributes.display_window = attribute::IntegerBounds::new(Vec2(-12, -7), Vec2(w, h));
-            exr.write().to_file(&path).unwrap();
-            let frame = still(&path);
-            for i in 0..n {
-                let (x, y) = (i % w, i / w);
-                let e = [i as f32 * 0.5, i as f32, (i % 512) as f32];
-                assert_eq!(frame.color.at(x, y), e, "{compression:?} {blocks:?}");
-                let z = frame.depth.as_ref().unwrap().at(x, y);
-                assert!(if i == 0 { z.is_nan() } else { z == i as f32 * 2.0 });
-            }
-        }
-    }
 }
 
 #[test]

@@ -5,7 +5,6 @@ mod conventions;
 mod data;
 mod formats;
 mod motion;
-mod mutation;
 
 use afterimage::Image;
 use afterimage_lab::error::InputError;
@@ -68,6 +67,21 @@ fn save(path: &Path, size: (usize, usize), encoding: Encoding, channels: Vec<Any
     let channels = AnyChannels::sort(SmallVec::from_vec(channels));
     let layer = Layer::new(size, LayerAttributes::default(), encoding, channels);
     exr::prelude::Image::from_layer(layer).write().to_file(path).unwrap();
+}
+
+/// Linear light of an encoded value.
+fn srgb(v: f64) -> f32 {
+    (if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }) as f32
+}
+
+/// Overwrites the data of attribute `name` of type `kind` with `value`.
+fn patch(bytes: &mut [u8], name: &str, kind: &str, value: &[i32]) {
+    let key = format!("{name}\0{kind}\0");
+    let at = bytes.windows(key.len()).position(|w| w == key.as_bytes()).unwrap();
+    for (i, v) in value.iter().enumerate() {
+        let start = at + key.len() + 4 + 4 * i;
+        bytes[start..start + 4].copy_from_slice(&v.to_le_bytes());
+    }
 }
 
 /// Checks that an error is one line, has a remedy, and contains all words.

@@ -110,10 +110,3 @@ fn horizontal_motion_leaves_the_y_axis_open() {
         assert_eq!((check.best.unit, check.best.direction), (truth.unit, truth.direction));
     }
 }
-
-#[test]
-fn images_of_different_sizes_are_refused() {
-    let image = Image::filled([4, 4], [0.5f32; 3]);
-    let e = detect(&image, &image, &Image::filled([4, 3], [0.0; 2])).unwrap_err();
-    super::assert_says(&e, &["motion", "4x3", "4x4"]);
-}

@@ -77,26 +77,6 @@ fn the_check_catches_a_cell_that_is_not_the_best() {
 }
 
 #[test]
-fn budgets_and_levels_separate_the_methods() {
-    let table = table(Some(12.0));
-    for metric in [Metric::find("flip").unwrap(), Metric::find("psnr_db").unwrap()] {
-        for section in equal(&table, INPUTS[1], metric) {
-            assert!((2..=7).contains(&section.equal_time.len()) && (2..=7).contains(&section.equal_quality.len()));
-            assert_eq!(section.methods, ["none", "taa", "wrs", "smr"], "what does nothing first, and no oracle");
-            let filled = |line: &afterimage_cli::sweep::equal::Line| line.cells.iter().flatten().count();
-            let ascending = |counts: Vec<usize>| counts.windows(2).all(|w| w[0] <= w[1]);
-            assert!(ascending(section.equal_time.iter().map(filled).collect()), "more time loses no method");
-            assert!(
-                ascending(section.equal_quality.iter().rev().map(filled).collect()),
-                "a stricter level gains no method"
-            );
-            assert_eq!(filled(&section.equal_time[0]), 1, "the least budget is for one method");
-            assert_eq!(filled(&section.equal_quality[section.equal_quality.len() - 1]), 1, "the strictest level too");
-        }
-    }
-}
-
-#[test]
 fn rows_that_shade_differently_are_compared_only_where_that_has_a_price() {
     let metric = Metric::find("flip").unwrap();
     let priced = equal(&table(Some(12.0)), INPUTS[0], metric);
@@ -106,11 +86,4 @@ fn rows_that_shade_differently_are_compared_only_where_that_has_a_price() {
     assert_eq!(unpriced.len(), 6, "three foveae, two rates");
     assert_eq!(unpriced.iter().map(|s| s.points).sum::<usize>(), priced[0].points);
     assert!(unpriced.windows(2).all(|w| w[0].samples_share > w[1].samples_share));
-}
-
-#[test]
-fn a_figure_that_no_row_has_makes_no_table() {
-    assert!(equal(&table(None), "still.png", Metric::find("ghost_energy").unwrap()).is_empty());
-    assert!(!equal(&table(None), "sponza/", Metric::find("ghost_energy").unwrap()).is_empty());
-    assert!(equal(&table(None), "another", Metric::find("flip").unwrap()).is_empty());
 }

@@ -1,9 +1,9 @@
 //! The plot: well-formed, complete, legible, reproducible.
 
-use super::drawn::{assert_ends_before_the_border, assert_marks_and_letters, has_text, mark_at, number, with_class};
+use super::drawn::{assert_marks_and_letters, has_text, mark_at, with_class};
 use super::table::{INPUTS, measurements, of, table};
 use afterimage_cli::report::pareto;
-use afterimage_cli::sweep::{METRICS, Measurement, Metric, Table};
+use afterimage_cli::sweep::{METRICS, Metric, Table};
 use resvg::usvg::roxmltree::{Document, Node};
 
 fn flip() -> &'static Metric {
@@ -51,53 +51,6 @@ fn better_and_cheaper_are_where_the_axes_say() {
             assert!((b[1] - a[1]).abs() < 0.11 || (b[1] < a[1]) == more, "up is more");
         }
     }
-}
-
-#[test]
-fn numbers_lie_on_no_other_number() {
-    // Similar sizes of the fovea crowd the frontier.
-    let mut all = measurements();
-    for (i, m) in all.iter_mut().enumerate() {
-        m.pass_ms.median = 0.5 + 0.002 * i as f64;
-        m.figures.scores.whole.flip = Some(0.2 - 0.0004 * i as f64);
-    }
-    let svg = pareto::svg(&of(&all, None), INPUTS[0], flip());
-    let document = Document::parse(&svg).unwrap();
-    let texts: Vec<_> = with_class(&document, "numbers").flat_map(|n| n.children()).filter(Node::is_element).collect();
-    assert!(texts.len() >= 20, "{} numbers crowd", texts.len());
-    for (i, a) in texts.iter().enumerate() {
-        for b in &texts[..i] {
-            let apart = |name: &str| (number(a, name) - number(b, name)).abs();
-            assert!(apart("x") >= 17.0 || apart("y") >= 14.0, "{:?} lies on {:?}", a.text(), b.text());
-        }
-    }
-}
-
-#[test]
-fn labels_that_differ_at_their_ends_are_whole() {
-    let lengthen = |all: &mut [Measurement], value: fn(&str) -> String| {
-        for m in all {
-            let value = value(&m.point.options["fovea"]);
-            m.point.options.insert("a-long-option".into(), value);
-        }
-    };
-    let mut all = measurements();
-    lengthen(&mut all, |fovea| format!("with much to say before it comes to {fovea}"));
-    let table = of(&all, None);
-    let svg = pareto::svg(&table, INPUTS[0], flip());
-    let document = Document::parse(&svg).unwrap();
-    let best = table.rows.iter().filter(|r| r.point.input == INPUTS[0] && r.frontier.contains(&flip().key));
-    let mut places = vec![];
-    for row in best {
-        let whole = |n: &Node<'_, '_>| n.text().is_some_and(|t| t.trim().ends_with(&row.label));
-        let note = document.descendants().filter(Node::is_element).find(whole);
-        let note = note.unwrap_or_else(|| panic!("'{}' is cut", row.label));
-        places.push(number(&note, "y"));
-    }
-    assert!(places.len() > 2 && places.windows(2).all(|p| p[0] < p[1]), "a line each: {places:?}");
-    // Labels that are too long even so are cut before the border.
-    lengthen(&mut all, |fovea| format!("{fovea} {}", "a much longer value ".repeat(10)));
-    assert_ends_before_the_border(&pareto::svg(&of(&all, None), INPUTS[0], flip()));
 }
 
 #[test]

@@ -1,9 +1,6 @@
 //! The plot of PSNR by frame: points where the axes say, gaps, labels, saccades.
 
-use super::drawn::{
-    assert_ends_before_the_border, assert_marks_and_letters, has_text, mark_at, number, points, with_class,
-};
-use afterimage_cli::report::plot::png;
+use super::drawn::{assert_ends_before_the_border, has_text, mark_at, number, points, with_class};
 use afterimage_cli::report::psnr_plot::PsnrPlot;
 use resvg::usvg::roxmltree::{Document, Node};
 
@@ -114,57 +111,6 @@ fn exact_frames_are_gaps_and_marks_at_the_top() {
 }
 
 #[test]
-fn odd_runs_make_a_plot() {
-    // A single frame, a single method, exact frames alone, no frames.
-    let [one, exact, lone] = [vec![mse(30.0)], vec![0.0; 3], vec![0.0, mse(31.0), 0.0]];
-    let runs: [&[(&str, &[f64])]; 5] =
-        [&[("none", &one), ("smr", &one)], &[("smr", &exact)], &[("smr", &lone)], &[("none", &[]), ("smr", &[])], &[]];
-    for methods in runs {
-        let svg = svg(methods, &[0.0]);
-        assert!(!svg.contains("NaN") && !svg.contains("inf\""), "{svg}");
-        let document = Document::parse(&svg).unwrap();
-        assert_eq!(with_class(&document, "curve").count(), methods.len());
-        for (method, errors) in methods {
-            assert_eq!(marks(&document, method).is_empty(), errors.is_empty(), "a lone point is a mark");
-        }
-        png(&svg);
-    }
-    let svg = svg(&[("smr", &one)], &[0.0]);
-    let document = Document::parse(&svg).unwrap();
-    let x = ticks(&document, "x");
-    assert_eq!((x.len(), x[0].0), (1, 0.0), "frame 0 alone");
-    assert!((line(&document, "smr")[0][0] - x[0].1).abs() < 0.5);
-}
-
-#[test]
-fn labels_stand_at_the_ends_of_lines_and_not_on_each_other() {
-    let names = ["none", "taa", "taau", "wrs", "smr", "oracle"];
-    let errors: Vec<Vec<f64>> = (0..6).map(|i| rising(20.0 + 0.01 * f64::from(i), 30)).collect();
-    let methods: Vec<(&str, &[f64])> = names.iter().zip(&errors).map(|(name, e)| (*name, e.as_slice())).collect();
-    let svg = svg(&methods, &[0.0; 30]);
-    let document = Document::parse(&svg).unwrap();
-    let labels = with_class(&document, "labels").next().unwrap();
-    let texts: Vec<_> = labels.children().filter(|n| n.tag_name().name() == "text").collect();
-    assert_eq!(texts.len(), 6);
-    let mut heights: Vec<f64> = texts.iter().map(|t| number(t, "y")).collect();
-    for text in &texts {
-        let end = line(&document, text.text().unwrap().trim())[29];
-        assert!((number(text, "y") - end[1]).abs() < 80.0, "near its line");
-    }
-    assert!(heights.windows(2).all(|h| h[1] < h[0]), "in the order of the lines");
-    heights.reverse();
-    assert!(heights.windows(2).all(|h| h[1] - h[0] >= 14.5), "{heights:?}");
-    let shapes: Vec<&str> = names
-        .map(|n| {
-            let mark = curve(&document, n).children().find(is_mark).unwrap();
-            let path = mark.attribute("d").unwrap();
-            &path[path.find('m').unwrap()..]
-        })
-        .to_vec();
-    assert!((0..6).all(|i| !shapes[..i].contains(&shapes[i])), "a shape each");
-}
-
-#[test]
 fn jumps_of_the_gaze_have_ticks_and_a_note() {
     let errors = rising(22.0, 20);
     let mut moves = vec![0.3; 20];
@@ -201,12 +147,4 @@ fn names_are_text_and_fit() {
     assert!(has_text(&document, "<b>&\"'") && has_text(&document, "<i>&"), "names are text");
     assert!(has_text(&document, "…: PSNR by frame, gauss 8 and 16"), "the end of the title stays");
     assert_ends_before_the_border(&svg);
-}
-
-#[test]
-fn png_has_the_colors_of_the_methods_and_is_the_same_again() {
-    let errors: Vec<Vec<f64>> = (0..4).map(|i| rising(20.0 + 2.0 * f64::from(i), 48)).collect();
-    let methods: Vec<(&str, &[f64])> =
-        ["none", "taa", "wrs", "smr"].into_iter().zip(errors.iter().map(Vec::as_slice)).collect();
-    assert_marks_and_letters(&svg(&methods, &[0.0; 48]), 1000);
 }
