@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# 100,000 frames each of wrs and of smr at 320x180, on the CPU and on the adapter in lockstep, with resets, resizes, lost gaze,
-# invalid pixels and exposure steps. Takes hours on two cores; SOAK_FRAMES=10000 for less.
+# 100,000 frames each of wrs and of smr at 320x180, half of them radiance, on the CPU and on the adapter in lockstep, with resets,
+# resizes, lost gaze, invalid pixels and exposure steps. Takes hours on two cores; SOAK_FRAMES=10000 for less.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export AFTERIMAGE_GPU=require NODEVICE_SELECT=1

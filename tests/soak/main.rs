@@ -21,6 +21,9 @@ use witness::Witness;
 
 const SIZE: [u32; 2] = [320, 180];
 
+/// White of a scene whose colors are radiance.
+const WHITE: f32 = 1.0 / 1024.0;
+
 /// Findings of a soak test.
 #[derive(Debug, Default)]
 struct Found {
@@ -39,8 +42,9 @@ struct Found {
     resident_mib: Vec<f64>,
 }
 
-/// Runs `frames` frames of `size` through both executors, which must agree in every bit.
-fn soak(method: MethodKind, size: [u32; 2], frames: u64) -> Option<Found> {
+/// Runs `frames` frames of `size` through both executors, which must agree in every bit. Colors are radiance, with the
+/// exposure of each frame, or exposed.
+fn soak(method: MethodKind, is_radiance: bool, size: [u32; 2], frames: u64) -> Option<Found> {
     let settings = Settings { method: method.into(), foveation: pictures::FOVEATION, ..Settings::default() };
     let mut rig = Rig::new(ContextDesc::new(size), settings)?;
     let mut stream = Stream::new(&format!("soak {method:?}"), size);
@@ -55,11 +59,17 @@ fn soak(method: MethodKind, size: [u32; 2], frames: u64) -> Option<Found> {
         if let Some(size) = event.size {
             rig.resize(size);
         }
-        let view = pictures.view(rig.context.size_px, &event, stream.state());
+        let exposure = stream.state().exposure;
+        let factor = if is_radiance { WHITE } else { exposure };
+        let view = pictures.view(rig.context.size_px, &event, stream.state(), factor);
         let reset = if event.reset { Reset::All } else { Reset::None };
-        rig.exposure = event.exposure.map_or(Exposure::Same, |ratio| Exposure::Changed { ratio });
+        rig.exposure = match event.exposure {
+            _ if is_radiance => Exposure::Scene { exposure: exposure / WHITE },
+            Some(ratio) => Exposure::Changed { ratio },
+            None => Exposure::Same,
+        };
         let (made, _) = rig.both(index, reset, std::slice::from_ref(&view));
-        brightest = brightest.max(0.0) * event.exposure.unwrap_or(1.0);
+        brightest *= event.exposure.filter(|_| !is_radiance).unwrap_or(1.0);
         brightest = brightest_of(&view).max(if event.reset || event.size.is_some() { 0.0 } else { brightest });
         check(&mut found, method, &event, &view, &made, brightest);
         if method == MethodKind::Wrs {
@@ -68,7 +78,7 @@ fn soak(method: MethodKind, size: [u32; 2], frames: u64) -> Option<Found> {
         if frames >= 10 && index % (frames / 10) == frames / 20 {
             found.resident_mib.extend(afterimage_testing::resident::resident_mib());
             if frames > 5000 {
-                println!("{method:?}: frame {index}, {found:?}");
+                println!("{method:?}, radiance: {is_radiance}: frame {index}, {found:?}");
             }
         }
     }
@@ -120,8 +130,10 @@ fn frames(default: u64) -> u64 {
 #[test]
 fn a_short_stream_is_sound() {
     for method in [MethodKind::Wrs, MethodKind::Smr] {
-        let Some(found) = soak(method, [64, 36], 600) else { return };
-        assert_sound(method, &found);
+        for is_radiance in [false, true] {
+            let Some(found) = soak(method, is_radiance, [64, 36], 400) else { return };
+            assert_sound(method, &found);
+        }
     }
 }
 
@@ -148,7 +160,8 @@ fn damage_is_noticed() {
 #[test]
 #[ignore = "hours: tests/soak.sh"]
 fn wrs_for_100_000_frames() {
-    if let Some(found) = soak(MethodKind::Wrs, SIZE, frames(100_000)) {
+    for is_radiance in [false, true] {
+        let Some(found) = soak(MethodKind::Wrs, is_radiance, SIZE, frames(50_000)) else { return };
         assert_sound(MethodKind::Wrs, &found);
     }
 }
@@ -156,7 +169,8 @@ fn wrs_for_100_000_frames() {
 #[test]
 #[ignore = "hours: tests/soak.sh"]
 fn smr_for_100_000_frames() {
-    if let Some(found) = soak(MethodKind::Smr, SIZE, frames(100_000)) {
+    for is_radiance in [false, true] {
+        let Some(found) = soak(MethodKind::Smr, is_radiance, SIZE, frames(50_000)) else { return };
         assert_sound(MethodKind::Smr, &found);
     }
 }

@@ -24,15 +24,15 @@ type Foveated = (Image<[f32; 3]>, Image<f32>);
 pub struct Pictures(HashMap<([u32; 2], u32, u32), Foveated>);
 
 impl Pictures {
-    /// The frame of a state of the stream, with an event applied.
-    pub fn view(&mut self, size: [u32; 2], event: &Event, state: StreamState) -> View {
+    /// The frame of a state of the stream, with an event applied. Colors are multiplied by `factor`.
+    pub fn view(&mut self, size: [u32; 2], event: &Event, state: StreamState, factor: f32) -> View {
         if self.0.len() > 64 {
             self.0.clear();
         }
         let gaze_px = gaze(size, state.gaze);
         let foveated = self.0.entry((size, state.picture, state.gaze));
         let (color, lod) = foveated.or_insert_with(|| foveate(size, state.picture, gaze_px)).clone();
-        let color = color.map(|c| c.map(|v| v * state.exposure));
+        let color = color.map(|c| c.map(|v| v * factor));
         let facts = ViewFrame::new(
             ViewGeometry::flat(size, 70.0).unwrap(),
             if event.is_lost { Gaze::Lost } else { Gaze::At { px: gaze_px } },

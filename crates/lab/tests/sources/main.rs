@@ -14,5 +14,6 @@ mod analytic;
 mod fixtures;
 mod jitter;
 mod metric;
+mod real_data;
 mod scanpath;
 mod source_files;

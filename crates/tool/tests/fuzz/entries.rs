@@ -157,7 +157,11 @@ pub fn settings(bytes: &[u8]) {
             lod: has(4).then_some(&lod),
             noise: post.desc().settings.noisy.then_some(&noise),
             reset: if has(5) { Reset::All } else { Reset::None },
-            exposure: if has(6) { Exposure::Changed { ratio: bits.float() } } else { Exposure::Same },
+            exposure: match [has(6), has(12)] {
+                [true, _] => Exposure::Changed { ratio: bits.float() },
+                [_, true] => Exposure::Scene { exposure: bits.float() },
+                _ => Exposure::Same,
+            },
             ..Frame::new(&color, &views, index)
         };
         let mut shown = [Image::filled(SIZE, [f32::NAN; 3])];

@@ -1,4 +1,4 @@
-//! Unused lobes change no bit; the f32 kernel matches the formulas in f64.
+//! Unused lobes change no bit; the f32 kernel matches the formulas in f64; reciprocity.
 
 use super::surfaces::*;
 use afterimage_lab::kernel::bsdf;
@@ -110,4 +110,34 @@ fn the_kernel_is_its_formulas_in_f64() {
     }
     let wrong = worst(&metal, |l, wo, wi| reflection(l, wo, wi) * 1.001, false);
     assert!(wrong > 5e-4, "planted error of 0.1 %: {wrong}");
+}
+
+/// Largest f(wo, wi) / f(wi, wo) - 1 over many pairs.
+fn asymmetry(surface: &Surface) -> f32 {
+    let mut d = Draws::new("reciprocity");
+    let f = |o: Vec3, i: Vec3| {
+        let layers = bsdf::layers(surface, o, &TABLES, Lobes::ALL);
+        bsdf::eval(&layers, o, i, Lobes::ALL).value.x / i.z
+    };
+    (0..2000)
+        .map(|_| {
+            let a = direction(d.range(0.05, 1.0), d.uniform());
+            let b = direction(d.range(0.05, 1.0), d.uniform());
+            (f(a, b) / f(b, a) - 1.0).abs()
+        })
+        .fold(0.0, f32::max)
+}
+
+#[test]
+fn reciprocity_holds_without_compensation_and_not_with_it() {
+    // Lambert, and smooth metal, which needs almost no compensation.
+    assert!(asymmetry(&WHITE) < 1e-6);
+    let smooth = asymmetry(&Surface { metallic: 1.0, roughness: 0.1, ..WHITE });
+    println!("smooth metal {smooth:.1e}");
+    // Layering and compensation use the albedo seen from `wo`, so these lobes are not reciprocal. That is the price of
+    // conserving energy.
+    let rough = asymmetry(&Surface { metallic: 1.0, roughness: 1.0, ..WHITE });
+    let plastic = asymmetry(&Surface { specular: 1.0, roughness: 0.3, ..WHITE });
+    println!("rough metal {rough:.2}, plastic {plastic:.2}");
+    assert!(rough > 0.05 && plastic > 0.05);
 }

@@ -1,4 +1,4 @@
-//! Scattering kernels: energy, densities, formulas, hard cases; H83.
+//! Scattering kernels: energy, densities, reciprocity, hard cases; H83.
 
 mod densities;
 mod furnace;

@@ -3,6 +3,7 @@
 use super::rig::Rig;
 use super::scenes::{DARK, made};
 use super::statistics::mean_of;
+use crate::given::builtin;
 use afterimage_lab::scene::builtin::furnace_of;
 use afterimage_lab::scene::{Camera, Environment, Material, Pose, Triangles};
 use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
@@ -12,6 +13,56 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 fn depth(max_depth: u32) -> TraceSettings {
     TraceSettings { max_depth, seed: 3, ..TraceSettings::default() }
+}
+
+#[test]
+fn depth_0_is_what_emits_and_nothing_else() {
+    let rig = Rig::new(builtin("cornell"), [64, 64]);
+    let film = rig.cpu(depth(0), 8);
+    assert_eq!(film.rays, 64 * 64 * 8);
+    // The lamp is a rectangle of radiance 15 at y = 5.54, placed by similar triangles; pixels on its rim are mixed.
+    let scale = 64.0 / (2.0 * 20.0_f64.to_radians().tan());
+    let (mut lamp, mut dark) = (0, 0);
+    for (i, m) in film.moments.pixels().iter().enumerate() {
+        let x = (i % 64) as f64 - 31.5;
+        let y = (i / 64) as f64 - 31.5;
+        // Where rays reach the lamp's plane: distance along z, and x. The camera's right is -x.
+        let t = (5.54 - 2.78) / (-y / scale);
+        let at = |dx: f64, dy: f64| {
+            let t = (5.54 - 2.78) / (-(y + dy) / scale);
+            let (px, pz) = (2.78 - t * (x + dx) / scale, -8.0 + t);
+            t > 0.0 && (2.13..3.43).contains(&px) && (2.27..3.32).contains(&pz)
+        };
+        let corners = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)].map(|(a, b)| at(a, b));
+        if corners.iter().all(|&c| c) {
+            assert_eq!(m.mean, Vec3::splat(15.0));
+            lamp += 1;
+        } else if corners.iter().all(|&c| !c) && !(t > 0.0 && at(0.0, 0.0)) {
+            assert_eq!(m.mean, Vec3::ZERO, "{i}");
+            dark += 1;
+        }
+    }
+    println!("{lamp} pixels of lamp, {dark} dark");
+    assert!(lamp > 8 && dark > 3900);
+}
+
+#[test]
+fn more_depth_is_more_light() {
+    for name in ["cornell", "mirror-room", "cubes"] {
+        let rig = Rig::new(builtin(name), [32, 24]);
+        for integrator in [Integrator::Mis, Integrator::Nee, Integrator::Naive] {
+            let at = |max_depth| rig.cpu(TraceSettings { integrator, ..depth(max_depth) }, 8);
+            let films: Vec<_> = [0, 1, 2, 3, 8].map(at).into();
+            for pair in films.windows(2) {
+                // The same paths with a larger depth limit: no pixel gets darker, except by rounding.
+                for (less, more) in pair[0].moments.pixels().iter().zip(pair[1].moments.pixels()) {
+                    assert!(more.mean.cmpge(less.mean * (1.0 - 1e-5)).all(), "{name}: {} {}", less.mean, more.mean);
+                }
+                let sum = |i: usize| mean_of(&pair[i], 1, |_| true).0;
+                assert!(sum(1) > sum(0), "{name}, {integrator:?}");
+            }
+        }
+    }
 }
 
 /// A floor of 18 m sides, seen from above its middle, and more.

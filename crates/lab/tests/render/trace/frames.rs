@@ -6,10 +6,11 @@ use crate::given::{builtin, device};
 use afterimage_lab::device::Backend;
 use afterimage_lab::scene::Environment;
 use afterimage_lab::trace::Tracer;
+use afterimage_lab::trace::cpu::CpuTracer;
 use afterimage_lab::trace::film::{Film, Moments};
 use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
-use afterimage_lab::trace::work::uniform;
+use afterimage_lab::trace::work::{WorkItem, uniform};
 use afterimage_testing::Draws;
 use glam::Vec3;
 
@@ -61,6 +62,28 @@ fn a_pixel_with_more_samples_than_a_batch_goes_on_in_the_next() {
     let spp = afterimage_lab::trace::gpu::BATCH + 100;
     let settings = TraceSettings { max_depth: 1, ..TraceSettings::default() };
     assert_eq!(differing(&rig.cpu(settings, spp), &rig.gpu(&device, settings, Storage::Texture, spp)), 0);
+}
+
+#[test]
+fn other_frames_and_seeds_have_other_noise() {
+    let rig = Rig::new(builtin("cornell"), [40, 30]);
+    let film = rig.cpu(TraceSettings::default(), 2);
+    let other = rig.cpu(TraceSettings { seed: 1, ..TraceSettings::default() }, 2);
+    assert!(differing(&film, &other) > 500);
+    let mut next = Film::new(rig.size());
+    CpuTracer::new(TraceSettings::default()).trace(&rig.world, &rig.view, 1, &rig.items(2), &mut next);
+    assert!(differing(&film, &next) > 500);
+}
+
+#[test]
+fn only_the_pixels_of_the_work_are_touched() {
+    let rig = Rig::new(builtin("furnace"), [16, 8]);
+    let mut film = Film::new(rig.size());
+    let items = [WorkItem::new(3, 2, 0), WorkItem::new(3, 2, 7), WorkItem::new(15, 7, 1)];
+    CpuTracer::new(TraceSettings::default()).trace(&rig.world, &rig.view, 0, &items, &mut film);
+    let counts: Vec<_> = film.moments.pixels().iter().enumerate().filter(|(_, m)| m.count > 0).collect();
+    assert_eq!(counts.iter().map(|(i, m)| (*i, m.count)).collect::<Vec<_>>(), [(2 * 16 + 3, 2), (7 * 16 + 15, 1)]);
+    assert!(film.variance().at(15, 7)[0].is_infinite() && film.color().at(0, 0) == [0.0; 3]);
 }
 
 #[test]

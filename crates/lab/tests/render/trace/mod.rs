@@ -9,6 +9,7 @@ mod equal;
 mod frames;
 mod hard;
 mod quads;
+mod radiosity;
 mod rig;
 mod scenes;
 pub mod statistics;

@@ -1,11 +1,19 @@
 //! Stereo views and gaze targets.
 
 use super::scenes::made;
+use crate::given::builtin;
 use afterimage::{Gaze, ViewGeometry};
+use afterimage_lab::device::Backend;
 use afterimage_lab::scene::{Camera, Environment, Pose, Triangles};
+use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::effects::Effects;
+use afterimage_lab::trace::film::Film;
+use afterimage_lab::trace::sampling::{Layers, Sampling};
+use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::stereo::GazePoint;
+use afterimage_lab::trace::surfaces::Surfaces;
 use afterimage_lab::trace::view::View;
+use afterimage_lab::trace::work::WorkItem;
 use afterimage_lab::trace::world::World;
 use glam::{DVec3, Vec3};
 
@@ -84,6 +92,21 @@ fn gazes_converge_as_ipd_f_over_z() {
 }
 
 #[test]
+fn eyes_are_parallel_where_there_is_nothing() {
+    let sky = Environment::Constant([1.0; 3]);
+    let world = World::new(&made("nothing", vec![], Triangles::default(), Pose::default(), sky));
+    let head = head(DVec3::new(1.0, 2.0, 3.0), DVec3::new(-4.0, 0.0, 1.0));
+    for gaze in [[199.5, 149.5], [17.0, 260.5]] {
+        let point = GazePoint::seen(&world, &head, gaze, Effects::all());
+        assert!(matches!(point, GazePoint::Far(_)), "{point:?}");
+        for eye in head.stereo(IPD_M) {
+            let px = point.px(&eye).unwrap();
+            assert!((px[0] - gaze[0]).abs() < 1e-3 && (px[1] - gaze[1]).abs() < 1e-3, "{px:?} for {gaze:?}");
+        }
+    }
+}
+
+#[test]
 fn behind_the_eyes_there_is_no_pixel() {
     let head = head(DVec3::ZERO, DVec3::NEG_Z);
     for eye in head.stereo(IPD_M) {
@@ -99,5 +122,87 @@ fn behind_the_eyes_there_is_no_pixel() {
     let middle = GazePoint::seen(&world, &head, [199.5, 149.5], Effects::all());
     for nowhere in [[f32::NAN, 3.0], [0.0, f32::INFINITY]] {
         assert_eq!(GazePoint::seen(&world, &head, nowhere, Effects::all()), middle);
+    }
+}
+
+#[test]
+fn both_eyes_see_the_same_place_where_they_look() {
+    let scene = builtin("courtyard");
+    let camera = scene.pose(0.0).cameras.first().cloned().unwrap_or_else(|| scene.framing_camera(4.0 / 3.0));
+    let world = World::new(&scene);
+    let effects = world.needs;
+    let head = View::of_camera(&camera, SIZE, None).unwrap();
+    let (mut hits, mut seen_by_both) = (0, 0);
+    for i in 0..400_u32 {
+        let gaze = [(i * 97 % 4000) as f32 / 10.0, (i * 61 % 3000) as f32 / 10.0];
+        let point = GazePoint::seen(&world, &head, gaze, effects);
+        let GazePoint::At(at) = point else { continue };
+        hits += 1;
+        let mut both = true;
+        for eye in head.stereo(IPD_M) {
+            let px = point.px(&eye).unwrap();
+            // The eye sees the point itself at that pixel, or a nearer surface that hides it.
+            let GazePoint::At(seen) = GazePoint::seen(&world, &eye, px, effects) else { panic!("{px:?} sees nothing") };
+            let [own, there] = [at, seen].map(|p| eye.project(p).unwrap().1);
+            assert!(there < own * (1.0 + 1e-4), "{there} m behind {own} m");
+            both &= (seen - at).length() < 1e-3 * own;
+        }
+        seen_by_both += u32::from(both);
+    }
+    println!("{hits} of 400 gazes meet something, both eyes see the same in {seen_by_both}");
+    assert!(hits > 200 && seen_by_both * 10 > hits * 9);
+}
+
+#[test]
+fn depth_and_color_agree_at_the_gazes() {
+    // A matte wall under a constant sky: both eyes see the same depth, and the same color except for noise.
+    let (head, world) = (head(DVec3::ZERO, DVec3::NEG_Z), wall(0.7));
+    let tracer = Tracer::new(&Backend::Cpu, &world, TraceSettings::default()).unwrap();
+    let point = GazePoint::seen(&world, &head, [150.0, 200.0], Effects::all());
+    let seen = head.stereo(IPD_M).map(|eye| {
+        let px = point.px(&eye).unwrap().map(|v| v.round() as u32);
+        let depth = Surfaces::trace(&world, &eye, &eye, Effects::all()).depth.at(px[0] as usize, px[1] as usize);
+        let mut film = Film::new(SIZE);
+        let items: Vec<_> = (0..4096).map(|s| WorkItem::new(px[0], px[1], s)).collect();
+        tracer.trace(&world, &eye, 0, &items, &mut film);
+        let m = film.moments.at(px[0] as usize, px[1] as usize);
+        (depth, m.mean.y, m.variance_of_mean().y)
+    });
+    let [(depth, color, variance), (other_depth, other_color, other_variance)] = seen;
+    assert!((depth - 0.7).abs() < 1e-5 && (other_depth - 0.7).abs() < 1e-5, "{seen:?}");
+    let z = (color - other_color) / (variance + other_variance).sqrt().max(1e-6);
+    afterimage_testing::accept("colors of both eyes", afterimage_testing::p_of_z(f64::from(z)));
+    assert!(color > 0.1);
+}
+
+#[test]
+fn the_lens_stays_where_it_is_while_the_eye_turns() {
+    let scene = builtin("courtyard");
+    let world = World::new(&scene);
+    let tracer = Tracer::new(&Backend::Cpu, &world, TraceSettings { max_depth: 1, ..Default::default() }).unwrap();
+    // An off-centre projection, as for one eye of a headset.
+    let size = [120, 100];
+    let geometry = ViewGeometry::off_axis(size, [-1.2, 0.8], [-0.9, 0.9]).unwrap();
+    let camera = scene.pose(0.0).cameras[0].world_from_camera;
+    let view = View::new(geometry, camera);
+    let layers = Sampling::Layers(Layers { lens_deg: Some(35.0), ..Layers::default() });
+    // The ray along the axis.
+    let axis = [120.0 * 0.6 - 0.5, 49.5];
+    let radius = f64::from(35.0_f32.to_radians().tan()) * 120.0 / 2.0;
+    for gaze in [[60.0, 50.0], [100.0, 20.0], [5.0, 95.0]] {
+        let done = layers.plan(&geometry, gaze, 1, 0).trace(&tracer, &world, &view, 0);
+        let full = Sampling::Layers(Layers::default()).plan(&geometry, gaze, 1, 0).trace(&tracer, &world, &view, 0);
+        assert!(done.samples.iter().sum::<u64>() < full.samples.iter().sum::<u64>());
+        for y in 0..size[1] {
+            for x in 0..size[0] {
+                let off = (f64::from(x) - axis[0]).hypot(f64::from(y) - axis[1]) - radius;
+                let shown = done.color.at(x as usize, y as usize);
+                if off > 0.01 {
+                    assert_eq!(shown, [0.0; 3], "outside, at {x}, {y}, gaze {gaze:?}");
+                } else if off < -0.01 {
+                    assert_eq!(shown, full.color.at(x as usize, y as usize), "inside, at {x}, {y}, gaze {gaze:?}");
+                }
+            }
+        }
     }
 }

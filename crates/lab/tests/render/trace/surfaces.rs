@@ -193,11 +193,33 @@ fn turning_square() -> Scene {
 }
 
 #[test]
-fn a_rigid_body() {
+fn a_rigid_body_moves_as_its_matrix_says() {
     let scene = turning_square();
     let camera = Camera::look_at(DVec3::new(1.0, 1.5, 6.0), DVec3::Y, 50.0);
-    let (seen, longest) = check(&scene, [&camera, &camera], [0.5, 0.4]);
+    let [now_s, before_s] = [0.5, 0.4];
+    let (seen, longest) = check(&scene, [&camera, &camera], [now_s, before_s]);
     assert!(seen > 100 && longest > 1.0);
+    // Explicit matrix, without the scene's poses: constant speed about and along y.
+    let at =
+        |t: f64| DMat4::from_translation(DVec3::Y * 2.0 * t) * DMat4::from_rotation_y(t * std::f64::consts::FRAC_PI_2);
+    let mut world = World::new(&scene);
+    world.pose(&scene, now_s, before_s);
+    let view = View::of_camera(&camera, SIZE, None).unwrap();
+    let got = Surfaces::trace(&world, &view, &view, Effects::needed(&scene));
+    let pinhole = Pinhole::new(&camera);
+    let mut compared = 0;
+    for (i, &depth) in got.depth.pixels().iter().enumerate().filter(|(_, d)| d.is_finite()) {
+        let (x, y) = (i as u32 % SIZE[0], i as u32 / SIZE[0]);
+        let (eye, w) = pinhole.ray(x, y);
+        let local = at(now_s).inverse().transform_point3(eye + w * f64::from(depth));
+        assert!(local.z.abs() < 1e-4, "off the square by {}", local.z);
+        let was = pinhole.pixel(at(before_s).transform_point3(local), 1.0).unwrap();
+        let m = got.motion.pixels()[i].map(f64::from);
+        // The pose's matrices are f32.
+        assert!((m[0] - was[0] + f64::from(x)).abs() < 2e-3 && (m[1] - was[1] + f64::from(y)).abs() < 2e-3, "{m:?}");
+        compared += 1;
+    }
+    assert_eq!(compared, seen);
 }
 
 #[test]

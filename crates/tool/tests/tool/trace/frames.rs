@@ -2,6 +2,7 @@
 
 use super::rig::{Traced, picture};
 use crate::rig::{Folder, words};
+use afterimage_lab::trace::effects::Effect;
 use serde_json::Value;
 
 #[test]
@@ -34,6 +35,31 @@ fn it_writes_what_the_contract_says() {
     assert!(report["rays"].as_u64().unwrap() > 1536);
     let cameras: Value = serde_json::from_slice(&t.bytes("cameras.json")).unwrap();
     assert_eq!(cameras["frames"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes() {
+    let a = Traced::new("builtin:cornell", &["--seed", "5"]);
+    let b = Traced::new("builtin:cornell", &["--seed", "5"]);
+    let c = Traced::new("builtin:cornell", &["--seed", "6"]);
+    for file in ["color/000000.exr", "color/000000.png"] {
+        assert_eq!(a.bytes(file), b.bytes(file));
+        assert_ne!(a.bytes(file), c.bytes(file));
+    }
+}
+
+#[test]
+fn all_effects_give_the_bytes_of_those_that_are_needed() {
+    for scene in ["builtin:cornell", "builtin:bunny-low"] {
+        let auto = Traced::new(scene, &[]);
+        let all = Traced::new(scene, &["--effects", "all", "-v"]);
+        assert_eq!(auto.bytes("color/000000.exr"), all.bytes("color/000000.exr"), "{scene}");
+        assert_eq!(all.report()["effects"].as_array().unwrap().len(), Effect::ALL.len());
+        assert!(all.stdout.contains("nothing in the scene needs it"), "{}", all.stdout);
+        let none = Traced::new(scene, &["--effects", "none", "-v"]);
+        assert_ne!(auto.bytes("color/000000.exr"), none.bytes("color/000000.exr"), "{scene}");
+        assert!(none.stdout.contains("left out though the scene has it"), "{}", none.stdout);
+    }
 }
 
 #[test]
@@ -91,4 +117,14 @@ fn a_path_of_keyframes_moves_the_camera_and_a_sky_may_be_a_picture() {
     assert_ne!(moved.bytes("color/000000.exr"), moved.bytes("color/000001.exr"));
     assert_ne!(moved.bytes("motion/000000.exr"), moved.bytes("motion/000001.exr"));
     assert!(moved.report()["effects"].as_array().unwrap().contains(&"environment-map".into()));
+}
+
+#[test]
+fn a_scene_of_nothing_gives_a_frame() {
+    let folder = Folder::new();
+    let path = folder.write("nothing.gltf", br#"{"asset": {"version": "2.0"}}"#);
+    let t = Traced::new(&path, &["--aov", "depth,motion,variance"]);
+    // A scene without light gets a white sky.
+    assert!(picture(&t.path("color/000000.exr")).pixels().iter().all(|c| *c == [1.0; 3]));
+    assert_eq!(t.report()["triangles"], 0);
 }
