@@ -142,26 +142,27 @@ pub fn still(color: Color) -> View {
 pub fn grazing_plane(make: Make<'_>) -> Option<String> {
     let focal_px = 32.0 / 35_f32.to_radians().tan();
     let mut seen = 0;
-    for method in METHODS {
+    // Along y, and along x.
+    for (method, axis) in METHODS.into_iter().zip([1, 0]) {
         for angle_deg in [60.0_f32, 85.0, 89.0, 89.9] {
             let mut draws = Draws::new("jittered floor");
             let per_row = angle_deg.to_radians().tan() / focal_px;
-            let row = |y: f32| 0.2 * (1.0 + per_row * (y - 23.5));
+            let row = |v: f32| 0.2 * (1.0 + per_row * (v - [31.5, 23.5][axis]));
             let mut frame = |index: u64| {
                 let jitter = if index == 0 { 0.0 } else { draws.range(-0.5, 0.5) };
-                let depth = Image::from_fn(SIZE, |[_, y]| {
-                    let d = row(y as f32 + jitter);
+                let depth = Image::from_fn(SIZE, |at| {
+                    let d = row(at[axis] as f32 + jitter);
                     if d > 0.0 { 1.0 / d } else { f32::INFINITY }
                 });
                 View { depth: Some(depth), ..still(noise(SIZE, "floor")) }
             };
             let mut post = make(of(method))?;
             // Only where the neighbouring rows are on the plane for any sample position: the horizon is a silhouette.
-            let plane = |y: usize| row(y as f32 - 1.5) > 0.0;
+            let place = |i: usize| [i % 64, i / 64][axis];
             for index in 0..20 {
                 let (_, _, trace) = post.step(index, &frame(index));
-                for (i, t) in trace.pixels().iter().enumerate().filter(|(i, _)| plane(i / 64)) {
-                    assert!(t.verdict != Verdict::Disoccluded, "{method:?}, {angle_deg} degrees, row {}", i / 64);
+                for (i, t) in trace.pixels().iter().enumerate().filter(|(i, _)| row(place(*i) as f32 - 1.5) > 0.0) {
+                    assert!(t.verdict != Verdict::Disoccluded, "{method:?}, {angle_deg} degrees, row {}", place(i));
                     seen += 1;
                 }
             }
@@ -206,7 +207,7 @@ pub fn jittering_wire(make: Make<'_>) -> Option<String> {
     for method in METHODS {
         let mut post = make(of(method))?;
         let (mut rejected, mut blinks, mut before) = (vec![], 0.0_f64, None::<Color>);
-        for index in 0..60 {
+        for index in 0..24 {
             // A wire one pixel wide at 1 m in front of a wall at 10 m, moved between two columns by the jitter.
             let column = 30 + (index % 2) as u32;
             let input = View {
@@ -226,7 +227,7 @@ pub fn jittering_wire(make: Make<'_>) -> Option<String> {
         }
         assert!(rejected[1..].iter().all(|&n| n == 2 * 48), "the two columns, and only they: {rejected:?}");
         // Compared with the change in the wire's own two columns: 0.65 each, in every frame.
-        let share = blinks / (58.0 * 2.0 * 48.0 * 0.65_f64.powi(2));
+        let share = blinks / (22.0 * 2.0 * 48.0 * 0.65_f64.powi(2));
         shares.push(share);
     }
     // The wire appears in smr's mip chain and disappears from it.
@@ -296,7 +297,7 @@ pub fn z_fighting(make: Make<'_>) -> Option<String> {
     let (mut post, mut plain) = (make(desc(Settings::paper()))?, make(desc(Settings::paper()))?);
     let mut draws = Draws::new("z-fighting");
     let mut oldest = 0;
-    for index in 0..100 {
+    for index in 0..40 {
         let picks: Vec<bool> = (0..64 * 48).map(|_| draws.uniform() < 0.5).collect();
         let color = Image::from_pixels(SIZE, picks.iter().map(|&p| if p { a } else { b }).collect()).unwrap();
         let depth = picks.iter().map(|&p| if p { 3.0 } else { 3.0001 }).collect();
@@ -307,5 +308,5 @@ pub fn z_fighting(make: Make<'_>) -> Option<String> {
         assert!(out.pixels().iter().all(|&c| c == a || c == b));
         oldest = trace.pixels().iter().map(|t| t.age).max().unwrap().max(oldest);
     }
-    Some(format!("wrs, 100 frames: ages (to {oldest}) and colors as without depth, bit for bit; no third color"))
+    Some(format!("wrs, 40 frames: ages (to {oldest}) and colors as without depth, bit for bit; no third color"))
 }

@@ -72,18 +72,16 @@ fn off(shown: &Color, expected: &Color) -> f32 {
 pub fn steady_gaze(make: Make<'_>) -> Option<String> {
     let mut draws = Draws::new("steady gaze");
     let mut worst = 0.0_f32;
-    for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
-        for rates in RATES {
-            let settings = settings(filter, rates);
-            for _ in 0..2 {
-                let view = delivered(&settings, &picture(&mut draws), anywhere(&mut draws));
-                let mut post = executor(make, settings)?;
-                let stored = step(&mut post, 0, &view).words;
-                for index in 1..12 {
-                    let made = step(&mut post, index, &view);
-                    worst = worst.max(off(&made.shown, &view.color));
-                    assert!(made.words == stored, "{filter:?} {rates:?}, frame {index}: what is stored changed");
-                }
+    for (filter, rates) in [Filter::Mip, Filter::Gauss, Filter::Block].into_iter().zip(RATES) {
+        let settings = settings(filter, rates);
+        for _ in 0..2 {
+            let view = delivered(&settings, &picture(&mut draws), anywhere(&mut draws));
+            let mut post = executor(make, settings)?;
+            let stored = step(&mut post, 0, &view).words;
+            for index in 1..8 {
+                let made = step(&mut post, index, &view);
+                worst = worst.max(off(&made.shown, &view.color));
+                assert!(made.words == stored, "{filter:?} {rates:?}, frame {index}: what is stored changed");
             }
         }
     }
@@ -98,7 +96,7 @@ pub fn steady_gaze(make: Make<'_>) -> Option<String> {
     let drifted = off(&step(&mut post, 1, &coarse).shown, &coarse.color);
     assert!(drifted > 0.05, "{drifted}");
     Some(format!(
-        "smr: mip, gauss and block at three rates with lamps up to 64 times brighter: off by {worst:.5}, rounding"
+        "smr: mip, gauss and block, each at another rate, with lamps up to 64 times brighter: off by {worst:.5}, rounding"
     ))
 }
 
@@ -107,27 +105,25 @@ pub fn steady_gaze(make: Make<'_>) -> Option<String> {
 pub fn rest(make: Make<'_>) -> Option<String> {
     let mut draws = Draws::new("gains rest");
     let (mut most, mut moved) = (0.0_f32, [0; 2]);
-    for filter in [Filter::Mip, Filter::Gauss] {
-        for rates in RATES {
-            let settings = settings(filter, rates);
-            let full = picture(&mut draws);
-            let mut post = executor(make, settings)?;
-            let mut brightest = 0.0_f32;
-            for index in 0..30 {
-                let light = draws.range(-2.0, 2.0).exp2();
-                let lit = full.map(|c| c.map(|v| v * light));
-                let view = delivered(&settings, &lit, anywhere(&mut draws));
-                brightest = brightest.max(peak(&lit));
-                most = most.max(peak(&step(&mut post, index, &view).shown) / brightest);
-            }
-            let view = delivered(&settings, &full, anywhere(&mut draws));
-            let mut before = step(&mut post, 30, &view).surfaces();
-            for index in 31..70 {
-                let surfaces = step(&mut post, index, &view).surfaces();
-                let [toward, away] = moved_colors(&before, &surfaces, &view.color);
-                moved = [moved[0] + toward, moved[1] + away];
-                before = surfaces;
-            }
+    for (filter, rates) in [Filter::Mip, Filter::Gauss, Filter::Mip].into_iter().zip(RATES) {
+        let settings = settings(filter, rates);
+        let full = picture(&mut draws);
+        let mut post = executor(make, settings)?;
+        let mut brightest = 0.0_f32;
+        for index in 0..30 {
+            let light = draws.range(-2.0, 2.0).exp2();
+            let lit = full.map(|c| c.map(|v| v * light));
+            let view = delivered(&settings, &lit, anywhere(&mut draws));
+            brightest = brightest.max(peak(&lit));
+            most = most.max(peak(&step(&mut post, index, &view).shown) / brightest);
+        }
+        let view = delivered(&settings, &full, anywhere(&mut draws));
+        let mut before = step(&mut post, 30, &view).surfaces();
+        for index in 31..50 {
+            let surfaces = step(&mut post, index, &view).surfaces();
+            let [toward, away] = moved_colors(&before, &surfaces, &view.color);
+            moved = [moved[0] + toward, moved[1] + away];
+            before = surfaces;
         }
     }
     // A sample pays a level of detail for each doubling, and has four at these rates.
@@ -157,40 +153,48 @@ fn moved_colors(before: &[Surface], after: &[Surface], candidate: &Color) -> [us
     moved
 }
 
+/// A wall, and the wall with a lamp.
+fn wall_and_lamp(draws: &mut Draws, light: f32) -> [Color; 2] {
+    let wall = Image::from_fn(SIZE, |_| [0.2 + 0.2 * draws.uniform(); 3]);
+    let lamp = |x: u32, y: u32| (60..68).contains(&x) && (30..38).contains(&y);
+    let at = |[x, y]: [u32; 2]| if lamp(x, y) { [light; 3] } else { wall.at(x as usize, y as usize) };
+    let lit = Image::from_fn(SIZE, at);
+    [wall, lit]
+}
+
+fn unlit(settings: Settings) -> Settings {
+    Settings { method: Method::Smr(Smr { relight: false, ..Smr::default() }), ..settings }
+}
+
 /// A lamp of one frame under a steady gaze: relighting adds nothing to it, and little of it is left.
 pub fn flash(make: Make<'_>) -> Option<String> {
     let mut worst = 0;
     let mut draws = Draws::new("flash");
-    for filter in [Filter::Mip, Filter::Gauss] {
-        for (light, rates) in [(1.0, [2, 4]), (4.0, [4, 8]), (32.0, [8, 16])] {
-            let relit = settings(filter, rates);
-            let unlit = Settings { method: Method::Smr(Smr { relight: false, ..Smr::default() }), ..relit };
-            let wall = Image::from_fn(SIZE, |_| [0.2 + 0.2 * draws.uniform(); 3]);
-            let lamp = |x: u32, y: u32| (60..68).contains(&x) && (30..38).contains(&y);
-            let at = |[x, y]: [u32; 2]| if lamp(x, y) { [light; 3] } else { wall.at(x as usize, y as usize) };
-            let lit = Image::from_fn(SIZE, at);
-            // The planted error: history of the lamp's place is finer, because the eye was there. It is relit.
-            for (first, steady) in [([20.0, 20.0], true), ([64.0, 34.0], false)] {
-                let before = delivered(&relit, &wall, first);
-                let [plain, lit] = [&wall, &lit].map(|c| delivered(&relit, c, [20.0, 20.0]));
-                let mut posts = [executor(make, relit)?, executor(make, unlit)?];
-                let mut same = true;
-                for index in 0..35 {
-                    let view = match index {
-                        0..10 => &before,
-                        30 => &lit,
-                        _ => &plain,
-                    };
-                    let [relit, unlit] = posts.each_mut().map(|post| step(post, index, view).shown);
-                    same &= relit == unlit;
-                    if steady && index >= 30 {
-                        let marks = marks(&relit, &plain.color);
-                        assert!(index > 30 || marks > 40, "the lamp itself shows in {marks} pixels");
-                        worst = if index == 34 { worst.max(marks) } else { worst };
-                    }
+    let lights = [(Filter::Mip, 1.0), (Filter::Gauss, 4.0), (Filter::Mip, 32.0)];
+    for ((filter, light), rates) in lights.into_iter().zip(RATES) {
+        let relit = settings(filter, rates);
+        let [wall, lit] = wall_and_lamp(&mut draws, light);
+        // The planted error: history of the lamp's place is finer, because the eye was there. It is relit.
+        for (first, steady) in [([20.0, 20.0], true), ([64.0, 34.0], false)] {
+            let before = delivered(&relit, &wall, first);
+            let [plain, lit] = [&wall, &lit].map(|c| delivered(&relit, c, [20.0, 20.0]));
+            let mut posts = [executor(make, relit)?, executor(make, unlit(relit))?];
+            let mut same = true;
+            for index in 0..25 {
+                let view = match index {
+                    0..10 => &before,
+                    20 => &lit,
+                    _ => &plain,
+                };
+                let [relit, unlit] = posts.each_mut().map(|post| step(post, index, view).shown);
+                same &= relit == unlit;
+                if steady && index >= 20 {
+                    let marks = marks(&relit, &plain.color);
+                    assert!(index > 20 || marks > 40, "the lamp itself shows in {marks} pixels");
+                    worst = if index == 24 { worst.max(marks) } else { worst };
                 }
-                assert_eq!(same, steady, "{filter:?} {rates:?}");
             }
+            assert_eq!(same, steady, "{filter:?} {rates:?}");
         }
     }
     assert!(worst <= 2, "{worst}");
@@ -202,37 +206,31 @@ pub fn flash(make: Make<'_>) -> Option<String> {
 /// The same on frames that are sampled sparsely: with relighting no more is left of the lamp than without.
 pub fn sparse_flash(make: Make<'_>) -> Option<String> {
     let mut draws = Draws::new("sparse flash");
-    let (mut most, mut staying) = (i64::MIN, i64::MIN);
-    let lattices = [[2, 4], [4, 8]].map(|rates| settings(Filter::Sparse, rates));
+    let mut most = i64::MIN;
     let quads = Settings { foveation: Foveation::quads(), ..Settings::default() };
-    for relit in lattices.into_iter().chain([quads]) {
-        for light in [1.0, 4.0] {
-            let unlit = Settings { method: Method::Smr(Smr { relight: false, ..Smr::default() }), ..relit };
-            let wall = Image::from_fn(SIZE, |_| [0.2 + 0.2 * draws.uniform(); 3]);
-            let lamp = |x: u32, y: u32| (60..68).contains(&x) && (30..38).contains(&y);
-            let at = |[x, y]: [u32; 2]| if lamp(x, y) { [light; 3] } else { wall.at(x as usize, y as usize) };
-            let lit = Image::from_fn(SIZE, at);
-            let left = |settings: Settings, until: u64| -> Option<i64> {
-                let mut post = executor(make, settings)?;
-                let mut shown = wall.clone();
-                for index in 0..79 {
-                    let full = if (74..until).contains(&index) { &lit } else { &wall };
-                    let view = View::still(full.clone(), [20.0, 20.0]);
-                    let view = match settings.foveation.filter {
-                        Filter::Sparse => view.foveated(&settings.foveation, [20.0, 20.0], index),
-                        _ => view,
-                    };
-                    shown = step(&mut post, index, &view).shown;
-                }
-                Some(marks(&shown, &wall) as i64)
+    let [fine, coarse] = [[2, 4], [4, 8]].map(|rates| settings(Filter::Sparse, rates));
+    let left = |settings: Settings, [wall, lit]: &[Color; 2], until: u64| -> Option<i64> {
+        let mut post = executor(make, settings)?;
+        let mut shown = wall.clone();
+        for index in 0..79 {
+            let full = if (74..until).contains(&index) { lit } else { wall };
+            let view = View::still(full.clone(), [20.0, 20.0]);
+            let view = match settings.foveation.filter {
+                Filter::Sparse => view.foveated(&settings.foveation, [20.0, 20.0], index),
+                _ => view,
             };
-            let without = left(unlit, 75)?;
-            most = most.max(left(relit, 75)? - without);
-            // The planted error: a lamp that stays on.
-            staying = staying.max(left(relit, 79)? - without);
+            shown = step(&mut post, index, &view).shown;
         }
+        Some(marks(&shown, wall) as i64)
+    };
+    for (relit, light) in [(fine, 1.0), (coarse, 4.0), (quads, 4.0)] {
+        let frames = wall_and_lamp(&mut draws, light);
+        let without = left(unlit(relit), &frames, 75)?;
+        most = most.max(left(relit, &frames, 75)? - without);
+        // The planted error: a lamp that stays on.
+        assert!(light > 1.0 || left(relit, &frames, 79)? - without > 8);
     }
-    assert!(most <= 8 && staying > 8, "{most}, {staying}");
+    assert!(most <= 8, "{most}");
     Some(format!(
         "sparse smr, lattices and quads, steady gaze: a lamp of one frame leaves {most} px more off by 0.05 after 4 \
          frames with relighting than without"

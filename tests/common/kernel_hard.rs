@@ -1,7 +1,7 @@
-//! Hard cases of the kernel's functions, H01, H02, H04, H15, H17 to H21, H23, H30, H31, H33 and H36 to H39: laws that
+//! Hard cases of the kernel's functions, H01 to H04, H08, H15, H17 to H21, H23, H30, H31, H33 and H36 to H39: laws that
 //! hold for the Rust functions and for their twins on a device. A law returns what it measured, or `None` without one.
 
-use afterimage::kernel::{pack, sanitize};
+use afterimage::kernel::{pack, reservoir, sanitize};
 use afterimage_testing::Draws;
 use glam::Vec3;
 
@@ -11,7 +11,9 @@ macro_rules! kernel_laws {
         laws! { $side, $held,
             h01_an_empty_reservoir_never_wins: "H01", empty_reservoir;
             h02_two_empty_reservoirs_keep_the_newer_color: "H02", two_empty_reservoirs;
+            h03_candidates_of_weight_0_change_nothing: "H03", weight_of_0;
             h04_denormal_weights_count_as_0: "H04", denormal_weights;
+            h08_a_million_frames_in_f32_follow_f64_and_the_closed_form: "H08", million_frames;
             h15_counts_and_ages_saturate: "H15", saturation;
             h19_a_corrupt_key_loses_to_the_next_candidate: "H19", corrupt_key;
             h20_a_difference_beyond_100_takes_the_candidate_for_certain: "H20", shut_gate;
@@ -137,6 +139,40 @@ pub fn two_empty_reservoirs(call: Call<'_>) -> Option<String> {
     Some("the second's color, w_sum 0, survival 1, for both samplers".into())
 }
 
+/// Candidates of weight 0 over a history, which is stored after each frame.
+pub fn weight_of_0(call: Call<'_>) -> Option<String> {
+    let mut draws = Draws::new("weight 0");
+    for sampler in [0, 1] {
+        let history = Step { sampler, color: [0.1, 0.2, 0.3], w_sum: 5.421_875, weight: 0.0, ..STEP };
+        let drawn = [0.0].into_iter().chain((1..100_000).map(|_| draws.uniform()));
+        let frames: Vec<_> = drawn.map(|draw| Step { draw, ..history }).collect();
+        for (take, [w_sum, log_key, ..]) in stepped(call, &frames)? {
+            // So that the next frame starts from the same history.
+            assert!(!take && kept(w_sum, 3).w_sum == history.w_sum, "{w_sum}");
+            assert!(sampler == 0 || log_key == history.log_key, "{log_key}");
+        }
+    }
+    Some("w_sum 5.421875 and key -0.3 after 1e5 frames through storage, none taken".into())
+}
+
+/// Candidates of weight 1 on a history of weight 1, each on the sum of the frame before.
+pub fn million_frames(call: Call<'_>) -> Option<String> {
+    let (mut sums, mut exact) = (vec![1.0_f32], 1.0_f64);
+    for i in 0..999_999 {
+        sums.push(sums[i] * reservoir::bernoulli_survival(sums[i], 1.0) + 1.0);
+        exact = exact * exact / (exact + 1.0) + 1.0;
+    }
+    let frames = || sums.windows(2).step_by(10);
+    let survivals = of_floats(call, "bernoulli_survival", &frames().map(|w| vec![w[0], 1.0]).collect::<Vec<_>>())?;
+    for (w, survival) in frames().zip(survivals.concat()) {
+        assert!((w[0] * survival + 1.0 - w[1]).abs() <= 2.0 * f32::EPSILON * w[1], "{w:?}");
+    }
+    let (s, closed) = (sums[999_999], 2e6_f64.sqrt());
+    assert!((s - 1412.7).abs() < 0.5 && (f64::from(s) / exact - 1.0).abs() < 4e-4, "{s}, {exact}");
+    assert!((exact / closed - 1.0).abs() < 2e-3);
+    Some(format!("s = {s:.2} in f32, {exact:.2} in f64, sqrt(2n) = {closed:.2}"))
+}
+
 pub fn denormal_weights(call: Call<'_>) -> Option<String> {
     let tiny = 1e-40;
     let merged = combined(call, &[([tiny, tiny], 0.5), ([tiny, 1.0], LARGEST_DRAW), ([1.0, tiny], 0.0)])?;
@@ -243,7 +279,6 @@ pub fn same_hue(call: Call<'_>) -> Option<String> {
         negative_sum += usize::from(dc * dc / (sc * sc) + dh2 / (sh * sh) < 0.0);
         rows.push([x.to_array(), y.to_array()].concat());
     }
-    println!("negative hue term in {negative_term} of 400000 pairs, negative sum in {negative_sum}");
     assert!(negative_term > 40_000 && negative_sum > 100, "the case must really occur");
     assert!(of_floats(call, "delta_e94", &rows)?.iter().all(|e| e[0].is_finite() && e[0] >= 0.0));
     let percent = spread_pairs as f64 / 2_000.0;

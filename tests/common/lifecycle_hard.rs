@@ -56,11 +56,11 @@ fn run(post: &mut Box<dyn Steps>, method: MethodKind, frames: std::ops::Range<u6
     frames.map(|index| step(post, index, &frame(method, index), Reset::None)).collect()
 }
 
-/// Output of a fresh context for frames 20 to 29, and a context after its first 20 frames.
+/// Output of a fresh context for frames 8 to 13, and a context after its first 8 frames.
 fn fresh_and_used(make: Make<'_>, method: MethodKind) -> Option<(Vec<Made>, Box<dyn Steps>)> {
     let (mut fresh, mut used) = (make(of(method))?, make(of(method))?);
-    run(&mut used, method, 0..20);
-    Some((run(&mut fresh, method, 20..30), used))
+    run(&mut used, method, 0..8);
+    Some((run(&mut fresh, method, 8..14), used))
 }
 
 /// Odd, even, a single pixel, and back, with frames between: another pixel density is another size.
@@ -76,25 +76,25 @@ pub fn other_sizes(make: Make<'_>) -> Option<String> {
             step(&mut resized, 1, &view, Reset::None);
         }
         resized.resize(SIZE);
-        assert!(run(&mut resized, method, 20..30) == fresh, "{method:?}");
+        assert!(run(&mut resized, method, 8..14) == fresh, "{method:?}");
     }
-    Some("wrs, smr, taa: 5 sizes, odd, even and 1x1, then back: 10 frames as of a fresh context, bit for bit".into())
+    Some("wrs, smr, taa: 5 sizes, odd, even and 1x1, then back: 6 frames as of a fresh context, bit for bit".into())
 }
 
 /// A cut, or a pause, said twice.
 pub fn cut(make: Make<'_>) -> Option<String> {
     for method in METHODS {
         let (fresh, mut cut) = fresh_and_used(make, method)?;
-        let view = frame(method, 20);
+        let view = frame(method, 8);
         for _ in 0..2 {
-            let made = step(&mut cut, 20, &view, Reset::All);
+            let made = step(&mut cut, 8, &view, Reset::All);
             assert_eq!(made.shown, view.color, "{method:?}: the cut shows what came");
             assert!(made == fresh[0], "{method:?}");
         }
-        assert!(run(&mut cut, method, 21..30) == fresh[1..], "{method:?}");
+        assert!(run(&mut cut, method, 9..14) == fresh[1..], "{method:?}");
     }
     Some(
-        "wrs, smr, taa: the first frame after a cut is the candidate, 9 more as of a fresh context, bit for bit".into(),
+        "wrs, smr, taa: the first frame after a cut is the candidate, 5 more as of a fresh context, bit for bit".into(),
     )
 }
 
@@ -102,20 +102,23 @@ pub fn cut(make: Make<'_>) -> Option<String> {
 pub fn resets(make: Make<'_>) -> Option<String> {
     for method in METHODS {
         let (fresh, mut twice) = fresh_and_used(make, method)?;
-        for index in 18..20 {
+        for index in 6..8 {
             step(&mut twice, index, &frame(method, index), Reset::All);
         }
         let mut stale = make(of(method))?;
-        run(&mut stale, method, 19..20);
-        let expected = run(&mut stale, method, 20..30);
-        assert!(run(&mut twice, method, 20..30) == expected, "{method:?}: two frames running");
+        run(&mut stale, method, 7..8);
+        let expected = run(&mut stale, method, 8..14);
+        assert!(run(&mut twice, method, 8..14) == expected, "{method:?}: two frames running");
         assert!(expected[0].shown != fresh[0].shown, "{method:?}, the planted error: no reset");
         stale.forget();
-        assert!(run(&mut stale, method, 20..30) == fresh, "{method:?}: forgotten");
+        assert!(run(&mut stale, method, 8..14) == fresh, "{method:?}: forgotten");
         let [mut with_reset, mut without] = [make(of(method))?, make(of(method))?];
         let first = step(&mut with_reset, 0, &frame(method, 0), Reset::All);
         assert!(run(&mut without, method, 0..1) == [first], "{method:?}: a reset at frame 0");
-        assert!(run(&mut with_reset, method, 1..10) == run(&mut without, method, 1..10), "{method:?}");
+        assert!(run(&mut with_reset, method, 1..5) == run(&mut without, method, 1..5), "{method:?}");
     }
-    Some("wrs, smr, taa: reset twice running, and at frame 0: 10 frames each as of a fresh context, bit for bit".into())
+    Some(
+        "wrs, smr, taa: reset twice running, and at frame 0: 5 frames and more as of a fresh context, bit for bit"
+            .into(),
+    )
 }

@@ -46,16 +46,16 @@ pub fn frame(index: u64, ratio: f32) -> Color {
 /// Exposure that changes by x256 in one frame, declared.
 pub fn declared_exposure(make: Make<'_>) -> Option<String> {
     for ratio in [EXPOSED, 1.0 / EXPOSED] {
-        // The same clip at one exposure, and with a change from frame 20 on. Without a gate all decisions are the same.
+        // The same clip at one exposure, and with a change from frame 10 on. Without a gate all decisions are the same.
         let (mut plain, mut post) = (make(gated(false))?, make(gated(false))?);
-        for index in 0..40 {
+        for index in 0..20 {
             let before = plain.step(index, &still(frame(index, 1.0)));
             let after = match index {
-                0..20 => post.step(index, &still(frame(index, 1.0))),
-                20 => post.exposed(index, &still(frame(index, ratio)), Exposure::Changed { ratio }),
+                0..10 => post.step(index, &still(frame(index, 1.0))),
+                10 => post.exposed(index, &still(frame(index, ratio)), Exposure::Changed { ratio }),
                 _ => post.exposed(index, &still(frame(index, ratio)), Exposure::Changed { ratio: 1.0 }),
             };
-            let expected = if index < 20 { before.0 } else { scaled(&before.0, ratio) };
+            let expected = if index < 10 { before.0 } else { scaled(&before.0, ratio) };
             assert_eq!((after.0, after.1, after.2), (expected, before.1, before.2), "x{ratio}, frame {index}");
         }
         // With the gate: a still picture is unaffected by it.
@@ -75,7 +75,7 @@ pub fn declared_exposure(make: Make<'_>) -> Option<String> {
     let (_, _, trace) = post.exposed(1, &still(frame(0, EXPOSED)), Exposure::Changed { ratio: 1.0 / EXPOSED });
     assert!(share(&trace, |_, t| t.agreement == 0.0) > 0.9);
     Some(
-        "wrs, x256 and /256 declared: 20 frames the same as unexposed ones times the ratio, bit for bit; 0 rejected"
+        "wrs, x256 and /256 declared: 10 frames the same as unexposed ones times the ratio, bit for bit; 0 rejected"
             .into(),
     )
 }
@@ -91,17 +91,12 @@ pub fn undeclared_exposure(make: Make<'_>) -> Option<String> {
             post.step(index, &still(frame(index, 1.0)));
         }
         let mut stale = vec![];
-        for index in 30..180 {
+        for index in 30..40 + all as u64 {
             let (_, stats, trace) = post.step(index, &still(frame(index, ratio)));
             assert_eq!(stats.rejected(), 0);
             stale.push(share(&trace, |_, t| u64::from(t.age) > index - 30));
         }
         let until = |limit: f64| stale.iter().rposition(|&s| s > limit).map_or(0, |last| last + 1);
-        println!(
-            "x{ratio}, gate {gate}: stale pixels below 1 % after {} frames, none after {}",
-            until(0.01),
-            until(0.0)
-        );
         assert!(until(0.01) <= frames && until(0.0) <= all, "stated are {frames} and {all}");
         took.push(until(0.01));
     }
@@ -114,9 +109,9 @@ pub fn undeclared_exposure(make: Make<'_>) -> Option<String> {
 /// A frame of the brightest half, with the gate.
 pub fn gated_firefly(make: Make<'_>) -> Option<String> {
     // The gate rejects history that differs so much, and then the firefly: the output is the input.
-    let lit = flash(make(gated(true))?, 65504.0, 100);
+    let lit = flash(make(gated(true))?, 65504.0, 20);
     assert_eq!((lit[0], lit[1..].iter().sum()), (64 * 48, 0_u64));
-    Some("wrs, gated: 65504 in 1/32 is shown for 1 frame of 101, in all 3072 pixels".into())
+    Some("wrs, gated: 65504 in 1/32 is shown for 1 frame of 20, in all 3072 pixels".into())
 }
 
 /// A frame of the brightest half, without the gate.
@@ -142,10 +137,6 @@ pub fn ungated_firefly(make: Make<'_>) -> Option<String> {
         }
     }
     let shown = lit.iter().sum::<u64>() as f64 / (64.0 * 48.0);
-    println!(
-        "light shown over light put in: {shown:.3}, by the law {energy:.3}; the last one dies after {} frames",
-        lit.iter().rposition(|&n| n > 0).unwrap() + 1
-    );
     assert!(energy > 1.0 && energy < 1.15, "what a stream of constant light keeps is within 15 % of what it brings");
     assert!(lit[70..].iter().all(|&n| n == 0), "gone within 70 frames");
     let last = lit.iter().rposition(|&n| n > 0).unwrap() + 1;
@@ -157,7 +148,7 @@ pub fn ungated_firefly(make: Make<'_>) -> Option<String> {
 /// A firefly of one frame in means of weighted samples, while everything glides by a part of a pixel.
 pub fn gliding_firefly(make: Make<'_>) -> Option<String> {
     let mut worst = 0.0_f32;
-    for light in [10.0, 100.0, 65504.0] {
+    for light in [10.0, 65504.0] {
         let mut post = make(desc(Settings::weighted()))?;
         for index in 0..17 {
             let mut color = Image::filled(SIZE, [0.5; 3]);
@@ -185,7 +176,7 @@ pub fn strobe(make: Make<'_>) -> Option<String> {
         let mut post = make(gated(gate))?;
         let dark = 0.031_25;
         let mut last_lit = None;
-        for index in 0..260_u64 {
+        for index in 0..70 + frames {
             let light = if index < 60 && index % 2 == 1 { on } else { dark };
             let (out, ..) = post.step(index, &still(Image::filled(SIZE, [light; 3])));
             assert!(out.pixels().iter().all(|&c| c == [dark; 3] || c == [on; 3]));
@@ -194,7 +185,6 @@ pub fn strobe(make: Make<'_>) -> Option<String> {
             }
         }
         let frames_lit = last_lit.map_or(0, |frame| frame + 1);
-        println!("strobe {dark} to {on}, gate {gate}: nothing left after {frames_lit} frames");
         assert!(frames_lit <= frames, "{frames_lit} frames, stated are {frames}");
         left.push(frames_lit);
     }

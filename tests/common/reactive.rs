@@ -25,7 +25,7 @@ pub fn reactive_is_the_inverse_of_trust(make: Make) -> Option<String> {
         let [mut reactive, mut trusting, mut unmasked] = [make(*desc)?, make(*desc)?, make(*desc)?];
         let mut draws = Draws::new("reactive masks");
         let mut differ = false;
-        for index in 0..6 {
+        for index in 0..4 {
             let speed_px = [0.4, -0.3];
             let full = waves(SIZE, speed_px.map(|v| v * index as f32));
             let shot = Shot::foveated(full, &foveation, [30.0, 25.0], index).moving(speed_px);

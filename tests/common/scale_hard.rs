@@ -21,7 +21,7 @@ macro_rules! scale_laws {
 pub(crate) use scale_laws;
 
 /// Frames of a clip.
-const FRAMES: u64 = 12;
+const FRAMES: u64 = 8;
 
 fn settings(filter: Filter) -> Settings {
     let foveation = Foveation { filter, rate_mid: 4, rate_far: 8, ..Foveation::default() };
@@ -53,12 +53,6 @@ fn times(color: &Color, factor: f32) -> Color {
 fn in_unit(view: &View, factor: f32) -> View {
     let noise = view.noise.as_ref().map(|noise| noise.map(|[error, samples]| [error * factor, samples]));
     View { color: times(&view.color, factor), noise, ..view.clone() }
-}
-
-/// The frames times a factor through an executor.
-fn run(make: Make<'_>, settings: Settings, views: &[View], factor: f32) -> Option<Vec<Made>> {
-    let mut post = make(ContextDesc { settings, ..ContextDesc::new(views[0].color.size()) })?;
-    Some(of_unit(&mut *post, views, |_| factor, |_| Exposure::Same))
 }
 
 /// The frames in units that may differ, with their exposures, through an executor without history.
@@ -108,25 +102,26 @@ fn off(plain: &[Made], scaled: &[Made], factor: f32) -> f64 {
 pub fn times_a_constant(make: Make<'_>) -> Option<String> {
     let mut draws = Draws::new("scale of light");
     let mut worst = 0.0_f64;
-    for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
-        for speed_px in [[0.0, 0.0], [0.3, -1.4]] {
-            let settings = settings(filter);
-            let views = clip(&mut draws, &settings, speed_px);
-            let plain = run(make, settings, &views, 1.0)?;
-            let reused = plain.iter().flat_map(|m| m.trace.pixels()).filter(|t| t.history_share > 0.5).count();
-            let gated = plain.iter().flat_map(|m| m.trace.pixels()).filter(|t| t.agreement < 1.0).count();
-            assert!(reused > 1000 && gated > 1000, "{filter:?}: {reused} and {gated}");
-            for exponent in [-10, -3, 6, 12] {
-                let factor = 2.0_f32.powi(exponent);
-                let scaled = run(make, settings, &views, factor)?;
-                assert!(scales(&plain, &scaled, factor), "{filter:?} {speed_px:?}: 2^{exponent}");
-            }
-            for factor in [1.0 / 700.0, 0.3, 3.0, 50.0] {
-                let scaled = run(make, settings, &views, factor)?;
-                worst = worst.max(off(&plain, &scaled, factor));
-                // The planted error: a factor that halves round.
-                assert!(!scales(&plain, &scaled, factor), "{filter:?} {speed_px:?}: {factor}");
-            }
+    let moving = [0.3, -1.4];
+    for (filter, speed_px) in
+        [(Filter::Mip, [0.0; 2]), (Filter::Mip, moving), (Filter::Gauss, moving), (Filter::Block, moving)]
+    {
+        let settings = settings(filter);
+        let views = clip(&mut draws, &settings, speed_px);
+        let mut post = make(ContextDesc { settings, ..ContextDesc::new(views[0].color.size()) })?;
+        let mut run = |factor: f32| of_unit(&mut *post, &views, |_| factor, |_| Exposure::Same);
+        let plain = run(1.0);
+        let reused = plain.iter().flat_map(|m| m.trace.pixels()).filter(|t| t.history_share > 0.5).count();
+        let gated = plain.iter().flat_map(|m| m.trace.pixels()).filter(|t| t.agreement < 1.0).count();
+        assert!(reused > 1000 && gated > 1000, "{filter:?}: {reused} and {gated}");
+        for factor in [-10, 12].map(|exponent| 2.0_f32.powi(exponent)) {
+            assert!(scales(&plain, &run(factor), factor), "{filter:?} {speed_px:?}: {factor}");
+        }
+        for factor in [1.0 / 700.0, 50.0] {
+            let scaled = run(factor);
+            worst = worst.max(off(&plain, &scaled, factor));
+            // The planted error: a factor that halves round.
+            assert!(!scales(&plain, &scaled, factor), "{filter:?} {speed_px:?}: {factor}");
         }
     }
     assert!(worst < 0.01, "{worst}");
@@ -175,7 +170,7 @@ pub fn radiance(make: Make<'_>) -> Option<String> {
         let reused = plain.iter().flat_map(|m| m.trace.pixels()).filter(|t| t.history_share > 0.5).count();
         assert!(reused > 1000 || settings.method.kind() == MethodKind::None, "{settings:?}: {reused}");
         let stored = |a: &[Made], b: &[Made]| a.iter().zip(b).all(|(a, b)| a.words == b.words);
-        for exponent in [-30, -10, -3, 6, 12, 24] {
+        for exponent in [-30, -3, 24] {
             let unit = 2.0_f32.powi(exponent);
             let scaled = of_unit(&mut *post, &views, |_| unit, |_| Exposure::Scene { exposure: 1.0 / unit });
             assert!(scales(&plain, &scaled, unit) && stored(&plain, &scaled), "{settings:?}: 2^{exponent}");
@@ -197,12 +192,9 @@ pub fn radiance(make: Make<'_>) -> Option<String> {
         assert!((0..views.len()).all(is_same) && stored(&by_hand, &given), "{settings:?}: exposures that change");
         let odd = of_unit(&mut *post, &views, |_| 700.0, |_| Exposure::Scene { exposure: 1.0 / 700.0 });
         worst = worst.max(off(&plain, &odd, 700.0));
-        // The planted errors: no exposure, and one that is applied twice.
-        let (dark, twice) = (2.0_f32.powi(-10), Exposure::Scene { exposure: 2.0_f32.powi(20) });
-        for wrong in [Exposure::Same, twice] {
-            let scaled = of_unit(&mut *post, &views, |_| dark, |_| wrong);
-            assert!(!is_absolute || !scales(&plain, &scaled, dark), "{settings:?}: {wrong:?}");
-        }
+        // The planted error: no exposure.
+        let dark = 2.0_f32.powi(-10);
+        assert!(!is_absolute || !scales(&plain, &of_unit(&mut *post, &views, |_| dark, same), dark), "{settings:?}");
     }
     assert!(worst < 0.01, "{worst}");
     Some(format!(
@@ -216,19 +208,19 @@ pub fn radiance(make: Make<'_>) -> Option<String> {
 
 /// Light left behind the edge of a shadow that moves by 2 px a frame without vectors, as a share of the step of light.
 fn light_left(make: Make<'_>, settings: Settings, exponent: i32, exposure: Exposure) -> Option<f64> {
-    let (size, factor) = ([160, 90], 2.0_f32.powi(exponent));
+    let (size, factor) = ([160, 40], 2.0_f32.powi(exponent));
     let mut post = make(ContextDesc { settings, ..ContextDesc::new(size) })?;
     let (mut left, mut step) = (0.0, 0.0);
     for index in 0..56_u64 {
         // The eye sees the wall in light, and rests while the shadow comes.
-        let gaze_px = if index < 16 { [10.0 * index as f32, 45.0] } else { [10.0, 45.0] };
+        let gaze_px = if index < 16 { [10.0 * index as f32, 20.0] } else { [10.0, 20.0] };
         let edge = 60 + 2 * index.saturating_sub(16) as u32;
         let light = |x: u32| if x > 50 && x < edge { 0.1 } else { 0.4 };
         let full = Image::from_fn(size, |[x, y]| [light(x) * (0.75 + 0.25 * ((x + y) % 3) as f32); 3]);
         let view = in_unit(&delivered(&settings, &full, gaze_px, index), factor);
         let shown = post.make(index, &view, exposure, Reset::None).shown;
         if index >= 30 {
-            for (x, y) in (edge - 10..edge - 4).flat_map(|x| (0..90).map(move |y| (x as usize, y))) {
+            for (x, y) in (edge - 10..edge - 4).flat_map(|x| (0..40).map(move |y| (x as usize, y))) {
                 left += f64::from(shown.at(x, y)[1] / factor - full.at(x, y)[1]);
                 step += f64::from(full.at(x, y)[1]) * 3.0;
             }
@@ -245,7 +237,7 @@ pub fn moving_shadow(make: Make<'_>) -> Option<String> {
             .map(|&exponent| light_left(make, settings, exponent, Exposure::Same))
             .collect::<Option<Vec<_>>>()
     };
-    let smr = left(settings(Filter::Mip), &[4, 0, -6, -10])?;
+    let smr = left(settings(Filter::Mip), &[4, -10])?;
     assert!(smr.iter().all(|&l| l < 0.06), "{smr:?}");
     // The planted error: below the smallest normal half the gate does not follow light.
     let absolute = light_left(make, settings(Filter::Mip), -20, Exposure::Same)?;

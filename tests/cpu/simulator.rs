@@ -121,35 +121,6 @@ fn h71_the_level_of_detail_is_continuous_and_monotone() {
 }
 
 #[test]
-fn blurs_hold_their_stated_accuracy() {
-    let (mut lod_error, mut sigma_error, mut tap_error) = (0.0_f64, 0.0_f64, 0.0_f64);
-    for i in 0..=20_000 {
-        let sigma = i as f32 * (127.5 / 20_000.0);
-        // One pixel a degree from 0 on: the eccentricity is the width.
-        let lod = f64::from(foveate::blur_lod(sigma, 0.0, 1.0, 1.0, 127.5));
-        let exact = (1.0 + 2.0 * f64::from(sigma)).log2();
-        lod_error = lod_error.max((lod - exact).abs());
-        let lod = i as f32 * (8.0 / 20_000.0);
-        let scale = f64::from(lod).exp2();
-        let error = f64::from(foveate::blur_sigma_px(lod)) - 0.5 * (scale - 1.0);
-        sigma_error = sigma_error.max(error.abs() / scale);
-    }
-    for i in 0..400 {
-        let sigma = 0.125 * 1000.0_f32.powf(i as f32 / 399.0);
-        let mut tap = foveate::gauss_center(sigma);
-        for d in 1..=foveate::gauss_radius(sigma) {
-            tap = foveate::gauss_next(tap);
-            let x = f64::from(d) / f64::from(sigma);
-            let error = (f64::from(tap.weight) - (-0.5 * x * x).exp()).abs();
-            tap_error = tap_error.max(error / (1.0 + f64::from(sigma * sigma)));
-        }
-    }
-    println!("errors: lod {lod_error:.1e}, sigma {sigma_error:.1e} of 2^lod, tap {tap_error:.1e} (1 + sigma^2)");
-    assert!(lod_error < 1e-6 && sigma_error < 5e-7 && tap_error < 1e-7);
-    assert_eq!((foveate::gauss_radius(0.0), foveate::gauss_radius(1.0), foveate::gauss_radius(7.5)), (0, 4, 23));
-}
-
-#[test]
 fn a_blurred_point_is_a_gaussian() {
     // Far out the width is constant, so that the two passes together are exact: weights by f64, cut at 3 standard
     // deviations.
@@ -227,31 +198,6 @@ fn h62_angles_follow_rays_not_the_screen() {
 }
 
 #[test]
-fn h67_small_gaze_movements_enlarge_the_area_seen_sharp() {
-    let size = [640, 360];
-    let foveation = Foveation::default();
-    let sharp = |gazes: &[[f32; 2]]| {
-        let mut seen = Image::filled(size, false);
-        for &gaze in gazes {
-            let lods = lods(&foveation, size, gaze);
-            for (s, &l) in seen.pixels_mut().iter_mut().zip(lods.pixels()) {
-                *s |= l < 0.25;
-            }
-        }
-        seen.pixels().iter().filter(|&&s| s).count() as f64
-    };
-    // Half a degree either way in x: the union of discs of radius r over a segment of length d has area pi r^2 + 2 r d.
-    let still = sharp(&[[320.0, 180.0]]);
-    let px_per_deg = 640.0 / (2.0 * 35.0_f64.to_radians().tan()) * 1.0_f64.to_radians();
-    let gazes: Vec<[f32; 2]> = (-5..=5).map(|i| [320.0 + (0.1 * f64::from(i) * px_per_deg) as f32, 180.0]).collect();
-    let moving = sharp(&gazes);
-    let r = (still / std::f64::consts::PI).sqrt();
-    let predicted = still + 2.0 * r * px_per_deg;
-    println!("sharp area {still} px still, {moving} px with microsaccades, predicted {predicted:.0}");
-    assert!(moving >= 0.98 * predicted);
-}
-
-#[test]
 fn a_bad_pixel_does_not_spread() {
     let mut image = Image::filled([64, 64], [0.5; 3]);
     image.pixels_mut()[20 * 64 + 33] = [f32::NAN, 0.5, f32::INFINITY];
@@ -263,7 +209,7 @@ fn a_bad_pixel_does_not_spread() {
     }
     // In coarse regions of any gaze the pixel itself is black or blurred, too.
     for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
-        for x in 0..64 {
+        for x in (0..64).step_by(9) {
             let foveation = Foveation { filter, rate_mid: 2, rate_far: 4, ..Foveation::default() };
             let gaze = [x as f32, 0.0];
             let lods = lods(&foveation, [64, 64], gaze);

@@ -3,7 +3,6 @@
 use afterimage::DepthConvention as Depth;
 use afterimage::kernel::depth;
 use afterimage::kernel::pack::{disparity_code, disparity_value, half_bits, half_value};
-use afterimage_testing::Draws;
 use afterimage_testing::holds;
 use proptest::prelude::*;
 
@@ -32,18 +31,6 @@ fn stored(convention: Depth, z: f64) -> f64 {
     }
 }
 
-/// Distance of a stored value, in conventions that store distances.
-fn stored64(convention: Depth, value: f32) -> f64 {
-    match convention {
-        Depth::Orthographic { near, far } => f64::from(near) + f64::from(value.clamp(0.0, 1.0)) * f64::from(far - near),
-        _ => f64::from(value),
-    }
-}
-
-fn invertible(convention: Depth) -> bool {
-    matches!(convention, Depth::Linear | Depth::Orthographic { .. })
-}
-
 fn same(a: f32, b: f32) -> bool {
     depth::same_surface(a, b, 0.02, 0.0)
 }
@@ -62,64 +49,8 @@ fn every_convention_gives_the_disparity() {
     }
 }
 
-#[test]
-fn h41_the_sky_is_the_same_sky_and_never_an_object() {
-    let sky = [
-        (Depth::Linear, f32::INFINITY),
-        (Depth::Linear, 1e38),
-        (Depth::Forward { near: 0.1, far: f32::INFINITY }, 1.0),
-        (Depth::Reversed { near: 0.1, far: f32::INFINITY }, 0.0),
-    ];
-    let mut objects = 0;
-    for (convention, value) in sky {
-        let d = depth::disparity(value, convention.disparity_map());
-        assert_eq!(d, 0.0, "{convention:?}");
-        let stored_disparity = disparity_value(disparity_code(d));
-        assert!(same(d, stored_disparity));
-        for z in [0.1, 1.0, 1e3, 1e6] {
-            let object = depth::disparity(stored(convention, z) as f32, convention.disparity_map());
-            assert!(!same(object, stored_disparity) && !same(d, disparity_value(disparity_code(object))));
-            objects += 1;
-        }
-    }
-    // With a finite far plane the sky is a surface at the far plane: the same as itself.
-    for convention in [Depth::Forward { near: 0.1, far: 1000.0 }, Depth::Orthographic { near: 0.0, far: 10.0 }] {
-        let d = depth::disparity(1.0, convention.disparity_map());
-        assert!(d > 0.0 && same(d, disparity_value(disparity_code(d))));
-    }
-    holds!("H41", Cpu, "sky is disparity 0 exactly in 4 encodings; {objects} objects, 0.1 m to 1000 km, are never it");
-}
-
 proptest! {
     #![proptest_config(afterimage_testing::property("depth", 4000))]
-
-    #[test]
-    fn h42_h47_any_stored_depth_gives_a_finite_disparity_or_none(bits in any::<u32>()) {
-        let value = f32::from_bits(bits);
-        for (name, convention) in CONVENTIONS {
-            let d = depth::disparity(value, convention.disparity_map());
-            prop_assert!(d.is_finite() && (d >= 0.0 || d == depth::INVALID_DISPARITY), "{name}: {value} gives {d}");
-            let positive = stored64(convention, value) > 0.0;
-            let expect_none = value.is_nan() || (invertible(convention) && !positive);
-            prop_assert!(!expect_none || d < 0.0, "{name}: {value} gives {d}");
-            let back = disparity_value(disparity_code(d));
-            prop_assert!(back.is_finite());
-            if d < 0.0 {
-                prop_assert!(!same(d, d) && !same(1.0, d), "an unknown surface is never the same");
-            }
-        }
-    }
-
-    #[test]
-    fn h43_storage_neither_rejects_nor_accepts_for_ever(z in 1e-3f32..1e5) {
-        let d = depth::disparity(z, Depth::Linear.disparity_map());
-        let stored_disparity = disparity_value(disparity_code(d));
-        prop_assert!(same(d, stored_disparity), "the stored surface is recognised at every distance");
-        for factor in [0.97_f32, 1.03] {
-            let other = depth::disparity(z * factor, Depth::Linear.disparity_map());
-            prop_assert!(!same(other, stored_disparity), "3 % is another surface at every distance");
-        }
-    }
 
     #[test]
     fn h45_a_dolly_is_predicted(z in 1.5f32..100., rx in -0.9f32..0.9, ry in -0.6f32..0.6, step in -1f32..1.) {
@@ -139,25 +70,6 @@ proptest! {
             prop_assert!(!same(now, 1.0 / (z + step)));
         }
     }
-}
-
-#[test]
-fn h45_a_metre_towards_a_wall_is_predicted_to_rounding() {
-    let (mut worst, mut unpredicted) = (0.0_f64, 0);
-    for i in 0..10_000 {
-        let z = 1.5 + 100.0 * f64::from(i) / 1e4;
-        let expected = depth::previous_disparity((1.0 / z) as f32, 1.0, 1.0);
-        worst = worst.max((f64::from(expected) * (z + 1.0) - 1.0).abs());
-        let before = disparity_value(disparity_code((1.0 / (z + 1.0)) as f32));
-        assert!(same(expected, before));
-        unpredicted += usize::from(!same((1.0 / z) as f32, before));
-    }
-    assert!(worst < 1e-6 && unpredicted > 4_000);
-    holds!(
-        "H45",
-        Cpu,
-        "1.5 to 101 m, 1 m nearer: off by {worst:.1e}, none rejected; {unpredicted} of 10000 unpredicted"
-    );
 }
 
 #[test]
@@ -215,36 +127,6 @@ fn h43_half_float_depth_neither_rejects_nor_accepts_for_ever() {
 }
 
 #[test]
-fn h44_a_grazing_plane_is_never_rejected_under_jitter() {
-    // A plane at up to 89.9 degrees between its normal and the view's axis, rolled any way: disparity is linear over
-    // pixels. The depth sample moves by up to half a pixel from frame to frame, and reprojection rounds by up to half a
-    // pixel, along both axes.
-    let mut draws = Draws::new("grazing");
-    let focal_px = 1000.0_f32;
-    let (mut seen, mut without_slope) = (0, 0);
-    for angle_deg in [0.0_f32, 60.0, 85.0, 89.0, 89.9] {
-        for _ in 0..20_000 {
-            let (roll, m) = (draws.range(0.0, std::f32::consts::TAU), draws.range(0.1, 100.0));
-            let per_px = [roll.cos(), roll.sin()].map(|v| v * angle_deg.to_radians().tan() / focal_px);
-            let d = |x: f32, y: f32| ((1.0 + per_px[0] * x + per_px[1] * y) / m).max(0.0);
-            let [x, y] = [draws.range(-400.0, 400.0), draws.range(-400.0, 400.0)];
-            // Up to the horizon: where the pixels around are sky, it is a silhouette.
-            let around = [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]];
-            if around.iter().any(|[i, j]| d(x + i, y + j) <= 0.0) {
-                continue;
-            }
-            seen += 1;
-            let slope = depth::slope(1, 1, [3, 3], |i, j| d(x + i as f32 - 1.0, y + j as f32 - 1.0));
-            let before = disparity_value(disparity_code(d(x + draws.range(-1.0, 1.0), y + draws.range(-1.0, 1.0))));
-            assert!(depth::same_surface(d(x, y), before, 0.02, slope), "{angle_deg} degrees at ({x}, {y})");
-            without_slope += usize::from(!depth::same_surface(d(x, y), before, 0.02, 0.0));
-        }
-    }
-    assert!(seen > 50_000 && without_slope > 1_000, "{seen}; the planted error, no slope, rejects {without_slope}");
-    holds!("H44", Cpu, "{seen} jittered samples at 0 to 89.9 degrees: none rejected ({without_slope} without slope)");
-}
-
-#[test]
 fn a_silhouette_is_not_slope() {
     // Object (disparity 1) left of background (0.1): on both sides the slope along x is 0.
     let step = |x: u32, _: u32| if x < 4 { 1.0 } else { 0.1 };
@@ -256,45 +138,6 @@ fn a_silhouette_is_not_slope() {
     // Invalid neighbours and borders are ignored.
     assert_eq!(depth::slope(0, 0, [1, 1], |_, _| 0.5), 0.0);
     assert_eq!(depth::slope(1, 0, [3, 1], |x, _| if x == 1 { 0.5 } else { -1.0 }), 0.0);
-}
-
-#[test]
-fn h48_moving_planes_do_not_change_the_disparity() {
-    let mut worst = 0.0_f32;
-    for z in [0.5, 3.0, 40.0, 300.0, 900.0] {
-        let a = Depth::Reversed { near: 0.1, far: 1000.0 };
-        let b = Depth::Reversed { near: 0.3, far: 5000.0 };
-        let read = |c: Depth| depth::disparity(stored(c, z) as f32, c.disparity_map());
-        worst = worst.max((read(a) / read(b) - 1.0).abs());
-        assert!(same(read(a), disparity_value(disparity_code(read(b)))));
-        // The planted error: the other frame's planes.
-        assert!(!same(depth::disparity(stored(a, z) as f32, b.disparity_map()), read(a)));
-    }
-    assert!(worst < 1e-3);
-    holds!("H48", Cpu, "near 0.1 to 0.3 m, far 1 to 5 km: disparities differ by {worst:.1e} of themselves at the most");
-}
-
-#[test]
-fn h49_orthographic_depth_is_a_distance() {
-    let mut worst = 0.0_f64;
-    for (near, far) in [(0.5, 1000.0), (-10.0, 1000.0), (0.0, 100.0)] {
-        let convention = Depth::Orthographic { near, far };
-        for i in 1..=1000 {
-            let z = f64::from(far) * f64::from(i) / 1000.0;
-            let value = stored(convention, z) as f32;
-            let got = f64::from(depth::disparity(value, convention.disparity_map()));
-            // Distances between near and far that rounding merges with them.
-            worst = worst.max((got * stored64(convention, value) - 1.0).abs());
-        }
-        // The planted error: read as a perspective buffer of the same planes.
-        if near > 0.0 {
-            let wrong = Depth::Forward { near, far };
-            let z = 100.0;
-            assert!(!same(1.0 / 100.0, depth::disparity(stored(convention, z) as f32, wrong.disparity_map())));
-        }
-    }
-    assert!(worst < 1e-4, "{worst}");
-    holds!("H49", Cpu, "1 / (near + d (far - near)), off by {worst:.1e} of it at the most over 3000 distances");
 }
 
 #[test]

@@ -1,21 +1,11 @@
 //! Jitter from a jittered projection, and the signs that engines' own numbers have.
 
+use super::geometry::off_axis;
 use afterimage::{Gaze, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
-use glam::{Mat4, Vec3, Vec4};
+use glam::{Mat4, Vec3};
 
 const SIZE: [u32; 2] = [1600, 900];
-
-/// Projection from tangents at the edges, y up.
-fn projection([left, right]: [f32; 2], [down, up]: [f32; 2]) -> Mat4 {
-    let (width, height) = (right - left, up - down);
-    Mat4::from_cols(
-        Vec4::new(2.0 / width, 0.0, 0.0, 0.0),
-        Vec4::new(0.0, 2.0 / height, 0.0, 0.0),
-        Vec4::new((right + left) / width, (up + down) / height, 0.0, -1.0),
-        Vec4::new(0.0, 0.0, 0.05, 0.0),
-    )
-}
 
 fn view(clip_from_view: Mat4) -> ViewFrame {
     let geometry = ViewGeometry::from_projection(SIZE, clip_from_view.to_cols_array_2d()).unwrap();
@@ -57,7 +47,7 @@ fn a_jittered_projection_has_the_jitter_that_it_draws_with() {
     for i in 0..400 {
         let (engine, jitters, signs) = RECIPES[i % RECIPES.len()];
         let mut tangent = || draws.range(0.4, 1.4);
-        let plain = projection([-tangent(), tangent()], [-tangent(), tangent()]);
+        let plain = off_axis([-tangent(), tangent()], [-tangent(), tangent()]);
         let own = [draws.range(-0.5, 0.5), draws.range(-0.5, 0.5)];
         let jittered = jitters(plain, own);
         let found = view(plain).jittered(jittered.to_cols_array_2d()).unwrap().jitter_px;
@@ -76,9 +66,9 @@ fn a_jittered_projection_has_the_jitter_that_it_draws_with() {
 
 #[test]
 fn what_is_no_jitter_is_refused() {
-    let plain = projection([-1.0, 1.0], [-0.6, 0.6]);
-    let wider = projection([-1.1, 1.1], [-0.6, 0.6]);
-    let other_eye = projection([-1.2, 0.8], [-0.6, 0.6]);
+    let plain = off_axis([-1.0, 1.0], [-0.6, 0.6]);
+    let wider = off_axis([-1.1, 1.1], [-0.6, 0.6]);
+    let other_eye = off_axis([-1.2, 0.8], [-0.6, 0.6]);
     for (matrix, setting) in [
         (wider, "jittered_clip_from_view"),
         (other_eye, "jittered_clip_from_view"),

@@ -3,7 +3,7 @@
 use afterimage::kernel::lattice::*;
 use afterimage::{Foveation, Lattice, Lattices, ViewGeometry};
 use afterimage_testing::Draws;
-use glam::{Vec2, Vec4};
+use glam::Vec2;
 use std::collections::HashSet;
 
 #[test]
@@ -77,53 +77,6 @@ fn the_largest_atlas_holds_every_gaze_and_is_not_much_larger() {
             // Lattices of different gazes are largest, and some pixels are for what lies between the gazes tried.
             let slack = [0, 1].map(|i| bound[i] as f32 - 1.2 * largest[i] as f32);
             assert!(slack.iter().all(|&v| v <= 6.0), "{bound:?} where {largest:?} were used");
-        }
-    }
-}
-
-#[test]
-fn a_pixel_lies_between_its_samples() {
-    for level in 0..=8 {
-        let step = 1 << level;
-        for (first, count) in [(0, 1), (step - 1, 1), (3 * step, 2), (step / 2, 5), (7 * step + step / 3, 40)] {
-            let low = first - first % step;
-            for px in low..low + count * step {
-                let b = between(px, first, level, count);
-                assert!((0.0..1.0).contains(&b.fraction));
-                assert!(b.points[0] <= b.points[1] && b.points[1] < count);
-                let at = |point: u32| (first + step * point) as f32;
-                let is_inside = px >= first && px <= first + step * (count - 1);
-                assert_eq!(b.fraction == 0.0, is_inside && (px - first).is_multiple_of(step), "pixel {px}");
-                if b.points[0] < b.points[1] {
-                    assert_eq!(at(b.points[0]) + b.fraction * step as f32, px as f32);
-                } else if is_inside {
-                    assert_eq!(at(b.points[0]), px as f32);
-                } else {
-                    assert_eq!(b.points[0], if px < first { 0 } else { count - 1 });
-                }
-            }
-        }
-    }
-}
-
-#[test]
-fn a_mean_leaves_out_what_is_not_usable() {
-    let one = |v: f32| Vec4::splat(v);
-    for level in 0..=8 {
-        let step = 1 << level;
-        for px in 0..step * step {
-            let [x, y] = [px % step, px / step].map(|v| v as f32 / step as f32);
-            let weight = |tap: u32| point_weight(x, tap & 1) * point_weight(y, tap >> 1);
-            let of = |usable: [bool; 4]| {
-                let taps = (0..4).zip(usable);
-                let mean =
-                    taps.fold(SampleMean::default(), |mean, (tap, ok)| add_sample(mean, one(2.0), ok, weight(tap)));
-                (mean.weight, sample_mean(mean))
-            };
-            assert_eq!(of([true; 4]), (1.0, one(2.0)), "weights are exact");
-            assert_eq!(of([false; 4]), (0.0, one(0.0)));
-            let (weight, mean) = of([false, true, true, false]);
-            assert!(weight == 0.0 || (mean.x - 2.0).abs() < 1e-6, "a mean of {mean} for a weight of {weight}");
         }
     }
 }

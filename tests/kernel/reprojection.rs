@@ -1,10 +1,9 @@
-//! Previous positions of pixels: hard cases H51, H54, H55 and H57 on the reprojection kernel.
+//! Previous positions of pixels: hard cases H54, H55 and H57 on the reprojection kernel.
 
 use afterimage::Verdict;
 use afterimage::kernel::pack::{half_bits, half_value};
 use afterimage::kernel::reproject;
 use afterimage_testing::holds;
-use proptest::prelude::*;
 
 #[test]
 fn h57_the_border_is_where_it_should_be() {
@@ -27,31 +26,6 @@ fn h57_the_border_is_where_it_should_be() {
         Cpu,
         "last centre accepted; 0.01 px before the edge accepted, 0.01 px beyond it rejected, all borders"
     );
-}
-
-proptest! {
-    #![proptest_config(afterimage_testing::property("reproject", 4000))]
-
-    #[test]
-    fn h54_any_motion_is_inside_or_refused(x in 0u32..3840, y in 0u32..2160, mx in any::<u32>(), my in any::<u32>()) {
-        let motion = [f32::from_bits(mx), f32::from_bits(my)];
-        match reproject::nearest(x, y, motion, [3840, 2160]) {
-            Ok([qx, qy]) => {
-                prop_assert!(qx < 3840 && qy < 2160);
-                prop_assert!((f64::from(qx) - f64::from(x) - f64::from(motion[0])).abs() <= 0.5 + 1e-3);
-                prop_assert!((f64::from(qy) - f64::from(y) - f64::from(motion[1])).abs() <= 0.5 + 1e-3);
-            }
-            Err(verdict) => {
-                let garbage = motion.iter().any(|m| !m.is_finite() || m.abs() > reproject::MAX_MOTION_PX);
-                prop_assert_eq!(verdict == Verdict::BadMotion, garbage);
-            }
-        }
-    }
-
-    #[test]
-    fn h51_no_motion_is_the_identity(x in 0u32..16384, y in 0u32..16384) {
-        prop_assert_eq!(reproject::nearest(x, y, [0.0, -0.0], [16384, 16384]), Ok([x, y]));
-    }
 }
 
 #[test]

@@ -2,11 +2,6 @@
 
 use afterimage_testing::Draws;
 
-/// Length of a stretch, in frames.
-const STRETCH: u64 = 100;
-/// One of so many stretches has no events.
-const QUIET: u64 = 4;
-
 /// Events before or in a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Event {
@@ -19,8 +14,6 @@ pub struct Event {
     pub is_lost: bool,
     /// The frame has depth and motion inputs, with arbitrary values.
     pub moves: bool,
-    /// First frame of a stretch without events.
-    pub begins_quiet: bool,
 }
 
 /// State of a stream: picture, gaze and exposure.
@@ -30,7 +23,6 @@ pub struct StreamState {
     pub picture: u32,
     pub gaze: u32,
     pub exposure: f32,
-    pub is_quiet: bool,
 }
 
 /// An endless stream.
@@ -42,7 +34,7 @@ pub struct Stream {
 
 impl Stream {
     pub fn new(name: &str, full: [u32; 2]) -> Self {
-        let state = StreamState { frame: 0, picture: 0, gaze: 0, exposure: 1.0, is_quiet: false };
+        let state = StreamState { frame: 0, picture: 0, gaze: 0, exposure: 1.0 };
         Self { draws: Draws::new(name), full, state }
     }
 
@@ -51,16 +43,7 @@ impl Stream {
     }
 
     pub fn next(&mut self) -> Event {
-        let frame = self.state.frame;
         self.state.frame += 1;
-        let is_quiet = frame / STRETCH % QUIET == QUIET - 1;
-        self.state.is_quiet = is_quiet;
-        if is_quiet {
-            let begins_quiet = frame.is_multiple_of(STRETCH);
-            // After a factor colors are no exact halves, and would differ from their stored values.
-            self.state.exposure = 1.0;
-            return Event { reset: begins_quiet, begins_quiet, ..Event::default() };
-        }
         let mut one_in = |n: u32| self.draws.bits().is_multiple_of(n);
         let mut event = Event {
             reset: one_in(60),
@@ -74,7 +57,7 @@ impl Stream {
             let [w, h] = self.full;
             let sizes = [[w, h], [w, h], [w - 1, h + 1], [w / 2, h / 2], [(w / 3) | 1, (h / 3) | 1], [1, 1], [7, 2]];
             event.size = Some(sizes[self.draws.bits() as usize % sizes.len()]);
-        } else if (frame + 1).is_multiple_of(STRETCH) {
+        } else if self.state.frame.is_multiple_of(100) {
             event.size = Some(self.full);
         }
         if steps {

@@ -44,7 +44,6 @@ pub fn thin_lines(make: Make) -> Option<String> {
             least = least.min(psnr(errors[0]) - psnr(errors[1]));
         }
         let gain = psnr(sums[0]) - psnr(sums[1]);
-        println!("{speed_px:?}: {gain:.2} dB, at least {least:.2}");
         assert!(gain > 0.0 && least > -0.3, "{speed_px:?}: {gain:.2} dB, at least {least:.2}");
         figures.push(format!("{gain:+.1} ({least:+.1} at least)"));
     }
@@ -64,43 +63,40 @@ pub fn sparkles(make: Make) -> Option<String> {
     let highest = 0.8;
     let mut figures = vec![];
     // In the first turn, when history is coarse, and after it, when confidence in history is high.
-    for from in [0, TURN] {
+    for (from, light) in [(0, 2.0), (TURN, 65504.0)] {
         let bright = (from..).find(|&index| shot(clean.clone(), index).lattices().at(at).unwrap().samples(at))?;
-        for light in [2.0, 65504.0] {
-            let (mut frames, mut area, mut above) = (0, 0, 0.0_f32);
-            let (mut post, mut without) = (make(smr(SIZE))?, make(smr(SIZE))?);
-            for index in 0..bright + 2 * TURN {
-                let sparkle = Image::from_fn(SIZE, |px| {
-                    let c = pixel(&clean, px);
-                    if index == bright && px == at { [light; 3] } else { c }
-                });
-                let input = shot(sparkle, index);
-                let shown = post.one(index, &input);
-                let expected = without.one(index, &shot(clean.clone(), index));
-                assert_finite(&shown, "sparkle");
-                let most = shown.pixels().iter().flatten().fold(0.0_f32, |m, &v| m.max(v));
-                let rounding = 1.0 + 1.0 / 511.0;
-                // A gain lifts history above the samples by a quarter of their range at the most.
-                assert!(most <= 1.25 * light * rounding, "{most} exceeds the input {light}");
-                if index == bright {
-                    above = above.max(most / light);
-                }
-                assert!(index >= bright || shown == expected);
-                // Pixels that are visibly brighter than without.
-                let lit = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).any(|c| a[c] > b[c] + 0.02);
-                let lit = shown.pixels().iter().zip(expected.pixels()).filter(|&pair| lit(pair)).count();
-                if index > bright && lit > 0 {
-                    frames = frames.max(index - bright);
-                    area = area.max(lit);
-                }
-                if index >= bright + TURN {
-                    assert_eq!(lit, 0, "{light} in frame {bright}: seen {} frames later", index - bright);
-                    assert!(most <= highest * rounding, "{most}");
-                }
+        let (mut frames, mut area, mut above) = (0, 0, 0.0_f32);
+        let (mut post, mut without) = (make(smr(SIZE))?, make(smr(SIZE))?);
+        for index in 0..bright + 2 * TURN {
+            let sparkle = Image::from_fn(SIZE, |px| {
+                let c = pixel(&clean, px);
+                if index == bright && px == at { [light; 3] } else { c }
+            });
+            let input = shot(sparkle, index);
+            let shown = post.one(index, &input);
+            let expected = without.one(index, &shot(clean.clone(), index));
+            assert_finite(&shown, "sparkle");
+            let most = shown.pixels().iter().flatten().fold(0.0_f32, |m, &v| m.max(v));
+            let rounding = 1.0 + 1.0 / 511.0;
+            // A gain lifts history above the samples by a quarter of their range at the most.
+            assert!(most <= 1.25 * light * rounding, "{most} exceeds the input {light}");
+            if index == bright {
+                above = above.max(most / light);
             }
-            println!("{light} in frame {bright}: {frames} frames, {area} pixels, {above:.3} of the input");
-            figures.push(format!("{light} in frame {bright}: {frames} frames, {area} px, {above:.2} of its light"));
+            assert!(index >= bright || shown == expected);
+            // Pixels that are visibly brighter than without.
+            let lit = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).any(|c| a[c] > b[c] + 0.02);
+            let lit = shown.pixels().iter().zip(expected.pixels()).filter(|&pair| lit(pair)).count();
+            if index > bright && lit > 0 {
+                frames = frames.max(index - bright);
+                area = area.max(lit);
+            }
+            if index >= bright + TURN {
+                assert_eq!(lit, 0, "{light} in frame {bright}: seen {} frames later", index - bright);
+                assert!(most <= highest * rounding, "{most}");
+            }
         }
+        figures.push(format!("{light} in frame {bright}: {frames} frames, {area} px, {above:.2} of its light"));
     }
     Some(format!(
         "trail beside 0.8, its largest area, and the most light shown: {}; all gone when its pixel is sampled again",
@@ -130,7 +126,6 @@ pub fn fast_motion(make: Make) -> Option<String> {
             least = least.min(psnr(errors[0]) - psnr(errors[1]));
         }
         let gain = psnr(sums[0]) - psnr(sums[1]);
-        println!("{name}: {gain:.2} dB, at least {least:.2}");
         if has_vectors {
             // Positions are rounded to 1/24 pixel, which is why a frame may be a little worse.
             assert!(gain > -0.05 && least > -0.1, "{name}: {gain:.2} dB, at least {least:.2}");
@@ -197,7 +192,6 @@ pub fn silhouettes(make: Make) -> Option<String> {
         }
     }
     let [edges, inside] = sums.map(|sums| sums.map(psnr));
-    println!("full geometry, at samples, foveated: at silhouettes {edges:.2?}, elsewhere {inside:.2?}");
     assert!(edges[1] > edges[2], "worse than the foveated frame at silhouettes: {edges:?}");
     assert!(inside[1] > inside[2], "{inside:?}");
     Some(format!(

@@ -11,35 +11,28 @@ pub fn invalid_samples(make: Make) -> Option<String> {
     let holed = |value: f32| Image::from_fn(SIZE, |px| if px == at { [value; 3] } else { pixel(&full, px) });
     let mut reach = 0;
     let mut after = 0;
-    for from in [0, TURN] {
+    for (from, value) in [(0, f32::NAN), (0, f32::NEG_INFINITY), (TURN, f32::NAN), (TURN, f32::INFINITY)] {
         let bad = (from..).find(|&index| shot(full.clone(), index).lattices().at(at).unwrap().samples(at))?;
-        for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-            let (mut post, mut clean) = (make(smr(SIZE))?, make(smr(SIZE))?);
-            for index in 0..bad + 2 * TURN {
-                let color = if index == bad { holed(value) } else { full.clone() };
-                let (shown, expected) =
-                    (post.one(index, &shot(color, index)), clean.one(index, &shot(full.clone(), index)));
-                assert_finite(&shown, "a sample that is NaN");
-                // Pixels that the sample is interpolated for: nearer than a step.
-                let apart = |px: [u32; 2]| (0..2).map(|i| px[i].abs_diff(at[i])).max().unwrap();
-                let differs = |&px: &[u32; 2]| pixel(&shown, px) != pixel(&expected, px);
-                let farthest = pixels().filter(differs).map(apart).max();
-                if index == bad {
-                    reach = reach.max(farthest.unwrap_or(0));
-                } else if let Some(far) = farthest {
-                    after = after.max(far);
-                }
-                if index >= (bad + TURN) || from == TURN && index >= TURN {
-                    assert_eq!(
-                        wrong(&shown, &full, everywhere),
-                        0,
-                        "frame {index}: complete history, or sampled again"
-                    );
-                }
+        let (mut post, mut clean) = (make(smr(SIZE))?, make(smr(SIZE))?);
+        for index in 0..bad + TURN + 4 {
+            let color = if index == bad { holed(value) } else { full.clone() };
+            let (shown, expected) =
+                (post.one(index, &shot(color, index)), clean.one(index, &shot(full.clone(), index)));
+            assert_finite(&shown, "a sample that is NaN");
+            // Pixels that the sample is interpolated for: nearer than a step.
+            let apart = |px: [u32; 2]| (0..2).map(|i| px[i].abs_diff(at[i])).max().unwrap();
+            let differs = |&px: &[u32; 2]| pixel(&shown, px) != pixel(&expected, px);
+            let farthest = pixels().filter(differs).map(apart).max();
+            if index == bad {
+                reach = reach.max(farthest.unwrap_or(0));
+            } else if let Some(far) = farthest {
+                after = after.max(far);
+            }
+            if index >= (bad + TURN) || from == TURN && index >= TURN {
+                assert_eq!(wrong(&shown, &full, everywhere), 0, "frame {index}: complete history, or sampled again");
             }
         }
     }
-    println!("reach {reach}, after {after}");
     // Interpolation reaches a step, and estimates of light a step further.
     assert!(reach < 8 && after < 8, "pixels {reach} and {after} px away are changed by an invalid sample");
     // The only sample of a view.
@@ -89,7 +82,6 @@ pub fn light_trust_views_gaze_and_foveation(make: Make) -> Option<String> {
         }
         index += 1;
     }
-    println!("exposure: off by {off} of the largest channel");
     // A gain follows where rounding to 9 bits exceeds its expected error, as it does in bright light.
     assert!(off < 0.01, "{off}: detail is lost");
     // A trust of 0 gives the same output as a reset. It does not change other pixels.
@@ -108,7 +100,6 @@ pub fn light_trust_views_gaze_and_foveation(make: Make) -> Option<String> {
     assert_eq!(squared_error(&shown, &fresh, is_distrusted), 0.0, "no trust: the candidate");
     let trusted = squared_error(&shown, &other, |px| !is_distrusted(px));
     let history = squared_error(&other, &fresh, |px| !is_distrusted(px));
-    println!("trusted pixels differ by {trusted:.3e}, history is worth {history:.3e}");
     assert!(trusted < 0.1 * history, "fewer samples are compared, no more");
     // Two views do not affect each other.
     let both = ContextDesc { view_count: 2, ..smr(SIZE) };
@@ -144,7 +135,6 @@ pub fn light_trust_views_gaze_and_foveation(make: Make) -> Option<String> {
         gain = gain.min(errors[0] - errors[1]);
         mean += (errors[0] - errors[1]) / (3 * TURN) as f64;
     }
-    println!("foveation in each frame: {gain:.3} dB");
     assert!(gain > -0.01, "{gain:.3} dB against the foveated frame");
     Some(format!(
         "exposure x256, /256, x4, /4 declared: detail kept within {off:.4}; trust 0: the candidate; two views, and any gaze: bit for bit as alone; {} foveations: {mean:+.1} dB against foveated, never below",

@@ -33,7 +33,6 @@ pub fn starved_positions(make: Make) -> Option<String> {
             gains[1] = gains[1].min(gain(&everywhere));
         }
     }
-    println!("{count} starved: {gains:?}");
     assert!(gains[0] > 0.0 && gains[1] > 0.0, "worse than the foveated frame: {gains:?} dB");
     Some(format!(
         "{count} of {} pixels never sampled in {FRAMES} frames: there at least {:+.1} dB against the foveated frame, all others exact",
@@ -161,7 +160,6 @@ pub fn borders(make: Make) -> Option<String> {
         }
     }
     let [seam, _, far, _] = sums;
-    println!("least {least:.2} dB at borders; squared error there over the periphery's {:.3}", seam / far);
     assert!(least > 0.0, "{least:.2} dB at borders");
     // At a seam, the error would exceed the error of the coarser side.
     assert!(seam < far, "{seam} at borders, {far} in the periphery");

@@ -94,25 +94,3 @@ fn h76_empty_and_huge_sizes_are_refused_and_a_pixel_is_enough() {
     assert_eq!(one(&mut post, 1, &input).0, input.color);
     holds!("H76", Cpu, "0x0, 0x5, 5x0 and 2^20 x 1 are refused, the context stays as it was; 1x1 works");
 }
-
-#[test]
-fn memory_is_what_the_documentation_says() {
-    let pixels = 64 * 48;
-    assert_eq!(context(Settings::paper()).memory_bytes(), 24 * pixels);
-    assert_eq!(context(wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() })).memory_bytes(), 32 * pixels);
-    let stereo = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
-    assert_eq!(
-        CpuAfterimage::new(&ContextDesc { settings: Settings::paper(), ..stereo }).unwrap().memory_bytes(),
-        48 * pixels
-    );
-}
-
-#[test]
-fn method_none_shows_the_frame_and_forgets() {
-    let mut post = context(Settings { method: Method::None, ..Settings::paper() });
-    let mut color = noise(SIZE, "none");
-    color.pixels_mut()[3] = [f32::NAN, 1.0, 1.0];
-    let (out, stats, _) = one(&mut post, 0, &still(color.clone()));
-    assert_eq!((out.pixels()[3], stats.nonfinite, out.pixels()[4]), ([0.0; 3], 1, color.pixels()[4]));
-    assert!(!post.history().is_filled());
-}

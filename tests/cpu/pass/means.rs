@@ -1,8 +1,7 @@
 //! Antialiasing of jittered sparse frames: laws of the means that history stores.
 
 use super::*;
-use afterimage::kernel::antialias::{MOST_SAMPLES, mean_of};
-use afterimage::kernel::kept::unpack_kept;
+use afterimage::kernel::antialias::MOST_SAMPLES;
 use afterimage::{Filter, Foveation, Lattice, Lattices, Smr};
 
 const SMALL: [u32; 2] = [32, 24];
@@ -51,11 +50,8 @@ fn box_means() -> Vec<([f64; 3], f64)> {
 }
 
 fn antialiased() -> CpuAfterimage {
-    context_of(Method::Smr(Smr { antialias: true, ..Smr::default() }))
-}
-
-fn context_of(method: Method) -> CpuAfterimage {
     let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..Foveation::default() };
+    let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
     let settings = Settings { method, foveation, ..Settings::default() };
     CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SMALL) }).unwrap()
 }
@@ -79,7 +75,7 @@ fn mse(shown: &Color, means: &[([f64; 3], f64)], light: f64) -> f64 {
 fn the_mean_of_a_still_is_the_mean_over_the_pixel_within_its_statistics() {
     let means = box_means();
     let variance = variance_of(&means);
-    for (step, frames, samples) in [(1, 60, MOST_SAMPLES), (2, 240, MOST_SAMPLES), (4, 960, 8.0)] {
+    for (step, frames, samples) in [(1, 60, MOST_SAMPLES), (2, 240, MOST_SAMPLES), (4, 480, 8.0)] {
         let mut post = antialiased();
         let shown = (0..frames).map(|index| show(&mut post, index, step, 1.0)).last().unwrap();
         let error = mse(&shown, &means, 1.0);
@@ -97,30 +93,15 @@ fn variance_of(means: &[([f64; 3], f64)]) -> f64 {
 }
 
 #[test]
-fn samples_are_counted() {
-    let mut post = antialiased();
-    // Later, places that are off by a stored step limit the number.
-    for index in 0..25 {
-        show(&mut post, index, 1, 1.0);
-        let counts: Vec<f32> =
-            post.history().surfaces().iter().map(|&words| mean_of(unpack_kept(words).lod).samples).collect();
-        let expected = (index as f32 + 1.0).min(MOST_SAMPLES);
-        let counted = counts.iter().filter(|&&n| n == expected).count();
-        // Clips where detail is hardest shorten some.
-        assert!(2 * counted > counts.len() && counts.iter().all(|&n| n <= expected), "frame {index}: {counted}");
-    }
-}
-
-#[test]
-fn a_still_does_not_drift_over_ten_thousand_frames() {
+fn a_still_does_not_drift_over_two_thousand_frames() {
     let mut post = antialiased();
     let mut sums = [[0.0; 3]; 2];
-    for index in 0..10_000 {
+    for index in 0..2_000 {
         let shown = show(&mut post, index, 1, 1.0);
         // Whole periods of the jitter.
         let part = match index {
             100..325 => 0,
-            9_775..10_000 => 1,
+            1_775..2_000 => 1,
             _ => continue,
         };
         for c in shown.pixels() {
@@ -128,7 +109,7 @@ fn a_still_does_not_drift_over_ten_thousand_frames() {
         }
     }
     let drift = [0, 1, 2].map(|i| sums[1][i] - sums[0][i]);
-    println!("drift over 10,000 frames: {drift:?}");
+    println!("drift over 2,000 frames: {drift:?}");
     assert!(drift.iter().all(|d| d.abs() < 5e-4), "{drift:?}");
 }
 
@@ -169,7 +150,7 @@ fn a_silhouette_is_a_mean_of_both_surfaces() {
             let view = frame(index, step, jitter_px, |at| if nearer(at) { [0.8; 3] } else { picture(at) });
             View { depth: Some(depth), ..view }
         };
-        let frames = 0..u64::from(60 * step * step);
+        let frames = 0..u64::from(240 * step / 2);
         let shown = frames.map(|index| one(&mut post, index, &frame(index)).0).last().unwrap();
         let (mut error, mut variance, mut edge) = (0.0, 0.0, 0);
         for (i, shown) in shown.pixels().iter().enumerate() {
@@ -216,17 +197,17 @@ impl Gliding {
     }
 }
 
-/// Share of the contrast of bars that a method shows: the slope of the shown values over the means over the pixels, 2.5
+/// Share of the contrast of bars that is shown: the slope of the shown values over the means over the pixels, 2.5
 /// to 6.5 pixels from the edge and farther away, each on the nearer surface and on the other one.
-fn shown_contrast(method: Method, step: u32, velocity_px: [f32; 2]) -> [[f64; 2]; 2] {
-    let (mut post, points) = (context_of(method), points(8));
+fn shown_contrast(velocity_px: [f32; 2]) -> [[f64; 2]; 2] {
+    let (mut post, points) = (antialiased(), points(8));
     let mut sums = [[[0.0; 5]; 2]; 2];
     for index in 0..80 {
         let now = Gliding::at(index, velocity_px);
         let view = View {
             depth: Some(sampled([0.0; 2], |at| [2.0, 5.0][now.surface(at)])),
             motion: Some(sampled([0.0; 2], |at| [-now.velocity_px[now.surface(at)], 0.0])),
-            ..frame(index, step, Foveation::jitter_px(index + 1), |at| now.color(at))
+            ..frame(index, 1, Foveation::jitter_px(index + 1), |at| now.color(at))
         };
         let out = one(&mut post, index, &view).0;
         for (i, shown) in out.pixels().iter().enumerate().filter(|_| index >= 40) {
@@ -247,22 +228,13 @@ fn shown_contrast(method: Method, step: u32, velocity_px: [f32; 2]) -> [[f64; 2]
     sums.map(|sums| sums.map(|[n, x, y, xx, xy]| (n * xy - x * y) / (n * xx - x * x)))
 }
 
-/// At full rate, bars beside an edge show as much contrast as bars elsewhere, within a tenth. The figures of temporal
-/// antialiasing, and of a lattice of step 2, are printed for comparison.
+/// At full rate, bars beside an edge show as much contrast as bars elsewhere, within a tenth.
 #[test]
 fn bars_beside_an_edge_are_not_softer_than_elsewhere() {
-    let smr = Method::Smr(Smr { antialias: true, ..Smr::default() });
     for velocity_px in [[0.3, 0.1], [-0.3, 0.1]] {
-        let rows = [("taa", Method::Taa, 1), ("smr", smr, 1), ("smr", smr, 2)];
-        for (name, method, step) in rows {
-            let [beside, elsewhere] = shown_contrast(method, step, velocity_px);
-            println!(
-                "{velocity_px:?} px a frame: {name}, step {step}: {beside:.2?} of the contrast beside the edge, \
-                 {elsewhere:.2?} elsewhere"
-            );
-            let sharp = (0..2).all(|k| beside[k] >= 0.9 * elsewhere[k]);
-            assert!(sharp || (name, step) != ("smr", 1), "{velocity_px:?}: {beside:?}, elsewhere {elsewhere:?}");
-        }
+        let [beside, elsewhere] = shown_contrast(velocity_px);
+        let is_sharp = (0..2).all(|k| beside[k] >= 0.9 * elsewhere[k]);
+        assert!(is_sharp, "{velocity_px:?}: {beside:?}, elsewhere {elsewhere:?}");
     }
 }
 
@@ -294,19 +266,4 @@ fn a_moving_silhouette_leaves_no_dots() {
         println!("step {step}: {dots} of {pixels} pixels beside the silhouette are not of the farther surface");
         assert_eq!(dots, 0, "step {step}");
     }
-}
-
-#[test]
-fn an_invalid_sample_stays_in_its_pixel_for_its_frame() {
-    let mut post = antialiased();
-    for index in 0..30 {
-        show(&mut post, index, 1, 1.0);
-    }
-    let mut view = frame(30, 1, Foveation::jitter_px(30), picture);
-    view.color.pixels_mut()[5 * 32 + 7] = [f32::NAN; 3];
-    let out = one(&mut post, 30, &view).0;
-    assert!(out.pixels().iter().flatten().all(|v| v.is_finite()));
-    let means = box_means();
-    let at = |c: usize| (f64::from(out.at(7, 5)[c]) - means[5 * 32 + 7].0[c]).abs();
-    assert!((0..3).all(|c| at(c) < 0.15), "history stands in: {:?}", out.at(7, 5));
 }

@@ -79,17 +79,6 @@ fn samples_that_are_not_finite_are_left_out() {
 }
 
 #[test]
-fn an_atlas_is_read_where_its_lattices_are() {
-    let full = noise(SIZE, "atlas");
-    let lattices = stack([3, 5]);
-    let (atlas, size) = lattices.in_atlas();
-    let packed = View::still(full.clone(), [0.0; 2]).sparse(lattices).in_atlas(size).color;
-    for method in METHODS {
-        assert_eq!(first(method, &packed, atlas), first(method, &full, lattices), "{method:?}");
-    }
-}
-
-#[test]
 fn the_doctor_refuses_lattices() {
     let desc = ContextDesc { settings: settings(MethodKind::Wrs), ..ContextDesc::new(SIZE) };
     let error = afterimage::cpu::Doctor::new(&desc, 0).unwrap_err().to_string();

@@ -69,30 +69,3 @@ fn h18_trust_that_is_no_number_counts_as_none_and_is_counted() {
 fn reactive_masks_are_the_inverse_of_trust() {
     println!("{}", reactive_is_the_inverse_of_trust(&crate::sparse_hard::on_cpu).unwrap());
 }
-
-#[test]
-fn reactive_that_is_no_number_rejects_history_and_is_counted() {
-    let mut post = context(ungated());
-    one(&mut post, 0, &still(noise(SIZE, "a")));
-    sticky(&mut post);
-    let mask = columns(&[f32::NAN, 2.0, 1.0, f32::INFINITY, 0.0, f32::NEG_INFINITY, -1.0, 0.5]);
-    let input = View { reactive: Some(mask), ..still(noise(SIZE, "b")) };
-    let (_, stats, trace) = one(&mut post, 1, &input);
-    let is = |x: usize, verdict| (0..48).all(|y| trace.at(x, y).verdict == verdict);
-    assert!((0..32).all(|x| is(x, Verdict::Distrusted)) && (32..64).all(|x| is(x, Verdict::Valid)));
-    assert_eq!((stats.bad_trust, stats.rejected()), (3 * 8 * 48, 32 * 48));
-}
-
-#[test]
-fn a_frame_with_both_masks_is_refused() {
-    let mut post = context(ungated());
-    let mask = Some(Image::filled(SIZE, 0.5));
-    let input = View { trust: mask.clone(), reactive: mask, ..still(noise(SIZE, "a")) };
-    let error = post.process(&Images::of(&[input.one()]).frame(0), &mut [input.color.clone()]).unwrap_err();
-    let expected = "reactive of view 0 is given: expected None, because trust is given, and is 1 minus this mask";
-    assert_eq!(error.to_string(), expected);
-    let small = Image::filled([3, 3], 0.5);
-    let input = View { trust: None, reactive: Some(small), ..input };
-    let error = post.process(&Images::of(&[input.one()]).frame(0), &mut [input.color.clone()]).unwrap_err();
-    assert!(error.to_string().starts_with("reactive of view 0 is 3x3"), "{error}");
-}

@@ -47,20 +47,6 @@ fn a_still_converges_and_what_moves_is_sharper_than_with_taa() {
     }
 }
 
-#[test]
-fn jittered_frames_of_full_rate_are_put_where_their_samples_lie() {
-    let mut post = context(Settings { method: Method::Taau, ..Settings::default() });
-    let full = waves(0.0, [0.0; 2]);
-    let mut last = 0.0;
-    for index in 0..16_u64 {
-        let jitter_px = [0, 1].map(|i| ((index * [5, 3][i]) % 8) as f32 / 8.0 - 0.4375);
-        let view = View::still(waves(0.0, jitter_px), GAZE).with(|view| view.facts.jitter_px = jitter_px);
-        last = squared_error(&one(&mut post, index, &view).0, &full) / squared_error(&view.color, &full);
-    }
-    println!("squared error {last:.4} of the jittered frame's");
-    assert!(last < 0.3);
-}
-
 /// A grey slanted pattern with hard edges of contrast 3 to 7, point by point.
 fn hard(x: f32, y: f32) -> f32 {
     if (0.9 * x + 0.37 * y).sin() + (0.23 * x - 0.61 * y).cos() > 0.2 { 0.7 } else { 0.3 }

@@ -48,7 +48,6 @@ fn detail_outlives_a_fixation_and_the_next_one_is_fresh() {
     let fovea = ecc_deg.pixels().iter().filter(|e| **e <= 10.0).count();
     let pixels = ecc_deg.pixels().iter().zip(shown.pixels().iter().zip(sharp.pixels()));
     let count = pixels.filter(|(e, (x, y))| fresh(e, x, y)).count();
-    println!("weighted: {kept:.4} from the detail that was seen, {count} of {fovea} pixels of the fovea fresh");
     assert!(kept < 0.02, "{kept}");
     assert!(count * 100 >= fovea * 99, "{count} of {fovea}");
     // The published gate and weights lose the detail. The preset is compared with them.
@@ -59,7 +58,6 @@ fn detail_outlives_a_fixation_and_the_next_one_is_fresh() {
     let dark = foveated(&sharp, RIGHT, 1.0 / 3.0);
     let shown = (36..40).map(|index| one(&mut post, index, &dark).0).last().unwrap();
     let off = difference(&shown, &dark.color, LEFT, 8.0);
-    println!("{off:.4} from the darker frame after four frames");
     assert!(off < 0.05, "{off}");
     // Planted error: no gate.
     let mut ghost = context(Settings { foveation: foveation(), ..wrs(Wrs { gate: None, ..Wrs::weighted() }) });
@@ -92,7 +90,6 @@ fn means_move_by_whole_pixels_bit_for_bit_and_between_pixels_without_drift() {
     };
     let between = error(&shifted(Sampler::AChaoMean, 0.3, 8), 2.4);
     let nearest = error(&shifted(Sampler::AChao, 0.3, 8), 2.4);
-    println!("off by {between} pixels after 8 frames, with nearest pixels by {nearest}");
     assert!(between < 0.15 && nearest > 1.0, "{between} {nearest}");
 }
 

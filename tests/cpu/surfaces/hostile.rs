@@ -1,8 +1,7 @@
 //! NaN, infinity and extreme radiance.
 
 use super::rig::*;
-use crate::any_frame::number;
-use afterimage::{Method, Verdict};
+use afterimage::Verdict;
 use proptest::prelude::*;
 
 const BAD: [f32; 3] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
@@ -76,45 +75,6 @@ proptest! {
 
 proptest! {
     #![proptest_config(afterimage_testing::property("surfaces from garbage", 150))]
-
-    #[test]
-    fn h19_h54_whatever_comes_the_output_is_finite_and_within_halves(name in any::<u64>(), wild in prop::sample::select(vec![0.02f32, 0.3, 1.0]), brightest in prop::sample::select(vec![1.0f32, 70000.0]), blocks in any::<bool>()) {
-        const SMALL: [u32; 2] = [19, 13];
-        for method in METHODS {
-            let mut draws = Draws::new(&format!("{name}"));
-            let mut settings = settings(method);
-            if blocks {
-                settings.foveation.filter = afterimage::Filter::Block;
-            }
-            if let Method::Smr(smr) = &mut settings.method {
-                smr.tolerance = 10.0;
-            }
-            let mut post = context_of(SMALL, settings);
-            for index in 0..6 {
-                let d = &mut draws;
-                let shift = number(d, wild, -3.0, 3.0);
-                let mut input = View {
-                    lod: Some(Image::from_fn(SMALL, |_| number(d, wild, -0.5, 9.0))),
-                    depth: Some(Image::from_fn(SMALL, |_| number(d, wild, 3.0, 3.1))),
-                    motion: Some(Image::from_fn(SMALL, |_| [shift, number(d, wild, -0.2, 0.2)])),
-                    trust: Some(Image::from_fn(SMALL, |_| number(d, wild, 0.5, 1.0))),
-                    ..sharp(Image::from_fn(SMALL, |_| [0; 3].map(|_| number(d, wild, 0.0, brightest))))
-                };
-                input.facts.gaze = Gaze::At { px: [number(d, wild, 0.0, 19.0), 5.0] };
-                let exposure = Exposure::Changed { ratio: d.range(-40.0, 40.0).exp2() };
-                let made = post.make(index, &input, exposure, Reset::None);
-                for &v in made.shown.pixels().iter().flatten() {
-                    prop_assert!(v.abs() <= 65504.0, "{:?} frame {}: {}", method, index, v);
-                }
-                for s in made.surfaces() {
-                    prop_assert!(s.color.is_finite() && s.color.min_element() >= 0.0);
-                }
-                for t in made.trace.pixels() {
-                    prop_assert!((0.0..=1.0).contains(&t.history_share) && (0.0..=1.0).contains(&t.agreement) && t.quality.is_finite());
-                }
-            }
-        }
-    }
 }
 
 #[test]
@@ -128,8 +88,7 @@ fn resampled_and_relit_highlights_stay_within_halves() {
             let input = View { motion: Some(Image::filled(SIZE, [0.5, 0.5])), ..at_lod(bright.clone(), 1.0) };
             let made = step(&mut post, index, &input);
             let brightest = made.shown.pixels().iter().flatten().fold(0.0_f32, |m, &v| m.max(v));
-            println!("{method:?}, frame {index}: at the most {brightest}");
-            assert!(brightest <= 65504.0);
+            assert!(brightest <= 65504.0, "{method:?}, frame {index}: at the most {brightest}");
             assert!(made.trace.pixels().iter().any(|t| t.history_share > 0.0));
         }
     }

@@ -1,7 +1,7 @@
 //! Resets, sizes, views, trust.
 
 use super::rig::*;
-use afterimage::{Filter, Method, Smr, Verdict};
+use afterimage::{Method, Smr, Verdict};
 
 /// Frames of a fading picture, half of it coarse, so that all output depends on earlier frames.
 fn frame(index: u64) -> View {
@@ -40,58 +40,6 @@ fn tunables_change_without_a_loss_of_history() {
 }
 
 #[test]
-fn h76_any_size_down_to_a_pixel_works_and_takes_what_is_documented() {
-    for size in [[1, 1], [1, 17], [17, 1], [2, 3], [33, 31]] {
-        for filter in [Filter::Mip, Filter::Gauss, Filter::Block, Filter::Off] {
-            for method in METHODS {
-                let mut settings = settings(method);
-                settings.foveation.filter = filter;
-                let mut post = context_of(size, settings);
-                for index in 0..3 {
-                    let input = View {
-                        lod: None,
-                        depth: Some(Image::filled(size, 1.0)),
-                        motion: Some(Image::filled(size, [0.25, 0.0])),
-                        ..sharp(noise(size, "sizes"))
-                    };
-                    let made = step(&mut post, index, &input);
-                    assert!(made.shown.pixels().iter().flatten().all(|v| v.is_finite()));
-                    assert!(index > 0 || made.shown == input.color);
-                }
-            }
-        }
-    }
-    // Two words of two frames, and for smr levels 1 to 4 of sixteen bytes a texel of two frames: a quarter, a
-    // sixteenth, ...
-    let bytes = |method| context_of([64, 48], settings(method)).memory_bytes();
-    let texels = 32 * 24 + 16 * 12 + 8 * 6 + 4 * 3;
-    assert_eq!((bytes(MethodKind::Taa), bytes(MethodKind::Smr)), (16 * 64 * 48, 16 * 64 * 48 + 32 * texels));
-}
-
-#[test]
-fn views_know_nothing_of_each_other() {
-    for method in METHODS {
-        let desc = ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) };
-        let fresh = || CpuAfterimage::new(&ContextDesc { settings: settings(method), ..desc }).unwrap();
-        let (mut both, mut swapped) = (fresh(), fresh());
-        let (mut left, mut right) = (context(method), context(method));
-        for index in 0..5 {
-            let a = View::still(frame(index).color, [10.0, 10.0]);
-            let b = View::still(noise(SIZE, &format!("other eye {index}")), [40.0, 30.0]);
-            let (alone_a, alone_b) = (step(&mut left, index, &a), step(&mut right, index, &b));
-            for (made, expected) in [
-                (step_views(&mut both, index, &[&a, &b]), [&alone_a, &alone_b]),
-                (step_views(&mut swapped, index, &[&b, &a]), [&alone_b, &alone_a]),
-            ] {
-                for (made, alone) in made.iter().zip(expected) {
-                    assert_eq!((&made.shown, &made.words, &made.trace), (&alone.shown, &alone.words, &alone.trace));
-                }
-            }
-        }
-    }
-}
-
-#[test]
 fn trust_of_1_changes_nothing_and_of_0_shows_the_candidate() {
     for method in METHODS {
         let mut plain = context(method);
@@ -112,26 +60,6 @@ fn trust_of_1_changes_nothing_and_of_0_shows_the_candidate() {
         let half = (0..52).filter(|x| x / 7 % 2 == 0).count() as u64 * 41;
         assert_eq!(made.stats.verdicts[Verdict::Distrusted as usize], half);
     }
-}
-
-#[test]
-fn half_the_trust_is_half_the_history() {
-    let mut post = context(MethodKind::Smr);
-    let first = step(&mut post, 0, &sharp(noise(SIZE, "half trust")));
-    let coarse = LowPass::new(&first.stored(), 4).render(&Image::filled(SIZE, 2.0));
-    let input = View { trust: Some(Image::filled(SIZE, 0.5)), ..at_lod(coarse.clone(), 2.0) };
-    let made = step(&mut post, 1, &input);
-    for (i, shown) in made.shown.pixels().iter().enumerate() {
-        let (c, h) = (coarse.pixels()[i], first.stored().pixels()[i]);
-        assert!((0..3).all(|k| (shown[k] - 0.5 * (c[k] + h[k])).abs() < 1e-6));
-        // Half way from level 0 to 2, in sevenths.
-        assert_eq!(made.surfaces()[i].lod, 1.0);
-    }
-    // taa uses the larger one of its own share of the candidate and 1 - trust.
-    let mut post = context(MethodKind::Taa);
-    step(&mut post, 0, &frame(0));
-    let input = View { trust: Some(Image::filled(SIZE, 0.25)), ..frame(1) };
-    assert!(step(&mut post, 1, &input).trace.pixels().iter().all(|t| t.history_share == 0.25));
 }
 
 #[test]

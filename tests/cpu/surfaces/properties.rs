@@ -43,25 +43,6 @@ fn s1_inside_the_fovea_the_candidate_is_shown_bit_for_bit() {
 }
 
 #[test]
-fn s1_by_gaze_the_fovea_is_a_disc_of_the_settings() {
-    let mut post = context(MethodKind::Smr);
-    let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
-    for index in 0..10 {
-        let px = [10.0 + 3.0 * index as f32, 20.0];
-        let input = View::still(noise(SIZE, &format!("s1 gaze {index}")), px);
-        let made = step(&mut post, index, &input);
-        for (i, e) in geometry.eccentricity_map(px).pixels().iter().enumerate() {
-            if *e < 2.49 {
-                assert_eq!(bits(made.shown.pixels()[i]), bits(input.color.pixels()[i]));
-                assert_eq!(made.surfaces()[i].lod, 0.0);
-            } else if index == 0 && *e > 2.8 {
-                assert!(made.surfaces()[i].lod > 0.0);
-            }
-        }
-    }
-}
-
-#[test]
 fn s2_without_a_valid_history_the_candidate_and_its_level_are_shown_and_stored() {
     let before = View { depth: Some(Image::filled(SIZE, 4.0)), ..sharp(noise(SIZE, "s2 before")) };
     let lods = Image::from_fn(SIZE, |[x, y]| ((x + 3 * y) % 40) as f32 * 0.05);

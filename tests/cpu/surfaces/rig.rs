@@ -7,7 +7,7 @@ pub use crate::surfaces_hard::{METHODS, SIZE, at_lod, settings, sharp};
 pub use afterimage::cpu::CpuAfterimage;
 pub use afterimage::kernel::debug_view::PixelTrace;
 pub use afterimage::kernel::surface::{Surface, unpack_surface};
-pub use afterimage::{ContextDesc, Exposure, Gaze, Image, MethodKind, Reset, Settings, ViewGeometry};
+pub use afterimage::{ContextDesc, Exposure, Image, MethodKind, Reset, Settings, ViewGeometry};
 pub use afterimage_testing::Draws;
 
 pub fn context(method: MethodKind) -> CpuAfterimage {

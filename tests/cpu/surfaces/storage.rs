@@ -4,7 +4,7 @@ use super::rig::*;
 use afterimage::kernel::kept::{Kept, pack_kept, unpack_kept};
 use afterimage::kernel::noise::unpack_noise;
 use afterimage::kernel::pack::{disparity_value, unpack};
-use afterimage::kernel::surface::{MAX_LOD, float14_value, mip_texel, pack_surface, round_mip};
+use afterimage::kernel::surface::{MAX_LOD, float14_value, mip_texel, pack_surface};
 use glam::{Vec3, Vec4};
 use proptest::prelude::*;
 
@@ -83,23 +83,5 @@ fn what_is_beyond_halves_is_the_largest_and_below_zero_is_zero() {
     for (x, y) in [(65504.0, 65472.0), (1e30, 65472.0), (f32::MAX, 65472.0), (-1.0, 0.0), (-0.0, 0.0), (1e-30, 0.0)] {
         let s = unpack_surface(pack_surface(Surface { color: Vec3::splat(x), lod: 0.0, disparity: -1.0 }));
         assert_eq!(s.color.to_array().map(f32::to_bits), [f32::to_bits(y); 3], "{x}");
-    }
-}
-
-#[test]
-fn texels_of_the_chain_are_halves_and_rounding_them_again_changes_nothing() {
-    let mut draws = Draws::new("chain texels");
-    for _ in 0..100_000 {
-        let words = [draws.bits(), draws.bits()];
-        let texel = mip_texel(words);
-        let s = unpack_surface(words);
-        assert_eq!(texel, if s.lod < 0.0 { Vec4::ZERO } else { s.color.extend(1.0) });
-        assert_eq!(round_mip(texel), texel, "what is stored is a half already");
-        let v = Vec4::new(draws.range(0.0, 70000.0), draws.uniform(), draws.uniform() * 1e-6, draws.uniform());
-        let rounded = round_mip(v);
-        assert!(rounded.is_finite() && round_mip(rounded) == rounded);
-        for i in 0..4 {
-            assert!((rounded[i] - v[i].min(65504.0)).abs() <= (v[i] / 2048.0).max(2.0_f32.powi(-25)));
-        }
     }
 }

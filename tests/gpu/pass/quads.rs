@@ -180,16 +180,10 @@ fn a_wrong_pass_is_caught() {
         }))
     };
     let planted = [
-        ("highest = max(highest, stored.color);", ""),
         ("needed * acuity(e_deg)", "needed"),
-        ("need_of_new(quad.x, quad.y, first)", "need_of_new(quad.y, quad.x, first)"),
         ("of_run[first - 1u] <= budget - chosen", "of_run[first - 1u] <= budget"),
-        ("    if level == 0u {\n        return nothing;\n    }\n", ""),
         ("last_of(above, -8, -1, -rows)", "last_of(above, -7, -1, -rows)"),
-        ("last_of(row, max(1 - limits.y, -8), -limits.x - 1, y)", "0xffffffffu"),
-        ("vec2<u32>(first.x + i - u32(REACH), first.y)", "vec2<u32>(first.x + i, first.y)"),
         ("source.previous.at -= frame.views[view].jitter_px;", ""),
-        ("own.observation.error >= 0.0 {\n        near.weight", "false {\n        near.weight"),
         ("candidate.fit = min(fit_sum * known, own_fits);", "candidate.fit = fit_sum * known;"),
         ("sampled.usable && (mask_at(at, view) & 1u) != 0u", "sampled.usable"),
     ];

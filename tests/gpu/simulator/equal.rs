@@ -3,7 +3,7 @@
 use super::rig::*;
 use afterimage::{Filter, Foveation};
 
-const RATES: [[u32; 2]; 6] = [[1, 1], [1, 2], [2, 8], [8, 16], [16, 64], [64, 64]];
+const RATES: [[u32; 2]; 3] = [[1, 2], [8, 16], [16, 64]];
 
 /// Inside, at the border, in the corner, off screen, far away.
 fn gazes([w, h]: [u32; 2]) -> [[f32; 2]; 5] {
@@ -21,7 +21,7 @@ fn agree(filter: Filter, size: [u32; 2], rates: &[[u32; 2]]) {
             let cpu = scene.on_cpu(&foveation);
             levels.extend(cpu.lods.iter().map(|l| f32::from_bits(*l) as u32));
             let what = format!("{filter:?}, {size:?}, rates {rates:?}, gaze {gaze:?}");
-            assert_equal(&what, size, &rig.on_gpu(&scene), &cpu);
+            assert_eq!(rig.on_gpu(&scene).agrees(&cpu), Ok(()), "{what}");
         }
     }
     println!("{filter:?}, {size:?}: levels {levels:?}");
@@ -31,7 +31,7 @@ fn agree_at_odd_sizes(filter: Filter) {
     for size in [[1, 1], [17, 1], [1, 33], [97, 61]] {
         agree(filter, size, &RATES);
     }
-    agree(filter, [640, 360], &[[8, 16], [4, 64]]);
+    agree(filter, [256, 160], &[[8, 16], [4, 64]]);
 }
 
 #[test]
@@ -64,7 +64,7 @@ fn two_eyes_have_their_own_frame_geometry_and_gaze_h62() {
         let Some(mut rig) = Rig::new(&desc(size, 2, foveation)) else { return };
         for gazes in [[[20.0, 30.0], [70.0, 10.0]], [[-5.0, 0.0], [96.0, 60.0]]] {
             let scene = Scene::stereo(size, gazes);
-            assert_equal(&format!("{filter:?}, {gazes:?}"), size, &rig.on_gpu(&scene), &scene.on_cpu(&foveation));
+            assert_eq!(rig.on_gpu(&scene).agrees(&scene.on_cpu(&foveation)), Ok(()), "{filter:?}, {gazes:?}");
         }
     }
 }
@@ -78,7 +78,7 @@ fn other_regions_are_bit_equal_h71() {
             let foveation = Foveation { filter, fovea_deg, mid_deg, blend_deg, ..Foveation::default() };
             let Some(mut rig) = Rig::new(&desc(size, 1, foveation)) else { return };
             let scene = Scene::mono(nasty(size, "regions"), [40.3, 22.8]);
-            assert_equal(&format!("{foveation:?}"), size, &rig.on_gpu(&scene), &scene.on_cpu(&foveation));
+            assert_eq!(rig.on_gpu(&scene).agrees(&scene.on_cpu(&foveation)), Ok(()), "{foveation:?}");
         }
     }
 }

@@ -3,7 +3,6 @@
 use super::rig::*;
 use afterimage::gpu::Timestamps;
 use afterimage::internal::Sources;
-use afterimage::kernel::pack::half_bits;
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::wgpu::{self, TextureFormat, TextureUsages};
 use afterimage::{CreateError, Filter, Foveation, FrameError, Gaze, ViewGeometry};
@@ -42,45 +41,12 @@ fn a_lost_gaze_is_held() {
     let mut scene = Scene::mono(nasty(SIZE, "lost"), [48.0, 30.0]);
     let middle = scene.on_cpu(&foveation);
     scene.views[0].gaze = Gaze::Lost;
-    assert_equal("lost from the start: the middle", SIZE, &rig.on_gpu(&scene), &middle);
+    assert_eq!(rig.on_gpu(&scene).agrees(&middle), Ok(()), "lost from the start: the middle");
     scene.views[0].gaze = Gaze::At { px: [10.0, 50.0] };
     let seen = rig.on_gpu(&scene);
     assert!(seen != middle);
     scene.views[0].gaze = Gaze::At { px: [f32::NAN, 0.0] };
-    assert_equal("held", SIZE, &rig.on_gpu(&scene), &seen);
-}
-
-#[test]
-fn the_fovea_of_a_half_float_frame_is_copied_bit_for_bit() {
-    for filter in [Filter::Mip, Filter::Gauss, Filter::Block, Filter::Off] {
-        let foveation = Foveation { filter, fovea_deg: 20.0, mid_deg: 30.0, ..Foveation::default() };
-        let Some(mut rig) = Rig::with_format(&desc(SIZE, 1, foveation), TextureFormat::Rgba16Float) else { return };
-        // All finite halves in turn, denormals and the largest included.
-        let halves: Vec<[u16; 4]> = (0..SIZE[0] * SIZE[1])
-            .map(|i| [i * 11, i * 11 + 1, i * 11 + 2].map(|b| (b % 0x7c00) as u16))
-            .map(|[r, g, b]| [r, g | 0x8000, b, half_bits(1.0) as u16])
-            .collect();
-        afterimage_testing::gpu::write_layer(&rig.queue, &rig.full, 0, bytemuck::cast_slice(&halves));
-        let scene = Scene::mono(nasty(SIZE, "unused"), [40.0, 30.0]);
-        let mut encoder = rig.device.create_command_encoder(&Default::default());
-        let frame = SimulatorFrame { lod: Some(&rig.lod), ..SimulatorFrame::new(&rig.full, &rig.output, &scene.views) };
-        rig.post.record(&rig.device, &mut encoder, &frame).unwrap();
-        rig.queue.submit([encoder.finish()]);
-        let words = afterimage_testing::gpu::read_texture(&rig.device, &rig.queue, &rig.output);
-        let shown: &[[u16; 4]] = bytemuck::cast_slice(&words);
-        let lods = afterimage_testing::gpu::read_texture(&rig.device, &rig.queue, &rig.lod);
-        let (mut sharp, mut changed) = (0, 0);
-        for ((shown, full), lod) in shown.iter().zip(&halves).zip(lods) {
-            if f32::from_bits(lod) <= 0.0 {
-                assert_eq!(shown, full, "{filter:?}");
-                sharp += 1;
-            } else {
-                changed += u32::from(shown != full);
-            }
-        }
-        println!("{filter:?}: {sharp} pixels of level 0, {changed} others changed");
-        assert!(sharp > 20 && (changed > 1000 || filter == Filter::Off));
-    }
+    assert_eq!(rig.on_gpu(&scene).agrees(&seen), Ok(()), "held");
 }
 
 #[test]
@@ -137,7 +103,7 @@ fn the_device_times_all_passes_of_a_filter() {
     };
     let (device, queue) = pollster::block_on(adapter.request_device(&request)).unwrap();
     let desc = desc([640, 360], 1, foveation(Filter::Gauss, [8, 16]));
-    let mut rig = Rig::with_sources(device, queue, &desc, FORMAT, &Sources::default());
+    let mut rig = Rig::with_sources(device, queue, &desc, &Sources::default());
     let queries = rig.device.create_query_set(&wgpu::QuerySetDescriptor {
         label: None,
         ty: wgpu::QueryType::Timestamp,

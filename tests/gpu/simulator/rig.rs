@@ -88,31 +88,20 @@ impl Made {
 impl Rig {
     /// `None`, after a message, without an adapter.
     pub fn new(desc: &ContextDesc) -> Option<Self> {
-        Self::with_format(desc, FORMAT)
-    }
-
-    /// With inputs and outputs of a format.
-    pub fn with_format(desc: &ContextDesc, format: TextureFormat) -> Option<Self> {
         let (device, queue) = afterimage_testing::gpu::device()?;
-        Some(Self::with_sources(device, queue, desc, format, &Sources::default()))
+        Some(Self::with_sources(device, queue, desc, &Sources::default()))
     }
 
-    pub fn with_sources(
-        device: Device,
-        queue: Queue,
-        desc: &ContextDesc,
-        format: TextureFormat,
-        sources: &Sources,
-    ) -> Self {
+    pub fn with_sources(device: Device, queue: Queue, desc: &ContextDesc, sources: &Sources) -> Self {
         let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
         let written = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
         Self {
             post: afterimage_testing::gpu::validated(&device, "new", || {
-                GpuSimulator::with_sources(&device, desc, format, sources)
+                GpuSimulator::with_sources(&device, desc, FORMAT, sources)
             })
             .unwrap(),
-            full: texture(&device, desc, format, read),
-            output: texture(&device, desc, format, written),
+            full: texture(&device, desc, FORMAT, read),
+            output: texture(&device, desc, FORMAT, written),
             lod: texture(&device, desc, TextureFormat::R32Float, written),
             device,
             queue,
@@ -165,33 +154,4 @@ pub fn nasty(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
 
 pub fn foveation(filter: Filter, [rate_mid, rate_far]: [u32; 2]) -> Foveation {
     Foveation { filter, rate_mid, rate_far, ..Foveation::default() }
-}
-
-/// Fails with the first pixel that differs.
-#[track_caller]
-pub fn assert_equal(what: &str, size: [u32; 2], gpu: &Made, cpu: &Made) {
-    let place = |i: usize| {
-        let view = i / (size[0] * size[1]) as usize;
-        let i = i as u32 % (size[0] * size[1]);
-        format!("{what}: view {view}, pixel ({}, {})", i % size[0], i / size[0])
-    };
-    assert_eq!((gpu.shown.len(), gpu.lods.len()), (cpu.shown.len(), cpu.lods.len()), "{what}");
-    if !afterimage_testing::gpu::rounds_as_the_cpu() {
-        return gpu.agrees(cpu).unwrap_or_else(|difference| panic!("{what}: {difference}"));
-    }
-    let float = f32::from_bits;
-    for (i, (g, c)) in gpu.lods.iter().zip(&cpu.lods).enumerate() {
-        assert!(g == c, "{}: level {} on the GPU, {} on the CPU", place(i), float(*g), float(*c));
-    }
-    let differ = gpu.shown.iter().zip(&cpu.shown).filter(|(g, c)| g != c).count();
-    for (i, (g, c)) in gpu.shown.iter().zip(&cpu.shown).enumerate() {
-        assert!(
-            g == c,
-            "{}, level {}: {:?} {g:08x?} on the GPU, {:?} {c:08x?} on the CPU; {differ} pixels differ",
-            place(i),
-            float(cpu.lods[i]),
-            g.map(float),
-            c.map(float)
-        );
-    }
 }

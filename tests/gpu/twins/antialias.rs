@@ -3,6 +3,7 @@
 use super::probe::{Probe, probe};
 use super::shape::*;
 use super::sparse::{color, push_light, push_reconstruction};
+use super::values::Word::*;
 use super::values::*;
 use afterimage::kernel::sparse::{Reconstructed, Reconstruction};
 use afterimage::kernel::{antialias, sparse};
@@ -20,21 +21,10 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(antialias::stored_lod, |rows| {
         let lods = floats(&[-1.0, 0.0, 0.05, 0.1, 0.11, 1.0, 2.5, 6.0, 8.0]);
-        rows.cross(&[&lods, &floats(&[1.0, 1.4, 2.0, 16.0, 31.0, 40.0])])
-            .random(|d, row| row.extend([range(d, -1.0, 7.0), range(d, 0.0, 33.0)]))
+        rows.cross(&[&lods, &floats(&[1.0, 1.4, 2.0, 16.0, 31.0, 40.0])]).each(&[F(-1.0, 7.0), F(0.0, 33.0)])
     }),
-    probe!(antialias::stands_before, |rows| {
-        rows.random(|d, row| {
-            row.extend([range(d, -1.0, 2.0), range(d, -1.0, 2.0)]);
-            row.extend([0; 4].map(|_| range(d, -1.0, 1.0)));
-            row.push(d.bits() % 2);
-        })
-    }),
-    probe!(antialias::move_together, |rows| {
-        rows.random(|d, row| {
-            row.extend([0; 6].map(|_| range(d, -0.2, 0.2)));
-        })
-    }),
+    probe!(antialias::stands_before, |rows| rows.each(&[&[F(-1.0, 2.0); 2][..], &[F(-1.0, 1.0); 4], &[N(2)]].concat())),
+    probe!(antialias::move_together, |rows| rows.each(&[F(-0.2, 0.2); 6])),
     probe!(antialias::may_show, |rows| {
         let disparities = floats(&[-1.0, 0.0, 0.48, 0.49, 0.5, 0.51, 1.0, 1.02]);
         let [places, offsets] = [floats(&[-0.5, 0.0, 0.3]), floats(&[-1.0, 0.0, 1.0])];
@@ -42,17 +32,10 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(antialias::is_of_surfaces, |rows| {
         let disparities = floats(&[-1.0, 0.0, 0.48, 0.49, 0.5, 0.51, 1.0, 1.02, 1.03, 1e30]);
-        rows.cross(&[&disparities, &disparities, &disparities]).random(|d, row| {
-            row.extend([0; 3].map(|_| range(d, 0.9, 1.1)));
-        })
+        rows.cross(&[&disparities, &disparities, &disparities]).each(&[F(0.9, 1.1); 3])
     }),
-    probe!(antialias::add_near, |rows| {
-        rows.random(|d, row| {
-            row.extend([0; 6].map(|_| range(d, -2.0, 2.0)));
-            row.push(range(d, 0.0, 8.0));
-            row.extend(color(d));
-        })
-    }),
+    probe!(antialias::add_near, |rows| rows
+        .each(&[&[F(-2.0, 2.0); 6][..], &[F(0.0, 8.0)], &[Scaled(-14, 6); 3]].concat())),
     probe!(antialias::clip, |rows| {
         rows.random(|d, row| {
             let count = 1.0 + (d.bits() % 9) as f32;
@@ -70,12 +53,7 @@ pub const PROBES: &[Probe] = &[
             row.extend([0; 3].map(|_| if still { 0 } else { range(d, -0.5, 0.5) }));
         })
     }),
-    probe!(antialias::scattered_error, |rows| {
-        rows.random(|d, row| {
-            push_light(d, row);
-            row.push(range(d, 0.0, 4000.0));
-        })
-    }),
+    probe!(antialias::scattered_error, |rows| rows.each(&[Of(push_light), F(0.0, 4000.0)])),
     probe!(
         antialias::average,
         |r: Reconstruction, samples: f32, place_px: Vec2, kept: f32| antialias::average(&r, samples, place_px, kept),

@@ -3,6 +3,7 @@
 use super::probe::{Probe, Rows, probe};
 use super::shape::*;
 use super::state::draw;
+use super::values::Word::*;
 use super::values::*;
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::wrs::{BiasCode, Decision, GateCode, Past, SamplerCode, WrsParams};
@@ -37,18 +38,8 @@ fn step_rows(rows: Rows) -> Rows {
             row.extend([d.bits() % 2, d.bits() % 3, d.bits() % 3]);
             row.extend([range(d, 0.0, 1.0), range(d, 0.0, 5.0), range(d, 0.005, 0.5)]);
             let [a, b, c, x, y, z] = color_pair(d).map(f32::to_bits);
-            row.extend([
-                a,
-                b,
-                c,
-                range(d, 0.0, 1.0),
-                x,
-                y,
-                z,
-                scaled(d, -10, 10),
-                signed(d, -10, 10) | 1 << 31,
-                draw(d),
-            ]);
+            row.extend([a, b, c, range(d, 0.0, 1.0), x, y, z, scaled(d, -10, 10)]);
+            row.extend([signed(d, -10, 10) | 1 << 31, draw(d)]);
         })
         .random_of("near the threshold", |d, row| {
             // A draw within a few steps of w / (w_sum + w), where `<` and `<=` part.
@@ -70,15 +61,6 @@ shape!(Past { color: Vec3, w_sum: f32, log_key: f32 });
 shape!(Decision { take: bool, w_sum: f32, log_key: f32, gate: f32, survival: f32 });
 
 pub const PROBES: &[Probe] = &[
-    probe!(debug_view::heat, |rows| {
-        let table = [any(), around(&[0.2, 0.4, 0.6, 0.8, 1.0])].concat();
-        rows.cross(&[&table]).random(|d, row| row.push(range(d, -0.2, 1.2)))
-    }),
-    probe!(debug_view::verdict_color, |rows| rows.cross(&[&(0..Verdict::COUNT as u32).collect::<Vec<_>>()])),
-    probe!(debug_view::motion_color, |rows| {
-        let table = [any(), around(&[16.0, -16.0])].concat();
-        rows.cross(&[&table, &table]).random(|d, row| row.extend([range(d, -20.0, 20.0), range(d, -20.0, 20.0)]))
-    }),
     probe!(
         debug_view::view_color,
         |quality: f32, age: u32, history_share: f32, verdict: Verdict, agreement: f32, motion: [f32; 2], view: u32| {
@@ -128,8 +110,8 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(wrs::gate, |rows| {
         let inverse = floats(&[0.01, 0.1, 1.0, 1e6]);
-        rows.cross(&[&[positive(), around(&[2.3, 12.3])].concat(), &floats(&[0.0, 2.3]), &inverse])
-            .random(|d, row| row.extend([range(d, 0.0, 30.0), range(d, 0.0, 5.0), range(d, 0.01, 1.0)]))
+        let rows = rows.cross(&[&[positive(), around(&[2.3, 12.3])].concat(), &floats(&[0.0, 2.3]), &inverse]);
+        rows.each(&[F(0.0, 30.0), F(0.0, 5.0), F(0.01, 1.0)])
     }),
     probe!(wrs::difference, |rows| {
         let color = floats(&[0.0, -0.0, 0.18, 1.0, -0.01, 65504.0, 1e30]);

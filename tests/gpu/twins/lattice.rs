@@ -2,6 +2,7 @@
 
 use super::probe::{Probe, probe};
 use super::shape::*;
+use super::values::Word::*;
 use super::values::*;
 use afterimage::kernel::lattice;
 use glam::{Vec2, Vec4};
@@ -18,8 +19,7 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(lattice::nearest_point, |rows| {
         let ends = [0, 1, 2, 3, 7, 255, 256, 257, 16383];
-        rows.cross(&[&ends, &ends, &(0..=8).collect::<Vec<_>>()])
-            .random(|d, row| row.extend([d.bits() % 16384, d.bits() % 16384, d.bits() % 9]))
+        rows.cross(&[&ends, &ends, &(0..=8).collect::<Vec<_>>()]).each(&[N(16384), N(16384), N(9)])
     }),
     probe!(lattice::point_offset_px, |rows| {
         let (ends, points) = ([0, 1, 7, 255, 16383], [0, 1, 2, 64, !0, !1, !200]);

@@ -26,29 +26,11 @@ pub const RUST_ONLY: &[(&str, &str)] = &[
     ("resample", "gather_around"),
 ];
 
-/// Functions without a name of their own in the Rust kernel's public interface; probed through their callers.
-pub const PRIVATE: &[&str] = &["fifth_root", "lab_f", "nothing_around", "pcg4d_mix", "saturating_add"];
-
 /// Every probe.
 pub fn probes() -> impl Iterator<Item = &'static Probe> {
-    let lists = [
-        decisions::PROBES,
-        doctor::PROBES,
-        foveation::PROBES,
-        lattice::PROBES,
-        lens::PROBES,
-        matching::PROBES,
-        noise::PROBES,
-        mathematics::PROBES,
-        antialias::PROBES,
-        quads::PROBES,
-        sparse::PROBES,
-        state::PROBES,
-        surfaces::PROBES,
-        upsampling::PROBES,
-        weighted::PROBES,
-    ];
-    lists.into_iter().flatten()
+    let lists = [antialias::PROBES, decisions::PROBES, doctor::PROBES, foveation::PROBES, lattice::PROBES].into_iter();
+    let lists = lists.chain([lens::PROBES, matching::PROBES, mathematics::PROBES, noise::PROBES, quads::PROBES]);
+    lists.chain([sparse::PROBES, state::PROBES, surfaces::PROBES, upsampling::PROBES, weighted::PROBES]).flatten()
 }
 
 /// Words in front of the rows of a module's probes: data that it loads.

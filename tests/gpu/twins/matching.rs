@@ -2,6 +2,7 @@
 
 use super::probe::{Probe, Rows, probe};
 use super::shape::*;
+use super::values::Word::*;
 use super::values::*;
 use afterimage::kernel::matched;
 use afterimage::kernel::matched::{Evidence, Matched, SmrParams};
@@ -43,21 +44,6 @@ fn pair_rows(rows: Rows) -> Rows {
     rows.mixed(&[&c, &c, &c, &c, &c, &c]).random(|d, row| {
         let a = stored_color(d);
         let b = like(d, a);
-        push(row, &[a, b].concat());
-    })
-}
-
-/// Channels of history.
-fn past_channels() -> Vec<u32> {
-    floats(&[0.0, 6e-8, 0.002, 0.18, 1.0, 65504.0])
-}
-
-/// Two colors of history.
-fn past_rows(rows: Rows) -> Rows {
-    let c = past_channels();
-    rows.mixed(&[&c, &c, &c, &c, &c, &c]).random(|d, row| {
-        let a = stored_color(d);
-        let b = like(d, a).map(|x| x.max(0.0));
         push(row, &[a, b].concat());
     })
 }
@@ -146,26 +132,12 @@ fn decide_rows(rows: Rows, flags: Option<[u32; 3]>) -> Rows {
     })
 }
 
-shape!(matched::ReuseWeight { finer: f32, share: f32 });
-
 pub const PROBES: &[Probe] = &[
-    probe!(matched::smooth_step, |rows| {
-        let (low, width) = (floats(&[0.0, 0.05, 1.5, 3.0, 48.0]), floats(&[0.1, 1.5, 6.0, 24.0]));
-        let x = [positive(), around(&[0.05, 0.15, 1.5, 3.0, 9.0])].concat();
-        rows.cross(&[&low, &width, &x]).random(|d, row| row.extend([0.0, 0.1, 0.0].map(|l| range(d, l, 20.0))))
-    }),
     probe!(matched::root_difference, pair_rows),
-    probe!(matched::past_difference, past_rows),
-    probe!(matched::past_contrast, past_rows),
-    probe!(matched::distance_of_roots, pair_rows),
-    probe!(matched::past_roots, |rows| {
-        rows.mixed(&[&past_channels(), &past_channels(), &past_channels()])
-            .random(|d, row| row.extend((0..3).map(|_| range(d, 0.0, 8.0))))
-    }),
     probe!(matched::roots, |rows| {
         // A root of a denormal is a normal number, unless a device flushes it.
         let c: Vec<u32> = finite().into_iter().filter(|&x| x & 0x7fff_ffff == 0 || x & 0x7f80_0000 != 0).collect();
-        rows.mixed(&[&c, &c, &c]).random(|d, row| row.extend((0..3).map(|_| signed(d, -24, 17))))
+        rows.mixed(&[&c, &c, &c]).each(&[Signed(-24, 17); 3])
     }),
     probe!(matched::light_unit, |rows| {
         let (c, exposure) = (channels(), floats(&[0.3, 1.0, 4.0]));
@@ -183,43 +155,6 @@ pub const PROBES: &[Probe] = &[
             let within = 0.5 + 0.1 * (own[0].abs() + own[1].abs());
             let other = own.map(|x| x + within * d.range(-1.2, 1.2));
             push(row, &[own, other].concat());
-        })
-    }),
-    probe!(matched::reuse_weight, |rows| {
-        let l: Vec<u32> = (0..63).map(|i| (i as f32 / 7.0).to_bits()).chain(around(&[0.1, 0.25, 1.0])).collect();
-        let shares = floats(&[0.0, 0.5, 0.9, 0.99]);
-        let (then, one, confidence) = ([l.clone(), floats(&[-1.0])].concat(), floats(&[1.0]), floats(&[0.0, 0.3]));
-        rows.cross(&[&l, &then, &shares, &[0, 1], &one, &one])
-            .mixed(&[&l, &then, &shares, &[0, 1], &confidence, &confidence])
-            .random(|d, row| {
-                let (now, then) = (lod(d), lod(d));
-                let near = if d.bits() & 1 == 0 { then } else { (now + d.range(-0.4, 0.4)).max(0.0) };
-                push(row, &[now, near, d.range(0.0, 0.99)]);
-                row.push(d.bits() & 1);
-                push(row, &[d.uniform(), d.uniform()]);
-            })
-    }),
-    probe!(matched::gain, |rows| {
-        let h = floats(&[0.0, 6e-8, 0.002, 0.18, 1.0, 65504.0]);
-        rows.cross(&[&channels(), &h, &floats(&[0.0, 0.5, 1.0])]).random(|d, row| {
-            let [h, ..] = stored_color(d);
-            let [c, ..] = like(d, [h; 3]);
-            push(row, &[c * [1.0, 0.3, 4.0][d.bits() as usize % 3], h, d.uniform()]);
-        })
-    }),
-    probe!(matched::strongest_gain, |rows| {
-        let g = [floats(&[0.2, 0.5, 1.0, 2.0, 5.0]), around(&[1.0, 1.1])].concat();
-        rows.cross(&[&g, &g, &g]).random(|d, row| row.extend((0..3).map(|_| range(d, 0.2, 5.0))))
-    }),
-    probe!(matched::may_relight, |rows| {
-        rows.cross(&[&around(&[0.0, 0.7, 1.0]), &[0, 1]])
-            .random(|d, row| row.extend([range(d, 0.0, 1.0), d.bits() & 1]))
-    }),
-    probe!(matched::relight_from, |rows| {
-        rows.cross(&[&positive(), &[0, 1], &positive()]).random(|d, row| {
-            push(row, &[d.range(0.0, 150.0)]);
-            row.push(d.bits() & 1);
-            push(row, &[d.range(0.0, 150.0)]);
         })
     }),
     probe!(matched::is_changed, |rows| {

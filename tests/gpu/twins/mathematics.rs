@@ -1,6 +1,7 @@
 //! Functions of numbers: approx, acuity, color, depth.
 
 use super::probe::{Probe, Rows, probe};
+use super::values::Word::*;
 use super::values::*;
 use afterimage::kernel::depth::{DisparityMap, INVALID_DISPARITY};
 use afterimage::kernel::{acuity, approx, color, depth};
@@ -10,12 +11,11 @@ fn one(rows: Rows, table: &[u32], random: fn(&mut afterimage_testing::Draws) -> 
 }
 
 pub const PROBES: &[Probe] = &[
-    probe!(approx::atan2_upper, |rows| {
-        rows.cross(&[&positive(), &finite()])
-            .cross(&[&around(&[0.414_213_56]), &around(&[1.0, -1.0])])
-            .random(|d, row| row.extend([scaled(d, -3, 3), signed(d, -3, 3)]))
-            .random_of("wide", |d, row| row.extend([scaled(d, -60, 60), signed(d, -60, 60)]))
-    }),
+    probe!(approx::atan2_upper, |rows| rows
+        .cross(&[&positive(), &finite()])
+        .cross(&[&around(&[0.414_213_56]), &around(&[1.0, -1.0])])
+        .each(&[Scaled(-3, 3), Signed(-3, 3)])
+        .random_of("wide", |d, row| row.extend([scaled(d, -60, 60), signed(d, -60, 60)]))),
     probe!(approx::exp, |rows| {
         let steps: Vec<f32> = (-126..=128).map(|n| (n as f32 - 0.5) * std::f32::consts::LN_2).collect();
         one(rows, &[finite(), around(&[-87.0, 88.0]), around(&steps)].concat(), |d| range(d, -90.0, 90.0))
@@ -45,10 +45,6 @@ pub const PROBES: &[Probe] = &[
                 row.extend(ray.map(|x| (x + d.range(-1e-4, 1e-4)).to_bits()));
             })
     }),
-    probe!(acuity::cell_density, |rows| {
-        one(rows, &[positive(), around(&[90.0, 180.0])].concat(), |d| range(d, 0.0, 180.0))
-            .random_of("wide", |d, row| row.push(scaled(d, -40, 8)))
-    }),
     probe!(acuity::candidate_weight, |rows| {
         let degrees = [around(&[2.5, 5.0, 20.0, 90.0]), floats(&[0.0, 1e-6, 180.0])].concat();
         let density = |fovea: f32| 1.0 / acuity::cell_density(fovea);
@@ -71,26 +67,22 @@ pub const PROBES: &[Probe] = &[
             .random_of("any", |d, row| row.push(signed(d, -100, 17)))
             .within(|r| r.f(0).abs() < 1e9)
     }),
-    probe!(color::luma, |rows| {
-        let table = finite().into_iter().filter(|&x| f32::from_bits(x).abs() < 1e30).collect::<Vec<_>>();
-        rows.mixed(&[&table, &table, &table]).random(|d, row| row.extend((0..3).map(|_| signed(d, -20, 17))))
-    }),
     probe!(color::lab, |rows| {
         // Greys put the luminance at the threshold (H33).
         let greys: Vec<u32> = (-40..40).map(|k: i32| (216.0_f32 / 24389.0).to_bits().wrapping_add_signed(k)).collect();
         let mut rows = rows.mixed(&[&finite(), &finite(), &finite()]);
         rows.words.extend(greys.iter().flat_map(|&g| [g; 3]));
-        rows.random(|d, row| row.extend((0..3).map(|_| range(d, -0.1, 1.2))))
-            .random_of("wide", |d, row| row.extend((0..3).map(|_| signed(d, -20, 17))))
+        rows.each(&[F(-0.1, 1.2); 3]).random_of("wide", |d, row| row.extend((0..3).map(|_| signed(d, -20, 17))))
     }),
     probe!(color::delta_e94, |rows| {
         let axis = floats(&[0.0, -0.0, 50.0, -50.0, 1e-4, 4000.0, 100.0]);
-        rows.cross(&[&axis, &axis, &axis, &axis, &axis, &axis])
-            .random(|d, row| row.extend((0..6).map(|_| range(d, -120.0, 120.0))))
-            .random_of("same hue", |d, row| {
+        rows.cross(&[&axis, &axis, &axis, &axis, &axis, &axis]).each(&[F(-120.0, 120.0); 6]).random_of(
+            "same hue",
+            |d, row| {
                 let (l, a, b, k) = (d.range(0.0, 100.0), d.range(-80.0, 80.0), d.range(-80.0, 80.0), d.range(0.9, 1.1));
                 row.extend([l, a, b, l, a * k, b * k].map(f32::to_bits));
-            })
+            },
+        )
     }),
     probe!(
         depth::disparity,
@@ -103,25 +95,17 @@ pub const PROBES: &[Probe] = &[
             let b = floats(&[0.0, -0.0, 10.0, 1e-5, -1e-5, 1.0]);
             rows.cross(&[&any(), &a, &b, &[0, 1, 2, 3]])
                 .cross(&[&around(&[1e-30, 1e30, 1.0]), &floats(&[1.0]), &floats(&[0.0]), &[0, 1, 2, 3]])
-                .random(|d, row| {
-                    row.extend([bits(d), signed(d, -10, 10), signed(d, -10, 10), d.bits() & 3]);
-                })
+                .each(&[Bits, Signed(-10, 10), Signed(-10, 10), N(4)])
                 .random_of("depths", |d, row| {
                     row.extend([range(d, -0.1, 1.1), signed(d, -10, 10), signed(d, -10, 10), d.bits() & 3]);
                 })
         }
     ),
-    probe!(depth::distance_of, |rows| {
-        rows.cross(&[&floats(&[-1.0, 0.0, 1e-31, 1e-20, 1.0])]).random(|d, row| {
-            row.push(scaled(d, -60, 60));
-        })
-    }),
     probe!(depth::previous_disparity, |rows| {
         let stretch = [around(&[1.0, 1e-6, -1e-6]), floats(&[0.0, 0.5, -1.0])].concat();
         let shift = floats(&[0.0, -0.0, 1.0, -1.0, 1e3, -1e-6]);
-        rows.cross(&[&[positive(), floats(&[INVALID_DISPARITY, -0.0])].concat(), &stretch, &shift]).random(|d, row| {
-            row.extend([scaled(d, -20, 10), range(d, -1.0, 2.0), range(d, -3.0, 3.0)]);
-        })
+        let rows = rows.cross(&[&[positive(), floats(&[INVALID_DISPARITY, -0.0])].concat(), &stretch, &shift]);
+        rows.each(&[Scaled(-20, 10), F(-1.0, 2.0), F(-3.0, 3.0)])
     }),
     probe!(depth::same_surface, |rows| {
         let disparities = [positive(), floats(&[INVALID_DISPARITY, -0.0])].concat();
@@ -136,7 +120,7 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(depth::one_sided_slope, |rows| {
         let taps = floats(&[INVALID_DISPARITY, 0.0, 0.5, 0.5_f32.next_up(), 1.0, 3.0, 1e-10]);
-        rows.cross(&[&taps, &taps, &taps]).random(|d, row| row.extend((0..3).map(|_| scaled(d, -20, 10))))
+        rows.cross(&[&taps, &taps, &taps]).each(&[Scaled(-20, 10); 3])
     }),
     probe!(approx::sin_cos_turns, |rows| {
         let eighths: Vec<f32> = (-16..=16).map(|n| n as f32 * 0.125).collect();

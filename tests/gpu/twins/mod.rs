@@ -10,7 +10,6 @@ mod foveation;
 mod functions;
 mod hard;
 mod lattice;
-mod laws;
 mod lens;
 mod library;
 mod matching;

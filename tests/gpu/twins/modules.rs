@@ -1,7 +1,7 @@
 //! Every module composes and is valid; errors name file and line; twins have the same functions; literals mean the
 //! same.
 
-use super::library::{FOLDER, PRIVATE, RUST_ONLY, SHADERS, WGSL_ONLY, probes};
+use super::library::{FOLDER, RUST_ONLY, SHADERS, WGSL_ONLY, probes};
 use afterimage::shader::Composed;
 use afterimage::wgpu::naga;
 use std::collections::BTreeSet;
@@ -81,25 +81,36 @@ fn stems() -> Vec<String> {
     stems
 }
 
+/// Whether a text of WGSL calls the function.
+pub fn calls(text: &str, name: &str) -> bool {
+    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    text.match_indices(&format!("{name}(")).any(|(at, _)| !text[..at].ends_with(is_part))
+}
+
 #[test]
-fn twins_have_the_same_functions_and_every_one_is_probed() {
-    let mut wgsl_names = BTreeSet::new();
+fn twins_have_the_same_functions_and_every_one_is_probed_or_called_by_one_that_is() {
+    let mut left = vec![];
     for stem in stems() {
-        let wgsl = functions(&read(&format!("shaders/lib/{stem}.wgsl")));
+        let text = read(&format!("shaders/lib/{stem}.wgsl"));
         let rust = functions(&read(&format!("src/kernel/{stem}.rs")));
-        let only: BTreeSet<String> =
-            WGSL_ONLY.iter().filter(|(s, _)| *s == stem).map(|(_, name)| (*name).to_owned()).collect();
-        let mut expected: BTreeSet<String> = rust.union(&only).cloned().collect();
-        expected.remove("mix");
-        for (_, name) in RUST_ONLY.iter().filter(|(s, _)| *s == stem) {
-            assert!(expected.remove(*name), "{stem}::{name}");
-        }
-        assert_eq!(wgsl, expected, "{stem}");
-        wgsl_names.extend(wgsl);
+        let only = |list: &[(&str, &str)]| -> BTreeSet<String> {
+            list.iter().filter(|(s, _)| *s == stem).map(|(_, name)| (*name).to_owned()).collect()
+        };
+        let rust_only = only(RUST_ONLY);
+        assert!(rust_only.is_subset(&rust), "{stem}: {rust_only:?}");
+        let mut expected: BTreeSet<String> = rust.union(&only(WGSL_ONLY)).cloned().collect();
+        expected.retain(|name| name != "mix" && !rust_only.contains(name));
+        assert_eq!(functions(&text), expected, "{stem}");
+        let bodies = text.split("\nfn ").skip(1).map(|body| body.split_once('(').unwrap());
+        left.extend(bodies.map(|(name, body)| (name.to_owned(), body.to_owned())));
     }
-    let probed = probes().map(|p| p.name);
-    let covered: BTreeSet<String> = probed.chain(PRIVATE.iter().copied()).map(str::to_owned).collect();
-    assert_eq!(wgsl_names, covered);
+    let mut texts: Vec<String> = probes().map(|probe| (probe.wgsl)()).collect();
+    while let Some(text) = texts.pop() {
+        let (called, others): (Vec<_>, Vec<_>) = left.into_iter().partition(|(name, _)| calls(&text, name));
+        texts.extend(called.into_iter().map(|(_, body)| body));
+        left = others;
+    }
+    assert!(left.is_empty(), "neither probed nor called: {:?}", left.iter().map(|(name, _)| name).collect::<Vec<_>>());
 }
 
 /// naga reads a literal without suffix as f64 and rounds it again; Rust reads f32 at once.

@@ -3,6 +3,7 @@
 use super::matching::{channels, push};
 use super::probe::{Probe, Rows, probe};
 use super::shape::*;
+use super::values::Word::*;
 use super::values::*;
 use afterimage::kernel::noise;
 use afterimage::kernel::noise::Noise;
@@ -59,10 +60,6 @@ shape!(Noise { samples: f32, variance: f32 });
 shape!(noise::NoiseSum { weight: f32, spread: f32, variance: f32 });
 
 pub const PROBES: &[Probe] = &[
-    // The Rust function is private; this is its definition.
-    probe!(noise::positive, |x: f32| if x.is_nan() || x.is_sign_negative() { 0.0 } else { x }, |rows| rows
-        .cross(&[&any()])
-        .random(|d, row| row.push(bits(d)))),
     probe!(noise::candidate_noise, |rows| {
         // Squares of the smallest normal numbers are denormal, which a device may flush.
         let errors: Vec<u32> = any().into_iter().filter(|&x| !(1..0x2000_0000).contains(&(x & 0x7fff_ffff))).collect();
@@ -76,7 +73,7 @@ pub const PROBES: &[Probe] = &[
             push(row, &n);
         })
     }),
-    probe!(noise::unpack_noise, |rows| rows.cross(&[&words()]).random(|d, row| row.push(bits(d)))),
+    probe!(noise::unpack_noise, |rows| rows.cross(&[&words()]).each(&[Bits])),
     probe!(noise::candidate_texel, |rows| {
         let (c, n, v) = (channels(), counts(), variances());
         rows.mixed(&[&c, &c, &c, &[0, 1], &n, &v])
@@ -84,13 +81,6 @@ pub const PROBES: &[Probe] = &[
     probe!(noise::candidate_mean, |rows| texel_rows(rows, 0)),
     probe!(noise::candidate_bilinear, |rows| texel_rows(rows, 2)),
     probe!(noise::history_share, |rows| pair_rows(rows, &[&floats(&[0.0, 0.5, 0.9, 0.98])])),
-    probe!(noise::pooled_variance, |rows| pair_rows(rows, &[])),
-    probe!(noise::root_slope, |rows| {
-        rows.cross(&[&channels()]).random(|d, row| {
-            let luma = d.range(-1.0, 100.0);
-            push(row, &[luma]);
-        })
-    }),
     probe!(noise::noise_difference, |rows| pair_rows(rows, &[&channels(), &floats(&[0.01, 0.7, 1.0, 8192.0])])),
     probe!(noise::expected_noise, |rows| pair_rows(rows, &[&channels()])),
     probe!(noise::add_noise, |rows| rows.random(|d, row| {
@@ -99,15 +89,7 @@ pub const PROBES: &[Probe] = &[
     })),
     probe!(noise::mean_noise, |rows| {
         let sums = floats(&[0.0, 1e-8, 1e-4, 1.0]);
-        rows.cross(&[&sums, &sums, &variances()]).random(|d, row| {
-            push(row, &[d.range(0.0, 4.0), d.range(0.0, 4.0), d.range(0.0, 9.0)]);
-        })
-    }),
-    probe!(noise::noise_visibility, |rows| {
-        rows.random(|d, row| {
-            let n = noise(d);
-            push(row, &[n[0], n[1], d.range(0.0, 4.0)]);
-        })
+        rows.cross(&[&sums, &sums, &variances()]).each(&[F(0.0, 4.0), F(0.0, 4.0), F(0.0, 9.0)])
     }),
     probe!(noise::noise_confidence, |rows| {
         rows.cross(&[&counts(), &variances(), &channels()]).random(|d, row| {

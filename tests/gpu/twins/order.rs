@@ -198,39 +198,27 @@ fn compilers_have_nothing_to_reorder() {
 #[test]
 fn planted_expressions_are_reported() {
     let right = [
-        "x / y",
-        "x / 0.25",
         "x * (1.0f / 3.0f)",
         "(x * 3.0) * 0.5",
         "x * y + x",
         "(x + y) + 1.5",
-        "u / 3u",
         "f32(u / 3u)",
         "1.0 / x",
         "x / max(y, 1e-3)",
-        "x * x + y * y",
-        "half(x, y)",
     ];
     let wrong = [
         "x / 3.0",
-        "v.x / K",
-        "(v / 3.0).x",
         "(v / vec3<f32>(2.0, 4.0, 5.0)).x",
-        "x / -0.1",
         "x / O",
         "(x * 3.0) * 1.1",
-        "1.1 * (3.0 / x)",
         "1.1 * (1.0 / x)",
-        "(x + 1.5) - 0.25",
         "1.5 + (x - y - 0.25)",
         "x * y + x * v.x",
         "v.x * v.y - v.z * v.x",
         "(x - y) + y",
-        "(x + y) - y",
         "(x * y) / y",
         "(x / y) * y",
         "sqrt(x) * sqrt(x)",
-        "half(x, 0.1)",
         "called(0.1)",
     ];
     for (expression, is_wrong) in right.map(|e| (e, false)).into_iter().chain(wrong.map(|e| (e, true))) {

@@ -2,6 +2,7 @@
 
 use super::probe::{Probe, Rows, probe};
 use super::shape::*;
+use super::values::Word::*;
 use super::values::*;
 use afterimage::kernel::kept::Around;
 use afterimage::kernel::noise::Noise;
@@ -128,11 +129,8 @@ macro_rules! around {
 pub const PROBES: &[Probe] = &[
     probe!(kept::pack_color, |rows| {
         let c: Vec<u32> = finite().into_iter().filter(|&x| x & 0x7fff_ffff == 0 || x & 0x7f80_0000 != 0).collect();
-        rows.cross(&[&c, &c, &[0, 0x3f80_0000]]).random(|d, row| row.extend(color(d)))
+        rows.cross(&[&c, &c, &[0, 0x3f80_0000]]).each(&[Scaled(-14, 6); 3])
     }),
-    probe!(kept::unpack_color, |rows| rows.cross(&[&words()]).random(|d, row| row.push(bits(d)))),
-    probe!(kept::pack_place, |rows| rows.random(|d, row| row.push(range(d, -2.0, 2.0)))),
-    probe!(kept::unpack_place, |rows| rows.cross(&[&(0..256).collect::<Vec<_>>()])),
     probe!(kept::pack_kept, |rows| rows.random(|d, row| {
         push_kept(d, row);
         if d.bits().is_multiple_of(8) {
@@ -140,29 +138,17 @@ pub const PROBES: &[Probe] = &[
             row[4] = (-1.0_f32).to_bits();
         }
     })),
-    probe!(kept::unpack_kept, |rows| rows.random(|d, row| row.extend([bits(d), bits(d)]))),
-    probe!(kept::is_empty, |rows| rows.random(|d, row| row.extend([bits(d), bits(d) & (d.bits() | !63)]))),
-    probe!(kept::code_word, |rows| rows.random(|d, row| row.extend([bits(d), bits(d)]))),
-    probe!(kept::unpack_full, |rows| rows.random(|d, row| row.extend([bits(d), bits(d)]))),
-    probe!(kept::moved_kept, |rows| rows.random(|d, row| {
-        push_kept(d, row);
-        row.extend([range(d, -0.5, 0.5), range(d, -0.5, 0.5), range(d, 0.5, 2.0), range(d, 0.5, 2.0)]);
-        row.push(range(d, -1.0, 1.0));
-    })),
-    probe!(
-        kept::kept_weight,
-        |x: f32| [kept::INVERSE_REACH, kept::INVERSE_MEAN_REACH].map(|reach| kept::kept_weight(x, reach)),
-        "out_f(kept_weight($0, INVERSE_REACH)); out_f(kept_weight($0, INVERSE_MEAN_REACH));",
-        |rows| rows.random(|d, row| row.push(range(d, 0.0, 20.0)))
-    ),
-    probe!(kept::multiple, |rows| rows.random(|d, row| {
-        let v = scaled(d, -24, 15);
-        row.extend([v, (v >> 23).max(111), range(d, 0.0, 1.0)]);
-    })),
-    probe!(kept::pack_color_by, |rows| rows.random(|d, row| {
-        row.extend(color(d));
-        row.push(range(d, 0.0, 1.0));
-    })),
+    probe!(kept::unpack_kept, |rows| rows.each(&[Bits, Bits])),
+    probe!(kept::code_word, |rows| rows.each(&[Bits, Bits])),
+    probe!(kept::moved_kept, |rows| rows.each(&[
+        Of(push_kept),
+        F(-0.5, 0.5),
+        F(-0.5, 0.5),
+        F(0.5, 2.0),
+        F(0.5, 2.0),
+        F(-1.0, 1.0)
+    ])),
+    probe!(kept::pack_color_by, |rows| rows.each(&[Scaled(-14, 6), Scaled(-14, 6), Scaled(-14, 6), F(0.0, 1.0)])),
     probe!(
         kept::add_kept,
         around,
@@ -178,7 +164,7 @@ pub const PROBES: &[Probe] = &[
         kept::stands_in,
         |weight: f32| kept::stands_in(Around { weight, ..Around::NOTHING }),
         "var a = nothing_around(); a.weight = $0; stands_in(a)",
-        |rows| rows.random(|d, row| row.push(range(d, 0.0, 4.0)))
+        |rows| rows.each(&[F(0.0, 4.0)])
     ),
     probe!(
         kept::interpolate,
@@ -190,63 +176,23 @@ pub const PROBES: &[Probe] = &[
         ),
         around_rows
     ),
-    probe!(sparse::candidate_level, |rows| rows
-        .random(|d, row| row.extend([range(d, 0.0, 200.0), range(d, 0.0, 8.0)]))),
-    probe!(sparse::expected_error, |rows| rows
-        .random(|d, row| { row.extend([range(d, 0.0, 3.0), range(d, 0.0, 100.0), d.bits() % 2]) })),
-    probe!(sparse::lod_confidence, |rows| rows.random(|d, row| row.push(range(d, 0.0, 3.0)))),
-    probe!(sparse::noisy_lod_confidence, |rows| rows.random(|d, row| {
-        row.extend([range(d, 0.0, 3.0), range(d, 1.0, 80.0), range(d, 0.0, 0.01), range(d, 0.0, 2.0)]);
-    })),
-    probe!(sparse::ratio, |rows| rows.random(|d, row| row.extend([scaled(d, -14, 6), scaled(d, -14, 6)]))),
-    probe!(sparse::ratios, |rows| rows.random(|d, row| {
-        row.extend(color(d));
-        row.extend(color(d));
-    })),
-    probe!(sparse::agreement, |rows| rows.random(|d, row| {
-        push_observation(d, row);
-        push_observation(d, row);
-        row.push(range(d, 0.0, 4.0));
-    })),
+    probe!(sparse::candidate_level, |rows| rows.each(&[F(0.0, 200.0), F(0.0, 8.0)])),
+    probe!(sparse::expected_error, |rows| rows.each(&[F(0.0, 3.0), F(0.0, 100.0), N(2)])),
+    probe!(sparse::noisy_lod_confidence, |rows| rows.each(&[F(0.0, 3.0), F(1.0, 80.0), F(0.0, 0.01), F(0.0, 2.0)])),
+    probe!(sparse::agreement, |rows| rows.each(&[Of(push_observation), Of(push_observation), F(0.0, 4.0)])),
     probe!(sparse::neighbour_weight, |rows| rows.cross(&[&[!0, 0, 1], &[!0, 0, 1]])),
-    probe!(sparse::add_light, |rows| rows.random(|d, row| {
-        push_light(d, row);
-        push_observation(d, row);
-        row.extend([range(d, 0.0, 4.0), range(d, 0.0, 4.0)]);
-    })),
+    probe!(sparse::add_light, |rows| rows.each(&[Of(push_light), Of(push_observation), F(0.0, 4.0), F(0.0, 4.0)])),
     probe!(
         sparse::relight,
         |l: sparse::Light| sparse::relight(l, sparse::mean_error(l)),
         "let l = $0; relight(l, mean_error(l))",
         |rows| rows.random(push_light)
     ),
-    probe!(sparse::agreed, |rows| rows.random(push_light)),
     probe!(sparse::mean_error, |rows| rows.random(push_light)),
-    probe!(sparse::errors_left, |rows| rows.random(|d, row| {
-        push_observation(d, row);
-        row.extend([0; 3].map(|_| range(d, 0.2, 5.0)));
-    })),
-    probe!(sparse::fit, |rows| rows.random(|d, row| row.extend([range(d, 0.0, 10.0), range(d, 0.0, 1.0)]))),
-    probe!(sparse::own_fit, |rows| rows.random(|d, row| {
-        push_observation(d, row);
-        row.extend([0; 3].map(|_| range(d, 0.2, 5.0)));
-    })),
-    probe!(sparse::capped_error, |rows| rows.random(|d, row| {
-        push_observation(d, row);
-        row.extend([range(d, 0.0, 12.0), range(d, 0.0, 4.0)]);
-    })),
-    probe!(sparse::fit_around, |rows| {
-        rows.random(|d, row| {
-            push_light(d, row);
-            row.extend([range(d, 0.0, 60.0), range(d, 0.0, 120.0)]);
-        })
-    }),
-    probe!(sparse::mean_fit, |rows| {
-        rows.random(|d, row| {
-            push_light(d, row);
-            row.push(range(d, 0.0, 1.0));
-        })
-    }),
+    probe!(sparse::own_fit, |rows| rows.each(&[Of(push_observation), F(0.2, 5.0), F(0.2, 5.0), F(0.2, 5.0)])),
+    probe!(sparse::capped_error, |rows| rows.each(&[Of(push_observation), F(0.0, 12.0), F(0.0, 4.0)])),
+    probe!(sparse::fit_around, |rows| rows.each(&[Of(push_light), F(0.0, 60.0), F(0.0, 120.0)])),
+    probe!(sparse::mean_fit, |rows| rows.each(&[Of(push_light), F(0.0, 1.0)])),
     probe!(
         sparse::pack_lit,
         |gain: Vec3, fit: f32, is_own: bool, disparity: f32, own_fit: f32| sparse::pack_lit(sparse::Lit {
@@ -257,39 +203,13 @@ pub const PROBES: &[Probe] = &[
             disparity
         }),
         "pack_lit(Lit($0, $1, $4, $2, $3))",
-        |rows| rows.random(|d, row| {
-            row.extend([0; 3].map(|_| range(d, 0.2, 5.0)));
-            row.extend([range(d, 0.0, 1.0), d.bits() % 2, scaled(d, -20, 20), range(d, 0.0, 1.0)]);
-        })
+        |rows| rows.each(&[F(0.2, 5.0), F(0.2, 5.0), F(0.2, 5.0), F(0.0, 1.0), N(2), Scaled(-20, 20), F(0.0, 1.0)])
     ),
-    probe!(sparse::pack_quad_lit, |rows| {
-        rows.random(|d, row| {
-            row.extend([0; 3].map(|_| range(d, 0.2, 5.0)));
-            row.extend([0; 5].map(|_| range(d, 0.0, 1.0)));
-            row.push(d.bits() % 2);
-            row.extend([0; 4].map(|_| scaled(d, -20, 20)));
-        })
-    }),
-    probe!(sparse::quad_lit, |rows| {
-        rows.random(|d, row| {
-            row.extend([0; 4].map(|_| d.bits()));
-            row.push(d.bits() % 4);
-        })
-    }),
-    probe!(sparse::quad_code, |rows| {
-        rows.random(|d, row| {
-            row.extend([0; 4].map(|_| d.bits()));
-            row.push(d.bits() % 4);
-        })
-    }),
-    probe!(sparse::unpack_lit, |rows| rows.random(|d, row| row.extend([bits(d), bits(d)]))),
-    probe!(sparse::relit, |rows| rows.random(|d, row| {
-        row.extend(color(d));
-        row.extend([0; 3].map(|_| range(d, 0.2, 5.0)));
-        let (low, more) = (color(d), color(d));
-        row.extend(low);
-        row.extend((0..3).map(|i| (f32::from_bits(low[i]) + f32::from_bits(more[i])).to_bits()));
-    })),
+    probe!(sparse::pack_quad_lit, |rows| rows
+        .each(&[&[F(0.2, 5.0); 3][..], &[F(0.0, 1.0); 5], &[N(2)], &[Scaled(-20, 20); 4]].concat())),
+    probe!(sparse::quad_lit, |rows| rows.each(&[Bits, Bits, Bits, Bits, N(4)])),
+    probe!(sparse::quad_code, |rows| rows.each(&[Bits, Bits, Bits, Bits, N(4)])),
+    probe!(sparse::unpack_lit, |rows| rows.each(&[Bits, Bits])),
     probe!(sparse::reconstruct, |r: Reconstruction| sparse::reconstruct(&r), |rows| rows.random(push_reconstruction)),
     probe!(
         sparse::accumulate,

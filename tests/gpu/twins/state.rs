@@ -2,6 +2,7 @@
 
 use super::probe::{Probe, probe};
 use super::shape::*;
+use super::values::Word::*;
 use super::values::*;
 use afterimage::kernel::pack::Stored;
 use afterimage::kernel::reproject::{Verdict, ViewMotion};
@@ -21,21 +22,10 @@ pub fn draw(d: &mut Draws) -> u32 {
 }
 
 pub const PROBES: &[Probe] = &[
-    probe!(sanitize::is_finite, |rows| rows.cross(&[&any()]).random(|d, row| row.push(bits(d)))),
     probe!(sanitize::color, sanitize::color, "let s = color($0); out_v(s.color); out_b(s.usable);", |rows| {
         let table = any().into_iter().filter(|x| x & 0x7fff_ffff >= 0x0080_0000 || x & 0x7fff_ffff == 0);
         let table: Vec<u32> = table.collect();
-        rows.mixed(&[&table, &table, &table]).random(|d, row| row.extend((0..3).map(|_| signed(d, -126, 129))))
-    }),
-    probe!(sanitize::weight, |rows| rows.cross(&[&any()]).random(|d, row| row.push(bits(d)))),
-    probe!(sanitize::trust, |rows| {
-        rows.cross(&[&[any(), around(&[1.0])].concat()])
-            .random(|d, row| row.push(bits(d)))
-            .random_of("shares", |d, row| row.push(range(d, -0.5, 1.5)))
-    }),
-    probe!(rng::pcg4d, |rows| {
-        let w = words();
-        rows.cross(&[&w, &w, &w, &w]).random(|d, row| row.extend((0..4).map(|_| bits(d))))
+        rows.mixed(&[&table, &table, &table]).each(&[Signed(-126, 129); 3])
     }),
     probe!(rng::stream_key, |rows| {
         let w = words();
@@ -52,15 +42,14 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(rng::unit_draw, |rows| {
         let top: Vec<u32> = (0..600).map(|k| !k).collect();
-        rows.cross(&[&top]).cross(&[&words()]).random(|d, row| row.push(bits(d)))
+        rows.cross(&[&top]).cross(&[&words()]).each(&[Bits])
     }),
-    probe!(pack::half_bits, |rows| {
-        rows.cross(&[&any()])
-            .random(|d, row| row.push(bits(d)))
-            .random_of("range", |d, row| row.push(signed(d, -26, 17)))
-            // Ties.
-            .random_of("ties", |d, row| row.push(signed(d, -26, 17) & !0xfff))
-    }),
+    probe!(pack::half_bits, |rows| rows
+        .cross(&[&any()])
+        .each(&[Bits])
+        .random_of("range", |d, row| row.push(signed(d, -26, 17)))
+        // Ties.
+        .random_of("ties", |d, row| row.push(signed(d, -26, 17) & !0xfff))),
     probe!(pack::half_value, |rows| rows.cross(&[&(0..65536).map(|x| x | 0xabcd_0000).collect::<Vec<_>>()])),
     probe!(pack::disparity_code, |rows| {
         let ends = around(&[2.0_f32.powi(-32), 2.0_f32.powi(32), -1.0]);
@@ -72,23 +61,18 @@ pub const PROBES: &[Probe] = &[
     probe!(pack::pack, |rows| {
         let sums = [finite(), vec![0x7f80_0000, 0xff80_0000], around(&[pack::MAX_W_SUM])].concat();
         let disparities = [positive(), floats(&[-1.0])].concat();
-        rows.mixed(&[&finite(), &finite(), &finite(), &disparities, &sums, &words()]).random(|d, row| {
-            row.extend((0..3).map(|_| signed(d, -26, 17)));
-            row.extend([scaled(d, -34, 34), scaled(d, -126, 102), d.bits() % 300]);
-        })
+        rows.mixed(&[&finite(), &finite(), &finite(), &disparities, &sums, &words()])
+            .each(&[&[Signed(-26, 17); 3][..], &[Scaled(-34, 34), Scaled(-126, 102), N(300)]].concat())
     }),
     probe!(pack::unpack, |rows| {
-        rows.mixed(&[&any(), &any(), &any()]).random(|d, row| row.extend((0..3).map(|_| bits(d)))).random_of(
-            "sound",
-            |d, row| {
-                row.extend(pack::pack(Stored {
-                    color: glam::Vec3::from_array([0; 3].map(|_| f32::from_bits(signed(d, -20, 15)))),
-                    disparity: f32::from_bits(scaled(d, -34, 34)),
-                    w_sum: f32::from_bits(scaled(d, -126, 100)),
-                    age: d.bits() % 256,
-                }));
-            },
-        )
+        rows.mixed(&[&any(), &any(), &any()]).each(&[Bits; 3]).random_of("sound", |d, row| {
+            row.extend(pack::pack(Stored {
+                color: glam::Vec3::from_array([0; 3].map(|_| f32::from_bits(signed(d, -20, 15)))),
+                disparity: f32::from_bits(scaled(d, -34, 34)),
+                w_sum: f32::from_bits(scaled(d, -126, 100)),
+                age: d.bits() % 256,
+            }));
+        })
     }),
     probe!(
         reproject::nearest,
@@ -141,10 +125,12 @@ pub const PROBES: &[Probe] = &[
         reservoir::update,
         |mut r: Reservoir, w: f32, draw: f32| (reservoir::update(&mut r, w, draw), r),
         "var r = $0; let take = update(&r, $1, $2); out_b(take); out_f(r.w_sum); out_u(r.count);",
-        |rows| {
-            rows.cross(&[&normal(), &[0, 1, !1, !0], &any(), &draws()])
-                .random(|d, row| row.extend([scaled(d, -10, 10), d.bits(), scaled(d, -10, 10), draw(d)]))
-        }
+        |rows| rows.cross(&[&normal(), &[0, 1, !1, !0], &any(), &draws()]).each(&[
+            Scaled(-10, 10),
+            Bits,
+            Scaled(-10, 10),
+            F(0.0, 1.0)
+        ])
     ),
     probe!(
         reservoir::combine,
@@ -155,9 +141,7 @@ pub const PROBES: &[Probe] = &[
         "let c = combine($0, $1, $2); out_b(c.keep_second); out_f(c.reservoir.w_sum); out_u(c.reservoir.count);",
         |rows| {
             rows.cross(&[&any(), &[0, 7, !0], &any(), &[1, !0], &draws()])
-                .random(|d, row| {
-                    row.extend([scaled(d, -10, 10), d.bits(), scaled(d, -10, 10), d.bits(), draw(d)]);
-                })
+                .each(&[Scaled(-10, 10), Bits, Scaled(-10, 10), Bits, F(0.0, 1.0)])
                 .random_of("near the threshold", |d, row| {
                     let [a, b] = [0; 2].map(|_| 2.0_f32.powi((d.bits() % 6) as i32));
                     row.extend([a.to_bits(), 1, b.to_bits(), 1, (b / (a + b)).to_bits()]);
@@ -173,21 +157,8 @@ pub const PROBES: &[Probe] = &[
     probe!(reservoir::exponential_survival, |rows| rows
         .cross(&[&finite()])
         .random_of("exponential", |d, row| row.push(range(d, 0.0, 100.0)))),
-    probe!(reservoir::a_es_log_key, |rows| {
-        rows.cross(&[&draws(), &any()]).random(|d, row| row.extend([draw(d), scaled(d, -20, 3)]))
-    }),
-    probe!(reservoir::a_es_decay, |rows| {
-        let keys: Vec<u32> = normal().into_iter().map(|x| x | 1 << 31).collect();
-        let survivals = [around(&[1e-30, 0.5]), floats(&[0.0, -0.0, f32::MIN_POSITIVE, 1.0])].concat();
-        rows.cross(&[&keys, &survivals])
-            // Invalid keys.
-            .cross(&[&floats(&[f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e-3, f32::MAX]), &survivals])
-            .random(|d, row| row.extend([scaled(d, -20, 20) | 1 << 31, range(d, 0.0, 1.0)]))
-    }),
     probe!(rng::path_draws, |rows| {
         let w = words();
-        rows.mixed(&[&w, &w, &w, &w]).random(|d, row| {
-            row.extend((0..4).map(|_| bits(d)));
-        })
+        rows.mixed(&[&w, &w, &w, &w]).each(&[Bits; 4])
     }),
 ];

@@ -3,9 +3,10 @@
 use super::matching::{channels, like, push, stored_color};
 use super::probe::{Probe, Rows, probe};
 use super::shape::*;
+use super::values::Word::*;
 use super::values::*;
 use afterimage::kernel::resample;
-use afterimage::kernel::resample::{FourTaps, Gathered, Resampled, Tap, TapsAround};
+use afterimage::kernel::resample::{Resampled, Tap, TapsAround};
 use afterimage::kernel::resize;
 use afterimage::kernel::surface;
 use afterimage::kernel::surface::{MAX_LOD, Surface};
@@ -14,16 +15,8 @@ use glam::Vec3;
 
 shape!(Surface { color: Vec3, lod: f32, disparity: f32 });
 shape!(Tap { color: Vec3, lod: f32, same: bool });
-shape!(Gathered { sharp: Vec3, smooth as "smooth_color": Vec3, smooth_sum: f32, lod: f32, complete: bool });
 shape!(Resampled { sharp: Vec3, smooth as "smooth_color": Vec3, lod: f32 });
 shape!(TapsAround { texel: [i32; 2], last: [i32; 2], fraction: [f32; 2], sharp_x: [f32; 4], sharp_y: [f32; 4] });
-shape!(FourTaps {
-    texels: [[i32; 2]; 4],
-    sharp_x: [f32; 4],
-    sharp_rows: [f32; 2],
-    linear_x: [f32; 2],
-    linear_row: f32
-});
 
 fn push_tap(d: &mut Draws, row: &mut Vec<u32>, color: [f32; 3], same: bool) {
     push(row, &color);
@@ -35,7 +28,7 @@ fn push_tap(d: &mut Draws, row: &mut Vec<u32>, color: [f32; 3], same: bool) {
 fn packed_rows(rows: Rows) -> Rows {
     let edges = [words(), vec![0x3dff, 0x3e00, 0x3fff, 0xc000, 0xf7ff_fdff, 0xffff_0000]].concat();
     let empty = |d: &mut Draws, row: &mut Vec<u32>| row.extend([bits(d) & 0x0fff_ffff, bits(d) & !0xc000]);
-    rows.cross(&[&edges, &edges]).random(|d, row| row.extend([bits(d), bits(d)])).random_of("empty", empty)
+    rows.cross(&[&edges, &edges]).each(&[Bits, Bits]).random_of("empty", empty)
 }
 
 /// Fractions between texels: 0, every quarter, random.
@@ -45,11 +38,6 @@ pub fn fraction(d: &mut Draws) -> f32 {
         1 => (d.bits() % 65536) as f32 / 65536.0,
         _ => d.uniform(),
     }
-}
-
-fn fraction_rows(rows: Rows) -> Rows {
-    let edges = [floats(&[0.0, 1.0 / 16_777_216.0]), around(&[0.25, 0.5, 0.75]), vec![1.0_f32.next_down().to_bits()]];
-    rows.cross(&[&edges.concat()]).random(|d, row| push(row, &[fraction(d)]))
 }
 
 /// Positions around small images, and their sizes.
@@ -70,8 +58,7 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(resize::resized_lod, |rows| {
         let lods = [around(&[0.5, 4.0, MAX_LOD]), floats(&[0.0])].concat();
-        rows.cross(&[&lods, &floats(&[-14.0, -1.0, -0.1, 0.0, 0.1, 1.0, 14.0])])
-            .random(|d, row| row.extend([range(d, 0.0, 9.0), range(d, -3.0, 3.0)]))
+        rows.cross(&[&lods, &floats(&[-14.0, -1.0, -0.1, 0.0, 0.1, 1.0, 14.0])]).each(&[F(0.0, 9.0), F(-3.0, 3.0)])
     }),
     probe!(surface::float14_bits, |rows| {
         // Every value of a code, and the borders between.
@@ -86,67 +73,20 @@ pub const PROBES: &[Probe] = &[
         let halves: Vec<f32> = (0..=125).map(|i| i as f32 / 14.0).collect();
         let lods = [around(&halves[1..]), floats(&[0.0, -0.0, -1.0, 100.0, 1e30])].concat();
         let disparities = [positive(), floats(&[-1.0, -0.0])].concat();
-        rows.mixed(&[&finite(), &channels(), &finite(), &lods, &disparities]).random(|d, row| {
-            row.extend((0..3).map(|_| signed(d, -26, 17)));
-            row.extend([range(d, -0.5, 9.5), scaled(d, -20, 20)]);
-        })
+        rows.mixed(&[&finite(), &channels(), &finite(), &lods, &disparities])
+            .each(&[&[Signed(-26, 17); 3][..], &[F(-0.5, 9.5), Scaled(-20, 20)]].concat())
     }),
     probe!(surface::unpack_surface, packed_rows),
-    probe!(surface::lod_code, packed_rows),
-    probe!(surface::lod_value, |rows| rows.cross(&[&(0..64).collect::<Vec<_>>()])),
-    probe!(surface::surface_color, packed_rows),
     probe!(surface::mip_texel, packed_rows),
     probe!(surface::round_mip, |rows| {
         let x = finite();
-        rows.mixed(&[&x, &x, &x, &x]).random(|d, row| row.extend((0..4).map(|_| signed(d, -26, 17))))
+        rows.mixed(&[&x, &x, &x, &x]).each(&[Signed(-26, 17); 4])
     }),
     probe!(resample::taps_around, around_rows),
-    probe!(
-        resample::sharp_sum,
-        |_: [i32; 2], fraction: [f32; 2], _: [u32; 2]| resample::sharp_sum(&resample::taps_around(
-            [0; 2], fraction, [1; 2]
-        )),
-        "sharp_sum(taps_around(vec2<i32>(0), $1, vec2<u32>(1u)))",
-        around_rows
-    ),
-    probe!(
-        resample::taps_of,
-        |texel: [i32; 2], fraction: [f32; 2], round: u32| resample::taps_of(
-            &resample::taps_around(texel, fraction, [9, 7]),
-            round
-        ),
-        "let t = taps_of(taps_around($0, $1, vec2<u32>(9u, 7u)), $2);
-    out_u(u32(t.a.x)); out_u(u32(t.a.y)); out_u(u32(t.b.x)); out_u(u32(t.b.y)); out_u(u32(t.c.x)); out_u(u32(t.c.y));
-    out_u(u32(t.d.x)); out_u(u32(t.d.y)); out_v(t.sharp_x.xyz); out_f(t.sharp_x.w);
-    out_f(t.sharp_rows.x); out_f(t.sharp_rows.y); out_f(t.linear_x.x); out_f(t.linear_x.y); out_f(t.linear_row);",
-        |rows| {
-            rows.random(|d, row| {
-                row.extend([d.bits() % 9, d.bits() % 7]);
-                push(row, &[fraction(d), fraction(d)]);
-                row.push(d.bits() % resample::ROUNDS);
-            })
-        }
-    ),
-    probe!(resample::codes_between, |rows| {
-        let disparities = [positive(), floats(&[-1.0, -0.0])].concat();
-        let factors = [floats(&[0.5, 0.9, 0.95, 1.0]), floats(&[1.0, 1.05, 1.1, 2.0])];
-        rows.cross(&[&disparities, &factors[0], &factors[1]]).random(|d, row| {
-            row.extend([scaled(d, -34, 34), (1.0 - fraction(d)).to_bits(), (1.0 + fraction(d)).to_bits()])
-        })
-    }),
-    probe!(resample::tap_codes, |rows| {
-        let disparities = [positive(), floats(&[-1.0, -0.0])].concat();
-        rows.cross(&[&disparities]).random(|d, row| row.push(scaled(d, -34, 34)))
-    }),
     probe!(resample::tap_codes_between, |rows| {
         let disparities = [positive(), floats(&[-1.0, 0.0])].concat();
         let rows = rows.cross(&[&disparities, &disparities]);
-        rows.random(|d, row| row.extend([scaled(d, -34, 34), scaled(d, -34, 34)]))
-    }),
-    probe!(resample::has_code, |rows| {
-        let codes = [0, 1, 2, 7, 8, 9, 0xfffe, 0xffff];
-        let words: Vec<u32> = codes.iter().flat_map(|c| [c << 16, c << 16 | 0xffff]).collect();
-        rows.cross(&[&words, &codes, &codes])
+        rows.each(&[Scaled(-34, 34), Scaled(-34, 34)])
     }),
     probe!(resample::surface_tap, |rows| {
         rows.random(|d, row| {
@@ -157,39 +97,12 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(resample::second_corner, |rows| {
         let f = floats(&[0.0, 0.1, 0.25, 0.499_999_97, 0.5, 0.75, 0.9, 1e-30]);
-        rows.cross(&[&f, &f]).random(|d, row| push(row, &[d.uniform(), d.uniform()]))
+        rows.cross(&[&f, &f]).each(&[F(0.0, 1.0), F(0.0, 1.0)])
     }),
     probe!(resample::corner_weight, |rows| {
         let f = floats(&[0.0, 0.1, 0.25, 0.5, 0.9, 1e-30]);
-        rows.cross(&[&[0, 1, 2, 3], &f, &f]).random(|d, row| {
-            row.push(d.bits() % 4);
-            push(row, &[d.uniform(), d.uniform()]);
-        })
+        rows.cross(&[&[0, 1, 2, 3], &f, &f]).each(&[N(4), F(0.0, 1.0), F(0.0, 1.0)])
     }),
-    probe!(resample::catmull_rom, fraction_rows),
-    probe!(
-        resample::gather,
-        |g: Gathered, taps: [Tap; 4], sharp_x: [f32; 4], sharp_rows: [f32; 2], linear_x: [f32; 2], linear_row: f32| {
-            resample::gather(g, taps, &FourTaps { texels: [[0; 2]; 4], sharp_x, sharp_rows, linear_x, linear_row })
-        },
-        "let at = vec2<i32>(0); gather($0, $1, FourTaps(at, at, at, at, $2, $3, $4, $5))",
-        |rows| {
-            rows.random(|d, row| {
-                let (past, color) = (stored_color(d), stored_color(d));
-                push(row, &past.map(|x| x * d.range(-0.1, 1.1)));
-                push(row, &past.map(|x| x * d.uniform()));
-                push(row, &[d.uniform(), d.range(0.0, MAX_LOD)]);
-                row.push(d.bits() % 2);
-                for _ in 0..4 {
-                    let same = d.bits() % 8 != 0;
-                    let near = like(d, color).map(|x| x.max(0.0));
-                    push_tap(d, row, near, same);
-                }
-                push(row, &[0; 6].map(|_| d.range(-0.13, 1.0)));
-                push(row, &[0; 3].map(|_| if d.bits() & 1 == 0 { 0.0 } else { d.uniform() }));
-            })
-        }
-    ),
     // Twelve taps, as the pass takes them.
     probe!(
         resample::nothing_gathered,
@@ -213,7 +126,7 @@ pub const PROBES: &[Probe] = &[
     let r = resolve(g, sharp_sum(taps), Surface(in_v(2u), in_f(5u), 1.0));
     out_v(r.sharp); out_v(r.smooth_color); out_f(r.lod);",
         |rows| {
-            let mut rows = rows.random(|d, row| {
+            rows.random(|d, row| {
                 let (center, share) = (stored_color(d), d.bits() % 4);
                 push(row, &[fraction(d), fraction(d)]);
                 push(row, &center);
@@ -223,25 +136,7 @@ pub const PROBES: &[Probe] = &[
                     let near = like(d, center).map(|x| x.max(0.0));
                     push_tap(d, row, near, same);
                 }
-            });
-            // A third is enough of rows that long.
-            rows.words.truncate(rows.width * 33_000);
-            rows
-        }
-    ),
-    probe!(
-        resample::resolve,
-        |g: Gathered, weights: f32, color: Vec3, lod: f32| {
-            resample::resolve(g, weights, Surface { color, lod, disparity: 1.0 })
-        },
-        "resolve($0, $1, Surface($2, $3, 1.0))",
-        |rows| {
-            let (c, h) = (channels(), floats(&[0.0, 6e-8, 0.18, 1.0, 65504.0]));
-            let (sharp, smooth) = (floats(&[0.9, 1.0, 1.05]), [around(&[0.01, 1.0]), floats(&[0.0, 0.5])].concat());
-            let (lod, complete) = (floats(&[0.0, 1.0, 8.9]), [0, 1]);
-            let mut lists: Vec<&[u32]> = vec![&c, &c, &c, &h, &h, &h, &smooth, &lod, &complete, &sharp];
-            lists.extend([&h[..], &h, &h, &lod]);
-            rows.mixed(&lists)
+            })
         }
     ),
 ];

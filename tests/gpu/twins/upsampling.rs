@@ -4,6 +4,7 @@ use super::matching::{channels, like, push, stored_color};
 use super::probe::{Probe, probe};
 use super::shape::*;
 use super::surfaces::fraction;
+use super::values::Word::*;
 use super::values::*;
 use afterimage::kernel::taa;
 use afterimage::kernel::taau;
@@ -54,42 +55,23 @@ shape!(SamplesAround { difference: Vec3, weights: Vec2, sum: Vec3, squares: Vec3
 shape!(taau::Accumulated { color: Vec3, confidence: f32, share: f32, kept: f32 });
 
 pub const PROBES: &[Probe] = &[
-    probe!(taa::to_ycocg, |rows| {
-        let c = channels();
-        rows.cross(&[&c, &c, &c]).random(|d, row| row.extend((0..3).map(|_| signed(d, -24, 16))))
-    }),
     probe!(taa::root_luma, |rows| {
         let c = channels();
-        rows.cross(&[&c, &c, &c]).random(|d, row| row.extend((0..3).map(|_| signed(d, -24, 18))))
-    }),
-    probe!(taa::roots_of_ycocg, |rows| {
-        let y = floats(&[0.0, 0.25, -0.25, 1.0, -128.0, 256.0]);
-        rows.cross(&[&y, &y, &y]).random(|d, row| row.extend((0..3).map(|_| signed(d, -12, 8))))
-    }),
-    probe!(taa::clip_to_box, |rows| {
-        let (y, extent) = (floats(&[0.0, 0.5, -0.25, 1e-7, 256.0]), floats(&[0.0, 1e-6, 0.5, 512.0]));
-        rows.mixed(&[&y, &y, &y, &y, &y, &y, &extent, &extent, &extent]).random(|d, row| {
-            let mean = [d.range(0.0, 1.5), d.range(-0.5, 0.5), d.range(-0.5, 0.5)];
-            let away = [0.0, 0.01, 0.3][d.bits() as usize % 3];
-            push(row, &mean.map(|x| x + away * d.range(-1.0, 1.0)));
-            push(row, &mean);
-            row.extend((0..3).map(|_| range(d, 0.0, 0.3)));
-        })
+        rows.cross(&[&c, &c, &c]).each(&[Signed(-24, 18); 3])
     }),
     probe!(taa::confidence_of, |rows| {
         let codes: Vec<f32> = (0..=62).map(|i| i as f32 / 7.0).collect();
-        rows.cross(&[&floats(&codes)]).random(|d, row| row.push(range(d, 0.0, 8.9)))
+        rows.cross(&[&floats(&codes)]).each(&[F(0.0, 8.9)])
     }),
     probe!(taa::lod_of, |rows| {
         let edges = [floats(&[0.0, 1e-4, 2.0, 3.02, 20.0]), around(&[16.0])].concat();
-        rows.cross(&[&edges]).random(|d, row| row.push(range(d, 0.0, 17.0)))
+        rows.cross(&[&edges]).each(&[F(0.0, 17.0)])
     }),
     probe!(taa::confidence_limit, |rows| {
         let at = [around(&[0.25, 0.5]), floats(&[0.0, 1.0 / 16_777_216.0, 1.0_f32.next_down()])].concat();
         rows.cross(&[&at, &at, &floats(&[0.6, 1.0])])
             .random(|d, row| push(row, &[fraction(d), fraction(d), d.range(0.5, 1.0)]))
     }),
-    probe!(taa::settled, |rows| rows.cross(&[&around(&[2.0, 4.0])]).random(|d, row| row.push(range(d, 0.0, 17.0)))),
     probe!(taa::agreeing, |rows| {
         rows.cross(&[&floats(&[0.0]), &floats(&[0.0]), &floats(&[0.0, 1.0]), &floats(&[0.0, 9.0])]).random(|d, row| {
             let (count, mean) = (1 + d.bits() % 9, d.range(0.0, 2.0));
@@ -100,15 +82,10 @@ pub const PROBES: &[Probe] = &[
             push(row, &[lumas.iter().sum(), squares, past, count as f32]);
         })
     }),
-    probe!(taa::box_sigmas, |rows| {
-        let confidence = [around(&[2.0, 4.0]), floats(&[0.0, 16.0])].concat();
-        rows.cross(&[&floats(&[1.5, 2.0]), &floats(&[5.0]), &confidence])
-            .random(|d, row| push(row, &[d.range(1.0, 2.0), d.range(2.0, 6.0), d.range(0.0, 6.0)]))
-    }),
     probe!(taa::candidate_share, |rows| {
         let confidence = [around(&[1.0, 9.0]), floats(&[0.0, 1e-30, 16.0])].concat();
         let trust = [around(&[0.6, 0.9]), floats(&[1e-30, 0.25, 1.0])].concat();
-        rows.cross(&[&confidence, &trust]).random(|d, row| push(row, &[d.range(0.0, 16.0), d.range(0.0, 1.0)]))
+        rows.cross(&[&confidence, &trust]).each(&[F(0.0, 16.0), F(0.0, 1.0)])
     }),
     probe!(taa::blend_clipped, |rows| {
         rows.random(|d, row| {
@@ -121,14 +98,8 @@ pub const PROBES: &[Probe] = &[
             push(row, &[[1.0, 16.0, d.range(0.0, 6.0)][d.bits() as usize % 3]]);
         })
     }),
-    probe!(taau::lobe, |rows| {
-        let edges = [floats(&[0.0, 0.25, 0.5, 4.0, 16.0, 1e6]), around(&[1.0])].concat();
-        rows.cross(&[&edges]).random(|d, row| row.push(range(d, 0.0, 2.0)))
-    }),
-    probe!(taau::tail, |rows| rows.cross(&[&around(&[0.5, 1.0])]).random(|d, row| row.push(range(d, 0.0, 1.0)))),
-    probe!(taau::narrowing, |rows| {
-        rows.cross(&[&around(&[2.0, 4.0])]).random(|d, row| row.push(range(d, 0.0, 17.0)))
-    }),
+    probe!(taau::tail, |rows| rows.cross(&[&around(&[0.5, 1.0])]).each(&[F(0.0, 1.0)])),
+    probe!(taau::narrowing, |rows| rows.cross(&[&around(&[2.0, 4.0])]).each(&[F(0.0, 17.0)])),
     probe!(taau::sample_weights, |rows| {
         let offsets = floats(&[0.0, 0.5, -0.5, 1.0, -2.0, 3.0, 511.5]);
         let (levels, tails, narrowings) = ((0..=8).collect::<Vec<_>>(), floats(&[0.002, 0.02]), floats(&[1.0, 1.4]));
@@ -147,7 +118,6 @@ pub const PROBES: &[Probe] = &[
             push(row, &[d.uniform(), d.range(0.0, 1.02)]);
         })
     }),
-    probe!(taau::upsampled, |rows| rows.random(push_samples)),
     probe!(taau::accumulate, |rows| {
         rows.random(|d, row| {
             push_samples(d, row);

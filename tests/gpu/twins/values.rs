@@ -5,7 +5,7 @@ use afterimage_testing::Draws;
 use std::f32::consts::FRAC_1_SQRT_2;
 
 /// Random rows of each table.
-const RANDOM: usize = 100_000;
+const RANDOM: usize = 20_000;
 
 /// Zeros, denormals, both ends of the normal range, powers, halves, infinities and NaNs, of both signs.
 pub fn any() -> Vec<u32> {
@@ -87,7 +87,35 @@ pub fn range(d: &mut Draws, low: f32, high: f32) -> u32 {
     d.range(low, high).to_bits()
 }
 
+/// A random word: a float from low to high, an integer below, a float as [`scaled`] or [`signed`], any bits; or words
+/// that a function pushes.
+#[derive(Clone, Copy)]
+pub enum Word {
+    F(f32, f32),
+    N(u32),
+    Scaled(i32, i32),
+    Signed(i32, i32),
+    Bits,
+    Of(fn(&mut Draws, &mut Vec<u32>)),
+}
+
 impl Rows {
+    /// Random rows of such words, from a seed that is the probe's name.
+    pub fn each(self, words: &[Word]) -> Self {
+        self.random(|d, row| {
+            for word in words {
+                match *word {
+                    Word::F(low, high) => row.push(range(d, low, high)),
+                    Word::N(count) => row.push(d.bits() % count),
+                    Word::Scaled(low, high) => row.push(scaled(d, low, high)),
+                    Word::Signed(low, high) => row.push(signed(d, low, high)),
+                    Word::Bits => row.push(d.bits()),
+                    Word::Of(push) => push(d, row),
+                }
+            }
+        })
+    }
+
     /// Every combination of one word from each list.
     pub fn cross(mut self, lists: &[&[u32]]) -> Self {
         assert_eq!(lists.len(), self.width);

@@ -3,9 +3,10 @@
 use super::matching::{like, push, stored_color};
 use super::probe::{Probe, probe};
 use super::shape::*;
+use super::values::Word::*;
 use super::values::*;
+use afterimage::kernel::wrs;
 use afterimage::kernel::wrs::{Decision, Reference, SamplerCode};
-use afterimage::kernel::{pack, wrs};
 use afterimage_testing::Draws;
 use glam::Vec3;
 
@@ -14,10 +15,14 @@ fn channel(d: &mut Draws) -> u32 {
     signed(d, -26, 15)
 }
 
+/// A color and a level.
+fn reference(d: &mut Draws, row: &mut Vec<u32>) {
+    row.extend([channel(d), channel(d), channel(d), [0, 5, 63][d.bits() as usize % 3]]);
+}
+
 shape!(Reference { color: Vec3, level: u32 });
 
 pub const PROBES: &[Probe] = &[
-    probe!(wrs::luma_root, |rows| rows.random(|d, row| push(row, &stored_color(d)))),
     probe!(wrs::unspread, |rows| {
         rows.random(|d, row| {
             let candidate = stored_color(d);
@@ -30,36 +35,26 @@ pub const PROBES: &[Probe] = &[
         let weights = [floats(&[0.0, 0.003, 0.5]), around(&[1.0])].concat();
         rows.cross(&[&weights, &[1, 2, 3, 8]]).random(|d, row| row.extend([scaled(d, -8, 0), 1 + d.bits() % 8]))
     }),
-    probe!(wrs::at_rate, |rows| {
-        rows.cross(&[&floats(&[1.0, 0.003, 1e-30, 1e-37]), &around(&[0.0, 0.5, 1.0, 3.0, 8.85]), &[1, 2, 3, 4]])
-            .random(|d, row| row.extend([scaled(d, -90, 0), range(d, 0.0, 8.8), 1 + d.bits() % 4]))
-    }),
-    probe!(wrs::level_code, |rows| {
-        rows.cross(&[&around(&[0.125, 0.375, 4.125, 7.875, 8.0])]).random(|d, row| row.push(range(d, 0.0, 8.0)))
-    }),
+    probe!(wrs::at_rate, |rows| rows
+        .cross(&[&floats(&[1.0, 0.003, 1e-30, 1e-37]), &around(&[0.0, 0.5, 1.0, 3.0, 8.85]), &[1, 2, 3, 4]])
+        .random(|d, row| row.extend([scaled(d, -90, 0), range(d, 0.0, 8.8), 1 + d.bits() % 4]))),
+    probe!(wrs::level_code, |rows| rows.cross(&[&around(&[0.125, 0.375, 4.125, 7.875, 8.0])]).each(&[F(0.0, 8.0)])),
     probe!(wrs::pack_reference, |rows| {
         let channels = [floats(&[0.0, -1.0, 65504.0, 0.3]), around(&[1.0, 0.984_375, 0.992_187_5])].concat();
-        rows.mixed(&[&channels, &channels, &channels, &[0, 16, 63]]).random(|d, row| {
-            row.extend([channel(d), channel(d), channel(d), d.bits() % 64]);
-        })
+        rows.mixed(&[&channels, &channels, &channels, &[0, 16, 63]]).each(&[
+            Signed(-26, 15),
+            Signed(-26, 15),
+            Signed(-26, 15),
+            N(64),
+        ])
     }),
-    probe!(wrs::unpack_reference, |rows| rows.cross(&[&words()]).random(|d, row| row.push(d.bits()))),
-    probe!(wrs::compared, |rows| {
-        rows.random(|d, row| {
-            row.extend([channel(d), channel(d), channel(d), [0, 5, 63][d.bits() as usize % 3]]);
-            row.extend([channel(d), channel(d), channel(d), [0, 5, 63][d.bits() as usize % 3]]);
-        })
-    }),
+    probe!(wrs::unpack_reference, |rows| rows.cross(&[&words()]).each(&[Bits])),
+    probe!(wrs::compared, |rows| rows.each(&[Of(reference), Of(reference)])),
     probe!(
         wrs::next_reference,
         |candidate: Vec3, level: u32, past: Reference, take: bool| wrs::next_reference(candidate, level, take, past),
         "next_reference($0, $1, $3, $2)",
-        |rows| {
-            rows.random(|d, row| {
-                row.extend([channel(d), channel(d), channel(d), [0, 5, 63][d.bits() as usize % 3]]);
-                row.extend([channel(d), channel(d), channel(d), [0, 5, 63][d.bits() as usize % 3], d.bits() & 1]);
-            })
-        }
+        |rows| rows.each(&[Of(reference), Of(reference), N(2)])
     ),
     probe!(
         wrs::combined,
@@ -75,15 +70,6 @@ pub const PROBES: &[Probe] = &[
                 row.extend([channel(d), channel(d), channel(d), weight.to_bits()]);
                 row.extend([channel(d), channel(d), channel(d), (weight + kept).to_bits(), d.bits() & 1, d.bits() % 3]);
             })
-        }
-    ),
-    probe!(
-        pack::unpack_sample,
-        pack::unpack_sample,
-        "let s = unpack_sample($0); out_v(s.color); out_f(s.disparity); out_b(s.valid);",
-        |rows| {
-            let finite = |d: &mut Draws| d.bits() & 0xbbff_bbff;
-            rows.random(|d, row| row.extend([finite(d), finite(d)]))
         }
     ),
 ];

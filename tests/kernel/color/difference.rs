@@ -14,8 +14,7 @@ fn lab_matches_f64_and_white_is_100() {
         let c = Vec3::new(draws.uniform(), draws.uniform(), draws.uniform());
         worst = worst.max((color::lab(c).as_dvec3() - lab64(c.as_dvec3())).length());
     }
-    println!("lab: worst distance to f64 {worst:.2e}");
-    assert!(worst < 2e-4);
+    assert!(worst < 2e-4, "lab: worst distance to f64 {worst:.2e}");
 }
 
 #[test]
@@ -38,30 +37,6 @@ fn h32_the_candidate_is_the_reference() {
     assert_eq!(wrs::difference(a, b, DELTA_E), reference_first);
     assert_ne!(wrs::difference(b, a, DELTA_E), reference_first);
     holds!("H32", Cpu, "up to {most:.2}x apart in sRGB; the candidate is the reference");
-}
-
-#[test]
-fn h36_negative_and_any_other_colors_give_finite_numbers() {
-    use proptest::num::f32::ANY;
-    let cases = 20_000;
-    let mut lowest = 0.0_f32;
-    let mut runner = TestRunner::new(afterimage_testing::property("finite lab", cases));
-    let result = runner.run(&([ANY; 3], [ANY; 3]), |(a, b)| {
-        let (c, valid) = sanitize::color(Vec3::from(a));
-        prop_assert_eq!(valid, a.iter().all(|x| x.is_finite()));
-        prop_assert!(c.abs().max_element() <= 65504.0);
-        let d = wrs::difference(c, sanitize::color(Vec3::from(b)).0, DELTA_E);
-        prop_assert!(color::lab(c).is_finite() && d.is_finite() && d >= 0.0);
-        Ok(())
-    });
-    result.unwrap();
-    for x in [-0.0, -1e-30, -1e-3, -0.5, -1.0, -65504.0] {
-        let l = color::lab(Vec3::splat(x)).x;
-        let exact = lab64(DVec3::splat(f64::from(x))).x;
-        assert!((f64::from(l) - exact).abs() < 1e-5 * exact.abs().max(1.0), "{x}: {l}");
-        lowest = lowest.min(l);
-    }
-    holds!("H36", Cpu, "no NaN in {cases} pairs of any bits; L* {lowest:.3e} at -65504, on Lab's line");
 }
 
 /// Lab pairs 1 to 34 of Sharma, Wu and Dalal, "The CIEDE2000 color-difference formula", 2005, table 1.
@@ -125,15 +100,4 @@ fn h40_delta_e94_matches_f64_and_published_values() {
     // Hand calculation: dL = 3, dC = 4 at C1 = 0, so both weights are 1.
     assert_eq!(of([50.0, 0.0, 0.0], [53.0, 4.0, 0.0]), 5.0);
     holds!("H40", Cpu, "{worst:.1e} at most from f64 and from published values, 34 pairs both ways");
-}
-
-proptest! {
-    #![proptest_config(afterimage_testing::property("delta e 94", 1000))]
-    #[test]
-    fn delta_e94_matches_f64(l1 in 0f32..100., a1 in -100f32..100., b1 in -100f32..100., l2 in 0f32..100., a2 in -100f32..100., b2 in -100f32..100.) {
-        let (x, y) = (Vec3::new(l1, a1, b1), Vec3::new(l2, a2, b2));
-        let exact = delta_e94_64(x.as_dvec3(), y.as_dvec3());
-        // Near-equal hues lose half the digits of dH^2, whose root then shows.
-        prop_assert!((f64::from(color::delta_e94(x, y)) - exact).abs() < 5e-2_f64.min(1e-4 * exact + 3e-2));
-    }
 }

@@ -4,11 +4,6 @@ use super::*;
 use afterimage::kernel::wrs::{BiasCode, Past, SamplerCode, WrsParams};
 use afterimage_testing::holds;
 
-/// The published gate: a gate value of 0 at a difference of 100.
-fn gate(candidate: Vec3, sample: Vec3) -> f32 {
-    wrs::gate(wrs::difference(candidate, sample, DELTA_E), 0.0, 0.01)
-}
-
 /// Decision for a history of color `sample` and sum `w_sum`, with a gate of `offset`.
 fn step(candidate: Vec3, weight: f32, sample: Vec3, w_sum: f32, offset: f32, draw: f32) -> wrs::Decision {
     let params = WrsParams {
@@ -20,30 +15,6 @@ fn step(candidate: Vec3, weight: f32, sample: Vec3, w_sum: f32, offset: f32, dra
         inv_gate_divisor: 0.01,
     };
     wrs::step(candidate, weight, Past { color: sample, w_sum, log_key: f32::MIN }, &params, draw)
-}
-
-#[test]
-fn h20_differences_beyond_100_shut_the_gate_and_no_more() {
-    let grid = srgb_grid();
-    let labs: Vec<Vec3> = grid.iter().map(|&c| color::lab(c)).collect();
-    let (mut most, mut pair) = (0.0_f32, (0, 0));
-    for (i, &a) in labs.iter().enumerate() {
-        for (j, &b) in labs.iter().enumerate() {
-            let d = color::delta_e94(a, b);
-            (most, pair) = if d > most { (d, (i, j)) } else { (most, pair) };
-        }
-    }
-    let bright = Vec3::splat(((276.0_f32 + 16.0) / 116.0).powi(3));
-    let hdr = wrs::difference(Vec3::ZERO, bright, DELTA_E);
-    assert!((most - 150.0).abs() < 2.0 && (hdr - 276.0).abs() < 1e-3, "{most} in sRGB, {hdr} for L* = 276");
-    for (candidate, sample) in [(grid[pair.0], grid[pair.1]), (Vec3::ZERO, bright), (bright, Vec3::ZERO)] {
-        assert_eq!(gate(candidate, sample), 0.0);
-        let d = step(candidate, 0.25, sample, 3.0, 0.0, 0.999);
-        assert_eq!((d.take, d.w_sum, d.survival), (true, 0.25, 0.0));
-    }
-    // The planted error: 1 - d / 100 without a clamp makes the sum negative.
-    assert!(3.0 * (1.0 - most / 100.0) + 0.25 < 0.0);
-    holds!("H20", Cpu, "{most:.1} in sRGB, {hdr:.1} for L* = 276: gate 0, w_sum the candidate's");
 }
 
 #[test]
@@ -73,7 +44,6 @@ fn h34_a_gate_with_an_offset_for_noise_does_not_see_dark_noise() {
     };
     // Three standard deviations of the difference of two such candidates.
     let (published, offset, ungated) = (run(0.0), run(7.7), run(f32::MAX));
-    println!("open, all but shut, kept: published {published:?}, with an offset {offset:?}, ungated {ungated:?}");
     assert_eq!((published.1, offset.1), (0, 0), "never rejected");
     assert!(offset.0 > 0.99 && (offset.2 - ungated.2).abs() < 1e-3, "as if there were no noise");
     assert!(published.2 < ungated.2 - 0.05, "the case must really occur");

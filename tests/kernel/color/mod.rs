@@ -3,14 +3,12 @@
 mod difference;
 mod gate;
 
+use afterimage::kernel::color;
 use afterimage::kernel::wrs;
 use afterimage::kernel::wrs::GateCode;
-use afterimage::kernel::{color, sanitize};
 use afterimage_testing::Draws;
 use approx::assert_abs_diff_eq;
 use glam::{DVec3, Vec3};
-use proptest::prelude::*;
-use proptest::test_runner::TestRunner;
 
 const DELTA_E: GateCode = GateCode::DeltaE94;
 
@@ -19,9 +17,6 @@ fn srgb_grid() -> Vec<Vec3> {
     let level = |i: u32| color::srgb_decode(i as f32 / 16.0);
     (0..17 * 17 * 17).map(|i| Vec3::new(level(i % 17), level(i / 17 % 17), level(i / 289))).collect()
 }
-
-// ---- f64 oracles
-// -------------------------------------------------------------------------------------------------------
 
 fn lab64(c: DVec3) -> DVec3 {
     // BT.709 primaries and the white point x = 0.3127, y = 0.3290, solved in exact fractions.

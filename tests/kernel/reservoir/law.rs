@@ -84,22 +84,6 @@ fn h12_samples_are_kept_in_proportion_to_their_weights() {
     holds!("H12", Cpu, "p = {first:.2} against the enumerated law w_i / 10, 2.5e6 trials");
 }
 
-#[test]
-fn h12_exact_enumeration_of_the_law() {
-    // Probability of each sample from the acceptance probabilities alone, in f64: prod (1 - p_later) p_i = w_i / sum.
-    let weights = [1.0_f64, 2.0, 3.0, 4.0];
-    for i in 0..4 {
-        let mut sum = 0.0;
-        let mut p = 0.0;
-        for (j, w) in weights.iter().enumerate() {
-            sum += w;
-            let accept = w / sum;
-            p = if j == i { accept } else { p * (1.0 - accept) };
-        }
-        assert!((p - weights[i] / 10.0).abs() < 1e-15);
-    }
-}
-
 /// Exact probability of each sample of a biased stream: its acceptance, and that no later one is accepted.
 fn biased_law(params: &WrsParams, weights: &[f32]) -> Vec<f64> {
     let mut a = 0.0_f64;
@@ -117,7 +101,7 @@ fn biased_law(params: &WrsParams, weights: &[f32]) -> Vec<f64> {
 }
 
 /// How often each sample of a stream through `step` is kept.
-fn biased_counts(params: &WrsParams, weights: &[f32], trials: usize, draws: &mut Draws) -> Vec<u64> {
+pub fn biased_counts(params: &WrsParams, weights: &[f32], trials: usize, draws: &mut Draws) -> Vec<u64> {
     let mut counts = vec![0_u64; weights.len()];
     for _ in 0..trials {
         let (mut state, mut sample) = (past(0.0), 0);
@@ -132,7 +116,7 @@ fn biased_counts(params: &WrsParams, weights: &[f32], trials: usize, draws: &mut
 }
 
 /// p-value of counts against a law. Samples of negligible probability are left out and must not occur.
-fn p_of_law(counts: &[u64], law: &[f64]) -> f64 {
+pub fn p_of_law(counts: &[u64], law: &[f64]) -> f64 {
     let trials = counts.iter().sum::<u64>() as f64;
     let (possible, forbidden): (Vec<_>, Vec<_>) = counts.iter().zip(law).partition(|(_, p)| **p * trials >= 5.0);
     assert!(forbidden.iter().all(|(n, p)| **n as f64 <= 10.0 * (**p * trials) + 1e-9), "{counts:?} by {law:?}");
@@ -221,61 +205,4 @@ fn h14_combine_is_associative_in_law() {
     }
     reject("sums that are not added", p_of_counts(&forgetful, &expected));
     holds!("H14", Cpu, "p = {:.2} and {:.2} against w_i / (sum of w), 1e6 trials", p[0], p[1]);
-}
-
-#[test]
-fn p5_the_expected_sample_is_the_weighted_mean() {
-    let (a, b) = (3.0_f32, 0.4);
-    let kept = f64::from(a) * f64::from(a) / f64::from(a + b);
-    let p = f64::from(b) / (kept + f64::from(b));
-    for sampler in [SamplerCode::AChao, SamplerCode::AEs] {
-        let params = WrsParams { sampler, ..PAPER };
-        let mut draws = Draws::new("expected sample");
-        let trials = 1_000_000;
-        let mut taken = 0;
-        for _ in 0..trials {
-            // A history of sum a has the key law of one sample of weight a.
-            let log_key = reservoir::a_es_log_key(draws.uniform(), a);
-            let d = wrs::step(Vec3::ONE, b, Past { log_key, ..past(a) }, &params, draws.uniform());
-            taken += u64::from(d.take);
-        }
-        accept(&format!("replacement rate, {sampler:?}"), p_of_rate(taken, trials, p));
-        reject("rate off by 2 %", p_of_rate(taken, trials, 1.02 * p));
-    }
-}
-
-#[test]
-fn p8_survival_follows_the_half_life_formula() {
-    for (name, b) in [("4 deg", 0.535_f64), ("10 deg", 0.157), ("20 deg", 0.061), ("30 deg", 0.030)] {
-        let mut a = 1.0_f64;
-        for _ in 0..18 {
-            a = recur64(a, 1.0, 1.0);
-        }
-        assert!((a - 5.42).abs() < 0.02, "18 foveal frames give {a}");
-        let formula = std::f64::consts::LN_2 * (a + b) / b + 0.5 * std::f64::consts::LN_2.powi(2);
-        let pixels = 20_000_u64;
-        let mut draws = Draws::new(name);
-        let mut states = vec![(a as f32, true); pixels as usize];
-        let mut alive_exact = 1.0;
-        let mut a_exact = a;
-        for _ in 0..formula.round() as usize {
-            for (w_sum, alive) in &mut states {
-                let d = step(&PAPER, *w_sum, b as f32, draws.uniform());
-                *w_sum = d.w_sum;
-                *alive &= !d.take;
-            }
-            let kept = a_exact * a_exact / (a_exact + b);
-            alive_exact *= kept / (kept + b);
-            a_exact = kept + b;
-        }
-        let alive = states.iter().filter(|s| s.1).count() as u64;
-        println!("{name}: formula {formula:.1} frames, {:.3} alive", alive as f64 / pixels as f64);
-        accept(&format!("survivors at {name}"), p_of_rate(alive, pixels, alive_exact));
-        // Without eq. 5 the history keeps its sum and lives longer.
-        let unbiased = a / (a + b * formula.round());
-        reject("survival without eq. 5", p_of_rate(alive, pixels, unbiased));
-        // The formula itself is exact to a frame.
-        let per_frame = b / (a + b);
-        assert!((alive_exact - 0.5).abs() < 1.2 * per_frame, "{name}: {alive_exact}");
-    }
 }

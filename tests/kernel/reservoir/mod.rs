@@ -1,6 +1,5 @@
 //! Reservoir arithmetic: closed forms P1-P8 and hard cases H03, H05-H14, H16, with statistics and planted errors.
 
-mod arithmetic;
 mod growth;
 mod law;
 mod properties;

@@ -1,5 +1,6 @@
 //! Sharper weights and means: the law of the exponent, survival, and no bias of the mean.
 
+use super::law::{biased_counts, p_of_law};
 use super::*;
 use afterimage::kernel::acuity;
 
@@ -19,23 +20,9 @@ fn samples_are_kept_by_powers_of_their_density() {
     let unbiased = WrsParams { bias: BiasCode::None, ..PAPER };
     for exponent in [1, 3, 8] {
         let mut draws = Draws::new(&format!("law of exponent {exponent}"));
-        let mut counts = vec![0_u64; eccentricities.len()];
-        for _ in 0..40_000 {
-            let (mut w_sum, mut sample) = (0.0, 0);
-            for (i, &e) in eccentricities.iter().enumerate() {
-                let d = step(&unbiased, w_sum, weight(e, exponent), draws.uniform());
-                w_sum = d.w_sum;
-                sample = if d.take { i } else { sample };
-            }
-            counts[sample] += 1;
-        }
-        let p = |law: &[f64]| {
-            let (seen, expected): (Vec<u64>, Vec<f64>) =
-                counts.iter().zip(law).map(|(n, p)| (*n, p * 40_000.0)).filter(|(_, e)| *e >= 5.0).unzip();
-            p_of_counts(&seen, &expected)
-        };
-        accept(&format!("exponent {exponent}"), p(&law(exponent as i32)));
-        reject("the exponent after it", p(&law(exponent as i32 + 1)));
+        let counts = biased_counts(&unbiased, &eccentricities.map(|e| weight(e, exponent)), 40_000, &mut draws);
+        accept(&format!("exponent {exponent}"), p_of_law(&counts, &law(exponent as i32)));
+        reject("the exponent after it", p_of_law(&counts, &law(exponent as i32 + 1)));
     }
 }
 

@@ -14,18 +14,6 @@ pub const WGSL_ONLY: &[(&str, &str)] = &[];
 /// Rust functions without a WGSL twin, as (file stem, function).
 pub const RUST_ONLY: &[(&str, &str)] = &[];
 
-/// Functions that are not public in the Rust kernel; probed through their callers.
-pub const PRIVATE: &[&str] = &[
-    "compensation",
-    "eval_reflection",
-    "eval_transmission",
-    "folded",
-    "fraction",
-    "fraction_bits",
-    "glass_fresnel",
-    "mirror_probability",
-];
-
 /// Every probe.
 pub fn probes() -> impl Iterator<Item = &'static Probe> {
     let lists = [lighting::PROBES, triangles::PROBES, scattering::PROBES, facets::PROBES, scattering_lobes::PROBES];
