@@ -61,7 +61,9 @@ fn lines(word: &str) -> usize {
 #[bind_group_data(Kind)]
 struct Special {
     #[storage(0)]
-    buffer: Handle<ShaderBuffer>,
+    written: Handle<ShaderBuffer>,
+    #[storage(1, read_only)]
+    read: Handle<ShaderBuffer>,
     kind: Kind,
 }
 
@@ -81,25 +83,25 @@ impl Kind {
         Uuid::from_u128(SHADER + number as u128).into()
     }
 
+    /// In WGSL, without imports: Bevy's WESL has no forced tests.
     fn text(self) -> String {
         let forced = if self.is("forced") { "@early_depth_test(force)" } else { "" };
         let write = if self.is("storage") { "counts[0] = 1u;" } else { "" };
-        let access = if self.is("storage") { "read_write" } else { "read" };
+        let (binding, access) = if self.is("storage") { (0, "read_write") } else { (1, "read") };
         let (output, depth) = match self.is("depth") {
-            true => ("@builtin(frag_depth) depth: f32,", "out.depth = in.position.z;"),
+            true => ("@builtin(frag_depth) depth: f32,", "out.depth = position.z;"),
             false => ("", ""),
         };
         format!(
-            "#import bevy_pbr::forward_io::VertexOutput
-            // A comment on frag_depth and read_write is none of it.
-            @group(#{{MATERIAL_BIND_GROUP}}) @binding(0) var<storage, {access}> counts: array<u32, 4>;
+            "// A comment on frag_depth and read_write is none of it.
+            @group(3) @binding({binding}) var<storage, {access}> counts: array<u32, 4>;
             struct Out {{ @location(0) color: vec4<f32>, {output} }}
             @fragment {forced}
-            fn fragment(in: VertexOutput) -> Out {{
+            fn fragment(@builtin(position) position: vec4<f32>, @location(2) uv: vec2<f32>) -> Out {{
                 var out: Out;
                 {write}
                 {depth}
-                out.color = vec4(in.uv, f32(counts[1]), 1.0);
+                out.color = vec4(uv, f32(counts[1]), 1.0);
                 return out;
             }}"
         )
@@ -157,8 +159,9 @@ fn add_shaders(mut shaders: ResMut<Assets<Shader>>) {
 fn lines_of_material(headless: &mut Headless, kind: &'static str, word: &str) -> usize {
     let before = lines("");
     IS_BARE.store(kind == "bare", Ordering::Relaxed);
-    let buffer = headless.asset(ShaderBuffer::new(vec![0_u32; 4], RenderAssetUsages::default()));
-    let material = MeshMaterial3d(headless.asset(Special { buffer, kind: Kind(kind) }));
+    let [written, read] =
+        [(), ()].map(|()| headless.asset(ShaderBuffer::new(vec![0_u32; 4], RenderAssetUsages::default())));
+    let material = MeshMaterial3d(headless.asset(Special { written, read, kind: Kind(kind) }));
     show_mesh(headless, Rectangle::new(4.0, 3.0), material);
     let log = LOG.lock().expect("the log");
     let log = String::from_utf8_lossy(&log);
