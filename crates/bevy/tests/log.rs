@@ -5,7 +5,7 @@ mod common;
 
 use bevy::asset::RenderAssetUsages;
 use bevy::asset::uuid::Uuid;
-use bevy::camera::ClearColorConfig;
+use bevy::camera::{ClearColorConfig, RenderTarget};
 use bevy::core_pipeline::prepass::DeferredPrepass;
 use bevy::log::tracing_subscriber;
 use bevy::mesh::MeshVertexBufferLayoutRef;
@@ -18,12 +18,13 @@ use bevy::render::render_resource::{
 };
 use bevy::render::storage::ShaderBuffer;
 use bevy::shader::{Shader, ShaderRef};
-use bevy_afterimage::{Afterimage, AfterimagePlugin, AfterimageSupported, CameraGaze, Foveated};
+use bevy_afterimage::{Afterimage, AfterimagePlugin, AfterimageStats, AfterimageSupported, CameraGaze, Foveated};
 use common::headless::{self, Headless};
 use common::scene::{ScenePlugin, TONEMAPPING, stroll};
 use std::io::Write;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 static LOG: Mutex<Vec<u8>> = Mutex::new(vec![]);
 
@@ -188,6 +189,23 @@ fn lines_of_glass(headless: &mut Headless) -> usize {
     lines("specular_transmission")
 }
 
+/// What is said of frames of `size`, before each of which the application takes some times as long as the device, and
+/// what was counted last.
+fn lines_of_pace(headless: &mut Headless, size: UVec2, times: u64, frames: usize) -> (usize, AfterimageStats) {
+    let target = RenderTarget::from(headless.add_target(size));
+    let camera = (Camera3d::default(), Msaa::Off, target, TONEMAPPING, stroll(1.0), Afterimage::default());
+    let camera = headless.app.world_mut().spawn((camera, AfterimageStats::default())).id();
+    let mut stats = AfterimageStats::default();
+    for _ in 0..frames {
+        std::thread::sleep(Duration::from_micros(times * stats.device_us));
+        headless.frames(1);
+        stats = *headless.app.world().get(camera).expect("stats");
+    }
+    headless.app.world_mut().despawn(camera);
+    headless.frames(1);
+    (lines("does not make frames faster"), stats)
+}
+
 /// Adds the plugin before those that it needs.
 fn lines_of_a_wrong_order() -> usize {
     let mut app = App::new();
@@ -233,6 +251,12 @@ fn what_is_not_drawn_as_it_should_is_said_once() {
     assert_eq!(lines_of_material(headless, "storage", "special.wgsl: it writes to storage"), 1);
     assert_eq!(lines_of_material(headless, "storage forced", "special"), 0);
     assert_eq!(lines_of_material(headless, "bare", "has no prepass"), 1);
+    let (lines_of_pixels, stats) = lines_of_pace(headless, UVec2::new(960, 540), 0, 8);
+    println!("many pixels: {} us of {} us a frame", stats.device_us, stats.frame_us);
+    assert!(2 * stats.device_us > stats.frame_us, "{stats:?}");
+    let (lines_of_a_busy_app, stats) = lines_of_pace(headless, UVec2::new(64, 36), 3, 140);
+    println!("a busy application: {} us of {} us a frame", stats.device_us, stats.frame_us);
+    assert_eq!((lines_of_pixels, lines_of_a_busy_app), (0, 1));
     assert_eq!(lines_of_a_wrong_order(), 1);
     // What is right is not complained about.
     let before = lines("");
