@@ -6,19 +6,26 @@ mod common;
 use bevy::asset::RenderAssetUsages;
 use bevy::asset::uuid::Uuid;
 use bevy::camera::{ClearColorConfig, RenderTarget};
+use bevy::core_pipeline::core_3d::{main_opaque_pass_3d, main_transparent_pass_3d};
 use bevy::core_pipeline::prepass::DeferredPrepass;
+use bevy::core_pipeline::schedule::Core3d;
 use bevy::log::tracing_subscriber;
 use bevy::mesh::MeshVertexBufferLayoutRef;
 use bevy::pbr::{MaterialPipeline, MaterialPipelineKey};
 use bevy::prelude::*;
 use bevy::reflect::TypePath;
+use bevy::render::RenderApp;
 use bevy::render::camera::TemporalJitter;
 use bevy::render::render_resource::{
     AsBindGroup, CompareFunction, RenderPipelineDescriptor, SpecializedMeshPipelineError,
 };
+use bevy::render::renderer::{RenderContext, ViewQuery};
 use bevy::render::storage::ShaderBuffer;
+use bevy::render::view::ViewTarget;
 use bevy::shader::{Shader, ShaderRef};
-use bevy_afterimage::{Afterimage, AfterimagePlugin, AfterimageStats, AfterimageSupported, CameraGaze, Foveated};
+use bevy_afterimage::{
+    Afterimage, AfterimagePlugin, AfterimageStats, AfterimageSupported, CameraGaze, Foveated, ShowQuads,
+};
 use common::headless::{self, Headless};
 use common::scene::{ScenePlugin, TONEMAPPING, stroll};
 use std::io::Write;
@@ -38,6 +45,22 @@ impl Write for Log {
     fn flush(&mut self) -> std::io::Result<()> {
         Ok(())
     }
+}
+
+/// A pass of an application that reads the frame, between the opaque meshes and those that blend.
+fn blur(_: ViewQuery<&ViewTarget>, mut context: RenderContext) {
+    context.command_encoder().insert_debug_marker("blur");
+}
+
+/// The same, where it belongs.
+fn late_blur(_: ViewQuery<&ViewTarget>, mut context: RenderContext) {
+    context.command_encoder().insert_debug_marker("late blur");
+}
+
+fn add_passes(app: &mut App) {
+    let passes = (blur.before(ShowQuads), late_blur.after(ShowQuads));
+    let passes = passes.after(main_opaque_pass_3d).before(main_transparent_pass_3d);
+    app.sub_app_mut(RenderApp).add_systems(Core3d, passes);
 }
 
 /// How many lines contain `word` after a few frames of a camera with `components`.
@@ -224,6 +247,7 @@ fn what_is_not_drawn_as_it_should_is_said_once() {
         UVec2::new(64, 36),
         (ScenePlugin { lamps: 0, moves: false }, MaterialPlugin::<Special>::default(), |app: &mut App| {
             app.add_systems(Startup, add_shaders);
+            add_passes(app);
         }),
     );
     let msaa = [Msaa::Off, Msaa::default(), Msaa::Sample2];
@@ -258,6 +282,7 @@ fn what_is_not_drawn_as_it_should_is_said_once() {
     println!("a busy application: {} us of {} us a frame", stats.device_us, stats.frame_us);
     assert_eq!((lines_of_pixels, lines_of_a_busy_app), (0, 1));
     assert_eq!(lines_of_a_wrong_order(), 1);
+    assert_eq!((lines("system log::blur draws"), lines("late_blur")), (1, 0));
     // What is right is not complained about.
     let before = lines("");
     lines_about(headless, "", (Msaa::Off, Afterimage::default(), CameraGaze::default()));
