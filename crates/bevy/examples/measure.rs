@@ -5,12 +5,12 @@
 //! SCENE: courtyard; small (the courtyard at 640x360); triangles (with a million triangles more); shadows (with two
 //! lamps that have shadow maps); both (and the triangles cast shadows); cheap (both, without other lamps, so that
 //! pixels are cheap); worst (cheap at 640x360); grille (the courtyard with thin bars and edges at slopes); grille-slow
-//! (camera at a fifth of the speed). SCENE@WIDTHxHEIGHT has another size.
+//! (camera at a fifth of the speed); still (nothing moves). SCENE@WIDTHxHEIGHT has another size.
 //!
 //! MODE: full; prepass (full rate with depth and motion prepasses); msaa (full rate, Bevy's MSAA of 4); taa:SCALE
 //! (Bevy's temporal antialiasing at SCALE of both sides, enlarged bilinearly); quads (foveated, the default);
-//! uniform:SHARE (without a gaze); quads+aa, uniform:SHARE+aa (antialiased); reference (full rate with four samples a
-//! pixel).
+//! quads:FOVEA_DEG:RATE_MID:RATE_FAR:BUDGET; uniform:SHARE (without a gaze); one of these with +aa (antialiased);
+//! reference (full rate with four samples a pixel).
 //!
 //! Prints the time of a frame, from its start until the device has finished it; CPU time of the process; and on Linux
 //! CPU time of all but the software renderer's threads and the submission to it: what the application itself costs.
@@ -64,11 +64,12 @@ enum Extra {
 
 const LARGE: UVec2 = UVec2::new(1280, 720);
 const SMALL: UVec2 = UVec2::new(640, 360);
+const STILL: UVec2 = UVec2::new(320, 180);
 /// 256 shapes of 4096 triangles.
 const SIDE: usize = 16;
 
 /// After six frames pipelines are compiled. History that antialiases is a mean of many frames.
-const SCENES: [Scene; 9] = [
+const SCENES: [Scene; 10] = [
     Scene { name: "courtyard", size: LARGE, warm_up: 6, camera: Mover::Stroll, extra: Extra::Nothing },
     Scene { name: "small", size: SMALL, warm_up: 6, camera: Mover::Stroll, extra: Extra::Nothing },
     Scene { name: "triangles", size: LARGE, warm_up: 6, camera: Mover::Stroll, extra: crowd(SIDE, false, 0) },
@@ -78,6 +79,7 @@ const SCENES: [Scene; 9] = [
     Scene { name: "worst", size: SMALL, warm_up: 6, camera: Mover::Stroll, extra: crowd(SIDE, true, 2) },
     Scene { name: "grille", size: SMALL, warm_up: 30, camera: Mover::Stroll, extra: Extra::Grille },
     Scene { name: "grille-slow", size: SMALL, warm_up: 30, camera: Mover::Amble, extra: Extra::Grille },
+    Scene { name: "still", size: STILL, warm_up: 63, camera: Mover::Stand, extra: Extra::Grille },
 ];
 
 const fn crowd(side: usize, casts_shadows: bool, lamps: usize) -> Extra {
@@ -171,7 +173,7 @@ fn measure(
     let shown = scene.size;
     let size = (shown.as_vec2() * scale).round().as_uvec2();
     let lamps = if matches!(scene.name, "cheap" | "worst") { 0 } else { LAMPS };
-    let courtyard = ScenePlugin { lamps, moves: true };
+    let courtyard = ScenePlugin { lamps, moves: scene.name != "still" };
     let mut headless = match scene.extra {
         Extra::Nothing => Headless::new(size, courtyard),
         Extra::Grille => Headless::new(size, (courtyard, GrillePlugin)),
@@ -242,14 +244,25 @@ fn spawn_camera(headless: &mut Headless, mover: Mover, mode: &str) -> Result<(),
         "quads" => camera.insert(foveated(Foveated::default())),
         _ if name.starts_with("taa:") => camera.insert(TemporalAntiAliasing::default()),
         _ => {
-            let share = name.strip_prefix("uniform:").and_then(|share| share.parse().ok());
-            let share = share.ok_or_else(|| {
-                format!(
-                    "mode is {mode}: expected full, prepass, msaa, taa:SCALE, quads, uniform:SHARE, reference, or one \
-                     that chooses quads with +aa"
-                )
-            })?;
-            camera.insert(foveated(Foveated::uniform(share)))
+            let foveation = match name.split(':').collect::<Vec<_>>()[..] {
+                ["uniform", share] => Foveated::uniform(share.parse()?),
+                ["quads", fovea_deg, rate_mid, rate_far, budget] => Foveated {
+                    fovea_deg: fovea_deg.parse()?,
+                    rate_mid: rate_mid.parse()?,
+                    rate_far: rate_far.parse()?,
+                    budget: budget.parse()?,
+                    ..default()
+                },
+                _ => {
+                    return Err(format!(
+                        "mode is {mode}: expected full, prepass, msaa, taa:SCALE, quads, \
+                         quads:FOVEA_DEG:RATE_MID:RATE_FAR:BUDGET, uniform:SHARE, reference, or one that chooses \
+                         quads with +aa"
+                    )
+                    .into());
+                }
+            };
+            camera.insert(foveated(foveation))
         }
     };
     Ok(())

@@ -1,6 +1,6 @@
 //! Shows a model of glTF with Afterimage, without a window, and writes the last frame as PNG.
 //!
-//! `cargo run --release --features gltf --example model -- MODEL.glb [OUT.png]`: 48 frames of 1280x720, while the
+//! `cargo run --release --example model -- MODEL.glb [OUT.png]`: 48 frames of 1280x720, while the
 //! camera moves around the model. Default of OUT.png: `out/model.png`.
 
 mod common;

@@ -1,8 +1,9 @@
 //! Components of a camera, and the components that these require.
 
 use afterimage::{DebugView, DepthConvention, Filter, Foveation, Settings};
-use bevy::camera::{CameraMainTextureUsages, Hdr};
+use bevy::camera::{CameraMainTextureUsages, ClearColorConfig, Hdr, NormalizedRenderTarget, RenderTarget};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass};
+use bevy::ecs::query::QueryData;
 use bevy::prelude::*;
 use bevy::render::render_resource::TextureUsages;
 
@@ -180,22 +181,46 @@ impl Plugin for CameraPlugin {
 #[derive(Component)]
 struct ReplacedMsaa(Msaa);
 
-type Multisampled<'a> = (Entity, &'a mut Msaa, Option<&'a ReplacedMsaa>, Option<&'a Foveated>, Has<Afterimage>);
+/// What says whether a camera is foveated, or draws on what a foveated one has drawn: a head-up display. Bevy has both
+/// draw to one main texture only if that has the same samples and usages.
+#[derive(QueryData)]
+struct Layer {
+    camera: &'static Camera,
+    target: &'static RenderTarget,
+    foveated: Option<&'static Foveated>,
+    has_afterimage: Has<Afterimage>,
+    is_hdr: Has<Hdr>,
+}
 
-type Switched = Or<(With<Afterimage>, With<ReplacedMsaa>)>;
+impl LayerItem<'_, '_> {
+    fn is_foveated(&self) -> bool {
+        self.has_afterimage && self.foveated.is_some_and(|foveated| foveated.kind != FoveationKind::Off)
+    }
+
+    /// Where cameras that do not clear draw, too. The primary window is `None`.
+    fn place(&self) -> (Option<NormalizedRenderTarget>, bool) {
+        (self.target.normalize(None), self.is_hdr)
+    }
+
+    fn is_on(&self, places: &[(Option<NormalizedRenderTarget>, bool)]) -> bool {
+        matches!(self.camera.clear_color, ClearColorConfig::None) && places.contains(&self.place())
+    }
+}
 
 /// Switches MSAA off for cameras that are foveated, and back when they no longer are.
-fn replace_msaa(mut commands: Commands, mut cameras: Query<Multisampled<'_>, Switched>) {
-    for (entity, mut msaa, replaced, foveated, has_afterimage) in &mut cameras {
-        let is_foveated = has_afterimage && foveated.is_some_and(|foveated| foveated.kind != FoveationKind::Off);
-        if is_foveated && *msaa != Msaa::Off {
+fn replace_msaa(mut commands: Commands, mut cameras: Query<(Entity, &mut Msaa, Option<&ReplacedMsaa>, Layer)>) {
+    let foveated = cameras.iter().filter(|(.., layer)| layer.is_foveated());
+    let places: Vec<_> = foveated.map(|(.., layer)| layer.place()).collect();
+    for (entity, mut msaa, replaced, layer) in &mut cameras {
+        let is_off = layer.is_foveated() || layer.is_on(&places);
+        if is_off && *msaa != Msaa::Off {
             // Bevy's default was hardly chosen.
             if *msaa != Msaa::default() {
                 warn_once!("Afterimage sets Msaa::Off: most pixels of a foveated frame have no samples to average");
             }
             commands.entity(entity).insert(ReplacedMsaa(*msaa));
             *msaa = Msaa::Off;
-        } else if let Some(replaced) = replaced.filter(|_| !is_foveated) {
+        } else if let Some(replaced) = replaced.filter(|_| !is_off) {
             *msaa = replaced.0;
             commands.entity(entity).remove::<ReplacedMsaa>();
         }
@@ -206,15 +231,16 @@ fn replace_msaa(mut commands: Commands, mut cameras: Query<Multisampled<'_>, Swi
 #[derive(Component)]
 struct AddedStorage;
 
-type Used<'a> =
-    (Entity, &'a mut CameraMainTextureUsages, &'a mut Camera3d, Has<Afterimage>, Has<Hdr>, Has<AddedStorage>);
+type Used<'a> = (Entity, &'a mut CameraMainTextureUsages, Option<&'a mut Camera3d>, Has<AddedStorage>, Layer);
 
 /// Has the post-process write the main texture itself where compute shaders can: not sRGB-encoded formats, which
 /// cameras without `Hdr` have. Has the depth that it closes be restored.
 fn add_usages(mut commands: Commands, mut cameras: Query<Used<'_>>) {
     let storage = TextureUsages::STORAGE_BINDING;
-    for (entity, mut usages, mut camera, has_afterimage, is_hdr, is_added) in &mut cameras {
-        let needed = has_afterimage && is_hdr;
+    let written = cameras.iter().filter(|(.., layer)| layer.has_afterimage && layer.is_hdr);
+    let places: Vec<_> = written.map(|(.., layer)| layer.place()).collect();
+    for (entity, mut usages, camera, is_added, layer) in &mut cameras {
+        let needed = layer.is_hdr && (layer.has_afterimage || layer.is_on(&places));
         if needed && !usages.0.contains(storage) {
             usages.0.insert(storage);
             commands.entity(entity).insert(AddedStorage);
@@ -222,9 +248,11 @@ fn add_usages(mut commands: Commands, mut cameras: Query<Used<'_>>) {
             usages.0.remove(storage);
             commands.entity(entity).remove::<AddedStorage>();
         }
-        let depth = TextureUsages::from(camera.depth_texture_usages);
-        if has_afterimage && !depth.contains(TextureUsages::COPY_DST) {
-            camera.depth_texture_usages = (depth | TextureUsages::COPY_DST).into();
+        if let Some(mut camera) = camera.filter(|_| layer.has_afterimage) {
+            let depth = TextureUsages::from(camera.depth_texture_usages);
+            if !depth.contains(TextureUsages::COPY_DST) {
+                camera.depth_texture_usages = (depth | TextureUsages::COPY_DST).into();
+            }
         }
     }
 }

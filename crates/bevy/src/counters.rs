@@ -9,6 +9,8 @@ use std::sync::atomic::{AtomicU8, Ordering};
 /// Counts what a camera with [`Afterimage`](crate::Afterimage) shaded, and its pixels by what became of their history,
 /// a few frames ago. Add it to the camera; without it nothing is counted, at no cost.
 ///
+/// With it the log says, once, if foveation does not pay because the device waits for most of each frame.
+///
 /// The shares are also Bevy diagnostics, `afterimage/kept` and `afterimage/disoccluded`, in percent. The times of the
 /// post-process are the diagnostics `render/afterimage_plan/elapsed_gpu` and `render/afterimage/elapsed_gpu` (and
 /// `elapsed_cpu`), if the application has Bevy's `RenderDiagnosticsPlugin`.
@@ -29,11 +31,15 @@ pub struct AfterimageStats {
     pub nonfinite: u64,
     /// Pixels that are shaded: four a quad.
     pub shaded: u64,
+    /// Time that the device works on a frame of all cameras, in microseconds. 0 if it has no timestamps.
+    pub device_us: u64,
+    /// Time from the last frame of the application to this one, in microseconds.
+    pub frame_us: u64,
 }
 
 impl AfterimageStats {
     /// Copies the device's counts.
-    pub(crate) fn count(&mut self, (stats, quads): Counts) {
+    pub(crate) fn count(&mut self, Counts { stats, quads, device_us }: Counts) {
         self.pixels = stats.pixels;
         self.kept = stats.valid().saturating_sub(stats.replaced);
         self.replaced = stats.replaced;
@@ -41,19 +47,29 @@ impl AfterimageStats {
         self.rejected = stats.rejected();
         self.nonfinite = stats.nonfinite;
         self.shaded = 4 * quads;
+        self.device_us = device_us;
     }
 }
 
-/// Counts of a frame, and the number of its quads.
-pub(crate) type Counts = (FrameStats, u64);
+/// What is counted of a frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Counts {
+    stats: FrameStats,
+    quads: u64,
+    device_us: u64,
+}
 
-/// Place of that number in the list of quads, and its size.
+/// Place of the number of quads in their list, and its size.
 const QUADS: Range<u64> = 28..32;
 
-/// Counters of a camera, and a copy of them that is on its way back.
+/// Bytes of the timestamps at the start and at the end of a frame.
+const STAMPS_BYTES: u64 = 16;
+
+/// Counters of a camera, and a copy of them that is on its way back: with the number of quads, and timestamps.
 #[derive(Debug)]
 pub(crate) struct Counters {
     pub buffer: wgpu::Buffer,
+    stamps: Option<(wgpu::QuerySet, wgpu::Buffer)>,
     copy: wgpu::Buffer,
     state: Arc<AtomicU8>,
 }
@@ -76,10 +92,37 @@ impl Counters {
                 mapped_at_creation: false,
             })
         };
+        let usage = wgpu::BufferUsages::COPY_SRC;
+        let stamps = device.features().contains(wgpu::Features::TIMESTAMP_QUERY).then(|| {
+            let label = Some("afterimage timestamps");
+            let queries = wgpu::QuerySetDescriptor { label, ty: wgpu::QueryType::Timestamp, count: 2 };
+            (device.create_query_set(&queries), buffer(wgpu::BufferUsages::QUERY_RESOLVE | usage, STAMPS_BYTES))
+        });
+        let copied_bytes = FrameStats::COUNTERS_BYTES + (QUADS.end - QUADS.start) + STAMPS_BYTES;
         Self {
-            buffer: buffer(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC, FrameStats::COUNTERS_BYTES),
-            copy: buffer(wgpu::BufferUsages::MAP_READ, FrameStats::COUNTERS_BYTES + (QUADS.end - QUADS.start)),
+            buffer: buffer(wgpu::BufferUsages::STORAGE | usage, FrameStats::COUNTERS_BYTES),
+            stamps,
+            copy: buffer(wgpu::BufferUsages::MAP_READ, copied_bytes),
             state: Arc::default(),
+        }
+    }
+
+    /// Before what the device does in a frame (0), or after it (1).
+    pub fn stamp(&mut self, encoder: &mut wgpu::CommandEncoder, index: u32) {
+        let Some((query_set, resolved)) = &self.stamps else { return };
+        // Of a pass without work, because not all devices write timestamps between passes.
+        drop(encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("afterimage timestamp"),
+            timestamp_writes: Some(wgpu::ComputePassTimestampWrites {
+                query_set,
+                beginning_of_pass_write_index: Some(index),
+                end_of_pass_write_index: None,
+            }),
+        }));
+        if index == 1 && self.state.load(Ordering::Acquire) == RECORDED {
+            encoder.resolve_query_set(query_set, 0..2, resolved, 0);
+            let at = self.copy.size() - STAMPS_BYTES;
+            encoder.copy_buffer_to_buffer(resolved, 0, &self.copy, at, STAMPS_BYTES);
         }
     }
 
@@ -93,8 +136,8 @@ impl Counters {
         }
     }
 
-    /// After submission: requests the copy, or returns it if it has arrived.
-    pub fn poll(&mut self) -> Option<Counts> {
+    /// After submission: requests the copy, or returns it if it has arrived. A unit of timestamps is `tick_ns` long.
+    pub fn poll(&mut self, tick_ns: f32) -> Option<Counts> {
         match self.state.load(Ordering::Acquire) {
             RECORDED => {
                 self.state.store(REQUESTED, Ordering::Release);
@@ -106,8 +149,12 @@ impl Counters {
             }
             MAPPED => {
                 let bytes = self.copy.get_mapped_range(..).ok()?;
-                let quads = bytes.last_chunk().map_or(0, |bytes| u32::from_le_bytes(*bytes));
-                let counts = FrameStats::from_counters(&bytes).map(|stats| (stats, quads.into()));
+                let (rest, end) = bytes.split_last_chunk()?;
+                let (rest, start) = rest.split_last_chunk()?;
+                let ticks = u64::from_le_bytes(*end).saturating_sub(u64::from_le_bytes(*start));
+                let device_us = (1e-3 * f64::from(tick_ns) * ticks as f64) as u64;
+                let quads = u32::from_le_bytes(*rest.last_chunk()?).into();
+                let counts = FrameStats::from_counters(rest).map(|stats| Counts { stats, quads, device_us });
                 drop(bytes);
                 self.copy.unmap();
                 self.state.store(FREE, Ordering::Release);

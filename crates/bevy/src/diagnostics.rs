@@ -1,9 +1,12 @@
 //! Counters of the post-process, read back and shown among Bevy's diagnostics.
 
-use crate::counters::{AfterimageStats, Counters, Counts};
+use crate::counters::{AfterimageStats, Counts};
 use crate::pass::Contexts;
+use afterimage::wgpu;
 use bevy::diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnostic};
+use bevy::platform::time::Instant;
 use bevy::prelude::*;
+use bevy::render::renderer::{PendingCommandBuffers, RenderDevice, RenderGraph, RenderGraphSystems, RenderQueue};
 use bevy::render::sync_world::MainEntity;
 use bevy::render::{Render, RenderApp, RenderSystems};
 use std::sync::Mutex;
@@ -35,28 +38,84 @@ impl Plugin for DiagnosticsPlugin {
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
             render_app
                 .insert_resource(Departures(sender))
-                .add_systems(Render, read_back.in_set(RenderSystems::Cleanup));
+                .add_systems(Render, read_back.in_set(RenderSystems::Cleanup))
+                .add_systems(
+                    RenderGraph,
+                    (
+                        stamp::<0>.before(RenderGraphSystems::Render),
+                        stamp::<1>.after(RenderGraphSystems::Render).before(RenderGraphSystems::Submit),
+                    ),
+                );
         }
     }
 }
 
-fn receive(arrivals: Res<Arrivals>, mut cameras: Query<&mut AfterimageStats>, mut diagnostics: Diagnostics) {
+/// After so many counts in which the device waited, it is said. They arrive in every second frame.
+const WAITED: u32 = 64;
+
+/// The last frame of the application, and since how many counts the device waited for most of each frame.
+#[derive(Default)]
+struct Pace {
+    last: Option<Instant>,
+    waited: u32,
+}
+
+fn receive(
+    arrivals: Res<Arrivals>,
+    mut cameras: Query<&mut AfterimageStats>,
+    mut diagnostics: Diagnostics,
+    mut pace: Local<Pace>,
+) {
+    let now = Instant::now();
+    let frame_us = pace.last.replace(now).map_or(0, |last| now.duration_since(last).as_micros() as u64);
     let Ok(arrivals) = arrivals.0.lock() else { return };
-    for (camera, stats) in arrivals.try_iter() {
+    for (camera, counts) in arrivals.try_iter() {
         let Ok(mut shown) = cameras.get_mut(camera) else { continue };
-        shown.count(stats);
+        shown.count(counts);
+        shown.frame_us = frame_us;
         let percent = |pixels: u64| 100.0 * pixels as f64 / shown.pixels.max(1) as f64;
         diagnostics.add_measurement(&KEPT, || percent(shown.kept));
         diagnostics.add_measurement(&DISOCCLUDED, || percent(shown.disoccluded));
+        let device_us = shown.device_us;
+        let has_waited = device_us > 0 && 2 * device_us < frame_us;
+        pace.waited = if has_waited { pace.waited + 1 } else { 0 };
+        if pace.waited == WAITED {
+            warn_once!(
+                "camera {camera}: shading fewer pixels does not make frames faster. The device works {:.1} ms in {:.1} \
+                 ms a frame, and waits for the application, or for the display. Spend it on resolution, lights and \
+                 materials, or render every pixel (FoveationKind::Off)",
+                1e-3 * device_us as f64,
+                1e-3 * frame_us as f64
+            );
+        }
     }
 }
 
-fn read_back(mut contexts: ResMut<Contexts>, departures: Res<Departures>, cameras: Query<&MainEntity>) {
+/// Times what the device does in a frame, for cameras that count.
+fn stamp<const INDEX: u32>(
+    mut contexts: ResMut<Contexts>,
+    mut pending: ResMut<PendingCommandBuffers>,
+    device: Res<RenderDevice>,
+) {
+    let mut counters = contexts.0.values_mut().filter_map(|context| context.counters.as_mut()).peekable();
+    if counters.peek().is_some() {
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        counters.for_each(|counters| counters.stamp(&mut encoder, INDEX));
+        pending.push([encoder.finish()]);
+    }
+}
+
+fn read_back(
+    mut contexts: ResMut<Contexts>,
+    departures: Res<Departures>,
+    queue: Res<RenderQueue>,
+    cameras: Query<&MainEntity>,
+) {
     for (&camera, context) in &mut contexts.0 {
-        let stats = context.counters.as_mut().and_then(Counters::poll);
-        if let (Some(stats), Ok(main)) = (stats, cameras.get(camera)) {
+        let counts = context.counters.as_mut().and_then(|counters| counters.poll(queue.get_timestamp_period()));
+        if let (Some(counts), Ok(main)) = (counts, cameras.get(camera)) {
             // The receiver lives as long as the application.
-            let _ = departures.0.send((main.id(), stats));
+            let _ = departures.0.send((main.id(), counts));
         }
     }
 }

@@ -41,6 +41,7 @@ pub use afterimage;
 pub use camera::{Afterimage, AfterimageDebug, AfterimageSupported, Foveated, FoveationKind, Preset};
 pub use counters::AfterimageStats;
 pub use gaze::{CameraGaze, CursorGazePlugin, Gaze};
+pub use pass::ShowQuads;
 pub use scanpath::{Scanpath, ScanpathError, ScanpathPlugin};
 
 use bevy::prelude::*;

@@ -22,9 +22,10 @@ use wgpu::util::DeviceExt;
 
 pub(crate) struct PassPlugin;
 
-/// What runs between the opaque meshes and those that blend with them.
+/// In Bevy's schedule `Core3d`, after the opaque meshes and before those that blend: history fills what was not shaded.
+/// Passes that read the frame belong after it.
 #[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
-struct ShowQuads;
+pub struct ShowQuads;
 
 impl Plugin for PassPlugin {
     fn build(&self, app: &mut App) {

@@ -4,6 +4,8 @@ use crate::camera::{Afterimage, Foveated, FoveationKind};
 use crate::frame::ExtractedAfterimage;
 use bevy::asset::UntypedAssetId;
 use bevy::core_pipeline::core_3d::{AlphaMask3d, Opaque3d};
+use bevy::core_pipeline::schedule::Core3d;
+use bevy::ecs::schedule::Schedules;
 use bevy::material::{MaterialProperties, RenderPhaseType};
 use bevy::pbr::PreparedMaterial;
 use bevy::platform::collections::HashSet;
@@ -25,7 +27,7 @@ impl Plugin for WarningsPlugin {
         app.add_systems(PostUpdate, (warn_of_jitter, warn_of_unused));
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
             // In extraction, because the text of shaders is in the main world. Phases are those of the last frame.
-            render_app.add_systems(ExtractSchedule, (warn_of_pipelines, warn_of_materials));
+            render_app.add_systems(ExtractSchedule, (warn_of_pipelines, warn_of_materials, warn_of_passes));
         }
     }
 }
@@ -126,5 +128,30 @@ fn warn_of_materials(
             "material {material:?} has no prepass (Material::enable_prepass), by which Afterimage chooses quads: it \
              tears and trails. Enable its prepass, or give it AlphaMode::Blend"
         );
+    }
+}
+
+/// Bevy's own crates that draw between opaque meshes and those that blend.
+const BEVY: [&str; 4] = ["bevy_core_pipeline::", "bevy_ecs::", "bevy_pbr::", "bevy_render::"];
+
+/// Passes of others between the opaque meshes and the post-process, in the order in which Bevy submits them. Systems
+/// have names if Bevy's feature `debug` is on, as it is by default.
+fn warn_of_passes(cameras: Query<(), With<ExtractedAfterimage>>, schedules: Res<Schedules>, mut is_done: Local<bool>) {
+    if *is_done || cameras.is_empty() {
+        return;
+    }
+    // Its systems have an order after the first frame.
+    let Some(Ok(systems)) = schedules.get(Core3d).map(|schedule| schedule.systems()) else { return };
+    *is_done = true;
+    let names = systems.map(|(_, system)| (system.name().to_string(), system.has_deferred()));
+    let between = names.skip_while(|(name, _)| !name.ends_with("::main_opaque_pass_3d")).skip(1);
+    for (name, draws) in between.take_while(|(name, _)| name != "bevy_afterimage::pass::show") {
+        let is_bevys = BEVY.iter().any(|own| name.starts_with(own)) && !name.contains("fullscreen_material");
+        if draws && !is_bevys {
+            warn!(
+                "system {name} draws when only the chosen quads are shaded: what it reads beside them is empty. Add \
+                 .after(bevy_afterimage::ShowQuads) to it, or have it draw in Core3dSystems::PostProcess"
+            );
+        }
     }
 }

@@ -5,25 +5,33 @@ mod common;
 
 use bevy::asset::RenderAssetUsages;
 use bevy::asset::uuid::Uuid;
-use bevy::camera::ClearColorConfig;
+use bevy::camera::{ClearColorConfig, RenderTarget};
+use bevy::core_pipeline::core_3d::{main_opaque_pass_3d, main_transparent_pass_3d};
 use bevy::core_pipeline::prepass::DeferredPrepass;
+use bevy::core_pipeline::schedule::Core3d;
 use bevy::log::tracing_subscriber;
 use bevy::mesh::MeshVertexBufferLayoutRef;
 use bevy::pbr::{MaterialPipeline, MaterialPipelineKey};
 use bevy::prelude::*;
 use bevy::reflect::TypePath;
+use bevy::render::RenderApp;
 use bevy::render::camera::TemporalJitter;
 use bevy::render::render_resource::{
     AsBindGroup, CompareFunction, RenderPipelineDescriptor, SpecializedMeshPipelineError,
 };
+use bevy::render::renderer::{RenderContext, ViewQuery};
 use bevy::render::storage::ShaderBuffer;
+use bevy::render::view::ViewTarget;
 use bevy::shader::{Shader, ShaderRef};
-use bevy_afterimage::{Afterimage, AfterimagePlugin, AfterimageSupported, CameraGaze, Foveated};
+use bevy_afterimage::{
+    Afterimage, AfterimagePlugin, AfterimageStats, AfterimageSupported, CameraGaze, Foveated, ShowQuads,
+};
 use common::headless::{self, Headless};
 use common::scene::{ScenePlugin, TONEMAPPING, stroll};
 use std::io::Write;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 static LOG: Mutex<Vec<u8>> = Mutex::new(vec![]);
 
@@ -37,6 +45,22 @@ impl Write for Log {
     fn flush(&mut self) -> std::io::Result<()> {
         Ok(())
     }
+}
+
+/// A pass of an application that reads the frame, between the opaque meshes and those that blend.
+fn blur(_: ViewQuery<&ViewTarget>, mut context: RenderContext) {
+    context.command_encoder().insert_debug_marker("blur");
+}
+
+/// The same, where it belongs.
+fn late_blur(_: ViewQuery<&ViewTarget>, mut context: RenderContext) {
+    context.command_encoder().insert_debug_marker("late blur");
+}
+
+fn add_passes(app: &mut App) {
+    let passes = (blur.before(ShowQuads), late_blur.after(ShowQuads));
+    let passes = passes.after(main_opaque_pass_3d).before(main_transparent_pass_3d);
+    app.sub_app_mut(RenderApp).add_systems(Core3d, passes);
 }
 
 /// How many lines contain `word` after a few frames of a camera with `components`.
@@ -61,7 +85,9 @@ fn lines(word: &str) -> usize {
 #[bind_group_data(Kind)]
 struct Special {
     #[storage(0)]
-    buffer: Handle<ShaderBuffer>,
+    written: Handle<ShaderBuffer>,
+    #[storage(1, read_only)]
+    read: Handle<ShaderBuffer>,
     kind: Kind,
 }
 
@@ -81,25 +107,25 @@ impl Kind {
         Uuid::from_u128(SHADER + number as u128).into()
     }
 
+    /// In WGSL, without imports: Bevy's WESL has no forced tests.
     fn text(self) -> String {
         let forced = if self.is("forced") { "@early_depth_test(force)" } else { "" };
         let write = if self.is("storage") { "counts[0] = 1u;" } else { "" };
-        let access = if self.is("storage") { "read_write" } else { "read" };
+        let (binding, access) = if self.is("storage") { (0, "read_write") } else { (1, "read") };
         let (output, depth) = match self.is("depth") {
-            true => ("@builtin(frag_depth) depth: f32,", "out.depth = in.position.z;"),
+            true => ("@builtin(frag_depth) depth: f32,", "out.depth = position.z;"),
             false => ("", ""),
         };
         format!(
-            "#import bevy_pbr::forward_io::VertexOutput
-            // A comment on frag_depth and read_write is none of it.
-            @group(#{{MATERIAL_BIND_GROUP}}) @binding(0) var<storage, {access}> counts: array<u32, 4>;
+            "// A comment on frag_depth and read_write is none of it.
+            @group(3) @binding({binding}) var<storage, {access}> counts: array<u32, 4>;
             struct Out {{ @location(0) color: vec4<f32>, {output} }}
             @fragment {forced}
-            fn fragment(in: VertexOutput) -> Out {{
+            fn fragment(@builtin(position) position: vec4<f32>, @location(2) uv: vec2<f32>) -> Out {{
                 var out: Out;
                 {write}
                 {depth}
-                out.color = vec4(in.uv, f32(counts[1]), 1.0);
+                out.color = vec4(uv, f32(counts[1]), 1.0);
                 return out;
             }}"
         )
@@ -157,8 +183,9 @@ fn add_shaders(mut shaders: ResMut<Assets<Shader>>) {
 fn lines_of_material(headless: &mut Headless, kind: &'static str, word: &str) -> usize {
     let before = lines("");
     IS_BARE.store(kind == "bare", Ordering::Relaxed);
-    let buffer = headless.asset(ShaderBuffer::new(vec![0_u32; 4], RenderAssetUsages::default()));
-    let material = MeshMaterial3d(headless.asset(Special { buffer, kind: Kind(kind) }));
+    let [written, read] =
+        [(), ()].map(|()| headless.asset(ShaderBuffer::new(vec![0_u32; 4], RenderAssetUsages::default())));
+    let material = MeshMaterial3d(headless.asset(Special { written, read, kind: Kind(kind) }));
     show_mesh(headless, Rectangle::new(4.0, 3.0), material);
     let log = LOG.lock().expect("the log");
     let log = String::from_utf8_lossy(&log);
@@ -185,6 +212,23 @@ fn lines_of_glass(headless: &mut Headless) -> usize {
     lines("specular_transmission")
 }
 
+/// What is said of frames of `size`, before each of which the application takes some times as long as the device, and
+/// what was counted last.
+fn lines_of_pace(headless: &mut Headless, size: UVec2, times: u64, frames: usize) -> (usize, AfterimageStats) {
+    let target = RenderTarget::from(headless.add_target(size));
+    let camera = (Camera3d::default(), Msaa::Off, target, TONEMAPPING, stroll(1.0), Afterimage::default());
+    let camera = headless.app.world_mut().spawn((camera, AfterimageStats::default())).id();
+    let mut stats = AfterimageStats::default();
+    for _ in 0..frames {
+        std::thread::sleep(Duration::from_micros(times * stats.device_us));
+        headless.frames(1);
+        stats = *headless.app.world().get(camera).expect("stats");
+    }
+    headless.app.world_mut().despawn(camera);
+    headless.frames(1);
+    (lines("does not make frames faster"), stats)
+}
+
 /// Adds the plugin before those that it needs.
 fn lines_of_a_wrong_order() -> usize {
     let mut app = App::new();
@@ -203,6 +247,7 @@ fn what_is_not_drawn_as_it_should_is_said_once() {
         UVec2::new(64, 36),
         (ScenePlugin { lamps: 0, moves: false }, MaterialPlugin::<Special>::default(), |app: &mut App| {
             app.add_systems(Startup, add_shaders);
+            add_passes(app);
         }),
     );
     let msaa = [Msaa::Off, Msaa::default(), Msaa::Sample2];
@@ -230,7 +275,14 @@ fn what_is_not_drawn_as_it_should_is_said_once() {
     assert_eq!(lines_of_material(headless, "storage", "special.wgsl: it writes to storage"), 1);
     assert_eq!(lines_of_material(headless, "storage forced", "special"), 0);
     assert_eq!(lines_of_material(headless, "bare", "has no prepass"), 1);
+    let (lines_of_pixels, stats) = lines_of_pace(headless, UVec2::new(960, 540), 0, 8);
+    println!("many pixels: {} us of {} us a frame", stats.device_us, stats.frame_us);
+    assert!(2 * stats.device_us > stats.frame_us, "{stats:?}");
+    let (lines_of_a_busy_app, stats) = lines_of_pace(headless, UVec2::new(64, 36), 3, 140);
+    println!("a busy application: {} us of {} us a frame", stats.device_us, stats.frame_us);
+    assert_eq!((lines_of_pixels, lines_of_a_busy_app), (0, 1));
     assert_eq!(lines_of_a_wrong_order(), 1);
+    assert_eq!((lines("system log::blur draws"), lines("late_blur")), (1, 0));
     // What is right is not complained about.
     let before = lines("");
     lines_about(headless, "", (Msaa::Off, Afterimage::default(), CameraGaze::default()));

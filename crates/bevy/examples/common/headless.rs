@@ -11,7 +11,7 @@ use bevy::render::RenderPlugin;
 use bevy::render::error_handler::{RenderErrorHandler, RenderErrorPolicy};
 use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
 use bevy::render::render_asset::RenderAssets;
-use bevy::render::render_resource::{TextureFormat, TextureUsages};
+use bevy::render::render_resource::{CachedPipelineState, PipelineCache, TextureFormat, TextureUsages};
 use bevy::render::renderer::{RenderAdapterInfo, RenderDevice, RenderQueue};
 use bevy::render::settings::{Backends, RenderCreation, WgpuSettings};
 use bevy::render::texture::GpuImage;
@@ -134,9 +134,14 @@ impl Headless {
         bytes.chunks(stride as usize).flat_map(|row| &row[..4 * w as usize]).copied().collect()
     }
 
-    /// Validation errors so far.
-    pub fn problems(&self) -> &[String] {
-        &self.app.world().resource::<Problems>().0
+    /// Validation errors so far, and shaders that cannot be compiled: what they draw is missing.
+    pub fn problems(&self) -> Vec<String> {
+        let cache = self.app.sub_app(RenderApp).world().resource::<PipelineCache>();
+        let failed = cache.pipelines().filter_map(|pipeline| match &pipeline.state {
+            CachedPipelineState::Err(error) => Some(error.to_string()),
+            _ => None,
+        });
+        self.app.world().resource::<Problems>().0.iter().cloned().chain(failed).collect()
     }
 }
 

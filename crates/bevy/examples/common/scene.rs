@@ -29,6 +29,8 @@ pub enum Mover {
     Stroll,
     /// A camera that does so at a fifth of that speed.
     Amble,
+    /// A camera that stands.
+    Stand,
 }
 
 #[derive(Resource)]
@@ -66,6 +68,7 @@ fn animate(time: Res<Time>, mut movers: Query<(&mut Transform, &Mover)>) {
             }
             Mover::Stroll => *transform = stroll(t),
             Mover::Amble => *transform = stroll(0.2 * t),
+            Mover::Stand => {}
         }
     }
 }

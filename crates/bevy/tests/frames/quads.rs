@@ -16,7 +16,7 @@ struct Grid {}
 
 const SHADER: Handle<Shader> = bevy::asset::uuid_handle!("2c1a8d2e-5a2f-4a8e-9a4f-0b6a3a1f2c55");
 
-const TEXT: &str = "#import bevy_pbr::forward_io::VertexOutput
+const TEXT: &str = "import bevy_pbr::render::forward_io::VertexOutput;
 @fragment
 fn fragment(in: VertexOutput) -> @location(0) vec4<f32> {
     let at = in.uv * 12.0;
@@ -39,7 +39,7 @@ fn build(
     mut grids: ResMut<Assets<Grid>>,
     mut standard: ResMut<Assets<StandardMaterial>>,
 ) {
-    shaders.insert(SHADER.id(), Shader::from_wgsl(TEXT, "grid.wgsl")).expect("inserted");
+    shaders.insert(SHADER.id(), Shader::from_wesl(TEXT, "grid.wesl")).expect("inserted");
     let floor = Mesh3d(meshes.add(Plane3d::default().mesh().size(14.0, 14.0)));
     commands.spawn((floor, MeshMaterial3d(grids.add(Grid {})), Transform::from_xyz(0.0, -1.0, -4.0)));
     let cube = meshes.add(Cuboid::from_length(1.4));
