@@ -4,7 +4,7 @@
 use crate::error::{SettingsError, check};
 use crate::kernel::foveate;
 use crate::kernel::lattice::offset_px;
-use crate::kernel::quads::NEW_STEP;
+use crate::kernel::quads::FIRST_STEP;
 #[cfg(feature = "bevy-0-20")]
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
@@ -198,11 +198,11 @@ impl Foveation {
         [mid_x, mid_y, far_x, far_y]
     }
 
-    /// Place in its block of [`NEW_STEP`] quads of the quad that frame `index` chooses first where history has nothing,
+    /// Place in its block of [`FIRST_STEP`] quads of the quad that frame `index` chooses first without history,
     /// in quads.
     pub(crate) fn first_quad(index: u64) -> [u32; 2] {
         // Not of the frame itself, whose quad an even pattern of this step has already.
-        offset_px(index + 1, NEW_STEP)
+        offset_px(index + 1, FIRST_STEP)
     }
 
     pub(crate) fn fovea_radius_deg(&self) -> f32 {

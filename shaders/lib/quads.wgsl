@@ -7,9 +7,9 @@ const IN_PERIPHERY: u32 = 2u;
 const RUN_QUADS: u32 = 16u;
 const REACH: i32 = 8;
 const NOWHERE: u32 = 0x88u;
-const NOTHING: f32 = 60.0;
-const NOT_IN_TURN: f32 = 0.25;
-const NEW_STEP: u32 = 4u;
+const NO_HISTORY_NEED: f32 = 60.0;
+const LATER_SHARE: f32 = 0.25;
+const FIRST_STEP: u32 = 4u;
 const COARSE_CONTRAST: f32 = 4.0;
 const COARSEST: f32 = 2.0;
 const MOST_CONTRAST: f32 = 60.0;
@@ -46,9 +46,9 @@ fn asked_px(x: u32, y: u32, frame_low: u32) -> vec2<u32> {
     return vec2<u32>(2u * x + ((frame_low ^ x ^ y) & 1u), 2u * y + ((frame_low >> 1u) & 1u));
 }
 
-// quads::need_of_new
-fn need_of_new(x: u32, y: u32, offset: vec2<u32>) -> f32 {
-    return select(NOT_IN_TURN * NOTHING, NOTHING, in_pattern(x, y, NEW_STEP, offset));
+// quads::no_history_need
+fn no_history_need(x: u32, y: u32, offset: vec2<u32>) -> f32 {
+    return select(LATER_SHARE * NO_HISTORY_NEED, NO_HISTORY_NEED, in_pattern(x, y, FIRST_STEP, offset));
 }
 
 // quads::need

@@ -92,7 +92,7 @@ fn block(at: vec2<u32>, view: u32) {
         } else if HAS_KEPT != 0u && region_now != IN_FOVEA && all(px < frame.size) && is_seen(px, view) {
             let needed = need_at(px, view);
             let first = vec2<u32>(frame.first_quad & 0xffffu, frame.first_quad >> 16u);
-            needs[i] = select(needed * acuity(e_deg), need_of_new(quad.x, quad.y, first), needed < 0.0);
+            needs[i] = select(needed * acuity(e_deg), no_history_need(quad.x, quad.y, first), needed < 0.0);
         }
     }
     for (var i = 0u; i < 4u; i++) {

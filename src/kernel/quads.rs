@@ -23,11 +23,11 @@ pub const NOWHERE: u32 = 0x88;
 
 /// Need of a quad without history, if it comes first in its block in this frame; in squared units of
 /// [`root_difference`](super::matched::root_difference).
-const NOTHING: f32 = 60.0;
+const NO_HISTORY_NEED: f32 = 60.0;
 /// Share of that need for the other quads of the block.
-const NOT_IN_TURN: f32 = 0.25;
+const LATER_SHARE: f32 = 0.25;
 /// Quads along each side of a block, of which one comes first.
-pub const NEW_STEP: u32 = 4;
+pub const FIRST_STEP: u32 = 4;
 /// Added to the contrast of coarse history, which errs by as much for each level of detail.
 const COARSE_CONTRAST: f32 = 4.0;
 /// Largest level of detail that counts.
@@ -89,11 +89,11 @@ pub fn asked_px(x: u32, y: u32, frame: u32) -> [u32; 2] {
 }
 
 /// Need of quad (`x`, `y`) without history. It does not fall with eccentricity: without history every part of the view
-/// is far off. In each block of [`NEW_STEP`] quads along each axis the quad at `offset` comes first, so that samples
+/// is far off. In each block of [`FIRST_STEP`] quads along each axis the quad at `offset` comes first, so that samples
 /// are spread evenly from the first frame on.
 #[inline]
-pub fn need_of_new(x: u32, y: u32, offset: [u32; 2]) -> f32 {
-    if in_pattern(x, y, NEW_STEP, offset) { NOTHING } else { NOT_IN_TURN * NOTHING }
+pub fn no_history_need(x: u32, y: u32, offset: [u32; 2]) -> f32 {
+    if in_pattern(x, y, FIRST_STEP, offset) { NO_HISTORY_NEED } else { LATER_SHARE * NO_HISTORY_NEED }
 }
 
 /// Reduction of a pixel's squared error that a sample of its own is expected to bring, from history of level of detail

@@ -273,8 +273,9 @@ impl Headset {
     /// # Errors
     /// [`Error`] if the runtime or the post-process refuses the size.
     pub fn resize(&mut self, size_px: [u32; 2]) -> Result<(), Error> {
+        self.set_size(size_px)?;
         self.has_own_size = true;
-        self.set_size(size_px)
+        Ok(())
     }
 
     fn set_size(&mut self, size_px: [u32; 2]) -> Result<(), Error> {

@@ -13,8 +13,8 @@ use crate::kernel::antialias::mean_of;
 use crate::kernel::kept::{code_word, is_empty, unpack_full};
 use crate::kernel::matched::root_difference;
 use crate::kernel::quads::{
-    ENOUGH_SAMPLES, IN_FOVEA, IN_MIDDLE, KEYS, acuity, asked_px, budget_quads, in_pattern, in_turn, need, need_of_new,
-    quad_key, region, share_in_block, threshold,
+    ENOUGH_SAMPLES, IN_FOVEA, IN_MIDDLE, KEYS, acuity, asked_px, budget_quads, in_pattern, in_turn, need,
+    no_history_need, quad_key, region, share_in_block, threshold,
 };
 use crate::kernel::reproject::nearest;
 use crate::kernel::resample::{has_code, tap_codes};
@@ -87,7 +87,7 @@ impl View<'_> {
             return 0.0;
         }
         let e_deg = self.inputs.eccentricity_deg(self.inputs.ray(2 * x, 2 * y));
-        self.need_at([u, v]).map_or(need_of_new(x, y, first), |need| need * acuity(e_deg))
+        self.need_at([u, v]).map_or(no_history_need(x, y, first), |need| need * acuity(e_deg))
     }
 
     /// Need of a pixel, from the four stored samples around its previous position; `None` without history.

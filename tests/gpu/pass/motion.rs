@@ -1,14 +1,36 @@
 //! Moving surfaces on the device: hard cases H51 to H60.
 
+use super::rig::Rig;
 use super::surfaces::held;
 use super::surfaces::{one, still, ungated_of, with_motion};
-use crate::depth_hard::METHODS;
+use crate::depth_hard::{METHODS, SIZE};
 use crate::laws::laws;
 use crate::motion_hard::*;
-use afterimage::{MethodKind, Verdict};
+use afterimage::kernel::pack;
+use afterimage::{ContextDesc, MethodKind, MotionConvention, MotionUnit, Verdict};
 use afterimage_testing::holds;
 
 motion_laws!(Gpu, held);
+
+#[test]
+fn h55_half_float_motion_is_off_by_its_quantum_and_no_more() {
+    // Half a view and half a pixel, nearly, in texture coordinates, where halves step by 2^-11: a 32nd of these pixels.
+    let motion = MotionConvention { unit: MotionUnit::Uv, ..MotionConvention::default() };
+    let desc = ContextDesc { motion, ..ContextDesc::new(SIZE) };
+    let Some(mut rig) = Rig::new(desc, crate::settings::ungated()) else { return };
+    rig.halve_motion();
+    one(&mut rig, 0, still("before"));
+    let wanted_px = 32.0 + 0.49;
+    let stored = pack::half_value(pack::half_bits(wanted_px / 64.0));
+    let (made, trace) = one(&mut rig, 1, with_motion("after", |_| [stored, 0.0]));
+    let read_px = trace.at(0, 0).motion[0];
+    println!("{wanted_px} px is read as {read_px} px");
+    assert!(read_px != wanted_px && (read_px - wanted_px).abs() <= 0.5 * 64.0 * 2.0_f32.powi(-11));
+    // 0.49 would round to the same texel; as read it is the next one's: one column more has left the view.
+    let columns = if read_px >= 32.5 { 33 } else { 32 };
+    assert_eq!(made.stats.verdicts[Verdict::OffScreen as usize], columns * 48);
+    holds!("H55", Gpu, "{wanted_px} px of 64 in uv as a half is read as {read_px}: off by less than half its quantum");
+}
 
 #[test]
 fn h57_the_last_texel_is_inside_and_a_hundredth_beyond_its_edge_is_not() {

@@ -39,7 +39,7 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("noise::noise_difference", "deviations * inverse_unit", "deviations"),
     ("noise::add_noise", "(weight * weight) / n.samples", "weight / n.samples"),
     ("lens::is_visible", "f32(x) - f32(y)", "f32(y) - f32(x)"),
-    ("quads::need_of_new", "NOT_IN_TURN * NOTHING", "NOTHING"),
+    ("quads::no_history_need", "LATER_SHARE * NO_HISTORY_NEED", "NO_HISTORY_NEED"),
     ("quads::octant_offsets", "(5 * rows + 1) / 2", "5 * rows / 2"),
     ("sparse::quad_lit", "10u + 5u * i", "10u"),
     ("resize::resized_lod", "lod + shift", "lod - shift"),

@@ -25,7 +25,7 @@ pub const PROBES: &[Probe] = &[
         })
     }),
     probe!(quads::asked_px, |rows| rows.each(&[N(4096), N(4096), Bits])),
-    probe!(quads::need_of_new, |rows| rows.each(&[N(16), N(16), N(4), N(4)])),
+    probe!(quads::no_history_need, |rows| rows.each(&[N(16), N(16), N(4), N(4)])),
     probe!(quads::need, |rows| {
         let lods = floats(&[0.0, 0.2, 2.0, 8.0]);
         rows.cross(&[&lods, &floats(&[1.0, 15.0, 16.0]), &floats(&[0.0, 60.0, 61.0])]).each(&[
