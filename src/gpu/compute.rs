@@ -208,7 +208,7 @@ impl ComputeShader {
         self.compiled.pipeline(device, overrides)
     }
 
-    /// Name of the shader, and override values, of each compiled pipeline that it was asked for.
+    /// Name of the shader, and override values, of each pipeline that it was asked for.
     pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
         let pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
         pipelines.list.iter().map(|overrides| (self.name(), overrides.clone())).collect()

@@ -1,5 +1,6 @@
 //! A busy application on several threads, Bevy's default: nothing panics, wgpu finds no error, and nobody warns.
 
+mod captured;
 #[path = "../examples/common/mod.rs"]
 mod common;
 
@@ -19,29 +20,14 @@ use bevy::render::render_resource::{
 use bevy::render::renderer::RenderDevice;
 use bevy::shader::{Shader, ShaderRef};
 use bevy_afterimage::{Afterimage, AfterimagePlugin, AfterimageStats, Foveated, Gaze};
+use captured::{LOG, Log};
 use common::headless::{self, Problems};
 use common::scene::{Mover, ScenePlugin, TONEMAPPING, stroll};
-use std::io::Write;
 use std::path::Path;
-use std::sync::Mutex;
 use std::time::Duration;
 
 /// A row of it is a multiple of 256 bytes, as copies need.
 const SIZE: UVec2 = UVec2::new(320, 180);
-
-static LOG: Mutex<Vec<u8>> = Mutex::new(vec![]);
-
-struct Log;
-
-impl Write for Log {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        LOG.lock().expect("the log").write(bytes)
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        Ok(())
-    }
-}
 
 /// Warnings and errors since the last call, of whomever.
 fn complaints() -> Vec<String> {

@@ -1,5 +1,6 @@
 //! Lines in the log, in a process of their own: those that are written once are written once in a process.
 
+mod captured;
 #[path = "../examples/common/mod.rs"]
 mod common;
 
@@ -26,26 +27,11 @@ use bevy::shader::{Shader, ShaderRef};
 use bevy_afterimage::{
     Afterimage, AfterimagePlugin, AfterimageStats, AfterimageSupported, CameraGaze, Foveated, ShowQuads,
 };
+use captured::{LOG, Log};
 use common::headless::{self, Headless};
 use common::scene::{ScenePlugin, TONEMAPPING, stroll};
-use std::io::Write;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
-
-static LOG: Mutex<Vec<u8>> = Mutex::new(vec![]);
-
-struct Log;
-
-impl Write for Log {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        LOG.lock().expect("the log").write(bytes)
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        Ok(())
-    }
-}
 
 /// A pass of an application that reads the frame, between the opaque meshes and those that blend.
 fn blur(_: ViewQuery<&ViewTarget>, mut context: RenderContext) {
