@@ -98,6 +98,7 @@ pub extern crate wgpu_29 as wgpu;
 pub extern crate wgpu_30 as wgpu;
 
 mod camera;
+mod context;
 mod convention;
 #[cfg(feature = "cpu")]
 pub mod cpu;
@@ -105,6 +106,7 @@ pub mod doctor;
 mod error;
 mod foveation;
 mod frame;
+mod gaze;
 mod geometry;
 #[cfg(feature = "gpu")]
 pub mod gpu;
@@ -128,12 +130,15 @@ pub mod shader;
 pub mod simulator;
 mod stats;
 mod uniforms;
+mod view;
 mod warning;
 
+pub use context::ContextDesc;
 pub use convention::{DepthConvention, MotionConvention, MotionDirection, MotionUnit, YAxis};
 pub use error::{CreateError, FrameError, FrameValue, SettingsError};
 pub use foveation::{Filter, Foveation};
-pub use frame::{ContextDesc, Executor, Exposure, FrameInputs, Gaze, Reset, ViewFrame};
+pub use frame::{Exposure, FrameInputs, Reset};
+pub use gaze::Gaze;
 pub use geometry::ViewGeometry;
 #[cfg(feature = "cpu")]
 pub use image::Image;
@@ -142,4 +147,5 @@ pub use kernel::reproject::Verdict;
 pub use lattice::{Lattice, Lattices};
 pub use settings::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, MethodKind, Sampler, Settings, Smr, Wrs};
 pub use stats::FrameStats;
+pub use view::ViewFrame;
 pub use warning::Warning;

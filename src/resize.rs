@@ -1,6 +1,6 @@
 //! Change of a context's size that keeps history, for both executors.
 
-use crate::uniforms::Held;
+use crate::uniforms::ViewState;
 
 /// Ratios that follow from the sizes before and after.
 #[derive(Clone, Copy, Debug)]
@@ -19,19 +19,19 @@ impl Resize {
         Self { old_size_px, size_px, ratio, lod_shift: -0.5 * (ratio[0] * ratio[1]).log2() }
     }
 
-    /// Converts the held state of a view to pixels of the new size.
-    pub fn held(&self, held: Held) -> Held {
+    /// Converts the state of a view to pixels of the new size.
+    pub fn state(&self, state: ViewState) -> ViewState {
         let position = |px: [f32; 2]| [0, 1].map(|i| (px[i] + 0.5) / self.ratio[i] - 0.5);
         let vector = |px: [f32; 2]| [0, 1].map(|i| px[i] / self.ratio[i]);
-        Held {
-            gaze_px: held.gaze_px.map(position),
-            jitter_px: vector(held.jitter_px),
-            previous_jitter_px: vector(held.previous_jitter_px),
+        ViewState {
+            gaze_px: state.gaze_px.map(position),
+            jitter_px: vector(state.jitter_px),
+            previous_jitter_px: vector(state.previous_jitter_px),
             // The view directions at the edges stay the same.
             rays: None,
             previous_rays: None,
-            exposure: held.exposure,
-            previous_exposure: held.previous_exposure,
+            exposure: state.exposure,
+            previous_exposure: state.previous_exposure,
         }
     }
 }

@@ -1,8 +1,9 @@
 //! Constants of a view for the passes of both executors.
 
+use crate::context::ContextDesc;
 #[cfg(feature = "gpu")]
 use crate::foveation::Foveation;
-use crate::frame::{ContextDesc, Executor, Exposure, FrameInputs, Reset, ViewFrame};
+use crate::frame::{Exposure, FrameInputs, Reset};
 use crate::kernel::foveate::level_len;
 #[cfg(feature = "cpu")]
 use crate::kernel::lattice::{Between, between};
@@ -11,6 +12,7 @@ use crate::kernel::reproject::ViewMotion;
 use crate::kernel::rng::{self, Purpose};
 use crate::lattice::{Lattice, Lattices};
 use crate::settings::Sampler;
+use crate::view::ViewFrame;
 use glam::DVec2;
 
 /// Largest number of views of a context ([`ContextDesc::view_count`]) on a GPU.
@@ -83,11 +85,11 @@ pub struct CameraUniforms {
 }
 
 impl CameraUniforms {
-    /// Constants of a view. `held`: the view's state [after](Held::with) this frame.
-    pub(crate) fn new(desc: &ContextDesc, view: &ViewFrame, held: &Held) -> Self {
+    /// Constants of a view. `state`: the view's state [after](ViewState::with) this frame.
+    pub(crate) fn new(desc: &ContextDesc, view: &ViewFrame, state: &ViewState) -> Self {
         let rays = view.geometry.scale_offset();
         let (scale, offset) = rays;
-        let (old_scale, old_offset) = held.previous_rays.unwrap_or(rays);
+        let (old_scale, old_offset) = state.previous_rays.unwrap_or(rays);
         // Doubles: differences of nearly equal numbers.
         let double = |values: [f32; 2]| DVec2::from(values.map(f64::from));
         let [scale, offset, old_scale, old_offset] = [scale, offset, old_scale, old_offset].map(double);
@@ -133,7 +135,7 @@ type Rays = ([f32; 2], [f32; 2]);
 
 /// State of a view that a context holds from frame to frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Held {
+pub(crate) struct ViewState {
     /// Last known gaze position, if any.
     pub gaze_px: Option<[f32; 2]>,
     /// Jitter of this frame.
@@ -150,7 +152,7 @@ pub(crate) struct Held {
     pub previous_exposure: Option<f32>,
 }
 
-impl Held {
+impl ViewState {
     /// This state after a frame with this description of the view.
     pub fn with(self, view: &ViewFrame, exposure: Exposure) -> Self {
         Self {
@@ -165,21 +167,21 @@ impl Held {
     }
 
     /// Factor of the frame on stored colors. This is the state [after](Self::with) it.
-    pub fn stored_exposure<E: Executor>(&self, frame: &FrameInputs<'_, E>) -> f32 {
+    pub fn stored_exposure<C, S, V>(&self, frame: &FrameInputs<'_, C, S, V>) -> f32 {
         frame.exposure.of_stored(self.previous_exposure.filter(|_| frame.reset == Reset::None))
     }
 }
 
 impl ViewUniforms {
-    /// Constants of view `index` of frame `frame`. `held`: the view's state [after](Held::with) this frame.
-    pub(crate) fn new(desc: &ContextDesc, view: &ViewFrame, held: &Held, index: usize, frame: u64) -> Self {
+    /// Constants of view `index` of frame `frame`. `state`: the view's state [after](ViewState::with) this frame.
+    pub(crate) fn new(desc: &ContextDesc, view: &ViewFrame, state: &ViewState, index: usize, frame: u64) -> Self {
         let (ray_scale, offset) = view.geometry.scale_offset();
         let settings = &desc.settings;
         let purpose = match settings.method.wrs().sampler {
             Sampler::AChao | Sampler::AChaoMean => Purpose::Select,
             Sampler::AEs => Purpose::Key,
         };
-        let [x, y, z] = view.geometry.ray(view.gaze.resolve(held.gaze_px, &view.geometry));
+        let [x, y, z] = view.geometry.ray(view.gaze.resolve(state.gaze_px, &view.geometry));
         let disparity = view.depth_convention(desc).disparity_map();
         let jitter = view.jitter_px;
         let [lowest_px, highest_px] = view.visible_px.unwrap_or([[f32::MIN; 4], [f32::MAX; 4]]);
@@ -193,7 +195,7 @@ impl ViewUniforms {
             disparity_a: disparity.a,
             disparity_b: disparity.b,
             disparity_flags: disparity.flags(),
-            motion_offset: desc.motion.jitter_offset(jitter, held.previous_jitter_px),
+            motion_offset: desc.motion.jitter_offset(jitter, state.previous_jitter_px),
             jitter_px: jitter,
             lowest_px,
             highest_px,

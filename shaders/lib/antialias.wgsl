@@ -1,6 +1,6 @@
-//#use kept
-//#use matched
-//#use sparse
+//#use stored_sample
+//#use smr
+//#use sparse_smr
 //#use taa
 // Twin of src/kernel/antialias.rs, which explains the constants.
 
@@ -139,12 +139,12 @@ fn average(r: Reconstruction, samples: f32, place_px: vec2<f32>, kept: f32) -> A
     let shown = r.candidate + (history - r.candidate) * share;
     let next = r.candidate + (old - r.candidate) * share;
     let next_px = place_px + (old_px - place_px) * share;
-    return Averaged(Reconstructed(shown, Kept(next, 0.0, r.nearest.disparity, next_px), share), count + 1.0);
+    return Averaged(Reconstructed(shown, StoredSample(next, 0.0, r.nearest.disparity, next_px), share), count + 1.0);
 }
 
-// antialias::kept_mean
-fn kept_mean(r: Reconstruction, result: Reconstructed, samples: f32) -> Averaged {
-    let is_kept = result.kept.lod < COARSE_LOD && r.nearest.lod <= 0.0;
+// antialias::stored_mean
+fn stored_mean(r: Reconstruction, result: Reconstructed, samples: f32) -> Averaged {
+    let is_kept = result.stored.lod < COARSE_LOD && r.nearest.lod <= 0.0;
     let share = r.fit * r.trust;
     let left = samples * share + (1.0 - share);
     return Averaged(result, select(1.0, left, is_kept));

@@ -1,4 +1,4 @@
-//#use matched
+//#use smr
 //#use pack
 //#use sanitize
 // Twin of src/kernel/noise.rs, which explains the constants.

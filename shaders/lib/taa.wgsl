@@ -1,4 +1,4 @@
-//#use matched
+//#use smr
 // Twin of src/kernel/taa.rs, which explains the constants.
 
 const LIMIT: f32 = 16.0;

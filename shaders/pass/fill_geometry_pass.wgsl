@@ -1,4 +1,4 @@
-//#use kept_history
+//#use sparse_history
 //#use lattices
 // Depth and motion between samples. CPU twin: src/cpu/fill_geometry.rs, which explains the choice of the surface. One
 // invocation a pixel; z is the view.
@@ -7,7 +7,7 @@
 // written.
 
 // Whether history can confirm a sample's surface.
-override HAS_KEPT: u32 = 0u;
+override HAS_SPARSE_HISTORY: u32 = 0u;
 
 @group(0) @binding(23) var depth_out: texture_storage_2d_array<r32float, write>;
 @group(0) @binding(24) var motion_out: texture_storage_2d_array<rg32float, write>;
@@ -30,11 +30,11 @@ fn geometry_at(tap: u32, near: Around, lattice: LatticeUniforms, view: u32) -> G
 // Whether history confirms that a pixel shows a sample's surface: history must have the expected disparity at the
 // previous position.
 fn is_confirmed(px: vec2<u32>, view: u32, s: GeometrySample) -> bool {
-    if HAS_KEPT == 0u || DEPTH_TEST == 0u {
+    if HAS_SPARSE_HISTORY == 0u || DEPTH_TEST == 0u {
         return false;
     }
     let at = reprojected(px, s.motion);
-    let stored = kept_at(vec2<i32>(at.at), view);
+    let stored = stored_at(vec2<i32>(at.at), view);
     let expected = expected_disparity(view, ray_at(px, view), s.disparity);
     return at.verdict == VERDICT_VALID
         && stored.lod >= 0.0

@@ -1,4 +1,4 @@
-//#use matched
+//#use smr
 //#use noise
 //#use surface
 // Next level of a mip chain of surfaces or noisy candidates: means of 2x2 texels; at odd borders a missing texel is

@@ -1,5 +1,5 @@
 //#use inputs
-//#use matched
+//#use smr
 //#use past_frame
 // Previous position of a pixel's surface; shared by the methods that store surfaces. CPU twin: src/cpu/inputs.rs.
 

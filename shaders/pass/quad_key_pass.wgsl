@@ -1,4 +1,4 @@
-//#use kept_history
+//#use sparse_history
 //#use quad_state
 // Region, even pattern and key of the quads of a frame. CPU twin: `plan_quads` in src/cpu/sparse_pass/quad_plan.rs. One
 // invocation a block of 2x2 quads of view `frame.first_view`.
@@ -6,7 +6,7 @@
 // Up to 7 reads and 1 write a quad: depth, motion, trust and four stored samples of one pixel; 1 atomic sum a quad.
 
 // Whether the method has history to choose by.
-override HAS_KEPT: u32 = 0u;
+override HAS_SPARSE_HISTORY: u32 = 0u;
 
 @group(0) @binding(23) var keys_out: texture_storage_2d_array<r32uint, write>;
 
@@ -31,7 +31,7 @@ fn need_at(px: vec2<u32>, view: u32) -> f32 {
     let taps = select(0u, 4u, is_valid);
     for (var tap = 0u; tap < taps; tap++) {
         let texel = first + vec2<f32>(vec2<u32>(tap & 1u, tap >> 1u));
-        let words = kept_words(vec2<i32>(texel), view);
+        let words = stored_words(vec2<i32>(texel), view);
         if !is_empty(words) && (DEPTH_TEST == 0u || has_code(code_word(words), codes)) {
             let stored = unpack_full(words);
             lowest = min(lowest, stored.color);
@@ -89,7 +89,7 @@ fn block(at: vec2<u32>, view: u32) {
         let px = asked_px(quad.x, quad.y, frame.frame_low);
         if even {
             atomicAdd(&group_even, 1u);
-        } else if HAS_KEPT != 0u && region_now != IN_FOVEA && all(px < frame.size) && is_seen(px, view) {
+        } else if HAS_SPARSE_HISTORY != 0u && region_now != IN_FOVEA && all(px < frame.size) && is_seen(px, view) {
             let needed = need_at(px, view);
             let first = vec2<u32>(frame.first_quad & 0xffffu, frame.first_quad >> 16u);
             needs[i] = select(needed * acuity(e_deg), no_history_need(quad.x, quad.y, first), needed < 0.0);

@@ -43,19 +43,19 @@ fn own_of(quad: vec2<u32>, view: u32) -> Own {
     }
     let disparity_now = disparity_at(px_of_quad(quad, first & 3u), view);
     var sum = Light(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
-    var sure = 0.0;
+    var confidence = 0.0;
     let taps = select(4u, 0u, first == 4u);
     for (var i = 0u; i < taps; i++) {
         let px = px_of_quad(quad, i);
         if is_compared(px, view) && is_alike(disparity_now, px, view) {
             let o = observation_at(px, view);
             sum = add_light(sum, o, 1.0, 1.0);
-            sure += o.sure;
+            confidence += o.confidence;
         }
     }
     let inverse = 1.0 / max(sum.weight, 1.0);
     let error = select(sum.error * inverse, -1.0, sum.weight == 0.0);
-    return Own(Observation(sum.sampled * inverse, sum.history * inverse, error, sure * inverse), disparity_now);
+    return Own(Observation(sum.sampled * inverse, sum.history * inverse, error, confidence * inverse), disparity_now);
 }
 
 struct Neighbour {
@@ -77,7 +77,7 @@ fn neighbour_at(tap: u32, quad: vec2<u32>, view: u32, own: Own, around: vec2<u32
     }
     near.observation = observation_at(px, view);
     near.spatial = 1.0 / (1.0 + f32(offset.x * offset.x + offset.y * offset.y) / least);
-    near.weight = near.spatial * near.observation.sure;
+    near.weight = near.spatial * near.observation.confidence;
     if own.observation.error >= 0.0 {
         near.weight = agreement(own.observation, near.observation, near.spatial);
     }

@@ -1,4 +1,4 @@
-//#use kept_history
+//#use sparse_history
 //#use quad_plan
 //#use quad_samples
 // Comparison of shaded quads with history. CPU twin: `observe_quads` in src/cpu/sparse_pass/quad_samples.rs. One
@@ -16,13 +16,13 @@ fn observe(px: vec2<u32>, view: u32) -> vec2<u32> {
         return nothing;
     }
     let surface = surface_of(px, view, level);
-    var source = kept_source(px, view, surface);
+    var source = sparse_source(px, view, surface);
     if ANTIALIAS != 0u {
         // History is read at the sample's place in its pixel.
         source.previous.at -= frame.views[view].jitter_px;
     }
     let needed = may_have_history(source.previous) && color(color_at(px, view).xyz).usable;
-    let history = kept_history(source, view, needed).found;
+    let history = sparse_history(source, view, needed).found;
     if !needed || history.lod < 0.0 {
         return nothing;
     }

@@ -1,6 +1,6 @@
 //#use inputs
 //#use quads
-//#use sparse
+//#use sparse_smr
 // Shaded quads and their samples. CPU twin: src/cpu/sparse_pass/quad_samples.rs.
 
 // Bit 0: whether a quad is shaded; bits 1 and 2: its region.

@@ -1,4 +1,4 @@
-//#use matched
+//#use smr
 //#use resample
 //#use resize_uniforms
 //#use sanitize

@@ -1,5 +1,5 @@
 //#use candidate_lod
-//#use matched
+//#use smr
 //#use output
 //#use surface_history
 // Scale-matched reservoirs. CPU twin: src/cpu/smr_pass.rs, which lists the reads and writes; docs/method.md has the

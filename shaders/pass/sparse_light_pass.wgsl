@@ -51,7 +51,7 @@ fn neighbour(
     if own.error >= 0.0 {
         return Neighbour(other, agreement(own, other, spatial), spatial);
     }
-    return Neighbour(other, spatial * other.sure, spatial);
+    return Neighbour(other, spatial * other.confidence, spatial);
 }
 
 // Fit at the sample's own pixel. A single noisy sample does not show whether history fits.
@@ -113,8 +113,8 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     }
     var fit_now = fit_around(sum, with_gain, capped);
     if NOISY != 0u {
-        let sure = min(sum.weight / sum.spatial, 1.0);
-        fit_now = min(fit(with_gain / sum.weight, sure), mean_fit(sum, sure));
+        let confidence = min(sum.weight / sum.spatial, 1.0);
+        fit_now = min(fit(with_gain / sum.weight, confidence), mean_fit(sum, confidence));
     }
     return pack_lit(Lit(gains, fit_now, fit_at_sample(own, gains), is_own, own_surface));
 }

@@ -1,5 +1,5 @@
-//#use kept_history
-//#use kept_noise
+//#use sparse_history
+//#use sparse_noise
 //#use sparse_samples
 // Comparison of the samples of a sparse frame with history. CPU twin: `observe` in src/cpu/sparse_pass/observe.rs. One
 // invocation a sample of lattice `frame.lattice`; z is the view.
@@ -14,28 +14,28 @@ fn observe(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     let surface = surface_of(px, view, lattice.level);
     let nothing = vec2<u32>(0u, half_bits(select(-1.0, DOUBTFUL, surface.is_doubtful)));
     let motion = surface.motion;
-    var source = kept_source(px, view, surface);
+    var source = sparse_source(px, view, surface);
     if ANTIALIAS != 0u {
         // History is read at the sample's place in its pixel.
         source.previous.at -= frame.views[view].jitter_px;
     }
     let usable = color(sample_at(point, lattice, view).xyz).usable && !surface.is_doubtful;
     let needed = may_have_history(source.previous) && usable;
-    let kept = kept_history(source, view, needed);
-    let history = kept.found;
+    let found = sparse_history(source, view, needed);
+    let history = found.found;
     if !needed || history.lod < 0.0 {
         return nothing;
     }
     let contrast = root_difference(history.lowest, history.highest);
     let moved = ANTIALIAS != 0u || has_moved(motion, history.nearest.place_px);
     var error = expected_error(history.lod, contrast, moved);
-    var sure = lod_confidence(history.lod);
+    var confidence = lod_confidence(history.lod);
     if NOISY != 0u {
-        let past = stored_noise(kept.texel, view);
+        let past = stored_noise(found.texel, view);
         error += expected_noise(past, noise_at(px, view), luma(history.color));
-        sure = noisy_lod_confidence(history.lod, past, luma(history.color));
+        confidence = noisy_lod_confidence(history.lod, past, luma(history.color));
     }
-    return vec2<u32>(pack_color(history.color), half_bits(error) | (half_bits(sure) << 16u));
+    return vec2<u32>(pack_color(history.color), half_bits(error) | (half_bits(confidence) << 16u));
 }
 
 @compute @workgroup_size(64, 1)

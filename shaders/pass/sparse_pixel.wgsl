@@ -1,12 +1,12 @@
-//#use kept_history
-//#use kept_noise
+//#use sparse_history
+//#use sparse_noise
 //#use output
 //#use rng
-//#use sparse
-// Pixel of smr from kept samples of history and the candidate around it; shared by frames of lattices and of quads. CPU
-// twin: `pixel` in src/cpu/sparse_pass/pixel.rs; docs/method.md has the equations.
+//#use sparse_smr
+// Pixel of smr from stored samples of history and the candidate around it; shared by frames of lattices and of quads.
+// CPU twin: `pixel` in src/cpu/sparse_pass/pixel.rs; docs/method.md has the equations.
 
-@group(0) @binding(18) var next_kept: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(18) var next_stored: texture_storage_2d_array<rg32uint, write>;
 @group(0) @binding(19) var next_noise: texture_storage_2d_array<r32uint, write>;
 
 // Candidate of a pixel, and its gain and fit.
@@ -46,7 +46,7 @@ fn antialiased(
     near: Near,
 ) -> Averaged {
     if !is_own {
-        return kept_mean(given, reconstruct(given), samples);
+        return stored_mean(given, reconstruct(given), samples);
     }
     var inputs = given;
     var left = 1.0;
@@ -64,8 +64,8 @@ fn hidden_pixel(px: vec2<u32>, view: u32) {
     let trace = PixelTrace(VERDICT_RESET, 0.0, 0.0, 0u, 0.0, 1.0, true, vec2<f32>(0.0));
     write_output(px, view, vec3<f32>(0.0), 1.0, trace);
     if VIEW == 0u {
-        let empty = pack_kept(Kept(vec3<f32>(0.0), -1.0, -1.0, vec2<f32>(0.0)));
-        textureStore(next_kept, px, view, vec4<u32>(empty, 0u, 0u));
+        let empty = pack_stored(StoredSample(vec3<f32>(0.0), -1.0, -1.0, vec2<f32>(0.0)));
+        textureStore(next_stored, px, view, vec4<u32>(empty, 0u, 0u));
         if NOISY != 0u {
             textureStore(next_noise, px, view, vec4<u32>(pack_noise(Noise(1.0, 0.0)), 0u, 0u, 0u));
         }
@@ -84,18 +84,18 @@ fn show_pixel(
 ) {
     let surface = surface_of(px, view, level);
     let motion = surface.motion;
-    let source = kept_source(px, view, surface);
+    let source = sparse_source(px, view, surface);
     let previous = source.previous;
     let is_final = candidate.usable && level == 0u && NOISY == 0u && ANTIALIAS == 0u;
-    let kept = kept_history(source, view, may_have_history(previous) && !is_final);
-    let history = kept.found;
+    let found = sparse_history(source, view, may_have_history(previous) && !is_final);
+    let history = found.found;
     let verdict = select(previous.verdict, VERDICT_VALID, history.lod >= 0.0);
     let valid = verdict == VERDICT_VALID;
     count_pixel(px, view, candidate.usable, disparity_now, verdict);
 
     var shown = candidate.color;
     let candidate_lod = select(-1.0, candidate.lod, candidate.usable);
-    var next = Kept(candidate.color, candidate_lod, surface.stored_disparity, vec2<f32>(0.0));
+    var next = StoredSample(candidate.color, candidate_lod, surface.stored_disparity, vec2<f32>(0.0));
     var samples = 1.0;
     if ANTIALIAS != 0u && candidate.is_own {
         next.place_px = -frame.views[view].jitter_px;
@@ -120,11 +120,11 @@ fn show_pixel(
             inputs.accumulate = frame.smr_accumulate;
             var result: Reconstructed;
             if NOISY != 0u {
-                let accumulated = accumulate(inputs, stored_noise(kept.texel, view), candidate.noise);
+                let accumulated = accumulate(inputs, stored_noise(found.texel, view), candidate.noise);
                 result = accumulated.result;
                 noise = accumulated.noise;
             } else if ANTIALIAS != 0u {
-                let averaged = antialiased(px, view, level, inputs, kept.samples, candidate.is_own, near);
+                let averaged = antialiased(px, view, level, inputs, found.samples, candidate.is_own, near);
                 result = averaged.result;
                 samples = averaged.samples;
             } else {
@@ -133,14 +133,14 @@ fn show_pixel(
             shown = result.color;
             share = result.share;
             fits = candidate.fit;
-            next = result.kept;
+            next = result.stored;
         } else {
             shown = history.color;
             share = 1.0;
             next = history.nearest;
-            samples = kept.samples;
+            samples = found.samples;
             if NOISY != 0u {
-                noise = stored_noise(kept.texel, view);
+                noise = stored_noise(found.texel, view);
             }
         }
         next.disparity = surface.stored_disparity;
@@ -157,14 +157,14 @@ fn show_pixel(
         PixelTrace(verdict, exp2(-candidate.lod), sharpness, 0u, share, fits, share == 0.0, motion),
     );
     if VIEW == 0u {
-        var words = pack_kept(next);
+        var words = pack_stored(next);
         if ANTIALIAS != 0u {
             // The color is rounded stochastically.
             let draw = unit_draw(bits(px.x, px.y, frame.frame_low, frame.views[view].key));
-            let stored = Kept(next.color, stored_lod(Mean(next.lod, samples)), next.disparity, next.place_px);
-            words = vec2<u32>(pack_color_by(next.color, draw), pack_kept(stored).y);
+            let stored = StoredSample(next.color, stored_lod(Mean(next.lod, samples)), next.disparity, next.place_px);
+            words = vec2<u32>(pack_color_by(next.color, draw), pack_stored(stored).y);
         }
-        textureStore(next_kept, px, view, vec4<u32>(words, 0u, 0u));
+        textureStore(next_stored, px, view, vec4<u32>(words, 0u, 0u));
         if NOISY != 0u {
             textureStore(next_noise, px, view, vec4<u32>(pack_noise(noise), 0u, 0u, 0u));
         }

@@ -1,5 +1,5 @@
 //#use lattices
-//#use sparse
+//#use sparse_smr
 // Samples of a sparse frame, and places of their results. CPU twin: src/cpu/sparse_pass/mod.rs.
 
 // Pixel of a sample.

@@ -2,9 +2,9 @@
 
 use super::doctor_pass::{self, Examined};
 use super::{Frame, check_inputs};
+use crate::context::ContextDesc;
 use crate::doctor::{Chart, Description, Finding, Observation, continues, maps};
 use crate::error::{FrameError, SettingsError};
-use crate::frame::ContextDesc;
 use crate::image::Image;
 
 /// Checks whether a renderer's frames match a [`ContextDesc`]: motion vectors, depth, colors, gaze and foveation of one

@@ -6,14 +6,15 @@ use super::history::History;
 use super::inputs::Inputs;
 use super::pixel::{Pixel, ProcessPixel};
 use super::sparse_pass::Quads;
-use crate::frame::{ContextDesc, Reset};
+use crate::context::ContextDesc;
+use crate::frame::Reset;
 use crate::kernel::antialias::mean_of;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::depth::distance_of;
-use crate::kernel::kept::unpack_kept;
 use crate::kernel::lattice::{nearest_point, point_offset_px};
 use crate::kernel::noise::unpack_noise;
 use crate::kernel::resample::{ROUNDS, Tap, TapsAround, sharp_sum, taps_of};
+use crate::kernel::stored_sample::unpack_stored;
 use crate::kernel::surface::unpack_surface;
 use crate::notes::{Note, NoteStage, Notes, PixelNotes};
 use crate::stats::FrameStats;
@@ -50,12 +51,12 @@ pub(super) fn note_inputs(
         return;
     }
     let facts = &frame.views[view];
-    let held = history.held_after(view, given);
-    let inputs = Inputs::new(desc, frame, view, &held, history.is_filled());
+    let state = history.state_after(view, given);
+    let inputs = Inputs::new(desc, frame, view, &state, history.is_filled());
     let stage = NoteStage::Input;
     let (u, v) = (x as usize, y as usize);
     let e_deg = inputs.eccentricity_deg(inputs.ray(x, y));
-    notes.note(stage, "gaze", facts.gaze.resolve(held.gaze_px, &facts.geometry), "px");
+    notes.note(stage, "gaze", facts.gaze.resolve(state.gaze_px, &facts.geometry), "px");
     notes.note(stage, "distance from the gaze", e_deg, "deg");
     notes.note(stage, "jitter", inputs.uniforms.jitter_px, "px");
     notes.note(stage, "visible in the lens", inputs.is_visible(x, y), "");
@@ -181,8 +182,8 @@ pub(super) fn note_surface(pixel: &Pixel, notes: &mut Vec<Note>) {
 }
 
 /// Notes the stored sample of smr on sparse frames.
-pub(super) fn note_kept(pixel: &Pixel, notes: &mut Vec<Note>) {
-    let stored = unpack_kept(pixel.surface);
+pub(super) fn note_stored(pixel: &Pixel, notes: &mut Vec<Note>) {
+    let stored = unpack_stored(pixel.surface);
     notes.note(NoteStage::Stored, "color", stored.color, "linear light");
     notes.note(NoteStage::Stored, "level of detail", stored.lod, "log2 px, below 0: empty");
     notes.note(NoteStage::Stored, "disparity", stored.disparity, "1/distance, below 0: unknown");
@@ -191,9 +192,9 @@ pub(super) fn note_kept(pixel: &Pixel, notes: &mut Vec<Note>) {
 }
 
 /// The same where history stores means of jittered samples.
-pub(super) fn note_kept_mean(pixel: &Pixel, notes: &mut Vec<Note>) {
-    note_kept(pixel, notes);
-    let mean = mean_of(unpack_kept(pixel.surface).lod);
+pub(super) fn note_stored_mean(pixel: &Pixel, notes: &mut Vec<Note>) {
+    note_stored(pixel, notes);
+    let mean = mean_of(unpack_stored(pixel.surface).lod);
     notes.note(NoteStage::Stored, "mean", [mean.lod, mean.samples], "level of detail in log2 px, samples");
 }
 

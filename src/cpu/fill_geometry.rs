@@ -8,15 +8,16 @@
 use super::Frame;
 use super::history::History;
 use super::inputs::Inputs;
+use crate::context::ContextDesc;
 use crate::convention::{DepthConvention, MotionConvention};
-use crate::frame::{ContextDesc, ViewFrame};
 use crate::image::Image;
 use crate::kernel::depth::{INVALID_DISPARITY, distance_of, same_surface};
-use crate::kernel::kept::unpack_kept;
 use crate::kernel::lattice::{GeometryMean, add_geometry, filled_geometry, point_weight};
 use crate::kernel::reproject::nearest;
 use crate::kernel::resample::TAP_RELATIVE;
+use crate::kernel::stored_sample::unpack_stored;
 use crate::uniforms::{LatticeUniforms, ViewLattices};
+use crate::view::ViewFrame;
 use glam::{Vec2, Vec3};
 
 /// Filled distances and motion vectors of a view, in internal conventions.
@@ -31,8 +32,8 @@ pub(super) fn filled(desc: &ContextDesc, frame: &Frame<'_>, history: &History) -
     for (i, view) in frame.views.iter().enumerate() {
         let lattices = view.lattices.as_ref().filter(|lattices| lattices.has_geometry_at_samples())?;
         let lattices = LatticeUniforms::of_view(lattices, desc.size_px);
-        let inputs = Inputs::new(desc, frame, i, &history.held_after(i, frame), history.is_filled());
-        let view = View { words: if inputs.reset { &[] } else { history.kept(i) }, inputs, lattices };
+        let inputs = Inputs::new(desc, frame, i, &history.state_after(i, frame), history.is_filled());
+        let view = View { words: if inputs.reset { &[] } else { history.sparse(i) }, inputs, lattices };
         let pixels = Image::from_fn_parallel(desc.size_px, |px| view.pixel(px));
         views.push(Geometry { depth: pixels.map(|(depth, _)| depth), motion: pixels.map(|(_, motion)| motion) });
     }
@@ -118,7 +119,7 @@ impl View<'_> {
             return false;
         }
         let Ok([u, v]) = nearest(x, y, s.motion, self.inputs.size) else { return false };
-        let stored = unpack_kept(self.words[(v * self.inputs.size[0] + u) as usize]);
+        let stored = unpack_stored(self.words[(v * self.inputs.size[0] + u) as usize]);
         let expected = self.inputs.previous_disparity(ray, s.disparity);
         stored.lod >= 0.0 && same_surface(expected, stored.disparity, TAP_RELATIVE, 0.0)
     }

@@ -2,10 +2,10 @@
 
 use super::Frame;
 use super::mip_chain::MipChain;
-use crate::frame::ContextDesc;
+use crate::context::ContextDesc;
 use crate::method::HistoryLayout;
 use crate::resize::Resize;
-use crate::uniforms::Held;
+use crate::uniforms::ViewState;
 use glam::Vec4;
 
 /// History of all views: buffers of the previous and the current frame. Buffers that a method does not use are empty.
@@ -18,7 +18,7 @@ pub struct History {
     /// Mip chains of this frame's candidates, one a view; empty unless candidates are noisy.
     candidates: Vec<MipChain>,
     filled: bool,
-    held: Vec<Held>,
+    state: Vec<ViewState>,
 }
 
 /// Buffers of one frame: all views, view after view.
@@ -39,8 +39,8 @@ impl Plane {
         let keyed = matches!(layout, HistoryLayout::Reservoirs { keys: true, .. });
         let referenced = matches!(layout, HistoryLayout::Reservoirs { references: true, .. });
         let noisy =
-            matches!(layout, HistoryLayout::Surfaces { noisy: true, .. } | HistoryLayout::Kept { noisy: true, .. });
-        let is_stored = matches!(layout, HistoryLayout::Surfaces { .. } | HistoryLayout::Kept { .. });
+            matches!(layout, HistoryLayout::Surfaces { noisy: true, .. } | HistoryLayout::Sparse { noisy: true, .. });
+        let is_stored = matches!(layout, HistoryLayout::Surfaces { .. } | HistoryLayout::Sparse { .. });
         Self {
             reservoirs: vec![[0; 3]; when(matches!(layout, HistoryLayout::Reservoirs { .. }))],
             log_keys: vec![0.0; when(keyed)],
@@ -84,14 +84,14 @@ impl History {
                 _ => vec![],
             },
             filled: false,
-            held: vec![Held::default(); view_count as usize],
+            state: vec![ViewState::default(); view_count as usize],
         }
     }
 
     /// This history resampled to the size of `desc`, whose layout is the same.
     pub(super) fn resized(&self, resize: &Resize, desc: &ContextDesc) -> Self {
         let mut next = Self::new(desc);
-        next.held = self.held.iter().map(|held| resize.held(*held)).collect();
+        next.state = self.state.iter().map(|state| resize.state(*state)).collect();
         if !self.filled {
             return next;
         }
@@ -102,9 +102,9 @@ impl History {
         next.previous.log_keys = past.log_keys.chunks(len).flat_map(|v| resize.nearest(v)).collect();
         next.previous.references = past.references.chunks(len).flat_map(|v| resize.nearest(v)).collect();
         next.previous.noise = past.noise.chunks(len).flat_map(|v| resize.nearest(v)).collect();
-        let is_kept = matches!(self.layout, HistoryLayout::Kept { .. });
-        let means = matches!(self.layout, HistoryLayout::Kept { means: true, .. });
-        let surfaces = |v| if is_kept { resize.kept(v, means) } else { resize.surfaces(v) };
+        let is_sparse = matches!(self.layout, HistoryLayout::Sparse { .. });
+        let means = matches!(self.layout, HistoryLayout::Sparse { means: true, .. });
+        let surfaces = |v| if is_sparse { resize.sparse(v, means) } else { resize.surfaces(v) };
         next.previous.surfaces = past.surfaces.chunks(len).flat_map(surfaces).collect();
         for (mip_chain, words) in next.previous.mip_chains.iter_mut().zip(next.previous.surfaces.chunks(next.view_len))
         {
@@ -119,7 +119,7 @@ impl History {
 
     pub(super) fn forget(&mut self) {
         self.filled = false;
-        self.held.fill(Held::default());
+        self.state.fill(ViewState::default());
     }
 
     /// Makes the written frame the previous one.
@@ -133,27 +133,27 @@ impl History {
         self.filled
     }
 
-    /// Updates the held state of view `index` with this frame, and returns it.
-    pub(super) fn hold(&mut self, index: usize, frame: &Frame<'_>) -> Held {
-        let held = self.held_after(index, frame);
-        self.held[index] = held;
-        held
+    /// Updates the state of view `index` with this frame, and returns it.
+    pub(super) fn advance(&mut self, index: usize, frame: &Frame<'_>) -> ViewState {
+        let state = self.state_after(index, frame);
+        self.state[index] = state;
+        state
     }
 
     /// Last known gaze position of a view, if any.
     pub(super) fn held_gaze_px(&self, index: usize) -> Option<[f32; 2]> {
-        self.held.get(index).and_then(|held| held.gaze_px)
+        self.state.get(index).and_then(|state| state.gaze_px)
     }
 
     /// The state that [`hold`](Self::hold) would return, without changing anything.
-    pub(super) fn held_after(&self, index: usize, frame: &Frame<'_>) -> Held {
-        self.held[index].with(&frame.views[index], frame.exposure)
+    pub(super) fn state_after(&self, index: usize, frame: &Frame<'_>) -> ViewState {
+        self.state[index].with(&frame.views[index], frame.exposure)
     }
 
     /// Previous packed samples of `view`; empty except for smr on sparse frames, and without history.
-    pub(super) fn kept(&self, view: usize) -> &[[u32; 2]] {
-        let is_kept = matches!(self.layout, HistoryLayout::Kept { .. }) && self.filled;
-        if is_kept { &self.previous.surfaces[view * self.view_len..(view + 1) * self.view_len] } else { &[] }
+    pub(super) fn sparse(&self, view: usize) -> &[[u32; 2]] {
+        let is_sparse = matches!(self.layout, HistoryLayout::Sparse { .. }) && self.filled;
+        if is_sparse { &self.previous.surfaces[view * self.view_len..(view + 1) * self.view_len] } else { &[] }
     }
 
     /// Previous reservoirs of `view`, and the current ones to write.

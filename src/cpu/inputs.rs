@@ -1,21 +1,22 @@
 //! Inputs of the pixels of one view, in internal conventions; shared by all methods. Twin: `shaders/pass/inputs.wgsl`.
 
 use super::Frame;
+use crate::context::ContextDesc;
 use crate::convention::MotionConvention;
 use crate::foveation::Foveation;
-use crate::frame::{ContextDesc, Reset};
+use crate::frame::Reset;
 use crate::image::Image;
 use crate::kernel::depth;
 use crate::kernel::depth::DisparityMap;
-use crate::kernel::matched::moves_alike;
 use crate::kernel::noise::{Noise, candidate_noise};
 use crate::kernel::reproject::{Verdict, camera_vector, has_no_vector};
+use crate::kernel::smr::moves_alike;
 use crate::kernel::surface::MAX_LOD;
 use crate::kernel::{acuity, lens, reproject, sanitize};
 use crate::notes::{NoteStage, Notes};
 use crate::settings::DepthTest;
 use crate::stats::FrameStats;
-use crate::uniforms::{CameraUniforms, Held, LatticeUniforms, ViewLattices, ViewUniforms};
+use crate::uniforms::{CameraUniforms, LatticeUniforms, ViewLattices, ViewState, ViewUniforms};
 use glam::{Vec2, Vec3};
 
 /// Previous position of a pixel's surface.
@@ -60,9 +61,9 @@ pub(super) struct Inputs<'a> {
 
 impl<'a> Inputs<'a> {
     /// Inputs of view `index` of `frame`. `has_history`: whether a frame was processed before.
-    pub fn new(desc: &ContextDesc, frame: &Frame<'a>, index: usize, held: &Held, has_history: bool) -> Self {
+    pub fn new(desc: &ContextDesc, frame: &Frame<'a>, index: usize, state: &ViewState, has_history: bool) -> Self {
         let view = &frame.views[index];
-        let uniforms = ViewUniforms::new(desc, view, held, index, frame.index);
+        let uniforms = ViewUniforms::new(desc, view, state, index, frame.index);
         let [x, y, z, _] = uniforms.gaze_ray;
         Self {
             color: frame.color[index],
@@ -76,13 +77,13 @@ impl<'a> Inputs<'a> {
             lattices: LatticeUniforms::of_view_or_full(view.lattices.as_ref(), desc.size_px),
             uniforms,
             gaze_ray: Vec3::new(x, y, z),
-            exposure: held.stored_exposure(frame),
+            exposure: state.stored_exposure(frame),
             color_exposure: frame.exposure.of_colors(),
             inverse_exposure: 1.0 / frame.exposure.of_colors(),
             reset: frame.reset != Reset::None || !has_history,
             motion_scale: desc.motion.to_internal(desc.size_px),
             convention: desc.motion,
-            camera_uniforms: CameraUniforms::new(desc, view, held),
+            camera_uniforms: CameraUniforms::new(desc, view, state),
             disparity_map: view.depth_convention(desc).disparity_map(),
             depth_test: desc.settings.depth_test.filter(|_| frame.depth.is_some()),
         }

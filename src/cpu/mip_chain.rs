@@ -3,8 +3,8 @@
 
 use crate::image::Image;
 use crate::kernel::foveate::{level_coordinate, level_len, split};
-use crate::kernel::matched::{mip_bilinear, mip_mean};
 use crate::kernel::noise::{candidate_bilinear, candidate_mean};
+use crate::kernel::smr::{mip_bilinear, mip_mean};
 use crate::kernel::surface::{mip_texel, round_mip};
 use crate::parallel::for_rows;
 use glam::{Vec3, Vec4};

@@ -27,8 +27,9 @@ pub use crate::kernel::debug_view::PixelTrace;
 pub use doctor::Doctor;
 use history::History;
 
+use crate::context::{ContextDesc, check_size};
 use crate::error::{FrameError, SettingsError};
-use crate::frame::{ContextDesc, Executor, Gaze, ViewFrame, check_size};
+use crate::gaze::Gaze;
 use crate::geometry::ViewGeometry;
 use crate::image::Image;
 use crate::lattice::Lattices;
@@ -37,6 +38,7 @@ use crate::notes::PixelNotes;
 use crate::resize::Resize;
 use crate::settings::Settings;
 use crate::stats::FrameStats;
+use crate::view::ViewFrame;
 use plan::Planned;
 
 /// A frame whose inputs are slices with one image a view; fields are at [`FrameInputs`](crate::FrameInputs).
@@ -51,7 +53,7 @@ use plan::Planned;
 /// # let _ = frame;
 /// # }
 /// ```
-pub type Frame<'a> = crate::FrameInputs<'a, CpuAfterimage>;
+pub type Frame<'a> = crate::FrameInputs<'a, &'a [&'a Image<[f32; 3]>], &'a [&'a Image<f32>], &'a [&'a Image<[f32; 2]>]>;
 
 impl<'a> Frame<'a> {
     /// A frame without optional inputs, which continues the previous frame: no reset, unchanged exposure. `color`: one
@@ -89,12 +91,6 @@ pub struct CpuAfterimage {
     desc: ContextDesc,
     history: History,
     planned: Option<Planned>,
-}
-
-impl Executor for CpuAfterimage {
-    type Colors<'a> = &'a [&'a Image<[f32; 3]>];
-    type Scalars<'a> = &'a [&'a Image<f32>];
-    type Vectors<'a> = &'a [&'a Image<[f32; 2]>];
 }
 
 /// Arguments of a method's pass.
@@ -200,7 +196,7 @@ impl CpuAfterimage {
     }
 
     /// Changes the size of the views and resamples history to it, for dynamic resolution. The view directions at the
-    /// edges should stay the same. Reservoirs of wrs, and kept samples of sparse frames with their places, are taken
+    /// edges should stay the same. Reservoirs of wrs, and stored samples of sparse frames with their places, are taken
     /// from the nearest pixel. Surfaces of taa, taau and smr are filtered. Levels of detail follow the scale.
     ///
     /// # Errors
@@ -290,7 +286,7 @@ impl CpuAfterimage {
         self.planned = None;
         if self.history.layout() == HistoryLayout::Nothing {
             for i in 0..frame.views.len() {
-                self.history.hold(i, frame);
+                self.history.advance(i, frame);
             }
         } else {
             self.history.swap();

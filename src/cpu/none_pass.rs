@@ -13,7 +13,7 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     let Pass { desc, history, frame, output, mut traces, mut noted, .. } = pass;
     let mut stats = FrameStats::default();
     for (i, out) in output.iter_mut().enumerate() {
-        let inputs = Inputs::new(desc, frame, i, &history.held_after(i, frame), false);
+        let inputs = Inputs::new(desc, frame, i, &history.state_after(i, frame), false);
         for (y, row) in (0..).zip(out.pixels_mut().chunks_mut(desc.size_px[0] as usize)) {
             for (x, shown) in (0..).zip(row) {
                 let (color, usable) = inputs.candidate(x, y);

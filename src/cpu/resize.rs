@@ -1,10 +1,10 @@
-//! History resampled to another size. Twins: `shaders/pass/resize_{surfaces,reservoirs,kept}_pass.wgsl`.
+//! History resampled to another size. Twins: `shaders/pass/resize_{surfaces,reservoirs,sparse}_pass.wgsl`.
 
 use crate::kernel::antialias::{Mean, mean_of, stored_lod};
-use crate::kernel::kept::{Kept, moved_kept, pack_kept, unpack_kept};
 use crate::kernel::resample::{gather_around, resolve, sharp_sum, surface_tap, tap_codes, taps_around};
 use crate::kernel::resize::{old_position, resized_lod};
 use crate::kernel::sanitize::MAX_HALF;
+use crate::kernel::stored_sample::{StoredSample, moved_stored, pack_stored, unpack_stored};
 use crate::kernel::surface::{Surface, pack_surface, unpack_surface};
 use crate::parallel::collect;
 use crate::resize::Resize;
@@ -39,21 +39,22 @@ impl Resize {
         })
     }
 
-    /// Packed kept samples of one view of the new size, from those of the old size. `means`: they are means of samples.
-    pub(super) fn kept(&self, words: &[[u32; 2]], means: bool) -> Vec<[u32; 2]> {
+    /// Packed stored samples of one view of the new size, from those of the old size. `means`: they are means of
+    /// samples.
+    pub(super) fn sparse(&self, words: &[[u32; 2]], means: bool) -> Vec<[u32; 2]> {
         let scale = Vec2::new(1.0 / self.ratio[0], 1.0 / self.ratio[1]);
         self.map(|x, y| {
             let position = self.old_position_of(x, y);
             let at = self.nearest_to(position);
             let texel_px = Vec2::new(at[0] as f32 - position[0], at[1] as f32 - position[1]);
-            let mut stored = unpack_kept(words[self.index(at)]);
+            let mut stored = unpack_stored(words[self.index(at)]);
             if !means {
-                return pack_kept(moved_kept(stored, texel_px, scale, self.lod_shift));
+                return pack_stored(moved_stored(stored, texel_px, scale, self.lod_shift));
             }
             let Mean { lod, samples } = mean_of(stored.lod);
             stored.lod = lod;
-            let moved = moved_kept(stored, texel_px, scale, self.lod_shift);
-            pack_kept(Kept { lod: stored_lod(Mean { lod: moved.lod, samples }), ..moved })
+            let moved = moved_stored(stored, texel_px, scale, self.lod_shift);
+            pack_stored(StoredSample { lod: stored_lod(Mean { lod: moved.lod, samples }), ..moved })
         })
     }
 

@@ -16,12 +16,12 @@ use crate::kernel::approx;
 use crate::kernel::color;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::foveate::mean_of_four;
-use crate::kernel::matched;
-use crate::kernel::matched::{Evidence, Matched, SmrParams};
 use crate::kernel::noise;
 use crate::kernel::noise::{NOISY_LEVELS, Noise, pack_noise};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::sanitize::MAX_HALF;
+use crate::kernel::smr;
+use crate::kernel::smr::{Evidence, Matched, SmrParams};
 use crate::kernel::surface::{MAX_LOD, Surface, pack_surface};
 use crate::method::smr_params;
 use crate::notes::{NoteStage, Notes};
@@ -123,7 +123,7 @@ impl Smr {
     ) -> Matched {
         let history = view.resample(source, notes);
         notes.note(NoteStage::History, "level of detail", history.lod, "log2 px");
-        let reuse = matched::reuse_weight(lod, history.lod, self.params.accumulate, false, [1.0; 2]);
+        let reuse = smr::reuse_weight(lod, history.lod, self.params.accumulate, false, [1.0; 2]);
         if reuse.share == 0.0 {
             notes.note(NoteStage::Decision, "history is too coarse to be of use", true, "");
             return Matched { color: candidate, lod, share: 0.0, fit: 1.0 };
@@ -132,7 +132,7 @@ impl Smr {
         let shift = if self.params.blocks { 1.0 } else { 0.0 };
         let mip_chain = view.past.mip_chain.expect("smr stores a mip chain");
         let past = mip_chain.read(source.at, lod + shift, history.smooth);
-        let unit = matched::light_unit(candidate, past[0], view.inputs.exposure);
+        let unit = smr::light_unit(candidate, past[0], view.inputs.exposure);
         let inverse_unit = 1.0 / unit;
         let per_stored = view.inputs.exposure * inverse_unit;
         let [matched, level, next_level] = past.map(|c| c * per_stored);
@@ -142,8 +142,8 @@ impl Smr {
         // Levels of history are means of blocks, not Gaussian blurs: the two agree better one level coarser.
         let gauss = self.settings.foveation.filter == Filter::Gauss;
         let changed = self.params.relight
-            && matched::may_relight(reuse.finer, false)
-            && matched::is_changed(own, matched, level, next_level);
+            && smr::may_relight(reuse.finer, false)
+            && smr::is_changed(own, matched, level, next_level);
         let around = if blocks || changed { self.around(view, x, y, candidate, radius) } else { Vec3::ZERO };
         let around = around * inverse_unit;
         let predicted = if blocks { view.sampled(source, [x, y], lod) * per_stored } else { matched };
@@ -166,7 +166,7 @@ impl Smr {
             noise: 0.0,
             confidence: [1.0; 2],
         };
-        matched::decide_noted(&evidence, &self.params, notes)
+        smr::decide_noted(&evidence, &self.params, notes)
     }
 
     /// Output color for a noisy candidate, and its noise.
@@ -191,7 +191,7 @@ impl Smr {
         let discounted = noise::discount_coarser(past, noise, history.lod - lod);
         let params =
             SmrParams { accumulate: noise::history_share(discounted, noise, self.params.accumulate), ..self.params };
-        let reuse = matched::reuse_weight(lod, history.lod, params.accumulate, true, confidence);
+        let reuse = smr::reuse_weight(lod, history.lod, params.accumulate, true, confidence);
         if reuse.share == 0.0 {
             notes.note(NoteStage::Decision, "history is too coarse to be of use", true, "");
             return (Matched { color: candidate, lod, share: 0.0, fit: 1.0 }, noise);
@@ -201,7 +201,7 @@ impl Smr {
         let [compared, coarser] = candidates.read_candidates([x as f32, y as f32], compared_lod);
         let mip_chain = view.past.mip_chain.expect("smr stores a mip chain");
         let stored = mip_chain.read(source.at, compared_lod, history.smooth);
-        let unit = matched::light_unit(compared.truncate(), stored[0], view.inputs.exposure);
+        let unit = smr::light_unit(compared.truncate(), stored[0], view.inputs.exposure);
         let inverse_unit = 1.0 / unit;
         let per_stored = view.inputs.exposure * inverse_unit;
         let [matched, level, next_level] = stored.map(|c| c * per_stored);
@@ -226,7 +226,7 @@ impl Smr {
             confidence,
             noise: noise::noise_difference(past, around, color::luma(matched), inverse_unit),
         };
-        let result = matched::decide_noted(&evidence, &params, notes);
+        let result = smr::decide_noted(&evidence, &params, notes);
         let acceptance = result.fit * source.trust;
         (result, noise::noise_after(past, around, result.share, reuse.finer * acceptance))
     }

@@ -6,13 +6,13 @@ use super::history::PastSurfaces;
 use super::inputs::{Inputs, Previous};
 use super::sparse_pass::Quads;
 use crate::kernel::foveate::{block_sample, block_sample_level, split};
-use crate::kernel::matched::mip_bilinear;
 use crate::kernel::noise::{Noise, expose_noise, unpack_noise};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::{
     Resampled, STAND_IN_WEIGHT, corner_weight, gather_around, resolve, second_corner, sharp_sum, surface_tap,
     tap_codes, taps_around,
 };
+use crate::kernel::smr::mip_bilinear;
 use crate::kernel::surface::{Surface, mip_texel, unpack_surface};
 use crate::kernel::taa::root_luma;
 use crate::kernel::wrs::expose;

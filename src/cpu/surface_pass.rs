@@ -55,8 +55,8 @@ pub(super) fn run(pass: Pass<'_, '_>, method: &impl SurfaceMethod) -> FrameStats
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
-        let held = history.hold(i, frame);
-        let inputs = Inputs::new(desc, frame, i, &held, has_history);
+        let state = history.advance(i, frame);
+        let inputs = Inputs::new(desc, frame, i, &state, has_history);
         history.build_candidates(i, |x, y| {
             let (color, usable) = inputs.candidate(x, y);
             candidate_texel(color, usable, inputs.noise(x, y).expect("the frame was checked to have noise"))

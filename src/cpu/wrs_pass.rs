@@ -102,10 +102,10 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
-        let held = history.hold(i, frame);
+        let state = history.advance(i, frame);
         let (past, next) = history.split(i);
         let pass = ViewPass {
-            inputs: Inputs::new(desc, frame, i, &held, has_history),
+            inputs: Inputs::new(desc, frame, i, &state, has_history),
             past,
             params: wrs_params(settings),
             weight_exponent: wrs.weight_exponent,

@@ -4,8 +4,8 @@
 use super::finding::{Check, Fault, Finding};
 use super::observation::Observation;
 use super::sharpness::{bends, is_inside};
+use crate::context::ContextDesc;
 use crate::foveation::Filter;
-use crate::frame::ContextDesc;
 use crate::kernel::doctor::{CODES, TILE_PX};
 
 /// Least number of tiles that vote.

@@ -6,8 +6,8 @@
 use super::finding::{Check, Fault, Finding, Outcome};
 use super::motion::OPEN_Y_AXIS;
 use super::observation::Observation;
+use crate::context::ContextDesc;
 use crate::convention::DepthConvention;
-use crate::frame::ContextDesc;
 use crate::kernel::depth::disparity;
 use crate::kernel::doctor::{DEPTHS, TILE_PX};
 

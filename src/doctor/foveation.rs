@@ -3,8 +3,8 @@
 use super::finding::{Check, Fault, Finding};
 use super::observation::Observation;
 use super::sharpness::{Measured, agrees, is_inside, measure, range};
+use crate::context::ContextDesc;
 use crate::foveation::{Filter, Foveation};
-use crate::frame::ContextDesc;
 use crate::geometry::ViewGeometry;
 use crate::kernel::doctor::TILE_PX;
 

@@ -2,7 +2,7 @@
 
 use super::finding::{Check, Fault, Finding, Outcome};
 use super::observation::Observation;
-use crate::frame::ContextDesc;
+use crate::context::ContextDesc;
 
 /// Least number of changes of jitter.
 const CHANGES: usize = 3;

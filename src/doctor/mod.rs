@@ -17,9 +17,10 @@ pub(crate) use observation::Tile;
 pub(crate) use observation::tile_count;
 pub(crate) use observation::{Description, Observation, maps};
 
+use crate::context::ContextDesc;
 use crate::error::SettingsError;
 use crate::foveation::Filter;
-use crate::frame::{ContextDesc, Executor, Exposure, FrameInputs, Reset};
+use crate::frame::{Exposure, FrameInputs, Reset};
 
 /// Number of frames that are kept; with more, the oldest ones are forgotten.
 const KEPT: usize = 16;
@@ -65,7 +66,7 @@ impl Chart {
 }
 
 /// Whether a frame can be compared with the one before, whose colors had the exposure `before`.
-pub(crate) fn continues<E: Executor>(frame: &FrameInputs<'_, E>, before: f32) -> bool {
+pub(crate) fn continues<C, S, V>(frame: &FrameInputs<'_, C, S, V>, before: f32) -> bool {
     let has_changed = matches!(frame.exposure, Exposure::Changed { .. }) || frame.exposure.of_colors() != before;
     frame.reset == Reset::None && !has_changed
 }

@@ -2,8 +2,8 @@
 
 use super::finding::{Check, Fault, Finding};
 use super::observation::{Hypothesis, Observation, hypotheses};
+use crate::context::ContextDesc;
 use crate::convention::{MotionConvention, MotionDirection, YAxis};
-use crate::frame::ContextDesc;
 use crate::kernel::doctor::{ERRORS, HYPOTHESES, MATCHED};
 
 /// Noise floor: a tile whose mean difference of roots of light is below this counts little.

@@ -1,9 +1,10 @@
 //! Evidence on a frame: its description, and the words of its tiles, which an executor computes.
 
+use crate::context::ContextDesc;
 use crate::convention::MotionUnit;
 use crate::foveation::Filter;
-use crate::frame::{ContextDesc, ViewFrame};
 use crate::kernel::doctor::{DEPTH, DEPTHS, HYPOTHESES, MOTION, TILE_PX, WORDS};
+use crate::view::ViewFrame;
 
 /// Largest number of tiles along an axis.
 const MAX_TILES: u32 = 32;

@@ -5,8 +5,8 @@ use super::binding::Binding;
 use super::compute::{ComputeShader, Sources};
 use super::plane::{Plane, PlaneDesc};
 use super::stage::{Job, Passes, Specialization};
+use crate::context::ContextDesc;
 use crate::foveation::Filter;
-use crate::frame::ContextDesc;
 use crate::method::Overrides;
 use wgpu::{Device, TextureFormat};
 

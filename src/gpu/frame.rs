@@ -1,10 +1,11 @@
 //! Inputs and outputs of one frame on a GPU.
 
+use super::Textures;
 use super::binding::Binding;
-use super::{Afterimage, Textures};
-use crate::frame::{Exposure, ViewFrame};
+use crate::frame::Exposure;
 use crate::kernel::debug_view::DebugView;
 use crate::uniforms::{MAX_VIEWS, ORIGINS};
+use crate::view::ViewFrame;
 use crate::warning::Warning;
 use wgpu::{Buffer, QuerySet, Texture};
 
@@ -12,7 +13,7 @@ use wgpu::{Buffer, QuerySet, Texture};
 ///
 /// Textures have one sample a pixel and the usage `TEXTURE_BINDING`. [`Textures`] describes where the views lie in
 /// them.
-pub type Frame<'a> = crate::FrameInputs<'a, Afterimage>;
+pub type Frame<'a> = crate::FrameInputs<'a, Textures<'a>, Textures<'a>, Textures<'a>>;
 
 impl<'a> Frame<'a> {
     /// A frame without optional inputs, which continues the previous frame: no reset, unchanged exposure.
@@ -225,15 +226,15 @@ impl Recorded {
         self.gaze.into_iter().flatten()
     }
 
-    /// Notes a warning about the gaze of view `view`, if any. `held`: last known position.
-    pub(super) fn note_gaze(&mut self, view: usize, frame: &ViewFrame, held: Option<[f32; 2]>) {
+    /// Notes a warning about the gaze of view `view`, if any. `last_px`: last known position.
+    pub(super) fn note_gaze(&mut self, view: usize, frame: &ViewFrame, last_px: Option<[f32; 2]>) {
         let size = frame.geometry.size_px().map(|s| s as f32);
         self.gaze[view] = match frame.gaze.known_px(&frame.geometry) {
             Some(px) => {
                 let inside = |i: usize| (-0.5..size[i] - 0.5).contains(&px[i]);
                 (!(inside(0) && inside(1))).then_some(Warning::GazeOffScreen { view })
             }
-            _ if held.is_some() => Some(Warning::GazeHeld { view }),
+            _ if last_px.is_some() => Some(Warning::GazeHeld { view }),
             _ => Some(Warning::GazeUnknown { view }),
         };
     }

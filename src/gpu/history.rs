@@ -10,10 +10,10 @@ use super::groups::Resource;
 use super::plane::{Plane, PlaneDesc};
 use super::recorder::NUMBER;
 use super::uniforms::NO_FRAME;
-use crate::frame::ContextDesc;
+use crate::context::ContextDesc;
 use crate::kernel::foveate::level_len;
 use crate::method::HistoryLayout;
-use crate::uniforms::Held;
+use crate::uniforms::ViewState;
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Device, TextureFormat, TextureUsages};
 
 /// Bytes of a frame number.
@@ -28,7 +28,7 @@ pub(super) struct Planes {
     pub frame: Buffer,
 }
 
-/// Textures of the previous and the current frame, and the held state of the views.
+/// Textures of the previous and the current frame, and the state of the views.
 #[derive(Debug)]
 pub(super) struct History {
     layout: HistoryLayout,
@@ -39,7 +39,7 @@ pub(super) struct History {
     filled: bool,
     /// Number of the last recorded frame; 0 before the first one.
     frame: u32,
-    pub held: Vec<Held>,
+    pub state: Vec<ViewState>,
 }
 
 impl History {
@@ -55,19 +55,19 @@ impl History {
                 mapped_at_creation: false,
             }),
         };
-        let held = vec![Held::default(); desc.view_count as usize];
+        let state = vec![ViewState::default(); desc.view_count as usize];
         let candidates = candidate_plan(desc).map(|plane| plane.create(device));
-        Self { layout, sets: [planes(), planes()], candidates, past: 0, filled: false, frame: 0, held }
+        Self { layout, sets: [planes(), planes()], candidates, past: 0, filled: false, frame: 0, state }
     }
 
     pub fn layout(&self) -> HistoryLayout {
         self.layout
     }
 
-    /// Discards history and the held state of the views: the next frame starts without history.
+    /// Discards history and the state of the views: the next frame starts without history.
     pub fn forget(&mut self) {
         self.filled = false;
-        self.held.fill(Held::default());
+        self.state.fill(ViewState::default());
     }
 
     /// Whether a frame was recorded since the last reset.
@@ -158,8 +158,8 @@ fn plan(desc: &ContextDesc) -> Vec<PlaneDesc> {
         HistoryLayout::Nothing => vec![],
         HistoryLayout::Reservoirs { keys: false, references: false } => [Rg32Uint, R32Uint].map(full).into(),
         HistoryLayout::Reservoirs { .. } => [Rg32Uint, R32Uint, R32Uint].map(full).into(),
-        HistoryLayout::Kept { noisy: false, .. } => vec![full(Rg32Uint)],
-        HistoryLayout::Kept { noisy: true, .. } => [Rg32Uint, R32Uint].map(full).into(),
+        HistoryLayout::Sparse { noisy: false, .. } => vec![full(Rg32Uint)],
+        HistoryLayout::Sparse { noisy: true, .. } => [Rg32Uint, R32Uint].map(full).into(),
         HistoryLayout::Surfaces { levels: 0, .. } => vec![full(Rg32Uint)],
         HistoryLayout::Surfaces { levels, noisy: false } => vec![full(Rg32Uint), mip_chain(desc, levels)],
         HistoryLayout::Surfaces { levels, noisy: true } => {

@@ -3,9 +3,10 @@
 use super::binding::{Binding, INPUTS, Input};
 use super::output::DEBUG_FORMAT;
 use super::{Afterimage, Frame, Target, Textures};
+use crate::context::ContextDesc;
 use crate::error::{FrameError, FrameValue};
-use crate::frame::{ContextDesc, ViewFrame};
 use crate::stats::FrameStats;
+use crate::view::ViewFrame;
 use wgpu::{Buffer, BufferUsages, Device, Texture, TextureAspect, TextureFormat, TextureSampleType, TextureUsages};
 
 /// Checks a frame and its target against the device and the context's description.

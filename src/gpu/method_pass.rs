@@ -4,7 +4,7 @@
 use super::binding::Binding;
 use super::compute::{ComputeShader, Sources};
 use super::stage::{Job, Passes, Specialization};
-use crate::frame::ContextDesc;
+use crate::context::ContextDesc;
 use crate::method::{Overrides, PassShader};
 use crate::settings::Settings;
 use crate::shader::SHADERS;

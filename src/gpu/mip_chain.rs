@@ -8,7 +8,7 @@ use super::history::History;
 use super::plane::Plane;
 use super::recorder::Recorder;
 use super::stage::{Job, Passes, Specialization};
-use crate::frame::ContextDesc;
+use crate::context::ContextDesc;
 use crate::kernel::foveate::level_len;
 use crate::method::Overrides;
 use std::num::NonZeroU64;

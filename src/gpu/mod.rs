@@ -43,16 +43,17 @@ pub use prime::Prime;
 pub(crate) use requirements::validate;
 pub use textures::{Region, Textures};
 
+use crate::context::ContextDesc;
 use crate::error::{CreateError, FrameError, FrameValue, SettingsError};
 use crate::foveation::Filter;
-use crate::frame::{ContextDesc, Executor, Gaze};
+use crate::gaze::Gaze;
 use crate::geometry::ViewGeometry;
 use crate::kernel::debug_view::DebugView;
 use crate::method::{HistoryLayout, PassShader};
 use crate::resize::Resize;
 use crate::settings::Settings;
 use crate::stats::FrameStats;
-use crate::uniforms::Held;
+use crate::uniforms::ViewState;
 use binding::Binding;
 use compute::Sources;
 use history::History;
@@ -87,12 +88,6 @@ pub struct Afterimage {
     resize: Option<ResizePass>,
     /// Passes that plan frames shaded by quads, if frames are.
     quads: Option<QuadPasses>,
-}
-
-impl Executor for Afterimage {
-    type Colors<'a> = Textures<'a>;
-    type Scalars<'a> = Textures<'a>;
-    type Vectors<'a> = Textures<'a>;
 }
 
 // For tests, the lab and benchmarks.
@@ -131,7 +126,7 @@ impl Afterimage {
 
     /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
     ///
-    /// For smr on sparse frames the packed samples ([`kept`](crate::kernel::kept), `Rg32Uint`).
+    /// For smr on sparse frames the packed samples ([`stored_sample`](crate::kernel::stored_sample), `Rg32Uint`).
     ///
     /// For wrs the packed reservoirs ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`),
     /// and with A-ES the keys, or the gate's references (`R32Uint`). For taa and smr the packed surfaces
@@ -219,7 +214,7 @@ impl Afterimage {
     }
 
     /// Changes the size of the views and resamples history to it, for dynamic resolution. The view directions at the
-    /// edges should stay the same. Reservoirs of wrs, and kept samples of sparse frames with their places, are taken
+    /// edges should stay the same. Reservoirs of wrs, and stored samples of sparse frames with their places, are taken
     /// from the nearest pixel. Surfaces of taa, taau and smr are filtered. Levels of detail follow the scale.
     ///
     /// Records a pass into `encoder`. The first call compiles its pipeline. Without history it records nothing. If
@@ -237,7 +232,7 @@ impl Afterimage {
         let resize = Resize::new(self.desc.size_px, size_px);
         self.set_size(device, size_px);
         let mut history = History::new(device, &self.desc);
-        history.held = self.history.held.iter().map(|held| resize.held(*held)).collect();
+        history.state = self.history.state.iter().map(|state| resize.state(*state)).collect();
         if self.history.is_filled() {
             let layout = history.layout();
             if self.resize.as_ref().is_none_or(|pass| pass.layout() != layout) {
@@ -288,7 +283,7 @@ impl Afterimage {
     /// is known, else the last known one, else the middle of the view. Renderers of sparse frames need it before that
     /// call, to place the [lattices](crate::Foveation::lattices).
     pub fn gaze_px(&self, view: usize, geometry: &ViewGeometry, gaze: Gaze) -> [f32; 2] {
-        gaze.resolve(self.history.held.get(view).and_then(|held| held.gaze_px), geometry)
+        gaze.resolve(self.history.state.get(view).and_then(|state| state.gaze_px), geometry)
     }
 
     /// Compiles the pipelines for `variants` of frames and targets, so that [`record`](Self::record) does not have to:
@@ -347,9 +342,9 @@ impl Afterimage {
     ) -> Result<Recorded, FrameError> {
         let target = target.into();
         self.check(device, frame, &target)?;
-        let (recorded, held, upload) = self.dispatch(device, encoder, frame, &target, None)?;
+        let (recorded, state, upload) = self.dispatch(device, encoder, frame, &target, None)?;
         self.unplan();
-        self.history.held = held;
+        self.history.state = state;
         if self.desc.settings.history_layout() != HistoryLayout::Nothing {
             self.history.finish(encoder, &upload);
         }
@@ -538,8 +533,8 @@ impl Afterimage {
         frame: &Frame<'_>,
         target: &Target<'_>,
         view: Option<DebugView>,
-    ) -> Result<(Recorded, Vec<Held>, Buffer), FrameError> {
-        let (uniforms, held, recorded) = self.prepare(frame);
+    ) -> Result<(Recorded, Vec<ViewState>, Buffer), FrameError> {
+        let (uniforms, state, recorded) = self.prepare(frame);
         let mut textures = frame.textures();
         textures[Binding::Output as usize] = Some(target.output);
         textures[Binding::Debug as usize] = target.debug.map(|debug| debug.output);
@@ -568,7 +563,7 @@ impl Afterimage {
         });
         self.recorder.record(&mut pass);
         drop(pass);
-        Ok((recorded, held, upload))
+        Ok((recorded, state, upload))
     }
 
     fn check(&self, device: &Device, frame: &Frame<'_>, target: &Target<'_>) -> Result<(), FrameError> {
@@ -584,12 +579,12 @@ impl Afterimage {
     }
 
     /// Uniforms of a frame, the state of the views after it, and its warnings.
-    fn prepare(&self, frame: &Frame<'_>) -> (FrameUniforms, Vec<Held>, Recorded) {
+    fn prepare(&self, frame: &Frame<'_>) -> (FrameUniforms, Vec<ViewState>, Recorded) {
         let mut recorded = Recorded::default();
         let mut after = vec![];
-        for (i, (view, held)) in frame.views.iter().zip(&self.history.held).enumerate() {
-            after.push(held.with(view, frame.exposure));
-            recorded.note_gaze(i, view, held.gaze_px);
+        for (i, (view, state)) in frame.views.iter().zip(&self.history.state).enumerate() {
+            after.push(state.with(view, frame.exposure));
+            recorded.note_gaze(i, view, state.gaze_px);
         }
         let uniforms = FrameUniforms::new(&self.desc, frame, &after, self.history.past_frame());
         let largest_shown = output::largest(self.output_format);

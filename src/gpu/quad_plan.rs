@@ -11,7 +11,7 @@ use super::groups::Resource;
 use super::prime::PrimePass;
 use super::quads::{Quads, ViewQuads, size_quads};
 use super::stage::{Job, Specialization};
-use crate::frame::ContextDesc;
+use crate::context::ContextDesc;
 use crate::kernel::quads::RUN_QUADS;
 use crate::method::Overrides;
 use wgpu::{CommandEncoder, Device};

@@ -6,7 +6,7 @@ use super::compute::{ComputeShader, Sources};
 use super::plane::{Plane, PlaneDesc};
 use super::quads::{PIXEL_GROUPS, QUAD_GROUPS, size_quads};
 use super::stage::{Job, Passes, Specialization};
-use crate::frame::ContextDesc;
+use crate::context::ContextDesc;
 use crate::method::Overrides;
 use wgpu::{Device, TextureFormat};
 

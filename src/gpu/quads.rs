@@ -2,7 +2,7 @@
 
 use super::buffer::filled;
 use super::plane::{Plane, PlaneDesc};
-use crate::frame::ContextDesc;
+use crate::context::ContextDesc;
 use crate::kernel::quads::{KEYS, RUN_QUADS, budget_quads};
 use wgpu::{Buffer, BufferUsages, Device, TextureFormat, TextureUsages};
 

@@ -11,8 +11,8 @@ use super::compute::ComputeShader;
 use super::groups::{Groups, Resource};
 use super::plane::{Plane, PlaneDesc};
 use super::uniforms::{FrameUniforms, SparseUniforms};
+use crate::context::ContextDesc;
 use crate::error::FrameError;
-use crate::frame::ContextDesc;
 use crate::stats::FrameStats;
 use std::num::NonZeroU64;
 use wgpu::{

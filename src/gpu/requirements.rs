@@ -3,9 +3,9 @@
 use super::output::{is_storable, texel};
 use super::recorder::STORED;
 use super::{history, quads};
+use crate::context::{ContextDesc, check_size};
 use crate::error::{CreateError, FrameError, SettingsError};
 use crate::foveation::Filter;
-use crate::frame::{ContextDesc, check_size};
 use crate::uniforms::{MAX_VIEWS, results_size};
 use wgpu::{Device, Limits, TextureFormat};
 

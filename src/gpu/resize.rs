@@ -40,8 +40,8 @@ impl ResizePass {
     pub fn new(device: &Device, layout: HistoryLayout, sources: &Sources) -> Option<Self> {
         let (name, block_px, overrides) = match layout {
             HistoryLayout::Nothing => return None,
-            HistoryLayout::Kept { noisy, means } => {
-                ("resize_kept_pass", 1, vec![("NOISY", u32::from(noisy)), ("MEANS", u32::from(means))])
+            HistoryLayout::Sparse { noisy, means } => {
+                ("resize_sparse_pass", 1, vec![("NOISY", u32::from(noisy)), ("MEANS", u32::from(means))])
             }
             HistoryLayout::Reservoirs { keys, references } => {
                 ("resize_reservoirs_pass", 1, vec![("HAS_EXTRAS", u32::from(keys || references))])

@@ -7,10 +7,11 @@ use super::plane::{Plane, PlaneDesc};
 use super::stage::{Job, Passes, Specialization};
 use super::textures::Batch;
 use super::uniforms::{LatticeUniforms, ViewLattices};
-use crate::frame::{ContextDesc, ViewFrame};
+use crate::context::ContextDesc;
 use crate::lattice::Lattices;
 use crate::method::Overrides;
 use crate::uniforms::results_size;
+use crate::view::ViewFrame;
 use wgpu::{Device, TextureFormat};
 
 /// Passes over the samples, and their results.

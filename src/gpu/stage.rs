@@ -9,10 +9,11 @@ use super::recorder::{Recorder, Workgroups};
 use super::textures::{Batch, batches};
 use super::uniforms::FrameUniforms;
 use super::{Textures, Variant};
-use crate::frame::{ContextDesc, ViewFrame};
+use crate::context::ContextDesc;
 use crate::kernel::debug_view::DebugView;
 use crate::method::{HistoryLayout, Overrides};
 use crate::uniforms::ORIGINS;
+use crate::view::ViewFrame;
 use std::fmt::Debug;
 use wgpu::{Buffer, Device, Texture, TextureView};
 
@@ -82,7 +83,7 @@ impl Specialization {
         let has = |binding| u32::from(self.has(binding));
         let settings = &desc.settings;
         let is_tested = self.has(Depth) && settings.depth_test.is_some();
-        let is_kept = matches!(settings.history_layout(), HistoryLayout::Kept { .. });
+        let is_sparse = matches!(settings.history_layout(), HistoryLayout::Sparse { .. });
         let code = |view: Option<DebugView>| view.map_or(0, |view| view as u32);
         let list = [
             (Uniforms, "REGIONS", u32::from(self.has_regions)),
@@ -92,7 +93,7 @@ impl Specialization {
             (Motion, "CAMERA_MOTION", if self.is_filled { 0 } else { desc.motion.camera_code() }),
             (Uniforms, "NOISY", u32::from(settings.noisy)),
             (Counters, "COUNT", has(Counters)),
-            (Past, "HAS_KEPT", u32::from(is_kept)),
+            (Past, "HAS_SPARSE_HISTORY", u32::from(is_sparse)),
             (Output, "VIEW", code(self.view)),
             (Output, "KEEP_ALPHA", u32::from(desc.keep_alpha)),
             (Debug, "DEBUG_VIEW", code(self.debug)),

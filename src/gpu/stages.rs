@@ -11,7 +11,7 @@ use super::recorder::Recorder;
 use super::sparse::SamplePasses;
 use super::stage::{Job, Passes, Specialization};
 use super::{fill, quad_samples, sparse};
-use crate::frame::ContextDesc;
+use crate::context::ContextDesc;
 use crate::method::{Overrides, Stage};
 use wgpu::{Device, Texture, TextureFormat};
 

@@ -1,11 +1,13 @@
 //! Uniforms of a frame. A test checks order, offsets and sizes against the WGSL.
 
 use super::Frame;
+use crate::context::ContextDesc;
 use crate::foveation::Foveation;
-use crate::frame::{ContextDesc, Reset, ViewFrame};
+use crate::frame::Reset;
 use crate::method::{HistoryLayout, inv_density_at_fovea, smr_params, wrs_params};
 pub use crate::uniforms::{CameraUniforms, LatticeUniforms, ViewLattices, ViewUniforms};
-use crate::uniforms::{Held, MAX_VIEWS};
+use crate::uniforms::{MAX_VIEWS, ViewState};
+use crate::view::ViewFrame;
 use bytemuck::{Pod, Zeroable};
 
 /// `NO_FRAME` in `shaders/pass/inputs.wgsl`: the number of no frame.
@@ -78,9 +80,9 @@ pub struct FrameUniforms {
 }
 
 impl FrameUniforms {
-    /// Uniforms of a frame, without the origins of its views and the largest shown color. `held`: state of the views
+    /// Uniforms of a frame, without the origins of its views and the largest shown color. `state`: state of the views
     /// after this frame. `past_frame`: number of the previous frame, or [`NO_FRAME`].
-    pub(super) fn new(desc: &ContextDesc, frame: &Frame<'_>, held: &[Held], past_frame: u32) -> Self {
+    pub(super) fn new(desc: &ContextDesc, frame: &Frame<'_>, state: &[ViewState], past_frame: u32) -> Self {
         let settings = &desc.settings;
         let (wrs, smr) = (wrs_params(settings), smr_params(settings));
         let [coarse_mid, coarse_far] = settings.foveation.coarseness();
@@ -98,7 +100,7 @@ impl FrameUniforms {
             depth_relative: test.relative,
             depth_slope_px: test.slope_px,
             motion_scale: desc.motion.to_internal(desc.size_px),
-            exposure: held[0].stored_exposure(frame),
+            exposure: state[0].stored_exposure(frame),
             mid_radius_deg: settings.foveation.mid_radius_deg(),
             blend_deg: settings.foveation.blend_deg,
             coarse_mid,
@@ -116,9 +118,9 @@ impl FrameUniforms {
             quad_offsets: settings.foveation.quad_offsets(frame.index),
             ..Self::default()
         };
-        for (i, (view, held)) in frame.views.iter().zip(held).enumerate() {
-            uniforms.views[i] = ViewUniforms::new(desc, view, held, i, frame.index);
-            uniforms.cameras[i] = CameraUniforms::new(desc, view, held);
+        for (i, (view, state)) in frame.views.iter().zip(state).enumerate() {
+            uniforms.views[i] = ViewUniforms::new(desc, view, state, i, frame.index);
+            uniforms.cameras[i] = CameraUniforms::new(desc, view, state);
         }
         uniforms
     }

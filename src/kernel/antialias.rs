@@ -2,13 +2,13 @@
 //! its pixel, with the mean of their places.
 //!
 //! A jittered sample shows one point of its pixel, but the pixel should show the mean over its area. Camera motion
-//! moves the place of a mean, like that of a sample ([`kept`](super::kept)), and the mean is not resampled. Means of
-//! moving history contain few samples: the pixel's area lies elsewhere on the surface in each frame, so that a long
-//! mean would blur.
+//! moves the place of a mean, like that of a sample ([`stored_sample`](super::stored_sample)), and the mean is not
+//! resampled. Means of moving history contain few samples: the pixel's area lies elsewhere on the surface in each
+//! frame, so that a long mean would blur.
 
-use super::kept::{FARTHEST_PX, Kept};
-use super::matched::{root_difference, roots};
-use super::sparse::{Light, Reconstructed, Reconstruction, relit};
+use super::smr::{root_difference, roots};
+use super::sparse_smr::{Light, Reconstructed, Reconstruction, relit};
+use super::stored_sample::{FARTHEST_PX, StoredSample};
 use super::taa::{ROUNDING, clip_to_box, to_ycocg};
 use glam::{Vec2, Vec3};
 
@@ -186,7 +186,7 @@ pub fn scattered_error(l: Light, scatter: f32) -> f32 {
     (l.error * inverse).max(variance.sqrt())
 }
 
-/// Result of [`average`] and [`kept_mean`].
+/// Result of [`average`] and [`stored_mean`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Averaged {
     /// Color to show, and texel to store.
@@ -210,20 +210,20 @@ pub fn average(r: &Reconstruction, samples: f32, place_px: Vec2, kept: f32) -> A
     let old = if near { relit(r.nearest.color, r.gain, r.range) } else { history };
     let old_px = if near { past_px } else { Vec2::ZERO };
     let color = r.candidate + (history - r.candidate) * share;
-    let next = Kept {
+    let next = StoredSample {
         color: r.candidate + (old - r.candidate) * share,
         lod: 0.0,
         place_px: place_px + (old_px - place_px) * share,
         ..r.nearest
     };
-    Averaged { result: Reconstructed { color, kept: next, share }, samples: count + 1.0 }
+    Averaged { result: Reconstructed { color, stored: next, share }, samples: count + 1.0 }
 }
 
 /// Number of samples in the texel that is stored for a pixel without a sample of its own. This is the number in the
-/// kept texel, reduced where history does not fit. `result`: of [`reconstruct`](super::sparse::reconstruct).
+/// stored texel, reduced where history does not fit. `result`: of [`reconstruct`](super::sparse_smr::reconstruct).
 #[inline]
-pub fn kept_mean(r: &Reconstruction, result: Reconstructed, samples: f32) -> Averaged {
-    let is_kept = result.kept.lod < COARSE_LOD && r.nearest.lod <= 0.0;
+pub fn stored_mean(r: &Reconstruction, result: Reconstructed, samples: f32) -> Averaged {
+    let is_kept = result.stored.lod < COARSE_LOD && r.nearest.lod <= 0.0;
     let share = r.fit * r.trust;
     // Compilers rewrite `1.0 + (samples - 1.0) * share` as this sum, which rounds in another way.
     let left = samples * share + (1.0 - share);

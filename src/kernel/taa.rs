@@ -2,7 +2,7 @@
 //! color distribution of the candidate's neighbourhood (Salvi 2016, "An excursion in temporal supersampling"; Karis
 //! 2014). Confidence is the number of samples that history counts for; resampling and bias limit it.
 
-use super::matched::roots;
+use super::smr::roots;
 use crate::notes::{NoNotes, NoteStage, Notes};
 use glam::Vec3;
 

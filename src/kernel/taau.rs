@@ -3,7 +3,7 @@
 //! samples around. The structure is that of FidelityFX Super Resolution 2 (AMD 2022, `ffx_fsr2_upsample.h`,
 //! `ffx_fsr2_accumulate.h`), without locks, reactive masks and dilated motion vectors.
 
-use super::matched::roots;
+use super::smr::roots;
 use super::taa::{ROUNDING, box_sigmas, clip_to_box, roots_of_ycocg, settled, to_ycocg};
 use crate::notes::{NoNotes, NoteStage, Notes};
 use glam::{Vec2, Vec3};

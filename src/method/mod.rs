@@ -173,8 +173,8 @@ pub(crate) enum HistoryLayout {
         /// Whether there are references of the gate ([`pack_reference`](crate::kernel::wrs::pack_reference)).
         references: bool,
     },
-    /// Packed samples that keep their places ([`kept`](crate::kernel::kept)).
-    Kept {
+    /// Packed samples that keep their places ([`stored_sample`](crate::kernel::stored_sample)).
+    Sparse {
         /// Whether there is packed noise ([`noise`](crate::kernel::noise)).
         noisy: bool,
         /// Whether they are means of samples ([`antialias`](crate::kernel::antialias)).

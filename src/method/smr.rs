@@ -2,8 +2,8 @@
 
 use super::{Algorithm, Entry, HistoryLayout, PassShader, Stage};
 use crate::foveation::Filter;
-use crate::kernel::matched::SmrParams;
 use crate::kernel::noise::NOISY_LEVELS;
+use crate::kernel::smr::SmrParams;
 use crate::settings::Settings;
 
 pub(super) static ENTRY: Entry = Entry {

@@ -13,7 +13,7 @@ pub(super) static ENTRY: Entry = Entry {
         Filter::Quads => vec![Stage::Quads, Stage::Method],
         _ => vec![Stage::Geometry, Stage::Samples, Stage::Method],
     },
-    history: |settings| HistoryLayout::Kept { noisy: settings.noisy, means: smr_sparse_antialiases(settings) },
+    history: |settings| HistoryLayout::Sparse { noisy: settings.noisy, means: smr_sparse_antialiases(settings) },
     history_traffic_bytes: |settings| {
         // Samples of history: 8 bytes read, 8 written. At most a third of the pixels (1/4 + 1/16 + ...) have samples of
         // this frame. For each of these, history is read (8), and the observation (16) and the light (16) are written

@@ -12,10 +12,10 @@ use afterimage::{
 };
 use afterimage_testing::Draws;
 
-/// The laws as tests of an executor. `$held` runs one, and returns what it measured.
+/// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! depth_laws {
-    ($side:ident, $held:ident) => {
-        laws! { $side, $held,
+    ($side:ident, $run_law:ident) => {
+        laws! { $side, $run_law,
             h44_a_grazing_plane_under_jitter_is_not_rejected: "H44", grazing_plane;
             h45_driving_at_a_wall_keeps_history_when_camera_motion_is_known: "H45", driving_at_a_wall;
             h46_a_jittering_wire_rejects_its_own_history_alone: "H46", jittering_wire;
@@ -25,7 +25,7 @@ macro_rules! depth_laws {
 
         #[test]
         fn h41_h49_sky_and_orthographic_depth_go_through_the_pass() {
-            let Some(figure) = $held(sky_and_orthographic_depth) else { return };
+            let Some(figure) = $run_law(sky_and_orthographic_depth) else { return };
             holds!("H41", $side, "{figure}");
             holds!("H49", $side, "{figure}");
         }

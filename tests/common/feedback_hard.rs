@@ -7,10 +7,10 @@ use afterimage::simulator::Pyramid;
 use afterimage::{ContextDesc, Exposure, Filter, Foveation, Image, Method, Reset, Settings, Smr};
 use afterimage_testing::Draws;
 
-/// The laws as tests of an executor. `$held` runs one, and returns what it measured.
+/// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! feedback_laws {
-    ($side:ident, $held:ident) => {
-        laws! { $side, $held,
+    ($side:ident, $run_law:ident) => {
+        laws! { $side, $run_law,
             h51_a_still_picture_under_a_steady_gaze_is_shown_as_it_came: "H51", steady_gaze;
             h51_what_gains_did_ends_when_pictures_and_gaze_rest: "H51", rest;
             h73_a_light_of_one_frame_leaves_no_mark: "H73", flash;

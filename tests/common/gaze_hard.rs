@@ -5,10 +5,10 @@ use crate::images::{View, noise};
 use crate::settings::ungated;
 use afterimage::{ContextDesc, Gaze};
 
-/// The laws as tests of an executor. `$held` runs one, and returns what it measured.
+/// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! gaze_laws {
-    ($side:ident, $held:ident) => {
-        laws! { $side, $held,
+    ($side:ident, $run_law:ident) => {
+        laws! { $side, $run_law,
             h63_a_lost_gaze_is_held_then_centred_at_the_start: "H63", lost_gaze;
             h66_a_saccade_keeps_the_old_fovea_and_it_decays_as_theory_says: "H66", saccade;
         }

@@ -5,10 +5,10 @@ use afterimage::kernel::{pack, reservoir, sanitize};
 use afterimage_testing::Draws;
 use glam::Vec3;
 
-/// The laws as tests of an executor. `$held` runs one, and returns what it measured.
+/// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! kernel_laws {
-    ($side:ident, $held:ident) => {
-        laws! { $side, $held,
+    ($side:ident, $run_law:ident) => {
+        laws! { $side, $run_law,
             h01_an_empty_reservoir_never_wins: "H01", empty_reservoir;
             h02_two_empty_reservoirs_keep_the_newer_color: "H02", two_empty_reservoirs;
             h03_candidates_of_weight_0_change_nothing: "H03", weight_of_0;
@@ -28,14 +28,14 @@ macro_rules! kernel_laws {
 
         #[test]
         fn h17_h18_bad_weights_leave_the_reservoir_as_it_was() {
-            let Some(figure) = $held(bad_weights) else { return };
+            let Some(figure) = $run_law(bad_weights) else { return };
             holds!("H17", $side, "{figure}");
             holds!("H18", $side, "{figure}");
         }
 
         #[test]
         fn h36_h37_negative_and_hdr_colors_give_finite_numbers() {
-            let Some(figure) = $held(negative_and_hdr_colors) else { return };
+            let Some(figure) = $run_law(negative_and_hdr_colors) else { return };
             holds!("H36", $side, "{figure}");
             holds!("H37", $side, "{figure}");
         }

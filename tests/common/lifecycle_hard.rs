@@ -6,10 +6,10 @@ use crate::images::{View, noise};
 use crate::surfaces_hard::settings;
 use afterimage::{ContextDesc, Exposure, Image, MethodKind, Reset};
 
-/// The laws as tests of an executor. `$held` runs one, and returns what it measured.
+/// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! lifecycle_laws {
-    ($side:ident, $held:ident) => {
-        laws! { $side, $held,
+    ($side:ident, $run_law:ident) => {
+        laws! { $side, $run_law,
             h76_other_sizes_and_back_equal_a_fresh_context: "H76", other_sizes;
             h77_a_cut_shows_the_candidate_and_equals_a_fresh_context: "H77", cut;
             h78_resets_equal_a_fresh_context: "H78", resets;

@@ -6,10 +6,10 @@ use crate::settings::ungated;
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::{ContextDesc, Exposure, Image, Settings};
 
-/// The laws as tests of an executor. `$held` runs one, and returns what it measured.
+/// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! light_laws {
-    ($side:ident, $held:ident) => {
-        laws! { $side, $held,
+    ($side:ident, $run_law:ident) => {
+        laws! { $side, $run_law,
             h72_with_the_ratio_history_follows_the_exposure_at_once: "H72", declared_exposure;
             h72_without_the_ratio_the_gate_recovers_within_3_frames: "H72", undeclared_exposure;
             h73_a_firefly_lives_one_frame: "H73", gated_firefly;

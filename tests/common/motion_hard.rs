@@ -5,10 +5,10 @@ use crate::images::{View, noise};
 use afterimage::{DepthConvention, Image, MethodKind, MotionConvention, Verdict, ViewFrame, ViewGeometry};
 use glam::{DMat4, DVec2, DVec3};
 
-/// The laws as tests of an executor. `$held` runs one, and returns what it measured.
+/// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! motion_laws {
-    ($side:ident, $held:ident) => {
-        laws! { $side, $held,
+    ($side:ident, $run_law:ident) => {
+        laws! { $side, $run_law,
             h51_a_thousand_still_frames_never_move_a_sample: "H51", still_frames;
             h52_an_integer_shift_moves_history_exactly_and_marks_the_border_new: "H52", whole_shift;
             h53_half_pixel_motion_never_blurs: "H53", half_pixels;

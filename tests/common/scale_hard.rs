@@ -8,10 +8,10 @@ use afterimage::{
 };
 use afterimage_testing::Draws;
 
-/// The laws as tests of an executor. `$held` runs one, and returns what it measured.
+/// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! scale_laws {
-    ($side:ident, $held:ident) => {
-        laws! { $side, $held,
+    ($side:ident, $run_law:ident) => {
+        laws! { $side, $run_law,
             h106_colors_times_a_constant_are_shown_as_the_picture_times_it: "H106", times_a_constant;
             h106_radiance_with_its_exposure_is_shown_as_the_picture_in_its_unit: "H106", radiance;
             h106_a_shadow_that_moves_leaves_as_little_light_in_dark_frames: "H106", moving_shadow;

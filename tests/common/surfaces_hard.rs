@@ -7,10 +7,10 @@ use crate::low_pass::LowPass;
 use afterimage::{ContextDesc, Exposure, Foveation, Gaze, Image, Method, MethodKind, Reset, Settings, Smr, Verdict};
 use afterimage_testing::Draws;
 
-/// The laws as tests of an executor. `$held` runs one, and returns what it measured.
+/// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! surfaces_laws {
-    ($side:ident, $held:ident) => {
-        laws! { $side, $held,
+    ($side:ident, $run_law:ident) => {
+        laws! { $side, $run_law,
             h50_z_fighting_stays_next_to_the_colors_presented: "H50", z_fighting;
             h51_a_still_picture_stays_bit_for_bit_whatever_the_candidates_level: "H51", still_picture;
             h52_a_whole_shift_moves_history_exactly_and_the_border_is_new: "H52", whole_shift;

@@ -28,11 +28,11 @@ fn foveate(foveation: &Foveation, image: &Image<[f32; 3]>, gaze: [f32; 2]) -> Im
 }
 
 /// What a law measured.
-fn held(law: fn(Foveate<'_>) -> Option<String>) -> Option<String> {
+fn run_law(law: fn(Foveate<'_>) -> Option<String>) -> Option<String> {
     law(&|foveation, image, gaze_px| Some(foveate(foveation, image, gaze_px)))
 }
 
-simulator_laws!(Cpu, held);
+simulator_laws!(Cpu, run_law);
 
 #[test]
 fn h69_levels_between_keep_a_constant_image() {

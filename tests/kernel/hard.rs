@@ -49,8 +49,8 @@ fn call(function: &str, row: &[u32]) -> Vec<u32> {
 }
 
 /// What a law measured.
-fn held(law: fn(Call<'_>) -> Option<String>) -> Option<String> {
+fn run_law(law: fn(Call<'_>) -> Option<String>) -> Option<String> {
     law(&|function, rows| Some(rows.iter().map(|row| call(function, row)).collect()))
 }
 
-kernel_laws!(Cpu, held);
+kernel_laws!(Cpu, run_law);

@@ -7,7 +7,6 @@ mod elementary;
 mod geometry;
 mod hard;
 mod jitter;
-mod kept;
 #[path = "../common/kernel_hard.rs"]
 mod kernel_hard;
 mod lattice;
@@ -16,3 +15,4 @@ mod laws;
 mod reprojection;
 mod reservoir;
 mod rng;
+mod stored_sample;

@@ -2,7 +2,7 @@
 //! next one.
 
 pub use afterimage_clip::frame::{
-    Content, DeviceContent, DeviceHandle, FoveatedFrame, RenderedFrame, Shaded, ShadedColor, SourceFrame, Wish,
+    Content, DeviceContent, DeviceHandle, FoveatedFrame, QuadRequest, RenderedFrame, Shaded, ShadedColor, SourceFrame,
 };
 
 use crate::device::Headless;

@@ -1,15 +1,15 @@
 //! Antialiasing in the pass for jittered frames: history stores means of samples instead of single samples.
 
-use super::kept_history::Surroundings;
 use super::quads::Quads;
+use super::sparse_history::Surroundings;
 use super::view::View;
 use crate::kernel::antialias::{
-    Averaged, Mean, Near, add_near, average, clip, clipped, kept_mean, may_show, move_together, stands_before,
-    stored_lod,
+    Averaged, Mean, Near, add_near, average, clip, clipped, may_show, move_together, stands_before, stored_lod,
+    stored_mean,
 };
-use crate::kernel::kept::{Kept, pack_color_by, pack_kept};
 use crate::kernel::rng;
-use crate::kernel::sparse::{Reconstruction, reconstruct};
+use crate::kernel::sparse_smr::{Reconstruction, reconstruct};
+use crate::kernel::stored_sample::{StoredSample, pack_color_by, pack_stored};
 use crate::notes::{NoteStage, Notes};
 use glam::Vec2;
 
@@ -75,7 +75,7 @@ impl View<'_> {
         notes: &mut impl Notes,
     ) -> Averaged {
         if !is_own {
-            return kept_mean(&inputs, reconstruct(&inputs), samples);
+            return stored_mean(&inputs, reconstruct(&inputs), samples);
         }
         let mut kept = 1.0;
         if level == 0 {
@@ -126,9 +126,9 @@ impl View<'_> {
 
     /// Packs a mean of `samples` samples. Its color is rounded stochastically.
     #[inline(always)]
-    pub(super) fn packed_mean(&self, [x, y]: [u32; 2], kept: Kept, samples: f32) -> [u32; 2] {
-        let [_, word] = pack_kept(Kept { lod: stored_lod(Mean { lod: kept.lod, samples }), ..kept });
+    pub(super) fn packed_mean(&self, [x, y]: [u32; 2], stored: StoredSample, samples: f32) -> [u32; 2] {
+        let [_, word] = pack_stored(StoredSample { lod: stored_lod(Mean { lod: stored.lod, samples }), ..stored });
         let draw = rng::unit_draw(rng::bits(x, y, self.frame_low, self.inputs.uniforms.key));
-        [pack_color_by(kept.color, draw), word]
+        [pack_color_by(stored.color, draw), word]
     }
 }

@@ -3,7 +3,7 @@
 use super::view::NO_NOISE;
 use crate::kernel::noise::Noise;
 use crate::kernel::resample::codes_between;
-use crate::kernel::sparse::{BY_NEIGHBOURS, Lit, Observation, SAMPLE_RELATIVE};
+use crate::kernel::sparse_smr::{BY_NEIGHBOURS, Lit, Observation, SAMPLE_RELATIVE};
 use crate::notes::{NoteStage, Notes};
 use glam::Vec3;
 
@@ -70,8 +70,8 @@ pub(super) fn note_sample(
     notes.note(NoteStage::Candidate, "sample", values, "x y px, weight, linear light");
     let values = [x as f32, y as f32, lit.gain.x, lit.gain.y, lit.gain.z, lit.fit, lit.own_fit];
     notes.note(NoteStage::Light, "sample", values, "x y px, gain, fit around it, fit of its own");
-    if let Some(Observation { history, error, sure, .. }) = observed {
-        let values = [x as f32, y as f32, history.x, history.y, history.z, error, sure];
+    if let Some(Observation { history, error, confidence, .. }) = observed {
+        let values = [x as f32, y as f32, history.x, history.y, history.z, error, confidence];
         notes.note(
             NoteStage::Comparison,
             "history at sample",

@@ -3,8 +3,8 @@
 use super::view::{Samples, View};
 use crate::kernel::antialias::scattered_error;
 use crate::kernel::depth::INVALID_DISPARITY;
-use crate::kernel::matched::root_difference;
-use crate::kernel::sparse::{
+use crate::kernel::smr::root_difference;
+use crate::kernel::sparse_smr::{
     LIGHT_RELATIVE, Light, Lit, Observation, add_light, agreement, capped_error, errors_left, fit, fit_around,
     mean_error, mean_fit, neighbour_weight, own_fit, pack_lit, relight,
 };
@@ -29,7 +29,9 @@ impl View<'_> {
                 let other = self.observation(lattice, [x, y], observed)?;
                 let alike = self.alike(disparity, disparity_of([x, y]), LIGHT_RELATIVE);
                 let spatial = neighbour_weight(offset);
-                alike.then(|| (other, own.map_or(spatial * other.sure, |own| agreement(own, other, spatial)), spatial))
+                alike.then(|| {
+                    (other, own.map_or(spatial * other.confidence, |own| agreement(own, other, spatial)), spatial)
+                })
             })
         };
         let light = neighbours().fold(Light::default(), |l, (o, weight, spatial)| add_light(l, o, weight, spatial));
@@ -51,9 +53,9 @@ impl View<'_> {
         let gain = if self.relights { relight(light, error) } else { Vec3::ONE };
         let with_gain = if gain == Vec3::ONE { without } else { errors(gain) };
         let (gain, left) = if with_gain <= without { (gain, with_gain) } else { (Vec3::ONE, without) };
-        let sure = (light.weight / light.spatial).min(1.0);
+        let confidence = (light.weight / light.spatial).min(1.0);
         let fit = if self.is_noisy() {
-            fit(left / light.weight, sure).min(mean_fit(light, sure))
+            fit(left / light.weight, confidence).min(mean_fit(light, confidence))
         } else {
             let capped = neighbours()
                 .fold(0.0, |sum, (o, _, spatial)| sum + capped_error(o, errors_left(o, Vec3::ONE), spatial));

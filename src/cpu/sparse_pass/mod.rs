@@ -1,5 +1,5 @@
 //! Reconstruction of sparse frames from history that keeps samples in their places (smr). Its mathematics is in
-//! `src/kernel/{kept,sparse}.rs`.
+//! `src/kernel/{stored_sample,sparse_smr}.rs`.
 //!
 //! Three loops. The first compares each sample of a lattice of step 2 and more with history at its pixel. The second
 //! estimates gain and fit for each of these samples, from its own comparison and from the comparisons of its eight
@@ -8,20 +8,20 @@
 
 mod antialias;
 mod candidate;
-mod kept_history;
 mod light;
 mod observe;
 mod pixel;
 mod quad_plan;
 mod quad_samples;
 mod quads;
+mod sparse_history;
 mod view;
 
 pub(super) use quad_plan::plan_quads;
 pub(super) use quads::Quads;
 
 use super::Pass;
-use super::explain::{explain, note_kept, note_kept_mean, of_view};
+use super::explain::{explain, note_stored, note_stored_mean, of_view};
 use super::inputs::Inputs;
 use super::surface_pass::{Targets, for_pixels};
 use crate::stats::FrameStats;
@@ -35,8 +35,8 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
-        let held = history.hold(i, frame);
-        let inputs = Inputs::new(desc, frame, i, &held, has_history);
+        let state = history.advance(i, frame);
+        let inputs = Inputs::new(desc, frame, i, &state, has_history);
         let (past, next, next_noise) = history.split_surfaces(i);
         let mut view = View::new(desc, frame, i, inputs, past.words, past.noise);
         view.quads = quads.get(i);
@@ -57,7 +57,7 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
         let lit = LitView { view: &view, lights };
         stats = stats.add(for_pixels(targets, &lit));
         if let Some(pixel) = of_view(&mut noted, i) {
-            explain(&lit, if view.antialiases { note_kept_mean } else { note_kept }, pixel);
+            explain(&lit, if view.antialiases { note_stored_mean } else { note_stored }, pixel);
         }
     }
     stats

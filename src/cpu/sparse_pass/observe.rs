@@ -1,21 +1,21 @@
 //! Comparison of the samples of lattices with history at their pixels.
 
-use super::kept_history::{Found, has_moved};
+use super::sparse_history::{Found, has_moved};
 use super::view::{Samples, View};
 use crate::kernel::antialias::DOUBTFUL;
 use crate::kernel::color::luma;
-use crate::kernel::kept::{pack_color, unpack_color};
-use crate::kernel::matched::root_difference;
 use crate::kernel::noise::expected_noise;
 use crate::kernel::pack::{half_bits, half_value};
-use crate::kernel::sparse::{Observation, expected_error, lod_confidence, noisy_lod_confidence};
+use crate::kernel::smr::root_difference;
+use crate::kernel::sparse_smr::{Observation, expected_error, lod_confidence, noisy_lod_confidence};
+use crate::kernel::stored_sample::{pack_color, unpack_color};
 use crate::notes::NoNotes;
 use glam::Vec3;
 
 /// Observation in two words: history's color, expected error and confidence as halves.
 pub(super) fn pack_observation(o: Option<Observation>) -> [u32; 2] {
     match o {
-        Some(o) => [pack_color(o.history), half_bits(o.error) | half_bits(o.sure) << 16],
+        Some(o) => [pack_color(o.history), half_bits(o.error) | half_bits(o.confidence) << 16],
         None => [0, half_bits(-1.0)],
     }
 }
@@ -28,7 +28,7 @@ pub(super) fn unpack_observation(words: [u32; 2], sampled: impl FnOnce() -> Vec3
         sampled: sampled(),
         history: unpack_color(words[0]),
         error,
-        sure: half_value(words[1] >> 16),
+        confidence: half_value(words[1] >> 16),
     })
 }
 
@@ -46,7 +46,7 @@ impl View<'_> {
     pub(super) fn observe_px(&self, px: [u32; 2], level: u32, sampled: Vec3, usable: bool) -> Option<Observation> {
         let surface = self.surface(px, level);
         if surface.is_doubtful {
-            return Some(Observation { sampled, history: Vec3::ZERO, error: DOUBTFUL, sure: 0.0 });
+            return Some(Observation { sampled, history: Vec3::ZERO, error: DOUBTFUL, confidence: 0.0 });
         }
         let mut source = self.source(px, &surface, &mut NoNotes).ok().filter(|_| usable)?;
         if self.antialiases {
@@ -61,13 +61,13 @@ impl View<'_> {
         let moved = self.antialiases || has_moved(surface.motion, history.nearest.place_px);
         let [low, high] = history.range;
         let mut error = expected_error(history.lod, root_difference(low, high), moved);
-        let mut sure = lod_confidence(history.lod);
+        let mut confidence = lod_confidence(history.lod);
         if self.is_noisy() {
             let around = luma(history.color);
             error += expected_noise(past, self.sample_noise(px), around);
-            sure = noisy_lod_confidence(history.lod, past, around);
+            confidence = noisy_lod_confidence(history.lod, past, around);
         }
-        Some(Observation { sampled, history: history.color, error, sure })
+        Some(Observation { sampled, history: history.color, error, confidence })
     }
 
     /// Unpacks an observation.

@@ -1,22 +1,22 @@
 //! Reconstruction of pixels from history, and from the samples around them and their light.
 
 use super::candidate::{Candidate, Sums, note_sample, sample_codes};
-use super::kept_history::{Found, Source, has_moved};
 use super::quad_samples::QuadLights;
 use super::quads::offset_px2;
+use super::sparse_history::{Found, Source, has_moved};
 use super::view::{NO_NOISE, Samples, View};
 use crate::cpu::pixel::{Pixel, ProcessPixel};
 use crate::kernel::approx;
 use crate::kernel::debug_view::PixelTrace;
-use crate::kernel::kept::{Kept, pack_kept};
 use crate::kernel::lattice::point_weight;
 use crate::kernel::noise::{NoiseSum, add_noise, mean_noise, pack_noise};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::has_code;
 use crate::kernel::sanitize;
-use crate::kernel::sparse::{
+use crate::kernel::sparse_smr::{
     LEAST_SHARE, OTHER_SURFACE, Reconstruction, accumulate, candidate_level, reconstruct, relit, unpack_lit,
 };
+use crate::kernel::stored_sample::{StoredSample, pack_stored};
 use crate::notes::{NoteStage, Notes};
 use crate::stats::FrameStats;
 use crate::uniforms::LatticeUniforms;
@@ -50,7 +50,7 @@ impl View<'_> {
         let inputs = &self.inputs;
         if !inputs.is_visible(x, y) {
             // Outside the visible area: black, without stored history.
-            let (surface, noise) = (pack_kept(Kept::EMPTY), pack_noise(NO_NOISE));
+            let (surface, noise) = (pack_stored(StoredSample::EMPTY), pack_noise(NO_NOISE));
             return Pixel { output: Vec3::ZERO, surface, noise, trace: PixelTrace::default() };
         }
         let disparity = inputs.disparity(x, y);
@@ -77,7 +77,7 @@ impl View<'_> {
         inputs.count(x, y, candidate.usable, disparity, verdict, stats);
 
         let mut output = candidate.color;
-        let mut kept = Kept {
+        let mut stored = StoredSample {
             color: candidate.color,
             lod: if candidate.usable { candidate.lod } else { -1.0 },
             disparity: surface.stored,
@@ -90,7 +90,7 @@ impl View<'_> {
             let Found { history, noise: past, samples: found_samples } = found;
             if !candidate.usable {
                 (output, share, noise, samples) = (history.color, 1.0, past, found_samples);
-                kept = Kept { disparity: surface.stored, ..history.nearest };
+                stored = StoredSample { disparity: surface.stored, ..history.nearest };
             } else {
                 let inputs = Reconstruction {
                     candidate: candidate.color,
@@ -122,7 +122,7 @@ impl View<'_> {
                     reconstruct(&inputs)
                 };
                 (output, share, fits) = (result.color, result.share, candidate.fit);
-                kept = Kept { disparity: surface.stored, ..result.kept };
+                stored = StoredSample { disparity: surface.stored, ..result.stored };
             }
         }
         // Means of colors may exceed the largest half.
@@ -131,14 +131,14 @@ impl View<'_> {
         let trace = PixelTrace {
             verdict,
             weight: approx::exp2(-candidate.lod),
-            quality: approx::exp2(-kept.lod.max(0.0)),
+            quality: approx::exp2(-stored.lod.max(0.0)),
             age: 0,
             history_share: share,
             agreement: fits,
             is_replaced: share == 0.0,
             motion: surface.motion,
         };
-        let stored = if self.antialiases { self.packed_mean([x, y], kept, samples) } else { pack_kept(kept) };
+        let stored = if self.antialiases { self.packed_mean([x, y], stored, samples) } else { pack_stored(stored) };
         Pixel { output, surface: stored, noise: pack_noise(noise), trace }
     }
 

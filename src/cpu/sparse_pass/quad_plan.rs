@@ -3,15 +3,13 @@
 
 use super::quads::Quads;
 use super::view::View;
+use crate::context::ContextDesc;
 use crate::cpu::Frame;
 use crate::cpu::history::History;
 use crate::cpu::inputs::Inputs;
 use crate::foveation::Foveation;
-use crate::frame::ContextDesc;
 use crate::image::Image;
 use crate::kernel::antialias::mean_of;
-use crate::kernel::kept::{code_word, is_empty, unpack_full};
-use crate::kernel::matched::root_difference;
 use crate::kernel::quads::{
     ENOUGH_SAMPLES, IN_FOVEA, IN_MIDDLE, KEYS, acuity, asked_px, budget_quads, in_pattern, in_turn, need,
     no_history_need, quad_key, region, share_in_block, threshold,
@@ -19,16 +17,18 @@ use crate::kernel::quads::{
 use crate::kernel::reproject::nearest;
 use crate::kernel::resample::{has_code, tap_codes};
 use crate::kernel::sanitize;
+use crate::kernel::smr::root_difference;
+use crate::kernel::stored_sample::{code_word, is_empty, unpack_full};
 use crate::method::HistoryLayout;
 use glam::Vec3;
 
 /// Quads to shade, view by view.
 pub(in crate::cpu) fn plan_quads(desc: &ContextDesc, history: &History, frame: &Frame<'_>) -> Vec<Quads> {
     let of_view = |i: usize| {
-        let inputs = Inputs::new(desc, frame, i, &history.held_after(i, frame), history.is_filled());
+        let inputs = Inputs::new(desc, frame, i, &history.state_after(i, frame), history.is_filled());
         let foveation = &desc.settings.foveation;
-        let has_memory = matches!(history.layout(), HistoryLayout::Kept { .. });
-        View::new(desc, frame, i, inputs, history.kept(i), &[]).plan_quads(foveation, frame.index, has_memory)
+        let has_memory = matches!(history.layout(), HistoryLayout::Sparse { .. });
+        View::new(desc, frame, i, inputs, history.sparse(i), &[]).plan_quads(foveation, frame.index, has_memory)
     };
     (0..frame.views.len()).map(of_view).collect()
 }

@@ -8,7 +8,7 @@ use crate::kernel::antialias::scattered_error;
 use crate::kernel::depth::INVALID_DISPARITY;
 use crate::kernel::resample::has_code;
 use crate::kernel::sanitize;
-use crate::kernel::sparse::{
+use crate::kernel::sparse_smr::{
     LIGHT_RELATIVE, Light, OTHER_SURFACE, Observation, QuadLit, RELIT_ERRORS, add_light, agreement, candidate_level,
     capped_error, errors_left, fit_around, mean_error, own_fit, pack_quad_lit, quad_code, quad_lit, relight,
 };
@@ -79,17 +79,17 @@ impl View<'_> {
         if first.is_some() {
             let all = self.pixels_of(quad).filter(|&px| alike(px)).filter_map(|px| self.observation_px(px, observed));
             let mut sum = Light::default();
-            let mut sure = 0.0;
+            let mut confidence = 0.0;
             for o in all {
                 sum = add_light(sum, o, 1.0, 1.0);
-                sure += o.sure;
+                confidence += o.confidence;
             }
             let inverse = 1.0 / sum.weight;
             own = Some(Observation {
                 sampled: sum.sampled * inverse,
                 history: sum.history * inverse,
                 error: sum.error * inverse,
-                sure: sure * inverse,
+                confidence: confidence * inverse,
             });
         }
         let distance2 = |other: [u32; 2]| offset_px2(other[0], quad[0]) + offset_px2(other[1], quad[1]);
@@ -101,7 +101,8 @@ impl View<'_> {
             for px in self.pixels_of(other) {
                 let Some(observation) = self.observation_px(px, observed) else { continue };
                 if alike(px) {
-                    let weight = own.map_or(spatial * observation.sure, |own| agreement(own, observation, spatial));
+                    let weight =
+                        own.map_or(spatial * observation.confidence, |own| agreement(own, observation, spatial));
                     near.push(Near { observation, weight, spatial });
                 }
             }

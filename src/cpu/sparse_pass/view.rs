@@ -1,9 +1,9 @@
 //! Inputs, history and lattices of a view, for the loops over its samples and pixels.
 
 use super::quads::Quads;
+use crate::context::ContextDesc;
 use crate::cpu::Frame;
 use crate::cpu::inputs::Inputs;
-use crate::frame::ContextDesc;
 use crate::kernel::depth::same_surface;
 use crate::kernel::noise::Noise;
 use crate::kernel::sanitize;

@@ -1,6 +1,6 @@
 //! Mip levels of a full-rate frame on the GPU.
 
-use crate::frame::ContextDesc;
+use crate::context::ContextDesc;
 use crate::gpu::buffer::filled;
 use crate::gpu::compute::{ComputeShader, Sources};
 use crate::gpu::plane::{Plane, PlaneDesc};

@@ -4,15 +4,17 @@
 mod mip_chain;
 pub(crate) mod uniforms;
 
+use crate::context::ContextDesc;
 use crate::error::{CreateError, FrameError};
 use crate::foveation::Filter;
-use crate::frame::{ContextDesc, Exposure, ViewFrame};
+use crate::frame::Exposure;
 use crate::gpu::buffer::filled;
 use crate::gpu::compute::{ComputeShader, Sources};
 use crate::gpu::plane::{Plane, PlaneDesc, array_view};
 use crate::gpu::{Timestamps, check_readable, check_texture, texel, validate};
 use crate::kernel::foveate::block_sample_level;
-use crate::uniforms::Held;
+use crate::uniforms::ViewState;
+use crate::view::ViewFrame;
 use mip_chain::MipChain;
 use uniforms::FoveationUniforms;
 use wgpu::{
@@ -71,7 +73,7 @@ pub struct GpuSimulator {
     desc: ContextDesc,
     output_format: TextureFormat,
     steps: Steps,
-    held: Vec<Held>,
+    state: Vec<ViewState>,
     /// Placeholder for frames without levels of detail; not written.
     no_lod: Plane,
 }
@@ -128,7 +130,7 @@ impl GpuSimulator {
             desc: *desc,
             output_format,
             steps,
-            held: vec![Held::default(); desc.view_count as usize],
+            state: vec![ViewState::default(); desc.view_count as usize],
             no_lod: plane(TextureFormat::R32Float, [1, 1], 1),
         })
     }
@@ -209,9 +211,9 @@ impl GpuSimulator {
 
     /// Uniforms of a frame. Also stores its gaze positions, for later frames in which the gaze is lost.
     fn uniforms(&mut self, views: &[ViewFrame]) -> FoveationUniforms {
-        for (view, held) in views.iter().zip(&mut self.held) {
-            *held = held.with(view, Exposure::Same);
+        for (view, state) in views.iter().zip(&mut self.state) {
+            *state = state.with(view, Exposure::Same);
         }
-        FoveationUniforms::new(&self.desc, views, &self.held)
+        FoveationUniforms::new(&self.desc, views, &self.state)
     }
 }

@@ -1,9 +1,10 @@
 //! Uniforms of the simulators. A test checks order, offsets and sizes against the WGSL.
 
+use crate::context::ContextDesc;
 use crate::foveation::Filter;
-use crate::frame::{ContextDesc, ViewFrame};
 use crate::gpu::MAX_VIEWS;
-use crate::uniforms::{Held, ViewUniforms};
+use crate::uniforms::{ViewState, ViewUniforms};
+use crate::view::ViewFrame;
 use bytemuck::{Pod, Zeroable};
 
 /// `FoveationUniforms` in `shaders/foveation/foveated_views.wgsl`.
@@ -30,8 +31,8 @@ pub struct FoveationUniforms {
 }
 
 impl FoveationUniforms {
-    /// Uniforms of a frame. `held`: state of the views after this frame.
-    pub(super) fn new(desc: &ContextDesc, views: &[ViewFrame], held: &[Held]) -> Self {
+    /// Uniforms of a frame. `state`: state of the views after this frame.
+    pub(super) fn new(desc: &ContextDesc, views: &[ViewFrame], state: &[ViewState]) -> Self {
         let foveation = &desc.settings.foveation;
         let [mid, far] = foveation.coarseness();
         let mut uniforms = Self {
@@ -48,8 +49,8 @@ impl FoveationUniforms {
             far,
             ..Self::default()
         };
-        for (i, ((to, view), held)) in uniforms.views.iter_mut().zip(views).zip(held).enumerate() {
-            *to = ViewUniforms::new(desc, view, held, i, 0);
+        for (i, ((to, view), state)) in uniforms.views.iter_mut().zip(views).zip(state).enumerate() {
+            *to = ViewUniforms::new(desc, view, state, i, 0);
         }
         uniforms
     }

@@ -21,10 +21,10 @@ use afterimage::{
 use afterimage_testing::Draws;
 use std::ops::{Deref, DerefMut};
 
-/// The laws as tests of an executor. `$held` runs one, and returns what it measured.
+/// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! sparse_laws {
-    ($side:ident, $held:ident) => {
-        laws! { $side, $held,
+    ($side:ident, $run_law:ident) => {
+        laws! { $side, $run_law,
             h86_positions_that_are_never_sampled_are_no_worse_than_foveated: "H86", starved_positions;
             h87_degenerate_lattices_are_finite_and_show_their_samples: "H87", degenerate_lattices;
             h88_a_reset_in_the_middle_of_the_order_equals_a_fresh_context: "H88", restarts_of_the_order;

@@ -6,11 +6,11 @@ use crate::laws::laws;
 use afterimage_testing::holds;
 
 /// What a law measured.
-pub fn held(law: fn(Make<'_>) -> Option<String>) -> Option<String> {
+pub fn run_law(law: fn(Make<'_>) -> Option<String>) -> Option<String> {
     Some(law(&|desc| Some(Box::new(CpuAfterimage::new(&desc).unwrap()))).expect("the CPU is always there"))
 }
 
-depth_laws!(Cpu, held);
+depth_laws!(Cpu, run_law);
 
 fn two_walls(split: u32, near: f32, far: f32) -> Image<f32> {
     Image::from_fn(SIZE, |[x, _]| if x < split { near } else { far })

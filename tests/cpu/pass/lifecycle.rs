@@ -1,13 +1,13 @@
 //! Determinism, reset, resize, errors.
 
-use super::depth::held;
+use super::depth::run_law;
 use super::*;
 use crate::laws::laws;
 use crate::lifecycle_hard::*;
 use afterimage::FrameValue;
 use afterimage_testing::holds;
 
-lifecycle_laws!(Cpu, held);
+lifecycle_laws!(Cpu, run_law);
 
 fn run(post: &mut CpuAfterimage, frames: std::ops::Range<u64>) -> Vec<Color> {
     frames.map(|i| one(post, i, &still(noise(SIZE, &format!("run {i}")))).0).collect()

@@ -1,13 +1,13 @@
 //! Light that changes: exposure, fireflies, strobes, flicker; hard cases H72 to H75.
 
-use super::depth::held;
+use super::depth::run_law;
 use super::*;
 use crate::depth_hard::{Steps, still};
 use crate::laws::laws;
 use crate::light_hard::*;
 use afterimage_testing::holds;
 
-light_laws!(Cpu, held);
+light_laws!(Cpu, run_law);
 
 #[test]
 fn h72_an_exposed_color_stays_within_halves() {

@@ -20,7 +20,7 @@ mod upsampling;
 mod views;
 mod weighted;
 
-pub use depth::held;
+pub use depth::run_law;
 
 use crate::depth_hard::{METHODS, SIZE, still};
 use crate::images::{Images, OneView, View, noise};

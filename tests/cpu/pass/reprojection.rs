@@ -1,12 +1,12 @@
 //! Reprojection: identity, shifts, conventions, garbage vectors.
 
-use super::depth::held;
+use super::depth::run_law;
 use super::*;
 use crate::laws::laws;
 use crate::motion_hard::*;
 use afterimage_testing::holds;
 
-motion_laws!(Cpu, held);
+motion_laws!(Cpu, run_law);
 
 #[test]
 fn every_motion_convention_means_the_same_shift() {

@@ -6,11 +6,11 @@ use afterimage::{Filter, Foveation};
 use afterimage_testing::{Draws, holds};
 
 /// What a law measured.
-fn held(law: fn(Make) -> Option<String>) -> Option<String> {
+fn run_law(law: fn(Make) -> Option<String>) -> Option<String> {
     Some(law(&on_cpu).expect("the CPU is always there"))
 }
 
-sparse_laws!(Cpu, held);
+sparse_laws!(Cpu, run_law);
 
 #[test]
 fn h87_every_lattice_of_a_foveation_has_a_sample_in_the_view() {

@@ -1,6 +1,6 @@
 //! Several views, lost gaze, settings.
 
-use super::depth::held;
+use super::depth::run_law;
 use super::*;
 use crate::gaze_hard::*;
 use crate::laws::laws;
@@ -8,7 +8,7 @@ use crate::settings::wrs;
 use afterimage::{Foveation, Wrs};
 use afterimage_testing::holds;
 
-gaze_laws!(Cpu, held);
+gaze_laws!(Cpu, run_law);
 
 #[test]
 fn settings_are_checked_and_named() {

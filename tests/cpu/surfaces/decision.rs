@@ -1,7 +1,7 @@
 //! The decision of a pixel for random inputs: S4 to S7.
 
 use super::rig::*;
-use afterimage::kernel::matched::{Evidence, Matched, SmrParams, decide, root_difference};
+use afterimage::kernel::smr::{Evidence, Matched, SmrParams, decide, root_difference};
 use glam::Vec3;
 
 const PARAMS: SmrParams = SmrParams {

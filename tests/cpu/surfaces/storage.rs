@@ -1,9 +1,9 @@
 //! Storage of a surface in two words.
 
 use super::rig::*;
-use afterimage::kernel::kept::{Kept, pack_kept, unpack_kept};
 use afterimage::kernel::noise::unpack_noise;
 use afterimage::kernel::pack::{disparity_value, unpack};
+use afterimage::kernel::stored_sample::{StoredSample, pack_stored, unpack_stored};
 use afterimage::kernel::surface::{MAX_LOD, float14_value, mip_texel, pack_surface};
 use glam::{Vec3, Vec4};
 use proptest::prelude::*;
@@ -49,15 +49,15 @@ fn every_code_of_a_field_is_its_own() {
 fn all_zeros_are_nothing() {
     assert_eq!(unpack_surface(pack_surface(Surface::EMPTY)), Surface::EMPTY);
     assert_eq!(unpack_surface([0; 2]), Surface::EMPTY);
-    assert_eq!(unpack_kept([0; 2]), Kept::EMPTY);
+    assert_eq!(unpack_stored([0; 2]), StoredSample::EMPTY);
     assert_eq!(unpack([0; 3]).w_sum, 0.0);
     assert_eq!(unpack_noise(0).samples, 0.0);
     assert_eq!(mip_texel([0; 2]), Vec4::ZERO);
     // Black, sharp, infinitely far: the sample that is most like zeros is another one.
     let black = Surface { color: Vec3::ZERO, lod: 0.0, disparity: 0.0 };
     assert_eq!(unpack_surface(pack_surface(black)), black);
-    let kept = Kept { lod: 0.0, disparity: 0.0, ..Kept::EMPTY };
-    assert_eq!(unpack_kept(pack_kept(kept)), kept);
+    let kept = StoredSample { lod: 0.0, disparity: 0.0, ..StoredSample::EMPTY };
+    assert_eq!(unpack_stored(pack_stored(kept)), kept);
 }
 
 proptest! {

@@ -1,14 +1,14 @@
 //! Gaze and eccentricity on the device: hard cases H61 to H66.
 
 use super::rig::{Rig, View, noise};
-use super::surfaces::held;
+use super::surfaces::run_law;
 use crate::gaze_hard::*;
 use crate::laws::laws;
 use crate::settings::ungated;
 use afterimage::{ContextDesc, Foveation, Gaze, MethodKind, Reset, Settings, ViewGeometry};
 use afterimage_testing::holds;
 
-gaze_laws!(Gpu, held);
+gaze_laws!(Gpu, run_law);
 
 const SIZE: [u32; 2] = [64, 48];
 

@@ -2,7 +2,7 @@
 
 use super::rig::noise_view;
 use super::rig::{Made, Rig, View, make_texture};
-use super::surfaces::held;
+use super::surfaces::run_law;
 use crate::laws::laws;
 use crate::lifecycle_hard::*;
 use crate::settings::{ungated, ungated_of, wrs};
@@ -15,7 +15,7 @@ use afterimage::{
 };
 use afterimage_testing::holds;
 
-lifecycle_laws!(Gpu, held);
+lifecycle_laws!(Gpu, run_law);
 
 const SIZE: [u32; 2] = [70, 40];
 

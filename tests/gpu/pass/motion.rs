@@ -1,7 +1,7 @@
 //! Moving surfaces on the device: hard cases H51 to H60.
 
 use super::rig::Rig;
-use super::surfaces::held;
+use super::surfaces::run_law;
 use super::surfaces::{one, still, ungated_of, with_motion};
 use crate::depth_hard::{METHODS, SIZE};
 use crate::laws::laws;
@@ -10,7 +10,7 @@ use afterimage::kernel::pack;
 use afterimage::{ContextDesc, MethodKind, MotionConvention, MotionUnit, Verdict};
 use afterimage_testing::holds;
 
-motion_laws!(Gpu, held);
+motion_laws!(Gpu, run_law);
 
 #[test]
 fn h55_half_float_motion_is_off_by_its_quantum_and_no_more() {

@@ -1,14 +1,14 @@
 //! Reactive masks: the inverse of trust masks, in the passes of whole and of sparse frames.
 
 use super::rig::{Rig, View};
-use super::sparse_hard::held;
+use super::sparse_hard::run_law;
 use crate::reactive::reactive_is_the_inverse_of_trust;
 use crate::sparse_hard::SIZE;
 use afterimage::{ContextDesc, Image, Reset, Settings};
 
 #[test]
 fn reactive_masks_are_the_inverse_of_trust() {
-    let Some(figure) = held(reactive_is_the_inverse_of_trust) else { return };
+    let Some(figure) = run_law(reactive_is_the_inverse_of_trust) else { return };
     println!("{figure}");
 }
 

@@ -129,7 +129,7 @@ fn wrong_noise_is_caught() {
     let planted = [
         ("textureLoad(past_noise, at, view, 0)", "textureLoad(past_noise, at, 1u - view, 0)"),
         ("noise = mean_noise(noises);", ""),
-        ("sure = noisy_lod_confidence(", "sure = 0.0 * noisy_lod_confidence("),
+        ("confidence = noisy_lod_confidence(", "confidence = 0.0 * noisy_lod_confidence("),
         ("noise = accumulated.noise;", ""),
     ];
     all_caught_in_samples(desc(), settings, 12, &planted, |index, rig| {
@@ -423,7 +423,7 @@ fn any_lattices_and_any_bits_agree_bit_for_bit_and_are_finite() {
 }
 
 #[test]
-fn kept_history_follows_a_change_of_size() {
+fn sparse_history_follows_a_change_of_size() {
     let settings = settings(MethodKind::Smr);
     let Some(mut rig) = Rig::new(ContextDesc::new([64, 40]), settings) else { return };
     let view = |size: [u32; 2], index: u64| {

@@ -40,7 +40,7 @@ impl Drop for Both {
 }
 
 /// What a law measured; `None`, after a message, without an adapter.
-pub(super) fn held(law: fn(Make) -> Option<String>) -> Option<String> {
+pub(super) fn run_law(law: fn(Make) -> Option<String>) -> Option<String> {
     let pool: Rc<RefCell<Vec<Rig>>> = Rc::default();
     law(&|desc: ContextDesc| {
         let fits = |rig: &Rig| (rig.context.size_px, rig.context.view_count) == (desc.size_px, desc.view_count);
@@ -60,4 +60,4 @@ pub(super) fn held(law: fn(Make) -> Option<String>) -> Option<String> {
     })
 }
 
-sparse_laws!(Gpu, held);
+sparse_laws!(Gpu, run_law);

@@ -55,11 +55,11 @@ impl Steps for Rig {
 }
 
 /// What a law measured; `None`, after a message, without an adapter.
-pub fn held(law: fn(Make<'_>) -> Option<String>) -> Option<String> {
+pub fn run_law(law: fn(Make<'_>) -> Option<String>) -> Option<String> {
     law(&|desc| Some(Box::new(Rig::new(desc, desc.settings)?)))
 }
 
-depth_laws!(Gpu, held);
+depth_laws!(Gpu, run_law);
 
 #[test]
 fn h42_depth_beyond_its_ends_is_clamped() {

@@ -7,7 +7,7 @@ use afterimage::Image;
 use afterimage_testing::holds;
 
 /// What a law measured; `None`, after a message, without an adapter.
-fn held(law: fn(Foveate<'_>) -> Option<String>) -> Option<String> {
+fn run_law(law: fn(Foveate<'_>) -> Option<String>) -> Option<String> {
     law(&|foveation, image, gaze_px| {
         let mut rig = Rig::new(&desc(image.size(), 1, *foveation))?;
         let made = rig.on_gpu(&Scene::mono(image.clone(), gaze_px));
@@ -16,4 +16,4 @@ fn held(law: fn(Foveate<'_>) -> Option<String>) -> Option<String> {
     })
 }
 
-simulator_laws!(Gpu, held);
+simulator_laws!(Gpu, run_law);

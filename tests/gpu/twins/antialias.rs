@@ -5,8 +5,8 @@ use super::shape::*;
 use super::sparse::{color, push_light, push_reconstruction};
 use super::values::Word::*;
 use super::values::*;
-use afterimage::kernel::sparse::{Reconstructed, Reconstruction};
-use afterimage::kernel::{antialias, sparse};
+use afterimage::kernel::sparse_smr::{Reconstructed, Reconstruction};
+use afterimage::kernel::{antialias, sparse_smr};
 use glam::{Vec2, Vec3};
 
 shape!(antialias::Mean { lod: f32, samples: f32 });
@@ -68,9 +68,9 @@ pub const PROBES: &[Probe] = &[
         }
     ),
     probe!(
-        antialias::kept_mean,
-        |given: Reconstruction, samples: f32| antialias::kept_mean(&given, sparse::reconstruct(&given), samples),
-        "let given = $0; kept_mean(given, reconstruct(given), $1)",
+        antialias::stored_mean,
+        |given: Reconstruction, samples: f32| antialias::stored_mean(&given, sparse_smr::reconstruct(&given), samples),
+        "let given = $0; stored_mean(given, reconstruct(given), $1)",
         |rows| {
             rows.random(|d, row| {
                 push_reconstruction(d, row);

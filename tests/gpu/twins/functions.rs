@@ -30,8 +30,8 @@ bit_equal! {
     antialias_is_bit_equal: "antialias";
     lens_is_bit_equal: "lens";
     quads_is_bit_equal: "quads";
-    kept_is_bit_equal: "kept";
-    sparse_is_bit_equal: "sparse";
+    stored_sample_is_bit_equal: "stored_sample";
+    sparse_smr_is_bit_equal: "sparse_smr";
     lattice_is_bit_equal: "lattice";
     noise_is_bit_equal: "noise";
     pack_is_bit_equal_h05_h15_h19: "pack";
@@ -39,7 +39,7 @@ bit_equal! {
     reservoir_is_bit_equal_h01_h02_h04_h15_h17_h18_h21: "reservoir";
     sanitize_is_bit_equal_h17_h18_h37: "sanitize";
     wrs_decides_bit_equal_h01_h02_h20_h39: "wrs";
-    matched_is_bit_equal: "matched";
+    smr_is_bit_equal: "smr";
     surface_is_bit_equal: "surface";
     resample_is_bit_equal: "resample";
     resize_is_bit_equal: "resize";

@@ -8,11 +8,11 @@ use afterimage::shader::SHADERS;
 use afterimage_testing::holds;
 
 /// What a law measured; `None`, after a message, without an adapter.
-fn held(law: fn(Call<'_>) -> Option<String>) -> Option<String> {
+fn run_law(law: fn(Call<'_>) -> Option<String>) -> Option<String> {
     law(&|function, rows| probes().find(|probe| probe.name == function).expect(function).outputs(rows))
 }
 
-kernel_laws!(Gpu, held);
+kernel_laws!(Gpu, run_law);
 
 #[test]
 fn h38_no_power_is_called() {

@@ -13,7 +13,7 @@ pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 /// (WGSL file stem, function there) without a Rust twin of that name: stand-ins for the standard library and for a
 /// closure, and `mix`, which is a builtin of WGSL.
 pub const WGSL_ONLY: &[(&str, &str)] =
-    &[("kept", "nothing_around"), ("reservoir", "saturating_add"), ("rng", "pcg4d_mix")];
+    &[("stored_sample", "nothing_around"), ("reservoir", "saturating_add"), ("rng", "pcg4d_mix")];
 
 /// (Rust file stem, function there) without a WGSL twin: two take a closure, in whose place the pass has a loop; the
 /// other one places the samples of a frame before a device sees it.

@@ -4,8 +4,8 @@ use super::probe::{Probe, Rows, probe};
 use super::shape::*;
 use super::values::Word::*;
 use super::values::*;
-use afterimage::kernel::matched;
-use afterimage::kernel::matched::{Evidence, Matched, SmrParams};
+use afterimage::kernel::smr;
+use afterimage::kernel::smr::{Evidence, Matched, SmrParams};
 use afterimage_testing::Draws;
 use glam::Vec3;
 
@@ -86,7 +86,7 @@ shape!(Matched { color: Vec3, lod: f32, share: f32, fit: f32 });
 
 fn decide(e: Evidence, accumulate: f32, tolerances: (f32, f32), [blocks, relight, noisy]: [bool; 3]) -> Matched {
     let (accumulate_tolerance, tolerance) = tolerances;
-    matched::decide(&e, &SmrParams { accumulate, accumulate_tolerance, tolerance, blocks, relight, noisy })
+    smr::decide(&e, &SmrParams { accumulate, accumulate_tolerance, tolerance, blocks, relight, noisy })
 }
 
 /// With these flags, or any.
@@ -133,13 +133,13 @@ fn decide_rows(rows: Rows, flags: Option<[u32; 3]>) -> Rows {
 }
 
 pub const PROBES: &[Probe] = &[
-    probe!(matched::root_difference, pair_rows),
-    probe!(matched::roots, |rows| {
+    probe!(smr::root_difference, pair_rows),
+    probe!(smr::roots, |rows| {
         // A root of a denormal is a normal number, unless a device flushes it.
         let c: Vec<u32> = finite().into_iter().filter(|&x| x & 0x7fff_ffff == 0 || x & 0x7f80_0000 != 0).collect();
         rows.mixed(&[&c, &c, &c]).each(&[Signed(-24, 17); 3])
     }),
-    probe!(matched::light_unit, |rows| {
+    probe!(smr::light_unit, |rows| {
         let (c, exposure) = (channels(), floats(&[0.3, 1.0, 4.0]));
         rows.mixed(&[&c, &c, &c, &c, &c, &c, &exposure]).random(|d, row| {
             let a = stored_color(d);
@@ -148,7 +148,7 @@ pub const PROBES: &[Probe] = &[
             push(row, &[d.range(0.1, 10.0)]);
         })
     }),
-    probe!(matched::moves_alike, |rows| {
+    probe!(smr::moves_alike, |rows| {
         let v = [finite(), around(&[0.5, -0.5, 16.0])].concat();
         rows.mixed(&[&v, &v, &v, &v]).random(|d, row| {
             let own = [d.range(-40.0, 40.0), d.range(-40.0, 40.0)];
@@ -157,27 +157,27 @@ pub const PROBES: &[Probe] = &[
             push(row, &[own, other].concat());
         })
     }),
-    probe!(matched::is_changed, |rows| {
+    probe!(smr::is_changed, |rows| {
         rows.random(|d, row| {
             let compared = stored_color(d);
             let [matched, level, next] = [0; 3].map(|_| like(d, compared).map(|x| x.max(0.0)));
             push(row, &[compared, matched, level, next].concat());
         })
     }),
-    probe!(matched::decide, decide, "decide($0, SmrParams($1, $2, $3))", |rows| decide_rows(rows, None)),
+    probe!(smr::decide, decide, "decide($0, SmrParams($1, $2, $3))", |rows| decide_rows(rows, None)),
     // As the passes have them: constants of a pipeline, which the compiler folds.
-    probe!(matched::decide, decide, "decide($0, SmrParams($1, $2, false, true, false))", |rows| {
+    probe!(smr::decide, decide, "decide($0, SmrParams($1, $2, false, true, false))", |rows| {
         decide_rows(rows, Some([0, 1, 0]))
     }),
-    probe!(matched::decide, decide, "decide($0, SmrParams($1, $2, true, true, false))", |rows| {
+    probe!(smr::decide, decide, "decide($0, SmrParams($1, $2, true, true, false))", |rows| {
         decide_rows(rows, Some([1, 1, 0]))
     }),
-    probe!(matched::decide, decide, "decide($0, SmrParams($1, $2, false, false, false))", |rows| {
+    probe!(smr::decide, decide, "decide($0, SmrParams($1, $2, false, false, false))", |rows| {
         decide_rows(rows, Some([0, 0, 0]))
     }),
-    probe!(matched::decide, decide, "decide($0, SmrParams($1, $2, false, true, true))", |rows| {
+    probe!(smr::decide, decide, "decide($0, SmrParams($1, $2, false, true, true))", |rows| {
         decide_rows(rows, Some([0, 1, 1]))
     }),
-    probe!(matched::mip_mean, |rows| chain_rows(rows, 0)),
-    probe!(matched::mip_bilinear, |rows| chain_rows(rows, 2)),
+    probe!(smr::mip_mean, |rows| chain_rows(rows, 0)),
+    probe!(smr::mip_bilinear, |rows| chain_rows(rows, 2)),
 ];

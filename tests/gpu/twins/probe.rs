@@ -130,7 +130,7 @@ const MOST_CLOSE_ROWS: usize = 10_007;
 
 /// Functions whose words hold several quantized numbers: each may be a step off.
 const PACKED: &[&str] =
-    &["half_bits", "pack", "pack_noise", "float14_bits", "pack_surface", "round_mip", "pack_kept", "pack_lit"];
+    &["half_bits", "pack", "pack_noise", "float14_bits", "pack_surface", "round_mip", "pack_stored", "pack_lit"];
 
 /// Functions whose results are sums and powers of hundreds of steps.
 const SUMMED: &[&str] = &["gauss_next", "a stream of one weight"];

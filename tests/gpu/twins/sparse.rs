@@ -1,17 +1,17 @@
-//! Reconstruction of sparse frames: kept, sparse.
+//! Reconstruction of sparse frames: stored_sample, sparse_smr.
 
 use super::probe::{Probe, Rows, probe};
 use super::shape::*;
 use super::values::Word::*;
 use super::values::*;
-use afterimage::kernel::kept::Around;
 use afterimage::kernel::noise::Noise;
-use afterimage::kernel::sparse::Reconstruction;
-use afterimage::kernel::{kept, sparse};
+use afterimage::kernel::sparse_smr::Reconstruction;
+use afterimage::kernel::stored_sample::Around;
+use afterimage::kernel::{sparse_smr, stored_sample};
 use afterimage_testing::Draws;
 use glam::{Vec2, Vec3};
 
-shape!(kept::Kept { color: Vec3, lod: f32, disparity: f32, place_px: Vec2 });
+shape!(stored_sample::StoredSample { color: Vec3, lod: f32, disparity: f32, place_px: Vec2 });
 shape!(Around {
     weight: f32,
     color: Vec3,
@@ -21,14 +21,22 @@ shape!(Around {
     color_x: Vec3,
     color_y: Vec3,
     range: [Vec3; 2],
-    nearest: kept::Kept,
+    nearest: stored_sample::StoredSample,
     cost: f32
 });
-shape!(kept::Interpolated { color: Vec3, lod: f32, range: [Vec3; 2], nearest: kept::Kept });
-shape!(sparse::Observation { sampled: Vec3, history: Vec3, error: f32, sure: f32 });
-shape!(sparse::Light { sampled: Vec3, history: Vec3, error: f32, weight: f32, squared: f32, spatial: f32, known: f32 });
-shape!(sparse::Lit { gain as "gains": Vec3, fit: f32, own_fit: f32, is_own: bool, disparity: f32 });
-shape!(sparse::QuadLit {
+shape!(stored_sample::Interpolated { color: Vec3, lod: f32, range: [Vec3; 2], nearest: stored_sample::StoredSample });
+shape!(sparse_smr::Observation { sampled: Vec3, history: Vec3, error: f32, confidence: f32 });
+shape!(sparse_smr::Light {
+    sampled: Vec3,
+    history: Vec3,
+    error: f32,
+    weight: f32,
+    squared: f32,
+    spatial: f32,
+    known: f32
+});
+shape!(sparse_smr::Lit { gain as "gains": Vec3, fit: f32, own_fit: f32, is_own: bool, disparity: f32 });
+shape!(sparse_smr::QuadLit {
     gain as "gains": Vec3,
     fit: f32,
     own_fits: [f32; 4],
@@ -41,21 +49,21 @@ shape!(Reconstruction {
     range: [Vec3; 2],
     history: Vec3,
     history_lod: f32,
-    nearest: kept::Kept,
+    nearest: stored_sample::StoredSample,
     moved: bool,
     gain: Vec3,
     fit: f32,
     trust: f32,
     accumulate: f32
 });
-shape!(sparse::Reconstructed { color: Vec3, kept: kept::Kept, share: f32 });
-shape!(sparse::Accumulated { result: sparse::Reconstructed, noise: Noise });
+shape!(sparse_smr::Reconstructed { color: Vec3, stored: stored_sample::StoredSample, share: f32 });
+shape!(sparse_smr::Accumulated { result: sparse_smr::Reconstructed, noise: Noise });
 
 pub(super) fn color(d: &mut Draws) -> [u32; 3] {
     [0; 3].map(|_| scaled(d, -14, 6))
 }
 
-fn push_kept(d: &mut Draws, row: &mut Vec<u32>) {
+fn push_stored(d: &mut Draws, row: &mut Vec<u32>) {
     row.extend(color(d));
     row.push(range(d, 0.0, 8.0));
     row.push(scaled(d, -20, 20));
@@ -81,7 +89,7 @@ fn push_observation(d: &mut Draws, row: &mut Vec<u32>) {
 fn around_rows(rows: Rows) -> Rows {
     rows.random(|d, row| {
         for _ in 0..3 {
-            push_kept(d, row);
+            push_stored(d, row);
             row.extend([range(d, -1.5, 1.5), range(d, -1.5, 1.5)]);
         }
         row.push(d.bits() % 4);
@@ -97,20 +105,20 @@ pub(super) fn push_reconstruction(d: &mut Draws, row: &mut Vec<u32>) {
     row.extend((0..3).map(|i| (f32::from_bits(low[i]) + f32::from_bits(more[i])).to_bits()));
     row.extend(color(d));
     row.push(range(d, 0.0, 4.0));
-    push_kept(d, row);
+    push_stored(d, row);
     row.push(d.bits() % 2);
     let lit = d.bits().is_multiple_of(2);
     row.extend([0; 3].map(|_| if lit { 1.0_f32.to_bits() } else { range(d, 0.2, 5.0) }));
-    let sure = d.bits().is_multiple_of(2);
-    row.extend([0; 2].map(|_| if sure { 1.0_f32.to_bits() } else { range(d, 0.0, 1.0) }));
+    let confidence = d.bits().is_multiple_of(2);
+    row.extend([0; 2].map(|_| if confidence { 1.0_f32.to_bits() } else { range(d, 0.0, 1.0) }));
     row.push(range(d, 0.0, 0.98));
 }
 
 /// Sums over the first `count` samples.
-fn around(samples: [(kept::Kept, Vec2); 3], count: u32) -> Around {
-    samples[..count as usize]
-        .iter()
-        .fold(Around::NOTHING, |a, &(sample, texel_px)| kept::add_kept(a, sample, texel_px, true, kept::INVERSE_REACH))
+fn around(samples: [(stored_sample::StoredSample, Vec2); 3], count: u32) -> Around {
+    samples[..count as usize].iter().fold(Around::NOTHING, |a, &(sample, texel_px)| {
+        stored_sample::add_stored(a, sample, texel_px, true, stored_sample::INVERSE_REACH)
+    })
 }
 
 /// WGSL of [`around`], `a`, and code that follows.
@@ -118,7 +126,7 @@ macro_rules! around {
     ($rest:literal) => {
         concat!(
             "var a = nothing_around(); for (var i = 0u; i < in_u(27u); i++) { let b = 9u * i;
-            a = add_kept(a, Kept(in_v(b), in_f(b + 3u), in_f(b + 4u), vec2<f32>(in_f(b + 5u), in_f(b + 6u))),
+            a = add_stored(a, StoredSample(in_v(b), in_f(b + 3u), in_f(b + 4u), vec2<f32>(in_f(b + 5u), in_f(b + 6u))),
                 vec2<f32>(in_f(b + 7u), in_f(b + 8u)), true, INVERSE_REACH); }
             ",
             $rest
@@ -127,30 +135,35 @@ macro_rules! around {
 }
 
 pub const PROBES: &[Probe] = &[
-    probe!(kept::pack_color, |rows| {
+    probe!(stored_sample::pack_color, |rows| {
         let c: Vec<u32> = finite().into_iter().filter(|&x| x & 0x7fff_ffff == 0 || x & 0x7f80_0000 != 0).collect();
         rows.cross(&[&c, &c, &[0, 0x3f80_0000]]).each(&[Scaled(-14, 6); 3])
     }),
-    probe!(kept::pack_kept, |rows| rows.random(|d, row| {
-        push_kept(d, row);
+    probe!(stored_sample::pack_stored, |rows| rows.random(|d, row| {
+        push_stored(d, row);
         if d.bits().is_multiple_of(8) {
             row[3] = (-1.0_f32).to_bits();
             row[4] = (-1.0_f32).to_bits();
         }
     })),
-    probe!(kept::unpack_kept, |rows| rows.each(&[Bits, Bits])),
-    probe!(kept::code_word, |rows| rows.each(&[Bits, Bits])),
-    probe!(kept::moved_kept, |rows| rows.each(&[
-        Of(push_kept),
+    probe!(stored_sample::unpack_stored, |rows| rows.each(&[Bits, Bits])),
+    probe!(stored_sample::code_word, |rows| rows.each(&[Bits, Bits])),
+    probe!(stored_sample::moved_stored, |rows| rows.each(&[
+        Of(push_stored),
         F(-0.5, 0.5),
         F(-0.5, 0.5),
         F(0.5, 2.0),
         F(0.5, 2.0),
         F(-1.0, 1.0)
     ])),
-    probe!(kept::pack_color_by, |rows| rows.each(&[Scaled(-14, 6), Scaled(-14, 6), Scaled(-14, 6), F(0.0, 1.0)])),
+    probe!(stored_sample::pack_color_by, |rows| rows.each(&[
+        Scaled(-14, 6),
+        Scaled(-14, 6),
+        Scaled(-14, 6),
+        F(0.0, 1.0)
+    ])),
     probe!(
-        kept::add_kept,
+        stored_sample::add_stored,
         around,
         around!(
             "out_f(a.weight); out_v(a.color); out_f(a.lod); out_f(a.place.x); out_f(a.place.y); out_v(a.square);
@@ -161,14 +174,16 @@ pub const PROBES: &[Probe] = &[
         around_rows
     ),
     probe!(
-        kept::stands_in,
-        |weight: f32| kept::stands_in(Around { weight, ..Around::NOTHING }),
-        "var a = nothing_around(); a.weight = $0; stands_in(a)",
+        stored_sample::can_replace,
+        |weight: f32| stored_sample::can_replace(Around { weight, ..Around::NOTHING }),
+        "var a = nothing_around(); a.weight = $0; can_replace(a)",
         |rows| rows.each(&[F(0.0, 4.0)])
     ),
     probe!(
-        kept::interpolate,
-        |samples: [(kept::Kept, Vec2); 3], count: u32| kept::interpolate(around(samples, count)),
+        stored_sample::interpolate,
+        |samples: [(stored_sample::StoredSample, Vec2); 3], count: u32| stored_sample::interpolate(around(
+            samples, count
+        )),
         around!(
             "let k = interpolate(a); out_v(k.color); out_f(k.lod); out_v(k.lowest); out_v(k.highest);
             out_v(k.nearest.color); out_f(k.nearest.lod); out_f(k.nearest.disparity); out_f(k.nearest.place_px.x);
@@ -176,26 +191,26 @@ pub const PROBES: &[Probe] = &[
         ),
         around_rows
     ),
-    probe!(sparse::candidate_level, |rows| rows.each(&[F(0.0, 200.0), F(0.0, 8.0)])),
-    probe!(sparse::expected_error, |rows| rows.each(&[F(0.0, 3.0), F(0.0, 100.0), N(2)])),
-    probe!(sparse::noisy_lod_confidence, |rows| rows.each(&[F(0.0, 3.0), F(1.0, 80.0), F(0.0, 0.01), F(0.0, 2.0)])),
-    probe!(sparse::agreement, |rows| rows.each(&[Of(push_observation), Of(push_observation), F(0.0, 4.0)])),
-    probe!(sparse::neighbour_weight, |rows| rows.cross(&[&[!0, 0, 1], &[!0, 0, 1]])),
-    probe!(sparse::add_light, |rows| rows.each(&[Of(push_light), Of(push_observation), F(0.0, 4.0), F(0.0, 4.0)])),
+    probe!(sparse_smr::candidate_level, |rows| rows.each(&[F(0.0, 200.0), F(0.0, 8.0)])),
+    probe!(sparse_smr::expected_error, |rows| rows.each(&[F(0.0, 3.0), F(0.0, 100.0), N(2)])),
+    probe!(sparse_smr::noisy_lod_confidence, |rows| rows.each(&[F(0.0, 3.0), F(1.0, 80.0), F(0.0, 0.01), F(0.0, 2.0)])),
+    probe!(sparse_smr::agreement, |rows| rows.each(&[Of(push_observation), Of(push_observation), F(0.0, 4.0)])),
+    probe!(sparse_smr::neighbour_weight, |rows| rows.cross(&[&[!0, 0, 1], &[!0, 0, 1]])),
+    probe!(sparse_smr::add_light, |rows| rows.each(&[Of(push_light), Of(push_observation), F(0.0, 4.0), F(0.0, 4.0)])),
     probe!(
-        sparse::relight,
-        |l: sparse::Light| sparse::relight(l, sparse::mean_error(l)),
+        sparse_smr::relight,
+        |l: sparse_smr::Light| sparse_smr::relight(l, sparse_smr::mean_error(l)),
         "let l = $0; relight(l, mean_error(l))",
         |rows| rows.random(push_light)
     ),
-    probe!(sparse::mean_error, |rows| rows.random(push_light)),
-    probe!(sparse::own_fit, |rows| rows.each(&[Of(push_observation), F(0.2, 5.0), F(0.2, 5.0), F(0.2, 5.0)])),
-    probe!(sparse::capped_error, |rows| rows.each(&[Of(push_observation), F(0.0, 12.0), F(0.0, 4.0)])),
-    probe!(sparse::fit_around, |rows| rows.each(&[Of(push_light), F(0.0, 60.0), F(0.0, 120.0)])),
-    probe!(sparse::mean_fit, |rows| rows.each(&[Of(push_light), F(0.0, 1.0)])),
+    probe!(sparse_smr::mean_error, |rows| rows.random(push_light)),
+    probe!(sparse_smr::own_fit, |rows| rows.each(&[Of(push_observation), F(0.2, 5.0), F(0.2, 5.0), F(0.2, 5.0)])),
+    probe!(sparse_smr::capped_error, |rows| rows.each(&[Of(push_observation), F(0.0, 12.0), F(0.0, 4.0)])),
+    probe!(sparse_smr::fit_around, |rows| rows.each(&[Of(push_light), F(0.0, 60.0), F(0.0, 120.0)])),
+    probe!(sparse_smr::mean_fit, |rows| rows.each(&[Of(push_light), F(0.0, 1.0)])),
     probe!(
-        sparse::pack_lit,
-        |gain: Vec3, fit: f32, is_own: bool, disparity: f32, own_fit: f32| sparse::pack_lit(sparse::Lit {
+        sparse_smr::pack_lit,
+        |gain: Vec3, fit: f32, is_own: bool, disparity: f32, own_fit: f32| sparse_smr::pack_lit(sparse_smr::Lit {
             gain,
             fit,
             own_fit,
@@ -205,15 +220,16 @@ pub const PROBES: &[Probe] = &[
         "pack_lit(Lit($0, $1, $4, $2, $3))",
         |rows| rows.each(&[F(0.2, 5.0), F(0.2, 5.0), F(0.2, 5.0), F(0.0, 1.0), N(2), Scaled(-20, 20), F(0.0, 1.0)])
     ),
-    probe!(sparse::pack_quad_lit, |rows| rows
+    probe!(sparse_smr::pack_quad_lit, |rows| rows
         .each(&[&[F(0.2, 5.0); 3][..], &[F(0.0, 1.0); 5], &[N(2)], &[Scaled(-20, 20); 4]].concat())),
-    probe!(sparse::quad_lit, |rows| rows.each(&[Bits, Bits, Bits, Bits, N(4)])),
-    probe!(sparse::quad_code, |rows| rows.each(&[Bits, Bits, Bits, Bits, N(4)])),
-    probe!(sparse::unpack_lit, |rows| rows.each(&[Bits, Bits])),
-    probe!(sparse::reconstruct, |r: Reconstruction| sparse::reconstruct(&r), |rows| rows.random(push_reconstruction)),
+    probe!(sparse_smr::quad_lit, |rows| rows.each(&[Bits, Bits, Bits, Bits, N(4)])),
+    probe!(sparse_smr::quad_code, |rows| rows.each(&[Bits, Bits, Bits, Bits, N(4)])),
+    probe!(sparse_smr::unpack_lit, |rows| rows.each(&[Bits, Bits])),
+    probe!(sparse_smr::reconstruct, |r: Reconstruction| sparse_smr::reconstruct(&r), |rows| rows
+        .random(push_reconstruction)),
     probe!(
-        sparse::accumulate,
-        |r: Reconstruction, past: Noise, now: Noise| sparse::accumulate(&r, past, now),
+        sparse_smr::accumulate,
+        |r: Reconstruction, past: Noise, now: Noise| sparse_smr::accumulate(&r, past, now),
         |rows| rows.random(|d, row| {
             push_reconstruction(d, row);
             for _ in 0..2 {

@@ -229,7 +229,7 @@ impl Playback<'_> {
             let full = metric::encode(&frame.reference.color, exposure.ev);
             pipeline.look_at(clip.gaze[index].filter(|_| clip.late_gaze.is_some()));
             pipeline.explain(clip.pixel.as_ref().and_then(|pixel| pixel.in_frame(index)));
-            let step = pipeline.step_with(&frame, &mut |wish| Ok::<_, Failure>(source.shade(&frame, wish)?))?;
+            let step = pipeline.step_with(&frame, &mut |request| Ok::<_, Failure>(source.shade(&frame, request)?))?;
             let reference = references.next(&full, &step.tracked, &step.ecc_deg);
             let exposure_ev = exposure.ev;
             each(&FrameResult { index, frame: &frame, reference: &reference, step: &step, exposure_ev })?;

@@ -4,7 +4,7 @@ mod rendered;
 mod shaded;
 
 pub use rendered::{Content, DeviceContent, DeviceHandle, RenderedFrame};
-pub use shaded::{Shaded, ShadedColor, Wish};
+pub use shaded::{QuadRequest, Shaded, ShadedColor};
 
 use afterimage::{Image, Lattices};
 

@@ -6,7 +6,7 @@ use afterimage::Image;
 
 /// Pixels that a method chose, and that the source should shade.
 #[derive(Clone, Debug)]
-pub struct Wish {
+pub struct QuadRequest {
     /// Whether the pixels of each quad of 2x2 pixels are requested.
     pub quads: Image<bool>,
     /// The same as a list on the method's device, in the form of `gpu::Afterimage::quad_list`; `None` for methods on
@@ -14,7 +14,7 @@ pub struct Wish {
     pub on_device: Option<DeviceHandle>,
 }
 
-impl Wish {
+impl QuadRequest {
     /// The pixels, of a frame of `size_px`, ordered by row.
     pub fn pixels(&self, [width, height]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> + '_ {
         let pixels = (0..height).flat_map(move |y| (0..width).map(move |x| [x, y]));
@@ -27,7 +27,7 @@ impl Wish {
     }
 }
 
-/// The pixels of a [`Wish`], in an image of the frame's size. Other pixels are not defined.
+/// The pixels of a [`QuadRequest`], in an image of the frame's size. Other pixels are not defined.
 #[derive(Clone, Debug)]
 pub struct Shaded {
     /// Linear color.

@@ -1,10 +1,10 @@
 //! Methods on the CPU.
 
 use super::candidate::Candidate;
-use super::executor::{Executor, Shade, Shot};
+use super::executor::{Executor, RunInputs, Shade};
 use super::run::{Chosen, MethodOutput, RunKind, chooses, unshaded};
 use crate::clock::{Elapsed, Stopwatch};
-use crate::frame::{DeviceHandle, RenderedFrame, Shaded, ShadedColor, Wish};
+use crate::frame::{DeviceHandle, QuadRequest, RenderedFrame, Shaded, ShadedColor};
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
 use afterimage::internal::PixelNotes;
 use afterimage::kernel::debug_view::view_color;
@@ -30,19 +30,19 @@ impl Executor for CpuExecutor {
         Ok(())
     }
 
-    fn run(&mut self, run: usize, shot: &Shot<'_>, shade: Shade<'_>) -> Result<MethodOutput, FrameError> {
+    fn run(&mut self, run: usize, inputs: &RunInputs<'_>, shade: Shade<'_>) -> Result<MethodOutput, FrameError> {
         let post = &mut self.0[run];
-        let candidate = shot.candidate;
+        let candidate = inputs.candidate;
         let given = candidate.in_memory.as_ref().expect("frames are foveated in memory for runs on the CPU");
         let size = post.desc().size_px;
         let mut output = [Image::filled(size, [0.0; 3])];
-        let mut traces = (!shot.debug.is_empty()).then(|| [Image::filled(size, PixelTrace::default())]);
-        let full_rate = shot.frame.given();
+        let mut traces = (!inputs.debug.is_empty()).then(|| [Image::filled(size, PixelTrace::default())]);
+        let full_rate = inputs.frame.given();
         let (depth, motion) = match &given.geometry {
             Some((depth, motion)) => (Some(depth), Some(motion)),
             None => (full_rate.depth.as_ref(), full_rate.motion.as_ref()),
         };
-        let trust = full_rate.trust.as_ref().filter(|_| shot.use_trust);
+        let trust = full_rate.trust.as_ref().filter(|_| inputs.use_trust);
         let color: &Image<[f32; 3]> = &given.color;
         let lod = given.has_lod.then_some(&candidate.lods);
         let frame = Frame {
@@ -51,12 +51,12 @@ impl Executor for CpuExecutor {
             trust: trust.as_ref().map(from_ref),
             lod: lod.as_ref().map(from_ref),
             noise: given.noise.as_ref().map(from_ref),
-            reset: shot.reset(),
-            ..Frame::new(from_ref(&color), from_ref(&candidate.view), shot.frame.index)
+            reset: inputs.reset(),
+            ..Frame::new(from_ref(&color), from_ref(&candidate.view), inputs.frame.index)
         };
         let planned = Planned::new(post, &frame)?;
-        let is_simulated = shot.frame.is_simulated();
-        let shaded = planned.as_ref().filter(|_| !is_simulated).and_then(|planned| shade(&planned.wish));
+        let is_simulated = inputs.frame.is_simulated();
+        let shaded = planned.as_ref().filter(|_| !is_simulated).and_then(|planned| shade(&planned.request));
         let pixels = match &shaded {
             Some(Shaded { color: ShadedColor::InMemory(color), .. }) => Some(color),
             _ => planned.as_ref().filter(|_| is_simulated).map(|_| &full_rate.color),
@@ -65,7 +65,7 @@ impl Executor for CpuExecutor {
             Some(_) => Frame { color: pixels.as_ref().map(from_ref).ok_or_else(unshaded)?, ..frame },
             None => frame,
         };
-        let mut pixel = shot.pixel.map(|px| PixelNotes::new(0, px));
+        let mut pixel = inputs.pixel.map(|px| PixelNotes::new(0, px));
         let watch = Stopwatch::start();
         let stats = match (&mut pixel, &mut traces) {
             (Some(pixel), traces) => {
@@ -82,14 +82,14 @@ impl Executor for CpuExecutor {
             image,
             elapsed: planned.as_ref().map_or(elapsed, |planned| elapsed.and(planned.took)),
             chosen: planned.map(|planned| Chosen {
-                share: planned.wish.share(size),
+                share: planned.request.share(size),
                 shading: shaded.as_ref().map(|shaded| shaded.took),
             }),
             stats,
             notes: pixel.map_or_else(Vec::new, |pixel| pixel.notes),
             traffic_bytes_per_pixel: Some(post.desc().settings.traffic_bytes_per_pixel(given)),
             debug: traces.map_or_else(Vec::new, |[trace]| {
-                shot.debug.iter().map(|&view| trace.map(|t| view_color(view, &t).to_array())).collect()
+                inputs.debug.iter().map(|&view| trace.map(|t| view_color(view, &t).to_array())).collect()
             }),
         })
     }
@@ -101,7 +101,7 @@ impl Executor for CpuExecutor {
 
 /// The quads that a method chose.
 struct Planned {
-    wish: Wish,
+    request: QuadRequest,
     /// Time of choosing them.
     took: Elapsed,
 }
@@ -117,6 +117,6 @@ impl Planned {
         let took = watch.elapsed();
         let size = pixels.size().map(|side| side.div_ceil(2));
         let quads = Image::from_fn(size, |[x, y]| pixels.at(2 * x as usize, 2 * y as usize));
-        Ok(Some(Self { wish: Wish { quads, on_device: None }, took }))
+        Ok(Some(Self { request: QuadRequest { quads, on_device: None }, took }))
     }
 }

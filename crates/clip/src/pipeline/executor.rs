@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::run::{MethodOutput, RunKind};
-use crate::frame::{DeviceHandle, RenderedFrame, Shaded, Wish};
+use crate::frame::{DeviceHandle, QuadRequest, RenderedFrame, Shaded};
 use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Reset};
 
 /// Methods on the CPU or on a device, in the order in which they were added.
@@ -26,17 +26,17 @@ pub trait Executor: Send {
     ///
     /// # Errors
     /// As for [`set`](Self::set).
-    fn run(&mut self, run: usize, shot: &Shot<'_>, shade: Shade<'_>) -> Result<MethodOutput, FrameError>;
+    fn run(&mut self, run: usize, inputs: &RunInputs<'_>, shade: Shade<'_>) -> Result<MethodOutput, FrameError>;
 
     /// Bytes of history that a method keeps between frames.
     fn memory_bytes(&self, run: usize) -> usize;
 }
 
 /// Shades the pixels that a method chooses.
-pub type Shade<'a> = &'a mut dyn FnMut(&Wish) -> Option<Shaded>;
+pub type Shade<'a> = &'a mut dyn FnMut(&QuadRequest) -> Option<Shaded>;
 
 /// The current frame, and the options of its processing.
-pub struct Shot<'a> {
+pub struct RunInputs<'a> {
     /// The frame from its source.
     pub frame: &'a RenderedFrame,
     /// The foveated frame.
@@ -49,7 +49,7 @@ pub struct Shot<'a> {
     pub pixel: Option<[u32; 2]>,
 }
 
-impl Shot<'_> {
+impl RunInputs<'_> {
     /// A cut empties the history.
     pub fn reset(&self) -> Reset {
         if self.frame.reference.cut { Reset::All } else { Reset::None }

@@ -9,12 +9,12 @@ mod processor;
 mod run;
 
 pub use candidate::{Candidate, InMemory, needs_lod};
-pub use executor::{Executor, Shade, Shot};
+pub use executor::{Executor, RunInputs, Shade};
 pub use processor::{Cpu, Processor, ProcessorInfo};
 pub use run::{Chosen, MethodOutput, RunKind, chooses, unshaded};
 
 use crate::clock::Stopwatch;
-use crate::frame::{RenderedFrame, Shaded, Wish};
+use crate::frame::{QuadRequest, RenderedFrame, Shaded};
 use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::metric::{Tracked, Tracker};
 use crate::quad_views::QuadViewLayout;
@@ -196,7 +196,7 @@ impl Pipeline {
     pub fn step_with<E: From<FrameError>>(
         &mut self,
         frame: &RenderedFrame,
-        shade: &mut dyn FnMut(&Wish) -> Result<Option<Shaded>, E>,
+        shade: &mut dyn FnMut(&QuadRequest) -> Result<Option<Shaded>, E>,
     ) -> Result<Step, E> {
         let has_reference = self.check(frame)?;
         let watch = Stopwatch::start();
@@ -214,7 +214,7 @@ impl Pipeline {
             false => Tracked::unknown(self.foveator.geometry.size_px()),
         };
         let mut failed = None;
-        let mut shade = |wish: &Wish| shade(wish).unwrap_or_else(|error| (failed = Some(error), None).1);
+        let mut shade = |request: &QuadRequest| shade(request).unwrap_or_else(|error| (failed = Some(error), None).1);
         let outputs = self.run(frame, &candidate, &mut shade);
         failed.map_or(Ok(()), Err)?;
         let outputs = outputs?;
@@ -246,14 +246,14 @@ impl Pipeline {
         candidate: &Candidate<'_>,
         shade: Shade<'_>,
     ) -> Result<Vec<MethodOutput>, FrameError> {
-        let shot = Shot { frame, candidate, debug: &self.debug, use_trust: self.use_trust, pixel: self.pixel };
+        let inputs = RunInputs { frame, candidate, debug: &self.debug, use_trust: self.use_trust, pixel: self.pixel };
         let mut outputs: Vec<Option<MethodOutput>> = vec![None; self.runs.len()];
         // Rotate the order of runs each frame, because the foveation's data in the caches favor or slow down the first
         // run.
         let first = frame.index as usize % self.runs.len().max(1);
         for i in (first..self.runs.len()).chain(0..first) {
             outputs[i] = Some(match &mut self.runs[i] {
-                Run::Method(run) => self.executor.run(*run, &shot, shade)?,
+                Run::Method(run) => self.executor.run(*run, &inputs, shade)?,
                 Run::Oracle(oracle) => {
                     oracle.run(candidate.pyramid.as_ref(), &candidate.lods, &self.foveator.foveation)?
                 }

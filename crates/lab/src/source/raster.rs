@@ -9,8 +9,8 @@ use crate::clock::{Elapsed, Stopwatch};
 use crate::device::{Headless, PassClock};
 use crate::error::InputError;
 use crate::frame::{
-    ComposedFrame, DeviceFrame, DeviceHandle, OnDevice, RenderedFrame, Shaded, ShadedColor, SourceFrame, SparseFrame,
-    Wish,
+    ComposedFrame, DeviceFrame, DeviceHandle, OnDevice, QuadRequest, RenderedFrame, Shaded, ShadedColor, SourceFrame,
+    SparseFrame,
 };
 use crate::lattices::SparseGeometry;
 use crate::quad_views::QuadViews;
@@ -441,13 +441,13 @@ impl FrameSource for RasterSource {
     }
 
     /// The colors are those of a full-rate frame with the same jitter and one sample a pixel.
-    fn shade(&mut self, frame: &RenderedFrame, wish: &Wish) -> Result<Option<Shaded>, InputError> {
-        let list = wish.on_device.as_ref().and_then(|list| list.downcast_ref::<Buffer>()).cloned();
-        let list = list.unwrap_or_else(|| quad_list(&self.device.device, &wish.quads));
+    fn shade(&mut self, frame: &RenderedFrame, request: &QuadRequest) -> Result<Option<Shaded>, InputError> {
+        let list = request.on_device.as_ref().and_then(|list| list.downcast_ref::<Buffer>()).cloned();
+        let list = list.unwrap_or_else(|| quad_list(&self.device.device, &request.quads));
         let shade =
             |source: &mut Self, encoder: &mut _| source.record_quads(encoder, frame.index, frame.jitter_px, &list);
         let (color, took) = self.submit_timed(shade)?;
-        let color = match wish.on_device {
+        let color = match request.on_device {
             Some(_) => ShadedColor::OnDevice(Arc::new(color)),
             None => ShadedColor::InMemory(read_color(&self.device, &color)),
         };

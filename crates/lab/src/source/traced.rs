@@ -8,7 +8,7 @@ use crate::clock::Elapsed;
 use crate::device::{Backend, SpanClock};
 use crate::error::InputError;
 use crate::frame::{
-    Content, DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, Shaded, ShadedColor, SourceFrame, Wish,
+    Content, DeviceSamples, FoveatedFrame, OnDevice, QuadRequest, RenderedFrame, Shaded, ShadedColor, SourceFrame,
 };
 use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::trace::Tracer;
@@ -266,12 +266,12 @@ impl FrameSource for TracedSource {
     }
 
     /// Traces all samples of each chosen pixel, with draws that differ from those of the full-rate frame.
-    fn shade(&mut self, frame: &RenderedFrame, wish: &Wish) -> Result<Option<Shaded>, InputError> {
+    fn shade(&mut self, frame: &RenderedFrame, request: &QuadRequest) -> Result<Option<Shaded>, InputError> {
         let [view, _] = self.of.views(frame.index).0;
         let mut film = Film::new(self.of.info().size);
         let samples = self.samples.samples.max(1);
         let ((), took) = self.clock.time(|| {
-            let pixels: Vec<_> = wish.pixels(self.of.info().size).collect();
+            let pixels: Vec<_> = request.pixels(self.of.info().size).collect();
             for pixels in pixels.chunks((STEP / samples).max(1) as usize) {
                 let spans = Spans::new(pixels.iter().copied(), 0..samples);
                 self.tracer.trace(&self.world, &view, frame.index, &spans, &mut film);

@@ -100,7 +100,7 @@ fn both_backends_write_the_same_bytes() {
                     assert_eq!(of(&cpu), of(&gpu), "{method}");
                 }
             }
-            // Kept samples and their noise, of two frames.
+            // Stored samples and their noise, of two frames.
             "regions" => assert_eq!(cpu["methods"]["smr"]["persistent_bytes_per_pixel"], 24.0),
             _ => {}
         }

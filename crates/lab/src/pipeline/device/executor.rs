@@ -3,10 +3,12 @@
 use super::{DeviceFormats, DeviceInputs, DeviceRun};
 use crate::clock::{Elapsed, Stopwatch};
 use crate::device::{Headless, PassClock};
-use crate::frame::{Content, DeviceHandle, RenderedFrame, Shaded, ShadedColor, Wish};
+use crate::frame::{Content, DeviceHandle, QuadRequest, RenderedFrame, Shaded, ShadedColor};
 use afterimage::gpu::Frame;
 use afterimage::{ContextDesc, CreateError, DebugView, FrameError};
-use afterimage_clip::pipeline::{Candidate, Chosen, Executor, MethodOutput, RunKind, Shade, Shot, chooses, unshaded};
+use afterimage_clip::pipeline::{
+    Candidate, Chosen, Executor, MethodOutput, RunInputs, RunKind, Shade, chooses, unshaded,
+};
 use std::slice::from_ref;
 use std::sync::Arc;
 use wgpu::Texture;
@@ -64,13 +66,13 @@ impl Executor for DeviceExecutor {
         self.gpu.check()
     }
 
-    fn run(&mut self, run: usize, shot: &Shot<'_>, shade: Shade<'_>) -> Result<MethodOutput, FrameError> {
+    fn run(&mut self, run: usize, inputs: &RunInputs<'_>, shade: Shade<'_>) -> Result<MethodOutput, FrameError> {
         let (gpu, run) = (&self.gpu, &mut self.runs[run]);
-        let views = from_ref(&shot.candidate.view);
-        let frame = self.inputs.frame(views, shot.frame.index, shot.reset(), shot.use_trust);
+        let views = from_ref(&inputs.candidate.view);
+        let frame = self.inputs.frame(views, inputs.frame.index, inputs.reset(), inputs.use_trust);
         let planned = chooses(&run.post().desc().settings).then(|| plan(gpu, &self.clock, run, &frame)).transpose()?;
-        let is_simulated = shot.frame.is_simulated();
-        let shaded = planned.as_ref().filter(|_| !is_simulated).and_then(|(wish, _)| shade(wish));
+        let is_simulated = inputs.frame.is_simulated();
+        let shaded = planned.as_ref().filter(|_| !is_simulated).and_then(|(request, _)| shade(request));
         let pixels = match &shaded {
             Some(Shaded { color: ShadedColor::OnDevice(color), .. }) => color.downcast_ref::<Texture>(),
             Some(Shaded { color: ShadedColor::InMemory(color), .. }) => Some(self.inputs.upload_shaded(color)),
@@ -83,11 +85,12 @@ impl Executor for DeviceExecutor {
         let encoder = || gpu.device.create_command_encoder(&Default::default());
         let mut debug_views = vec![];
         // Counters come from a debug view. If no view is requested, one is drawn for the counters and not read back.
-        for &view in if shot.debug.is_empty() { &[DebugView::Rejection] } else { shot.debug } {
+        for &view in if inputs.debug.is_empty() { &[DebugView::Rejection] } else { inputs.debug } {
             let mut encoder = encoder();
             run.record_view(&mut encoder, &frame, view)?;
             gpu.queue.submit([encoder.finish()]);
-            debug_views.extend(run.debug().filter(|_| !shot.debug.is_empty()).map(|texture| gpu.read_rgb(texture, 0)));
+            debug_views
+                .extend(run.debug().filter(|_| !inputs.debug.is_empty()).map(|texture| gpu.read_rgb(texture, 0)));
         }
         // The device is idle when the watch starts.
         gpu.wait();
@@ -104,8 +107,8 @@ impl Executor for DeviceExecutor {
         let output = MethodOutput {
             image: gpu.read_rgb(run.output(), 0),
             elapsed: planned.as_ref().map_or(elapsed, |(_, planning)| elapsed.and(*planning)),
-            chosen: planned.map(|(wish, _)| Chosen {
-                share: wish.share(run.post().desc().size_px),
+            chosen: planned.map(|(request, _)| Chosen {
+                share: request.share(run.post().desc().size_px),
                 shading: shaded.as_ref().map(|shaded| shaded.took),
             }),
             stats: run.stats(),
@@ -127,7 +130,7 @@ fn plan(
     clock: &PassClock,
     run: &mut DeviceRun,
     frame: &Frame<'_>,
-) -> Result<(Wish, Elapsed), FrameError> {
+) -> Result<(QuadRequest, Elapsed), FrameError> {
     gpu.wait();
     let watch = Stopwatch::start();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -139,5 +142,5 @@ fn plan(
     let post = run.post();
     let (mask, list) = post.quad_mask().zip(post.quad_list(0)).expect("the settings ask for a plan");
     let quads = gpu.read::<u32>(mask, 0).map(|chosen| chosen & 1 != 0);
-    Ok((Wish { quads, on_device: Some(Arc::new(list.clone())) }, elapsed))
+    Ok((QuadRequest { quads, on_device: Some(Arc::new(list.clone())) }, elapsed))
 }

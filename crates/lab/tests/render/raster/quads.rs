@@ -73,10 +73,10 @@ impl Twins {
         assert!(frame.samples.is_none() && frame.render.unwrap().wall_ms > 0.0);
         let simulated = self.simulated.step(&whole).unwrap();
         let source = &mut self.source;
-        let mut wishes = vec![];
-        let mut shade = |wish: &_| -> Result<_, Box<dyn Error>> {
-            wishes.push(Clone::clone(wish));
-            Ok(source.shade(&frame, wish)?)
+        let mut requests = vec![];
+        let mut shade = |request: &_| -> Result<_, Box<dyn Error>> {
+            requests.push(Clone::clone(request));
+            Ok(source.shade(&frame, request)?)
         };
         let rendered = self.rendered.step_with(&frame, &mut shade).unwrap();
         assert_eq!(rendered.lods, simulated.lods);
@@ -86,10 +86,11 @@ impl Twins {
             let [chosen, of_whole] = [shown, whole_shown].map(|output| output.chosen.unwrap());
             assert!(chosen.shading.unwrap().wall_ms > 0.0 && of_whole.shading.is_none());
             // The pipeline begins with another method in each frame.
-            let wish: &afterimage_lab::frame::Wish = &wishes[(i + self.methods.len() - first) % self.methods.len()];
-            assert_eq!(chosen.share, wish.share(SIZE));
+            let request: &afterimage_lab::frame::QuadRequest =
+                &requests[(i + self.methods.len() - first) % self.methods.len()];
+            assert_eq!(chosen.share, request.share(SIZE));
             if self.methods[i] == MethodKind::None.into() {
-                worst = worst.max(largest(&shown.image, &whole.given().color, Some(&wish.quads)));
+                worst = worst.max(largest(&shown.image, &whole.given().color, Some(&request.quads)));
             }
         }
         let outputs = rendered.outputs.iter().zip(&simulated.outputs);

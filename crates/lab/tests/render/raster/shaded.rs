@@ -3,7 +3,7 @@
 use super::rig::FAST;
 use crate::given::{builtin, device};
 use afterimage::Image;
-use afterimage_lab::frame::{Content, ShadedColor, Wish};
+use afterimage_lab::frame::{Content, QuadRequest, ShadedColor};
 use afterimage_lab::scene::Scene;
 use afterimage_lab::source::{FrameRequest, FrameSource, RasterSource, SceneCamera};
 
@@ -29,7 +29,7 @@ fn chosen_pixels_are_those_of_the_full_rate_frame() {
             let Content::Jittered(full) = &frame.content else { panic!("one sample a pixel") };
             let chosen = |[x, y]: [u32; 2]| (x * 7 + y * 5 + x * y) % 4 == index as u32;
             let quads = Image::from_fn(SIZE.map(|side| side.div_ceil(2)), chosen);
-            let shaded = source.shade(&frame, &Wish { quads, on_device: None }).unwrap().unwrap();
+            let shaded = source.shade(&frame, &QuadRequest { quads, on_device: None }).unwrap().unwrap();
             assert!(shaded.took.wall_ms > 0.0);
             let ShadedColor::InMemory(color) = shaded.color else { panic!("asked for in memory") };
             let mut lit = 0;

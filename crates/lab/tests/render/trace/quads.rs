@@ -3,7 +3,7 @@
 use crate::given::device;
 use afterimage::{Foveation, Image, MethodKind, Settings, ViewGeometry};
 use afterimage_lab::device::Backend;
-use afterimage_lab::frame::{Content, RenderedFrame, ShadedColor, Wish};
+use afterimage_lab::frame::{Content, QuadRequest, RenderedFrame, ShadedColor};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::source::{FrameSource, ReadLimits, SceneOptions, TracedSamples, TracedSource, Wanted};
 use afterimage_lab::trace::sampling::Sampling;
@@ -22,7 +22,7 @@ fn source(backend: &Backend) -> TracedSource {
 }
 
 fn shade(source: &mut TracedSource, frame: &RenderedFrame, quads: Image<bool>) -> Image<[f32; 3]> {
-    let shaded = source.shade(frame, &Wish { quads, on_device: None }).unwrap().unwrap();
+    let shaded = source.shade(frame, &QuadRequest { quads, on_device: None }).unwrap().unwrap();
     assert!(shaded.took.wall_ms > 0.0);
     let ShadedColor::InMemory(color) = shaded.color else { panic!("traced pixels are read back") };
     color
@@ -62,17 +62,17 @@ fn a_chosen_pixel_is_that_of_the_whole_frame() {
             assert!(matches!(frame.content, Content::Surfaces) && frame.render.unwrap().wall_ms > 0.0);
             let sides = SIZE.map(|side| side.div_ceil(2));
             let whole = shade(&mut source, &frame, Image::filled(sides, true));
-            let mut wishes = vec![];
-            let mut chosen = |wish: &Wish| -> Result<_, Box<dyn Error>> {
-                let shaded = source.shade(&frame, wish)?;
+            let mut requests = vec![];
+            let mut chosen = |request: &QuadRequest| -> Result<_, Box<dyn Error>> {
+                let shaded = source.shade(&frame, request)?;
                 if let Some(ShadedColor::InMemory(color)) = shaded.as_ref().map(|shaded| &shaded.color) {
-                    wishes.push((wish.quads.clone(), color.clone()));
+                    requests.push((request.quads.clone(), color.clone()));
                 }
                 Ok(shaded)
             };
             let step = pipeline.step_with(&frame, &mut chosen).unwrap();
             let share = step.outputs[0].chosen.unwrap().share;
-            let [(quads, color)] = &wishes[..] else { panic!("one method") };
+            let [(quads, color)] = &requests[..] else { panic!("one method") };
             assert!((0.02..0.5).contains(&share), "{share}");
             assert_eq!(differing(color, &whole, quads, true), 0, "frame {index}");
             assert!(differing(color, &whole, quads, false) > SIZE[0] as usize, "others are traced, too");

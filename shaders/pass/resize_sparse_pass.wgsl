@@ -1,16 +1,16 @@
 //#use antialias
-//#use kept
+//#use stored_sample
 //#use resize_uniforms
-// Kept samples of history at another size. Each pixel takes the nearest sample, which keeps its place. CPU twin:
+// Stored samples of history at another size. Each pixel takes the nearest sample, which keeps its place. CPU twin:
 // src/cpu/resize.rs. One invocation a pixel; z is the view.
 
-@group(0) @binding(15) var past_kept: texture_2d_array<u32>;
+@group(0) @binding(15) var past_stored: texture_2d_array<u32>;
 @group(0) @binding(16) var past_noise: texture_2d_array<u32>;
-@group(0) @binding(18) var next_kept: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(18) var next_stored: texture_storage_2d_array<rg32uint, write>;
 @group(0) @binding(19) var next_noise: texture_storage_2d_array<r32uint, write>;
 
 override NOISY: u32 = 0u;
-// Whether the kept samples are means of samples.
+// Whether the stored samples are means of samples.
 override MEANS: u32 = 0u;
 
 @compute @workgroup_size(64, 1)
@@ -20,16 +20,16 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     }
     let position = old_position_of(id.xy);
     let at = nearest_to(position);
-    var stored = unpack_kept(textureLoad(past_kept, at, group.z, 0).xy);
+    var stored = unpack_stored(textureLoad(past_stored, at, group.z, 0).xy);
     let mean = mean_of(stored.lod);
     if MEANS != 0u {
         stored.lod = mean.lod;
     }
-    var moved = moved_kept(stored, vec2<f32>(at) - position, 1.0 / resize.ratio, resize.lod_shift);
+    var moved = moved_stored(stored, vec2<f32>(at) - position, 1.0 / resize.ratio, resize.lod_shift);
     if MEANS != 0u {
         moved.lod = stored_lod(Mean(moved.lod, mean.samples));
     }
-    textureStore(next_kept, id.xy, group.z, vec4<u32>(pack_kept(moved), 0u, 0u));
+    textureStore(next_stored, id.xy, group.z, vec4<u32>(pack_stored(moved), 0u, 0u));
     if NOISY != 0u {
         textureStore(next_noise, id.xy, group.z, textureLoad(past_noise, at, group.z, 0));
     }

@@ -9,10 +9,10 @@
 use super::approx;
 use super::color::luma;
 use super::depth::INVALID_DISPARITY;
-use super::kept::{Kept, pack_color, unpack_color};
-use super::matched::{COARSER_WIDTH, DARK, root_difference, smooth_step};
 use super::noise::{Noise, history_share, noise_after, noise_confidence, noise_visibility};
 use super::pack::{disparity_code, disparity_value};
+use super::smr::{COARSER_WIDTH, DARK, root_difference, smooth_step};
+use super::stored_sample::{StoredSample, pack_color, unpack_color};
 use glam::Vec3;
 use std::f32::consts::LOG2_E;
 
@@ -61,14 +61,14 @@ const FINER_WIDTH: f32 = 0.25;
 const OVERSHOOT: f32 = 0.25;
 /// Factor on `Smr::accumulate`, the share of equally fine history: samples at their own pixels need less averaging.
 const ACCUMULATE: f32 = 0.5;
-/// Least share of history at which the kept sample is stored instead of the shown color.
+/// Least share of history at which the stored sample is stored instead of the shown color.
 const KEEP_SHARE: f32 = 0.9;
 /// Noisy samples: standard errors of a mean difference at which the fit starts to fall; it is 0 at twice as many.
 const MEAN_ERRORS: f32 = 3.0;
 /// Noisy samples: limit on the samples of a history coarser than the candidate, in frames. A larger limit reduces
 /// noise, and keeps blurred history for longer.
 const BLURRED_FRAMES: f32 = 8.0;
-/// Noisy samples: least share of history at which the mean is stored in the place of the kept sample.
+/// Noisy samples: least share of history at which the mean is stored in the place of the stored sample.
 const STAY_SHARE: f32 = 0.5;
 
 /// Level of detail of a candidate at distance `px` from the nearest sample of a lattice of level `coarsest`: 0 at the
@@ -89,7 +89,7 @@ pub struct Observation {
     /// without history or without a usable sample.
     pub error: f32,
     /// Confidence in the difference, in \[0, 1\]: lower for coarse history, which differs from a point sample anyway.
-    pub sure: f32,
+    pub confidence: f32,
 }
 
 /// Expected difference between a sample and history of level of detail `lod` with local contrast `contrast`.
@@ -131,7 +131,7 @@ pub fn ratios(observed: Vec3, predicted: Vec3) -> Vec3 {
 pub fn agreement(own: Observation, other: Observation, spatial: f32) -> f32 {
     let difference = root_difference(other.sampled, ratios(own.sampled, own.history) * other.history);
     let errors = difference.min(1e6) / (AGREE_ERRORS * (own.error + other.error) + AGREE_ERROR);
-    (spatial * other.sure) / (1.0 + errors * errors)
+    (spatial * other.confidence) / (1.0 + errors * errors)
 }
 
 /// Weight of the neighbour at an offset of -1, 0 or 1 samples along each axis: 4 for the sample itself, 1 for corners.
@@ -169,7 +169,7 @@ pub fn add_light(l: Light, o: Observation, weight: f32, spatial: f32) -> Light {
         weight: l.weight + weight,
         squared: l.squared + weight * weight,
         spatial: l.spatial + spatial,
-        known: l.known + spatial * o.sure,
+        known: l.known + spatial * o.confidence,
     }
 }
 
@@ -214,20 +214,20 @@ pub fn errors_left(o: Observation, gain: Vec3) -> f32 {
 /// neighbourhood: a sample that hit a sparkle, for example, contradicts history even where its neighbours agree.
 #[inline]
 pub fn own_fit(own: Observation, gain: Vec3) -> f32 {
-    fit(errors_left(own, gain), own.sure)
+    fit(errors_left(own, gain), own.confidence)
 }
 
-/// Degree to which history fits the samples, in \[0, 1\], from the mean of [`errors_left`]. `sure`: confidence in that
-/// mean, in \[0, 1\]; with a confidence of 0, history fits.
+/// Degree to which history fits the samples, in \[0, 1\], from the mean of [`errors_left`]. `confidence`: confidence in
+/// that mean, in \[0, 1\]; with a confidence of 0, history fits.
 #[inline]
-pub fn fit(errors: f32, sure: f32) -> f32 {
-    1.0 - sure * smooth_step(GATE[0], GATE[1], errors)
+pub fn fit(errors: f32, confidence: f32) -> f32 {
+    1.0 - confidence * smooth_step(GATE[0], GATE[1], errors)
 }
 
 /// An error of [`errors_left`], weighted, for [`fit_around`]: at most the error at which the fit is 0.
 #[inline]
 pub fn capped_error(o: Observation, errors: f32, spatial: f32) -> f32 {
-    errors.min(GATE[0] + GATE[1]) * (spatial * o.sure)
+    errors.min(GATE[0] + GATE[1]) * (spatial * o.confidence)
 }
 
 /// Degree to which history fits around a sample, in \[0, 1\]. `left`: [`errors_left`] with the gain, times weights;
@@ -245,10 +245,10 @@ pub fn fit_around(l: Light, left: f32, capped: f32) -> f32 {
 /// As [`fit`], for noisy samples, from the difference of the means of samples and of history. Nine samples together
 /// distinguish smaller changes from noise than a single sample.
 #[inline]
-pub fn mean_fit(l: Light, sure: f32) -> f32 {
+pub fn mean_fit(l: Light, confidence: f32) -> f32 {
     let inverse = 1.0 / l.weight;
     let from = ((l.error * inverse) * (l.squared.sqrt() * inverse)) * MEAN_ERRORS;
-    1.0 - sure * smooth_step(from, from, root_difference(l.sampled * inverse, l.history * inverse))
+    1.0 - confidence * smooth_step(from, from, root_difference(l.sampled * inverse, l.history * inverse))
 }
 
 /// Estimate of light at a sample: gain and fit.
@@ -340,7 +340,7 @@ pub struct Reconstruction {
     /// Its level of detail.
     pub history_lod: f32,
     /// Stored sample to keep. Its place is relative to the pixel.
-    pub nearest: Kept,
+    pub nearest: StoredSample,
     /// Whether history was read between samples.
     pub moved: bool,
     /// Gain of relighting.
@@ -359,8 +359,8 @@ pub struct Reconstruction {
 pub struct Reconstructed {
     /// Color to show.
     pub color: Vec3,
-    /// Sample to store. It has the kept sample's disparity, which the caller must replace.
-    pub kept: Kept,
+    /// Sample to store. It has the stored sample's disparity, which the caller must replace.
+    pub stored: StoredSample,
     /// History's share in `color`.
     pub share: f32,
 }
@@ -372,8 +372,8 @@ pub fn relit(color: Vec3, gain: Vec3, range: [Vec3; 2]) -> Vec3 {
     (color * gain).min(color.max(highest))
 }
 
-/// Blends history into the candidate, and chooses the sample to store. Where history prevails, this is the kept sample,
-/// which is then not resampled; elsewhere it is the blend.
+/// Blends history into the candidate, and chooses the sample to store. Where history prevails, this is the stored
+/// sample, which is then not resampled; elsewhere it is the blend.
 #[inline]
 pub fn reconstruct(r: &Reconstruction) -> Reconstructed {
     let gain = r.gain;
@@ -392,19 +392,19 @@ pub fn reconstruct(r: &Reconstruction) -> Reconstructed {
     let color = if share == 1.0 { history } else { r.candidate + (history - r.candidate) * share };
     let lost = 1.0 - finer * acceptance;
     let place = r.nearest.place_px;
-    let near = place.x.abs().max(place.y.abs()) <= super::kept::FARTHEST_PX;
+    let near = place.x.abs().max(place.y.abs()) <= super::stored_sample::FARTHEST_PX;
     let kept_lod = r.nearest.lod + worn;
     if share >= KEEP_SHARE && near && kept_lod < r.lod {
-        let kept = Kept {
+        let stored = StoredSample {
             color: relit(r.nearest.color, gain, r.range),
             lod: kept_lod + (r.lod - kept_lod) * lost,
             ..r.nearest
         };
-        return Reconstructed { color, kept, share };
+        return Reconstructed { color, stored, share };
     }
     let lod = if finer > 0.0 { history_lod + (r.lod - history_lod) * lost } else { r.lod };
-    let kept = Kept { color, lod, place_px: glam::Vec2::ZERO, ..r.nearest };
-    Reconstructed { color, kept, share }
+    let stored = StoredSample { color, lod, place_px: glam::Vec2::ZERO, ..r.nearest };
+    Reconstructed { color, stored, share }
 }
 
 /// Result of [`accumulate`].
@@ -417,10 +417,10 @@ pub struct Accumulated {
 }
 
 /// As [`reconstruct`], for noisy samples: a mean of history and candidate by their numbers of samples. History replaces
-/// the candidate only as far as it is finer and its noise is invisible. `past`: noise of the kept sample; `now`: noise
-/// of the candidate. History is not relit.
+/// the candidate only as far as it is finer and its noise is invisible. `past`: noise of the stored sample; `now`:
+/// noise of the candidate. History is not relit.
 ///
-/// The mean is stored in the place of the kept sample, so that history is not resampled.
+/// The mean is stored in the place of the stored sample, so that history is not resampled.
 #[inline]
 pub fn accumulate(r: &Reconstruction, past: Noise, now: Noise) -> Accumulated {
     let acceptance = r.fit * r.trust;
@@ -439,11 +439,11 @@ pub fn accumulate(r: &Reconstruction, past: Noise, now: Noise) -> Accumulated {
     let lod = r.lod + (r.history_lod - r.lod) * share;
     let noise = noise_after(past, now, share, finer * acceptance);
     let place = r.nearest.place_px;
-    let near = place.x.abs().max(place.y.abs()) <= super::kept::FARTHEST_PX;
-    let kept = if near && share >= STAY_SHARE {
-        Kept { color: r.candidate + (r.nearest.color - r.candidate) * share, lod, ..r.nearest }
+    let near = place.x.abs().max(place.y.abs()) <= super::stored_sample::FARTHEST_PX;
+    let stored = if near && share >= STAY_SHARE {
+        StoredSample { color: r.candidate + (r.nearest.color - r.candidate) * share, lod, ..r.nearest }
     } else {
-        Kept { color, lod, place_px: glam::Vec2::ZERO, ..r.nearest }
+        StoredSample { color, lod, place_px: glam::Vec2::ZERO, ..r.nearest }
     };
-    Accumulated { result: Reconstructed { color, kept, share }, noise }
+    Accumulated { result: Reconstructed { color, stored, share }, noise }
 }

@@ -1,6 +1,6 @@
 //#use approx
 //#use surface
-// Twin of src/kernel/matched.rs, which explains the constants.
+// Twin of src/kernel/smr.rs, which explains the constants.
 
 const QUALITY_WIDTH: f32 = 0.1;
 const COARSER_WIDTH: f32 = 0.25;
@@ -31,28 +31,28 @@ struct SmrParams {
     noisy: bool,
 }
 
-// matched::smooth_step
+// smr::smooth_step
 fn smooth_step(low: f32, width: f32, x: f32) -> f32 {
     let t = clamp((x - low) / width, 0.0, 1.0);
     return (t * t) * (3.0 - 2.0 * t);
 }
 
-// matched::root_difference
+// smr::root_difference
 fn root_difference(x: vec3<f32>, y: vec3<f32>) -> f32 {
     return distance_of_roots(roots(x), roots(y));
 }
 
-// matched::past_difference
+// smr::past_difference
 fn past_difference(x: vec3<f32>, past: vec3<f32>) -> f32 {
     return distance_of_roots(roots(x), past_roots(past));
 }
 
-// matched::past_contrast
+// smr::past_contrast
 fn past_contrast(level: vec3<f32>, next_level: vec3<f32>) -> f32 {
     return distance_of_roots(past_roots(level), past_roots(next_level));
 }
 
-// matched::distance_of_roots
+// smr::distance_of_roots
 fn distance_of_roots(x: vec3<f32>, y: vec3<f32>) -> f32 {
     let d = x - y;
     let outer = 0.25 * (d.x + d.z);
@@ -64,24 +64,24 @@ fn distance_of_roots(x: vec3<f32>, y: vec3<f32>) -> f32 {
     return 100.0 * sqrt(luma * luma + 0.5 * chroma);
 }
 
-// matched::roots
+// smr::roots
 fn roots(c: vec3<f32>) -> vec3<f32> {
     return past_roots(max(c, vec3<f32>(0.0)));
 }
 
-// matched::past_roots
+// smr::past_roots
 fn past_roots(c: vec3<f32>) -> vec3<f32> {
     return sqrt(c);
 }
 
-// matched::light_unit
+// smr::light_unit
 fn light_unit(compared: vec3<f32>, matched: vec3<f32>, exposure: f32) -> f32 {
     let now = max(max(compared.x, compared.y), compared.z);
     let then = max(max(matched.x, matched.y), matched.z);
     return max(max(now, then * exposure), LEAST_LIGHT) * (1.0f / MIDDLE);
 }
 
-// matched::moves_alike
+// smr::moves_alike
 fn moves_alike(own: vec2<f32>, other: vec2<f32>) -> bool {
     let within = COHERENT_PX + COHERENT_SHARE * (abs(own.x) + abs(own.y));
     return abs(other.x - own.x) <= within && abs(other.y - own.y) <= within;
@@ -92,7 +92,7 @@ struct ReuseWeight {
     share: f32,
 }
 
-// matched::reuse_weight
+// smr::reuse_weight
 fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confidence: vec2<f32>) -> ReuseWeight {
     let finer = clamp((lod - history_lod) * (1.0f / QUALITY_WIDTH), 0.0, 1.0) * confidence.x;
     let coarser = clamp((history_lod - lod) / COARSER_WIDTH, 0.0, 1.0) * confidence.y;
@@ -101,32 +101,32 @@ fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confid
     return ReuseWeight(finer, finer + (alike * calm) * accumulate);
 }
 
-// matched::gain
+// smr::gain
 fn gain(observed: f32, predicted: f32, changed: f32) -> f32 {
     let ratio = clamp((observed + DARK) / (predicted + DARK), GAIN_LEAST, GAIN_MOST);
     let share = changed * smooth_step(0.5, 1.0, 10.0 * abs(ratio - 1.0));
     return (1.0 - share) + ratio * share;
 }
 
-// matched::strongest_gain
+// smr::strongest_gain
 fn strongest_gain(gains: vec3<f32>) -> f32 {
     let least = min(min(gains.x, gains.y), gains.z);
     let most = max(max(gains.x, gains.y), gains.z);
     return select(most, least, least * most < 1.0);
 }
 
-// matched::relight_from
+// smr::relight_from
 fn relight_from(contrast: f32, blocks: bool, noise: f32) -> f32 {
     let relight = select(RELIGHT, RELIGHT_BLOCKS, blocks);
     return (relight.x + relight.y * contrast) + noise;
 }
 
-// matched::may_relight
+// smr::may_relight
 fn may_relight(finer: f32, noisy: bool) -> bool {
     return finer == 1.0 || noisy;
 }
 
-// matched::is_changed
+// smr::is_changed
 fn is_changed(compared: vec3<f32>, matched: vec3<f32>, level: vec3<f32>, next_level: vec3<f32>) -> bool {
     return past_difference(compared, matched) > relight_from(past_contrast(level, next_level), false, 0.0);
 }
@@ -158,7 +158,7 @@ struct Matched {
     fit: f32,
 }
 
-// matched::decide
+// smr::decide
 fn decide(e: Evidence, p: SmrParams) -> Matched {
     let reuse = reuse_weight(e.lod, e.history_lod, p.accumulate, p.noisy, e.confidence);
     var contrast = past_contrast(e.level, e.next_level);
@@ -207,12 +207,12 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     return Matched(shown, lod, share, fit);
 }
 
-// matched::mip_mean
+// smr::mip_mean
 fn mip_mean(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, d: vec4<f32>) -> vec4<f32> {
     return (a + b + c + d) * 0.25;
 }
 
-// matched::mip_bilinear
+// smr::mip_bilinear
 fn mip_bilinear(
     top_left: vec4<f32>,
     top_right: vec4<f32>,

@@ -1,9 +1,9 @@
 //#use color
 //#use depth
-//#use kept
-//#use matched
+//#use stored_sample
+//#use smr
 //#use noise
-// Twin of src/kernel/sparse.rs, which documents the functions.
+// Twin of src/kernel/sparse_smr.rs, which documents the functions.
 
 const LIGHT_RELATIVE: f32 = 0.1;
 const SAMPLE_RELATIVE: f32 = 0.05;
@@ -30,7 +30,7 @@ const STAY_SHARE: f32 = 0.5;
 const AGREED: vec2<f32> = vec2<f32>(0.6, 6.0);
 const RELIT_ERRORS: f32 = 0.8;
 
-// sparse::candidate_level
+// sparse_smr::candidate_level
 fn candidate_level(px: f32, coarsest: f32) -> f32 {
     return min(ln(1.0 + 2.0 * px) * LOG2_E, coarsest);
 }
@@ -40,44 +40,44 @@ struct Observation {
     sampled: vec3<f32>,
     history: vec3<f32>,
     error: f32,
-    sure: f32,
+    confidence: f32,
 }
 
-// sparse::expected_error
+// sparse_smr::expected_error
 fn expected_error(lod: f32, contrast: f32, moved: bool) -> f32 {
     let coarse = clamp(lod, 0.0, 1.0);
     let by_motion = select(0.0, CONTRAST_ERROR, moved);
     return select(STILL_ERROR, MOVED_ERROR, moved) + contrast * (by_motion + CONTRAST_ERROR * coarse);
 }
 
-// sparse::lod_confidence
+// sparse_smr::lod_confidence
 fn lod_confidence(lod: f32) -> f32 {
     return 1.0 - clamp(lod, 0.0, 1.0);
 }
 
-// sparse::noisy_lod_confidence
+// sparse_smr::noisy_lod_confidence
 fn noisy_lod_confidence(lod: f32, past: Noise, around: f32) -> f32 {
     return max(lod_confidence(lod), noise_visibility(past, around));
 }
 
-// sparse::ratio
+// sparse_smr::ratio
 fn ratio(observed: f32, predicted: f32) -> f32 {
     return clamp((observed + DARK) / (predicted + DARK), SAMPLE_GAIN.x, SAMPLE_GAIN.y);
 }
 
-// sparse::ratios
+// sparse_smr::ratios
 fn ratios(observed: vec3<f32>, predicted: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(ratio(observed.x, predicted.x), ratio(observed.y, predicted.y), ratio(observed.z, predicted.z));
 }
 
-// sparse::agreement
+// sparse_smr::agreement
 fn agreement(own: Observation, other: Observation, spatial: f32) -> f32 {
     let difference = root_difference(other.sampled, ratios(own.sampled, own.history) * other.history);
     let errors = min(difference, 1e6) / (AGREE_ERRORS * (own.error + other.error) + AGREE_ERROR);
-    return (spatial * other.sure) / (1.0 + errors * errors);
+    return (spatial * other.confidence) / (1.0 + errors * errors);
 }
 
-// sparse::neighbour_weight
+// sparse_smr::neighbour_weight
 fn neighbour_weight(offset: vec2<i32>) -> f32 {
     return f32((2 - abs(offset.x)) * (2 - abs(offset.y)));
 }
@@ -92,7 +92,7 @@ struct Light {
     known: f32,
 }
 
-// sparse::add_light
+// sparse_smr::add_light
 fn add_light(l: Light, o: Observation, weight: f32, spatial: f32) -> Light {
     return Light(
         l.sampled + o.sampled * weight,
@@ -101,21 +101,21 @@ fn add_light(l: Light, o: Observation, weight: f32, spatial: f32) -> Light {
         l.weight + weight,
         l.squared + weight * weight,
         l.spatial + spatial,
-        l.known + spatial * o.sure,
+        l.known + spatial * o.confidence,
     );
 }
 
-// sparse::mean_error
+// sparse_smr::mean_error
 fn mean_error(l: Light) -> f32 {
     return l.error * (1.0 / l.weight);
 }
 
-// sparse::agreed
+// sparse_smr::agreed
 fn agreed(l: Light) -> f32 {
     return clamp((l.weight - l.known * AGREED.x) * (AGREED.y / max(l.known, 1e-6)), 0.0, 1.0);
 }
 
-// sparse::relight
+// sparse_smr::relight
 fn relight(l: Light, error: f32) -> vec3<f32> {
     if l.weight < 1e-6 {
         return vec3<f32>(1.0);
@@ -130,27 +130,27 @@ fn relight(l: Light, error: f32) -> vec3<f32> {
     return ratios(sampled, history) * changed + (1.0 - changed);
 }
 
-// sparse::errors_left
+// sparse_smr::errors_left
 fn errors_left(o: Observation, gains: vec3<f32>) -> f32 {
     return root_difference(o.sampled, gains * o.history) / (o.error + GATE_ERROR);
 }
 
-// sparse::fit
-fn fit(errors: f32, sure: f32) -> f32 {
-    return 1.0 - sure * smooth_step(FIT_ERRORS.x, FIT_ERRORS.y, errors);
+// sparse_smr::fit
+fn fit(errors: f32, confidence: f32) -> f32 {
+    return 1.0 - confidence * smooth_step(FIT_ERRORS.x, FIT_ERRORS.y, errors);
 }
 
-// sparse::own_fit
+// sparse_smr::own_fit
 fn own_fit(own: Observation, gains: vec3<f32>) -> f32 {
-    return fit(errors_left(own, gains), own.sure);
+    return fit(errors_left(own, gains), own.confidence);
 }
 
-// sparse::capped_error
+// sparse_smr::capped_error
 fn capped_error(o: Observation, errors: f32, spatial: f32) -> f32 {
-    return min(errors, FIT_ERRORS.x + FIT_ERRORS.y) * (spatial * o.sure);
+    return min(errors, FIT_ERRORS.x + FIT_ERRORS.y) * (spatial * o.confidence);
 }
 
-// sparse::fit_around
+// sparse_smr::fit_around
 fn fit_around(l: Light, left: f32, capped: f32) -> f32 {
     let by_own = fit(left / l.weight, min(l.weight / l.spatial, 1.0));
     let by_all = fit(capped / max(l.known, 1e-6), min(l.known / l.spatial, 1.0));
@@ -158,11 +158,11 @@ fn fit_around(l: Light, left: f32, capped: f32) -> f32 {
     return by_own * share + by_all * (1.0 - share);
 }
 
-// sparse::mean_fit
-fn mean_fit(l: Light, sure: f32) -> f32 {
+// sparse_smr::mean_fit
+fn mean_fit(l: Light, confidence: f32) -> f32 {
     let inverse = 1.0 / l.weight;
     let start = ((l.error * inverse) * (sqrt(l.squared) * inverse)) * MEAN_ERRORS;
-    return 1.0 - sure * smooth_step(start, start, root_difference(l.sampled * inverse, l.history * inverse));
+    return 1.0 - confidence * smooth_step(start, start, root_difference(l.sampled * inverse, l.history * inverse));
 }
 
 struct Lit {
@@ -173,7 +173,7 @@ struct Lit {
     disparity: f32,
 }
 
-// sparse::pack_lit
+// sparse_smr::pack_lit
 fn pack_lit(l: Lit) -> vec2<u32> {
     let fit_bits = u32(l.fit * 256.0 + 0.5);
     let own_bits = u32(l.own_fit * 32.0 + 0.5) << 10u;
@@ -181,7 +181,7 @@ fn pack_lit(l: Lit) -> vec2<u32> {
     return vec2<u32>(pack_color(l.gains), fit_bits | select(0u, 512u, l.is_own) | own_bits | disparity_bits);
 }
 
-// sparse::unpack_lit
+// sparse_smr::unpack_lit
 fn unpack_lit(words: vec2<u32>) -> Lit {
     return Lit(
         unpack_color(words.x),
@@ -200,7 +200,7 @@ struct QuadLit {
     disparities: vec4<f32>,
 }
 
-// sparse::pack_quad_lit
+// sparse_smr::pack_quad_lit
 fn pack_quad_lit(l: QuadLit) -> vec4<u32> {
     let own = vec4<u32>(l.own_fits * 16.0 + 0.5) << vec4<u32>(10u, 15u, 20u, 25u);
     let fits = u32(0.5 + l.fit * 256.0) | select(0u, 512u, l.is_own) | own.x | own.y | own.z | own.w;
@@ -209,7 +209,7 @@ fn pack_quad_lit(l: QuadLit) -> vec4<u32> {
     return vec4<u32>(pack_color(l.gains), fits, first, second);
 }
 
-// sparse::quad_lit
+// sparse_smr::quad_lit
 fn quad_lit(words: vec4<u32>, i: u32) -> Lit {
     return Lit(
         unpack_color(words.x),
@@ -220,7 +220,7 @@ fn quad_lit(words: vec4<u32>, i: u32) -> Lit {
     );
 }
 
-// sparse::quad_code
+// sparse_smr::quad_code
 fn quad_code(words: vec4<u32>, i: u32) -> u32 {
     let pair = select(words.z, words.w, i >= 2u);
     return select(pair & 0xffff0000u, pair << 16u, (i & 1u) == 0u);
@@ -233,7 +233,7 @@ struct Reconstruction {
     highest: vec3<f32>,
     history: vec3<f32>,
     history_lod: f32,
-    nearest: Kept,
+    nearest: StoredSample,
     moved: bool,
     gains: vec3<f32>,
     fit: f32,
@@ -243,16 +243,16 @@ struct Reconstruction {
 
 struct Reconstructed {
     color: vec3<f32>,
-    kept: Kept,
+    stored: StoredSample,
     share: f32,
 }
 
-// sparse::relit
+// sparse_smr::relit
 fn relit(c: vec3<f32>, gains: vec3<f32>, lowest: vec3<f32>, highest: vec3<f32>) -> vec3<f32> {
     return min(c * gains, max(c, highest + (highest - lowest) * OVERSHOOT));
 }
 
-// sparse::reconstruct
+// sparse_smr::reconstruct
 fn reconstruct(r: Reconstruction) -> Reconstructed {
     let acceptance = r.fit * r.trust;
     var worn = 0.0;
@@ -275,10 +275,10 @@ fn reconstruct(r: Reconstruction) -> Reconstructed {
     if share >= KEEP_SHARE && near && kept_lod < r.lod {
         let kept_color = relit(r.nearest.color, r.gains, r.lowest, r.highest);
         let lod = kept_lod + (r.lod - kept_lod) * lost;
-        return Reconstructed(shown, Kept(kept_color, lod, r.nearest.disparity, r.nearest.place_px), share);
+        return Reconstructed(shown, StoredSample(kept_color, lod, r.nearest.disparity, r.nearest.place_px), share);
     }
     let lod = select(r.lod, history_lod + (r.lod - history_lod) * lost, finer > 0.0);
-    return Reconstructed(shown, Kept(shown, lod, r.nearest.disparity, vec2<f32>(0.0)), share);
+    return Reconstructed(shown, StoredSample(shown, lod, r.nearest.disparity, vec2<f32>(0.0)), share);
 }
 
 struct Accumulated {
@@ -286,7 +286,7 @@ struct Accumulated {
     noise: Noise,
 }
 
-// sparse::accumulate
+// sparse_smr::accumulate
 fn accumulate(r: Reconstruction, past: Noise, candidate: Noise) -> Accumulated {
     let acceptance = r.fit * r.trust;
     let bright = luma(r.history);
@@ -309,8 +309,8 @@ fn accumulate(r: Reconstruction, past: Noise, candidate: Noise) -> Accumulated {
     let near = max(abs(r.nearest.place_px.x), abs(r.nearest.place_px.y)) <= FARTHEST_PX;
     if near && share >= STAY_SHARE {
         let kept = r.candidate + (r.nearest.color - r.candidate) * share;
-        let next = Kept(kept, lod, r.nearest.disparity, r.nearest.place_px);
+        let next = StoredSample(kept, lod, r.nearest.disparity, r.nearest.place_px);
         return Accumulated(Reconstructed(shown, next, share), noise);
     }
-    return Accumulated(Reconstructed(shown, Kept(shown, lod, r.nearest.disparity, vec2<f32>(0.0)), share), noise);
+    return Accumulated(Reconstructed(shown, StoredSample(shown, lod, r.nearest.disparity, vec2<f32>(0.0)), share), noise);
 }

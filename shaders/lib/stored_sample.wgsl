@@ -1,5 +1,5 @@
 //#use surface
-// Twin of src/kernel/kept.rs, which documents the layout.
+// Twin of src/kernel/stored_sample.rs, which documents the layout.
 
 const MAX_COLOR: f32 = 65408.0;
 const SMALLEST_EXPONENT: u32 = 111u;
@@ -15,25 +15,25 @@ const STIFF_PX2: f32 = 0.01;
 const LOD_PX2: f32 = 0.3;
 
 // A negative `lod` marks an empty texel.
-struct Kept {
+struct StoredSample {
     color: vec3<f32>,
     lod: f32,
     disparity: f32,
     place_px: vec2<f32>,
 }
 
-// kept::multiple
+// stored_sample::multiple
 fn multiple(v: f32, exponent: u32, up: f32) -> u32 {
     // A power of two: the product is exact.
     return u32(v * bitcast<f32>((262u - exponent) << 23u) + up);
 }
 
-// kept::pack_color
+// stored_sample::pack_color
 fn pack_color(c: vec3<f32>) -> u32 {
     return pack_color_by(c, 0.5);
 }
 
-// kept::pack_color_by
+// stored_sample::pack_color_by
 fn pack_color_by(c: vec3<f32>, up: f32) -> u32 {
     let v = select(vec3<f32>(0.0), min(c, vec3<f32>(MAX_COLOR)), c > vec3<f32>(0.0));
     let largest = max(max(v.x, v.y), v.z);
@@ -46,7 +46,7 @@ fn pack_color_by(c: vec3<f32>, up: f32) -> u32 {
         | ((exponent - SMALLEST_EXPONENT) << 27u);
 }
 
-// kept::unpack_color
+// stored_sample::unpack_color
 fn unpack_color(word: u32) -> vec3<f32> {
     let step = bitcast<f32>(((word >> 27u) + (SMALLEST_EXPONENT - 8u)) << 23u);
     return vec3<f32>(f32(word & 511u), f32((word >> 9u) & 511u), f32((word >> 18u) & 511u)) * step;
@@ -60,8 +60,8 @@ fn unpack_place(bits: u32) -> f32 {
     return (f32(bits & 63u) - 32.0) * (1.0f / PLACE_STEPS);
 }
 
-// kept::pack_kept
-fn pack_kept(s: Kept) -> vec2<u32> {
+// stored_sample::pack_stored
+fn pack_stored(s: StoredSample) -> vec2<u32> {
     var lod = EMPTY_LOD;
     if s.lod >= 0.0 {
         lod = u32(min(s.lod, MAX_LOD) * LOD_STEPS + 1.5);
@@ -75,28 +75,28 @@ fn pack_kept(s: Kept) -> vec2<u32> {
     );
 }
 
-// kept::unpack_kept
-fn unpack_kept(words: vec2<u32>) -> Kept {
+// stored_sample::unpack_stored
+fn unpack_stored(words: vec2<u32>) -> StoredSample {
     if is_empty(words) {
-        return Kept(vec3<f32>(0.0), -1.0, -1.0, vec2<f32>(0.0));
+        return StoredSample(vec3<f32>(0.0), -1.0, -1.0, vec2<f32>(0.0));
     }
     return unpack_full(words);
 }
 
-// kept::is_empty
+// stored_sample::is_empty
 fn is_empty(words: vec2<u32>) -> bool {
     return (words.y & 63u) == EMPTY_LOD;
 }
 
-// kept::code_word
+// stored_sample::code_word
 fn code_word(words: vec2<u32>) -> u32 {
     return (words.y << 12u) & 0xfffc0000u;
 }
 
-// kept::unpack_full
-fn unpack_full(words: vec2<u32>) -> Kept {
+// stored_sample::unpack_full
+fn unpack_full(words: vec2<u32>) -> StoredSample {
     let code = (words.y >> 6u) & 0x3fffu;
-    return Kept(
+    return StoredSample(
         unpack_color(words.x),
         // The limit keeps compilers from merging this factor with later ones.
         min(lod_value(words.y & 63u), MAX_LOD),
@@ -105,18 +105,18 @@ fn unpack_full(words: vec2<u32>) -> Kept {
     );
 }
 
-// kept::moved_kept
-fn moved_kept(s: Kept, texel_px: vec2<f32>, scale: vec2<f32>, lod_shift: f32) -> Kept {
+// stored_sample::moved_stored
+fn moved_stored(s: StoredSample, texel_px: vec2<f32>, scale: vec2<f32>, lod_shift: f32) -> StoredSample {
     if s.lod < 0.0 {
         return s;
     }
     let place = (texel_px + s.place_px) * scale;
     let near = max(abs(place.x), abs(place.y)) <= FARTHEST_PX;
     let lod = max(s.lod + lod_shift, 0.0);
-    return Kept(s.color, select(max(lod, 1.0), lod, near), s.disparity, place);
+    return StoredSample(s.color, select(max(lod, 1.0), lod, near), s.disparity, place);
 }
 
-struct AroundKept {
+struct AroundStored {
     weight: f32,
     color: vec3<f32>,
     lod: f32,
@@ -126,38 +126,38 @@ struct AroundKept {
     color_y: vec3<f32>,
     lowest: vec3<f32>,
     highest: vec3<f32>,
-    nearest: Kept,
+    nearest: StoredSample,
     cost: f32,
 }
 
-fn nothing_around() -> AroundKept {
+fn nothing_around() -> AroundStored {
     let zero = vec3<f32>(0.0);
-    let empty = Kept(zero, -1.0, -1.0, vec2<f32>(0.0));
-    return AroundKept(0.0, zero, 0.0, vec2<f32>(0.0), zero, zero, zero, vec3<f32>(MAX_COLOR), zero, empty, 1e30);
+    let empty = StoredSample(zero, -1.0, -1.0, vec2<f32>(0.0));
+    return AroundStored(0.0, zero, 0.0, vec2<f32>(0.0), zero, zero, zero, vec3<f32>(MAX_COLOR), zero, empty, 1e30);
 }
 
-// kept::kept_weight
-fn kept_weight(px2: f32, inverse_reach: f32) -> f32 {
+// stored_sample::stored_weight
+fn stored_weight(px2: f32, inverse_reach: f32) -> f32 {
     let inside = max(1.0 - px2 * inverse_reach, 0.0);
     return (inside * inside) / (px2 + SOFTEN_PX2);
 }
 
-// kept::add_kept
-fn add_kept(a: AroundKept, sampled: Kept, texel_px: vec2<f32>, same: bool, inverse_reach: f32) -> AroundKept {
+// stored_sample::add_stored
+fn add_stored(a: AroundStored, sampled: StoredSample, texel_px: vec2<f32>, same: bool, inverse_reach: f32) -> AroundStored {
     if !same {
         return a;
     }
     let place = texel_px + sampled.place_px;
     let px2 = place.x * place.x + place.y * place.y;
-    let w = kept_weight(px2, inverse_reach);
+    let w = stored_weight(px2, inverse_reach);
     let wx = w * place.x;
     let wy = w * place.y;
     let cost = px2 + sampled.lod * LOD_PX2;
     var nearest = a.nearest;
     if cost < a.cost {
-        nearest = Kept(sampled.color, sampled.lod, sampled.disparity, place);
+        nearest = StoredSample(sampled.color, sampled.lod, sampled.disparity, place);
     }
-    return AroundKept(
+    return AroundStored(
         a.weight + w,
         a.color + sampled.color * w,
         a.lod + sampled.lod * w,
@@ -174,8 +174,8 @@ fn add_kept(a: AroundKept, sampled: Kept, texel_px: vec2<f32>, same: bool, inver
 
 const STAND_IN: f32 = 1.6;
 
-// kept::stands_in
-fn stands_in(a: AroundKept) -> bool {
+// stored_sample::can_replace
+fn can_replace(a: AroundStored) -> bool {
     return a.weight >= STAND_IN;
 }
 
@@ -184,11 +184,11 @@ struct Interpolated {
     lod: f32,
     lowest: vec3<f32>,
     highest: vec3<f32>,
-    nearest: Kept,
+    nearest: StoredSample,
 }
 
-// kept::interpolate
-fn interpolate(a: AroundKept) -> Interpolated {
+// stored_sample::interpolate
+fn interpolate(a: AroundStored) -> Interpolated {
     var nearest = a.nearest;
     let distance = max(abs(nearest.place_px.x), abs(nearest.place_px.y));
     if nearest.lod < 0.0 || distance <= EXACT_PX {

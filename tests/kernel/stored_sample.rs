@@ -1,15 +1,15 @@
 //! Samples that keep their places: storage, and interpolation between them.
 
-use afterimage::kernel::kept::{
-    Around, EXACT_PX, FARTHEST_PX, INVERSE_REACH, Kept, MAX_COLOR, STIFF_PX2, add_kept, interpolate, pack_color,
-    pack_kept, unpack_color, unpack_kept,
+use afterimage::kernel::stored_sample::{
+    Around, EXACT_PX, FARTHEST_PX, INVERSE_REACH, MAX_COLOR, STIFF_PX2, StoredSample, add_stored, interpolate,
+    pack_color, pack_stored, unpack_color, unpack_stored,
 };
 use glam::{Mat2, Vec2, Vec3};
 use proptest::prelude::*;
 
 fn around(samples: &[(Vec3, Vec2)]) -> Around {
     samples.iter().fold(Around::NOTHING, |a, &(color, at)| {
-        add_kept(a, Kept { color, lod: 0.0, disparity: 1.0, place_px: Vec2::ZERO }, at, true, INVERSE_REACH)
+        add_stored(a, StoredSample { color, lod: 0.0, disparity: 1.0, place_px: Vec2::ZERO }, at, true, INVERSE_REACH)
     })
 }
 
@@ -44,9 +44,9 @@ proptest! {
 
     #[test]
     fn any_words_unpack_to_finite_samples_that_stay_as_they_are(a: u32, b: u32) {
-        let sample = unpack_kept([a, b]);
+        let sample = unpack_stored([a, b]);
         prop_assert!(sample.color.is_finite() && sample.disparity.is_finite() && sample.place_px.is_finite());
-        let again = unpack_kept(pack_kept(sample));
+        let again = unpack_stored(pack_stored(sample));
         prop_assert_eq!(again, sample);
     }
 
@@ -54,8 +54,8 @@ proptest! {
     fn places_and_disparities_are_stored_closely(
         x in -FARTHEST_PX..FARTHEST_PX, y in -FARTHEST_PX..FARTHEST_PX, log_z in -20.0_f32..20.0, lod in 0.0_f32..8.0,
     ) {
-        let sample = Kept { color: Vec3::ONE, lod, disparity: log_z.exp2(), place_px: Vec2::new(x, y) };
-        let stored = unpack_kept(pack_kept(sample));
+        let sample = StoredSample { color: Vec3::ONE, lod, disparity: log_z.exp2(), place_px: Vec2::new(x, y) };
+        let stored = unpack_stored(pack_stored(sample));
         prop_assert!((stored.place_px - sample.place_px).abs().max_element() <= 0.5 / 24.0 + 1e-6);
         prop_assert!((stored.disparity / sample.disparity - 1.0).abs() <= 1.0 / 256.0);
         prop_assert!((stored.lod - lod).abs() <= 0.5 / 7.0 + 1e-6);
@@ -107,7 +107,7 @@ fn a_sample_at_the_position_is_shown_bit_for_bit() {
 #[test]
 fn nothing_is_empty() {
     assert_eq!(interpolate(Around::NOTHING).nearest.lod, -1.0);
-    assert_eq!(unpack_kept(pack_kept(Kept::EMPTY)), Kept::EMPTY);
+    assert_eq!(unpack_stored(pack_stored(StoredSample::EMPTY)), StoredSample::EMPTY);
     assert_eq!(unpack_color(pack_color(Vec3::ONE)), Vec3::ONE);
     assert_eq!(unpack_color(pack_color(Vec3::new(-1.0, f32::INFINITY, 0.0))), Vec3::new(0.0, MAX_COLOR, 0.0));
 }

@@ -45,7 +45,7 @@ const LOD_PX2: f32 = 0.3;
 
 /// Stored sample of a surface point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Kept {
+pub struct StoredSample {
     /// Linear color, at least 0.
     pub color: Vec3,
     /// Level of detail of the sample: log2 of the block edge in pixels. Negative: the texel is empty.
@@ -56,7 +56,7 @@ pub struct Kept {
     pub place_px: Vec2,
 }
 
-impl Kept {
+impl StoredSample {
     /// Empty texel.
     pub const EMPTY: Self = Self { color: Vec3::ZERO, lod: -1.0, disparity: -1.0, place_px: Vec2::ZERO };
 }
@@ -114,7 +114,7 @@ pub fn unpack_place(bits: u32) -> f32 {
 
 /// Packs a sample. The color must not be NaN.
 #[inline]
-pub fn pack_kept(s: Kept) -> [u32; 2] {
+pub fn pack_stored(s: StoredSample) -> [u32; 2] {
     let lod = if s.lod < 0.0 { EMPTY_LOD } else { (s.lod.min(MAX_LOD) * LOD_STEPS + 1.5) as u32 };
     let disparity = disparity_code(s.disparity);
     // The last code stands for an unknown disparity.
@@ -124,8 +124,8 @@ pub fn pack_kept(s: Kept) -> [u32; 2] {
 
 /// Unpacks a sample. The result is finite for any words.
 #[inline]
-pub fn unpack_kept(words: [u32; 2]) -> Kept {
-    if is_empty(words) { Kept::EMPTY } else { unpack_full(words) }
+pub fn unpack_stored(words: [u32; 2]) -> StoredSample {
+    if is_empty(words) { StoredSample::EMPTY } else { unpack_full(words) }
 }
 
 /// Whether a texel is empty.
@@ -142,9 +142,9 @@ pub fn code_word(words: [u32; 2]) -> u32 {
 
 /// Unpacks the sample of a texel that is not empty. The result is finite for any words.
 #[inline]
-pub fn unpack_full(words: [u32; 2]) -> Kept {
+pub fn unpack_full(words: [u32; 2]) -> StoredSample {
     let disparity = (words[1] >> 6) & 0x3fff;
-    Kept {
+    StoredSample {
         color: unpack_color(words[0]),
         // The limit keeps compilers from merging this factor with later ones.
         lod: lod_value(words[1] & 63).min(MAX_LOD),
@@ -157,14 +157,14 @@ pub fn unpack_full(words: [u32; 2]) -> Kept {
 /// `scale`: new size over old size; `lod_shift`: log2 of it. The sample becomes coarse if its place is too far to be
 /// stored.
 #[inline]
-pub fn moved_kept(s: Kept, texel_px: Vec2, scale: Vec2, lod_shift: f32) -> Kept {
+pub fn moved_stored(s: StoredSample, texel_px: Vec2, scale: Vec2, lod_shift: f32) -> StoredSample {
     if s.lod < 0.0 {
         return s;
     }
     let place_px = (texel_px + s.place_px) * scale;
     let near = place_px.x.abs().max(place_px.y.abs()) <= FARTHEST_PX;
     let lod = (s.lod + lod_shift).max(0.0);
-    Kept { lod: if near { lod } else { lod.max(1.0) }, place_px, ..s }
+    StoredSample { lod: if near { lod } else { lod.max(1.0) }, place_px, ..s }
 }
 
 /// Least sum of weights at which samples beside a position replace the nearest one: the weight of one sample at 0.65
@@ -191,7 +191,7 @@ pub struct Around {
     /// Smallest and largest color.
     pub range: [Vec3; 2],
     /// The sample to keep. Its place is relative to the position.
-    pub nearest: Kept,
+    pub nearest: StoredSample,
     /// Cost of that choice.
     pub cost: f32,
 }
@@ -207,7 +207,7 @@ impl Around {
         color_x: Vec3::ZERO,
         color_y: Vec3::ZERO,
         range: [Vec3::splat(MAX_COLOR), Vec3::ZERO],
-        nearest: Kept::EMPTY,
+        nearest: StoredSample::EMPTY,
         cost: 1e30,
     };
 }
@@ -220,20 +220,20 @@ pub const INVERSE_MEAN_REACH: f32 = 1.0 / MEAN_REACH_PX2;
 /// Weight of a sample at squared distance `px2` from the position that is interpolated. `inverse_reach`: inverse of the
 /// squared distance at which the weight falls to 0.
 #[inline]
-pub fn kept_weight(px2: f32, inverse_reach: f32) -> f32 {
+pub fn stored_weight(px2: f32, inverse_reach: f32) -> f32 {
     let inside = (1.0 - px2 * inverse_reach).max(0.0);
     (inside * inside) / (px2 + SOFTEN_PX2)
 }
 
 /// Adds a stored sample whose texel lies `texel_px` from the position, if it is on the `same` surface.
 #[inline]
-pub fn add_kept(a: Around, sample: Kept, texel_px: Vec2, same: bool, inverse_reach: f32) -> Around {
+pub fn add_stored(a: Around, sample: StoredSample, texel_px: Vec2, same: bool, inverse_reach: f32) -> Around {
     if !same {
         return a;
     }
     let place = texel_px + sample.place_px;
     let px2 = place.x * place.x + place.y * place.y;
-    let w = kept_weight(px2, inverse_reach);
+    let w = stored_weight(px2, inverse_reach);
     let (wx, wy) = (w * place.x, w * place.y);
     let cost = px2 + sample.lod * LOD_PX2;
     let nearer = cost < a.cost;
@@ -246,14 +246,14 @@ pub fn add_kept(a: Around, sample: Kept, texel_px: Vec2, same: bool, inverse_rea
         color_x: a.color_x + sample.color * wx,
         color_y: a.color_y + sample.color * wy,
         range: [a.range[0].min(sample.color), a.range[1].max(sample.color)],
-        nearest: if nearer { Kept { place_px: place, ..sample } } else { a.nearest },
+        nearest: if nearer { StoredSample { place_px: place, ..sample } } else { a.nearest },
         cost: if nearer { cost } else { a.cost },
     }
 }
 
 /// Whether samples beside a position may replace the nearest one, which belongs to another surface.
 #[inline]
-pub fn stands_in(a: Around) -> bool {
+pub fn can_replace(a: Around) -> bool {
     a.weight >= STAND_IN
 }
 
@@ -267,7 +267,7 @@ pub struct Interpolated {
     /// Smallest and largest color of the samples around the position.
     pub range: [Vec3; 2],
     /// Sample to keep, or an empty one. Its place is relative to the position.
-    pub nearest: Kept,
+    pub nearest: StoredSample,
 }
 
 /// Color at the position: the sample that lies there, bit for bit; otherwise the value of a plane through the samples
@@ -278,7 +278,12 @@ pub fn interpolate(a: Around) -> Interpolated {
     let distance = nearest.place_px.x.abs().max(nearest.place_px.y.abs());
     if nearest.lod < 0.0 || distance <= EXACT_PX {
         let place_px = Vec2::ZERO;
-        return Interpolated { color: nearest.color, lod: nearest.lod, range, nearest: Kept { place_px, ..nearest } };
+        return Interpolated {
+            color: nearest.color,
+            lod: nearest.lod,
+            range,
+            nearest: StoredSample { place_px, ..nearest },
+        };
     }
     if a.weight < 1e-4 {
         // All samples are far away.

@@ -1,23 +1,23 @@
 //#use antialias
 //#use previous
 //#use resample
-//#use sparse
+//#use sparse_smr
 //#use wrs
-// Stored samples around the previous position of a pixel's surface. CPU twin: src/cpu/sparse_pass/kept_history.rs.
+// Stored samples around the previous position of a pixel's surface. CPU twin: src/cpu/sparse_pass/sparse_history.rs.
 
 // Whether frames are jittered and history stores means of samples.
 override ANTIALIAS: u32 = 0u;
 // Whether depth is that of the samples, not of the pixels' centres.
 override SAMPLE_DEPTH: u32 = 0u;
 
-@group(0) @binding(15) var past_kept: texture_2d_array<u32>;
+@group(0) @binding(15) var past_stored: texture_2d_array<u32>;
 
-fn kept_words(texel: vec2<i32>, view: u32) -> vec2<u32> {
-    return textureLoad(past_kept, clamp(texel, vec2<i32>(0), vec2<i32>(frame.size) - 1), view, 0).xy;
+fn stored_words(texel: vec2<i32>, view: u32) -> vec2<u32> {
+    return textureLoad(past_stored, clamp(texel, vec2<i32>(0), vec2<i32>(frame.size) - 1), view, 0).xy;
 }
 
-fn kept_at(texel: vec2<i32>, view: u32) -> Kept {
-    return unpack_kept(kept_words(texel, view));
+fn stored_at(texel: vec2<i32>, view: u32) -> StoredSample {
+    return unpack_stored(stored_words(texel, view));
 }
 
 // Disparity and motion of the surface whose history a pixel continues.
@@ -76,18 +76,18 @@ fn surface_of(px: vec2<u32>, view: u32, level: u32) -> PixelSurface {
 }
 
 // Previous position of a pixel's surface, and the disparities that its history may have.
-struct KeptSource {
+struct SparseSource {
     previous: Previous,
     // Codes of these disparities, as `tap_codes` gives them.
     codes: vec2<u32>,
 }
 
-fn kept_source(px: vec2<u32>, view: u32, surface: PixelSurface) -> KeptSource {
+fn sparse_source(px: vec2<u32>, view: u32, surface: PixelSurface) -> SparseSource {
     let at = reprojected(px, surface.motion);
-    let stored = kept_at(vec2<i32>(at.at), view);
+    let stored = stored_at(vec2<i32>(at.at), view);
     var previous = previous_of(px, view, surface.motion, surface.disparity, at, stored.lod, stored.disparity);
     if ANTIALIAS == 0u || !surface.mixes {
-        return KeptSource(previous, tap_codes(previous.expected));
+        return SparseSource(previous, tap_codes(previous.expected));
     }
     let ray = ray_at(px, view);
     let farthest = expected_disparity(view, ray, surface.farthest);
@@ -95,7 +95,7 @@ fn kept_source(px: vec2<u32>, view: u32, surface: PixelSurface) -> KeptSource {
     if previous.verdict == VERDICT_DISOCCLUDED && is_of_surfaces(stored.disparity, farthest, nearest_expected) {
         previous.verdict = VERDICT_VALID;
     }
-    return KeptSource(previous, tap_codes_between(farthest, nearest_expected));
+    return SparseSource(previous, tap_codes_between(farthest, nearest_expected));
 }
 
 // Whether a previous position may have history.
@@ -104,7 +104,7 @@ fn may_have_history(previous: Previous) -> bool {
 }
 
 // History, the texel of the sample to keep, and the number of samples in it.
-struct KeptHistory {
+struct SparseHistory {
     found: Interpolated,
     texel: vec2<i32>,
     samples: f32,
@@ -113,7 +113,7 @@ struct KeptHistory {
 // History at a previous position, in this frame's exposure. At a silhouette the nearest stored sample may belong to
 // another surface. Samples beside it then replace it if they are near enough. Where `needed` is false the loop has zero
 // iterations: software Vulkan runs the body of an `if` for all pixels.
-fn kept_history(source: KeptSource, view: u32, needed: bool) -> KeptHistory {
+fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistory {
     let previous = source.previous;
     var around = nothing_around();
     // The place of a mean may lie anywhere around its texel's centre, so that the eight texels around the nearest one
@@ -131,7 +131,7 @@ fn kept_history(source: KeptSource, view: u32, needed: bool) -> KeptHistory {
     let taps = select(0u, columns * columns, needed);
     for (var tap = 0u; tap < taps; tap++) {
         let texel = first + vec2<i32>(vec2<u32>(tap % columns, tap / columns));
-        let words = kept_words(texel, view);
+        let words = stored_words(texel, view);
         let same = !is_empty(words) && (DEPTH_TEST == 0u || has_code(code_word(words), source.codes));
         let cost = around.cost;
         var stored = unpack_full(words);
@@ -140,11 +140,11 @@ fn kept_history(source: KeptSource, view: u32, needed: bool) -> KeptHistory {
             mean = mean_of(stored.lod);
             stored.lod = mean.lod;
         }
-        around = add_kept(around, stored, vec2<f32>(texel) - previous.at, same, inverse_reach);
+        around = add_stored(around, stored, vec2<f32>(texel) - previous.at, same, inverse_reach);
         nearest_texel = select(nearest_texel, texel, around.cost < cost);
         samples = select(samples, mean.samples, around.cost < cost);
     }
-    if previous.verdict == VERDICT_DISOCCLUDED && !stands_in(around) {
+    if previous.verdict == VERDICT_DISOCCLUDED && !can_replace(around) {
         around = nothing_around();
     }
     var found = interpolate(around);
@@ -152,7 +152,7 @@ fn kept_history(source: KeptSource, view: u32, needed: bool) -> KeptHistory {
     found.lowest = expose(found.lowest, frame.exposure);
     found.highest = expose(found.highest, frame.exposure);
     found.nearest.color = expose(found.nearest.color, frame.exposure);
-    return KeptHistory(found, nearest_texel, samples);
+    return SparseHistory(found, nearest_texel, samples);
 }
 
 // Whether history has moved since its samples were shaded, by more than the resolution of their stored places.

@@ -3,13 +3,13 @@
 use super::view::{NO_NOISE, View};
 use crate::cpu::inputs::Previous;
 use crate::kernel::antialias::{Mean, is_of_surfaces, mean_of};
-use crate::kernel::kept::{
-    Around, EXACT_PX, INVERSE_MEAN_REACH, INVERSE_REACH, Interpolated, Kept, add_kept, code_word, interpolate,
-    is_empty, kept_weight, stands_in, unpack_full, unpack_kept,
-};
 use crate::kernel::noise::{Noise, expose_noise, unpack_noise};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::{has_code, tap_codes, tap_codes_between};
+use crate::kernel::stored_sample::{
+    Around, EXACT_PX, INVERSE_MEAN_REACH, INVERSE_REACH, Interpolated, StoredSample, add_stored, can_replace,
+    code_word, interpolate, is_empty, stored_weight, unpack_full, unpack_stored,
+};
 use crate::kernel::wrs::expose;
 use crate::notes::{NoteStage, Notes};
 use glam::{Vec2, Vec3};
@@ -82,7 +82,7 @@ impl View<'_> {
     ) -> Result<Source, Verdict> {
         let mut found = 0.0;
         let stored = |[qx, qy]: [u32; 2]| {
-            let stored = unpack_kept(self.stored_words(qx as i32, qy as i32));
+            let stored = unpack_stored(self.stored_words(qx as i32, qy as i32));
             found = stored.disparity;
             [stored.lod, stored.disparity]
         };
@@ -124,7 +124,7 @@ impl View<'_> {
             }
             if N::ON {
                 let place = texel_px + stored.place_px;
-                let weight = kept_weight(place.x * place.x + place.y * place.y, inverse_reach);
+                let weight = stored_weight(place.x * place.x + place.y * place.y, inverse_reach);
                 let values = [tx as f32, ty as f32, place.x, place.y, weight, stored.lod, f32::from(same)];
                 notes.note(
                     NoteStage::History,
@@ -133,15 +133,15 @@ impl View<'_> {
                     "x y px, sample from position px, weight, log2 px, same surface",
                 );
             }
-            around = add_kept(around, stored, texel_px, same, inverse_reach);
+            around = add_stored(around, stored, texel_px, same, inverse_reach);
             if around.cost < cost {
                 (nearest_texel, samples) = ([tx, ty], mean.samples);
             }
         }
         notes.note(NoteStage::History, "sum of weights", around.weight, "");
-        let found = interpolate(if *is_same || stands_in(around) { around } else { Around::NOTHING });
+        let found = interpolate(if *is_same || can_replace(around) { around } else { Around::NOTHING });
         let exposed = |c: Vec3| expose(c, self.inputs.exposure);
-        let nearest = Kept { color: exposed(found.nearest.color), ..found.nearest };
+        let nearest = StoredSample { color: exposed(found.nearest.color), ..found.nearest };
         let history = Interpolated { color: exposed(found.color), range: found.range.map(exposed), nearest, ..found };
         notes.note(NoteStage::History, "color", history.color, "linear light");
         notes.note(NoteStage::History, "level of detail", history.lod, "log2 px, below 0: none");
