@@ -12,9 +12,9 @@
 //! quads:FOVEA_DEG:RATE_MID:RATE_FAR:BUDGET; uniform:SHARE (without a gaze); one of these with +aa (antialiased);
 //! reference (full rate with four samples a pixel).
 //!
-//! Prints the time of a frame, from its start until the device has finished it; CPU time of the process; and on Linux
-//! CPU time of all but the software renderer's threads and the submission to it: what the application itself costs.
-//! Systems run one after the other. With FOLDER writes the frames there as PNG, and the gaze as `gaze.csv`.
+//! Prints medians of the frames: time from a frame's start until the device has finished it; CPU time of the process;
+//! and on Linux CPU time of all but the software renderer's threads and the submission to it: what the application
+//! itself costs. Systems run one after the other. With FOLDER writes the frames there as PNG, and the gaze as `gaze.csv`.
 //!
 //! `cargo run --release --example measure -- psnr FOLDER REFERENCE`
 //!
@@ -182,7 +182,7 @@ fn measure(
     run_in_order(&mut headless.app);
     spawn_camera(&mut headless, scene.camera, mode)?;
 
-    let [mut spent_ms, mut waited_ms, mut own] = [0.0; 3];
+    let mut times = vec![];
     let mut gazes = "frame,x_px,y_px\n".to_owned();
     let mut cameras = headless.app.world_mut().query::<&mut Camera>();
     for frame in 0..frames + scene.warm_up {
@@ -196,9 +196,8 @@ fn measure(
         headless.frames(1);
         headless.wait();
         let Some(index) = frame.checked_sub(scene.warm_up) else { continue };
-        spent_ms += ms(ClockId::ProcessCPUTime) - began_ms;
-        own += own_ms() - began_own_ms;
-        waited_ms += 1e3 * began.elapsed().as_secs_f64();
+        let waited_ms = 1e3 * began.elapsed().as_secs_f64();
+        times.push([waited_ms, ms(ClockId::ProcessCPUTime) - began_ms, own_ms() - began_own_ms]);
         if let Some(folder) = folder {
             let shot = resized(&headless.read(), size, shown);
             write_png(&folder.join(format!("{index:06}.png")), shown, &shot)?;
@@ -206,7 +205,10 @@ fn measure(
             gazes += &format!("{index},{},{}\n", px.x, px.y);
         }
     }
-    let [spent_ms, waited_ms, own_ms] = [spent_ms, waited_ms, own].map(|ms| ms / frames as f64);
+    let [waited_ms, spent_ms, own_ms] = [0, 1, 2].map(|kind| {
+        times.sort_by(|a, b| a[kind].total_cmp(&b[kind]));
+        times.get(frames / 2).map_or(f64::NAN, |time| time[kind])
+    });
     let (name, adapter) = (scene.name, headless.adapter());
     // Counting is not measured.
     let world = headless.app.world_mut();

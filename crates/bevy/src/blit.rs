@@ -2,7 +2,6 @@
 //! have an sRGB-encoded one.
 
 use afterimage::wgpu;
-use wgpu::util::DeviceExt;
 use wgpu::{Device, TextureFormat};
 
 #[derive(Debug)]
@@ -53,20 +52,11 @@ impl BlitPass {
         output: &wgpu::TextureView,
         origin_px: [u32; 2],
     ) {
-        let contents: Vec<u8> = [origin_px, [0, 0]].as_flattened().iter().flat_map(|word| word.to_ne_bytes()).collect();
-        let origin = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: None,
-            contents: &contents,
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
         let view = frame.create_view(&Default::default());
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &self.pipeline.get_bind_group_layout(0),
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) },
-                wgpu::BindGroupEntry { binding: 1, resource: origin.as_entire_binding() },
-            ],
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) }],
         });
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("blit"),

@@ -10,7 +10,7 @@ use bevy::camera::{ClearColorConfig, CompositingSpace, MainPassResolutionOverrid
 use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass, MotionVectorPrepass, PreviousViewData};
 use bevy::diagnostic::FrameCount;
 use bevy::ecs::entity::EntityHashMap;
-use bevy::ecs::query::QueryData;
+use bevy::ecs::query::{QueryData, QueryState};
 use bevy::light::Skybox;
 use bevy::prelude::*;
 use bevy::render::camera::{TemporalJitter, extract_cameras};
@@ -86,11 +86,17 @@ struct Beside {
     motion: Has<MotionVectorPrepass>,
 }
 
-fn extract(mut commands: Commands, mut world: ResMut<MainWorld>, mut said: Local<EntityHashMap<String>>) {
+fn extract(
+    mut commands: Commands,
+    mut world: ResMut<MainWorld>,
+    mut query: Local<Option<QueryState<MainCamera>>>,
+    mut said: Local<EntityHashMap<String>>,
+) {
     let gaze = *world.resource::<Gaze>();
     let index = u64::from(world.resource::<FrameCount>().0);
     let is_supported = world.contains_resource::<AfterimageSupported>();
-    let mut cameras = world.query::<MainCamera>();
+    // Kept, because a new query looks at every archetype.
+    let cameras = query.get_or_insert_with(|| world.query());
     for mut camera in cameras.iter_mut(&mut world) {
         let mut entity = commands.entity(camera.entity);
         let is_foveated = is_supported && camera.foveated.kind != FoveationKind::Off;
