@@ -145,8 +145,8 @@ fn it_recommends_what_fits(folder: &Folder, whole: &str) {
     assert_eq!(report["methods"]["smr"]["psnr_db"], row["values"]["psnr_db"]);
 }
 
-/// Scores of quads are those of settled frames, as of `run --score-from`. The settings that the library names are points
-/// of the preset, and called so.
+/// Scores of quads are those of settled frames, as of `run --score-from`. The settings that the library names are
+/// points of the preset, and called so.
 #[test]
 fn the_preset_of_quads_recommends_settings_by_their_names() {
     let folder = Folder::new();
