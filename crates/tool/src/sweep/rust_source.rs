@@ -2,8 +2,23 @@
 
 use afterimage::{Bias, Foveation, Method, Settings, Smr, Wrs};
 
-/// `Settings { .. }` with the fields that differ from the defaults, ready to paste into a program.
+/// Settings that have a name.
+fn named() -> [(&'static str, Settings); 2] {
+    [("Settings::screen", Settings::screen()), ("Settings::headset", Settings::headset())]
+}
+
+/// The name of settings whose source is the name alone.
+pub fn name_of(source: &str) -> Option<&'static str> {
+    let call = source.strip_suffix("()")?;
+    named().into_iter().map(|(name, _)| name).find(|&name| name == call)
+}
+
+/// The call that makes the settings if they have a name, else `Settings { .. }` with the fields that differ from the
+/// defaults; ready to paste into a program.
 pub fn as_rust(settings: &Settings) -> String {
+    if let Some((name, _)) = named().iter().find(|(_, own)| own == settings) {
+        return format!("{name}()");
+    }
     Literal::new("Settings", settings, &Settings::default())
         .field("method", |s| match &s.method {
             Method::Smr(own) => format!("Method::Smr({})", smr(own)),
@@ -108,6 +123,8 @@ mod tests {
     #[expect(clippy::needless_update, reason = "the text ends with the default whether or not fields are left")]
     fn what_is_pasted_makes_the_same_settings() {
         round_trip!(Settings::default());
+        round_trip!(Settings::screen());
+        round_trip!(Settings::headset());
         round_trip!(Settings { method: Method::Taau, depth_test: None, seed: 3, ..Settings::default() });
         round_trip!(Settings {
             method: Method::Wrs(Wrs {

@@ -7,6 +7,7 @@ use super::measurement::{ClipFacts, Machine, Measurement};
 use super::metrics::METRICS;
 use super::prices::{Price, prices};
 use super::row::Row;
+use super::rust_source::name_of;
 use super::store::id;
 use afterimage_lab::clock::Quartiles;
 use serde::Serialize;
@@ -151,9 +152,10 @@ fn row(group: &[&Measurement], control_ms: f64, renderer_ms: Option<f64>, shared
     }
     let options = first.point.options.iter().filter(|(name, value)| shared.get(*name) != Some(*value));
     let words = options.map(|(name, value)| if value.is_empty() { name.clone() } else { format!("{name} {value}") });
+    let name = name_of(&first.rust).map(str::to_owned);
     Row {
         id: id(&first.point),
-        label: [first.point.method.clone()].into_iter().chain(words).collect::<Vec<_>>().join(", "),
+        label: [first.point.method.clone()].into_iter().chain(words).chain(name).collect::<Vec<_>>().join(", "),
         seeds: group.len(),
         pass_ms,
         frames: (first.round.clone(), first.frame_ms.clone()),

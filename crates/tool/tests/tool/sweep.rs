@@ -145,6 +145,43 @@ fn it_recommends_what_fits(folder: &Folder, whole: &str) {
     assert_eq!(report["methods"]["smr"]["psnr_db"], row["values"]["psnr_db"]);
 }
 
+/// Scores of quads are those of settled frames, as of `run --score-from`. The settings that the library names are
+/// points of the preset, and called so.
+#[test]
+fn the_preset_of_quads_recommends_settings_by_their_names() {
+    let folder = Folder::new();
+    let out = folder.text("out");
+    let line = format!(
+        "sweep analytic:lateral --preset quads --backend cpu --size 64x36 --set hfov=40 --set reference-samples=1 \
+         --set no-flip --out {out}"
+    );
+    succeeds(&words(&line));
+    let table = table(&out);
+    let rows = table["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 24);
+    let of = |name: &str| {
+        let named = |row: &&Value| row["rust"] == format!("{name}()");
+        assert_eq!(rows.iter().filter(named).count(), 1, "{name}");
+        rows.iter().find(named).unwrap()
+    };
+    let (screen, headset) = (of("Settings::screen"), of("Settings::headset"));
+    assert!(screen["label"].as_str().unwrap().ends_with(", Settings::screen"), "{screen}");
+    let share = |row: &Value| row["samples_share"].as_f64().unwrap();
+    assert!(share(screen) < share(headset), "a wider fovea has more pixels");
+
+    let again = folder.text("again");
+    succeeds(&words(&format!("{} --out {again}", screen["command"].as_str().unwrap()))[1..]);
+    let report = read_json(&folder.path("again/report.json"));
+    assert_eq!(report["methods"]["smr"]["jod"], screen["values"]["jod"]);
+    assert_eq!(report["methods"]["smr"]["shaded_share"], screen["samples_share"]);
+
+    // Beside a renderer that slow the pass takes no time, so that what fits has at most as many pixels.
+    let budget = format!("--by jod --renderer-ms 1e6 --budget-ms {}", 1e6 * share(screen) + 5e3);
+    let said = succeeds(&[&["sweep", "--out", &out], &words(&budget)[..]].concat());
+    assert!(said.contains("let settings = Settings::screen();"), "{said}");
+    assert!(fs::read_to_string(folder.path("out/pareto.svg")).unwrap().contains(">\nSettings::screen\n<"));
+}
+
 #[test]
 fn a_plan_in_a_file_is_read_and_a_wrong_one_refused() {
     let folder = Folder::new();

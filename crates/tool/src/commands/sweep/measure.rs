@@ -147,6 +147,9 @@ fn play(
     };
     let flip = Flip::for_view(&clip.geometry);
     let pipeline = clip.start(source)?.play(&mut |result| {
+        if result.index == clip.score_from {
+            sums.subjects.iter_mut().for_each(MethodAccumulator::restart);
+        }
         let is_last = result.index + 1 == clip.gaze.len();
         sums.control_ms.push(result.step.outputs[0].elapsed.cost_ms());
         sums.samples_share += samples_share(result, clip, &batch.subjects[0]);

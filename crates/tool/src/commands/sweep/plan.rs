@@ -17,6 +17,8 @@ pub enum PresetName {
     Traced,
     /// Rasterised scenes: foveation, sizes of the fovea, rates and lattices, against the time of the whole frame
     Raster,
+    /// Quads: fovea, middle region, steps and budget, antialiased: for the view of --set hfov and --size
+    Quads,
     /// Sizes of the fovea and methods of the paper, three seeds
     Paper,
     /// Scenes: error against samples and time
@@ -30,6 +32,7 @@ impl PresetName {
             Self::Full => include_str!("presets/full.toml"),
             Self::Traced => include_str!("presets/traced.toml"),
             Self::Raster => include_str!("presets/raster.toml"),
+            Self::Quads => include_str!("presets/quads.toml"),
             Self::Paper => include_str!("presets/paper.toml"),
             Self::Convergence => include_str!("presets/convergence.toml"),
         }

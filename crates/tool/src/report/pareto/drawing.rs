@@ -6,12 +6,15 @@ use crate::report::plot::{
     reading, shortened, spread, text, visible,
 };
 use crate::sweep::equal::{class, in_order};
+use crate::sweep::rust_source::name_of;
 use crate::sweep::{Metric, Row, Table};
 use std::collections::BTreeMap;
 use svg::node::element::{Group, Path, Text};
 
 /// X position of the second column of notes.
 const MIDDLE_PX: f64 = 528.0;
+/// Width of a character of a name.
+const NAME_CHAR_PX: f64 = 7.0;
 
 /// A row with its value and position.
 struct Spot<'a> {
@@ -51,7 +54,8 @@ pub fn svg(table: &Table, input: &str, metric: &Metric) -> String {
     for spot in spots.iter().filter(|s| !s.is_best).chain(best.iter().copied()) {
         plot = plot.add(point(spot, &x));
     }
-    plot = plot.add(numbers(&best, &spots));
+    let (names, taken) = names_of(&spots);
+    plot = plot.add(names).add(numbers(&best, &spots, &taken));
     let (notes, height) = notes(&best, metric, missing, spots.iter().any(|s| is_bound(s.row)));
     document("pareto", &title, height, plot.add(notes))
 }
@@ -74,7 +78,8 @@ fn floors<'a>(known: &[(&'a Row, f64)]) -> BTreeMap<&'a str, f64> {
 /// Names of the axes.
 fn names(metric: &Metric, renders_known: bool) -> [String; 2] {
     let cost = if renders_known { "whole frame: renderer and pass" } else { "pass alone, renderer's time unknown" };
-    let unit = if metric.unit.is_empty() { String::new() } else { format!(", {}", metric.unit) };
+    let says_unit = metric.unit.is_empty() || metric.title.contains(metric.unit);
+    let unit = if says_unit { String::new() } else { format!(", {}", metric.unit) };
     let better = if metric.more_is_better { "higher is better" } else { "lower is better" };
     [format!("milliseconds a frame ({cost}); left is cheaper"), format!("{}{unit}; {better}", metric.title)]
 }
@@ -138,9 +143,25 @@ fn point(spot: &Spot<'_>, x: &Scale) -> Group {
     group.add(mark(&row.point.method, spot.at, spot.is_best))
 }
 
-fn numbers(best: &[&Spot<'_>], spots: &[Spot<'_>]) -> Group {
-    let at = |spots: &mut dyn Iterator<Item = &Spot<'_>>| spots.map(|s| s.at).collect::<Vec<_>>();
-    let places = tags::place(&at(&mut best.iter().copied()), &at(&mut spots.iter()), LOW_PX, HIGH_PX);
+/// Names of settings beside their points, below them, where points are worse; and the places that they take.
+fn names_of(spots: &[Spot<'_>]) -> (Group, Vec<[f64; 2]>) {
+    let mut group = Group::new().set("class", "names");
+    let mut taken = vec![];
+    for (spot, name) in spots.iter().filter_map(|spot| Some((spot, name_of(&spot.row.rust)?))) {
+        let [x, y] = [spot.at[0], spot.at[1] + 18.0];
+        let fits = x + 9.0 + name.len() as f64 * NAME_CHAR_PX < HIGH_PX[0];
+        let (side, anchor) = if fits { (1.0, "start") } else { (-1.0, "end") };
+        group = group.add(on_ground(text(name, [px(x + 9.0 * side), px(y)], anchor).set("class", "ink")));
+        taken.extend((2..=name.len()).map(|i| [x + side * i as f64 * NAME_CHAR_PX, y - 4.5]));
+    }
+    (group, taken)
+}
+
+/// Numbers of the best points, away from all points and from what else is `taken`.
+fn numbers(best: &[&Spot<'_>], spots: &[Spot<'_>], taken: &[[f64; 2]]) -> Group {
+    let best: Vec<_> = best.iter().map(|spot| spot.at).collect();
+    let marks: Vec<_> = spots.iter().map(|spot| spot.at).chain(taken.iter().copied()).collect();
+    let places = tags::place(&best, &marks, LOW_PX, HIGH_PX);
     places.iter().enumerate().fold(Group::new().set("class", "numbers"), |group, (i, [x, y])| {
         let number = text(&(i + 1).to_string(), [px(*x), px(y + 4.5)], "middle");
         group.add(on_ground(number.set("class", "ink")))
