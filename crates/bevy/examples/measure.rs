@@ -14,7 +14,8 @@
 //!
 //! Prints medians of the frames: time from a frame's start until the device has finished it; CPU time of the process;
 //! and on Linux CPU time of all but the software renderer's threads and the submission to it: what the application
-//! itself costs. Systems run one after the other. With FOLDER writes the frames there as PNG, and the gaze as `gaze.csv`.
+//! itself costs. Systems run one after the other. With FOLDER writes the frames there as PNG, and the gaze as
+//! `gaze.csv`.
 //!
 //! `cargo run --release --example measure -- psnr FOLDER REFERENCE`
 //!
