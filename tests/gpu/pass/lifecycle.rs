@@ -10,8 +10,8 @@ use crate::surfaces_hard;
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::{self, Texture, TextureFormat, TextureUsages};
 use afterimage::{
-    ContextDesc, DebugView, DepthConvention, Exposure, Filter, Foveation, FrameError, MethodKind, MotionConvention,
-    Reset, Sampler, Settings, ViewFrame, ViewGeometry, Wrs,
+    ContextDesc, DebugView, Exposure, Filter, Foveation, FrameError, MethodKind, Reset, Sampler, Settings, ViewFrame,
+    ViewGeometry, Wrs,
 };
 use afterimage_testing::holds;
 
@@ -45,22 +45,6 @@ fn h27_stereo_is_one_dispatch_without_a_leak() {
     rig.on_cpu(0, Reset::None, &views(0));
     rig.swap_past_layers();
     assert_ne!(rig.on_gpu(1, Reset::None, &views(1)), rig.on_cpu(1, Reset::None, &views(1)).0);
-}
-
-#[test]
-fn every_convention_agrees() {
-    for motion in [MotionConvention::BEVY, MotionConvention::UNREAL, MotionConvention::BLENDER] {
-        agree(ContextDesc { motion, ..ContextDesc::new(SIZE) }, Settings::paper(), 4);
-    }
-    for depth in [
-        DepthConvention::Forward { near: 0.1, far: 100.0 },
-        DepthConvention::Forward { near: 0.1, far: f32::INFINITY },
-        DepthConvention::Reversed { near: 0.1, far: 100.0 },
-        DepthConvention::Reversed { near: 0.1, far: f32::INFINITY },
-        DepthConvention::Orthographic { near: -1.0, far: 50.0 },
-    ] {
-        agree(ContextDesc { depth, ..ContextDesc::new(SIZE) }, Settings::paper(), 6);
-    }
 }
 
 #[test]

@@ -3,7 +3,6 @@
 mod antialiasing;
 mod engines;
 mod gaze;
-mod layout;
 mod lens;
 mod lifecycle;
 mod light;

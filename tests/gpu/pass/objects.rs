@@ -1,5 +1,6 @@
 //! Objects that a frame makes on the device: no bind groups and views while its textures are known.
 
+use super::rig::make_texture;
 use afterimage::gpu::{Afterimage, Frame, Prime};
 use afterimage::wgpu::{self, Device, Texture, TextureFormat, TextureUsages};
 use afterimage::{ContextDesc, Filter, Foveation, Gaze, Settings, ViewFrame, ViewGeometry};
@@ -9,18 +10,7 @@ const SIZE: [u32; 2] = [64, 48];
 /// Textures of a frame: color, depth, motion, and the output.
 fn textures(device: &Device) -> [Texture; 4] {
     use TextureFormat::{R32Float, Rg16Float, Rgba16Float};
-    let texture = |format, usage| {
-        device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage,
-            view_formats: &[],
-        })
-    };
+    let texture = |format, usage| make_texture(device, &ContextDesc::new(SIZE), format, usage);
     let [color, depth, motion] =
         [Rgba16Float, R32Float, Rg16Float].map(|format| texture(format, TextureUsages::TEXTURE_BINDING));
     [color, depth, motion, texture(Rgba16Float, TextureUsages::STORAGE_BINDING)]
@@ -87,16 +77,7 @@ fn pipelines_of_prime(is_prewarmed: bool) -> [usize; 2] {
     let desc = ContextDesc { settings, ..ContextDesc::new(SIZE) };
     let mut post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float).unwrap();
     let [color, depth, motion, _] = textures(&device);
-    let target = device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: depth.size(),
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: TextureFormat::Depth32Float,
-        usage: TextureUsages::RENDER_ATTACHMENT,
-        view_formats: &[],
-    });
+    let target = make_texture(&device, &desc, TextureFormat::Depth32Float, TextureUsages::RENDER_ATTACHMENT);
     let target = target.create_view(&Default::default());
     let prime = Prime { target: &target, origin_px: [0, 0], near_depth: 1.0, stencil: None };
     let count = || {

@@ -1,9 +1,10 @@
 //! Depth and stencil buffers that are closed where a plan shades nothing, of every format, direction and number of
 //! samples: what is then drawn over the whole target appears at chosen quads, and beside the view.
 
+use super::rig::make_layers;
 use super::sparse::SIZE;
 use afterimage::gpu::{Afterimage, Frame, Prime};
-use afterimage::wgpu::{self, CompareFunction, Device, Queue, TextureFormat, TextureUsages};
+use afterimage::wgpu::{self, CompareFunction, Device, Queue, Texture, TextureFormat, TextureUsages};
 use afterimage::{ContextDesc, Foveation, FrameError, Gaze, Settings, ViewFrame, ViewGeometry};
 
 const ORIGIN_PX: [u32; 2] = [3, 5];
@@ -23,23 +24,8 @@ fn cases() -> Vec<Case> {
     depths.into_iter().flat_map(of).chain(stencils).collect()
 }
 
-fn texture(
-    device: &Device,
-    size: [u32; 2],
-    format: TextureFormat,
-    samples: u32,
-    usage: TextureUsages,
-) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: samples,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage,
-        view_formats: &[],
-    })
+fn texture(device: &Device, [w, h]: [u32; 2], format: TextureFormat, samples: u32, usage: TextureUsages) -> Texture {
+    make_layers(device, [w, h, 1], samples, format, usage)
 }
 
 /// A pipeline that draws white over the whole target, at the depth of the prepass.
@@ -86,7 +72,7 @@ fn white(device: &Device, (format, samples, near, stencil): Case) -> wgpu::Rende
 /// A context with one view, its frame's color, and the view.
 struct Planned {
     post: Afterimage,
-    color: wgpu::Texture,
+    color: Texture,
     views: [ViewFrame; 1],
 }
 

@@ -505,20 +505,10 @@ impl<'a> Scattered<'a> {
     fn new(device: &Device, queue: &Queue, texture: &'a Texture, number: u32) -> Self {
         let place = |view: u32| {
             let origin = [3 + 2 * number + view, 1 + number + 5 * view];
-            let larger = device.create_texture(&wgpu::TextureDescriptor {
-                label: Some("scattered"),
-                size: wgpu::Extent3d {
-                    width: texture.width() + origin[0] + number % 3,
-                    height: texture.height() + origin[1] + view,
-                    depth_or_array_layers: view + 1,
-                },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format: texture.format(),
-                usage: texture.usage() | TextureUsages::COPY_SRC | TextureUsages::COPY_DST,
-                view_formats: &[],
-            });
+            let [width, height] = [texture.width() + number % 3, texture.height() + view];
+            let size = [width + origin[0], height + origin[1], view + 1];
+            let usage = texture.usage() | TextureUsages::COPY_SRC | TextureUsages::COPY_DST;
+            let larger = make_layers(device, size, 1, texture.format(), usage);
             afterimage_testing::gpu::fill_level(queue, &larger, 0, 0xff);
             (larger, origin)
         };
@@ -547,11 +537,22 @@ impl<'a> Scattered<'a> {
 
 pub fn make_texture(device: &Device, context: &ContextDesc, format: TextureFormat, usage: TextureUsages) -> Texture {
     let [width, height] = context.size_px;
+    make_layers(device, [width, height, context.view_count], 1, format, usage)
+}
+
+/// A texture of a width, height and number of layers.
+pub fn make_layers(
+    device: &Device,
+    [width, height, depth_or_array_layers]: [u32; 3],
+    sample_count: u32,
+    format: TextureFormat,
+    usage: TextureUsages,
+) -> Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("test"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: context.view_count },
+        size: wgpu::Extent3d { width, height, depth_or_array_layers },
         mip_level_count: 1,
-        sample_count: 1,
+        sample_count,
         dimension: wgpu::TextureDimension::D2,
         format,
         usage,

@@ -45,20 +45,6 @@ fn sparse_views(index: u64, settings: &Settings) -> Vec<View> {
     (0..2).map(view).collect()
 }
 
-#[test]
-fn sparse_frames_are_bit_equal_on_both_executors() {
-    let wrs = Wrs { sampler: Sampler::AEs, ..Wrs::default() };
-    let keyed = Settings { method: Method::Wrs(wrs), ..settings(MethodKind::Wrs) };
-    for settings in METHODS.map(settings).into_iter().chain([keyed]) {
-        let Some(mut rig) = Rig::new(desc(), settings) else { return };
-        for index in 0..6 {
-            rig.scattered = index % 3 == 2;
-            let (made, _) = rig.both(index, Reset::None, &sparse_views(index, &settings));
-            assert!(made.stats.nonfinite > 0);
-        }
-    }
-}
-
 /// A gliding view with noise; in the last frames it is all at full rate.
 fn noisy_view(index: u64, v: u32, settings: &Settings) -> View {
     let mut draws = Draws::new(&format!("noisy {index} {v}"));
@@ -139,42 +125,24 @@ fn wrong_noise_is_caught() {
 }
 
 #[test]
-fn an_atlas_gives_the_bits_of_full_images() {
-    for method in METHODS {
-        let settings = settings(method);
+fn sparse_frames_are_bit_equal_on_both_executors_in_an_atlas_or_not() {
+    let wrs = Wrs { sampler: Sampler::AEs, ..Wrs::default() };
+    let keyed = Settings { method: Method::Wrs(wrs), ..settings(MethodKind::Wrs) };
+    for settings in METHODS.map(settings).into_iter().chain([keyed]) {
         let (Some(mut full), Some(mut atlas)) = (Rig::new(desc(), settings), Rig::new(desc(), settings)) else {
             return;
         };
         let size = [80, 160];
         atlas.resize_color(size);
-        for index in 0..4 {
+        for index in 0..6 {
             let views = sparse_views(index, &settings);
+            full.scattered = index % 3 == 2;
             let (expected, _) = full.both(index, Reset::None, &views);
             atlas.scattered = index % 2 == 1;
             let (made, _) = atlas.both(index, Reset::None, &[0, 1].map(|v| views[v].in_atlas(size)));
-            assert_eq!(made, expected, "{method:?}, frame {index}");
+            assert!(made.stats.nonfinite > 0);
+            assert_eq!(made, expected, "{settings:?}, frame {index}");
         }
-    }
-}
-
-/// Fails unless frames of `views` and the same ones after a `change` are equal in every bit.
-fn assert_unread(method: MethodKind, views: fn(u64, &Settings) -> Vec<View>, change: fn(View) -> View) {
-    let settings = settings(method);
-    let (Some(mut rig), Some(mut other)) = (Rig::new(desc(), settings), Rig::new(desc(), settings)) else { return };
-    for index in 0..4 {
-        let views = views(index, &settings);
-        let changed: Vec<_> = views.iter().cloned().map(change).collect();
-        assert_eq!(rig.on_gpu(index, Reset::None, &views), other.on_gpu(index, Reset::None, &changed), "{method:?}");
-    }
-}
-
-#[test]
-fn what_lies_between_samples_is_not_read() {
-    for method in METHODS {
-        assert_unread(method, sparse_views, |view| View {
-            color: view.read_of(&view.color, [f32::NAN, -3.0, 1e30]),
-            ..view
-        });
     }
 }
 
@@ -494,7 +462,8 @@ fn geometry_at_samples_is_filled_bit_equal() {
     let plain = desc().motion;
     let none = MotionConvention { no_vector: Some([0.0; 2]), ..plain };
     let excluded = MotionConvention { without_camera: true, ..plain };
-    for (method, motion) in METHODS.into_iter().flat_map(|m| [(m, plain), (m, none), (m, excluded)]) {
+    let in_turn = METHODS.into_iter().zip([plain, none, excluded].into_iter().cycle());
+    for (method, motion) in in_turn.chain([plain, none, excluded].map(|motion| (MethodKind::Smr, motion))) {
         let settings = settings(method);
         let Some(mut rig) = Rig::new(ContextDesc { motion, ..desc() }, settings) else { return };
         for index in 0..8 {
@@ -551,10 +520,18 @@ fn filled_depth_is_that_of_the_samples_and_between_them() {
 }
 
 #[test]
-fn geometry_between_samples_is_not_read() {
-    assert_unread(MethodKind::Smr, at_samples, |view| View {
-        depth: view.depth.as_ref().map(|depth| view.read_of(depth, 0.1)),
-        motion: view.motion.as_ref().map(|motion| view.read_of(motion, [f32::NAN; 2])),
-        ..view
-    });
+fn what_lies_between_samples_is_not_read() {
+    let settings = settings(MethodKind::Smr);
+    let (Some(mut rig), Some(mut other)) = (Rig::new(desc(), settings), Rig::new(desc(), settings)) else { return };
+    for index in 0..4 {
+        let views = at_samples(index, &settings);
+        let changed = views.iter().cloned().map(|view| View {
+            color: view.read_of(&view.color, [f32::NAN, -3.0, 1e30]),
+            depth: view.depth.as_ref().map(|depth| view.read_of(depth, 0.1)),
+            motion: view.motion.as_ref().map(|motion| view.read_of(motion, [f32::NAN; 2])),
+            ..view
+        });
+        let changed: Vec<_> = changed.collect();
+        assert_eq!(rig.on_gpu(index, Reset::None, &views), other.on_gpu(index, Reset::None, &changed));
+    }
 }

@@ -1,8 +1,6 @@
 //! Several frames in one submission, lost gazes, formats, errors.
 
 use super::rig::*;
-use afterimage::gpu::Timestamps;
-use afterimage::internal::Sources;
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::wgpu::{self, TextureFormat, TextureUsages};
 use afterimage::{CreateError, Filter, Foveation, FrameError, Gaze, ViewGeometry};
@@ -88,43 +86,4 @@ fn what_does_not_fit_is_refused_and_nothing_recorded() {
         assert!(message.contains(words), "{message}");
     }
     post.record(&device, &mut encoder, &good).unwrap();
-}
-
-#[test]
-fn the_device_times_all_passes_of_a_filter() {
-    let Some(adapter) = afterimage_testing::gpu::adapter() else { return };
-    if !adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
-        eprintln!("SKIPPED: the adapter has no timestamps");
-        return;
-    }
-    let request = wgpu::DeviceDescriptor {
-        required_features: wgpu::Features::TIMESTAMP_QUERY,
-        ..wgpu::DeviceDescriptor::default()
-    };
-    let (device, queue) = pollster::block_on(adapter.request_device(&request)).unwrap();
-    let desc = desc([640, 360], 1, foveation(Filter::Gauss, [8, 16]));
-    let mut rig = Rig::with_sources(device, queue, &desc, &Sources::default());
-    let queries = rig.device.create_query_set(&wgpu::QuerySetDescriptor {
-        label: None,
-        ty: wgpu::QueryType::Timestamp,
-        count: 2,
-    });
-    let resolved = rig.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: 16,
-        usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
-        mapped_at_creation: false,
-    });
-    let scene = Scene::mono(nasty([640, 360], "timed"), [0.0, 0.0]);
-    let mut encoder = rig.device.create_command_encoder(&Default::default());
-    let frame = SimulatorFrame {
-        timestamps: Some(Timestamps { queries: &queries, begin: 0, end: 1 }),
-        ..SimulatorFrame::new(&rig.full, &rig.output, &scene.views)
-    };
-    rig.post.record(&rig.device, &mut encoder, &frame).unwrap();
-    encoder.resolve_query_set(&queries, 0..2, &resolved, 0);
-    rig.queue.submit([encoder.finish()]);
-    let ticks: Vec<u64> = afterimage_testing::gpu::read_buffer(&rig.device, &rig.queue, &resolved);
-    println!("{} ticks of {} ns", ticks[1] - ticks[0], rig.queue.get_timestamp_period());
-    assert!(ticks[0] > 0 && ticks[1] > ticks[0]);
 }

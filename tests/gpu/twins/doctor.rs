@@ -26,12 +26,7 @@ pub const PROBES: &[Probe] = &[
         &(0..=8).collect::<Vec<_>>(),
         &lengths()
     ])),
-    probe!(doctor::spline, |rows| {
-        rows.random(|d, row| {
-            signals(d, row, 4);
-            row.push(range(d, 0.0, 1.0));
-        })
-    }),
+    probe!(doctor::spline, |rows| rows.each(&[Of(|d, row| signals(d, row, 4)), F(0.0, 1.0)])),
     probe!(doctor::stored_motion, |rows| rows
         .cross(&[&[normal(), around(&[65536.0, -65536.0])].concat()])
         .each(&[Signed(-20, 20)])),

@@ -12,9 +12,7 @@ fn sigma(d: &mut afterimage_testing::Draws) -> u32 {
 }
 
 /// A color: of all magnitudes, dark to the largest half.
-fn color(d: &mut afterimage_testing::Draws, row: &mut Vec<u32>) {
-    row.extend((0..3).map(|_| signed(d, -24, 16)));
-}
+const COLOR: Word = Of(|d, row| row.extend([0; 3].map(|_| signed(d, -24, 16))));
 
 shape!(foveate::GaussTap { weight: f32, ratio: f32, ratio_step: f32 });
 
@@ -22,18 +20,14 @@ pub const PROBES: &[Probe] = &[
     probe!(foveate::region_lod, |rows| {
         let e = [around(&[2.5, 5.0, 7.5, 20.0, 22.5]), floats(&[0.0, 180.0])].concat();
         let lod = floats(&[0.0, 1.0, 2.0, 4.0]);
-        rows.cross(&[&e, &floats(&[0.0, 2.5, 5.0]), &floats(&[5.0, 20.0]), &floats(&[0.0, 2.5]), &lod, &lod]).random(
-            |d, row| {
-                row.extend([60.0, 10.0, 30.0, 5.0, 3.0, 6.0].map(|most| range(d, 0.0, most)));
-            },
-        )
+        rows.cross(&[&e, &floats(&[0.0, 2.5, 5.0]), &floats(&[5.0, 20.0]), &floats(&[0.0, 2.5]), &lod, &lod])
+            .each(&[60.0, 10.0, 30.0, 5.0, 3.0, 6.0].map(|most| F(0.0, most)))
     }),
     probe!(foveate::blur_lod, |rows| {
         let e = [around(&[2.5, 7.5, 20.0]), floats(&[0.0, 180.0])].concat();
         let sigma = floats(&[0.0, 0.5, 3.5, 7.5, 127.5]);
-        rows.cross(&[&e, &floats(&[0.0, 2.5]), &floats(&[2.5, 7.5]), &sigma, &sigma]).random(|d, row| {
-            row.extend([180.0, 10.0, 30.0, 31.5, 127.5].map(|most| range(d, 0.0, most)));
-        })
+        rows.cross(&[&e, &floats(&[0.0, 2.5]), &floats(&[2.5, 7.5]), &sigma, &sigma])
+            .each(&[180.0, 10.0, 30.0, 31.5, 127.5].map(|most| F(0.0, most)))
     }),
     probe!(foveate::blur_sigma_px, |rows| {
         let whole: Vec<f32> = (0..=16).map(|i| 0.5 * i as f32).collect();
@@ -72,13 +66,8 @@ pub const PROBES: &[Probe] = &[
             row.extend([range(d, -1.0, 64.0), 1 + d.bits() % 64]);
         })
     }),
-    probe!(foveate::bilinear, |rows| {
-        rows.random(|d, row| {
-            (0..4).for_each(|_| color(d, row));
-            row.extend([range(d, 0.0, 1.0), range(d, 0.0, 1.0)]);
-        })
-    }),
-    probe!(foveate::mean_of_four, |rows| rows.random(|d, row| (0..4).for_each(|_| color(d, row)))),
+    probe!(foveate::bilinear, |rows| rows.each(&[&[COLOR; 4][..], &[F(0.0, 1.0); 2]].concat())),
+    probe!(foveate::mean_of_four, |rows| rows.each(&[COLOR; 4])),
     probe!(foveate::block_sample, |rows| rows.cross(&[&[0, 1, 2, 7, 8, 63, 1000], &levels(), &lengths()])),
 ];
 

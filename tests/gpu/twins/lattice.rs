@@ -34,20 +34,10 @@ pub const PROBES: &[Probe] = &[
         rows.cross(&[&floats(&fractions), &[0, 1]])
     }),
     probe!(lattice::add_sample, |rows| {
-        rows.random(|d, row| {
-            row.extend((0..4).map(|_| signed(d, -20, 16)));
-            row.push(range(d, 0.0, 1.0));
-            row.extend((0..4).map(|_| signed(d, -20, 16)));
-            row.push(d.bits() % 4);
-            row.push(((d.bits() % 65536) as f32 / 65536.0).to_bits());
-        })
+        let color = [Signed(-20, 16); 4];
+        rows.each(&[&color[..], &[F(0.0, 1.0)], &color, &[N(4), Share(65536)]].concat())
     }),
-    probe!(lattice::sample_mean, |rows| {
-        rows.random(|d, row| {
-            row.extend((0..4).map(|_| signed(d, -16, 16)));
-            row.push(((d.bits() % 65537) as f32 / 65536.0).to_bits());
-        })
-    }),
+    probe!(lattice::sample_mean, |rows| rows.each(&[&[Signed(-16, 16); 4][..], &[Share(65536)]].concat())),
     probe!(lattice::add_geometry, |rows| {
         rows.random(|d, row| {
             row.extend([range(d, 0.0, 4.0), signed(d, -8, 8), signed(d, -8, 8), range(d, 0.0, 1.0)]);
@@ -57,10 +47,7 @@ pub const PROBES: &[Probe] = &[
         })
     }),
     probe!(lattice::filled_geometry, |rows| {
-        rows.random(|d, row| {
-            row.extend([range(d, 0.0, 4.0), signed(d, -8, 8), signed(d, -8, 8)]);
-            row.push(((d.bits() % 5) as f32 / 4.0).to_bits());
-            row.extend([range(d, -0.1, 2.0), signed(d, -8, 8), signed(d, -8, 8)]);
-        })
+        let motion = [Signed(-8, 8); 2];
+        rows.each(&[&[F(0.0, 4.0)][..], &motion, &[Share(4), F(-0.1, 2.0)], &motion].concat())
     }),
 ];

@@ -169,15 +169,6 @@ pub const PROBES: &[Probe] = &[
     probe!(smr::decide, decide, "decide($0, SmrParams($1, $2, false, true, false))", |rows| {
         decide_rows(rows, Some([0, 1, 0]))
     }),
-    probe!(smr::decide, decide, "decide($0, SmrParams($1, $2, true, true, false))", |rows| {
-        decide_rows(rows, Some([1, 1, 0]))
-    }),
-    probe!(smr::decide, decide, "decide($0, SmrParams($1, $2, false, false, false))", |rows| {
-        decide_rows(rows, Some([0, 0, 0]))
-    }),
-    probe!(smr::decide, decide, "decide($0, SmrParams($1, $2, false, true, true))", |rows| {
-        decide_rows(rows, Some([0, 1, 1]))
-    }),
     probe!(smr::mip_mean, |rows| chain_rows(rows, 0)),
     probe!(smr::mip_bilinear, |rows| chain_rows(rows, 2)),
 ];

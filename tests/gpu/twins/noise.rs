@@ -68,10 +68,7 @@ pub const PROBES: &[Probe] = &[
         })
     }),
     probe!(noise::pack_noise, |rows| {
-        rows.cross(&[&counts(), &variances()]).random(|d, row| {
-            let n = noise(d);
-            push(row, &n);
-        })
+        rows.cross(&[&counts(), &variances()]).each(&[Of(|d, row| push(row, &noise(d)))])
     }),
     probe!(noise::unpack_noise, |rows| rows.cross(&[&words()]).each(&[Bits])),
     probe!(noise::candidate_texel, |rows| {
@@ -83,10 +80,9 @@ pub const PROBES: &[Probe] = &[
     probe!(noise::history_share, |rows| pair_rows(rows, &[&floats(&[0.0, 0.5, 0.9, 0.98])])),
     probe!(noise::noise_difference, |rows| pair_rows(rows, &[&channels(), &floats(&[0.01, 0.7, 1.0, 8192.0])])),
     probe!(noise::expected_noise, |rows| pair_rows(rows, &[&channels()])),
-    probe!(noise::add_noise, |rows| rows.random(|d, row| {
-        let n = noise(d);
-        push(row, &[d.range(0.0, 4.0), d.range(0.0, 4.0), d.range(0.0, 9.0), n[0], n[1], d.range(0.0, 1.0)]);
-    })),
+    probe!(noise::add_noise, |rows| {
+        rows.each(&[F(0.0, 4.0), F(0.0, 4.0), F(0.0, 9.0), Of(|d, row| push(row, &noise(d))), F(0.0, 1.0)])
+    }),
     probe!(noise::mean_noise, |rows| {
         let sums = floats(&[0.0, 1e-8, 1e-4, 1.0]);
         rows.cross(&[&sums, &sums, &variances()]).each(&[F(0.0, 4.0), F(0.0, 4.0), F(0.0, 9.0)])

@@ -87,12 +87,13 @@ pub fn range(d: &mut Draws, low: f32, high: f32) -> u32 {
     d.range(low, high).to_bits()
 }
 
-/// A random word: a float from low to high, an integer below, a float as [`scaled`] or [`signed`], any bits; or words
-/// that a function pushes.
+/// A random word: a float from low to high, an integer below, a multiple of 1 / n from 0 to 1, a float as [`scaled`] or
+/// [`signed`], any bits; or words that a function pushes.
 #[derive(Clone, Copy)]
 pub enum Word {
     F(f32, f32),
     N(u32),
+    Share(u32),
     Scaled(i32, i32),
     Signed(i32, i32),
     Bits,
@@ -107,6 +108,7 @@ impl Rows {
                 match *word {
                     Word::F(low, high) => row.push(range(d, low, high)),
                     Word::N(count) => row.push(d.bits() % count),
+                    Word::Share(n) => row.push(((d.bits() % (n + 1)) as f32 / n as f32).to_bits()),
                     Word::Scaled(low, high) => row.push(scaled(d, low, high)),
                     Word::Signed(low, high) => row.push(signed(d, low, high)),
                     Word::Bits => row.push(d.bits()),

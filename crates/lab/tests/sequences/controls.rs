@@ -2,8 +2,7 @@
 //! executors differ.
 
 use super::rig::{Rig, View};
-use super::sequences::{SIZE, foveated, trust};
-use super::surfaces_variants::noisy;
+use super::sequences::{SIZE, foveated, noisy, trust};
 use afterimage::shader::SHADERS;
 use afterimage::{
     ContextDesc, Exposure, Filter, Foveation, Gaze, Image, Method, MethodKind, Reset, Sampler, Settings, Wrs,
@@ -45,57 +44,43 @@ fn all_caught(pass: &str, settings: Settings, has_lod: bool, errors: &[(&str, &s
     planted::all_caught_once(right, errors, |source| differs(settings, source, has_lod));
 }
 
+/// One of motion, trust, exposure, depth, noise and levels of detail, and of each filter.
 #[test]
-fn planted_errors_in_wrs_are_caught() {
-    let errors = [
-        // Motion with the opposite sign, inputs ignored (trust, exposure, depth), a wrong counter.
-        ("f32(x) + motion.x", "f32(x) - motion.x"),
-        ("past = scale_by_trust(past, trust_at(px, view), SAMPLER);", ""),
-        ("past.color = expose(past.color, frame.exposure);", ""),
-        ("if !is_same_surface(", "if false && !is_same_surface("),
-        ("count_if(!usable, COUNT_NONFINITE);", ""),
-    ];
-    all_caught("wrs_pass", settings(MethodKind::Wrs, Filter::Mip), false, &errors);
+fn planted_errors_are_caught() {
+    let of = |filter| settings(MethodKind::Smr, filter);
     let keys = settings(Method::Wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() }), Filter::Mip);
+    let noisy = Settings { noisy: true, ..of(Filter::Mip) };
+    all_caught(
+        "wrs_pass",
+        settings(MethodKind::Wrs, Filter::Mip),
+        false,
+        &[
+            ("f32(x) + motion.x", "f32(x) - motion.x"),
+            ("past = scale_by_trust(past, trust_at(px, view), SAMPLER);", ""),
+            ("past.color = expose(past.color, frame.exposure);", ""),
+        ],
+    );
     let not_stored = (
         "textureStore(next_extras, px, view, vec4<u32>(bitcast<u32>(decision.log_key),",
         "textureStore(next_extras, px, view, vec4<u32>(0u,",
     );
-    all_caught("wrs_pass", keys, false, &[not_stored]);
-}
-
-#[test]
-fn planted_errors_in_taa_and_taau_are_caught() {
     let wide = ("BOX_SIGMAS: vec2<f32> = vec2<f32>(2.0, 5.0)", "BOX_SIGMAS: vec2<f32> = vec2<f32>(2.02, 5.0)");
-    all_caught("taa_pass", settings(MethodKind::Taa, Filter::Mip), false, &[wide]);
     let lax = ("confidence = min(confidence, agreeing(near.", "confidence = max(confidence, agreeing(near.");
-    all_caught("taau_pass", settings(MethodKind::Taau, Filter::Mip), false, &[lax]);
-}
-
-#[test]
-fn planted_errors_in_smr_are_caught() {
-    let errors = [
-        // Taps one texel off, the other view's surfaces, inputs ignored (trust, exposure, depth), a wrong counter.
-        ("taps_around(source.texel,", "taps_around(source.texel + 1,"),
-        ("textureLoad(past_surfaces, at, view, 0)", "textureLoad(past_surfaces, at, 1u - view, 0)"),
-        ("confidence = trust(trust_at(px, view));", ""),
-        ("return expose(stored, frame.exposure);", "return stored;"),
-        ("let is_same = is_same_surface(", "let is_same = true || is_same_surface("),
-        ("count_if(valid && result.share == 0.0, COUNT_REPLACED);", ""),
-        // A gate 1 % off, a level of the mip chain one off.
-        ("const GATE_FROM: f32 = 3.0;", "const GATE_FROM: f32 = 3.03;"),
-        ("past_level(at, min(level + 1u, last), view)", "past_level(at, level, view)"),
-    ];
-    let of = |filter| settings(MethodKind::Smr, filter);
-    all_caught("smr_pass", of(Filter::Mip), false, &errors);
-    all_caught(
-        "smr_pass",
-        of(Filter::Block),
-        false,
-        &[("let scale = select(1.0, 4.0, p.blocks);", "let scale = 1.0;")],
-    );
-    all_caught("smr_pass", of(Filter::Gauss), false, &[("if FILTER == FILTER_GAUSS {", "if false {")]);
-    all_caught("smr_pass", of(Filter::Mip), true, &[("if HAS_LOD != 0u {", "if false {")]);
-    let noise = [("const SIGMAS: f32 = 3.0;", "const SIGMAS: f32 = 2.0;")];
-    all_caught("smr_pass", Settings { noisy: true, ..of(Filter::Mip) }, false, &noise);
+    for (pass, settings, has_lod, error) in [
+        ("wrs_pass", keys, false, not_stored),
+        ("taa_pass", settings(MethodKind::Taa, Filter::Mip), false, wide),
+        ("taau_pass", settings(MethodKind::Taau, Filter::Mip), false, lax),
+        (
+            "smr_pass",
+            of(Filter::Mip),
+            false,
+            ("let is_same = is_same_surface(", "let is_same = true || is_same_surface("),
+        ),
+        ("smr_pass", of(Filter::Block), false, ("let scale = select(1.0, 4.0, p.blocks);", "let scale = 1.0;")),
+        ("smr_pass", of(Filter::Gauss), false, ("if FILTER == FILTER_GAUSS {", "if false {")),
+        ("smr_pass", of(Filter::Mip), true, ("if HAS_LOD != 0u {", "if false {")),
+        ("smr_pass", noisy, false, ("const SIGMAS: f32 = 3.0;", "const SIGMAS: f32 = 2.0;")),
+    ] {
+        all_caught(pass, settings, has_lod, &[error]);
+    }
 }

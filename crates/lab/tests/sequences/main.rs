@@ -20,5 +20,4 @@ mod sequences;
 mod sparse;
 mod surfaces_lifecycle;
 mod surfaces_scenes;
-mod surfaces_variants;
 mod worst_crops;

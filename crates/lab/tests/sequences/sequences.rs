@@ -1,10 +1,11 @@
-//! Analytic scenes with resets, broken pixels and garbage vectors, 14 frames each, through every variant.
+//! Analytic scenes with resets, broken pixels and garbage vectors, 14 frames each, through every variant. Bit equality
+//! throughout.
 
-use super::rig::{Rig, View};
+use super::rig::{Rig, View, noise_view};
 use afterimage::simulator::Pyramid;
 use afterimage::{
-    Bias, ContextDesc, Exposure, Foveation, Gate, GateMetric, Gaze, Image, Method, MethodKind, Reset, Sampler,
-    Settings, ViewFrame, Wrs,
+    Bias, ContextDesc, Exposure, Filter, Foveation, Gate, GateMetric, Gaze, Image, Method, MethodKind, Reset, Sampler,
+    Settings, Smr, ViewFrame, Wrs,
 };
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 use afterimage_testing::Draws;
@@ -64,7 +65,7 @@ pub fn surfaces() -> [Settings; 3] {
 
 /// Runs 14 frames of a damaged scene through both, which must agree in every bit of what they show, keep and count.
 #[track_caller]
-pub fn agree(scene: &str, settings: Settings, change: impl Fn(u64, View, &mut Rig) -> View) {
+fn agree(scene: &str, settings: Settings, change: impl Fn(u64, View, &mut Rig) -> View) {
     let desc = ContextDesc::new(SIZE);
     let Some(mut rig) = Rig::new(desc, settings) else { return };
     let mut source = AnalyticSource::new(scene, desc.size_px, 70.0, 60.0).unwrap();
@@ -81,15 +82,13 @@ pub fn agree(scene: &str, settings: Settings, change: impl Fn(u64, View, &mut Ri
         flushed += trace[0].pixels().iter().filter(|t| t.verdict as u32 > 1).count();
     }
     println!("{settings:?}, {scene}: {kept} kept and {flushed} flushed pixels agree");
-    assert!(kept > 1000 || settings.method == Method::None, "history must play a part");
-}
-
-fn agree_as_is(scene: &str, settings: Settings) {
-    agree(scene, settings, |_, v, _| v);
+    // Where all is at full rate, history shows at broken pixels alone.
+    let is_shown = settings.method != Method::None && settings.foveation.filter != Filter::Off;
+    assert!(kept > 1000 || !is_shown, "history must play a part");
 }
 
 /// Some stops up and down, thirds of stops, a fade to nothing, and no change.
-pub fn exposure(index: u64) -> Exposure {
+fn exposure(index: u64) -> Exposure {
     let ratios = [1.0, 2.0, 0.5, 1.26, 0.794, 256.0, 1.0 / 256.0, 1e-30, 1e30];
     match index % 4 {
         0 => Exposure::Same,
@@ -97,55 +96,90 @@ pub fn exposure(index: u64) -> Exposure {
     }
 }
 
-#[test]
-fn the_defaults_agree_bit_for_bit() {
-    for (settings, scenes) in [(Settings::paper(), &["lateral", "occluder", "scroll"][..])]
-        .into_iter()
-        .chain(surfaces().map(|settings| (settings, &["occluder", "light-step"][..])))
-    {
-        scenes.iter().for_each(|scene| agree_as_is(scene, settings));
-    }
-    // The frame with what is broken replaced.
-    agree_as_is("lateral", Settings { method: Method::None, ..Settings::paper() });
+/// Levels of detail as an input: integers, fractions, levels beyond the mip chain, and non-finite values.
+fn lod_of(index: u64, size: [u32; 2]) -> Image<f32> {
+    let values = [0.0, 1.0, 2.0, 3.0, 1.5, 2.71, 0.1, 8.0, 8.9, 100.0, -1.0, -0.0, 1e-20];
+    let broken = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX];
+    Image::from_fn(size, |[x, y]| {
+        let i = (x / 9 + y / 6 + index as u32 / 4) as usize;
+        if (x + 3 * y).is_multiple_of(97) { broken[i % broken.len()] } else { values[i % values.len()] }
+    })
 }
 
+/// What a path tracer might tell of its noise, and what it must not.
+fn noise(index: u64, size: [u32; 2]) -> Image<[f32; 2]> {
+    let mut draws = Draws::new(&format!("noise {index}"));
+    let broken = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 1e30, 0.0];
+    Image::from_fn(size, |[x, y]| {
+        let valid = [draws.range(0.0, 0.3), [1.0, 2.0, 8.0, 32.0][(x / 31 + y / 17) as usize % 4]];
+        match (x + 3 * y) % 89 {
+            0 => [broken[draws.bits() as usize % broken.len()], valid[1]],
+            1 => [valid[0], broken[draws.bits() as usize % broken.len()]],
+            _ => valid,
+        }
+    })
+}
+
+/// A view whose colors scatter by what it tells.
+pub fn noisy(index: u64, view: View) -> View {
+    let size = view.color.size();
+    let noise = noise(index, size);
+    let mut draws = Draws::new(&format!("scatter {index}"));
+    let color = Image::from_fn(size, |[x, y]| {
+        let [error, _] = noise.at(x as usize, y as usize);
+        let by = if error.is_finite() { error.clamp(0.0, 1.0) * draws.range(-1.7, 1.7) } else { 0.0 };
+        view.color.at(x as usize, y as usize).map(|c| c + by)
+    });
+    View { color, noise: Some(noise), ..view }
+}
+
+/// Every method, sampler, bias, gate, filter and tunable that has a path of its own: with what a frame has to have, and
+/// with all that it may bring.
 #[test]
 fn every_variant_agrees_bit_for_bit() {
     let base = Settings::paper();
-    let paper = Wrs::default();
     let wrs = |wrs| Settings { method: Method::Wrs(wrs), ..base };
-    let fovea = |fovea_deg| Foveation { fovea_deg, mid_deg: 40.0, ..Foveation::default() };
     let lightness = Gate { metric: GateMetric::Lightness, divisor: 30.0, offset: 2.0, ..Gate::default() };
-    for settings in [
-        Settings { seed: 9, foveation: fovea(0.0), ..wrs(Wrs { bias: Bias::None, gate: None, ..paper }) },
-        Settings { foveation: fovea(20.0), ..wrs(Wrs { gate: Some(lightness), ..paper }) },
-        wrs(Wrs { bias: Bias::Exponential { lambda: 0.05 }, ..paper }),
-        wrs(Wrs { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.02 }, gate: None, ..paper }),
+    let keyed = Wrs { sampler: Sampler::AEs, bias: Bias::Exponential { lambda: 0.02 }, gate: None, ..Wrs::default() };
+    let unbiased = Wrs { bias: Bias::None, ..Wrs::default() };
+    let smr = settings(MethodKind::Smr);
+    let with = |filter| Settings { foveation: Foveation { filter, ..smr.foveation }, ..smr };
+    let tuned = Smr { accumulate: 0.98, tolerance: 0.3, relight: false, ..Smr::default() };
+    let all = [
+        base,
+        Settings { method: Method::None, ..base },
+        wrs(Wrs { gate: Some(lightness), ..Wrs::default() }),
+        Settings { seed: 9, depth_test: None, ..wrs(unbiased) },
+        wrs(keyed),
         Settings::weighted(),
-        wrs(Wrs { sampler: Sampler::AChao, ..Wrs::weighted() }),
-    ] {
-        agree_as_is("occluder", settings);
-    }
-}
-
-#[test]
-fn absent_inputs_are_switched_off() {
-    for base in [Settings::paper()].into_iter().chain(surfaces()) {
-        agree("lateral", base, |_, v, _| View { depth: None, ..v });
-        agree("still", base, |_, v, _| View { motion: None, ..v });
-        agree_as_is("occluder", Settings { depth_test: None, ..base });
-    }
-}
-
-#[test]
-fn trust_and_exposure_agree_bit_for_bit() {
-    let wrs = [Wrs::default(), Wrs { sampler: Sampler::AEs, gate: None, ..Wrs::default() }];
-    let wrs = wrs.map(|wrs| Settings { method: Method::Wrs(wrs), ..Settings::default() });
-    for settings in wrs.into_iter().chain(surfaces()) {
-        agree("occluder", settings, |index, v, rig| {
+        settings(MethodKind::Taa),
+        settings(MethodKind::Taau),
+        smr,
+        with(Filter::Gauss),
+        with(Filter::Off),
+        Settings { method: Method::Smr(tuned), ..with(Filter::Block) },
+    ];
+    for (settings, scene) in all.into_iter().zip(["occluder", "lateral", "light-step"].into_iter().cycle()) {
+        agree(scene, settings, |_, v, _| v);
+        agree("occluder", Settings { noisy: true, ..settings }, |index, v, rig| {
             rig.exposure = exposure(index);
-            // The mask has NaN, infinity, numbers below 0 and above 1.
-            View { trust: Some(trust(index)), ..v }
+            View { trust: Some(trust(index)), lod: Some(lod_of(index, SIZE)), ..noisy(index, v) }
         });
+    }
+}
+
+#[test]
+fn noise_is_asked_for_and_refused_by_the_setting() {
+    let desc = ContextDesc::new(SIZE);
+    for noisy_setting in [false, true] {
+        let settings = Settings { noisy: noisy_setting, ..settings(MethodKind::Smr) };
+        let Some(mut rig) = Rig::new(desc, settings) else { return };
+        let view = noise_view("refused", &desc);
+        let wrong = if noisy_setting { view.clone() } else { noisy(0, view.clone()) };
+        let message = rig.refusal(&wrong);
+        println!("{message}");
+        assert!(message.contains("noise") && message.contains("Settings::noisy"), "{message}");
+        let right = if noisy_setting { noisy(0, view) } else { view };
+        rig.both(0, Reset::None, &[right]);
     }
 }

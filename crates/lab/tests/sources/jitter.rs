@@ -1,12 +1,10 @@
 //! Jittered frames, and references that are sums of them.
 
 use crate::roomy::roomy_device;
+use afterimage::Image;
 use afterimage::kernel::color::luma;
-use afterimage::{Filter, Foveation, Image, Method, Settings, Smr};
-use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::device::Headless;
 use afterimage_lab::frame::{Content, RenderedFrame};
-use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
-use afterimage_lab::pipeline::{Pipeline, Processor, RunKind};
 use afterimage_lab::source::{
     AnalyticSource, FrameRequest, FrameSource, RasterSource, ReadLimits, SceneOptions, reference_offsets_px,
 };
@@ -98,43 +96,5 @@ fn references_are_means_of_jittered_frames() {
     }
     if let Some((mut source, _)) = cubes() {
         is_the_mean_of_jittered_frames(&mut source, 4);
-    }
-}
-
-/// Mean squared errors after some jittered frames: of what smr shows, and of one sample a pixel.
-fn errors(source: &mut AnalyticSource, processor: &dyn Processor, frames: u64) -> ([f64; 2], Image<[f32; 3]>) {
-    let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..Foveation::default() };
-    let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
-    let run = RunKind::PostProcess(Settings { method, ..Settings::default() });
-    let mut pipeline = Pipeline::new(*source.view(), foveation, &[run], true, &[], processor)
-        .unwrap()
-        .with_sparse(SparseGeometry::Full, SampleOrder::default())
-        .with_reference_samples(Some(16))
-        .with_jitter();
-    let mut last = None;
-    for index in 0..frames {
-        let frame = source.render(&pipeline.request(index, Some([48.0, 27.0]))).unwrap();
-        let image = pipeline.step(&frame).unwrap().outputs.remove(0).image;
-        last = Some((image, frame));
-    }
-    let (image, frame) = last.unwrap();
-    let error = |shown: &Image<[f32; 3]>| {
-        let pairs = shown.pixels().iter().zip(frame.reference.color.pixels());
-        let square = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum::<f64>();
-        pairs.map(square).sum::<f64>() / shown.pixels().len() as f64
-    };
-    ([error(&image), error(&frame.given().color)], image)
-}
-
-#[test]
-fn a_jittered_still_converges_to_the_antialiased_reference_on_both_processors() {
-    let mut source = AnalyticSource::new("still", SIZE, 40.0, 60.0).unwrap();
-    let ([shown, single], on_cpu) = errors(&mut source, &Backend::Cpu, 64);
-    println!("mean squared error {shown:.6}, of one sample a pixel {single:.6}");
-    assert!(shown < 0.4 * single, "{shown} of {single}");
-    let Some(device) = roomy_device() else { return };
-    let (_, on_gpu) = errors(&mut source, &Backend::Gpu(device.clone()), 64);
-    if afterimage_testing::gpu::rounds_as_the_cpu() {
-        assert_eq!(on_cpu.pixels(), on_gpu.pixels(), "twins");
     }
 }

@@ -36,15 +36,16 @@ fn the_remains_of_an_aborted_run_are_replaced() {
     assert!(!folder.path("out/report.json").exists());
     // What a write that was cut off leaves behind.
     fs::write(folder.path("out/none/.000009.png.1.2.part"), b"x").unwrap();
+    fs::write(folder.path("out/none/notes.txt"), "mine").unwrap();
     let again = [QUICK, &["--gaze", "8,4", "--frames", "2", "--size", "32x18"]].concat();
     succeeds(&run("analytic:lateral", &out, &again));
-    assert_eq!(files(&folder.path("out/none")), ["000000.png", "000001.png"]);
+    assert_eq!(files(&folder.path("out/none")), ["000000.png", "000001.png", "notes.txt"]);
     assert!(!files(&folder.path("out")).iter().any(|name| name.starts_with('.')), "{:?}", files(&folder.path("out")));
     assert_eq!(read_json(&folder.path("out/report.json"))["frames"], 2);
     // Frames of something else stay, also in the folder of a finished run without its report.
     fs::remove_file(folder.path("out/report.json")).unwrap();
     refuses(&run("analytic:lateral", &out, &again), &["frames of something else", "--out"]);
-    assert_eq!(files(&folder.path("out/none")).len(), 2);
+    assert_eq!(files(&folder.path("out/none")).len(), 3);
 }
 
 #[test]

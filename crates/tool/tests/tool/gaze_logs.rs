@@ -64,42 +64,12 @@ fn what_a_log_lacks_is_asked_for_in_one_line() {
     let errors = String::from_utf8_lossy(&refused.stderr);
     assert!(refused.status.code() == Some(2) && errors.contains("--screen-px WxH"), "{errors}");
     both(&[&sweep[..], &["--screen-px", "1920x1080"]].concat());
-    refuses(&["scanpath", "--from", "eyelink", &page, "--out", &out], &["no time and gaze of eyelink", "ASC"]);
-    refuses(&["scanpath", &page, "--screen-px", "8x8", "--eye", "left", "--out", &out], &["left eye", "--eye"]);
     let angle = ["run", "analytic:scroll", "--gaze", &page, "--screen-px", "1920x1080", "--gaze-map", "angle"];
     refuses(&[&angle[..], &["--out", &folder.text("run")]].concat(), &["--gaze-map fit", "--screen-mm WxH"]);
-    refuses(&["scanpath", "--from", "pupil", "--out", &out], &["FILE"]);
     refuses(&["scanpath", &page, "--seconds", "3", "--out", &out], &["--seconds"]);
     refuses(&["scanpath", "--screen-mm", "5x5", "--out", &out], &["--screen-mm", "not a gaze log"]);
     refuses(&["run", "analytic:scroll", "--gaze", "3,4", "--eye", "left", "--out", &out], &["--eye", "--gaze 3,4"]);
     refuses(&["info", "analytic:scroll", "--screen-px", "8x8"], &["--screen-px", "analytic:scroll"]);
-    refuses(&["scanpath", &page, "--screen-mm", "5", "--out", &out], &["WxH in millimeters"]);
-}
-
-#[test]
-fn info_reads_logs_of_any_ending_and_says_what_looks_wrong() {
-    let folder = Folder::new();
-    let head = "# screen_px: 1920x1080\n# screen_cm: 53x30\n# distance_cm: 65\nt_s,x_px,y_px,valid\n";
-    let rows = |row: &dyn Fn(u32) -> String| (0..20).map(row).collect::<String>();
-    let usual = format!("{head}{}", rows(&|i| format!("{},{},500,1\n", f64::from(i) * 0.02, 900 + i)));
-    for name in ["a.csv", "A.CSV", "a.tsv", "a.Txt", "a.log", "a"] {
-        let text = if name == "a.tsv" { usual.replace(',', "\t") } else { usual.clone() };
-        let said = succeeds(&["info", &folder.write(name, text.as_bytes())]);
-        assert!(said.starts_with("scanpath of 0.380 s\nsamples: 20 (0 lost)\n") && !said.contains("warning"), "{said}");
-    }
-    let asc = "** CONVERTED FROM a.edf using edfapi\nMSG\t1 DISPLAY_COORDS 0 0 1279 1023\nSTART\t5 \tLEFT\tSAMPLES\n\
-        5\t 100.0\t 200.0\t 700.0\t...\n7\t .\t .\t 0.0\t...\n";
-    let said = succeeds(&["info", &folder.write("a.asc", asc.as_bytes())]);
-    assert!(said.contains("--from eyelink") && said.contains("1280x1024 px") && said.contains("2 (1 lost)"), "{said}");
-    let milliseconds = format!("{head}{}", rows(&|i| format!("{},{},500,1\n", i * 20, 900 + i)));
-    let shares = format!("{head}{}", rows(&|i| format!("{},0.{i},0.5,1\n", f64::from(i) * 0.02)));
-    for (text, word) in [(milliseconds, "are the times milliseconds?"), (shares, "are the coordinates 0 to 1?")] {
-        let file = folder.write("odd.csv", text.as_bytes());
-        assert!(succeeds(&["info", &file]).contains(word));
-        let (_, errors) = both(&["scanpath", &file, "--out", &folder.text("out.csv")]);
-        assert!(errors.contains(word) && errors.lines().count() == 1, "{errors}");
-    }
-    refuses(&["info", &folder.write("prose.txt", b"It was a dark night.\n")], &["prose.txt", "column names", "tobii"]);
 }
 
 /// Times in milliseconds would be a clip of an hour: `run` says so before it makes the folder.

@@ -157,25 +157,6 @@ fn scenes_have_few_samples_by_default_and_given_frames_are_blurred() {
 }
 
 #[test]
-fn a_rerun_replaces_the_frames_of_the_run_before_and_nothing_else() {
-    let folder = Folder::new();
-    let out = folder.text("out");
-    succeeds(&run("analytic:still", &out, SMALL));
-    fs::write(folder.path("out/wrs/notes.txt"), "mine").unwrap();
-    succeeds(&run("analytic:still", &out, &["--size", "160x90", "--frames", "2", "--no-jod"]));
-    assert_eq!(files(&folder.path("out/wrs")), ["000000.png", "000001.png", "notes.txt"]);
-    // The plot is that of the new run: lines of two points.
-    let plot = fs::read_to_string(folder.path("out/psnr.svg")).unwrap();
-    let line = plot.split("class=\"curve\"").nth(1).unwrap();
-    assert_eq!(line.split(" d=\"").nth(1).unwrap().split('"').next().unwrap().split(['M', 'L']).skip(1).count(), 2);
-    // Frames from other tools are not touched.
-    fs::create_dir_all(folder.path("foreign/wrs")).unwrap();
-    fs::write(folder.path("foreign/wrs/000007.png"), "photo").unwrap();
-    refuses(&run("analytic:still", &folder.text("foreign"), SMALL), &["frames of something else", "--out"]);
-    assert_eq!(fs::read_to_string(folder.path("foreign/wrs/000007.png")).unwrap(), "photo");
-}
-
-#[test]
 fn a_run_that_fails_leaves_no_plot_of_the_run_before() {
     let folder = Folder::new();
     let sequence = afterimage_testing::workspace().join("fixtures/sequences/lateral_160x90");

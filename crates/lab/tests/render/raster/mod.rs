@@ -6,7 +6,6 @@ mod head;
 mod light;
 mod methods;
 mod quad_views;
-mod quads;
 mod real;
 mod rig;
 mod shaded;

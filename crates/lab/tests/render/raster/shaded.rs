@@ -5,7 +5,7 @@ use crate::given::{builtin, device};
 use afterimage::Image;
 use afterimage_lab::frame::{Content, QuadRequest, ShadedColor};
 use afterimage_lab::scene::Scene;
-use afterimage_lab::source::{FrameRequest, FrameSource, RasterSource, SceneCamera};
+use afterimage_lab::source::{FrameRequest, FrameSource, RasterSource, SceneCamera, Wanted};
 
 /// Odd sides: the last quads lie half beyond the edges.
 const SIZE: [u32; 2] = [159, 91];
@@ -15,7 +15,8 @@ fn scenes() -> Vec<Scene> {
     [&named[..], &[super::foveated::noise()]].concat()
 }
 
-/// They have the bits of that frame with the same jitter and one sample a pixel, and nothing else is shaded.
+/// They have the bits of that frame with the same jitter and one sample a pixel, and nothing else is shaded. So have
+/// the surfaces that a plan is made from, which differ from those of the pixels' centres.
 #[test]
 fn chosen_pixels_are_those_of_the_full_rate_frame() {
     let Some(device) = device() else { return };
@@ -27,6 +28,15 @@ fn chosen_pixels_are_those_of_the_full_rate_frame() {
             let request = FrameRequest { jitter_px: Some(jitter_px), ..FrameRequest::full_rate(3 * index as u64) };
             let frame = source.render(&request).unwrap();
             let Content::Jittered(full) = &frame.content else { panic!("one sample a pixel") };
+            let mut surfaces = |jitter_px| {
+                let request = FrameRequest { wanted: Wanted::Surfaces, jitter_px, ..request.clone() };
+                let frame = source.render(&request).unwrap();
+                let Content::OnDevice(content) = &frame.content else { panic!("surfaces on the device") };
+                content.read_geometry().map(|(depth, motion)| (Some(depth), Some(motion))).unwrap()
+            };
+            let expected = (full.depth.clone(), full.motion.clone());
+            assert!(surfaces(None) != expected, "{name}: a planted error");
+            assert!(surfaces(Some(jitter_px)) == expected, "{name}");
             let chosen = |[x, y]: [u32; 2]| (x * 7 + y * 5 + x * y) % 4 == index as u32;
             let quads = Image::from_fn(SIZE.map(|side| side.div_ceil(2)), chosen);
             let shaded = source.shade(&frame, &QuadRequest { quads, on_device: None }).unwrap().unwrap();

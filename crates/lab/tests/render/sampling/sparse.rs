@@ -5,7 +5,7 @@ use super::fills::Yard;
 use afterimage::{Image, Lattices, ViewGeometry};
 use afterimage_lab::lattices::SampleOrder;
 use afterimage_lab::trace::film::Film;
-use afterimage_lab::trace::sampling::{Acuity, Lattice, Layers, Regions, Sampling};
+use afterimage_lab::trace::sampling::{Lattice, Layers, Regions, Sampling};
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::work::WorkItem;
 use std::collections::{HashMap, HashSet};
@@ -95,20 +95,6 @@ fn samples_have_the_colors_traced_at_their_places() {
         }
         assert!(seen * 10 > traced.len() * 9, "{seen} of {}", traced.len());
     }
-}
-
-#[test]
-fn patterns_without_moving_lattices_are_refused() {
-    let refused = |sampling: Sampling| sampling.check_sparse().unwrap_err().to_string();
-    assert!(refused(Sampling::Uniform).contains("regions or layers"));
-    assert!(refused(Sampling::Acuity(Acuity::default())).contains("regions or layers"));
-    assert!(refused(Sampling::Layers(Layers::default())).contains("[1, 2, 3, 4]"));
-    let lens = Layers { lens_deg: Some(40.0), steps: [1, 2, 4, 8], ..Layers::default() };
-    assert!(refused(Sampling::Layers(lens)).contains("lens"));
-    for blocks in [[3, 6], [4, 2], [1, 2], [1, 1]] {
-        assert!(refused(Sampling::Regions(Regions { blocks, ..Regions::default() })).contains("powers of two"));
-    }
-    assert!(patterns().iter().all(|sampling| sampling.check_sparse().is_ok()));
 }
 
 #[test]

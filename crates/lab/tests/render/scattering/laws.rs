@@ -7,40 +7,6 @@ use afterimage_testing::Draws;
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 
-#[test]
-fn a_lobe_that_is_not_used_can_be_left_out_bit_for_bit() {
-    let mut d = Draws::new("lobes");
-    for _ in 0..20_000 {
-        let color = Vec3::new(share(&mut d), share(&mut d), share(&mut d));
-        let surface = Surface { base_color: color, anisotropy: share(&mut d), ..white(&mut d) };
-        let used = Lobes::used_by(&surface);
-        let random = d.bits();
-        let superset = used.union(Lobes {
-            retro: random & 1 != 0,
-            specular: random & 2 != 0,
-            metal: random & 4 != 0,
-            anisotropy: random & 8 != 0,
-            clearcoat: random & 16 != 0,
-            sheen: random & 32 != 0,
-            transmission: random & 64 != 0,
-        });
-        let wo = direction(d.uniform().max(1e-7), d.uniform());
-        let u = std::array::from_fn(|_| d.uniform());
-        let results = [used, superset, Lobes::ALL].map(|lobes| {
-            let layers = bsdf::layers(&surface, wo, &TABLES, lobes);
-            let s = bsdf::sample(&layers, wo, u, lobes);
-            (s, bsdf::eval(&layers, wo, direction(u[1], u[2]), lobes), bsdf::eval(&layers, wo, -wo, lobes))
-        });
-        assert_eq!(results[0], results[1], "{surface:?}");
-        assert_eq!(results[0], results[2], "{surface:?}");
-    }
-    // Control: removing a lobe that is used changes the result.
-    let metal = Surface { metallic: 0.5, ..WHITE };
-    let wo = direction(0.5, 0.1);
-    let value = |lobes| bsdf::eval(&bsdf::layers(&metal, wo, &TABLES, lobes), wo, Vec3::Z, lobes);
-    assert_ne!(value(Lobes::ALL), value(Lobes { metal: false, ..Lobes::ALL }));
-}
-
 /// Textbook forms of GGX D, height-correlated visibility G2 / (4 cos cos), and Fresnel reflectance.
 fn ggx(wo: DVec3, wi: DVec3, h: DVec3, a: f64) -> [f64; 2] {
     let t = (h.x * h.x + h.y * h.y) / (h.z * h.z);

@@ -136,18 +136,6 @@ fn triangles_that_are_not_finite_are_left_out_and_counted() {
 }
 
 #[test]
-fn triangles_without_area_and_duplicates_are_kept() {
-    let mut file = Gltf::new();
-    file.soup(&[TRIANGLE, TRIANGLE, [[1.0; 3]; 3], [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]].concat());
-    let scene = file.open();
-    assert_eq!((scene.still().len(), scene.warnings.len()), (4, 0));
-    // Also with generated tangents.
-    let mut file = everything();
-    file.set("POSITION", &[[0.5, 0.5, 0.5]; 3]);
-    file.open();
-}
-
-#[test]
 fn nodes_that_are_no_tree() {
     let mut file = Gltf::new();
     for children in [json!([1]), json!([2]), json!([1])] {

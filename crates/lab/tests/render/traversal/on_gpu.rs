@@ -1,6 +1,6 @@
 //! The device's hits equal the CPU's bit for bit: triangle, distance, barycentric weights.
 
-use super::scenes::{SOUPS, all, direction, no_rays, rays, soup, sphere};
+use super::scenes::{all, direction, rays, soup, sphere};
 use afterimage::wgpu;
 use afterimage_lab::scene::{Alpha, Material};
 use afterimage_lab::trace::gpu::ray_lists::{GpuRays, HitQuery};
@@ -66,20 +66,6 @@ impl Rig {
 
 fn resting(still: Bvh) -> Geometry {
     Geometry { still, ..Geometry::default() }
-}
-
-#[test]
-fn random_soups() {
-    for ((count, center, half), storage) in SOUPS.into_iter().zip(STORAGES.into_iter().cycle()) {
-        let name = format!("soup of {count} around {center}, {half} m");
-        let geometry = resting(Bvh::build(&soup(&name, count, center, half), None, &[]));
-        let Some(rig) = Rig::new(geometry, 0, storage) else { return };
-        let mut rays = [rays(&name, 10_000, center, half), no_rays()].concat();
-        // The same with limits.
-        let mut d = Draws::new("limits");
-        rays.iter_mut().step_by(3).for_each(|r| r.t_max = half * d.range(0.0, 2.0));
-        rig.check(&name, &rays);
-    }
 }
 
 #[test]

@@ -215,25 +215,3 @@ fn a_seed_is_a_scanpath() {
         assert_eq!((made.path.lost(), made.path.samples()[0].t_s), (0, 0.0));
     }
 }
-
-#[test]
-fn options_out_of_range_are_named() {
-    let with = |change: fn(&mut SyntheticOptions)| {
-        let mut options = SyntheticOptions::default();
-        change(&mut options);
-        generate(&options).unwrap_err().to_string()
-    };
-    for (error, expected) in [
-        (with(|o| o.rate_hz = 0.0), "rate: 0 Hz"),
-        (with(|o| o.rate_hz = f64::NAN), "rate: NaN Hz"),
-        (with(|o| o.duration_s = -1.0), "duration: -1 s"),
-        (with(|o| o.duration_s = f64::NAN), "duration: NaN s"),
-        (with(|o| o.duration_s = 1e9), "at most ten million"),
-        (with(|o| o.screen.size_px = [0, 4]), "0x4 pixels"),
-        (with(|o| o.screen.size_cm = None), "not known"),
-        (with(|o| o.screen.distance_cm = Some(-3.0)), "from -3 cm"),
-        (with(|o| o.screen.distance_cm = Some(3e3)), "at least 8 degrees"),
-    ] {
-        assert!(error.starts_with("synthetic scanpath, ") && error.contains(expected), "{error}");
-    }
-}

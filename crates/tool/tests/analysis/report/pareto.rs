@@ -54,20 +54,6 @@ fn better_and_cheaper_are_where_the_axes_say() {
 }
 
 #[test]
-fn settings_with_a_name_have_it_beside_their_point() {
-    let mut all = measurements();
-    let known = all.iter().position(|m| m.point.input == INPUTS[0] && m.point.method == "smr").unwrap();
-    all[known].rust = "Settings::headset()".into();
-    let svg = pareto::svg(&of(&all, None), INPUTS[0], flip());
-    let document = Document::parse(&svg).unwrap();
-    let names: Vec<_> = with_class(&document, "names").flat_map(|n| n.children()).filter(Node::is_element).collect();
-    let texts: Vec<&str> = names.iter().map(|n| n.text().unwrap().trim()).collect();
-    assert_eq!(texts, ["Settings::headset"]);
-    let row = of(&all, None).rows.into_iter().find(|r| r.rust == all[known].rust).unwrap();
-    assert!(row.label.ends_with(", Settings::headset"), "{}", row.label);
-}
-
-#[test]
 fn png_has_marks_and_letters_and_is_the_same_again() {
     assert_marks_and_letters(&pareto::svg(&table(None), INPUTS[1], flip()), 100);
 }

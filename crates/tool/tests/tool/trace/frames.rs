@@ -2,7 +2,6 @@
 
 use super::rig::{Traced, picture};
 use crate::rig::{Folder, words};
-use afterimage_lab::trace::effects::Effect;
 use serde_json::Value;
 
 #[test]
@@ -45,20 +44,6 @@ fn the_same_seed_gives_the_same_bytes() {
     for file in ["color/000000.exr", "color/000000.png"] {
         assert_eq!(a.bytes(file), b.bytes(file));
         assert_ne!(a.bytes(file), c.bytes(file));
-    }
-}
-
-#[test]
-fn all_effects_give_the_bytes_of_those_that_are_needed() {
-    for scene in ["builtin:cornell", "builtin:bunny-low"] {
-        let auto = Traced::new(scene, &[]);
-        let all = Traced::new(scene, &["--effects", "all", "-v"]);
-        assert_eq!(auto.bytes("color/000000.exr"), all.bytes("color/000000.exr"), "{scene}");
-        assert_eq!(all.report()["effects"].as_array().unwrap().len(), Effect::ALL.len());
-        assert!(all.stdout.contains("nothing in the scene needs it"), "{}", all.stdout);
-        let none = Traced::new(scene, &["--effects", "none", "-v"]);
-        assert_ne!(auto.bytes("color/000000.exr"), none.bytes("color/000000.exr"), "{scene}");
-        assert!(none.stdout.contains("left out though the scene has it"), "{}", none.stdout);
     }
 }
 
