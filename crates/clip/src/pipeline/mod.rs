@@ -63,6 +63,8 @@ pub struct Pipeline {
     use_trust: bool,
     pixel: Option<[u32; 2]>,
     quad_views: Option<QuadViewLayout>,
+    /// Foveation of the frames after the first, if that has another one.
+    later: Option<Foveation>,
     is_jittered: bool,
     reference_samples: Option<u32>,
 }
@@ -106,8 +108,24 @@ impl Pipeline {
             pixel: None,
             quad_views: None,
             is_jittered: false,
+            later: None,
             reference_samples: None,
         })
+    }
+
+    /// Renders the first frame with one pixel in 4 ([`Foveation::quarter`]), the others with the pipeline's foveation.
+    ///
+    /// # Errors
+    /// [`CreateError`] as for [`new`](Self::new).
+    pub fn with_quarter_first(mut self) -> Result<Self, CreateError> {
+        self.later = Some(self.foveator.foveation);
+        self.set_foveation(Foveation::quarter())?;
+        Ok(self)
+    }
+
+    fn set_foveation(&mut self, foveation: Foveation) -> Result<(), CreateError> {
+        self.foveator.foveation = foveation;
+        self.executor.set_foveation(foveation)
     }
 
     /// Passes the source's trust masks, if any, to the methods.
@@ -220,6 +238,9 @@ impl Pipeline {
         let outputs = outputs?;
         let Candidate { lods, pyramid, .. } = candidate;
         self.foveator.keep(pyramid);
+        if let Some(later) = self.later.take() {
+            self.set_foveation(later).expect("the pipeline was made with this foveation");
+        }
         Ok(Step { gaze_px, ecc_deg, lods, tracked, outputs, foveation_ms })
     }
 
