@@ -155,6 +155,20 @@ impl Foveation {
         Self { fovea_deg: 0.0, mid_deg: 0.0, rate_mid: rate, rate_far: rate, budget, ..Self::quads() }
     }
 
+    /// One pixel in 4, evenly, without a gaze: a sparse frame for the first one after a cut, before frames shaded by
+    /// quads. It fills the view with four times as many places as quads. smr's history stays with the change of
+    /// settings.
+    ///
+    /// ```
+    /// use afterimage::{Filter, Foveation};
+    ///
+    /// assert_eq!(Foveation::quarter().filter, Filter::Sparse);
+    /// ```
+    pub fn quarter() -> Self {
+        let filter = Filter::Sparse;
+        Self { filter, fovea_deg: 0.0, mid_deg: 0.0, blend_deg: 0.0, rate_mid: 2, rate_far: 2, ..Self::default() }
+    }
+
     /// Checks the range of every field.
     ///
     /// # Errors

@@ -172,11 +172,11 @@ impl CpuAfterimage {
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
         self.planned = None;
-        let has_same_pass = settings.pass_shader() == self.desc.settings.pass_shader();
+        let keeps_history = settings.keeps_history_of(&self.desc.settings);
         self.desc.settings = settings;
         if settings.history_layout() != self.history.layout() {
             self.history = History::new(&self.desc);
-        } else if !has_same_pass {
+        } else if !keeps_history {
             self.history.forget();
         }
         Ok(())

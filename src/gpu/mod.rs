@@ -188,12 +188,12 @@ impl Afterimage {
     pub fn set_settings(&mut self, device: &Device, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
         let has_same_pass = settings.pass_shader() == self.pass_shader;
-        let same_history = settings.history_layout() == self.history.layout();
+        let keeps_history = settings.keeps_history_of(&self.desc.settings);
         (self.desc.settings, self.pass_shader) = (settings, settings.pass_shader());
         self.stages.update(device, &self.desc, has_same_pass);
         self.generation += 1;
         self.recorder.clear();
-        if !(has_same_pass && same_history) {
+        if !keeps_history {
             self.history = History::new(device, &self.desc);
         }
         self.update_plan(device);

@@ -218,6 +218,14 @@ impl Settings {
         (self.entry().overrides)(self)
     }
 
+    /// Whether history of other settings is history of these. That of smr on sparse frames is the same for lattices and
+    /// for quads, though passes differ.
+    pub(crate) fn keeps_history_of(&self, other: &Self) -> bool {
+        let layout = self.history_layout();
+        let has_same_pass = self.pass_shader() == other.pass_shader();
+        layout == other.history_layout() && (has_same_pass || matches!(layout, HistoryLayout::Sparse { .. }))
+    }
+
     /// Layout of the history.
     pub(crate) fn history_layout(&self) -> HistoryLayout {
         (self.entry().history)(self)

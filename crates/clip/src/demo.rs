@@ -60,6 +60,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         foveation,
         sparse_geometry: SparseGeometry::Full,
         quad_views: None,
+        quarter_first: false,
         sample_order: SampleOrder::default(),
         jitter: false,
         reference_samples: None,

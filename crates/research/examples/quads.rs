@@ -30,6 +30,8 @@ const FRAMES_PER_GAZE: u64 = 16;
 struct Row {
     name: String,
     foveation: Foveation,
+    /// Foveation of the first frame after a cut, if it is another.
+    after_cut: Option<Foveation>,
     post: CpuAfterimage,
     scorer: Scorer,
     /// Sum over frames of the share of the pixels that were shaded.
@@ -45,12 +47,13 @@ fn sparse(fovea_deg: f32, mid_deg: f32, rate_mid: u32, rate_far: u32) -> Foveati
 /// Rows of the table.
 fn rows(size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure> {
     let mut rows = vec![];
-    let mut add = |name: &str, foveation: Foveation| -> Result<(), Failure> {
+    let mut add = |name: &str, foveation: Foveation, after_cut: Option<Foveation>| -> Result<(), Failure> {
         let method = Method::Smr(Smr { antialias, ..Smr::default() });
         let settings = Settings { method, foveation, ..Settings::default() };
         rows.push(Row {
             name: name.into(),
             foveation,
+            after_cut,
             post: CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(size) })?,
             scorer: Scorer::default(),
             shaded: 0.0,
@@ -59,11 +62,12 @@ fn rows(size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure> {
         });
         Ok(())
     };
-    add("lattices 1/2/4", sparse(5.0, 15.0, 2, 4))?;
-    add("quads, Settings::screen", Settings::screen().foveation)?;
-    add("quads, as by default", Foveation::quads())?;
-    add("one pixel in 4", sparse(0.0, 0.0, 2, 2))?;
-    add("uniform 25 %", Foveation::uniform(0.25))?;
+    let screen = Settings::screen().foveation;
+    add("lattices 1/2/4", sparse(5.0, 15.0, 2, 4), None)?;
+    add("quads, Settings::screen", screen, None)?;
+    add("the same, a quarter first", screen, Some(Foveation::quarter()))?;
+    add("one pixel in 4", Foveation::quarter(), None)?;
+    add("uniform 25 %", Foveation::uniform(0.25), None)?;
     Ok(rows)
 }
 
@@ -72,9 +76,11 @@ impl Row {
     fn show(&mut self, frame: &SourceFrame, view: &ViewFrame, index: u64) -> Result<f64, Failure> {
         let size = frame.color.size();
         let (depth, motion) = (frame.depth.as_ref().ok_or("no depth")?, frame.motion.as_ref().ok_or("no motion")?);
-        let is_sparse = self.foveation.filter == Filter::Sparse;
+        let foveation = self.after_cut.filter(|_| frame.cut).unwrap_or(self.foveation);
+        self.post.set_settings(Settings { foveation, ..self.post.desc().settings })?;
+        let is_sparse = foveation.filter == Filter::Sparse;
         let gaze_px = view.gaze.resolve(None, &view.geometry);
-        let lattices = is_sparse.then(|| self.foveation.lattices(&view.geometry, gaze_px, index));
+        let lattices = is_sparse.then(|| foveation.lattices(&view.geometry, gaze_px, index));
         let (colors, depths, motions) = ([&frame.color], [depth], [motion]);
         let views = [ViewFrame { lattices, ..*view }];
         let reset = if frame.cut { Reset::All } else { Reset::None };

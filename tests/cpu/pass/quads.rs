@@ -142,6 +142,50 @@ fn without_history_the_budget_is_spread_evenly_over_the_view() {
     }
 }
 
+/// One frame of lattices, then quads: smr's history stays, and every pixel is nearer to the full-rate frame.
+#[test]
+fn a_first_frame_at_a_quarter_stays_in_history() {
+    for antialias in [false, true] {
+        let view = wall(0, Needs::Settled);
+        let quads = settings(BUDGET, antialias);
+        let error = |foveation: Foveation, reset: Reset| {
+            let mut post = context(BUDGET, antialias);
+            post.set_settings(Settings { foveation, ..quads }).unwrap();
+            let first = if foveation.filter == Filter::Sparse {
+                view.clone().foveated(&foveation, [30.0, 20.0], 0)
+            } else {
+                view.clone()
+            };
+            show_first(&mut post, &first);
+            post.set_settings(quads).unwrap();
+            let images = Images::of(&[view.one()]);
+            let frame = Frame { reset, ..images.frame(1) };
+            post.plan(&frame).unwrap();
+            let mut shown = [Image::filled(SIZE, [0.0; 3])];
+            post.process(&frame, &mut shown).unwrap();
+            let off = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum::<f64>();
+            shown[0].pixels().iter().zip(view.color.pixels()).map(off).sum::<f64>()
+        };
+        let by_quads = error(quads.foveation, Reset::None);
+        let by_a_quarter = error(Foveation::quarter(), Reset::None);
+        let forgotten = error(Foveation::quarter(), Reset::All);
+        println!(
+            "squared error in the second frame: {by_quads:.2}, after a quarter {by_a_quarter:.2}, reset {forgotten:.2}"
+        );
+        assert!(by_a_quarter < 0.5 * by_quads && by_a_quarter < 0.5 * forgotten);
+    }
+}
+
+/// Shows frame 0, planned if its foveation asks for it.
+fn show_first(post: &mut CpuAfterimage, view: &View) {
+    let images = Images::of(&[view.one()]);
+    let frame = images.frame(0);
+    if post.desc().settings.foveation.filter == Filter::Quads {
+        post.plan(&frame).unwrap();
+    }
+    post.process(&frame, &mut [Image::filled(SIZE, [0.0; 3])]).unwrap();
+}
+
 #[test]
 fn h108_what_was_not_asked_for_is_not_read_and_what_is_missing_is_not_shown() {
     for antialias in [false, true] {

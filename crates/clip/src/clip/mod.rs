@@ -40,6 +40,8 @@ pub struct Clip {
     pub sparse_geometry: SparseGeometry,
     /// Quad views that the source renders; `None`: a simulator or lattices foveate.
     pub quad_views: Option<QuadViewLayout>,
+    /// Whether the first frame has one pixel in 4 ([`Foveation::quarter`]).
+    pub quarter_first: bool,
     /// Order in which the pixels of sparse frames are sampled.
     pub sample_order: SampleOrder,
     /// Whether sources that can jitter the projection do so.
@@ -251,6 +253,9 @@ impl Clip {
             .with_reference_samples(self.reference_samples);
         if self.jitter {
             pipeline = pipeline.with_jitter();
+        }
+        if self.quarter_first {
+            pipeline = pipeline.with_quarter_first()?;
         }
         if self.trust {
             pipeline = pipeline.with_trust();

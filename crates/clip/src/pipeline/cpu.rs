@@ -8,7 +8,7 @@ use crate::frame::{DeviceHandle, QuadRequest, RenderedFrame, Shaded, ShadedColor
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
 use afterimage::internal::PixelNotes;
 use afterimage::kernel::debug_view::view_color;
-use afterimage::{ContextDesc, CreateError, FrameError, Image};
+use afterimage::{ContextDesc, CreateError, Foveation, FrameError, Image, Settings};
 use std::slice::from_ref;
 
 /// Methods on the CPU.
@@ -19,6 +19,13 @@ impl Executor for CpuExecutor {
     fn add(&mut self, kind: &RunKind, desc: &ContextDesc) -> Result<(), CreateError> {
         kind.check_on_cpu()?;
         self.0.push(CpuAfterimage::new(desc)?);
+        Ok(())
+    }
+
+    fn set_foveation(&mut self, foveation: Foveation) -> Result<(), CreateError> {
+        for post in &mut self.0 {
+            post.set_settings(Settings { foveation, ..post.desc().settings })?;
+        }
         Ok(())
     }
 

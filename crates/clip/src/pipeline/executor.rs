@@ -3,7 +3,7 @@
 use super::candidate::Candidate;
 use super::run::{MethodOutput, RunKind};
 use crate::frame::{DeviceHandle, QuadRequest, RenderedFrame, Shaded};
-use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Reset};
+use afterimage::{ContextDesc, CreateError, DebugView, Foveation, FrameError, Reset};
 
 /// Methods on the CPU or on a device, in the order in which they were added.
 pub trait Executor: Send {
@@ -12,6 +12,12 @@ pub trait Executor: Send {
     /// # Errors
     /// [`CreateError`] if a setting is out of range or the processor does not support it.
     fn add(&mut self, kind: &RunKind, desc: &ContextDesc) -> Result<(), CreateError>;
+
+    /// Changes the foveation of the methods. They keep their history where its layout stays.
+    ///
+    /// # Errors
+    /// As for [`add`](Self::add).
+    fn set_foveation(&mut self, foveation: Foveation) -> Result<(), CreateError>;
 
     /// Device that the methods run on; `None`: they get foveated frames in memory.
     fn device(&self) -> Option<DeviceHandle>;

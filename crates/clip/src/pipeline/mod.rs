@@ -20,8 +20,8 @@ use crate::metric::{Tracked, Tracker};
 use crate::quad_views::QuadViewLayout;
 use crate::source::{FrameRequest, Wanted};
 use afterimage::{
-    ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, FrameValue, Gaze, Image, Method, Settings,
-    SettingsError, ViewGeometry,
+    ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, FrameValue, Gaze, Image, Lattices, Method,
+    Settings, SettingsError, ViewGeometry,
 };
 use foveator::Foveator;
 use oracle::Oracle;
@@ -63,6 +63,8 @@ pub struct Pipeline {
     use_trust: bool,
     pixel: Option<[u32; 2]>,
     quad_views: Option<QuadViewLayout>,
+    /// Foveation of the frames after the first, if that has another one.
+    later: Option<Foveation>,
     is_jittered: bool,
     reference_samples: Option<u32>,
 }
@@ -106,8 +108,24 @@ impl Pipeline {
             pixel: None,
             quad_views: None,
             is_jittered: false,
+            later: None,
             reference_samples: None,
         })
+    }
+
+    /// Renders the first frame with one pixel in 4 ([`Foveation::quarter`]), the others with the pipeline's foveation.
+    ///
+    /// # Errors
+    /// [`CreateError`] as for [`new`](Self::new).
+    pub fn with_quarter_first(mut self) -> Result<Self, CreateError> {
+        self.later = Some(self.foveator.foveation);
+        self.set_foveation(Foveation::quarter())?;
+        Ok(self)
+    }
+
+    fn set_foveation(&mut self, foveation: Foveation) -> Result<(), CreateError> {
+        self.foveator.foveation = foveation;
+        self.executor.set_foveation(foveation)
     }
 
     /// Passes the source's trust masks, if any, to the methods.
@@ -217,9 +235,15 @@ impl Pipeline {
         let mut shade = |request: &QuadRequest| shade(request).unwrap_or_else(|error| (failed = Some(error), None).1);
         let outputs = self.run(frame, &candidate, &mut shade);
         failed.map_or(Ok(()), Err)?;
-        let outputs = outputs?;
-        let Candidate { lods, pyramid, .. } = candidate;
+        let mut outputs = outputs?;
+        let Candidate { lods, pyramid, view, .. } = candidate;
         self.foveator.keep(pyramid);
+        if let Some(later) = self.later.take() {
+            // The share of the pixels that were shaded is given in every frame.
+            let share = view.lattices.map_or(1.0, |lattices| share(&lattices, self.foveator.geometry.size_px()));
+            outputs.iter_mut().for_each(|output| output.chosen = Some(Chosen { share, shading: None }));
+            self.set_foveation(later).expect("the pipeline was made with this foveation");
+        }
         Ok(Step { gaze_px, ecc_deg, lods, tracked, outputs, foveation_ms })
     }
 
@@ -275,6 +299,12 @@ impl Pipeline {
         let has_oracle = self.runs.iter().any(|run| matches!(run, Run::Oracle(_)));
         self.executor.device().is_none() || has_oracle
     }
+}
+
+/// Share of the pixels that have a sample.
+fn share(lattices: &Lattices, [width, height]: [u32; 2]) -> f64 {
+    let samples: u32 = lattices.as_slice().iter().map(|lattice| lattice.points[0] * lattice.points[1]).sum();
+    f64::from(samples) / (f64::from(width) * f64::from(height))
 }
 
 fn check_oracle(foveation: &Foveation) -> Result<(), CreateError> {

@@ -104,6 +104,31 @@ fn scenes_are_shaded_by_quads() {
     }
 }
 
+/// The first frame has one pixel in 4, the second one more detail for it, and later ones are as without.
+#[test]
+fn a_first_frame_at_a_quarter_is_kept() {
+    if afterimage_testing::gpu::adapter().is_none() {
+        return;
+    }
+    let folder = Folder::new();
+    let more = words("--jitter halton --reference-samples 1 --budget 5 --method smr");
+    let frames = |name: &str, backend: &str, more: &[&str], key: &str| -> Vec<f64> {
+        let out = folder.text(name);
+        let options = [&["--foveation", "quads", "--backend", backend, "--no-flip"], SMALL, more].concat();
+        succeeds(&run("builtin:cubes", &out, &options));
+        column(&folder.path(name), "smr", key).into_iter().map(|v| v.unwrap()).collect()
+    };
+    let quarter_first = [&more[..], &["--quarter-first"]].concat();
+    let without = frames("without", "cpu", &more, "psnr_db");
+    let with = frames("with", "cpu", &quarter_first, "psnr_db");
+    let on_device = frames("device", "gpu", &quarter_first, "psnr_db");
+    println!("{without:?} without, {with:?} with, {on_device:?} on the device");
+    assert!((0..2).all(|frame| with[frame] > without[frame] + 1.0));
+    assert!(with.iter().zip(&on_device).all(|(a, b)| (a - b).abs() < 0.05));
+    let shares = column(&folder.path("with"), "smr", "shaded_share");
+    assert!((0.24..0.26).contains(&shares[0].unwrap()) && shares[1].unwrap() < 0.2, "{shares:?}");
+}
+
 #[test]
 fn what_quads_cannot_do_is_refused() {
     let folder = Folder::new();
@@ -121,6 +146,8 @@ fn what_quads_cannot_do_is_refused() {
         refused(still, &[&format!("--budget={budget}")], &["--budget", "0 to 100 percent"]);
     }
     refuses(&run(still, &out, &["--budget", "3"]), &["--budget", "--foveation quads"]);
+    refuses(&run(still, &out, &["--quarter-first"]), &["--quarter-first", "--foveation quads"]);
+    refused("builtin:cubes", &["--quarter-first", "--source", "trace"], &["--quarter-first", "path tracer"]);
     refused(still, &["--share", "25", "--budget", "3"], &["--share", "--budget"]);
     refuses(&run(still, &out, &["--share", "25"]), &["--share", "--foveation quads"]);
     refuses(&["bench", "--foveation", "quads"], &["--foveation"]);

@@ -5,7 +5,7 @@ use crate::clock::{Elapsed, Stopwatch};
 use crate::device::{Headless, PassClock};
 use crate::frame::{Content, DeviceHandle, QuadRequest, RenderedFrame, Shaded, ShadedColor};
 use afterimage::gpu::Frame;
-use afterimage::{ContextDesc, CreateError, DebugView, FrameError};
+use afterimage::{ContextDesc, CreateError, DebugView, Foveation, FrameError, Settings};
 use afterimage_clip::pipeline::{
     Candidate, Chosen, Executor, MethodOutput, RunInputs, RunKind, Shade, chooses, unshaded,
 };
@@ -45,6 +45,15 @@ impl Executor for DeviceExecutor {
             _ => DeviceRun::new(&self.gpu, desc, DeviceFormats::EXACT)?,
         });
         Ok(())
+    }
+
+    fn set_foveation(&mut self, foveation: Foveation) -> Result<(), CreateError> {
+        for run in &mut self.runs {
+            let settings = Settings { foveation, ..run.post().desc().settings };
+            run.post_mut().set_settings(&self.gpu.device, settings)?;
+        }
+        let desc = *self.inputs.desc();
+        self.inputs.set_foveation(&ContextDesc { settings: Settings { foveation, ..desc.settings }, ..desc })
     }
 
     fn device(&self) -> Option<DeviceHandle> {

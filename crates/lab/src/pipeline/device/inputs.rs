@@ -81,6 +81,11 @@ impl DeviceInputs {
         })
     }
 
+    /// Size and foveation of the simulator.
+    pub fn desc(&self) -> &ContextDesc {
+        self.simulator.desc()
+    }
+
     /// Replaces the simulator if the foveation in `desc`'s settings differs from its own.
     ///
     /// # Errors

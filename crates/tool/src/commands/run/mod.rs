@@ -59,6 +59,10 @@ pub struct RunArgs {
     /// --sampling, else what the input has
     #[arg(long, alias = "reference-spp", value_parser = parse_samples, value_name = "N")]
     pub reference_samples: Option<u32>,
+    /// With --foveation quads: the first frame has one pixel in 4, evenly, so that a view is sharp sooner after a cut.
+    /// Only smr keeps that frame in its history. Not for traced scenes
+    #[arg(long)]
+    pub quarter_first: bool,
     /// First frame that counts in scores; frames.csv and the pictures have all. Without history, the first frames of a
     /// clip are another question
     #[arg(long, default_value_t = 0, value_name = "N")]

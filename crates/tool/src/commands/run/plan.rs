@@ -40,6 +40,13 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
     if args.foveation.is_quads() {
         check_quads(args)?;
     }
+    let is_traced = args.input.is_scene() && !args.input.is_rasterised();
+    if args.quarter_first && (!args.foveation.is_quads() || is_traced) {
+        return refuse(
+            "--quarter-first: applies to frames shaded by quads that no path tracer makes; add --foveation quads"
+                .into(),
+        );
+    }
     let fps = args.input.fps(info);
     let geometry = args.input.geometry(info)?;
     let mut methods: Vec<(&'static str, RunKind)> = vec![];
@@ -71,6 +78,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
             foveation,
             sparse_geometry: args.foveation.geometry(),
             quad_views: args.foveation.quad_views(),
+            quarter_first: args.quarter_first,
             sample_order: args.foveation.order,
             jitter: args.foveation.is_jittered(),
             reference_samples: args.reference_samples()?,
