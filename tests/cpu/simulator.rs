@@ -221,22 +221,6 @@ fn a_bad_pixel_does_not_spread() {
     }
 }
 
-#[test]
-fn settings_that_contradict_are_refused() {
-    let base = Foveation::default();
-    for (foveation, words) in [
-        (Foveation { fovea_deg: 20.0, ..base }, "at most the middle region's 15 degrees"),
-        (Foveation { rate_mid: 3, ..base }, "a power of two"),
-        (Foveation { rate_far: 4, ..base }, "at least rate_mid, 8"),
-        (Foveation { rate_far: 1 << 20, ..base }, "to 256"),
-        (Foveation { blend_deg: -1.0, ..base }, "0 to 90 degrees"),
-        (Foveation { mid_deg: f32::NAN, ..base }, "0 to 180 degrees"),
-    ] {
-        let message = foveation.validate().unwrap_err().to_string();
-        assert!(message.contains(words), "{message}");
-    }
-}
-
 proptest! {
     #![proptest_config(afterimage_testing::property("foveation", 40))]
 
