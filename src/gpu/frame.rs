@@ -40,8 +40,8 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Outputs of [`record`](Afterimage::record): the frame, and optionally a debug view, counters and timestamps. `record`
-/// also accepts a texture alone.
+/// Outputs of [`record`](super::Afterimage::record): the frame, and optionally a debug view, counters and timestamps.
+/// `record` also accepts a texture alone.
 ///
 /// ```
 /// # use afterimage::wgpu;
@@ -71,7 +71,8 @@ pub struct Target<'a> {
 
 /// Debug view beside the output frame. Example: [`Target`].
 ///
-/// The device needs the limit `max_storage_textures_per_shader_stage` of 5. [`Afterimage::record_view`] needs 4.
+/// The device needs the limit `max_storage_textures_per_shader_stage` of 5.
+/// [`Afterimage::record_view`](super::Afterimage::record_view) needs 4.
 #[derive(Clone, Copy, Debug)]
 pub struct DebugTarget<'a> {
     /// View to draw.
@@ -104,8 +105,8 @@ impl<'a> From<Textures<'a>> for Target<'a> {
     }
 }
 
-/// Which inputs and outputs a frame and its target have, for [`Afterimage::prewarm`]: each combination has its own
-/// pipelines. Default: color and output alone.
+/// Which inputs and outputs a frame and its target have, for [`Afterimage::prewarm`](super::Afterimage::prewarm): each
+/// combination has its own pipelines. Default: color and output alone.
 ///
 /// ```no_run
 /// # use afterimage::wgpu;
@@ -214,7 +215,8 @@ impl<'a> Timestamps<'a> {
 }
 
 /// Result of recording a frame: warnings about its description, which may be ignored. Warnings about pixels are in
-/// [`FrameStats::warnings`](crate::FrameStats::warnings). Example: [`Afterimage::record_view`].
+/// [`FrameStats::warnings`](crate::FrameStats::warnings). Example:
+/// [`Afterimage::record_view`](super::Afterimage::record_view).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Recorded {
     gaze: [Option<Warning>; MAX_VIEWS],

@@ -182,7 +182,7 @@ impl Afterimage {
     /// History survives, unless its layout changes: with another [`method`](Settings::method), with
     /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::Wrs::sampler) and the scale of its
     /// [`gate`](crate::Wrs::gate), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation),
-    /// but not between [`Filter::Sparse`](crate::Filter::Sparse) and [`Filter::Quads`](crate::Filter::Quads).
+    /// but not between [`Filter::Sparse`] and [`Filter::Quads`].
     ///
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
