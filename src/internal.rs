@@ -8,10 +8,4 @@ pub use crate::gpu::buffer::filled;
 pub use crate::gpu::compute::{ComputeShader, Sources, method_pass};
 #[cfg(feature = "gpu")]
 pub use crate::gpu::plane::array_view;
-#[cfg(feature = "gpu")]
-pub use crate::gpu::uniforms::{
-    CameraUniforms, FrameUniforms, LatticeUniforms, SparseUniforms, ViewLattices, ViewUniforms,
-};
 pub use crate::notes::{Note, NoteStage, NoteValues, PixelNotes};
-#[cfg(feature = "gpu")]
-pub use crate::simulator::gpu::uniforms::FoveationUniforms;
