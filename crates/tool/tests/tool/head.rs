@@ -51,6 +51,33 @@ fn a_generated_head_moves_the_camera_and_its_scanpath_repeats_the_run() {
 }
 
 #[test]
+fn scanpath_writes_heads_that_trace_follows_with_both_eyes() {
+    let folder = Folder::new();
+    let csv = folder.text("head.csv");
+    let text = succeeds(&["scanpath", "--head", "--pursuits", "0.5", "--seconds", "2", "--rate", "90", "--out", &csv]);
+    assert!(text.contains("fixations"), "{text}");
+    let written = fs::read_to_string(&csv).unwrap();
+    assert!(written.contains("\nt_s,x_px,y_px,valid,head_x_m,") && written.lines().count() == 190, "{written}");
+    assert!(succeeds(&["info", &csv]).contains("head: a pose at every sample"));
+    let out = folder.text("trace");
+    let eyes =
+        ["--stereo", "0.063", "--sampling", "regions", "--region-spp", "2,1,1", "--size", "32x32", "--hfov", "90"];
+    let at = ["--camera", "head", "--gaze", &csv, "--start", "0.5", "--frames", "3", "--fps", "4", "--backend", "cpu"];
+    succeeds(&[&["trace", "builtin:cornell", "--out", &out], &eyes[..], &at].concat());
+    let cameras = read_json(&folder.path("trace/cameras.json"));
+    assert_eq!(cameras["frames"].as_array().unwrap().len(), 3);
+    assert_ne!(cameras["frames"][0]["camera_to_world"], cameras["frames"][2]["camera_to_world"]);
+    let of = |eye: &str| rows(&folder.path(&format!("trace/{eye}gaze.csv")));
+    let (head, left, right) = (of(""), of("left/"), of("right/"));
+    // The left eye sees what is near farther to the right; where the ray leaves the box, nothing is near.
+    assert!(left[0][1] > head[0][1] && head[0][1] > right[0][1], "{head:?} {left:?} {right:?}");
+    for i in 0..3 {
+        assert!(left[i][1] >= head[i][1] && head[i][1] >= right[i][1], "{head:?} {left:?} {right:?}");
+        assert!((left[i][1] + right[i][1] - 2.0 * head[i][1]).abs() < 0.05);
+    }
+}
+
+#[test]
 fn heads_that_cannot_be_are_refused_in_one_line() {
     let folder = Folder::new();
     let out = folder.text("out");

@@ -1,6 +1,7 @@
-//! Reconstruction: constants stay constant, ramps stay ramps, no pixel is left empty.
+//! Reconstruction: constants stay constant, ramps stay ramps, no pixel is left empty, both tracers agree.
 
 use crate::given;
+use crate::given::device;
 use afterimage::ViewGeometry;
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::FoveatedFrame;
@@ -44,6 +45,12 @@ impl Yard {
         self.view.geometry()
     }
 
+    /// Tracers on the CPU and on the device; `None` without one.
+    pub fn on_both(self) -> Option<(Self, Tracer)> {
+        let on_device = Tracer::new(&Backend::Gpu(device()?), &self.world, TraceSettings::default()).unwrap();
+        Some((self, on_device))
+    }
+
     fn trace(&self, sampling: Sampling, gaze_px: [f32; 2], samples: u32, frame: u64) -> FoveatedFrame {
         sampling.plan(self.geometry(), gaze_px, samples, frame).trace(&self.tracer, &self.world, &self.view, frame)
     }
@@ -76,5 +83,16 @@ fn the_fovea_is_what_uniform_sampling_gives() {
         }
         assert!(done.color.pixels().iter().flatten().all(|v| v.is_finite() && *v >= 0.0));
         assert_eq!(done.lod.at(80, 45), 0.0);
+    }
+}
+
+#[test]
+fn the_device_traces_the_same_foveated_frames() {
+    let Some((yard, on_device)) = Yard::new([160, 90], TraceSettings::default()).on_both() else { return };
+    for sampling in patterns() {
+        let plan = sampling.plan(yard.geometry(), [60.0, 50.0], 2, 5);
+        let [a, b] = [&yard.tracer, &on_device].map(|tracer| plan.trace(tracer, &yard.world, &yard.view, 5));
+        assert_eq!((a.samples, a.rays), (b.samples, b.rays), "{sampling:?}");
+        assert!(a.color == b.color, "{sampling:?}");
     }
 }

@@ -111,6 +111,26 @@ fn exact_frames_are_gaps_and_marks_at_the_top() {
 }
 
 #[test]
+fn jumps_of_the_gaze_have_ticks_and_a_note() {
+    let errors = rising(22.0, 20);
+    let mut moves = vec![0.3; 20];
+    moves[6] = 2.1;
+    moves[7] = 9.0;
+    moves[11] = 1.9;
+    let drawn = svg(&[("smr", &errors)], &moves);
+    let document = Document::parse(&drawn).unwrap();
+    let x = ticks(&document, "x");
+    let jumps = with_class(&document, "jumps").next().unwrap();
+    let at: Vec<f64> =
+        jumps.children().filter(|n| n.attribute("stroke-width").is_some()).map(|n| number(&n, "x1")).collect();
+    assert_eq!(at.len(), 2, "only moves of more than 2 degrees");
+    assert!((at[0] - place(&x, 6.0)).abs() < 0.5 && (at[1] - place(&x, 7.0)).abs() < 0.5, "{at:?}");
+    assert!(has_text(&document, "saccades; 2 frames"));
+    let still = svg(&[("smr", &errors)], &[0.0; 20]);
+    assert!(!still.contains("saccades") && still.contains("never moves by more than 2 degrees"));
+}
+
+#[test]
 fn names_are_text_and_fit() {
     let errors = rising(22.0, 5);
     let long = "a\u{1}<b>&\"'\u{fffe}".to_owned() + &"/folder".repeat(40);
