@@ -155,9 +155,9 @@ impl Foveation {
         Self { fovea_deg: 0.0, mid_deg: 0.0, rate_mid: rate, rate_far: rate, budget, ..Self::quads() }
     }
 
-    /// One pixel in 4, evenly, without a gaze: a sparse frame for the first one after a cut, before frames shaded by
-    /// quads. It fills the view with four times as many places as quads. smr's history stays with the change of
-    /// settings.
+    /// One pixel in 4, evenly, without a gaze: a sparse frame ([`ViewFrame::lattices`](crate::ViewFrame::lattices)) to
+    /// render first after a cut, before frames shaded by quads. As many pixels in quads lie at a quarter of the places.
+    /// smr keeps its history when the settings change to quads.
     ///
     /// ```
     /// use afterimage::{Filter, Foveation};

@@ -181,8 +181,8 @@ impl Afterimage {
     ///
     /// History survives, unless its layout changes: with another [`method`](Settings::method), with
     /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::Wrs::sampler) and the scale of its
-    /// [`gate`](crate::Wrs::gate), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation),
-    /// but not between [`Filter::Sparse`] and [`Filter::Quads`].
+    /// [`gate`](crate::Wrs::gate), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
+    /// From [`Filter::Sparse`] to [`Filter::Quads`] and back, smr keeps it.
     ///
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.

@@ -61,14 +61,14 @@ const FINER_WIDTH: f32 = 0.25;
 const OVERSHOOT: f32 = 0.25;
 /// Factor on `Smr::accumulate`, the share of equally fine history: samples at their own pixels need less averaging.
 const ACCUMULATE: f32 = 0.5;
-/// Least share of history at which the stored sample is stored instead of the shown color.
+/// Least share of history at which its nearest sample is stored again, instead of the shown color.
 const KEEP_SHARE: f32 = 0.9;
 /// Noisy samples: standard errors of a mean difference at which the fit starts to fall; it is 0 at twice as many.
 const MEAN_ERRORS: f32 = 3.0;
 /// Noisy samples: limit on the samples of a history coarser than the candidate, in frames. A larger limit reduces
 /// noise, and keeps blurred history for longer.
 const BLURRED_FRAMES: f32 = 8.0;
-/// Noisy samples: least share of history at which the mean is stored in the place of the stored sample.
+/// Noisy samples: least share of history at which the mean is stored in the place of its nearest sample.
 const STAY_SHARE: f32 = 0.5;
 
 /// Level of detail of a candidate at distance `px` from the nearest sample of a lattice of level `coarsest`: 0 at the

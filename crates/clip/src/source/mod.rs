@@ -81,7 +81,7 @@ pub trait FrameSource {
     ///
     /// # Errors
     /// As for `render`.
-    fn shade(&mut self, _frame: &RenderedFrame, _wish: &QuadRequest) -> Result<Option<Shaded>, InputError> {
+    fn shade(&mut self, _frame: &RenderedFrame, _request: &QuadRequest) -> Result<Option<Shaded>, InputError> {
         Ok(None)
     }
 
