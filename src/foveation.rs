@@ -2,6 +2,7 @@
 //! shaded. A level of detail `l` means blocks of 2^l pixels a side.
 
 use crate::error::{SettingsError, check};
+use crate::geometry::ViewGeometry;
 use crate::kernel::foveate;
 use crate::kernel::lattice::offset_px;
 use crate::kernel::quads::FIRST_STEP;
@@ -243,6 +244,19 @@ impl Foveation {
     /// Largest standard deviation of the Gaussian in pixels.
     pub(crate) fn sigma_far_px(&self) -> f32 {
         0.5 * (self.rate_far - 1) as f32
+    }
+
+    /// Angle in degrees from the gaze by which the region and the level of detail of the pixel `px` are chosen: its
+    /// eccentricity. Regions have other shapes where another angle is taken here.
+    pub fn region_angle_deg(&self, geometry: &ViewGeometry, px: [f32; 2], gaze_px: [f32; 2]) -> f32 {
+        geometry.eccentricity_deg(px, gaze_px)
+    }
+
+    /// Smallest rectangle that contains all pixels up to an [angle](Self::region_angle_deg) of `radius_deg`: first
+    /// pixel, and pixel after the last. It is clamped to the view, and empty if it lies outside the view. For renderers
+    /// that draw regions as views of their own.
+    pub fn region_px(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], radius_deg: f32) -> [[u32; 2]; 2] {
+        geometry.around_px(gaze_px, radius_deg)
     }
 
     /// Level of detail at eccentricity `e_deg`: log2 of the block edge in pixels, 0 at full rate. Continuous;

@@ -219,7 +219,7 @@ impl Foveation {
         };
         let mut stack = vec![];
         for (step, radius_deg) in self.regions() {
-            let [low, high] = geometry.around_px(gaze_px, radius_deg);
+            let [low, high] = self.region_px(geometry, gaze_px, radius_deg);
             if low[0] < high[0] && low[1] < high[1] && stack.iter().all(|l: &Lattice| l.step < step) {
                 let lattice: Lattice = covering(step, low, high);
                 stack.extend((0..2).all(|i| lattice.first_px[i] < size[i]).then_some(lattice));
@@ -267,7 +267,7 @@ impl Foveation {
             let mut atlas = whole;
             let mut last_step = 0;
             for (step, radius_deg) in self.regions() {
-                let [low, high] = geometry.around_px(gaze_px, radius_deg + SLACK_DEG);
+                let [low, high] = self.region_px(geometry, gaze_px, radius_deg + SLACK_DEG);
                 if low[0] < high[0] && low[1] < high[1] && step > last_step {
                     // A rectangle of n pixels lies in at most ceil(n / step) + 1 blocks of the frame.
                     let points = [0, 1].map(|i| ((high[i] - low[i]).div_ceil(step) + 1).min(size[i].div_ceil(step)));

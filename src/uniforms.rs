@@ -4,6 +4,8 @@ use crate::context::ContextDesc;
 #[cfg(feature = "gpu")]
 use crate::foveation::Foveation;
 use crate::frame::{Exposure, FrameInputs, Reset};
+#[cfg(feature = "cpu")]
+use crate::kernel::acuity;
 use crate::kernel::foveate::level_len;
 #[cfg(feature = "cpu")]
 use crate::kernel::lattice::{Between, between};
@@ -14,6 +16,8 @@ use crate::lattice::{Lattice, Lattices};
 use crate::settings::Sampler;
 use crate::view::ViewFrame;
 use glam::DVec2;
+#[cfg(feature = "cpu")]
+use glam::Vec3;
 
 /// Largest number of views of a context ([`ContextDesc::view_count`]) on a GPU.
 #[cfg(feature = "gpu")]
@@ -201,6 +205,14 @@ impl ViewUniforms {
             highest_px,
             ..Self::default()
         }
+    }
+
+    /// `Foveation::region_angle_deg` of a ray. Twin: `shaders/pass/view_uniforms.wgsl`.
+    #[cfg(feature = "cpu")]
+    #[inline(always)]
+    pub(crate) fn region_angle_deg(&self, ray: Vec3) -> f32 {
+        let [x, y, z, _] = self.gaze_ray;
+        acuity::eccentricity_deg(ray, Vec3::new(x, y, z))
     }
 }
 

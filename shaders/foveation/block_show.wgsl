@@ -25,7 +25,7 @@ fn level_at(px: vec2<u32>, view: u32) -> u32 {
             block_center_px(block.y, level, frame.size.y),
         );
         let lod = region_lod(
-            eccentricity_at(center, view),
+            region_angle_at(center, view),
             frame.fovea_radius_deg,
             frame.mid_radius_deg,
             frame.blend_deg,

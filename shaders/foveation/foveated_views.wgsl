@@ -1,6 +1,5 @@
-//#use acuity
 //#use view_uniforms
-// Uniforms of the foveation simulators, and eccentricity.
+// Uniforms of the foveation simulators, and the angle of a pixel.
 
 // src/simulator/gpu/uniforms.rs: FoveationUniforms, which documents the fields
 struct FoveationUniforms {
@@ -16,8 +15,8 @@ struct FoveationUniforms {
 
 @group(0) @binding(0) var<uniform> frame: FoveationUniforms;
 
-// Eccentricity: angle in degrees between the gaze and the ray through a position in pixels.
-fn eccentricity_at(px: vec2<f32>, view: u32) -> f32 {
+// region_angle_deg of the ray through a position in pixels.
+fn region_angle_at(px: vec2<f32>, view: u32) -> f32 {
     let ray = vec3<f32>(px * frame.views[view].ray_scale + frame.views[view].ray_offset, 1.0);
-    return eccentricity_deg(ray, frame.views[view].gaze_ray.xyz);
+    return region_angle_deg(ray, frame.views[view].gaze_ray);
 }

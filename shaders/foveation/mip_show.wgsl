@@ -39,7 +39,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
         return;
     }
     let view = group.z;
-    let e_deg = eccentricity_at(vec2<f32>(px), view);
+    let e_deg = region_angle_at(vec2<f32>(px), view);
     let lod = region_lod(
         e_deg,
         frame.fovea_radius_deg,

@@ -43,19 +43,6 @@ fn heat(value: f32) -> vec3<f32> {
     return stops[i] + (stops[i + 1u] - stops[i]) * t;
 }
 
-// debug_view::verdict_color, sRGB-encoded
-fn verdict_color(verdict: u32) -> vec3<f32> {
-    switch verdict {
-        case VERDICT_VALID: { return vec3<f32>(0.35, 0.35, 0.35); }
-        case VERDICT_RESET: { return vec3<f32>(0.2, 0.4, 1.0); }
-        case VERDICT_BAD_MOTION: { return vec3<f32>(1.0, 0.2, 1.0); }
-        case VERDICT_OFF_SCREEN: { return vec3<f32>(1.0, 0.55, 0.1); }
-        case VERDICT_EMPTY: { return vec3<f32>(1.0, 1.0, 0.3); }
-        case VERDICT_DISOCCLUDED: { return vec3<f32>(1.0, 0.1, 0.1); }
-        default: { return vec3<f32>(0.1, 0.9, 0.9); }
-    }
-}
-
 // debug_view::motion_color, sRGB-encoded
 fn motion_color(motion: vec2<f32>) -> vec3<f32> {
     if !(is_finite(motion.x) && is_finite(motion.y)) {

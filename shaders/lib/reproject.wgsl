@@ -13,6 +13,20 @@ const VERDICT_DISOCCLUDED: u32 = 5u;
 const VERDICT_DISTRUSTED: u32 = 6u;
 const VERDICT_COUNT: u32 = 7u;
 
+// reproject::verdict_color, sRGB-encoded
+fn verdict_color(verdict: u32) -> vec3<f32> {
+    switch verdict {
+        case VERDICT_VALID: { return vec3<f32>(0.35, 0.35, 0.35); }
+        case VERDICT_RESET: { return vec3<f32>(0.2, 0.4, 1.0); }
+        case VERDICT_BAD_MOTION: { return vec3<f32>(1.0, 0.2, 1.0); }
+        case VERDICT_OFF_SCREEN: { return vec3<f32>(1.0, 0.55, 0.1); }
+        case VERDICT_EMPTY: { return vec3<f32>(1.0, 1.0, 0.3); }
+        case VERDICT_DISOCCLUDED: { return vec3<f32>(1.0, 0.1, 0.1); }
+        case VERDICT_DISTRUSTED: { return vec3<f32>(0.1, 0.9, 0.9); }
+        default: { return vec3<f32>(0.0); }
+    }
+}
+
 // Position in the previous frame; `at` is (0, 0) unless the verdict is VERDICT_VALID.
 struct Reprojection {
     verdict: u32,

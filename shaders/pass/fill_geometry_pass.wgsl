@@ -33,7 +33,7 @@ fn is_confirmed(px: vec2<u32>, view: u32, s: GeometrySample) -> bool {
     if HAS_SPARSE_HISTORY == 0u || DEPTH_TEST == 0u {
         return false;
     }
-    let at = reprojected(px, s.motion);
+    let at = reprojected(px, view, s.motion);
     let stored = stored_at(vec2<i32>(at.at), view);
     let expected = expected_disparity(view, ray_at(px, view), s.disparity);
     return at.verdict == VERDICT_VALID

@@ -12,14 +12,6 @@ struct Previous {
     trust: f32,
 }
 
-// Texel of history that is nearest to a surface's previous position.
-fn reprojected(px: vec2<u32>, motion: vec2<f32>) -> Reprojection {
-    if !has_history() {
-        return Reprojection(VERDICT_RESET, vec2<u32>(0u));
-    }
-    return nearest(px.x, px.y, motion, frame.size);
-}
-
 fn no_previous(verdict: u32) -> Previous {
     return Previous(verdict, vec2<f32>(0.0), vec2<u32>(0u), INVALID_DISPARITY, 0.0);
 }

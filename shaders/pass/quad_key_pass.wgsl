@@ -16,7 +16,7 @@ var<workgroup> group_even: atomic<u32>;
 // Need of a pixel, from the four stored samples around its previous position; negative without history.
 fn need_at(px: vec2<u32>, view: u32) -> f32 {
     let motion = motion_at(px, view);
-    var is_valid = reprojected(px, motion).verdict == VERDICT_VALID;
+    var is_valid = reprojected(px, view, motion).verdict == VERDICT_VALID;
     if HAS_TRUST != 0u {
         is_valid = is_valid && trust(trust_at(px, view)) > 0.0;
     }
@@ -82,7 +82,7 @@ fn block(at: vec2<u32>, view: u32) {
         if any(quad >= quads) {
             continue;
         }
-        let e_deg = eccentricity_deg(ray_at(2u * quad, view), frame.views[view].gaze_ray.xyz);
+        let e_deg = region_angle_deg(ray_at(2u * quad, view), frame.views[view].gaze_ray);
         let region_now = region(e_deg, frame.fovea_radius_deg, frame.mid_radius_deg);
         let even = is_seen_quad(quad, view) && is_even(quad, region_now);
         flags[i] = (region_now << 16u) | (u32(even) << 18u);

@@ -263,7 +263,7 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
     let ray = ray_at(px, view);
     let disparity_now = disparity_at(px, view);
     let motion = motion_at(px, view);
-    let lod = candidate_lod(px, view, eccentricity_deg(ray, frame.views[view].gaze_ray.xyz));
+    let lod = candidate_lod(px, view, region_angle_deg(ray, frame.views[view].gaze_ray));
     let coherent_motion = is_coherent(px, view, motion);
     var source = source_of(px, view, motion, disparity_now);
     if source.previous.verdict == VERDICT_VALID && !coherent_motion {

@@ -83,7 +83,7 @@ struct SparseSource {
 }
 
 fn sparse_source(px: vec2<u32>, view: u32, surface: PixelSurface) -> SparseSource {
-    let at = reprojected(px, surface.motion);
+    let at = reprojected(px, view, surface.motion);
     let stored = stored_at(vec2<i32>(at.at), view);
     var previous = previous_of(px, view, surface.motion, surface.disparity, at, stored.lod, stored.disparity);
     if ANTIALIAS == 0u || !surface.mixes {

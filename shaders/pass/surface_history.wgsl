@@ -32,7 +32,7 @@ fn surface_at(texel: vec2<i32>, view: u32) -> Surface {
 // Previous position of a pixel's surface. At a silhouette the nearest texel may show another surface. The texel with
 // the second largest weight then replaces it. It is always read, because a branch costs more on software Vulkan.
 fn source_of(px: vec2<u32>, view: u32, motion: vec2<f32>, disparity_now: f32) -> Source {
-    let at = reprojected(px, motion);
+    let at = reprojected(px, view, motion);
     let words = words_at(vec2<i32>(at.at), view);
     let stored = unpack_surface(words);
     var previous = previous_of(px, view, motion, disparity_now, at, stored.lod, stored.disparity);

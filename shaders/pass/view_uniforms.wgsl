@@ -1,3 +1,4 @@
+//#use acuity
 // Uniforms of a view; shared by methods and simulators.
 
 // src/uniforms.rs: ViewUniforms, which documents the fields
@@ -30,4 +31,10 @@ struct CameraUniforms {
     no_vector: vec2<f32>,
     unused_0: u32,
     unused_1: u32,
+}
+
+// Foveation::region_angle_deg of a ray: angle in degrees from the gaze by which its region and level of detail are
+// chosen. CPU twin: ViewUniforms::region_angle_deg in src/uniforms.rs.
+fn region_angle_deg(ray: vec3<f32>, gaze_ray: vec4<f32>) -> f32 {
+    return eccentricity_deg(ray, gaze_ray.xyz);
 }

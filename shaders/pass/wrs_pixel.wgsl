@@ -88,10 +88,7 @@ fn history_of(
     motion: vec2<f32>,
     disparity_now: f32,
 ) -> History {
-    if !has_history() {
-        return no_history(VERDICT_RESET);
-    }
-    let source = nearest(px.x, px.y, motion, frame.size);
+    let source = reprojected(px, view, motion);
     if source.verdict != VERDICT_VALID {
         return no_history(source.verdict);
     }
@@ -148,7 +145,7 @@ fn pixel(px: vec2<u32>, view: u32, place: Place) {
     let constants = frame.views[view];
     let ray = ray_at(px, view);
     var candidate_w = 0.0;
-    let e_deg = eccentricity_deg(ray, constants.gaze_ray.xyz);
+    let e_deg = region_angle_deg(ray, constants.gaze_ray);
     if candidate.usable {
         let acuity_w = candidate_weight(e_deg, frame.fovea_radius_deg, frame.inv_density_at_fovea);
         candidate_w = sharpen(acuity_w, WEIGHT_EXPONENT) * place.weight;

@@ -55,7 +55,7 @@ pub(super) fn note_inputs(
     let inputs = Inputs::new(desc, frame, view, &state, history.is_filled());
     let stage = NoteStage::Input;
     let (u, v) = (x as usize, y as usize);
-    let e_deg = inputs.eccentricity_deg(inputs.ray(x, y));
+    let e_deg = inputs.region_angle_deg(inputs.ray(x, y));
     notes.note(stage, "gaze", facts.gaze.resolve(state.gaze_px, &facts.geometry), "px");
     notes.note(stage, "distance from the gaze", e_deg, "deg");
     notes.note(stage, "jitter", inputs.uniforms.jitter_px, "px");

@@ -13,9 +13,9 @@ use crate::convention::{DepthConvention, MotionConvention};
 use crate::image::Image;
 use crate::kernel::depth::{INVALID_DISPARITY, distance_of, same_surface};
 use crate::kernel::lattice::{GeometryMean, add_geometry, filled_geometry, point_weight};
-use crate::kernel::reproject::nearest;
 use crate::kernel::resample::TAP_RELATIVE;
 use crate::kernel::stored_sample::unpack_stored;
+use crate::notes::NoNotes;
 use crate::uniforms::{LatticeUniforms, ViewLattices};
 use crate::view::ViewFrame;
 use glam::{Vec2, Vec3};
@@ -118,7 +118,7 @@ impl View<'_> {
         if self.words.is_empty() || !self.inputs.tests_depth() {
             return false;
         }
-        let Ok([u, v]) = nearest(x, y, s.motion, self.inputs.size) else { return false };
+        let Ok([u, v]) = self.inputs.nearest(x, y, s.motion, &mut NoNotes) else { return false };
         let stored = unpack_stored(self.words[(v * self.inputs.size[0] + u) as usize]);
         let expected = self.inputs.previous_disparity(ray, s.disparity);
         stored.lod >= 0.0 && same_surface(expected, stored.disparity, TAP_RELATIVE, 0.0)

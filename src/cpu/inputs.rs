@@ -12,7 +12,7 @@ use crate::kernel::noise::{Noise, candidate_noise};
 use crate::kernel::reproject::{Verdict, camera_vector, has_no_vector};
 use crate::kernel::smr::moves_alike;
 use crate::kernel::surface::MAX_LOD;
-use crate::kernel::{acuity, lens, reproject, sanitize};
+use crate::kernel::{lens, reproject, sanitize};
 use crate::notes::{NoteStage, Notes};
 use crate::settings::DepthTest;
 use crate::stats::FrameStats;
@@ -43,7 +43,6 @@ pub(super) struct Inputs<'a> {
     /// Lattices of the samples: those of a sparse frame, otherwise one of full rate.
     pub lattices: ViewLattices,
     pub uniforms: ViewUniforms,
-    gaze_ray: Vec3,
     /// Factor on stored colors.
     pub exposure: f32,
     /// Factor on given colors.
@@ -64,7 +63,6 @@ impl<'a> Inputs<'a> {
     pub fn new(desc: &ContextDesc, frame: &Frame<'a>, index: usize, state: &ViewState, has_history: bool) -> Self {
         let view = &frame.views[index];
         let uniforms = ViewUniforms::new(desc, view, state, index, frame.index);
-        let [x, y, z, _] = uniforms.gaze_ray;
         Self {
             color: frame.color[index],
             lod: frame.lod.map(|l| l[index]),
@@ -76,7 +74,6 @@ impl<'a> Inputs<'a> {
             size: desc.size_px,
             lattices: LatticeUniforms::of_view_or_full(view.lattices.as_ref(), desc.size_px),
             uniforms,
-            gaze_ray: Vec3::new(x, y, z),
             exposure: state.stored_exposure(frame),
             color_exposure: frame.exposure.of_colors(),
             inverse_exposure: 1.0 / frame.exposure.of_colors(),
@@ -95,6 +92,19 @@ impl<'a> Inputs<'a> {
         lens::is_visible(x, y, self.uniforms.lowest_px.into(), self.uniforms.highest_px.into())
     }
 
+    /// Texel of history that is nearest to the previous position of the surface of pixel (x, y), or the verdict that
+    /// rejects history whatever it holds.
+    #[inline(always)]
+    pub fn nearest(&self, x: u32, y: u32, motion: [f32; 2], notes: &mut impl Notes) -> Result<[u32; 2], Verdict> {
+        if self.reset {
+            return Err(Verdict::Reset);
+        }
+        notes.note(NoteStage::Reprojection, "previous position", [x as f32 + motion[0], y as f32 + motion[1]], "px");
+        let nearest_px = reproject::nearest(x, y, motion, self.size)?;
+        notes.note(NoteStage::Reprojection, "nearest texel", nearest_px.map(|v| v as f32), "px");
+        Ok(nearest_px)
+    }
+
     /// Previous position of the surface of pixel (x, y), and whether the nearest stored texel shows that surface.
     /// Returns the verdict instead if history is rejected regardless of the neighbouring texels. `stored` gives level
     /// of detail (negative: empty) and disparity of a stored texel.
@@ -108,14 +118,7 @@ impl<'a> Inputs<'a> {
         stored: impl FnOnce([u32; 2]) -> [f32; 2],
         notes: &mut impl Notes,
     ) -> Result<(Previous, bool), Verdict> {
-        if self.reset {
-            return Err(Verdict::Reset);
-        }
-        let at = [x as f32 + motion[0], y as f32 + motion[1]];
-        notes.note(NoteStage::Reprojection, "previous position", at, "px");
-        let nearest_px = reproject::nearest(x, y, motion, self.size)?;
-        let [lod, stored_disparity] = stored(nearest_px);
-        notes.note(NoteStage::Reprojection, "nearest texel", nearest_px.map(|v| v as f32), "px");
+        let [lod, stored_disparity] = stored(self.nearest(x, y, motion, notes)?);
         notes.note(NoteStage::Reprojection, "its level of detail", lod, "log2 px, below 0: empty");
         notes.note(NoteStage::Reprojection, "its disparity", stored_disparity, "1/distance");
         if lod < 0.0 {
@@ -130,6 +133,7 @@ impl<'a> Inputs<'a> {
         notes.note(NoteStage::Reprojection, "expected disparity", expected, "1/distance");
         notes.note(NoteStage::Reprojection, "same surface", is_same, "");
         notes.note(NoteStage::Reprojection, "trust in history", trust, "");
+        let at = [x as f32 + motion[0], y as f32 + motion[1]];
         Ok((Previous { at, expected, trust }, is_same))
     }
 
@@ -179,8 +183,8 @@ impl<'a> Inputs<'a> {
     }
 
     #[inline(always)]
-    pub fn eccentricity_deg(&self, ray: Vec3) -> f32 {
-        acuity::eccentricity_deg(ray, self.gaze_ray)
+    pub fn region_angle_deg(&self, ray: Vec3) -> f32 {
+        self.uniforms.region_angle_deg(ray)
     }
 
     #[inline(always)]

@@ -50,7 +50,7 @@ impl SurfaceMethod for Smr {
         let (candidate, usable) = inputs.candidate(x, y);
         let disparity = inputs.disparity(x, y);
         let motion = inputs.motion(x, y);
-        let e_deg = inputs.eccentricity_deg(inputs.ray(x, y));
+        let e_deg = inputs.region_angle_deg(inputs.ray(x, y));
         let lod = inputs.candidate_lod(&self.settings.foveation, x, y, e_deg);
         let coherent_motion = inputs.is_coherent(x, y, motion);
         notes.note(NoteStage::Candidate, "color", candidate, "linear light");

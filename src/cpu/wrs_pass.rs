@@ -18,7 +18,6 @@ use crate::kernel::lattice::{nearest_point, place_weight, point_offset_px};
 use crate::kernel::noise::sample_difference;
 use crate::kernel::pack;
 use crate::kernel::pack::Stored;
-use crate::kernel::reproject;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::{Tap, gather_around, has_code, resolve, sharp_sum, tap_codes, taps_around};
 use crate::kernel::rng;
@@ -178,7 +177,7 @@ impl ViewPass<'_> {
         let inputs = &self.inputs;
         let (candidate, usable) = inputs.candidate(x, y);
         let ray = inputs.ray(x, y);
-        let e_deg = inputs.eccentricity_deg(ray);
+        let e_deg = inputs.region_angle_deg(ray);
         let mut weight = if usable { self.weight(e_deg) } else { 0.0 };
         let mut sample_px = [x, y];
         if self.weighs_places {
@@ -285,15 +284,9 @@ impl ViewPass<'_> {
         notes: &mut impl Notes,
     ) -> Result<History, Verdict> {
         let inputs = &self.inputs;
-        if inputs.reset {
-            return Err(Verdict::Reset);
-        }
-        let previous_px = [x as f32 + motion[0], y as f32 + motion[1]];
-        notes.note(NoteStage::Reprojection, "previous position", previous_px, "px");
-        let [qx, qy] = reproject::nearest(x, y, motion, inputs.size)?;
+        let [qx, qy] = inputs.nearest(x, y, motion, notes)?;
         let at = qy as usize * inputs.size[0] as usize + qx as usize;
         let stored = pack::unpack(self.past.words[at]);
-        notes.note(NoteStage::Reprojection, "nearest texel", [qx as f32, qy as f32], "px");
         notes.note(NoteStage::Reprojection, "its weight sum", stored.w_sum, "0: empty");
         notes.note(NoteStage::Reprojection, "its disparity", stored.disparity, "1/distance");
         if stored.w_sum == 0.0 {
@@ -314,6 +307,7 @@ impl ViewPass<'_> {
         }
         past.color = wrs::expose(past.color, inputs.exposure);
         if self.params.sampler == SamplerCode::AChaoMean {
+            let previous_px = [x as f32 + motion[0], y as f32 + motion[1]];
             let mean = self.resampled(previous_px, expected, stored.color, notes);
             past.color = wrs::unspread(candidate, past.color, wrs::expose(mean, inputs.exposure));
         }

@@ -23,7 +23,8 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> Finding
             codes += f64::from(evidence.word(CODES));
             all += f64::from(TILE_PX * TILE_PX);
             let middle = tile.origin_px.map(|o| (o + TILE_PX / 2) as f32);
-            let lod = foveation.lod(observation.now.view.geometry.eccentricity_deg(middle, observation.now.gaze_px));
+            let now = &observation.now;
+            let lod = foveation.lod(foveation.region_angle_deg(&now.view.geometry, middle, now.gaze_px));
             if !is_inside(tile, desc.size_px) || foveation.filter != Filter::Mip || lod < 1.5 {
                 continue;
             }

@@ -183,7 +183,7 @@ fn measurements(desc: &ContextDesc, observations: &[Observation]) -> Vec<Measure
             let half = 0.5 * (TILE_PX - 1) as f32;
             let points: [[f32; 2]; 9] = std::array::from_fn(|i| [x + half * (i % 3) as f32, y + half * (i / 3) as f32]);
             let (geometry, gaze_px) = (observation.now.view.geometry, observation.now.gaze_px);
-            let ecc_deg = points.map(|px| geometry.eccentricity_deg(px, gaze_px));
+            let ecc_deg = points.map(|px| desc.settings.foveation.region_angle_deg(&geometry, px, gaze_px));
             found.push(Measurement { measured, points, ecc_deg, geometry, gaze_px });
         }
     }
@@ -196,7 +196,7 @@ impl Measurement {
             None => self.ecc_deg,
             Some(change) => {
                 let gaze_px = (change.apply)(self.gaze_px, self.geometry.size_px().map(|s| s as f32));
-                self.points.map(|px| self.geometry.eccentricity_deg(px, gaze_px))
+                self.points.map(|px| foveation.region_angle_deg(&self.geometry, px, gaze_px))
             }
         };
         agrees(self.measured, foveation.filter, range(foveation, &ecc_deg))

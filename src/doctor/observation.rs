@@ -90,7 +90,7 @@ impl Description {
         let foveation = desc.settings.foveation;
         let lod = |center, gaze| match foveation.filter {
             Filter::Quads => 0.0,
-            _ => foveation.lod(view.geometry.eccentricity_deg(center, gaze)),
+            _ => foveation.lod(foveation.region_angle_deg(&view.geometry, center, gaze)),
         };
         let tiles = origins(desc.size_px).map(|origin_px| {
             let center = origin_px.map(|o| (o + TILE_PX / 2) as f32);

@@ -2,7 +2,7 @@
 //! views are returned as linear light.
 
 use super::color::srgb_decode;
-use super::reproject::Verdict;
+use super::reproject::{Verdict, verdict_color};
 use super::sanitize::is_finite;
 #[cfg(feature = "bevy-0-20")]
 use bevy_reflect::Reflect;
@@ -122,20 +122,6 @@ pub fn heat(value: f32) -> Vec3 {
     let i = (position as usize).min(4);
     let t = position - i as f32;
     STOPS[i] + (STOPS[i + 1] - STOPS[i]) * t
-}
-
-/// Color of a verdict, sRGB-encoded.
-#[inline]
-pub fn verdict_color(verdict: Verdict) -> Vec3 {
-    match verdict {
-        Verdict::Valid => Vec3::new(0.35, 0.35, 0.35),
-        Verdict::Reset => Vec3::new(0.2, 0.4, 1.0),
-        Verdict::BadMotion => Vec3::new(1.0, 0.2, 1.0),
-        Verdict::OffScreen => Vec3::new(1.0, 0.55, 0.1),
-        Verdict::Empty => Vec3::new(1.0, 1.0, 0.3),
-        Verdict::Disoccluded => Vec3::new(1.0, 0.1, 0.1),
-        Verdict::Distrusted => Vec3::new(0.1, 0.9, 0.9),
-    }
 }
 
 /// Color of a motion vector (previous minus current position, in pixels), sRGB-encoded. The hue shows the direction in

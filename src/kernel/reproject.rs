@@ -53,6 +53,20 @@ impl Verdict {
     pub const REJECTED: [Self; 4] = [Self::BadMotion, Self::OffScreen, Self::Disoccluded, Self::Distrusted];
 }
 
+/// Color of a verdict, sRGB-encoded.
+#[inline]
+pub fn verdict_color(verdict: Verdict) -> Vec3 {
+    match verdict {
+        Verdict::Valid => Vec3::new(0.35, 0.35, 0.35),
+        Verdict::Reset => Vec3::new(0.2, 0.4, 1.0),
+        Verdict::BadMotion => Vec3::new(1.0, 0.2, 1.0),
+        Verdict::OffScreen => Vec3::new(1.0, 0.55, 0.1),
+        Verdict::Empty => Vec3::new(1.0, 1.0, 0.3),
+        Verdict::Disoccluded => Vec3::new(1.0, 0.1, 0.1),
+        Verdict::Distrusted => Vec3::new(0.1, 0.9, 0.9),
+    }
+}
+
 /// Texel of the previous frame nearest to the previous position of pixel (`x`, `y`). A position is inside the previous
 /// frame from half a pixel before the first centre (inclusive) to half a pixel after the last (exclusive).
 ///

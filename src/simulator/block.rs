@@ -18,7 +18,7 @@ pub fn lod_map(foveation: &Foveation, geometry: &ViewGeometry, gaze_px: [f32; 2]
             let blocks = size.map(|s| foveate::level_len(s, level));
             Image::from_fn_parallel(blocks, |block| {
                 let center = [0, 1].map(|i| foveate::block_center_px(block[i], level, size[i]));
-                foveation.lod(geometry.eccentricity_deg(center, gaze_px)) >= level as f32
+                foveation.lod(foveation.region_angle_deg(geometry, center, gaze_px)) >= level as f32
             })
         })
         .collect();

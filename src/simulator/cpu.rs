@@ -6,17 +6,15 @@ use crate::geometry::ViewGeometry;
 use crate::image::Image;
 
 impl Foveation {
-    /// Level of detail of every pixel, for [`render`](Self::render) and for `cpu::Frame::lod`. `ecc_deg`:
-    /// eccentricities of the pixels for the same gaze, from [`ViewGeometry::eccentricity_map`]. Needs the feature
-    /// `cpu`. Example: `simulator::Pyramid`.
-    ///
-    /// # Panics
-    /// If `ecc_deg` is smaller than the view.
-    pub fn lod_map(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], ecc_deg: &Image<f32>) -> Image<f32> {
+    /// Level of detail of every pixel, for [`render`](Self::render) and for `cpu::Frame::lod`. Needs the feature `cpu`.
+    /// Example: `simulator::Pyramid`.
+    pub fn lod_map(&self, geometry: &ViewGeometry, gaze_px: [f32; 2]) -> Image<f32> {
         if self.filter == Filter::Block {
             return block::lod_map(self, geometry, gaze_px);
         }
-        Image::from_fn_parallel(geometry.size_px(), |[x, y]| self.lod(ecc_deg.at(x as usize, y as usize)))
+        Image::from_fn_parallel(geometry.size_px(), |px| {
+            self.lod(self.region_angle_deg(geometry, px.map(|v| v as f32), gaze_px))
+        })
     }
 
     /// Foveated frame, from the mip levels of a full-rate frame (levels 0 to [`max_level`](Self::max_level)) and the

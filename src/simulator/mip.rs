@@ -19,7 +19,7 @@ use glam::Vec3;
 /// let foveation = Foveation::default();
 /// let full = Image::from_fn(size, |[x, _]| [(x % 2) as f32; 3]);
 ///
-/// let lods = foveation.lod_map(&geometry, gaze_px, &geometry.eccentricity_map(gaze_px));
+/// let lods = foveation.lod_map(&geometry, gaze_px);
 /// let foveated = foveation.render(&Pyramid::new(full, foveation.max_level()), &lods);
 /// assert_eq!(foveated.at(33, 18), [1.0; 3]);
 /// assert_eq!(foveated.at(0, 0), [0.5; 3]);

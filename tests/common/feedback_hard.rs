@@ -53,7 +53,7 @@ fn picture(draws: &mut Draws) -> Color {
 fn delivered(settings: &Settings, full: &Color, gaze_px: [f32; 2]) -> View {
     let view = View::still(full.clone(), gaze_px);
     let (f, geometry) = (&settings.foveation, view.facts.geometry);
-    let lods = f.lod_map(&geometry, gaze_px, &geometry.eccentricity_map(gaze_px));
+    let lods = f.lod_map(&geometry, gaze_px);
     View { color: f.render(&Pyramid::new(full.clone(), f.max_level()), &lods), ..view }
 }
 

@@ -41,7 +41,7 @@ fn delivered(settings: &Settings, full: &Color, gaze_px: [f32; 2], index: u64) -
         Filter::Quads => return view,
         _ => {}
     }
-    let lods = f.lod_map(&geometry, gaze_px, &geometry.eccentricity_map(gaze_px));
+    let lods = f.lod_map(&geometry, gaze_px);
     View { color: f.render(&Pyramid::new(full.clone(), f.max_level()), &lods), ..view }
 }
 

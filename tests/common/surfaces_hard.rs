@@ -271,7 +271,7 @@ pub fn saccade(make: Make<'_>) -> Option<String> {
         let px = geometry.project([e_deg.to_radians().tan(), 0.0, 1.0]).unwrap();
         let ecc = geometry.eccentricity_map(px);
         view.facts.gaze = Gaze::At { px };
-        view.color = picture.render(&settings.foveation.lod_map(&geometry, px, &ecc));
+        view.color = picture.render(&settings.foveation.lod_map(&geometry, px));
         (view, ecc)
     };
     let ((left, ecc), (right, _)) = (frame(-10.0), frame(10.0));

@@ -20,7 +20,7 @@ fn noise(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
 /// Levels of detail of a view of 70 degrees.
 fn lods(foveation: &Foveation, size: [u32; 2], gaze: [f32; 2]) -> Image<f32> {
     let geometry = ViewGeometry::flat(size, 70.0).unwrap();
-    foveation.lod_map(&geometry, gaze, &geometry.eccentricity_map(gaze))
+    foveation.lod_map(&geometry, gaze)
 }
 
 fn foveate(foveation: &Foveation, image: &Image<[f32; 3]>, gaze: [f32; 2]) -> Image<[f32; 3]> {

@@ -66,7 +66,7 @@ fn foveate(size: [u32; 2], picture: u32, gaze_px: [f32; 2]) -> Foveated {
         [stripe * wave + light, wave * 0.7, stripe * 0.4 + 0.02]
     });
     let geometry = ViewGeometry::flat(size, 70.0).unwrap();
-    let lods = FOVEATION.lod_map(&geometry, gaze_px, &geometry.eccentricity_map(gaze_px));
+    let lods = FOVEATION.lod_map(&geometry, gaze_px);
     let pyramid = Pyramid::new(sharp, FOVEATION.max_level());
     let color = FOVEATION.render(&pyramid, &lods).map(|c| c.map(|v| half_value(half_bits(v))));
     (color, lods)

@@ -91,7 +91,7 @@ impl QuadViewLayout {
                 let blend_px = foveation.blend_deg / deg_per_px;
                 let wide = blend_px.ceil() as u32;
                 for (step, diameter_deg) in [(1, foveation.fovea_deg), (foveation.rate_mid, foveation.mid_deg)] {
-                    let opaque = geometry.around_px(gaze_px, 0.5 * diameter_deg);
+                    let opaque = foveation.region_px(geometry, gaze_px, 0.5 * diameter_deg);
                     let [low, high] = opaque;
                     let is_seen = diameter_deg > 0.0 && (0..2).all(|i| low[i] < high[i]);
                     if is_seen && step < foveation.rate_far && views.iter().all(|view| view.step < step as f32) {

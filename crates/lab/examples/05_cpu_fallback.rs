@@ -74,7 +74,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut shown = Image::filled(SIZE, [0.0; 3]);
     for index in 0..30 {
         let px = if index < 20 { [80.0, 90.0] } else { [240.0, 90.0] };
-        let lods = foveation.lod_map(&geometry, px, &geometry.eccentricity_map(px));
+        let lods = foveation.lod_map(&geometry, px);
         let foveated = foveation.render(&pyramid, &lods);
         let facts = ViewFrame::new(geometry, Gaze::At { px });
         shown = chosen.show(index, &foveated, facts)?;

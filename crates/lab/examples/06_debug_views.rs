@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for index in 0..20 {
         let frame = source.frame(index)?;
         let px = if index < 12 { [80.0, 60.0] } else { [230.0, 120.0] };
-        let lods = foveation.lod_map(source.view(), px, &source.view().eccentricity_map(px));
+        let lods = foveation.lod_map(source.view(), px);
         gpu.write_rgb(&color, 0, &foveation.render(&Pyramid::new(frame.color, foveation.max_level()), &lods));
         gpu.write(&depth, 0, &frame.depth.ok_or("no depth")?);
         gpu.write(&motion, 0, &frame.motion.ok_or("no motion")?);

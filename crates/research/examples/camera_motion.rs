@@ -28,7 +28,7 @@ fn foveation() -> Foveation {
 }
 
 fn foveated(frame: &Color, geometry: &ViewGeometry, gaze_px: [f32; 2]) -> Color {
-    let lods = foveation().lod_map(geometry, gaze_px, &geometry.eccentricity_map(gaze_px));
+    let lods = foveation().lod_map(geometry, gaze_px);
     let pyramid = afterimage::simulator::Pyramid::new(frame.clone(), foveation().max_level());
     foveation().render(&pyramid, &lods)
 }

@@ -33,7 +33,7 @@ fn halton(mut index: u64, base: u64) -> f32 {
 }
 
 fn foveated(frame: &Color, geometry: &ViewGeometry, gaze_px: [f32; 2], foveation: &Foveation) -> Color {
-    let lods = foveation.lod_map(geometry, gaze_px, &geometry.eccentricity_map(gaze_px));
+    let lods = foveation.lod_map(geometry, gaze_px);
     let pyramid = afterimage::simulator::Pyramid::new(frame.clone(), foveation.max_level());
     foveation.render(&pyramid, &lods)
 }

@@ -14,12 +14,12 @@ use crate::kernel::quads::{
     ENOUGH_SAMPLES, IN_FOVEA, IN_MIDDLE, KEYS, acuity, asked_px, budget_quads, in_pattern, in_turn, need,
     no_history_need, quad_key, region, share_in_block, threshold,
 };
-use crate::kernel::reproject::nearest;
 use crate::kernel::resample::{has_code, tap_codes};
 use crate::kernel::sanitize;
 use crate::kernel::smr::root_difference;
 use crate::kernel::stored_sample::{code_word, is_empty, unpack_full};
 use crate::method::HistoryLayout;
+use crate::notes::NoNotes;
 use glam::Vec3;
 
 /// Quads to shade, view by view.
@@ -39,7 +39,7 @@ impl View<'_> {
         let size = self.inputs.size.map(|side| side.div_ceil(2));
         let radii = [foveation.fovea_radius_deg(), foveation.mid_radius_deg()];
         let regions = Image::from_fn_parallel(size, |[x, y]| {
-            let e_deg = self.inputs.eccentricity_deg(self.inputs.ray(2 * x, 2 * y));
+            let e_deg = self.inputs.region_angle_deg(self.inputs.ray(2 * x, 2 * y));
             region(e_deg, radii[0], radii[1])
         });
         let pattern = Pattern::new(foveation, index);
@@ -86,7 +86,7 @@ impl View<'_> {
         if u >= width || v >= height || !self.inputs.is_visible(u, v) {
             return 0.0;
         }
-        let e_deg = self.inputs.eccentricity_deg(self.inputs.ray(2 * x, 2 * y));
+        let e_deg = self.inputs.region_angle_deg(self.inputs.ray(2 * x, 2 * y));
         self.need_at([u, v]).map_or(no_history_need(x, y, first), |need| need * acuity(e_deg))
     }
 
@@ -98,7 +98,7 @@ impl View<'_> {
         }
         let motion = inputs.motion(x, y);
         let trusted = inputs.trust(x, y).is_none_or(|trust| sanitize::trust(trust) > 0.0);
-        if nearest(x, y, motion, inputs.size).is_err() || !trusted {
+        if inputs.nearest(x, y, motion, &mut NoNotes).is_err() || !trusted {
             return None;
         }
         let codes = tap_codes(inputs.expected_disparity(x, y, inputs.disparity(x, y)));

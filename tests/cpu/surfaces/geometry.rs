@@ -20,7 +20,7 @@ fn h67_microsaccades_enlarge_what_is_shown_sharp() {
         let mut post = context_of(WIDE, settings);
         let mut last = None;
         for (index, &gaze) in gazes.iter().enumerate() {
-            let lods = settings.foveation.lod_map(&view, gaze, &view.eccentricity_map(gaze));
+            let lods = settings.foveation.lod_map(&view, gaze);
             let input = View { lod: Some(lods.clone()), ..sharp(picture.render(&lods)) };
             last = Some(step(&mut post, index as u64, &input));
         }

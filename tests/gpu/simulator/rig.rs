@@ -64,7 +64,7 @@ impl Scene {
         let mut made = Made { shown: vec![], lods: vec![] };
         for (image, view) in self.images.iter().zip(&self.views) {
             let gaze = view.gaze.resolve(None, &view.geometry);
-            let lods = foveation.lod_map(&view.geometry, gaze, &view.geometry.eccentricity_map(gaze));
+            let lods = foveation.lod_map(&view.geometry, gaze);
             let shown = foveation.render(&Pyramid::new(image.clone(), foveation.max_level()), &lods);
             made.shown.extend(shown.pixels().iter().map(|c| c.map(f32::to_bits)));
             made.lods.extend(lods.pixels().iter().map(|l| l.to_bits()));

@@ -48,9 +48,9 @@ impl Foveator {
 
     /// The foveated frame: a simulator's, or the one that its source rendered. `is_read`: some method reads it in
     /// memory.
-    pub fn candidate<'a>(&mut self, frame: &'a RenderedFrame, ecc_deg: &Image<f32>, is_read: bool) -> Candidate<'a> {
+    pub fn candidate<'a>(&mut self, frame: &'a RenderedFrame, is_read: bool) -> Candidate<'a> {
         match &frame.content {
-            Content::FullRate | Content::Jittered(_) => self.simulated(frame, ecc_deg, is_read),
+            Content::FullRate | Content::Jittered(_) => self.simulated(frame, is_read),
             Content::Foveated(foveated) => {
                 let noise = foveated.noise.as_ref();
                 // The levels of detail of a sparse frame follow from its lattices.
@@ -60,19 +60,19 @@ impl Foveator {
                 Candidate { view, lods: foveated.lod.clone(), in_memory: Some(color), pyramid: None }
             }
             Content::Surfaces => {
-                let lods = self.foveation.lod_map(&self.geometry, frame.gaze_px, ecc_deg);
+                let lods = self.foveation.lod_map(&self.geometry, frame.gaze_px);
                 let unshaded = InMemory::new(Cow::Owned(Image::filled([0; 2], [0.0; 3])));
                 Candidate { view: self.view(frame), lods, in_memory: Some(unshaded), pyramid: None }
             }
-            Content::OnDevice(content) => self.on_device(frame, content.as_ref(), ecc_deg, is_read),
+            Content::OnDevice(content) => self.on_device(frame, content.as_ref(), is_read),
         }
     }
 
-    fn simulated<'a>(&mut self, frame: &'a RenderedFrame, ecc_deg: &Image<f32>, is_read: bool) -> Candidate<'a> {
+    fn simulated<'a>(&mut self, frame: &'a RenderedFrame, is_read: bool) -> Candidate<'a> {
         let lattices = self.lattices(frame.gaze_px, frame.index);
         let lods = match &lattices {
             Some(lattices) => levels(lattices, self.geometry.size_px()),
-            None => self.foveation.lod_map(&self.geometry, frame.gaze_px, ecc_deg),
+            None => self.foveation.lod_map(&self.geometry, frame.gaze_px),
         };
         // Runs on a device use the GPU simulator, which equals this one bit for bit on software devices.
         let is_still = self.is_still && matches!(frame.content, Content::FullRate);
@@ -94,13 +94,7 @@ impl Foveator {
     }
 
     /// A frame that its source foveated on a device. It is read back only if a method runs elsewhere.
-    fn on_device<'a>(
-        &self,
-        frame: &RenderedFrame,
-        content: &dyn DeviceContent,
-        ecc_deg: &Image<f32>,
-        is_read: bool,
-    ) -> Candidate<'a> {
+    fn on_device<'a>(&self, frame: &RenderedFrame, content: &dyn DeviceContent, is_read: bool) -> Candidate<'a> {
         let color = if is_read { content.read_color() } else { None };
         let lods = content.lods(self.geometry.size_px());
         let is_shaded = lods.is_some();
@@ -111,7 +105,7 @@ impl Foveator {
             let has_lod = is_shaded && content.lattices().is_none();
             InMemory { has_lod, geometry, ..InMemory::new(Cow::Owned(color)) }
         });
-        let lods = lods.unwrap_or_else(|| self.foveation.lod_map(&self.geometry, frame.gaze_px, ecc_deg));
+        let lods = lods.unwrap_or_else(|| self.foveation.lod_map(&self.geometry, frame.gaze_px));
         Candidate { view: self.view(frame), lods, in_memory, pyramid: None }
     }
 

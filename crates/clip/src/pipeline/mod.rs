@@ -218,15 +218,12 @@ impl Pipeline {
     ) -> Result<Step, E> {
         let has_reference = self.check(frame)?;
         let watch = Stopwatch::start();
-        let ecc_deg = self.foveator.geometry.eccentricity_map(frame.gaze_px);
-        let candidate = self.foveator.candidate(frame, &ecc_deg, self.foveates_in_memory());
+        let candidate = self.foveator.candidate(frame, self.foveates_in_memory());
         self.executor.set(frame, &candidate)?;
         // Frames that a path tracer foveated are not foveated again.
         let foveation_ms = if frame.content.is_traced() { 0.0 } else { watch.wall_ms() };
-        let (gaze_px, ecc_deg) = match self.true_gaze {
-            Some(px) => (px, self.foveator.geometry.eccentricity_map(px)),
-            None => (frame.gaze_px, ecc_deg),
-        };
+        let gaze_px = self.true_gaze.unwrap_or(frame.gaze_px);
+        let ecc_deg = self.foveator.geometry.eccentricity_map(gaze_px);
         let tracked = match has_reference {
             true => self.tracker.advance(&frame.reference, &self.foveator.geometry, &ecc_deg, &candidate.lods),
             false => Tracked::unknown(self.foveator.geometry.size_px()),

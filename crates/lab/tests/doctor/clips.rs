@@ -132,7 +132,7 @@ pub fn foveated(
     if foveation.filter == Filter::Quads {
         return full.clone();
     }
-    let lods = foveation.lod_map(geometry, gaze_px, &geometry.eccentricity_map(gaze_px));
+    let lods = foveation.lod_map(geometry, gaze_px);
     foveation.render(&Pyramid::new(full.clone(), foveation.max_level()), &lods)
 }
 

@@ -27,7 +27,7 @@ fn damaged() -> (Delivery, Vec<Image<f32>>) {
     }
     let lods = delivery.frames.iter().map(|f| {
         let afterimage::Gaze::At { px } = f.view.gaze else { panic!("the gaze is known") };
-        foveation.lod_map(&clip.geometry, px, &clip.geometry.eccentricity_map(px))
+        foveation.lod_map(&clip.geometry, px)
     });
     let lods = lods.collect();
     (delivery, lods)

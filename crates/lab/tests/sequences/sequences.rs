@@ -25,7 +25,7 @@ pub fn foveated(source: &mut AnalyticSource, index: u64, foveation: &Foveation) 
     // The eye drifts, and jumps every five frames; it is lost for a while.
     let jump = (index / 5) as f32;
     let px = [30.0 + 25.0 * jump + 0.3 * index as f32, 60.0 - 12.0 * jump];
-    let lods = foveation.lod_map(&geometry, px, &geometry.eccentricity_map(px));
+    let lods = foveation.lod_map(&geometry, px);
     let mut color = foveation.render(&Pyramid::new(frame.color, foveation.max_level()), &lods);
     let mut motion = frame.motion.unwrap();
     let mut depth = frame.depth.unwrap();

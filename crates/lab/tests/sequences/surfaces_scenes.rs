@@ -84,7 +84,7 @@ fn play_lit(
         full.color = full.color.map(|c| c.map(|v| v * light(index)));
         let px = gaze(index);
         let ecc = geometry.eccentricity_map(px);
-        let lods = FOVEATION.lod_map(&geometry, px, &ecc);
+        let lods = FOVEATION.lod_map(&geometry, px);
         let candidate = FOVEATION.render(&Pyramid::new(full.color.clone(), 3), &lods);
         let tracked = tracker.advance(&full, &geometry, &ecc, &lods);
         let gaze = Gaze::At { px };

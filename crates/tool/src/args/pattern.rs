@@ -99,7 +99,7 @@ impl SamplingArgs {
                 samples: exactly("--region-spp", &self.region_spp, |v| (1..=1 << 20).contains(&v))?,
                 blocks: exactly("--region-block", &self.region_block, |v| (1..=256).contains(&v))?,
                 diameters_deg: exactly("--region-deg", &self.region_deg, |v| v > 0.0 && v < 170.0)?,
-                radius_scale: 1.0,
+                ..Regions::default()
             }),
             SamplingName::Layers => Sampling::Layers(Layers {
                 radii_deg: exactly("--layer-deg", &self.layer_deg, |v| v > 0.0 && v < 85.0)?,

@@ -14,6 +14,11 @@ impl Circle {
     /// The circle that contains everything.
     pub const EVERYTHING: Self = Self { center_px: [0.0; 2], radius_px: f32::INFINITY };
 
+    /// A circle of radius 0, from which those around it are made.
+    pub fn around(center_px: [f32; 2]) -> Self {
+        Self { center_px, radius_px: 0.0 }
+    }
+
     /// The circle enlarged by `by_px`, plus the rounding error of single precision at its edge.
     pub fn grown(self, by_px: f32) -> Self {
         Self { radius_px: self.radius_px + by_px + self.rounding_px(), ..self }

@@ -30,7 +30,7 @@ impl Layers {
         let size_px = geometry.size_px();
         let lens = self.lens_deg.and_then(|deg| {
             let center_px = geometry.project([0.0, 0.0, 1.0])?;
-            Some(Circle { center_px, radius_px: tangent_px(geometry, deg) })
+            Some(Circle { radius_px: tangent_px(geometry, deg), ..Circle::around(center_px) })
         });
         let mut radius = 0.0_f32;
         (0..4)

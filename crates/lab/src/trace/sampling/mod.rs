@@ -25,6 +25,7 @@ use super::work::Spans;
 use super::world::World;
 use crate::frame::FoveatedFrame;
 use afterimage::{Filter, Foveation, Image, ViewGeometry};
+use circle::Circle;
 use rings::{Blended, Ring};
 use std::ops::Range;
 
@@ -46,7 +47,8 @@ pub enum Sampling {
 #[derive(Clone, Debug)]
 pub struct Plan {
     size_px: [u32; 2],
-    gaze_px: [f32; 2],
+    /// The gaze, as the middle of all rings.
+    gaze: Circle,
     kind: Kind,
 }
 
@@ -107,7 +109,7 @@ impl Sampling {
                 Kind::Scattered { targets, samples, lod }
             }
         };
-        Plan { size_px, gaze_px, kind }
+        Plan { size_px, gaze: Circle::around(gaze_px), kind }
     }
 }
 
@@ -122,7 +124,7 @@ impl Plan {
         match &self.kind {
             Kind::Rings(rings) => {
                 let spans =
-                    |(i, ring): (usize, &Ring)| Spans::of_runs(ring.targets(rings, i, self.gaze_px), 0..ring.samples);
+                    |(i, ring): (usize, &Ring)| Spans::of_runs(ring.targets(rings, i, self.gaze), 0..ring.samples);
                 rings.iter().enumerate().map(spans).collect()
             }
             Kind::Scattered { targets, samples, .. } => vec![Spans::new(targets.iter().copied(), 0..*samples)],
@@ -135,7 +137,7 @@ impl Plan {
             Kind::Rings(rings) => (rings, &[]),
             Kind::Scattered { targets, .. } => (&[], targets),
         };
-        let of = move |(i, ring): (usize, &Ring)| points(ring.targets(rings, i, self.gaze_px));
+        let of = move |(i, ring): (usize, &Ring)| points(ring.targets(rings, i, self.gaze));
         rings.iter().enumerate().flat_map(of).chain(scattered.iter().copied())
     }
 
@@ -159,7 +161,7 @@ impl Plan {
                         add(&view.on_lattice(&ring.lattice), Film::window(first, size), work)
                     })
                     .collect();
-                rings::blend(rings, &films, self.size_px, self.gaze_px)
+                rings::blend(rings, &films, self.size_px, self.gaze)
             }
             Kind::Scattered { lod, .. } => {
                 let film = add(view, Film::new(self.size_px), &work[0]);

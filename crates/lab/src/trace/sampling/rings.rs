@@ -43,10 +43,10 @@ impl Ring {
         &self,
         rings: &[Self],
         index: usize,
-        gaze_px: [f32; 2],
+        gaze: Circle,
     ) -> impl Iterator<Item = (Range<u32>, u32)> + use<> {
         let reach_px = self.filter.reach_px(&self.lattice);
-        let around = |radius_px| Circle { center_px: gaze_px, radius_px };
+        let around = |radius_px| Circle { radius_px, ..gaze };
         let outer = around(self.radius_px + self.blend_px).grown(reach_px);
         let inner = around(index.checked_sub(1).map_or(f32::NEG_INFINITY, |i| rings[i].radius_px)).shrunk(reach_px);
         let (lens, lattice) = (self.lens.grown(reach_px), self.lattice);
@@ -66,8 +66,8 @@ pub(super) struct Blended {
 const MARGIN_PX: f32 = 1e-3;
 
 /// Blends the rings into one frame. Outside the lens, black without noise.
-pub(super) fn blend(rings: &[Ring], films: &[Film], size_px: [u32; 2], gaze_px: [f32; 2]) -> Blended {
-    let blend = Blend::new(rings, films, size_px, gaze_px);
+pub(super) fn blend(rings: &[Ring], films: &[Film], size_px: [u32; 2], gaze: Circle) -> Blended {
+    let blend = Blend::new(rings, films, size_px, gaze);
     let mut color = Image::filled(size_px, [0.0; 3]);
     let mut lod = Image::filled(size_px, 0.0);
     let mut noise = Image::filled(size_px, [0.0; 2]);
@@ -100,11 +100,11 @@ struct Blend<'a> {
     columns: Vec<Vec<Around>>,
     lods: Vec<f32>,
     pixels: Lattice,
-    gaze_px: [f32; 2],
+    gaze: Circle,
 }
 
 impl<'a> Blend<'a> {
-    fn new(rings: &'a [Ring], films: &'a [Film], size_px: [u32; 2], gaze_px: [f32; 2]) -> Self {
+    fn new(rings: &'a [Ring], films: &'a [Film], size_px: [u32; 2], gaze: Circle) -> Self {
         let columns = |ring: &Ring| (0..size_px[0]).map(|x| Around::new(&ring.lattice, 0, x)).collect();
         Self {
             rings,
@@ -113,7 +113,7 @@ impl<'a> Blend<'a> {
             columns: rings.iter().map(columns).collect(),
             lods: rings.iter().map(|ring| (ring.lattice.step as f32).log2()).collect(),
             pixels: Lattice::blocks(1, size_px),
-            gaze_px,
+            gaze,
         }
     }
 
@@ -124,7 +124,7 @@ impl<'a> Blend<'a> {
 
     /// Runs of pixels of a row that lie in one ring alone, with the index of that ring, from left to right.
     fn runs(&self, y: u32) -> Vec<(Range<u32>, usize)> {
-        let around = |radius_px| Circle { center_px: self.gaze_px, radius_px };
+        let around = |radius_px| Circle { radius_px, ..self.gaze };
         let mut beyond = around(f32::NEG_INFINITY);
         let mut found = vec![];
         for (i, ring) in self.rings.iter().enumerate() {
@@ -157,7 +157,7 @@ impl<'a> Blend<'a> {
     /// Color, level of detail and noise at any pixel. The noise comes from the ring with the larger weight.
     fn near_border(&self, [x, y]: [u32; 2], row: &[Around]) -> (Vec3, f32, [f32; 2]) {
         let px = [x as f32, y as f32];
-        let distance = (px[0] - self.gaze_px[0]).hypot(px[1] - self.gaze_px[1]);
+        let distance = self.gaze.distance_px(px);
         let last = self.rings.len() - 1;
         let ring_within =
             |share: f32| self.rings.iter().position(|r| distance < r.radius_px + share * r.blend_px).unwrap_or(last);
@@ -218,10 +218,14 @@ mod tests {
             };
             let all = |ring: &Ring| film_of(ring, (0..ring.lattice.points[1]).flat_map(|y| row(ring, y)));
             let some = |(i, ring): (usize, &Ring)| {
-                film_of(ring, ring.targets(&rings, i, gaze_px).flat_map(|(run, y)| run.map(move |x| [x, y])))
+                film_of(
+                    ring,
+                    ring.targets(&rings, i, Circle::around(gaze_px)).flat_map(|(run, y)| run.map(move |x| [x, y])),
+                )
             };
             let films: [Vec<Film>; 2] = [rings.iter().map(all).collect(), rings.iter().enumerate().map(some).collect()];
-            let [expected, found] = films.each_ref().map(|films| blend(&rings, films, size_px, gaze_px).color);
+            let [expected, found] =
+                films.each_ref().map(|films| blend(&rings, films, size_px, Circle::around(gaze_px)).color);
             assert!(expected == found, "case {case}: {rings:?}, gaze {gaze_px:?}");
             let [of_all, of_some] =
                 films.map(|films| films.iter().flat_map(|f| f.moments.pixels()).filter(|m| m.count > 0).count());
@@ -250,11 +254,14 @@ mod tests {
                 Layers { radii_deg: [2.0, 2.1, 9.0], steps: [1, 2, 3, 4], lens_deg }.rings(&geometry, gaze_px, 1)
             };
             let film = |(i, ring): (usize, &Ring)| {
-                film_of(ring, ring.targets(&rings, i, gaze_px).flat_map(|(run, y)| run.map(move |x| [x, y])))
+                film_of(
+                    ring,
+                    ring.targets(&rings, i, Circle::around(gaze_px)).flat_map(|(run, y)| run.map(move |x| [x, y])),
+                )
             };
             let films: Vec<Film> = rings.iter().enumerate().map(film).collect();
-            let made = blend(&rings, &films, size_px, gaze_px);
-            let plain = Blend::new(&rings, &films, size_px, gaze_px);
+            let made = blend(&rings, &films, size_px, Circle::around(gaze_px));
+            let plain = Blend::new(&rings, &films, size_px, Circle::around(gaze_px));
             for y in 0..size_px[1] {
                 let row = plain.row(y);
                 of_runs += plain.runs(y).iter().map(|(run, _)| run.len()).sum::<usize>();

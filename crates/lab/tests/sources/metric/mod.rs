@@ -37,7 +37,7 @@ fn score(frames: &[Frame], gaze: [f32; 2], flip: Option<Flip>) -> Scores {
 fn foveate(foveation: &Foveation, image: &Image<[f32; 3]>, gaze: [f32; 2]) -> Image<[f32; 3]> {
     let geometry = ViewGeometry::flat(image.size(), 70.0).unwrap();
     let ecc = geometry.eccentricity_map(gaze);
-    let lods = foveation.lod_map(&geometry, gaze, &ecc);
+    let lods = foveation.lod_map(&geometry, gaze);
     foveation.render(&Pyramid::new(image.clone(), foveation.max_level()), &lods)
 }
 
@@ -142,7 +142,7 @@ fn bands_and_retention_follow_the_eye() {
     let mut tracker = Tracker::default();
     let mut look = |frame: &SourceFrame, gaze| {
         let ecc = geometry.eccentricity_map(gaze);
-        let lods = foveation.lod_map(&geometry, gaze, &ecc);
+        let lods = foveation.lod_map(&geometry, gaze);
         tracker.advance(frame, &geometry, &ecc, &lods)
     };
     let mut frame = source_frame(noise(size, "track"));
