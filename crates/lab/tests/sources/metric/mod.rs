@@ -36,7 +36,6 @@ fn score(frames: &[Frame], gaze: [f32; 2], flip: Option<Flip>) -> Scores {
 
 fn foveate(foveation: &Foveation, image: &Image<[f32; 3]>, gaze: [f32; 2]) -> Image<[f32; 3]> {
     let geometry = ViewGeometry::flat(image.size(), 70.0).unwrap();
-    let ecc = geometry.eccentricity_map(gaze);
     let lods = foveation.lod_map(&geometry, gaze);
     foveation.render(&Pyramid::new(image.clone(), foveation.max_level()), &lods)
 }
