@@ -236,16 +236,6 @@ impl Foveation {
         self.rate_far.ilog2() as f32
     }
 
-    /// Standard deviation of the Gaussian at the edge of the middle region in pixels.
-    fn sigma_mid_px(&self) -> f32 {
-        0.5 * (self.rate_mid - 1) as f32
-    }
-
-    /// Largest standard deviation of the Gaussian in pixels.
-    pub(crate) fn sigma_far_px(&self) -> f32 {
-        0.5 * (self.rate_far - 1) as f32
-    }
-
     /// Angle in degrees from the gaze by which the region and the level of detail of the pixel `px` are chosen: its
     /// eccentricity. Regions have other shapes where another angle is taken here.
     pub fn region_angle_deg(&self, geometry: &ViewGeometry, px: [f32; 2], gaze_px: [f32; 2]) -> f32 {
@@ -265,21 +255,16 @@ impl Foveation {
         let (fovea, mid) = (self.fovea_radius_deg(), self.mid_radius_deg());
         match self.filter {
             Filter::Off => 0.0,
-            Filter::Gauss => foveate::blur_lod(e_deg, fovea, mid, self.sigma_mid_px(), self.sigma_far_px()),
+            Filter::Gauss => foveate::blur_lod(e_deg, fovea, mid, self.lod_mid(), self.lod_far()),
             Filter::Mip | Filter::Block | Filter::Sparse | Filter::Quads => {
                 foveate::region_lod(e_deg, fovea, mid, self.blend_deg, self.lod_mid(), self.lod_far())
             }
         }
     }
 
-    /// Coarseness of the middle region and of the periphery: levels of detail, or largest standard deviations of a blur
-    /// in pixels.
+    /// Levels of detail of the middle region and of the periphery.
     #[cfg(feature = "gpu")]
-    pub(crate) fn coarseness(&self) -> [f32; 2] {
-        match self.filter {
-            Filter::Off => [0.0, 0.0],
-            Filter::Gauss => [self.sigma_mid_px(), self.sigma_far_px()],
-            Filter::Mip | Filter::Block | Filter::Sparse | Filter::Quads => [self.lod_mid(), self.lod_far()],
-        }
+    pub(crate) fn lods(&self) -> [f32; 2] {
+        if self.filter == Filter::Off { [0.0; 2] } else { [self.lod_mid(), self.lod_far()] }
     }
 }

@@ -29,8 +29,8 @@ fn level_at(px: vec2<u32>, view: u32) -> u32 {
             frame.fovea_radius_deg,
             frame.mid_radius_deg,
             frame.blend_deg,
-            frame.mid,
-            frame.far,
+            frame.lod_mid,
+            frame.lod_far,
         );
         if lod >= f32(level) {
             break;

@@ -8,8 +8,8 @@ struct FoveationUniforms {
     fovea_radius_deg: f32,
     mid_radius_deg: f32,
     blend_deg: f32,
-    mid: f32,
-    far: f32,
+    lod_mid: f32,
+    lod_far: f32,
     views: array<ViewUniforms, 4>,
 }
 

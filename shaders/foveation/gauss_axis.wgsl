@@ -36,7 +36,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     }
     let view = group.z;
     let e_deg = region_angle_at(vec2<f32>(px), view);
-    let lod = blur_lod(e_deg, frame.fovea_radius_deg, frame.mid_radius_deg, frame.mid, frame.far);
+    let lod = blur_lod(e_deg, frame.fovea_radius_deg, frame.mid_radius_deg, frame.lod_mid, frame.lod_far);
     if WRITE_LOD != 0u {
         textureStore(lod_out, px, view, vec4<f32>(lod, 0.0, 0.0, 0.0));
     }

@@ -45,8 +45,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
         frame.fovea_radius_deg,
         frame.mid_radius_deg,
         frame.blend_deg,
-        frame.mid,
-        frame.far,
+        frame.lod_mid,
+        frame.lod_far,
     );
     if WRITE_LOD != 0u {
         textureStore(lod_out, px, view, vec4<f32>(lod, 0.0, 0.0, 0.0));

@@ -29,9 +29,9 @@ fn region_lod(
 }
 
 // foveate::blur_lod
-fn blur_lod(e_deg: f32, start_deg: f32, end_deg: f32, sigma_at_end: f32, largest_sigma: f32) -> f32 {
-    let slope = sigma_at_end / max(end_deg - start_deg, 1e-3);
-    let sigma = clamp(slope * (e_deg - start_deg), 0.0, largest_sigma);
+fn blur_lod(e_deg: f32, start_deg: f32, end_deg: f32, lod_mid: f32, lod_far: f32) -> f32 {
+    let slope = blur_sigma_px(lod_mid) / max(end_deg - start_deg, 1e-3);
+    let sigma = clamp(slope * (e_deg - start_deg), 0.0, blur_sigma_px(lod_far));
     return ln(1.0 + 2.0 * sigma) * LOG2_E;
 }
 

@@ -17,14 +17,14 @@ fn foveation_lod(e_deg: f32) -> f32 {
         return 0.0;
     }
     if FILTER == FILTER_GAUSS {
-        return blur_lod(e_deg, frame.fovea_radius_deg, frame.mid_radius_deg, frame.coarse_mid, frame.coarse_far);
+        return blur_lod(e_deg, frame.fovea_radius_deg, frame.mid_radius_deg, frame.lod_mid, frame.lod_far);
     }
     return region_lod(
         e_deg,
         frame.fovea_radius_deg,
         frame.mid_radius_deg,
         frame.blend_deg,
-        frame.coarse_mid,
-        frame.coarse_far,
+        frame.lod_mid,
+        frame.lod_far,
     );
 }

@@ -64,7 +64,7 @@ fn is_seen_quad(quad: vec2<u32>, view: u32) -> bool {
 
 // Whether the even pattern of the frame has a quad.
 fn is_even(quad: vec2<u32>, region_now: u32) -> bool {
-    let steps = vec2<u32>(1u << (u32(frame.coarse_mid) - 1u), 1u << (u32(frame.coarse_far) - 1u));
+    let steps = vec2<u32>(1u << (u32(frame.lod_mid) - 1u), 1u << (u32(frame.lod_far) - 1u));
     if region_now == IN_MIDDLE {
         return in_pattern(quad.x, quad.y, steps.x, frame.quad_offsets.xy);
     }

@@ -14,7 +14,7 @@ fn mask_at(px: vec2<u32>, view: u32) -> u32 {
 // log2 of the distance of the pattern's quads in pixels, where a pixel lies; 0 in the fovea.
 fn level_of(mask_word: u32) -> u32 {
     let region_now = (mask_word >> 1u) & 3u;
-    return select(u32(select(frame.coarse_far, frame.coarse_mid, region_now == IN_MIDDLE)), 0u, region_now == IN_FOVEA);
+    return select(u32(select(frame.lod_far, frame.lod_mid, region_now == IN_MIDDLE)), 0u, region_now == IN_FOVEA);
 }
 
 // Code of neighbour `i` of a quad: words of `quad_around`.

@@ -45,11 +45,10 @@ pub struct FrameUniforms {
     pub mid_radius_deg: f32,
     /// Width of the blend outside each radius in degrees.
     pub blend_deg: f32,
-    /// Level of detail in the middle region; for a Gaussian blur its standard deviation at the region's edge, in
-    /// pixels.
-    pub coarse_mid: f32,
-    /// Level of detail in the periphery; for a Gaussian blur its largest standard deviation, in pixels.
-    pub coarse_far: f32,
+    /// Level of detail of the middle region.
+    pub lod_mid: f32,
+    /// Level of detail of the periphery.
+    pub lod_far: f32,
     /// `SmrParams::accumulate`.
     pub smr_accumulate: f32,
     /// `SmrParams::accumulate_tolerance`.
@@ -85,7 +84,7 @@ impl FrameUniforms {
     pub(super) fn new(desc: &ContextDesc, frame: &Frame<'_>, state: &[ViewState], past_frame: u32) -> Self {
         let settings = &desc.settings;
         let (wrs, smr) = (wrs_params(settings), smr_params(settings));
-        let [coarse_mid, coarse_far] = settings.foveation.coarseness();
+        let [lod_mid, lod_far] = settings.foveation.lods();
         let test = settings.depth_test.unwrap_or_default();
         let [first_x, first_y] = Foveation::first_quad(frame.index);
         let mut uniforms = Self {
@@ -103,8 +102,8 @@ impl FrameUniforms {
             exposure: state[0].stored_exposure(frame),
             mid_radius_deg: settings.foveation.mid_radius_deg(),
             blend_deg: settings.foveation.blend_deg,
-            coarse_mid,
-            coarse_far,
+            lod_mid,
+            lod_far,
             smr_accumulate: smr.accumulate,
             smr_accumulate_tolerance: smr.accumulate_tolerance,
             smr_tolerance: smr.tolerance,

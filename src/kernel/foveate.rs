@@ -39,17 +39,18 @@ pub fn region_lod(
     lod_mid * ramp(e_deg, fovea_radius_deg, blend_deg) + (lod_far - lod_mid) * ramp(e_deg, mid_radius_deg, blend_deg)
 }
 
-/// Level of detail of a blur at eccentricity `e_deg`. Its standard deviation sigma is 0 up to `start_deg`, grows
-/// linearly to `sigma_at_end` pixels at `end_deg` and beyond, and is limited to `largest_sigma`. `2^lod = 1 + 2 sigma`,
-/// so that blocks and blurs of one level look equally coarse. Error below 1e-6.
+/// Level of detail of a blur at eccentricity `e_deg`. Its standard deviation is 0 up to `start_deg`, grows linearly to
+/// that of `lod_mid` at `end_deg` and beyond, and is limited to that of `lod_far`. Blocks and blurs of one level look
+/// equally coarse: `2^lod = 1 + 2 sigma`. Error below 1e-6.
 #[inline]
-pub fn blur_lod(e_deg: f32, start_deg: f32, end_deg: f32, sigma_at_end: f32, largest_sigma: f32) -> f32 {
-    let slope = sigma_at_end / (end_deg - start_deg).max(1e-3);
-    let sigma = (slope * (e_deg - start_deg)).clamp(0.0, largest_sigma);
+pub fn blur_lod(e_deg: f32, start_deg: f32, end_deg: f32, lod_mid: f32, lod_far: f32) -> f32 {
+    let slope = blur_sigma_px(lod_mid) / (end_deg - start_deg).max(1e-3);
+    let sigma = (slope * (e_deg - start_deg)).clamp(0.0, blur_sigma_px(lod_far));
     approx::ln(1.0 + 2.0 * sigma) * LOG2_E
 }
 
-/// Standard deviation in pixels of the blur of level of detail `lod` in \[0, 8\]. Error below 5e-7 times 2^lod.
+/// Standard deviation in pixels of the blur of level of detail `lod` in \[0, 8\]. Exact for whole
+/// levels, otherwise with an error below 5e-7 times 2^lod.
 #[inline]
 pub fn blur_sigma_px(lod: f32) -> f32 {
     0.5 * (approx::exp2(lod) - 1.0)

@@ -21,11 +21,10 @@ pub struct FoveationUniforms {
     pub mid_radius_deg: f32,
     /// Width of the blends outside the radii.
     pub blend_deg: f32,
-    /// Coarseness of the middle region: level of detail, or standard deviation in pixels of the Gaussian at the
-    /// region's edge.
-    pub mid: f32,
-    /// Coarseness of the periphery: level of detail, or largest standard deviation in pixels of the Gaussian.
-    pub far: f32,
+    /// Level of detail of the middle region.
+    pub lod_mid: f32,
+    /// Level of detail of the periphery.
+    pub lod_far: f32,
     /// One entry a view.
     pub views: [ViewUniforms; MAX_VIEWS],
 }
@@ -34,7 +33,7 @@ impl FoveationUniforms {
     /// Uniforms of a frame. `state`: state of the views after this frame.
     pub(super) fn new(desc: &ContextDesc, views: &[ViewFrame], state: &[ViewState]) -> Self {
         let foveation = &desc.settings.foveation;
-        let [mid, far] = foveation.coarseness();
+        let [lod_mid, lod_far] = foveation.lods();
         let mut uniforms = Self {
             size: desc.size_px,
             coarsest: if matches!(foveation.filter, Filter::Off | Filter::Sparse | Filter::Quads) {
@@ -45,8 +44,8 @@ impl FoveationUniforms {
             fovea_radius_deg: foveation.fovea_radius_deg(),
             mid_radius_deg: foveation.mid_radius_deg(),
             blend_deg: foveation.blend_deg,
-            mid,
-            far,
+            lod_mid,
+            lod_far,
             ..Self::default()
         };
         for (i, ((to, view), state)) in uniforms.views.iter_mut().zip(views).zip(state).enumerate() {

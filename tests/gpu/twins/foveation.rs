@@ -25,9 +25,9 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(foveate::blur_lod, |rows| {
         let e = [around(&[2.5, 7.5, 20.0]), floats(&[0.0, 180.0])].concat();
-        let sigma = floats(&[0.0, 0.5, 3.5, 7.5, 127.5]);
-        rows.cross(&[&e, &floats(&[0.0, 2.5]), &floats(&[2.5, 7.5]), &sigma, &sigma])
-            .each(&[180.0, 10.0, 30.0, 31.5, 127.5].map(|most| F(0.0, most)))
+        let lod = floats(&[0.0, 1.0, 3.0, 4.0, 8.0]);
+        rows.cross(&[&e, &floats(&[0.0, 2.5]), &floats(&[2.5, 7.5]), &lod, &lod])
+            .each(&[180.0, 10.0, 30.0, 6.0, 8.0].map(|most| F(0.0, most)))
     }),
     probe!(foveate::blur_sigma_px, |rows| {
         let whole: Vec<f32> = (0..=16).map(|i| 0.5 * i as f32).collect();
