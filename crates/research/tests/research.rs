@@ -104,7 +104,7 @@ fn compares_patterns_at_equal_numbers_of_samples() {
     let folder = Folder::new();
     let (out, json) = (folder.text("out"), folder.text("patterns.json"));
     let base = ["patterns", "builtin:courtyard", "--out", &out, "--backend", "cpu", "--json", &json];
-    succeeds(&[&base[..], &["--size", "320x180", "--frames", "2", "--reference-spp", "3"]].concat());
+    succeeds(&[&base[..], &["--size", "320x180", "--frames", "2", "--reference-samples", "3"]].concat());
     let report = read_json(Path::new(&json));
     let patterns = report["patterns"].as_array().unwrap();
     let names: Vec<_> = patterns.iter().map(|p| p["pattern"].as_str().unwrap()).collect();
@@ -136,7 +136,7 @@ fn compares_patterns_at_equal_numbers_of_samples() {
         ["--region-spp", "8,4"],
         ["--gaze", "12"],
         ["--frames", "0"],
-        ["--reference-spp", "0"],
+        ["--reference-samples", "0"],
         ["--size", "4x4"],
         ["--camera", "nowhere"],
     ] {

@@ -62,7 +62,7 @@ pub struct PatternsArgs {
     frames: u64,
     /// Samples per pixel of the reference
     #[arg(long, default_value_t = 256, value_parser = parse_samples, value_name = "N")]
-    reference_spp: u32,
+    reference_samples: u32,
     /// Reference that this command wrote earlier for the same view; default: trace one
     #[arg(long, value_name = "FILE.exr")]
     reference: Option<PathBuf>,
@@ -92,7 +92,7 @@ struct Report<'a> {
     gaze_px: [f32; 2],
     frames: u64,
     /// `null` if the reference was read from a file.
-    reference_spp: Option<u32>,
+    reference_samples: Option<u32>,
     flip_pixels_per_degree: f32,
     backend: ProcessorInfo,
     patterns: Vec<PatternReport>,
@@ -145,7 +145,7 @@ pub fn bench(args: &PatternsArgs) -> Result<(), Failure> {
     let stage = Stage { world, view, tracer, gaze_px, exposure: args.exposure.exp2() };
     let given = args.reference.as_deref().map(|path| read(path, args.size)).transpose()?;
     let out = Output::create(&args.out, &[], &["patterns.md"])?;
-    let linear = given.unwrap_or_else(|| stage.converged(args.reference_spp));
+    let linear = given.unwrap_or_else(|| stage.converged(args.reference_samples));
     out.root_picture("reference.png", &to_rgb8(&stage.display(&linear)))?;
     let path = args.out.join("reference.exr");
     exr_file::write(&path, &FrameToWrite::color(&linear)).map_err(|e| Failure::writing(&path, e))?;
@@ -161,7 +161,7 @@ pub fn bench(args: &PatternsArgs) -> Result<(), Failure> {
         hfov_deg: geometry.hfov_deg(),
         gaze_px,
         frames: args.frames,
-        reference_spp: args.reference.is_none().then_some(args.reference_spp),
+        reference_samples: args.reference.is_none().then_some(args.reference_samples),
         flip_pixels_per_degree: Flip::for_view(&geometry).pixels_per_degree(),
         backend: backend.info(),
         patterns: reports,

@@ -50,10 +50,10 @@ pub struct FoveationArgs {
     pub scale: Option<f32>,
     /// With --foveation sparse, layers or uniform: depth and motion of every pixel, or of the nearest sample; those of
     /// every pixel are without jitter; default: of the nearest sample in scenes, full in given frames
-    #[arg(long = "geometry", alias = "sparse-geometry", value_parser = by_name::<SparseGeometry>())]
+    #[arg(long, value_parser = by_name::<SparseGeometry>())]
     pub geometry: Option<SparseGeometry>,
     /// With --foveation sparse: order in which the pixels of a block are sampled
-    #[arg(long = "order", alias = "sample-order", value_parser = by_name::<SampleOrder>(), default_value = "bayer")]
+    #[arg(long, value_parser = by_name::<SampleOrder>(), default_value = "bayer")]
     pub order: SampleOrder,
     /// Jitter of the projection, in scenes and analytic clips: full-rate frames then have one sample a pixel, sparse
     /// ones one a block, smr antialiases sparse frames, and --foveation off means sparse frames of blocks of one pixel

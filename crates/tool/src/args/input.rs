@@ -78,7 +78,7 @@ pub struct FoveatedSampling {
     /// Order in which their lattices move, if they are given as samples, not filled in between.
     pub sparse: Option<SampleOrder>,
     /// Samples per pixel of their full-rate references.
-    pub reference_spp: u32,
+    pub reference_samples: u32,
 }
 
 impl InputArgs {
@@ -151,7 +151,7 @@ impl InputArgs {
             foveated: foveated.map(|f| f.pattern),
             sparse: foveated.and_then(|f| f.sparse),
             samples: self.spp,
-            full_rate_samples: foveated.map_or(self.spp, |f| f.reference_spp),
+            full_rate_samples: foveated.map_or(self.spp, |f| f.reference_samples),
         };
         let settings = self.paths.settings(rendering.seed)?;
         let scene = self.viewed(rendering.head.clone(), Light::IfDark)?;

@@ -23,7 +23,7 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     refuses(&run(still, &out, &["--hfov", "180"]), &["180"]);
     refuses(&run(still, &out, &["--fps", "0"]), &["--fps", "above 0"]);
     refuses(&run(still, &out, &["--exposure", "65"]), &["--exposure", "64 stops"]);
-    refuses(&run(still, &out, &["--reference-spp", "0"]), &["--reference-samples", "1 to"]);
+    refuses(&run(still, &out, &["--reference-samples", "0"]), &["--reference-samples", "1 to"]);
     let frames = afterimage_testing::workspace().join("fixtures/sequences/lateral_160x90");
     let frames = frames.to_str().unwrap();
     refuses(&run(frames, &out, &["--reference-samples", "4"]), &["--reference-samples", "scene"]);

@@ -83,7 +83,7 @@ fn both_backends_write_the_same_bytes() {
         return;
     }
     let debug = format!("--size 160x90 --frames 4 --wrs-sampler a-es --no-jod --debug {DEBUG}");
-    let traced = "--source trace --sampling regions --region-spp 2,1,1 --foveation sparse --reference-spp 2 --no-jod \
+    let traced = "--source trace --sampling regions --region-spp 2,1,1 --foveation sparse --reference-samples 2 --no-jod \
                   --method none,taa,taau,smr --frames 3 --size 64x36 --gaze 20,12";
     for (input, line, simulator, geometry) in
         [("analytic:occluder", &debug[..], "mip", None), ("builtin:cubes", traced, "regions", Some("samples"))]
@@ -137,7 +137,7 @@ fn scenes_have_few_samples_by_default_and_given_frames_are_blurred() {
         return;
     }
     let folder = Folder::new();
-    let traced = ["--source", "trace", "--spp", "1", "--reference-spp", "1"];
+    let traced = ["--source", "trace", "--spp", "1", "--reference-samples", "1"];
     let cases: [(&str, &[&str], [&str; 2]); 6] = [
         ("builtin:cubes", &[], ["quads", ""]),
         ("builtin:cubes", &["--rate-far", "16"], ["sparse", "samples"]),
@@ -210,7 +210,10 @@ fn the_time_of_a_frame_is_that_of_the_renderer_and_the_post_process() {
         ("sparse", &["--foveation", "sparse", "--geometry", "samples"][..]),
         ("full", &["--foveation", "sparse", "--geometry", "full"]),
         ("mip", &["--foveation", "mip"]),
-        ("traced", &["--source", "trace", "--sampling", "regions", "--region-spp", "1,1,1", "--reference-spp", "2"]),
+        (
+            "traced",
+            &["--source", "trace", "--sampling", "regions", "--region-spp", "1,1,1", "--reference-samples", "2"],
+        ),
     ];
     if afterimage_testing::gpu::adapter().is_none() {
         return;

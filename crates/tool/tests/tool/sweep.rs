@@ -232,7 +232,7 @@ fn traced_patterns_converge_with_samples() {
     let out = folder.text("out");
     let line = format!(
         "sweep builtin:cornell --preset convergence --size 32x24 --gaze 16,12 --frames 38 --backend cpu \
-         --set reference-spp=1024 --set no-flip --set no-jod --out {out}"
+         --set reference-samples=1024 --set no-flip --set no-jod --out {out}"
     );
     succeeds(&words(&line));
     let table = table(&out);

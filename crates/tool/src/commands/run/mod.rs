@@ -57,7 +57,7 @@ pub struct RunArgs {
     /// Samples per pixel of the full-rate frames that are the reference for scores, in scenes and analytic clips, and
     /// which simulators foveate without --jitter. Default: 16 in rasterised scenes and jittered analytic clips, 64 with
     /// --sampling, else what the input has
-    #[arg(long, alias = "reference-spp", value_parser = parse_samples, value_name = "N")]
+    #[arg(long, value_parser = parse_samples, value_name = "N")]
     pub reference_samples: Option<u32>,
     /// With --foveation quads: the first frame has one pixel in 4, evenly, so that a view is sharp sooner after a cut.
     /// Only smr keeps that frame in its history. Not for traced scenes
@@ -159,7 +159,7 @@ impl RunArgs {
         let foveated = pattern.map(|pattern| FoveatedSampling {
             pattern,
             sparse: self.is_sparse().then_some(self.foveation.order),
-            reference_spp: self.reference_samples.unwrap_or(64),
+            reference_samples: self.reference_samples.unwrap_or(64),
         });
         Ok(Rendering { backend: backend.clone(), seed: self.seed, foveated, head: head.cloned() })
     }
