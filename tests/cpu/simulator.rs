@@ -121,6 +121,13 @@ fn h71_the_level_of_detail_is_continuous_and_monotone() {
 }
 
 #[test]
+fn blurs_of_whole_levels_are_exact() {
+    for level in 0..=8 {
+        assert_eq!(foveate::blur_sigma_px(level as f32), 0.5 * ((1 << level) - 1) as f32);
+    }
+}
+
+#[test]
 fn a_blurred_point_is_a_gaussian() {
     // Far out the width is constant, so that the two passes together are exact: weights by f64, cut at 3 standard
     // deviations.
