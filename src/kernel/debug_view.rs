@@ -25,8 +25,7 @@ pub enum DebugView {
     /// History's share: black 0, white 1. For wrs the share of its weight sum that survived bias and gate; for smr, taa
     /// and taau its share in the output color.
     Survival = 3,
-    /// Verdict on the history ([`Verdict`]): grey valid, blue reset, magenta bad motion, orange off screen, yellow
-    /// empty, red disoccluded, cyan distrusted.
+    /// Verdict on the history, in the color that [`Verdict`] says.
     Rejection = 4,
     /// Agreement of history and candidate: white 1, black 0. For wrs the value of the color gate; for smr how well
     /// history explains the candidate; for taau the share of its confidence that history kept when clipped. White for

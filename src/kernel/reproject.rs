@@ -14,20 +14,20 @@ pub const MAX_MOTION_PX: f32 = 65536.0;
 #[repr(u32)]
 #[non_exhaustive]
 pub enum Verdict {
-    /// History is valid: it belongs to this surface.
+    /// History is valid: it belongs to this surface. Grey.
     Valid = 0,
-    /// History is empty: first frame, [`Reset::All`](crate::Reset::All), resize.
+    /// History is empty: first frame, [`Reset::All`](crate::Reset::All), resize. Blue.
     Reset = 1,
-    /// The motion vector is NaN, infinite, or has a component beyond 65536 pixels.
+    /// The motion vector is NaN, infinite, or has a component beyond 65536 pixels. Magenta.
     BadMotion = 2,
-    /// The surface point was outside the previous frame.
+    /// The surface point was outside the previous frame. Orange.
     OffScreen = 3,
-    /// Nothing usable was stored at the previous position.
+    /// Nothing usable was stored at the previous position. Yellow.
     Empty = 4,
     /// Disocclusion: another surface was at the previous position (depth differs), or motion vectors of two surfaces
-    /// are mixed.
+    /// are mixed. Red.
     Disoccluded = 5,
-    /// The frame's trust mask is 0 at this pixel.
+    /// The frame's trust mask is 0 at this pixel. Cyan.
     Distrusted = 6,
 }
 
