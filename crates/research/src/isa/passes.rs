@@ -14,7 +14,8 @@ pub const SIZE_PX: [u32; 2] = [3840, 2160];
 /// Their horizontal field of view.
 const FOV_DEG: f32 = 70.0;
 /// Passes that choose the quads to shade.
-const PLAN: [&str; 4] = ["quad_key_pass", "quad_threshold_pass", "quad_mask_pass", "quad_around_pass"];
+const PLAN: [&str; 5] =
+    ["quad_key_pass", "quad_threshold_pass", "quad_mask_pass", "quad_around_pass", "quad_octants_pass"];
 
 /// The copy that benches hold the passes against.
 static COPY: &[Module] = &[Module {
@@ -120,7 +121,7 @@ fn method(name: &'static str, settings: &Settings) -> Result<MethodPasses> {
 /// Pixels, texels or samples that an invocation takes.
 fn pixels(module: &str) -> f64 {
     match module {
-        "smr_pass" | "quad_around_pass" | "quad_light_pass" => 4.0,
+        "smr_pass" | "quad_around_pass" | "quad_octants_pass" | "quad_light_pass" => 4.0,
         // A block of 2x2 quads.
         "quad_key_pass" => 16.0,
         // A run of quads.
@@ -136,15 +137,17 @@ fn share(module: &str, settings: &Settings) -> Result<f64> {
         // Level 2 has a sixteenth of the pixels, the others a third of that.
         "mip_chain_pass" => 1.0 / 12.0,
         "sparse_observe_pass" | "sparse_light_pass" => samples_share(settings)?,
-        "quad_observe_pass" | "quad_light_pass" => compared_share(&settings.foveation),
+        "quad_octants_pass" => shaded_shares(&settings.foveation).iter().sum(),
+        // Quads of the fovea are not compared with history.
+        "quad_observe_pass" | "quad_light_pass" => shaded_shares(&settings.foveation)[1],
         // One workgroup.
         "quad_threshold_pass" => 64.0 / SIZE_PX.map(f64::from).iter().product::<f64>(),
         _ => 1.0,
     })
 }
 
-/// Pixels of the shaded quads that are compared with history, those outside the fovea, for each pixel of such a view.
-fn compared_share(foveation: &Foveation) -> f64 {
+/// Shaded pixels for each pixel of such a view: in the fovea, and outside it.
+fn shaded_shares(foveation: &Foveation) -> [f64; 2] {
     let [width, height] = SIZE_PX.map(f64::from);
     let per_tangent = 0.5 * width / (0.5 * f64::from(FOV_DEG)).to_radians().tan();
     let inside = |diameter_deg: f32| {
@@ -155,7 +158,7 @@ fn compared_share(foveation: &Foveation) -> f64 {
     let even = |rate: u32| 4.0 / f64::from(rate * rate);
     // In the periphery a frame has every second block.
     let pattern = (middle - fovea) * even(foveation.rate_mid) + 0.5 * (1.0 - middle) * even(foveation.rate_far);
-    pattern + f64::from(foveation.budget)
+    [fovea, pattern + f64::from(foveation.budget)]
 }
 
 /// Samples of the coarse lattices a pixel, with the gaze in the middle of a view.
@@ -193,7 +196,7 @@ fn loops(module: &str, settings: &Settings) -> &'static [&'static str] {
         "quad_key_pass" => &["four", "four"],
         "quad_threshold_pass" => &["keys", "runs", "keys"],
         "quad_mask_pass" => &["run", "list"],
-        "quad_around_pass" => &["rows", "rows"],
+        "quad_around_pass" | "quad_octants_pass" => &["rows"],
         "quad_observe_pass" if is_antialiased(settings) => &["slope", "around"],
         "quad_observe_pass" => &["slope", "four"],
         "quad_light_pass" => &["four", "four", "quads", "quads relit"],
