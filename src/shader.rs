@@ -80,6 +80,8 @@ pub static MODULES: &[Module] = &[
     module!("pass", "output_and_view"),
     module!("pass", "previous"),
     module!("pass", "quad_around_pass"),
+    module!("pass", "quad_octants_pass"),
+    module!("pass", "quad_runs"),
     module!("pass", "quad_key_pass"),
     module!("pass", "quad_light_pass"),
     module!("pass", "quad_list"),

@@ -10,9 +10,6 @@ override HAS_SPARSE_HISTORY: u32 = 0u;
 
 @group(0) @binding(23) var keys_out: texture_storage_2d_array<r32uint, write>;
 
-// Quads of the workgroup that are of the fovea or the even pattern.
-var<workgroup> group_even: atomic<u32>;
-
 // Need of a pixel, from the four stored samples around its previous position; negative without history.
 fn need_at(px: vec2<u32>, view: u32) -> f32 {
     let motion = motion_at(px, view);
@@ -76,6 +73,7 @@ fn is_even(quad: vec2<u32>, region_now: u32) -> bool {
 fn block(at: vec2<u32>, view: u32) {
     var needs = vec4<f32>(0.0);
     var flags = vec4<u32>(0u);
+    var even_count = 0u;
     let quads = (frame.size + 1u) / 2u;
     for (var i = 0u; i < 4u; i++) {
         let quad = 2u * at + vec2<u32>(i & 1u, i >> 1u);
@@ -88,12 +86,15 @@ fn block(at: vec2<u32>, view: u32) {
         flags[i] = (region_now << 16u) | (u32(even) << 18u);
         let px = asked_px(quad.x, quad.y, frame.frame_low);
         if even {
-            atomicAdd(&group_even, 1u);
+            even_count++;
         } else if HAS_SPARSE_HISTORY != 0u && region_now != IN_FOVEA && all(px < frame.size) && is_seen(px, view) {
             let needed = need_at(px, view);
             let first = vec2<u32>(frame.first_quad & 0xffffu, frame.first_quad >> 16u);
             needs[i] = select(needed * acuity(e_deg), no_history_need(quad.x, quad.y, first), needed < 0.0);
         }
+    }
+    if even_count > 0u {
+        atomicAdd(&state.even, even_count);
     }
     for (var i = 0u; i < 4u; i++) {
         let quad = 2u * at + vec2<u32>(i & 1u, i >> 1u);
@@ -110,16 +111,8 @@ fn block(at: vec2<u32>, view: u32) {
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) invocation: u32) {
-    if invocation == 0u {
-        atomicStore(&group_even, 0u);
-    }
-    workgroupBarrier();
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if all(4u * id.xy < frame.size) {
         block(id.xy, frame.first_view);
-    }
-    workgroupBarrier();
-    if invocation == 0u {
-        atomicAdd(&state.even, atomicLoad(&group_even));
     }
 }

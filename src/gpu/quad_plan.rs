@@ -1,15 +1,15 @@
 //! Plan of a frame shaded by quads: which quads are shaded, and the shaded quads around each. CPU twin:
 //! `src/cpu/sparse_pass/quad_plan.rs`.
 //!
-//! Three passes a view and one for all. The first gives each quad its region, the even pattern, and a key by its need.
+//! Four passes a view and one for all. The first gives each quad its region, the even pattern, and a key by its need.
 //! The second finds the smallest key that the budget pays for, and the third chooses the quads and lists them. The
-//! fourth finds the shaded quads around each.
+//! fourth finds the shaded quads around each quad, and the fifth, again for each view, those around the listed ones.
 
 use super::binding::Binding;
 use super::compute::{ComputeShader, Sources};
 use super::groups::Resource;
 use super::prime::PrimePass;
-use super::quads::{Quads, ViewQuads, size_quads};
+use super::quads::{QUAD_GROUPS, Quads, ViewQuads, size_quads};
 use super::stage::{Job, Specialization};
 use crate::context::ContextDesc;
 use crate::kernel::quads::RUN_QUADS;
@@ -26,6 +26,7 @@ pub(super) struct QuadPasses {
     threshold: ComputeShader,
     mask: ComputeShader,
     around: ComputeShader,
+    octants: ComputeShader,
     pub prime: PrimePass,
     pub quads: Quads,
     /// Index of the last planned frame; `None` once it is recorded.
@@ -39,6 +40,7 @@ impl QuadPasses {
             threshold: sources.shader(device, "quad_threshold_pass"),
             mask: sources.shader(device, "quad_mask_pass"),
             around: sources.shader(device, "quad_around_pass"),
+            octants: sources.shader(device, "quad_octants_pass"),
             prime: PrimePass::new(device, sources),
             quads: Quads::new(device, desc),
             planned: None,
@@ -55,13 +57,15 @@ impl QuadPasses {
     pub fn prewarm(&self, device: &Device, desc: &ContextDesc, special: Specialization) {
         special.pipeline(device, desc, &self.key);
         special.pipeline(device, desc, &self.around);
+        special.pipeline(device, desc, &self.octants);
         self.threshold.pipeline(device, &[]);
         self.mask.pipeline(device, &[]);
     }
 
     /// Shader and override values of each compiled pipeline.
     pub fn pipelines(&self) -> impl Iterator<Item = (&'static str, Overrides)> + '_ {
-        [&self.key, &self.threshold, &self.mask, &self.around].into_iter().flat_map(ComputeShader::pipelines)
+        let shaders = [&self.key, &self.threshold, &self.mask, &self.around, &self.octants];
+        shaders.into_iter().flat_map(ComputeShader::pipelines)
     }
 
     /// Records the clearing of the counts, before the dispatches of a frame.
@@ -95,10 +99,15 @@ impl QuadPasses {
                 job.recorder.add(job.device, (shader, pipeline), None, resource, workgroups);
             }
         }
-        let own = [(Binding::Read, &mask.whole), (Binding::ReadSecond, &runs.whole), (Binding::Write, &around.whole)];
-        let own = own.map(|(binding, view)| (binding, view.into()));
+        let own: [(Binding, Resource); 2] =
+            [(Binding::ReadSecond, (&runs.whole).into()), (Binding::Write, (&around.whole).into())];
         for batch in job.batches() {
             job.dispatch(&self.around, &batch, &own, size);
+        }
+        for (view, ViewQuads { state, list, .. }) in (0..).zip(views) {
+            let [runs, around] = own.clone();
+            let own = [runs, around, (Binding::List, list.into())];
+            job.dispatch_indirect(&self.octants, &job.batch_of(view), &own, (state, QUAD_GROUPS));
         }
     }
 }

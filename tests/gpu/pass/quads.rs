@@ -158,12 +158,13 @@ fn a_wrong_pass_is_caught() {
         "quad_threshold_pass",
         "quad_mask_pass",
         "quad_around_pass",
+        "quad_octants_pass",
         "quad_observe_pass",
         "quad_light_pass",
         "quad_pass",
     ];
     let right = names.map(|name| SHADERS.compose(name).source);
-    let differs = |sources: &[String; 7]| {
+    let differs = |sources: &[String; 8]| {
         let texts = names.into_iter().zip(sources);
         let planted = |right| texts.fold(right, |all: Sources, (name, text)| all.with(name, text));
         let mut rig = Rig::with_sources(desc(), settings, planted)?;
@@ -177,6 +178,7 @@ fn a_wrong_pass_is_caught() {
         ("needed * acuity(e_deg)", "needed"),
         ("of_run[first - 1u] <= budget - chosen", "of_run[first - 1u] <= budget"),
         ("last_of(above, -8, -1, -rows)", "last_of(above, -7, -1, -rows)"),
+        ("min(first_of(row, 0, limits.x, y), last_of(row, -limits.x, 0, y))", "first_of(row, 0, limits.x, y)"),
         ("source.previous.at -= frame.views[view].jitter_px;", ""),
         ("candidate.fit = min(fit_sum * known, own_fits);", "candidate.fit = fit_sum * known;"),
         ("sampled.usable && (mask_at(at, view) & 1u) != 0u", "sampled.usable"),

@@ -2,6 +2,7 @@
 
 use super::failure::Result;
 use afterimage::gpu::{Afterimage, Variant};
+use afterimage::kernel::quads::RUN_QUADS;
 use afterimage::shader::{Composer, Module, SHADERS};
 use afterimage::wgpu::{Device, DeviceDescriptor, TextureFormat};
 use afterimage::{
@@ -10,6 +11,11 @@ use afterimage::{
 
 /// Size of the frames of the roofline.
 pub const SIZE_PX: [u32; 2] = [3840, 2160];
+/// Their horizontal field of view.
+const FOV_DEG: f32 = 70.0;
+/// Passes that choose the quads to shade.
+const PLAN: [&str; 5] =
+    ["quad_key_pass", "quad_threshold_pass", "quad_mask_pass", "quad_around_pass", "quad_octants_pass"];
 
 /// The copy that benches hold the passes against.
 static COPY: &[Module] = &[Module {
@@ -37,17 +43,20 @@ pub struct Pass {
     pub share: f64,
     /// Of these, what an invocation takes.
     pub pixels: f64,
+    /// Whether it chooses the quads to shade, before they are shaded.
+    pub plans: bool,
     /// Its loops in the order of the code, by the names that `perf::rounds` knows.
     pub loops: &'static [&'static str],
 }
 
-/// All methods, on full frames and on sparse ones, which are the default stream.
+/// All methods, on full frames, on sparse ones and on frames shaded by quads, as by default.
 pub fn methods() -> Result<Vec<MethodPasses>> {
     let full = |method: MethodKind| Settings { method: method.into(), ..Settings::default() };
     let sparse = |method: MethodKind| {
         let foveation = Foveation { filter: Filter::Sparse, ..Foveation::default() };
         Settings { method: method.into(), foveation, ..Settings::default() }
     };
+    let quads = Settings { foveation: Foveation::quads(), ..full(MethodKind::Smr) };
     let noisy = |settings: Settings| Settings { noisy: true, ..settings };
     let antialias =
         |settings: Settings| Settings { method: Method::Smr(Smr { antialias: true, ..Smr::default() }), ..settings };
@@ -64,6 +73,8 @@ pub fn methods() -> Result<Vec<MethodPasses>> {
         ("sparse smr noisy", noisy(sparse(MethodKind::Smr))),
         ("sparse taau", sparse(MethodKind::Taau)),
         ("sparse wrs", sparse(MethodKind::Wrs)),
+        ("quads smr", quads),
+        ("quads smr antialias", antialias(quads)),
     ]
     .into_iter()
     .map(|(name, settings)| method(name, &settings))
@@ -80,7 +91,15 @@ fn method(name: &'static str, settings: &Settings) -> Result<MethodPasses> {
     let pass = |(module, overrides): (&'static str, Vec<_>)| -> Result<Pass> {
         if name == "copy" {
             let text = WITH_COPY.compose("copy_pass").source;
-            return Ok(Pass { name: name.to_owned(), text, overrides, share: 1.0, pixels: 1.0, loops: &[] });
+            return Ok(Pass {
+                name: name.to_owned(),
+                text,
+                overrides,
+                share: 1.0,
+                pixels: 1.0,
+                plans: false,
+                loops: &[],
+            });
         }
         let of_candidates = if overrides.contains(&("CANDIDATES", 1)) { ", candidates" } else { "" };
         Ok(Pass {
@@ -88,7 +107,8 @@ fn method(name: &'static str, settings: &Settings) -> Result<MethodPasses> {
             text: SHADERS.compose(module).source,
             overrides,
             share: share(module, settings)?,
-            pixels: if module == "smr_pass" { 4.0 } else { 1.0 },
+            pixels: pixels(module),
+            plans: PLAN.contains(&module),
             loops: loops(module, settings),
         })
     };
@@ -98,6 +118,18 @@ fn method(name: &'static str, settings: &Settings) -> Result<MethodPasses> {
     Ok(MethodPasses { name, bytes: settings.traffic_bytes_per_pixel([true, true, false]), passes })
 }
 
+/// Pixels, texels or samples that an invocation takes.
+fn pixels(module: &str) -> f64 {
+    match module {
+        "smr_pass" | "quad_around_pass" | "quad_octants_pass" | "quad_light_pass" => 4.0,
+        // A block of 2x2 quads.
+        "quad_key_pass" => 16.0,
+        // A run of quads.
+        "quad_mask_pass" => 4.0 * f64::from(RUN_QUADS),
+        _ => 1.0,
+    }
+}
+
 fn share(module: &str, settings: &Settings) -> Result<f64> {
     Ok(match module {
         // Texels of level 1.
@@ -105,13 +137,33 @@ fn share(module: &str, settings: &Settings) -> Result<f64> {
         // Level 2 has a sixteenth of the pixels, the others a third of that.
         "mip_chain_pass" => 1.0 / 12.0,
         "sparse_observe_pass" | "sparse_light_pass" => samples_share(settings)?,
+        "quad_octants_pass" => shaded_shares(&settings.foveation).iter().sum(),
+        // Quads of the fovea are not compared with history.
+        "quad_observe_pass" | "quad_light_pass" => shaded_shares(&settings.foveation)[1],
+        // One workgroup.
+        "quad_threshold_pass" => 64.0 / SIZE_PX.map(f64::from).iter().product::<f64>(),
         _ => 1.0,
     })
 }
 
-/// Samples of the coarse lattices a pixel, with the gaze in the middle of a view of 70 degrees.
+/// Shaded pixels for each pixel of such a view: in the fovea, and outside it.
+fn shaded_shares(foveation: &Foveation) -> [f64; 2] {
+    let [width, height] = SIZE_PX.map(f64::from);
+    let per_tangent = 0.5 * width / (0.5 * f64::from(FOV_DEG)).to_radians().tan();
+    let inside = |diameter_deg: f32| {
+        let radius_px = per_tangent * (0.5 * f64::from(diameter_deg)).to_radians().tan();
+        std::f64::consts::PI * radius_px * radius_px / (width * height)
+    };
+    let [fovea, middle] = [foveation.fovea_deg, foveation.mid_deg].map(inside);
+    let even = |rate: u32| 4.0 / f64::from(rate * rate);
+    // In the periphery a frame has every second block.
+    let pattern = (middle - fovea) * even(foveation.rate_mid) + 0.5 * (1.0 - middle) * even(foveation.rate_far);
+    [fovea, pattern + f64::from(foveation.budget)]
+}
+
+/// Samples of the coarse lattices a pixel, with the gaze in the middle of a view.
 fn samples_share(settings: &Settings) -> Result<f64> {
-    let geometry = ViewGeometry::flat(SIZE_PX, 70.0)?;
+    let geometry = ViewGeometry::flat(SIZE_PX, FOV_DEG)?;
     let gaze_px = SIZE_PX.map(|s| 0.5 * s as f32);
     let view = ViewFrame::new(geometry, Gaze::At { px: gaze_px });
     let lattices = settings.foveation.lattices(&view.geometry, gaze_px, 0);
@@ -141,6 +193,15 @@ fn loops(module: &str, settings: &Settings) -> &'static [&'static str] {
         "sparse_light_pass" => &["around", "around relit"],
         "sparse_pass" if is_antialiased(settings) => &["lattice", "four", "slope", "around", "near"],
         "sparse_pass" => &["lattice", "four", "slope", "four"],
+        "quad_key_pass" => &["four", "four"],
+        "quad_threshold_pass" => &["keys", "runs", "keys"],
+        "quad_mask_pass" => &["run", "list"],
+        "quad_around_pass" | "quad_octants_pass" => &["rows"],
+        "quad_observe_pass" if is_antialiased(settings) => &["slope", "around"],
+        "quad_observe_pass" => &["slope", "four"],
+        "quad_light_pass" => &["four", "four", "quads", "quads relit"],
+        "quad_pass" if is_antialiased(settings) => &["four", "near", "slope", "around"],
+        "quad_pass" => &["four", "slope", "four"],
         "taa_pass" => &["slope", "guard", "resample", "around"],
         "smr_pass" if settings.noisy => &["block", "slope", "guard", "resample"],
         "smr_pass" => &["block", "slope", "guard", "resample", "relight"],

@@ -22,13 +22,19 @@ fn rounds(name: &str, path: &str) -> f64 {
         ("lattice", _) => 2.0,
         ("four", _) => 4.0,
         ("around relit", "relit") => 9.0,
-        // Of plans: where things move, a wave has pixels that need a closer look.
-        ("closer", "moving" | "relit") => 1.0,
+        // Of plans: keys of an invocation, and sums of all invocations.
         ("keys", _) => 256.0,
         ("runs", _) => 64.0,
+        // Quads of a run and beside it.
+        ("run", _) => 32.0,
+        ("list", _) => 2.0,
+        // Rows until none has nearer quads, above and below, as a mean over the periphery of default quads.
+        ("rows", _) => 5.0,
+        ("quads", _) => 36.0,
+        ("quads relit", "relit") => 36.0,
         ("guard", "moving" | "relit") => 1.0,
         // Few pixels need the slope of the depth test, and few are at full rate.
-        ("slope" | "near" | "resample" | "relight" | "around relit" | "guard" | "closer", _) => 0.0,
+        ("slope" | "near" | "resample" | "relight" | "around relit" | "quads relit" | "guard", _) => 0.0,
         _ => panic!("no loop {name}"),
     }
 }

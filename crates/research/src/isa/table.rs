@@ -52,6 +52,11 @@ impl Figures {
         if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n").into()) }
     }
 
+    /// Cycles of a pass on a path, for 64 pixels of the frame.
+    fn cycles_of(&self, gpu: &Gpu, pass: &Pass, path: usize) -> f64 {
+        self.row(gpu.family, &pass.name).cycles(path) * pass.share
+    }
+
     fn row(&self, family: &str, pass: &str) -> &Row {
         self.rows.iter().find(|r| r.family == family && r.pass == pass).expect("every pass is on every GPU")
     }
@@ -84,9 +89,10 @@ impl Row {
     }
 }
 
-/// The whole file: the driver, figures of the passes, and times of a frame.
+/// The whole file: the driver, figures of the passes, times of a frame, and shares of plans.
 pub fn file(methods: &[MethodPasses], figures: &Figures) -> String {
-    format!("{HEAD}{}\n\n{}\n{}", figures.driver, passes(figures), roofline(methods, figures))
+    let [passes, times, plans] = [passes(figures), roofline(methods, figures), plans(methods, figures)];
+    format!("{HEAD}{}\n\n{passes}\n{times}\n{plans}", figures.driver)
 }
 
 /// Figures of the passes.
@@ -115,17 +121,31 @@ fn roofline(methods: &[MethodPasses], figures: &Figures) -> String {
     for gpu in &GPUS {
         for method in methods {
             let arithmetic_ms = [0, 1, 2].map(|path| {
-                let cycles: f64 = method
-                    .passes
-                    .iter()
-                    .map(|pass| figures.row(gpu.family, &pass.name).paths[path].cycles / pass.pixels * pass.share)
-                    .sum();
+                let cycles: f64 = method.passes.iter().map(|pass| figures.cycles_of(gpu, pass, path)).sum();
                 cycles * width * height / 64.0 / (gpu.simds * gpu.ghz * 1e6)
             });
             let memory_ms = f64::from(method.bytes) * width * height / (gpu.gigabytes * 1e6);
             let cells = [memory_ms].into_iter().chain(arithmetic_ms).chain(arithmetic_ms.map(|ms| ms.max(memory_ms)));
             let cells: Vec<String> = cells.map(|ms| format!("{ms:.2}")).collect();
             table += &format!("{}\t{}\t{}\n", gpu.card, method.name, cells.join("\t"));
+        }
+    }
+    table
+}
+
+/// Cycles of plans over those of the method's other passes.
+fn plans(methods: &[MethodPasses], figures: &Figures) -> String {
+    let mut table = format!("gpu\tmethod\tplan over the other passes, {}\n", PATHS.join("\t"));
+    for gpu in &GPUS {
+        for method in methods.iter().filter(|m| m.passes.iter().any(|pass| pass.plans)) {
+            let cells = [0, 1, 2].map(|path| {
+                let sum = |plans: bool| {
+                    let passes = method.passes.iter().filter(|pass| pass.plans == plans);
+                    passes.map(|pass| figures.cycles_of(gpu, pass, path)).sum::<f64>()
+                };
+                format!("{:.2}", sum(true) / sum(false))
+            });
+            table += &format!("{}\t{}\t{}\n", gpu.family, method.name, cells.join("\t"));
         }
     }
     table
