@@ -61,6 +61,16 @@ fn is_of_surfaces(stored: f32, farthest: f32, nearest: f32) -> bool {
     return stored >= far && stored * (1.0 - NEARER_RELATIVE) <= nearest;
 }
 
+// antialias::is_thin
+fn is_thin(own: f32, a: f32, b: f32) -> bool {
+    return min(a, b) >= 0.0 && max(a, b) < own * (1.0 - NEARER_RELATIVE);
+}
+
+// antialias::is_silhouette
+fn is_silhouette(own: f32, a: f32, b: f32) -> bool {
+    return min(a, b) < 0.0 || abs((a + b) - 2.0 * own) > own * NEARER_RELATIVE;
+}
+
 // antialias::may_show
 fn may_show(own: f32, neighbour: f32, place_px: vec2<f32>, offset: vec2<f32>) -> bool {
     let nearer = neighbour > own * (1.0 + NEARER_RELATIVE);

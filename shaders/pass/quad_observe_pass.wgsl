@@ -21,7 +21,9 @@ fn observe(px: vec2<u32>, view: u32) -> vec2<u32> {
         // History is read at the sample's place in its pixel.
         source.previous.at -= frame.views[view].jitter_px;
     }
-    let needed = may_have_history(source.previous) && color(color_at(px, view).xyz).usable;
+    // At a silhouette the difference does not say whether anything changed.
+    let comparable = color(color_at(px, view).xyz).usable && !surface.is_silhouette;
+    let needed = may_have_history(source.previous) && comparable;
     let history = sparse_history(source, view, needed).found;
     if !needed || history.lod < 0.0 {
         return nothing;

@@ -30,6 +30,8 @@ struct PixelSurface {
     farthest: f32,
     nearest: f32,
     mixes: bool,
+    // Whether history is the mean of several surfaces, of which a sample shows one.
+    is_silhouette: bool,
     // Whether this frame's sample at the pixel may show another surface.
     is_doubtful: bool,
 }
@@ -40,35 +42,45 @@ fn surface_of(px: vec2<u32>, view: u32, level: u32) -> PixelSurface {
     let own = disparity_at(px, view);
     let own_motion = motion_at(px, view);
     if ANTIALIAS == 0u || DEPTH_TEST == 0u {
-        return PixelSurface(own, own_motion, own, own, own, false, false);
+        return PixelSurface(own, own_motion, own, own, own, false, false, false);
     }
     var nearest_disparity = own;
     var farthest_disparity = own;
     var nearest_at = px;
     var farthest_at = px;
+    var thin = false;
+    var silhouette = false;
     var doubtful = false;
     let place_px = -frame.views[view].jitter_px;
-    for (var tap = 0u; tap < 9u; tap++) {
-        let offset = vec2<u32>(tap % 3u, tap / 3u);
-        let texel = clamp(px + offset, vec2<u32>(1u), frame.size) - 1u;
-        let near = disparity_at(texel, view);
-        doubtful = doubtful || may_show(own, near, place_px, vec2<f32>(offset) - 1.0);
-        let is_farther = near >= 0.0 && near < farthest_disparity;
-        nearest_at = select(nearest_at, texel, near > nearest_disparity);
-        farthest_at = select(farthest_at, texel, is_farther);
-        nearest_disparity = max(near, nearest_disparity);
-        farthest_disparity = select(farthest_disparity, near, is_farther);
+    for (var pair = 0u; pair < 4u; pair++) {
+        var disparities = vec2<f32>(own);
+        for (var side = 0u; side < 2u; side++) {
+            let tap = select(pair, 8u - pair, side == 1u);
+            let offset = vec2<u32>(tap % 3u, tap / 3u);
+            let texel = clamp(px + offset, vec2<u32>(1u), frame.size) - 1u;
+            let near = disparity_at(texel, view);
+            doubtful = doubtful || may_show(own, near, place_px, vec2<f32>(offset) - 1.0);
+            let is_farther = near >= 0.0 && near < farthest_disparity;
+            nearest_at = select(nearest_at, texel, near > nearest_disparity);
+            farthest_at = select(farthest_at, texel, is_farther);
+            nearest_disparity = max(near, nearest_disparity);
+            farthest_disparity = select(farthest_disparity, near, is_farther);
+            disparities = select(vec2<f32>(disparities.x, near), vec2<f32>(near, disparities.y), side == 0u);
+        }
+        thin = thin || is_thin(own, disparities.x, disparities.y);
+        silhouette = silhouette || is_silhouette(own, disparities.x, disparities.y);
     }
     let motion = motion_at(nearest_at, view);
-    var surface = PixelSurface(own, own_motion, own, own, own, false, false);
+    var surface = PixelSurface(own, own_motion, own, own, own, false, false, false);
     if stands_before(own, nearest_disparity, own_motion, motion, level == 0u) {
-        surface = PixelSurface(nearest_disparity, motion, nearest_disparity, own, own, false, false);
+        surface = PixelSurface(nearest_disparity, motion, nearest_disparity, own, own, false, false, false);
     }
     if own >= 0.0 && move_together(own_motion, motion, motion_at(farthest_at, view)) {
-        surface.stored_disparity = own;
+        surface.stored_disparity = select(own, farthest_disparity, thin);
         surface.farthest = farthest_disparity;
         surface.nearest = nearest_disparity;
         surface.mixes = true;
+        surface.is_silhouette = silhouette;
     }
     // Where surfaces move together, a pixel is the mean of both, and samples of either surface belong to it.
     surface.is_doubtful = SAMPLE_DEPTH == 0u && doubtful && own >= 0.0 && !surface.mixes;

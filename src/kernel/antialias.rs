@@ -109,6 +109,22 @@ pub fn is_of_surfaces(stored: f32, farthest: f32, nearest: f32) -> bool {
     stored >= far && stored * (1.0 - NEARER_RELATIVE) <= nearest
 }
 
+/// Whether a pixel's surface is narrower than two pixels along the line through two opposite neighbours: both show
+/// farther surfaces. The jitter of a later frame may miss it, so that the pixel's history is stored as that of the
+/// farther surface.
+#[inline]
+pub fn is_thin(own: f32, a: f32, b: f32) -> bool {
+    a.min(b) >= 0.0 && a.max(b) < own * (1.0 - NEARER_RELATIVE)
+}
+
+/// Whether a silhouette crosses the line through two opposite neighbours of a pixel: their disparities and its own are
+/// not those of a plane, or one is unknown. Where surfaces move together, history is then the mean of several, and
+/// differs from a sample, which shows one of them, although nothing changed.
+#[inline]
+pub fn is_silhouette(own: f32, a: f32, b: f32) -> bool {
+    a.min(b) < 0.0 || ((a + b) - 2.0 * own).abs() > own * NEARER_RELATIVE
+}
+
 /// Marks the observation of a sample that may show a surface other than the one at its pixel's depth. It is stored in
 /// place of the expected error.
 pub const DOUBTFUL: f32 = -2.0;

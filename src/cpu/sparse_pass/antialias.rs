@@ -4,8 +4,8 @@ use super::quads::Quads;
 use super::sparse_history::Surroundings;
 use super::view::View;
 use crate::kernel::antialias::{
-    Averaged, Mean, Near, add_near, average, clip, clipped, may_show, move_together, stands_before, stored_lod,
-    stored_mean,
+    Averaged, Mean, Near, add_near, average, clip, clipped, is_silhouette, is_thin, may_show, move_together,
+    stands_before, stored_lod, stored_mean,
 };
 use crate::kernel::rng;
 use crate::kernel::sparse_smr::{Reconstruction, reconstruct};
@@ -26,26 +26,38 @@ impl View<'_> {
     pub(super) fn surface(&self, [x, y]: [u32; 2], level: u32) -> Surroundings {
         let own = self.inputs.disparity(x, y);
         let own_motion = self.inputs.motion(x, y);
-        let alone = Surroundings { disparity: own, motion: own_motion, stored: own, mixed: None, is_doubtful: false };
+        let alone = Surroundings {
+            disparity: own,
+            motion: own_motion,
+            stored: own,
+            mixed: None,
+            is_silhouette: false,
+            is_doubtful: false,
+        };
         if !self.antialiases || !self.inputs.tests_depth() {
             return alone;
         }
         let [width, height] = self.inputs.size;
         let (mut nearest, mut nearest_at) = (own, [x, y]);
         let (mut farthest, mut farthest_at) = (own, [x, y]);
-        let mut doubtful = false;
-        for tap in 0..9 {
-            let tx = (x + tap % 3).max(1).min(width) - 1;
-            let ty = (y + tap / 3).max(1).min(height) - 1;
-            let disparity = self.inputs.disparity(tx, ty);
-            let offset = Vec2::new((tap % 3) as f32, (tap / 3) as f32) - 1.0;
-            doubtful |= may_show(own, disparity, self.sample_place_px(), offset);
-            if disparity > nearest {
-                (nearest, nearest_at) = (disparity, [tx, ty]);
-            }
-            if disparity >= 0.0 && disparity < farthest {
-                (farthest, farthest_at) = (disparity, [tx, ty]);
-            }
+        let (mut thin, mut silhouette, mut doubtful) = (false, false, false);
+        for pair in 0..4 {
+            let [a, b] = [pair, 8 - pair].map(|tap| {
+                let tx = (x + tap % 3).max(1).min(width) - 1;
+                let ty = (y + tap / 3).max(1).min(height) - 1;
+                let disparity = self.inputs.disparity(tx, ty);
+                let offset = Vec2::new((tap % 3) as f32, (tap / 3) as f32) - 1.0;
+                doubtful |= may_show(own, disparity, self.sample_place_px(), offset);
+                if disparity > nearest {
+                    (nearest, nearest_at) = (disparity, [tx, ty]);
+                }
+                if disparity >= 0.0 && disparity < farthest {
+                    (farthest, farthest_at) = (disparity, [tx, ty]);
+                }
+                disparity
+            });
+            thin |= is_thin(own, a, b);
+            silhouette |= is_silhouette(own, a, b);
         }
         let motion = self.inputs.motion(nearest_at[0], nearest_at[1]);
         let farthest_motion = self.inputs.motion(farthest_at[0], farthest_at[1]);
@@ -55,7 +67,9 @@ impl View<'_> {
             surface = Surroundings { disparity: nearest, motion, stored: nearest, ..alone };
         }
         if own >= 0.0 && move_together(own_px, nearest_px, farthest_px) {
-            surface = Surroundings { stored: own, mixed: Some([farthest, nearest]), ..surface };
+            let stored = if thin { farthest } else { own };
+            let mixed = Some([farthest, nearest]);
+            surface = Surroundings { stored, mixed, is_silhouette: silhouette, ..surface };
         }
         // Where surfaces move together, a pixel is the mean of both, and samples of either surface belong to it.
         // Depth of quads is that of their samples.

@@ -33,7 +33,7 @@ pub(super) fn unpack_observation(words: [u32; 2], sampled: impl FnOnce() -> Vec3
 }
 
 impl View<'_> {
-    /// Comparison of a sample with history at its pixel; `None` if either is missing.
+    /// Comparison of a sample with history at its pixel; `None` if either is missing, and at silhouettes.
     #[inline(always)]
     pub(super) fn observe(&self, lattice: usize, point: [u32; 2]) -> Option<Observation> {
         let lattice = &self.lattices[lattice];
@@ -48,7 +48,9 @@ impl View<'_> {
         if surface.is_doubtful {
             return Some(Observation { sampled, history: Vec3::ZERO, error: DOUBTFUL, confidence: 0.0 });
         }
-        let mut source = self.source(px, &surface, &mut NoNotes).ok().filter(|_| usable)?;
+        // At a silhouette the difference does not say whether anything changed.
+        let comparable = usable && !surface.is_silhouette;
+        let mut source = self.source(px, &surface, &mut NoNotes).ok().filter(|_| comparable)?;
         if self.antialiases {
             // History is read at the sample's place in its pixel.
             let [x, y] = self.inputs.uniforms.jitter_px;

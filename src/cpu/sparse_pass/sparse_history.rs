@@ -23,6 +23,8 @@ pub(super) struct Surroundings {
     pub stored: f32,
     /// Disparities of the farthest and the nearest surface around the pixel, if history may show any of them.
     pub mixed: Option<[f32; 2]>,
+    /// Whether history is the mean of several surfaces, of which a sample shows one.
+    pub is_silhouette: bool,
     /// Whether this frame's sample at the pixel may show another surface.
     pub is_doubtful: bool,
 }
@@ -32,6 +34,7 @@ impl Surroundings {
     pub fn note(&self, notes: &mut impl Notes) {
         notes.note(NoteStage::Reprojection, "motion of the surface that is continued", self.motion, "px");
         notes.note(NoteStage::Reprojection, "its disparity now", self.disparity, "1/distance");
+        notes.note(NoteStage::Reprojection, "silhouette, history is a mean of surfaces", self.is_silhouette, "");
         notes.note(NoteStage::Candidate, "may show another surface", self.is_doubtful, "");
     }
 }

@@ -176,6 +176,53 @@ fn a_first_frame_at_a_quarter_stays_in_history() {
     }
 }
 
+/// Bars of 0.6 and 1.1 pixels before a wall that moves with them, jittered. History antialiases them: a sample of a bar
+/// or of the wall beside it does not contradict the mean of both.
+#[test]
+fn thin_bars_become_means() {
+    const COLORS: [f32; 2] = [0.6, 0.03];
+    let is_bar = |x: f32, y: f32| {
+        let (across, width) = if y < 20.0 { (x - 0.02 * y, 0.6) } else { (x + 0.3 * y, 1.1) };
+        across.rem_euclid(9.0) < width
+    };
+    // Mean squared errors of square roots, of eight frames: the samples', and history's.
+    let errors = |speed_px: f32| {
+        let point = |px: [u32; 2], place: [f32; 2], index: u64| {
+            is_bar(px[0] as f32 + place[0] - speed_px * index as f32, px[1] as f32 + place[1])
+        };
+        let settings = Settings { foveation: Foveation::uniform(0.25), ..settings(0.0, true) };
+        let mut post = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) }).unwrap();
+        let mut sums = [0.0; 2];
+        for index in 0..64 {
+            let jitter_px = Foveation::jitter_px(index + 1);
+            let bars = Image::from_fn(SIZE, |px| point(px, jitter_px.map(|jitter| 0.5 - jitter), index));
+            let color = bars.map(|bar| [COLORS[usize::from(bar)]; 3]);
+            let view = View::still(color.clone(), [30.0, 20.0]).with(|view| {
+                view.facts.jitter_px = jitter_px;
+                view.depth = Some(bars.map(|bar| if bar { 3.0 } else { 9.0 }));
+                view.motion = Some(Image::filled(SIZE, [-speed_px, 0.0]));
+            });
+            let (_, shown) = show(&mut post, index, &view);
+            let mean = Image::from_fn(SIZE, |px| {
+                let inside = |i: u32| point(px, [i % 8, i / 8].map(|v| (v as f32 + 0.5) / 8.0), index);
+                let share = (0..64).filter(|&i| inside(i)).count() as f32 / 64.0;
+                [COLORS[0] + (COLORS[1] - COLORS[0]) * share; 3]
+            });
+            for (sum, image) in sums.iter_mut().zip([&color, &shown]).filter(|_| index >= 56) {
+                let off = |(a, b): (&[f32; 3], &[f32; 3])| f64::from(a[0].sqrt() - b[0].sqrt()).powi(2);
+                *sum += image.pixels().iter().zip(mean.pixels()).map(off).sum::<f64>();
+            }
+        }
+        sums
+    };
+    for (speed_px, least_db) in [(0.0, 8.0), (0.8, 3.0)] {
+        let [samples, history] = errors(speed_px);
+        let db = 10.0 * (samples / history).log10();
+        println!("{speed_px} px a frame: {db:.1} dB better than samples");
+        assert!(db > least_db);
+    }
+}
+
 /// Shows frame 0, planned if its foveation asks for it.
 fn show_first(post: &mut CpuAfterimage, view: &View) {
     let images = Images::of(&[view.one()]);

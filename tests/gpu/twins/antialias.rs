@@ -14,6 +14,8 @@ shape!(antialias::Near { sum: Vec3, squares: Vec3, count: f32 });
 shape!(antialias::Clip { change: Vec3, kept: f32 });
 shape!(antialias::Averaged { result: Reconstructed, samples: f32 });
 
+const DISPARITIES: [f32; 8] = [-1.0, 0.0, 0.48, 0.49, 0.5, 0.51, 1.0, 1.02];
+
 pub const PROBES: &[Probe] = &[
     probe!(antialias::mean_of, |rows| {
         let stored: Vec<u32> = (0..63).map(|code| (code as f32 * (1.0 / 7.0)).to_bits()).collect();
@@ -26,9 +28,18 @@ pub const PROBES: &[Probe] = &[
     probe!(antialias::stands_before, |rows| rows.each(&[&[F(-1.0, 2.0); 2][..], &[F(-1.0, 1.0); 4], &[N(2)]].concat())),
     probe!(antialias::move_together, |rows| rows.each(&[F(-0.2, 0.2); 6])),
     probe!(antialias::may_show, |rows| {
-        let disparities = floats(&[-1.0, 0.0, 0.48, 0.49, 0.5, 0.51, 1.0, 1.02]);
+        let disparities = floats(&DISPARITIES);
         let [places, offsets] = [floats(&[-0.5, 0.0, 0.3]), floats(&[-1.0, 0.0, 1.0])];
         rows.cross(&[&disparities, &disparities, &places, &places, &offsets, &offsets])
+    }),
+    probe!(antialias::is_thin, |rows| rows.cross(&[
+        &floats(&DISPARITIES),
+        &floats(&DISPARITIES),
+        &floats(&DISPARITIES)
+    ])),
+    probe!(antialias::is_silhouette, |rows| {
+        let disparities = floats(&DISPARITIES);
+        rows.cross(&[&disparities, &disparities, &disparities]).each(&[F(0.9, 1.1); 3])
     }),
     probe!(antialias::is_of_surfaces, |rows| {
         let disparities = floats(&[-1.0, 0.0, 0.48, 0.49, 0.5, 0.51, 1.0, 1.02, 1.03, 1e30]);
