@@ -30,7 +30,7 @@ struct PixelSurface {
     farthest: f32,
     nearest: f32,
     mixes: bool,
-    // Whether history is the mean of several surfaces, of which a sample shows one.
+    // Whether history is the mean of several surfaces, of which a sample shows one; of frames shaded by quads.
     is_silhouette: bool,
     // Whether this frame's sample at the pixel may show another surface.
     is_doubtful: bool,
@@ -80,7 +80,7 @@ fn surface_of(px: vec2<u32>, view: u32, level: u32) -> PixelSurface {
         surface.farthest = farthest_disparity;
         surface.nearest = nearest_disparity;
         surface.mixes = true;
-        surface.is_silhouette = silhouette;
+        surface.is_silhouette = SAMPLE_DEPTH != 0u && silhouette;
     }
     // Where surfaces move together, a pixel is the mean of both, and samples of either surface belong to it.
     surface.is_doubtful = SAMPLE_DEPTH == 0u && doubtful && own >= 0.0 && !surface.mixes;

@@ -19,9 +19,8 @@ fn observe(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
         // History is read at the sample's place in its pixel.
         source.previous.at -= frame.views[view].jitter_px;
     }
-    // At a silhouette the difference does not say whether anything changed.
-    let comparable = color(sample_at(point, lattice, view).xyz).usable && !surface.is_doubtful && !surface.is_silhouette;
-    let needed = may_have_history(source.previous) && comparable;
+    let usable = color(sample_at(point, lattice, view).xyz).usable && !surface.is_doubtful;
+    let needed = may_have_history(source.previous) && usable;
     let found = sparse_history(source, view, needed);
     let history = found.found;
     if !needed || history.lod < 0.0 {

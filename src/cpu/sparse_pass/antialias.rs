@@ -69,7 +69,8 @@ impl View<'_> {
         if own >= 0.0 && move_together(own_px, nearest_px, farthest_px) {
             let stored = if thin { farthest } else { own };
             let mixed = Some([farthest, nearest]);
-            surface = Surroundings { stored, mixed, is_silhouette: silhouette, ..surface };
+            let is_silhouette = silhouette && self.quads.is_some();
+            surface = Surroundings { stored, mixed, is_silhouette, ..surface };
         }
         // Where surfaces move together, a pixel is the mean of both, and samples of either surface belong to it.
         // Depth of quads is that of their samples.
