@@ -5,8 +5,8 @@
 use crate::options::{Tables, WrsTableArgs};
 use crate::wrs_readings;
 use afterimage_cli::commands::sweep::{SweepArgs, execute};
-use afterimage_cli::failure::Failure;
 use afterimage_cli::sweep::{Metric, Row, Table};
+use afterimage_clip::failure::Failure;
 use afterimage_lab::whole_file::write_whole;
 use clap::Parser;
 use std::io::Write;
