@@ -4,7 +4,7 @@
 use crate::options::WrsTableArgs;
 use crate::parts::{STORED_BIAS, shader_without};
 use afterimage::{Bias, Foveation, Gate, GateScale, Image, Method, Sampler, Settings, ViewGeometry, Wrs};
-use afterimage_cli::commands::sweep::command_line;
+use afterimage_cli::sweep::grid::command_line;
 use afterimage_clip::failure::Failure;
 use afterimage_clip::progress;
 use afterimage_lab::device::Backend;
