@@ -67,6 +67,13 @@ impl From<InputError> for Failure {
     }
 }
 
+/// Prints warnings.
+pub fn warn(warnings: &[String]) {
+    for warning in warnings {
+        eprintln!("afterimage: warning: {warning}");
+    }
+}
+
 /// The line of `error`, with the option of this tool that solves the problem: the library does not know these options.
 fn with_option(error: &InputError) -> String {
     match error {

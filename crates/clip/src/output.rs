@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::picture::write_png;
 use crate::whole_file::write_whole;
 use image::RgbImage;
+use serde::Serialize;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -131,6 +132,13 @@ impl Table {
             .and_then(|()| fs::rename(&self.partial, &self.path))
             .map_err(|e| Failure::writing(&self.path, e))
     }
+}
+
+/// Writes a report, if it is asked for.
+pub fn write_json(path: Option<&Path>, report: &impl Serialize) -> Result<(), Failure> {
+    let Some(path) = path else { return Ok(()) };
+    let text = serde_json::to_string_pretty(report).map_err(|e| Failure::Work(e.to_string()))?;
+    write_whole(path, |file| writeln!(file, "{text}")).map_err(|e| Failure::writing(path, e))
 }
 
 /// Temporary files of writes that were cut off.

@@ -6,6 +6,7 @@
 //! - [`scanpath`]: recorded and synthetic gaze.
 //! - [`quad_views`]: foveation as headset runtimes draw it, for comparison.
 //! - [`pipeline`]: foveates frames and runs the methods on them. [`metric`]: image quality of the output.
+//! - [`measure`]: times of path-traced frames.
 //! - [`lattices`]: sparse frames, their order of samples and their geometry.
 //! - [`device`]: a graphics device without a window. [`error`]: errors of inputs.
 
@@ -18,6 +19,7 @@ pub mod error;
 mod file_kind;
 pub mod frame;
 pub mod kernel;
+pub mod measure;
 pub mod pipeline;
 pub mod raster;
 pub mod scene;

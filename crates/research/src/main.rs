@@ -16,8 +16,8 @@ mod sparse_smr;
 mod wrs_readings;
 mod wrs_table;
 
-use afterimage_cli::commands::bench::foveated::ROUNDS;
-use afterimage_cli::failure::Failure;
+use afterimage_clip::failure::Failure;
+use afterimage_lab::measure::ROUNDS;
 use clap::{Parser, Subcommand};
 use options::{EffectsArgs, TracedArgs, WrsTableArgs};
 use std::process::ExitCode;

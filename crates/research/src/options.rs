@@ -1,9 +1,8 @@
 //! Options that several experiments share.
 
-use afterimage_cli::args::backend::BackendName;
+use afterimage_cli::args::backend::{BackendName, Traces};
 use afterimage_cli::args::parse_size;
-use afterimage_cli::commands::bench::Traces;
-use afterimage_cli::failure::Failure;
+use afterimage_clip::failure::Failure;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 

@@ -6,12 +6,10 @@
 use super::sparse_smr::{CLIP_FRAMES, Comparer, Comparison, Shown};
 use crate::options::TracedArgs;
 use afterimage::ViewGeometry;
-use afterimage_cli::args::backend::NO_ADAPTER;
-use afterimage_cli::commands::bench::foveated::{PatternReport, UNIFORM_EVERY, UNIFORM_SAMPLES, measure, regions};
-use afterimage_cli::commands::bench::traced_view::{Pattern, TracedView, backends, is_real_gpu};
-use afterimage_cli::commands::bench::write_json;
-use afterimage_cli::failure::Failure;
-use afterimage_lab::device::Backend;
+use afterimage_clip::failure::{Failure, warn};
+use afterimage_clip::output::write_json;
+use afterimage_lab::device::{Backend, NO_ADAPTER};
+use afterimage_lab::measure::{Pattern, PatternReport, TracedView, UNIFORM_EVERY, UNIFORM_SAMPLES, measure, regions};
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
 use afterimage_lab::trace::sampling::{Layers, Regions, Sampling};
 use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
@@ -104,7 +102,7 @@ struct Compared {
 /// Measures both tables: the first with frames of `size`, the second with frames whose width is that height (1080x1200
 /// for 1920x1080).
 pub fn bench(args: &TracedArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
-    let backend = backends(args.backend)?.pop().ok_or_else(|| Failure::Input(NO_ADAPTER.into()))?;
+    let backend = args.backend.open()?.pop().ok_or_else(|| Failure::Input(NO_ADAPTER.into()))?;
     let eye = [size[1], (size[1] * 10).div_ceil(9)];
     let layers = |(name, paper): &(&str, Option<[f64; 2]>)| layers_of(name, *paper, &backend, eye, frames);
     let report = Report {
@@ -159,9 +157,10 @@ fn regions_of_a_scene(
 ) -> Result<SceneReport, Failure> {
     let name = args.scene.first().map_or("builtin:courtyard", String::as_str);
     let subject = TracedView::open(name, size, args.camera.as_deref(), Some(display()?.hfov_deg()))?;
+    warn(subject.warnings());
     let settings = TraceSettings::default();
     let tracer = subject.tracer(backend, settings)?;
-    let by_wall = is_real_gpu(backend);
+    let by_wall = backend.is_real_gpu();
     let middle = subject.middle_px();
     let pattern = |t: &Triple, radius_scale| regions(t.samples, t.is_divisible && !by_wall, radius_scale, middle);
     let mut patterns: Vec<Pattern> = TRIPLES.iter().map(|t| pattern(t, 1.0)).collect();
@@ -212,7 +211,7 @@ fn layers_of(
         sparse: None,
     };
     let patterns = [pattern("forward", middle), pattern("corner", middle.map(|v| v - rim))];
-    let by_wall = is_real_gpu(backend);
+    let by_wall = backend.is_real_gpu();
     let measured = measure(&subject, &tracer, &patterns, frames, by_wall)?;
     let mut comparer = Comparer::new(&subject, &tracer, backend, by_wall);
     let compare = |(i, (ours, pattern)): (usize, (PatternReport, &Pattern))| {

@@ -4,10 +4,9 @@
 //! the CPU.
 
 use crate::options::TracedArgs;
-use afterimage_cli::commands::bench::foveated::{PatternReport, measure, one_path, regions};
-use afterimage_cli::commands::bench::traced_view::{TracedView, backends, is_real_gpu};
-use afterimage_cli::commands::bench::write_json;
-use afterimage_cli::failure::Failure;
+use afterimage_clip::failure::{Failure, warn};
+use afterimage_clip::output::write_json;
+use afterimage_lab::measure::{PatternReport, TracedView, measure, one_path, regions};
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
 use afterimage_lab::trace::settings::TraceSettings;
 use serde::Serialize;
@@ -38,19 +37,20 @@ struct TracerReport {
 /// Times the patterns for `size` in each scene on each device, `frames` times.
 pub fn bench(args: &TracedArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
     let settings = TraceSettings::default();
-    let backends = backends(args.backend)?;
+    let backends = args.backend.open()?;
     let default = ["builtin:courtyard".to_owned()];
     let names = if args.scene.is_empty() { &default[..] } else { &args.scene };
     let mut scenes = vec![];
     for name in names {
         let subject = TracedView::open(name, size, args.camera.as_deref(), None)?;
+        warn(subject.warnings());
         let middle = subject.middle_px();
         let regions = |samples| regions(samples, false, 1.0, middle);
         let patterns = [one_path(middle), regions([8, 4, 2]), regions([32, 16, 8])];
         let mut tracers = vec![];
         for backend in &backends {
             let tracer = subject.tracer(backend, settings)?;
-            let patterns = measure(&subject, &tracer, &patterns, frames, is_real_gpu(backend))?;
+            let patterns = measure(&subject, &tracer, &patterns, frames, backend.is_real_gpu())?;
             tracers.push(TracerReport { backend: backend.info(), patterns });
         }
         scenes.push(SceneReport { scene: name.clone(), triangles: subject.world.geometry.len(), tracers });

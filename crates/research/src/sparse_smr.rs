@@ -2,12 +2,12 @@
 //! last columns of `cargo research papers`.
 
 use afterimage::{Filter, Foveation, Image, Settings};
-use afterimage_cli::commands::bench::traced_view::{Foveated, FrameTime, Pattern, TracedView};
-use afterimage_cli::failure::Failure;
+use afterimage_clip::failure::Failure;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::Content;
 use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
+use afterimage_lab::measure::{Foveated, FrameTime, Pattern, TracedView};
 use afterimage_lab::metric::{Flip, encode, psnr_db};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::trace::Tracer;

@@ -4,9 +4,9 @@
 use crate::options::WrsTableArgs;
 use crate::parts::{STORED_BIAS, shader_without};
 use afterimage::{Bias, Foveation, Gate, GateScale, Image, Method, Sampler, Settings, ViewGeometry, Wrs};
-use afterimage_cli::commands::sweep::command_line;
-use afterimage_cli::failure::Failure;
-use afterimage_cli::progress;
+use afterimage_cli::sweep::grid::command_line;
+use afterimage_clip::failure::Failure;
+use afterimage_clip::progress;
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind};

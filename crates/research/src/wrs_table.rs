@@ -4,11 +4,10 @@
 
 use crate::options::{Tables, WrsTableArgs};
 use crate::wrs_readings;
-use afterimage_cli::commands::sweep::{SweepArgs, execute};
-use afterimage_cli::failure::Failure;
 use afterimage_cli::sweep::{Metric, Row, Table};
+use afterimage_cli::sweep_table;
+use afterimage_clip::failure::Failure;
 use afterimage_lab::whole_file::write_whole;
-use clap::Parser;
 use std::io::Write;
 
 /// Published results: PSNR in dB and SSIM, without (still) or with TAA (moving), and with weighted reservoirs.
@@ -46,14 +45,6 @@ const PUBLISHED: [Published; 4] = [
 /// Foveae of the page; the sweep measures 7.5 degrees, too.
 const FOVEAE_DEG: [&str; 2] = ["5", "10"];
 
-/// Parser of the options of `sweep`.
-#[derive(Parser)]
-#[command(name = "sweep")]
-struct Sweep {
-    #[command(flatten)]
-    args: SweepArgs,
-}
-
 /// Runs the sweep and writes the tables.
 pub fn bench(args: &WrsTableArgs) -> Result<(), Failure> {
     if args.only == Some(Tables::Published) {
@@ -80,8 +71,7 @@ fn published(args: &WrsTableArgs) -> Result<Option<String>, Failure> {
     let (start, frames, seeds) = (args.start.to_string(), args.frames.to_string(), args.seeds.to_string());
     let out = args.out.to_string_lossy();
     let (rate_mid, rate_far) = (format!("rate-mid={}", args.rate_mid), format!("rate-far={}", args.rate_far));
-    let words = [
-        "sweep",
+    let options = [
         &args.still,
         &args.moving,
         "--preset",
@@ -103,8 +93,7 @@ fn published(args: &WrsTableArgs) -> Result<Option<String>, Failure> {
         "--out",
         &out,
     ];
-    let sweep = Sweep::try_parse_from(words).map_err(|e| Failure::usage(&e))?;
-    Ok(execute(&sweep.args)?.map(|table| markdown(args, &table)))
+    Ok(sweep_table(&options)?.map(|table| markdown(args, &table)))
 }
 
 fn write(args: &WrsTableArgs, text: &str) -> Result<(), Failure> {

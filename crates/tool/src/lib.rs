@@ -11,21 +11,15 @@ extern crate afterimage_clip;
     reason = "help texts: `synthetic[:SEED]` is no link"
 )]
 pub mod args;
-#[doc(hidden)]
-#[allow(
-    rustdoc::broken_intra_doc_links,
-    rustdoc::invalid_html_tags,
-    reason = "help texts: `synthetic[:SEED]` is no link"
-)]
-pub mod commands;
+mod commands;
 pub mod report;
 pub mod sweep;
 
+pub use afterimage_clip::method_report;
 #[doc(hidden)]
-pub use afterimage_clip::{failure, output, progress};
-pub use afterimage_clip::{method_report, times};
+pub use commands::sweep::sweep_table;
 
-use afterimage_clip::{clip, demo};
+use afterimage_clip::{clip, demo, failure, output, progress};
 use clap::{Parser, Subcommand};
 #[cfg(feature = "view")]
 use commands::view;

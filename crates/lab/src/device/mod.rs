@@ -15,6 +15,10 @@ pub use timestamps::DeviceClock;
 
 use std::sync::Arc;
 
+/// Message if the machine has no adapter.
+pub const NO_ADAPTER: &str = "there is no adapter, or none that AFTERIMAGE_ADAPTER names; install a Vulkan driver \
+    (software: mesa-vulkan-drivers)";
+
 /// Executor of the post-process.
 #[derive(Clone, Debug, Default)]
 pub enum Backend {
@@ -32,5 +36,10 @@ impl Backend {
             Self::Cpu => None,
             Self::Gpu(device) => Some(device),
         }
+    }
+
+    /// Whether the backend is a hardware GPU, whose work does not show in CPU time.
+    pub fn is_real_gpu(&self) -> bool {
+        self.device().is_some_and(|device| !device.is_software())
     }
 }

@@ -9,11 +9,11 @@ mod removals;
 mod table;
 
 use crate::options::EffectsArgs;
-use afterimage_cli::commands::bench::traced_view::{TracedView, backends, is_real_gpu};
-use afterimage_cli::commands::bench::write_json;
-use afterimage_cli::failure::Failure;
+use afterimage_clip::failure::{Failure, warn};
+use afterimage_clip::output::write_json;
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::Backend;
+use afterimage_lab::measure::TracedView;
 use afterimage_lab::pipeline::Processor;
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::effects::{Effect, Effects};
@@ -44,7 +44,7 @@ struct Variant {
 
 /// Measures the cost of effects at `size` for `frames` frames.
 pub fn bench(args: &EffectsArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
-    let backends = backends(args.traced.backend)?;
+    let backends = args.traced.backend.open()?;
     let default = SCENES.map(str::to_owned);
     let names = if args.traced.scene.is_empty() { &default[..] } else { &args.traced.scene };
     // Compiled kernels depend only on the effects, not on the rest of the scene.
@@ -52,6 +52,7 @@ pub fn bench(args: &EffectsArgs, size: [u32; 2], frames: u64) -> Result<(), Fail
     let mut scenes = vec![];
     for name in names {
         let subject = TracedView::open(name, size, None, None)?;
+        warn(subject.warnings());
         let needs = subject.world.needs;
         let mut prices = vec![];
         let mut removals = vec![];
@@ -120,7 +121,7 @@ fn take_turns(subject: &TracedView, backend: &Backend, variants: &mut [Variant],
             let variant = &mut variants[(i + index as usize) % count];
             let took = subject.frame(&variant.tracer, index);
             if index >= WARM_UP {
-                variant.ms.push(took.device_ms.filter(|_| is_real_gpu(backend)).unwrap_or(took.cpu_ms));
+                variant.ms.push(took.device_ms.filter(|_| backend.is_real_gpu()).unwrap_or(took.cpu_ms));
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Costs of effects: the report, and its Markdown tables.
 
-use afterimage_cli::failure::Failure;
+use afterimage_clip::failure::Failure;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::pipeline::ProcessorInfo;
 use afterimage_lab::trace::effects::Effect;

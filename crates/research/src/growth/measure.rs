@@ -5,8 +5,8 @@ use afterimage::wgpu::{Texture, TextureFormat, TextureUsages};
 use afterimage::{
     ContextDesc, DepthConvention, Filter, Foveation, Gaze, Lattice, Lattices, Settings, ViewFrame, ViewGeometry,
 };
-use afterimage_cli::failure::Failure;
-use afterimage_cli::times::Times;
+use afterimage_clip::failure::Failure;
+use afterimage_clip::times::Times;
 use afterimage_lab::clock::Elapsed;
 use afterimage_lab::device::{Backend, Headless, SpanClock};
 use afterimage_lab::raster::{AtlasLayout, RasterSettings};

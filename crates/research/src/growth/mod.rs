@@ -6,12 +6,11 @@ mod fit;
 mod measure;
 
 use afterimage::Lattices;
-use afterimage_cli::args::backend::NO_ADAPTER;
 use afterimage_cli::args::parse_size;
-use afterimage_cli::commands::bench::write_json;
-use afterimage_cli::failure::Failure;
-use afterimage_cli::progress;
-use afterimage_lab::device::{Headless, PassClock};
+use afterimage_clip::failure::Failure;
+use afterimage_clip::output::write_json;
+use afterimage_clip::progress;
+use afterimage_lab::device::{Headless, NO_ADAPTER, PassClock};
 use clap::{Args, ValueEnum};
 use fit::Fit;
 use measure::{Config, Point, Renderer, Rig, measure};

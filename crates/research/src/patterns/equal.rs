@@ -1,7 +1,7 @@
 //! Sampling patterns with equal numbers of samples.
 
 use afterimage::ViewGeometry;
-use afterimage_cli::failure::Failure;
+use afterimage_clip::failure::Failure;
 use afterimage_lab::trace::sampling::{Acuity, Layers, Regions, Sampling};
 
 /// Largest relative difference between the numbers of samples.

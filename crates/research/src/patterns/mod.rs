@@ -8,9 +8,8 @@ use afterimage::kernel::debug_view::heat;
 use afterimage::{Image, ViewGeometry};
 use afterimage_cli::args::backend::BackendName;
 use afterimage_cli::args::{parse_samples, parse_size, parse_stops};
-use afterimage_cli::commands::bench::write_json;
-use afterimage_cli::failure::Failure;
-use afterimage_cli::output::Output;
+use afterimage_clip::failure::{Failure, warn};
+use afterimage_clip::output::{Output, write_json};
 use afterimage_lab::metric::{Flip, References, Scorer, Scores, Tracked, encode};
 use afterimage_lab::picture::to_rgb8;
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
@@ -130,9 +129,7 @@ pub fn bench(args: &PatternsArgs) -> Result<(), Failure> {
         options: SceneOptions { size: Some(args.size), hfov_deg: args.hfov, fps: None },
         ..SceneChoice::new(&args.scene)
     })?;
-    for warning in of.warnings() {
-        eprintln!("afterimage: warning: {warning}");
-    }
+    warn(of.warnings());
     let ([view, _], _) = of.views(0);
     let geometry = *view.geometry();
     let middle = args.size.map(|s| 0.5 * (s as f32 - 1.0));

@@ -1,12 +1,9 @@
 //! `--backend`: CPU or GPU.
 
 use crate::failure::Failure;
-use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::device::{Backend, Headless, NO_ADAPTER};
 use afterimage_lab::source::is_scene;
 use clap::ValueEnum;
-
-/// Message if the machine has no adapter.
-pub const NO_ADAPTER: &str = "there is no adapter, or none that AFTERIMAGE_ADAPTER names; install a Vulkan driver (software: mesa-vulkan-drivers)";
 
 /// Values of `--backend`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -34,10 +31,7 @@ impl BackendName {
         let found = match self {
             Self::Cpu => None,
             Self::Auto => Headless::find(false),
-            Self::Gpu => Some(
-                Headless::find(true)
-                    .ok_or_else(|| Failure::Input(format!("--backend gpu: {NO_ADAPTER}, or use --backend cpu")))?,
-            ),
+            Self::Gpu => Some(Headless::find(true).ok_or_else(no_adapter)?),
         };
         Ok(found.map_or(Backend::Cpu, Backend::Gpu))
     }
@@ -54,4 +48,30 @@ impl BackendName {
             Backend::Cpu => Backend::Cpu,
         })
     }
+}
+
+/// Values of `--backend` where several backends are timed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Traces {
+    /// The CPU, and an adapter if there is one: a GPU, else software
+    Auto,
+    /// The CPU
+    Cpu,
+    /// An adapter: a GPU, else software
+    Gpu,
+}
+
+impl Traces {
+    /// Opens the backends to time, with room for scenes: the CPU, an adapter, or both.
+    pub fn open(self) -> Result<Vec<Backend>, Failure> {
+        let gpu = if self == Self::Cpu { None } else { Headless::find_roomy(true) };
+        if gpu.is_none() && self == Self::Gpu {
+            return Err(no_adapter());
+        }
+        Ok((self != Self::Gpu).then_some(Backend::Cpu).into_iter().chain(gpu.map(Backend::Gpu)).collect())
+    }
+}
+
+fn no_adapter() -> Failure {
+    Failure::Input(format!("--backend gpu: {NO_ADAPTER}, or use --backend cpu"))
 }

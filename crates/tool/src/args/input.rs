@@ -1,11 +1,10 @@
 //! Options of the input that `run`, `sweep` and `view` share, and opening it.
 
-use crate::args::backend::NO_ADAPTER;
 use crate::args::paths::PathArgs;
 use crate::args::{parse_fps, parse_hfov, parse_samples, parse_size};
-use crate::failure::Failure;
+use crate::failure::{Failure, warn};
 use afterimage::ViewGeometry;
-use afterimage_lab::device::{Backend, Headless};
+use afterimage_lab::device::{Backend, Headless, NO_ADAPTER};
 use afterimage_lab::lattices::SampleOrder;
 use afterimage_lab::scanpath::HeadPath;
 use afterimage_lab::source;
@@ -180,10 +179,4 @@ impl InputArgs {
 /// Number of frames of a run; `None` for stills and endless scenes, which last as long as the gaze.
 pub fn frames(requested: Option<u64>, info: &SourceInfo) -> Option<u64> {
     requested.or(if info.still { None } else { info.frames })
-}
-
-fn warn(warnings: &[String]) {
-    for warning in warnings {
-        eprintln!("afterimage: warning: {warning}");
-    }
 }

@@ -1,5 +1,6 @@
 //! Parsers of numbers with ranges.
 
+use crate::failure::warn;
 use afterimage_clip::exposure::{Chosen, Exposure};
 use std::str::FromStr;
 
@@ -91,9 +92,7 @@ pub fn tell_exposure(chosen: &Chosen) {
     if chosen.found {
         say!("exposure: {} stops, from the first frame", chosen.ev);
     }
-    if let Some(hint) = &chosen.hint {
-        eprintln!("afterimage: warning: {hint}");
-    }
+    warn(chosen.hint.as_slice());
 }
 
 fn within<T: FromStr>(text: &str, range: &str, is_within: impl Fn(&T) -> bool) -> Result<T, String> {

@@ -177,3 +177,9 @@ pub fn quoted(word: &str) -> String {
         format!("'{}'", word.replace('\'', r"'\''"))
     }
 }
+
+/// The command line, quoted for a shell.
+pub fn command_line() -> String {
+    let arguments = std::env::args().skip(1).map(|word| quoted(&word));
+    ["afterimage".to_owned()].into_iter().chain(arguments).collect::<Vec<_>>().join(" ")
+}

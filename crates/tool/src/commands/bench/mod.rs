@@ -1,17 +1,13 @@
 //! `afterimage bench`: times of the passes and of the path tracer. The project's experiments are in `crates/research`.
 
-pub mod foveated;
 mod post;
 mod rays;
-pub mod traced_view;
 
+use crate::args::backend::Traces;
 use crate::args::parse_size;
 use crate::failure::Failure;
-use afterimage_lab::whole_file::write_whole;
 use clap::{Args, ValueEnum};
-use serde::Serialize;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Time the passes, or the path tracer
 #[derive(Args, Clone, Debug)]
@@ -58,17 +54,6 @@ pub enum What {
     Trace,
 }
 
-/// Values of `--backend`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Traces {
-    /// The CPU, and an adapter if there is one: a GPU, else software
-    Auto,
-    /// The CPU
-    Cpu,
-    /// An adapter: a GPU, else software
-    Gpu,
-}
-
 /// The subcommand.
 pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
     let (size, frames) = match args.what {
@@ -83,11 +68,4 @@ pub fn bench(args: &BenchArgs) -> Result<(), Failure> {
         What::Post => post::bench(args, size, frames),
         What::Trace => rays::bench(args, size, frames),
     }
-}
-
-/// Writes a report, if it is asked for.
-pub fn write_json(path: Option<&Path>, report: &impl Serialize) -> Result<(), Failure> {
-    let Some(path) = path else { return Ok(()) };
-    let text = serde_json::to_string_pretty(report).map_err(|e| Failure::Work(e.to_string()))?;
-    write_whole(path, |file| writeln!(file, "{text}")).map_err(|e| Failure::writing(path, e))
 }

@@ -1,8 +1,8 @@
 //! `afterimage bench post`: off-screen cost of the passes, compared with a copy pass that moves as many bytes.
 
-use super::{BenchArgs, write_json};
-use crate::args::backend::NO_ADAPTER;
+use super::BenchArgs;
 use crate::failure::Failure;
+use crate::output::write_json;
 use afterimage::kernel::rng;
 use afterimage::module;
 use afterimage::shader::{Composer, Module};
@@ -13,7 +13,7 @@ use afterimage::{
     ViewGeometry,
 };
 use afterimage_lab::clock::{Quartiles, Stopwatch};
-use afterimage_lab::device::{Headless, PassClock};
+use afterimage_lab::device::{Headless, NO_ADAPTER, PassClock};
 use afterimage_lab::frame::{RenderedFrame, SourceFrame};
 use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun};
 use serde::Serialize;

@@ -1,10 +1,10 @@
 //! `afterimage bench trace`: rays per second of the tracers.
 
-use super::foveated::{self, PatternReport};
-use super::traced_view::{FrameTime, TracedView, backends, is_real_gpu};
-use super::{BenchArgs, write_json};
-use crate::failure::Failure;
+use super::BenchArgs;
+use crate::failure::{Failure, warn};
+use crate::output::write_json;
 use afterimage_lab::clock::Quartiles;
+use afterimage_lab::measure::{FrameTime, PatternReport, ROUNDS, TracedView, measure, patterns};
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
 use afterimage_lab::trace::settings::TraceSettings;
 use serde::Serialize;
@@ -51,12 +51,13 @@ struct TracerReport {
 /// Times the tracers for `size` and `frames`.
 pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failure> {
     let settings = TraceSettings::default();
-    let backends = backends(args.backend)?;
+    let backends = args.backend.open()?;
     let default = ["builtin:courtyard".to_owned()];
     let names = if args.scene.is_empty() { &default[..] } else { &args.scene };
     let mut scenes = vec![];
     for name in names {
         let subject = TracedView::open(name, size, args.camera.as_deref(), None)?;
+        warn(subject.warnings());
         let tracers = backends.iter().map(|b| subject.tracer(b, settings)).collect::<Result<Vec<_>, _>>()?;
         let mut took: Vec<Vec<FrameTime>> = vec![vec![]; tracers.len()];
         for index in 0..WARM_UP + frames {
@@ -70,7 +71,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
         let triangles = subject.world.geometry.len();
         let reports = backends.iter().zip(&tracers).zip(&took).map(|((backend, tracer), took)| {
             let of = |value: &dyn Fn(&FrameTime) -> f64| Quartiles::of(&took.iter().map(value).collect::<Vec<_>>());
-            let device = is_real_gpu(backend) && took.iter().all(|t| t.device_ms.is_some());
+            let device = backend.is_real_gpu() && took.iter().all(|t| t.device_ms.is_some());
             let device_ms = if device { of(&|t| t.device_ms.unwrap_or(f64::NAN)) } else { None };
             let rate = |ms: &dyn Fn(&FrameTime) -> f64| of(&|t| t.rays as f64 / ms(t) * 1e-3).map(|q| q.median);
             Ok::<_, Failure>(TracerReport {
@@ -82,8 +83,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
                 mrays_per_core_second: rate(&|t| t.cpu_ms),
                 mrays_per_second: rate(&|t| t.device_ms.filter(|_| device).unwrap_or(t.wall_ms)),
                 foveated: if args.foveated {
-                    let patterns = foveated::patterns(&subject);
-                    foveated::measure(&subject, tracer, &patterns, foveated::ROUNDS, is_real_gpu(backend))?
+                    measure(&subject, tracer, &patterns(&subject), ROUNDS, backend.is_real_gpu())?
                 } else {
                     vec![]
                 },
@@ -133,7 +133,27 @@ fn print(report: &Report) {
         for t in scene.tracers.iter().filter(|t| !t.foveated.is_empty()) {
             let clock = t.foveated.first().map_or("", |p| p.clock);
             say!("  foveated and uniform, {clock} time, {} ({})", t.backend.name, t.backend.kind);
-            foveated::print(&t.foveated);
+            print_patterns(&t.foveated);
         }
+    }
+}
+
+/// Prints a table.
+fn print_patterns(patterns: &[PatternReport]) {
+    say!("    foveated ms  uniform ms  ideal  samples  time  share of ideal  pattern");
+    for p in patterns {
+        let (Some((uniform, ms)), Some(time)) = (p.times(), p.time_reduction) else { continue };
+        let or_dash =
+            |v: Option<f64>, factor: f64, unit: &str| v.map_or("-".into(), |v| format!("{:.1}{unit}", v * factor));
+        say!(
+            "{:>15.0} {:>11.0} {:>6} {:>7.1}x {:>4.1}x {:>15}  {}",
+            ms.median,
+            uniform.median,
+            or_dash(p.ideal_reduction, 1.0, "x"),
+            p.sample_reduction,
+            time,
+            or_dash(p.share_of_ideal, 100.0, " %"),
+            p.pattern,
+        );
     }
 }

@@ -6,8 +6,6 @@ mod pick;
 mod plan;
 mod report;
 
-pub use report::command_line;
-
 use crate::args::input::InputArgs;
 use crate::failure::Failure;
 use crate::progress;
@@ -16,7 +14,7 @@ use crate::sweep::{Measurement, Options, Store, Table};
 use afterimage_lab::source::is_scene;
 use afterimage_lab::source::viewed_scene::DEFAULT_SIZE;
 use batch::{Batch, batches, concerns, is_random};
-use clap::Args;
+use clap::{Args, FromArgMatches};
 use pick::PickArgs;
 use plan::PresetName;
 use std::collections::BTreeMap;
@@ -149,8 +147,15 @@ pub fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     }
 }
 
+/// As the subcommand with these options; returns the table, `None` without points.
+pub fn sweep_table(options: &[&str]) -> Result<Option<Table>, Failure> {
+    let command = SweepArgs::augment_args(clap::Command::new("sweep").no_binary_name(true));
+    let args = command.try_get_matches_from(options).and_then(|matches| SweepArgs::from_arg_matches(&matches));
+    execute(&args.map_err(|e| Failure::usage(&e))?)
+}
+
 /// Measures missing points and writes the report; `None` without points.
-pub fn execute(args: &SweepArgs) -> Result<Option<Table>, Failure> {
+fn execute(args: &SweepArgs) -> Result<Option<Table>, Failure> {
     let store = if !args.merge.is_empty() {
         merge(args)?
     } else if args.input.is_empty() {

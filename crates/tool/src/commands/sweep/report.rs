@@ -4,7 +4,7 @@ use super::SweepArgs;
 use crate::failure::Failure;
 use crate::report::page::page;
 use crate::report::{pareto, plot};
-use crate::sweep::grid::quoted;
+use crate::sweep::grid::command_line;
 use crate::sweep::markdown::markdown;
 use crate::sweep::{Measurement, Store, Table};
 use afterimage_lab::picture::write_png;
@@ -35,12 +35,6 @@ pub fn write(args: &SweepArgs, store: &Store, measurements: &[Measurement]) -> R
 fn text(store: &Store, name: &str, text: &str) -> Result<(), Failure> {
     let path = store.root().join(name);
     write_whole(&path, |file| file.write_all(text.as_bytes())).map_err(|e| Failure::writing(&path, e))
-}
-
-/// The command line, quoted for a shell.
-pub fn command_line() -> String {
-    let arguments = std::env::args().skip(1).map(|word| quoted(&word));
-    ["afterimage".to_owned()].into_iter().chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
 /// Prints the frontier and the path of the report.

@@ -2,7 +2,7 @@
 
 use super::TraceArgs;
 use crate::args::head::head_path;
-use crate::failure::Failure;
+use crate::failure::{Failure, warn};
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::Backend;
 use afterimage_lab::scene::Environment;
@@ -43,9 +43,7 @@ impl Setup {
             ..SceneChoice::new(&args.scene)
         })?;
         let load_ms = clock.wall_ms();
-        for warning in of.warnings() {
-            eprintln!("afterimage: warning: {warning}");
-        }
+        warn(of.warnings());
         let backend = args.backend.open_for_scenes()?;
         let clock = Stopwatch::start();
         let world = World::new(&of.scene);

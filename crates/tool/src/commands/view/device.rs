@@ -1,9 +1,8 @@
 //! The device that draws to a window: its selection, validation errors, and loss.
 
-use crate::args::backend::NO_ADAPTER;
 use crate::failure::Failure;
 use afterimage::wgpu;
-use afterimage_lab::device::Headless;
+use afterimage_lab::device::{Headless, NO_ADAPTER};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use winit::window::Window;

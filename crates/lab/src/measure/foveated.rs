@@ -1,11 +1,11 @@
 //! Time and sample reduction of foveated against uniform path tracing.
 
 use super::traced_view::{FrameTime, Pattern, TracedView};
-use crate::failure::Failure;
-use afterimage_lab::clock::Quartiles;
-use afterimage_lab::lattices::SparseGeometry;
-use afterimage_lab::trace::Tracer;
-use afterimage_lab::trace::sampling::{Layers, Regions, Sampling};
+use crate::clock::Quartiles;
+use crate::lattices::SparseGeometry;
+use crate::trace::Tracer;
+use crate::trace::sampling::{Layers, Regions, Sampling};
+use afterimage::SettingsError;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -22,6 +22,7 @@ pub const UNIFORM_EVERY: u32 = 8;
 /// Results of a pattern in a scene.
 #[derive(Clone, Debug, Serialize)]
 pub struct PatternReport {
+    /// Name of the pattern.
     pub pattern: String,
     /// Clock of the reductions: `CPU` time, or `wall` time on a hardware GPU.
     pub clock: &'static str,
@@ -42,9 +43,13 @@ pub struct PatternReport {
     pub share_of_saved: Option<f64>,
     /// Time reduction over sample reduction.
     pub share_of_reduction: Option<f64>,
+    /// CPU time of a foveated frame.
     pub cpu_ms: Option<Quartiles>,
+    /// CPU time of a uniform frame with as many samples per pixel.
     pub uniform_cpu_ms: Option<Quartiles>,
+    /// Wall time of a foveated frame.
     pub wall_ms: Option<Quartiles>,
+    /// Wall time of a uniform frame with as many samples per pixel.
     pub uniform_wall_ms: Option<Quartiles>,
 }
 
@@ -108,7 +113,7 @@ pub fn measure(
     patterns: &[Pattern],
     rounds: u64,
     by_wall: bool,
-) -> Result<Vec<PatternReport>, Failure> {
+) -> Result<Vec<PatternReport>, SettingsError> {
     let geometry = *subject.geometry();
     let size = geometry.size_px();
     let pixels = f64::from(size[0]) * f64::from(size[1]);
@@ -165,24 +170,4 @@ pub fn measure(
         report
     };
     Ok(patterns.iter().enumerate().map(report).collect())
-}
-
-/// Prints a table.
-pub fn print(patterns: &[PatternReport]) {
-    say!("    foveated ms  uniform ms  ideal  samples  time  share of ideal  pattern");
-    for p in patterns {
-        let (Some((uniform, ms)), Some(time)) = (p.times(), p.time_reduction) else { continue };
-        let or_dash =
-            |v: Option<f64>, factor: f64, unit: &str| v.map_or("-".into(), |v| format!("{:.1}{unit}", v * factor));
-        say!(
-            "{:>15.0} {:>11.0} {:>6} {:>7.1}x {:>4.1}x {:>15}  {}",
-            ms.median,
-            uniform.median,
-            or_dash(p.ideal_reduction, 1.0, "x"),
-            p.sample_reduction,
-            time,
-            or_dash(p.share_of_ideal, 100.0, " %"),
-            p.pattern,
-        );
-    }
 }

@@ -1,32 +1,33 @@
-//! A scene to benchmark, and the backends that trace it.
+//! A scene whose traced frames are timed.
 
-use super::Traces;
-use crate::args::backend::NO_ADAPTER;
-use crate::failure::Failure;
-use afterimage::{Image, ViewGeometry};
-use afterimage_lab::clock::Stopwatch;
-use afterimage_lab::device::{Backend, Headless};
-use afterimage_lab::frame::{Content, DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, SourceFrame};
-use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
-use afterimage_lab::source::{Light, SceneChoice, SceneOptions, ViewedScene};
-use afterimage_lab::trace::Tracer;
-use afterimage_lab::trace::film::Film;
-use afterimage_lab::trace::sampling::Sampling;
-use afterimage_lab::trace::settings::TraceSettings;
-use afterimage_lab::trace::surfaces::Surfaces;
-use afterimage_lab::trace::view::View;
-use afterimage_lab::trace::work::{Spans, WorkItem, uniform};
-use afterimage_lab::trace::world::World;
+use crate::clock::Stopwatch;
+use crate::device::Backend;
+use crate::error::InputError;
+use crate::frame::{Content, DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, SourceFrame};
+use crate::lattices::{SampleOrder, SparseGeometry};
+use crate::source::{Light, SceneChoice, SceneOptions, ViewedScene};
+use crate::trace::Tracer;
+use crate::trace::film::Film;
+use crate::trace::sampling::Sampling;
+use crate::trace::settings::TraceSettings;
+use crate::trace::surfaces::Surfaces;
+use crate::trace::view::View;
+use crate::trace::work::{Spans, WorkItem, uniform};
+use crate::trace::world::World;
+use afterimage::{Image, SettingsError, ViewGeometry};
 use std::cell::OnceCell;
 use std::time::Duration;
 
 /// A sampling pattern and gaze.
 #[derive(Clone, Debug)]
 pub struct Pattern {
+    /// Name in reports.
     pub name: String,
+    /// The pattern.
     pub sampling: Sampling,
     /// Samples per pixel where the pattern is densest.
     pub samples: u32,
+    /// Gaze, pixels.
     pub gaze_px: [f32; 2],
     /// Samples in their places, and what is known of depth and motion there; `None`: filled frames.
     pub sparse: Option<SparseGeometry>,
@@ -37,7 +38,9 @@ const FULL_RATE_FRAMES: u64 = 1 << 31;
 
 /// A still scene and its camera, traced at one sample per pixel.
 pub struct TracedView {
+    /// Name of the scene.
     pub name: String,
+    /// What is traced.
     pub world: World,
     of: ViewedScene,
     items: Vec<WorkItem>,
@@ -52,6 +55,7 @@ pub struct Foveated {
     pub content: Content,
     /// Number of samples.
     pub samples: u64,
+    /// Time to trace it.
     pub took: FrameTime,
 }
 
@@ -60,6 +64,7 @@ pub struct Foveated {
 pub struct FrameTime {
     /// CPU time of the process; wall time where it is not available.
     pub cpu_ms: f64,
+    /// Wall time.
     pub wall_ms: f64,
     /// Time of the kernels by timestamp queries, on a hardware GPU.
     pub device_ms: Option<f64>,
@@ -70,18 +75,23 @@ pub struct FrameTime {
 impl TracedView {
     /// Opens the scene `name`. `camera` as for `trace --camera`; default: its first camera, or one that frames the
     /// scene.
-    pub fn open(name: &str, size: [u32; 2], camera: Option<&str>, hfov_deg: Option<f32>) -> Result<Self, Failure> {
+    ///
+    /// # Errors
+    /// If the scene or the camera cannot be used.
+    pub fn open(name: &str, size: [u32; 2], camera: Option<&str>, hfov_deg: Option<f32>) -> Result<Self, InputError> {
         let of = ViewedScene::open(&SceneChoice {
             camera: camera.or(Some("still")),
             light: Light::IfDark,
             options: SceneOptions { size: Some(size), hfov_deg, fps: None },
             ..SceneChoice::new(name)
         })?;
-        for warning in of.warnings() {
-            eprintln!("afterimage: warning: {warning}");
-        }
         let items = uniform(size[0], 0..size[1], 0..1);
         Ok(Self { name: name.to_owned(), world: World::new(&of.scene), of, items, size, on_device: OnceCell::new() })
+    }
+
+    /// Features of the scene file that are ignored or approximated.
+    pub fn warnings(&self) -> &[String] {
+        self.of.warnings()
     }
 
     /// View geometry.
@@ -94,8 +104,15 @@ impl TracedView {
     }
 
     /// A tracer of the scene.
-    pub fn tracer(&self, backend: &Backend, settings: TraceSettings) -> Result<Tracer, Failure> {
-        Tracer::new(backend, &self.world, settings).map_err(|e| Failure::Input(format!("{}: {e}", self.name)))
+    ///
+    /// # Errors
+    /// If the scene does not fit on the device.
+    pub fn tracer(&self, backend: &Backend, settings: TraceSettings) -> Result<Tracer, InputError> {
+        Tracer::new(backend, &self.world, settings).map_err(|error| {
+            let text = error.to_string();
+            let (problem, remedy) = text.split_once("; ").unwrap_or((&text, "use the CPU"));
+            InputError::not_supported(&self.name, problem, remedy)
+        })
     }
 
     /// Traces frame `index`.
@@ -141,7 +158,7 @@ impl TracedView {
     ///
     /// # Errors
     /// If the samples of a sparse pattern cannot lie on lattices.
-    pub fn foveated(&self, tracer: &Tracer, pattern: &Pattern, index: u64) -> Result<Foveated, Failure> {
+    pub fn foveated(&self, tracer: &Tracer, pattern: &Pattern, index: u64) -> Result<Foveated, SettingsError> {
         let &Pattern { sampling, samples, gaze_px, sparse, .. } = pattern;
         let (world, geometry, view) = (&self.world, self.geometry(), self.view(index));
         let on_device = |device| self.on_device.get_or_init(|| DeviceSamples::new(device, self.size)).clone();
@@ -177,7 +194,7 @@ impl TracedView {
         tracer: &Tracer,
         pattern: &Pattern,
         index: u64,
-    ) -> Result<(RenderedFrame, FrameTime), Failure> {
+    ) -> Result<(RenderedFrame, FrameTime), SettingsError> {
         let Foveated { content, samples, took } = self.foveated(tracer, pattern, index)?;
         let reference = self.without_color(tracer, index, &content);
         let frame = RenderedFrame {
@@ -231,27 +248,4 @@ impl FrameTime {
         let (wall_ms, cpu_ms) = (watch.wall_ms(), watch.cpu_ms());
         Self { cpu_ms: cpu_ms.unwrap_or(wall_ms), wall_ms, device_ms: device.map(|d| d.as_secs_f64() * 1e3), rays }
     }
-}
-
-/// Backends to time: the CPU, an adapter, or both.
-pub fn backends(traces: Traces) -> Result<Vec<Backend>, Failure> {
-    let mut backends = vec![];
-    if traces != Traces::Gpu {
-        backends.push(Backend::Cpu);
-    }
-    if traces != Traces::Cpu {
-        match Headless::find_roomy(true) {
-            Some(gpu) => backends.push(Backend::Gpu(gpu)),
-            None if traces == Traces::Gpu => {
-                return Err(Failure::Input(format!("--backend gpu: {NO_ADAPTER}, or use --backend cpu")));
-            }
-            None => {}
-        }
-    }
-    Ok(backends)
-}
-
-/// Whether the backend is a hardware GPU, whose work does not show in CPU time.
-pub fn is_real_gpu(backend: &Backend) -> bool {
-    matches!(backend, Backend::Gpu(gpu) if !gpu.is_software())
 }
