@@ -30,7 +30,8 @@ fn views(index: u64, settings: &Settings) -> [View; 2] {
         view.facts.jitter_px = if antialias { Foveation::jitter_px(index) } else { [0.0; 2] };
         if antialias {
             // Bars that move with the surface behind them, and that some frames miss.
-            let is_bar = |[x, y]: [u32; 2]| y > 24 && (x + 2 * index as u32) % 6 == 0 && index % 3 > 0;
+            let is_bar =
+                |[x, y]: [u32; 2]| y > 24 && (x + 2 * index as u32).is_multiple_of(6) && !index.is_multiple_of(3);
             let depth = view.depth.take().unwrap();
             let at = |px: [u32; 2]| if is_bar(px) { 3.0 } else { depth.at(px[0] as usize, px[1] as usize) };
             view.depth = Some(Image::from_fn(SIZE, at));
