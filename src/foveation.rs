@@ -237,7 +237,7 @@ impl Foveation {
     }
 
     /// Angle in degrees from the gaze by which the region and the level of detail of the pixel `px` are chosen: its
-    /// eccentricity. Regions have other shapes where another angle is taken here.
+    /// eccentricity. Regions of other shapes need another angle.
     pub fn region_angle_deg(&self, geometry: &ViewGeometry, px: [f32; 2], gaze_px: [f32; 2]) -> f32 {
         geometry.eccentricity_deg(px, gaze_px)
     }

@@ -215,7 +215,8 @@ fn thin_bars_become_means() {
         }
         sums
     };
-    for (speed_px, least_db) in [(0.0, 8.0), (0.8, 3.0)] {
+    // If samples at silhouettes were compared, and thin surfaces stored as they are, it would be 4.4 and 3.0 dB.
+    for (speed_px, least_db) in [(0.0, 8.0), (0.8, 5.0)] {
         let [samples, history] = errors(speed_px);
         let db = 10.0 * (samples / history).log10();
         println!("{speed_px} px a frame: {db:.1} dB better than samples");
