@@ -21,32 +21,32 @@ const NEAR: f32 = 0.1;
 
 /// A floor of tiles, seen by a camera that moves to the right.
 const SHADER: &str = "
-struct Crop { scale: vec2<f32>, offset: vec2<f32>, bias: f32, time: f32, tan: vec2<f32>, size: vec2<f32> }
+struct Crop { scale: vec2f, offset: vec2f, bias: f32, time: f32, tan: vec2f, size: vec2f }
 @group(0) @binding(0) var<uniform> crop: Crop;
-struct Varying { @builtin(position) position: vec4<f32>, @location(0) floor: vec2<f32>, @location(1) now: vec4<f32>, @location(2) before: vec4<f32> }
-struct Targets { @location(0) color: vec4<f32>, @location(1) motion: vec2<f32> }
+struct Varying { @builtin(position) position: vec4f, @location(0) floor: vec2f, @location(1) now: vec4f, @location(2) before: vec4f }
+struct Targets { @location(0) color: vec4f, @location(1) motion: vec2f }
 
-fn projected(world: vec3<f32>, time: f32) -> vec4<f32> {
-    let p = world - vec3<f32>(0.03 * time, 1.5, 0.0);
-    return vec4<f32>(p.xy / crop.tan, 0.1, -p.z);
+fn projected(world: vec3f, time: f32) -> vec4f {
+    let p = world - vec3f(0.03 * time, 1.5, 0.0);
+    return vec4f(p.xy / crop.tan, 0.1, -p.z);
 }
 
 @vertex fn vertex(@builtin(vertex_index) i: u32) -> Varying {
-    let corner = vec2<f32>(f32(i & 1u), f32(i >> 1u));
-    let world = vec3<f32>(corner.x * 120.0 - 60.0, 0.0, -1.0 - 60.0 * corner.y);
+    let corner = vec2f(f32(i & 1u), f32(i >> 1u));
+    let world = vec3f(corner.x * 120.0 - 60.0, 0.0, -1.0 - 60.0 * corner.y);
     let now = projected(world, crop.time);
     // The renderer's own projection, then the crop.
-    let cropped = vec4<f32>(now.xy * crop.scale + crop.offset * now.w, now.zw);
+    let cropped = vec4f(now.xy * crop.scale + crop.offset * now.w, now.zw);
     return Varying(cropped, world.xz, now, projected(world, crop.time - 1.0));
 }
 
 @fragment fn fragment(in: Varying) -> Targets {
     // With textures: textureSampleBias(map, map_sampler, uv, crop.bias). Here, tiles fade where they are small.
     let width = fwidth(in.floor) * exp2(crop.bias);
-    let wave = sin(in.floor * 12.0) * (1.0 - smoothstep(vec2<f32>(0.1), vec2<f32>(0.25), width));
+    let wave = sin(in.floor * 12.0) * (1.0 - smoothstep(vec2f(0.1), vec2f(0.25), width));
     let ndc = in.before.xy / in.before.w - in.now.xy / in.now.w;
-    let motion = ndc * vec2<f32>(0.5, -0.5) * crop.size; // Pixels of the full-rate frame.
-    return Targets(vec4<f32>(vec3<f32>(0.5, 0.45, 0.4) + 0.3 * wave.x * wave.y, 1.0), motion);
+    let motion = ndc * vec2f(0.5, -0.5) * crop.size; // Pixels of the full-rate frame.
+    return Targets(vec4f(vec3f(0.5, 0.45, 0.4) + 0.3 * wave.x * wave.y, 1.0), motion);
 }";
 
 /// Scale and offset of clip space's x and y: pixel (i, j) of the small view shows the full-rate frame's pixel

@@ -22,30 +22,30 @@ const MOTION: TextureFormat = TextureFormat::Rg32Float;
 
 /// A floor of tiles, seen by a camera that moves to the right. `fwidth` sees whole quads, as at full rate.
 const SHADER: &str = "
-struct Camera { time: f32, aspect: f32, size: vec2<f32> }
+struct Camera { time: f32, aspect: f32, size: vec2f }
 @group(0) @binding(0) var<uniform> camera: Camera;
-struct Varying { @invariant @builtin(position) position: vec4<f32>, @location(0) floor: vec2<f32>, @location(1) now: vec4<f32>, @location(2) before: vec4<f32> }
+struct Varying { @invariant @builtin(position) position: vec4f, @location(0) floor: vec2f, @location(1) now: vec4f, @location(2) before: vec4f }
 
-fn projected(world: vec3<f32>, time: f32) -> vec4<f32> {
-    let p = world - vec3<f32>(0.03 * time, 1.5, 0.0);
-    return vec4<f32>(p.x / 0.7, p.y / 0.7 * camera.aspect, 0.1, -p.z);
+fn projected(world: vec3f, time: f32) -> vec4f {
+    let p = world - vec3f(0.03 * time, 1.5, 0.0);
+    return vec4f(p.x / 0.7, p.y / 0.7 * camera.aspect, 0.1, -p.z);
 }
 
 @vertex fn vertex(@builtin(vertex_index) i: u32) -> Varying {
-    let corner = vec2<f32>(f32(i & 1u), f32(i >> 1u));
-    let world = vec3<f32>(corner.x * 120.0 - 60.0, 0.0, -1.0 - 60.0 * corner.y);
+    let corner = vec2f(f32(i & 1u), f32(i >> 1u));
+    let world = vec3f(corner.x * 120.0 - 60.0, 0.0, -1.0 - 60.0 * corner.y);
     let now = projected(world, camera.time);
     return Varying(now, world.xz, now, projected(world, camera.time - 1.0));
 }
 
-@fragment fn motion(in: Varying) -> @location(0) vec2<f32> {
+@fragment fn motion(in: Varying) -> @location(0) vec2f {
     let ndc = in.before.xy / in.before.w - in.now.xy / in.now.w;
-    return ndc * vec2<f32>(0.5, -0.5) * camera.size;
+    return ndc * vec2f(0.5, -0.5) * camera.size;
 }
 
-@fragment fn color(in: Varying) -> @location(0) vec4<f32> {
-    let wave = sin(in.floor * 12.0) * (1.0 - smoothstep(vec2<f32>(0.1), vec2<f32>(0.25), fwidth(in.floor)));
-    return vec4<f32>(vec3<f32>(0.5, 0.45, 0.4) + 0.3 * wave.x * wave.y, 1.0);
+@fragment fn color(in: Varying) -> @location(0) vec4f {
+    let wave = sin(in.floor * 12.0) * (1.0 - smoothstep(vec2f(0.1), vec2f(0.25), fwidth(in.floor)));
+    return vec4f(vec3f(0.5, 0.45, 0.4) + 0.3 * wave.x * wave.y, 1.0);
 }";
 
 /// A pipeline of the renderer: `entry` is its fragment shader.

@@ -16,11 +16,11 @@ override WRITE_LOD: u32 = 0u;
 @group(0) @binding(4) var lod_out: texture_storage_2d_array<r32float, write>;
 
 // Level of the coarsest aligned block around the pixel whose centre's level of detail is at least the block's level.
-fn level_at(px: vec2<u32>, view: u32) -> u32 {
+fn level_at(px: vec2u, view: u32) -> u32 {
     var level = frame.coarsest;
     for (; level > 0u; level--) {
-        let block = px >> vec2<u32>(level);
-        let center = vec2<f32>(
+        let block = px >> vec2u(level);
+        let center = vec2f(
             block_center_px(block.x, level, frame.size.x),
             block_center_px(block.y, level, frame.size.y),
         );
@@ -40,7 +40,7 @@ fn level_at(px: vec2<u32>, view: u32) -> u32 {
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     let px = id.xy;
     if px.x >= frame.size.x || px.y >= frame.size.y {
         return;
@@ -48,12 +48,12 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     let view = group.z;
     let level = level_at(px, view);
     if WRITE_LOD != 0u {
-        textureStore(lod_out, px, view, vec4<f32>(f32(level), 0.0, 0.0, 0.0));
+        textureStore(lod_out, px, view, vec4f(f32(level), 0.0, 0.0, 0.0));
     }
-    let block = px >> vec2<u32>(level);
-    let at = vec2<u32>(block_sample(block.x, level, frame.size.x), block_sample(block.y, level, frame.size.y));
+    let block = px >> vec2u(level);
+    let at = vec2u(block_sample(block.x, level, frame.size.x), block_sample(block.y, level, frame.size.y));
     let source = block_sample_level(level);
-    var shown: vec3<f32>;
+    var shown: vec3f;
     if source == 0u {
         shown = textureLoad(full, at, view, 0).xyz;
     } else {
@@ -62,5 +62,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     if level > 0u {
         shown = color(shown).color;
     }
-    textureStore(color_out, px, view, vec4<f32>(shown, 1.0));
+    textureStore(color_out, px, view, vec4f(shown, 1.0));
 }

@@ -3,7 +3,7 @@
 
 // src/simulator/gpu/uniforms.rs: FoveationUniforms, which documents the fields
 struct FoveationUniforms {
-    size: vec2<u32>,
+    size: vec2u,
     coarsest: u32,
     fovea_radius_deg: f32,
     mid_radius_deg: f32,
@@ -16,7 +16,7 @@ struct FoveationUniforms {
 @group(0) @binding(0) var<uniform> frame: FoveationUniforms;
 
 // region_angle_deg of the ray through a position in pixels.
-fn region_angle_at(px: vec2<f32>, view: u32) -> f32 {
-    let ray = vec3<f32>(px * frame.views[view].ray_scale + frame.views[view].ray_offset, 1.0);
+fn region_angle_at(px: vec2f, view: u32) -> f32 {
+    let ray = vec3f(px * frame.views[view].ray_scale + frame.views[view].ray_offset, 1.0);
     return region_angle_deg(ray, frame.views[view].gaze_ray);
 }

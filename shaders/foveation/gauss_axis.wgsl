@@ -17,32 +17,32 @@ override WRITE_LOD: u32 = 0u;
 @group(0) @binding(3) var lod_out: texture_storage_2d_array<r32float, write>;
 
 // Pixel at an offset along the axis, clamped to the border.
-fn tap(px: vec2<u32>, offset: i32, view: u32) -> vec3<f32> {
-    var at = vec2<i32>(px);
+fn tap(px: vec2u, offset: i32, view: u32) -> vec3f {
+    var at = vec2i(px);
     if AXIS == 0u {
         at.x += offset;
     } else {
         at.y += offset;
     }
-    at = clamp(at, vec2<i32>(0), vec2<i32>(frame.size) - 1);
+    at = clamp(at, vec2i(0), vec2i(frame.size) - 1);
     return color(textureLoad(color_in, at, view, 0).xyz).color;
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     let px = id.xy;
     if px.x >= frame.size.x || px.y >= frame.size.y {
         return;
     }
     let view = group.z;
-    let e_deg = region_angle_at(vec2<f32>(px), view);
+    let e_deg = region_angle_at(vec2f(px), view);
     let lod = blur_lod(e_deg, frame.fovea_radius_deg, frame.mid_radius_deg, frame.lod_mid, frame.lod_far);
     if WRITE_LOD != 0u {
-        textureStore(lod_out, px, view, vec4<f32>(lod, 0.0, 0.0, 0.0));
+        textureStore(lod_out, px, view, vec4f(lod, 0.0, 0.0, 0.0));
     }
     if lod <= 0.0 {
         // Full rate: a copy, bit for bit, along both axes.
-        textureStore(color_out, px, view, vec4<f32>(textureLoad(color_in, px, view, 0).xyz, 1.0));
+        textureStore(color_out, px, view, vec4f(textureLoad(color_in, px, view, 0).xyz, 1.0));
         return;
     }
     let sigma_px = blur_sigma_px(lod);
@@ -55,5 +55,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
         side += gauss.weight;
         sum += (tap(px, -d, view) + tap(px, d, view)) * gauss.weight;
     }
-    textureStore(color_out, px, view, vec4<f32>(sum / (1.0 + 2.0 * side), 1.0));
+    textureStore(color_out, px, view, vec4f(sum / (1.0 + 2.0 * side), 1.0));
 }

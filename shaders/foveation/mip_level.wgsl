@@ -7,16 +7,16 @@
 // 8 + 4 + 1 + ... = 13.3 bytes a pixel and write 4 + 1 + ... = 5.3.
 
 // Size of the finer level; its texture may be larger.
-@group(0) @binding(0) var<uniform> fine_size: vec2<u32>;
+@group(0) @binding(0) var<uniform> fine_size: vec2u;
 @group(0) @binding(1) var fine: texture_2d_array<f32>;
 @group(0) @binding(2) var coarse: texture_storage_2d_array<rgba32float, write>;
 
-fn texel(at: vec2<u32>, view: u32) -> vec3<f32> {
+fn texel(at: vec2u, view: u32) -> vec3f {
     return color(textureLoad(fine, min(at, fine_size - 1u), view, 0).xyz).color;
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     if id.x >= level_len(fine_size.x, 1u) || id.y >= level_len(fine_size.y, 1u) {
         return;
     }
@@ -24,9 +24,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     let at = 2u * id.xy;
     let mean = mean_of_four(
         texel(at, view),
-        texel(at + vec2<u32>(1u, 0u), view),
-        texel(at + vec2<u32>(0u, 1u), view),
-        texel(at + vec2<u32>(1u, 1u), view),
+        texel(at + vec2u(1u, 0u), view),
+        texel(at + vec2u(0u, 1u), view),
+        texel(at + vec2u(1u, 1u), view),
     );
-    textureStore(coarse, id.xy, view, vec4<f32>(mean, 1.0));
+    textureStore(coarse, id.xy, view, vec4f(mean, 1.0));
 }

@@ -16,30 +16,30 @@ override WRITE_LOD: u32 = 0u;
 @group(0) @binding(3) var color_out: texture_storage_2d_array<rgba16float, write>;
 @group(0) @binding(4) var lod_out: texture_storage_2d_array<r32float, write>;
 
-fn read_level(px: vec2<u32>, view: u32, level: u32) -> vec3<f32> {
-    let len = vec2<u32>(level_len(frame.size.x, level), level_len(frame.size.y, level));
+fn read_level(px: vec2u, view: u32, level: u32) -> vec3f {
+    let len = vec2u(level_len(frame.size.x, level), level_len(frame.size.y, level));
     let x = split(level_coordinate(f32(px.x), level), len.x);
     let y = split(level_coordinate(f32(px.y), level), len.y);
-    let near = vec2<u32>(x.whole, y.whole);
+    let near = vec2u(x.whole, y.whole);
     let next = min(near + 1u, len - 1u);
     let mip = level - 1u;
     return bilinear(
         textureLoad(levels, near, view, mip).xyz,
-        textureLoad(levels, vec2<u32>(next.x, near.y), view, mip).xyz,
-        textureLoad(levels, vec2<u32>(near.x, next.y), view, mip).xyz,
+        textureLoad(levels, vec2u(next.x, near.y), view, mip).xyz,
+        textureLoad(levels, vec2u(near.x, next.y), view, mip).xyz,
         textureLoad(levels, next, view, mip).xyz,
-        vec2<f32>(x.fraction, y.fraction),
+        vec2f(x.fraction, y.fraction),
     );
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     let px = id.xy;
     if px.x >= frame.size.x || px.y >= frame.size.y {
         return;
     }
     let view = group.z;
-    let e_deg = region_angle_at(vec2<f32>(px), view);
+    let e_deg = region_angle_at(vec2f(px), view);
     let lod = region_lod(
         e_deg,
         frame.fovea_radius_deg,
@@ -49,10 +49,10 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
         frame.lod_far,
     );
     if WRITE_LOD != 0u {
-        textureStore(lod_out, px, view, vec4<f32>(lod, 0.0, 0.0, 0.0));
+        textureStore(lod_out, px, view, vec4f(lod, 0.0, 0.0, 0.0));
     }
     let level = split(lod, frame.coarsest + 1u);
-    var shown: vec3<f32>;
+    var shown: vec3f;
     if level.whole == 0u {
         shown = textureLoad(full, px, view, 0).xyz;
     } else {
@@ -64,5 +64,5 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
         }
         shown = blend(shown, read_level(px, view, level.whole + 1u), level.fraction);
     }
-    textureStore(color_out, px, view, vec4<f32>(shown, 1.0));
+    textureStore(color_out, px, view, vec4f(shown, 1.0));
 }

@@ -8,7 +8,7 @@ const D_C0: f32 = 14804.6;
 const R_M_DEG: f32 = 41.03;
 
 // acuity::eccentricity_deg
-fn eccentricity_deg(ray: vec3<f32>, gaze: vec3<f32>) -> f32 {
+fn eccentricity_deg(ray: vec3f, gaze: vec3f) -> f32 {
     let cx = ray.y * gaze.z - ray.z * gaze.y;
     let cy = ray.z * gaze.x - ray.x * gaze.z;
     let cz = ray.x * gaze.y - ray.y * gaze.x;

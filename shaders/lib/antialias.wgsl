@@ -43,14 +43,14 @@ fn stored_lod(m: Mean) -> f32 {
 }
 
 // antialias::stands_before
-fn stands_before(own: f32, neighbour: f32, own_motion: vec2<f32>, motion: vec2<f32>, full_rate: bool) -> bool {
+fn stands_before(own: f32, neighbour: f32, own_motion: vec2f, motion: vec2f, full_rate: bool) -> bool {
     let difference = motion - own_motion;
     let alongside = max(abs(difference.x), abs(difference.y)) <= ALONGSIDE_PX;
     return neighbour > own * (1.0 + NEARER_RELATIVE) && neighbour > own && (full_rate || alongside);
 }
 
 // antialias::move_together
-fn move_together(own: vec2<f32>, nearest: vec2<f32>, farthest: vec2<f32>) -> bool {
+fn move_together(own: vec2f, nearest: vec2f, farthest: vec2f) -> bool {
     let apart = max(max(abs(own - nearest), abs(own - farthest)), abs(nearest - farthest));
     return max(apart.x, apart.y) <= TOGETHER_PX;
 }
@@ -72,7 +72,7 @@ fn is_silhouette(own: f32, a: f32, b: f32) -> bool {
 }
 
 // antialias::may_show
-fn may_show(own: f32, neighbour: f32, place_px: vec2<f32>, offset: vec2<f32>) -> bool {
+fn may_show(own: f32, neighbour: f32, place_px: vec2f, offset: vec2f) -> bool {
     let nearer = neighbour > own * (1.0 + NEARER_RELATIVE);
     let farther = neighbour >= 0.0 && neighbour < own * (1.0 - NEARER_RELATIVE);
     let toward = place_px * offset;
@@ -80,24 +80,24 @@ fn may_show(own: f32, neighbour: f32, place_px: vec2<f32>, offset: vec2<f32>) ->
 }
 
 struct Near {
-    sum: vec3<f32>,
-    squares: vec3<f32>,
+    sum: vec3f,
+    squares: vec3f,
     count: f32,
 }
 
 // antialias::add_near
-fn add_near(n: Near, c: vec3<f32>) -> Near {
+fn add_near(n: Near, c: vec3f) -> Near {
     let v = to_ycocg(c);
     return Near(n.sum + v, n.squares + v * v, n.count + 1.0);
 }
 
 struct Clip {
-    change: vec3<f32>,
+    change: vec3f,
     kept: f32,
 }
 
 // antialias::clip
-fn clip(near: Near, history: vec3<f32>) -> Clip {
+fn clip(near: Near, history: vec3f) -> Clip {
     let inverse = 1.0 / near.count;
     let variance = (near.squares * near.count - near.sum * near.sum) * (inverse * inverse);
     let past = to_ycocg(history);
@@ -105,16 +105,16 @@ fn clip(near: Near, history: vec3<f32>) -> Clip {
     let by = (inside - past) * CLIP;
     let distance = max(max(abs(by.x), abs(by.y)), abs(by.z));
     let outer = by.x - by.z;
-    let change = vec3<f32>(outer + by.y, by.x + by.z, outer - by.y);
+    let change = vec3f(outer + by.y, by.x + by.z, outer - by.y);
     return Clip(change, 1.0 - min(distance * CLIP_COST / max(past.x, 1.0), 1.0));
 }
 
 // antialias::clipped
-fn clipped(c: vec3<f32>, change: vec3<f32>) -> vec3<f32> {
-    if all(change == vec3<f32>(0.0)) {
+fn clipped(c: vec3f, change: vec3f) -> vec3f {
+    if all(change == vec3f(0.0)) {
         return c;
     }
-    let v = max(roots(c) + change, vec3<f32>(0.0));
+    let v = max(roots(c) + change, vec3f(0.0));
     return v * v;
 }
 
@@ -132,7 +132,7 @@ struct Averaged {
 }
 
 // antialias::average
-fn average(r: Reconstruction, samples: f32, place_px: vec2<f32>, kept: f32) -> Averaged {
+fn average(r: Reconstruction, samples: f32, place_px: vec2f, kept: f32) -> Averaged {
     let acceptance = (r.fit * r.trust) * kept;
     let past_px = r.nearest.place_px;
     let away = max(abs(past_px.x), abs(past_px.y));
@@ -145,7 +145,7 @@ fn average(r: Reconstruction, samples: f32, place_px: vec2<f32>, kept: f32) -> A
     if near {
         old = relit(r.nearest.color, r.gains, r.lowest, r.highest);
     }
-    let old_px = select(vec2<f32>(0.0), past_px, near);
+    let old_px = select(vec2f(0.0), past_px, near);
     let shown = r.candidate + (history - r.candidate) * share;
     let next = r.candidate + (old - r.candidate) * share;
     let next_px = place_px + (old_px - place_px) * share;

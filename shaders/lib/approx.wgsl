@@ -78,7 +78,7 @@ fn ln(x: f32) -> f32 {
 }
 
 // approx::sin_cos_turns: (sin, cos) of 2 pi x.
-fn sin_cos_turns(x: f32) -> vec2<f32> {
+fn sin_cos_turns(x: f32) -> vec2f {
     let n = floor(x * 4.0 + 0.5);
     let r = x - n * 0.25;
     let z = r * r;
@@ -86,13 +86,13 @@ fn sin_cos_turns(x: f32) -> vec2<f32> {
     let c = (((59.3497 * z - 85.44714) * z + 64.93936) * z - 19.739208) * z + 1.0;
     let quarter = i32(n) & 3;
     if quarter == 0 {
-        return vec2<f32>(s, c);
+        return vec2f(s, c);
     }
     if quarter == 1 {
-        return vec2<f32>(c, -s);
+        return vec2f(c, -s);
     }
     if quarter == 2 {
-        return vec2<f32>(-s, -c);
+        return vec2f(-s, -c);
     }
-    return vec2<f32>(-c, s);
+    return vec2f(-c, s);
 }

@@ -55,7 +55,7 @@ fn srgb_decode(encoded: f32) -> f32 {
 }
 
 // color::luma (Rec. 709)
-fn luma(c: vec3<f32>) -> f32 {
+fn luma(c: vec3f) -> f32 {
     return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
 }
 
@@ -68,15 +68,15 @@ fn lab_f(t: f32) -> f32 {
 }
 
 // color::lab
-fn lab(c: vec3<f32>) -> vec3<f32> {
+fn lab(c: vec3f) -> vec3f {
     let fx = lab_f(0.43388735 * c.x + 0.376224 * c.y + 0.18988865 * c.z);
     let fy = lab_f(0.212639 * c.x + 0.7151687 * c.y + 0.0721923 * c.z);
     let fz = lab_f(0.01775004 * c.x + 0.10944762 * c.y + 0.8728023 * c.z);
-    return vec3<f32>(116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz));
+    return vec3f(116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz));
 }
 
 // color::delta_e94 (CIE 116): `reference` sets the weights.
-fn delta_e94(reference: vec3<f32>, stored: vec3<f32>) -> f32 {
+fn delta_e94(reference: vec3f, stored: vec3f) -> f32 {
     let d = reference - stored;
     let c1 = sqrt(reference.y * reference.y + reference.z * reference.z);
     let c2 = sqrt(stored.y * stored.y + stored.z * stored.z);

@@ -19,23 +19,23 @@ struct PixelTrace {
     history_share: f32,
     agreement: f32,
     is_replaced: bool,
-    motion: vec2<f32>,
+    motion: vec2f,
 }
 
-const NONFINITE = vec3<f32>(0.0, 1.0, 0.0);
+const NONFINITE = vec3f(0.0, 1.0, 0.0);
 
 // debug_view::heat, sRGB-encoded
-fn heat(value: f32) -> vec3<f32> {
+fn heat(value: f32) -> vec3f {
     if !is_finite(value) {
         return NONFINITE;
     }
-    var stops = array<vec3<f32>, 6>(
-        vec3<f32>(0.0, 0.0, 0.0),
-        vec3<f32>(0.23, 0.04, 0.42),
-        vec3<f32>(0.62, 0.13, 0.40),
-        vec3<f32>(0.93, 0.38, 0.18),
-        vec3<f32>(0.98, 0.75, 0.25),
-        vec3<f32>(1.0, 1.0, 0.95),
+    var stops = array<vec3f, 6>(
+        vec3f(0.0, 0.0, 0.0),
+        vec3f(0.23, 0.04, 0.42),
+        vec3f(0.62, 0.13, 0.40),
+        vec3f(0.93, 0.38, 0.18),
+        vec3f(0.98, 0.75, 0.25),
+        vec3f(1.0, 1.0, 0.95),
     );
     let position = 5.0 * clamp(value, 0.0, 1.0);
     let i = min(u32(position), 4u);
@@ -44,20 +44,20 @@ fn heat(value: f32) -> vec3<f32> {
 }
 
 // debug_view::motion_color, sRGB-encoded
-fn motion_color(motion: vec2<f32>) -> vec3<f32> {
+fn motion_color(motion: vec2f) -> vec3f {
     if !(is_finite(motion.x) && is_finite(motion.y)) {
         return NONFINITE;
     }
     let x = clamp(-motion.x / 16.0, -1.0, 1.0);
     let y = clamp(-motion.y / 16.0, -1.0, 1.0);
     let towards = 0.5 - 0.25 * x;
-    let shown = vec3<f32>(0.5 + 0.5 * x, towards + 0.43 * y, towards - 0.43 * y);
-    return clamp(shown, vec3<f32>(0.0), vec3<f32>(1.0));
+    let shown = vec3f(0.5 + 0.5 * x, towards + 0.43 * y, towards - 0.43 * y);
+    return clamp(shown, vec3f(0.0), vec3f(1.0));
 }
 
 // debug_view::view_color, linear
-fn view_color(view: u32, traced: PixelTrace) -> vec3<f32> {
-    var encoded = vec3<f32>(traced.agreement);
+fn view_color(view: u32, traced: PixelTrace) -> vec3f {
+    var encoded = vec3f(traced.agreement);
     switch view {
         case VIEW_QUALITY: { encoded = heat(traced.quality); }
         case VIEW_AGE: { encoded = heat(sqrt(f32(traced.age) * (1.0f / 255.0))); }
@@ -66,5 +66,5 @@ fn view_color(view: u32, traced: PixelTrace) -> vec3<f32> {
         case VIEW_MOTION: { encoded = motion_color(traced.motion); }
         default: {}
     }
-    return vec3<f32>(srgb_decode(encoded.x), srgb_decode(encoded.y), srgb_decode(encoded.z));
+    return vec3f(srgb_decode(encoded.x), srgb_decode(encoded.y), srgb_decode(encoded.z));
 }

@@ -66,7 +66,7 @@ fn interpolate(a: f32, b: f32, t: f32) -> f32 {
 }
 
 // doctor::spline
-fn spline(values: vec4<f32>, t: f32) -> f32 {
+fn spline(values: vec4f, t: f32) -> f32 {
     let first = interpolate(values.x, values.y, (t + 2.0) * (1.0f / 3.0f));
     let second = interpolate(values.y, values.z, (t + 1.0) * (1.0f / 3.0f));
     let third = interpolate(values.z, values.w, t * (1.0f / 3.0f));

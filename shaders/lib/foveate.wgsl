@@ -90,25 +90,25 @@ fn split(coordinate: f32, len: u32) -> Split {
 }
 
 // foveate::blend
-fn blend(a: vec3<f32>, b: vec3<f32>, t: f32) -> vec3<f32> {
+fn blend(a: vec3f, b: vec3f, t: f32) -> vec3f {
     return a + (b - a) * t;
 }
 
 // foveate::bilinear
 fn bilinear(
-    top_left: vec3<f32>,
-    top_right: vec3<f32>,
-    bottom_left: vec3<f32>,
-    bottom_right: vec3<f32>,
-    fraction: vec2<f32>,
-) -> vec3<f32> {
+    top_left: vec3f,
+    top_right: vec3f,
+    bottom_left: vec3f,
+    bottom_right: vec3f,
+    fraction: vec2f,
+) -> vec3f {
     let top = blend(top_left, top_right, fraction.x);
     let bottom = blend(bottom_left, bottom_right, fraction.x);
     return blend(top, bottom, fraction.y);
 }
 
 // foveate::mean_of_four
-fn mean_of_four(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, d: vec3<f32>) -> vec3<f32> {
+fn mean_of_four(a: vec3f, b: vec3f, c: vec3f, d: vec3f) -> vec3f {
     return (a + b + c + d) * 0.25;
 }
 

@@ -6,7 +6,7 @@ const LEAST_WEIGHT: f32 = 1.0 / 65536.0;
 const LEAST_PLACE_EXPONENT: u32 = 40u;
 
 struct Between {
-    points: vec2<u32>,
+    points: vec2u,
     fraction: f32,
 }
 
@@ -16,8 +16,8 @@ fn between(px: u32, first: u32, level: u32, count: u32) -> Between {
     let distance = i32(px) - i32(first);
     let low = distance >> level;
     let fraction = f32(distance - (low << level)) * bitcast<f32>((127u - level) << 23u);
-    let points = clamp(vec2<i32>(low, low + 1), vec2<i32>(0), vec2<i32>(i32(count) - 1));
-    return Between(vec2<u32>(points), fraction);
+    let points = clamp(vec2i(low, low + 1), vec2i(0), vec2i(i32(count) - 1));
+    return Between(vec2u(points), fraction);
 }
 
 // lattice::nearest_point
@@ -32,7 +32,7 @@ fn point_offset_px(px: u32, first: u32, level: u32, point: i32) -> f32 {
 }
 
 // lattice::place_weight
-fn place_weight(offset_px: vec2<f32>) -> f32 {
+fn place_weight(offset_px: vec2f) -> f32 {
     let inverse = 1.0 + 8.0 * (offset_px.x * offset_px.x + offset_px.y * offset_px.y);
     let exponent = 4u * ((bitcast<u32>(inverse) >> 23u) - 127u);
     return bitcast<f32>((127u - min(exponent, LEAST_PLACE_EXPONENT)) << 23u);
@@ -44,12 +44,12 @@ fn point_weight(fraction: f32, point: u32) -> f32 {
 }
 
 struct SampleMean {
-    sum: vec4<f32>,
+    sum: vec4f,
     weight: f32,
 }
 
 // lattice::add_sample
-fn add_sample(mean: SampleMean, sampled: vec4<f32>, usable: bool, sample_weight: f32) -> SampleMean {
+fn add_sample(mean: SampleMean, sampled: vec4f, usable: bool, sample_weight: f32) -> SampleMean {
     if !usable {
         return mean;
     }
@@ -57,7 +57,7 @@ fn add_sample(mean: SampleMean, sampled: vec4<f32>, usable: bool, sample_weight:
 }
 
 // lattice::sample_mean
-fn sample_mean(mean: SampleMean) -> vec4<f32> {
+fn sample_mean(mean: SampleMean) -> vec4f {
     return mean.sum * (1.0 / max(mean.weight, LEAST_WEIGHT));
 }
 
@@ -65,12 +65,12 @@ const GEOMETRY_RELATIVE: f32 = 0.35;
 
 struct GeometryMean {
     disparity: f32,
-    motion: vec2<f32>,
+    motion: vec2f,
     weight: f32,
 }
 
 // lattice::add_geometry
-fn add_geometry(mean: GeometryMean, own: f32, disparity: f32, motion: vec2<f32>, sample_weight: f32) -> GeometryMean {
+fn add_geometry(mean: GeometryMean, own: f32, disparity: f32, motion: vec2f, sample_weight: f32) -> GeometryMean {
     let usable = is_finite(motion.x) && is_finite(motion.y);
     if sample_weight == 0.0 || !usable || !same_surface(own, disparity, GEOMETRY_RELATIVE, 0.0) {
         return mean;
@@ -83,10 +83,10 @@ fn add_geometry(mean: GeometryMean, own: f32, disparity: f32, motion: vec2<f32>,
 }
 
 // lattice::filled_geometry
-fn filled_geometry(mean: GeometryMean, own: f32, own_motion: vec2<f32>) -> vec3<f32> {
+fn filled_geometry(mean: GeometryMean, own: f32, own_motion: vec2f) -> vec3f {
     if mean.weight == 0.0 {
-        return vec3<f32>(distance_of(own), own_motion);
+        return vec3f(distance_of(own), own_motion);
     }
     let inverse = 1.0 / mean.weight;
-    return vec3<f32>(distance_of(mean.disparity * inverse), mean.motion * inverse);
+    return vec3f(distance_of(mean.disparity * inverse), mean.motion * inverse);
 }

@@ -6,7 +6,7 @@
 const NOISY_LEVELS: f32 = 3.0;
 const COMPARED_CANDIDATES: f32 = 64.0;
 const SIGMAS: f32 = 3.0;
-const CONFIDENCE_FALLOFF: vec2<f32> = vec2<f32>(0.5, 1.0);
+const CONFIDENCE_FALLOFF: vec2f = vec2f(0.5, 1.0);
 const COARSER_FRAMES: f32 = 4.0;
 const MAX_ERROR: f32 = 255.0;
 const MAX_SAMPLES: f32 = 32768.0;
@@ -19,7 +19,7 @@ struct Noise {
 }
 
 // noise::candidate_noise
-fn candidate_noise(input: vec2<f32>) -> Noise {
+fn candidate_noise(input: vec2f) -> Noise {
     let error = min(positive(input.x), MAX_ERROR);
     let samples = clamp(positive(input.y), 1.0, MAX_SAMPLES);
     return Noise(samples, min((error * error) * samples, MAX_HALF));
@@ -41,30 +41,30 @@ fn unpack_noise(word: u32) -> Noise {
 }
 
 // noise::candidate_texel
-fn candidate_texel(c: vec3<f32>, usable: bool, n: Noise) -> vec4<f32> {
-    return select(vec4<f32>(0.0, 0.0, 0.0, UNKNOWN), vec4<f32>(c, n.variance / n.samples), usable);
+fn candidate_texel(c: vec3f, usable: bool, n: Noise) -> vec4f {
+    return select(vec4f(0.0, 0.0, 0.0, UNKNOWN), vec4f(c, n.variance / n.samples), usable);
 }
 
 // noise::candidate_mean
-fn candidate_mean(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, d: vec4<f32>) -> vec4<f32> {
-    let w = select(vec4<f32>(0.0), vec4<f32>(1.0), vec4<f32>(a.w, b.w, c.w, d.w) >= vec4<f32>(0.0));
+fn candidate_mean(a: vec4f, b: vec4f, c: vec4f, d: vec4f) -> vec4f {
+    let w = select(vec4f(0.0), vec4f(1.0), vec4f(a.w, b.w, c.w, d.w) >= vec4f(0.0));
     let weight = ((w.x + w.y) + w.z) + w.w;
     let sum = ((a * w.x + b * w.y) + c * w.z) + d * w.w;
-    return select(sum * (1.0 / max(weight, 1.0)), vec4<f32>(0.0, 0.0, 0.0, UNKNOWN), weight == 0.0);
+    return select(sum * (1.0 / max(weight, 1.0)), vec4f(0.0, 0.0, 0.0, UNKNOWN), weight == 0.0);
 }
 
 // noise::candidate_bilinear
 fn candidate_bilinear(
-    top_left: vec4<f32>,
-    top_right: vec4<f32>,
-    bottom_left: vec4<f32>,
-    bottom_right: vec4<f32>,
-    fraction: vec2<f32>,
-) -> vec4<f32> {
-    let f = vec2<f32>(1.0) - fraction;
-    let all = vec4<f32>(f.x * f.y, fraction.x * f.y, f.x * fraction.y, fraction.x * fraction.y);
-    let is_known = vec4<f32>(top_left.w, top_right.w, bottom_left.w, bottom_right.w) >= vec4<f32>(0.0);
-    let w = select(vec4<f32>(0.0), all, is_known);
+    top_left: vec4f,
+    top_right: vec4f,
+    bottom_left: vec4f,
+    bottom_right: vec4f,
+    fraction: vec2f,
+) -> vec4f {
+    let f = vec2f(1.0) - fraction;
+    let all = vec4f(f.x * f.y, fraction.x * f.y, f.x * fraction.y, fraction.x * fraction.y);
+    let is_known = vec4f(top_left.w, top_right.w, bottom_left.w, bottom_right.w) >= vec4f(0.0);
+    let w = select(vec4f(0.0), all, is_known);
     let sum = ((top_left * w.x + top_right * w.y) + bottom_left * w.z) + bottom_right * w.w;
     return sum * (1.0 / max(((w.x + w.y) + w.z) + w.w, 1e-3));
 }

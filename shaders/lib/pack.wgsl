@@ -3,10 +3,10 @@
 
 const MAX_W_SUM: f32 = 0x1p100;
 const MAX_AGE: u32 = 255u;
-const EMPTY_WORDS: vec3<u32> = vec3<u32>(0x7c00u, 0xffff0000u, 0u);
+const EMPTY_WORDS: vec3u = vec3u(0x7c00u, 0xffff0000u, 0u);
 
 struct Stored {
-    color: vec3<f32>,
+    color: vec3f,
     disparity: f32,
     w_sum: f32,
     age: u32,
@@ -54,10 +54,10 @@ fn disparity_value(code: u32) -> f32 {
 }
 
 // pack::pack
-fn pack(s: Stored) -> vec3<u32> {
+fn pack(s: Stored) -> vec3u {
     let w = bitcast<u32>(select(0.0, min(s.w_sum, MAX_W_SUM), s.w_sum > 0.0));
     let w_upper = w + 0x7fu + ((w >> 8u) & 1u);
-    return vec3<u32>(
+    return vec3u(
         half_bits(s.color.x) | (half_bits(s.color.y) << 16u),
         half_bits(s.color.z) | (disparity_code(s.disparity) << 16u),
         (w_upper & 0xffffff00u) | min(s.age, MAX_AGE),
@@ -65,25 +65,25 @@ fn pack(s: Stored) -> vec3<u32> {
 }
 
 struct StoredColor {
-    color: vec3<f32>,
+    color: vec3f,
     disparity: f32,
     valid: bool,
 }
 
 // pack::unpack_sample
-fn unpack_sample(words: vec2<u32>) -> StoredColor {
-    let stored_color = vec3<f32>(half_value(words.x), half_value(words.x >> 16u), half_value(words.y));
+fn unpack_sample(words: vec2u) -> StoredColor {
+    let stored_color = vec3f(half_value(words.x), half_value(words.x >> 16u), half_value(words.y));
     // Infinity and NaN decode to numbers above the largest half.
     let largest = max(max(abs(stored_color.x), abs(stored_color.y)), abs(stored_color.z));
     return StoredColor(stored_color, disparity_value(words.y >> 16u), largest <= MAX_HALF);
 }
 
 // pack::unpack
-fn unpack(words: vec3<u32>) -> Stored {
+fn unpack(words: vec3u) -> Stored {
     let stored = unpack_sample(words.xy);
     let w_sum = weight(bitcast<f32>(words.z & 0xffffff00u));
     if !stored.valid || w_sum > MAX_W_SUM {
-        return Stored(vec3<f32>(0.0), -1.0, 0.0, 0u);
+        return Stored(vec3f(0.0), -1.0, 0.0, 0u);
     }
     return Stored(stored.color, stored.disparity, w_sum, words.z & 0xffu);
 }

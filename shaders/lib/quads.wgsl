@@ -32,7 +32,7 @@ fn region(e_deg: f32, fovea_radius_deg: f32, mid_radius_deg: f32) -> u32 {
 }
 
 // quads::in_pattern
-fn in_pattern(x: u32, y: u32, step_quads: u32, offset: vec2<u32>) -> bool {
+fn in_pattern(x: u32, y: u32, step_quads: u32, offset: vec2u) -> bool {
     return (x & (step_quads - 1u)) == offset.x && (y & (step_quads - 1u)) == offset.y;
 }
 
@@ -42,12 +42,12 @@ fn in_turn(x: u32, y: u32, step_quads: u32, turn: u32) -> bool {
 }
 
 // quads::asked_px
-fn asked_px(x: u32, y: u32, frame_low: u32) -> vec2<u32> {
-    return vec2<u32>(2u * x + ((frame_low ^ x ^ y) & 1u), 2u * y + ((frame_low >> 1u) & 1u));
+fn asked_px(x: u32, y: u32, frame_low: u32) -> vec2u {
+    return vec2u(2u * x + ((frame_low ^ x ^ y) & 1u), 2u * y + ((frame_low >> 1u) & 1u));
 }
 
 // quads::no_history_need
-fn no_history_need(x: u32, y: u32, offset: vec2<u32>) -> f32 {
+fn no_history_need(x: u32, y: u32, offset: vec2u) -> f32 {
     return select(LATER_SHARE * NO_HISTORY_NEED, NO_HISTORY_NEED, in_pattern(x, y, FIRST_STEP, offset));
 }
 
@@ -67,7 +67,7 @@ fn acuity(e_deg: f32) -> f32 {
 }
 
 // quads::share_in_block
-fn share_in_block(needs: vec4<f32>, i: u32) -> f32 {
+fn share_in_block(needs: vec4f, i: u32) -> f32 {
     var share = 1.0;
     for (var other = 0u; other < 4u; other++) {
         let is_larger = needs[other] > needs[i] || (needs[other] == needs[i] && other < i);
@@ -113,11 +113,11 @@ fn last_of(window: u32, low: i32, high: i32, y: i32) -> u32 {
 }
 
 // quads::octant_offsets
-fn octant_offsets(rows: i32) -> vec2<i32> {
-    return vec2<i32>(2 * rows / 5, (5 * rows + 1) / 2);
+fn octant_offsets(rows: i32) -> vec2i {
+    return vec2i(2 * rows / 5, (5 * rows + 1) / 2);
 }
 
 // quads::neighbour_offset
-fn neighbour_offset(code: u32) -> vec2<i32> {
-    return vec2<i32>(vec2<u32>(code & 15u, (code >> 4u) & 15u)) - REACH;
+fn neighbour_offset(code: u32) -> vec2i {
+    return vec2i(vec2u(code & 15u, (code >> 4u) & 15u)) - REACH;
 }

@@ -14,38 +14,38 @@ const VERDICT_DISTRUSTED: u32 = 6u;
 const VERDICT_COUNT: u32 = 7u;
 
 // reproject::verdict_color, sRGB-encoded
-fn verdict_color(verdict: u32) -> vec3<f32> {
+fn verdict_color(verdict: u32) -> vec3f {
     switch verdict {
-        case VERDICT_VALID: { return vec3<f32>(0.35, 0.35, 0.35); }
-        case VERDICT_RESET: { return vec3<f32>(0.2, 0.4, 1.0); }
-        case VERDICT_BAD_MOTION: { return vec3<f32>(1.0, 0.2, 1.0); }
-        case VERDICT_OFF_SCREEN: { return vec3<f32>(1.0, 0.55, 0.1); }
-        case VERDICT_EMPTY: { return vec3<f32>(1.0, 1.0, 0.3); }
-        case VERDICT_DISOCCLUDED: { return vec3<f32>(1.0, 0.1, 0.1); }
-        case VERDICT_DISTRUSTED: { return vec3<f32>(0.1, 0.9, 0.9); }
-        default: { return vec3<f32>(0.0); }
+        case VERDICT_VALID: { return vec3f(0.35, 0.35, 0.35); }
+        case VERDICT_RESET: { return vec3f(0.2, 0.4, 1.0); }
+        case VERDICT_BAD_MOTION: { return vec3f(1.0, 0.2, 1.0); }
+        case VERDICT_OFF_SCREEN: { return vec3f(1.0, 0.55, 0.1); }
+        case VERDICT_EMPTY: { return vec3f(1.0, 1.0, 0.3); }
+        case VERDICT_DISOCCLUDED: { return vec3f(1.0, 0.1, 0.1); }
+        case VERDICT_DISTRUSTED: { return vec3f(0.1, 0.9, 0.9); }
+        default: { return vec3f(0.0); }
     }
 }
 
 // Position in the previous frame; `at` is (0, 0) unless the verdict is VERDICT_VALID.
 struct Reprojection {
     verdict: u32,
-    at: vec2<u32>,
+    at: vec2u,
 }
 
 // reproject::nearest
-fn nearest(x: u32, y: u32, motion: vec2<f32>, size: vec2<u32>) -> Reprojection {
+fn nearest(x: u32, y: u32, motion: vec2f, size: vec2u) -> Reprojection {
     // Bits of sizes are ordered as the sizes are, infinity and NaN last.
-    let size_bits = bitcast<vec2<u32>>(motion) & vec2<u32>(0x7fffffffu);
+    let size_bits = bitcast<vec2u>(motion) & vec2u(0x7fffffffu);
     if max(size_bits.x, size_bits.y) > bitcast<u32>(MAX_MOTION_PX) {
-        return Reprojection(VERDICT_BAD_MOTION, vec2<u32>(0u));
+        return Reprojection(VERDICT_BAD_MOTION, vec2u(0u));
     }
     let qx = floor(f32(x) + motion.x + 0.5);
     let qy = floor(f32(y) + motion.y + 0.5);
     if qx >= 0.0 && qy >= 0.0 && qx < f32(size.x) && qy < f32(size.y) {
-        return Reprojection(VERDICT_VALID, vec2<u32>(u32(qx), u32(qy)));
+        return Reprojection(VERDICT_VALID, vec2u(u32(qx), u32(qy)));
     }
-    return Reprojection(VERDICT_OFF_SCREEN, vec2<u32>(0u));
+    return Reprojection(VERDICT_OFF_SCREEN, vec2u(0u));
 }
 
 const MAX_CAMERA_PX: f32 = 32768.0;
@@ -54,20 +54,20 @@ const UNKNOWN_VECTOR_PX: f32 = 131072.0;
 
 // reproject::ViewMotion, which documents the fields
 struct ViewMotion {
-    x: vec4<f32>,
-    y: vec4<f32>,
-    z: vec4<f32>,
-    per_tangent: vec2<f32>,
-    zoom: vec2<f32>,
-    shift_px: vec2<f32>,
+    x: vec4f,
+    y: vec4f,
+    z: vec4f,
+    per_tangent: vec2f,
+    zoom: vec2f,
+    shift_px: vec2f,
     ahead: f32,
     sky: f32,
 }
 
 // reproject::camera_vector
-fn camera_vector(ray: vec2<f32>, disparity: f32, motion: ViewMotion) -> vec2<f32> {
+fn camera_vector(ray: vec2f, disparity: f32, motion: ViewMotion) -> vec2f {
     if disparity < 0.0 {
-        return vec2<f32>(UNKNOWN_VECTOR_PX);
+        return vec2f(UNKNOWN_VECTOR_PX);
     }
     let x = motion.x;
     let y = motion.y;
@@ -76,19 +76,19 @@ fn camera_vector(ray: vec2<f32>, disparity: f32, motion: ViewMotion) -> vec2<f32
     let distance = z.x * ray.x + (z.y * ray.y + (z.w * d + motion.ahead));
     // The point was behind the previous camera.
     if distance <= 1e-6 {
-        return vec2<f32>(MAX_CAMERA_PX);
+        return vec2f(MAX_CAMERA_PX);
     }
-    let change = vec3<f32>(
+    let change = vec3f(
         x.x * ray.x + (x.y * ray.y + (x.w * d + x.z)),
         y.x * ray.x + (y.y * ray.y + (y.w * d + y.z)),
         z.x * ray.x + (z.y * ray.y + (z.w * d + z.z)),
     );
     let tangent = (change.xy - ray * change.z) / distance;
     let vector = tangent * motion.per_tangent + (ray * motion.zoom + motion.shift_px);
-    return clamp(vector, vec2<f32>(-MAX_CAMERA_PX), vec2<f32>(MAX_CAMERA_PX));
+    return clamp(vector, vec2f(-MAX_CAMERA_PX), vec2f(MAX_CAMERA_PX));
 }
 
 // reproject::has_no_vector
-fn has_no_vector(given: vec2<f32>, none: vec2<f32>) -> bool {
+fn has_no_vector(given: vec2f, none: vec2f) -> bool {
     return !(is_finite(given.x) && is_finite(given.y)) || all(given == none);
 }

@@ -7,23 +7,23 @@ const ROUNDS: u32 = 3u;
 const LARGEST_DISPARITY: f32 = 1e30;
 
 // resample::second_corner
-fn second_corner(fraction: vec2<f32>) -> u32 {
+fn second_corner(fraction: vec2f) -> u32 {
     let nearest = select(0u, 1u, fraction.x >= 0.5) + 2u * select(0u, 1u, fraction.y >= 0.5);
     let along_x = abs(fraction.x - 0.5) <= abs(fraction.y - 0.5);
     return nearest ^ select(2u, 1u, along_x);
 }
 
 // resample::corner_weight
-fn corner_weight(corner: u32, fraction: vec2<f32>) -> f32 {
+fn corner_weight(corner: u32, fraction: vec2f) -> f32 {
     let x = select(1.0 - fraction.x, fraction.x, (corner & 1u) == 1u);
     let y = select(1.0 - fraction.y, fraction.y, corner >= 2u);
     return x * y;
 }
 
 // resample::catmull_rom
-fn catmull_rom(t: f32) -> vec4<f32> {
+fn catmull_rom(t: f32) -> vec4f {
     let t2 = t * t;
-    return vec4<f32>(
+    return vec4f(
         ((1.0 - 0.5 * t) * t - 0.5) * t,
         (1.5 * t - 2.5) * t2 + 1.0,
         ((2.0 - 1.5 * t) * t + 0.5) * t,
@@ -33,28 +33,28 @@ fn catmull_rom(t: f32) -> vec4<f32> {
 
 // Shared values of the taps around a position: the position, and Catmull-Rom weights of columns and rows.
 struct TapsAround {
-    texel: vec2<i32>,
-    last: vec2<i32>,
-    fraction: vec2<f32>,
-    sharp_x: vec4<f32>,
-    sharp_y: vec4<f32>,
+    texel: vec2i,
+    last: vec2i,
+    fraction: vec2f,
+    sharp_x: vec4f,
+    sharp_y: vec4f,
 }
 
 // resample::taps_around
-fn taps_around(texel: vec2<i32>, fraction: vec2<f32>, size: vec2<u32>) -> TapsAround {
-    return TapsAround(texel, vec2<i32>(size) - 1, fraction, catmull_rom(fraction.x), catmull_rom(fraction.y));
+fn taps_around(texel: vec2i, fraction: vec2f, size: vec2u) -> TapsAround {
+    return TapsAround(texel, vec2i(size) - 1, fraction, catmull_rom(fraction.x), catmull_rom(fraction.y));
 }
 
 // Texels of four taps, and their weights: products of a column's and a row's. `sharp_rows`: weights of the row of the
 // first two and of the last two taps. Linear weights belong to `b` and `c`; those of the other taps are 0.
 struct FourTaps {
-    a: vec2<i32>,
-    b: vec2<i32>,
-    c: vec2<i32>,
-    d: vec2<i32>,
-    sharp_x: vec4<f32>,
-    sharp_rows: vec2<f32>,
-    linear_x: vec2<f32>,
+    a: vec2i,
+    b: vec2i,
+    c: vec2i,
+    d: vec2i,
+    sharp_x: vec4f,
+    sharp_rows: vec2f,
+    linear_x: vec2f,
     linear_row: f32,
 }
 
@@ -62,20 +62,20 @@ struct FourTaps {
 fn taps_of(around: TapsAround, round: u32) -> FourTaps {
     let below = round == 1u;
     let outside = round == 2u;
-    let columns = select(vec4<i32>(-1, 0, 1, 2), vec4<i32>(0, 1, 0, 1), outside);
-    let rows = select(vec2<i32>(select(0, 1, below)), vec2<i32>(-1, 2), outside);
-    let x = clamp(around.texel.x + columns, vec4<i32>(0), vec4<i32>(around.last.x));
-    let y = clamp(around.texel.y + rows, vec2<i32>(0), vec2<i32>(around.last.y));
-    let sharp_row = vec2<f32>(select(around.sharp_y.y, around.sharp_y.z, below));
+    let columns = select(vec4i(-1, 0, 1, 2), vec4i(0, 1, 0, 1), outside);
+    let rows = select(vec2i(select(0, 1, below)), vec2i(-1, 2), outside);
+    let x = clamp(around.texel.x + columns, vec4i(0), vec4i(around.last.x));
+    let y = clamp(around.texel.y + rows, vec2i(0), vec2i(around.last.y));
+    let sharp_row = vec2f(select(around.sharp_y.y, around.sharp_y.z, below));
     let linear_row = select(1.0 - around.fraction.y, around.fraction.y, below);
     return FourTaps(
-        vec2<i32>(x.x, y.x),
-        vec2<i32>(x.y, y.x),
-        vec2<i32>(x.z, y.y),
-        vec2<i32>(x.w, y.y),
+        vec2i(x.x, y.x),
+        vec2i(x.y, y.x),
+        vec2i(x.z, y.y),
+        vec2i(x.w, y.y),
         select(around.sharp_x, around.sharp_x.yzyz, outside),
         select(sharp_row, around.sharp_y.xw, outside),
-        vec2<f32>(1.0 - around.fraction.x, around.fraction.x),
+        vec2f(1.0 - around.fraction.x, around.fraction.x),
         select(linear_row, 0.0, outside),
     );
 }
@@ -86,39 +86,39 @@ fn sharp_sum(around: TapsAround) -> f32 {
 }
 
 // resample::codes_between
-fn codes_between(expected: f32, low: f32, high: f32) -> vec2<u32> {
+fn codes_between(expected: f32, low: f32, high: f32) -> vec2u {
     // The limit keeps compilers from merging these factors with those of the disparity.
     let limited = min(expected, LARGEST_DISPARITY);
     let first = disparity_code(limited * low);
     let last = disparity_code(limited * high);
-    return vec2<u32>(first, select(last - first + 1u, 0u, expected < 0.0));
+    return vec2u(first, select(last - first + 1u, 0u, expected < 0.0));
 }
 
 // resample::tap_codes
-fn tap_codes(expected: f32) -> vec2<u32> {
+fn tap_codes(expected: f32) -> vec2u {
     return codes_between(expected, 1.0f - TAP_RELATIVE, 1.0f / (1.0f - TAP_RELATIVE));
 }
 
 // resample::tap_codes_between
-fn tap_codes_between(farthest: f32, nearest: f32) -> vec2<u32> {
+fn tap_codes_between(farthest: f32, nearest: f32) -> vec2u {
     let first = tap_codes(farthest);
     let last = tap_codes(nearest);
-    return vec2<u32>(first.x, max(last.x, first.x) - first.x + last.y);
+    return vec2u(first.x, max(last.x, first.x) - first.x + last.y);
 }
 
 // resample::has_code
-fn has_code(word: u32, codes: vec2<u32>) -> bool {
+fn has_code(word: u32, codes: vec2u) -> bool {
     return (word >> 16u) - codes.x < codes.y;
 }
 
 struct Tap {
-    color: vec3<f32>,
+    color: vec3f,
     lod: f32,
     same: bool,
 }
 
 // resample::surface_tap
-fn surface_tap(words: vec2<u32>, codes: vec2<u32>, any_code: bool) -> Tap {
+fn surface_tap(words: vec2u, codes: vec2u, any_code: bool) -> Tap {
     let code = lod_code(words);
     return Tap(
         surface_color(words),
@@ -128,8 +128,8 @@ fn surface_tap(words: vec2<u32>, codes: vec2<u32>, any_code: bool) -> Tap {
 }
 
 struct Gathered {
-    sharp: vec3<f32>,
-    smooth_color: vec3<f32>,
+    sharp: vec3f,
+    smooth_color: vec3f,
     smooth_sum: f32,
     lod: f32,
     complete: bool,
@@ -137,7 +137,7 @@ struct Gathered {
 
 // resample::nothing_gathered
 fn nothing_gathered() -> Gathered {
-    return Gathered(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, true);
+    return Gathered(vec3f(0.0), vec3f(0.0), 0.0, 0.0, true);
 }
 
 // resample::gather
@@ -145,7 +145,7 @@ fn gather(g: Gathered, a: Tap, b: Tap, c: Tap, d: Tap, four: FourTaps) -> Gather
     let x = four.sharp_x;
     let first = a.color * x.x + b.color * x.y;
     let last = c.color * x.z + d.color * x.w;
-    let inner = select(vec2<f32>(0.0), four.linear_x, vec2<bool>(b.same, c.same));
+    let inner = select(vec2f(0.0), four.linear_x, vec2<bool>(b.same, c.same));
     return Gathered(
         first * four.sharp_rows.x + (last * four.sharp_rows.y + g.sharp),
         g.smooth_color + (b.color * inner.x + c.color * inner.y) * four.linear_row,
@@ -156,8 +156,8 @@ fn gather(g: Gathered, a: Tap, b: Tap, c: Tap, d: Tap, four: FourTaps) -> Gather
 }
 
 struct Resampled {
-    sharp: vec3<f32>,
-    smooth_color: vec3<f32>,
+    sharp: vec3f,
+    smooth_color: vec3f,
     lod: f32,
 }
 
@@ -168,6 +168,6 @@ fn resolve(g: Gathered, weights: f32, nearest: Surface) -> Resampled {
     }
     let inverse = 1.0 / g.smooth_sum;
     let smooth_color = g.smooth_color * inverse;
-    let sharp = select(smooth_color, max(g.sharp * (1.0 / weights), vec3<f32>(0.0)), g.complete);
+    let sharp = select(smooth_color, max(g.sharp * (1.0 / weights), vec3f(0.0)), g.complete);
     return Resampled(sharp, smooth_color, g.lod * inverse);
 }

@@ -10,18 +10,18 @@ fn is_finite(x: f32) -> bool {
 }
 
 struct Sanitized {
-    color: vec3<f32>,
+    color: vec3f,
     usable: bool,
 }
 
 // sanitize::color
-fn color(c: vec3<f32>) -> Sanitized {
-    let size = bitcast<vec3<u32>>(c) & vec3<u32>(0x7fffffffu);
+fn color(c: vec3f) -> Sanitized {
+    let size = bitcast<vec3u>(c) & vec3u(0x7fffffffu);
     if max(max(size.x, size.y), size.z) < 0x7f800000u {
-        let limited = clamp(c, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));
-        return Sanitized(select(vec3<f32>(0.0), limited, size >= vec3<u32>(bitcast<u32>(LEAST_COLOR))), true);
+        let limited = clamp(c, vec3f(-MAX_HALF), vec3f(MAX_HALF));
+        return Sanitized(select(vec3f(0.0), limited, size >= vec3u(bitcast<u32>(LEAST_COLOR))), true);
     }
-    return Sanitized(vec3<f32>(0.0), false);
+    return Sanitized(vec3f(0.0), false);
 }
 
 // sanitize::trust. The bits of positive floats are ordered as the floats, infinity last and NaN beyond it.

@@ -6,8 +6,8 @@ const QUALITY_WIDTH: f32 = 0.1;
 const COARSER_WIDTH: f32 = 0.25;
 const GATE_FROM: f32 = 3.0;
 const GATE_WIDTH: f32 = 6.0;
-const RELIGHT: vec2<f32> = vec2<f32>(1.5, 0.5);
-const RELIGHT_BLOCKS: vec2<f32> = vec2<f32>(8.0, 0.5);
+const RELIGHT: vec2f = vec2f(1.5, 0.5);
+const RELIGHT_BLOCKS: vec2f = vec2f(8.0, 0.5);
 const RELIT: f32 = 1.0;
 const RELIT_BLOCKS: f32 = 0.5;
 const CORRECTION: f32 = 0.2;
@@ -38,22 +38,22 @@ fn smooth_step(low: f32, width: f32, x: f32) -> f32 {
 }
 
 // smr::root_difference
-fn root_difference(x: vec3<f32>, y: vec3<f32>) -> f32 {
+fn root_difference(x: vec3f, y: vec3f) -> f32 {
     return distance_of_roots(roots(x), roots(y));
 }
 
 // smr::past_difference
-fn past_difference(x: vec3<f32>, past: vec3<f32>) -> f32 {
+fn past_difference(x: vec3f, past: vec3f) -> f32 {
     return distance_of_roots(roots(x), past_roots(past));
 }
 
 // smr::past_contrast
-fn past_contrast(level: vec3<f32>, next_level: vec3<f32>) -> f32 {
+fn past_contrast(level: vec3f, next_level: vec3f) -> f32 {
     return distance_of_roots(past_roots(level), past_roots(next_level));
 }
 
 // smr::distance_of_roots
-fn distance_of_roots(x: vec3<f32>, y: vec3<f32>) -> f32 {
+fn distance_of_roots(x: vec3f, y: vec3f) -> f32 {
     let d = x - y;
     let outer = 0.25 * (d.x + d.z);
     let inner = 0.5 * d.y;
@@ -65,24 +65,24 @@ fn distance_of_roots(x: vec3<f32>, y: vec3<f32>) -> f32 {
 }
 
 // smr::roots
-fn roots(c: vec3<f32>) -> vec3<f32> {
-    return past_roots(max(c, vec3<f32>(0.0)));
+fn roots(c: vec3f) -> vec3f {
+    return past_roots(max(c, vec3f(0.0)));
 }
 
 // smr::past_roots
-fn past_roots(c: vec3<f32>) -> vec3<f32> {
+fn past_roots(c: vec3f) -> vec3f {
     return sqrt(c);
 }
 
 // smr::light_unit
-fn light_unit(compared: vec3<f32>, matched: vec3<f32>, exposure: f32) -> f32 {
+fn light_unit(compared: vec3f, matched: vec3f, exposure: f32) -> f32 {
     let now = max(max(compared.x, compared.y), compared.z);
     let then = max(max(matched.x, matched.y), matched.z);
     return max(max(now, then * exposure), LEAST_LIGHT) * (1.0f / MIDDLE);
 }
 
 // smr::moves_alike
-fn moves_alike(own: vec2<f32>, other: vec2<f32>) -> bool {
+fn moves_alike(own: vec2f, other: vec2f) -> bool {
     let within = COHERENT_PX + COHERENT_SHARE * (abs(own.x) + abs(own.y));
     return abs(other.x - own.x) <= within && abs(other.y - own.y) <= within;
 }
@@ -93,7 +93,7 @@ struct ReuseWeight {
 }
 
 // smr::reuse_weight
-fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confidence: vec2<f32>) -> ReuseWeight {
+fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confidence: vec2f) -> ReuseWeight {
     let finer = clamp((lod - history_lod) * (1.0f / QUALITY_WIDTH), 0.0, 1.0) * confidence.x;
     let coarser = clamp((history_lod - lod) / COARSER_WIDTH, 0.0, 1.0) * confidence.y;
     let alike = (1.0 - finer) * (1.0 - coarser);
@@ -109,7 +109,7 @@ fn gain(observed: f32, predicted: f32, changed: f32) -> f32 {
 }
 
 // smr::strongest_gain
-fn strongest_gain(gains: vec3<f32>) -> f32 {
+fn strongest_gain(gains: vec3f) -> f32 {
     let least = min(min(gains.x, gains.y), gains.z);
     let most = max(max(gains.x, gains.y), gains.z);
     return select(most, least, least * most < 1.0);
@@ -127,32 +127,32 @@ fn may_relight(finer: f32, noisy: bool) -> bool {
 }
 
 // smr::is_changed
-fn is_changed(compared: vec3<f32>, matched: vec3<f32>, level: vec3<f32>, next_level: vec3<f32>) -> bool {
+fn is_changed(compared: vec3f, matched: vec3f, level: vec3f, next_level: vec3f) -> bool {
     return past_difference(compared, matched) > relight_from(past_contrast(level, next_level), false, 0.0);
 }
 
 struct Evidence {
-    candidate: vec3<f32>,
+    candidate: vec3f,
     unit: f32,
-    compared: vec3<f32>,
-    compared_coarser: vec3<f32>,
-    observed: vec3<f32>,
+    compared: vec3f,
+    compared_coarser: vec3f,
+    observed: vec3f,
     lod: f32,
-    history: vec3<f32>,
+    history: vec3f,
     history_lod: f32,
     resampled: bool,
-    matched: vec3<f32>,
-    level: vec3<f32>,
-    next_level: vec3<f32>,
-    matched_coarser: vec3<f32>,
-    predicted: vec3<f32>,
+    matched: vec3f,
+    level: vec3f,
+    next_level: vec3f,
+    matched_coarser: vec3f,
+    predicted: vec3f,
     trust: f32,
     noise: f32,
-    confidence: vec2<f32>,
+    confidence: vec2f,
 }
 
 struct Matched {
-    color: vec3<f32>,
+    color: vec3f,
     lod: f32,
     share: f32,
     fit: f32,
@@ -163,13 +163,13 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     let reuse = reuse_weight(e.lod, e.history_lod, p.accumulate, p.noisy, e.confidence);
     var contrast = past_contrast(e.level, e.next_level);
     var d = past_difference(e.compared, e.matched);
-    var k = vec3<f32>(1.0);
+    var k = vec3f(1.0);
     var worn = 0.0;
     if p.relight {
         let low = relight_from(contrast, p.blocks, e.noise);
         let share = select(0.0, 1.0, may_relight(reuse.finer, p.noisy));
         let changed = smooth_step(low, low, past_difference(e.observed, e.predicted)) * share;
-        let gains = vec3<f32>(
+        let gains = vec3f(
             gain(e.observed.x, e.predicted.x, changed),
             gain(e.observed.y, e.predicted.y, changed),
             gain(e.observed.z, e.predicted.z, changed),
@@ -196,7 +196,7 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     let correction = select(CORRECTION, CORRECTION_BLOCKS, p.blocks);
     let finer = select(0.0, reuse.finer, e.resampled && !p.noisy);
     let missed = (e.observed - k * e.predicted) * (correction * e.unit);
-    let history = max(missed * finer + k * e.history, vec3<f32>(0.0));
+    let history = max(missed * finer + k * e.history, vec3f(0.0));
     let shown = select(e.candidate + (history - e.candidate) * share, history, share == 1.0);
     var lod = e.lod;
     if reuse.finer > 0.0 {
@@ -208,18 +208,18 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
 }
 
 // smr::mip_mean
-fn mip_mean(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, d: vec4<f32>) -> vec4<f32> {
+fn mip_mean(a: vec4f, b: vec4f, c: vec4f, d: vec4f) -> vec4f {
     return (a + b + c + d) * 0.25;
 }
 
 // smr::mip_bilinear
 fn mip_bilinear(
-    top_left: vec4<f32>,
-    top_right: vec4<f32>,
-    bottom_left: vec4<f32>,
-    bottom_right: vec4<f32>,
-    fraction: vec2<f32>,
-) -> vec3<f32> {
+    top_left: vec4f,
+    top_right: vec4f,
+    bottom_left: vec4f,
+    bottom_right: vec4f,
+    fraction: vec2f,
+) -> vec3f {
     let t = top_left + (top_right - top_left) * fraction.x;
     let b = bottom_left + (bottom_right - bottom_left) * fraction.x;
     let v = t + (b - t) * fraction.y;

@@ -17,9 +17,9 @@ const GATE_ERROR: f32 = 0.7;
 const RELIGHT_ERRORS: f32 = 2.5;
 const AGREE_ERRORS: f32 = 4.0;
 const AGREE_ERROR: f32 = 0.8;
-const FIT_ERRORS: vec2<f32> = vec2<f32>(2.0, 4.0);
-const SAMPLE_GAIN: vec2<f32> = vec2<f32>(0.2, 5.0);
-const WORN: vec2<f32> = vec2<f32>(4.0, 1.0);
+const FIT_ERRORS: vec2f = vec2f(2.0, 4.0);
+const SAMPLE_GAIN: vec2f = vec2f(0.2, 5.0);
+const WORN: vec2f = vec2f(4.0, 1.0);
 const FINER_WIDTH: f32 = 0.25;
 const OVERSHOOT: f32 = 0.25;
 const ACCUMULATE: f32 = 0.5;
@@ -27,7 +27,7 @@ const KEEP_SHARE: f32 = 0.9;
 const MEAN_ERRORS: f32 = 3.0;
 const BLURRED_FRAMES: f32 = 8.0;
 const STAY_SHARE: f32 = 0.5;
-const AGREED: vec2<f32> = vec2<f32>(0.6, 6.0);
+const AGREED: vec2f = vec2f(0.6, 6.0);
 const RELIT_ERRORS: f32 = 0.8;
 
 // sparse_smr::candidate_level
@@ -37,8 +37,8 @@ fn candidate_level(px: f32, coarsest: f32) -> f32 {
 
 // `error` is negative without history or without a usable sample.
 struct Observation {
-    sampled: vec3<f32>,
-    history: vec3<f32>,
+    sampled: vec3f,
+    history: vec3f,
     error: f32,
     confidence: f32,
 }
@@ -66,8 +66,8 @@ fn ratio(observed: f32, predicted: f32) -> f32 {
 }
 
 // sparse_smr::ratios
-fn ratios(observed: vec3<f32>, predicted: vec3<f32>) -> vec3<f32> {
-    return vec3<f32>(ratio(observed.x, predicted.x), ratio(observed.y, predicted.y), ratio(observed.z, predicted.z));
+fn ratios(observed: vec3f, predicted: vec3f) -> vec3f {
+    return vec3f(ratio(observed.x, predicted.x), ratio(observed.y, predicted.y), ratio(observed.z, predicted.z));
 }
 
 // sparse_smr::agreement
@@ -78,13 +78,13 @@ fn agreement(own: Observation, other: Observation, spatial: f32) -> f32 {
 }
 
 // sparse_smr::neighbour_weight
-fn neighbour_weight(offset: vec2<i32>) -> f32 {
+fn neighbour_weight(offset: vec2i) -> f32 {
     return f32((2 - abs(offset.x)) * (2 - abs(offset.y)));
 }
 
 struct Light {
-    sampled: vec3<f32>,
-    history: vec3<f32>,
+    sampled: vec3f,
+    history: vec3f,
     error: f32,
     weight: f32,
     squared: f32,
@@ -116,9 +116,9 @@ fn agreed(l: Light) -> f32 {
 }
 
 // sparse_smr::relight
-fn relight(l: Light, error: f32) -> vec3<f32> {
+fn relight(l: Light, error: f32) -> vec3f {
     if l.weight < 1e-6 {
-        return vec3<f32>(1.0);
+        return vec3f(1.0);
     }
     let inverse = 1.0 / l.weight;
     let sampled = l.sampled * inverse;
@@ -131,7 +131,7 @@ fn relight(l: Light, error: f32) -> vec3<f32> {
 }
 
 // sparse_smr::errors_left
-fn errors_left(o: Observation, gains: vec3<f32>) -> f32 {
+fn errors_left(o: Observation, gains: vec3f) -> f32 {
     return root_difference(o.sampled, gains * o.history) / (o.error + GATE_ERROR);
 }
 
@@ -141,7 +141,7 @@ fn fit(errors: f32, confidence: f32) -> f32 {
 }
 
 // sparse_smr::own_fit
-fn own_fit(own: Observation, gains: vec3<f32>) -> f32 {
+fn own_fit(own: Observation, gains: vec3f) -> f32 {
     return fit(errors_left(own, gains), own.confidence);
 }
 
@@ -166,7 +166,7 @@ fn mean_fit(l: Light, confidence: f32) -> f32 {
 }
 
 struct Lit {
-    gains: vec3<f32>,
+    gains: vec3f,
     fit: f32,
     own_fit: f32,
     is_own: bool,
@@ -174,15 +174,15 @@ struct Lit {
 }
 
 // sparse_smr::pack_lit
-fn pack_lit(l: Lit) -> vec2<u32> {
+fn pack_lit(l: Lit) -> vec2u {
     let fit_bits = u32(l.fit * 256.0 + 0.5);
     let own_bits = u32(l.own_fit * 32.0 + 0.5) << 10u;
     let disparity_bits = disparity_code(l.disparity) << 16u;
-    return vec2<u32>(pack_color(l.gains), fit_bits | select(0u, 512u, l.is_own) | own_bits | disparity_bits);
+    return vec2u(pack_color(l.gains), fit_bits | select(0u, 512u, l.is_own) | own_bits | disparity_bits);
 }
 
 // sparse_smr::unpack_lit
-fn unpack_lit(words: vec2<u32>) -> Lit {
+fn unpack_lit(words: vec2u) -> Lit {
     return Lit(
         unpack_color(words.x),
         f32(words.y & 511u) * (1.0f / 256.0),
@@ -193,24 +193,24 @@ fn unpack_lit(words: vec2<u32>) -> Lit {
 }
 
 struct QuadLit {
-    gains: vec3<f32>,
+    gains: vec3f,
     fit: f32,
-    own_fits: vec4<f32>,
+    own_fits: vec4f,
     is_own: bool,
-    disparities: vec4<f32>,
+    disparities: vec4f,
 }
 
 // sparse_smr::pack_quad_lit
-fn pack_quad_lit(l: QuadLit) -> vec4<u32> {
-    let own = vec4<u32>(l.own_fits * 16.0 + 0.5) << vec4<u32>(10u, 15u, 20u, 25u);
+fn pack_quad_lit(l: QuadLit) -> vec4u {
+    let own = vec4u(l.own_fits * 16.0 + 0.5) << vec4u(10u, 15u, 20u, 25u);
     let fits = u32(0.5 + l.fit * 256.0) | select(0u, 512u, l.is_own) | own.x | own.y | own.z | own.w;
     let first = disparity_code(l.disparities.x) | (disparity_code(l.disparities.y) << 16u);
     let second = disparity_code(l.disparities.z) | (disparity_code(l.disparities.w) << 16u);
-    return vec4<u32>(pack_color(l.gains), fits, first, second);
+    return vec4u(pack_color(l.gains), fits, first, second);
 }
 
 // sparse_smr::quad_lit
-fn quad_lit(words: vec4<u32>, i: u32) -> Lit {
+fn quad_lit(words: vec4u, i: u32) -> Lit {
     return Lit(
         unpack_color(words.x),
         f32(words.y & 511u) * (1.0f / 256.0),
@@ -221,34 +221,34 @@ fn quad_lit(words: vec4<u32>, i: u32) -> Lit {
 }
 
 // sparse_smr::quad_code
-fn quad_code(words: vec4<u32>, i: u32) -> u32 {
+fn quad_code(words: vec4u, i: u32) -> u32 {
     let pair = select(words.z, words.w, i >= 2u);
     return select(pair & 0xffff0000u, pair << 16u, (i & 1u) == 0u);
 }
 
 struct Reconstruction {
-    candidate: vec3<f32>,
+    candidate: vec3f,
     lod: f32,
-    lowest: vec3<f32>,
-    highest: vec3<f32>,
-    history: vec3<f32>,
+    lowest: vec3f,
+    highest: vec3f,
+    history: vec3f,
     history_lod: f32,
     nearest: StoredSample,
     moved: bool,
-    gains: vec3<f32>,
+    gains: vec3f,
     fit: f32,
     trust: f32,
     accumulate: f32,
 }
 
 struct Reconstructed {
-    color: vec3<f32>,
+    color: vec3f,
     stored: StoredSample,
     share: f32,
 }
 
 // sparse_smr::relit
-fn relit(c: vec3<f32>, gains: vec3<f32>, lowest: vec3<f32>, highest: vec3<f32>) -> vec3<f32> {
+fn relit(c: vec3f, gains: vec3f, lowest: vec3f, highest: vec3f) -> vec3f {
     return min(c * gains, max(c, highest + (highest - lowest) * OVERSHOOT));
 }
 
@@ -256,7 +256,7 @@ fn relit(c: vec3<f32>, gains: vec3<f32>, lowest: vec3<f32>, highest: vec3<f32>) 
 fn reconstruct(r: Reconstruction) -> Reconstructed {
     let acceptance = r.fit * r.trust;
     var worn = 0.0;
-    if any(r.gains != vec3<f32>(1.0)) {
+    if any(r.gains != vec3f(1.0)) {
         let mean = (r.gains.x + r.gains.y + r.gains.z) * (1.0f / 3.0f);
         worn = abs(ln(mean) * LOG2_E) * select(WORN.y, WORN.x, r.moved);
     }
@@ -278,7 +278,7 @@ fn reconstruct(r: Reconstruction) -> Reconstructed {
         return Reconstructed(shown, StoredSample(kept_color, lod, r.nearest.disparity, r.nearest.place_px), share);
     }
     let lod = select(r.lod, history_lod + (r.lod - history_lod) * lost, finer > 0.0);
-    return Reconstructed(shown, StoredSample(shown, lod, r.nearest.disparity, vec2<f32>(0.0)), share);
+    return Reconstructed(shown, StoredSample(shown, lod, r.nearest.disparity, vec2f(0.0)), share);
 }
 
 struct Accumulated {
@@ -312,5 +312,5 @@ fn accumulate(r: Reconstruction, past: Noise, candidate: Noise) -> Accumulated {
         let next = StoredSample(kept, lod, r.nearest.disparity, r.nearest.place_px);
         return Accumulated(Reconstructed(shown, next, share), noise);
     }
-    return Accumulated(Reconstructed(shown, StoredSample(shown, lod, r.nearest.disparity, vec2<f32>(0.0)), share), noise);
+    return Accumulated(Reconstructed(shown, StoredSample(shown, lod, r.nearest.disparity, vec2f(0.0)), share), noise);
 }

@@ -16,10 +16,10 @@ const LOD_PX2: f32 = 0.3;
 
 // A negative `lod` marks an empty texel.
 struct StoredSample {
-    color: vec3<f32>,
+    color: vec3f,
     lod: f32,
     disparity: f32,
-    place_px: vec2<f32>,
+    place_px: vec2f,
 }
 
 // stored_sample::multiple
@@ -29,13 +29,13 @@ fn multiple(v: f32, exponent: u32, up: f32) -> u32 {
 }
 
 // stored_sample::pack_color
-fn pack_color(c: vec3<f32>) -> u32 {
+fn pack_color(c: vec3f) -> u32 {
     return pack_color_by(c, 0.5);
 }
 
 // stored_sample::pack_color_by
-fn pack_color_by(c: vec3<f32>, up: f32) -> u32 {
-    let v = select(vec3<f32>(0.0), min(c, vec3<f32>(MAX_COLOR)), c > vec3<f32>(0.0));
+fn pack_color_by(c: vec3f, up: f32) -> u32 {
+    let v = select(vec3f(0.0), min(c, vec3f(MAX_COLOR)), c > vec3f(0.0));
     let largest = max(max(v.x, v.y), v.z);
     let rough = max(bitcast<u32>(largest) >> 23u, SMALLEST_EXPONENT);
     // Rounding may carry into a tenth bit.
@@ -47,9 +47,9 @@ fn pack_color_by(c: vec3<f32>, up: f32) -> u32 {
 }
 
 // stored_sample::unpack_color
-fn unpack_color(word: u32) -> vec3<f32> {
+fn unpack_color(word: u32) -> vec3f {
     let step = bitcast<f32>(((word >> 27u) + (SMALLEST_EXPONENT - 8u)) << 23u);
-    return vec3<f32>(f32(word & 511u), f32((word >> 9u) & 511u), f32((word >> 18u) & 511u)) * step;
+    return vec3f(f32(word & 511u), f32((word >> 9u) & 511u), f32((word >> 18u) & 511u)) * step;
 }
 
 fn pack_place(v: f32) -> u32 {
@@ -61,7 +61,7 @@ fn unpack_place(bits: u32) -> f32 {
 }
 
 // stored_sample::pack_stored
-fn pack_stored(s: StoredSample) -> vec2<u32> {
+fn pack_stored(s: StoredSample) -> vec2u {
     var lod = EMPTY_LOD;
     if s.lod >= 0.0 {
         lod = u32(min(s.lod, MAX_LOD) * LOD_STEPS + 1.5);
@@ -69,44 +69,44 @@ fn pack_stored(s: StoredSample) -> vec2<u32> {
     let code = disparity_code(s.disparity);
     // The last code stands for an unknown disparity.
     let disparity = select(min((code + 2u) >> 2u, 0x3ffeu), 0x3fffu, code == 0xffffu);
-    return vec2<u32>(
+    return vec2u(
         pack_color(s.color),
         lod | (disparity << 6u) | (pack_place(s.place_px.x) << 20u) | (pack_place(s.place_px.y) << 26u),
     );
 }
 
 // stored_sample::unpack_stored
-fn unpack_stored(words: vec2<u32>) -> StoredSample {
+fn unpack_stored(words: vec2u) -> StoredSample {
     if is_empty(words) {
-        return StoredSample(vec3<f32>(0.0), -1.0, -1.0, vec2<f32>(0.0));
+        return StoredSample(vec3f(0.0), -1.0, -1.0, vec2f(0.0));
     }
     return unpack_full(words);
 }
 
 // stored_sample::is_empty
-fn is_empty(words: vec2<u32>) -> bool {
+fn is_empty(words: vec2u) -> bool {
     return (words.y & 63u) == EMPTY_LOD;
 }
 
 // stored_sample::code_word
-fn code_word(words: vec2<u32>) -> u32 {
+fn code_word(words: vec2u) -> u32 {
     return (words.y << 12u) & 0xfffc0000u;
 }
 
 // stored_sample::unpack_full
-fn unpack_full(words: vec2<u32>) -> StoredSample {
+fn unpack_full(words: vec2u) -> StoredSample {
     let code = (words.y >> 6u) & 0x3fffu;
     return StoredSample(
         unpack_color(words.x),
         // The limit keeps compilers from merging this factor with later ones.
         min(lod_value(words.y & 63u), MAX_LOD),
         select(disparity_value(code << 2u), -1.0, code == 0x3fffu),
-        vec2<f32>(unpack_place(words.y >> 20u), unpack_place(words.y >> 26u)),
+        vec2f(unpack_place(words.y >> 20u), unpack_place(words.y >> 26u)),
     );
 }
 
 // stored_sample::moved_stored
-fn moved_stored(s: StoredSample, texel_px: vec2<f32>, scale: vec2<f32>, lod_shift: f32) -> StoredSample {
+fn moved_stored(s: StoredSample, texel_px: vec2f, scale: vec2f, lod_shift: f32) -> StoredSample {
     if s.lod < 0.0 {
         return s;
     }
@@ -118,22 +118,22 @@ fn moved_stored(s: StoredSample, texel_px: vec2<f32>, scale: vec2<f32>, lod_shif
 
 struct AroundStored {
     weight: f32,
-    color: vec3<f32>,
+    color: vec3f,
     lod: f32,
-    place: vec2<f32>,
-    square: vec3<f32>,
-    color_x: vec3<f32>,
-    color_y: vec3<f32>,
-    lowest: vec3<f32>,
-    highest: vec3<f32>,
+    place: vec2f,
+    square: vec3f,
+    color_x: vec3f,
+    color_y: vec3f,
+    lowest: vec3f,
+    highest: vec3f,
     nearest: StoredSample,
     cost: f32,
 }
 
 fn nothing_around() -> AroundStored {
-    let zero = vec3<f32>(0.0);
-    let empty = StoredSample(zero, -1.0, -1.0, vec2<f32>(0.0));
-    return AroundStored(0.0, zero, 0.0, vec2<f32>(0.0), zero, zero, zero, vec3<f32>(MAX_COLOR), zero, empty, 1e30);
+    let zero = vec3f(0.0);
+    let empty = StoredSample(zero, -1.0, -1.0, vec2f(0.0));
+    return AroundStored(0.0, zero, 0.0, vec2f(0.0), zero, zero, zero, vec3f(MAX_COLOR), zero, empty, 1e30);
 }
 
 // stored_sample::stored_weight
@@ -143,7 +143,7 @@ fn stored_weight(px2: f32, inverse_reach: f32) -> f32 {
 }
 
 // stored_sample::add_stored
-fn add_stored(a: AroundStored, sampled: StoredSample, texel_px: vec2<f32>, same: bool, inverse_reach: f32) -> AroundStored {
+fn add_stored(a: AroundStored, sampled: StoredSample, texel_px: vec2f, same: bool, inverse_reach: f32) -> AroundStored {
     if !same {
         return a;
     }
@@ -161,8 +161,8 @@ fn add_stored(a: AroundStored, sampled: StoredSample, texel_px: vec2<f32>, same:
         a.weight + w,
         a.color + sampled.color * w,
         a.lod + sampled.lod * w,
-        a.place + vec2<f32>(wx, wy),
-        a.square + vec3<f32>(wx * place.x, wx * place.y, wy * place.y),
+        a.place + vec2f(wx, wy),
+        a.square + vec3f(wx * place.x, wx * place.y, wy * place.y),
         a.color_x + sampled.color * wx,
         a.color_y + sampled.color * wy,
         min(a.lowest, sampled.color),
@@ -180,10 +180,10 @@ fn can_replace(a: AroundStored) -> bool {
 }
 
 struct Interpolated {
-    color: vec3<f32>,
+    color: vec3f,
     lod: f32,
-    lowest: vec3<f32>,
-    highest: vec3<f32>,
+    lowest: vec3f,
+    highest: vec3f,
     nearest: StoredSample,
 }
 
@@ -192,7 +192,7 @@ fn interpolate(a: AroundStored) -> Interpolated {
     var nearest = a.nearest;
     let distance = max(abs(nearest.place_px.x), abs(nearest.place_px.y));
     if nearest.lod < 0.0 || distance <= EXACT_PX {
-        nearest.place_px = vec2<f32>(0.0);
+        nearest.place_px = vec2f(0.0);
         return Interpolated(nearest.color, nearest.lod, a.lowest, a.highest, nearest);
     }
     if a.weight < 1e-4 {
@@ -211,6 +211,6 @@ fn interpolate(a: AroundStored) -> Interpolated {
     // The plane's value at the position is the mean, minus its slopes times the mean place.
     let rise = across * (yy * a.place.x - xy * a.place.y) + down * (xx * a.place.y - xy * a.place.x);
     let inverse = 1.0 / a.weight;
-    let color = max((a.color - rise / determinant) * inverse, vec3<f32>(0.0));
+    let color = max((a.color - rise / determinant) * inverse, vec3f(0.0));
     return Interpolated(color, a.lod * inverse, a.lowest, a.highest, nearest);
 }

@@ -2,14 +2,14 @@
 // Twin of src/kernel/surface.rs, which documents the layout.
 
 const EMPTY_LOD: u32 = 0u;
-const EMPTY_SURFACE: vec2<u32> = vec2<u32>(0u, 0xffff0000u);
+const EMPTY_SURFACE: vec2u = vec2u(0u, 0xffff0000u);
 const MAX_FLOAT14: f32 = 65472.0;
 const LOD_STEPS: f32 = 7.0;
 const MAX_LOD: f32 = 62.0 * (1.0 / LOD_STEPS);
 
 // A negative `lod` marks an empty texel.
 struct Surface {
-    color: vec3<f32>,
+    color: vec3f,
     lod: f32,
     disparity: f32,
 }
@@ -29,12 +29,12 @@ fn float14_value(code: u32) -> f32 {
 }
 
 // surface::pack_surface
-fn pack_surface(s: Surface) -> vec2<u32> {
+fn pack_surface(s: Surface) -> vec2u {
     var lod = EMPTY_LOD;
     if s.lod >= 0.0 {
         lod = u32(min(s.lod, MAX_LOD) * LOD_STEPS + 1.5);
     }
-    let words = vec2<u32>(
+    let words = vec2u(
         float14_bits(s.color.x) | (float14_bits(s.color.y) << 14u) | (lod << 28u),
         float14_bits(s.color.z) | ((lod >> 4u) << 14u) | (disparity_code(s.disparity) << 16u),
     );
@@ -42,7 +42,7 @@ fn pack_surface(s: Surface) -> vec2<u32> {
 }
 
 // surface::lod_code
-fn lod_code(words: vec2<u32>) -> u32 {
+fn lod_code(words: vec2u) -> u32 {
     return (words.x >> 28u) | ((words.y >> 10u) & 0x30u);
 }
 
@@ -52,8 +52,8 @@ fn lod_value(code: u32) -> f32 {
 }
 
 // surface::surface_color
-fn surface_color(words: vec2<u32>) -> vec3<f32> {
-    return vec3<f32>(
+fn surface_color(words: vec2u) -> vec3f {
+    return vec3f(
         float14_value(words.x & 0x3fffu),
         float14_value((words.x >> 14u) & 0x3fffu),
         float14_value(words.y & 0x3fffu),
@@ -61,28 +61,28 @@ fn surface_color(words: vec2<u32>) -> vec3<f32> {
 }
 
 // surface::unpack_surface
-fn unpack_surface(words: vec2<u32>) -> Surface {
+fn unpack_surface(words: vec2u) -> Surface {
     let code = lod_code(words);
     let is_empty = code == EMPTY_LOD;
     return Surface(
-        select(surface_color(words), vec3<f32>(0.0), is_empty),
+        select(surface_color(words), vec3f(0.0), is_empty),
         select(lod_value(code), -1.0, is_empty),
         select(disparity_value(words.y >> 16u), -1.0, is_empty),
     );
 }
 
 // surface::mip_texel
-fn mip_texel(words: vec2<u32>) -> vec4<f32> {
+fn mip_texel(words: vec2u) -> vec4f {
     let s = unpack_surface(words);
     if s.lod < 0.0 {
-        return vec4<f32>(0.0);
+        return vec4f(0.0);
     }
-    return vec4<f32>(s.color, 1.0);
+    return vec4f(s.color, 1.0);
 }
 
 // surface::round_mip
-fn round_mip(v: vec4<f32>) -> vec4<f32> {
-    return vec4<f32>(
+fn round_mip(v: vec4f) -> vec4f {
+    return vec4f(
         half_value(half_bits(v.x)),
         half_value(half_bits(v.y)),
         half_value(half_bits(v.z)),

@@ -6,33 +6,33 @@ const SETTLED: f32 = 2.0;
 const JITTER: f32 = 1.0 / 9.0;
 const ROUNDING: f32 = 5e-4;
 const SPREAD: f32 = 0.6;
-const BOX_SIGMAS: vec2<f32> = vec2<f32>(2.0, 5.0);
+const BOX_SIGMAS: vec2f = vec2f(2.0, 5.0);
 const MAX_ROOT: f32 = 256.0;
 const NO_CONFIDENCE_LOD: f32 = 8.0;
 
 // taa::to_ycocg
-fn to_ycocg(c: vec3<f32>) -> vec3<f32> {
+fn to_ycocg(c: vec3f) -> vec3f {
     let r = roots(c);
     let outer = 0.25 * (r.x + r.z);
     let inner = 0.5 * r.y;
-    return vec3<f32>(outer + inner, 0.5 * (r.x - r.z), inner - outer);
+    return vec3f(outer + inner, 0.5 * (r.x - r.z), inner - outer);
 }
 
 // taa::root_luma
-fn root_luma(c: vec3<f32>) -> f32 {
+fn root_luma(c: vec3f) -> f32 {
     return min(to_ycocg(c).x, MAX_ROOT);
 }
 
 // taa::roots_of_ycocg
-fn roots_of_ycocg(y: vec3<f32>) -> vec3<f32> {
+fn roots_of_ycocg(y: vec3f) -> vec3f {
     let outer = y.x - y.z;
-    return max(vec3<f32>(outer + y.y, y.x + y.z, outer - y.y), vec3<f32>(0.0));
+    return max(vec3f(outer + y.y, y.x + y.z, outer - y.y), vec3f(0.0));
 }
 
 // taa::clip_to_box
-fn clip_to_box(history: vec3<f32>, mean: vec3<f32>, extent: vec3<f32>) -> vec3<f32> {
+fn clip_to_box(history: vec3f, mean: vec3f, extent: vec3f) -> vec3f {
     let d = history - mean;
-    let ratio = extent / max(abs(d), vec3<f32>(1e-6));
+    let ratio = extent / max(abs(d), vec3f(1e-6));
     let inside = min(min(ratio.x, ratio.y), ratio.z);
     if inside < 1.0 {
         return mean + d * inside;
@@ -52,7 +52,7 @@ fn lod_of(confidence: f32) -> f32 {
 }
 
 // taa::confidence_limit
-fn confidence_limit(fraction: vec2<f32>, spread: f32) -> f32 {
+fn confidence_limit(fraction: vec2f, spread: f32) -> f32 {
     let x = 4.0 * (fraction.x * (1.0 - fraction.x));
     let y = 4.0 * (fraction.y * (1.0 - fraction.y));
     return 1.0 / (max(x, y) * spread + (1.0f / LIMIT));
@@ -83,17 +83,17 @@ fn box_sigmas(moving: f32, still: f32, confidence: f32) -> f32 {
 
 // taa::blend_clipped
 fn blend_clipped(
-    candidate: vec3<f32>,
-    history: vec3<f32>,
-    sum: vec3<f32>,
-    squares: vec3<f32>,
+    candidate: vec3f,
+    history: vec3f,
+    sum: vec3f,
+    squares: vec3f,
     alpha: f32,
     confidence: f32,
-) -> vec3<f32> {
+) -> vec3f {
     let mean = sum * (1.0f / 9.0f);
     let variance = (squares * 9.0 - sum * sum) * (1.0f / 81.0f);
     let sigmas = box_sigmas(BOX_SIGMAS.x, BOX_SIGMAS.y, confidence);
-    let extent = roots(variance) * sigmas + vec3<f32>(ROUNDING);
+    let extent = roots(variance) * sigmas + vec3f(ROUNDING);
     let clipped = roots_of_ycocg(clip_to_box(to_ycocg(history), mean, extent));
     let shown = clipped + (roots(candidate) - clipped) * alpha;
     return shown * shown;

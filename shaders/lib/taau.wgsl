@@ -7,7 +7,7 @@ const TAIL_UNTIL: f32 = 0.5;
 const LEAST_SAMPLE_WEIGHT: f32 = 1e-5;
 const UPSAMPLED_SPREAD: f32 = 1.0;
 const NARROWING: f32 = 0.4;
-const UPSAMPLED_BOX_SIGMAS: vec2<f32> = vec2<f32>(1.5, 5.0);
+const UPSAMPLED_BOX_SIGMAS: vec2f = vec2f(1.5, 5.0);
 const LEAST_CLIP: f32 = 0.1;
 const CLIP_COST: f32 = 10.0;
 
@@ -29,23 +29,23 @@ fn narrowing(confidence: f32) -> f32 {
 }
 
 // taau::sample_weights
-fn sample_weights(offset_px: vec2<f32>, level: u32, interpolation: f32, narrowed: f32) -> vec2<f32> {
+fn sample_weights(offset_px: vec2f, level: u32, interpolation: f32, narrowed: f32) -> vec2f {
     let px2 = offset_px.x * offset_px.x + offset_px.y * offset_px.y;
     let inverse_step = bitcast<f32>((127u - level) << 23u);
     let own = lobe(px2 * narrowed);
-    return vec2<f32>(own, own + lobe(px2 * (inverse_step * inverse_step)) * interpolation);
+    return vec2f(own, own + lobe(px2 * (inverse_step * inverse_step)) * interpolation);
 }
 
 struct SamplesAround {
-    difference: vec3<f32>,
-    weights: vec2<f32>,
-    sum: vec3<f32>,
-    squares: vec3<f32>,
+    difference: vec3f,
+    weights: vec2f,
+    sum: vec3f,
+    squares: vec3f,
     count: f32,
 }
 
 // taau::add_around
-fn add_around(a: SamplesAround, centre: vec3<f32>, sampled: vec3<f32>, weights: vec2<f32>) -> SamplesAround {
+fn add_around(a: SamplesAround, centre: vec3f, sampled: vec3f, weights: vec2f) -> SamplesAround {
     let v = to_ycocg(sampled);
     return SamplesAround(
         a.difference + (sampled - centre) * weights.y,
@@ -57,12 +57,12 @@ fn add_around(a: SamplesAround, centre: vec3<f32>, sampled: vec3<f32>, weights: 
 }
 
 // taau::upsampled
-fn upsampled(a: SamplesAround, centre: vec3<f32>) -> vec3<f32> {
+fn upsampled(a: SamplesAround, centre: vec3f) -> vec3f {
     return centre + a.difference * (1.0 / a.weights.y);
 }
 
 struct Accumulated {
-    color: vec3<f32>,
+    color: vec3f,
     confidence: f32,
     share: f32,
     kept: f32,
@@ -71,8 +71,8 @@ struct Accumulated {
 // taau::accumulate
 fn accumulate(
     a: SamplesAround,
-    centre: vec3<f32>,
-    history: vec3<f32>,
+    centre: vec3f,
+    history: vec3f,
     confidence: f32,
     trusted: f32,
 ) -> Accumulated {
@@ -80,7 +80,7 @@ fn accumulate(
     let variance = (a.squares * a.count - a.sum * a.sum) * (inverse * inverse);
     let past = to_ycocg(history);
     let sigmas = box_sigmas(UPSAMPLED_BOX_SIGMAS.x, UPSAMPLED_BOX_SIGMAS.y, confidence);
-    let extent = roots(variance) * sigmas + vec3<f32>(ROUNDING);
+    let extent = roots(variance) * sigmas + vec3f(ROUNDING);
     let inside = clip_to_box(past, a.sum * inverse, extent);
     let strength = min(a.weights.x, 1.0) * (1.0f - LEAST_CLIP) + LEAST_CLIP;
     let clip = inside - past;

@@ -25,7 +25,7 @@ const CHANNEL_BITS: u32 = 7u;
 const FAR_FROM_CANDIDATE: f32 = 0.5;
 
 struct Reference {
-    color: vec3<f32>,
+    color: vec3f,
     level: u32,
 }
 
@@ -36,11 +36,11 @@ fn level_code(lod: f32) -> u32 {
 
 // wrs::pack_reference
 fn pack_reference(r: Reference) -> u32 {
-    let c = clamp(r.color, vec3<f32>(0.0), vec3<f32>(MAX_HALF));
+    let c = clamp(r.color, vec3f(0.0), vec3f(MAX_HALF));
     let largest = bitcast<u32>(max(max(c.x, c.y), c.z)) + (1u << (23u - CHANNEL_BITS));
     let exponent = max(largest >> 23u, LEAST_EXPONENT);
     let scale = bitcast<f32>((2u * 127u + CHANNEL_BITS - 1u - exponent) << 23u);
-    let m = vec3<u32>(c * scale + 0.5);
+    let m = vec3u(c * scale + 0.5);
     return m.x | (m.y << 7u) | (m.z << 14u) | ((exponent - LEAST_EXPONENT) << 21u) | (r.level << 26u);
 }
 
@@ -48,17 +48,17 @@ fn pack_reference(r: Reference) -> u32 {
 fn unpack_reference(word: u32) -> Reference {
     let exponent = ((word >> 21u) & 31u) + LEAST_EXPONENT;
     let scale = bitcast<f32>((exponent + 1u - CHANNEL_BITS) << 23u);
-    let channels = vec3<u32>(word & 127u, (word >> 7u) & 127u, (word >> 14u) & 127u);
-    return Reference(vec3<f32>(channels) * scale, word >> 26u);
+    let channels = vec3u(word & 127u, (word >> 7u) & 127u, (word >> 14u) & 127u);
+    return Reference(vec3f(channels) * scale, word >> 26u);
 }
 
 // wrs::compared
-fn compared(candidate: vec3<f32>, level: u32, reference: Reference) -> vec3<f32> {
+fn compared(candidate: vec3f, level: u32, reference: Reference) -> vec3f {
     return select(candidate, reference.color, level != NO_LEVEL && reference.level == level);
 }
 
 // wrs::next_reference
-fn next_reference(candidate: vec3<f32>, level: u32, take: bool, reference: Reference) -> Reference {
+fn next_reference(candidate: vec3f, level: u32, take: bool, reference: Reference) -> Reference {
     if take || (level != NO_LEVEL && reference.level != level) {
         return Reference(candidate, level);
     }
@@ -92,7 +92,7 @@ struct WrsParams {
 }
 
 struct Past {
-    color: vec3<f32>,
+    color: vec3f,
     w_sum: f32,
     log_key: f32,
 }
@@ -116,17 +116,17 @@ fn scale_by_trust(past: Past, history_trust: f32, sampler_code: u32) -> Past {
 }
 
 // wrs::expose
-fn expose(stored_color: vec3<f32>, ratio: f32) -> vec3<f32> {
-    return clamp(stored_color * ratio, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));
+fn expose(stored_color: vec3f, ratio: f32) -> vec3f {
+    return clamp(stored_color * ratio, vec3f(-MAX_HALF), vec3f(MAX_HALF));
 }
 
 // wrs::luma_root
-fn luma_root(c: vec3<f32>) -> f32 {
+fn luma_root(c: vec3f) -> f32 {
     return sqrt(max(luma(c), 0.0));
 }
 
 // wrs::unspread
-fn unspread(candidate: vec3<f32>, nearest_color: vec3<f32>, resampled_color: vec3<f32>) -> vec3<f32> {
+fn unspread(candidate: vec3f, nearest_color: vec3f, resampled_color: vec3f) -> vec3f {
     let root = luma_root(candidate);
     let far = abs(root - luma_root(nearest_color)) + FAR_FROM_CANDIDATE;
     return select(resampled_color, nearest_color, abs(root - luma_root(resampled_color)) > far);
@@ -138,7 +138,7 @@ fn gate(difference: f32, offset: f32, inv_divisor: f32) -> f32 {
 }
 
 // wrs::difference; exactly 0 for equal colors.
-fn difference(candidate: vec3<f32>, stored_color: vec3<f32>, code: u32) -> f32 {
+fn difference(candidate: vec3f, stored_color: vec3f, code: u32) -> f32 {
     if code == GATE_OFF || all(candidate == stored_color) {
         return 0.0;
     }
@@ -151,7 +151,7 @@ fn difference(candidate: vec3<f32>, stored_color: vec3<f32>, code: u32) -> f32 {
 }
 
 // wrs::step: eq. 7, then Alg. 2 with the candidate as second reservoir.
-fn step(candidate: vec3<f32>, candidate_w: f32, past: Past, params: WrsParams, draw: f32) -> Decision {
+fn step(candidate: vec3f, candidate_w: f32, past: Past, params: WrsParams, draw: f32) -> Decision {
     var gate_value = 1.0;
     if candidate_w > 0.0 && past.w_sum > 0.0 {
         let d = difference(candidate, past.color, params.gate_code);
@@ -182,12 +182,12 @@ fn step(candidate: vec3<f32>, candidate_w: f32, past: Past, params: WrsParams, d
 
 // wrs::combined
 fn combined(
-    candidate: vec3<f32>,
+    candidate: vec3f,
     candidate_w: f32,
-    past_color: vec3<f32>,
+    past_color: vec3f,
     decision: Decision,
     sampler_code: u32,
-) -> vec3<f32> {
+) -> vec3f {
     if sampler_code != SAMPLER_A_CHAO_MEAN || candidate_w == decision.w_sum {
         return select(past_color, candidate, decision.take);
     }

@@ -8,7 +8,7 @@ override HAS_LOD: u32 = 0u;
 @group(0) @binding(5) var lod_in: texture_2d_array<f32>;
 
 // Level of detail of the candidate of a pixel at eccentricity `e_deg`.
-fn candidate_lod(px: vec2<u32>, view: u32, e_deg: f32) -> f32 {
+fn candidate_lod(px: vec2u, view: u32, e_deg: f32) -> f32 {
     if HAS_LOD != 0u {
         let given = textureLoad(lod_in, texel_of(px, view, LOD_IN), layer_of(view), 0).x;
         // The test is on the bits: NaN gives 0.

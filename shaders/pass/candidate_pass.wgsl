@@ -8,14 +8,14 @@
 
 @group(0) @binding(23) var coarse: texture_storage_2d_array<rgba16float, write>;
 
-fn texel(at: vec2<u32>, view: u32) -> vec4<f32> {
+fn texel(at: vec2u, view: u32) -> vec4f {
     let px = min(at, frame.size - 1u);
     let candidate = color(color_at(px, view).xyz);
     return candidate_texel(candidate.color, candidate.usable, noise_at(px, view));
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     let first = 2u * id.xy;
     if any(first >= frame.size) {
         return;
@@ -23,9 +23,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     let view = frame.first_view + group.z;
     let mean = candidate_mean(
         texel(first, view),
-        texel(first + vec2<u32>(1u, 0u), view),
-        texel(first + vec2<u32>(0u, 1u), view),
-        texel(first + vec2<u32>(1u, 1u), view),
+        texel(first + vec2u(1u, 0u), view),
+        texel(first + vec2u(0u, 1u), view),
+        texel(first + vec2u(1u, 1u), view),
     );
     textureStore(coarse, id.xy, view, round_mip(mean));
 }

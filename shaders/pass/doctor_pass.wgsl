@@ -12,14 +12,14 @@ override HAS_MOTION: u32 = 1u;
 
 // src/gpu/doctor.rs: DoctorUniforms, which documents the fields
 struct DoctorUniforms {
-    size: vec2<u32>,
+    size: vec2u,
     color_origin: u32,
     depth_origin: u32,
     motion_origin: u32,
     exposure: f32,
     unused_0: u32,
     unused_1: u32,
-    maps: array<vec4<f32>, HYPOTHESES>,
+    maps: array<vec4f, HYPOTHESES>,
 }
 
 @group(0) @binding(0) var<uniform> frame: DoctorUniforms;
@@ -29,13 +29,13 @@ struct DoctorUniforms {
 @group(0) @binding(21) var light_now: texture_2d_array<f32>;
 @group(0) @binding(22) var light_past: texture_2d_array<f32>;
 // First pixel, level of the lattice.
-@group(0) @binding(25) var<storage, read> tiles: array<vec4<u32>>;
+@group(0) @binding(25) var<storage, read> tiles: array<vec4u>;
 @group(0) @binding(26) var<storage, read_write> words: array<u32>;
 
 var<workgroup> sums: array<atomic<u32>, SUMS>;
 
 struct Axis {
-    texels: vec4<u32>,
+    texels: vec4u,
     fraction: f32,
 }
 
@@ -43,7 +43,7 @@ fn axis_at(at: f32, len: u32, level: u32) -> Axis {
     let count = lattice_len(len, level);
     let near = split(lattice_coordinate(at, level), count);
     return Axis(
-        vec4<u32>(
+        vec4u(
             lattice_texel(max(near.whole, 1u) - 1u, level, len),
             lattice_texel(near.whole, level, len),
             lattice_texel(min(near.whole + 1u, count - 1u), level, len),
@@ -53,17 +53,17 @@ fn axis_at(at: f32, len: u32, level: u32) -> Axis {
     );
 }
 
-fn half_size() -> vec2<u32> {
-    return vec2<u32>(level_len(frame.size.x, 1u), level_len(frame.size.y, 1u));
+fn half_size() -> vec2u {
+    return vec2u(level_len(frame.size.x, 1u), level_len(frame.size.y, 1u));
 }
 
 fn row_now(x: Axis, y: u32) -> f32 {
     return spline(
-        vec4<f32>(
-            textureLoad(light_now, vec2<u32>(x.texels.x, y), 0, 0).x,
-            textureLoad(light_now, vec2<u32>(x.texels.y, y), 0, 0).x,
-            textureLoad(light_now, vec2<u32>(x.texels.z, y), 0, 0).x,
-            textureLoad(light_now, vec2<u32>(x.texels.w, y), 0, 0).x,
+        vec4f(
+            textureLoad(light_now, vec2u(x.texels.x, y), 0, 0).x,
+            textureLoad(light_now, vec2u(x.texels.y, y), 0, 0).x,
+            textureLoad(light_now, vec2u(x.texels.z, y), 0, 0).x,
+            textureLoad(light_now, vec2u(x.texels.w, y), 0, 0).x,
         ),
         x.fraction,
     );
@@ -71,29 +71,29 @@ fn row_now(x: Axis, y: u32) -> f32 {
 
 fn row_past(x: Axis, y: u32) -> f32 {
     return spline(
-        vec4<f32>(
-            textureLoad(light_past, vec2<u32>(x.texels.x, y), 0, 0).x,
-            textureLoad(light_past, vec2<u32>(x.texels.y, y), 0, 0).x,
-            textureLoad(light_past, vec2<u32>(x.texels.z, y), 0, 0).x,
-            textureLoad(light_past, vec2<u32>(x.texels.w, y), 0, 0).x,
+        vec4f(
+            textureLoad(light_past, vec2u(x.texels.x, y), 0, 0).x,
+            textureLoad(light_past, vec2u(x.texels.y, y), 0, 0).x,
+            textureLoad(light_past, vec2u(x.texels.z, y), 0, 0).x,
+            textureLoad(light_past, vec2u(x.texels.w, y), 0, 0).x,
         ),
         x.fraction,
     );
 }
 
-fn lookup_now(at: vec2<f32>, level: u32) -> f32 {
+fn lookup_now(at: vec2f, level: u32) -> f32 {
     let x = axis_at(at.x, half_size().x, level);
     let y = axis_at(at.y, half_size().y, level);
     let rows =
-        vec4<f32>(row_now(x, y.texels.x), row_now(x, y.texels.y), row_now(x, y.texels.z), row_now(x, y.texels.w));
+        vec4f(row_now(x, y.texels.x), row_now(x, y.texels.y), row_now(x, y.texels.z), row_now(x, y.texels.w));
     return spline(rows, y.fraction);
 }
 
-fn lookup_past(at: vec2<f32>, level: u32) -> f32 {
+fn lookup_past(at: vec2f, level: u32) -> f32 {
     let x = axis_at(at.x, half_size().x, level);
     let y = axis_at(at.y, half_size().y, level);
     let rows =
-        vec4<f32>(row_past(x, y.texels.x), row_past(x, y.texels.y), row_past(x, y.texels.z), row_past(x, y.texels.w));
+        vec4f(row_past(x, y.texels.x), row_past(x, y.texels.y), row_past(x, y.texels.z), row_past(x, y.texels.w));
     return spline(rows, y.fraction);
 }
 
@@ -102,7 +102,7 @@ fn add(word: u32, count: u32) {
 }
 
 // Compares the frame at a pixel with the previous frame at the position that each hypothesis predicts.
-fn match_sample(px: vec2<u32>, level: u32) {
+fn match_sample(px: vec2u, level: u32) {
     if HAS_MOTION == 0u {
         return;
     }
@@ -110,33 +110,33 @@ fn match_sample(px: vec2<u32>, level: u32) {
     if !(is_finite(given.x) && is_finite(given.y)) {
         return;
     }
-    let stored = vec2<f32>(stored_motion(given.x), stored_motion(given.y));
-    let at = vec2<f32>(px / 2u);
+    let stored = vec2f(stored_motion(given.x), stored_motion(given.y));
+    let at = vec2f(px / 2u);
     let shown = lookup_now(at, level);
     add(MATCHED, 1u);
     for (var h = 0u; h < HYPOTHESES; h++) {
         let map = frame.maps[h];
         let moved = select(stored, stored.yx, map.z > 0.0);
-        let predicted = lookup_past(vec2<f32>(at.x + moved.x * map.x, at.y + moved.y * map.y), level);
+        let predicted = lookup_past(vec2f(at.x + moved.x * map.x, at.y + moved.y * map.y), level);
         add(ERRORS + h, fixed(abs(shown - predicted)));
     }
 }
 
-fn signal_at(px: vec2<u32>, axis: vec2<i32>, offset: i32) -> f32 {
-    let at = clamp(vec2<i32>(px) + axis * offset, vec2<i32>(0), vec2<i32>(frame.size) - 1);
-    let green = textureLoad(color_in, from_origin(vec2<u32>(at), frame.color_origin), 0, 0).y;
+fn signal_at(px: vec2u, axis: vec2i, offset: i32) -> f32 {
+    let at = clamp(vec2i(px) + axis * offset, vec2i(0), vec2i(frame.size) - 1);
+    let green = textureLoad(color_in, from_origin(vec2u(at), frame.color_origin), 0, 0).y;
     return signal(green * frame.exposure);
 }
 
 // Adds the differences of a pixel from its neighbours along both axes.
-fn add_pixel(px: vec2<u32>) {
-    let at = signal_at(px, vec2<i32>(0), 0);
+fn add_pixel(px: vec2u) {
+    let at = signal_at(px, vec2i(0), 0);
     add(LIGHT, fixed(at));
     add(CODES, select(0u, 1u, is_code(at)));
     let green = textureLoad(color_in, from_origin(px, frame.color_origin), 0, 0).y;
     add(BROKEN, select(1u, 0u, is_finite(green)));
     for (var a = 0u; a < 2u; a++) {
-        let axis = select(vec2<i32>(0, 1), vec2<i32>(1, 0), a == 0u);
+        let axis = select(vec2i(0, 1), vec2i(1, 0), a == 0u);
         let along = select(px.y, px.x, a == 0u);
         let before = signal_at(px, axis, -1);
         let after = signal_at(px, axis, 1);
@@ -151,22 +151,22 @@ fn add_pixel(px: vec2<u32>) {
     }
 }
 
-fn kept_depth(px: vec2<u32>) -> u32 {
+fn kept_depth(px: vec2u) -> u32 {
     return kept_bits(textureLoad(depth_in, from_origin(px, frame.depth_origin), 0, 0).x);
 }
 
 // Copies stored depths and motion.
-fn copy_middle(px: vec2<u32>, to: u32) {
+fn copy_middle(px: vec2u, to: u32) {
     let step = DEPTH_STEP_PX;
     for (var i = SUMS; i < WORDS; i++) {
         words[to + i] = 0u;
     }
     if HAS_DEPTH != 0u {
         words[to + DEPTH] = kept_depth(px);
-        words[to + DEPTH + 1u] = kept_depth(px - vec2<u32>(step, 0u));
-        words[to + DEPTH + 2u] = kept_depth(px + vec2<u32>(step, 0u));
-        words[to + DEPTH + 3u] = kept_depth(px - vec2<u32>(0u, step));
-        words[to + DEPTH + 4u] = kept_depth(px + vec2<u32>(0u, step));
+        words[to + DEPTH + 1u] = kept_depth(px - vec2u(step, 0u));
+        words[to + DEPTH + 2u] = kept_depth(px + vec2u(step, 0u));
+        words[to + DEPTH + 3u] = kept_depth(px - vec2u(0u, step));
+        words[to + DEPTH + 4u] = kept_depth(px + vec2u(0u, step));
     }
     if HAS_MOTION != 0u {
         let stored = textureLoad(motion_in, from_origin(px, frame.motion_origin), 0, 0).xy;
@@ -176,13 +176,13 @@ fn copy_middle(px: vec2<u32>, to: u32) {
 }
 
 @compute @workgroup_size(8, 8)
-fn main(@builtin(local_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) index: u32,
-    @builtin(workgroup_id) group: vec3<u32>) {
+fn main(@builtin(local_invocation_id) id: vec3u, @builtin(local_invocation_index) index: u32,
+    @builtin(workgroup_id) group: vec3u) {
     let tile = tiles[group.x];
     let first = tile.xy + 2u * id.xy;
     match_sample(first, tile.z);
     for (var i = 0u; i < 4u; i++) {
-        add_pixel(first + vec2<u32>(i & 1u, i >> 1u));
+        add_pixel(first + vec2u(i & 1u, i >> 1u));
     }
     workgroupBarrier();
     let to = group.x * WORDS;

@@ -14,14 +14,14 @@ override HAS_SPARSE_HISTORY: u32 = 0u;
 
 struct GeometrySample {
     disparity: f32,
-    motion: vec2<f32>,
+    motion: vec2f,
     share: f32,
 }
 
 fn geometry_at(tap: u32, near: Around, lattice: LatticeUniforms, view: u32) -> GeometrySample {
     let right = tap & 1u;
     let below = tap >> 1u;
-    let point = vec2<u32>(near.x.points[right], near.y.points[below]);
+    let point = vec2u(near.x.points[right], near.y.points[below]);
     let texel = texel_of_point(point, lattice);
     let share = point_weight(near.x.fraction, right) * point_weight(near.y.fraction, below);
     return GeometrySample(disparity_at(texel, view), motion_of(px_of_point(point, lattice), texel, view), share);
@@ -29,22 +29,22 @@ fn geometry_at(tap: u32, near: Around, lattice: LatticeUniforms, view: u32) -> G
 
 // Whether history confirms that a pixel shows a sample's surface: history must have the expected disparity at the
 // previous position.
-fn is_confirmed(px: vec2<u32>, view: u32, s: GeometrySample) -> bool {
+fn is_confirmed(px: vec2u, view: u32, s: GeometrySample) -> bool {
     if HAS_SPARSE_HISTORY == 0u || DEPTH_TEST == 0u {
         return false;
     }
     let at = reprojected(px, view, s.motion);
-    let stored = stored_at(vec2<i32>(at.at), view);
+    let stored = stored_at(vec2i(at.at), view);
     let expected = expected_disparity(view, ray_at(px, view), s.disparity);
     return at.verdict == VERDICT_VALID
         && stored.lod >= 0.0
         && same_surface(expected, stored.disparity, TAP_RELATIVE, 0.0);
 }
 
-fn pixel(px: vec2<u32>, view: u32) {
+fn pixel(px: vec2u, view: u32) {
     let lattice = lattice_at(px, view);
     let near = around(px, lattice);
-    var own = GeometrySample(INVALID_DISPARITY, vec2<f32>(0.0), 0.0);
+    var own = GeometrySample(INVALID_DISPARITY, vec2f(0.0), 0.0);
     var best = -1.0;
     let taps = select(0u, 4u, near.any);
     for (var tap = 0u; tap < taps; tap++) {
@@ -55,18 +55,18 @@ fn pixel(px: vec2<u32>, view: u32) {
             own = s;
         }
     }
-    var mean = GeometryMean(0.0, vec2<f32>(0.0), 0.0);
+    var mean = GeometryMean(0.0, vec2f(0.0), 0.0);
     for (var tap = 0u; tap < taps; tap++) {
         let s = geometry_at(tap, near, lattice, view);
         mean = add_geometry(mean, own.disparity, s.disparity, s.motion, s.share);
     }
     let filled = filled_geometry(mean, own.disparity, own.motion);
-    textureStore(depth_out, px, view, vec4<f32>(filled.x, 0.0, 0.0, 0.0));
-    textureStore(motion_out, px, view, vec4<f32>(filled.yz, 0.0, 0.0));
+    textureStore(depth_out, px, view, vec4f(filled.x, 0.0, 0.0, 0.0));
+    textureStore(motion_out, px, view, vec4f(filled.yz, 0.0, 0.0));
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     if id.x < frame.size.x && id.y < frame.size.y {
         pixel(id.xy, frame.first_view + group.z);
     }

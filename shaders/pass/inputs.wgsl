@@ -30,7 +30,7 @@ override VIEW: u32 = 0u;
 
 // src/gpu/uniforms.rs: FrameUniforms, which documents the fields
 struct FrameUniforms {
-    size: vec2<u32>,
+    size: vec2u,
     past_frame: u32,
     frame_low: u32,
     fovea_radius_deg: f32,
@@ -41,7 +41,7 @@ struct FrameUniforms {
     depth_relative: f32,
     depth_slope_px: f32,
     exposure: f32,
-    motion_scale: vec2<f32>,
+    motion_scale: vec2f,
     mid_radius_deg: f32,
     blend_deg: f32,
     lod_mid: f32,
@@ -56,7 +56,7 @@ struct FrameUniforms {
     inverse_exposure: f32,
     largest_shown: f32,
     first_quad: u32,
-    quad_offsets: vec4<u32>,
+    quad_offsets: vec4u,
     views: array<ViewUniforms, 4>,
     cameras: array<CameraUniforms, 4>,
 }
@@ -96,7 +96,7 @@ const COUNTERS: u32 = COUNT_VERDICTS + VERDICT_COUNT;
 var<workgroup> group_counters: array<atomic<u32>, COUNTERS>;
 
 // Texel of an input or output, of number `binding`.
-fn texel_of(px: vec2<u32>, view: u32, binding: u32) -> vec2<u32> {
+fn texel_of(px: vec2u, view: u32, binding: u32) -> vec2u {
     if REGIONS == 0u {
         return px;
     }
@@ -112,21 +112,21 @@ fn layer_of(view: u32) -> u32 {
 }
 
 // Color and alpha of a texel, as the renderer wrote them.
-fn given_at(texel: vec2<u32>, view: u32) -> vec4<f32> {
+fn given_at(texel: vec2u, view: u32) -> vec4f {
     return textureLoad(color_in, texel_of(texel, view, COLOR_IN), layer_of(view), 0);
 }
 
 // The same with the color in this frame's exposure.
-fn color_at(texel: vec2<u32>, view: u32) -> vec4<f32> {
+fn color_at(texel: vec2u, view: u32) -> vec4f {
     let given = given_at(texel, view);
     if EXPOSED == 0u {
         return given;
     }
-    return vec4<f32>(given.xyz * frame.color_exposure, given.w);
+    return vec4f(given.xyz * frame.color_exposure, given.w);
 }
 
 // A color in this frame's exposure, in the unit of the color input.
-fn unexposed(exposed: vec3<f32>) -> vec3<f32> {
+fn unexposed(exposed: vec3f) -> vec3f {
     if EXPOSED == 0u {
         return exposed;
     }
@@ -134,15 +134,15 @@ fn unexposed(exposed: vec3<f32>) -> vec3<f32> {
 }
 
 // The same, clamped to what the output can hold.
-fn delivered(exposed: vec3<f32>) -> vec3<f32> {
+fn delivered(exposed: vec3f) -> vec3f {
     if EXPOSED == 0u {
         return exposed;
     }
-    return clamp(unexposed(exposed), vec3<f32>(-frame.largest_shown), vec3<f32>(frame.largest_shown));
+    return clamp(unexposed(exposed), vec3f(-frame.largest_shown), vec3f(frame.largest_shown));
 }
 
 // Trust mask, not sanitized.
-fn trust_at(px: vec2<u32>, view: u32) -> f32 {
+fn trust_at(px: vec2u, view: u32) -> f32 {
     if HAS_REACTIVE != 0u {
         return 1.0 - textureLoad(reactive_in, texel_of(px, view, REACTIVE_IN), layer_of(view), 0).x;
     }
@@ -150,23 +150,23 @@ fn trust_at(px: vec2<u32>, view: u32) -> f32 {
 }
 
 // Whether the lens shows a pixel.
-fn is_seen(px: vec2<u32>, view: u32) -> bool {
+fn is_seen(px: vec2u, view: u32) -> bool {
     return is_visible(px.x, px.y, frame.views[view].lowest_px, frame.views[view].highest_px);
 }
 
-fn ray_at(px: vec2<u32>, view: u32) -> vec3<f32> {
-    return vec3<f32>(vec2<f32>(px) * frame.views[view].ray_scale + frame.views[view].ray_offset, 1.0);
+fn ray_at(px: vec2u, view: u32) -> vec3f {
+    return vec3f(vec2f(px) * frame.views[view].ray_scale + frame.views[view].ray_offset, 1.0);
 }
 
 // Motion vector of a pixel: previous minus current position in pixels, y down, without jitter, with the camera's
 // motion.
-fn motion_at(px: vec2<u32>, view: u32) -> vec2<f32> {
+fn motion_at(px: vec2u, view: u32) -> vec2f {
     return motion_of(px, px, view);
 }
 
 // Motion vector of the pixel `px`, whose vector and depth lie at `texel`.
-fn motion_of(px: vec2<u32>, texel: vec2<u32>, view: u32) -> vec2<f32> {
-    var own = vec2<f32>(0.0);
+fn motion_of(px: vec2u, texel: vec2u, view: u32) -> vec2f {
+    var own = vec2f(0.0);
     if HAS_MOTION != 0u {
         let given = textureLoad(motion_in, texel_of(texel, view, MOTION_IN), layer_of(view), 0).xy;
         own = given * frame.motion_scale + frame.views[view].motion_offset;
@@ -175,7 +175,7 @@ fn motion_of(px: vec2<u32>, texel: vec2<u32>, view: u32) -> vec2<f32> {
             if !is_missing && CAMERA_MOTION == 1u {
                 return own;
             }
-            own = select(own, vec2<f32>(0.0), is_missing);
+            own = select(own, vec2f(0.0), is_missing);
         }
     }
     if CAMERA_MOTION == 0u {
@@ -193,20 +193,20 @@ fn motion_of(px: vec2<u32>, texel: vec2<u32>, view: u32) -> vec2<f32> {
         camera.sky,
     );
     // An object's own motion ends where the camera would have seen it without moving.
-    let ray = (vec2<f32>(px) + own) * frame.views[view].ray_scale + frame.views[view].ray_offset;
+    let ray = (vec2f(px) + own) * frame.views[view].ray_scale + frame.views[view].ray_offset;
     return own + camera_vector(ray, disparity_at(texel, view), motion);
 }
 
 // Noise of the candidate; valid only if NOISY is set.
-fn noise_at(px: vec2<u32>, view: u32) -> Noise {
+fn noise_at(px: vec2u, view: u32) -> Noise {
     let given = textureLoad(noise_in, texel_of(px, view, NOISE_IN), layer_of(view), 0).xy;
     if EXPOSED == 0u {
         return candidate_noise(given);
     }
-    return candidate_noise(vec2<f32>(given.x * frame.color_exposure, given.y));
+    return candidate_noise(vec2f(given.x * frame.color_exposure, given.y));
 }
 
-fn disparity_at(px: vec2<u32>, view: u32) -> f32 {
+fn disparity_at(px: vec2u, view: u32) -> f32 {
     if HAS_DEPTH == 0u {
         return INVALID_DISPARITY;
     }
@@ -217,18 +217,18 @@ fn disparity_at(px: vec2<u32>, view: u32) -> f32 {
 
 // depth::slope: change of the surface's disparity a pixel; 0 unless `needed`. It is a loop with zero iterations for
 // most pixels: software Vulkan runs the body of an `if` for all pixels, but leaves such a loop at once.
-fn slope_at(px: vec2<u32>, view: u32, center: f32, needed: bool) -> f32 {
+fn slope_at(px: vec2u, view: u32, center: f32, needed: bool) -> f32 {
     var total = 0.0;
     var before = INVALID_DISPARITY;
     let taps = select(0u, 4u, needed);
     for (var i = 0u; i < taps; i++) {
         // Left, right, up, down.
         let ahead = (i & 1u) == 1u;
-        let axis = select(vec2<i32>(0, 1), vec2<i32>(1, 0), i < 2u);
-        let at = vec2<i32>(px) + select(-axis, axis, ahead);
+        let axis = select(vec2i(0, 1), vec2i(1, 0), i < 2u);
+        let at = vec2i(px) + select(-axis, axis, ahead);
         var tap = INVALID_DISPARITY;
-        if all(at >= vec2<i32>(0)) && all(at < vec2<i32>(frame.size)) {
-            tap = disparity_at(vec2<u32>(at), view);
+        if all(at >= vec2i(0)) && all(at < vec2i(frame.size)) {
+            tap = disparity_at(vec2u(at), view);
         }
         if ahead {
             total += one_sided_slope(center, before, tap);
@@ -239,7 +239,7 @@ fn slope_at(px: vec2<u32>, view: u32, center: f32, needed: bool) -> f32 {
 }
 
 // Disparity that the pixel's surface had in the previous frame.
-fn expected_disparity(view: u32, ray: vec3<f32>, disparity_now: f32) -> f32 {
+fn expected_disparity(view: u32, ray: vec3f, disparity_now: f32) -> f32 {
     let row = frame.views[view].depth_row;
     let stretch = row.x * ray.x + row.y * ray.y + row.z;
     return previous_disparity(disparity_now, stretch, row.w);
@@ -247,7 +247,7 @@ fn expected_disparity(view: u32, ray: vec3<f32>, disparity_now: f32) -> f32 {
 
 // Depth test: whether the `stored` disparity belongs to this pixel's surface, which had the disparity `expected`. True
 // without a depth test.
-fn is_same_surface(px: vec2<u32>, view: u32, disparity_now: f32, expected: f32, stored: f32) -> bool {
+fn is_same_surface(px: vec2u, view: u32, disparity_now: f32, expected: f32, stored: f32) -> bool {
     if DEPTH_TEST == 0u {
         return true;
     }
@@ -266,7 +266,7 @@ fn count_if(condition: bool, word: u32) {
 }
 
 // Counts a pixel's unusable inputs, and the verdict on its history.
-fn count_pixel(px: vec2<u32>, view: u32, usable: bool, disparity_now: f32, verdict: u32) {
+fn count_pixel(px: vec2u, view: u32, usable: bool, disparity_now: f32, verdict: u32) {
     count_if(!usable, COUNT_NONFINITE);
     if HAS_DEPTH != 0u {
         count_if(disparity_now == INVALID_DISPARITY, COUNT_BAD_DEPTH);

@@ -5,14 +5,14 @@
 
 // src/uniforms.rs: LatticeUniforms, which documents the fields
 struct LatticeUniforms {
-    low_px: vec2<u32>,
-    high_px: vec2<u32>,
-    first_px: vec2<u32>,
-    points: vec2<u32>,
-    texel: vec2<u32>,
+    low_px: vec2u,
+    high_px: vec2u,
+    first_px: vec2u,
+    points: vec2u,
+    texel: vec2u,
     level: u32,
     texel_level: u32,
-    results: vec2<u32>,
+    results: vec2u,
     unused_0: u32,
     unused_1: u32,
 }
@@ -31,7 +31,7 @@ struct SparseUniforms {
 const LATTICES: u32 = 4u;
 
 // Index of the first lattice that covers a pixel.
-fn lattice_index_at(px: vec2<u32>, view: u32) -> u32 {
+fn lattice_index_at(px: vec2u, view: u32) -> u32 {
     var index = 0u;
     while index < LATTICES - 1u
         && !(all(px >= sparse.views[view][index].low_px) && all(px < sparse.views[view][index].high_px)) {
@@ -41,7 +41,7 @@ fn lattice_index_at(px: vec2<u32>, view: u32) -> u32 {
 }
 
 // The first lattice that covers a pixel.
-fn lattice_at(px: vec2<u32>, view: u32) -> LatticeUniforms {
+fn lattice_at(px: vec2u, view: u32) -> LatticeUniforms {
     return sparse.views[view][lattice_index_at(px, view)];
 }
 
@@ -52,25 +52,25 @@ struct Around {
     any: bool,
 }
 
-fn around(px: vec2<u32>, lattice: LatticeUniforms) -> Around {
+fn around(px: vec2u, lattice: LatticeUniforms) -> Around {
     return Around(
         between(px.x, lattice.first_px.x, lattice.level, lattice.points.x),
         between(px.y, lattice.first_px.y, lattice.level, lattice.points.y),
-        all(lattice.points > vec2<u32>(0u)),
+        all(lattice.points > vec2u(0u)),
     );
 }
 
 // Pixel of a sample.
-fn px_of_point(point: vec2<u32>, lattice: LatticeUniforms) -> vec2<u32> {
-    return lattice.first_px + (point << vec2<u32>(lattice.level));
+fn px_of_point(point: vec2u, lattice: LatticeUniforms) -> vec2u {
+    return lattice.first_px + (point << vec2u(lattice.level));
 }
 
 // Texel of a sample in the view's color input.
-fn texel_of_point(point: vec2<u32>, lattice: LatticeUniforms) -> vec2<u32> {
-    return lattice.texel + (point << vec2<u32>(lattice.texel_level));
+fn texel_of_point(point: vec2u, lattice: LatticeUniforms) -> vec2u {
+    return lattice.texel + (point << vec2u(lattice.texel_level));
 }
 
 // Color, in this frame's exposure, and alpha of sample `point`.
-fn sample_at(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec4<f32> {
+fn sample_at(point: vec2u, lattice: LatticeUniforms, view: u32) -> vec4f {
     return color_at(texel_of_point(point, lattice), view);
 }

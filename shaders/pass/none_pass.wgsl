@@ -2,7 +2,7 @@
 //#use output
 // No method: outputs the sanitized candidate. CPU twin: src/cpu/none_pass.rs. One invocation a pixel; z is the view.
 
-fn pixel(px: vec2<u32>, view: u32) {
+fn pixel(px: vec2u, view: u32) {
     let given = color_at(px, view);
     let candidate = color(given.xyz);
     // The verdict is not a constant, although there is never a past frame. Compilers would compute the debug view's
@@ -15,8 +15,8 @@ fn pixel(px: vec2<u32>, view: u32) {
 
 @compute @workgroup_size(64, 1)
 fn main(
-    @builtin(global_invocation_id) id: vec3<u32>,
-    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) invocation: u32,
 ) {
     if id.x < frame.size.x && id.y < frame.size.y {

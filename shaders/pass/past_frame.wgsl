@@ -12,9 +12,9 @@ fn has_history() -> bool {
 
 // Texel of history that is nearest to the previous position of a pixel's surface, or the verdict that rejects history
 // whatever it holds. CPU twin: Inputs::nearest in src/cpu/inputs.rs.
-fn reprojected(px: vec2<u32>, view: u32, motion: vec2<f32>) -> Reprojection {
+fn reprojected(px: vec2u, view: u32, motion: vec2f) -> Reprojection {
     if !has_history() {
-        return Reprojection(VERDICT_RESET, vec2<u32>(0u));
+        return Reprojection(VERDICT_RESET, vec2u(0u));
     }
     return nearest(px.x, px.y, motion, frame.size);
 }

@@ -11,20 +11,20 @@
 
 // First word of `SparseUniforms` in src/gpu/uniforms.rs: bits of a NaN, which shaders cannot write themselves.
 struct Missing {
-    missing: vec4<u32>,
+    missing: vec4u,
 }
 
-fn pixel(px: vec2<u32>, view: u32) -> vec4<f32> {
+fn pixel(px: vec2u, view: u32) -> vec4f {
     if (mask_at(px, view) & 1u) != 0u {
         return given_at(px, view);
     }
-    let quad = px >> vec2<u32>(1u);
+    let quad = px >> vec2u(1u);
     let around = textureLoad(quad_around, quad, view, 0).xy;
-    var sum = vec4<f32>(0.0);
+    var sum = vec4f(0.0);
     var weight = 0.0;
     for (var i = 0u; i < 4u; i++) {
         let code = code_of(around, i);
-        let other = vec2<u32>(vec2<i32>(quad) + neighbour_offset(code));
+        let other = vec2u(vec2i(quad) + neighbour_offset(code));
         let at = min(clamp(px, 2u * other, 2u * other + 1u), frame.size - 1u);
         let given = color_at(at, view);
         let sampled = color(given.xyz);
@@ -33,19 +33,19 @@ fn pixel(px: vec2<u32>, view: u32) -> vec4<f32> {
             let y = f32(at.y) - f32(px.y);
             let w = 1.0 / max(x * x + y * y, 1.0);
             let alpha = select(1.0, given.w, is_finite(given.w));
-            sum += vec4<f32>(sampled.color, alpha) * w;
+            sum += vec4f(sampled.color, alpha) * w;
             weight += w;
         }
     }
     if weight == 0.0 {
-        return vec4<f32>(bitcast<f32>(sparse.missing.x));
+        return vec4f(bitcast<f32>(sparse.missing.x));
     }
     let mean = sum * (1.0 / weight);
-    return vec4<f32>(unexposed(mean.xyz), mean.w);
+    return vec4f(unexposed(mean.xyz), mean.w);
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     if id.x < frame.size.x && id.y < frame.size.y {
         let view = frame.first_view + group.z;
         textureStore(filled, id.xy, view, pixel(id.xy, view));

@@ -11,24 +11,24 @@ override HAS_SPARSE_HISTORY: u32 = 0u;
 @group(0) @binding(23) var keys_out: texture_storage_2d_array<r32uint, write>;
 
 // Need of a pixel, from the four stored samples around its previous position; negative without history.
-fn need_at(px: vec2<u32>, view: u32) -> f32 {
+fn need_at(px: vec2u, view: u32) -> f32 {
     let motion = motion_at(px, view);
     var is_valid = reprojected(px, view, motion).verdict == VERDICT_VALID;
     if HAS_TRUST != 0u {
         is_valid = is_valid && trust(trust_at(px, view)) > 0.0;
     }
     let codes = tap_codes(expected_disparity(view, ray_at(px, view), disparity_at(px, view)));
-    let at = vec2<f32>(px) + motion;
+    let at = vec2f(px) + motion;
     let first = floor(at);
     var nearest_px2 = 0x1p126;
     var lod = -1.0;
     var samples = ENOUGH_SAMPLES;
-    var lowest = vec3<f32>(MAX_COLOR);
-    var highest = vec3<f32>(0.0);
+    var lowest = vec3f(MAX_COLOR);
+    var highest = vec3f(0.0);
     let taps = select(0u, 4u, is_valid);
     for (var tap = 0u; tap < taps; tap++) {
-        let texel = first + vec2<f32>(vec2<u32>(tap & 1u, tap >> 1u));
-        let words = stored_words(vec2<i32>(texel), view);
+        let texel = first + vec2f(vec2u(tap & 1u, tap >> 1u));
+        let words = stored_words(vec2i(texel), view);
         if !is_empty(words) && (DEPTH_TEST == 0u || has_code(code_word(words), codes)) {
             let stored = unpack_full(words);
             lowest = min(lowest, stored.color);
@@ -50,18 +50,18 @@ fn need_at(px: vec2<u32>, view: u32) -> f32 {
 }
 
 // Whether the lens shows a pixel of a quad.
-fn is_seen_quad(quad: vec2<u32>, view: u32) -> bool {
+fn is_seen_quad(quad: vec2u, view: u32) -> bool {
     var seen = false;
     for (var i = 0u; i < 4u; i++) {
-        let px = 2u * quad + vec2<u32>(i & 1u, i >> 1u);
+        let px = 2u * quad + vec2u(i & 1u, i >> 1u);
         seen = seen || (all(px < frame.size) && is_seen(px, view));
     }
     return seen;
 }
 
 // Whether the even pattern of the frame has a quad.
-fn is_even(quad: vec2<u32>, region_now: u32) -> bool {
-    let steps = vec2<u32>(1u << (u32(frame.lod_mid) - 1u), 1u << (u32(frame.lod_far) - 1u));
+fn is_even(quad: vec2u, region_now: u32) -> bool {
+    let steps = vec2u(1u << (u32(frame.lod_mid) - 1u), 1u << (u32(frame.lod_far) - 1u));
     if region_now == IN_MIDDLE {
         return in_pattern(quad.x, quad.y, steps.x, frame.quad_offsets.xy);
     }
@@ -70,13 +70,13 @@ fn is_even(quad: vec2<u32>, region_now: u32) -> bool {
             && in_turn(quad.x, quad.y, steps.y, frame.frame_low & 1u));
 }
 
-fn block(at: vec2<u32>, view: u32) {
-    var needs = vec4<f32>(0.0);
-    var flags = vec4<u32>(0u);
+fn block(at: vec2u, view: u32) {
+    var needs = vec4f(0.0);
+    var flags = vec4u(0u);
     var even_count = 0u;
     let quads = (frame.size + 1u) / 2u;
     for (var i = 0u; i < 4u; i++) {
-        let quad = 2u * at + vec2<u32>(i & 1u, i >> 1u);
+        let quad = 2u * at + vec2u(i & 1u, i >> 1u);
         if any(quad >= quads) {
             continue;
         }
@@ -89,7 +89,7 @@ fn block(at: vec2<u32>, view: u32) {
             even_count++;
         } else if HAS_SPARSE_HISTORY != 0u && region_now != IN_FOVEA && all(px < frame.size) && is_seen(px, view) {
             let needed = need_at(px, view);
-            let first = vec2<u32>(frame.first_quad & 0xffffu, frame.first_quad >> 16u);
+            let first = vec2u(frame.first_quad & 0xffffu, frame.first_quad >> 16u);
             needs[i] = select(needed * acuity(e_deg), no_history_need(quad.x, quad.y, first), needed < 0.0);
         }
     }
@@ -97,7 +97,7 @@ fn block(at: vec2<u32>, view: u32) {
         atomicAdd(&state.even, even_count);
     }
     for (var i = 0u; i < 4u; i++) {
-        let quad = 2u * at + vec2<u32>(i & 1u, i >> 1u);
+        let quad = 2u * at + vec2u(i & 1u, i >> 1u);
         if any(quad >= quads) {
             continue;
         }
@@ -106,12 +106,12 @@ fn block(at: vec2<u32>, view: u32) {
         if key > 0u {
             atomicAdd(&state.counts[key], 1u);
         }
-        textureStore(keys_out, quad, view, vec4<u32>(key | flags[i], 0u, 0u, 0u));
+        textureStore(keys_out, quad, view, vec4u(key | flags[i], 0u, 0u, 0u));
     }
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u) {
     if all(4u * id.xy < frame.size) {
         block(id.xy, frame.first_view);
     }

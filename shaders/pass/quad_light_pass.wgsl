@@ -14,18 +14,18 @@ override ANTIALIAS: u32 = 0u;
 @group(0) @binding(21) var observed: texture_2d_array<u32>;
 @group(0) @binding(23) var lights_out: texture_storage_2d_array<rgba32uint, write>;
 
-fn observation_at(px: vec2<u32>, view: u32) -> Observation {
+fn observation_at(px: vec2u, view: u32) -> Observation {
     let words = textureLoad(observed, px, view, 0).xy;
     let sampled = color(color_at(px, view).xyz).color;
     return Observation(sampled, unpack_color(words.x), half_value(words.y), half_value(words.y >> 16u));
 }
 
-fn is_alike(own_disparity: f32, px: vec2<u32>, view: u32) -> bool {
+fn is_alike(own_disparity: f32, px: vec2u, view: u32) -> bool {
     return DEPTH_TEST == 0u || same_surface(own_disparity, disparity_at(px, view), LIGHT_RELATIVE, 0.0);
 }
 
 // Whether a pixel of a quad is in the frame and was compared with history.
-fn is_compared(px: vec2<u32>, view: u32) -> bool {
+fn is_compared(px: vec2u, view: u32) -> bool {
     return all(px < frame.size) && half_value(textureLoad(observed, min(px, frame.size - 1u), view, 0).y) >= 0.0;
 }
 
@@ -36,13 +36,13 @@ struct Own {
     disparity: f32,
 }
 
-fn own_of(quad: vec2<u32>, view: u32) -> Own {
+fn own_of(quad: vec2u, view: u32) -> Own {
     var first = 4u;
     for (var left = 4u; left > 0u; left--) {
         first = select(first, left - 1u, is_compared(px_of_quad(quad, left - 1u), view));
     }
     let disparity_now = disparity_at(px_of_quad(quad, first & 3u), view);
-    var sum = Light(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
+    var sum = Light(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
     var confidence = 0.0;
     let taps = select(4u, 0u, first == 4u);
     for (var i = 0u; i < taps; i++) {
@@ -66,11 +66,11 @@ struct Neighbour {
 
 // Pixel `tap` of 36: four of each of the eight quads around, then the quad's own. Its weight is 0 if it shows nothing
 // about the light at the quad.
-fn neighbour_at(tap: u32, quad: vec2<u32>, view: u32, own: Own, around: vec2<u32>, least: f32) -> Neighbour {
+fn neighbour_at(tap: u32, quad: vec2u, view: u32, own: Own, around: vec2u, least: f32) -> Neighbour {
     let code = select(code_of(around, tap >> 2u), NOWHERE, tap >= 32u);
     let offset = neighbour_offset(code);
-    let px = px_of_quad(vec2<u32>(vec2<i32>(quad) + offset), tap & 3u);
-    var near = Neighbour(Observation(vec3<f32>(0.0), vec3<f32>(0.0), -1.0, 0.0), 0.0, 0.0);
+    let px = px_of_quad(vec2u(vec2i(quad) + offset), tap & 3u);
+    var near = Neighbour(Observation(vec3f(0.0), vec3f(0.0), -1.0, 0.0), 0.0, 0.0);
     let is_there = code != NOWHERE || tap >= 32u;
     if !is_there || !is_compared(px, view) || !is_alike(own.disparity, px, view) {
         return near;
@@ -84,7 +84,7 @@ fn neighbour_at(tap: u32, quad: vec2<u32>, view: u32, own: Own, around: vec2<u32
     return near;
 }
 
-fn light(quad: vec2<u32>, view: u32) -> vec4<u32> {
+fn light(quad: vec2u, view: u32) -> vec4u {
     let around = textureLoad(quad_around, quad, view, 0).xy;
     let own = own_of(quad, view);
     var least = 0x1p126;
@@ -93,7 +93,7 @@ fn light(quad: vec2<u32>, view: u32) -> vec4<u32> {
         let offset = neighbour_offset(code);
         least = select(least, min(least, f32(offset.x * offset.x + offset.y * offset.y)), code != NOWHERE);
     }
-    var sum = Light(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
+    var sum = Light(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
     var without = 0.0;
     var capped = 0.0;
     var scatter = 0.0;
@@ -104,7 +104,7 @@ fn light(quad: vec2<u32>, view: u32) -> vec4<u32> {
         let near = neighbour_at(tap, quad, view, own, around, least);
         if near.spatial > 0.0 {
             sum = add_light(sum, near.observation, near.weight, near.spatial);
-            let errors = errors_left(near.observation, vec3<f32>(1.0));
+            let errors = errors_left(near.observation, vec3f(1.0));
             without += errors * near.weight;
             capped += capped_error(near.observation, errors, near.spatial);
             if ANTIALIAS != 0u {
@@ -113,7 +113,7 @@ fn light(quad: vec2<u32>, view: u32) -> vec4<u32> {
             }
         }
     }
-    var lit = QuadLit(vec3<f32>(1.0), 1.0, vec4<f32>(1.0), own.observation.error >= 0.0, vec4<f32>(INVALID_DISPARITY));
+    var lit = QuadLit(vec3f(1.0), 1.0, vec4f(1.0), own.observation.error >= 0.0, vec4f(INVALID_DISPARITY));
     if sum.weight >= 1e-6 {
         if RELIGHT_ON != 0u {
             var error = mean_error(sum);
@@ -122,7 +122,7 @@ fn light(quad: vec2<u32>, view: u32) -> vec4<u32> {
             }
             lit.gains = relight(sum, error);
         }
-        let is_relit = any(lit.gains != vec3<f32>(1.0));
+        let is_relit = any(lit.gains != vec3f(1.0));
         var with_gain = 0.0;
         for (var tap = 0u; tap < select(0u, taps, is_relit); tap++) {
             let near = neighbour_at(tap, quad, view, own, around, least);
@@ -131,7 +131,7 @@ fn light(quad: vec2<u32>, view: u32) -> vec4<u32> {
             }
         }
         if !is_relit || with_gain > without * RELIT_ERRORS {
-            lit.gains = vec3<f32>(1.0);
+            lit.gains = vec3f(1.0);
             with_gain = without;
         }
         lit.fit = fit_around(sum, with_gain, capped);
@@ -149,7 +149,7 @@ fn light(quad: vec2<u32>, view: u32) -> vec4<u32> {
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) invocation: u32) {
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) invocation: u32) {
     let view = frame.first_view;
     let i = invocation_of(group, invocation);
     if i < quad_count() {

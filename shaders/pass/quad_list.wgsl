@@ -2,8 +2,8 @@
 
 // `gpu::Afterimage::quad_list` documents the fields.
 struct QuadList {
-    draw: vec4<u32>,
-    dispatch: vec4<u32>,
+    draw: vec4u,
+    dispatch: vec4u,
     quads: array<u32>,
 }
 

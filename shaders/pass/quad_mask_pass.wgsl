@@ -7,7 +7,7 @@
 
 struct QuadSize {
     // Number of quads along x and y.
-    size: vec2<u32>,
+    size: vec2u,
     view: u32,
     unused: u32,
 }
@@ -18,26 +18,26 @@ struct QuadSize {
 @group(0) @binding(24) var runs_out: texture_storage_2d_array<r32uint, write>;
 
 @compute @workgroup_size(16, 4)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let first = vec2<u32>(RUN_QUADS * id.x, id.y);
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let first = vec2u(RUN_QUADS * id.x, id.y);
     if any(first >= quads.size) {
         return;
     }
     var shaded = 0u;
     for (var i = 0u; i < 2u * RUN_QUADS; i++) {
         // Wraps to a large number before the first column.
-        let quad = vec2<u32>(first.x + i - u32(REACH), first.y);
+        let quad = vec2u(first.x + i - u32(REACH), first.y);
         if quad.x < quads.size.x {
             let word = textureLoad(keys, quad, quads.view, 0).x;
             let is_shaded = (word & 0x40000u) != 0u || (word & 0xffffu) >= state.threshold;
             shaded |= u32(is_shaded) << i;
             if is_own(i) {
                 let region_now = (word >> 16u) & 3u;
-                textureStore(mask_out, quad, quads.view, vec4<u32>(u32(is_shaded) | (region_now << 1u), 0u, 0u, 0u));
+                textureStore(mask_out, quad, quads.view, vec4u(u32(is_shaded) | (region_now << 1u), 0u, 0u, 0u));
             }
         }
     }
-    textureStore(runs_out, id.xy, quads.view, vec4<u32>(shaded, 0u, 0u, 0u));
+    textureStore(runs_out, id.xy, quads.view, vec4u(shaded, 0u, 0u, 0u));
     var left = (shaded >> u32(REACH)) & 0xffffu;
     var place = atomicAdd(&state.listed, countOneBits(left));
     while left != 0u {

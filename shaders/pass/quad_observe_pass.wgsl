@@ -9,8 +9,8 @@
 
 @group(0) @binding(23) var observed_out: texture_storage_2d_array<rg32uint, write>;
 
-fn observe(px: vec2<u32>, view: u32) -> vec2<u32> {
-    let nothing = vec2<u32>(0u, half_bits(-1.0));
+fn observe(px: vec2u, view: u32) -> vec2u {
+    let nothing = vec2u(0u, half_bits(-1.0));
     let level = level_of(mask_at(px, view));
     if level == 0u {
         return nothing;
@@ -31,17 +31,17 @@ fn observe(px: vec2<u32>, view: u32) -> vec2<u32> {
     let contrast = root_difference(history.lowest, history.highest);
     let moved = ANTIALIAS != 0u || has_moved(surface.motion, history.nearest.place_px);
     let error = expected_error(history.lod, contrast, moved);
-    return vec2<u32>(pack_color(history.color), half_bits(error) | (half_bits(lod_confidence(history.lod)) << 16u));
+    return vec2u(pack_color(history.color), half_bits(error) | (half_bits(lod_confidence(history.lod)) << 16u));
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) invocation: u32) {
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) invocation: u32) {
     let view = frame.first_view;
     let i = invocation_of(group, invocation);
     if i < 4u * quad_count() {
         let px = px_of_quad(listed_quad(i >> 2u), i & 3u);
         if all(px < frame.size) {
-            textureStore(observed_out, px, view, vec4<u32>(observe(px, view), 0u, 0u));
+            textureStore(observed_out, px, view, vec4u(observe(px, view), 0u, 0u));
         }
     }
 }

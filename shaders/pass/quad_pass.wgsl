@@ -9,32 +9,32 @@
 const NO_PX2: f32 = 1e30;
 
 // Pixel of a quad that is nearest to another pixel.
-fn nearest_px(quad: vec2<u32>, px: vec2<u32>) -> vec2<u32> {
+fn nearest_px(quad: vec2u, px: vec2u) -> vec2u {
     return min(clamp(px, 2u * quad, 2u * quad + 1u), frame.size - 1u);
 }
 
 // Candidate from the pixels of a shaded quad, or from the nearest pixels of the quads around.
-fn candidate_at(px: vec2<u32>, view: u32, mask_word: u32, disparity_now: f32) -> Candidate {
-    let quad = px >> vec2<u32>(1u);
+fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Candidate {
+    let quad = px >> vec2u(1u);
     let is_shaded = (mask_word & 1u) != 0u;
     let around = textureLoad(quad_around, quad, view, 0).xy;
     let coarsest = f32(level_of(mask_word));
     let codes = codes_between(disparity_now, 1.0f - SAMPLE_RELATIVE, 1.0f / (1.0f - SAMPLE_RELATIVE));
     var candidate = no_candidate();
-    candidate.lowest = vec3<f32>(MAX_HALF);
-    var sum = vec4<f32>(0.0);
+    candidate.lowest = vec3f(MAX_HALF);
+    var sum = vec4f(0.0);
     var weights = 0.0;
-    var gain_sum = vec3<f32>(0.0);
+    var gain_sum = vec3f(0.0);
     var fit_sum = 0.0;
     var valid_sum = 0.0;
     var nearest_px2 = NO_PX2;
-    var own = vec4<f32>(0.0);
+    var own = vec4f(0.0);
     var own_fits = 1.0;
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
     let taps = select(0u, 4u, coarsest > 0.0);
     for (var tap = 0u; tap < taps; tap++) {
         let code = code_of(around, tap);
-        let other = select(vec2<u32>(vec2<i32>(quad) + neighbour_offset(code)), quad, is_shaded);
+        let other = select(vec2u(vec2i(quad) + neighbour_offset(code)), quad, is_shaded);
         let at = select(nearest_px(other, px), px_of_quad(quad, tap), is_shaded);
         let is_there = select(code != NOWHERE, all(at < frame.size), is_shaded);
         let given = color_at(min(at, frame.size - 1u), view);
@@ -51,7 +51,7 @@ fn candidate_at(px: vec2<u32>, view: u32, mask_word: u32, disparity_now: f32) ->
             let weight = select(1.0 / max(px2, 1.0), 1.0, is_own) * select(OTHER_SURFACE, 1.0, same);
             let known = weight * select(BY_NEIGHBOURS, 1.0, lit.is_own);
             let alpha = select(1.0, given.w, is_finite(given.w));
-            sum += vec4<f32>(sampled.color, alpha) * weight;
+            sum += vec4f(sampled.color, alpha) * weight;
             weights += weight;
             gain_sum += lit.gains * known;
             fit_sum += lit.fit * known;
@@ -61,7 +61,7 @@ fn candidate_at(px: vec2<u32>, view: u32, mask_word: u32, disparity_now: f32) ->
             nearest_px2 = select(nearest_px2, min(nearest_px2, px2), same);
             if is_own {
                 candidate.is_own = true;
-                own = vec4<f32>(sampled.color, given.w);
+                own = vec4f(sampled.color, given.w);
                 own_fits = lit.own_fit;
             }
         }
@@ -82,12 +82,12 @@ fn candidate_at(px: vec2<u32>, view: u32, mask_word: u32, disparity_now: f32) ->
 }
 
 // Candidate of a pixel in the fovea.
-fn full_rate_candidate(px: vec2<u32>, view: u32, mask_word: u32) -> Candidate {
+fn full_rate_candidate(px: vec2u, view: u32, mask_word: u32) -> Candidate {
     let given = color_at(px, view);
     let own = color(given.xyz);
     let usable = own.usable && (mask_word & 1u) != 0u;
     var candidate = no_candidate();
-    candidate.color = select(vec3<f32>(0.0), own.color, usable);
+    candidate.color = select(vec3f(0.0), own.color, usable);
     candidate.alpha = select(1.0, given.w, usable);
     candidate.usable = usable;
     candidate.is_own = usable;
@@ -96,11 +96,11 @@ fn full_rate_candidate(px: vec2<u32>, view: u32, mask_word: u32) -> Candidate {
 
 // Sums over the nine pixels around a pixel of the fovea, as far as they are shaded; without any unless `needed`. A
 // variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
-fn samples_near(px: vec2<u32>, view: u32, needed: bool) -> Near {
-    var near = Near(vec3<f32>(0.0), vec3<f32>(0.0), 0.0);
+fn samples_near(px: vec2u, view: u32, needed: bool) -> Near {
+    var near = Near(vec3f(0.0), vec3f(0.0), 0.0);
     let taps = select(0u, 9u, needed);
     for (var tap = 0u; tap < taps; tap++) {
-        let at = clamp(px + vec2<u32>(tap % 3u, tap / 3u), vec2<u32>(1u), frame.size) - 1u;
+        let at = clamp(px + vec2u(tap % 3u, tap / 3u), vec2u(1u), frame.size) - 1u;
         let sampled = color(color_at(at, view).xyz);
         if sampled.usable && (mask_at(at, view) & 1u) != 0u {
             near = add_near(near, sampled.color);
@@ -109,7 +109,7 @@ fn samples_near(px: vec2<u32>, view: u32, needed: bool) -> Near {
     return near;
 }
 
-fn pixel(px: vec2<u32>, view: u32) {
+fn pixel(px: vec2u, view: u32) {
     if !is_seen(px, view) {
         hidden_pixel(px, view);
         return;
@@ -127,8 +127,8 @@ fn pixel(px: vec2<u32>, view: u32) {
 
 @compute @workgroup_size(64, 1)
 fn main(
-    @builtin(global_invocation_id) id: vec3<u32>,
-    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) invocation: u32,
 ) {
     if id.x < frame.size.x && id.y < frame.size.y {

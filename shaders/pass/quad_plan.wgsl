@@ -3,8 +3,8 @@
 
 // `QuadList`, to read.
 struct PlannedList {
-    draw: vec4<u32>,
-    dispatch: vec4<u32>,
+    draw: vec4u,
+    dispatch: vec4u,
     quads: array<u32>,
 }
 
@@ -16,12 +16,12 @@ fn quad_count() -> u32 {
 }
 
 // Quad `i` of the list.
-fn listed_quad(i: u32) -> vec2<u32> {
+fn listed_quad(i: u32) -> vec2u {
     let word = list.quads[i];
-    return vec2<u32>(word & 0xffffu, word >> 16u);
+    return vec2u(word & 0xffffu, word >> 16u);
 }
 
 // Number of an invocation of a dispatch whose size the plan computed.
-fn invocation_of(group: vec3<u32>, invocation: u32) -> u32 {
+fn invocation_of(group: vec3u, invocation: u32) -> u32 {
     return 64u * (group.y * GROUPS_PER_ROW + group.x) + invocation;
 }

@@ -7,8 +7,8 @@ override NEAR: f32 = 0.0;
 
 struct PrimedView {
     // First pixel of the view in the target, and its size.
-    origin: vec2<u32>,
-    size: vec2<u32>,
+    origin: vec2u,
+    size: vec2u,
     view: u32,
 }
 
@@ -16,16 +16,16 @@ struct PrimedView {
 @group(0) @binding(27) var mask: texture_2d_array<u32>;
 
 @vertex
-fn corner(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
-    let at = vec2<f32>(f32(vertex & 1u), f32(vertex >> 1u));
-    return vec4<f32>(4.0 * at - vec2<f32>(1.0), NEAR, 1.0);
+fn corner(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
+    let at = vec2f(f32(vertex & 1u), f32(vertex >> 1u));
+    return vec4f(4.0 * at - vec2f(1.0), NEAR, 1.0);
 }
 
 @fragment
-fn close(@builtin(position) position: vec4<f32>) {
-    let at = vec2<u32>(position.xy) - primed.origin;
+fn close(@builtin(position) position: vec4f) {
+    let at = vec2u(position.xy) - primed.origin;
     // Some devices do not clip single samples at the scissor's edges.
-    if any(at >= primed.size) || (textureLoad(mask, at >> vec2<u32>(1u), primed.view, 0).x & 1u) != 0u {
+    if any(at >= primed.size) || (textureLoad(mask, at >> vec2u(1u), primed.view, 0).x & 1u) != 0u {
         discard;
     }
 }

@@ -7,8 +7,8 @@
 @group(0) @binding(27) var quad_mask: texture_2d_array<u32>;
 @group(0) @binding(28) var quad_around: texture_2d_array<u32>;
 
-fn mask_at(px: vec2<u32>, view: u32) -> u32 {
-    return textureLoad(quad_mask, px >> vec2<u32>(1u), view, 0).x;
+fn mask_at(px: vec2u, view: u32) -> u32 {
+    return textureLoad(quad_mask, px >> vec2u(1u), view, 0).x;
 }
 
 // log2 of the distance of the pattern's quads in pixels, where a pixel lies; 0 in the fovea.
@@ -18,11 +18,11 @@ fn level_of(mask_word: u32) -> u32 {
 }
 
 // Code of neighbour `i` of a quad: words of `quad_around`.
-fn code_of(around: vec2<u32>, i: u32) -> u32 {
+fn code_of(around: vec2u, i: u32) -> u32 {
     return (select(around.x, around.y, i >= 4u) >> (8u * (i & 3u))) & 255u;
 }
 
 // Pixel `i` of a quad.
-fn px_of_quad(quad: vec2<u32>, i: u32) -> vec2<u32> {
-    return 2u * quad + vec2<u32>(i & 1u, i >> 1u);
+fn px_of_quad(quad: vec2u, i: u32) -> vec2u {
+    return 2u * quad + vec2u(i & 1u, i >> 1u);
 }

@@ -7,7 +7,7 @@ const INVOCATIONS: u32 = 64u;
 // Number of keys that an invocation sums. The last invocation's keys have no quads.
 const RUN: u32 = 1u << HASH_BITS;
 
-@group(0) @binding(0) var<uniform> budget_quads: vec4<u32>;
+@group(0) @binding(0) var<uniform> budget_quads: vec4u;
 
 // Number of quads of each invocation's keys.
 var<workgroup> of_run: array<u32, INVOCATIONS>;
@@ -48,6 +48,6 @@ fn main(@builtin(local_invocation_index) run: u32) {
     state.pixel_groups = groups(4u * all);
     state.quad_groups = groups(all);
     // Two triangles a quad, and an invocation a quad.
-    list.draw = vec4<u32>(6u, all, 0u, 0u);
-    list.dispatch = vec4<u32>((all + INVOCATIONS - 1u) / INVOCATIONS, 1u, 1u, all);
+    list.draw = vec4u(6u, all, 0u, 0u);
+    list.dispatch = vec4u((all + INVOCATIONS - 1u) / INVOCATIONS, 1u, 1u, all);
 }

@@ -12,7 +12,7 @@ override HAS_EXTRAS: u32 = 0u;
 @group(0) @binding(20) var next_extras: texture_storage_2d_array<r32uint, write>;
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     if any(id.xy >= resize.size) {
         return;
     }

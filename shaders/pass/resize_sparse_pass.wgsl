@@ -14,7 +14,7 @@ override NOISY: u32 = 0u;
 override MEANS: u32 = 0u;
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     if any(id.xy >= resize.size) {
         return;
     }
@@ -25,11 +25,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     if MEANS != 0u {
         stored.lod = mean.lod;
     }
-    var moved = moved_stored(stored, vec2<f32>(at) - position, 1.0 / resize.ratio, resize.lod_shift);
+    var moved = moved_stored(stored, vec2f(at) - position, 1.0 / resize.ratio, resize.lod_shift);
     if MEANS != 0u {
         moved.lod = stored_lod(Mean(moved.lod, mean.samples));
     }
-    textureStore(next_stored, id.xy, group.z, vec4<u32>(pack_stored(moved), 0u, 0u));
+    textureStore(next_stored, id.xy, group.z, vec4u(pack_stored(moved), 0u, 0u));
     if NOISY != 0u {
         textureStore(next_noise, id.xy, group.z, textureLoad(past_noise, at, group.z, 0));
     }

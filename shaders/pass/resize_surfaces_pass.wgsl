@@ -14,22 +14,22 @@ override HAS_MIPS: u32 = 1u;
 @group(0) @binding(19) var next_mips: texture_storage_2d_array<rgba16float, write>;
 @group(0) @binding(20) var next_noise: texture_storage_2d_array<r32uint, write>;
 
-fn surface_at(texel: vec2<i32>, view: u32) -> Surface {
-    let at = clamp(texel, vec2<i32>(0), vec2<i32>(resize.old_size) - 1);
+fn surface_at(texel: vec2i, view: u32) -> Surface {
+    let at = clamp(texel, vec2i(0), vec2i(resize.old_size) - 1);
     return unpack_surface(textureLoad(past_surfaces, at, view, 0).xy);
 }
 
-fn tap(texel: vec2<i32>, view: u32, codes: vec2<u32>, any_code: bool) -> Tap {
+fn tap(texel: vec2i, view: u32, codes: vec2u, any_code: bool) -> Tap {
     return surface_tap(textureLoad(past_surfaces, texel, view, 0).xy, codes, any_code);
 }
 
 // Resizes a pixel; returns the stored words.
-fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
+fn pixel(px: vec2u, view: u32) -> vec2u {
     let position = old_position_of(px);
     let nearest_at = nearest_to(position);
-    let nearest = surface_at(vec2<i32>(nearest_at), view);
+    let nearest = surface_at(vec2i(nearest_at), view);
     let whole = floor(position);
-    let taps = taps_around(vec2<i32>(whole), position - whole, resize.old_size);
+    let taps = taps_around(vec2i(whole), position - whole, resize.old_size);
     let codes = tap_codes(nearest.disparity);
     let any_code = nearest.disparity < 0.0;
     var gathered = nothing_gathered();
@@ -50,8 +50,8 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
     if nearest.lod >= 0.0 {
         lod = resized_lod(resampled.lod, resize.lod_shift);
     }
-    let words = pack_surface(Surface(min(resampled.sharp, vec3<f32>(MAX_HALF)), lod, nearest.disparity));
-    textureStore(next_surfaces, px, view, vec4<u32>(words, 0u, 0u));
+    let words = pack_surface(Surface(min(resampled.sharp, vec3f(MAX_HALF)), lod, nearest.disparity));
+    textureStore(next_surfaces, px, view, vec4u(words, 0u, 0u));
     if NOISY != 0u {
         textureStore(next_noise, px, view, textureLoad(past_noise, nearest_at, view, 0));
     }
@@ -59,15 +59,15 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     let first = 2u * id.xy;
     if any(first >= resize.size) {
         return;
     }
-    var texels: array<vec4<f32>, 4>;
+    var texels: array<vec4f, 4>;
     for (var i = 0u; i < 4u; i++) {
         // At an odd border the neighbour counts twice.
-        let px = min(first + vec2<u32>(i & 1u, i >> 1u), resize.size - 1u);
+        let px = min(first + vec2u(i & 1u, i >> 1u), resize.size - 1u);
         texels[i] = mip_texel(pixel(px, group.z));
     }
     if HAS_MIPS != 0u {

@@ -10,44 +10,44 @@ override RELIGHT_ON: u32 = 1u;
 
 // Four texels of a level around a position, and the position's fractions between them.
 struct Texels {
-    low: vec2<u32>,
-    high: vec2<u32>,
-    fraction: vec2<f32>,
+    low: vec2u,
+    high: vec2u,
+    fraction: vec2f,
 }
 
-fn texels_around(at: vec2<f32>, level: u32) -> Texels {
-    let size = vec2<u32>(level_len(frame.size.x, level), level_len(frame.size.y, level));
+fn texels_around(at: vec2f, level: u32) -> Texels {
+    let size = vec2u(level_len(frame.size.x, level), level_len(frame.size.y, level));
     let x = split(level_coordinate(at.x, level), size.x);
     let y = split(level_coordinate(at.y, level), size.y);
-    let low = vec2<u32>(x.whole, y.whole);
-    return Texels(low, min(low + 1u, size - 1u), vec2<f32>(x.fraction, y.fraction));
+    let low = vec2u(x.whole, y.whole);
+    return Texels(low, min(low + 1u, size - 1u), vec2f(x.fraction, y.fraction));
 }
 
-fn past_level(at: vec2<f32>, level: u32, view: u32) -> vec3<f32> {
+fn past_level(at: vec2f, level: u32, view: u32) -> vec3f {
     let four = texels_around(at, level);
     return mip_bilinear(
         textureLoad(past_mips, four.low, view, level - 1u),
-        textureLoad(past_mips, vec2<u32>(four.high.x, four.low.y), view, level - 1u),
-        textureLoad(past_mips, vec2<u32>(four.low.x, four.high.y), view, level - 1u),
+        textureLoad(past_mips, vec2u(four.high.x, four.low.y), view, level - 1u),
+        textureLoad(past_mips, vec2u(four.low.x, four.high.y), view, level - 1u),
         textureLoad(past_mips, four.high, view, level - 1u),
         four.fraction,
     );
 }
 
-fn past_texel(x: u32, y: u32, view: u32) -> vec4<f32> {
-    return mip_texel(textureLoad(past_surfaces, min(vec2<u32>(x, y), frame.size - 1u), view, 0).xy);
+fn past_texel(x: u32, y: u32, view: u32) -> vec4f {
+    return mip_texel(textureLoad(past_surfaces, min(vec2u(x, y), frame.size - 1u), view, 0).xy);
 }
 
 // History at the sample position of the block of level of detail `lod` around pixel `px`, low-passed like that sample:
 // the texel of history that corresponds to the texel that the block filter reads.
-fn past_sampled(source: Source, px: vec2<u32>, lod: f32, view: u32) -> vec3<f32> {
+fn past_sampled(source: Source, px: vec2u, lod: f32, view: u32) -> vec3f {
     let level = u32(lod + 0.5);
     let finer = min(block_sample_level(level), frame.mip_levels);
     let texel_px = f32(1u << finer);
     let texel_x = block_sample(px.x >> level, level, frame.size.x);
     let texel_y = block_sample(px.y >> level, level, frame.size.y);
-    let texel = vec2<f32>(f32(texel_x), f32(texel_y));
-    let at = source.previous.at + (((texel + 0.5) * texel_px - 0.5) - vec2<f32>(px));
+    let texel = vec2f(f32(texel_x), f32(texel_y));
+    let at = source.previous.at + (((texel + 0.5) * texel_px - 0.5) - vec2f(px));
     if finer > 0u {
         return past_level(at, finer, view);
     }
@@ -58,19 +58,19 @@ fn past_sampled(source: Source, px: vec2<u32>, lod: f32, view: u32) -> vec3<f32>
         past_texel(x.whole + 1u, y.whole, view),
         past_texel(x.whole, y.whole + 1u, view),
         past_texel(x.whole + 1u, y.whole + 1u, view),
-        vec2<f32>(x.fraction, y.fraction),
+        vec2f(x.fraction, y.fraction),
     );
 }
 
 struct Matching {
-    matched: vec3<f32>,
-    level: vec3<f32>,
-    next_level: vec3<f32>,
+    matched: vec3f,
+    level: vec3f,
+    next_level: vec3f,
 }
 
 // History at a position, at level of detail `lod` and at the whole levels around it. `smooth_color`: history at level
 // 0.
-fn past_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Matching {
+fn past_read(at: vec2f, lod: f32, smooth_color: vec3f, view: u32) -> Matching {
     let last = frame.mip_levels;
     let limited = min(lod, f32(last));
     let whole = floor(limited);
@@ -84,12 +84,12 @@ fn past_read(at: vec2<f32>, lod: f32, smooth_color: vec3<f32>, view: u32) -> Mat
     return Matching(first + (second - first) * fraction, first, second);
 }
 
-fn candidate_level(at: vec2<f32>, level: u32, view: u32) -> vec4<f32> {
+fn candidate_level(at: vec2f, level: u32, view: u32) -> vec4f {
     let four = texels_around(at, level);
     return candidate_bilinear(
         textureLoad(candidate_mips, four.low, view, level - 1u),
-        textureLoad(candidate_mips, vec2<u32>(four.high.x, four.low.y), view, level - 1u),
-        textureLoad(candidate_mips, vec2<u32>(four.low.x, four.high.y), view, level - 1u),
+        textureLoad(candidate_mips, vec2u(four.high.x, four.low.y), view, level - 1u),
+        textureLoad(candidate_mips, vec2u(four.low.x, four.high.y), view, level - 1u),
         textureLoad(candidate_mips, four.high, view, level - 1u),
         four.fraction,
     );
@@ -97,13 +97,13 @@ fn candidate_level(at: vec2<f32>, level: u32, view: u32) -> vec4<f32> {
 
 struct Around {
     // Color and variance at the level of detail.
-    compared: vec4<f32>,
+    compared: vec4f,
     // Color and variance at the next whole level.
-    coarser: vec4<f32>,
+    coarser: vec4f,
 }
 
 // Mean of noisy candidates around a position, at level of detail `lod` of at least 1.
-fn candidates_read(at: vec2<f32>, lod: f32, view: u32) -> Around {
+fn candidates_read(at: vec2f, lod: f32, view: u32) -> Around {
     let last = frame.mip_levels;
     let limited = min(lod, f32(last));
     let whole = floor(limited);
@@ -114,33 +114,33 @@ fn candidates_read(at: vec2<f32>, lod: f32, view: u32) -> Around {
 }
 
 // Candidate at an offset from a pixel; `own` if it is not finite, because a non-finite pixel must not count as black.
-fn candidate_near(px: vec2<u32>, view: u32, own: vec3<f32>, offset: vec2<f32>) -> vec3<f32> {
-    let at = clamp(floor((vec2<f32>(px) + 0.5) + offset), vec2<f32>(0.0), vec2<f32>(frame.size - 1u));
-    let near = color(color_at(vec2<u32>(at), view).xyz);
+fn candidate_near(px: vec2u, view: u32, own: vec3f, offset: vec2f) -> vec3f {
+    let at = clamp(floor((vec2f(px) + 0.5) + offset), vec2f(0.0), vec2f(frame.size - 1u));
+    let near = color(color_at(vec2u(at), view).xyz);
     return select(own, near.color, near.usable);
 }
 
 // Mean of the four candidates at diagonal offsets of 3/4 of a block of level `lod`, times a factor; black unless
 // `needed`, by a loop with zero iterations.
-fn candidates_around(px: vec2<u32>, view: u32, own: vec3<f32>, lod: f32, factor: f32, needed: bool) -> vec3<f32> {
-    var mean = vec3<f32>(0.0);
+fn candidates_around(px: vec2u, view: u32, own: vec3f, lod: f32, factor: f32, needed: bool) -> vec3f {
+    var mean = vec3f(0.0);
     let rounds = select(0u, 1u, needed);
     for (var i = 0u; i < rounds; i++) {
         let radius = 0.75 * exp2(lod);
         mean = mean_of_four(
-            candidate_near(px, view, own, vec2<f32>(-radius, -radius)),
-            candidate_near(px, view, own, vec2<f32>(radius, -radius)),
-            candidate_near(px, view, own, vec2<f32>(-radius, radius)),
-            candidate_near(px, view, own, vec2<f32>(radius, radius)),
+            candidate_near(px, view, own, vec2f(-radius, -radius)),
+            candidate_near(px, view, own, vec2f(radius, -radius)),
+            candidate_near(px, view, own, vec2f(-radius, radius)),
+            candidate_near(px, view, own, vec2f(radius, radius)),
         ) * factor;
     }
     return mean;
 }
 
 fn matched_pixel(
-    px: vec2<u32>,
+    px: vec2u,
     view: u32,
-    candidate: vec3<f32>,
+    candidate: vec3f,
     lod: f32,
     source: Source,
     history: Resampled,
@@ -176,7 +176,7 @@ fn matched_pixel(
     evidence.lod = lod;
     evidence.history = exposed(history.sharp);
     evidence.history_lod = history.lod;
-    evidence.resampled = any(source.fraction != vec2<f32>(0.0)) && !gauss;
+    evidence.resampled = any(source.fraction != vec2f(0.0)) && !gauss;
     evidence.matched = matched;
     evidence.level = whole_level;
     evidence.next_level = next_level;
@@ -184,7 +184,7 @@ fn matched_pixel(
     evidence.predicted = select(predicted, next_level, gauss);
     evidence.trust = source.previous.trust;
     evidence.noise = 0.0;
-    evidence.confidence = vec2<f32>(1.0);
+    evidence.confidence = vec2f(1.0);
     return decide(evidence, params_with(frame.smr_accumulate));
 }
 
@@ -206,9 +206,9 @@ struct Averaged {
 
 // Output color for a noisy candidate, and its noise.
 fn averaged_pixel(
-    px: vec2<u32>,
+    px: vec2u,
     view: u32,
-    candidate: vec3<f32>,
+    candidate: vec3f,
     noise: Noise,
     lod: f32,
     source: Source,
@@ -217,14 +217,14 @@ fn averaged_pixel(
     let past_noise = past_noise_of(source, view);
     let shown = exposed(history.sharp);
     let own = Noise(noise.samples, past_noise.variance);
-    let confidence = vec2<f32>(noise_confidence(past_noise, luma(shown)), noise_confidence(own, luma(shown)));
+    let confidence = vec2f(noise_confidence(past_noise, luma(shown)), noise_confidence(own, luma(shown)));
     let discounted = discount_coarser(past_noise, noise, history.lod - lod);
     let params = params_with(history_share(discounted, noise, frame.smr_accumulate));
     let reuse = reuse_weight(lod, history.lod, params.accumulate, true, confidence);
     if reuse.share == 0.0 {
         return Averaged(Matched(candidate, lod, 0.0, 1.0), noise);
     }
-    let around = candidates_read(vec2<f32>(px), lod + NOISY_LEVELS, view);
+    let around = candidates_read(vec2f(px), lod + NOISY_LEVELS, view);
     let past = past_read(source.previous.at, lod + NOISY_LEVELS, history.smooth_color, view);
     let unit = light_unit(around.compared.xyz, past.matched, frame.exposure);
     let inverse_unit = 1.0 / unit;
@@ -242,7 +242,7 @@ fn averaged_pixel(
     evidence.lod = lod;
     evidence.history = shown;
     evidence.history_lod = history.lod;
-    evidence.resampled = any(source.fraction != vec2<f32>(0.0));
+    evidence.resampled = any(source.fraction != vec2f(0.0));
     evidence.matched = matched;
     evidence.level = past.level * per_stored;
     evidence.next_level = next_level;
@@ -257,7 +257,7 @@ fn averaged_pixel(
 }
 
 // Outputs and stores a pixel; returns the stored words.
-fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
+fn pixel(px: vec2u, view: u32) -> vec2u {
     let given = color_at(px, view);
     let candidate = color(given.xyz);
     let ray = ray_at(px, view);
@@ -289,14 +289,14 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
             result = averaged.result;
             noise = averaged.noise;
         } else if lod > 0.0 {
-            let reuse = reuse_weight(lod, history.lod, frame.smr_accumulate, false, vec2<f32>(1.0));
+            let reuse = reuse_weight(lod, history.lod, frame.smr_accumulate, false, vec2f(1.0));
             if reuse.share > 0.0 {
                 result = matched_pixel(px, view, candidate.color, lod, source, history, reuse.finer);
             }
         }
     }
     // With gains, and with the overshoot of Catmull-Rom, colors may exceed the largest half.
-    result.color = min(result.color, vec3<f32>(MAX_HALF));
+    result.color = min(result.color, vec3f(MAX_HALF));
     count_if(valid && result.share == 0.0, COUNT_REPLACED);
     let sharpness = exp2(-max(result.lod, 0.0));
     write_output(
@@ -311,9 +311,9 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
     let stored_lod = select(MAX_LOD, result.lod, coherent_motion || result.lod < 0.0);
     let words = pack_surface(Surface(result.color, stored_lod, disparity_now));
     if VIEW == 0u {
-        textureStore(next_surfaces, px, view, vec4<u32>(words, 0u, 0u));
+        textureStore(next_surfaces, px, view, vec4u(words, 0u, 0u));
         if NOISY != 0u {
-            textureStore(next_noise, px, view, vec4<u32>(pack_noise(noise), 0u, 0u, 0u));
+            textureStore(next_noise, px, view, vec4u(pack_noise(noise), 0u, 0u, 0u));
         }
     }
     return words;
@@ -321,20 +321,20 @@ fn pixel(px: vec2<u32>, view: u32) -> vec2<u32> {
 
 @compute @workgroup_size(64, 1)
 fn main(
-    @builtin(global_invocation_id) id: vec3<u32>,
-    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) invocation: u32,
 ) {
     let first = 2u * id.xy;
     let view = frame.first_view + group.z;
     if all(first < frame.size) {
-        var words_0 = vec2<u32>(0u);
-        var words_1 = vec2<u32>(0u);
-        var words_2 = vec2<u32>(0u);
-        var words_3 = vec2<u32>(0u);
+        var words_0 = vec2u(0u);
+        var words_1 = vec2u(0u);
+        var words_2 = vec2u(0u);
+        var words_3 = vec2u(0u);
         // A loop, because four copies of the code would take four times as long to compile.
         for (var i = 0u; i < 4u; i++) {
-            let px = first + vec2<u32>(i & 1u, i >> 1u);
+            let px = first + vec2u(i & 1u, i >> 1u);
             // At an odd border the neighbour counts twice.
             let column = select(0u, i & 1u, px.x < frame.size.x);
             let row = select(0u, i >> 1u, px.y < frame.size.y);

@@ -12,18 +12,18 @@ override SAMPLE_DEPTH: u32 = 0u;
 
 @group(0) @binding(15) var past_stored: texture_2d_array<u32>;
 
-fn stored_words(texel: vec2<i32>, view: u32) -> vec2<u32> {
-    return textureLoad(past_stored, clamp(texel, vec2<i32>(0), vec2<i32>(frame.size) - 1), view, 0).xy;
+fn stored_words(texel: vec2i, view: u32) -> vec2u {
+    return textureLoad(past_stored, clamp(texel, vec2i(0), vec2i(frame.size) - 1), view, 0).xy;
 }
 
-fn stored_at(texel: vec2<i32>, view: u32) -> StoredSample {
+fn stored_at(texel: vec2i, view: u32) -> StoredSample {
     return unpack_stored(stored_words(texel, view));
 }
 
 // Disparity and motion of the surface whose history a pixel continues.
 struct PixelSurface {
     disparity: f32,
-    motion: vec2<f32>,
+    motion: vec2f,
     // Disparity to store with the pixel.
     stored_disparity: f32,
     // Disparities of the farthest and the nearest surface that history may show.
@@ -38,7 +38,7 @@ struct PixelSurface {
 
 // The surface whose history a pixel continues: with ANTIALIAS the nearest surface around it if `stands_before` is true,
 // otherwise its own. `level`: of its lattice.
-fn surface_of(px: vec2<u32>, view: u32, level: u32) -> PixelSurface {
+fn surface_of(px: vec2u, view: u32, level: u32) -> PixelSurface {
     let own = disparity_at(px, view);
     let own_motion = motion_at(px, view);
     if ANTIALIAS == 0u || DEPTH_TEST == 0u {
@@ -53,19 +53,19 @@ fn surface_of(px: vec2<u32>, view: u32, level: u32) -> PixelSurface {
     var doubtful = false;
     let place_px = -frame.views[view].jitter_px;
     for (var pair = 0u; pair < 4u; pair++) {
-        var disparities = vec2<f32>(own);
+        var disparities = vec2f(own);
         for (var side = 0u; side < 2u; side++) {
             let tap = select(pair, 8u - pair, side == 1u);
-            let offset = vec2<u32>(tap % 3u, tap / 3u);
-            let texel = clamp(px + offset, vec2<u32>(1u), frame.size) - 1u;
+            let offset = vec2u(tap % 3u, tap / 3u);
+            let texel = clamp(px + offset, vec2u(1u), frame.size) - 1u;
             let near = disparity_at(texel, view);
-            doubtful = doubtful || may_show(own, near, place_px, vec2<f32>(offset) - 1.0);
+            doubtful = doubtful || may_show(own, near, place_px, vec2f(offset) - 1.0);
             let is_farther = near >= 0.0 && near < farthest_disparity;
             nearest_at = select(nearest_at, texel, near > nearest_disparity);
             farthest_at = select(farthest_at, texel, is_farther);
             nearest_disparity = max(near, nearest_disparity);
             farthest_disparity = select(farthest_disparity, near, is_farther);
-            disparities = select(vec2<f32>(disparities.x, near), vec2<f32>(near, disparities.y), side == 0u);
+            disparities = select(vec2f(disparities.x, near), vec2f(near, disparities.y), side == 0u);
         }
         thin = thin || is_thin(own, disparities.x, disparities.y);
         silhouette = silhouette || is_silhouette(own, disparities.x, disparities.y);
@@ -91,12 +91,12 @@ fn surface_of(px: vec2<u32>, view: u32, level: u32) -> PixelSurface {
 struct SparseSource {
     previous: Previous,
     // Codes of these disparities, as `tap_codes` gives them.
-    codes: vec2<u32>,
+    codes: vec2u,
 }
 
-fn sparse_source(px: vec2<u32>, view: u32, surface: PixelSurface) -> SparseSource {
+fn sparse_source(px: vec2u, view: u32, surface: PixelSurface) -> SparseSource {
     let at = reprojected(px, view, surface.motion);
-    let stored = stored_at(vec2<i32>(at.at), view);
+    let stored = stored_at(vec2i(at.at), view);
     var previous = previous_of(px, view, surface.motion, surface.disparity, at, stored.lod, stored.disparity);
     if ANTIALIAS == 0u || !surface.mixes {
         return SparseSource(previous, tap_codes(previous.expected));
@@ -118,7 +118,7 @@ fn may_have_history(previous: Previous) -> bool {
 // History, the texel of the sample to keep, and the number of samples in it.
 struct SparseHistory {
     found: Interpolated,
-    texel: vec2<i32>,
+    texel: vec2i,
     samples: f32,
 }
 
@@ -131,18 +131,18 @@ fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistor
     // The place of a mean may lie anywhere around its texel's centre, so that the eight texels around the nearest one
     // also count.
     var columns = 2u;
-    var first = vec2<i32>(floor(previous.at));
+    var first = vec2i(floor(previous.at));
     var inverse_reach = INVERSE_REACH;
     if ANTIALIAS != 0u {
         columns = 3u;
-        first = vec2<i32>(floor(previous.at + 0.5)) - 1;
+        first = vec2i(floor(previous.at + 0.5)) - 1;
         inverse_reach = INVERSE_MEAN_REACH;
     }
     var nearest_texel = first;
     var samples = 1.0;
     let taps = select(0u, columns * columns, needed);
     for (var tap = 0u; tap < taps; tap++) {
-        let texel = first + vec2<i32>(vec2<u32>(tap % columns, tap / columns));
+        let texel = first + vec2i(vec2u(tap % columns, tap / columns));
         let words = stored_words(texel, view);
         let same = !is_empty(words) && (DEPTH_TEST == 0u || has_code(code_word(words), source.codes));
         let cost = around.cost;
@@ -152,7 +152,7 @@ fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistor
             mean = mean_of(stored.lod);
             stored.lod = mean.lod;
         }
-        around = add_stored(around, stored, vec2<f32>(texel) - previous.at, same, inverse_reach);
+        around = add_stored(around, stored, vec2f(texel) - previous.at, same, inverse_reach);
         nearest_texel = select(nearest_texel, texel, around.cost < cost);
         samples = select(samples, mean.samples, around.cost < cost);
     }
@@ -168,6 +168,6 @@ fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistor
 }
 
 // Whether history has moved since its samples were shaded, by more than the resolution of their stored places.
-fn has_moved(motion: vec2<f32>, place_px: vec2<f32>) -> bool {
+fn has_moved(motion: vec2f, place_px: vec2f) -> bool {
     return max(abs(motion.x), abs(motion.y)) > EXACT_PX || max(abs(place_px.x), abs(place_px.y)) > EXACT_PX;
 }

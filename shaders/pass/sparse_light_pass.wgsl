@@ -18,30 +18,30 @@ struct Neighbour {
     spatial: f32,
 }
 
-fn observation_at(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> Observation {
+fn observation_at(point: vec2u, lattice: LatticeUniforms, view: u32) -> Observation {
     let words = textureLoad(observed, lattice.results + point, view, 0).xy;
     let sampled = color(sample_at(point, lattice, view).xyz).color;
     return Observation(sampled, unpack_color(words.x), half_value(words.y), half_value(words.y >> 16u));
 }
 
-fn disparity_of(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> f32 {
+fn disparity_of(point: vec2u, lattice: LatticeUniforms, view: u32) -> f32 {
     return disparity_at(px_of(point, lattice), view);
 }
 
 // Neighbour `tap` of 3x3. Its weight is 0 if it shows nothing about the light at the sample.
 fn neighbour(
     tap: u32,
-    point: vec2<u32>,
+    point: vec2u,
     lattice: LatticeUniforms,
     view: u32,
     own: Observation,
     own_disparity: f32,
 ) -> Neighbour {
-    let offset = vec2<i32>(vec2<u32>(tap % 3u, tap / 3u)) - 1;
-    let at = vec2<i32>(point) + offset;
+    let offset = vec2i(vec2u(tap % 3u, tap / 3u)) - 1;
+    let at = vec2i(point) + offset;
     let points = lattice.points;
-    let inside = all(at >= vec2<i32>(0)) && all(at < vec2<i32>(points));
-    let other_point = vec2<u32>(clamp(at, vec2<i32>(0), vec2<i32>(points) - 1));
+    let inside = all(at >= vec2i(0)) && all(at < vec2i(points));
+    let other_point = vec2u(clamp(at, vec2i(0), vec2i(points) - 1));
     let other = observation_at(other_point, lattice, view);
     let same = alike(own_disparity, disparity_of(other_point, lattice, view), LIGHT_RELATIVE);
     if !(inside && same && other.error >= 0.0) {
@@ -55,27 +55,27 @@ fn neighbour(
 }
 
 // Fit at the sample's own pixel. A single noisy sample does not show whether history fits.
-fn fit_at_sample(own: Observation, gains: vec3<f32>) -> f32 {
+fn fit_at_sample(own: Observation, gains: vec3f) -> f32 {
     if NOISY != 0u || own.error < 0.0 {
         return 1.0;
     }
     return own_fit(own, gains);
 }
 
-fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
+fn light(point: vec2u, lattice: LatticeUniforms, view: u32) -> vec2u {
     let own = observation_at(point, lattice, view);
     let own_disparity = disparity_of(point, lattice, view);
     var without = 0.0;
     var capped = 0.0;
     var scatter = 0.0;
-    var sum = Light(vec3<f32>(0.0), vec3<f32>(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
+    var sum = Light(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
     let taps = select(0u, 9u, has_history());
     for (var tap = 0u; tap < taps; tap++) {
         let near = neighbour(tap, point, lattice, view, own, own_disparity);
         if near.spatial > 0.0 {
             sum = add_light(sum, near.observation, near.weight, near.spatial);
-            let errors = errors_left(near.observation, vec3<f32>(1.0));
+            let errors = errors_left(near.observation, vec3f(1.0));
             without += errors * near.weight;
             capped += capped_error(near.observation, errors, near.spatial);
             if ANTIALIAS != 0u {
@@ -88,10 +88,10 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
     // A sample without disparity is interpolated only where no other sample is near.
     let own_surface = select(own_disparity, INVALID_DISPARITY, ANTIALIAS != 0u && own.error == DOUBTFUL);
     if sum.weight < 1e-6 {
-        let fit_unlit = fit_at_sample(own, vec3<f32>(1.0));
-        return pack_lit(Lit(vec3<f32>(1.0), 1.0, fit_unlit, is_own, own_surface));
+        let fit_unlit = fit_at_sample(own, vec3f(1.0));
+        return pack_lit(Lit(vec3f(1.0), 1.0, fit_unlit, is_own, own_surface));
     }
-    var gains = vec3<f32>(1.0);
+    var gains = vec3f(1.0);
     if RELIGHT_ON != 0u {
         var error = mean_error(sum);
         if ANTIALIAS != 0u {
@@ -99,7 +99,7 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
         }
         gains = relight(sum, error);
     }
-    let is_relit = any(gains != vec3<f32>(1.0));
+    let is_relit = any(gains != vec3f(1.0));
     var with_gain = 0.0;
     for (var tap = 0u; tap < select(0u, taps, is_relit); tap++) {
         let near = neighbour(tap, point, lattice, view, own, own_disparity);
@@ -108,7 +108,7 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
         }
     }
     if !is_relit || with_gain > without {
-        gains = vec3<f32>(1.0);
+        gains = vec3f(1.0);
         with_gain = without;
     }
     var fit_now = fit_around(sum, with_gain, capped);
@@ -120,11 +120,11 @@ fn light(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     let view = frame.first_view + group.z;
     let lattice = sparse.views[view][frame.lattice];
     if all(id.xy < lattice.points) {
         let words = light(id.xy, lattice, view);
-        textureStore(lights_out, lattice.results + id.xy, view, vec4<u32>(words, 0u, 0u));
+        textureStore(lights_out, lattice.results + id.xy, view, vec4u(words, 0u, 0u));
     }
 }

@@ -9,10 +9,10 @@
 
 @group(0) @binding(23) var observed_out: texture_storage_2d_array<rg32uint, write>;
 
-fn observe(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
+fn observe(point: vec2u, lattice: LatticeUniforms, view: u32) -> vec2u {
     let px = px_of(point, lattice);
     let surface = surface_of(px, view, lattice.level);
-    let nothing = vec2<u32>(0u, half_bits(select(-1.0, DOUBTFUL, surface.is_doubtful)));
+    let nothing = vec2u(0u, half_bits(select(-1.0, DOUBTFUL, surface.is_doubtful)));
     let motion = surface.motion;
     var source = sparse_source(px, view, surface);
     if ANTIALIAS != 0u {
@@ -35,15 +35,15 @@ fn observe(point: vec2<u32>, lattice: LatticeUniforms, view: u32) -> vec2<u32> {
         error += expected_noise(past, noise_at(px, view), luma(history.color));
         confidence = noisy_lod_confidence(history.lod, past, luma(history.color));
     }
-    return vec2<u32>(pack_color(history.color), half_bits(error) | (half_bits(confidence) << 16u));
+    return vec2u(pack_color(history.color), half_bits(error) | (half_bits(confidence) << 16u));
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     let view = frame.first_view + group.z;
     let lattice = sparse.views[view][frame.lattice];
     if all(id.xy < lattice.points) {
         let words = observe(id.xy, lattice, view);
-        textureStore(observed_out, lattice.results + id.xy, view, vec4<u32>(words, 0u, 0u));
+        textureStore(observed_out, lattice.results + id.xy, view, vec4u(words, 0u, 0u));
     }
 }

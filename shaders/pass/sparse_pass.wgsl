@@ -9,40 +9,40 @@
 const NO_PX2: f32 = 1e30;
 
 // Squared distances of a pixel from two others along an axis.
-fn offset_px2(px: u32, others: vec2<u32>) -> vec2<f32> {
-    let offset = f32(px) - vec2<f32>(others);
+fn offset_px2(px: u32, others: vec2u) -> vec2f {
+    let offset = f32(px) - vec2f(others);
     return offset * offset;
 }
 
 // Candidate from the samples around a pixel.
-fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_now: f32) -> Candidate {
+fn candidate_at(px: vec2u, lattice: LatticeUniforms, view: u32, disparity_now: f32) -> Candidate {
     let near = around(px, lattice);
     let is_sample = near.x.fraction == 0.0 && near.y.fraction == 0.0;
     let level = lattice.level;
-    var sum = vec4<f32>(0.0);
+    var sum = vec4f(0.0);
     var weights = 0.0;
-    var gain_sum = vec3<f32>(0.0);
+    var gain_sum = vec3f(0.0);
     var fit_sum = 0.0;
     var valid_sum = 0.0;
-    var lowest = vec3<f32>(MAX_HALF);
-    var highest = vec3<f32>(0.0);
+    var lowest = vec3f(MAX_HALF);
+    var highest = vec3f(0.0);
     var nearest_px2 = NO_PX2;
-    var own = Sanitized(vec3<f32>(0.0), false);
+    var own = Sanitized(vec3f(0.0), false);
     var own_alpha = 1.0;
-    var own_words = vec2<u32>(0u);
+    var own_words = vec2u(0u);
     var noises = NoiseSum(0.0, 0.0, 0.0);
     let codes = codes_between(disparity_now, 1.0f - SAMPLE_RELATIVE, 1.0f / (1.0f - SAMPLE_RELATIVE));
-    let x_px2 = offset_px2(px.x, lattice.first_px.x + (near.x.points << vec2<u32>(level)));
-    let y_px2 = offset_px2(px.y, lattice.first_px.y + (near.y.points << vec2<u32>(level)));
-    let x_weights = vec2<f32>(point_weight(near.x.fraction, 0u), point_weight(near.x.fraction, 1u));
-    let y_weights = vec2<f32>(point_weight(near.y.fraction, 0u), point_weight(near.y.fraction, 1u));
+    let x_px2 = offset_px2(px.x, lattice.first_px.x + (near.x.points << vec2u(level)));
+    let y_px2 = offset_px2(px.y, lattice.first_px.y + (near.y.points << vec2u(level)));
+    let x_weights = vec2f(point_weight(near.x.fraction, 0u), point_weight(near.x.fraction, 1u));
+    let y_weights = vec2f(point_weight(near.y.fraction, 0u), point_weight(near.y.fraction, 1u));
     let taps = select(0u, select(4u, 1u, level == 0u), near.any);
     // The pixel's own sample comes last: after the loop, the values are those of that sample.
     for (var left = taps; left > 0u; left--) {
         let tap = left - 1u;
         let right = (tap & 1u) != 0u;
         let below = tap >= 2u;
-        let point = vec2<u32>(
+        let point = vec2u(
             select(near.x.points.x, near.x.points.y, right),
             select(near.y.points.x, near.y.points.y, below),
         );
@@ -58,7 +58,7 @@ fn candidate_at(px: vec2<u32>, lattice: LatticeUniforms, view: u32, disparity_no
             let share = select(x_weights.x, x_weights.y, right) * select(y_weights.x, y_weights.y, below);
             let weight = max(share, LEAST_SHARE) * select(OTHER_SURFACE, 1.0, same);
             let known = weight * select(BY_NEIGHBOURS, 1.0, lit.is_own);
-            sum += vec4<f32>(sampled.color, select(1.0, given.w, is_finite(given.w))) * weight;
+            sum += vec4f(sampled.color, select(1.0, given.w, is_finite(given.w))) * weight;
             weights += weight;
             gain_sum += lit.gains * known;
             fit_sum += lit.fit * known;
@@ -118,7 +118,7 @@ struct PixelLattices {
     judging: LatticeUniforms,
 }
 
-fn lattices_at(px: vec2<u32>, view: u32) -> PixelLattices {
+fn lattices_at(px: vec2u, view: u32) -> PixelLattices {
     let index = lattice_index_at(px, view);
     let own = sparse.views[view][index];
     if NOISY == 0u {
@@ -126,14 +126,14 @@ fn lattices_at(px: vec2<u32>, view: u32) -> PixelLattices {
     }
     let next = min(index + 1u, LATTICES - 1u);
     let coarser = sparse.views[view][next];
-    if own.level == 0u && next > index && all(coarser.points > vec2<u32>(0u)) {
+    if own.level == 0u && next > index && all(coarser.points > vec2u(0u)) {
         return PixelLattices(own, coarser);
     }
     return PixelLattices(own, own);
 }
 
 // Candidate of a pixel at full rate. `fits`: how well history fits the samples of the next lattice.
-fn full_rate_candidate(px: vec2<u32>, lattice: LatticeUniforms, view: u32, fits: f32) -> Candidate {
+fn full_rate_candidate(px: vec2u, lattice: LatticeUniforms, view: u32, fits: f32) -> Candidate {
     let given = sample_at(px - lattice.first_px, lattice, view);
     let own = color(given.xyz);
     var candidate = no_candidate();
@@ -149,12 +149,12 @@ fn full_rate_candidate(px: vec2<u32>, lattice: LatticeUniforms, view: u32, fits:
 
 // Sums over the nine samples around a pixel of full rate, whose own sample is usable; without samples unless `needed`.
 // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
-fn samples_near(px: vec2<u32>, lattice: LatticeUniforms, view: u32, needed: bool) -> Near {
-    var near = Near(vec3<f32>(0.0), vec3<f32>(0.0), 0.0);
+fn samples_near(px: vec2u, lattice: LatticeUniforms, view: u32, needed: bool) -> Near {
+    var near = Near(vec3f(0.0), vec3f(0.0), 0.0);
     let taps = select(0u, 9u, needed);
     for (var tap = 0u; tap < taps; tap++) {
-        let point = px - lattice.first_px + vec2<u32>(tap % 3u, tap / 3u);
-        let sampled = color(sample_at(clamp(point, vec2<u32>(1u), lattice.points) - 1u, lattice, view).xyz);
+        let point = px - lattice.first_px + vec2u(tap % 3u, tap / 3u);
+        let sampled = color(sample_at(clamp(point, vec2u(1u), lattice.points) - 1u, lattice, view).xyz);
         if sampled.usable {
             near = add_near(near, sampled.color);
         }
@@ -162,7 +162,7 @@ fn samples_near(px: vec2<u32>, lattice: LatticeUniforms, view: u32, needed: bool
     return near;
 }
 
-fn pixel(px: vec2<u32>, view: u32) {
+fn pixel(px: vec2u, view: u32) {
     if !is_seen(px, view) {
         hidden_pixel(px, view);
         return;
@@ -181,8 +181,8 @@ fn pixel(px: vec2<u32>, view: u32) {
 
 @compute @workgroup_size(64, 1)
 fn main(
-    @builtin(global_invocation_id) id: vec3<u32>,
-    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) invocation: u32,
 ) {
     if id.x < frame.size.x && id.y < frame.size.y {

@@ -11,12 +11,12 @@
 
 // Candidate of a pixel, and its gain and fit.
 struct Candidate {
-    color: vec3<f32>,
+    color: vec3f,
     usable: bool,
     lod: f32,
-    lowest: vec3<f32>,
-    highest: vec3<f32>,
-    gains: vec3<f32>,
+    lowest: vec3f,
+    highest: vec3f,
+    gains: vec3f,
     fit: f32,
     alpha: f32,
     noise: Noise,
@@ -27,7 +27,7 @@ struct Candidate {
 // A candidate without samples; the other fields are 0.
 fn no_candidate() -> Candidate {
     var none: Candidate;
-    none.gains = vec3<f32>(1.0);
+    none.gains = vec3f(1.0);
     none.fit = 1.0;
     none.alpha = 1.0;
     none.noise = Noise(1.0, 0.0);
@@ -37,7 +37,7 @@ fn no_candidate() -> Candidate {
 // Result at a pixel that has history and a usable candidate, of jittered frames. `near`: sums over the nine samples
 // around a pixel of full rate.
 fn antialiased(
-    px: vec2<u32>,
+    px: vec2u,
     view: u32,
     level: u32,
     given: Reconstruction,
@@ -60,14 +60,14 @@ fn antialiased(
 }
 
 // Pixels outside the visible area: black, without stored history.
-fn hidden_pixel(px: vec2<u32>, view: u32) {
-    let trace = PixelTrace(VERDICT_RESET, 0.0, 0.0, 0u, 0.0, 1.0, true, vec2<f32>(0.0));
-    write_output(px, view, vec3<f32>(0.0), 1.0, trace);
+fn hidden_pixel(px: vec2u, view: u32) {
+    let trace = PixelTrace(VERDICT_RESET, 0.0, 0.0, 0u, 0.0, 1.0, true, vec2f(0.0));
+    write_output(px, view, vec3f(0.0), 1.0, trace);
     if VIEW == 0u {
-        let empty = pack_stored(StoredSample(vec3<f32>(0.0), -1.0, -1.0, vec2<f32>(0.0)));
-        textureStore(next_stored, px, view, vec4<u32>(empty, 0u, 0u));
+        let empty = pack_stored(StoredSample(vec3f(0.0), -1.0, -1.0, vec2f(0.0)));
+        textureStore(next_stored, px, view, vec4u(empty, 0u, 0u));
         if NOISY != 0u {
-            textureStore(next_noise, px, view, vec4<u32>(pack_noise(Noise(1.0, 0.0)), 0u, 0u, 0u));
+            textureStore(next_noise, px, view, vec4u(pack_noise(Noise(1.0, 0.0)), 0u, 0u, 0u));
         }
     }
 }
@@ -75,7 +75,7 @@ fn hidden_pixel(px: vec2<u32>, view: u32) {
 // Processes a visible pixel. `level`: log2 of the distance of the samples around it; at level 0 it has a sample in
 // every frame. `near`: sums over the nine samples around a pixel of level 0, of jittered frames.
 fn show_pixel(
-    px: vec2<u32>,
+    px: vec2u,
     view: u32,
     level: u32,
     disparity_now: f32,
@@ -95,7 +95,7 @@ fn show_pixel(
 
     var shown = candidate.color;
     let candidate_lod = select(-1.0, candidate.lod, candidate.usable);
-    var next = StoredSample(candidate.color, candidate_lod, surface.stored_disparity, vec2<f32>(0.0));
+    var next = StoredSample(candidate.color, candidate_lod, surface.stored_disparity, vec2f(0.0));
     var samples = 1.0;
     if ANTIALIAS != 0u && candidate.is_own {
         next.place_px = -frame.views[view].jitter_px;
@@ -113,7 +113,7 @@ fn show_pixel(
             inputs.history = history.color;
             inputs.history_lod = history.lod;
             inputs.nearest = history.nearest;
-            inputs.moved = has_moved(vec2<f32>(0.0), history.nearest.place_px);
+            inputs.moved = has_moved(vec2f(0.0), history.nearest.place_px);
             inputs.gains = candidate.gains;
             inputs.fit = candidate.fit;
             inputs.trust = previous.trust;
@@ -146,7 +146,7 @@ fn show_pixel(
         next.disparity = surface.stored_disparity;
     }
     // Means of colors may exceed the largest half.
-    shown = clamp(shown, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));
+    shown = clamp(shown, vec3f(-MAX_HALF), vec3f(MAX_HALF));
     count_if(valid && share == 0.0, COUNT_REPLACED);
     let sharpness = exp2(-max(next.lod, 0.0));
     write_output(
@@ -162,11 +162,11 @@ fn show_pixel(
             // The color is rounded stochastically.
             let draw = unit_draw(bits(px.x, px.y, frame.frame_low, frame.views[view].key));
             let stored = StoredSample(next.color, stored_lod(Mean(next.lod, samples)), next.disparity, next.place_px);
-            words = vec2<u32>(pack_color_by(next.color, draw), pack_stored(stored).y);
+            words = vec2u(pack_color_by(next.color, draw), pack_stored(stored).y);
         }
-        textureStore(next_stored, px, view, vec4<u32>(words, 0u, 0u));
+        textureStore(next_stored, px, view, vec4u(words, 0u, 0u));
         if NOISY != 0u {
-            textureStore(next_noise, px, view, vec4<u32>(pack_noise(noise), 0u, 0u, 0u));
+            textureStore(next_noise, px, view, vec4u(pack_noise(noise), 0u, 0u, 0u));
         }
     }
 }

@@ -3,8 +3,8 @@
 // Samples of a sparse frame, and places of their results. CPU twin: src/cpu/sparse_pass/mod.rs.
 
 // Pixel of a sample.
-fn px_of(point: vec2<u32>, lattice: LatticeUniforms) -> vec2<u32> {
-    return lattice.first_px + vec2<u32>(point.x << lattice.level, point.y << lattice.level);
+fn px_of(point: vec2u, lattice: LatticeUniforms) -> vec2u {
+    return lattice.first_px + vec2u(point.x << lattice.level, point.y << lattice.level);
 }
 
 // Whether two disparities of this frame can belong to one surface.

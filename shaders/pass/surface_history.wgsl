@@ -15,33 +15,33 @@
 // All fields but the verdict are valid only if that is VERDICT_VALID.
 struct Source {
     previous: Previous,
-    texel: vec2<i32>,
-    fraction: vec2<f32>,
+    texel: vec2i,
+    fraction: vec2f,
     nearest: Surface,
 }
 
-fn words_at(texel: vec2<i32>, view: u32) -> vec2<u32> {
-    let at = clamp(texel, vec2<i32>(0), vec2<i32>(frame.size) - 1);
+fn words_at(texel: vec2i, view: u32) -> vec2u {
+    let at = clamp(texel, vec2i(0), vec2i(frame.size) - 1);
     return textureLoad(past_surfaces, at, view, 0).xy;
 }
 
-fn surface_at(texel: vec2<i32>, view: u32) -> Surface {
+fn surface_at(texel: vec2i, view: u32) -> Surface {
     return unpack_surface(words_at(texel, view));
 }
 
 // Previous position of a pixel's surface. At a silhouette the nearest texel may show another surface. The texel with
 // the second largest weight then replaces it. It is always read, because a branch costs more on software Vulkan.
-fn source_of(px: vec2<u32>, view: u32, motion: vec2<f32>, disparity_now: f32) -> Source {
+fn source_of(px: vec2u, view: u32, motion: vec2f, disparity_now: f32) -> Source {
     let at = reprojected(px, view, motion);
-    let words = words_at(vec2<i32>(at.at), view);
+    let words = words_at(vec2i(at.at), view);
     let stored = unpack_surface(words);
     var previous = previous_of(px, view, motion, disparity_now, at, stored.lod, stored.disparity);
     let whole = floor(previous.at);
-    let texel = vec2<i32>(whole);
+    let texel = vec2i(whole);
     let fraction = previous.at - whole;
     let corner = second_corner(fraction);
-    let beside = texel + vec2<i32>(vec2<u32>(corner & 1u, corner >> 1u));
-    let other_at = clamp(beside, vec2<i32>(0), vec2<i32>(frame.size) - 1);
+    let beside = texel + vec2i(vec2u(corner & 1u, corner >> 1u));
+    let other_at = clamp(beside, vec2i(0), vec2i(frame.size) - 1);
     let other_words = words_at(other_at, view);
     let other = unpack_surface(other_words);
     let stands_in = previous.verdict == VERDICT_DISOCCLUDED
@@ -50,7 +50,7 @@ fn source_of(px: vec2<u32>, view: u32, motion: vec2<f32>, disparity_now: f32) ->
         && same_surface(previous.expected, other.disparity, frame.depth_relative, 0.0);
     if stands_in {
         previous.verdict = VERDICT_VALID;
-        previous.nearest_at = vec2<u32>(other_at);
+        previous.nearest_at = vec2u(other_at);
     }
     let chosen = Surface(
         surface_color(select(words, other_words, stands_in)),
@@ -60,7 +60,7 @@ fn source_of(px: vec2<u32>, view: u32, motion: vec2<f32>, disparity_now: f32) ->
     return Source(previous, texel, fraction, chosen);
 }
 
-fn tap(texel: vec2<i32>, view: u32, codes: vec2<u32>) -> Tap {
+fn tap(texel: vec2i, view: u32, codes: vec2u) -> Tap {
     return surface_tap(textureLoad(past_surfaces, texel, view, 0).xy, codes, DEPTH_TEST == 0u);
 }
 
@@ -92,7 +92,7 @@ fn resample(source: Source, view: u32, needed: bool) -> Resampled {
 }
 
 // Stored color scaled to this frame's exposure.
-fn exposed(stored: vec3<f32>) -> vec3<f32> {
+fn exposed(stored: vec3f) -> vec3f {
     return expose(stored, frame.exposure);
 }
 

@@ -6,8 +6,8 @@
 // invocation a pixel; z is the view.
 
 struct Neighbourhood {
-    sum: vec3<f32>,
-    squares: vec3<f32>,
+    sum: vec3f,
+    squares: vec3f,
     past_luma: f32,
 }
 
@@ -15,19 +15,19 @@ struct Neighbourhood {
 // Non-finite pixels count as the centre, whose color is `own`. The loop has a variable count on purpose: Mesa would
 // unroll a constant one and reorder its sums of products.
 fn neighbourhood(
-    px: vec2<u32>,
+    px: vec2u,
     view: u32,
-    own: vec3<f32>,
+    own: vec3f,
     needed: bool,
     source: Source,
     compared: bool,
 ) -> Neighbourhood {
-    var around = Neighbourhood(vec3<f32>(0.0), vec3<f32>(0.0), 0.0);
+    var around = Neighbourhood(vec3f(0.0), vec3f(0.0), 0.0);
     let taps = select(0, 9, needed);
     for (var tap = 0; tap < taps; tap++) {
-        let offset = vec2<i32>(tap % 3, tap / 3) - 1;
-        let at = clamp(vec2<i32>(px) + offset, vec2<i32>(0), vec2<i32>(frame.size) - 1);
-        let near = color(color_at(vec2<u32>(at), view).xyz);
+        let offset = vec2i(tap % 3, tap / 3) - 1;
+        let at = clamp(vec2i(px) + offset, vec2i(0), vec2i(frame.size) - 1);
+        let near = color(color_at(vec2u(at), view).xyz);
         let v = to_ycocg(select(own, near.color, near.usable));
         around.sum += v;
         around.squares += v * v;
@@ -38,7 +38,7 @@ fn neighbourhood(
     return around;
 }
 
-fn pixel(px: vec2<u32>, view: u32) {
+fn pixel(px: vec2u, view: u32) {
     let given = color_at(px, view);
     let candidate = color(given.xyz);
     let disparity_now = disparity_at(px, view);
@@ -72,20 +72,20 @@ fn pixel(px: vec2<u32>, view: u32) {
         }
     }
     // With the overshoot of Catmull-Rom, colors may exceed the largest half.
-    shown = min(shown, vec3<f32>(MAX_HALF));
+    shown = min(shown, vec3f(MAX_HALF));
     write_output(px, view, shown, given.w, PixelTrace(source.previous.verdict, 1.0 - share, 0.0, 0u, share, 1.0, !valid, motion));
     if VIEW != 0u {
         return;
     }
     let lod = select(-1.0, lod_of(confidence), candidate.usable || valid);
     let words = pack_surface(Surface(shown, lod, disparity_now));
-    textureStore(next_surfaces, px, view, vec4<u32>(words, 0u, 0u));
+    textureStore(next_surfaces, px, view, vec4u(words, 0u, 0u));
 }
 
 @compute @workgroup_size(64, 1)
 fn main(
-    @builtin(global_invocation_id) id: vec3<u32>,
-    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) invocation: u32,
 ) {
     if id.x < frame.size.x && id.y < frame.size.y {

@@ -14,77 +14,77 @@ override BY_QUADS: u32 = 0u;
 struct Samples {
     around: SamplesAround,
     // Color and alpha of the nearest sample, as the renderer wrote them.
-    given: vec4<f32>,
+    given: vec4f,
     // The same color, sanitized.
     nearest: Sanitized,
     // Sum of history's lumas at the samples' pixels; 0 if history is not compared.
     past_luma: f32,
 }
 
-fn is_shaded(point: vec2<i32>, view: u32) -> bool {
-    let px = vec2<u32>(clamp(point, vec2<i32>(0), vec2<i32>(frame.size) - 1));
-    return (textureLoad(quad_mask, px >> vec2<u32>(1u), view, 0).x & 1u) != 0u;
+fn is_shaded(point: vec2i, view: u32) -> bool {
+    let px = vec2u(clamp(point, vec2i(0), vec2i(frame.size) - 1));
+    return (textureLoad(quad_mask, px >> vec2u(1u), view, 0).x & 1u) != 0u;
 }
 
-fn sample_near(point: vec2<i32>, lattice: LatticeUniforms, view: u32) -> vec4<f32> {
-    let last = vec2<i32>(lattice.points) - 1;
-    return sample_at(vec2<u32>(clamp(point, vec2<i32>(0), last)), lattice, view);
+fn sample_near(point: vec2i, lattice: LatticeUniforms, view: u32) -> vec4f {
+    let last = vec2i(lattice.points) - 1;
+    return sample_at(vec2u(clamp(point, vec2i(0), last)), lattice, view);
 }
 
 // Nine samples around a pixel, of its lattice. At the lattice's border the last samples repeat at positions beyond it.
 // `kernel`: tail and narrowing. The loop has a variable count on purpose: Mesa would unroll a constant one and reorder
 // its sums of products.
-fn samples(px: vec2<u32>, view: u32, kernel: vec2<f32>, source: Source, compared: bool) -> Samples {
+fn samples(px: vec2u, view: u32, kernel: vec2f, source: Source, compared: bool) -> Samples {
     let lattice = lattice_at(px, view);
     let first = lattice.first_px;
     let level = lattice.level;
-    let middle = vec2<i32>(nearest_point(px.x, first.x, level), nearest_point(px.y, first.y, level));
-    var around = SamplesAround(vec3<f32>(0.0), vec2<f32>(0.0), vec3<f32>(0.0), vec3<f32>(0.0), 0.0);
+    let middle = vec2i(nearest_point(px.x, first.x, level), nearest_point(px.y, first.y, level));
+    var around = SamplesAround(vec3f(0.0), vec2f(0.0), vec3f(0.0), vec3f(0.0), 0.0);
     var past_luma = 0.0;
-    let any = all(lattice.points > vec2<u32>(0u));
-    var given = vec4<f32>(bitcast<f32>(sparse.missing));
+    let any = all(lattice.points > vec2u(0u));
+    var given = vec4f(bitcast<f32>(sparse.missing));
     if any {
         given = sample_near(middle, lattice, view);
     }
     let nearest = color(given.xyz);
     let taps = select(0, 9, any);
     for (var tap = 0; tap < taps; tap++) {
-        let point = middle + vec2<i32>(tap % 3, tap / 3) - 1;
+        let point = middle + vec2i(tap % 3, tap / 3) - 1;
         let sampled = color(sample_near(point, lattice, view).xyz);
         if sampled.usable {
             // A sample shows the point at its pixel minus the jitter.
             let x = point_offset_px(px.x, first.x, level, point.x);
             let y = point_offset_px(px.y, first.y, level, point.y);
-            let offset = vec2<f32>(x, y) - frame.views[view].jitter_px;
+            let offset = vec2f(x, y) - frame.views[view].jitter_px;
             var weights = sample_weights(offset, level, kernel.x, kernel.y);
             // They still tell what is around.
             if BY_QUADS != 0u && !is_shaded(point, view) {
-                weights = vec2<f32>(0.0);
+                weights = vec2f(0.0);
             }
             around = add_around(around, nearest.color, sampled.color, weights);
             if compared {
-                past_luma += luma_beside(source, vec2<i32>(vec2<f32>(x, y)), view);
+                past_luma += luma_beside(source, vec2i(vec2f(x, y)), view);
             }
         }
     }
     return Samples(around, given, nearest, past_luma);
 }
 
-fn pixel(px: vec2<u32>, view: u32) {
+fn pixel(px: vec2u, view: u32) {
     let disparity_now = disparity_at(px, view);
     let motion = motion_at(px, view);
     let source = source_of(px, view, motion, disparity_now);
     let valid = source.previous.verdict == VERDICT_VALID;
 
     let resampled = resample(source, view, valid);
-    var history = vec3<f32>(0.0);
+    var history = vec3f(0.0);
     var confidence = 0.0;
     if valid {
         history = exposed(resampled.sharp);
         confidence = min(confidence_of(resampled.lod), confidence_limit(source.fraction, UPSAMPLED_SPREAD));
     }
     let compared = confidence > SETTLED;
-    let kernel = vec2<f32>(tail(confidence * source.previous.trust), narrowing(confidence));
+    let kernel = vec2f(tail(confidence * source.previous.trust), narrowing(confidence));
     let near = samples(px, view, kernel, source, compared);
     if compared {
         confidence = min(confidence, agreeing(near.around.sum.x, near.around.squares.x, near.past_luma, near.around.count));
@@ -101,7 +101,7 @@ fn pixel(px: vec2<u32>, view: u32) {
         result = Accumulated(near.nearest.color, LEAST_SAMPLE_WEIGHT, 1.0, 1.0);
     }
     // With the overshoot of Catmull-Rom, colors may exceed the largest half.
-    let shown = min(result.color, vec3<f32>(MAX_HALF));
+    let shown = min(result.color, vec3f(MAX_HALF));
     let quality = min(0.5 * result.confidence, 1.0);
     let survival = select(0.0, 1.0 - result.share, valid);
     let traced = PixelTrace(source.previous.verdict, result.share, quality, 0u, survival, result.kept, !valid, motion);
@@ -112,13 +112,13 @@ fn pixel(px: vec2<u32>, view: u32) {
     let is_filled = BY_QUADS != 0u && near.nearest.usable;
     let lod = select(-1.0, lod_of(result.confidence), sampled || valid || is_filled);
     let words = pack_surface(Surface(shown, lod, disparity_now));
-    textureStore(next_surfaces, px, view, vec4<u32>(words, 0u, 0u));
+    textureStore(next_surfaces, px, view, vec4u(words, 0u, 0u));
 }
 
 @compute @workgroup_size(64, 1)
 fn main(
-    @builtin(global_invocation_id) id: vec3<u32>,
-    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) invocation: u32,
 ) {
     if id.x < frame.size.x && id.y < frame.size.y {

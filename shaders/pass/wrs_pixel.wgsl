@@ -34,10 +34,10 @@ struct History {
 }
 
 fn no_history(verdict: u32) -> History {
-    return History(verdict, Past(vec3<f32>(0.0), 0.0, LOWEST), 0u, Reference(vec3<f32>(0.0), NO_LEVEL));
+    return History(verdict, Past(vec3f(0.0), 0.0, LOWEST), 0u, Reference(vec3f(0.0), NO_LEVEL));
 }
 
-fn tap(texel: vec2<i32>, view: u32, codes: vec2<u32>) -> Tap {
+fn tap(texel: vec2i, view: u32, codes: vec2u) -> Tap {
     let words = textureLoad(past_colors, texel, view, 0).xy;
     let stored = unpack_sample(words);
     return Tap(stored.color, 0.0, stored.valid && (DEPTH_TEST == 0u || has_code(words.y, codes)));
@@ -46,12 +46,12 @@ fn tap(texel: vec2<i32>, view: u32, codes: vec2<u32>) -> Tap {
 // Mean of history at a position, by Catmull-Rom weights, in this frame's exposure. At the centre of a pixel it is
 // exactly `nearest_color`.
 fn resampled(
-    at: vec2<f32>,
+    at: vec2f,
     view: u32,
     expected: f32,
-    nearest_color: vec3<f32>,
-    candidate: vec3<f32>,
-) -> vec3<f32> {
+    nearest_color: vec3f,
+    candidate: vec3f,
+) -> vec3f {
     let whole = floor(at);
     let fraction = at - whole;
     let nearest_exposed = expose(nearest_color, frame.exposure);
@@ -59,7 +59,7 @@ fn resampled(
     // Variable counts on purpose: Mesa would unroll a constant one and reorder its sums of products.
     let rounds = select(ROUNDS, 0u, fraction.x == 0.0 && fraction.y == 0.0);
     for (var once = 0u; once < min(rounds, 1u); once++) {
-        let taps = taps_around(vec2<i32>(whole), fraction, frame.size);
+        let taps = taps_around(vec2i(whole), fraction, frame.size);
         let codes = tap_codes(expected);
         var gathered = nothing_gathered();
         for (var round = 0u; round < rounds; round++) {
@@ -81,11 +81,11 @@ fn resampled(
 
 // Reservoir of the pixel's surface in the previous frame and age of its sample, or the reason for its rejection.
 fn history_of(
-    px: vec2<u32>,
+    px: vec2u,
     view: u32,
-    candidate: vec3<f32>,
-    ray: vec3<f32>,
-    motion: vec2<f32>,
+    candidate: vec3f,
+    ray: vec3f,
+    motion: vec2f,
     disparity_now: f32,
 ) -> History {
     let source = reprojected(px, view, motion);
@@ -93,7 +93,7 @@ fn history_of(
         return no_history(source.verdict);
     }
     let colors = textureLoad(past_colors, source.at, view, 0).xy;
-    let stored = unpack(vec3<u32>(colors, textureLoad(past_weights, source.at, view, 0).x));
+    let stored = unpack(vec3u(colors, textureLoad(past_weights, source.at, view, 0).x));
     if stored.w_sum == 0.0 {
         return no_history(VERDICT_EMPTY);
     }
@@ -113,9 +113,9 @@ fn history_of(
     }
     past.color = expose(past.color, frame.exposure);
     if SAMPLER == SAMPLER_A_CHAO_MEAN && HAS_MOTION != 0u {
-        past.color = resampled(vec2<f32>(px) + motion, view, expected, stored.color, candidate);
+        past.color = resampled(vec2f(px) + motion, view, expected, stored.color, candidate);
     }
-    var reference = Reference(vec3<f32>(0.0), NO_LEVEL);
+    var reference = Reference(vec3f(0.0), NO_LEVEL);
     if HAS_REFERENCES != 0u {
         reference = unpack_reference(textureLoad(past_extras, source.at, view, 0).x);
         reference.color = expose(reference.color, frame.exposure);
@@ -125,20 +125,20 @@ fn history_of(
 
 // Pixel of the sample nearest to a pixel, and the weight of its place.
 struct Place {
-    px: vec2<u32>,
+    px: vec2u,
     weight: f32,
 }
 
 // Code of the candidate's level of detail. `sampled`: whether the pixel has a sample of its own. On sparse frames such
 // a candidate is a full-rate one, and all others are interpolated.
-fn level_of(px: vec2<u32>, view: u32, e_deg: f32, sampled: bool) -> u32 {
+fn level_of(px: vec2u, view: u32, e_deg: f32, sampled: bool) -> u32 {
     if FILTER == FILTER_SPARSE {
         return select(NO_LEVEL, 0u, sampled);
     }
     return level_code(candidate_lod(px, view, e_deg));
 }
 
-fn pixel(px: vec2<u32>, view: u32, place: Place) {
+fn pixel(px: vec2u, view: u32, place: Place) {
     let given = color_at(px, view);
     let candidate = color(given.xyz);
     let motion = motion_at(px, view);
@@ -186,16 +186,16 @@ fn pixel(px: vec2<u32>, view: u32, place: Place) {
     if SAMPLER == SAMPLER_A_CHAO_MEAN && decision.w_sum == 0.0 {
         words = EMPTY_WORDS;
     }
-    textureStore(next_colors, px, view, vec4<u32>(words.xy, 0u, 0u));
-    textureStore(next_weights, px, view, vec4<u32>(words.z, 0u, 0u, 0u));
+    textureStore(next_colors, px, view, vec4u(words.xy, 0u, 0u));
+    textureStore(next_weights, px, view, vec4u(words.z, 0u, 0u, 0u));
     if SAMPLER == SAMPLER_A_ES {
-        textureStore(next_extras, px, view, vec4<u32>(bitcast<u32>(decision.log_key), 0u, 0u, 0u));
+        textureStore(next_extras, px, view, vec4u(bitcast<u32>(decision.log_key), 0u, 0u, 0u));
     }
     if HAS_REFERENCES != 0u {
         var reference = history.reference;
         if candidate.usable {
             reference = next_reference(candidate.color, level, decision.take, reference);
         }
-        textureStore(next_extras, px, view, vec4<u32>(pack_reference(reference), 0u, 0u, 0u));
+        textureStore(next_extras, px, view, vec4u(pack_reference(reference), 0u, 0u, 0u));
     }
 }

@@ -4,24 +4,24 @@
 // is the view.
 
 // Place of the sample nearest to a pixel. Without samples in the frame: the pixel itself, with a weight of 1.
-fn place_of(px: vec2<u32>, view: u32) -> Place {
+fn place_of(px: vec2u, view: u32) -> Place {
     let lattice = lattice_at(px, view);
-    if any(lattice.points == vec2<u32>(0u)) {
+    if any(lattice.points == vec2u(0u)) {
         return Place(px, 1.0);
     }
     let first = lattice.first_px;
     let level = lattice.level;
-    let nearest = vec2<i32>(nearest_point(px.x, first.x, level), nearest_point(px.y, first.y, level));
-    let point = clamp(nearest, vec2<i32>(0), vec2<i32>(lattice.points) - 1);
+    let nearest = vec2i(nearest_point(px.x, first.x, level), nearest_point(px.y, first.y, level));
+    let point = clamp(nearest, vec2i(0), vec2i(lattice.points) - 1);
     let x = point_offset_px(px.x, first.x, level, point.x);
     let y = point_offset_px(px.y, first.y, level, point.y);
-    return Place(first + (vec2<u32>(point) << vec2<u32>(level)), place_weight(vec2<f32>(x, y)));
+    return Place(first + (vec2u(point) << vec2u(level)), place_weight(vec2f(x, y)));
 }
 
 @compute @workgroup_size(64, 1)
 fn main(
-    @builtin(global_invocation_id) id: vec3<u32>,
-    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) invocation: u32,
 ) {
     if id.x < frame.size.x && id.y < frame.size.y {

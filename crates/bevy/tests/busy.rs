@@ -48,9 +48,9 @@ struct Waves {
 const SHADER: Handle<Shader> = bevy::asset::uuid_handle!("7be1c7ab-3d8e-4bd8-8a53-0c4c6c1c7f10");
 
 const TEXT: &str = "import bevy_pbr::render::{forward_io::VertexOutput, mesh_view_bindings::globals};
-@group(constants::MATERIAL_BIND_GROUP) @binding(0) var<uniform> color: vec4<f32>;
+@group(constants::MATERIAL_BIND_GROUP) @binding(0) var<uniform> color: vec4f;
 @fragment
-fn fragment(in: VertexOutput) -> @location(0) vec4<f32> {
+fn fragment(in: VertexOutput) -> @location(0) vec4f {
     return vec4(color.rgb * (0.6 + 0.4 * sin(20.0 * in.uv.x + 3.0 * globals.time)), color.a);
 }";
 

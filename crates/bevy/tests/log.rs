@@ -105,9 +105,9 @@ impl Kind {
         format!(
             "// A comment on frag_depth and read_write is none of it.
             @group(3) @binding({binding}) var<storage, {access}> counts: array<u32, 4>;
-            struct Out {{ @location(0) color: vec4<f32>, {output} }}
+            struct Out {{ @location(0) color: vec4f, {output} }}
             @fragment {forced}
-            fn fragment(@builtin(position) position: vec4<f32>, @location(2) uv: vec2<f32>) -> Out {{
+            fn fragment(@builtin(position) position: vec4f, @location(2) uv: vec2f) -> Out {{
                 var out: Out;
                 {write}
                 {depth}

@@ -30,14 +30,14 @@ fn answer(a: f32, b: f32, c: f32) -> u32 {
         case 10u: { return bitcast<u32>(log2(a)); }
         case 11u: { return bitcast<u32>(pow(a, b)); }
         case 12u: { return bitcast<u32>(sin(a)); }
-        case 13u: { return pack2x16float(vec2<f32>(a, 0.0)); }
+        case 13u: { return pack2x16float(vec2f(a, 0.0)); }
         case 14u: { return bitcast<u32>(unpack2x16float(bitcast<u32>(a)).x); }
         default: { return 0u; }
     }
 }
 
 @compute @workgroup_size(64)
-fn ask(@builtin(global_invocation_id) id: vec3<u32>) {
+fn ask(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= arrayLength(&answered) {
         return;
     }

@@ -49,9 +49,9 @@ pub const PARTS: &[Part] = &[
         instead: "colors and gains are not clamped; Catmull-Rom may undershoot",
         methods: HISTORIES,
         replaced: &[
-            ("let limited = clamp(c, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));", "let limited = c;"),
-            ("let c = clamp(linear_color, vec3<f32>(-MAX_HALF), vec3<f32>(MAX_HALF));", "let c = linear_color;"),
-            ("max(g.sharp * (1.0 / weights), vec3<f32>(0.0))", "g.sharp * (1.0 / weights)"),
+            ("let limited = clamp(c, vec3f(-MAX_HALF), vec3f(MAX_HALF));", "let limited = c;"),
+            ("let c = clamp(linear_color, vec3f(-MAX_HALF), vec3f(MAX_HALF));", "let c = linear_color;"),
+            ("max(g.sharp * (1.0 / weights), vec3f(0.0))", "g.sharp * (1.0 / weights)"),
             (
                 "let ratio = clamp((candidate + DARK) / (history + DARK), GAIN_LEAST, GAIN_MOST);",
                 "let ratio = (candidate + DARK) / (history + DARK);",

@@ -3,14 +3,14 @@
 
 struct Scene {
     // Eye and turn around the vertical axis, in radians, of this frame and of the previous one.
-    eye: vec4<f32>,
-    eye_before: vec4<f32>,
+    eye: vec4f,
+    eye_before: vec4f,
     // Size of the full-rate frame, and half of its extent at distance 1.
-    size_px: vec2<f32>,
-    tan: vec2<f32>,
+    size_px: vec2f,
+    tan: vec2f,
     // Texel `atlas_texel + (i, j)` shows the full-rate frame's pixel `first_px + step * (i, j)`.
-    first_px: vec2<f32>,
-    atlas_texel: vec2<f32>,
+    first_px: vec2f,
+    atlas_texel: vec2f,
     step: f32,
 }
 
@@ -20,7 +20,7 @@ const NEAR: f32 = 0.1;
 const FAR: f32 = 1e4;
 const RAYS: u32 = 4u;
 // Direction to the sun: normalize(0.75, 0.42, -0.22).
-const SUN: vec3<f32> = vec3<f32>(0.8453, 0.4734, -0.2480);
+const SUN: vec3f = vec3f(0.8453, 0.4734, -0.2480);
 
 // Lengths in metres.
 const COLUMNS: f32 = 9.0;
@@ -45,38 +45,38 @@ const LAMP: u32 = 16u;
 
 struct Hit {
     t: f32,
-    normal: vec3<f32>,
+    normal: vec3f,
     thing: u32,
 }
 
 struct Targets {
     @builtin(frag_depth) depth: f32,
-    @location(0) color: vec4<f32>,
-    @location(1) motion: vec2<f32>,
+    @location(0) color: vec4f,
+    @location(1) motion: vec2f,
 }
 
 @vertex
-fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
-    return vec4<f32>(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+    return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 
 // Direction through a place of the frame, whose component along the view is 1.
-fn ray_through(px: vec2<f32>) -> vec3<f32> {
-    let at = ((px + 0.5) / scene.size_px * 2.0 - 1.0) * vec2<f32>(1.0, -1.0) * scene.tan;
+fn ray_through(px: vec2f) -> vec3f {
+    let at = ((px + 0.5) / scene.size_px * 2.0 - 1.0) * vec2f(1.0, -1.0) * scene.tan;
     let c = cos(scene.eye.w);
     let s = sin(scene.eye.w);
-    return vec3<f32>(c * at.x - s, at.y, -s * at.x - c);
+    return vec3f(c * at.x - s, at.y, -s * at.x - c);
 }
 
 // Where the previous frame showed what lies in a direction from its eye, in pixels.
-fn previous_px(p: vec3<f32>) -> vec2<f32> {
+fn previous_px(p: vec3f) -> vec2f {
     let c = cos(scene.eye_before.w);
     let s = sin(scene.eye_before.w);
-    let turned = vec3<f32>(c * p.x - s * p.z, p.y, s * p.x + c * p.z);
-    return (turned.xy / (scene.tan * -turned.z) * vec2<f32>(0.5, -0.5) + 0.5) * scene.size_px - 0.5;
+    let turned = vec3f(c * p.x - s * p.z, p.y, s * p.x + c * p.z);
+    return (turned.xy / (scene.tan * -turned.z) * vec2f(0.5, -0.5) + 0.5) * scene.size_px - 0.5;
 }
 
-fn sphere(start: vec3<f32>, d: vec3<f32>, radius: f32) -> f32 {
+fn sphere(start: vec3f, d: vec3f, radius: f32) -> f32 {
     let a = dot(d, d);
     let b = dot(start, d);
     let root = b * b - a * (dot(start, start) - radius * radius);
@@ -85,29 +85,29 @@ fn sphere(start: vec3<f32>, d: vec3<f32>, radius: f32) -> f32 {
 }
 
 // Distances to where a ray enters and leaves a box.
-fn box(start: vec3<f32>, d: vec3<f32>, half: vec3<f32>) -> vec2<f32> {
+fn box(start: vec3f, d: vec3f, half: vec3f) -> vec2f {
     let inverse = 1.0 / d;
     let middle = -start * inverse;
     let reach = abs(inverse) * half;
     let enters = middle - reach;
     let leaves = middle + reach;
-    return vec2<f32>(max(max(enters.x, enters.y), enters.z), min(min(leaves.x, leaves.y), leaves.z));
+    return vec2f(max(max(enters.x, enters.y), enters.z), min(min(leaves.x, leaves.y), leaves.z));
 }
 
 // Distance to a row of columns. Only those are tried that stand where the ray is as far to the side as the row.
-fn columns(start: vec3<f32>, d: vec3<f32>, side: f32) -> f32 {
-    let beside = vec3<f32>(start.x - side * COLUMN_X, start.y - 0.5 * COLUMN_TOP, start.z - 0.5 * (FIRST_Z + LAST_Z));
-    let reach = box(beside, d, vec3<f32>(COLUMN_RADIUS, 0.5 * COLUMN_TOP, 11.0));
+fn columns(start: vec3f, d: vec3f, side: f32) -> f32 {
+    let beside = vec3f(start.x - side * COLUMN_X, start.y - 0.5 * COLUMN_TOP, start.z - 0.5 * (FIRST_Z + LAST_Z));
+    let reach = box(beside, d, vec3f(COLUMN_RADIUS, 0.5 * COLUMN_TOP, 11.0));
     let enters = max(reach.x, 0.0);
     if enters > reach.y {
         return FAR;
     }
-    let ends = (FIRST_Z - (start.z + vec2<f32>(enters, reach.y) * d.z) - 1.0) / COLUMN_STEP;
+    let ends = (FIRST_Z - (start.z + vec2f(enters, reach.y) * d.z) - 1.0) / COLUMN_STEP;
     let away = select(1.0, -1.0, d.z > 0.0);
     let near = select(floor(ends.x + 0.2), ceil(ends.x - 0.2), away > 0.0);
     let a = dot(d.xz, d.xz);
     for (var i = near; away * i <= away * ends.y + 0.2; i += away) {
-        let from_middle = vec2<f32>(beside.x, start.z - FIRST_Z + 1.0 + COLUMN_STEP * i);
+        let from_middle = vec2f(beside.x, start.z - FIRST_Z + 1.0 + COLUMN_STEP * i);
         let b = dot(from_middle, d.xz);
         let root = b * b - a * (dot(from_middle, from_middle) - COLUMN_RADIUS * COLUMN_RADIUS);
         let t = (-b - sqrt(max(root, 0.0))) / a;
@@ -119,43 +119,43 @@ fn columns(start: vec3<f32>, d: vec3<f32>, side: f32) -> f32 {
     return FAR;
 }
 
-fn beam_at(side: f32) -> vec3<f32> {
-    return vec3<f32>(side * COLUMN_X, COLUMN_TOP + 0.25, 0.5 * (FIRST_Z + LAST_Z));
+fn beam_at(side: f32) -> vec3f {
+    return vec3f(side * COLUMN_X, COLUMN_TOP + 0.25, 0.5 * (FIRST_Z + LAST_Z));
 }
 
-const BEAM_HALF: vec3<f32> = vec3<f32>(0.4, 0.25, 11.0);
+const BEAM_HALF: vec3f = vec3f(0.4, 0.25, 11.0);
 
 // Balls on the floor, then lamps in the air: place and radius.
-fn ball_at(i: u32) -> vec4<f32> {
+fn ball_at(i: u32) -> vec4f {
     if i >= BALLS {
-        return vec4<f32>(0.0, 2.75, 4.7 - 5.2 * f32(i - BALLS), 0.13);
+        return vec4f(0.0, 2.75, 4.7 - 5.2 * f32(i - BALLS), 0.13);
     }
     let radius = 0.28 + 0.12 * fract(f32(i) * 0.618);
-    return vec4<f32>(select(-1.45, 1.55, i % 2u == 0u), radius, 3.2 - 2.6 * f32(i), radius);
+    return vec4f(select(-1.45, 1.55, i % 2u == 0u), radius, 3.2 - 2.6 * f32(i), radius);
 }
 
-fn nearest(start: vec3<f32>, d: vec3<f32>) -> Hit {
-    var hit = Hit(FAR, vec3<f32>(0.0), SKY);
+fn nearest(start: vec3f, d: vec3f) -> Hit {
+    var hit = Hit(FAR, vec3f(0.0), SKY);
     let down = -start.y / d.y;
     if down > 1e-3 {
-        hit = Hit(down, vec3<f32>(0.0, 1.0, 0.0), FLOOR);
+        hit = Hit(down, vec3f(0.0, 1.0, 0.0), FLOOR);
     }
     let left = (WALL_X - start.x) / d.x;
     if left > 1e-3 && left < hit.t && start.y + left * d.y < WALL_TOP {
-        hit = Hit(left, vec3<f32>(1.0, 0.0, 0.0), WALL);
+        hit = Hit(left, vec3f(1.0, 0.0, 0.0), WALL);
     }
     for (var side = -1.0; side < 2.0; side += 2.0) {
         let t = columns(start, d, side);
         if t < hit.t {
             let p = start + t * d;
             let along = fract((p.z - FIRST_Z + 1.0) / COLUMN_STEP + 0.5) - 0.5;
-            hit = Hit(t, vec3<f32>(p.x - side * COLUMN_X, 0.0, along * COLUMN_STEP) / COLUMN_RADIUS, COLUMN);
+            hit = Hit(t, vec3f(p.x - side * COLUMN_X, 0.0, along * COLUMN_STEP) / COLUMN_RADIUS, COLUMN);
         }
         let middle = beam_at(side);
         let reach = box(start - middle, d, BEAM_HALF);
         if reach.x < reach.y && reach.x > 1e-3 && reach.x < hit.t {
             let p = (start + reach.x * d - middle) / BEAM_HALF;
-            hit = Hit(reach.x, sign(p) * step(vec3<f32>(0.999), abs(p)), BEAM);
+            hit = Hit(reach.x, sign(p) * step(vec3f(0.999), abs(p)), BEAM);
         }
     }
     for (var i = 0u; i < BALLS + 4u; i++) {
@@ -169,7 +169,7 @@ fn nearest(start: vec3<f32>, d: vec3<f32>) -> Hit {
 }
 
 // Share of the sun that reaches a point.
-fn sunlight(start: vec3<f32>) -> f32 {
+fn sunlight(start: vec3f) -> f32 {
     for (var side = -1.0; side < 2.0; side += 2.0) {
         let reach = box(start - beam_at(side), SUN, BEAM_HALF);
         if (reach.x < reach.y && reach.y > 1e-3) || columns(start, SUN, side) < FAR {
@@ -185,13 +185,13 @@ fn sunlight(start: vec3<f32>) -> f32 {
     return 1.0;
 }
 
-fn sky(d: vec3<f32>) -> vec3<f32> {
+fn sky(d: vec3f) -> vec3f {
     let up = max(d.y, 0.0);
     let glow = max(dot(d, SUN), 0.0);
-    let haze = mix(vec3<f32>(0.95, 0.48, 0.24), vec3<f32>(0.06, 0.15, 0.36), 1.0 - exp(-4.0 * up));
+    let haze = mix(vec3f(0.95, 0.48, 0.24), vec3f(0.06, 0.15, 0.36), 1.0 - exp(-4.0 * up));
     let bands = 0.5 + 0.5 * sin(14.0 * up + 2.0 * sin(3.0 * d.x + 9.0 * up));
-    let cloud = vec3<f32>(0.5, 0.24, 0.2) * bands * bands * exp(-7.0 * up) * smoothstep(0.0, 0.1, up);
-    return haze + cloud + vec3<f32>(1.0, 0.55, 0.22) * (0.5 * pow(glow, 10.0) + 9.0 * smoothstep(0.9988, 0.9992, glow));
+    let cloud = vec3f(0.5, 0.24, 0.2) * bands * bands * exp(-7.0 * up) * smoothstep(0.0, 0.1, up);
+    return haze + cloud + vec3f(1.0, 0.55, 0.22) * (0.5 * pow(glow, 10.0) + 9.0 * smoothstep(0.9988, 0.9992, glow));
 }
 
 // 1 inside an edge, 0 outside, with a ramp of a pixel's width.
@@ -200,48 +200,48 @@ fn inside(distance: f32, width: f32) -> f32 {
 }
 
 // Tiles with eight-pointed stars; `width`: a pixel's extent on them. They become their mean where they are finer.
-fn tiles(at: vec2<f32>, width: f32, star: vec3<f32>, ground: vec3<f32>) -> vec3<f32> {
+fn tiles(at: vec2f, width: f32, star: vec3f, ground: vec3f) -> vec3f {
     let cell = floor(at);
     let p = abs(fract(at) - 0.5);
     let points = min(max(p.x, p.y), (p.x + p.y) * 0.7071);
-    let shade = 0.75 + 0.5 * fract(sin(dot(cell, vec2<f32>(12.99, 78.23))) * 437.5);
+    let shade = 0.75 + 0.5 * fract(sin(dot(cell, vec2f(12.99, 78.23))) * 437.5);
     var color = mix(ground, star * shade, inside(points - 0.3, width));
-    color = mix(color, vec3<f32>(0.9, 0.82, 0.62), inside(abs(points - 0.3) - 0.022, width));
-    color = mix(color, vec3<f32>(0.85, 0.45, 0.16), inside(points - 0.11, width));
-    color = mix(color, vec3<f32>(0.25, 0.2, 0.17), inside(0.485 - max(p.x, p.y), width));
+    color = mix(color, vec3f(0.9, 0.82, 0.62), inside(abs(points - 0.3) - 0.022, width));
+    color = mix(color, vec3f(0.85, 0.45, 0.16), inside(points - 0.11, width));
+    color = mix(color, vec3f(0.25, 0.2, 0.17), inside(0.485 - max(p.x, p.y), width));
     return mix(color, 0.5 * (star + ground), smoothstep(0.25, 0.9, width));
 }
 
 // Color of a point but for its reflection, and the share of that. `width`: a pixel's extent at distance 1.
-fn surface(p: vec3<f32>, d: vec3<f32>, hit: Hit, width: f32) -> vec4<f32> {
+fn surface(p: vec3f, d: vec3f, hit: Hit, width: f32) -> vec4f {
     let extent = width * hit.t / max(abs(dot(hit.normal, normalize(d))), 0.05);
     var normal = hit.normal;
-    var albedo = vec3<f32>(0.74, 0.66, 0.54);
+    var albedo = vec3f(0.74, 0.66, 0.54);
     var mirror = 0.0;
     if hit.thing == LAMP {
-        return vec4<f32>(2.2, 1.5, 0.7, 0.0);
+        return vec4f(2.2, 1.5, 0.7, 0.0);
     } else if hit.thing == FLOOR && p.x > SHORE_X {
-        albedo = vec3<f32>(0.02, 0.1, 0.13);
+        albedo = vec3f(0.02, 0.1, 0.13);
         mirror = 0.75;
     } else if hit.thing == FLOOR {
-        albedo = tiles(p.xz * 1.25, extent * 1.25, vec3<f32>(0.05, 0.3, 0.36), vec3<f32>(0.7, 0.6, 0.46));
+        albedo = tiles(p.xz * 1.25, extent * 1.25, vec3f(0.05, 0.3, 0.36), vec3f(0.7, 0.6, 0.46));
         mirror = 0.2;
     } else if hit.thing == WALL {
-        let dado = tiles(p.zy * 2.5, extent * 2.5, vec3<f32>(0.1, 0.22, 0.5), vec3<f32>(0.72, 0.68, 0.58));
+        let dado = tiles(p.zy * 2.5, extent * 2.5, vec3f(0.1, 0.22, 0.5), vec3f(0.72, 0.68, 0.58));
         let courses = inside(abs(fract(p.y * 2.0) - 0.5) - 0.485, 2.0 * extent);
-        albedo = mix(vec3<f32>(0.74, 0.5, 0.36) * (0.75 + 0.25 * courses), dado, inside(p.y - 1.6, extent));
+        albedo = mix(vec3f(0.74, 0.5, 0.36) * (0.75 + 0.25 * courses), dado, inside(p.y - 1.6, extent));
     } else if hit.thing == COLUMN {
         let shown = 1.0 - smoothstep(0.02, 0.06, extent);
         let flute = cos(22.0 * atan2(normal.z, normal.x)) * shown;
-        normal = normalize(normal + 0.3 * flute * vec3<f32>(-normal.z, 0.0, normal.x));
+        normal = normalize(normal + 0.3 * flute * vec3f(-normal.z, 0.0, normal.x));
         let ring = inside(0.16 - abs(p.y - 0.5 * COLUMN_TOP) + 0.5 * COLUMN_TOP - 0.32, extent);
-        albedo = mix(vec3<f32>(0.82, 0.76, 0.66), vec3<f32>(0.62, 0.3, 0.18), ring);
+        albedo = mix(vec3f(0.82, 0.76, 0.66), vec3f(0.62, 0.3, 0.18), ring);
     } else if hit.thing == BEAM {
-        let frieze = tiles(p.zy * 4.0, extent * 4.0, vec3<f32>(0.5, 0.14, 0.1), vec3<f32>(0.76, 0.66, 0.5));
+        let frieze = tiles(p.zy * 4.0, extent * 4.0, vec3f(0.5, 0.14, 0.1), vec3f(0.76, 0.66, 0.5));
         albedo = mix(albedo, frieze, abs(normal.x));
     } else if hit.thing >= BALL {
         let n = f32(hit.thing - BALL);
-        albedo = 0.45 + 0.4 * cos(6.283 * (0.31 * n + vec3<f32>(0.0, 0.33, 0.67)));
+        albedo = 0.45 + 0.4 * cos(6.283 * (0.31 * n + vec3f(0.0, 0.33, 0.67)));
         mirror = 0.3;
     }
     var sun = max(dot(normal, SUN), 0.0);
@@ -250,16 +250,16 @@ fn surface(p: vec3<f32>, d: vec3<f32>, hit: Hit, width: f32) -> vec4<f32> {
     }
     // Corners get less of the sky: at the feet of columns and under beams.
     let open = select(1.0, 0.55 + 0.45 * smoothstep(0.0, 0.9, p.y), hit.thing != FLOOR);
-    let ambient = mix(vec3<f32>(0.2, 0.12, 0.08), vec3<f32>(0.13, 0.17, 0.27), 0.5 + 0.5 * normal.y) * open;
+    let ambient = mix(vec3f(0.2, 0.12, 0.08), vec3f(0.13, 0.17, 0.27), 0.5 + 0.5 * normal.y) * open;
     let grazing = 1.0 - abs(dot(normalize(d), normal));
-    return vec4<f32>(albedo * (sun * vec3<f32>(2.3, 1.35, 0.62) + ambient), mirror * (0.25 + 0.75 * pow(grazing, 3.0)));
+    return vec4f(albedo * (sun * vec3f(2.3, 1.35, 0.62) + ambient), mirror * (0.25 + 0.75 * pow(grazing, 3.0)));
 }
 
-fn hazed(color: vec3<f32>, d: vec3<f32>, t: f32) -> vec3<f32> {
-    return mix(color, sky(normalize(vec3<f32>(d.x, 0.02, d.z))), 1.0 - exp(-0.011 * t));
+fn hazed(color: vec3f, d: vec3f, t: f32) -> vec3f {
+    return mix(color, sky(normalize(vec3f(d.x, 0.02, d.z))), 1.0 - exp(-0.011 * t));
 }
 
-fn seen(d: vec3<f32>, width: f32) -> vec3<f32> {
+fn seen(d: vec3f, width: f32) -> vec3f {
     let start = scene.eye.xyz;
     let hit = nearest(start, d);
     if hit.thing == SKY {
@@ -275,20 +275,20 @@ fn seen(d: vec3<f32>, width: f32) -> vec3<f32> {
             let far = Hit(other.t + hit.t, other.normal, other.thing);
             reflection = surface(p + other.t * mirrored, mirrored, far, width).rgb;
         }
-        color = vec4<f32>(mix(color.rgb, reflection, color.a), 0.0);
+        color = vec4f(mix(color.rgb, reflection, color.a), 0.0);
     }
     return hazed(color.rgb, normalize(d), hit.t);
 }
 
 @fragment
-fn fragment(@builtin(position) position: vec4<f32>) -> Targets {
+fn fragment(@builtin(position) position: vec4f) -> Targets {
     let px = scene.first_px + scene.step * (position.xy - 0.5 - scene.atlas_texel);
     let width = 2.0 * scene.tan.x / scene.size_px.x;
-    var sum = vec3<f32>(0.0);
+    var sum = vec3f(0.0);
     for (var i = 0u; i < RAYS; i++) {
         // A grid of 2x2 that is turned, so that upright and level edges have four steps, too.
-        let grid = vec2<f32>(f32(i & 1u), f32(i >> 1u)) - 0.5;
-        let color = seen(ray_through(px + vec2<f32>(0.5 * grid.x + 0.25 * grid.y, 0.5 * grid.y - 0.25 * grid.x)), width);
+        let grid = vec2f(f32(i & 1u), f32(i >> 1u)) - 0.5;
+        let color = seen(ray_through(px + vec2f(0.5 * grid.x + 0.25 * grid.y, 0.5 * grid.y - 0.25 * grid.x)), width);
         // Tones before the mean, as the eye sees edges: a filmic curve.
         sum += color * (2.51 * color + 0.03) / (color * (2.43 * color + 0.59) + 0.14);
     }
@@ -299,5 +299,5 @@ fn fragment(@builtin(position) position: vec4<f32>) -> Targets {
         moved = scene.eye.xyz + hit.t * d - scene.eye_before.xyz;
     }
     let depth = select(NEAR / hit.t, 0.0, hit.thing == SKY);
-    return Targets(depth, vec4<f32>(sum / f32(RAYS), 1.0), previous_px(moved) - px);
+    return Targets(depth, vec4f(sum / f32(RAYS), 1.0), previous_px(moved) - px);
 }

@@ -30,10 +30,10 @@ fn texture(device: &Device, [w, h]: [u32; 2], format: TextureFormat, samples: u3
 
 /// A pipeline that draws white over the whole target, at the depth of the prepass.
 fn white(device: &Device, (format, samples, near, stencil): Case) -> wgpu::RenderPipeline {
-    let source = "@vertex fn v(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
-            return vec4<f32>(4.0 * vec2<f32>(f32(i & 1u), f32(i >> 1u)) - 1.0, 0.5, 1.0);
+    let source = "@vertex fn v(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+            return vec4f(4.0 * vec2f(f32(i & 1u), f32(i >> 1u)) - 1.0, 0.5, 1.0);
         }
-        @fragment fn f() -> @location(0) vec4<f32> { return vec4<f32>(1.0); }";
+        @fragment fn f() -> @location(0) vec4f { return vec4f(1.0); }";
     let source = wgpu::ShaderSource::Wgsl(source.into());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
     let face = wgpu::StencilFaceState {

@@ -187,7 +187,7 @@ pub(super) fn gliding_view(index: u64, v: u32, settings: &Settings) -> View {
 fn a_wrong_reconstruction_is_caught() {
     let settings = settings(MethodKind::Smr);
     let planted = [
-        ("vec2<i32>(frame.size) - 1), view, 0)", "vec2<i32>(frame.size) - 1), 1u - view, 0)"),
+        ("vec2i(frame.size) - 1), view, 0)", "vec2i(frame.size) - 1), 1u - view, 0)"),
         ("found.highest = expose(found.highest, frame.exposure);", ""),
         ("point.y << lattice.level", "point.x << lattice.level"),
         ("sparse.views[view][frame.lattice]", "sparse.views[0u][frame.lattice]"),
@@ -210,7 +210,7 @@ fn a_wrong_pass_beside_those_of_smr_is_caught() {
         (none, sparse_views, "fill_pass", ("bitcast<f32>(sparse.missing)", "0.0")),
         (none, sparse_views, "fill_pass", (", view, COLOR_IN)", ", 0u, COLOR_IN)")),
         (taau, sparse_views, "taau_pass", ("tail(confidence * source.previous.trust)", "tail(0.0)")),
-        (wrs, sparse_views, "wrs_sparse_pass", ("place_weight(vec2<f32>(x, y)))", "1.0)")),
+        (wrs, sparse_views, "wrs_sparse_pass", ("place_weight(vec2f(x, y)))", "1.0)")),
         (noisy, noisy_views, "wrs_sparse_pass", ("noise_at(place.px, view)", "noise_at(px, view)")),
         (smr, at_samples, "fill_geometry_pass", ("near.y.points[below]", "near.y.points[right]")),
     ];

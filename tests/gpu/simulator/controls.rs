@@ -36,7 +36,7 @@ const OF_ONE_EYE: [(&str, &str); 2] = [
 fn planted_errors_in_mip_are_caught() {
     let planted = [
         ("let mip = level - 1u;", "let mip = max(level, 2u) - 2u;"),
-        ("vec2<f32>(x.fraction, y.fraction)", "vec2<f32>(y.fraction, x.fraction)"),
+        ("vec2f(x.fraction, y.fraction)", "vec2f(y.fraction, x.fraction)"),
         ("textureLoad(full, px, view, 0)", "textureLoad(full, px, 0u, 0)"),
         ("shown = color(shown).color;", ""),
     ];

@@ -86,7 +86,7 @@ pub const PROBES: &[Probe] = &[
             let scaled = wrs::scale_by_trust(Past { w_sum, log_key, ..Past::EMPTY }, trust, sampler);
             (scaled.w_sum, scaled.log_key)
         },
-        "let p = scale_by_trust(Past(vec3<f32>(0.0), $0, $1), $2, $3); out_f(p.w_sum); out_f(p.log_key);",
+        "let p = scale_by_trust(Past(vec3f(0.0), $0, $1), $2, $3); out_f(p.w_sum); out_f(p.log_key);",
         |rows| {
             let keys = floats(&[0.0, -1e-8, -1.0, -1e30, f32::MIN]);
             rows.cross(&[&normal(), &keys, &any(), &[0, 1]])

@@ -208,7 +208,7 @@ fn planted_expressions_are_reported() {
     ];
     let wrong = [
         "x / 3.0",
-        "(v / vec3<f32>(2.0, 4.0, 5.0)).x",
+        "(v / vec3f(2.0, 4.0, 5.0)).x",
         "x / O",
         "(x * 3.0) * 1.1",
         "1.1 * (1.0 / x)",
@@ -227,7 +227,7 @@ fn planted_expressions_are_reported() {
 override O: f32 = 2.0;
 fn half(a: f32, b: f32) -> f32 {{ return a / b; }}
 fn called(b: f32) -> f32 {{ return half(2.0, b); }}
-fn planted(x: f32, y: f32, v: vec3<f32>, u: u32) -> f32 {{
+fn planted(x: f32, y: f32, v: vec3f, u: u32) -> f32 {{
     let result = {expression};
     return f32(result);
 }}"

@@ -197,18 +197,18 @@ impl Probe {
 @group(0) @binding(1) var<storage, read_write> probe_out: array<u32>;
 var<private> probe_read: u32;
 var<private> probe_write: u32;
-fn load(i: u32) -> vec4<u32> {{
-    return vec4<u32>(probe_in[4u * i], probe_in[4u * i + 1u], probe_in[4u * i + 2u], probe_in[4u * i + 3u]);
+fn load(i: u32) -> vec4u {{
+    return vec4u(probe_in[4u * i], probe_in[4u * i + 1u], probe_in[4u * i + 2u], probe_in[4u * i + 3u]);
 }}
 fn in_u(k: u32) -> u32 {{ return probe_in[probe_read + k]; }}
 fn in_f(k: u32) -> f32 {{ return bitcast<f32>(in_u(k)); }}
-fn in_v(k: u32) -> vec3<f32> {{ return vec3<f32>(in_f(k), in_f(k + 1u), in_f(k + 2u)); }}
+fn in_v(k: u32) -> vec3f {{ return vec3f(in_f(k), in_f(k + 1u), in_f(k + 2u)); }}
 fn out_u(x: u32) {{ probe_out[probe_write] = x; probe_write += 1u; }}
 fn out_f(x: f32) {{ out_u(bitcast<u32>(x)); }}
 fn out_b(x: bool) {{ out_u(select(0u, 1u, x)); }}
-fn out_v(x: vec3<f32>) {{ out_f(x.x); out_f(x.y); out_f(x.z); }}
+fn out_v(x: vec3f) {{ out_f(x.x); out_f(x.y); out_f(x.z); }}
 @compute @workgroup_size({workgroup})
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
+fn main(@builtin(global_invocation_id) id: vec3u) {{
     if id.x >= (arrayLength(&probe_in) - {table_data}u) / {ins}u {{ return; }}
     probe_read = {table_data}u + id.x * {ins}u;
     probe_write = id.x * {outs}u;

@@ -126,8 +126,8 @@ macro_rules! around {
     ($rest:literal) => {
         concat!(
             "var a = nothing_around(); for (var i = 0u; i < in_u(27u); i++) { let b = 9u * i;
-            a = add_stored(a, StoredSample(in_v(b), in_f(b + 3u), in_f(b + 4u), vec2<f32>(in_f(b + 5u), in_f(b + 6u))),
-                vec2<f32>(in_f(b + 7u), in_f(b + 8u)), true, INVERSE_REACH); }
+            a = add_stored(a, StoredSample(in_v(b), in_f(b + 3u), in_f(b + 4u), vec2f(in_f(b + 5u), in_f(b + 6u))),
+                vec2f(in_f(b + 7u), in_f(b + 8u)), true, INVERSE_REACH); }
             ",
             $rest
         )

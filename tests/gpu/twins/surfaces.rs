@@ -111,7 +111,7 @@ pub const PROBES: &[Probe] = &[
             let gathered = resample::gather_around(&taps, |_| read.next().unwrap());
             resample::resolve(gathered, resample::sharp_sum(&taps), Surface { color, lod, disparity: 1.0 })
         },
-        "let taps = taps_around(vec2<i32>(8), vec2<f32>(in_f(0u), in_f(1u)), vec2<u32>(16u));
+        "let taps = taps_around(vec2i(8), vec2f(in_f(0u), in_f(1u)), vec2u(16u));
     var g = nothing_gathered();
     // A variable count, as in the passes: Mesa unrolls constant ones, and reorders their sums.
     let rounds = select(0u, ROUNDS, in_f(0u) >= 0.0);

@@ -18,12 +18,12 @@ const SHADER: Handle<Shader> = bevy::asset::uuid_handle!("2c1a8d2e-5a2f-4a8e-9a4
 
 const TEXT: &str = "import bevy_pbr::render::forward_io::VertexOutput;
 @fragment
-fn fragment(in: VertexOutput) -> @location(0) vec4<f32> {
+fn fragment(in: VertexOutput) -> @location(0) vec4f {
     let at = in.uv * 12.0;
     let line = abs(fract(at - 0.5) - 0.5) / fwidth(at);
     let grid = 1.0 - min(min(line.x, line.y), 1.0);
     let stripe = f32((u32(in.position.x) / 3u + u32(in.position.y) / 5u) % 2u);
-    return vec4<f32>(grid, 0.2 + 0.5 * stripe, in.uv.x, 1.0);
+    return vec4f(grid, 0.2 + 0.5 * stripe, in.uv.x, 1.0);
 }";
 
 impl Material for Grid {

@@ -9,21 +9,21 @@ const GLASS_ROUGHNESSES: u32 = 12u;
 const GLASS_IORS: u32 = 12u;
 const GLASS_BASE: u32 = COSINES * ROUGHNESSES;
 const ANISOTROPIC_BASE: u32 = GLASS_BASE + GLASS_COSINES * GLASS_ROUGHNESSES * GLASS_IORS;
-const ANISOTROPIC: vec4<u32> = vec4<u32>(12u, 5u, 10u, 5u);
+const ANISOTROPIC: vec4u = vec4u(12u, 5u, 10u, 5u);
 const MIN_ASPECT: f32 = 0.31622777;
 const SHEEN_ROOT: f32 = 0.17782794;
 const IOR_ROOT: f32 = 0.17191392;
 
 // albedo::albedo_cell
-fn albedo_cell(tables: u32, index: u32) -> vec4<f32> {
-    return bitcast<vec4<f32>>(load(tables + index));
+fn albedo_cell(tables: u32, index: u32) -> vec4f {
+    return bitcast<vec4f>(load(tables + index));
 }
 
 // albedo::albedo_knot
-fn albedo_knot(t: f32, count: u32) -> vec2<f32> {
+fn albedo_knot(t: f32, count: u32) -> vec2f {
     let x = clamp(t, 0.0, 1.0) * f32(count - 1u);
     let knot = min(floor(x), f32(count - 2u));
-    return vec2<f32>(knot, x - knot);
+    return vec2f(knot, x - knot);
 }
 
 // albedo::albedo_cosine
@@ -33,7 +33,7 @@ fn albedo_cosine(cosine: f32, width: f32) -> f32 {
 }
 
 // albedo::albedo_plane
-fn albedo_plane(tables: u32, x: f32, y: f32) -> vec4<f32> {
+fn albedo_plane(tables: u32, x: f32, y: f32) -> vec4f {
     let kx = albedo_knot(x, COSINES);
     let ky = albedo_knot(y, ROUGHNESSES);
     let i = u32(ky.x) * COSINES + u32(kx.x);
@@ -47,13 +47,13 @@ fn albedo_plane(tables: u32, x: f32, y: f32) -> vec4<f32> {
 }
 
 // albedo::ggx_albedo
-fn ggx_albedo(tables: u32, cosine: f32, width: f32) -> vec2<f32> {
+fn ggx_albedo(tables: u32, cosine: f32, width: f32) -> vec2f {
     let e = albedo_plane(tables, albedo_cosine(cosine, width), sqrt(width));
-    return vec2<f32>(e.x, e.x * schlick_weight(cosine) + e.y);
+    return vec2f(e.x, e.x * schlick_weight(cosine) + e.y);
 }
 
 // albedo::anisotropic_albedo
-fn anisotropic_albedo(tables: u32, wo: vec3<f32>, a: vec2<f32>) -> vec2<f32> {
+fn anisotropic_albedo(tables: u32, wo: vec3f, a: vec2f) -> vec2f {
     let slanted = abs(wo.x) + abs(wo.y);
     var azimuth = 0.5;
     if slanted > 1e-6 {
@@ -65,7 +65,7 @@ fn anisotropic_albedo(tables: u32, wo: vec3<f32>, a: vec2<f32>) -> vec2<f32> {
     let kz = albedo_knot(sqrt(a.x), ANISOTROPIC.z);
     let kw = albedo_knot(aspect, ANISOTROPIC.w);
     let row = ANISOTROPIC.x;
-    var parts: array<vec4<f32>, 4>;
+    var parts: array<vec4f, 4>;
     for (var corner = 0u; corner < 4u; corner++) {
         let z = u32(kz.x) + (corner & 1u);
         let w = u32(kw.x) + (corner >> 1u);
@@ -81,7 +81,7 @@ fn anisotropic_albedo(tables: u32, wo: vec3<f32>, a: vec2<f32>) -> vec2<f32> {
     let low = parts[0] + (parts[1] - parts[0]) * kz.y;
     let high = parts[2] + (parts[3] - parts[2]) * kz.y;
     let sum = low + (high - low) * kw.y;
-    return vec2<f32>(sum.x, sum.x * schlick_weight(wo.z) + sum.y);
+    return vec2f(sum.x, sum.x * schlick_weight(wo.z) + sum.y);
 }
 
 // albedo::sheen_albedo
@@ -92,13 +92,13 @@ fn sheen_albedo(tables: u32, cosine: f32, roughness: f32) -> f32 {
 }
 
 // albedo::glass_albedo
-fn glass_albedo(tables: u32, cosine: f32, width: f32, ior: f32, entering: bool) -> vec2<f32> {
+fn glass_albedo(tables: u32, cosine: f32, width: f32, ior: f32, entering: bool) -> vec2f {
     let kx = albedo_knot(sqrt(albedo_cosine(cosine, width)), GLASS_COSINES);
     let ky = albedo_knot(sqrt(width), GLASS_ROUGHNESSES);
     let kz = albedo_knot((sqrt((2.0 * (ior - 1.0)) / (ior + 1.0)) - IOR_ROOT) * (1.0f / (1.0f - IOR_ROOT)), GLASS_IORS);
     let row = GLASS_COSINES;
     let plane = GLASS_COSINES * GLASS_ROUGHNESSES;
-    var sums: array<vec4<f32>, 2>;
+    var sums: array<vec4f, 2>;
     for (var k = 0u; k < 2u; k++) {
         let i = GLASS_BASE + (u32(kz.x) + k) * plane + u32(ky.x) * row + u32(kx.x);
         let a = albedo_cell(tables, i);

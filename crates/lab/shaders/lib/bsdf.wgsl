@@ -5,13 +5,13 @@
 // Twin of src/kernel/bsdf.rs. One struct `Scatter` stands for both `Scatter` and `Sampled`.
 
 struct Scatter {
-    wi: vec3<f32>,
-    value: vec3<f32>,
+    wi: vec3f,
+    value: vec3f,
     pdf: f32,
 }
 
 // bsdf::retro_value
-fn retro_value(wo: vec3<f32>, wi: vec3<f32>, roughness: f32) -> f32 {
+fn retro_value(wo: vec3f, wi: vec3f, roughness: f32) -> f32 {
     let rise = (1.0 + dot(wo, wi)) * roughness - 0.5;
     let i = rise * schlick_weight(wi.z) + 1.0;
     let o = rise * schlick_weight(wo.z) + 1.0;
@@ -19,7 +19,7 @@ fn retro_value(wo: vec3<f32>, wi: vec3<f32>, roughness: f32) -> f32 {
 }
 
 // bsdf::mirror_probability
-fn mirror_probability(glass_reflect: vec3<f32>, fresnel: f32) -> f32 {
+fn mirror_probability(glass_reflect: vec3f, fresnel: f32) -> f32 {
     if fresnel >= 1.0 {
         return 1.0;
     }
@@ -27,7 +27,7 @@ fn mirror_probability(glass_reflect: vec3<f32>, fresnel: f32) -> f32 {
 }
 
 // bsdf::eval_reflection
-fn eval_reflection(layers: Layers, wo: vec3<f32>, wi: vec3<f32>) -> Scatter {
+fn eval_reflection(layers: Layers, wo: vec3f, wi: vec3f) -> Scatter {
     let lambert = cosine_hemisphere_pdf(wi.z);
     var pdf = layers.probabilities.x * lambert;
     var diffuse = layers.diffuse;
@@ -59,21 +59,21 @@ fn eval_reflection(layers: Layers, wo: vec3<f32>, wi: vec3<f32>) -> Scatter {
         }
     }
     if LOBE_CLEARCOAT {
-        let a = vec2<f32>(layers.coat_width);
+        let a = vec2f(layers.coat_width);
         let d = 0.5 * ggx_d(h, a);
         let length_o = ggx_length(wo, a);
         let length_i = ggx_length(wi, a);
         let shape = (d * wi.z) / (wi.z * length_o + wo.z * length_i);
-        value += vec3<f32>((layers.coat_rise * rise + layers.coat) * shape);
+        value += vec3f((layers.coat_rise * rise + layers.coat) * shape);
         pdf += layers.probabilities.z * (d / (wo.z + length_o));
     }
     return Scatter(wi, value, pdf);
 }
 
 // bsdf::eval_transmission
-fn eval_transmission(layers: Layers, wo: vec3<f32>, wi: vec3<f32>) -> Scatter {
-    let none = Scatter(wi, vec3<f32>(0.0), 0.0);
-    let below = vec3<f32>(wi.x, wi.y, -wi.z);
+fn eval_transmission(layers: Layers, wo: vec3f, wi: vec3f) -> Scatter {
+    let none = Scatter(wi, vec3f(0.0), 0.0);
+    let below = vec3f(wi.x, wi.y, -wi.z);
     let length_o = ggx_length(wo, layers.widths);
     let length_i = ggx_length(wi, layers.widths);
     var h = unit(wo + below);
@@ -99,25 +99,25 @@ fn eval_transmission(layers: Layers, wo: vec3<f32>, wi: vec3<f32>) -> Scatter {
     let d = (2.0 * ggx_d(h, layers.widths)) * jacobian;
     let shape = (d * below.z) / (below.z * length_o + wo.z * length_i);
     let density = d / (wo.z + length_o);
-    let through = vec3<f32>(1.0) - glass_fresnel(layers.glass_reflect, fresnel);
+    let through = vec3f(1.0) - glass_fresnel(layers.glass_reflect, fresnel);
     let value = (layers.glass * layers.glass_color) * through * shape;
     return Scatter(wi, value, (layers.probabilities.w * (1.0 - mirror_probability(layers.glass_reflect, fresnel))) * density);
 }
 
 // bsdf::eval
-fn eval(layers: Layers, wo: vec3<f32>, wi: vec3<f32>) -> Scatter {
+fn eval(layers: Layers, wo: vec3f, wi: vec3f) -> Scatter {
     if wo.z > 0.0 && wi.z > 0.0 {
         return eval_reflection(layers, wo, wi);
     }
     if LOBE_TRANSMISSION && wo.z > 0.0 && wi.z < 0.0 && layers.probabilities.w > 0.0 {
         return eval_transmission(layers, wo, wi);
     }
-    return Scatter(wi, vec3<f32>(0.0), 0.0);
+    return Scatter(wi, vec3f(0.0), 0.0);
 }
 
 // bsdf::sample
-fn sample(layers: Layers, wo: vec3<f32>, u: vec4<f32>) -> Scatter {
-    let none = Scatter(vec3<f32>(0.0, 0.0, 1.0), vec3<f32>(0.0), 0.0);
+fn sample(layers: Layers, wo: vec3f, u: vec4f) -> Scatter {
+    let none = Scatter(vec3f(0.0, 0.0, 1.0), vec3f(0.0), 0.0);
     if wo.z <= 0.0 {
         return none;
     }
@@ -125,15 +125,15 @@ fn sample(layers: Layers, wo: vec3<f32>, u: vec4<f32>) -> Scatter {
     let up_to_coat = up_to_reflect + layers.probabilities.z;
     let total = up_to_coat + layers.probabilities.w;
     let at = u.x * total;
-    let direction = vec2<f32>(u.y, u.z);
-    var wi = vec3<f32>(0.0, 0.0, 1.0);
+    let direction = vec2f(u.y, u.z);
+    var wi = vec3f(0.0, 0.0, 1.0);
     var side = 1.0;
     if at < layers.probabilities.x {
         wi = cosine_hemisphere(direction);
     } else if (LOBE_SPECULAR || LOBE_METAL) && at < up_to_reflect {
         wi = mirrored(wo, vndf_sample(wo, layers.widths, direction));
     } else if LOBE_CLEARCOAT && at < up_to_coat {
-        wi = mirrored(wo, vndf_sample(wo, vec2<f32>(layers.coat_width), direction));
+        wi = mirrored(wo, vndf_sample(wo, vec2f(layers.coat_width), direction));
     } else if LOBE_TRANSMISSION && at < total {
         let h = vndf_sample(wo, layers.widths, direction);
         let vh = clamp(dot(wo, h), 0.0, 1.0);

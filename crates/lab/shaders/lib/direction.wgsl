@@ -1,36 +1,36 @@
 // Twin of src/kernel/direction.rs.
 
 // direction::unit
-fn unit(v: vec3<f32>) -> vec3<f32> {
+fn unit(v: vec3f) -> vec3f {
     let m = max(max(abs(v.x), abs(v.y)), abs(v.z));
     if m >= 1e-30 && m <= 1e30 {
         let s = v / m;
         return s / sqrt(dot(s, s));
     }
-    return vec3<f32>(0.0, 0.0, 1.0);
+    return vec3f(0.0, 0.0, 1.0);
 }
 
 // direction::basis; the two vectors are the columns.
-fn basis(n: vec3<f32>) -> mat2x3<f32> {
+fn basis(n: vec3f) -> mat2x3f {
     let sign = select(-1.0, 1.0, n.z >= 0.0);
     let a = -1.0 / (sign + n.z);
     let b = (n.x * a) * n.y;
     let x = n.x * a;
     let y = n.y * a;
-    return mat2x3<f32>(
-        vec3<f32>(1.0 + sign * (x * n.x), sign * b, -sign * n.x),
-        vec3<f32>(b, sign + y * n.y, -n.y),
+    return mat2x3f(
+        vec3f(1.0 + sign * (x * n.x), sign * b, -sign * n.x),
+        vec3f(b, sign + y * n.y, -n.y),
     );
 }
 
 // direction::to_local
-fn to_local(v: vec3<f32>, x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> vec3<f32> {
-    return vec3<f32>(dot(v, x), dot(v, y), dot(v, z));
+fn to_local(v: vec3f, x: vec3f, y: vec3f, z: vec3f) -> vec3f {
+    return vec3f(dot(v, x), dot(v, y), dot(v, z));
 }
 
 // direction::to_world
-fn to_world(v: vec3<f32>, x: vec3<f32>, y: vec3<f32>, z: vec3<f32>) -> vec3<f32> {
-    return vec3<f32>(
+fn to_world(v: vec3f, x: vec3f, y: vec3f, z: vec3f) -> vec3f {
+    return vec3f(
         v.x * x.x + v.y * y.x + v.z * z.x,
         v.x * x.y + v.y * y.y + v.z * z.y,
         v.x * x.z + v.y * y.z + v.z * z.z,

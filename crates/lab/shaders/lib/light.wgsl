@@ -19,15 +19,15 @@ fn cone_falloff(cos_angle: f32, cos_inner: f32, cos_outer: f32) -> f32 {
 }
 
 // light::map_coordinates
-fn map_coordinates(direction: vec3<f32>) -> vec2<f32> {
+fn map_coordinates(direction: vec3f) -> vec2f {
     let across = sqrt(direction.x * direction.x + direction.z * direction.z);
     let longitude = atan2_upper(abs(direction.x), -direction.z) * 0.15915494;
     let u = select(0.5 + longitude, 0.5 - longitude, direction.x < 0.0);
-    return vec2<f32>(u, atan2_upper(across, direction.y) * 0.31830987);
+    return vec2f(u, atan2_upper(across, direction.y) * 0.31830987);
 }
 
 struct MapDirection {
-    direction: vec3<f32>,
+    direction: vec3f,
     sine: f32,
 }
 
@@ -36,7 +36,7 @@ fn map_direction(u: f32, v: f32) -> MapDirection {
     let longitude = sin_cos_turns(u - 0.5);
     let latitude = sin_cos_turns(0.5 * v);
     let sine = max(latitude.x, 0.0);
-    return MapDirection(vec3<f32>(longitude.x * sine, latitude.y, -(longitude.y * sine)), sine);
+    return MapDirection(vec3f(longitude.x * sine, latitude.y, -(longitude.y * sine)), sine);
 }
 
 // light::map_pdf

@@ -7,26 +7,26 @@ const MIN_SHEEN_ROUGHNESS: f32 = 0.1;
 const MIN_SHEEN_COSINE: f32 = 1e-3;
 
 // microfacet::ggx_widths
-fn ggx_widths(roughness: f32, anisotropy: f32) -> vec2<f32> {
+fn ggx_widths(roughness: f32, anisotropy: f32) -> vec2f {
     let width = clamp(roughness * roughness, MIN_WIDTH, 1.0);
     let aspect = sqrt(1.0 - 0.9 * clamp(anisotropy, 0.0, 1.0));
-    return vec2<f32>(min(width / aspect, 1.0), max(width * aspect, MIN_WIDTH));
+    return vec2f(min(width / aspect, 1.0), max(width * aspect, MIN_WIDTH));
 }
 
 // microfacet::ggx_mean_width
-fn ggx_mean_width(a: vec2<f32>) -> f32 {
+fn ggx_mean_width(a: vec2f) -> f32 {
     return sqrt(0.5 * (a.x * a.x + a.y * a.y));
 }
 
 // microfacet::ggx_length
-fn ggx_length(v: vec3<f32>, a: vec2<f32>) -> f32 {
+fn ggx_length(v: vec3f, a: vec2f) -> f32 {
     let x = v.x * a.x;
     let y = v.y * a.y;
     return sqrt(x * x + y * y + v.z * v.z);
 }
 
 // microfacet::ggx_d
-fn ggx_d(h: vec3<f32>, a: vec2<f32>) -> f32 {
+fn ggx_d(h: vec3f, a: vec2f) -> f32 {
     let x = h.x / a.x;
     let y = h.y / a.y;
     let e = x * x + y * y + h.z * h.z;
@@ -34,7 +34,7 @@ fn ggx_d(h: vec3<f32>, a: vec2<f32>) -> f32 {
 }
 
 // microfacet::smith_g1
-fn smith_g1(v: vec3<f32>, a: vec2<f32>) -> f32 {
+fn smith_g1(v: vec3f, a: vec2f) -> f32 {
     let z = abs(v.z);
     let sum = z + ggx_length(v, a);
     if sum > 0.0 {
@@ -53,17 +53,17 @@ fn smith_g2(cos_o: f32, length_o: f32, cos_i: f32, length_i: f32) -> f32 {
 }
 
 // microfacet::vndf_sample
-fn vndf_sample(v: vec3<f32>, a: vec2<f32>, u: vec2<f32>) -> vec3<f32> {
-    let s = unit(vec3<f32>(v.x * a.x, v.y * a.y, v.z));
+fn vndf_sample(v: vec3f, a: vec2f, u: vec2f) -> vec3f {
+    let s = unit(vec3f(v.x * a.x, v.y * a.y, v.z));
     let sc = sin_cos_turns(u.x);
     let q = u.y * (1.0 + s.z);
     let r = sqrt(max(q * (2.0 - q), 0.0));
-    let h = vec3<f32>(r * sc.y + s.x, r * sc.x + s.y, (1.0 - u.y) * (1.0 + s.z));
-    return unit(vec3<f32>(h.x * a.x, h.y * a.y, h.z));
+    let h = vec3f(r * sc.y + s.x, r * sc.x + s.y, (1.0 - u.y) * (1.0 + s.z));
+    return unit(vec3f(h.x * a.x, h.y * a.y, h.z));
 }
 
 // microfacet::vndf_pdf
-fn vndf_pdf(v: vec3<f32>, h: vec3<f32>, a: vec2<f32>) -> f32 {
+fn vndf_pdf(v: vec3f, h: vec3f, a: vec2f) -> f32 {
     return 2.0 * ggx_d(h, a) * max(dot(v, h), 0.0) / (v.z + ggx_length(v, a));
 }
 
@@ -99,17 +99,17 @@ fn refraction_discriminant(cosine: f32, eta: f32) -> f32 {
 }
 
 // microfacet::mirrored
-fn mirrored(v: vec3<f32>, h: vec3<f32>) -> vec3<f32> {
+fn mirrored(v: vec3f, h: vec3f) -> vec3f {
     let d = 2.0 * dot(v, h);
-    return vec3<f32>(d * h.x - v.x, d * h.y - v.y, d * h.z - v.z);
+    return vec3f(d * h.x - v.x, d * h.y - v.y, d * h.z - v.z);
 }
 
 // microfacet::refracted
-fn refracted(v: vec3<f32>, h: vec3<f32>, eta: f32) -> vec3<f32> {
+fn refracted(v: vec3f, h: vec3f, eta: f32) -> vec3f {
     let c = dot(v, h);
     let t = sqrt(max(refraction_discriminant(c, eta), 0.0));
     let d = c / eta - t;
-    return vec3<f32>(d * h.x - v.x / eta, d * h.y - v.y / eta, d * h.z - v.z / eta);
+    return vec3f(d * h.x - v.x / eta, d * h.y - v.y / eta, d * h.z - v.z / eta);
 }
 
 // microfacet::charlie_d

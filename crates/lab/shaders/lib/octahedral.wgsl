@@ -18,7 +18,7 @@ fn fraction(bits: u32) -> f32 {
 }
 
 // octahedral::encode_direction
-fn encode_direction(n: vec3<f32>) -> u32 {
+fn encode_direction(n: vec3f) -> u32 {
     let sum = abs(n.x) + (abs(n.y) + abs(n.z));
     let x = n.x / sum;
     let y = n.y / sum;
@@ -29,13 +29,13 @@ fn encode_direction(n: vec3<f32>) -> u32 {
 }
 
 // octahedral::decode_direction
-fn decode_direction(code: u32) -> vec3<f32> {
+fn decode_direction(code: u32) -> vec3f {
     let x = fraction(code);
     let y = fraction(code >> 16u);
     let z = (1.0 - abs(x)) - abs(y);
-    var n = vec3<f32>(x, y, z);
+    var n = vec3f(x, y, z);
     if z < 0.0 {
-        n = vec3<f32>(folded(x, y), folded(y, x), z);
+        n = vec3f(folded(x, y), folded(y, x), z);
     }
     return n / sqrt(n.x * n.x + (n.y * n.y + n.z * n.z));
 }

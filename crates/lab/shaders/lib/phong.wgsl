@@ -3,14 +3,14 @@
 // Twin of src/kernel/phong.rs. One struct holds the fields of `Sampled` and `Scatter`.
 
 struct PhongSurface {
-    diffuse: vec3<f32>,
-    specular: vec3<f32>,
+    diffuse: vec3f,
+    specular: vec3f,
     exponent: f32,
 }
 
 struct PhongScatter {
-    wi: vec3<f32>,
-    value: vec3<f32>,
+    wi: vec3f,
+    value: vec3f,
     pdf: f32,
 }
 
@@ -37,31 +37,31 @@ fn phong_specular_probability(surface: PhongSurface) -> f32 {
 }
 
 // phong::phong_diffuse
-fn phong_diffuse(surface: PhongSurface, wi: vec3<f32>) -> vec3<f32> {
+fn phong_diffuse(surface: PhongSurface, wi: vec3f) -> vec3f {
     return surface.diffuse * (max(wi.z, 0.0) * FRAC_1_PI);
 }
 
 // phong::phong_specular
-fn phong_specular(surface: PhongSurface, wo: vec3<f32>, wi: vec3<f32>) -> vec3<f32> {
+fn phong_specular(surface: PhongSurface, wo: vec3f, wi: vec3f) -> vec3f {
     let cosine = clamp(wi.z * wo.z - (wi.x * wo.x + wi.y * wo.y), 0.0, 1.0);
     let top = (surface.exponent + 2.0) * (0.5 * FRAC_1_PI);
     return surface.specular * ((top * phong_power(cosine, surface.exponent)) * max(wi.z, 0.0));
 }
 
 // phong::phong_eval
-fn phong_eval(surface: PhongSurface, wo: vec3<f32>, wi: vec3<f32>) -> PhongScatter {
+fn phong_eval(surface: PhongSurface, wo: vec3f, wi: vec3f) -> PhongScatter {
     if wo.z <= 0.0 || wi.z <= 0.0 {
-        return PhongScatter(wi, vec3<f32>(0.0), 0.0);
+        return PhongScatter(wi, vec3f(0.0), 0.0);
     }
     let value = phong_diffuse(surface, wi) + phong_specular(surface, wo, wi);
     return PhongScatter(wi, value, uniform_hemisphere_pdf(wi.z));
 }
 
 // phong::phong_sample
-fn phong_sample(surface: PhongSurface, wo: vec3<f32>, u: vec3<f32>) -> PhongScatter {
-    let wi = uniform_hemisphere(vec2<f32>(u.y, u.z));
+fn phong_sample(surface: PhongSurface, wo: vec3f, u: vec3f) -> PhongScatter {
+    let wi = uniform_hemisphere(vec2f(u.y, u.z));
     if wo.z <= 0.0 || wi.z <= 0.0 {
-        return PhongScatter(wi, vec3<f32>(0.0), 0.0);
+        return PhongScatter(wi, vec3f(0.0), 0.0);
     }
     let probability = phong_specular_probability(surface);
     let pdf = uniform_hemisphere_pdf(wi.z);

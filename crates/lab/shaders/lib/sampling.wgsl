@@ -4,16 +4,16 @@
 const FRAC_1_PI: f32 = 0.318309886183790671538;
 
 // sampling::disk
-fn disk(u: vec2<f32>) -> vec2<f32> {
+fn disk(u: vec2f) -> vec2f {
     let r = sqrt(u.x);
     let sc = sin_cos_turns(u.y);
-    return vec2<f32>(r * sc.y, r * sc.x);
+    return vec2f(r * sc.y, r * sc.x);
 }
 
 // sampling::cosine_hemisphere
-fn cosine_hemisphere(u: vec2<f32>) -> vec3<f32> {
+fn cosine_hemisphere(u: vec2f) -> vec3f {
     let d = disk(u);
-    return vec3<f32>(d.x, d.y, sqrt(max(1.0 - u.x, 0.0)));
+    return vec3f(d.x, d.y, sqrt(max(1.0 - u.x, 0.0)));
 }
 
 // sampling::cosine_hemisphere_pdf
@@ -22,10 +22,10 @@ fn cosine_hemisphere_pdf(z: f32) -> f32 {
 }
 
 // sampling::uniform_hemisphere
-fn uniform_hemisphere(u: vec2<f32>) -> vec3<f32> {
+fn uniform_hemisphere(u: vec2f) -> vec3f {
     let r = sqrt(max(u.x * (2.0 - u.x), 0.0));
     let sc = sin_cos_turns(u.y);
-    return vec3<f32>(r * sc.y, r * sc.x, 1.0 - u.x);
+    return vec3f(r * sc.y, r * sc.x, 1.0 - u.x);
 }
 
 // sampling::uniform_hemisphere_pdf
@@ -34,10 +34,10 @@ fn uniform_hemisphere_pdf(z: f32) -> f32 {
 }
 
 // sampling::uniform_sphere
-fn uniform_sphere(u: vec2<f32>) -> vec3<f32> {
+fn uniform_sphere(u: vec2f) -> vec3f {
     let r = 2.0 * sqrt(max(u.x * (1.0 - u.x), 0.0));
     let sc = sin_cos_turns(u.y);
-    return vec3<f32>(r * sc.y, r * sc.x, 1.0 - 2.0 * u.x);
+    return vec3f(r * sc.y, r * sc.x, 1.0 - 2.0 * u.x);
 }
 
 // sampling::uniform_sphere_pdf
@@ -46,10 +46,10 @@ fn uniform_sphere_pdf() -> f32 {
 }
 
 // sampling::barycentrics
-fn barycentrics(u: vec2<f32>) -> vec3<f32> {
+fn barycentrics(u: vec2f) -> vec3f {
     let s = sqrt(u.x);
     let y = u.y * s;
-    return vec3<f32>(1.0 - s, s - y, y);
+    return vec3f(1.0 - s, s - y, y);
 }
 
 // sampling::area_pdf

@@ -29,7 +29,7 @@ fn wrap_texel(i: i32, size: u32, wrap: u32) -> u32 {
 }
 
 // texel::texel_value
-fn texel_value(bits: u32) -> vec4<f32> {
-    let bytes = (vec4<u32>(bits) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u);
-    return vec4<f32>(bytes) * (1.0f / 255.0);
+fn texel_value(bits: u32) -> vec4f {
+    let bytes = (vec4u(bits) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(255u);
+    return vec4f(bytes) * (1.0f / 255.0);
 }

@@ -4,9 +4,9 @@ const ORIGIN_OFFSET: f32 = 1.0 / 262144.0;
 const MIN_DET: f32 = 1e-36;
 
 struct Shear {
-    x: vec3<f32>,
-    y: vec3<f32>,
-    z: vec3<f32>,
+    x: vec3f,
+    y: vec3f,
+    z: vec3f,
 }
 
 // t is 0 without an intersection.
@@ -17,32 +17,32 @@ struct Intersection {
 }
 
 // triangle::shear
-fn shear(direction: vec3<f32>) -> Shear {
+fn shear(direction: vec3f) -> Shear {
     let size = abs(direction);
     if size.x >= size.y && size.x >= size.z {
         let inv = 1.0 / direction.x;
-        let image = vec3<f32>(-(direction.y / direction.x), -(direction.z / direction.x), inv);
-        return Shear(image, vec3<f32>(1.0, 0.0, 0.0), vec3<f32>(0.0, 1.0, 0.0));
+        let image = vec3f(-(direction.y / direction.x), -(direction.z / direction.x), inv);
+        return Shear(image, vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0));
     }
     if size.y >= size.z {
         let inv = 1.0 / direction.y;
-        let image = vec3<f32>(-(direction.z / direction.y), -(direction.x / direction.y), inv);
-        return Shear(vec3<f32>(0.0, 1.0, 0.0), image, vec3<f32>(1.0, 0.0, 0.0));
+        let image = vec3f(-(direction.z / direction.y), -(direction.x / direction.y), inv);
+        return Shear(vec3f(0.0, 1.0, 0.0), image, vec3f(1.0, 0.0, 0.0));
     }
     let inv = 1.0 / direction.z;
-    let image = vec3<f32>(-(direction.x / direction.z), -(direction.y / direction.z), inv);
-    return Shear(vec3<f32>(1.0, 0.0, 0.0), vec3<f32>(0.0, 1.0, 0.0), image);
+    let image = vec3f(-(direction.x / direction.z), -(direction.y / direction.z), inv);
+    return Shear(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), image);
 }
 
 // triangle::sheared
-fn sheared(shear: Shear, from_origin: vec3<f32>) -> vec3<f32> {
+fn sheared(shear: Shear, from_origin: vec3f) -> vec3f {
     return shear.x * from_origin.x + shear.y * from_origin.y + shear.z * from_origin.z;
 }
 
 // triangle::edge, with the two vertices in a fixed order. The order has no effect where products are rounded. On a
 // device that fuses one product into the difference, the two triangles at an edge would otherwise get different answers
 // and leave a gap.
-fn edge(a: vec3<f32>, b: vec3<f32>) -> f32 {
+fn edge(a: vec3f, b: vec3f) -> f32 {
     let swapped = a.x > b.x || (a.x == b.x && a.y > b.y);
     let p = select(a.xy, b.xy, swapped);
     let q = select(b.xy, a.xy, swapped);
@@ -51,7 +51,7 @@ fn edge(a: vec3<f32>, b: vec3<f32>) -> f32 {
 }
 
 // triangle::intersect
-fn intersect(shear: Shear, origin: vec3<f32>, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Intersection {
+fn intersect(shear: Shear, origin: vec3f, v0: vec3f, v1: vec3f, v2: vec3f) -> Intersection {
     let miss = Intersection(0.0, 0.0, 0.0);
     let a = sheared(shear, v0 - origin);
     let b = sheared(shear, v1 - origin);
@@ -77,17 +77,17 @@ fn intersect(shear: Shear, origin: vec3<f32>, v0: vec3<f32>, v1: vec3<f32>, v2: 
 }
 
 // triangle::point_at
-fn point_at(v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>, u: f32, v: f32) -> vec3<f32> {
+fn point_at(v0: vec3f, v1: vec3f, v2: vec3f, u: f32, v: f32) -> vec3f {
     return (v0 + (v1 - v0) * u) + (v2 - v0) * v;
 }
 
 // triangle::magnitude
-fn magnitude(v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> f32 {
+fn magnitude(v0: vec3f, v1: vec3f, v2: vec3f) -> f32 {
     let largest = max(max(abs(v0), abs(v1)), abs(v2));
     return max(largest.x, max(largest.y, largest.z));
 }
 
 // triangle::offset_ray
-fn offset_ray(point: vec3<f32>, normal: vec3<f32>, magnitude: f32) -> vec3<f32> {
+fn offset_ray(point: vec3f, normal: vec3f, magnitude: f32) -> vec3f {
     return point + normal * (magnitude * ORIGIN_OFFSET);
 }

@@ -13,7 +13,7 @@
 @group(0) @binding(4) var distance_out: texture_storage_2d_array<r32float, write>;
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u) {
     let px = id.xy;
     let size = textureDimensions(color_in);
     if px.x >= size.x || px.y >= size.y {
@@ -21,9 +21,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let c = textureLoad(color_in, px, 0, 0).xyz;
     let usable = is_finite(c.x) && is_finite(c.y) && is_finite(c.z);
-    textureStore(color_out, px, 0, vec4<f32>(select(vec3<f32>(0.0), c, usable), 1.0));
+    textureStore(color_out, px, 0, vec4f(select(vec3f(0.0), c, usable), 1.0));
     let d = textureLoad(depth_in, px, 0, 0).x;
     // Infinity, which WGSL has no literal of.
     let infinity = bitcast<f32>(0x7f800000u);
-    textureStore(distance_out, px, 0, vec4<f32>(select(infinity, near / d, d > 0.0)));
+    textureStore(distance_out, px, 0, vec4f(select(infinity, near / d, d > 0.0)));
 }

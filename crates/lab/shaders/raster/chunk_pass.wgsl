@@ -16,7 +16,7 @@ struct Draw {
     first_instance: u32,
 }
 
-@group(0) @binding(0) var<uniform> words_per_row: vec4<u32>;
+@group(0) @binding(0) var<uniform> words_per_row: vec4u;
 @group(0) @binding(1) var<storage, read> chunks: array<Chunk>;
 // A bit a tile: tile_pass.
 @group(0) @binding(2) var<storage, read> tiles: array<u32>;
@@ -30,13 +30,13 @@ fn bits_between(low: u32, high: u32, word: u32) -> u32 {
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= arrayLength(&chunks) {
         return;
     }
     let chunk = chunks[id.x];
-    let low = vec2<u32>(chunk.low & 0xffffu, chunk.low >> 16u);
-    let high = vec2<u32>(chunk.high & 0xffffu, chunk.high >> 16u);
+    let low = vec2u(chunk.low & 0xffffu, chunk.low >> 16u);
+    let high = vec2u(chunk.high & 0xffffu, chunk.high >> 16u);
     var found = 0u;
     for (var y = low.y; y <= high.y && found == 0u; y++) {
         for (var word = low.x >> 5u; word <= high.x >> 5u; word++) {

@@ -16,14 +16,14 @@ override HAS_SUN: bool = true;
 override ALPHA_TEST: bool = false;
 
 struct ColorVarying {
-    @builtin(position) position: vec4<f32>,
-    @location(0) world: vec3<f32>,
+    @builtin(position) position: vec4f,
+    @location(0) world: vec3f,
     // Position relative to the eye.
-    @location(1) relative: vec3<f32>,
-    @location(2) normal: vec3<f32>,
-    @location(3) tangent: vec4<f32>,
-    @location(4) uvs: vec4<f32>,
-    @location(5) color: vec4<f32>,
+    @location(1) relative: vec3f,
+    @location(2) normal: vec3f,
+    @location(3) tangent: vec4f,
+    @location(4) uvs: vec4f,
+    @location(5) color: vec4f,
 }
 
 @vertex
@@ -34,7 +34,7 @@ fn shade_vertex(vertex: Vertex) -> ColorVarying {
 }
 
 // BSDF parameters with textures and tints applied, as in trace/surface_point.wgsl.
-fn surface_of(base: vec3<f32>, uvs: vec4<f32>, front: bool) -> BsdfSurface {
+fn surface_of(base: vec3f, uvs: vec4f, front: bool) -> BsdfSurface {
     var s: BsdfSurface;
     s.base_color = base;
     s.metallic = material.metallic;
@@ -74,7 +74,7 @@ fn surface_of(base: vec3<f32>, uvs: vec4<f32>, front: bool) -> BsdfSurface {
 }
 
 // Ambient irradiance from six faces, weighted by the squared components of the normal, whose sum is 1.
-fn ambient_at(normal: vec3<f32>) -> vec3<f32> {
+fn ambient_at(normal: vec3f) -> vec3f {
     let share = normal * normal;
     let x = select(lights.ambient[1], lights.ambient[0], normal.x >= 0.0).xyz;
     let y = select(lights.ambient[3], lights.ambient[2], normal.y >= 0.0).xyz;
@@ -83,12 +83,12 @@ fn ambient_at(normal: vec3<f32>) -> vec3<f32> {
 }
 
 struct Incoming {
-    direction: vec3<f32>,
+    direction: vec3f,
     // On a surface facing the light.
-    irradiance: vec3<f32>,
+    irradiance: vec3f,
 }
 
-fn incoming(light: RasterLight, position: vec3<f32>) -> Incoming {
+fn incoming(light: RasterLight, position: vec3f) -> Incoming {
     if light.kind == 0u {
         return Incoming(-light.direction, light.intensity);
     }
@@ -109,7 +109,7 @@ fn incoming(light: RasterLight, position: vec3<f32>) -> Incoming {
 }
 
 @fragment
-fn shade(in: ColorVarying, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+fn shade(in: ColorVarying, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let base = base_at(in.uvs, in.color);
     let across = cross(dpdx(in.relative), dpdy(in.relative));
     // An alpha-tested edge is widened to one pixel, for alpha to coverage.
@@ -125,7 +125,7 @@ fn shade(in: ColorVarying, @builtin(front_facing) front: bool) -> @location(0) v
         opacity = clamp(base.w, 0.0, 1.0);
     }
     let surface = surface_of(base.xyz, in.uvs, front);
-    var mapped = vec3<f32>(0.5, 0.5, 1.0);
+    var mapped = vec3f(0.5, 0.5, 1.0);
     if NORMAL_MAP {
         mapped = textureSampleBias(normal_map, normal_sampler, uv_of(2u, in.uvs), frame.texture_bias).xyz;
     }
@@ -134,7 +134,7 @@ fn shade(in: ColorVarying, @builtin(front_facing) front: bool) -> @location(0) v
         emitted *= textureSampleBias(emissive_map, emissive_sampler, uv_of(3u, in.uvs), frame.texture_bias).xyz;
     }
     if !front && (material.flags & FLAG_DOUBLE_SIDED) == 0u {
-        emitted = vec3<f32>(0.0);
+        emitted = vec3f(0.0);
     }
 
     let toward = unit(-in.relative);
@@ -191,9 +191,9 @@ fn shade(in: ColorVarying, @builtin(front_facing) front: bool) -> @location(0) v
     var through = 0.0;
     if LOBE_TRANSMISSION {
         let passed = clamp(surface.transmission * (1.0 - surface.metallic), 0.0, 1.0);
-        through = passed * (1.0 - fresnel_dielectric(wo.z, max(surface.ior, 1.0))) * luma(clamp(base.xyz, vec3<f32>(0.0), vec3<f32>(1.0)));
+        through = passed * (1.0 - fresnel_dielectric(wo.z, max(surface.ior, 1.0))) * luma(clamp(base.xyz, vec3f(0.0), vec3f(1.0)));
     }
-    color = clamp(color, vec3<f32>(0.0), vec3<f32>(MAX_COLOR));
+    color = clamp(color, vec3f(0.0), vec3f(MAX_COLOR));
     if (material.flags & FLAG_BLEND) != 0u {
         color *= opacity;
     }
@@ -201,5 +201,5 @@ fn shade(in: ColorVarying, @builtin(front_facing) front: bool) -> @location(0) v
     if ALPHA_TEST && !passes_alpha_test(base.w) {
         discard;
     }
-    return vec4<f32>(color, opacity * (1.0 - through));
+    return vec4f(color, opacity * (1.0 - through));
 }

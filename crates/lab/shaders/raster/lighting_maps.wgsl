@@ -12,26 +12,26 @@
 const MAX_COLOR: f32 = 65504.0;
 
 // Cell of the albedo tables.
-fn load(i: u32) -> vec4<u32> {
-    return textureLoad(albedo_tables, vec2<u32>(i % 256u, i / 256u), 0);
+fn load(i: u32) -> vec4u {
+    return textureLoad(albedo_tables, vec2u(i % 256u, i / 256u), 0);
 }
 
 // Sky radiance in a unit direction, blurred to the width of a highlight of `roughness`.
-fn sky_radiance(direction: vec3<f32>, roughness: f32) -> vec3<f32> {
+fn sky_radiance(direction: vec3f, roughness: f32) -> vec3f {
     return textureSampleLevel(sky_map, sky_sampler, map_coordinates(direction), roughness * lights.last_level).xyz;
 }
 
 // Share of the sun that reaches a point: 3x3 bilinear shadow map comparisons.
-fn sunlit(position: vec3<f32>, normal: vec3<f32>) -> f32 {
+fn sunlit(position: vec3f, normal: vec3f) -> f32 {
     // Offset along the normal by 1.5 texels, against self-shadowing.
-    let at = vec4<f32>(position + normal * (1.5 * lights.texel), 1.0);
-    let place = vec3<f32>(dot(lights.sun[0], at), dot(lights.sun[1], at), dot(lights.sun[2], at));
-    let uv = vec2<f32>(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y);
-    let step = 1.0 / vec2<f32>(textureDimensions(shadow_map));
+    let at = vec4f(position + normal * (1.5 * lights.texel), 1.0);
+    let place = vec3f(dot(lights.sun[0], at), dot(lights.sun[1], at), dot(lights.sun[2], at));
+    let uv = vec2f(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y);
+    let step = 1.0 / vec2f(textureDimensions(shadow_map));
     var sum = 0.0;
     for (var y = -1; y <= 1; y++) {
         for (var x = -1; x <= 1; x++) {
-            let tap = uv + vec2<f32>(f32(x), f32(y)) * step;
+            let tap = uv + vec2f(f32(x), f32(y)) * step;
             sum += textureSampleCompareLevel(shadow_map, shadow_sampler, tap, place.z);
         }
     }

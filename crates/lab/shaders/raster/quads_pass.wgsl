@@ -9,13 +9,13 @@
 fn quad(
     @builtin(vertex_index) vertex: u32,
     @builtin(instance_index) instance: u32,
-) -> @builtin(position) vec4<f32> {
+) -> @builtin(position) vec4f {
     // Corners of two triangles.
-    let corner = vec2<u32>(0x32u >> vertex, 0x2cu >> vertex) & vec2<u32>(1u);
+    let corner = vec2u(0x32u >> vertex, 0x2cu >> vertex) & vec2u(1u);
     let word = list[8u + instance];
-    let px = vec2<f32>(2u * (vec2<u32>(word & 0xffffu, word >> 16u) + corner));
-    let at = 2.0 * px / frame.size - vec2<f32>(1.0);
-    return vec4<f32>(at.x, -at.y, 0.0, 1.0);
+    let px = vec2f(2u * (vec2u(word & 0xffffu, word >> 16u) + corner));
+    let at = 2.0 * px / frame.size - vec2f(1.0);
+    return vec4f(at.x, -at.y, 0.0, 1.0);
 }
 
 // Writes no color.

@@ -4,44 +4,44 @@
 // Camera. `high` plus `low` is the eye's position. The rows x, y, along project a point relative to the eye to
 // homogeneous pixels: (x, y) / along is the pixel (centres at integers, y down), along the distance on the view axis.
 struct Eye {
-    high: vec4<f32>,
-    low: vec4<f32>,
-    x: vec4<f32>,
-    y: vec4<f32>,
-    along: vec4<f32>,
+    high: vec4f,
+    low: vec4f,
+    x: vec4f,
+    y: vec4f,
+    along: vec4f,
 }
 
 struct RasterFrame {
     current: Eye,
     previous: Eye,
     // Columns: from a pixel (x, y, 1) to the homogeneous pixel of its direction in the previous frame.
-    previous_px_from_px: array<vec4<f32>, 3>,
+    previous_px_from_px: array<vec4f, 3>,
     // World-space ray through pixel (0, 0), and steps to the right and lower neighbour.
-    corner: vec4<f32>,
-    right: vec4<f32>,
-    down: vec4<f32>,
+    corner: vec4f,
+    right: vec4f,
+    down: vec4f,
     // Pixels of the viewport, each of which shows one pixel of the full-rate frame: pixel (x, y) of the viewport shows
     // first_px + step * (x, y).
-    size: vec2<f32>,
+    size: vec2f,
     near: f32,
     // Level of detail that is added to that of textures: -log2(step) where pixels are samples of a full-rate frame.
     texture_bias: f32,
-    first_px: vec2<f32>,
+    first_px: vec2f,
     // Corner of the viewport in the target.
-    origin: vec2<f32>,
+    origin: vec2f,
     step: f32,
     per_step: f32,
-    unused: vec2<f32>,
+    unused: vec2f,
 }
 
 struct RasterLight {
-    position: vec3<f32>,
+    position: vec3f,
     // 0 directional, 1 point, 2 spot, 3 one-sided panel, 4 two-sided panel.
     kind: u32,
-    direction: vec3<f32>,
+    direction: vec3f,
     range: f32,
     // Radiance for panels.
-    intensity: vec3<f32>,
+    intensity: vec3f,
     cos_inner: f32,
     cos_outer: f32,
     area: f32,
@@ -54,17 +54,17 @@ const MAX_LIGHTS: u32 = 64u;
 
 struct RasterLights {
     // Irradiance on faces towards +x, -x, +y, -y, +z, -z.
-    ambient: array<vec4<f32>, 6>,
+    ambient: array<vec4f, 6>,
     // Rows from world space to the shadow map: x and y in -1 to 1, z from 0 (far) to 1.
-    sun: array<vec4<f32>, 3>,
+    sun: array<vec4f, 3>,
     // Radiance of indirect light, the same everywhere.
-    bounced: vec3<f32>,
+    bounced: vec3f,
     count: u32,
     // Size of a shadow map texel in metres.
     texel: f32,
     // Number of the sky's last mip level.
     last_level: f32,
-    unused: vec2<f32>,
+    unused: vec2f,
     lights: array<RasterLight, MAX_LIGHTS>,
 }
 
@@ -76,38 +76,38 @@ struct RasterLights {
 
 // A vertex, with its position in the previous frame.
 struct Vertex {
-    @location(0) position: vec3<f32>,
-    @location(1) normal: vec3<f32>,
-    @location(2) tangent: vec4<f32>,
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) tangent: vec4f,
     // First and second texture coordinates.
-    @location(3) uvs: vec4<f32>,
-    @location(4) color: vec4<f32>,
-    @location(5) before: vec3<f32>,
+    @location(3) uvs: vec4f,
+    @location(4) color: vec4f,
+    @location(5) before: vec3f,
 }
 
 // Position relative to the eye. The eye's position has two parts, so that no precision is lost far from the origin.
-fn from_eye(eye: Eye, world: vec3<f32>) -> vec3<f32> {
+fn from_eye(eye: Eye, world: vec3f) -> vec3f {
     return (world - eye.high.xyz) - eye.low.xyz;
 }
 
-fn homogeneous_px(eye: Eye, relative: vec3<f32>) -> vec3<f32> {
-    return vec3<f32>(dot(eye.x.xyz, relative), dot(eye.y.xyz, relative), dot(eye.along.xyz, relative));
+fn homogeneous_px(eye: Eye, relative: vec3f) -> vec3f {
+    return vec3f(dot(eye.x.xyz, relative), dot(eye.y.xyz, relative), dot(eye.along.xyz, relative));
 }
 
 // Clip position with reversed depth and no far plane: depth is near / distance.
-fn clip(px: vec3<f32>) -> vec4<f32> {
+fn clip(px: vec3f) -> vec4f {
     let at = (px.xy - frame.first_px * px.z) * frame.per_step;
     let x = (2.0 * at.x + px.z) / frame.size.x - px.z;
     let y = px.z - (2.0 * at.y + px.z) / frame.size.y;
-    return vec4<f32>(x, y, frame.near, px.z);
+    return vec4f(x, y, frame.near, px.z);
 }
 
 // Pixel of the full-rate frame that a fragment shows.
-fn full_rate_px(position: vec4<f32>) -> vec2<f32> {
-    return frame.first_px + ((position.xy - vec2<f32>(0.5)) - frame.origin) * frame.step;
+fn full_rate_px(position: vec4f) -> vec2f {
+    return frame.first_px + ((position.xy - vec2f(0.5)) - frame.origin) * frame.step;
 }
 
 // A triangle that covers the frame, at infinite distance.
-fn fullscreen_position(index: u32) -> vec4<f32> {
-    return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+fn fullscreen_position(index: u32) -> vec4f {
+    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }

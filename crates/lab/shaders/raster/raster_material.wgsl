@@ -13,25 +13,25 @@ const FLAG_VOLUME: u32 = 8u;
 
 // MaterialRecord in src/trace/shading_records.rs, and the coordinates of the textures.
 struct RasterMaterial {
-    base_color: vec3<f32>,
+    base_color: vec3f,
     opacity: f32,
-    emissive: vec3<f32>,
+    emissive: vec3f,
     cutoff: f32,
     metallic: f32,
     roughness: f32,
     specular: f32,
     ior: f32,
-    specular_color: vec3<f32>,
+    specular_color: vec3f,
     specular_tint: f32,
-    sheen_color: vec3<f32>,
+    sheen_color: vec3f,
     sheen_roughness: f32,
     anisotropy: f32,
     clearcoat: f32,
     clearcoat_roughness: f32,
     transmission: f32,
-    absorption: vec3<f32>,
+    absorption: vec3f,
     normal_scale: f32,
-    phong_specular: vec3<f32>,
+    phong_specular: vec3f,
     phong_exponent: f32,
     flags: u32,
     sheen_tint: f32,
@@ -47,10 +47,10 @@ struct RasterMaterial {
     sheen_roughness_texture: u32,
     transmission_texture: u32,
     phong_diffuse: f32,
-    unused: vec2<f32>,
+    unused: vec2f,
     // Of each texture, in the order of their bindings: rows of the transform; the fourth element of the first row is 1
     // for the second texture coordinates.
-    coordinates: array<array<vec4<f32>, 2>, 11>,
+    coordinates: array<array<vec4f, 2>, 11>,
 }
 
 @group(1) @binding(0) var<storage, read> material: RasterMaterial;
@@ -71,19 +71,19 @@ struct RasterMaterial {
 @group(1) @binding(15) var transmission_map: texture_2d<f32>;
 
 // Texture coordinates of the texture of slot `slot`.
-fn uv_of(slot: u32, uvs: vec4<f32>) -> vec2<f32> {
+fn uv_of(slot: u32, uvs: vec4f) -> vec2f {
     if !TEXTURE_COORDINATES {
         return uvs.xy;
     }
     let r0 = material.coordinates[slot][0];
     let r1 = material.coordinates[slot][1];
     let uv = select(uvs.xy, uvs.zw, r0.w != 0.0);
-    return vec2<f32>((r0.x * uv.x + r0.z) + r0.y * uv.y, (r1.x * uv.x + r1.z) + r1.y * uv.y);
+    return vec2f((r0.x * uv.x + r0.z) + r0.y * uv.y, (r1.x * uv.x + r1.z) + r1.y * uv.y);
 }
 
 // Base color and opacity.
-fn base_at(uvs: vec4<f32>, color: vec4<f32>) -> vec4<f32> {
-    var base = vec4<f32>(material.base_color, material.opacity) * color;
+fn base_at(uvs: vec4f, color: vec4f) -> vec4f {
+    var base = vec4f(material.base_color, material.opacity) * color;
     if BASE_COLOR_TEXTURE {
         base *= textureSampleBias(base_color_map, base_color_sampler, uv_of(0u, uvs), frame.texture_bias);
     }

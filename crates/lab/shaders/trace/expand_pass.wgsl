@@ -17,12 +17,12 @@ struct Batch {
 @group(0) @binding(0) var<uniform> batch: Batch;
 @group(0) @binding(1) var<storage, read> spans: array<Span>;
 // Pixel and sample number of each item.
-@group(0) @binding(2) var<storage, read_write> work: array<vec2<u32>>;
+@group(0) @binding(2) var<storage, read_write> work: array<vec2u>;
 
 override WORKGROUP: u32 = 64u;
 
 @compute @workgroup_size(WORKGROUP)
-fn expand(@builtin(global_invocation_id) id: vec3<u32>) {
+fn expand(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= batch.items {
         return;
     }
@@ -39,5 +39,5 @@ fn expand(@builtin(global_invocation_id) id: vec3<u32>) {
         }
     }
     let pixel = spans[low].pixel + (number - spans[low].before);
-    work[id.x] = vec2<u32>(pixel, batch.first_sample + id.x % batch.samples);
+    work[id.x] = vec2u(pixel, batch.first_sample + id.x % batch.samples);
 }

@@ -4,7 +4,7 @@
 // Finds the nearest hit of every live path.
 
 @compute @workgroup_size(WORKGROUP)
-fn extend(@builtin(global_invocation_id) id: vec3<u32>) {
+fn extend(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= plan[PATHS_ALIVE] {
         return;
     }
@@ -18,7 +18,7 @@ fn extend(@builtin(global_invocation_id) id: vec3<u32>) {
     let ray = Ray(path_row(path, PATH_ORIGIN).xyz, path_row(path, PATH_DIRECTION).xyz, FAR_AWAY);
     let hit = closest(ray, frame.key);
     paths[path * PATH_ROWS + PATH_HIT] =
-        vec4<u32>(hit.triangle, bitcast<u32>(hit.t), bitcast<u32>(hit.u), bitcast<u32>(hit.v));
+        vec4u(hit.triangle, bitcast<u32>(hit.t), bitcast<u32>(hit.u), bitcast<u32>(hit.v));
 }
 
 // Largest finite f32: rays have no limit.

@@ -1,17 +1,17 @@
 // Bindings of all kernels, and the layout of path state. Twin of trace/gpu/paths.rs.
 
 struct TraceFrame {
-    origin: vec3<f32>,
+    origin: vec3f,
     key: u32,
-    corner: vec3<f32>,
+    corner: vec3f,
     lights: u32,
-    right: vec3<f32>,
+    right: vec3f,
     sky_probability: f32,
-    down: vec3<f32>,
+    down: vec3f,
     width: u32,
-    sky: vec3<f32>,
+    sky: vec3f,
     first_item: u32,
-    map_size: vec2<u32>,
+    map_size: vec2u,
     items: u32,
     capacity: u32,
     jitter: f32,
@@ -32,9 +32,9 @@ const SHADOW_RAYS: u32 = 8u;
 
 @group(1) @binding(0) var<uniform> frame: TraceFrame;
 // Pixel and sample number of all items; the batch in flight begins at `first_item`.
-@group(1) @binding(1) var<storage, read> work: array<vec2<u32>>;
+@group(1) @binding(1) var<storage, read> work: array<vec2u>;
 // State of each path, PATH_ROWS rows.
-@group(1) @binding(2) var<storage, read_write> paths: array<vec4<u32>>;
+@group(1) @binding(2) var<storage, read_write> paths: array<vec4u>;
 // Path indices in three lists of `capacity` each: live paths at even bounces, at odd bounces, and paths with a shadow
 // ray.
 @group(1) @binding(3) var<storage, read_write> lists: array<u32>;
@@ -54,10 +54,10 @@ const PATH_HIT: u32 = 4u;
 // Three rows of a shadow ray: origin and limit, direction, contribution.
 const PATH_SHADOW: u32 = 5u;
 
-fn path_row(path: u32, row: u32) -> vec4<f32> {
-    return bitcast<vec4<f32>>(paths[path * PATH_ROWS + row]);
+fn path_row(path: u32, row: u32) -> vec4f {
+    return bitcast<vec4f>(paths[path * PATH_ROWS + row]);
 }
 
-fn set_path_row(path: u32, row: u32, value: vec3<f32>, last: f32) {
-    paths[path * PATH_ROWS + row] = bitcast<vec4<u32>>(vec4<f32>(value, last));
+fn set_path_row(path: u32, row: u32, value: vec3f, last: f32) {
+    paths[path * PATH_ROWS + row] = bitcast<vec4u>(vec4f(value, last));
 }

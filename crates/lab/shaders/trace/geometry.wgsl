@@ -15,7 +15,7 @@ const FLAG_TRANSMISSIVE: u32 = 0x4000000u;
 // Corner positions in world space; material; FLAG_* bits; index in the source; one plus the row in the light table, or
 // 0.
 struct Triangle {
-    corners: array<vec3<f32>, 3>,
+    corners: array<vec3f, 3>,
     material: u32,
     flags: u32,
     source: u32,
@@ -25,13 +25,13 @@ struct Triangle {
 // Attributes at a point of a triangle. Normal and tangent are interpolated, not normalized; the bitangent's sign is the
 // first corner's.
 struct Attributes {
-    normal: vec3<f32>,
-    tangent: vec3<f32>,
+    normal: vec3f,
+    tangent: vec3f,
     bitangent_sign: f32,
-    uv: vec2<f32>,
-    color: vec4<f32>,
+    uv: vec2f,
+    color: vec4f,
     // Zero unless place_at reads it.
-    second_uv: vec2<f32>,
+    second_uv: vec2f,
 }
 
 fn is_moving(triangle: u32) -> bool {
@@ -48,16 +48,16 @@ fn triangle_at(triangle: u32) -> Triangle {
     let r0 = load(at);
     let r1 = load(at + 1u);
     let r2 = load(at + 2u);
-    let corners = array<vec3<f32>, 3>(
-        bitcast<vec3<f32>>(r0.xyz), bitcast<vec3<f32>>(r1.xyz), bitcast<vec3<f32>>(r2.xyz));
+    let corners = array<vec3f, 3>(
+        bitcast<vec3f>(r0.xyz), bitcast<vec3f>(r1.xyz), bitcast<vec3f>(r2.xyz));
     return Triangle(corners, r0.w & 0xffffffu, r0.w & 0xff000000u, r1.w, r2.w);
 }
 
 // Corner positions in the previous frame; the current ones for static triangles.
-fn previous_corners(triangle: u32) -> array<vec3<f32>, 3> {
+fn previous_corners(triangle: u32) -> array<vec3f, 3> {
     let at = select(TRIANGLES + triangle * 3u, MOVING_PREVIOUS + (triangle - FIRST_MOVING) * 3u, is_moving(triangle));
-    return array<vec3<f32>, 3>(
-        bitcast<vec3<f32>>(load(at).xyz), bitcast<vec3<f32>>(load(at + 1u).xyz), bitcast<vec3<f32>>(load(at + 2u).xyz));
+    return array<vec3f, 3>(
+        bitcast<vec3f>(load(at).xyz), bitcast<vec3f>(load(at + 1u).xyz), bitcast<vec3f>(load(at + 2u).xyz));
 }
 
 // AttributeRecord::at
@@ -71,23 +71,23 @@ fn attributes_at(triangle: u32, u: f32, v: f32) -> Attributes {
     let normal = (decode_direction(normals.x) * w + decode_direction(normals.y) * u) + decode_direction(normals.z) * v;
     let tangent = (decode_direction(tangents.x & ~1u) * w + decode_direction(tangents.y & ~1u) * u)
         + decode_direction(tangents.z & ~1u) * v;
-    let a = bitcast<vec2<f32>>(uv0.xy);
-    let b = bitcast<vec2<f32>>(vec2<u32>(uv0.z, uv1.x));
-    let c = bitcast<vec2<f32>>(uv1.yz);
+    let a = bitcast<vec2f>(uv0.xy);
+    let b = bitcast<vec2f>(vec2u(uv0.z, uv1.x));
+    let c = bitcast<vec2f>(uv1.yz);
     let color0 = texel_value(normals.w);
     let color = (color0 + (texel_value(tangents.w) - color0) * u) + (texel_value(uv0.w) - color0) * v;
-    return Attributes(normal, tangent, select(1.0, -1.0, (tangents.x & 1u) != 0u), (a * w + b * u) + c * v, color, vec2<f32>(0.0));
+    return Attributes(normal, tangent, select(1.0, -1.0, (tangents.x & 1u) != 0u), (a * w + b * u) + c * v, color, vec2f(0.0));
 }
 
 // SecondUvRecord::at
-fn second_uv_at(triangle: u32, u: f32, v: f32) -> vec2<f32> {
+fn second_uv_at(triangle: u32, u: f32, v: f32) -> vec2f {
     // No section but that of the nodes begins at 0: there is none.
     if select(SECOND_UVS, MOVING_SECOND_UVS, is_moving(triangle)) == 0u {
-        return vec2<f32>(0.0);
+        return vec2f(0.0);
     }
     let at = record_at(triangle, SECOND_UVS, MOVING_SECOND_UVS, 2u);
-    let ab = bitcast<vec4<f32>>(load(at));
-    let c = bitcast<vec2<f32>>(load(at + 1u).xy);
+    let ab = bitcast<vec4f>(load(at));
+    let c = bitcast<vec2f>(load(at + 1u).xy);
     let w = (1.0 - u) - v;
     return (ab.xy * w + ab.zw * u) + c * v;
 }

@@ -3,9 +3,9 @@
 // `traverse` does.
 
 // Two elements per ray: origin and limit; direction and an unused word.
-@group(0) @binding(1) var<storage, read> rays: array<vec4<f32>>;
+@group(0) @binding(1) var<storage, read> rays: array<vec4f>;
 // Triangle, distance and barycentric weights per ray. `any_hits` writes only the first word: 1 for a hit.
-@group(0) @binding(2) var<storage, read_write> hits: array<vec4<u32>>;
+@group(0) @binding(2) var<storage, read_write> hits: array<vec4u>;
 
 override WORKGROUP: u32 = 64u;
 
@@ -16,16 +16,16 @@ fn ray_at(i: u32) -> Ray {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn closest_hits(@builtin(global_invocation_id) id: vec3<u32>) {
+fn closest_hits(@builtin(global_invocation_id) id: vec3u) {
     if id.x < arrayLength(&hits) {
         let hit = closest(ray_at(id.x), id.x);
-        hits[id.x] = vec4<u32>(hit.triangle, bitcast<u32>(hit.t), bitcast<u32>(hit.u), bitcast<u32>(hit.v));
+        hits[id.x] = vec4u(hit.triangle, bitcast<u32>(hit.t), bitcast<u32>(hit.u), bitcast<u32>(hit.v));
     }
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn any_hits(@builtin(global_invocation_id) id: vec3<u32>) {
+fn any_hits(@builtin(global_invocation_id) id: vec3u) {
     if id.x < arrayLength(&hits) {
-        hits[id.x] = vec4<u32>(select(0u, 1u, occluded(ray_at(id.x), id.x)), 0u, 0u, 0u);
+        hits[id.x] = vec4u(select(0u, 1u, occluded(ray_at(id.x), id.x)), 0u, 0u, 0u);
     }
 }

@@ -13,19 +13,19 @@ const FAR: f32 = 3e38;
 
 // lights::LightSample; a `pdf` of 0 means no light.
 struct LightSample {
-    direction: vec3<f32>,
+    direction: vec3f,
     distance: f32,
-    radiance: vec3<f32>,
+    radiance: vec3f,
     pdf: f32,
     can_be_hit: bool,
 }
 
 fn no_light() -> LightSample {
-    return LightSample(vec3<f32>(0.0, 1.0, 0.0), 0.0, vec3<f32>(0.0), 0.0, false);
+    return LightSample(vec3f(0.0, 1.0, 0.0), 0.0, vec3f(0.0), 0.0, false);
 }
 
 // lights::sample_light
-fn sample_light(p: SurfacePoint, draws: vec4<f32>, more: vec4<f32>) -> LightSample {
+fn sample_light(p: SurfacePoint, draws: vec4f, more: vec4f) -> LightSample {
     let count = frame.lights;
     if count == 0u {
         return no_light();
@@ -56,7 +56,7 @@ fn sample_light(p: SurfacePoint, draws: vec4<f32>, more: vec4<f32>) -> LightSamp
 }
 
 // lights::from_triangle
-fn from_triangle(position: vec3<f32>, index: u32, probability: f32, place: vec2<f32>) -> LightSample {
+fn from_triangle(position: vec3f, index: u32, probability: f32, place: vec2f) -> LightSample {
     let c = triangle_at(index);
     let weights = barycentrics(place);
     let normal = cross(c.corners[1] - c.corners[0], c.corners[2] - c.corners[0]);
@@ -77,16 +77,16 @@ fn from_triangle(position: vec3<f32>, index: u32, probability: f32, place: vec2<
 }
 
 // lights::from_punctual
-fn from_punctual(position: vec3<f32>, index: u32, probability: f32) -> LightSample {
+fn from_punctual(position: vec3f, index: u32, probability: f32) -> LightSample {
     let r0 = load(PUNCTUAL + index * PUNCTUAL_ROWS);
     let r1 = load(PUNCTUAL + index * PUNCTUAL_ROWS + 1u);
-    let r2 = bitcast<vec4<f32>>(load(PUNCTUAL + index * PUNCTUAL_ROWS + 2u));
-    let axis = bitcast<vec3<f32>>(r1.xyz);
+    let r2 = bitcast<vec4f>(load(PUNCTUAL + index * PUNCTUAL_ROWS + 2u));
+    let axis = bitcast<vec3f>(r1.xyz);
     var radiance = r2.xyz;
     var direction = -axis;
     var distance = FAR;
     if r0.w != 0u {
-        let to = bitcast<vec3<f32>>(r0.xyz) - position;
+        let to = bitcast<vec3f>(r0.xyz) - position;
         distance = sqrt(dot(to, to));
         direction = unit(to);
         radiance *= distance_falloff(distance, bitcast<f32>(r1.w));
@@ -102,15 +102,15 @@ fn has_map() -> bool {
     return EFFECT_ENVIRONMENT_MAP && frame.map_size.x > 0u;
 }
 
-fn map_radiance(i: i32, j: i32) -> vec3<f32> {
+fn map_radiance(i: i32, j: i32) -> vec3f {
     let size = frame.map_size;
     let index = wrap_texel(j, size.y, WRAP_CLAMP) * size.x + wrap_texel(i, size.x, WRAP_REPEAT);
-    return bitcast<vec3<f32>>(load(MAP + index * MAP_ROWS).xyz);
+    return bitcast<vec3f>(load(MAP + index * MAP_ROWS).xyz);
 }
 
 // lights::from_environment
-fn from_environment(p: SurfacePoint, probability: f32, place: vec2<f32>, more: vec4<f32>) -> LightSample {
-    var direction: vec3<f32>;
+fn from_environment(p: SurfacePoint, probability: f32, place: vec2f, more: vec4f) -> LightSample {
+    var direction: vec3f;
     var pdf: f32;
     if has_map() {
         let size = frame.map_size;
@@ -134,7 +134,7 @@ fn from_environment(p: SurfacePoint, probability: f32, place: vec2<f32>, more: v
 }
 
 // lights::sky
-fn sky(direction: vec3<f32>) -> vec3<f32> {
+fn sky(direction: vec3f) -> vec3f {
     if !has_map() {
         return frame.sky;
     }
@@ -151,7 +151,7 @@ fn sky(direction: vec3<f32>) -> vec3<f32> {
 }
 
 // lights::sky_pdf
-fn sky_pdf(direction: vec3<f32>, cosine: f32) -> f32 {
+fn sky_pdf(direction: vec3f, cosine: f32) -> f32 {
     if !has_map() {
         return frame.sky_probability * cosine_hemisphere_pdf(cosine);
     }

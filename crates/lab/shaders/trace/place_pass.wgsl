@@ -8,10 +8,10 @@ const COLUMNS: u32 = 4096u;
 
 struct Placement {
     // Corner and size of the film, in points of the lattice.
-    film_first: vec2<u32>,
-    film_size: vec2<u32>,
+    film_first: vec2u,
+    film_size: vec2u,
     // Pixel of the lattice's point (0, 0).
-    first_px: vec2<u32>,
+    first_px: vec2u,
     step: u32,
     // Number of points.
     count: u32,
@@ -22,31 +22,31 @@ struct Placement {
 
 @group(0) @binding(0) var<uniform> placement: Placement;
 // Of each point: x and y in 16 bits each; the bits of distance and of motion.
-@group(0) @binding(1) var<storage, read> points: array<vec4<u32>>;
+@group(0) @binding(1) var<storage, read> points: array<vec4u>;
 // As in resolve_pass.
-@group(0) @binding(2) var<storage, read> film: array<vec4<f32>>;
+@group(0) @binding(2) var<storage, read> film: array<vec4f>;
 @group(0) @binding(3) var color_out: texture_storage_2d_array<rgba32float, write>;
 @group(0) @binding(4) var noise_out: texture_storage_2d_array<rg32float, write>;
 @group(0) @binding(5) var depth_out: texture_storage_2d_array<r32float, write>;
 @group(0) @binding(6) var motion_out: texture_storage_2d_array<rg32float, write>;
 
 // Mean and number of samples of a point, 0 beyond the film; or the squared deviations with row 1.
-fn film_row(point: vec2<u32>, row: u32) -> vec4<f32> {
+fn film_row(point: vec2u, row: u32) -> vec4f {
     // Coordinates left of or above the film wrap to large numbers.
     let at = point - placement.film_first;
     if at.x >= placement.film_size.x || at.y >= placement.film_size.y {
-        return vec4<f32>(0.0);
+        return vec4f(0.0);
     }
     return film[2u * (at.y * placement.film_size.x + at.x) + row];
 }
 
 // Film::spread
-fn spread(point: vec2<u32>) -> f32 {
+fn spread(point: vec2u) -> f32 {
     var mean = 0.0;
     var squares = 0.0;
     var count = 0.0;
     for (var i = 0u; i < 9u; i++) {
-        let near = film_row(point + vec2<u32>(i % 3u, i / 3u) - vec2<u32>(1u), 0u);
+        let near = film_row(point + vec2u(i % 3u, i / 3u) - vec2u(1u), 0u);
         if near.w > 0.0 {
             let sample = luma(near.xyz);
             count += 1.0;
@@ -62,31 +62,31 @@ fn spread(point: vec2<u32>) -> f32 {
 }
 
 // Film::noise_at
-fn noise_at(point: vec2<u32>) -> vec2<f32> {
+fn noise_at(point: vec2u) -> vec2f {
     let count = film_row(point, 0u).w;
     if count == 0.0 {
-        return vec2<f32>(0.0);
+        return vec2f(0.0);
     }
     if count == 1.0 {
-        return vec2<f32>(spread(point), count);
+        return vec2f(spread(point), count);
     }
     let variance = film_row(point, 1u).xyz / (count * (count - 1.0));
-    return vec2<f32>(luma(sqrt(variance)), count);
+    return vec2f(luma(sqrt(variance)), count);
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u) {
     let index = id.y * COLUMNS + id.x;
     if index >= placement.count {
         return;
     }
     let words = points[index];
-    let point = vec2<u32>(words.x & 0xffffu, words.x >> 16u);
+    let point = vec2u(words.x & 0xffffu, words.x >> 16u);
     let px = placement.first_px + point * placement.step;
     let own = film_row(point, 0u);
-    let missing = vec4<f32>(bitcast<f32>(placement.missing));
-    textureStore(color_out, px, 0, select(missing, vec4<f32>(own.xyz, 1.0), own.w > 0.0));
-    textureStore(noise_out, px, 0, vec4<f32>(noise_at(point), 0.0, 0.0));
-    textureStore(depth_out, px, 0, vec4<f32>(bitcast<f32>(words.y)));
-    textureStore(motion_out, px, 0, vec4<f32>(bitcast<vec2<f32>>(words.zw), 0.0, 0.0));
+    let missing = vec4f(bitcast<f32>(placement.missing));
+    textureStore(color_out, px, 0, select(missing, vec4f(own.xyz, 1.0), own.w > 0.0));
+    textureStore(noise_out, px, 0, vec4f(noise_at(point), 0.0, 0.0));
+    textureStore(depth_out, px, 0, vec4f(bitcast<f32>(words.y)));
+    textureStore(motion_out, px, 0, vec4f(bitcast<vec2f>(words.zw), 0.0, 0.0));
 }

@@ -19,6 +19,6 @@ const FLAG_DOUBLE_SIDED: u32 = 4u;
 const FLAG_VOLUME: u32 = 8u;
 
 // Row `row` of a material.
-fn material_row(material: u32, row: u32) -> vec4<u32> {
+fn material_row(material: u32, row: u32) -> vec4u {
     return load(MATERIALS + material * MATERIAL_ROWS + row);
 }

@@ -4,10 +4,10 @@
 // samples.
 
 // Two rows per pixel: mean and count; squared deviations.
-@group(2) @binding(0) var<storage, read_write> film: array<vec4<f32>>;
+@group(2) @binding(0) var<storage, read_write> film: array<vec4f>;
 
 @compute @workgroup_size(WORKGROUP)
-fn resolve(@builtin(global_invocation_id) id: vec3<u32>) {
+fn resolve(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= frame.items {
         return;
     }
@@ -23,7 +23,7 @@ fn resolve(@builtin(global_invocation_id) id: vec3<u32>) {
     for (var i = id.x; i < frame.items && work[frame.first_item + i].x == pixel; i++) {
         var sample = path_row(i, PATH_RADIANCE).xyz;
         if !(is_finite(sample.x) && is_finite(sample.y) && is_finite(sample.z)) {
-            sample = vec3<f32>(0.0);
+            sample = vec3f(0.0);
             atomicAdd(&counters[NONFINITE], 1u);
         }
         count += 1.0;
@@ -31,6 +31,6 @@ fn resolve(@builtin(global_invocation_id) id: vec3<u32>) {
         mean += off / count;
         squares += off * (sample - mean);
     }
-    film[at] = vec4<f32>(mean, count);
-    film[at + 1u] = vec4<f32>(squares, 0.0);
+    film[at] = vec4f(mean, count);
+    film[at + 1u] = vec4f(squares, 0.0);
 }

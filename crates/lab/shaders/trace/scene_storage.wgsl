@@ -1,8 +1,8 @@
 // The scene buffer as a storage buffer.
 
-@group(0) @binding(0) var<storage, read> scene_buffer: array<vec4<u32>>;
+@group(0) @binding(0) var<storage, read> scene_buffer: array<vec4u>;
 
 // Element `i` of the scene buffer.
-fn load(i: u32) -> vec4<u32> {
+fn load(i: u32) -> vec4u {
     return scene_buffer[i];
 }

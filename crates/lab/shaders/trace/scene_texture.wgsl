@@ -6,6 +6,6 @@ override SCENE_WIDTH_LOG2: u32 = 10u;
 @group(0) @binding(0) var scene_buffer: texture_2d<u32>;
 
 // Element `i` of the scene buffer.
-fn load(i: u32) -> vec4<u32> {
-    return textureLoad(scene_buffer, vec2<u32>(i & ((1u << SCENE_WIDTH_LOG2) - 1u), i >> SCENE_WIDTH_LOG2), 0);
+fn load(i: u32) -> vec4u {
+    return textureLoad(scene_buffer, vec2u(i & ((1u << SCENE_WIDTH_LOG2) - 1u), i >> SCENE_WIDTH_LOG2), 0);
 }

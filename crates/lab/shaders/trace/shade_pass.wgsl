@@ -25,16 +25,16 @@ fn mis_weight(pdf: f32, light_pdf: f32) -> f32 {
     return power_heuristic(pdf, light_pdf);
 }
 
-fn any_positive(v: vec3<f32>) -> bool {
+fn any_positive(v: vec3f) -> bool {
     return max(v.x, max(v.y, v.z)) > 0.0;
 }
 
 // path::spawn_origin; callers check that shading and geometric normal agree about the side.
-fn spawn_origin(p: SurfacePoint, side: f32) -> vec3<f32> {
+fn spawn_origin(p: SurfacePoint, side: f32) -> vec3f {
     return offset_ray(p.position, select(-p.geometric, p.geometric, side > 0.0), p.magnitude);
 }
 
-fn eval_at(p: SurfacePoint, layers: Layers, wo: vec3<f32>, wi: vec3<f32>) -> Scatter {
+fn eval_at(p: SurfacePoint, layers: Layers, wo: vec3f, wi: vec3f) -> Scatter {
     if PHONG {
         let s = phong_eval(p.phong, wo, wi);
         return Scatter(wi, s.value, s.pdf);
@@ -42,7 +42,7 @@ fn eval_at(p: SurfacePoint, layers: Layers, wo: vec3<f32>, wi: vec3<f32>) -> Sca
     return eval(layers, wo, wi);
 }
 
-fn sample_at(p: SurfacePoint, layers: Layers, wo: vec3<f32>, draws: vec4<f32>) -> Scatter {
+fn sample_at(p: SurfacePoint, layers: Layers, wo: vec3f, draws: vec4f) -> Scatter {
     if PHONG {
         let s = phong_sample(p.phong, wo, draws.xyz);
         return Scatter(s.wi, s.value, s.pdf);
@@ -51,7 +51,7 @@ fn sample_at(p: SurfacePoint, layers: Layers, wo: vec3<f32>, draws: vec4<f32>) -
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn shade(@builtin(global_invocation_id) id: vec3<u32>) {
+fn shade(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= plan[PATHS_ALIVE] {
         return;
     }
@@ -74,7 +74,7 @@ fn shade(@builtin(global_invocation_id) id: vec3<u32>) {
     if EFFECT_TRANSMISSION {
         if !p.front {
             let depth = p.absorption * -hit.t;
-            throughput *= vec3<f32>(exp(depth.x), exp(depth.y), exp(depth.z));
+            throughput *= vec3f(exp(depth.x), exp(depth.y), exp(depth.z));
         }
     }
     if EFFECT_EMISSIVE_TRIANGLES {
@@ -97,7 +97,7 @@ fn shade(@builtin(global_invocation_id) id: vec3<u32>) {
 
     if INTEGRATOR != 2u {
         let draws = path_draws(item.x, item.y, first + DRAWS_LIGHT, frame.key);
-        var more = vec4<f32>(0.0);
+        var more = vec4f(0.0);
         if EFFECT_ENVIRONMENT_MAP {
             more = path_draws(item.x, item.y, first + DRAWS_MAP, frame.key);
         }

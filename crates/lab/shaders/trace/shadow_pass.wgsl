@@ -4,7 +4,7 @@
 // Adds the contribution of unoccluded light samples.
 
 @compute @workgroup_size(WORKGROUP)
-fn shadow(@builtin(global_invocation_id) id: vec3<u32>) {
+fn shadow(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= plan[SHADOW_RAYS] {
         return;
     }

@@ -8,15 +8,15 @@
 // Surface properties at a hit. Twin of trace/cpu/surface.rs.
 
 struct SurfacePoint {
-    position: vec3<f32>,
+    position: vec3f,
     magnitude: f32,
-    geometric: vec3<f32>,
-    x: vec3<f32>,
-    y: vec3<f32>,
-    z: vec3<f32>,
+    geometric: vec3f,
+    x: vec3f,
+    y: vec3f,
+    z: vec3f,
     front: bool,
-    emitted: vec3<f32>,
-    absorption: vec3<f32>,
+    emitted: vec3f,
+    absorption: vec3f,
     surface: BsdfSurface,
     phong: PhongSurface,
 }
@@ -30,13 +30,13 @@ fn place_at(triangle: u32, u: f32, v: f32) -> Attributes {
     return place;
 }
 
-fn uvs_of(place: Attributes) -> vec4<f32> {
-    return vec4<f32>(place.uv, place.second_uv);
+fn uvs_of(place: Attributes) -> vec4f {
+    return vec4f(place.uv, place.second_uv);
 }
 
 // surface::base
-fn base_of(material: u32, place: Attributes) -> vec4<f32> {
-    var base = bitcast<vec4<f32>>(material_row(material, 0u));
+fn base_of(material: u32, place: Attributes) -> vec4f {
+    var base = bitcast<vec4f>(material_row(material, 0u));
     if EFFECT_BASE_COLOR {
         base *= place.color;
         let id = material_row(material, 8u).z;
@@ -60,8 +60,8 @@ fn passes_alpha_test(triangle: u32, u: f32, v: f32, draw: f32) -> bool {
 }
 
 // surface::emission
-fn emission(material: u32, uvs: vec4<f32>) -> vec3<f32> {
-    var radiance = bitcast<vec3<f32>>(material_row(material, 1u).xyz);
+fn emission(material: u32, uvs: vec4f) -> vec3f {
+    var radiance = bitcast<vec3f>(material_row(material, 1u).xyz);
     if EFFECT_EMISSIVE_TEXTURE {
         let id = material_row(material, 9u).y;
         if id != NO_TEXTURE {
@@ -72,16 +72,16 @@ fn emission(material: u32, uvs: vec4<f32>) -> vec3<f32> {
 }
 
 // surface::emission_at
-fn emission_at(triangle: u32, material: u32, u: f32, v: f32) -> vec3<f32> {
+fn emission_at(triangle: u32, material: u32, u: f32, v: f32) -> vec3f {
     if EFFECT_EMISSIVE_TEXTURE {
         return emission(material, uvs_of(place_at(triangle, u, v)));
     }
-    return emission(material, vec4<f32>(0.0));
+    return emission(material, vec4f(0.0));
 }
 
-fn optional_texture(id: u32, uvs: vec4<f32>, is_color: bool) -> vec4<f32> {
+fn optional_texture(id: u32, uvs: vec4f, is_color: bool) -> vec4f {
     if id == NO_TEXTURE {
-        return vec4<f32>(1.0);
+        return vec4f(1.0);
     }
     return texture_value(id, uvs, is_color);
 }
@@ -89,7 +89,7 @@ fn optional_texture(id: u32, uvs: vec4<f32>, is_color: bool) -> vec4<f32> {
 // surface::resolve
 fn resolve_surface(material: u32, place: Attributes, front: bool) -> BsdfSurface {
     let base_color = base_of(material, place).xyz;
-    let basic = bitcast<vec4<f32>>(material_row(material, 2u));
+    let basic = bitcast<vec4f>(material_row(material, 2u));
     let words = material_row(material, 8u);
     var s: BsdfSurface;
     s.base_color = base_color;
@@ -97,8 +97,8 @@ fn resolve_surface(material: u32, place: Attributes, front: bool) -> BsdfSurface
     s.roughness = basic.y;
     s.specular = basic.z;
     s.ior = basic.w;
-    s.specular_color = vec3<f32>(1.0);
-    s.sheen_color = vec3<f32>(0.0);
+    s.specular_color = vec3f(1.0);
+    s.sheen_color = vec3f(0.0);
     s.sheen_roughness = 0.0;
     s.anisotropy = 0.0;
     s.clearcoat = 0.0;
@@ -108,17 +108,17 @@ fn resolve_surface(material: u32, place: Attributes, front: bool) -> BsdfSurface
     s.entering = front;
     var specular_tint = 0.0;
     if EFFECT_DIELECTRIC || EFFECT_TRANSMISSION {
-        let row = bitcast<vec4<f32>>(material_row(material, 3u));
+        let row = bitcast<vec4f>(material_row(material, 3u));
         s.specular_color = row.xyz;
         specular_tint = row.w;
     }
     if EFFECT_SHEEN {
-        let row = bitcast<vec4<f32>>(material_row(material, 4u));
+        let row = bitcast<vec4f>(material_row(material, 4u));
         s.sheen_color = row.xyz;
         s.sheen_roughness = row.w;
     }
     if EFFECT_ANISOTROPY || EFFECT_CLEARCOAT || EFFECT_TRANSMISSION {
-        let row = bitcast<vec4<f32>>(material_row(material, 5u));
+        let row = bitcast<vec4f>(material_row(material, 5u));
         s.anisotropy = row.x;
         s.clearcoat = row.y;
         s.clearcoat_roughness = row.z;
@@ -159,7 +159,7 @@ fn resolve_surface(material: u32, place: Attributes, front: bool) -> BsdfSurface
 }
 
 // surface::surface_point
-fn surface_point(hit: Hit, direction: vec3<f32>) -> SurfacePoint {
+fn surface_point(hit: Hit, direction: vec3f) -> SurfacePoint {
     let c = triangle_at(hit.triangle);
     let v0 = c.corners[0];
     let v1 = c.corners[1];
@@ -188,7 +188,7 @@ fn surface_point(hit: Hit, direction: vec3<f32>) -> SurfacePoint {
     p.geometric = face * side;
     p.z = visible_normal(normal * side, p.geometric, toward);
     p.surface = resolve_surface(c.material, place, front);
-    var along = vec3<f32>(0.0);
+    var along = vec3f(0.0);
     if EFFECT_ANISOTROPY {
         if p.surface.anisotropy > 0.0 {
             along = place.tangent - p.z * dot(p.z, place.tangent);
@@ -203,22 +203,22 @@ fn surface_point(hit: Hit, direction: vec3<f32>) -> SurfacePoint {
         p.y = xy[1];
     }
     p.front = front;
-    p.emitted = vec3<f32>(0.0);
+    p.emitted = vec3f(0.0);
     if EFFECT_EMISSIVE_TRIANGLES {
         if front || (flags & FLAG_DOUBLE_SIDED) != 0u {
             p.emitted = emission(c.material, uvs_of(place));
         }
     }
-    p.absorption = vec3<f32>(0.0);
+    p.absorption = vec3f(0.0);
     if EFFECT_TRANSMISSION {
         if (flags & FLAG_VOLUME) != 0u {
-            p.absorption = bitcast<vec3<f32>>(material_row(c.material, 6u).xyz);
+            p.absorption = bitcast<vec3f>(material_row(c.material, 6u).xyz);
         }
     }
     if PHONG {
-        let lobe = bitcast<vec4<f32>>(material_row(c.material, 7u));
+        let lobe = bitcast<vec4f>(material_row(c.material, 7u));
         let diffuse = bitcast<f32>(material_row(c.material, 11u).y);
-        let held = clamp(p.surface.base_color * diffuse, vec3<f32>(0.0), vec3<f32>(1.0));
+        let held = clamp(p.surface.base_color * diffuse, vec3f(0.0), vec3f(1.0));
         p.phong = PhongSurface(held, lobe.xyz, lobe.w);
     }
     p.position = point_at(v0, v1, v2, hit.u, hit.v);

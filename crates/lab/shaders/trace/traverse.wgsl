@@ -3,7 +3,7 @@
 // Traversal of the hierarchies. Twin of src/trace/bvh.rs, node.rs and geometry.rs. Needs `load` (scene_texture or
 // scene_storage) and `accept_hit` (accept_all or alpha_test).
 //
-// Elements of the scene buffer are vec4<u32>. A node has five: corner, and exponents with the mask of inner children;
+// Elements of the scene buffer are vec4u. A node has five: corner, and exponents with the mask of inner children;
 // first child, first triangle, meta bytes; then one byte per child for each of min x, max x, min y, max y, min z, max
 // z. A triangle has three: a corner each, with flags, source and light.
 
@@ -19,8 +19,8 @@ const FLAG_ALPHA: u32 = 0x1000000u;
 const STACK: u32 = 32u;
 
 struct Ray {
-    origin: vec3<f32>,
-    direction: vec3<f32>,
+    origin: vec3f,
+    direction: vec3f,
     t_max: f32,
 }
 
@@ -54,27 +54,27 @@ fn occluded(ray: Ray, key: u32) -> bool {
 
 // Whether the ray can hit anything: finite origin, finite nonzero direction, limit not NaN.
 fn is_valid_ray(ray: Ray) -> bool {
-    let nowhere = (bitcast<vec3<u32>>(ray.origin) & vec3<u32>(0x7fffffffu)) >= vec3<u32>(0x7f800000u);
-    let direction = bitcast<vec3<u32>>(ray.direction) & vec3<u32>(0x7fffffffu);
-    let wild = direction >= vec3<u32>(0x7f800000u);
+    let nowhere = (bitcast<vec3u>(ray.origin) & vec3u(0x7fffffffu)) >= vec3u(0x7f800000u);
+    let direction = bitcast<vec3u>(ray.direction) & vec3u(0x7fffffffu);
+    let wild = direction >= vec3u(0x7f800000u);
     let limit = bitcast<u32>(ray.t_max) & 0x7fffffffu;
-    return !any(nowhere) && !any(wild) && any(direction != vec3<u32>(0u)) && limit <= 0x7f800000u;
+    return !any(nowhere) && !any(wild) && any(direction != vec3u(0u)) && limit <= 0x7f800000u;
 }
 
 // Bvh::traverse. `first` is the index of the hierarchy's first triangle.
 fn traverse(ray: Ray, key: u32, nodes: u32, triangles: u32, first: u32, start: Hit, any: bool) -> Hit {
     let shear = shear(ray.direction);
-    let size_inverse = 1.0 / max(abs(ray.direction), vec3<f32>(MIN_DIRECTION));
-    let backward = ray.direction < vec3<f32>(0.0);
+    let size_inverse = 1.0 / max(abs(ray.direction), vec3f(MIN_DIRECTION));
+    let backward = ray.direction < vec3f(0.0);
     let inverse = select(size_inverse, -size_inverse, backward);
     let widening = size_inverse * NODE_SLACK;
     let octant = select(4u, 0u, backward.x) | select(2u, 0u, backward.y) | select(1u, 0u, backward.z);
     let octants = octant * 0x01010101u;
 
     var hit = start;
-    var stack: array<vec2<u32>, STACK>;
+    var stack: array<vec2u, STACK>;
     var depth = 0u;
-    var group = vec2<u32>(0u, 0x80000000u);
+    var group = vec2u(0u, 0x80000000u);
     loop {
         let bit = firstLeadingBit(group.y);
         group.y &= ~(1u << bit);
@@ -91,8 +91,8 @@ fn traverse(ray: Ray, key: u32, nodes: u32, triangles: u32, first: u32, start: H
         let n2 = load(at + 2u);
         let n3 = load(at + 3u);
         let n4 = load(at + 4u);
-        let extent = bitcast<vec3<f32>>(((vec3<u32>(n0.w) >> vec3<u32>(0u, 8u, 16u)) & vec3<u32>(0xffu)) << vec3<u32>(23u));
-        let to_node = bitcast<vec3<f32>>(n0.xyz) - ray.origin;
+        let extent = bitcast<vec3f>(((vec3u(n0.w) >> vec3u(0u, 8u, 16u)) & vec3u(0xffu)) << vec3u(23u));
+        let to_node = bitcast<vec3f>(n0.xyz) - ray.origin;
         let reach3 = abs(to_node) + extent * 255.0;
         let reach = max(reach3.x, max(reach3.y, reach3.z));
         let step = extent * inverse;
@@ -120,15 +120,15 @@ fn traverse(ray: Ray, key: u32, nodes: u32, triangles: u32, first: u32, start: H
             let t_last_x = bytes(select(last_x.x, last_x.y, half == 1u)) * step.x + far.x;
             let t_last_y = bytes(select(last_y.x, last_y.y, half == 1u)) * step.y + far.y;
             let t_last_z = bytes(select(last_z.x, last_z.y, half == 1u)) * step.z + far.z;
-            let t_first = max(max(t_first_x, t_first_y), max(t_first_z, vec4<f32>(0.0)));
-            let t_last = min(min(t_last_x, t_last_y), min(t_last_z, vec4<f32>(hit.t)));
-            let shifts = vec4<u32>(0u, 8u, 16u, 24u);
-            let bits8 = ((vec4<u32>(child_bits) >> shifts) & vec4<u32>(0xffu))
-                << ((vec4<u32>(bit_index) >> shifts) & vec4<u32>(0x1fu));
-            let met = select(vec4<u32>(0u), bits8, t_first <= t_last);
+            let t_first = max(max(t_first_x, t_first_y), max(t_first_z, vec4f(0.0)));
+            let t_last = min(min(t_last_x, t_last_y), min(t_last_z, vec4f(hit.t)));
+            let shifts = vec4u(0u, 8u, 16u, 24u);
+            let bits8 = ((vec4u(child_bits) >> shifts) & vec4u(0xffu))
+                << ((vec4u(bit_index) >> shifts) & vec4u(0x1fu));
+            let met = select(vec4u(0u), bits8, t_first <= t_last);
             hits |= (met.x | met.y) | (met.z | met.w);
         }
-        group = vec2<u32>(n1.x, (hits & 0xff000000u) | (n0.w >> 24u));
+        group = vec2u(n1.x, (hits & 0xff000000u) | (n0.w >> 24u));
 
         var leaves = hits & 0xffffffu;
         while leaves != 0u {
@@ -138,7 +138,7 @@ fn traverse(ray: Ray, key: u32, nodes: u32, triangles: u32, first: u32, start: H
             let r1 = load(triangles + index * 3u + 1u);
             let r2 = load(triangles + index * 3u + 2u);
             let intersection = intersect(
-                shear, ray.origin, bitcast<vec3<f32>>(r0.xyz), bitcast<vec3<f32>>(r1.xyz), bitcast<vec3<f32>>(r2.xyz));
+                shear, ray.origin, bitcast<vec3f>(r0.xyz), bitcast<vec3f>(r1.xyz), bitcast<vec3f>(r2.xyz));
             let number = first + index;
             // A hit at the ray's limit does not count; among equally near triangles the lower index wins.
             let tie = intersection.t == hit.t && hit.triangle != NO_TRIANGLE && number < hit.triangle;
@@ -166,6 +166,6 @@ fn traverse(ray: Ray, key: u32, nodes: u32, triangles: u32, first: u32, start: H
 }
 
 // The four bytes of a word, lowest first.
-fn bytes(word: u32) -> vec4<f32> {
-    return vec4<f32>((vec4<u32>(word) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(0xffu));
+fn bytes(word: u32) -> vec4f {
+    return vec4f((vec4u(word) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(0xffu));
 }

@@ -6,7 +6,7 @@
 //!   needs. It adds the samples of a [`work::Work`] to a [`film::Film`].
 //! - [`sampling`]: foveated sampling patterns. [`surfaces`]: exact depth and motion. [`stereo`]: views and gaze of two
 //!   eyes.
-//! - [`scene_buffer`]: the scene as one array of `vec4<u32>`, which the GPU tracer reads.
+//! - [`scene_buffer`]: the scene as one array of `vec4u`, which the GPU tracer reads.
 
 mod alias;
 mod bvh;

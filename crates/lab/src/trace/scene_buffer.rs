@@ -1,4 +1,4 @@
-//! The scene as the GPU tracer reads it: one flat array of `vec4<u32>` behind a function `load(i)`. It is a texture or
+//! The scene as the GPU tracer reads it: one flat array of `vec4u` behind a function `load(i)`. It is a texture or
 //! a storage buffer, whichever the device reads faster (`shaders/trace/scene_texture.wgsl`, `scene_storage.wgsl`).
 
 use super::Geometry;

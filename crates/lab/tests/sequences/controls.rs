@@ -61,10 +61,10 @@ fn planted_errors_are_caught() {
         ],
     );
     let not_stored = (
-        "textureStore(next_extras, px, view, vec4<u32>(bitcast<u32>(decision.log_key),",
-        "textureStore(next_extras, px, view, vec4<u32>(0u,",
+        "textureStore(next_extras, px, view, vec4u(bitcast<u32>(decision.log_key),",
+        "textureStore(next_extras, px, view, vec4u(0u,",
     );
-    let wide = ("BOX_SIGMAS: vec2<f32> = vec2<f32>(2.0, 5.0)", "BOX_SIGMAS: vec2<f32> = vec2<f32>(2.02, 5.0)");
+    let wide = ("BOX_SIGMAS: vec2f = vec2f(2.0, 5.0)", "BOX_SIGMAS: vec2f = vec2f(2.02, 5.0)");
     let lax = ("confidence = min(confidence, agreeing(near.", "confidence = max(confidence, agreeing(near.");
     for (pass, settings, has_lod, error) in [
         ("wrs_pass", keys, false, not_stored),

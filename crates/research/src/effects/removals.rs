@@ -43,11 +43,11 @@ pub const REMOVALS: &[Removal] = &[
         names: &["EFFECT_SHEEN", "LOBE_SHEEN"],
         functions: &["sheen_albedo", "charlie_visibility", "charlie_d", "charlie_lambda"],
         rest: &[
-            ("    sheen_color: vec3<f32>,\n    sheen_roughness: f32,\n", ""),
-            ("    sheen: vec3<f32>,\n    sheen_width: f32,\n    sheen_lambda: f32,\n", ""),
+            ("    sheen_color: vec3f,\n    sheen_roughness: f32,\n", ""),
+            ("    sheen: vec3f,\n    sheen_width: f32,\n    sheen_lambda: f32,\n", ""),
             ("        sheen,\n        sheen_width,\n        sheen_lambda,\n", ""),
-            ("    s.sheen_color = vec3<f32>(0.0);\n    s.sheen_roughness = 0.0;\n", ""),
-            ("    var sheen = vec3<f32>(0.0);\n    var sheen_probability = 0.0;\n", ""),
+            ("    s.sheen_color = vec3f(0.0);\n    s.sheen_roughness = 0.0;\n", ""),
+            ("    var sheen = vec3f(0.0);\n    var sheen_probability = 0.0;\n", ""),
             ("    var sheen_width = 1.0;\n    var sheen_lambda = 0.0;\n", ""),
             (" + sheen_probability", ""),
         ],
@@ -60,13 +60,13 @@ pub const REMOVALS: &[Removal] = &[
         rest: &[
             ("    transmission: f32,\n    thin: bool,\n    entering: bool,\n", ""),
             (
-                "    glass: vec3<f32>,\n    glass_color: vec3<f32>,\n    glass_reflect: vec3<f32>,\n    eta: f32,\n    thin: bool,\n",
+                "    glass: vec3f,\n    glass_color: vec3f,\n    glass_reflect: vec3f,\n    eta: f32,\n    thin: bool,\n",
                 "",
             ),
             ("        glass,\n        base,\n        glass_reflect,\n        eta,\n        thin,\n", ""),
             ("    let transmission = select(0.0, clamp(surface.transmission, 0.0, 1.0), LOBE_TRANSMISSION);\n", ""),
             (" * (1.0 - transmission)", ""),
-            ("    var glass = vec3<f32>(0.0);\n    var glass_reflect = vec3<f32>(0.0);\n    var eta = 1.0;\n", ""),
+            ("    var glass = vec3f(0.0);\n    var glass_reflect = vec3f(0.0);\n    var eta = 1.0;\n", ""),
             ("    var glass_probability = 0.0;\n", ""),
             ("    let ior = clamp(surface.ior, 1.0, MAX_REFRACTING_IOR);\n", ""),
             ("    let thin = surface.thin || ior < MIN_REFRACTING_IOR;\n", ""),
@@ -103,10 +103,10 @@ pub const REMOVALS: &[Removal] = &[
         names: &["EFFECT_ENVIRONMENT_MAP", "has_map()"],
         functions: &["has_map", "map_radiance", "sky", "sky_pdf"],
         rest: &[],
-        added: "fn sky(direction: vec3<f32>) -> vec3<f32> {
+        added: "fn sky(direction: vec3f) -> vec3f {
             return frame.sky;
         }
-        fn sky_pdf(direction: vec3<f32>, cosine: f32) -> f32 {
+        fn sky_pdf(direction: vec3f, cosine: f32) -> f32 {
             return frame.sky_probability * cosine_hemisphere_pdf(cosine);
         }",
     },

@@ -28,7 +28,7 @@ fn result(operation: u32, a: f32, b: f32, c: f32) -> f32 {
     }
 }
 @compute @workgroup_size(64)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= arrayLength(&results) { return; }
     let at = 3u * (id.x / 5u);
     results[id.x] = bitcast<u32>(result(id.x % 5u, rows[at], rows[at + 1u], rows[at + 2u]));

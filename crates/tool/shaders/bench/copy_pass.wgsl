@@ -19,7 +19,7 @@ override FILTER: u32 = 0u;
 @group(0) @binding(19) var next_weights: texture_storage_2d_array<r32uint, write>;
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) group: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     let px = id.xy;
     let view = group.z;
     if px.x >= frame.size.x || px.y >= frame.size.y {
@@ -32,7 +32,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(workgroup_id) gro
     let weight_word = textureLoad(past_weights, px, view, 0).x;
     // Nothing that was read may be optimised away.
     let used = bitcast<u32>(motion.x) ^ bitcast<u32>(motion.y) ^ bitcast<u32>(depth);
-    textureStore(next_colors, px, view, vec4<u32>(words, 0u, 0u));
-    textureStore(next_weights, px, view, vec4<u32>(weight_word ^ used, 0u, 0u, 0u));
-    textureStore(color_out, px, view, vec4<f32>(candidate.color, 1.0));
+    textureStore(next_colors, px, view, vec4u(words, 0u, 0u));
+    textureStore(next_weights, px, view, vec4u(weight_word ^ used, 0u, 0u, 0u));
+    textureStore(color_out, px, view, vec4f(candidate.color, 1.0));
 }

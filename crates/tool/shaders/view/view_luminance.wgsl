@@ -3,7 +3,7 @@
 
 // src/commands/view/burst.rs: LuminanceConstants
 struct LuminanceConstants {
-    size: vec2<u32>,
+    size: vec2u,
     gain: f32,
     padding: u32,
 }
@@ -14,7 +14,7 @@ struct LuminanceConstants {
 @group(0) @binding(3) var right: texture_2d<f32>;
 @group(0) @binding(4) var<storage, read_write> packed: array<u32>;
 
-fn color(picture: u32, px: vec2<u32>) -> vec3<f32> {
+fn color(picture: u32, px: vec2u) -> vec3f {
     switch picture {
         case 0u: {
             return textureLoad(full, px, 0).xyz;
@@ -29,21 +29,21 @@ fn color(picture: u32, px: vec2<u32>) -> vec3<f32> {
 }
 
 // Luminance of what is shown of a linear color, in steps of 8 bits. NaN fails the comparison.
-fn level(color: vec3<f32>) -> u32 {
+fn level(color: vec3f) -> u32 {
     let v = color * frame.gain;
-    let shown = select(vec3<f32>(0.0), min(v, vec3<f32>(1.0)), v > vec3<f32>(0.0));
+    let shown = select(vec3f(0.0), min(v, vec3f(1.0)), v > vec3f(0.0));
     return u32(min(srgb_encode(luma(shown)), 1.0) * 255.0 + 0.5);
 }
 
 @compute @workgroup_size(64, 1)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3u) {
     let row_words = (frame.size.x + 3u) / 4u;
     if id.x >= row_words {
         return;
     }
     var word = 0u;
     for (var i = 0u; i < 4u; i++) {
-        let px = vec2<u32>(4u * id.x + i, id.y);
+        let px = vec2u(4u * id.x + i, id.y);
         if px.x < frame.size.x {
             word |= level(color(id.z, px)) << (8u * i);
         }

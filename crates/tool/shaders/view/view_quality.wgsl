@@ -5,10 +5,10 @@
 
 // src/commands/view/quality.rs: QualityConstants, which explains them
 struct QualityConstants {
-    ray_scale: vec2<f32>,
-    ray_offset: vec2<f32>,
-    gaze_ray: vec4<f32>,
-    size: vec2<u32>,
+    ray_scale: vec2f,
+    ray_offset: vec2f,
+    gaze_ray: vec4f,
+    size: vec2u,
     gain: f32,
     from_deg: f32,
 }
@@ -16,34 +16,34 @@ struct QualityConstants {
 @group(0) @binding(0) var<uniform> frame: QualityConstants;
 @group(0) @binding(1) var full: texture_2d<f32>;
 @group(0) @binding(2) var shown: texture_2d<f32>;
-@group(0) @binding(3) var<storage, read_write> sums: array<vec2<f32>>;
+@group(0) @binding(3) var<storage, read_write> sums: array<vec2f>;
 
 const TILE_ROWS: u32 = 16u;
 
-var<workgroup> columns: array<vec2<f32>, 64>;
+var<workgroup> columns: array<vec2f, 64>;
 
 // metric::encode. NaN fails the comparison.
-fn encoded(color: vec3<f32>) -> vec3<f32> {
+fn encoded(color: vec3f) -> vec3f {
     let v = color * frame.gain;
-    let c = select(vec3<f32>(0.0), min(v, vec3<f32>(1.0)), v > vec3<f32>(0.0));
-    return vec3<f32>(srgb_encode(c.x), srgb_encode(c.y), srgb_encode(c.z));
+    let c = select(vec3f(0.0), min(v, vec3f(1.0)), v > vec3f(0.0));
+    return vec3f(srgb_encode(c.x), srgb_encode(c.y), srgb_encode(c.z));
 }
 
 @compute @workgroup_size(64, 1)
 fn main(
     @builtin(local_invocation_index) column: u32,
-    @builtin(workgroup_id) tile: vec3<u32>,
-    @builtin(num_workgroups) tiles: vec3<u32>,
+    @builtin(workgroup_id) tile: vec3u,
+    @builtin(num_workgroups) tiles: vec3u,
 ) {
     let x = tile.x * 64u + column;
-    var sum = vec2<f32>(0.0);
+    var sum = vec2f(0.0);
     for (var row = 0u; row < TILE_ROWS; row++) {
-        let px = vec2<u32>(x, tile.y * TILE_ROWS + row);
+        let px = vec2u(x, tile.y * TILE_ROWS + row);
         if px.x < frame.size.x && px.y < frame.size.y {
-            let ray = vec3<f32>(vec2<f32>(px) * frame.ray_scale + frame.ray_offset, 1.0);
+            let ray = vec3f(vec2f(px) * frame.ray_scale + frame.ray_offset, 1.0);
             if eccentricity_deg(ray, frame.gaze_ray.xyz) > frame.from_deg {
                 let error = encoded(textureLoad(shown, px, 0).xyz) - encoded(textureLoad(full, px, 0).xyz);
-                sum += vec2<f32>(dot(error, error) / 3.0, 1.0);
+                sum += vec2f(dot(error, error) / 3.0, 1.0);
             }
         }
     }
