@@ -33,5 +33,5 @@ pub use bvh::{Bvh, Hit, Ray};
 pub use geometry::Geometry;
 pub use tracer::Tracer;
 pub use triangle_records::{
-    AttributeRecord, Attributes, AttributesAt, PreviousRecord, SecondUvRecord, TriangleFlags, TriangleRecord,
+    AttributeRecord, Attributes, AttributesAt, SecondUvRecord, TriangleFlags, TriangleRecord,
 };

@@ -40,8 +40,6 @@ pub enum Section {
     MovingAttributes,
     /// Second texture coordinates of the moving triangles, as `SecondUvs`.
     MovingSecondUvs,
-    /// [`PreviousRecord`](super::PreviousRecord)s, three elements each.
-    MovingPrevious,
     /// [`PickRecord`](super::shading_records::PickRecord)s: the alias table over all lights, which may move.
     Picks,
     /// [`PunctualRecord`](super::shading_records::PunctualRecord)s.
@@ -151,8 +149,7 @@ impl<'a> SceneBufferBuilder<'a> {
             // nodes as triangles.
             self.reserve(Section::MovingNodes, &moving.nodes, max_moving * NODE_ELEMENTS)
                 .reserve(Section::MovingTriangles, moving.triangles(), max_moving * 3)
-                .reserve(Section::MovingAttributes, moving.attributes(), max_moving * 4)
-                .reserve(Section::MovingPrevious, moving.previous(), max_moving * 3);
+                .reserve(Section::MovingAttributes, moving.attributes(), max_moving * 4);
         }
         self
     }
@@ -263,8 +260,7 @@ impl SceneBuffer {
         self.rewrite(Section::MovingNodes, nodes)?;
         self.rewrite(Section::MovingTriangles, moving.triangles())?;
         self.rewrite(Section::MovingAttributes, moving.attributes())?;
-        self.rewrite(Section::MovingSecondUvs, moving.second_uvs().unwrap_or_default())?;
-        self.rewrite(Section::MovingPrevious, moving.previous())
+        self.rewrite(Section::MovingSecondUvs, moving.second_uvs().unwrap_or_default())
     }
 
     /// Rows from the first moving section to the end; empty without moving sections.

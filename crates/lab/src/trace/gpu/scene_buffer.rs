@@ -142,15 +142,6 @@ impl GpuSceneBuffer {
     }
 }
 
-/// Override values of `geometry.wgsl`: offsets of its records.
-pub fn geometry_constants(scene_buffer: &SceneBuffer) -> [(&'static str, f64); 3] {
-    [
-        ("ATTRIBUTES", f64::from(scene_buffer.base(Section::Attributes))),
-        ("MOVING_ATTRIBUTES", f64::from(scene_buffer.base(Section::MovingAttributes))),
-        ("MOVING_PREVIOUS", f64::from(scene_buffer.base(Section::MovingPrevious))),
-    ]
-}
-
 /// Override values of `traverse.wgsl` and of the module that defines `load`.
 pub fn traversal_constants(
     scene_buffer: &SceneBuffer,
