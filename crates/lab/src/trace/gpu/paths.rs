@@ -21,13 +21,12 @@ pub(super) struct FrameUniforms {
     pub down: [f32; 3],
     pub width: u32,
     pub sky: [f32; 3],
-    pub first_item: u32,
-    pub map_size: [u32; 2],
     pub items: u32,
+    pub map_size: [u32; 2],
     pub capacity: u32,
     pub jitter: f32,
     pub film_base: u32,
-    pub unused: [u32; 2],
+    pub unused: [u32; 3],
 }
 
 /// Bytes of a path's state: `PATH_ROWS` rows of 16 bytes.
