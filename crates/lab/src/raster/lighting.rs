@@ -75,13 +75,7 @@ impl Lighting {
     /// The strongest directional light of `lights`, or the added sun.
     pub fn sun(&self, lights: &[PunctualLight]) -> Option<PunctualLight> {
         if self.added_sun {
-            return Some(PunctualLight {
-                kind: PunctualKind::Directional,
-                position: Vec3::ZERO,
-                direction: Vec3::from(DEFAULT_SUN_DIRECTION).normalize(),
-                intensity: DEFAULT_SUN,
-                range: f32::INFINITY,
-            });
+            return Some(PunctualLight::sun(Vec3::from(DEFAULT_SUN_DIRECTION), DEFAULT_SUN));
         }
         let far = lights.iter().filter(|l| l.kind == PunctualKind::Directional);
         far.copied().max_by(|a, b| strength(a).total_cmp(&strength(b)))
