@@ -2,12 +2,12 @@
 
 use super::chosen_quads::{ChosenQuads, ChunkTest};
 use super::frame::FrameUniforms;
-use super::lighting::LightingRecord;
 use super::pipelines::ColorPipelines;
 use super::targets::{FoveatedTargets, Targets};
 use super::vertices::{AlphaKind, DrawRange, STRIDE};
 use super::window::{DrawCall, Frustum, PixelSamples, Window};
 use super::{Raster, VertexSet};
+use crate::device::bind_group;
 use crate::quad_views::QuadViews;
 use crate::trace::view::View;
 use afterimage::Lattices;
@@ -203,7 +203,11 @@ impl Raster {
     fn frame_uniforms(&self, device: &Device, [view, previous]: [&View; 2], window: &Window) -> BindGroup {
         let frame = FrameUniforms::new(view, previous, self.near, window);
         let lights = self.lighting.record(&self.lights, self.last_level, self.shadow_side);
-        self.frame_group(device, &frame, &lights)
+        let buffers = [
+            filled(device, "raster frame", bytemuck::bytes_of(&frame), BufferUsages::UNIFORM),
+            filled(device, "raster frame", bytemuck::bytes_of(&lights), BufferUsages::STORAGE),
+        ];
+        bind_group(device, "frame", &self.layouts.frame, buffers.each_ref().map(Buffer::as_entire_binding))
     }
 
     /// Draws the shadow map anew if the scene moved. `group`: uniforms of the full-rate frame.
@@ -221,20 +225,6 @@ impl Raster {
             let from = filled(device, "raster frame", bytemuck::cast_slice(&vertices), BufferUsages::COPY_SRC);
             encoder.copy_buffer_to_buffer(&from, 0, to, 0, STRIDE * vertices.len() as u64);
         }
-    }
-
-    fn frame_group(&self, device: &Device, frame: &FrameUniforms, lights: &LightingRecord) -> BindGroup {
-        let buffers = [
-            filled(device, "raster frame", bytemuck::bytes_of(frame), BufferUsages::UNIFORM),
-            filled(device, "raster frame", bytemuck::bytes_of(lights), BufferUsages::STORAGE),
-        ];
-        let entry =
-            |binding: u32| wgpu::BindGroupEntry { binding, resource: buffers[binding as usize].as_entire_binding() };
-        device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("frame"),
-            layout: &self.layouts.frame,
-            entries: &[entry(0), entry(1)],
-        })
     }
 
     fn sun_pass(&self, encoder: &mut CommandEncoder, group: &BindGroup) {

@@ -32,6 +32,4 @@ pub mod world;
 pub use bvh::{Bvh, Hit, Ray};
 pub use geometry::Geometry;
 pub use tracer::Tracer;
-pub use triangle_records::{
-    AttributeRecord, Attributes, AttributesAt, SecondUvRecord, TriangleFlags, TriangleRecord,
-};
+pub use triangle_records::{AttributeRecord, Attributes, AttributesAt, SecondUvRecord, TriangleFlags, TriangleRecord};

@@ -115,7 +115,10 @@ mod tests {
         let runs = [(3..5, 0), (6..7, 0), (9..9, 0), (0..2, 1), (65535..65536, 2), (0..1, 3)];
         assert_eq!(Spans::of_runs(runs, 2..5), spans);
         assert_eq!(Spans::of_runs([(7..9, 4), (5..6, 6)], 0..1).window(), ([5, 4], [4, 3]));
-        assert_eq!(Spans::uniform(2, 4..6, 2..5).each_pixel().collect::<Vec<_>>(), [4 << 16, 4 << 16 | 1, 5 << 16, 5 << 16 | 1]);
+        assert_eq!(
+            Spans::uniform(2, 4..6, 2..5).each_pixel().collect::<Vec<_>>(),
+            [4 << 16, 4 << 16 | 1, 5 << 16, 5 << 16 | 1]
+        );
         assert!(Spans::new([], 0..4).is_empty() && Spans::uniform(0, 0..3, 0..4).is_empty());
     }
 }

@@ -6,8 +6,7 @@ use crate::frame::{ComposedFrame, Content, DeviceFrame, DeviceSamples, OnDevice,
 use crate::lattices::SparseGeometry;
 use crate::shader::SHADERS;
 use afterimage::gpu::{Frame, Timestamps};
-use afterimage::internal::ComputeShader;
-use afterimage::internal::{array_view, filled};
+use afterimage::internal::{ComputeShader, array_view, filled};
 use afterimage::kernel::pack::half_bits;
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::{ContextDesc, CreateError, FrameError, Image, Reset, ViewFrame};

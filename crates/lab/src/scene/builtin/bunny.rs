@@ -21,10 +21,7 @@ pub(super) fn low() -> Scene {
 
 /// `bunny-high`: 4,968 triangles.
 pub(super) fn high() -> Scene {
-    scene(
-        "bunny-high",
-        &Detail { body: [36, 21], head: [30, 19], ear: [24, 15], foot: [18, 11], tail: [16, 13] },
-    )
+    scene("bunny-high", &Detail { body: [36, 21], head: [30, 19], ear: [24, 15], foot: [18, 11], tail: [16, 13] })
 }
 
 fn scene(name: &str, detail: &Detail) -> Scene {
@@ -44,10 +41,8 @@ fn scene(name: &str, detail: &Detail) -> Scene {
     }
     part([0.0, 0.28, -0.52], [0.11, 0.11, 0.11], upright, detail.tail, SKIN);
     let sun = PunctualLight::sun(Vec3::new(-0.5, -1.0, -0.6), [2.0, 1.9, 1.7]);
-    let materials = vec![
-        shapes::glossy("fur", [0.55, 0.4, 0.28], 0.8, 8.0),
-        shapes::glossy("skin", [0.75, 0.55, 0.5], 0.5, 30.0),
-    ];
+    let materials =
+        vec![shapes::glossy("fur", [0.55, 0.4, 0.28], 0.8, 8.0), shapes::glossy("skin", [0.75, 0.55, 0.5], 0.5, 30.0)];
     let camera = Camera::look_at(DVec3::new(0.9, 0.9, 1.7), DVec3::new(0.0, 0.6, 0.0), 45.0);
     super::still::still(name, materials, still, camera, vec![sun], [0.35, 0.45, 0.6])
 }

@@ -1,6 +1,6 @@
 //! Splits work into batches, and expands spans of pixels into lists of samples on the device.
 
-use super::compute::empty_buffer;
+use crate::device::empty_buffer;
 use crate::shader::SHADERS;
 use crate::trace::work::Spans;
 use afterimage::internal::{ComputeShader, filled};

@@ -91,7 +91,8 @@ fn h83_shapes_are_finite_at_both_ends_of_the_draws() {
 fn frames_are_orthonormal_and_stored_directions_are_close() {
     let mut d = Draws::new("frames");
     let axes = [Vec3::X, Vec3::Y, Vec3::Z];
-    let mut either = || uniform_hemisphere(Vec2::new(d.uniform(), d.uniform())) * if d.uniform() < 0.5 { -1.0 } else { 1.0 };
+    let mut either =
+        || uniform_hemisphere(Vec2::new(d.uniform(), d.uniform())) * if d.uniform() < 0.5 { -1.0 } else { 1.0 };
     let random = (0..20_000).map(|_| either()).collect::<Vec<_>>();
     let mut worst = 0.0_f32;
     for n in random.into_iter().chain(axes).chain(axes.map(|v| -v)) {
