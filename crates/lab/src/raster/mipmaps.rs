@@ -13,11 +13,16 @@ use std::sync::LazyLock;
 pub(super) fn levels(texture: &Texture, is_color: bool, max_side: u32) -> Vec<Image<[u8; 4]>> {
     let [w, h] = texture.size;
     let first = Image::from_fn([w, h], |[x, y]| texture.texels.get((y * w + x) as usize).copied().unwrap_or([255; 4]));
+    chain(first, max_side, |image| halved(image, is_color))
+}
+
+/// The image and its halves down to 1x1, without those larger than `max_side`.
+fn chain<T: Copy>(first: Image<T>, max_side: u32, halved: impl Fn(&Image<T>) -> Image<T>) -> Vec<Image<T>> {
     let mut levels = vec![first];
     while let Some(last) = levels.last()
         && last.size() != [1, 1]
     {
-        let next = halved(last, is_color);
+        let next = halved(last);
         if last.size().iter().any(|&s| s > max_side) {
             levels.pop();
         }
@@ -69,22 +74,14 @@ fn mean(four: [[u8; 4]; 4], is_color: bool) -> [u8; 4] {
 
 /// Mip levels of the sky in linear radiance, largest first down to 1x1, without those larger than `max_side`.
 pub(super) fn sky_levels(map: &Image<[f32; 3]>, max_side: u32) -> Vec<Image<[f32; 3]>> {
-    let mut levels = vec![map.clone()];
-    while let Some(last) = levels.last()
-        && last.size() != [1, 1]
-    {
-        let [w, h] = [last.width(), last.height()];
-        let next = Image::from_fn(last.size().map(|s| (s / 2).max(1)), |[x, y]| {
-            let at = |dx: usize, dy: usize| last.at((2 * x as usize + dx).min(w - 1), (2 * y as usize + dy).min(h - 1));
+    chain(map.clone(), max_side, |image| {
+        let [w, h] = [image.width(), image.height()];
+        Image::from_fn(image.size().map(|s| (s / 2).max(1)), |[x, y]| {
+            let at = |dx: usize, dy: usize| image.at((2 * x as usize + dx).min(w - 1), (2 * y as usize + dy).min(h - 1));
             let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
             [0, 1, 2].map(|c| four.iter().map(|t| t[c]).sum::<f32>() * 0.25)
-        });
-        if last.size().iter().any(|&s| s > max_side) {
-            levels.pop();
-        }
-        levels.push(next);
-    }
-    levels
+        })
+    })
 }
 
 #[cfg(test)]
