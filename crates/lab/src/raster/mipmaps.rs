@@ -77,7 +77,8 @@ pub(super) fn sky_levels(map: &Image<[f32; 3]>, max_side: u32) -> Vec<Image<[f32
     chain(map.clone(), max_side, |image| {
         let [w, h] = [image.width(), image.height()];
         Image::from_fn(image.size().map(|s| (s / 2).max(1)), |[x, y]| {
-            let at = |dx: usize, dy: usize| image.at((2 * x as usize + dx).min(w - 1), (2 * y as usize + dy).min(h - 1));
+            let at =
+                |dx: usize, dy: usize| image.at((2 * x as usize + dx).min(w - 1), (2 * y as usize + dy).min(h - 1));
             let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
             [0, 1, 2].map(|c| four.iter().map(|t| t[c]).sum::<f32>() * 0.25)
         })

@@ -1,11 +1,9 @@
 //! Still images: a source with a single frame.
 
-use super::exr_file::{ExrHeader, Vectors, guarded};
+use super::exr_file::{ExrFrame, ExrHeader, Vectors, guarded};
 use super::limits::{ReadLimits, SMALLER};
 use super::{FrameRequest, FrameSource, SourceInfo};
-use crate::error::InputError;
-use crate::error::io_error;
-use crate::error::one_line;
+use crate::error::{InputError, io_error, one_line};
 use crate::file_kind::kind;
 use crate::frame::{RenderedFrame, SourceFrame};
 use crate::scene::cameras::Cameras;
@@ -49,15 +47,7 @@ impl StillSource {
             "exr" => Self::open_exr(path, subject, limits),
             "png" | "jpg" | "jpeg" => {
                 let (color, warnings) = guarded(&subject, || decode_8_or_16_bit(path, &subject, limits))?;
-                let frame = SourceFrame {
-                    color,
-                    depth: None,
-                    motion: None,
-                    trust: None,
-                    previous_from_current: None,
-                    cut: false,
-                    nonfinite: 0,
-                };
+                let frame = SourceFrame { color, ..SourceFrame::without_images(None, false) };
                 Ok(Self { warnings, ..Self::new(subject, frame, None) })
             }
             _ => Err(InputError::not_supported(
@@ -75,16 +65,8 @@ impl StillSource {
         if let Some(c) = &cameras {
             c.check_size(header.size())?;
         }
-        let exr = header.read(Vectors::Skip)?;
-        let frame = SourceFrame {
-            color: exr.color,
-            depth: exr.depth,
-            motion: None,
-            trust: None,
-            previous_from_current: None,
-            cut: false,
-            nonfinite: exr.nonfinite,
-        };
+        let ExrFrame { color, depth, nonfinite, .. } = header.read(Vectors::Skip)?;
+        let frame = SourceFrame { color, depth, nonfinite, ..SourceFrame::without_images(None, false) };
         let (warnings, contents) = (header.warnings().to_vec(), header.contents().to_vec());
         Ok(Self { warnings, contents, ..Self::new(name, frame, cameras) })
     }

@@ -34,8 +34,7 @@ impl Rig {
 
     fn ask(&self, query: HitQuery, rays: &[Ray], source: Option<&str>) -> Vec<Option<Hit>> {
         afterimage_testing::gpu::validated(&self.gpu.device, "the tracer", || {
-            let tracer =
-                GpuRays::new(&self.gpu, &self.scene_buffer, &self.geometry, self.storage, query, source);
+            let tracer = GpuRays::new(&self.gpu, &self.scene_buffer, &self.geometry, self.storage, query, source);
             let batch = tracer.batch(&self.on_device, rays);
             tracer.run(&batch);
             tracer.hits(&batch)
