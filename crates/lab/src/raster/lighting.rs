@@ -49,8 +49,7 @@ pub(super) struct Lighting {
 impl Lighting {
     pub fn new(scene: &Scene) -> Self {
         let needs = Effects::needed(scene);
-        let own = [Effect::EmissiveTriangles, Effect::PunctualLights, Effect::Environment];
-        let added_sun = !own.iter().any(|&e| needs.has(e));
+        let added_sun = !needs.has_light();
         let environment = if added_sun { Environment::Constant(DEFAULT_SKY) } else { scene.environment.clone() };
         let rest = scene.pose(0.0);
         let panels = panels(&[scene.still(), &rest.moving], &scene.materials);

@@ -23,17 +23,16 @@ pub(super) fn bind_groups(
     let materials = if scene.materials.is_empty() { &fallback } else { &scene.materials[..] };
     let white = upload(device, queue, "white", &[Image::filled([1, 1], [255; 4])], false);
     let max_side = device.limits().max_texture_dimension_2d;
-    let mut textures = HashMap::new();
-    let mut samplers = HashMap::new();
+    let (mut textures, mut samplers) = (HashMap::new(), HashMap::new());
     // Upload only textures in use. One that serves as color and as data is uploaded in both formats.
-    for m in materials {
-        for (slot, is_color) in slots(m) {
-            if let Some((r, t)) = slot.and_then(|r| Some((r.texture, scene.textures.get(r.texture as usize)?))) {
-                textures
-                    .entry((r, is_color))
-                    .or_insert_with(|| upload(device, queue, "texture", &levels(t, is_color, max_side), is_color));
-            }
+    let of = |slot: Option<TextureRef>| slot.and_then(|r| scene.textures.get(r.texture as usize));
+    for (slot, is_color) in materials.iter().flat_map(slots) {
+        if let (Some(r), Some(t)) = (slot, of(slot)) {
+            let upload = || upload(device, queue, "texture", &levels(t, is_color, max_side), is_color);
+            textures.entry((r.texture, is_color)).or_insert_with(upload);
         }
+        let (key, description) = addressing(of(slot), anisotropy);
+        samplers.entry(key).or_insert_with(|| device.create_sampler(&description));
     }
     let bytes = (size_of::<MaterialRecord>() + size_of::<SlotCoordinates>()) as u64;
     let stride = bytes.next_multiple_of(256.max(u64::from(device.limits().min_storage_buffer_offset_alignment)));
@@ -43,16 +42,10 @@ pub(super) fn bind_groups(
         let record = MaterialRecord::new(m);
         queue.write_buffer(&buffer, stride * i as u64, bytemuck::bytes_of(&record));
         let slots = slots(m);
-        let coordinates: SlotCoordinates = slots.map(|(slot, _)| {
-            let texture = slot.and_then(|r| scene.textures.get(r.texture as usize));
-            rows(texture.map(|t| t.coordinates).unwrap_or_default())
-        });
+        let coordinates: SlotCoordinates =
+            slots.map(|(slot, _)| rows(of(slot).map(|t| t.coordinates).unwrap_or_default()));
         let after = stride * i as u64 + size_of::<MaterialRecord>() as u64;
         queue.write_buffer(&buffer, after, bytemuck::bytes_of(&coordinates));
-        for (slot, _) in slots {
-            let (key, description) = addressing(slot.and_then(|r| scene.textures.get(r.texture as usize)), anisotropy);
-            samplers.entry(key).or_insert_with(|| device.create_sampler(&description));
-        }
         let mut resources = vec![BindingResource::Buffer(wgpu::BufferBinding {
             buffer: &buffer,
             offset: stride * i as u64,
@@ -62,8 +55,7 @@ pub(super) fn bind_groups(
             let view = slot.and_then(|r| textures.get(&(r.texture, is_color))).unwrap_or(&white);
             resources.push(BindingResource::TextureView(view));
             if k < SAMPLERS {
-                let (key, _) = addressing(slot.and_then(|r| scene.textures.get(r.texture as usize)), anisotropy);
-                resources.push(BindingResource::Sampler(&samplers[&key]));
+                resources.push(BindingResource::Sampler(&samplers[&addressing(of(slot), anisotropy).0]));
             }
         }
         bind_group(device, &m.name, &layouts.material, resources)

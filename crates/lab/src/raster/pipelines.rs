@@ -63,15 +63,9 @@ impl ColorPipelines {
                 ("NORMAL_MAP", Effect::NormalMap),
                 ("EMISSIVE_TEXTURE", Effect::EmissiveTexture),
                 ("TEXTURE_COORDINATES", Effect::TextureCoordinates),
-                ("LOBE_RETRO", Effect::Dielectric),
-                ("LOBE_SPECULAR", Effect::Dielectric),
-                ("LOBE_METAL", Effect::Metal),
-                ("LOBE_ANISOTROPY", Effect::Anisotropy),
-                ("LOBE_CLEARCOAT", Effect::Clearcoat),
-                ("LOBE_SHEEN", Effect::Sheen),
-                ("LOBE_TRANSMISSION", Effect::Transmission),
             ],
         );
+        shading.extend(effects.lobe_constants());
         shading.push(("HAS_SUN", f64::from(u8::from(has_sun))));
         let mut tested = shading.clone();
         tested.push(("ALPHA_TEST", f64::from(u8::from(samples == 1))));

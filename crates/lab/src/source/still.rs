@@ -214,37 +214,18 @@ fn jpeg_is_whole(bytes: &[u8]) -> bool {
 /// Linear pixels of a decoded image, over black, and whether any was transparent. `gamma`: exponent of its values, if
 /// they are not sRGB.
 fn linear(decoded: DynamicImage, gamma: Option<f64>) -> (Vec<[f32; 3]>, bool) {
-    let deep = matches!(
-        decoded,
-        DynamicImage::ImageLuma16(_)
-            | DynamicImage::ImageLumaA16(_)
-            | DynamicImage::ImageRgb16(_)
-            | DynamicImage::ImageRgba16(_)
-    );
-    match (deep, decoded.color().has_alpha()) {
-        (true, false) => (linear_pixels(decoded.into_rgb16().as_raw(), u16::MAX.into(), gamma), false),
-        (false, false) => (linear_pixels(decoded.into_rgb8().as_raw(), u8::MAX.into(), gamma), false),
-        (true, true) => over_black(decoded.into_rgba16().as_raw(), u16::MAX.into(), gamma),
-        (false, true) => over_black(decoded.into_rgba8().as_raw(), u8::MAX.into(), gamma),
+    let color = decoded.color();
+    if color.bytes_per_pixel() > color.channel_count() {
+        over_black(decoded.into_rgba16().as_raw(), u16::MAX.into(), gamma)
+    } else {
+        over_black(decoded.into_rgba8().as_raw(), u8::MAX.into(), gamma)
     }
-}
-
-/// Linear value of each encoded one from 0 to `max`.
-fn table(max: u32, gamma: Option<f64>) -> Vec<f32> {
-    let decode = |v: f64| gamma.map_or_else(|| srgb_to_linear(v), |gamma| v.powf(1.0 / gamma));
-    (0..=max).map(|i| decode(f64::from(i) / f64::from(max)) as f32).collect()
-}
-
-/// Linear values of encoded RGB samples from 0 to `max`.
-fn linear_pixels<T: Copy + Into<u32>>(encoded: &[T], max: u32, gamma: Option<f64>) -> Vec<[f32; 3]> {
-    let table = table(max, gamma);
-    let pixels = encoded.chunks_exact(3);
-    pixels.map(|p| [p[0], p[1], p[2]].map(|c| table[c.into() as usize])).collect()
 }
 
 /// Linear values of encoded RGBA samples from 0 to `max`, over black, and whether any is transparent.
 fn over_black<T: Copy + Into<u32>>(encoded: &[T], max: u32, gamma: Option<f64>) -> (Vec<[f32; 3]>, bool) {
-    let table = table(max, gamma);
+    let decode = |v: f64| gamma.map_or_else(|| srgb_to_linear(v), |gamma| v.powf(1.0 / gamma));
+    let table: Vec<f32> = (0..=max).map(|i| decode(f64::from(i) / f64::from(max)) as f32).collect();
     let mut is_transparent = false;
     let pixels = encoded.chunks_exact(4).map(|p| {
         let alpha: u32 = p[3].into();

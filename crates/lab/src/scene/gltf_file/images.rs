@@ -61,7 +61,8 @@ impl<'a> Textures<'a> {
         self.document.root.textures.get(index.value()).is_some_and(|t| t.source.value() != NO_IMAGE)
     }
 
-    /// Registers a texture of the file as used, as it is or as roughness of a glossiness. `None` if it has no image, of which the file's warnings tell.
+    /// Registers a texture of the file as used, as it is or as roughness of a glossiness. `None` if it has no image, of
+    /// which the file's warnings tell.
     pub fn use_texture(
         &mut self,
         index: Index<json::Texture>,

@@ -66,28 +66,15 @@ impl GpuTracer {
     /// If the scene exceeds the device's limits.
     pub fn new(device: Arc<Headless>, world: &World, settings: TraceSettings) -> Result<Self, SceneBufferError> {
         let storage = Storage::of(device.info.device_type);
-        Self::with_storage(device, world, settings, storage)
+        Self::with_storage(device, world, settings, storage, |text| text)
     }
 
-    /// As [`new`](Self::new), with an explicit choice of `storage` for the scene buffer.
+    /// As [`new`](Self::new), with an explicit choice of `storage` for the scene buffer, and with `edit` applied to
+    /// each kernel's WGSL source, to measure the cost of code.
     ///
     /// # Errors
     /// As [`new`](Self::new).
     pub fn with_storage(
-        device: Arc<Headless>,
-        world: &World,
-        settings: TraceSettings,
-        storage: Storage,
-    ) -> Result<Self, SceneBufferError> {
-        Self::with_shader_edit(device, world, settings, storage, |text| text)
-    }
-
-    /// As [`with_storage`](Self::with_storage), with `edit` applied to each kernel's WGSL source, to measure the cost
-    /// of code.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new).
-    pub fn with_shader_edit(
         device: Arc<Headless>,
         world: &World,
         settings: TraceSettings,
@@ -332,16 +319,10 @@ fn constants(
         ("EFFECT_PUNCTUAL_LIGHTS", Effect::PunctualLights),
         ("EFFECT_ENVIRONMENT", Effect::Environment),
         ("EFFECT_ENVIRONMENT_MAP", Effect::EnvironmentMap),
-        ("LOBE_RETRO", Effect::Dielectric),
-        ("LOBE_SPECULAR", Effect::Dielectric),
-        ("LOBE_METAL", Effect::Metal),
-        ("LOBE_ANISOTROPY", Effect::Anisotropy),
-        ("LOBE_CLEARCOAT", Effect::Clearcoat),
-        ("LOBE_SHEEN", Effect::Sheen),
-        ("LOBE_TRANSMISSION", Effect::Transmission),
     ] {
         constants.push((name, f64::from(u8::from(effects.has(effect)))));
     }
+    constants.extend(effects.lobe_constants());
     let integrator = match settings.integrator {
         Integrator::Mis => 0.0,
         Integrator::Nee => 1.0,

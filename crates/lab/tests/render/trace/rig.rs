@@ -48,7 +48,7 @@ impl Rig {
 
     pub fn gpu(&self, device: &Arc<Headless>, settings: TraceSettings, storage: Storage, spp: u32) -> Film {
         afterimage_testing::gpu::validated(&device.device, &self.name, || {
-            let tracer = GpuTracer::with_storage(device.clone(), &self.world, settings, storage).unwrap();
+            let tracer = GpuTracer::with_storage(device.clone(), &self.world, settings, storage, |t| t).unwrap();
             let mut film = Film::new(self.size());
             tracer.trace(&self.world, &self.view, 0, &self.spans(spp), &mut film);
             film
