@@ -37,7 +37,7 @@ fn answer(a: f32, b: f32, c: f32) -> u32 {
 }
 
 @compute @workgroup_size(64)
-fn ask(@builtin(global_invocation_id) id: vec3u) {
+fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= arrayLength(&answered) {
         return;
     }

@@ -10,10 +10,11 @@ use crate::device::{Backend, Headless};
 use crate::error::InputError;
 use crate::pipeline::{Pipeline, RunKind};
 use crate::source::{AnalyticSource, FrameSource};
+use afterimage::internal::{ComputeShader, filled};
 use afterimage::kernel::pack::{half_bits, half_value};
 use afterimage::{CreateError, Filter, Foveation, Image, MethodKind, Settings};
 use std::sync::Arc;
-use wgpu::{BufferUsages, TextureFormat, TextureUsages};
+use wgpu::{Buffer, BufferUsages, TextureFormat, TextureUsages};
 
 const SHADER: &str = include_str!("../shaders/self_test.wgsl");
 /// Input rows of probes that report a largest error.
@@ -283,39 +284,14 @@ fn yes(is: bool, so: &str, otherwise: &str) -> String {
 /// Runs a probe on the device: one 32-bit result for each row.
 fn ask(gpu: &Headless, question: Question, rows: &[[f32; 3]]) -> Vec<u32> {
     let device = &gpu.device;
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("self-test"),
-        source: wgpu::ShaderSource::Wgsl(SHADER.into()),
-    });
-    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("self-test"),
-        layout: None,
-        module: &module,
-        entry_point: Some("ask"),
-        compilation_options: wgpu::PipelineCompilationOptions {
-            constants: &[("QUESTION", f64::from(question as u32))],
-            ..Default::default()
-        },
-        cache: None,
-    });
-    let given = gpu.buffer(size_of_val(rows) as u64, BufferUsages::STORAGE | BufferUsages::COPY_DST);
-    gpu.queue.write_buffer(&given, 0, bytemuck::cast_slice(rows));
+    let shader = ComputeShader::new(device, "self-test", SHADER);
+    let given = filled(device, "rows", bytemuck::cast_slice(rows), BufferUsages::STORAGE);
     let answered = gpu.buffer(4 * rows.len() as u64, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
-    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("self-test"),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: given.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: answered.as_entire_binding() },
-        ],
-    });
+    let group = shader.group(device, [&given, &answered].map(Buffer::as_entire_binding));
     let mut encoder = device.create_command_encoder(&Default::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups((rows.len() as u32).div_ceil(64), 1, 1);
-    }
+    let mut pass = encoder.begin_compute_pass(&Default::default());
+    shader.dispatch(device, &mut pass, &[("QUESTION", question as u32)], &group, [rows.len() as u32, 1], 1);
+    drop(pass);
     gpu.queue.submit([encoder.finish()]);
     bytemuck::pod_collect_to_vec(&gpu.read_buffer(&answered))
 }

@@ -159,28 +159,16 @@ fn regions_of_a_scene(
     let subject = TracedView::open(name, size, args.camera.as_deref(), Some(display()?.hfov_deg()))?;
     warn(subject.warnings());
     let settings = TraceSettings::default();
-    let tracer = subject.tracer(backend, settings)?;
-    let by_wall = backend.is_real_gpu();
-    let middle = subject.middle_px();
-    let pattern = |t: &Triple, radius_scale| regions(t.samples, t.is_divisible && !by_wall, radius_scale, middle);
-    let mut patterns: Vec<Pattern> = TRIPLES.iter().map(|t| pattern(t, 1.0)).collect();
-    patterns.push(pattern(&TRIPLES[0], 0.5));
+    let (is_quartered, middle) = (!backend.is_real_gpu(), subject.middle_px());
+    let pattern = |t: &Triple, radius_scale| regions(t.samples, t.is_divisible && is_quartered, radius_scale, middle);
+    let patterns = TRIPLES.iter().map(|t| pattern(t, 1.0)).chain([pattern(&TRIPLES[0], 0.5)]);
     let display = display()?;
     let uniform = DISPLAY_PX.map(f64::from).iter().product::<f64>() * 32.0;
     let halved = uniform / with_its_radii(TRIPLES[0].samples, 0.5).ideal_samples(&display);
     let papers = TRIPLES.iter().map(|t| (t.time, UNIFORM_MILLIONS / t.millions)).chain([(HALVED_TIME, halved)]);
-    let measured = measure(&subject, &tracer, &patterns, frames, by_wall)?;
-    let mut comparer = Comparer::new(&subject, &tracer, backend, by_wall);
-    let compare = |((ours, pattern), (time, ideal)): ((PatternReport, &Pattern), (f64, f64))| {
-        Ok(Compared {
-            ours,
-            paper_time_reduction: Some(time),
-            paper_share_of_ideal: Some(time / ideal),
-            comparison: comparer.compare(pattern, pattern.sampling)?,
-        })
-    };
-    let compared = measured.into_iter().zip(&patterns).zip(papers).map(compare).collect::<Result<_, Failure>>()?;
-    Ok(scene_report(&subject, settings, compared))
+    let papers: Vec<_> = papers.map(|(time, ideal)| [Some(time), Some(time / ideal)]).collect();
+    let compared_as = |pattern: &Pattern| (pattern.clone(), pattern.sampling);
+    scene_report(&subject, settings, backend, frames, &patterns.collect::<Vec<_>>(), &papers, compared_as)
 }
 
 /// Two rows of the second table.
@@ -198,7 +186,6 @@ fn layers_of(
         max_depth: THESIS_DEPTH,
         ..TraceSettings::default()
     };
-    let tracer = subject.tracer(backend, settings)?;
     let lens_deg = 0.5 * EYE_HFOV_DEG;
     let middle = subject.middle_px();
     // Distance of the lens' rim towards the top left: nothing is visible beyond.
@@ -211,32 +198,44 @@ fn layers_of(
         sparse: None,
     };
     let patterns = [pattern("forward", middle), pattern("corner", middle.map(|v| v - rim))];
-    let by_wall = backend.is_real_gpu();
-    let measured = measure(&subject, &tracer, &patterns, frames, by_wall)?;
-    let mut comparer = Comparer::new(&subject, &tracer, backend, by_wall);
-    let compare = |(i, (ours, pattern)): (usize, (PatternReport, &Pattern))| {
+    let papers = [0, 1].map(|i| [paper.map(|p| p[i]), None]);
+    let without_lens = |pattern: &Pattern| {
         let filled = Pattern { sampling: Sampling::Layers(Layers::default()), ..pattern.clone() };
-        let lattices = Sampling::Layers(Layers { steps: LATTICE_STEPS, ..Layers::default() });
-        Ok(Compared {
-            ours,
-            paper_time_reduction: paper.map(|p| p[i]),
-            paper_share_of_ideal: None,
-            comparison: comparer.compare(&filled, lattices)?,
-        })
+        (filled, Sampling::Layers(Layers { steps: LATTICE_STEPS, ..Layers::default() }))
     };
-    let compared = measured.into_iter().zip(&patterns).enumerate().map(compare).collect::<Result<_, Failure>>()?;
-    Ok(scene_report(&subject, settings, compared))
+    scene_report(&subject, settings, backend, frames, &patterns, &papers, without_lens)
 }
 
-fn scene_report(subject: &TracedView, settings: TraceSettings, patterns: Vec<Compared>) -> SceneReport {
-    SceneReport {
+/// Measures a scene. `papers`: the paper's time reduction with each pattern, and this divided by the ideal reduction;
+/// `compared_as`: pattern of the filled frame, and sampling of the sparse one, that are compared.
+fn scene_report(
+    subject: &TracedView,
+    settings: TraceSettings,
+    backend: &Backend,
+    frames: u64,
+    patterns: &[Pattern],
+    papers: &[[Option<f64>; 2]],
+    compared_as: impl Fn(&Pattern) -> (Pattern, Sampling),
+) -> Result<SceneReport, Failure> {
+    let (tracer, by_wall) = (subject.tracer(backend, settings)?, backend.is_real_gpu());
+    let measured = measure(subject, &tracer, patterns, frames, by_wall)?;
+    let mut comparer = Comparer::new(subject, &tracer, backend, by_wall);
+    let mut compared = vec![];
+    for ((ours, pattern), &[paper_time_reduction, paper_share_of_ideal]) in
+        measured.into_iter().zip(patterns).zip(papers)
+    {
+        let (filled, sparse) = compared_as(pattern);
+        let comparison = comparer.compare(&filled, sparse)?;
+        compared.push(Compared { ours, paper_time_reduction, paper_share_of_ideal, comparison });
+    }
+    Ok(SceneReport {
         scene: subject.name.rsplit('/').next().unwrap_or(&subject.name).to_owned(),
         triangles: subject.world.geometry.len(),
         size: subject.geometry().size_px(),
         hfov_deg: subject.geometry().hfov_deg(),
         max_depth: settings.max_depth,
-        patterns,
-    }
+        patterns: compared,
+    })
 }
 
 /// Both tables as Markdown.

@@ -11,8 +11,7 @@ use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
-use afterimage_lab::source;
-use afterimage_lab::source::{ReadLimits, SceneOptions};
+use afterimage_lab::source::{self, ReadLimits, SceneOptions};
 
 /// Frame rate, in frames per second.
 const FPS: f64 = 60.0;
@@ -88,20 +87,18 @@ fn fresh_pixels(shown: &Image<[f32; 3]>, full: &Image<[f32; 3]>, ecc_deg: &Image
 
 /// Outcomes of the readings.
 fn outcomes(args: &WrsTableArgs, backend: &Backend, scanpath: &str, map: GazeMap) -> Result<Vec<Outcome>, Failure> {
-    let input = |e: &dyn std::fmt::Display| Failure::Input(e.to_string());
-    let mut source =
-        source::open(&args.still, &ReadLimits::default(), &SceneOptions::default()).map_err(|e| input(&e))?;
+    let mut source = source::open(&args.still, &ReadLimits::default(), &SceneOptions::default())?;
     let info = source.info().clone();
     if !info.still {
         return Err(Failure::Input(format!("{}: expected a still", args.still)));
     }
-    let geometry = ViewGeometry::flat(info.size, info.hfov_deg.unwrap_or(70.0)).map_err(|e| input(&e))?;
-    let samples = read_csv(scanpath).map_err(|e| input(&e))?;
-    let gaze = FrameGaze::new(&samples, &geometry, map, args.start, FPS).map_err(|e| input(&e))?;
+    let geometry = ViewGeometry::flat(info.size, info.hfov_deg.unwrap_or(70.0))?;
+    let samples = read_csv(scanpath)?;
+    let gaze = FrameGaze::new(&samples, &geometry, map, args.start, FPS)?;
     let foveation = Foveation { rate_mid: args.rate_mid, rate_far: args.rate_far, ..Foveation::default() };
     let none = RunKind::PostProcess(Settings { method: Method::None, ..Settings::paper() });
     let kinds: Vec<_> = std::iter::once(none).chain(readings(backend).into_iter().map(|run| run.1)).collect();
-    let mut pipeline = Pipeline::new(geometry, foveation, &kinds, true, &[], backend).map_err(|e| input(&e))?;
+    let mut pipeline = Pipeline::new(geometry, foveation, &kinds, true, &[], backend)?;
     let mut scorers = vec![Scorer::without_ssim(); kinds.len()];
     let mut references = References::default();
     let mut last = vec![];
@@ -110,8 +107,8 @@ fn outcomes(args: &WrsTableArgs, backend: &Backend, scanpath: &str, map: GazeMap
     let mut past_gaze_px = None;
     let bar = progress::bar(args.frames, "frames");
     for index in 0..args.frames {
-        let frame = source.render(&pipeline.request(index, gaze.px(index))).map_err(|e| input(&e))?;
-        let step = pipeline.step(&frame).map_err(|e| input(&e))?;
+        let frame = source.render(&pipeline.request(index, gaze.px(index)))?;
+        let step = pipeline.step(&frame)?;
         let full = encode(&frame.reference.color, 0.0);
         let reference = references.next(&full, &step.tracked, &step.ecc_deg);
         let shift_deg = |past_px| geometry.eccentricity_deg(step.gaze_px, past_px);

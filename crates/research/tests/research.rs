@@ -205,6 +205,10 @@ fn the_papers_table_is_written_beside_ours() {
     let mut rows = 0;
     for row in table["rows"].as_array().unwrap() {
         let (method, fovea) = (row["method"].as_str().unwrap(), row["options"]["fovea"].as_str().unwrap());
+        // The page has two of the sweep's three foveae.
+        if fovea == "7.5" {
+            continue;
+        }
         let psnr_db = row["values"]["psnr_db"].as_f64().unwrap();
         let preset = if row["options"]["wrs-preset"] == "weighted" { " weighted" } else { "" };
         let line = format!("| {method}{preset} | {fovea} | {psnr_db:.2} | ");
@@ -212,15 +216,15 @@ fn the_papers_table_is_written_beside_ours() {
         assert!(ours.contains(&line), "'{line}' is missing: {ours}");
         rows += 1;
     }
-    assert_eq!(rows, 2 * 3 * 5, "two clips, three foveae, four methods, two presets of wrs");
+    assert_eq!(rows, 2 * 2 * 5, "two clips, two foveae, four methods, two presets of wrs");
     assert!(text.contains("\n| `Settings::weighted()` | "), "{text}");
     // Table 1 of Cantory et al.: stills are compared with none, moving cameras with taa.
-    assert!(of_still.contains("| paper, Sponza: wrs | 5 | 26.52 | 0.720 |"), "{of_still}");
-    assert!(of_moving.contains("| paper, Corridor: taa | 5 | 22.27 | 0.736 |"), "{of_moving}");
+    assert!(of_still.contains("| paper, Sponza: none, wrs | 5 | 24.13, 26.52 | 0.540, 0.720 | | |"), "{of_still}");
+    assert!(of_moving.contains("| paper, Corridor: taa, wrs | 5 | 22.27, 23.12 | 0.736, 0.775 | | |"), "{of_moving}");
     assert!(
         text.contains("\nPSNR gain over none, 5 degrees: wrs ")
             && text.contains("\nPSNR gain over taa, 5 degrees: wrs "),
         "{text}"
     );
-    assert!(text.contains("\nRun time, milliseconds per frame"), "{text}");
+    assert!(text.contains("\nRun time in ms a frame"), "{text}");
 }

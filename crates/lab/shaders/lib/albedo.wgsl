@@ -32,18 +32,22 @@ fn albedo_cosine(cosine: f32, width: f32) -> f32 {
     return (cosine * (1.0 + k)) / (cosine + k);
 }
 
+// albedo::albedo_between
+fn albedo_between(tables: u32, i: u32, row: u32, x: f32, y: f32) -> vec4f {
+    let a = albedo_cell(tables, i);
+    let b = albedo_cell(tables, i + 1u);
+    let c = albedo_cell(tables, i + row);
+    let d = albedo_cell(tables, i + row + 1u);
+    let low = a + (b - a) * x;
+    let high = c + (d - c) * x;
+    return low + (high - low) * y;
+}
+
 // albedo::albedo_plane
 fn albedo_plane(tables: u32, x: f32, y: f32) -> vec4f {
     let kx = albedo_knot(x, COSINES);
     let ky = albedo_knot(y, ROUGHNESSES);
-    let i = u32(ky.x) * COSINES + u32(kx.x);
-    let a = albedo_cell(tables, i);
-    let b = albedo_cell(tables, i + 1u);
-    let c = albedo_cell(tables, i + COSINES);
-    let d = albedo_cell(tables, i + COSINES + 1u);
-    let low = a + (b - a) * kx.y;
-    let high = c + (d - c) * kx.y;
-    return low + (high - low) * ky.y;
+    return albedo_between(tables, u32(ky.x) * COSINES + u32(kx.x), COSINES, kx.y, ky.y);
 }
 
 // albedo::ggx_albedo
@@ -70,13 +74,7 @@ fn anisotropic_albedo(tables: u32, wo: vec3f, a: vec2f) -> vec2f {
         let z = u32(kz.x) + (corner & 1u);
         let w = u32(kw.x) + (corner >> 1u);
         let i = ANISOTROPIC_BASE + ((w * ANISOTROPIC.z + z) * ANISOTROPIC.y + u32(ky.x)) * row + u32(kx.x);
-        let a = albedo_cell(tables, i);
-        let b = albedo_cell(tables, i + 1u);
-        let c = albedo_cell(tables, i + row);
-        let d = albedo_cell(tables, i + row + 1u);
-        let low = a + (b - a) * kx.y;
-        let high = c + (d - c) * kx.y;
-        parts[corner] = low + (high - low) * ky.y;
+        parts[corner] = albedo_between(tables, i, row, kx.y, ky.y);
     }
     let low = parts[0] + (parts[1] - parts[0]) * kz.y;
     let high = parts[2] + (parts[3] - parts[2]) * kz.y;
@@ -101,13 +99,7 @@ fn glass_albedo(tables: u32, cosine: f32, width: f32, ior: f32, entering: bool) 
     var sums: array<vec4f, 2>;
     for (var k = 0u; k < 2u; k++) {
         let i = GLASS_BASE + (u32(kz.x) + k) * plane + u32(ky.x) * row + u32(kx.x);
-        let a = albedo_cell(tables, i);
-        let b = albedo_cell(tables, i + 1u);
-        let c = albedo_cell(tables, i + row);
-        let d = albedo_cell(tables, i + row + 1u);
-        let low = a + (b - a) * kx.y;
-        let high = c + (d - c) * kx.y;
-        sums[k] = low + (high - low) * ky.y;
+        sums[k] = albedo_between(tables, i, row, kx.y, ky.y);
     }
     let e = sums[0] + (sums[1] - sums[0]) * kz.y;
     return select(e.zw, e.xy, entering);

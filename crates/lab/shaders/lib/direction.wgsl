@@ -17,10 +17,7 @@ fn basis(n: vec3f) -> mat2x3f {
     let b = (n.x * a) * n.y;
     let x = n.x * a;
     let y = n.y * a;
-    return mat2x3f(
-        vec3f(1.0 + sign * (x * n.x), sign * b, -sign * n.x),
-        vec3f(b, sign + y * n.y, -n.y),
-    );
+    return mat2x3f(vec3f(1.0 + sign * (x * n.x), sign * b, -sign * n.x), vec3f(b, sign + y * n.y, -n.y));
 }
 
 // direction::to_local

@@ -33,25 +33,6 @@ fn ggx_d(h: vec3f, a: vec2f) -> f32 {
     return 1.0 / (((PI * a.x) * a.y) * (e * e));
 }
 
-// microfacet::smith_g1
-fn smith_g1(v: vec3f, a: vec2f) -> f32 {
-    let z = abs(v.z);
-    let sum = z + ggx_length(v, a);
-    if sum > 0.0 {
-        return 2.0 * z / sum;
-    }
-    return 0.0;
-}
-
-// microfacet::smith_g2
-fn smith_g2(cos_o: f32, length_o: f32, cos_i: f32, length_i: f32) -> f32 {
-    let sum = cos_i * length_o + cos_o * length_i;
-    if sum > 0.0 {
-        return 2.0 * (cos_o * cos_i) / sum;
-    }
-    return 0.0;
-}
-
 // microfacet::vndf_sample
 fn vndf_sample(v: vec3f, a: vec2f, u: vec2f) -> vec3f {
     let s = unit(vec3f(v.x * a.x, v.y * a.y, v.z));
@@ -60,11 +41,6 @@ fn vndf_sample(v: vec3f, a: vec2f, u: vec2f) -> vec3f {
     let r = sqrt(max(q * (2.0 - q), 0.0));
     let h = vec3f(r * sc.y + s.x, r * sc.x + s.y, (1.0 - u.y) * (1.0 + s.z));
     return unit(vec3f(h.x * a.x, h.y * a.y, h.z));
-}
-
-// microfacet::vndf_pdf
-fn vndf_pdf(v: vec3f, h: vec3f, a: vec2f) -> f32 {
-    return 2.0 * ggx_d(h, a) * max(dot(v, h), 0.0) / (v.z + ggx_length(v, a));
 }
 
 // microfacet::schlick_weight

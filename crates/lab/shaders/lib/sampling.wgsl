@@ -33,18 +33,6 @@ fn uniform_hemisphere_pdf(z: f32) -> f32 {
     return select(0.0, 0.5f * FRAC_1_PI, z >= 0.0);
 }
 
-// sampling::uniform_sphere
-fn uniform_sphere(u: vec2f) -> vec3f {
-    let r = 2.0 * sqrt(max(u.x * (1.0 - u.x), 0.0));
-    let sc = sin_cos_turns(u.y);
-    return vec3f(r * sc.y, r * sc.x, 1.0 - 2.0 * u.x);
-}
-
-// sampling::uniform_sphere_pdf
-fn uniform_sphere_pdf() -> f32 {
-    return 0.25f * FRAC_1_PI;
-}
-
 // sampling::barycentrics
 fn barycentrics(u: vec2f) -> vec3f {
     let s = sqrt(u.x);

@@ -6,10 +6,7 @@
 @group(1) @binding(0) var<storage, read> list: array<u32>;
 
 @vertex
-fn quad(
-    @builtin(vertex_index) vertex: u32,
-    @builtin(instance_index) instance: u32,
-) -> @builtin(position) vec4f {
+fn quad(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> @builtin(position) vec4f {
     // Corners of two triangles.
     let corner = vec2u(0x32u >> vertex, 0x2cu >> vertex) & vec2u(1u);
     let word = list[8u + instance];

@@ -19,10 +19,8 @@ struct Batch {
 // Pixel and sample number of each item.
 @group(0) @binding(2) var<storage, read_write> work: array<vec2u>;
 
-override WORKGROUP: u32 = 64u;
-
-@compute @workgroup_size(WORKGROUP)
-fn expand(@builtin(global_invocation_id) id: vec3u) {
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= batch.items {
         return;
     }

@@ -10,9 +10,8 @@ struct TraceFrame {
     down: vec3f,
     width: u32,
     sky: vec3f,
-    first_item: u32,
-    map_size: vec2u,
     items: u32,
+    map_size: vec2u,
     capacity: u32,
     jitter: f32,
     // Pixel (x, y) has index y * width + x - film_base in the film.
@@ -31,7 +30,7 @@ const PATHS_ALIVE: u32 = 7u;
 const SHADOW_RAYS: u32 = 8u;
 
 @group(1) @binding(0) var<uniform> frame: TraceFrame;
-// Pixel and sample number of all items; the batch in flight begins at `first_item`.
+// Pixel and sample number of each item of the batch in flight.
 @group(1) @binding(1) var<storage, read> work: array<vec2u>;
 // State of each path, PATH_ROWS rows.
 @group(1) @binding(2) var<storage, read_write> paths: array<vec4u>;

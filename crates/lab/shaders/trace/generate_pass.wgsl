@@ -11,7 +11,7 @@ fn generate(@builtin(global_invocation_id) id: vec3u) {
     if path >= frame.items {
         return;
     }
-    let item = work[frame.first_item + path];
+    let item = work[path];
     let draws = path_draws(item.x, item.y, DRAWS_CAMERA, frame.key);
     let px = f32(item.x & 0xffffu) + (draws.x - 0.5) * frame.jitter;
     let py = f32(item.x >> 16u) + (draws.y - 0.5) * frame.jitter;

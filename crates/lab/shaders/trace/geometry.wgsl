@@ -5,20 +5,13 @@
 
 override ATTRIBUTES: u32 = 0u;
 override MOVING_ATTRIBUTES: u32 = 0u;
-override MOVING_PREVIOUS: u32 = 0u;
 override SECOND_UVS: u32 = 0u;
 override MOVING_SECOND_UVS: u32 = 0u;
 
-const FLAG_EMISSIVE: u32 = 0x2000000u;
-const FLAG_TRANSMISSIVE: u32 = 0x4000000u;
-
-// Corner positions in world space; material; FLAG_* bits; index in the source; one plus the row in the light table, or
-// 0.
+// Corner positions in world space; material; one plus the row in the light table, or 0.
 struct Triangle {
     corners: array<vec3f, 3>,
     material: u32,
-    flags: u32,
-    source: u32,
     light: u32,
 }
 
@@ -48,16 +41,8 @@ fn triangle_at(triangle: u32) -> Triangle {
     let r0 = load(at);
     let r1 = load(at + 1u);
     let r2 = load(at + 2u);
-    let corners = array<vec3f, 3>(
-        bitcast<vec3f>(r0.xyz), bitcast<vec3f>(r1.xyz), bitcast<vec3f>(r2.xyz));
-    return Triangle(corners, r0.w & 0xffffffu, r0.w & 0xff000000u, r1.w, r2.w);
-}
-
-// Corner positions in the previous frame; the current ones for static triangles.
-fn previous_corners(triangle: u32) -> array<vec3f, 3> {
-    let at = select(TRIANGLES + triangle * 3u, MOVING_PREVIOUS + (triangle - FIRST_MOVING) * 3u, is_moving(triangle));
-    return array<vec3f, 3>(
-        bitcast<vec3f>(load(at).xyz), bitcast<vec3f>(load(at + 1u).xyz), bitcast<vec3f>(load(at + 2u).xyz));
+    let corners = array<vec3f, 3>(bitcast<vec3f>(r0.xyz), bitcast<vec3f>(r1.xyz), bitcast<vec3f>(r2.xyz));
+    return Triangle(corners, r0.w & 0xffffffu, r2.w);
 }
 
 // AttributeRecord::at

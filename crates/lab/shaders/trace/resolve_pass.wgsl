@@ -11,8 +11,8 @@ fn resolve(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= frame.items {
         return;
     }
-    let pixel = work[frame.first_item + id.x].x;
-    if id.x > 0u && work[frame.first_item + id.x - 1u].x == pixel {
+    let pixel = work[id.x].x;
+    if id.x > 0u && work[id.x - 1u].x == pixel {
         return;
     }
     let at = 2u * ((pixel >> 16u) * frame.width + (pixel & 0xffffu) - frame.film_base);
@@ -20,7 +20,7 @@ fn resolve(@builtin(global_invocation_id) id: vec3u) {
     var mean = before.xyz;
     var count = before.w;
     var squares = film[at + 1u].xyz;
-    for (var i = id.x; i < frame.items && work[frame.first_item + i].x == pixel; i++) {
+    for (var i = id.x; i < frame.items && work[i].x == pixel; i++) {
         var sample = path_row(i, PATH_RADIANCE).xyz;
         if !(is_finite(sample.x) && is_finite(sample.y) && is_finite(sample.z)) {
             sample = vec3f(0.0);

@@ -87,7 +87,7 @@ fn shade(@builtin(global_invocation_id) id: vec3u) {
     if bounce == MAX_DEPTH {
         return;
     }
-    let item = work[frame.first_item + path];
+    let item = work[path];
     let wo = to_local(-ray.xyz, p.x, p.y, p.z);
     var layered: Layers;
     if !PHONG {

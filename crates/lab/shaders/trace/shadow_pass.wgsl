@@ -10,7 +10,7 @@ fn shadow(@builtin(global_invocation_id) id: vec3u) {
     }
     let path = lists[2u * frame.capacity + id.x];
     if ALPHA {
-        let item = work[frame.first_item + path];
+        let item = work[path];
         alpha_pixel = item.x;
         alpha_sample = item.y;
         alpha_ray = 2u * plan[BOUNCE] + 1u;

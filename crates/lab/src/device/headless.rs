@@ -1,7 +1,7 @@
 //! A device without a window, with uploads and readbacks. For experiments only: an engine keeps its frames on its own
 //! device and calls [`Afterimage`](afterimage::gpu::Afterimage) directly.
 
-use super::wait_mapped;
+use super::{empty_buffer, texture_desc, wait_mapped};
 use afterimage::{FrameError, FrameStats, Image};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -112,16 +112,9 @@ impl Headless {
 
     /// A 2D texture of `size` pixels with `layers` array layers and one mip level.
     pub fn texture(&self, size: [u32; 2], layers: u32, format: TextureFormat, usage: TextureUsages) -> Texture {
-        self.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("afterimage frame"),
-            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: layers },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage,
-            view_formats: &[],
-        })
+        let desc = texture_desc("afterimage frame", size, format, usage);
+        let size = wgpu::Extent3d { depth_or_array_layers: layers, ..desc.size };
+        self.device.create_texture(&wgpu::TextureDescriptor { size, ..desc })
     }
 
     /// A buffer for [`Target::counters`](afterimage::gpu::Target::counters).
@@ -192,8 +185,7 @@ impl Headless {
     }
 
     pub(crate) fn buffer(&self, size: u64, usage: BufferUsages) -> Buffer {
-        let label = Some("afterimage");
-        self.device.create_buffer(&wgpu::BufferDescriptor { label, size, usage, mapped_at_creation: false })
+        empty_buffer(&self.device, "afterimage", size, usage)
     }
 
     fn read_back(&self, size: u64, copy: impl FnOnce(&mut wgpu::CommandEncoder, &Buffer)) -> Vec<u8> {

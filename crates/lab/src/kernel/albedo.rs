@@ -66,19 +66,24 @@ pub fn albedo_cosine(cosine: f32, width: f32) -> f32 {
     (cosine * (1.0 + k)) / (cosine + k)
 }
 
+/// Bilinear interpolation between cell `i`, the next one, and the two that follow them after `row` cells.
+#[inline]
+fn albedo_between(tables: &AlbedoTables, i: u32, row: u32, x: f32, y: f32) -> Vec4 {
+    let a = albedo_cell(tables, i);
+    let b = albedo_cell(tables, i + 1);
+    let c = albedo_cell(tables, i + row);
+    let d = albedo_cell(tables, i + row + 1);
+    let low = a + (b - a) * x;
+    let high = c + (d - c) * x;
+    low + (high - low) * y
+}
+
 /// Bilinear interpolation in the tables of GGX and sheen.
 #[inline]
 pub fn albedo_plane(tables: &AlbedoTables, x: f32, y: f32) -> Vec4 {
     let kx = albedo_knot(x, COSINES);
     let ky = albedo_knot(y, ROUGHNESSES);
-    let i = ky.x as u32 * COSINES + kx.x as u32;
-    let a = albedo_cell(tables, i);
-    let b = albedo_cell(tables, i + 1);
-    let c = albedo_cell(tables, i + COSINES);
-    let d = albedo_cell(tables, i + COSINES + 1);
-    let low = a + (b - a) * kx.y;
-    let high = c + (d - c) * kx.y;
-    low + (high - low) * ky.y
+    albedo_between(tables, ky.x as u32 * COSINES + kx.x as u32, COSINES, kx.y, ky.y)
 }
 
 /// Directional albedo of GGX of `width`: x for reflectance 1, y for reflectance (1 - v.h)^5. For reflectance `f0` at
@@ -109,13 +114,7 @@ pub fn anisotropic_albedo(tables: &AlbedoTables, wo: Vec3, a: Vec2) -> Vec2 {
         let z = kz.x as u32 + (corner as u32 & 1);
         let w = kw.x as u32 + (corner as u32 >> 1);
         let i = ANISOTROPIC_BASE + ((w * ANISOTROPIC[2] + z) * ANISOTROPIC[1] + ky.x as u32) * row + kx.x as u32;
-        let a = albedo_cell(tables, i);
-        let b = albedo_cell(tables, i + 1);
-        let c = albedo_cell(tables, i + row);
-        let d = albedo_cell(tables, i + row + 1);
-        let low = a + (b - a) * kx.y;
-        let high = c + (d - c) * kx.y;
-        *part = low + (high - low) * ky.y;
+        *part = albedo_between(tables, i, row, kx.y, ky.y);
     }
     let low = parts[0] + (parts[1] - parts[0]) * kz.y;
     let high = parts[2] + (parts[3] - parts[2]) * kz.y;
@@ -144,13 +143,7 @@ pub fn glass_albedo(tables: &AlbedoTables, cosine: f32, width: f32, ior: f32, en
     let mut sums = [Vec4::ZERO; 2];
     for (k, sum) in sums.iter_mut().enumerate() {
         let i = GLASS_BASE + (kz.x as u32 + k as u32) * plane + ky.x as u32 * row + kx.x as u32;
-        let a = albedo_cell(tables, i);
-        let b = albedo_cell(tables, i + 1);
-        let c = albedo_cell(tables, i + row);
-        let d = albedo_cell(tables, i + row + 1);
-        let low = a + (b - a) * kx.y;
-        let high = c + (d - c) * kx.y;
-        *sum = low + (high - low) * ky.y;
+        *sum = albedo_between(tables, i, row, kx.y, ky.y);
     }
     let e = sums[0] + (sums[1] - sums[0]) * kz.y;
     if entering { Vec2::new(e.x, e.y) } else { Vec2::new(e.z, e.w) }

@@ -83,42 +83,6 @@ impl Lobes {
         sheen: true,
         transmission: true,
     };
-    /// Only Lambert's diffuse lobe.
-    pub const NONE: Self = Self {
-        retro: false,
-        specular: false,
-        metal: false,
-        anisotropy: false,
-        clearcoat: false,
-        sheen: false,
-        transmission: false,
-    };
-
-    /// Lobes that `surface` uses.
-    pub fn used_by(surface: &Surface) -> Self {
-        Self {
-            retro: surface.specular > 0.0,
-            specular: surface.specular > 0.0,
-            metal: surface.metallic > 0.0,
-            anisotropy: surface.anisotropy > 0.0,
-            clearcoat: surface.clearcoat > 0.0,
-            sheen: surface.sheen_color.max_element() > 0.0,
-            transmission: surface.transmission > 0.0,
-        }
-    }
-
-    /// Lobes in either set.
-    pub fn union(self, other: Self) -> Self {
-        Self {
-            retro: self.retro | other.retro,
-            specular: self.specular | other.specular,
-            metal: self.metal | other.metal,
-            anisotropy: self.anisotropy | other.anisotropy,
-            clearcoat: self.clearcoat | other.clearcoat,
-            sheen: self.sheen | other.sheen,
-            transmission: self.transmission | other.transmission,
-        }
-    }
 }
 
 /// Layers of a surface for a given `wo`, each attenuated by the layers above it.

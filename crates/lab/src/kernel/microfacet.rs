@@ -50,22 +50,6 @@ pub fn ggx_d(h: Vec3, a: Vec2) -> f32 {
     1.0 / (((PI * a.x) * a.y) * (e * e))
 }
 
-/// Smith's masking: share of the facets' projected area that is visible from `v` (Heitz 2014, eq. 43).
-#[inline]
-pub fn smith_g1(v: Vec3, a: Vec2) -> f32 {
-    let z = v.z.abs();
-    let sum = z + ggx_length(v, a);
-    if sum > 0.0 { 2.0 * z / sum } else { 0.0 }
-}
-
-/// Height-correlated masking-shadowing 1 / (1 + Lambda(o) + Lambda(i)) (Heitz 2014, eq. 99), from the cosines and
-/// [`ggx_length`] of both directions.
-#[inline]
-pub fn smith_g2(cos_o: f32, length_o: f32, cos_i: f32, length_i: f32) -> f32 {
-    let sum = cos_i * length_o + cos_o * length_i;
-    if sum > 0.0 { 2.0 * (cos_o * cos_i) / sum } else { 0.0 }
-}
-
 /// Samples a GGX normal visible from `v` (z > 0), by spherical caps (Dupuy and Benyoub, "Sampling Visible GGX Normals
 /// with Spherical Caps", 2023).
 #[inline]
@@ -77,13 +61,6 @@ pub fn vndf_sample(v: Vec3, a: Vec2, u: Vec2) -> Vec3 {
     let r = (q * (2.0 - q)).max(0.0).sqrt();
     let h = Vec3::new(r * cos + s.x, r * sin + s.y, (1.0 - u.y) * (1.0 + s.z));
     unit(Vec3::new(h.x * a.x, h.y * a.y, h.z))
-}
-
-/// Density of [`vndf_sample`] in 1/sr of normals: D G1 (v.h) / v.z, without the quotient G1 / v.z, which overflows f32
-/// near the horizon (Heitz 2018, eq. 3).
-#[inline]
-pub fn vndf_pdf(v: Vec3, h: Vec3, a: Vec2) -> f32 {
-    2.0 * ggx_d(h, a) * v.dot(h).max(0.0) / (v.z + ggx_length(v, a))
 }
 
 /// (1 - `cosine`)^5 of Schlick's approximation (1994): weight between reflectance at normal incidence and 1.

@@ -41,20 +41,6 @@ pub fn uniform_hemisphere_pdf(z: f32) -> f32 {
     if z >= 0.0 { 0.5 * FRAC_1_PI } else { 0.0 }
 }
 
-/// Direction, uniform in solid angle.
-#[inline]
-pub fn uniform_sphere(u: Vec2) -> Vec3 {
-    let r = 2.0 * (u.x * (1.0 - u.x)).max(0.0).sqrt();
-    let [s, c] = sin_cos_turns(u.y);
-    Vec3::new(r * c, r * s, 1.0 - 2.0 * u.x)
-}
-
-/// Density of [`uniform_sphere`] in 1/sr.
-#[inline]
-pub fn uniform_sphere_pdf() -> f32 {
-    0.25 * FRAC_1_PI
-}
-
 /// Barycentric coordinates of a point in a triangle, uniform in area (Turk 1990).
 #[inline]
 pub fn barycentrics(u: Vec2) -> Vec3 {

@@ -12,7 +12,7 @@ use crate::trace::sampling::Sampling;
 use crate::trace::settings::TraceSettings;
 use crate::trace::surfaces::Surfaces;
 use crate::trace::view::View;
-use crate::trace::work::{Spans, WorkItem, uniform};
+use crate::trace::work::Spans;
 use crate::trace::world::World;
 use afterimage::{Image, SettingsError, ViewGeometry};
 use std::cell::OnceCell;
@@ -43,7 +43,6 @@ pub struct TracedView {
     /// What is traced.
     pub world: World,
     of: ViewedScene,
-    items: Vec<WorkItem>,
     size: [u32; 2],
     /// Where a tracer on a device leaves the samples of sparse frames.
     on_device: OnceCell<DeviceSamples>,
@@ -85,8 +84,7 @@ impl TracedView {
             options: SceneOptions { size: Some(size), hfov_deg, fps: None },
             ..SceneChoice::new(name)
         })?;
-        let items = uniform(size[0], 0..size[1], 0..1);
-        Ok(Self { name: name.to_owned(), world: World::new(&of.scene), of, items, size, on_device: OnceCell::new() })
+        Ok(Self { name: name.to_owned(), world: World::new(&of.scene), of, size, on_device: OnceCell::new() })
     }
 
     /// Features of the scene file that are ignored or approximated.
@@ -117,7 +115,7 @@ impl TracedView {
 
     /// Traces frame `index`.
     pub fn frame(&self, tracer: &Tracer, index: u64) -> FrameTime {
-        self.trace(tracer, index, &self.items)
+        self.trace(tracer, index, &Spans::uniform(self.size[0], 0..self.size[1], 0..1))
     }
 
     /// The full-rate frame: `samples` of every pixel, with other random draws than [`foveated`](Self::foveated) frames.
@@ -145,7 +143,9 @@ impl TracedView {
 
     /// Traces a few samples, which is enough to run every kernel.
     pub fn few(&self, tracer: &Tracer) -> FrameTime {
-        self.trace(tracer, 0, &self.items[..self.items.len().min(64)])
+        let [width, height] = self.size;
+        let first = (0..64.min(width * height)).map(|i| [i % width, i / width]);
+        self.trace(tracer, 0, &Spans::new(first, 0..1))
     }
 
     /// Center of the frame, pixels.
@@ -228,14 +228,14 @@ impl TracedView {
         FrameTime { cpu_ms: took.cpu_ms * more, wall_ms: took.wall_ms * more, ..took }
     }
 
-    fn trace(&self, tracer: &Tracer, index: u64, items: &[WorkItem]) -> FrameTime {
+    fn trace(&self, tracer: &Tracer, index: u64, work: &Spans) -> FrameTime {
         let view = self.view(index);
         let mut film = Film::new(self.size);
         let watch = Stopwatch::start();
         let device = match tracer {
-            Tracer::Gpu(tracer) => tracer.trace_timed(&self.world, &view, index, items, &mut film),
+            Tracer::Gpu(tracer) => tracer.trace_timed(&self.world, &view, index, work, &mut film),
             Tracer::Cpu(tracer) => {
-                tracer.trace(&self.world, &view, index, items, &mut film);
+                tracer.trace(&self.world, &view, index, work, &mut film);
                 None
             }
         };

@@ -3,10 +3,10 @@
 
 use super::pixels::Pixels;
 use super::window::DrawCall;
+use crate::device::{bind_group, empty_buffer};
 use crate::shader::SHADERS;
 use crate::trace::view::View;
-use afterimage::internal::ComputeShader;
-use afterimage::internal::filled;
+use afterimage::internal::{ComputeShader, filled};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 use wgpu::{BindGroup, BindGroupLayout, Buffer, BufferUsages, CommandEncoder, Device};
@@ -84,16 +84,9 @@ impl ChunkTest {
             .collect();
         // wgpu cannot bind an empty array.
         chunks.resize(chunks.len().max(1), Chunk::zeroed());
-        let empty = |bytes, usage| {
-            device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("chosen quads"),
-                size: bytes,
-                usage: BufferUsages::STORAGE | usage,
-                mapped_at_creation: false,
-            })
-        };
-        let marked = empty(4 * u64::from(words_per_row * tiles[1]), BufferUsages::empty());
-        let draws = empty(DRAW_BYTES * chunks.len() as u64, BufferUsages::INDIRECT);
+        let empty = |bytes, usage| empty_buffer(device, "chosen quads", bytes, usage);
+        let marked = empty(4 * u64::from(words_per_row * tiles[1]), BufferUsages::STORAGE);
+        let draws = empty(DRAW_BYTES * chunks.len() as u64, BufferUsages::STORAGE | BufferUsages::INDIRECT);
         let words = [words_per_row, 0, 0, 0];
         let words = filled(device, "chosen quads", bytemuck::bytes_of(&words), BufferUsages::UNIFORM);
         let count = chunks.len() as u32;
@@ -106,11 +99,7 @@ impl ChunkTest {
         let group = self.chunk.group(device, [&words, &chunks, &marked, &draws].map(Buffer::as_entire_binding));
         self.chunk.dispatch(device, &mut pass, &[], &group, [count, 1], 1);
         drop(pass);
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("chosen quads"),
-            layout,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: list.as_entire_binding() }],
-        });
+        let group = bind_group(device, "chosen quads", layout, [list.as_entire_binding()]);
         ChosenQuads { list: list.clone(), group, draws }
     }
 }

@@ -1,15 +1,12 @@
 //! Composition of quad views into a frame, on the device.
 
 use super::targets::Targets;
+use crate::device::texture_desc;
 use crate::quad_views::{QuadView, QuadViews};
 use crate::shader::SHADERS;
-use afterimage::internal::ComputeShader;
-use afterimage::internal::{array_view, filled};
+use afterimage::internal::{ComputeShader, array_view, filled};
 use bytemuck::{Pod, Zeroable};
-use wgpu::{
-    BindingResource, BufferUsages, CommandEncoder, Device, Extent3d, Texture, TextureDescriptor, TextureDimension,
-    TextureFormat, TextureUsages,
-};
+use wgpu::{BindingResource, BufferUsages, CommandEncoder, Device, Texture, TextureFormat, TextureUsages};
 
 /// Formats of color, distance, motion and level of detail.
 const FORMATS: [TextureFormat; 4] =
@@ -62,20 +59,9 @@ impl From<&QuadView> for QuadViewRecord {
 
 impl Composer {
     /// A composer of frames of `size` pixels.
-    pub fn new(device: &Device, [width, height]: [u32; 2]) -> Self {
+    pub fn new(device: &Device, size: [u32; 2]) -> Self {
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
-        let texture = |format| {
-            device.create_texture(&TextureDescriptor {
-                label: Some("composed frame"),
-                size: Extent3d { width, height, depth_or_array_layers: 1 },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: TextureDimension::D2,
-                format,
-                usage,
-                view_formats: &[],
-            })
-        };
+        let texture = |format| device.create_texture(&texture_desc("composed frame", size, format, usage));
         Self {
             shader: ComputeShader::new(device, "compose", &SHADERS.compose("compose_pass").source),
             frame: FORMATS.map(texture),

@@ -49,8 +49,7 @@ pub(super) struct Lighting {
 impl Lighting {
     pub fn new(scene: &Scene) -> Self {
         let needs = Effects::needed(scene);
-        let own = [Effect::EmissiveTriangles, Effect::PunctualLights, Effect::Environment];
-        let added_sun = !own.iter().any(|&e| needs.has(e));
+        let added_sun = !needs.has_light();
         let environment = if added_sun { Environment::Constant(DEFAULT_SKY) } else { scene.environment.clone() };
         let rest = scene.pose(0.0);
         let panels = panels(&[scene.still(), &rest.moving], &scene.materials);
@@ -75,13 +74,7 @@ impl Lighting {
     /// The strongest directional light of `lights`, or the added sun.
     pub fn sun(&self, lights: &[PunctualLight]) -> Option<PunctualLight> {
         if self.added_sun {
-            return Some(PunctualLight {
-                kind: PunctualKind::Directional,
-                position: Vec3::ZERO,
-                direction: Vec3::from(DEFAULT_SUN_DIRECTION).normalize(),
-                intensity: DEFAULT_SUN,
-                range: f32::INFINITY,
-            });
+            return Some(PunctualLight::sun(Vec3::from(DEFAULT_SUN_DIRECTION), DEFAULT_SUN));
         }
         let far = lights.iter().filter(|l| l.kind == PunctualKind::Directional);
         far.copied().max_by(|a, b| strength(a).total_cmp(&strength(b)))

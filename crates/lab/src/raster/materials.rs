@@ -1,14 +1,14 @@
 //! Materials and textures on the device.
 
 use super::mipmaps::levels;
-use super::pipelines::{Layouts, SLOTS, slot_binding};
+use super::pipelines::{Layouts, SAMPLERS, SLOTS};
+use crate::device::{bind_group, empty_buffer, texture_desc};
 use crate::scene::{Coordinates, Material, Scene, Texture, TextureRef, Wrap};
 use crate::trace::shading_records::MaterialRecord;
 use afterimage::Image;
 use std::collections::HashMap;
 use wgpu::{
-    AddressMode, BindGroup, BindGroupEntry, BindingResource, Device, FilterMode, Queue, Sampler, TextureFormat,
-    TextureUsages, TextureView,
+    AddressMode, BindGroup, BindingResource, Device, FilterMode, Queue, TextureFormat, TextureUsages, TextureView,
 };
 
 /// Bind groups of a scene's materials; at least one.
@@ -23,63 +23,42 @@ pub(super) fn bind_groups(
     let materials = if scene.materials.is_empty() { &fallback } else { &scene.materials[..] };
     let white = upload(device, queue, "white", &[Image::filled([1, 1], [255; 4])], false);
     let max_side = device.limits().max_texture_dimension_2d;
-    let mut textures = HashMap::new();
-    let mut samplers = HashMap::new();
+    let (mut textures, mut samplers) = (HashMap::new(), HashMap::new());
     // Upload only textures in use. One that serves as color and as data is uploaded in both formats.
-    for m in materials {
-        for (slot, is_color) in slots(m) {
-            if let Some((r, t)) = slot.and_then(|r| Some((r.texture, scene.textures.get(r.texture as usize)?))) {
-                textures
-                    .entry((r, is_color))
-                    .or_insert_with(|| upload(device, queue, "texture", &levels(t, is_color, max_side), is_color));
-            }
+    let of = |slot: Option<TextureRef>| slot.and_then(|r| scene.textures.get(r.texture as usize));
+    for (slot, is_color) in materials.iter().flat_map(slots) {
+        if let (Some(r), Some(t)) = (slot, of(slot)) {
+            let upload = || upload(device, queue, "texture", &levels(t, is_color, max_side), is_color);
+            textures.entry((r.texture, is_color)).or_insert_with(upload);
         }
+        let (key, description) = addressing(of(slot), anisotropy);
+        samplers.entry(key).or_insert_with(|| device.create_sampler(&description));
     }
     let bytes = (size_of::<MaterialRecord>() + size_of::<SlotCoordinates>()) as u64;
     let stride = bytes.next_multiple_of(256.max(u64::from(device.limits().min_storage_buffer_offset_alignment)));
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("materials"),
-        size: stride * materials.len() as u64,
-        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
+    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+    let buffer = empty_buffer(device, "materials", stride * materials.len() as u64, usage);
     let groups = materials.iter().enumerate().map(|(i, m)| {
         let record = MaterialRecord::new(m);
         queue.write_buffer(&buffer, stride * i as u64, bytemuck::bytes_of(&record));
         let slots = slots(m);
-        let coordinates: SlotCoordinates = slots.map(|(slot, _)| {
-            let texture = slot.and_then(|r| scene.textures.get(r.texture as usize));
-            rows(texture.map(|t| t.coordinates).unwrap_or_default())
-        });
+        let coordinates: SlotCoordinates =
+            slots.map(|(slot, _)| rows(of(slot).map(|t| t.coordinates).unwrap_or_default()));
         let after = stride * i as u64 + size_of::<MaterialRecord>() as u64;
         queue.write_buffer(&buffer, after, bytemuck::bytes_of(&coordinates));
-        for (slot, _) in slots {
-            let (key, description) = addressing(slot.and_then(|r| scene.textures.get(r.texture as usize)), anisotropy);
-            samplers.entry(key).or_insert_with(|| device.create_sampler(&description));
-        }
-        let mut entries = vec![BindGroupEntry {
-            binding: 0,
-            resource: BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &buffer,
-                offset: stride * i as u64,
-                size: wgpu::BufferSize::new(bytes),
-            }),
-        }];
+        let mut resources = vec![BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: &buffer,
+            offset: stride * i as u64,
+            size: wgpu::BufferSize::new(bytes),
+        })];
         for (k, (slot, is_color)) in slots.into_iter().enumerate() {
-            let binding = slot_binding(k);
             let view = slot.and_then(|r| textures.get(&(r.texture, is_color))).unwrap_or(&white);
-            entries.push(BindGroupEntry { binding, resource: BindingResource::TextureView(view) });
-            if k < 4 {
-                let (key, _) = addressing(slot.and_then(|r| scene.textures.get(r.texture as usize)), anisotropy);
-                let sampler: &Sampler = &samplers[&key];
-                entries.push(BindGroupEntry { binding: binding + 1, resource: BindingResource::Sampler(sampler) });
+            resources.push(BindingResource::TextureView(view));
+            if k < SAMPLERS {
+                resources.push(BindingResource::Sampler(&samplers[&addressing(of(slot), anisotropy).0]));
             }
         }
-        device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(&m.name),
-            layout: &layouts.material,
-            entries: &entries,
-        })
+        bind_group(device, &m.name, &layouts.material, resources)
     });
     groups.collect()
 }
@@ -145,17 +124,10 @@ pub(super) fn upload_levels<T: bytemuck::NoUninit>(
     levels: &[Image<T>],
     format: TextureFormat,
 ) -> TextureView {
-    let extent = |[width, height]: [u32; 2]| wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
-    let texture = device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: extent(levels[0].size()),
-        mip_level_count: levels.len() as u32,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
+    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
+    let desc = |image: &Image<T>| texture_desc(label, image.size(), format, usage);
+    let mip_level_count = levels.len() as u32;
+    let texture = device.create_texture(&wgpu::TextureDescriptor { mip_level_count, ..desc(&levels[0]) });
     for (level, image) in levels.iter().enumerate() {
         let to = wgpu::TexelCopyTextureInfo { mip_level: level as u32, ..texture.as_image_copy() };
         let layout = wgpu::TexelCopyBufferLayout {
@@ -163,7 +135,7 @@ pub(super) fn upload_levels<T: bytemuck::NoUninit>(
             bytes_per_row: Some(image.size()[0] * size_of::<T>() as u32),
             rows_per_image: None,
         };
-        queue.write_texture(to, bytemuck::cast_slice(image.pixels()), layout, extent(image.size()));
+        queue.write_texture(to, bytemuck::cast_slice(image.pixels()), layout, desc(image).size);
     }
     texture.create_view(&Default::default())
 }

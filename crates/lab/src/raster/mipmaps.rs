@@ -3,7 +3,6 @@
 use crate::scene::Texture;
 use afterimage::Image;
 use afterimage::kernel::color::{srgb_decode, srgb_encode};
-use rayon::prelude::*;
 use std::sync::LazyLock;
 
 /// Mip levels of a texture, largest first down to 1x1, without those larger than `max_side`.
@@ -13,11 +12,25 @@ use std::sync::LazyLock;
 pub(super) fn levels(texture: &Texture, is_color: bool, max_side: u32) -> Vec<Image<[u8; 4]>> {
     let [w, h] = texture.size;
     let first = Image::from_fn([w, h], |[x, y]| texture.texels.get((y * w + x) as usize).copied().unwrap_or([255; 4]));
+    chain(first, max_side, |four| mean(four, is_color))
+}
+
+/// The image and its halves down to 1x1, without those larger than `max_side`. `mean`: of four texels.
+fn chain<T: Copy + Default + Send + Sync>(
+    first: Image<T>,
+    max_side: u32,
+    mean: impl Fn([T; 4]) -> T + Sync,
+) -> Vec<Image<T>> {
     let mut levels = vec![first];
     while let Some(last) = levels.last()
         && last.size() != [1, 1]
     {
-        let next = halved(last, is_color);
+        let next = Image::from_fn_parallel(last.size().map(|s| (s / 2).max(1)), |[x, y]| {
+            // Where a side is a single texel, repeat it.
+            let [x, y] = [[x, last.size()[0]], [y, last.size()[1]]].map(|[v, side]| [2 * v, (2 * v + 1).min(side - 1)]);
+            let at = |i: usize, j: usize| last.at(x[i] as usize, y[j] as usize);
+            mean([at(0, 0), at(1, 0), at(0, 1), at(1, 1)])
+        });
         if last.size().iter().any(|&s| s > max_side) {
             levels.pop();
         }
@@ -32,24 +45,6 @@ static DECODED: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|i| 
 /// sRGB bytes of linear values. A step of 1/8192 is less than half a byte step, except in the 7 darkest.
 static ENCODED: LazyLock<Vec<u8>> =
     LazyLock::new(|| (0..=8192).map(|i| (srgb_encode(i as f32 / 8192.0) * 255.0).round() as u8).collect());
-
-fn halved(image: &Image<[u8; 4]>, is_color: bool) -> Image<[u8; 4]> {
-    let size = image.size().map(|s| (s / 2).max(1));
-    let [w, h] = [image.width(), image.height()];
-    let rows: Vec<Vec<[u8; 4]>> = (0..size[1] as usize)
-        .into_par_iter()
-        .map(|y| {
-            // Where a side is a single texel, repeat it.
-            let at = |x: usize, y: usize| image.at(x.min(w - 1), y.min(h - 1));
-            let row = |x: usize| {
-                let (x, y) = (2 * x, 2 * y);
-                mean([at(x, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)], is_color)
-            };
-            (0..size[0] as usize).map(row).collect()
-        })
-        .collect();
-    Image::from_pixels(size, rows.concat()).expect("rows of the size")
-}
 
 fn mean(four: [[u8; 4]; 4], is_color: bool) -> [u8; 4] {
     let sum = |c: usize| four.iter().map(|t| u32::from(t[c])).sum::<u32>();
@@ -69,22 +64,7 @@ fn mean(four: [[u8; 4]; 4], is_color: bool) -> [u8; 4] {
 
 /// Mip levels of the sky in linear radiance, largest first down to 1x1, without those larger than `max_side`.
 pub(super) fn sky_levels(map: &Image<[f32; 3]>, max_side: u32) -> Vec<Image<[f32; 3]>> {
-    let mut levels = vec![map.clone()];
-    while let Some(last) = levels.last()
-        && last.size() != [1, 1]
-    {
-        let [w, h] = [last.width(), last.height()];
-        let next = Image::from_fn(last.size().map(|s| (s / 2).max(1)), |[x, y]| {
-            let at = |dx: usize, dy: usize| last.at((2 * x as usize + dx).min(w - 1), (2 * y as usize + dy).min(h - 1));
-            let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
-            [0, 1, 2].map(|c| four.iter().map(|t| t[c]).sum::<f32>() * 0.25)
-        });
-        if last.size().iter().any(|&s| s > max_side) {
-            levels.pop();
-        }
-        levels.push(next);
-    }
-    levels
+    chain(map.clone(), max_side, |four| [0, 1, 2].map(|c| four.iter().map(|t| t[c]).sum::<f32>() * 0.25))
 }
 
 #[cfg(test)]

@@ -53,6 +53,7 @@ pub use targets::{FoveatedTargets, Targets};
 pub(crate) use targets::{read_color, read_distance};
 pub use window::{AtlasLayout, PixelSamples};
 
+use crate::device::{bind_group, empty_buffer};
 use crate::error::{Bound, Exceeded, InputError};
 use crate::kernel::albedo::AlbedoTables;
 use crate::scene::{Environment, Pose, PunctualLight, Scene};
@@ -246,12 +247,8 @@ fn check(scene: &Scene, pose: &Pose, size: [u32; 2], limits: &wgpu::Limits) -> R
 
 /// A buffer with room for `vertices`; at least one.
 fn vertex_buffer(device: &Device, vertices: usize) -> Buffer {
-    device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("vertices"),
-        size: STRIDE * vertices.max(1) as u64,
-        usage: BufferUsages::VERTEX | BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
+    let usage = BufferUsages::VERTEX | BufferUsages::COPY_DST;
+    empty_buffer(device, "vertices", STRIDE * vertices.max(1) as u64, usage)
 }
 
 /// The sky texture with its mip levels, and the number of the last level.
@@ -299,11 +296,5 @@ fn lighting_maps(
         wgpu::BindingResource::Sampler(&around),
         wgpu::BindingResource::TextureView(&tables),
     ];
-    let entries: Vec<_> =
-        resources.into_iter().zip(0..).map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource }).collect();
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("lighting_maps"),
-        layout: &layouts.lighting_maps,
-        entries: &entries,
-    })
+    bind_group(device, "lighting_maps", &layouts.lighting_maps, resources)
 }

@@ -63,15 +63,9 @@ impl ColorPipelines {
                 ("NORMAL_MAP", Effect::NormalMap),
                 ("EMISSIVE_TEXTURE", Effect::EmissiveTexture),
                 ("TEXTURE_COORDINATES", Effect::TextureCoordinates),
-                ("LOBE_RETRO", Effect::Dielectric),
-                ("LOBE_SPECULAR", Effect::Dielectric),
-                ("LOBE_METAL", Effect::Metal),
-                ("LOBE_ANISOTROPY", Effect::Anisotropy),
-                ("LOBE_CLEARCOAT", Effect::Clearcoat),
-                ("LOBE_SHEEN", Effect::Sheen),
-                ("LOBE_TRANSMISSION", Effect::Transmission),
             ],
         );
+        shading.extend(effects.lobe_constants());
         shading.push(("HAS_SUN", f64::from(u8::from(has_sun))));
         let mut tested = shading.clone();
         tested.push(("ALPHA_TEST", f64::from(u8::from(samples == 1))));
@@ -251,13 +245,10 @@ impl<'a> Recipe<'a> {
     }
 }
 
-/// Textures of a material, in the order of their bindings. The first four have a sampler each.
+/// Textures of a material, in the order of their bindings.
 pub(super) const SLOTS: usize = 11;
-
-/// Binding of slot `i`'s texture.
-pub(super) fn slot_binding(i: usize) -> u32 {
-    if i < 4 { 2 * i as u32 + 1 } else { i as u32 + 5 }
-}
+/// The first textures of a material, which have a sampler each.
+pub(super) const SAMPLERS: usize = 4;
 
 impl Layouts {
     pub fn new(device: &Device) -> Self {
@@ -277,14 +268,9 @@ impl Layouts {
         };
         let both = ShaderStages::VERTEX_FRAGMENT;
         let fragment = ShaderStages::FRAGMENT;
-        let mut material = vec![entry(0, fragment, storage)];
-        for i in 0..SLOTS {
-            let binding = slot_binding(i);
-            material.push(entry(binding, fragment, filtered));
-            if i < 4 {
-                material.push(entry(binding + 1, fragment, sampler));
-            }
-        }
+        let textures = (0..SLOTS).flat_map(|i| [Some(filtered), (i < SAMPLERS).then_some(sampler)]).flatten();
+        let material = (0..).zip(std::iter::once(storage).chain(textures));
+        let material: Vec<_> = material.map(|(binding, ty)| entry(binding, fragment, ty)).collect();
         Self {
             frame: make("frame", &[entry(0, both, uniform), entry(1, both, storage)]),
             material: make("material", &material),

@@ -1,13 +1,13 @@
 //! Recording of a frame's passes.
 
+use super::Raster;
 use super::chosen_quads::{ChosenQuads, ChunkTest};
 use super::frame::FrameUniforms;
-use super::lighting::LightingRecord;
 use super::pipelines::ColorPipelines;
 use super::targets::{FoveatedTargets, Targets};
-use super::vertices::{AlphaKind, DrawRange, STRIDE};
+use super::vertices::{AlphaKind, STRIDE};
 use super::window::{DrawCall, Frustum, PixelSamples, Window};
-use super::{Raster, VertexSet};
+use crate::device::bind_group;
 use crate::quad_views::QuadViews;
 use crate::trace::view::View;
 use afterimage::Lattices;
@@ -16,7 +16,7 @@ use glam::DVec3;
 use std::ops::Range;
 use wgpu::{
     BindGroup, Buffer, BufferUsages, Color, CommandEncoder, Device, IndexFormat, LoadOp, Operations, RenderPass,
-    RenderPassColorAttachment, StoreOp,
+    RenderPassColorAttachment, StoreOp, TextureView,
 };
 
 /// Reversed depth of the near and the far plane.
@@ -61,9 +61,8 @@ impl Raster {
         let Targets { views: [color, depth, motion], samples, .. } = &self.targets;
         self.surface_pass(encoder, [depth, motion], &sections);
         let blended = self.back_to_front(device, view);
-        let ops = Operations { load: LoadOp::Clear(Color::BLACK), store: StoreOp::Discard };
         let [samples, depth] = samples;
-        let target = RenderPassColorAttachment { view: samples, depth_slice: None, resolve_target: Some(color), ops };
+        let target = target(samples, Some(color), LoadOp::Clear(Color::BLACK));
         self.color_pass(encoder, target, depth, &self.pipelines.color, &sections, &blended);
     }
 
@@ -130,9 +129,7 @@ impl Raster {
         let blended = self.back_to_front(device, view);
         let mut load = LoadOp::Clear(Color::BLACK);
         if !full.is_empty() {
-            let ops = Operations { load, store: StoreOp::Discard };
-            let target =
-                RenderPassColorAttachment { view: samples, depth_slice: None, resolve_target: Some(color), ops };
+            let target = target(samples, Some(color), load);
             self.color_pass(encoder, target, sample_depth, &self.pipelines.color, full, &blended);
             load = LoadOp::Load;
         }
@@ -140,9 +137,7 @@ impl Raster {
             return;
         }
         let point_pipelines = self.point_pipelines(device);
-        let ops = Operations { load, store: StoreOp::Store };
-        let target = RenderPassColorAttachment { view: color, depth_slice: None, resolve_target: None, ops };
-        self.color_pass(encoder, target, point_depth, point_pipelines, points, &blended);
+        self.color_pass(encoder, target(color, None, load), point_depth, point_pipelines, points, &blended);
     }
 
     /// Records the color of some quads of 2x2 pixels of the full-rate frame, with one sample per pixel, into the color
@@ -157,7 +152,7 @@ impl Raster {
     ) {
         self.upload(device, encoder);
         let window = Window::full(view.geometry().size_px()).with_points();
-        let calls = self.chunk_calls(&Frustum::new(view, &window));
+        let calls = self.chunk_calls(Some(&Frustum::new(view, &window)));
         let test = self.chunk_test.get_or_init(|| ChunkTest::new(device));
         let quads = test.record(device, encoder, view, &calls, (list, &self.layouts.quads));
         let calls = calls.into_iter().map(|(call, _)| call).collect();
@@ -166,8 +161,7 @@ impl Raster {
         self.shadows(encoder, &section.group);
         let blended = self.back_to_front(device, view);
         let FoveatedTargets { atlas: Targets { views: [color, ..], .. }, point_depth } = targets;
-        let ops = Operations { load: LoadOp::Clear(Color::BLACK), store: StoreOp::Store };
-        let target = RenderPassColorAttachment { view: color, depth_slice: None, resolve_target: None, ops };
+        let target = target(color, None, LoadOp::Clear(Color::BLACK));
         let pipelines = self.point_pipelines(device);
         self.color_pass(encoder, target, point_depth, pipelines, &[section], &blended);
     }
@@ -203,7 +197,11 @@ impl Raster {
     fn frame_uniforms(&self, device: &Device, [view, previous]: [&View; 2], window: &Window) -> BindGroup {
         let frame = FrameUniforms::new(view, previous, self.near, window);
         let lights = self.lighting.record(&self.lights, self.last_level, self.shadow_side);
-        self.frame_group(device, &frame, &lights)
+        let buffers = [
+            filled(device, "raster frame", bytemuck::bytes_of(&frame), BufferUsages::UNIFORM),
+            filled(device, "raster frame", bytemuck::bytes_of(&lights), BufferUsages::STORAGE),
+        ];
+        bind_group(device, "frame", &self.layouts.frame, buffers.each_ref().map(Buffer::as_entire_binding))
     }
 
     /// Draws the shadow map anew if the scene moved. `group`: uniforms of the full-rate frame.
@@ -223,20 +221,6 @@ impl Raster {
         }
     }
 
-    fn frame_group(&self, device: &Device, frame: &FrameUniforms, lights: &LightingRecord) -> BindGroup {
-        let buffers = [
-            filled(device, "raster frame", bytemuck::bytes_of(frame), BufferUsages::UNIFORM),
-            filled(device, "raster frame", bytemuck::bytes_of(lights), BufferUsages::STORAGE),
-        ];
-        let entry =
-            |binding: u32| wgpu::BindGroupEntry { binding, resource: buffers[binding as usize].as_entire_binding() };
-        device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("frame"),
-            layout: &self.layouts.frame,
-            entries: &[entry(0), entry(1)],
-        })
-    }
-
     fn sun_pass(&self, encoder: &mut CommandEncoder, group: &BindGroup) {
         let mut pass = begin(encoder, "sun", None, (&self.shadow, FAR_PLANE), StoreOp::Store);
         pass.set_bind_group(0, group, &[]);
@@ -247,19 +231,9 @@ impl Raster {
         }
     }
 
-    fn surface_pass(
-        &self,
-        encoder: &mut CommandEncoder,
-        [depth, motion]: [&wgpu::TextureView; 2],
-        sections: &[Section],
-    ) {
-        let color = wgpu::RenderPassColorAttachment {
-            view: motion,
-            depth_slice: None,
-            resolve_target: None,
-            ops: Operations { load: LoadOp::Clear(Color::TRANSPARENT), store: StoreOp::Store },
-        };
-        let mut pass = begin(encoder, "surfaces", Some(color), (depth, FAR_PLANE), StoreOp::Store);
+    fn surface_pass(&self, encoder: &mut CommandEncoder, [depth, motion]: [&TextureView; 2], sections: &[Section]) {
+        let motion = target(motion, None, LoadOp::Clear(Color::TRANSPARENT));
+        let mut pass = begin(encoder, "surfaces", Some(motion), (depth, FAR_PLANE), StoreOp::Store);
         for section in sections {
             section.set_up(&mut pass);
             for call in &section.calls {
@@ -276,7 +250,7 @@ impl Raster {
         &self,
         encoder: &mut CommandEncoder,
         target: RenderPassColorAttachment<'_>,
-        depth: &wgpu::TextureView,
+        depth: &TextureView,
         pipelines: &ColorPipelines,
         sections: &[Section],
         (indices, runs): &(Option<Buffer>, Vec<Run>),
@@ -317,30 +291,32 @@ impl Raster {
         }
     }
 
-    /// Draw calls of the static and moving triangles that meet `frustum`, opaque ones first.
+    /// Draw calls of the static and moving triangles that meet `frustum`, opaque ones first, successive chunks of a
+    /// part in one call.
     fn calls(&self, frustum: Option<&Frustum>) -> Vec<DrawCall> {
-        let mut calls: Vec<_> = self
-            .parts()
-            .flat_map(|(part, set, is_moving)| DrawCall::of(part, &set.chunks, is_moving, frustum))
-            .collect();
-        calls.sort_by_key(|call| call.kind);
+        let mut calls: Vec<DrawCall> = vec![];
+        for (call, _) in self.chunk_calls(frustum) {
+            match calls.last_mut() {
+                Some(last) if last.is_continued_by(&call) => last.vertices.end = call.vertices.end,
+                _ => calls.push(call),
+            }
+        }
         calls
     }
 
     /// The same, chunk by chunk, with their boxes.
-    fn chunk_calls(&self, frustum: &Frustum) -> Vec<(DrawCall, [DVec3; 2])> {
-        let mut calls: Vec<_> = self
-            .parts()
-            .flat_map(|(part, set, is_moving)| DrawCall::of_chunks(part, &set.chunks, is_moving, Some(frustum)))
-            .collect();
+    fn chunk_calls(&self, frustum: Option<&Frustum>) -> Vec<(DrawCall, [DVec3; 2])> {
+        let mut calls = vec![];
+        for (set, is_moving) in [(&self.still, false), (&self.moving, true)] {
+            for part in &set.grouped.parts {
+                let (kind, material) = (part.kind, part.material);
+                let call = |vertices| DrawCall { kind, material, is_moving, vertices };
+                let met = set.chunks.of(part).filter(|(_, bounds)| frustum.is_none_or(|f| f.meets(*bounds)));
+                calls.extend(met.map(|(vertices, bounds)| (call(vertices), bounds)));
+            }
+        }
         calls.sort_by_key(|(call, _)| call.kind);
         calls
-    }
-
-    /// Parts of the static triangles, then of the moving ones, with their vertices and whether they move.
-    fn parts(&self) -> impl Iterator<Item = (&DrawRange, &VertexSet, bool)> {
-        let sets = [(&self.still, false), (&self.moving, true)];
-        sets.into_iter().flat_map(|(set, is_moving)| set.grouped.parts.iter().map(move |part| (part, set, is_moving)))
     }
 
     fn bind(&self, pass: &mut RenderPass<'_>, is_moving: bool, material: u32) {
@@ -387,11 +363,21 @@ impl Raster {
     }
 }
 
+/// A color target of a pass; with `resolved`, only the mean of its samples is kept, there.
+fn target<'v>(
+    view: &'v TextureView,
+    resolved: Option<&'v TextureView>,
+    load: LoadOp<Color>,
+) -> RenderPassColorAttachment<'v> {
+    let store = if resolved.is_some() { StoreOp::Discard } else { StoreOp::Store };
+    RenderPassColorAttachment { view, depth_slice: None, resolve_target: resolved, ops: Operations { load, store } }
+}
+
 fn begin<'e>(
     encoder: &'e mut CommandEncoder,
     label: &str,
-    color: Option<wgpu::RenderPassColorAttachment<'_>>,
-    (depth, behind): (&wgpu::TextureView, f32),
+    color: Option<RenderPassColorAttachment<'_>>,
+    (depth, behind): (&TextureView, f32),
     keep_depth: StoreOp,
 ) -> RenderPass<'e> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {

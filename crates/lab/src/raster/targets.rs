@@ -1,7 +1,7 @@
 //! Render targets, and reading them back.
 
 use super::pipelines::{COLOR_FORMAT, DEPTH_FORMAT, MOTION_FORMAT, SAMPLES};
-use crate::device::Headless;
+use crate::device::{Headless, texture_desc};
 use afterimage::Image;
 use afterimage::kernel::pack::half_value;
 use wgpu::{Device, Texture, TextureFormat, TextureUsages, TextureView};
@@ -83,16 +83,9 @@ impl FoveatedTargets {
 }
 
 /// A render target. With one sample, it can also be bound and copied.
-pub(super) fn attachment(device: &Device, [width, height]: [u32; 2], format: TextureFormat, samples: u32) -> Texture {
+pub(super) fn attachment(device: &Device, size: [u32; 2], format: TextureFormat, samples: u32) -> Texture {
     let one = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("raster target"),
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: samples,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: TextureUsages::RENDER_ATTACHMENT | if samples == 1 { one } else { TextureUsages::empty() },
-        view_formats: &[],
-    })
+    let usage = TextureUsages::RENDER_ATTACHMENT | if samples == 1 { one } else { TextureUsages::empty() };
+    let desc = texture_desc("raster target", size, format, usage);
+    device.create_texture(&wgpu::TextureDescriptor { sample_count: samples, ..desc })
 }

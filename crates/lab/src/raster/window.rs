@@ -1,7 +1,7 @@
 //! Windows: the part of the full-rate frame that a target shows, and the triangles in it.
 
 use super::pixels::Pixels;
-use super::vertices::{AlphaKind, Chunks, DrawRange};
+use super::vertices::AlphaKind;
 use crate::quad_views::{QuadView, QuadViews};
 use crate::trace::view::View;
 use afterimage::{Lattice, Lattices};
@@ -174,7 +174,7 @@ impl Frustum {
     }
 
     /// Whether a part of the box may be visible. Boxes that are not finite may be.
-    fn meets(&self, [low, high]: [DVec3; 2]) -> bool {
+    pub fn meets(&self, [low, high]: [DVec3; 2]) -> bool {
         let (middle, half) = (0.5 * (low + high) - self.eye, 0.5 * (high - low));
         !self.planes.iter().any(|n| n.dot(middle) + n.abs().dot(half) < 0.0)
     }
@@ -190,28 +190,10 @@ pub(super) struct DrawCall {
 }
 
 impl DrawCall {
-    /// A call for each chunk of a part, all or those that meet `frustum`, with its box.
-    pub fn of_chunks<'a>(
-        part: &'a DrawRange,
-        chunks: &'a Chunks,
-        is_moving: bool,
-        frustum: Option<&'a Frustum>,
-    ) -> impl Iterator<Item = (Self, [DVec3; 2])> + 'a {
-        chunks.of(part).filter(move |(_, bounds)| frustum.is_none_or(|frustum| frustum.meets(*bounds))).map(
-            move |(vertices, bounds)| (Self { kind: part.kind, material: part.material, is_moving, vertices }, bounds),
-        )
-    }
-
-    /// As [`of_chunks`](Self::of_chunks), successive chunks in one call.
-    pub fn of(part: &DrawRange, chunks: &Chunks, is_moving: bool, frustum: Option<&Frustum>) -> Vec<Self> {
-        let mut calls: Vec<Self> = vec![];
-        for (call, _) in Self::of_chunks(part, chunks, is_moving, frustum) {
-            match calls.last_mut() {
-                Some(last) if last.vertices.end == call.vertices.start => last.vertices.end = call.vertices.end,
-                _ => calls.push(call),
-            }
-        }
-        calls
+    /// Whether `next` draws the same part's triangles that follow.
+    pub fn is_continued_by(&self, next: &Self) -> bool {
+        let part = |call: &Self| (call.kind, call.material, call.is_moving);
+        part(self) == part(next) && self.vertices.end == next.vertices.start
     }
 }
 

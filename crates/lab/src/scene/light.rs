@@ -19,6 +19,14 @@ pub struct PunctualLight {
     pub range: f32,
 }
 
+impl PunctualLight {
+    /// A directional light that shines along `direction`.
+    pub(crate) fn sun(direction: Vec3, intensity: [f32; 3]) -> Self {
+        let direction = direction.normalize();
+        Self { kind: PunctualKind::Directional, position: Vec3::ZERO, direction, intensity, range: f32::INFINITY }
+    }
+}
+
 /// Kinds of punctual lights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PunctualKind {

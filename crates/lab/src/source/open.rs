@@ -27,7 +27,13 @@ pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Bo
     // Schemes first, so that a file of the same name cannot hide them.
     match input.split_once(':') {
         Some(("analytic", name)) => return Ok(Box::new(open_analytic(name, limits, scene)?)),
-        _ if is_scene(input) => return Err(scene_error(input)),
+        _ if is_scene(input) => {
+            return Err(InputError::request(
+                input,
+                "is a scene, and scenes need a renderer",
+                "expected EXR frames or a still; open it as a RasterSource or a TracedSource",
+            ));
+        }
         _ => {}
     }
     if let Some([w, h]) = scene.size {
@@ -41,18 +47,11 @@ pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Bo
     if path.is_dir() {
         return Ok(Box::new(SequenceSource::open(path, limits)?));
     }
+    let expected = "expected a folder of .exr frames, or a .exr, .png, .jpg or .jpeg file";
     match kind(path).as_str() {
         "exr" | "png" | "jpg" | "jpeg" => Ok(Box::new(StillSource::open(path, limits)?)),
-        _ if !path.exists() => Err(InputError::io(
-            input,
-            "does not exist",
-            "expected a folder of .exr frames, or a .exr, .png, .jpg or .jpeg file",
-        )),
-        _ => Err(InputError::not_supported(
-            input,
-            "is a kind of file that is not supported",
-            "expected a folder of .exr frames, or a .exr, .png, .jpg or .jpeg file",
-        )),
+        _ if !path.exists() => Err(InputError::io(input, "does not exist", expected)),
+        _ => Err(InputError::not_supported(input, "is a kind of file that is not supported", expected)),
     }
 }
 
@@ -84,12 +83,4 @@ pub(super) fn check_size(subject: &str, [w, h]: [u32; 2], limits: &ReadLimits) -
 /// The error of a renderer that has lost its device.
 pub(super) fn device_lost(name: &str, lost: &FrameError) -> InputError {
     InputError::device(name, lost.to_string(), "start again, or render on the CPU where that is possible")
-}
-
-fn scene_error(input: &str) -> InputError {
-    InputError::request(
-        input,
-        "is a scene, and scenes need a renderer",
-        "expected EXR frames or a still; open it as a RasterSource or a TracedSource",
-    )
 }

@@ -139,7 +139,9 @@ impl RasterSource {
             self.raster.record(&self.device.device, encoder, &view, &previous);
         }
         let frame = self.record_content(encoder, request, [view, previous], AtlasLayout::Compact);
-        RenderedFrame { reference_on_device: request.needs_full_rate().then(|| self.targets()), ..frame }
+        let full_rate = || on_device(&self.device, self.raster.targets(), self.raster.near());
+        let reference_on_device = request.needs_full_rate().then(|| Arc::new(full_rate()) as DeviceHandle);
+        RenderedFrame { reference_on_device, ..frame }
     }
 
     /// Records the rendering of the methods' content, unless that is the full-rate frame. Motion vectors contain no
@@ -162,8 +164,7 @@ impl RasterSource {
             Wanted::FullRate => return frame,
             Wanted::Lattices(lattices) => {
                 let sparse = self.record_lattices(encoder, views, (lattices, pixel_samples), layout);
-                let points =
-                    lattices.as_slice().iter().map(|l| l.points.iter().map(|&n| u64::from(n)).product::<u64>());
+                let points = lattices.as_slice().iter().map(|l| l.points.map(u64::from).iter().product::<u64>());
                 (OnDevice::Atlas(sparse), Some(points.sum()))
             }
             Wanted::QuadViews(quads) => {
@@ -180,23 +181,12 @@ impl RasterSource {
         let index = request.index;
         let ((), took) = self.submit_timed(|source, encoder| source.record_full_rate(encoder, request))?;
         let ([view, previous], _) = self.of.views(index);
-        let targets = self.raster.targets();
-        let (color, nonfinite) = finite(targets.read_color(&self.device));
-        let (depth, motion) =
-            (targets.read_distance(&self.device, self.raster.near()), targets.read_motion(&self.device));
+        let drawn = on_device(&self.device, self.raster.targets(), self.raster.near());
+        let frame = read(&drawn, [&view, &previous], index);
         self.device.check().map_err(|lost| device_lost(&self.of.info().name, &lost))?;
-        let frame = SourceFrame {
-            color,
-            depth: Some(depth),
-            motion: Some(motion),
-            trust: None,
-            previous_from_current: Some(view.previous_from_current(&previous)),
-            cut: index == 0,
-            nonfinite,
-        };
         let frame = RenderedFrame { render: Some(took), full_rate: Some(took), ..request.answer(frame) };
         let Some(samples) = request.reference_samples else {
-            return Ok(RenderedFrame { reference_on_device: Some(self.targets()), ..frame });
+            return Ok(RenderedFrame { reference_on_device: Some(Arc::new(drawn)), ..frame });
         };
         let color = self.kept_supersampled(request, samples)?;
         Ok(RenderedFrame { reference: SourceFrame { color, ..frame.reference }, ..frame })
@@ -223,17 +213,7 @@ impl RasterSource {
     /// The full-rate frame with a jittered projection and one sample a pixel, read back.
     fn points(&mut self, request: &FrameRequest, jitter_px: [f32; 2]) -> Result<(SourceFrame, Elapsed), InputError> {
         let (drawn, [view, previous], took) = self.draw_points(request, jitter_px)?;
-        let (color, nonfinite) = finite(read_color(&self.device, &drawn.color));
-        let frame = SourceFrame {
-            color,
-            depth: Some(read_distance(&self.device, &drawn.depth, drawn.near)),
-            motion: Some(self.device.read::<[f32; 2]>(&drawn.motion, 0)),
-            trust: None,
-            previous_from_current: Some(view.previous_from_current(&previous)),
-            cut: request.index == 0,
-            nonfinite,
-        };
-        Ok((frame, took))
+        Ok((read(&drawn, [&view, &previous], request.index), took))
     }
 
     /// Draws the full-rate frame with a jittered projection and one sample a pixel. Returns the frame on the device,
@@ -261,11 +241,6 @@ impl RasterSource {
     /// Distance of the near plane in metres, of the frame that was drawn last.
     pub fn near(&self) -> f32 {
         self.raster.near()
-    }
-
-    /// Targets of the full-rate frame.
-    fn targets(&self) -> DeviceHandle {
-        Arc::new(on_device(&self.device, self.raster.targets(), self.raster.near()))
     }
 
     /// Poses the scene for a frame, and returns the frame's view and the previous one.
@@ -370,6 +345,19 @@ impl RasterSource {
         let took = self.clock.elapsed(&self.device, &watch);
         self.device.check().map_err(|lost| device_lost(&self.of.info().name, &lost))?;
         Ok((recorded, took))
+    }
+}
+
+/// A frame on the device, read back. Pixels that are not finite are black.
+fn read(drawn: &DeviceFrame, [view, previous]: [&View; 2], index: u64) -> SourceFrame {
+    let DeviceFrame { device, color, depth, motion, near } = drawn;
+    let (color, nonfinite) = finite(read_color(device, color));
+    SourceFrame {
+        color,
+        depth: Some(read_distance(device, depth, *near)),
+        motion: Some(device.read(motion, 0)),
+        nonfinite,
+        ..SourceFrame::without_images(Some(view.previous_from_current(previous)), index == 0)
     }
 }
 

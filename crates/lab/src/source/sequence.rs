@@ -1,11 +1,10 @@
 //! A folder of EXR frames, played forwards and backwards.
 
-use super::exr_file::{ExrHeader, Vectors};
+use super::exr_file::{ExrFrame, ExrHeader, Vectors};
 use super::limits::ReadLimits;
 use super::still::StillSource;
 use super::{FrameRequest, FrameSource, SourceInfo};
-use crate::error::InputError;
-use crate::error::io_error;
+use crate::error::{InputError, io_error};
 use crate::file_kind::ending;
 use crate::frame::{RenderedFrame, SourceFrame};
 use crate::scene::cameras::Cameras;
@@ -122,7 +121,7 @@ impl FrameSource for SequenceSource {
             Step::Backward => Vectors::ToNext,
             Step::First | Step::Forward => Vectors::ToPrevious,
         };
-        let frame = header.read(vectors)?;
+        let ExrFrame { color, depth, motion, nonfinite } = header.read(vectors)?;
         let previous_from_current = self.cameras.as_ref().and_then(|(cameras, poses)| {
             let previous = match step {
                 Step::First => return None,
@@ -131,15 +130,8 @@ impl FrameSource for SequenceSource {
             };
             Some(cameras.previous_from_current(poses[previous], poses[file]))
         });
-        let frame = SourceFrame {
-            color: frame.color,
-            depth: frame.depth,
-            motion: frame.motion,
-            trust: None,
-            previous_from_current,
-            cut: step == Step::First,
-            nonfinite: frame.nonfinite,
-        };
+        let cut = step == Step::First;
+        let frame = SourceFrame { color, depth, motion, trust: None, previous_from_current, cut, nonfinite };
         Ok(RenderedFrame::full_rate(index, request.gaze_px, frame))
     }
 }

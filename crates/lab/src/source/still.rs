@@ -1,11 +1,9 @@
 //! Still images: a source with a single frame.
 
-use super::exr_file::{ExrHeader, Vectors, guarded};
+use super::exr_file::{ExrFrame, ExrHeader, Vectors, guarded};
 use super::limits::{ReadLimits, SMALLER};
 use super::{FrameRequest, FrameSource, SourceInfo};
-use crate::error::InputError;
-use crate::error::io_error;
-use crate::error::one_line;
+use crate::error::{InputError, io_error, one_line};
 use crate::file_kind::kind;
 use crate::frame::{RenderedFrame, SourceFrame};
 use crate::scene::cameras::Cameras;
@@ -49,15 +47,7 @@ impl StillSource {
             "exr" => Self::open_exr(path, subject, limits),
             "png" | "jpg" | "jpeg" => {
                 let (color, warnings) = guarded(&subject, || decode_8_or_16_bit(path, &subject, limits))?;
-                let frame = SourceFrame {
-                    color,
-                    depth: None,
-                    motion: None,
-                    trust: None,
-                    previous_from_current: None,
-                    cut: false,
-                    nonfinite: 0,
-                };
+                let frame = SourceFrame { color, ..SourceFrame::without_images(None, false) };
                 Ok(Self { warnings, ..Self::new(subject, frame, None) })
             }
             _ => Err(InputError::not_supported(
@@ -75,16 +65,8 @@ impl StillSource {
         if let Some(c) = &cameras {
             c.check_size(header.size())?;
         }
-        let exr = header.read(Vectors::Skip)?;
-        let frame = SourceFrame {
-            color: exr.color,
-            depth: exr.depth,
-            motion: None,
-            trust: None,
-            previous_from_current: None,
-            cut: false,
-            nonfinite: exr.nonfinite,
-        };
+        let ExrFrame { color, depth, nonfinite, .. } = header.read(Vectors::Skip)?;
+        let frame = SourceFrame { color, depth, nonfinite, ..SourceFrame::without_images(None, false) };
         let (warnings, contents) = (header.warnings().to_vec(), header.contents().to_vec());
         Ok(Self { warnings, contents, ..Self::new(name, frame, cameras) })
     }
@@ -232,37 +214,18 @@ fn jpeg_is_whole(bytes: &[u8]) -> bool {
 /// Linear pixels of a decoded image, over black, and whether any was transparent. `gamma`: exponent of its values, if
 /// they are not sRGB.
 fn linear(decoded: DynamicImage, gamma: Option<f64>) -> (Vec<[f32; 3]>, bool) {
-    let deep = matches!(
-        decoded,
-        DynamicImage::ImageLuma16(_)
-            | DynamicImage::ImageLumaA16(_)
-            | DynamicImage::ImageRgb16(_)
-            | DynamicImage::ImageRgba16(_)
-    );
-    match (deep, decoded.color().has_alpha()) {
-        (true, false) => (linear_pixels(decoded.into_rgb16().as_raw(), u16::MAX.into(), gamma), false),
-        (false, false) => (linear_pixels(decoded.into_rgb8().as_raw(), u8::MAX.into(), gamma), false),
-        (true, true) => over_black(decoded.into_rgba16().as_raw(), u16::MAX.into(), gamma),
-        (false, true) => over_black(decoded.into_rgba8().as_raw(), u8::MAX.into(), gamma),
+    let color = decoded.color();
+    if color.bytes_per_pixel() > color.channel_count() {
+        over_black(decoded.into_rgba16().as_raw(), u16::MAX.into(), gamma)
+    } else {
+        over_black(decoded.into_rgba8().as_raw(), u8::MAX.into(), gamma)
     }
-}
-
-/// Linear value of each encoded one from 0 to `max`.
-fn table(max: u32, gamma: Option<f64>) -> Vec<f32> {
-    let decode = |v: f64| gamma.map_or_else(|| srgb_to_linear(v), |gamma| v.powf(1.0 / gamma));
-    (0..=max).map(|i| decode(f64::from(i) / f64::from(max)) as f32).collect()
-}
-
-/// Linear values of encoded RGB samples from 0 to `max`.
-fn linear_pixels<T: Copy + Into<u32>>(encoded: &[T], max: u32, gamma: Option<f64>) -> Vec<[f32; 3]> {
-    let table = table(max, gamma);
-    let pixels = encoded.chunks_exact(3);
-    pixels.map(|p| [p[0], p[1], p[2]].map(|c| table[c.into() as usize])).collect()
 }
 
 /// Linear values of encoded RGBA samples from 0 to `max`, over black, and whether any is transparent.
 fn over_black<T: Copy + Into<u32>>(encoded: &[T], max: u32, gamma: Option<f64>) -> (Vec<[f32; 3]>, bool) {
-    let table = table(max, gamma);
+    let decode = |v: f64| gamma.map_or_else(|| srgb_to_linear(v), |gamma| v.powf(1.0 / gamma));
+    let table: Vec<f32> = (0..=max).map(|i| decode(f64::from(i) / f64::from(max)) as f32).collect();
     let mut is_transparent = false;
     let pixels = encoded.chunks_exact(4).map(|p| {
         let alpha: u32 = p[3].into();

@@ -145,17 +145,8 @@ impl TracedSource {
             }
         });
         self.check()?;
-        let seen = Surfaces::trace(&self.world, &view, &previous, self.tracer.effects(&self.world));
-        let frame = SourceFrame {
-            color: film.color(),
-            depth: Some(seen.depth),
-            motion: Some(seen.motion),
-            trust: None,
-            previous_from_current: Some(view.previous_from_current(&previous)),
-            cut: index == 0,
-            nonfinite: film.nonfinite,
-        };
-        Ok((frame, took))
+        let seen = self.without_color(index, &[view, previous], true);
+        Ok((SourceFrame { color: film.color(), nonfinite: film.nonfinite, ..seen }, took))
     }
 
     /// As [`full_rate`](Self::full_rate), traced once if all frames are equal.

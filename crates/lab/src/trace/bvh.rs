@@ -2,7 +2,7 @@
 
 use super::bvh2;
 use super::node::NodeRay;
-use super::triangle_records::{AttributeRecord, PreviousRecord, SecondUvRecord, TriangleFlags, TriangleRecord};
+use super::triangle_records::{AttributeRecord, SecondUvRecord, TriangleFlags, TriangleRecord};
 use crate::kernel::triangle::{Shear, intersect, shear};
 use crate::scene::{Material, Triangles};
 use glam::{Vec3, Vec3A};
@@ -76,7 +76,8 @@ pub struct Bvh {
     pub(super) triangles: Vec<TriangleRecord>,
     attributes: Vec<AttributeRecord>,
     second_uvs: Option<Vec<SecondUvRecord>>,
-    previous: Vec<PreviousRecord>,
+    /// Corners in the previous frame, metres, in leaf order; empty if none were given.
+    pub(super) previous: Vec<[Vec3; 3]>,
     dropped: u32,
 }
 
@@ -93,7 +94,7 @@ impl Bvh {
         let sources: Vec<u32> = order.into_iter().map(|i| sources[i as usize]).collect();
         let previous = previous.map_or(vec![], |corners| {
             let corners = |i: u32| *corners.get(i as usize).unwrap_or(&triangles.positions[i as usize]);
-            sources.par_iter().map(|&i| PreviousRecord::new(corners(i))).collect()
+            sources.par_iter().map(|&i| corners(i)).collect()
         });
         Self {
             nodes,
@@ -119,11 +120,6 @@ impl Bvh {
     /// Second texture coordinates, in leaf order; `None` if no input triangle has them.
     pub fn second_uvs(&self) -> Option<&[SecondUvRecord]> {
         self.second_uvs.as_deref()
-    }
-
-    /// Corner positions in the previous frame, in leaf order; empty if none were given.
-    pub fn previous(&self) -> &[PreviousRecord] {
-        &self.previous
     }
 
     /// Number of input triangles that were dropped: without area, not finite, or too far away.

@@ -96,6 +96,25 @@ impl Effects {
         Effect::ALL.iter().copied().filter(move |e| self.has(*e))
     }
 
+    /// Override values that say which lobes shaders of the BSDF contain.
+    pub fn lobe_constants(self) -> impl Iterator<Item = (&'static str, f64)> {
+        let lobes = [
+            ("LOBE_RETRO", Effect::Dielectric),
+            ("LOBE_SPECULAR", Effect::Dielectric),
+            ("LOBE_METAL", Effect::Metal),
+            ("LOBE_ANISOTROPY", Effect::Anisotropy),
+            ("LOBE_CLEARCOAT", Effect::Clearcoat),
+            ("LOBE_SHEEN", Effect::Sheen),
+            ("LOBE_TRANSMISSION", Effect::Transmission),
+        ];
+        lobes.into_iter().map(move |(name, effect)| (name, f64::from(u8::from(self.has(effect)))))
+    }
+
+    /// Whether the scene has light of its own.
+    pub fn has_light(self) -> bool {
+        [Effect::EmissiveTriangles, Effect::PunctualLights, Effect::Environment].into_iter().any(|e| self.has(e))
+    }
+
     /// Effects that `scene` needs in any pose.
     pub fn needed(scene: &Scene) -> Self {
         let rest = scene.pose(0.0);

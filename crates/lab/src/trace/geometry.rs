@@ -1,7 +1,8 @@
 //! All triangles of a scene: static and moving.
 
 use super::bvh::{Bvh, Hit, PreparedRay, Ray};
-use super::triangle_records::{AttributeRecord, AttributesAt, PreviousRecord, TriangleRecord};
+use super::triangle_records::{AttributeRecord, AttributesAt, TriangleRecord};
+use glam::Vec3;
 
 /// Static and moving triangles, each under a hierarchy of its own. Indices of moving triangles follow those of static
 /// ones.
@@ -74,9 +75,9 @@ impl Geometry {
 
     /// Corner positions in the previous frame; `None` if the triangle is static or they are unknown.
     #[inline]
-    pub fn previous(&self, index: u32) -> Option<&PreviousRecord> {
+    pub fn previous(&self, index: u32) -> Option<[Vec3; 3]> {
         let (bvh, i) = self.place(index);
-        bvh.previous().get(i)
+        bvh.previous.get(i).copied()
     }
 
     /// Nearest hit, as [`Bvh::closest`].

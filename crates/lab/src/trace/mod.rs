@@ -3,7 +3,7 @@
 //! - [`world::World`]: a scene prepared for tracing, with its [`Geometry`]: static and moving triangles, each under a
 //!   hierarchy of its own.
 //! - [`Tracer`]: [`cpu`] or [`gpu`], which trace the same paths, specialized to the [`effects::Effects`] that the scene
-//!   needs. It adds the samples of a [`work::Work`] to a [`film::Film`].
+//!   needs. It adds the samples of [`work::Spans`] to a [`film::Film`].
 //! - [`sampling`]: foveated sampling patterns. [`surfaces`]: exact depth and motion. [`stereo`]: views and gaze of two
 //!   eyes.
 //! - [`scene_buffer`]: the scene as one array of `vec4u`, which the GPU tracer reads.
@@ -32,6 +32,4 @@ pub mod world;
 pub use bvh::{Bvh, Hit, Ray};
 pub use geometry::Geometry;
 pub use tracer::Tracer;
-pub use triangle_records::{
-    AttributeRecord, Attributes, AttributesAt, PreviousRecord, SecondUvRecord, TriangleFlags, TriangleRecord,
-};
+pub use triangle_records::{AttributeRecord, Attributes, AttributesAt, SecondUvRecord, TriangleFlags, TriangleRecord};

@@ -3,6 +3,8 @@
 
 use super::Geometry;
 use bytemuck::NoUninit;
+use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Bytes of an element.
 pub const ELEMENT_BYTES: usize = 16;
@@ -40,8 +42,6 @@ pub enum Section {
     MovingAttributes,
     /// Second texture coordinates of the moving triangles, as `SecondUvs`.
     MovingSecondUvs,
-    /// [`PreviousRecord`](super::PreviousRecord)s, three elements each.
-    MovingPrevious,
     /// [`PickRecord`](super::shading_records::PickRecord)s: the alias table over all lights, which may move.
     Picks,
     /// [`PunctualRecord`](super::shading_records::PunctualRecord)s.
@@ -90,19 +90,12 @@ pub struct SceneBufferLimits {
     pub elements: u64,
 }
 
-/// Position of a section in the buffer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Place {
-    section: Section,
-    base: u32,
-    capacity: u32,
-}
-
 /// The scene buffer's contents and section layout.
 #[derive(Clone, Debug)]
 pub struct SceneBuffer {
     elements: Vec<[u32; 4]>,
-    places: Vec<Place>,
+    /// Elements of each section.
+    places: BTreeMap<Section, Range<u32>>,
     width_log2: u32,
 }
 
@@ -151,8 +144,7 @@ impl<'a> SceneBufferBuilder<'a> {
             // nodes as triangles.
             self.reserve(Section::MovingNodes, &moving.nodes, max_moving * NODE_ELEMENTS)
                 .reserve(Section::MovingTriangles, moving.triangles(), max_moving * 3)
-                .reserve(Section::MovingAttributes, moving.attributes(), max_moving * 4)
-                .reserve(Section::MovingPrevious, moving.previous(), max_moving * 3);
+                .reserve(Section::MovingAttributes, moving.attributes(), max_moving * 4);
         }
         self
     }
@@ -184,15 +176,12 @@ impl<'a> SceneBufferBuilder<'a> {
             if rows > u64::from(limits.rows) || end > limits.elements || end > u64::from(u32::MAX) {
                 return Err(SceneBufferError::TooLarge { elements: end, available: limits.elements });
             }
-            let mut scene_buffer = SceneBuffer { elements: vec![[0; 4]; end as usize], places: vec![], width_log2 };
+            let elements = vec![[0; 4]; end as usize];
+            let mut scene_buffer = SceneBuffer { elements, places: BTreeMap::new(), width_log2 };
             for (part, base) in self.parts.drain(..).zip(starts) {
                 let to = bytemuck::cast_slice_mut(&mut scene_buffer.elements[base as usize..]);
                 to[..part.bytes.len()].copy_from_slice(part.bytes);
-                scene_buffer.places.push(Place {
-                    section: part.section,
-                    base: base as u32,
-                    capacity: part.elements as u32,
-                });
+                scene_buffer.places.insert(part.section, base as u32..(base + part.elements) as u32);
             }
             return Ok(scene_buffer);
         }
@@ -205,12 +194,12 @@ pub const NODE_ELEMENTS: usize = 5;
 impl SceneBuffer {
     /// Index of the section's first element; 0 if the section does not exist.
     pub fn base(&self, section: Section) -> u32 {
-        self.place(section).map_or(0, |p| p.base)
+        self.places.get(&section).map_or(0, |place| place.start)
     }
 
     /// Elements reserved for the section; 0 if it does not exist.
     pub fn capacity(&self, section: Section) -> u32 {
-        self.place(section).map_or(0, |p| p.capacity)
+        self.places.get(&section).map_or(0, |place| place.len() as u32)
     }
 
     /// All elements, in whole rows.
@@ -254,7 +243,7 @@ impl SceneBuffer {
     /// If a section's capacity is exceeded.
     pub fn rewrite_moving(&mut self, geometry: &Geometry) -> Result<(), SceneBufferError> {
         let moving = &geometry.moving;
-        if self.place(Section::MovingNodes).is_none() && moving.nodes.is_empty() {
+        if !self.places.contains_key(&Section::MovingNodes) && moving.nodes.is_empty() {
             return Ok(());
         }
         // An empty hierarchy is a root without children.
@@ -263,17 +252,12 @@ impl SceneBuffer {
         self.rewrite(Section::MovingNodes, nodes)?;
         self.rewrite(Section::MovingTriangles, moving.triangles())?;
         self.rewrite(Section::MovingAttributes, moving.attributes())?;
-        self.rewrite(Section::MovingSecondUvs, moving.second_uvs().unwrap_or_default())?;
-        self.rewrite(Section::MovingPrevious, moving.previous())
+        self.rewrite(Section::MovingSecondUvs, moving.second_uvs().unwrap_or_default())
     }
 
     /// Rows from the first moving section to the end; empty without moving sections.
-    pub fn moving_rows(&self) -> std::ops::Range<u32> {
-        let first = self.places.iter().find(|p| p.section.is_moving());
-        first.map_or(self.rows(), |p| p.base >> self.width_log2)..self.rows()
-    }
-
-    fn place(&self, section: Section) -> Option<&Place> {
-        self.places.iter().find(|p| p.section == section)
+    pub fn moving_rows(&self) -> Range<u32> {
+        let first = self.places.iter().find(|(section, _)| section.is_moving());
+        first.map_or(self.rows(), |(_, place)| place.start >> self.width_log2)..self.rows()
     }
 }

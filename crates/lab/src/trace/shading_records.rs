@@ -60,9 +60,6 @@ pub struct MaterialRecord {
     pub unused: [f32; 2],
 }
 
-/// Rows of a material.
-pub const MATERIAL_ROWS: u32 = (size_of::<MaterialRecord>() / 16) as u32;
-
 impl MaterialRecord {
     /// Converts a material.
     pub fn new(m: &Material) -> Self {
@@ -193,9 +190,6 @@ pub struct PunctualRecord {
     pub unused: [f32; 3],
 }
 
-/// Rows of a punctual light.
-pub const PUNCTUAL_ROWS: u32 = (size_of::<PunctualRecord>() / 16) as u32;
-
 impl PunctualRecord {
     /// Converts a light.
     pub fn new(l: &PunctualLight) -> Self {
@@ -229,6 +223,3 @@ pub struct MapRecord {
     pub alias: u32,
     pub unused: [f32; 2],
 }
-
-/// Rows of an environment map texel.
-pub const MAP_ROWS: u32 = (size_of::<MapRecord>() / 16) as u32;

@@ -73,7 +73,7 @@ pub(super) fn first_surface(world: &World, origin: Vec3, direction: Vec3, effect
         !effects.has(Effect::Alpha) || cpu::is_half_opaque(world, triangle, u, v, effects)
     })?;
     let corners = world.geometry.triangle(hit.triangle).positions();
-    let previous = world.geometry.previous(hit.triangle).map_or(corners, |p| p.positions());
+    let previous = world.geometry.previous(hit.triangle).unwrap_or(corners);
     Some(SurfacePosition { current: at(corners, hit.u, hit.v), previous: at(previous, hit.u, hit.v) })
 }
 

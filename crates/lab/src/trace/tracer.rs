@@ -7,7 +7,7 @@ use super::gpu::GpuTracer;
 use super::scene_buffer::SceneBufferError;
 use super::settings::TraceSettings;
 use super::view::View;
-use super::work::Work;
+use super::work::Spans;
 use super::world::World;
 use crate::device::Backend;
 use afterimage::FrameError;
@@ -82,7 +82,7 @@ impl Tracer {
 
     /// Adds the samples of `work` to `film`, which must contain all its pixels. `frame` is the frame number; every
     /// frame has its own random draws.
-    pub fn trace<'w>(&self, world: &World, view: &View, frame: u64, work: impl Into<Work<'w>>, film: &mut Film) {
+    pub fn trace(&self, world: &World, view: &View, frame: u64, work: &Spans, film: &mut Film) {
         match self {
             Self::Cpu(tracer) => tracer.trace(world, view, frame, work, film),
             Self::Gpu(tracer) => tracer.trace(world, view, frame, work, film),

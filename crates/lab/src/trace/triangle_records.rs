@@ -15,8 +15,6 @@ impl TriangleFlags {
     pub const ALPHA: u32 = 1 << 24;
     /// Emits light.
     pub const EMISSIVE: u32 = 1 << 25;
-    /// Transmits light.
-    pub const TRANSMISSIVE: u32 = 1 << 26;
 
     /// Flags of a material.
     pub fn of(material: &Material) -> u32 {
@@ -26,9 +24,6 @@ impl TriangleFlags {
         }
         if material.emissive.iter().any(|&e| e > 0.0) {
             flags |= Self::EMISSIVE;
-        }
-        if material.transmission > 0.0 {
-            flags |= Self::TRANSMISSIVE;
         }
         flags
     }
@@ -94,24 +89,6 @@ impl TriangleRecord {
     #[inline]
     pub fn source(&self) -> u32 {
         self.rows[1][3].to_bits()
-    }
-}
-
-/// Corner positions of a moving triangle in the previous frame: three elements of the scene buffer.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-#[repr(C)]
-pub struct PreviousRecord {
-    corners: [[f32; 4]; 3],
-}
-
-impl PreviousRecord {
-    pub(super) fn new(positions: [Vec3; 3]) -> Self {
-        Self { corners: positions.map(|p| p.extend(0.0).to_array()) }
-    }
-
-    /// Corner positions in world space, metres.
-    pub fn positions(&self) -> [Vec3; 3] {
-        self.corners.map(|[x, y, z, _]| Vec3::new(x, y, z))
     }
 }
 

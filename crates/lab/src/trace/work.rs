@@ -1,40 +1,12 @@
-//! Samples to trace: pixels with sample numbers, as a list or as spans that the device expands.
+//! Samples to trace: spans of pixels, and the sample numbers of each pixel. The GPU tracer expands them on the device.
 
 use std::ops::Range;
-
-/// One sample of one pixel. In a list, samples of the same pixel are adjacent.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub struct WorkItem {
-    /// x in the low 16 bits, y in the high 16 bits.
-    pub pixel: u32,
-    /// Number of the sample within its pixel; it seeds the sample's random draws.
-    pub sample: u32,
-}
-
-impl WorkItem {
-    /// Sample `sample` of pixel (`x`, `y`), both below 65,536.
-    pub fn new(x: u32, y: u32, sample: u32) -> Self {
-        Self { pixel: x | y << 16, sample }
-    }
-
-    /// Pixel coordinates.
-    pub fn xy(self) -> [u32; 2] {
-        [self.pixel & 0xffff, self.pixel >> 16]
-    }
-}
-
-/// All samples with numbers `samples` of every pixel in rows `rows` of an image `width` pixels wide.
-pub fn uniform(width: u32, rows: Range<u32>, samples: Range<u32>) -> Vec<WorkItem> {
-    let pixels = rows.flat_map(|y| (0..width).map(move |x| (x, y)));
-    pixels.flat_map(|(x, y)| samples.clone().map(move |s| WorkItem::new(x, y, s))).collect()
-}
 
 /// Adjacent pixels of a row. Twin of `Span` in `shaders/trace/expand_pass.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct Span {
-    /// First pixel, as in [`WorkItem::pixel`].
+    /// First pixel: x in the low 16 bits, y in the high 16 bits.
     pub pixel: u32,
     /// Number of pixels.
     pub count: u32,
@@ -42,7 +14,7 @@ pub struct Span {
     pub before: u32,
 }
 
-/// A set of pixels, each with the same range of sample numbers.
+/// A set of pixels, each with the same range of sample numbers, which seed the samples' random draws.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Spans {
     spans: Vec<Span>,
@@ -106,6 +78,11 @@ impl Spans {
         self.samples.clone()
     }
 
+    /// All pixels, as in [`Span::pixel`].
+    pub(super) fn each_pixel(&self) -> impl Iterator<Item = u32> + '_ {
+        self.spans.iter().flat_map(|s| s.pixel..s.pixel + s.count)
+    }
+
     /// Number of pixels.
     pub fn pixels(&self) -> u32 {
         self.spans.last().map_or(0, |s| s.before + s.count)
@@ -119,72 +96,6 @@ impl Spans {
     /// Whether there are no samples.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
-    }
-}
-
-/// Samples to trace.
-#[derive(Clone, Copy, Debug)]
-pub enum Work<'a> {
-    /// An explicit list of samples.
-    List(&'a [WorkItem]),
-    /// Spans of pixels. A GPU tracer expands them on the device.
-    Spans(&'a Spans),
-}
-
-impl<'a> From<&'a [WorkItem]> for Work<'a> {
-    fn from(items: &'a [WorkItem]) -> Self {
-        Self::List(items)
-    }
-}
-
-impl<'a, const N: usize> From<&'a [WorkItem; N]> for Work<'a> {
-    fn from(items: &'a [WorkItem; N]) -> Self {
-        Self::List(items)
-    }
-}
-
-impl<'a> From<&'a Vec<WorkItem>> for Work<'a> {
-    fn from(items: &'a Vec<WorkItem>) -> Self {
-        Self::List(items)
-    }
-}
-
-impl<'a> From<&'a Spans> for Work<'a> {
-    fn from(spans: &'a Spans) -> Self {
-        Self::Spans(spans)
-    }
-}
-
-/// Sample numbers of one pixel.
-#[derive(Clone)]
-pub(super) enum Samples<'a> {
-    Listed(&'a [WorkItem]),
-    Range(Range<u32>),
-}
-
-impl Samples<'_> {
-    /// Iterates over the sample numbers.
-    pub fn numbers(&self) -> impl Iterator<Item = u32> + '_ {
-        let (listed, range) = match self {
-            Self::Listed(items) => (*items, 0..0),
-            Self::Range(range) => (&[][..], range.clone()),
-        };
-        listed.iter().map(|i| i.sample).chain(range)
-    }
-}
-
-impl<'a> Work<'a> {
-    /// Groups the samples by pixel.
-    pub(super) fn by_pixel(self) -> Vec<(u32, Samples<'a>)> {
-        match self {
-            Self::List(items) => {
-                items.chunk_by(|a, b| a.pixel == b.pixel).map(|s| (s[0].pixel, Samples::Listed(s))).collect()
-            }
-            Self::Spans(spans) => {
-                let pixels = spans.spans.iter().flat_map(|s| s.pixel..s.pixel + s.count);
-                pixels.map(|pixel| (pixel, Samples::Range(spans.samples()))).collect()
-            }
-        }
     }
 }
 
@@ -204,18 +115,10 @@ mod tests {
         let runs = [(3..5, 0), (6..7, 0), (9..9, 0), (0..2, 1), (65535..65536, 2), (0..1, 3)];
         assert_eq!(Spans::of_runs(runs, 2..5), spans);
         assert_eq!(Spans::of_runs([(7..9, 4), (5..6, 6)], 0..1).window(), ([5, 4], [4, 3]));
-    }
-
-    #[test]
-    fn spans_and_lists_are_the_same_work() {
-        let items = uniform(5, 2..4, 1..4);
-        let spans = Spans::uniform(5, 2..4, 1..4);
-        let flat = |work: Work<'_>| {
-            let pixels = work.by_pixel();
-            pixels.iter().flat_map(|(p, s)| s.numbers().map(|n| (*p, n)).collect::<Vec<_>>()).collect::<Vec<_>>()
-        };
-        assert_eq!(flat((&items).into()), flat((&spans).into()));
-        assert_eq!(spans.len(), items.len() as u64);
+        assert_eq!(
+            Spans::uniform(2, 4..6, 2..5).each_pixel().collect::<Vec<_>>(),
+            [4 << 16, 4 << 16 | 1, 5 << 16, 5 << 16 | 1]
+        );
         assert!(Spans::new([], 0..4).is_empty() && Spans::uniform(0, 0..3, 0..4).is_empty());
     }
 }

@@ -177,9 +177,7 @@ const SOFT_WHITE: [f32; 3] = [1.0; 3];
 
 /// Adds a constant white sky to a scene without any light.
 pub fn light_if_dark(scene: &mut Scene) {
-    let needs = Effects::needed(scene);
-    let shines = [Effect::EmissiveTriangles, Effect::PunctualLights, Effect::Environment];
-    if !shines.iter().any(|&e| needs.has(e)) {
+    if !Effects::needed(scene).has_light() {
         scene.environment = Environment::Constant(SOFT_WHITE);
     }
 }

@@ -40,10 +40,7 @@ pub const PROBES: &[Probe] = &[
     probe!(microfacet::ggx_mean_width, |rows| widths_rows(rows, 2)),
     probe!(microfacet::ggx_length, |rows| seen(rows, |_, _| {})),
     probe!(microfacet::ggx_d, |rows| seen(rows, |_, _| {})),
-    probe!(microfacet::smith_g1, |rows| seen(rows, |_, _| {})),
-    probe!(microfacet::smith_g2, |rows| widths_rows(rows, 4)),
     probe!(microfacet::vndf_sample, |rows| seen(rows, |d, row| row.extend([draw(d), draw(d)]))),
-    probe!(microfacet::vndf_pdf, |rows| directions(rows, 2, above, two_widths)),
     probe!(microfacet::schlick_weight, one_share),
     probe!(microfacet::reflectance_at_normal, |rows| {
         rows.cross(&[&floats(&[1.0, 1.5, 3.0])]).random(|d, row| row.push(range(d, 1.0, 4.0)))

@@ -103,8 +103,6 @@ pub const PROBES: &[Probe] = &[
     probe!(sampling::cosine_hemisphere_pdf, one_share),
     probe!(sampling::uniform_hemisphere, two_draws),
     probe!(sampling::uniform_hemisphere_pdf, |rows| rows.random(|d, row| row.push(range(d, -1.0, 1.0)))),
-    probe!(sampling::uniform_sphere, two_draws),
-    probe!(sampling::uniform_sphere_pdf, |_: f32| sampling::uniform_sphere_pdf(), "uniform_sphere_pdf()", one_share),
     probe!(sampling::barycentrics, two_draws),
     probe!(sampling::area_pdf, |rows| {
         let ends = floats(&[0.0, 1e-15, 1e-7, 1.0]);

@@ -18,6 +18,7 @@ use glam::{Vec3, vec3};
 use obvhs::BvhBuildParams;
 use rays::{Obvhs, bounce_rays, closest, cpu_ms, occluded, primary_rays};
 use std::f32::consts::TAU;
+use std::sync::Arc;
 
 const SIZE: [u32; 2] = [640, 360];
 
@@ -57,14 +58,14 @@ fn courtyard(count: usize) -> Triangles {
 
 /// Million rays per second: of CPU time on software devices, otherwise of wall time.
 fn gpu_mrays(
-    gpu: &Headless,
+    gpu: &Arc<Headless>,
     scene_buffer: &SceneBuffer,
     geometry: &Geometry,
     storage: Storage,
     query: HitQuery,
     rays: &[Ray],
 ) -> f64 {
-    let tracer = GpuRays::new(&gpu.device, &gpu.queue, scene_buffer, geometry, storage, query, None);
+    let tracer = GpuRays::new(gpu, scene_buffer, geometry, storage, query, None);
     let batch = tracer.batch(&GpuSceneBuffer::new(&gpu.device, &gpu.queue, scene_buffer, storage), rays);
     tracer.run(&batch);
     let run = |_| {

@@ -148,7 +148,7 @@ fn price_removals(subject: &TracedView, backend: &Backend, frames: u64) -> Resul
     let needs = subject.world.needs;
     let variant = |what: &str, edit: &dyn Fn(String) -> String| {
         let storage = Storage::of(gpu.info.device_type);
-        let tracer = GpuTracer::with_shader_edit(gpu.clone(), &subject.world, with(needs), storage, edit)
+        let tracer = GpuTracer::with_storage(gpu.clone(), &subject.world, with(needs), storage, edit)
             .map_err(|e| Failure::Input(format!("{}: {e}", subject.name)))?;
         let tracer = Tracer::Gpu(Box::new(tracer));
         Ok::<_, Failure>(Variant { what: what.into(), effects: needs, tracer, ms: vec![], compile_ms: vec![] })

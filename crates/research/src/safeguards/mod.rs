@@ -136,25 +136,23 @@ fn measured(
     kind: MethodKind,
     backend: &Backend,
 ) -> Result<Vec<(&'static str, f64, Scores)>, Failure> {
-    let input = |e: &dyn std::fmt::Display| Failure::Input(e.to_string());
-    let mut source =
-        source::open(&args.input, &ReadLimits::default(), &SceneOptions::default()).map_err(|e| input(&e))?;
+    let mut source = source::open(&args.input, &ReadLimits::default(), &SceneOptions::default())?;
     let info = source.info().clone();
-    let geometry = ViewGeometry::flat(info.size, info.hfov_deg.unwrap_or(70.0)).map_err(|e| input(&e))?;
-    let samples = read_csv(&args.gaze).map_err(|e| input(&e))?;
-    let gaze = FrameGaze::new(&samples, &geometry, GazeMap::Angle, args.start, FPS).map_err(|e| input(&e))?;
+    let geometry = ViewGeometry::flat(info.size, info.hfov_deg.unwrap_or(70.0))?;
+    let samples = read_csv(&args.gaze)?;
+    let gaze = FrameGaze::new(&samples, &geometry, GazeMap::Angle, args.start, FPS)?;
     let foveation = Foveation { rate_mid: args.rate_mid, rate_far: args.rate_far, ..Foveation::default() };
     let runs = runs(kind, foveation);
     let kinds: Vec<_> = runs.iter().map(|run| run.1.clone()).collect();
-    let mut pipeline = Pipeline::new(geometry, foveation, &kinds, false, &[], backend).map_err(|e| input(&e))?;
+    let mut pipeline = Pipeline::new(geometry, foveation, &kinds, false, &[], backend)?;
     let mut references = References::default();
     let mut figures: Vec<(Vec<f64>, Scorer)> = runs.iter().map(|_| Default::default()).collect();
     let bar = progress::bar(args.frames, "frames");
     for index in 0..args.frames {
         let request = pipeline.request(index, gaze.px(index));
-        let frame = source.render(&request).map_err(|e| input(&e))?;
+        let frame = source.render(&request)?;
         let frame = with_invalid_colors(frame, &geometry, &foveation, args.invalid);
-        let step = pipeline.step(&frame).map_err(|e| input(&e))?;
+        let step = pipeline.step(&frame)?;
         let full = encode(&frame.reference.color, 0.0);
         let reference = references.next(&full, &step.tracked, &step.ecc_deg);
         for ((times, scorer), output) in figures.iter_mut().zip(&step.outputs) {

@@ -19,7 +19,7 @@ use afterimage_lab::trace::cpu::CpuTracer;
 use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::view::View;
-use afterimage_lab::trace::work::WorkItem;
+use afterimage_lab::trace::work::Spans;
 use afterimage_lab::trace::world::World;
 use std::fs;
 use std::path::PathBuf;
@@ -99,7 +99,7 @@ pub fn gltf(bytes: &[u8]) {
     let size = [4, 3];
     let view = View::of_camera(&scene.framing_camera(4.0 / 3.0), size, None).unwrap();
     let mut film = Film::new(size);
-    let work: Vec<_> = (0..size[0] * size[1]).map(|i| WorkItem::new(i % size[0], i / size[0], 0)).collect();
+    let work = Spans::uniform(size[0], 0..size[1], 0..1);
     CpuTracer::new(TraceSettings::default()).trace(&world, &view, 0, &work, &mut film);
     assert!(film.moments.pixels().iter().all(|m| m.mean.is_finite()), "a ray saw what is no number");
 }

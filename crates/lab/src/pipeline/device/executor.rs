@@ -108,10 +108,7 @@ impl Executor for DeviceExecutor {
         run.record(&mut encoder, &frame, self.clock.timestamps())?;
         self.clock.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
-        gpu.wait();
-        let elapsed = watch.elapsed();
-        let device_ms = self.clock.is_device().then(|| self.clock.read_ms(gpu, &watch));
-        let elapsed = Elapsed { device_ms, ..elapsed };
+        let elapsed = self.clock.elapsed(gpu, &watch);
         let given = [frame.depth.is_some(), frame.motion.is_some(), frame.trust.is_some()];
         let output = MethodOutput {
             image: gpu.read_rgb(run.output(), 0),

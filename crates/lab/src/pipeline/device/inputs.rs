@@ -2,12 +2,13 @@
 
 use super::{DeviceFormats, WRITTEN};
 use crate::device::Headless;
-use crate::frame::{ComposedFrame, Content, DeviceFrame, DeviceSamples, OnDevice, RenderedFrame, SourceFrame};
+use crate::frame::{
+    ComposedFrame, Content, DeviceFrame, DeviceSamples, OnDevice, RenderedFrame, SourceFrame, SparseFrame,
+};
 use crate::lattices::SparseGeometry;
 use crate::shader::SHADERS;
 use afterimage::gpu::{Frame, Timestamps};
-use afterimage::internal::ComputeShader;
-use afterimage::internal::{array_view, filled};
+use afterimage::internal::{ComputeShader, array_view, filled};
 use afterimage::kernel::pack::half_bits;
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::{ContextDesc, CreateError, FrameError, Image, Reset, ViewFrame};
@@ -153,15 +154,10 @@ impl DeviceInputs {
     /// A frame that its source foveated on this device, with its own depth and motion.
     fn take(&mut self, encoder: &mut CommandEncoder, content: &OnDevice) -> Given {
         match content {
-            OnDevice::Atlas(sparse) => {
-                let [color, depth] = self.import_atlas(encoder, &sparse.atlas);
-                let motion = Some(sparse.atlas.motion.clone());
-                Given { depth: Some(depth), motion, ..Given::color(&color) }
-            }
-            OnDevice::Surfaces(surfaces) => {
-                // The color is replaced when pixels are shaded.
-                let [color, depth] = self.import_atlas(encoder, surfaces);
-                Given { depth: Some(depth), motion: Some(surfaces.motion.clone()), ..Given::color(&color) }
+            // The color of surfaces is replaced when pixels are shaded.
+            OnDevice::Atlas(SparseFrame { atlas, .. }) | OnDevice::Surfaces(atlas) => {
+                let [color, depth] = self.import_atlas(encoder, atlas);
+                Given { depth: Some(depth), motion: Some(atlas.motion.clone()), ..Given::color(&color) }
             }
             OnDevice::Samples(DeviceSamples { color, noise, depth, motion, .. }) => {
                 let (depth, motion) = (Some(depth.clone()), Some(motion.clone()));

@@ -2,7 +2,7 @@
 //! triangles as the thesis' two decimations of that model: 292 and 4,968.
 
 use super::shapes::{self, Ellipsoid};
-use crate::scene::{Camera, Environment, Pose, PunctualKind, PunctualLight, Scene, Triangles};
+use crate::scene::{Camera, PunctualLight, Scene, Triangles};
 use glam::{DVec3, Quat, Vec3};
 
 /// Tessellation of each body part: faces around, and rings.
@@ -16,15 +16,12 @@ struct Detail {
 
 /// `bunny-low`: 292 triangles.
 pub(super) fn low() -> Scene {
-    scene("builtin:bunny-low", &Detail { body: [8, 6], head: [8, 5], ear: [6, 4], foot: [5, 4], tail: [4, 3] })
+    scene("bunny-low", &Detail { body: [8, 6], head: [8, 5], ear: [6, 4], foot: [5, 4], tail: [4, 3] })
 }
 
 /// `bunny-high`: 4,968 triangles.
 pub(super) fn high() -> Scene {
-    scene(
-        "builtin:bunny-high",
-        &Detail { body: [36, 21], head: [30, 19], ear: [24, 15], foot: [18, 11], tail: [16, 13] },
-    )
+    scene("bunny-high", &Detail { body: [36, 21], head: [30, 19], ear: [24, 15], foot: [18, 11], tail: [16, 13] })
 }
 
 fn scene(name: &str, detail: &Detail) -> Scene {
@@ -43,32 +40,11 @@ fn scene(name: &str, detail: &Detail) -> Scene {
         part([0.2 * side, 0.08, 0.22], [0.09, 0.08, 0.2], upright, detail.foot, FUR);
     }
     part([0.0, 0.28, -0.52], [0.11, 0.11, 0.11], upright, detail.tail, SKIN);
-    let sun = PunctualLight {
-        kind: PunctualKind::Directional,
-        position: Vec3::ZERO,
-        direction: Vec3::new(-0.5, -1.0, -0.6).normalize(),
-        intensity: [2.0, 1.9, 1.7],
-        range: f32::INFINITY,
-    };
-    Scene {
-        name: name.into(),
-        materials: vec![
-            shapes::glossy("fur", [0.55, 0.4, 0.28], 0.8, 8.0),
-            shapes::glossy("skin", [0.75, 0.55, 0.5], 0.5, 30.0),
-        ],
-        textures: Vec::new(),
-        environment: Environment::Constant([0.35, 0.45, 0.6]),
-        animations: vec![],
-        warnings: Vec::new(),
-        origin: DVec3::ZERO,
-        still,
-        rest: Pose {
-            lights: vec![sun],
-            cameras: vec![Camera::look_at(DVec3::new(0.9, 0.9, 1.7), DVec3::new(0.0, 0.6, 0.0), 45.0)],
-            ..Pose::default()
-        },
-        animated: None,
-    }
+    let sun = PunctualLight::sun(Vec3::new(-0.5, -1.0, -0.6), [2.0, 1.9, 1.7]);
+    let materials =
+        vec![shapes::glossy("fur", [0.55, 0.4, 0.28], 0.8, 8.0), shapes::glossy("skin", [0.75, 0.55, 0.5], 0.5, 30.0)];
+    let camera = Camera::look_at(DVec3::new(0.9, 0.9, 1.7), DVec3::new(0.0, 0.6, 0.0), 45.0);
+    super::still::still(name, materials, still, camera, vec![sun], [0.35, 0.45, 0.6])
 }
 
 const FUR: u32 = 0;

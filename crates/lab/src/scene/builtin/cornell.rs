@@ -1,7 +1,7 @@
 //! The Cornell box.
 
 use super::still::{look_at, still};
-use crate::scene::{Environment, Material, Scene, Triangles};
+use crate::scene::{Material, Scene, Triangles};
 use glam::Vec3;
 
 /// A room of 5.55 m with an open front, two blocks, and an area light in the ceiling. All surfaces are Lambertian.
@@ -41,7 +41,7 @@ pub fn cornell() -> Scene {
     block(&mut t, Vec3::new(1.65, 3.30, 1.65), 15.0, Vec3::new(2.65, 0.0, 2.95), white);
     block(&mut t, Vec3::splat(1.65), -18.0, Vec3::new(1.30, 0.0, 0.65), white);
     let camera = look_at([2.78, 2.78, -8.0], [2.78, 2.78, 0.0], 40.0);
-    still("cornell", materials, t, camera, Environment::Constant([0.0; 3]))
+    still("cornell", materials, t, camera, vec![], [0.0; 3])
 }
 
 /// Appends the 12 triangles of a box with a corner at the origin, rotated by `turn_deg` about y, then translated by

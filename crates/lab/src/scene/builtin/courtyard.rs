@@ -2,7 +2,7 @@
 
 use super::patch::{direction, patch};
 use super::still::{look_at, still};
-use crate::scene::{Environment, Material, Scene, Triangles};
+use crate::scene::{Material, Scene, Triangles};
 use afterimage::kernel::rng::{pcg4d, unit_draw};
 use glam::Vec3;
 use std::f32::consts::TAU;
@@ -80,7 +80,7 @@ pub fn courtyard_of(triangles: u32) -> Scene {
         patch(&mut t, [12, 8], lantern, |u, v| center + 0.15 * direction(u, v));
     }
     let camera = look_at([5.5, 2.2, 6.2], [-2.0, 2.0, -4.0], 50.0);
-    still("courtyard", materials, t, camera, Environment::Constant([0.5, 0.65, 0.9]))
+    still("courtyard", materials, t, camera, vec![], [0.5, 0.65, 0.9])
 }
 
 /// Rotation by `side` quarter turns about y.

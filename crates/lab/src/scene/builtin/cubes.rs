@@ -1,7 +1,7 @@
 //! `cubes`: 441 axis-aligned cubes on a grid of 21 x 21, at random heights and in random colors.
 
 use super::shapes;
-use crate::scene::{Camera, Environment, Pose, PunctualKind, PunctualLight, Scene, Triangles};
+use crate::scene::{Camera, PunctualLight, Scene, Triangles};
 use glam::{DVec3, Vec3};
 
 /// Cubes along a side of the grid.
@@ -31,29 +31,10 @@ pub(super) fn scene() -> Scene {
         shapes::push_box(min, min + EDGE, false, hash % COLORS.len() as u32, &mut still);
     }
     let material = |(i, &color): (usize, &[f32; 3])| shapes::glossy(&format!("color {i}"), color, 0.5, 20.0);
-    let sun = PunctualLight {
-        kind: PunctualKind::Directional,
-        position: Vec3::ZERO,
-        direction: Vec3::new(0.4, -1.0, -0.3).normalize(),
-        intensity: [2.2, 2.1, 1.9],
-        range: f32::INFINITY,
-    };
-    Scene {
-        name: "builtin:cubes".into(),
-        materials: COLORS.iter().enumerate().map(material).collect(),
-        textures: Vec::new(),
-        environment: Environment::Constant([0.4, 0.5, 0.65]),
-        animations: vec![],
-        warnings: Vec::new(),
-        origin: DVec3::ZERO,
-        still,
-        rest: Pose {
-            lights: vec![sun],
-            cameras: vec![Camera::look_at(DVec3::new(0.0, 7.0, 14.0), DVec3::new(0.0, 0.5, 0.0), 50.0)],
-            ..Pose::default()
-        },
-        animated: None,
-    }
+    let materials = COLORS.iter().enumerate().map(material).collect();
+    let sun = PunctualLight::sun(Vec3::new(0.4, -1.0, -0.3), [2.2, 2.1, 1.9]);
+    let camera = Camera::look_at(DVec3::new(0.0, 7.0, 14.0), DVec3::new(0.0, 0.5, 0.0), 50.0);
+    super::still::still("cubes", materials, still, camera, vec![sun], [0.4, 0.5, 0.65])
 }
 
 /// 32-bit hash (the finaliser of MurmurHash3).

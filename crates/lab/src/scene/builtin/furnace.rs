@@ -2,7 +2,7 @@
 
 use super::patch::direction;
 use super::still::{look_at, still};
-use crate::scene::{Environment, Material, Scene, Triangles};
+use crate::scene::{Material, Scene, Triangles};
 use glam::Vec3;
 
 /// A ball of eight white sectors, each with another lobe of the BSDF, in a uniform environment of radiance 1. Where
@@ -51,5 +51,5 @@ pub fn furnace_of(materials: Vec<Material>) -> Scene {
         }
     }
     let camera = look_at([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 40.0);
-    still("furnace", materials, t, camera, Environment::Constant([1.0; 3]))
+    still("furnace", materials, t, camera, vec![], [1.0; 3])
 }

@@ -1,7 +1,7 @@
 //! `mirror-room`: weakly emissive mirror walls, so that every path continues to the largest depth.
 
 use super::shapes::{self, Ellipsoid};
-use crate::scene::{Camera, Environment, Material, Phong, Pose, Scene, Triangles};
+use crate::scene::{Camera, Material, Phong, Scene, Triangles};
 use glam::{DVec3, Quat, Vec3};
 
 const MIRROR: u32 = 0;
@@ -28,23 +28,11 @@ pub(super) fn scene() -> Scene {
         phong: Some(Phong { specular: [0.9, 0.92, 0.9], exponent: 10_000.0 }),
         ..Material::default()
     };
-    Scene {
-        name: "builtin:mirror-room".into(),
-        materials: vec![
-            mirror,
-            shapes::glossy("red", [0.7, 0.12, 0.1], 0.4, 40.0),
-            shapes::glossy("blue", [0.12, 0.2, 0.7], 0.4, 40.0),
-        ],
-        textures: Vec::new(),
-        environment: Environment::Constant([0.0; 3]),
-        animations: vec![],
-        warnings: Vec::new(),
-        origin: DVec3::ZERO,
-        still,
-        rest: Pose {
-            cameras: vec![Camera::look_at(DVec3::new(0.0, 1.5, 2.7), DVec3::new(0.0, 0.9, -1.0), 60.0)],
-            ..Pose::default()
-        },
-        animated: None,
-    }
+    let materials = vec![
+        mirror,
+        shapes::glossy("red", [0.7, 0.12, 0.1], 0.4, 40.0),
+        shapes::glossy("blue", [0.12, 0.2, 0.7], 0.4, 40.0),
+    ];
+    let camera = Camera::look_at(DVec3::new(0.0, 1.5, 2.7), DVec3::new(0.0, 0.9, -1.0), 60.0);
+    super::still::still("mirror-room", materials, still, camera, vec![], [0.0; 3])
 }

@@ -1,28 +1,20 @@
 //! Static scenes with one camera.
 
-use crate::scene::{Camera, Environment, Material, Pose, Scene, Triangles};
+use crate::scene::{Camera, Environment, Material, Pose, PunctualLight, Scene, Triangles};
 use glam::DVec3;
 
-/// A static scene with one camera.
+/// A static scene with one camera, under a sky of this radiance.
 pub(super) fn still(
     name: &str,
     materials: Vec<Material>,
     still: Triangles,
     camera: Camera,
-    environment: Environment,
+    lights: Vec<PunctualLight>,
+    sky: [f32; 3],
 ) -> Scene {
-    Scene {
-        name: format!("builtin:{name}"),
-        materials,
-        textures: vec![],
-        environment,
-        animations: vec![],
-        warnings: vec![],
-        origin: DVec3::ZERO,
-        still,
-        rest: Pose { cameras: vec![camera], ..Pose::default() },
-        animated: None,
-    }
+    let pose = Pose { lights, cameras: vec![camera], ..Pose::default() };
+    let scene = Scene::from_parts(&format!("builtin:{name}"), materials, still, pose, Environment::Constant(sky));
+    scene.expect("triangles have all attributes and one of the materials")
 }
 
 /// A camera named "main" at `eye` that looks at `target`, with y up.

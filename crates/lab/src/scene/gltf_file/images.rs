@@ -25,41 +25,14 @@ pub(super) struct Textures<'a> {
     indices: HashMap<Use, u32>,
 }
 
-/// Image, sampler, conversion and coordinates of a texture.
+/// Image, sampler, bits of the glossiness, and coordinates of a texture.
 type Use = (usize, Option<usize>, Option<u32>, [u32; 7]);
-
-/// Texels of a texture.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Texels {
-    /// Those of its image.
-    OfImage,
-    /// Roughness in G, for a glossiness of `factor` times the image's alpha.
-    RoughnessOfGlossiness { factor: f32 },
-}
-
-impl Texels {
-    /// The bits of the factor of a conversion.
-    fn key(self) -> Option<u32> {
-        match self {
-            Self::OfImage => None,
-            Self::RoughnessOfGlossiness { factor } => Some(factor.to_bits()),
-        }
-    }
-
-    fn convert(self, texels: &mut [[u8; 4]]) {
-        if let Self::RoughnessOfGlossiness { factor } = self {
-            for texel in texels {
-                let rough = 1.0 - factor * f32::from(texel[3]) / 255.0;
-                *texel = [255, (rough * 255.0 + 0.5) as u8, 255, 255];
-            }
-        }
-    }
-}
 
 /// A texture in use.
 struct TextureUse {
     image: usize,
-    texels: Texels,
+    /// The texels become roughness in G, for a glossiness of this times the image's alpha.
+    glossiness: Option<f32>,
     coordinates: Coordinates,
     wrap: [Wrap; 2],
     nearest: bool,
@@ -88,11 +61,12 @@ impl<'a> Textures<'a> {
         self.document.root.textures.get(index.value()).is_some_and(|t| t.source.value() != NO_IMAGE)
     }
 
-    /// Registers a texture of the file as used. `None` if it has no image, of which the file's warnings tell.
+    /// Registers a texture of the file as used, as it is or as roughness of a glossiness. `None` if it has no image, of
+    /// which the file's warnings tell.
     pub fn use_texture(
         &mut self,
         index: Index<json::Texture>,
-        texels: Texels,
+        glossiness: Option<f32>,
         coordinates: Coordinates,
     ) -> Result<Option<TextureRef>, InputError> {
         let root = self.document.root;
@@ -106,7 +80,7 @@ impl<'a> Textures<'a> {
             None => None,
         };
         let sampler_index = texture.sampler.map(|s| s.value());
-        let key = (texture.source.value(), sampler_index, texels.key(), key_of(&coordinates));
+        let key = (texture.source.value(), sampler_index, glossiness.map(f32::to_bits), key_of(&coordinates));
         let next = self.uses.len() as u32;
         let texture = *self.indices.entry(key).or_insert(next);
         if texture == next {
@@ -117,7 +91,7 @@ impl<'a> Textures<'a> {
             };
             self.uses.push(TextureUse {
                 image: key.0,
-                texels,
+                glossiness,
                 coordinates,
                 wrap: [wrap(sampler.map(|s| &s.wrap_s)), wrap(sampler.map(|s| &s.wrap_t))],
                 nearest: sampler.is_some_and(|s| matches!(s.mag_filter, Some(Checked::Valid(MagFilter::Nearest)))),
@@ -156,7 +130,12 @@ impl<'a> Textures<'a> {
             remaining[place] -= 1;
             let (size, texels) = &mut decoded[place];
             let mut texels = if remaining[place] == 0 { std::mem::take(texels) } else { texels.clone() };
-            used.texels.convert(&mut texels);
+            if let Some(factor) = used.glossiness {
+                for texel in &mut texels {
+                    let rough = 1.0 - factor * f32::from(texel[3]) / 255.0;
+                    *texel = [255, (rough * 255.0 + 0.5) as u8, 255, 255];
+                }
+            }
             Texture { size: *size, texels, wrap: used.wrap, nearest: used.nearest, coordinates: used.coordinates }
         };
         Ok(self.uses.iter().map(texture).collect())

@@ -1,6 +1,6 @@
 //! State of reading one material, for its core and its extensions.
 
-use super::images::{Texels, Textures};
+use super::images::Textures;
 use super::uv::{UvPlan, UvSource};
 use super::warnings::Warnings;
 use crate::error::InputError;
@@ -36,30 +36,21 @@ impl<'a, 'b> Reader<'a, 'b> {
     /// Registers a texture and its source of coordinates.
     pub fn texture(&mut self, info: Option<&texture::Info>) -> Result<Option<TextureRef>, InputError> {
         let Some(info) = info else { return Ok(None) };
-        self.converted_texture(info, Texels::OfImage)
+        self.sourced_texture(info.index, UvSource::of(info), None)
     }
 
-    /// The same for a texture whose texels are converted.
-    pub fn converted_texture(
-        &mut self,
-        info: &texture::Info,
-        texels: Texels,
-    ) -> Result<Option<TextureRef>, InputError> {
-        self.sourced_texture(info.index, UvSource::of(info), texels)
-    }
-
-    /// The same for a texture with this source of coordinates.
+    /// The same for a texture with this source of coordinates, as it is or as roughness of a glossiness.
     pub fn sourced_texture(
         &mut self,
         index: Index<json::Texture>,
         source: UvSource,
-        texels: Texels,
+        glossiness: Option<f32>,
     ) -> Result<Option<TextureRef>, InputError> {
         let Some(plan) = &self.plan else {
             self.sources.extend(self.textures.has_image(index).then_some(source));
             return Ok(None);
         };
-        self.textures.use_texture(index, texels, plan.coordinates(&source))
+        self.textures.use_texture(index, glossiness, plan.coordinates(&source))
     }
 
     /// A factor clamped to its range, with a warning if it is outside.

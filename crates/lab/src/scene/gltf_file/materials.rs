@@ -2,7 +2,7 @@
 
 use super::document::Document;
 use super::errors::named;
-use super::images::{Texels, Textures};
+use super::images::Textures;
 use super::material_reader::Reader;
 use super::uv::{PLAIN_PLAN, UvPlan, UvSource};
 use super::warnings::Warnings;
@@ -89,7 +89,7 @@ fn material(r: &mut Reader, json: &json::Material) -> Result<Option<UvSource>, I
         let transform = normal.extensions.as_ref().and_then(|e| e.others.get("KHR_texture_transform"));
         let source = UvSource::of_value(normal.tex_coord, transform);
         of_normals = Some(source);
-        r.material.normal_texture = r.sourced_texture(normal.index, source, Texels::OfImage)?;
+        r.material.normal_texture = r.sourced_texture(normal.index, source, None)?;
         r.material.normal_scale = r.clamped(normal.scale, -1e3, 1e3);
     }
     r.material.emissive = json.emissive_factor.0;

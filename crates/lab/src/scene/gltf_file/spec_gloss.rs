@@ -1,10 +1,9 @@
 //! KHR_materials_pbrSpecularGlossiness, the predecessor of metallic-roughness, converted: the same diffuse color and
 //! reflectance, without metal, and roughness as one minus glossiness.
 
-use super::images::Texels;
 use super::lobes::texture_info;
 use super::material_reader::Reader;
-use super::uv::array_of;
+use super::uv::{UvSource, array_of};
 use crate::error::InputError;
 use crate::kernel::microfacet::reflectance_at_normal;
 use serde_json::Value;
@@ -29,8 +28,8 @@ pub(super) fn read(r: &mut Reader, extension: &Value) -> Result<(), InputError> 
     r.material.roughness = 1.0 - glossiness;
     if let Some(info) = texture_info(r, extension, "specularGlossinessTexture") {
         r.material.specular_color_texture = r.texture(Some(&info))?;
-        let rough = Texels::RoughnessOfGlossiness { factor: glossiness };
-        r.material.metallic_roughness_texture = r.converted_texture(&info, rough)?;
+        let source = UvSource::of(&info);
+        r.material.metallic_roughness_texture = r.sourced_texture(info.index, source, Some(glossiness))?;
         if r.material.metallic_roughness_texture.is_some() {
             r.material.roughness = 1.0;
         }

@@ -106,60 +106,11 @@ impl Roles {
 }
 
 /// Layers that hold the picture, the best first; the unnamed layer comes after the first.
-const PICTURES: [&str; 12] = [
-    "combined",
-    "beauty",
-    "image",
-    "rgba",
-    "rgb",
-    "color",
-    "colour",
-    "composite",
-    "final",
-    "render",
-    "main",
-    "default",
-];
+const PICTURES: &str = "combined beauty image rgba rgb color colour composite final render main default";
 /// Parts of names of layers that hold something else.
-const OTHERS: [&str; 37] = [
-    "albedo",
-    "ambient",
-    "ao",
-    "bounce",
-    "coat",
-    "crypto",
-    "depth",
-    "diff",
-    "direct",
-    "emission",
-    "emit",
-    "env",
-    "filter",
-    "gi",
-    "gloss",
-    "id",
-    "index",
-    "light",
-    "mask",
-    "matte",
-    "mist",
-    "motion",
-    "normal",
-    "object",
-    "occlusion",
-    "pos",
-    "reflect",
-    "refract",
-    "shadow",
-    "sheen",
-    "spec",
-    "sss",
-    "subsurface",
-    "trans",
-    "uv",
-    "variance",
-    "vol",
-];
+const OTHERS: &str = "albedo ambient ao bounce coat crypto depth diff direct emission emit env filter gi gloss id \
+    index light mask matte mist motion normal object occlusion pos reflect refract shadow sheen spec sss subsurface \
+    trans uv variance vol";
 
 /// How well a layer's name fits the picture; less is better. Layers of the same rank are not told apart.
 fn color_rank(c: &ChannelName) -> usize {
@@ -168,13 +119,13 @@ fn color_rank(c: &ChannelName) -> usize {
         return 100;
     }
     let Some(last) = c.layer.last() else { return 1 };
-    if let Some(place) = PICTURES.iter().position(|name| name == last) {
+    if let Some(place) = PICTURES.split(' ').position(|name| name == last) {
         return if place == 0 { 0 } else { 1 + place };
     }
     let words = last.split(|c: char| !c.is_ascii_alphabetic());
     // Short names are whole words: "ao" is not a part of "chaos".
-    let is_other = OTHERS.iter().any(|other| match other.len() {
-        ..=3 => words.clone().any(|word| word == *other),
+    let is_other = OTHERS.split(' ').any(|other| match other.len() {
+        ..=3 => words.clone().any(|word| word == other),
         _ => last.contains(other),
     });
     if is_other { 50 } else { 30 }

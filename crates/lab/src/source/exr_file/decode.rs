@@ -3,8 +3,7 @@
 use super::channels::{ChannelId, VectorForm};
 use super::header::{ExrHeader, Vectors, Window, chunk_header_bytes, full_resolution_chunks};
 use super::{exr_error, guarded};
-use crate::error::InputError;
-use crate::error::io_error;
+use crate::error::{InputError, io_error};
 use afterimage::{FrameError, Image};
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock, TileCoordinates};

@@ -2,8 +2,7 @@
 
 use super::channels::{ChannelName, Roles};
 use super::{exr_error, guarded};
-use crate::error::InputError;
-use crate::error::io_error;
+use crate::error::{InputError, io_error};
 use crate::source::limits::{BLOCK_BYTES_PER_PIXEL, ReadLimits};
 use exr::math::Vec2;
 use exr::meta::header::Header;

@@ -58,7 +58,7 @@ pub fn write(path: &Path, frame: &FrameToWrite) -> io::Result<()> {
             "color, depth and motion must have one size of at least 1x1 pixels",
         ));
     }
-    write_whole(path, |out| write_to(out, frame))
+    write_whole(path, |out| write_layer(out, size, channels(frame)))
 }
 
 /// Writes float channels as a scan-line EXR with ZIP compression, atomically.
@@ -73,10 +73,6 @@ pub fn write_channels(path: &Path, channels: &[(&str, &Image<f32>)]) -> io::Resu
     let channel =
         |(name, image): &(&str, &Image<f32>)| AnyChannel::new(*name, FlatSamples::F32(image.pixels().to_vec()));
     write_whole(path, |out| write_layer(out, size, channels.iter().map(channel).collect()))
-}
-
-fn write_to(out: &mut BufWriter<File>, frame: &FrameToWrite) -> io::Result<()> {
-    write_layer(out, frame.color.size(), channels(frame))
 }
 
 fn write_layer(out: &mut BufWriter<File>, size: [u32; 2], channels: Vec<AnyChannel<FlatSamples>>) -> io::Result<()> {

@@ -9,7 +9,7 @@ use super::effects::Effects;
 use super::film::{Film, Moments};
 use super::settings::TraceSettings;
 use super::view::View;
-use super::work::Work;
+use super::work::Spans;
 use super::world::World;
 use crate::kernel::direction::unit;
 use afterimage::kernel::rng::{Purpose, path_draws, stream_key};
@@ -36,7 +36,7 @@ impl CpuTracer {
 
     /// Adds the samples of `work` to `film`, which must contain all its pixels. `frame` is the frame number; every
     /// frame has its own random draws.
-    pub fn trace<'w>(&self, world: &World, view: &View, frame: u64, work: impl Into<Work<'w>>, film: &mut Film) {
+    pub fn trace(&self, world: &World, view: &View, frame: u64, work: &Spans, film: &mut Film) {
         let paths = Paths {
             world,
             integrator: self.settings.integrator,
@@ -48,15 +48,15 @@ impl CpuTracer {
         let rays = view.rays();
         let (width, base) = (film.moments.size()[0], film.base());
         let moments = &film.moments;
-        let pixels = work.into().by_pixel();
+        let pixels: Vec<u32> = work.each_pixel().collect();
         let done: Vec<PixelResult> = pixels
             .par_iter()
             .with_min_len(32)
-            .map(|(id, samples)| {
+            .map(|id| {
                 let [x, y] = [id & 0xffff, id >> 16];
                 let index = (y * width + x - base) as usize;
                 let mut done = PixelResult { index, moments: moments.pixels()[index], rays: 0, nonfinite: 0 };
-                for sample in samples.numbers() {
+                for sample in work.samples() {
                     let draws = path_draws(*id, sample, DRAWS_CAMERA, paths.key);
                     let px = x as f32 + (draws[0] - 0.5) * rays.jitter;
                     let py = y as f32 + (draws[1] - 0.5) * rays.jitter;

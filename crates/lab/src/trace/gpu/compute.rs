@@ -1,9 +1,7 @@
-//! Builders that all kernels of the tracer share: compute pipelines, bind groups, buffers.
+//! Builder of the tracer's compute pipelines.
 
 use std::borrow::Cow;
-use wgpu::{
-    BindGroup, BindGroupLayout, BindingResource, Buffer, BufferUsages, ComputePipeline, Device, PipelineLayout,
-};
+use wgpu::{ComputePipeline, Device, PipelineLayout};
 
 /// A WGSL entry point and how it is specialized.
 pub(super) struct Kernel<'a> {
@@ -36,23 +34,4 @@ impl Kernel<'_> {
             cache: None,
         })
     }
-}
-
-/// Binds `resources` to bindings 0, 1, 2 and so on.
-pub(super) fn bind_group(
-    device: &Device,
-    label: &str,
-    layout: &BindGroupLayout,
-    resources: &[BindingResource<'_>],
-) -> BindGroup {
-    let entries: Vec<_> = (0..)
-        .zip(resources)
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
-        .collect();
-    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
-}
-
-/// A buffer of `size` zero bytes.
-pub(super) fn empty_buffer(device: &Device, label: &str, size: u64, usage: BufferUsages) -> Buffer {
-    device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
 }

@@ -15,7 +15,7 @@ use super::film::{Film, Moments};
 use super::scene_buffer::{SceneBuffer, SceneBufferBuilder, SceneBufferError, Section};
 use super::settings::{Bsdf, Integrator, TraceSettings};
 use super::view::View;
-use super::work::{Spans, Work};
+use super::work::Spans;
 use super::world::World;
 use crate::device::{DeviceClock, Headless};
 use crate::frame::DeviceSamples;
@@ -32,9 +32,6 @@ use scene_buffer::{GpuSceneBuffer, Storage, traversal_constants};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages;
-
-/// Largest number of listed work items on the device at once.
-const MAX_ITEMS: usize = 1 << 22;
 
 /// Tracer of one scene on one device. The same seed on the same device gives the same image: appending to path lists is
 /// unordered, but no result depends on the order.
@@ -69,28 +66,15 @@ impl GpuTracer {
     /// If the scene exceeds the device's limits.
     pub fn new(device: Arc<Headless>, world: &World, settings: TraceSettings) -> Result<Self, SceneBufferError> {
         let storage = Storage::of(device.info.device_type);
-        Self::with_storage(device, world, settings, storage)
+        Self::with_storage(device, world, settings, storage, |text| text)
     }
 
-    /// As [`new`](Self::new), with an explicit choice of `storage` for the scene buffer.
+    /// As [`new`](Self::new), with an explicit choice of `storage` for the scene buffer, and with `edit` applied to
+    /// each kernel's WGSL source, to measure the cost of code.
     ///
     /// # Errors
     /// As [`new`](Self::new).
     pub fn with_storage(
-        device: Arc<Headless>,
-        world: &World,
-        settings: TraceSettings,
-        storage: Storage,
-    ) -> Result<Self, SceneBufferError> {
-        Self::with_shader_edit(device, world, settings, storage, |text| text)
-    }
-
-    /// As [`with_storage`](Self::with_storage), with `edit` applied to each kernel's WGSL source, to measure the cost
-    /// of code.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new).
-    pub fn with_shader_edit(
         device: Arc<Headless>,
         world: &World,
         settings: TraceSettings,
@@ -144,29 +128,20 @@ impl GpuTracer {
 
     /// Adds the samples of `work` to `film`, which must contain all its pixels, as
     /// [`CpuTracer::trace`](super::cpu::CpuTracer::trace) does.
-    pub fn trace<'w>(&self, world: &World, view: &View, frame: u64, work: impl Into<Work<'w>>, film: &mut Film) {
-        match work.into() {
-            // Longer lists exceed the default limit of a storage binding.
-            Work::List(items) => {
-                for items in items.chunks(MAX_ITEMS) {
-                    self.trace_batches(world, view, frame, items.into(), film, None);
-                }
-            }
-            spans => self.trace_batches(world, view, frame, spans, film, None),
-        }
+    pub fn trace(&self, world: &World, view: &View, frame: u64, work: &Spans, film: &mut Film) {
+        self.trace_batches(world, view, frame, work, film, None);
     }
 
     /// As [`trace`](Self::trace), and returns the kernels' time by device timestamps, without transfers. `None` if the
     /// device has no timestamps, or for more than 2048 batches.
-    pub fn trace_timed<'w>(
+    pub fn trace_timed(
         &self,
         world: &World,
         view: &View,
         frame: u64,
-        work: impl Into<Work<'w>>,
+        work: &Spans,
         film: &mut Film,
     ) -> Option<Duration> {
-        let work = work.into();
         let clock = DeviceClock::new(&self.device, batches(work).len() as u32);
         self.trace_batches(world, view, frame, work, film, clock.as_ref());
         let clock = clock?;
@@ -182,11 +157,11 @@ impl GpuTracer {
         world: &World,
         view: &View,
         frame: u64,
-        work: Work,
+        work: &Spans,
         film: &mut Film,
         clock: Option<&DeviceClock>,
     ) {
-        if batches(work).is_empty() {
+        if work.is_empty() {
             return;
         }
         let size = film.moments.size();
@@ -224,7 +199,7 @@ impl GpuTracer {
         let (first, size) = work.window();
         let film = vec![[0.0; 4]; 2 * size[0] as usize * size[1] as usize];
         let base = Film::base_of(first, size);
-        let run = self.submit_batches(world, view, frame, work.into(), (size[0], base, &film), None);
+        let run = self.submit_batches(world, view, frame, work, (size[0], base, &film), None);
         place.submit(&self.device, lattice, points, run.film(), [first, size], samples);
     }
 
@@ -235,7 +210,7 @@ impl GpuTracer {
         world: &World,
         view: &View,
         frame: u64,
-        work: Work,
+        work: &Spans,
         (width, film_base, before): (u32, u32, &[[f32; 4]]),
         clock: Option<&DeviceClock>,
     ) -> Run<'_> {
@@ -250,22 +225,20 @@ impl GpuTracer {
             down: rays.down.to_array(),
             width,
             sky: world.sky.to_array(),
-            first_item: 0,
-            map_size: world.map_size,
             items: 0,
+            map_size: world.map_size,
             capacity: BATCH,
             jitter: rays.jitter,
             film_base,
-            unused: [0; 2],
+            unused: [0; 3],
         };
         let device = &self.device.device;
-        let (list, expansion) = self.expand.list(device, work);
-        let run = self.paths.run(device, &self.passes, &self.on_device, &list, before);
+        let expansion = self.expand.expansion(device, work);
+        let run = self.paths.run(device, &self.passes, &self.on_device, &expansion.items, before);
         for (batch, index) in batches(work).into_iter().zip(0..) {
-            uniforms.first_item = batch.first_item;
             uniforms.items = batch.items;
             let mut encoder = device.create_command_encoder(&Default::default());
-            self.expand.record(device, &mut encoder, expansion.as_ref(), &batch);
+            self.expand.record(device, &mut encoder, &expansion, &batch);
             let timestamps = clock.map(|c| c.writes(index));
             run.record(device, &mut encoder, &self.passes, &uniforms, self.settings.max_depth, timestamps);
             self.device.queue.submit([encoder.finish()]);
@@ -346,16 +319,10 @@ fn constants(
         ("EFFECT_PUNCTUAL_LIGHTS", Effect::PunctualLights),
         ("EFFECT_ENVIRONMENT", Effect::Environment),
         ("EFFECT_ENVIRONMENT_MAP", Effect::EnvironmentMap),
-        ("LOBE_RETRO", Effect::Dielectric),
-        ("LOBE_SPECULAR", Effect::Dielectric),
-        ("LOBE_METAL", Effect::Metal),
-        ("LOBE_ANISOTROPY", Effect::Anisotropy),
-        ("LOBE_CLEARCOAT", Effect::Clearcoat),
-        ("LOBE_SHEEN", Effect::Sheen),
-        ("LOBE_TRANSMISSION", Effect::Transmission),
     ] {
         constants.push((name, f64::from(u8::from(effects.has(effect)))));
     }
+    constants.extend(effects.lobe_constants());
     let integrator = match settings.integrator {
         Integrator::Mis => 0.0,
         Integrator::Nee => 1.0,

@@ -1,8 +1,7 @@
 //! Path state on the device, and the sequence of kernels over a batch.
 
-use super::compute::{bind_group, empty_buffer};
 use super::passes::{Passes, WORKGROUP};
-use crate::device::Headless;
+use crate::device::{Headless, bind_group, empty_buffer};
 use crate::trace::gpu::scene_buffer::GpuSceneBuffer;
 use afterimage::internal::filled;
 use bytemuck::{Pod, Zeroable};
@@ -21,13 +20,12 @@ pub(super) struct FrameUniforms {
     pub down: [f32; 3],
     pub width: u32,
     pub sky: [f32; 3],
-    pub first_item: u32,
-    pub map_size: [u32; 2],
     pub items: u32,
+    pub map_size: [u32; 2],
     pub capacity: u32,
     pub jitter: f32,
     pub film_base: u32,
-    pub unused: [u32; 2],
+    pub unused: [u32; 3],
 }
 
 /// Bytes of a path's state: `PATH_ROWS` rows of 16 bytes.
@@ -69,14 +67,10 @@ pub(super) struct Counters {
 impl Paths {
     pub fn new(device: &wgpu::Device, passes: &Passes, capacity: u32) -> Self {
         let plan = empty_buffer(device, "plan", PLAN_BYTES, BufferUsages::STORAGE | BufferUsages::INDIRECT);
-        let bind = |layout| bind_group(device, "plan", layout, &[plan.as_entire_binding()]);
+        let bind = |layout| bind_group(device, "plan", layout, [plan.as_entire_binding()]);
+        let uniform = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
         Self {
-            frame: empty_buffer(
-                device,
-                "frame",
-                size_of::<FrameUniforms>() as u64,
-                BufferUsages::UNIFORM | BufferUsages::COPY_DST,
-            ),
+            frame: empty_buffer(device, "frame", size_of::<FrameUniforms>() as u64, uniform),
             paths: empty_buffer(device, "paths", u64::from(capacity) * PATH_BYTES, BufferUsages::STORAGE),
             lists: empty_buffer(device, "lists", u64::from(capacity) * 12, BufferUsages::STORAGE),
             plan_written: bind(&passes.written_layout),
@@ -97,13 +91,12 @@ impl Paths {
         let to_read = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
         let film = filled(device, "film", bytemuck::cast_slice(film), to_read);
         let counters = filled(device, "counters", &[0; COUNTER_BYTES as usize], to_read);
-        let bind = |layout, resources: &[wgpu::BindingResource]| bind_group(device, "trace", layout, resources);
         let shared = [&self.frame, work, &self.paths, &self.lists, &counters].map(wgpu::Buffer::as_entire_binding);
         Run {
             paths: self,
-            scene_buffer: bind(&passes.scene_layout, &[scene_buffer.binding()]),
-            bound: bind(&passes.frame_layout, &shared),
-            film_bound: bind(&passes.written_layout, &[film.as_entire_binding()]),
+            scene_buffer: bind_group(device, "trace", &passes.scene_layout, [scene_buffer.binding()]),
+            bound: bind_group(device, "trace", &passes.frame_layout, shared),
+            film_bound: bind_group(device, "trace", &passes.written_layout, [film.as_entire_binding()]),
             counters,
             film,
         }

@@ -4,8 +4,7 @@ use crate::device::Headless;
 use crate::frame::DeviceSamples;
 use crate::shader::SHADERS;
 use afterimage::Lattice;
-use afterimage::internal::ComputeShader;
-use afterimage::internal::{array_view, filled};
+use afterimage::internal::{ComputeShader, array_view, filled};
 use bytemuck::{Pod, Zeroable};
 use wgpu::{BindingResource, BufferUsages};
 

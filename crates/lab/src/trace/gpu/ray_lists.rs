@@ -1,11 +1,13 @@
 //! Hits for a list of rays on a device, for tests and measurements.
 
-use super::compute::{Kernel, bind_group, empty_buffer};
+use super::compute::Kernel;
+use super::passes::WORKGROUP;
 use super::scene_buffer::{GpuSceneBuffer, Storage, traversal_constants};
-use crate::device::wait_mapped;
+use crate::device::{Headless, bind_group};
 use crate::shader::SHADERS;
 use crate::trace::scene_buffer::SceneBuffer;
 use crate::trace::{Geometry, Hit, Ray};
+use std::sync::Arc;
 use wgpu::BufferUsages;
 
 /// Kind of traversal query.
@@ -20,8 +22,7 @@ pub enum HitQuery {
 /// A pipeline that only traverses.
 #[derive(Debug)]
 pub struct GpuRays {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
+    gpu: Arc<Headless>,
     pipeline: wgpu::ComputePipeline,
     query: HitQuery,
 }
@@ -34,9 +35,6 @@ pub struct Batch {
     count: u32,
 }
 
-/// Invocations of a workgroup.
-const WORKGROUP: u32 = 64;
-
 impl GpuRays {
     /// Largest number of rays in a batch, from WebGPU's default limits: 65,535 workgroups per dispatch and 128 MiB per
     /// binding.
@@ -44,8 +42,7 @@ impl GpuRays {
 
     /// A pipeline for `scene_buffer`. `source` is WGSL; `None` uses [`source`](Self::source), which accepts every hit.
     pub fn new(
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
+        gpu: &Arc<Headless>,
         scene_buffer: &SceneBuffer,
         geometry: &Geometry,
         storage: Storage,
@@ -63,8 +60,7 @@ impl GpuRays {
             layout: None,
             constants: &traversal_constants(scene_buffer, geometry, false, storage),
         };
-        let pipeline = kernel.pipeline(device);
-        Self { device: device.clone(), queue: queue.clone(), pipeline, query }
+        Self { pipeline: kernel.pipeline(&gpu.device), gpu: gpu.clone(), query }
     }
 
     /// WGSL source of this crate's kernel.
@@ -82,41 +78,30 @@ impl GpuRays {
                 [o.x, o.y, o.z, r.t_max, d.x, d.y, d.z, 0.0]
             })
             .collect();
-        let buffer = |label, size: usize, usage| empty_buffer(&self.device, label, size.max(32) as u64, usage);
-        let input = buffer("rays", rays.len() * 32, BufferUsages::STORAGE | BufferUsages::COPY_DST);
-        self.queue.write_buffer(&input, 0, bytemuck::cast_slice(&floats));
-        let hits = buffer("hits", rays.len() * 16, BufferUsages::STORAGE | BufferUsages::COPY_SRC);
+        let buffer = |size: usize, usage| self.gpu.buffer(size.max(32) as u64, BufferUsages::STORAGE | usage);
+        let input = buffer(rays.len() * 32, BufferUsages::COPY_DST);
+        self.gpu.queue.write_buffer(&input, 0, bytemuck::cast_slice(&floats));
+        let hits = buffer(rays.len() * 16, BufferUsages::COPY_SRC);
         let resources = [scene_buffer.binding(), input.as_entire_binding(), hits.as_entire_binding()];
-        let group = bind_group(&self.device, "hits", &self.pipeline.get_bind_group_layout(0), &resources);
+        let group = bind_group(&self.gpu.device, "hits", &self.pipeline.get_bind_group_layout(0), resources);
         Batch { group, hits, count: rays.len() as u32 }
     }
 
     /// Traces a batch and waits for the result.
     pub fn run(&self, batch: &Batch) {
-        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &batch.group, &[]);
         pass.dispatch_workgroups(batch.count.div_ceil(WORKGROUP), 1, 1);
         drop(pass);
-        self.queue.submit([encoder.finish()]);
-        // A lost device is reported by the next map.
-        let _ = self.device.poll(wgpu::PollType::wait_indefinitely());
+        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.wait();
     }
 
     /// Hits of a batch that has run. [`HitQuery::Any`] reports only whether there is a hit, with all fields 0.
-    ///
-    /// # Panics
-    /// If the device was lost.
     pub fn hits(&self, batch: &Batch) -> Vec<Option<Hit>> {
-        let size = batch.hits.size();
-        let usage = BufferUsages::COPY_DST | BufferUsages::MAP_READ;
-        let readback = empty_buffer(&self.device, "hits read back", size, usage);
-        let mut encoder = self.device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(&batch.hits, 0, &readback, 0, size);
-        self.queue.submit([encoder.finish()]);
-        let bytes = wait_mapped(&self.device, &readback).expect("the device is not lost");
-        let words: &[[u32; 4]] = bytemuck::cast_slice(&bytes);
+        let words: Vec<[u32; 4]> = bytemuck::pod_collect_to_vec(&self.gpu.read_buffer(&batch.hits));
         let hit = |&[triangle, t, u, v]: &[u32; 4]| {
             let found = match self.query {
                 HitQuery::Closest => triangle != u32::MAX,

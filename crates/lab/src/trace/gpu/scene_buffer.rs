@@ -1,5 +1,6 @@
 //! The scene buffer on a device.
 
+use crate::device::{empty_buffer, texture_desc};
 use crate::trace::Geometry;
 use crate::trace::scene_buffer::{ELEMENT_BYTES, SceneBuffer, SceneBufferLimits, Section};
 
@@ -58,29 +59,17 @@ impl GpuSceneBuffer {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, scene_buffer: &SceneBuffer, storage: Storage) -> Self {
         let resource = match storage {
             Storage::Texture => {
-                let texture = device.create_texture(&wgpu::TextureDescriptor {
-                    label: Some("scene_buffer"),
-                    size: wgpu::Extent3d {
-                        width: 1 << scene_buffer.width_log2(),
-                        height: scene_buffer.rows(),
-                        depth_or_array_layers: 1,
-                    },
-                    mip_level_count: 1,
-                    sample_count: 1,
-                    dimension: wgpu::TextureDimension::D2,
-                    format: wgpu::TextureFormat::Rgba32Uint,
-                    usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-                    view_formats: &[],
-                });
+                let size = [1 << scene_buffer.width_log2(), scene_buffer.rows()];
+                let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+                let desc = texture_desc("scene_buffer", size, wgpu::TextureFormat::Rgba32Uint, usage);
+                let texture = device.create_texture(&desc);
                 let view = texture.create_view(&Default::default());
                 Resource::Texture(texture, view)
             }
-            Storage::Buffer => Resource::Buffer(device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("scene_buffer"),
-                size: scene_buffer.bytes(),
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })),
+            Storage::Buffer => {
+                let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+                Resource::Buffer(empty_buffer(device, "scene_buffer", scene_buffer.bytes(), usage))
+            }
         };
         let this = Self { resource };
         this.write_rows(queue, scene_buffer, 0..scene_buffer.rows());
@@ -140,15 +129,6 @@ impl GpuSceneBuffer {
             Resource::Buffer(buffer) => queue.write_buffer(buffer, (first * ELEMENT_BYTES) as u64, bytes),
         }
     }
-}
-
-/// Override values of `geometry.wgsl`: offsets of its records.
-pub fn geometry_constants(scene_buffer: &SceneBuffer) -> [(&'static str, f64); 3] {
-    [
-        ("ATTRIBUTES", f64::from(scene_buffer.base(Section::Attributes))),
-        ("MOVING_ATTRIBUTES", f64::from(scene_buffer.base(Section::MovingAttributes))),
-        ("MOVING_PREVIOUS", f64::from(scene_buffer.base(Section::MovingPrevious))),
-    ]
 }
 
 /// Override values of `traverse.wgsl` and of the module that defines `load`.

@@ -183,7 +183,7 @@ impl<'a> Blend<'a> {
 mod tests {
     use super::*;
     use crate::trace::film::Moments;
-    use crate::trace::sampling::{Layers, Regions};
+    use crate::trace::sampling::{Layers, Regions, points};
     use afterimage::ViewGeometry;
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
@@ -198,6 +198,13 @@ mod tests {
                 Moments { mean, count: 1, ..Moments::default() };
         }
         film
+    }
+
+    /// Films of the targets of each ring.
+    fn films_of(rings: &[Ring], gaze_px: [f32; 2]) -> Vec<Film> {
+        let gaze = Circle::around(gaze_px);
+        let film = |(i, ring): (usize, &Ring)| film_of(ring, points(ring.targets(rings, i, gaze)));
+        rings.iter().enumerate().map(film).collect()
     }
 
     #[test]
@@ -217,13 +224,7 @@ mod tests {
                 Layers { radii_deg: [2.0, 5.0, 9.0], steps, lens_deg }.rings(&geometry, gaze_px, 1)
             };
             let all = |ring: &Ring| film_of(ring, (0..ring.lattice.points[1]).flat_map(|y| row(ring, y)));
-            let some = |(i, ring): (usize, &Ring)| {
-                film_of(
-                    ring,
-                    ring.targets(&rings, i, Circle::around(gaze_px)).flat_map(|(run, y)| run.map(move |x| [x, y])),
-                )
-            };
-            let films: [Vec<Film>; 2] = [rings.iter().map(all).collect(), rings.iter().enumerate().map(some).collect()];
+            let films: [Vec<Film>; 2] = [rings.iter().map(all).collect(), films_of(&rings, gaze_px)];
             let [expected, found] =
                 films.each_ref().map(|films| blend(&rings, films, size_px, Circle::around(gaze_px)).color);
             assert!(expected == found, "case {case}: {rings:?}, gaze {gaze_px:?}");
@@ -253,13 +254,7 @@ mod tests {
                 let lens_deg = (case % 4 == 1).then(|| rng.random_range(5.0..40.0));
                 Layers { radii_deg: [2.0, 2.1, 9.0], steps: [1, 2, 3, 4], lens_deg }.rings(&geometry, gaze_px, 1)
             };
-            let film = |(i, ring): (usize, &Ring)| {
-                film_of(
-                    ring,
-                    ring.targets(&rings, i, Circle::around(gaze_px)).flat_map(|(run, y)| run.map(move |x| [x, y])),
-                )
-            };
-            let films: Vec<Film> = rings.iter().enumerate().map(film).collect();
+            let films = films_of(&rings, gaze_px);
             let made = blend(&rings, &films, size_px, Circle::around(gaze_px));
             let plain = Blend::new(&rings, &films, size_px, Circle::around(gaze_px));
             for y in 0..size_px[1] {

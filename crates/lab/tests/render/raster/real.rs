@@ -11,7 +11,7 @@ use afterimage_lab::trace::cpu::CpuTracer;
 use afterimage_lab::trace::effects::{Effect, Effects};
 use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::settings::TraceSettings;
-use afterimage_lab::trace::work;
+use afterimage_lab::trace::work::Spans;
 use afterimage_lab::trace::world::World;
 use std::path::Path;
 
@@ -46,7 +46,7 @@ fn likeness(input: &str) -> Option<f64> {
         &world,
         &view,
         0,
-        &work::uniform(size[0], 0..size[1], 0..16),
+        &Spans::uniform(size[0], 0..size[1], 0..16),
         &mut film,
     );
     let psnr = psnr(&shown(&frame.color), &shown(&film.color()));

@@ -7,7 +7,7 @@ use afterimage_lab::lattices::SampleOrder;
 use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::sampling::{Lattice, Layers, Regions, Sampling};
 use afterimage_lab::trace::settings::TraceSettings;
-use afterimage_lab::trace::work::WorkItem;
+use afterimage_lab::trace::work::Spans;
 use std::collections::{HashMap, HashSet};
 
 const SIZE: [u32; 2] = [160, 90];
@@ -85,9 +85,9 @@ fn samples_have_the_colors_traced_at_their_places() {
                 if px[0] >= SIZE[0] || px[1] >= SIZE[1] || plan.lattices().at(px) != Some(lattice) {
                     continue;
                 }
-                let items: Vec<WorkItem> = (0..traced[&px]).map(|s| WorkItem::new(x, y, s)).collect();
+                let work = Spans::new([[x, y]], 0..traced[&px]);
                 let mut film = Film::window([x, y], [1, 1]);
-                yard.tracer.trace(&yard.world, &yard.view.on_lattice(&grid), 7, &items, &mut film);
+                yard.tracer.trace(&yard.world, &yard.view.on_lattice(&grid), 7, &work, &mut film);
                 assert_eq!(made.color.at(px[0] as usize, px[1] as usize), film.at([x, y]).mean.to_array(), "{px:?}");
                 assert_eq!(made.noise.as_ref().unwrap().at(px[0] as usize, px[1] as usize)[1], traced[&px] as f32);
                 seen += 1;

@@ -3,7 +3,7 @@
 use super::surfaces::*;
 use afterimage_lab::kernel::bsdf;
 use afterimage_lab::kernel::bsdf::{Layers, Lobes, Surface};
-use afterimage_lab::kernel::microfacet::{vndf_pdf, vndf_sample};
+use afterimage_lab::kernel::microfacet::{ggx_d, ggx_length, vndf_sample};
 use afterimage_lab::kernel::sampling::*;
 use afterimage_testing::{Draws, accept, p_of_counts, reject};
 use glam::{Vec2, Vec3};
@@ -83,7 +83,6 @@ fn two(d: &mut Draws) -> Vec2 {
 fn shapes_are_sampled_by_their_densities() {
     accept("cosine", p_of("cosine", |d| Some(cosine_hemisphere(two(d))), |w| cosine_hemisphere_pdf(w.z)));
     accept("hemisphere", p_of("hemisphere", |d| Some(uniform_hemisphere(two(d))), |w| uniform_hemisphere_pdf(w.z)));
-    accept("sphere", p_of("sphere", |d| Some(uniform_sphere(two(d))), |_| uniform_sphere_pdf()));
     reject("cosine as uniform", p_of("wrong", |d| Some(uniform_hemisphere(two(d))), |w| cosine_hemisphere_pdf(w.z)));
     // Triangle and disk, in bins of equal area.
     let mut counts = [vec![0; 16], vec![0; 16]];
@@ -109,7 +108,9 @@ fn visible_normals_are_sampled_by_their_density() {
         let a = Vec2::from(a);
         let name = format!("visible normals from {z}, widths {a}");
         let sample = |d: &mut Draws| Some(vndf_sample(v, a, two(d)));
-        accept(&name, p_of(&name, sample, |h| if h.z > 0.0 { vndf_pdf(v, h, a) } else { 0.0 }));
+        // D G1 (v.h) / v.z (Heitz 2018, eq. 3).
+        let pdf = |h: Vec3| 2.0 * ggx_d(h, a) * v.dot(h).max(0.0) / (v.z + ggx_length(v, a));
+        accept(&name, p_of(&name, sample, |h| if h.z > 0.0 { pdf(h) } else { 0.0 }));
     }
 }
 

@@ -10,7 +10,7 @@ use afterimage_lab::trace::cpu::CpuTracer;
 use afterimage_lab::trace::film::{Film, Moments};
 use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
-use afterimage_lab::trace::work::{WorkItem, uniform};
+use afterimage_lab::trace::work::Spans;
 use afterimage_testing::Draws;
 use glam::Vec3;
 
@@ -38,19 +38,19 @@ fn how_the_work_is_split_changes_no_bit() {
     for backend in backends {
         let tracer = Tracer::new(&backend, &rig.world, TraceSettings::default()).unwrap();
         // Split by rows, and split by samples.
-        let rows = [0..7, 7..8, 8..30].map(|rows| uniform(40, rows, 0..8));
-        let samples = [0..3, 3..4, 4..8].map(|samples| uniform(40, 0..30, samples));
+        let rows = [0..7, 7..8, 8..30].map(|rows| Spans::uniform(40, rows, 0..8));
+        let samples = [0..3, 3..4, 4..8].map(|samples| Spans::uniform(40, 0..30, samples));
         for parts in [rows, samples] {
             let mut film = Film::new(rig.size());
-            for items in &parts {
-                tracer.trace(&rig.world, &rig.view, 0, items, &mut film);
+            for work in &parts {
+                tracer.trace(&rig.world, &rig.view, 0, work, &mut film);
             }
             assert_eq!(differing(&film, &whole), 0);
             assert_eq!(film.rays, whole.rays);
         }
         // Empty work changes nothing.
         let mut film = whole.clone();
-        tracer.trace(&rig.world, &rig.view, 0, &[], &mut film);
+        tracer.trace(&rig.world, &rig.view, 0, &Spans::default(), &mut film);
         assert_eq!(differing(&film, &whole), 0);
     }
 }
@@ -71,7 +71,7 @@ fn other_frames_and_seeds_have_other_noise() {
     let other = rig.cpu(TraceSettings { seed: 1, ..TraceSettings::default() }, 2);
     assert!(differing(&film, &other) > 500);
     let mut next = Film::new(rig.size());
-    CpuTracer::new(TraceSettings::default()).trace(&rig.world, &rig.view, 1, &rig.items(2), &mut next);
+    CpuTracer::new(TraceSettings::default()).trace(&rig.world, &rig.view, 1, &rig.spans(2), &mut next);
     assert!(differing(&film, &next) > 500);
 }
 
@@ -79,8 +79,10 @@ fn other_frames_and_seeds_have_other_noise() {
 fn only_the_pixels_of_the_work_are_touched() {
     let rig = Rig::new(builtin("furnace"), [16, 8]);
     let mut film = Film::new(rig.size());
-    let items = [WorkItem::new(3, 2, 0), WorkItem::new(3, 2, 7), WorkItem::new(15, 7, 1)];
-    CpuTracer::new(TraceSettings::default()).trace(&rig.world, &rig.view, 0, &items, &mut film);
+    for (pixel, samples) in [([3, 2], 0..1), ([3, 2], 7..8), ([15, 7], 1..2)] {
+        let work = Spans::new([pixel], samples);
+        CpuTracer::new(TraceSettings::default()).trace(&rig.world, &rig.view, 0, &work, &mut film);
+    }
     let counts: Vec<_> = film.moments.pixels().iter().enumerate().filter(|(_, m)| m.count > 0).collect();
     assert_eq!(counts.iter().map(|(i, m)| (*i, m.count)).collect::<Vec<_>>(), [(2 * 16 + 3, 2), (7 * 16 + 15, 1)]);
     assert!(film.variance().at(15, 7)[0].is_infinite() && film.color().at(0, 0) == [0.0; 3]);

@@ -12,7 +12,7 @@ use afterimage_lab::trace::gpu::GpuTracer;
 use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
 use afterimage_lab::trace::surfaces::Surfaces;
-use afterimage_lab::trace::work::uniform;
+use afterimage_lab::trace::work::Spans;
 use afterimage_testing::holds;
 use glam::{DVec3, Vec3, Vec4};
 
@@ -214,7 +214,7 @@ fn what_had_no_area_at_first_may_grow_on_the_device() {
     rig.world.geometry.moving = Bvh::build(&grown, Some(&grown.positions), &materials);
     tracer.update(&rig.world).unwrap();
     let mut film = Film::new(SIZE);
-    tracer.trace(&rig.world, &rig.view, 0, &uniform(SIZE[0], 0..SIZE[1], 0..2), &mut film);
+    tracer.trace(&rig.world, &rig.view, 0, &Spans::uniform(SIZE[0], 0..SIZE[1], 0..2), &mut film);
     assert_eq!(differing(&film, &rig.cpu(settings, 2)), 0);
     assert!(film.color().pixels().iter().any(|c| c[0] < 0.9), "the triangle is seen");
 }

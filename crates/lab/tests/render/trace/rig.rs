@@ -8,7 +8,7 @@ use afterimage_lab::trace::gpu::GpuTracer;
 use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::view::View;
-use afterimage_lab::trace::work::{WorkItem, uniform};
+use afterimage_lab::trace::work::Spans;
 use afterimage_lab::trace::world::World;
 use std::sync::Arc;
 
@@ -36,21 +36,21 @@ impl Rig {
         self.view.geometry().size_px()
     }
 
-    pub fn items(&self, spp: u32) -> Vec<WorkItem> {
-        uniform(self.size()[0], 0..self.size()[1], 0..spp)
+    pub fn spans(&self, spp: u32) -> Spans {
+        Spans::uniform(self.size()[0], 0..self.size()[1], 0..spp)
     }
 
     pub fn cpu(&self, settings: TraceSettings, spp: u32) -> Film {
         let mut film = Film::new(self.size());
-        CpuTracer::new(settings).trace(&self.world, &self.view, 0, &self.items(spp), &mut film);
+        CpuTracer::new(settings).trace(&self.world, &self.view, 0, &self.spans(spp), &mut film);
         film
     }
 
     pub fn gpu(&self, device: &Arc<Headless>, settings: TraceSettings, storage: Storage, spp: u32) -> Film {
         afterimage_testing::gpu::validated(&device.device, &self.name, || {
-            let tracer = GpuTracer::with_storage(device.clone(), &self.world, settings, storage).unwrap();
+            let tracer = GpuTracer::with_storage(device.clone(), &self.world, settings, storage, |t| t).unwrap();
             let mut film = Film::new(self.size());
-            tracer.trace(&self.world, &self.view, 0, &self.items(spp), &mut film);
+            tracer.trace(&self.world, &self.view, 0, &self.spans(spp), &mut film);
             film
         })
     }

@@ -13,7 +13,7 @@ use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::stereo::GazePoint;
 use afterimage_lab::trace::surfaces::Surfaces;
 use afterimage_lab::trace::view::View;
-use afterimage_lab::trace::work::WorkItem;
+use afterimage_lab::trace::work::Spans;
 use afterimage_lab::trace::world::World;
 use glam::{DVec3, Vec3};
 
@@ -163,8 +163,7 @@ fn depth_and_color_agree_at_the_gazes() {
         let px = point.px(&eye).unwrap().map(|v| v.round() as u32);
         let depth = Surfaces::trace(&world, &eye, &eye, Effects::all()).depth.at(px[0] as usize, px[1] as usize);
         let mut film = Film::new(SIZE);
-        let items: Vec<_> = (0..4096).map(|s| WorkItem::new(px[0], px[1], s)).collect();
-        tracer.trace(&world, &eye, 0, &items, &mut film);
+        tracer.trace(&world, &eye, 0, &Spans::new([px], 0..4096), &mut film);
         let m = film.moments.at(px[0] as usize, px[1] as usize);
         (depth, m.mean.y, m.variance_of_mean().y)
     });

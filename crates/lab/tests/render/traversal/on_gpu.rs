@@ -1,7 +1,8 @@
 //! The device's hits equal the CPU's bit for bit: triangle, distance, barycentric weights.
 
 use super::scenes::{all, direction, rays, soup, sphere};
-use afterimage::wgpu;
+use crate::given::device;
+use afterimage_lab::device::Headless;
 use afterimage_lab::scene::{Alpha, Material};
 use afterimage_lab::trace::gpu::ray_lists::{GpuRays, HitQuery};
 use afterimage_lab::trace::gpu::scene_buffer::{GpuSceneBuffer, Storage};
@@ -10,12 +11,12 @@ use afterimage_lab::trace::{Bvh, Geometry, Hit, Ray};
 use afterimage_testing::Draws;
 use afterimage_testing::holds;
 use glam::{Vec3, vec3};
+use std::sync::Arc;
 
 const STORAGES: [Storage; 2] = [Storage::Texture, Storage::Buffer];
 
 struct Rig {
-    device: wgpu::Device,
-    queue: wgpu::Queue,
+    gpu: Arc<Headless>,
     geometry: Geometry,
     scene_buffer: SceneBuffer,
     on_device: GpuSceneBuffer,
@@ -24,24 +25,16 @@ struct Rig {
 
 impl Rig {
     fn new(geometry: Geometry, max_moving: usize, storage: Storage) -> Option<Self> {
-        let (device, queue) = afterimage_testing::gpu::device()?;
-        let limits = storage.limits(&device.limits());
+        let gpu = device()?;
+        let limits = storage.limits(&gpu.device.limits());
         let scene_buffer = SceneBufferBuilder::default().geometry(&geometry, max_moving).finish(limits).unwrap();
-        let on_device = GpuSceneBuffer::new(&device, &queue, &scene_buffer, storage);
-        Some(Self { device, queue, geometry, scene_buffer, on_device, storage })
+        let on_device = GpuSceneBuffer::new(&gpu.device, &gpu.queue, &scene_buffer, storage);
+        Some(Self { gpu, geometry, scene_buffer, on_device, storage })
     }
 
     fn ask(&self, query: HitQuery, rays: &[Ray], source: Option<&str>) -> Vec<Option<Hit>> {
-        afterimage_testing::gpu::validated(&self.device, "the tracer", || {
-            let tracer = GpuRays::new(
-                &self.device,
-                &self.queue,
-                &self.scene_buffer,
-                &self.geometry,
-                self.storage,
-                query,
-                source,
-            );
+        afterimage_testing::gpu::validated(&self.gpu.device, "the tracer", || {
+            let tracer = GpuRays::new(&self.gpu, &self.scene_buffer, &self.geometry, self.storage, query, source);
             let batch = tracer.batch(&self.on_device, rays);
             tracer.run(&batch);
             tracer.hits(&batch)
@@ -91,7 +84,7 @@ fn moving_triangles_are_where_they_were_last_written() {
             // Until the upload, the device still has the earlier pose.
             assert!(rig.differing(&rays, None) > 0);
             rig.scene_buffer.rewrite_moving(&rig.geometry).unwrap();
-            rig.on_device.write_moving(&rig.queue, &rig.scene_buffer);
+            rig.on_device.write_moving(&rig.gpu.queue, &rig.scene_buffer);
             rig.check(&format!("pose {i} of {count}"), &rays);
         }
     }
