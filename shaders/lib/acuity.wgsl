@@ -20,7 +20,7 @@ fn eccentricity_deg(ray: vec3f, gaze: vec3f) -> f32 {
 // acuity::cell_density (eq. 3)
 fn cell_density(e_deg: f32) -> f32 {
     let q = 1.0 + e_deg * (1.0f / R_2_DEG);
-    let far = exp(e_deg * (-1.0f / R_E_DEG));
+    let far = exp_approx(e_deg * (-1.0f / R_E_DEG));
     return (2.0f * D_C0) * (A_K / (q * q) + (1.0f - A_K) * far) / (1.0 + e_deg * (1.0f / R_M_DEG));
 }
 

@@ -103,10 +103,10 @@ fn clip(near: Near, history: vec3f) -> Clip {
     let past = to_ycocg(history);
     let inside = clip_to_box(past, near.sum * inverse, roots(variance) * CLIP_SIGMAS + ROUNDING);
     let by = (inside - past) * CLIP;
-    let distance = max(max(abs(by.x), abs(by.y)), abs(by.z));
+    let moved = max(max(abs(by.x), abs(by.y)), abs(by.z));
     let outer = by.x - by.z;
     let change = vec3f(outer + by.y, by.x + by.z, outer - by.y);
-    return Clip(change, 1.0 - min(distance * CLIP_COST / max(past.x, 1.0), 1.0));
+    return Clip(change, 1.0 - min(moved * CLIP_COST / max(past.x, 1.0), 1.0));
 }
 
 // antialias::clipped

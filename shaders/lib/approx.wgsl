@@ -30,8 +30,8 @@ fn atan2_upper(y: f32, x: f32) -> f32 {
     return angle;
 }
 
-// approx::exp: 2^n times a polynomial of the remainder.
-fn exp(exponent: f32) -> f32 {
+// approx::exp_approx: 2^n times a polynomial of the remainder.
+fn exp_approx(exponent: f32) -> f32 {
     let x = clamp(exponent, -87.0, 88.0);
     let n = floor(x * LOG2_E + 0.5);
     let r = (x - n * 0.6933594) - n * -2.1219444e-4;
@@ -41,8 +41,8 @@ fn exp(exponent: f32) -> f32 {
     return ((p * r + 1.0) * r + 1.0) * scale;
 }
 
-// approx::exp2: 2^n times a polynomial of the remainder.
-fn exp2(exponent: f32) -> f32 {
+// approx::exp2_approx: 2^n times a polynomial of the remainder.
+fn exp2_approx(exponent: f32) -> f32 {
     let x = clamp(exponent, -126.0, 127.0);
     let n = floor(x + 0.5);
     let r = x - n;
@@ -52,8 +52,8 @@ fn exp2(exponent: f32) -> f32 {
     return (p * r + 1.0) * scale;
 }
 
-// approx::ln: exponent and a polynomial of the mantissa.
-fn ln(x: f32) -> f32 {
+// approx::ln_approx: exponent and a polynomial of the mantissa.
+fn ln_approx(x: f32) -> f32 {
     let bits = bitcast<u32>(x);
     var exponent = i32(bits >> 23u) - 126;
     var m = bitcast<f32>((bits & 0x007fffffu) | 0x3f000000u);

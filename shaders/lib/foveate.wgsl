@@ -32,12 +32,12 @@ fn region_lod(
 fn blur_lod(e_deg: f32, start_deg: f32, end_deg: f32, lod_mid: f32, lod_far: f32) -> f32 {
     let slope = blur_sigma_px(lod_mid) / max(end_deg - start_deg, 1e-3);
     let sigma = clamp(slope * (e_deg - start_deg), 0.0, blur_sigma_px(lod_far));
-    return ln(1.0 + 2.0 * sigma) * LOG2_E;
+    return ln_approx(1.0 + 2.0 * sigma) * LOG2_E;
 }
 
 // foveate::blur_sigma_px
 fn blur_sigma_px(lod: f32) -> f32 {
-    return 0.5 * (exp2(lod) - 1.0);
+    return 0.5 * (exp2_approx(lod) - 1.0);
 }
 
 struct GaussTap {
@@ -49,7 +49,7 @@ struct GaussTap {
 // foveate::gauss_center
 fn gauss_center(sigma_px: f32) -> GaussTap {
     let s = max(sigma_px, SHARPEST_BLUR_PX);
-    let ratio = exp(-0.5 / (s * s));
+    let ratio = exp_approx(-0.5 / (s * s));
     return GaussTap(1.0, ratio, ratio * ratio);
 }
 

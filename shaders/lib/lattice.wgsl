@@ -13,9 +13,9 @@ struct Between {
 // lattice::between
 fn between(px: u32, first: u32, level: u32, count: u32) -> Between {
     // The shift of a signed number rounds down.
-    let distance = i32(px) - i32(first);
-    let low = distance >> level;
-    let fraction = f32(distance - (low << level)) * bitcast<f32>((127u - level) << 23u);
+    let offset = i32(px) - i32(first);
+    let low = offset >> level;
+    let fraction = f32(offset - (low << level)) * bitcast<f32>((127u - level) << 23u);
     let points = clamp(vec2i(low, low + 1), vec2i(0), vec2i(i32(count) - 1));
     return Between(vec2u(points), fraction);
 }

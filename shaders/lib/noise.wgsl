@@ -62,9 +62,9 @@ fn candidate_bilinear(
     fraction: vec2f,
 ) -> vec4f {
     let f = vec2f(1.0) - fraction;
-    let all = vec4f(f.x * f.y, fraction.x * f.y, f.x * fraction.y, fraction.x * fraction.y);
+    let shares = vec4f(f.x * f.y, fraction.x * f.y, f.x * fraction.y, fraction.x * fraction.y);
     let is_known = vec4f(top_left.w, top_right.w, bottom_left.w, bottom_right.w) >= vec4f(0.0);
-    let w = select(vec4f(0.0), all, is_known);
+    let w = select(vec4f(0.0), shares, is_known);
     let sum = ((top_left * w.x + top_right * w.y) + bottom_left * w.z) + bottom_right * w.w;
     return sum * (1.0 / max(((w.x + w.y) + w.z) + w.w, 1e-3));
 }

@@ -73,9 +73,9 @@ fn camera_vector(ray: vec2f, disparity: f32, motion: ViewMotion) -> vec2f {
     let y = motion.y;
     let z = motion.z;
     let d = select(disparity, 0.0, disparity <= motion.sky);
-    let distance = z.x * ray.x + (z.y * ray.y + (z.w * d + motion.ahead));
+    let past_depth = z.x * ray.x + (z.y * ray.y + (z.w * d + motion.ahead));
     // The point was behind the previous camera.
-    if distance <= 1e-6 {
+    if past_depth <= 1e-6 {
         return vec2f(MAX_CAMERA_PX);
     }
     let change = vec3f(
@@ -83,7 +83,7 @@ fn camera_vector(ray: vec2f, disparity: f32, motion: ViewMotion) -> vec2f {
         y.x * ray.x + (y.y * ray.y + (y.w * d + y.z)),
         z.x * ray.x + (z.y * ray.y + (z.w * d + z.z)),
     );
-    let tangent = (change.xy - ray * change.z) / distance;
+    let tangent = (change.xy - ray * change.z) / past_depth;
     let vector = tangent * motion.per_tangent + (ray * motion.zoom + motion.shift_px);
     return clamp(vector, vec2f(-MAX_CAMERA_PX), vec2f(MAX_CAMERA_PX));
 }

@@ -59,9 +59,9 @@ struct FourTaps {
 }
 
 // resample::taps_of
-fn taps_of(around: TapsAround, round: u32) -> FourTaps {
-    let below = round == 1u;
-    let outside = round == 2u;
+fn taps_of(around: TapsAround, index: u32) -> FourTaps {
+    let below = index == 1u;
+    let outside = index == 2u;
     let columns = select(vec4i(-1, 0, 1, 2), vec4i(0, 1, 0, 1), outside);
     let rows = select(vec2i(select(0, 1, below)), vec2i(-1, 2), outside);
     let x = clamp(around.texel.x + columns, vec4i(0), vec4i(around.last.x));

@@ -43,7 +43,7 @@ fn bernoulli_survival(w_sum: f32, w_new: f32) -> f32 {
 
 // reservoir::exponential_survival: exp(-lambda)
 fn exponential_survival(lambda_per_frame: f32) -> f32 {
-    return exp(-lambda_per_frame);
+    return exp_approx(-lambda_per_frame);
 }
 
 // reservoir::a_es_log_key: ln(draw) / w
@@ -52,7 +52,7 @@ fn a_es_log_key(draw: f32, sample_weight: f32) -> f32 {
     if w == 0.0 {
         return LOWEST;
     }
-    return max(ln(max(draw, 1.0 / 33554432.0)) / w, LOWEST);
+    return max(ln_approx(max(draw, 1.0 / 33554432.0)) / w, LOWEST);
 }
 
 // reservoir::a_es_decay: key / survival

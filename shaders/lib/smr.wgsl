@@ -177,7 +177,7 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
         let unlit = past_difference(e.compared_coarser, e.matched_coarser);
         let relit = past_difference(e.compared_coarser, gains * e.matched_coarser);
         let strongest = strongest_gain(gains);
-        let doublings = abs(ln(strongest) * LOG2_E);
+        let doublings = abs(ln_approx(strongest) * LOG2_E);
         let costs = select(doublings, LEAST_WORN, p.noisy) >= LEAST_WORN;
         if relit < unlit * select(RELIT, RELIT_BLOCKS, p.blocks) && costs {
             d = relit;

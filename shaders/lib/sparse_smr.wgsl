@@ -32,7 +32,7 @@ const RELIT_ERRORS: f32 = 0.8;
 
 // sparse_smr::candidate_level
 fn candidate_level(px: f32, coarsest: f32) -> f32 {
-    return min(ln(1.0 + 2.0 * px) * LOG2_E, coarsest);
+    return min(ln_approx(1.0 + 2.0 * px) * LOG2_E, coarsest);
 }
 
 // `error` is negative without history or without a usable sample.
@@ -258,7 +258,7 @@ fn reconstruct(r: Reconstruction) -> Reconstructed {
     var worn = 0.0;
     if any(r.gains != vec3f(1.0)) {
         let mean = (r.gains.x + r.gains.y + r.gains.z) * (1.0f / 3.0f);
-        worn = abs(ln(mean) * LOG2_E) * select(WORN.y, WORN.x, r.moved);
+        worn = abs(ln_approx(mean) * LOG2_E) * select(WORN.y, WORN.x, r.moved);
     }
     let history_lod = r.history_lod + worn;
     let finer = clamp((r.lod - history_lod) / FINER_WIDTH, 0.0, 1.0);
@@ -291,7 +291,7 @@ fn accumulate(r: Reconstruction, past: Noise, candidate: Noise) -> Accumulated {
     let acceptance = r.fit * r.trust;
     let bright = luma(r.history);
     // Samples farther from this pixel count less.
-    let now = Noise(candidate.samples * exp2(-r.lod), candidate.variance);
+    let now = Noise(candidate.samples * exp2_approx(-r.lod), candidate.variance);
     let certain = noise_confidence(past, bright);
     let sharp = noise_confidence(Noise(now.samples, past.variance), bright);
     let finer = clamp((r.lod - r.history_lod) / FINER_WIDTH, 0.0, 1.0) * certain;

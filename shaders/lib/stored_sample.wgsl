@@ -48,8 +48,8 @@ fn pack_color_by(c: vec3f, up: f32) -> u32 {
 
 // stored_sample::unpack_color
 fn unpack_color(word: u32) -> vec3f {
-    let step = bitcast<f32>(((word >> 27u) + (SMALLEST_EXPONENT - 8u)) << 23u);
-    return vec3f(f32(word & 511u), f32((word >> 9u) & 511u), f32((word >> 18u) & 511u)) * step;
+    let unit = bitcast<f32>(((word >> 27u) + (SMALLEST_EXPONENT - 8u)) << 23u);
+    return vec3f(f32(word & 511u), f32((word >> 9u) & 511u), f32((word >> 18u) & 511u)) * unit;
 }
 
 fn pack_place(v: f32) -> u32 {
@@ -190,8 +190,8 @@ struct Interpolated {
 // stored_sample::interpolate
 fn interpolate(a: AroundStored) -> Interpolated {
     var nearest = a.nearest;
-    let distance = max(abs(nearest.place_px.x), abs(nearest.place_px.y));
-    if nearest.lod < 0.0 || distance <= EXACT_PX {
+    let away = max(abs(nearest.place_px.x), abs(nearest.place_px.y));
+    if nearest.lod < 0.0 || away <= EXACT_PX {
         nearest.place_px = vec2f(0.0);
         return Interpolated(nearest.color, nearest.lod, a.lowest, a.highest, nearest);
     }
@@ -205,12 +205,12 @@ fn interpolate(a: AroundStored) -> Interpolated {
     let xy = a.square.y * a.weight - a.place.x * a.place.y;
     let yy = (a.square.z * a.weight - a.place.y * a.place.y) + stiff;
     // At least `stiff` squared, because variances are not negative.
-    let determinant = max(xx * yy - xy * xy, (stiff * stiff) * 0.5);
+    let det = max(xx * yy - xy * xy, (stiff * stiff) * 0.5);
     let across = a.color_x * a.weight - a.color * a.place.x;
     let down = a.color_y * a.weight - a.color * a.place.y;
     // The plane's value at the position is the mean, minus its slopes times the mean place.
     let rise = across * (yy * a.place.x - xy * a.place.y) + down * (xx * a.place.y - xy * a.place.x);
     let inverse = 1.0 / a.weight;
-    let color = max((a.color - rise / determinant) * inverse, vec3f(0.0));
+    let color = max((a.color - rise / det) * inverse, vec3f(0.0));
     return Interpolated(color, a.lod * inverse, a.lowest, a.highest, nearest);
 }

@@ -84,8 +84,8 @@ fn accumulate(
     let inside = clip_to_box(past, a.sum * inverse, extent);
     let strength = min(a.weights.x, 1.0) * (1.0f - LEAST_CLIP) + LEAST_CLIP;
     let clip = inside - past;
-    let distance = max(max(abs(clip.x), abs(clip.y)), abs(clip.z));
-    let kept = 1.0 - min(distance * CLIP_COST / max(past.x, 1.0), 1.0) * strength;
+    let moved = max(max(abs(clip.x), abs(clip.y)), abs(clip.z));
+    let kept = 1.0 - min(moved * CLIP_COST / max(past.x, 1.0), 1.0) * strength;
     let clipped = roots_of_ycocg(past + clip * strength);
     let share = max(a.weights.y / (confidence * kept + a.weights.y), 1.0 - trusted);
     let shown = clipped + (roots(upsampled(a, centre)) - clipped) * share;

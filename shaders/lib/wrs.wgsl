@@ -79,7 +79,7 @@ const LEAST_CANDIDATE_W: f32 = 0x1p-100f;
 
 // wrs::at_rate
 fn at_rate(weight: f32, lod: f32, exponent: u32) -> f32 {
-    return max(weight * exp2(lod * (-2.0 * f32(exponent))), LEAST_CANDIDATE_W);
+    return max(weight * exp2_approx(lod * (-2.0 * f32(exponent))), LEAST_CANDIDATE_W);
 }
 
 struct WrsParams {
@@ -150,8 +150,8 @@ fn difference(candidate: vec3f, stored_color: vec3f, code: u32) -> f32 {
     return delta_e94(reference, stored);
 }
 
-// wrs::step: eq. 7, then Alg. 2 with the candidate as second reservoir.
-fn step(candidate: vec3f, candidate_w: f32, past: Past, params: WrsParams, draw: f32) -> Decision {
+// wrs::decide_sample: eq. 7, then Alg. 2 with the candidate as second reservoir.
+fn decide_sample(candidate: vec3f, candidate_w: f32, past: Past, params: WrsParams, draw: f32) -> Decision {
     var gate_value = 1.0;
     if candidate_w > 0.0 && past.w_sum > 0.0 {
         let d = difference(candidate, past.color, params.gate_code);

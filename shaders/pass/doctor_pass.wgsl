@@ -157,16 +157,15 @@ fn kept_depth(px: vec2u) -> u32 {
 
 // Copies stored depths and motion.
 fn copy_middle(px: vec2u, to: u32) {
-    let step = DEPTH_STEP_PX;
     for (var i = SUMS; i < WORDS; i++) {
         words[to + i] = 0u;
     }
     if HAS_DEPTH != 0u {
         words[to + DEPTH] = kept_depth(px);
-        words[to + DEPTH + 1u] = kept_depth(px - vec2u(step, 0u));
-        words[to + DEPTH + 2u] = kept_depth(px + vec2u(step, 0u));
-        words[to + DEPTH + 3u] = kept_depth(px - vec2u(0u, step));
-        words[to + DEPTH + 4u] = kept_depth(px + vec2u(0u, step));
+        words[to + DEPTH + 1u] = kept_depth(px - vec2u(DEPTH_STEP_PX, 0u));
+        words[to + DEPTH + 2u] = kept_depth(px + vec2u(DEPTH_STEP_PX, 0u));
+        words[to + DEPTH + 3u] = kept_depth(px - vec2u(0u, DEPTH_STEP_PX));
+        words[to + DEPTH + 4u] = kept_depth(px + vec2u(0u, DEPTH_STEP_PX));
     }
     if HAS_MOTION != 0u {
         let stored = textureLoad(motion_in, from_origin(px, frame.motion_origin), 0, 0).xy;

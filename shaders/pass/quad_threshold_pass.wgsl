@@ -43,11 +43,11 @@ fn main(@builtin(local_invocation_index) run: u32) {
         chosen += atomicLoad(&state.counts[key]);
     }
     state.threshold = max(key, 1u);
-    let all = chosen + atomicLoad(&state.even);
+    let quads = chosen + atomicLoad(&state.even);
     atomicStore(&state.listed, 0u);
-    state.pixel_groups = groups(4u * all);
-    state.quad_groups = groups(all);
+    state.pixel_groups = groups(4u * quads);
+    state.quad_groups = groups(quads);
     // Two triangles a quad, and an invocation a quad.
-    list.draw = vec4u(6u, all, 0u, 0u);
-    list.dispatch = vec4u((all + INVOCATIONS - 1u) / INVOCATIONS, 1u, 1u, all);
+    list.draw = vec4u(6u, quads, 0u, 0u);
+    list.dispatch = vec4u((quads + INVOCATIONS - 1u) / INVOCATIONS, 1u, 1u, quads);
 }

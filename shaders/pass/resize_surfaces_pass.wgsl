@@ -34,8 +34,8 @@ fn pixel(px: vec2u, view: u32) -> vec2u {
     let any_code = nearest.disparity < 0.0;
     var gathered = nothing_gathered();
     let rounds = select(0u, ROUNDS, nearest.lod >= 0.0);
-    for (var round = 0u; round < rounds; round++) {
-        let four = taps_of(taps, round);
+    for (var i = 0u; i < rounds; i++) {
+        let four = taps_of(taps, i);
         gathered = gather(
             gathered,
             tap(four.a, view, codes, any_code),

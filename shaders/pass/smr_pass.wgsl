@@ -126,7 +126,7 @@ fn candidates_around(px: vec2u, view: u32, own: vec3f, lod: f32, factor: f32, ne
     var mean = vec3f(0.0);
     let rounds = select(0u, 1u, needed);
     for (var i = 0u; i < rounds; i++) {
-        let radius = 0.75 * exp2(lod);
+        let radius = 0.75 * exp2_approx(lod);
         mean = mean_of_four(
             candidate_near(px, view, own, vec2f(-radius, -radius)),
             candidate_near(px, view, own, vec2f(radius, -radius)),
@@ -298,13 +298,13 @@ fn pixel(px: vec2u, view: u32) -> vec2u {
     // With gains, and with the overshoot of Catmull-Rom, colors may exceed the largest half.
     result.color = min(result.color, vec3f(MAX_HALF));
     count_if(valid && result.share == 0.0, COUNT_REPLACED);
-    let sharpness = exp2(-max(result.lod, 0.0));
+    let sharpness = exp2_approx(-max(result.lod, 0.0));
     write_output(
         px,
         view,
         result.color,
         given.w,
-        PixelTrace(source.previous.verdict, exp2(-lod), sharpness, 0u, result.share, result.fit, result.share == 0.0, motion),
+        PixelTrace(source.previous.verdict, exp2_approx(-lod), sharpness, 0u, result.share, result.fit, result.share == 0.0, motion),
     );
     // Colors on a moving silhouette mix two surfaces. With the coarsest level of detail, the next candidate replaces
     // them.

@@ -148,13 +148,13 @@ fn show_pixel(
     // Means of colors may exceed the largest half.
     shown = clamp(shown, vec3f(-MAX_HALF), vec3f(MAX_HALF));
     count_if(valid && share == 0.0, COUNT_REPLACED);
-    let sharpness = exp2(-max(next.lod, 0.0));
+    let sharpness = exp2_approx(-max(next.lod, 0.0));
     write_output(
         px,
         view,
         shown,
         candidate.alpha,
-        PixelTrace(verdict, exp2(-candidate.lod), sharpness, 0u, share, fits, share == 0.0, motion),
+        PixelTrace(verdict, exp2_approx(-candidate.lod), sharpness, 0u, share, fits, share == 0.0, motion),
     );
     if VIEW == 0u {
         var words = pack_stored(next);

@@ -75,8 +75,8 @@ fn resample(source: Source, view: u32, needed: bool) -> Resampled {
         let taps = taps_around(source.texel, source.fraction, frame.size);
         let codes = tap_codes(source.previous.expected);
         var gathered = nothing_gathered();
-        for (var round = 0u; round < rounds; round++) {
-            let four = taps_of(taps, round);
+        for (var i = 0u; i < rounds; i++) {
+            let four = taps_of(taps, i);
             gathered = gather(
                 gathered,
                 tap(four.a, view, codes),

@@ -41,13 +41,13 @@ fn samples(px: vec2u, view: u32, kernel: vec2f, source: Source, compared: bool) 
     let middle = vec2i(nearest_point(px.x, first.x, level), nearest_point(px.y, first.y, level));
     var around = SamplesAround(vec3f(0.0), vec2f(0.0), vec3f(0.0), vec3f(0.0), 0.0);
     var past_luma = 0.0;
-    let any = all(lattice.points > vec2u(0u));
+    let has_samples = all(lattice.points > vec2u(0u));
     var given = vec4f(bitcast<f32>(sparse.missing));
-    if any {
+    if has_samples {
         given = sample_near(middle, lattice, view);
     }
     let nearest = color(given.xyz);
-    let taps = select(0, 9, any);
+    let taps = select(0, 9, has_samples);
     for (var tap = 0; tap < taps; tap++) {
         let point = middle + vec2i(tap % 3, tap / 3) - 1;
         let sampled = color(sample_near(point, lattice, view).xyz);

@@ -62,8 +62,8 @@ fn resampled(
         let taps = taps_around(vec2i(whole), fraction, frame.size);
         let codes = tap_codes(expected);
         var gathered = nothing_gathered();
-        for (var round = 0u; round < rounds; round++) {
-            let four = taps_of(taps, round);
+        for (var i = 0u; i < rounds; i++) {
+            let four = taps_of(taps, i);
             gathered = gather(
                 gathered,
                 tap(four.a, view, codes),
@@ -169,7 +169,7 @@ fn pixel(px: vec2u, view: u32, place: Place) {
     if HAS_REFERENCES != 0u {
         past.color = compared(candidate.color, level, history.reference);
     }
-    let decision = step(candidate.color, candidate_w, past, params, draw);
+    let decision = decide_sample(candidate.color, candidate_w, past, params, draw);
     count_pixel(px, view, candidate.usable, disparity_now, history.verdict);
     count_if(valid && decision.take, COUNT_REPLACED);
 

@@ -88,8 +88,8 @@ impl SurfaceMethod for Smr {
         let stored_lod = if coherent_motion || result.lod < 0.0 { result.lod } else { MAX_LOD };
         let trace = PixelTrace {
             verdict,
-            weight: approx::exp2(-lod),
-            quality: approx::exp2(-result.lod.max(0.0)),
+            weight: approx::exp2_approx(-lod),
+            quality: approx::exp2_approx(-result.lod.max(0.0)),
             age: 0,
             history_share: result.share,
             agreement: result.fit,
@@ -137,7 +137,7 @@ impl Smr {
         let per_stored = view.inputs.exposure * inverse_unit;
         let [matched, level, next_level] = past.map(|c| c * per_stored);
         let own = candidate * inverse_unit;
-        let radius = 0.75 * approx::exp2(lod);
+        let radius = 0.75 * approx::exp2_approx(lod);
         let blocks = self.params.blocks;
         // Levels of history are means of blocks, not Gaussian blurs: the two agree better one level coarser.
         let gauss = self.settings.foveation.filter == Filter::Gauss;

@@ -210,7 +210,7 @@ impl ViewPass<'_> {
             notes.note(NoteStage::Comparison, "difference up to which the gate is 1", params.gate_offset, "the same");
         }
         let draw = rng::unit_draw(rng::bits(x, y, self.frame_low, inputs.uniforms.key));
-        let decision = wrs::step(candidate, weight, Past { color: compared, ..past }, &params, draw);
+        let decision = wrs::decide_sample(candidate, weight, Past { color: compared, ..past }, &params, draw);
 
         let color = wrs::combined(candidate, weight, past.color, &decision, params.sampler);
         let age = if decision.take { 0 } else { (history.age + 1).min(pack::MAX_AGE) };

@@ -33,7 +33,7 @@ pub fn eccentricity_deg(ray: Vec3, gaze: Vec3) -> f32 {
 #[inline(always)]
 pub fn cell_density(e_deg: f32) -> f32 {
     let q = 1.0 + e_deg * (1.0 / R_2_DEG);
-    let far = approx::exp(e_deg * (-1.0 / R_E_DEG));
+    let far = approx::exp_approx(e_deg * (-1.0 / R_E_DEG));
     // A quotient, because compilers reorder a sum of two products with constants.
     (2.0 * D_C0) * (A_K / (q * q) + (1.0 - A_K) * far) / (1.0 + e_deg * (1.0 / R_M_DEG))
 }

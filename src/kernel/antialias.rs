@@ -176,10 +176,10 @@ pub fn clip(near: Near, history: Vec3) -> Clip {
     let past = to_ycocg(history);
     let inside = clip_to_box(past, near.sum * inverse, roots(variance) * BOX_SIGMAS + Vec3::splat(ROUNDING));
     let by = (inside - past) * CLIP;
-    let distance = by.x.abs().max(by.y.abs()).max(by.z.abs());
+    let moved = by.x.abs().max(by.y.abs()).max(by.z.abs());
     let outer = by.x - by.z;
     let change = Vec3::new(outer + by.y, by.x + by.z, outer - by.y);
-    Clip { change, kept: 1.0 - (distance * CLIP_COST / past.x.max(1.0)).min(1.0) }
+    Clip { change, kept: 1.0 - (moved * CLIP_COST / past.x.max(1.0)).min(1.0) }
 }
 
 /// A color after a clip. A clip without a change returns the color bit for bit.

@@ -38,7 +38,7 @@ pub fn atan2_upper(y: f32, x: f32) -> f32 {
 ///
 /// Cephes' `expf`: 2^n times a polynomial of the remainder.
 #[inline(always)]
-pub fn exp(x: f32) -> f32 {
+pub fn exp_approx(x: f32) -> f32 {
     let x = x.clamp(-87.0, 88.0);
     let n = (x * std::f32::consts::LOG2_E + 0.5).floor();
     // ln 2 in two parts, so that the product with n is exact.
@@ -53,7 +53,7 @@ pub fn exp(x: f32) -> f32 {
 ///
 /// Cephes' `exp2f`. Not `exp(x * ln 2)`: compilers may multiply ln 2 into a constant factor of x.
 #[inline]
-pub fn exp2(x: f32) -> f32 {
+pub fn exp2_approx(x: f32) -> f32 {
     let x = x.clamp(-126.0, 127.0);
     let n = (x + 0.5).floor();
     let r = x - n;
@@ -68,7 +68,7 @@ pub fn exp2(x: f32) -> f32 {
 ///
 /// Cephes' `logf`: exponent and a polynomial of the mantissa in \[sqrt(1/2), sqrt(2)).
 #[inline(always)]
-pub fn ln(x: f32) -> f32 {
+pub fn ln_approx(x: f32) -> f32 {
     let bits = x.to_bits();
     let mut exponent = (bits >> 23) as i32 - 126;
     let mut m = f32::from_bits((bits & 0x007f_ffff) | 0x3f00_0000);

@@ -46,14 +46,14 @@ pub fn region_lod(
 pub fn blur_lod(e_deg: f32, start_deg: f32, end_deg: f32, lod_mid: f32, lod_far: f32) -> f32 {
     let slope = blur_sigma_px(lod_mid) / (end_deg - start_deg).max(1e-3);
     let sigma = (slope * (e_deg - start_deg)).clamp(0.0, blur_sigma_px(lod_far));
-    approx::ln(1.0 + 2.0 * sigma) * LOG2_E
+    approx::ln_approx(1.0 + 2.0 * sigma) * LOG2_E
 }
 
 /// Standard deviation in pixels of the blur of level of detail `lod` in \[0, 8\]. Exact for whole
 /// levels, otherwise with an error below 5e-7 times 2^lod.
 #[inline]
 pub fn blur_sigma_px(lod: f32) -> f32 {
-    0.5 * (approx::exp2(lod) - 1.0)
+    0.5 * (approx::exp2_approx(lod) - 1.0)
 }
 
 /// Tap of a Gaussian whose centre has weight 1, with the state of the recurrence that gives the next tap.
@@ -75,7 +75,7 @@ pub struct GaussTap {
 #[inline]
 pub fn gauss_center(sigma_px: f32) -> GaussTap {
     let s = sigma_px.max(SHARPEST_BLUR_PX);
-    let ratio = approx::exp(-0.5 / (s * s));
+    let ratio = approx::exp_approx(-0.5 / (s * s));
     GaussTap { weight: 1.0, ratio, ratio_step: ratio * ratio }
 }
 

@@ -56,9 +56,9 @@ pub struct Between {
 pub fn between(px: u32, first: u32, level: u32, count: u32) -> Between {
     let last = count as i32 - 1;
     // The shift of a signed number rounds down.
-    let distance = px as i32 - first as i32;
-    let low = distance >> level;
-    let fraction = (distance - (low << level)) as f32 * f32::from_bits((127 - level) << 23);
+    let offset = px as i32 - first as i32;
+    let low = offset >> level;
+    let fraction = (offset - (low << level)) as f32 * f32::from_bits((127 - level) << 23);
     Between { points: [low.clamp(0, last) as u32, (low + 1).clamp(0, last) as u32], fraction }
 }
 

@@ -127,9 +127,9 @@ pub fn camera_vector(ray: Vec2, disparity: f32, motion: ViewMotion) -> Vec2 {
     }
     let ViewMotion { x, y, z, .. } = motion;
     let d = if disparity <= motion.sky { 0.0 } else { disparity };
-    let distance = z.x * ray.x + (z.y * ray.y + (z.w * d + motion.ahead));
+    let past_depth = z.x * ray.x + (z.y * ray.y + (z.w * d + motion.ahead));
     // The point was behind the previous camera.
-    if distance <= 1e-6 {
+    if past_depth <= 1e-6 {
         return Vec2::splat(MAX_CAMERA_PX);
     }
     let change = Vec3::new(
@@ -137,7 +137,7 @@ pub fn camera_vector(ray: Vec2, disparity: f32, motion: ViewMotion) -> Vec2 {
         y.x * ray.x + (y.y * ray.y + (y.w * d + y.z)),
         z.x * ray.x + (z.y * ray.y + (z.w * d + z.z)),
     );
-    let tangent = (Vec2::new(change.x, change.y) - ray * change.z) / distance;
+    let tangent = (Vec2::new(change.x, change.y) - ray * change.z) / past_depth;
     let vector = tangent * motion.per_tangent + (ray * motion.zoom + motion.shift_px);
     vector.clamp(Vec2::splat(-MAX_CAMERA_PX), Vec2::splat(MAX_CAMERA_PX))
 }

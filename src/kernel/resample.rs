@@ -90,12 +90,12 @@ pub struct FourTaps {
     pub linear_row: f32,
 }
 
-/// The taps of a round.
+/// The taps of round `index`.
 #[inline]
-pub fn taps_of(around: &TapsAround, round: u32) -> FourTaps {
-    let (columns, rows) = match round {
+pub fn taps_of(around: &TapsAround, index: u32) -> FourTaps {
+    let (columns, rows) = match index {
         2 => ([1, 2, 1, 2], [0, 0, 3, 3]),
-        round => ([0, 1, 2, 3], [1 + round as usize; 4]),
+        index => ([0, 1, 2, 3], [1 + index as usize; 4]),
     };
     let texel = |tap: usize| {
         let [x, y] = [columns[tap], rows[tap]].map(|i| i as i32 - 1);
@@ -107,7 +107,7 @@ pub fn taps_of(around: &TapsAround, round: u32) -> FourTaps {
         sharp_x: columns.map(|x| around.sharp_x[x]),
         sharp_rows: [around.sharp_y[rows[0]], around.sharp_y[rows[3]]],
         linear_x: [1.0 - fx, fx],
-        linear_row: [1.0 - fy, fy, 0.0][round as usize],
+        linear_row: [1.0 - fy, fy, 0.0][index as usize],
     }
 }
 

@@ -52,7 +52,7 @@ pub fn bernoulli_survival(w_sum: f32, w_new: f32) -> f32 {
 /// Exponential bias, for comparison: factor on the history's weight sum after one frame, `exp(-lambda)`.
 #[inline]
 pub fn exponential_survival(lambda_per_frame: f32) -> f32 {
-    approx::exp(-lambda_per_frame)
+    approx::exp_approx(-lambda_per_frame)
 }
 
 /// Logarithm of the A-ES key of a sample of weight `w`: `ln(draw) / w`, at most 0; the largest key wins. `f32::MIN` for
@@ -65,7 +65,7 @@ pub fn a_es_log_key(draw: f32, w: f32) -> f32 {
     if w == 0.0 {
         return f32::MIN;
     }
-    (approx::ln(draw.max(1.0 / 33_554_432.0)) / w).max(f32::MIN)
+    (approx::ln_approx(draw.max(1.0 / 33_554_432.0)) / w).max(f32::MIN)
 }
 
 /// Log key of history after all its weights were multiplied by `survival` in \[0, 1\]: `key / survival`. `f32::MIN` for

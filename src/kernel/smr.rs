@@ -285,7 +285,7 @@ pub(crate) fn decide_noted(e: &Evidence, p: &SmrParams, notes: &mut impl Notes) 
         // that wrong gains would multiply from frame to frame. A sample that pays for each of them gets few before the
         // candidate replaces it.
         let strongest = strongest_gain(gains);
-        let doublings = (approx::ln(strongest) * LOG2_E).abs();
+        let doublings = (approx::ln_approx(strongest) * LOG2_E).abs();
         let helps = relit < unlit * (if p.blocks { RELIT_BLOCKS } else { RELIT });
         notes.note(NoteStage::Light, "difference at which relighting starts", from, OF_DIFFERENCE);
         notes.note(NoteStage::Light, "change of light", changed, "");

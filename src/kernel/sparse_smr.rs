@@ -75,7 +75,7 @@ const STAY_SHARE: f32 = 0.5;
 /// sample's own pixel.
 #[inline]
 pub fn candidate_level(px: f32, coarsest: f32) -> f32 {
-    (approx::ln(1.0 + 2.0 * px) * LOG2_E).min(coarsest)
+    (approx::ln_approx(1.0 + 2.0 * px) * LOG2_E).min(coarsest)
 }
 
 /// Comparison of a sample with history at its pixel.
@@ -382,7 +382,7 @@ pub fn reconstruct(r: &Reconstruction) -> Reconstructed {
         0.0
     } else {
         let mean = (gain.x + gain.y + gain.z) * (1.0 / 3.0);
-        (approx::ln(mean) * LOG2_E).abs() * (if r.moved { WORN[0] } else { WORN[1] })
+        (approx::ln_approx(mean) * LOG2_E).abs() * (if r.moved { WORN[0] } else { WORN[1] })
     };
     let history_lod = r.history_lod + worn;
     let finer = ((r.lod - history_lod) / FINER_WIDTH).clamp(0.0, 1.0);
@@ -426,7 +426,7 @@ pub fn accumulate(r: &Reconstruction, past: Noise, now: Noise) -> Accumulated {
     let acceptance = r.fit * r.trust;
     let bright = luma(r.history);
     // Samples farther from this pixel count less.
-    let now = Noise { samples: now.samples * approx::exp2(-r.lod), variance: now.variance };
+    let now = Noise { samples: now.samples * approx::exp2_approx(-r.lod), variance: now.variance };
     let certain = noise_confidence(past, bright);
     let sharp = noise_confidence(Noise { samples: now.samples, variance: past.variance }, bright);
     let finer = ((r.lod - r.history_lod) / FINER_WIDTH).clamp(0.0, 1.0) * certain;

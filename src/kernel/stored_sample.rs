@@ -95,8 +95,8 @@ pub fn pack_color_by(c: Vec3, up: f32) -> u32 {
 /// Color of a packed word; finite for any word.
 #[inline]
 pub fn unpack_color(word: u32) -> Vec3 {
-    let step = f32::from_bits(((word >> 27) + (SMALLEST_EXPONENT - 8)) << 23);
-    let channel = |bits: u32| (bits & 511) as f32 * step;
+    let unit = f32::from_bits(((word >> 27) + (SMALLEST_EXPONENT - 8)) << 23);
+    let channel = |bits: u32| (bits & 511) as f32 * unit;
     Vec3::new(channel(word), channel(word >> 9), channel(word >> 18))
 }
 
@@ -275,8 +275,8 @@ pub struct Interpolated {
 #[inline]
 pub fn interpolate(a: Around) -> Interpolated {
     let Around { nearest, range, .. } = a;
-    let distance = nearest.place_px.x.abs().max(nearest.place_px.y.abs());
-    if nearest.lod < 0.0 || distance <= EXACT_PX {
+    let away = nearest.place_px.x.abs().max(nearest.place_px.y.abs());
+    if nearest.lod < 0.0 || away <= EXACT_PX {
         let place_px = Vec2::ZERO;
         return Interpolated {
             color: nearest.color,
@@ -295,12 +295,12 @@ pub fn interpolate(a: Around) -> Interpolated {
     let xy = a.square.y * a.weight - a.place.x * a.place.y;
     let yy = (a.square.z * a.weight - a.place.y * a.place.y) + stiff;
     // At least `stiff` squared, because variances are not negative.
-    let determinant = (xx * yy - xy * xy).max((stiff * stiff) * 0.5);
+    let det = (xx * yy - xy * xy).max((stiff * stiff) * 0.5);
     let across = a.color_x * a.weight - a.color * a.place.x;
     let down = a.color_y * a.weight - a.color * a.place.y;
     // The plane's value at the position is the mean, minus its slopes times the mean place.
     let rise = across * (yy * a.place.x - xy * a.place.y) + down * (xx * a.place.y - xy * a.place.x);
     let inverse = 1.0 / a.weight;
-    let color = ((a.color - rise / determinant) * inverse).max(Vec3::ZERO);
+    let color = ((a.color - rise / det) * inverse).max(Vec3::ZERO);
     Interpolated { color, lod: a.lod * inverse, range, nearest }
 }

@@ -139,8 +139,8 @@ pub(crate) fn accumulate_noted(
     let inside = clip_to_box(past, a.sum * inverse, extent);
     let strength = a.weights.x.min(1.0) * (1.0 - LEAST_CLIP) + LEAST_CLIP;
     let clip = inside - past;
-    let distance = clip.x.abs().max(clip.y.abs()).max(clip.z.abs());
-    let kept = 1.0 - (distance * CLIP_COST / past.x.max(1.0)).min(1.0) * strength;
+    let moved = clip.x.abs().max(clip.y.abs()).max(clip.z.abs());
+    let kept = 1.0 - (moved * CLIP_COST / past.x.max(1.0)).min(1.0) * strength;
     let clipped = roots_of_ycocg(past + clip * strength);
     notes.note(NoteStage::Comparison, "mean of the samples around", a.sum * inverse, "YCoCg of square roots");
     notes.note(NoteStage::Comparison, "box of history around it", extent, "half widths, YCoCg of square roots");

@@ -144,7 +144,7 @@ const LEAST_CANDIDATE_W: f32 = f32::from_bits((127 - 100) << 23);
 /// to the power `exponent` (at most 4).
 #[inline]
 pub fn at_rate(weight: f32, lod: f32, exponent: u32) -> f32 {
-    (weight * approx::exp2(lod * (-2.0 * exponent as f32))).max(LEAST_CANDIDATE_W)
+    (weight * approx::exp2_approx(lod * (-2.0 * exponent as f32))).max(LEAST_CANDIDATE_W)
 }
 
 /// Reservoir of a pixel's history.
@@ -163,7 +163,7 @@ impl Past {
     pub const EMPTY: Self = Self { color: Vec3::ZERO, w_sum: 0.0, log_key: f32::MIN };
 }
 
-/// Result of [`step`].
+/// Result of [`decide_sample`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decision {
     /// Whether the candidate becomes the sample; for means, whether it has more than half of the weight.
@@ -231,8 +231,8 @@ pub fn difference(candidate: Vec3, sample: Vec3, code: GateCode) -> f32 {
     if code == GateCode::Lightness { (reference.x - stored.x).abs() } else { color::delta_e94(reference, stored) }
 }
 
-/// Color that is stored and shown after [`step`]: the candidate or history's sample, or the mean of both by the
-/// probabilities of A-Chao. Equal colors, and a candidate with all the weight, stay unchanged bit for bit.
+/// Color that is stored and shown after [`decide_sample`]: the candidate or history's sample, or the mean of both by
+/// the probabilities of A-Chao. Equal colors, and a candidate with all the weight, stay unchanged bit for bit.
 #[inline]
 pub fn combined(candidate: Vec3, weight: f32, past: Vec3, decision: &Decision, sampler: SamplerCode) -> Vec3 {
     if sampler != SamplerCode::AChaoMean || weight == decision.w_sum {
@@ -245,7 +245,7 @@ pub fn combined(candidate: Vec3, weight: f32, past: Vec3, decision: &Decision, s
 /// the candidate with `past.color`: the sample, or the result of [`compared`]. A `weight` of 0 marks an unusable
 /// candidate. Such a candidate does not show whether the color changed, so the gate value is 1.
 #[inline]
-pub fn step(candidate: Vec3, weight: f32, past: Past, params: &WrsParams, draw: f32) -> Decision {
+pub fn decide_sample(candidate: Vec3, weight: f32, past: Past, params: &WrsParams, draw: f32) -> Decision {
     let mut gate_value = 1.0;
     if weight > 0.0 && past.w_sum > 0.0 {
         let d = difference(candidate, past.color, params.gate);

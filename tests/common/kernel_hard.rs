@@ -88,14 +88,15 @@ struct Step {
 const STEP: Step =
     Step { sampler: 0, color: [0.3; 3], w_sum: 0.0, log_key: -0.3, candidate: [0.3; 3], weight: 1e-3, draw: 0.0 };
 
-/// `step` with Bernoulli survival and the gate of the paper: whether the candidate is taken; sum, key, gate, survival.
+/// `decide_sample` with Bernoulli survival and the gate of the paper: whether the candidate is taken; sum, key, gate,
+/// survival.
 fn stepped(call: Call<'_>, steps: &[Step]) -> Option<Vec<(bool, [f32; 4])>> {
     let words = |s: &Step| {
         let past = [s.w_sum, s.log_key, s.draw];
         let floats = [&[1.0, 0.0, 0.01][..], &s.candidate, &[s.weight], &s.color, &past].concat();
         [s.sampler, 2, 1].into_iter().chain(floats.into_iter().map(f32::to_bits)).collect()
     };
-    let out = call("step", &steps.iter().map(words).collect::<Vec<_>>())?;
+    let out = call("decide_sample", &steps.iter().map(words).collect::<Vec<_>>())?;
     Some(out.iter().map(|o| (o[0] != 0, [1, 2, 3, 4].map(|k| f32::from_bits(o[k])))).collect())
 }
 

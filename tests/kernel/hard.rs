@@ -26,7 +26,7 @@ fn call(function: &str, row: &[u32]) -> Vec<u32> {
         "difference" => floats(&[wrs::difference(v(0), v(3), gate(6))]),
         "gate" => floats(&[wrs::gate(f(0), f(1), f(2))]),
         "lab" => floats(&color::lab(v(0)).to_array()),
-        "step" => {
+        "decide_sample" => {
             let params = WrsParams {
                 sampler: [SamplerCode::AChao, SamplerCode::AEs][row[0] as usize],
                 bias: [BiasCode::None, BiasCode::Exponential, BiasCode::Bernoulli][row[1] as usize],
@@ -35,7 +35,7 @@ fn call(function: &str, row: &[u32]) -> Vec<u32> {
                 gate_offset: f(4),
                 inv_gate_divisor: f(5),
             };
-            let d = wrs::step(v(6), f(9), Past { color: v(10), w_sum: f(13), log_key: f(14) }, &params, f(15));
+            let d = wrs::decide_sample(v(6), f(9), Past { color: v(10), w_sum: f(13), log_key: f(14) }, &params, f(15));
             [vec![d.take.into()], floats(&[d.w_sum, d.log_key, d.gate, d.survival])].concat()
         }
         "unit_draw" => floats(&[rng::unit_draw(row[0])]),

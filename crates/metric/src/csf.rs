@@ -112,14 +112,14 @@ impl SensitivityAt {
     /// The contrast sensitivity; arguments are those of [`Self::log2`].
     #[inline(always)]
     pub fn sensitivity(&self, nits: f32, eccentricity_deg: f32, times: f32) -> f32 {
-        approx::exp2(self.log2(nits, eccentricity_deg, times))
+        approx::exp2_approx(self.log2(nits, eccentricity_deg, times))
     }
 }
 
 /// log2 of `x` >= 1.
 #[inline(always)]
 fn log2(x: f32) -> f32 {
-    LOG2_E * approx::ln(x)
+    LOG2_E * approx::ln_approx(x)
 }
 
 /// Response of the sustained channel to a temporal frequency in Hz, 1 at 0 Hz.

@@ -253,7 +253,7 @@ fn hyab(a: Vec3, b: Vec3) -> f32 {
 /// The standard library's function takes longer than all of FLIP's filters.
 #[inline(always)]
 fn power(base: f32, exponent: f32) -> f32 {
-    let power = approx::exp(exponent * approx::ln(base));
+    let power = approx::exp_approx(exponent * approx::ln_approx(base));
     let of_zero = if exponent == 0.0 { 1.0 } else { 0.0 };
     if base > 0.0 { power } else { of_zero }
 }

@@ -195,8 +195,8 @@ fn sky(d: vec3f) -> vec3f {
 }
 
 // 1 inside an edge, 0 outside, with a ramp of a pixel's width.
-fn inside(distance: f32, width: f32) -> f32 {
-    return 1.0 - smoothstep(-0.5 * width, 0.5 * width, distance);
+fn inside(to_edge: f32, width: f32) -> f32 {
+    return 1.0 - smoothstep(-0.5 * width, 0.5 * width, to_edge);
 }
 
 // Tiles with eight-pointed stars; `width`: a pixel's extent on them. They become their mean where they are finer.

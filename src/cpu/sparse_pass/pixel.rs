@@ -130,8 +130,8 @@ impl View<'_> {
         stats.replaced += u64::from(verdict == Verdict::Valid && share == 0.0);
         let trace = PixelTrace {
             verdict,
-            weight: approx::exp2(-candidate.lod),
-            quality: approx::exp2(-stored.lod.max(0.0)),
+            weight: approx::exp2_approx(-candidate.lod),
+            quality: approx::exp2_approx(-stored.lod.max(0.0)),
             age: 0,
             history_share: share,
             agreement: fits,

@@ -5,8 +5,8 @@ use super::probe::caught;
 /// A function, a text of its source, and what stands there instead.
 const PLANTED: &[(&str, &str, &str)] = &[
     ("reservoir::combine", "draw * w_sum < w2", "draw * w_sum <= w2"),
-    ("wrs::step", "draw * w_sum < candidate_w", "draw * w_sum <= candidate_w"),
-    ("wrs::step", "weight(past.w_sum * survival)", "past.w_sum * survival"),
+    ("wrs::decide_sample", "draw * w_sum < candidate_w", "draw * w_sum <= candidate_w"),
+    ("wrs::decide_sample", "weight(past.w_sum * survival)", "past.w_sum * survival"),
     ("acuity::candidate_weight", "* inv_density_at_fovea", "* (1.01 * inv_density_at_fovea)"),
     ("reproject::nearest", "f32(x) + motion.x", "f32(x) - motion.x"),
     ("reproject::camera_vector", "disparity <= motion.sky", "disparity < motion.sky"),
@@ -17,7 +17,7 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("rng::unit_draw", "f32(bits >> 8u) * (1.0 / 16777216.0)", "f32(bits) * (1.0 / 4294967296.0)"),
     ("rng::bits", "v = v ^ (v >> vec4u(16u));", ""),
     ("wrs::difference", "delta_e94(reference, stored)", "delta_e94(stored, reference)"),
-    ("approx::exp", "1.6666665e-1", "1.6666667e-1"),
+    ("approx::exp_approx", "1.6666665e-1", "1.6666667e-1"),
     ("color::lab", "0.376224", "0.37622404"),
     ("pack::unpack", "out_u(result.age);", ""),
     ("doctor::spline", "(t + 1.0) * 0.5", "(t + 1.0) * 0.51"),
@@ -25,7 +25,7 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("foveate::level_len", "(1u << level) - 1u) >> level", "(1u << level)) >> level"),
     ("foveate::bilinear", "blend(top, bottom, fraction.y)", "blend(top, bottom, fraction.x)"),
     ("foveate::gauss_next", "tap.ratio * tap.ratio_step,", "tap.ratio * tap.ratio,"),
-    ("lattice::between", "let low = distance >> level;", "let low = distance / (1 << level);"),
+    ("lattice::between", "let low = offset >> level;", "let low = offset / (1 << level);"),
     ("lattice::add_sample", "if !usable {", "if false {"),
     ("surface::float14_bits", "+ ((a >> 14u) & 1u)", "+ 1u"),
     ("surface::mip_texel", "vec4f(s.color, 1.0)", "vec4f(s.color, 0.0)"),

@@ -121,7 +121,7 @@ pub const PROBES: &[Probe] = &[
         })
     }),
     probe!(
-        wrs::step,
+        wrs::decide_sample,
         |sampler: SamplerCode,
          bias: BiasCode,
          gate: GateCode,
@@ -133,9 +133,9 @@ pub const PROBES: &[Probe] = &[
          past: Past,
          draw: f32| {
             let params = WrsParams { sampler, bias, exponential_survival, gate, gate_offset, inv_gate_divisor };
-            wrs::step(candidate, weight, past, &params, draw)
+            wrs::decide_sample(candidate, weight, past, &params, draw)
         },
-        "step($6, $7, $8, WrsParams($0, $1, $3, $2, $4, $5), $9)",
+        "decide_sample($6, $7, $8, WrsParams($0, $1, $3, $2, $4, $5), $9)",
         step_rows
     ),
 ];

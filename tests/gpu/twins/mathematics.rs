@@ -16,17 +16,17 @@ pub const PROBES: &[Probe] = &[
         .cross(&[&around(&[0.414_213_56]), &around(&[1.0, -1.0])])
         .each(&[Scaled(-3, 3), Signed(-3, 3)])
         .random_of("wide", |d, row| row.extend([scaled(d, -60, 60), signed(d, -60, 60)]))),
-    probe!(approx::exp, |rows| {
+    probe!(approx::exp_approx, |rows| {
         let steps: Vec<f32> = (-126..=128).map(|n| (n as f32 - 0.5) * std::f32::consts::LN_2).collect();
         one(rows, &[finite(), around(&[-87.0, 88.0]), around(&steps)].concat(), |d| range(d, -90.0, 90.0))
             .random_of("any", |d, row| row.push(finite_bits(d)))
     }),
-    probe!(approx::exp2, |rows| {
+    probe!(approx::exp2_approx, |rows| {
         let steps: Vec<f32> = (-127..=128).map(|n| n as f32 - 0.5).collect();
         one(rows, &[finite(), around(&[-126.0, 127.0]), around(&steps)].concat(), |d| range(d, -130.0, 130.0))
             .random_of("any", |d, row| row.push(finite_bits(d)))
     }),
-    probe!(approx::ln, |rows| {
+    probe!(approx::ln_approx, |rows| {
         one(
             rows,
             &[normal(), around(&[std::f32::consts::FRAC_1_SQRT_2, 1.0, std::f32::consts::SQRT_2])].concat(),

@@ -14,7 +14,7 @@ fn step(candidate: Vec3, weight: f32, sample: Vec3, w_sum: f32, offset: f32, dra
         gate_offset: offset,
         inv_gate_divisor: 0.01,
     };
-    wrs::step(candidate, weight, Past { color: sample, w_sum, log_key: f32::MIN }, &params, draw)
+    wrs::decide_sample(candidate, weight, Past { color: sample, w_sum, log_key: f32::MIN }, &params, draw)
 }
 
 #[test]

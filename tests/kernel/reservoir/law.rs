@@ -106,7 +106,7 @@ pub fn biased_counts(params: &WrsParams, weights: &[f32], trials: usize, draws: 
     for _ in 0..trials {
         let (mut state, mut sample) = (past(0.0), 0);
         for (i, &w) in weights.iter().enumerate() {
-            let d = wrs::step(Vec3::ONE, w, state, params, draws.uniform());
+            let d = wrs::decide_sample(Vec3::ONE, w, state, params, draws.uniform());
             state = Past { w_sum: d.w_sum, log_key: d.log_key, ..state };
             sample = if d.take { i } else { sample };
         }

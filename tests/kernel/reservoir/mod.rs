@@ -40,7 +40,7 @@ fn past(w_sum: f32) -> Past {
 }
 
 fn step(params: &WrsParams, w_sum: f32, weight: f32, draw: f32) -> wrs::Decision {
-    wrs::step(Vec3::new(0.3, 0.2, 0.1), weight, past(w_sum), params, draw)
+    wrs::decide_sample(Vec3::new(0.3, 0.2, 0.1), weight, past(w_sum), params, draw)
 }
 
 fn stored(w_sum: f32, age: u32) -> Stored {

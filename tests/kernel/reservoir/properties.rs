@@ -44,8 +44,8 @@ proptest! {
         for sampler in [SamplerCode::AChao, SamplerCode::AEs] {
             let params = WrsParams { sampler, ..PAPER };
             let key = -0.7;
-            let x = wrs::step(Vec3::ONE, b, Past { log_key: key, ..past(a) }, &params, draw);
-            let y = wrs::step(Vec3::ONE, c * b, Past { log_key: key / c, ..past(c * a) }, &params, draw);
+            let x = wrs::decide_sample(Vec3::ONE, b, Past { log_key: key, ..past(a) }, &params, draw);
+            let y = wrs::decide_sample(Vec3::ONE, c * b, Past { log_key: key / c, ..past(c * a) }, &params, draw);
             prop_assert_eq!(x.take, y.take);
             prop_assert_eq!(x.w_sum * c, y.w_sum);
         }
@@ -75,7 +75,7 @@ proptest! {
         let past = Past { color: history.color, w_sum: history.w_sum, log_key: key };
         let past = wrs::scale_by_trust(past, trust, params.sampler);
         prop_assert!(past.w_sum >= 0.0 && past.w_sum <= history.w_sum);
-        let d = wrs::step(candidate, weight, past, &params, draw as f32 / 16_777_216.0);
+        let d = wrs::decide_sample(candidate, weight, past, &params, draw as f32 / 16_777_216.0);
         prop_assert!(d.w_sum.is_finite() && d.w_sum >= 0.0 && d.log_key.is_finite() && d.log_key <= 0.0);
         prop_assert!((0.0..=1.0).contains(&d.gate) && (0.0..=1.0).contains(&d.survival));
         let shown = if d.take { candidate } else { past.color };

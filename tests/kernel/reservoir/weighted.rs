@@ -62,7 +62,7 @@ fn shown(stream: &[(f32, f32)], sampler: SamplerCode, bias: BiasCode, draws: &mu
     let mut state = Past::EMPTY;
     for &(light, weight) in stream {
         let candidate = Vec3::splat(light);
-        let d = wrs::step(candidate, weight, state, &params, draws.uniform());
+        let d = wrs::decide_sample(candidate, weight, state, &params, draws.uniform());
         state = Past { color: wrs::combined(candidate, weight, state.color, &d, sampler), w_sum: d.w_sum, ..state };
     }
     state.color.x
@@ -95,13 +95,13 @@ fn the_candidates_gate_sees_changes_and_no_detail() {
     let params = WrsParams { gate: GateCode::DeltaE94, gate_offset: 2.0, inv_gate_divisor: 1.0 / 30.0, ..PAPER };
     let gate = |candidate: Vec3, level: u32| {
         let compared = wrs::compared(candidate, level, wrs::unpack_reference(wrs::pack_reference(reference)));
-        wrs::step(candidate, 0.01, Past { color: compared, ..past(5.0) }, &params, 0.5).gate
+        wrs::decide_sample(candidate, 0.01, Past { color: compared, ..past(5.0) }, &params, 0.5).gate
     };
     assert_eq!(gate(blurred, 12), 1.0, "detail, at the candidate's scale, and packing are no change");
     assert!(gate(blurred * 0.5, 12) < 0.6, "light is a change");
     assert_eq!(gate(blurred * 0.5, 8), 1.0, "another level says nothing");
     // The literal gate takes the detail for a change.
-    let literal = wrs::step(blurred, 0.01, Past { color: sharp, ..past(5.0) }, &params, 0.5);
+    let literal = wrs::decide_sample(blurred, 0.01, Past { color: sharp, ..past(5.0) }, &params, 0.5);
     assert!(literal.gate < 0.5, "{}", literal.gate);
 }
 

@@ -12,12 +12,12 @@ fn unit(v: vec3f) -> vec3f {
 
 // direction::basis; the two vectors are the columns.
 fn basis(n: vec3f) -> mat2x3f {
-    let sign = select(-1.0, 1.0, n.z >= 0.0);
-    let a = -1.0 / (sign + n.z);
+    let side = select(-1.0, 1.0, n.z >= 0.0);
+    let a = -1.0 / (side + n.z);
     let b = (n.x * a) * n.y;
     let x = n.x * a;
     let y = n.y * a;
-    return mat2x3f(vec3f(1.0 + sign * (x * n.x), sign * b, -sign * n.x), vec3f(b, sign + y * n.y, -n.y));
+    return mat2x3f(vec3f(1.0 + side * (x * n.x), side * b, -side * n.x), vec3f(b, side + y * n.y, -n.y));
 }
 
 // direction::to_local

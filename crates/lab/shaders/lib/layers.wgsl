@@ -138,7 +138,7 @@ fn layers(surface: BsdfSurface, wo: vec3f, tables: u32) -> Layers {
             e += anisotropic_albedo(tables, wo, widths);
         }
     }
-    var reflect = vec3f(0.0);
+    var reflected = vec3f(0.0);
     var reflect_rise = vec3f(0.0);
     var reflect_probability = 0.0;
     var entered = vec3f(1.0);
@@ -147,14 +147,14 @@ fn layers(surface: BsdfSurface, wo: vec3f, tables: u32) -> Layers {
         let f0 = min(max(surface.specular_color, vec3f(0.0)) * normal, vec3f(1.0));
         let albedo = reflect_albedo(f0, e) * specular;
         let scale = compensation(f0, e) * ((opaque * below) * specular);
-        reflect = scale * f0;
+        reflected = scale * f0;
         reflect_rise = scale * (vec3f(1.0) - f0);
         reflect_probability = luma(albedo) * (opaque * below);
         entered = vec3f(1.0) - albedo;
     }
     if LOBE_METAL {
         let scale = compensation(base, e) * (metallic * below);
-        reflect += scale * base;
+        reflected += scale * base;
         reflect_rise += scale * (vec3f(1.0) - base);
         reflect_probability += luma(reflect_albedo(base, e)) * (metallic * below);
     }
@@ -197,7 +197,7 @@ fn layers(surface: BsdfSurface, wo: vec3f, tables: u32) -> Layers {
         retro,
         roughness,
         retro_scale,
-        reflect,
+        reflected,
         reflect_rise,
         coat_width,
         coat,

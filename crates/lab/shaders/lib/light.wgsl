@@ -4,11 +4,11 @@
 const MAP_AREA: f32 = 19.739208;
 
 // light::distance_falloff
-fn distance_falloff(distance: f32, range: f32) -> f32 {
-    let ratio = distance / range;
+fn distance_falloff(away: f32, range: f32) -> f32 {
+    let ratio = away / range;
     let squared = ratio * ratio;
     let window = clamp(1.0 - squared * squared, 0.0, 1.0);
-    let near = max(distance, 1e-3);
+    let near = max(away, 1e-3);
     return window / (near * near);
 }
 

@@ -91,7 +91,7 @@ fn refracted(v: vec3f, h: vec3f, eta: f32) -> vec3f {
 // microfacet::charlie_d
 fn charlie_d(cosine: f32, a: f32) -> f32 {
     let sin2 = max((1.0 - cosine) * (1.0 + cosine), 1e-30);
-    return ((a * (1.0f / PI) + 0.5f / PI) / a) * exp(max(ln(sin2) * (0.5 / a), -60.0));
+    return ((a * (1.0f / PI) + 0.5f / PI) / a) * exp_approx(max(ln_approx(sin2) * (0.5 / a), -60.0));
 }
 
 // microfacet::charlie_curve
@@ -102,7 +102,7 @@ fn charlie_curve(x: f32, a: f32) -> f32 {
     let power = 0.19823 - 0.03022 * w;
     let linear = -1.9776 + 0.70367 * w;
     let offset = -4.32054 - 0.53913 * w;
-    let raised = exp(ln(max(x, 1e-30)) * power);
+    let raised = exp_approx(ln_approx(max(x, 1e-30)) * power);
     return (top / (slope * raised + 1.0) + offset) + linear * x;
 }
 
@@ -110,9 +110,9 @@ fn charlie_curve(x: f32, a: f32) -> f32 {
 fn charlie_lambda(cosine: f32, a: f32) -> f32 {
     let c = clamp(cosine, MIN_SHEEN_COSINE, 1.0);
     if c < 0.5 {
-        return exp(charlie_curve(c, a));
+        return exp_approx(charlie_curve(c, a));
     }
-    return exp(2.0 * charlie_curve(0.5, a) - charlie_curve(1.0 - c, a));
+    return exp_approx(2.0 * charlie_curve(0.5, a) - charlie_curve(1.0 - c, a));
 }
 
 // microfacet::charlie_visibility

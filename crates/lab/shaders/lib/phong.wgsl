@@ -22,7 +22,7 @@ fn phong_power(x: f32, y: f32) -> f32 {
     if x <= 0.0 {
         return 0.0;
     }
-    return exp(max(ln(max(x, 1e-30)) * y, -60.0));
+    return exp_approx(max(ln_approx(max(x, 1e-30)) * y, -60.0));
 }
 
 // phong::phong_specular_probability

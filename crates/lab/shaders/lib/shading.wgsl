@@ -5,9 +5,9 @@
 const GRAZING: f32 = 1e-3;
 
 // shading::mapped_normal
-fn mapped_normal(normal: vec3f, tangent: vec3f, sign: f32, texel: vec3f, scale: f32) -> vec3f {
+fn mapped_normal(normal: vec3f, tangent: vec3f, handedness: f32, texel: vec3f, scale: f32) -> vec3f {
     let along = unit(tangent - normal * dot(normal, tangent));
-    let bitangent = cross(normal, along) * sign;
+    let bitangent = cross(normal, along) * handedness;
     let local = texel * 2.0 - vec3f(1.0);
     let xy = local.xy * scale;
     let z = max(local.z, 1e-3);

@@ -46,11 +46,11 @@ fn texel_color(texel: vec2u) -> vec3f {
 // Share of a view in the pixel with this centre, 0 to 1. Corners of the frame's pixels are at integers here.
 fn share(view: QuadView, center: vec2f) -> f32 {
     let outside = max(view.opaque_low - center, center - view.opaque_high);
-    let distance = max(outside.x, outside.y);
-    if distance <= 0.0 {
+    let away = max(outside.x, outside.y);
+    if away <= 0.0 {
         return 1.0;
     }
-    return max(1.0 - distance / max(view.blend_px, 1e-6), 0.0);
+    return max(1.0 - away / max(view.blend_px, 1e-6), 0.0);
 }
 
 @compute @workgroup_size(64, 1)

@@ -27,11 +27,11 @@ fn sunlit(position: vec3f, normal: vec3f) -> f32 {
     let at = vec4f(position + normal * (1.5 * lights.texel), 1.0);
     let place = vec3f(dot(lights.sun[0], at), dot(lights.sun[1], at), dot(lights.sun[2], at));
     let uv = vec2f(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y);
-    let step = 1.0 / vec2f(textureDimensions(shadow_map));
+    let texel = 1.0 / vec2f(textureDimensions(shadow_map));
     var sum = 0.0;
     for (var y = -1; y <= 1; y++) {
         for (var x = -1; x <= 1; x++) {
-            let tap = uv + vec2f(f32(x), f32(y)) * step;
+            let tap = uv + vec2f(f32(x), f32(y)) * texel;
             sum += textureSampleCompareLevel(shadow_map, shadow_sampler, tap, place.z);
         }
     }

@@ -84,18 +84,18 @@ fn from_punctual(position: vec3f, index: u32, probability: f32) -> LightSample {
     let axis = bitcast<vec3f>(r1.xyz);
     var radiance = r2.xyz;
     var direction = -axis;
-    var distance = FAR;
+    var away = FAR;
     if r0.w != 0u {
         let to = bitcast<vec3f>(r0.xyz) - position;
-        distance = sqrt(dot(to, to));
+        away = sqrt(dot(to, to));
         direction = unit(to);
-        radiance *= distance_falloff(distance, bitcast<f32>(r1.w));
+        radiance *= distance_falloff(away, bitcast<f32>(r1.w));
     }
     if r0.w == 2u {
         let cos_outer = bitcast<f32>(load(PUNCTUAL + index * PUNCTUAL_ROWS + 3u).x);
         radiance *= cone_falloff(-dot(direction, axis), r2.w, cos_outer);
     }
-    return LightSample(direction, distance, radiance, probability, false);
+    return LightSample(direction, away, radiance, probability, false);
 }
 
 fn has_map() -> bool {
@@ -165,12 +165,12 @@ fn sky_pdf(direction: vec3f, cosine: f32) -> f32 {
 }
 
 // lights::triangle_pdf
-fn triangle_pdf(triangle: u32, distance: f32, cosine: f32) -> f32 {
+fn triangle_pdf(triangle: u32, away: f32, cosine: f32) -> f32 {
     let c = triangle_at(triangle);
     if c.light == 0u {
         return 0.0;
     }
     let normal = cross(c.corners[1] - c.corners[0], c.corners[2] - c.corners[0]);
     let area = 0.5 * sqrt(dot(normal, normal));
-    return bitcast<f32>(load(PICKS + c.light - 1u).z) * area_pdf(area, distance * distance, cosine);
+    return bitcast<f32>(load(PICKS + c.light - 1u).z) * area_pdf(area, away * away, cosine);
 }

@@ -74,7 +74,7 @@ fn shade(@builtin(global_invocation_id) id: vec3u) {
     if EFFECT_TRANSMISSION {
         if !p.front {
             let depth = p.absorption * -hit.t;
-            throughput *= vec3f(exp(depth.x), exp(depth.y), exp(depth.z));
+            throughput *= vec3f(exp_approx(depth.x), exp_approx(depth.y), exp_approx(depth.z));
         }
     }
     if EFFECT_EMISSIVE_TRIANGLES {

@@ -62,7 +62,7 @@ fn is_valid_ray(ray: Ray) -> bool {
 }
 
 // Bvh::traverse. `first` is the index of the hierarchy's first triangle.
-fn traverse(ray: Ray, key: u32, nodes: u32, triangles: u32, first: u32, start: Hit, any: bool) -> Hit {
+fn traverse(ray: Ray, key: u32, nodes: u32, triangles: u32, first: u32, start: Hit, any_hit: bool) -> Hit {
     let shear = shear(ray.direction);
     let size_inverse = 1.0 / max(abs(ray.direction), vec3f(MIN_DIRECTION));
     let backward = ray.direction < vec3f(0.0);
@@ -95,7 +95,7 @@ fn traverse(ray: Ray, key: u32, nodes: u32, triangles: u32, first: u32, start: H
         let to_node = bitcast<vec3f>(n0.xyz) - ray.origin;
         let reach3 = abs(to_node) + extent * 255.0;
         let reach = max(reach3.x, max(reach3.y, reach3.z));
-        let step = extent * inverse;
+        let t_step = extent * inverse;
         let near = to_node * inverse - widening * reach;
         let far = to_node * inverse + widening * reach;
 
@@ -114,12 +114,12 @@ fn traverse(ray: Ray, key: u32, nodes: u32, triangles: u32, first: u32, start: H
             let inner = (meta4 & (meta4 << 1u)) & 0x10101010u;
             let bit_index = (meta4 ^ (octants & ((inner >> 4u) * 0xffu))) & 0x1f1f1f1fu;
             let child_bits = (meta4 >> 5u) & 0x07070707u;
-            let t_first_x = bytes(select(first_x.x, first_x.y, half == 1u)) * step.x + near.x;
-            let t_first_y = bytes(select(first_y.x, first_y.y, half == 1u)) * step.y + near.y;
-            let t_first_z = bytes(select(first_z.x, first_z.y, half == 1u)) * step.z + near.z;
-            let t_last_x = bytes(select(last_x.x, last_x.y, half == 1u)) * step.x + far.x;
-            let t_last_y = bytes(select(last_y.x, last_y.y, half == 1u)) * step.y + far.y;
-            let t_last_z = bytes(select(last_z.x, last_z.y, half == 1u)) * step.z + far.z;
+            let t_first_x = bytes(select(first_x.x, first_x.y, half == 1u)) * t_step.x + near.x;
+            let t_first_y = bytes(select(first_y.x, first_y.y, half == 1u)) * t_step.y + near.y;
+            let t_first_z = bytes(select(first_z.x, first_z.y, half == 1u)) * t_step.z + near.z;
+            let t_last_x = bytes(select(last_x.x, last_x.y, half == 1u)) * t_step.x + far.x;
+            let t_last_y = bytes(select(last_y.x, last_y.y, half == 1u)) * t_step.y + far.y;
+            let t_last_z = bytes(select(last_z.x, last_z.y, half == 1u)) * t_step.z + far.z;
             let t_first = max(max(t_first_x, t_first_y), max(t_first_z, vec4f(0.0)));
             let t_last = min(min(t_last_x, t_last_y), min(t_last_z, vec4f(hit.t)));
             let shifts = vec4u(0u, 8u, 16u, 24u);
@@ -149,7 +149,7 @@ fn traverse(ray: Ray, key: u32, nodes: u32, triangles: u32, first: u32, start: H
                     }
                 }
                 hit = Hit(number, intersection.t, intersection.u, intersection.v);
-                if any {
+                if any_hit {
                     return hit;
                 }
             }

@@ -2,7 +2,7 @@
 //! the normal.
 
 use super::direction::unit;
-use afterimage::kernel::approx::{exp, ln, sin_cos_turns};
+use afterimage::kernel::approx::{exp_approx, ln_approx, sin_cos_turns};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
@@ -123,7 +123,7 @@ pub fn refracted(v: Vec3, h: Vec3, eta: f32) -> Vec3 {
 #[inline]
 pub fn charlie_d(cosine: f32, a: f32) -> f32 {
     let sin2 = ((1.0 - cosine) * (1.0 + cosine)).max(1e-30);
-    ((a * (1.0 / PI) + 0.5 / PI) / a) * exp((ln(sin2) * (0.5 / a)).max(-60.0))
+    ((a * (1.0 / PI) + 0.5 / PI) / a) * exp_approx((ln_approx(sin2) * (0.5 / a)).max(-60.0))
 }
 
 /// Charlie's shadowing curve L, fitted for a = 1 and a = 0 and blended by (1 - a)^2.
@@ -135,7 +135,7 @@ pub fn charlie_curve(x: f32, a: f32) -> f32 {
     let power = 0.19823 - 0.03022 * w;
     let linear = -1.9776 + 0.70367 * w;
     let offset = -4.32054 - 0.53913 * w;
-    let raised = exp(ln(x.max(1e-30)) * power);
+    let raised = exp_approx(ln_approx(x.max(1e-30)) * power);
     (top / (slope * raised + 1.0) + offset) + linear * x
 }
 
@@ -144,9 +144,9 @@ pub fn charlie_curve(x: f32, a: f32) -> f32 {
 pub fn charlie_lambda(cosine: f32, a: f32) -> f32 {
     let c = cosine.clamp(MIN_SHEEN_COSINE, 1.0);
     if c < 0.5 {
-        return exp(charlie_curve(c, a));
+        return exp_approx(charlie_curve(c, a));
     }
-    exp(2.0 * charlie_curve(0.5, a) - charlie_curve(1.0 - c, a))
+    exp_approx(2.0 * charlie_curve(0.5, a) - charlie_curve(1.0 - c, a))
 }
 
 /// Visibility of the sheen, G / (4 cos cos), at most 1 (glTF KHR_materials_sheen).

@@ -3,7 +3,7 @@
 
 use super::bsdf::{Sampled, Scatter};
 use super::sampling::{uniform_hemisphere, uniform_hemisphere_pdf};
-use afterimage::kernel::approx::{exp, ln};
+use afterimage::kernel::approx::{exp_approx, ln_approx};
 use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
@@ -27,7 +27,7 @@ pub fn phong_power(x: f32, y: f32) -> f32 {
     if x <= 0.0 {
         return 0.0;
     }
-    exp((ln(x.max(1e-30)) * y).max(-60.0))
+    exp_approx((ln_approx(x.max(1e-30)) * y).max(-60.0))
 }
 
 /// Probability of choosing Phong's lobe: its share of the mean albedo.

@@ -142,7 +142,7 @@ fn errors_planted_in_the_shader_are_caught() {
     let source = SHADERS.compose("doctor_pass").source;
     let planted = [
         ("at.x + moved.x * map.x", "at.x - moved.x * map.x"),
-        ("kept_depth(px + vec2u(0u, step))", "kept_depth(px)"),
+        ("kept_depth(px + vec2u(0u, DEPTH_STEP_PX))", "kept_depth(px)"),
         ("signal(green * frame.exposure)", "signal(green)"),
     ];
     afterimage_testing::planted::all_caught_once(source, &planted, |source| {

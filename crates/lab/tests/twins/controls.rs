@@ -13,7 +13,7 @@ fn a_planted_error_in_each_module_is_caught() {
         ("layers::layers", "1.0 - coat_albedo", "1.0 - coat"),
         ("albedo::glass_albedo", "select(e.zw, e.xy, entering)", "e.xy"),
         ("light::map_pdf", "MAP_AREA: f32 = 19.739208", "MAP_AREA: f32 = 19.73921"),
-        ("shading::mapped_normal", "cross(normal, along) * sign", "cross(normal, along)"),
+        ("shading::mapped_normal", "cross(normal, along) * handedness", "cross(normal, along)"),
         ("texel::wrap_texel", "2 * n - 1 - i", "2 * n - i"),
     ]);
 }

@@ -9,6 +9,7 @@ mod modules;
 mod paths;
 mod properties;
 mod prose;
+mod shader_names;
 mod shader_tables;
 mod tree;
 mod uses;

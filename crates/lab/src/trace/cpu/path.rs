@@ -12,7 +12,7 @@ use crate::trace::effects::{Effect, Effects};
 use crate::trace::settings::{Bsdf, Integrator};
 use crate::trace::world::World;
 use crate::trace::{Hit, Ray};
-use afterimage::kernel::approx::exp;
+use afterimage::kernel::approx::exp_approx;
 use afterimage::kernel::rng::path_draws;
 use glam::Vec3;
 
@@ -65,7 +65,7 @@ impl Paths<'_> {
             };
             let p = surface_point(self.world, &hit, state.ray.direction, self.effects);
             if self.effects.has(Effect::Transmission) && !p.front {
-                state.throughput *= (p.absorption * -hit.t).map(exp);
+                state.throughput *= (p.absorption * -hit.t).map(exp_approx);
             }
             radiance += state.throughput * self.surface_light(&state, &p, &hit);
             if bounce == self.max_depth {
