@@ -273,7 +273,7 @@ mod far_plane {
     #[serde(untagged)]
     enum Plane {
         Distance(f32),
-        Word(String),
+        Name(String),
     }
 
     pub fn serialize<S: Serializer>(far: &f32, serializer: S) -> Result<S::Ok, S::Error> {
@@ -283,8 +283,8 @@ mod far_plane {
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f32, D::Error> {
         match Plane::deserialize(deserializer)? {
             Plane::Distance(far) => Ok(far),
-            Plane::Word(word) if word == INFINITE => Ok(f32::INFINITY),
-            Plane::Word(word) => Err(D::Error::custom(format!("far is '{word}': expected a distance or '{INFINITE}'"))),
+            Plane::Name(name) if name == INFINITE => Ok(f32::INFINITY),
+            Plane::Name(name) => Err(D::Error::custom(format!("far is '{name}': expected a distance or '{INFINITE}'"))),
         }
     }
 }

@@ -63,7 +63,7 @@ pub static MODULES: &[Module] = &[
     module!("lib", "wrs"),
     module!("pass", "candidate_lod"),
     module!("pass", "candidate_pass"),
-    module!("pass", "doctor_light_pass"),
+    module!("pass", "doctor_roots_pass"),
     module!("pass", "doctor_pass"),
     module!("pass", "fill_geometry_pass"),
     module!("pass", "fill_pass"),

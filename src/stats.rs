@@ -43,20 +43,20 @@ impl FrameStats {
     /// Counters from the bytes that a GPU wrote. Reads the first [`COUNTERS_BYTES`](Self::COUNTERS_BYTES) bytes; `None`
     /// if there are fewer.
     pub fn from_counters(bytes: &[u8]) -> Option<Self> {
-        let words: Vec<u64> = bytes
+        let counts: Vec<u64> = bytes
             .get(..Self::COUNTERS_BYTES as usize)?
             .chunks_exact(4)
             .map(|b| u64::from(u32::from_le_bytes([b[0], b[1], b[2], b[3]])))
             .collect();
         // In the order of the COUNT_* constants in shaders/pass/inputs.wgsl. Each pixel has one verdict.
         let mut stats = Self {
-            nonfinite: words[0],
-            bad_depth: words[1],
-            bad_trust: words[2],
-            replaced: words[3],
+            nonfinite: counts[0],
+            bad_depth: counts[1],
+            bad_trust: counts[2],
+            replaced: counts[3],
             ..Self::default()
         };
-        stats.verdicts.copy_from_slice(&words[4..]);
+        stats.verdicts.copy_from_slice(&counts[4..]);
         stats.pixels = stats.verdicts.iter().sum();
         Some(stats)
     }

@@ -119,11 +119,11 @@ fn clipped(c: vec3f, change: vec3f) -> vec3f {
 }
 
 // antialias::scattered_error
-fn scattered_error(l: Light, scatter: f32) -> f32 {
-    let inverse = 1.0 / l.weight;
-    let mean = root_difference(l.sampled * inverse, l.history * inverse);
+fn scattered_error(a: ObservedAround, scatter: f32) -> f32 {
+    let inverse = 1.0 / a.weight;
+    let mean = root_difference(a.sampled * inverse, a.history * inverse);
     let variance = max(scatter * inverse - mean * mean, 0.0);
-    return max(l.error * inverse, sqrt(variance));
+    return max(a.error * inverse, sqrt(variance));
 }
 
 struct Averaged {

@@ -18,7 +18,7 @@ const GAIN_MOST: f32 = 5.0;
 const LEAST_WORN: f32 = 0.5 / LOD_STEPS;
 const DARK: f32 = 0.002;
 const MIDDLE: f32 = 0.5;
-const LEAST_LIGHT: f32 = 0x1p-14;
+const LEAST_BRIGHTNESS: f32 = 0x1p-14;
 const COHERENT_PX: f32 = 0.5;
 const COHERENT_SHARE: f32 = 0.1;
 
@@ -74,11 +74,11 @@ fn past_roots(c: vec3f) -> vec3f {
     return sqrt(c);
 }
 
-// smr::light_unit
-fn light_unit(compared: vec3f, matched: vec3f, exposure: f32) -> f32 {
+// smr::brightness_unit
+fn brightness_unit(compared: vec3f, matched: vec3f, exposure: f32) -> f32 {
     let now = max(max(compared.x, compared.y), compared.z);
     let then = max(max(matched.x, matched.y), matched.z);
-    return max(max(now, then * exposure), LEAST_LIGHT) * (1.0f / MIDDLE);
+    return max(max(now, then * exposure), LEAST_BRIGHTNESS) * (1.0f / MIDDLE);
 }
 
 // smr::moves_alike

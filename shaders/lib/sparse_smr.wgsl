@@ -82,7 +82,7 @@ fn neighbour_weight(offset: vec2i) -> f32 {
     return f32((2 - abs(offset.x)) * (2 - abs(offset.y)));
 }
 
-struct Light {
+struct ObservedAround {
     sampled: vec3f,
     history: vec3f,
     error: f32,
@@ -92,40 +92,40 @@ struct Light {
     known: f32,
 }
 
-// sparse_smr::add_light
-fn add_light(l: Light, o: Observation, weight: f32, spatial: f32) -> Light {
-    return Light(
-        l.sampled + o.sampled * weight,
-        l.history + o.history * weight,
-        l.error + o.error * weight,
-        l.weight + weight,
-        l.squared + weight * weight,
-        l.spatial + spatial,
-        l.known + spatial * o.confidence,
+// sparse_smr::add_observation
+fn add_observation(a: ObservedAround, o: Observation, weight: f32, spatial: f32) -> ObservedAround {
+    return ObservedAround(
+        a.sampled + o.sampled * weight,
+        a.history + o.history * weight,
+        a.error + o.error * weight,
+        a.weight + weight,
+        a.squared + weight * weight,
+        a.spatial + spatial,
+        a.known + spatial * o.confidence,
     );
 }
 
 // sparse_smr::mean_error
-fn mean_error(l: Light) -> f32 {
-    return l.error * (1.0 / l.weight);
+fn mean_error(a: ObservedAround) -> f32 {
+    return a.error * (1.0 / a.weight);
 }
 
 // sparse_smr::agreed
-fn agreed(l: Light) -> f32 {
-    return clamp((l.weight - l.known * AGREED.x) * (AGREED.y / max(l.known, 1e-6)), 0.0, 1.0);
+fn agreed(a: ObservedAround) -> f32 {
+    return clamp((a.weight - a.known * AGREED.x) * (AGREED.y / max(a.known, 1e-6)), 0.0, 1.0);
 }
 
 // sparse_smr::relight
-fn relight(l: Light, error: f32) -> vec3f {
-    if l.weight < 1e-6 {
+fn relight(a: ObservedAround, error: f32) -> vec3f {
+    if a.weight < 1e-6 {
         return vec3f(1.0);
     }
-    let inverse = 1.0 / l.weight;
-    let sampled = l.sampled * inverse;
-    let history = l.history * inverse;
+    let inverse = 1.0 / a.weight;
+    let sampled = a.sampled * inverse;
+    let history = a.history * inverse;
     // The standard error of a weighted mean.
-    let start = (error * (sqrt(l.squared) * inverse)) * RELIGHT_ERRORS;
-    let changed = smooth_step(start, start, root_difference(sampled, history)) * agreed(l);
+    let start = (error * (sqrt(a.squared) * inverse)) * RELIGHT_ERRORS;
+    let changed = smooth_step(start, start, root_difference(sampled, history)) * agreed(a);
     // A share of 1 gives the ratio bit for bit.
     return ratios(sampled, history) * changed + (1.0 - changed);
 }
@@ -151,18 +151,18 @@ fn capped_error(o: Observation, errors: f32, spatial: f32) -> f32 {
 }
 
 // sparse_smr::fit_around
-fn fit_around(l: Light, left: f32, capped: f32) -> f32 {
-    let by_own = fit(left / l.weight, min(l.weight / l.spatial, 1.0));
-    let by_all = fit(capped / max(l.known, 1e-6), min(l.known / l.spatial, 1.0));
-    let share = agreed(l);
+fn fit_around(a: ObservedAround, left: f32, capped: f32) -> f32 {
+    let by_own = fit(left / a.weight, min(a.weight / a.spatial, 1.0));
+    let by_all = fit(capped / max(a.known, 1e-6), min(a.known / a.spatial, 1.0));
+    let share = agreed(a);
     return by_own * share + by_all * (1.0 - share);
 }
 
 // sparse_smr::mean_fit
-fn mean_fit(l: Light, confidence: f32) -> f32 {
-    let inverse = 1.0 / l.weight;
-    let start = ((l.error * inverse) * (sqrt(l.squared) * inverse)) * MEAN_ERRORS;
-    return 1.0 - confidence * smooth_step(start, start, root_difference(l.sampled * inverse, l.history * inverse));
+fn mean_fit(a: ObservedAround, confidence: f32) -> f32 {
+    let inverse = 1.0 / a.weight;
+    let start = ((a.error * inverse) * (sqrt(a.squared) * inverse)) * MEAN_ERRORS;
+    return 1.0 - confidence * smooth_step(start, start, root_difference(a.sampled * inverse, a.history * inverse));
 }
 
 struct Lit {

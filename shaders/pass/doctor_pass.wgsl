@@ -5,7 +5,7 @@
 // Evidence on the inputs of a view: the words of its tiles. CPU twin: words in src/cpu/doctor_pass.rs. One workgroup a
 // tile, one invocation for 2x2 pixels. Words are sums of integers, so that their order does not matter.
 //
-// 416 reads of light and 68 of color an invocation, most of them cached; 212 bytes written a tile.
+// 416 reads of roots and 68 of color an invocation, most of them cached; 212 bytes written a tile.
 
 override HAS_DEPTH: u32 = 1u;
 override HAS_MOTION: u32 = 1u;
@@ -26,8 +26,8 @@ struct DoctorUniforms {
 @group(0) @binding(1) var color_in: texture_2d_array<f32>;
 @group(0) @binding(2) var depth_in: texture_2d_array<f32>;
 @group(0) @binding(3) var motion_in: texture_2d_array<f32>;
-@group(0) @binding(21) var light_now: texture_2d_array<f32>;
-@group(0) @binding(22) var light_past: texture_2d_array<f32>;
+@group(0) @binding(21) var roots_now: texture_2d_array<f32>;
+@group(0) @binding(22) var roots_past: texture_2d_array<f32>;
 // First pixel, level of the lattice.
 @group(0) @binding(25) var<storage, read> tiles: array<vec4u>;
 @group(0) @binding(26) var<storage, read_write> words: array<u32>;
@@ -60,10 +60,10 @@ fn half_size() -> vec2u {
 fn row_now(x: Axis, y: u32) -> f32 {
     return spline(
         vec4f(
-            textureLoad(light_now, vec2u(x.texels.x, y), 0, 0).x,
-            textureLoad(light_now, vec2u(x.texels.y, y), 0, 0).x,
-            textureLoad(light_now, vec2u(x.texels.z, y), 0, 0).x,
-            textureLoad(light_now, vec2u(x.texels.w, y), 0, 0).x,
+            textureLoad(roots_now, vec2u(x.texels.x, y), 0, 0).x,
+            textureLoad(roots_now, vec2u(x.texels.y, y), 0, 0).x,
+            textureLoad(roots_now, vec2u(x.texels.z, y), 0, 0).x,
+            textureLoad(roots_now, vec2u(x.texels.w, y), 0, 0).x,
         ),
         x.fraction,
     );
@@ -72,10 +72,10 @@ fn row_now(x: Axis, y: u32) -> f32 {
 fn row_past(x: Axis, y: u32) -> f32 {
     return spline(
         vec4f(
-            textureLoad(light_past, vec2u(x.texels.x, y), 0, 0).x,
-            textureLoad(light_past, vec2u(x.texels.y, y), 0, 0).x,
-            textureLoad(light_past, vec2u(x.texels.z, y), 0, 0).x,
-            textureLoad(light_past, vec2u(x.texels.w, y), 0, 0).x,
+            textureLoad(roots_past, vec2u(x.texels.x, y), 0, 0).x,
+            textureLoad(roots_past, vec2u(x.texels.y, y), 0, 0).x,
+            textureLoad(roots_past, vec2u(x.texels.z, y), 0, 0).x,
+            textureLoad(roots_past, vec2u(x.texels.w, y), 0, 0).x,
         ),
         x.fraction,
     );
@@ -131,7 +131,7 @@ fn signal_at(px: vec2u, axis: vec2i, offset: i32) -> f32 {
 // Adds the differences of a pixel from its neighbours along both axes.
 fn add_pixel(px: vec2u) {
     let at = signal_at(px, vec2i(0), 0);
-    add(LIGHT, fixed(at));
+    add(SIGNAL, fixed(at));
     add(CODES, select(0u, 1u, is_code(at)));
     let green = textureLoad(color_in, from_origin(px, frame.color_origin), 0, 0).y;
     add(BROKEN, select(1u, 0u, is_finite(green)));

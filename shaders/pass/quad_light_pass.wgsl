@@ -42,14 +42,14 @@ fn own_of(quad: vec2u, view: u32) -> Own {
         first = select(first, left - 1u, is_compared(px_of_quad(quad, left - 1u), view));
     }
     let disparity_now = disparity_at(px_of_quad(quad, first & 3u), view);
-    var sum = Light(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
+    var sum = ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
     var confidence = 0.0;
     let taps = select(4u, 0u, first == 4u);
     for (var i = 0u; i < taps; i++) {
         let px = px_of_quad(quad, i);
         if is_compared(px, view) && is_alike(disparity_now, px, view) {
             let o = observation_at(px, view);
-            sum = add_light(sum, o, 1.0, 1.0);
+            sum = add_observation(sum, o, 1.0, 1.0);
             confidence += o.confidence;
         }
     }
@@ -93,7 +93,7 @@ fn light(quad: vec2u, view: u32) -> vec4u {
         let offset = neighbour_offset(code);
         least = select(least, min(least, f32(offset.x * offset.x + offset.y * offset.y)), code != NOWHERE);
     }
-    var sum = Light(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
+    var sum = ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
     var without = 0.0;
     var capped = 0.0;
     var scatter = 0.0;
@@ -103,7 +103,7 @@ fn light(quad: vec2u, view: u32) -> vec4u {
     for (var tap = 0u; tap < taps; tap++) {
         let near = neighbour_at(tap, quad, view, own, around, least);
         if near.spatial > 0.0 {
-            sum = add_light(sum, near.observation, near.weight, near.spatial);
+            sum = add_observation(sum, near.observation, near.weight, near.spatial);
             let errors = errors_left(near.observation, vec3f(1.0));
             without += errors * near.weight;
             capped += capped_error(near.observation, errors, near.spatial);

@@ -149,7 +149,7 @@ fn matched_pixel(
     // Point samples alias at their own scale: compare one level coarser.
     let shift = select(0.0, 1.0, FILTER == FILTER_BLOCK);
     let past = past_read(source.previous.at, lod + shift, history.smooth_color, view);
-    let unit = light_unit(candidate, past.matched, frame.exposure);
+    let unit = brightness_unit(candidate, past.matched, frame.exposure);
     let inverse_unit = 1.0 / unit;
     let per_stored = frame.exposure * inverse_unit;
     let matched = past.matched * per_stored;
@@ -226,7 +226,7 @@ fn averaged_pixel(
     }
     let around = candidates_read(vec2f(px), lod + NOISY_LEVELS, view);
     let past = past_read(source.previous.at, lod + NOISY_LEVELS, history.smooth_color, view);
-    let unit = light_unit(around.compared.xyz, past.matched, frame.exposure);
+    let unit = brightness_unit(around.compared.xyz, past.matched, frame.exposure);
     let inverse_unit = 1.0 / unit;
     let per_stored = frame.exposure * inverse_unit;
     let matched = past.matched * per_stored;
@@ -297,15 +297,12 @@ fn pixel(px: vec2u, view: u32) -> vec2u {
     }
     // With gains, and with the overshoot of Catmull-Rom, colors may exceed the largest half.
     result.color = min(result.color, vec3f(MAX_HALF));
-    count_if(valid && result.share == 0.0, COUNT_REPLACED);
+    let replaced = result.share == 0.0;
+    count_if(valid && replaced, COUNT_REPLACED);
     let sharpness = exp2_approx(-max(result.lod, 0.0));
-    write_output(
-        px,
-        view,
-        result.color,
-        given.w,
-        PixelTrace(source.previous.verdict, exp2_approx(-lod), sharpness, 0u, result.share, result.fit, result.share == 0.0, motion),
-    );
+    let verdict = source.previous.verdict;
+    let traced = PixelTrace(verdict, exp2_approx(-lod), sharpness, 0u, result.share, result.fit, replaced, motion);
+    write_output(px, view, result.color, given.w, traced);
     // Colors on a moving silhouette mix two surfaces. With the coarsest level of detail, the next candidate replaces
     // them.
     let stored_lod = select(MAX_LOD, result.lod, coherent_motion || result.lod < 0.0);

@@ -68,13 +68,13 @@ fn light(point: vec2u, lattice: LatticeUniforms, view: u32) -> vec2u {
     var without = 0.0;
     var capped = 0.0;
     var scatter = 0.0;
-    var sum = Light(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
+    var sum = ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
     let taps = select(0u, 9u, has_history());
     for (var tap = 0u; tap < taps; tap++) {
         let near = neighbour(tap, point, lattice, view, own, own_disparity);
         if near.spatial > 0.0 {
-            sum = add_light(sum, near.observation, near.weight, near.spatial);
+            sum = add_observation(sum, near.observation, near.weight, near.spatial);
             let errors = errors_left(near.observation, vec3f(1.0));
             without += errors * near.weight;
             capped += capped_error(near.observation, errors, near.spatial);

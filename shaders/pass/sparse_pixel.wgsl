@@ -149,13 +149,8 @@ fn show_pixel(
     shown = clamp(shown, vec3f(-MAX_HALF), vec3f(MAX_HALF));
     count_if(valid && share == 0.0, COUNT_REPLACED);
     let sharpness = exp2_approx(-max(next.lod, 0.0));
-    write_output(
-        px,
-        view,
-        shown,
-        candidate.alpha,
-        PixelTrace(verdict, exp2_approx(-candidate.lod), sharpness, 0u, share, fits, share == 0.0, motion),
-    );
+    let traced = PixelTrace(verdict, exp2_approx(-candidate.lod), sharpness, 0u, share, fits, share == 0.0, motion);
+    write_output(px, view, shown, candidate.alpha, traced);
     if VIEW == 0u {
         var words = pack_stored(next);
         if ANTIALIAS != 0u {

@@ -42,13 +42,13 @@ pub struct Doctor {
     desc: ContextDesc,
     view: usize,
     chart: Chart,
-    /// Light, gaze, jitter and exposure of the last frame.
+    /// Roots, gaze, jitter and exposure of the last frame.
     past: Option<Past>,
 }
 
 #[derive(Clone, Debug)]
 struct Past {
-    light: Image<f32>,
+    roots: Image<f32>,
     gaze_px: [f32; 2],
     jitter_px: [f32; 2],
     exposure: f32,
@@ -78,7 +78,7 @@ impl Doctor {
         self.desc.depth = facts.depth_convention(&self.desc);
         let desc = &self.desc;
         let exposure = frame.exposure.of_colors();
-        let light = doctor_pass::light(frame.color[view], exposure);
+        let roots = doctor_pass::root_means(frame.color[view], exposure);
         let gaze_px = facts.gaze.resolve(self.past.as_ref().map(|p| p.gaze_px), &facts.geometry);
         let past = self.past.take().filter(|past| continues(frame, past.exposure));
         let now = Description {
@@ -92,13 +92,13 @@ impl Doctor {
             exposure,
             depth: frame.depth.map(|d| d[view]),
             motion: frame.motion.map(|m| m[view]),
-            now: &light,
-            past: past.as_ref().map_or(&light, |p| &p.light),
+            now: &roots,
+            past: past.as_ref().map_or(&roots, |p| &p.roots),
             maps: &maps(desc),
         };
         let words = doctor_pass::words(&examined, &now.tiles);
         self.chart.add(Observation { now, past_jitter_px: past.map(|p| p.jitter_px), words });
-        self.past = Some(Past { light, gaze_px, jitter_px, exposure });
+        self.past = Some(Past { roots, gaze_px, jitter_px, exposure });
         Ok(())
     }
 

@@ -1,4 +1,4 @@
-//! Evidence on the inputs of a view. Twins: `shaders/pass/doctor_light_pass.wgsl` ([`light`]) and
+//! Evidence on the inputs of a view. Twins: `shaders/pass/doctor_roots_pass.wgsl` ([`root_means`]) and
 //! `shaders/pass/doctor_pass.wgsl` ([`words`]).
 
 use crate::doctor::Tile;
@@ -14,7 +14,7 @@ pub(super) struct Examined<'a> {
     pub exposure: f32,
     pub depth: Option<&'a Image<f32>>,
     pub motion: Option<&'a Image<[f32; 2]>>,
-    /// [`light`] of this frame and of the previous one.
+    /// [`root_means`] of this frame and of the previous one.
     pub now: &'a Image<f32>,
     pub past: &'a Image<f32>,
     /// Maps of the hypotheses.
@@ -22,7 +22,7 @@ pub(super) struct Examined<'a> {
 }
 
 /// Roots of the mean signal of 2x2 pixels of colors times `exposure`.
-pub(super) fn light(color: &Image<[f32; 3]>, exposure: f32) -> Image<f32> {
+pub(super) fn root_means(color: &Image<[f32; 3]>, exposure: f32) -> Image<f32> {
     let size = color.size();
     Image::from_fn_parallel(size.map(|s| foveate::level_len(s, 1)), |[x, y]| {
         let at = |dx: u32, dy: u32| {
@@ -76,7 +76,7 @@ impl Examined<'_> {
     /// Adds the differences of a pixel from its neighbours along both axes.
     fn add_pixel(&self, px: [u32; 2], words: &mut [u32]) {
         let at = self.signal(px, 0, 0);
-        words[LIGHT as usize] += fixed(at);
+        words[SIGNAL as usize] += fixed(at);
         words[CODES as usize] += u32::from(is_code(at));
         let green = self.color.at(px[0] as usize, px[1] as usize)[1];
         words[BROKEN as usize] += u32::from(!sanitize::is_finite(green));
@@ -121,15 +121,15 @@ impl Examined<'_> {
     }
 }
 
-/// Light at a position in texels: a spline over the points of a lattice.
-fn lookup(light: &Image<f32>, at: [f32; 2], level: u32) -> f32 {
+/// Root at a position in texels: a spline over the points of a lattice.
+fn lookup(roots: &Image<f32>, at: [f32; 2], level: u32) -> f32 {
     let axis = |i: usize| {
-        let len = light.size()[i];
+        let len = roots.size()[i];
         let count = lattice_len(len, level);
         let (near, fraction) = foveate::split(lattice_coordinate(at[i], level), count);
         let points = [near.max(1) - 1, near, (near + 1).min(count - 1), (near + 2).min(count - 1)];
         (points.map(|point| lattice_texel(point, level, len) as usize), fraction)
     };
     let ((columns, across), (rows, down)) = (axis(0), axis(1));
-    spline(rows.map(|y| spline(columns.map(|x| light.at(x, y)), across)), down)
+    spline(rows.map(|y| spline(columns.map(|x| roots.at(x, y)), across)), down)
 }

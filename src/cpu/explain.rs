@@ -159,7 +159,7 @@ pub(super) fn note_taps<N: Notes>(taps: &TapsAround, tap: impl Fn([i32; 2]) -> T
 
 /// Notes the decision.
 pub(super) fn note_trace(trace: &PixelTrace, notes: &mut Vec<Note>) {
-    notes.note(NoteStage::Verdict, "history", trace.verdict.in_words(), "");
+    notes.note(NoteStage::Verdict, "history", trace.verdict.reason(), "");
     notes.note(NoteStage::Decision, "weight of the candidate", trace.weight, "");
     notes.note(NoteStage::Decision, "agreement of history and candidate", trace.agreement, "");
     notes.note(NoteStage::Decision, "history's share", trace.history_share, "");

@@ -132,7 +132,7 @@ impl Smr {
         let shift = if self.params.blocks { 1.0 } else { 0.0 };
         let mip_chain = view.past.mip_chain.expect("smr stores a mip chain");
         let past = mip_chain.read(source.at, lod + shift, history.smooth);
-        let unit = smr::light_unit(candidate, past[0], view.inputs.exposure);
+        let unit = smr::brightness_unit(candidate, past[0], view.inputs.exposure);
         let inverse_unit = 1.0 / unit;
         let per_stored = view.inputs.exposure * inverse_unit;
         let [matched, level, next_level] = past.map(|c| c * per_stored);
@@ -201,7 +201,7 @@ impl Smr {
         let [compared, coarser] = candidates.read_candidates([x as f32, y as f32], compared_lod);
         let mip_chain = view.past.mip_chain.expect("smr stores a mip chain");
         let stored = mip_chain.read(source.at, compared_lod, history.smooth);
-        let unit = smr::light_unit(compared.truncate(), stored[0], view.inputs.exposure);
+        let unit = smr::brightness_unit(compared.truncate(), stored[0], view.inputs.exposure);
         let inverse_unit = 1.0 / unit;
         let per_stored = view.inputs.exposure * inverse_unit;
         let [matched, level, next_level] = stored.map(|c| c * per_stored);

@@ -2,7 +2,7 @@
 
 use super::observation::{Evidence, Tile};
 use crate::foveation::{Filter, Foveation};
-use crate::kernel::doctor::{BENDS, BOUNDARIES, BROKEN, DECODED_BENDS, KINKS, LIGHT, STEPS, TILE_PX, WIDE_BENDS};
+use crate::kernel::doctor::{BENDS, BOUNDARIES, BROKEN, DECODED_BENDS, KINKS, SIGNAL, STEPS, TILE_PX, WIDE_BENDS};
 
 /// Number of neighbours in a tile across boundaries of each class.
 const STEP_COUNTS: [f64; BOUNDARIES as usize] = [256.0, 128.0, 64.0, 32.0, 32.0];
@@ -43,7 +43,7 @@ pub(super) fn measure(evidence: &Evidence<'_>) -> Option<Measured> {
         return None;
     }
     let pixels = f64::from(TILE_PX * TILE_PX);
-    let flat = FLAT * (evidence.sum(LIGHT) / pixels + 0.01);
+    let flat = FLAT * (evidence.sum(SIGNAL) / pixels + 0.01);
     let steps: [f64; BOUNDARIES as usize] = std::array::from_fn(|i| evidence.sum(STEPS + i as u32) / STEP_COUNTS[i]);
     let most = steps.iter().copied().fold(0.0, f64::max);
     if most < flat {

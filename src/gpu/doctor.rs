@@ -2,7 +2,7 @@
 
 use super::buffer::filled;
 use super::compute::{ComputeShader, Sources};
-use super::input::{check_inputs, check_words};
+use super::input::{check_buffer, check_inputs};
 use super::plane::{Plane, PlaneDesc, layer_view};
 use super::{Frame, MAX_VIEWS, Textures};
 use crate::context::ContextDesc;
@@ -48,17 +48,17 @@ struct DoctorUniforms {
 pub struct Doctor {
     desc: ContextDesc,
     view: usize,
-    light_pass: ComputeShader,
+    roots_pass: ComputeShader,
     pass: ComputeShader,
-    /// Light of the last frame, and of the frame before it.
-    light: [Plane; 2],
+    /// Roots of the last frame, and of the frame before it.
+    roots: [Plane; 2],
     absent: Plane,
     past: Option<Past>,
     pending: VecDeque<Observation>,
     chart: Chart,
 }
 
-/// State that is kept from the last frame, besides its light.
+/// State that is kept from the last frame, besides its roots.
 #[derive(Clone, Copy, Debug)]
 struct Past {
     gaze_px: [f32; 2],
@@ -86,15 +86,15 @@ impl Doctor {
         super::validate(device, desc, TextureFormat::Rgba16Float)?;
         check_view(desc, view)?;
         debug_assert!(view < MAX_VIEWS);
-        let light = |size| PlaneDesc::new("afterimage doctor light", TextureFormat::R32Float, size, 1).create(device);
+        let roots = |size| PlaneDesc::new("afterimage doctor roots", TextureFormat::R32Float, size, 1).create(device);
         let half = desc.size_px.map(|s| level_len(s, 1));
         Ok(Self {
             desc: *desc,
             view,
-            light_pass: sources.shader(device, "doctor_light_pass"),
+            roots_pass: sources.shader(device, "doctor_roots_pass"),
             pass: sources.shader(device, "doctor_pass"),
-            light: [half; 2].map(light),
-            absent: light([1, 1]),
+            roots: [half; 2].map(roots),
+            absent: roots([1, 1]),
             past: None,
             pending: VecDeque::new(),
             chart: Chart::default(),
@@ -120,7 +120,7 @@ impl Doctor {
         words: &Buffer,
     ) -> Result<(), FrameError> {
         check_inputs(&self.desc, frame)?;
-        check_words("words", words, self.words_bytes(), "at least Doctor::words_bytes")?;
+        check_buffer("words", words, self.words_bytes(), "at least Doctor::words_bytes")?;
         let view = frame.views[self.view];
         let jitter_px = view.jitter_px;
         let gaze_px = view.gaze.resolve(self.past.map(|p| p.gaze_px), &view.geometry);
@@ -133,7 +133,7 @@ impl Doctor {
             ..Description::new(&self.desc, view, gaze_px, past.map(|p| p.gaze_px))
         };
         self.dispatch(device, encoder, frame, &now, words);
-        self.light.swap(0, 1);
+        self.roots.swap(0, 1);
         self.past = Some(Past { gaze_px, jitter_px, exposure: frame.exposure.of_colors() });
         if self.pending.len() == PENDING {
             self.pending.pop_front();
@@ -170,7 +170,7 @@ impl Doctor {
         let mut pass = encoder
             .begin_compute_pass(&ComputePassDescriptor { label: Some("afterimage doctor"), timestamp_writes: None });
         let bind = |textures: Textures<'_>| {
-            let (texture, layer) = textures.layers().nth(if textures.is_regions() { self.view } else { 0 })?;
+            let (texture, layer) = textures.parts().nth(if textures.is_regions() { self.view } else { 0 })?;
             Some(layer_view(texture, layer.or(Some(self.view as u32))))
         };
         let optional =
@@ -184,11 +184,11 @@ impl Doctor {
         let resources = [
             view.as_entire_binding(),
             BindingResource::TextureView(&color),
-            BindingResource::TextureView(&self.light[0].whole),
+            BindingResource::TextureView(&self.roots[0].whole),
         ];
-        let group = self.light_pass.group(device, resources);
+        let group = self.roots_pass.group(device, resources);
         let half = [w, h].map(|s| level_len(s, 1));
-        self.light_pass.dispatch(device, &mut pass, &[], &group, half, 1);
+        self.roots_pass.dispatch(device, &mut pass, &[], &group, half, 1);
 
         let uniforms = DoctorUniforms {
             size: [w, h],
@@ -207,8 +207,8 @@ impl Doctor {
         }
         let tiles = filled(device, "afterimage doctor tiles", bytemuck::cast_slice(&tiles), BufferUsages::STORAGE);
         // The first frame is compared with itself, and the result is not used.
-        let past = &self.light[usize::from(now.has_past)].whole;
-        let textures = [&color, &depth, &motion, &self.light[0].whole, past];
+        let past = &self.roots[usize::from(now.has_past)].whole;
+        let textures = [&color, &depth, &motion, &self.roots[0].whole, past];
         let resources = std::iter::once(uniforms.as_entire_binding())
             .chain(textures.map(BindingResource::TextureView))
             .chain([tiles.as_entire_binding(), words.as_entire_binding()]);

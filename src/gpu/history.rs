@@ -47,7 +47,7 @@ impl History {
     pub fn new(device: &Device, desc: &ContextDesc) -> Self {
         let layout = desc.settings.history_layout();
         let planes = || Planes {
-            planes: plan(desc).iter().map(|plane| plane.create(device)).collect(),
+            planes: plane_descs(desc).iter().map(|plane| plane.create(device)).collect(),
             frame: device.create_buffer(&BufferDescriptor {
                 label: Some("afterimage frame number"),
                 size: 4 * NUMBER_BYTES,
@@ -56,7 +56,7 @@ impl History {
             }),
         };
         let state = vec![ViewState::default(); desc.view_count as usize];
-        let candidates = candidate_plan(desc).map(|plane| plane.create(device));
+        let candidates = candidate_plane(desc).map(|plane| plane.create(device));
         Self { layout, sets: [planes(), planes()], candidates, past: 0, filled: false, frame: 0, state }
     }
 
@@ -141,17 +141,17 @@ pub(super) fn bound(past: &Planes, next: &Planes, number: u32) -> Option<Resourc
 
 /// Bytes that a context holds between frames.
 pub(super) fn memory_bytes(desc: &ContextDesc) -> u64 {
-    let sets: u64 = plan(desc).iter().map(|plane| 2 * plane.bytes()).sum();
-    sets + candidate_plan(desc).map_or(0, |plane| plane.bytes())
+    let sets: u64 = plane_descs(desc).iter().map(|plane| 2 * plane.bytes()).sum();
+    sets + candidate_plane(desc).map_or(0, |plane| plane.bytes())
 }
 
 /// Size of the largest texture, along x and y.
 pub(super) fn largest_size(desc: &ContextDesc) -> [u32; 2] {
-    plan(desc).iter().fold([0; 2], |size, plane| [0, 1].map(|i| size[i].max(plane.size_px[i])))
+    plane_descs(desc).iter().fold([0; 2], |size, plane| [0, 1].map(|i| size[i].max(plane.size_px[i])))
 }
 
 /// Textures of one frame's history.
-fn plan(desc: &ContextDesc) -> Vec<PlaneDesc> {
+fn plane_descs(desc: &ContextDesc) -> Vec<PlaneDesc> {
     use TextureFormat::{R32Uint, Rg32Uint};
     let full = |format| plane(desc, format);
     match desc.settings.history_layout() {
@@ -169,7 +169,7 @@ fn plan(desc: &ContextDesc) -> Vec<PlaneDesc> {
 }
 
 /// Mip chain of noisy candidates, if the layout has one.
-fn candidate_plan(desc: &ContextDesc) -> Option<PlaneDesc> {
+fn candidate_plane(desc: &ContextDesc) -> Option<PlaneDesc> {
     match desc.settings.history_layout() {
         HistoryLayout::Surfaces { levels, noisy: true } => Some(mip_chain(desc, levels)),
         _ => None,

@@ -19,7 +19,7 @@ pub(super) fn check(
 ) -> Result<(), FrameError> {
     check_inputs(desc, frame)?;
     if let Some(counters) = target.counters {
-        check_words("counters", counters, FrameStats::COUNTERS_BYTES, "at least FrameStats::COUNTERS_BYTES")?;
+        check_buffer("counters", counters, FrameStats::COUNTERS_BYTES, "at least FrameStats::COUNTERS_BYTES")?;
     }
     let expected = "the output format given to Afterimage::new; or create a context for this one";
     check_output(desc, "output", target.output, output_format, expected)?;
@@ -51,7 +51,7 @@ fn check_apart(output: &'static str, written: Textures<'_>, frame: &Frame<'_>) -
     let textures = frame.textures();
     for (Input { name, .. }, read) in INPUTS.iter().filter_map(|i| Some((i, textures[i.binding as usize]?))) {
         let meets = |layers: [Option<u32>; 2]| layers.contains(&None) || layers[0] == layers[1];
-        let shared = written.layers().find(|&(a, i)| read.layers().any(|(b, j)| a == b && meets([i, j])));
+        let shared = written.parts().find(|&(a, i)| read.parts().any(|(b, j)| a == b && meets([i, j])));
         if let Some((texture, _)) = shared {
             let problem = format!("which is also the texture of {name}");
             return Err(refuse(output, texture, problem, "a texture of its own, or another layer than any input's"));
@@ -211,7 +211,7 @@ fn check_usage(input: &'static str, texture: &Texture, usage: TextureUsages) -> 
 }
 
 /// Checks size and usages of a buffer from the caller, which is cleared and written.
-pub(super) fn check_words(
+pub(super) fn check_buffer(
     input: &'static str,
     buffer: &Buffer,
     bytes: u64,

@@ -71,7 +71,7 @@ pub struct Recorder {
 #[derive(Debug)]
 struct Absent {
     float: Plane,
-    word: Plane,
+    uint: Plane,
     stored: [Plane; 3],
     counters: Buffer,
 }
@@ -85,8 +85,8 @@ impl Absent {
             usage: BufferUsages::STORAGE,
             mapped_at_creation: false,
         });
-        let (float, word) = (plane(TextureFormat::R32Float), plane(TextureFormat::R32Uint));
-        Self { float, word, stored: STORED.map(plane), counters }
+        let (float, uint) = (plane(TextureFormat::R32Float), plane(TextureFormat::R32Uint));
+        Self { float, uint, stored: STORED.map(plane), counters }
     }
 
     fn of(&self, ty: BindingType) -> Resource {
@@ -95,7 +95,7 @@ impl Absent {
                 let i = STORED.iter().position(|&stored| stored == format).unwrap_or(0);
                 (&self.stored[i].whole).into()
             }
-            BindingType::Texture { sample_type: TextureSampleType::Uint, .. } => (&self.word.whole).into(),
+            BindingType::Texture { sample_type: TextureSampleType::Uint, .. } => (&self.uint.whole).into(),
             BindingType::Texture { .. } => (&self.float.whole).into(),
             _ => (&self.counters).into(),
         }

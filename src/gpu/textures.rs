@@ -57,7 +57,7 @@ impl<'a> From<&'a Texture> for Textures<'a> {
 
 impl<'a> Textures<'a> {
     /// Textures of all views, and the layer of each; `None`: all layers.
-    pub(super) fn layers(self) -> impl Iterator<Item = (&'a Texture, Option<u32>)> {
+    pub(super) fn parts(self) -> impl Iterator<Item = (&'a Texture, Option<u32>)> {
         let (layers, regions) = match self {
             Self::Layers(texture) => (Some((texture, None)), &[][..]),
             Self::Regions(regions) => (None, regions),
@@ -67,7 +67,7 @@ impl<'a> Textures<'a> {
 
     /// Textures of all views.
     pub(super) fn iter(self) -> impl Iterator<Item = &'a Texture> {
-        self.layers().map(|(texture, _)| texture)
+        self.parts().map(|(texture, _)| texture)
     }
 
     /// Whether the views are regions.

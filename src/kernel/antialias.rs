@@ -7,7 +7,7 @@
 //! frame, so that a long mean would blur.
 
 use super::smr::{root_difference, roots};
-use super::sparse_smr::{Light, Reconstructed, Reconstruction, relit};
+use super::sparse_smr::{ObservedAround, Reconstructed, Reconstruction, relit};
 use super::stored_sample::{FARTHEST_PX, StoredSample};
 use super::taa::{ROUNDING, clip_to_box, to_ycocg};
 use glam::{Vec2, Vec3};
@@ -195,11 +195,11 @@ pub fn clipped(color: Vec3, change: Vec3) -> Vec3 {
 /// Expected difference of one sample from history around it: the larger of the model's value and the standard deviation
 /// of the samples' differences. `scatter`: squared [`root_difference`]s of samples and history, times weights.
 #[inline]
-pub fn scattered_error(l: Light, scatter: f32) -> f32 {
-    let inverse = 1.0 / l.weight;
-    let mean = root_difference(l.sampled * inverse, l.history * inverse);
+pub fn scattered_error(a: ObservedAround, scatter: f32) -> f32 {
+    let inverse = 1.0 / a.weight;
+    let mean = root_difference(a.sampled * inverse, a.history * inverse);
     let variance = (scatter * inverse - mean * mean).max(0.0);
-    (l.error * inverse).max(variance.sqrt())
+    (a.error * inverse).max(variance.sqrt())
 }
 
 /// Result of [`average`] and [`stored_mean`].

@@ -32,9 +32,9 @@ pub const DECODED_BENDS: u32 = BENDS + KINKS;
 /// Word of a tile: second differences over 2, 4 and 8 pixels.
 pub const WIDE_BENDS: u32 = DECODED_BENDS + KINKS;
 /// Word of a tile: sum of the signal, each at most 1.
-pub const LIGHT: u32 = WIDE_BENDS + WIDE;
+pub const SIGNAL: u32 = WIDE_BENDS + WIDE;
 /// Word of a tile: number of pixels whose value is an 8-bit code.
-pub const CODES: u32 = LIGHT + 1;
+pub const CODES: u32 = SIGNAL + 1;
 /// Word of a tile: number of pixels that are not finite.
 pub const BROKEN: u32 = CODES + 1;
 /// Number of words that are sums over a tile.

@@ -121,7 +121,7 @@ pub fn root_slope(luma: f32) -> f32 {
 
 /// Largest difference of the compared means of candidates and of history that noise alone explains: three standard
 /// deviations at a luma, in units of [`root_difference`](super::smr::root_difference). `luma` is in units of
-/// [`light_unit`](super::smr::light_unit), whose inverse is `inverse_unit`.
+/// [`brightness_unit`](super::smr::brightness_unit), whose inverse is `inverse_unit`.
 #[inline]
 pub fn noise_difference(history: Noise, candidate: Noise, luma: f32, inverse_unit: f32) -> f32 {
     let sample_variance = pooled_variance(history, candidate);

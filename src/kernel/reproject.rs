@@ -37,7 +37,7 @@ impl Verdict {
 
     /// The verdict and its reason, for notes.
     #[cfg(feature = "cpu")]
-    pub(crate) fn in_words(self) -> &'static str {
+    pub(crate) fn reason(self) -> &'static str {
         match self {
             Self::Valid => "kept: it belongs to this surface",
             Self::Reset => "none: first frame, reset, or outside the lens",

@@ -38,12 +38,12 @@ const GAIN: [f32; 2] = [0.2, 5.0];
 const LEAST_WORN: f32 = 0.5 / LOD_STEPS;
 /// Added to linear values to keep ratios and slopes of dark colors finite.
 pub(super) const DARK: f32 = 0.002;
-/// Largest channel of compared colors in units of [`light_unit`]. At this brightness the units are those of the frame,
-/// for which the gate's constants were chosen.
+/// Largest channel of compared colors in units of [`brightness_unit`]. At this brightness the units are those of the
+/// frame, for which the gate's constants were chosen.
 const MIDDLE: f32 = 0.5;
-/// Least brightness that [`light_unit`] follows: the smallest normal half. Darker colors are stored in steps that are
-/// large in comparison.
-const LEAST_LIGHT: f32 = 1.0 / 16384.0;
+/// Least brightness that [`brightness_unit`] follows: the smallest normal half. Darker colors are stored in steps that
+/// are large in comparison.
+const LEAST_BRIGHTNESS: f32 = 1.0 / 16384.0;
 /// Tolerance of motion coherence: in pixels, and as a share of the vector's length.
 const COHERENT: [f32; 2] = [0.5, 0.1];
 
@@ -117,12 +117,12 @@ pub fn past_roots(c: Vec3) -> Vec3 {
 }
 
 /// Unit of the colors that the gate compares, linear: twice the largest channel of candidate and history. Colors that
-/// are divided by it do not depend on the scale of light, so that a frame times a constant is shown as that constant
-/// times the frame. `matched` is history before its factor `exposure`.
+/// are divided by it do not depend on the scale of brightness, so that a frame times a constant is shown as that
+/// constant times the frame. `matched` is history before its factor `exposure`.
 #[inline(always)]
-pub fn light_unit(compared: Vec3, matched: Vec3, exposure: f32) -> f32 {
+pub fn brightness_unit(compared: Vec3, matched: Vec3, exposure: f32) -> f32 {
     let largest = compared.max_element().max(matched.max_element() * exposure);
-    largest.max(LEAST_LIGHT) * (1.0 / MIDDLE)
+    largest.max(LEAST_BRIGHTNESS) * (1.0 / MIDDLE)
 }
 
 /// Whether two motion vectors, in pixels, can belong to one surface. A pixel that moves like neither neighbour in its
@@ -203,7 +203,7 @@ pub fn is_changed(compared: Vec3, matched: Vec3, level: Vec3, next_level: Vec3) 
 pub struct Evidence {
     /// The candidate.
     pub candidate: Vec3,
-    /// [`light_unit`] of candidate and history.
+    /// [`brightness_unit`] of candidate and history.
     pub unit: f32,
     /// Color that is compared with history: the candidate, or a mean of its neighbourhood where it is a point sample or
     /// noisy.
@@ -338,14 +338,14 @@ const OF_DIFFERENCE: &str = "100 from black to white";
 impl Evidence {
     #[inline(always)]
     fn note(&self, reuse: ReuseWeight, notes: &mut impl Notes) {
-        const OF_LIGHT: &str = "units of light";
+        const OF_BRIGHTNESS: &str = "units of brightness";
         let mut compared = |name, value: Vec3, unit| notes.note(NoteStage::Comparison, name, value, unit);
-        compared("candidate that is compared", self.compared, OF_LIGHT);
-        compared("history at its scale", self.matched, OF_LIGHT);
-        compared("candidate, coarser", self.compared_coarser, "units of light; black unless light changed");
-        compared("history at that scale", self.matched_coarser, OF_LIGHT);
+        compared("candidate that is compared", self.compared, OF_BRIGHTNESS);
+        compared("history at its scale", self.matched, OF_BRIGHTNESS);
+        compared("candidate, coarser", self.compared_coarser, "units of brightness; black unless light changed");
+        compared("history at that scale", self.matched_coarser, OF_BRIGHTNESS);
         let unit = "linear light; the compared colors are divided by it";
-        notes.note(NoteStage::Comparison, "unit of light", self.unit, unit);
+        notes.note(NoteStage::Comparison, "unit of brightness", self.unit, unit);
         notes.note(NoteStage::Comparison, "history is finer", reuse.finer, "");
         notes.note(NoteStage::Comparison, "difference that noise explains", self.noise, OF_DIFFERENCE);
     }

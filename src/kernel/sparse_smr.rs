@@ -140,9 +140,9 @@ pub fn neighbour_weight(offset: [i32; 2]) -> f32 {
     ((2 - offset[0].abs()) * (2 - offset[1].abs())) as f32
 }
 
-/// Sums over a sample and its neighbours.
+/// Sums of the observations at a sample and its neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Light {
+pub struct ObservedAround {
     /// Sampled colors, times weights.
     pub sampled: Vec3,
     /// Colors of history, times weights.
@@ -161,45 +161,45 @@ pub struct Light {
 
 /// Adds an observation of `weight`.
 #[inline]
-pub fn add_light(l: Light, o: Observation, weight: f32, spatial: f32) -> Light {
-    Light {
-        sampled: l.sampled + o.sampled * weight,
-        history: l.history + o.history * weight,
-        error: l.error + o.error * weight,
-        weight: l.weight + weight,
-        squared: l.squared + weight * weight,
-        spatial: l.spatial + spatial,
-        known: l.known + spatial * o.confidence,
+pub fn add_observation(a: ObservedAround, o: Observation, weight: f32, spatial: f32) -> ObservedAround {
+    ObservedAround {
+        sampled: a.sampled + o.sampled * weight,
+        history: a.history + o.history * weight,
+        error: a.error + o.error * weight,
+        weight: a.weight + weight,
+        squared: a.squared + weight * weight,
+        spatial: a.spatial + spatial,
+        known: a.known + spatial * o.confidence,
     }
 }
 
 /// Expected difference of one sample from history around it.
 #[inline]
-pub fn mean_error(l: Light) -> f32 {
-    l.error * (1.0 / l.weight)
+pub fn mean_error(a: ObservedAround) -> f32 {
+    a.error * (1.0 / a.weight)
 }
 
 /// Degree to which the samples around agree on a gain, in \[0, 1\]. All pixels around a sample are multiplied by its
 /// gain. If the confident samples around contradict it, as beside a small lamp of one frame or beside what it left,
 /// that gain spreads marks. Where no other sample is confident, a single one is enough.
 #[inline]
-pub fn agreed(l: Light) -> f32 {
-    ((l.weight - l.known * AGREED[0]) * (AGREED[1] / l.known.max(1e-6))).clamp(0.0, 1.0)
+pub fn agreed(a: ObservedAround) -> f32 {
+    ((a.weight - a.known * AGREED[0]) * (AGREED[1] / a.known.max(1e-6))).clamp(0.0, 1.0)
 }
 
 /// Gain of the light around a sample: the ratio of the means of samples and of history at the same pixels, blended to 1
 /// where chance explains the difference of the means, or where other samples contradict it ([`agreed`]). `error`:
 /// expected difference of one sample.
 #[inline]
-pub fn relight(l: Light, error: f32) -> Vec3 {
-    if l.weight < 1e-6 {
+pub fn relight(a: ObservedAround, error: f32) -> Vec3 {
+    if a.weight < 1e-6 {
         return Vec3::ONE;
     }
-    let inverse = 1.0 / l.weight;
-    let (sampled, history) = (l.sampled * inverse, l.history * inverse);
+    let inverse = 1.0 / a.weight;
+    let (sampled, history) = (a.sampled * inverse, a.history * inverse);
     // The standard error of a weighted mean.
-    let from = (error * (l.squared.sqrt() * inverse)) * RELIGHT_ERRORS;
-    let changed = smooth_step(from, from, root_difference(sampled, history)) * agreed(l);
+    let from = (error * (a.squared.sqrt() * inverse)) * RELIGHT_ERRORS;
+    let changed = smooth_step(from, from, root_difference(sampled, history)) * agreed(a);
     // A share of 1 gives the ratio bit for bit.
     ratios(sampled, history) * changed + Vec3::splat(1.0 - changed)
 }
@@ -235,20 +235,20 @@ pub fn capped_error(o: Observation, errors: f32, spatial: f32) -> f32 {
 /// count in full and the sample is only one of them: a pixel that was a sparkle's is replaced alone ([`own_fit`]), and
 /// the history around it stays.
 #[inline]
-pub fn fit_around(l: Light, left: f32, capped: f32) -> f32 {
-    let by_own = fit(left / l.weight, (l.weight / l.spatial).min(1.0));
-    let by_all = fit(capped / l.known.max(1e-6), (l.known / l.spatial).min(1.0));
-    let share = agreed(l);
+pub fn fit_around(a: ObservedAround, left: f32, capped: f32) -> f32 {
+    let by_own = fit(left / a.weight, (a.weight / a.spatial).min(1.0));
+    let by_all = fit(capped / a.known.max(1e-6), (a.known / a.spatial).min(1.0));
+    let share = agreed(a);
     by_own * share + by_all * (1.0 - share)
 }
 
 /// As [`fit`], for noisy samples, from the difference of the means of samples and of history. Nine samples together
 /// distinguish smaller changes from noise than a single sample.
 #[inline]
-pub fn mean_fit(l: Light, confidence: f32) -> f32 {
-    let inverse = 1.0 / l.weight;
-    let from = ((l.error * inverse) * (l.squared.sqrt() * inverse)) * MEAN_ERRORS;
-    1.0 - confidence * smooth_step(from, from, root_difference(l.sampled * inverse, l.history * inverse))
+pub fn mean_fit(a: ObservedAround, confidence: f32) -> f32 {
+    let inverse = 1.0 / a.weight;
+    let from = ((a.error * inverse) * (a.squared.sqrt() * inverse)) * MEAN_ERRORS;
+    1.0 - confidence * smooth_step(from, from, root_difference(a.sampled * inverse, a.history * inverse))
 }
 
 /// Estimate of light at a sample: gain and fit.
@@ -308,7 +308,7 @@ pub fn pack_quad_lit(l: QuadLit) -> [u32; 4] {
     [pack_color(l.gain), fits, codes(0), codes(2)]
 }
 
-/// Light at pixel `i` of a quad, without its disparity.
+/// Estimate at pixel `i` of a quad, without its disparity.
 pub fn quad_lit(words: [u32; 4], i: u32) -> Lit {
     Lit {
         gain: unpack_color(words[0]),

@@ -5,8 +5,8 @@ use crate::kernel::antialias::scattered_error;
 use crate::kernel::depth::INVALID_DISPARITY;
 use crate::kernel::smr::root_difference;
 use crate::kernel::sparse_smr::{
-    LIGHT_RELATIVE, Light, Lit, Observation, add_light, agreement, capped_error, errors_left, fit, fit_around,
-    mean_error, mean_fit, neighbour_weight, own_fit, pack_lit, relight,
+    LIGHT_RELATIVE, Lit, Observation, ObservedAround, add_observation, agreement, capped_error, errors_left, fit,
+    fit_around, mean_error, mean_fit, neighbour_weight, own_fit, pack_lit, relight,
 };
 use glam::Vec3;
 
@@ -34,32 +34,33 @@ impl View<'_> {
                 })
             })
         };
-        let light = neighbours().fold(Light::default(), |l, (o, weight, spatial)| add_light(l, o, weight, spatial));
+        let around = neighbours()
+            .fold(ObservedAround::default(), |a, (o, weight, spatial)| add_observation(a, o, weight, spatial));
         // A single noisy sample does not show whether history fits.
         let judged = own.filter(|_| !self.is_noisy());
         let fit_of_own = |gain| judged.map_or(1.0, |own| own_fit(own, gain));
         // A sample without disparity is interpolated only where no other sample is near.
         let disparity = if self.is_doubtful(lattice, point, observed) { INVALID_DISPARITY } else { disparity };
         let unlit = Lit { gain: Vec3::ONE, fit: 1.0, own_fit: fit_of_own(Vec3::ONE), is_own: own.is_some(), disparity };
-        if light.weight < 1e-6 {
+        if around.weight < 1e-6 {
             return pack_lit(unlit);
         }
         let errors = |gain| neighbours().fold(0.0, |sum, (o, weight, _)| sum + errors_left(o, gain) * weight);
         let without = errors(Vec3::ONE);
         let error = match self.antialiases {
-            true => scattered_error(light, neighbours().fold(0.0, |sum, (o, weight, _)| add_scatter(sum, o, weight))),
-            false => mean_error(light),
+            true => scattered_error(around, neighbours().fold(0.0, |sum, (o, weight, _)| add_scatter(sum, o, weight))),
+            false => mean_error(around),
         };
-        let gain = if self.relights { relight(light, error) } else { Vec3::ONE };
+        let gain = if self.relights { relight(around, error) } else { Vec3::ONE };
         let with_gain = if gain == Vec3::ONE { without } else { errors(gain) };
         let (gain, left) = if with_gain <= without { (gain, with_gain) } else { (Vec3::ONE, without) };
-        let confidence = (light.weight / light.spatial).min(1.0);
+        let confidence = (around.weight / around.spatial).min(1.0);
         let fit = if self.is_noisy() {
-            fit(left / light.weight, confidence).min(mean_fit(light, confidence))
+            fit(left / around.weight, confidence).min(mean_fit(around, confidence))
         } else {
             let capped = neighbours()
                 .fold(0.0, |sum, (o, _, spatial)| sum + capped_error(o, errors_left(o, Vec3::ONE), spatial));
-            fit_around(light, left, capped)
+            fit_around(around, left, capped)
         };
         pack_lit(Lit { gain, fit, own_fit: fit_of_own(gain), ..unlit })
     }

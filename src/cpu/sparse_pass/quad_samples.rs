@@ -9,8 +9,9 @@ use crate::kernel::depth::INVALID_DISPARITY;
 use crate::kernel::resample::has_code;
 use crate::kernel::sanitize;
 use crate::kernel::sparse_smr::{
-    LIGHT_RELATIVE, Light, OTHER_SURFACE, Observation, QuadLit, RELIT_ERRORS, add_light, agreement, candidate_level,
-    capped_error, errors_left, fit_around, mean_error, own_fit, pack_quad_lit, quad_code, quad_lit, relight,
+    LIGHT_RELATIVE, OTHER_SURFACE, Observation, ObservedAround, QuadLit, RELIT_ERRORS, add_observation, agreement,
+    candidate_level, capped_error, errors_left, fit_around, mean_error, own_fit, pack_quad_lit, quad_code, quad_lit,
+    relight,
 };
 use crate::notes::Notes;
 use crate::parallel::collect;
@@ -78,10 +79,10 @@ impl View<'_> {
         let mut own: Option<Observation> = None;
         if first.is_some() {
             let all = self.pixels_of(quad).filter(|&px| alike(px)).filter_map(|px| self.observation_px(px, observed));
-            let mut sum = Light::default();
+            let mut sum = ObservedAround::default();
             let mut confidence = 0.0;
             for o in all {
-                sum = add_light(sum, o, 1.0, 1.0);
+                sum = add_observation(sum, o, 1.0, 1.0);
                 confidence += o.confidence;
             }
             let inverse = 1.0 / sum.weight;
@@ -107,20 +108,21 @@ impl View<'_> {
                 }
             }
         }
-        let light = near.iter().fold(Light::default(), |l, n| add_light(l, n.observation, n.weight, n.spatial));
+        let around =
+            near.iter().fold(ObservedAround::default(), |a, n| add_observation(a, n.observation, n.weight, n.spatial));
         let (mut gain, mut fits) = (Vec3::ONE, 1.0);
-        if light.weight >= 1e-6 {
+        if around.weight >= 1e-6 {
             let errors = |gain| near.iter().fold(0.0, |sum, n| sum + errors_left(n.observation, gain) * n.weight);
             let without = errors(Vec3::ONE);
             let error = match self.antialiases {
                 true => {
                     let scatter =
                         near.iter().fold(0.0, |sum, n| super::light::add_scatter(sum, n.observation, n.weight));
-                    scattered_error(light, scatter)
+                    scattered_error(around, scatter)
                 }
-                false => mean_error(light),
+                false => mean_error(around),
             };
-            gain = if self.relights { relight(light, error) } else { Vec3::ONE };
+            gain = if self.relights { relight(around, error) } else { Vec3::ONE };
             let with_gain = if gain == Vec3::ONE { without } else { errors(gain) };
             let enough = with_gain <= without * RELIT_ERRORS;
             let left = if enough { with_gain } else { without };
@@ -128,7 +130,7 @@ impl View<'_> {
                 gain = Vec3::ONE;
             }
             let capped = |n: &Near| capped_error(n.observation, errors_left(n.observation, Vec3::ONE), n.spatial);
-            fits = fit_around(light, left, near.iter().fold(0.0, |sum, n| sum + capped(n)));
+            fits = fit_around(around, left, near.iter().fold(0.0, |sum, n| sum + capped(n)));
         }
         let mut own_fits = [1.0; 4];
         let mut disparities = [INVALID_DISPARITY; 4];

@@ -52,10 +52,10 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("stored_sample::interpolate", "a.square.y * a.weight - a.place.x", "a.square.y * a.weight - a.place.y"),
     (
         "sparse_smr::relight",
-        "(sqrt(l.squared) * inverse)) * RELIGHT_ERRORS",
-        "(sqrt(l.weight) * inverse)) * RELIGHT_ERRORS",
+        "(sqrt(a.squared) * inverse)) * RELIGHT_ERRORS",
+        "(sqrt(a.weight) * inverse)) * RELIGHT_ERRORS",
     ),
-    ("sparse_smr::mean_fit", "sqrt(l.squared) * inverse)) * MEAN_ERRORS", "inverse)) * MEAN_ERRORS"),
+    ("sparse_smr::mean_fit", "sqrt(a.squared) * inverse)) * MEAN_ERRORS", "inverse)) * MEAN_ERRORS"),
     ("sparse_smr::reconstruct", "share >= KEEP_SHARE && near", "share >= KEEP_SHARE"),
     ("sparse_smr::accumulate", "near && share >= STAY_SHARE", "share >= STAY_SHARE"),
     ("depth::disparity", "if v < 1e-30", "if v < 1e-29"),

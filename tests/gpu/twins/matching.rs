@@ -139,7 +139,7 @@ pub const PROBES: &[Probe] = &[
         let c: Vec<u32> = finite().into_iter().filter(|&x| x & 0x7fff_ffff == 0 || x & 0x7f80_0000 != 0).collect();
         rows.mixed(&[&c, &c, &c]).each(&[Signed(-24, 17); 3])
     }),
-    probe!(smr::light_unit, |rows| {
+    probe!(smr::brightness_unit, |rows| {
         let (c, exposure) = (channels(), floats(&[0.3, 1.0, 4.0]));
         rows.mixed(&[&c, &c, &c, &c, &c, &c, &exposure]).random(|d, row| {
             let a = stored_color(d);

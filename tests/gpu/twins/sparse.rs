@@ -26,7 +26,7 @@ shape!(Around {
 });
 shape!(stored_sample::Interpolated { color: Vec3, lod: f32, range: [Vec3; 2], nearest: stored_sample::StoredSample });
 shape!(sparse_smr::Observation { sampled: Vec3, history: Vec3, error: f32, confidence: f32 });
-shape!(sparse_smr::Light {
+shape!(sparse_smr::ObservedAround {
     sampled: Vec3,
     history: Vec3,
     error: f32,
@@ -196,10 +196,15 @@ pub const PROBES: &[Probe] = &[
     probe!(sparse_smr::noisy_lod_confidence, |rows| rows.each(&[F(0.0, 3.0), F(1.0, 80.0), F(0.0, 0.01), F(0.0, 2.0)])),
     probe!(sparse_smr::agreement, |rows| rows.each(&[Of(push_observation), Of(push_observation), F(0.0, 4.0)])),
     probe!(sparse_smr::neighbour_weight, |rows| rows.cross(&[&[!0, 0, 1], &[!0, 0, 1]])),
-    probe!(sparse_smr::add_light, |rows| rows.each(&[Of(push_light), Of(push_observation), F(0.0, 4.0), F(0.0, 4.0)])),
+    probe!(sparse_smr::add_observation, |rows| rows.each(&[
+        Of(push_light),
+        Of(push_observation),
+        F(0.0, 4.0),
+        F(0.0, 4.0)
+    ])),
     probe!(
         sparse_smr::relight,
-        |l: sparse_smr::Light| sparse_smr::relight(l, sparse_smr::mean_error(l)),
+        |l: sparse_smr::ObservedAround| sparse_smr::relight(l, sparse_smr::mean_error(l)),
         "let l = $0; relight(l, mean_error(l))",
         |rows| rows.random(push_light)
     ),
