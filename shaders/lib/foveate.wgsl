@@ -95,13 +95,7 @@ fn blend(a: vec3f, b: vec3f, t: f32) -> vec3f {
 }
 
 // foveate::bilinear
-fn bilinear(
-    top_left: vec3f,
-    top_right: vec3f,
-    bottom_left: vec3f,
-    bottom_right: vec3f,
-    fraction: vec2f,
-) -> vec3f {
+fn bilinear(top_left: vec3f, top_right: vec3f, bottom_left: vec3f, bottom_right: vec3f, fraction: vec2f) -> vec3f {
     let top = blend(top_left, top_right, fraction.x);
     let bottom = blend(bottom_left, bottom_right, fraction.x);
     return blend(top, bottom, fraction.y);

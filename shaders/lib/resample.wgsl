@@ -120,11 +120,7 @@ struct Tap {
 // resample::surface_tap
 fn surface_tap(words: vec2u, codes: vec2u, any_code: bool) -> Tap {
     let code = lod_code(words);
-    return Tap(
-        surface_color(words),
-        lod_value(code),
-        select(has_code(words.y, codes), code != EMPTY_LOD, any_code),
-    );
+    return Tap(surface_color(words), lod_value(code), select(has_code(words.y, codes), code != EMPTY_LOD, any_code));
 }
 
 struct Gathered {

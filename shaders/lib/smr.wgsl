@@ -213,13 +213,7 @@ fn mip_mean(a: vec4f, b: vec4f, c: vec4f, d: vec4f) -> vec4f {
 }
 
 // smr::mip_bilinear
-fn mip_bilinear(
-    top_left: vec4f,
-    top_right: vec4f,
-    bottom_left: vec4f,
-    bottom_right: vec4f,
-    fraction: vec2f,
-) -> vec3f {
+fn mip_bilinear(top_left: vec4f, top_right: vec4f, bottom_left: vec4f, bottom_right: vec4f, fraction: vec2f) -> vec3f {
     let t = top_left + (top_right - top_left) * fraction.x;
     let b = bottom_left + (bottom_right - bottom_left) * fraction.x;
     let v = t + (b - t) * fraction.y;

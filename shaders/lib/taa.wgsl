@@ -82,14 +82,7 @@ fn box_sigmas(moving: f32, still: f32, confidence: f32) -> f32 {
 }
 
 // taa::blend_clipped
-fn blend_clipped(
-    candidate: vec3f,
-    history: vec3f,
-    sum: vec3f,
-    squares: vec3f,
-    alpha: f32,
-    confidence: f32,
-) -> vec3f {
+fn blend_clipped(candidate: vec3f, history: vec3f, sum: vec3f, squares: vec3f, alpha: f32, confidence: f32) -> vec3f {
     let mean = sum * (1.0f / 9.0f);
     let variance = (squares * 9.0 - sum * sum) * (1.0f / 81.0f);
     let sigmas = box_sigmas(BOX_SIGMAS.x, BOX_SIGMAS.y, confidence);

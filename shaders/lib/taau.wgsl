@@ -69,13 +69,7 @@ struct Accumulated {
 }
 
 // taau::accumulate
-fn accumulate(
-    a: SamplesAround,
-    centre: vec3f,
-    history: vec3f,
-    confidence: f32,
-    trusted: f32,
-) -> Accumulated {
+fn accumulate(a: SamplesAround, centre: vec3f, history: vec3f, confidence: f32, trusted: f32) -> Accumulated {
     let inverse = 1.0 / a.count;
     let variance = (a.squares * a.count - a.sum * a.sum) * (inverse * inverse);
     let past = to_ycocg(history);

@@ -181,13 +181,7 @@ fn decide_sample(candidate: vec3f, candidate_w: f32, past: Past, params: WrsPara
 }
 
 // wrs::combined
-fn combined(
-    candidate: vec3f,
-    candidate_w: f32,
-    past_color: vec3f,
-    decision: Decision,
-    sampler_code: u32,
-) -> vec3f {
+fn combined(candidate: vec3f, candidate_w: f32, past_color: vec3f, decision: Decision, sampler_code: u32) -> vec3f {
     if sampler_code != SAMPLER_A_CHAO_MEAN || candidate_w == decision.w_sum {
         return select(past_color, candidate, decision.take);
     }

@@ -84,8 +84,7 @@ fn row_past(x: Axis, y: u32) -> f32 {
 fn lookup_now(at: vec2f, level: u32) -> f32 {
     let x = axis_at(at.x, half_size().x, level);
     let y = axis_at(at.y, half_size().y, level);
-    let rows =
-        vec4f(row_now(x, y.texels.x), row_now(x, y.texels.y), row_now(x, y.texels.z), row_now(x, y.texels.w));
+    let rows = vec4f(row_now(x, y.texels.x), row_now(x, y.texels.y), row_now(x, y.texels.z), row_now(x, y.texels.w));
     return spline(rows, y.fraction);
 }
 

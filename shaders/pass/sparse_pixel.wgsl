@@ -74,14 +74,7 @@ fn hidden_pixel(px: vec2u, view: u32) {
 
 // Processes a visible pixel. `level`: log2 of the distance of the samples around it; at level 0 it has a sample in
 // every frame. `near`: sums over the nine samples around a pixel of level 0, of jittered frames.
-fn show_pixel(
-    px: vec2u,
-    view: u32,
-    level: u32,
-    disparity_now: f32,
-    candidate: Candidate,
-    near: Near,
-) {
+fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, candidate: Candidate, near: Near) {
     let surface = surface_of(px, view, level);
     let motion = surface.motion;
     let source = sparse_source(px, view, surface);

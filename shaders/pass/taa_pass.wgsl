@@ -14,14 +14,7 @@ struct Neighbourhood {
 // Sums of colors and of their squares over 3x3 pixels, in YCoCg, and of the luma of history if it is `compared`.
 // Non-finite pixels count as the centre, whose color is `own`. The loop has a variable count on purpose: Mesa would
 // unroll a constant one and reorder its sums of products.
-fn neighbourhood(
-    px: vec2u,
-    view: u32,
-    own: vec3f,
-    needed: bool,
-    source: Source,
-    compared: bool,
-) -> Neighbourhood {
+fn neighbourhood(px: vec2u, view: u32, own: vec3f, needed: bool, source: Source, compared: bool) -> Neighbourhood {
     var around = Neighbourhood(vec3f(0.0), vec3f(0.0), 0.0);
     let taps = select(0, 9, needed);
     for (var tap = 0; tap < taps; tap++) {

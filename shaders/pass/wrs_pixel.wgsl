@@ -45,13 +45,7 @@ fn tap(texel: vec2i, view: u32, codes: vec2u) -> Tap {
 
 // Mean of history at a position, by Catmull-Rom weights, in this frame's exposure. At the centre of a pixel it is
 // exactly `nearest_color`.
-fn resampled(
-    at: vec2f,
-    view: u32,
-    expected: f32,
-    nearest_color: vec3f,
-    candidate: vec3f,
-) -> vec3f {
+fn resampled(at: vec2f, view: u32, expected: f32, nearest_color: vec3f, candidate: vec3f) -> vec3f {
     let whole = floor(at);
     let fraction = at - whole;
     let nearest_exposed = expose(nearest_color, frame.exposure);
@@ -80,14 +74,7 @@ fn resampled(
 }
 
 // Reservoir of the pixel's surface in the previous frame and age of its sample, or the reason for its rejection.
-fn history_of(
-    px: vec2u,
-    view: u32,
-    candidate: vec3f,
-    ray: vec3f,
-    motion: vec2f,
-    disparity_now: f32,
-) -> History {
+fn history_of(px: vec2u, view: u32, candidate: vec3f, ray: vec3f, motion: vec2f, disparity_now: f32) -> History {
     let source = reprojected(px, view, motion);
     if source.verdict != VERDICT_VALID {
         return no_history(source.verdict);
