@@ -65,6 +65,7 @@ pub static MODULES: &[Module] = &[
     module!("pass", "candidate_pass"),
     module!("pass", "doctor_roots_pass"),
     module!("pass", "doctor_pass"),
+    module!("pass", "each_pixel"),
     module!("pass", "fill_geometry_pass"),
     module!("pass", "fill_pass"),
     module!("pass", "mip_chain_pass"),

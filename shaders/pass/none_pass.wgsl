@@ -1,6 +1,6 @@
-//#use inputs
+//#use each_pixel
 //#use output
-// No method: outputs the sanitized candidate. CPU twin: src/cpu/none_pass.rs. One invocation a pixel; z is the view.
+// No method: outputs the sanitized candidate. CPU twin: src/cpu/none_pass.rs.
 
 fn pixel(px: vec2u, view: u32) {
     let given = color_at(px, view);
@@ -11,16 +11,4 @@ fn pixel(px: vec2u, view: u32) {
     count_if(!candidate.usable, COUNT_NONFINITE);
     count_if(true, COUNT_VERDICTS + verdict);
     write_output(px, view, candidate.color, given.w, PixelTrace(verdict, 0.0, 0.0, 0u, 0.0, 1.0, true, motion_at(px, view)));
-}
-
-@compute @workgroup_size(64, 1)
-fn main(
-    @builtin(global_invocation_id) id: vec3u,
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(local_invocation_index) invocation: u32,
-) {
-    if id.x < frame.size.x && id.y < frame.size.y {
-        pixel(id.xy, frame.first_view + group.z);
-    }
-    add_counts(invocation);
 }

@@ -1,7 +1,8 @@
+//#use each_pixel
 //#use quad_samples
 //#use sparse_pixel
 // Reconstruction of frames shaded by quads: candidates of pixels from the shaded quads around them. CPU twin:
-// `quad_candidate` in src/cpu/sparse_pass/quad_samples.rs. One invocation a pixel; z is the view.
+// `quad_candidate` in src/cpu/sparse_pass/quad_samples.rs.
 
 @group(0) @binding(21) var lights: texture_2d_array<u32>;
 
@@ -123,16 +124,4 @@ fn pixel(px: vec2u, view: u32) {
     }
     let near = samples_near(px, view, ANTIALIAS != 0u && candidate.is_own && level == 0u);
     show_pixel(px, view, level, disparity_now, candidate, near);
-}
-
-@compute @workgroup_size(64, 1)
-fn main(
-    @builtin(global_invocation_id) id: vec3u,
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(local_invocation_index) invocation: u32,
-) {
-    if id.x < frame.size.x && id.y < frame.size.y {
-        pixel(id.xy, frame.first_view + group.z);
-    }
-    add_counts(invocation);
 }

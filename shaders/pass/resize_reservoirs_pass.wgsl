@@ -13,7 +13,7 @@ override HAS_EXTRAS: u32 = 0u;
 
 @compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
-    if any(id.xy >= resize.size) {
+    if any(id.xy >= resize.size_px) {
         return;
     }
     let at = nearest_to(old_position_of(id.xy));

@@ -15,7 +15,7 @@ override HAS_MIPS: u32 = 1u;
 @group(0) @binding(20) var next_noise: texture_storage_2d_array<r32uint, write>;
 
 fn surface_at(texel: vec2i, view: u32) -> Surface {
-    let at = clamp(texel, vec2i(0), vec2i(resize.old_size) - 1);
+    let at = clamp(texel, vec2i(0), vec2i(resize.old_size_px) - 1);
     return unpack_surface(textureLoad(past_surfaces, at, view, 0).xy);
 }
 
@@ -29,7 +29,7 @@ fn pixel(px: vec2u, view: u32) -> vec2u {
     let nearest_at = nearest_to(position);
     let nearest = surface_at(vec2i(nearest_at), view);
     let whole = floor(position);
-    let taps = taps_around(vec2i(whole), position - whole, resize.old_size);
+    let taps = taps_around(vec2i(whole), position - whole, resize.old_size_px);
     let codes = tap_codes(nearest.disparity);
     let any_code = nearest.disparity < 0.0;
     var gathered = nothing_gathered();
@@ -61,13 +61,13 @@ fn pixel(px: vec2u, view: u32) -> vec2u {
 @compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: vec3u) {
     let first = 2u * id.xy;
-    if any(first >= resize.size) {
+    if any(first >= resize.size_px) {
         return;
     }
     var texels: array<vec4f, 4>;
     for (var i = 0u; i < 4u; i++) {
         // At an odd border the neighbour counts twice.
-        let px = min(first + vec2u(i & 1u, i >> 1u), resize.size - 1u);
+        let px = min(first + vec2u(i & 1u, i >> 1u), resize.size_px - 1u);
         texels[i] = mip_texel(pixel(px, group.z));
     }
     if HAS_MIPS != 0u {

@@ -1,7 +1,8 @@
+//#use each_pixel
 //#use sparse_pixel
 //#use sparse_samples
 // Reconstruction of sparse frames: candidates of pixels from the samples of lattices. CPU twin: `candidate` in
-// src/cpu/sparse_pass/pixel.rs; docs/method.md has the equations. One invocation a pixel; z is the view.
+// src/cpu/sparse_pass/pixel.rs; docs/method.md has the equations.
 
 @group(0) @binding(21) var lights: texture_2d_array<u32>;
 
@@ -177,16 +178,4 @@ fn pixel(px: vec2u, view: u32) {
     let has_near = ANTIALIAS != 0u && candidate.is_own && lattice.level == 0u;
     let near = samples_near(px, lattice, view, has_near);
     show_pixel(px, view, lattice.level, disparity_now, candidate, near);
-}
-
-@compute @workgroup_size(64, 1)
-fn main(
-    @builtin(global_invocation_id) id: vec3u,
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(local_invocation_index) invocation: u32,
-) {
-    if id.x < frame.size.x && id.y < frame.size.y {
-        pixel(id.xy, frame.first_view + group.z);
-    }
-    add_counts(invocation);
 }

@@ -1,9 +1,9 @@
+//#use each_pixel
 //#use output
 //#use settled_history
 //#use surface_history
 //#use taa
-// Temporal antialiasing of the foveated frame. CPU twin: src/cpu/taa_pass.rs, which lists the reads and writes. One
-// invocation a pixel; z is the view.
+// Temporal antialiasing of the foveated frame. CPU twin: src/cpu/taa_pass.rs, which lists the reads and writes.
 
 struct Neighbourhood {
     sum: vec3f,
@@ -73,16 +73,4 @@ fn pixel(px: vec2u, view: u32) {
     let lod = select(-1.0, lod_of(confidence), candidate.usable || valid);
     let words = pack_surface(Surface(shown, lod, disparity_now));
     textureStore(next_surfaces, px, view, vec4u(words, 0u, 0u));
-}
-
-@compute @workgroup_size(64, 1)
-fn main(
-    @builtin(global_invocation_id) id: vec3u,
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(local_invocation_index) invocation: u32,
-) {
-    if id.x < frame.size.x && id.y < frame.size.y {
-        pixel(id.xy, frame.first_view + group.z);
-    }
-    add_counts(invocation);
 }

@@ -1,15 +1,7 @@
+//#use each_pixel
 //#use wrs_pixel
-// Weighted reservoirs over whole frames. One invocation a pixel; z is the view.
+// Weighted reservoirs over whole frames.
 
-@compute @workgroup_size(64, 1)
-fn main(
-    @builtin(global_invocation_id) id: vec3u,
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(local_invocation_index) invocation: u32,
-) {
-    if id.x < frame.size.x && id.y < frame.size.y {
-        // View index from the workgroup id, which is uniform: the view's constants are loaded once.
-        pixel(id.xy, frame.first_view + group.z, Place(id.xy, 1.0));
-    }
-    add_counts(invocation);
+fn pixel(px: vec2u, view: u32) {
+    weighted_pixel(px, view, Place(px, 1.0));
 }

@@ -125,7 +125,7 @@ fn level_of(px: vec2u, view: u32, e_deg: f32, sampled: bool) -> u32 {
     return level_code(candidate_lod(px, view, e_deg));
 }
 
-fn pixel(px: vec2u, view: u32, place: Place) {
+fn weighted_pixel(px: vec2u, view: u32, place: Place) {
     let given = color_at(px, view);
     let candidate = color(given.xyz);
     let motion = motion_at(px, view);

@@ -1,7 +1,7 @@
+//#use each_pixel
 //#use lattices
 //#use wrs_pixel
-// Weighted reservoirs over sparse frames: candidates count by the place of their sample. One invocation a pixel; z
-// is the view.
+// Weighted reservoirs over sparse frames: candidates count by the place of their sample.
 
 // Place of the sample nearest to a pixel. Without samples in the frame: the pixel itself, with a weight of 1.
 fn place_of(px: vec2u, view: u32) -> Place {
@@ -18,16 +18,6 @@ fn place_of(px: vec2u, view: u32) -> Place {
     return Place(first + (vec2u(point) << vec2u(level)), place_weight(vec2f(x, y)));
 }
 
-@compute @workgroup_size(64, 1)
-fn main(
-    @builtin(global_invocation_id) id: vec3u,
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(local_invocation_index) invocation: u32,
-) {
-    if id.x < frame.size.x && id.y < frame.size.y {
-        // View index from the workgroup id, which is uniform: the view's constants are loaded once.
-        let view = frame.first_view + group.z;
-        pixel(id.xy, view, place_of(id.xy, view));
-    }
-    add_counts(invocation);
+fn pixel(px: vec2u, view: u32) {
+    weighted_pixel(px, view, place_of(px, view));
 }

@@ -12,7 +12,7 @@ use crate::kernel::antialias::mean_of;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::depth::distance_of;
 use crate::kernel::lattice::{nearest_point, point_offset_px};
-use crate::kernel::noise::unpack_noise;
+use crate::kernel::noise::{Noise, unpack_noise};
 use crate::kernel::resample::{ROUNDS, Tap, TapsAround, sharp_sum, taps_of};
 use crate::kernel::stored_sample::unpack_stored;
 use crate::kernel::surface::unpack_surface;
@@ -171,12 +171,8 @@ pub(super) fn note_trace(trace: &PixelTrace, notes: &mut Vec<Note>) {
 pub(super) fn note_surface(pixel: &Pixel, notes: &mut Vec<Note>) {
     let stored = unpack_surface(pixel.surface);
     notes.note(NoteStage::Stored, "color", stored.color, "linear light");
-    notes.note(
-        NoteStage::Stored,
-        "level of detail",
-        stored.lod,
-        "log2 px (taa, taau: of the confidence), below 0: empty",
-    );
+    let unit = "log2 px (taa, taau: of the confidence), below 0: empty";
+    notes.note(NoteStage::Stored, "level of detail", stored.lod, unit);
     notes.note(NoteStage::Stored, "disparity", stored.disparity, "1/distance, below 0: unknown");
     note_noise(pixel, notes);
 }
@@ -199,11 +195,6 @@ pub(super) fn note_stored_mean(pixel: &Pixel, notes: &mut Vec<Note>) {
 }
 
 fn note_noise(pixel: &Pixel, notes: &mut Vec<Note>) {
-    let noise = unpack_noise(pixel.noise);
-    notes.note(
-        NoteStage::Stored,
-        "noise",
-        [noise.samples, noise.variance],
-        "samples, variance of one; noisy frames only",
-    );
+    let Noise { samples, variance } = unpack_noise(pixel.noise);
+    notes.note(NoteStage::Stored, "noise", [samples, variance], "samples, variance of one; noisy frames only");
 }

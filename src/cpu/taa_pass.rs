@@ -53,12 +53,8 @@ impl SurfaceMethod for Taa {
                     confidence = confidence.min(taa::agreeing(sum.x, squares.x, past_luma, 9.0));
                 }
                 let alpha = taa::candidate_share(confidence, source.trust);
-                notes.note(
-                    NoteStage::Comparison,
-                    "confidence that agrees with the samples around",
-                    confidence,
-                    "samples",
-                );
+                let name = "confidence that agrees with the samples around";
+                notes.note(NoteStage::Comparison, name, confidence, "samples");
                 output = taa::blend_clipped_noted(candidate, history, sum, squares, alpha, confidence, notes);
                 share = 1.0 - alpha;
                 confidence = 1.0 / alpha;
@@ -70,12 +66,10 @@ impl SurfaceMethod for Taa {
         let trace = PixelTrace {
             verdict,
             weight: 1.0 - share,
-            quality: 0.0,
-            age: 0,
             history_share: share,
-            agreement: 1.0,
             is_replaced: verdict != Verdict::Valid,
             motion,
+            ..PixelTrace::default()
         };
         let surface = pack_surface(Surface { color: output, lod: stored_lod, disparity });
         Pixel { output, surface, noise: 0, trace }

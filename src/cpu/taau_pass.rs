@@ -59,12 +59,8 @@ impl SurfaceMethod for Taau {
         }
         notes.note(NoteStage::Candidate, "nearest sample", nearest, "linear light");
         notes.note(NoteStage::Candidate, "usable", usable, "");
-        notes.note(
-            NoteStage::Candidate,
-            "weight of the samples",
-            around.weights,
-            "at the pixel, and with interpolation",
-        );
+        let unit = "at the pixel, and with interpolation";
+        notes.note(NoteStage::Candidate, "weight of the samples", around.weights, unit);
         inputs.count(x, y, usable, disparity, verdict, stats);
 
         let sampled = around.weights.y >= taau::LEAST_SAMPLE_WEIGHT;

@@ -7,7 +7,6 @@ use super::plane::{Plane, PlaneDesc};
 use super::stage::{Job, Passes, Specialization};
 use crate::context::ContextDesc;
 use crate::foveation::Filter;
-use crate::method::Overrides;
 use wgpu::{Device, TextureFormat};
 
 /// Passes that fill frames of lattices and of quads, and the filled color of the current one.
@@ -42,18 +41,14 @@ impl Passes for Fill {
         special.pipeline(device, desc, self.shader(desc));
     }
 
-    fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
-        [&self.lattices, &self.quads].into_iter().flat_map(ComputeShader::pipelines).collect()
+    fn shaders(&self) -> Vec<&ComputeShader> {
+        vec![&self.lattices, &self.quads]
     }
 
     fn record<'a>(&'a self, job: &mut Job<'a>) {
+        let own = [(Binding::Write, (&self.color.whole).into())];
         for batch in job.batches() {
-            job.dispatch(
-                self.shader(job.desc),
-                &batch,
-                &[(Binding::Write, (&self.color.whole).into())],
-                job.desc.size_px,
-            );
+            job.dispatch(self.shader(job.desc), &batch, &own, job.desc.size_px);
         }
         job.textures[Binding::Color as usize] = Some(Textures::Layers(&self.color.texture));
     }

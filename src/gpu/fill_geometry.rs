@@ -8,7 +8,6 @@ use super::plane::{Plane, PlaneDesc};
 use super::stage::{Job, Passes, Specialization};
 use crate::context::ContextDesc;
 use crate::convention::DepthConvention;
-use crate::method::Overrides;
 use std::sync::OnceLock;
 use wgpu::{Device, Texture, TextureFormat, TextureUsages};
 
@@ -54,8 +53,8 @@ impl Passes for GeometryFill {
         }
     }
 
-    fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
-        self.pass.get().map_or_else(Vec::new, |pass| pass.shader.pipelines())
+    fn shaders(&self) -> Vec<&ComputeShader> {
+        self.pass.get().map(|pass| &pass.shader).into_iter().collect()
     }
 
     fn added_bytes(&self) -> u64 {

@@ -5,7 +5,7 @@ use super::binding::Binding;
 use super::compute::{ComputeShader, Sources};
 use super::stage::{Job, Passes, Specialization};
 use crate::context::ContextDesc;
-use crate::method::{Overrides, PassShader};
+use crate::method::PassShader;
 use crate::settings::Settings;
 use crate::shader::SHADERS;
 use std::sync::OnceLock;
@@ -46,8 +46,8 @@ impl Passes for MethodPass {
         special.pipeline(device, desc, self.shader(device, *special));
     }
 
-    fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
-        [Some(&self.shader), self.with_view.get()].into_iter().flatten().flat_map(ComputeShader::pipelines).collect()
+    fn shaders(&self) -> Vec<&ComputeShader> {
+        [Some(&self.shader), self.with_view.get()].into_iter().flatten().collect()
     }
 
     fn record<'a>(&'a self, job: &mut Job<'a>) {

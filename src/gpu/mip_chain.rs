@@ -10,7 +10,6 @@ use super::recorder::Recorder;
 use super::stage::{Job, Passes, Specialization};
 use crate::context::ContextDesc;
 use crate::kernel::foveate::level_len;
-use crate::method::Overrides;
 use std::num::NonZeroU64;
 use wgpu::{Buffer, BufferUsages, Device};
 
@@ -77,8 +76,8 @@ impl Passes for MipChainPass {
         self.shader.pipeline(device, &self.overrides);
     }
 
-    fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
-        self.shader.pipelines()
+    fn shaders(&self) -> Vec<&ComputeShader> {
+        vec![&self.shader]
     }
 
     fn record<'a>(&'a self, job: &mut Job<'a>) {
@@ -115,8 +114,8 @@ impl Passes for CandidatePass {
         self.rest.prewarm(device, desc, special);
     }
 
-    fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
-        [self.first.pipelines(), self.rest.pipelines()].concat()
+    fn shaders(&self) -> Vec<&ComputeShader> {
+        vec![&self.first, &self.rest.shader]
     }
 
     fn record<'a>(&'a self, job: &mut Job<'a>) {

@@ -83,24 +83,21 @@ impl QuadPasses {
             let own = [(Binding::Write, (&keys.whole).into()), (Binding::State, state.into())];
             job.dispatch(&self.key, &job.batch_of(view), &own, size.map(|side| side.div_ceil(2)));
             for (shader, uniforms, workgroups) in [(&self.threshold, budget, [1; 3]), (&self.mask, uniforms, of_mask)] {
-                let resource = |number: u32| {
-                    let of = |binding: Binding| number == binding as u32;
-                    let resource: Resource = match () {
-                        () if of(Binding::Read) => (&keys.whole).into(),
-                        () if of(Binding::Write) => (&mask.whole).into(),
-                        () if of(Binding::WriteSecond) => (&runs.whole).into(),
-                        () if of(Binding::State) => state.into(),
-                        () if of(Binding::List) => list.into(),
-                        () => uniforms.into(),
-                    };
-                    Some(resource)
-                };
+                let own = [
+                    (Binding::Uniforms, Resource::from(uniforms)),
+                    (Binding::Read, (&keys.whole).into()),
+                    (Binding::Write, (&mask.whole).into()),
+                    (Binding::WriteSecond, (&runs.whole).into()),
+                    (Binding::State, state.into()),
+                    (Binding::List, list.into()),
+                ];
+                let of = |number: u32| own.iter().find(|(binding, _)| *binding as u32 == number);
+                let resource = |number: u32| of(number).map(|(_, resource)| resource.clone());
                 let pipeline = shader.pipeline(job.device, &[]);
                 job.recorder.add(job.device, (shader, pipeline), None, resource, workgroups);
             }
         }
-        let own: [(Binding, Resource); 2] =
-            [(Binding::ReadSecond, (&runs.whole).into()), (Binding::Write, (&around.whole).into())];
+        let own = [(Binding::ReadSecond, Resource::from(&runs.whole)), (Binding::Write, (&around.whole).into())];
         for batch in job.batches() {
             job.dispatch(&self.around, &batch, &own, size);
         }

@@ -5,9 +5,8 @@ use super::binding::Binding;
 use super::compute::{ComputeShader, Sources};
 use super::plane::{Plane, PlaneDesc};
 use super::quads::{PIXEL_GROUPS, QUAD_GROUPS, size_quads};
-use super::stage::{Job, Passes, Specialization};
+use super::stage::{Job, Passes};
 use crate::context::ContextDesc;
-use crate::method::Overrides;
 use wgpu::{Device, TextureFormat};
 
 /// Passes over the samples, and the light at the quads. The comparisons lie in the texture of this frame's history
@@ -34,13 +33,8 @@ impl Passes for QuadSamplePasses {
         self.lights = lights(desc).create(device);
     }
 
-    fn prewarm(&self, device: &Device, desc: &ContextDesc, special: &mut Specialization) {
-        special.pipeline(device, desc, &self.observe);
-        special.pipeline(device, desc, &self.light);
-    }
-
-    fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
-        [&self.observe, &self.light].into_iter().flat_map(ComputeShader::pipelines).collect()
+    fn shaders(&self) -> Vec<&ComputeShader> {
+        vec![&self.observe, &self.light]
     }
 
     fn record<'a>(&'a self, job: &mut Job<'a>) {

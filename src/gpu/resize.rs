@@ -6,24 +6,7 @@ use super::history::{Planes, bound};
 use super::recorder::Recorder;
 use crate::method::{HistoryLayout, Overrides};
 use crate::resize::Resize;
-use bytemuck::{Pod, Zeroable};
 use wgpu::{BufferUsages, Device};
-
-/// `ResizeUniforms` in `shaders/pass/resize_uniforms.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct ResizeUniforms {
-    /// Width and height of the new views in pixels.
-    pub size: [u32; 2],
-    /// Width and height of the old views in pixels.
-    pub old_size: [u32; 2],
-    /// Old size over new size, for each axis.
-    pub ratio: [f32; 2],
-    /// Change of levels of detail.
-    pub lod_shift: f32,
-    /// Padding to a multiple of 8 bytes.
-    pub unused: u32,
-}
 
 /// Pass for histories of one layout.
 #[derive(Debug)]
@@ -73,14 +56,7 @@ impl ResizePass {
         view_count: u32,
         [past, next]: [&Planes; 2],
     ) {
-        let uniforms = ResizeUniforms {
-            size: resize.size_px,
-            old_size: resize.old_size_px,
-            ratio: resize.ratio,
-            lod_shift: resize.lod_shift,
-            unused: 0,
-        };
-        let uniforms = filled(device, "afterimage uniforms", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
+        let uniforms = filled(device, "afterimage uniforms", bytemuck::bytes_of(resize), BufferUsages::UNIFORM);
         let resource = |number| if number == 0 { Some((&uniforms).into()) } else { bound(past, next, number) };
         let [width, height] = resize.size_px.map(|s| s.div_ceil(self.block_px));
         let workgroups = [width.div_ceil(WORKGROUP_WIDTH), height, view_count];

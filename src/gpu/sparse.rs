@@ -4,12 +4,11 @@
 use super::binding::Binding;
 use super::compute::{ComputeShader, Sources};
 use super::plane::{Plane, PlaneDesc};
-use super::stage::{Job, Passes, Specialization};
+use super::stage::{Job, Passes};
 use super::textures::Batch;
 use super::uniforms::{LatticeUniforms, ViewLattices};
 use crate::context::ContextDesc;
 use crate::lattice::Lattices;
-use crate::method::Overrides;
 use crate::uniforms::results_size;
 use crate::view::ViewFrame;
 use wgpu::{Device, TextureFormat};
@@ -39,13 +38,8 @@ impl Passes for SamplePasses {
         [self.observed, self.lights] = [(); 2].map(|()| results(desc).create(device));
     }
 
-    fn prewarm(&self, device: &Device, desc: &ContextDesc, special: &mut Specialization) {
-        special.pipeline(device, desc, &self.observe);
-        special.pipeline(device, desc, &self.light);
-    }
-
-    fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
-        [&self.observe, &self.light].into_iter().flat_map(ComputeShader::pipelines).collect()
+    fn shaders(&self) -> Vec<&ComputeShader> {
+        vec![&self.observe, &self.light]
     }
 
     fn record<'a>(&'a self, job: &mut Job<'a>) {

@@ -175,11 +175,15 @@ pub(super) trait Passes: Debug + wgpu::WasmNotSendSync {
     /// Follows a change of the context's size.
     fn resize(&mut self, _device: &Device, _desc: &ContextDesc) {}
 
-    /// Compiles the pipelines of a variant.
-    fn prewarm(&self, device: &Device, desc: &ContextDesc, special: &mut Specialization);
+    /// Shaders that were made.
+    fn shaders(&self) -> Vec<&ComputeShader>;
 
-    /// Shader and override values of each compiled pipeline.
-    fn pipelines(&self) -> Vec<(&'static str, Overrides)>;
+    /// Compiles the pipelines of a variant.
+    fn prewarm(&self, device: &Device, desc: &ContextDesc, special: &mut Specialization) {
+        for shader in self.shaders() {
+            special.pipeline(device, desc, shader);
+        }
+    }
 
     /// Bytes of textures that were made at a frame, in addition to
     /// [`memory_bytes_of`](super::Afterimage::memory_bytes_of).

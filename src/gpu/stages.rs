@@ -1,6 +1,6 @@
 //! Passes of a frame: the stages that the table of methods lists, in their order.
 
-use super::compute::Sources;
+use super::compute::{ComputeShader, Sources};
 use super::fill::Fill;
 use super::fill_geometry::GeometryFill;
 use super::history::History;
@@ -73,7 +73,7 @@ impl Stages {
 
     /// Shader and override values of each compiled pipeline.
     pub fn pipelines(&self) -> impl Iterator<Item = (&'static str, Overrides)> + '_ {
-        self.passes().flat_map(Passes::pipelines)
+        self.passes().flat_map(Passes::shaders).flat_map(ComputeShader::pipelines)
     }
 
     /// Bytes of textures that were made at a frame, in addition to [`memory_bytes_of`].

@@ -3,7 +3,7 @@
 use super::view::NO_NOISE;
 use crate::kernel::noise::Noise;
 use crate::kernel::resample::codes_between;
-use crate::kernel::sparse_smr::{BY_NEIGHBOURS, Lit, Observation, SAMPLE_RELATIVE};
+use crate::kernel::sparse_smr::{BY_NEIGHBOURS, Lit, OTHER_SURFACE, Observation, SAMPLE_RELATIVE, candidate_level};
 use crate::notes::{NoteStage, Notes};
 use glam::Vec3;
 
@@ -47,12 +47,8 @@ impl Candidate {
         notes.note(NoteStage::Candidate, "level of detail", self.lod, "log2 px");
         notes.note(NoteStage::Candidate, "smallest of the samples around", self.range[0], "linear light");
         notes.note(NoteStage::Candidate, "largest of the samples around", self.range[1], "linear light");
-        notes.note(
-            NoteStage::Candidate,
-            "noise",
-            [self.noise.samples, self.noise.variance],
-            "samples, variance of one",
-        );
+        let noise = [self.noise.samples, self.noise.variance];
+        notes.note(NoteStage::Candidate, "noise", noise, "samples, variance of one");
         notes.note(NoteStage::Light, "gain", self.gain, "");
     }
 }
@@ -72,33 +68,76 @@ pub(super) fn note_sample(
     notes.note(NoteStage::Light, "sample", values, "x y px, gain, fit around it, fit of its own");
     if let Some(Observation { history, error, confidence, .. }) = observed {
         let values = [x as f32, y as f32, history.x, history.y, history.z, error, confidence];
-        notes.note(
-            NoteStage::Comparison,
-            "history at sample",
-            values,
-            "x y px, linear light, expected difference (100 from black to white), confidence",
-        );
+        let unit = "x y px, linear light, expected difference (100 from black to white), confidence";
+        notes.note(NoteStage::Comparison, "history at sample", values, unit);
     }
 }
 
 /// Sums over the samples around a pixel.
-#[derive(Default)]
 pub(super) struct Sums {
-    pub color: Vec3,
-    pub weight: f32,
-    pub gain: Vec3,
-    pub fit: f32,
-    pub valid: f32,
+    color: Vec3,
+    weight: f32,
+    gain: Vec3,
+    fit: f32,
+    valid: f32,
+    /// Smallest and largest color.
+    range: [Vec3; 2],
+    /// Squared distance in pixels of the nearest sample of the pixel's surface.
+    nearest_px2: f32,
+    /// Color of the pixel's own sample, and the fit of history there.
+    pub own: Option<(Vec3, f32)>,
 }
 
 impl Sums {
+    pub const NOTHING: Self = Self {
+        color: Vec3::ZERO,
+        weight: 0.0,
+        gain: Vec3::ZERO,
+        fit: 0.0,
+        valid: 0.0,
+        range: [Vec3::splat(f32::MAX), Vec3::ZERO],
+        nearest_px2: f32::MAX,
+        own: None,
+    };
+
+    /// Adds a sample with the weight `share` by its place, and returns its weight. `alike`: whether it shows the
+    /// pixel's surface.
     #[inline(always)]
-    pub fn add(&mut self, color: Vec3, weight: f32, lit: Lit) {
+    pub fn add(&mut self, color: Vec3, lit: Lit, share: f32, px2: f32, alike: bool) -> f32 {
+        let weight = share * if alike { 1.0 } else { OTHER_SURFACE };
         let known = weight * if lit.is_own { 1.0 } else { BY_NEIGHBOURS };
         self.color += color * weight;
         self.weight += weight;
         self.gain += lit.gain * known;
         self.fit += lit.fit * known;
         self.valid += known;
+        self.range = [self.range[0].min(color), self.range[1].max(color)];
+        if alike {
+            self.nearest_px2 = self.nearest_px2.min(px2);
+        }
+        weight
+    }
+
+    /// Candidate of the pixel, without noise, where samples have a distance of 2^`level` pixels.
+    #[inline(always)]
+    pub fn candidate(self, level: u32) -> Candidate {
+        if self.weight == 0.0 {
+            return Candidate::NONE;
+        }
+        let coarsest = level as f32;
+        let (color, own_fit) = self.own.unwrap_or((self.color * (1.0 / self.weight), 1.0));
+        Candidate {
+            color,
+            usable: true,
+            lod: match self.nearest_px2 {
+                f32::MAX => coarsest + 1.0,
+                px2 => candidate_level(px2.sqrt(), coarsest),
+            },
+            range: self.range,
+            gain: self.gain * (1.0 / self.valid),
+            fit: (self.fit * (1.0 / self.valid)).min(own_fit),
+            noise: NO_NOISE,
+            is_own: self.own.is_some(),
+        }
     }
 }

@@ -34,8 +34,7 @@ impl View<'_> {
                 })
             })
         };
-        let around = neighbours()
-            .fold(ObservedAround::default(), |a, (o, weight, spatial)| add_observation(a, o, weight, spatial));
+        let around = observed_around(neighbours());
         // A single noisy sample does not show whether history fits.
         let judged = own.filter(|_| !self.is_noisy());
         let fit_of_own = |gain| judged.map_or(1.0, |own| own_fit(own, gain));
@@ -45,30 +44,55 @@ impl View<'_> {
         if around.weight < 1e-6 {
             return pack_lit(unlit);
         }
-        let errors = |gain| neighbours().fold(0.0, |sum, (o, weight, _)| sum + errors_left(o, gain) * weight);
-        let without = errors(Vec3::ONE);
-        let error = match self.antialiases {
-            true => scattered_error(around, neighbours().fold(0.0, |sum, (o, weight, _)| add_scatter(sum, o, weight))),
-            false => mean_error(around),
-        };
-        let gain = if self.relights { relight(around, error) } else { Vec3::ONE };
-        let with_gain = if gain == Vec3::ONE { without } else { errors(gain) };
-        let (gain, left) = if with_gain <= without { (gain, with_gain) } else { (Vec3::ONE, without) };
+        let (gain, left) = self.relit_around(around, neighbours, 1.0);
         let confidence = (around.weight / around.spatial).min(1.0);
         let fit = if self.is_noisy() {
             fit(left / around.weight, confidence).min(mean_fit(around, confidence))
         } else {
-            let capped = neighbours()
-                .fold(0.0, |sum, (o, _, spatial)| sum + capped_error(o, errors_left(o, Vec3::ONE), spatial));
-            fit_around(around, left, capped)
+            fit_around(around, left, capped_around(neighbours()))
         };
         pack_lit(Lit { gain, fit, own_fit: fit_of_own(gain), ..unlit })
     }
+
+    /// Gain of history around a sample, and the weighted sum of the differences that it leaves. It is used if these are
+    /// at most `tolerance` times those without it.
+    #[inline(always)]
+    pub(super) fn relit_around<I: Iterator<Item = Neighbour>>(
+        &self,
+        around: ObservedAround,
+        neighbours: impl Fn() -> I,
+        tolerance: f32,
+    ) -> (Vec3, f32) {
+        let errors = |gain| neighbours().fold(0.0, |sum, (o, weight, _)| sum + errors_left(o, gain) * weight);
+        let without = errors(Vec3::ONE);
+        let error = match self.antialiases {
+            true => scattered_error(around, neighbours().fold(0.0, add_scatter)),
+            false => mean_error(around),
+        };
+        let gain = if self.relights { relight(around, error) } else { Vec3::ONE };
+        let with_gain = if gain == Vec3::ONE { without } else { errors(gain) };
+        if with_gain <= without * tolerance { (gain, with_gain) } else { (Vec3::ONE, without) }
+    }
+}
+
+/// Observation beside a sample, its weight, and its weight by position alone.
+pub(super) type Neighbour = (Observation, f32, f32);
+
+/// Sums over the observations around a sample.
+#[inline(always)]
+pub(super) fn observed_around(neighbours: impl Iterator<Item = Neighbour>) -> ObservedAround {
+    neighbours.fold(ObservedAround::default(), |a, (o, weight, spatial)| add_observation(a, o, weight, spatial))
+}
+
+/// Sum of [`capped_error`] around a sample, without a gain.
+#[inline(always)]
+pub(super) fn capped_around(neighbours: impl Iterator<Item = Neighbour>) -> f32 {
+    neighbours.fold(0.0, |sum, (o, _, spatial)| sum + capped_error(o, errors_left(o, Vec3::ONE), spatial))
 }
 
 /// Weighted sum of squared differences between samples and history, with one more sample added.
 #[inline(always)]
-pub(super) fn add_scatter(sum: f32, o: Observation, weight: f32) -> f32 {
+fn add_scatter(sum: f32, (o, weight, _): Neighbour) -> f32 {
     let difference = root_difference(o.sampled, o.history).min(1e6);
     sum + (difference * difference) * weight
 }

@@ -13,9 +13,7 @@ use crate::kernel::noise::{NoiseSum, add_noise, mean_noise, pack_noise};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::has_code;
 use crate::kernel::sanitize;
-use crate::kernel::sparse_smr::{
-    LEAST_SHARE, OTHER_SURFACE, Reconstruction, accumulate, candidate_level, reconstruct, relit, unpack_lit,
-};
+use crate::kernel::sparse_smr::{LEAST_SHARE, Reconstruction, accumulate, reconstruct, relit, unpack_lit};
 use crate::kernel::stored_sample::{StoredSample, pack_stored};
 use crate::notes::{NoteStage, Notes};
 use crate::stats::FrameStats;
@@ -170,10 +168,7 @@ impl View<'_> {
             // The fit of history comes from the samples of the next lattice.
             return Candidate { fit: self.candidate(coarser, px, disparity, lights, notes).fit, ..own };
         }
-        let mut sums = Sums::default();
-        let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::ZERO);
-        let mut nearest_px2 = f32::MAX;
-        let mut own = None;
+        let mut sums = Sums::NOTHING;
         let mut noises = NoiseSum::default();
         let codes = sample_codes(disparity);
         let px2 = [(px[0], lattice.first_px[0], x.points), (px[1], lattice.first_px[1], y.points)]
@@ -191,44 +186,22 @@ impl View<'_> {
             let lit = unpack_lit(words);
             let alike = !self.inputs.tests_depth() || has_code(words[1], codes);
             let share = point_weight(x.fraction, right) * point_weight(y.fraction, below);
-            let weight = share.max(LEAST_SHARE) * if alike { 1.0 } else { OTHER_SURFACE };
-            sums.add(color, weight, lit);
+            let px2 = px2[0][right as usize] + px2[1][below as usize];
+            let weight = sums.add(color, lit, share.max(LEAST_SHARE), px2, alike);
             if N::ON {
                 note_sample(notes, at, weight, color, lit, self.observe(index, point));
             }
             if self.is_noisy() {
                 noises = add_noise(noises, self.sample_noise(at), weight);
             }
-            (low, high) = (low.min(color), high.max(color));
-            if alike {
-                nearest_px2 = nearest_px2.min(px2[0][right as usize] + px2[1][below as usize]);
-            }
             if is_sample && tap == 0 && (alike || !self.antialiases || disparity < 0.0) {
-                own = Some((color, lit.own_fit));
+                sums.own = Some((color, lit.own_fit));
             }
         }
-        if sums.weight == 0.0 {
-            return Candidate::NONE;
+        let mut candidate = sums.candidate(lattice.level);
+        if self.is_noisy() && candidate.usable {
+            candidate.noise = if candidate.is_own { self.sample_noise(px) } else { mean_noise(noises) };
         }
-        let coarsest = lattice.level as f32;
-        let is_own = own.is_some();
-        let (color, own_fit) = own.unwrap_or((sums.color * (1.0 / sums.weight), 1.0));
-        let noise = if !self.is_noisy() {
-            NO_NOISE
-        } else if is_own {
-            self.sample_noise(px)
-        } else {
-            mean_noise(noises)
-        };
-        Candidate {
-            color,
-            usable: true,
-            lod: if nearest_px2 == f32::MAX { coarsest + 1.0 } else { candidate_level(nearest_px2.sqrt(), coarsest) },
-            range: [low, high],
-            gain: sums.gain * (1.0 / sums.valid),
-            fit: (sums.fit * (1.0 / sums.valid)).min(own_fit),
-            noise,
-            is_own,
-        }
+        candidate
     }
 }

@@ -1,17 +1,16 @@
 //! Samples of shaded quads: their comparison with history, gain and fit around them, and candidates of pixels.
 
 use super::candidate::{Candidate, Sums, note_sample, sample_codes};
+use super::light::{Neighbour, capped_around, observed_around};
 use super::observe::{pack_observation, unpack_observation};
 use super::quads::{Quads, nearest_px, offset_px2};
-use super::view::{NO_NOISE, Samples, View};
-use crate::kernel::antialias::scattered_error;
+use super::view::{Samples, View};
 use crate::kernel::depth::INVALID_DISPARITY;
 use crate::kernel::resample::has_code;
 use crate::kernel::sanitize;
 use crate::kernel::sparse_smr::{
-    LIGHT_RELATIVE, OTHER_SURFACE, Observation, ObservedAround, QuadLit, RELIT_ERRORS, add_observation, agreement,
-    candidate_level, capped_error, errors_left, fit_around, mean_error, own_fit, pack_quad_lit, quad_code, quad_lit,
-    relight,
+    LIGHT_RELATIVE, Observation, ObservedAround, QuadLit, RELIT_ERRORS, add_observation, agreement, fit_around,
+    own_fit, pack_quad_lit, quad_code, quad_lit,
 };
 use crate::notes::Notes;
 use crate::parallel::collect;
@@ -19,13 +18,6 @@ use glam::Vec3;
 
 /// Light of the shaded quads, quad by quad ([`pack_quad_lit`]).
 pub(super) type QuadLights = Vec<[u32; 4]>;
-
-/// Observations around a quad.
-struct Near {
-    observation: Observation,
-    weight: f32,
-    spatial: f32,
-}
 
 impl View<'_> {
     /// Pixels of a quad inside the frame.
@@ -95,7 +87,7 @@ impl View<'_> {
         }
         let distance2 = |other: [u32; 2]| offset_px2(other[0], quad[0]) + offset_px2(other[1], quad[1]);
         let least = quads.around(quad).map(distance2).fold(f32::MAX, f32::min);
-        let mut near: Vec<Near> = vec![];
+        let mut near: Vec<Neighbour> = vec![];
         let is_compared = quads.level_at(quad.map(|v| 2 * v)) > 0;
         for other in quads.around(quad).chain([quad]).filter(|_| is_compared) {
             let spatial = 1.0 / (1.0 + distance2(other) / least);
@@ -104,33 +96,16 @@ impl View<'_> {
                 if alike(px) {
                     let weight =
                         own.map_or(spatial * observation.confidence, |own| agreement(own, observation, spatial));
-                    near.push(Near { observation, weight, spatial });
+                    near.push((observation, weight, spatial));
                 }
             }
         }
-        let around =
-            near.iter().fold(ObservedAround::default(), |a, n| add_observation(a, n.observation, n.weight, n.spatial));
+        let near = || near.iter().copied();
+        let around = observed_around(near());
         let (mut gain, mut fits) = (Vec3::ONE, 1.0);
         if around.weight >= 1e-6 {
-            let errors = |gain| near.iter().fold(0.0, |sum, n| sum + errors_left(n.observation, gain) * n.weight);
-            let without = errors(Vec3::ONE);
-            let error = match self.antialiases {
-                true => {
-                    let scatter =
-                        near.iter().fold(0.0, |sum, n| super::light::add_scatter(sum, n.observation, n.weight));
-                    scattered_error(around, scatter)
-                }
-                false => mean_error(around),
-            };
-            gain = if self.relights { relight(around, error) } else { Vec3::ONE };
-            let with_gain = if gain == Vec3::ONE { without } else { errors(gain) };
-            let enough = with_gain <= without * RELIT_ERRORS;
-            let left = if enough { with_gain } else { without };
-            if !enough {
-                gain = Vec3::ONE;
-            }
-            let capped = |n: &Near| capped_error(n.observation, errors_left(n.observation, Vec3::ONE), n.spatial);
-            fits = fit_around(around, left, near.iter().fold(0.0, |sum, n| sum + capped(n)));
+            let (relit, left) = self.relit_around(around, near, RELIT_ERRORS);
+            (gain, fits) = (relit, fit_around(around, left, capped_around(near())));
         }
         let mut own_fits = [1.0; 4];
         let mut disparities = [INVALID_DISPARITY; 4];
@@ -162,10 +137,7 @@ impl View<'_> {
             return Candidate { color, usable, is_own: usable, ..Candidate::NONE };
         }
         let codes = sample_codes(disparity);
-        let mut sums = Sums::default();
-        let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::ZERO);
-        let mut nearest_px2 = f32::MAX;
-        let mut own = None;
+        let mut sums = Sums::NOTHING;
         let quad = px.map(|v| v / 2);
         let columns = quads.size()[0];
         let mut add = |at: [u32; 2]| {
@@ -179,17 +151,12 @@ impl View<'_> {
             let alike = !self.inputs.tests_depth() || has_code(quad_code(words, place), codes);
             let px2 = offset_px2(at[0], px[0]) + offset_px2(at[1], px[1]);
             let share = if at == px { 1.0 } else { 1.0 / px2 };
-            let weight = share * if alike { 1.0 } else { OTHER_SURFACE };
-            sums.add(color, weight, lit);
+            let weight = sums.add(color, lit, share, px2, alike);
             if N::ON {
                 note_sample(notes, at, weight, color, lit, self.observe_px(at, level, color, usable));
             }
-            (low, high) = (low.min(color), high.max(color));
-            if alike {
-                nearest_px2 = nearest_px2.min(px2);
-            }
             if at == px {
-                own = Some((color, lit.own_fit));
+                sums.own = Some((color, lit.own_fit));
             }
         };
         if is_shaded {
@@ -197,26 +164,7 @@ impl View<'_> {
         } else {
             quads.around(quad).for_each(|other| add(nearest_px(other, px, self.inputs.size)));
         }
-        if sums.weight == 0.0 {
-            return Candidate::NONE;
-        }
-        let coarsest = level as f32;
-        let is_own = own.is_some();
-        let (color, own_fit) = own.unwrap_or((sums.color * (1.0 / sums.weight), 1.0));
-        let nearest_lod = candidate_level(nearest_px2.sqrt(), coarsest);
-        Candidate {
-            color,
-            usable: true,
-            lod: match nearest_px2 {
-                _ if is_own => 0.0,
-                f32::MAX => coarsest + 1.0,
-                _ => nearest_lod,
-            },
-            range: [low, high],
-            gain: sums.gain * (1.0 / sums.valid),
-            fit: (sums.fit * (1.0 / sums.valid)).min(own_fit),
-            noise: NO_NOISE,
-            is_own,
-        }
+        let candidate = sums.candidate(level);
+        Candidate { lod: if candidate.is_own { 0.0 } else { candidate.lod }, ..candidate }
     }
 }

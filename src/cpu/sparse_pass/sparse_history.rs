@@ -129,12 +129,8 @@ impl View<'_> {
                 let place = texel_px + stored.place_px;
                 let weight = stored_weight(place.x * place.x + place.y * place.y, inverse_reach);
                 let values = [tx as f32, ty as f32, place.x, place.y, weight, stored.lod, f32::from(same)];
-                notes.note(
-                    NoteStage::History,
-                    "texel",
-                    values,
-                    "x y px, sample from position px, weight, log2 px, same surface",
-                );
+                let unit = "x y px, sample from position px, weight, log2 px, same surface";
+                notes.note(NoteStage::History, "texel", values, unit);
             }
             around = add_stored(around, stored, texel_px, same, inverse_reach);
             if around.cost < cost {

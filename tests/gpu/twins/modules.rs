@@ -33,17 +33,18 @@ pub fn validate(composed: &Composed) -> Result<(), String> {
 }
 
 /// Every module with those that it uses, and with each choice of the functions that its users provide: storage of the
-/// scene buffer, acceptance of hits.
+/// scene buffer, acceptance of hits, a pass's pixel.
 pub fn composed_modules() -> Vec<Composed> {
     let mut all = vec![];
     for name in SHADERS.module_names() {
         let source = SHADERS.compose(name).source;
-        let lacks = |f: &str| source.contains(&format!("{f}(")) && !source.contains(&format!("fn {f}("));
+        let lacks = |f: &str| calls(&source, f) && !source.contains(&format!("fn {f}("));
         let storages: &[Option<&str>] =
             if lacks("load") { &[Some("scene_texture"), Some("scene_storage")] } else { &[None] };
         let accept = lacks("accept_hit").then_some("accept_all");
+        let pixel = lacks("pixel").then_some("none_pass");
         for storage in storages {
-            let parts: Vec<&str> = storage.iter().copied().chain(accept).chain([name]).collect();
+            let parts: Vec<&str> = storage.iter().copied().chain(accept).chain(pixel).chain([name]).collect();
             all.push(SHADERS.compose_with(&parts, ""));
         }
     }
