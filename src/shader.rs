@@ -28,92 +28,32 @@ macro_rules! module {
     };
 }
 
+/// The [`Module`]s of a crate, folder by folder.
+#[macro_export]
+#[doc(hidden)]
+macro_rules! modules {
+    ($($folder:literal: $($name:literal),*;)*) => { &[$($($crate::module!($folder, $name),)*)*] };
+}
+
 /// Modules of this crate.
-pub static MODULES: &[Module] = &[
-    module!("foveation", "block_show"),
-    module!("foveation", "foveated_views"),
-    module!("foveation", "gauss_axis"),
-    module!("foveation", "mip_level"),
-    module!("foveation", "mip_show"),
-    module!("lib", "acuity"),
-    module!("lib", "antialias"),
-    module!("lib", "approx"),
-    module!("lib", "color"),
-    module!("lib", "debug_view"),
-    module!("lib", "depth"),
-    module!("lib", "doctor"),
-    module!("lib", "foveate"),
-    module!("lib", "stored_sample"),
-    module!("lib", "lattice"),
-    module!("lib", "lens"),
-    module!("lib", "smr"),
-    module!("lib", "noise"),
-    module!("lib", "pack"),
-    module!("lib", "quads"),
-    module!("lib", "reproject"),
-    module!("lib", "resample"),
-    module!("lib", "reservoir"),
-    module!("lib", "resize"),
-    module!("lib", "rng"),
-    module!("lib", "sanitize"),
-    module!("lib", "sparse_smr"),
-    module!("lib", "surface"),
-    module!("lib", "taa"),
-    module!("lib", "taau"),
-    module!("lib", "wrs"),
-    module!("pass", "candidate_lod"),
-    module!("pass", "candidate_pass"),
-    module!("pass", "doctor_roots_pass"),
-    module!("pass", "doctor_pass"),
-    module!("pass", "each_pixel"),
-    module!("pass", "fill_geometry_pass"),
-    module!("pass", "fill_pass"),
-    module!("pass", "mip_chain_pass"),
-    module!("pass", "foveation_lod"),
-    module!("pass", "inputs"),
-    module!("pass", "sparse_history"),
-    module!("pass", "sparse_noise"),
-    module!("pass", "lattices"),
-    module!("pass", "none_pass"),
-    module!("pass", "origin"),
-    module!("pass", "past_frame"),
-    module!("pass", "output"),
-    module!("pass", "output_and_view"),
-    module!("pass", "previous"),
-    module!("pass", "quad_around_pass"),
-    module!("pass", "quad_octants_pass"),
-    module!("pass", "quad_runs"),
-    module!("pass", "quad_key_pass"),
-    module!("pass", "quad_light_pass"),
-    module!("pass", "quad_list"),
-    module!("pass", "quad_mask_pass"),
-    module!("pass", "quad_observe_pass"),
-    module!("pass", "quad_plan"),
-    module!("pass", "quad_prime_pass"),
-    module!("pass", "quad_samples"),
-    module!("pass", "quad_state"),
-    module!("pass", "quad_threshold_pass"),
-    module!("pass", "quad_fill_pass"),
-    module!("pass", "quad_pass"),
-    module!("pass", "resize_sparse_pass"),
-    module!("pass", "resize_reservoirs_pass"),
-    module!("pass", "resize_surfaces_pass"),
-    module!("pass", "resize_uniforms"),
-    module!("pass", "settled_history"),
-    module!("pass", "smr_pass"),
-    module!("pass", "sparse_light_pass"),
-    module!("pass", "sparse_observe_pass"),
-    module!("pass", "sparse_pass"),
-    module!("pass", "sparse_pixel"),
-    module!("pass", "sparse_samples"),
-    module!("pass", "surface_history"),
-    module!("pass", "taa_pass"),
-    module!("pass", "taau_pass"),
-    module!("pass", "view_uniforms"),
-    module!("pass", "wrs_pass"),
-    module!("pass", "wrs_pixel"),
-    module!("pass", "wrs_sparse_pass"),
-];
+pub static MODULES: &[Module] = modules! {
+    "foveation":
+        "block_show", "foveated_views", "gauss_axis", "mip_level", "mip_show";
+    "lib":
+        "acuity", "antialias", "approx", "color", "debug_view", "depth", "doctor", "foveate", "lattice", "lens",
+        "noise", "pack", "quads", "reproject", "resample", "reservoir", "resize", "rng", "sanitize", "smr",
+        "sparse_smr", "stored_sample", "surface", "taa", "taau", "wrs";
+    "pass":
+        "candidate_lod", "candidate_pass", "doctor_pass", "doctor_roots_pass", "each_pixel", "fill_geometry_pass",
+        "fill_pass", "foveation_lod", "inputs", "lattices", "mip_chain_pass", "none_pass", "origin", "output",
+        "output_and_view", "past_frame", "previous", "quad_around_pass", "quad_fill_pass", "quad_key_pass",
+        "quad_light_pass", "quad_list", "quad_mask_pass", "quad_observe_pass", "quad_octants_pass", "quad_pass",
+        "quad_plan", "quad_prime_pass", "quad_runs", "quad_samples", "quad_state", "quad_threshold_pass",
+        "resize_reservoirs_pass", "resize_sparse_pass", "resize_surfaces_pass", "resize_uniforms", "settled_history",
+        "smr_pass", "sparse_history", "sparse_light_pass", "sparse_noise", "sparse_observe_pass", "sparse_pass",
+        "sparse_pixel", "sparse_samples", "surface_history", "taa_pass", "taau_pass", "view_uniforms", "wrs_pass",
+        "wrs_pixel", "wrs_sparse_pass";
+};
 
 /// This crate's shaders.
 pub static SHADERS: Composer = Composer::new(&[MODULES]);

@@ -3,7 +3,7 @@
 use super::doctor_pass::{self, Examined};
 use super::{Frame, check_inputs};
 use crate::context::ContextDesc;
-use crate::doctor::{Chart, Description, Finding, Observation, continues, maps};
+use crate::doctor::{Chart, Finding, maps};
 use crate::error::{FrameError, SettingsError};
 use crate::image::Image;
 
@@ -39,19 +39,9 @@ use crate::image::Image;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Doctor {
-    desc: ContextDesc,
-    view: usize,
     chart: Chart,
-    /// Roots, gaze, jitter and exposure of the last frame.
-    past: Option<Past>,
-}
-
-#[derive(Clone, Debug)]
-struct Past {
-    roots: Image<f32>,
-    gaze_px: [f32; 2],
-    jitter_px: [f32; 2],
-    exposure: f32,
+    /// Roots of the last frame.
+    past: Option<Image<f32>>,
 }
 
 impl Doctor {
@@ -60,9 +50,9 @@ impl Doctor {
     /// # Errors
     /// [`SettingsError`] if the description is out of range, or has no such view.
     pub fn new(desc: &ContextDesc, view: usize) -> Result<Self, SettingsError> {
-        crate::doctor::check_view(desc, view)?;
+        let chart = Chart::new(desc, view)?;
         desc.validate()?;
-        Ok(Self { desc: *desc, view, chart: Chart::default(), past: None })
+        Ok(Self { chart, past: None })
     }
 
     /// Examines a frame. Give it the same frames as the post-process, in the same order.
@@ -71,40 +61,29 @@ impl Doctor {
     /// [`FrameError`] if a size, a number of images or a value does not fit the description; then the frame was not
     /// examined.
     pub fn observe(&mut self, frame: &Frame<'_>) -> Result<(), FrameError> {
-        check_inputs(&self.desc, frame)?;
-        let view = self.view;
-        let facts = frame.views[view];
-        let jitter_px = facts.jitter_px;
-        self.desc.depth = facts.depth_convention(&self.desc);
-        let desc = &self.desc;
+        check_inputs(&self.chart.desc, frame)?;
+        let view = self.chart.view;
         let exposure = frame.exposure.of_colors();
         let roots = doctor_pass::root_means(frame.color[view], exposure);
-        let gaze_px = facts.gaze.resolve(self.past.as_ref().map(|p| p.gaze_px), &facts.geometry);
-        let past = self.past.take().filter(|past| continues(frame, past.exposure));
-        let now = Description {
-            has_depth: frame.depth.is_some(),
-            has_motion: frame.motion.is_some() && !desc.motion.lacks_camera(),
-            has_lod: frame.lod.is_some(),
-            ..Description::new(desc, facts, gaze_px, past.as_ref().map(|p| p.gaze_px))
-        };
+        let mut observation = self.chart.next(frame);
         let examined = Examined {
             color: frame.color[view],
             exposure,
             depth: frame.depth.map(|d| d[view]),
             motion: frame.motion.map(|m| m[view]),
             now: &roots,
-            past: past.as_ref().map_or(&roots, |p| &p.roots),
-            maps: &maps(desc),
+            past: self.past.as_ref().filter(|_| observation.now.has_past).unwrap_or(&roots),
+            maps: &maps(&self.chart.desc),
         };
-        let words = doctor_pass::words(&examined, &now.tiles);
-        self.chart.add(Observation { now, past_jitter_px: past.map(|p| p.jitter_px), words });
-        self.past = Some(Past { roots, gaze_px, jitter_px, exposure });
+        observation.words = doctor_pass::words(&examined, &observation.now.tiles);
+        self.chart.add(observation);
+        self.past = Some(roots);
         Ok(())
     }
 
     /// One finding for each [`Check`](crate::doctor::Check), from all frames seen so far (the last 16).
     pub fn findings(&self) -> Vec<Finding> {
-        self.chart.findings(&self.desc)
+        self.chart.findings()
     }
 
     /// Words of the frames seen so far, oldest first.

@@ -37,15 +37,8 @@ pub(super) struct Smr {
 
 impl SurfaceMethod for Smr {
     #[inline(always)]
-    fn pixel(
-        &self,
-        view: &SurfaceHistory<'_>,
-        x: u32,
-        y: u32,
-        stats: &mut FrameStats,
-        notes: &mut impl Notes,
-    ) -> Pixel {
-        let inputs = &view.inputs;
+    fn pixel(&self, view: &SurfaceHistory<'_>, px: [u32; 2], stats: &mut FrameStats, notes: &mut impl Notes) -> Pixel {
+        let (inputs, [x, y]) = (&view.inputs, px);
         let noise = inputs.noise(x, y);
         let (candidate, usable) = inputs.candidate(x, y);
         let disparity = inputs.disparity(x, y);
@@ -72,10 +65,10 @@ impl SurfaceMethod for Smr {
                 result = Matched { color: view.expose(history.sharp), lod: history.lod, share: 1.0, fit: 1.0 };
                 output_noise = noise.map(|_| view.noise(&source));
             } else if let Some(noise) = noise {
-                let (averaged, after) = self.averaged(view, [x, y], (candidate, noise), lod, &source, notes);
+                let (averaged, after) = self.averaged(view, px, (candidate, noise), lod, &source, notes);
                 (result, output_noise) = (averaged, Some(after));
             } else if lod > 0.0 {
-                result = self.matched(view, [x, y], candidate, lod, &source, notes);
+                result = self.matched(view, px, candidate, lod, &source, notes);
             } else {
                 notes.note(NoteStage::Decision, "a full-rate candidate replaces history", true, "");
             }

@@ -30,9 +30,8 @@ struct Row<'a> {
 
 /// A method that reads and stores surfaces.
 pub(super) trait SurfaceMethod: Sync {
-    /// Processes pixel (x, y) of a view, as [`ProcessPixel::process`].
-    fn pixel(&self, view: &SurfaceHistory<'_>, x: u32, y: u32, stats: &mut FrameStats, notes: &mut impl Notes)
-    -> Pixel;
+    /// Processes pixel `px` of a view, as [`ProcessPixel::process`].
+    fn pixel(&self, view: &SurfaceHistory<'_>, px: [u32; 2], stats: &mut FrameStats, notes: &mut impl Notes) -> Pixel;
 }
 
 /// A method and a view.
@@ -44,7 +43,7 @@ struct InView<'a, M> {
 impl<M: SurfaceMethod> ProcessPixel for InView<'_, M> {
     #[inline(always)]
     fn process(&self, x: u32, y: u32, stats: &mut FrameStats, notes: &mut impl Notes) -> Pixel {
-        let pixel = self.method.pixel(&self.view, x, y, stats, notes);
+        let pixel = self.method.pixel(&self.view, [x, y], stats, notes);
         Pixel { output: self.view.inputs.unexposed(pixel.output), ..pixel }
     }
 }

@@ -21,15 +21,8 @@ pub(super) struct Taa;
 
 impl SurfaceMethod for Taa {
     #[inline(always)]
-    fn pixel(
-        &self,
-        view: &SurfaceHistory<'_>,
-        x: u32,
-        y: u32,
-        stats: &mut FrameStats,
-        notes: &mut impl Notes,
-    ) -> Pixel {
-        let inputs = &view.inputs;
+    fn pixel(&self, view: &SurfaceHistory<'_>, px: [u32; 2], stats: &mut FrameStats, notes: &mut impl Notes) -> Pixel {
+        let (inputs, [x, y]) = (&view.inputs, px);
         let (candidate, usable) = inputs.candidate(x, y);
         let disparity = inputs.disparity(x, y);
         let motion = inputs.motion(x, y);
@@ -48,7 +41,7 @@ impl SurfaceMethod for Taa {
             (output, share) = (history, 1.0);
             if usable {
                 let past = (confidence > taa::SETTLED).then_some(&source);
-                let Neighbourhood { sum, squares, past_luma } = neighbourhood(view, [x, y], candidate, past);
+                let Neighbourhood { sum, squares, past_luma } = neighbourhood(view, px, candidate, past);
                 if past.is_some() {
                     confidence = confidence.min(taa::agreeing(sum.x, squares.x, past_luma, 9.0));
                 }

@@ -27,15 +27,8 @@ pub(super) struct Taau;
 
 impl SurfaceMethod for Taau {
     #[inline(always)]
-    fn pixel(
-        &self,
-        view: &SurfaceHistory<'_>,
-        x: u32,
-        y: u32,
-        stats: &mut FrameStats,
-        notes: &mut impl Notes,
-    ) -> Pixel {
-        let inputs = &view.inputs;
+    fn pixel(&self, view: &SurfaceHistory<'_>, px: [u32; 2], stats: &mut FrameStats, notes: &mut impl Notes) -> Pixel {
+        let (inputs, [x, y]) = (&view.inputs, px);
         let disparity = inputs.disparity(x, y);
         let motion = inputs.motion(x, y);
         let source = view.source(x, y, motion, disparity, notes);
@@ -52,7 +45,7 @@ impl SurfaceMethod for Taau {
         }
         let past = source.as_ref().ok().filter(|_| confidence > taa::SETTLED);
         let kernel = Kernel { tail: taau::tail(confidence * trust), narrowing: taau::narrowing(confidence) };
-        let Samples { around, nearest, usable, past_luma } = samples(view, [x, y], &kernel, past, notes);
+        let Samples { around, nearest, usable, past_luma } = samples(view, px, &kernel, past, notes);
         if past.is_some() {
             confidence = confidence.min(taa::agreeing(around.sum.x, around.squares.x, past_luma, around.count));
             notes.note(NoteStage::Comparison, "confidence that agrees with the samples around", confidence, "samples");

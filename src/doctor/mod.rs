@@ -25,13 +25,58 @@ use crate::frame::{Exposure, FrameInputs, Reset};
 /// Number of frames that are kept; with more, the oldest ones are forgotten.
 const KEPT: usize = 16;
 
-/// Observations of the last frames.
-#[derive(Clone, Debug, Default)]
+/// A view that is examined, and the observations of its last frames.
+#[derive(Clone, Debug)]
 pub(crate) struct Chart {
+    pub desc: ContextDesc,
+    pub view: usize,
+    past: Option<Past>,
     observations: Vec<Observation>,
 }
 
+/// The last frame.
+#[derive(Clone, Copy, Debug)]
+struct Past {
+    gaze_px: [f32; 2],
+    jitter_px: [f32; 2],
+    exposure: f32,
+}
+
 impl Chart {
+    /// No observations of view `view`; an error for lattices, which the rules do not cover yet, and for a view that the
+    /// context does not have.
+    pub fn new(desc: &ContextDesc, view: usize) -> Result<Self, SettingsError> {
+        let filter = desc.settings.foveation.filter;
+        if filter == Filter::Sparse {
+            let expected = "another filter: the doctor does not know lattices yet".into();
+            return Err(SettingsError { setting: "foveation filter", found: filter.name().into(), expected });
+        }
+        if view >= desc.view_count as usize {
+            let expected = format!("the index of one of the context's {} views", desc.view_count);
+            return Err(SettingsError { setting: "view", found: view.to_string(), expected });
+        }
+        Ok(Self { desc: *desc, view, past: None, observations: vec![] })
+    }
+
+    /// Observation of the next frame, without its words.
+    pub fn next<C, S, V>(&mut self, frame: &FrameInputs<'_, C, S, V>) -> Observation {
+        let view = frame.views[self.view];
+        let gaze_px = view.gaze.resolve(self.past.map(|p| p.gaze_px), &view.geometry);
+        self.desc.depth = view.depth_convention(&self.desc);
+        let exposure = frame.exposure.of_colors();
+        // A frame is compared with the one before unless there was a cut or the exposure changed.
+        let continues = frame.reset == Reset::None && !matches!(frame.exposure, Exposure::Changed { .. });
+        let past = self.past.filter(|past| continues && past.exposure == exposure);
+        let now = Description {
+            has_depth: frame.depth.is_some(),
+            has_motion: frame.motion.is_some() && !self.desc.motion.lacks_camera(),
+            has_lod: frame.lod.is_some(),
+            ..Description::new(&self.desc, view, gaze_px, past.map(|p| p.gaze_px))
+        };
+        self.past = Some(Past { gaze_px, jitter_px: view.jitter_px, exposure });
+        Observation { now, past_jitter_px: past.map(|p| p.jitter_px), words: vec![] }
+    }
+
     /// Adds the observation of a frame.
     pub fn add(&mut self, observation: Observation) {
         if self.observations.len() == KEPT {
@@ -46,8 +91,8 @@ impl Chart {
     }
 
     /// One finding a check.
-    pub fn findings(&self, desc: &ContextDesc) -> Vec<Finding> {
-        let seen = &self.observations;
+    pub fn findings(&self) -> Vec<Finding> {
+        let (desc, seen) = (&self.desc, &self.observations);
         let motion = motion::check(desc, seen);
         let jitter = jitter::check(desc, seen, &motion);
         let depth = depth::check(desc, seen, &motion);
@@ -63,24 +108,4 @@ impl Chart {
         let foveation = after(&color, "colors are encoded", foveation);
         vec![motion, jitter, depth, color, gaze, foveation]
     }
-}
-
-/// Whether a frame can be compared with the one before, whose colors had the exposure `before`.
-pub(crate) fn continues<C, S, V>(frame: &FrameInputs<'_, C, S, V>, before: f32) -> bool {
-    let has_changed = matches!(frame.exposure, Exposure::Changed { .. }) || frame.exposure.of_colors() != before;
-    frame.reset == Reset::None && !has_changed
-}
-
-/// Rejects lattices, which the rules do not cover yet, and the index of a view that a context does not have.
-pub(crate) fn check_view(desc: &ContextDesc, view: usize) -> Result<(), SettingsError> {
-    let filter = desc.settings.foveation.filter;
-    if filter == Filter::Sparse {
-        let expected = "another filter: the doctor does not know lattices yet".into();
-        return Err(SettingsError { setting: "foveation filter", found: filter.name().into(), expected });
-    }
-    if view < desc.view_count as usize {
-        return Ok(());
-    }
-    let expected = format!("the index of one of the context's {} views", desc.view_count);
-    Err(SettingsError { setting: "view", found: view.to_string(), expected })
 }

@@ -281,7 +281,7 @@ impl Compiled {
 }
 
 /// Bindings of group 0 that a WGSL text declares, by number.
-pub(super) fn declared(source: &str) -> Vec<(u32, BindingType)> {
+pub fn declared(source: &str) -> Vec<(u32, BindingType)> {
     let mut bindings: Vec<_> = source.lines().filter_map(declaration).collect();
     bindings.sort_by_key(|&(number, _)| number);
     bindings

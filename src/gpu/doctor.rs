@@ -4,9 +4,9 @@ use super::buffer::filled;
 use super::compute::{ComputeShader, Sources};
 use super::input::{check_buffer, check_inputs};
 use super::plane::{Plane, PlaneDesc, layer_view};
-use super::{Frame, MAX_VIEWS, Textures};
+use super::{Frame, Textures};
 use crate::context::ContextDesc;
-use crate::doctor::{Chart, Description, Finding, Observation, check_view, continues, maps, tile_count};
+use crate::doctor::{Chart, Description, Finding, Observation, maps, tile_count};
 use crate::error::{CreateError, FrameError};
 use crate::kernel::doctor::{HYPOTHESES, WORDS};
 use crate::kernel::foveate::level_len;
@@ -46,24 +46,13 @@ struct DoctorUniforms {
 /// `examples/07_doctor.rs` is a whole program; `cpu::Doctor` has a smaller example.
 #[derive(Debug)]
 pub struct Doctor {
-    desc: ContextDesc,
-    view: usize,
+    chart: Chart,
     roots_pass: ComputeShader,
     pass: ComputeShader,
     /// Roots of the last frame, and of the frame before it.
     roots: [Plane; 2],
     absent: Plane,
-    past: Option<Past>,
     pending: VecDeque<Observation>,
-    chart: Chart,
-}
-
-/// State that is kept from the last frame, besides its roots.
-#[derive(Clone, Copy, Debug)]
-struct Past {
-    gaze_px: [f32; 2],
-    jitter_px: [f32; 2],
-    exposure: f32,
 }
 
 impl Doctor {
@@ -84,26 +73,22 @@ impl Doctor {
         sources: &Sources,
     ) -> Result<Self, CreateError> {
         super::validate(device, desc, TextureFormat::Rgba16Float)?;
-        check_view(desc, view)?;
-        debug_assert!(view < MAX_VIEWS);
+        let chart = Chart::new(desc, view)?;
         let roots = |size| PlaneDesc::new("afterimage doctor roots", TextureFormat::R32Float, size, 1).create(device);
         let half = desc.size_px.map(|s| level_len(s, 1));
         Ok(Self {
-            desc: *desc,
-            view,
+            chart,
             roots_pass: sources.shader(device, "doctor_roots_pass"),
             pass: sources.shader(device, "doctor_pass"),
             roots: [half; 2].map(roots),
             absent: roots([1, 1]),
-            past: None,
             pending: VecDeque::new(),
-            chart: Chart::default(),
         })
     }
 
     /// Size in bytes of the words that a frame writes.
     pub fn words_bytes(&self) -> u64 {
-        4 * u64::from(WORDS) * u64::from(tile_count(self.desc.size_px).max(1))
+        4 * u64::from(WORDS) * u64::from(tile_count(self.chart.desc.size_px).max(1))
     }
 
     /// Records the examination of a frame into `encoder`. Give it the same frames as the post-process. Writes `words`:
@@ -119,26 +104,15 @@ impl Doctor {
         frame: &Frame<'_>,
         words: &Buffer,
     ) -> Result<(), FrameError> {
-        check_inputs(&self.desc, frame)?;
+        check_inputs(&self.chart.desc, frame)?;
         check_buffer("words", words, self.words_bytes(), "at least Doctor::words_bytes")?;
-        let view = frame.views[self.view];
-        let jitter_px = view.jitter_px;
-        let gaze_px = view.gaze.resolve(self.past.map(|p| p.gaze_px), &view.geometry);
-        self.desc.depth = view.depth_convention(&self.desc);
-        let past = self.past.filter(|past| continues(frame, past.exposure));
-        let now = Description {
-            has_depth: frame.depth.is_some(),
-            has_motion: frame.motion.is_some() && !self.desc.motion.lacks_camera(),
-            has_lod: frame.lod.is_some(),
-            ..Description::new(&self.desc, view, gaze_px, past.map(|p| p.gaze_px))
-        };
-        self.dispatch(device, encoder, frame, &now, words);
+        let observation = self.chart.next(frame);
+        self.dispatch(device, encoder, frame, &observation.now, words);
         self.roots.swap(0, 1);
-        self.past = Some(Past { gaze_px, jitter_px, exposure: frame.exposure.of_colors() });
         if self.pending.len() == PENDING {
             self.pending.pop_front();
         }
-        self.pending.push_back(Observation { now, past_jitter_px: past.map(|p| p.jitter_px), words: vec![] });
+        self.pending.push_back(observation);
         Ok(())
     }
 
@@ -156,7 +130,7 @@ impl Doctor {
 
     /// One finding for each [`Check`](crate::doctor::Check), from all frames read so far (the last 16).
     pub fn findings(&self) -> Vec<Finding> {
-        self.chart.findings(&self.desc)
+        self.chart.findings()
     }
 
     fn dispatch(
@@ -167,22 +141,23 @@ impl Doctor {
         now: &Description,
         words: &Buffer,
     ) {
-        let mut pass = encoder
-            .begin_compute_pass(&ComputePassDescriptor { label: Some("afterimage doctor"), timestamp_writes: None });
+        let label = Some("afterimage doctor");
+        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor { label, timestamp_writes: None });
+        let Chart { desc, view, .. } = self.chart;
         let bind = |textures: Textures<'_>| {
-            let (texture, layer) = textures.parts().nth(if textures.is_regions() { self.view } else { 0 })?;
-            Some(layer_view(texture, layer.or(Some(self.view as u32))))
+            let (texture, layer) = textures.parts().nth(if textures.is_regions() { view } else { 0 })?;
+            Some(layer_view(texture, layer.or(Some(view as u32))))
         };
         let optional =
             |textures: Option<Textures<'_>>| textures.and_then(bind).unwrap_or_else(|| self.absent.whole.clone());
         let [color, depth, motion] = [Some(frame.color), frame.depth, frame.motion].map(optional);
-        let origin = |textures: Option<Textures<'_>>| textures.map_or(0, |t| t.packed_origin(self.view));
-        let [w, h] = self.desc.size_px;
+        let origin = |textures: Option<Textures<'_>>| textures.map_or(0, |t| t.packed_origin(view));
+        let [w, h] = desc.size_px;
         let exposure = frame.exposure.of_colors();
         let bytes = [w, h, origin(Some(frame.color)), exposure.to_bits()];
-        let view = filled(device, "afterimage doctor view", bytemuck::bytes_of(&bytes), BufferUsages::UNIFORM);
+        let uniforms = filled(device, "afterimage doctor view", bytemuck::bytes_of(&bytes), BufferUsages::UNIFORM);
         let resources = [
-            view.as_entire_binding(),
+            uniforms.as_entire_binding(),
             BindingResource::TextureView(&color),
             BindingResource::TextureView(&self.roots[0].whole),
         ];
@@ -197,7 +172,7 @@ impl Doctor {
             motion_origin: origin(frame.motion),
             exposure,
             unused: [0; 2],
-            maps: maps(&self.desc),
+            maps: maps(&desc),
         };
         let uniforms = filled(device, "afterimage doctor", bytemuck::bytes_of(&uniforms), BufferUsages::UNIFORM);
         let tiles: Vec<[u32; 4]> =

@@ -7,7 +7,7 @@
 //! [`Afterimage::required_limits`] says what a context needs at least. Any number of contexts can share a device.
 //! wgpu's GL backend cannot store history, and is refused.
 
-mod binding;
+pub(crate) mod binding;
 pub(crate) mod buffer;
 pub(crate) mod compute;
 mod doctor;

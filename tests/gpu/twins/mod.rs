@@ -2,6 +2,7 @@
 //! H28, H30-H39, H41, H42, H45, H47, H54, H57, H61, H64, H65, H71, H80, H83.
 
 mod antialias;
+mod bindings;
 mod composer;
 mod controls;
 mod decisions;
