@@ -26,7 +26,7 @@ pub const MAX_VIEWS: usize = 4;
 /// Numbers of the bindings of a frame's inputs and outputs are below this one.
 pub const ORIGINS: usize = 12;
 
-/// Twin of `ViewUniforms` in `shaders/pass/view_uniforms.wgsl`; a test compares their layouts.
+/// Twin of `ViewUniforms` in `shaders/pass/view_uniforms.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
@@ -41,9 +41,8 @@ pub struct ViewUniforms {
     pub depth_row: [f32; 4],
     /// Key of the view's random stream.
     pub key: u32,
-    /// `DisparityMap::a`.
+    /// `a` and `b` of the `DisparityMap`.
     pub disparity_a: f32,
-    /// `DisparityMap::b`.
     pub disparity_b: f32,
     /// Bit 0: `DisparityMap::invert`; bit 1: `DisparityMap::clamp`.
     pub disparity_flags: u32,
@@ -61,26 +60,18 @@ pub struct ViewUniforms {
 }
 
 /// Camera motion of a view, for pixels whose vectors lack it. Twin of `CameraUniforms` in
-/// `shaders/pass/view_uniforms.wgsl`; a test compares their layouts.
+/// `shaders/pass/inputs.wgsl`. Fields without a comment are those of `ViewMotion`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
 pub struct CameraUniforms {
-    /// `ViewMotion::x`.
     pub x: [f32; 4],
-    /// `ViewMotion::y`.
     pub y: [f32; 4],
-    /// `ViewMotion::z`.
     pub z: [f32; 4],
-    /// `ViewMotion::per_tangent`.
     pub per_tangent: [f32; 2],
-    /// `ViewMotion::zoom`.
     pub zoom: [f32; 2],
-    /// `ViewMotion::shift_px`.
     pub shift_px: [f32; 2],
-    /// `ViewMotion::ahead`.
     pub ahead: f32,
-    /// `ViewMotion::sky`.
     pub sky: f32,
     /// Vector, as given, of pixels that have none.
     pub no_vector: [f32; 2],
@@ -216,7 +207,7 @@ impl ViewUniforms {
     }
 }
 
-/// A lattice of a view. Twin of `LatticeUniforms` in `shaders/pass/lattices.wgsl`; a test compares their layouts.
+/// A lattice of a view. Twin of `LatticeUniforms` in `shaders/pass/lattices.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]

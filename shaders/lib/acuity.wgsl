@@ -7,7 +7,6 @@ const R_E_DEG: f32 = 22.14;
 const D_C0: f32 = 14804.6;
 const R_M_DEG: f32 = 41.03;
 
-// acuity::eccentricity_deg
 fn eccentricity_deg(ray: vec3f, gaze: vec3f) -> f32 {
     let cx = ray.y * gaze.z - ray.z * gaze.y;
     let cy = ray.z * gaze.x - ray.x * gaze.z;
@@ -17,14 +16,14 @@ fn eccentricity_deg(ray: vec3f, gaze: vec3f) -> f32 {
     return min(atan2_upper(across, along) * (180.0f / PI), 180.0);
 }
 
-// acuity::cell_density (eq. 3)
+// Eq. 3.
 fn cell_density(e_deg: f32) -> f32 {
     let q = 1.0 + e_deg * (1.0f / R_2_DEG);
     let far = exp_approx(e_deg * (-1.0f / R_E_DEG));
     return (2.0f * D_C0) * (A_K / (q * q) + (1.0f - A_K) * far) / (1.0 + e_deg * (1.0f / R_M_DEG));
 }
 
-// acuity::candidate_weight (eq. 4)
+// Eq. 4.
 fn candidate_weight(e_deg: f32, fovea_deg: f32, inv_density_at_fovea: f32) -> f32 {
     if e_deg <= fovea_deg {
         return 1.0;

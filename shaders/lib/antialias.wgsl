@@ -26,7 +26,6 @@ struct Mean {
     samples: f32,
 }
 
-// antialias::mean_of
 fn mean_of(stored: f32) -> Mean {
     let code = floor(stored * CODES_PER_LOD + 0.5);
     let coarse = code > ONE_SAMPLE;
@@ -35,43 +34,36 @@ fn mean_of(stored: f32) -> Mean {
     return Mean(select(lod, -1.0, empty), select(ONE_SAMPLE + 1.0 - code, 1.0, coarse || empty));
 }
 
-// antialias::stored_lod
 fn stored_lod(m: Mean) -> f32 {
     let fine = ONE_SAMPLE + 1.0 - clamp(m.samples, 1.0, MOST_SAMPLES);
     let code = select(fine, ONE_SAMPLE + m.lod * CODES_PER_COARSE_LOD, m.lod > COARSE_LOD);
     return select(code * (1.0f / CODES_PER_LOD), -1.0, m.lod < 0.0);
 }
 
-// antialias::stands_before
 fn stands_before(own: f32, neighbour: f32, own_motion: vec2f, motion: vec2f, full_rate: bool) -> bool {
     let difference = motion - own_motion;
     let alongside = max(abs(difference.x), abs(difference.y)) <= ALONGSIDE_PX;
     return neighbour > own * (1.0 + NEARER_RELATIVE) && neighbour > own && (full_rate || alongside);
 }
 
-// antialias::move_together
 fn move_together(own: vec2f, nearest: vec2f, farthest: vec2f) -> bool {
     let apart = max(max(abs(own - nearest), abs(own - farthest)), abs(nearest - farthest));
     return max(apart.x, apart.y) <= TOGETHER_PX;
 }
 
-// antialias::is_of_surfaces
 fn is_of_surfaces(stored: f32, farthest: f32, nearest: f32) -> bool {
     let far = farthest * (1.0 - NEARER_RELATIVE);
     return stored >= far && stored * (1.0 - NEARER_RELATIVE) <= nearest;
 }
 
-// antialias::is_thin
 fn is_thin(own: f32, a: f32, b: f32) -> bool {
     return min(a, b) >= 0.0 && max(a, b) < own * (1.0 - NEARER_RELATIVE);
 }
 
-// antialias::is_silhouette
 fn is_silhouette(own: f32, a: f32, b: f32) -> bool {
     return min(a, b) < 0.0 || abs((a + b) - 2.0 * own) > own * NEARER_RELATIVE;
 }
 
-// antialias::may_show
 fn may_show(own: f32, neighbour: f32, place_px: vec2f, offset: vec2f) -> bool {
     let nearer = neighbour > own * (1.0 + NEARER_RELATIVE);
     let farther = neighbour >= 0.0 && neighbour < own * (1.0 - NEARER_RELATIVE);
@@ -85,7 +77,6 @@ struct Near {
     count: f32,
 }
 
-// antialias::add_near
 fn add_near(n: Near, c: vec3f) -> Near {
     let v = to_ycocg(c);
     return Near(n.sum + v, n.squares + v * v, n.count + 1.0);
@@ -96,7 +87,6 @@ struct Clip {
     kept: f32,
 }
 
-// antialias::clip
 fn clip(near: Near, history: vec3f) -> Clip {
     let inverse = 1.0 / near.count;
     let variance = (near.squares * near.count - near.sum * near.sum) * (inverse * inverse);
@@ -109,7 +99,6 @@ fn clip(near: Near, history: vec3f) -> Clip {
     return Clip(change, 1.0 - min(moved * CLIP_COST / max(past.x, 1.0), 1.0));
 }
 
-// antialias::clipped
 fn clipped(c: vec3f, change: vec3f) -> vec3f {
     if all(change == vec3f(0.0)) {
         return c;
@@ -118,7 +107,6 @@ fn clipped(c: vec3f, change: vec3f) -> vec3f {
     return v * v;
 }
 
-// antialias::scattered_error
 fn scattered_error(a: ObservedAround, scatter: f32) -> f32 {
     let inverse = 1.0 / a.weight;
     let mean = root_difference(a.sampled * inverse, a.history * inverse);
@@ -131,7 +119,6 @@ struct Averaged {
     samples: f32,
 }
 
-// antialias::average
 fn average(r: Reconstruction, samples: f32, place_px: vec2f, kept: f32) -> Averaged {
     let acceptance = (r.fit * r.trust) * kept;
     let past_px = r.nearest.place_px;
@@ -152,7 +139,6 @@ fn average(r: Reconstruction, samples: f32, place_px: vec2f, kept: f32) -> Avera
     return Averaged(Reconstructed(shown, StoredSample(next, 0.0, r.nearest.disparity, next_px), share), count + 1.0);
 }
 
-// antialias::stored_mean
 fn stored_mean(r: Reconstruction, result: Reconstructed, samples: f32) -> Averaged {
     let is_kept = result.stored.lod < COARSE_LOD && r.nearest.lod <= 0.0;
     let share = r.fit * r.trust;

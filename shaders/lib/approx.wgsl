@@ -7,7 +7,7 @@ const FRAC_PI_4: f32 = 0.785398163397448309616;
 const LOG2_E: f32 = 1.44269504088896340736;
 const FRAC_1_SQRT_2: f32 = 0.707106781186547524401;
 
-// approx::atan2_upper: y >= 0, result in [0, pi].
+// y >= 0, result in [0, pi].
 fn atan2_upper(y: f32, x: f32) -> f32 {
     let ax = abs(x);
     let small = select(y, ax, y > ax);
@@ -30,7 +30,7 @@ fn atan2_upper(y: f32, x: f32) -> f32 {
     return angle;
 }
 
-// approx::exp_approx: 2^n times a polynomial of the remainder.
+// 2^n times a polynomial of the remainder.
 fn exp_approx(exponent: f32) -> f32 {
     let x = clamp(exponent, -87.0, 88.0);
     let n = floor(x * LOG2_E + 0.5);
@@ -41,7 +41,7 @@ fn exp_approx(exponent: f32) -> f32 {
     return ((p * r + 1.0) * r + 1.0) * scale;
 }
 
-// approx::exp2_approx: 2^n times a polynomial of the remainder.
+// 2^n times a polynomial of the remainder.
 fn exp2_approx(exponent: f32) -> f32 {
     let x = clamp(exponent, -126.0, 127.0);
     let n = floor(x + 0.5);
@@ -52,7 +52,7 @@ fn exp2_approx(exponent: f32) -> f32 {
     return (p * r + 1.0) * scale;
 }
 
-// approx::ln_approx: exponent and a polynomial of the mantissa.
+// Exponent and a polynomial of the mantissa.
 fn ln_approx(x: f32) -> f32 {
     let bits = bitcast<u32>(x);
     var exponent = i32(bits >> 23u) - 126;
@@ -77,7 +77,7 @@ fn ln_approx(x: f32) -> f32 {
     return m + tail + e * 0.6933594;
 }
 
-// approx::sin_cos_turns: (sin, cos) of 2 pi x.
+// (sin, cos) of 2 pi x.
 fn sin_cos_turns(x: f32) -> vec2f {
     let n = floor(x * 4.0 + 0.5);
     let r = x - n * 0.25;

@@ -4,7 +4,7 @@ const LAB_EPSILON: f32 = 216.0f / 24389.0f;
 const LAB_SLOPE: f32 = 841.0f / 108.0f;
 const LAB_OFFSET: f32 = 16.0f / 116.0f;
 
-// color::cbrt: guess of the inverse root from the bits, then a polynomial.
+// Guess of the inverse root from the bits, then a polynomial.
 fn cbrt(x: f32) -> f32 {
     let size = abs(x);
     if size < 1e-30 {
@@ -18,7 +18,7 @@ fn cbrt(x: f32) -> f32 {
     return select(r, -r, x < 0.0);
 }
 
-// color::fifth_root: initial guess from the bits, then three Newton steps.
+// Initial guess from the bits, then three Newton steps.
 fn fifth_root(x: f32) -> f32 {
     if x < 1e-25 {
         return 0.0;
@@ -31,7 +31,7 @@ fn fifth_root(x: f32) -> f32 {
     return r;
 }
 
-// color::srgb_encode (IEC 61966-2-1)
+// IEC 61966-2-1.
 fn srgb_encode(linear_value: f32) -> f32 {
     let a = abs(linear_value);
     var encoded = 12.92 * a;
@@ -42,7 +42,6 @@ fn srgb_encode(linear_value: f32) -> f32 {
     return select(encoded, -encoded, linear_value < 0.0);
 }
 
-// color::srgb_decode
 fn srgb_decode(encoded: f32) -> f32 {
     let a = abs(encoded);
     var decoded = a * (1.0f / 12.92);
@@ -54,12 +53,11 @@ fn srgb_decode(encoded: f32) -> f32 {
     return select(decoded, -decoded, encoded < 0.0);
 }
 
-// color::luma (Rec. 709)
+// Rec. 709.
 fn luma(c: vec3f) -> f32 {
     return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
 }
 
-// color::lab_f
 fn lab_f(t: f32) -> f32 {
     if t > LAB_EPSILON {
         return cbrt(t);
@@ -67,7 +65,6 @@ fn lab_f(t: f32) -> f32 {
     return LAB_SLOPE * t + LAB_OFFSET;
 }
 
-// color::lab
 fn lab(c: vec3f) -> vec3f {
     let fx = lab_f(0.43388735 * c.x + 0.376224 * c.y + 0.18988865 * c.z);
     let fy = lab_f(0.212639 * c.x + 0.7151687 * c.y + 0.0721923 * c.z);
@@ -75,7 +72,7 @@ fn lab(c: vec3f) -> vec3f {
     return vec3f(116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz));
 }
 
-// color::delta_e94 (CIE 116): `reference` sets the weights.
+// CIE 116: `reference` sets the weights.
 fn delta_e94(reference: vec3f, stored: vec3f) -> f32 {
     let d = reference - stored;
     let c1 = sqrt(reference.y * reference.y + reference.z * reference.z);

@@ -24,7 +24,7 @@ struct PixelTrace {
 
 const NONFINITE = vec3f(0.0, 1.0, 0.0);
 
-// debug_view::heat, sRGB-encoded
+// sRGB-encoded.
 fn heat(value: f32) -> vec3f {
     if !is_finite(value) {
         return NONFINITE;
@@ -43,7 +43,7 @@ fn heat(value: f32) -> vec3f {
     return stops[i] + (stops[i + 1u] - stops[i]) * t;
 }
 
-// debug_view::motion_color, sRGB-encoded
+// sRGB-encoded.
 fn motion_color(motion: vec2f) -> vec3f {
     if !(is_finite(motion.x) && is_finite(motion.y)) {
         return NONFINITE;
@@ -55,7 +55,7 @@ fn motion_color(motion: vec2f) -> vec3f {
     return clamp(shown, vec3f(0.0), vec3f(1.0));
 }
 
-// debug_view::view_color, linear
+// Linear.
 fn view_color(view: u32, traced: PixelTrace) -> vec3f {
     var encoded = vec3f(traced.agreement);
     switch view {

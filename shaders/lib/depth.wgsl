@@ -12,7 +12,6 @@ struct DisparityMap {
     flags: u32,
 }
 
-// depth::disparity
 fn disparity(stored: f32, map: DisparityMap) -> f32 {
     if (bitcast<u32>(stored) & 0x7fffffffu) > 0x7f800000u {
         return INVALID_DISPARITY;
@@ -31,7 +30,6 @@ fn disparity(stored: f32, map: DisparityMap) -> f32 {
     return 1.0 / v;
 }
 
-// depth::distance_of
 fn distance_of(disparity: f32) -> f32 {
     if disparity < 0.0 {
         return -1.0;
@@ -39,7 +37,7 @@ fn distance_of(disparity: f32) -> f32 {
     return 1.0 / max(disparity, 1e-31);
 }
 
-// depth::previous_disparity: z_previous = z * stretch + shift
+// z_previous = z * stretch + shift
 fn previous_disparity(disparity: f32, stretch: f32, shift: f32) -> f32 {
     if disparity < 0.0 {
         return INVALID_DISPARITY;
@@ -51,7 +49,6 @@ fn previous_disparity(disparity: f32, stretch: f32, shift: f32) -> f32 {
     return disparity / denominator;
 }
 
-// depth::same_surface
 fn same_surface(expected: f32, stored: f32, relative: f32, slope: f32) -> bool {
     if expected < 0.0 || stored < 0.0 {
         return false;
@@ -59,8 +56,7 @@ fn same_surface(expected: f32, stored: f32, relative: f32, slope: f32) -> bool {
     return abs(expected - stored) <= relative * max(expected, stored) + slope;
 }
 
-// depth::one_sided_slope; INVALID_DISPARITY for a neighbour outside the image. depth::slope, which reads the
-// neighbours, is a loop in the pass.
+// INVALID_DISPARITY for a neighbour outside the image. depth::slope, which reads the neighbours, is a loop in the pass.
 fn one_sided_slope(center: f32, before: f32, after: f32) -> f32 {
     let back = center - before;
     let ahead = after - center;

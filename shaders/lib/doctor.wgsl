@@ -26,7 +26,6 @@ const WORDS: u32 = MOTION + 2u;
 const MAX_SIGNAL: f32 = 64.0;
 const MAX_STORED_MOTION: f32 = 65536.0;
 
-// doctor::signal
 fn signal(green: f32) -> f32 {
     if is_finite(green) && green >= 1e-30 {
         return min(green, MAX_SIGNAL);
@@ -34,38 +33,31 @@ fn signal(green: f32) -> f32 {
     return 0.0;
 }
 
-// doctor::root_mean
 fn root_mean(a: f32, b: f32, c: f32, d: f32) -> f32 {
     return sqrt((a + b + c + d) * 0.25);
 }
 
-// doctor::lattice_offset
 fn lattice_offset(level: u32) -> u32 {
     return (1u << level) >> 1u;
 }
 
-// doctor::lattice_len
 fn lattice_len(len: u32, level: u32) -> u32 {
     return ((max(max(len, 1u) - 1u, lattice_offset(level)) - lattice_offset(level)) >> level) + 1u;
 }
 
-// doctor::lattice_coordinate
 fn lattice_coordinate(x: f32, level: u32) -> f32 {
     let points_per_texel = bitcast<f32>((127u - level) << 23u);
     return (x - f32(lattice_offset(level))) * points_per_texel;
 }
 
-// doctor::lattice_texel
 fn lattice_texel(point: u32, level: u32, len: u32) -> u32 {
     return min((point << level) + lattice_offset(level), max(len, 1u) - 1u);
 }
 
-// doctor::interpolate
 fn interpolate(a: f32, b: f32, t: f32) -> f32 {
     return a + (b - a) * t;
 }
 
-// doctor::spline
 fn spline(values: vec4f, t: f32) -> f32 {
     let first = interpolate(values.x, values.y, (t + 2.0) * (1.0f / 3.0f));
     let second = interpolate(values.y, values.z, (t + 1.0) * (1.0f / 3.0f));
@@ -73,39 +65,32 @@ fn spline(values: vec4f, t: f32) -> f32 {
     return interpolate(interpolate(first, second, (t + 1.0) * 0.5), interpolate(second, third, t * 0.5), t);
 }
 
-// doctor::stored_motion
 fn stored_motion(component: f32) -> f32 {
     return clamp(component, -MAX_STORED_MOTION, MAX_STORED_MOTION);
 }
 
-// doctor::fixed
 fn fixed(difference: f32) -> u32 {
     return u32(min(difference, 1.0) * 1048576.0 + 0.5);
 }
 
-// doctor::boundary_class
 fn boundary_class(at: u32) -> u32 {
     return min(countTrailingZeros(at), BOUNDARIES - 1u);
 }
 
-// doctor::kink_class
 fn kink_class(at: u32) -> u32 {
     return boundary_class(at + (at & 1u)) - 1u;
 }
 
-// doctor::bend
 fn bend(before: f32, at: f32, after: f32) -> f32 {
     return abs((after - at) - (at - before));
 }
 
-// doctor::is_code
 fn is_code(signal: f32) -> bool {
     let code = signal * 255.0;
     let whole = floor(code + 0.5);
     return abs(code - whole) <= 0.015625 && whole >= 1.0 && whole <= 254.0;
 }
 
-// doctor::kept_bits
 fn kept_bits(stored: f32) -> u32 {
     let bits = bitcast<u32>(stored);
     let size = bits & 0x7fffffffu;

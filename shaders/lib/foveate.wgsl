@@ -4,7 +4,6 @@
 const SHARPEST_BLUR_PX: f32 = 0.125;
 const SAMPLE_LEVEL_BIAS: u32 = 2u;
 
-// foveate::ramp
 fn ramp(x: f32, start: f32, width: f32) -> f32 {
     if x <= start {
         return 0.0;
@@ -15,7 +14,6 @@ fn ramp(x: f32, start: f32, width: f32) -> f32 {
     return (x - start) / width;
 }
 
-// foveate::region_lod
 fn region_lod(
     e_deg: f32,
     fovea_radius_deg: f32,
@@ -28,14 +26,12 @@ fn region_lod(
         + (lod_far - lod_mid) * ramp(e_deg, mid_radius_deg, blend_deg);
 }
 
-// foveate::blur_lod
 fn blur_lod(e_deg: f32, start_deg: f32, end_deg: f32, lod_mid: f32, lod_far: f32) -> f32 {
     let slope = blur_sigma_px(lod_mid) / max(end_deg - start_deg, 1e-3);
     let sigma = clamp(slope * (e_deg - start_deg), 0.0, blur_sigma_px(lod_far));
     return ln_approx(1.0 + 2.0 * sigma) * LOG2_E;
 }
 
-// foveate::blur_sigma_px
 fn blur_sigma_px(lod: f32) -> f32 {
     return 0.5 * (exp2_approx(lod) - 1.0);
 }
@@ -46,19 +42,16 @@ struct GaussTap {
     ratio_step: f32,
 }
 
-// foveate::gauss_center
 fn gauss_center(sigma_px: f32) -> GaussTap {
     let s = max(sigma_px, SHARPEST_BLUR_PX);
     let ratio = exp_approx(-0.5 / (s * s));
     return GaussTap(1.0, ratio, ratio * ratio);
 }
 
-// foveate::gauss_next
 fn gauss_next(tap: GaussTap) -> GaussTap {
     return GaussTap(tap.weight * tap.ratio, tap.ratio * tap.ratio_step, tap.ratio_step);
 }
 
-// foveate::gauss_radius
 fn gauss_radius(sigma_px: f32) -> u32 {
     if sigma_px < SHARPEST_BLUR_PX {
         return 0u;
@@ -66,12 +59,10 @@ fn gauss_radius(sigma_px: f32) -> u32 {
     return u32(3.0 * sigma_px) + 1u;
 }
 
-// foveate::level_len
 fn level_len(len: u32, level: u32) -> u32 {
     return (len + (1u << level) - 1u) >> level;
 }
 
-// foveate::level_coordinate
 fn level_coordinate(px: f32, level: u32) -> f32 {
     let texels_per_px = bitcast<f32>((127u - level) << 23u);
     return (px + 0.5) * texels_per_px - 0.5;
@@ -82,42 +73,35 @@ struct Split {
     fraction: f32,
 }
 
-// foveate::split
 fn split(coordinate: f32, len: u32) -> Split {
     let v = clamp(coordinate, 0.0, f32(len - 1u));
     let whole = floor(v);
     return Split(u32(whole), v - whole);
 }
 
-// foveate::blend
 fn blend(a: vec3f, b: vec3f, t: f32) -> vec3f {
     return a + (b - a) * t;
 }
 
-// foveate::bilinear
 fn bilinear(top_left: vec3f, top_right: vec3f, bottom_left: vec3f, bottom_right: vec3f, fraction: vec2f) -> vec3f {
     let top = blend(top_left, top_right, fraction.x);
     let bottom = blend(bottom_left, bottom_right, fraction.x);
     return blend(top, bottom, fraction.y);
 }
 
-// foveate::mean_of_four
 fn mean_of_four(a: vec3f, b: vec3f, c: vec3f, d: vec3f) -> vec3f {
     return (a + b + c + d) * 0.25;
 }
 
-// foveate::block_center_px
 fn block_center_px(block: u32, level: u32, len: u32) -> f32 {
     let edge_px = f32(1u << level);
     return min((f32(block) + 0.5) * edge_px - 0.5, f32(len - 1u));
 }
 
-// foveate::block_sample_level
 fn block_sample_level(level: u32) -> u32 {
     return max(level, SAMPLE_LEVEL_BIAS) - SAMPLE_LEVEL_BIAS;
 }
 
-// foveate::block_sample
 fn block_sample(block: u32, level: u32, len: u32) -> u32 {
     return u32(block_center_px(block, level, len)) >> block_sample_level(level);
 }

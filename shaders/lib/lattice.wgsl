@@ -10,7 +10,6 @@ struct Between {
     fraction: f32,
 }
 
-// lattice::between
 fn between(px: u32, first: u32, level: u32, count: u32) -> Between {
     // The shift of a signed number rounds down.
     let offset = i32(px) - i32(first);
@@ -20,25 +19,21 @@ fn between(px: u32, first: u32, level: u32, count: u32) -> Between {
     return Between(vec2u(points), fraction);
 }
 
-// lattice::nearest_point
 fn nearest_point(px: u32, first: u32, level: u32) -> i32 {
     // The shift of a signed number rounds down.
     return (i32(px) - i32(first) + ((1i << level) >> 1u)) >> level;
 }
 
-// lattice::point_offset_px
 fn point_offset_px(px: u32, first: u32, level: u32, point: i32) -> f32 {
     return f32((point << level) - (i32(px) - i32(first)));
 }
 
-// lattice::place_weight
 fn place_weight(offset_px: vec2f) -> f32 {
     let inverse = 1.0 + 8.0 * (offset_px.x * offset_px.x + offset_px.y * offset_px.y);
     let exponent = 4u * ((bitcast<u32>(inverse) >> 23u) - 127u);
     return bitcast<f32>((127u - min(exponent, LEAST_PLACE_EXPONENT)) << 23u);
 }
 
-// lattice::point_weight
 fn point_weight(fraction: f32, point: u32) -> f32 {
     return select(fraction, 1.0 - fraction, point == 0u);
 }
@@ -48,7 +43,6 @@ struct SampleMean {
     weight: f32,
 }
 
-// lattice::add_sample
 fn add_sample(mean: SampleMean, sampled: vec4f, usable: bool, sample_weight: f32) -> SampleMean {
     if !usable {
         return mean;
@@ -56,7 +50,6 @@ fn add_sample(mean: SampleMean, sampled: vec4f, usable: bool, sample_weight: f32
     return SampleMean(mean.sum + sampled * sample_weight, mean.weight + sample_weight);
 }
 
-// lattice::sample_mean
 fn sample_mean(mean: SampleMean) -> vec4f {
     return mean.sum * (1.0 / max(mean.weight, LEAST_WEIGHT));
 }
@@ -69,7 +62,6 @@ struct GeometryMean {
     weight: f32,
 }
 
-// lattice::add_geometry
 fn add_geometry(mean: GeometryMean, own: f32, disparity: f32, motion: vec2f, sample_weight: f32) -> GeometryMean {
     let usable = is_finite(motion.x) && is_finite(motion.y);
     if sample_weight == 0.0 || !usable || !same_surface(own, disparity, GEOMETRY_RELATIVE, 0.0) {
@@ -82,7 +74,6 @@ fn add_geometry(mean: GeometryMean, own: f32, disparity: f32, motion: vec2f, sam
     );
 }
 
-// lattice::filled_geometry
 fn filled_geometry(mean: GeometryMean, own: f32, own_motion: vec2f) -> vec3f {
     if mean.weight == 0.0 {
         return vec3f(distance_of(own), own_motion);

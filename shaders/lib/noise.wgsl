@@ -18,34 +18,28 @@ struct Noise {
     variance: f32,
 }
 
-// noise::candidate_noise
 fn candidate_noise(input: vec2f) -> Noise {
     let error = min(positive(input.x), MAX_ERROR);
     let samples = clamp(positive(input.y), 1.0, MAX_SAMPLES);
     return Noise(samples, min((error * error) * samples, MAX_HALF));
 }
 
-// noise::positive
 fn positive(x: f32) -> f32 {
     return select(0.0, x, bitcast<u32>(x) <= 0x7f800000u);
 }
 
-// noise::pack_noise
 fn pack_noise(n: Noise) -> u32 {
     return half_bits(n.samples) | (half_bits(n.variance) << 16u);
 }
 
-// noise::unpack_noise
 fn unpack_noise(word: u32) -> Noise {
     return Noise(half_value(word & 0x7fffu), half_value((word >> 16u) & 0x7fffu));
 }
 
-// noise::candidate_texel
 fn candidate_texel(c: vec3f, usable: bool, n: Noise) -> vec4f {
     return select(vec4f(0.0, 0.0, 0.0, UNKNOWN), vec4f(c, n.variance / n.samples), usable);
 }
 
-// noise::candidate_mean
 fn candidate_mean(a: vec4f, b: vec4f, c: vec4f, d: vec4f) -> vec4f {
     let w = select(vec4f(0.0), vec4f(1.0), vec4f(a.w, b.w, c.w, d.w) >= vec4f(0.0));
     let weight = ((w.x + w.y) + w.z) + w.w;
@@ -53,7 +47,6 @@ fn candidate_mean(a: vec4f, b: vec4f, c: vec4f, d: vec4f) -> vec4f {
     return select(sum * (1.0 / max(weight, 1.0)), vec4f(0.0, 0.0, 0.0, UNKNOWN), weight == 0.0);
 }
 
-// noise::candidate_bilinear
 fn candidate_bilinear(
     top_left: vec4f,
     top_right: vec4f,
@@ -69,23 +62,19 @@ fn candidate_bilinear(
     return sum * (1.0 / max(((w.x + w.y) + w.z) + w.w, 1e-3));
 }
 
-// noise::history_share
 fn history_share(history: Noise, candidate: Noise, most: f32) -> f32 {
     return min(history.samples / (history.samples + candidate.samples), most);
 }
 
-// noise::pooled_variance
 fn pooled_variance(history: Noise, candidate: Noise) -> f32 {
     let all_samples = history.samples + candidate.samples;
     return (history.samples * history.variance + candidate.samples * candidate.variance) / all_samples;
 }
 
-// noise::root_slope
 fn root_slope(around: f32) -> f32 {
     return 50.0 / sqrt(max(around, 0.0) + DARK);
 }
 
-// noise::noise_difference
 fn noise_difference(history: Noise, candidate: Noise, around: f32, inverse_unit: f32) -> f32 {
     let sample_variance = pooled_variance(history, candidate);
     let inverse_samples = 1.0 / candidate.samples + 1.0 / max(history.samples, 1.0);
@@ -93,30 +82,25 @@ fn noise_difference(history: Noise, candidate: Noise, around: f32, inverse_unit:
     return root_slope(around) * (deviations * inverse_unit);
 }
 
-// noise::noise_visibility
 fn noise_visibility(history: Noise, around: f32) -> f32 {
     let error = root_slope(around) * sqrt(history.variance / max(history.samples, 1.0));
     return smooth_step(CONFIDENCE_FALLOFF.x, CONFIDENCE_FALLOFF.y, error);
 }
 
-// noise::noise_confidence
 fn noise_confidence(history: Noise, around: f32) -> f32 {
     return 1.0 - noise_visibility(history, around);
 }
 
-// noise::discount_coarser
 fn discount_coarser(history: Noise, candidate: Noise, levels: f32) -> Noise {
     let limited = min(history.samples, COARSER_FRAMES * candidate.samples);
     let t = clamp(levels / COARSER_WIDTH, 0.0, 1.0);
     return Noise(history.samples + (limited - history.samples) * t, history.variance);
 }
 
-// noise::sample_difference
 fn sample_difference(candidate: Noise, around: f32) -> f32 {
     return root_slope(around) * sqrt(candidate.variance * ((2.0 * SIGMAS * SIGMAS) / candidate.samples));
 }
 
-// noise::expected_noise
 fn expected_noise(history: Noise, candidate: Noise, around: f32) -> f32 {
     let inverse_samples = 1.0 / candidate.samples + 1.0 / max(history.samples, 1.0);
     return root_slope(around) * sqrt(pooled_variance(history, candidate) * inverse_samples);
@@ -128,18 +112,15 @@ struct NoiseSum {
     variance: f32,
 }
 
-// noise::add_noise
 fn add_noise(sum: NoiseSum, n: Noise, weight: f32) -> NoiseSum {
     return NoiseSum(sum.weight + weight, sum.spread + (weight * weight) / n.samples, sum.variance + n.variance * weight);
 }
 
-// noise::mean_noise
 fn mean_noise(sum: NoiseSum) -> Noise {
     let samples = (sum.weight * sum.weight) / max(sum.spread, LEAST_SPREAD);
     return Noise(clamp(samples, 1.0, MAX_SAMPLES), sum.variance * (1.0 / max(sum.weight, LEAST_SPREAD)));
 }
 
-// noise::noise_after
 fn noise_after(history: Noise, candidate: Noise, share: f32, finer: f32) -> Noise {
     let together = candidate.samples / max(1.0 - share, 1.0 / MAX_SAMPLES);
     let samples = clamp(together + (history.samples - together) * finer, 1.0, MAX_SAMPLES);
@@ -147,7 +128,6 @@ fn noise_after(history: Noise, candidate: Noise, share: f32, finer: f32) -> Nois
     return Noise(samples, clamp(variance, 0.0, MAX_HALF));
 }
 
-// noise::expose_noise
 fn expose_noise(stored: Noise, ratio: f32) -> Noise {
     return Noise(stored.samples, min(stored.variance * ratio * ratio, MAX_HALF));
 }

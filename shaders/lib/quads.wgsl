@@ -23,7 +23,6 @@ const KEYS: u32 = 63u << HASH_BITS;
 const CODE_OF_ONE: i32 = 36;
 const GROUPS_PER_ROW: u32 = 32768u;
 
-// quads::region
 fn region(e_deg: f32, fovea_radius_deg: f32, mid_radius_deg: f32) -> u32 {
     if e_deg < fovea_radius_deg {
         return IN_FOVEA;
@@ -31,27 +30,22 @@ fn region(e_deg: f32, fovea_radius_deg: f32, mid_radius_deg: f32) -> u32 {
     return select(IN_PERIPHERY, IN_MIDDLE, e_deg < mid_radius_deg);
 }
 
-// quads::in_pattern
 fn in_pattern(x: u32, y: u32, step_quads: u32, offset: vec2u) -> bool {
     return (x & (step_quads - 1u)) == offset.x && (y & (step_quads - 1u)) == offset.y;
 }
 
-// quads::in_turn
 fn in_turn(x: u32, y: u32, step_quads: u32, turn: u32) -> bool {
     return (((x / step_quads) ^ (y / step_quads) ^ turn) & 1u) == 0u;
 }
 
-// quads::asked_px
 fn asked_px(x: u32, y: u32, frame_low: u32) -> vec2u {
     return vec2u(2u * x + ((frame_low ^ x ^ y) & 1u), 2u * y + ((frame_low >> 1u) & 1u));
 }
 
-// quads::no_history_need
 fn no_history_need(x: u32, y: u32, offset: vec2u) -> f32 {
     return select(LATER_SHARE * NO_HISTORY_NEED, NO_HISTORY_NEED, in_pattern(x, y, FIRST_STEP, offset));
 }
 
-// quads::need
 fn need(lod: f32, samples: f32, contrast: f32) -> f32 {
     let limited = min(contrast, MOST_CONTRAST);
     let coarse = (limited + COARSE_CONTRAST) * min(lod, COARSEST);
@@ -60,13 +54,11 @@ fn need(lod: f32, samples: f32, contrast: f32) -> f32 {
     return coarse * coarse + select(0.0, few, samples < ENOUGH_SAMPLES);
 }
 
-// quads::acuity
 fn acuity(e_deg: f32) -> f32 {
     let share = 1.0 / (1.0 + e_deg * (1.0f / HALF_DEG));
     return share * share;
 }
 
-// quads::share_in_block
 fn share_in_block(needs: vec4f, i: u32) -> f32 {
     var share = 1.0;
     for (var other = 0u; other < 4u; other++) {
@@ -76,48 +68,40 @@ fn share_in_block(needs: vec4f, i: u32) -> f32 {
     return share;
 }
 
-// quads::quad_key
 fn quad_key(needed: f32, x: u32, y: u32, frame_low: u32, key: u32) -> u32 {
     let hash = bits(x, y, frame_low, ~key) >> (32u - HASH_BITS);
     let halves = i32(bitcast<u32>(needed) >> 22u) - 254 + CODE_OF_ONE;
     return select(0u, (u32(clamp(halves, 1, 62)) << HASH_BITS) | hash, needed > 0.0);
 }
 
-// quads::neighbour
 fn neighbour(x: i32, y: i32) -> u32 {
     let inside = x >= -REACH && y >= -REACH && x < REACH && y < REACH;
     let code = (u32(x * x + y * y) << 8u) | u32(x + REACH) | (u32(y + REACH) << 4u);
     return select(0xffffffffu, code, inside);
 }
 
-// quads::window
 fn window(word: u32, x: u32) -> u32 {
     return (word >> (x % RUN_QUADS)) & 0xffffu;
 }
 
-// quads::offset_bits
 fn offset_bits(low: i32, high: i32) -> u32 {
     return (0xffffu << u32(low + REACH)) & (0xffffu >> u32(REACH - 1 - high));
 }
 
-// quads::first_of
 fn first_of(window: u32, low: i32, high: i32, y: i32) -> u32 {
     let bits = window & offset_bits(low, high);
     return select(neighbour(i32(firstTrailingBit(bits)) - REACH, y), 0xffffffffu, bits == 0u);
 }
 
-// quads::last_of
 fn last_of(window: u32, low: i32, high: i32, y: i32) -> u32 {
     let bits = window & offset_bits(low, high);
     return select(neighbour(i32(firstLeadingBit(bits)) - REACH, y), 0xffffffffu, bits == 0u);
 }
 
-// quads::octant_offsets
 fn octant_offsets(rows: i32) -> vec2i {
     return vec2i(2 * rows / 5, (5 * rows + 1) / 2);
 }
 
-// quads::neighbour_offset
 fn neighbour_offset(code: u32) -> vec2i {
     return vec2i(vec2u(code & 15u, (code >> 4u) & 15u)) - REACH;
 }

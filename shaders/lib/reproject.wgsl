@@ -13,7 +13,7 @@ const VERDICT_DISOCCLUDED: u32 = 5u;
 const VERDICT_DISTRUSTED: u32 = 6u;
 const VERDICT_COUNT: u32 = 7u;
 
-// reproject::verdict_color, sRGB-encoded
+// sRGB-encoded.
 fn verdict_color(verdict: u32) -> vec3f {
     switch verdict {
         case VERDICT_VALID: { return vec3f(0.35, 0.35, 0.35); }
@@ -33,7 +33,6 @@ struct Reprojection {
     at: vec2u,
 }
 
-// reproject::nearest
 fn nearest(x: u32, y: u32, motion: vec2f, size: vec2u) -> Reprojection {
     // Bits of sizes are ordered as the sizes are, infinity and NaN last.
     let size_bits = bitcast<vec2u>(motion) & vec2u(0x7fffffffu);
@@ -52,7 +51,6 @@ const MAX_CAMERA_PX: f32 = 32768.0;
 
 const UNKNOWN_VECTOR_PX: f32 = 131072.0;
 
-// reproject::ViewMotion, which documents the fields
 struct ViewMotion {
     x: vec4f,
     y: vec4f,
@@ -64,7 +62,6 @@ struct ViewMotion {
     sky: f32,
 }
 
-// reproject::camera_vector
 fn camera_vector(ray: vec2f, disparity: f32, motion: ViewMotion) -> vec2f {
     if disparity < 0.0 {
         return vec2f(UNKNOWN_VECTOR_PX);
@@ -88,7 +85,6 @@ fn camera_vector(ray: vec2f, disparity: f32, motion: ViewMotion) -> vec2f {
     return clamp(vector, vec2f(-MAX_CAMERA_PX), vec2f(MAX_CAMERA_PX));
 }
 
-// reproject::has_no_vector
 fn has_no_vector(given: vec2f, none: vec2f) -> bool {
     return !(is_finite(given.x) && is_finite(given.y)) || all(given == none);
 }

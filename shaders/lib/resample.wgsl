@@ -6,21 +6,18 @@ const STAND_IN_WEIGHT: f32 = 0.1;
 const ROUNDS: u32 = 3u;
 const LARGEST_DISPARITY: f32 = 1e30;
 
-// resample::second_corner
 fn second_corner(fraction: vec2f) -> u32 {
     let nearest = select(0u, 1u, fraction.x >= 0.5) + 2u * select(0u, 1u, fraction.y >= 0.5);
     let along_x = abs(fraction.x - 0.5) <= abs(fraction.y - 0.5);
     return nearest ^ select(2u, 1u, along_x);
 }
 
-// resample::corner_weight
 fn corner_weight(corner: u32, fraction: vec2f) -> f32 {
     let x = select(1.0 - fraction.x, fraction.x, (corner & 1u) == 1u);
     let y = select(1.0 - fraction.y, fraction.y, corner >= 2u);
     return x * y;
 }
 
-// resample::catmull_rom
 fn catmull_rom(t: f32) -> vec4f {
     let t2 = t * t;
     return vec4f(
@@ -40,7 +37,6 @@ struct TapsAround {
     sharp_y: vec4f,
 }
 
-// resample::taps_around
 fn taps_around(texel: vec2i, fraction: vec2f, size: vec2u) -> TapsAround {
     return TapsAround(texel, vec2i(size) - 1, fraction, catmull_rom(fraction.x), catmull_rom(fraction.y));
 }
@@ -58,7 +54,6 @@ struct FourTaps {
     linear_row: f32,
 }
 
-// resample::taps_of
 fn taps_of(around: TapsAround, index: u32) -> FourTaps {
     let below = index == 1u;
     let outside = index == 2u;
@@ -80,12 +75,10 @@ fn taps_of(around: TapsAround, index: u32) -> FourTaps {
     );
 }
 
-// resample::sharp_sum
 fn sharp_sum(around: TapsAround) -> f32 {
     return 1.0 - (around.sharp_x.x + around.sharp_x.w) * (around.sharp_y.x + around.sharp_y.w);
 }
 
-// resample::codes_between
 fn codes_between(expected: f32, low: f32, high: f32) -> vec2u {
     // The limit keeps compilers from merging these factors with those of the disparity.
     let limited = min(expected, LARGEST_DISPARITY);
@@ -94,19 +87,16 @@ fn codes_between(expected: f32, low: f32, high: f32) -> vec2u {
     return vec2u(first, select(last - first + 1u, 0u, expected < 0.0));
 }
 
-// resample::tap_codes
 fn tap_codes(expected: f32) -> vec2u {
     return codes_between(expected, 1.0f - TAP_RELATIVE, 1.0f / (1.0f - TAP_RELATIVE));
 }
 
-// resample::tap_codes_between
 fn tap_codes_between(farthest: f32, nearest: f32) -> vec2u {
     let first = tap_codes(farthest);
     let last = tap_codes(nearest);
     return vec2u(first.x, max(last.x, first.x) - first.x + last.y);
 }
 
-// resample::has_code
 fn has_code(word: u32, codes: vec2u) -> bool {
     return (word >> 16u) - codes.x < codes.y;
 }
@@ -117,7 +107,6 @@ struct Tap {
     same: bool,
 }
 
-// resample::surface_tap
 fn surface_tap(words: vec2u, codes: vec2u, any_code: bool) -> Tap {
     let code = lod_code(words);
     return Tap(surface_color(words), lod_value(code), select(has_code(words.y, codes), code != EMPTY_LOD, any_code));
@@ -131,12 +120,10 @@ struct Gathered {
     complete: bool,
 }
 
-// resample::nothing_gathered
 fn nothing_gathered() -> Gathered {
     return Gathered(vec3f(0.0), vec3f(0.0), 0.0, 0.0, true);
 }
 
-// resample::gather
 fn gather(g: Gathered, a: Tap, b: Tap, c: Tap, d: Tap, four: FourTaps) -> Gathered {
     let x = four.sharp_x;
     let first = a.color * x.x + b.color * x.y;
@@ -157,7 +144,6 @@ struct Resampled {
     lod: f32,
 }
 
-// resample::resolve
 fn resolve(g: Gathered, weights: f32, nearest: Surface) -> Resampled {
     if g.smooth_sum < 0.01 {
         return Resampled(nearest.color, nearest.color, nearest.lod);

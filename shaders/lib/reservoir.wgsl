@@ -15,7 +15,7 @@ struct Combined {
     keep_second: bool,
 }
 
-// reservoir::update (Alg. 1)
+// Alg. 1.
 fn update(reservoir: ptr<function, Reservoir>, candidate_weight: f32, draw: f32) -> bool {
     let w = weight(candidate_weight);
     let w_sum = (*reservoir).w_sum + w;
@@ -23,7 +23,7 @@ fn update(reservoir: ptr<function, Reservoir>, candidate_weight: f32, draw: f32)
     return draw * w_sum < w;
 }
 
-// reservoir::combine (Alg. 2, with a strict comparison for the second)
+// Alg. 2, with a strict comparison for the second.
 fn combine(first: Reservoir, second: Reservoir, draw: f32) -> Combined {
     let w1 = weight(first.w_sum);
     let w2 = weight(second.w_sum);
@@ -32,7 +32,7 @@ fn combine(first: Reservoir, second: Reservoir, draw: f32) -> Combined {
     return Combined(merged, w1 == 0.0 || draw * w_sum < w2);
 }
 
-// reservoir::bernoulli_survival (eq. 5): 1 - w_new / (w_sum + w_new)
+// 1 - w_new / (w_sum + w_new) (eq. 5)
 fn bernoulli_survival(w_sum: f32, w_new: f32) -> f32 {
     let total = w_sum + w_new;
     if total > 0.0 {
@@ -41,12 +41,12 @@ fn bernoulli_survival(w_sum: f32, w_new: f32) -> f32 {
     return 1.0;
 }
 
-// reservoir::exponential_survival: exp(-lambda)
+// exp(-lambda)
 fn exponential_survival(lambda_per_frame: f32) -> f32 {
     return exp_approx(-lambda_per_frame);
 }
 
-// reservoir::a_es_log_key: ln(draw) / w
+// ln(draw) / w
 fn a_es_log_key(draw: f32, sample_weight: f32) -> f32 {
     let w = weight(sample_weight);
     if w == 0.0 {
@@ -55,7 +55,7 @@ fn a_es_log_key(draw: f32, sample_weight: f32) -> f32 {
     return max(ln_approx(max(draw, 1.0 / 33554432.0)) / w, LOWEST);
 }
 
-// reservoir::a_es_decay: key / survival
+// key / survival
 fn a_es_decay(log_key: f32, survival: f32) -> f32 {
     let key_bits = bitcast<u32>(log_key);
     let is_key = key_bits == 0u || (key_bits >= 0x80000000u && key_bits <= 0xff7fffffu);

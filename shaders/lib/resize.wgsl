@@ -1,12 +1,10 @@
 //#use surface
 // Twin of src/kernel/resize.rs.
 
-// resize::old_position
 fn old_position(x: u32, ratio: f32, old_len: u32) -> f32 {
     return clamp((f32(x) + 0.5) * ratio - 0.5, 0.0, f32(old_len - 1u));
 }
 
-// resize::resized_lod
 fn resized_lod(lod: f32, shift: f32) -> f32 {
     return clamp(lod + shift, 0.0, MAX_LOD);
 }

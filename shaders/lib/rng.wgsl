@@ -4,7 +4,7 @@ const PURPOSE_SELECT: u32 = 0u;
 const PURPOSE_KEY: u32 = 1u;
 const PURPOSE_PATH: u32 = 2u;
 
-// rng::pcg4d (Jarzynski and Olano, JCGT 9(3), 2020)
+// Jarzynski and Olano, JCGT 9(3), 2020.
 fn pcg4d(input: vec4u) -> vec4u {
     var v = input * 1664525u + 1013904223u;
     v = pcg4d_mix(v);
@@ -12,7 +12,7 @@ fn pcg4d(input: vec4u) -> vec4u {
     return pcg4d_mix(v);
 }
 
-// rng::mix; another name, because `mix` is a builtin of WGSL.
+// `mix` in Rust, which is a builtin of WGSL.
 fn pcg4d_mix(input: vec4u) -> vec4u {
     var v = input;
     v.x += v.y * v.w;
@@ -22,22 +22,20 @@ fn pcg4d_mix(input: vec4u) -> vec4u {
     return v;
 }
 
-// rng::stream_key; 64-bit numbers are pairs of low and high word.
+// 64-bit numbers are pairs of low and high word.
 fn stream_key(seed: vec2u, view: u32, purpose: u32, frame: vec2u) -> u32 {
     return pcg4d(vec4u(seed.x, seed.y, frame.y, (purpose << 16u) ^ view)).x;
 }
 
-// rng::bits
 fn bits(x: u32, y: u32, frame: u32, key: u32) -> u32 {
     return pcg4d(vec4u(x, y, frame, key)).x;
 }
 
-// rng::unit_draw: in [0, 1) on the grid of 2^-24.
+// In [0, 1) on the grid of 2^-24.
 fn unit_draw(bits: u32) -> f32 {
     return f32(bits >> 8u) * (1.0 / 16777216.0);
 }
 
-// rng::path_draws
 fn path_draws(pixel: u32, sample: u32, dimension: u32, key: u32) -> vec4f {
     let words = pcg4d(vec4u(pixel, sample, dimension, key));
     return vec4f(unit_draw(words.x), unit_draw(words.y), unit_draw(words.z), unit_draw(words.w));

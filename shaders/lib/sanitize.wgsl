@@ -4,7 +4,6 @@
 const MAX_HALF: f32 = 65504.0;
 const LEAST_COLOR: f32 = 0x1p-32;
 
-// sanitize::is_finite
 fn is_finite(x: f32) -> bool {
     return (bitcast<u32>(x) & 0x7f800000u) != 0x7f800000u;
 }
@@ -14,7 +13,6 @@ struct Sanitized {
     usable: bool,
 }
 
-// sanitize::color
 fn color(c: vec3f) -> Sanitized {
     let size = bitcast<vec3u>(c) & vec3u(0x7fffffffu);
     if max(max(size.x, size.y), size.z) < 0x7f800000u {
@@ -24,7 +22,7 @@ fn color(c: vec3f) -> Sanitized {
     return Sanitized(vec3f(0.0), false);
 }
 
-// sanitize::trust. The bits of positive floats are ordered as the floats, infinity last and NaN beyond it.
+// The bits of positive floats are ordered as the floats, infinity last and NaN beyond it.
 fn trust(t: f32) -> f32 {
     let bits = bitcast<u32>(t);
     if bits >= 0x3f800000u && bits <= 0x7f800000u {
@@ -33,7 +31,7 @@ fn trust(t: f32) -> f32 {
     return select(0.0, t, bits >= 0x00800000u && bits < 0x3f800000u);
 }
 
-// sanitize::weight: unchanged from the smallest normal float to the largest finite one, otherwise 0.
+// Unchanged from the smallest normal float to the largest finite one, otherwise 0.
 fn weight(w: f32) -> f32 {
     let bits = bitcast<u32>(w);
     return select(0.0, w, bits >= 0x00800000u && bits < 0x7f800000u);

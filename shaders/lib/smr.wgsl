@@ -31,28 +31,23 @@ struct SmrParams {
     noisy: bool,
 }
 
-// smr::smooth_step
 fn smooth_step(low: f32, width: f32, x: f32) -> f32 {
     let t = clamp((x - low) / width, 0.0, 1.0);
     return (t * t) * (3.0 - 2.0 * t);
 }
 
-// smr::root_difference
 fn root_difference(x: vec3f, y: vec3f) -> f32 {
     return distance_of_roots(roots(x), roots(y));
 }
 
-// smr::past_difference
 fn past_difference(x: vec3f, past: vec3f) -> f32 {
     return distance_of_roots(roots(x), past_roots(past));
 }
 
-// smr::past_contrast
 fn past_contrast(level: vec3f, next_level: vec3f) -> f32 {
     return distance_of_roots(past_roots(level), past_roots(next_level));
 }
 
-// smr::distance_of_roots
 fn distance_of_roots(x: vec3f, y: vec3f) -> f32 {
     let d = x - y;
     let outer = 0.25 * (d.x + d.z);
@@ -64,24 +59,20 @@ fn distance_of_roots(x: vec3f, y: vec3f) -> f32 {
     return 100.0 * sqrt(luma * luma + 0.5 * chroma);
 }
 
-// smr::roots
 fn roots(c: vec3f) -> vec3f {
     return past_roots(max(c, vec3f(0.0)));
 }
 
-// smr::past_roots
 fn past_roots(c: vec3f) -> vec3f {
     return sqrt(c);
 }
 
-// smr::brightness_unit
 fn brightness_unit(compared: vec3f, matched: vec3f, exposure: f32) -> f32 {
     let now = max(max(compared.x, compared.y), compared.z);
     let then = max(max(matched.x, matched.y), matched.z);
     return max(max(now, then * exposure), LEAST_BRIGHTNESS) * (1.0f / MIDDLE);
 }
 
-// smr::moves_alike
 fn moves_alike(own: vec2f, other: vec2f) -> bool {
     let within = COHERENT_PX + COHERENT_SHARE * (abs(own.x) + abs(own.y));
     return abs(other.x - own.x) <= within && abs(other.y - own.y) <= within;
@@ -92,7 +83,6 @@ struct ReuseWeight {
     share: f32,
 }
 
-// smr::reuse_weight
 fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confidence: vec2f) -> ReuseWeight {
     let finer = clamp((lod - history_lod) * (1.0f / QUALITY_WIDTH), 0.0, 1.0) * confidence.x;
     let coarser = clamp((history_lod - lod) / COARSER_WIDTH, 0.0, 1.0) * confidence.y;
@@ -101,32 +91,27 @@ fn reuse_weight(lod: f32, history_lod: f32, accumulate: f32, noisy: bool, confid
     return ReuseWeight(finer, finer + (alike * calm) * accumulate);
 }
 
-// smr::gain
 fn gain(observed: f32, predicted: f32, changed: f32) -> f32 {
     let ratio = clamp((observed + DARK) / (predicted + DARK), GAIN_LEAST, GAIN_MOST);
     let share = changed * smooth_step(0.5, 1.0, 10.0 * abs(ratio - 1.0));
     return (1.0 - share) + ratio * share;
 }
 
-// smr::strongest_gain
 fn strongest_gain(gains: vec3f) -> f32 {
     let least = min(min(gains.x, gains.y), gains.z);
     let most = max(max(gains.x, gains.y), gains.z);
     return select(most, least, least * most < 1.0);
 }
 
-// smr::relight_from
 fn relight_from(contrast: f32, blocks: bool, noise: f32) -> f32 {
     let relight = select(RELIGHT, RELIGHT_BLOCKS, blocks);
     return (relight.x + relight.y * contrast) + noise;
 }
 
-// smr::may_relight
 fn may_relight(finer: f32, noisy: bool) -> bool {
     return finer == 1.0 || noisy;
 }
 
-// smr::is_changed
 fn is_changed(compared: vec3f, matched: vec3f, level: vec3f, next_level: vec3f) -> bool {
     return past_difference(compared, matched) > relight_from(past_contrast(level, next_level), false, 0.0);
 }
@@ -158,7 +143,6 @@ struct Matched {
     fit: f32,
 }
 
-// smr::decide
 fn decide(e: Evidence, p: SmrParams) -> Matched {
     let reuse = reuse_weight(e.lod, e.history_lod, p.accumulate, p.noisy, e.confidence);
     var contrast = past_contrast(e.level, e.next_level);
@@ -207,12 +191,10 @@ fn decide(e: Evidence, p: SmrParams) -> Matched {
     return Matched(shown, lod, share, fit);
 }
 
-// smr::mip_mean
 fn mip_mean(a: vec4f, b: vec4f, c: vec4f, d: vec4f) -> vec4f {
     return (a + b + c + d) * 0.25;
 }
 
-// smr::mip_bilinear
 fn mip_bilinear(top_left: vec4f, top_right: vec4f, bottom_left: vec4f, bottom_right: vec4f, fraction: vec2f) -> vec3f {
     let t = top_left + (top_right - top_left) * fraction.x;
     let b = bottom_left + (bottom_right - bottom_left) * fraction.x;

@@ -30,7 +30,6 @@ const STAY_SHARE: f32 = 0.5;
 const AGREED: vec2f = vec2f(0.6, 6.0);
 const RELIT_ERRORS: f32 = 0.8;
 
-// sparse_smr::candidate_level
 fn candidate_level(px: f32, coarsest: f32) -> f32 {
     return min(ln_approx(1.0 + 2.0 * px) * LOG2_E, coarsest);
 }
@@ -43,41 +42,34 @@ struct Observation {
     confidence: f32,
 }
 
-// sparse_smr::expected_error
 fn expected_error(lod: f32, contrast: f32, moved: bool) -> f32 {
     let coarse = clamp(lod, 0.0, 1.0);
     let by_motion = select(0.0, CONTRAST_ERROR, moved);
     return select(STILL_ERROR, MOVED_ERROR, moved) + contrast * (by_motion + CONTRAST_ERROR * coarse);
 }
 
-// sparse_smr::lod_confidence
 fn lod_confidence(lod: f32) -> f32 {
     return 1.0 - clamp(lod, 0.0, 1.0);
 }
 
-// sparse_smr::noisy_lod_confidence
 fn noisy_lod_confidence(lod: f32, past: Noise, around: f32) -> f32 {
     return max(lod_confidence(lod), noise_visibility(past, around));
 }
 
-// sparse_smr::ratio
 fn ratio(observed: f32, predicted: f32) -> f32 {
     return clamp((observed + DARK) / (predicted + DARK), SAMPLE_GAIN.x, SAMPLE_GAIN.y);
 }
 
-// sparse_smr::ratios
 fn ratios(observed: vec3f, predicted: vec3f) -> vec3f {
     return vec3f(ratio(observed.x, predicted.x), ratio(observed.y, predicted.y), ratio(observed.z, predicted.z));
 }
 
-// sparse_smr::agreement
 fn agreement(own: Observation, other: Observation, spatial: f32) -> f32 {
     let difference = root_difference(other.sampled, ratios(own.sampled, own.history) * other.history);
     let errors = min(difference, 1e6) / (AGREE_ERRORS * (own.error + other.error) + AGREE_ERROR);
     return (spatial * other.confidence) / (1.0 + errors * errors);
 }
 
-// sparse_smr::neighbour_weight
 fn neighbour_weight(offset: vec2i) -> f32 {
     return f32((2 - abs(offset.x)) * (2 - abs(offset.y)));
 }
@@ -92,7 +84,6 @@ struct ObservedAround {
     known: f32,
 }
 
-// sparse_smr::add_observation
 fn add_observation(a: ObservedAround, o: Observation, weight: f32, spatial: f32) -> ObservedAround {
     return ObservedAround(
         a.sampled + o.sampled * weight,
@@ -105,17 +96,14 @@ fn add_observation(a: ObservedAround, o: Observation, weight: f32, spatial: f32)
     );
 }
 
-// sparse_smr::mean_error
 fn mean_error(a: ObservedAround) -> f32 {
     return a.error * (1.0 / a.weight);
 }
 
-// sparse_smr::agreed
 fn agreed(a: ObservedAround) -> f32 {
     return clamp((a.weight - a.known * AGREED.x) * (AGREED.y / max(a.known, 1e-6)), 0.0, 1.0);
 }
 
-// sparse_smr::relight
 fn relight(a: ObservedAround, error: f32) -> vec3f {
     if a.weight < 1e-6 {
         return vec3f(1.0);
@@ -130,27 +118,22 @@ fn relight(a: ObservedAround, error: f32) -> vec3f {
     return ratios(sampled, history) * changed + (1.0 - changed);
 }
 
-// sparse_smr::errors_left
 fn errors_left(o: Observation, gains: vec3f) -> f32 {
     return root_difference(o.sampled, gains * o.history) / (o.error + GATE_ERROR);
 }
 
-// sparse_smr::fit
 fn fit(errors: f32, confidence: f32) -> f32 {
     return 1.0 - confidence * smooth_step(FIT_ERRORS.x, FIT_ERRORS.y, errors);
 }
 
-// sparse_smr::own_fit
 fn own_fit(own: Observation, gains: vec3f) -> f32 {
     return fit(errors_left(own, gains), own.confidence);
 }
 
-// sparse_smr::capped_error
 fn capped_error(o: Observation, errors: f32, spatial: f32) -> f32 {
     return min(errors, FIT_ERRORS.x + FIT_ERRORS.y) * (spatial * o.confidence);
 }
 
-// sparse_smr::fit_around
 fn fit_around(a: ObservedAround, left: f32, capped: f32) -> f32 {
     let by_own = fit(left / a.weight, min(a.weight / a.spatial, 1.0));
     let by_all = fit(capped / max(a.known, 1e-6), min(a.known / a.spatial, 1.0));
@@ -158,7 +141,6 @@ fn fit_around(a: ObservedAround, left: f32, capped: f32) -> f32 {
     return by_own * share + by_all * (1.0 - share);
 }
 
-// sparse_smr::mean_fit
 fn mean_fit(a: ObservedAround, confidence: f32) -> f32 {
     let inverse = 1.0 / a.weight;
     let start = ((a.error * inverse) * (sqrt(a.squared) * inverse)) * MEAN_ERRORS;
@@ -173,7 +155,6 @@ struct Lit {
     disparity: f32,
 }
 
-// sparse_smr::pack_lit
 fn pack_lit(l: Lit) -> vec2u {
     let fit_bits = u32(l.fit * 256.0 + 0.5);
     let own_bits = u32(l.own_fit * 32.0 + 0.5) << 10u;
@@ -181,7 +162,6 @@ fn pack_lit(l: Lit) -> vec2u {
     return vec2u(pack_color(l.gains), fit_bits | select(0u, 512u, l.is_own) | own_bits | disparity_bits);
 }
 
-// sparse_smr::unpack_lit
 fn unpack_lit(words: vec2u) -> Lit {
     return Lit(
         unpack_color(words.x),
@@ -200,7 +180,6 @@ struct QuadLit {
     disparities: vec4f,
 }
 
-// sparse_smr::pack_quad_lit
 fn pack_quad_lit(l: QuadLit) -> vec4u {
     let own = vec4u(l.own_fits * 16.0 + 0.5) << vec4u(10u, 15u, 20u, 25u);
     let fits = u32(0.5 + l.fit * 256.0) | select(0u, 512u, l.is_own) | own.x | own.y | own.z | own.w;
@@ -209,7 +188,6 @@ fn pack_quad_lit(l: QuadLit) -> vec4u {
     return vec4u(pack_color(l.gains), fits, first, second);
 }
 
-// sparse_smr::quad_lit
 fn quad_lit(words: vec4u, i: u32) -> Lit {
     return Lit(
         unpack_color(words.x),
@@ -220,7 +198,6 @@ fn quad_lit(words: vec4u, i: u32) -> Lit {
     );
 }
 
-// sparse_smr::quad_code
 fn quad_code(words: vec4u, i: u32) -> u32 {
     let pair = select(words.z, words.w, i >= 2u);
     return select(pair & 0xffff0000u, pair << 16u, (i & 1u) == 0u);
@@ -247,12 +224,10 @@ struct Reconstructed {
     share: f32,
 }
 
-// sparse_smr::relit
 fn relit(c: vec3f, gains: vec3f, lowest: vec3f, highest: vec3f) -> vec3f {
     return min(c * gains, max(c, highest + (highest - lowest) * OVERSHOOT));
 }
 
-// sparse_smr::reconstruct
 fn reconstruct(r: Reconstruction) -> Reconstructed {
     let acceptance = r.fit * r.trust;
     var worn = 0.0;
@@ -286,7 +261,6 @@ struct Accumulated {
     noise: Noise,
 }
 
-// sparse_smr::accumulate
 fn accumulate(r: Reconstruction, past: Noise, candidate: Noise) -> Accumulated {
     let acceptance = r.fit * r.trust;
     let bright = luma(r.history);

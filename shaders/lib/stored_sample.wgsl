@@ -22,18 +22,15 @@ struct StoredSample {
     place_px: vec2f,
 }
 
-// stored_sample::multiple
 fn multiple(v: f32, exponent: u32, up: f32) -> u32 {
     // A power of two: the product is exact.
     return u32(v * bitcast<f32>((262u - exponent) << 23u) + up);
 }
 
-// stored_sample::pack_color
 fn pack_color(c: vec3f) -> u32 {
     return pack_color_by(c, 0.5);
 }
 
-// stored_sample::pack_color_by
 fn pack_color_by(c: vec3f, up: f32) -> u32 {
     let v = select(vec3f(0.0), min(c, vec3f(MAX_COLOR)), c > vec3f(0.0));
     let largest = max(max(v.x, v.y), v.z);
@@ -46,7 +43,6 @@ fn pack_color_by(c: vec3f, up: f32) -> u32 {
         | ((exponent - SMALLEST_EXPONENT) << 27u);
 }
 
-// stored_sample::unpack_color
 fn unpack_color(word: u32) -> vec3f {
     let unit = bitcast<f32>(((word >> 27u) + (SMALLEST_EXPONENT - 8u)) << 23u);
     return vec3f(f32(word & 511u), f32((word >> 9u) & 511u), f32((word >> 18u) & 511u)) * unit;
@@ -60,7 +56,6 @@ fn unpack_place(bits: u32) -> f32 {
     return (f32(bits & 63u) - 32.0) * (1.0f / PLACE_STEPS);
 }
 
-// stored_sample::pack_stored
 fn pack_stored(s: StoredSample) -> vec2u {
     var lod = EMPTY_LOD;
     if s.lod >= 0.0 {
@@ -75,7 +70,6 @@ fn pack_stored(s: StoredSample) -> vec2u {
     );
 }
 
-// stored_sample::unpack_stored
 fn unpack_stored(words: vec2u) -> StoredSample {
     if is_empty(words) {
         return StoredSample(vec3f(0.0), -1.0, -1.0, vec2f(0.0));
@@ -83,17 +77,14 @@ fn unpack_stored(words: vec2u) -> StoredSample {
     return unpack_full(words);
 }
 
-// stored_sample::is_empty
 fn is_empty(words: vec2u) -> bool {
     return (words.y & 63u) == EMPTY_LOD;
 }
 
-// stored_sample::code_word
 fn code_word(words: vec2u) -> u32 {
     return (words.y << 12u) & 0xfffc0000u;
 }
 
-// stored_sample::unpack_full
 fn unpack_full(words: vec2u) -> StoredSample {
     let code = (words.y >> 6u) & 0x3fffu;
     return StoredSample(
@@ -105,7 +96,6 @@ fn unpack_full(words: vec2u) -> StoredSample {
     );
 }
 
-// stored_sample::moved_stored
 fn moved_stored(s: StoredSample, texel_px: vec2f, scale: vec2f, lod_shift: f32) -> StoredSample {
     if s.lod < 0.0 {
         return s;
@@ -136,13 +126,11 @@ fn nothing_around() -> AroundStored {
     return AroundStored(0.0, zero, 0.0, vec2f(0.0), zero, zero, zero, vec3f(MAX_COLOR), zero, empty, 1e30);
 }
 
-// stored_sample::stored_weight
 fn stored_weight(px2: f32, inverse_reach: f32) -> f32 {
     let inside = max(1.0 - px2 * inverse_reach, 0.0);
     return (inside * inside) / (px2 + SOFTEN_PX2);
 }
 
-// stored_sample::add_stored
 fn add_stored(a: AroundStored, sampled: StoredSample, texel_px: vec2f, same: bool, inverse_reach: f32) -> AroundStored {
     if !same {
         return a;
@@ -174,7 +162,6 @@ fn add_stored(a: AroundStored, sampled: StoredSample, texel_px: vec2f, same: boo
 
 const STAND_IN: f32 = 1.6;
 
-// stored_sample::can_replace
 fn can_replace(a: AroundStored) -> bool {
     return a.weight >= STAND_IN;
 }
@@ -187,7 +174,6 @@ struct Interpolated {
     nearest: StoredSample,
 }
 
-// stored_sample::interpolate
 fn interpolate(a: AroundStored) -> Interpolated {
     var nearest = a.nearest;
     let away = max(abs(nearest.place_px.x), abs(nearest.place_px.y));

@@ -14,7 +14,6 @@ struct Surface {
     disparity: f32,
 }
 
-// surface::float14_bits
 fn float14_bits(x: f32) -> u32 {
     let a = bitcast<u32>(select(0.0, min(x, MAX_FLOAT14), x > 0.0));
     let small = bitcast<u32>(bitcast<f32>(a) + 0.5) - bitcast<u32>(0.5f);
@@ -22,13 +21,11 @@ fn float14_bits(x: f32) -> u32 {
     return select(rounded, small, a < (112u << 23u));
 }
 
-// surface::float14_value
 fn float14_value(code: u32) -> f32 {
     let normal = bitcast<f32>((code << 14u) + (111u << 23u));
     return min(normal, 2.0 * normal - 0x1p-15);
 }
 
-// surface::pack_surface
 fn pack_surface(s: Surface) -> vec2u {
     var lod = EMPTY_LOD;
     if s.lod >= 0.0 {
@@ -41,17 +38,14 @@ fn pack_surface(s: Surface) -> vec2u {
     return select(words, EMPTY_SURFACE, lod == EMPTY_LOD);
 }
 
-// surface::lod_code
 fn lod_code(words: vec2u) -> u32 {
     return (words.x >> 28u) | ((words.y >> 10u) & 0x30u);
 }
 
-// surface::lod_value
 fn lod_value(code: u32) -> f32 {
     return f32(code - 1u) * (1.0f / LOD_STEPS);
 }
 
-// surface::surface_color
 fn surface_color(words: vec2u) -> vec3f {
     return vec3f(
         float14_value(words.x & 0x3fffu),
@@ -60,7 +54,6 @@ fn surface_color(words: vec2u) -> vec3f {
     );
 }
 
-// surface::unpack_surface
 fn unpack_surface(words: vec2u) -> Surface {
     let code = lod_code(words);
     let is_empty = code == EMPTY_LOD;
@@ -71,7 +64,6 @@ fn unpack_surface(words: vec2u) -> Surface {
     );
 }
 
-// surface::mip_texel
 fn mip_texel(words: vec2u) -> vec4f {
     let s = unpack_surface(words);
     if s.lod < 0.0 {
@@ -80,7 +72,6 @@ fn mip_texel(words: vec2u) -> vec4f {
     return vec4f(s.color, 1.0);
 }
 
-// surface::round_mip
 fn round_mip(v: vec4f) -> vec4f {
     return vec4f(
         half_value(half_bits(v.x)),

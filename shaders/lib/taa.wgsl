@@ -10,7 +10,6 @@ const BOX_SIGMAS: vec2f = vec2f(2.0, 5.0);
 const MAX_ROOT: f32 = 256.0;
 const NO_CONFIDENCE_LOD: f32 = 8.0;
 
-// taa::to_ycocg
 fn to_ycocg(c: vec3f) -> vec3f {
     let r = roots(c);
     let outer = 0.25 * (r.x + r.z);
@@ -18,18 +17,15 @@ fn to_ycocg(c: vec3f) -> vec3f {
     return vec3f(outer + inner, 0.5 * (r.x - r.z), inner - outer);
 }
 
-// taa::root_luma
 fn root_luma(c: vec3f) -> f32 {
     return min(to_ycocg(c).x, MAX_ROOT);
 }
 
-// taa::roots_of_ycocg
 fn roots_of_ycocg(y: vec3f) -> vec3f {
     let outer = y.x - y.z;
     return max(vec3f(outer + y.y, y.x + y.z, outer - y.y), vec3f(0.0));
 }
 
-// taa::clip_to_box
 fn clip_to_box(history: vec3f, mean: vec3f, extent: vec3f) -> vec3f {
     let d = history - mean;
     let ratio = extent / max(abs(d), vec3f(1e-6));
@@ -40,30 +36,25 @@ fn clip_to_box(history: vec3f, mean: vec3f, extent: vec3f) -> vec3f {
     return history;
 }
 
-// taa::confidence_of
 fn confidence_of(lod: f32) -> f32 {
     let root = max(NO_CONFIDENCE_LOD - lod, 0.0) * 0.5;
     return root * root;
 }
 
-// taa::lod_of
 fn lod_of(confidence: f32) -> f32 {
     return max(NO_CONFIDENCE_LOD - 2.0 * sqrt(confidence), 0.0);
 }
 
-// taa::confidence_limit
 fn confidence_limit(fraction: vec2f, spread: f32) -> f32 {
     let x = 4.0 * (fraction.x * (1.0 - fraction.x));
     let y = 4.0 * (fraction.y * (1.0 - fraction.y));
     return 1.0 / (max(x, y) * spread + (1.0f / LIMIT));
 }
 
-// taa::settled
 fn settled(confidence: f32) -> f32 {
     return clamp((confidence - SETTLED) * (1.0f / SETTLED), 0.0, 1.0);
 }
 
-// taa::agreeing
 fn agreeing(sum: f32, squares: f32, past: f32, count: f32) -> f32 {
     let inverse = 1.0 / max(count, 1.0);
     let variance = (squares * count - sum * sum) * (inverse * inverse);
@@ -71,17 +62,14 @@ fn agreeing(sum: f32, squares: f32, past: f32, count: f32) -> f32 {
     return (max(variance, 0.0) * JITTER + (ROUNDING * ROUNDING)) * LIMIT / (off * off + (ROUNDING * ROUNDING));
 }
 
-// taa::candidate_share
 fn candidate_share(confidence: f32, trusted: f32) -> f32 {
     return max(1.0 / (confidence + 1.0), 1.0 - trusted);
 }
 
-// taa::box_sigmas
 fn box_sigmas(moving: f32, still: f32, confidence: f32) -> f32 {
     return moving + (still - moving) * settled(confidence);
 }
 
-// taa::blend_clipped
 fn blend_clipped(candidate: vec3f, history: vec3f, sum: vec3f, squares: vec3f, alpha: f32, confidence: f32) -> vec3f {
     let mean = sum * (1.0f / 9.0f);
     let variance = (squares * 9.0 - sum * sum) * (1.0f / 81.0f);

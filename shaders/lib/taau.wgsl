@@ -11,24 +11,20 @@ const UPSAMPLED_BOX_SIGMAS: vec2f = vec2f(1.5, 5.0);
 const LEAST_CLIP: f32 = 0.1;
 const CLIP_COST: f32 = 10.0;
 
-// taau::lobe
 fn lobe(squared: f32) -> f32 {
     let b = 1.0 - 0.25 * squared;
     return (max(1.0 - squared, 0.0) * b) * (b * b);
 }
 
-// taau::tail
 fn tail(confidence: f32) -> f32 {
     let unknown = clamp(1.0 - confidence * (1.0f / TAIL_UNTIL), 0.0, 1.0);
     return (unknown * (1.0f - LEAST_TAIL) + LEAST_TAIL) * TAIL;
 }
 
-// taau::narrowing
 fn narrowing(confidence: f32) -> f32 {
     return settled(confidence) * NARROWING + 1.0;
 }
 
-// taau::sample_weights
 fn sample_weights(offset_px: vec2f, level: u32, interpolation: f32, narrowed: f32) -> vec2f {
     let px2 = offset_px.x * offset_px.x + offset_px.y * offset_px.y;
     let inverse_step = bitcast<f32>((127u - level) << 23u);
@@ -44,7 +40,6 @@ struct SamplesAround {
     count: f32,
 }
 
-// taau::add_around
 fn add_around(a: SamplesAround, centre: vec3f, sampled: vec3f, weights: vec2f) -> SamplesAround {
     let v = to_ycocg(sampled);
     return SamplesAround(
@@ -56,7 +51,6 @@ fn add_around(a: SamplesAround, centre: vec3f, sampled: vec3f, weights: vec2f) -
     );
 }
 
-// taau::upsampled
 fn upsampled(a: SamplesAround, centre: vec3f) -> vec3f {
     return centre + a.difference * (1.0 / a.weights.y);
 }
@@ -68,7 +62,6 @@ struct Accumulated {
     kept: f32,
 }
 
-// taau::accumulate
 fn accumulate(a: SamplesAround, centre: vec3f, history: vec3f, confidence: f32, trusted: f32) -> Accumulated {
     let inverse = 1.0 / a.count;
     let variance = (a.squares * a.count - a.sum * a.sum) * (inverse * inverse);

@@ -29,12 +29,10 @@ struct Reference {
     level: u32,
 }
 
-// wrs::level_code
 fn level_code(lod: f32) -> u32 {
     return u32(lod * 4.0 + 0.5);
 }
 
-// wrs::pack_reference
 fn pack_reference(r: Reference) -> u32 {
     let c = clamp(r.color, vec3f(0.0), vec3f(MAX_HALF));
     let largest = bitcast<u32>(max(max(c.x, c.y), c.z)) + (1u << (23u - CHANNEL_BITS));
@@ -44,7 +42,6 @@ fn pack_reference(r: Reference) -> u32 {
     return m.x | (m.y << 7u) | (m.z << 14u) | ((exponent - LEAST_EXPONENT) << 21u) | (r.level << 26u);
 }
 
-// wrs::unpack_reference
 fn unpack_reference(word: u32) -> Reference {
     let exponent = ((word >> 21u) & 31u) + LEAST_EXPONENT;
     let scale = bitcast<f32>((exponent + 1u - CHANNEL_BITS) << 23u);
@@ -52,12 +49,10 @@ fn unpack_reference(word: u32) -> Reference {
     return Reference(vec3f(channels) * scale, word >> 26u);
 }
 
-// wrs::compared
 fn compared(candidate: vec3f, level: u32, reference: Reference) -> vec3f {
     return select(candidate, reference.color, level != NO_LEVEL && reference.level == level);
 }
 
-// wrs::next_reference
 fn next_reference(candidate: vec3f, level: u32, take: bool, reference: Reference) -> Reference {
     if take || (level != NO_LEVEL && reference.level != level) {
         return Reference(candidate, level);
@@ -65,7 +60,6 @@ fn next_reference(candidate: vec3f, level: u32, take: bool, reference: Reference
     return reference;
 }
 
-// wrs::sharpen
 fn sharpen(candidate_w: f32, exponent: u32) -> f32 {
     var w = candidate_w;
     for (var i = 1u; i < exponent; i++) {
@@ -74,10 +68,8 @@ fn sharpen(candidate_w: f32, exponent: u32) -> f32 {
     return w;
 }
 
-// wrs::LEAST_CANDIDATE_W
 const LEAST_CANDIDATE_W: f32 = 0x1p-100f;
 
-// wrs::at_rate
 fn at_rate(weight: f32, lod: f32, exponent: u32) -> f32 {
     return max(weight * exp2_approx(lod * (-2.0 * f32(exponent))), LEAST_CANDIDATE_W);
 }
@@ -105,7 +97,6 @@ struct Decision {
     survival: f32,
 }
 
-// wrs::scale_by_trust
 fn scale_by_trust(past: Past, history_trust: f32, sampler_code: u32) -> Past {
     let share = trust(history_trust);
     var log_key = past.log_key;
@@ -115,29 +106,26 @@ fn scale_by_trust(past: Past, history_trust: f32, sampler_code: u32) -> Past {
     return Past(past.color, weight(past.w_sum * share), log_key);
 }
 
-// wrs::expose
 fn expose(stored_color: vec3f, ratio: f32) -> vec3f {
     return clamp(stored_color * ratio, vec3f(-MAX_HALF), vec3f(MAX_HALF));
 }
 
-// wrs::luma_root
 fn luma_root(c: vec3f) -> f32 {
     return sqrt(max(luma(c), 0.0));
 }
 
-// wrs::unspread
 fn unspread(candidate: vec3f, nearest_color: vec3f, resampled_color: vec3f) -> vec3f {
     let root = luma_root(candidate);
     let far = abs(root - luma_root(nearest_color)) + FAR_FROM_CANDIDATE;
     return select(resampled_color, nearest_color, abs(root - luma_root(resampled_color)) > far);
 }
 
-// wrs::gate (eq. 7): 1 - |dL|
+// 1 - |dL| (eq. 7)
 fn gate(difference: f32, offset: f32, inv_divisor: f32) -> f32 {
     return 1.0 - clamp((difference - offset) * inv_divisor, 0.0, 1.0);
 }
 
-// wrs::difference; exactly 0 for equal colors.
+// Exactly 0 for equal colors.
 fn difference(candidate: vec3f, stored_color: vec3f, code: u32) -> f32 {
     if code == GATE_OFF || all(candidate == stored_color) {
         return 0.0;
@@ -150,7 +138,7 @@ fn difference(candidate: vec3f, stored_color: vec3f, code: u32) -> f32 {
     return delta_e94(reference, stored);
 }
 
-// wrs::decide_sample: eq. 7, then Alg. 2 with the candidate as second reservoir.
+// Eq. 7, then Alg. 2 with the candidate as second reservoir.
 fn decide_sample(candidate: vec3f, candidate_w: f32, past: Past, params: WrsParams, draw: f32) -> Decision {
     var gate_value = 1.0;
     if candidate_w > 0.0 && past.w_sum > 0.0 {
@@ -180,7 +168,6 @@ fn decide_sample(candidate: vec3f, candidate_w: f32, past: Past, params: WrsPara
     return Decision(take, w_sum, select(old_key, new_key, take), gate_value, survival);
 }
 
-// wrs::combined
 fn combined(candidate: vec3f, candidate_w: f32, past_color: vec3f, decision: Decision, sampler_code: u32) -> vec3f {
     if sampler_code != SAMPLER_A_CHAO_MEAN || candidate_w == decision.w_sum {
         return select(past_color, candidate, decision.take);

@@ -28,6 +28,13 @@ override REGIONS: u32 = 0u;
 // 0, or a VIEW_* code: output a debug view of the decision, and store nothing.
 override VIEW: u32 = 0u;
 
+// src/uniforms.rs: CameraUniforms, which documents the fields
+struct CameraUniforms {
+    motion: ViewMotion,
+    no_vector: vec2f,
+    unused: vec2u,
+}
+
 // src/gpu/uniforms.rs: FrameUniforms, which documents the fields
 struct FrameUniforms {
     size: vec2u,
@@ -181,20 +188,9 @@ fn motion_of(px: vec2u, texel: vec2u, view: u32) -> vec2f {
     if CAMERA_MOTION == 0u {
         return own;
     }
-    let camera = frame.cameras[view];
-    let motion = ViewMotion(
-        camera.x,
-        camera.y,
-        camera.z,
-        camera.per_tangent,
-        camera.zoom,
-        camera.shift_px,
-        camera.ahead,
-        camera.sky,
-    );
     // An object's own motion ends where the camera would have seen it without moving.
     let ray = (vec2f(px) + own) * frame.views[view].ray_scale + frame.views[view].ray_offset;
-    return own + camera_vector(ray, disparity_at(texel, view), motion);
+    return own + camera_vector(ray, disparity_at(texel, view), frame.cameras[view].motion);
 }
 
 // Noise of the candidate; valid only if NOISY is set.

@@ -18,21 +18,6 @@ struct ViewUniforms {
     highest_px: vec4f,
 }
 
-// src/uniforms.rs: CameraUniforms, which documents the fields
-struct CameraUniforms {
-    x: vec4f,
-    y: vec4f,
-    z: vec4f,
-    per_tangent: vec2f,
-    zoom: vec2f,
-    shift_px: vec2f,
-    ahead: f32,
-    sky: f32,
-    no_vector: vec2f,
-    unused_0: u32,
-    unused_1: u32,
-}
-
 // Foveation::region_angle_deg of a ray: angle in degrees from the gaze by which its region and level of detail are
 // chosen. CPU twin: ViewUniforms::region_angle_deg in src/uniforms.rs.
 fn region_angle_deg(ray: vec3f, gaze_ray: vec4f) -> f32 {

@@ -7,7 +7,6 @@ use crate::kernel::doctor::*;
 use crate::kernel::{color, foveate, sanitize};
 use crate::parallel::collect;
 
-/// Inputs of the pass.
 pub(super) struct Examined<'a> {
     pub color: &'a Image<[f32; 3]>,
     /// Factor on its colors.
@@ -33,7 +32,6 @@ pub(super) fn root_means(color: &Image<[f32; 3]>, exposure: f32) -> Image<f32> {
     })
 }
 
-/// Words of all tiles.
 pub(super) fn words(examined: &Examined<'_>, tiles: &[Tile]) -> Vec<u32> {
     collect(tiles.len() as u32, |i| examined.tile(&tiles[i as usize])).into_flattened()
 }

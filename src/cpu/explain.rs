@@ -157,7 +157,6 @@ pub(super) fn note_taps<N: Notes>(taps: &TapsAround, tap: impl Fn([i32; 2]) -> T
     notes.note(NoteStage::History, "filter", filter, "");
 }
 
-/// Notes the decision.
 pub(super) fn note_trace(trace: &PixelTrace, notes: &mut Vec<Note>) {
     notes.note(NoteStage::Verdict, "history", trace.verdict.reason(), "");
     notes.note(NoteStage::Decision, "weight of the candidate", trace.weight, "");

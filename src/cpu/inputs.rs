@@ -248,7 +248,6 @@ impl<'a> Inputs<'a> {
         self.reactive.map(|r| 1.0 - r.at(x, y)).or_else(|| self.trust.map(|t| t.at(x, y)))
     }
 
-    /// Whether there is a depth test.
     #[inline(always)]
     pub fn tests_depth(&self) -> bool {
         self.depth_test.is_some()
@@ -302,7 +301,6 @@ impl<'a> Inputs<'a> {
     }
 }
 
-/// Ray through a pixel.
 #[inline(always)]
 fn ray(uniforms: &ViewUniforms, x: u32, y: u32) -> Vec3 {
     (Vec2::new(x as f32, y as f32) * Vec2::from(uniforms.ray_scale) + Vec2::from(uniforms.ray_offset)).extend(1.0)

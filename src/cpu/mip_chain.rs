@@ -76,7 +76,6 @@ impl MipChain {
         ([texel(x0, y0), texel(x1, y0), texel(x0, y1), texel(x1, y1)], [fx, fy])
     }
 
-    /// Coarsest level.
     pub fn last_level(&self) -> u32 {
         self.levels.len() as u32
     }

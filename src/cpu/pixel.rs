@@ -5,11 +5,8 @@ use crate::notes::Notes;
 use crate::stats::FrameStats;
 use glam::Vec3;
 
-/// Result of a pixel.
 pub(super) struct Pixel {
-    /// Color for the frame's output.
     pub output: Vec3,
-    /// Packed surface to store.
     pub surface: [u32; 2],
     /// Packed noise of the surface; stored only for noisy candidates.
     pub noise: u32,

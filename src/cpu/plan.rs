@@ -7,7 +7,6 @@ use crate::image::Image;
 /// Quads that were chosen for a frame.
 #[derive(Clone, Debug)]
 pub(super) struct Planned {
-    /// Number of the frame.
     pub index: u64,
     /// One mask of pixels a view.
     masks: Vec<Image<bool>>,

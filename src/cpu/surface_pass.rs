@@ -20,7 +20,6 @@ pub(super) struct Targets<'a> {
     pub traces: Option<&'a mut Image<PixelTrace>>,
 }
 
-/// Results of a row of pixels.
 struct Row<'a> {
     surfaces: &'a mut [[u32; 2]],
     noise: Option<&'a mut [u32]>,
@@ -34,7 +33,6 @@ pub(super) trait SurfaceMethod: Sync {
     fn pixel(&self, view: &SurfaceHistory<'_>, px: [u32; 2], stats: &mut FrameStats, notes: &mut impl Notes) -> Pixel;
 }
 
-/// A method and a view.
 struct InView<'a, M> {
     method: &'a M,
     view: SurfaceHistory<'a>,

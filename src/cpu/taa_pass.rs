@@ -16,7 +16,6 @@ use crate::notes::{NoteStage, Notes};
 use crate::stats::FrameStats;
 use glam::Vec3;
 
-/// Temporal antialiasing.
 pub(super) struct Taa;
 
 impl SurfaceMethod for Taa {

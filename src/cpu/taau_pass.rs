@@ -22,7 +22,6 @@ use crate::stats::FrameStats;
 use crate::uniforms::LatticeUniforms;
 use glam::{Vec2, Vec3};
 
-/// Temporal upsampling.
 pub(super) struct Taau;
 
 impl SurfaceMethod for Taau {
@@ -91,7 +90,6 @@ struct Kernel {
     narrowing: f32,
 }
 
-/// Samples around a pixel.
 struct Samples {
     around: SamplesAround,
     /// Color of the nearest sample; black if it is not usable.

@@ -47,7 +47,6 @@ struct ViewPass<'a> {
     weighs_places: bool,
 }
 
-/// History of a pixel.
 #[derive(Clone, Copy)]
 struct History {
     past: Past,
@@ -60,10 +59,8 @@ impl History {
     const EMPTY: Self = Self { past: Past::EMPTY, age: 0, reference: Reference::NONE };
 }
 
-/// Result of a pixel.
 struct Pixel {
     output: Vec3,
-    /// Packed reservoir.
     words: [u32; 3],
     log_key: f32,
     /// Packed reference of the gate; 0 if there is none.

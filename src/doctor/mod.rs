@@ -34,7 +34,6 @@ pub(crate) struct Chart {
     observations: Vec<Observation>,
 }
 
-/// The last frame.
 #[derive(Clone, Copy, Debug)]
 struct Past {
     gaze_px: [f32; 2],
@@ -77,7 +76,6 @@ impl Chart {
         Observation { now, past_jitter_px: past.map(|p| p.jitter_px), words: vec![] }
     }
 
-    /// Adds the observation of a frame.
     pub fn add(&mut self, observation: Observation) {
         if self.observations.len() == KEPT {
             self.observations.remove(0);

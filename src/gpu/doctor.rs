@@ -21,7 +21,6 @@ const PENDING: usize = 16;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct DoctorUniforms {
-    /// Width and height of a view in pixels.
     size: [u32; 2],
     /// First pixel of the view in the color input: x in the low half, y in the high half.
     color_origin: u32,
@@ -33,7 +32,6 @@ struct DoctorUniforms {
     exposure: f32,
     /// Padding to a multiple of 16 bytes.
     unused: [u32; 2],
-    /// Maps of the hypotheses.
     maps: [[f32; 4]; HYPOTHESES as usize],
 }
 

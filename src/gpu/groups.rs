@@ -9,7 +9,6 @@ use wgpu::{BindGroup, BindGroupLayout, BindingResource, Buffer, BufferBinding, D
 /// history alternates, so that bind groups recur after at most six frames.
 const KEPT_FRAMES: u64 = 8;
 
-/// What is bound.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Resource {
     /// Bytes of a buffer from an offset on; `None`: all of them.
@@ -55,7 +54,6 @@ impl Groups {
         self.list.retain(|kept| frame - kept.frame <= KEPT_FRAMES);
     }
 
-    /// Drops all.
     pub fn clear(&mut self) {
         self.list.clear();
     }

@@ -16,10 +16,8 @@ use crate::method::HistoryLayout;
 use crate::uniforms::ViewState;
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, CommandEncoder, Device, TextureFormat, TextureUsages};
 
-/// Bytes of a frame number.
 const NUMBER_BYTES: u64 = 4;
 
-/// Textures of one frame.
 #[derive(Debug)]
 pub(super) struct Planes {
     /// The mip chain, if any, is the second.
@@ -43,7 +41,6 @@ pub(super) struct History {
 }
 
 impl History {
-    /// Empty history.
     pub fn new(device: &Device, desc: &ContextDesc) -> Self {
         let layout = desc.settings.history_layout();
         let planes = || Planes {
@@ -85,7 +82,6 @@ impl History {
         if self.filled { self.frame } else { NO_FRAME }
     }
 
-    /// Number of the next frame.
     pub fn next_number(&self) -> u32 {
         next(self.frame)
     }

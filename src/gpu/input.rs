@@ -140,13 +140,8 @@ fn check_textures(
             });
         }
         if region.layer >= texture.depth_or_array_layers() {
-            let layers = texture.depth_or_array_layers();
-            return Err(refuse(
-                input,
-                texture,
-                format!("with {layers} layers, for layer {}", region.layer),
-                "a layer that exists",
-            ));
+            let problem = format!("with {} layers, for layer {}", texture.depth_or_array_layers(), region.layer);
+            return Err(refuse(input, texture, problem, "a layer that exists"));
         }
     }
     Ok(())
@@ -175,12 +170,8 @@ fn check_layers(
 ) -> Result<(), FrameError> {
     let layers = texture.depth_or_array_layers();
     if layers != desc.view_count {
-        return Err(refuse(
-            input,
-            texture,
-            format!("with {layers} layers"),
-            "a 2D texture with one array layer for each view of the context, or Textures::Regions",
-        ));
+        let expected = "a 2D texture with one array layer for each view of the context, or Textures::Regions";
+        return Err(refuse(input, texture, format!("with {layers} layers"), expected));
     }
     check_usage(input, texture, usage)
 }
@@ -191,20 +182,12 @@ fn check_usage(input: &'static str, texture: &Texture, usage: TextureUsages) -> 
         return Err(refuse(input, texture, format!("of dimension {:?}", texture.dimension()), "a 2D texture"));
     }
     if texture.sample_count() != 1 {
-        let samples = texture.sample_count();
-        return Err(refuse(
-            input,
-            texture,
-            format!("with {samples} samples"),
-            "one sample per pixel; resolve it first",
-        ));
+        let problem = format!("with {} samples", texture.sample_count());
+        return Err(refuse(input, texture, problem, "one sample per pixel; resolve it first"));
     }
     if !texture.usage().contains(usage) {
-        let expected = if usage == TextureUsages::STORAGE_BINDING {
-            "the usage STORAGE_BINDING"
-        } else {
-            "the usage TEXTURE_BINDING"
-        };
+        let is_written = usage == TextureUsages::STORAGE_BINDING;
+        let expected = if is_written { "the usage STORAGE_BINDING" } else { "the usage TEXTURE_BINDING" };
         return Err(refuse(input, texture, "without a required usage".into(), expected));
     }
     Ok(())

@@ -11,7 +11,6 @@ use crate::shader::SHADERS;
 use std::sync::OnceLock;
 use wgpu::{Device, TextureFormat};
 
-/// The pass.
 #[derive(Debug)]
 pub(super) struct MethodPass {
     shader: ComputeShader,

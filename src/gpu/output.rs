@@ -26,10 +26,8 @@ const FORMATS: [(TextureFormat, &str); 14] = [
     (TextureFormat::Rg32Uint, "rg32uint"),
     (TextureFormat::Rgba32Uint, "rgba32uint"),
 ];
-/// Number of formats of outputs.
 const OUTPUTS: usize = 9;
 
-/// Format of a WGSL name.
 pub(super) fn format_of(name: &str) -> Option<TextureFormat> {
     FORMATS.iter().find(|(_, other)| *other == name).map(|(format, _)| *format)
 }

@@ -5,7 +5,6 @@ use wgpu::{
     TextureView, TextureViewDescriptor, TextureViewDimension,
 };
 
-/// Description of a [`Plane`].
 #[derive(Clone, Copy, Debug)]
 pub struct PlaneDesc {
     pub label: &'static str,

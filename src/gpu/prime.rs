@@ -40,7 +40,6 @@ pub struct Prime<'a> {
 /// Format, number of samples, bits of the near plane's depth, and whether a stencil is written.
 type Key = (TextureFormat, u32, u32, bool);
 
-/// The pass, with its pipelines.
 #[derive(Debug)]
 pub(super) struct PrimePass {
     module: ShaderModule,

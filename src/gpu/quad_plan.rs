@@ -53,7 +53,6 @@ impl QuadPasses {
         self.planned = None;
     }
 
-    /// Compiles the pipelines of a variant.
     pub fn prewarm(&self, device: &Device, desc: &ContextDesc, special: Specialization) {
         special.pipeline(device, desc, &self.key);
         special.pipeline(device, desc, &self.around);
@@ -73,7 +72,6 @@ impl QuadPasses {
         self.quads.views.iter().for_each(|view| encoder.clear_buffer(&view.state, 0, None));
     }
 
-    /// Adds the dispatches of a frame.
     pub fn record(&self, job: &mut Job<'_>) {
         let Quads { budget, keys, mask, runs, around, views } = &self.quads;
         let size = size_quads(job.desc);

@@ -30,7 +30,6 @@ pub(super) struct Quads {
     pub views: Vec<ViewQuads>,
 }
 
-/// Buffers for the quads of a view.
 #[derive(Debug)]
 pub(super) struct ViewQuads {
     /// `QuadSize` in `shaders/pass/quad_mask_pass.wgsl`.
@@ -74,7 +73,6 @@ pub(super) fn size_quads(desc: &ContextDesc) -> [u32; 2] {
     desc.size_px.map(|side| side.div_ceil(2))
 }
 
-/// Bytes of a view's list.
 pub(super) fn list_bytes(desc: &ContextDesc) -> u64 {
     let [columns, rows] = size_quads(desc).map(u64::from);
     // A binding holds the header and a whole vec4 of the array.

@@ -47,7 +47,6 @@ impl From<[u32; 3]> for Workgroups {
     }
 }
 
-/// A dispatch to record.
 #[derive(Debug)]
 struct Dispatch {
     pipeline: ComputePipeline,
@@ -57,7 +56,6 @@ struct Dispatch {
     workgroups: Workgroups,
 }
 
-/// Recorder of a context.
 #[derive(Debug)]
 pub struct Recorder {
     groups: Groups,
@@ -114,7 +112,6 @@ impl Recorder {
         Self { groups: Groups::default(), uniforms, absent: Absent::new(device), bytes: vec![], dispatches: vec![] }
     }
 
-    /// Drops the bind groups.
     pub fn clear(&mut self) {
         self.groups.clear();
     }
@@ -180,7 +177,6 @@ impl Recorder {
         encoder.copy_buffer_to_buffer(upload, 0, &self.uniforms, 0, self.bytes.len() as u64);
     }
 
-    /// Records the dispatches.
     pub fn record(&self, pass: &mut ComputePass<'_>) {
         let mut last = None;
         for dispatch in &self.dispatches {

@@ -36,12 +36,10 @@ impl ResizePass {
         Some(Self { shader: sources.shader(device, name), overrides, block_px, layout })
     }
 
-    /// Layout of the histories.
     pub fn layout(&self) -> HistoryLayout {
         self.layout
     }
 
-    /// Shader and override values of each compiled pipeline.
     pub fn pipelines(&self) -> Vec<(&'static str, Overrides)> {
         self.shader.pipelines()
     }

@@ -15,7 +15,6 @@ use crate::context::ContextDesc;
 use crate::method::{Overrides, Stage};
 use wgpu::{Device, Texture, TextureFormat};
 
-/// The stages of a context.
 #[derive(Debug)]
 pub(super) struct Stages {
     stages: Vec<(Stage, Box<dyn Passes>)>,
@@ -31,7 +30,6 @@ impl Stages {
         stages
     }
 
-    /// Texts of the passes.
     pub fn sources(&self) -> &Sources {
         &self.sources
     }
@@ -61,12 +59,10 @@ impl Stages {
         }
     }
 
-    /// Follows a change of the context's size.
     pub fn resize(&mut self, device: &Device, desc: &ContextDesc) {
         self.stages.iter_mut().for_each(|(_, passes)| passes.resize(device, desc));
     }
 
-    /// Compiles the pipelines of a variant.
     pub fn prewarm(&self, device: &Device, desc: &ContextDesc, mut special: Specialization) {
         self.passes().for_each(|passes| passes.prewarm(device, desc, &mut special));
     }
@@ -86,7 +82,6 @@ impl Stages {
         self.passes().find_map(Passes::filled_depth)
     }
 
-    /// Adds the dispatches of a frame.
     pub fn record<'a>(&'a self, job: &mut Job<'a>) {
         self.passes().for_each(|passes| passes.record(job));
     }

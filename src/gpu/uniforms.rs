@@ -1,4 +1,4 @@
-//! Uniforms of a frame. A test checks order, offsets and sizes against the WGSL.
+//! Uniforms of a frame.
 
 use super::Frame;
 use crate::context::ContextDesc;
@@ -49,11 +49,9 @@ pub struct FrameUniforms {
     pub lod_mid: f32,
     /// Level of detail of the periphery.
     pub lod_far: f32,
-    /// `SmrParams::accumulate`.
+    /// These three are of `SmrParams`.
     pub smr_accumulate: f32,
-    /// `SmrParams::accumulate_tolerance`.
     pub smr_accumulate_tolerance: f32,
-    /// `SmrParams::tolerance`.
     pub smr_tolerance: f32,
     /// First view of the dispatch.
     pub first_view: u32,

@@ -198,7 +198,6 @@ impl Settings {
         }
     }
 
-    /// Algorithm that processes frames.
     pub(crate) fn algorithm(&self) -> Algorithm {
         self.entry().algorithm
     }
@@ -208,7 +207,6 @@ impl Settings {
         (self.entry().stages)(self)
     }
 
-    /// Shader of the method's pass.
     pub(crate) fn pass_shader(&self) -> PassShader {
         (self.entry().shader)(self)
     }
@@ -226,7 +224,6 @@ impl Settings {
         layout == other.history_layout() && (has_same_pass || matches!(layout, HistoryLayout::Sparse { .. }))
     }
 
-    /// Layout of the history.
     pub(crate) fn history_layout(&self) -> HistoryLayout {
         (self.entry().history)(self)
     }

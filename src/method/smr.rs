@@ -52,7 +52,6 @@ fn filter(settings: &Settings) -> Filter {
     }
 }
 
-/// Parameters of the kernel from smr's settings.
 pub(crate) fn smr_params(settings: &Settings) -> SmrParams {
     let smr = settings.method.smr();
     let blocks = filter(settings) == Filter::Block;

@@ -37,7 +37,6 @@ pub(super) static ENTRY: Entry = Entry {
     },
 };
 
-/// Whether reservoirs have keys.
 fn has_keys(settings: &Settings) -> bool {
     settings.method.wrs().sampler == Sampler::AEs
 }
@@ -52,7 +51,6 @@ pub(crate) fn inv_density_at_fovea(settings: &Settings) -> f32 {
     1.0 / acuity::cell_density(settings.foveation.fovea_radius_deg())
 }
 
-/// Parameters of the kernel from wrs' settings.
 pub(crate) fn wrs_params(settings: &Settings) -> WrsParams {
     let wrs = settings.method.wrs();
     let (bias, exponential_survival) = match wrs.bias {

@@ -13,7 +13,6 @@ pub(super) fn sample_codes(disparity: f32) -> [u32; 2] {
     codes_between(disparity, 1.0 - SAMPLE_RELATIVE, 1.0 / (1.0 - SAMPLE_RELATIVE))
 }
 
-/// Candidate of a pixel.
 pub(super) struct Candidate {
     pub color: Vec3,
     pub usable: bool,

@@ -72,7 +72,6 @@ impl View<'_> {
         Some(Observation { sampled, history: history.color, error, confidence })
     }
 
-    /// Unpacks an observation.
     #[inline(always)]
     pub(super) fn observation(&self, lattice: usize, point: [u32; 2], observed: &[Samples]) -> Option<Observation> {
         let own = &self.lattices[lattice];

@@ -42,7 +42,6 @@ impl ProcessPixel for LitView<'_> {
 }
 
 impl View<'_> {
-    /// Processes one pixel and counts it in `stats`.
     #[inline(always)]
     fn pixel<N: Notes>(&self, x: u32, y: u32, lights: Lights<'_>, stats: &mut FrameStats, notes: &mut N) -> Pixel {
         let inputs = &self.inputs;

@@ -15,12 +15,9 @@ pub(super) fn offset_px2(a: u32, b: u32) -> f32 {
     offset * offset
 }
 
-/// Quads of a view.
 #[derive(Clone, Debug)]
 pub(in crate::cpu) struct Quads {
-    /// Width and height in pixels.
     size_px: [u32; 2],
-    /// Whether each quad is shaded.
     shaded: Image<bool>,
     /// Region of each quad.
     regions: Image<u32>,
@@ -42,7 +39,6 @@ impl Quads {
         Self { size_px, shaded, regions, levels, around }
     }
 
-    /// Whether each pixel is shaded.
     pub fn pixels(&self) -> Image<bool> {
         Image::from_fn(self.size_px, |[x, y]| self.is_shaded([x, y]))
     }

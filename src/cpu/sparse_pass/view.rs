@@ -79,7 +79,6 @@ impl View<'_> {
         !self.noise.is_empty()
     }
 
-    /// Noise of the sample at a pixel.
     #[inline(always)]
     pub fn sample_noise(&self, [x, y]: [u32; 2]) -> Noise {
         self.inputs.noise(x, y).filter(|_| self.is_noisy()).unwrap_or(NO_NOISE)

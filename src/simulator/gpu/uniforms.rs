@@ -1,4 +1,4 @@
-//! Uniforms of the simulators. A test checks order, offsets and sizes against the WGSL.
+//! Uniforms of the simulators.
 
 use crate::context::ContextDesc;
 use crate::foveation::Filter;
@@ -7,23 +7,16 @@ use crate::uniforms::{ViewState, ViewUniforms};
 use crate::view::ViewFrame;
 use bytemuck::{Pod, Zeroable};
 
-/// `FoveationUniforms` in `shaders/foveation/foveated_views.wgsl`.
+/// `FoveationUniforms` in `shaders/foveation/foveated_views.wgsl`; the fields are those of `FrameUniforms`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub struct FoveationUniforms {
-    /// Width and height of a view in pixels.
     pub size: [u32; 2],
-    /// Coarsest level.
     pub coarsest: u32,
-    /// Radius of the fovea.
     pub fovea_radius_deg: f32,
-    /// Radius of the middle region.
     pub mid_radius_deg: f32,
-    /// Width of the blends outside the radii.
     pub blend_deg: f32,
-    /// Level of detail of the middle region.
     pub lod_mid: f32,
-    /// Level of detail of the periphery.
     pub lod_far: f32,
     /// One entry a view.
     pub views: [ViewUniforms; MAX_VIEWS],
