@@ -24,14 +24,7 @@ fn level_at(px: vec2u, view: u32) -> u32 {
             block_center_px(block.x, level, frame.size.x),
             block_center_px(block.y, level, frame.size.y),
         );
-        let lod = region_lod(
-            region_angle_at(center, view),
-            frame.fovea_radius_deg,
-            frame.mid_radius_deg,
-            frame.blend_deg,
-            frame.lod_mid,
-            frame.lod_far,
-        );
+        let lod = blended_lod(region_angle_at(center, view));
         if lod >= f32(level) {
             break;
         }

@@ -1,3 +1,4 @@
+//#use foveate
 //#use view_uniforms
 // Uniforms of the foveation simulators, and the angle of a pixel.
 
@@ -19,4 +20,10 @@ struct FoveationUniforms {
 fn region_angle_at(px: vec2f, view: u32) -> f32 {
     let ray = vec3f(px * frame.views[view].ray_scale + frame.views[view].ray_offset, 1.0);
     return region_angle_deg(ray, frame.views[view].gaze_ray);
+}
+
+// Level of detail at an angle from the gaze, blended between the regions.
+fn blended_lod(e_deg: f32) -> f32 {
+    let radii = vec2f(frame.fovea_radius_deg, frame.mid_radius_deg);
+    return region_lod(e_deg, radii.x, radii.y, frame.blend_deg, frame.lod_mid, frame.lod_far);
 }

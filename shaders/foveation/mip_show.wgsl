@@ -39,15 +39,7 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: 
         return;
     }
     let view = group.z;
-    let e_deg = region_angle_at(vec2f(px), view);
-    let lod = region_lod(
-        e_deg,
-        frame.fovea_radius_deg,
-        frame.mid_radius_deg,
-        frame.blend_deg,
-        frame.lod_mid,
-        frame.lod_far,
-    );
+    let lod = blended_lod(region_angle_at(vec2f(px), view));
     if WRITE_LOD != 0u {
         textureStore(lod_out, px, view, vec4f(lod, 0.0, 0.0, 0.0));
     }

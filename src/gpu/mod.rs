@@ -113,7 +113,7 @@ impl Afterimage {
             resize: None,
             quads: None,
         };
-        context.update_plan(device);
+        context.update_quads(device);
         Ok(context)
     }
 
@@ -197,7 +197,7 @@ impl Afterimage {
         if !keeps_history {
             self.history = History::new(device, &self.desc);
         }
-        self.update_plan(device);
+        self.update_quads(device);
         Ok(())
     }
 
@@ -259,11 +259,11 @@ impl Afterimage {
         self.desc.size_px = size_px;
         self.stages.resize(device, &self.desc);
         self.recorder.clear();
-        self.update_plan(device);
+        self.update_quads(device);
     }
 
     /// Follows a change of settings or size.
-    fn update_plan(&mut self, device: &Device) {
+    fn update_quads(&mut self, device: &Device) {
         let by_quads = self.desc.settings.foveation.filter == Filter::Quads;
         match &mut self.quads {
             Some(quads) if by_quads => quads.update(device, &self.desc),

@@ -1,6 +1,5 @@
 //! Antialiasing in the pass for jittered frames: history stores means of samples instead of single samples.
 
-use super::quads::Quads;
 use super::sparse_history::Surroundings;
 use super::view::View;
 use crate::kernel::antialias::{
@@ -104,35 +103,25 @@ impl View<'_> {
         average(&inputs, samples, self.sample_place_px(), kept)
     }
 
-    /// Sums over the nine samples around a pixel of full rate, whose own sample is usable.
+    /// Sums over the nine samples around a pixel of full rate, whose own sample is usable; of a frame shaded by quads
+    /// over those that are shaded.
     #[inline(always)]
-    fn near(&self, [x, y]: [u32; 2]) -> Near {
-        if let Some(quads) = self.quads {
-            return self.near_in_quads(quads, [x, y]);
-        }
+    fn near(&self, px: [u32; 2]) -> Near {
         let lattice = &self.lattices[0];
-        let [first, last] = [lattice.first_px, lattice.points];
+        let (first, size) = match self.quads {
+            Some(_) => ([0, 0], self.inputs.size),
+            None => (lattice.first_px, lattice.points),
+        };
         let mut near = Near::default();
         for tap in 0..9 {
-            let column = (x - first[0] + tap % 3).max(1).min(last[0]) - 1;
-            let row = (y - first[1] + tap / 3).max(1).min(last[1]) - 1;
-            let (color, usable) = self.sampled(lattice, [column, row]);
+            let offset = [tap % 3, tap / 3];
+            let at = [0, 1].map(|i| (px[i] - first[i] + offset[i]).max(1).min(size[i]) - 1);
+            let (color, usable) = match self.quads {
+                Some(quads) if quads.is_shaded(at) => self.color_px(at),
+                Some(_) => continue,
+                None => self.sampled(lattice, at),
+            };
             if usable {
-                near = add_near(near, color);
-            }
-        }
-        near
-    }
-
-    /// The same for a frame shaded by quads.
-    #[inline(always)]
-    fn near_in_quads(&self, quads: &Quads, [x, y]: [u32; 2]) -> Near {
-        let [width, height] = self.inputs.size;
-        let mut near = Near::default();
-        for tap in 0..9 {
-            let at = [(x + tap % 3).max(1).min(width) - 1, (y + tap / 3).max(1).min(height) - 1];
-            let (color, usable) = self.color_px(at);
-            if usable && quads.is_shaded(at) {
                 near = add_near(near, color);
             }
         }
