@@ -6,13 +6,13 @@
 use super::sparse_smr::{CLIP_FRAMES, Comparer, Comparison, Shown};
 use crate::options::TracedArgs;
 use afterimage::ViewGeometry;
-use afterimage_clip::failure::{Failure, warn};
-use afterimage_clip::output::write_json;
+use afterimage_eval::output::write_json;
 use afterimage_lab::device::{Backend, NO_ADAPTER};
 use afterimage_lab::measure::{Pattern, PatternReport, TracedView, UNIFORM_EVERY, UNIFORM_SAMPLES, measure, regions};
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
 use afterimage_lab::trace::sampling::{Layers, Regions, Sampling};
 use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
+use afterimage_program::failure::{Failure, warn};
 use serde::Serialize;
 
 /// The display of Mohanto et al. 2023: size in pixels and in centimeters, and viewing distance.
@@ -115,7 +115,7 @@ pub fn bench(args: &TracedArgs, size: [u32; 2], frames: u64) -> Result<(), Failu
         backend: backend.info(),
     };
     print(&report);
-    write_json(args.json.as_deref(), &report)
+    Ok(write_json(args.json.as_deref(), &report)?)
 }
 
 fn display() -> Result<ViewGeometry, Failure> {

@@ -4,11 +4,11 @@
 //! the CPU.
 
 use crate::options::TracedArgs;
-use afterimage_clip::failure::{Failure, warn};
-use afterimage_clip::output::write_json;
+use afterimage_eval::output::write_json;
 use afterimage_lab::measure::{PatternReport, TracedView, measure, one_path, regions};
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
 use afterimage_lab::trace::settings::TraceSettings;
+use afterimage_program::failure::{Failure, warn};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -64,7 +64,7 @@ pub fn bench(args: &TracedArgs, size: [u32; 2], frames: u64) -> Result<(), Failu
         scenes,
     };
     print(&report);
-    write_json(args.json.as_deref(), &report)
+    Ok(write_json(args.json.as_deref(), &report)?)
 }
 
 /// Markdown.

@@ -9,8 +9,7 @@ mod removals;
 mod table;
 
 use crate::options::EffectsArgs;
-use afterimage_clip::failure::{Failure, warn};
-use afterimage_clip::output::write_json;
+use afterimage_eval::output::write_json;
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::Backend;
 use afterimage_lab::measure::TracedView;
@@ -20,6 +19,7 @@ use afterimage_lab::trace::effects::{Effect, Effects};
 use afterimage_lab::trace::gpu::GpuTracer;
 use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
+use afterimage_program::failure::{Failure, warn};
 use removals::REMOVALS;
 use std::io::IsTerminal;
 use table::{Price, Report, SceneReport};
@@ -95,7 +95,7 @@ pub fn bench(args: &EffectsArgs, size: [u32; 2], frames: u64) -> Result<(), Fail
         Some(path) => table::write(path, &text)?,
         None => say!("{text}"),
     }
-    write_json(args.traced.json.as_deref(), &report)
+    Ok(write_json(args.traced.json.as_deref(), &report)?)
 }
 
 /// The scene's effects, twice; all effects; the scene's effects with each other effect.

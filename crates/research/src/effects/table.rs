@@ -1,10 +1,10 @@
 //! Costs of effects: the report, and its Markdown tables.
 
-use afterimage_clip::failure::Failure;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::pipeline::ProcessorInfo;
 use afterimage_lab::trace::effects::Effect;
 use afterimage_lab::whole_file::write_whole;
+use afterimage_program::failure::Failure;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::Path;

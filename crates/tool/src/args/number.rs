@@ -1,7 +1,7 @@
 //! Parsers of numbers with ranges.
 
 use crate::failure::warn;
-use afterimage_clip::exposure::{Chosen, Exposure};
+use afterimage_eval::exposure::{Chosen, Exposure};
 use std::str::FromStr;
 
 /// `WxH` in pixels.

@@ -201,7 +201,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
     }
     let report = summarise(size, frames, &gpu, &clock, cold_start_ms, &passes, &times);
     print(&report);
-    write_json(args.json.as_deref(), &report)
+    Ok(write_json(args.json.as_deref(), &report)?)
 }
 
 fn summarise(

@@ -102,7 +102,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
         scenes,
     };
     print(&report);
-    write_json(args.json.as_deref(), &report)
+    Ok(write_json(args.json.as_deref(), &report)?)
 }
 
 fn print(report: &Report) {

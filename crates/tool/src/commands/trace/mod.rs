@@ -13,7 +13,7 @@ use crate::args::{parse_exposure, parse_fps, parse_frames, parse_hfov, parse_sam
 use crate::failure::Failure;
 use crate::output::Output;
 use crate::progress;
-use afterimage_clip::exposure::Exposure;
+use afterimage_eval::exposure::Exposure;
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::trace::sampling::Sampling;
 use afterimage_lab::trace::view::View;
@@ -177,7 +177,7 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
     }
     bar.finish_and_clear();
     finish(args, &out, &setup, &report, &eyes, &gaze)?;
-    out.finish()
+    Ok(out.finish()?)
 }
 
 /// Gaze of the head and of each eye, per frame, in pixels; empty with uniform sampling.

@@ -1,7 +1,6 @@
-//! Notes about a pixel of a clip: in the terminal, and as a table.
+//! Notes about a pixel of a clip: as lines of text, and as a table.
 
-use crate::failure::Failure;
-use crate::output::Table;
+use crate::output::{Table, WriteError};
 use afterimage::internal::{Note, NoteValues};
 use std::fmt::Write;
 use std::ops::RangeInclusive;
@@ -27,15 +26,8 @@ impl ExplainedPixel {
         self.frames.contains(&index).then_some(self.px)
     }
 
-    /// Prints the notes of a method about a frame, if there are any.
-    pub fn say(&self, frame: usize, method: &str, notes: &[Note]) {
-        if !notes.is_empty() {
-            say!("{}", self.block(frame, method, notes));
-        }
-    }
-
-    /// Notes as lines: stage, name, values and unit in columns.
-    fn block(&self, frame: usize, method: &str, notes: &[Note]) -> String {
+    /// Notes of a method about a frame as lines: stage, name, values and unit in columns.
+    pub fn lines(&self, frame: usize, method: &str, notes: &[Note]) -> String {
         let [x, y] = self.px;
         let width = notes.iter().map(|note| note.name.len()).max().unwrap_or(0);
         let mut text = format!("frame {frame}, pixel {x},{y}, {method}\n");
@@ -50,7 +42,7 @@ impl ExplainedPixel {
     }
 
     /// Writes the notes of a method about a frame as rows.
-    pub fn write(&self, frame: usize, method: &str, notes: &[Note], table: &mut Table) -> Result<(), Failure> {
+    pub fn write(&self, frame: usize, method: &str, notes: &[Note], table: &mut Table) -> Result<(), WriteError> {
         notes.iter().try_for_each(|note| {
             let texts = [note.name, note.unit, &values(&note.values)].map(quoted);
             table.row(&format!("{frame},{method},{},{}", note.stage.name(), texts.join(",")))
@@ -96,7 +88,7 @@ mod tests {
                         input         gaze   12 -0.5  (px)\n                \
                         color  0.1 1e-30 NaN\n  \
                         stored        words  0x000000ff 0x00000001  (a, b)\n";
-        assert_eq!(pixel.block(1, "smr", &notes), expected);
+        assert_eq!(pixel.lines(1, "smr", &notes), expected);
         assert_eq!([0, 1, 2, 3].map(|frame| pixel.in_frame(frame)), [None, Some([3, 4]), Some([3, 4]), None]);
         assert_eq!((quoted("a, b"), quoted("a b")), ("\"a, b\"".into(), "a b".into()));
     }

@@ -1,12 +1,14 @@
-//! Errors of the tool: one line of text, and an exit code that separates bad input from failed work.
+//! Errors of programs: one line of text, and an exit code that separates bad input from failed work.
 
-use crate::error::{Bound, InputError};
 use afterimage::{CreateError, FrameError, SettingsError};
+use afterimage_eval::clip::ClipError;
+use afterimage_eval::error::{Bound, InputError};
+use afterimage_eval::output::WriteError;
 use std::fmt::Display;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Error that ends the tool.
+/// Error that ends a program.
 #[derive(Debug)]
 pub enum Failure {
     /// Bad usage or input: exit code 2.
@@ -57,13 +59,30 @@ impl Failure {
 
     /// A file that cannot be written during the work.
     pub fn writing(path: &Path, error: impl Display) -> Self {
-        Self::Work(format!("{}: cannot be written ({error}); free space or choose another --out", path.display()))
+        WriteError::new(path, error).into()
     }
 }
 
 impl From<InputError> for Failure {
     fn from(error: InputError) -> Self {
         Self::Input(with_option(&error))
+    }
+}
+
+impl From<WriteError> for Failure {
+    fn from(error: WriteError) -> Self {
+        Self::Work(error.to_string())
+    }
+}
+
+impl From<ClipError> for Failure {
+    fn from(error: ClipError) -> Self {
+        match error {
+            ClipError::Input(error) => error.into(),
+            ClipError::Create(error) => error.into(),
+            ClipError::Frame(error) => error.into(),
+            ClipError::Write(error) => error.into(),
+        }
     }
 }
 

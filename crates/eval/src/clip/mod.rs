@@ -5,28 +5,45 @@ pub mod pixel;
 pub mod run_report;
 
 use crate::clock::Quartiles;
+use crate::error::InputError;
 use crate::exposure::{Chosen, Exposure};
-use crate::failure::Failure;
 use crate::frame::RenderedFrame;
 use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::method_report::{MethodAccumulator, MethodReport, Share};
 use crate::metric;
 use crate::metric::{Flip, Reference, References};
-use crate::output::{Output, Table};
+use crate::output::{Output, Table, WriteError};
 use crate::picture::to_rgb8;
 use crate::pipeline::{Pipeline, Processor, ProcessorInfo, RunKind, Step};
-use crate::progress;
 use crate::quad_views::QuadViewLayout;
 use crate::report::sheet::{Column, Sheet};
 use crate::source::FrameSource;
 use crate::times::{RenderTime, Times};
-use afterimage::{DebugView, Filter, Foveation, Image, MethodKind, ViewGeometry};
+use afterimage::{CreateError, DebugView, Filter, Foveation, FrameError, Image, MethodKind, ViewGeometry};
 use afterimage_metric::{Display, Viewing};
 use pixel::ExplainedPixel;
 use rayon::prelude::*;
+use thiserror::Error;
 
 /// Files that describe a whole clip. The first one marks the folder. `demo` draws no plot.
 pub const REPORTS: [&str; 4] = ["report.json", "psnr.svg", "psnr.png", pixel::FILE];
+
+/// A clip that could not be evaluated.
+#[derive(Debug, Error)]
+pub enum ClipError {
+    /// Its source cannot be used.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// The settings of a method cannot be used.
+    #[error(transparent)]
+    Create(#[from] CreateError),
+    /// A method did not take a frame.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// A file could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
 
 /// Settings of a clip: foveation, methods, gaze, and files to write.
 pub struct Clip {
@@ -82,7 +99,7 @@ pub struct Clip {
 }
 
 /// Writes frame `index` of a folder. The frame is given as linear and as encoded colors.
-pub type WriteFrame = fn(&Output, &str, usize, &Image<[f32; 3]>, &Image<[f32; 3]>) -> Result<(), Failure>;
+pub type WriteFrame = fn(&Output, &str, usize, &Image<[f32; 3]>, &Image<[f32; 3]>) -> Result<(), WriteError>;
 
 /// As 8-bit PNG.
 pub fn write_png(
@@ -91,7 +108,7 @@ pub fn write_png(
     index: usize,
     _: &Image<[f32; 3]>,
     encoded: &Image<[f32; 3]>,
-) -> Result<(), Failure> {
+) -> Result<(), WriteError> {
     out.picture(folder, index, &to_rgb8(encoded))
 }
 
@@ -160,8 +177,8 @@ impl Playback<'_> {
         &self.exposure
     }
 
-    /// Runs the clip and writes everything but `report.json`.
-    pub fn write(self, out: &Output) -> Result<ClipReport, Failure> {
+    /// Runs the clip and writes everything but `report.json`. Calls `after_frame` when a frame is written.
+    pub fn write(self, out: &Output, after_frame: &mut dyn FnMut(&FrameResult<'_>)) -> Result<ClipReport, ClipError> {
         let clip = self.clip;
         let mut accumulators: Vec<MethodAccumulator> =
             clip.methods.iter().map(|_| MethodAccumulator::default()).collect();
@@ -169,7 +186,6 @@ impl Playback<'_> {
         let mut report = ClipReport { backend: clip.backend_name(), exposure_ev, ..ClipReport::default() };
         let mut foveation_ms = vec![];
         let mut full_rate = Times::default();
-        let bar = progress::bar(clip.gaze.len() as u64, "frame {pos}/{len}");
         let mut table = out.table(
             "frames.csv",
             "frame,method,psnr_db,retained_psnr_db,ms,fovea_psnr_db,mid_psnr_db,periphery_psnr_db,\
@@ -186,7 +202,6 @@ impl Playback<'_> {
             }
             if let (Some(pixel), Some(table)) = (&clip.pixel, &mut pixel_table) {
                 for ((name, _), output) in clip.methods.iter().zip(&result.step.outputs) {
-                    bar.suspend(|| pixel.say(result.index, name, &output.notes));
                     pixel.write(result.index, name, &output.notes, table)?;
                 }
             }
@@ -197,10 +212,9 @@ impl Playback<'_> {
             if result.index + 1 == clip.gaze.len() {
                 clip.write_sheet(result.reference.encoded(), &encoded, &accumulators, &report.gaze_px, out)?;
             }
-            bar.inc(1);
+            after_frame(result);
             Ok(())
         })?;
-        bar.finish_and_clear();
         table.finish()?;
         pixel_table.map_or(Ok(()), Table::finish)?;
         out.gaze("gaze.csv", &report.gaze_px)?;
@@ -219,7 +233,7 @@ impl Playback<'_> {
 
     /// Runs all methods over the clip and calls `each` after every frame. Returns the pipeline in its state after the
     /// last frame.
-    pub fn play(self, each: &mut dyn FnMut(&FrameResult<'_>) -> Result<(), Failure>) -> Result<Pipeline, Failure> {
+    pub fn play(self, each: &mut dyn FnMut(&FrameResult<'_>) -> Result<(), ClipError>) -> Result<Pipeline, ClipError> {
         let Self { clip, source, mut pipeline, first, exposure } = self;
         let mut first = Some(first);
         let mut references = clip.references();
@@ -231,7 +245,7 @@ impl Playback<'_> {
             let full = metric::encode(&frame.reference.color, exposure.ev);
             pipeline.look_at(clip.gaze[index].filter(|_| clip.late_gaze.is_some()));
             pipeline.explain(clip.pixel.as_ref().and_then(|pixel| pixel.in_frame(index)));
-            let step = pipeline.step_with(&frame, &mut |request| Ok::<_, Failure>(source.shade(&frame, request)?))?;
+            let step = pipeline.step_with(&frame, &mut |request| Ok::<_, ClipError>(source.shade(&frame, request)?))?;
             let reference = references.next(&full, &step.tracked, &step.ecc_deg);
             let exposure_ev = exposure.ev;
             each(&FrameResult { index, frame: &frame, reference: &reference, step: &step, exposure_ev })?;
@@ -242,7 +256,7 @@ impl Playback<'_> {
 
 impl Clip {
     /// Makes the pipeline and renders the first frame. Nothing is written yet.
-    pub fn start<'a>(&'a self, source: &'a mut dyn FrameSource) -> Result<Playback<'a>, Failure> {
+    pub fn start<'a>(&'a self, source: &'a mut dyn FrameSource) -> Result<Playback<'a>, ClipError> {
         let kinds: Vec<RunKind> = self.methods.iter().map(|l| l.1.clone()).collect();
         let is_still = source.info().still;
         let debug: Vec<_> = self.debug.iter().map(|d| d.1).collect();
@@ -304,7 +318,7 @@ impl Clip {
         result: &FrameResult<'_>,
         accumulators: &mut [MethodAccumulator],
         out: &Output,
-    ) -> Result<Vec<Image<[f32; 3]>>, Failure> {
+    ) -> Result<Vec<Image<[f32; 3]>>, WriteError> {
         let &FrameResult { index, frame, reference, step, exposure_ev } = result;
         if self.write_reference {
             (self.write_frame)(out, "reference", index, &frame.reference.color, reference.encoded())?;
@@ -319,7 +333,7 @@ impl Clip {
                     let folder = format!("debug/{name}/{view}");
                     out.picture(&folder, index, &to_rgb8(&metric::encode(picture, 0.0)))?;
                 }
-                Ok::<(), Failure>(())
+                Ok::<(), WriteError>(())
             },
         )?;
         Ok(encoded)
@@ -332,7 +346,7 @@ impl Clip {
         accumulators: &[MethodAccumulator],
         gaze_px: &[[f32; 2]],
         out: &Output,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), WriteError> {
         let mut columns = vec![Column { name: "reference", shown: reference, scores: None, visible_jod: None }];
         for (((name, _), shown), accumulator) in self.methods.iter().zip(encoded).zip(accumulators) {
             let name = if *name == "none" { "none (foveated only)" } else { name };

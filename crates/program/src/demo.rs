@@ -1,16 +1,17 @@
 //! `afterimage demo`: runs the methods on a built-in scene and explains the result.
 
-use crate::clip::run_report::{RunFacts, write_report};
-use crate::clip::{Clip, ClipReport, REPORTS, foveation_words, title, write_png};
-use crate::exposure::Exposure;
 use crate::failure::Failure;
-use crate::lattices::{SampleOrder, SparseGeometry};
-use crate::method_report::MethodReport;
-use crate::output::Output;
-use crate::pipeline::{Cpu, RunKind};
-use crate::scanpath::{FrameGaze, GazeMap, Screen, SyntheticOptions, generate};
-use crate::source::{AnalyticSource, FrameSource};
+use crate::progress;
 use afterimage::{Foveation, MethodKind, Settings, ViewGeometry};
+use afterimage_eval::clip::run_report::{RunFacts, write_report};
+use afterimage_eval::clip::{Clip, ClipReport, REPORTS, foveation_words, title, write_png};
+use afterimage_eval::exposure::Exposure;
+use afterimage_eval::lattices::{SampleOrder, SparseGeometry};
+use afterimage_eval::method_report::MethodReport;
+use afterimage_eval::output::Output;
+use afterimage_eval::pipeline::{Cpu, RunKind};
+use afterimage_eval::scanpath::{FrameGaze, GazeMap, Screen, SyntheticOptions, generate};
+use afterimage_eval::source::{AnalyticSource, FrameSource};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -104,7 +105,9 @@ fn execute(out: &Path) -> Result<ClipReport, Failure> {
     let folders = clip.methods.iter().map(|l| l.0).chain(["reference"]).map(str::to_owned).collect::<Vec<_>>();
     let playback = clip.start(&mut source)?;
     let out = Output::create(out, &folders, &REPORTS)?;
-    let report = playback.write(&out)?;
+    let bar = progress::of_frames(FRAMES);
+    let report = playback.write(&out, &mut |_| bar.inc(1))?;
+    bar.finish_and_clear();
     write_report(&facts, &clip, &report, &out)?;
     out.finish()?;
     Ok(report)

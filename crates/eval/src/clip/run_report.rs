@@ -2,9 +2,8 @@
 
 use super::{Clip, ClipReport};
 use crate::clock::Quartiles;
-use crate::failure::Failure;
 use crate::method_report::MethodReport;
-use crate::output::Output;
+use crate::output::{Output, WriteError};
 use crate::pipeline::ProcessorInfo;
 use crate::times::RenderTime;
 use afterimage::Filter;
@@ -112,7 +111,7 @@ impl Serialize for Methods<'_> {
 }
 
 /// Writes `report.json`.
-pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out: &Output) -> Result<(), Failure> {
+pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out: &Output) -> Result<(), WriteError> {
     let foveation = clip.foveation;
     let json = RunReport {
         tool: "afterimage",
@@ -155,6 +154,5 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
         full_rate: report.full_rate,
         methods: Methods(&report.methods),
     };
-    let text = serde_json::to_string_pretty(&json).map_err(|e| Failure::Work(e.to_string()))?;
-    out.text("report.json", &(text + "\n"))
+    out.json("report.json", &json)
 }

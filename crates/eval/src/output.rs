@@ -1,16 +1,33 @@
 //! The output folder. Each file is written completely or not at all, and frames of different runs never mix.
 
-use crate::failure::Failure;
+use crate::error::InputError;
 use crate::picture::write_png;
 use crate::whole_file::write_whole;
 use image::RgbImage;
 use serde::Serialize;
+use std::fmt::Display;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use thiserror::Error;
 
 /// Marks the folder of a run that has not ended.
 const UNFINISHED: &str = ".afterimage.unfinished";
+
+/// A file that could not be written during the work.
+#[derive(Debug, Error)]
+#[error("{}: cannot be written ({problem}); free space or choose another --out", path.display())]
+pub struct WriteError {
+    path: PathBuf,
+    problem: String,
+}
+
+impl WriteError {
+    /// `path`, and why it could not be written.
+    pub fn new(path: &Path, problem: impl Display) -> Self {
+        Self { path: path.to_owned(), problem: problem.to_string() }
+    }
+}
 
 /// Output folder of a run. Unless its run ends, a file marks it as unfinished, so that the next run replaces what is
 /// left.
@@ -28,12 +45,10 @@ pub struct Table {
 impl Output {
     /// Creates the folder and its subfolders `parts`. Removes frames and `reports` of an earlier run, if the first of
     /// these (`report.json` or `trace.json`) shows that this tool wrote them, or that it was about to.
-    pub fn create(root: &Path, parts: &[String], reports: &[&str]) -> Result<Self, Failure> {
-        let refuse = |path: &Path, error: &dyn std::fmt::Display| {
-            Failure::Input(format!(
-                "{}: cannot be written ({error}); give --out a folder that can be created or written",
-                path.display()
-            ))
+    pub fn create(root: &Path, parts: &[String], reports: &[&str]) -> Result<Self, InputError> {
+        let refuse = |path: &Path, error: &dyn Display| {
+            let remedy = "give --out a folder that can be created or written";
+            InputError::io(path.display().to_string(), format!("cannot be written ({error})"), remedy)
         };
         fs::create_dir_all(root).map_err(|e| refuse(root, &e))?;
         let ours = reports.first().is_some_and(|report| {
@@ -47,10 +62,9 @@ impl Output {
             stale.extend(numbered_frames(&root.join(part)));
         }
         if let (false, Some(first)) = (ours, stale.first()) {
-            return Err(Failure::Input(format!(
-                "{}: holds frames of something else, not of afterimage; give --out an empty folder",
-                first.parent().unwrap_or(root).display()
-            )));
+            let folder = first.parent().unwrap_or(root).display().to_string();
+            let problem = "holds frames of something else, not of afterimage";
+            return Err(InputError::io(folder, problem, "give --out an empty folder"));
         }
         // Create a file to check that the folder can be written.
         let probe = root.join(".afterimage.partial");
@@ -76,19 +90,19 @@ impl Output {
     }
 
     /// Writes frame `index` of `folder` as PNG.
-    pub fn picture(&self, folder: &str, index: usize, picture: &RgbImage) -> Result<(), Failure> {
+    pub fn picture(&self, folder: &str, index: usize, picture: &RgbImage) -> Result<(), WriteError> {
         let path = self.path(folder, index, "png");
-        write_png(&path, picture).map_err(|e| Failure::writing(&path, e))
+        write_png(&path, picture).map_err(|e| WriteError::new(&path, e))
     }
 
     /// Writes a PNG into the root of the folder.
-    pub fn root_picture(&self, name: &str, picture: &RgbImage) -> Result<(), Failure> {
+    pub fn root_picture(&self, name: &str, picture: &RgbImage) -> Result<(), WriteError> {
         let path = self.root.join(name);
-        write_png(&path, picture).map_err(|e| Failure::writing(&path, e))
+        write_png(&path, picture).map_err(|e| WriteError::new(&path, e))
     }
 
     /// Writes gaze positions as CSV, one row per frame.
-    pub fn gaze(&self, name: &str, gaze_px: &[[f32; 2]]) -> Result<(), Failure> {
+    pub fn gaze(&self, name: &str, gaze_px: &[[f32; 2]]) -> Result<(), WriteError> {
         let mut table = self.table(name, "frame,x_px,y_px")?;
         for (i, [x, y]) in gaze_px.iter().enumerate() {
             table.row(&format!("{i},{x:.3},{y:.3}"))?;
@@ -97,22 +111,27 @@ impl Output {
     }
 
     /// Writes a text file.
-    pub fn text(&self, name: &str, text: &str) -> Result<(), Failure> {
+    pub fn text(&self, name: &str, text: &str) -> Result<(), WriteError> {
         let path = self.root.join(name);
-        write_whole(&path, |file| file.write_all(text.as_bytes())).map_err(|e| Failure::writing(&path, e))
+        write_whole(&path, |file| file.write_all(text.as_bytes())).map_err(|e| WriteError::new(&path, e))
+    }
+
+    /// Writes a report.
+    pub fn json(&self, name: &str, report: &impl Serialize) -> Result<(), WriteError> {
+        write_json(Some(&self.root.join(name)), report)
     }
 
     /// Ends the run: the folder is whole.
-    pub fn finish(self) -> Result<(), Failure> {
+    pub fn finish(self) -> Result<(), WriteError> {
         let unfinished = self.root.join(UNFINISHED);
-        fs::remove_file(&unfinished).map_err(|e| Failure::writing(&unfinished, e))
+        fs::remove_file(&unfinished).map_err(|e| WriteError::new(&unfinished, e))
     }
 
     /// Starts a CSV table under a temporary name.
-    pub fn table(&self, name: &str, header: &str) -> Result<Table, Failure> {
+    pub fn table(&self, name: &str, header: &str) -> Result<Table, WriteError> {
         let path = self.root.join(name);
         let partial = self.root.join(format!("{name}.partial"));
-        let file = File::create(&partial).map_err(|e| Failure::writing(&partial, e))?;
+        let file = File::create(&partial).map_err(|e| WriteError::new(&partial, e))?;
         let mut table = Table { path, partial, file: BufWriter::new(file) };
         table.row(header)?;
         Ok(table)
@@ -121,24 +140,27 @@ impl Output {
 
 impl Table {
     /// Adds a row.
-    pub fn row(&mut self, row: &str) -> Result<(), Failure> {
-        writeln!(self.file, "{row}").map_err(|e| Failure::writing(&self.partial, e))
+    pub fn row(&mut self, row: &str) -> Result<(), WriteError> {
+        writeln!(self.file, "{row}").map_err(|e| WriteError::new(&self.partial, e))
     }
 
     /// Flushes the table and renames it to its final name.
-    pub fn finish(mut self) -> Result<(), Failure> {
+    pub fn finish(mut self) -> Result<(), WriteError> {
         self.file
             .flush()
             .and_then(|()| fs::rename(&self.partial, &self.path))
-            .map_err(|e| Failure::writing(&self.path, e))
+            .map_err(|e| WriteError::new(&self.path, e))
     }
 }
 
 /// Writes a report, if it is asked for.
-pub fn write_json(path: Option<&Path>, report: &impl Serialize) -> Result<(), Failure> {
+pub fn write_json(path: Option<&Path>, report: &impl Serialize) -> Result<(), WriteError> {
     let Some(path) = path else { return Ok(()) };
-    let text = serde_json::to_string_pretty(report).map_err(|e| Failure::Work(e.to_string()))?;
-    write_whole(path, |file| writeln!(file, "{text}")).map_err(|e| Failure::writing(path, e))
+    let write = |file: &mut BufWriter<File>| {
+        serde_json::to_writer_pretty(&mut *file, report)?;
+        writeln!(file)
+    };
+    write_whole(path, write).map_err(|e| WriteError::new(path, e))
 }
 
 /// Temporary files of writes that were cut off.

@@ -1,7 +1,7 @@
 //! `cargo demo`: the tool's subcommand `demo` alone, so that only the code that it needs is compiled.
 
-use afterimage_clip::demo::{DemoArgs, demo};
-use afterimage_clip::failure::Failure;
+use afterimage_program::demo::{DemoArgs, demo};
+use afterimage_program::failure::Failure;
 use clap::Parser;
 use std::process::ExitCode;
 
