@@ -22,7 +22,7 @@ use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_program::failure::{Failure, warn};
 use removals::REMOVALS;
 use std::io::IsTerminal;
-use table::{Price, Report, SceneReport};
+use table::{EffectsReport, EffectsSceneReport, Price};
 
 /// Untimed frames.
 const WARM_UP: u64 = 2;
@@ -71,7 +71,7 @@ pub fn bench(args: &EffectsArgs, size: [u32; 2], frames: u64) -> Result<(), Fail
                 removals.extend(price_removals(&subject, backend, frames)?);
             }
         }
-        scenes.push(SceneReport {
+        scenes.push(EffectsSceneReport {
             scene: name.rsplit('/').next().unwrap_or(name).to_owned(),
             triangles: subject.world.geometry.len(),
             needs: needs.iter().map(Effect::name).collect(),
@@ -79,7 +79,7 @@ pub fn bench(args: &EffectsArgs, size: [u32; 2], frames: u64) -> Result<(), Fail
             removals,
         });
     }
-    let report = Report {
+    let report = EffectsReport {
         tool: "afterimage",
         version: env!("CARGO_PKG_VERSION"),
         size,

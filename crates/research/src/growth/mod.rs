@@ -80,7 +80,7 @@ enum Growing {
 }
 
 #[derive(Serialize)]
-struct Report {
+struct GrowthReport {
     tool: &'static str,
     version: &'static str,
     adapter: String,
@@ -178,7 +178,7 @@ pub fn bench(args: &GrowthArgs) -> Result<(), Failure> {
         series.push(Series::new(of, renderer, points, skipped));
     }
     bar.finish_and_clear();
-    let report = Report {
+    let report = GrowthReport {
         tool: "afterimage",
         version: env!("CARGO_PKG_VERSION"),
         adapter: rig.gpu.info.name.clone(),

@@ -28,7 +28,7 @@ static SHADERS: Composer = Composer::new(&[afterimage::shader::MODULES, MODULES]
 const WARM_UP: u64 = 8;
 
 #[derive(Serialize)]
-struct Report {
+struct PostBenchReport {
     tool: &'static str,
     version: &'static str,
     adapter: String,
@@ -212,7 +212,7 @@ fn summarise(
     cold_start_ms: f64,
     passes: &[&PassSpec],
     times: &[Vec<f64>],
-) -> Report {
+) -> PostBenchReport {
     let megapixels = f64::from(size[0]) * f64::from(size[1]) / 1e6;
     let median = |i: usize| Quartiles::of(&times[i]).map(|q| q.median);
     let reports = passes.iter().enumerate().map(|(i, pass)| PassReport {
@@ -225,7 +225,7 @@ fn summarise(
             Some(copy_ms / median(i)?)
         })(),
     });
-    Report {
+    PostBenchReport {
         tool: "afterimage",
         version: env!("CARGO_PKG_VERSION"),
         adapter: gpu.info.name.clone(),
@@ -239,7 +239,7 @@ fn summarise(
     }
 }
 
-fn print(report: &Report) {
+fn print(report: &PostBenchReport) {
     say!("{} ({}, {})", report.adapter, report.driver, report.backend);
     say!("{}x{}, {} frames; times are {}", report.size[0], report.size[1], report.frames, report.clock);
     say!("pass                median      p25      p75 ms   ms/Mpx  B/px  share of the copy's bandwidth");

@@ -21,7 +21,7 @@ use clap::{Args, ValueEnum};
 use eye_frame::EyeFrame;
 use eyes::{Eyes, below, scanpath_csv};
 use frames::{Place, folders, write};
-use report::Report;
+use report::TraceReport;
 use setup::Setup;
 use std::path::PathBuf;
 
@@ -131,7 +131,7 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
     let mut setup = Setup::new(args)?;
     let parts: Vec<String> = eyes.names().iter().flat_map(|eye| folders(args, eye)).collect();
     let out = Output::create(&args.out, &parts, &["trace.json"])?;
-    let mut report = Report::new(eyes.names().len());
+    let mut report = TraceReport::new(eyes.names().len());
     if args.verbose {
         report.print_effects(&setup);
     }
@@ -192,7 +192,7 @@ fn finish(
     args: &TraceArgs,
     out: &Output,
     setup: &Setup,
-    report: &Report,
+    report: &TraceReport,
     eyes: &Eyes,
     gaze: &GazeTracks,
 ) -> Result<(), Failure> {
