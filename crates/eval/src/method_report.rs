@@ -33,7 +33,8 @@ pub struct MethodReport {
     pub nonfinite_out: u64,
     /// Share of pixels whose history was rejected (disocclusion, frame border or invalid motion), after the first
     /// frame.
-    pub flushed: Option<f64>,
+    #[serde(rename = "flushed")]
+    pub rejected: Option<f64>,
     /// Share of replaced samples among pixels with valid history.
     pub replaced: Option<f64>,
     /// Mean share of the pixels that were shaded; `None` unless the method chooses all pixels that are shaded.
@@ -77,7 +78,7 @@ pub struct MethodAccumulator {
     nonfinite_in: u64,
     nonfinite_out: u64,
     pixels: u64,
-    flushed: u64,
+    rejected: u64,
     with_history: u64,
     replaced: u64,
     last: Option<FrameErrors>,
@@ -116,7 +117,7 @@ impl MethodAccumulator {
         self.nonfinite_out += shown.image.pixels().iter().filter(bad).count() as u64;
         if !frame.cut {
             self.pixels += shown.stats.pixels;
-            self.flushed += shown.stats.rejected();
+            self.rejected += shown.stats.rejected();
             self.with_history += shown.stats.valid();
             self.replaced += shown.stats.replaced;
         }
@@ -187,7 +188,7 @@ impl MethodAccumulator {
             worst_crop: self.crops.worst(),
             nonfinite_in: self.nonfinite_in,
             nonfinite_out: self.nonfinite_out,
-            flushed: share(self.flushed, self.pixels),
+            rejected: share(self.rejected, self.pixels),
             replaced: share(self.replaced, self.with_history),
             shaded_share: mean(&self.shaded),
             bytes_per_pixel: self.traffic,

@@ -56,7 +56,7 @@ pub struct Pipeline {
     runs: Vec<Run>,
     executor: Box<dyn Executor>,
     tracker: Tracker,
-    held_gaze: Option<[f32; 2]>,
+    last_gaze_px: Option<[f32; 2]>,
     /// True gaze, if the gaze of the requests is late.
     true_gaze: Option<[f32; 2]>,
     debug: Vec<DebugView>,
@@ -101,7 +101,7 @@ impl Pipeline {
             executor,
             foveator: Foveator::new(geometry, foveation, is_still),
             tracker: Tracker::default(),
-            held_gaze: None,
+            last_gaze_px: None,
             true_gaze: None,
             debug: debug.to_vec(),
             use_trust: false,
@@ -163,8 +163,8 @@ impl Pipeline {
     /// the center of the view.
     pub fn request(&mut self, index: u64, gaze: Option<[f32; 2]>) -> FrameRequest {
         let gaze = gaze.map_or(Gaze::Lost, |px| Gaze::At { px });
-        let gaze_px = gaze.resolve(self.held_gaze, &self.foveator.geometry);
-        self.held_gaze = Some(gaze_px);
+        let gaze_px = gaze.resolve(self.last_gaze_px, &self.foveator.geometry);
+        self.last_gaze_px = Some(gaze_px);
         let wanted = match (self.quad_views, self.foveator.lattices(gaze_px, index)) {
             (_, Some(lattices)) => Wanted::Lattices(lattices),
             (Some(layout), None) => {

@@ -88,27 +88,27 @@ impl FrameGaze {
     /// outside of the frame. `None` before the first valid sample: the caller chooses a fallback. Past
     /// [`FrameGaze::frames`] the last valid sample is held.
     pub fn px(&self, index: u64) -> Option<[f32; 2]> {
-        self.held(index).map(|(_, px)| px)
+        self.last_valid(index).map(|(_, px)| px)
     }
 
     /// Last known gaze in frame `index`, from a tracker whose samples arrive `latency_s` seconds late. Until the first
     /// valid sample arrives, it is the position of that sample, as if the eye had rested there.
     pub fn late_px(&self, index: u64, latency_s: f64) -> Option<[f32; 2]> {
-        self.held_at(self.time_s(index) - latency_s).or(self.valid.first().copied()).map(|(_, px)| px)
+        self.last_valid_at(self.time_s(index) - latency_s).or(self.valid.first().copied()).map(|(_, px)| px)
     }
 
     /// Age in seconds, at least 0, of the sample behind [`FrameGaze::px`]. An age of more than a few sample intervals
     /// means that the gaze is lost and held; a caller may respond with a wider fovea.
     pub fn age_s(&self, index: u64) -> Option<f64> {
-        self.held(index).map(|(t_s, _)| (self.time_s(index) - t_s).max(0.0))
+        self.last_valid(index).map(|(t_s, _)| (self.time_s(index) - t_s).max(0.0))
     }
 
-    fn held(&self, index: u64) -> Option<(f64, [f32; 2])> {
-        self.held_at(self.time_s(index))
+    fn last_valid(&self, index: u64) -> Option<(f64, [f32; 2])> {
+        self.last_valid_at(self.time_s(index))
     }
 
     /// Last valid sample at or before a time.
-    fn held_at(&self, time_s: f64) -> Option<(f64, [f32; 2])> {
+    fn last_valid_at(&self, time_s: f64) -> Option<(f64, [f32; 2])> {
         let after = self.valid.partition_point(|(t_s, _)| *t_s <= time_s + TIME_SLACK_S);
         after.checked_sub(1).map(|last| self.valid[last])
     }

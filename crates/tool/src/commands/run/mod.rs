@@ -10,7 +10,7 @@ use crate::args::input::{FoveatedSampling, InputArgs, Rendering, SourceName};
 use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
     FilterName, FormatName, FoveationArgs, MethodArgs, MethodName, Named, by_name, parse_exposure, parse_frame_range,
-    parse_frames, parse_latency, parse_pixel, parse_samples, tell_exposure,
+    parse_frames, parse_latency, parse_pixel, parse_samples, print_exposure,
 };
 use crate::clip::pixel::ExplainedPixel;
 use crate::clip::run_report::{RunFacts, write_report};
@@ -87,7 +87,7 @@ pub struct RunArgs {
     )]
     pub method: Vec<MethodName>,
     #[command(flatten)]
-    pub wrs: MethodArgs,
+    pub method_settings: MethodArgs,
     /// Give the methods a mask of pixels that move without motion vectors, if the scene has one (analytic:scroll)
     #[arg(long)]
     pub trust: bool,
@@ -229,7 +229,7 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let plan = plan::plan(args, source.info(), methods, head.as_ref())?;
     // The input can be read, or nothing is written.
     let playback = plan.clip.start(source.as_mut())?;
-    tell_exposure(playback.exposure());
+    print_exposure(playback.exposure());
     let cameras: Vec<String> = folders(args).iter().map(|folder| format!("{folder}/cameras.json")).collect();
     let reports: Vec<&str> = REPORTS.into_iter().chain(OF_HEAD).chain(cameras.iter().map(String::as_str)).collect();
     let out = Output::create(&args.out, &folders(args), &reports)?;

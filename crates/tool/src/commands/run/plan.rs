@@ -181,7 +181,7 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
             )));
         }
     };
-    let settings = Settings { foveation, ..args.wrs.settings(method, args.seed, sampling.is_some()) };
+    let settings = Settings { foveation, ..args.method_settings.settings(method, args.seed, sampling.is_some()) };
     let settings = args.foveation.antialiased(settings);
     settings.validate()?;
     Ok(RunKind::PostProcess(settings))

@@ -9,7 +9,7 @@ pub mod setup;
 use crate::args::backend::BackendName;
 use crate::args::paths::PathArgs;
 use crate::args::pattern::PatternArgs;
-use crate::args::{parse_exposure, parse_fps, parse_frames, parse_hfov, parse_samples, parse_size, tell_exposure};
+use crate::args::{parse_exposure, parse_fps, parse_frames, parse_hfov, parse_samples, parse_size, print_exposure};
 use crate::failure::Failure;
 use crate::output::Output;
 use crate::progress;
@@ -166,7 +166,7 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
             report.count(eye, &counts, &clock);
             let exposure_ev = *exposure_ev.get_or_insert_with(|| {
                 let chosen = args.exposure.choose(&picture.color, args.white());
-                bar.suspend(|| tell_exposure(&chosen));
+                bar.suspend(|| print_exposure(&chosen));
                 chosen.ev
             });
             let place = Place { eye: name, index: frame as usize, exposure_ev };
