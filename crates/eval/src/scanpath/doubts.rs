@@ -1,5 +1,6 @@
 //! What looks wrong in a scanpath: units that its columns do not have, and lost gaze.
 
+use super::kinematics::median_step;
 use super::{Sample, Scanpath};
 
 /// Samples a second below which times are hardly seconds. Webcams give 15 and more.
@@ -42,13 +43,8 @@ impl Scanpath {
     /// The warning of fewer than ten samples a second, without the name of the scanpath.
     pub fn doubt_of_times(&self) -> Option<String> {
         let samples = self.samples();
-        let mut steps: Vec<f64> = samples.windows(2).map(|pair| pair[1].t_s - pair[0].t_s).collect();
-        if steps.is_empty() {
-            return None;
-        }
         // The median: a recording may have pauses.
-        let middle = steps.len() / 2;
-        let (_, &mut median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
+        let median = median_step(samples.iter().map(|sample| sample.t_s), |_| true)?;
         (median * LEAST_HZ > 1.0).then(|| {
             format!(
                 "{} samples in {:.3} s are {:.2} a second; are the times milliseconds? Divide them by 1000",

@@ -83,6 +83,11 @@ impl Screen {
         Some([0, 1].map(|i| f64::from(cm[i]) / f64::from(self.size_px[i]) / distance))
     }
 
+    /// Pixel at these tangents of visual angles, with `slope` as the tangent per pixel.
+    fn px(&self, slope: [f64; 2], tangent: [f64; 2]) -> [f32; 2] {
+        [0, 1].map(|i| (tangent[i] / slope[i] + 0.5 * f64::from(self.size_px[i])) as f32)
+    }
+
     /// Checks the screen. The error is problem and remedy.
     fn check(&self) -> Result<(), (String, &'static str)> {
         let [w, h] = self.size_px;
@@ -117,6 +122,19 @@ pub struct About {
     pub notes: Vec<(String, String)>,
 }
 
+impl About {
+    /// Of a scanpath that is generated: `notes` stand between its origin and its licence.
+    fn generated(task: &str, rate_hz: f64, notes: &[(&str, &str)]) -> Self {
+        let (origin, licence) = (("origin", "top left, x right, y down"), ("licence", "MIT OR Apache-2.0"));
+        let notes = [origin].into_iter().chain(notes.iter().copied()).chain([licence]);
+        Self {
+            task: Some(format!("{task} (synthetic)")),
+            rate_hz: Some(rate_hz),
+            notes: notes.map(|(key, value)| (key.to_owned(), value.to_owned())).collect(),
+        }
+    }
+}
+
 /// A gaze recording. Times increase, at least one sample is valid, and valid samples are finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scanpath {
@@ -143,30 +161,36 @@ impl Scanpath {
         mut samples: Vec<Sample>,
     ) -> Result<Self, InputError> {
         let name = name.into();
-        screen.check().map_err(|(problem, remedy)| InputError::invalid(&name, problem, remedy))?;
-        normalize(&mut about).map_err(|(problem, remedy)| InputError::invalid(&name, problem, remedy))?;
+        let invalid = |(problem, remedy): (String, &str)| InputError::invalid(&name, problem, remedy);
+        screen.check().map_err(invalid)?;
+        normalize(&mut about).map_err(invalid)?;
         for sample in &mut samples {
             sample.px = sample.px.filter(|px| px.iter().all(|v| v.is_finite()));
         }
         let bad_time = |i: usize| !samples[i].t_s.is_finite() || (i > 0 && samples[i].t_s <= samples[i - 1].t_s);
         if let Some(i) = (0..samples.len()).find(|&i| bad_time(i)) {
-            return Err(InputError::invalid(
-                name,
-                format!("sample {i} is at {} s", samples[i].t_s),
-                "times must be finite and increase from sample to sample",
-            ));
+            let problem = format!("sample {i} is at {} s", samples[i].t_s);
+            return Err(invalid((problem, "times must be finite and increase from sample to sample")));
         }
         if samples.is_empty() {
-            return Err(InputError::invalid(name, "there is no sample", "give at least one row with a valid gaze"));
+            return Err(invalid(("there is no sample".into(), "give at least one row with a valid gaze")));
         }
         if samples.iter().all(|s| s.px.is_none()) {
-            return Err(InputError::invalid(
-                name,
-                format!("the gaze is lost in all {} samples", samples.len()),
-                "give a recording with at least one valid sample",
-            ));
+            let problem = format!("the gaze is lost in all {} samples", samples.len());
+            return Err(invalid((problem, "give a recording with at least one valid sample")));
         }
         Ok(Self { name, screen, about, samples, poses: vec![] })
+    }
+
+    /// A gaze position per frame, in pixels of frames of `size_px`, on a screen of that size and unknown geometry.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn of_frames(name: &str, size_px: [u32; 2], fps: f64, px: &[[f32; 2]]) -> Result<Self, InputError> {
+        // A scanpath counts pixels from the corner of the screen, a frame from the center of its first pixel.
+        let sample = |(i, px): (usize, &[f32; 2])| Sample { t_s: i as f64 / fps, px: Some(px.map(|v| v + 0.5)) };
+        let screen = Screen { size_px, size_cm: None, distance_cm: None };
+        Self::new(name, screen, About::default(), px.iter().enumerate().map(sample).collect())
     }
 
     /// The scanpath of a headset: with the pose of the head at each sample, also where the gaze is lost.
@@ -176,11 +200,8 @@ impl Scanpath {
     /// 1000 km, or a quaternion's length is not 1.
     pub fn with_poses(self, poses: Vec<HeadPose>) -> Result<Self, InputError> {
         if poses.len() != self.samples.len() {
-            return Err(InputError::invalid(
-                self.name,
-                format!("there are {} poses of the head for {} samples", poses.len(), self.samples.len()),
-                "give one for each sample",
-            ));
+            let problem = format!("there are {} poses of the head for {} samples", poses.len(), self.samples.len());
+            return Err(InputError::invalid(self.name, problem, "give one for each sample"));
         }
         let faults = poses.iter().enumerate().filter_map(|(i, pose)| Some((i, pose.fault()?)));
         match faults.into_iter().next() {

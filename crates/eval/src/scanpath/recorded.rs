@@ -124,20 +124,14 @@ pub(super) fn parse_table(
             .map_err(|(problem, remedy)| InputError::invalid(format!("{name}, line {}", index + 1), problem, remedy))?;
     }
     let Some(columns) = columns else {
-        return Err(InputError::invalid(
-            name,
-            "there are no column names",
-            format!("the first line without # must be {COLUMNS}"),
-        ));
+        let remedy = format!("the first line without # must be {COLUMNS}");
+        return Err(InputError::invalid(name, "there are no column names", remedy));
     };
     let size_px = header.size_px.unwrap_or(NO_SIZE);
     let screen = replaced(Screen { size_px, size_cm: header.size_cm, distance_cm: header.distance_cm });
     if screen.size_px == NO_SIZE {
-        return Err(InputError::invalid(
-            name,
-            "the screen's size is missing",
-            "state it in the header as `# screen_px: WIDTHxHEIGHT`",
-        ));
+        let remedy = "state it in the header as `# screen_px: WIDTHxHEIGHT`";
+        return Err(InputError::invalid(name, "the screen's size is missing", remedy));
     }
     let warnings = merged.warning(name).into_iter().collect();
     let path = Scanpath::new(name, screen, header.about, merged.samples)?;

@@ -1,16 +1,16 @@
 //! Simulation of the eye for synthetic scanpaths: generates events, and samples the gaze at given times.
 
 use super::kinematics::{
-    angle_deg, axes, main_sequence_s, minimum_jerk, tangent_towards, truncated_exponential, turn, uniform, unit,
+    angle_deg, any_direction, drifted, main_sequence_s, minimum_jerk, tangent_towards, truncated_exponential, turn,
+    uniform, unit,
 };
 use super::viewing::{
-    AIM_MARGIN_DEG, CORRECT_ABOVE_DEG, DRIFT_RMS_DEG, DRIFT_STEP_S, EDGE_MARGIN_DEG, Event, EventKind, FIXATION_S,
-    LANDING_S, MICROSACCADE_DEG, MICROSACCADE_HZ, SACCADE_DEG, SACCADE_SCALE_DEG, UNDERSHOOT,
+    AIM_MARGIN_DEG, CORRECT_ABOVE_DEG, EDGE_MARGIN_DEG, Event, EventKind, FIXATION_S, LANDING_S, MICROSACCADE_DEG,
+    MICROSACCADE_HZ, SACCADE_DEG, SACCADE_SCALE_DEG, UNDERSHOOT,
 };
 use glam::{DVec2, DVec3};
 use rand::SeedableRng;
 use rand_pcg::Pcg64;
-use std::f64::consts::TAU;
 
 /// Attempts to draw a direction (and amplitude) that stays on the screen, before the eye moves towards the middle
 /// instead. Fewer attempts bias amplitudes in the corners of small screens towards short ones.
@@ -112,7 +112,7 @@ impl<T: Iterator<Item = f64>> SimulatedEye<T> {
     fn choose_target(&mut self) -> (DVec3, f64) {
         for _ in 0..AIM_TRIES {
             let amplitude_deg = truncated_exponential(unit(&mut self.rng), SACCADE_SCALE_DEG, SACCADE_DEG);
-            let towards = self.any_direction();
+            let towards = any_direction(&mut self.rng, self.gaze);
             if self.aim.contains(turn(self.gaze, towards, amplitude_deg)) {
                 return (towards, amplitude_deg);
             }
@@ -126,18 +126,12 @@ impl<T: Iterator<Item = f64>> SimulatedEye<T> {
     /// than a microsaccade, so the direction towards the middle is always valid.
     fn direction_inside(&mut self, amplitude_deg: f64) -> DVec3 {
         for _ in 0..AIM_TRIES {
-            let towards = self.any_direction();
+            let towards = any_direction(&mut self.rng, self.gaze);
             if self.edge.contains(turn(self.gaze, towards, amplitude_deg)) {
                 return towards;
             }
         }
         tangent_towards(self.gaze, DVec3::Z)
-    }
-
-    fn any_direction(&mut self) -> DVec3 {
-        let (sin, cos) = (TAU * unit(&mut self.rng)).sin_cos();
-        let (right, down) = axes(self.gaze);
-        right * cos + down * sin
     }
 
     /// Simulates Brownian drift up to `until_s`. Steps that would cross the edge are skipped.
@@ -152,10 +146,7 @@ impl<T: Iterator<Item = f64>> SimulatedEye<T> {
     }
 
     fn drift_by(&mut self, step_s: f64) {
-        let variance_deg2 = DRIFT_RMS_DEG * DRIFT_RMS_DEG * (step_s / DRIFT_STEP_S).max(0.0);
-        // A two-dimensional normal displacement: uniform direction, Rayleigh length with this mean square.
-        let length_deg = (variance_deg2 * -(1.0 - unit(&mut self.rng)).ln()).sqrt();
-        let moved = turn(self.gaze, self.any_direction(), length_deg);
+        let moved = drifted(&mut self.rng, self.gaze, step_s);
         if self.edge.contains(moved) {
             self.gaze = moved;
         }

@@ -1,12 +1,10 @@
 //! Synthetic scanpaths: options, and their generation by a model of free viewing.
 
+use super::kinematics::{check_times, sample_times};
 use super::simulated_eye::SimulatedEye;
 use super::viewing::{AIM_MARGIN_DEG, Event, SACCADE_DEG};
 use super::{About, Sample, Scanpath, Screen};
 use crate::error::InputError;
-
-/// Largest number of samples: 24 bytes each, a quarter of a gigabyte in all.
-const MAX_SAMPLES: f64 = 1e7;
 
 /// Options of [`generate`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,28 +36,12 @@ impl SyntheticOptions {
         self.aim_field().map(|_| ())
     }
 
-    /// Number of samples: one at every multiple of `1 / rate_hz` below the duration.
-    fn samples(&self) -> usize {
-        // Tolerance for rounding: 1.1 s at 10 Hz is 11.000000000000002 in floats, and must give 11 samples.
-        ((self.duration_s * self.rate_hz - 1e-6).ceil() as usize).max(1)
-    }
-
     /// Checks all options. Returns the tangent per pixel, and half the screen's width and height in degrees.
     fn aim_field(&self) -> Result<([f64; 2], [f64; 2]), InputError> {
         let fault = |option: &str, found: String, remedy: &str| {
             Err(InputError::request(format!("synthetic scanpath, {option}"), found, remedy))
         };
-        if !(1.0..=10_000.0).contains(&self.rate_hz) {
-            return fault("rate", format!("{} Hz", self.rate_hz), "expected 1 to 10000 Hz");
-        }
-        let samples = self.duration_s * self.rate_hz;
-        if !(self.duration_s > 0.0 && samples <= MAX_SAMPLES) {
-            return fault(
-                "duration",
-                format!("{} s at {} Hz", self.duration_s, self.rate_hz),
-                "expected more than 0 s and at most ten million samples",
-            );
-        }
+        check_times("synthetic scanpath", self.duration_s, self.rate_hz)?;
         if let Err((problem, remedy)) = self.screen.check() {
             return fault("screen", problem, remedy);
         }
@@ -101,29 +83,16 @@ pub struct Synthetic {
 /// Those of [`SyntheticOptions::validate`].
 pub fn generate(options: &SyntheticOptions) -> Result<Synthetic, InputError> {
     let (slope, half_deg) = options.aim_field()?;
-    let times = (0..options.samples()).map(|i| i as f64 / options.rate_hz);
-    let mut eye = SimulatedEye::new(options.seed, half_deg, times);
+    let mut eye = SimulatedEye::new(options.seed, half_deg, sample_times(options.duration_s, options.rate_hz));
     while !eye.done() {
         eye.fixate();
         eye.look_elsewhere();
     }
     let (tangents, events) = eye.finish();
-    let size = options.screen.size_px;
-    let samples = tangents.into_iter().map(|(t_s, tangent)| Sample {
-        t_s,
-        px: Some([0, 1].map(|i| (tangent[i] / slope[i] + 0.5 * f64::from(size[i])) as f32)),
-    });
-    let about = About {
-        task: Some("free viewing (synthetic)".into()),
-        rate_hz: Some(options.rate_hz),
-        notes: [
-            ("origin", "top left, x right, y down".into()),
-            ("source", format!("afterimage, synthetic scanpath, seed {}", options.seed)),
-            ("licence", "MIT OR Apache-2.0".into()),
-        ]
-        .map(|(key, value)| (key.to_owned(), value))
-        .to_vec(),
-    };
-    let path = Scanpath::new(format!("synthetic:{}", options.seed), options.screen, about, samples.collect())?;
+    let sample = |(t_s, tangent)| Sample { t_s, px: Some(options.screen.px(slope, tangent)) };
+    let samples = tangents.into_iter().map(sample).collect();
+    let source = format!("afterimage, synthetic scanpath, seed {}", options.seed);
+    let about = About::generated("free viewing", options.rate_hz, &[("source", &source)]);
+    let path = Scanpath::new(format!("synthetic:{}", options.seed), options.screen, about, samples)?;
     Ok(Synthetic { path, events })
 }

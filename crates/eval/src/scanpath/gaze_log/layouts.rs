@@ -71,10 +71,9 @@ pub(super) struct Place {
     pub at: &'static [&'static str],
     /// Columns that say whether it is valid; any of them that does is enough.
     pub valid: &'static [&'static str],
-    pub rule: Validity,
 }
 
-const NO_PLACE: Place = Place { at: &[], valid: &[], rule: Validity::Flag };
+const NO_PLACE: Place = Place { at: &[], valid: &[] };
 
 /// One kind of export.
 #[derive(Clone, Copy, Debug)]
@@ -88,6 +87,8 @@ pub(super) struct Layout {
     pub both: Place,
     pub left: Place,
     pub right: Place,
+    /// What the columns for validity hold.
+    pub rule: Validity,
     /// Only rows with this word in this column are samples.
     pub rows: Option<(&'static str, &'static str)>,
     /// A sample in which this column has a value other than 0 is lost: the number of a blink.
@@ -104,13 +105,14 @@ const EMPTY: Layout = Layout {
     both: NO_PLACE,
     left: NO_PLACE,
     right: NO_PLACE,
+    rule: Validity::Flag,
     rows: None,
     blink: None,
     screen_px: None,
 };
 
-const fn place(at: &'static [&'static str], valid: &'static [&'static str], rule: Validity) -> Place {
-    Place { at, valid, rule }
+const fn place(at: &'static [&'static str], valid: &'static [&'static str]) -> Place {
+    Place { at, valid }
 }
 
 const SECONDS: Unit = Unit::PerSecond(1.0);
@@ -165,51 +167,40 @@ pub(super) const LAYOUTS: [Layout; 16] = [
         both: place(
             &["gaze_point_x_dacs_px|gaze_point_x", "gaze_point_y_dacs_px|gaze_point_y"],
             &["validity_left", "validity_right"],
-            Validity::Word,
         ),
         left: place(
             &["gaze_point_left_x_dacs_px|gaze_point_left_x", "gaze_point_left_y_dacs_px|gaze_point_left_y"],
             &["validity_left"],
-            Validity::Word,
         ),
         right: place(
             &["gaze_point_right_x_dacs_px|gaze_point_right_x", "gaze_point_right_y_dacs_px|gaze_point_right_y"],
             &["validity_right"],
-            Validity::Word,
         ),
+        rule: Validity::Word,
         ..PRO_LAB
     },
     Layout {
         plane: Plane::Fractions,
-        both: place(
-            &["gaze_point_x_mcs_norm", "gaze_point_y_mcs_norm"],
-            &["validity_left", "validity_right"],
-            Validity::Word,
-        ),
-        left: place(&["gaze_point_left_x_mcs_norm", "gaze_point_left_y_mcs_norm"], &["validity_left"], Validity::Word),
-        right: place(
-            &["gaze_point_right_x_mcs_norm", "gaze_point_right_y_mcs_norm"],
-            &["validity_right"],
-            Validity::Word,
-        ),
+        both: place(&["gaze_point_x_mcs_norm", "gaze_point_y_mcs_norm"], &["validity_left", "validity_right"]),
+        left: place(&["gaze_point_left_x_mcs_norm", "gaze_point_left_y_mcs_norm"], &["validity_left"]),
+        right: place(&["gaze_point_right_x_mcs_norm", "gaze_point_right_y_mcs_norm"], &["validity_right"]),
+        rule: Validity::Word,
         ..PRO_LAB
     },
     Layout {
         both: place(
             &["gazepointx_adcspx|gazepointx_px|gazepointx", "gazepointy_adcspx|gazepointy_px|gazepointy"],
             &["validityleft", "validityright"],
-            Validity::Code,
         ),
         left: place(
             &["gazepointleftx_adcspx|gazepointxleft", "gazepointlefty_adcspx|gazepointyleft"],
             &["validityleft"],
-            Validity::Code,
         ),
         right: place(
             &["gazepointrightx_adcspx|gazepointxright", "gazepointrighty_adcspx|gazepointyright"],
             &["validityright"],
-            Validity::Code,
         ),
+        rule: Validity::Code,
         ..STUDIO
     },
     Layout {
@@ -220,30 +211,25 @@ pub(super) const LAYOUTS: [Layout; 16] = [
         left: place(
             &["left_gaze_point_on_display_area_x", "left_gaze_point_on_display_area_y"],
             &["left_gaze_point_validity"],
-            Validity::Flag,
         ),
         right: place(
             &["right_gaze_point_on_display_area_x", "right_gaze_point_on_display_area_y"],
             &["right_gaze_point_validity"],
-            Validity::Flag,
         ),
         ..EMPTY
     },
     Layout {
         writer: "Pupil Core's surface tracker",
         time: &[("gaze_timestamp|world_timestamp", SECONDS)],
-        both: place(&["x_norm", "y_norm"], &["confidence"], Validity::AtLeast(0.6)),
+        both: place(&["x_norm", "y_norm"], &["confidence"]),
+        rule: Validity::AtLeast(0.6),
         ..CORE
     },
-    Layout { both: place(&["norm_pos_x", "norm_pos_y"], &["confidence"], Validity::AtLeast(0.6)), ..CORE },
+    Layout { both: place(&["norm_pos_x", "norm_pos_y"], &["confidence"]), rule: Validity::AtLeast(0.6), ..CORE },
     Layout {
         writer: "Pupil Cloud's marker mapper",
         plane: Plane::Fractions,
-        both: place(
-            &["gaze_position_on_surface_x_normalized", "gaze_position_on_surface_y_normalized"],
-            &[],
-            Validity::Flag,
-        ),
+        both: place(&["gaze_position_on_surface_x_normalized", "gaze_position_on_surface_y_normalized"], &[]),
         ..NEON
     },
     Layout {
@@ -251,23 +237,23 @@ pub(super) const LAYOUTS: [Layout; 16] = [
         both: place(
             &["gaze_position_in_reference_image_x_px", "gaze_position_in_reference_image_y_px"],
             &["gaze_detected_in_reference_image"],
-            Validity::Flag,
         ),
         ..NEON
     },
     Layout {
         plane: Plane::Angles,
-        both: place(&["azimuth_deg", "elevation_deg"], &["worn"], Validity::AtLeast(0.5)),
+        both: place(&["azimuth_deg", "elevation_deg"], &["worn"]),
+        rule: Validity::AtLeast(0.5),
         ..NEON
     },
-    Layout { both: place(&["gaze_x_px", "gaze_y_px"], &["worn"], Validity::AtLeast(0.5)), ..NEON },
+    Layout { both: place(&["gaze_x_px", "gaze_y_px"], &["worn"]), rule: Validity::AtLeast(0.5), ..NEON },
     Layout {
-        both: place(&["bpogx", "bpogy"], &["bpogv"], Validity::Flag),
-        left: place(&["lpogx", "lpogy"], &["lpogv"], Validity::Flag),
-        right: place(&["rpogx", "rpogy"], &["rpogv"], Validity::Flag),
+        both: place(&["bpogx", "bpogy"], &["bpogv"]),
+        left: place(&["lpogx", "lpogy"], &["lpogv"]),
+        right: place(&["rpogx", "rpogy"], &["rpogv"]),
         ..GAZEPOINT
     },
-    Layout { both: place(&["fpogx", "fpogy"], &["fpogv"], Validity::Flag), ..GAZEPOINT },
+    Layout { both: place(&["fpogx", "fpogy"], &["fpogv"]), ..GAZEPOINT },
     Layout {
         vendor: Vendor::Varjo,
         writer: "Varjo Base",
@@ -276,21 +262,10 @@ pub(super) const LAYOUTS: [Layout; 16] = [
             NANOSECONDS,
         )],
         plane: Plane::Forward,
-        both: place(
-            &["gaze_forward_x", "gaze_forward_y", "gaze_forward_z"],
-            &["status|gaze_status"],
-            Validity::AtLeast(2.0),
-        ),
-        left: place(
-            &["left_forward_x", "left_forward_y", "left_forward_z"],
-            &["left_status|left_eye_status"],
-            Validity::AtLeast(2.0),
-        ),
-        right: place(
-            &["right_forward_x", "right_forward_y", "right_forward_z"],
-            &["right_status|right_eye_status"],
-            Validity::AtLeast(2.0),
-        ),
+        both: place(&["gaze_forward_x", "gaze_forward_y", "gaze_forward_z"], &["status|gaze_status"]),
+        left: place(&["left_forward_x", "left_forward_y", "left_forward_z"], &["left_status|left_eye_status"]),
+        right: place(&["right_forward_x", "right_forward_y", "right_forward_z"], &["right_status|right_eye_status"]),
+        rule: Validity::AtLeast(2.0),
         ..EMPTY
     },
     Layout {
@@ -298,24 +273,26 @@ pub(super) const LAYOUTS: [Layout; 16] = [
         writer: "a program with SRanipal",
         time: &[("time_stamp_ms|timestamp_ms|time_stamp|timestamp|time_100ns|time_ms|time", Unit::Named)],
         plane: Plane::ForwardLeft,
-        both: place(&["gaze_direct_c_x", "gaze_direct_c_y", "gaze_direct_c_z"], &["eye_valid_c"], Validity::Mask),
-        left: place(&["gaze_direct_l_x", "gaze_direct_l_y", "gaze_direct_l_z"], &["eye_valid_l"], Validity::Mask),
-        right: place(&["gaze_direct_r_x", "gaze_direct_r_y", "gaze_direct_r_z"], &["eye_valid_r"], Validity::Mask),
+        both: place(&["gaze_direct_c_x", "gaze_direct_c_y", "gaze_direct_c_z"], &["eye_valid_c"]),
+        left: place(&["gaze_direct_l_x", "gaze_direct_l_y", "gaze_direct_l_z"], &["eye_valid_l"]),
+        right: place(&["gaze_direct_r_x", "gaze_direct_r_y", "gaze_direct_r_z"], &["eye_valid_r"]),
+        rule: Validity::Mask,
         ..EMPTY
     },
     Layout {
         vendor: Vendor::Eyelink,
         writer: "EyeLink's Data Viewer",
         time: &[("timestamp|sample_time", MILLISECONDS)],
-        left: place(&["left_gaze_x", "left_gaze_y"], &["left_in_blink"], Validity::NoFlag),
-        right: place(&["right_gaze_x", "right_gaze_y"], &["right_in_blink"], Validity::NoFlag),
+        left: place(&["left_gaze_x", "left_gaze_y"], &["left_in_blink"]),
+        right: place(&["right_gaze_x", "right_gaze_y"], &["right_in_blink"]),
+        rule: Validity::NoFlag,
         ..EMPTY
     },
     Layout {
         vendor: Vendor::Webgazer,
         writer: "a page with WebGazer",
         time: &[("t|time|timestamp|elapsedtime|elapsed_time|t_ms|time_ms|timestamp_ms|elapsed_ms", MILLISECONDS)],
-        both: place(&["x|x_px|gaze_x|gazex", "y|y_px|gaze_y|gazey"], &[], Validity::Flag),
+        both: place(&["x|x_px|gaze_x|gazex", "y|y_px|gaze_y|gazey"], &[]),
         ..EMPTY
     },
 ];

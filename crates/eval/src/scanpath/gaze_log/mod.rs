@@ -17,7 +17,6 @@ use super::{Scanpath, Screen};
 use crate::error::InputError;
 use layouts::{LAYOUTS, Layout};
 pub use options::{Eye, GazeLogOptions, Vendor};
-use samples::Samples;
 use std::path::Path;
 
 /// A gaze log that was read.
@@ -53,22 +52,17 @@ pub fn parse_gaze_log(name: &str, bytes: &[u8], options: &GazeLogOptions) -> Res
         Some(vendor) => vendor == Vendor::Eyelink && (asc::is_asc(&text) || asc::is_samples(&text)),
     };
     let samples = match is_asc {
-        true => asc::samples(name, &text, options.eye)?,
+        true => Some(asc::samples(name, &text, options.eye)?),
         false => match layout_of(name, &text, options)? {
-            Some((layout, columns)) => rows::samples(name, &text, layout, &columns, options.eye)?,
-            None => {
-                let (scanpath, mut warnings) = parse_table(name, &text, &|screen| replaced(screen, options))?;
-                warnings.extend(scanpath.warnings());
-                return Ok(GazeLog { scanpath, vendor: None, warnings });
-            }
+            Some((layout, columns)) => Some(rows::samples(name, &text, layout, &columns, options.eye)?),
+            None => None,
         },
     };
-    finish(name, samples, options)
-}
-
-fn finish(name: &str, samples: Samples, options: &GazeLogOptions) -> Result<GazeLog, InputError> {
-    let vendor = Some(samples.vendor);
-    let (scanpath, mut warnings) = samples.placed(name, options)?;
+    let vendor = samples.as_ref().map(|samples| samples.vendor);
+    let (scanpath, mut warnings) = match samples {
+        Some(samples) => samples.placed(name, options)?,
+        None => parse_table(name, &text, &|screen| replaced(screen, options))?,
+    };
     warnings.extend(scanpath.warnings());
     Ok(GazeLog { scanpath, vendor, warnings })
 }

@@ -45,23 +45,23 @@ fn per_second(name: &str) -> Option<f64> {
 
 /// Columns of a place that is in a table.
 struct Found<'a> {
-    place: &'a Place,
+    rule: Validity,
     at: Vec<(&'a str, Column)>,
     valid: Vec<Column>,
 }
 
 impl<'a> Found<'a> {
-    fn new(place: &'a Place, columns: &'a Columns) -> Option<Self> {
+    fn new(rule: Validity, place: &Place, columns: &'a Columns) -> Option<Self> {
         let at: Vec<_> = place.at.iter().map_while(|names| columns.find(names)).collect();
         let valid = place.valid.iter().filter_map(|names| Some(columns.find(names)?.1)).collect();
-        (!at.is_empty() && at.len() == place.at.len()).then_some(Self { place, at, valid })
+        (!at.is_empty() && at.len() == place.at.len()).then_some(Self { rule, at, valid })
     }
 
     /// The gaze in a row; `None` where it is lost.
     fn read(&self, plane: Plane, row: &Row) -> Result<Option<[f64; 2]>, LineError> {
         let mut is_valid = self.valid.is_empty();
         for &column in &self.valid {
-            is_valid |= self.place.rule.holds(row.cell(column))?;
+            is_valid |= self.rule.holds(row.cell(column))?;
         }
         let mut values = [0.0; 3];
         for (value, (name, column)) in values.iter_mut().zip(&self.at) {
@@ -146,7 +146,7 @@ pub(super) fn samples(
     columns: &Columns,
     eye: Eye,
 ) -> Result<Samples, InputError> {
-    let found = |place: &'static Place| Found::new(place, columns);
+    let found = |place: &'static Place| Found::new(layout.rule, place, columns);
     let places: Vec<_> = match eye {
         Eye::Both => match found(&layout.both) {
             Some(both) => vec![both],
@@ -167,16 +167,7 @@ pub(super) fn samples(
         blink: layout.blink.and_then(|names| Some(columns.find(names)?.1)),
         screen_px: layout.screen_px.and_then(|[w, h]| Some([columns.find(w)?.1, columns.find(h)?.1])),
     };
-    let mut samples = Samples {
-        vendor: layout.vendor,
-        writer: layout.writer,
-        plane: layout.plane,
-        per_second,
-        screen_px: None,
-        screen_mm: None,
-        distance_mm: None,
-        raw: vec![],
-    };
+    let mut samples = Samples::new(layout.vendor, layout.writer, layout.plane, per_second);
     let is_row = |line: &str| !line.trim().is_empty() && comment(line.trim()).is_none();
     for (index, line) in text.lines().enumerate().filter(|(_, line)| is_row(line)).skip(1) {
         reader

@@ -3,6 +3,7 @@
 use super::layouts::Plane;
 use super::options::{GazeLogOptions, Vendor};
 use crate::error::InputError;
+use crate::scanpath::kinematics::median_step;
 use crate::scanpath::recorded::Merged;
 use crate::scanpath::table::number;
 use crate::scanpath::{About, Sample, Scanpath, Screen};
@@ -62,6 +63,12 @@ pub(super) struct Samples {
 }
 
 impl Samples {
+    /// No samples yet, of a screen that is not stated.
+    pub fn new(vendor: Vendor, writer: &'static str, plane: Plane, per_second: Option<f64>) -> Self {
+        let (screen_px, screen_mm, distance_mm) = (None, None, None);
+        Self { vendor, writer, plane, per_second, screen_px, screen_mm, distance_mm, raw: vec![] }
+    }
+
     /// The scanpath, and what was assumed.
     ///
     /// # Errors
@@ -174,11 +181,6 @@ impl Samples {
 
 /// Ticks a second with which the median step lies between 0.2 and 200 ms.
 fn usual_unit(ticks: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = ticks.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0).collect();
-    if steps.is_empty() {
-        return 1.0;
-    }
-    let middle = steps.len() / 2;
-    let (_, &mut median, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
+    let Some(median) = median_step(ticks.iter().copied(), |step| step > 0.0) else { return 1.0 };
     [1.0, 1e3, 1e6].into_iter().find(|unit| median < 0.2 * unit).unwrap_or(1e9)
 }

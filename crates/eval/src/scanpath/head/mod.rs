@@ -28,11 +28,12 @@ mod simulation;
 pub use coordination::{HeadTurn, Regarded};
 pub use options::{DistanceOf, HeadOptions, in_a_room};
 
+use super::kinematics::sample_times;
 use super::viewing::Event;
 use super::{About, Sample, Scanpath, Screen};
 use crate::error::InputError;
 use afterimage::ViewGeometry;
-use simulation::Simulation;
+use simulation::{HeadSample, Simulation};
 
 /// Side in pixels, and field of view in degrees, of the square screen on which gaze is written: that of a headset, and
 /// 20 pixels a degree at the middle.
@@ -60,8 +61,7 @@ pub struct SyntheticHead {
 /// Those of [`HeadOptions::validate`].
 pub fn generate_head(options: &HeadOptions, distance_of: DistanceOf<'_>) -> Result<SyntheticHead, InputError> {
     options.validate()?;
-    let times = (0..options.samples()).map(|i| i as f64 / options.rate_hz);
-    let mut simulation = Simulation::new(*options, distance_of, times);
+    let mut simulation = Simulation::new(*options, distance_of, sample_times(options.duration_s, options.rate_hz));
     while !simulation.done() {
         simulation.rest();
         simulation.look_elsewhere();
@@ -71,22 +71,13 @@ pub fn generate_head(options: &HeadOptions, distance_of: DistanceOf<'_>) -> Resu
     let view = ViewGeometry::flat([SCREEN_PX; 2], SCREEN_DEG).expect("a field of view below 180 degrees");
     let screen = Screen::of_view(&view);
     let slope = screen.tangent_per_px().expect("the screen's size and distance are known");
-    let px = |tangent: [f64; 2]| [0, 1].map(|i| (tangent[i] / slope[i] + 0.5 * f64::from(SCREEN_PX)) as f32);
     let task = if options.is_walking { "walking and looking around" } else { "looking around" };
-    let about = About {
-        task: Some(format!("{task} (synthetic)")),
-        rate_hz: Some(options.rate_hz),
-        notes: [
-            ("origin", "top left, x right, y down".into()),
-            ("head", "metres and a quaternion; x right, y up, -z ahead".into()),
-            ("source", format!("afterimage, synthetic head and eye, seed {}", options.seed)),
-            ("licence", "MIT OR Apache-2.0".into()),
-        ]
-        .map(|(key, value)| (key.to_owned(), value))
-        .to_vec(),
-    };
+    let head = ("head", "metres and a quaternion; x right, y up, -z ahead");
+    let source = format!("afterimage, synthetic head and eye, seed {}", options.seed);
+    let about = About::generated(task, options.rate_hz, &[head, ("source", &source)]);
     let poses = samples.iter().map(|s| s.2).collect();
-    let samples = samples.iter().map(|&(t_s, tangent, _)| Sample { t_s, px: Some(px(tangent)) }).collect();
+    let sample = |&(t_s, tangent, _): &HeadSample| Sample { t_s, px: Some(screen.px(slope, tangent)) };
+    let samples = samples.iter().map(sample).collect();
     let path = Scanpath::new(format!("synthetic:{}", options.seed), screen, about, samples)?.with_poses(poses)?;
     Ok(SyntheticHead { path, events, turns, regarded })
 }

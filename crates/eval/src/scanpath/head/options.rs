@@ -2,9 +2,7 @@
 
 use super::coordination::{ROTATION_GAIN, TRANSLATION_GAIN};
 use crate::error::InputError;
-
-/// Largest number of samples: 64 bytes each, two thirds of a gigabyte in all.
-const MAX_SAMPLES: f64 = 1e7;
+use crate::scanpath::kinematics::check_times;
 
 /// Distance in metres from a point to the surface that is seen in a direction, a unit vector; `None` if there is no
 /// surface. Both are in the space of [`HeadPose`](crate::scanpath::HeadPose).
@@ -56,13 +54,7 @@ impl HeadOptions {
         let fault = |option: &str, found: String, remedy: &str| {
             Err(InputError::request(format!("synthetic head, {option}"), found, remedy))
         };
-        if !(1.0..=10_000.0).contains(&self.rate_hz) {
-            return fault("rate", format!("{} Hz", self.rate_hz), "expected 1 to 10000 Hz");
-        }
-        if !(self.duration_s > 0.0 && self.duration_s * self.rate_hz <= MAX_SAMPLES) {
-            let found = format!("{} s at {} Hz", self.duration_s, self.rate_hz);
-            return fault("duration", found, "expected more than 0 s and at most ten million samples");
-        }
+        check_times("synthetic head", self.duration_s, self.rate_hz)?;
         if !(0.0..=1.0).contains(&self.pursuits) {
             return fault("pursuits", self.pursuits.to_string(), "expected a share from 0 to 1");
         }
@@ -72,12 +64,6 @@ impl HeadOptions {
             }
         }
         Ok(())
-    }
-
-    /// Number of samples: one at every multiple of `1 / rate_hz` below the duration.
-    pub(super) fn samples(&self) -> usize {
-        // Tolerance for rounding: 1.1 s at 10 Hz is 11.000000000000002 in floats, and must give 11 samples.
-        ((self.duration_s * self.rate_hz - 1e-6).ceil() as usize).max(1)
     }
 }
 

@@ -8,12 +8,12 @@ use super::coordination::{
 use super::neck::Neck;
 use super::options::{DistanceOf, HeadOptions};
 use crate::scanpath::kinematics::{
-    angle_deg, axes, main_sequence_s, minimum_jerk, tangent_towards, truncated_exponential, turn, uniform, unit,
+    angle_deg, any_direction, axes, drifted, main_sequence_s, minimum_jerk, tangent_towards, truncated_exponential,
+    turn, uniform, unit,
 };
 use crate::scanpath::pose::HeadPose;
 use crate::scanpath::viewing::{
-    CORRECT_ABOVE_DEG, DRIFT_RMS_DEG, DRIFT_STEP_S, Event, EventKind, FIXATION_S, LANDING_S, MICROSACCADE_DEG,
-    MICROSACCADE_HZ, UNDERSHOOT,
+    CORRECT_ABOVE_DEG, Event, EventKind, FIXATION_S, LANDING_S, MICROSACCADE_DEG, MICROSACCADE_HZ, UNDERSHOOT,
 };
 use glam::{DQuat, DVec2, DVec3};
 use rand::SeedableRng;
@@ -108,9 +108,8 @@ impl<'a, T: Iterator<Item = f64>> Simulation<'a, T> {
             let amplitude_deg = uniform(&mut self.rng, MICROSACCADE_DEG);
             let onset_s = start_s + uniform(&mut self.rng, [0.0, rest_s - main_sequence_s(amplitude_deg)]);
             self.rest_until(onset_s);
-            let (sin, cos) = (TAU * unit(&mut self.rng)).sin_cos();
-            let (right, down) = axes(self.gaze);
-            let aside = self.seen_along(turn(self.gaze, right * cos + down * sin, amplitude_deg));
+            let towards = any_direction(&mut self.rng, self.gaze);
+            let aside = self.seen_along(turn(self.gaze, towards, amplitude_deg));
             self.shift_to(EventKind::Microsaccade, aside, amplitude_deg);
         }
         self.rest_until(end_s);
@@ -239,20 +238,8 @@ impl<'a, T: Iterator<Item = f64>> Simulation<'a, T> {
         let gaze = (pursuit * translation * slip * self.gaze).normalize();
         let back = 1.0 - (-step_s / RETURN_S).exp();
         let gaze = turn(gaze, tangent_towards(gaze, ideal), angle_deg(gaze, ideal) * back);
-        self.gaze = self.drifted(gaze, step_s);
+        self.gaze = if self.options.drifts { drifted(&mut self.rng, gaze, step_s) } else { gaze };
         self.now_s = next_s;
-    }
-
-    fn drifted(&mut self, gaze: DVec3, step_s: f64) -> DVec3 {
-        if !self.options.drifts {
-            return gaze;
-        }
-        let variance_deg2 = DRIFT_RMS_DEG * DRIFT_RMS_DEG * (step_s / DRIFT_STEP_S);
-        // A two-dimensional normal displacement: uniform direction, Rayleigh length with this mean square.
-        let length_deg = (variance_deg2 * -(1.0 - unit(&mut self.rng)).ln()).sqrt();
-        let (sin, cos) = (TAU * unit(&mut self.rng)).sin_cos();
-        let (right, down) = axes(gaze);
-        turn(gaze, right * cos + down * sin, length_deg)
     }
 
     /// Moves the gaze onto a point. The vestibulo-ocular reflex is off in large shifts and compensated in small ones

@@ -55,24 +55,24 @@ const SCROLL_PERIOD: f64 = 1024.0;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Still,
-    Lateral,
-    Turn,
-    Walk,
-    Occluder,
+    /// Camera or objects move, so that each frame is cast anew.
+    Moving,
     LightStep,
-    Spin,
     Scroll,
 }
 
-const KINDS: [(&str, Kind); 8] = [
-    ("still", Kind::Still),
-    ("lateral", Kind::Lateral),
-    ("turn", Kind::Turn),
-    ("walk", Kind::Walk),
-    ("occluder", Kind::Occluder),
-    ("light-step", Kind::LightStep),
-    ("spin", Kind::Spin),
-    ("scroll", Kind::Scroll),
+/// Name, kind and scene.
+type Named = (&'static str, Kind, fn() -> Scene);
+
+const KINDS: [Named; 8] = [
+    ("still", Kind::Still, courtyard::still),
+    ("lateral", Kind::Moving, courtyard::lateral),
+    ("turn", Kind::Moving, courtyard::turn),
+    ("walk", Kind::Moving, courtyard::walk),
+    ("occluder", Kind::Moving, courtyard::occluder),
+    ("light-step", Kind::LightStep, courtyard::still),
+    ("spin", Kind::Moving, courtyard::spin),
+    ("scroll", Kind::Scroll, courtyard::scroll),
 ];
 
 /// An endless scene with exact color, depth and motion.
@@ -102,44 +102,23 @@ impl AnalyticSource {
     /// is not in (0, 180) degrees, or the frame rate is not above 0 and finite.
     pub fn new(name: &str, size: [u32; 2], hfov_deg: f32, fps: f32) -> Result<Self, InputError> {
         let subject = format!("analytic:{name}");
-        let Some(&(_, kind)) = KINDS.iter().find(|(known, _)| *known == name) else {
+        let refused =
+            |problem: String, expected: &str| InputError::request(&subject, problem, format!("expected {expected}"));
+        let Some(&(_, kind, scene)) = KINDS.iter().find(|(known, ..)| *known == name) else {
             let names: Vec<_> = Self::names().collect();
-            return Err(InputError::request(
-                &subject,
-                "there is no such analytic scene",
-                format!("expected one of {}", names.join(", ")),
-            ));
+            return Err(refused("there is no such analytic scene".into(), &format!("one of {}", names.join(", "))));
         };
         if size.iter().any(|&s| s == 0 || s > MAX_SIDE) {
-            return Err(InputError::request(
-                &subject,
-                format!("the size is {}x{}", size[0], size[1]),
-                format!("expected 1 to {MAX_SIDE} pixels a side"),
-            ));
+            let problem = format!("the size is {}x{}", size[0], size[1]);
+            return Err(refused(problem, &format!("1 to {MAX_SIDE} pixels a side")));
         }
         if !(fps.is_finite() && fps > 0.0) {
-            return Err(InputError::request(
-                &subject,
-                format!("the frame rate is {fps}"),
-                "expected frames per second above 0",
-            ));
+            return Err(refused(format!("the frame rate is {fps}"), "frames per second above 0"));
         }
-        let view = ViewGeometry::flat(size, hfov_deg).map_err(|error| {
-            InputError::request(
-                &subject,
-                format!("{} is {}", error.setting, error.found),
-                format!("expected {}", error.expected),
-            )
-        })?;
-        let (scene, samples) = match kind {
-            Kind::Still | Kind::LightStep => (courtyard::still(), SAMPLES_KEPT),
-            Kind::Lateral => (courtyard::lateral(), SAMPLES_MOVING),
-            Kind::Turn => (courtyard::turn(), SAMPLES_MOVING),
-            Kind::Walk => (courtyard::walk(), SAMPLES_MOVING),
-            Kind::Occluder => (courtyard::occluder(), SAMPLES_MOVING),
-            Kind::Spin => (courtyard::spin(), SAMPLES_MOVING),
-            Kind::Scroll => (courtyard::scroll(), SAMPLES_MOVING),
-        };
+        let view = ViewGeometry::flat(size, hfov_deg)
+            .map_err(|error| refused(format!("{} is {}", error.setting, error.found), &error.expected))?;
+        let is_kept = matches!(kind, Kind::Still | Kind::LightStep);
+        let samples = if is_kept { SAMPLES_KEPT } else { SAMPLES_MOVING };
         Ok(Self {
             info: SourceInfo {
                 name: subject,
@@ -150,7 +129,7 @@ impl AnalyticSource {
                 still: kind == Kind::Still,
             },
             kind,
-            scene,
+            scene: scene(),
             view,
             pattern: Pattern::new(samples),
             fps: f64::from(fps),
@@ -160,7 +139,7 @@ impl AnalyticSource {
 
     /// Names of the scenes.
     pub fn names() -> impl Iterator<Item = &'static str> {
-        KINDS.iter().map(|&(name, _)| name)
+        KINDS.iter().map(|&(name, ..)| name)
     }
 
     /// View of all frames.
@@ -275,8 +254,10 @@ impl AnalyticSource {
     fn full_rate(&mut self, index: u64, samples: Option<u32>) -> SourceFrame {
         let pattern = samples.map_or_else(|| self.pattern.clone(), Pattern::supersampled);
         let samples = samples.unwrap_or_default();
-        let is_derived = matches!(self.kind, Kind::Still | Kind::Scroll | Kind::LightStep);
-        let frame = if is_derived { self.cached(&pattern, samples) } else { self.cast(index, &self.view, &pattern) };
+        let frame = match self.kind {
+            Kind::Moving => self.cast(index, &self.view, &pattern),
+            Kind::Still | Kind::LightStep | Kind::Scroll => self.cached(&pattern, samples),
+        };
         let frame = if self.kind == Kind::Scroll { self.scrolled(frame, index, &pattern) } else { frame };
         let frame = self.lit(frame, index);
         SourceFrame { cut: index == 0, ..frame }

@@ -102,28 +102,23 @@ pub(super) fn surviving(w: f32) -> f32 {
 /// Sum of `octaves` noises, each twice as fine and half as strong; in [0, 1] around 0.5. Octaves finer than `w` fade
 /// out.
 pub(super) fn fbm(p: Vec2, w: f32, octaves: u32, seed: u32) -> f32 {
-    let (mut sum, mut amplitude, mut frequency) = (0.5, 0.5, 1.0);
-    for octave in 0..octaves {
-        let kept = surviving(0.5 * w * frequency);
-        if kept <= 0.0 {
-            break;
-        }
-        sum += amplitude * kept * (noise(p * frequency, seed + octave) - 0.5);
-        amplitude *= 0.5;
-        frequency *= 2.0;
-    }
-    sum
+    sum_of_octaves(w, octaves, |frequency, octave| noise(p * frequency, seed + octave))
 }
 
 /// Sum of `octaves` three-dimensional noises, like [`fbm`].
 pub(super) fn fbm3(p: Vec3, w: f32, octaves: u32, seed: u32) -> f32 {
+    sum_of_octaves(w, octaves, |frequency, octave| noise3(p * frequency, seed + octave))
+}
+
+#[inline(always)]
+fn sum_of_octaves(w: f32, octaves: u32, noise: impl Fn(f32, u32) -> f32) -> f32 {
     let (mut sum, mut amplitude, mut frequency) = (0.5, 0.5, 1.0);
     for octave in 0..octaves {
         let kept = surviving(0.5 * w * frequency);
         if kept <= 0.0 {
             break;
         }
-        sum += amplitude * kept * (noise3(p * frequency, seed + octave) - 0.5);
+        sum += amplitude * kept * (noise(frequency, octave) - 0.5);
         amplitude *= 0.5;
         frequency *= 2.0;
     }
