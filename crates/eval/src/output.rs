@@ -2,6 +2,7 @@
 
 use crate::error::InputError;
 use crate::picture::write_png;
+use crate::scanpath::{Scanpath, write_csv};
 use crate::whole_file::write_whole;
 use image::RgbImage;
 use serde::Serialize;
@@ -112,8 +113,13 @@ impl Output {
 
     /// Writes a text file.
     pub fn text(&self, name: &str, text: &str) -> Result<(), WriteError> {
+        write_text(&self.root.join(name), text)
+    }
+
+    /// Writes a scanpath.
+    pub fn scanpath(&self, name: &str, scanpath: &Scanpath) -> Result<(), WriteError> {
         let path = self.root.join(name);
-        write_whole(&path, |file| file.write_all(text.as_bytes())).map_err(|e| WriteError::new(&path, e))
+        write_whole(&path, |file| write_csv(scanpath, file)).map_err(|e| WriteError::new(&path, e))
     }
 
     /// Writes a report.
@@ -151,6 +157,16 @@ impl Table {
             .and_then(|()| fs::rename(&self.partial, &self.path))
             .map_err(|e| WriteError::new(&self.path, e))
     }
+}
+
+/// Writes a text file.
+pub fn write_text(path: &Path, text: &str) -> Result<(), WriteError> {
+    write_whole(path, |file| file.write_all(text.as_bytes())).map_err(|e| WriteError::new(path, e))
+}
+
+/// A cell of CSV.
+pub fn csv_cell(text: &str) -> String {
+    if text.contains([',', '"', '\n']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 
 /// Writes a report, if it is asked for.

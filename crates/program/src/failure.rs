@@ -86,10 +86,10 @@ impl From<ClipError> for Failure {
     }
 }
 
-/// Prints warnings.
+/// Prints warnings, those of gaze logs with options.
 pub fn warn(warnings: &[String]) {
     for warning in warnings {
-        eprintln!("afterimage: warning: {warning}");
+        eprintln!("afterimage: warning: {}", with_gaze_options(warning));
     }
 }
 

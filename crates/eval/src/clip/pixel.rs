@@ -1,6 +1,6 @@
 //! Notes about a pixel of a clip: as lines of text, and as a table.
 
-use crate::output::{Table, WriteError};
+use crate::output::{Table, WriteError, csv_cell};
 use afterimage::internal::{Note, NoteValues};
 use std::fmt::Write;
 use std::ops::RangeInclusive;
@@ -44,7 +44,7 @@ impl ExplainedPixel {
     /// Writes the notes of a method about a frame as rows.
     pub fn write(&self, frame: usize, method: &str, notes: &[Note], table: &mut Table) -> Result<(), WriteError> {
         notes.iter().try_for_each(|note| {
-            let texts = [note.name, note.unit, &values(&note.values)].map(quoted);
+            let texts = [note.name, note.unit, &values(&note.values)].map(csv_cell);
             table.row(&format!("{frame},{method},{},{}", note.stage.name(), texts.join(",")))
         })
     }
@@ -63,11 +63,6 @@ fn values(values: &NoteValues) -> String {
 fn number(v: f32) -> String {
     let text = format!("{v:?}");
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
-}
-
-/// A field of CSV.
-fn quoted(text: &str) -> String {
-    if text.contains(',') { format!("\"{text}\"") } else { text.into() }
 }
 
 #[cfg(test)]
@@ -90,6 +85,6 @@ mod tests {
                         stored        words  0x000000ff 0x00000001  (a, b)\n";
         assert_eq!(pixel.lines(1, "smr", &notes), expected);
         assert_eq!([0, 1, 2, 3].map(|frame| pixel.in_frame(frame)), [None, Some([3, 4]), Some([3, 4]), None]);
-        assert_eq!((quoted("a, b"), quoted("a b")), ("\"a, b\"".into(), "a b".into()));
+        assert_eq!((csv_cell("a, b"), csv_cell("a b")), ("\"a, b\"".into(), "a b".into()));
     }
 }

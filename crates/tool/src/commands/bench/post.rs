@@ -88,9 +88,7 @@ impl PassSpec {
     fn sparse(name: &'static str, settings: Settings) -> Self {
         Self { kind: PassKind::Sparse(settings), ..Self::new(name, settings) }
     }
-}
 
-impl PassSpec {
     /// The views of frame `index`, with lattices if it is sparse.
     fn views(&self, views: &[ViewFrame; 1], index: u64) -> [ViewFrame; 1] {
         views.map(|mut view| {
@@ -306,10 +304,7 @@ fn inputs(gpu: &Arc<Headless>, size: [u32; 2]) -> Result<DeviceInputs, Failure> 
         color: Image::from_fn(size, |[x, y]| [0, 1, 2].map(|i| rng::unit_draw(rng::bits(x, y, i, 1)))),
         depth: Some(Image::from_fn(size, |[x, _]| if is_odd(x) { 12.0 } else { 3.0 })),
         motion: Some(Image::from_fn(size, |[x, _]| if is_odd(x) { [0.0; 2] } else { [-3.0, 1.0] })),
-        trust: None,
-        previous_from_current: None,
-        cut: true,
-        nonfinite: 0,
+        ..SourceFrame::without_images(None, true)
     };
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     inputs.set(&mut encoder, &RenderedFrame::full_rate(0, [0.0; 2], frame));

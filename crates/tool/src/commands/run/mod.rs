@@ -16,14 +16,14 @@ use crate::clip::pixel::ExplainedPixel;
 use crate::clip::run_report::{RunFacts, write_report};
 use crate::clip::{Clip, ClipReport, FrameResult, REPORTS};
 use crate::failure::Failure;
-use crate::output::Output;
+use crate::output::{Output, WriteError};
 use crate::progress;
 use crate::report::cameras::cameras_json;
 use afterimage::{DebugView, Filter};
 use afterimage_eval::exposure::Exposure;
 use afterimage_lab::device::Backend;
 use afterimage_lab::quad_views::QuadViewLayout;
-use afterimage_lab::scanpath::{HeadPath, write_csv};
+use afterimage_lab::scanpath::HeadPath;
 use afterimage_lab::source::FrameSource;
 use afterimage_lab::trace::sampling::Sampling;
 use clap::{Args, Parser};
@@ -310,10 +310,8 @@ fn write_head(
     source: &dyn FrameSource,
     plan: &plan::Plan,
     out: &Output,
-) -> Result<(), Failure> {
-    let mut csv = vec![];
-    write_csv(head.scanpath(), &mut csv).map_err(|e| Failure::Work(format!("scanpath.csv: {e}")))?;
-    out.text("scanpath.csv", &String::from_utf8_lossy(&csv))?;
+) -> Result<(), WriteError> {
+    out.scanpath("scanpath.csv", head.scanpath())?;
     let frames = 0..plan.clip.gaze.len() as u64;
     let pose = |frame| {
         let pose = source.camera_pose(frame)?;

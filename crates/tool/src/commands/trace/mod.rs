@@ -15,11 +15,12 @@ use crate::output::Output;
 use crate::progress;
 use afterimage_eval::exposure::Exposure;
 use afterimage_lab::clock::Stopwatch;
+use afterimage_lab::scanpath::Scanpath;
 use afterimage_lab::trace::sampling::Sampling;
 use afterimage_lab::trace::view::View;
 use clap::{Args, ValueEnum};
 use eye_frame::EyeFrame;
-use eyes::{Eyes, below, scanpath_csv};
+use eyes::{Eyes, below};
 use frames::{Place, folders, write};
 use report::TraceReport;
 use setup::Setup;
@@ -208,7 +209,9 @@ fn finish(
             if !gaze.eyes.is_empty() {
                 let of_eye: Vec<_> = gaze.eyes.iter().map(|gaze| gaze[eye]).collect();
                 out.gaze(&below(name, "gaze.csv"), &of_eye)?;
-                out.text(&below(name, "scanpath.csv"), &scanpath_csv(name, args.size, setup.of.fps, &of_eye)?)?;
+                // The gaze of the eye, for `run --gaze`.
+                let scanpath = Scanpath::of_frames(name, args.size, f64::from(setup.of.fps), &of_eye)?;
+                out.scanpath(&below(name, "scanpath.csv"), &scanpath)?;
             }
         }
     }
