@@ -21,7 +21,7 @@ cargo clippy --locked -p afterimage --no-default-features --features cpu -- -D w
 # For engines on wgpu 29: nothing here uses it otherwise.
 cargo clippy --locked -p afterimage --no-default-features --features wgpu-29 -- -D warnings
 # What `cargo demo` builds.
-cargo clippy --locked -p afterimage-clip -- -D warnings
+cargo clippy --locked -p afterimage-eval -p afterimage-program -- -D warnings
 # The fuzzing targets have a lock file of their own, which changes of dependencies must not leave behind.
 cargo metadata --locked --format-version 1 --manifest-path crates/tool/tests/fuzz/Cargo.toml >/dev/null
 

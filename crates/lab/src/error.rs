@@ -1,6 +1,6 @@
 //! Errors of inputs, split by who must act. Each reads as one line: `subject: problem; remedy`.
 
-pub use afterimage_clip::error::{Bound, Exceeded, InputError, Message};
+pub use afterimage_eval::error::{Bound, Exceeded, InputError, Message};
 
 /// A message of another crate on one line.
 pub(crate) fn one_line(message: &str) -> String {

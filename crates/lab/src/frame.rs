@@ -1,7 +1,7 @@
 //! Frames that sources produce and methods process. Frames on a device stay unchanged until their renderer renders the
 //! next one.
 
-pub use afterimage_clip::frame::{
+pub use afterimage_eval::frame::{
     Content, DeviceContent, DeviceHandle, FoveatedFrame, QuadRequest, RenderedFrame, Shaded, ShadedColor, SourceFrame,
 };
 

@@ -12,7 +12,7 @@
 
 extern crate wgpu_30 as wgpu;
 
-pub use afterimage_clip::{clock, lattices, metric, picture, quad_views, scanpath, whole_file};
+pub use afterimage_eval::{clock, lattices, metric, picture, quad_views, scanpath, whole_file};
 
 pub mod device;
 pub mod error;

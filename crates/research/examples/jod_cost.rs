@@ -2,9 +2,9 @@
 //! Prints the time of a frame with one test, which includes preparing the reference, and that of each further test.
 
 use afterimage::{Image, ViewGeometry};
-use afterimage_clip::clock::Stopwatch;
-use afterimage_clip::say;
+use afterimage_eval::clock::Stopwatch;
 use afterimage_metric::{Display, ReferenceVideo, TestVideo, Viewing};
+use afterimage_program::say;
 use std::error::Error;
 
 const FRAMES: usize = 40;

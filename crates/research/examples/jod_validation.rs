@@ -7,8 +7,8 @@
 //! `gaze/NAME.csv` (frame, x_px, y_px; (0, 0) is the middle of the top-left pixel).
 
 use afterimage::{Image, ViewGeometry};
-use afterimage_clip::say;
 use afterimage_metric::{Display, ReferenceVideo, TestVideo, Viewing};
+use afterimage_program::say;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::error::Error;

@@ -1,7 +1,7 @@
 //! `cargo research`: experiments, one file each. The head of each says which page of `docs/` it makes.
 
 #[macro_use]
-extern crate afterimage_clip;
+extern crate afterimage_program;
 
 mod effects;
 mod growth;
@@ -16,8 +16,8 @@ mod sparse_smr;
 mod wrs_readings;
 mod wrs_table;
 
-use afterimage_clip::failure::Failure;
 use afterimage_lab::measure::ROUNDS;
+use afterimage_program::failure::Failure;
 use clap::{Parser, Subcommand};
 use options::{EffectsArgs, TracedArgs, WrsTableArgs};
 use std::process::ExitCode;

@@ -2,7 +2,7 @@
 
 use afterimage_cli::args::backend::{BackendName, Traces};
 use afterimage_cli::args::parse_size;
-use afterimage_clip::failure::Failure;
+use afterimage_program::failure::Failure;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 

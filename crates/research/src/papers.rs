@@ -6,13 +6,13 @@
 use super::sparse_smr::{CLIP_FRAMES, Comparer, Comparison, Shown};
 use crate::options::TracedArgs;
 use afterimage::ViewGeometry;
-use afterimage_clip::failure::{Failure, warn};
-use afterimage_clip::output::write_json;
+use afterimage_eval::output::write_json;
 use afterimage_lab::device::{Backend, NO_ADAPTER};
 use afterimage_lab::measure::{Pattern, PatternReport, TracedView, UNIFORM_EVERY, UNIFORM_SAMPLES, measure, regions};
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
 use afterimage_lab::trace::sampling::{Layers, Regions, Sampling};
 use afterimage_lab::trace::settings::{Bsdf, Integrator, TraceSettings};
+use afterimage_program::failure::{Failure, warn};
 use serde::Serialize;
 
 /// The display of Mohanto et al. 2023: size in pixels and in centimeters, and viewing distance.
@@ -57,14 +57,14 @@ struct Triple {
 }
 
 #[derive(Serialize)]
-struct Report {
+struct PapersReport {
     tool: &'static str,
     version: &'static str,
     backend: ProcessorInfo,
     frames: u64,
     arithmetic: Vec<Arithmetic>,
-    regions: SceneReport,
-    layers: Vec<SceneReport>,
+    regions: PapersSceneReport,
+    layers: Vec<PapersSceneReport>,
 }
 
 /// Samples per frame on the paper's display.
@@ -77,7 +77,7 @@ struct Arithmetic {
 }
 
 #[derive(Serialize)]
-struct SceneReport {
+struct PapersSceneReport {
     scene: String,
     triangles: u32,
     size: [u32; 2],
@@ -105,7 +105,7 @@ pub fn bench(args: &TracedArgs, size: [u32; 2], frames: u64) -> Result<(), Failu
     let backend = args.backend.open()?.pop().ok_or_else(|| Failure::Input(NO_ADAPTER.into()))?;
     let eye = [size[1], (size[1] * 10).div_ceil(9)];
     let layers = |(name, paper): &(&str, Option<[f64; 2]>)| layers_of(name, *paper, &backend, eye, frames);
-    let report = Report {
+    let report = PapersReport {
         tool: "afterimage",
         version: env!("CARGO_PKG_VERSION"),
         frames,
@@ -115,7 +115,7 @@ pub fn bench(args: &TracedArgs, size: [u32; 2], frames: u64) -> Result<(), Failu
         backend: backend.info(),
     };
     print(&report);
-    write_json(args.json.as_deref(), &report)
+    Ok(write_json(args.json.as_deref(), &report)?)
 }
 
 fn display() -> Result<ViewGeometry, Failure> {
@@ -154,7 +154,7 @@ fn regions_of_a_scene(
     backend: &Backend,
     size: [u32; 2],
     frames: u64,
-) -> Result<SceneReport, Failure> {
+) -> Result<PapersSceneReport, Failure> {
     let name = args.scene.first().map_or("builtin:courtyard", String::as_str);
     let subject = TracedView::open(name, size, args.camera.as_deref(), Some(display()?.hfov_deg()))?;
     warn(subject.warnings());
@@ -178,7 +178,7 @@ fn layers_of(
     backend: &Backend,
     eye_px: [u32; 2],
     frames: u64,
-) -> Result<SceneReport, Failure> {
+) -> Result<PapersSceneReport, Failure> {
     let subject = TracedView::open(&format!("builtin:{name}"), eye_px, None, Some(EYE_HFOV_DEG))?;
     let settings = TraceSettings {
         integrator: Integrator::Naive,
@@ -216,7 +216,7 @@ fn scene_report(
     patterns: &[Pattern],
     papers: &[[Option<f64>; 2]],
     compared_as: impl Fn(&Pattern) -> (Pattern, Sampling),
-) -> Result<SceneReport, Failure> {
+) -> Result<PapersSceneReport, Failure> {
     let (tracer, by_wall) = (subject.tracer(backend, settings)?, backend.is_real_gpu());
     let measured = measure(subject, &tracer, patterns, frames, by_wall)?;
     let mut comparer = Comparer::new(subject, &tracer, backend, by_wall);
@@ -228,7 +228,7 @@ fn scene_report(
         let comparison = comparer.compare(&filled, sparse)?;
         compared.push(Compared { ours, paper_time_reduction, paper_share_of_ideal, comparison });
     }
-    Ok(SceneReport {
+    Ok(PapersSceneReport {
         scene: subject.name.rsplit('/').next().unwrap_or(&subject.name).to_owned(),
         triangles: subject.world.geometry.len(),
         size: subject.geometry().size_px(),
@@ -239,7 +239,7 @@ fn scene_report(
 }
 
 /// Both tables as Markdown.
-fn print(report: &Report) {
+fn print(report: &PapersReport) {
     let ([w, h], [inner, outer]) = (DISPLAY_PX, RADII_PX);
     say!("Samples of a frame of {w}x{h} pixels, radii {inner} and {outer} pixels:\n");
     say!("| samples | million | reduction | the paper's million |\n|---|---|---|---|");
@@ -257,7 +257,7 @@ fn print(report: &Report) {
     say!("Quality is that of frame {CLIP_FRAMES} against a full-rate frame with as many samples a pixel as the fovea.");
 }
 
-fn print_regions(scene: &SceneReport) {
+fn print_regions(scene: &PapersSceneReport) {
     let ([w, h], hfov_deg, depth) = (scene.size, scene.hfov_deg, scene.max_depth);
     say!("\n{}, {} triangles, {w}x{h}, {hfov_deg:.1} degrees wide, depth {depth}:\n", scene.scene, scene.triangles);
     say!(
@@ -282,8 +282,8 @@ fn print_regions(scene: &SceneReport) {
     }
 }
 
-fn print_layers(scenes: &[SceneReport]) {
-    let Some(SceneReport { size: [w, h], hfov_deg, max_depth, .. }) = scenes.first() else { return };
+fn print_layers(scenes: &[PapersSceneReport]) {
+    let Some(PapersSceneReport { size: [w, h], hfov_deg, max_depth, .. }) = scenes.first() else { return };
     say!(
         "\nLayers, an eye of {w}x{h} pixels, {hfov_deg:.0} degrees wide, {THESIS_SAMPLES} samples, depth {max_depth}:\n"
     );

@@ -4,32 +4,32 @@
 //! the CPU.
 
 use crate::options::TracedArgs;
-use afterimage_clip::failure::{Failure, warn};
-use afterimage_clip::output::write_json;
+use afterimage_eval::output::write_json;
 use afterimage_lab::measure::{PatternReport, TracedView, measure, one_path, regions};
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
 use afterimage_lab::trace::settings::TraceSettings;
+use afterimage_program::failure::{Failure, warn};
 use serde::Serialize;
 
 #[derive(Serialize)]
-struct Report {
+struct SavedTimeReport {
     tool: &'static str,
     version: &'static str,
     size: [u32; 2],
     frames: u64,
     max_depth: u32,
-    scenes: Vec<SceneReport>,
+    scenes: Vec<SavedTimeSceneReport>,
 }
 
 #[derive(Serialize)]
-struct SceneReport {
+struct SavedTimeSceneReport {
     scene: String,
     triangles: u32,
-    tracers: Vec<TracerReport>,
+    tracers: Vec<SavedTimeTracerReport>,
 }
 
 #[derive(Serialize)]
-struct TracerReport {
+struct SavedTimeTracerReport {
     backend: ProcessorInfo,
     patterns: Vec<PatternReport>,
 }
@@ -51,11 +51,11 @@ pub fn bench(args: &TracedArgs, size: [u32; 2], frames: u64) -> Result<(), Failu
         for backend in &backends {
             let tracer = subject.tracer(backend, settings)?;
             let patterns = measure(&subject, &tracer, &patterns, frames, backend.is_real_gpu())?;
-            tracers.push(TracerReport { backend: backend.info(), patterns });
+            tracers.push(SavedTimeTracerReport { backend: backend.info(), patterns });
         }
-        scenes.push(SceneReport { scene: name.clone(), triangles: subject.world.geometry.len(), tracers });
+        scenes.push(SavedTimeSceneReport { scene: name.clone(), triangles: subject.world.geometry.len(), tracers });
     }
-    let report = Report {
+    let report = SavedTimeReport {
         tool: "afterimage",
         version: env!("CARGO_PKG_VERSION"),
         size,
@@ -64,11 +64,11 @@ pub fn bench(args: &TracedArgs, size: [u32; 2], frames: u64) -> Result<(), Failu
         scenes,
     };
     print(&report);
-    write_json(args.json.as_deref(), &report)
+    Ok(write_json(args.json.as_deref(), &report)?)
 }
 
 /// Markdown.
-fn print(report: &Report) {
+fn print(report: &SavedTimeReport) {
     let [w, h] = report.size;
     say!(
         "{w}x{h}, depth {}, {} frames, medians. Uniform frames have the fovea's samples.\n",

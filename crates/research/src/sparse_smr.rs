@@ -2,7 +2,6 @@
 //! last columns of `cargo research papers`.
 
 use afterimage::{Filter, Foveation, Image, Settings};
-use afterimage_clip::failure::Failure;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::Content;
@@ -12,6 +11,7 @@ use afterimage_lab::metric::{Flip, encode, psnr_db};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::sampling::Sampling;
+use afterimage_program::failure::Failure;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

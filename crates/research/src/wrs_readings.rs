@@ -5,13 +5,13 @@ use crate::options::WrsTableArgs;
 use crate::parts::{STORED_BIAS, shader_without};
 use afterimage::{Bias, Foveation, Gate, GateScale, Image, Method, Sampler, Settings, ViewGeometry, Wrs};
 use afterimage_cli::sweep::grid::command_line;
-use afterimage_clip::failure::Failure;
-use afterimage_clip::progress;
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage_lab::source::{self, ReadLimits, SceneOptions};
+use afterimage_program::failure::Failure;
+use afterimage_program::progress;
 
 /// Frame rate, in frames per second.
 const FPS: f64 = 60.0;

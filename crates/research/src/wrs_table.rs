@@ -6,8 +6,8 @@ use crate::options::{Tables, WrsTableArgs};
 use crate::wrs_readings;
 use afterimage_cli::sweep::{Metric, Row, Table};
 use afterimage_cli::sweep_table;
-use afterimage_clip::failure::Failure;
 use afterimage_lab::whole_file::write_whole;
+use afterimage_program::failure::Failure;
 use std::io::Write;
 
 /// Published results: PSNR in dB and SSIM, without (still) or with TAA (moving), and with weighted reservoirs.

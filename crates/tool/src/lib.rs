@@ -1,7 +1,7 @@
 //! The `afterimage` command-line tool: one file per subcommand.
 
 #[macro_use]
-extern crate afterimage_clip;
+extern crate afterimage_program;
 
 // Hidden: for the project's experiments (`crates/research`), and no stable interface.
 #[doc(hidden)]
@@ -15,11 +15,12 @@ mod commands;
 pub mod report;
 pub mod sweep;
 
-pub use afterimage_clip::method_report;
+pub use afterimage_eval::method_report;
 #[doc(hidden)]
 pub use commands::sweep::sweep_table;
 
-use afterimage_clip::{clip, demo, failure, output, progress};
+use afterimage_eval::{clip, output};
+use afterimage_program::{demo, failure, progress};
 use clap::{Parser, Subcommand};
 #[cfg(feature = "view")]
 use commands::view;

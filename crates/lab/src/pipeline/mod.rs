@@ -3,5 +3,5 @@
 
 mod device;
 
-pub use afterimage_clip::pipeline::{MethodOutput, Pipeline, Processor, ProcessorInfo, RunKind, Step};
+pub use afterimage_eval::pipeline::{MethodOutput, Pipeline, Processor, ProcessorInfo, RunKind, Step};
 pub use device::{DeviceFormats, DeviceInputs, DeviceRun};

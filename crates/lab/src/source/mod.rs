@@ -12,7 +12,7 @@ pub mod synthetic_head;
 pub mod traced;
 pub mod viewed_scene;
 
-pub use afterimage_clip::source::{
+pub use afterimage_eval::source::{
     AnalyticSource, CameraPose, FrameRequest, FrameSource, SourceInfo, Wanted, analytic, reference_offsets_px,
 };
 pub use limits::ReadLimits;

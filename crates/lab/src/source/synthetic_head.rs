@@ -5,7 +5,7 @@ use crate::error::InputError;
 use crate::scene::Scene;
 use crate::trace::surfaces::distance_m;
 use crate::trace::world::World;
-use afterimage_clip::scanpath::{HeadOptions, SyntheticHead, generate_head};
+use afterimage_eval::scanpath::{HeadOptions, SyntheticHead, generate_head};
 use glam::DVec3;
 
 /// A head and eye that look around in a scene, from [`SceneCamera::head_space`]: gaze rests on its surfaces, as they

@@ -7,7 +7,7 @@ use crate::scene::{Environment, Scene, SceneLimits};
 use crate::trace::view::View;
 use crate::trace::world::light_if_dark;
 use afterimage::ViewGeometry;
-use afterimage_clip::scanpath::HeadPath;
+use afterimage_eval::scanpath::HeadPath;
 use std::sync::Arc;
 
 /// Default width and height in pixels.

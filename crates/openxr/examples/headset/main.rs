@@ -6,7 +6,7 @@ mod measure;
 mod plant;
 mod room;
 
-use afterimage_clip::scanpath::{Scanpath, read_csv};
+use afterimage_eval::scanpath::{Scanpath, read_csv};
 use afterimage_openxr::afterimage::{Method, MethodKind, Smr};
 use afterimage_openxr::{Error, Headset, HeadsetDesc, HeadsetFrame, openxr as xr};
 use clap::Parser;

@@ -9,8 +9,7 @@ mod removals;
 mod table;
 
 use crate::options::EffectsArgs;
-use afterimage_clip::failure::{Failure, warn};
-use afterimage_clip::output::write_json;
+use afterimage_eval::output::write_json;
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::Backend;
 use afterimage_lab::measure::TracedView;
@@ -20,9 +19,10 @@ use afterimage_lab::trace::effects::{Effect, Effects};
 use afterimage_lab::trace::gpu::GpuTracer;
 use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
+use afterimage_program::failure::{Failure, warn};
 use removals::REMOVALS;
 use std::io::IsTerminal;
-use table::{Price, Report, SceneReport};
+use table::{EffectsReport, EffectsSceneReport, Price};
 
 /// Untimed frames.
 const WARM_UP: u64 = 2;
@@ -71,7 +71,7 @@ pub fn bench(args: &EffectsArgs, size: [u32; 2], frames: u64) -> Result<(), Fail
                 removals.extend(price_removals(&subject, backend, frames)?);
             }
         }
-        scenes.push(SceneReport {
+        scenes.push(EffectsSceneReport {
             scene: name.rsplit('/').next().unwrap_or(name).to_owned(),
             triangles: subject.world.geometry.len(),
             needs: needs.iter().map(Effect::name).collect(),
@@ -79,7 +79,7 @@ pub fn bench(args: &EffectsArgs, size: [u32; 2], frames: u64) -> Result<(), Fail
             removals,
         });
     }
-    let report = Report {
+    let report = EffectsReport {
         tool: "afterimage",
         version: env!("CARGO_PKG_VERSION"),
         size,
@@ -95,7 +95,7 @@ pub fn bench(args: &EffectsArgs, size: [u32; 2], frames: u64) -> Result<(), Fail
         Some(path) => table::write(path, &text)?,
         None => say!("{text}"),
     }
-    write_json(args.traced.json.as_deref(), &report)
+    Ok(write_json(args.traced.json.as_deref(), &report)?)
 }
 
 /// The scene's effects, twice; all effects; the scene's effects with each other effect.

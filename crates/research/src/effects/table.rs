@@ -1,17 +1,17 @@
 //! Costs of effects: the report, and its Markdown tables.
 
-use afterimage_clip::failure::Failure;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::pipeline::ProcessorInfo;
 use afterimage_lab::trace::effects::Effect;
 use afterimage_lab::whole_file::write_whole;
+use afterimage_program::failure::Failure;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::Path;
 
 /// Costs of effects.
 #[derive(Serialize)]
-pub struct Report {
+pub struct EffectsReport {
     pub tool: &'static str,
     pub version: &'static str,
     pub size: [u32; 2],
@@ -21,12 +21,12 @@ pub struct Report {
     /// Whether the driver's shader cache was switched off.
     pub compiled_cold: bool,
     pub backends: Vec<ProcessorInfo>,
-    pub scenes: Vec<SceneReport>,
+    pub scenes: Vec<EffectsSceneReport>,
 }
 
 /// Costs in a scene.
 #[derive(Serialize)]
-pub struct SceneReport {
+pub struct EffectsSceneReport {
     pub scene: String,
     pub triangles: u32,
     pub needs: Vec<&'static str>,
@@ -70,14 +70,14 @@ pub fn write(path: &Path, text: &str) -> Result<(), Failure> {
 }
 
 /// All tables, between the markers.
-pub fn markdown(report: &Report) -> String {
+pub fn markdown(report: &EffectsReport) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
     let _ = tables(report, &mut out);
     out
 }
 
-fn tables(report: &Report, out: &mut String) -> std::fmt::Result {
+fn tables(report: &EffectsReport, out: &mut String) -> std::fmt::Result {
     let [w, h] = report.size;
     writeln!(out, "{BEGIN}")?;
     writeln!(out, "{w}x{h}, 1 sample per pixel, depth {}, {} frames per value;", report.max_depth, report.frames)?;
@@ -89,7 +89,7 @@ fn tables(report: &Report, out: &mut String) -> std::fmt::Result {
     write!(out, "{END}")
 }
 
-fn cache_state(report: &Report) -> &'static str {
+fn cache_state(report: &EffectsReport) -> &'static str {
     if report.compiled_cold { "without the driver's shader cache" } else { "with the driver's shader cache" }
 }
 
@@ -105,13 +105,13 @@ fn is_beyond_noise(price: &Price, noise: f64) -> bool {
 }
 
 /// One row per effect and one column per scene, with a value per backend.
-fn increases(report: &Report, out: &mut String) -> std::fmt::Result {
+fn increases(report: &EffectsReport, out: &mut String) -> std::fmt::Result {
     let kinds: Vec<_> = report.backends.iter().map(|b| b.kind).collect();
     writeln!(out, "Increase of the frame time in percent, {}; bold beyond noise:\n", kinds.join(", "))?;
     let names: Vec<_> = report.scenes.iter().map(|s| s.scene.as_str()).collect();
     writeln!(out, "| effect added | {} |", names.join(" | "))?;
     writeln!(out, "|---|{}", "---|".repeat(names.len()))?;
-    let row = |cell: &dyn Fn(&SceneReport) -> String| -> String {
+    let row = |cell: &dyn Fn(&EffectsSceneReport) -> String| -> String {
         let cells: Vec<_> = report.scenes.iter().map(cell).collect();
         cells.join(" | ")
     };
@@ -119,18 +119,18 @@ fn increases(report: &Report, out: &mut String) -> std::fmt::Result {
         writeln!(out, "| {} | {} |", effect.name(), row(&|s| increase(s, effect.name())))?;
     }
     writeln!(out, "| all of them | {} |", row(&|s| increase(s, "all")))?;
-    let noises = |s: &SceneReport| of_each(s, |prices| format!("{:.1}", 100.0 * noise(prices)));
+    let noises = |s: &EffectsSceneReport| of_each(s, |prices| format!("{:.1}", 100.0 * noise(prices)));
     writeln!(out, "| noise: no effect added | {} |\n", row(&noises))
 }
 
 /// A cell with a value per backend.
-fn of_each(scene: &SceneReport, value: impl Fn(&[Price]) -> String) -> String {
+fn of_each(scene: &EffectsSceneReport, value: impl Fn(&[Price]) -> String) -> String {
     let values: Vec<_> = scene.prices.iter().map(|prices| value(prices)).collect();
     values.join(", ")
 }
 
 /// Increase of the frame time in percent, per backend; "needed" for an effect that the scene uses.
-fn increase(scene: &SceneReport, what: &str) -> String {
+fn increase(scene: &EffectsSceneReport, what: &str) -> String {
     if scene.needs.contains(&what) {
         return "needed".to_owned();
     }
@@ -146,7 +146,7 @@ fn find<'a>(prices: &'a [Price], what: &str) -> Option<&'a Price> {
 }
 
 /// One row per scene: times of the kernels with the effects that the scene needs, and with all effects.
-fn kernels(report: &Report, out: &mut String) -> std::fmt::Result {
+fn kernels(report: &EffectsReport, out: &mut String) -> std::fmt::Result {
     let kinds = report.backends.iter().map(|b| format!(" {}, ms: auto, all |", b.kind));
     writeln!(out, "| scene | triangles | needs |{} compile ms: auto, all |", kinds.collect::<String>())?;
     writeln!(out, "|---|---|---|---|{}", "---|".repeat(report.backends.len()))?;
@@ -166,7 +166,7 @@ fn kernels(report: &Report, out: &mut String) -> std::fmt::Result {
 }
 
 /// One row per scene: the control, the effect with the largest ratio, and all effects.
-fn removals(report: &Report, out: &mut String) -> std::fmt::Result {
+fn removals(report: &EffectsReport, out: &mut String) -> std::fmt::Result {
     if report.scenes.iter().all(|s| s.removals.is_empty()) {
         return Ok(());
     }

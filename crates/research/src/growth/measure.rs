@@ -5,8 +5,7 @@ use afterimage::wgpu::{Texture, TextureFormat, TextureUsages};
 use afterimage::{
     ContextDesc, DepthConvention, Filter, Foveation, Gaze, Lattice, Lattices, Settings, ViewFrame, ViewGeometry,
 };
-use afterimage_clip::failure::Failure;
-use afterimage_clip::times::Times;
+use afterimage_eval::times::Times;
 use afterimage_lab::clock::Elapsed;
 use afterimage_lab::device::{Backend, Headless, SpanClock};
 use afterimage_lab::raster::{AtlasLayout, RasterSettings};
@@ -17,6 +16,7 @@ use afterimage_lab::trace::sampling::SparsePlan;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::surfaces::Surfaces;
 use afterimage_lab::trace::world::World;
+use afterimage_program::failure::Failure;
 use clap::ValueEnum;
 use glam::{DMat4, DVec3};
 use serde::Serialize;

@@ -7,10 +7,10 @@ mod measure;
 
 use afterimage::Lattices;
 use afterimage_cli::args::parse_size;
-use afterimage_clip::failure::Failure;
-use afterimage_clip::output::write_json;
-use afterimage_clip::progress;
+use afterimage_eval::output::write_json;
 use afterimage_lab::device::{Headless, NO_ADAPTER, PassClock};
+use afterimage_program::failure::Failure;
+use afterimage_program::progress;
 use clap::{Args, ValueEnum};
 use fit::Fit;
 use measure::{Config, Point, Renderer, Rig, measure};
@@ -80,7 +80,7 @@ enum Growing {
 }
 
 #[derive(Serialize)]
-struct Report {
+struct GrowthReport {
     tool: &'static str,
     version: &'static str,
     adapter: String,
@@ -178,7 +178,7 @@ pub fn bench(args: &GrowthArgs) -> Result<(), Failure> {
         series.push(Series::new(of, renderer, points, skipped));
     }
     bar.finish_and_clear();
-    let report = Report {
+    let report = GrowthReport {
         tool: "afterimage",
         version: env!("CARGO_PKG_VERSION"),
         adapter: rig.gpu.info.name.clone(),
@@ -189,7 +189,7 @@ pub fn bench(args: &GrowthArgs) -> Result<(), Failure> {
     };
     say!("{} ({}); times: {}; medians of {} frames\n", report.adapter, report.driver, clock, args.frames);
     report.series.iter().for_each(Series::print);
-    write_json(args.json.as_deref(), &report)
+    Ok(write_json(args.json.as_deref(), &report)?)
 }
 
 impl Series {

@@ -13,7 +13,7 @@ mod radv;
 mod spirv;
 mod table;
 
-use afterimage_clip::failure::Failure;
+use afterimage_program::failure::Failure;
 use clap::{Args, ValueEnum};
 use failure::Result;
 use gpu::GPUS;

@@ -8,8 +8,7 @@ use afterimage::kernel::debug_view::heat;
 use afterimage::{Image, ViewGeometry};
 use afterimage_cli::args::backend::BackendName;
 use afterimage_cli::args::{parse_samples, parse_size, parse_stops};
-use afterimage_clip::failure::{Failure, warn};
-use afterimage_clip::output::{Output, write_json};
+use afterimage_eval::output::{Output, write_json};
 use afterimage_lab::metric::{Flip, References, Scorer, Scores, Tracked, encode};
 use afterimage_lab::picture::to_rgb8;
 use afterimage_lab::pipeline::{Processor, ProcessorInfo};
@@ -22,6 +21,7 @@ use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::view::View;
 use afterimage_lab::trace::work::Spans;
 use afterimage_lab::trace::world::World;
+use afterimage_program::failure::{Failure, warn};
 use clap::Args;
 use equal::Candidate;
 use serde::Serialize;
@@ -82,7 +82,7 @@ const REFERENCE_FRAME: u64 = 1 << 30;
 const REFERENCE_STEP: u32 = 8;
 
 #[derive(Serialize)]
-struct Report<'a> {
+struct PatternsReport<'a> {
     tool: &'static str,
     version: &'static str,
     scene: &'a str,
@@ -94,11 +94,11 @@ struct Report<'a> {
     reference_samples: Option<u32>,
     flip_pixels_per_degree: f32,
     backend: ProcessorInfo,
-    patterns: Vec<PatternReport>,
+    patterns: Vec<PatternScores>,
 }
 
 #[derive(Serialize)]
-struct PatternReport {
+struct PatternScores {
     pattern: &'static str,
     settings: String,
     /// Mean camera samples per frame.
@@ -150,7 +150,7 @@ pub fn bench(args: &PatternsArgs) -> Result<(), Failure> {
     let table = markdown(&reports);
     out.text("patterns.md", &table)?;
     out.finish()?;
-    let report = Report {
+    let report = PatternsReport {
         tool: "afterimage",
         version: env!("CARGO_PKG_VERSION"),
         scene: &args.scene,
@@ -225,14 +225,14 @@ impl Stage {
         reference: &Image<[f32; 3]>,
         frames: u64,
         out: &Output,
-    ) -> Result<Vec<PatternReport>, Failure> {
+    ) -> Result<Vec<PatternScores>, Failure> {
         let size = self.geometry().size_px();
         let ecc_deg = self.geometry().eccentricity_map(self.gaze_px);
         let tracked = Tracked::unknown(size);
         let flip = Flip::for_view(self.geometry());
         let mut references = References::with_flip(flip.clone());
         let full = references.next(reference, &tracked, &ecc_deg);
-        let mut reports: Vec<PatternReport> = vec![];
+        let mut reports: Vec<PatternScores> = vec![];
         for pattern in patterns {
             let mut scorer = Scorer::default();
             let (mut samples, mut rays) = (0, 0);
@@ -251,7 +251,7 @@ impl Stage {
             }
             let per_frame = |sum: u64| sum as f64 / frames as f64;
             let of_regions = reports.first().map_or(per_frame(samples), |r| r.samples);
-            reports.push(PatternReport {
+            reports.push(PatternScores {
                 pattern: pattern.name,
                 settings: pattern.settings.clone(),
                 samples: per_frame(samples),
@@ -265,7 +265,7 @@ impl Stage {
 }
 
 /// Table with one row for each pattern.
-fn markdown(reports: &[PatternReport]) -> String {
+fn markdown(reports: &[PatternScores]) -> String {
     let mut table = String::from(
         "| pattern | samples | weighted dB | PSNR dB: all, fovea, mid, periphery | SSIM | FLIP: all, fovea, mid, periphery |\n\
          |---|---|---|---|---|---|\n",

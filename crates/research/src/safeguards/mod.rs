@@ -7,8 +7,6 @@ mod invalid_colors;
 use crate::parts::{PARTS, shader_without};
 use afterimage::simulator::Pyramid;
 use afterimage::{DepthTest, Foveation, Method, MethodKind, Settings, ViewGeometry};
-use afterimage_clip::failure::Failure;
-use afterimage_clip::progress;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::{FoveatedFrame, RenderedFrame};
@@ -16,6 +14,8 @@ use afterimage_lab::metric::{References, Scorer, Scores, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
 use afterimage_lab::source::{self, ReadLimits, SceneOptions};
+use afterimage_program::failure::Failure;
+use afterimage_program::progress;
 use clap::Args;
 
 /// Frames before times count: histories fill, pipelines compile.

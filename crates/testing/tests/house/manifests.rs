@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use toml::{Table, Value};
 
 /// Folders of published packages.
-const PUBLISHED: [&str; 6] = ["", "crates/clip/", "crates/lab/", "crates/metric/", "crates/openxr/", "crates/tool/"];
+const PUBLISHED: [&str; 7] =
+    ["", "crates/eval/", "crates/lab/", "crates/metric/", "crates/openxr/", "crates/program/", "crates/tool/"];
 
 /// Packages for engines, which have one of several versions of wgpu. The others are on the newest.
 const FOR_ENGINES: [&str; 2] = ["", "crates/openxr/"];

@@ -8,12 +8,13 @@ use std::path::Path;
 const SKIPPED: [&str; 5] = ["target", ".git", "out", "artifacts", "corpus"];
 
 /// Folders of the packages, relative to the root of the workspace, with a slash at the end unless empty.
-pub const PACKAGES: [&str; 8] = [
+pub const PACKAGES: [&str; 9] = [
     "",
-    "crates/clip/",
+    "crates/eval/",
     "crates/lab/",
     "crates/metric/",
     "crates/openxr/",
+    "crates/program/",
     "crates/research/",
     "crates/testing/",
     "crates/tool/",

@@ -112,13 +112,13 @@ fn options_in_literals(path: &str, source: &str) -> Vec<String> {
     literals.map(|p| format!("{path}:{}: \"{}\"", p.line, p.text)).collect()
 }
 
-/// The lab, and what it has of the clip, is a library: what to do about an error is said in terms of its interface, and
-/// the tool adds its options.
+/// The lab, and what it has of evaluation, is a library: what to do about an error is said in terms of its interface,
+/// and the tool adds its options.
 #[test]
 fn the_lab_names_no_options_of_the_tool() {
     let tree = Tree::read();
-    let of_clip = ["frame/", "metric/", "pipeline/", "scanpath/", "source/", "error.rs"];
-    let folders = of_clip.map(|part| format!("crates/clip/src/{part}")).into_iter().chain(["crates/lab/src/".into()]);
+    let of_eval = ["frame/", "metric/", "pipeline/", "scanpath/", "source/", "error.rs"];
+    let folders = of_eval.map(|part| format!("crates/eval/src/{part}")).into_iter().chain(["crates/lab/src/".into()]);
     let files = folders.flat_map(|folder| tree.files(&folder, &[".rs"]).map(str::to_owned).collect::<Vec<_>>());
     let violations: Vec<_> = files.flat_map(|f| options_in_literals(&f, &read(&f))).collect();
     expect_none("options of the tool in the lab's string literals", &violations);

@@ -1,7 +1,7 @@
 //#use acuity
 //#use color
 // Squared error of what is shown against the full-rate frame, beyond an eccentricity: a sum and a count for each tile
-// of 64x16 pixels. CPU twin: Scorer::push_errors in crates/clip/src/metric/score.rs.
+// of 64x16 pixels. CPU twin: Scorer::push_errors in crates/eval/src/metric/score.rs.
 
 // src/commands/view/quality.rs: QualityConstants, which explains them
 struct QualityConstants {

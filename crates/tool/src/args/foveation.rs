@@ -215,29 +215,25 @@ impl FoveationArgs {
                  or use another --foveation"
             ));
         }
-        if self.budget.is_some() && !self.is_quads() {
-            return refuse("--budget: applies to frames shaded by quads only; add --foveation quads".into());
+        let is_uniform = self.filter() == FilterName::Uniform;
+        let is_sparse = self.filter() == FilterName::Of(Filter::Sparse);
+        let has_samples = self.geometry == Some(SparseGeometry::Samples);
+        let order = format!("order {}", self.order.name());
+        let misplaced = [
+            (self.budget.is_some() && !self.is_quads(), "budget", "frames shaded by quads", "quads"),
+            (self.share.is_some() && !self.is_quads(), "share", "frames shaded by quads", "quads"),
+            (self.scale.is_some() && !is_uniform, "scale", "uniform frames", "uniform"),
+            (has_samples && !self.may_lack_geometry(), "geometry samples", "rendered samples", "sparse or layers"),
+            (self.order != SampleOrder::Bayer && !is_sparse, &order, "sparse frames", "sparse"),
+        ];
+        match misplaced.iter().find(|row| row.0) {
+            Some((_, option, frames, name)) => {
+                refuse(format!("--{option}: applies to {frames} only; add --foveation {name}"))
+            }
+            None => Ok(()),
         }
-        if self.share.is_some() && !self.is_quads() {
-            return refuse("--share: applies to frames shaded by quads only; add --foveation quads".into());
-        }
-        if self.scale.is_some() && self.filter() != FilterName::Uniform {
-            return refuse("--scale: applies to uniform frames only; add --foveation uniform".into());
-        }
-        if self.geometry == Some(SparseGeometry::Samples) && !self.may_lack_geometry() {
-            return refuse(
-                "--geometry samples: applies to rendered samples only; add --foveation sparse or layers".into(),
-            );
-        }
-        if self.order != SampleOrder::Bayer && self.filter() != FilterName::Of(Filter::Sparse) {
-            let order = self.order.name();
-            return refuse(format!("--order {order}: applies to sparse frames only; add --foveation sparse"));
-        }
-        Ok(())
     }
-}
 
-impl FoveationArgs {
     /// Refuses what cannot be jittered.
     fn check_jitter(&self, is_rasterised: bool, is_analytic: bool) -> Result<(), Failure> {
         let name = self.filter().name();

@@ -1,8 +1,8 @@
 //! `--gaze`, `--gaze-map`, `--start`: resolved to one position per frame.
 
-use super::gaze_log::{GazeLogArgs, warn};
+use super::gaze_log::GazeLogArgs;
 use super::{Named, by_name};
-use crate::failure::Failure;
+use crate::failure::{Failure, warn};
 use afterimage::ViewGeometry;
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, HeadPath, Scanpath, Screen, SyntheticOptions, generate};
 use clap::Args;

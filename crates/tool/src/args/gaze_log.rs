@@ -1,7 +1,7 @@
 //! Options of gaze logs: what a file does not say of its screen, and which eye counts.
 
 use super::{Named, by_name, parse_distance_mm, parse_size, parse_size_mm};
-use crate::failure::{Failure, with_gaze_options};
+use crate::failure::Failure;
 use afterimage_lab::scanpath::{Eye, GazeLog, GazeLogOptions, Vendor, read_gaze_log};
 use clap::Args;
 use std::path::Path;
@@ -33,28 +33,12 @@ impl Named for Eye {
     }
 }
 
-/// Prints a log's warnings.
-pub fn warn(warnings: &[String]) {
-    for warning in warnings {
-        eprintln!("afterimage: warning: {}", with_gaze_options(warning));
-    }
-}
-
 impl GazeLogArgs {
     /// Reads a log, of a given vendor or found out.
     pub fn read(&self, file: &str, from: Option<Vendor>) -> Result<GazeLog, Failure> {
-        Ok(read_gaze_log(Path::new(file), &self.options(from))?)
-    }
-
-    /// The options of the library.
-    fn options(&self, from: Option<Vendor>) -> GazeLogOptions {
-        GazeLogOptions {
-            from,
-            eye: self.eye.unwrap_or_default(),
-            screen_px: self.screen_px,
-            screen_mm: self.screen_mm,
-            distance_mm: self.distance_mm,
-        }
+        let &Self { screen_px, screen_mm, distance_mm, eye } = self;
+        let options = GazeLogOptions { from, eye: eye.unwrap_or_default(), screen_px, screen_mm, distance_mm };
+        Ok(read_gaze_log(Path::new(file), &options)?)
     }
 
     /// Refuses the options for a `subject` that is no gaze log.

@@ -1,8 +1,7 @@
 //! `--camera head`: the scanpath that moves the camera, and gives the gaze in it.
 
 use super::gaze::{DEFAULT_SECONDS, GazeArgs, fixed, synthetic_seed};
-use super::gaze_log::warn;
-use crate::failure::Failure;
+use crate::failure::{Failure, warn};
 use afterimage_lab::scanpath::{HeadOptions, HeadPath};
 use afterimage_lab::scene::{Scene, SceneLimits};
 use afterimage_lab::source::{head_in_scene, is_scene};

@@ -18,6 +18,6 @@ pub use method::{MethodArgs, MethodName};
 pub use named::{Named, by_name};
 pub use number::{
     parse_distance_mm, parse_exposure, parse_fps, parse_frame_range, parse_frames, parse_hfov, parse_latency,
-    parse_percent, parse_pixel, parse_samples, parse_size, parse_size_mm, parse_stops, tell_exposure,
+    parse_percent, parse_pixel, parse_samples, parse_size, parse_size_mm, parse_stops, print_exposure,
 };
 pub use picture::FormatName;

@@ -1,7 +1,7 @@
 //! Parsers of numbers with ranges.
 
 use crate::failure::warn;
-use afterimage_clip::exposure::{Chosen, Exposure};
+use afterimage_eval::exposure::{Chosen, Exposure};
 use std::str::FromStr;
 
 /// `WxH` in pixels.
@@ -88,7 +88,7 @@ pub fn parse_stops(text: &str) -> Result<f32, String> {
 }
 
 /// Says which exposure was found, or which one fits better.
-pub fn tell_exposure(chosen: &Chosen) {
+pub fn print_exposure(chosen: &Chosen) {
     if chosen.found {
         say!("exposure: {} stops, from the first frame", chosen.ev);
     }

@@ -2,8 +2,7 @@
 
 use super::Named;
 use crate::clip::{WriteFrame, write_png};
-use crate::failure::Failure;
-use crate::output::Output;
+use crate::output::{Output, WriteError};
 use afterimage::{DebugView, Image};
 use afterimage_lab::source::exr_file::{self, FrameToWrite};
 use clap::ValueEnum;
@@ -46,9 +45,9 @@ fn write_exr(
     index: usize,
     linear: &Image<[f32; 3]>,
     _: &Image<[f32; 3]>,
-) -> Result<(), Failure> {
+) -> Result<(), WriteError> {
     let path = out.path(folder, index, "exr");
-    exr_file::write(&path, &FrameToWrite::color(linear)).map_err(|e| Failure::writing(&path, e))
+    exr_file::write(&path, &FrameToWrite::color(linear)).map_err(|e| WriteError::new(&path, e))
 }
 
 #[cfg(test)]

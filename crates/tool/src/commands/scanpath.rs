@@ -1,8 +1,8 @@
 //! `afterimage scanpath`: write a synthetic scanpath, or convert a gaze log.
 
-use crate::args::gaze_log::{GazeLogArgs, warn};
+use crate::args::gaze_log::GazeLogArgs;
 use crate::args::{Named, by_name, parse_size};
-use crate::failure::Failure;
+use crate::failure::{Failure, warn};
 use afterimage_lab::scanpath::{
     Event, EventKind, HeadOptions, Scanpath, Screen, SyntheticOptions, Vendor, generate, generate_head, in_a_room,
     write_csv,

@@ -7,4 +7,4 @@ pub mod pareto;
 pub mod plot;
 pub mod psnr_plot;
 
-pub use afterimage_clip::report::canvas;
+pub use afterimage_eval::report::canvas;

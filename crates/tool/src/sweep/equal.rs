@@ -68,16 +68,15 @@ pub fn class(row: &Row) -> Option<u32> {
 /// The tables of an input for a metric, largest share of the samples first; empty if no row has the metric. Without the
 /// oracle, which no renderer can run.
 pub fn equal(table: &Table, input: &str, metric: &Metric) -> Vec<Section> {
-    let value = |row: &Row| row.values.get(metric.key).copied().flatten();
     let rows: Vec<&Row> = table.rows.iter().filter(|r| r.point.input == input && r.is_choice()).collect();
-    if rows.iter().all(|r| value(r).is_none()) {
+    if rows.iter().all(|r| r.value(metric.key).is_none()) {
         return vec![];
     }
     let mut classes: BTreeMap<Option<u32>, Vec<Candidate<'_>>> = BTreeMap::new();
     for row in rows {
         let error = row.standing(metric, table.renderer_ms).error;
         if row.cost_ms.is_finite() && !error.is_nan() {
-            classes.entry(class(row)).or_default().push(Candidate { row, error, value: value(row) });
+            classes.entry(class(row)).or_default().push(Candidate { row, error, value: row.value(metric.key) });
         }
     }
     let share = |class: Option<u32>| class.map(|thousandths| f64::from(thousandths) / 1000.0);

@@ -59,7 +59,7 @@ fn points(table: &Table, input: &str, text: &mut String) -> std::fmt::Result {
 /// The value of a metric; bold if the point is on its frontier.
 fn figure(row: &Row, key: &str) -> String {
     let digits = Metric::find(key).map_or(4, |m| m.digits);
-    let Some(value) = row.values.get(key).copied().flatten() else { return "-".into() };
+    let Some(value) = row.value(key) else { return "-".into() };
     let number = format!("{value:.digits$}");
     if row.frontier.contains(&key) { format!("**{number}**") } else { number }
 }

@@ -130,12 +130,9 @@ impl Plan {
     /// points.
     pub fn check(&self) -> Result<(), InputError> {
         if !(1..=MAX_SEEDS).contains(&self.seeds) {
-            let text = format!("is not in 1 to {MAX_SEEDS}");
-            return Err(InputError::request(
-                format!("--seeds {}", self.seeds),
-                text,
-                format!("expected 1 to {MAX_SEEDS}"),
-            ));
+            let range = format!("1 to {MAX_SEEDS}");
+            let subject = format!("--seeds {}", self.seeds);
+            return Err(InputError::request(subject, format!("is not in {range}"), format!("expected {range}")));
         }
         let axes = &self.grid.axes;
         for reserved in ["out", "input", "seed", "help"] {
@@ -143,19 +140,13 @@ impl Plan {
                 || axes.iter().any(|a| a.options.iter().any(|o| o == reserved))
                 || self.grid.switches.iter().any(|s| s.0 == reserved);
             if is_taken {
-                return Err(InputError::request(
-                    reserved,
-                    "is set by the sweep itself",
-                    "expected an option of run, or --seeds N",
-                ));
+                let remedy = "expected an option of run, or --seeds N";
+                return Err(InputError::request(reserved, "is set by the sweep itself", remedy));
             }
         }
         if let Some(name) = self.common.keys().find(|name| axes.iter().any(|a| a.options.contains(name))) {
-            return Err(InputError::request(
-                name,
-                "is an axis of the sweep and cannot be the same for all points",
-                format!("expected --axis {name}=VALUE"),
-            ));
+            let problem = "is an axis of the sweep and cannot be the same for all points";
+            return Err(InputError::request(name, problem, format!("expected --axis {name}=VALUE")));
         }
         let combinations = axes.iter().map(|a| a.values.len()).try_fold(1_usize, usize::checked_mul);
         if combinations.is_none_or(|n| n.saturating_mul(self.seeds as usize) > MAX_POINTS) {

@@ -50,7 +50,6 @@ pub(super) fn prices(rows: &[Row]) -> Vec<Price> {
 }
 
 fn price(name: &str, value: &str, base: &Row, switched: &Row) -> Price {
-    let value_of = |row: &Row, key: &str| row.values.get(key).copied().flatten();
     Price {
         switch: if value.is_empty() { name.to_owned() } else { format!("{name} {value}") },
         input: base.point.input.clone(),
@@ -61,7 +60,7 @@ fn price(name: &str, value: &str, base: &Row, switched: &Row) -> Price {
         time_ratio: time_ratio(base, switched),
         bytes_per_pixel: [base.bytes_per_pixel, switched.bytes_per_pixel],
         memory_bytes_per_pixel: [base.memory_bytes_per_pixel, switched.memory_bytes_per_pixel],
-        values: METRICS.iter().map(|m| (m.key, [value_of(base, m.key), value_of(switched, m.key)])).collect(),
+        values: METRICS.iter().map(|m| (m.key, [base.value(m.key), switched.value(m.key)])).collect(),
     }
 }
 

@@ -9,6 +9,7 @@ use super::prices::{Price, prices};
 use super::row::Row;
 use super::rust_source::name_of;
 use super::store::id;
+use crate::output::csv_cell;
 use afterimage_lab::clock::Quartiles;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -85,23 +86,19 @@ impl Table {
         for row in &self.rows {
             let number = |v: Option<f64>| v.map_or_else(String::new, |v| v.to_string());
             let mut cells =
-                vec![quoted(&row.point.input), quoted(&row.label), row.point.method.clone(), row.seeds.to_string()];
+                vec![csv_cell(&row.point.input), csv_cell(&row.label), row.point.method.clone(), row.seeds.to_string()];
             let times = [row.cost_ms, row.pass_ms.median, row.pass_ms.p25, row.pass_ms.p75].map(Some);
             let rest = [row.render_ms, Some(row.copy_ms), Some(row.drift), Some(row.samples_share)];
             cells.extend(times.into_iter().chain(rest).map(number));
             cells.extend([number(row.bytes_per_pixel.map(f64::from)), row.memory_bytes_per_pixel.to_string()]);
-            cells.extend(METRICS.iter().map(|m| number(row.values.get(m.key).copied().flatten())));
-            cells.extend([row.frontier.join(" "), quoted(&row.command)]);
+            cells.extend(METRICS.iter().map(|m| number(row.value(m.key))));
+            cells.extend([row.frontier.join(" "), csv_cell(&row.command)]);
             let whole = [Some(row.post_ms), row.total_ms, row.render_cpu_ms, row.post_cpu_ms, row.total_cpu_ms];
             cells.extend(whole.map(number));
             text += &(cells.join(",") + "\n");
         }
         text
     }
-}
-
-fn quoted(cell: &str) -> String {
-    if cell.contains([',', '"', '\n']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
 }
 
 /// Median time of the control method, by input.
@@ -205,6 +202,11 @@ fn mark_frontiers(rows: &mut [Row], renderer_ms: Option<f64>) {
 }
 
 impl Row {
+    /// Value of the metric with this key; `None` if it was not measured, and for the PSNR of equal pictures.
+    pub fn value(&self, key: &str) -> Option<f64> {
+        self.values.get(key).copied().flatten()
+    }
+
     /// Whether a program can use the method: the oracle is only an upper bound.
     pub fn is_choice(&self) -> bool {
         self.point.method != "oracle"
@@ -213,7 +215,7 @@ impl Row {
     /// Cost and error in a metric. The share of the samples counts as a cost if the renderer's time is not known.
     pub fn standing(&self, metric: &super::Metric, renderer_ms: Option<f64>) -> Standing {
         let priced = renderer_ms.is_some() || self.render_ms.is_some();
-        let error = match self.values.get(metric.key).copied().flatten() {
+        let error = match self.value(metric.key) {
             // The metric was not measured. (A missing PSNR means zero error.)
             None if !metric.key.ends_with("psnr_db") => f64::NAN,
             value => metric.error(value),

@@ -3,7 +3,7 @@
 use super::executor::DeviceExecutor;
 use crate::device::Backend;
 use afterimage::{ContextDesc, CreateError};
-use afterimage_clip::pipeline::{Cpu, Executor, Processor, ProcessorInfo};
+use afterimage_eval::pipeline::{Cpu, Executor, Processor, ProcessorInfo};
 
 impl Processor for Backend {
     fn executor(&self, desc: &ContextDesc, is_still: bool) -> Result<Box<dyn Executor>, CreateError> {

@@ -6,7 +6,7 @@ use crate::device::{Headless, PassClock};
 use crate::frame::{Content, DeviceHandle, QuadRequest, RenderedFrame, Shaded, ShadedColor};
 use afterimage::gpu::Frame;
 use afterimage::{ContextDesc, CreateError, DebugView, Foveation, FrameError, Settings};
-use afterimage_clip::pipeline::{
+use afterimage_eval::pipeline::{
     Candidate, Chosen, Executor, MethodOutput, RunInputs, RunKind, Shade, chooses, unshaded,
 };
 use std::slice::from_ref;

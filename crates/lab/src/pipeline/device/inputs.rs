@@ -12,7 +12,7 @@ use afterimage::internal::{ComputeShader, array_view, filled};
 use afterimage::kernel::pack::half_bits;
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::{ContextDesc, CreateError, FrameError, Image, Reset, ViewFrame};
-use afterimage_clip::pipeline::needs_lod;
+use afterimage_eval::pipeline::needs_lod;
 use std::sync::Arc;
 use wgpu::{BindingResource, BufferUsages, CommandEncoder, Texture, TextureFormat, TextureUsages};
 

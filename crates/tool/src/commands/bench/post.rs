@@ -28,7 +28,7 @@ static SHADERS: Composer = Composer::new(&[afterimage::shader::MODULES, MODULES]
 const WARM_UP: u64 = 8;
 
 #[derive(Serialize)]
-struct Report {
+struct PostBenchReport {
     tool: &'static str,
     version: &'static str,
     adapter: String,
@@ -88,9 +88,7 @@ impl PassSpec {
     fn sparse(name: &'static str, settings: Settings) -> Self {
         Self { kind: PassKind::Sparse(settings), ..Self::new(name, settings) }
     }
-}
 
-impl PassSpec {
     /// The views of frame `index`, with lattices if it is sparse.
     fn views(&self, views: &[ViewFrame; 1], index: u64) -> [ViewFrame; 1] {
         views.map(|mut view| {
@@ -201,7 +199,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
     }
     let report = summarise(size, frames, &gpu, &clock, cold_start_ms, &passes, &times);
     print(&report);
-    write_json(args.json.as_deref(), &report)
+    Ok(write_json(args.json.as_deref(), &report)?)
 }
 
 fn summarise(
@@ -212,7 +210,7 @@ fn summarise(
     cold_start_ms: f64,
     passes: &[&PassSpec],
     times: &[Vec<f64>],
-) -> Report {
+) -> PostBenchReport {
     let megapixels = f64::from(size[0]) * f64::from(size[1]) / 1e6;
     let median = |i: usize| Quartiles::of(&times[i]).map(|q| q.median);
     let reports = passes.iter().enumerate().map(|(i, pass)| PassReport {
@@ -225,7 +223,7 @@ fn summarise(
             Some(copy_ms / median(i)?)
         })(),
     });
-    Report {
+    PostBenchReport {
         tool: "afterimage",
         version: env!("CARGO_PKG_VERSION"),
         adapter: gpu.info.name.clone(),
@@ -239,7 +237,7 @@ fn summarise(
     }
 }
 
-fn print(report: &Report) {
+fn print(report: &PostBenchReport) {
     say!("{} ({}, {})", report.adapter, report.driver, report.backend);
     say!("{}x{}, {} frames; times are {}", report.size[0], report.size[1], report.frames, report.clock);
     say!("pass                median      p25      p75 ms   ms/Mpx  B/px  share of the copy's bandwidth");
@@ -306,10 +304,7 @@ fn inputs(gpu: &Arc<Headless>, size: [u32; 2]) -> Result<DeviceInputs, Failure> 
         color: Image::from_fn(size, |[x, y]| [0, 1, 2].map(|i| rng::unit_draw(rng::bits(x, y, i, 1)))),
         depth: Some(Image::from_fn(size, |[x, _]| if is_odd(x) { 12.0 } else { 3.0 })),
         motion: Some(Image::from_fn(size, |[x, _]| if is_odd(x) { [0.0; 2] } else { [-3.0, 1.0] })),
-        trust: None,
-        previous_from_current: None,
-        cut: true,
-        nonfinite: 0,
+        ..SourceFrame::without_images(None, true)
     };
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     inputs.set(&mut encoder, &RenderedFrame::full_rate(0, [0.0; 2], frame));

@@ -13,18 +13,18 @@ use serde::Serialize;
 const WARM_UP: u64 = 2;
 
 #[derive(Serialize)]
-struct Report {
+struct TraceBenchReport {
     tool: &'static str,
     version: &'static str,
     size: [u32; 2],
     frames: u64,
     samples_per_pixel: u32,
     max_depth: u32,
-    scenes: Vec<SceneReport>,
+    scenes: Vec<TraceBenchSceneReport>,
 }
 
 #[derive(Serialize)]
-struct SceneReport {
+struct TraceBenchSceneReport {
     scene: String,
     triangles: u32,
     tracers: Vec<TracerReport>,
@@ -90,9 +90,13 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
                 scene_bytes_per_triangle: tracer.scene_bytes().map(|b| b as f64 / f64::from(triangles.max(1))),
             })
         });
-        scenes.push(SceneReport { scene: name.clone(), triangles, tracers: reports.collect::<Result<_, _>>()? });
+        scenes.push(TraceBenchSceneReport {
+            scene: name.clone(),
+            triangles,
+            tracers: reports.collect::<Result<_, _>>()?,
+        });
     }
-    let report = Report {
+    let report = TraceBenchReport {
         tool: "afterimage",
         version: env!("CARGO_PKG_VERSION"),
         size,
@@ -102,10 +106,10 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
         scenes,
     };
     print(&report);
-    write_json(args.json.as_deref(), &report)
+    Ok(write_json(args.json.as_deref(), &report)?)
 }
 
-fn print(report: &Report) {
+fn print(report: &TraceBenchReport) {
     let [w, h] = report.size;
     say!("{w}x{h}, 1 sample a pixel, depth {}, {} frames; medians and quartiles", report.max_depth, report.frames);
     say!("ms are CPU time of the process, including the transfer of work list and film");

@@ -8,7 +8,7 @@ mod scene;
 use crate::args::gaze_log::GazeLogArgs;
 use crate::failure::Failure;
 use afterimage::{ContextDesc, Filter, Gaze, Reset, ViewFrame, ViewGeometry, cpu};
-use afterimage_clip::exposure::Exposure;
+use afterimage_eval::exposure::Exposure;
 use afterimage_lab::error::InputError;
 use afterimage_lab::source;
 use afterimage_lab::source::motion_check;

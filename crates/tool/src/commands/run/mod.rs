@@ -10,18 +10,20 @@ use crate::args::input::{FoveatedSampling, InputArgs, Rendering, SourceName};
 use crate::args::pattern::{SamplingArgs, SamplingName};
 use crate::args::{
     FilterName, FormatName, FoveationArgs, MethodArgs, MethodName, Named, by_name, parse_exposure, parse_frame_range,
-    parse_frames, parse_latency, parse_pixel, parse_samples, tell_exposure,
+    parse_frames, parse_latency, parse_pixel, parse_samples, print_exposure,
 };
+use crate::clip::pixel::ExplainedPixel;
 use crate::clip::run_report::{RunFacts, write_report};
-use crate::clip::{ClipReport, REPORTS};
+use crate::clip::{Clip, ClipReport, FrameResult, REPORTS};
 use crate::failure::Failure;
-use crate::output::Output;
+use crate::output::{Output, WriteError};
+use crate::progress;
 use crate::report::cameras::cameras_json;
 use afterimage::{DebugView, Filter};
-use afterimage_clip::exposure::Exposure;
+use afterimage_eval::exposure::Exposure;
 use afterimage_lab::device::Backend;
 use afterimage_lab::quad_views::QuadViewLayout;
-use afterimage_lab::scanpath::{HeadPath, write_csv};
+use afterimage_lab::scanpath::HeadPath;
 use afterimage_lab::source::FrameSource;
 use afterimage_lab::trace::sampling::Sampling;
 use clap::{Args, Parser};
@@ -85,7 +87,7 @@ pub struct RunArgs {
     )]
     pub method: Vec<MethodName>,
     #[command(flatten)]
-    pub wrs: MethodArgs,
+    pub method_settings: MethodArgs,
     /// Give the methods a mask of pixels that move without motion vectors, if the scene has one (analytic:scroll)
     #[arg(long)]
     pub trust: bool,
@@ -227,11 +229,18 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     let plan = plan::plan(args, source.info(), methods, head.as_ref())?;
     // The input can be read, or nothing is written.
     let playback = plan.clip.start(source.as_mut())?;
-    tell_exposure(playback.exposure());
+    print_exposure(playback.exposure());
     let cameras: Vec<String> = folders(args).iter().map(|folder| format!("{folder}/cameras.json")).collect();
     let reports: Vec<&str> = REPORTS.into_iter().chain(OF_HEAD).chain(cameras.iter().map(String::as_str)).collect();
     let out = Output::create(&args.out, &folders(args), &reports)?;
-    let report = playback.write(&out)?;
+    let bar = progress::of_frames(plan.clip.gaze.len() as u64);
+    let report = playback.write(&out, &mut |result| {
+        if let Some(pixel) = &plan.clip.pixel {
+            bar.suspend(|| say_pixel(pixel, result, &plan.clip));
+        }
+        bar.inc(1);
+    })?;
+    bar.finish_and_clear();
     if let Some(head) = &head {
         write_head(args, head, source.as_ref(), &plan, &out)?;
     }
@@ -256,6 +265,15 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     write_report(&facts, &plan.clip, &report, &out)?;
     out.finish()?;
     Ok(report)
+}
+
+/// Prints all that is known of a pixel of a frame, in the frames in which it is explained.
+fn say_pixel(pixel: &ExplainedPixel, result: &FrameResult<'_>, clip: &Clip) {
+    for ((name, _), output) in clip.methods.iter().zip(&result.step.outputs) {
+        if !output.notes.is_empty() {
+            say!("{}", pixel.lines(result.index, name, &output.notes));
+        }
+    }
 }
 
 /// Devices of a run.
@@ -292,10 +310,8 @@ fn write_head(
     source: &dyn FrameSource,
     plan: &plan::Plan,
     out: &Output,
-) -> Result<(), Failure> {
-    let mut csv = vec![];
-    write_csv(head.scanpath(), &mut csv).map_err(|e| Failure::Work(format!("scanpath.csv: {e}")))?;
-    out.text("scanpath.csv", &String::from_utf8_lossy(&csv))?;
+) -> Result<(), WriteError> {
+    out.scanpath("scanpath.csv", head.scanpath())?;
     let frames = 0..plan.clip.gaze.len() as u64;
     let pose = |frame| {
         let pose = source.camera_pose(frame)?;
@@ -313,7 +329,10 @@ fn write_head(
     out.text("cameras.json", &cameras)?;
     // Other programs look for it beside EXR frames.
     let beside = folders(args).into_iter().filter(|f| args.format == FormatName::Exr && !f.starts_with("debug/"));
-    beside.into_iter().try_for_each(|folder| out.text(&format!("{folder}/cameras.json"), &cameras))
+    for folder in beside {
+        out.text(&format!("{folder}/cameras.json"), &cameras)?;
+    }
+    Ok(())
 }
 
 /// Folders of the run's frames.

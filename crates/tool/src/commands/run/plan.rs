@@ -151,37 +151,32 @@ fn words(args: &RunArgs, foveation: &Foveation) -> String {
 pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<RunKind, Failure> {
     let sampling = args.sampling()?;
     let foveation = foveation(args)?;
+    let name = method.name();
+    let refuse = |text: &str| Err(Failure::Input(format!("--method {name}: {text}")));
+    let filter = args.foveation.filter();
     let method = match method {
-        MethodName::Post(MethodKind::Taau) if args.foveation.filter().is_quad_views() => {
-            let name = args.foveation.filter().name();
-            return Err(Failure::Input(format!(
-                "--method taau: needs moving samples, which --foveation {name} has not; use --foveation sparse, for a \
-                 uniform frame with --fovea 0 --mid 0 and equal rates, or leave it out"
-            )));
+        MethodName::Post(MethodKind::Taau) if filter.is_quad_views() => {
+            return refuse(&format!(
+                "needs moving samples, which --foveation {} has not; use --foveation sparse, for a uniform frame with \
+                 --fovea 0 --mid 0 and equal rates, or leave it out",
+                filter.name()
+            ));
         }
-        MethodName::Oracle if args.foveation.filter().is_quad_views() => {
-            let text =
-                "--method oracle: is defined for simulated levels of detail; use --foveation mip, or leave it out";
-            return Err(Failure::Input(text.into()));
+        MethodName::Oracle if filter.is_quad_views() => {
+            return refuse("is defined for simulated levels of detail; use --foveation mip, or leave it out");
         }
         MethodName::Post(method) => method,
-        MethodName::Oracle if sampling.is_some() => {
-            let text = "--method oracle: needs simulated foveation; leave out --sampling";
-            return Err(Failure::Input(text.into()));
-        }
+        MethodName::Oracle if sampling.is_some() => return refuse("needs simulated foveation; leave out --sampling"),
         MethodName::Oracle if matches!(foveation.filter, Filter::Sparse | Filter::Quads) => {
-            let text = "--method oracle: is not defined for moving samples; use another --foveation, or leave it out";
-            return Err(Failure::Input(text.into()));
+            return refuse("is not defined for moving samples; use another --foveation, or leave it out");
         }
         MethodName::Oracle if is_still => return Ok(RunKind::Oracle),
         MethodName::Oracle => {
-            return Err(Failure::Input(format!(
-                "--method oracle: {} moves, and the oracle is only defined for stills; leave it out",
-                args.input.name
-            )));
+            let input = &args.input.name;
+            return refuse(&format!("{input} moves, and the oracle is only defined for stills; leave it out"));
         }
     };
-    let settings = Settings { foveation, ..args.wrs.settings(method, args.seed, sampling.is_some()) };
+    let settings = Settings { foveation, ..args.method_settings.settings(method, args.seed, sampling.is_some()) };
     let settings = args.foveation.antialiased(settings);
     settings.validate()?;
     Ok(RunKind::PostProcess(settings))

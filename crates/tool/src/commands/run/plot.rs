@@ -2,8 +2,7 @@
 
 use super::plan::Plan;
 use crate::clip::ClipReport;
-use crate::failure::Failure;
-use crate::output::Output;
+use crate::output::{Output, WriteError};
 use crate::report::plot::png;
 use crate::report::psnr_plot::PsnrPlot;
 use afterimage::Filter;
@@ -11,7 +10,7 @@ use afterimage_lab::quad_views::QuadViewLayout;
 use std::path::Path;
 
 /// Writes the plot. `simulator` names what foveates the frames.
-pub fn write(plan: &Plan, simulator: &str, report: &ClipReport, out: &Output) -> Result<(), Failure> {
+pub fn write(plan: &Plan, simulator: &str, report: &ClipReport, out: &Output) -> Result<(), WriteError> {
     let foveation = plan.clip.foveation;
     let foveation = match foveation.filter {
         Filter::Off => "full rate".into(),

@@ -14,34 +14,25 @@ const MAX_POINTS: usize = 24;
 /// Limit on pixels per batch, summed over its points, whose histories are in memory at the same time.
 const MAX_PIXELS: u64 = 24_000_000;
 
-/// Options that affect only one method, or all that keep history (`None`), and not the input frames.
-const OF_METHODS: &[(&str, Option<MethodKind>)] = &[
-    ("wrs-preset", Some(MethodKind::Wrs)),
-    ("wrs-sampler", Some(MethodKind::Wrs)),
-    ("wrs-exponent", Some(MethodKind::Wrs)),
-    ("wrs-rate-exponent", Some(MethodKind::Wrs)),
-    ("gate-scale", Some(MethodKind::Wrs)),
-    ("wrs-bias", Some(MethodKind::Wrs)),
-    ("gate-divisor", Some(MethodKind::Wrs)),
-    ("gate-offset", Some(MethodKind::Wrs)),
-    ("gate-metric", Some(MethodKind::Wrs)),
-    ("no-gate", Some(MethodKind::Wrs)),
-    ("smr-accumulate", Some(MethodKind::Smr)),
-    ("smr-tolerance", Some(MethodKind::Smr)),
-    ("no-relight", Some(MethodKind::Smr)),
-    ("depth-relative", None),
-    ("depth-slope", None),
-    ("no-depth-test", None),
-    // Its other name.
-    ("no-flush", None),
-];
+/// The method that an option affects, or all that keep history (`Some(None)`); `None` if it affects the input frames.
+fn method_of(option: &str) -> Option<Option<MethodKind>> {
+    Some(match option {
+        "no-gate" => Some(MethodKind::Wrs),
+        "no-relight" => Some(MethodKind::Smr),
+        // The last one is another name of the third.
+        "depth-relative" | "depth-slope" | "no-depth-test" | "no-flush" => None,
+        _ if option.starts_with("wrs-") || option.starts_with("gate-") => Some(MethodKind::Wrs),
+        _ if option.starts_with("smr-") => Some(MethodKind::Smr),
+        _ => return None,
+    })
+}
 
 /// Whether an option affects a method.
 pub fn concerns(option: &str, method: &str) -> bool {
     let kind = MethodKind::from_name(method);
-    match OF_METHODS.iter().find(|(name, _)| *name == option) {
-        Some((_, Some(only))) => kind == Some(*only),
-        Some((_, None)) => kind.is_some_and(|kind| kind != MethodKind::None),
+    match method_of(option) {
+        Some(Some(only)) => kind == Some(only),
+        Some(None) => kind.is_some_and(|kind| kind != MethodKind::None),
         None => true,
     }
 }
@@ -76,7 +67,7 @@ impl Planned {
     /// Key of a batch: points with the same key have the same input frames.
     fn key(&self) -> (String, Options, Option<u64>) {
         let mut options = self.point.options.clone();
-        options.retain(|name, _| OF_METHODS.iter().all(|(of_method, _)| of_method != name));
+        options.retain(|name, _| method_of(name).is_none());
         let traced = self.args.input.source == Some(SourceName::Trace);
         (self.point.input.clone(), options, traced.then_some(self.point.seed))
     }

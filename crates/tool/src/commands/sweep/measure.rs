@@ -7,6 +7,7 @@ use crate::clip::{Clip, FrameResult};
 use crate::commands::run::{RunArgs, plan};
 use crate::failure::Failure;
 use crate::method_report::MethodAccumulator;
+use crate::output::WriteError;
 use crate::report::jpeg::write_jpeg;
 use crate::sweep::measurement::{ClipFacts, Machine};
 use crate::sweep::rust_source::as_rust;
@@ -188,11 +189,11 @@ fn pictures(
     reference: &Image<[f32; 3]>,
     shown: &Image<[f32; 3]>,
     flip: &Flip,
-) -> Result<(), Failure> {
+) -> Result<(), WriteError> {
     let error = flip.map(reference, shown).map(|v| heat(v).to_array());
     for (what, picture) in PICTURES.into_iter().zip([shown, &error, reference]) {
         let path = store.picture(&subject.point, what);
-        write_jpeg(&path, &to_rgb8(picture), PICTURE_WIDTH).map_err(|e| Failure::writing(&path, e))?;
+        write_jpeg(&path, &to_rgb8(picture), PICTURE_WIDTH).map_err(|e| WriteError::new(&path, e))?;
     }
     Ok(())
 }

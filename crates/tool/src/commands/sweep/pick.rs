@@ -66,7 +66,7 @@ fn classes<'a>(table: &'a Table, input: &str) -> Vec<(String, Vec<&'a Row>)> {
 
 /// The best point within the budget, or the cheapest one that reaches the target.
 fn pick<'a>(rows: &[&'a Row], by: &Metric, budget_ms: Option<f64>, target: Option<f64>) -> Option<&'a Row> {
-    let error = |r: &Row| by.error(r.values.get(by.key).copied().flatten());
+    let error = |r: &Row| by.error(r.value(by.key));
     let fits =
         |r: &&&Row| budget_ms.is_none_or(|ms| r.cost_ms <= ms) && target.is_none_or(|t| error(r) <= by.error(Some(t)));
     let order = |a: &&&Row, b: &&&Row| {
@@ -77,7 +77,7 @@ fn pick<'a>(rows: &[&'a Row], by: &Metric, budget_ms: Option<f64>, target: Optio
 }
 
 fn print_row(row: &Row, by: &Metric) {
-    let value = row.values.get(by.key).copied().flatten();
+    let value = row.value(by.key);
     let value = value.map_or("-".into(), |v| format!("{v:.*} {}", by.digits, by.unit));
     say!("  {}: {} {}, {:.2} ms a frame", row.label, by.title, value.trim(), row.cost_ms);
     say!("  {} --out DIR", row.command);

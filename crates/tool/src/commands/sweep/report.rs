@@ -1,40 +1,32 @@
 //! Output files of a sweep: tables, plots, a page.
 
 use super::SweepArgs;
-use crate::failure::Failure;
+use crate::output::{WriteError, write_json, write_text};
 use crate::report::page::page;
 use crate::report::{pareto, plot};
 use crate::sweep::grid::command_line;
 use crate::sweep::markdown::markdown;
 use crate::sweep::{Measurement, Store, Table};
 use afterimage_lab::picture::write_png;
-use afterimage_lab::whole_file::write_whole;
-use std::io::Write;
 
 /// Writes all files; returns the table.
-pub fn write(args: &SweepArgs, store: &Store, measurements: &[Measurement]) -> Result<Table, Failure> {
+pub fn write(args: &SweepArgs, store: &Store, measurements: &[Measurement]) -> Result<Table, WriteError> {
     let table = Table::new(measurements, args.pick.renderer_ms, command_line());
-    let json = serde_json::to_string_pretty(&table).map_err(|e| Failure::Work(e.to_string()))?;
-    text(store, "sweep.json", &(json + "\n"))?;
-    text(store, "sweep.csv", &table.csv())?;
-    text(store, "sweep.md", &markdown(&table))?;
+    let root = store.root();
+    write_json(Some(&root.join("sweep.json")), &table)?;
+    write_text(&root.join("sweep.csv"), &table.csv())?;
+    write_text(&root.join("sweep.md"), &markdown(&table))?;
     for (i, input) in table.clips.keys().enumerate() {
         // The help promises this name for the first input.
         let name = if i == 0 { "pareto".to_owned() } else { format!("pareto-{}", i + 1) };
         let svg = pareto::svg(&table, input, args.pick.by);
-        text(store, &format!("{name}.svg"), &svg)?;
-        let path = store.root().join(format!("{name}.png"));
-        write_png(&path, &plot::png(&svg)).map_err(|e| Failure::writing(&path, e))?;
+        write_text(&root.join(format!("{name}.svg")), &svg)?;
+        let path = root.join(format!("{name}.png"));
+        write_png(&path, &plot::png(&svg)).map_err(|e| WriteError::new(&path, e))?;
     }
-    let picture =
-        |id: &str, what: &str| std::fs::read(store.root().join("pictures").join(format!("{id}-{what}.jpg"))).ok();
-    text(store, "report.html", &page(&table, &picture))?;
+    let picture = |id: &str, what: &str| std::fs::read(root.join("pictures").join(format!("{id}-{what}.jpg"))).ok();
+    write_text(&root.join("report.html"), &page(&table, &picture))?;
     Ok(table)
-}
-
-fn text(store: &Store, name: &str, text: &str) -> Result<(), Failure> {
-    let path = store.root().join(name);
-    write_whole(&path, |file| file.write_all(text.as_bytes())).map_err(|e| Failure::writing(&path, e))
 }
 
 /// Prints the frontier and the path of the report.
@@ -45,7 +37,7 @@ pub fn print_summary(args: &SweepArgs, table: &Table) {
     say!("ms: {}", if is_whole { "whole frame, render + post" } else { "the pass alone where nothing is rendered" });
     say!("  ms/frame  {:>10}  point", by.key);
     for row in table.rows.iter().filter(|r| r.frontier.contains(&by.key)) {
-        let value = row.values.get(by.key).copied().flatten().map_or("-".into(), |v| format!("{v:.*}", by.digits));
+        let value = row.value(by.key).map_or("-".into(), |v| format!("{v:.*}", by.digits));
         say!("{:>10.2}  {value:>10}  {}", row.cost_ms, row.label);
     }
     say!("report: {}", args.out.join("report.html").display());

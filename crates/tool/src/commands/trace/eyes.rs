@@ -2,7 +2,6 @@
 
 use super::setup::Setup;
 use crate::failure::Failure;
-use afterimage_lab::scanpath::{About, Sample, Scanpath, Screen, write_csv};
 use afterimage_lab::trace::stereo::GazePoint;
 use afterimage_lab::trace::view::View;
 
@@ -53,18 +52,6 @@ impl Eyes {
         }
         self.last.clone()
     }
-}
-
-/// The gaze of an eye as a CSV scanpath for `run --gaze`, on a screen of the frame's size.
-pub fn scanpath_csv(eye: &str, size_px: [u32; 2], fps: f32, gaze_px: &[[f32; 2]]) -> Result<String, Failure> {
-    // A scanpath counts pixels from the screen's corner, a frame from the center of its first pixel.
-    let sample = |(i, px): (usize, &[f32; 2])| Sample { t_s: i as f64 / f64::from(fps), px: Some(px.map(|v| v + 0.5)) };
-    let samples = gaze_px.iter().enumerate().map(sample).collect();
-    let screen = Screen { size_px, size_cm: None, distance_cm: None };
-    let path = Scanpath::new(eye, screen, About::default(), samples)?;
-    let mut csv = vec![];
-    write_csv(&path, &mut csv).map_err(|e| Failure::Work(format!("{eye}: {e}")))?;
-    Ok(String::from_utf8_lossy(&csv).into_owned())
 }
 
 /// Path of a file or folder within an eye's folder; separated by / on any system.

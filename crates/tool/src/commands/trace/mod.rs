@@ -9,19 +9,20 @@ pub mod setup;
 use crate::args::backend::BackendName;
 use crate::args::paths::PathArgs;
 use crate::args::pattern::PatternArgs;
-use crate::args::{parse_exposure, parse_fps, parse_frames, parse_hfov, parse_samples, parse_size, tell_exposure};
+use crate::args::{parse_exposure, parse_fps, parse_frames, parse_hfov, parse_samples, parse_size, print_exposure};
 use crate::failure::Failure;
 use crate::output::Output;
 use crate::progress;
-use afterimage_clip::exposure::Exposure;
+use afterimage_eval::exposure::Exposure;
 use afterimage_lab::clock::Stopwatch;
+use afterimage_lab::scanpath::Scanpath;
 use afterimage_lab::trace::sampling::Sampling;
 use afterimage_lab::trace::view::View;
 use clap::{Args, ValueEnum};
 use eye_frame::EyeFrame;
-use eyes::{Eyes, below, scanpath_csv};
+use eyes::{Eyes, below};
 use frames::{Place, folders, write};
-use report::Report;
+use report::TraceReport;
 use setup::Setup;
 use std::path::PathBuf;
 
@@ -131,7 +132,7 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
     let mut setup = Setup::new(args)?;
     let parts: Vec<String> = eyes.names().iter().flat_map(|eye| folders(args, eye)).collect();
     let out = Output::create(&args.out, &parts, &["trace.json"])?;
-    let mut report = Report::new(eyes.names().len());
+    let mut report = TraceReport::new(eyes.names().len());
     if args.verbose {
         report.print_effects(&setup);
     }
@@ -166,7 +167,7 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
             report.count(eye, &counts, &clock);
             let exposure_ev = *exposure_ev.get_or_insert_with(|| {
                 let chosen = args.exposure.choose(&picture.color, args.white());
-                bar.suspend(|| tell_exposure(&chosen));
+                bar.suspend(|| print_exposure(&chosen));
                 chosen.ev
             });
             let place = Place { eye: name, index: frame as usize, exposure_ev };
@@ -177,7 +178,7 @@ pub fn trace(args: &TraceArgs) -> Result<(), Failure> {
     }
     bar.finish_and_clear();
     finish(args, &out, &setup, &report, &eyes, &gaze)?;
-    out.finish()
+    Ok(out.finish()?)
 }
 
 /// Gaze of the head and of each eye, per frame, in pixels; empty with uniform sampling.
@@ -192,7 +193,7 @@ fn finish(
     args: &TraceArgs,
     out: &Output,
     setup: &Setup,
-    report: &Report,
+    report: &TraceReport,
     eyes: &Eyes,
     gaze: &GazeTracks,
 ) -> Result<(), Failure> {
@@ -208,7 +209,9 @@ fn finish(
             if !gaze.eyes.is_empty() {
                 let of_eye: Vec<_> = gaze.eyes.iter().map(|gaze| gaze[eye]).collect();
                 out.gaze(&below(name, "gaze.csv"), &of_eye)?;
-                out.text(&below(name, "scanpath.csv"), &scanpath_csv(name, args.size, setup.of.fps, &of_eye)?)?;
+                // The gaze of the eye, for `run --gaze`.
+                let scanpath = Scanpath::of_frames(name, args.size, f64::from(setup.of.fps), &of_eye)?;
+                out.scanpath(&below(name, "scanpath.csv"), &scanpath)?;
             }
         }
     }

@@ -14,7 +14,7 @@ use glam::DMat4;
 use serde::Serialize;
 
 /// Sums over the frames.
-pub struct Report {
+pub struct TraceReport {
     /// View of the head in each frame.
     pub heads: Vec<View>,
     eyes: Vec<Counts>,
@@ -124,7 +124,7 @@ impl Counts {
     }
 }
 
-impl Report {
+impl TraceReport {
     /// An empty report.
     pub fn new(eyes: usize) -> Self {
         Self { heads: vec![], eyes: vec![Counts::none(); eyes], seconds: 0.0, cpu_seconds: Some(0.0) }

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use afterimage::wgpu;
 use afterimage_lab::device::{Headless, NO_ADAPTER};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use winit::window::Window;
 
 /// Number of validation errors in this process. Each one is a bug in this package.
@@ -72,6 +72,14 @@ fn create_surface(instance: &wgpu::Instance, window: &Arc<Window>) -> Result<wgp
     instance
         .create_surface(window.clone())
         .map_err(|e| Failure::Work(format!("the window's surface cannot be created ({e})")))
+}
+
+/// Maps a buffer for reading, once its work is done. The flag becomes `true` when it is mapped.
+pub fn map(buffer: &wgpu::Buffer) -> Arc<AtomicBool> {
+    let done = Arc::new(AtomicBool::new(false));
+    let is_mapped = done.clone();
+    buffer.map_async(wgpu::MapMode::Read, .., move |r| is_mapped.store(r.is_ok(), Ordering::Release));
+    done
 }
 
 /// Uniform buffer with the constants of a frame. Not mapped at creation, which would fail on a lost device.

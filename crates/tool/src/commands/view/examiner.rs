@@ -1,6 +1,7 @@
 //! The doctor in the viewer: looks at the frames that the methods get, and reads its words a few frames later, without
 //! a stall.
 
+use super::device;
 use crate::failure::Failure;
 use afterimage::doctor::Finding;
 use afterimage::gpu::{Doctor, Frame};
@@ -52,9 +53,7 @@ impl Examiner {
         self.doctor.record(&gpu.device, &mut encoder, &Frame { reset, ..*frame }, &self.words)?;
         encoder.copy_buffer_to_buffer(&self.words, 0, &buffer, 0, self.words.size());
         gpu.queue.submit([encoder.finish()]);
-        let done = Arc::new(AtomicBool::new(false));
-        let arrived = done.clone();
-        buffer.map_async(wgpu::MapMode::Read, .., move |r| arrived.store(r.is_ok(), Ordering::Release));
+        let done = device::map(&buffer);
         self.pending.push_back((buffer, done));
         Ok(())
     }

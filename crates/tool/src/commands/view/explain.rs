@@ -96,7 +96,7 @@ impl Repeatable {
                 || (has_quads(state.filter) && !has_quads(args.foveation.filter()) && OF_FILTER.contains(&name))
         };
         let mut all = vec!["afterimage".to_owned(), "run".to_owned()];
-        all.extend(kept(words, is_dropped));
+        all.extend(without(words, is_dropped));
         let mut add = |name: &str, value: &dyn std::fmt::Display| all.extend([format!("--{name}"), value.to_string()]);
         if !self.is_played {
             add("gaze", &record.display());
@@ -114,7 +114,7 @@ impl Repeatable {
 }
 
 /// Words after `view`, without the options that are dropped.
-fn kept(words: &[String], is_dropped: impl Fn(&str) -> bool) -> Vec<String> {
+fn without(words: &[String], is_dropped: impl Fn(&str) -> bool) -> Vec<String> {
     let mut kept = vec![];
     let mut words = words.iter().skip_while(|word| *word != "view").skip(1);
     while let Some(word) = words.next() {

@@ -7,14 +7,14 @@ use winit::keyboard::KeyCode;
 const TURN_DEG_PER_PX: f64 = 0.2;
 /// Longest time step in seconds, so that the camera does not jump after a pause.
 const MAX_STEP_S: f64 = 0.1;
-/// Factor on the speed while Shift is held.
+/// Factor on the speed while Shift is pressed.
 const FAST_FACTOR: f64 = 4.0;
 
 /// Keys held down, and the mouse drag since the last step.
 #[derive(Clone, Debug, Default)]
 pub struct FlyCamera {
-    held: Vec<KeyCode>,
-    /// Whether Shift is held.
+    pressed: Vec<KeyCode>,
+    /// Whether Shift is pressed.
     pub is_fast: bool,
     dragged_px: [f64; 2],
 }
@@ -25,9 +25,9 @@ impl FlyCamera {
         if direction(key).is_none() {
             return false;
         }
-        self.held.retain(|k| *k != key);
+        self.pressed.retain(|k| *k != key);
         if is_down {
-            self.held.push(key);
+            self.pressed.push(key);
         }
         true
     }
@@ -48,7 +48,7 @@ impl FlyCamera {
         let (eye, mut basis) = (world_from_camera.w_axis.truncate(), DQuat::from_mat4(&world_from_camera));
         // Yaw around the world's vertical axis, so that the horizon stays level.
         basis = (DQuat::from_rotation_y(yaw) * basis * DQuat::from_rotation_x(pitch)).normalize();
-        let along: DVec3 = self.held.iter().filter_map(|&key| direction(key)).sum();
+        let along: DVec3 = self.pressed.iter().filter_map(|&key| direction(key)).sum();
         let factor = if self.is_fast { FAST_FACTOR } else { 1.0 };
         let stride = speed_m_s * factor * seconds.clamp(0.0, MAX_STEP_S);
         DMat4::from_rotation_translation(basis, eye + basis * (along.normalize_or_zero() * stride))

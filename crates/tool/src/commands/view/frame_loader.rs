@@ -191,10 +191,7 @@ mod tests {
             color: Image::filled(size, [0.5; 3]),
             depth: Some(Image::from_fn(size, |[x, _]| x as f32)),
             motion: Some(Image::filled(size, [4.0, -8.0])),
-            trust: None,
-            previous_from_current: None,
-            cut: false,
-            nonfinite: 0,
+            ..SourceFrame::without_images(None, false)
         };
         let small = resized(frame, [6, 2]);
         assert_eq!(small.motion.unwrap().at(3, 1), [2.0, -2.0]);

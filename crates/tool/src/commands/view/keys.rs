@@ -7,7 +7,7 @@ use winit::keyboard::KeyCode;
 
 /// Keys that have to be held. A key without any may be pressed together with Shift.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Held {
+enum Modifiers {
     Nothing,
     Shift,
     ControlShift,
@@ -19,7 +19,7 @@ type Value = fn(&State) -> Option<String>;
 /// A key, and others that do the same.
 struct Key {
     codes: &'static [KeyCode],
-    held: Held,
+    modifiers: Modifiers,
     /// Name of the key, with what has to be held.
     label: &'static str,
     action: Action,
@@ -30,12 +30,12 @@ struct Key {
 }
 
 const fn key(codes: &'static [KeyCode], label: &'static str, action: Action, help: &'static str) -> Key {
-    Key { codes, held: Held::Nothing, label, action, help, row: None }
+    Key { codes, modifiers: Modifiers::Nothing, label, action, help, row: None }
 }
 
 impl Key {
-    const fn held(self, held: Held) -> Self {
-        Self { held, ..self }
+    const fn modifiers(self, modifiers: Modifiers) -> Self {
+        Self { modifiers, ..self }
     }
 
     const fn row(self, name: &'static str, value: Value) -> Self {
@@ -78,10 +78,12 @@ const KEYS: &[Key] = &[
     key(&[KeyCode::KeyX], "X", Action::Explain, "prints the command that explains the pixel under the mouse")
         .row("explain pixel", |_| text("")),
     key(&[KeyCode::F12], "F12", Action::Picture, "saves the picture").row("picture", |_| text("")),
-    key(&[KeyCode::F12], "Shift F12", Action::Window, "the window").held(Held::Shift).row("window", |_| text("")),
+    key(&[KeyCode::F12], "Shift F12", Action::Window, "the window")
+        .modifiers(Modifiers::Shift)
+        .row("window", |_| text("")),
     key(&[KeyCode::KeyH], "H", Action::Panel, "hides the panel").row("panel", |_| text("")),
     key(&[KeyCode::KeyL], "Ctrl Shift L", Action::LoseDevice, "destroys the device (to test recovery)")
-        .held(Held::ControlShift),
+        .modifiers(Modifiers::ControlShift),
     key(&[KeyCode::Escape], "Esc", Action::Quit, "quits"),
 ];
 
@@ -124,13 +126,13 @@ pub fn action_of(code: KeyCode, shift: bool, control: bool) -> Option<Action> {
     }
     let is_pressed = |key: &&Key| {
         key.codes.contains(&code)
-            && match key.held {
-                Held::Nothing => !control,
-                Held::Shift => shift && !control,
-                Held::ControlShift => shift && control,
+            && match key.modifiers {
+                Modifiers::Nothing => !control,
+                Modifiers::Shift => shift && !control,
+                Modifiers::ControlShift => shift && control,
             }
     };
-    KEYS.iter().filter(is_pressed).max_by_key(|key| key.held).map(|key| key.action)
+    KEYS.iter().filter(is_pressed).max_by_key(|key| key.modifiers).map(|key| key.action)
 }
 
 /// Row of the panel.

@@ -81,7 +81,7 @@ pub struct ViewArgs {
     #[command(flatten)]
     pub foveation: FoveationArgs,
     #[command(flatten)]
-    pub wrs: MethodArgs,
+    pub method_settings: MethodArgs,
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0, value_name = "N")]
     pub seed: u64,

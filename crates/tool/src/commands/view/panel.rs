@@ -18,25 +18,18 @@ const QUIET: [u8; 3] = [150, 155, 165];
 const VALUE_X: u32 = 92;
 const KEY_X: u32 = 216;
 
-/// Contents of the panel besides the state.
-pub struct Facts<'a> {
-    /// Lines of text: input, resolution, device.
-    pub lines: &'a [String],
-    pub graphs: &'a [&'a Graph],
+fn first_row_y(lines: usize) -> u32 {
+    MARGIN + ROW_PX * lines as u32 + 4
 }
 
-fn first_row_y(facts_lines: usize) -> u32 {
-    MARGIN + ROW_PX * facts_lines as u32 + 4
-}
-
-/// Draws the panel.
-pub fn draw(state: &State, facts: &Facts<'_>) -> RgbImage {
+/// Draws the panel: lines of text about input, resolution and device, the state, graphs.
+pub fn draw(state: &State, lines: &[String], graphs: &[&Graph]) -> RgbImage {
     let rows = rows(state);
-    let y = first_row_y(facts.lines.len());
+    let y = first_row_y(lines.len());
     let graphs_y = y + ROW_PX * rows.len() as u32 + MARGIN;
-    let height = graphs_y + facts.graphs.iter().map(|g| g.height() + MARGIN).sum::<u32>();
+    let height = graphs_y + graphs.iter().map(|g| g.height() + MARGIN).sum::<u32>();
     let mut canvas = Canvas::new(WIDTH, height, BACKGROUND);
-    for (i, line) in facts.lines.iter().enumerate() {
+    for (i, line) in lines.iter().enumerate() {
         canvas.small(line, MARGIN, MARGIN + ROW_PX * i as u32, QUIET);
     }
     for (i, row) in rows.iter().enumerate() {
@@ -46,7 +39,7 @@ pub fn draw(state: &State, facts: &Facts<'_>) -> RgbImage {
         canvas.small(&row.key, KEY_X, y, KEY);
     }
     let mut y = graphs_y;
-    for graph in facts.graphs {
+    for graph in graphs {
         graph.draw(&mut canvas, [MARGIN, y], WIDTH - 2 * MARGIN);
         y += graph.height() + MARGIN;
     }
@@ -54,9 +47,9 @@ pub fn draw(state: &State, facts: &Facts<'_>) -> RgbImage {
 }
 
 /// The action of a click at a position on the panel; `None` outside the panel, `Some(None)` outside its rows.
-pub fn click(state: &State, facts_lines: usize, panel: [u32; 2], at: [f32; 2]) -> Option<Option<Action>> {
+pub fn click(state: &State, lines: usize, panel: [u32; 2], at: [f32; 2]) -> Option<Option<Action>> {
     let inside = (0..2).all(|i| at[i] >= 0.0 && at[i] < panel[i] as f32);
-    let row = (at[1] - first_row_y(facts_lines) as f32) / ROW_PX as f32;
+    let row = (at[1] - first_row_y(lines) as f32) / ROW_PX as f32;
     inside.then(|| (row >= 0.0).then(|| rows(state).get(row as usize).map(|r| r.action)).flatten())
 }
 
@@ -100,7 +93,7 @@ mod tests {
         let graphs = [&Graph::new("ms a frame", &[("screen", [255; 3])])];
         let lines = ["input".to_owned()];
         let split = State { is_split: true, ..state() };
-        let [one, two] = [&state(), &split].map(|s| draw(s, &Facts { lines: &lines, graphs: &graphs }).dimensions());
+        let [one, two] = [&state(), &split].map(|s| draw(s, &lines, &graphs).dimensions());
         assert_eq!((one.0, two.0, two.1 - one.1), (WIDTH, WIDTH, ROW_PX));
     }
 }

@@ -1,7 +1,7 @@
 //! Statistics in the panel: frames per second, and pass times and quality over the last seconds.
 
 use super::graph::Graph;
-use super::panel::{self, Facts};
+use super::panel;
 use super::state::{Side, State};
 use super::times::{Pass, PassTimes};
 use image::RgbImage;
@@ -94,8 +94,7 @@ impl PanelStats {
     /// Draws the panel.
     pub fn draw(&mut self, state: &State, lines: Vec<String>) {
         self.lines = lines;
-        self.panel =
-            panel::draw(state, &Facts { lines: &self.lines, graphs: &[&self.milliseconds, &self.periphery_db] });
+        self.panel = panel::draw(state, &self.lines, &[&self.milliseconds, &self.periphery_db]);
         self.drawn = Some(Instant::now());
     }
 }

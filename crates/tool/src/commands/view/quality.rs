@@ -1,6 +1,7 @@
 //! PSNR of each side in the periphery. Squared errors are summed on the device and read back a few frames later,
 //! without a stall.
 
+use super::device;
 use super::measuring_pass::MeasuringPass;
 use super::state::Side;
 use afterimage::ViewGeometry;
@@ -80,10 +81,7 @@ impl Quality {
         };
         let workgroups = [size[0].div_ceil(TILE[0]), size[1].div_ceil(TILE[1]), 1];
         self.pass.run(gpu, &constants, &[full, shown], workgroups, &readback.buffer);
-        let done = Arc::new(AtomicBool::new(false));
-        let is_mapped = done.clone();
-        readback.buffer.map_async(wgpu::MapMode::Read, .., move |r| is_mapped.store(r.is_ok(), Ordering::Release));
-        readback.done = Some(done);
+        readback.done = Some(device::map(&readback.buffer));
     }
 
     /// The PSNR of a side's periphery in dB, if a measurement has finished: `Some(None)` if the error is zero.

@@ -1,7 +1,7 @@
 //! Record of the gaze since the last history reset, saved as a scanpath that `run` and `view` can play.
 
 use crate::failure::Failure;
-use afterimage_lab::scanpath::{About, Sample, Scanpath, Screen, write_csv};
+use afterimage_lab::scanpath::{Scanpath, write_csv};
 use afterimage_lab::whole_file::write_whole;
 use std::path::Path;
 
@@ -41,11 +41,7 @@ impl Record {
 
     /// Writes the record as a CSV scanpath for frames of `size` at `fps`.
     pub fn write(&self, path: &Path, size: [u32; 2], fps: f64) -> Result<(), Failure> {
-        // A scanpath counts pixels from the corner of the screen, a frame from the center of its first pixel.
-        let sample = |(i, px): (usize, &[f32; 2])| Sample { t_s: i as f64 / fps, px: Some(px.map(|v| v + 0.5)) };
-        let samples = self.px.iter().enumerate().map(sample).collect();
-        let screen = Screen { size_px: size, size_cm: None, distance_cm: None };
-        let scanpath = Scanpath::new("record", screen, About::default(), samples)?;
+        let scanpath = Scanpath::of_frames("record", size, fps, &self.px)?;
         write_whole(path, |file| write_csv(&scanpath, file)).map_err(|e| Failure::writing(path, e))
     }
 }

@@ -94,7 +94,7 @@ impl Setup {
     pub fn settings(&self, state: &State, shows: Shows) -> Settings {
         let method = shows.method().unwrap_or_default();
         let foveation = self.foveation(state).foveation();
-        let settings = Settings { foveation, ..self.args.wrs.settings(method, self.args.seed, false) };
+        let settings = Settings { foveation, ..self.args.method_settings.settings(method, self.args.seed, false) };
         self.args.foveation.antialiased(settings)
     }
 

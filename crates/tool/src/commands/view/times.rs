@@ -24,7 +24,6 @@ impl Pass {
     pub const ALL: [Self; 5] = [Self::Render, Self::Foveation, Self::Left, Self::Right, Self::Screen];
 }
 
-/// Size of the query buffers: two 64-bit timestamps per pass.
 /// Times of the passes.
 pub struct PassTimes {
     /// Milliseconds of each pass, of the last frame whose times have been read back.

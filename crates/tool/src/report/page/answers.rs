@@ -16,9 +16,7 @@ pub fn answers(table: &Table, inputs: &[&str]) -> String {
 
 /// The metric of the summary: the first one that was measured for the input.
 fn figure(table: &Table, input: &str) -> Option<&'static Metric> {
-    let has = |m: &&Metric| {
-        table.rows.iter().any(|r| r.point.input == input && r.values.get(m.key).copied().flatten().is_some())
-    };
+    let has = |m: &&Metric| table.rows.iter().any(|r| r.point.input == input && r.value(m.key).is_some());
     METRICS.iter().find(has)
 }
 
@@ -69,7 +67,7 @@ fn three_digits(ms: f64) -> String {
 fn value(row: &Row, metric: &Metric) -> String {
     let unit = if metric.unit.is_empty() { String::new() } else { format!(" {}", metric.unit) };
     let digits = metric.digits;
-    match row.values.get(metric.key).copied().flatten() {
+    match row.value(metric.key) {
         Some(v) => format!("{} {v:.digits$}{unit}", metric.title),
         None => format!("no {}", metric.title),
     }

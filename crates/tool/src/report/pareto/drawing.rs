@@ -27,7 +27,7 @@ struct Spot<'a> {
 /// Plot of an input's points by cost and a metric. Rows without the metric are counted in a note.
 pub fn svg(table: &Table, input: &str, metric: &Metric) -> String {
     let of_input = || table.rows.iter().filter(|r| r.point.input == input && r.cost_ms.is_finite());
-    let value = |r: &Row| r.values.get(metric.key).copied().flatten().filter(|v| v.is_finite());
+    let value = |r: &Row| r.value(metric.key).filter(|v| v.is_finite());
     let known: Vec<(&Row, f64)> = of_input().filter_map(|r| Some((r, value(r)?))).collect();
     let missing = of_input().count() - known.len();
     let floors = floors(&known);

@@ -106,7 +106,7 @@ pub fn measurement(point: Point, ms: f64, bytes: u32, share: f64, error: f64) ->
         worst_crop: None,
         nonfinite_in: 0,
         nonfinite_out: 0,
-        flushed: Some(0.02),
+        rejected: Some(0.02),
         replaced: Some(0.1),
         shaded_share: None,
         bytes_per_pixel: (point.method != "oracle").then_some(bytes),

@@ -1,0 +1,62 @@
+//! What looks wrong in a scanpath: units that its columns do not have, and lost gaze.
+
+use super::kinematics::median_step;
+use super::{Sample, Scanpath};
+
+/// Samples a second below which times are hardly seconds. Webcams give 15 and more.
+const LEAST_HZ: f64 = 10.0;
+/// Share of the valid samples within a pixel of a corner from which coordinates are hardly pixels. Not all: gaze from 0
+/// to 1 may lie a little off the screen.
+const CORNER_SHARE: f64 = 0.9;
+/// Smallest side of a screen in pixels on which a pixel is a corner.
+const LEAST_SIDE_PX: u32 = 16;
+
+impl Scanpath {
+    /// What looks wrong, one line each: all gaze within a pixel of a corner (coordinates from 0 to 1?), fewer than ten
+    /// samples a second (milliseconds?), more than half of the gaze lost.
+    pub fn warnings(&self) -> Vec<String> {
+        [self.corner(), self.doubt_of_times(), self.loss()]
+            .into_iter()
+            .flatten()
+            .map(|doubt| format!("{}: {doubt}", self.name()))
+            .collect()
+    }
+
+    fn corner(&self) -> Option<String> {
+        let size = self.screen().size_px;
+        let near = |px: &[f32; 2], corner: [bool; 2]| {
+            (0..2).all(|i| (px[i] - if corner[i] { size[i] as f32 } else { 0.0 }).abs() <= 1.0)
+        };
+        let valid = || self.samples().iter().filter_map(|s: &Sample| s.px.as_ref());
+        let least = CORNER_SHARE * valid().count() as f64;
+        let corners = [[false, false], [true, false], [false, true], [true, true]];
+        let is_there = |corner| valid().filter(|px| near(px, corner)).count() as f64 >= least;
+        (size.iter().all(|side| *side >= LEAST_SIDE_PX) && corners.into_iter().any(is_there)).then(|| {
+            format!(
+                "all gaze lies within a pixel of a corner of {}x{} pixels; are the coordinates 0 to 1? Multiply them \
+                 by the screen's size",
+                size[0], size[1]
+            )
+        })
+    }
+
+    /// The warning of fewer than ten samples a second, without the name of the scanpath.
+    pub fn doubt_of_times(&self) -> Option<String> {
+        let samples = self.samples();
+        // The median: a recording may have pauses.
+        let median = median_step(samples.iter().map(|sample| sample.t_s), |_| true)?;
+        (median * LEAST_HZ > 1.0).then(|| {
+            format!(
+                "{} samples in {:.3} s are {:.2} a second; are the times milliseconds? Divide them by 1000",
+                samples.len(),
+                self.duration_s(),
+                1.0 / median
+            )
+        })
+    }
+
+    fn loss(&self) -> Option<String> {
+        let (lost, all) = (self.lost(), self.samples().len());
+        (2 * lost > all).then(|| format!("the gaze is lost in {lost} of {all} samples, more than half"))
+    }
+}
