@@ -14,25 +14,21 @@ const MIN_ASPECT: f32 = 0.31622777;
 const SHEEN_ROOT: f32 = 0.17782794;
 const IOR_ROOT: f32 = 0.17191392;
 
-// albedo::albedo_cell
 fn albedo_cell(tables: u32, index: u32) -> vec4f {
     return bitcast<vec4f>(load(tables + index));
 }
 
-// albedo::albedo_knot
 fn albedo_knot(t: f32, count: u32) -> vec2f {
     let x = clamp(t, 0.0, 1.0) * f32(count - 1u);
     let knot = min(floor(x), f32(count - 2u));
     return vec2f(knot, x - knot);
 }
 
-// albedo::albedo_cosine
 fn albedo_cosine(cosine: f32, width: f32) -> f32 {
     let k = (1.0 - 0.75 * width) * width;
     return (cosine * (1.0 + k)) / (cosine + k);
 }
 
-// albedo::albedo_between
 fn albedo_between(tables: u32, i: u32, row: u32, x: f32, y: f32) -> vec4f {
     let a = albedo_cell(tables, i);
     let b = albedo_cell(tables, i + 1u);
@@ -43,20 +39,17 @@ fn albedo_between(tables: u32, i: u32, row: u32, x: f32, y: f32) -> vec4f {
     return low + (high - low) * y;
 }
 
-// albedo::albedo_plane
 fn albedo_plane(tables: u32, x: f32, y: f32) -> vec4f {
     let kx = albedo_knot(x, COSINES);
     let ky = albedo_knot(y, ROUGHNESSES);
     return albedo_between(tables, u32(ky.x) * COSINES + u32(kx.x), COSINES, kx.y, ky.y);
 }
 
-// albedo::ggx_albedo
 fn ggx_albedo(tables: u32, cosine: f32, width: f32) -> vec2f {
     let e = albedo_plane(tables, albedo_cosine(cosine, width), sqrt(width));
     return vec2f(e.x, e.x * schlick_weight(cosine) + e.y);
 }
 
-// albedo::anisotropic_albedo
 fn anisotropic_albedo(tables: u32, wo: vec3f, a: vec2f) -> vec2f {
     let slanted = abs(wo.x) + abs(wo.y);
     var azimuth = 0.5;
@@ -82,14 +75,12 @@ fn anisotropic_albedo(tables: u32, wo: vec3f, a: vec2f) -> vec2f {
     return vec2f(sum.x, sum.x * schlick_weight(wo.z) + sum.y);
 }
 
-// albedo::sheen_albedo
 fn sheen_albedo(tables: u32, cosine: f32, roughness: f32) -> f32 {
     let y = (roughness - MIN_SHEEN_ROUGHNESS) * (1.0f / (1.0f - MIN_SHEEN_ROUGHNESS));
     let x = (sqrt(sqrt(max(cosine, MIN_SHEEN_COSINE))) - SHEEN_ROOT) * (1.0f / (1.0f - SHEEN_ROOT));
     return albedo_plane(tables, x, y).z;
 }
 
-// albedo::glass_albedo
 fn glass_albedo(tables: u32, cosine: f32, width: f32, ior: f32, entering: bool) -> vec2f {
     let kx = albedo_knot(sqrt(albedo_cosine(cosine, width)), GLASS_COSINES);
     let ky = albedo_knot(sqrt(width), GLASS_ROUGHNESSES);

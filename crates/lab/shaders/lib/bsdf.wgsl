@@ -10,7 +10,6 @@ struct Scatter {
     pdf: f32,
 }
 
-// bsdf::retro_value
 fn retro_value(wo: vec3f, wi: vec3f, roughness: f32) -> f32 {
     let rise = (1.0 + dot(wo, wi)) * roughness - 0.5;
     let i = rise * schlick_weight(wi.z) + 1.0;
@@ -18,7 +17,6 @@ fn retro_value(wo: vec3f, wi: vec3f, roughness: f32) -> f32 {
     return i * o;
 }
 
-// bsdf::mirror_probability
 fn mirror_probability(glass_reflect: vec3f, fresnel: f32) -> f32 {
     if fresnel >= 1.0 {
         return 1.0;
@@ -26,7 +24,6 @@ fn mirror_probability(glass_reflect: vec3f, fresnel: f32) -> f32 {
     return fresnel * max(max(glass_reflect.x, glass_reflect.y), glass_reflect.z);
 }
 
-// bsdf::eval_reflection
 fn eval_reflection(layers: Layers, wo: vec3f, wi: vec3f) -> Scatter {
     let lambert = cosine_hemisphere_pdf(wi.z);
     var pdf = layers.probabilities.x * lambert;
@@ -70,7 +67,6 @@ fn eval_reflection(layers: Layers, wo: vec3f, wi: vec3f) -> Scatter {
     return Scatter(wi, value, pdf);
 }
 
-// bsdf::eval_transmission
 fn eval_transmission(layers: Layers, wo: vec3f, wi: vec3f) -> Scatter {
     let none = Scatter(wi, vec3f(0.0), 0.0);
     let below = vec3f(wi.x, wi.y, -wi.z);
@@ -104,7 +100,6 @@ fn eval_transmission(layers: Layers, wo: vec3f, wi: vec3f) -> Scatter {
     return Scatter(wi, value, (layers.probabilities.w * (1.0 - mirror_probability(layers.glass_reflect, fresnel))) * density);
 }
 
-// bsdf::eval
 fn eval(layers: Layers, wo: vec3f, wi: vec3f) -> Scatter {
     if wo.z > 0.0 && wi.z > 0.0 {
         return eval_reflection(layers, wo, wi);
@@ -115,7 +110,6 @@ fn eval(layers: Layers, wo: vec3f, wi: vec3f) -> Scatter {
     return Scatter(wi, vec3f(0.0), 0.0);
 }
 
-// bsdf::sample
 fn sample(layers: Layers, wo: vec3f, u: vec4f) -> Scatter {
     let none = Scatter(vec3f(0.0, 0.0, 1.0), vec3f(0.0), 0.0);
     if wo.z <= 0.0 {

@@ -1,6 +1,5 @@
 // Twin of src/kernel/direction.rs.
 
-// direction::unit
 fn unit(v: vec3f) -> vec3f {
     let m = max(max(abs(v.x), abs(v.y)), abs(v.z));
     if m >= 1e-30 && m <= 1e30 {
@@ -20,12 +19,10 @@ fn basis(n: vec3f) -> mat2x3f {
     return mat2x3f(vec3f(1.0 + side * (x * n.x), side * b, -side * n.x), vec3f(b, side + y * n.y, -n.y));
 }
 
-// direction::to_local
 fn to_local(v: vec3f, x: vec3f, y: vec3f, z: vec3f) -> vec3f {
     return vec3f(dot(v, x), dot(v, y), dot(v, z));
 }
 
-// direction::to_world
 fn to_world(v: vec3f, x: vec3f, y: vec3f, z: vec3f) -> vec3f {
     return vec3f(
         v.x * x.x + v.y * y.x + v.z * z.x,

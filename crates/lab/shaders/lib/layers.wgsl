@@ -55,7 +55,6 @@ struct Layers {
     probabilities: vec4f,
 }
 
-// layers::retro_albedo
 fn retro_albedo(cosine: f32, roughness: f32) -> f32 {
     let r = roughness;
     let rise = cosine * (1.0f / 84.0) + 1.0f / 21.0;
@@ -64,17 +63,14 @@ fn retro_albedo(cosine: f32, roughness: f32) -> f32 {
     return (rise * r + 41.0f / 42.0) + ((curve * r + slope) * r - 41.0f / 84.0) * schlick_weight(cosine);
 }
 
-// layers::compensation
 fn compensation(f0: vec3f, e: vec2f) -> vec3f {
     return f0 * ((1.0 - e.x) / e.x) + vec3f(1.0);
 }
 
-// layers::reflect_albedo
 fn reflect_albedo(f0: vec3f, e: vec2f) -> vec3f {
     return min((f0 * (e.x - e.y) + vec3f(e.y)) * compensation(f0, e), vec3f(1.0));
 }
 
-// layers::glass_fresnel
 fn glass_fresnel(glass_reflect: vec3f, fresnel: f32) -> vec3f {
     if fresnel >= 1.0 {
         return vec3f(1.0);
@@ -82,7 +78,6 @@ fn glass_fresnel(glass_reflect: vec3f, fresnel: f32) -> vec3f {
     return glass_reflect * fresnel;
 }
 
-// layers::layers
 fn layers(surface: BsdfSurface, wo: vec3f, tables: u32) -> Layers {
     let z = clamp(wo.z, 0.0, 1.0);
     let base = clamp(surface.base_color, vec3f(0.0), vec3f(1.0));

@@ -3,7 +3,6 @@
 
 const MAP_AREA: f32 = 19.739208;
 
-// light::distance_falloff
 fn distance_falloff(away: f32, range: f32) -> f32 {
     let ratio = away / range;
     let squared = ratio * ratio;
@@ -12,13 +11,11 @@ fn distance_falloff(away: f32, range: f32) -> f32 {
     return window / (near * near);
 }
 
-// light::cone_falloff
 fn cone_falloff(cos_angle: f32, cos_inner: f32, cos_outer: f32) -> f32 {
     let t = clamp((cos_angle - cos_outer) / max(cos_inner - cos_outer, 1e-3), 0.0, 1.0);
     return t * t;
 }
 
-// light::map_coordinates
 fn map_coordinates(direction: vec3f) -> vec2f {
     let across = sqrt(direction.x * direction.x + direction.z * direction.z);
     let longitude = atan2_upper(abs(direction.x), -direction.z) * 0.15915494;
@@ -31,7 +28,6 @@ struct MapDirection {
     sine: f32,
 }
 
-// light::map_direction
 fn map_direction(u: f32, v: f32) -> MapDirection {
     let longitude = sin_cos_turns(u - 0.5);
     let latitude = sin_cos_turns(0.5 * v);
@@ -39,7 +35,6 @@ fn map_direction(u: f32, v: f32) -> MapDirection {
     return MapDirection(vec3f(longitude.x * sine, latitude.y, -(longitude.y * sine)), sine);
 }
 
-// light::map_pdf
 fn map_pdf(probability: f32, texels: f32, sine: f32) -> f32 {
     return probability * texels / (MAP_AREA * max(sine, 1e-6));
 }

@@ -2,22 +2,18 @@
 
 const DIRECTION_STEPS: f32 = 32767.0;
 
-// octahedral::folded
 fn folded(x: f32, y: f32) -> f32 {
     return select(1.0 - abs(y), abs(y) - 1.0, x < 0.0);
 }
 
-// octahedral::fraction_bits
 fn fraction_bits(x: f32) -> u32 {
     return u32(i32(floor(x * DIRECTION_STEPS + 0.5))) & 0xffffu;
 }
 
-// octahedral::fraction
 fn fraction(bits: u32) -> f32 {
     return f32(bitcast<i32>(bits << 16u) >> 16u) * (1.0f / DIRECTION_STEPS);
 }
 
-// octahedral::encode_direction
 fn encode_direction(n: vec3f) -> u32 {
     let sum = abs(n.x) + (abs(n.y) + abs(n.z));
     let x = n.x / sum;
@@ -28,7 +24,6 @@ fn encode_direction(n: vec3f) -> u32 {
     return fraction_bits(x) | (fraction_bits(y) << 16u);
 }
 
-// octahedral::decode_direction
 fn decode_direction(code: u32) -> vec3f {
     let x = fraction(code);
     let y = fraction(code >> 16u);

@@ -14,7 +14,6 @@ struct PhongScatter {
     pdf: f32,
 }
 
-// phong::phong_power
 fn phong_power(x: f32, y: f32) -> f32 {
     if y <= 0.0 {
         return 1.0;
@@ -25,7 +24,6 @@ fn phong_power(x: f32, y: f32) -> f32 {
     return exp_approx(max(ln_approx(max(x, 1e-30)) * y, -60.0));
 }
 
-// phong::phong_specular_probability
 fn phong_specular_probability(surface: PhongSurface) -> f32 {
     let diffuse = (surface.diffuse.x + surface.diffuse.y) + surface.diffuse.z;
     let specular = (surface.specular.x + surface.specular.y) + surface.specular.z;
@@ -36,19 +34,16 @@ fn phong_specular_probability(surface: PhongSurface) -> f32 {
     return 0.0;
 }
 
-// phong::phong_diffuse
 fn phong_diffuse(surface: PhongSurface, wi: vec3f) -> vec3f {
     return surface.diffuse * (max(wi.z, 0.0) * FRAC_1_PI);
 }
 
-// phong::phong_specular
 fn phong_specular(surface: PhongSurface, wo: vec3f, wi: vec3f) -> vec3f {
     let cosine = clamp(wi.z * wo.z - (wi.x * wo.x + wi.y * wo.y), 0.0, 1.0);
     let top = (surface.exponent + 2.0) * (0.5 * FRAC_1_PI);
     return surface.specular * ((top * phong_power(cosine, surface.exponent)) * max(wi.z, 0.0));
 }
 
-// phong::phong_eval
 fn phong_eval(surface: PhongSurface, wo: vec3f, wi: vec3f) -> PhongScatter {
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return PhongScatter(wi, vec3f(0.0), 0.0);
@@ -57,7 +52,6 @@ fn phong_eval(surface: PhongSurface, wo: vec3f, wi: vec3f) -> PhongScatter {
     return PhongScatter(wi, value, uniform_hemisphere_pdf(wi.z));
 }
 
-// phong::phong_sample
 fn phong_sample(surface: PhongSurface, wo: vec3f, u: vec3f) -> PhongScatter {
     let wi = uniform_hemisphere(vec2f(u.y, u.z));
     if wo.z <= 0.0 || wi.z <= 0.0 {

@@ -3,44 +3,37 @@
 
 const FRAC_1_PI: f32 = 0.318309886183790671538;
 
-// sampling::disk
 fn disk(u: vec2f) -> vec2f {
     let r = sqrt(u.x);
     let sc = sin_cos_turns(u.y);
     return vec2f(r * sc.y, r * sc.x);
 }
 
-// sampling::cosine_hemisphere
 fn cosine_hemisphere(u: vec2f) -> vec3f {
     let d = disk(u);
     return vec3f(d.x, d.y, sqrt(max(1.0 - u.x, 0.0)));
 }
 
-// sampling::cosine_hemisphere_pdf
 fn cosine_hemisphere_pdf(z: f32) -> f32 {
     return max(z, 0.0) * FRAC_1_PI;
 }
 
-// sampling::uniform_hemisphere
 fn uniform_hemisphere(u: vec2f) -> vec3f {
     let r = sqrt(max(u.x * (2.0 - u.x), 0.0));
     let sc = sin_cos_turns(u.y);
     return vec3f(r * sc.y, r * sc.x, 1.0 - u.x);
 }
 
-// sampling::uniform_hemisphere_pdf
 fn uniform_hemisphere_pdf(z: f32) -> f32 {
     return select(0.0, 0.5f * FRAC_1_PI, z >= 0.0);
 }
 
-// sampling::barycentrics
 fn barycentrics(u: vec2f) -> vec3f {
     let s = sqrt(u.x);
     let y = u.y * s;
     return vec3f(1.0 - s, s - y, y);
 }
 
-// sampling::area_pdf
 fn area_pdf(area: f32, distance_squared: f32, cosine: f32) -> f32 {
     let projected = area * abs(cosine);
     if projected > 1e-30 {
@@ -49,7 +42,6 @@ fn area_pdf(area: f32, distance_squared: f32, cosine: f32) -> f32 {
     return 0.0;
 }
 
-// sampling::power_heuristic
 fn power_heuristic(own: f32, other: f32) -> f32 {
     if own > other {
         let r = other / own;

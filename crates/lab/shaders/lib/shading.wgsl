@@ -4,7 +4,6 @@
 
 const GRAZING: f32 = 1e-3;
 
-// shading::mapped_normal
 fn mapped_normal(normal: vec3f, tangent: vec3f, handedness: f32, texel: vec3f, scale: f32) -> vec3f {
     let along = unit(tangent - normal * dot(normal, tangent));
     let bitangent = cross(normal, along) * handedness;
@@ -14,7 +13,6 @@ fn mapped_normal(normal: vec3f, tangent: vec3f, handedness: f32, texel: vec3f, s
     return unit(along * xy.x + bitangent * xy.y + normal * z);
 }
 
-// shading::visible_normal
 fn visible_normal(shading: vec3f, geometric: vec3f, toward: vec3f) -> vec3f {
     let seen = dot(shading, toward);
     if seen >= GRAZING {
@@ -24,7 +22,6 @@ fn visible_normal(shading: vec3f, geometric: vec3f, toward: vec3f) -> vec3f {
     return select(geometric, lifted, dot(lifted, geometric) > 0.0 && dot(lifted, toward) > 0.0);
 }
 
-// shading::hue
 fn hue(color: vec3f) -> vec3f {
     let y = luma(color);
     if y > 1e-6 {
@@ -33,7 +30,6 @@ fn hue(color: vec3f) -> vec3f {
     return vec3f(1.0);
 }
 
-// shading::tint
 fn tint(color: vec3f, amount: f32) -> vec3f {
     return vec3f(1.0 - amount) + hue(color) * amount;
 }

@@ -4,7 +4,6 @@ const WRAP_REPEAT: u32 = 0u;
 const WRAP_MIRROR: u32 = 1u;
 const WRAP_CLAMP: u32 = 2u;
 
-// texel::wrap_coordinate
 fn wrap_coordinate(u: f32, wrap: u32) -> f32 {
     switch wrap {
         case WRAP_REPEAT: { return u - floor(u); }
@@ -13,7 +12,6 @@ fn wrap_coordinate(u: f32, wrap: u32) -> f32 {
     }
 }
 
-// texel::wrap_texel
 fn wrap_texel(i: i32, size: u32, wrap: u32) -> u32 {
     let n = i32(size);
     if wrap == WRAP_REPEAT {
@@ -28,7 +26,6 @@ fn wrap_texel(i: i32, size: u32, wrap: u32) -> u32 {
     return u32(clamp(i, 0, n - 1));
 }
 
-// texel::texel_value
 fn texel_value(bits: u32) -> vec4f {
     let bytes = (vec4u(bits) >> vec4u(0u, 8u, 16u, 24u)) & vec4u(255u);
     return vec4f(bytes) * (1.0f / 255.0);

@@ -16,7 +16,6 @@ struct Intersection {
     v: f32,
 }
 
-// triangle::shear
 fn shear(direction: vec3f) -> Shear {
     let size = abs(direction);
     if size.x >= size.y && size.x >= size.z {
@@ -34,7 +33,6 @@ fn shear(direction: vec3f) -> Shear {
     return Shear(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), image);
 }
 
-// triangle::sheared
 fn sheared(shear: Shear, from_origin: vec3f) -> vec3f {
     return shear.x * from_origin.x + shear.y * from_origin.y + shear.z * from_origin.z;
 }
@@ -50,7 +48,6 @@ fn edge(a: vec3f, b: vec3f) -> f32 {
     return select(area, -area, swapped);
 }
 
-// triangle::intersect
 fn intersect(shear: Shear, origin: vec3f, v0: vec3f, v1: vec3f, v2: vec3f) -> Intersection {
     let miss = Intersection(0.0, 0.0, 0.0);
     let a = sheared(shear, v0 - origin);
@@ -76,18 +73,15 @@ fn intersect(shear: Shear, origin: vec3f, v0: vec3f, v1: vec3f, v2: vec3f) -> In
     return Intersection((a.z + u * (b.z - a.z)) + v * (c.z - a.z), u, v);
 }
 
-// triangle::point_at
 fn point_at(v0: vec3f, v1: vec3f, v2: vec3f, u: f32, v: f32) -> vec3f {
     return (v0 + (v1 - v0) * u) + (v2 - v0) * v;
 }
 
-// triangle::magnitude
 fn magnitude(v0: vec3f, v1: vec3f, v2: vec3f) -> f32 {
     let largest = max(max(abs(v0), abs(v1)), abs(v2));
     return max(largest.x, max(largest.y, largest.z));
 }
 
-// triangle::offset_ray
 fn offset_ray(point: vec3f, normal: vec3f, magnitude: f32) -> vec3f {
     return point + normal * (magnitude * ORIGIN_OFFSET);
 }

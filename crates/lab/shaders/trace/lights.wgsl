@@ -24,7 +24,6 @@ fn no_light() -> LightSample {
     return LightSample(vec3f(0.0, 1.0, 0.0), 0.0, vec3f(0.0), 0.0, false);
 }
 
-// lights::sample_light
 fn sample_light(p: SurfacePoint, draws: vec4f, more: vec4f) -> LightSample {
     let count = frame.lights;
     if count == 0u {
@@ -55,7 +54,6 @@ fn sample_light(p: SurfacePoint, draws: vec4f, more: vec4f) -> LightSample {
     return no_light();
 }
 
-// lights::from_triangle
 fn from_triangle(position: vec3f, index: u32, probability: f32, place: vec2f) -> LightSample {
     let c = triangle_at(index);
     let weights = barycentrics(place);
@@ -76,7 +74,6 @@ fn from_triangle(position: vec3f, index: u32, probability: f32, place: vec2f) ->
     return LightSample(direction, sqrt(squared), emission_at(index, c.material, weights.y, weights.z), pdf, true);
 }
 
-// lights::from_punctual
 fn from_punctual(position: vec3f, index: u32, probability: f32) -> LightSample {
     let r0 = load(PUNCTUAL + index * PUNCTUAL_ROWS);
     let r1 = load(PUNCTUAL + index * PUNCTUAL_ROWS + 1u);
@@ -108,7 +105,6 @@ fn map_radiance(i: i32, j: i32) -> vec3f {
     return bitcast<vec3f>(load(MAP + index * MAP_ROWS).xyz);
 }
 
-// lights::from_environment
 fn from_environment(p: SurfacePoint, probability: f32, place: vec2f, more: vec4f) -> LightSample {
     var direction: vec3f;
     var pdf: f32;
@@ -133,7 +129,6 @@ fn from_environment(p: SurfacePoint, probability: f32, place: vec2f, more: vec4f
     return LightSample(direction, FAR, sky(direction), probability * pdf, true);
 }
 
-// lights::sky
 fn sky(direction: vec3f) -> vec3f {
     if !has_map() {
         return frame.sky;
@@ -150,7 +145,6 @@ fn sky(direction: vec3f) -> vec3f {
     return top * (1.0 - s) + bottom * s;
 }
 
-// lights::sky_pdf
 fn sky_pdf(direction: vec3f, cosine: f32) -> f32 {
     if !has_map() {
         return frame.sky_probability * cosine_hemisphere_pdf(cosine);
@@ -164,7 +158,6 @@ fn sky_pdf(direction: vec3f, cosine: f32) -> f32 {
     return frame.sky_probability * map_pdf(probability, f32(size.x * size.y), sine);
 }
 
-// lights::triangle_pdf
 fn triangle_pdf(triangle: u32, away: f32, cosine: f32) -> f32 {
     let c = triangle_at(triangle);
     if c.light == 0u {

@@ -47,7 +47,6 @@ fn base_of(material: u32, place: Attributes) -> vec4f {
     return base;
 }
 
-// surface::passes_alpha_test
 fn passes_alpha_test(triangle: u32, u: f32, v: f32, draw: f32) -> bool {
     let material = triangle_at(triangle).material;
     let place = place_at(triangle, u, v);
@@ -59,7 +58,6 @@ fn passes_alpha_test(triangle: u32, u: f32, v: f32, draw: f32) -> bool {
     return (flags & FLAG_BLEND) == 0u || draw < opacity;
 }
 
-// surface::emission
 fn emission(material: u32, uvs: vec4f) -> vec3f {
     var radiance = bitcast<vec3f>(material_row(material, 1u).xyz);
     if EFFECT_EMISSIVE_TEXTURE {
@@ -71,7 +69,6 @@ fn emission(material: u32, uvs: vec4f) -> vec3f {
     return radiance;
 }
 
-// surface::emission_at
 fn emission_at(triangle: u32, material: u32, u: f32, v: f32) -> vec3f {
     if EFFECT_EMISSIVE_TEXTURE {
         return emission(material, uvs_of(place_at(triangle, u, v)));
@@ -158,7 +155,6 @@ fn resolve_surface(material: u32, place: Attributes, front: bool) -> BsdfSurface
     return s;
 }
 
-// surface::surface_point
 fn surface_point(hit: Hit, direction: vec3f) -> SurfacePoint {
     let c = triangle_at(hit.triangle);
     let v0 = c.corners[0];
