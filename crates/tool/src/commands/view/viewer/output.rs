@@ -93,14 +93,14 @@ impl Viewer {
         })
     }
 
-    /// Saves the picture, and the gaze record that led to it.
+    /// Saves the gaze record, then the picture that it led to: who reads the printed path finds both.
     pub(super) fn write_picture(&self) -> Result<(), Failure> {
         let (resources, state) = (&self.resources, &self.state);
         let sides = Side::BOTH.map(|side| resources.pipeline.picture(side));
         let divider = state.is_split.then_some(state.divider);
         let picture = pictures::picture(&resources.device.gpu, sides, divider, self.setup.args.exposure);
-        pictures::write(&picture, self.setup.args.screenshot.as_deref())?;
-        self.write_record()
+        self.write_record()?;
+        pictures::write(&picture, self.setup.args.screenshot.as_deref())
     }
 
     pub(super) fn write_window(&self) -> Result<(), Failure> {
