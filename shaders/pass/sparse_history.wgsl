@@ -30,7 +30,7 @@ struct PixelSurface {
     farthest: f32,
     nearest: f32,
     mixes: bool,
-    // Whether history is the mean of several surfaces, of which a sample shows one; of frames shaded by quads.
+    // On quads: whether history is the mean of several surfaces, of which a sample shows one.
     is_silhouette: bool,
     // Whether this frame's sample at the pixel may show another surface.
     is_doubtful: bool,

@@ -23,7 +23,7 @@ pub(super) struct Surroundings {
     pub stored: f32,
     /// Disparities of the farthest and the nearest surface around the pixel, if history may show any of them.
     pub mixed: Option<[f32; 2]>,
-    /// Whether history is the mean of several surfaces, of which a sample shows one; of frames shaded by quads.
+    /// On quads: whether history is the mean of several surfaces, of which a sample shows one.
     pub is_silhouette: bool,
     /// Whether this frame's sample at the pixel may show another surface.
     pub is_doubtful: bool,

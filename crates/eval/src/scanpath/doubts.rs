@@ -1,6 +1,6 @@
 //! What looks wrong in a scanpath: units that its columns do not have, and lost gaze.
 
-use super::kinematics::median_step;
+use super::sample_times::median_step;
 use super::{Sample, Scanpath};
 
 /// Samples a second below which times are hardly seconds. Webcams give 15 and more.

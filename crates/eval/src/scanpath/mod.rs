@@ -14,6 +14,7 @@ mod head_path;
 mod kinematics;
 mod pose;
 mod recorded;
+mod sample_times;
 mod simulated_eye;
 mod synthetic;
 mod table;

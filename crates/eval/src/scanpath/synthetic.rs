@@ -1,6 +1,6 @@
 //! Synthetic scanpaths: options, and their generation by a model of free viewing.
 
-use super::kinematics::{check_times, sample_times};
+use super::sample_times::{check_times, sample_times};
 use super::simulated_eye::SimulatedEye;
 use super::viewing::{AIM_MARGIN_DEG, Event, SACCADE_DEG};
 use super::{About, Sample, Scanpath, Screen};

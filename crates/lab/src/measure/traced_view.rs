@@ -106,11 +106,8 @@ impl TracedView {
     /// # Errors
     /// If the scene does not fit on the device.
     pub fn tracer(&self, backend: &Backend, settings: TraceSettings) -> Result<Tracer, InputError> {
-        Tracer::new(backend, &self.world, settings).map_err(|error| {
-            let text = error.to_string();
-            let (problem, remedy) = text.split_once("; ").unwrap_or((&text, "use the CPU"));
-            InputError::not_supported(&self.name, problem, remedy)
-        })
+        Tracer::new(backend, &self.world, settings)
+            .map_err(|e| InputError::device(&self.name, e.to_string(), "trace it on the CPU"))
     }
 
     /// Traces frame `index`.

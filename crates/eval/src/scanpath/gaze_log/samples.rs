@@ -3,8 +3,8 @@
 use super::layouts::Plane;
 use super::options::{GazeLogOptions, Vendor};
 use crate::error::InputError;
-use crate::scanpath::kinematics::median_step;
 use crate::scanpath::recorded::Merged;
+use crate::scanpath::sample_times::median_step;
 use crate::scanpath::table::number;
 use crate::scanpath::{About, Sample, Scanpath, Screen};
 

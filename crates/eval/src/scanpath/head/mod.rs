@@ -28,7 +28,7 @@ mod simulation;
 pub use coordination::{HeadTurn, Regarded};
 pub use options::{DistanceOf, HeadOptions, in_a_room};
 
-use super::kinematics::sample_times;
+use super::sample_times::sample_times;
 use super::viewing::Event;
 use super::{About, Sample, Scanpath, Screen};
 use crate::error::InputError;

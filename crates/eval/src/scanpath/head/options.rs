@@ -2,7 +2,7 @@
 
 use super::coordination::{ROTATION_GAIN, TRANSLATION_GAIN};
 use crate::error::InputError;
-use crate::scanpath::kinematics::check_times;
+use crate::scanpath::sample_times::check_times;
 
 /// Distance in metres from a point to the surface that is seen in a direction, a unit vector; `None` if there is no
 /// surface. Both are in the space of [`HeadPose`](crate::scanpath::HeadPose).
