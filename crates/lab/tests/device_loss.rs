@@ -49,18 +49,14 @@ fn a_lost_device_is_an_error_and_a_new_one_goes_on() {
     assert_eq!(lost.check(), Err(FrameError::DeviceLost));
 
     // A new device shows what one shows that never had another: no frame of the past.
-    let show = |pipeline: &mut Pipeline, source: &mut AnalyticSource| {
+    let [again, other] = [(); 2].map(|()| {
+        let mut pipeline = pipeline(&device().unwrap(), *source.view());
         let frame = source.render(&pipeline.request(5, Some([30.0, 18.0]))).unwrap();
-        let step = pipeline.step(&frame).unwrap();
-        step.outputs[0].image.pixels().to_vec()
-    };
-    let again = [device().unwrap(), device().unwrap()].map(|d| show(&mut pipeline(&d, *source.view()), &mut source));
-    assert_eq!(again[0], again[1]);
-    holds!(
-        "H77",
-        Tool,
-        "a device lost after 3 frames: FrameError::DeviceLost in each frame after; a new one starts afresh"
-    );
+        pipeline.step(&frame).unwrap().outputs[0].image.pixels().to_vec()
+    });
+    assert_eq!(again, other);
+    let lost = "a device lost after 3 frames: FrameError::DeviceLost in each frame after";
+    holds!("H77", Tool, "{lost}; a new one starts afresh");
 }
 
 #[test]
@@ -72,9 +68,8 @@ fn sources_say_that_their_device_was_lost() {
     assert!(said.starts_with("builtin:cubes: the graphics device was lost"), "{said}");
 
     let lost = device().unwrap();
-    let (settings, samples) =
-        (TraceSettings::default(), TracedSamples { foveated: None, sparse: None, samples: 1, full_rate_samples: 1 });
-    let backend = Backend::Gpu(lost.clone());
+    let samples = TracedSamples { foveated: None, sparse: None, samples: 1, full_rate_samples: 1 };
+    let (settings, backend) = (TraceSettings::default(), Backend::Gpu(lost.clone()));
     let traced = TracedSource::open("builtin:cubes", &limits, &OPTIONS, Some("orbit"), &backend, settings, samples);
     let said = error_of(traced.unwrap(), &lost);
     assert!(said.contains("the graphics device was lost") && said.contains("on the CPU"), "{said}");

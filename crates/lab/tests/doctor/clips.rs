@@ -88,16 +88,12 @@ impl Delivery {
         desc.depth = REVERSED;
         desc.motion = MotionConvention::default();
         let frames = clip.frames.iter().enumerate().map(|(i, frame)| {
-            let gaze_px = gaze_px(i);
-            let view = ViewFrame {
-                previous_from_current: frame.previous_from_current,
-                ..ViewFrame::new(clip.geometry, Gaze::At { px: gaze_px })
-            };
+            let (px, previous_from_current) = (gaze_px(i), frame.previous_from_current);
             Delivered {
-                color: foveated(&frame.color, &foveation, &clip.geometry, gaze_px),
+                color: foveated(&frame.color, &foveation, &clip.geometry, px),
                 depth: frame.depth.as_ref().map(|d| d.map(|z| stored(REVERSED, z))),
                 motion: frame.motion.clone(),
-                view,
+                view: ViewFrame { previous_from_current, ..ViewFrame::new(clip.geometry, Gaze::At { px }) },
             }
         });
         Self { desc, frames: frames.collect() }
@@ -139,8 +135,6 @@ pub fn foveated(
 /// Foveations of the clips: mip levels and blocks.
 pub fn foveations() -> [Foveation; 2] {
     let regions = Foveation { fovea_deg: 16.0, mid_deg: 40.0, rate_mid: 4, rate_far: 8, ..Foveation::default() };
-    [
-        Foveation { filter: Filter::Mip, ..regions },
-        Foveation { filter: Filter::Block, rate_mid: 2, rate_far: 4, ..regions },
-    ]
+    let blocks = Foveation { filter: Filter::Block, rate_mid: 2, rate_far: 4, ..regions };
+    [Foveation { filter: Filter::Mip, ..regions }, blocks]
 }

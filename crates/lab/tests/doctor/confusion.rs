@@ -31,10 +31,8 @@ fn fate(planted: &Planted, findings: &[Finding]) -> Fate {
         let is_asked = finding.check == planted.check();
         match finding.outcome {
             Outcome::Wrong(fault) => {
-                let is_right = is_asked
-                    && fault == planted.fault
-                    && finding.mend.as_ref().is_some_and(|m| m.contains(planted.mend));
-                if !is_right {
+                let mends = finding.mend.as_ref().is_some_and(|m| m.contains(planted.mend));
+                if !is_asked || fault != planted.fault || !mends {
                     return Fate::Misnamed;
                 }
                 fate = Fate::Named;
@@ -67,12 +65,12 @@ fn column(clip: &Clip, foveation: Foveation) -> Column {
         let findings = wrong.findings();
         let fate = fate(planted, &findings);
         fates.push(fate);
-        let lines = || findings.iter().map(|f| format!("\n    {f}")).collect::<String>();
-        if fate == Fate::Misnamed {
-            misnamed.push(format!("{context}: {}: {fate:?}{}", planted.name, lines()));
-        } else if std::env::var_os("DOCTOR_VERBOSE").is_some() {
-            println!("{context}: {}: {fate:?}{}", planted.name, lines());
+        let lines: String = findings.iter().map(|f| format!("\n    {f}")).collect();
+        let said = format!("{context}: {}: {fate:?}{lines}", planted.name);
+        if std::env::var_os("DOCTOR_VERBOSE").is_some() {
+            println!("{said}");
         }
+        misnamed.extend((fate == Fate::Misnamed).then_some(said));
     }
     Column { is_right, fates, misnamed }
 }

@@ -63,8 +63,8 @@ fn gazes(delivery: &mut Delivery, change: impl Fn([f32; 2], [f32; 2]) -> [f32; 2
     }
 }
 
-fn foveation(delivery: &mut Delivery, change: impl Fn(&mut Foveation)) {
-    change(&mut delivery.desc.settings.foveation);
+fn foveation(delivery: &mut Delivery) -> &mut Foveation {
+    &mut delivery.desc.settings.foveation
 }
 
 /// Offsets of a projection, of a Halton sequence.
@@ -97,17 +97,22 @@ const UV: MotionConvention = MotionConvention { unit: Uv, ..PIXELS };
 /// Regions of the clips, which the description of the foveation must have.
 const REGIONS: &str = "fovea_deg: 16.0, mid_deg: 40.0";
 const NEAR: &str = "DepthConvention::Reversed { near: 0.1";
+const OPPOSITE: &str = "{ direction: MotionDirection::CurrentMinusPrevious, ..";
 
 fn near(near: f32) -> Convention {
     Convention::Reversed { near, far: f32::INFINITY }
 }
 
-fn scale_regions(delivery: &mut Delivery, by: f32) {
-    foveation(delivery, |f| (f.fovea_deg, f.mid_deg) = (by * f.fovea_deg, by * f.mid_deg));
+fn halve_regions(f: &mut Foveation) {
+    (f.fovea_deg, f.mid_deg) = (0.5 * f.fovea_deg, 0.5 * f.mid_deg);
 }
 
-fn state_another_filter(delivery: &mut Delivery) {
-    foveation(delivery, |f| f.filter = if f.filter == Filter::Mip { Filter::Block } else { Filter::Mip });
+fn double_rates(f: &mut Foveation) {
+    (f.rate_mid, f.rate_far) = (f.rate_mid * 2, f.rate_far * 2);
+}
+
+fn change_filter(f: &mut Foveation) {
+    f.filter = if f.filter == Filter::Mip { Filter::Block } else { Filter::Mip };
 }
 
 fn state_jitter(delivery: &mut Delivery) {
@@ -126,12 +131,7 @@ fn show_full_rate(clip: &Clip, delivery: &mut Delivery) {
 }
 
 pub const PLANTED: [Planted; 20] = [
-    planted(
-        "vectors: current minus previous",
-        MotionDirection,
-        "{ direction: MotionDirection::CurrentMinusPrevious, ..",
-        |_, d| vectors(d, |[x, y]| [-x, -y]),
-    ),
+    planted("vectors: current minus previous", MotionDirection, OPPOSITE, |_, d| vectors(d, |[x, y]| [-x, -y])),
     planted("vectors: y up", MotionYAxis, "{ y_axis: YAxis::Up, ..", |_, d| vectors(d, |[x, y]| [x, -y])),
     planted("vectors: UV, stated pixels", MotionUnit, "{ unit: MotionUnit::Uv, ..", |_, d| convention(d, UV, PIXELS)),
     planted("vectors: pixels, stated UV", MotionUnit, "{ unit: MotionUnit::Pixels, ..", |_, d| {
@@ -158,13 +158,9 @@ pub const PLANTED: [Planted; 20] = [
     planted("gaze: origin in the middle", Fault::Gaze, "[x + 0.5 * width, y + 0.5 * height]", |_, d| {
         gazes(d, |[x, y], [w, h]| [x - 0.5 * w, y - 0.5 * h])
     }),
-    planted("foveation: stated off", FoveationFilter, "{ filter: Filter::", |_, d| {
-        foveation(d, |f| f.filter = Filter::Off)
-    }),
-    planted("foveation: another filter", FoveationFilter, "{ filter: Filter::", |_, d| state_another_filter(d)),
-    planted("foveation: radii, stated as diameters", FoveationRegions, REGIONS, |_, d| scale_regions(d, 0.5)),
-    planted("foveation: blocks twice as large", FoveationRates, "rate_mid: ", |_, d| {
-        foveation(d, |f| (f.rate_mid, f.rate_far) = (f.rate_mid * 2, f.rate_far * 2))
-    }),
+    planted("foveation: stated off", FoveationFilter, "{ filter: Filter::", |_, d| foveation(d).filter = Filter::Off),
+    planted("foveation: another filter", FoveationFilter, "{ filter: Filter::", |_, d| change_filter(foveation(d))),
+    planted("foveation: radii, stated as diameters", FoveationRegions, REGIONS, |_, d| halve_regions(foveation(d))),
+    planted("foveation: blocks twice as large", FoveationRates, "rate_mid: ", |_, d| double_rates(foveation(d))),
     planted("foveation: none", NotFoveated, "{ filter: Filter::Off, ..", show_full_rate),
 ];

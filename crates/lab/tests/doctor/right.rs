@@ -2,7 +2,7 @@
 
 use super::clips::{Clip, Delivered, Delivery, foveations};
 use super::planted::{contain_jitter, jitter};
-use afterimage::{Filter, Foveation, Gaze, Image, ViewFrame};
+use afterimage::{Filter, Foveation, Gaze, Image};
 use afterimage_testing::Draws;
 
 /// Fails if a finding accuses; prints what is found.
@@ -27,12 +27,6 @@ fn all_foveations() -> Vec<Foveation> {
 
 fn scene(name: &str) -> Clip {
     Clip::open(name, Some([240, 136]), 3, 4)
-}
-
-fn gazes(delivery: &mut Delivery, gaze: impl Fn(usize) -> Gaze) {
-    for (i, frame) in delivery.frames.iter_mut().enumerate() {
-        frame.view = ViewFrame { gaze: gaze(i), ..frame.view };
-    }
 }
 
 #[test]
@@ -61,16 +55,19 @@ fn gazes_everywhere() {
     ];
     for foveation in foveations() {
         for (what, px) in positions {
-            is_not_accused(
-                &format!("gaze {what}, {:?}", foveation.filter),
-                &Delivery::looking(&clip, foveation, |_| px),
-            );
+            let delivery = Delivery::looking(&clip, foveation, |_| px);
+            is_not_accused(&format!("gaze {what}, {:?}", foveation.filter), &delivery);
         }
         // Lost: the description does not say where the frame is sharp.
         let mut lost = Delivery::looking(&clip, foveation, |_| [0.5 * w - 0.5, 0.5 * h - 0.5]);
-        gazes(&mut lost, |_| Gaze::Lost);
+        lost.frames.iter_mut().for_each(|frame| frame.view.gaze = Gaze::Lost);
         is_not_accused(&format!("gaze lost, {:?}", foveation.filter), &lost);
     }
+}
+
+/// Puts a value in 3 % of the pixels.
+fn riddle<T: Copy>(image: &mut Image<T>, value: T, draws: &mut Draws) {
+    image.pixels_mut().iter_mut().filter(|_| draws.uniform() < 0.03).for_each(|pixel| *pixel = value);
 }
 
 #[test]
@@ -88,15 +85,9 @@ fn frames_that_show_nothing_or_nonsense() {
             check(what, &mut |_, f| f.color = Image::filled(clip.size(), [value; 3]));
         }
         check("riddled", &mut |_, frame| {
-            for pixel in frame.color.pixels_mut().iter_mut().filter(|_| draws.uniform() < 0.03) {
-                *pixel = [f32::NAN, f32::INFINITY, 0.5];
-            }
-            for depth in frame.depth.as_mut().unwrap().pixels_mut().iter_mut().filter(|_| draws.uniform() < 0.03) {
-                *depth = f32::NAN;
-            }
-            for motion in frame.motion.as_mut().unwrap().pixels_mut().iter_mut().filter(|_| draws.uniform() < 0.03) {
-                *motion = [f32::INFINITY, f32::NAN];
-            }
+            riddle(&mut frame.color, [f32::NAN, f32::INFINITY, 0.5], &mut draws);
+            riddle(frame.depth.as_mut().unwrap(), f32::NAN, &mut draws);
+            riddle(frame.motion.as_mut().unwrap(), [f32::INFINITY, f32::NAN], &mut draws);
         });
         check("color alone", &mut |_, f| (f.depth, f.motion) = (None, None));
         check("jitter that the vectors lack", &mut |i, f| f.view.jitter_px = jitter(i));

@@ -46,9 +46,8 @@ fn debug_views_draw_what_record_decides_next_and_move_nothing() {
             let (cpu, trace) = rig.on_cpu(index, reset(index), &views);
             same_counts(&counted, &cpu.stats).expect("a view counts, too");
             for (&view, picture) in drawn.iter().zip(&pictures) {
-                let expected: Vec<[u32; 3]> =
-                    trace[0].pixels().iter().map(|t| view_color(view, t).to_array().map(f32::to_bits)).collect();
-                let same = agree::colors(picture, &expected);
+                let bits = |t| view_color(view, t).to_array().map(f32::to_bits);
+                let same = agree::colors(picture, &trace[0].pixels().iter().map(bits).collect::<Vec<_>>());
                 same.unwrap_or_else(|error| panic!("{settings:?}, {view:?}, frame {index}: {error}"));
             }
             let after = rig.on_gpu(index, reset(index), &views);
@@ -78,9 +77,9 @@ fn counting_changes_nothing_and_may_be_left_out() {
             assert_eq!((with.shown, with.words), (without.shown, without.words));
             assert_eq!(with.stats.pixels, u64::from(SIZE[0] * SIZE[1]));
             assert_eq!(without.stats, FrameStats::default(), "not counted, not cleared");
-            let warnings: Vec<_> = with.stats.warnings().collect();
-            assert!(warnings.iter().any(|w| matches!(w, Warning::NonfiniteColor { pixels: 1.. })), "{warnings:?}");
-            assert!(warnings.iter().any(|w| matches!(w, Warning::BadTrust { pixels: 1.. })), "{warnings:?}");
+            let said: Vec<_> = with.stats.warnings().collect();
+            assert!(said.iter().any(|w| matches!(w, Warning::NonfiniteColor { pixels: 1.. })), "{said:?}");
+            assert!(said.iter().any(|w| matches!(w, Warning::BadTrust { pixels: 1.. })), "{said:?}");
         }
     }
 }

@@ -1,18 +1,11 @@
 //! The post-process on analytic scenes: both executors agree in every bit, and planted errors are seen.
 
-#[allow(dead_code, unused_imports, unused_macros, reason = "the drop-in's tests use the rest")]
-#[path = "../../../../tests/common/depth_hard.rs"]
-mod depth_hard;
-#[allow(dead_code, unused_imports, reason = "the drop-in's tests use the rest")]
-#[path = "../../../../tests/gpu/pass/rig.rs"]
-mod rig;
-#[allow(dead_code, reason = "the drop-in's tests use the rest")]
-#[path = "../../../../tests/common/settings.rs"]
-mod settings;
-
 #[allow(dead_code, reason = "the drop-in's tests use the rest")]
 #[path = "../../../../tests/common/images.rs"]
 mod images;
+#[allow(dead_code, unused_imports, reason = "the drop-in's tests use the rest")]
+#[path = "../../../../tests/gpu/pass/rig.rs"]
+mod rig;
 
 mod controls;
 mod decisions;

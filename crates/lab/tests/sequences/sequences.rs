@@ -171,15 +171,14 @@ fn every_variant_agrees_bit_for_bit() {
 #[test]
 fn noise_is_asked_for_and_refused_by_the_setting() {
     let desc = ContextDesc::new(SIZE);
-    for noisy_setting in [false, true] {
-        let settings = Settings { noisy: noisy_setting, ..settings(MethodKind::Smr) };
+    let calm = noise_view("refused", &desc);
+    let told = noisy(0, calm.clone());
+    for (is_noisy, right, wrong) in [(false, &calm, &told), (true, &told, &calm)] {
+        let settings = Settings { noisy: is_noisy, ..settings(MethodKind::Smr) };
         let Some(mut rig) = Rig::new(desc, settings) else { return };
-        let view = noise_view("refused", &desc);
-        let wrong = if noisy_setting { view.clone() } else { noisy(0, view.clone()) };
-        let message = rig.refusal(&wrong);
+        let message = rig.refusal(wrong);
         println!("{message}");
         assert!(message.contains("noise") && message.contains("Settings::noisy"), "{message}");
-        let right = if noisy_setting { noisy(0, view) } else { view };
-        rig.both(0, Reset::None, &[right]);
+        rig.both(0, Reset::None, std::slice::from_ref(right));
     }
 }

@@ -49,15 +49,12 @@ fn foveated_frames_have_the_samples_of_the_full_ones() {
         let full = source.frame(index as u64).unwrap().color;
         let lattices = foveation().lattices(&view, step.gaze_px, index as u64);
         let mut samples = 0;
-        for y in 0..SIZE[1] {
-            for x in 0..SIZE[0] {
-                let lattice = lattices.at([x, y]).unwrap();
-                assert_eq!(step.lods.at(x as usize, y as usize), lattice.step.ilog2() as f32);
-                if lattice.samples([x, y]) {
-                    let at = (x as usize, y as usize);
-                    assert_eq!(step.outputs[0].image.at(at.0, at.1), full.at(at.0, at.1));
-                    samples += 1;
-                }
+        for [x, y] in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y])) {
+            let (lattice, i, j) = (lattices.at([x, y]).unwrap(), x as usize, y as usize);
+            assert_eq!(step.lods.at(i, j), lattice.step.ilog2() as f32);
+            if lattice.samples([x, y]) {
+                assert_eq!(step.outputs[0].image.at(i, j), full.at(i, j));
+                samples += 1;
             }
         }
         assert!(samples < SIZE[0] * SIZE[1] / 3, "{samples} samples");

@@ -1,10 +1,8 @@
 //! The fixtures equal the output of the commands that write them, and the library can read them.
 
 use afterimage::{Image, ViewGeometry};
-use afterimage_lab::source;
-use afterimage_lab::source::exr_file;
-use afterimage_lab::source::exr_file::FrameToWrite;
-use afterimage_lab::source::{AnalyticSource, FrameSource, ReadLimits, SceneOptions};
+use afterimage_lab::source::exr_file::{self, FrameToWrite};
+use afterimage_lab::source::{self, AnalyticSource, FrameSource, ReadLimits, SceneOptions};
 use glam::{Mat4, Vec3};
 use std::path::PathBuf;
 
@@ -40,16 +38,10 @@ fn write_sequences() {
         let rows = scene.frame(index + 1).unwrap().previous_from_current.unwrap();
         let next_from_current = Mat4::from_cols_array_2d(&rows).transpose().inverse();
         let depth = frame.depth.unwrap();
-        exr_file::write(
-            &folder().join(format!("frame_{index:04}.exr")),
-            &FrameToWrite {
-                depth: Some(&depth),
-                motion: frame.motion.as_ref(),
-                motion_to_next: Some(&to_next(&view, &depth, next_from_current)),
-                ..FrameToWrite::color(&frame.color)
-            },
-        )
-        .unwrap();
+        let next = to_next(&view, &depth, next_from_current);
+        let (depth, motion, motion_to_next) = (Some(&depth), frame.motion.as_ref(), Some(&next));
+        let frame = FrameToWrite { depth, motion, motion_to_next, ..FrameToWrite::color(&frame.color) };
+        exr_file::write(&folder().join(format!("frame_{index:04}.exr")), &frame).unwrap();
     }
     let cameras = "{ \"width\": 160, \"height\": 90, \"fps\": 60.0, \"horizontal_fov_deg\": 70.0 }\n";
     std::fs::write(folder().join("cameras.json"), cameras).unwrap();
@@ -60,10 +52,8 @@ fn the_sequence_is_what_the_scene_gives() {
     let mut fixture =
         source::open(folder().to_str().unwrap(), &ReadLimits::default(), &SceneOptions::default()).unwrap();
     let info = fixture.info().clone();
-    assert_eq!(
-        (info.size, info.frames, info.fps, info.hfov_deg, info.still),
-        (SIZE, Some(FRAMES), Some(60.0), Some(70.0), false)
-    );
+    let expected = (SIZE, Some(FRAMES), Some(60.0), Some(70.0), false);
+    assert_eq!((info.size, info.frames, info.fps, info.hfov_deg, info.still), expected);
     let mut scene = scene();
     for index in 0..FRAMES {
         let (read, made) = (fixture.frame(index).unwrap(), scene.frame(index).unwrap());

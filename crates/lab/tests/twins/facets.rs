@@ -18,26 +18,18 @@ fn width(d: &mut Draws) -> f32 {
 fn seen(rows: Rows, more: fn(&mut Draws, &mut Vec<u32>)) -> Rows {
     rows.random(|d, row| {
         put(row, above(d));
-        two_widths(d, row);
+        row.extend([width(d), width(d)].map(f32::to_bits));
         more(d, row);
     })
-}
-
-fn two_widths(d: &mut Draws, row: &mut Vec<u32>) {
-    row.extend([width(d), width(d)].map(f32::to_bits));
 }
 
 fn cosine_and_width(rows: Rows) -> Rows {
     rows.random(|d, row| row.extend([draw(d), range(d, 0.01, 1.0)]))
 }
 
-fn widths_rows(rows: Rows, count: usize) -> Rows {
-    rows.random(|d, row| (0..count).for_each(|_| row.push(width(d).to_bits())))
-}
-
 pub const PROBES: &[Probe] = &[
     probe!(microfacet::ggx_widths, two_draws),
-    probe!(microfacet::ggx_mean_width, |rows| widths_rows(rows, 2)),
+    probe!(microfacet::ggx_mean_width, |rows| rows.random(|d, row| row.extend([width(d), width(d)].map(f32::to_bits)))),
     probe!(microfacet::ggx_length, |rows| seen(rows, |_, _| {})),
     probe!(microfacet::ggx_d, |rows| seen(rows, |_, _| {})),
     probe!(microfacet::vndf_sample, |rows| seen(rows, |d, row| row.extend([draw(d), draw(d)]))),
@@ -53,8 +45,6 @@ pub const PROBES: &[Probe] = &[
     probe!(microfacet::charlie_curve, cosine_and_width),
     probe!(microfacet::charlie_lambda, cosine_and_width),
     probe!(microfacet::charlie_visibility, |rows| {
-        rows.random(|d, row| {
-            row.extend([draw(d), scaled(d, -4, 14), draw(d), scaled(d, -4, 14)]);
-        })
+        rows.random(|d, row| row.extend([draw(d), scaled(d, -4, 14), draw(d), scaled(d, -4, 14)]))
     }),
 ];

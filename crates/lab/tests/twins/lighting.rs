@@ -1,7 +1,7 @@
 //! Probes of light and texture functions: light, shading, texel, and path draws.
 
 use crate::probe::{Probe, probe};
-use crate::scattering::{anywhere, put, share};
+use crate::scattering::{anywhere, put, put_all, share};
 use crate::values::*;
 use afterimage_lab::kernel::{light, shading, texel};
 use afterimage_testing::Draws;
@@ -58,8 +58,7 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(shading::mapped_normal, |rows| {
         rows.random(|d, row| {
-            put(row, anywhere(d));
-            put(row, anywhere(d));
+            put_all(row, [anywhere(d), anywhere(d)]);
             row.push(if d.bits() % 2 == 0 { 1.0_f32 } else { -1.0 }.to_bits());
             (0..3).for_each(|_| row.push(((d.bits() % 256) as f32 / 255.0).to_bits()));
             row.push(if d.bits() % 2 == 0 { 1.0_f32.to_bits() } else { range(d, 0.0, 2.0) });
@@ -70,9 +69,7 @@ pub const PROBES: &[Probe] = &[
             let toward = anywhere(d);
             let face = anywhere(d);
             let geometric = if face.dot(toward) < 0.0 { -face } else { face };
-            put(row, beside(d, geometric));
-            put(row, geometric);
-            put(row, toward);
+            put_all(row, [beside(d, geometric), geometric, toward]);
         })
     }),
     probe!(shading::hue, |rows| {

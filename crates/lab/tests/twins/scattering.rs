@@ -13,6 +13,10 @@ pub fn put(row: &mut Vec<u32>, v: impl Into<Vec3>) {
     row.extend(v.into().to_array().map(f32::to_bits));
 }
 
+pub fn put_all(row: &mut Vec<u32>, vectors: impl IntoIterator<Item = impl Into<Vec3>>) {
+    vectors.into_iter().for_each(|v| put(row, v));
+}
+
 /// Unit vector in the upper hemisphere, including the horizon and the pole.
 pub fn above(d: &mut Draws) -> Vec3 {
     let z = match d.bits() % 8 {
@@ -77,10 +81,7 @@ pub fn one_share(rows: Rows) -> Rows {
 fn materials(rows: Rows, more: fn(&mut Draws, &mut Vec<u32>)) -> Rows {
     rows.random(|d, row| {
         (0..6).for_each(|_| row.push(share(d).to_bits()));
-        row.push(match d.bits() % 3 {
-            0 => 0,
-            _ => range(d, 0.0, 300.0),
-        });
+        row.push(if d.bits().is_multiple_of(3) { 0 } else { range(d, 0.0, 300.0) });
         more(d, row);
     })
 }
@@ -129,22 +130,12 @@ pub const PROBES: &[Probe] = &[
     probe!(
         phong::phong_specular,
         |surface: PhongSurface, wo: Vec3, wi: Vec3| phong::phong_specular(&surface, wo, wi),
-        |rows| {
-            materials(rows, |d, row| {
-                put(row, above(d));
-                put(row, anywhere(d));
-            })
-        }
+        |rows| materials(rows, |d, row| put_all(row, [above(d), anywhere(d)]))
     ),
     probe!(
         phong::phong_eval,
         |surface: PhongSurface, wo: Vec3, wi: Vec3| phong::phong_eval(&surface, wo, wi),
-        |rows| {
-            materials(rows, |d, row| {
-                put(row, anywhere(d));
-                put(row, anywhere(d));
-            })
-        }
+        |rows| materials(rows, |d, row| put_all(row, [anywhere(d), anywhere(d)]))
     ),
     probe!(
         phong::phong_sample,

@@ -1,13 +1,11 @@
 //! Probes of scattering functions that read tables: albedo, bsdf.
 
 use crate::probe::{Probe, Rows, probe};
-use crate::scattering::{above, anywhere, put, share};
+use crate::scattering::{above, anywhere, directions, put, share};
 use crate::shape::*;
 use crate::values::*;
-use afterimage_lab::kernel::albedo;
-use afterimage_lab::kernel::albedo::AlbedoTables;
-use afterimage_lab::kernel::bsdf;
-use afterimage_lab::kernel::bsdf::{Layers, Lobes, Surface};
+use afterimage_lab::kernel::albedo::{self, AlbedoTables};
+use afterimage_lab::kernel::bsdf::{self, Layers, Lobes, Surface};
 use afterimage_lab::kernel::layers;
 use afterimage_testing::Draws;
 use glam::{Vec2, Vec3};
@@ -27,8 +25,7 @@ fn put_surface(d: &mut Draws, row: &mut Vec<u32>) {
     put(row, color(d));
     row.push(range(d, 1.0, 3.2));
     (0..3).for_each(|_| row.push(share(d).to_bits()));
-    let sheen = if d.bits() & 1 == 0 { Vec3::ZERO } else { color(d) };
-    put(row, sheen);
+    put(row, if d.bits() & 1 == 0 { Vec3::ZERO } else { color(d) });
     row.extend([share(d), share(d)].map(f32::to_bits));
     let flags = d.bits();
     row.extend([flags & 1, flags >> 1 & 1]);
@@ -112,8 +109,7 @@ pub const PROBES: &[Probe] = &[
         |wo: Vec3, a: Vec2| albedo::anisotropic_albedo(&TABLES, wo, a),
         "anisotropic_albedo(0u, $0, $1)",
         |rows| {
-            rows.random(|d, row| {
-                put(row, above(d));
+            directions(rows, 1, above, |d, row| {
                 let a: Vec2 = afterimage_lab::kernel::microfacet::ggx_widths(share(d), share(d));
                 row.extend([a.x, a.y].map(f32::to_bits));
             })
@@ -131,18 +127,12 @@ pub const PROBES: &[Probe] = &[
         "glass_albedo(0u, $0, $1, $2, $3)",
         |rows| {
             rows.random(|d, row| {
-                row.extend([range(d, 0.0, 1.0), share(d).to_bits(), range(d, 1.03, 3.0), d.bits() & 1]);
+                row.extend([range(d, 0.0, 1.0), share(d).to_bits(), range(d, 1.03, 3.0), d.bits() & 1])
             })
         }
     ),
     probe!(layers::retro_albedo, pair),
-    probe!(bsdf::retro_value, |rows| {
-        rows.random(|d, row| {
-            put(row, above(d));
-            put(row, above(d));
-            row.push(share(d).to_bits());
-        })
-    }),
+    probe!(bsdf::retro_value, |rows| directions(rows, 2, above, |d, row| row.push(share(d).to_bits()))),
     probe!(layers::reflect_albedo, |rows| {
         rows.random(|d, row| {
             (0..3).for_each(|_| row.push(share(d).to_bits()));

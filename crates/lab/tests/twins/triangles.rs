@@ -1,12 +1,11 @@
 //! Probes of intersection and direction functions.
 
 use crate::probe::{Probe, probe};
-use crate::scattering::put;
+use crate::scattering::{put, put_all};
 use crate::shape::*;
 use crate::values::*;
 use afterimage_lab::kernel::octahedral;
-use afterimage_lab::kernel::triangle;
-use afterimage_lab::kernel::triangle::Shear;
+use afterimage_lab::kernel::triangle::{self, Shear};
 use afterimage_testing::Draws;
 use glam::{Vec3, Vec3A};
 
@@ -19,9 +18,7 @@ fn ray_and_speck(d: &mut Draws, row: &mut Vec<u32>) {
     let (at, direction) = (vector(d, 1.0), vector(d, 1.0).normalize_or(Vec3::X));
     let shear = triangle::shear(direction);
     let corners = [0; 3].map(|_| at + vector(d, 3e-7));
-    for v in [shear.x, shear.y, shear.z, vector(d, 1e-3).into()].into_iter().chain(corners.map(Vec3A::from)) {
-        put(row, v);
-    }
+    put_all(row, [shear.x, shear.y, shear.z, vector(d, 1e-3).into()].into_iter().chain(corners.map(Vec3A::from)));
 }
 
 /// A ray and a triangle that it hits in the middle, at an edge, at a corner, or just misses.
@@ -40,9 +37,7 @@ fn ray_and_triangle(d: &mut Draws, row: &mut Vec<u32>) {
         direction[(d.bits() % 3) as usize] = 0.0;
     }
     let shear = triangle::shear(direction.normalize_or(Vec3::Y));
-    for v in [shear.x, shear.y, shear.z, origin.into()].into_iter().chain(corners.map(Vec3A::from)) {
-        put(row, v);
-    }
+    put_all(row, [shear.x, shear.y, shear.z, origin.into()].into_iter().chain(corners.map(Vec3A::from)));
 }
 
 shape!(Shear { x: Vec3A, y: Vec3A, z: Vec3A });
@@ -56,10 +51,7 @@ pub const PROBES: &[Probe] = &[
     probe!(triangle::sheared, |rows| {
         rows.random(|d, row| {
             let shear = triangle::shear(vector(d, 1.0).normalize_or(Vec3::X));
-            let at = vector(d, 10.0);
-            for v in [shear.x, shear.y, shear.z, at.into()] {
-                put(row, v);
-            }
+            put_all(row, [shear.x, shear.y, shear.z, vector(d, 10.0).into()]);
         })
     }),
     probe!(
@@ -74,8 +66,7 @@ pub const PROBES: &[Probe] = &[
             rows.random(|d, row| {
                 let a = vector(d, 1.0);
                 let b = if d.bits().is_multiple_of(2) { a * d.range(-2.0, 2.0) } else { vector(d, 1.0) };
-                put(row, a);
-                put(row, b);
+                put_all(row, [a, b]);
             })
         }
     ),
@@ -97,9 +88,7 @@ pub const PROBES: &[Probe] = &[
     probe!(triangle::magnitude, |rows| { rows.random(|d, row| (0..3).for_each(|_| put(row, vector(d, 100.0)))) }),
     probe!(triangle::offset_ray, |rows| {
         rows.random(|d, row| {
-            let (p, n) = (vector(d, 100.0), vector(d, 1.0).normalize_or(Vec3::X));
-            put(row, p);
-            put(row, n);
+            put_all(row, [vector(d, 100.0), vector(d, 1.0).normalize_or(Vec3::X)]);
             row.push(scaled(d, -20, 20));
         })
     }),

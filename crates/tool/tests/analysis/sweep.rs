@@ -71,10 +71,8 @@ fn a_grid_has_every_combination_once_and_switches_one_at_a_time() {
 #[test]
 fn a_command_can_be_pasted_into_a_shell() {
     let point = Point { input: "it's a file.exr".into(), ..point("wrs", &[("no-gate", ""), ("fovea", "5")], 2) };
-    assert_eq!(
-        point.command(&options(&[("gaze", "a b.csv")])),
-        r"afterimage run 'it'\''s a file.exr' --method wrs --gaze 'a b.csv' --fovea 5 --no-gate --seed 2"
-    );
+    let expected = r"afterimage run 'it'\''s a file.exr' --method wrs --gaze 'a b.csv' --fovea 5 --no-gate --seed 2";
+    assert_eq!(point.command(&options(&[("gaze", "a b.csv")])), expected);
 }
 
 /// The frontier by definition: no other point is at least as good in every part and better in one.
@@ -94,10 +92,8 @@ proptest! {
     fn the_frontier_is_that_of_brute_force(parts in prop::collection::vec((0..6_u8, 0..3_u8, 0..6_u8), 0..40)) {
         // Small numbers make ties frequent; the last value of the error represents NaN.
         let error = |e: u8| if e == 5 { f64::NAN } else { f64::from(e) };
-        let points: Vec<Standing> = parts
-            .iter()
-            .map(|&(c, s, e)| Standing { cost_ms: f64::from(c), samples_share: f64::from(s), error: error(e) })
-            .collect();
+        let at = |&(c, s, e): &(u8, u8, u8)| Standing { cost_ms: c.into(), samples_share: s.into(), error: error(e) };
+        let points: Vec<Standing> = parts.iter().map(at).collect();
         prop_assert_eq!(frontier(&points), by_brute_force(&points, dominated));
     }
 }
@@ -132,11 +128,8 @@ fn times_of_a_machine_that_slowed_down_are_made_comparable() {
 
 #[test]
 fn seeds_are_one_row_with_their_spread() {
-    let measurements = [0.2, 0.4, 0.3]
-        .iter()
-        .enumerate()
-        .map(|(seed, &flip)| measurement(point("wrs", &[], seed as u64), 10.0 + seed as f64, 4.0, flip))
-        .collect::<Vec<_>>();
+    let of = |seed: u8, flip| measurement(point("wrs", &[], seed.into()), 10.0 + f64::from(seed), 4.0, flip);
+    let measurements = [of(0, 0.2), of(1, 0.4), of(2, 0.3)];
     let table = Table::new(&measurements, None, String::new());
     let [row] = &table.rows[..] else { panic!("one row") };
     assert_eq!((row.seeds, row.pass_ms.median), (3, 11.0));
@@ -212,16 +205,8 @@ fn the_csv_has_a_cell_for_every_column_of_every_row() {
     let measurements = [measurement(hostile, 10.0, 4.0, 0.2), measurement(point("smr", &[], 0), 10.0, 4.0, 0.2)];
     let csv = Table::new(&measurements, None, String::new()).csv();
     // Splits a line into cells, with quotes; a quoted line break joins two lines.
-    let cells = |text: &str| {
-        let mut in_quotes = false;
-        text.chars()
-            .filter(|&c| {
-                in_quotes ^= c == '"';
-                c == ',' && !in_quotes
-            })
-            .count()
-            + 1
-    };
+    let cells =
+        |text: &str| text.split('"').step_by(2).map(|unquoted| unquoted.matches(',').count()).sum::<usize>() + 1;
     let header = csv.lines().next().unwrap();
     let rest = csv[header.len() + 1..].trim_end();
     assert_eq!(cells(rest), 2 * cells(header) - 1, "{csv}");

@@ -27,9 +27,7 @@ fn bench_times_every_pass_against_the_copy() {
             _ => 48,
         };
         assert!((1..=most).contains(&pass["bytes_per_pixel"].as_u64().unwrap()));
-        assert!(
-            pass["ms_per_megapixel"].as_f64().unwrap() > 0.0 && pass["share_of_copy_bandwidth"].as_f64().unwrap() > 0.0
-        );
+        assert!(["ms_per_megapixel", "share_of_copy_bandwidth"].iter().all(|key| pass[key].as_f64().unwrap() > 0.0));
     }
     assert!(!report["adapter"].as_str().unwrap().is_empty() && report["cold_start_ms"].as_f64().unwrap() > 0.0);
     refuses(&["bench", "post", "--frames", "3"], &["30"]);
@@ -39,8 +37,8 @@ fn bench_times_every_pass_against_the_copy() {
 fn bench_counts_the_rays_of_the_tracer() {
     let folder = Folder::new();
     let json = folder.text("rays.json");
-    let small = ["--size", "32x18", "--backend", "cpu", "--scene", "builtin:cornell", "--json", &json];
-    succeeds(&[&["bench", "trace"], &small[..]].concat());
+    let line = format!("bench trace --size 32x18 --backend cpu --scene builtin:cornell --json {json}");
+    succeeds(&words(&line));
     let report = read_json(Path::new(&json));
     let tracer = &report["scenes"][0]["tracers"][0];
     // At least one camera ray per pixel, and at most two rays per bounce plus the last.

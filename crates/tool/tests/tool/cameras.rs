@@ -1,7 +1,6 @@
 //! Camera files of other programs on the command line.
 
-use super::rig::{Folder, refuses, succeeds};
-use std::fs;
+use super::rig::{Folder, Out, refuses, succeeds, words};
 
 /// The camera at (0, -4, 1) that looks along +y, in Blender's axes, in the form of each program.
 const FILES: [(&str, &str); 4] = [
@@ -24,10 +23,9 @@ const FILES: [(&str, &str); 4] = [
 ];
 
 /// The bytes of a scene's picture by a camera.
-fn picture(camera: &str, out: &str, more: &[&str]) -> Vec<u8> {
-    let size = ["--size", "24x16", "--spp", "1", "--backend", "cpu", "--format", "exr"];
-    succeeds(&[&["trace", "builtin:cubes", "--camera", camera, "--out", out], &size[..], more].concat());
-    fs::read(format!("{out}/color/000000.exr")).unwrap()
+fn picture(camera: &str, more: &str) -> Vec<u8> {
+    let line = format!("trace builtin:cubes --size 24x16 --spp 1 --backend cpu --format exr --camera {camera} {more}");
+    Out::of(&words(&line)).bytes("color/000000.exr")
 }
 
 #[test]
@@ -45,7 +43,7 @@ fn camera_files_of_other_programs_show_the_same_picture() {
         ] {
             assert!(said.contains(line), "{said}");
         }
-        let picture = picture(&file, &folder.text(&format!("out{i}")), &[]);
+        let picture = picture(&file, "");
         assert!(*first.get_or_insert_with(|| picture.clone()) == picture, "{kind}");
     }
     // COLMAP: two files, a world with y down, and images in the order of their names.
@@ -54,10 +52,10 @@ fn camera_files_of_other_programs_show_the_same_picture() {
     let said = succeeds(&["info", &colmap]);
     assert!(said.starts_with("camera file: images.txt of COLMAP\nframes: 1, all alike\n"), "{said}");
     assert!(said.contains("(y up): 0.0000, 1.0000, 4.0000\nit looks along: 0.0000, 0.0000, -1.0000\n"), "{said}");
-    assert!(picture(&colmap, &folder.text("colmap"), &[]) == *first.as_ref().unwrap());
+    assert!(picture(&colmap, "") == *first.as_ref().unwrap());
     // Planted: half of the field of view is another picture.
     let other = folder.write("other.json", FILES[0].1.replace("60", "30").as_bytes());
-    assert!(picture(&other, &folder.text("other"), &[]) != first.unwrap());
+    assert!(picture(&other, "") != first.unwrap());
     let bad = folder.write("bad.json", br#"{"path":[]}"#);
     refuses(&["info", &bad], &["bad.json", "has no camera", "transforms.json"]);
     refuses(&["trace", "builtin:cubes", "--camera", &bad, "--out", &folder.text("bad")], &["bad.json", "nerfstudio"]);
@@ -72,9 +70,7 @@ fn a_camera_may_be_that_of_another_scene() {
         "cameras":[{"type":"perspective","perspective":{"yfov":0.7,"znear":0.1}}]}"#;
     let other = folder.write("other.GLTF", other.as_bytes());
     let own = folder.write("own.json", FILES[0].1.as_bytes());
-    let [a, b] =
-        [(&other, "a"), (&own, "b")].map(|(camera, out)| picture(camera, &folder.text(out), &["--hfov", "60"]));
-    assert!(a == b);
+    assert!(picture(&other, "--hfov 60") == picture(&own, "--hfov 60"));
     let none = folder.write("none.gltf", br#"{"asset":{"version":"2.0"}}"#);
     refuses(&["trace", "builtin:cubes", "--camera", &none, "--out", &folder.text("c")], &["none.gltf", "no camera"]);
     let missing = folder.text("missing.glb");

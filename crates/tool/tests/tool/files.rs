@@ -1,50 +1,31 @@
 //! Files that people bring: the exposure of their frames, and folders of runs that were aborted.
 
-use super::rig::{Folder, files, read_json, refuses, run, succeeds, tool};
+use super::rig::{Folder, files, kill_once, read_json, refuses, run, succeeds, tool, words};
 use afterimage::Image;
 use afterimage_lab::source::exr_file::{FrameToWrite, write};
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 
-const QUICK: &[&str] = &["--foveation", "off", "--method", "none", "--backend", "cpu", "--no-jod", "--no-flip"];
-
-/// Starts a run of thousands of frames, and kills it after its third.
-fn aborted_run(input: &str, out: &Path) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_afterimage"));
-    command.args(run(
-        input,
-        out.to_str().unwrap(),
-        &[QUICK, &["--gaze", "8,4", "--frames", "100000", "--size", "64x36"]].concat(),
-    ));
-    let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-    let started = Instant::now();
-    while !out.join("none/000002.png").exists() {
-        assert!(started.elapsed() < Duration::from_secs(60) && child.try_wait().unwrap().is_none());
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
-}
+const QUICK: &str = "--foveation off --method none --backend cpu --no-jod --no-flip --gaze 8,4";
 
 #[test]
 fn the_remains_of_an_aborted_run_are_replaced() {
     let folder = Folder::new();
     let out = folder.text("out");
-    aborted_run("analytic:lateral", &folder.path("out"));
-    assert!(!folder.path("out/report.json").exists());
+    let long = format!("{QUICK} --frames 100000 --size 64x36");
+    kill_once(&run("analytic:lateral", &out, &words(&long)), || folder.path("out/none/000002.png").exists());
+    assert!(folder.path("out/none/000002.png").exists() && !folder.path("out/report.json").exists());
     // What a write that was cut off leaves behind.
     fs::write(folder.path("out/none/.000009.png.1.2.part"), b"x").unwrap();
     fs::write(folder.path("out/none/notes.txt"), "mine").unwrap();
-    let again = [QUICK, &["--gaze", "8,4", "--frames", "2", "--size", "32x18"]].concat();
-    succeeds(&run("analytic:lateral", &out, &again));
+    let again = format!("{QUICK} --frames 2 --size 32x18");
+    let again = run("analytic:lateral", &out, &words(&again));
+    succeeds(&again);
     assert_eq!(files(&folder.path("out/none")), ["000000.png", "000001.png", "notes.txt"]);
     assert!(!files(&folder.path("out")).iter().any(|name| name.starts_with('.')), "{:?}", files(&folder.path("out")));
     assert_eq!(read_json(&folder.path("out/report.json"))["frames"], 2);
     // Frames of something else stay, also in the folder of a finished run without its report.
     fs::remove_file(folder.path("out/report.json")).unwrap();
-    refuses(&run("analytic:lateral", &out, &again), &["frames of something else", "--out"]);
+    refuses(&again, &["frames of something else", "--out"]);
     assert_eq!(files(&folder.path("out/none")).len(), 3);
 }
 
@@ -55,8 +36,9 @@ fn an_exposure_that_fits_is_proposed_and_found() {
     write(&path, &FrameToWrite::color(&Image::filled([16, 9], [1000.0; 3]))).unwrap();
     let input = path.to_str().unwrap();
     let out = folder.text("out");
-    let with = |exposure: &[&str]| {
-        let output = tool(&run(input, &out, &[QUICK, &["--gaze", "8,4", "--frames", "1"], exposure].concat()));
+    let with = |exposure: &str| {
+        let options = format!("{QUICK} --frames 1 {exposure}");
+        let output = tool(&run(input, &out, &words(&options)));
         assert!(output.status.success());
         let report = read_json(&folder.path("out/report.json"));
         let shown = image::open(folder.path("out/none/000000.png")).unwrap().into_rgb8();
@@ -65,11 +47,11 @@ fn an_exposure_that_fits_is_proposed_and_found() {
         (text, warned, report["exposure_ev"].as_f64().unwrap(), shown.get_pixel(8, 4).0[0])
     };
     // log2(0.18 / 1000) = -12.44
-    let (_, warned, ev, shown) = with(&[]);
+    let (_, warned, ev, shown) = with("");
     assert!(warned.contains("100 % of what is lit") && warned.contains("--exposure -12.4 fits"), "{warned}");
     assert_eq!((ev, shown), (0.0, 255));
     for exposure in ["auto", "-12.4"] {
-        let (text, warned, ev, shown) = with(&["--exposure", exposure]);
+        let (text, warned, ev, shown) = with(&format!("--exposure {exposure}"));
         assert_eq!(text.contains("exposure: -12.4 stops, from the first frame"), exposure == "auto", "{text}");
         assert!(!warned.contains("warning"), "{warned}");
         // 0.18 of white, encoded.

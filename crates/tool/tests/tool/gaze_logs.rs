@@ -29,21 +29,16 @@ fn an_export_is_read_as_it_is_and_converted() {
     let written = fs::read_to_string(&out).unwrap();
     assert!(written.contains("# screen_px: 2000x1000\n# screen_cm: 50x25\n# distance_cm: 70\n"), "{written}");
     assert!(written.ends_with("t_s,x_px,y_px,valid\n0,1000,250,1\n0.01,500,750,1\n0.02,nan,nan,0\n"), "{written}");
-    let run =
-        ["run", "analytic:scroll", "--size", "64x36", "--frames", "2", "--method", "none", "--no-jod", "--no-flip"];
-    let gaze = |file: &str, out: &str| {
-        both(&[&run[..], &["--gaze", file, "--out", out, "--gaze-map", "fit"]].concat());
-        fs::read_to_string(format!("{out}/gaze.csv")).unwrap()
-    };
     // The log itself and what it was converted to give the same gaze: 0.5, 0.25 of 64x36 from the middle of a pixel.
-    let (direct, converted) = (gaze(&log, &folder.text("a")), gaze(&out, &folder.text("b")));
+    let [direct, converted] = [&log, &out].map(|gaze| {
+        let small = "run analytic:scroll --size 64x36 --frames 2 --method none --no-jod --no-flip --gaze-map fit";
+        both(&words(&format!("{small} --gaze {gaze} --out {}", folder.text("run"))));
+        fs::read_to_string(folder.path("run/gaze.csv")).unwrap()
+    });
     assert_eq!(direct, converted);
     assert!(direct.contains("0,31.500,8.500"), "{direct}");
     let text = succeeds(&["info", &log]);
-    assert!(
-        text.contains("--from tobii") && text.contains("samples: 3 (1 lost)") && text.contains("warning: "),
-        "{text}"
-    );
+    assert!(["--from tobii", "samples: 3 (1 lost)", "warning: "].iter().all(|words| text.contains(words)), "{text}");
 }
 
 #[test]

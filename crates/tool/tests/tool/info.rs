@@ -1,19 +1,19 @@
 //! `afterimage info`, `scanpath` and `--help`.
 
-use super::rig::{Folder, SMALL, refuses, run, succeeds};
+use super::rig::{Folder, SMALL, ran, refuses, succeeds};
 use std::fs;
 
 #[test]
 fn scanpath_writes_what_run_reads_and_info_explains_both() {
     let folder = Folder::new();
-    let csv = folder.text("view.csv");
-    succeeds(&["scanpath", "--seconds", "2", "--seed", "4", "--out", &csv]);
-    let again = folder.text("again.csv");
-    succeeds(&["scanpath", "--seconds", "2", "--seed", "4", "--out", &again]);
+    let [csv, again] = ["view.csv", "again.csv"].map(|name| folder.text(name));
+    for file in [&csv, &again] {
+        succeeds(&["scanpath", "--seconds", "2", "--seed", "4", "--out", file]);
+    }
     assert_eq!(fs::read(&csv).unwrap(), fs::read(&again).unwrap());
     let text = succeeds(&["info", &csv]);
     assert!(text.contains("1920x1080 px") && text.contains("--gaze-map: angle"), "{text}");
-    succeeds(&run("analytic:scroll", &folder.text("out"), &[SMALL, &["--gaze", &csv, "--start", "1"]].concat()));
+    ran("analytic:scroll", &format!("{SMALL} --gaze {csv} --start 1"));
     let text = succeeds(&["info", "analytic:lateral"]);
     assert!(text.contains("640x360") && text.contains("motion convention: as read"), "{text}");
     assert!(text.contains("inputs look:\n  motion: ") && !text.contains("WRONG"), "{text}");

@@ -1,25 +1,25 @@
 //! `afterimage run --foveation quads`.
 
-use super::rig::{Folder, SMALL, column, read_json, refuses, run, succeeds, words};
+use super::rig::{Folder, Out, SMALL, ran, refuses, run, words};
 use serde_json::Value;
 
 const METHODS: [&str; 3] = ["none", "wrs", "smr"];
 
-/// The arguments of a run on the CPU.
-fn quads<'a>(more: &[&'a str]) -> Vec<&'a str> {
-    [&["--foveation", "quads", "--backend", "cpu", "--no-flip"], more].concat()
+/// A run of quads on a backend.
+fn quads(input: &str, backend: &str, more: &str) -> Out {
+    ran(input, &format!("--foveation quads --backend {backend} --no-flip {more}"))
+}
+
+/// A figure of each frame.
+fn by_frame(out: &Out, method: &str, name: &str) -> Vec<f64> {
+    out.column(method, name).into_iter().map(|figure| figure.expect("every frame has it")).collect()
 }
 
 /// Runs with a budget in percent; the report, and the shaded shares of each method by frame.
-fn report(input: &str, budget: &str, more: &[&str]) -> (Value, [Vec<f64>; 3]) {
-    let folder = Folder::new();
-    let out = folder.text("out");
-    succeeds(&run(input, &out, &quads(&[&["--budget", budget], more].concat())));
-    let shares = METHODS.map(|method| {
-        let shares = column(&folder.path("out"), method, "shaded_share");
-        shares.into_iter().map(|share| share.expect("every frame has a share")).collect()
-    });
-    (read_json(&folder.path("out").join("report.json")), shares)
+fn report(budget: &str) -> (Value, [Vec<f64>; 3]) {
+    let small = "--size 240x135 --frames 6 --no-jod --gaze 90,75 --jitter halton --reference-samples 2";
+    let out = quads("analytic:occluder", "cpu", &format!("{small} --budget {budget}"));
+    (out.json("report.json"), METHODS.map(|method| by_frame(&out, method, "shaded_share")))
 }
 
 /// Whether each method's share is the mean of its frames, smr spends most of the budget, and no frame exceeds it.
@@ -36,20 +36,17 @@ fn is_consistent(report: &Value, shares: &[Vec<f64>; 3], even: &[Vec<f64>; 3], b
 
 #[test]
 fn reports_say_how_much_was_shaded() {
-    let small = words("--size 240x135 --frames 6 --no-jod --gaze 90,75 --jitter halton --reference-samples 2");
-    let (even_report, even) = report("analytic:occluder", "0", &small);
+    let (even_report, even) = report("0");
     assert!(is_consistent(&even_report, &even, &even, 0.0));
     let mut before = even_report["methods"]["smr"]["psnr_db"].as_f64().unwrap();
     for percent in ["3", "12"] {
-        let (report, shares) = report("analytic:occluder", percent, &small);
+        let (report, shares) = report(percent);
         let budget = percent.parse::<f64>().unwrap() / 100.0;
         assert!(is_consistent(&report, &shares, &even, budget), "{shares:?}, {even:?}");
         assert!(!is_consistent(&report, &shares, &even, 2.1 * budget), "a planted error: half the budget");
         let foveation = &report["foveation"];
-        assert_eq!(
-            (&foveation["simulator"], &foveation["rate_mid"], &foveation["rate_far"]),
-            (&"quads".into(), &4.into(), &8.into())
-        );
+        assert_eq!(foveation["simulator"], "quads");
+        assert_eq!(["rate_mid", "rate_far"].map(|rate| foveation[rate].as_u64().unwrap()), [4, 8]);
         assert_eq!(foveation["budget_percent"].as_f64(), percent.parse().ok());
         let smr = &report["methods"]["smr"];
         assert!(report["samples"].is_null());
@@ -63,16 +60,14 @@ fn reports_say_how_much_was_shaded() {
 /// Without a gaze: as much everywhere, in every frame.
 #[test]
 fn a_share_is_shaded_everywhere_alike() {
-    let folder = Folder::new();
-    let out = folder.text("out");
-    let more = words("--size 240x135 --frames 6 --no-jod --share 25 --jitter halton --reference-samples 1");
-    succeeds(&run("analytic:occluder", &out, &quads(&more)));
-    let report = read_json(&folder.path("out").join("report.json"));
+    let more = "--size 240x135 --frames 6 --no-jod --share 25 --jitter halton --reference-samples 1";
+    let out = quads("analytic:occluder", "cpu", more);
+    let report = out.json("report.json");
     let foveation = ["fovea_deg", "mid_deg", "rate_mid", "rate_far", "budget_percent"];
     assert_eq!(foveation.map(|key| report["foveation"][key].as_f64().unwrap()), [0.0, 0.0, 4.0, 4.0, 12.5]);
-    let shares = column(&folder.path("out"), "smr", "shaded_share");
+    let shares = by_frame(&out, "smr", "shaded_share");
     println!("shares {shares:?}");
-    assert!(shares.iter().all(|share| (0.2..0.255).contains(&share.unwrap())), "{shares:?}");
+    assert!(shares.iter().all(|share| (0.2..0.255).contains(share)), "{shares:?}");
 }
 
 /// The renderer's time is that of depth and motion and of the quads that each method asked for.
@@ -81,25 +76,17 @@ fn scenes_are_shaded_by_quads() {
     if afterimage_testing::gpu::adapter().is_none() {
         return;
     }
-    let folder = Folder::new();
-    let out = folder.text("out");
-    let more = words("--jitter halton --reference-samples 1 --budget 5");
-    succeeds(&run("builtin:cubes", &out, &quads(&[SMALL, &more].concat())));
-    let report = read_json(&folder.path("out").join("report.json"));
-    let share = |method: &str| report["methods"][method]["shaded_share"].as_f64().unwrap();
-    assert!((0.03..0.2).contains(&share("smr")), "{}", share("smr"));
-    for method in METHODS {
-        let [shaded, times] = ["shaded_share", "render_ms"].map(|key| column(&folder.path("out"), method, key));
-        assert!(shaded.len() == 4 && shaded.iter().chain(&times).all(|v| v.unwrap() > 0.0), "{shaded:?}, {times:?}");
-    }
     // On a device the methods choose the same quads, which are shaded and stay there.
-    let on_device = folder.text("device");
-    let options = [&["--foveation", "quads", "--backend", "gpu", "--no-flip"], SMALL, &more].concat();
-    succeeds(&run("builtin:cubes", &on_device, &options));
-    let other = read_json(&folder.path("device").join("report.json"));
+    let [cpu, gpu] = ["cpu", "gpu"].map(|backend| {
+        quads("builtin:cubes", backend, &format!("{SMALL} --jitter halton --reference-samples 1 --budget 5"))
+    });
+    let [report, other] = [&cpu, &gpu].map(|out| out.json("report.json"));
+    let number = |report: &Value, method: &str, key: &str| report["methods"][method][key].as_f64().unwrap();
+    assert!((0.03..0.2).contains(&number(&report, "smr", "shaded_share")), "{report}");
     for method in METHODS {
-        let number = |report: &Value, key: &str| report["methods"][method][key].as_f64().unwrap();
-        let differs = |key: &str| (number(&report, key) - number(&other, key)).abs();
+        let [shaded, times] = ["shaded_share", "render_ms"].map(|key| by_frame(&cpu, method, key));
+        assert!(shaded.len() == 4 && shaded.iter().chain(&times).all(|&v| v > 0.0), "{shaded:?}, {times:?}");
+        let differs = |key: &str| (number(&report, method, key) - number(&other, method, key)).abs();
         assert!(differs("shaded_share") < 1e-3 && differs("psnr_db") < 0.05, "{method}");
     }
 }
@@ -110,23 +97,16 @@ fn a_first_frame_at_a_quarter_is_kept() {
     if afterimage_testing::gpu::adapter().is_none() {
         return;
     }
-    let folder = Folder::new();
-    let more = words("--jitter halton --reference-samples 1 --budget 5 --method smr");
-    let frames = |name: &str, backend: &str, more: &[&str], key: &str| -> Vec<f64> {
-        let out = folder.text(name);
-        let options = [&["--foveation", "quads", "--backend", backend, "--no-flip"], SMALL, more].concat();
-        succeeds(&run("builtin:cubes", &out, &options));
-        column(&folder.path(name), "smr", key).into_iter().map(|v| v.unwrap()).collect()
-    };
-    let quarter_first = [&more[..], &["--quarter-first"]].concat();
-    let without = frames("without", "cpu", &more, "psnr_db");
-    let with = frames("with", "cpu", &quarter_first, "psnr_db");
-    let on_device = frames("device", "gpu", &quarter_first, "psnr_db");
+    let runs = [("cpu", ""), ("cpu", "--quarter-first"), ("gpu", "--quarter-first")].map(|(backend, first)| {
+        let more = format!("{SMALL} --jitter halton --reference-samples 1 --budget 5 --method smr {first}");
+        quads("builtin:cubes", backend, &more)
+    });
+    let shares = by_frame(&runs[1], "smr", "shaded_share");
+    let [without, with, on_device] = runs.map(|out| by_frame(&out, "smr", "psnr_db"));
     println!("{without:?} without, {with:?} with, {on_device:?} on the device");
     assert!((0..2).all(|frame| with[frame] > without[frame] + 1.0));
     assert!(with.iter().zip(&on_device).all(|(a, b)| (a - b).abs() < 0.05));
-    let shares = column(&folder.path("with"), "smr", "shaded_share");
-    assert!((0.24..0.26).contains(&shares[0].unwrap()) && shares[1].unwrap() < 0.2, "{shares:?}");
+    assert!((0.24..0.26).contains(&shares[0]) && shares[1] < 0.2, "{shares:?}");
 }
 
 #[test]
@@ -134,21 +114,22 @@ fn what_quads_cannot_do_is_refused() {
     let folder = Folder::new();
     let out = folder.text("out");
     let still = "analytic:still";
-    let refused = |input: &str, more: &[&str], expected: &[&str]| refuses(&run(input, &out, &quads(more)), expected);
-    refused(still, &["--method", "oracle"], &["oracle", "moving samples"]);
-    refused(still, &["--geometry", "samples"], &["--geometry samples", "--foveation sparse"]);
-    refused(still, &["--order", "sobol"], &["--order sobol", "--foveation sparse"]);
-    refused(still, &["--rate-far", "16"], &["rate_far", "power of two from 2 to 8"]);
-    refused(still, &["--rate-mid", "8", "--rate-far", "4"], &["rate_far is 4", "at least rate_mid, 8"]);
-    let pattern = ["--source", "trace", "--sampling", "regions"];
-    refused("builtin:cubes", &pattern, &["--foveation quads", "--sampling regions"]);
+    let refused = |input: &str, more: &str, expected: &[&str]| {
+        refuses(&run(input, &out, &words(&format!("--foveation quads --backend cpu {more}"))), expected)
+    };
+    refused(still, "--method oracle", &["oracle", "moving samples"]);
+    refused(still, "--geometry samples", &["--geometry samples", "--foveation sparse"]);
+    refused(still, "--order sobol", &["--order sobol", "--foveation sparse"]);
+    refused(still, "--rate-far 16", &["rate_far", "power of two from 2 to 8"]);
+    refused(still, "--rate-mid 8 --rate-far 4", &["rate_far is 4", "at least rate_mid, 8"]);
+    refused("builtin:cubes", "--source trace --sampling regions", &["--foveation quads", "--sampling regions"]);
     for budget in ["-1", "101", "NaN", "much"] {
-        refused(still, &[&format!("--budget={budget}")], &["--budget", "0 to 100 percent"]);
+        refused(still, &format!("--budget={budget}"), &["--budget", "0 to 100 percent"]);
     }
     refuses(&run(still, &out, &["--budget", "3"]), &["--budget", "--foveation quads"]);
     refuses(&run(still, &out, &["--quarter-first"]), &["--quarter-first", "--foveation quads"]);
-    refused("builtin:cubes", &["--quarter-first", "--source", "trace"], &["--quarter-first", "path tracer"]);
-    refused(still, &["--share", "25", "--budget", "3"], &["--share", "--budget"]);
+    refused("builtin:cubes", "--quarter-first --source trace", &["--quarter-first", "path tracer"]);
+    refused(still, "--share 25 --budget 3", &["--share", "--budget"]);
     refuses(&run(still, &out, &["--share", "25"]), &["--share", "--foveation quads"]);
     refuses(&["bench", "--foveation", "quads"], &["--foveation"]);
     assert!(!folder.path("out").exists(), "nothing was written");

@@ -1,6 +1,6 @@
 //! Bad usage and bad files of `afterimage run`.
 
-use super::rig::{Folder, SMALL, refuses, run};
+use super::rig::{Folder, SMALL, refuses, run, words};
 use std::fs;
 
 #[test]
@@ -29,10 +29,8 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     refuses(&run(frames, &out, &["--reference-samples", "4"]), &["--reference-samples", "scene"]);
     refuses(&run(frames, &out, &["--jitter", "halton"]), &["--jitter halton", "--source raster", "analytic:NAME"]);
     refuses(&run("builtin:cubes", &out, &["--jitter", "halton", "--source", "trace"]), &["--jitter halton", "raster"]);
-    refuses(
-        &run("builtin:cubes", &out, &["--jitter", "halton", "--foveation", "layers"]),
-        &["--jitter halton", "--foveation sparse"],
-    );
+    let layers = ["--jitter", "halton", "--foveation", "layers"];
+    refuses(&run("builtin:cubes", &out, &layers), &["--jitter halton", "--foveation sparse"]);
     refuses(&run(still, &out, &["--start=-1"]), &["start"]);
     refuses(&run(still, &out, &["--wrs-bias", "exponential:x"]), &["LAMBDA"]);
     refuses(&run(still, &out, &["--gate-divisor", "0"]), &["gate.divisor"]);
@@ -93,5 +91,5 @@ fn bad_files_are_one_line_and_exit_code_2() {
     assert!(!folder.path("out").exists(), "nothing was written");
     // A file in place of the folder.
     let file = folder.write("file", b"");
-    refuses(&run("analytic:still", &format!("{file}/out"), SMALL), &["cannot be written", "--out"]);
+    refuses(&run("analytic:still", &format!("{file}/out"), &words(SMALL)), &["cannot be written", "--out"]);
 }

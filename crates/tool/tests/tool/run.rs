@@ -1,48 +1,40 @@
 //! `afterimage run`: files, and their reproducibility.
 
-use super::rig::{DEBUG, Folder, SMALL, files, read_json, refuses, run, same_on_both_backends, succeeds, tool, words};
+use super::rig::{DEBUG, Folder, SMALL, files, ran, refuses, run, same_on_both_backends, succeeds, tool, words};
 use serde_json::Value;
 use std::fs;
 use std::process::Command;
 
 #[test]
 fn run_writes_what_the_contract_says() {
-    let folder = Folder::new();
-    let out = folder.text("out");
-    let more = [SMALL, &["--reference", "--method", "none,wrs", "--debug", DEBUG]].concat();
-    succeeds(&run("analytic:lateral", &out, &more));
-    let out = folder.path("out");
+    let out = ran("analytic:lateral", &format!("{SMALL} --reference --method none,wrs --debug {DEBUG}"));
     let expected = "debug frames.csv gaze.csv none psnr.png psnr.svg reference report.json sheet.png wrs";
-    assert_eq!(files(&out), words(expected));
-    let frames = ["000000.png", "000001.png", "000002.png", "000003.png"];
+    assert_eq!(out.files(""), words(expected));
     for part in ["none", "wrs", "reference", "debug/wrs/flush", "debug/none/motion"] {
-        assert_eq!(files(&out.join(part)), frames, "{part}");
+        assert_eq!(out.files(part), words("000000.png 000001.png 000002.png 000003.png"), "{part}");
     }
-    assert_eq!(image::open(out.join("wrs/000003.png")).unwrap().to_rgb8().dimensions(), (160, 90));
-    let plot = fs::read_to_string(out.join("psnr.svg")).unwrap();
+    assert_eq!(image::open(out.path("wrs/000003.png")).unwrap().to_rgb8().dimensions(), (160, 90));
+    let plot = out.text("psnr.svg");
     assert!(plot.contains("lateral: PSNR by frame, mip 8 and 16"), "{plot}");
     assert_eq!(plot.matches("class=\"curve\"").count(), 2, "a line for each method");
-    assert_eq!(image::open(out.join("psnr.png")).unwrap().width(), 1920);
+    assert_eq!(image::open(out.path("psnr.png")).unwrap().width(), 1920);
 
-    let report = read_json(&out.join("report.json"));
+    let report = out.json("report.json");
     assert_eq!(report["tool"], "afterimage");
     assert_eq!((&report["frames"], &report["size"][0], &report["fps"]), (&4.into(), &160.into(), &60.0.into()));
     assert_eq!(report["backend"]["kind"], "cpu");
     for method in ["none", "wrs"] {
         let m = &report["methods"][method];
-        for key in ["psnr_db", "ssim", "flicker", "cpu_ms", "bytes_per_pixel", "nonfinite_in", "flushed"] {
+        let numbers = "psnr_db ssim flicker cpu_ms bytes_per_pixel nonfinite_in flushed flip weighted_psnr_db \
+                       delta_e94_mean delta_e94_p99";
+        for key in words(numbers) {
             assert!(m[key].is_number(), "{method}.{key}: {}", m[key]);
         }
-        for key in ["median", "p25", "p75"] {
-            assert!(m["ms"][key].is_number());
-        }
+        assert!(["median", "p25", "p75"].iter().all(|key| m["ms"][key].is_number()));
         for band in ["fovea", "mid", "periphery"] {
             assert!(m["bands"][band].get("psnr_db").is_some() && m["bands"][band].get("flip").is_some());
         }
         assert_eq!(m["nonfinite_out"], 0);
-        for key in ["flip", "weighted_psnr_db", "delta_e94_mean", "delta_e94_p99"] {
-            assert!(m[key].is_number(), "{method}.{key}: {}", m[key]);
-        }
         for key in ["retained_psnr_db", "replaced", "ghost_energy", "ghost_half_frames"] {
             assert!(m.get(key).is_some(), "{method}.{key}");
         }
@@ -53,7 +45,7 @@ fn run_writes_what_the_contract_says() {
     assert_eq!(report["methods"]["wrs"]["bytes_per_pixel"], 48);
     // 160 pixels over 70 degrees.
     assert!((report["flip_pixels_per_degree"].as_f64().unwrap() - 1.994).abs() < 1e-3);
-    let gaze = fs::read_to_string(out.join("gaze.csv")).unwrap();
+    let gaze = out.text("gaze.csv");
     assert_eq!((gaze.lines().next(), gaze.lines().count()), (Some("frame,x_px,y_px"), 5));
 }
 
@@ -62,8 +54,9 @@ fn the_same_seed_gives_the_same_bytes_on_any_number_of_threads() {
     let folder = Folder::new();
     let frames = |name: &str, threads: &str, seed: &str| {
         let out = folder.text(name);
+        let options = format!("{SMALL} --seed {seed} --format exr");
         let status = Command::new(env!("CARGO_BIN_EXE_afterimage"))
-            .args(run("analytic:occluder", &out, &[SMALL, &["--seed", seed, "--format", "exr"]].concat()))
+            .args(run("analytic:occluder", &out, &words(&options)))
             .env("RAYON_NUM_THREADS", threads)
             .output()
             .unwrap();
@@ -88,45 +81,38 @@ fn both_backends_write_the_same_bytes() {
     for (input, line, simulator, geometry) in
         [("analytic:occluder", &debug[..], "mip", None), ("builtin:cubes", traced, "regions", Some("samples"))]
     {
-        let [cpu, gpu] = same_on_both_backends(line, input, &words(line));
+        let [cpu, gpu] = same_on_both_backends(input, line);
         assert_eq!((&cpu["backend"]["kind"], &gpu["backend"]["kind"]), (&"cpu".into(), &"gpu".into()));
         let foveation = &cpu["foveation"];
         assert_eq!((&foveation["simulator"], foveation["geometry"].as_str()), (&simulator.into(), geometry), "{line}");
-        match simulator {
-            "mip" => {
-                assert!(cpu["methods"]["wrs"]["flushed"].is_number());
-                for method in ["none", "wrs"] {
-                    let of = |report: &Value| report["methods"][method]["persistent_bytes_per_pixel"].clone();
-                    assert_eq!(of(&cpu), of(&gpu), "{method}");
-                }
-            }
+        if simulator == "regions" {
             // Stored samples and their noise, of two frames.
-            "regions" => assert_eq!(cpu["methods"]["smr"]["persistent_bytes_per_pixel"], 24.0),
-            _ => {}
+            assert_eq!(cpu["methods"]["smr"]["persistent_bytes_per_pixel"], 24.0);
+            continue;
+        }
+        assert!(cpu["methods"]["wrs"]["flushed"].is_number());
+        for method in ["none", "wrs"] {
+            let [cpu, gpu] = [&cpu, &gpu].map(|report| &report["methods"][method]["persistent_bytes_per_pixel"]);
+            assert_eq!(cpu, gpu, "{method}");
         }
     }
 }
 
 #[test]
 fn frames_before_the_first_that_counts_are_shown_and_not_scored() {
-    let folder = Folder::new();
-    let scored = |from: &str| {
-        let out = folder.text(from);
-        succeeds(&run("analytic:lateral", &out, &[SMALL, &["--method", "none", "--score-from", from]].concat()));
-        let table = fs::read_to_string(folder.path(from).join("frames.csv")).unwrap();
-        let psnr: Vec<f64> = table.lines().skip(1).map(|row| row.split(',').nth(2).unwrap().parse().unwrap()).collect();
-        (psnr, read_json(&folder.path(from).join("report.json"))["methods"]["none"].clone())
+    let scored = |from: u32| {
+        let out = ran("analytic:lateral", &format!("{SMALL} --method none --score-from {from}"));
+        let psnr: Vec<f64> = out.column("none", "psnr_db").into_iter().flatten().collect();
+        (psnr, out.json("report.json")["methods"]["none"].clone())
     };
-    let ((frames, whole), (_, last)) = (scored("0"), scored("3"));
+    let ((frames, whole), (_, last)) = (scored(0), scored(3));
     let pooled =
         |psnr: &[f64]| -10.0 * (psnr.iter().map(|db| 10_f64.powf(-db / 10.0)).sum::<f64>() / psnr.len() as f64).log10();
     assert!((whole["psnr_db"].as_f64().unwrap() - pooled(&frames)).abs() < 1e-3, "{whole}, {frames:?}");
     assert!((last["psnr_db"].as_f64().unwrap() - frames[3]).abs() < 1e-3, "{last}, {frames:?}");
     assert!((frames[3] - pooled(&frames)).abs() > 1e-2, "otherwise this test cannot fail");
-    refuses(
-        &run("analytic:lateral", &folder.text("out"), &[SMALL, &["--score-from", "4"]].concat()),
-        &["--score-from 4", "4 frames"],
-    );
+    let late = format!("{SMALL} --score-from 4");
+    refuses(&run("analytic:lateral", &Folder::new().text("out"), &words(&late)), &["--score-from 4", "4 frames"]);
 }
 
 /// Rasterised scenes are shaded by quads, traced ones have lattices, and given frames simulate blur, unless the command
@@ -136,23 +122,18 @@ fn scenes_have_few_samples_by_default_and_given_frames_are_blurred() {
     if afterimage_testing::gpu::adapter().is_none() {
         return;
     }
-    let folder = Folder::new();
-    let traced = ["--source", "trace", "--spp", "1", "--reference-samples", "1"];
-    let cases: [(&str, &[&str], [&str; 2]); 6] = [
-        ("builtin:cubes", &[], ["quads", ""]),
-        ("builtin:cubes", &["--rate-far", "16"], ["sparse", "samples"]),
-        ("builtin:cubes", &traced, ["sparse", "samples"]),
-        ("builtin:cubes", &["--geometry", "full"], ["sparse", "full"]),
-        ("builtin:cubes", &["--foveation", "mip"], ["mip", ""]),
-        ("analytic:still", &[], ["mip", ""]),
-    ];
-    for (i, (input, more, expected)) in cases.into_iter().enumerate() {
-        let out = folder.text(&i.to_string());
-        let small = ["--size", "64x36", "--frames", "2", "--method", "none", "--no-flip", "--no-jod"];
-        succeeds(&run(input, &out, &[&small, more].concat()));
-        let foveation = &read_json(&folder.path(&format!("{i}/report.json")))["foveation"];
+    for (input, more, expected) in [
+        ("builtin:cubes", "", ["quads", ""]),
+        ("builtin:cubes", "--rate-far 16", ["sparse", "samples"]),
+        ("builtin:cubes", "--source trace --spp 1 --reference-samples 1", ["sparse", "samples"]),
+        ("builtin:cubes", "--geometry full", ["sparse", "full"]),
+        ("builtin:cubes", "--foveation mip", ["mip", ""]),
+        ("analytic:still", "", ["mip", ""]),
+    ] {
+        let out = ran(input, &format!("--size 64x36 --frames 2 --method none --no-flip --no-jod {more}"));
+        let foveation = &out.json("report.json")["foveation"];
         let found = ["simulator", "geometry"].map(|key| foveation[key].as_str().unwrap_or_default());
-        assert_eq!(found, expected, "{input}, {more:?}");
+        assert_eq!(found, expected, "{input}, {more}");
     }
 }
 
@@ -187,14 +168,11 @@ fn a_still_from_a_picture_file_works_without_depth_and_motion() {
     let folder = Folder::new();
     let picture = folder.text("still.png");
     image::RgbImage::from_fn(33, 21, |x, y| image::Rgb([x as u8 * 7, y as u8 * 11, 90])).save(&picture).unwrap();
-    let out = folder.text("out");
-    succeeds(&run(&picture, &out, &["--frames", "3", "--method", "none,wrs,oracle", "--gaze", "5,5", "--no-jod"]));
-    let report = read_json(&folder.path("out/report.json"));
+    let report = ran(&picture, "--frames 3 --method none,wrs,oracle --gaze 5,5 --no-jod").json("report.json");
     assert!(report["methods"]["oracle"]["bytes_per_pixel"].is_null());
     assert!(report["methods"]["oracle"]["share_of_oracle"]["psnr"].is_null(), "the eye did not move: nothing to gain");
-    let more = words("--size 160x90 --frames 40 --method none,wrs,oracle --no-jod --no-flip");
-    succeeds(&run("analytic:still", &folder.text("moving eye"), &more));
-    let methods = &read_json(&folder.path("moving eye/report.json"))["methods"];
+    let more = "--size 160x90 --frames 40 --method none,wrs,oracle --no-jod --no-flip";
+    let methods = &ran("analytic:still", more).json("report.json")["methods"];
     let share = |method: &str| methods[method]["share_of_oracle"]["psnr"].as_f64().unwrap();
     assert_eq!((share("none"), share("oracle")), (0.0, 1.0));
     assert!(share("wrs") > 0.0 && share("wrs") < 1.0);
@@ -205,27 +183,21 @@ fn a_still_from_a_picture_file_works_without_depth_and_motion() {
 /// Renderer and post-process, in every file that has times, add up to the whole frame.
 #[test]
 fn the_time_of_a_frame_is_that_of_the_renderer_and_the_post_process() {
-    let folder = Folder::new();
     let kinds = [
-        ("sparse", &["--foveation", "sparse", "--geometry", "samples"][..]),
-        ("full", &["--foveation", "sparse", "--geometry", "full"]),
-        ("mip", &["--foveation", "mip"]),
-        (
-            "traced",
-            &["--source", "trace", "--sampling", "regions", "--region-spp", "1,1,1", "--reference-samples", "2"],
-        ),
+        ("sparse", "--source raster --foveation sparse --geometry samples"),
+        ("full", "--source raster --foveation sparse --geometry full"),
+        ("mip", "--source raster --foveation mip"),
+        ("traced", "--source trace --sampling regions --region-spp 1,1,1"),
     ];
     if afterimage_testing::gpu::adapter().is_none() {
         return;
     }
     let mut render_ms = vec![];
     for (name, more) in kinds {
-        let out = folder.text(name);
-        let source = if name == "traced" { &[][..] } else { &["--source", "raster", "--reference-samples", "2"] };
-        let small = words("--size 160x90 --frames 5 --method none,smr --backend cpu --no-flip --no-jod");
-        let said = succeeds(&run("builtin:cubes", &out, &[source, more, &small].concat()));
-        assert!(said.contains("render +   post =  total ms"), "{said}");
-        let report = read_json(&folder.path(name).join("report.json"));
+        let small = "--reference-samples 2 --size 160x90 --frames 5 --method none,smr --backend cpu --no-flip --no-jod";
+        let out = ran("builtin:cubes", &format!("{more} {small}"));
+        assert!(out.said.contains("render +   post =  total ms"), "{}", out.said);
+        let report = out.json("report.json");
         for method in ["none", "smr"] {
             let of = |key: &str| report["methods"][method][key].as_f64();
             let adds = |a: Option<f64>, b: Option<f64>, total: Option<f64>, what: &str| {
@@ -251,7 +223,7 @@ fn the_time_of_a_frame_is_that_of_the_renderer_and_the_post_process() {
         }
         let clock = if cfg!(unix) { "render_cpu_ms" } else { "render_ms" };
         render_ms.push((report["methods"]["smr"][clock].as_f64().unwrap(), full_rate[clock].as_f64()));
-        frames_add_up(&fs::read_to_string(folder.path(name).join("frames.csv")).unwrap());
+        frames_add_up(&out.text("frames.csv"));
     }
     // Reading back, references and metrics are not part of the renderer's time, or foveated frames would take longer
     // than full-rate frames. A device's frame may be too short for that to show.
@@ -260,16 +232,15 @@ fn the_time_of_a_frame_is_that_of_the_renderer_and_the_post_process() {
     assert!(sparse.0 < sparse.1.unwrap() && full.0 < full.1.unwrap(), "{render_ms:?}");
 
     // Frames that are read have no renderer.
-    let out = folder.text("given");
-    succeeds(&run("analytic:lateral", &out, &[SMALL, &["--method", "smr", "--no-flip"]].concat()));
-    let report = read_json(&folder.path("given").join("report.json"));
+    let out = ran("analytic:lateral", &format!("{SMALL} --method smr --no-flip"));
+    let report = out.json("report.json");
     for key in ["render_ms", "render_cpu_ms", "total_ms", "total_cpu_ms"] {
         assert!(report["methods"]["smr"].get(key).is_some_and(Value::is_null), "{key}");
     }
     assert!(report["full_rate"].is_null());
     let none = &report["methods"]["smr"];
     assert!(none["flip"].is_null() && none["bands"]["mid"]["flip"].is_null() && none["psnr_db"].is_number());
-    let csv = fs::read_to_string(folder.path("given").join("frames.csv")).unwrap();
+    let csv = out.text("frames.csv");
     assert!(csv.lines().nth(1).unwrap().ends_with(",,,,,,"), "{csv}");
 }
 

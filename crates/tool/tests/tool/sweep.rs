@@ -1,12 +1,11 @@
 //! `afterimage sweep` as a process: files, resuming, errors.
 
-use super::rig::{Folder, files, read_json, refuses, succeeds, words};
+use super::rig::{Folder, files, kill_once, read_json, refuses, succeeds, words};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::Command;
 
 /// Three rounds (sizes of the fovea) of two methods on small frames; the first size has a third point.
 const SMALL: &str = "sweep analytic:lateral --backend cpu --size 96x54 --frames 38 --axis method=none,smr \
@@ -46,21 +45,8 @@ fn points(out: &Path) -> Vec<String> {
 
 /// Kills a sweep once a round of it is finished. False if it ended first.
 fn is_killed(out: &Path) -> bool {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_afterimage"))
-        .args(sweep(out.to_str().unwrap(), &[]))
-        .current_dir(afterimage_testing::workspace())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
     // Rounds have at most three points, so at least one is complete then, on any machine.
-    let patience = Instant::now();
-    while points(out).len() < 3 && child.try_wait().unwrap().is_none() {
-        assert!(patience.elapsed() < Duration::from_secs(120), "no round was ever finished");
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
+    kill_once(&sweep(out.to_str().unwrap(), &[]), || points(out).len() >= 3);
     let kept = points(out).len();
     println!("killed with {kept} of 7 points");
     assert!(kept >= 3, "a round was finished");
@@ -118,8 +104,8 @@ fn shards_that_are_merged_are_the_whole_sweep(folder: &Folder, whole: &str) {
     assert_eq!(pictures("merged"), pictures("whole"));
 
     run(&other, &["--set", "hfov=50", "--axis", "fovea=5"]);
-    let args = ["sweep", "--merge", &merged, &other, "--out", &folder.text("no")];
-    refuses(&args, &["other", "is part of another sweep"]);
+    let line = format!("sweep --merge {merged} {other} --out {}", folder.text("no"));
+    refuses(&words(&line), &["other", "is part of another sweep"]);
 }
 
 fn it_recommends_what_fits(folder: &Folder, whole: &str) {
@@ -189,14 +175,16 @@ fn a_plan_in_a_file_is_read_and_a_wrong_one_refused() {
     let text = "seeds = 2\n[common]\nframes = 38\nsize = \"64x36\"\nbackend = \"cpu\"\n[axes]\nmethod = [\"wrs\"]\n\
                 \"rate-mid+rate-far\" = [\"2+4\"]\n[switches]\nof = [\"no-gate\"]\n";
     fs::write(&plan, text).unwrap();
-    let args = ["sweep", "analytic:lateral", "--file", &plan, "--out", &out];
-    succeeds(&args);
+    succeeds(&["sweep", "analytic:lateral", "--file", &plan, "--out", &out]);
     let table = table(&out);
     let rows = table["rows"].as_array().unwrap();
     assert_eq!(rows.len(), 2);
     assert!(rows.iter().all(|r| r["seeds"] == 2 && r["command"].as_str().unwrap().contains("--rate-far 4")));
     assert_eq!(table["prices"][0]["switch"], "no-gate");
 
+    let ten = "[1,2,3,4,5,6,7,8,9,10]";
+    let axes = ["fovea", "mid", "blend", "smr-tolerance", "exposure", "hfov"].map(|axis| format!("{axis} = {ten}\n"));
+    let many = format!("[axes]\n{}", axes.concat());
     let wrong = [
         ("seeds = 0", "expected 1 to 1000"),
         ("axis = 3", "is no plan of a sweep"),
@@ -205,21 +193,15 @@ fn a_plan_in_a_file_is_read_and_a_wrong_one_refused() {
         ("[axes]\nmethod = [\"tsr\"]", "possible values: none, taa"),
         ("[axes]\nfove = [5]", "unexpected argument '--fove'"),
         ("[axes]\nmethod = [\"none\"]\n[common]\nframes = 37", "too few; expected at least 38"),
-        (
-            "[axes]\nfovea = [1,2,3,4,5,6,7,8,9,10]\nmid = [1,2,3,4,5,6,7,8,9,10]\nblend = [1,2,3,4,5,6,7,8,9,10]\n\
-          smr-tolerance = [1,2,3,4,5,6,7,8,9,10]\nexposure = [1,2,3,4,5,6,7,8,9,10]\nhfov = [1,2,3]",
-            "more than 100000 combinations",
-        ),
+        (&many, "more than 100000 combinations"),
     ];
     for (text, words) in wrong {
         fs::write(&plan, text).unwrap();
-        let args = ["sweep", "analytic:lateral", "--file", &plan, "--out", &no];
-        refuses(&args, &[words]);
+        refuses(&["sweep", "analytic:lateral", "--file", &plan, "--out", &no], &[words]);
     }
     assert!(!folder.path("no").exists(), "all points are checked before the first is measured");
-    let missing = folder.text("missing.toml");
-    let args = ["sweep", "analytic:lateral", "--file", &missing, "--out", &no];
-    refuses(&args, &["missing.toml", "cannot be read"]);
+    let missing = ["sweep", "analytic:lateral", "--file", &folder.text("missing.toml"), "--out", &no];
+    refuses(&missing, &["missing.toml", "cannot be read"]);
 }
 
 /// Traced samples are independent and, where every pixel has samples, unbiased. So the squared error of single frames

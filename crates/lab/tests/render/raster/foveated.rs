@@ -1,16 +1,14 @@
 //! Foveated frames against the full-rate frame's pixels.
 
-use super::rig::{FAST, Frame};
+use super::rig::{Frame, Rig, is_smooth};
 use crate::given;
 use crate::given::device;
-use afterimage::{Foveation, Image, Lattice, Lattices, ViewGeometry};
-use afterimage_lab::device::Headless;
-use afterimage_lab::raster::{AtlasLayout, FoveatedTargets, PixelSamples, Raster, Targets};
+use afterimage::{Foveation, Lattice, Lattices, ViewGeometry};
+use afterimage_lab::raster::{AtlasLayout, FoveatedTargets, PixelSamples};
 use afterimage_lab::scene::{Environment, Material, Pose, Scene, Texture, TextureRef, Triangles, Wrap, builtin};
 use afterimage_lab::source::SceneCamera;
 use afterimage_lab::trace::view::View;
 use glam::{DMat4, DQuat, DVec3, Vec2, vec3};
-use std::sync::Arc;
 
 const SIZE: [u32; 2] = [320, 180];
 
@@ -38,14 +36,8 @@ pub(super) fn noise() -> Scene {
     let material = Material { base_color_texture: Some(TextureRef { texture: 0 }), ..Material::default() };
     let environment = Environment::Constant([1.0; 3]);
     let mut scene = Scene::from_parts("noise", vec![material], triangles, Pose::default(), environment).unwrap();
-    let wrap = [Wrap::Repeat; 2];
-    scene.textures = vec![Texture {
-        size: [256; 2],
-        texels: texels.collect(),
-        wrap,
-        nearest: false,
-        coordinates: Default::default(),
-    }];
+    let (size, wrap, texels) = ([256; 2], [Wrap::Repeat; 2], texels.collect());
+    scene.textures = vec![Texture { size, texels, wrap, nearest: false, coordinates: Default::default() }];
     scene
 }
 
@@ -60,59 +52,14 @@ pub(super) fn flat(size: [u32; 2]) -> ViewGeometry {
     ViewGeometry::flat(size, 70.0).unwrap()
 }
 
-/// A scene on the device.
-pub(super) struct Rig {
-    pub device: Arc<Headless>,
-    pub raster: Raster,
-}
-
-/// The samples of a foveated frame.
-struct Foveated {
-    lattices: Lattices,
-    atlas: Frame,
-}
-
-impl Rig {
-    pub fn new(device: &Arc<Headless>, scene: &Scene, size: [u32; 2]) -> Self {
-        let raster = Raster::new(&device.device, &device.queue, scene, size, FAST).unwrap();
-        Self { device: device.clone(), raster }
-    }
-
-    pub fn read(&self, targets: &Targets) -> Frame {
-        Frame {
-            color: targets.read_color(&self.device),
-            distance: targets.read_distance(&self.device, self.raster.near()),
-            motion: targets.read_motion(&self.device),
-        }
-    }
-
-    pub fn full(&mut self, views: &[View; 2]) -> Frame {
-        let gpu = self.device.clone();
-        afterimage_testing::gpu::validated(&gpu.device, "a full-rate frame", || {
-            let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            self.raster.record(&gpu.device, &mut encoder, &views[0], &views[1]);
-            gpu.queue.submit([encoder.finish()]);
-            self.read(self.raster.targets())
-        })
-    }
-
-    fn foveated(&mut self, views: &[View; 2], lattices: &Lattices, layout: AtlasLayout) -> Foveated {
-        let gpu = self.device.clone();
-        let (lattices, size) = layout.place(lattices, views[0].geometry().size_px());
-        afterimage_testing::gpu::validated(&gpu.device, "a foveated frame", || {
-            let targets = FoveatedTargets::new(&gpu.device, size);
-            let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            self.raster.record_foveated(
-                &gpu.device,
-                &mut encoder,
-                [&views[0], &views[1]],
-                (&lattices, PixelSamples::Four),
-                &targets,
-            );
-            gpu.queue.submit([encoder.finish()]);
-            Foveated { lattices, atlas: self.read(&targets.atlas) }
-        })
-    }
+/// The samples of a foveated frame: their lattices in the atlas, and the atlas.
+fn foveated(rig: &mut Rig, views: &[View; 2], lattices: &Lattices, layout: AtlasLayout) -> (Lattices, Frame) {
+    let (lattices, size) = layout.place(lattices, views[0].geometry().size_px());
+    let targets = FoveatedTargets::new(&rig.device.device, size);
+    rig.submit(|raster, device, encoder| {
+        raster.record_foveated(device, encoder, views.each_ref(), (&lattices, PixelSamples::Four), &targets);
+    });
+    (lattices, rig.read(&targets.atlas))
 }
 
 /// Pixels of a lattice's samples inside the frame, with their texels.
@@ -146,20 +93,6 @@ impl Difference {
     fn is_small(&self) -> bool {
         self.smooth_db >= SMOOTH_DB && self.distance <= DISTANCE && self.motion_px <= MOTION_PX
     }
-}
-
-/// Whether the pixel and its neighbours are one surface that is flat in 1 / distance, or sky.
-fn is_smooth(distance: &Image<f32>, [x, y]: [usize; 2]) -> bool {
-    let [w, h] = [distance.width(), distance.height()];
-    if x == 0 || y == 0 || x + 1 == w || y + 1 == h {
-        return false;
-    }
-    let nearness = |x: usize, y: usize| 1.0 / distance.at(x, y);
-    let here = nearness(x, y);
-    [[1, 0], [0, 1], [1, 1]].iter().all(|&[i, j]| {
-        let (a, b) = (nearness(x - i, y - j), nearness(x + i, y + j));
-        (a + b - 2.0 * here).abs() <= 1e-3 * here && (a > 0.0) == (here > 0.0) && (b > 0.0) == (here > 0.0)
-    })
 }
 
 /// `shift`: planted error, added to the full-rate pixel.
@@ -216,38 +149,38 @@ fn samples_are_pixels_of_the_full_rate_frame() {
     let Some(device) = device() else { return };
     for (name, scene, views) in scenes() {
         let mut rig = Rig::new(&device, &scene, SIZE);
-        let full = rig.full(&views);
+        let full = rig.full(views.each_ref());
         for (gaze, index) in GAZES.into_iter().zip([0, 5, 9]) {
             let lattices = FOVEATION().lattices(views[0].geometry(), gaze, index);
             // In place, foveal samples have the bits of the frame.
-            let seen = rig.foveated(&views, &lattices, AtlasLayout::InPlace);
-            let fovea = &seen.lattices.as_slice()[0];
+            let (placed, atlas) = foveated(&mut rig, &views, &lattices, AtlasLayout::InPlace);
+            let fovea = &placed.as_slice()[0];
             assert_eq!(fovea.step, 1);
-            let d = difference(&full, &seen.atlas, fovea, 0);
+            let d = difference(&full, &atlas, fovea, 0);
             println!("{name}, in place: {d:?}");
             assert!(d.samples > 500 && d.bits == [0; 3]);
             // Planted: the neighbour's pixel.
-            let planted = difference(&full, &seen.atlas, fovea, 1);
+            let planted = difference(&full, &atlas, fovea, 1);
             assert!(planted.bits.iter().any(|&n| 10 * n > planted.samples), "{planted:?}");
 
             // In the smallest atlas, rounding differs.
-            let mut seen = rig.foveated(&views, &lattices, AtlasLayout::Compact);
-            let [fovea, coarse @ ..] = seen.lattices.as_slice() else { unreachable!() };
-            let d = difference(&full, &seen.atlas, fovea, 0);
+            let (placed, mut atlas) = foveated(&mut rig, &views, &lattices, AtlasLayout::Compact);
+            let [fovea, coarse @ ..] = placed.as_slice() else { unreachable!() };
+            let d = difference(&full, &atlas, fovea, 0);
             println!("{name}, compact: {d:?}");
             assert!(d.psnr_db > 60.0 && d.distance < 1e-5 && d.motion_px < 2e-3, "{d:?}");
             for lattice in coarse {
-                let d = difference(&full, &seen.atlas, lattice, 0);
+                let d = difference(&full, &atlas, lattice, 0);
                 println!("{name}, step {}: {d:?}", lattice.step);
                 assert!(lattice.step > 1 && d.smooth > 20 && d.is_small());
                 // Planted: samples of the neighbouring pixel.
-                let planted = difference(&full, &seen.atlas, lattice, 1);
+                let planted = difference(&full, &atlas, lattice, 1);
                 assert!(!planted.is_small(), "{planted:?}");
             }
             // Planted: motion in pixels of the small view.
             let far = *coarse.last().unwrap();
-            seen.atlas.motion = seen.atlas.motion.map(|m| m.map(|v| v / far.step as f32));
-            let planted = difference(&full, &seen.atlas, &far, 0);
+            atlas.motion = atlas.motion.map(|m| m.map(|v| v / far.step as f32));
+            let planted = difference(&full, &atlas, &far, 0);
             assert!(planted.motion_px > 100.0 * MOTION_PX, "{planted:?}");
         }
     }

@@ -1,6 +1,6 @@
 //! Depth and motion of the rasterizer against rays through pixel centres.
 
-use super::rig::{Difference, compare, draw, rays};
+use super::rig::{compare, draw, rays};
 use crate::given;
 use crate::given::device;
 use afterimage_lab::scene::Scene;
@@ -21,35 +21,29 @@ fn moved(view: &View, scale: f64) -> View {
     View::new(*view.geometry(), view.world_from_camera() * step * DMat4::from_quat(turn))
 }
 
-fn open(name: &str) -> Option<Scene> {
-    match name {
-        "cubes" | "courtyard" => Some(given::builtin(name)),
-        _ => Some(given::open(&given::path_of(name)?)),
-    }
-}
-
-fn difference(name: &str, camera: &str, times: [f64; 2]) -> Option<Difference> {
-    let device = device()?;
-    let scene = open(name)?;
-    let now = SceneCamera::choose(&scene, Some(camera), SIZE, None).unwrap().view(&scene, 0, 0.0);
-    let radius = scene.bounds().unwrap();
-    let before = moved(&now, f64::from((radius.max - radius.min).length()) * 0.2);
-    let views = [&now, &before];
-    let d = compare(&draw(&device, &scene, views, times), &rays(&scene, views, times));
-    println!("{name}: {d:?}");
-    Some(d)
+/// A scene through a camera's view; `None` if it is missing.
+fn seen(name: &str, camera: &str) -> Option<(Scene, View)> {
+    let scene = if name.contains('/') { given::open(&given::path_of(name)?) } else { given::builtin(name) };
+    let view = SceneCamera::choose(&scene, Some(camera), SIZE, None).unwrap().view(&scene, 0, 0.0);
+    Some((scene, view))
 }
 
 /// Turned by 0.01 rad, about 4 px everywhere: using one view for both frames would be wrong by that much.
 #[test]
 fn cameras_nodes_skins_and_morph_targets_move() {
+    let Some(device) = device() else { return };
     for (name, camera, times, least_surface, least_sky) in [
         ("courtyard", "lateral", [0.0, 0.0], 10_000, 1_000),
         ("cubes", "lateral", [1.25, 1.2], 2_000, 0),
         ("fox/Fox.glb", "framing", [0.35, 0.3], 1_000, 10_000),
         ("animated_morph_cube/AnimatedMorphCube.gltf", "framing", [0.9, 0.8], 1_000, 0),
     ] {
-        let Some(d) = difference(name, camera, times) else { continue };
+        let Some((scene, now)) = seen(name, camera) else { continue };
+        let bounds = scene.bounds().unwrap();
+        let before = moved(&now, f64::from((bounds.max - bounds.min).length()) * 0.2);
+        let views = [&now, &before];
+        let d = compare(&draw(&device, &scene, views, times), &rays(&scene, views, times));
+        println!("{name}: {d:?}");
         assert!(d.motion_px <= MOTION_PX && d.surface_pixels > least_surface && d.sky_pixels >= least_sky, "{name}");
     }
 }
@@ -57,8 +51,7 @@ fn cameras_nodes_skins_and_morph_targets_move() {
 #[test]
 fn motion_of_another_moment_is_seen() {
     let Some(device) = device() else { return };
-    let Some(scene) = open("fox/Fox.glb") else { return };
-    let view = SceneCamera::choose(&scene, Some("framing"), SIZE, None).unwrap().view(&scene, 0, 0.0);
+    let Some((scene, view)) = seen("fox/Fox.glb", "framing") else { return };
     let frame = draw(&device, &scene, [&view; 2], [0.35, 0.34]);
     let d = compare(&frame, &rays(&scene, [&view; 2], [0.35, 0.3]));
     assert!(d.motion_px > 0.5, "{d:?}");
@@ -67,8 +60,7 @@ fn motion_of_another_moment_is_seen() {
 #[test]
 fn depth_is_that_of_rays_and_reversed() {
     let Some(device) = device() else { return };
-    let scene = given::builtin("courtyard");
-    let view = SceneCamera::choose(&scene, Some("lateral"), SIZE, None).unwrap().view(&scene, 0, 0.0);
+    let (scene, view) = seen("courtyard", "lateral").unwrap();
     let frame = draw(&device, &scene, [&view; 2], [0.0; 2]);
     let d = compare(&frame, &rays(&scene, [&view; 2], [0.0; 2]));
     println!("{d:?}");

@@ -1,26 +1,18 @@
 //! One walk with all methods: on the device, where frames stay, and read back for methods on the CPU.
 
 use super::foveated::noise;
-use super::rig::FAST;
+use super::rig::{FAST, psnr_db};
 use super::{foveated, quad_views};
 use crate::given::device;
 use afterimage::{Filter, Foveation, Image, MethodKind, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::lattices::SparseGeometry;
-use afterimage_lab::metric;
+use afterimage_lab::metric::encode;
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::source::{FrameSource, RasterSource, SceneCamera, Wanted};
 
 const SIZE: [u32; 2] = [158, 90];
-
-/// PSNR after encoding.
-fn psnr_db(shown: &Image<[f32; 3]>, full: &Image<[f32; 3]>) -> f64 {
-    let (shown, full) = (metric::encode(shown, 0.0), metric::encode(full, 0.0));
-    let square = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| f64::from((a[c] - b[c]).powi(2))).sum::<f64>();
-    let squares = shown.pixels().iter().zip(full.pixels()).map(square).sum::<f64>();
-    -10.0 * (squares / shown.pixels().len() as f64 / 3.0).log10()
-}
 
 /// `layout`: of quad views; lattices without it.
 fn both_show_the_same(
@@ -60,7 +52,8 @@ fn both_show_the_same(
             assert_eq!(gpu.outputs[0].image.at(x, y), frame.reference.color.at(x, y), "({x}, {y})");
         }
         let last = &gpu.outputs[methods.len() - 1];
-        db = [&gpu.outputs[0], last].map(|output| psnr_db(&output.image, &frame.reference.color));
+        let encoded = |image: &Image<[f32; 3]>| encode(image, 0.0);
+        db = [&gpu.outputs[0], last].map(|shown| psnr_db(&encoded(&shown.image), &encoded(&frame.reference.color)));
     }
     println!("{geometry:?}, {layout:?}: none {:.2} dB, smr {:.2} dB", db[0], db[1]);
     assert!(layout.is_none() || db[0] > 15.0 && db[1] > 0.98 * db[0], "what is enlarged resembles the frame");

@@ -7,5 +7,5 @@ mod light;
 mod methods;
 mod quad_views;
 mod real;
-mod rig;
+pub mod rig;
 mod shaded;

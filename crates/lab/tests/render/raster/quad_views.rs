@@ -1,7 +1,7 @@
 //! Quad views against a camera of their resolution, and their composition against its formula.
 
-use super::foveated::{Rig, flat, noise, views};
-use super::rig::{FAST, Frame};
+use super::foveated::{flat, noise, views};
+use super::rig::{FAST, Frame, Rig};
 use crate::given::device;
 use afterimage::{Foveation, Image, ViewGeometry};
 use afterimage_lab::frame::OnDevice;
@@ -17,15 +17,11 @@ pub(super) const FOVEATION: fn() -> Foveation =
 /// Quad views of the rig's scene, in an atlas.
 fn drawn(rig: &mut Rig, seen: &[View; 2], quads: &QuadViews, layout: AtlasLayout) -> (QuadViews, Frame) {
     let (quads, size) = layout.place_views(quads, seen[0].geometry().size_px());
-    let gpu = rig.device.clone();
-    let atlas = afterimage_testing::gpu::validated(&gpu.device, "quad views", || {
-        let targets = FoveatedTargets::new(&gpu.device, size);
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        rig.raster.record_quad_views(&gpu.device, &mut encoder, [&seen[0], &seen[1]], &quads, &targets);
-        gpu.queue.submit([encoder.finish()]);
-        rig.read(&targets.atlas)
+    let targets = FoveatedTargets::new(&rig.device.device, size);
+    rig.submit(|raster, device, encoder| {
+        raster.record_quad_views(device, encoder, seen.each_ref(), &quads, &targets);
     });
-    (quads, atlas)
+    (quads, rig.read(&targets.atlas))
 }
 
 /// What a camera for the rectangle of a quad view sees at its resolution. `off_px`: planted shift, pixels of the frame.
@@ -37,7 +33,7 @@ fn by_camera(rig: &Rig, seen: &[View; 2], quad: &QuadView, off_px: f32) -> Frame
     };
     let geometry = ViewGeometry::off_axis(quad.points, tan(sx, ox, 0), tan(sy, oy, 1)).unwrap();
     let small = [0, 1].map(|i| View::new(geometry, seen[i].world_from_camera()));
-    Rig::new(&rig.device, &noise(), quad.points).full(&small)
+    Rig::new(&rig.device, &noise(), quad.points).full(small.each_ref())
 }
 
 /// PSNR of a quad view's colors, and the largest differences of relative distance and of motion in its pixels.
@@ -143,6 +139,10 @@ fn by_formula(quads: &QuadViews, atlas: &Frame, size: [u32; 2], move_px: f64) ->
     frame
 }
 
+fn differing<T: Copy + PartialEq>(a: &Image<T>, b: &Image<T>) -> usize {
+    a.pixels().iter().zip(b.pixels()).filter(|(a, b)| a != b).count()
+}
+
 #[test]
 fn a_composed_frame_is_the_views_enlarged_and_blended() {
     let Some(device) = device() else { return };
@@ -165,13 +165,10 @@ fn a_composed_frame_is_the_views_enlarged_and_blended() {
             lod: composed.read_lod(),
         };
         let expected = by_formula(&placed, &atlas, SIZE, 0.0);
-        let worst = |other: &Composed| {
-            let pairs = shown.color.pixels().iter().zip(other.color.pixels());
-            pairs.map(|(a, b)| (0..3).map(|c| (a[c] - b[c]).abs()).fold(0.0, f32::max)).fold(0.0, f32::max)
-        };
-        let lods = shown.lod.pixels().iter().zip(expected.lod.pixels()).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
-        let nearest = shown.distance.pixels().iter().zip(expected.distance.pixels()).filter(|(a, b)| a != b).count()
-            + shown.motion.pixels().iter().zip(expected.motion.pixels()).filter(|(a, b)| a != b).count();
+        let most = |a: &[f32], b: &[f32]| std::iter::zip(a, b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        let worst = |other: &Composed| most(shown.color.pixels().as_flattened(), other.color.pixels().as_flattened());
+        let lods = most(shown.lod.pixels(), expected.lod.pixels());
+        let nearest = differing(&shown.distance, &expected.distance) + differing(&shown.motion, &expected.motion);
         // Planted: samples at the corners of their pixels.
         let planted = worst(&by_formula(&placed, &atlas, SIZE, 0.5));
         println!("{layout:?}: {} and {lods} at most; {nearest} differ; planted {planted}", worst(&expected));

@@ -1,28 +1,20 @@
 //! Every available scene: finite, and similar to the path tracer's image.
 
-use super::rig::draw;
+use super::rig::{draw, psnr_db};
 use crate::given;
 use crate::given::{device, path_of};
+use crate::trace::rig::Rig;
 use afterimage::Image;
 use afterimage::kernel::color::srgb_encode;
 use afterimage_lab::scene::{Environment, builtin};
 use afterimage_lab::source::SceneCamera;
-use afterimage_lab::trace::cpu::CpuTracer;
 use afterimage_lab::trace::effects::{Effect, Effects};
-use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::settings::TraceSettings;
-use afterimage_lab::trace::work::Spans;
 use afterimage_lab::trace::world::World;
 use std::path::Path;
 
 fn shown(image: &Image<[f32; 3]>) -> Image<[f32; 3]> {
     image.map(|c| c.map(|v| srgb_encode((v / (1.0 + v)).clamp(0.0, 1.0))))
-}
-
-fn psnr(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>) -> f64 {
-    let squares: f64 =
-        a.pixels().iter().zip(b.pixels()).flat_map(|(a, b)| (0..3).map(move |i| f64::from(a[i] - b[i]).powi(2))).sum();
-    -10.0 * (squares / (3 * a.pixels().len()) as f64).log10()
 }
 
 /// PSNR of the tone-mapped image against 16 paths per pixel; `None` without a device. Panics if the frame is not
@@ -40,23 +32,15 @@ fn likeness(input: &str) -> Option<f64> {
     assert!(frame.color.pixels().iter().flatten().all(|v| v.is_finite() && *v >= 0.0), "{input}");
     assert!(frame.motion.pixels().iter().flatten().all(|v| v.is_finite()), "{input}");
     assert!(frame.distance.pixels().iter().all(|v| *v > 0.0), "{input}");
-    let world = World::new(&scene);
-    let mut film = Film::new(size);
-    CpuTracer::new(TraceSettings::default()).trace(
-        &world,
-        &view,
-        0,
-        &Spans::uniform(size[0], 0..size[1], 0..16),
-        &mut film,
-    );
-    let psnr = psnr(&shown(&frame.color), &shown(&film.color()));
+    let rig = Rig { name: input.to_owned(), world: World::new(&scene), view };
+    let traced = shown(&rig.cpu(TraceSettings::default(), 16).color());
+    let psnr = psnr_db(&shown(&frame.color), &traced);
     println!("{input}: {psnr:.1} dB");
     if input == "builtin:courtyard" {
         // Planted errors: a black image, and the image upside down.
-        let (h, traced) = (size[1] as usize, shown(&film.color()));
-        let turned = Image::from_fn(size, |[x, y]| frame.color.at(x as usize, h - 1 - y as usize));
+        let turned = Image::from_fn(size, |[x, y]| frame.color.at(x as usize, (size[1] - 1 - y) as usize));
         for wrong in [Image::filled(size, [0.0; 3]), shown(&turned)] {
-            let db = self::psnr(&wrong, &traced);
+            let db = psnr_db(&wrong, &traced);
             assert!(db < ALIKE_DB, "{db:.1} dB");
         }
     }

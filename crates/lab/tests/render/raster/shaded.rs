@@ -4,23 +4,17 @@ use super::rig::FAST;
 use crate::given::{builtin, device};
 use afterimage::Image;
 use afterimage_lab::frame::{Content, QuadRequest, ShadedColor};
-use afterimage_lab::scene::Scene;
 use afterimage_lab::source::{FrameRequest, FrameSource, RasterSource, SceneCamera, Wanted};
 
 /// Odd sides: the last quads lie half beyond the edges.
 const SIZE: [u32; 2] = [159, 91];
-
-fn scenes() -> Vec<Scene> {
-    let named = ["courtyard", "cubes", "mirror-room"].map(builtin);
-    [&named[..], &[super::foveated::noise()]].concat()
-}
 
 /// They have the bits of that frame with the same jitter and one sample a pixel, and nothing else is shaded. So have
 /// the surfaces that a plan is made from, which differ from those of the pixels' centres.
 #[test]
 fn chosen_pixels_are_those_of_the_full_rate_frame() {
     let Some(device) = device() else { return };
-    for scene in scenes() {
+    for scene in ["courtyard", "cubes", "mirror-room"].map(builtin).into_iter().chain([super::foveated::noise()]) {
         let camera = SceneCamera::choose(&scene, Some("walk"), SIZE, None).unwrap();
         let name = scene.name.clone();
         let mut source = RasterSource::new(device.clone(), scene, camera, None, FAST).unwrap();

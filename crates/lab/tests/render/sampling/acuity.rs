@@ -35,12 +35,11 @@ fn mask(share: f32, frame: u64) -> Vec<bool> {
 #[test]
 fn every_pixel_has_its_turn() {
     let share = 1.0 / 16.0;
-    let mut last = vec![0_u64; 640 * 360];
-    let mut gap = 0;
+    let (mut last, mut gap) = (vec![0_u64; 640 * 360], 0);
     for frame in 0..200 {
-        for (i, _) in mask(share, frame).iter().enumerate().filter(|(_, m)| **m) {
-            gap = gap.max(frame - last[i]);
-            last[i] = frame;
+        for (last, _) in last.iter_mut().zip(mask(share, frame)).filter(|(_, is_sampled)| *is_sampled) {
+            gap = gap.max(frame - *last);
+            *last = frame;
         }
     }
     let longest = last.iter().map(|&f| 200 - f).max().unwrap().max(gap);
@@ -53,13 +52,8 @@ fn targets_keep_their_distance() {
     // Counts in 8x8 squares vary less than a binomial, whose variance is n p (1 - p).
     for share in [1.0 / 16.0, 1.0 / 8.0, 0.3] {
         let mask = mask(share, 7);
-        let mut counts = vec![];
-        for y in 0..45 {
-            for x in 0..80 {
-                let inside = (0..64).filter(|i| mask[(y * 8 + i / 8) * 640 + x * 8 + i % 8]).count();
-                counts.push(inside as f64);
-            }
-        }
+        let square = |i: usize| (0..64).map(move |k| (i / 80 * 8 + k / 8) * 640 + i % 80 * 8 + k % 8);
+        let counts: Vec<_> = (0..45 * 80).map(|i| square(i).filter(|&px| mask[px]).count() as f64).collect();
         let mean = counts.iter().sum::<f64>() / counts.len() as f64;
         let variance = counts.iter().map(|c| (c - mean) * (c - mean)).sum::<f64>() / counts.len() as f64;
         let by_chance = 64.0 * f64::from(share) * (1.0 - f64::from(share));

@@ -74,12 +74,8 @@ fn samples_have_the_colors_traced_at_their_places() {
         // Each point of each lattice again, by itself, in a view whose pixel (x, y) is the lattice's point.
         let mut seen = 0;
         for lattice in plan.lattices().as_slice() {
-            let grid = Lattice {
-                step: lattice.step,
-                first_px: lattice.first_px.map(|v| v as f32),
-                points: lattice.points,
-                footprint_px: 1.0,
-            };
+            let first_px = lattice.first_px.map(|v| v as f32);
+            let grid = Lattice { step: lattice.step, first_px, points: lattice.points, footprint_px: 1.0 };
             for (x, y) in (0..lattice.points[1]).flat_map(|y| (0..lattice.points[0]).map(move |x| (x, y))) {
                 let px = [lattice.first_px[0] + x * lattice.step, lattice.first_px[1] + y * lattice.step];
                 if px[0] >= SIZE[0] || px[1] >= SIZE[1] || plan.lattices().at(px) != Some(lattice) {

@@ -1,8 +1,7 @@
 //! Samplers against their densities: chi-squared tests over bins of (cosine, azimuth), and integrals of densities.
 
 use super::surfaces::*;
-use afterimage_lab::kernel::bsdf;
-use afterimage_lab::kernel::bsdf::{Layers, Lobes, Surface};
+use afterimage_lab::kernel::bsdf::{self, Layers, Lobes, Surface};
 use afterimage_lab::kernel::microfacet::{ggx_d, ggx_length, vndf_sample};
 use afterimage_lab::kernel::sampling::*;
 use afterimage_testing::{Draws, accept, p_of_counts, reject};
@@ -54,25 +53,18 @@ fn p_of(name: &str, sample: impl Fn(&mut Draws) -> Option<Vec3>, pdf: impl Fn(Ve
     }
     let total: f64 = probabilities.iter().sum();
     assert!(total < 1.001, "{name}: the density integrates to {total}");
-    let mut kept = (vec![], vec![]);
-    let mut rest = (lost, (1.0 - total).max(0.0) * SAMPLES as f64);
-    for (&n, &p) in counts.iter().zip(&probabilities) {
-        let e = p * SAMPLES as f64;
-        if e >= 5.0 {
-            kept.0.push(n);
-            kept.1.push(e);
-        } else {
-            rest = (rest.0 + n, rest.1 + e);
-        }
-    }
-    if rest.1 >= 5.0 {
-        kept.0.push(rest.0);
-        kept.1.push(rest.1);
+    let all = counts.into_iter().zip(probabilities.iter().map(|p| p * SAMPLES as f64));
+    let (mut kept, few): (Vec<(u64, f64)>, Vec<_>) = all.partition(|&(_, e)| e >= 5.0);
+    let n: u64 = lost + few.iter().map(|bin| bin.0).sum::<u64>();
+    let e = (1.0 - total).max(0.0) * SAMPLES as f64 + few.iter().map(|bin| bin.1).sum::<f64>();
+    if e >= 5.0 {
+        kept.push((n, e));
     } else {
         // Poisson counts with 5 expected exceed 30 with probability 2e-14.
-        assert!(rest.0 <= 30, "{name}: {} samples where {} are expected", rest.0, rest.1);
+        assert!(n <= 30, "{name}: {n} samples where {e} are expected");
     }
-    p_of_counts(&kept.0, &kept.1)
+    let (counts, expected): (Vec<_>, Vec<_>) = kept.into_iter().unzip();
+    p_of_counts(&counts, &expected)
 }
 
 fn two(d: &mut Draws) -> Vec2 {
@@ -117,28 +109,16 @@ fn visible_normals_are_sampled_by_their_density() {
 fn surfaces() -> Vec<(&'static str, Surface)> {
     let rough = Surface { roughness: 0.75, specular: 1.0, base_color: Vec3::new(0.8, 0.5, 0.2), ..WHITE };
     let glass = Surface { transmission: 1.0, base_color: Vec3::ONE, ..rough };
+    let coated = Surface { clearcoat: 1.0, clearcoat_roughness: 0.7, ..rough };
+    let sheen_color = Vec3::new(0.3, 0.5, 0.1);
     vec![
         ("plastic", rough),
         ("metal", Surface { metallic: 1.0, anisotropy: 0.6, ..rough }),
-        (
-            "coat and sheen",
-            Surface { clearcoat: 1.0, clearcoat_roughness: 0.7, sheen_color: Vec3::splat(0.5), ..rough },
-        ),
+        ("coat and sheen", Surface { sheen_color: Vec3::splat(0.5), ..coated }),
         ("glass from outside", glass),
         ("glass from inside", Surface { entering: false, ..glass }),
         ("sheet", Surface { thin: true, ..glass }),
-        (
-            "all",
-            Surface {
-                metallic: 0.3,
-                anisotropy: 0.5,
-                clearcoat: 0.7,
-                clearcoat_roughness: 0.6,
-                sheen_color: Vec3::new(0.3, 0.5, 0.1),
-                transmission: 0.5,
-                ..rough
-            },
-        ),
+        ("all", Surface { metallic: 0.3, anisotropy: 0.5, clearcoat: 0.7, sheen_color, transmission: 0.5, ..coated }),
     ]
 }
 

@@ -3,8 +3,7 @@
 use super::surfaces::*;
 use afterimage_lab::kernel::bsdf;
 use afterimage_lab::kernel::bsdf::{Layers, Lobes, Scatter, Surface};
-use afterimage_testing::holds;
-use afterimage_testing::{ALPHA, Draws};
+use afterimage_testing::{ALPHA, Draws, holds};
 use glam::Vec3;
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -47,6 +46,10 @@ fn energy(surface: &Surface, wo: Vec3, grid: u32) -> f64 {
 /// error.
 struct Lobe(&'static str, fn(f32, f32) -> Surface, [f64; 2]);
 
+fn glass(roughness: f32, ior: f32) -> Surface {
+    Surface { roughness, specular: 1.0, transmission: 1.0, ior, ..WHITE }
+}
+
 /// Bounds are about 1.3 times the measured values: interpolation errors of the tables, and 3e-4 of the quadrature
 /// itself, as Lambert's lobe shows.
 const LOBES: &[Lobe] = &[
@@ -56,21 +59,9 @@ const LOBES: &[Lobe] = &[
     Lobe("dielectric", |r, i| Surface { roughness: r, specular: 1.0, ior: i, ..WHITE }, [1e-3, 5e-3]),
     Lobe("coat", |r, _| Surface { clearcoat_roughness: r, clearcoat: 1.0, ..WHITE }, [1e-3, 5e-3]),
     Lobe("sheen", |r, _| Surface { sheen_roughness: r, sheen_color: Vec3::ONE, ..WHITE }, [3e-3, 1e-2]),
-    Lobe(
-        "sheet",
-        |r, i| Surface { roughness: r, specular: 1.0, transmission: 1.0, thin: true, ior: i, ..WHITE },
-        [1e-3, 5e-3],
-    ),
-    Lobe(
-        "into glass",
-        |r, i| Surface { roughness: r, specular: 1.0, transmission: 1.0, ior: i, ..WHITE },
-        [3e-3, 2e-2],
-    ),
-    Lobe(
-        "out of glass",
-        |r, i| Surface { roughness: r, specular: 1.0, transmission: 1.0, ior: i, entering: false, ..WHITE },
-        [1e-2, 7e-2],
-    ),
+    Lobe("sheet", |r, i| Surface { thin: true, ..glass(r, i) }, [1e-3, 5e-3]),
+    Lobe("into glass", glass, [3e-3, 2e-2]),
+    Lobe("out of glass", |r, i| Surface { entering: false, ..glass(r, i) }, [1e-2, 7e-2]),
     Lobe("stretched 0.5", |r, _| Surface { roughness: r, metallic: 1.0, anisotropy: 0.5, ..WHITE }, [4e-3, 2e-2]),
     Lobe("stretched 1", |r, _| Surface { roughness: r, metallic: 1.0, anisotropy: 1.0, ..WHITE }, [1e-2, 6e-2]),
 ];

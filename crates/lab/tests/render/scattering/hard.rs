@@ -1,14 +1,12 @@
 //! H83: the ends of every parameter range. Nothing is NaN, infinite or negative, and weights sum to 1.
 
 use super::surfaces::*;
-use afterimage_lab::kernel::bsdf;
-use afterimage_lab::kernel::bsdf::{Lobes, Surface};
+use afterimage_lab::kernel::bsdf::{self, Lobes, Surface};
 use afterimage_lab::kernel::direction::{basis, to_local, to_world, unit};
 use afterimage_lab::kernel::octahedral::{decode_direction, encode_direction};
 use afterimage_lab::kernel::phong::{PhongSurface, phong_eval, phong_sample};
 use afterimage_lab::kernel::sampling::*;
-use afterimage_testing::Draws;
-use afterimage_testing::holds;
+use afterimage_testing::{Draws, accept, holds, p_of_z, reject};
 use glam::{Vec2, Vec3};
 
 const DRAWS: [f32; 5] = [0.0, 1.0 / 16_777_216.0, 0.5, 0.999, 16_777_215.0 / 16_777_216.0];
@@ -29,11 +27,9 @@ fn h83_scattering_is_finite_at_the_ends_of_every_range() {
                 let u = std::array::from_fn(|_| DRAWS[d.bits() as usize % 5]);
                 let s = bsdf::sample(&layers, wo, u, Lobes::ALL);
                 assert!((s.wi.length() - 1.0).abs() < 1e-5, "{surface:?} {wo} {u:?}: {s:?}");
-                for s in [
-                    s.scatter,
-                    bsdf::eval(&layers, wo, direction(z, d.uniform()), Lobes::ALL),
-                    bsdf::eval(&layers, wo, -direction(z, d.uniform()), Lobes::ALL),
-                ] {
+                let others = [1.0, -1.0].map(|side| side * direction(z, d.uniform()));
+                let [above, below] = others.map(|wi| bsdf::eval(&layers, wo, wi, Lobes::ALL));
+                for s in [s.scatter, above, below] {
                     let good = |x: f32| x.is_finite() && x >= 0.0;
                     assert!(s.value.to_array().into_iter().all(good) && good(s.pdf), "{surface:?} {wo} {u:?}: {s:?}");
                     // Directions with light have a density, except in the sheen's tail, which is clamped to e^-60
@@ -50,11 +46,8 @@ fn h83_scattering_is_finite_at_the_ends_of_every_range() {
         }
     }
     assert!(sampled > 50_000);
-    holds!(
-        "H83",
-        Cpu,
-        "{sampled} densities at the ends of all ranges finite; weights of the power heuristic sum to 1 within 2e-7"
-    );
+    let weights = "weights of the power heuristic sum to 1 within 2e-7";
+    holds!("H83", Cpu, "{sampled} densities at the ends of all ranges finite; {weights}");
 }
 
 #[test]
@@ -141,9 +134,9 @@ fn phong_is_passive_and_its_samples_have_its_mean() {
         }
         let error = ((squares - mean * mean) / f64::from(n)).sqrt();
         println!("phong from {z}: {mean:.4} +- {error:.4}, exact {exact:.4}");
-        afterimage_testing::accept("phong", afterimage_testing::p_of_z((mean - exact) / error));
+        accept("phong", p_of_z((mean - exact) / error));
         assert!(exact <= 0.9);
-        afterimage_testing::reject("phong", afterimage_testing::p_of_z((mean - 0.9 * exact) / error));
+        reject("phong", p_of_z((mean - 0.9 * exact) / error));
     }
     for wi in [direction(1e-7, 0.1), direction(1.0, 0.0), -Vec3::Z] {
         let s = phong_eval(&PhongSurface { exponent: 1e6, ..surface }, direction(1e-7, 0.6), wi);

@@ -1,6 +1,6 @@
 //! Builder of small glTF files: JSON and a binary buffer.
 
-use afterimage_lab::scene::{Scene, SceneLimits};
+use afterimage_lab::scene::Scene;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use tempfile::TempDir;
@@ -132,22 +132,40 @@ impl Gltf {
         index
     }
 
+    /// A node with a mesh of one primitive.
+    pub fn shape(&mut self, primitive: Value) -> usize {
+        let mesh = self.mesh(primitive);
+        self.node(json!({"mesh": mesh}))
+    }
+
     /// A node with a mesh of the given positions.
     pub fn soup(&mut self, positions: &[[f32; 3]]) -> usize {
         let positions = self.floats(positions);
-        let mesh = self.mesh(json!({"attributes": {"POSITION": positions}}));
-        self.node(json!({"mesh": mesh}))
+        self.shape(json!({"attributes": {"POSITION": positions}}))
+    }
+
+    /// A file of one node with a mesh of the given positions.
+    pub fn of(positions: &[[f32; 3]]) -> Self {
+        let mut file = Self::new();
+        file.soup(positions);
+        file
+    }
+
+    /// One triangle that this animation moves.
+    pub fn animated<const N: usize>(path: &str, interpolation: &str, times: &[f32], values: &[[f32; N]]) -> Self {
+        let mut file = Self::of(&TRIANGLE);
+        file.animate(0, path, interpolation, times, values);
+        file
     }
 
     /// One triangle with the given material.
     pub fn with_material(material: Value) -> Self {
         let mut file = Self::new();
+        let material = file.push("materials", material);
         let positions = file.floats(&TRIANGLE);
         let uvs = file.floats(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]);
-        let material = file.push("materials", material);
         let attributes = json!({"POSITION": positions, "TEXCOORD_0": uvs});
-        let mesh = file.mesh(json!({"attributes": attributes, "material": material}));
-        file.node(json!({"mesh": mesh}));
+        file.shape(json!({"attributes": attributes, "material": material}));
         file
     }
 
@@ -184,12 +202,6 @@ impl Gltf {
         let scene = super::open(&file.path).unwrap();
         super::assert_sound(&scene);
         scene
-    }
-
-    #[track_caller]
-    pub fn open_clip(&self, clip: &str) -> Result<Scene, afterimage_lab::error::InputError> {
-        let file = self.written();
-        Scene::open_clip(file.path.to_str().unwrap(), Some(clip), &SceneLimits::default())
     }
 
     #[track_caller]

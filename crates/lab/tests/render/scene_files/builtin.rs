@@ -1,15 +1,15 @@
 //! Built-in scenes.
 
-use super::{assert_sound, assert_triangles_sound};
-use afterimage_lab::scene::{Scene, SceneLimits};
+use super::assert_sound;
+use crate::given;
+use afterimage_lab::scene::Scene;
 use glam::Vec3;
 use std::collections::HashMap;
 
 fn builtin(name: &str) -> Scene {
-    let scene = Scene::open(&format!("builtin:{name}"), &SceneLimits::default()).unwrap();
+    let scene = given::builtin(name);
     assert_eq!(scene.name, format!("builtin:{name}"));
     assert_sound(&scene);
-    assert_triangles_sound(scene.still(), &scene);
     assert_eq!(scene.pose(0.0).cameras.len(), 1);
     scene
 }

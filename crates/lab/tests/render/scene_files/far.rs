@@ -1,9 +1,9 @@
 //! Scenes far from the origin of their file are those at the origin.
 
-use super::builder::{Gltf, TRIANGLE};
+use super::builder::{Gltf, TRIANGLE, written};
 use afterimage_lab::scene::Scene;
 use afterimage_lab::source::SceneCamera;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use serde_json::json;
 
 /// A triangle, a light and, if wanted, a camera and an animation, under a node at `at`; or with vertices there.
@@ -18,9 +18,9 @@ fn file(at: [f64; 3], with_camera: bool, animated: bool, in_vertices: bool) -> G
     };
     file.json["accessors"][positions]["min"] = of(f32::min);
     file.json["accessors"][positions]["max"] = of(f32::max);
-    let mesh = file.mesh(json!({"attributes": {"POSITION": positions}}));
     let place = |x: f64, y: f64, z: f64| json!([at[0] + x, at[1] + y, at[2] + z]);
-    let triangle = file.node(json!({"mesh": mesh, "translation": node}));
+    let triangle = file.shape(json!({"attributes": {"POSITION": positions}}));
+    file.json["nodes"][triangle]["translation"] = json!(node);
     file.node(json!({"translation": place(2.0, 0.5, 1.0), "extensions": {"KHR_lights_punctual": {"light": 0}}}));
     file.json["extensionsUsed"] = json!(["KHR_lights_punctual"]);
     file.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [{"type": "point"}]}});
@@ -37,7 +37,7 @@ fn file(at: [f64; 3], with_camera: bool, animated: bool, in_vertices: bool) -> G
 }
 
 /// Triangles, lights and cameras at a time.
-fn contents(scene: &Scene, time_s: f64) -> (Vec<[glam::Vec3; 3]>, Vec<glam::Vec3>, Vec<glam::DVec3>) {
+fn contents(scene: &Scene, time_s: f64) -> (Vec<[Vec3; 3]>, Vec<Vec3>, Vec<DVec3>) {
     let pose = scene.pose(time_s);
     let triangles = scene.still().positions.iter().chain(&pose.moving.positions).copied().collect();
     let eyes = pose.cameras.iter().map(|c| c.world_from_camera.w_axis.truncate()).collect();
@@ -91,11 +91,9 @@ fn what_lies_near_or_is_large_stays_where_it_is() {
 #[test]
 fn cameras_of_files_are_in_the_coordinates_of_the_scenes_file() {
     let scene = file([1e6, 0.0, 0.0], true, false, false).open();
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("cameras.json");
     let keys = json!({"keyframes": [{"time_s": 0, "position": [1e6 + 2.0, 1.0, 5.0], "target": [1e6, 0.0, 0.0]}]});
-    std::fs::write(&path, keys.to_string()).unwrap();
-    let camera = SceneCamera::choose(&scene, path.to_str(), [64, 36], None).unwrap();
+    let file = written("cameras.json", keys.to_string().as_bytes());
+    let camera = SceneCamera::choose(&scene, file.path.to_str(), [64, 36], None).unwrap();
     let eye = camera.view(&scene, 0, 0.0).world_from_camera().w_axis.truncate();
     assert_eq!(eye + scene.origin, DVec3::new(1e6 + 2.0, 1.0, 5.0));
     assert_eq!(camera.camera_pose(&scene, 0, 0.0).origin, scene.origin);

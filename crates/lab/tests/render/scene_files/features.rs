@@ -15,8 +15,7 @@ fn with_mode(positions: &[[f32; 3]], indices: Option<&[u32]>, mode: u32) -> Gltf
     if let Some(indices) = indices {
         primitive["indices"] = json!(file.indices(indices));
     }
-    let mesh = file.mesh(primitive);
-    file.node(json!({"mesh": mesh}));
+    file.shape(primitive);
     file
 }
 
@@ -59,18 +58,13 @@ fn points_and_lines_are_named() {
 #[test]
 fn integer_attributes_are_scaled_where_they_are_normalised() {
     let mut file = Gltf::new();
-    let positions: Vec<u8> = [[0i16, 0, 0], [300, 0, 0], [0, -32768, 0]]
-        .iter()
-        .flat_map(|p| p.iter().flat_map(|x| x.to_le_bytes()))
-        .collect();
+    let positions: Vec<u8> = [0i16, 0, 0, 300, 0, 0, 0, -32768, 0].iter().flat_map(|x| x.to_le_bytes()).collect();
     let positions = file.accessor(&positions, 3, "VEC3", 5122);
     let colors = file.accessor(&[255, 0, 51, 0, 255, 0, 0, 0, 255], 3, "VEC3", 5121);
-    file.json["accessors"][colors]["normalized"] = json!(true);
     let uvs: Vec<u8> = [0u16, 65535, 13107, 0, 0, 0].iter().flat_map(|x| x.to_le_bytes()).collect();
     let uvs = file.accessor(&uvs, 3, "VEC2", 5123);
-    file.json["accessors"][uvs]["normalized"] = json!(true);
-    let mesh = file.mesh(json!({"attributes": {"POSITION": positions, "COLOR_0": colors, "TEXCOORD_0": uvs}}));
-    file.node(json!({"mesh": mesh}));
+    [colors, uvs].into_iter().for_each(|i| file.json["accessors"][i]["normalized"] = json!(true));
+    file.shape(json!({"attributes": {"POSITION": positions, "COLOR_0": colors, "TEXCOORD_0": uvs}}));
     let scene = file.open();
     let triangles = scene.still();
     assert_eq!(triangles.positions[0], [Vec3::ZERO, Vec3::X * 300.0, Vec3::Y * -32768.0]);
@@ -92,8 +86,7 @@ fn interleaved_vertices_are_read_by_their_stride() {
     let accessor = |offset, kind| json!({"bufferView": view, "byteOffset": offset, "count": 3, "type": kind, "componentType": 5126});
     let positions = file.push("accessors", accessor(0, "VEC3"));
     let uvs = file.push("accessors", accessor(12, "VEC2"));
-    let mesh = file.mesh(json!({"attributes": {"POSITION": positions, "TEXCOORD_0": uvs}}));
-    file.node(json!({"mesh": mesh}));
+    file.shape(json!({"attributes": {"POSITION": positions, "TEXCOORD_0": uvs}}));
     let scene = file.open();
     assert_eq!(scene.still().positions[0], TRIANGLE.map(Vec3::from_array));
     assert_eq!(scene.still().uvs[0], [Vec2::new(0.25, 0.5); 3]);
@@ -101,10 +94,9 @@ fn interleaved_vertices_are_read_by_their_stride() {
 
 #[test]
 fn sparse_accessors_replace_elements_with_or_without_a_base() {
-    let mut file = Gltf::new();
-    file.soup(&TRIANGLE);
-    let values = [[5.0f32, 0.0, 0.0], [0.0, 7.0, 0.0]];
-    file.sparse(0, &[1, 2], &values.as_flattened().iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<_>>());
+    let mut file = Gltf::of(&TRIANGLE);
+    let values: Vec<u8> = [5.0f32, 0.0, 0.0, 0.0, 7.0, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect();
+    file.sparse(0, &[1, 2], &values);
     let expected = [Vec3::ZERO, Vec3::X * 5.0, Vec3::Y * 7.0];
     assert_eq!(file.open().still().positions[0], expected);
     file.json["accessors"][0].as_object_mut().unwrap().remove("bufferView");
@@ -123,27 +115,24 @@ fn nodes_place_their_meshes_through_the_tree() {
     let scene = file.open();
     let [a, b] = [0, 1].map(|i| scene.still().positions[i]);
     // A quarter turn about z takes 2x to 2y and y to -x. Coordinates around 10 round by 1e-6.
-    for (found, expected) in a.iter().zip([Vec3::X * 10.0, Vec3::new(10.0, 2.0, 0.0), Vec3::X * 9.0]) {
-        assert!(found.abs_diff_eq(expected, 2e-6), "{found} {expected}");
-    }
+    let expected = [Vec3::X * 10.0, Vec3::new(10.0, 2.0, 0.0), Vec3::X * 9.0];
+    assert!((0..3).all(|i| a[i].abs_diff_eq(expected[i], 2e-6)), "{a:?} {expected:?}");
     assert_eq!(b[0], Vec3::Z * 5.0);
 }
 
 #[test]
 fn mirrored_triangles_stay_counter_clockwise_from_the_front() {
     let mut file = Gltf::new();
-    let attributes = json!({
-        "POSITION": file.floats(&TRIANGLE), "NORMAL": file.floats(&[[0.0, 0.0, 1.0]; 3]), "TEXCOORD_0": file.floats(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
-    });
+    let attributes = json!({"POSITION": file.floats(&TRIANGLE), "NORMAL": file.floats(&[[0.0, 0.0, 1.0]; 3]),
+        "TEXCOORD_0": file.floats(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])});
     let mesh = file.mesh(json!({"attributes": attributes}));
     for scale in [[-1.0, 1.0, 1.0], [-1.0, -2.0, 1.0], [1.0, 1.0, -1.0], [-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]] {
         file.node(json!({"mesh": mesh, "scale": scale}));
     }
     let scene = file.open();
     for i in 0..5 {
-        let ([a, b, c], normals) = (scene.still().positions[i], scene.still().normals[i]);
-        let face = (b - a).cross(c - a).normalize();
-        assert_eq!(face, normals[0], "{i}");
+        let [a, b, c] = scene.still().positions[i];
+        assert_eq!((b - a).cross(c - a).normalize(), scene.still().normals[i][0], "{i}");
         // Corners keep their texture coordinates.
         let uv_of_x = scene.still().positions[i].iter().position(|p| p.x != 0.0).unwrap();
         assert_eq!(scene.still().uvs[i][uv_of_x], Vec2::X, "{i}");
@@ -157,9 +146,8 @@ fn normals_stay_perpendicular_under_uneven_scale() {
     let mut file = Gltf::new();
     // A slope with given normals, so that they are transformed and not regenerated.
     let normal = Vec3::new(1.0, 1.0, 0.0).normalize().to_array();
-    let attributes = json!({
-        "POSITION": file.floats(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 1.0]]), "NORMAL": file.floats(&[normal; 3])
-    });
+    let slope = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 1.0]];
+    let attributes = json!({"POSITION": file.floats(&slope), "NORMAL": file.floats(&[normal; 3])});
     let mesh = file.mesh(json!({"attributes": attributes}));
     for scale in [[10.0, 1.0, 3.0], [1e-12, 2e-12, 1e-12], [1e6, 1.0, 1e-3]] {
         file.node(json!({"mesh": mesh, "scale": scale}));
@@ -188,10 +176,8 @@ fn lights_and_cameras_follow_their_nodes() {
     let lights = json!([spot, {"type": "directional"}, {"type": "point", "intensity": 3.0}]);
     file.json["extensions"] = json!({"KHR_lights_punctual": {"lights": lights}});
     file.push("cameras", json!({"type": "perspective", "name": "main", "perspective": {"yfov": 0.5, "znear": 0.1}}));
-    file.push(
-        "cameras",
-        json!({"type": "orthographic", "orthographic": {"xmag": 1.0, "ymag": 1.0, "znear": 0.1, "zfar": 9.0}}),
-    );
+    let flat = json!({"xmag": 1.0, "ymag": 1.0, "znear": 0.1, "zfar": 9.0});
+    file.push("cameras", json!({"type": "orthographic", "orthographic": flat}));
     let half = std::f32::consts::FRAC_1_SQRT_2;
     let camera = file.push("nodes", json!({"camera": 0, "scale": [3.0, 3.0, 3.0]}));
     let mut children = vec![camera];
@@ -207,10 +193,8 @@ fn lights_and_cameras_follow_their_nodes() {
     assert_eq!(scene.warnings, ["orthographic cameras are left out: camera 1"]);
     assert_eq!(pose.lights.len(), 3);
     for light in &pose.lights {
-        assert!(
-            light.position.abs_diff_eq(Vec3::X * 2.0, 1e-6) && light.direction.abs_diff_eq(-Vec3::X, 1e-6),
-            "{light:?}"
-        );
+        let [place, axis] = [light.position, light.direction];
+        assert!(place.abs_diff_eq(Vec3::X * 2.0, 1e-6) && axis.abs_diff_eq(-Vec3::X, 1e-6), "{light:?}");
     }
     assert_eq!(pose.lights[0].intensity, [8.0, 4.0, 0.0]);
     assert_eq!(pose.lights[0].range, 20.0);
@@ -258,10 +242,8 @@ fn instances_stand_below_their_node() {
         [0, 2, 1].map(|i| TRIANGLE[i]).map(|p| world([p[0], -p[1], -2.0])),
     ];
     assert_eq!(scene.still().len(), 3);
-    for (triangle, expected) in scene.still().positions.iter().zip(expected) {
-        for (found, expected) in triangle.iter().zip(expected) {
-            assert!(found.distance(expected.into()) < 1e-6, "{triangle:?} not {expected:?}");
-        }
+    for (found, expected) in scene.still().positions.iter().flatten().zip(expected.as_flattened()) {
+        assert!(found.distance((*expected).into()) < 1e-6, "{found} not {expected:?}");
     }
     // With the node in motion, its instances move with it.
     file.animate(0, "translation", "LINEAR", &[0.0, 1.0], &[[0.0, 0.0, 1.0], [0.0, 0.0, 3.0]]);
@@ -279,13 +261,13 @@ fn instances_of_a_wrong_number_are_refused_and_none_are_none() {
         file.floats(&[[0.0f32; 3]; 2]);
         file.floats(&[[1.0f32; 3]; 3]);
     };
-    instanced(json!({"TRANSLATION": 1, "SCALE": 2}), two).assert_refused(&["scales of instances", "expected 2"]);
-    instanced(json!({"TRANSLATION": 9}), two).assert_refused(&["accessor 9"]);
-    instanced(json!({"TRANSLATION": "x"}), two).assert_refused(&["TRANSLATION"]);
-    instanced(json!({"ROTATION": 1}), two).assert_refused(&["rotations of instances"]);
-    let huge = instanced(json!({"SCALE": 1}), two).with("/accessors/1/count", json!(u64::MAX));
-    huge.assert_refused(&[]);
-    assert_eq!(instanced(json!({"SCALE": 2}), two).open().still().len(), 3);
-    assert_eq!(instanced(json!({}), two).open().still().len(), 1, "no attributes");
-    assert_eq!(instanced(json!({"_ID": 1}), two).open().still().len(), 1, "an attribute of an application");
+    let file = |attributes| instanced(attributes, two);
+    file(json!({"TRANSLATION": 1, "SCALE": 2})).assert_refused(&["scales of instances", "expected 2"]);
+    file(json!({"TRANSLATION": 9})).assert_refused(&["accessor 9"]);
+    file(json!({"TRANSLATION": "x"})).assert_refused(&["TRANSLATION"]);
+    file(json!({"ROTATION": 1})).assert_refused(&["rotations of instances"]);
+    file(json!({"SCALE": 1})).with("/accessors/1/count", json!(u64::MAX)).assert_refused(&[]);
+    assert_eq!(file(json!({"SCALE": 2})).open().still().len(), 3);
+    assert_eq!(file(json!({})).open().still().len(), 1, "no attributes");
+    assert_eq!(file(json!({"_ID": 1})).open().still().len(), 1, "an attribute of an application");
 }

@@ -25,9 +25,7 @@ fn the_whole_box_is_in_view_at_every_size() {
     for size in [1e-4f32, 1.0, 1e5] {
         for aspect in [0.3f32, 1.0, 3.0] {
             let corners = [[0.0, 0.0, 0.0], [size, 0.0, 0.0], [0.0, size * 0.1, 4.0 * size]];
-            let mut file = Gltf::new();
-            file.soup(&corners);
-            let scene = file.open();
+            let scene = Gltf::of(&corners).open();
             let bounds = scene.bounds().unwrap();
             assert_eq!((bounds.min, bounds.max), (Vec3::ZERO, Vec3::new(size, size * 0.1, 4.0 * size)));
             let camera = scene.framing_camera(aspect);

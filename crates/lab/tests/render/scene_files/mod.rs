@@ -20,26 +20,29 @@ mod tangents;
 
 use afterimage_lab::error::InputError;
 use afterimage_lab::scene::{Scene, SceneLimits};
-use sound_scene::{assert_sound, assert_triangles_sound};
+use sound_scene::assert_sound;
 use std::path::Path;
 
 fn open(path: &Path) -> Result<Scene, InputError> {
     Scene::open(path.to_str().unwrap(), &SceneLimits::default())
 }
 
-/// Checks the error of opening a file: one line with a remedy that names the file and contains the words.
+/// The same of the default limits; the error names the file, too.
 #[track_caller]
 fn assert_refused(path: &Path, words: &[&str]) {
-    let error = match open(path) {
-        Ok(_) => panic!("was accepted"),
-        Err(e) => e,
-    };
+    let name = path.file_name().unwrap().to_str().unwrap();
+    assert_refused_within(path, &SceneLimits::default(), &[words, &[name]].concat());
+}
+
+/// Checks the error of opening a file within limits: one line with a remedy that contains the words.
+#[track_caller]
+fn assert_refused_within(path: &Path, limits: &SceneLimits, words: &[&str]) {
+    let error = Scene::open(path.to_str().unwrap(), limits).map(|_| ()).expect_err("was accepted");
     let text = error.to_string();
     println!("{text}");
     assert!(!text.contains('\n'), "more than one line: {text:?}");
     assert!(!error.message().remedy.is_empty(), "no remedy: {text}");
-    let name = path.file_name().unwrap().to_str().unwrap();
-    for word in words.iter().chain([&name]) {
+    for word in words {
         assert!(text.contains(word), "{word:?} is not in: {text}");
     }
 }

@@ -10,22 +10,6 @@ use serde_json::{Value, json};
 const LIMITS: SceneLimits =
     SceneLimits { max_triangles: 10_000, max_texels: 10_000, max_file_bytes: 1 << 20, max_json_bytes: 1 << 20 };
 
-/// Opens damaged bytes. Returns whether they are still a valid scene.
-fn survives(bytes: &[u8], path: &std::path::Path) -> bool {
-    std::fs::write(path, bytes).unwrap();
-    match Scene::open(path.to_str().unwrap(), &LIMITS) {
-        Ok(scene) => {
-            assert_sound(&scene);
-            true
-        }
-        Err(e) => {
-            let text = e.to_string();
-            assert!(!text.contains('\n') && !e.message().remedy.is_empty() && text.contains("damaged.glb"), "{text}");
-            false
-        }
-    }
-}
-
 #[test]
 fn every_number_of_the_description_replaced() {
     let folder = tempfile::tempdir().unwrap();
@@ -40,7 +24,17 @@ fn every_number_of_the_description_replaced() {
     let mut read = 0;
     for pointer in &paths {
         for value in &values {
-            read += u32::from(survives(&file.with(pointer, value.clone()).glb(), &path));
+            std::fs::write(&path, file.with(pointer, value.clone()).glb()).unwrap();
+            match Scene::open(path.to_str().unwrap(), &LIMITS) {
+                Ok(scene) => {
+                    assert_sound(&scene);
+                    read += 1;
+                }
+                Err(error) => {
+                    let (text, has_remedy) = (error.to_string(), !error.message().remedy.is_empty());
+                    assert!(has_remedy && !text.contains('\n') && text.contains("damaged.glb"), "{text}");
+                }
+            }
         }
     }
     println!("{read} of {} damaged files were still scenes", paths.len() * values.len());

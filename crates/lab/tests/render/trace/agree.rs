@@ -32,8 +32,10 @@ fn check(scene: Scene, integrators: &[(Integrator, u32)]) {
 const ALL: [(Integrator, u32); 3] = [(Integrator::Mis, 64), (Integrator::Nee, 64), (Integrator::Naive, 256)];
 
 #[test]
-fn in_the_cornell_box() {
-    check(builtin("cornell"), &ALL);
+fn in_the_cornell_box_under_a_sky_with_a_bright_spot_and_under_a_screen_that_shows_an_image() {
+    for scene in [builtin("cornell"), under_a_map(), under_a_screen()] {
+        check(scene, &ALL);
+    }
 }
 
 #[test]
@@ -43,16 +45,6 @@ fn in_the_furnace() {
     let rough = Material { roughness: 0.7, ..Material::default() };
     let metal = Material { metallic: 1.0, ..rough.clone() };
     check(furnace_of(vec![rough, metal]), &ALL);
-}
-
-#[test]
-fn under_a_sky_with_a_bright_spot() {
-    check(under_a_map(), &ALL);
-}
-
-#[test]
-fn under_a_screen_that_shows_an_image() {
-    check(under_a_screen(), &ALL);
 }
 
 #[test]

@@ -24,20 +24,18 @@ fn depth_0_is_what_emits_and_nothing_else() {
     let scale = 64.0 / (2.0 * 20.0_f64.to_radians().tan());
     let (mut lamp, mut dark) = (0, 0);
     for (i, m) in film.moments.pixels().iter().enumerate() {
-        let x = (i % 64) as f64 - 31.5;
-        let y = (i / 64) as f64 - 31.5;
+        let (x, y) = ((i % 64) as f64 - 31.5, (i / 64) as f64 - 31.5);
         // Where rays reach the lamp's plane: distance along z, and x. The camera's right is -x.
-        let t = (5.54 - 2.78) / (-y / scale);
-        let at = |dx: f64, dy: f64| {
+        let at = |(dx, dy): (f64, f64)| {
             let t = (5.54 - 2.78) / (-(y + dy) / scale);
             let (px, pz) = (2.78 - t * (x + dx) / scale, -8.0 + t);
             t > 0.0 && (2.13..3.43).contains(&px) && (2.27..3.32).contains(&pz)
         };
-        let corners = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)].map(|(a, b)| at(a, b));
-        if corners.iter().all(|&c| c) {
+        let corners = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)].map(at);
+        if corners == [true; 4] {
             assert_eq!(m.mean, Vec3::splat(15.0));
             lamp += 1;
-        } else if corners.iter().all(|&c| !c) && !(t > 0.0 && at(0.0, 0.0)) {
+        } else if corners == [false; 4] && !at((0.0, 0.0)) {
             assert_eq!(m.mean, Vec3::ZERO, "{i}");
             dark += 1;
         }
@@ -65,21 +63,11 @@ fn more_depth_is_more_light() {
     }
 }
 
-/// A floor of 18 m sides, seen from above its middle, and more.
-fn over_a_floor(
-    height_m: f64,
-    vfov_deg: f32,
-    size: [u32; 2],
-    materials: Vec<Material>,
-    more: Triangles,
-    sky: Environment,
-) -> Rig {
-    let v = Vec3::new;
-    let mut t = Triangles::default();
-    t.push_quad([v(-9., 0., 9.), v(9., 0., 9.), v(9., 0., -9.), v(-9., 0., -9.)], 0);
-    t.extend(&more);
+/// A floor of 18 m sides of the first material, and more, seen by a camera above its middle.
+fn over_a_floor(height_m: f64, vfov_deg: f32, materials: Vec<Material>, mut t: Triangles, sky: Environment) -> Rig {
+    t.push_quad([[-9., 9.], [9., 9.], [9., -9.], [-9., -9.]].map(|[x, z]| Vec3::new(x, 0.0, z)), 0);
     let camera = Camera::look_at(DVec3::Y * height_m, DVec3::ZERO, vfov_deg);
-    Rig::new(made("a floor", materials, t, Pose { cameras: vec![camera], ..Pose::default() }, sky), size)
+    Rig::seen_by(made("a floor", materials, t, Pose::default(), sky), &camera, [4, 4])
 }
 
 /// Mean over a ball, and its standard error.
@@ -152,18 +140,15 @@ fn grey_balls_are_as_grey_as_they_are() {
 fn a_floor_under_a_lamp_has_its_form_factor() {
     // Square lamp with 2 m sides, 1 m above a floor and parallel to it. Returns the radiance of the floor point below
     // its centre.
-    let (mut t, v) = (Triangles::default(), Vec3::new);
-    t.push_quad([v(-1., 1., -1.), v(1., 1., -1.), v(1., 1., 1.), v(-1., 1., 1.)], 1);
+    let mut t = Triangles::default();
+    t.push_quad([[-1., -1.], [1., -1.], [1., 1.], [-1., 1.]].map(|[x, z]| Vec3::new(x, 1.0, z)), 1);
     let floor = Material { base_color: [0.5; 3], specular: 0.0, ..Material::default() };
-    let lamp =
-        Material { base_color: [0.0; 3], specular: 0.0, emissive: [2.0; 3], double_sided: false, ..floor.clone() };
-    let rig = over_a_floor(0.5, 0.2, [4, 4], vec![floor, lamp], t, DARK);
+    let lamp = Material { base_color: [0.0; 3], emissive: [2.0; 3], double_sided: false, ..floor.clone() };
+    let rig = over_a_floor(0.5, 0.2, vec![floor, lamp], t, DARK);
     // Siegel and Howell, configuration factors: parallel rectangle with a corner above the point, four times.
-    let corner = {
-        let (a, b) = (1.0f64, 1.0f64);
-        let (p, q) = ((1.0 + a * a).sqrt(), (1.0 + b * b).sqrt());
-        (a / p * (b / p).atan() + b / q * (a / q).atan()) / (2.0 * std::f64::consts::PI)
-    };
+    let (a, b) = (1.0f64, 1.0f64);
+    let (p, q) = ((1.0 + a * a).sqrt(), (1.0 + b * b).sqrt());
+    let corner = (a / p * (b / p).atan() + b / q * (a / q).atan()) / (2.0 * std::f64::consts::PI);
     let exact = 0.5 * 2.0 * 4.0 * corner;
     for integrator in [Integrator::Mis, Integrator::Nee, Integrator::Naive] {
         let (mean, se) = mean_of(&rig.cpu(TraceSettings { integrator, ..depth(1) }, 8192), 0, |_| true);
@@ -177,7 +162,7 @@ fn a_floor_under_a_lamp_has_its_form_factor() {
 fn a_plane_under_a_sky_shows_its_albedo() {
     let floor = Material { base_color: [0.2, 0.5, 0.8], specular: 0.0, ..Material::default() };
     let sky = Environment::Constant([1.0, 2.0, 0.5]);
-    let rig = over_a_floor(2.0, 40.0, [8, 8], vec![floor], Triangles::default(), sky);
+    let rig = over_a_floor(2.0, 40.0, vec![floor], Triangles::default(), sky);
     // Lambertian scattering samples exactly the sky's cosine density, so there is no noise.
     let film = rig.cpu(TraceSettings { integrator: Integrator::Naive, ..depth(5) }, 16);
     for m in film.moments.pixels() {

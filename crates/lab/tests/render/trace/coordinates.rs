@@ -2,8 +2,8 @@
 
 use super::rig::{Rig, differing};
 use crate::given::device;
+use crate::raster::rig::draw;
 use crate::scene_files::builder::{Gltf, png};
-use afterimage_lab::raster::{Raster, RasterSettings};
 use afterimage_lab::scene::Scene;
 use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
@@ -17,29 +17,25 @@ fn quad(info: &Value, base_info: &Value, animated: bool) -> Scene {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0f32]];
     let mut file = Gltf::new();
     let unit = |[x, y]: [f32; 2]| [0.5 + 0.5 * x, 0.5 - 0.5 * y];
-    let positions = file.floats(&corners.map(|[x, y]| [x, y, 0.0]));
-    let four = file.floats(&corners.map(|c| unit(c).map(|x| 4.0 * x)));
-    let one = file.floats(&corners.map(unit));
+    let attributes = json!({"POSITION": file.floats(&corners.map(|[x, y]| [x, y, 0.0])),
+        "TEXCOORD_0": file.floats(&corners.map(|c| unit(c).map(|x| 4.0 * x))),
+        "TEXCOORD_1": file.floats(&corners.map(unit))});
     let indices = file.indices(&[0, 1, 2, 0, 2, 3]);
     let texture = |index: u32, info: &Value| {
         let mut info = info.clone();
         info["index"] = json!(index);
         info
     };
-    let material = file.push(
-        "materials",
-        json!({"emissiveFactor": [1, 1, 1], "emissiveTexture": texture(1, info), "pbrMetallicRoughness":
-            {"baseColorFactor": [0, 0, 0, 1], "baseColorTexture": texture(0, base_info), "metallicFactor": 0},
-            "extensions": {"KHR_materials_specular": {"specularFactor": 0}}}),
-    );
+    let material = json!({"emissiveFactor": [1, 1, 1], "emissiveTexture": texture(1, info), "pbrMetallicRoughness":
+        {"baseColorFactor": [0, 0, 0, 1], "baseColorTexture": texture(0, base_info), "metallicFactor": 0},
+        "extensions": {"KHR_materials_specular": {"specularFactor": 0}}});
+    let material = file.push("materials", material);
     file.texture(&png([2, 2], |_, _| [255; 4]));
     // Sharp: the nearest texel.
     file.texture(&png([2, 1], |x, _| if x == 0 { [0, 255, 0, 255] } else { [0, 0, 0, 255] }));
     file.push("samplers", json!({"magFilter": 9728, "minFilter": 9728}));
     file.json["textures"][1]["sampler"] = json!(0);
-    let attributes = json!({"POSITION": positions, "TEXCOORD_0": four, "TEXCOORD_1": one});
-    let mesh = file.mesh(json!({"attributes": attributes, "indices": indices, "material": material}));
-    let node = file.node(json!({"mesh": mesh}));
+    let node = file.shape(json!({"attributes": attributes, "indices": indices, "material": material}));
     if animated {
         file.animate(node, "translation", "LINEAR", &[0.0, 1.0], &[[0.0; 3], [0.0, 0.0, 1e-6]]);
     }
@@ -101,15 +97,7 @@ fn each_texture_has_its_own_set_and_transform() {
         if afterimage_testing::gpu::rounds_as_the_cpu() {
             assert_eq!(differing(&film, &on_gpu), 0, "{info} {base}");
         }
-        let drawn = afterimage_testing::gpu::validated(&device.device, "a frame", || {
-            let settings = RasterSettings { anisotropy: 1, shadow_side: 64 };
-            let mut raster = Raster::new(&device.device, &device.queue, &scene, SIZE, settings).unwrap();
-            raster.pose(&scene, 0.0, 0.0);
-            let mut encoder = device.device.create_command_encoder(&Default::default());
-            raster.record(&device.device, &mut encoder, &rig.view, &rig.view);
-            device.queue.submit([encoder.finish()]);
-            raster.targets().read_color(&device)
-        });
+        let drawn = draw(&device, &scene, [&rig.view; 2], [0.0; 2]).color;
         assert_eq!(wrong(|x, y| drawn.at(x, y)[1], u), 0, "rasterised {info} {base}");
         // Planted error: the coordinates of the base color for all, as it was.
         if i == 0 {

@@ -42,22 +42,18 @@ fn check(rig: &Rig, ways: &[(Integrator, Bsdf, Storage)]) {
 
 /// A way for each scene, in turn.
 #[track_caller]
-fn check_in_turn(scenes: impl Iterator<Item = Scene>, size: [u32; 2]) {
-    for (scene, ways) in scenes.zip(WAYS.chunks_exact(1).cycle()) {
+fn check_in_turn(scenes: impl IntoIterator<Item = Scene>, size: [u32; 2]) {
+    for (scene, ways) in scenes.into_iter().zip(WAYS.chunks_exact(1).cycle()) {
         check(&Rig::new(scene, size), ways);
     }
 }
 
 #[test]
-fn built_in_scenes() {
+fn built_in_scenes_and_kinds_of_light() {
     check(&Rig::new(builtin("cornell"), [48, 32]), &WAYS);
     let names = ["furnace", "cubes", "mirror-room", "bunny-low", "control"];
-    check_in_turn(names.into_iter().map(builtin).chain([courtyard_of(4000)]), [48, 32]);
-}
-
-#[test]
-fn kinds_of_light() {
-    check_in_turn([under_a_map(), under_lamps(), under_a_screen()].into_iter(), [48, 32]);
+    check_in_turn(names.map(builtin).into_iter().chain([courtyard_of(4000)]), [48, 32]);
+    check_in_turn([under_a_map(), under_lamps(), under_a_screen()], [48, 32]);
 }
 
 #[test]

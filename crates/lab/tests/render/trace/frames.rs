@@ -2,8 +2,7 @@
 
 use super::rig::{Rig, differing};
 use super::scenes::{DARK, staged, under_a_map};
-use crate::given::{builtin, device};
-use afterimage_lab::device::Backend;
+use crate::given::{backends, builtin, device};
 use afterimage_lab::scene::Environment;
 use afterimage_lab::trace::Tracer;
 use afterimage_lab::trace::cpu::CpuTracer;
@@ -14,16 +13,14 @@ use afterimage_lab::trace::work::Spans;
 use afterimage_testing::Draws;
 use glam::Vec3;
 
-fn on_threads(rig: &Rig, threads: usize) -> Film {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| rig.cpu(TraceSettings::default(), 4))
-}
-
 #[test]
 fn the_number_of_threads_changes_no_bit() {
     for scene in [builtin("cornell"), under_a_map()] {
         let rig = Rig::new(scene, [40, 30]);
-        let (one, three) = (on_threads(&rig, 1), on_threads(&rig, 3));
+        let [one, three] = [1, 3].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| rig.cpu(TraceSettings::default(), 4))
+        });
         assert_eq!(differing(&one, &three), 0);
         assert_eq!((one.rays, one.nonfinite), (three.rays, three.nonfinite));
     }
@@ -33,9 +30,7 @@ fn the_number_of_threads_changes_no_bit() {
 fn how_the_work_is_split_changes_no_bit() {
     let rig = Rig::new(builtin("cornell"), [40, 30]);
     let whole = rig.cpu(TraceSettings::default(), 8);
-    let mut backends = vec![Backend::Cpu];
-    backends.extend(device().map(Backend::Gpu));
-    for backend in backends {
+    for backend in backends() {
         let tracer = Tracer::new(&backend, &rig.world, TraceSettings::default()).unwrap();
         // Split by rows, and split by samples.
         let rows = [0..7, 7..8, 8..30].map(|rows| Spans::uniform(40, rows, 0..8));
@@ -115,15 +110,11 @@ fn moments_are_those_of_f64() {
     assert_eq!(Moments::default().variance_of_mean(), Vec3::INFINITY);
 }
 
-/// The stage with a wall that emits `emissive`.
-fn wall_of(emissive: [f32; 3]) -> Rig {
-    Rig::new(staged("a wall", DARK, |materials| materials[1].emissive = emissive), [32, 24])
-}
-
 #[test]
 fn samples_that_are_no_numbers_are_counted_and_black_h37() {
     let settings = TraceSettings { max_depth: 0, ..TraceSettings::default() };
     let spp = 8;
+    let wall_of = |emissive| Rig::new(staged("a wall", DARK, |all| all[1].emissive = emissive), [32, 24]);
     let sound = wall_of([1.0; 3]).cpu(settings, spp);
     let hits: f64 = sound.moments.pixels().iter().map(|m| f64::from(m.mean.x) * f64::from(spp)).sum();
     for bad in [f32::INFINITY, f32::NAN] {

@@ -17,6 +17,7 @@ use afterimage_testing::holds;
 use glam::{DVec3, Vec3, Vec4};
 
 const SIZE: [u32; 2] = [16, 12];
+const TRIANGLE: [Vec3; 3] = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::Y];
 
 fn one_triangle(corners: [Vec3; 3]) -> Triangles {
     let mut t = Triangles::default();
@@ -46,7 +47,6 @@ fn far_away(scale: f32, offset: Vec3) -> Scene {
 }
 
 fn scenes() -> Vec<Scene> {
-    let triangle = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::Y];
     let front = || pose_of(DVec3::Z * 3.0, DVec3::ZERO);
     let lamp = |intensity, position, range| PunctualLight {
         kind: PunctualKind::Point,
@@ -58,13 +58,13 @@ fn scenes() -> Vec<Scene> {
     let lit = |lights| Pose { lights, ..front() };
     let mut nan = Triangles::default();
     nan.push_flat([Vec3::NAN, Vec3::X, Vec3::Y], 0);
-    nan.push_flat(triangle, 0);
+    nan.push_flat(TRIANGLE, 0);
     nan.push_flat([Vec3::ZERO; 3], 0);
     nan.push_flat([Vec3::INFINITY, Vec3::X, Vec3::Y], 0);
     nan.normals[1] = [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY];
     nan.tangents[1] = [Vec4::NAN; 3];
     nan.colors[1] = [Vec4::NAN; 3];
-    let mut long = one_triangle(triangle);
+    let mut long = one_triangle(TRIANGLE);
     long.positions[0][2] = Vec3::new(0.0, 1e9, 0.0);
     let mirror = Material { metallic: 1.0, roughness: 0.0, ..Material::default() };
     let weird = Material {
@@ -84,7 +84,7 @@ fn scenes() -> Vec<Scene> {
     let black_map = Environment::Map(Image::filled([4, 2], [0.0; 3]));
     let bad_map = Environment::Map(Image::from_fn([4, 2], |[x, _]| if x == 1 { [f32::NAN; 3] } else { [1.0; 3] }));
     let empty = |name, pose, environment| made(name, vec![], Triangles::default(), pose, environment);
-    let one = |name, material: Material, pose, sky| made(name, vec![material], one_triangle(triangle), pose, sky);
+    let one = |name, material: Material, pose, sky| made(name, vec![material], one_triangle(TRIANGLE), pose, sky);
     let gray = Material::default;
     vec![
         empty("nothing", Pose::default(), DARK),
@@ -118,15 +118,14 @@ fn every_scene_gives_an_image_of_numbers_h81_h82_h83() {
     let said = format!("{} scenes x {variants} variants of the tracer: no pixel but numbers >= 0", scenes.len());
     for scene in scenes {
         let rig = Rig::new(scene, SIZE);
-        for integrator in [Integrator::Mis, Integrator::Nee, Integrator::Naive] {
-            for bsdf in [Bsdf::Principled, Bsdf::Phong] {
-                for effects in [None, Some(Effects::all())] {
-                    let settings = TraceSettings { integrator, bsdf, effects, ..TraceSettings::default() };
-                    let film = rig.cpu(settings, 4);
-                    let sound = |m: &Moments| m.mean.is_finite() && m.mean.min_element() >= 0.0;
-                    assert!(film.moments.pixels().iter().all(sound), "{}, {settings:?}", rig.name);
-                }
-            }
+        for variant in 0..variants {
+            let integrator = [Integrator::Mis, Integrator::Nee, Integrator::Naive][variant / 4];
+            let bsdf = [Bsdf::Principled, Bsdf::Phong][variant / 2 % 2];
+            let effects = [None, Some(Effects::all())][variant % 2];
+            let settings = TraceSettings { integrator, bsdf, effects, ..TraceSettings::default() };
+            let film = rig.cpu(settings, 4);
+            let sound = |m: &Moments| m.mean.is_finite() && m.mean.min_element() >= 0.0;
+            assert!(film.moments.pixels().iter().all(sound), "{}, {settings:?}", rig.name);
         }
         let seen = Surfaces::trace(&rig.world, &rig.view, &rig.view, rig.world.needs);
         assert!(seen.depth.pixels().iter().all(|d| *d > 0.0), "{}", rig.name);
@@ -179,17 +178,16 @@ fn a_camera_inside_a_body_sees_it_from_inside() {
 
 #[test]
 fn the_image_is_the_same_far_from_the_origin_h82() {
-    // The offset is a power of two, so that it hardly rounds the scene itself.
-    let near = Rig::new(far_away(1.0, Vec3::ZERO), [32, 24]);
-    let settings = TraceSettings { max_depth: 2, ..TraceSettings::default() };
-    let reference = near.cpu(settings, 64);
-    let mean = |film: &Film| super::statistics::mean_of(film, 0, |_| true);
-    let (expected, se) = mean(&reference);
+    let mean = |scale, offset| {
+        let settings = TraceSettings { max_depth: 2, ..TraceSettings::default() };
+        super::statistics::mean_of(&Rig::new(far_away(scale, offset), [32, 24]).cpu(settings, 64), 0, |_| true)
+    };
+    let (expected, se) = mean(1.0, Vec3::ZERO);
+    // Offsets are powers of two, so that they hardly round the scene itself.
     for (scale, offset) in
         [(1e-3, Vec3::ZERO), (1e4, Vec3::ZERO), (1.0, Vec3::splat(1024.0)), (1.0, Vec3::splat(16384.0))]
     {
-        let film = Rig::new(far_away(scale, offset), [32, 24]).cpu(settings, 64);
-        let (got, _) = mean(&film);
+        let (got, _) = mean(scale, offset);
         println!("{scale}, {offset}: {got:.5}, {expected:.5} +- {se:.5}");
         // At 16 km positions have steps of 2 mm and the ray offset is 6 cm; the stage is 6 m wide.
         assert!((got / expected - 1.0).abs() < 0.02, "{scale}, {offset}");
@@ -199,11 +197,8 @@ fn the_image_is_the_same_far_from_the_origin_h82() {
 #[test]
 fn what_had_no_area_at_first_may_grow_on_the_device() {
     let Some(device) = device() else { return };
-    let corners = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::Y];
     let mut grown = Triangles::default();
-    for z in [0.0, -0.5, -1.0] {
-        grown.push_flat(corners.map(|p| p + Vec3::Z * z), 0);
-    }
+    [0.0, -0.5, -1.0].into_iter().for_each(|z| grown.push_flat(TRIANGLE.map(|p| p + Vec3::Z * z), 0));
     let mut shrunk = grown.clone();
     shrunk.positions.fill([Vec3::ZERO; 3]);
     let pose = Pose { moving: shrunk, ..pose_of(DVec3::Z * 3.0, DVec3::ZERO) };

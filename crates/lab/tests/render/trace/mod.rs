@@ -10,7 +10,7 @@ mod frames;
 mod hard;
 mod quads;
 mod radiosity;
-mod rig;
+pub mod rig;
 mod scenes;
 pub mod statistics;
 mod stereo;

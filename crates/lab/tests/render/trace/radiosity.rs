@@ -50,9 +50,7 @@ impl Quad {
     }
 }
 
-struct Room {
-    quads: Vec<Quad>,
-}
+struct Room(Vec<Quad>);
 
 impl Room {
     fn new(scene: &Scene) -> Self {
@@ -76,30 +74,23 @@ impl Room {
                 bounces: std::array::from_fn(|_| dark.clone()),
             }
         });
-        Self { quads: quads.collect() }
+        Self(quads.collect())
     }
 
     /// Index of the nearest parallelogram between 1e-6 and `far`, and its distance.
     fn hit(&self, from: DVec3, to: DVec3, far: f64) -> Option<(usize, f64)> {
-        let mut best = None;
-        let mut limit = far;
-        for (i, q) in self.quads.iter().enumerate() {
-            let facing = q.normal.dot(to);
-            let t = q.normal.dot(q.origin - from) / facing;
-            if t > 1e-6 && t < limit {
-                let d = from + to * t - q.origin;
-                let (s, t2) = (d.dot(q.u) / q.u.length_squared(), d.dot(q.v) / q.v.length_squared());
-                if (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t2) {
-                    (best, limit) = (Some(i), t);
-                }
-            }
-        }
-        best.map(|i| (i, limit))
+        let hits = self.0.iter().enumerate().filter_map(|(i, q)| {
+            let t = q.normal.dot(q.origin - from) / q.normal.dot(to);
+            let d = from + to * t - q.origin;
+            let is_on = [q.u, q.v].iter().all(|side| (0.0..=1.0).contains(&(d.dot(*side) / side.length_squared())));
+            (t > 1e-6 && t < far && is_on).then_some((i, t))
+        });
+        hits.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Irradiance from the lamp at a point, by the midpoint rule over the lamp.
     fn irradiance(&self, p: DVec3, normal: DVec3) -> f64 {
-        let lamp = self.quads.iter().find(|q| q.emitted > 0.0).unwrap();
+        let lamp = self.0.iter().find(|q| q.emitted > 0.0).unwrap();
         let mut sum = 0.0;
         for i in 0..LAMP * LAMP {
             let on = lamp.at(((i % LAMP) as f64 + 0.5) / LAMP as f64, ((i / LAMP) as f64 + 0.5) / LAMP as f64);
@@ -120,16 +111,14 @@ impl Room {
         let y = normal.cross(x);
         let [rings, spokes] = GATHER;
         let mut sum = DVec3::ZERO;
-        for ring in 0..rings {
-            for spoke in 0..spokes {
-                let r = ((ring as f64 + 0.5) / rings as f64).sqrt();
-                let a = TAU * (spoke as f64 + turn) / spokes as f64;
-                let w = x * (r * a.cos()) + y * (r * a.sin()) + normal * (1.0 - r * r).sqrt();
-                if let Some((i, t)) = self.hit(p, w, f64::INFINITY) {
-                    let q = &self.quads[i];
-                    // Both sides reflect, but only fronts are visible in this room.
-                    sum += q.bounces[bounce][q.patch_at(p + w * t)];
-                }
+        for (ring, spoke) in (0..rings).flat_map(|ring| (0..spokes).map(move |spoke| (ring, spoke))) {
+            let r = ((ring as f64 + 0.5) / rings as f64).sqrt();
+            let a = TAU * (spoke as f64 + turn) / spokes as f64;
+            let w = x * (r * a.cos()) + y * (r * a.sin()) + normal * (1.0 - r * r).sqrt();
+            if let Some((i, t)) = self.hit(p, w, f64::INFINITY) {
+                let q = &self.0[i];
+                // Both sides reflect, but only fronts are visible in this room.
+                sum += q.bounces[bounce][q.patch_at(p + w * t)];
             }
         }
         sum / (rings * spokes) as f64
@@ -139,7 +128,7 @@ impl Room {
     fn solve(&mut self) {
         for bounce in 0..BOUNCES {
             let mut lit = vec![];
-            for q in &self.quads {
+            for q in &self.0 {
                 let patch = |i: usize| {
                     let p = q.center(i);
                     if bounce == 0 {
@@ -151,7 +140,7 @@ impl Room {
                 };
                 lit.push((0..q.patches[0] * q.patches[1]).map(patch).collect::<Vec<_>>());
             }
-            for (q, lit) in self.quads.iter_mut().zip(lit) {
+            for (q, lit) in self.0.iter_mut().zip(lit) {
                 q.bounces[bounce] = lit;
             }
         }
@@ -189,7 +178,7 @@ fn expected(room: &Room) -> Expected {
             let hit = room.hit(eye, w, f64::INFINITY);
             quads.push(hit.map(|h| h.0));
             if let Some((q, t)) = hit {
-                let (p, quad) = (eye + w * t, &room.quads[q]);
+                let (p, quad) = (eye + w * t, &room.0[q]);
                 // Shadow edges are finer than patches, so the lamp's light is computed at the exact point.
                 sum[0] += quad.reflectance / PI * room.irradiance(p, quad.normal) / 9.0;
                 (1..BOUNCES).for_each(|b| sum[b] += quad.bounces[b][quad.patch_at(p)] / 9.0);

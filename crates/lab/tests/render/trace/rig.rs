@@ -3,7 +3,7 @@
 use afterimage_lab::device::Headless;
 use afterimage_lab::scene::{Camera, Scene};
 use afterimage_lab::trace::cpu::CpuTracer;
-use afterimage_lab::trace::film::Film;
+use afterimage_lab::trace::film::{Film, Moments};
 use afterimage_lab::trace::gpu::GpuTracer;
 use afterimage_lab::trace::gpu::scene_buffer::Storage;
 use afterimage_lab::trace::settings::TraceSettings;
@@ -58,13 +58,6 @@ impl Rig {
 
 /// Number of pixels whose mean, squares or count differ in any bit.
 pub fn differing(a: &Film, b: &Film) -> usize {
-    let words = |film: &Film| -> Vec<[u32; 7]> {
-        let row = |m: &afterimage_lab::trace::film::Moments| {
-            let [x, y, z] = m.mean.to_array().map(f32::to_bits);
-            let [u, v, w] = m.squares.to_array().map(f32::to_bits);
-            [x, y, z, u, v, w, m.count]
-        };
-        film.moments.pixels().iter().map(row).collect()
-    };
-    words(a).iter().zip(words(b)).filter(|(a, b)| **a != *b).count()
+    let bits = |m: &Moments| ([m.mean, m.squares].map(|v| v.to_array().map(f32::to_bits)), m.count);
+    a.moments.pixels().iter().zip(b.moments.pixels()).filter(|(a, b)| bits(a) != bits(b)).count()
 }

@@ -29,23 +29,12 @@ pub fn shared(name: &str) -> Option<Scene> {
 
 /// A floor, a wall, a tilted metal sheet and a ball, seen from the front; no light.
 pub fn stage() -> (Vec<Material>, Triangles, Camera) {
+    let of = |name: &str, base_color| Material { name: name.into(), base_color, ..Material::default() };
     let materials = vec![
-        Material { name: "floor".into(), base_color: [0.6, 0.5, 0.4], specular: 0.0, ..Material::default() },
-        Material { name: "wall".into(), base_color: [0.3, 0.5, 0.7], roughness: 0.6, ..Material::default() },
-        Material {
-            name: "metal".into(),
-            base_color: [0.9, 0.8, 0.6],
-            metallic: 1.0,
-            roughness: 0.4,
-            ..Material::default()
-        },
-        Material {
-            name: "ball".into(),
-            base_color: [0.7, 0.2, 0.2],
-            clearcoat: 1.0,
-            clearcoat_roughness: 0.4,
-            ..Material::default()
-        },
+        Material { specular: 0.0, ..of("floor", [0.6, 0.5, 0.4]) },
+        Material { roughness: 0.6, ..of("wall", [0.3, 0.5, 0.7]) },
+        Material { metallic: 1.0, roughness: 0.4, ..of("metal", [0.9, 0.8, 0.6]) },
+        Material { clearcoat: 1.0, clearcoat_roughness: 0.4, ..of("ball", [0.7, 0.2, 0.2]) },
     ];
     let mut t = Triangles::default();
     let v = Vec3::new;
@@ -136,14 +125,8 @@ pub fn under_a_screen() -> Scene {
     t.uvs[n - 2] = [corner[0], corner[1], corner[2]];
     t.uvs[n - 1] = [corner[0], corner[2], corner[3]];
     let mut scene = made("a screen", materials, t, Pose { cameras: vec![camera], ..Pose::default() }, DARK);
-    let texels =
-        (0..12).map(|i| [(i * 21) as u8, 255 - (i * 13) as u8, if i % 3 == 0 { 255 } else { 0 }, 255]).collect();
-    scene.textures.push(Texture {
-        size: [4, 3],
-        texels,
-        wrap: [Wrap::Repeat; 2],
-        nearest: false,
-        coordinates: Default::default(),
-    });
+    let texel = |i: u8| [i * 21, 255 - i * 13, if i.is_multiple_of(3) { 255 } else { 0 }, 255];
+    let (size, wrap, texels) = ([4, 3], [Wrap::Repeat; 2], (0..12).map(texel).collect());
+    scene.textures.push(Texture { size, texels, wrap, nearest: false, coordinates: Default::default() });
     scene
 }

@@ -1,13 +1,9 @@
 //! Traversal finds exactly what a loop over all triangles finds, bit for bit.
 
-use super::scenes::{SOUPS, all, nearest, no_rays, rays, soup};
-use afterimage_lab::trace::{Bvh, Geometry, Ray};
+use super::scenes::{SOUPS, all, differing, nearest, no_rays, rays, soup};
+use afterimage_lab::trace::{Bvh, Geometry, Hit, Ray};
 use afterimage_testing::Draws;
 use glam::Vec3;
-
-fn differing(bvh: &Bvh, rays: &[Ray]) -> usize {
-    rays.iter().filter(|ray| bvh.closest(ray, all) != nearest(bvh, ray)).count()
-}
 
 /// Rays that are none hit nothing.
 #[test]
@@ -42,11 +38,13 @@ fn whether_anything_is_hit_within_a_limit() {
 fn of_equally_near_triangles_the_first_is_hit() {
     let once = soup("copies", 200, Vec3::ZERO, 1.0);
     let mut thrice = once.clone();
-    thrice.extend(&once);
-    thrice.extend(&once);
-    let bvh = Bvh::build(&thrice, None, &[]);
-    let rays = rays("copies", 2000, Vec3::ZERO, 1.0);
-    assert_eq!(differing(&bvh, &rays), 0);
+    (0..2).for_each(|_| thrice.extend(&once));
+    assert_eq!(differing(&Bvh::build(&thrice, None, &[]), &rays("copies", 2000, Vec3::ZERO, 1.0)), 0);
+}
+
+/// Where a ray hits, whatever the triangle's number.
+fn place(hit: Option<Hit>) -> Option<[f32; 3]> {
+    hit.map(|h| [h.t, h.u, h.v])
 }
 
 #[test]
@@ -60,12 +58,10 @@ fn moving_and_resting_triangles_are_one_scene() {
     let mut moving = 0;
     for ray in rays("both", 4000, Vec3::ZERO, 1.0) {
         let (hit, expected) = (geometry.closest(&ray, all), joined.closest(&ray, all));
-        assert_eq!(hit.map(|h| (h.t, h.u, h.v)), expected.map(|h| (h.t, h.u, h.v)));
+        assert_eq!(place(hit), place(expected));
         let (Some(hit), Some(expected)) = (hit, expected) else { continue };
-        assert_eq!(
-            geometry.triangle(hit.triangle).positions(),
-            joined.triangles()[expected.triangle as usize].positions()
-        );
+        let corners = joined.triangles()[expected.triangle as usize].positions();
+        assert_eq!(geometry.triangle(hit.triangle).positions(), corners);
         moving += usize::from(hit.triangle >= geometry.first_moving());
         assert!(geometry.occluded(&ray, all));
     }
@@ -82,16 +78,12 @@ fn what_is_not_accepted_is_not_there() {
     triangles.materials = (0..400).map(|_| u32::from(d.range(0.0, 1.0) < 0.5)).collect();
     let bvh = Bvh::build(&triangles, None, &materials);
     let mut opaque = triangles.clone();
-    for (p, &m) in opaque.positions.iter_mut().zip(&triangles.materials) {
-        if m == 0 {
-            *p = [Vec3::ZERO; 3];
-        }
-    }
+    let blended = opaque.positions.iter_mut().zip(&triangles.materials).filter(|(_, material)| **material == 0);
+    blended.for_each(|(corners, _)| *corners = [Vec3::ZERO; 3]);
     let opaque = Bvh::build(&opaque, None, &materials);
-    let found = |hit: Option<afterimage_lab::trace::Hit>| hit.map(|h| (h.t, h.u, h.v));
     for ray in rays("alpha", 4000, Vec3::ZERO, 1.0) {
         let none = |_, _, _| false;
-        assert_eq!(found(bvh.closest(&ray, none)), found(opaque.closest(&ray, all)));
+        assert_eq!(place(bvh.closest(&ray, none)), place(opaque.closest(&ray, all)));
         assert_eq!(bvh.occluded(&ray, none), opaque.occluded(&ray, all));
     }
 }

@@ -102,6 +102,11 @@ pub fn nearest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
     (best.triangle != u32::MAX).then_some(best)
 }
 
+/// Number of rays whose nearest hits are not those of brute force.
+pub fn differing(bvh: &Bvh, rays: &[Ray]) -> usize {
+    rays.iter().filter(|ray| bvh.closest(ray, all) != nearest(bvh, ray)).count()
+}
+
 /// A closed sphere of `8 * 4^levels` triangles with bit-identical shared corners.
 pub fn sphere(center: Vec3, radius: f32, levels: u32) -> Triangles {
     let mut faces = vec![];

@@ -32,13 +32,8 @@ fn pixels(size: [u32; 2]) -> impl Iterator<Item = (usize, usize)> {
 
 fn bits(frame: &SourceFrame) -> Vec<u32> {
     let (depth, motion) = geometry(frame);
-    let numbers = frame.color.pixels().iter().flatten();
-    numbers
-        .chain(depth.pixels())
-        .chain(motion.pixels().iter().flatten())
-        .chain(frame.previous_from_current.iter().flatten().flatten())
-        .map(|v| v.to_bits())
-        .collect()
+    let numbers = frame.color.pixels().iter().flatten().chain(depth.pixels()).chain(motion.pixels().iter().flatten());
+    numbers.chain(frame.previous_from_current.iter().flatten().flatten()).map(|v| v.to_bits()).collect()
 }
 
 fn all_zero(motion: &Image<[f32; 2]>) -> bool {
@@ -116,8 +111,7 @@ fn any_size_gives_finite_frames() {
                 let frame = source.frame(index).unwrap();
                 let (depth, motion) = geometry(&frame);
                 assert_eq!(frame.color.size(), size);
-                let colors = frame.color.pixels().iter().flatten();
-                assert!(colors.clone().all(|c| (0.0..1.6).contains(c)), "{name} {size:?}");
+                assert!(frame.color.pixels().iter().flatten().all(|c| (0.0..1.6).contains(c)), "{name} {size:?}");
                 assert!(depth.pixels().iter().all(|&z| z > 0.0));
                 assert!(motion.pixels().iter().flatten().all(|m| m.is_finite()));
                 assert_eq!((frame.cut, frame.nonfinite), (index == 0, 0));

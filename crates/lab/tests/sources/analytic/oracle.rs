@@ -62,13 +62,13 @@ fn check_motion(name: &str, index: u64, past: Past<'_>) -> BTreeMap<&'static str
 #[test]
 fn lateral_motion_is_parallax() {
     let camera = |t: f64| 0.5 * (2.0 * t).sin();
-    let fastest = [0_u64, 7, 60, 100_000].map(|index| {
+    let mut fastest = 0.0_f64;
+    for index in [0_u64, 7, 60, 100_000] {
         let now = index as f64 / FPS;
         let step = DVec3::X * (camera(now) - camera(now - 1.0 / FPS));
         let past = |ray: DVec3, z: f64| ("all", if z.is_finite() { ray * z + step } else { ray });
-        check_motion("lateral", index, &past)["all"].1
-    });
-    let fastest = fastest.into_iter().fold(0.0, f64::max);
+        fastest = fastest.max(check_motion("lateral", index, &past)["all"].1);
+    }
     assert!(fastest > 5.0 && fastest < 9.0);
 }
 
@@ -116,7 +116,9 @@ impl Occluder {
         let times = [index as f64 / FPS, (index as f64 - 1.0) / FPS];
         let tau = std::f64::consts::TAU;
         let rolled = times.map(|t| 1.5 * (tau * t / 5.0).cos());
+        let back = DMat3::from_rotation_z((rolled[1] - rolled[0]) / 0.5);
         let tilt = DMat3::from_rotation_z(0.4);
+        let turn = tilt * DMat3::from_rotation_y(-0.8 / FPS) * tilt.transpose();
         Self {
             camera: times.map(|t| {
                 let swing = (tau * t / 6.0).sin();
@@ -124,18 +126,8 @@ impl Occluder {
             }),
             fence: times.map(|t| -1.7 * (tau * t / 6.0 + 0.6).cos()),
             balls: [
-                MovingBall {
-                    name: "rolling ball",
-                    centre: rolled.map(|x| DVec3::new(x, 1.1, 3.3)),
-                    radius: 0.5,
-                    back: DMat3::from_rotation_z((rolled[1] - rolled[0]) / 0.5),
-                },
-                MovingBall {
-                    name: "globe",
-                    centre: [DVec3::new(-1.25, 0.28, 4.9); 2],
-                    radius: 0.42,
-                    back: tilt * DMat3::from_rotation_y(-0.8 / FPS) * tilt.transpose(),
-                },
+                MovingBall { name: "rolling ball", centre: rolled.map(|x| DVec3::new(x, 1.1, 3.3)), radius: 0.5, back },
+                MovingBall { name: "globe", centre: [DVec3::new(-1.25, 0.28, 4.9); 2], radius: 0.42, back: turn },
             ],
         }
     }
@@ -232,8 +224,7 @@ fn depth_is_that_of_planes_and_balls() {
         // Open floor between the balls and the notice board, bare bricks below the prints. The slope of the ball's
         // surface amplifies a lateral rounding error in depth.
         let (kind, exact, steep) = if chord2 > 1e-4 {
-            let steep = 0.38 / chord2.sqrt();
-            (0, along - (chord2 / length2).sqrt(), steep)
+            (0, along - (chord2 / length2).sqrt(), 0.38 / chord2.sqrt())
         } else if chord2 > -1e-4 {
             continue;
         } else if (200..420).contains(&x) && y >= 345 && !(225..280).contains(&x) {
@@ -244,9 +235,7 @@ fn depth_is_that_of_planes_and_balls() {
             continue;
         };
         met[kind] += 1;
-        let found = f64::from(depth.at(x, y));
-        let error = (found - exact).abs() / (exact * steep);
-        worst[kind] = worst[kind].max(error);
+        worst[kind] = worst[kind].max((f64::from(depth.at(x, y)) - exact).abs() / (exact * steep));
     }
     println!("ball, floor, wall: {met:?} pixels, worst relative errors {worst:?}");
     assert!(worst.iter().all(|&e| e < 1e-6), "{worst:?}");

@@ -7,10 +7,8 @@ mod weighted;
 use afterimage::simulator::Pyramid;
 use afterimage::{Foveation, Image, ViewGeometry};
 use afterimage_lab::frame::SourceFrame;
-use afterimage_lab::metric;
-use afterimage_lab::metric::{Band, Flip, NO_PAST, References, Scorer, Scores, Tracker};
-use afterimage_testing::Draws;
-use afterimage_testing::holds;
+use afterimage_lab::metric::{self, Band, Flip, NO_PAST, References, Scorer, Scores, Tracker};
+use afterimage_testing::{Draws, holds};
 use approx::assert_abs_diff_eq;
 
 fn noise(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
@@ -60,11 +58,8 @@ fn h68_the_error_at_the_true_gaze_grows_with_latency() {
     assert_eq!(scores[0].0, 0.0);
     assert!(scores.windows(2).all(|w| w[0].0 <= w[1].0 && w[0].1 > w[1].1), "{scores:?}");
     let [none, half, all] = [0, 5, 9].map(|i| scores[i].1);
-    holds!(
-        "H68",
-        Cpu,
-        "weighted PSNR falls at each of 10 latencies: {none:.2} dB at 0 ms, {half:.2} at 60, {all:.2} at 150"
-    );
+    let falls = "weighted PSNR falls at each of 10 latencies";
+    holds!("H68", Cpu, "{falls}: {none:.2} dB at 0 ms, {half:.2} at 60, {all:.2} at 150");
 }
 
 fn source_frame(color: Image<[f32; 3]>) -> SourceFrame {
@@ -98,21 +93,15 @@ fn psnr_ssim_and_flicker_of_known_errors() {
 fn ssim64(a: &Image<[f32; 3]>, b: &Image<[f32; 3]>, x0: usize, y0: usize) -> f64 {
     let luma = |c: [f32; 3]| 255.0 * (0.2126 * f64::from(c[0]) + 0.7152 * f64::from(c[1]) + 0.0722 * f64::from(c[2]));
     let gauss = |d: usize| (-0.5 * ((d as f64 - 5.0) / 1.5).powi(2)).exp();
-    let (mut sum, mut ma, mut mb, mut aa, mut bb, mut ab) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    for y in 0..11 {
-        for x in 0..11 {
-            let w = gauss(x) * gauss(y);
-            let (p, q) = (luma(a.at(x0 + x, y0 + y)), luma(b.at(x0 + x, y0 + y)));
-            sum += w;
-            ma += w * p;
-            mb += w * q;
-            aa += w * p * p;
-            bb += w * q * q;
-            ab += w * p * q;
-        }
+    let (mut sum, mut moments) = (0.0, [0.0; 5]);
+    for (x, y) in (0..11).flat_map(|y| (0..11).map(move |x| (x, y))) {
+        let w = gauss(x) * gauss(y);
+        let (p, q) = (luma(a.at(x0 + x, y0 + y)), luma(b.at(x0 + x, y0 + y)));
+        sum += w;
+        moments.iter_mut().zip([p, q, p * p, q * q, p * q]).for_each(|(moment, v)| *moment += w * v);
     }
-    let (ma, mb) = (ma / sum, mb / sum);
-    let (va, vb, cov) = (aa / sum - ma * ma, bb / sum - mb * mb, ab / sum - ma * mb);
+    let [ma, mb, aa, bb, ab] = moments.map(|moment| moment / sum);
+    let (va, vb, cov) = (aa - ma * ma, bb - mb * mb, ab - ma * mb);
     let (c1, c2) = (2.55_f64.powi(2), 7.65_f64.powi(2));
     (2.0 * ma * mb + c1) * (2.0 * cov + c2) / ((ma * ma + mb * mb + c1) * (va + vb + c2))
 }
@@ -162,11 +151,8 @@ fn bands_and_retention_follow_the_eye() {
     frame.motion = Some(Image::filled(size, [0.0; 2]));
     frame.depth = Some(Image::filled(size, 5.0));
     look(&frame, [220.0, 90.0]);
-    let mut depth = Image::filled(size, 5.0);
-    depth.pixels_mut()[90 * 320 + 105] = 1.0;
-    frame.depth = Some(depth);
-    let hidden = look(&frame, [220.0, 90.0]);
-    assert!(!hidden.retained.at(105, 90));
+    frame.depth.as_mut().unwrap().pixels_mut()[90 * 320 + 105] = 1.0;
+    assert!(!look(&frame, [220.0, 90.0]).retained.at(105, 90));
 }
 
 #[test]
@@ -182,9 +168,8 @@ fn flip_is_pooled_by_band_and_left_out_without_being_asked() {
     let scores = score(&frames, [90.0, 100.0], Some(flip.clone()));
     let map = flip.map(&reference, &shown);
     let mean_of = |band: Option<Band>| {
-        let pixels = map.pixels().iter().zip(ecc.pixels());
-        let values: Vec<f64> =
-            pixels.filter(|(_, e)| band.is_none_or(|b| Band::of(**e) == b)).map(|(v, _)| f64::from(*v)).collect();
+        let of_band = map.pixels().iter().zip(ecc.pixels()).filter(|(_, e)| band.is_none_or(|b| Band::of(**e) == b));
+        let values: Vec<f64> = of_band.map(|(v, _)| f64::from(*v)).collect();
         values.iter().sum::<f64>() / values.len() as f64
     };
     for band in Band::ALL {

@@ -7,7 +7,7 @@ use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{GHOST_FRAMES, Scores, error_weight};
 use afterimage_testing::Draws;
 use approx::assert_abs_diff_eq;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 const SIZE: [u32; 2] = [160, 90];
 
@@ -26,19 +26,14 @@ fn the_weighted_error_counts_cells() {
     let frames: Vec<_> = pairs.iter().map(|[a, b]| (a.clone(), b.clone(), frame(a))).collect();
     let scores = score(&frames, gaze, None);
     let tan = (35_f64.to_radians()).tan() / 80.0;
-    let ray = |x: f64, y: f64| [(x - 79.5) * tan, (y - 44.5) * tan, 1.0];
+    let ray = |x: f64, y: f64| DVec3::new((x - 79.5) * tan, (y - 44.5) * tan, 1.0);
     let (mut sum, mut weights) = (0.0, 0.0);
     for [a, b] in &pairs {
-        for y in 0..90 {
-            for x in 0..160 {
-                let (p, g) = (ray(x as f64, y as f64), ray(50.0, 60.0));
-                let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-                let e = (dot(p, g) / (dot(p, p) * dot(g, g)).sqrt()).min(1.0).acos().to_degrees();
-                let (c, d) = (a.at(x, y), b.at(x, y));
-                let squared: f64 = (0..3).map(|i| f64::from(c[i] - d[i]).powi(2)).sum::<f64>() / 3.0;
-                sum += weight64(e) * squared;
-                weights += weight64(e);
-            }
+        for (x, y) in (0..90).flat_map(|y| (0..160).map(move |x| (x, y))) {
+            let e = ray(x as f64, y as f64).angle_between(ray(50.0, 60.0)).to_degrees();
+            let (c, d) = (a.at(x, y), b.at(x, y));
+            sum += weight64(e) * (0..3).map(|i| f64::from(c[i] - d[i]).powi(2)).sum::<f64>() / 3.0;
+            weights += weight64(e);
         }
     }
     assert_abs_diff_eq!(scores.weighted_psnr_db.unwrap(), -10.0 * (sum / weights).log10(), epsilon = 1e-4);

@@ -190,6 +190,11 @@ fn exports() -> Vec<(Vendor, &'static str, String)> {
     ]
 }
 
+/// The export of that writer.
+fn export(name: &str) -> String {
+    exports().into_iter().find(|export| export.1 == name).unwrap().2
+}
+
 /// EyeLink's text: numbers of a calibration, messages, a blink during which the pupil is still seen.
 fn asc(is_binocular: bool) -> String {
     let eyes = if is_binocular { "LEFT\tRIGHT" } else { "RIGHT" };
@@ -261,15 +266,13 @@ fn every_vendors_export_is_the_gaze() {
 
 #[test]
 fn an_export_in_other_axes_or_units_is_not_the_gaze() {
-    let all = exports();
-    let of = |name: &str| all.iter().find(|export| export.1 == name).unwrap().2.clone();
     let planted = [
         // Another unit of time; ticks.
-        of("Pro Lab, ms").replace("[ms]", "[\u{3bc}s]"),
-        of("Analysis").replace("f=10000000", "f=1000000"),
+        export("Pro Lab, ms").replace("[ms]", "[\u{3bc}s]"),
+        export("Analysis").replace("f=10000000", "f=1000000"),
         // A blink, and an eye that is not valid, that nobody marks.
-        of("Neon").replace(",3,", ",,"),
-        of("SDK, tuples").replace(";(nan, nan);0", ";(0.5, 0.5);1"),
+        export("Neon").replace(",3,", ",,"),
+        export("SDK, tuples").replace(";(nan, nan);0", ";(0.5, 0.5);1"),
     ];
     for text in planted {
         assert!(!is_the_gaze(&read(&text, Eye::Both).scanpath), "{text}");
@@ -278,25 +281,21 @@ fn an_export_in_other_axes_or_units_is_not_the_gaze() {
 
 #[test]
 fn one_eye_can_be_chosen_where_the_log_has_it() {
-    let all = exports();
-    let of = |name: &str| all.iter().find(|export| export.1 == name).unwrap().2.clone();
-    for (text, dx) in [(of("SDK"), 0.01 * 1920.0), (of("ASC, binocular"), 3.0)] {
+    for (text, dx) in [(export("SDK"), 0.01 * 1920.0), (export("ASC, binocular"), 3.0)] {
         for (eye, dx) in [(Eye::Left, -dx), (Eye::Right, dx)] {
             let seen = read(&text, eye).scanpath.samples()[0].px.unwrap();
             assert!((seen[0] - (960.0 + dx) as f32).abs() < 0.01 && (seen[1] - 790.0).abs() < 0.01, "{eye:?} {seen:?}");
         }
     }
     for name in ["Core", "ASC"] {
-        let error = parse_gaze_log("log", of(name).as_bytes(), &options(Eye::Left)).unwrap_err().to_string();
+        let error = parse_gaze_log("log", export(name).as_bytes(), &options(Eye::Left)).unwrap_err().to_string();
         assert!(error.contains("no gaze of the left eye alone"), "{error}");
     }
 }
 
 #[test]
 fn a_log_asks_for_the_screen_that_it_does_not_state() {
-    let all = exports();
-    let of = |name: &str| all.iter().find(|export| export.1 == name).unwrap().2.clone();
-    let parse = |name: &str, options: GazeLogOptions| parse_gaze_log("log", of(name).as_bytes(), &options);
+    let parse = |name: &str, options: GazeLogOptions| parse_gaze_log("log", export(name).as_bytes(), &options);
     let nothing = GazeLogOptions::default();
     for name in ["Pro Lab, us", "page", "sample report"] {
         let error = parse(name, nothing).unwrap_err().to_string();
@@ -306,11 +305,8 @@ fn a_log_asks_for_the_screen_that_it_does_not_state() {
     for name in ["SDK", "Core", "Analysis", "marker mapper"] {
         let log = parse(name, nothing).unwrap();
         assert!(is_the_gaze(&log.scanpath), "{name}");
-        assert!(
-            log.warnings.len() == 1 && log.warnings[0].contains("`screen_mm` and `distance_mm`"),
-            "{:?}",
-            log.warnings
-        );
+        let [warning] = &log.warnings[..] else { panic!("{:?}", log.warnings) };
+        assert!(warning.contains("`screen_mm` and `distance_mm`"), "{warning}");
         assert_eq!(GazeMap::default_for(log.scanpath.screen()), GazeMap::Fit);
     }
     // Directions need no screen: angles are kept.
@@ -329,15 +325,13 @@ fn a_log_asks_for_the_screen_that_it_does_not_state() {
     assert_eq!(picture.scanpath.samples()[0], at(0.0, [1.0, 2.0]));
     // EyeLink's text and Pro Lab's may state it.
     assert_eq!(parse("ASC", nothing).unwrap().scanpath.screen().size_px, PX);
-    let logged = of("ASC").replace(
-        "START\t",
-        "MSG\t1 !CMD 0 screen_phys_coord = -265.5, 149.5, 265.5, -149.5\nMSG\t1 !CMD 0 screen_distance = \
-         640 660\nSTART\t",
-    );
+    let screen = "MSG\t1 !CMD 0 screen_phys_coord = -265.5, 149.5, 265.5, -149.5\n\
+                  MSG\t1 !CMD 0 screen_distance = 640 660\nSTART\t";
+    let logged = export("ASC").replace("START\t", screen);
     let log = parse_gaze_log("log", logged.as_bytes(), &nothing).unwrap();
     assert_eq!((log.scanpath.screen().size_cm, log.scanpath.screen().distance_cm), (Some([53.1, 29.9]), Some(65.0)));
     assert_eq!(log.warnings, [""; 0]);
-    let stated = of("Pro Lab, us")
+    let stated = export("Pro Lab, us")
         .replace("Validity right", "Validity right\tRecording resolution width\tRecording resolution height")
         .replace("alid\n", "alid\t1920\t1080\n");
     assert!(is_the_gaze(&parse_gaze_log("log", stated.as_bytes(), &nothing).unwrap().scanpath));

@@ -81,8 +81,7 @@ fn angle_deg(a: DVec3, b: DVec3) -> f64 {
 fn alone(made: &SyntheticHead) -> Vec<HeadTurn> {
     let overlaps = |a: &HeadTurn, b: &HeadTurn| a.start_s < b.end_s && b.start_s < a.end_s;
     let is_alone = |turn: &&HeadTurn| made.turns.iter().filter(|other| overlaps(turn, other)).count() == 1;
-    let ends = |turn: &&HeadTurn| turn.end_s < DURATION_S - 0.01;
-    made.turns.iter().filter(is_alone).filter(ends).copied().collect()
+    made.turns.iter().filter(is_alone).filter(|turn| turn.end_s < DURATION_S - 0.01).copied().collect()
 }
 
 /// Largest and root mean square angle between gaze and point, and the same of the slip in degrees a second over 50 ms.
@@ -152,10 +151,7 @@ fn the_head_turns_by_the_targets_angle_beyond_what_the_eye_covers() {
         }
     }
     let shares = bins.map(|(n, sum)| sum / f64::from(n.max(1)));
-    println!(
-        "{still} shifts by the eye alone; turns and the head's mean share of the angle, by 20 degrees: {bins:.1?}"
-    );
-    println!("shares {shares:.3?}");
+    println!("{still} shifts by the eye alone; the head's mean share of the angle, by 20 degrees: {shares:.3?}");
     check_uniform("angle that the eye covers alone, degrees", &eye_alone, [5.0, 20.0]);
     assert!(still > 300 && bins[..3].iter().all(|b| b.0 > 30));
     // Freedman & Sparks 1997: no contribution of small shifts, then it grows with the angle.
@@ -216,25 +212,23 @@ fn the_eye_stays_in_its_range_and_large_shifts_wait_for_the_head() {
     rest.sort_by(f64::total_cmp);
     let quantile = |q: f64| rest[((rest.len() - 1) as f64 * q) as usize];
     let below = |deg: f64| intended.iter().filter(|a| **a < deg).count() as f64 / intended.len() as f64;
+    let ([median, most], small) = ([0.5, 0.95].map(quantile), below(15.0));
     println!(
-        "eye at most {farthest:.2} degrees from the head's axis; at the end of rests median {:.1}, 95 % {:.1}; {slow} \
-         shifts wait for the head, {eye_alone} do not; fastest gaze {fastest:.0} degrees/s; {:.0} % of shifts below 15",
-        quantile(0.5),
-        quantile(0.95),
-        100.0 * below(15.0)
+        "eye at most {farthest:.2} degrees from the head's axis; at the end of rests median {median:.1}, 95 % {most:.1}; \
+         {slow} shifts wait for the head, {eye_alone} do not; fastest gaze {fastest:.0} degrees/s; {small:.2} of shifts \
+         below 15"
     );
     // Guitton & Volle 1987. The duration is searched at 33 points in time.
     assert!(farthest < 45.5 && slow > 10);
     // At rest within what the eye covers alone, and 15 % of what is beyond.
-    assert!(quantile(0.5) < 15.0 && quantile(0.95) < 30.0);
-    assert!((0.5..0.95).contains(&below(15.0)) && fastest < 900.0);
+    assert!(median < 15.0 && most < 30.0);
+    assert!((0.5..0.95).contains(&small) && fastest < 900.0);
 }
 
 #[test]
 fn the_reflex_keeps_gaze_on_points_of_the_space() {
     let report = |what: &str, (angles, slips): ([f64; 2], [f64; 2])| {
-        println!("{what}: angle to the point at most {:.3}, rms {:.3} degrees", angles[0], angles[1]);
-        println!("{what}: slip over 50 ms at most {:.2}, rms {:.2} degrees/s", slips[0], slips[1]);
+        println!("{what}: at most and rms {angles:.3?} degrees to the point, slip over 50 ms {slips:.2?} degrees/s");
         (angles, slips)
     };
     let (angles, slips) = report("standing", rests(&STANDING));
@@ -245,14 +239,12 @@ fn the_reflex_keeps_gaze_on_points_of_the_space() {
     // Without drift, what is left is the reflex alone.
     let (_, slips) = report("no drift", rests(&make(|o| o.drifts = false)));
     assert!(slips[0] < 4.0 && slips[1] < 1.0);
-    let perfect = |o: &mut HeadOptions| {
-        (o.drifts, o.rotation_gain, o.translation_gain, o.is_walking) = (false, 1.0, 1.0, true);
-    };
-    let (angles, slips) = report("perfect", rests(&make(perfect)));
+    let of_gain = |gain| make(|o| (o.drifts, o.rotation_gain) = (false, gain));
+    let perfect = make(|o| (o.drifts, o.rotation_gain, o.translation_gain, o.is_walking) = (false, 1.0, 1.0, true));
+    let (angles, slips) = report("perfect", rests(&perfect));
     assert!(angles[0] < 1e-4 && slips[0] < 5e-3);
     // Planted errors: a reflex that is absent, or has the wrong sign.
-    let (_, absent) = report("absent", rests(&make(|o| (o.drifts, o.rotation_gain) = (false, 0.0))));
-    let (_, flipped) = report("flipped", rests(&make(|o| (o.drifts, o.rotation_gain) = (false, -1.0))));
+    let [(_, absent), (_, flipped)] = [0.0, -1.0].map(|gain| report("planted", rests(&of_gain(gain))));
     assert!(absent[0] > 40.0 && absent[1] > 5.0 && flipped[0] > 80.0 && flipped[1] > 10.0);
 }
 
@@ -292,16 +284,14 @@ fn a_seed_is_a_head_and_its_file_reads_back() {
     let events = make(3).events;
     let contiguous: Vec<_> = events.iter().filter(|e| e.kind != EventKind::Microsaccade).collect();
     assert!(contiguous.windows(2).all(|w| (w[0].end_s - w[1].start_s).abs() < 1e-9) && contiguous[0].start_s == 0.0);
-    for (change, word) in [
-        ((|o| o.rate_hz = 0.5) as fn(&mut HeadOptions), "rate: 0.5 Hz"),
-        (|o| o.duration_s = f64::NAN, "duration: NaN s"),
-        (|o| o.pursuits = 1.5, "pursuits: 1.5"),
-        (|o| o.rotation_gain = f64::NAN, "rotation gain: NaN"),
-        (|o| o.translation_gain = -3.0, "translation gain: -3"),
+    for (wrong, word) in [
+        (HeadOptions { rate_hz: 0.5, ..options }, "rate: 0.5 Hz"),
+        (HeadOptions { duration_s: f64::NAN, ..options }, "duration: NaN s"),
+        (HeadOptions { pursuits: 1.5, ..options }, "pursuits: 1.5"),
+        (HeadOptions { rotation_gain: f64::NAN, ..options }, "rotation gain: NaN"),
+        (HeadOptions { translation_gain: -3.0, ..options }, "translation gain: -3"),
     ] {
-        let mut o = options;
-        change(&mut o);
-        let error = generate_head(&o, &in_a_room).unwrap_err().to_string();
+        let error = generate_head(&wrong, &in_a_room).unwrap_err().to_string();
         assert!(error.starts_with("synthetic head, ") && error.contains(word), "{error}");
     }
 }
@@ -335,15 +325,12 @@ fn poses_that_no_head_has_are_refused_in_one_line() {
         ("0,1,2,1,0,0,0,0,0,0,1\n0.1,1,2,1,0,0,0,0,0,x,1\n", "line 4: head_qz is \"x\""),
     ] {
         let error = parse(rows).unwrap_err().to_string();
-        assert!(
-            error.contains(expected) && error.starts_with("head.csv") && !error.contains('\n'),
-            "{rows:?}: {error}"
-        );
+        assert!(error.starts_with("head.csv") && error.contains(expected) && error.lines().count() == 1, "{error}");
     }
     let lacking = HEADER.replace("head_qx,head_qy", "head_qy");
     let error = parse_csv("head.csv", lacking.as_bytes()).unwrap_err().to_string();
     assert!(error.contains("instead of the column names") && error.contains("head_qx"), "{error}");
-    let few = path.clone().with_poses(path.poses().unwrap()[..1].to_vec()).unwrap_err().to_string();
+    let few = path.clone().with_poses(vec![path.poses().unwrap()[0]]).unwrap_err().to_string();
     assert!(few.contains("1 poses of the head for 2 samples"), "{few}");
 }
 
@@ -355,12 +342,11 @@ fn a_path_of_a_head_is_smooth_between_its_samples_and_rests_at_its_ends() {
     let poses = coarse.poses().unwrap();
     assert_eq!((path.pose(-9.0), path.pose(99.0)), (poses[0], *poses.last().unwrap()));
     for i in [0, 7, 200] {
-        let at_sample = path.pose(f64::from(i) / 60.0).space_from_head();
-        assert!(at_sample.abs_diff_eq(poses[30 + i as usize].space_from_head(), 1e-6));
-        let between = path.pose((f64::from(i) + 0.5) / 60.0);
-        let (a, b) = (poses[30 + i as usize], poses[31 + i as usize]);
-        let middle = [0, 1, 2].map(|k| 0.5 * (a.position_m[k] + b.position_m[k]));
-        assert!((0..3).all(|k| (between.position_m[k] - middle[k]).abs() < 1e-5));
+        let [a, b] = [poses[30 + i], poses[31 + i]];
+        let [at_sample, between] = [0.0, 0.5].map(|later| path.pose((i as f64 + later) / 60.0));
+        assert!(at_sample.space_from_head().abs_diff_eq(a.space_from_head(), 1e-6));
+        let off = |k: usize| (between.position_m[k] - 0.5 * (a.position_m[k] + b.position_m[k])).abs();
+        assert!((0..3).all(|k| off(k) < 1e-5));
     }
     for start in [-0.1, 6.1, f64::NAN] {
         assert!(HeadPath::new(coarse.clone().into(), start).unwrap_err().to_string().contains("is not within"));

@@ -8,6 +8,7 @@ use afterimage::ViewGeometry;
 use afterimage_lab::error::InputError;
 use afterimage_lab::scanpath::*;
 use proptest::prelude::*;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 mod dialects;
@@ -61,9 +62,9 @@ fn recorded_files_and_the_fixture_read_as_their_table_says() {
     for (name, samples, lost) in RECORDED {
         let path = read_csv(folder.join(name)).unwrap();
         assert_eq!((path.samples().len(), path.lost()), (samples, lost), "{name}");
-        assert_eq!(path.screen().size_px, [1024, 768]);
-        let known = path.screen().tangent_per_px().is_some();
-        assert_eq!(known, name != "reading_250hz_noisy.csv");
+        let screen = path.screen();
+        let is_known = name != "reading_250hz_noisy.csv";
+        assert_eq!((screen.size_px, screen.tangent_per_px().is_some()), ([1024, 768], is_known));
         let rate: f64 = name.split('_').find_map(|w| w.split("hz").next()?.parse().ok()).unwrap();
         assert_eq!(path.about().rate_hz, Some(rate));
         // H63: lost samples and outliers of real trackers give finite pixels in every frame after the first valid
@@ -75,8 +76,7 @@ fn recorded_files_and_the_fixture_read_as_their_table_says() {
             assert_eq!(px.is_none(), (i as f64 / 60.0) < first_valid, "{name}, frame {i}");
             assert!(px.unwrap_or_default().iter().all(|v| v.is_finite()));
         }
-        let written = csv(&path);
-        assert_eq!(parse_csv(path.name(), &written).unwrap(), path, "{name} round trip");
+        assert_eq!(parse_csv(path.name(), &csv(&path)).unwrap(), path, "{name} round trip");
     }
 }
 
@@ -136,11 +136,7 @@ fn bad_files_are_refused_in_one_line_that_says_where() {
         ("# rate_hz: fast\n", "line 5: rate_hz is \"fast\""),
         ("# origin: middle\n", "line 5: the origin is \"middle\""),
     ];
-    for (rows, expected) in cases {
-        let error = parse(rows).unwrap_err().to_string();
-        assert!(error.contains(expected) && error.starts_with("gaze.csv"), "{rows:?}: {error}");
-        assert!(!error.contains('\n') && error.contains("; "), "{error}");
-    }
+    let cases = cases.map(|(rows, expected)| (format!("{HEADER}{rows}").into_bytes(), expected));
     let whole: [(&[u8], &str); 8] = [
         (b"", "no column names"),
         (b"# screen_px: 4x4\n0,1,2,1\n", "line 2: \"0,1,2,1\" instead of the column names"),
@@ -151,9 +147,10 @@ fn bad_files_are_refused_in_one_line_that_says_where() {
         (b"# distance_cm: inf\n", "line 1: distance_cm is"),
         (b"# a\n# b \xff\n", "line 2: not UTF-8"),
     ];
-    for (bytes, expected) in whole {
+    for (bytes, expected) in cases.iter().map(|(bytes, expected)| (&bytes[..], *expected)).chain(whole) {
         let error = parse_csv("gaze.csv", bytes).unwrap_err().to_string();
-        assert!(error.contains(expected), "{error}");
+        assert!(error.contains(expected) && error.starts_with("gaze.csv"), "{error}");
+        assert!(!error.contains('\n') && error.contains("; "), "{error}");
     }
 }
 
@@ -204,10 +201,8 @@ proptest! {
 fn a_seed_is_a_scanpath() {
     let make = |seed| generate(&SyntheticOptions { seed, duration_s: 3.0, ..Default::default() }).unwrap();
     assert_eq!(make(3), make(3));
-    let starts: Vec<_> = (0..20).map(|seed| make(seed).path.samples()[0].px.unwrap()).collect();
-    for (i, a) in starts.iter().enumerate() {
-        assert!(starts[..i].iter().all(|b| a != b));
-    }
+    let starts: BTreeSet<_> = (0..20).map(|seed| make(seed).path.samples()[0].px.unwrap().map(f32::to_bits)).collect();
+    assert_eq!(starts.len(), 20);
     let lengths = [(1.1, 10.0, 11), (6.0, 250.0, 1500), (0.001, 1.0, 1), (2.0, 0.5 + 0.5, 2)];
     for (duration_s, rate_hz, samples) in lengths {
         let made = generate(&SyntheticOptions { duration_s, rate_hz, ..Default::default() }).unwrap();

@@ -1,8 +1,7 @@
 //! Invalid inputs: the error names the file and a remedy.
 
-use super::{
-    ALL, Extras, assert_needs_megapixels, assert_says, error_of, folder_of, limits, patch, picture, save, write_frame,
-};
+use super::{ALL, Extras, folder_of, limits, patch, picture, save, temporary, write_frame};
+use super::{assert_needs_megapixels, assert_says, error_of};
 use crate::hostile::claim_size;
 use afterimage_lab::error::InputError;
 use afterimage_lab::source::exr_file::{ExrHeader, FrameToWrite, write};
@@ -36,29 +35,23 @@ fn paths_and_kinds() {
         assert_says(&refused(&at(name)), &[name, "export it again"]);
     }
     std::fs::create_dir(at("dir.png")).unwrap();
-    let e = error_of(StillSource::open(&at("dir.png"), &limits()));
-    assert_says(&e, &["dir.png", "is a folder"]);
+    assert_says(&error_of(StillSource::open(&at("dir.png"), &limits())), &["dir.png", "is a folder"]);
 }
 
 #[test]
 fn frames_that_do_not_fit_together() {
-    let cases: [(&str, [u32; 2], Extras, &[&str]); 4] = [
-        ("size", [8, 5], ALL, &["8x5", "8x4", "one size"]),
-        (
-            "motion",
-            [8, 4],
-            Extras { motion: false, to_next: false, ..ALL },
-            &["has no motion vectors to the previous frame", "every frame"],
-        ),
-        ("next", [8, 4], Extras { to_next: false, ..ALL }, &["has no motion vectors to the next frame"]),
-        ("depth", [8, 4], Extras { depth: false, ..ALL }, &["has no depth"]),
-    ];
-    for (what, size, extras, words) in cases {
+    let still = Extras { motion: false, to_next: false, ..ALL };
+    for (size, extras, words) in [
+        ([8, 5], ALL, &["8x5", "8x4", "one size"][..]),
+        ([8, 4], still, &["has no motion vectors to the previous frame", "every frame"]),
+        ([8, 4], Extras { to_next: false, ..ALL }, &["has no motion vectors to the next frame"]),
+        ([8, 4], Extras { depth: false, ..ALL }, &["has no depth"]),
+    ] {
         let folder = folder_of(3, [8, 4], ALL);
         write_frame(&folder.path().join("frame_0002.exr"), size, extras);
         let e = refused(folder.path());
         assert_says(&e, words);
-        assert!(e.message().subject.ends_with("frame_0002.exr"), "{what}: {e}");
+        assert!(e.message().subject.ends_with("frame_0002.exr"), "{e}");
     }
     let folder = folder_of(4, [8, 4], ALL);
     std::fs::remove_file(folder.path().join("frame_0002.exr")).unwrap();
@@ -75,15 +68,13 @@ fn a_sequence_needs_vectors_for_the_way_it_is_played() {
     let folder = folder_of(3, [8, 4], forward);
     let mut source = SequenceSource::open(folder.path(), &limits()).unwrap();
     assert!(source.frame(2).is_ok());
-    let e = source.frame(3).unwrap_err();
-    assert_says(&e, &["frame_0001.exr", "backwards", "Vector.Z/W", "motion.Z/W"]);
+    let words = ["frame_0001.exr", "backwards", "Vector.Z/W", "motion.Z/W"];
+    assert_says(&source.frame(3).unwrap_err(), &words);
 
     std::fs::remove_file(folder.path().join("frame_0001.exr")).unwrap();
-    let e = source.frame(1).unwrap_err();
-    assert_says(&e, &["frame_0001.exr", "does not exist"]);
+    assert_says(&source.frame(1).unwrap_err(), &["frame_0001.exr", "does not exist"]);
     write_frame(&folder.path().join("frame_0001.exr"), [9, 4], forward);
-    let e = source.frame(1).unwrap_err();
-    assert_says(&e, &["frame_0001.exr", "has changed"]);
+    assert_says(&source.frame(1).unwrap_err(), &["frame_0001.exr", "has changed"]);
 }
 
 /// Every truncation of a file is detected from its header, tables and last chunk alone.
@@ -95,8 +86,7 @@ fn every_truncation_is_noticed_before_decoding() {
     let cut = folder.path().join("frame_0001.exr");
     for length in 0..whole.len() {
         std::fs::write(&cut, &whole[..length]).unwrap();
-        let e = error_of(ExrHeader::open(&cut, &limits()));
-        assert_says(&e, &["frame_0001.exr"]);
+        assert_says(&error_of(ExrHeader::open(&cut, &limits())), &["frame_0001.exr"]);
     }
     let e = error_of(SequenceSource::open(folder.path(), &limits()));
     assert_says(&e, &["frame_0001.exr", "truncated", "copy or export it again"]);
@@ -109,10 +99,8 @@ fn missing_color_lists_what_is_there() {
     let zeros = || FlatSamples::F32(vec![0.0; 16]);
     let names = ["ViewLayer.Depth.Z", "ViewLayer.Mist.Z", "R", "G"];
     save(&path, (4, 4), Encoding::FAST_LOSSLESS, names.map(|n| AnyChannel::new(n, zeros())).into());
-    assert_says(
-        &refused(folder.path()),
-        &["frame_0001.exr", "no color", "ViewLayer.Depth.Z, ViewLayer.Mist.Z", "Combined.R/G/B"],
-    );
+    let words = ["frame_0001.exr", "no color", "ViewLayer.Depth.Z, ViewLayer.Mist.Z", "Combined.R/G/B"];
+    assert_says(&refused(folder.path()), &words);
 }
 
 #[test]
@@ -132,15 +120,11 @@ fn absurd_claims_are_refused_from_the_header() {
     let e = with(&both, [0, 0, 99_999, 99_999]);
     assert_says(&e, &["frame_0000.exr", "100000x100000", "64 million"]);
     assert_needs_megapixels(&e, 10_000);
-    let e = with(&both, [0, 0, 1_000_000_000, 1_000_000_000]);
-    assert_says(&e, &["frame_0000.exr", "1000000001"]);
+    assert_says(&with(&both, [0, 0, 1_000_000_000, 1_000_000_000]), &["frame_0000.exr", "1000000001"]);
     // Within the limit, but more chunks than the file has.
-    let e = with(&both, [0, 0, 7, 7_000_000]);
-    assert_says(&e, &["frame_0000.exr", "truncated"]);
-    let e = with(&["displayWindow"], [0, 0, 99_999, 99_999]);
-    assert_says(&e, &["100000x100000", "64 million"]);
-    let e = with(&["displayWindow"], [8, 0, 15, 3]);
-    assert_says(&e, &["beside its display window"]);
+    assert_says(&with(&both, [0, 0, 7, 7_000_000]), &["frame_0000.exr", "truncated"]);
+    assert_says(&with(&["displayWindow"], [0, 0, 99_999, 99_999]), &["100000x100000", "64 million"]);
+    assert_says(&with(&["displayWindow"], [8, 0, 15, 3]), &["beside its display window"]);
 
     let e = error_of(StillSource::open(&path, &ReadLimits { max_pixels: 0 }));
     assert_needs_megapixels(&e, 1);
@@ -149,13 +133,10 @@ fn absurd_claims_are_refused_from_the_header() {
 
 #[test]
 fn one_huge_tile_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("tile.exr");
+    let (_folder, path) = temporary("tile.exr");
     // 12 channels of 4 bytes in one block: 48 bytes a pixel, three times what a block may take.
-    let names: Vec<String> =
-        ["R", "G", "B"].map(str::to_owned).into_iter().chain((0..9).map(|i| format!("aux{i}"))).collect();
-    let channels: Vec<_> =
-        names.iter().map(|n| AnyChannel::new(n.as_str(), FlatSamples::F32(vec![0.5; 64 * 64]))).collect();
+    let names = ["R", "G", "B"].map(str::to_owned).into_iter().chain((0..9).map(|i| format!("aux{i}")));
+    let channels = names.map(|n| AnyChannel::new(n.as_str(), FlatSamples::F32(vec![0.5; 64 * 64]))).collect();
     let encoding = Encoding { blocks: Blocks::Tiles(Vec2(4096, 4096)), ..Encoding::FAST_LOSSLESS };
     save(&path, (64, 64), encoding, channels);
     assert!(StillSource::open(&path, &limits()).is_ok());
@@ -168,8 +149,7 @@ fn one_huge_tile_is_refused() {
 
 #[test]
 fn subsampled_channels_are_refused() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("yc.exr");
+    let (_folder, path) = temporary("yc.exr");
     let zeros = || FlatSamples::F32(vec![0.0; 64]);
     save(&path, (8, 8), Encoding::FAST_LOSSLESS, vec![AnyChannel::new("Y", zeros())]);
     let mut bytes = std::fs::read(&path).unwrap();
@@ -183,9 +163,8 @@ fn subsampled_channels_are_refused() {
 
 #[test]
 fn png_and_jpeg_keep_the_same_limits() {
-    let folder = tempfile::tempdir().unwrap();
     let flat = DynamicImage::ImageRgb8(ImageBuffer::from_pixel(16, 8, Rgb([1, 2, 3])));
-    let png = folder.path().join("a.png");
+    let (folder, png) = temporary("a.png");
     flat.save(&png).unwrap();
     let mut bytes = std::fs::read(&png).unwrap();
     claim_size(&mut bytes, [100_000, 90_000]);
@@ -247,16 +226,14 @@ fn a_sequence_is_opened_without_decoding_it() {
     assert!(source.frame(0).is_ok());
     assert_says(&source.frame(1).unwrap_err(), &["frame_0001.exr", "export it again"]);
     assert!(source.frame(2).is_ok());
-    let color = picture([40, 40]);
-    write(&path, &FrameToWrite::color(&color)).unwrap();
+    write(&path, &FrameToWrite::color(&picture([40, 40]))).unwrap();
     assert_says(&source.frame(1).unwrap_err(), &["frame_0001.exr", "has changed"]);
 }
 
 /// A DWA chunk starts with counters that its decoder trusts: one of 32 GB would abort the process.
 #[test]
 fn dwa_counters_do_not_set_memory_aside() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("dwaa_lines.exr");
+    let (_folder, path) = temporary("dwaa_lines.exr");
     let whole = std::fs::read(afterimage_testing::workspace().join("fixtures/fuzz/exr/dwaa_lines.exr")).unwrap();
     // The only chunk is at the offset in the table's only entry; its data follows the line number and the size.
     let word = |at: usize| u64::from_le_bytes(whole[at..at + 8].try_into().unwrap());

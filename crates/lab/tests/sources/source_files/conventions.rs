@@ -1,6 +1,6 @@
 //! What files leave to their readers: orientation, gamma, windows, and which layer is the picture.
 
-use super::{ALL, folder_of, limits, patch, save, srgb};
+use super::{ALL, folder_of, limits, patch, save, srgb, temporary};
 use crate::hostile::crc32;
 use afterimage_lab::source::{FrameSource, StillSource};
 use exr::prelude::*;
@@ -14,19 +14,15 @@ fn color(path: &Path) -> afterimage::Image<[f32; 3]> {
 /// A tag of EXIF: turned by 90 degrees, as phones write it.
 #[test]
 fn photographs_are_upright() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.jpg");
+    let (_folder, path) = temporary("a.jpg");
     let halves = ImageBuffer::from_fn(32, 16, |x, _| if x < 16 { Rgb([250_u8, 0, 0]) } else { Rgb([0, 0, 250]) });
     DynamicImage::ImageRgb8(halves).save(&path).unwrap();
     let plain = std::fs::read(&path).unwrap();
     assert_eq!(color(&path).size(), [32, 16]);
     // APP1 with an orientation (0x0112, a short) of 6: the first row is at the right.
-    let mut exif = b"Exif\0\0MM\0\x2a\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0".to_vec();
-    let mut bytes = plain[..2].to_vec();
-    bytes.extend([0xff, 0xe1, 0, (exif.len() + 2) as u8]);
-    bytes.append(&mut exif);
-    bytes.extend(&plain[2..]);
-    std::fs::write(&path, bytes).unwrap();
+    let exif = b"Exif\0\0MM\0\x2a\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0";
+    let app1 = [0xff, 0xe1, 0, (exif.len() + 2) as u8];
+    std::fs::write(&path, [&plain[..2], &app1, exif, &plain[2..]].concat()).unwrap();
     let turned = color(&path);
     assert_eq!(turned.size(), [16, 32]);
     let is_red = |x, y| turned.at(x, y)[0] > 0.5;
@@ -35,8 +31,7 @@ fn photographs_are_upright() {
 
 #[test]
 fn the_gamma_of_a_png_counts_unless_it_says_srgb() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.png");
+    let (_folder, path) = temporary("a.png");
     DynamicImage::ImageRgb8(ImageBuffer::from_pixel(2, 2, Rgb([128; 3]))).save(&path).unwrap();
     let plain = std::fs::read(&path).unwrap();
     let chunk = |name: &[u8; 4], data: &[u8]| {
@@ -81,8 +76,7 @@ fn overscan_is_cut_and_what_is_not_stored_is_black() {
 /// Layers by rank, not by order: of Blender, of renderers' files with several parts, of stereo pictures.
 #[test]
 fn the_picture_is_told_from_other_layers() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.exr");
+    let (_folder, path) = temporary("a.exr");
     let flat = |value: f32| FlatSamples::F32(vec![value; 16]);
     let read = |layers: &[&str]| {
         let channels = layers.iter().enumerate().flat_map(|(i, layer)| {

@@ -1,6 +1,6 @@
 //! Every supported kind of file, written here pixel by pixel and read back.
 
-use super::{ALL, Extras, folder_of, limits, picture, srgb, vectors};
+use super::{ALL, Extras, folder_of, limits, picture, srgb, temporary, vectors};
 use afterimage::Image;
 use afterimage_lab::source::exr_file::{ColorFormat, ExrHeader, FrameToWrite, Vectors, write};
 use afterimage_lab::source::{FrameSource, SceneOptions, SequenceSource, StillSource, open};
@@ -21,8 +21,7 @@ fn still(path: &Path) -> afterimage_lab::frame::SourceFrame {
 
 #[test]
 fn png_is_decoded_exactly() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.PNG");
+    let (_folder, path) = temporary("a.PNG");
     let rgb8 = ImageBuffer::from_fn(256, 3, |x, y| Rgb([x as u8, 255 - x as u8, (y * 100) as u8]));
     DynamicImage::ImageRgb8(rgb8).save_with_format(&path, image::ImageFormat::Png).unwrap();
     let frame = still(&path);
@@ -43,8 +42,7 @@ fn png_is_decoded_exactly() {
 
 #[test]
 fn grey_counts_for_all_channels_and_transparent_pixels_are_over_black() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.png");
+    let (_folder, path) = temporary("a.png");
     let images = [
         DynamicImage::ImageLuma8(ImageBuffer::from_pixel(2, 2, Luma([128]))),
         DynamicImage::ImageLumaA8(ImageBuffer::from_pixel(2, 2, LumaA([128, 255]))),
@@ -61,33 +59,20 @@ fn grey_counts_for_all_channels_and_transparent_pixels_are_over_black() {
     assert_eq!(still(&path).color.at(1, 1), [srgb(128.0 / 255.0) * 0.2; 3]);
 }
 
-#[test]
-fn jpeg_is_read() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("a.jpeg");
-    let flat = ImageBuffer::from_pixel(16, 8, Rgb([200, 100, 50]));
-    DynamicImage::ImageRgb8(flat).save(&path).unwrap();
-    let frame = still(&path);
-    assert_eq!(frame.color.size(), [16, 8]);
-    for (found, wanted) in frame.color.at(8, 4).iter().zip([200.0, 100.0, 50.0]) {
-        assert!((found - srgb(wanted / 255.0)).abs() < 0.02);
-    }
-}
-
 /// A browser, a camera or a chat may name a file as it likes.
 #[test]
 fn a_file_with_another_ending_is_read_by_its_first_bytes() {
-    let folder = tempfile::tempdir().unwrap();
-    let size = [37, 19];
-    let color = picture(size);
-    let exr = folder.path().join("a.exr");
-    let frame =
-        FrameToWrite { color: &color, format: ColorFormat::Float, depth: None, motion: None, motion_to_next: None };
-    write(&exr, &frame).unwrap();
+    let (folder, exr) = temporary("a.exr");
+    write(&exr, &FrameToWrite::color(&picture([37, 19]))).unwrap();
     let flat = DynamicImage::ImageRgb8(ImageBuffer::from_pixel(16, 8, Rgb([200, 100, 50])));
-    let [png, jpeg] = ["a.png", "a.jpg"].map(|name| folder.path().join(name));
+    let [png, jpeg] = ["a.png", "a.jpeg"].map(|name| folder.path().join(name));
     flat.save(&png).unwrap();
     flat.save(&jpeg).unwrap();
+    let read = still(&jpeg).color;
+    assert_eq!(read.size(), [16, 8]);
+    for (found, wanted) in read.at(8, 4).iter().zip([200.0, 100.0, 50.0]) {
+        assert!((found - srgb(wanted / 255.0)).abs() < 0.02);
+    }
     for path in [exr, png, jpeg] {
         let read = still(&path).color;
         for name in ["download", "a.dat", "a.exr.part", "a.42"] {
@@ -109,19 +94,13 @@ fn a_file_with_another_ending_is_read_by_its_first_bytes() {
 
 #[test]
 fn what_is_written_is_read_back() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("f.exr");
+    let (folder, path) = temporary("f.exr");
     let size = [37, 19];
     let color = picture(size).map(|c| c.map(|v| v * 1.001));
     let depth = Image::from_fn(size, |[x, y]| 0.1 + (x * y) as f32);
     let (motion, to_next) = (vectors(size, 0.3), vectors(size, -7.0));
-    let frame = FrameToWrite {
-        color: &color,
-        format: ColorFormat::Float,
-        depth: Some(&depth),
-        motion: Some(&motion),
-        motion_to_next: Some(&to_next),
-    };
+    let frame = FrameToWrite { depth: Some(&depth), motion: Some(&motion), ..FrameToWrite::color(&color) };
+    let frame = FrameToWrite { format: ColorFormat::Float, motion_to_next: Some(&to_next), ..frame };
     write(&path, &frame).unwrap();
     let header = ExrHeader::open(&path, &limits()).unwrap();
     let read = header.read(Vectors::ToPrevious).unwrap();
@@ -140,8 +119,7 @@ fn what_is_written_is_read_back() {
 
 #[test]
 fn half_output_clamps_and_a_failed_write_leaves_the_old_file() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("f.exr");
+    let (folder, path) = temporary("f.exr");
     let color = Image::filled([3, 2], [1e9f32, -1e9, f32::INFINITY]);
     write(&path, &FrameToWrite::color(&color)).unwrap();
     let read = still(&path);
@@ -170,22 +148,15 @@ fn broken_numbers_are_counted_or_marked() {
     let depth = Image::from_pixels(size, values.to_vec()).unwrap();
     let mut motion = vectors(size, 0.0);
     motion.pixels_mut()[3] = [f32::NAN, 1.0];
+    let frame = FrameToWrite { depth: Some(&depth), motion: Some(&motion), ..FrameToWrite::color(&color) };
+    let frame = FrameToWrite { format: ColorFormat::Float, ..frame };
     for i in 0..2 {
-        let frame = FrameToWrite {
-            color: &color,
-            format: ColorFormat::Float,
-            depth: Some(&depth),
-            motion: Some(&motion),
-            motion_to_next: None,
-        };
         write(&folder.path().join(format!("{i}.exr")), &frame).unwrap();
     }
     let mut source = SequenceSource::open(folder.path(), &limits()).unwrap();
     let frame = source.frame(1).unwrap();
     assert_eq!(frame.nonfinite, 2);
-    assert_eq!(frame.color.at(1, 0), [0.0; 3]);
-    assert_eq!(frame.color.at(1, 1), [0.0; 3]);
-    assert_eq!(frame.color.at(2, 1), color.at(2, 1));
+    assert_eq!([(1, 0), (1, 1), (2, 1)].map(|(x, y)| frame.color.at(x, y)), [[0.0; 3], [0.0; 3], color.at(2, 1)]);
     let read = frame.depth.unwrap();
     let marked: Vec<bool> = read.pixels().iter().map(|z| z.is_nan()).collect();
     assert_eq!(marked, [true, true, true, false, false, false, false, true]);
@@ -200,22 +171,14 @@ fn ramp(n: usize, scale: f32) -> FlatSamples {
     FlatSamples::F32((0..n).map(|i| i as f32 * scale).collect())
 }
 
-fn encoding(compression: Compression, blocks: Blocks) -> Encoding {
-    Encoding { compression, blocks, line_order: LineOrder::Increasing }
-}
-
 #[test]
 fn several_parts_and_grey() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("f.exr");
+    let (_folder, path) = temporary("f.exr");
     let (w, h) = (9usize, 5usize);
+    let encoding = Encoding { compression: Compression::ZIP16, ..Encoding::UNCOMPRESSED };
     let part = |name: &str, channels: Vec<AnyChannel<FlatSamples>>| {
-        Layer::new(
-            (w, h),
-            LayerAttributes::named(name),
-            encoding(Compression::ZIP16, Blocks::ScanLines),
-            AnyChannels::sort(SmallVec::from_vec(channels)),
-        )
+        let channels = AnyChannels::sort(SmallVec::from_vec(channels));
+        Layer::new((w, h), LayerAttributes::named(name), encoding, channels)
     };
     let n = w * h;
     let parts = vec![

@@ -11,7 +11,14 @@ use afterimage_lab::error::InputError;
 use afterimage_lab::source::ReadLimits;
 use afterimage_lab::source::exr_file::{ColorFormat, FrameToWrite, write};
 use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, SmallVec, WritableImage};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// The path of a file in a temporary folder of its own.
+fn temporary(name: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    (folder, path)
+}
 
 fn limits() -> ReadLimits {
     ReadLimits::default()
@@ -38,10 +45,8 @@ struct Extras {
 const ALL: Extras = Extras { depth: true, motion: true, to_next: true };
 
 fn write_frame(path: &Path, size: [u32; 2], extras: Extras) {
-    let color = picture(size);
-    let depth = Image::filled(size, 2.0f32);
-    let motion = vectors(size, 1.0);
-    let to_next = vectors(size, 3.0);
+    let (color, depth) = (picture(size), Image::filled(size, 2.0f32));
+    let (motion, to_next) = (vectors(size, 1.0), vectors(size, 3.0));
     let frame = FrameToWrite {
         color: &color,
         format: ColorFormat::Half,
@@ -56,8 +61,7 @@ fn write_frame(path: &Path, size: [u32; 2], extras: Extras) {
 fn folder_of(n: u32, size: [u32; 2], extras: Extras) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for i in 0..n {
-        let path = folder.path().join(format!("frame_{i:04}.exr"));
-        write_frame(&path, size, extras);
+        write_frame(&folder.path().join(format!("frame_{i:04}.exr")), size, extras);
     }
     folder
 }
@@ -107,8 +111,5 @@ fn assert_needs_megapixels(error: &InputError, megapixels: u64) {
 /// The error of a result whose value has no `Debug`.
 #[track_caller]
 fn error_of<T>(result: Result<T, InputError>) -> InputError {
-    match result {
-        Ok(_) => panic!("was accepted"),
-        Err(e) => e,
-    }
+    result.map(|_| ()).expect_err("was accepted")
 }

@@ -20,18 +20,13 @@ fn check(table: &Table, input: &str, metric: &Metric, sections: &[Section]) -> R
             let mut test =
                 |cell: &Option<Cell>, is_within: &dyn Fn(&Row) -> bool, goal: &dyn Fn(&Row) -> f64, what: &str| {
                     let best = rows().filter(|r| is_within(r)).map(goal).fold(f64::INFINITY, f64::min);
-                    let found = cell
-                        .as_ref()
-                        .map(|c| rows().find(|r| r.id == c.row).ok_or(format!("{what}: {} is not here", c.row)));
                     checked += 1;
-                    match found.transpose()? {
+                    let found = cell.as_ref().map(|c| rows().find(|r| r.id == c.row));
+                    match found {
                         None if best == f64::INFINITY => Ok(()),
                         None => Err(format!("{what}: {method} has nothing, and could have {best}")),
-                        Some(r) if !is_within(r) => Err(format!("{what}: {} is not within", r.label)),
-                        Some(r) if goal(r) != best => {
-                            Err(format!("{what}: {} has {}, and {best} can be had", r.label, goal(r)))
-                        }
-                        Some(_) => Ok(()),
+                        Some(Some(r)) if is_within(r) && goal(r) == best => Ok(()),
+                        Some(r) => Err(format!("{what}: {:?}, and {best} can be had", r.map(|r| &r.label))),
                     }
                 };
             for line in &section.equal_time {

@@ -3,6 +3,7 @@
 use super::table::{INPUTS, measurements, of, table};
 use afterimage_cli::report::page::page;
 use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 
 fn nothing(_: &str, _: &str) -> Option<Vec<u8>> {
@@ -92,9 +93,8 @@ fn pictures_are_embedded_once_and_bounded() {
     for (id, of) in points {
         for what in ["shown", "error", "reference"] {
             let image = small["images"][of[what].as_u64().unwrap() as usize].as_str().unwrap();
-            let bytes = base64::engine::general_purpose::STANDARD
-                .decode(image.strip_prefix("data:image/jpeg;base64,").unwrap());
-            assert_eq!(bytes.unwrap(), own(id, what));
+            let data = image.strip_prefix("data:image/jpeg;base64,").unwrap();
+            assert_eq!(STANDARD.decode(data).unwrap(), own(id, what));
         }
     }
     let is_best = |id: &&String| table.rows.iter().any(|r| r.id == **id && r.frontier.contains(&"flip"));

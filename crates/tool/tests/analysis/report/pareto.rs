@@ -5,6 +5,7 @@ use super::table::{INPUTS, measurements, of, table};
 use afterimage_cli::report::pareto;
 use afterimage_cli::sweep::{METRICS, Metric, Table};
 use resvg::usvg::roxmltree::{Document, Node};
+use std::collections::BTreeSet;
 
 fn flip() -> &'static Metric {
     Metric::find("flip").unwrap()
@@ -17,12 +18,10 @@ fn every_plot_is_xml_with_a_mark_for_each_point() {
             let svg = pareto::svg(&table, input, metric);
             let document = Document::parse(&svg).unwrap();
             let known = table.rows.iter().filter(|r| r.point.input == *input && r.values[metric.key].is_some());
-            let mut expected: Vec<&str> = known.clone().map(|r| r.id.as_str()).collect();
-            let mut found: Vec<&str> =
-                with_class(&document, "point").map(|n| n.attribute("data-row").unwrap()).collect();
-            expected.sort_unstable();
-            found.sort_unstable();
-            assert_eq!(found, expected, "{input} {}", metric.key);
+            let expected: BTreeSet<&str> = known.clone().map(|r| r.id.as_str()).collect();
+            let found: Vec<&str> = with_class(&document, "point").map(|n| n.attribute("data-row").unwrap()).collect();
+            assert_eq!(found.len(), expected.len(), "{input} {}", metric.key);
+            assert_eq!(BTreeSet::from_iter(found), expected, "{input} {}", metric.key);
             let best = known.filter(|r| r.frontier.contains(&metric.key)).count();
             let numbers = with_class(&document, "numbers").flat_map(|n| n.children()).filter(Node::is_element).count();
             assert_eq!(numbers, best);

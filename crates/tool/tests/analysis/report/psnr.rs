@@ -86,9 +86,7 @@ fn points_are_where_the_axes_say() {
 #[test]
 fn exact_frames_are_gaps_and_marks_at_the_top() {
     let mut errors = rising(25.0, 12);
-    errors[4] = 0.0;
-    errors[5] = 0.0;
-    errors[8] = f64::NAN;
+    (errors[4], errors[5], errors[8]) = (0.0, 0.0, f64::NAN);
     let plain = rising(20.0, 12);
     let svg = svg(&[("oracle", &errors), ("none", &plain)], &[0.0; 12]);
     assert!(!svg.contains("NaN") && !svg.contains("inf\""));
@@ -114,9 +112,7 @@ fn exact_frames_are_gaps_and_marks_at_the_top() {
 fn jumps_of_the_gaze_have_ticks_and_a_note() {
     let errors = rising(22.0, 20);
     let mut moves = vec![0.3; 20];
-    moves[6] = 2.1;
-    moves[7] = 9.0;
-    moves[11] = 1.9;
+    (moves[6], moves[7], moves[11]) = (2.1, 9.0, 1.9);
     let drawn = svg(&[("smr", &errors)], &moves);
     let document = Document::parse(&drawn).unwrap();
     let x = ticks(&document, "x");

@@ -59,13 +59,8 @@ pub fn measurements() -> Vec<Measurement> {
             for (name, value, of, ms_by, bytes_by, error_by) in SWITCHES {
                 if of.contains(&method) {
                     let named = options(&[("fovea", "5"), ("rate-far", "16"), (name, value)]);
-                    add(
-                        named,
-                        ms * 1.005 * ms_by,
-                        bytes.saturating_add_signed(bytes_by),
-                        0.043,
-                        left * 0.0894 * error_by,
-                    );
+                    let bytes = bytes.saturating_add_signed(bytes_by);
+                    add(named, ms * 1.005 * ms_by, bytes, 0.043, left * 0.0894 * error_by);
                 }
             }
         }
@@ -76,12 +71,9 @@ pub fn measurements() -> Vec<Measurement> {
 pub fn measurement(point: Point, ms: f64, bytes: u32, share: f64, error: f64) -> Measurement {
     let around = |ms: f64| Quartiles { median: ms, p25: 0.95 * ms, p75: 1.08 * ms };
     let db = |error: f64| Some(-20.0 * error.log10());
-    let band = |of: f64| BandScores {
-        psnr_db: db(of),
-        mse: Some(of * of),
-        ssim: Some(1.0 - of),
-        flip: Some(of * 0.9),
-        jod: Some(10.0 - of),
+    let band = |of: f64| {
+        let [mse, ssim, flip, jod] = [of * of, 1.0 - of, of * 0.9, 10.0 - of].map(Some);
+        BandScores { psnr_db: db(of), mse, ssim, flip, jod }
     };
     let moves = point.input.ends_with('/');
     let scores = Scores {

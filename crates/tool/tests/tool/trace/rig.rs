@@ -1,53 +1,21 @@
 //! Runs the tool as a process and reads a trace's files.
 
-use crate::rig::{self, Folder, read_json, succeeds};
+use crate::rig::{self, Folder, Out, words};
 use afterimage_lab::source::{FrameSource, ReadLimits, StillSource};
-use serde_json::Value;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// Traces into a fresh folder.
-pub struct Traced {
-    folder: Folder,
-    pub stdout: String,
-}
-
-impl Traced {
-    #[track_caller]
-    pub fn new(scene: &str, more: &[&str]) -> Self {
-        Self::with_spp(scene, "2", more)
-    }
-
-    #[track_caller]
-    pub fn with_spp(scene: &str, spp: &str, more: &[&str]) -> Self {
-        let folder = Folder::new();
-        let small = ["--size", "24x16", "--spp", spp, "--backend", "cpu"];
-        let stdout = succeeds(&[&["trace", scene, "--out", &folder.text("out")][..], &small, more].concat());
-        Self { folder, stdout }
-    }
-
-    pub fn path(&self, name: &str) -> PathBuf {
-        self.folder.path("out").join(name)
-    }
-
-    pub fn report(&self) -> Value {
-        read_json(&self.path("trace.json"))
-    }
-
-    pub fn bytes(&self, name: &str) -> Vec<u8> {
-        fs::read(self.path(name)).unwrap()
-    }
-
-    pub fn files(&self, name: &str) -> Vec<String> {
-        rig::files(&self.path(name))
-    }
+/// What `trace` wrote with these options.
+#[track_caller]
+pub fn traced(scene: &str, options: &str) -> Out {
+    Out::of(&words(&format!("trace {scene} --size 24x16 --spp 2 --backend cpu {options}")))
 }
 
 /// Checks that `trace` refuses in one line that contains `words`, and writes nothing.
 #[track_caller]
-pub fn refuses(scene: &str, more: &[&str], words: &[&str]) {
+pub fn refuses(options: &str, said: &[&str]) {
     let folder = Folder::new();
-    rig::refuses(&[&["trace", scene, "--out", &folder.text("out")][..], more].concat(), words);
+    let line = format!("trace builtin:cornell --out {} {options}", folder.text("out"));
+    rig::refuses(&words(&line), said);
     assert!(!folder.path("out/trace.json").exists());
 }
 
