@@ -1,16 +1,15 @@
 //! Feedback of relighting, H51 and H73: laws that hold on either executor.
 
-use crate::depth_hard::{Color, Made, Make, Steps};
-use crate::images::View;
+use crate::depth_hard::{Color, Make, Steps};
+use crate::images::{View, off, peak, pixel, times};
 use afterimage::kernel::surface::Surface;
-use afterimage::simulator::Pyramid;
-use afterimage::{ContextDesc, Exposure, Filter, Foveation, Image, Method, Reset, Settings, Smr};
+use afterimage::{ContextDesc, Filter, Foveation, Image, Method, Settings, Smr};
 use afterimage_testing::Draws;
 
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! feedback_laws {
     ($side:ident, $run_law:ident) => {
-        laws! { $side, $run_law,
+        crate::laws::laws! { $side, $run_law,
             h51_a_still_picture_under_a_steady_gaze_is_shown_as_it_came: "H51", steady_gaze;
             h51_what_gains_did_ends_when_pictures_and_gaze_rest: "H51", rest;
             h73_a_light_of_one_frame_leaves_no_mark: "H73", flash;
@@ -49,24 +48,6 @@ fn picture(draws: &mut Draws) -> Color {
     })
 }
 
-/// What a foveating renderer delivers of a picture.
-fn delivered(settings: &Settings, full: &Color, gaze_px: [f32; 2]) -> View {
-    let view = View::still(full.clone(), gaze_px);
-    let (f, geometry) = (&settings.foveation, view.facts.geometry);
-    let lods = f.lod_map(&geometry, gaze_px);
-    View { color: f.render(&Pyramid::new(full.clone(), f.max_level()), &lods), ..view }
-}
-
-fn step(post: &mut Box<dyn Steps>, index: u64, view: &View) -> Made {
-    post.make(index, view, Exposure::Same, Reset::None)
-}
-
-/// The largest relative difference.
-fn off(shown: &Color, expected: &Color) -> f32 {
-    let pairs = shown.pixels().iter().flatten().zip(expected.pixels().iter().flatten());
-    pairs.fold(0.0, |w, (a, b)| w.max((a - b).abs() / b))
-}
-
 /// The same frame again and again: what is shown differs from it by the rounding of storage alone, and what is stored
 /// never changes.
 pub fn steady_gaze(make: Make<'_>) -> Option<String> {
@@ -75,11 +56,11 @@ pub fn steady_gaze(make: Make<'_>) -> Option<String> {
     for (filter, rates) in [Filter::Mip, Filter::Gauss, Filter::Block].into_iter().zip(RATES) {
         let settings = settings(filter, rates);
         for _ in 0..2 {
-            let view = delivered(&settings, &picture(&mut draws), anywhere(&mut draws));
+            let view = View::delivered(&settings.foveation, &picture(&mut draws), anywhere(&mut draws));
             let mut post = executor(make, settings)?;
-            let stored = step(&mut post, 0, &view).words;
+            let stored = post.step(0, &view).words;
             for index in 1..8 {
-                let made = step(&mut post, index, &view);
+                let made = post.step(index, &view);
                 worst = worst.max(off(&made.shown, &view.color));
                 assert!(made.words == stored, "{filter:?} {rates:?}, frame {index}: what is stored changed");
             }
@@ -89,11 +70,12 @@ pub fn steady_gaze(make: Make<'_>) -> Option<String> {
     // The planted error: a first frame that claims to be finer than it is. Its blur counts as a change of light.
     let settings = settings(Filter::Mip, [4, 8]);
     let full = Image::from_fn(SIZE, |[x, y]| [if x % 24 < 4 && y % 24 < 4 { 8.0 } else { 0.25 }; 3]);
-    let coarse = View { lod: Some(Image::filled(SIZE, 3.0)), ..delivered(&settings, &full, [-4000.0, 0.0]) };
+    let coarse =
+        View { lod: Some(Image::filled(SIZE, 3.0)), ..View::delivered(&settings.foveation, &full, [-4000.0, 0.0]) };
     let claimed = View { lod: Some(Image::filled(SIZE, 2.5)), ..coarse.clone() };
     let mut post = executor(make, settings)?;
-    step(&mut post, 0, &claimed);
-    let drifted = off(&step(&mut post, 1, &coarse).shown, &coarse.color);
+    post.step(0, &claimed);
+    let drifted = off(&post.step(1, &coarse).shown, &coarse.color);
     assert!(drifted > 0.05, "{drifted}");
     Some(format!(
         "smr: mip, gauss and block, each at another rate, with lamps up to 64 times brighter: off by {worst:.5}, rounding"
@@ -112,15 +94,15 @@ pub fn rest(make: Make<'_>) -> Option<String> {
         let mut brightest = 0.0_f32;
         for index in 0..30 {
             let light = draws.range(-2.0, 2.0).exp2();
-            let lit = full.map(|c| c.map(|v| v * light));
-            let view = delivered(&settings, &lit, anywhere(&mut draws));
+            let lit = times(&full, light);
+            let view = View::delivered(&settings.foveation, &lit, anywhere(&mut draws));
             brightest = brightest.max(peak(&lit));
-            most = most.max(peak(&step(&mut post, index, &view).shown) / brightest);
+            most = most.max(peak(&post.step(index, &view).shown) / brightest);
         }
-        let view = delivered(&settings, &full, anywhere(&mut draws));
-        let mut before = step(&mut post, 30, &view).surfaces();
+        let view = View::delivered(&settings.foveation, &full, anywhere(&mut draws));
+        let mut before = post.step(30, &view).surfaces();
         for index in 31..50 {
-            let surfaces = step(&mut post, index, &view).surfaces();
+            let surfaces = post.step(index, &view).surfaces();
             let [toward, away] = moved_colors(&before, &surfaces, &view.color);
             moved = [moved[0] + toward, moved[1] + away];
             before = surfaces;
@@ -134,10 +116,6 @@ pub fn rest(make: Make<'_>) -> Option<String> {
         "smr: lights of 1/4 to 4 and a new gaze a frame show at the most {most:.2} of the brightest input; at rest \
          {toward} stored colors move towards the candidate, {away} away from it, at a stored step each"
     ))
-}
-
-fn peak(image: &Color) -> f32 {
-    image.pixels().iter().flatten().fold(0.0, |m, &v| m.max(v))
 }
 
 /// Number of stored colors that moved towards the candidate, and away from it. No sample becomes finer, and one that
@@ -157,8 +135,7 @@ fn moved_colors(before: &[Surface], after: &[Surface], candidate: &Color) -> [us
 fn wall_and_lamp(draws: &mut Draws, light: f32) -> [Color; 2] {
     let wall = Image::from_fn(SIZE, |_| [0.2 + 0.2 * draws.uniform(); 3]);
     let lamp = |x: u32, y: u32| (60..68).contains(&x) && (30..38).contains(&y);
-    let at = |[x, y]: [u32; 2]| if lamp(x, y) { [light; 3] } else { wall.at(x as usize, y as usize) };
-    let lit = Image::from_fn(SIZE, at);
+    let lit = Image::from_fn(SIZE, |[x, y]| if lamp(x, y) { [light; 3] } else { pixel(&wall, [x, y]) });
     [wall, lit]
 }
 
@@ -176,8 +153,8 @@ pub fn flash(make: Make<'_>) -> Option<String> {
         let [wall, lit] = wall_and_lamp(&mut draws, light);
         // The planted error: history of the lamp's place is finer, because the eye was there. It is relit.
         for (first, steady) in [([20.0, 20.0], true), ([64.0, 34.0], false)] {
-            let before = delivered(&relit, &wall, first);
-            let [plain, lit] = [&wall, &lit].map(|c| delivered(&relit, c, [20.0, 20.0]));
+            let before = View::delivered(&relit.foveation, &wall, first);
+            let [plain, lit] = [&wall, &lit].map(|c| View::delivered(&relit.foveation, c, [20.0, 20.0]));
             let mut posts = [executor(make, relit)?, executor(make, unlit(relit))?];
             let mut same = true;
             for index in 0..25 {
@@ -186,7 +163,7 @@ pub fn flash(make: Make<'_>) -> Option<String> {
                     20 => &lit,
                     _ => &plain,
                 };
-                let [relit, unlit] = posts.each_mut().map(|post| step(post, index, view).shown);
+                let [relit, unlit] = posts.each_mut().map(|post| post.step(index, view).shown);
                 same &= relit == unlit;
                 if steady && index >= 20 {
                     let marks = marks(&relit, &plain.color);
@@ -219,7 +196,7 @@ pub fn sparse_flash(make: Make<'_>) -> Option<String> {
                 Filter::Sparse => view.foveated(&settings.foveation, [20.0, 20.0], index),
                 _ => view,
             };
-            shown = step(&mut post, index, &view).shown;
+            shown = post.step(index, &view).shown;
         }
         Some(marks(&shown, wall) as i64)
     };

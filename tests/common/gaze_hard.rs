@@ -1,6 +1,6 @@
 //! Hard cases of gaze, H63 and H66: laws that hold on either executor.
 
-use crate::depth_hard::{Color, METHODS, Make, SIZE, desc, of, still};
+use crate::depth_hard::{Color, METHODS, Made, Make, SIZE, desc, of, still};
 use crate::images::{View, noise};
 use crate::settings::ungated;
 use afterimage::{ContextDesc, Gaze};
@@ -8,7 +8,7 @@ use afterimage::{ContextDesc, Gaze};
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! gaze_laws {
     ($side:ident, $run_law:ident) => {
-        laws! { $side, $run_law,
+        crate::laws::laws! { $side, $run_law,
             h63_a_lost_gaze_is_held_then_centred_at_the_start: "H63", lost_gaze;
             h66_a_saccade_keeps_the_old_fovea_and_it_decays_as_theory_says: "H66", saccade;
         }
@@ -32,7 +32,7 @@ pub fn lost_gaze(make: Make<'_>) -> Option<String> {
         let mut post = make(desc(ungated()))?;
         let mut weights = vec![];
         for (index, &gaze) in (0..).zip(gazes) {
-            let (_, _, trace) = post.step(index, &gazing(noise(SIZE, "gaze"), gaze));
+            let trace = post.step(index, &gazing(noise(SIZE, "gaze"), gaze)).trace;
             weights = trace.pixels().iter().map(|t| t.weight).collect();
             assert!(weights.iter().all(|w| w.is_finite() && *w > 0.0));
         }
@@ -50,7 +50,9 @@ pub fn lost_gaze(make: Make<'_>) -> Option<String> {
         let shown = |gazes: &[Gaze]| -> Option<Vec<Color>> {
             let mut post = make(of(method))?;
             let frames = (0..).zip(gazes);
-            Some(frames.map(|(i, &gaze)| post.step(i, &gazing(noise(SIZE, &format!("gaze {i}")), gaze)).0).collect())
+            Some(
+                frames.map(|(i, &gaze)| post.step(i, &gazing(noise(SIZE, &format!("gaze {i}")), gaze)).shown).collect(),
+            )
         };
         let expected = shown(&[at(31.5, 23.5), here, here, here])?;
         assert!(shown(&[Gaze::Lost, here, Gaze::Lost, at(3.0, f32::NAN)])? == expected, "{method:?}");
@@ -87,7 +89,7 @@ pub fn saccade(make: Make<'_>) -> Option<String> {
     let spread = |shares: &[f64]| shares.iter().fold((0.0, 0.0), |(m, v), s| (m + s, v + s * (1.0 - s)));
     let mut half_life = None;
     for n in 1..=150_u64 {
-        let (out, _, trace) = post.step(17 + n, &frame(17 + n, new));
+        let Made { shown: out, trace, .. } = post.step(17 + n, &frame(17 + n, new));
         for ((a, s), b) in sums.iter_mut().zip(&mut alive).zip(&b) {
             *a = *a * *a / (*a + b) + b;
             *s *= 1.0 - b / *a;

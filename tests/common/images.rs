@@ -1,7 +1,9 @@
 //! Images of frames, view by view, in the form of the CPU executor's inputs.
 
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::{Foveation, Gaze, Image, Lattices, ViewFrame, ViewGeometry};
+use afterimage::kernel::debug_view::PixelTrace;
+use afterimage::simulator::Pyramid;
+use afterimage::{Filter, Foveation, FrameStats, Gaze, Image, Lattices, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
 
 /// Images of one view of one frame.
@@ -44,12 +46,18 @@ impl View {
         self.sparse(lattices)
     }
 
+    /// What a foveating renderer delivers of a picture.
+    pub fn delivered(foveation: &Foveation, full: &Image<[f32; 3]>, gaze_px: [f32; 2]) -> Self {
+        let lods = foveation.lod_map(&ViewGeometry::flat(full.size(), 70.0).unwrap(), gaze_px);
+        let color = foveation.render(&Pyramid::new(full.clone(), foveation.max_level()), &lods);
+        Self::still(color, gaze_px)
+    }
+
     /// What the lattices read of an image, and `elsewhere` between.
     pub fn read_of<T: Copy>(&self, image: &Image<T>, elsewhere: T) -> Image<T> {
         let lattices = self.facts.lattices.unwrap();
         let is_read = |px| lattices.as_slice().iter().any(|lattice| lattice.samples(px));
-        let at = |[x, y]: [u32; 2]| image.at(x as usize, y as usize);
-        Image::from_fn(image.size(), |px| if is_read(px) { at(px) } else { elsewhere })
+        Image::from_fn(image.size(), |px| if is_read(px) { pixel(image, px) } else { elsewhere })
     }
 
     /// With the samples in an atlas of `size`, and NaN elsewhere.
@@ -59,11 +67,11 @@ impl View {
         let mut color = Image::filled(size, [f32::NAN; 3]);
         for lattice in atlas.as_slice() {
             let [left, top] = lattice.atlas_texel.unwrap();
-            for (i, j) in (0..lattice.points[1]).flat_map(|j| (0..lattice.points[0]).map(move |i| (i, j))) {
-                let [x, y] = [lattice.first_px[0] + i * lattice.step, lattice.first_px[1] + j * lattice.step];
-                if x < self.color.size()[0] && y < self.color.size()[1] {
+            for [i, j] in pixels(lattice.points) {
+                let px = [lattice.first_px[0] + i * lattice.step, lattice.first_px[1] + j * lattice.step];
+                if px[0] < self.color.size()[0] && px[1] < self.color.size()[1] {
                     let at = ((top + j) * size[0] + left + i) as usize;
-                    color.pixels_mut()[at] = self.color.at(x as usize, y as usize);
+                    color.pixels_mut()[at] = pixel(&self.color, px);
                 }
             }
         }
@@ -73,39 +81,6 @@ impl View {
     /// In which everything moves by `speed_px` a frame.
     pub fn moving(self, speed_px: [f32; 2]) -> Self {
         self.with(|view| view.motion = Some(Image::filled(view.color.size(), speed_px.map(|v| -v))))
-    }
-
-    /// As the CPU executor's inputs.
-    pub fn one(&self) -> OneView<'_> {
-        OneView {
-            depth: self.depth.as_ref(),
-            motion: self.motion.as_ref(),
-            trust: self.trust.as_ref(),
-            reactive: self.reactive.as_ref(),
-            lod: self.lod.as_ref(),
-            noise: self.noise.as_ref(),
-            ..OneView::new(self.facts, &self.color)
-        }
-    }
-}
-
-/// All images of one view, borrowed.
-#[derive(Clone, Copy)]
-pub struct OneView<'a> {
-    pub facts: ViewFrame,
-    pub color: &'a Image<[f32; 3]>,
-    pub depth: Option<&'a Image<f32>>,
-    pub motion: Option<&'a Image<[f32; 2]>>,
-    pub trust: Option<&'a Image<f32>>,
-    pub reactive: Option<&'a Image<f32>>,
-    pub lod: Option<&'a Image<f32>>,
-    pub noise: Option<&'a Image<[f32; 2]>>,
-}
-
-impl<'a> OneView<'a> {
-    /// Without optional inputs.
-    pub fn new(facts: ViewFrame, color: &'a Image<[f32; 3]>) -> Self {
-        Self { facts, color, depth: None, motion: None, trust: None, reactive: None, lod: None, noise: None }
     }
 }
 
@@ -122,16 +97,17 @@ pub struct Images<'a> {
 }
 
 impl<'a> Images<'a> {
-    pub fn of(views: &[OneView<'a>]) -> Self {
+    pub fn of(views: impl IntoIterator<Item = &'a View>) -> Self {
+        let views: Vec<&View> = views.into_iter().collect();
         Self {
             views: views.iter().map(|v| v.facts).collect(),
-            color: views.iter().map(|v| v.color).collect(),
-            depth: views.iter().filter_map(|v| v.depth).collect(),
-            motion: views.iter().filter_map(|v| v.motion).collect(),
-            trust: views.iter().filter_map(|v| v.trust).collect(),
-            reactive: views.iter().filter_map(|v| v.reactive).collect(),
-            lod: views.iter().filter_map(|v| v.lod).collect(),
-            noise: views.iter().filter_map(|v| v.noise).collect(),
+            color: views.iter().map(|v| &v.color).collect(),
+            depth: views.iter().filter_map(|v| v.depth.as_ref()).collect(),
+            motion: views.iter().filter_map(|v| v.motion.as_ref()).collect(),
+            trust: views.iter().filter_map(|v| v.trust.as_ref()).collect(),
+            reactive: views.iter().filter_map(|v| v.reactive.as_ref()).collect(),
+            lod: views.iter().filter_map(|v| v.lod.as_ref()).collect(),
+            noise: views.iter().filter_map(|v| v.noise.as_ref()).collect(),
         }
     }
 
@@ -150,6 +126,52 @@ impl<'a> Images<'a> {
 
 fn given<T>(images: &[T]) -> Option<&[T]> {
     (!images.is_empty()).then_some(images)
+}
+
+/// Plans a frame that is shaded by quads: the masks.
+pub fn planned(post: &mut CpuAfterimage, frame: &Frame<'_>) -> Vec<Image<bool>> {
+    match post.desc().settings.foveation.filter {
+        Filter::Quads => post.plan(frame).unwrap().to_vec(),
+        _ => vec![],
+    }
+}
+
+/// Outputs, decisions and counters of a frame.
+pub fn traced(
+    post: &mut CpuAfterimage,
+    frame: &Frame<'_>,
+) -> (Vec<Image<[f32; 3]>>, Vec<Image<PixelTrace>>, FrameStats) {
+    let size = post.desc().size_px;
+    let mut shown = vec![Image::filled(size, [f32::NAN; 3]); frame.views.len()];
+    let mut trace = vec![Image::filled(size, PixelTrace::default()); frame.views.len()];
+    let stats = post.process_traced(frame, &mut shown, &mut trace).unwrap();
+    (shown, trace, stats)
+}
+
+/// The value at a pixel.
+pub fn pixel<T: Copy>(image: &Image<T>, [x, y]: [u32; 2]) -> T {
+    image.at(x as usize, y as usize)
+}
+
+/// Pixels of a picture, row by row.
+pub fn pixels([width, height]: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
+    (0..height).flat_map(move |y| (0..width).map(move |x| [x, y]))
+}
+
+/// Colors times a factor.
+pub fn times(color: &Image<[f32; 3]>, factor: f32) -> Image<[f32; 3]> {
+    color.map(|c| c.map(|v| v * factor))
+}
+
+/// The largest channel.
+pub fn peak(color: &Image<[f32; 3]>) -> f32 {
+    color.pixels().iter().flatten().fold(0.0, |m, &v| m.max(v))
+}
+
+/// The largest relative difference.
+pub fn off(shown: &Image<[f32; 3]>, expected: &Image<[f32; 3]>) -> f32 {
+    let pairs = shown.pixels().iter().flatten().zip(expected.pixels().iter().flatten());
+    pairs.fold(0.0, |w, (a, b)| w.max((a - b).abs() / b))
 }
 
 /// Colors that halves hold exactly, different at every pixel.

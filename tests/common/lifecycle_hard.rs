@@ -2,14 +2,14 @@
 //! bit for bit.
 
 use crate::depth_hard::{Made, Make, SIZE, Steps, desc};
-use crate::images::{View, noise};
+use crate::images::{View, noise, pixel, times};
 use crate::surfaces_hard::settings;
 use afterimage::{ContextDesc, Exposure, Image, MethodKind, Reset};
 
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! lifecycle_laws {
     ($side:ident, $run_law:ident) => {
-        laws! { $side, $run_law,
+        crate::laws::laws! { $side, $run_law,
             h76_other_sizes_and_back_equal_a_fresh_context: "H76", other_sizes;
             h77_a_cut_shows_the_candidate_and_equals_a_fresh_context: "H77", cut;
             h78_resets_equal_a_fresh_context: "H78", resets;
@@ -33,12 +33,10 @@ fn frame(method: MethodKind, index: u64) -> View {
     let coarse = |x: u32| (u64::from(x) + 5 * index) % 26 < 13;
     let picture = match method {
         MethodKind::Wrs => noise(SIZE, &format!("run {index}")),
-        _ => noise(SIZE, "run").map(|c| c.map(|v| v * (1.0 + 0.02 * index as f32))),
+        _ => times(&noise(SIZE, "run"), 1.0 + 0.02 * index as f32),
     };
-    let color = Image::from_fn(SIZE, |[x, y]| {
-        let at = |x: u32, y: u32| picture.at(x as usize, y as usize);
-        if method == MethodKind::Wrs || !coarse(x) { at(x, y) } else { at(x & !1, y & !1) }
-    });
+    let is_fine = |x: u32| method == MethodKind::Wrs || !coarse(x);
+    let color = Image::from_fn(SIZE, |px| pixel(&picture, if is_fine(px[0]) { px } else { px.map(|v| v & !1) }));
     let motion = |[x, y]: [u32; 2]| if (x / 8 + y / 8) % 2 == 0 { [16.0, -1.0] } else { [-0.5, 2.5] };
     View {
         lod: (method != MethodKind::Wrs).then(|| Image::from_fn(SIZE, |[x, _]| if coarse(x) { 1.5 } else { 0.0 })),
@@ -48,12 +46,8 @@ fn frame(method: MethodKind, index: u64) -> View {
     }
 }
 
-fn step(post: &mut Box<dyn Steps>, index: u64, view: &View, reset: Reset) -> Made {
-    post.make(index, view, Exposure::Same, reset)
-}
-
 fn run(post: &mut Box<dyn Steps>, method: MethodKind, frames: std::ops::Range<u64>) -> Vec<Made> {
-    frames.map(|index| step(post, index, &frame(method, index), Reset::None)).collect()
+    frames.map(|index| post.step(index, &frame(method, index))).collect()
 }
 
 /// Output of a fresh context for frames 8 to 13, and a context after its first 8 frames.
@@ -71,9 +65,9 @@ pub fn other_sizes(make: Make<'_>) -> Option<String> {
             resized.resize(size);
             let lod = (method != MethodKind::Wrs).then(|| Image::filled(size, 0.0));
             let view = View { lod, ..View::still(noise(size, "resized"), [20.0, 20.0]) };
-            let made = step(&mut resized, 0, &view, Reset::None);
+            let made = resized.step(0, &view);
             assert_eq!(made.shown, view.color, "{method:?}: the first frame of a size is the candidate");
-            step(&mut resized, 1, &view, Reset::None);
+            resized.step(1, &view);
         }
         resized.resize(SIZE);
         assert!(run(&mut resized, method, 8..14) == fresh, "{method:?}");
@@ -87,7 +81,7 @@ pub fn cut(make: Make<'_>) -> Option<String> {
         let (fresh, mut cut) = fresh_and_used(make, method)?;
         let view = frame(method, 8);
         for _ in 0..2 {
-            let made = step(&mut cut, 8, &view, Reset::All);
+            let made = cut.make(8, &view, Exposure::Same, Reset::All);
             assert_eq!(made.shown, view.color, "{method:?}: the cut shows what came");
             assert!(made == fresh[0], "{method:?}");
         }
@@ -103,7 +97,7 @@ pub fn resets(make: Make<'_>) -> Option<String> {
     for method in METHODS {
         let (fresh, mut twice) = fresh_and_used(make, method)?;
         for index in 6..8 {
-            step(&mut twice, index, &frame(method, index), Reset::All);
+            twice.make(index, &frame(method, index), Exposure::Same, Reset::All);
         }
         let mut stale = make(of(method))?;
         run(&mut stale, method, 7..8);
@@ -113,7 +107,7 @@ pub fn resets(make: Make<'_>) -> Option<String> {
         stale.forget();
         assert!(run(&mut stale, method, 8..14) == fresh, "{method:?}: forgotten");
         let [mut with_reset, mut without] = [make(of(method))?, make(of(method))?];
-        let first = step(&mut with_reset, 0, &frame(method, 0), Reset::All);
+        let first = with_reset.make(0, &frame(method, 0), Exposure::Same, Reset::All);
         assert!(run(&mut without, method, 0..1) == [first], "{method:?}: a reset at frame 0");
         assert!(run(&mut with_reset, method, 1..5) == run(&mut without, method, 1..5), "{method:?}");
     }

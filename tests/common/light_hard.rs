@@ -1,7 +1,7 @@
 //! Hard cases of light that changes, H72 to H75, for wrs: laws that hold on either executor.
 
-use crate::depth_hard::{Color, Make, SIZE, Steps, desc, still};
-use crate::images::{View, noise};
+use crate::depth_hard::{Color, Made, Make, SIZE, Steps, desc, still};
+use crate::images::{View, noise, peak, times};
 use crate::settings::ungated;
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::{ContextDesc, Exposure, Image, Settings};
@@ -9,7 +9,7 @@ use afterimage::{ContextDesc, Exposure, Image, Settings};
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! light_laws {
     ($side:ident, $run_law:ident) => {
-        laws! { $side, $run_law,
+        crate::laws::laws! { $side, $run_law,
             h72_with_the_ratio_history_follows_the_exposure_at_once: "H72", declared_exposure;
             h72_without_the_ratio_the_gate_recovers_within_3_frames: "H72", undeclared_exposure;
             h73_a_firefly_lives_one_frame: "H73", gated_firefly;
@@ -28,10 +28,6 @@ fn gated(gate: bool) -> ContextDesc {
     desc(if gate { Settings::paper() } else { ungated() })
 }
 
-fn scaled(color: &Color, ratio: f32) -> Color {
-    color.map(|c| c.map(|v| v * ratio))
-}
-
 /// Share of pixels.
 fn share(image: &Image<PixelTrace>, f: impl Fn(usize, &PixelTrace) -> bool) -> f64 {
     let hits = image.pixels().iter().enumerate().filter(|(i, t)| f(*i, t)).count();
@@ -40,7 +36,7 @@ fn share(image: &Image<PixelTrace>, f: impl Fn(usize, &PixelTrace) -> bool) -> f
 
 /// Noise, new every frame, as bright as `ratio`.
 pub fn frame(index: u64, ratio: f32) -> Color {
-    scaled(&noise(SIZE, &format!("light {index}")), ratio)
+    times(&noise(SIZE, &format!("light {index}")), ratio)
 }
 
 /// Exposure that changes by x256 in one frame, declared.
@@ -55,8 +51,9 @@ pub fn declared_exposure(make: Make<'_>) -> Option<String> {
                 10 => post.exposed(index, &still(frame(index, ratio)), Exposure::Changed { ratio }),
                 _ => post.exposed(index, &still(frame(index, ratio)), Exposure::Changed { ratio: 1.0 }),
             };
-            let expected = if index < 10 { before.0 } else { scaled(&before.0, ratio) };
-            assert_eq!((after.0, after.1, after.2), (expected, before.1, before.2), "x{ratio}, frame {index}");
+            let expected = if index < 10 { before.shown } else { times(&before.shown, ratio) };
+            assert_eq!((after.shown, after.stats), (expected, before.stats), "x{ratio}, frame {index}");
+            assert_eq!(after.trace, before.trace, "x{ratio}, frame {index}");
         }
         // With the gate: a still picture is unaffected by it.
         let mut post = make(gated(true))?;
@@ -64,7 +61,8 @@ pub fn declared_exposure(make: Make<'_>) -> Option<String> {
             post.step(index, &still(frame(0, 1.0)));
         }
         let bright = frame(0, ratio);
-        let (out, stats, trace) = post.exposed(10, &still(bright.clone()), Exposure::Changed { ratio });
+        let Made { shown: out, stats, trace, .. } =
+            post.exposed(10, &still(bright.clone()), Exposure::Changed { ratio });
         assert_eq!((out, stats.rejected()), (bright, 0));
         assert!(trace.pixels().iter().all(|t| t.agreement == 1.0));
         assert!(share(&trace, |_, t| !t.is_replaced) > 0.7, "and is kept");
@@ -72,7 +70,7 @@ pub fn declared_exposure(make: Make<'_>) -> Option<String> {
     // The planted error: the inverse of the ratio.
     let mut post = make(gated(true))?;
     post.step(0, &still(frame(0, 1.0)));
-    let (_, _, trace) = post.exposed(1, &still(frame(0, EXPOSED)), Exposure::Changed { ratio: 1.0 / EXPOSED });
+    let trace = post.exposed(1, &still(frame(0, EXPOSED)), Exposure::Changed { ratio: 1.0 / EXPOSED }).trace;
     assert!(share(&trace, |_, t| t.agreement == 0.0) > 0.9);
     Some(
         "wrs, x256 and /256 declared: 10 frames the same as unexposed ones times the ratio, bit for bit; 0 rejected"
@@ -92,7 +90,7 @@ pub fn undeclared_exposure(make: Make<'_>) -> Option<String> {
         }
         let mut stale = vec![];
         for index in 30..40 + all as u64 {
-            let (_, stats, trace) = post.step(index, &still(frame(index, ratio)));
+            let Made { stats, trace, .. } = post.step(index, &still(frame(index, ratio)));
             assert_eq!(stats.rejected(), 0);
             stale.push(share(&trace, |_, t| u64::from(t.age) > index - 30));
         }
@@ -156,8 +154,8 @@ pub fn gliding_firefly(make: Make<'_>) -> Option<String> {
                 color.pixels_mut()[16 * SIZE[0] as usize + 50] = [light; 3];
             }
             let view = View { motion: Some(Image::filled(SIZE, [0.37, 0.0])), ..still(color) };
-            let (shown, ..) = post.step(index, &view);
-            let brightest = shown.pixels().iter().flatten().fold(0.0_f32, |m, &v| m.max(v));
+            let shown = post.step(index, &view).shown;
+            let brightest = peak(&shown);
             // The planted error: the firefly's own frame.
             assert_eq!(index == 5, brightest >= light, "{brightest} of {light} in frame {index}");
             worst = if index == 15 { worst.max(brightest) } else { worst };
@@ -178,7 +176,7 @@ pub fn strobe(make: Make<'_>) -> Option<String> {
         let mut last_lit = None;
         for index in 0..70 + frames {
             let light = if index < 60 && index % 2 == 1 { on } else { dark };
-            let (out, ..) = post.step(index, &still(Image::filled(SIZE, [light; 3])));
+            let out = post.step(index, &still(Image::filled(SIZE, [light; 3]))).shown;
             assert!(out.pixels().iter().all(|&c| c == [dark; 3] || c == [on; 3]));
             if index >= 60 && out.pixels().iter().any(|&c| c != [dark; 3]) {
                 last_lit = Some(index - 60);
@@ -200,14 +198,14 @@ pub fn black_and_white(make: Make<'_>) -> Option<String> {
     // Through the gate each frame replaces the last one.
     let mut post = make(gated(true))?;
     for index in 0..40 {
-        assert_eq!(post.step(index, &still(picture(index))).0, picture(index));
+        assert_eq!(post.step(index, &still(picture(index))).shown, picture(index));
     }
     // Without a gate: every pixel is one of the two, and in the long run each for half of the time.
     let mut post = make(gated(false))?;
     let mut white = vec![0_u32; 64 * 48];
     let measured = 64;
     for index in 0..200 + measured {
-        let (out, ..) = post.step(index, &still(picture(index)));
+        let out = post.step(index, &still(picture(index))).shown;
         for (n, &c) in white.iter_mut().zip(out.pixels()) {
             assert!(c == [0.0; 3] || c == [1.0; 3]);
             *n += u32::from(index >= 200 && c[0] == 1.0);
@@ -235,7 +233,7 @@ fn flash(mut post: Box<dyn Steps>, light: f32, frames: u64) -> Vec<u64> {
     let dark = 0.031_25;
     let lit = |index: u64| {
         let color = Image::filled(SIZE, [if index == 30 { light } else { dark }; 3]);
-        let (out, ..) = post.step(index, &still(color));
+        let out = post.step(index, &still(color)).shown;
         out.pixels().iter().filter(|&&c| c != [dark; 3]).count() as u64
     };
     (0..30 + frames).map(lit).skip(30).collect()

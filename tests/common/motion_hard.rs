@@ -1,14 +1,14 @@
 //! Hard cases of motion, H51 to H54, H58 to H60 and H105: laws that hold on either executor.
 
-use crate::depth_hard::{METHODS, Make, SIZE, of, still};
-use crate::images::{View, noise};
+use crate::depth_hard::{METHODS, Made, Make, SIZE, of, still};
+use crate::images::{View, noise, pixel, pixels};
 use afterimage::{DepthConvention, Image, MethodKind, MotionConvention, Verdict, ViewFrame, ViewGeometry};
 use glam::{DMat4, DVec2, DVec3};
 
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! motion_laws {
     ($side:ident, $run_law:ident) => {
-        laws! { $side, $run_law,
+        crate::laws::laws! { $side, $run_law,
             h51_a_thousand_still_frames_never_move_a_sample: "H51", still_frames;
             h52_an_integer_shift_moves_history_exactly_and_marks_the_border_new: "H52", whole_shift;
             h53_half_pixel_motion_never_blurs: "H53", half_pixels;
@@ -22,7 +22,6 @@ macro_rules! motion_laws {
 }
 pub(crate) use motion_laws;
 
-/// A thousand frames in which nothing moves.
 pub fn still_frames(make: Make<'_>) -> Option<String> {
     // Every frame has another picture at the same depths: each output pixel is the sample of some frame at that pixel.
     let mut post = make(of(MethodKind::Wrs))?;
@@ -35,7 +34,7 @@ pub fn still_frames(make: Make<'_>) -> Option<String> {
             motion: Some(Image::filled(SIZE, [0.0, -0.0])),
             ..still(noise(SIZE, &format!("still {index}")))
         };
-        let (out, stats, trace) = post.step(index, &input);
+        let Made { shown: out, stats, trace, .. } = post.step(index, &input);
         assert_eq!(stats.rejected(), 0);
         for (i, colors) in seen.iter_mut().enumerate() {
             colors.insert(input.color.pixels()[i].map(f32::to_bits));
@@ -46,7 +45,6 @@ pub fn still_frames(make: Make<'_>) -> Option<String> {
     Some(format!("wrs, 1000 frames of noise over 200 depths: {kept} samples kept, each at its own pixel, bit for bit"))
 }
 
-/// A shift by whole pixels.
 pub fn whole_shift(make: Make<'_>) -> Option<String> {
     let mut border = 0;
     for (shift, right) in [([3.0, -2.0], true), ([-3.0, 2.0], false)] {
@@ -55,15 +53,15 @@ pub fn whole_shift(make: Make<'_>) -> Option<String> {
         post.step(0, &still(before.clone()));
         post.stick();
         let input = View { motion: Some(Image::filled(SIZE, shift)), ..still(noise(SIZE, "after")) };
-        let (out, _, trace) = post.step(1, &input);
+        let Made { shown: out, trace, .. } = post.step(1, &input);
         let mut wrong = 0;
         border = 0;
-        for (x, y) in (0..48_usize).flat_map(|y| (0..64_usize).map(move |x| (x, y))) {
-            let (qx, qy) = (x + 3, y.wrapping_sub(2));
-            let inside = qx < 64 && qy < 48;
-            let expected =
-                if inside { (before.at(qx, qy), Verdict::Valid) } else { (input.color.at(x, y), Verdict::OffScreen) };
-            wrong += u32::from((out.at(x, y), trace.at(x, y).verdict) != expected);
+        for px in pixels(SIZE) {
+            let source = [px[0] + 3, px[1].wrapping_sub(2)];
+            let inside = source[0] < 64 && source[1] < 48;
+            let from_source = || (pixel(&before, source), Verdict::Valid);
+            let expected = if inside { from_source() } else { (pixel(&input.color, px), Verdict::OffScreen) };
+            wrong += u32::from((pixel(&out, px), pixel(&trace, px).verdict) != expected);
             border += u32::from(!inside);
         }
         assert_eq!(wrong == 0, right, "{wrong} wrong; the planted error: the other sign");
@@ -72,7 +70,6 @@ pub fn whole_shift(make: Make<'_>) -> Option<String> {
     Some(format!("wrs: {} samples moved bit for bit, {border} of the border new", 61 * 46))
 }
 
-/// Half a pixel a frame.
 pub fn half_pixels(make: Make<'_>) -> Option<String> {
     // Nearest reprojection moves samples by whole pixels: after 200 frames of 0.5 px every color is still one of the
     // input colors.
@@ -83,7 +80,7 @@ pub fn half_pixels(make: Make<'_>) -> Option<String> {
         let color = noise(SIZE, &format!("frame {index}"));
         known.extend(color.pixels().iter().map(|c| c.map(f32::to_bits)));
         let input = View { motion: Some(Image::filled(SIZE, [-0.5, 0.5])), ..still(color) };
-        let (out, _, trace) = post.step(index, &input);
+        let Made { shown: out, trace, .. } = post.step(index, &input);
         assert!(out.pixels().iter().all(|c| known.contains(&c.map(f32::to_bits))), "H22: no invented colors");
         kept += trace.pixels().iter().filter(|t| !t.is_replaced).count();
     }
@@ -103,7 +100,7 @@ pub fn garbage_motion(make: Make<'_>) -> Option<String> {
             motion.pixels_mut()[5 * 64 + 7] = [bad, 0.0];
             motion.pixels_mut()[6 * 64 + 7] = [0.0, bad];
             let input = View { motion: Some(motion), ..still(noise(SIZE, "b")) };
-            let (out, stats, _) = post.step(index, &input);
+            let Made { shown: out, stats, .. } = post.step(index, &input);
             assert_eq!((stats.verdicts[Verdict::BadMotion as usize], stats.rejected()), (2, 2), "{method:?}, {bad}");
             assert_eq!((out.at(7, 5), out.at(7, 6)), (input.color.at(7, 5), input.color.at(7, 6)));
         }
@@ -111,7 +108,6 @@ pub fn garbage_motion(make: Make<'_>) -> Option<String> {
     Some("wrs and smr: NaN, infinities, +-1e9, 3e38 on either axis show the candidate, and return".into())
 }
 
-/// A bright near square that moves over a dark wall.
 pub fn depth_edge(make: Make<'_>) -> Option<String> {
     // A bright near square moves right by 1.5 px a frame over a dark wall; vectors are right at each pixel.
     let mut post = make(of(MethodKind::Wrs))?;
@@ -124,13 +120,12 @@ pub fn depth_edge(make: Make<'_>) -> Option<String> {
             motion: Some(Image::from_fn(SIZE, |[x, y]| if inside(x, y) { [-1.5, 0.0] } else { [0.0, 0.0] })),
             ..still(noise(SIZE, ""))
         };
-        let (out, ..) = post.step(index, &input);
+        let out = post.step(index, &input).shown;
         assert_eq!(out, input.color, "frame {index}");
     }
     Some("wrs, a square at 1.5 px a frame over a wall, 30 frames: no pixel bleeds".into())
 }
 
-/// A zoom by 2 in and out.
 pub fn zoom(make: Make<'_>) -> Option<String> {
     let before = noise(SIZE, "zoom");
     let zoomed = |factor: f32| -> Option<[u64; 2]> {
@@ -138,23 +133,20 @@ pub fn zoom(make: Make<'_>) -> Option<String> {
         post.step(0, &still(before.clone()));
         post.stick();
         // Previous minus current, about pixel (32, 24).
-        let motion =
-            Image::from_fn(SIZE, |[x, y]| [(x as f32 - 32.0) * (factor - 1.0), (y as f32 - 24.0) * (factor - 1.0)]);
+        let motion = Image::from_fn(SIZE, |[x, y]| [x as f32 - 32.0, y as f32 - 24.0].map(|v| v * (factor - 1.0)));
         let input = View { motion: Some(motion), ..still(noise(SIZE, "zoom 2")) };
-        let (out, stats, trace) = post.step(1, &input);
+        let Made { shown: out, stats, trace, .. } = post.step(1, &input);
         let (mut kept, mut sources) = (0, std::collections::HashSet::new());
-        for y in 0..48_usize {
-            for x in 0..64_usize {
-                let source = |at: usize, middle: f32| (middle + (at as f32 - middle) * factor + 0.5).floor();
-                let [qx, qy] = [source(x, 32.0), source(y, 24.0)];
-                let t = trace.at(x, y);
-                if (0.0..64.0).contains(&qx) && (0.0..48.0).contains(&qy) {
-                    assert_eq!((out.at(x, y), t.age, t.is_replaced), (before.at(qx as usize, qy as usize), 1, false));
-                    sources.insert((qx as usize, qy as usize));
-                    kept += 1;
-                } else {
-                    assert_eq!((out.at(x, y), t.age, t.verdict), (input.color.at(x, y), 0, Verdict::OffScreen));
-                }
+        for px in pixels(SIZE) {
+            let source = [0, 1].map(|i| ([32.0, 24.0][i] + (px[i] as f32 - [32.0, 24.0][i]) * factor + 0.5).floor());
+            let (shown, t) = (pixel(&out, px), pixel(&trace, px));
+            if (0.0..64.0).contains(&source[0]) && (0.0..48.0).contains(&source[1]) {
+                let source = source.map(|v| v as u32);
+                assert_eq!((shown, t.age, t.is_replaced), (pixel(&before, source), 1, false));
+                sources.insert(source);
+                kept += 1;
+            } else {
+                assert_eq!((shown, t.age, t.verdict), (pixel(&input.color, px), 0, Verdict::OffScreen));
             }
         }
         assert_eq!(stats.rejected(), 64 * 48 - kept);
@@ -167,14 +159,13 @@ pub fn zoom(make: Make<'_>) -> Option<String> {
     ))
 }
 
-/// A turn of the head.
 pub fn turn(make: Make<'_>) -> Option<String> {
     for (method, lod) in [(MethodKind::Wrs, None), (MethodKind::Smr, None), (MethodKind::Smr, Some(2.0))] {
         let mut post = make(of(method))?;
         post.step(0, &still(noise(SIZE, "turn 0")));
         let lod = lod.map(|lod| Image::filled(SIZE, lod));
         let turn = View { motion: Some(Image::filled(SIZE, [5000.0, 0.0])), lod, ..still(noise(SIZE, "turn")) };
-        let (out, stats, _) = post.step(1, &turn);
+        let Made { shown: out, stats, .. } = post.step(1, &turn);
         assert_eq!((out, stats.rejected()), (turn.color, 64 * 48), "{method:?}");
     }
     Some("wrs and smr: all 3072 pixels are the candidate, bit for bit".into())
@@ -190,12 +181,12 @@ fn pose(index: u64) -> DMat4 {
 }
 
 /// Distance of a pixel's surface; infinite for the sky.
-fn distance(x: u32, y: u32) -> f64 {
+fn distance([x, y]: [u32; 2]) -> f64 {
     if y < 12 { f64::INFINITY } else { 1.0 + f64::from((x / 8) * (y / 6)) }
 }
 
 /// Whether a pixel shows the object that moves.
-fn is_object(x: u32, y: u32) -> bool {
+fn is_object([x, y]: [u32; 2]) -> bool {
     (20..30).contains(&x) && (20..30).contains(&y)
 }
 
@@ -211,14 +202,13 @@ fn expected_vector(px: [u32; 2], own: [f32; 2], now: &ViewGeometry, before: &Vie
     let ([scale, offset], [old_scale, old_offset]) = (rays(now), rays(before));
     let shown = DVec2::new(f64::from(px[0]), f64::from(px[1])) - DVec2::from(JITTER_PX.map(f64::from));
     let tangent = (shown + DVec2::from(own.map(f64::from))) * scale + offset;
-    let z = distance(px[0], px[1]);
+    let z = distance(px);
     // y up, -z forward.
     let ray = DVec3::new(tangent.x, -tangent.y, -1.0);
     let previous_from_current = pose(0).inverse() * pose(1);
-    let seen = if z.is_finite() {
-        previous_from_current.transform_point3(ray * z)
-    } else {
-        previous_from_current.transform_vector3(ray)
+    let seen = match z.is_finite() {
+        true => previous_from_current.transform_point3(ray * z),
+        false => previous_from_current.transform_vector3(ray),
     };
     let old_tangent = DVec2::new(seen.x, -seen.y) / -seen.z;
     (old_tangent - old_offset) / old_scale - shown
@@ -228,9 +218,8 @@ fn expected_vector(px: [u32; 2], own: [f32; 2], now: &ViewGeometry, before: &Vie
 pub fn camera_motion(make: Make<'_>) -> Option<String> {
     let none = [7.0, -2.5];
     let [now, before] = [70.0, 72.0].map(|hfov_deg| ViewGeometry::flat(SIZE, hfov_deg).unwrap());
-    let object = |vector: [f32; 2], still: [f32; 2]| {
-        Some(Image::from_fn(SIZE, |[x, y]| if is_object(x, y) { vector } else { still }))
-    };
+    let object =
+        |vector: [f32; 2], still: [f32; 2]| Some(Image::from_fn(SIZE, |px| if is_object(px) { vector } else { still }));
     let except = MotionConvention { no_vector: Some(none), ..MotionConvention::default() };
     let excluded = MotionConvention { without_camera: true, ..MotionConvention::default() };
     let both = MotionConvention { no_vector: Some(none), ..excluded };
@@ -249,7 +238,7 @@ pub fn camera_motion(make: Make<'_>) -> Option<String> {
             let mut desc = of(method);
             (desc.motion, desc.depth) = (*convention, REVERSED);
             let mut post = make(desc)?;
-            let depth = Image::from_fn(SIZE, |[x, y]| ((1.0 / distance(x, y) - 0.01) / 9.99).max(0.0) as f32);
+            let depth = Image::from_fn(SIZE, |px| ((1.0 / distance(px) - 0.01) / 9.99).max(0.0) as f32);
             let view = |index: u64, geometry: ViewGeometry| {
                 let mut view = View { depth: Some(depth.clone()), ..still(noise(SIZE, &format!("camera {index}"))) };
                 let [pose, previous] = [index, index.saturating_sub(1)].map(|i| pose(i).to_cols_array_2d());
@@ -261,14 +250,14 @@ pub fn camera_motion(make: Make<'_>) -> Option<String> {
             second.facts.jitter_px = JITTER_PX;
             // A pixel without distance.
             second.depth.as_mut().unwrap().pixels_mut()[40 * 64 + 3] = f32::NAN;
-            let (.., trace) = post.step(1, &second);
+            let trace = post.step(1, &second).trace;
             assert_eq!(trace.at(3, 40).verdict, Verdict::BadMotion);
-            for [x, y] in (0..48).flat_map(|y| (0..64).map(move |x| [x, y])).filter(|&at| at != [3, 40]) {
-                let found = DVec2::from(trace.at(x as usize, y as usize).motion.map(f64::from));
-                let own = if motion.is_some() && is_object(x, y) { OWN_PX } else { [0.0; 2] };
+            for px in pixels(SIZE).filter(|&px| px != [3, 40]) {
+                let found = DVec2::from(pixel(&trace, px).motion.map(f64::from));
+                let own = if motion.is_some() && is_object(px) { OWN_PX } else { [0.0; 2] };
                 let expected = match complete {
-                    Some(vector) if is_object(x, y) => DVec2::from(vector.map(f64::from)),
-                    _ => expected_vector([x, y], own, &now, &before),
+                    Some(vector) if is_object(px) => DVec2::from(vector.map(f64::from)),
+                    _ => expected_vector(px, own, &now, &before),
                 };
                 largest = largest.max((found - expected).length());
                 // The planted error: nothing moves.
@@ -291,11 +280,11 @@ fn still_camera(make: Make<'_>) -> Option<()> {
     let mut post = make(desc)?;
     let pose = pose(9).to_cols_array_2d();
     for index in 0..3 {
-        let depth = Image::from_fn(SIZE, |[x, y]| distance(x, y) as f32);
+        let depth = Image::from_fn(SIZE, |px| distance(px) as f32);
         let mut view = View { depth: Some(depth), ..still(noise(SIZE, "still camera")) };
         view.facts = view.facts.posed(pose, pose).unwrap();
         view.facts.jitter_px = JITTER_PX;
-        let (.., trace) = post.step(index, &view);
+        let trace = post.step(index, &view).trace;
         assert!(index == 0 || trace.pixels().iter().all(|t| t.motion == [0.0; 2] && t.verdict == Verdict::Valid));
     }
     Some(())

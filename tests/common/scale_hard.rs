@@ -1,8 +1,8 @@
 //! Scale of light, H106: laws that hold on either executor.
 
 use crate::depth_hard::{Color, Made, Make, Steps};
-use crate::images::View;
-use afterimage::simulator::Pyramid;
+use crate::images::{View, pixel, times};
+use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::{
     ContextDesc, Exposure, Filter, Foveation, Image, Method, MethodKind, Reset, Sampler, Settings, Smr, Wrs,
 };
@@ -11,7 +11,7 @@ use afterimage_testing::Draws;
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! scale_laws {
     ($side:ident, $run_law:ident) => {
-        laws! { $side, $run_law,
+        crate::laws::laws! { $side, $run_law,
             h106_colors_times_a_constant_are_shown_as_the_picture_times_it: "H106", times_a_constant;
             h106_radiance_with_its_exposure_is_shown_as_the_picture_in_its_unit: "H106", radiance;
             h106_a_shadow_that_moves_leaves_as_little_light_in_dark_frames: "H106", moving_shadow;
@@ -35,18 +35,12 @@ fn delivered(settings: &Settings, full: &Color, gaze_px: [f32; 2], index: u64) -
         view.facts.jitter_px = Foveation::jitter_px(index);
     }
     view.noise = settings.noisy.then(|| full.map(|c| [0.05 * c[1], 2.0]));
-    let (f, geometry) = (&settings.foveation, view.facts.geometry);
-    match f.filter {
-        Filter::Sparse => return view.foveated(f, gaze_px, index),
-        Filter::Quads => return view,
-        _ => {}
+    let foveation = &settings.foveation;
+    match foveation.filter {
+        Filter::Sparse => view.foveated(foveation, gaze_px, index),
+        Filter::Quads => view,
+        _ => View { color: View::delivered(foveation, full, gaze_px).color, ..view },
     }
-    let lods = f.lod_map(&geometry, gaze_px);
-    View { color: f.render(&Pyramid::new(full.clone(), f.max_level()), &lods), ..view }
-}
-
-fn times(color: &Color, factor: f32) -> Color {
-    color.map(|c| c.map(|v| v * factor))
 }
 
 /// A view with its light in another unit.
@@ -76,7 +70,7 @@ fn clip(draws: &mut Draws, settings: &Settings, speed_px: [f32; 2]) -> Vec<View>
         let (light, edge) = (draws.range(0.8, 1.25), draws.range(0.0, 64.0));
         let gaze_px = SIZE.map(|side| draws.range(0.0, side as f32 - 1.0));
         let lit = |x: u32| if x as f32 > edge { light } else { 0.7 * light };
-        let full = Image::from_fn(SIZE, |[x, y]| wall.at(x as usize, y as usize).map(|v| v * lit(x)));
+        let full = Image::from_fn(SIZE, |[x, y]| pixel(&wall, [x, y]).map(|v| v * lit(x)));
         let view = delivered(settings, &full, gaze_px, index);
         if speed_px == [0.0; 2] { view } else { view.moving(speed_px) }
     };
@@ -89,11 +83,15 @@ fn scales(plain: &[Made], scaled: &[Made], factor: f32) -> bool {
     plain.iter().zip(scaled).all(same)
 }
 
+/// Number of pixels of all frames.
+fn count(made: &[Made], is: impl Fn(&PixelTrace) -> bool) -> usize {
+    made.iter().flat_map(|m| m.trace.pixels()).filter(|t| is(t)).count()
+}
+
 /// Share of channels that differ by more than one percent.
 fn off(plain: &[Made], scaled: &[Made], factor: f32) -> f64 {
-    let pixels =
-        |made: &[Made]| -> Vec<f32> { made.iter().flat_map(|m| m.shown.pixels().to_vec()).flatten().collect() };
-    let (a, b) = (pixels(plain), pixels(scaled));
+    let channels = |made: &[Made]| made.iter().flat_map(|m| m.shown.pixels().to_vec()).flatten().collect::<Vec<_>>();
+    let (a, b) = (channels(plain), channels(scaled));
     let differs = |&(a, b): &(&f32, &f32)| (b / factor - a).abs() > 0.01 * a;
     a.iter().zip(&b).filter(differs).count() as f64 / a.len() as f64
 }
@@ -103,16 +101,14 @@ pub fn times_a_constant(make: Make<'_>) -> Option<String> {
     let mut draws = Draws::new("scale of light");
     let mut worst = 0.0_f64;
     let moving = [0.3, -1.4];
-    for (filter, speed_px) in
-        [(Filter::Mip, [0.0; 2]), (Filter::Mip, moving), (Filter::Gauss, moving), (Filter::Block, moving)]
-    {
+    let moved = [Filter::Mip, Filter::Gauss, Filter::Block].map(|filter| (filter, moving));
+    for (filter, speed_px) in [(Filter::Mip, [0.0; 2])].into_iter().chain(moved) {
         let settings = settings(filter);
         let views = clip(&mut draws, &settings, speed_px);
         let mut post = make(ContextDesc { settings, ..ContextDesc::new(views[0].color.size()) })?;
         let mut run = |factor: f32| of_unit(&mut *post, &views, |_| factor, |_| Exposure::Same);
         let plain = run(1.0);
-        let reused = plain.iter().flat_map(|m| m.trace.pixels()).filter(|t| t.history_share > 0.5).count();
-        let gated = plain.iter().flat_map(|m| m.trace.pixels()).filter(|t| t.agreement < 1.0).count();
+        let (reused, gated) = (count(&plain, |t| t.history_share > 0.5), count(&plain, |t| t.agreement < 1.0));
         assert!(reused > 1000 && gated > 1000, "{filter:?}: {reused} and {gated}");
         for factor in [-10, 12].map(|exponent| 2.0_f32.powi(exponent)) {
             assert!(scales(&plain, &run(factor), factor), "{filter:?} {speed_px:?}: {factor}");
@@ -167,7 +163,7 @@ pub fn radiance(make: Make<'_>) -> Option<String> {
         let mut post = make(ContextDesc { settings: *settings, ..ContextDesc::new(views[0].color.size()) })?;
         let same = |_: usize| Exposure::Same;
         let plain = of_unit(&mut *post, &views, |_| 1.0, same);
-        let reused = plain.iter().flat_map(|m| m.trace.pixels()).filter(|t| t.history_share > 0.5).count();
+        let reused = count(&plain, |t| t.history_share > 0.5);
         assert!(reused > 1000 || settings.method.kind() == MethodKind::None, "{settings:?}: {reused}");
         let stored = |a: &[Made], b: &[Made]| a.iter().zip(b).all(|(a, b)| a.words == b.words);
         for exponent in [-30, -3, 24] {
@@ -179,15 +175,8 @@ pub fn radiance(make: Make<'_>) -> Option<String> {
         let exposure = |i: usize| 2.0_f32.powi([0, -1, -1, 2, 5, -3][i % 6]);
         let changed = |i: usize| Exposure::Changed { ratio: if i == 0 { 1.0 } else { exposure(i) / exposure(i - 1) } };
         let by_hand = of_unit(&mut *post, &views, exposure, changed);
-        let given = of_unit(
-            &mut *post,
-            &views,
-            |_| 1.0,
-            |i| match exposure(i) {
-                1.0 => Exposure::Same,
-                exposure => Exposure::Scene { exposure },
-            },
-        );
+        let said = |i| if exposure(i) == 1.0 { Exposure::Same } else { Exposure::Scene { exposure: exposure(i) } };
+        let given = of_unit(&mut *post, &views, |_| 1.0, said);
         let is_same = |i: usize| scales(&given[i..=i], &by_hand[i..=i], exposure(i));
         assert!((0..views.len()).all(is_same) && stored(&by_hand, &given), "{settings:?}: exposures that change");
         let odd = of_unit(&mut *post, &views, |_| 700.0, |_| Exposure::Scene { exposure: 1.0 / 700.0 });
@@ -231,11 +220,8 @@ fn light_left(make: Make<'_>, settings: Settings, exponent: i32, exposure: Expos
 
 /// The same in a bright frame and in dark ones.
 pub fn moving_shadow(make: Make<'_>) -> Option<String> {
-    let left = |settings: Settings, exponents: &[i32]| {
-        exponents
-            .iter()
-            .map(|&exponent| light_left(make, settings, exponent, Exposure::Same))
-            .collect::<Option<Vec<_>>>()
+    let left = |settings: Settings, exponents: &[i32]| -> Option<Vec<_>> {
+        exponents.iter().map(|&exponent| light_left(make, settings, exponent, Exposure::Same)).collect()
     };
     let smr = left(settings(Filter::Mip), &[4, -10])?;
     assert!(smr.iter().all(|&l| l < 0.06), "{smr:?}");

@@ -6,7 +6,7 @@ use afterimage_testing::Draws;
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! simulator_laws {
     ($side:ident, $run_law:ident) => {
-        laws! { $side, $run_law,
+        crate::laws::laws! { $side, $run_law,
             h69_a_constant_image_stays_constant_at_any_size: "H69", constant;
             h70_the_mean_is_preserved: "H70", mean;
             h71_the_image_has_no_seam_at_the_rings: "H71", ramp;

@@ -1,8 +1,8 @@
 //! Hard cases for the methods that store surfaces, H50 to H53, H58, H59, H66 and H72 to H75: laws that hold on
 //! either executor.
 
-use crate::depth_hard::{Color, Made, Make, Steps};
-use crate::images::{View, noise};
+use crate::depth_hard::{Color, Make};
+use crate::images::{View, noise, off, peak, pixel, pixels, times};
 use crate::low_pass::LowPass;
 use afterimage::{ContextDesc, Exposure, Foveation, Gaze, Image, Method, MethodKind, Reset, Settings, Smr, Verdict};
 use afterimage_testing::Draws;
@@ -10,7 +10,7 @@ use afterimage_testing::Draws;
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! surfaces_laws {
     ($side:ident, $run_law:ident) => {
-        laws! { $side, $run_law,
+        crate::laws::laws! { $side, $run_law,
             h50_z_fighting_stays_next_to_the_colors_presented: "H50", z_fighting;
             h51_a_still_picture_stays_bit_for_bit_whatever_the_candidates_level: "H51", still_picture;
             h52_a_whole_shift_moves_history_exactly_and_the_border_is_new: "H52", whole_shift;
@@ -64,20 +64,6 @@ pub fn sharp(color: Color) -> View {
     at_lod(color, 0.0)
 }
 
-fn step(post: &mut Box<dyn Steps>, index: u64, view: &View) -> Made {
-    post.make(index, view, Exposure::Same, Reset::None)
-}
-
-fn scaled(color: &Color, ratio: f32) -> Color {
-    color.map(|c| c.map(|v| v * ratio))
-}
-
-/// The largest relative difference.
-fn off(shown: &Color, expected: &Color) -> f32 {
-    let pairs = shown.pixels().iter().flatten().zip(expected.pixels().iter().flatten());
-    pairs.fold(0.0, |w, (a, b)| w.max((a / b - 1.0).abs()))
-}
-
 /// Two surfaces that z-fight pixel by pixel, as a renderer of quarter resolution delivers them.
 pub fn z_fighting(make: Make<'_>) -> Option<String> {
     let (a, b) = ([0.25, 0.5, 0.75], [0.75, 0.25, 0.5]);
@@ -89,8 +75,8 @@ pub fn z_fighting(make: Make<'_>) -> Option<String> {
         let picks = Image::from_fn(SIZE, |_| draws.uniform() < 0.5);
         let color = LowPass::new(&picks.map(|p| if p { a } else { b }), 4).render(&lods);
         let view = View { depth: Some(picks.map(|p| if p { 3.0 } else { 3.0001 })), ..at_lod(color, 2.0) };
-        let made = step(&mut post, index, &view);
-        let expected = step(&mut plain, index, &View { depth: None, ..view });
+        let made = post.step(index, &view);
+        let expected = plain.step(index, &View { depth: None, ..view });
         assert_eq!((&made.shown, &made.trace), (&expected.shown, &expected.trace), "frame {index}");
         assert_eq!(made.stats.rejected(), 0);
         for c in made.shown.pixels() {
@@ -101,7 +87,6 @@ pub fn z_fighting(make: Make<'_>) -> Option<String> {
     Some(format!("smr, 40 frames: all as without depth, bit for bit; at the most {beyond:.4} beyond 0.25 to 0.75"))
 }
 
-/// A still picture, whose levels of detail change.
 pub fn still_picture(make: Make<'_>) -> Option<String> {
     // Rough, smooth, and dark pictures: the tolerance grows with contrast, and smooth ones have none. The roughest for
     // a thousand frames.
@@ -110,14 +95,14 @@ pub fn still_picture(make: Make<'_>) -> Option<String> {
     {
         let mut post = make(of(MethodKind::Smr))?;
         let picture = noise(SIZE, "s3").map(|c| c.map(|v| floor + contrast * v));
-        let first = step(&mut post, 0, &sharp(picture));
+        let first = post.step(0, &sharp(picture));
         let stored = first.stored();
         let low_pass = LowPass::new(&stored, 4);
         for index in 1..=frames {
             // Levels at which sharp history replaces the candidate fully: a tenth and more.
             let mut draws = Draws::new(&format!("s3 {index}"));
             let lods = Image::from_fn(SIZE, |_| draws.range(0.11, 2.0));
-            let made = step(&mut post, index, &at_lods(low_pass.render(&lods), lods));
+            let made = post.step(index, &at_lods(low_pass.render(&lods), lods));
             assert_eq!(made.words, first.words, "{name}, frame {index}");
             assert_eq!(made.shown, stored, "{name}, frame {index}");
             assert!(made.trace.pixels().iter().all(|t| t.history_share == 1.0 && t.agreement == 1.0));
@@ -128,21 +113,21 @@ pub fn still_picture(make: Make<'_>) -> Option<String> {
     Some(format!("smr: 1000 coarse frames of noise show frame 0 bit for bit in all {pixels} pixels (smooth, dark: 30)"))
 }
 
-/// A shift by whole pixels.
 pub fn whole_shift(make: Make<'_>) -> Option<String> {
     let before = noise(SIZE, "h52");
     let low_pass = LowPass::new(&before, 4);
     for (shift, right) in [([3.0, -2.0], true), ([-3.0, 2.0], false)] {
         let mut post = make(of(MethodKind::Smr))?;
-        step(&mut post, 0, &sharp(before.clone()));
+        post.step(0, &sharp(before.clone()));
         let color = Image::from_fn(SIZE, |[x, y]| low_pass.at([f64::from(x) + 3.0, f64::from(y) - 2.0], 1.0));
         let view = View { motion: Some(Image::filled(SIZE, shift)), ..at_lod(color.clone(), 1.0) };
-        let made = step(&mut post, 1, &view);
-        let as_expected = (0..41_usize).flat_map(|y| (0..52_usize).map(move |x| (x, y))).all(|(x, y)| {
-            if x + 3 < 52 && y >= 2 {
-                made.shown.at(x, y) == before.at(x + 3, y - 2) && made.trace.at(x, y).history_share == 1.0
+        let made = post.step(1, &view);
+        let as_expected = pixels(SIZE).all(|px| {
+            let (shown, t) = (pixel(&made.shown, px), pixel(&made.trace, px));
+            if px[0] + 3 < 52 && px[1] >= 2 {
+                shown == pixel(&before, [px[0] + 3, px[1] - 2]) && t.history_share == 1.0
             } else {
-                made.shown.at(x, y) == color.at(x, y) && made.trace.at(x, y).verdict == Verdict::OffScreen
+                shown == pixel(&color, px) && t.verdict == Verdict::OffScreen
             }
         });
         assert_eq!(as_expected, right, "the planted error: the other sign");
@@ -150,7 +135,6 @@ pub fn whole_shift(make: Make<'_>) -> Option<String> {
     Some(format!("smr: {} samples moved bit for bit, {} of the border new", 49 * 39, 52 * 41 - 49 * 39))
 }
 
-/// Half a pixel a frame.
 pub fn half_pixels(make: Make<'_>) -> Option<String> {
     // Waves of 16 pixels in a wide picture that moves 100 pixels to the right. Read half-way between texels, a wave
     // keeps 9/8 cos(pi f) - 1/8 cos(3 pi f) of itself, f being a wave a 16th of a pixel: 0.896 of it after 200
@@ -161,13 +145,13 @@ pub fn half_pixels(make: Make<'_>) -> Option<String> {
     let wave = |x: f64| 0.5 + 0.3 * (2.0 * f * x).sin();
     let picture = |shift: f64| Image::from_fn(WIDE, |[x, _]| [wave(f64::from(x) - shift) as f32; 3]);
     let mut post = make(sized(WIDE, settings(MethodKind::Smr)))?;
-    step(&mut post, 0, &sharp(picture(0.0)));
+    post.step(0, &sharp(picture(0.0)));
     let (mut kept, mut coarse) = (0.0, 0.0);
     for index in 1..=200 {
         let shift = 0.5 * index as f64;
         let color = LowPass::new(&picture(shift), 3).render(&Image::filled(WIDE, 2.0));
         let motion = Some(Image::filled(WIDE, [-0.5, 0.0]));
-        let made = step(&mut post, index, &View { motion, ..at_lod(color.clone(), 2.0) });
+        let made = post.step(index, &View { motion, ..at_lod(color.clone(), 2.0) });
         // Amplitudes, over four whole waves that were in view all the time.
         let amplitude = |image: &Color| {
             let at = |x: usize| f64::from(image.at(x, 12)[0]) * (2.0 * f * (x as f64 - shift)).sin();
@@ -184,7 +168,6 @@ pub fn half_pixels(make: Make<'_>) -> Option<String> {
     ))
 }
 
-/// Taps that reach over an edge.
 pub fn depth_edge(make: Make<'_>) -> Option<String> {
     // A quarter of a pixel to the left of the edge and to the right of it, taps reach over; plain colors show any such
     // tap. smr accumulates coarse history.
@@ -202,7 +185,7 @@ pub fn depth_edge(make: Make<'_>) -> Option<String> {
         let motion = Some(Image::filled(SIZE, [-0.25, 0.0]));
         let view = View { depth, motion, ..at_lod(Image::from_fn(SIZE, |at| colors(near(at))), lod) };
         let mut post = make(of(method))?;
-        let worst = (0..20).map(|i| off(&step(&mut post, i, &view).shown, &view.color)).fold(0.0, f32::max);
+        let worst = (0..20).map(|i| off(&post.step(i, &view).shown, &view.color)).fold(0.0, f32::max);
         // Storage alone is off by 2^-10, and by up to three times that before a share of 0.3 tells.
         assert_eq!(worst > 0.006, bleeds, "{method:?}: {worst}");
         widest.push(worst);
@@ -212,40 +195,36 @@ pub fn depth_edge(make: Make<'_>) -> Option<String> {
     Some(format!("smr and taa, 1/4 px over an edge: off by {least:.4}, rounding; without depth {bled:.2}"))
 }
 
-/// A zoom by 2 in and out.
 pub fn zoom(make: Make<'_>) -> Option<String> {
     let before = noise(SIZE, "zoom of surfaces").map(|c| c.map(|v| 0.5 + 0.125 * (8.0 * v).floor() / 8.0));
     let low_pass = LowPass::new(&before, 4);
     let zoomed = |factor: f32| -> Option<[u64; 2]> {
         let mut post = make(unlit())?;
-        step(&mut post, 0, &sharp(before.clone()));
-        let shift = |v: u32, middle: f32| (v as f32 - middle) * (factor - 1.0);
-        let motion = Image::from_fn(SIZE, |[x, y]| [shift(x, 26.0), shift(y, 20.0)]);
+        post.step(0, &sharp(before.clone()));
+        let middle = [26.0, 20.0];
+        let shift = |px: [u32; 2]| [0, 1].map(|i| (px[i] as f32 - middle[i]) * (factor - 1.0));
+        let motion = Image::from_fn(SIZE, shift);
         // The frame as a renderer of quarter resolution delivers it.
-        let color = Image::from_fn(SIZE, |[x, y]| {
-            low_pass.at([f64::from(x) + f64::from(shift(x, 26.0)), f64::from(y) + f64::from(shift(y, 20.0))], 2.0)
-        });
+        let source64 = |px: [u32; 2]| [0, 1].map(|i| f64::from(px[i]) + f64::from(shift(px)[i]));
+        let color = Image::from_fn(SIZE, |px| low_pass.at(source64(px), 2.0));
         let later = View { motion: Some(motion), ..at_lod(color, 2.0) };
-        let made = step(&mut post, 1, &later);
+        let made = post.step(1, &later);
         let surfaces = made.surfaces();
         let mut kept = 0;
-        for (x, y) in (0..41_usize).flat_map(|y| (0..52_usize).map(move |x| (x, y))) {
-            let t = made.trace.at(x, y);
-            let source = |at: usize, middle: f32| middle + (at as f32 - middle) * factor;
-            let [qx, qy] = [source(x, 26.0), source(y, 20.0)];
-            let shown = made.shown.at(x, y);
+        for (surface, px) in surfaces.iter().zip(pixels(SIZE)) {
+            let (shown, t) = (pixel(&made.shown, px), pixel(&made.trace, px));
+            let [qx, qy] = [0, 1].map(|i| middle[i] + (px[i] as f32 - middle[i]) * factor);
             if t.verdict != Verdict::Valid {
                 // Near the middle, the vectors of neighbours differ by a large part of their length, and count as
                 // vectors on a silhouette.
                 let inside = (-0.5..51.5).contains(&qx) && (-0.5..40.5).contains(&qy);
                 assert_eq!(t.verdict, if inside { Verdict::Disoccluded } else { Verdict::OffScreen });
-                assert_eq!(shown, later.color.at(x, y));
+                assert_eq!(shown, pixel(&later.color, px));
                 continue;
             }
             // On texels the sample itself, with its quality; between texels within the overshoot of the resampling.
             if qx.fract() == 0.0 && qy.fract() == 0.0 && t.history_share == 1.0 {
-                assert_eq!(shown, before.at(qx as usize, qy as usize));
-                assert_eq!(surfaces[y * 52 + x].lod, 0.0);
+                assert_eq!((shown, surface.lod), (pixel(&before, [qx as u32, qy as u32]), 0.0));
                 kept += 1;
             }
             assert!(shown.iter().all(|v| (0.45..0.7).contains(v)), "{shown:?}");
@@ -276,19 +255,19 @@ pub fn saccade(make: Make<'_>) -> Option<String> {
     };
     let ((left, ecc), (right, _)) = (frame(-10.0), frame(10.0));
     let mut post = make(sized(WIDE, settings))?;
-    let before: Vec<_> = (0..4).map(|index| step(&mut post, index, &left)).collect();
+    let before: Vec<_> = (0..4).map(|index| post.step(index, &left)).collect();
     let stored = before[3].stored();
     let old: Vec<usize> = (0..320 * 40).filter(|&i| ecc.pixels()[i] < 2.4).collect();
     // For two seconds, no frame loses a sharp pixel.
     for index in 4..124 {
-        let made = step(&mut post, index, &right);
+        let made = post.step(index, &right);
         let kept = old.iter().filter(|&&i| made.shown.pixels()[i] == stored.pixels()[i]).count();
         assert_eq!(kept, old.len(), "frame {index}");
         let surfaces = made.surfaces();
         assert!(old.iter().all(|&i| surfaces[i].lod == 0.0));
     }
     // The planted error: no history.
-    let fresh = step(&mut make(sized(WIDE, settings))?, 0, &right);
+    let fresh = make(sized(WIDE, settings))?.step(0, &right);
     assert!(old.iter().all(|&i| fresh.shown.pixels()[i] != stored.pixels()[i]));
     let count = old.len();
     Some(format!("smr: all {count} px of the old fovea bit for bit as sharp, 120 frames after 20 degrees; no decay"))
@@ -300,20 +279,20 @@ pub fn exposure(make: Make<'_>) -> Option<String> {
     for ratio in [256.0, 1.0 / 256.0] {
         let [mut post, mut undeclared] = [make(of(MethodKind::Smr))?, make(of(MethodKind::Smr))?];
         let picture = sharp(noise(SIZE, "h72").map(|c| c.map(|v| 0.25 + 0.5 * v)));
-        let made = step(&mut post, 0, &picture);
+        let made = post.step(0, &picture);
         let coarse = LowPass::new(&made.stored(), 4).render(&Image::filled(SIZE, 2.0));
-        let exposed = at_lod(scaled(&coarse, ratio), 2.0);
+        let exposed = at_lod(times(&coarse, ratio), 2.0);
         let declared = post.make(1, &exposed, Exposure::Changed { ratio }, Reset::None);
-        assert_eq!(declared.shown, scaled(&made.stored(), ratio), "x{ratio}");
+        assert_eq!(declared.shown, times(&made.stored(), ratio), "x{ratio}");
         assert_eq!(declared.stats.rejected(), 0);
         // Undeclared, it is another picture, and is shown at once. The same holds for the change back.
-        step(&mut undeclared, 0, &picture);
+        undeclared.step(0, &picture);
         for index in 1..20 {
-            worst = worst.max(off(&step(&mut undeclared, index, &exposed).shown, &exposed.color));
+            worst = worst.max(off(&undeclared.step(index, &exposed).shown, &exposed.color));
         }
         let back = at_lod(coarse, 2.0);
         for index in 2..12 {
-            worst = worst.max(off(&step(&mut post, index, &back).shown, &back.color));
+            worst = worst.max(off(&post.step(index, &back).shown, &back.color));
         }
     }
     assert!(worst < 0.05, "{worst}");
@@ -328,9 +307,9 @@ pub fn firefly(make: Make<'_>) -> Option<String> {
         let dark = at_lod(Image::filled(SIZE, [0.01; 3]), 2.0);
         let mut firefly = dark.clone();
         firefly.color.pixels_mut()[20 * 52 + 26] = [65504.0; 3];
-        step(&mut post, 0, &firefly);
-        let made = step(&mut post, 1, &dark);
-        let brightest = made.shown.pixels().iter().flatten().fold(0.0_f32, |m, &v| m.max(v));
+        post.step(0, &firefly);
+        let made = post.step(1, &dark);
+        let brightest = peak(&made.shown);
         assert!(
             brightest < 0.011 && off(&made.shown, &dark.color) < 0.1,
             "{method:?}: at the most {brightest} a frame after 65504"
@@ -338,7 +317,7 @@ pub fn firefly(make: Make<'_>) -> Option<String> {
         // Remaining light of the firefly, over all pixels and the following frames.
         let mut extra = 0.0_f64;
         for index in 2..30 {
-            let made = step(&mut post, index, &dark);
+            let made = post.step(index, &dark);
             extra += made.shown.pixels().iter().flatten().map(|&v| f64::from(v - 0.01).abs()).sum::<f64>();
         }
         worst.push((brightest, extra / (3.0 * 65504.0)));
@@ -350,7 +329,6 @@ pub fn firefly(make: Make<'_>) -> Option<String> {
     ))
 }
 
-/// A strobe of one frame on and one off.
 pub fn strobe(make: Make<'_>) -> Option<String> {
     let dark = 0.031_25;
     let mut worst = vec![];
@@ -360,7 +338,7 @@ pub fn strobe(make: Make<'_>) -> Option<String> {
             let [lit, unlit] = [on, dark].map(|light| at_lod(Image::filled(SIZE, [light; 3]), 2.0));
             let mut offs = vec![];
             for index in 0..120_u64 {
-                let made = step(&mut post, index, if index < 20 && index % 2 == 1 { &lit } else { &unlit });
+                let made = post.step(index, if index < 20 && index % 2 == 1 { &lit } else { &unlit });
                 if index >= 20 {
                     offs.push(off(&made.shown, &unlit.color));
                 }
@@ -384,7 +362,7 @@ pub fn black_and_white(make: Make<'_>) -> Option<String> {
     let mut mean = 0.0;
     for index in 0..40 {
         let color = Image::filled(SIZE, [(index % 2) as f32; 3]);
-        let shown = step(&mut post, index, &at_lod(color.clone(), 2.0)).shown;
+        let shown = post.step(index, &at_lod(color.clone(), 2.0)).shown;
         assert_eq!(shown, color, "frame {index}");
         mean += f64::from(shown.pixels()[0][0]) / 40.0;
     }

@@ -1,21 +1,15 @@
 //! Foveation simulators: hard cases H62, H67, H69-H71, and closed forms.
 
-use crate::laws::laws;
+use crate::images::{noise, pixel, pixels};
 use crate::simulator_hard::*;
 use afterimage::kernel::foveate;
 use afterimage::simulator::Pyramid;
 use afterimage::{Filter, Foveation, Image, ViewGeometry};
-use afterimage_testing::Draws;
 use afterimage_testing::holds;
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 
 const FILTERS: [Filter; 4] = [Filter::Mip, Filter::Gauss, Filter::Block, Filter::Off];
-
-fn noise(size: [u32; 2], name: &str) -> Image<[f32; 3]> {
-    let mut draws = Draws::new(name);
-    Image::from_fn(size, |_| [draws.uniform(), draws.uniform(), draws.uniform()])
-}
 
 /// Levels of detail of a view of 70 degrees.
 fn lods(foveation: &Foveation, size: [u32; 2], gaze: [f32; 2]) -> Image<f32> {
@@ -76,16 +70,12 @@ fn the_fovea_is_copied_bit_for_bit_and_the_rest_is_coarser() {
     for filter in [Filter::Mip, Filter::Gauss, Filter::Block] {
         let out = foveate(&Foveation { filter, ..Foveation::default() }, &image, gaze);
         let mut outside_same = 0;
-        for y in 0..360 {
-            for x in 0..640 {
-                let e = geometry.eccentricity_deg([x as f32, y as f32], gaze);
-                let same = out.at(x, y) == image.at(x, y);
-                if e < 2.4 {
-                    // Centres decide whether blocks are used.
-                    assert!(same || filter == Filter::Block && e > 1.0, "{filter:?} at {e} degrees");
-                }
-                outside_same += usize::from(same && e > 8.0);
-            }
+        for px in pixels([640, 360]) {
+            let e = geometry.eccentricity_deg(px.map(|v| v as f32), gaze);
+            let same = pixel(&out, px) == pixel(&image, px);
+            // Centres decide whether blocks are used.
+            assert!(e >= 2.4 || same || filter == Filter::Block && e > 1.0, "{filter:?} at {e} degrees");
+            outside_same += usize::from(same && e > 8.0);
         }
         assert!(outside_same < 20, "{filter:?}: {outside_same}");
     }
@@ -121,14 +111,8 @@ fn h71_the_level_of_detail_is_continuous_and_monotone() {
 }
 
 #[test]
-fn blurs_of_whole_levels_are_exact() {
-    for level in 0..=8 {
-        assert_eq!(foveate::blur_sigma_px(level as f32), 0.5 * ((1 << level) - 1) as f32);
-    }
-}
-
-#[test]
 fn a_blurred_point_is_a_gaussian() {
+    assert!((0..=8).all(|level| foveate::blur_sigma_px(level as f32) == 0.5 * ((1 << level) - 1) as f32));
     // Far out the width is constant, so that the two passes together are exact: weights by f64, cut at 3 standard
     // deviations.
     let mut image = Image::filled([91, 91], [0.0; 3]);
@@ -139,12 +123,10 @@ fn a_blurred_point_is_a_gaussian() {
     let radius = foveate::gauss_radius(sigma as f32) as i32;
     let weight = |d: i32| if d.abs() <= radius { (-0.5 * f64::from(d * d) / (sigma * sigma)).exp() } else { 0.0 };
     let total: f64 = (-radius..=radius).map(weight).sum();
-    for y in 0..91 {
-        for x in 0..91 {
-            let exact = weight(x - 45) * weight(y - 45) / (total * total);
-            for (v, peak) in out.at(x as usize, y as usize).iter().zip([1000.0, 100.0, 1.0]) {
-                assert_abs_diff_eq!(f64::from(*v) / peak, exact, epsilon = 1e-7);
-            }
+    for px in pixels([91, 91]) {
+        let exact = px.map(|v| weight(v as i32 - 45)).iter().product::<f64>() / (total * total);
+        for (v, peak) in pixel(&out, px).iter().zip([1000.0, 100.0, 1.0]) {
+            assert_abs_diff_eq!(f64::from(*v) / peak, exact, epsilon = 1e-7);
         }
     }
 }
@@ -155,13 +137,10 @@ fn blocks_are_aligned_nested_and_constant() {
     let foveation = Foveation { filter: Filter::Block, ..Foveation::default() };
     let lods = lods(&foveation, [320, 180], [100.0, 90.0]);
     let out = foveation.render(&Pyramid::new(image, 4), &lods);
-    for y in 0..180_usize {
-        for x in 0..320_usize {
-            let level = lods.at(x, y) as usize;
-            let (bx, by) = (x >> level << level, y >> level << level);
-            assert_eq!(lods.at(bx, by) as usize, level);
-            assert_eq!(out.at(x, y), out.at(bx, by));
-        }
+    for px in pixels([320, 180]) {
+        let level = pixel(&lods, px) as u32;
+        let first = px.map(|v| v >> level << level);
+        assert_eq!((pixel(&lods, first) as u32, pixel(&out, first)), (level, pixel(&out, px)));
     }
     for level in 0..=4 {
         assert!(lods.pixels().contains(&(level as f32)), "level {level} occurs");

@@ -1,11 +1,9 @@
 //! The laws of hard cases that hold on the CPU and on a device, for the Rust functions.
 
 use crate::kernel_hard::*;
-use crate::laws::laws;
 use afterimage::kernel::reservoir::Reservoir;
 use afterimage::kernel::wrs::{BiasCode, GateCode, Past, SamplerCode, WrsParams};
 use afterimage::kernel::{color, reservoir, rng, wrs};
-use afterimage_testing::holds;
 use glam::Vec3;
 
 /// Results of a function for one row.

@@ -68,15 +68,13 @@ pub fn sparkles(make: Make) -> Option<String> {
         let (mut frames, mut area, mut above) = (0, 0, 0.0_f32);
         let (mut post, mut without) = (make(smr(SIZE))?, make(smr(SIZE))?);
         for index in 0..bright + 2 * TURN {
-            let sparkle = Image::from_fn(SIZE, |px| {
-                let c = pixel(&clean, px);
-                if index == bright && px == at { [light; 3] } else { c }
-            });
+            let is_bright = |px| index == bright && px == at;
+            let sparkle = Image::from_fn(SIZE, |px| if is_bright(px) { [light; 3] } else { pixel(&clean, px) });
             let input = shot(sparkle, index);
             let shown = post.one(index, &input);
             let expected = without.one(index, &shot(clean.clone(), index));
             assert_finite(&shown, "sparkle");
-            let most = shown.pixels().iter().flatten().fold(0.0_f32, |m, &v| m.max(v));
+            let most = peak(&shown);
             let rounding = 1.0 + 1.0 / 511.0;
             // A gain lifts history above the samples by a quarter of their range at the most.
             assert!(most <= 1.25 * light * rounding, "{most} exceeds the input {light}");
@@ -159,11 +157,8 @@ fn square(index: u64) -> Shot {
 
 /// Whether a pixel within a coarse step of `px` is of another surface.
 fn is_silhouette(depth: &Image<f32>, px: [u32; 2]) -> bool {
-    let at = |x: u32, y: u32| depth.at(x.min(SIZE[0] - 1) as usize, y.min(SIZE[1] - 1) as usize);
-    let own = at(px[0], px[1]);
-    (0..9)
-        .flat_map(|j| (0..9).map(move |i| (i, j)))
-        .any(|(i, j): (u32, u32)| at((px[0] + i).saturating_sub(4), (px[1] + j).saturating_sub(4)) != own)
+    let beside = |d: [u32; 2]| [0, 1].map(|i| (px[i] + d[i]).saturating_sub(4).min(SIZE[i] - 1));
+    pixels([9, 9]).any(|d| pixel(depth, beside(d)) != pixel(depth, px))
 }
 
 /// Depth and motion at the samples only, across silhouettes.
@@ -172,13 +167,11 @@ pub fn silhouettes(make: Make) -> Option<String> {
     let mut sums = [[0.0; 3]; 2];
     for index in 0..2 * TURN {
         let shot = square(index);
-        let at_samples = {
-            let lattices = shot.lattices();
+        let at_samples = shot.clone().with(|view| {
             // What lies between the samples must not be read.
-            let depth = shot.depth.as_ref().map(|depth| shot.read_of(depth, f32::NAN));
-            let facts = ViewFrame { lattices: Some(lattices.with_geometry_at_samples()), ..shot.facts };
-            shot.clone().with(|view| (view.facts, view.depth) = (facts, depth))
-        };
+            view.depth = view.depth.as_ref().map(|depth| view.read_of(depth, f32::NAN));
+            view.facts.lattices = view.facts.lattices.map(Lattices::with_geometry_at_samples);
+        });
         let shown = [full.one(index, &shot), sparse.one(index, &at_samples), none(&shot)];
         shown.iter().for_each(|shown| assert_finite(shown, "silhouettes"));
         if index < TURN {

@@ -16,13 +16,13 @@ pub fn invalid_samples(make: Make) -> Option<String> {
         let (mut post, mut clean) = (make(smr(SIZE))?, make(smr(SIZE))?);
         for index in 0..bad + TURN + 4 {
             let color = if index == bad { holed(value) } else { full.clone() };
-            let (shown, expected) =
-                (post.one(index, &shot(color, index)), clean.one(index, &shot(full.clone(), index)));
+            let shown = post.one(index, &shot(color, index));
+            let expected = clean.one(index, &shot(full.clone(), index));
             assert_finite(&shown, "a sample that is NaN");
             // Pixels that the sample is interpolated for: nearer than a step.
             let apart = |px: [u32; 2]| (0..2).map(|i| px[i].abs_diff(at[i])).max().unwrap();
             let differs = |&px: &[u32; 2]| pixel(&shown, px) != pixel(&expected, px);
-            let farthest = pixels().filter(differs).map(apart).max();
+            let farthest = pixels(SIZE).filter(differs).map(apart).max();
             if index == bad {
                 reach = reach.max(farthest.unwrap_or(0));
             } else if let Some(far) = farthest {
@@ -69,7 +69,7 @@ pub fn light_trust_views_gaze_and_foveation(make: Make) -> Option<String> {
     let (mut exposure, mut index, mut off) = (1.0, 0, 0.0);
     for ratio in [1.0; TURN as usize].into_iter().chain(exposures.into_iter().flat_map(|ratio| [ratio, 1.0, 1.0])) {
         exposure *= ratio;
-        let color = full.map(|c| c.map(|v| v * exposure));
+        let color = times(&full, exposure);
         let shot = Shot::foveated(color.clone(), &foveation(), [40.0, 30.0], index);
         let shown = post.one(index, &Shot { exposure: Exposure::Changed { ratio }, ..shot });
         assert_finite(&shown, "exposure");

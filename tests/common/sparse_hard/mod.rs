@@ -13,7 +13,9 @@ pub use inputs::{invalid_samples, light_trust_views_gaze_and_foveation};
 pub use lattices::{borders, degenerate_lattices, starved_positions};
 pub use offsets::{offsets_off_by_one, repeated_offsets};
 
-use crate::images::{Images, View};
+pub use crate::images::{pixel, pixels};
+
+use crate::images::{Images, View, peak, planned, times};
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::{
     ContextDesc, Exposure, Filter, Foveation, Gaze, Image, Lattices, Method, Reset, Settings, ViewFrame, ViewGeometry,
@@ -24,7 +26,7 @@ use std::ops::{Deref, DerefMut};
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! sparse_laws {
     ($side:ident, $run_law:ident) => {
-        laws! { $side, $run_law,
+        crate::laws::laws! { $side, $run_law,
             h86_positions_that_are_never_sampled_are_no_worse_than_foveated: "H86", starved_positions;
             h87_degenerate_lattices_are_finite_and_show_their_samples: "H87", degenerate_lattices;
             h88_a_reset_in_the_middle_of_the_order_equals_a_fresh_context: "H88", restarts_of_the_order;
@@ -120,12 +122,9 @@ pub type Make<'a> = &'a dyn Fn(ContextDesc) -> Option<Box<dyn Shows>>;
 impl Shows for CpuAfterimage {
     fn show(&mut self, index: u64, shots: &[Shot]) -> Vec<Color> {
         let mut out: Vec<_> = shots.iter().map(|shot| Image::filled(shot.facts.geometry.size_px(), [0.0; 3])).collect();
-        let views: Vec<_> = shots.iter().map(|shot| shot.one()).collect();
-        let images = Images::of(&views);
+        let images = Images::of(shots.iter().map(|shot| &shot.view));
         let frame = Frame { reset: shots[0].reset, exposure: shots[0].exposure, ..images.frame(index) };
-        if self.desc().settings.foveation.filter == Filter::Quads {
-            self.plan(&frame).unwrap();
-        }
+        planned(self, &frame);
         self.process(&frame, &mut out).unwrap();
         out
     }
@@ -184,23 +183,17 @@ pub fn noise(size: [u32; 2], name: &str) -> Color {
     Image::from_fn(size, |_| [0; 3].map(|_| draws.range(0.125, 0.875)))
 }
 
-pub fn pixels() -> impl Iterator<Item = [u32; 2]> {
-    (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| [x, y]))
-}
-
-pub fn pixel<T: Copy>(image: &Image<T>, [x, y]: [u32; 2]) -> T {
-    image.at(x as usize, y as usize)
+/// Colors of the pixels that `counts`.
+fn pairs(a: &Color, b: &Color, counts: impl Fn([u32; 2]) -> bool) -> impl Iterator<Item = ([f32; 3], [f32; 3])> {
+    pixels(a.size()).filter(move |&px| counts(px)).map(move |px| (pixel(a, px), pixel(b, px)))
 }
 
 /// Mean squared error over the pixels that `counts`.
 pub fn squared_error(shown: &Color, full: &Color, counts: impl Fn([u32; 2]) -> bool) -> f64 {
-    let width = shown.size()[0];
     let (mut sum, mut count) = (0.0, 0);
-    for (i, (a, b)) in (0..).zip(shown.pixels().iter().zip(full.pixels())) {
-        if counts([i % width, i / width]) {
-            sum += (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum::<f64>() / 3.0;
-            count += 1;
-        }
+    for (a, b) in pairs(shown, full, counts) {
+        sum += (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum::<f64>() / 3.0;
+        count += 1;
     }
     assert!(count > 0, "no pixel counts");
     sum / f64::from(count)
@@ -222,11 +215,9 @@ pub fn assert_finite(shown: &Color, at: &str) {
 
 /// Number of pixels that are off by more than the rounding of stored colors, 9 bits of the largest channel.
 pub fn wrong(shown: &Color, full: &Color, counts: impl Fn([u32; 2]) -> bool) -> usize {
-    let width = shown.size()[0];
-    let off = |(a, b): (&[f32; 3], &[f32; 3])| {
+    let off = |(a, b): &([f32; 3], [f32; 3])| {
         let rounding = b.iter().fold(0.0_f32, |m, &v| m.max(v)) / 511.0;
         (0..3).any(|c| (a[c] - b[c]).abs() > rounding)
     };
-    let pixels = (0..).zip(shown.pixels().iter().zip(full.pixels()));
-    pixels.filter(|&(i, pair)| counts([i % width, i / width]) && off(pair)).count()
+    pairs(shown, full, counts).filter(off).count()
 }

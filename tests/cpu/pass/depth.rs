@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::depth_hard::*;
-use crate::laws::laws;
 use afterimage_testing::holds;
 
 /// What a law measured.

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::any_frame::{SIZE, all_settings, any_frame};
+use crate::images::planned;
 use afterimage::internal::{Note, NoteStage, NoteValues, PixelNotes};
 use afterimage::{Filter, Foveation, Smr};
 use std::collections::BTreeSet;
@@ -16,13 +17,9 @@ fn all_kinds() -> Vec<Settings> {
     let quads = Foveation { fovea_deg: 20.0, mid_deg: 40.0, rate_mid: 4, ..Foveation::quads() };
     let mut all = all_settings();
     for foveation in [sparse, quads] {
-        let smr = |antialias| Method::Smr(Smr { antialias, ..Smr::default() });
-        all.extend(MethodKind::ALL.map(|kind| Settings { method: kind.into(), foveation, ..Settings::default() }));
-        all.extend([true, false].map(|antialias| Settings {
-            method: smr(antialias),
-            foveation,
-            ..Settings::default()
-        }));
+        let smr = [true, false].map(|antialias| Method::Smr(Smr { antialias, ..Smr::default() }));
+        let methods = MethodKind::ALL.into_iter().map(Method::from).chain(smr);
+        all.extend(methods.map(|method| Settings { method, foveation, ..Settings::default() }));
         all.push(Settings { foveation, ..Settings::weighted() });
     }
     all.push(Settings { foveation: sparse, noisy: true, ..Settings::default() });
@@ -45,13 +42,10 @@ fn frame(draws: &mut Draws, settings: &Settings, index: u64) -> View {
 
 /// Processes a frame, with notes about a pixel if one is given. Returns the output.
 fn process(post: &mut CpuAfterimage, index: u64, view: &View, pixel: Option<&mut PixelNotes>) -> Color {
-    let views = [view.one()];
-    let images = Images::of(&views);
+    let images = Images::of([view]);
     let exposure = Exposure::Scene { exposure: [1.0, 0.37, 4.0][index as usize % 3] };
     let frame = Frame { exposure, ..images.frame(index) };
-    if post.desc().settings.foveation.filter == Filter::Quads {
-        post.plan(&frame).unwrap();
-    }
+    planned(post, &frame);
     let mut shown = [Image::filled(SIZE, [f32::NAN; 3])];
     match pixel {
         Some(pixel) => post.process_noted(&frame, &mut shown, None, pixel).unwrap(),

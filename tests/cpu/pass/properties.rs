@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::any_frame::{SIZE, all_settings, any_frame};
-use crate::images::{View, held_words};
+use crate::images::{held_words, traced};
 use afterimage::kernel::pack;
 use afterimage::kernel::surface::unpack_surface;
 use std::collections::HashSet;
@@ -16,13 +16,11 @@ fn new(settings: Settings, view_count: u32) -> CpuAfterimage {
 }
 
 fn show(post: &mut CpuAfterimage, index: u64, frames: &[&View]) -> (Vec<Color>, Vec<Image<PixelTrace>>) {
-    let noisy = post.desc().settings.noisy;
-    let views: Vec<_> =
-        frames.iter().map(|f| OneView { noise: f.noise.as_ref().filter(|_| noisy), ..f.one() }).collect();
-    let mut out = vec![Image::filled(SIZE, [f32::NAN; 3]); frames.len()];
-    let mut trace = vec![Image::filled(SIZE, PixelTrace::default()); frames.len()];
-    post.process_traced(&Images::of(&views).frame(index), &mut out, &mut trace).unwrap();
-    (out, trace)
+    let images = Images::of(frames.iter().copied());
+    let frame = images.frame(index);
+    let noise = frame.noise.filter(|_| post.desc().settings.noisy);
+    let (shown, trace, _) = traced(post, &Frame { noise, ..frame });
+    (shown, trace)
 }
 
 /// Possible outputs of a color: itself, and its stored value in wrs.

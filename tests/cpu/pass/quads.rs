@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::any_frame::{self, any_frame};
-use crate::images::View;
 use afterimage::kernel::quads::threshold;
 use afterimage::{Filter, Foveation, Smr};
 use afterimage_testing::holds;
+use std::collections::HashMap;
 
 /// Frames in which the even pattern visits every quad of the periphery: 4x4 quads a block, every second block a frame.
 const PERIOD: u64 = 32;
@@ -61,10 +61,10 @@ fn show_shaded(
     view: &View,
     color: impl Fn(bool, [u32; 2]) -> [f32; 3],
 ) -> (Mask, Color) {
-    let images = Images::of(&[view.one()]);
+    let images = Images::of([view]);
     let frame = images.frame(index);
     let mask = post.plan(&frame).unwrap()[0].clone();
-    let shaded = Image::from_fn(SIZE, |[x, y]| color(mask.at(x as usize, y as usize), [x, y]));
+    let shaded = Image::from_fn(SIZE, |px| color(pixel(&mask, px), px));
     let mut shown = [Image::filled(SIZE, [0.0; 3])];
     post.process(&Frame { color: &[&shaded], ..frame }, &mut shown).unwrap();
     let [shown] = shown;
@@ -73,12 +73,16 @@ fn show_shaded(
 
 /// Mask and output of a frame that is shaded as it was planned.
 fn show(post: &mut CpuAfterimage, index: u64, view: &View) -> (Mask, Color) {
-    show_shaded(post, index, view, |_, [x, y]| view.color.at(x as usize, y as usize))
+    show_shaded(post, index, view, |_, px| pixel(&view.color, px))
+}
+
+/// Whether each quad of a mask is shaded.
+fn quads(mask: &Mask) -> Image<bool> {
+    Image::from_fn(mask.size().map(|side| side.div_ceil(2)), |px| pixel(mask, px.map(|v| 2 * v)))
 }
 
 fn quads_of(mask: &Mask) -> usize {
-    let size = mask.size().map(|side| side.div_ceil(2) as usize);
-    (0..size[0] * size[1]).filter(|i| mask.at(2 * (i % size[0]), 2 * (i / size[0]))).count()
+    quads(mask).pixels().iter().filter(|&&shaded| shaded).count()
 }
 
 /// Largest number of quads beyond the even pattern's in a frame, and of the last frame; frames until the last quad was
@@ -112,7 +116,7 @@ fn h107_the_budget_is_never_exceeded_and_every_quad_has_its_turn() {
     // Planted errors: a plan of twice the budget, and a pattern that leaves out a quad.
     let (generous, _, _) = measured(&run(2.5 * BUDGET, Needs::Flickering), &even);
     assert!(generous > budget, "{generous}");
-    let hole = |mask: &Mask| Image::from_fn(SIZE, |[x, y]| x + y > 1 && mask.at(x as usize, y as usize));
+    let hole = |mask: &Mask| Image::from_fn(SIZE, |px| px[0] + px[1] > 1 && pixel(mask, px));
     let holed: Vec<_> = even.iter().map(hole).collect();
     assert_eq!(measured(&holed, &holed).2, usize::MAX);
     holds!("H107", Cpu, "most quads by need of {budget}: {}", texts.join(", "));
@@ -120,14 +124,12 @@ fn h107_the_budget_is_never_exceeded_and_every_quad_has_its_turn() {
 
 /// Largest number of quads of a block of 4x4 quads that were chosen beyond the even pattern.
 fn most_in_a_block(mask: &Mask, even: &Mask) -> usize {
-    let [columns, rows] = SIZE.map(|side| side as usize / 2);
-    let mut counts = vec![0; columns.div_ceil(4) * rows.div_ceil(4)];
-    for (x, y) in (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))) {
-        if mask.at(2 * x, 2 * y) && !even.at(2 * x, 2 * y) {
-            counts[y / 4 * columns.div_ceil(4) + x / 4] += 1;
-        }
+    let (mask, even) = (quads(mask), quads(even));
+    let mut counts = HashMap::new();
+    for quad in pixels(mask.size()).filter(|&quad| pixel(&mask, quad) && !pixel(&even, quad)) {
+        *counts.entry(quad.map(|v| v / 4)).or_insert(0) += 1;
     }
-    counts.into_iter().max().unwrap()
+    counts.into_values().max().unwrap()
 }
 
 #[test]
@@ -151,20 +153,15 @@ fn a_first_frame_at_a_quarter_stays_in_history() {
         let error = |foveation: Foveation, reset: Reset| {
             let mut post = context(BUDGET, antialias);
             post.set_settings(Settings { foveation, ..quads }).unwrap();
-            let first = if foveation.filter == Filter::Sparse {
-                view.clone().foveated(&foveation, [30.0, 20.0], 0)
-            } else {
-                view.clone()
+            let first = match foveation.filter {
+                Filter::Sparse => view.clone().foveated(&foveation, [30.0, 20.0], 0),
+                _ => view.clone(),
             };
-            show_first(&mut post, &first);
+            post.step(0, &first);
             post.set_settings(quads).unwrap();
-            let images = Images::of(&[view.one()]);
-            let frame = Frame { reset, ..images.frame(1) };
-            post.plan(&frame).unwrap();
-            let mut shown = [Image::filled(SIZE, [0.0; 3])];
-            post.process(&frame, &mut shown).unwrap();
+            let shown = post.make(1, &view, Exposure::Same, reset).shown;
             let off = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum::<f64>();
-            shown[0].pixels().iter().zip(view.color.pixels()).map(off).sum::<f64>()
+            shown.pixels().iter().zip(view.color.pixels()).map(off).sum::<f64>()
         };
         let by_quads = error(quads.foveation, Reset::None);
         let by_a_quarter = error(Foveation::quarter(), Reset::None);
@@ -224,16 +221,6 @@ fn thin_bars_become_means() {
     }
 }
 
-/// Shows frame 0, planned if its foveation asks for it.
-fn show_first(post: &mut CpuAfterimage, view: &View) {
-    let images = Images::of(&[view.one()]);
-    let frame = images.frame(0);
-    if post.desc().settings.foveation.filter == Filter::Quads {
-        post.plan(&frame).unwrap();
-    }
-    post.process(&frame, &mut [Image::filled(SIZE, [0.0; 3])]).unwrap();
-}
-
 #[test]
 fn h108_what_was_not_asked_for_is_not_read_and_what_is_missing_is_not_shown() {
     for antialias in [false, true] {
@@ -242,7 +229,7 @@ fn h108_what_was_not_asked_for_is_not_read_and_what_is_missing_is_not_shown() {
         for index in 0..PERIOD {
             let view = wall(index, Needs::OneCorner);
             let (mask, shown) = show(&mut whole, index, &view);
-            let at = |[x, y]: [u32; 2]| view.color.at(x as usize, y as usize);
+            let at = |px| pixel(&view.color, px);
             // The renderer leaves its clear color, or shades more than was asked for.
             let beside = |[x, _]: [u32; 2]| [[9.0; 3], [f32::NAN; 3]][x as usize % 2];
             let bare_color = |asked, px| if asked { at(px) } else { beside(px) };
@@ -259,13 +246,8 @@ fn h108_what_was_not_asked_for_is_not_read_and_what_is_missing_is_not_shown() {
             assert!(finite, "frame {index}: the clear color shows");
             missing += without.pixels().iter().zip(shown.pixels()).filter(|(a, b)| a != b).count();
             // A planted error: a renderer whose clear color counts.
-            let (_, wrong) =
-                show_shaded(
-                    &mut planted,
-                    index,
-                    &view,
-                    |asked, px| if asked && !is_left_out(px) { at(px) } else { [9.0; 3] },
-                );
+            let clear = |asked, px| if asked && !is_left_out(px) { at(px) } else { [9.0; 3] };
+            let (_, wrong) = show_shaded(&mut planted, index, &view, clear);
             caught |= !wrong.pixels().iter().flatten().all(|v| (0.0..9.0).contains(v));
         }
         assert!(missing > 0 && caught, "what is missing makes a difference");
@@ -274,26 +256,10 @@ fn h108_what_was_not_asked_for_is_not_read_and_what_is_missing_is_not_shown() {
 }
 
 #[test]
-fn settings_that_quads_cannot_have_are_refused() {
-    let with = |change: fn(&mut Settings)| {
-        let mut settings = settings(BUDGET, false);
-        change(&mut settings);
-        settings.validate().map_err(|error| error.to_string())
-    };
-    assert_eq!(with(|_| ()), Ok(()));
-    assert!(with(|s| s.foveation.rate_far = 16).unwrap_err().contains("power of two from 2 to 8"));
-    assert!(with(|s| s.foveation.rate_far = 2).unwrap_err().contains("at least rate_mid, 4"));
-    assert!(with(|s| s.foveation.rate_mid = 1).unwrap_err().contains("power of two from 2 to 8"));
-    assert!(with(|s| s.foveation.budget = 1.5).unwrap_err().contains("budget"));
-    assert!(with(|s| s.noisy = true).unwrap_err().contains("noisy"));
-    assert_eq!(Foveation::quads().filter, Filter::Quads);
-}
-
-#[test]
 fn plans_of_other_frames_are_refused() {
     let mut post = CpuAfterimage::new(&ContextDesc::new(SIZE)).unwrap();
     let view = wall(0, Needs::Settled);
-    let images = Images::of(&[view.one()]);
+    let images = Images::of([&view]);
     let error = post.plan(&images.frame(0)).unwrap_err().to_string();
     assert_eq!(error, "plan of view 0 is asked for: expected Filter::Quads in Settings::foveation");
 }
@@ -319,8 +285,7 @@ proptest! {
         };
         let (mut post, mut even) = (made(budget), made(0.0));
         for index in 0..4 {
-            let frames = [0; 2].map(|_| any_frame(&mut draws, wild));
-            let views = frames.each_ref().map(|f| OneView { lod: None, noise: None, ..f.one() });
+            let views = [0; 2].map(|_| View { lod: None, noise: None, ..any_frame(&mut draws, wild) });
             let images = Images::of(&views);
             let reset = if draws.uniform() < 0.2 { Reset::All } else { Reset::None };
             let frame = Frame { reset, ..images.frame(index) };

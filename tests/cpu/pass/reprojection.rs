@@ -2,7 +2,6 @@
 
 use super::depth::run_law;
 use super::*;
-use crate::laws::laws;
 use crate::motion_hard::*;
 use afterimage_testing::holds;
 
@@ -20,28 +19,15 @@ fn every_motion_convention_means_the_same_shift() {
                 let desc = ContextDesc { motion: convention, ..ContextDesc::new(SIZE) };
                 let mut post = CpuAfterimage::new(&ContextDesc { settings: ungated(), ..desc }).unwrap();
                 one(&mut post, 0, &still(before.clone()));
-                sticky(&mut post);
-                let input = View { motion: Some(Image::filled(SIZE, vector)), ..still(noise(SIZE, "later")) };
-                let (out, ..) = one(&mut post, 1, &input);
-                assert_eq!(out.at(10, 10), before.at(13, 8), "{convention:?}");
+                post.stick();
+                let later = |motion| View { motion: Some(Image::filled(SIZE, motion)), ..still(noise(SIZE, "later")) };
+                assert_eq!(post.step(1, &later(vector)).shown.at(10, 10), before.at(13, 8), "{convention:?}");
                 // The planted error: the same vector read with the other sign.
-                let flipped =
-                    View { motion: Some(Image::filled(SIZE, [-vector[0], vector[1]])), ..still(noise(SIZE, "later")) };
-                let (out, ..) = one(&mut post, 2, &flipped);
-                assert_ne!(out.at(10, 10), before.at(13 + 3, 8), "{convention:?}");
+                let flipped = post.step(2, &later([-vector[0], vector[1]])).shown;
+                assert_ne!(flipped.at(10, 10), before.at(13 + 3, 8), "{convention:?}");
             }
         }
     }
-    // Computed by hand, not by the function under test: 3 px right to left in a 64 px wide frame.
-    let uv = MotionConvention {
-        unit: MotionUnit::Uv,
-        direction: MotionDirection::CurrentMinusPrevious,
-        y_axis: YAxis::Up,
-        ..MotionConvention::default()
-    };
-    assert_eq!(uv.to_internal([64, 48]), [-64.0, 48.0]);
-    let ndc = MotionConvention { unit: MotionUnit::Ndc, ..MotionConvention::default() };
-    assert_eq!(ndc.to_internal([64, 48]), [32.0, 24.0]);
 }
 
 /// CPU time of the calling thread.
@@ -77,14 +63,11 @@ fn h60_a_turn_costs_no_more_than_any_other_frame() {
                 thread_ns() - from
             })
         };
-        let mut times = [vec![], vec![]];
-        for _ in 0..15 {
-            times[0].push(time(&normal));
-            times[1].push(time(&turn));
-        }
-        let [normal, turn] = times.map(|mut t| {
-            t.sort_by(f64::total_cmp);
-            t[t.len() / 2]
+        let times: Vec<_> = (0..15).map(|_| [time(&normal), time(&turn)]).collect();
+        let [normal, turn] = [0, 1].map(|i| {
+            let mut times: Vec<_> = times.iter().map(|pair| pair[i]).collect();
+            times.sort_by(f64::total_cmp);
+            times[times.len() / 2]
         });
         ratios.push(turn / normal);
     }

@@ -13,10 +13,8 @@ fn settings(method: MethodKind) -> Settings {
 
 /// First frame of a context with this color and these lattices.
 fn first(method: MethodKind, color: &Color, lattices: Lattices) -> (Color, FrameStats) {
-    let facts = View::still(noise(SIZE, "facts"), [20.0, 20.0]).sparse(lattices).facts;
-    let view = View { facts, ..View::still(color.clone(), [20.0, 20.0]) };
-    let (out, stats, _) = one(&mut context(settings(method)), 0, &view);
-    (out, stats)
+    let made = context(settings(method)).step(0, &still(color.clone()).sparse(lattices));
+    (made.shown, made.stats)
 }
 
 fn stack(offset: [u32; 2]) -> Lattices {
@@ -31,16 +29,11 @@ fn samples_are_shown_unchanged_and_nothing_else_is_read() {
         for offset in [[0, 0], [3, 6], [7, 7]] {
             let lattices = stack(offset);
             let is_sample = |px: [u32; 2]| lattices.at(px).unwrap().samples(px);
-            let view = View::still(full.clone(), [0.0; 2]).sparse(lattices);
-            let holed = view.read_of(&full, [f32::NAN; 3]);
+            let holed = still(full.clone()).sparse(lattices).read_of(&full, [f32::NAN; 3]);
             let (out, stats) = first(method, &holed, lattices);
             assert_eq!((stats.nonfinite, stats.pixels), (0, 64 * 48), "{method:?}");
             assert_eq!(out, first(method, &full, lattices).0, "{method:?}");
-            for y in 0..SIZE[1] {
-                for x in (0..SIZE[0]).filter(|&x| is_sample([x, y])) {
-                    assert_eq!(out.at(x as usize, y as usize), full.at(x as usize, y as usize));
-                }
-            }
+            assert!(pixels(SIZE).filter(|&px| is_sample(px)).all(|px| pixel(&out, px) == pixel(&full, px)));
         }
     }
 }
@@ -50,15 +43,12 @@ fn a_ramp_is_reproduced_between_samples_and_a_constant_everywhere() {
     let ramp = Image::from_fn(SIZE, |[x, y]| [x as f32 / 64.0, y as f32 / 64.0, (x + y) as f32 / 128.0]);
     let lattices = stack([0, 0]);
     let (out, _) = first(MethodKind::None, &ramp, lattices);
-    let error = |[x, y]: [usize; 2]| {
-        let (a, b) = (ramp.at(x, y), out.at(x, y));
+    let error = |px| {
+        let (a, b) = (pixel(&ramp, px), pixel(&out, px));
         (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f32::max)
     };
     // Up to the last samples of the coarse lattice, and of the fine one.
-    let worst = (0..=40).flat_map(|y| (0..=56).map(move |x| [x, y])).filter(|&[x, y]| {
-        let is_fine = lattices.at([x as u32, y as u32]).unwrap().step == 2;
-        !is_fine || x <= 38 && y <= 28
-    });
+    let worst = pixels([57, 41]).filter(|&px| lattices.at(px).unwrap().step != 2 || px[0] <= 38 && px[1] <= 28);
     assert!(worst.map(error).fold(0.0, f32::max) < 1e-6);
     let (out, _) = first(MethodKind::None, &Image::filled(SIZE, [0.25, 0.5, 0.75]), stack([5, 2]));
     assert!(out.pixels().iter().all(|&c| c == [0.25, 0.5, 0.75]));
@@ -88,10 +78,8 @@ fn the_doctor_refuses_lattices() {
 #[test]
 fn levels_of_detail_beside_lattices_are_refused() {
     let mut post = context(settings(MethodKind::Wrs));
-    let mut facts = ViewFrame::new(geometry(SIZE), Gaze::Lost);
-    facts.lattices = Some(stack([0, 0]));
-    let (color, lod) = (noise(SIZE, "lod"), Image::filled(SIZE, 1.0));
-    let images = Images::of(&[OneView { lod: Some(&lod), ..OneView::new(facts, &color) }]);
+    let view = View { lod: Some(Image::filled(SIZE, 1.0)), ..still(noise(SIZE, "lod")).sparse(stack([0, 0])) };
+    let images = Images::of([&view]);
     let error = post.process(&images.frame(0), &mut [Image::filled(SIZE, [0.0; 3])]).unwrap_err().to_string();
     assert_eq!(error, "lod of view 0 is given: expected None: the places of the samples say how coarse the frame is");
     assert!(!post.history().is_filled());

@@ -1,6 +1,5 @@
 //! Hard cases of sparse frames on the CPU, H86 and up.
 
-use crate::laws::laws;
 use crate::sparse_hard::*;
 use afterimage::{Filter, Foveation};
 use afterimage_testing::{Draws, holds};

@@ -53,7 +53,7 @@ fn half_the_trust_is_half_the_weight_before_gate_and_bias() {
 fn h18_trust_that_is_no_number_counts_as_none_and_is_counted() {
     let mut post = context(ungated());
     one(&mut post, 0, &still(noise(SIZE, "a")));
-    sticky(&mut post);
+    post.stick();
     // Eight columns each: only the last three keep anything, and with so much weight they keep all of it.
     let mask = columns(&[f32::NAN, -1.0, 0.0, -0.0, 1e-40, f32::INFINITY, 2.0, 1e-3]);
     let input = View { trust: Some(mask), ..still(noise(SIZE, "b")) };

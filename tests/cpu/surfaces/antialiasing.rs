@@ -52,21 +52,19 @@ fn expected(color: &Color, stored: &Color, lods: &[f32], [x, y]: [usize; 2]) -> 
 #[test]
 fn history_is_a_mean_within_some_deviations_of_its_neighbourhood() {
     let mut post = context(MethodKind::Taa);
-    let mut history = step(&mut post, 0, &sharp(noise(SIZE, "taa 0")));
+    let mut history = post.step(0, &sharp(noise(SIZE, "taa 0")));
     let mut clipped = 0;
     for index in 1..6 {
         // Half as rough as the first frame, so that much of it is out of bounds.
         let color = noise(SIZE, &format!("taa {index}")).map(|c| c.map(|v| 0.25 + 0.5 * v));
-        let made = step(&mut post, index, &sharp(color.clone()));
+        let made = post.step(index, &sharp(color.clone()));
         let stored = history.stored();
         let lods: Vec<_> = history.surfaces().iter().map(|s| s.lod).collect();
-        for y in 0..41 {
-            for x in 0..52 {
-                let (expected, is_clipped) = expected(&color, &stored, &lods, [x, y]);
-                let off = (DVec3::from_array(made.shown.at(x, y).map(f64::from)) - expected).abs().max_element();
-                assert!(off < 1e-4, "frame {index} ({x}, {y}): {off}");
-                clipped += u32::from(is_clipped);
-            }
+        for px in pixels(SIZE) {
+            let (expected, is_clipped) = expected(&color, &stored, &lods, px.map(|v| v as usize));
+            let off = (DVec3::from_array(pixel(&made.shown, px).map(f64::from)) - expected).abs().max_element();
+            assert!(off < 1e-4, "frame {index} {px:?}: {off}");
+            clipped += u32::from(is_clipped);
         }
         history = made;
     }

@@ -18,13 +18,12 @@ fn h67_microsaccades_enlarge_what_is_shown_sharp() {
     let gazes: Vec<[f32; 2]> = (0..45).map(|frame| [stream[(frame as f64 * 1000.0 / 90.0) as usize], 59.5]).collect();
     let sharp_after = |gazes: &[[f32; 2]]| {
         let mut post = context_of(WIDE, settings);
-        let mut last = None;
-        for (index, &gaze) in gazes.iter().enumerate() {
+        let frame = |(index, &gaze)| {
             let lods = settings.foveation.lod_map(&view, gaze);
-            let input = View { lod: Some(lods.clone()), ..sharp(picture.render(&lods)) };
-            last = Some(step(&mut post, index as u64, &input));
-        }
-        last.unwrap().surfaces().iter().filter(|s| s.lod < SHARP).count()
+            post.step(index, &View { lod: Some(lods.clone()), ..sharp(picture.render(&lods)) })
+        };
+        let last = (0..).zip(gazes).map(frame).last().unwrap();
+        last.surfaces().iter().filter(|s| s.lod < SHARP).count()
     };
     let (moving, still) = (sharp_after(&gazes), sharp_after(&[[119.5, 59.5]; 3]));
     // Predicted: pixels within the radius of that level of any frame's gaze, by angles in f64.

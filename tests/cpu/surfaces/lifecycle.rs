@@ -5,13 +5,13 @@ use afterimage::{Method, Smr, Verdict};
 
 /// Frames of a fading picture, half of it coarse, so that all output depends on earlier frames.
 fn frame(index: u64) -> View {
-    let picture = noise(SIZE, "run").map(|c| c.map(|v| v * (1.0 + 0.02 * index as f32)));
+    let picture = times(&noise(SIZE, "run"), 1.0 + 0.02 * index as f32);
     let lods = Image::from_fn(SIZE, |[x, _]| if (u64::from(x) + 5 * index) % 26 < 13 { 0.0 } else { 1.5 });
     View { lod: Some(lods.clone()), ..sharp(LowPass::new(&picture, 4).render(&lods)) }
 }
 
 fn run(post: &mut CpuAfterimage, frames: std::ops::Range<u64>) -> Vec<Made> {
-    frames.map(|index| step(post, index, &frame(index))).collect()
+    frames.map(|index| post.step(index, &frame(index))).collect()
 }
 
 #[test]
@@ -44,11 +44,11 @@ fn trust_of_1_changes_nothing_and_of_0_shows_the_candidate() {
     for method in METHODS {
         let mut plain = context(method);
         run(&mut plain, 0..5);
-        let expected = step(&mut plain.clone(), 5, &frame(5));
+        let expected = plain.clone().step(5, &frame(5));
         let mask = |at: [u32; 2]| (at[0] / 7 % 2) as f32;
         let full = View { trust: Some(Image::filled(SIZE, 1.0)), ..frame(5) };
-        assert_eq!(step(&mut plain.clone(), 5, &full), expected);
-        let made = step(&mut plain, 5, &View { trust: Some(Image::from_fn(SIZE, mask)), ..frame(5) });
+        assert_eq!(plain.clone().step(5, &full), expected);
+        let made = plain.step(5, &View { trust: Some(Image::from_fn(SIZE, mask)), ..frame(5) });
         for (i, t) in made.trace.pixels().iter().enumerate() {
             if mask([i as u32 % 52, 0]) == 0.0 {
                 assert_eq!(t.verdict, Verdict::Distrusted);
@@ -73,9 +73,9 @@ fn beside_a_depth_edge_another_texel_stands_in_for_the_nearest_one() {
     for method in METHODS {
         for (motion_px, verdict) in [(-0.6, Verdict::Valid), (-0.95, Verdict::Disoccluded)] {
             let mut post = context(method);
-            step(&mut post, 0, &View { depth: depth.clone(), ..sharp(color.clone()) });
+            post.step(0, &View { depth: depth.clone(), ..sharp(color.clone()) });
             let motion = Some(Image::filled(SIZE, [motion_px, 0.0]));
-            let made = step(&mut post, 1, &View { depth: depth.clone(), motion, ..at_lod(color.clone(), 1.0) });
+            let made = post.step(1, &View { depth: depth.clone(), motion, ..at_lod(color.clone(), 1.0) });
             for y in 0..SIZE[1] as usize {
                 assert_eq!(made.trace.at(26, y).verdict, verdict, "{method:?} by {motion_px} px in row {y}");
                 let shown = made.shown.at(26, y);

@@ -10,7 +10,6 @@ mod hostile;
 mod lifecycle;
 mod noisy;
 mod properties;
-#[allow(dead_code, reason = "the lab's tests on analytic scenes use a part of it")]
 mod rig;
 mod still;
 mod storage;

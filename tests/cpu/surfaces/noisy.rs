@@ -1,7 +1,7 @@
 //! Noisy candidates: the mean of many frames has the variance that its weights predict, and no bias; noise does not
 //! count as a change, nor a change as noise.
 
-use super::rig::{Draws, SIZE, View, context_of, settings, sharp, step};
+use super::rig::{Draws, SIZE, Steps, View, context_of, settings, sharp};
 use crate::pass::sparse_noise::{self, moments, promised};
 use afterimage::cpu::CpuAfterimage;
 use afterimage::{Method, MethodKind, Settings, Smr};
@@ -31,7 +31,7 @@ fn a_still_view_has_the_variance_that_its_weights_predict() {
         let mut draws = Draws::new(&format!("still {frames} {accumulate}"));
         let method = Method::Smr(Smr { accumulate, ..Smr::default() });
         let mut post = post(Settings { method, ..noisy() });
-        let shown = (0..frames).map(|i| step(&mut post, i, &sampled(&mut draws, even)).shown).last().unwrap();
+        let shown = (0..frames).map(|i| post.step(i, &sampled(&mut draws, even)).shown).last().unwrap();
         let (mean, variance) = moments(&shown);
         let expected = of_one_frame * promised(frames, f64::from(accumulate)).0;
         println!("{frames} frames, share {accumulate}: variance {variance:.2e}, promised {expected:.2e}");
@@ -54,15 +54,15 @@ fn a_change_beyond_the_noise_is_followed_within_frames() {
     let mut post = post(noisy());
     let around = |level: f32| move |d: &mut Draws, _: [u32; 2]| level + d.range(-0.1, 0.1);
     for index in 0..30 {
-        step(&mut post, index, &sampled(&mut draws, around(0.2)));
+        post.step(index, &sampled(&mut draws, around(0.2)));
     }
     let after: Vec<f64> =
-        (30..36).map(|index| moments(&step(&mut post, index, &sampled(&mut draws, around(0.6))).shown).0).collect();
+        (30..36).map(|index| moments(&post.step(index, &sampled(&mut draws, around(0.6))).shown).0).collect();
     assert!((after[1] - 0.6).abs() < 0.02, "{after:?}");
     // In half of the picture alone, the other half keeps its history.
     let half = |d: &mut Draws, [x, _]: [u32; 2]| if x < SIZE[0] / 2 { 0.6 } else { 0.1 } + d.range(-0.05, 0.05);
     for index in 36..42 {
-        let shown = step(&mut post, index, &sampled(&mut draws, half)).shown;
+        let shown = post.step(index, &sampled(&mut draws, half)).shown;
         let errors = |range: std::ops::Range<usize>, truth: f32| -> f32 {
             let row: Vec<f32> = range.map(|x| (shown.at(x, 20)[0] - truth).abs()).collect();
             row.iter().sum::<f32>() / row.len() as f32

@@ -11,12 +11,12 @@ fn s3_the_chain_is_read_where_and_as_coarse_as_the_candidate_is() {
     let method = Method::Smr(Smr { relight: false, ..Smr::default() });
     let mut post = context_of(SIZE, Settings { method, ..settings(MethodKind::Smr) });
     let slope = Image::from_fn(SIZE, |[x, _]| [0.02 + 0.015 * x as f32; 3]);
-    let first = step(&mut post, 0, &sharp(slope));
+    let first = post.step(0, &sharp(slope));
     let low_pass = LowPass::new(&first.stored(), 4);
     for lod in [0.5_f32, 1.0, 1.5, 2.0] {
         let at = |shift: f64| {
             let color = Image::from_fn(SIZE, |[x, y]| low_pass.at([f64::from(x) + shift, f64::from(y)], lod));
-            step(&mut post.clone(), 1, &at_lod(color, lod))
+            post.clone().step(1, &at_lod(color, lod))
         };
         let fit = |made: &Made| made.trace.pixels().iter().map(|t| f64::from(t.agreement)).sum::<f64>() / (52.0 * 41.0);
         let (right, shifted) = (at(0.0), at(12.0));
@@ -29,25 +29,20 @@ fn s3_the_chain_is_read_where_and_as_coarse_as_the_candidate_is() {
 #[test]
 fn s9_frames_that_repeat_change_nothing_where_history_is_shown_wholly() {
     let mut post = context(MethodKind::Smr);
-    let first = step(&mut post, 0, &sharp(noise(SIZE, "s9")));
+    let first = post.step(0, &sharp(noise(SIZE, "s9")));
     // The left is the same picture, the right another one.
     let lods = Image::filled(SIZE, 1.5);
     let same = LowPass::new(&first.stored(), 4).render(&lods);
     let other = LowPass::new(&noise(SIZE, "s9 other"), 4).render(&lods);
-    let half = |[x, y]: [u32; 2]| if x < 26 { &same } else { &other }.at(x as usize, y as usize);
+    let half = |px: [u32; 2]| pixel(if px[0] < 26 { &same } else { &other }, px);
     let input = at_lod(Image::from_fn(SIZE, half), 1.5);
-    let mut before = step(&mut post, 1, &input);
+    let mut before = post.step(1, &input);
     let mut settled = 0;
     for index in 2..20 {
-        let made = step(&mut post, index, &input);
+        let made = post.step(index, &input);
         for i in 0..made.words.len() {
             let (old, new) = (before.trace.pixels()[i], made.trace.pixels()[i]);
-            if old.history_share == 1.0
-                && new.history_share == 1.0
-                && old.agreement == 1.0
-                && new.agreement == 1.0
-                && i % 52 < 18
-            {
+            if [old, new].iter().all(|t| t.history_share == 1.0 && t.agreement == 1.0) && i % 52 < 18 {
                 assert_eq!(made.shown.pixels()[i], before.shown.pixels()[i], "frame {index}");
                 assert_eq!(made.words[i], before.words[i]);
                 settled += 1;
@@ -67,15 +62,12 @@ fn s9_a_coarse_candidate_that_repeats_settles_next_to_itself() {
     let coarse = LowPass::new(&noise(SIZE, "s9 coarse"), 4).render(&Image::filled(SIZE, 2.0));
     let mut frames = vec![];
     for index in 0..30 {
-        let made = step(&mut post, index, &at_lod(coarse.clone(), 2.0));
+        let made = post.step(index, &at_lod(coarse.clone(), 2.0));
         // Level 2 is stored in sevenths, exactly.
         assert!(made.surfaces().iter().all(|s| s.lod == 2.0), "it never becomes sharper than it was seen");
         frames.push(made);
     }
-    let off = |made: &Made| {
-        let pairs = made.shown.pixels().iter().flatten().zip(coarse.pixels().iter().flatten());
-        pairs.fold(0.0_f32, |worst, (shown, given)| worst.max((shown - given).abs() / given))
-    };
+    let off = |made: &Made| off(&made.shown, &coarse);
     let mean = |made: &Made| {
         let pairs = made.shown.pixels().iter().flatten().zip(coarse.pixels().iter().flatten());
         let errors: Vec<_> = pairs.map(|(shown, given)| f64::from((shown - given).abs() / given)).collect();

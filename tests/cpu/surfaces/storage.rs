@@ -48,6 +48,7 @@ fn every_code_of_a_field_is_its_own() {
 #[test]
 fn all_zeros_are_nothing() {
     assert_eq!(unpack_surface(pack_surface(Surface::EMPTY)), Surface::EMPTY);
+    assert_eq!(unpack_stored(pack_stored(StoredSample::EMPTY)), StoredSample::EMPTY);
     assert_eq!(unpack_surface([0; 2]), Surface::EMPTY);
     assert_eq!(unpack_stored([0; 2]), StoredSample::EMPTY);
     assert_eq!(unpack([0; 3]).w_sum, 0.0);

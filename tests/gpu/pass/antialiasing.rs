@@ -1,8 +1,7 @@
 //! Antialiasing of jittered sparse frames: both executors are equal, and differ by planted errors.
 
-use super::rig::View;
-use super::sparse::{SIZE, all_caught_in_samples, arrange, desc, full_rate, gliding_view, settings};
-use afterimage::{Foveation, Method, MethodKind, Settings, Smr};
+use super::sparse::{SAMPLES, SIZE, arrange, desc, full_rate, gliding_view, settings};
+use super::*;
 
 fn antialiased() -> Settings {
     let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
@@ -24,9 +23,7 @@ fn views(index: u64, settings: &Settings) -> [View; 2] {
         }
         view.depth = view.depth.map(|depth| {
             let (near, far) = (depth.at(0, 0), depth.at(0, SIZE[1] as usize - 1));
-            afterimage::Image::from_fn(SIZE, |[x, y]| {
-                if 3 * y < SIZE[1] + x && (v == 0 || 2 * y < SIZE[1]) { near } else { far }
-            })
+            Image::from_fn(SIZE, |[x, y]| if 3 * y < SIZE[1] + x && (v == 0 || 2 * y < SIZE[1]) { near } else { far })
         });
         if index > 8 {
             view.facts.lattices = Some(full_rate());
@@ -50,8 +47,8 @@ fn a_wrong_mean_is_caught() {
         ),
         ("pack_color_by(next.color, draw)", "pack_color_by(next.color, 0.5)"),
     ];
-    all_caught_in_samples(desc(), settings, 12, &planted, |index, rig| {
+    rig::all_caught_in(SAMPLES, desc(), settings, 12, &planted, |index, rig| {
         arrange(index, rig);
-        views(index, &settings).to_vec()
+        (Reset::None, views(index, &settings).to_vec())
     });
 }

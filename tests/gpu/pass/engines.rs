@@ -1,13 +1,9 @@
 //! What engines bring: regions, jitter, depth conventions that change, alpha, formats, prewarmed pipelines, debug views
 //! beside the frame, resolutions that change.
 
-use super::rig::{Rig, View, make_texture, noise, noise_view};
-use afterimage::gpu::{Afterimage, Frame, Region, Target, Textures, Variant};
-use afterimage::wgpu::{self, Features, TextureFormat, TextureUsages};
-use afterimage::{
-    ContextDesc, CreateError, DebugView, DepthConvention, Exposure, Method, MethodKind, MotionConvention, Reset,
-    Settings, ViewFrame,
-};
+use super::*;
+use afterimage::wgpu::Features;
+use std::collections::HashSet;
 
 const SIZE: [u32; 2] = [70, 41];
 
@@ -34,18 +30,14 @@ fn full_views(index: u64, desc: &ContextDesc, settings: &Settings) -> Vec<View> 
 
 #[test]
 fn regions_that_cannot_be_are_refused() {
-    let Some((device, _queue)) = afterimage_testing::gpu::device() else { return };
-    let desc = ContextDesc::new(SIZE);
-    let mut post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float).unwrap();
+    let Some(bare) = Bare::new(ContextDesc::new(SIZE)) else { return };
+    let mut post = bare.context(TextureFormat::Rgba16Float);
     let large = ContextDesc { view_count: 2, ..ContextDesc::new([100, 50]) };
-    let color = make_texture(&device, &large, TextureFormat::Rgba16Float, Afterimage::INPUT_USAGE);
-    let output = make_texture(&device, &desc, TextureFormat::Rgba16Float, Afterimage::OUTPUT_USAGE);
-    let view = View::still(noise(SIZE, "facts"), [3.0, 4.0]);
-    let views = [view.facts];
+    let color = make_texture(&bare.device, &large, TextureFormat::Rgba16Float, Afterimage::INPUT_USAGE);
+    let output = bare.texture(TextureFormat::Rgba16Float, Afterimage::OUTPUT_USAGE);
     let mut try_regions = |regions: &[Region<'_>]| {
-        let mut encoder = device.create_command_encoder(&Default::default());
-        let frame = Frame::new(Textures::Regions(regions), &views, 0);
-        post.record(&device, &mut encoder, &frame, &output).map(|_| ()).map_err(|e| e.to_string())
+        let frame = Frame::new(Textures::Regions(regions), &bare.views, 0);
+        bare.record(&mut post, &frame, &output).map_err(|error| error.to_string())
     };
     let fits = Region { layer: 1, ..Region::new(&color, [30, 9]) };
     assert_eq!(try_regions(&[fits]), Ok(()));
@@ -78,7 +70,7 @@ fn a_view_beside_the_frame_is_the_view_alone_and_changes_no_frame() {
     let mut in_turn = DebugView::ALL.into_iter().cycle();
     for settings in all_settings() {
         let Some(mut rig) = Rig::new(desc, settings) else { return };
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = HashSet::new();
         for (index, view) in (0..).zip(in_turn.by_ref().take(3)) {
             let views = full_views(index, &desc, &settings);
             rig.scattered = index % 2 == 1;
@@ -88,12 +80,12 @@ fn a_view_beside_the_frame_is_the_view_alone_and_changes_no_frame() {
             rig.beside = None;
             // Halves, two in a word: red and green, blue and alpha. Devices may round them differently.
             let beside = rig.beside();
-            let half = |bits: u32| afterimage::kernel::pack::half_value(bits & 0xffff);
+            let half = |bits: u32| pack::half_value(bits & 0xffff);
             let drawn = beside.chunks_exact(2).map(|w| [half(w[0]), half(w[0] >> 16), half(w[1])]);
             for (drawn, alone) in drawn.zip(alone) {
-                let near =
-                    |i: usize| (drawn[i] - f32::from_bits(alone[i])).abs() <= f32::from_bits(alone[i]) / 1024.0 + 1e-7;
-                assert!((0..3).all(near), "{:?}, {view:?}: {drawn:?}, {alone:?}", settings.method);
+                let expected = alone.map(f32::from_bits);
+                let is_near = |i: usize| (drawn[i] - expected[i]).abs() <= expected[i] / 1024.0 + 1e-7;
+                assert!((0..3).all(is_near), "{:?}, {view:?}: {drawn:?}, {alone:?}", settings.method);
             }
             seen.insert(beside);
         }
@@ -104,37 +96,25 @@ fn a_view_beside_the_frame_is_the_view_alone_and_changes_no_frame() {
 #[test]
 fn a_view_beside_the_frame_needs_a_limit() {
     // WebGPU's default limit is 4.
-    let Some((device, _queue)) = afterimage_testing::gpu::device() else { return };
-    let desc = ContextDesc::new(SIZE);
-    let mut post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float).unwrap();
-    let texture = |usage| make_texture(&device, &desc, TextureFormat::Rgba16Float, usage);
-    let (color, output) = (texture(Afterimage::INPUT_USAGE), texture(Afterimage::OUTPUT_USAGE));
-    let views = [View::still(noise(SIZE, "facts"), [3.0, 4.0]).facts];
-    let debug = afterimage::gpu::DebugTarget { view: DebugView::Gate, output: (&output).into() };
+    let Some(bare) = Bare::new(ContextDesc::new(SIZE)) else { return };
+    let mut post = bare.context(TextureFormat::Rgba16Float);
+    let (color, output) = (bare.input(TextureFormat::Rgba16Float), bare.output(TextureFormat::Rgba16Float));
+    let debug = DebugTarget { view: DebugView::Gate, output: (&output).into() };
     let target = Target { debug: Some(debug), ..Target::new(&output) };
-    let mut encoder = device.create_command_encoder(&Default::default());
-    let error = post.record(&device, &mut encoder, &Frame::new(&color, &views, 0), target).unwrap_err();
-    assert!(error.to_string().ends_with("expected a limit of 5; or Afterimage::record_view"), "{error}");
+    let error = bare.refusal(&mut post, &Frame::new(&color, &bare.views, 0), target);
+    assert!(error.ends_with("expected a limit of 5; or Afterimage::record_view"), "{error}");
 }
 
 #[test]
 fn record_compiles_nothing_after_prewarm() {
-    let required_limits = wgpu::Limits { max_storage_textures_per_shader_stage: 5, ..wgpu::Limits::default() };
-    let desc = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
-    let Some((device, queue)) = afterimage_testing::gpu::device_with(&desc) else { return };
+    let Some(device) = rig::device_of_five_outputs() else { return };
     for settings in all_settings() {
-        let desc = ContextDesc { settings, ..ContextDesc::new([16, 16]) };
-        let texture = |format, usage| make_texture(&device, &desc, format, usage);
-        let output = texture(TextureFormat::Rgba16Float, Afterimage::OUTPUT_USAGE);
+        let bare = Bare::on(device.clone(), ContextDesc { settings, ..ContextDesc::new([16, 16]) });
+        let output = bare.output(TextureFormat::Rgba16Float);
         let [color, one, two] = [TextureFormat::Rgba16Float, TextureFormat::R32Float, TextureFormat::Rg32Float]
-            .map(|format| texture(format, Afterimage::INPUT_USAGE));
-        let counters = device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: afterimage::FrameStats::COUNTERS_BYTES,
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        let mut post = Afterimage::new(&device, &desc, output.format()).unwrap();
+            .map(|format| bare.input(format));
+        let counters = rig::make_counters(&bare.device);
+        let mut post = bare.context(output.format());
         let beside = Variant { depth: true, debug: Some(DebugView::Gate), regions: true, ..Variant::default() };
         let usual = Variant { depth: true, motion: true, ..Variant::default() };
         let rest = Variant { trust: true, lod: true, counters: true, ..usual };
@@ -144,9 +124,9 @@ fn record_compiles_nothing_after_prewarm() {
             // All of them only for the method that compiles fastest.
             variants.extend(Variant::all());
         }
-        let views = [View::still(noise([16, 16], "facts"), [3.0, 4.0]).facts];
         let region = [Region::new(&color, [0, 0])];
         let record = |post: &mut Afterimage, index: usize, variant: Variant| {
+            let color = if variant.regions { Textures::Regions(&region) } else { (&color).into() };
             let frame = Frame {
                 depth: variant.depth.then_some((&one).into()),
                 motion: variant.motion.then_some((&two).into()),
@@ -159,26 +139,20 @@ fn record_compiles_nothing_after_prewarm() {
                     _ => Exposure::Same,
                 },
                 reset: if index.is_multiple_of(5) { Reset::All } else { Reset::None },
-                ..Frame::new(
-                    if variant.regions { Textures::Regions(&region) } else { (&color).into() },
-                    &views,
-                    index as u64,
-                )
+                ..Frame::new(color, &bare.views, index as u64)
             };
-            let debug = variant.debug.map(|view| afterimage::gpu::DebugTarget { view, output: (&output).into() });
+            let debug = variant.debug.map(|view| DebugTarget { view, output: (&output).into() });
             // The debug view and the frame are never the same texture.
-            let shown = texture(TextureFormat::Rgba16Float, Afterimage::OUTPUT_USAGE);
+            let shown = bare.output(TextureFormat::Rgba16Float);
             let counters = variant.counters.then_some(&counters);
             let target = Target { debug, counters, ..Target::new(&shown) };
             assert_eq!(Variant::of(&frame, &target), variant);
-            let mut encoder = device.create_command_encoder(&Default::default());
-            post.record(&device, &mut encoder, &frame, target).unwrap();
-            queue.submit([encoder.finish()]);
+            bare.record(post, &frame, target).unwrap();
         };
         // The counter counts: without prewarming, a frame compiles.
         record(&mut post, 1, variants[2]);
         assert!(!post.pipelines().is_empty());
-        post.prewarm(&device, variants.iter().copied());
+        post.prewarm(&bare.device, variants.iter().copied());
         let count = post.pipelines().len();
         for (index, variant) in variants.into_iter().enumerate() {
             record(&mut post, index, variant);
@@ -195,21 +169,18 @@ fn jitter_is_removed_from_vectors_that_contain_it() {
         let with = MotionConvention { jittered: true, ..motion };
         let desc = ContextDesc { motion: with, ..ContextDesc::new([64, 32]) };
         let plain = ContextDesc { motion, ..desc };
-        let (Some(mut rig), Some(mut other)) = (Rig::new(desc, settings), Rig::new(plain, settings)) else {
-            return;
-        };
+        let Some([mut rig, mut other]) = Rig::each([desc, plain].map(|desc| (desc, settings))) else { return };
         let mut before = [0.0; 2];
         for (index, jitter_px) in (0..).zip(jitters) {
             let views = full_views(index, &plain, &settings);
             let scale = motion.to_internal(plain.size_px);
             // Previous minus current position, both jittered.
             let added = [0, 1].map(|i| (before[i] - jitter_px[i]) / scale[i]);
+            let aware = |view: &View| view.clone().with(|view| view.facts.jitter_px = jitter_px);
             let jittered = |view: &View| View {
-                facts: ViewFrame { jitter_px, ..view.facts },
                 motion: view.motion.as_ref().map(|m| m.map(|v| [v[0] + added[0], v[1] + added[1]])),
-                ..view.clone()
+                ..aware(view)
             };
-            let aware = |view: &View| View { facts: ViewFrame { jitter_px, ..view.facts }, ..view.clone() };
             let (with, without): (Vec<_>, Vec<_>) = views.iter().map(|v| (jittered(v), aware(v))).unzip();
             let (made, _) = rig.both(index, Reset::None, &with);
             if index == 3 && settings.method != Method::None {
@@ -252,28 +223,20 @@ fn history_survives_a_change_of_the_near_plane() {
 
 #[test]
 fn alpha_is_kept_or_one() {
-    let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
-    let size = [16, 8];
+    let Some(device) = afterimage_testing::gpu::device() else { return };
     for (settings, keep_alpha) in all_settings().flat_map(|s| [(s, true), (s, false)]) {
-        let desc = ContextDesc { settings, keep_alpha, ..ContextDesc::new(size) };
-        let texture = |format, usage| make_texture(&device, &desc, format, usage | TextureUsages::COPY_DST);
-        let color = texture(TextureFormat::Rgba32Float, Afterimage::INPUT_USAGE);
-        let noisy = texture(TextureFormat::Rg32Float, Afterimage::INPUT_USAGE);
-        let output = texture(TextureFormat::Rgba32Float, Afterimage::OUTPUT_USAGE | TextureUsages::COPY_SRC);
+        let bare = Bare::on(device.clone(), ContextDesc { settings, keep_alpha, ..ContextDesc::new([16, 8]) });
         let alphas = |i: u32| if i.is_multiple_of(7) { f32::NAN } else { i as f32 / 128.0 };
         let pixels: Vec<[f32; 4]> = (0..128).map(|i| [0.5, 0.25, 0.125, alphas(i)]).collect();
-        afterimage_testing::gpu::write_layer(&queue, &color, 0, bytemuck::cast_slice(&pixels));
-        afterimage_testing::gpu::write_layer(&queue, &noisy, 0, bytemuck::cast_slice(&vec![[0.1_f32, 4.0]; 128]));
-        let mut post = Afterimage::new(&device, &desc, output.format()).unwrap();
-        let views = [View::still(noise(size, "facts"), [3.0, 4.0]).facts];
+        let color = bare.filled(TextureFormat::Rgba32Float, &pixels);
+        let noisy = bare.filled(TextureFormat::Rg32Float, &[[0.1_f32, 4.0]; 128]);
+        let output = bare.output(TextureFormat::Rgba32Float);
+        let mut post = bare.context(output.format());
         for index in 0..2 {
-            let mut encoder = device.create_command_encoder(&Default::default());
             let noise = settings.noisy.then_some((&noisy).into());
-            let frame = Frame { noise, ..Frame::new(&color, &views, index) };
-            post.record(&device, &mut encoder, &frame, &output).unwrap();
-            queue.submit([encoder.finish()]);
-            let shown = afterimage_testing::gpu::read_texture(&device, &queue, &output);
-            for (i, alpha) in (0_u32..).zip(shown.iter().skip(3).step_by(4)) {
+            let frame = Frame { noise, ..Frame::new(&color, &bare.views, index) };
+            bare.record(&mut post, &frame, &output).unwrap();
+            for (i, alpha) in (0_u32..).zip(bare.read(&output).iter().skip(3).step_by(4)) {
                 let expected = if keep_alpha && !i.is_multiple_of(7) { alphas(i) } else { 1.0 };
                 assert_eq!(f32::from_bits(*alpha), expected, "{:?}, pixel {i}", settings.method);
             }
@@ -288,14 +251,9 @@ fn every_storable_format_is_written_and_others_say_what_to_change() {
         | Features::TEXTURE_FORMAT_16BIT_NORM
         | Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES;
     let desc = wgpu::DeviceDescriptor { required_features: adapter.features() & wanted, ..Default::default() };
-    let (device, queue) = pollster::block_on(adapter.request_device(&desc)).unwrap();
+    let bare = Bare::on(pollster::block_on(adapter.request_device(&desc)).unwrap(), ContextDesc::new([16, 8]));
     let (plain, _) = afterimage_testing::gpu::device().unwrap();
-    let desc = ContextDesc::new([16, 8]);
-    let color =
-        make_texture(&device, &desc, TextureFormat::Rgba16Float, Afterimage::INPUT_USAGE | TextureUsages::COPY_DST);
-    let halves = [0x3800_u16, 0x3400, 0x3000, 0x3c00].repeat(128);
-    afterimage_testing::gpu::write_layer(&queue, &color, 0, bytemuck::cast_slice(&halves));
-    let views = [View::still(noise([16, 8], "facts"), [3.0, 4.0]).facts];
+    let color = bare.filled(TextureFormat::Rgba16Float, &[[0x3800_u16, 0x3400, 0x3000, 0x3c00]; 128]);
     let formats = [
         (TextureFormat::Rgba16Float, true),
         (TextureFormat::Rgba32Float, true),
@@ -309,7 +267,7 @@ fn every_storable_format_is_written_and_others_say_what_to_change() {
     ];
     let mut written = 0;
     for (format, always) in formats {
-        match Afterimage::new(&plain, &desc, format) {
+        match Afterimage::new(&plain, &bare.desc, format) {
             Ok(_) => assert!(always, "{format:?}"),
             Err(CreateError::OutputFormat { expected, .. }) => {
                 assert!(!always && expected.contains("Features::"), "{format:?}: {expected}");
@@ -317,25 +275,21 @@ fn every_storable_format_is_written_and_others_say_what_to_change() {
             Err(other) => panic!("{format:?}: {other}"),
         }
         let usages = adapter.get_texture_format_features(format).allowed_usages;
-        let made = Afterimage::new(&device, &desc, format);
+        let made = Afterimage::new(&bare.device, &bare.desc, format);
         if !usages.contains(TextureUsages::STORAGE_BINDING) {
             println!("{format:?}: the adapter cannot store to it");
             continue;
         }
         let mut post = made.unwrap_or_else(|e| panic!("{format:?}: {e}"));
-        let output = make_texture(&device, &desc, format, Afterimage::OUTPUT_USAGE | TextureUsages::COPY_SRC);
-        afterimage_testing::gpu::validated(&device, "record", || {
-            let mut encoder = device.create_command_encoder(&Default::default());
-            post.record(&device, &mut encoder, &Frame::new(&color, &views, 0), &output).unwrap();
-            queue.submit([encoder.finish()]);
-        });
-        let texels = afterimage_testing::gpu::read_texture(&device, &queue, &output);
+        let output = bare.output(format);
+        bare.record(&mut post, &Frame::new(&color, &bare.views, 0), &output).unwrap();
+        let texels = bare.read(&output);
         assert!(texels.iter().all(|&t| t != 0), "{format:?}: {:x?}", &texels[..4]);
         written += 1;
     }
     assert!(written >= 4, "{written} formats");
     for format in [TextureFormat::Rgba8UnormSrgb, TextureFormat::Bgra8UnormSrgb, TextureFormat::R16Float] {
-        let error = Afterimage::new(&device, &desc, format).unwrap_err();
+        let error = Afterimage::new(&bare.device, &bare.desc, format).unwrap_err();
         assert!(error.to_string().contains("Rgba16Float"), "{error}");
     }
 }
@@ -364,22 +318,15 @@ fn resized_history_agrees() {
 
 #[test]
 fn radiance_beyond_halves_is_shown_as_far_as_the_output_holds_it() {
-    let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
-    let desc =
-        ContextDesc { settings: Settings { method: Method::None, ..Settings::default() }, ..ContextDesc::new([16, 8]) };
-    let usage = Afterimage::INPUT_USAGE | TextureUsages::COPY_DST;
-    let color = make_texture(&device, &desc, TextureFormat::Rgba32Float, usage);
-    let radiance = [[1e6_f32, 3.0, 1e30, 1.0]; 128];
-    afterimage_testing::gpu::write_layer(&queue, &color, 0, bytemuck::cast_slice(&radiance));
-    let views = [View::still(noise([16, 8], "facts"), [3.0, 4.0]).facts];
+    let settings = Settings { method: Method::None, ..Settings::default() };
+    let Some(bare) = Bare::new(ContextDesc { settings, ..ContextDesc::new([16, 8]) }) else { return };
+    let color = bare.filled(TextureFormat::Rgba32Float, &[[1e6_f32, 3.0, 1e30, 1.0]; 128]);
     let shown = |format| {
-        let mut post = Afterimage::new(&device, &desc, format).unwrap();
-        let output = make_texture(&device, &desc, format, Afterimage::OUTPUT_USAGE | TextureUsages::COPY_SRC);
+        let output = bare.output(format);
         let exposure = Exposure::Scene { exposure: 2.0_f32.powi(-12) };
-        let mut encoder = device.create_command_encoder(&Default::default());
-        post.record(&device, &mut encoder, &Frame { exposure, ..Frame::new(&color, &views, 0) }, &output).unwrap();
-        queue.submit([encoder.finish()]);
-        afterimage_testing::gpu::read_texture(&device, &queue, &output)
+        let frame = Frame { exposure, ..Frame::new(&color, &bare.views, 0) };
+        bare.record(&mut bare.context(format), &frame, &output).unwrap();
+        bare.read(&output)
     };
     let floats = shown(TextureFormat::Rgba32Float);
     let largest = 65504.0 * 4096.0;

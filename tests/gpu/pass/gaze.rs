@@ -1,12 +1,8 @@
 //! Gaze and eccentricity on the device: hard cases H61 to H66.
 
-use super::rig::{Rig, View, noise};
-use super::surfaces::run_law;
+use super::*;
 use crate::gaze_hard::*;
-use crate::laws::laws;
-use crate::settings::ungated;
-use afterimage::{ContextDesc, Foveation, Gaze, MethodKind, Reset, Settings, ViewGeometry};
-use afterimage_testing::holds;
+use crate::images::pixel;
 
 gaze_laws!(Gpu, run_law);
 
@@ -31,18 +27,16 @@ fn h61_h62_h64_h65_weights_follow_rays_in_any_view() {
                 let mut view = View::still(noise(SIZE, &format!("wide {index}")), px);
                 view.facts.geometry = geometry;
                 let (_, trace) = rig.both(index, Reset::None, &[view]);
-                let weight = |x: usize, y: usize| trace[0].at(x, y).weight;
-                let lowest = trace[0].pixels().iter().map(|t| t.weight).fold(1.0, f32::min);
-                println!(
-                    "fovea {fovea_deg}, {:.0} degrees, eye at {px:?}: lowest weight {lowest:.1e}",
-                    geometry.hfov_deg()
-                );
-                assert!(trace[0].pixels().iter().all(|t| t.weight.is_normal() && t.weight <= 1.0));
+                let weights = trace[0].map(|t| t.weight);
+                let lowest = weights.pixels().iter().copied().fold(1.0, f32::min);
+                let hfov_deg = geometry.hfov_deg();
+                println!("fovea {fovea_deg}, {hfov_deg:.0} degrees, eye at {px:?}: lowest weight {lowest:.1e}");
+                assert!(weights.pixels().iter().all(|w| w.is_normal() && *w <= 1.0));
                 if fovea_deg == 5.0 {
                     floor = floor.min(lowest);
                 } else if index < 3 {
                     // 1 at the gaze point, and nowhere else.
-                    assert_eq!(trace[0].pixels().iter().filter(|t| t.weight == 1.0).count(), 1);
+                    assert_eq!(weights.pixels().iter().filter(|w| **w == 1.0).count(), 1);
                     only += 1;
                 }
                 // Angles from weights, by bisection in f64, for a fovea of 0 degrees, where weights fall everywhere.
@@ -60,11 +54,8 @@ fn h61_h62_h64_h65_weights_follow_rays_in_any_view() {
                         worst_rad = worst_rad.max((low.to_radians() - exact).abs());
                     }
                 }
-                if index < 3 {
-                    let at = px.map(|v| v as usize);
-                    assert_eq!(weight(at[0], at[1]), 1.0, "{geometry:?}");
-                }
-                let row: Vec<f32> = (32..64).map(|x| weight(x, 47)).collect();
+                assert!(index == 3 || pixel(&weights, px.map(|v| v as u32)) == 1.0, "{geometry:?}");
+                let row: Vec<f32> = (32..64).map(|x| weights.at(x, 47)).collect();
                 let falls = row.windows(2).all(|w| w[1] <= w[0]);
                 assert!(index != 1 || falls, "to the right of an eye on the left: {row:?}");
             }
@@ -116,8 +107,7 @@ fn the_gaze_of_the_next_frame_is_known_before_it() {
             view.facts.gaze = gaze;
             rig.both(index, reset, &[view]);
         }
-        rig.cpu.forget();
-        rig.gpu.forget();
+        rig.forget();
         assert_eq!(known(&rig, Gaze::Lost), [31.5, 23.5]);
     }
 }

@@ -1,8 +1,7 @@
 //! What a headset's lens hides.
 
-use super::rig::{Rig, View};
 use super::sparse::{SIZE, arrange, desc, gliding_view, settings};
-use afterimage::{Foveation, Image, Lattices, Method, MethodKind, Reset, Settings, Smr};
+use super::*;
 
 const FRAMES: u64 = 12;
 

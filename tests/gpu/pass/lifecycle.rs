@@ -1,19 +1,9 @@
 //! Views, errors, several frames in one submission, corrupt history, resizing, device loss.
 
-use super::rig::noise_view;
-use super::rig::{Made, Rig, View, make_texture};
-use super::surfaces::run_law;
-use crate::laws::laws;
+use super::*;
 use crate::lifecycle_hard::*;
-use crate::settings::{ungated, ungated_of, wrs};
 use crate::surfaces_hard;
-use afterimage::gpu::{Afterimage, Frame};
-use afterimage::wgpu::{self, Texture, TextureFormat, TextureUsages};
-use afterimage::{
-    ContextDesc, DebugView, Exposure, Filter, Foveation, FrameError, MethodKind, Reset, Sampler, Settings, ViewFrame,
-    ViewGeometry, Wrs,
-};
-use afterimage_testing::holds;
+use std::sync::{Arc, OnceLock};
 
 lifecycle_laws!(Gpu, run_law);
 
@@ -91,8 +81,7 @@ fn run(rig: &mut Rig, range: std::ops::Range<u64>) -> Vec<Made> {
 
 #[test]
 fn h76_a_minimised_window_is_refused_and_changes_nothing() {
-    let fresh = || Rig::new(ContextDesc::new(SIZE), ungated());
-    let (Some(mut rig), Some(mut other)) = (fresh(), fresh()) else { return };
+    let Some([mut rig, mut other]) = Rig::each([(ContextDesc::new(SIZE), ungated()); 2]) else { return };
     run(&mut rig, 0..3);
     run(&mut other, 0..3);
     for size in [[0, 0], [0, 5], [5, 0], [1 << 20, 1]] {
@@ -106,7 +95,6 @@ fn h76_a_minimised_window_is_refused_and_changes_nothing() {
 
 #[test]
 fn h77_a_lost_device_is_left_behind_for_a_new_one() {
-    use std::sync::{Arc, OnceLock};
     for method in [MethodKind::Wrs, MethodKind::Taa, MethodKind::Smr, MethodKind::Taau] {
         let fresh = || Rig::new(ContextDesc::new(SIZE), ungated_of(method));
         let Some(mut lost) = fresh() else { return };
@@ -168,8 +156,7 @@ fn h77_a_lost_device_is_left_behind_for_a_new_one() {
 #[test]
 fn good_bad_good_equals_good_good() {
     let desc = ContextDesc::new(SIZE);
-    let Some(mut rig) = Rig::new(desc, Settings::paper()) else { return };
-    let Some(mut other) = Rig::new(desc, Settings::paper()) else { return };
+    let Some([mut rig, mut other]) = Rig::each([(desc, Settings::paper()); 2]) else { return };
     let frames: Vec<View> = (0..2).map(|i| noise_view(&format!("good {i}"), &desc)).collect();
     rig.on_gpu(0, Reset::None, &frames[..1]);
     other.on_gpu(0, Reset::None, &frames[..1]);
@@ -213,15 +200,12 @@ fn good_bad_good_equals_good_good() {
 #[test]
 fn memory_bytes_is_what_is_made() {
     let Some((device, _)) = afterimage_testing::gpu::device() else { return };
-    let pixels = u64::from(SIZE[0] * SIZE[1]);
-    let mut desc = ContextDesc { settings: Settings::paper(), ..ContextDesc::new(SIZE) };
-    let new = |desc: &ContextDesc| Afterimage::new(&device, desc, TextureFormat::Rgba16Float).unwrap();
-    assert_eq!(new(&desc).memory_bytes(), 24 * pixels);
-    desc.settings = wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() });
-    assert_eq!(new(&desc).memory_bytes(), 32 * pixels);
-    desc.view_count = 2;
-    let mut post = new(&desc);
-    assert_eq!(post.memory_bytes(), 64 * pixels);
-    post.resize(&device, [7, 5]).unwrap();
-    assert_eq!(post.memory_bytes(), 64 * 35);
+    let keyed = wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() });
+    for (settings, view_count, bytes) in [(Settings::paper(), 1, 24), (keyed, 1, 32), (keyed, 2, 64)] {
+        let desc = ContextDesc { settings, view_count, ..ContextDesc::new(SIZE) };
+        let mut post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float).unwrap();
+        assert_eq!(post.memory_bytes(), bytes * u64::from(SIZE[0] * SIZE[1]));
+        post.resize(&device, [7, 5]).unwrap();
+        assert_eq!(post.memory_bytes(), bytes * 35);
+    }
 }

@@ -1,8 +1,6 @@
 //! Changing light on the device: hard cases H72 to H75.
 
-use super::surfaces::run_law;
-use crate::laws::laws;
+use super::run_law;
 use crate::light_hard::*;
-use afterimage_testing::holds;
 
 light_laws!(Gpu, run_law);

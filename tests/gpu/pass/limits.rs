@@ -1,35 +1,22 @@
 //! Devices that a context fits on only just, or not; outputs in a texture that is read, too.
 
-use super::rig::{make_texture, noise};
-use super::sparse;
+use super::*;
 use crate::surfaces_hard;
-use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target, Textures};
-use afterimage::wgpu::{self, Device, Limits, TextureFormat, TextureUsages};
-use afterimage::{
-    ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, Gaze, MethodKind, Settings, ViewFrame,
-    ViewGeometry,
-};
 
 const FORMAT: TextureFormat = TextureFormat::Rgba32Float;
-const READ_AND_WRITE: TextureUsages = TextureUsages::TEXTURE_BINDING.union(TextureUsages::STORAGE_BINDING);
+pub(super) const READ_AND_WRITE: TextureUsages = TextureUsages::TEXTURE_BINDING.union(TextureUsages::STORAGE_BINDING);
 
 /// A device that computes nothing, with these limits, and its queue, without which it makes no encoders.
-fn noop(required_limits: Limits) -> (Device, wgpu::Queue) {
+fn noop(required_limits: Limits) -> (Device, Queue) {
     wgpu::Device::noop(&wgpu::DeviceDescriptor { required_limits, ..Default::default() })
 }
 
 fn all_settings() -> Vec<Settings> {
-    let kinds = [MethodKind::None, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taa, MethodKind::Taau];
-    let sparse_frames = kinds.map(sparse::settings);
+    let kinds = MethodKind::ALL;
     let by_quads =
         kinds.map(|kind| Settings { method: kind.into(), foveation: Foveation::quads(), ..Settings::default() });
-    kinds
-        .map(surfaces_hard::settings)
-        .into_iter()
-        .chain([Settings::traced()])
-        .chain(sparse_frames)
-        .chain(by_quads)
-        .collect()
+    let all = [kinds.map(surfaces_hard::settings), kinds.map(sparse::settings), by_quads];
+    all.concat().into_iter().chain([Settings::traced()]).collect()
 }
 
 fn described(size: [u32; 2], settings: Settings) -> ContextDesc {
@@ -77,36 +64,24 @@ fn every_method_runs_on_the_smallest_device() {
         let desc = described(size, settings);
         let limits = Afterimage::required_limits(&desc);
         let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
-        let Some((device, queue)) = afterimage_testing::gpu::device_with(&descriptor) else { return };
-        let texture = |format, usage| make_texture(&device, &desc, format, usage | TextureUsages::COPY_DST);
-        let read = TextureUsages::TEXTURE_BINDING;
-        let color = texture(FORMAT, read);
-        let noise_texture = texture(TextureFormat::Rg32Float, read);
-        let output = texture(FORMAT, TextureUsages::STORAGE_BINDING);
-        let texels: Vec<f32> = noise(size, "small").pixels().iter().flat_map(|c| [c[0], c[1], c[2], 1.0]).collect();
-        for layer in 0..2 {
-            afterimage_testing::gpu::write_layer(&queue, &color, layer, bytemuck::cast_slice(&texels));
-        }
-        let geometry = ViewGeometry::flat(size, 70.0).unwrap();
-        let is_sparse = settings.foveation.filter == Filter::Sparse;
-        afterimage_testing::gpu::validated(&device, "frames", || {
-            let mut post = Afterimage::new(&device, &desc, FORMAT).unwrap();
-            for index in 0..3 {
-                let mut view = ViewFrame::new(geometry, Gaze::At { px: [20.0, 20.0] });
-                view.lattices = is_sparse.then(|| settings.foveation.lattices(&geometry, [20.0, 20.0], index));
-                let views = [view; 2];
-                let frame = Frame {
-                    noise: settings.noisy.then_some((&noise_texture).into()),
-                    ..Frame::new(&color, &views, index)
-                };
-                let mut encoder = device.create_command_encoder(&Default::default());
-                if settings.foveation.filter == Filter::Quads {
-                    post.plan(&device, &mut encoder, &frame).unwrap();
-                }
-                post.record(&device, &mut encoder, &frame, &output).unwrap();
-                queue.submit([encoder.finish()]);
+        let Some(device) = afterimage_testing::gpu::device_with(&descriptor) else { return };
+        let bare = Bare::on(device, desc);
+        let texels: Vec<_> = noise(size, "small").pixels().iter().map(|c| [c[0], c[1], c[2], 1.0]).collect();
+        let (color, output) = (bare.filled(FORMAT, &texels), bare.output(FORMAT));
+        let noise_texture = bare.input(TextureFormat::Rg32Float);
+        let mut post = bare.context(FORMAT);
+        for index in 0..3 {
+            let [view] = bare.views;
+            let lattices = || settings.foveation.lattices(&view.geometry, [20.0, 20.0], index);
+            let lattices = (settings.foveation.filter == Filter::Sparse).then(lattices);
+            let views = [ViewFrame { lattices, ..view }; 2];
+            let noise = settings.noisy.then_some((&noise_texture).into());
+            let frame = Frame { noise, ..Frame::new(&color, &views, index) };
+            if settings.foveation.filter == Filter::Quads {
+                bare.plan(&mut post, &frame);
             }
-        });
+            bare.record(&mut post, &frame, &output).unwrap();
+        }
     }
 }
 
@@ -131,33 +106,19 @@ fn sizes_beyond_the_device_are_refused_and_change_nothing() {
 
 #[test]
 fn a_texture_that_is_read_is_no_output() {
-    let required_limits = Limits { max_storage_textures_per_shader_stage: 5, ..Limits::default() };
-    let Some((device, queue)) =
-        afterimage_testing::gpu::device_with(&wgpu::DeviceDescriptor { required_limits, ..Default::default() })
-    else {
-        return;
-    };
-    let desc = ContextDesc::new([16, 16]);
-    let views = [ViewFrame::new(ViewGeometry::flat(desc.size_px, 70.0).unwrap(), Gaze::Lost)];
-    let mut post = Afterimage::new(&device, &desc, FORMAT).unwrap();
-    let whole = |format| make_texture(&device, &desc, format, READ_AND_WRITE);
-    let (color, depth, output) = (whole(FORMAT), whole(TextureFormat::R32Float), whole(FORMAT));
-    let debug = whole(TextureFormat::Rgba16Float);
+    let Some(device) = rig::device_of_five_outputs() else { return };
+    let bare = Bare::on(device, ContextDesc::new([16, 16]));
+    let views = bare.views;
+    let mut post = bare.context(FORMAT);
+    let [color, depth, output, debug] = [FORMAT, TextureFormat::R32Float, FORMAT, TextureFormat::Rgba16Float]
+        .map(|format| bare.texture(format, READ_AND_WRITE));
     let layered = ContextDesc { view_count: 2, ..ContextDesc::new([64, 16]) };
     let [atlas, half_atlas] =
-        [FORMAT, TextureFormat::Rgba16Float].map(|format| make_texture(&device, &layered, format, READ_AND_WRITE));
+        [FORMAT, TextureFormat::Rgba16Float].map(|format| make_texture(&bare.device, &layered, format, READ_AND_WRITE));
     let region = |texture, x, layer| [Region { layer, ..Region::new(texture, [x, 0]) }];
     let (left, right, behind) = (region(&atlas, 0, 0), region(&atlas, 32, 0), region(&atlas, 0, 1));
     let [left, right, behind] = [&left, &right, &behind].map(|regions| Textures::Regions(regions));
     let half_region = region(&half_atlas, 0, 0);
-    let mut recorded = |frame: Frame<'_>, target: Target<'_>| {
-        afterimage_testing::gpu::validated(&device, "record", || {
-            let mut encoder = device.create_command_encoder(&Default::default());
-            let result = post.record(&device, &mut encoder, &frame, target).map(|_| ());
-            queue.submit([encoder.finish()]);
-            result
-        })
-    };
     let frame = Frame::new(&color, &views, 0);
     let beside = |output| Some(DebugTarget { view: DebugView::Age, output });
     let trusting = Frame { trust: Some((&output).into()), ..frame };
@@ -173,14 +134,12 @@ fn a_texture_that_is_read_is_no_output() {
         ),
     ];
     for (frame, target, written, read) in refused {
-        let error = recorded(frame, target).unwrap_err().to_string();
-        assert!(
-            error.starts_with(written) && error.contains(&format!("also the texture of {read}: expected")),
-            "{error}"
-        );
+        let error = bare.refusal(&mut post, &frame, target);
+        let expected = format!("also the texture of {read}: expected");
+        assert!(error.starts_with(written) && error.contains(&expected), "{error}");
     }
     // Another layer of the texture, and textures of their own.
-    recorded(Frame::new(left, &views, 0), Target::new(behind)).unwrap();
+    bare.record(&mut post, &Frame::new(left, &views, 0), behind).unwrap();
     let own = Frame { depth: Some((&depth).into()), ..frame };
-    recorded(own, Target { debug: beside((&debug).into()), ..Target::new(&output) }).unwrap();
+    bare.record(&mut post, &own, Target { debug: beside((&debug).into()), ..Target::new(&output) }).unwrap();
 }

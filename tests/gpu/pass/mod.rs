@@ -1,6 +1,7 @@
 //! The pass on the GPU against its twin on the CPU: whole sequences, decisions and stored state bit for bit.
 
 mod antialiasing;
+mod bare;
 mod engines;
 mod gaze;
 mod lens;
@@ -21,3 +22,20 @@ mod sparse_hard;
 mod submission;
 mod surfaces;
 mod surfaces_hard;
+
+use crate::settings::{ungated, ungated_of, wrs};
+use afterimage::gpu::{Afterimage, DebugTarget, Frame, Prime, Region, Target, Textures, Variant};
+use afterimage::internal::{Sources, method_pass};
+use afterimage::kernel::pack;
+use afterimage::shader::SHADERS;
+use afterimage::wgpu::{self, Device, Limits, Queue, Texture, TextureFormat, TextureUsages};
+use afterimage::{
+    Bias, ContextDesc, CreateError, DebugView, DepthConvention, Exposure, Filter, Foveation, FrameError, Gaze, Image,
+    Lattice, Lattices, Method, MethodKind, MotionConvention, Reset, Sampler, Settings, Smr, ViewFrame, ViewGeometry,
+    Wrs,
+};
+use afterimage_testing::gpu::read_texture;
+use afterimage_testing::{Draws, agree, holds};
+use bare::Bare;
+use rig::{Made, Rig, View, make_texture, noise, noise_view};
+use surfaces::run_law;

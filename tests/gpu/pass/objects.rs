@@ -1,57 +1,62 @@
 //! Objects that a frame makes on the device: no bind groups and views while its textures are known.
 
-use super::rig::make_texture;
-use afterimage::gpu::{Afterimage, Frame, Prime};
-use afterimage::wgpu::{self, Device, Texture, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Filter, Foveation, Gaze, Settings, ViewFrame, ViewGeometry};
+use super::*;
 
 const SIZE: [u32; 2] = [64, 48];
 
-/// Textures of a frame: color, depth, motion, and the output.
-fn textures(device: &Device) -> [Texture; 4] {
-    use TextureFormat::{R32Float, Rg16Float, Rgba16Float};
-    let texture = |format, usage| make_texture(device, &ContextDesc::new(SIZE), format, usage);
-    let [color, depth, motion] =
-        [Rgba16Float, R32Float, Rg16Float].map(|format| texture(format, TextureUsages::TEXTURE_BINDING));
-    [color, depth, motion, texture(Rgba16Float, TextureUsages::STORAGE_BINDING)]
+/// A context on a device that computes nothing, and writes down what it is asked to do.
+struct Written {
+    folder: tempfile::TempDir,
+    bare: Bare,
+    post: Afterimage,
+}
+
+impl Written {
+    fn new(settings: Settings) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let trace = wgpu::Trace::Directory(folder.path().to_owned());
+        let device = Device::noop(&wgpu::DeviceDescriptor { trace, ..Default::default() });
+        let bare = Bare::on(device, ContextDesc { settings, ..ContextDesc::new(SIZE) });
+        Self { folder, post: bare.context(TextureFormat::Rgba16Float), bare }
+    }
+
+    fn count(&self, call: &str) -> usize {
+        std::fs::read_to_string(self.folder.path().join("trace.ron")).unwrap().matches(call).count()
+    }
+
+    /// Textures of a frame: color, depth, motion, and the output.
+    fn textures(&self) -> [Texture; 4] {
+        use TextureFormat::{R32Float, Rg16Float, Rgba16Float};
+        let [color, depth, motion] = [Rgba16Float, R32Float, Rg16Float].map(|format| self.bare.input(format));
+        [color, depth, motion, self.bare.output(Rgba16Float)]
+    }
 }
 
 /// Bind groups, views and buffers that the last of some frames made. Frames have two sets of textures that alternate,
 /// or new ones each.
 fn made(settings: Settings, is_new: bool) -> [usize; 3] {
-    let folder = tempfile::tempdir().unwrap();
-    let trace = wgpu::Trace::Directory(folder.path().to_owned());
-    let (device, queue) = Device::noop(&wgpu::DeviceDescriptor { trace, ..Default::default() });
-    let desc = ContextDesc { settings, ..ContextDesc::new(SIZE) };
-    let mut post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float).unwrap();
-    let mut sets = [(); 2].map(|()| textures(&device));
-    let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
-    let gaze_px = [32.0, 24.0];
+    let mut written = Written::new(settings);
+    let mut sets = [(); 2].map(|()| written.textures());
     let is_sparse = settings.foveation.filter == Filter::Sparse;
-    let count = || {
-        let trace = std::fs::read_to_string(folder.path().join("trace.ron")).unwrap();
-        ["CreateBindGroup(", "CreateTextureView", "CreateBuffer("].map(|call| trace.matches(call).count())
-    };
+    let count =
+        |written: &Written| ["CreateBindGroup(", "CreateTextureView", "CreateBuffer("].map(|call| written.count(call));
     let mut before = [0; 3];
     for index in 0..20 {
         let set = &mut sets[(index % 2) as usize];
         if is_new {
-            *set = textures(&device);
+            *set = written.textures();
         }
         let [color, depth, motion, output] = &*set;
-        let views = [ViewFrame {
-            lattices: is_sparse.then(|| settings.foveation.lattices(&geometry, gaze_px, index)),
-            ..ViewFrame::new(geometry, Gaze::At { px: gaze_px })
-        }];
+        let [view] = written.bare.views;
+        let lattices = is_sparse.then(|| settings.foveation.lattices(&view.geometry, [32.0, 24.0], index));
+        let views = [ViewFrame { lattices, ..view }];
         let frame =
             Frame { depth: Some(depth.into()), motion: Some(motion.into()), ..Frame::new(color, &views, index) };
-        before = count();
-        let mut encoder = device.create_command_encoder(&Default::default());
-        post.record(&device, &mut encoder, &frame, output).unwrap();
-        queue.submit([encoder.finish()]);
-        device.poll(wgpu::PollType::Poll).unwrap();
+        before = count(&written);
+        written.bare.record(&mut written.post, &frame, output).unwrap();
+        written.bare.device.poll(wgpu::PollType::Poll).unwrap();
     }
-    let after = count();
+    let after = count(&written);
     std::array::from_fn(|i| after[i] - before[i])
 }
 
@@ -70,29 +75,21 @@ fn frames_of_known_textures_make_no_bind_groups_and_views() {
 
 /// Render pipelines of `prime` that exist before its first frame, and after it.
 fn pipelines_of_prime(is_prewarmed: bool) -> [usize; 2] {
-    let folder = tempfile::tempdir().unwrap();
-    let trace = wgpu::Trace::Directory(folder.path().to_owned());
-    let (device, _queue) = Device::noop(&wgpu::DeviceDescriptor { trace, ..Default::default() });
-    let settings = Settings { foveation: Foveation::quads(), ..Settings::default() };
-    let desc = ContextDesc { settings, ..ContextDesc::new(SIZE) };
-    let mut post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float).unwrap();
-    let [color, depth, motion, _] = textures(&device);
-    let target = make_texture(&device, &desc, TextureFormat::Depth32Float, TextureUsages::RENDER_ATTACHMENT);
+    let mut written = Written::new(Settings { foveation: Foveation::quads(), ..Settings::default() });
+    let [color, depth, motion, _] = written.textures();
+    let target = written.bare.texture(TextureFormat::Depth32Float, TextureUsages::RENDER_ATTACHMENT);
     let target = target.create_view(&Default::default());
     let prime = Prime { target: &target, origin_px: [0, 0], near_depth: 1.0, stencil: None };
-    let count = || {
-        std::fs::read_to_string(folder.path().join("trace.ron")).unwrap().matches("CreateGeneralRenderPipeline").count()
-    };
+    let (device, views) = (written.bare.device.clone(), written.bare.views);
     if is_prewarmed {
-        post.prewarm_prime(&device, &prime).unwrap();
+        written.post.prewarm_prime(&device, &prime).unwrap();
     }
-    let before = count();
-    let views = [ViewFrame::new(ViewGeometry::flat(SIZE, 70.0).unwrap(), Gaze::At { px: [32.0, 24.0] })];
+    let before = written.count("CreateGeneralRenderPipeline");
     let frame = Frame { depth: Some((&depth).into()), motion: Some((&motion).into()), ..Frame::new(&color, &views, 0) };
+    written.bare.plan(&mut written.post, &frame);
     let mut encoder = device.create_command_encoder(&Default::default());
-    post.plan(&device, &mut encoder, &frame).unwrap();
-    post.prime(&device, &mut encoder, 0, &prime).unwrap();
-    [before, count()]
+    written.post.prime(&device, &mut encoder, 0, &prime).unwrap();
+    [before, written.count("CreateGeneralRenderPipeline")]
 }
 
 #[test]

@@ -3,9 +3,9 @@
 
 use super::rig::make_layers;
 use super::sparse::SIZE;
-use afterimage::gpu::{Afterimage, Frame, Prime};
-use afterimage::wgpu::{self, CompareFunction, Device, Queue, Texture, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Foveation, FrameError, Gaze, Settings, ViewFrame, ViewGeometry};
+use super::*;
+use crate::images::pixels;
+use afterimage::wgpu::CompareFunction;
 
 const ORIGIN_PX: [u32; 2] = [3, 5];
 const TARGET: [u32; 2] = [SIZE[0] + 9, SIZE[1] + 6];
@@ -91,6 +91,12 @@ impl Planned {
     }
 }
 
+/// What is there at the start of a pass: what was there, or a value.
+fn begun<T>(is_kept: bool, value: T) -> wgpu::Operations<T> {
+    let load = if is_kept { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(value) };
+    wgpu::Operations { load, store: wgpu::StoreOp::Store }
+}
+
 /// Which pixels of the target are drawn, and which should be.
 fn drawn(device: &Device, queue: &Queue, case: Case) -> [Vec<bool>; 2] {
     let (format, samples, near_depth, stencil) = case;
@@ -104,25 +110,17 @@ fn drawn(device: &Device, queue: &Queue, case: Case) -> [Vec<bool>; 2] {
     let mut encoder = device.create_command_encoder(&Default::default());
     planned.plan(device, &mut encoder);
     for is_draw in [false, true] {
-        let ops = |value: f32| wgpu::Operations {
-            load: if is_draw { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(value) },
-            store: wgpu::StoreOp::Store,
-        };
-        let stencil_ops = wgpu::Operations {
-            load: if is_draw { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(0) },
-            store: wgpu::StoreOp::Store,
-        };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: if samples > 1 { &many_view } else { &one_view },
                 depth_slice: None,
                 resolve_target: (samples > 1).then_some(&one_view),
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+                ops: begun(false, wgpu::Color::BLACK),
             })],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &depth_view,
-                depth_ops: Some(ops(DEPTH)),
-                stencil_ops: format.has_stencil_aspect().then_some(stencil_ops),
+                depth_ops: Some(begun(is_draw, DEPTH)),
+                stencil_ops: format.has_stencil_aspect().then(|| begun(is_draw, 0)),
             }),
             ..Default::default()
         });
@@ -137,15 +135,14 @@ fn drawn(device: &Device, queue: &Queue, case: Case) -> [Vec<bool>; 2] {
         }
     }
     queue.submit([encoder.finish()]);
-    let mask = afterimage_testing::gpu::read_texture(device, queue, planned.post.quad_mask().unwrap());
-    let pixels = afterimage_testing::gpu::read_texture(device, queue, &one);
-    let expected = (0..TARGET[0] * TARGET[1]).map(|i| {
-        let [x, y] = [i % TARGET[0], i / TARGET[0]].map(i64::from);
-        let [x, y] = [x - i64::from(ORIGIN_PX[0]), y - i64::from(ORIGIN_PX[1])];
-        let is_inside = (0..i64::from(SIZE[0])).contains(&x) && (0..i64::from(SIZE[1])).contains(&y);
-        !is_inside || mask[(y as usize / 2) * SIZE[0].div_ceil(2) as usize + x as usize / 2] & 1 != 0
+    let mask = read_texture(device, queue, planned.post.quad_mask().unwrap());
+    let expected = pixels(TARGET).map(|px| {
+        // Beyond the view where they wrap.
+        let [x, y] = [0, 1].map(|i| px[i].wrapping_sub(ORIGIN_PX[i]));
+        x >= SIZE[0] || y >= SIZE[1] || mask[((y / 2) * SIZE[0].div_ceil(2) + x / 2) as usize] & 1 != 0
     });
-    let shown = pixels.iter().map(|&word| word & 0xff == 0xff);
+    let drawn = read_texture(device, queue, &one);
+    let shown = drawn.iter().map(|&word| word & 0xff == 0xff);
     [shown.collect(), expected.collect()]
 }
 

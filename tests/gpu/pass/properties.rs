@@ -1,12 +1,9 @@
 //! Small frames and histories of arbitrary bit patterns on the device: equal to the CPU in every bit where it has the
 //! same history, finite for any history, valid again after a frame, and without effect of one view on another.
 
-use super::rig::{Rig, View};
+use super::*;
 use crate::any_frame::{SIZE, all_settings, any_frame};
-use afterimage::kernel::pack;
 use afterimage::kernel::surface::unpack_surface;
-use afterimage::{ContextDesc, Method, Reset, Settings};
-use afterimage_testing::Draws;
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::cell::RefCell;
@@ -62,11 +59,8 @@ fn a_history_of_any_bits_shows_numbers_and_heals_in_a_frame() {
             }
             for (index, frame) in frames[1..].iter().enumerate() {
                 let made = rig.on_gpu(1 + index as u64, Reset::None, std::slice::from_ref(frame));
-                prop_assert!(
-                    made.shown.iter().flatten().all(|&v| f32::from_bits(v).abs() <= 65504.0),
-                    "{:?}",
-                    settings
-                );
+                let is_half = |&v: &u32| f32::from_bits(v).abs() <= 65504.0;
+                prop_assert!(made.shown.iter().flatten().all(is_half), "{:?}", settings);
                 // Every pixel holds a sample again.
                 let healed = made.words.iter().all(|&w| match settings.method {
                     Method::Wrs(_) => pack::unpack(w).w_sum > 0.0,

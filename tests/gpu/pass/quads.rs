@@ -1,12 +1,8 @@
 //! Frames shaded by quads: plans and pictures of both executors, the lists on the device, and planted errors.
 
-use super::rig::{Rig, View};
 use super::sparse::{SIZE, arrange, desc, gliding_view};
-use afterimage::gpu::{Afterimage, Frame};
-use afterimage::internal::Sources;
-use afterimage::shader::SHADERS;
-use afterimage::wgpu::TextureFormat;
-use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, MethodKind, Reset, Settings, Smr};
+use super::*;
+use crate::images::pixel;
 
 const FRAMES: u64 = 12;
 
@@ -24,8 +20,7 @@ fn views(index: u64, settings: &Settings) -> [View; 2] {
         let mut view = gliding_view(index, v, settings);
         view.facts.lattices = None;
         let trust = view.trust.take().unwrap();
-        let at = |x: u32, y: u32| trust.at(x as usize, y as usize);
-        view.trust = Some(Image::from_fn(SIZE, |[x, y]| if y == 5 { 0.0 } else { at(x, y) }));
+        view.trust = Some(Image::from_fn(SIZE, |px| if px[1] == 5 { 0.0 } else { pixel(&trust, px) }));
         let antialias = matches!(settings.method, Method::Smr(Smr { antialias: true, .. }));
         view.facts.jitter_px = if antialias { Foveation::jitter_px(index) } else { [0.0; 2] };
         if antialias {
@@ -33,8 +28,7 @@ fn views(index: u64, settings: &Settings) -> [View; 2] {
             let is_bar =
                 |[x, y]: [u32; 2]| y > 24 && (x + 2 * index as u32).is_multiple_of(6) && !index.is_multiple_of(3);
             let depth = view.depth.take().unwrap();
-            let at = |px: [u32; 2]| if is_bar(px) { 3.0 } else { depth.at(px[0] as usize, px[1] as usize) };
-            view.depth = Some(Image::from_fn(SIZE, at));
+            view.depth = Some(Image::from_fn(SIZE, |px| if is_bar(px) { 3.0 } else { pixel(&depth, px) }));
         }
         if v == 1 {
             view.motion = view.motion.map(|motion| motion.map(|[x, y]| [x, -y]));
@@ -43,10 +37,8 @@ fn views(index: u64, settings: &Settings) -> [View; 2] {
         if index > 8 {
             view.facts.visible_px = Some([[2.0, 1.0, 12.0, -30.0], [66.0, 39.0, 100.0, 60.0]]);
         }
-        let color = &view.color;
-        let at = |[x, y]: [u32; 2]| color.at(x as usize, y as usize);
         view.color = Image::from_fn(SIZE, |[x, y]| {
-            let [r, g, b] = at([x, y]);
+            let [r, g, b] = pixel(&view.color, [x, y]);
             [if (x + 3 * y).is_multiple_of(29) { f32::NAN } else { r }, g, b]
         });
         view
@@ -104,12 +96,11 @@ fn filters_may_change_from_frame_to_frame() {
         let lattices = super::sparse::settings(method);
         let Some(mut rig) = Rig::new(desc(), lattices) else { return };
         for (index, settings) in [lattices, lattices, quads, quads, lattices].into_iter().enumerate() {
-            rig.cpu.set_settings(settings).unwrap();
-            rig.gpu.set_settings(&rig.device, settings).unwrap();
-            let mut seen = views(index as u64, &settings);
-            if settings == lattices {
-                seen = [0, 1].map(|v| gliding_view(index as u64, v, &settings));
-            }
+            rig.set_settings(settings);
+            let seen = match settings == lattices {
+                true => [0, 1].map(|v| gliding_view(index as u64, v, &settings)),
+                false => views(index as u64, &settings),
+            };
             rig.both(index as u64, Reset::None, &seen);
         }
     }
@@ -138,20 +129,15 @@ fn assert_lists_are_masks(rig: &Rig, mask: &[u32]) {
 #[test]
 fn what_was_not_planned_is_refused() {
     let desc = ContextDesc { settings: settings(false), ..ContextDesc::new(SIZE) };
-    let Some(rig) = Rig::new(ContextDesc::new(SIZE), desc.settings) else { return };
-    let mut post = Afterimage::new(&rig.device, &desc, TextureFormat::Rgba16Float).unwrap();
-    let texture = |usage| super::rig::make_texture(&rig.device, &desc, TextureFormat::Rgba16Float, usage);
-    let (color, output) = (texture(Afterimage::INPUT_USAGE), texture(Afterimage::OUTPUT_USAGE));
-    let facts = [views(0, &desc.settings)[0].facts];
-    let mut encoder = rig.device.create_command_encoder(&Default::default());
-    let frame = Frame::new(&color, &facts, 3);
-    let mut refused = |post: &mut Afterimage, frame: &Frame<'_>| {
-        post.record(&rig.device, &mut encoder, frame, &output).map(|_| ()).map_err(|error| error.to_string())
-    };
+    let Some(bare) = Bare::new(desc) else { return };
+    let mut post = bare.context(TextureFormat::Rgba16Float);
+    let (color, output) = (bare.input(TextureFormat::Rgba16Float), bare.output(TextureFormat::Rgba16Float));
+    let frame = Frame::new(&color, &bare.views, 3);
+    let refused =
+        |post: &mut Afterimage, frame: &Frame<'_>| bare.record(post, frame, &output).map_err(|error| error.to_string());
     let expected = "expected the plan of this frame: call plan before the frame is shaded";
     assert_eq!(refused(&mut post, &frame), Err(format!("plan of view 0 is missing: {expected}")));
-    let mut encoder = rig.device.create_command_encoder(&Default::default());
-    post.plan(&rig.device, &mut encoder, &frame).unwrap();
+    bare.plan(&mut post, &frame);
     let later = Frame { index: 4, ..frame };
     assert_eq!(refused(&mut post, &later), Err(format!("plan of view 0 is that of frame 3: {expected}")));
     assert_eq!(refused(&mut post, &frame), Ok(()));
@@ -161,7 +147,7 @@ fn what_was_not_planned_is_refused() {
 #[test]
 fn a_wrong_pass_is_caught() {
     let settings = settings(true);
-    let names = [
+    let passes = [
         "quad_key_pass",
         "quad_threshold_pass",
         "quad_mask_pass",
@@ -171,17 +157,6 @@ fn a_wrong_pass_is_caught() {
         "quad_light_pass",
         "quad_pass",
     ];
-    let right = names.map(|name| SHADERS.compose(name).source);
-    let differs = |sources: &[String; 8]| {
-        let texts = names.into_iter().zip(sources);
-        let planted = |right| texts.fold(right, |all: Sources, (name, text)| all.with(name, text));
-        let mut rig = Rig::with_sources(desc(), settings, planted)?;
-        Some((0..FRAMES).any(|index| {
-            let reset = reset_of(index, &mut rig);
-            let views = views(index, &settings);
-            rig.differs(index, reset, &views)
-        }))
-    };
     let planted = [
         ("needed * acuity(e_deg)", "needed"),
         ("of_run[first - 1u] <= budget - chosen", "of_run[first - 1u] <= budget"),
@@ -193,5 +168,7 @@ fn a_wrong_pass_is_caught() {
         ("candidate.fit = min(fit_sum * known, own_fits);", "candidate.fit = fit_sum * known;"),
         ("sampled.usable && (mask_at(at, view) & 1u) != 0u", "sampled.usable"),
     ];
-    afterimage_testing::planted::all_caught(&right, &planted, differs);
+    rig::all_caught_in(passes, desc(), settings, FRAMES, &planted, |index, rig| {
+        (reset_of(index, rig), views(index, &settings).to_vec())
+    });
 }

@@ -1,10 +1,9 @@
 //! Reactive masks: the inverse of trust masks, in the passes of whole and of sparse frames.
 
-use super::rig::{Rig, View};
 use super::sparse_hard::run_law;
+use super::*;
 use crate::reactive::reactive_is_the_inverse_of_trust;
 use crate::sparse_hard::SIZE;
-use afterimage::{ContextDesc, Image, Reset, Settings};
 
 #[test]
 fn reactive_masks_are_the_inverse_of_trust() {

@@ -1,12 +1,8 @@
 //! Reservoirs on the device: range, probabilities and corruption. Hard cases H05 to H07, H11, H12,
 //! H19, H22, H26, H29.
 
-use super::rig::{Rig, View, noise, with_w_sum};
-use crate::settings::{ungated, wrs};
-use afterimage::kernel::pack;
-use afterimage::shader::SHADERS;
-use afterimage::{Bias, ContextDesc, Foveation, Image, Reset, Settings, Wrs};
-use afterimage_testing::holds;
+use super::rig::with_w_sum;
+use super::*;
 
 /// Settings in which every candidate has weight 1, without a gate.
 fn even(bias: Bias) -> Settings {

@@ -1,16 +1,16 @@
 //! Frames through both executors, and the device's results.
 
-use crate::images::{Images, held_words};
+use crate::images::{Images, held_words, pixel, pixels, planned, traced};
 pub use crate::images::{View, noise};
 use afterimage::cpu::CpuAfterimage;
 use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target, Textures};
 use afterimage::internal::{Sources, method_pass};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack;
+use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, Buffer, BufferUsages, Device, Queue, Texture, TextureFormat, TextureUsages};
-use afterimage::{
-    ContextDesc, DebugView, DepthConvention, Exposure, Filter, FrameStats, Image, Reset, Settings, ViewFrame,
-};
+use afterimage::{ContextDesc, DebugView, DepthConvention, Exposure, Filter, FrameStats, Image, Reset, Settings};
+use afterimage_testing::planted::all_caught;
 use afterimage_testing::{Draws, agree};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -57,12 +57,15 @@ fn idle() -> MutexGuard<'static, Vec<(Device, Queue, Sources)>> {
 fn idle_device() -> Option<(Device, Queue, Sources)> {
     let idle = idle().pop();
     idle.or_else(|| {
-        // One storage texture more than WebGPU's default, for views beside the frame.
-        let required_limits = wgpu::Limits { max_storage_textures_per_shader_stage: 5, ..wgpu::Limits::default() };
-        let desc = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
-        let (device, queue) = afterimage_testing::gpu::device_with(&desc)?;
+        let (device, queue) = device_of_five_outputs()?;
         Some((device, queue, Sources::default()))
     })
+}
+
+/// A fresh device with one storage texture more than WebGPU's default, for views beside the frame.
+pub fn device_of_five_outputs() -> Option<(Device, Queue)> {
+    let required_limits = wgpu::Limits { max_storage_textures_per_shader_stage: 5, ..wgpu::Limits::default() };
+    afterimage_testing::gpu::device_with(&wgpu::DeviceDescriptor { required_limits, ..Default::default() })
 }
 
 // Places of textures: color, depth, motion, trust and reactive masks, levels of detail and noise; output, debug view.
@@ -167,6 +170,12 @@ impl Rig {
         Self::with_sources(context, settings, |sources| sources)
     }
 
+    /// Several of these descriptions.
+    pub fn each<const N: usize>(of: [(ContextDesc, Settings); N]) -> Option<[Self; N]> {
+        let rigs: Option<Vec<_>> = of.into_iter().map(|(context, settings)| Self::new(context, settings)).collect();
+        rigs?.try_into().ok()
+    }
+
     /// With another text of the method's pass on the GPU.
     pub fn with_shader(context: ContextDesc, settings: Settings, source: &str) -> Option<Self> {
         Self::with_sources(context, settings, |sources| sources.with(method_pass(&settings), source))
@@ -189,18 +198,25 @@ impl Rig {
             scattered: false,
             drops: false,
             beside: None,
-            counters: device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("counters"),
-                size: FrameStats::COUNTERS_BYTES,
-                usage: BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
-                mapped_at_creation: false,
-            }),
+            counters: make_counters(&device),
             exposure: Exposure::Same,
             compiled: Some(compiled),
             context,
             device,
             queue,
         })
+    }
+
+    /// Changes the settings of both executors.
+    pub fn set_settings(&mut self, settings: Settings) {
+        self.cpu.set_settings(settings).unwrap();
+        self.gpu.set_settings(&self.device, settings).unwrap();
+    }
+
+    /// Discards the history of both executors.
+    pub fn forget(&mut self) {
+        self.cpu.forget();
+        self.gpu.forget();
     }
 
     /// Loses the device.
@@ -267,11 +283,7 @@ impl Rig {
     /// Sets the history of the GPU, but for mip chains: what `read` reads.
     fn restore_gpu(&self, words: &[[u32; 3]]) {
         let (textures, len) = (self.gpu.history_textures(), words.len() / self.context.view_count as usize);
-        // Weights of reservoirs, or noise of surfaces.
-        let third = match textures.get(1).map(Texture::format) {
-            Some(TextureFormat::R32Uint) => textures.get(1),
-            _ => textures.get(2),
-        };
+        let third = third_words(&textures);
         for (layer, words) in words.chunks(len.max(1)).enumerate() {
             let two: Vec<[u32; 2]> = words.iter().map(|w| [w[0], w[1]]).collect();
             self.write(&textures[0], layer, bytemuck::cast_slice(&two));
@@ -303,17 +315,10 @@ impl Rig {
     }
 
     pub fn on_cpu(&mut self, index: u64, reset: Reset, views: &[View]) -> (Made, Vec<Image<PixelTrace>>) {
-        let size = self.context.size_px;
-        let mut output = vec![Image::filled(size, [0.0; 3]); views.len()];
-        let mut trace = vec![Image::filled(size, PixelTrace::default()); views.len()];
-        let cpu_views: Vec<_> = views.iter().map(View::one).collect();
-        let images = Images::of(&cpu_views);
+        let images = Images::of(views);
         let frame = afterimage::cpu::Frame { reset, exposure: self.exposure, ..images.frame(index) };
-        let quads = match self.is_by_quads() {
-            true => self.cpu.plan(&frame).unwrap().iter().flat_map(quads_of).collect(),
-            false => vec![],
-        };
-        let stats = self.cpu.process_traced(&frame, &mut output, &mut trace).unwrap();
+        let quads = planned(&mut self.cpu, &frame).iter().flat_map(quads_of).collect();
+        let (output, trace, stats) = traced(&mut self.cpu, &frame);
         let shown = output.iter().flat_map(|o| o.pixels()).map(|c| c.map(f32::to_bits)).collect();
         (Made { shown, words: held_words(&self.cpu), quads, stats }, trace)
     }
@@ -338,7 +343,7 @@ impl Rig {
         let output = &self.textures[OUTPUT];
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let gpu = self.gpu.record(&self.device, &mut encoder, &frame, output).unwrap_err().to_string();
-        let images = Images::of(&[view.one()]);
+        let images = Images::of([view]);
         let mut output = [Image::filled(self.context.size_px, [0.0; 3])];
         let cpu = self.cpu.process(&images.frame(0), &mut output).unwrap_err().to_string();
         assert_eq!(gpu, cpu);
@@ -389,24 +394,6 @@ impl Rig {
         });
     }
 
-    /// The same images twice, with different descriptions, recorded into one encoder.
-    pub fn on_gpu_in_one_submission(&mut self, view: &View, facts: &[ViewFrame]) -> Made {
-        self.upload(std::slice::from_ref(view));
-        let mut encoder = self.device.create_command_encoder(&Default::default());
-        for (index, facts) in facts.iter().enumerate() {
-            let [color, depth, motion, .., output, _] = &self.textures;
-            let frame = Frame {
-                depth: Some(depth.into()),
-                motion: Some(motion.into()),
-                ..Frame::new(color, std::slice::from_ref(facts), index as u64)
-            };
-            let target = Target { counters: Some(&self.counters), ..Target::new(output) };
-            self.gpu.record(&self.device, &mut encoder, &frame, target).unwrap();
-        }
-        self.queue.submit([encoder.finish()]);
-        self.read()
-    }
-
     /// Fills history, all its levels, with words that are NaN in any format.
     pub fn poison(&self) {
         for texture in self.gpu.history_textures() {
@@ -429,33 +416,19 @@ impl Rig {
     /// Output colors and stored history, read back from the device.
     pub fn read(&self) -> Made {
         let shown = self.read_texture(&self.textures[OUTPUT]);
-        let held: Vec<_> =
-            self.gpu.history_textures().iter().take(2).map(|t| (t.format(), self.read_texture(t))).collect();
+        let history = self.gpu.history_textures();
+        let two = history.first().map(|texture| self.read_texture(texture)).unwrap_or_default();
+        let third = third_words(&history).map(|texture| self.read_texture(texture)).unwrap_or_default();
+        let third = third.into_iter().chain(std::iter::repeat(0));
+        // As it was planned last.
+        let mask = self.gpu.quad_mask().map(|mask| self.read_texture(mask)).unwrap_or_default();
+        let counters: Vec<u8> = afterimage_testing::gpu::read_buffer(&self.device, &self.queue, &self.counters);
         Made {
             shown: shown.chunks_exact(4).map(|c| [c[0], c[1], c[2]]).collect(),
-            words: match &held[..] {
-                [(_, colors), (TextureFormat::R32Uint, weights)] => {
-                    colors.chunks_exact(2).zip(weights).map(|(c, &w)| [c[0], c[1], w]).collect()
-                }
-                [(_, surfaces), ..] => {
-                    let noise = self.gpu.history_textures().get(2).map(|t| self.read_texture(t)).unwrap_or_default();
-                    let noise = noise.into_iter().chain(std::iter::repeat(0));
-                    surfaces.chunks_exact(2).zip(noise).map(|(s, n)| [s[0], s[1], n]).collect()
-                }
-                [] => vec![],
-            },
-            // As it was planned last.
-            quads: self
-                .gpu
-                .quad_mask()
-                .map_or_else(Vec::new, |mask| self.read_texture(mask).iter().map(|word| word & 1).collect()),
-            stats: self.read_counters(),
+            words: two.chunks_exact(2).zip(third).map(|(w, third)| [w[0], w[1], third]).collect(),
+            quads: mask.iter().map(|word| word & 1).collect(),
+            stats: FrameStats::from_counters(&counters).unwrap(),
         }
-    }
-
-    fn read_counters(&self) -> FrameStats {
-        let bytes: Vec<u8> = afterimage_testing::gpu::read_buffer(&self.device, &self.queue, &self.counters);
-        FrameStats::from_counters(&bytes).unwrap()
     }
 
     fn upload(&self, views: &[View]) {
@@ -481,6 +454,12 @@ impl Rig {
     }
 }
 
+/// Of the textures of a history, the one with a pixel's third word: weights of reservoirs, or noise of surfaces.
+fn third_words(history: &[Texture]) -> Option<&Texture> {
+    let has_weights = history.get(1).is_some_and(|texture| texture.format() == TextureFormat::R32Uint);
+    history.get(if has_weights { 1 } else { 2 })
+}
+
 /// Submits what an encoder has, or drops it.
 fn submit(queue: &Queue, drops: bool, encoder: wgpu::CommandEncoder) {
     if !drops {
@@ -488,10 +467,33 @@ fn submit(queue: &Queue, drops: bool, encoder: wgpu::CommandEncoder) {
     }
 }
 
+/// Fails unless each planted error in some passes makes the executors differ in one of `frames` frames. `frame` gives
+/// a frame's reset and views.
+#[track_caller]
+pub fn all_caught_in<const N: usize>(
+    passes: [&'static str; N],
+    desc: ContextDesc,
+    settings: Settings,
+    frames: u64,
+    planted: &[(&str, &str)],
+    frame: impl Fn(u64, &mut Rig) -> (Reset, Vec<View>),
+) {
+    let right = passes.map(|name| SHADERS.compose(name).source);
+    all_caught(&right, planted, |sources: &[String; N]| {
+        let texts = passes.into_iter().zip(sources);
+        let planted = |right| texts.fold(right, |all: Sources, (name, text)| all.with(name, text));
+        let mut rig = Rig::with_sources(desc, settings, planted)?;
+        Some((0..frames).any(|index| {
+            let (reset, views) = frame(index, &mut rig);
+            rig.differs(index, reset, &views)
+        }))
+    });
+}
+
 /// The quads of a mask.
 fn quads_of(mask: &Image<bool>) -> Vec<u32> {
-    let quads = (0..mask.height()).step_by(2).flat_map(|y| (0..mask.width()).step_by(2).map(move |x| (x, y)));
-    quads.map(|(x, y)| u32::from(mask.at(x, y))).collect()
+    let quads = pixels(mask.size().map(|side| side.div_ceil(2)));
+    quads.map(|quad| u32::from(pixel(mask, quad.map(|v| 2 * v)))).collect()
 }
 
 /// The views of a texture, as regions of larger textures that contain NaN elsewhere.
@@ -517,9 +519,8 @@ impl<'a> Scattered<'a> {
 
     /// Each view is in the last layer of its texture.
     fn regions(&self) -> Vec<Region<'_>> {
-        let region = |(texture, origin_px): &'_ (Texture, _)| (texture.depth_or_array_layers() - 1, *origin_px);
-        let regions = self.places.iter().map(|place| (&place.0, region(place)));
-        regions.map(|(texture, (layer, origin_px))| Region { texture, origin_px, layer }).collect()
+        let places = self.places.iter().map(|(texture, px)| (texture, *px, texture.depth_or_array_layers() - 1));
+        places.map(|(texture, origin_px, layer)| Region { texture, origin_px, layer }).collect()
     }
 
     /// Copies the texture to its places, or back from them.
@@ -533,6 +534,16 @@ impl<'a> Scattered<'a> {
             encoder.copy_texture_to_texture(from, to, wgpu::Extent3d { width, height, depth_or_array_layers: 1 });
         }
     }
+}
+
+/// A buffer of counters.
+pub fn make_counters(device: &Device) -> Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("counters"),
+        size: FrameStats::COUNTERS_BYTES,
+        usage: BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    })
 }
 
 pub fn make_texture(device: &Device, context: &ContextDesc, format: TextureFormat, usage: TextureUsages) -> Texture {

@@ -1,20 +1,11 @@
 //! Sparse frames: filled for the methods that read whole frames, and read without filling by taau.
 
-use super::rig::{Rig, View, make_texture, noise, noise_view};
-use afterimage::gpu::{Afterimage, Frame, Region, Textures};
-use afterimage::internal::Sources;
-use afterimage::shader::SHADERS;
-use afterimage::wgpu::{TextureFormat, TextureUsages};
-use afterimage::{
-    ContextDesc, Exposure, Filter, Foveation, Image, Lattice, Lattices, Method, MethodKind, MotionConvention, Reset,
-    Sampler, Settings, Smr, ViewGeometry, Wrs,
-};
-use afterimage_testing::Draws;
-use afterimage_testing::planted::all_caught;
+use super::*;
+use crate::images::{pixel, pixels};
 
 pub(super) const SIZE: [u32; 2] = [70, 41];
-const METHODS: [MethodKind; 5] =
-    [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Taau, MethodKind::Smr];
+/// Passes of smr for sparse frames.
+pub(super) const SAMPLES: [&str; 3] = ["sparse_observe_pass", "sparse_light_pass", "sparse_pass"];
 
 pub(super) fn settings(method: MethodKind) -> Settings {
     let foveation = Foveation {
@@ -70,7 +61,7 @@ fn traced() -> Settings {
 
 #[test]
 fn noisy_sparse_frames_are_bit_equal_on_both_executors() {
-    for method in METHODS {
+    for method in MethodKind::ALL {
         let settings = Settings { method: method.into(), ..traced() };
         let Some(mut rig) = Rig::new(desc(), settings) else { return };
         for index in 0..12 {
@@ -86,29 +77,6 @@ pub(super) fn arrange(index: u64, rig: &mut Rig) {
     rig.exposure = if index % 3 == 2 { Exposure::Changed { ratio: 1.25 } } else { Exposure::Same };
 }
 
-/// Fails unless each planted error in the passes of smr for sparse frames makes the executors differ in one of
-/// `frames` frames, whose views `views` gives.
-#[track_caller]
-pub(super) fn all_caught_in_samples(
-    desc: ContextDesc,
-    settings: Settings,
-    frames: u64,
-    planted: &[(&str, &str)],
-    views: impl Fn(u64, &mut Rig) -> Vec<View>,
-) {
-    let names = ["sparse_observe_pass", "sparse_light_pass", "sparse_pass"];
-    let right = names.map(|name| SHADERS.compose(name).source);
-    all_caught(&right, planted, |sources: &[String; 3]| {
-        let texts = names.into_iter().zip(sources);
-        let planted = |right| texts.fold(right, |all: Sources, (name, text)| all.with(name, text));
-        let mut rig = Rig::with_sources(desc, settings, planted)?;
-        Some((0..frames).any(|index| {
-            let views = views(index, &mut rig);
-            rig.differs(index, Reset::None, &views)
-        }))
-    });
-}
-
 #[test]
 fn wrong_noise_is_caught() {
     let settings = traced();
@@ -118,9 +86,9 @@ fn wrong_noise_is_caught() {
         ("confidence = noisy_lod_confidence(", "confidence = 0.0 * noisy_lod_confidence("),
         ("noise = accumulated.noise;", ""),
     ];
-    all_caught_in_samples(desc(), settings, 12, &planted, |index, rig| {
+    rig::all_caught_in(SAMPLES, desc(), settings, 12, &planted, |index, rig| {
         arrange(index, rig);
-        [0, 1].map(|v| noisy_view(index, v, &settings)).to_vec()
+        (Reset::None, [0, 1].map(|v| noisy_view(index, v, &settings)).to_vec())
     });
 }
 
@@ -128,10 +96,8 @@ fn wrong_noise_is_caught() {
 fn sparse_frames_are_bit_equal_on_both_executors_in_an_atlas_or_not() {
     let wrs = Wrs { sampler: Sampler::AEs, ..Wrs::default() };
     let keyed = Settings { method: Method::Wrs(wrs), ..settings(MethodKind::Wrs) };
-    for settings in METHODS.map(settings).into_iter().chain([keyed]) {
-        let (Some(mut full), Some(mut atlas)) = (Rig::new(desc(), settings), Rig::new(desc(), settings)) else {
-            return;
-        };
+    for settings in MethodKind::ALL.map(settings).into_iter().chain([keyed]) {
+        let Some([mut full, mut atlas]) = Rig::each([(desc(), settings); 2]) else { return };
         let size = [80, 160];
         atlas.resize_color(size);
         for index in 0..6 {
@@ -194,9 +160,9 @@ fn a_wrong_reconstruction_is_caught() {
         ("without += errors * near.weight;", ""),
         ("next.disparity = surface.stored_disparity;", ""),
     ];
-    all_caught_in_samples(desc(), settings, 8, &planted, |index, rig| {
+    rig::all_caught_in(SAMPLES, desc(), settings, 8, &planted, |index, rig| {
         arrange(index, rig);
-        [0, 1].map(|v| gliding_view(index, v, &settings)).to_vec()
+        (Reset::None, [0, 1].map(|v| gliding_view(index, v, &settings)).to_vec())
     });
 }
 
@@ -215,12 +181,9 @@ fn a_wrong_pass_beside_those_of_smr_is_caught() {
         (smr, at_samples, "fill_geometry_pass", ("near.y.points[below]", "near.y.points[right]")),
     ];
     for (settings, views, pass, error) in planted {
-        all_caught(&[SHADERS.compose(pass).source], &[error], |[source]| {
-            let mut rig = Rig::with_sources(desc(), settings, |right| right.with(pass, source))?;
-            Some((0..4).any(|index| {
-                rig.scattered = index > 1;
-                rig.differs(index, Reset::None, &views(index, &settings))
-            }))
+        rig::all_caught_in([pass], desc(), settings, 4, &[error], |index, rig| {
+            rig.scattered = index > 1;
+            (Reset::None, views(index, &settings))
         });
     }
 }
@@ -253,19 +216,17 @@ fn sparse_frames_without_lattices_and_lattices_of_other_frames_are_refused() {
 
 #[test]
 fn color_of_another_size_is_refused_unless_it_is_an_atlas() {
-    let Some((device, _queue)) = afterimage_testing::gpu::device() else { return };
-    let context = ContextDesc { settings: settings(MethodKind::None), ..ContextDesc::new(SIZE) };
-    let mut post = Afterimage::new(&device, &context, TextureFormat::Rgba16Float).unwrap();
-    let texture = |size, usage| make_texture(&device, &ContextDesc::new(size), TextureFormat::Rgba16Float, usage);
-    let (color, output) = (texture([80, 160], Afterimage::INPUT_USAGE), texture(SIZE, Afterimage::OUTPUT_USAGE));
-    let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
-    let lattices = context.settings.foveation.lattices(&geometry, [20.0, 20.0], 0);
-    let mut view = View::still(noise(SIZE, "sizes"), [20.0, 20.0]).facts;
+    let desc = ContextDesc { settings: settings(MethodKind::None), ..ContextDesc::new(SIZE) };
+    let Some(bare) = Bare::new(desc) else { return };
+    let mut post = bare.context(TextureFormat::Rgba16Float);
+    let larger = ContextDesc::new([80, 160]);
+    let color = make_texture(&bare.device, &larger, TextureFormat::Rgba16Float, Afterimage::INPUT_USAGE);
+    let output = bare.output(TextureFormat::Rgba16Float);
+    let [mut view] = bare.views;
+    let lattices = desc.settings.foveation.lattices(&view.geometry, [20.0, 20.0], 0);
     let mut try_color = |lattices, color: Textures<'_>| {
         view.lattices = Some(lattices);
-        let mut encoder = device.create_command_encoder(&Default::default());
-        let result = post.record(&device, &mut encoder, &Frame::new(color, &[view], 0), &output);
-        result.map(|_| ()).map_err(|e| e.to_string())
+        bare.record(&mut post, &Frame::new(color, &[view], 0), &output).map_err(|e| e.to_string())
     };
     assert!(try_color(lattices, (&color).into()).unwrap_err().contains("80x160: expected 70x41"));
     let atlas = lattices.in_atlas().0;
@@ -294,8 +255,7 @@ fn filled_color_follows_size_and_settings() {
     // Settings with and without sparse frames; history survives.
     let whole = Settings { method: Method::Taa, ..Settings::paper() };
     for (index, settings) in [(3, whole), (4, settings(MethodKind::Taa)), (5, settings(MethodKind::Wrs))] {
-        rig.cpu.set_settings(settings).unwrap();
-        rig.gpu.set_settings(&rig.device, settings).unwrap();
+        rig.set_settings(settings);
         let is_sparse = settings.foveation.filter == Filter::Sparse;
         rig.both(index, Reset::None, &view([40, 20], index, is_sparse));
     }
@@ -304,46 +264,37 @@ fn filled_color_follows_size_and_settings() {
 #[test]
 fn prewarmed_pipelines_suffice_for_sparse_frames() {
     let settings = settings(MethodKind::None);
-    let Some(mut rig) = Rig::new(ContextDesc::new(SIZE), settings) else { return };
-    let usual = afterimage::gpu::Variant { counters: true, ..Default::default() };
-    let regions = afterimage::gpu::Variant { regions: true, ..Default::default() };
-    rig.gpu.prewarm(&rig.device, [usual, regions]);
-    let count = rig.gpu.pipelines().len();
-    assert_eq!(count, 4);
-    let view = View::still(noise(SIZE, "prewarmed"), [20.0, 20.0]).foveated(&settings.foveation, [20.0, 20.0], 0);
-    let made = rig.on_gpu(0, Reset::None, std::slice::from_ref(&view));
-    assert_eq!(rig.gpu.pipelines().len(), count);
+    let Some(bare) = Bare::new(ContextDesc { settings, ..ContextDesc::new(SIZE) }) else { return };
+    let mut post = bare.context(TextureFormat::Rgba32Float);
+    let usual = Variant { counters: true, ..Default::default() };
+    post.prewarm(&bare.device, [usual, Variant { regions: true, ..Default::default() }]);
+    assert_eq!(post.pipelines().len(), 4);
+    let [color, output] = [(); 2].map(|()| bare.texture(TextureFormat::Rgba32Float, super::limits::READ_AND_WRITE));
+    let counters = rig::make_counters(&bare.device);
+    let [mut view] = bare.views;
+    view.lattices = Some(settings.foveation.lattices(&view.geometry, [20.0, 20.0], 0));
+    let views = [view];
+    let counted = Target { counters: Some(&counters), ..Target::new(&output) };
+    bare.record(&mut post, &Frame::new(&color, &views, 0), counted).unwrap();
     // A region for the output alone.
-    let target = make_texture(&rig.device, &rig.context, TextureFormat::Rgba32Float, Afterimage::OUTPUT_USAGE);
-    let color = make_texture(&rig.device, &rig.context, TextureFormat::Rgba32Float, Afterimage::INPUT_USAGE);
-    let mut encoder = rig.device.create_command_encoder(&Default::default());
-    let facts = [view.facts];
-    let output = Textures::Regions(&[Region::new(&target, [0, 0])]);
-    rig.gpu.record(&rig.device, &mut encoder, &Frame::new(&color, &facts, 1), output).unwrap();
-    rig.queue.submit([encoder.finish()]);
-    assert_eq!(rig.gpu.pipelines().len(), count);
-    assert_eq!(made.stats.pixels, 70 * 41);
+    let region = [Region::new(&output, [0, 0])];
+    bare.record(&mut post, &Frame::new(&color, &views, 1), Textures::Regions(&region)).unwrap();
+    assert_eq!(post.pipelines().len(), 4);
 }
 
 #[test]
 fn alpha_is_filled_as_color_is() {
-    let Some((device, queue)) = afterimage_testing::gpu::device() else { return };
-    let context = ContextDesc { settings: settings(MethodKind::None), ..ContextDesc::new(SIZE) };
     let format = TextureFormat::Rgba32Float;
-    let mut post = Afterimage::new(&device, &context, format).unwrap();
-    let color = make_texture(&device, &context, format, Afterimage::INPUT_USAGE | TextureUsages::COPY_DST);
-    let output = make_texture(&device, &context, format, Afterimage::OUTPUT_USAGE | TextureUsages::COPY_SRC);
+    let desc = ContextDesc { settings: settings(MethodKind::None), ..ContextDesc::new(SIZE) };
+    let Some(bare) = Bare::new(desc) else { return };
     // A ramp, which linear interpolation reproduces, with one alpha that is not finite.
-    let texel = |i: u32| if i == 0 { [0.5, 0.5, 0.5, f32::NAN] } else { [0.5, 0.5, 0.5, (i % 70) as f32 / 64.0] };
-    let texels: Vec<[f32; 4]> = (0..70 * 41).map(texel).collect();
-    afterimage_testing::gpu::write_layer(&queue, &color, 0, bytemuck::cast_slice(&texels));
-    let lattices = Lattices::new(&[Lattice::covering(8, [0, 0], SIZE, [0, 0])]).unwrap();
-    let view = View::still(noise(SIZE, "alpha"), [20.0, 20.0]).sparse(lattices).facts;
-    let mut encoder = device.create_command_encoder(&Default::default());
-    post.record(&device, &mut encoder, &Frame::new(&color, &[view], 0), &output).unwrap();
-    queue.submit([encoder.finish()]);
-    let words = afterimage_testing::gpu::read_texture(&device, &queue, &output);
-    let alpha: Vec<f32> = words.chunks(4).map(|c| f32::from_bits(c[3])).collect();
+    let texel = |i: u32| [0.5, 0.5, 0.5, if i == 0 { f32::NAN } else { (i % 70) as f32 / 64.0 }];
+    let color = bare.filled(format, &(0..70 * 41).map(texel).collect::<Vec<_>>());
+    let output = bare.output(format);
+    let [mut view] = bare.views;
+    view.lattices = Some(Lattices::new(&[Lattice::covering(8, [0, 0], SIZE, [0, 0])]).unwrap());
+    bare.record(&mut bare.context(format), &Frame::new(&color, &[view], 0), &output).unwrap();
+    let alpha: Vec<f32> = bare.read(&output).chunks(4).map(|c| f32::from_bits(c[3])).collect();
     assert_eq!(alpha[0], 1.0);
     for (i, alpha) in alpha.iter().enumerate().skip(70 * 8).filter(|(i, _)| i % 70 <= 64) {
         assert_eq!(*alpha, (i % 70) as f32 / 64.0, "pixel {i}");
@@ -373,7 +324,7 @@ fn any_lattices(draws: &mut Draws, size: [u32; 2]) -> Lattices {
 #[test]
 fn any_lattices_and_any_bits_agree_bit_for_bit_and_are_finite() {
     use crate::any_frame::{SIZE, any_frame};
-    for method in METHODS {
+    for method in MethodKind::ALL {
         let settings = settings(method);
         let Some(mut rig) = Rig::new(ContextDesc { view_count: 2, ..ContextDesc::new(SIZE) }, settings) else { return };
         let mut draws = Draws::new("any lattices");
@@ -407,9 +358,8 @@ fn sparse_history_follows_a_change_of_size() {
         rig.resize_keeping_history(size);
         let now = view(size, index);
         let (made, _) = rig.both(index, Reset::None, std::slice::from_ref(&now));
-        let error =
-            |c: &[u32; 3], full: &[f32; 3]| (0..3).map(|i| (f32::from_bits(c[i]) - full[i]).powi(2)).sum::<f32>();
-        let sum: f32 = made.shown.iter().zip(now.color.pixels()).map(|(c, full)| error(c, full)).sum();
+        let pairs = made.shown.iter().flatten().zip(now.color.pixels().iter().flatten());
+        let sum: f32 = pairs.map(|(&shown, full)| (f32::from_bits(shown) - full).powi(2)).sum();
         let rms = (sum / (3 * made.shown.len()) as f32).sqrt();
         println!("{size:?}: {rms:.4}");
         // Without history, what lies between samples of every eighth pixel is off by 0.2.
@@ -442,12 +392,12 @@ fn at_samples(index: u64, settings: &Settings) -> Vec<View> {
         view.facts.lattices = view.facts.lattices.map(Lattices::with_geometry_at_samples);
         if index % 4 == 1 {
             // What the renderer failed to write.
-            view.depth = view.depth.map(|depth| {
-                let mut draws = Draws::new("holes");
-                depth.map(|z| {
-                    if draws.uniform() < 0.1 { [f32::NAN, 0.0, f32::INFINITY][draws.bits() as usize % 3] } else { z }
-                })
-            });
+            let mut draws = Draws::new("holes");
+            let mut hole = |z| match draws.uniform() < 0.1 {
+                true => [f32::NAN, 0.0, f32::INFINITY][draws.bits() as usize % 3],
+                false => z,
+            };
+            view.depth = view.depth.map(|depth| depth.map(&mut hole));
         }
         view
     };
@@ -462,7 +412,7 @@ fn geometry_at_samples_is_filled_bit_equal() {
     let plain = desc().motion;
     let none = MotionConvention { no_vector: Some([0.0; 2]), ..plain };
     let excluded = MotionConvention { without_camera: true, ..plain };
-    let in_turn = METHODS.into_iter().zip([plain, none, excluded].into_iter().cycle());
+    let in_turn = MethodKind::ALL.into_iter().zip([plain, none, excluded].into_iter().cycle());
     for (method, motion) in in_turn.chain([plain, none, excluded].map(|motion| (MethodKind::Smr, motion))) {
         let settings = settings(method);
         let Some(mut rig) = Rig::new(ContextDesc { motion, ..desc() }, settings) else { return };
@@ -496,14 +446,12 @@ fn filled_depth_is_that_of_the_samples_and_between_them() {
         let views = at_samples(index, &settings);
         rig.on_gpu(index, Reset::None, &views);
         let filled = rig.gpu.filled_depth().expect("a frame with geometry at samples");
-        let filled = afterimage_testing::gpu::read_texture(&rig.device, &rig.queue, filled);
-        let pixels = (SIZE[0] * SIZE[1]) as usize;
+        let filled = read_texture(&rig.device, &rig.queue, filled);
         let mut worst: [f32; 2] = [0.0; 2];
-        for (v, view) in views.iter().enumerate() {
+        for (view, filled) in views.iter().zip(filled.chunks((SIZE[0] * SIZE[1]) as usize)) {
             let (depth, lattices) = (view.depth.as_ref().unwrap(), view.facts.lattices.unwrap());
-            for (i, (&given, &bits)) in depth.pixels().iter().zip(&filled[v * pixels..]).enumerate() {
-                let (px, z) = ([i as u32 % SIZE[0], i as u32 / SIZE[0]], f32::from_bits(bits));
-                let is_sample = lattices.at(px).unwrap().samples(px);
+            for (px, z) in pixels(SIZE).zip(filled.iter().map(|&bits| f32::from_bits(bits))) {
+                let (given, is_sample) = (pixel(depth, px), lattices.at(px).unwrap().samples(px));
                 // Between samples, silhouettes may lie elsewhere; but each distance is one of the scene's.
                 let error = if is_sample {
                     (z / given - 1.0).abs()
@@ -522,7 +470,7 @@ fn filled_depth_is_that_of_the_samples_and_between_them() {
 #[test]
 fn what_lies_between_samples_is_not_read() {
     let settings = settings(MethodKind::Smr);
-    let (Some(mut rig), Some(mut other)) = (Rig::new(desc(), settings), Rig::new(desc(), settings)) else { return };
+    let Some([mut rig, mut other]) = Rig::each([(desc(), settings); 2]) else { return };
     for index in 0..4 {
         let views = at_samples(index, &settings);
         let changed = views.iter().cloned().map(|view| View {

@@ -1,11 +1,8 @@
 //! Hard cases of sparse frames on the GPU, H86 and up: each frame is equal on both executors, bit for bit, and the laws
 //! are those of the CPU.
 
-use super::rig::Rig;
-use crate::laws::laws;
+use super::*;
 use crate::sparse_hard::*;
-use afterimage::{ContextDesc, Image, Settings};
-use afterimage_testing::holds;
 use std::cell::RefCell;
 use std::rc::Rc;
 
@@ -27,9 +24,7 @@ impl Shows for Both {
     }
 
     fn set_settings(&mut self, settings: Settings) {
-        let rig = self.rig.as_mut().unwrap();
-        rig.cpu.set_settings(settings).unwrap();
-        rig.gpu.set_settings(&rig.device, settings).unwrap();
+        self.rig.as_mut().unwrap().set_settings(settings);
     }
 }
 
@@ -48,10 +43,8 @@ pub(super) fn run_law(law: fn(Make) -> Option<String>) -> Option<String> {
         let rig = match used {
             Some(i) => {
                 let mut rig = pool.borrow_mut().swap_remove(i);
-                rig.cpu.set_settings(desc.settings).unwrap();
-                rig.gpu.set_settings(&rig.device, desc.settings).unwrap();
-                rig.cpu.forget();
-                rig.gpu.forget();
+                rig.set_settings(desc.settings);
+                rig.forget();
                 rig
             }
             None => Rig::new(desc, desc.settings)?,

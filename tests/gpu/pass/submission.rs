@@ -1,15 +1,8 @@
 //! Recorded frames that never run, or run late: what the device has of history decides, not what was recorded.
 
-use super::rig::{Rig, View, make_texture, noise_view};
-use super::sparse;
-use crate::settings::ungated_of;
+use super::*;
 use crate::surfaces_hard;
-use afterimage::gpu::Frame;
-use afterimage::internal::{Sources, method_pass};
-use afterimage::shader::SHADERS;
-use afterimage::wgpu::{CommandBuffer, Texture, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Exposure, Image, MethodKind, Reset, Sampler, Settings, Wrs};
-use afterimage_testing::{Draws, agree, holds};
+use afterimage::wgpu::CommandBuffer;
 
 const SIZE: [u32; 2] = [37, 23];
 const METHODS: [MethodKind; 4] = [MethodKind::Wrs, MethodKind::Smr, MethodKind::Taa, MethodKind::Taau];
@@ -18,7 +11,7 @@ const CHECK: (&str, &str) = ("stored_frame == frame.past_frame", "frame.past_fra
 
 /// Every layout of history.
 fn all_settings() -> Vec<Settings> {
-    let keyed = crate::settings::wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() });
+    let keyed = wrs(Wrs { sampler: Sampler::AEs, ..Wrs::default() });
     let of_whole_frames = METHODS.map(ungated_of).into_iter().chain([keyed, Settings::weighted(), Settings::traced()]);
     let of_sparse = [MethodKind::Smr, MethodKind::Taau].map(sparse::settings);
     let noisy = Settings { noisy: true, ..sparse::settings(MethodKind::Smr) };
@@ -31,10 +24,10 @@ fn view(rig: &Rig, index: u64) -> View {
     let (size, settings) = (rig.context.size_px, rig.context.settings);
     let gaze_px = [(index * 11 % 37) as f32, (index * 7 % 23) as f32];
     let mut view = noise_view(&format!("submission {index}"), &rig.context);
-    view.facts.gaze = afterimage::Gaze::At { px: gaze_px };
+    view.facts.gaze = Gaze::At { px: gaze_px };
     view.motion = Some(Image::from_fn(size, |[x, _]| if x % 16 < 8 { [1.0, 0.0] } else { [0.5, -0.25] }));
     view.noise = settings.noisy.then(|| Image::filled(size, [0.05, 2.0]));
-    if settings.foveation.filter == afterimage::Filter::Sparse {
+    if settings.foveation.filter == Filter::Sparse {
         return view.foveated(&settings.foveation, gaze_px, index);
     }
     view
@@ -49,10 +42,7 @@ fn run(rig: &mut Rig, name: &str, frames: u64) -> [usize; 3] {
         rig.drops = draws.uniform() < 0.3;
         rig.exposure = Exposure::Scene { exposure: [1.0, 0.7, 3.0][index as usize % 3] };
         match draws.bits() % 12 {
-            0 => {
-                rig.gpu.forget();
-                rig.cpu.forget();
-            }
+            0 => rig.forget(),
             1 => rig.resize([SIZE, [18, 40]][draws.bits() as usize % 2]),
             2 => {
                 rig.resize_keeping_history([SIZE, [40, 18]][draws.bits() as usize % 2]);
@@ -149,7 +139,7 @@ fn ordered(method: MethodKind, order: &[&[usize]], expected: &[(u64, Reset)]) {
     for &(index, reset) in expected {
         let view = view(&rig, index).with(|view| (view.depth, view.motion) = (None, None));
         let (cpu, _) = rig.on_cpu(index, reset, &[view]);
-        let shown = afterimage_testing::gpu::read_texture(&rig.device, &rig.queue, &textures[index as usize][1]);
+        let shown = read_texture(&rig.device, &rig.queue, &textures[index as usize][1]);
         let shown: Vec<[u32; 3]> = shown.chunks_exact(4).map(|c| [c[0], c[1], c[2]]).collect();
         let same = agree::colors(&shown, &cpu.shown);
         same.unwrap_or_else(|error| panic!("{method:?}, frame {index} of {order:?}: {error}"));

@@ -1,11 +1,8 @@
 //! Occlusion and disocclusion on the device: hard cases H41, H42, H44 to H47, H49 and H50.
 
-use super::rig::{Made, Rig, View, noise, with_w_sum};
+use super::rig::with_w_sum;
+use super::*;
 use crate::depth_hard::{self, *};
-use crate::laws::laws;
-use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::{ContextDesc, DepthConvention, Exposure, Image, MethodKind, Reset, Settings};
-use afterimage_testing::holds;
 
 pub fn still(name: &str) -> View {
     depth_hard::still(noise(SIZE, name))
@@ -13,15 +10,6 @@ pub fn still(name: &str) -> View {
 
 pub fn with_motion(name: &str, motion: impl FnMut([u32; 2]) -> [f32; 2]) -> View {
     View { motion: Some(Image::from_fn(SIZE, motion)), ..still(name) }
-}
-
-pub fn ungated_of(method: MethodKind) -> Option<Rig> {
-    Rig::new(ContextDesc::new(SIZE), crate::settings::ungated_of(method))
-}
-
-pub fn one(rig: &mut Rig, index: u64, view: View) -> (Made, Image<PixelTrace>) {
-    let (made, mut trace) = rig.both(index, Reset::None, &[view]);
-    (made, trace.remove(0))
 }
 
 impl Steps for Rig {
@@ -34,8 +22,7 @@ impl Steps for Rig {
     }
 
     fn set_settings(&mut self, settings: Settings) {
-        self.cpu.set_settings(settings).unwrap();
-        self.gpu.set_settings(&self.device, settings).unwrap();
+        Rig::set_settings(self, settings);
     }
 
     fn resize(&mut self, size: [u32; 2]) {
@@ -44,8 +31,7 @@ impl Steps for Rig {
     }
 
     fn forget(&mut self) {
-        self.cpu.forget();
-        self.gpu.forget();
+        Rig::forget(self);
     }
 
     fn stick(&mut self) {
@@ -65,12 +51,13 @@ depth_laws!(Gpu, run_law);
 fn h42_depth_beyond_its_ends_is_clamped() {
     let depth = DepthConvention::Reversed { near: 0.1, far: 1000.0 };
     for method in METHODS {
-        let settings = crate::settings::ungated_of(method);
-        let Some(mut rig) = Rig::new(ContextDesc { depth, ..ContextDesc::new(SIZE) }, settings) else { return };
+        let desc = ContextDesc { depth, ..ContextDesc::new(SIZE) };
+        let Some(mut rig) = Rig::new(desc, ungated_of(method)) else { return };
         let ends = |by: f32| move |[x, _]: [u32; 2]| if x < 32 { 1.0 + by } else { -by };
         for (index, by) in (0..).zip([0.0, f32::EPSILON, 1e-3, 1e30, f32::INFINITY, 0.0]) {
-            let (made, _) = one(&mut rig, index, View { depth: Some(Image::from_fn(SIZE, ends(by))), ..still("ends") });
-            assert_eq!((made.stats.rejected(), made.stats.bad_depth), (0, 0), "{method:?}, by {by}");
+            let view = View { depth: Some(Image::from_fn(SIZE, ends(by))), ..still("ends") };
+            let stats = rig.step(index, &view).stats;
+            assert_eq!((stats.rejected(), stats.bad_depth), (0, 0), "{method:?}, by {by}");
         }
     }
     holds!("H42", Gpu, "wrs and smr: 1 ulp to infinity beyond either end is the same surface as the end, 3072 pixels");

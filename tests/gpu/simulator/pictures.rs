@@ -1,10 +1,8 @@
 //! Properties of the filters' output on the GPU: hard cases H69, H70, H71.
 
 use super::rig::*;
-use crate::laws::laws;
 use crate::simulator_hard::*;
 use afterimage::Image;
-use afterimage_testing::holds;
 
 /// What a law measured; `None`, after a message, without an adapter.
 fn run_law(law: fn(Foveate<'_>) -> Option<String>) -> Option<String> {

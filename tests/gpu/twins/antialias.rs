@@ -1,13 +1,9 @@
 //! Antialiasing of jittered frames: antialias.
 
-use super::probe::{Probe, probe};
-use super::shape::*;
 use super::sparse::{color, push_light, push_reconstruction};
-use super::values::Word::*;
-use super::values::*;
+use super::*;
 use afterimage::kernel::sparse_smr::{Reconstructed, Reconstruction};
 use afterimage::kernel::{antialias, sparse_smr};
-use glam::{Vec2, Vec3};
 
 shape!(antialias::Mean { lod: f32, samples: f32 });
 shape!(antialias::Near { sum: Vec3, squares: Vec3, count: f32 });
@@ -32,11 +28,10 @@ pub const PROBES: &[Probe] = &[
         let [places, offsets] = [floats(&[-0.5, 0.0, 0.3]), floats(&[-1.0, 0.0, 1.0])];
         rows.cross(&[&disparities, &disparities, &places, &places, &offsets, &offsets])
     }),
-    probe!(antialias::is_thin, |rows| rows.cross(&[
-        &floats(&DISPARITIES),
-        &floats(&DISPARITIES),
-        &floats(&DISPARITIES)
-    ])),
+    probe!(antialias::is_thin, |rows| {
+        let disparities = floats(&DISPARITIES);
+        rows.cross(&[&disparities, &disparities, &disparities])
+    }),
     probe!(antialias::is_silhouette, |rows| {
         let disparities = floats(&DISPARITIES);
         rows.cross(&[&disparities, &disparities, &disparities]).each(&[F(0.9, 1.1); 3])

@@ -1,16 +1,11 @@
 //! Functions of a pixel's decision and of its debug views: wrs, debug_view.
 
-use super::probe::{Probe, Rows, probe};
-use super::shape::*;
 use super::state::draw;
-use super::values::Word::*;
-use super::values::*;
+use super::*;
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::wrs::{BiasCode, Decision, GateCode, Past, SamplerCode, WrsParams};
 use afterimage::kernel::{debug_view, pack, wrs};
 use afterimage::{DebugView, Verdict};
-use afterimage_testing::Draws;
-use glam::Vec3;
 
 /// A stored color and a candidate like it, unlike it, or equal to it.
 fn color_pair(d: &mut Draws) -> [f32; 6] {
@@ -71,12 +66,8 @@ pub const PROBES: &[Probe] = &[
         |rows| {
             rows.random(|d, row| {
                 row.extend([scaled(d, -126, 100), d.bits() % 256, range(d, 0.0, 1.0), d.bits() % 7]);
-                row.extend([
-                    range(d, 0.0, 1.0),
-                    range(d, -20.0, 20.0),
-                    range(d, -20.0, 20.0),
-                    1 + d.bits() % DebugView::ALL.len() as u32,
-                ]);
+                row.extend([range(d, 0.0, 1.0), range(d, -20.0, 20.0), range(d, -20.0, 20.0)]);
+                row.push(1 + d.bits() % DebugView::ALL.len() as u32);
             })
         }
     ),
@@ -100,13 +91,9 @@ pub const PROBES: &[Probe] = &[
         // As unpack leaves colors, and ratios as frames have them.
         let halves: Vec<u32> = (0..65536).filter(|h| h & 0x7c00 != 0x7c00).collect();
         let half = |d: &mut Draws| pack::half_value(halves[d.bits() as usize % halves.len()]).to_bits();
-        rows.random(|d, row| row.extend([half(d), half(d), half(d), scaled(d, -40, 40)])).random_of(
-            "by stops",
-            |d, row| {
-                let ratio = 2.0_f32.powi(d.bits() as i32 % 17).to_bits();
-                row.extend([half(d), half(d), half(d), ratio]);
-            },
-        )
+        let stops = |d: &mut Draws| 2.0_f32.powi(d.bits() as i32 % 17).to_bits();
+        rows.random(|d, row| row.extend([half(d), half(d), half(d), scaled(d, -40, 40)]))
+            .random_of("by stops", |d, row| row.extend([half(d), half(d), half(d), stops(d)]))
     }),
     probe!(wrs::gate, |rows| {
         let inverse = floats(&[0.01, 0.1, 1.0, 1e6]);

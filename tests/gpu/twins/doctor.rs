@@ -1,12 +1,10 @@
 //! Evidence on inputs: doctor.
 
-use super::probe::{Probe, probe};
-use super::values::Word::*;
-use super::values::*;
+use super::*;
 use afterimage::kernel::doctor;
 
 /// Signals: 0, and what a frame has.
-fn signals(d: &mut afterimage_testing::Draws, row: &mut Vec<u32>, count: usize) {
+fn signals(d: &mut Draws, row: &mut Vec<u32>, count: usize) {
     row.extend((0..count).map(|_| if d.bits().is_multiple_of(8) { 0 } else { scaled(d, -20, 6) }));
 }
 
@@ -21,11 +19,9 @@ pub const PROBES: &[Probe] = &[
     probe!(doctor::lattice_len, |rows| rows
         .cross(&[&(0..300).chain(lengths()).collect::<Vec<_>>(), &(0..=8).collect::<Vec<_>>()])),
     probe!(doctor::lattice_coordinate, |rows| rows.each(&[F(-5000.0, 5000.0), N(9)])),
-    probe!(doctor::lattice_texel, |rows| rows.cross(&[
-        &(0..64).collect::<Vec<_>>(),
-        &(0..=8).collect::<Vec<_>>(),
-        &lengths()
-    ])),
+    probe!(doctor::lattice_texel, |rows| {
+        rows.cross(&[&(0..64).collect::<Vec<_>>(), &(0..=8).collect::<Vec<_>>(), &lengths()])
+    }),
     probe!(doctor::spline, |rows| rows.each(&[Of(|d, row| signals(d, row, 4)), F(0.0, 1.0)])),
     probe!(doctor::stored_motion, |rows| rows
         .cross(&[&[normal(), around(&[65536.0, -65536.0])].concat()])

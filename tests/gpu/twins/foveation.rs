@@ -1,13 +1,10 @@
 //! Functions of levels of detail and of the foveation filters: foveate.
 
-use super::probe::{Probe, probe};
-use super::shape::*;
-use super::values::Word::*;
-use super::values::*;
+use super::*;
 use afterimage::kernel::foveate;
 
 /// Widths of a blur from 0 to the widest.
-fn sigma(d: &mut afterimage_testing::Draws) -> u32 {
+fn sigma(d: &mut Draws) -> u32 {
     if d.bits() & 1 == 0 { range(d, 0.0, 2.0) } else { range(d, 0.0, 127.5) }
 }
 

@@ -9,7 +9,6 @@ fn rng_is_bit_equal_h23_h26_and_for_a_million_words_h28() {
     holds!("H28", Gpu, "{rows} rows of the generator bit-equal, 1e6 of them of (x, y, frame)");
 }
 
-/// A test of each module.
 macro_rules! bit_equal {
     ($($test:ident: $module:literal;)*) => {$(
         #[test]

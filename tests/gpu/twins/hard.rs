@@ -3,7 +3,6 @@
 use super::library::probes;
 use super::modules::calls;
 use crate::kernel_hard::*;
-use crate::laws::laws;
 use afterimage::shader::SHADERS;
 use afterimage_testing::holds;
 

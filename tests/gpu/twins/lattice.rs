@@ -1,11 +1,7 @@
 //! Samples of sparse frames: lattice.
 
-use super::probe::{Probe, probe};
-use super::shape::*;
-use super::values::Word::*;
-use super::values::*;
+use super::*;
 use afterimage::kernel::lattice;
-use glam::{Vec2, Vec4};
 
 shape!(lattice::Between { points: [u32; 2], fraction: f32 });
 shape!(lattice::SampleMean { sum: Vec4, weight: f32 });

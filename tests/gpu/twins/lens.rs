@@ -1,7 +1,6 @@
 //! Area that a lens shows: lens.
 
-use super::probe::{Probe, probe};
-use super::values::*;
+use super::*;
 use afterimage::kernel::lens;
 
 pub const PROBES: &[Probe] = &[probe!(lens::is_visible, |rows| {

@@ -1,13 +1,8 @@
 //! Functions that match the scales of history and candidate: matched.
 
-use super::probe::{Probe, Rows, probe};
-use super::shape::*;
-use super::values::Word::*;
-use super::values::*;
+use super::*;
 use afterimage::kernel::smr;
 use afterimage::kernel::smr::{Evidence, Matched, SmrParams};
-use afterimage_testing::Draws;
-use glam::Vec3;
 
 /// Channels of sanitized colors: 0, dark, negative, the largest half.
 pub fn channels() -> Vec<u32> {

@@ -1,12 +1,10 @@
 //! Functions of numbers: approx, acuity, color, depth.
 
-use super::probe::{Probe, Rows, probe};
-use super::values::Word::*;
-use super::values::*;
+use super::*;
 use afterimage::kernel::depth::{DisparityMap, INVALID_DISPARITY};
 use afterimage::kernel::{acuity, approx, color, depth};
 
-fn one(rows: Rows, table: &[u32], random: fn(&mut afterimage_testing::Draws) -> u32) -> Rows {
+fn one(rows: Rows, table: &[u32], random: fn(&mut Draws) -> u32) -> Rows {
     rows.cross(&[table]).random(|d, row| row.push(random(d)))
 }
 

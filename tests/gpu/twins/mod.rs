@@ -27,3 +27,10 @@ mod surfaces;
 mod upsampling;
 mod values;
 mod weighted;
+
+use afterimage_testing::Draws;
+use glam::{Vec2, Vec3, Vec4};
+use probe::{Probe, Rows, probe};
+use shape::*;
+use values::Word::*;
+use values::*;

@@ -1,13 +1,9 @@
 //! Functions of noisy candidates: noise.
 
 use super::matching::{channels, push};
-use super::probe::{Probe, Rows, probe};
-use super::shape::*;
-use super::values::Word::*;
-use super::values::*;
+use super::*;
 use afterimage::kernel::noise;
 use afterimage::kernel::noise::Noise;
-use afterimage_testing::Draws;
 
 /// Samples and variance, as stored or from a frame's input.
 fn noise(d: &mut Draws) -> [f32; 2] {

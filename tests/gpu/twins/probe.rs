@@ -9,7 +9,6 @@ use glam::Vec3;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// A function under test.
 pub struct Probe {
     pub name: &'static str,
     /// The module it is in, or those it needs, with a space between.
@@ -58,7 +57,6 @@ macro_rules! probe {
 }
 pub(crate) use probe;
 
-/// One row of input.
 pub struct Row<'a> {
     words: &'a [u32],
     /// A bit for each of the first words that was read as a float.
@@ -88,7 +86,6 @@ impl<'a> Row<'a> {
     }
 }
 
-/// Output words.
 #[derive(Default)]
 pub struct Out {
     words: Vec<u32>,
@@ -183,7 +180,6 @@ impl Probe {
         function.run(row, out);
     }
 
-    /// The table.
     pub fn table(&self) -> Rows {
         (self.rows)(Rows { name: self.name, width: self.words[0], words: vec![] })
     }
@@ -219,11 +215,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {{
             wgsl = (self.wgsl)()
         );
         SHADERS.compose_with(&self.module.split(' ').collect::<Vec<_>>(), &harness).source
-    }
-
-    /// Rows of the table, and a line for each whose results differ between `source` on the device and the Rust twin.
-    pub fn differences(&self, device: &wgpu::Device, queue: &wgpu::Queue, source: &str) -> (usize, Vec<String>) {
-        self.differences_of(device, queue, source, &self.table())
     }
 
     /// Results of the Rust twin for a row, and the row as it was read.
@@ -279,16 +270,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {{
         })
     }
 
-    /// Rows of `rows`, and a line for each whose results differ; those after the first [`SHOWN`] are empty.
-    pub fn differences_of(
-        &self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        source: &str,
-        rows: &Rows,
-    ) -> (usize, Vec<String>) {
-        let [ins, outs] = self.words;
-        assert_eq!(rows.width, ins, "{}", self.name);
+    /// Rows of the table, and a line for each whose results differ between `source` on the device and the Rust twin;
+    /// those after the first [`SHOWN`] are empty.
+    fn differences(&self, device: &wgpu::Device, queue: &wgpu::Queue, source: &str) -> (usize, Vec<String>) {
+        let ([ins, outs], rows) = (self.words, self.table());
         let (leaves_out, is_exact) = (leaves_out(), afterimage_testing::gpu::rounds_as_the_cpu());
         // Comparing within tolerances takes long.
         let stride = if is_exact { 1 } else { (rows.words.len() / ins).div_ceil(MOST_CLOSE_ROWS).max(1) };

@@ -1,10 +1,7 @@
 //! Frames shaded by quads: quads.
 
-use super::probe::{Probe, probe};
-use super::values::Word::*;
-use super::values::*;
+use super::*;
 use afterimage::kernel::quads;
-use afterimage_testing::Draws;
 
 /// A window with few quads, two offsets in any order, and a row.
 fn in_window(d: &mut Draws, row: &mut Vec<u32>) {
@@ -14,25 +11,16 @@ fn in_window(d: &mut Draws, row: &mut Vec<u32>) {
 }
 
 pub const PROBES: &[Probe] = &[
-    probe!(quads::region, |rows| rows.cross(&[
-        &floats(&[0.0, 2.5, 7.0, 90.0]),
-        &floats(&[0.0, 2.5]),
-        &floats(&[0.0, 2.5, 7.5])
-    ])),
-    probe!(quads::in_turn, |rows| {
-        rows.random(|d, row| {
-            row.extend([d.bits() % 64, d.bits() % 64, 1 << (d.bits() % 3), d.bits() % 2]);
-        })
+    probe!(quads::region, |rows| {
+        rows.cross(&[&floats(&[0.0, 2.5, 7.0, 90.0]), &floats(&[0.0, 2.5]), &floats(&[0.0, 2.5, 7.5])])
     }),
+    probe!(quads::in_turn, |rows| { rows.each(&[N(64), N(64), Of(|d, row| row.push(1 << (d.bits() % 3))), N(2)]) }),
     probe!(quads::asked_px, |rows| rows.each(&[N(4096), N(4096), Bits])),
     probe!(quads::no_history_need, |rows| rows.each(&[N(16), N(16), N(4), N(4)])),
     probe!(quads::need, |rows| {
         let lods = floats(&[0.0, 0.2, 2.0, 8.0]);
-        rows.cross(&[&lods, &floats(&[1.0, 15.0, 16.0]), &floats(&[0.0, 60.0, 61.0])]).each(&[
-            F(0.0, 4.0),
-            F(1.0, 31.0),
-            F(0.0, 90.0),
-        ])
+        let rows = rows.cross(&[&lods, &floats(&[1.0, 15.0, 16.0]), &floats(&[0.0, 60.0, 61.0])]);
+        rows.each(&[F(0.0, 4.0), F(1.0, 31.0), F(0.0, 90.0)])
     }),
     probe!(quads::acuity, |rows| rows.each(&[F(0.0, 180.0)])),
     probe!(quads::share_in_block, |rows| {

@@ -1,15 +1,10 @@
 //! Reconstruction of sparse frames: stored_sample, sparse_smr.
 
-use super::probe::{Probe, Rows, probe};
-use super::shape::*;
-use super::values::Word::*;
-use super::values::*;
+use super::*;
 use afterimage::kernel::noise::Noise;
 use afterimage::kernel::sparse_smr::Reconstruction;
 use afterimage::kernel::stored_sample::Around;
 use afterimage::kernel::{sparse_smr, stored_sample};
-use afterimage_testing::Draws;
-use glam::{Vec2, Vec3};
 
 shape!(stored_sample::StoredSample { color: Vec3, lod: f32, disparity: f32, place_px: Vec2 });
 shape!(Around {
@@ -63,11 +58,17 @@ pub(super) fn color(d: &mut Draws) -> [u32; 3] {
     [0; 3].map(|_| scaled(d, -14, 6))
 }
 
+const COLOR: Word = Of(|d, row| row.extend(color(d)));
+
 fn push_stored(d: &mut Draws, row: &mut Vec<u32>) {
     row.extend(color(d));
     row.push(range(d, 0.0, 8.0));
     row.push(scaled(d, -20, 20));
     row.extend([range(d, -1.3, 1.3), range(d, -1.3, 1.3)]);
+}
+
+fn times(v: u32, by: u32) -> u32 {
+    (f32::from_bits(v) * f32::from_bits(by)).to_bits()
 }
 
 /// An observation whose colors are often close to each other.
@@ -76,11 +77,7 @@ fn push_observation(d: &mut Draws, row: &mut Vec<u32>) {
     row.extend(sampled);
     let near = d.bits().is_multiple_of(2);
     for v in sampled {
-        row.push(if near {
-            (f32::from_bits(v) * f32::from_bits(range(d, 0.7, 1.4))).to_bits()
-        } else {
-            scaled(d, -14, 6)
-        });
+        row.push(if near { times(v, range(d, 0.7, 1.4)) } else { scaled(d, -14, 6) });
     }
     row.extend([range(d, 0.0, 40.0), range(d, 0.0, 1.0)]);
 }
@@ -114,8 +111,11 @@ pub(super) fn push_reconstruction(d: &mut Draws, row: &mut Vec<u32>) {
     row.push(range(d, 0.0, 0.98));
 }
 
+/// Three samples with their texels.
+type Samples = [(stored_sample::StoredSample, Vec2); 3];
+
 /// Sums over the first `count` samples.
-fn around(samples: [(stored_sample::StoredSample, Vec2); 3], count: u32) -> Around {
+fn around(samples: Samples, count: u32) -> Around {
     samples[..count as usize].iter().fold(Around::NOTHING, |a, &(sample, texel_px)| {
         stored_sample::add_stored(a, sample, texel_px, true, stored_sample::INVERSE_REACH)
     })
@@ -148,20 +148,11 @@ pub const PROBES: &[Probe] = &[
     })),
     probe!(stored_sample::unpack_stored, |rows| rows.each(&[Bits, Bits])),
     probe!(stored_sample::code_word, |rows| rows.each(&[Bits, Bits])),
-    probe!(stored_sample::moved_stored, |rows| rows.each(&[
-        Of(push_stored),
-        F(-0.5, 0.5),
-        F(-0.5, 0.5),
-        F(0.5, 2.0),
-        F(0.5, 2.0),
-        F(-1.0, 1.0)
-    ])),
-    probe!(stored_sample::pack_color_by, |rows| rows.each(&[
-        Scaled(-14, 6),
-        Scaled(-14, 6),
-        Scaled(-14, 6),
-        F(0.0, 1.0)
-    ])),
+    probe!(stored_sample::moved_stored, |rows| {
+        let (by, zoom) = (F(-0.5, 0.5), F(0.5, 2.0));
+        rows.each(&[Of(push_stored), by, by, zoom, zoom, F(-1.0, 1.0)])
+    }),
+    probe!(stored_sample::pack_color_by, |rows| rows.each(&[COLOR, F(0.0, 1.0)])),
     probe!(
         stored_sample::add_stored,
         around,
@@ -181,9 +172,7 @@ pub const PROBES: &[Probe] = &[
     ),
     probe!(
         stored_sample::interpolate,
-        |samples: [(stored_sample::StoredSample, Vec2); 3], count: u32| stored_sample::interpolate(around(
-            samples, count
-        )),
+        |samples: Samples, count: u32| stored_sample::interpolate(around(samples, count)),
         around!(
             "let k = interpolate(a); out_v(k.color); out_f(k.lod); out_v(k.lowest); out_v(k.highest);
             out_v(k.nearest.color); out_f(k.nearest.lod); out_f(k.nearest.disparity); out_f(k.nearest.place_px.x);
@@ -196,12 +185,9 @@ pub const PROBES: &[Probe] = &[
     probe!(sparse_smr::noisy_lod_confidence, |rows| rows.each(&[F(0.0, 3.0), F(1.0, 80.0), F(0.0, 0.01), F(0.0, 2.0)])),
     probe!(sparse_smr::agreement, |rows| rows.each(&[Of(push_observation), Of(push_observation), F(0.0, 4.0)])),
     probe!(sparse_smr::neighbour_weight, |rows| rows.cross(&[&[!0, 0, 1], &[!0, 0, 1]])),
-    probe!(sparse_smr::add_observation, |rows| rows.each(&[
-        Of(push_light),
-        Of(push_observation),
-        F(0.0, 4.0),
-        F(0.0, 4.0)
-    ])),
+    probe!(sparse_smr::add_observation, |rows| {
+        rows.each(&[Of(push_light), Of(push_observation), F(0.0, 4.0), F(0.0, 4.0)])
+    }),
     probe!(
         sparse_smr::relight,
         |l: sparse_smr::ObservedAround| sparse_smr::relight(l, sparse_smr::mean_error(l)),
@@ -249,7 +235,6 @@ pub const PROBES: &[Probe] = &[
 pub(super) fn push_light(d: &mut Draws, row: &mut Vec<u32>) {
     let weight = range(d, 0.0, 16.0);
     let (mean, near) = (color(d), d.bits().is_multiple_of(2));
-    let times = |v: u32, by: u32| (f32::from_bits(v) * f32::from_bits(by)).to_bits();
     row.extend(mean.map(|v| times(v, weight)));
     for v in mean {
         let other = if near { times(v, range(d, 0.8, 1.25)) } else { scaled(d, -14, 6) };

@@ -1,16 +1,11 @@
 //! Functions of bits and reservoirs: sanitize, rng, pack, reproject, reservoir.
 
-use super::probe::{Probe, probe};
-use super::shape::*;
-use super::values::Word::*;
-use super::values::*;
+use super::*;
 use afterimage::kernel::pack::Stored;
 use afterimage::kernel::reproject::{Verdict, ViewMotion};
 use afterimage::kernel::reservoir::Reservoir;
 use afterimage::kernel::rng::Purpose;
 use afterimage::kernel::{pack, reproject, reservoir, rng, sanitize};
-use afterimage_testing::Draws;
-use glam::{Vec2, Vec3, Vec4};
 
 code!(Purpose: Select, Key, Path);
 shape!(Stored { color: Vec3, disparity: f32, w_sum: f32, age: u32 });
@@ -67,7 +62,7 @@ pub const PROBES: &[Probe] = &[
     probe!(pack::unpack, |rows| {
         rows.mixed(&[&any(), &any(), &any()]).each(&[Bits; 3]).random_of("sound", |d, row| {
             row.extend(pack::pack(Stored {
-                color: glam::Vec3::from_array([0; 3].map(|_| f32::from_bits(signed(d, -20, 15)))),
+                color: Vec3::from_array([0; 3].map(|_| f32::from_bits(signed(d, -20, 15)))),
                 disparity: f32::from_bits(scaled(d, -34, 34)),
                 w_sum: f32::from_bits(scaled(d, -126, 100)),
                 age: d.bits() % 256,
@@ -125,12 +120,10 @@ pub const PROBES: &[Probe] = &[
         reservoir::update,
         |mut r: Reservoir, w: f32, draw: f32| (reservoir::update(&mut r, w, draw), r),
         "var r = $0; let take = update(&r, $1, $2); out_b(take); out_f(r.w_sum); out_u(r.count);",
-        |rows| rows.cross(&[&normal(), &[0, 1, !1, !0], &any(), &draws()]).each(&[
-            Scaled(-10, 10),
-            Bits,
-            Scaled(-10, 10),
-            F(0.0, 1.0)
-        ])
+        |rows| {
+            let rows = rows.cross(&[&normal(), &[0, 1, !1, !0], &any(), &draws()]);
+            rows.each(&[Scaled(-10, 10), Bits, Scaled(-10, 10), F(0.0, 1.0)])
+        }
     ),
     probe!(
         reservoir::combine,

@@ -1,17 +1,12 @@
 //! Functions of stored surfaces: surface, resample.
 
 use super::matching::{channels, like, push, stored_color};
-use super::probe::{Probe, Rows, probe};
-use super::shape::*;
-use super::values::Word::*;
-use super::values::*;
+use super::*;
 use afterimage::kernel::resample;
 use afterimage::kernel::resample::{Resampled, Tap, TapsAround};
 use afterimage::kernel::resize;
 use afterimage::kernel::surface;
 use afterimage::kernel::surface::{MAX_LOD, Surface};
-use afterimage_testing::Draws;
-use glam::Vec3;
 
 shape!(Surface { color: Vec3, lod: f32, disparity: f32 });
 shape!(Tap { color: Vec3, lod: f32, same: bool });
@@ -27,7 +22,7 @@ fn push_tap(d: &mut Draws, row: &mut Vec<u32>, color: [f32; 3], same: bool) {
 /// Two words of arbitrary bits; with every code of a level of detail, also that of an empty texel.
 fn packed_rows(rows: Rows) -> Rows {
     let edges = [words(), vec![0x3dff, 0x3e00, 0x3fff, 0xc000, 0xf7ff_fdff, 0xffff_0000]].concat();
-    let empty = |d: &mut Draws, row: &mut Vec<u32>| row.extend([bits(d) & 0x0fff_ffff, bits(d) & !0xc000]);
+    let empty = |d: &mut Draws, row: &mut Vec<u32>| row.extend([d.bits() & 0x0fff_ffff, d.bits() & !0xc000]);
     rows.cross(&[&edges, &edges]).each(&[Bits, Bits]).random_of("empty", empty)
 }
 
@@ -90,7 +85,7 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(resample::surface_tap, |rows| {
         rows.random(|d, row| {
-            let words = [bits(d) & [u32::MAX, 0x0fff_ffff][d.bits() as usize % 2], bits(d) & !0xc000];
+            let words = [d.bits() & [u32::MAX, 0x0fff_ffff][d.bits() as usize % 2], d.bits() & !0xc000];
             row.extend(words);
             row.extend([(words[1] >> 16).saturating_sub(d.bits() % 4), d.bits() % 4, d.bits() % 2]);
         })

@@ -1,16 +1,11 @@
 //! Functions of temporal antialiasing and upsampling: taa, taau.
 
 use super::matching::{channels, like, push, stored_color};
-use super::probe::{Probe, probe};
-use super::shape::*;
 use super::surfaces::fraction;
-use super::values::Word::*;
-use super::values::*;
+use super::*;
 use afterimage::kernel::taa;
 use afterimage::kernel::taau;
 use afterimage::kernel::taau::SamplesAround;
-use afterimage_testing::Draws;
-use glam::{Vec2, Vec3};
 
 /// Sums over some of nine samples of any lattice, as the pass makes them, and the nearest one's color.
 fn push_samples(d: &mut Draws, row: &mut Vec<u32>) {

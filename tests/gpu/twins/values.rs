@@ -58,11 +58,6 @@ pub fn words() -> Vec<u32> {
     (0..3).chain(254..257).chain(powers).chain([63, 0x00ff_ffff, 0x0100_0001, !1, !0]).collect()
 }
 
-/// Any bits at all.
-pub fn bits(d: &mut Draws) -> u32 {
-    d.bits()
-}
-
 pub fn finite_bits(d: &mut Draws) -> u32 {
     loop {
         let x = d.bits();

@@ -1,14 +1,9 @@
 //! Functions of weighted reservoirs beyond the paper: sharper weights, means, references of the gate.
 
 use super::matching::{like, push, stored_color};
-use super::probe::{Probe, probe};
-use super::shape::*;
-use super::values::Word::*;
-use super::values::*;
+use super::*;
 use afterimage::kernel::wrs;
 use afterimage::kernel::wrs::{Decision, Reference, SamplerCode};
-use afterimage_testing::Draws;
-use glam::Vec3;
 
 /// A color channel as candidates have it.
 fn channel(d: &mut Draws) -> u32 {
@@ -41,12 +36,8 @@ pub const PROBES: &[Probe] = &[
     probe!(wrs::level_code, |rows| rows.cross(&[&around(&[0.125, 0.375, 4.125, 7.875, 8.0])]).each(&[F(0.0, 8.0)])),
     probe!(wrs::pack_reference, |rows| {
         let channels = [floats(&[0.0, -1.0, 65504.0, 0.3]), around(&[1.0, 0.984_375, 0.992_187_5])].concat();
-        rows.mixed(&[&channels, &channels, &channels, &[0, 16, 63]]).each(&[
-            Signed(-26, 15),
-            Signed(-26, 15),
-            Signed(-26, 15),
-            N(64),
-        ])
+        rows.mixed(&[&channels, &channels, &channels, &[0, 16, 63]])
+            .each(&[&[Signed(-26, 15); 3][..], &[N(64)]].concat())
     }),
     probe!(wrs::unpack_reference, |rows| rows.cross(&[&words()]).each(&[Bits])),
     probe!(wrs::compared, |rows| rows.each(&[Of(reference), Of(reference)])),
