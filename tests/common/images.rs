@@ -137,10 +137,10 @@ pub fn planned(post: &mut CpuAfterimage, frame: &Frame<'_>) -> Vec<Image<bool>> 
 }
 
 /// Outputs, decisions and counters of a frame.
-pub fn traced(
-    post: &mut CpuAfterimage,
-    frame: &Frame<'_>,
-) -> (Vec<Image<[f32; 3]>>, Vec<Image<PixelTrace>>, FrameStats) {
+pub type Traced = (Vec<Image<[f32; 3]>>, Vec<Image<PixelTrace>>, FrameStats);
+
+/// Processes a frame.
+pub fn traced(post: &mut CpuAfterimage, frame: &Frame<'_>) -> Traced {
     let size = post.desc().size_px;
     let mut shown = vec![Image::filled(size, [f32::NAN; 3]); frame.views.len()];
     let mut trace = vec![Image::filled(size, PixelTrace::default()); frame.views.len()];

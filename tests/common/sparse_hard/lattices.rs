@@ -7,7 +7,7 @@ use afterimage::Lattice;
 /// others.
 pub fn starved_positions(make: Make) -> Option<String> {
     const FRAMES: u64 = 4 * TURN;
-    let gaze_px = |index: u64| [if index % 2 == 0 { 26.0 } else { 62.0 }, 35.0];
+    let gaze_px = |index: u64| [if index.is_multiple_of(2) { 26.0 } else { 62.0 }, 35.0];
     let shot = |index| Shot::foveated(waves(SIZE, [0.0; 2]), &foveation(), gaze_px(index), index);
     let shots: Vec<_> = (0..FRAMES).map(shot).collect();
     let is_starved = |px: [u32; 2]| shots.iter().all(|shot| !shot.lattices().at(px).unwrap().samples(px));

@@ -280,6 +280,8 @@ fn prewarmed_pipelines_suffice_for_sparse_frames() {
     let region = [Region::new(&output, [0, 0])];
     bare.record(&mut post, &Frame::new(&color, &views, 1), Textures::Regions(&region)).unwrap();
     assert_eq!(post.pipelines().len(), 4);
+    let counted = afterimage_testing::gpu::read_buffer(&bare.device, &bare.queue, &counters);
+    assert_eq!(afterimage::FrameStats::from_counters(&counted).unwrap().pixels, 70 * 41);
 }
 
 #[test]
