@@ -32,15 +32,15 @@ impl Scene {
                     input,
                     "is not a built-in scene",
                     "expected builtin:NAME with NAME one of cornell, furnace, control, bunny-low, bunny-high, cubes, \
-                     mirror-room, courtyard",
+                     mirror-room, courtyard, interior",
                 )
             })?;
             return match clip {
-                None => Ok(scene),
-                Some(clip) => {
-                    let problem = format!("has no animation '{clip}', because it is static");
+                Some(clip) if !scene.animations.iter().any(|name| name == clip) => {
+                    let problem = format!("has no animation '{clip}'");
                     Err(InputError::request(input, problem, "leave the animation out"))
                 }
+                _ => Ok(scene),
             };
         }
         match kind(Path::new(input)).as_str() {

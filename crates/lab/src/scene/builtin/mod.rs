@@ -6,6 +6,7 @@ mod cornell;
 mod courtyard;
 mod cubes;
 mod furnace;
+mod interior;
 mod mirror_room;
 mod patch;
 mod shapes;
@@ -19,7 +20,7 @@ use super::Scene;
 
 /// Names of the built-in scenes.
 pub const NAMES: &[&str] =
-    &["bunny-high", "bunny-low", "control", "cornell", "courtyard", "cubes", "furnace", "mirror-room"];
+    &["bunny-high", "bunny-low", "control", "cornell", "courtyard", "cubes", "furnace", "interior", "mirror-room"];
 
 /// The scene of that name.
 pub(crate) fn open(name: &str) -> Option<Scene> {
@@ -31,6 +32,7 @@ pub(crate) fn open(name: &str) -> Option<Scene> {
         "courtyard" => courtyard(),
         "cubes" => cubes::scene(),
         "furnace" => furnace(),
+        "interior" => interior::scene(),
         "mirror-room" => mirror_room::scene(),
         _ => return None,
     })

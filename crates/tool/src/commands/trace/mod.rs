@@ -40,7 +40,7 @@ use std::path::PathBuf;
     same point in space: the first surface behind the head's gaze pixel, or infinity if there is none.")]
 pub struct TraceArgs {
     /// A scene: .gltf, .glb, or builtin:NAME with NAME one of cornell, furnace, control, bunny-low, bunny-high, cubes,
-    /// mirror-room, courtyard
+    /// mirror-room, courtyard, interior
     pub scene: String,
     /// Output folder
     #[arg(long, value_name = "DIR")]
