@@ -28,7 +28,8 @@ pub(super) const PENDANT: u32 = 20;
 pub(super) const SHADE: u32 = 21;
 /// A material for each strip: the rasterizer merges lights of one material.
 pub(super) const STRIPS: [u32; 2] = [22, 23];
-pub(super) const FIRST_BOOK: u32 = 24;
+pub(super) const DOME: u32 = 24;
+pub(super) const FIRST_BOOK: u32 = 25;
 /// Number of materials of books.
 pub(super) const BOOKS: u32 = 6;
 
@@ -55,10 +56,11 @@ pub(super) fn all() -> Vec<Material> {
         glossy("shirt", [0.62, 0.12, 0.1], 0.9, 4.0),
         glossy("trousers", [0.08, 0.1, 0.2], 0.9, 4.0),
         glossy("fan", [0.15, 0.35, 0.45], 0.4, 40.0),
-        lamp("pendant", [45.0, 36.0, 24.0]),
+        lamp("pendant", [9.0, 7.2, 4.8]),
         Material { double_sided: true, ..lamp("shade", [3.0, 2.1, 1.1]) },
         lamp("strip 0", [30.0, 26.0, 20.0]),
         lamp("strip 1", [30.0, 26.0, 20.0]),
+        lamp("dome", [2.0, 1.8, 1.4]),
     ];
     let covers =
         [[0.5, 0.1, 0.08], [0.1, 0.2, 0.4], [0.12, 0.3, 0.16], [0.6, 0.5, 0.25], [0.7, 0.66, 0.58], [0.08, 0.07, 0.08]];

@@ -1,5 +1,6 @@
 //! What moves: a camera, a fan, and a figure whose shadow the sun casts.
 
+use super::lamps;
 use super::materials::{FAN, METAL, SHIRT, SKIN, TROUSERS};
 use super::rig::Rig;
 use super::solids::{Rod, hoop, wire};
@@ -34,6 +35,7 @@ const UPPER_ARM_M: f32 = 0.29;
 pub(super) fn animated() -> Animated {
     let mut rig = Rig::default();
     rig.sun(Vec3::new(-0.22, -0.72, 1.0), [13.0, 11.6, 9.2]);
+    lamps::shine(&mut rig);
     add_cameras(&mut rig);
     add_rotor(&mut rig);
     add_figure(&mut rig);

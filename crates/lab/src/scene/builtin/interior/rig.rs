@@ -4,7 +4,7 @@ use crate::scene::animated::curve::{Curve, Interpolation};
 use crate::scene::animated::nodes::Local;
 use crate::scene::animated::{Animated, Channel, Light, Mesh, Property, View};
 use crate::scene::geometry::Geometry;
-use crate::scene::{PunctualLight, Triangles};
+use crate::scene::{PunctualKind, PunctualLight, Triangles};
 use glam::{DQuat, DVec3, Vec3};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -77,6 +77,13 @@ impl Rig {
         let node = self.node(None, [0.0; 3]);
         self.set_rotation(node, DQuat::from_rotation_arc(DVec3::NEG_Z, direction.as_dvec3().normalize()));
         self.animated.lights.push(Light { node, light: PunctualLight::sun(direction, irradiance) });
+    }
+
+    /// Adds a lamp that shines in all directions.
+    pub fn lamp(&mut self, position: Vec3, intensity: [f32; 3]) {
+        let node = self.node(None, position.as_dvec3().to_array());
+        let (kind, direction, range) = (PunctualKind::Point, Vec3::NEG_Z, f32::INFINITY);
+        self.animated.lights.push(Light { node, light: PunctualLight { kind, position, direction, intensity, range } });
     }
 
     /// Sets the rotation of a node that no curve turns.

@@ -16,8 +16,8 @@ pub(super) const TOP_M: f32 = 2.3;
 
 /// Distance of slats, their depth, and their tilt. They are as fine as a pixel of 320x180 from the middle of the room.
 const SLAT_STEP_M: f32 = 0.03;
-const SLAT_DEPTH_M: f32 = 0.025;
-const SLAT_TILT_DEG: f32 = 25.0;
+const SLAT_DEPTH_M: f32 = 0.03;
+const SLAT_TILT_DEG: f32 = 45.0;
 
 /// Appends frame, bars and two blinds, of which one is lowered farther.
 pub(super) fn push(out: &mut Triangles) {
@@ -93,8 +93,8 @@ pub(super) fn environment() -> Environment {
 }
 
 fn radiance(direction: Vec3) -> [f32; 3] {
-    let room = Vec3::new(0.24, 0.23, 0.22);
-    let sky = Vec3::new(3.2, 3.4, 3.6).lerp(Vec3::new(1.2, 1.9, 3.2), direction.y.max(0.0).sqrt());
+    let room = Vec3::new(0.13, 0.12, 0.115);
+    let sky = Vec3::new(1.9, 2.0, 2.1).lerp(Vec3::new(0.7, 1.2, 2.1), direction.y.max(0.0).sqrt());
     // Hills of two heights, whose outline is not level.
     let longitude = direction.x.atan2(-direction.z);
     let hill = 0.03 + 0.05 * (longitude * 5.0).sin() + 0.02 * (longitude * 23.0).sin();
