@@ -1,8 +1,9 @@
 //! A row of cupboards along the wall at +x. The gaps between their fronts are about as wide as a pixel.
 
 use super::materials::{CARCASS, COUNTER, FRONT, GLAZE, METAL, TILES};
+use super::size::HALF_WIDTH_M;
 use super::solids::{Rod, block};
-use super::{HALF_WIDTH_M, textures};
+use super::textures;
 use crate::scene::Triangles;
 
 /// Width of the gaps between fronts: from 1.3 m, 1 px of 320x180 and 2 px of 640x360.

@@ -1,8 +1,9 @@
 //! Table, chairs, shelf, picture and rug.
 
 use super::materials::{BOOKS, FIRST_BOOK, GLAZE, PICTURE, RUG, TABLE, WHITE, WOOD};
+use super::size::HALF_WIDTH_M;
 use super::solids::{Rod, block};
-use super::{HALF_WIDTH_M, textures};
+use super::textures;
 use crate::scene::Triangles;
 use glam::{Quat, Vec3};
 

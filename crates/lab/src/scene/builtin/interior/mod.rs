@@ -7,19 +7,13 @@ mod materials;
 mod moving;
 mod rig;
 mod shell;
+mod size;
 mod solids;
 mod textures;
 mod window;
 
 use crate::scene::{Scene, Triangles};
 use std::sync::Arc;
-
-/// Half the room's width along x, metres.
-const HALF_WIDTH_M: f32 = 2.6;
-/// Half the room's depth along z, metres. The window is in the wall at -z.
-const HALF_DEPTH_M: f32 = 3.2;
-/// Height of the ceiling, metres.
-const HEIGHT_M: f32 = 2.6;
 
 /// A room of 5.2 x 2.6 x 6.4 m with two cameras: `still`, which sees all of it, and `walk`, which passes the cupboards
 /// at 1 m. Sun and sky shine through the window.

@@ -1,9 +1,9 @@
 //! Floor, ceiling and walls. They are thick, so that the sun's shadow map has no leaks at their edges.
 
 use super::materials::{FLOOR, PAINT, PLASTER, WALLPAPER, WHITE};
+use super::size::{HALF_DEPTH_M as D, HALF_WIDTH_M as W, HEIGHT_M as H};
 use super::solids::block;
 use super::window::{BOTTOM_M, HALF_SPAN_M, TOP_M};
-use super::{HALF_DEPTH_M as D, HALF_WIDTH_M as W, HEIGHT_M as H};
 use crate::scene::Triangles;
 
 /// Thickness of floor, ceiling and walls, metres.

@@ -1,7 +1,7 @@
 //! The window, its bars and blinds, and the sky behind it.
 
-use super::HALF_DEPTH_M;
 use super::materials::{BLIND, METAL, WHITE};
+use super::size::HALF_DEPTH_M;
 use super::solids::{block, wire};
 use crate::scene::{Environment, Triangles};
 use afterimage::Image;
