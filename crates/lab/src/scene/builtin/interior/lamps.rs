@@ -5,9 +5,8 @@ use super::furniture::TABLE_XZ_M;
 use super::materials::{DOME, METAL, PENDANT, SHADE, STRIPS, WHITE};
 use super::rig::Rig;
 use super::size::{HALF_WIDTH_M, HEIGHT_M};
-use super::solids::{Rod, block, wire};
+use super::solids::{Rod, block, surface, wire};
 use crate::scene::Triangles;
-use crate::scene::builtin::patch::patch;
 use crate::scene::builtin::shapes::Ellipsoid;
 use glam::{Quat, Vec3};
 use std::f32::consts::TAU;
@@ -44,7 +43,7 @@ fn push_pendant(out: &mut Triangles) {
     let top = bottom + Vec3::Y * 0.16;
     Rod { from: bottom, to: top, radii_m: [0.2, 0.04] }.push_side(64, WHITE, out);
     wire(top, Vec3::new(x, HEIGHT_M, z), 0.003, METAL, out);
-    patch(out, [48, 1], PENDANT, |u, v| {
+    surface(out, [48, 1], PENDANT, |u, v| {
         let (sin, cos) = (u * TAU).sin_cos();
         bottom + Vec3::Y * 0.02 + Vec3::new(sin, 0.0, cos) * (0.12 * v)
     });

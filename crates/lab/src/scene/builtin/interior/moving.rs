@@ -3,9 +3,8 @@
 use super::lamps;
 use super::materials::{FAN, METAL, SHIRT, SKIN, TROUSERS};
 use super::rig::Rig;
-use super::solids::{Rod, hoop, wire};
+use super::solids::{Rod, hoop, surface, wire};
 use crate::scene::animated::Animated;
-use crate::scene::builtin::patch::patch;
 use crate::scene::builtin::shapes::Ellipsoid;
 use crate::scene::{Camera, Triangles};
 use glam::{DQuat, DVec3, Quat, Vec3};
@@ -87,7 +86,7 @@ fn add_rotor(rig: &mut Rig) {
     for blade in 0..4 {
         let turned = Quat::from_rotation_z(blade as f32 * std::f32::consts::FRAC_PI_2);
         // Blades widen outwards and are pitched.
-        patch(&mut rotor, [12, 6], FAN, |u, v| {
+        surface(&mut rotor, [12, 6], FAN, |u, v| {
             let (along, across) = (0.035 + 0.2 * u, (v - 0.5) * (0.05 + 0.11 * u));
             turned * Vec3::new(along, across, 0.35 * across)
         });

@@ -27,6 +27,15 @@ pub(super) fn block(min: [f32; 3], max: [f32; 3], material: u32, out: &mut Trian
     }
 }
 
+/// Appends a curved surface (see [`patch`]) with tangents that are orthogonal to its smooth normals.
+pub(super) fn surface(out: &mut Triangles, cells: [u32; 2], material: u32, at: impl Fn(f32, f32) -> Vec3) {
+    let first = out.len();
+    patch(out, cells, material, at);
+    for (tangents, normals) in out.tangents[first..].iter_mut().zip(&out.normals[first..]) {
+        *tangents = normals.map(|n| n.any_orthonormal_vector().extend(1.0));
+    }
+}
+
 /// A round rod between two points.
 pub(super) struct Rod {
     pub from: Vec3,
@@ -45,14 +54,14 @@ impl Rod {
     pub fn push(&self, sides: u32, material: u32, out: &mut Triangles) {
         self.push_side(sides, material, out);
         let [bottom, top] = self.radii_m;
-        patch(out, [sides, 1], material, |u, v| self.from + self.outwards(u) * (bottom * v));
-        patch(out, [sides, 1], material, |u, v| self.to + self.outwards(u) * (top * (1.0 - v)));
+        surface(out, [sides, 1], material, |u, v| self.from + self.outwards(u) * (bottom * v));
+        surface(out, [sides, 1], material, |u, v| self.to + self.outwards(u) * (top * (1.0 - v)));
     }
 
     /// Appends the side alone.
     pub fn push_side(&self, sides: u32, material: u32, out: &mut Triangles) {
         let [bottom, top] = self.radii_m;
-        patch(out, [sides, 1], material, |u, v| {
+        surface(out, [sides, 1], material, |u, v| {
             self.from.lerp(self.to, v) + self.outwards(u) * (bottom + (top - bottom) * v)
         });
     }
@@ -73,7 +82,7 @@ pub(super) fn wire(from: Vec3, to: Vec3, radius_m: f32, material: u32, out: &mut
 
 /// Appends a wire bent to a circle about the z axis through `center`.
 pub(super) fn hoop(center: Vec3, radius_m: f32, wire_radius_m: f32, material: u32, out: &mut Triangles) {
-    patch(out, [48, WIRE_SIDES], material, |u, v| {
+    surface(out, [48, WIRE_SIDES], material, |u, v| {
         let ((sin, cos), (rise, spread)) = ((u * TAU).sin_cos(), (v * TAU).sin_cos());
         let outwards = Vec3::new(cos, sin, 0.0) * (radius_m + wire_radius_m * spread);
         center + outwards + Vec3::Z * (wire_radius_m * rise)
