@@ -63,7 +63,7 @@ fn planks(x: u32, y: u32) -> Vec3 {
     let shifted = (y + 90 * plank) % SIDE;
     let tone = 0.75 + 0.25 * noise([plank, shifted / 128], 1);
     let grain = 0.93 + 0.07 * noise([x, shifted / 24], 2);
-    let is_seam = within < 10 || shifted % 128 == 0;
+    let is_seam = within < 10 || shifted.is_multiple_of(128);
     Vec3::new(0.66, 0.5, 0.36) * tone * grain * if is_seam { 0.55 } else { 1.0 }
 }
 
