@@ -1,5 +1,5 @@
 //! Compares pictures of two runs: `compare REFERENCE SHOWN OUT`, three folders. Prints PSNR over all pictures, and that
-//! of the worst crop; writes reference, shown and the difference side by side.
+//! of the worst crop; writes reference, shown and the difference side by side, and the worst crop enlarged.
 
 #[allow(dead_code, reason = "a part is used")]
 mod headless;
@@ -12,13 +12,15 @@ use std::path::{Path, PathBuf};
 /// Side of a crop in pixels.
 const CROP: u32 = 64;
 
-/// How many times larger the difference is shown.
+/// How many times larger the difference is shown, and the worst crop.
 const GAIN: u8 = 4;
+const ENLARGED: u32 = 8;
 
 struct Worst {
     psnr_db: f64,
     picture: String,
     corner: UVec2,
+    crops: [Vec<u8>; 2],
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -32,9 +34,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             return Err(format!("{picture}: {size} and {other_size}").into());
         }
         for corner in corners(size) {
-            let psnr_db = psnr_db(&crop(&a, size, corner), &crop(&b, size, corner));
+            let crops = [&a, &b].map(|picture| crop(picture, size, corner));
+            let psnr_db = psnr_db(&crops[0], &crops[1]);
             if worst.as_ref().is_none_or(|worst| psnr_db < worst.psnr_db) {
-                worst = Some(Worst { psnr_db, picture: picture.clone(), corner });
+                worst = Some(Worst { psnr_db, picture: picture.clone(), corner, crops });
             }
         }
         let strip = beside([&a, &b, &difference(&a, &b)], size);
@@ -42,7 +45,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         all[0].extend(a);
         all[1].extend(b);
     }
-    let Worst { psnr_db: worst_db, picture, corner } = worst.ok_or("no pictures")?;
+    let Worst { psnr_db: worst_db, picture, corner, crops } = worst.ok_or("no pictures")?;
+    let [a, b] = crops.map(|crop| enlarged(&crop));
+    let side = UVec2::splat(CROP * ENLARGED);
+    write_png(&out.join("worst.png"), side * UVec2::new(2, 1), &beside([&a, &b], side))?;
     println!("{:.2} {worst_db:.2} {picture} {} {}", psnr_db(&all[0], &all[1]), corner.x, corner.y);
     Ok(())
 }
@@ -72,7 +78,18 @@ fn difference(a: &[u8], b: &[u8]) -> Vec<u8> {
     a.iter().zip(b).map(|(a, b)| a.abs_diff(*b).saturating_mul(GAIN)).collect()
 }
 
-fn beside(parts: [&[u8]; 3], size: UVec2) -> Vec<u8> {
+/// A crop, each of whose pixels is a square.
+fn enlarged(crop: &[u8]) -> Vec<u8> {
+    let side = CROP * ENLARGED;
+    let pixel = |i: u32| {
+        let at = UVec2::new(i % side, i / side) / ENLARGED;
+        let start = 4 * (at.y * CROP + at.x) as usize;
+        &crop[start..start + 4]
+    };
+    (0..side * side).flat_map(pixel).copied().collect()
+}
+
+fn beside<const N: usize>(parts: [&[u8]; N], size: UVec2) -> Vec<u8> {
     let stride = 4 * size.x as usize;
     let row = |y| parts.map(|part| &part[y * stride..(y + 1) * stride]);
     (0..size.y as usize).flat_map(row).flatten().copied().collect()

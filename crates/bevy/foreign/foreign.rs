@@ -10,6 +10,7 @@ use bevy::render::render_resource::PipelineCache;
 use bevy::render::view::screenshot::{Screenshot, save_to_disk};
 use bevy::render::{ExtractSchedule, MainWorld, RenderApp};
 use bevy::time::TimeUpdateStrategy;
+use bevy::window::WindowResized;
 use bevy::winit::WinitSettings;
 use bevy_afterimage::{Afterimage, AfterimagePlugin, AfterimageStats, Foveated, Gaze};
 use rustix::time::{ClockId, clock_gettime};
@@ -38,6 +39,8 @@ const FIRST_FRAME: u32 = 1000;
 /// What every camera gets.
 #[derive(Resource, Clone, Copy, Debug, PartialEq)]
 enum Mode {
+    /// As the example is.
+    Own,
     /// Every pixel, with the antialiasing of the example, less MSAA.
     Full,
     /// Every pixel, with temporal antialiasing.
@@ -52,12 +55,13 @@ impl Mode {
     fn read() -> Self {
         let uniform = Foveated::uniform(0.25);
         match std::env::var("FOREIGN_MODE").as_deref() {
+            Ok("own") => Self::Own,
             Ok("full" | "again") => Self::Full,
             Ok("taa") => Self::Taa,
             Ok("quads") => Self::Quads { foveated: uniform, antialias: false },
             Ok("gaze") => Self::Quads { foveated: Foveated::default(), antialias: false },
             Ok("antialias") => Self::Quads { foveated: uniform, antialias: true },
-            mode => panic!("FOREIGN_MODE is {mode:?}: expected full, again, taa, quads, gaze or antialias"),
+            mode => panic!("FOREIGN_MODE is {mode:?}: expected own, full, again, taa, quads, gaze or antialias"),
         }
     }
 }
@@ -116,6 +120,7 @@ impl Plugin for ForeignPlugin {
                 measured_ms: 0.0,
             })
             .add_observer(change_camera)
+            .add_systems(PreStartup, tell_sizes)
             .add_systems(PostUpdate, step);
         app.world_mut().resource_mut::<Time<Virtual>>().pause();
         let mut windows = app.world_mut().query::<&mut Window>();
@@ -127,9 +132,17 @@ impl Plugin for ForeignPlugin {
     }
 }
 
+/// Some examples wait for it to set their viewports. A virtual display has no window manager that would say it.
+fn tell_sizes(windows: Query<(Entity, &Window)>, mut resized: MessageWriter<WindowResized>) {
+    for (window, shown) in &windows {
+        resized.write(WindowResized { window, width: shown.width(), height: shown.height() });
+    }
+}
+
 fn change_camera(added: On<Add<Camera3d>>, mode: Res<Mode>, mut commands: Commands) {
     let mut camera = commands.entity(added.entity);
     match *mode {
+        Mode::Own => &mut camera,
         Mode::Full => camera.insert(Msaa::Off),
         Mode::Taa => camera.insert((Msaa::Off, TemporalAntiAliasing::default())),
         Mode::Quads { foveated, antialias } => {
