@@ -190,7 +190,12 @@ pub(super) fn note_stored(pixel: &Pixel, notes: &mut Vec<Note>) {
 pub(super) fn note_stored_mean(pixel: &Pixel, notes: &mut Vec<Note>) {
     note_stored(pixel, notes);
     let mean = mean_of(unpack_stored(pixel.surface).lod);
-    notes.note(NoteStage::Stored, "mean", [mean.lod, mean.samples], "level of detail in log2 px, samples");
+    notes.note(
+        NoteStage::Stored,
+        "mean",
+        [mean.lod, mean.samples, mean.deviation],
+        "level of detail in log2 px, samples, their deviation",
+    );
 }
 
 fn note_noise(pixel: &Pixel, notes: &mut Vec<Note>) {

@@ -51,10 +51,11 @@ impl Resize {
             if !means {
                 return pack_stored(moved_stored(stored, texel_px, scale, self.lod_shift));
             }
-            let Mean { lod, samples } = mean_of(stored.lod);
+            let mean = mean_of(stored.lod);
+            let lod = mean.lod;
             stored.lod = lod;
             let moved = moved_stored(stored, texel_px, scale, self.lod_shift);
-            pack_stored(StoredSample { lod: stored_lod(Mean { lod: moved.lod, samples }), ..moved })
+            pack_stored(StoredSample { lod: stored_lod(Mean { lod: moved.lod, ..mean }, [0.5; 2]), ..moved })
         })
     }
 

@@ -6,30 +6,44 @@
 //! resampled. Means of moving history contain few samples: the pixel's area lies elsewhere on the surface in each
 //! frame, so that a long mean would blur.
 
-use super::smr::{root_difference, roots};
-use super::sparse_smr::{ObservedAround, Reconstructed, Reconstruction, relit};
+use super::smr::{root_difference, roots, smooth_step};
+use super::sparse_smr::{CONTRAST_ERROR, MOVED_ERROR, ObservedAround, Reconstructed, Reconstruction, relit};
 use super::stored_sample::{FARTHEST_PX, StoredSample};
 use super::taa::{ROUNDING, clip_to_box, to_ycocg};
 use glam::{Vec2, Vec3};
 
-/// Largest number of samples in a mean: one frame's sample has a weight of at least 1/31. A larger limit flickers less,
+/// Largest number of samples in a mean: one frame's sample has a weight of at least 1/30. A larger limit flickers less,
 /// and is slower to follow changes that the gate does not detect.
-pub const MOST_SAMPLES: f32 = 31.0;
-/// Largest number of samples of history in a mean.
-const MOST_PAST: f32 = MOST_SAMPLES - 1.0;
-/// The same limit where history lies a quarter of a pixel or more from the pixel's centre. A larger limit blurs motion.
+pub const MOST_SAMPLES: f32 = 29.0;
+/// The number of samples in a mean to which the next one is added is at most this where history lies a quarter of a
+/// pixel or more from the pixel's centre. A larger limit blurs motion.
 const MOST_PAST_MOVED: f32 = 3.0;
 /// Inverse of the distance in pixels from the pixel's centre at which that limit is reached.
 const MOVED_PER_PX: f32 = 4.0;
-/// Steps of a stored level of detail. The first 31 codes are means of 31 samples down to one; the following ones are
-/// levels above 0.
+/// Steps of a stored level of detail. The first 48 codes are means: eight numbers of samples, and six deviations of
+/// each. The following ones are levels above 0.
 const CODES_PER_LOD: f32 = 7.0;
-/// Code of a mean of one sample.
-const ONE_SAMPLE: f32 = 30.0;
+/// Codes of a number of samples.
+const DEVIATIONS: f32 = 6.0;
+/// Code of a level of 0 if there were one.
+const COARSE_CODE: f32 = 47.0;
 /// Codes a level above 0.
-const CODES_PER_COARSE_LOD: f32 = 5.0;
+const CODES_PER_COARSE_LOD: f32 = 2.5;
 /// A texel of this level or more is coarse.
-const COARSE_LOD: f32 = 0.1;
+const COARSE_LOD: f32 = 0.2;
+/// Smallest deviation above 0 that is stored, halved.
+const DEVIATION_STEP: f32 = 1.25;
+/// Added to the expected difference of a single sample.
+const SAMPLE_ERROR: f32 = 0.7;
+/// Number of samples that a mean counts for after a gain.
+const RELIT_SAMPLES: f32 = 3.0;
+/// Inverse of the change of a gain from 1 at which that limit is reached.
+const RELIT_PER_GAIN: f32 = 10.0;
+/// Largest difference between a sample and history that counts.
+pub const MOST_DIFFERENCE: f32 = 200.0;
+/// Differences between a sample and history, in expected ones, at which history starts to be contradicted, and width
+/// over which it loses all its samples.
+const CONTRADICTED: [f32; 2] = [3.0, 3.0];
 /// Half width of the box of nine samples to which history is clipped at full rate, in standard deviations.
 const BOX_SIGMAS: f32 = 2.0;
 /// Share of the clip that is applied, so that a thin feature is not lost at once if a frame misses it.
@@ -46,41 +60,77 @@ const ALONGSIDE_PX: f32 = 1.0;
 /// history that mixes them stays in place.
 const TOGETHER_PX: f32 = 0.25;
 
-/// A stored texel: its level of detail, at least 0, and the number of samples in it. Empty texels stay empty.
+/// A stored texel. Empty texels stay empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mean {
     /// Level of detail; negative: empty.
     pub lod: f32,
     /// Number of samples, 1 to [`MOST_SAMPLES`]; 1 for coarse texels.
     pub samples: f32,
+    /// Standard deviation of the samples, in units of [`root_difference`]; 0 for coarse texels.
+    pub deviation: f32,
 }
 
-/// Level and number of samples of a stored level of detail, which is a multiple of 1/7.
+impl Mean {
+    /// A mean of one sample.
+    pub const ONE: Self = Self { lod: 0.0, samples: 1.0, deviation: 0.0 };
+}
+
+/// Level, number of samples and deviation of a stored level of detail, which is a multiple of 1/7.
 #[inline]
 pub fn mean_of(stored_lod: f32) -> Mean {
     let code = (stored_lod * CODES_PER_LOD + 0.5).floor();
-    let coarse = code > ONE_SAMPLE;
-    Mean {
-        lod: if stored_lod < 0.0 {
-            -1.0
-        } else if coarse {
-            (code - ONE_SAMPLE) * (1.0 / CODES_PER_COARSE_LOD)
-        } else {
-            0.0
-        },
-        samples: if coarse || stored_lod < 0.0 { 1.0 } else { ONE_SAMPLE + 1.0 - code },
+    let coarse = code > COARSE_CODE;
+    if coarse || stored_lod < 0.0 {
+        let lod = if stored_lod < 0.0 { -1.0 } else { (code - COARSE_CODE) * (1.0 / CODES_PER_COARSE_LOD) };
+        return Mean { lod, ..Mean::ONE };
     }
+    // 0.125 keeps the quotient away from integers.
+    let number = ((code + 0.125) * (1.0 / DEVIATIONS)).floor();
+    let step = code - number * DEVIATIONS;
+    Mean { lod: 0.0, samples: samples_of(7.0 - number), deviation: deviation_of(step) }
 }
 
-/// Level of detail to store for a mean; the inverse of [`mean_of`].
+/// Two draws in \[0, 1) from the low bytes of random bits.
 #[inline]
-pub fn stored_lod(m: Mean) -> f32 {
-    let code = if m.lod > COARSE_LOD {
-        ONE_SAMPLE + m.lod * CODES_PER_COARSE_LOD
-    } else {
-        ONE_SAMPLE + 1.0 - m.samples.clamp(1.0, MOST_SAMPLES)
-    };
-    if m.lod < 0.0 { -1.0 } else { code * (1.0 / CODES_PER_LOD) }
+pub fn byte_draws(bits: u32) -> [f32; 2] {
+    [((bits & 255) as f32 + 0.5) * (1.0 / 256.0), ((bits >> 8 & 255) as f32 + 0.5) * (1.0 / 256.0)]
+}
+
+/// Number of samples of a step, 0 to 7.
+#[inline]
+fn samples_of(step: f32) -> f32 {
+    1.0 + 0.5 * (step * (step + 1.0))
+}
+
+/// Deviation of a step, 0 to 5.
+#[inline]
+fn deviation_of(step: f32) -> f32 {
+    DEVIATION_STEP * (step * (step + 1.0))
+}
+
+/// Level of detail to store for a mean; the inverse of [`mean_of`]. Number and deviation are rounded stochastically by
+/// `draws`, each in \[0, 1): their means over the frames stay, and stored values stay as they are.
+#[inline]
+pub fn stored_lod(m: Mean, draws: [f32; 2]) -> f32 {
+    if m.lod < 0.0 {
+        return -1.0;
+    }
+    if m.lod > COARSE_LOD {
+        return (COARSE_CODE + (m.lod * CODES_PER_COARSE_LOD).max(1.0)) * (1.0 / CODES_PER_LOD);
+    }
+    // The inverses of `samples_of` and `deviation_of`.
+    let least = |v: f32| ((v * 8.0 + 1.0).sqrt() * 0.5 - 0.5).floor();
+    let samples = m.samples.clamp(1.0, MOST_SAMPLES);
+    let step = least(samples - 1.0).min(6.0);
+    let [low, high] = [samples_of(step), samples_of(step + 1.0)];
+    let number = if samples - low > (high - low) * draws[0] { step + 1.0 } else { step };
+    let deviation = m.deviation.min(deviation_of(5.0));
+    let step = least(deviation * (0.5 / DEVIATION_STEP)).min(4.0);
+    let [low, high] = [deviation_of(step), deviation_of(step + 1.0)];
+    let by = (deviation * deviation - low * low) - (high * high - low * low) * draws[1];
+    let step = if by > 0.0 { step + 1.0 } else { step };
+    ((7.0 - number) * DEVIATIONS + step) * (1.0 / CODES_PER_LOD)
 }
 
 /// Whether a pixel takes the history of a neighbour's nearer surface, so that silhouettes are means of both surfaces
@@ -202,24 +252,51 @@ pub fn scattered_error(a: ObservedAround, scatter: f32) -> f32 {
     (a.error * inverse).max(variance.sqrt())
 }
 
+/// Expected difference between a sample and the mean at its pixel: the deviation of the samples in the mean, to which
+/// the local contrast adds one imagined sample. A still mean has at least its own deviation; in one that moves it may
+/// come from the motion. As [`expected_error`](super::sparse_smr::expected_error).
+#[inline]
+pub fn expected_mean_error(past: Mean, contrast: f32, moved: bool) -> f32 {
+    let prior = contrast * CONTRAST_ERROR;
+    let others = past.samples - 1.0;
+    let own = past.deviation * past.deviation;
+    let variance = (own * others + prior * prior) / past.samples;
+    let variance = if moved { variance } else { variance.max(own) };
+    (MOVED_ERROR + variance.sqrt()) + prior * past.lod.clamp(0.0, 1.0)
+}
+
+/// Number of samples that a mean counts for after a gain: an estimate, which the next samples must correct.
+#[inline]
+pub fn relit_samples(samples: f32, gain: Vec3) -> f32 {
+    let changed = ((gain - Vec3::ONE).abs().max_element() * RELIT_PER_GAIN).min(1.0);
+    samples + (samples.min(RELIT_SAMPLES) - samples) * changed
+}
+
+/// Share of its samples that a mean keeps when `difference`, of a sample of its pixel, contradicts it. `error`: of
+/// [`expected_mean_error`].
+#[inline]
+pub fn kept_samples(error: f32, difference: f32) -> f32 {
+    1.0 - smooth_step(CONTRADICTED[0], CONTRADICTED[1], difference / (error + SAMPLE_ERROR))
+}
+
 /// Result of [`average`] and [`stored_mean`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Averaged {
     /// Color to show, and texel to store.
     pub result: Reconstructed,
-    /// Number of samples in the texel.
-    pub samples: f32,
+    /// Samples in the texel. Its level is that of the texel in `result`.
+    pub mean: Mean,
 }
 
-/// Mean of history and of the pixel's own sample, whose place in the pixel is `place_px`. `samples`: number of samples
-/// in the texel of history to keep; `kept`: share of them that remains after a clip.
+/// Mean of history and of the pixel's own sample, whose place in the pixel is `place_px`. `past`: the texel of history
+/// to keep; `kept`: share of its samples that remains after a clip; `difference`: of sample and history.
 #[inline]
-pub fn average(r: &Reconstruction, samples: f32, place_px: Vec2, kept: f32) -> Averaged {
+pub fn average(r: &Reconstruction, past: Mean, place_px: Vec2, kept: f32, difference: f32) -> Averaged {
     let acceptance = (r.fit * r.trust) * kept;
     let past_px = r.nearest.place_px;
     let away = past_px.x.abs().max(past_px.y.abs());
-    let most = MOST_PAST + (MOST_PAST_MOVED - MOST_PAST) * (away * MOVED_PER_PX).min(1.0);
-    let count = if r.nearest.lod > 0.0 { 0.0 } else { samples.min(most) * acceptance };
+    let most = MOST_SAMPLES + (MOST_PAST_MOVED - MOST_SAMPLES) * (away * MOVED_PER_PX).min(1.0);
+    let count = if r.nearest.lod > 0.0 { 0.0 } else { relit_samples(past.samples, r.gain).min(most) * acceptance };
     let share = count / (count + 1.0);
     let history = relit(r.history, r.gain, r.range);
     let near = away <= FARTHEST_PX;
@@ -232,16 +309,20 @@ pub fn average(r: &Reconstruction, samples: f32, place_px: Vec2, kept: f32) -> A
         place_px: place_px + (old_px - place_px) * share,
         ..r.nearest
     };
-    Averaged { result: Reconstructed { color, stored: next, share }, samples: count + 1.0 }
+    // Welford 1962: the variance after one more sample.
+    let variance = (past.deviation * past.deviation + (difference * difference) * (1.0 - share)) * share;
+    let result = Reconstructed { color, stored: next, share };
+    Averaged { result, mean: Mean { lod: 0.0, samples: count + 1.0, deviation: variance.sqrt() } }
 }
 
-/// Number of samples in the texel that is stored for a pixel without a sample of its own. This is the number in the
-/// stored texel, reduced where history does not fit. `result`: of [`reconstruct`](super::sparse_smr::reconstruct).
+/// The texel that is stored for a pixel without a sample of its own: that of history, with fewer samples where history
+/// does not fit. `result`: of [`reconstruct`](super::sparse_smr::reconstruct).
 #[inline]
-pub fn stored_mean(r: &Reconstruction, result: Reconstructed, samples: f32) -> Averaged {
+pub fn stored_mean(r: &Reconstruction, result: Reconstructed, past: Mean) -> Averaged {
     let is_kept = result.stored.lod < COARSE_LOD && r.nearest.lod <= 0.0;
     let share = r.fit * r.trust;
     // Compilers rewrite `1.0 + (samples - 1.0) * share` as this sum, which rounds in another way.
-    let left = samples * share + (1.0 - share);
-    Averaged { result, samples: if is_kept { left } else { 1.0 } }
+    let left = relit_samples(past.samples, r.gain) * share + (1.0 - share);
+    let mean = if is_kept { Mean { samples: left, ..past } } else { Mean::ONE };
+    Averaged { result, mean }
 }

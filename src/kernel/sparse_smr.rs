@@ -32,14 +32,19 @@ pub const LEAST_SHARE: f32 = 1e-4;
 /// [`root_difference`].
 const STILL_ERROR: f32 = 0.3;
 /// Expected difference between a sample and history that has moved.
-const MOVED_ERROR: f32 = 0.6;
+pub const MOVED_ERROR: f32 = 0.6;
 /// Share of history's local contrast (the difference of the smallest and the largest color around) that is added to the
 /// expected difference where history moved or is coarse. It covers errors of interpolation and of inexact places.
-const CONTRAST_ERROR: f32 = 0.375;
+pub const CONTRAST_ERROR: f32 = 0.375;
 /// Added to the expected error where the gate compares single samples.
 const GATE_ERROR: f32 = 0.7;
 /// Standard errors of a mean difference at which relighting starts; it is complete at twice as many.
 const RELIGHT_ERRORS: f32 = 2.5;
+/// Least mean difference at which relighting starts on still surfaces of jittered frames, in units of the deviation beyond
+/// `PLAIN_DEVIATION`: the jitter moves all samples of a frame alike, so that the errors of moire are not independent.
+const COHERENT_ERRORS: f32 = 3.0;
+/// Deviation within a pixel that textures may have without moire, in units of [`root_difference`].
+const PLAIN_DEVIATION: f32 = 8.0;
 /// Expected errors within which neighbours agree with a sample's own gain.
 const AGREE_ERRORS: f32 = 4.0;
 /// Added to the expected errors when a neighbour is compared with a sample's own gain, in units of [`root_difference`].
@@ -51,9 +56,13 @@ const GATE: [f32; 2] = [2.0, 4.0];
 const AGREED: [f32; 2] = [0.6, 6.0];
 /// Share of the errors without a gain that a gain of quads must leave at most, or it is not used.
 pub const RELIT_ERRORS: f32 = 0.8;
+/// Largest deviation of an observation, and steps in which it is stored.
+const MOST_DEVIATION: f32 = 63.75;
+const DEVIATION_STEPS: f32 = 4.0;
 /// Smallest and largest gain.
 const GAIN: [f32; 2] = [0.2, 5.0];
-/// Levels of detail that history loses when light doubles: history that has moved, and history that has not.
+/// Levels of detail that history loses when light doubles: history that has moved, and single samples that have not.
+/// Means that have not moved lose samples instead.
 const WORN: [f32; 2] = [4.0, 1.0];
 /// Levels of detail by which history must be finer than the candidate to replace it fully.
 const FINER_WIDTH: f32 = 0.25;
@@ -90,6 +99,26 @@ pub struct Observation {
     pub error: f32,
     /// Confidence in the difference, in \[0, 1\]: lower for coarse history, which differs from a point sample anyway.
     pub confidence: f32,
+    /// Deviation of the samples in a still mean, in the same units.
+    pub deviation: f32,
+}
+
+/// Confidence and deviation of an observation, in sixteen bits.
+#[inline]
+pub fn pack_known(confidence: f32, deviation: f32) -> u32 {
+    (confidence * 255.0 + 0.5) as u32 | ((deviation.min(MOST_DEVIATION) * DEVIATION_STEPS + 0.5) as u32) << 8
+}
+
+/// Confidence of [`pack_known`].
+#[inline]
+pub fn known_confidence(word: u32) -> f32 {
+    (word & 255) as f32 * (1.0 / 255.0)
+}
+
+/// Deviation of [`pack_known`].
+#[inline]
+pub fn known_deviation(word: u32) -> f32 {
+    (word >> 8 & 255) as f32 * (1.0 / DEVIATION_STEPS)
 }
 
 /// Expected difference between a sample and history of level of detail `lod` with local contrast `contrast`.
@@ -149,6 +178,8 @@ pub struct ObservedAround {
     pub history: Vec3,
     /// Expected errors, times weights.
     pub error: f32,
+    /// Deviations, times weights.
+    pub deviation: f32,
     /// Weights.
     pub weight: f32,
     /// Squared weights.
@@ -166,6 +197,7 @@ pub fn add_observation(a: ObservedAround, o: Observation, weight: f32, spatial: 
         sampled: a.sampled + o.sampled * weight,
         history: a.history + o.history * weight,
         error: a.error + o.error * weight,
+        deviation: a.deviation + o.deviation * weight,
         weight: a.weight + weight,
         squared: a.squared + weight * weight,
         spatial: a.spatial + spatial,
@@ -189,7 +221,7 @@ pub fn agreed(a: ObservedAround) -> f32 {
 
 /// Gain of the light around a sample: the ratio of the means of samples and of history at the same pixels, blended to 1
 /// where chance explains the difference of the means, or where other samples contradict it ([`agreed`]). `error`:
-/// expected difference of one sample.
+/// expected difference of one sample. `coherent`: whether the errors of samples may be alike.
 #[inline]
 pub fn relight(a: ObservedAround, error: f32) -> Vec3 {
     if a.weight < 1e-6 {
@@ -198,7 +230,9 @@ pub fn relight(a: ObservedAround, error: f32) -> Vec3 {
     let inverse = 1.0 / a.weight;
     let (sampled, history) = (a.sampled * inverse, a.history * inverse);
     // The standard error of a weighted mean.
-    let from = (error * (a.squared.sqrt() * inverse)) * RELIGHT_ERRORS;
+    let independent = error * ((a.squared.sqrt() * inverse) * RELIGHT_ERRORS);
+    let coherent = (a.deviation * inverse - PLAIN_DEVIATION) * COHERENT_ERRORS;
+    let from = independent.max(coherent);
     let changed = smooth_step(from, from, root_difference(sampled, history)) * agreed(a);
     // A share of 1 gives the ratio bit for bit.
     ratios(sampled, history) * changed + Vec3::splat(1.0 - changed)
@@ -341,8 +375,8 @@ pub struct Reconstruction {
     pub history_lod: f32,
     /// Stored sample to keep. Its place is relative to the pixel.
     pub nearest: StoredSample,
-    /// Whether history was read between samples.
-    pub moved: bool,
+    /// Levels of detail that history loses when light doubles ([`worn`]).
+    pub worn: f32,
     /// Gain of relighting.
     pub gain: Vec3,
     /// Degree to which history fits the samples around the pixel, in \[0, 1\].
@@ -365,6 +399,19 @@ pub struct Reconstructed {
     pub share: f32,
 }
 
+/// Levels of detail that history loses when light doubles. `moved`: whether it was read between samples; `means`:
+/// whether it stores means of samples.
+#[inline]
+pub fn worn(moved: bool, means: bool) -> f32 {
+    if moved {
+        WORN[0]
+    } else if means {
+        0.0
+    } else {
+        WORN[1]
+    }
+}
+
 /// Relit color. A gain cannot raise it above the largest of the samples around it by more than a share of their range.
 #[inline]
 pub fn relit(color: Vec3, gain: Vec3, range: [Vec3; 2]) -> Vec3 {
@@ -378,13 +425,13 @@ pub fn relit(color: Vec3, gain: Vec3, range: [Vec3; 2]) -> Vec3 {
 pub fn reconstruct(r: &Reconstruction) -> Reconstructed {
     let gain = r.gain;
     let acceptance = r.fit * r.trust;
-    let worn = if gain == Vec3::ONE {
+    let lost_lod = if gain == Vec3::ONE {
         0.0
     } else {
         let mean = (gain.x + gain.y + gain.z) * (1.0 / 3.0);
-        (approx::ln_approx(mean) * LOG2_E).abs() * (if r.moved { WORN[0] } else { WORN[1] })
+        (approx::ln_approx(mean) * LOG2_E).abs() * r.worn
     };
-    let history_lod = r.history_lod + worn;
+    let history_lod = r.history_lod + lost_lod;
     let finer = ((r.lod - history_lod) / FINER_WIDTH).clamp(0.0, 1.0);
     let coarser = ((history_lod - r.lod) / COARSER_WIDTH).clamp(0.0, 1.0);
     let share = (finer + (((1.0 - finer) * (1.0 - coarser)) * (r.accumulate * ACCUMULATE))) * acceptance;
@@ -393,7 +440,7 @@ pub fn reconstruct(r: &Reconstruction) -> Reconstructed {
     let lost = 1.0 - finer * acceptance;
     let place = r.nearest.place_px;
     let near = place.x.abs().max(place.y.abs()) <= super::stored_sample::FARTHEST_PX;
-    let kept_lod = r.nearest.lod + worn;
+    let kept_lod = r.nearest.lod + lost_lod;
     if share >= KEEP_SHARE && near && kept_lod < r.lod {
         let stored = StoredSample {
             color: relit(r.nearest.color, gain, r.range),

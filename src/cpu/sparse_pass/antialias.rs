@@ -3,11 +3,12 @@
 use super::sparse_history::Surroundings;
 use super::view::View;
 use crate::kernel::antialias::{
-    Averaged, Mean, Near, add_near, average, clip, clipped, is_silhouette, is_thin, may_show, move_together,
-    stands_before, stored_lod, stored_mean,
+    Averaged, MOST_DIFFERENCE, Mean, Near, add_near, average, byte_draws, clip, clipped, is_silhouette, is_thin,
+    kept_samples, may_show, move_together, stands_before, stored_lod, stored_mean,
 };
 use crate::kernel::rng;
-use crate::kernel::sparse_smr::{Reconstruction, reconstruct};
+use crate::kernel::smr::root_difference;
+use crate::kernel::sparse_smr::{Reconstruction, reconstruct, relit};
 use crate::kernel::stored_sample::{StoredSample, pack_color_by, pack_stored};
 use crate::notes::{NoteStage, Notes};
 use glam::Vec2;
@@ -84,13 +85,15 @@ impl View<'_> {
         px: [u32; 2],
         level: u32,
         mut inputs: Reconstruction,
-        samples: f32,
+        past: Mean,
+        error: f32,
         is_own: bool,
         notes: &mut impl Notes,
     ) -> Averaged {
         if !is_own {
-            return stored_mean(&inputs, reconstruct(&inputs), samples);
+            return stored_mean(&inputs, reconstruct(&inputs), past);
         }
+        let difference = root_difference(inputs.candidate, inputs.history).min(MOST_DIFFERENCE);
         let mut kept = 1.0;
         if level == 0 {
             let clip = clip(self.near(px), inputs.history);
@@ -98,9 +101,12 @@ impl View<'_> {
             inputs.nearest.color = clipped(inputs.nearest.color, clip.change);
             kept = clip.kept;
             notes.note(NoteStage::Comparison, "history clipped to the samples around", inputs.history, "linear light");
-            notes.note(NoteStage::Comparison, "share of its samples that it keeps", kept, "");
+        } else {
+            let history = relit(inputs.history, inputs.gain, inputs.range);
+            kept = kept_samples(error, root_difference(inputs.candidate, history));
         }
-        average(&inputs, samples, self.sample_place_px(), kept)
+        notes.note(NoteStage::Comparison, "share of its samples that it keeps", kept, "");
+        average(&inputs, past, self.sample_place_px(), kept, difference)
     }
 
     /// Sums over the nine samples around a pixel of full rate, whose own sample is usable; of a frame shaded by quads
@@ -128,11 +134,12 @@ impl View<'_> {
         near
     }
 
-    /// Packs a mean of `samples` samples. Its color is rounded stochastically.
+    /// Packs a mean. Its color, number of samples and deviation are rounded stochastically.
     #[inline(always)]
-    pub(super) fn packed_mean(&self, [x, y]: [u32; 2], stored: StoredSample, samples: f32) -> [u32; 2] {
-        let [_, word] = pack_stored(StoredSample { lod: stored_lod(Mean { lod: stored.lod, samples }), ..stored });
-        let draw = rng::unit_draw(rng::bits(x, y, self.frame_low, self.inputs.uniforms.key));
-        [pack_color_by(stored.color, draw), word]
+    pub(super) fn packed_mean(&self, [x, y]: [u32; 2], stored: StoredSample, mean: Mean) -> [u32; 2] {
+        let bits = rng::bits(x, y, self.frame_low, self.inputs.uniforms.key);
+        let lod = stored_lod(Mean { lod: stored.lod, ..mean }, byte_draws(bits));
+        let [_, word] = pack_stored(StoredSample { lod, ..stored });
+        [pack_color_by(stored.color, rng::unit_draw(bits)), word]
     }
 }

@@ -2,20 +2,22 @@
 
 use super::sparse_history::{Found, has_moved};
 use super::view::{Samples, View};
-use crate::kernel::antialias::DOUBTFUL;
+use crate::kernel::antialias::{DOUBTFUL, Mean, expected_mean_error};
 use crate::kernel::color::luma;
 use crate::kernel::noise::expected_noise;
 use crate::kernel::pack::{half_bits, half_value};
 use crate::kernel::smr::root_difference;
-use crate::kernel::sparse_smr::{Observation, expected_error, lod_confidence, noisy_lod_confidence};
+use crate::kernel::sparse_smr::{
+    Observation, expected_error, known_confidence, known_deviation, lod_confidence, noisy_lod_confidence, pack_known,
+};
 use crate::kernel::stored_sample::{pack_color, unpack_color};
 use crate::notes::NoNotes;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// Observation in two words: history's color, expected error and confidence as halves.
 pub(super) fn pack_observation(o: Option<Observation>) -> [u32; 2] {
     match o {
-        Some(o) => [pack_color(o.history), half_bits(o.error) | half_bits(o.confidence) << 16],
+        Some(o) => [pack_color(o.history), half_bits(o.error) | pack_known(o.confidence, o.deviation) << 16],
         None => [0, half_bits(-1.0)],
     }
 }
@@ -28,7 +30,8 @@ pub(super) fn unpack_observation(words: [u32; 2], sampled: impl FnOnce() -> Vec3
         sampled: sampled(),
         history: unpack_color(words[0]),
         error,
-        confidence: half_value(words[1] >> 16),
+        confidence: known_confidence(words[1] >> 16),
+        deviation: known_deviation(words[1] >> 16),
     })
 }
 
@@ -46,7 +49,13 @@ impl View<'_> {
     pub(super) fn observe_px(&self, px: [u32; 2], level: u32, sampled: Vec3, usable: bool) -> Option<Observation> {
         let surface = self.surface(px, level);
         if surface.is_doubtful {
-            return Some(Observation { sampled, history: Vec3::ZERO, error: DOUBTFUL, confidence: 0.0 });
+            return Some(Observation {
+                sampled,
+                history: Vec3::ZERO,
+                error: DOUBTFUL,
+                confidence: 0.0,
+                deviation: 0.0,
+            });
         }
         // At a silhouette the difference does not say whether anything changed.
         let comparable = usable && !surface.is_silhouette;
@@ -56,20 +65,25 @@ impl View<'_> {
             let [x, y] = self.inputs.uniforms.jitter_px;
             source.previous.at = [source.previous.at[0] - x, source.previous.at[1] - y];
         }
-        let Found { history, noise: past, .. } = self.interpolated(&source, &mut NoNotes);
+        let Found { history, noise: past, mean } = self.interpolated(&source, &mut NoNotes);
         if history.lod < 0.0 {
             return None;
         }
-        let moved = self.antialiases || has_moved(surface.motion, history.nearest.place_px);
         let [low, high] = history.range;
-        let mut error = expected_error(history.lod, root_difference(low, high), moved);
+        let contrast = root_difference(low, high);
+        let mut error = if self.antialiases {
+            expected_mean_error(Mean { lod: history.lod, ..mean }, contrast, has_moved(surface.motion, Vec2::ZERO))
+        } else {
+            expected_error(history.lod, contrast, has_moved(surface.motion, history.nearest.place_px))
+        };
+        let deviation = if has_moved(surface.motion, Vec2::ZERO) { 0.0 } else { mean.deviation };
         let mut confidence = lod_confidence(history.lod);
         if self.is_noisy() {
             let around = luma(history.color);
             error += expected_noise(past, self.sample_noise(px), around);
             confidence = noisy_lod_confidence(history.lod, past, around);
         }
-        Some(Observation { sampled, history: history.color, error, confidence })
+        Some(Observation { sampled, history: history.color, error, confidence, deviation })
     }
 
     #[inline(always)]

@@ -6,6 +6,7 @@ use super::quads::offset_px2;
 use super::sparse_history::{Found, Source, has_moved};
 use super::view::{NO_NOISE, Samples, View};
 use crate::cpu::pixel::{Pixel, ProcessPixel};
+use crate::kernel::antialias::{Mean, expected_mean_error};
 use crate::kernel::approx;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::lattice::point_weight;
@@ -13,7 +14,8 @@ use crate::kernel::noise::{NoiseSum, add_noise, mean_noise, pack_noise};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::has_code;
 use crate::kernel::sanitize;
-use crate::kernel::sparse_smr::{LEAST_SHARE, Reconstruction, accumulate, reconstruct, relit, unpack_lit};
+use crate::kernel::smr::root_difference;
+use crate::kernel::sparse_smr::{LEAST_SHARE, Reconstruction, accumulate, reconstruct, relit, unpack_lit, worn};
 use crate::kernel::stored_sample::{StoredSample, pack_stored};
 use crate::notes::{NoteStage, Notes};
 use crate::stats::FrameStats;
@@ -80,15 +82,19 @@ impl View<'_> {
             disparity: surface.stored,
             place_px: if self.antialiases && candidate.is_own { self.sample_place_px() } else { Vec2::ZERO },
         };
-        let mut samples = 1.0;
+        let mut mean = Mean::ONE;
         let (mut share, mut fits) = (0.0, 1.0);
         let mut noise = candidate.noise;
         if let (Ok(Source { previous, .. }), Some(found)) = (source, history) {
-            let Found { history, noise: past, samples: found_samples } = found;
+            let Found { history, noise: past, mean: past_mean } = found;
             if !candidate.usable {
-                (output, share, noise, samples) = (history.color, 1.0, past, found_samples);
+                (output, share, noise, mean) = (history.color, 1.0, past, past_mean);
                 stored = StoredSample { disparity: surface.stored, ..history.nearest };
             } else {
+                let moved = match self.antialiases {
+                    true => has_moved(surface.motion, Vec2::ZERO),
+                    false => has_moved([0.0; 2], history.nearest.place_px),
+                };
                 let inputs = Reconstruction {
                     candidate: candidate.color,
                     lod: candidate.lod,
@@ -96,7 +102,7 @@ impl View<'_> {
                     history: history.color,
                     history_lod: history.lod,
                     nearest: history.nearest,
-                    moved: has_moved([0.0; 2], history.nearest.place_px),
+                    worn: worn(moved, self.antialiases),
                     gain: candidate.gain,
                     fit: candidate.fit,
                     trust: previous.trust,
@@ -112,8 +118,10 @@ impl View<'_> {
                     noise = accumulated.noise;
                     accumulated.result
                 } else if self.antialiases {
-                    let averaged = self.antialiased([x, y], level, inputs, found_samples, candidate.is_own, notes);
-                    samples = averaged.samples;
+                    let contrast = root_difference(history.range[0], history.range[1]);
+                    let error = expected_mean_error(past_mean, contrast, moved);
+                    let averaged = self.antialiased([x, y], level, inputs, past_mean, error, candidate.is_own, notes);
+                    mean = averaged.mean;
                     averaged.result
                 } else {
                     reconstruct(&inputs)
@@ -135,7 +143,7 @@ impl View<'_> {
             is_replaced: share == 0.0,
             motion: surface.motion,
         };
-        let stored = if self.antialiases { self.packed_mean([x, y], stored, samples) } else { pack_stored(stored) };
+        let stored = if self.antialiases { self.packed_mean([x, y], stored, mean) } else { pack_stored(stored) };
         Pixel { output, surface: stored, noise: pack_noise(noise), trace }
     }
 

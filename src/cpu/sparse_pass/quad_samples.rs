@@ -83,6 +83,7 @@ impl View<'_> {
                 history: sum.history * inverse,
                 error: sum.error * inverse,
                 confidence: confidence * inverse,
+                deviation: sum.deviation * inverse,
             });
         }
         let distance2 = |other: [u32; 2]| offset_px2(other[0], quad[0]) + offset_px2(other[1], quad[1]);

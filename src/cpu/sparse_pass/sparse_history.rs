@@ -53,8 +53,8 @@ pub(super) struct Found {
     pub history: Interpolated,
     /// Noise of the sample to keep.
     pub noise: Noise,
-    /// Number of samples in the texel to keep.
-    pub samples: f32,
+    /// The texel to keep.
+    pub mean: Mean,
 }
 
 impl View<'_> {
@@ -112,7 +112,7 @@ impl View<'_> {
         let inverse_reach = if self.antialiases { INVERSE_MEAN_REACH } else { INVERSE_REACH };
         let mut around = Around::NOTHING;
         let mut nearest_texel = [x, y];
-        let mut samples = 1.0;
+        let mut kept = Mean::ONE;
         for tap in 0..columns * columns {
             let (tx, ty) = (x + tap % columns, y + tap / columns);
             let words = self.stored_words(tx, ty);
@@ -120,7 +120,7 @@ impl View<'_> {
             let texel_px = Vec2::new(tx as f32 - previous.at[0], ty as f32 - previous.at[1]);
             let cost = around.cost;
             let mut stored = unpack_full(words);
-            let mut mean = Mean { lod: stored.lod, samples: 1.0 };
+            let mut mean = Mean { lod: stored.lod, ..Mean::ONE };
             if self.antialiases {
                 mean = mean_of(stored.lod);
                 stored.lod = mean.lod;
@@ -134,7 +134,7 @@ impl View<'_> {
             }
             around = add_stored(around, stored, texel_px, same, inverse_reach);
             if around.cost < cost {
-                (nearest_texel, samples) = ([tx, ty], mean.samples);
+                (nearest_texel, kept) = ([tx, ty], mean);
             }
         }
         notes.note(NoteStage::History, "sum of weights", around.weight, "");
@@ -146,8 +146,9 @@ impl View<'_> {
         notes.note(NoteStage::History, "level of detail", history.lod, "log2 px, below 0: none");
         notes.note(NoteStage::History, "sample to keep", nearest.color, "linear light");
         notes.note(NoteStage::History, "its place", nearest.place_px, "px from the position");
-        notes.note(NoteStage::History, "its number of samples", samples, "");
-        Found { history, noise: self.stored_noise(nearest_texel), samples }
+        notes.note(NoteStage::History, "its number of samples", kept.samples, "");
+        notes.note(NoteStage::History, "their standard deviation", kept.deviation, "100 from black to white");
+        Found { history, noise: self.stored_noise(nearest_texel), mean: kept }
     }
 }
 
