@@ -4,14 +4,20 @@
 //#use taa
 // Twin of src/kernel/antialias.rs, which explains the constants.
 
-const MOST_SAMPLES: f32 = 31.0;
-const MOST_PAST: f32 = 30.0;
+const MOST_SAMPLES: f32 = 29.0;
 const MOST_PAST_MOVED: f32 = 3.0;
 const MOVED_PER_PX: f32 = 4.0;
 const CODES_PER_LOD: f32 = 7.0;
-const ONE_SAMPLE: f32 = 30.0;
-const CODES_PER_COARSE_LOD: f32 = 5.0;
-const COARSE_LOD: f32 = 0.1;
+const DEVIATIONS: f32 = 6.0;
+const COARSE_CODE: f32 = 47.0;
+const CODES_PER_COARSE_LOD: f32 = 2.5;
+const COARSE_LOD: f32 = 0.2;
+const DEVIATION_STEP: f32 = 1.25;
+const SAMPLE_ERROR: f32 = 0.7;
+const RELIT_SAMPLES: f32 = 3.0;
+const RELIT_PER_GAIN: f32 = 10.0;
+const MOST_DIFFERENCE: f32 = 200.0;
+const CONTRADICTED: vec2f = vec2f(3.0, 4.0);
 const CLIP_SIGMAS: f32 = 2.0;
 const CLIP: f32 = 0.5;
 const CLIP_COST: f32 = 10.0;
@@ -24,20 +30,56 @@ const DOUBTFUL: f32 = -2.0;
 struct Mean {
     lod: f32,
     samples: f32,
+    deviation: f32,
 }
 
 fn mean_of(stored: f32) -> Mean {
     let code = floor(stored * CODES_PER_LOD + 0.5);
-    let coarse = code > ONE_SAMPLE;
-    let empty = stored < 0.0;
-    let lod = select(0.0, (code - ONE_SAMPLE) * (1.0f / CODES_PER_COARSE_LOD), coarse);
-    return Mean(select(lod, -1.0, empty), select(ONE_SAMPLE + 1.0 - code, 1.0, coarse || empty));
+    if stored < 0.0 {
+        return Mean(-1.0, 1.0, 0.0);
+    }
+    if code > COARSE_CODE {
+        return Mean((code - COARSE_CODE) * (1.0f / CODES_PER_COARSE_LOD), 1.0, 0.0);
+    }
+    // 0.125 keeps the quotient away from integers.
+    let number = floor((code + 0.125) * (1.0f / DEVIATIONS));
+    return Mean(0.0, samples_of(7.0 - number), deviation_of(code - number * DEVIATIONS));
 }
 
-fn stored_lod(m: Mean) -> f32 {
-    let fine = ONE_SAMPLE + 1.0 - clamp(m.samples, 1.0, MOST_SAMPLES);
-    let code = select(fine, ONE_SAMPLE + m.lod * CODES_PER_COARSE_LOD, m.lod > COARSE_LOD);
-    return select(code * (1.0f / CODES_PER_LOD), -1.0, m.lod < 0.0);
+fn byte_draws(word: u32) -> vec2f {
+    return (vec2f(f32(word & 255u), f32((word >> 8u) & 255u)) + 0.5) * (1.0f / 256.0);
+}
+
+fn samples_of(number: f32) -> f32 {
+    return 1.0 + 0.5 * (number * (number + 1.0));
+}
+
+fn deviation_of(number: f32) -> f32 {
+    return DEVIATION_STEP * (number * (number + 1.0));
+}
+
+fn step_below(v: f32) -> f32 {
+    return floor(sqrt(v * 8.0 + 1.0) * 0.5 - 0.5);
+}
+
+fn stored_lod(m: Mean, draws: vec2f) -> f32 {
+    if m.lod < 0.0 {
+        return -1.0;
+    }
+    if m.lod > COARSE_LOD {
+        return (COARSE_CODE + max(m.lod * CODES_PER_COARSE_LOD, 1.0)) * (1.0f / CODES_PER_LOD);
+    }
+    let samples = clamp(m.samples, 1.0, MOST_SAMPLES);
+    let number = min(step_below(samples - 1.0), 6.0);
+    let fewer = samples_of(number);
+    let is_more = samples - fewer > (samples_of(number + 1.0) - fewer) * draws.x;
+    let deviation = min(m.deviation, deviation_of(5.0));
+    let steps = min(step_below(deviation * (0.5f / DEVIATION_STEP)), 4.0);
+    let low = deviation_of(steps);
+    let high = deviation_of(steps + 1.0);
+    let is_higher = deviation * deviation - low * low > (high * high - low * low) * draws.y;
+    let code = (7.0 - select(number, number + 1.0, is_more)) * DEVIATIONS + select(steps, steps + 1.0, is_higher);
+    return code * (1.0f / CODES_PER_LOD);
 }
 
 fn stands_before(own: f32, neighbour: f32, own_motion: vec2f, motion: vec2f, full_rate: bool) -> bool {
@@ -114,17 +156,35 @@ fn scattered_error(a: ObservedAround, scatter: f32) -> f32 {
     return max(a.error * inverse, sqrt(variance));
 }
 
-struct Averaged {
-    result: Reconstructed,
-    samples: f32,
+fn expected_mean_error(past: Mean, contrast: f32, moved: bool) -> f32 {
+    let prior = min(contrast, MOST_DIFFERENCE) * CONTRAST_ERROR;
+    let own = past.deviation * past.deviation;
+    let variance = (own * (past.samples - 1.0) + prior * prior) / past.samples;
+    return (MOVED_ERROR + sqrt(select(max(variance, own), variance, moved))) + prior * clamp(past.lod, 0.0, 1.0);
 }
 
-fn average(r: Reconstruction, samples: f32, place_px: vec2f, kept: f32) -> Averaged {
+fn relit_samples(samples: f32, gains: vec3f) -> f32 {
+    let by = abs(gains - 1.0);
+    let changed = min(max(max(by.x, by.y), by.z) * RELIT_PER_GAIN, 1.0);
+    return samples * (1.0 - changed) + min(samples, RELIT_SAMPLES) * changed;
+}
+
+fn kept_samples(error: f32, difference: f32) -> f32 {
+    let errors = difference / (min(error, MOST_DIFFERENCE) + SAMPLE_ERROR);
+    return 1.0 - smooth_step(CONTRADICTED.x, CONTRADICTED.y, errors);
+}
+
+struct Averaged {
+    result: Reconstructed,
+    mean: Mean,
+}
+
+fn average(r: Reconstruction, past: Mean, place_px: vec2f, kept: f32, difference: f32) -> Averaged {
     let acceptance = (r.fit * r.trust) * kept;
     let past_px = r.nearest.place_px;
     let away = max(abs(past_px.x), abs(past_px.y));
-    let most = MOST_PAST + (MOST_PAST_MOVED - MOST_PAST) * min(away * MOVED_PER_PX, 1.0);
-    let count = select(min(samples, most) * acceptance, 0.0, r.nearest.lod > 0.0);
+    let most = MOST_SAMPLES + (MOST_PAST_MOVED - MOST_SAMPLES) * min(away * MOVED_PER_PX, 1.0);
+    let count = select(min(relit_samples(past.samples, r.gains), most) * acceptance, 0.0, r.nearest.lod > 0.0);
     let share = count / (count + 1.0);
     let history = relit(r.history, r.gains, r.lowest, r.highest);
     let near = away <= FARTHEST_PX;
@@ -136,12 +196,14 @@ fn average(r: Reconstruction, samples: f32, place_px: vec2f, kept: f32) -> Avera
     let shown = r.candidate + (history - r.candidate) * share;
     let next = r.candidate + (old - r.candidate) * share;
     let next_px = place_px + (old_px - place_px) * share;
-    return Averaged(Reconstructed(shown, StoredSample(next, 0.0, r.nearest.disparity, next_px), share), count + 1.0);
+    let variance = (past.deviation * past.deviation + (difference * difference) * (1.0 - share)) * share;
+    let result = Reconstructed(shown, StoredSample(next, 0.0, r.nearest.disparity, next_px), share);
+    return Averaged(result, Mean(0.0, count + 1.0, sqrt(variance)));
 }
 
-fn stored_mean(r: Reconstruction, result: Reconstructed, samples: f32) -> Averaged {
+fn stored_mean(r: Reconstruction, result: Reconstructed, past: Mean) -> Averaged {
     let is_kept = result.stored.lod < COARSE_LOD && r.nearest.lod <= 0.0;
     let share = r.fit * r.trust;
-    let left = samples * share + (1.0 - share);
-    return Averaged(result, select(1.0, left, is_kept));
+    let left = relit_samples(past.samples, r.gains) * share + (1.0 - share);
+    return Averaged(result, Mean(past.lod, select(1.0, left, is_kept), select(0.0, past.deviation, is_kept)));
 }

@@ -15,11 +15,14 @@ const MOVED_ERROR: f32 = 0.6;
 const CONTRAST_ERROR: f32 = 0.375;
 const GATE_ERROR: f32 = 0.7;
 const RELIGHT_ERRORS: f32 = 2.5;
+const PLAIN_DEVIATION: f32 = 8.0;
 const AGREE_ERRORS: f32 = 4.0;
 const AGREE_ERROR: f32 = 0.8;
 const FIT_ERRORS: vec2f = vec2f(2.0, 4.0);
 const SAMPLE_GAIN: vec2f = vec2f(0.2, 5.0);
 const WORN: vec2f = vec2f(4.0, 1.0);
+const MOST_DEVIATION: f32 = 63.75;
+const DEVIATION_STEPS: f32 = 4.0;
 const FINER_WIDTH: f32 = 0.25;
 const OVERSHOOT: f32 = 0.25;
 const ACCUMULATE: f32 = 0.5;
@@ -40,6 +43,19 @@ struct Observation {
     history: vec3f,
     error: f32,
     confidence: f32,
+    deviation: f32,
+}
+
+fn pack_known(confidence: f32, deviation: f32) -> u32 {
+    return u32(confidence * 255.0 + 0.5) | (u32(min(deviation, MOST_DEVIATION) * DEVIATION_STEPS + 0.5) << 8u);
+}
+
+fn known_confidence(word: u32) -> f32 {
+    return f32(word & 255u) * (1.0f / 255.0);
+}
+
+fn known_deviation(word: u32) -> f32 {
+    return f32((word >> 8u) & 255u) * (1.0f / DEVIATION_STEPS);
 }
 
 fn expected_error(lod: f32, contrast: f32, moved: bool) -> f32 {
@@ -78,6 +94,7 @@ struct ObservedAround {
     sampled: vec3f,
     history: vec3f,
     error: f32,
+    deviation: f32,
     weight: f32,
     squared: f32,
     spatial: f32,
@@ -89,6 +106,7 @@ fn add_observation(a: ObservedAround, o: Observation, weight: f32, spatial: f32)
         a.sampled + o.sampled * weight,
         a.history + o.history * weight,
         a.error + o.error * weight,
+        a.deviation + o.deviation * weight,
         a.weight + weight,
         a.squared + weight * weight,
         a.spatial + spatial,
@@ -104,6 +122,11 @@ fn agreed(a: ObservedAround) -> f32 {
     return clamp((a.weight - a.known * AGREED.x) * (AGREED.y / max(a.known, 1e-6)), 0.0, 1.0);
 }
 
+fn not_jitter(a: ObservedAround, difference: f32) -> f32 {
+    let beyond = (a.deviation - PLAIN_DEVIATION * a.weight) * (1.0 / a.weight);
+    return select(1.0, smooth_step(FIT_ERRORS.x, FIT_ERRORS.y, difference / max(beyond, 1e-3)), beyond > 0.0);
+}
+
 fn relight(a: ObservedAround, error: f32) -> vec3f {
     if a.weight < 1e-6 {
         return vec3f(1.0);
@@ -111,9 +134,10 @@ fn relight(a: ObservedAround, error: f32) -> vec3f {
     let inverse = 1.0 / a.weight;
     let sampled = a.sampled * inverse;
     let history = a.history * inverse;
+    let difference = root_difference(sampled, history);
     // The standard error of a weighted mean.
     let start = (error * (sqrt(a.squared) * inverse)) * RELIGHT_ERRORS;
-    let changed = smooth_step(start, start, root_difference(sampled, history)) * agreed(a);
+    let changed = (smooth_step(start, start, difference) * not_jitter(a, difference)) * agreed(a);
     // A share of 1 gives the ratio bit for bit.
     return ratios(sampled, history) * changed + (1.0 - changed);
 }
@@ -211,7 +235,7 @@ struct Reconstruction {
     history: vec3f,
     history_lod: f32,
     nearest: StoredSample,
-    moved: bool,
+    worn: f32,
     gains: vec3f,
     fit: f32,
     trust: f32,
@@ -224,18 +248,22 @@ struct Reconstructed {
     share: f32,
 }
 
+fn worn(moved: bool, means: bool) -> f32 {
+    return select(select(WORN.y, 0.0, means), WORN.x, moved);
+}
+
 fn relit(c: vec3f, gains: vec3f, lowest: vec3f, highest: vec3f) -> vec3f {
     return min(c * gains, max(c, highest + (highest - lowest) * OVERSHOOT));
 }
 
 fn reconstruct(r: Reconstruction) -> Reconstructed {
     let acceptance = r.fit * r.trust;
-    var worn = 0.0;
+    var lost_lod = 0.0;
     if any(r.gains != vec3f(1.0)) {
         let mean = (r.gains.x + r.gains.y + r.gains.z) * (1.0f / 3.0f);
-        worn = abs(ln_approx(mean) * LOG2_E) * select(WORN.y, WORN.x, r.moved);
+        lost_lod = abs(ln_approx(mean) * LOG2_E) * r.worn;
     }
-    let history_lod = r.history_lod + worn;
+    let history_lod = r.history_lod + lost_lod;
     let finer = clamp((r.lod - history_lod) / FINER_WIDTH, 0.0, 1.0);
     let coarser = clamp((history_lod - r.lod) / COARSER_WIDTH, 0.0, 1.0);
     let share = (finer + (((1.0 - finer) * (1.0 - coarser)) * (r.accumulate * ACCUMULATE))) * acceptance;
@@ -246,7 +274,7 @@ fn reconstruct(r: Reconstruction) -> Reconstructed {
     }
     let lost = 1.0 - finer * acceptance;
     let near = max(abs(r.nearest.place_px.x), abs(r.nearest.place_px.y)) <= FARTHEST_PX;
-    let kept_lod = r.nearest.lod + worn;
+    let kept_lod = r.nearest.lod + lost_lod;
     if share >= KEEP_SHARE && near && kept_lod < r.lod {
         let kept_color = relit(r.nearest.color, r.gains, r.lowest, r.highest);
         let lod = kept_lod + (r.lod - kept_lod) * lost;

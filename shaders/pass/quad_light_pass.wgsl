@@ -17,7 +17,14 @@ override ANTIALIAS: u32 = 0u;
 fn observation_at(px: vec2u, view: u32) -> Observation {
     let words = textureLoad(observed, px, view, 0).xy;
     let sampled = color(color_at(px, view).xyz).color;
-    return Observation(sampled, unpack_color(words.x), half_value(words.y), half_value(words.y >> 16u));
+    let known = words.y >> 16u;
+    return Observation(
+        sampled,
+        unpack_color(words.x),
+        half_value(words.y),
+        known_confidence(known),
+        known_deviation(known),
+    );
 }
 
 fn is_alike(own_disparity: f32, px: vec2u, view: u32) -> bool {
@@ -42,7 +49,7 @@ fn own_of(quad: vec2u, view: u32) -> Own {
         first = select(first, left - 1u, is_compared(px_of_quad(quad, left - 1u), view));
     }
     let disparity_now = disparity_at(px_of_quad(quad, first & 3u), view);
-    var sum = ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
+    var sum = ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     var confidence = 0.0;
     let taps = select(4u, 0u, first == 4u);
     for (var i = 0u; i < taps; i++) {
@@ -55,7 +62,9 @@ fn own_of(quad: vec2u, view: u32) -> Own {
     }
     let inverse = 1.0 / max(sum.weight, 1.0);
     let error = select(sum.error * inverse, -1.0, sum.weight == 0.0);
-    return Own(Observation(sum.sampled * inverse, sum.history * inverse, error, confidence * inverse), disparity_now);
+    let deviation = sum.deviation * inverse;
+    let own = Observation(sum.sampled * inverse, sum.history * inverse, error, confidence * inverse, deviation);
+    return Own(own, disparity_now);
 }
 
 struct Neighbour {
@@ -70,7 +79,7 @@ fn neighbour_at(tap: u32, quad: vec2u, view: u32, own: Own, around: vec2u, least
     let code = select(code_of(around, tap >> 2u), NOWHERE, tap >= 32u);
     let offset = neighbour_offset(code);
     let px = px_of_quad(vec2u(vec2i(quad) + offset), tap & 3u);
-    var near = Neighbour(Observation(vec3f(0.0), vec3f(0.0), -1.0, 0.0), 0.0, 0.0);
+    var near = Neighbour(Observation(vec3f(0.0), vec3f(0.0), -1.0, 0.0, 0.0), 0.0, 0.0);
     let is_there = code != NOWHERE || tap >= 32u;
     if !is_there || !is_compared(px, view) || !is_alike(own.disparity, px, view) {
         return near;
@@ -93,7 +102,7 @@ fn light(quad: vec2u, view: u32) -> vec4u {
         let offset = neighbour_offset(code);
         least = select(least, min(least, f32(offset.x * offset.x + offset.y * offset.y)), code != NOWHERE);
     }
-    var sum = ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
+    var sum = ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     var without = 0.0;
     var capped = 0.0;
     var scatter = 0.0;

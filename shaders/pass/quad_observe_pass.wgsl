@@ -24,14 +24,15 @@ fn observe(px: vec2u, view: u32) -> vec2u {
     // At a silhouette the difference does not say whether anything changed.
     let comparable = color(color_at(px, view).xyz).usable && !surface.is_silhouette;
     let needed = may_have_history(source.previous) && comparable;
-    let history = sparse_history(source, view, needed).found;
+    let found = sparse_history(source, view, needed);
+    let history = found.found;
     if !needed || history.lod < 0.0 {
         return nothing;
     }
     let contrast = root_difference(history.lowest, history.highest);
-    let moved = ANTIALIAS != 0u || has_moved(surface.motion, history.nearest.place_px);
-    let error = expected_error(history.lod, contrast, moved);
-    return vec2u(pack_color(history.color), half_bits(error) | (half_bits(lod_confidence(history.lod)) << 16u));
+    let compared = comparison(found, contrast, surface.motion);
+    let known = pack_known(lod_confidence(history.lod), compared.deviation);
+    return vec2u(pack_color(history.color), half_bits(compared.error) | (known << 16u));
 }
 
 @compute @workgroup_size(64, 1)

@@ -21,13 +21,14 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(workgroup_id) group: 
     let position = old_position_of(id.xy);
     let at = nearest_to(position);
     var stored = unpack_stored(textureLoad(past_stored, at, group.z, 0).xy);
-    let mean = mean_of(stored.lod);
+    var mean = mean_of(stored.lod);
     if MEANS != 0u {
         stored.lod = mean.lod;
     }
     var moved = moved_stored(stored, vec2f(at) - position, 1.0 / resize.ratio, resize.lod_shift);
     if MEANS != 0u {
-        moved.lod = stored_lod(Mean(moved.lod, mean.samples));
+        mean.lod = moved.lod;
+        moved.lod = stored_lod(mean, vec2f(0.5));
     }
     textureStore(next_stored, id.xy, group.z, vec4u(pack_stored(moved), 0u, 0u));
     if NOISY != 0u {

@@ -115,11 +115,11 @@ fn may_have_history(previous: Previous) -> bool {
     return previous.verdict == VERDICT_VALID || previous.verdict == VERDICT_DISOCCLUDED;
 }
 
-// History, the texel of the sample to keep, and the number of samples in it.
+// History, the texel of the sample to keep, and the samples in it.
 struct SparseHistory {
     found: Interpolated,
     texel: vec2i,
-    samples: f32,
+    mean: Mean,
 }
 
 // History at a previous position, in this frame's exposure. At a silhouette the nearest stored sample may belong to
@@ -139,7 +139,7 @@ fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistor
         inverse_reach = INVERSE_MEAN_REACH;
     }
     var nearest_texel = first;
-    var samples = 1.0;
+    var kept = Mean(0.0, 1.0, 0.0);
     let taps = select(0u, columns * columns, needed);
     for (var tap = 0u; tap < taps; tap++) {
         let texel = first + vec2i(vec2u(tap % columns, tap / columns));
@@ -147,14 +147,16 @@ fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistor
         let same = !is_empty(words) && (DEPTH_TEST == 0u || has_code(code_word(words), source.codes));
         let cost = around.cost;
         var stored = unpack_full(words);
-        var mean = Mean(stored.lod, 1.0);
+        var mean = Mean(stored.lod, 1.0, 0.0);
         if ANTIALIAS != 0u {
             mean = mean_of(stored.lod);
             stored.lod = mean.lod;
         }
         around = add_stored(around, stored, vec2f(texel) - previous.at, same, inverse_reach);
         nearest_texel = select(nearest_texel, texel, around.cost < cost);
-        samples = select(samples, mean.samples, around.cost < cost);
+        if around.cost < cost {
+            kept = mean;
+        }
     }
     if previous.verdict == VERDICT_DISOCCLUDED && !can_replace(around) {
         around = nothing_around();
@@ -164,10 +166,26 @@ fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistor
     found.lowest = expose(found.lowest, frame.exposure);
     found.highest = expose(found.highest, frame.exposure);
     found.nearest.color = expose(found.nearest.color, frame.exposure);
-    return SparseHistory(found, nearest_texel, samples);
+    return SparseHistory(found, nearest_texel, kept);
 }
 
 // Whether history has moved since its samples were shaded, by more than the resolution of their stored places.
 fn has_moved(motion: vec2f, place_px: vec2f) -> bool {
     return max(abs(motion.x), abs(motion.y)) > EXACT_PX || max(abs(place_px.x), abs(place_px.y)) > EXACT_PX;
+}
+
+// Expected difference of a sample from history with the local contrast `contrast`, and deviation of a still mean.
+struct Comparison {
+    error: f32,
+    deviation: f32,
+}
+
+fn comparison(history: SparseHistory, contrast: f32, motion: vec2f) -> Comparison {
+    let found = history.found;
+    if ANTIALIAS == 0u {
+        return Comparison(expected_error(found.lod, contrast, has_moved(motion, found.nearest.place_px)), 0.0);
+    }
+    let moved = has_moved(motion, vec2f(0.0));
+    let mean = Mean(found.lod, history.mean.samples, history.mean.deviation);
+    return Comparison(expected_mean_error(mean, contrast, moved), select(history.mean.deviation, 0.0, moved));
 }

@@ -21,7 +21,14 @@ struct Neighbour {
 fn observation_at(point: vec2u, lattice: LatticeUniforms, view: u32) -> Observation {
     let words = textureLoad(observed, lattice.results + point, view, 0).xy;
     let sampled = color(sample_at(point, lattice, view).xyz).color;
-    return Observation(sampled, unpack_color(words.x), half_value(words.y), half_value(words.y >> 16u));
+    let known = words.y >> 16u;
+    return Observation(
+        sampled,
+        unpack_color(words.x),
+        half_value(words.y),
+        known_confidence(known),
+        known_deviation(known),
+    );
 }
 
 fn disparity_of(point: vec2u, lattice: LatticeUniforms, view: u32) -> f32 {
@@ -68,7 +75,7 @@ fn light(point: vec2u, lattice: LatticeUniforms, view: u32) -> vec2u {
     var without = 0.0;
     var capped = 0.0;
     var scatter = 0.0;
-    var sum = ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0);
+    var sum = ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
     let taps = select(0u, 9u, has_history());
     for (var tap = 0u; tap < taps; tap++) {

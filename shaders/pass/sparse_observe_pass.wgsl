@@ -27,15 +27,15 @@ fn observe(point: vec2u, lattice: LatticeUniforms, view: u32) -> vec2u {
         return nothing;
     }
     let contrast = root_difference(history.lowest, history.highest);
-    let moved = ANTIALIAS != 0u || has_moved(motion, history.nearest.place_px);
-    var error = expected_error(history.lod, contrast, moved);
+    let compared = comparison(found, contrast, motion);
+    var error = compared.error;
     var confidence = lod_confidence(history.lod);
     if NOISY != 0u {
         let past = stored_noise(found.texel, view);
         error += expected_noise(past, noise_at(px, view), luma(history.color));
         confidence = noisy_lod_confidence(history.lod, past, luma(history.color));
     }
-    return vec2u(pack_color(history.color), half_bits(error) | (half_bits(confidence) << 16u));
+    return vec2u(pack_color(history.color), half_bits(error) | (pack_known(confidence, compared.deviation) << 16u));
 }
 
 @compute @workgroup_size(64, 1)

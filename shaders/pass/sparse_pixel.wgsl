@@ -41,22 +41,27 @@ fn antialiased(
     view: u32,
     level: u32,
     given: Reconstruction,
-    samples: f32,
+    past: Mean,
+    error: f32,
     is_own: bool,
     near: Near,
 ) -> Averaged {
     if !is_own {
-        return stored_mean(given, reconstruct(given), samples);
+        return stored_mean(given, reconstruct(given), past);
     }
     var inputs = given;
-    var left = 1.0;
+    let difference = min(root_difference(given.candidate, given.history), MOST_DIFFERENCE);
+    var kept = 1.0;
     if level == 0u {
         let by = clip(near, inputs.history);
         inputs.history = clipped(inputs.history, by.change);
         inputs.nearest.color = clipped(inputs.nearest.color, by.change);
-        left = by.kept;
+        kept = by.kept;
+    } else {
+        let history = relit(given.history, given.gains, given.lowest, given.highest);
+        kept = kept_samples(error, root_difference(given.candidate, history));
     }
-    return average(inputs, samples, -frame.views[view].jitter_px, left);
+    return average(inputs, past, -frame.views[view].jitter_px, kept, difference);
 }
 
 // Pixels outside the visible area: black, without stored history.
@@ -89,7 +94,7 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, candidate: C
     var shown = candidate.color;
     let candidate_lod = select(-1.0, candidate.lod, candidate.usable);
     var next = StoredSample(candidate.color, candidate_lod, surface.stored_disparity, vec2f(0.0));
-    var samples = 1.0;
+    var mean = Mean(0.0, 1.0, 0.0);
     if ANTIALIAS != 0u && candidate.is_own {
         next.place_px = -frame.views[view].jitter_px;
     }
@@ -106,7 +111,11 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, candidate: C
             inputs.history = history.color;
             inputs.history_lod = history.lod;
             inputs.nearest = history.nearest;
-            inputs.moved = has_moved(vec2f(0.0), history.nearest.place_px);
+            var moved = has_moved(vec2f(0.0), history.nearest.place_px);
+            if ANTIALIAS != 0u {
+                moved = has_moved(motion, vec2f(0.0));
+            }
+            inputs.worn = worn(moved, ANTIALIAS != 0u);
             inputs.gains = candidate.gains;
             inputs.fit = candidate.fit;
             inputs.trust = previous.trust;
@@ -117,9 +126,11 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, candidate: C
                 result = accumulated.result;
                 noise = accumulated.noise;
             } else if ANTIALIAS != 0u {
-                let averaged = antialiased(px, view, level, inputs, found.samples, candidate.is_own, near);
+                let contrast = root_difference(history.lowest, history.highest);
+                let error = expected_mean_error(found.mean, contrast, moved);
+                let averaged = antialiased(px, view, level, inputs, found.mean, error, candidate.is_own, near);
                 result = averaged.result;
-                samples = averaged.samples;
+                mean = averaged.mean;
             } else {
                 result = reconstruct(inputs);
             }
@@ -131,7 +142,7 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, candidate: C
             shown = history.color;
             share = 1.0;
             next = history.nearest;
-            samples = found.samples;
+            mean = found.mean;
             if NOISY != 0u {
                 noise = stored_noise(found.texel, view);
             }
@@ -147,10 +158,11 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, candidate: C
     if VIEW == 0u {
         var words = pack_stored(next);
         if ANTIALIAS != 0u {
-            // The color is rounded stochastically.
-            let draw = unit_draw(bits(px.x, px.y, frame.frame_low, frame.views[view].key));
-            let stored = StoredSample(next.color, stored_lod(Mean(next.lod, samples)), next.disparity, next.place_px);
-            words = vec2u(pack_color_by(next.color, draw), pack_stored(stored).y);
+            // Color, number of samples and deviation are rounded stochastically.
+            let random = bits(px.x, px.y, frame.frame_low, frame.views[view].key);
+            mean.lod = next.lod;
+            next.lod = stored_lod(mean, byte_draws(random));
+            words = vec2u(pack_color_by(next.color, unit_draw(random)), pack_stored(next).y);
         }
         textureStore(next_stored, px, view, vec4u(words, 0u, 0u));
         if NOISY != 0u {

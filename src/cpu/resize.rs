@@ -52,8 +52,7 @@ impl Resize {
                 return pack_stored(moved_stored(stored, texel_px, scale, self.lod_shift));
             }
             let mean = mean_of(stored.lod);
-            let lod = mean.lod;
-            stored.lod = lod;
+            stored.lod = mean.lod;
             let moved = moved_stored(stored, texel_px, scale, self.lod_shift);
             pack_stored(StoredSample { lod: stored_lod(Mean { lod: moved.lod, ..mean }, [0.5; 2]), ..moved })
         })

@@ -43,7 +43,7 @@ const RELIT_PER_GAIN: f32 = 10.0;
 pub const MOST_DIFFERENCE: f32 = 200.0;
 /// Differences between a sample and history, in expected ones, at which history starts to be contradicted, and width
 /// over which it loses all its samples.
-const CONTRADICTED: [f32; 2] = [3.0, 3.0];
+const CONTRADICTED: [f32; 2] = [3.0, 4.0];
 /// Half width of the box of nine samples to which history is clipped at full rate, in standard deviations.
 const BOX_SIGMAS: f32 = 2.0;
 /// Share of the clip that is applied, so that a thin feature is not lost at once if a frame misses it.
@@ -109,6 +109,12 @@ fn deviation_of(step: f32) -> f32 {
     DEVIATION_STEP * (step * (step + 1.0))
 }
 
+/// Largest step whose triangular number, step (step + 1) / 2, is at most `v`.
+#[inline]
+fn step_below(v: f32) -> f32 {
+    ((v * 8.0 + 1.0).sqrt() * 0.5 - 0.5).floor()
+}
+
 /// Level of detail to store for a mean; the inverse of [`mean_of`]. Number and deviation are rounded stochastically by
 /// `draws`, each in \[0, 1): their means over the frames stay, and stored values stay as they are.
 #[inline]
@@ -119,17 +125,15 @@ pub fn stored_lod(m: Mean, draws: [f32; 2]) -> f32 {
     if m.lod > COARSE_LOD {
         return (COARSE_CODE + (m.lod * CODES_PER_COARSE_LOD).max(1.0)) * (1.0 / CODES_PER_LOD);
     }
-    // The inverses of `samples_of` and `deviation_of`.
-    let least = |v: f32| ((v * 8.0 + 1.0).sqrt() * 0.5 - 0.5).floor();
     let samples = m.samples.clamp(1.0, MOST_SAMPLES);
-    let step = least(samples - 1.0).min(6.0);
+    let step = step_below(samples - 1.0).min(6.0);
     let [low, high] = [samples_of(step), samples_of(step + 1.0)];
     let number = if samples - low > (high - low) * draws[0] { step + 1.0 } else { step };
     let deviation = m.deviation.min(deviation_of(5.0));
-    let step = least(deviation * (0.5 / DEVIATION_STEP)).min(4.0);
+    let step = step_below(deviation * (0.5 / DEVIATION_STEP)).min(4.0);
     let [low, high] = [deviation_of(step), deviation_of(step + 1.0)];
-    let by = (deviation * deviation - low * low) - (high * high - low * low) * draws[1];
-    let step = if by > 0.0 { step + 1.0 } else { step };
+    let is_higher = deviation * deviation - low * low > (high * high - low * low) * draws[1];
+    let step = if is_higher { step + 1.0 } else { step };
     ((7.0 - number) * DEVIATIONS + step) * (1.0 / CODES_PER_LOD)
 }
 
@@ -257,7 +261,8 @@ pub fn scattered_error(a: ObservedAround, scatter: f32) -> f32 {
 /// come from the motion. As [`expected_error`](super::sparse_smr::expected_error).
 #[inline]
 pub fn expected_mean_error(past: Mean, contrast: f32, moved: bool) -> f32 {
-    let prior = contrast * CONTRAST_ERROR;
+    // The limit keeps compilers from merging factors.
+    let prior = contrast.min(MOST_DIFFERENCE) * CONTRAST_ERROR;
     let others = past.samples - 1.0;
     let own = past.deviation * past.deviation;
     let variance = (own * others + prior * prior) / past.samples;
@@ -269,14 +274,16 @@ pub fn expected_mean_error(past: Mean, contrast: f32, moved: bool) -> f32 {
 #[inline]
 pub fn relit_samples(samples: f32, gain: Vec3) -> f32 {
     let changed = ((gain - Vec3::ONE).abs().max_element() * RELIT_PER_GAIN).min(1.0);
-    samples + (samples.min(RELIT_SAMPLES) - samples) * changed
+    // Not as `samples + (...) * changed`, which compilers rewrite.
+    samples * (1.0 - changed) + samples.min(RELIT_SAMPLES) * changed
 }
 
 /// Share of its samples that a mean keeps when `difference`, of a sample of its pixel, contradicts it. `error`: of
 /// [`expected_mean_error`].
 #[inline]
 pub fn kept_samples(error: f32, difference: f32) -> f32 {
-    1.0 - smooth_step(CONTRADICTED[0], CONTRADICTED[1], difference / (error + SAMPLE_ERROR))
+    // The limit keeps compilers from merging sums.
+    1.0 - smooth_step(CONTRADICTED[0], CONTRADICTED[1], difference / (error.min(MOST_DIFFERENCE) + SAMPLE_ERROR))
 }
 
 /// Result of [`average`] and [`stored_mean`].

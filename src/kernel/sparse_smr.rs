@@ -40,10 +40,7 @@ pub const CONTRAST_ERROR: f32 = 0.375;
 const GATE_ERROR: f32 = 0.7;
 /// Standard errors of a mean difference at which relighting starts; it is complete at twice as many.
 const RELIGHT_ERRORS: f32 = 2.5;
-/// Least mean difference at which relighting starts on still surfaces of jittered frames, in units of the deviation beyond
-/// `PLAIN_DEVIATION`: the jitter moves all samples of a frame alike, so that the errors of moire are not independent.
-const COHERENT_ERRORS: f32 = 3.0;
-/// Deviation within a pixel that textures may have without moire, in units of [`root_difference`].
+/// Deviation of the samples in a pixel that textures may have without moire.
 const PLAIN_DEVIATION: f32 = 8.0;
 /// Expected errors within which neighbours agree with a sample's own gain.
 const AGREE_ERRORS: f32 = 4.0;
@@ -219,6 +216,14 @@ pub fn agreed(a: ObservedAround) -> f32 {
     ((a.weight - a.known * AGREED[0]) * (AGREED[1] / a.known.max(1e-6))).clamp(0.0, 1.0)
 }
 
+/// Degree to which the jitter cannot explain a mean difference, in \[0, 1\]. The jitter moves all samples of a frame
+/// alike, so that the errors of moire are not independent. It shows in the deviation of the samples in still means.
+#[inline]
+pub fn not_jitter(a: ObservedAround, difference: f32) -> f32 {
+    let beyond = (a.deviation - PLAIN_DEVIATION * a.weight) * (1.0 / a.weight);
+    if beyond > 0.0 { smooth_step(GATE[0], GATE[1], difference / beyond.max(1e-3)) } else { 1.0 }
+}
+
 /// Gain of the light around a sample: the ratio of the means of samples and of history at the same pixels, blended to 1
 /// where chance explains the difference of the means, or where other samples contradict it ([`agreed`]). `error`:
 /// expected difference of one sample. `coherent`: whether the errors of samples may be alike.
@@ -229,11 +234,10 @@ pub fn relight(a: ObservedAround, error: f32) -> Vec3 {
     }
     let inverse = 1.0 / a.weight;
     let (sampled, history) = (a.sampled * inverse, a.history * inverse);
+    let difference = root_difference(sampled, history);
     // The standard error of a weighted mean.
-    let independent = error * ((a.squared.sqrt() * inverse) * RELIGHT_ERRORS);
-    let coherent = (a.deviation * inverse - PLAIN_DEVIATION) * COHERENT_ERRORS;
-    let from = independent.max(coherent);
-    let changed = smooth_step(from, from, root_difference(sampled, history)) * agreed(a);
+    let from = (error * (a.squared.sqrt() * inverse)) * RELIGHT_ERRORS;
+    let changed = (smooth_step(from, from, difference) * not_jitter(a, difference)) * agreed(a);
     // A share of 1 gives the ratio bit for bit.
     ratios(sampled, history) * changed + Vec3::splat(1.0 - changed)
 }

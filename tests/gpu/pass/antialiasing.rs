@@ -42,10 +42,10 @@ fn a_wrong_mean_is_caught() {
         ("columns = 3u;", "columns = 2u;"),
         ("stored.lod = mean.lod;", ""),
         (
-            "return average(inputs, samples, -frame.views[view].jitter_px, left);",
-            "return average(inputs, samples, frame.views[view].jitter_px, left);",
+            "return average(inputs, past, -frame.views[view].jitter_px, kept, difference);",
+            "return average(inputs, past, frame.views[view].jitter_px, kept, difference);",
         ),
-        ("pack_color_by(next.color, draw)", "pack_color_by(next.color, 0.5)"),
+        ("pack_color_by(next.color, unit_draw(random))", "pack_color_by(next.color, 0.5)"),
     ];
     rig::all_caught_in(SAMPLES, desc(), settings, 12, &planted, |index, rig| {
         arrange(index, rig);

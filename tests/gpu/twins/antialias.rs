@@ -5,10 +5,10 @@ use super::*;
 use afterimage::kernel::sparse_smr::{Reconstructed, Reconstruction};
 use afterimage::kernel::{antialias, sparse_smr};
 
-shape!(antialias::Mean { lod: f32, samples: f32 });
+shape!(antialias::Mean { lod: f32, samples: f32, deviation: f32 });
 shape!(antialias::Near { sum: Vec3, squares: Vec3, count: f32 });
 shape!(antialias::Clip { change: Vec3, kept: f32 });
-shape!(antialias::Averaged { result: Reconstructed, samples: f32 });
+shape!(antialias::Averaged { result: Reconstructed, mean: antialias::Mean });
 
 const DISPARITIES: [f32; 8] = [-1.0, 0.0, 0.48, 0.49, 0.5, 0.51, 1.0, 1.02];
 
@@ -18,9 +18,20 @@ pub const PROBES: &[Probe] = &[
         rows.cross(&[&stored]).cross(&[&floats(&[-1.0])])
     }),
     probe!(antialias::stored_lod, |rows| {
-        let lods = floats(&[-1.0, 0.0, 0.05, 0.1, 0.11, 1.0, 2.5, 6.0, 8.0]);
-        rows.cross(&[&lods, &floats(&[1.0, 1.4, 2.0, 16.0, 31.0, 40.0])]).each(&[F(-1.0, 7.0), F(0.0, 33.0)])
+        let lods = floats(&[-1.0, 0.0, 0.1, 0.2, 0.21, 1.0, 2.5, 6.0, 8.0]);
+        let (samples, deviations) = (floats(&[1.0, 1.4, 2.0, 16.0, 29.0, 40.0]), floats(&[0.0, 1.0, 7.5, 37.5, 90.0]));
+        let draws = floats(&[0.001, 0.5, 0.999]);
+        let random = [F(-1.0, 1.0), F(0.0, 31.0), F(0.0, 40.0), F(0.0, 1.0), F(0.0, 1.0)];
+        rows.cross(&[&lods, &samples, &deviations, &draws, &draws]).each(&random)
     }),
+    probe!(antialias::byte_draws, |rows| rows.each(&[Bits])),
+    probe!(antialias::expected_mean_error, |rows| rows.random(|d, row| {
+        row.push(range(d, -1.0, 3.0));
+        push_samples(d, row);
+        row.extend([range(d, 0.0, 100.0), d.bits() % 2]);
+    })),
+    probe!(antialias::relit_samples, |rows| rows.each(&[F(1.0, 29.0), F(0.2, 5.0), F(0.9, 1.1), F(0.9, 1.1)])),
+    probe!(antialias::kept_samples, |rows| rows.each(&[F(0.6, 40.0), F(0.0, 200.0)])),
     probe!(antialias::stands_before, |rows| rows.each(&[&[F(-1.0, 2.0); 2][..], &[F(-1.0, 1.0); 4], &[N(2)]].concat())),
     probe!(antialias::move_together, |rows| rows.each(&[F(-0.2, 0.2); 6])),
     probe!(antialias::may_show, |rows| {
@@ -62,20 +73,26 @@ pub const PROBES: &[Probe] = &[
     probe!(antialias::scattered_error, |rows| rows.each(&[Of(push_light), F(0.0, 4000.0)])),
     probe!(
         antialias::average,
-        |r: Reconstruction, samples: f32, place_px: Vec2, kept: f32| antialias::average(&r, samples, place_px, kept),
+        |r: Reconstruction, past: antialias::Mean, place_px: Vec2, kept: f32, difference: f32| {
+            antialias::average(&r, past, place_px, kept, difference)
+        },
         |rows| {
             rows.random(|d, row| {
                 push_reconstruction(d, row);
                 if d.bits().is_multiple_of(2) {
                     row[17] = 0;
                 }
-                row.extend([range(d, 1.0, 31.0), range(d, -0.5, 0.5), range(d, -0.5, 0.5), range(d, 0.0, 1.0)]);
+                row.push(0);
+                push_samples(d, row);
+                row.extend([range(d, -0.5, 0.5), range(d, -0.5, 0.5), range(d, 0.0, 1.0), range(d, 0.0, 200.0)]);
             })
         }
     ),
     probe!(
         antialias::stored_mean,
-        |given: Reconstruction, samples: f32| antialias::stored_mean(&given, sparse_smr::reconstruct(&given), samples),
+        |given: Reconstruction, past: antialias::Mean| {
+            antialias::stored_mean(&given, sparse_smr::reconstruct(&given), past)
+        },
         "let given = $0; stored_mean(given, reconstruct(given), $1)",
         |rows| {
             rows.random(|d, row| {
@@ -84,8 +101,14 @@ pub const PROBES: &[Probe] = &[
                 if !d.bits().is_multiple_of(4) {
                     (row[13], row[17]) = (0, 0);
                 }
-                row.push(range(d, 1.0, 31.0));
+                row.push(0);
+                push_samples(d, row);
             })
         }
     ),
 ];
+
+/// Number and deviation of the samples in a mean.
+fn push_samples(d: &mut Draws, row: &mut Vec<u32>) {
+    row.extend([range(d, 1.0, 29.0), range(d, 0.0, 40.0)]);
+}

@@ -20,11 +20,12 @@ shape!(Around {
     cost: f32
 });
 shape!(stored_sample::Interpolated { color: Vec3, lod: f32, range: [Vec3; 2], nearest: stored_sample::StoredSample });
-shape!(sparse_smr::Observation { sampled: Vec3, history: Vec3, error: f32, confidence: f32 });
+shape!(sparse_smr::Observation { sampled: Vec3, history: Vec3, error: f32, confidence: f32, deviation: f32 });
 shape!(sparse_smr::ObservedAround {
     sampled: Vec3,
     history: Vec3,
     error: f32,
+    deviation: f32,
     weight: f32,
     squared: f32,
     spatial: f32,
@@ -45,7 +46,7 @@ shape!(Reconstruction {
     history: Vec3,
     history_lod: f32,
     nearest: stored_sample::StoredSample,
-    moved: bool,
+    worn: f32,
     gain: Vec3,
     fit: f32,
     trust: f32,
@@ -79,7 +80,7 @@ fn push_observation(d: &mut Draws, row: &mut Vec<u32>) {
     for v in sampled {
         row.push(if near { times(v, range(d, 0.7, 1.4)) } else { scaled(d, -14, 6) });
     }
-    row.extend([range(d, 0.0, 40.0), range(d, 0.0, 1.0)]);
+    row.extend([range(d, 0.0, 40.0), range(d, 0.0, 1.0), range(d, 0.0, 40.0)]);
 }
 
 /// Three samples around a position, and how many to use.
@@ -103,7 +104,7 @@ pub(super) fn push_reconstruction(d: &mut Draws, row: &mut Vec<u32>) {
     row.extend(color(d));
     row.push(range(d, 0.0, 4.0));
     push_stored(d, row);
-    row.push(d.bits() % 2);
+    row.push(range(d, 0.0, 4.0));
     let lit = d.bits().is_multiple_of(2);
     row.extend([0; 3].map(|_| if lit { 1.0_f32.to_bits() } else { range(d, 0.2, 5.0) }));
     let confidence = d.bits().is_multiple_of(2);
@@ -182,6 +183,10 @@ pub const PROBES: &[Probe] = &[
     ),
     probe!(sparse_smr::candidate_level, |rows| rows.each(&[F(0.0, 200.0), F(0.0, 8.0)])),
     probe!(sparse_smr::expected_error, |rows| rows.each(&[F(0.0, 3.0), F(0.0, 100.0), N(2)])),
+    probe!(sparse_smr::worn, |rows| rows.cross(&[&[0, 1], &[0, 1]])),
+    probe!(sparse_smr::pack_known, |rows| rows.each(&[F(0.0, 1.0), F(0.0, 80.0)])),
+    probe!(sparse_smr::known_confidence, |rows| rows.each(&[Bits])),
+    probe!(sparse_smr::known_deviation, |rows| rows.each(&[Bits])),
     probe!(sparse_smr::noisy_lod_confidence, |rows| rows.each(&[F(0.0, 3.0), F(1.0, 80.0), F(0.0, 0.01), F(0.0, 2.0)])),
     probe!(sparse_smr::agreement, |rows| rows.each(&[Of(push_observation), Of(push_observation), F(0.0, 4.0)])),
     probe!(sparse_smr::neighbour_weight, |rows| rows.cross(&[&[!0, 0, 1], &[!0, 0, 1]])),
@@ -194,6 +199,7 @@ pub const PROBES: &[Probe] = &[
         "let l = $0; relight(l, mean_error(l))",
         |rows| rows.random(push_light)
     ),
+    probe!(sparse_smr::not_jitter, |rows| rows.each(&[Of(push_light), F(0.0, 100.0)])),
     probe!(sparse_smr::mean_error, |rows| rows.random(push_light)),
     probe!(sparse_smr::own_fit, |rows| rows.each(&[Of(push_observation), F(0.2, 5.0), F(0.2, 5.0), F(0.2, 5.0)])),
     probe!(sparse_smr::capped_error, |rows| rows.each(&[Of(push_observation), F(0.0, 12.0), F(0.0, 4.0)])),
@@ -231,7 +237,7 @@ pub const PROBES: &[Probe] = &[
     ),
 ];
 
-/// Eleven words of sums over neighbours, whose means are often close to each other.
+/// Twelve words of sums over neighbours, whose means are often close to each other.
 pub(super) fn push_light(d: &mut Draws, row: &mut Vec<u32>) {
     let weight = range(d, 0.0, 16.0);
     let (mean, near) = (color(d), d.bits().is_multiple_of(2));
@@ -240,6 +246,7 @@ pub(super) fn push_light(d: &mut Draws, row: &mut Vec<u32>) {
         let other = if near { times(v, range(d, 0.8, 1.25)) } else { scaled(d, -14, 6) };
         row.push(times(other, weight));
     }
+    row.push(times(weight, range(d, 0.0, 20.0)));
     row.push(times(weight, range(d, 0.0, 20.0)));
     row.extend([weight, times(times(weight, weight), range(d, 0.11, 1.0)), range(d, 0.0, 16.0)]);
     row.push(times(weight, range(d, 1.0, 3.0)));
