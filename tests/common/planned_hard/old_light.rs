@@ -203,34 +203,33 @@ fn all_hold(make: Make<'_>, cases: &[Case]) -> Option<String> {
     let most = missed.iter().fold(0.0_f32, |a, &b| a.max(b));
     Some(match missed.len() {
         0 => format!("{of} changes of light: {text}"),
-        n => format!("{of} changes of light: {text}; {n} miss the bar: {most:.2} px a row stay"),
+        n => format!("{of} changes of light: {text}; bar missed by {n}, {most:.2} px a row at the end"),
     })
 }
 
 /// Frames of old light that is still there at the end.
 const STAYS: f32 = f32::INFINITY;
 
-/// Slow edges. With antialiasing, those of 0.05 and 0.2 px a frame miss the bar: a mean of samples of both lights has a
-/// deviation that explains the new samples, too, so that old light goes with the mean's length, some pixels late.
+/// Slow edges. With antialiasing, four miss the bar: a mean of samples of both lights has a deviation that explains the
+/// new samples, too, so that old light goes with the mean's length, some pixels late.
 const SLOW: [Case; 9] = [
-    case(Edge(0.05), 0.25, true, false, 0.0, UP).misses(STAYS, 0.25),
+    case(Edge(0.05), 0.25, true, false, 0.0, UP).misses(STAYS, 0.3),
     case(Edge(0.05), 1.0, true, true, 0.0, DOWN).misses(STAYS, 0.2),
     case(Edge(0.05), 0.1, false, true, 0.0, UP),
     case(Edge(0.05), 0.25, false, false, 0.3, DOWN),
-    case(Edge(0.2), 0.25, true, false, 0.0, UP).misses(40.0, 0.2),
-    case(Edge(0.2), 0.1, true, false, 0.0, UP).misses(STAYS, 0.2),
+    case(Edge(0.2), 0.25, true, false, 0.0, UP).misses(80.0, 0.2),
+    case(Edge(0.2), 0.1, true, false, 0.0, UP),
     case(Edge(0.2), 1.0, true, true, 0.3, UP),
     case(Edge(0.2), 0.05, false, false, 0.0, DOWN),
-    case(Edge(0.7), 0.25, true, true, 0.0, DOWN),
+    case(Edge(0.7), 0.25, true, true, 0.0, DOWN).misses(45.0, 0.2),
 ];
 
-/// Fast edges. Four miss the bar in single pixels, by up to as many frames again: what the edge relit on its way is
-/// partly right, and less contradicted.
+/// Fast edges. Three miss the bar, in single pixels.
 const FAST: [Case; 9] = [
     case(Edge(0.7), 0.1, false, false, 0.3, UP),
     case(Edge(0.7), 0.05, true, false, 0.0, UP),
     case(Edge(0.7), 0.25, true, false, 1.7, UP),
-    case(Edge(2.0), 0.25, true, false, 0.0, UP).misses(40.0, 0.2),
+    case(Edge(2.0), 0.25, true, false, 0.0, UP).misses(45.0, 0.2),
     case(Edge(2.0), 0.1, true, true, 0.0, DOWN),
     case(Edge(2.0), 0.25, false, true, 0.3, UP).misses(24.0, 0.2),
     case(Edge(8.0), 0.25, true, true, 0.0, UP).misses(30.0, 0.2),
@@ -242,8 +241,8 @@ const FAST: [Case; 9] = [
 /// had become means of both lights.
 const STOOD: [Case; 7] = [
     case(StoodEdge(0.05), 0.25, true, false, 0.0, UP).misses(STAYS, 0.6),
-    case(StoodEdge(0.2), 0.25, true, false, 0.0, UP).misses(STAYS, 0.4),
-    case(StoodEdge(0.2), 0.1, true, false, 0.0, UP).misses(STAYS, 0.5),
+    case(StoodEdge(0.2), 0.25, true, false, 0.0, UP).misses(STAYS, 0.6),
+    case(StoodEdge(0.2), 0.1, true, false, 0.0, UP).misses(STAYS, 0.55),
     case(StoodEdge(0.2), 0.25, false, false, 0.0, UP),
     case(StoodEdge(2.0), 0.25, true, false, 0.0, UP).misses(STAYS, 0.2),
     case(StoodEdge(2.0), 0.25, true, false, 0.0, UP).seen(250).misses(STAYS, 0.2),
@@ -256,7 +255,7 @@ const STEPS: [Case; 8] = [
     case(Fade(0), 0.1, true, true, 0.0, DOWN),
     case(Fade(0), 0.25, false, true, 1.7, UP),
     case(Fade(0), 0.05, false, false, 0.3, UP),
-    case(Fade(1), 0.25, true, true, 0.3, UP).misses(45.0, 0.2),
+    case(Fade(1), 0.25, true, true, 0.3, UP).misses(30.0, 0.2),
     case(Fade(1), 0.1, true, false, 0.0, UP),
     case(Fade(1), 0.05, true, false, 0.0, DOWN),
     case(Fade(1), 1.0, false, true, 0.0, UP),
@@ -276,11 +275,11 @@ const FADES: [Case; 8] = [
 
 /// Means of few and of many samples. Three miss the bar, in single pixels.
 const LENGTHS: [Case; 6] = [
-    case(Edge(2.0), 0.25, true, false, 0.0, UP).seen(2),
+    case(Edge(2.0), 0.25, true, false, 0.0, UP).seen(2).misses(27.0, 0.2),
     case(Fade(0), 0.25, true, false, 0.0, UP).seen(2).misses(24.0, 0.2),
-    case(Edge(2.0), 0.25, true, false, 0.0, UP).seen(12).misses(22.0, 0.2),
+    case(Edge(2.0), 0.25, true, false, 0.0, UP).seen(12).misses(62.0, 0.2),
     case(Fade(4), 0.25, true, false, 0.0, UP).seen(12),
-    case(Edge(2.0), 0.25, true, false, 0.0, UP).seen(250).misses(52.0, 0.2),
+    case(Edge(2.0), 0.25, true, false, 0.0, UP).seen(250),
     case(Fade(4), 0.25, true, false, 0.0, UP).seen(250),
 ];
 

@@ -143,7 +143,7 @@ fn all_hold(make: Make<'_>, cases: &[Case]) -> Option<String> {
     );
     Some(match missed.iter().max() {
         None => text,
-        Some(px) => format!("{text}; {} miss the bar: {px} px later", missed.len()),
+        Some(px) => format!("{text}; bar missed by {}, {px} px later", missed.len()),
     })
 }
 
