@@ -11,6 +11,8 @@ pub mod lifecycle_hard;
 pub mod light_hard;
 pub mod low_pass;
 pub mod motion_hard;
+#[allow(dead_code, reason = "the CPU's tests use all of it")]
+pub mod planned_hard;
 pub mod reactive;
 pub mod scale_hard;
 pub mod settings;

@@ -7,6 +7,7 @@ mod light;
 mod means;
 mod nan;
 mod noted;
+mod planned_hard;
 mod properties;
 mod quads;
 mod reprojection;

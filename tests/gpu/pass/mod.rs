@@ -10,6 +10,7 @@ mod light;
 mod limits;
 mod motion;
 mod objects;
+mod planned_hard;
 mod prime;
 mod properties;
 mod quads;

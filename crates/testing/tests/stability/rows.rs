@@ -26,7 +26,7 @@ impl Row {
 }
 
 /// All rows, in order.
-pub const ROWS: [Row; 104] = [
+pub const ROWS: [Row; 108] = [
     // Reservoir arithmetic
     row("H01", "R1 empty, R2 w > 0, draw exactly 0", "R2 chosen", BOTH),
     row("H02", "R1 empty, R2 w = 0", "R2's color with w_sum 0; no NaN, not black", BOTH),
@@ -168,4 +168,13 @@ pub const ROWS: [Row; 104] = [
     .but("without an exposure smr alone, on whole frames without noise."),
     row("H107", "plan of quads under any needs", "budget never exceeded; every quad shaded in its period", CPU),
     row("H108", "other quads shaded than planned", "only planned, finite pixels count", CPU),
+    row(
+        "H109",
+        "quads: edges of shadow, steps and fades of light",
+        "under a quarter left after 16 frames (a quarter of the pixels), 48 (a tenth)",
+        BOTH,
+    ),
+    row("H110", "quads: lamps and signs go on or off on a wall", "wall unchanged from the next frame on", BOTH),
+    row("H111", "quads: still stripes of 1.05 and 2.1 px, jittered", "changes by at most 0.1 a frame of 0.8", BOTH),
+    row("H112", "quads: a still, textured wall, jittered", "55.5 dB at a quarter of the pixels, 51.5 at a tenth", BOTH),
 ];

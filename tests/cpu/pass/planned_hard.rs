@@ -1,0 +1,10 @@
+//! Light on frames shaded by quads: hard cases H109 to H112.
+
+use super::depth::run_law;
+use crate::planned_hard::old_light::*;
+use crate::planned_hard::other_surfaces::*;
+use crate::planned_hard::still::*;
+use crate::planned_hard::*;
+
+planned_laws!(Cpu, run_law);
+planned_tables!(Cpu, run_law);
