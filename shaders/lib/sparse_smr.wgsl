@@ -31,6 +31,7 @@ const MEAN_ERRORS: f32 = 3.0;
 const BLURRED_FRAMES: f32 = 8.0;
 const STAY_SHARE: f32 = 0.5;
 const AGREED: vec2f = vec2f(0.6, 6.0);
+const AGAINST: vec2f = vec2f(0.5, 0.25);
 const RELIT_ERRORS: f32 = 0.8;
 
 fn candidate_level(px: f32, coarsest: f32) -> f32 {
@@ -154,15 +155,17 @@ fn own_fit(own: Observation, gains: vec3f) -> f32 {
     return fit(errors_left(own, gains), own.confidence);
 }
 
-fn capped_error(o: Observation, errors: f32, spatial: f32) -> f32 {
-    return min(errors, FIT_ERRORS.x + FIT_ERRORS.y) * (spatial * o.confidence);
+fn vote(o: Observation, errors: f32, spatial: f32) -> vec2f {
+    let weight = spatial * o.confidence;
+    return vec2f(smooth_step(FIT_ERRORS.x, FIT_ERRORS.y, errors) * weight, weight);
 }
 
-fn fit_around(a: ObservedAround, left: f32, capped: f32) -> f32 {
+fn fit_around(a: ObservedAround, left: f32, votes: vec2f, own: f32) -> f32 {
     let by_own = fit(left / a.weight, min(a.weight / a.spatial, 1.0));
-    let by_all = fit(capped / max(a.known, 1e-6), min(a.known / a.spatial, 1.0));
+    let against = smooth_step(AGAINST.x, AGAINST.y, votes.x / max(votes.y, 1e-6));
+    let by_others = max(1.0 - min(a.known / a.spatial, 1.0) * against, own);
     let share = agreed(a);
-    return by_own * share + by_all * (1.0 - share);
+    return by_own * share + by_others * (1.0 - share);
 }
 
 fn mean_fit(a: ObservedAround, confidence: f32) -> f32 {

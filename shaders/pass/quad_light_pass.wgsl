@@ -104,7 +104,7 @@ fn light(quad: vec2u, view: u32) -> vec4u {
     }
     var sum = ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     var without = 0.0;
-    var capped = 0.0;
+    var votes = vec2f(0.0);
     var scatter = 0.0;
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
     let is_compared_quad = level_of(textureLoad(quad_mask, quad, view, 0).x) > 0u;
@@ -115,7 +115,9 @@ fn light(quad: vec2u, view: u32) -> vec4u {
             sum = add_observation(sum, near.observation, near.weight, near.spatial);
             let errors = errors_left(near.observation, vec3f(1.0));
             without += errors * near.weight;
-            capped += capped_error(near.observation, errors, near.spatial);
+            if tap < 32u {
+                votes += vote(near.observation, errors, near.spatial);
+            }
             if ANTIALIAS != 0u {
                 let difference = min(root_difference(near.observation.sampled, near.observation.history), 1e6);
                 scatter += (difference * difference) * near.weight;
@@ -143,7 +145,11 @@ fn light(quad: vec2u, view: u32) -> vec4u {
             lit.gains = vec3f(1.0);
             with_gain = without;
         }
-        lit.fit = fit_around(sum, with_gain, capped);
+        var fit_of_quad = 0.0;
+        if own.observation.error >= 0.0 {
+            fit_of_quad = own_fit(own.observation, vec3f(1.0));
+        }
+        lit.fit = fit_around(sum, with_gain, votes, fit_of_quad);
     }
     for (var i = 0u; i < 4u; i++) {
         let px = px_of_quad(quad, i);

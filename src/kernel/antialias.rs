@@ -43,7 +43,7 @@ const RELIT_PER_GAIN: f32 = 10.0;
 pub const MOST_DIFFERENCE: f32 = 200.0;
 /// Differences between a sample and history, in expected ones, at which history starts to be contradicted, and width
 /// over which it loses all its samples.
-const CONTRADICTED: [f32; 2] = [3.0, 4.0];
+const CONTRADICTED: [f32; 2] = [3.0, 2.0];
 /// Half width of the box of nine samples to which history is clipped at full rate, in standard deviations.
 const BOX_SIGMAS: f32 = 2.0;
 /// Share of the clip that is applied, so that a thin feature is not lost at once if a frame misses it.

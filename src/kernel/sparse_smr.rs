@@ -13,7 +13,7 @@ use super::noise::{Noise, history_share, noise_after, noise_confidence, noise_vi
 use super::pack::{disparity_code, disparity_value};
 use super::smr::{COARSER_WIDTH, DARK, root_difference, smooth_step};
 use super::stored_sample::{StoredSample, pack_color, unpack_color};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::f32::consts::LOG2_E;
 
 /// Relative difference of disparity within which neighbouring samples share an estimate of light.
@@ -51,6 +51,9 @@ const GATE: [f32; 2] = [2.0, 4.0];
 /// Share of the confident samples around that agrees with a gain, from which on it is used, and the slope from there to
 /// the complete gain. A square of four of nine samples is 0.56, a straight edge 0.75.
 const AGREED: [f32; 2] = [0.6, 6.0];
+/// Share of the other samples around a sample that must contradict history, so that it is replaced where they do not
+/// agree with the sample, and width over which it is.
+const AGAINST: [f32; 2] = [0.5, 0.25];
 /// Share of the errors without a gain that a gain of quads must leave at most, or it is not used.
 pub const RELIT_ERRORS: f32 = 0.8;
 /// Largest deviation of an observation, and steps in which it is stored.
@@ -262,22 +265,25 @@ pub fn fit(errors: f32, confidence: f32) -> f32 {
     1.0 - confidence * smooth_step(GATE[0], GATE[1], errors)
 }
 
-/// An error of [`errors_left`], weighted, for [`fit_around`]: at most the error at which the fit is 0.
+/// Vote of another sample on whether history fits, for [`fit_around`]: its weight if it contradicts history, and its
+/// weight. `errors`: of [`errors_left`] without a gain.
 #[inline]
-pub fn capped_error(o: Observation, errors: f32, spatial: f32) -> f32 {
-    errors.min(GATE[0] + GATE[1]) * (spatial * o.confidence)
+pub fn vote(o: Observation, errors: f32, spatial: f32) -> Vec2 {
+    let weight = spatial * o.confidence;
+    Vec2::new(smooth_step(GATE[0], GATE[1], errors) * weight, weight)
 }
 
 /// Degree to which history fits around a sample, in \[0, 1\]. `left`: [`errors_left`] with the gain, times weights;
-/// `capped`: sum of [`capped_error`] without a gain. Where the samples around contradict the sample ([`agreed`]), they
-/// count in full and the sample is only one of them: a pixel that was a sparkle's is replaced alone ([`own_fit`]), and
-/// the history around it stays.
+/// `votes`: sum of the [`vote`]s of the other samples. Where these contradict the sample ([`agreed`]), most of them
+/// decide: a pixel that was a sparkle's is replaced alone ([`own_fit`]), and the history around it stays. `own`: fit at
+/// the sample alone without a gain, 0 if it was not compared: where history fits there, the others say nothing about it.
 #[inline]
-pub fn fit_around(a: ObservedAround, left: f32, capped: f32) -> f32 {
+pub fn fit_around(a: ObservedAround, left: f32, votes: Vec2, own: f32) -> f32 {
     let by_own = fit(left / a.weight, (a.weight / a.spatial).min(1.0));
-    let by_all = fit(capped / a.known.max(1e-6), (a.known / a.spatial).min(1.0));
+    let against = smooth_step(AGAINST[0], AGAINST[1], votes.x / votes.y.max(1e-6));
+    let by_others = (1.0 - (a.known / a.spatial).min(1.0) * against).max(own);
     let share = agreed(a);
-    by_own * share + by_all * (1.0 - share)
+    by_own * share + by_others * (1.0 - share)
 }
 
 /// As [`fit`], for noisy samples, from the difference of the means of samples and of history. Nine samples together
@@ -454,7 +460,7 @@ pub fn reconstruct(r: &Reconstruction) -> Reconstructed {
         return Reconstructed { color, stored, share };
     }
     let lod = if finer > 0.0 { history_lod + (r.lod - history_lod) * lost } else { r.lod };
-    let stored = StoredSample { color, lod, place_px: glam::Vec2::ZERO, ..r.nearest };
+    let stored = StoredSample { color, lod, place_px: Vec2::ZERO, ..r.nearest };
     Reconstructed { color, stored, share }
 }
 
@@ -494,7 +500,7 @@ pub fn accumulate(r: &Reconstruction, past: Noise, now: Noise) -> Accumulated {
     let stored = if near && share >= STAY_SHARE {
         StoredSample { color: r.candidate + (r.nearest.color - r.candidate) * share, lod, ..r.nearest }
     } else {
-        StoredSample { color, lod, place_px: glam::Vec2::ZERO, ..r.nearest }
+        StoredSample { color, lod, place_px: Vec2::ZERO, ..r.nearest }
     };
     Accumulated { result: Reconstructed { color, stored, share }, noise }
 }

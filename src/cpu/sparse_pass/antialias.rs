@@ -4,11 +4,11 @@ use super::sparse_history::Surroundings;
 use super::view::View;
 use crate::kernel::antialias::{
     Averaged, MOST_DIFFERENCE, Mean, Near, add_near, average, byte_draws, clip, clipped, is_silhouette, is_thin,
-    kept_samples, may_show, move_together, stands_before, stored_lod, stored_mean,
+    kept_samples, may_show, move_together, stands_before, stored_lod,
 };
 use crate::kernel::rng;
 use crate::kernel::smr::root_difference;
-use crate::kernel::sparse_smr::{Reconstruction, reconstruct, relit};
+use crate::kernel::sparse_smr::{Reconstruction, relit};
 use crate::kernel::stored_sample::{StoredSample, pack_color_by, pack_stored};
 use crate::notes::{NoteStage, Notes};
 use glam::Vec2;
@@ -78,33 +78,28 @@ impl View<'_> {
         surface
     }
 
-    /// Result at a pixel that has history and a usable candidate.
+    /// Mean of history and of the pixel's own sample. `error`: difference that is expected between them.
     #[inline(always)]
-    pub(super) fn antialiased(
+    pub(super) fn averaged(
         &self,
         px: [u32; 2],
         level: u32,
         mut inputs: Reconstruction,
         past: Mean,
         error: f32,
-        is_own: bool,
         notes: &mut impl Notes,
     ) -> Averaged {
-        if !is_own {
-            return stored_mean(&inputs, reconstruct(&inputs), past);
-        }
         let difference = root_difference(inputs.candidate, inputs.history).min(MOST_DIFFERENCE);
-        let mut kept = 1.0;
-        if level == 0 {
+        let kept = if level == 0 {
             let clip = clip(self.near(px), inputs.history);
             inputs.history = clipped(inputs.history, clip.change);
             inputs.nearest.color = clipped(inputs.nearest.color, clip.change);
-            kept = clip.kept;
             notes.note(NoteStage::Comparison, "history clipped to the samples around", inputs.history, "linear light");
+            clip.kept
         } else {
             let history = relit(inputs.history, inputs.gain, inputs.range);
-            kept = kept_samples(error, root_difference(inputs.candidate, history));
-        }
+            kept_samples(error, root_difference(inputs.candidate, history))
+        };
         notes.note(NoteStage::Comparison, "share of its samples that it keeps", kept, "");
         average(&inputs, past, self.sample_place_px(), kept, difference)
     }

@@ -5,10 +5,10 @@ use crate::kernel::antialias::scattered_error;
 use crate::kernel::depth::INVALID_DISPARITY;
 use crate::kernel::smr::root_difference;
 use crate::kernel::sparse_smr::{
-    LIGHT_RELATIVE, Lit, Observation, ObservedAround, add_observation, agreement, capped_error, errors_left, fit,
-    fit_around, mean_error, mean_fit, neighbour_weight, own_fit, pack_lit, relight,
+    LIGHT_RELATIVE, Lit, Observation, ObservedAround, add_observation, agreement, errors_left, fit, fit_around,
+    mean_error, mean_fit, neighbour_weight, own_fit, pack_lit, relight, vote,
 };
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 impl View<'_> {
     /// Gain and fit around a sample, packed ([`pack_lit`]).
@@ -49,7 +49,7 @@ impl View<'_> {
         let fit = if self.is_noisy() {
             fit(left / around.weight, confidence).min(mean_fit(around, confidence))
         } else {
-            fit_around(around, left, capped_around(neighbours()))
+            fit_around(around, left, votes(neighbours()), 0.0)
         };
         pack_lit(Lit { gain, fit, own_fit: fit_of_own(gain), ..unlit })
     }
@@ -84,10 +84,10 @@ pub(super) fn observed_around(neighbours: impl Iterator<Item = Neighbour>) -> Ob
     neighbours.fold(ObservedAround::default(), |a, (o, weight, spatial)| add_observation(a, o, weight, spatial))
 }
 
-/// Sum of [`capped_error`] around a sample, without a gain.
+/// Sum of the [`vote`]s of samples.
 #[inline(always)]
-pub(super) fn capped_around(neighbours: impl Iterator<Item = Neighbour>) -> f32 {
-    neighbours.fold(0.0, |sum, (o, _, spatial)| sum + capped_error(o, errors_left(o, Vec3::ONE), spatial))
+pub(super) fn votes(others: impl Iterator<Item = Neighbour>) -> Vec2 {
+    others.fold(Vec2::ZERO, |sum, (o, _, spatial)| sum + vote(o, errors_left(o, Vec3::ONE), spatial))
 }
 
 /// Weighted sum of squared differences between samples and history, with one more sample added.

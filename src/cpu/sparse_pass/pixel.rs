@@ -6,7 +6,7 @@ use super::quads::offset_px2;
 use super::sparse_history::{Found, Source, has_moved};
 use super::view::{NO_NOISE, Samples, View};
 use crate::cpu::pixel::{Pixel, ProcessPixel};
-use crate::kernel::antialias::{Mean, expected_mean_error};
+use crate::kernel::antialias::{Mean, expected_mean_error, stored_mean};
 use crate::kernel::approx;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::lattice::point_weight;
@@ -120,7 +120,10 @@ impl View<'_> {
                 } else if self.antialiases {
                     let contrast = root_difference(history.range[0], history.range[1]);
                     let error = expected_mean_error(past_mean, contrast, moved);
-                    let averaged = self.antialiased([x, y], level, inputs, past_mean, error, candidate.is_own, notes);
+                    let averaged = match candidate.is_own {
+                        true => self.averaged([x, y], level, inputs, past_mean, error, notes),
+                        false => stored_mean(&inputs, reconstruct(&inputs), past_mean),
+                    };
                     mean = averaged.mean;
                     averaged.result
                 } else {

@@ -1,7 +1,7 @@
 //! Samples of shaded quads: their comparison with history, gain and fit around them, and candidates of pixels.
 
 use super::candidate::{Candidate, Sums, note_sample, sample_codes};
-use super::light::{Neighbour, capped_around, observed_around};
+use super::light::{Neighbour, observed_around, votes};
 use super::observe::{pack_observation, unpack_observation};
 use super::quads::{Quads, nearest_px, offset_px2};
 use super::view::{Samples, View};
@@ -90,7 +90,9 @@ impl View<'_> {
         let least = quads.around(quad).map(distance2).fold(f32::MAX, f32::min);
         let mut near: Vec<Neighbour> = vec![];
         let is_compared = quads.level_at(quad.map(|v| 2 * v)) > 0;
+        let mut others = 0;
         for other in quads.around(quad).chain([quad]).filter(|_| is_compared) {
+            others = near.len();
             let spatial = 1.0 / (1.0 + distance2(other) / least);
             for px in self.pixels_of(other) {
                 let Some(observation) = self.observation_px(px, observed) else { continue };
@@ -106,7 +108,8 @@ impl View<'_> {
         let (mut gain, mut fits) = (Vec3::ONE, 1.0);
         if around.weight >= 1e-6 {
             let (relit, left) = self.relit_around(around, near, RELIT_ERRORS);
-            (gain, fits) = (relit, fit_around(around, left, capped_around(near())));
+            let fit_of_quad = own.map_or(0.0, |own| own_fit(own, Vec3::ONE));
+            (gain, fits) = (relit, fit_around(around, left, votes(near().take(others)), fit_of_quad));
         }
         let mut own_fits = [1.0; 4];
         let mut disparities = [INVALID_DISPARITY; 4];
