@@ -155,15 +155,26 @@ fn own_fit(own: Observation, gains: vec3f) -> f32 {
     return fit(errors_left(own, gains), own.confidence);
 }
 
+fn capped_error(o: Observation, errors: f32, spatial: f32) -> f32 {
+    return min(errors, FIT_ERRORS.x + FIT_ERRORS.y) * (spatial * o.confidence);
+}
+
+fn fit_of_samples(a: ObservedAround, capped: f32) -> f32 {
+    return fit(capped / max(a.known, 1e-6), min(a.known / a.spatial, 1.0));
+}
+
 fn vote(o: Observation, errors: f32, spatial: f32) -> vec2f {
     let weight = spatial * o.confidence;
     return vec2f(smooth_step(FIT_ERRORS.x, FIT_ERRORS.y, errors) * weight, weight);
 }
 
-fn fit_around(a: ObservedAround, left: f32, votes: vec2f, own: f32) -> f32 {
-    let by_own = fit(left / a.weight, min(a.weight / a.spatial, 1.0));
+fn fit_by_votes(a: ObservedAround, votes: vec2f, own: f32) -> f32 {
     let against = smooth_step(AGAINST.x, AGAINST.y, votes.x / max(votes.y, 1e-6));
-    let by_others = max(1.0 - min(a.known / a.spatial, 1.0) * against, own);
+    return max(1.0 - min(a.known / a.spatial, 1.0) * against, own);
+}
+
+fn fit_around(a: ObservedAround, left: f32, by_others: f32) -> f32 {
+    let by_own = fit(left / a.weight, min(a.weight / a.spatial, 1.0));
     let share = agreed(a);
     return by_own * share + by_others * (1.0 - share);
 }

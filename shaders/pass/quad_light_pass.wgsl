@@ -149,7 +149,7 @@ fn light(quad: vec2u, view: u32) -> vec4u {
         if own.observation.error >= 0.0 {
             fit_of_quad = own_fit(own.observation, vec3f(1.0));
         }
-        lit.fit = fit_around(sum, with_gain, votes, fit_of_quad);
+        lit.fit = fit_around(sum, with_gain, fit_by_votes(sum, votes, fit_of_quad));
     }
     for (var i = 0u; i < 4u; i++) {
         let px = px_of_quad(quad, i);

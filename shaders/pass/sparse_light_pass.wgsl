@@ -73,7 +73,7 @@ fn light(point: vec2u, lattice: LatticeUniforms, view: u32) -> vec2u {
     let own = observation_at(point, lattice, view);
     let own_disparity = disparity_of(point, lattice, view);
     var without = 0.0;
-    var votes = vec2f(0.0);
+    var capped = 0.0;
     var scatter = 0.0;
     var sum = ObservedAround(vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
@@ -84,7 +84,7 @@ fn light(point: vec2u, lattice: LatticeUniforms, view: u32) -> vec2u {
             sum = add_observation(sum, near.observation, near.weight, near.spatial);
             let errors = errors_left(near.observation, vec3f(1.0));
             without += errors * near.weight;
-            votes += vote(near.observation, errors, near.spatial);
+            capped += capped_error(near.observation, errors, near.spatial);
             if ANTIALIAS != 0u {
                 let difference = min(root_difference(near.observation.sampled, near.observation.history), 1e6);
                 scatter += (difference * difference) * near.weight;
@@ -118,7 +118,7 @@ fn light(point: vec2u, lattice: LatticeUniforms, view: u32) -> vec2u {
         gains = vec3f(1.0);
         with_gain = without;
     }
-    var fit_now = fit_around(sum, with_gain, votes, 0.0);
+    var fit_now = fit_around(sum, with_gain, fit_of_samples(sum, capped));
     if NOISY != 0u {
         let confidence = min(sum.weight / sum.spatial, 1.0);
         fit_now = min(fit(with_gain / sum.weight, confidence), mean_fit(sum, confidence));

@@ -265,7 +265,19 @@ pub fn fit(errors: f32, confidence: f32) -> f32 {
     1.0 - confidence * smooth_step(GATE[0], GATE[1], errors)
 }
 
-/// Vote of another sample on whether history fits, for [`fit_around`]: its weight if it contradicts history, and its
+/// An error of [`errors_left`], weighted, for [`fit_of_samples`]: at most the error at which the fit is 0.
+#[inline]
+pub fn capped_error(o: Observation, errors: f32, spatial: f32) -> f32 {
+    errors.min(GATE[0] + GATE[1]) * (spatial * o.confidence)
+}
+
+/// Fit of history at all samples around, in \[0, 1\]. `capped`: sum of [`capped_error`] without a gain.
+#[inline]
+pub fn fit_of_samples(a: ObservedAround, capped: f32) -> f32 {
+    fit(capped / a.known.max(1e-6), (a.known / a.spatial).min(1.0))
+}
+
+/// Vote of another sample on whether history fits, for [`fit_by_votes`]: its weight if it contradicts history, and its
 /// weight. `errors`: of [`errors_left`] without a gain.
 #[inline]
 pub fn vote(o: Observation, errors: f32, spatial: f32) -> Vec2 {
@@ -273,15 +285,21 @@ pub fn vote(o: Observation, errors: f32, spatial: f32) -> Vec2 {
     Vec2::new(smooth_step(GATE[0], GATE[1], errors) * weight, weight)
 }
 
-/// Degree to which history fits around a sample, in \[0, 1\]. `left`: [`errors_left`] with the gain, times weights;
-/// `votes`: sum of the [`vote`]s of the other samples. Where these contradict the sample ([`agreed`]), most of them
-/// decide: a pixel that was a sparkle's is replaced alone ([`own_fit`]), and the history around it stays. `own`: fit at
-/// the sample alone without a gain, 0 if it was not compared: where history fits there, the others say nothing about it.
+/// Fit of history around a sample by the majority of the other samples, in \[0, 1\]. `votes`: sum of their [`vote`]s.
+/// `own`: fit at the sample alone without a gain, 0 if it was not compared: where history fits there, the others say
+/// nothing about it.
 #[inline]
-pub fn fit_around(a: ObservedAround, left: f32, votes: Vec2, own: f32) -> f32 {
-    let by_own = fit(left / a.weight, (a.weight / a.spatial).min(1.0));
+pub fn fit_by_votes(a: ObservedAround, votes: Vec2, own: f32) -> f32 {
     let against = smooth_step(AGAINST[0], AGAINST[1], votes.x / votes.y.max(1e-6));
-    let by_others = (1.0 - (a.known / a.spatial).min(1.0) * against).max(own);
+    (1.0 - (a.known / a.spatial).min(1.0) * against).max(own)
+}
+
+/// Degree to which history fits around a sample, in \[0, 1\]. `left`: [`errors_left`] with the gain, times weights. Where
+/// the samples around contradict the sample ([`agreed`]), the fit is `by_others`: a pixel that was a sparkle's is
+/// replaced alone ([`own_fit`]), and the history around it stays.
+#[inline]
+pub fn fit_around(a: ObservedAround, left: f32, by_others: f32) -> f32 {
+    let by_own = fit(left / a.weight, (a.weight / a.spatial).min(1.0));
     let share = agreed(a);
     by_own * share + by_others * (1.0 - share)
 }

@@ -5,8 +5,8 @@ use crate::kernel::antialias::scattered_error;
 use crate::kernel::depth::INVALID_DISPARITY;
 use crate::kernel::smr::root_difference;
 use crate::kernel::sparse_smr::{
-    LIGHT_RELATIVE, Lit, Observation, ObservedAround, add_observation, agreement, errors_left, fit, fit_around,
-    mean_error, mean_fit, neighbour_weight, own_fit, pack_lit, relight, vote,
+    LIGHT_RELATIVE, Lit, Observation, ObservedAround, add_observation, agreement, capped_error, errors_left, fit,
+    fit_around, fit_of_samples, mean_error, mean_fit, neighbour_weight, own_fit, pack_lit, relight, vote,
 };
 use glam::{Vec2, Vec3};
 
@@ -49,7 +49,7 @@ impl View<'_> {
         let fit = if self.is_noisy() {
             fit(left / around.weight, confidence).min(mean_fit(around, confidence))
         } else {
-            fit_around(around, left, votes(neighbours()), 0.0)
+            fit_around(around, left, fit_of_samples(around, capped_around(neighbours())))
         };
         pack_lit(Lit { gain, fit, own_fit: fit_of_own(gain), ..unlit })
     }
@@ -84,7 +84,13 @@ pub(super) fn observed_around(neighbours: impl Iterator<Item = Neighbour>) -> Ob
     neighbours.fold(ObservedAround::default(), |a, (o, weight, spatial)| add_observation(a, o, weight, spatial))
 }
 
-/// Sum of the [`vote`]s of samples.
+/// Sum of [`capped_error`] around a sample, without a gain.
+#[inline(always)]
+fn capped_around(neighbours: impl Iterator<Item = Neighbour>) -> f32 {
+    neighbours.fold(0.0, |sum, (o, _, spatial)| sum + capped_error(o, errors_left(o, Vec3::ONE), spatial))
+}
+
+/// Sum of the [`vote`]s of other samples.
 #[inline(always)]
 pub(super) fn votes(others: impl Iterator<Item = Neighbour>) -> Vec2 {
     others.fold(Vec2::ZERO, |sum, (o, _, spatial)| sum + vote(o, errors_left(o, Vec3::ONE), spatial))

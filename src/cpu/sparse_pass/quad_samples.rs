@@ -10,7 +10,7 @@ use crate::kernel::resample::has_code;
 use crate::kernel::sanitize;
 use crate::kernel::sparse_smr::{
     LIGHT_RELATIVE, Observation, ObservedAround, QuadLit, RELIT_ERRORS, add_observation, agreement, fit_around,
-    own_fit, pack_quad_lit, quad_code, quad_lit,
+    fit_by_votes, own_fit, pack_quad_lit, quad_code, quad_lit,
 };
 use crate::notes::Notes;
 use crate::parallel::collect;
@@ -109,7 +109,8 @@ impl View<'_> {
         if around.weight >= 1e-6 {
             let (relit, left) = self.relit_around(around, near, RELIT_ERRORS);
             let fit_of_quad = own.map_or(0.0, |own| own_fit(own, Vec3::ONE));
-            (gain, fits) = (relit, fit_around(around, left, votes(near().take(others)), fit_of_quad));
+            (gain, fits) =
+                (relit, fit_around(around, left, fit_by_votes(around, votes(near().take(others)), fit_of_quad)));
         }
         let mut own_fits = [1.0; 4];
         let mut disparities = [INVALID_DISPARITY; 4];

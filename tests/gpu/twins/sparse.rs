@@ -203,9 +203,10 @@ pub const PROBES: &[Probe] = &[
     probe!(sparse_smr::mean_error, |rows| rows.random(push_light)),
     probe!(sparse_smr::own_fit, |rows| rows.each(&[Of(push_observation), F(0.2, 5.0), F(0.2, 5.0), F(0.2, 5.0)])),
     probe!(sparse_smr::vote, |rows| rows.each(&[Of(push_observation), F(0.0, 12.0), F(0.0, 4.0)])),
-    probe!(sparse_smr::fit_around, |rows| {
-        rows.each(&[Of(push_light), F(0.0, 60.0), F(0.0, 12.0), F(0.0, 16.0), F(0.0, 1.0)])
-    }),
+    probe!(sparse_smr::capped_error, |rows| rows.each(&[Of(push_observation), F(0.0, 12.0), F(0.0, 4.0)])),
+    probe!(sparse_smr::fit_of_samples, |rows| rows.each(&[Of(push_light), F(0.0, 120.0)])),
+    probe!(sparse_smr::fit_by_votes, |rows| rows.each(&[Of(push_light), F(0.0, 12.0), F(0.0, 16.0), F(0.0, 1.0)])),
+    probe!(sparse_smr::fit_around, |rows| rows.each(&[Of(push_light), F(0.0, 60.0), F(0.0, 1.0)])),
     probe!(sparse_smr::mean_fit, |rows| rows.each(&[Of(push_light), F(0.0, 1.0)])),
     probe!(
         sparse_smr::pack_lit,
