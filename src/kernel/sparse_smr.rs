@@ -294,8 +294,8 @@ pub fn fit_by_votes(a: ObservedAround, votes: Vec2, own: f32) -> f32 {
     (1.0 - (a.known / a.spatial).min(1.0) * against).max(own)
 }
 
-/// Degree to which history fits around a sample, in \[0, 1\]. `left`: [`errors_left`] with the gain, times weights. Where
-/// the samples around contradict the sample ([`agreed`]), the fit is `by_others`: a pixel that was a sparkle's is
+/// Degree to which history fits around a sample, in \[0, 1\]. `left`: [`errors_left`] with the gain, times weights.
+/// Where the samples around contradict the sample ([`agreed`]), the fit is `by_others`: a pixel that was a sparkle's is
 /// replaced alone ([`own_fit`]), and the history around it stays.
 #[inline]
 pub fn fit_around(a: ObservedAround, left: f32, by_others: f32) -> f32 {
