@@ -9,6 +9,7 @@ const MOST_PAST_MOVED: f32 = 3.0;
 const MOVED_PER_PX: f32 = 4.0;
 const CODES_PER_LOD: f32 = 7.0;
 const DEVIATIONS: f32 = 6.0;
+const ONE_SAMPLE_LOD: f32 = 6.0;
 const COARSE_CODE: f32 = 47.0;
 const CODES_PER_COARSE_LOD: f32 = 2.5;
 const COARSE_LOD: f32 = 0.2;
@@ -33,14 +34,17 @@ struct Mean {
     deviation: f32,
 }
 
-fn mean_of(stored: f32) -> Mean {
+fn mean_lod(stored: f32) -> f32 {
     let code = floor(stored * CODES_PER_LOD + 0.5);
-    if stored < 0.0 {
-        return Mean(-1.0, 1.0, 0.0);
+    return select(max(code - COARSE_CODE, 0.0) * (1.0f / CODES_PER_COARSE_LOD), -1.0, stored < 0.0);
+}
+
+fn mean_of(stored: f32) -> Mean {
+    let lod = mean_lod(stored);
+    if lod != 0.0 {
+        return Mean(lod, 1.0, 0.0);
     }
-    if code > COARSE_CODE {
-        return Mean((code - COARSE_CODE) * (1.0f / CODES_PER_COARSE_LOD), 1.0, 0.0);
-    }
+    let code = floor(stored * CODES_PER_LOD + 0.5);
     // 0.125 keeps the quotient away from integers.
     let number = floor((code + 0.125) * (1.0f / DEVIATIONS));
     return Mean(0.0, samples_of(7.0 - number), deviation_of(code - number * DEVIATIONS));

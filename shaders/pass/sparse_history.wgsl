@@ -139,7 +139,7 @@ fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistor
         inverse_reach = INVERSE_MEAN_REACH;
     }
     var nearest_texel = first;
-    var kept = Mean(0.0, 1.0, 0.0);
+    var kept_lod = ONE_SAMPLE_LOD;
     let taps = select(0u, columns * columns, needed);
     for (var tap = 0u; tap < taps; tap++) {
         let texel = first + vec2i(vec2u(tap % columns, tap / columns));
@@ -147,16 +147,13 @@ fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistor
         let same = !is_empty(words) && (DEPTH_TEST == 0u || has_code(code_word(words), source.codes));
         let cost = around.cost;
         var stored = unpack_full(words);
-        var mean = Mean(stored.lod, 1.0, 0.0);
+        let lod = stored.lod;
         if ANTIALIAS != 0u {
-            mean = mean_of(stored.lod);
-            stored.lod = mean.lod;
+            stored.lod = mean_lod(lod);
         }
         around = add_stored(around, stored, vec2f(texel) - previous.at, same, inverse_reach);
         nearest_texel = select(nearest_texel, texel, around.cost < cost);
-        if around.cost < cost {
-            kept = mean;
-        }
+        kept_lod = select(kept_lod, lod, around.cost < cost);
     }
     if previous.verdict == VERDICT_DISOCCLUDED && !can_replace(around) {
         around = nothing_around();
@@ -166,7 +163,7 @@ fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistor
     found.lowest = expose(found.lowest, frame.exposure);
     found.highest = expose(found.highest, frame.exposure);
     found.nearest.color = expose(found.nearest.color, frame.exposure);
-    return SparseHistory(found, nearest_texel, kept);
+    return SparseHistory(found, nearest_texel, mean_of(kept_lod));
 }
 
 // Whether history has moved since its samples were shaded, by more than the resolution of their stored places.

@@ -25,6 +25,8 @@ const MOVED_PER_PX: f32 = 4.0;
 const CODES_PER_LOD: f32 = 7.0;
 /// Codes of a number of samples.
 const DEVIATIONS: f32 = 6.0;
+/// Stored level of detail of a mean of one sample.
+pub const ONE_SAMPLE_LOD: f32 = 6.0;
 /// Code of a level of 0 if there were one.
 const COARSE_CODE: f32 = 47.0;
 /// Codes a level above 0.
@@ -76,15 +78,21 @@ impl Mean {
     pub const ONE: Self = Self { lod: 0.0, samples: 1.0, deviation: 0.0 };
 }
 
+/// Level of detail of a stored one.
+#[inline]
+pub fn mean_lod(stored_lod: f32) -> f32 {
+    let code = (stored_lod * CODES_PER_LOD + 0.5).floor();
+    if stored_lod < 0.0 { -1.0 } else { (code - COARSE_CODE).max(0.0) * (1.0 / CODES_PER_COARSE_LOD) }
+}
+
 /// Level, number of samples and deviation of a stored level of detail, which is a multiple of 1/7.
 #[inline]
 pub fn mean_of(stored_lod: f32) -> Mean {
-    let code = (stored_lod * CODES_PER_LOD + 0.5).floor();
-    let coarse = code > COARSE_CODE;
-    if coarse || stored_lod < 0.0 {
-        let lod = if stored_lod < 0.0 { -1.0 } else { (code - COARSE_CODE) * (1.0 / CODES_PER_COARSE_LOD) };
+    let lod = mean_lod(stored_lod);
+    if lod != 0.0 {
         return Mean { lod, ..Mean::ONE };
     }
+    let code = (stored_lod * CODES_PER_LOD + 0.5).floor();
     // 0.125 keeps the quotient away from integers.
     let number = ((code + 0.125) * (1.0 / DEVIATIONS)).floor();
     let step = code - number * DEVIATIONS;

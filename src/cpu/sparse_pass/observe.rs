@@ -76,7 +76,8 @@ impl View<'_> {
         } else {
             expected_error(history.lod, contrast, has_moved(surface.motion, history.nearest.place_px))
         };
-        let deviation = if has_moved(surface.motion, Vec2::ZERO) { 0.0 } else { mean.deviation };
+        let is_still_mean = self.antialiases && !has_moved(surface.motion, Vec2::ZERO);
+        let deviation = if is_still_mean { mean.deviation } else { 0.0 };
         let mut confidence = lod_confidence(history.lod);
         if self.is_noisy() {
             let around = luma(history.color);

@@ -2,7 +2,7 @@
 
 use super::view::{NO_NOISE, View};
 use crate::cpu::inputs::Previous;
-use crate::kernel::antialias::{Mean, is_of_surfaces, mean_of};
+use crate::kernel::antialias::{Mean, ONE_SAMPLE_LOD, is_of_surfaces, mean_lod, mean_of};
 use crate::kernel::noise::{Noise, expose_noise, unpack_noise};
 use crate::kernel::reproject::Verdict;
 use crate::kernel::resample::{has_code, tap_codes, tap_codes_between};
@@ -112,7 +112,7 @@ impl View<'_> {
         let inverse_reach = if self.antialiases { INVERSE_MEAN_REACH } else { INVERSE_REACH };
         let mut around = Around::NOTHING;
         let mut nearest_texel = [x, y];
-        let mut kept = Mean::ONE;
+        let mut kept_lod = ONE_SAMPLE_LOD;
         for tap in 0..columns * columns {
             let (tx, ty) = (x + tap % columns, y + tap / columns);
             let words = self.stored_words(tx, ty);
@@ -120,10 +120,9 @@ impl View<'_> {
             let texel_px = Vec2::new(tx as f32 - previous.at[0], ty as f32 - previous.at[1]);
             let cost = around.cost;
             let mut stored = unpack_full(words);
-            let mut mean = Mean { lod: stored.lod, ..Mean::ONE };
+            let lod = stored.lod;
             if self.antialiases {
-                mean = mean_of(stored.lod);
-                stored.lod = mean.lod;
+                stored.lod = mean_lod(lod);
             }
             if N::ON {
                 let place = texel_px + stored.place_px;
@@ -134,7 +133,7 @@ impl View<'_> {
             }
             around = add_stored(around, stored, texel_px, same, inverse_reach);
             if around.cost < cost {
-                (nearest_texel, kept) = ([tx, ty], mean);
+                (nearest_texel, kept_lod) = ([tx, ty], lod);
             }
         }
         notes.note(NoteStage::History, "sum of weights", around.weight, "");
@@ -146,6 +145,7 @@ impl View<'_> {
         notes.note(NoteStage::History, "level of detail", history.lod, "log2 px, below 0: none");
         notes.note(NoteStage::History, "sample to keep", nearest.color, "linear light");
         notes.note(NoteStage::History, "its place", nearest.place_px, "px from the position");
+        let kept = mean_of(kept_lod);
         notes.note(NoteStage::History, "its number of samples", kept.samples, "");
         notes.note(NoteStage::History, "their standard deviation", kept.deviation, "100 from black to white");
         Found { history, noise: self.stored_noise(nearest_texel), mean: kept }

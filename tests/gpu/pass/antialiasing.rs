@@ -40,7 +40,7 @@ fn a_wrong_mean_is_caught() {
         ("surface.mixes = true;", ""),
         ("own >= 0.0 && !surface.mixes;", "own >= 0.0;"),
         ("columns = 3u;", "columns = 2u;"),
-        ("stored.lod = mean.lod;", ""),
+        ("stored.lod = mean_lod(lod);", ""),
         (
             "return average(inputs, past, -frame.views[view].jitter_px, kept, difference);",
             "return average(inputs, past, frame.views[view].jitter_px, kept, difference);",

@@ -17,6 +17,7 @@ pub const PROBES: &[Probe] = &[
         let stored: Vec<u32> = (0..63).map(|code| (code as f32 * (1.0 / 7.0)).to_bits()).collect();
         rows.cross(&[&stored]).cross(&[&floats(&[-1.0])])
     }),
+    probe!(antialias::mean_lod, |rows| rows.each(&[F(-1.0, 9.0)])),
     probe!(antialias::stored_lod, |rows| {
         let lods = floats(&[-1.0, 0.0, 0.1, 0.2, 0.21, 1.0, 2.5, 6.0, 8.0]);
         let (samples, deviations) = (floats(&[1.0, 1.4, 2.0, 16.0, 29.0, 40.0]), floats(&[0.0, 1.0, 7.5, 37.5, 90.0]));
