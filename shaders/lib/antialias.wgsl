@@ -209,5 +209,8 @@ fn stored_mean(r: Reconstruction, result: Reconstructed, past: Mean) -> Averaged
     let is_kept = result.stored.lod < COARSE_LOD && r.nearest.lod <= 0.0;
     let share = r.fit * r.trust;
     let left = relit_samples(past.samples, r.gains) * share + (1.0 - share);
-    return Averaged(result, Mean(past.lod, select(1.0, left, is_kept), select(0.0, past.deviation, is_kept)));
+    if !is_kept {
+        return Averaged(result, Mean(0.0, 1.0, 0.0));
+    }
+    return Averaged(result, Mean(past.lod, left, past.deviation));
 }

@@ -102,7 +102,7 @@ pub const PROBES: &[Probe] = &[
                 if !d.bits().is_multiple_of(4) {
                     (row[13], row[17]) = (0, 0);
                 }
-                row.push(0);
+                row.push(range(d, -1.0, 3.0));
                 push_samples(d, row);
             })
         }
