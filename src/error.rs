@@ -239,6 +239,8 @@ pub enum FrameValue {
     Exposure,
     /// Plan of a frame that is shaded by quads: [`Filter::Quads`](crate::Filter::Quads).
     Plan,
+    /// Mask of such a frame whose pixels the renderer chose.
+    Mask,
     /// A rectangle of a texture that is larger than the view.
     Region {
         /// Name of the input or output.
@@ -263,6 +265,7 @@ impl Display for FrameValue {
             Self::Reactive => "reactive",
             Self::Exposure => "exposure",
             Self::Plan => "plan",
+            Self::Mask => "mask",
             Self::Region { input } => input,
             Self::DebugView => "debug view",
         })

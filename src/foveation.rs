@@ -5,7 +5,7 @@ use crate::error::{SettingsError, check};
 use crate::geometry::ViewGeometry;
 use crate::kernel::foveate;
 use crate::kernel::lattice::offset_px;
-use crate::kernel::quads::FIRST_STEP;
+use crate::kernel::quads::{FIRST_STEP, budget_quads};
 #[cfg(feature = "bevy-0-20")]
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
@@ -105,6 +105,10 @@ pub struct Foveation {
     /// With [`Filter::Quads`]: share of the pixels that smr shades by need in a frame, beside the fovea and the even
     /// pattern, 0 to 1. Default 0.025.
     pub budget: f32,
+    /// With [`Filter::Quads`]: whether one pixel of a chosen quad is shaded, outside the fovea, in place of all four;
+    /// each in turn. For path tracers and compute shaders, which can shade single pixels: four times as many places for
+    /// the same pixels. Default false.
+    pub single_pixels: bool,
 }
 
 impl Default for Foveation {
@@ -117,6 +121,7 @@ impl Default for Foveation {
             rate_mid: 8,
             rate_far: 16,
             budget: 0.025,
+            single_pixels: false,
         }
     }
 }
@@ -156,18 +161,22 @@ impl Foveation {
         Self { fovea_deg: 0.0, mid_deg: 0.0, rate_mid: rate, rate_far: rate, budget, ..Self::quads() }
     }
 
-    /// One pixel in 4, evenly, without a gaze: a sparse frame ([`ViewFrame::lattices`](crate::ViewFrame::lattices)) to
-    /// render first after a cut, before frames shaded by quads. As many pixels in quads lie at a quarter of the places.
-    /// smr keeps its history when the settings change to quads.
+    /// One pixel of each quad, without a gaze: what a temporal upscaler from half the width and height is given, and
+    /// what `plan` takes by itself in the first frame after a cut.
     ///
     /// ```
-    /// use afterimage::{Filter, Foveation};
+    /// use afterimage::Foveation;
     ///
-    /// assert_eq!(Foveation::quarter().filter, Filter::Sparse);
+    /// assert!(Foveation::quarter().single_pixels);
     /// ```
     pub fn quarter() -> Self {
-        let filter = Filter::Sparse;
-        Self { filter, fovea_deg: 0.0, mid_deg: 0.0, blend_deg: 0.0, rate_mid: 2, rate_far: 2, ..Self::default() }
+        let rates = Self { rate_mid: 2, rate_far: 2, ..Self::quads() };
+        Self { fovea_deg: 0.0, mid_deg: 180.0, blend_deg: 0.0, budget: 0.0, single_pixels: true, ..rates }
+    }
+
+    /// Place in its quad of the pixel that frame `index` shades of each quad, if it shades one of each.
+    pub fn quarter_place_px(index: u64) -> [u32; 2] {
+        offset_px(index, 2)
     }
 
     /// Checks the range of every field.
@@ -205,12 +214,25 @@ impl Foveation {
         self.rate_far.ilog2()
     }
 
-    /// Places in their blocks of the quads of the even pattern of frame `index`, in quads: x and y in the middle
-    /// region, x and y in the periphery. There a frame has every second block.
-    pub(crate) fn quad_offsets(&self, index: u64) -> [u32; 4] {
-        let [mid_x, mid_y] = offset_px(index, self.rate_mid / 2);
-        let [far_x, far_y] = offset_px(index / 2, self.rate_far / 2);
+    /// Places in their blocks of the pixels of the even pattern of frame `index`: x and y in the middle region, x and y
+    /// in the periphery. There a frame has every second block.
+    pub(crate) fn pattern_px(&self, index: u64) -> [u32; 4] {
+        let [mid_x, mid_y] = offset_px(index, self.rate_mid);
+        let [far_x, far_y] = offset_px(index / 2, self.rate_far);
         [mid_x, mid_y, far_x, far_y]
+    }
+
+    /// Whether a frame without history shades a quarter of the pixels, evenly: if other frames have about as few.
+    pub(crate) fn takes_quarter(&self) -> bool {
+        let pixels = if self.single_pixels { 1.0 } else { 4.0 };
+        let even = 0.5 * pixels / (self.rate_far * self.rate_far) as f32;
+        even + self.budget < 0.3
+    }
+
+    /// Number of the quads of a view of `quads` quads for which the budget pays.
+    pub(crate) fn budget_quads(&self, quads: [u32; 2]) -> u32 {
+        let share = if self.single_pixels { (4.0 * self.budget).min(1.0) } else { self.budget };
+        budget_quads(share, quads)
     }
 
     /// Place in its block of [`FIRST_STEP`] quads of the quad that frame `index` chooses first without history,

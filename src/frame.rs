@@ -130,6 +130,15 @@ pub struct FrameInputs<'a, Colors, Scalars, Vectors> {
     /// color, at its level of detail. On a GPU `Rg16Float`, `Rg32Float` or wider. Required if [`Settings::noisy`] is
     /// set, otherwise `None`. In sparse frames it is read only at the pixels of samples.
     pub noise: Option<Vectors>,
+    /// Mask of a [planned frame](crate::Filter::Quads) whose pixels the renderer chose itself, in place of `plan`: a
+    /// pixel is shaded where it is above 0.5; NaN counts as 0. For checkerboards, half resolution, or a tracer that
+    /// chooses its own pixels; any pattern does, if it visits every pixel in some frame. On a GPU any float or
+    /// normalised format. `None`: `plan` chose the pixels.
+    pub mask: Option<Scalars>,
+    /// Whether the color of a [planned frame](crate::Filter::Quads) has one texel for each quad of 2x2 pixels: half the
+    /// width and height, rounded up. At most one pixel of each quad is shaded then, as after a cut (`is_quarter` of
+    /// either executor). Default false.
+    pub half_color: bool,
     /// Descriptions of the views, one for each view of the context.
     pub views: &'a [ViewFrame],
     /// Frame counter, which seeds the random numbers: the same index and [`Settings::seed`] give the same bytes.
@@ -151,6 +160,8 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
             reactive: None,
             lod: None,
             noise: None,
+            mask: None,
+            half_color: false,
             views,
             index,
             reset: Reset::None,
@@ -179,6 +190,7 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
             return Err(FrameError::Value { value: FrameValue::Reactive, view: 0, found: "given".into(), expected });
         }
         self.check_lattices(&desc.settings)?;
+        self.check_mask(&desc.settings)?;
         self.exposure.check()
     }
 
@@ -207,10 +219,24 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
         Ok(())
     }
 
+    /// Rejects a mask, and colors of half the size, of frames that are not planned.
+    fn check_mask(&self, settings: &Settings) -> Result<(), FrameError> {
+        if settings.foveation.filter == Filter::Quads || !(self.mask.is_some() || self.half_color) {
+            return Ok(());
+        }
+        let found = if self.mask.is_some() { "given" } else { "missing, with a color of half the size" };
+        let expected = "set Filter::Quads in Settings::foveation";
+        Err(FrameError::Value { value: FrameValue::Mask, view: 0, found: found.into(), expected })
+    }
+
     /// Checks the values of a frame whose quads are to be planned.
     pub(crate) fn check_plan(&self, desc: &ContextDesc) -> Result<(), FrameError> {
         if desc.settings.foveation.filter != Filter::Quads {
             let (found, expected) = ("asked for".into(), "Filter::Quads in Settings::foveation");
+            return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
+        }
+        if self.mask.is_some() {
+            let (found, expected) = ("asked for".into(), "no plan, or no mask: a mask says which pixels are shaded");
             return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
         }
         self.check_facts(desc)
@@ -218,9 +244,10 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
 
     /// Rejects a frame shaded by quads that was not planned. `planned`: index of the frame that was planned.
     pub(crate) fn check_planned(&self, desc: &ContextDesc, planned: Option<u64>) -> Result<(), FrameError> {
-        if desc.settings.foveation.filter == Filter::Quads && planned != Some(self.index) {
+        let by_quads = desc.settings.foveation.filter == Filter::Quads;
+        if by_quads && self.mask.is_none() && planned != Some(self.index) {
             let found = planned.map_or("missing".into(), |index| format!("that of frame {index}"));
-            let expected = "the plan of this frame: call plan before the frame is shaded";
+            let expected = "the plan of this frame: call plan before the frame is shaded, or give a mask";
             return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
         }
         Ok(())

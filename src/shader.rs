@@ -46,7 +46,7 @@ pub static MODULES: &[Module] = modules! {
     "pass":
         "candidate_lod", "candidate_pass", "doctor_pass", "doctor_roots_pass", "each_pixel", "fill_geometry_pass",
         "fill_pass", "foveation_lod", "inputs", "lattices", "mip_chain_pass", "none_pass", "origin", "output",
-        "output_and_view", "past_frame", "previous", "quad_around_pass", "quad_fill_pass", "quad_key_pass",
+        "output_and_view", "past_frame", "previous", "quad_around_pass", "quad_fill_pass", "quad_given_pass", "quad_key_pass",
         "quad_light_pass", "quad_list", "quad_mask_pass", "quad_observe_pass", "quad_octants_pass", "quad_pass",
         "quad_plan", "quad_prime_pass", "quad_runs", "quad_samples", "quad_state", "quad_threshold_pass",
         "resize_reservoirs_pass", "resize_sparse_pass", "resize_surfaces_pass", "resize_uniforms", "settled_history",

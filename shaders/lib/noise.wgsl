@@ -106,6 +106,12 @@ fn expected_noise(history: Noise, candidate: Noise, around: f32) -> f32 {
     return root_slope(around) * sqrt(pooled_variance(history, candidate) * inverse_samples);
 }
 
+fn noise_need(history: Noise, around: f32) -> f32 {
+    let samples = max(history.samples, 1.0);
+    let slope = root_slope(around);
+    return (slope * slope) * (history.variance / (samples * (samples + 1.0)));
+}
+
 struct NoiseSum {
     weight: f32,
     spread: f32,

@@ -7,6 +7,7 @@ const IN_PERIPHERY: u32 = 2u;
 const RUN_QUADS: u32 = 16u;
 const REACH: i32 = 8;
 const NOWHERE: u32 = 0x88u;
+const WHOLE: u32 = 15u;
 const NO_HISTORY_NEED: f32 = 60.0;
 const LATER_SHARE: f32 = 0.25;
 const FIRST_STEP: u32 = 4u;
@@ -40,6 +41,33 @@ fn in_turn(x: u32, y: u32, step_quads: u32, turn: u32) -> bool {
 
 fn asked_px(x: u32, y: u32, frame_low: u32) -> vec2u {
     return vec2u(2u * x + ((frame_low ^ x ^ y) & 1u), 2u * y + ((frame_low >> 1u) & 1u));
+}
+
+fn place_in_quad(px: vec2u) -> u32 {
+    return (px.x & 1u) | ((px.y & 1u) << 1u);
+}
+
+fn nearest_px(mask: u32, quad: vec2u, px: vec2u) -> vec2u {
+    var best = 0xffffffffu;
+    for (var place = 0u; place < 4u; place++) {
+        let offset = vec2i(2u * quad + vec2u(place & 1u, place >> 1u)) - vec2i(px);
+        let px2 = (u32(offset.x * offset.x + offset.y * offset.y) << 2u) | place;
+        best = select(best, min(best, px2), ((mask >> place) & 1u) == 1u);
+    }
+    return 2u * quad + vec2u(best & 1u, (best >> 1u) & 1u);
+}
+
+fn quadrant_of(x: i32, y: i32) -> u32 {
+    let below = y > 0 || (y == 0 && x > 0);
+    return select(2u + u32(x >= 0), u32(x <= 0), below);
+}
+
+fn sample_code(x: i32, y: i32) -> u32 {
+    return (u32(x * x + y * y) << 12u) | u32(x + 32) | (u32(y + 32) << 6u);
+}
+
+fn sample_offset(code: u32) -> vec2i {
+    return vec2i(vec2u(code & 63u, (code >> 6u) & 63u)) - 32;
 }
 
 fn no_history_need(x: u32, y: u32, offset: vec2u) -> f32 {

@@ -63,7 +63,11 @@ struct FrameUniforms {
     inverse_exposure: f32,
     largest_shown: f32,
     first_quad: u32,
-    quad_offsets: vec4u,
+    pattern_px: vec4u,
+    single_pixels: u32,
+    has_single_pixels: u32,
+    color_shift: u32,
+    has_budget: u32,
     views: array<ViewUniforms, 4>,
     cameras: array<CameraUniforms, 4>,
 }
@@ -120,7 +124,7 @@ fn layer_of(view: u32) -> u32 {
 
 // Color and alpha of a texel, as the renderer wrote them.
 fn given_at(texel: vec2u, view: u32) -> vec4f {
-    return textureLoad(color_in, texel_of(texel, view, COLOR_IN), layer_of(view), 0);
+    return textureLoad(color_in, texel_of(texel >> vec2u(frame.color_shift), view, COLOR_IN), layer_of(view), 0);
 }
 
 // The same with the color in this frame's exposure.

@@ -15,20 +15,19 @@ struct Missing {
 }
 
 fn pixel(px: vec2u, view: u32) -> vec4f {
-    if (mask_at(px, view) & 1u) != 0u {
+    let mask_word = mask_at(px, view);
+    if is_shaded(mask_word, px) {
         return given_at(px, view);
     }
-    let quad = px >> vec2u(1u);
-    let around = textureLoad(quad_around, quad, view, 0).xy;
+    let around = around_pixel(px, view, mask_word);
     var sum = vec4f(0.0);
     var weight = 0.0;
     for (var i = 0u; i < 4u; i++) {
-        let code = code_of(around, i);
-        let other = vec2u(vec2i(quad) + neighbour_offset(code));
-        let at = min(clamp(px, 2u * other, 2u * other + 1u), frame.size - 1u);
+        let sample = sample_tap(around, i, px, view);
+        let at = min(sample.at, frame.size - 1u);
         let given = color_at(at, view);
         let sampled = color(given.xyz);
-        if code != NOWHERE && sampled.usable {
+        if sample.is_there && sampled.usable {
             let x = f32(at.x) - f32(px.x);
             let y = f32(at.y) - f32(px.y);
             let w = 1.0 / max(x * x + y * y, 1.0);

@@ -1,4 +1,5 @@
 //#use sparse_history
+//#use sparse_noise
 //#use quad_state
 // Region, even pattern and key of the quads of a frame. CPU twin: `plan_quads` in src/cpu/sparse_pass/quad_plan.rs. One
 // invocation a block of 2x2 quads of view `frame.first_view`.
@@ -23,6 +24,7 @@ fn need_at(px: vec2u, view: u32) -> f32 {
     var nearest_px2 = 0x1p126;
     var lod = -1.0;
     var samples = ENOUGH_SAMPLES;
+    var noise_needed = 0.0;
     var lowest = vec3f(MAX_COLOR);
     var highest = vec3f(0.0);
     let taps = select(0u, 4u, is_valid);
@@ -43,10 +45,22 @@ fn need_at(px: vec2u, view: u32) -> f32 {
                     lod = mean.lod;
                     samples = mean.samples;
                 }
+                if NOISY != 0u {
+                    noise_needed = noise_need(stored_noise(vec2i(texel), view), luma(expose(stored.color, frame.exposure)));
+                }
             }
         }
     }
-    return select(need(lod, samples, root_difference(lowest, highest)), -1.0, lod < 0.0);
+    let needed = need(lod, samples, root_difference(lowest, highest)) + noise_needed;
+    return select(needed, -1.0, lod < 0.0);
+}
+
+// Number in its quad of the pixel that is shaded alone: of the even pattern, or the one that is tested.
+fn single_place(quad: vec2u, region_now: u32, even: bool) -> u32 {
+    if even {
+        return place_in_quad(select(frame.pattern_px.zw, frame.pattern_px.xy, region_now == IN_MIDDLE));
+    }
+    return place_in_quad(asked_px(quad.x, quad.y, frame.frame_low));
 }
 
 // Whether the lens shows a pixel of a quad.
@@ -63,10 +77,10 @@ fn is_seen_quad(quad: vec2u, view: u32) -> bool {
 fn is_even(quad: vec2u, region_now: u32) -> bool {
     let steps = vec2u(1u << (u32(frame.lod_mid) - 1u), 1u << (u32(frame.lod_far) - 1u));
     if region_now == IN_MIDDLE {
-        return in_pattern(quad.x, quad.y, steps.x, frame.quad_offsets.xy);
+        return in_pattern(quad.x, quad.y, steps.x, frame.pattern_px.xy / 2u);
     }
     return region_now == IN_FOVEA
-        || (in_pattern(quad.x, quad.y, steps.y, frame.quad_offsets.zw)
+        || (in_pattern(quad.x, quad.y, steps.y, frame.pattern_px.zw / 2u)
             && in_turn(quad.x, quad.y, steps.y, frame.frame_low & 1u));
 }
 
@@ -82,12 +96,19 @@ fn block(at: vec2u, view: u32) {
         }
         let e_deg = region_angle_deg(ray_at(2u * quad, view), frame.views[view].gaze_ray);
         let region_now = region(e_deg, frame.fovea_radius_deg, frame.mid_radius_deg);
-        let even = is_seen_quad(quad, view) && is_even(quad, region_now);
-        flags[i] = (region_now << 16u) | (u32(even) << 18u);
+        var even = is_seen_quad(quad, view) && is_even(quad, region_now);
+        var pixels = WHOLE;
+        if frame.single_pixels != 0u && region_now != IN_FOVEA {
+            let place = single_place(quad, region_now, even);
+            let alone = 2u * quad + vec2u(place & 1u, place >> 1u);
+            pixels = 1u << place;
+            even = even && all(alone < frame.size) && is_seen(alone, view);
+        }
+        flags[i] = (region_now << 16u) | (u32(even) << 18u) | (pixels << 20u);
         let px = asked_px(quad.x, quad.y, frame.frame_low);
         if even {
             even_count++;
-        } else if HAS_SPARSE_HISTORY != 0u && region_now != IN_FOVEA && all(px < frame.size) && is_seen(px, view) {
+        } else if HAS_SPARSE_HISTORY != 0u && frame.has_budget != 0u && region_now != IN_FOVEA && all(px < frame.size) && is_seen(px, view) {
             let needed = need_at(px, view);
             let first = vec2u(frame.first_quad & 0xffffu, frame.first_quad >> 16u);
             needs[i] = select(needed * acuity(e_deg), no_history_need(quad.x, quad.y, first), needed < 0.0);

@@ -32,8 +32,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             let is_shaded = (word & 0x40000u) != 0u || (word & 0xffffu) >= state.threshold;
             shaded |= u32(is_shaded) << i;
             if is_own(i) {
+                let pixels = select(0u, (word >> 20u) & 15u, is_shaded);
                 let region_now = (word >> 16u) & 3u;
-                textureStore(mask_out, quad, quads.view, vec4u(u32(is_shaded) | (region_now << 1u), 0u, 0u, 0u));
+                textureStore(mask_out, quad, quads.view, vec4u(pixels | (region_now << 4u), 0u, 0u, 0u));
             }
         }
     }

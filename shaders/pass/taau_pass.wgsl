@@ -23,7 +23,8 @@ struct Samples {
 
 fn is_shaded(point: vec2i, view: u32) -> bool {
     let px = vec2u(clamp(point, vec2i(0), vec2i(frame.size) - 1));
-    return (textureLoad(quad_mask, px >> vec2u(1u), view, 0).x & 1u) != 0u;
+    let place = (px.x & 1u) | ((px.y & 1u) << 1u);
+    return ((textureLoad(quad_mask, px >> vec2u(1u), view, 0).x >> place) & 1u) != 0u;
 }
 
 fn sample_near(point: vec2i, lattice: LatticeUniforms, view: u32) -> vec4f {

@@ -15,7 +15,7 @@ pub(super) fn filled(frame: &Frame<'_>, size_px: [u32; 2], quads: &[Quads]) -> V
     if !quads.is_empty() {
         let views = quads.iter().zip(frame.color);
         let of = |(quads, color): (&Quads, &&Image<_>)| {
-            Image::from_fn_parallel(size_px, |px| quads.filled(color, px, frame.exposure))
+            Image::from_fn_parallel(size_px, |px| quads.filled(color, frame.half_color, px, frame.exposure))
         };
         return views.map(of).collect();
     }

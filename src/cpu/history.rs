@@ -156,6 +156,12 @@ impl History {
         if is_sparse { &self.previous.surfaces[view * self.view_len..(view + 1) * self.view_len] } else { &[] }
     }
 
+    /// Packed noise of these samples; empty unless candidates are noisy.
+    pub(super) fn sparse_noise(&self, view: usize) -> &[u32] {
+        let is_noisy = !self.previous.noise.is_empty() && self.filled;
+        if is_noisy { &self.previous.noise[view * self.view_len..(view + 1) * self.view_len] } else { &[] }
+    }
+
     /// Previous reservoirs of `view`, and the current ones to write.
     pub(super) fn split(&mut self, view: usize) -> (PastView<'_>, NextView<'_>) {
         let range = view * self.view_len..(view + 1) * self.view_len;

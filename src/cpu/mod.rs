@@ -67,8 +67,9 @@ impl<'a> Frame<'a> {
     where
         'a: 'b,
     {
-        let Self { depth, motion, trust, reactive, lod, noise, views, index, reset, exposure, .. } = *self;
-        Frame { color, depth, motion, trust, reactive, lod, noise, views, index, reset, exposure }
+        let Self { depth, motion, trust, reactive, lod, noise, mask, half_color, views, index, .. } = *self;
+        let (reset, exposure) = (self.reset, self.exposure);
+        Frame { color, depth, motion, trust, reactive, lod, noise, mask, half_color, views, index, reset, exposure }
     }
 }
 
@@ -257,13 +258,18 @@ impl CpuAfterimage {
     ) -> Result<FrameStats, FrameError> {
         check_inputs(&self.desc, frame)?;
         frame.check_planned(&self.desc, self.planned.as_ref().map(|planned| planned.index))?;
-        let quads = self.planned.as_ref().map_or(&[][..], |planned| &planned.quads);
+        let given = frame.mask.map(|masks| sparse_pass::given_quads(&self.desc, masks));
+        let planned = self.planned.as_ref().map(|planned| &planned.quads);
+        let quads = given.as_ref().or(planned).map_or(&[][..], |quads| quads);
         check_sizes(&self.desc, "output", Some(output.iter().map(Image::size)))?;
         check_sizes(&self.desc, "traces", traces.as_deref().map(|t| t.iter().map(Image::size)))?;
         let fills = self.desc.settings.stages().contains(&Stage::Fill);
         let filled = if fills { fill::filled(frame, self.desc.size_px, quads) } else { vec![] };
         let filled: Vec<_> = filled.iter().collect();
-        let whole = frame.with_color(if filled.is_empty() { frame.color } else { &filled });
+        let whole = match filled.is_empty() {
+            true => *frame,
+            false => Frame { half_color: false, ..frame.with_color(&filled) },
+        };
         let geometry = fill_geometry::filled(&self.desc, frame, &self.history);
         let (given, history) = (frame, &mut self.history);
         let stats = fill_geometry::with_filled(geometry.as_deref(), &self.desc, &whole, |desc, frame| {
@@ -300,9 +306,16 @@ impl CpuAfterimage {
 /// Checks a frame without its outputs.
 fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
     frame.check(desc)?;
-    check_samples(desc, "color", Some(frame.color.iter().map(|i| i.size())), frame.views, ViewFrame::atlas)?;
+    let of_colors = if frame.half_color { desc.size_px.map(|side| side.div_ceil(2)) } else { desc.size_px };
+    let colors = frame.color.iter().map(|i| i.size());
+    if frame.half_color {
+        check_sizes_of(desc, "color", Some(colors), of_colors)?;
+    } else {
+        check_samples(desc, "color", Some(colors), frame.views, ViewFrame::atlas)?;
+    }
     check_geometry(desc, frame)?;
     check_sizes(desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
+    check_sizes(desc, "mask", frame.mask.map(|m| m.iter().map(|i| i.size())))?;
     check_sizes(desc, "noise", frame.noise.map(|n| n.iter().map(|i| i.size())))
 }
 
@@ -341,14 +354,24 @@ fn check_sizes(
     input: &'static str,
     sizes: Option<impl ExactSizeIterator<Item = [u32; 2]>>,
 ) -> Result<(), FrameError> {
+    check_sizes_of(desc, input, sizes, desc.size_px)
+}
+
+/// Checks that an input, if given, has one image of `expected` pixels for each view.
+fn check_sizes_of(
+    desc: &ContextDesc,
+    input: &'static str,
+    sizes: Option<impl ExactSizeIterator<Item = [u32; 2]>>,
+    expected_px: [u32; 2],
+) -> Result<(), FrameError> {
     let Some(sizes) = sizes else { return Ok(()) };
     let (found, expected) = (sizes.len(), desc.view_count as usize);
     if found != expected {
         return Err(FrameError::ViewCount { found, expected });
     }
     for (view, found) in sizes.enumerate() {
-        if found != desc.size_px {
-            return Err(FrameError::Size { input, view, found, expected: desc.size_px });
+        if found != expected_px {
+            return Err(FrameError::Size { input, view, found, expected: expected_px });
         }
     }
     Ok(())

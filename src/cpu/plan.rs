@@ -8,6 +8,7 @@ use crate::image::Image;
 #[derive(Clone, Debug)]
 pub(super) struct Planned {
     pub index: u64,
+    pub is_quarter: bool,
     /// One mask of pixels a view.
     masks: Vec<Image<bool>>,
     /// One a view.
@@ -15,9 +16,10 @@ pub(super) struct Planned {
 }
 
 impl CpuAfterimage {
-    /// Pixels to shade of a frame [shaded by quads](crate::Filter::Quads), one mask a view: whole quads of 2x2 pixels.
-    /// Give the frame to [`process`](Self::process) with a color of the context's size, in which these pixels are
-    /// shaded.
+    /// Pixels to shade of a [planned frame](crate::Filter::Quads), one mask a view: quads of 2x2 pixels, or
+    /// [single pixels](crate::Foveation::single_pixels). Give the frame to [`process`](Self::process) with a color of
+    /// the context's size, in which these pixels are shaded. Without history the plan is a quarter of the pixels
+    /// ([`is_quarter`](Self::is_quarter)), unless the foveation shades more.
     ///
     /// All quads of the fovea are chosen, an even pattern outside it that visits every quad in turn, and at most the
     /// share [`Foveation::budget`](crate::Foveation::budget) of a view's quads where history lacks most.
@@ -54,6 +56,15 @@ impl CpuAfterimage {
         let frame = Frame { noise: None, ..frame.with_color(&colors) };
         let quads = sparse_pass::plan_quads(&self.desc, &self.history, &frame);
         let masks = quads.iter().map(sparse_pass::Quads::pixels).collect();
-        Ok(&self.planned.insert(Planned { index: frame.index, masks, quads }).masks)
+        let is_quarter = sparse_pass::is_quarter(&self.desc, &self.history, &frame);
+        Ok(&self.planned.insert(Planned { index: frame.index, is_quarter, masks, quads }).masks)
+    }
+
+    /// Whether the last [`plan`](Self::plan) chose one pixel of each quad, because nothing was known: in the first frame
+    /// and after a reset. It can be drawn at half the width and height
+    /// ([`ViewGeometry::half`](crate::ViewGeometry::half)), and given so
+    /// ([`half_color`](crate::FrameInputs::half_color)).
+    pub fn is_quarter(&self) -> bool {
+        self.planned.as_ref().is_some_and(|planned| planned.is_quarter)
     }
 }

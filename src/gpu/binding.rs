@@ -16,7 +16,8 @@ pub enum Binding {
     Trust,
     Lod,
     Noise,
-    Reactive = 8,
+    Mask,
+    Reactive,
     Output = 10,
     /// Debug view beside the output.
     Debug,
@@ -56,7 +57,7 @@ pub struct Input {
 }
 
 /// The inputs of a frame.
-pub const INPUTS: [Input; 7] = [
+pub const INPUTS: [Input; 8] = [
     Input { binding: Binding::Color, name: "color", channels: 3, is_geometry: false, has: None },
     Input { binding: Binding::Depth, name: "depth", channels: 1, is_geometry: true, has: Some("HAS_DEPTH") },
     Input { binding: Binding::Motion, name: "motion", channels: 2, is_geometry: true, has: Some("HAS_MOTION") },
@@ -64,6 +65,7 @@ pub const INPUTS: [Input; 7] = [
     Input { binding: Binding::Reactive, name: "reactive", channels: 1, is_geometry: true, has: Some("HAS_REACTIVE") },
     Input { binding: Binding::Lod, name: "lod", channels: 1, is_geometry: false, has: Some("HAS_LOD") },
     Input { binding: Binding::Noise, name: "noise", channels: 2, is_geometry: false, has: None },
+    Input { binding: Binding::Mask, name: "mask", channels: 1, is_geometry: true, has: None },
 ];
 
 impl Binding {

@@ -50,6 +50,7 @@ impl Passes for Fill {
         for batch in job.batches() {
             job.dispatch(self.shader(job.desc), &batch, &own, job.desc.size_px);
         }
+        job.uniforms.color_shift = 0;
         job.textures[Binding::Color as usize] = Some(Textures::Layers(&self.color.texture));
     }
 }

@@ -74,7 +74,11 @@ fn check_input(desc: &ContextDesc, frame: &Frame<'_>, input: &Input) -> Result<(
         _ => false,
     };
     let views = if of_samples { frame.views } else { &[] };
-    check_textures(desc, input.name, textures, Afterimage::INPUT_USAGE, views)?;
+    let mut desc = *desc;
+    if frame.half_color && matches!(input.binding, Binding::Color) {
+        desc.size_px = desc.size_px.map(|side| side.div_ceil(2));
+    }
+    check_textures(&desc, input.name, textures, Afterimage::INPUT_USAGE, views)?;
     textures.iter().try_for_each(|texture| check_readable(input.name, texture, input.channels))
 }
 

@@ -45,7 +45,8 @@ pub use textures::{Region, Textures};
 
 use crate::context::ContextDesc;
 use crate::error::{CreateError, FrameError, FrameValue, SettingsError};
-use crate::foveation::Filter;
+use crate::foveation::{Filter, Foveation};
+use crate::frame::Reset;
 use crate::gaze::Gaze;
 use crate::geometry::ViewGeometry;
 use crate::kernel::debug_view::DebugView;
@@ -57,7 +58,7 @@ use crate::uniforms::ViewState;
 use binding::Binding;
 use compute::Sources;
 use history::History;
-use quad_plan::QuadPasses;
+use quad_plan::{Planned, QuadPasses};
 use recorder::Recorder;
 use resize::ResizePass;
 use stage::{Job, Specialization};
@@ -386,7 +387,8 @@ impl Afterimage {
     pub fn plan(&mut self, device: &Device, encoder: &mut CommandEncoder, frame: &Frame<'_>) -> Result<(), FrameError> {
         frame.check_plan(&self.desc)?;
         input::check_geometry(&self.desc, frame)?;
-        let (uniforms, ..) = self.prepare(frame);
+        let is_quarter = self.starts_with_quarter(frame);
+        let (uniforms, ..) = self.prepare(frame, is_quarter);
         // The color is not read, but its regions decide how views are processed.
         let variant = Variant::of(frame, &Target::new(frame.color));
         let special = Specialization::new(variant, None, self.generation);
@@ -405,17 +407,34 @@ impl Afterimage {
             recorder: &mut self.recorder,
         };
         if let Some(quads) = &self.quads {
-            quads.record(&mut job);
+            quads.record(&mut job, false);
         }
         let upload = self.recorder.upload(device)?;
         if let Some(quads) = &mut self.quads {
             quads.clear(encoder);
-            quads.planned = Some(frame.index);
+            quads.planned = Some(Planned { index: frame.index, is_quarter });
         }
         self.recorder.copy(encoder, &upload);
         let label = Some("afterimage plan");
         self.recorder.record(&mut encoder.begin_compute_pass(&ComputePassDescriptor { label, ..Default::default() }));
         Ok(())
+    }
+
+    /// Whether the last [`plan`](Self::plan) chose one pixel of each quad, because nothing was known: in the first frame
+    /// and after a reset. Draw it at half the width and height ([`ViewGeometry::half`]), and give it so
+    /// ([`half_color`](crate::FrameInputs::half_color)): rasterisers cannot shade single pixels of a quad, and would
+    /// shade all.
+    pub fn is_quarter(&self) -> bool {
+        self.quads.as_ref().and_then(|quads| quads.planned).is_some_and(|planned| planned.is_quarter)
+    }
+
+    /// Whether a frame shades one pixel of each quad, as far as is known before the device has processed its
+    /// predecessor.
+    fn starts_with_quarter(&self, frame: &Frame<'_>) -> bool {
+        let starts = frame.reset != Reset::None || !self.history.is_filled();
+        let settings = &self.desc.settings;
+        let has_memory = matches!(settings.history_layout(), HistoryLayout::Sparse { .. });
+        starts && has_memory && settings.foveation.takes_quarter()
     }
 
     /// Records a pass, after [`plan`](Self::plan), that closes the depth buffer of view `view` wherever no quad was
@@ -458,9 +477,9 @@ impl Afterimage {
         Ok(())
     }
 
-    /// The quads that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::Filter::Quads) chose: an
-    /// `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bit 0 says that the quad is shaded, and an
-    /// array layer for each view; usages `TEXTURE_BINDING` and `COPY_SRC`. `None` with another filter. Changes of size
+    /// The pixels that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::Filter::Quads) chose: an
+    /// `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bits 0 to 3 say which of its pixels are shaded,
+    /// row by row, and an array layer for each view; usages `TEXTURE_BINDING` and `COPY_SRC`. `None` with another filter. Changes of size
     /// and settings replace it.
     pub fn quad_mask(&self) -> Option<&Texture> {
         self.quads.as_ref().map(|quads| &quads.quads.mask.texture)
@@ -535,12 +554,13 @@ impl Afterimage {
         target: &Target<'_>,
         view: Option<DebugView>,
     ) -> Result<(Recorded, Vec<ViewState>, Buffer), FrameError> {
-        let (uniforms, state, recorded) = self.prepare(frame);
+        let is_given = frame.mask.is_some();
+        let (uniforms, state, recorded) = self.prepare(frame, self.is_quarter() && !is_given);
         let mut textures = frame.textures();
         textures[Binding::Output as usize] = Some(target.output);
         textures[Binding::Debug as usize] = target.debug.map(|debug| debug.output);
         self.recorder.begin(&SparseUniforms::new(frame.views, self.desc.size_px), self.history.next_number());
-        self.stages.record(&mut Job {
+        let mut job = Job {
             device,
             desc: &self.desc,
             views: frame.views,
@@ -552,8 +572,16 @@ impl Afterimage {
             lights: None,
             quads: self.quads.as_ref().map(|quads| &quads.quads),
             recorder: &mut self.recorder,
-        });
+        };
+        let given = self.quads.as_ref().filter(|_| is_given);
+        if let Some(quads) = given {
+            quads.record(&mut job, true);
+        }
+        self.stages.record(&mut job);
         let upload = self.recorder.upload(device)?;
+        if let Some(quads) = given {
+            quads.clear(encoder);
+        }
         if let Some(counters) = target.counters {
             encoder.clear_buffer(counters, 0, Some(FrameStats::COUNTERS_BYTES));
         }
@@ -569,7 +597,8 @@ impl Afterimage {
 
     fn check(&self, device: &Device, frame: &Frame<'_>, target: &Target<'_>) -> Result<(), FrameError> {
         input::check(device, &self.desc, self.output_format, frame, target)?;
-        frame.check_planned(&self.desc, self.quads.as_ref().and_then(|quads| quads.planned))
+        frame
+            .check_planned(&self.desc, self.quads.as_ref().and_then(|quads| quads.planned).map(|planned| planned.index))
     }
 
     /// Discards the last plan.
@@ -580,14 +609,15 @@ impl Afterimage {
     }
 
     /// Uniforms of a frame, the state of the views after it, and its warnings.
-    fn prepare(&self, frame: &Frame<'_>) -> (FrameUniforms, Vec<ViewState>, Recorded) {
+    fn prepare(&self, frame: &Frame<'_>, is_quarter: bool) -> (FrameUniforms, Vec<ViewState>, Recorded) {
         let mut recorded = Recorded::default();
         let mut after = vec![];
         for (i, (view, state)) in frame.views.iter().zip(&self.history.state).enumerate() {
             after.push(state.with(view, frame.exposure));
             recorded.note_gaze(i, view, state.gaze_px);
         }
-        let uniforms = FrameUniforms::new(&self.desc, frame, &after, self.history.past_frame());
+        let foveation = if is_quarter { Foveation::quarter() } else { self.desc.settings.foveation };
+        let uniforms = FrameUniforms::new(&self.desc, frame, &after, self.history.past_frame(), &foveation);
         let largest_shown = output::largest(self.output_format);
         (FrameUniforms { largest_shown, ..uniforms }, after, recorded)
     }

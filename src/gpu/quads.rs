@@ -3,7 +3,7 @@
 use super::buffer::filled;
 use super::plane::{Plane, PlaneDesc};
 use crate::context::ContextDesc;
-use crate::kernel::quads::{KEYS, RUN_QUADS, budget_quads};
+use crate::kernel::quads::{KEYS, RUN_QUADS};
 use wgpu::{Buffer, BufferUsages, Device, TextureFormat, TextureUsages};
 
 /// Bytes of a list before its quads.
@@ -21,7 +21,7 @@ pub(super) const QUAD_GROUPS: u64 = PIXEL_GROUPS + 12;
 pub(super) struct Quads {
     pub budget: Buffer,
     pub keys: Plane,
-    /// Bit 0: whether a quad is shaded; bits 1 and 2: its region.
+    /// Bits 0 to 3: the pixels of a quad that are shaded; bits 4 and 5: its region.
     pub mask: Plane,
     /// Shaded quads of the runs of each row.
     pub runs: Plane,
@@ -58,7 +58,7 @@ impl Quads {
         };
         let [keys, mask, runs, around] = planes(desc);
         Self {
-            budget: uniforms([budget_quads(desc.settings.foveation.budget, size), 0, 0, 0]),
+            budget: uniforms([desc.settings.foveation.budget_quads(size), 0, 0, 0]),
             keys: keys.create(device),
             mask: mask.create(device),
             runs: runs.create(device),

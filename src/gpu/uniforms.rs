@@ -68,8 +68,16 @@ pub struct FrameUniforms {
     /// Place in its block of the quad that is chosen first without history, in quads: x in the low half, y in the high
     /// half.
     pub first_quad: u32,
-    /// Places in their blocks of the quads of the even pattern, in the middle region and in the periphery, in quads.
-    pub quad_offsets: [u32; 4],
+    /// Places in their blocks of the pixels of the even pattern, in the middle region and in the periphery.
+    pub pattern_px: [u32; 4],
+    /// Whether one pixel of a chosen quad is shaded outside the fovea.
+    pub single_pixels: u32,
+    /// Whether quads may be shaded in part.
+    pub has_single_pixels: u32,
+    /// Bits by which coordinates of pixels are shifted for those of texels of the color: 1 for one texel a quad.
+    pub color_shift: u32,
+    /// Whether quads are chosen by need.
+    pub has_budget: u32,
     /// One entry a view.
     pub views: [ViewUniforms; MAX_VIEWS],
     /// Camera motion of each view.
@@ -78,18 +86,24 @@ pub struct FrameUniforms {
 
 impl FrameUniforms {
     /// Uniforms of a frame, without the origins of its views and the largest shown color. `state`: state of the views
-    /// after this frame. `past_frame`: number of the previous frame, or [`NO_FRAME`].
-    pub(super) fn new(desc: &ContextDesc, frame: &Frame<'_>, state: &[ViewState], past_frame: u32) -> Self {
+    /// after this frame. `past_frame`: number of the previous frame, or [`NO_FRAME`]. `foveation`: of this frame.
+    pub(super) fn new(
+        desc: &ContextDesc,
+        frame: &Frame<'_>,
+        state: &[ViewState],
+        past_frame: u32,
+        foveation: &Foveation,
+    ) -> Self {
         let settings = &desc.settings;
         let (wrs, smr) = (wrs_params(settings), smr_params(settings));
-        let [lod_mid, lod_far] = settings.foveation.lods();
+        let [lod_mid, lod_far] = foveation.lods();
         let test = settings.depth_test.unwrap_or_default();
         let [first_x, first_y] = Foveation::first_quad(frame.index);
         let mut uniforms = Self {
             size: desc.size_px,
             past_frame: if frame.reset == Reset::None { past_frame } else { NO_FRAME },
             frame_low: frame.index as u32,
-            fovea_radius_deg: settings.foveation.fovea_radius_deg(),
+            fovea_radius_deg: foveation.fovea_radius_deg(),
             inv_density_at_fovea: inv_density_at_fovea(settings),
             exponential_survival: wrs.exponential_survival,
             gate_offset: wrs.gate_offset,
@@ -98,8 +112,8 @@ impl FrameUniforms {
             depth_slope_px: test.slope_px,
             motion_scale: desc.motion.to_internal(desc.size_px),
             exposure: state[0].stored_exposure(frame),
-            mid_radius_deg: settings.foveation.mid_radius_deg(),
-            blend_deg: settings.foveation.blend_deg,
+            mid_radius_deg: foveation.mid_radius_deg(),
+            blend_deg: foveation.blend_deg,
             lod_mid,
             lod_far,
             smr_accumulate: smr.accumulate,
@@ -112,7 +126,11 @@ impl FrameUniforms {
             color_exposure: frame.exposure.of_colors(),
             inverse_exposure: 1.0 / frame.exposure.of_colors(),
             first_quad: first_x | first_y << 16,
-            quad_offsets: settings.foveation.quad_offsets(frame.index),
+            pattern_px: foveation.pattern_px(frame.index),
+            single_pixels: foveation.single_pixels.into(),
+            has_single_pixels: (foveation.single_pixels || frame.mask.is_some()).into(),
+            color_shift: frame.half_color.into(),
+            has_budget: (foveation.budget > 0.0).into(),
             ..Self::default()
         };
         for (i, (view, state)) in frame.views.iter().zip(state).enumerate() {

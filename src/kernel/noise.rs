@@ -168,6 +168,16 @@ pub fn expected_noise(history: Noise, candidate: Noise, luma: f32) -> f32 {
     root_slope(luma) * (pooled_variance(history, candidate) * inverse_samples).sqrt()
 }
 
+/// Reduction of the squared error, due to noise, of history at a luma that one more sample is expected to bring: of its
+/// variance over n samples, less that over n + 1; in squared units of
+/// [`root_difference`](super::smr::root_difference).
+#[inline]
+pub fn noise_need(history: Noise, luma: f32) -> f32 {
+    let samples = history.samples.max(1.0);
+    let slope = root_slope(luma);
+    (slope * slope) * (history.variance / (samples * (samples + 1.0)))
+}
+
 /// Running sums for the noise of a weighted mean of samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NoiseSum {

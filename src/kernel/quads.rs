@@ -1,4 +1,7 @@
-//! Frames shaded by quads: which quads of 2x2 pixels are shaded, and which shaded quads are around a pixel.
+//! Planned frames: which pixels of each quad of 2x2 pixels are shaded, and which shaded quads are around a pixel.
+//!
+//! The mask of a quad has a bit for each of its pixels. Rasterisers shade whole quads; tracers, and renderers at half
+//! the resolution, shade single pixels.
 //!
 //! Everything in the fovea is shaded. Outside it an even pattern moves from frame to frame and visits every quad. A
 //! budget of further quads goes where history lacks something: each quad has a *need*, the reduction of its squared
@@ -20,6 +23,9 @@ pub const RUN_QUADS: u32 = 16;
 pub const REACH: i32 = 8;
 /// Code of no neighbour.
 pub const NOWHERE: u32 = 0x88;
+
+/// Mask of a quad with all of its pixels.
+pub const WHOLE: u32 = 15;
 
 /// Need of a quad without history, if it comes first in its block in this frame; in squared units of
 /// [`root_difference`](super::smr::root_difference).
@@ -86,6 +92,44 @@ pub fn in_turn(x: u32, y: u32, step: u32, turn: u32) -> bool {
 #[inline]
 pub fn asked_px(x: u32, y: u32, frame: u32) -> [u32; 2] {
     [2 * x + ((frame ^ x ^ y) & 1), 2 * y + (frame >> 1 & 1)]
+}
+
+/// Number of a pixel in its quad, row by row; also its bit in the quad's mask.
+#[inline]
+pub fn place_in_quad(px: [u32; 2]) -> u32 {
+    (px[0] & 1) | (px[1] & 1) << 1
+}
+
+/// The shaded pixel of the quad at `quad` that is nearest to pixel `px`; the first of equally near ones. `mask`:
+/// the quad's mask, not 0.
+#[inline]
+pub fn nearest_px(mask: u32, quad: [u32; 2], px: [u32; 2]) -> [u32; 2] {
+    let mut best = u32::MAX;
+    for place in 0..4 {
+        let [dx, dy] = [(2 * quad[0] + (place & 1)).abs_diff(px[0]), (2 * quad[1] + (place >> 1)).abs_diff(px[1])];
+        let px2 = (dx * dx + dy * dy) << 2 | place;
+        best = best.min(if mask >> place & 1 == 1 { px2 } else { u32::MAX });
+    }
+    [2 * quad[0] + (best & 1), 2 * quad[1] + (best >> 1 & 1)]
+}
+
+/// Quadrant of an offset other than 0; the half-axis that begins a quadrant belongs to it.
+#[inline]
+pub fn quadrant_of(x: i32, y: i32) -> u32 {
+    let below = y > 0 || (y == 0 && x > 0);
+    if below { u32::from(x <= 0) } else { 2 + u32::from(x >= 0) }
+}
+
+/// Code of a sample at an offset in pixels, each from -32 to 31: the smallest of some codes is the nearest sample.
+#[inline]
+pub fn sample_code(x: i32, y: i32) -> u32 {
+    ((x * x + y * y) as u32) << 12 | (x + 32) as u32 | ((y + 32) as u32) << 6
+}
+
+/// Offset in pixels of the sample with a code.
+#[inline]
+pub fn sample_offset(code: u32) -> [i32; 2] {
+    [(code & 63) as i32 - 32, (code >> 6 & 63) as i32 - 32]
 }
 
 /// Need of quad (`x`, `y`) without history. It does not fall with eccentricity: without history every part of the view

@@ -36,7 +36,7 @@ impl View<'_> {
         };
         let around = observed_around(neighbours());
         // A single noisy sample does not show whether history fits.
-        let judged = own.filter(|_| !self.is_noisy());
+        let judged = own.filter(|_| !self.is_noisy);
         let fit_of_own = |gain| judged.map_or(1.0, |own| own_fit(own, gain));
         // A sample without disparity is interpolated only where no other sample is near.
         let disparity = if self.is_doubtful(lattice, point, observed) { INVALID_DISPARITY } else { disparity };
@@ -46,7 +46,7 @@ impl View<'_> {
         }
         let (gain, left) = self.relit_around(around, neighbours, 1.0);
         let confidence = (around.weight / around.spatial).min(1.0);
-        let fit = if self.is_noisy() {
+        let fit = if self.is_noisy {
             fit(left / around.weight, confidence).min(mean_fit(around, confidence))
         } else {
             fit_around(around, left, fit_of_samples(around, capped_around(neighbours())))

@@ -17,7 +17,7 @@ mod quads;
 mod sparse_history;
 mod view;
 
-pub(super) use quad_plan::plan_quads;
+pub(super) use quad_plan::{given_quads, is_quarter, plan_quads};
 pub(super) use quads::Quads;
 
 use super::Pass;

@@ -79,7 +79,7 @@ impl View<'_> {
         let is_still_mean = self.antialiases && !has_moved(surface.motion, Vec2::ZERO);
         let deviation = if is_still_mean { mean.deviation } else { 0.0 };
         let mut confidence = lod_confidence(history.lod);
-        if self.is_noisy() {
+        if self.is_noisy {
             let around = luma(history.color);
             error += expected_noise(past, self.sample_noise(px), around);
             confidence = noisy_lod_confidence(history.lod, past, around);

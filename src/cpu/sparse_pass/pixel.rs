@@ -65,7 +65,7 @@ impl View<'_> {
         candidate.note(notes);
         surface.note(notes);
         let source = self.source([x, y], &surface, notes);
-        let is_final = candidate.usable && level == 0 && !self.is_noisy() && !self.antialiases;
+        let is_final = candidate.usable && level == 0 && !self.is_noisy && !self.antialiases;
         let history = source.as_ref().ok().filter(|_| !is_final).map(|source| self.interpolated(source, notes));
         let history = history.filter(|found| found.history.lod >= 0.0);
         let verdict = match &source {
@@ -113,7 +113,7 @@ impl View<'_> {
                     notes.note(NoteStage::Light, "history after the gain", history, "linear light");
                     notes.note(NoteStage::Decision, "fit", inputs.fit, "");
                 }
-                let result = if self.is_noisy() {
+                let result = if self.is_noisy {
                     let accumulated = accumulate(&inputs, past, candidate.noise);
                     noise = accumulated.noise;
                     accumulated.result
@@ -168,10 +168,7 @@ impl View<'_> {
             let noise = if usable { self.sample_noise(px) } else { NO_NOISE };
             let own = Candidate { color, usable, lod: 0.0, noise, is_own: usable, ..Candidate::NONE };
             let coarser = index + 1;
-            if !self.is_noisy()
-                || !usable
-                || coarser == self.lattices.len()
-                || self.lattices[coarser].points.contains(&0)
+            if !self.is_noisy || !usable || coarser == self.lattices.len() || self.lattices[coarser].points.contains(&0)
             {
                 return own;
             }
@@ -201,7 +198,7 @@ impl View<'_> {
             if N::ON {
                 note_sample(notes, at, weight, color, lit, self.observe(index, point));
             }
-            if self.is_noisy() {
+            if self.is_noisy {
                 noises = add_noise(noises, self.sample_noise(at), weight);
             }
             if is_sample && tap == 0 && (alike || !self.antialiases || disparity < 0.0) {
@@ -209,7 +206,7 @@ impl View<'_> {
             }
         }
         let mut candidate = sums.candidate(lattice.level);
-        if self.is_noisy() && candidate.usable {
+        if self.is_noisy && candidate.usable {
             candidate.noise = if candidate.is_own { self.sample_noise(px) } else { mean_noise(noises) };
         }
         candidate

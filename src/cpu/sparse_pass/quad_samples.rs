@@ -3,14 +3,15 @@
 use super::candidate::{Candidate, Sums, note_sample, sample_codes};
 use super::light::{Neighbour, observed_around, votes};
 use super::observe::{pack_observation, unpack_observation};
-use super::quads::{Quads, nearest_px, offset_px2};
+use super::quads::{Quads, offset_px2};
 use super::view::{Samples, View};
 use crate::kernel::depth::INVALID_DISPARITY;
+use crate::kernel::noise::{NoiseSum, add_noise, mean_noise};
 use crate::kernel::resample::has_code;
 use crate::kernel::sanitize;
 use crate::kernel::sparse_smr::{
-    LIGHT_RELATIVE, Observation, ObservedAround, QuadLit, RELIT_ERRORS, add_observation, agreement, fit_around,
-    fit_by_votes, own_fit, pack_quad_lit, quad_code, quad_lit,
+    LIGHT_RELATIVE, Observation, ObservedAround, QuadLit, RELIT_ERRORS, add_observation, agreement, fit, fit_around,
+    fit_by_votes, mean_fit, own_fit, pack_quad_lit, quad_code, quad_lit,
 };
 use crate::notes::Notes;
 use crate::parallel::collect;
@@ -57,8 +58,7 @@ impl View<'_> {
         let [columns, rows] = quads.size();
         collect(columns * rows, |i| {
             let quad = [i % columns, i / columns];
-            let px = quad.map(|v| 2 * v);
-            if quads.is_shaded(px) { self.light_quad(quads, quad, observed) } else { [0; 4] }
+            if quads.mask(quad) != 0 { self.light_quad(quads, quad, observed) } else { [0; 4] }
         })
     }
 
@@ -105,18 +105,25 @@ impl View<'_> {
         }
         let near = || near.iter().copied();
         let around = observed_around(near());
+        // A single noisy sample does not show whether history fits.
+        let fit_of_own = |o, gain| if self.is_noisy { 1.0 } else { own_fit(o, gain) };
         let (mut gain, mut fits) = (Vec3::ONE, 1.0);
         if around.weight >= 1e-6 {
             let (relit, left) = self.relit_around(around, near, RELIT_ERRORS);
-            let fit_of_quad = own.map_or(0.0, |own| own_fit(own, Vec3::ONE));
-            (gain, fits) =
-                (relit, fit_around(around, left, fit_by_votes(around, votes(near().take(others)), fit_of_quad)));
+            gain = relit;
+            fits = if self.is_noisy {
+                let confidence = (around.weight / around.spatial).min(1.0);
+                fit(left / around.weight, confidence).min(mean_fit(around, confidence))
+            } else {
+                let fit_of_quad = own.map_or(0.0, |own| own_fit(own, Vec3::ONE));
+                fit_around(around, left, fit_by_votes(around, votes(near().take(others)), fit_of_quad))
+            };
         }
         let mut own_fits = [1.0; 4];
         let mut disparities = [INVALID_DISPARITY; 4];
         for px in self.pixels_of(quad) {
             let i = (px[0] & 1 | (px[1] & 1) << 1) as usize;
-            own_fits[i] = self.observation_px(px, observed).map_or(1.0, |own| own_fit(own, gain));
+            own_fits[i] = self.observation_px(px, observed).map_or(1.0, |own| fit_of_own(own, gain));
             disparities[i] = disparity_of(px);
         }
         pack_quad_lit(QuadLit { gain, fit: fits, own_fits, is_own: own.is_some(), disparities })
@@ -143,8 +150,8 @@ impl View<'_> {
         }
         let codes = sample_codes(disparity);
         let mut sums = Sums::NOTHING;
-        let quad = px.map(|v| v / 2);
         let columns = quads.size()[0];
+        let mut noises = NoiseSum::default();
         let mut add = |at: [u32; 2]| {
             let (color, usable) = self.color_px(at);
             if !usable {
@@ -160,16 +167,18 @@ impl View<'_> {
             if N::ON {
                 note_sample(notes, at, weight, color, lit, self.observe_px(at, level, color, usable));
             }
+            if self.is_noisy {
+                noises = add_noise(noises, self.sample_noise(at), weight);
+            }
             if at == px {
                 sums.own = Some((color, lit.own_fit));
             }
         };
-        if is_shaded {
-            self.pixels_of(quad).for_each(&mut add);
-        } else {
-            quads.around(quad).for_each(|other| add(nearest_px(other, px, self.inputs.size)));
+        quads.samples_around(px).for_each(&mut add);
+        let mut candidate = sums.candidate(level);
+        if self.is_noisy && candidate.usable {
+            candidate.noise = if candidate.is_own { self.sample_noise(px) } else { mean_noise(noises) };
         }
-        let candidate = sums.candidate(level);
         Candidate { lod: if candidate.is_own { 0.0 } else { candidate.lod }, ..candidate }
     }
 }

@@ -67,7 +67,7 @@ impl View<'_> {
     /// Noise of a stored sample, in this frame's exposure.
     #[inline(always)]
     pub(super) fn stored_noise(&self, [x, y]: [i32; 2]) -> Noise {
-        if !self.is_noisy() {
+        if !self.is_noisy {
             return NO_NOISE;
         }
         let [width, height] = self.inputs.size.map(|s| s as i32);

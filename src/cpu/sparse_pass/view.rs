@@ -26,6 +26,8 @@ pub(super) struct View<'a> {
     pub lattices: ViewLattices,
     pub accumulate: f32,
     pub relights: bool,
+    /// Whether candidates are noisy.
+    pub is_noisy: bool,
     /// Whether frames are jittered and history stores means of samples.
     pub antialiases: bool,
     /// Low word of the frame counter.
@@ -51,6 +53,7 @@ impl<'a> View<'a> {
             lattices: LatticeUniforms::of_view_or_full(frame.views[index].lattices.as_ref(), desc.size_px),
             accumulate: desc.settings.method.smr().accumulate,
             relights: crate::method::smr_sparse_relights(&desc.settings),
+            is_noisy: desc.settings.noisy,
             antialiases: crate::method::smr_sparse_antialiases(&desc.settings),
             frame_low: frame.index as u32,
             quads: None,
@@ -75,13 +78,8 @@ impl View<'_> {
     }
 
     #[inline(always)]
-    pub fn is_noisy(&self) -> bool {
-        !self.noise.is_empty()
-    }
-
-    #[inline(always)]
     pub fn sample_noise(&self, [x, y]: [u32; 2]) -> Noise {
-        self.inputs.noise(x, y).filter(|_| self.is_noisy()).unwrap_or(NO_NOISE)
+        self.inputs.noise(x, y).filter(|_| self.is_noisy).unwrap_or(NO_NOISE)
     }
 
     /// log2 of the distance of samples in pixels, where a pixel lies.

@@ -135,7 +135,7 @@ fn what_was_not_planned_is_refused() {
     let frame = Frame::new(&color, &bare.views, 3);
     let refused =
         |post: &mut Afterimage, frame: &Frame<'_>| bare.record(post, frame, &output).map_err(|error| error.to_string());
-    let expected = "expected the plan of this frame: call plan before the frame is shaded";
+    let expected = "expected the plan of this frame: call plan before the frame is shaded, or give a mask";
     assert_eq!(refused(&mut post, &frame), Err(format!("plan of view 0 is missing: {expected}")));
     bare.plan(&mut post, &frame);
     let later = Frame { index: 4, ..frame };
@@ -166,7 +166,7 @@ fn a_wrong_pass_is_caught() {
         (".usable && !surface.is_silhouette;", ".usable;"),
         ("select(own, farthest_disparity, thin)", "own"),
         ("candidate.fit = min(fit_sum * known, own_fits);", "candidate.fit = fit_sum * known;"),
-        ("sampled.usable && (mask_at(at, view) & 1u) != 0u", "sampled.usable"),
+        ("sampled.usable && is_shaded(mask_at(at, view), at)", "sampled.usable"),
     ];
     rig::all_caught_in(passes, desc(), settings, FRAMES, &planted, |index, rig| {
         (reset_of(index, rig), views(index, &settings).to_vec())
