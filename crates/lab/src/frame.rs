@@ -49,7 +49,7 @@ pub struct DeviceSamples {
     /// Noise, as in [`FoveatedFrame::noise`]; `Rg32Float`.
     pub noise: wgpu::Texture,
     /// Distance along the view axis in metres, infinity for the background; `R32Float`. Defined for
-    /// [`SparseGeometry::Samples`](crate::lattices::SparseGeometry::Samples).
+    /// [`Geometry::Samples`](crate::lattices::Geometry::Samples).
     pub depth: wgpu::Texture,
     /// Pixels, y down, previous minus current; `Rg32Float`. Defined where depth is.
     pub motion: wgpu::Texture,

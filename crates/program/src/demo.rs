@@ -6,7 +6,7 @@ use afterimage::{Foveation, MethodKind, Settings, ViewGeometry};
 use afterimage_eval::clip::run_report::{RunFacts, write_report};
 use afterimage_eval::clip::{Clip, ClipReport, REPORTS, foveation_words, title, write_png};
 use afterimage_eval::exposure::Exposure;
-use afterimage_eval::lattices::{SampleOrder, SparseGeometry};
+use afterimage_eval::lattices::{SampleOrder, Geometry};
 use afterimage_eval::method_report::MethodReport;
 use afterimage_eval::output::Output;
 use afterimage_eval::pipeline::{Cpu, RunKind};
@@ -59,7 +59,7 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         title: title(&source.info().name, SIZE, gaze.len(), FPS, &foveation_words(&foveation, facts.simulator)),
         geometry,
         foveation,
-        sparse_geometry: SparseGeometry::Full,
+        sparse_geometry: Geometry::Full,
         quad_views: None,
         quarter_first: false,
         sample_order: SampleOrder::default(),

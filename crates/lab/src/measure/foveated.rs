@@ -2,7 +2,7 @@
 
 use super::traced_view::{FrameTime, Pattern, TracedView};
 use crate::clock::Quartiles;
-use crate::lattices::SparseGeometry;
+use crate::lattices::Geometry;
 use crate::trace::Tracer;
 use crate::trace::sampling::{Layers, Regions, Sampling};
 use afterimage::SettingsError;
@@ -82,7 +82,7 @@ pub fn one_path(gaze_px: [f32; 2]) -> Pattern {
         sampling: Sampling::Regions(regions),
         samples: 1,
         gaze_px,
-        sparse: Some(SparseGeometry::Full),
+        sparse: Some(Geometry::Full),
     }
 }
 

@@ -4,7 +4,7 @@ use crate::clock::Stopwatch;
 use crate::device::Backend;
 use crate::error::InputError;
 use crate::frame::{Content, DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, SourceFrame};
-use crate::lattices::{SampleOrder, SparseGeometry};
+use crate::lattices::{SampleOrder, Geometry};
 use crate::source::{Light, SceneChoice, SceneOptions, ViewedScene};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
@@ -30,7 +30,7 @@ pub struct Pattern {
     /// Gaze, pixels.
     pub gaze_px: [f32; 2],
     /// Samples in their places, and what is known of depth and motion there; `None`: filled frames.
-    pub sparse: Option<SparseGeometry>,
+    pub sparse: Option<Geometry>,
 }
 
 /// Offset of the frame numbers that seed full-rate frames.

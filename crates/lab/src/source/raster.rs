@@ -12,7 +12,7 @@ use crate::frame::{
     ComposedFrame, DeviceFrame, DeviceHandle, OnDevice, QuadRequest, RenderedFrame, Shaded, ShadedColor, SourceFrame,
     SparseFrame,
 };
-use crate::lattices::SparseGeometry;
+use crate::lattices::Geometry;
 use crate::quad_views::QuadViews;
 use crate::raster::{
     AtlasLayout, Composer, FoveatedTargets, PixelSamples, Raster, RasterSettings, Targets, read_color, read_distance,
@@ -419,7 +419,7 @@ impl FrameSource for RasterSource {
             let [view, previous] = source.pose(request);
             let frame = source.record_content(encoder, request, [view, previous], AtlasLayout::InPlace);
             // If lattices need depth and motion at every pixel, these are drawn again, so that the time includes them.
-            if matches!(request.wanted, Wanted::Lattices(_)) && request.geometry == SparseGeometry::Full {
+            if matches!(request.wanted, Wanted::Lattices(_)) && request.geometry == Geometry::Full {
                 source.raster.record_surfaces(&source.device.device, encoder, [&view, &previous], None);
             }
             frame

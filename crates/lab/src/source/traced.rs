@@ -10,7 +10,7 @@ use crate::error::InputError;
 use crate::frame::{
     Content, DeviceSamples, FoveatedFrame, OnDevice, QuadRequest, RenderedFrame, Shaded, ShadedColor, SourceFrame,
 };
-use crate::lattices::{SampleOrder, SparseGeometry};
+use crate::lattices::{SampleOrder, Geometry};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
 use crate::trace::sampling::{Sampling, SparsePlan};
@@ -233,7 +233,7 @@ impl FrameSource for TracedSource {
         let views = self.pose(request)?;
         let view = &views[0];
         if let Some((samples, took)) = self.samples_on_device(request, &views)? {
-            let has_geometry = request.geometry == SparseGeometry::Samples;
+            let has_geometry = request.geometry == Geometry::Samples;
             let reference = reference.unwrap_or_else(|| self.without_color(index, &views, !has_geometry));
             return Ok(RenderedFrame {
                 samples: Some(samples.samples.iter().sum()),

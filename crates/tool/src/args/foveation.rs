@@ -4,7 +4,7 @@ use super::number::{parse_percent, parse_scale};
 use super::{Named, by_name};
 use crate::failure::Failure;
 use afterimage::{Filter, Foveation, Method, Settings};
-use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
+use afterimage_lab::lattices::{SampleOrder, Geometry};
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::trace::sampling::{Regions, Sampling};
 use clap::Args;
@@ -50,8 +50,8 @@ pub struct FoveationArgs {
     pub scale: Option<f32>,
     /// With --foveation sparse, layers or uniform: depth and motion of every pixel, or of the nearest sample; those of
     /// every pixel are without jitter; default: of the nearest sample in scenes, full in given frames
-    #[arg(long, value_parser = by_name::<SparseGeometry>())]
-    pub geometry: Option<SparseGeometry>,
+    #[arg(long, value_parser = by_name::<Geometry>())]
+    pub geometry: Option<Geometry>,
     /// With --foveation sparse: order in which the pixels of a block are sampled
     #[arg(long, value_parser = by_name::<SampleOrder>(), default_value = "bayer")]
     pub order: SampleOrder,
@@ -92,8 +92,8 @@ impl FoveationArgs {
         let default = if default == Filter::Quads && self.needs_lattices() { Filter::Sparse } else { default };
         let named = Self { filter: Some(self.filter.unwrap_or(FilterName::Of(default))), ..self };
         let geometry = match named.may_lack_geometry() && is_rendered {
-            true => SparseGeometry::Samples,
-            false => SparseGeometry::Full,
+            true => Geometry::Samples,
+            false => Geometry::Full,
         };
         Self { geometry: Some(named.geometry.unwrap_or(geometry)), ..named }
     }
@@ -124,8 +124,8 @@ impl FoveationArgs {
     }
 
     /// Depth and motion of frames.
-    pub fn geometry(&self) -> SparseGeometry {
-        self.geometry.unwrap_or(SparseGeometry::Full)
+    pub fn geometry(&self) -> Geometry {
+        self.geometry.unwrap_or(Geometry::Full)
     }
 
     /// The sampling pattern whose lattices are those of `--foveation sparse`, with `spp` paths a point.
@@ -217,7 +217,7 @@ impl FoveationArgs {
         }
         let is_uniform = self.filter() == FilterName::Uniform;
         let is_sparse = self.filter() == FilterName::Of(Filter::Sparse);
-        let has_samples = self.geometry == Some(SparseGeometry::Samples);
+        let has_samples = self.geometry == Some(Geometry::Samples);
         let order = format!("order {}", self.order.name());
         let misplaced = [
             (self.budget.is_some() && !self.is_quads(), "budget", "frames shaded by quads", "quads"),
@@ -301,7 +301,7 @@ impl Named for SampleOrder {
     }
 }
 
-impl Named for SparseGeometry {
+impl Named for Geometry {
     fn rows() -> Vec<(Self, &'static str, &'static str)> {
         vec![
             (Self::Full, "full", "At every pixel, as from a visibility buffer or a prepass"),

@@ -5,7 +5,7 @@ use crate::device::Headless;
 use crate::frame::{
     ComposedFrame, Content, DeviceFrame, DeviceSamples, OnDevice, RenderedFrame, SourceFrame, SparseFrame,
 };
-use crate::lattices::SparseGeometry;
+use crate::lattices::Geometry;
 use crate::shader::SHADERS;
 use afterimage::gpu::{Frame, Timestamps};
 use afterimage::internal::{ComputeShader, array_view, filled};
@@ -123,7 +123,7 @@ impl DeviceInputs {
             content @ Content::OnDevice(_) => {
                 let content = OnDevice::of(content).expect("this crate has no other frames on devices");
                 let has_geometry =
-                    frame.geometry == SparseGeometry::Samples || matches!(content, OnDevice::Surfaces(_));
+                    frame.geometry == Geometry::Samples || matches!(content, OnDevice::Surfaces(_));
                 let content = self.take(encoder, content);
                 self.given = if has_geometry {
                     content

@@ -3,7 +3,7 @@
 use super::lattice::Lattice;
 use super::{Layers, Regions, Sampling};
 use crate::frame::{DeviceSamples, FoveatedFrame};
-use crate::lattices::{SampleOrder, SparseGeometry, levels};
+use crate::lattices::{SampleOrder, Geometry, levels};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
 use crate::trace::gpu::{GpuTracer, SampledPoint};
@@ -186,7 +186,7 @@ impl SparsePlan {
         world: &World,
         [view, previous]: [&View; 2],
         frame: u64,
-        geometry: SparseGeometry,
+        geometry: Geometry,
         samples: &mut DeviceSamples,
     ) {
         let surface_at = Surfaces::at_pixels(world, view, previous, tracer.effects());
@@ -194,8 +194,8 @@ impl SparsePlan {
         for (i, lattice) in self.lattices.as_slice().iter().enumerate().rev() {
             let sampled = |[x, y]: [u32; 2]| {
                 let (depth, motion) = match geometry {
-                    SparseGeometry::Full => (0.0, [0.0; 2]),
-                    SparseGeometry::Samples => surface_at(px_of(lattice, [x, y])),
+                    Geometry::Full => (0.0, [0.0; 2]),
+                    Geometry::Samples => surface_at(px_of(lattice, [x, y])),
                 };
                 SampledPoint { point: x | y << 16, depth, motion }
             };

@@ -14,7 +14,7 @@ use afterimage::{
 };
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::{Content, RenderedFrame};
-use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
+use afterimage_lab::lattices::{SampleOrder, Geometry};
 use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun};
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::source::{FrameRequest, RasterSource, Wanted};
@@ -40,7 +40,7 @@ pub struct ViewPipeline {
     /// While the inputs are checked.
     examiner: Option<Examiner>,
     desc: ContextDesc,
-    sparse_geometry: SparseGeometry,
+    sparse_geometry: Geometry,
     sample_order: SampleOrder,
     /// Whether sparse frames are jittered.
     is_jittered: bool,
@@ -67,7 +67,7 @@ impl ViewPipeline {
         gpu: &Arc<Headless>,
         geometry: ViewGeometry,
         state: &State,
-        (sparse_geometry, sample_order): (SparseGeometry, SampleOrder),
+        (sparse_geometry, sample_order): (Geometry, SampleOrder),
         setup: &Setup,
     ) -> Result<Self, Failure> {
         let desc = desc(&geometry, setup.settings(state, Shows::Post(MethodKind::None)));
