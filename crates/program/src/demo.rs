@@ -6,7 +6,7 @@ use afterimage::{Foveation, MethodKind, Settings, ViewGeometry};
 use afterimage_eval::clip::run_report::{RunFacts, write_report};
 use afterimage_eval::clip::{Clip, ClipReport, REPORTS, foveation_words, title, write_png};
 use afterimage_eval::exposure::Exposure;
-use afterimage_eval::lattices::{SampleOrder, Geometry};
+use afterimage_eval::lattices::{Geometry, SampleOrder};
 use afterimage_eval::method_report::MethodReport;
 use afterimage_eval::output::Output;
 use afterimage_eval::pipeline::{Cpu, RunKind};

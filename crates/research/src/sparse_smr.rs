@@ -5,7 +5,7 @@ use afterimage::{Filter, Foveation, Image, Settings};
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::Content;
-use afterimage_lab::lattices::{SampleOrder, Geometry};
+use afterimage_lab::lattices::{Geometry, SampleOrder};
 use afterimage_lab::measure::{Foveated, FrameTime, Pattern, TracedView};
 use afterimage_lab::metric::{Flip, encode, psnr_db};
 use afterimage_lab::pipeline::{Pipeline, RunKind};

@@ -58,9 +58,9 @@ pub enum Content {
 
 /// Interface of a pipeline to a foveated frame on a device. Reading waits for all submitted work.
 pub trait DeviceContent: Any + Debug + Send + Sync {
-    /// Level of detail of every pixel of a frame of `size_px`. `None`: the pixels that methods choose are shaded later,
+    /// Level of detail of every pixel. `None`: the pixels that methods choose are shaded later,
     /// and depth and motion of every pixel are those of this content.
-    fn lods(&self, size_px: [u32; 2]) -> Option<Image<f32>>;
+    fn lods(&self) -> Option<Image<f32>>;
 
     /// Reads the color, which is empty before pixels are shaded; `None` if it stays on the device.
     fn read_color(&self) -> Option<Image<[f32; 3]>>;

@@ -51,7 +51,8 @@ impl ShadingRequest {
 fn only_place_px(mask: &Image<bool>) -> Option<[u32; 2]> {
     let chosen = |[x, y]: [u32; 2]| mask.at(x as usize, y as usize);
     let [width, height] = mask.size();
-    let place = [[0, 0], [1, 0], [0, 1], [1, 1]].into_iter().find(|&[x, y]| x < width && y < height && chosen([x, y]))?;
+    let place =
+        [[0, 0], [1, 0], [0, 1], [1, 1]].into_iter().find(|&[x, y]| x < width && y < height && chosen([x, y]))?;
     let mut pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
     pixels.all(|px| chosen(px) == (0..2).all(|i| px[i] % 2 == place[i])).then_some(place)
 }

@@ -8,7 +8,7 @@ use crate::frame::{DeviceHandle, RenderedFrame, Shaded, ShadedColor, ShadingRequ
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
 use afterimage::internal::PixelNotes;
 use afterimage::kernel::debug_view::view_color;
-use afterimage::{ContextDesc, CreateError, Foveation, FrameError, Image};
+use afterimage::{ContextDesc, CreateError, FrameError, Image};
 use std::slice::from_ref;
 
 /// Methods on the CPU.

@@ -22,13 +22,7 @@ pub(super) struct Foveator {
 impl Foveator {
     /// A simulator of a foveation.
     pub fn new(geometry: ViewGeometry, foveation: Foveation, is_still: bool) -> Self {
-        Self {
-            geometry,
-            foveation,
-            view_geometry: Geometry::default(),
-            is_still,
-            still: None,
-        }
+        Self { geometry, foveation, view_geometry: Geometry::default(), is_still, still: None }
     }
 
     /// Keeps the mip chain of a still for the next frame.
@@ -80,7 +74,7 @@ impl Foveator {
     /// A frame that its source foveated on a device. It is read back only if a method runs elsewhere.
     fn on_device<'a>(&self, frame: &RenderedFrame, content: &dyn DeviceContent, is_read: bool) -> Candidate<'a> {
         let color = if is_read { content.read_color() } else { None };
-        let lods = content.lods(self.geometry.size_px());
+        let lods = content.lods();
         let is_shaded = lods.is_some();
         let in_memory = color.map(|color| {
             let has_geometry = frame.geometry == Geometry::Samples || !is_shaded;

@@ -19,8 +19,8 @@ use crate::metric::{Tracked, Tracker};
 use crate::quad_views::{Geometry, QuadViewLayout};
 use crate::source::{FrameRequest, Wanted};
 use afterimage::{
-    ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, FrameValue, Gaze, Image, Method,
-    Settings, SettingsError, ViewGeometry,
+    ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, FrameValue, Gaze, Image, Method, Settings,
+    SettingsError, ViewGeometry,
 };
 use foveator::Foveator;
 use oracle::Oracle;
@@ -202,7 +202,8 @@ impl Pipeline {
             false => Tracked::unknown(self.foveator.geometry.size_px()),
         };
         let mut failed = None;
-        let mut shade = |request: &ShadingRequest| shade(request).unwrap_or_else(|error| (failed = Some(error), None).1);
+        let mut shade =
+            |request: &ShadingRequest| shade(request).unwrap_or_else(|error| (failed = Some(error), None).1);
         let outputs = self.run(frame, &candidate, &mut shade);
         failed.map_or(Ok(()), Err)?;
         let outputs = outputs?;

@@ -3,7 +3,7 @@
 use afterimage::kernel::lattice::offset_px;
 use afterimage::{Filter, Foveation, MethodKind, Settings};
 use afterimage_lab::device::Backend;
-use afterimage_lab::lattices::{SampleOrder, Geometry};
+use afterimage_lab::lattices::{Geometry, SampleOrder};
 use afterimage_lab::pipeline::{Pipeline, RunKind, Step};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 use std::collections::HashSet;

@@ -4,7 +4,7 @@ use super::number::{parse_percent, parse_scale};
 use super::{Named, by_name};
 use crate::failure::Failure;
 use afterimage::{Filter, Foveation, Method, Settings};
-use afterimage_lab::lattices::{SampleOrder, Geometry};
+use afterimage_lab::lattices::{Geometry, SampleOrder};
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::trace::sampling::{Regions, Sampling};
 use clap::Args;

@@ -14,7 +14,7 @@ use afterimage::{
 };
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::{Content, RenderedFrame};
-use afterimage_lab::lattices::{SampleOrder, Geometry};
+use afterimage_lab::lattices::{Geometry, SampleOrder};
 use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun};
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::source::{FrameRequest, RasterSource, Wanted};
