@@ -4,7 +4,7 @@
 use crate::error::{SettingsError, check};
 use crate::geometry::ViewGeometry;
 use crate::kernel::foveate;
-use crate::kernel::lattice::offset_px;
+use crate::kernel::lattice::{self, offset_px};
 use crate::kernel::quads::{FIRST_STEP, budget_quads};
 #[cfg(feature = "bevy-0-20")]
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -26,10 +26,6 @@ pub enum Filter {
     Block,
     /// Full rate everywhere; no foveation.
     Off,
-    /// One point sample a block that moves from frame to frame, so that every pixel is sampled sooner or later
-    /// ([`Foveation::lattices`]): renderers that draw small, jittered views. Regions are rectangles, without blends.
-    /// Frames need [`ViewFrame::lattices`](crate::ViewFrame::lattices).
-    Sparse,
     /// Quads of 2x2 pixels of one full-rate view, which the post-process chooses before shading (`plan` of either
     /// executor): all in the fovea, one quad a block of an even pattern that moves from frame to frame, and a
     /// [`budget`](Foveation::budget) of quads where history lacks something. Depth and motion are given at every pixel.
@@ -38,7 +34,7 @@ pub enum Filter {
 
 impl Filter {
     /// All filters, in the order of the command-line tool.
-    pub const ALL: [Self; 6] = [Self::Mip, Self::Gauss, Self::Block, Self::Sparse, Self::Quads, Self::Off];
+    pub const ALL: [Self; 5] = [Self::Mip, Self::Gauss, Self::Block, Self::Quads, Self::Off];
 
     /// Short name in lower case, such as `mip`.
     pub fn name(self) -> &'static str {
@@ -55,7 +51,6 @@ impl Filter {
             Self::Mip => ("mip", "Box mip levels, trilinear"),
             Self::Gauss => ("gauss", "Gaussian blur that grows with eccentricity"),
             Self::Block => ("block", "One point sample per block"),
-            Self::Sparse => ("sparse", "One point sample per block that moves every frame, in regions without blends"),
             Self::Quads => ("quads", "Quads of 2x2 pixels of a full-rate view that the post-process chooses"),
             Self::Off => ("off", "Full rate everywhere"),
         }
@@ -179,6 +174,21 @@ impl Foveation {
         offset_px(index, 2)
     }
 
+    /// Jitter of the projection in a frame for [`Smr::antialias`](crate::Smr::antialias), in pixels, each in \[-0.5,
+    /// 0.5). It moves the samples within their pixels from frame to frame, so that a mean over time is a mean over the
+    /// pixel's area. This also holds where the even pattern visits a pixel only every 16 or 128 frames. A point at `p`
+    /// without jitter is drawn at `p + jitter_px`. `index`: frame counter.
+    ///
+    /// ```
+    /// use afterimage::Foveation;
+    ///
+    /// assert_eq!(Foveation::jitter_px(0), [-0.5, -0.5]);
+    /// assert!(Foveation::jitter_px(7).iter().all(|v| v.abs() <= 0.5));
+    /// ```
+    pub fn jitter_px(index: u64) -> [f32; 2] {
+        lattice::jitter_px(index)
+    }
+
     /// Checks the range of every field.
     ///
     /// # Errors
@@ -278,7 +288,7 @@ impl Foveation {
         match self.filter {
             Filter::Off => 0.0,
             Filter::Gauss => foveate::blur_lod(e_deg, fovea, mid, self.lod_mid(), self.lod_far()),
-            Filter::Mip | Filter::Block | Filter::Sparse | Filter::Quads => {
+            Filter::Mip | Filter::Block | Filter::Quads => {
                 foveate::region_lod(e_deg, fovea, mid, self.blend_deg, self.lod_mid(), self.lod_far())
             }
         }

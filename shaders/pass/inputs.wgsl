@@ -57,7 +57,7 @@ struct FrameUniforms {
     smr_accumulate_tolerance: f32,
     smr_tolerance: f32,
     first_view: u32,
-    lattice: u32,
+    missing: u32,
     mip_levels: u32,
     color_exposure: f32,
     inverse_exposure: f32,
@@ -172,14 +172,9 @@ fn ray_at(px: vec2u, view: u32) -> vec3f {
 // Motion vector of a pixel: previous minus current position in pixels, y down, without jitter, with the camera's
 // motion.
 fn motion_at(px: vec2u, view: u32) -> vec2f {
-    return motion_of(px, px, view);
-}
-
-// Motion vector of the pixel `px`, whose vector and depth lie at `texel`.
-fn motion_of(px: vec2u, texel: vec2u, view: u32) -> vec2f {
     var own = vec2f(0.0);
     if HAS_MOTION != 0u {
-        let given = textureLoad(motion_in, texel_of(texel, view, MOTION_IN), layer_of(view), 0).xy;
+        let given = textureLoad(motion_in, texel_of(px, view, MOTION_IN), layer_of(view), 0).xy;
         own = given * frame.motion_scale + frame.views[view].motion_offset;
         if (CAMERA_MOTION & 1u) != 0u {
             let is_missing = has_no_vector(given, frame.cameras[view].no_vector);
@@ -194,7 +189,7 @@ fn motion_of(px: vec2u, texel: vec2u, view: u32) -> vec2f {
     }
     // An object's own motion ends where the camera would have seen it without moving.
     let ray = (vec2f(px) + own) * frame.views[view].ray_scale + frame.views[view].ray_offset;
-    return own + camera_vector(ray, disparity_at(texel, view), frame.cameras[view].motion);
+    return own + camera_vector(ray, disparity_at(px, view), frame.cameras[view].motion);
 }
 
 // Noise of the candidate; valid only if NOISY is set.

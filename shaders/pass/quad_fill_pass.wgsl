@@ -6,13 +6,7 @@
 //
 // Up to 6 reads and 1 write a pixel: mask, neighbours and samples; 16 bytes written.
 
-@group(0) @binding(13) var<uniform> sparse: Missing;
 @group(0) @binding(23) var filled: texture_storage_2d_array<rgba32float, write>;
-
-// First word of `SparseUniforms` in src/gpu/uniforms.rs: bits of a NaN, which shaders cannot write themselves.
-struct Missing {
-    missing: vec4u,
-}
 
 fn pixel(px: vec2u, view: u32) -> vec4f {
     let mask_word = mask_at(px, view);
@@ -37,7 +31,7 @@ fn pixel(px: vec2u, view: u32) -> vec4f {
         }
     }
     if weight == 0.0 {
-        return vec4f(bitcast<f32>(sparse.missing.x));
+        return vec4f(bitcast<f32>(frame.missing));
     }
     let mean = sum * (1.0 / weight);
     return vec4f(unexposed(mean.xyz), mean.w);

@@ -22,9 +22,8 @@ pub enum Binding {
     /// Debug view beside the output.
     Debug,
     Counters,
-    Lattices,
     /// Number of the frame that wrote the history.
-    PastFrame,
+    PastFrame = 14,
     /// First of three textures of the previous frame's history.
     Past,
     PastSecond,
@@ -77,20 +76,11 @@ impl Binding {
 
 /// Bindings that a pass uses, of those that its text declares. `None`: all.
 pub fn used_by(pass: &str) -> Option<&'static [Binding]> {
-    use Binding::{
-        Color, Depth, Lattices, Motion, Noise, Past, PastFrame, PastSecond, Reactive, Read, Trust, Uniforms, Write,
-        WriteSecond,
-    };
-    Some(match pass {
-        "candidate_pass" => &[Uniforms, Color, Noise, Write],
-        "fill_pass" => &[Uniforms, Color, Lattices, Write],
-        "fill_geometry_pass" => &[Uniforms, Depth, Motion, Lattices, PastFrame, Past, Write, WriteSecond],
-        "sparse_observe_pass" => {
-            &[Uniforms, Color, Depth, Motion, Trust, Reactive, Noise, Lattices, PastFrame, Past, PastSecond, Write]
-        }
-        "sparse_light_pass" => &[Uniforms, Color, Depth, Lattices, PastFrame, Read, Write],
-        _ => return None,
-    })
+    use Binding::{Color, Noise, Uniforms, Write};
+    match pass {
+        "candidate_pass" => Some(&[Uniforms, Color, Noise, Write]),
+        _ => None,
+    }
 }
 
 const _: () = assert!((Binding::Debug as usize) < ORIGINS && (Binding::QuadAround as u32) < 32);

@@ -12,7 +12,6 @@ pub(crate) mod buffer;
 pub(crate) mod compute;
 mod doctor;
 mod fill;
-mod fill_geometry;
 mod frame;
 mod groups;
 mod history;
@@ -28,7 +27,6 @@ mod quads;
 mod recorder;
 mod requirements;
 mod resize;
-mod sparse;
 mod stage;
 mod stages;
 mod textures;
@@ -63,7 +61,7 @@ use recorder::Recorder;
 use resize::ResizePass;
 use stage::{Job, Specialization};
 use stages::Stages;
-use uniforms::{FrameUniforms, SparseUniforms};
+use uniforms::FrameUniforms;
 use wgpu::{Buffer, CommandEncoder, ComputePassDescriptor, Device, Limits, Texture, TextureFormat, TextureUsages};
 
 /// The post-process on a GPU: a context with its settings, history and pipelines.
@@ -127,7 +125,7 @@ impl Afterimage {
 
     /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
     ///
-    /// For smr on sparse frames the packed samples ([`stored_sample`](crate::kernel::stored_sample), `Rg32Uint`).
+    /// For smr on planned frames the packed samples ([`stored_sample`](crate::kernel::stored_sample), `Rg32Uint`).
     ///
     /// For wrs the packed reservoirs ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`),
     /// and with A-ES the keys, or the gate's references (`R32Uint`). For taa and smr the packed surfaces
@@ -183,7 +181,6 @@ impl Afterimage {
     /// History survives, unless its layout changes: with another [`method`](Settings::method), with
     /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::Wrs::sampler) and the scale of its
     /// [`gate`](crate::Wrs::gate), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
-    /// From [`Filter::Sparse`] to [`Filter::Quads`] and back, smr keeps it.
     ///
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
@@ -216,7 +213,7 @@ impl Afterimage {
     }
 
     /// Changes the size of the views and resamples history to it, for dynamic resolution. The view directions at the
-    /// edges should stay the same. Reservoirs of wrs, and stored samples of sparse frames with their places, are taken
+    /// edges should stay the same. Reservoirs of wrs, and stored samples of planned frames with their places, are taken
     /// from the nearest pixel. Surfaces of taa, taau and smr are filtered. Levels of detail follow the scale.
     ///
     /// Records a pass into `encoder`. The first call compiles its pipeline. Without history it records nothing. If
@@ -241,7 +238,7 @@ impl Afterimage {
                 self.resize = ResizePass::new(device, layout, self.stages.sources());
             }
             let recorder = &mut self.recorder;
-            recorder.begin(&SparseUniforms::default(), 0);
+            recorder.begin(0);
             if let Some(pass) = &self.resize {
                 let planes = [self.history.split().0, history.split().1];
                 pass.record(device, recorder, &resize, self.desc.view_count, planes);
@@ -282,8 +279,7 @@ impl Afterimage {
     }
 
     /// Gaze position in pixels that [`record`](Self::record) would use for view `view` of the next frame: `gaze` if it
-    /// is known, else the last known one, else the middle of the view. Renderers of sparse frames need it before that
-    /// call, to place the [lattices](crate::Foveation::lattices).
+    /// is known, else the last known one, else the middle of the view. Renderers that foveate need it before that call.
     pub fn gaze_px(&self, view: usize, geometry: &ViewGeometry, gaze: Gaze) -> [f32; 2] {
         gaze.resolve(self.history.state.get(view).and_then(|state| state.gaze_px), geometry)
     }
@@ -306,11 +302,10 @@ impl Afterimage {
 
     /// Size in bytes of the textures that the context holds between frames.
     pub fn memory_bytes(&self) -> u64 {
-        Self::memory_bytes_of(&self.desc) + self.stages.added_bytes()
+        Self::memory_bytes_of(&self.desc)
     }
 
-    /// Size in bytes of the textures that a context of this description would hold between frames; 12 bytes a pixel
-    /// more after a frame with [geometry at samples](crate::Lattices::with_geometry_at_samples).
+    /// Size in bytes of the textures that a context of this description would hold between frames.
     ///
     /// ```
     /// use afterimage::ContextDesc;
@@ -392,11 +387,10 @@ impl Afterimage {
         // The color is not read, but its regions decide how views are processed.
         let variant = Variant::of(frame, &Target::new(frame.color));
         let special = Specialization::new(variant, None, self.generation);
-        self.recorder.begin(&SparseUniforms::new(frame.views, self.desc.size_px), 0);
+        self.recorder.begin(0);
         let mut job = Job {
             device,
             desc: &self.desc,
-            views: frame.views,
             textures: frame.textures(),
             counters: None,
             special,
@@ -495,16 +489,6 @@ impl Afterimage {
         self.quads.as_ref().and_then(|quads| quads.quads.views.get(view)).map(|view| &view.list)
     }
 
-    /// Distance of every pixel along the view axis, interpolated from the depth at the samples, for composition layers
-    /// with depth and for effects that follow: `R32Float`, an array layer for each view; usages `TEXTURE_BINDING` and
-    /// `COPY_SRC`. It is at least 1e30 where a pixel shows no surface, and -1 where depth was invalid. It belongs to
-    /// the last frame that was recorded or planned with [geometry at
-    /// samples](crate::Lattices::with_geometry_at_samples) and a depth input. `None` before the first such frame: other
-    /// frames have depth at every pixel. A change of size replaces it.
-    pub fn filled_depth(&self) -> Option<&Texture> {
-        self.stages.filled_depth()
-    }
-
     /// Records a debug view of the decisions that [`record`](Self::record) of the same frame will make, as linear
     /// color, into the target's output. Counters, if any, are those of `record`. History is unchanged: call it before
     /// `record`, with another output, for any number of views. A [`DebugTarget`] is faster: it needs no pass of its
@@ -559,11 +543,10 @@ impl Afterimage {
         let mut textures = frame.textures();
         textures[Binding::Output as usize] = Some(target.output);
         textures[Binding::Debug as usize] = target.debug.map(|debug| debug.output);
-        self.recorder.begin(&SparseUniforms::new(frame.views, self.desc.size_px), self.history.next_number());
+        self.recorder.begin(self.history.next_number());
         let mut job = Job {
             device,
             desc: &self.desc,
-            views: frame.views,
             textures,
             counters: target.counters,
             special: Specialization::new(Variant::of(frame, target), view, self.generation),

@@ -40,7 +40,7 @@ pub(in crate::cpu) fn plan_quads(desc: &ContextDesc, history: &History, frame: &
     let of_view = |i: usize| {
         let inputs = Inputs::new(desc, frame, i, &history.state_after(i, frame), history.is_filled());
         let has_memory = matches!(history.layout(), HistoryLayout::Sparse { .. });
-        let view = View::new(desc, frame, i, inputs, history.sparse(i), history.sparse_noise(i));
+        let view = View::new(desc, frame, inputs, history.sparse(i), history.sparse_noise(i));
         view.plan_quads(&foveation, frame.index, has_memory)
     };
     (0..frame.views.len()).map(of_view).collect()

@@ -10,8 +10,8 @@ use crate::kernel::noise::{NoiseSum, add_noise, mean_noise};
 use crate::kernel::resample::has_code;
 use crate::kernel::sanitize;
 use crate::kernel::sparse_smr::{
-    LIGHT_RELATIVE, Observation, ObservedAround, QuadLit, RELIT_ERRORS, add_observation, agreement, fit, fit_around,
-    fit_by_votes, mean_fit, own_fit, pack_quad_lit, quad_code, quad_lit,
+    LIGHT_RELATIVE, Observation, ObservedAround, QuadLit, add_observation, agreement, fit, fit_around, fit_by_votes,
+    mean_fit, own_fit, pack_quad_lit, quad_code, quad_lit,
 };
 use crate::notes::Notes;
 use crate::parallel::collect;
@@ -109,7 +109,7 @@ impl View<'_> {
         let fit_of_own = |o, gain| if self.is_noisy { 1.0 } else { own_fit(o, gain) };
         let (mut gain, mut fits) = (Vec3::ONE, 1.0);
         if around.weight >= 1e-6 {
-            let (relit, left) = self.relit_around(around, near, RELIT_ERRORS);
+            let (relit, left) = self.relit_around(around, near);
             gain = relit;
             fits = if self.is_noisy {
                 let confidence = (around.weight / around.spatial).min(1.0);

@@ -117,6 +117,16 @@ impl Quads {
         found.into_iter().filter(|at| at[0] != u32::MAX)
     }
 
+    /// The sample nearest to a pixel, the first of equally near ones; `None` without any around it.
+    #[inline(always)]
+    pub fn nearest_sample(&self, px: [u32; 2]) -> Option<[u32; 2]> {
+        if self.is_shaded(px) {
+            return Some(px);
+        }
+        let px2 = |at: &[u32; 2]| offset_px2(at[0], px[0]) + offset_px2(at[1], px[1]);
+        self.samples_around(px).min_by(|a, b| px2(a).total_cmp(&px2(b)))
+    }
+
     /// Codes of the nearest sample of each quadrant around a pixel, and of its own sample, in a quad with some samples.
     #[inline(always)]
     fn codes_around(&self, px: [u32; 2], quad: [u32; 2], mask: u32) -> [u32; 5] {
