@@ -19,7 +19,7 @@ fn hides(v: u32, [x, y]: [u32; 2]) -> bool {
     along.zip(lowest.into_iter().zip(highest)).any(|(at, (low, high))| at < low || at > high)
 }
 
-/// Two views that glide through the lenses. Depth and motion of every fourth frame are those of its samples.
+/// Two views that glide through the lenses.
 fn views(index: u64, settings: &Settings) -> [View; 2] {
     [0, 1].map(|v| {
         let mut view = gliding_view(index, v);
