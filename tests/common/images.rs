@@ -3,7 +3,7 @@
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::simulator::Pyramid;
-use afterimage::{Filter, Foveation, FrameStats, Gaze, Image, Lattices, ViewFrame, ViewGeometry};
+use afterimage::{Filter, Foveation, FrameStats, Gaze, Image, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
 
 /// Images of one view of one frame.
@@ -39,17 +39,6 @@ impl View {
         self
     }
 
-    /// A sparse frame with these lattices.
-    pub fn sparse(self, lattices: Lattices) -> Self {
-        self.with(|view| view.facts.lattices = Some(lattices))
-    }
-
-    /// A sparse frame of `foveation`.
-    pub fn foveated(self, foveation: &Foveation, gaze_px: [f32; 2], index: u64) -> Self {
-        let lattices = foveation.lattices(&self.facts.geometry, gaze_px, index);
-        self.sparse(lattices)
-    }
-
     /// What a foveating renderer delivers of a picture.
     pub fn delivered(foveation: &Foveation, full: &Image<[f32; 3]>, gaze_px: [f32; 2]) -> Self {
         let lods = foveation.lod_map(&ViewGeometry::flat(full.size(), 70.0).unwrap(), gaze_px);
@@ -57,29 +46,17 @@ impl View {
         Self::still(color, gaze_px)
     }
 
-    /// What the lattices read of an image, and `elsewhere` between.
-    pub fn read_of<T: Copy>(&self, image: &Image<T>, elsewhere: T) -> Image<T> {
-        let lattices = self.facts.lattices.unwrap();
-        let is_read = |px| lattices.as_slice().iter().any(|lattice| lattice.samples(px));
-        Image::from_fn(image.size(), |px| if is_read(px) { pixel(image, px) } else { elsewhere })
-    }
-
-    /// With the samples in an atlas of `size`, and NaN elsewhere.
-    pub fn in_atlas(&self, size: [u32; 2]) -> Self {
-        let (atlas, least) = self.facts.lattices.unwrap().in_atlas();
-        assert!(least[0] <= size[0] && least[1] <= size[1]);
-        let mut color = Image::filled(size, [f32::NAN; 3]);
-        for lattice in atlas.as_slice() {
-            let [left, top] = lattice.atlas_texel.unwrap();
-            for [i, j] in pixels(lattice.points) {
-                let px = [lattice.first_px[0] + i * lattice.step, lattice.first_px[1] + j * lattice.step];
-                if px[0] < self.color.size()[0] && px[1] < self.color.size()[1] {
-                    let at = ((top + j) * size[0] + left + i) as usize;
-                    color.pixels_mut()[at] = pixel(&self.color, px);
-                }
-            }
-        }
-        Self { color, ..self.clone() }.sparse(atlas)
+    /// With the color of the pixels of a mask alone, one texel for each quad; NaN for quads without any.
+    pub fn at_half(self, mask: &Image<bool>) -> Self {
+        let size = self.color.size();
+        let half = Image::from_fn(size.map(|side| side.div_ceil(2)), |quad| {
+            let of_quad = pixels([2; 2]).map(|place| [0, 1].map(|i| 2 * quad[i] + place[i]));
+            let mut shaded = of_quad.filter(|px| px[0] < size[0] && px[1] < size[1] && pixel(mask, *px));
+            let color = shaded.next().map_or([f32::NAN; 3], |px| pixel(&self.color, px));
+            assert_eq!(shaded.next(), None, "two pixels of quad {quad:?}");
+            color
+        });
+        Self { color: half, half_color: true, ..self }
     }
 
     /// With the color of the pixels of a mask alone, one texel for each quad; NaN for quads without any.
