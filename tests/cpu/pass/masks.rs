@@ -215,6 +215,6 @@ fn masks_of_frames_without_a_plan_are_refused() {
     // Of another size.
     let small = View { mask: Some(Image::filled([3, 3], 1.0)), ..view.clone() };
     assert!(refused(&mut post, &small).starts_with("mask"), "{}", refused(&mut post, &small));
-    let whole = View { half_color: true, ..view };
-    assert!(refused(&mut post, &whole).starts_with("color"), "{}", refused(&mut post, &whole));
+    let whole = View { half: Some(view.color.clone()), ..view };
+    assert!(refused(&mut post, &whole).starts_with("half"), "{}", refused(&mut post, &whole));
 }
