@@ -1,5 +1,5 @@
-//! Masks of planned frames that have single pixels, or that the renderer chose itself: both executors bit for bit, whole
-//! and at half the size, with noise or without it, and planted errors.
+//! Masks of planned frames that have single pixels, or that the renderer chose itself: both executors bit for bit,
+//! whole and at half the size, with noise or without it, and planted errors.
 
 use super::quads::{reset_of, settings, views};
 use super::sparse::{SIZE, desc};
