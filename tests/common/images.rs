@@ -59,19 +59,6 @@ impl View {
         Self { color: half, half_color: true, ..self }
     }
 
-    /// With the color of the pixels of a mask alone, one texel for each quad; NaN for quads without any.
-    pub fn at_half(self, mask: &Image<bool>) -> Self {
-        let size = self.color.size();
-        let half = Image::from_fn(size.map(|side| side.div_ceil(2)), |quad| {
-            let of_quad = pixels([2; 2]).map(|place| [0, 1].map(|i| 2 * quad[i] + place[i]));
-            let mut shaded = of_quad.filter(|px| px[0] < size[0] && px[1] < size[1] && pixel(mask, *px));
-            let color = shaded.next().map_or([f32::NAN; 3], |px| pixel(&self.color, px));
-            assert_eq!(shaded.next(), None, "two pixels of quad {quad:?}");
-            color
-        });
-        Self { color: half, half_color: true, ..self }
-    }
-
     /// In which everything moves by `speed_px` a frame.
     pub fn moving(self, speed_px: [f32; 2]) -> Self {
         self.with(|view| view.motion = Some(Image::filled(view.color.size(), speed_px.map(|v| -v))))

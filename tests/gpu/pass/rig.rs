@@ -267,10 +267,10 @@ impl Rig {
         self.read_texture(&self.textures[DEBUG])
     }
 
-    /// Makes the color input an atlas of another size.
+    /// Makes the color input of another size.
     pub fn resize_color(&mut self, size_px: [u32; 2]) {
-        let atlas = ContextDesc { size_px, ..self.context };
-        self.textures[COLOR] = make_texture(&self.device, &atlas, TextureFormat::Rgba32Float, READ);
+        let of_size = ContextDesc { size_px, ..self.context };
+        self.textures[COLOR] = make_texture(&self.device, &of_size, TextureFormat::Rgba32Float, READ);
     }
 
     /// Stores motion as halves on the device from now on.
