@@ -185,7 +185,7 @@ pub fn planned_flash(make: Make<'_>) -> Option<String> {
     let mut draws = Draws::new("planned flash");
     let mut most = i64::MIN;
     let quads = Settings { foveation: Foveation::quads(), ..Settings::default() };
-    let [fine, coarse] = [[2, 4], [4, 8]].map(|[rate_mid, rate_far]| {
+    let [fine, coarse] = [[2, 2], [4, 8]].map(|[rate_mid, rate_far]| {
         let foveation = Foveation { rate_mid, rate_far, single_pixels: true, ..Foveation::quads() };
         Settings { foveation, ..Settings::default() }
     });

@@ -78,8 +78,8 @@ fn weights_of_wrs_are_those_of_the_nearest_samples() {
         |settings: Settings, view: &View, [x, y]: [usize; 2]| context(settings).step(0, view).trace.at(x, y).weight;
     let calm = Settings { foveation, ..Settings::paper() };
     let plain = [[11, 12], [12, 12], [13, 13], [8, 9]].map(|px| weight(calm, &view, px));
-    // (1 + 8 d^2)^-4, the exponent rounded up to a multiple of 4.
-    assert_eq!(plain, [1.0, (-12.0_f32).exp2(), (-16.0_f32).exp2(), (-28.0_f32).exp2()]);
+    // (1 + 8 d^2)^-4, with 1 + 8 d^2 rounded down to a power of two.
+    assert_eq!(plain, [1.0, (-12.0_f32).exp2(), (-20.0_f32).exp2(), (-28.0_f32).exp2()]);
     // Four samples a pixel in the noise input, but for the pixels without a sample, which have none.
     let noise = mask.map(|chosen| [0.0, if chosen { 4.0 } else { f32::NAN }]);
     let noisy = Settings { noisy: true, ..calm };

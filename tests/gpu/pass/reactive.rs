@@ -1,4 +1,4 @@
-//! Reactive masks: the inverse of trust masks, in the passes of whole and of sparse frames.
+//! Reactive masks: the inverse of trust masks, in the passes of whole and of planned frames.
 
 use super::mask_hard::run_law;
 use super::*;
