@@ -157,8 +157,7 @@ impl Foveation {
         Self { fovea_deg: 0.0, mid_deg: 0.0, rate_mid: rate, rate_far: rate, budget, ..Self::quads() }
     }
 
-    /// One pixel of each quad, without a gaze: what a temporal upscaler from half the width and height is given, and
-    /// what `plan` takes by itself in the first frame after a cut.
+    /// One pixel of each quad, without a gaze: what a temporal upscaler from half the width and height is given.
     ///
     /// ```
     /// use afterimage::Foveation;
@@ -170,7 +169,8 @@ impl Foveation {
         Self { fovea_deg: 0.0, mid_deg: 180.0, blend_deg: 0.0, budget: 0.0, single_pixels: true, ..rates }
     }
 
-    /// Place in its quad of the pixel that frame `index` shades of each quad, if it shades one of each.
+    /// Place in its quad of the pixel that frame `index` shades alone, of each quad outside the fovea, if it shades one of
+    /// each.
     pub fn quarter_place_px(index: u64) -> [u32; 2] {
         offset_px(index, 2)
     }
@@ -231,6 +231,12 @@ impl Foveation {
         let [mid_x, mid_y] = offset_px(index, self.rate_mid);
         let [far_x, far_y] = offset_px(index / 2, self.rate_far);
         [mid_x, mid_y, far_x, far_y]
+    }
+
+    /// Foveation of a frame without history, if that shades a quarter of the pixels: the fovea, and one pixel of each
+    /// quad around it.
+    pub(crate) fn after_cut(&self) -> Self {
+        Self { fovea_deg: self.fovea_deg, ..Self::quarter() }
     }
 
     /// Whether a frame without history shades a quarter of the pixels, evenly: if other frames have about as few.

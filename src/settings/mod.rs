@@ -178,8 +178,8 @@ pub struct Settings {
     /// Whether frames are noisy, that is path-traced with few samples a pixel. Each frame must then have a noise input
     /// ([`FrameInputs::noise`](crate::FrameInputs::noise)), so that noise is not mistaken for a change. wrs weights a
     /// candidate by its number of samples; smr averages history in the fovea, too, compares means of 8x8 candidates,
-    /// and stores 8 more bytes a pixel and a mip chain of the candidates. On planned frames smr compares the means of
-    /// nine quads, stores the 8 bytes but no mip chain, and does not relight history. Default false.
+    /// and stores 8 more bytes a pixel and a mip chain of the candidates. On planned frames smr compares means of
+    /// samples, stores the 8 bytes but no mip chain, and does not relight history. Default false.
     pub noisy: bool,
     /// Seed of the random numbers. The same seed and the same frames give the same bytes. Default 0.
     pub seed: u64,

@@ -5,7 +5,7 @@ use afterimage::{Filter, Foveation, Image, Settings};
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::Content;
-use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
+use afterimage_lab::lattices::{Geometry, SampleOrder};
 use afterimage_lab::measure::{Foveated, FrameTime, Pattern, TracedView};
 use afterimage_lab::metric::{Flip, encode, psnr_db};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
@@ -73,7 +73,7 @@ impl<'a> Comparer<'a> {
             .entry(filled.samples)
             .or_insert_with(|| encode(&subject.full_rate(self.tracer, filled.samples, CLIP_FRAMES - 1), 0.0));
         let reference = reference.clone();
-        let sparse = Pattern { sampling: lattices, sparse: Some(SparseGeometry::Samples), ..filled.clone() };
+        let sparse = Pattern { sampling: lattices, sparse: Some(Geometry::Samples), ..filled.clone() };
         Ok(Comparison {
             reference_samples_per_pixel: filled.samples,
             filled: self.filled(filled, &reference)?,
@@ -99,7 +99,7 @@ impl<'a> Comparer<'a> {
         let foveation = Foveation { filter: Filter::Sparse, ..pattern.sampling.foveation() };
         let smr = [RunKind::PostProcess(Settings::traced())];
         let mut pipeline = Pipeline::new(geometry, foveation, &smr, false, &[], self.backend)?
-            .with_sparse(SparseGeometry::Samples, SampleOrder::default());
+            .with_sparse(Geometry::Samples, SampleOrder::default());
         let (mut render_ms, mut post_ms, mut last) = (vec![], vec![], None);
         for index in 0..CLIP_FRAMES {
             let (frame, took) = self.subject.rendered(self.tracer, pattern, index)?;

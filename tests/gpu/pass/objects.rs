@@ -80,7 +80,7 @@ fn pipelines_of_prime(is_prewarmed: bool) -> [usize; 2] {
     let [color, depth, motion, _] = written.textures();
     let target = written.bare.texture(TextureFormat::Depth32Float, TextureUsages::RENDER_ATTACHMENT);
     let target = target.create_view(&Default::default());
-    let prime = Prime { target: &target, origin_px: [0, 0], near_depth: 1.0, stencil: None };
+    let prime = Prime { target: &target, origin_px: [0, 0], near_depth: 1.0, stencil: None, is_half: false };
     let (device, views) = (written.bare.device.clone(), written.bare.views);
     if is_prewarmed {
         written.post.prewarm_prime(&device, &prime).unwrap();

@@ -3,7 +3,7 @@
 use afterimage::kernel::lattice::offset_px;
 use afterimage::{Filter, Foveation, MethodKind, Settings};
 use afterimage_lab::device::Backend;
-use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
+use afterimage_lab::lattices::{Geometry, SampleOrder};
 use afterimage_lab::pipeline::{Pipeline, RunKind, Step};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 use std::collections::HashSet;
@@ -28,7 +28,7 @@ fn gaze(index: u64) -> [f32; 2] {
 }
 
 /// Frames of a scene through a pipeline.
-fn steps(scene: &str, geometry: SparseGeometry, order: SampleOrder, backend: &Backend) -> Vec<Step> {
+fn steps(scene: &str, geometry: Geometry, order: SampleOrder, backend: &Backend) -> Vec<Step> {
     let mut source = source(scene);
     let pipeline = Pipeline::new(*source.view(), foveation(), &kinds(), source.info().still, &[], backend).unwrap();
     let mut pipeline = pipeline.with_sparse(geometry, order);
@@ -43,7 +43,7 @@ fn steps(scene: &str, geometry: SparseGeometry, order: SampleOrder, backend: &Ba
 fn foveated_frames_have_the_samples_of_the_full_ones() {
     let mut source = source("lateral");
     let view = *source.view();
-    let steps = steps("lateral", SparseGeometry::Full, SampleOrder::Bayer, &Backend::Cpu);
+    let steps = steps("lateral", Geometry::Full, SampleOrder::Bayer, &Backend::Cpu);
     let mut seen = HashSet::new();
     for (index, step) in steps.iter().enumerate() {
         let full = source.frame(index as u64).unwrap().color;
@@ -68,7 +68,7 @@ fn foveated_frames_have_the_samples_of_the_full_ones() {
 fn geometry_at_samples_matters() {
     let of = |geometry| steps("occluder", geometry, SampleOrder::Bayer, &Backend::Cpu);
     let rejected = |steps: Vec<Step>| steps.iter().map(|s| s.outputs[2].stats.rejected()).sum::<u64>();
-    assert_ne!(rejected(of(SparseGeometry::Full)), rejected(of(SparseGeometry::Samples)));
+    assert_ne!(rejected(of(Geometry::Full)), rejected(of(Geometry::Samples)));
 }
 
 #[test]

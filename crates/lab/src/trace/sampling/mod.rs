@@ -10,13 +10,11 @@ mod lattice;
 mod layers;
 mod regions;
 mod rings;
-mod sparse;
 
 pub use acuity::Acuity;
 pub use lattice::Lattice;
 pub use layers::Layers;
 pub use regions::Regions;
-pub use sparse::SparsePlan;
 
 use super::Tracer;
 use super::film::Film;
@@ -168,7 +166,7 @@ impl Plan {
                 Blended { color: fill::pull_push(&film), lod: lod.clone(), noise: fill::noise_between(&film) }
             }
         };
-        FoveatedFrame { color, lod, noise: Some(noise), lattices: None, samples, rays, nonfinite }
+        FoveatedFrame { color, lod, noise: Some(noise), samples, rays, nonfinite }
     }
 }
 

@@ -6,7 +6,7 @@ use super::{foveated, quad_views};
 use crate::given::device;
 use afterimage::{Filter, Foveation, Image, MethodKind, Settings};
 use afterimage_lab::device::Backend;
-use afterimage_lab::lattices::SparseGeometry;
+use afterimage_lab::lattices::Geometry;
 use afterimage_lab::metric::encode;
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::quad_views::QuadViewLayout;
@@ -17,7 +17,7 @@ const SIZE: [u32; 2] = [158, 90];
 /// `layout`: of quad views; lattices without it.
 fn both_show_the_same(
     foveation: Foveation,
-    geometry: SparseGeometry,
+    geometry: Geometry,
     layout: Option<QuadViewLayout>,
     methods: &[MethodKind],
 ) {
@@ -63,7 +63,7 @@ fn both_show_the_same(
 fn methods_give_the_same_pictures_from_samples_on_the_device_and_in_memory() {
     use MethodKind::{None, Smr, Taa, Taau, Wrs};
     let foveation = Foveation { filter: Filter::Sparse, fovea_deg: 12.0, ..foveated::FOVEATION() };
-    for geometry in [SparseGeometry::Full, SparseGeometry::Samples] {
+    for geometry in [Geometry::Full, Geometry::Samples] {
         both_show_the_same(foveation, geometry, Option::None, &[None, Taa, Taau, Wrs, Smr]);
     }
 }
@@ -72,9 +72,9 @@ fn methods_give_the_same_pictures_from_samples_on_the_device_and_in_memory() {
 fn methods_give_the_same_pictures_of_composed_frames_on_the_device_and_in_memory() {
     use MethodKind::{None, Smr, Taa, Wrs};
     for (geometry, layout) in [
-        (SparseGeometry::Full, QuadViewLayout::Regions),
-        (SparseGeometry::Samples, QuadViewLayout::Regions),
-        (SparseGeometry::Samples, QuadViewLayout::Uniform { step: 1.5 }),
+        (Geometry::Full, QuadViewLayout::Regions),
+        (Geometry::Samples, QuadViewLayout::Regions),
+        (Geometry::Samples, QuadViewLayout::Uniform { step: 1.5 }),
     ] {
         both_show_the_same(quad_views::FOVEATION(), geometry, Some(layout), &[None, Taa, Wrs, Smr]);
     }
