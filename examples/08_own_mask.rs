@@ -2,7 +2,7 @@
 //! which pixels these are. There is no call of `plan`.
 //!
 //! What a renderer adds to depth and motion of every pixel: a mask. Any pattern does that visits every pixel in some
-//! frame. If it has at most one pixel in each quad of 2x2, color may have half the width and height (`half_color`).
+//! frame. Of quads of 2x2 with one pixel, color may have half the width and height (`half`).
 //!
 //! `cargo run --release --example 08_own_mask` (any adapter; software Vulkan: mesa-vulkan-drivers)
 

@@ -155,19 +155,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         draw(&gpu, &mut encoder, &prepass, [&motion, &depth], LoadOp::Clear(0.0), (&geometry, index));
         post.plan(&gpu.device, &mut encoder, &frame)?;
         // The renderer's color pass.
-        if post.is_quarter() {
-            // Nothing is known: one pixel of each quad, as a small view. With jitter, half of it.
+        // Both the methods and the color pass read depth; prime closes a copy of it.
+        encoder.copy_texture_to_texture(depth.as_image_copy(), primed.as_image_copy(), depth.size());
+        let is_half = post.is_quarter();
+        let prime = Prime { target: &primed_view, origin_px: [0, 0], near_depth: 1.0, stencil: None, is_half };
+        post.prime(&gpu.device, &mut encoder, 0, &prime)?;
+        draw(&gpu, &mut encoder, &shading, [&color, &primed], LoadOp::Load, (&geometry, index));
+        if is_half {
+            // Nothing is known: outside the fovea one pixel of each quad, as a small view. With jitter, half of it.
             let half = geometry.half(Foveation::quarter_place_px(index));
             draw(&gpu, &mut encoder, &shading, [&half_color, &half_depth], LoadOp::Clear(0.0), (&half, index));
-            (frame.color, frame.half_color) = ((&half_color).into(), true);
-        } else {
-            // Both the methods and the color pass read depth; prime closes a copy of it.
-            encoder.copy_texture_to_texture(depth.as_image_copy(), primed.as_image_copy(), depth.size());
-            let prime = Prime { target: &primed_view, origin_px: [0, 0], near_depth: 1.0, stencil: None };
-            post.prime(&gpu.device, &mut encoder, 0, &prime)?;
-            draw(&gpu, &mut encoder, &shading, [&color, &primed], LoadOp::Load, (&geometry, index));
+            frame.half = Some((&half_color).into());
         }
-        let pixels = if frame.half_color { 1 } else { 4 };
+        let pixels = if is_half { 1 } else { 4 };
         post.record(&gpu.device, &mut encoder, &frame, &output)?;
         gpu.submit(encoder);
         if index == 0 || index % 16 == 15 {

@@ -88,7 +88,8 @@ pub struct Foveation {
     pub filter: Filter,
     /// Diameter of the fovea, the full-rate region, in degrees: 0 to 180, at most `mid_deg`. Default 5.
     pub fovea_deg: f32,
-    /// Diameter of the middle region in degrees: 0 to 180. Default 15.
+    /// Diameter of the middle region in degrees: 0 to 180. Default 15. With [`Filter::Quads`] 180 is the whole view, even
+    /// if the gaze is far outside of it.
     pub mid_deg: f32,
     /// Width in degrees of the linear blend outside the radius of each region: 0 to 90. Default 1.
     pub blend_deg: f32,
@@ -156,8 +157,7 @@ impl Foveation {
         Self { fovea_deg: 0.0, mid_deg: 0.0, rate_mid: rate, rate_far: rate, budget, ..Self::quads() }
     }
 
-    /// One pixel of each quad, without a gaze: what a temporal upscaler from half the width and height is given, and
-    /// what `plan` takes by itself in the first frame after a cut.
+    /// One pixel of each quad, without a gaze: what a temporal upscaler from half the width and height is given.
     ///
     /// ```
     /// use afterimage::Foveation;
@@ -169,7 +169,8 @@ impl Foveation {
         Self { fovea_deg: 0.0, mid_deg: 180.0, blend_deg: 0.0, budget: 0.0, single_pixels: true, ..rates }
     }
 
-    /// Place in its quad of the pixel that frame `index` shades of each quad, if it shades one of each.
+    /// Place in its quad of the pixel that frame `index` shades alone, of each quad outside the fovea, if it shades one of
+    /// each.
     pub fn quarter_place_px(index: u64) -> [u32; 2] {
         offset_px(index, 2)
     }
@@ -232,6 +233,12 @@ impl Foveation {
         [mid_x, mid_y, far_x, far_y]
     }
 
+    /// Foveation of a frame without history, if that shades a quarter of the pixels: the fovea, and one pixel of each
+    /// quad around it.
+    pub(crate) fn after_cut(&self) -> Self {
+        Self { fovea_deg: self.fovea_deg, ..Self::quarter() }
+    }
+
     /// Whether a frame without history shades a quarter of the pixels, evenly: if other frames have about as few.
     pub(crate) fn takes_quarter(&self) -> bool {
         let pixels = if self.single_pixels { 1.0 } else { 4.0 };
@@ -257,7 +264,8 @@ impl Foveation {
     }
 
     pub(crate) fn mid_radius_deg(&self) -> f32 {
-        0.5 * self.mid_deg
+        // Pixels may be more than 90 degrees from a gaze outside the view; a quarter has them, too.
+        if self.filter == Filter::Quads && self.mid_deg >= 180.0 { 360.0 } else { 0.5 * self.mid_deg }
     }
 
     fn lod_mid(&self) -> f32 {

@@ -135,10 +135,10 @@ pub struct FrameInputs<'a, Colors, Scalars, Vectors> {
     /// chooses its own pixels; any pattern does, if it visits every pixel in some frame. On a GPU any float or
     /// normalised format. `None`: `plan` chose the pixels.
     pub mask: Option<Scalars>,
-    /// Whether the color of a [planned frame](crate::Filter::Quads) has one texel for each quad of 2x2 pixels: half the
-    /// width and height, rounded up. At most one pixel of each quad is shaded then, as after a cut (`is_quarter` of
-    /// either executor). Default false.
-    pub half_color: bool,
+    /// Colors of the quads of 2x2 pixels of a [planned frame](crate::Filter::Quads) that are shaded in part: one texel a
+    /// quad, half the width and height, rounded up. At most one pixel of such a quad is shaded then, as after a cut
+    /// (`is_quarter` of either executor). `color` has the other quads. `None`: `color` has all pixels.
+    pub half: Option<Colors>,
     /// Descriptions of the views, one for each view of the context.
     pub views: &'a [ViewFrame],
     /// Frame counter, which seeds the random numbers: the same index and [`Settings::seed`] give the same bytes.
@@ -161,7 +161,7 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
             lod: None,
             noise: None,
             mask: None,
-            half_color: false,
+            half: None,
             views,
             index,
             reset: Reset::None,
@@ -205,10 +205,10 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
 
     /// Rejects a mask, and colors of half the size, of frames that are not planned.
     fn check_mask(&self, settings: &Settings) -> Result<(), FrameError> {
-        if settings.foveation.filter == Filter::Quads || !(self.mask.is_some() || self.half_color) {
+        if settings.foveation.filter == Filter::Quads || !(self.mask.is_some() || self.half.is_some()) {
             return Ok(());
         }
-        let found = if self.mask.is_some() { "given" } else { "missing, with a color of half the size" };
+        let found = if self.mask.is_some() { "given" } else { "missing, with colors at half the size" };
         let expected = "set Filter::Quads in Settings::foveation";
         Err(FrameError::Value { value: FrameValue::Mask, view: 0, found: found.into(), expected })
     }

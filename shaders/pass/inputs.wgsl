@@ -66,7 +66,7 @@ struct FrameUniforms {
     pattern_px: vec4u,
     single_pixels: u32,
     has_single_pixels: u32,
-    color_shift: u32,
+    has_half: u32,
     has_budget: u32,
     views: array<ViewUniforms, 4>,
     cameras: array<CameraUniforms, 4>,
@@ -83,6 +83,7 @@ const TRUST_IN: u32 = 4u;
 const LOD_IN: u32 = 5u;
 const NOISE_IN: u32 = 6u;
 const REACTIVE_IN: u32 = 8u;
+const HALF_IN: u32 = 9u;
 const COLOR_OUT: u32 = 10u;
 const DEBUG_OUT: u32 = 11u;
 
@@ -124,12 +125,16 @@ fn layer_of(view: u32) -> u32 {
 
 // Color and alpha of a texel, as the renderer wrote them.
 fn given_at(texel: vec2u, view: u32) -> vec4f {
-    return textureLoad(color_in, texel_of(texel >> vec2u(frame.color_shift), view, COLOR_IN), layer_of(view), 0);
+    return textureLoad(color_in, texel_of(texel, view, COLOR_IN), layer_of(view), 0);
 }
 
 // The same with the color in this frame's exposure.
 fn color_at(texel: vec2u, view: u32) -> vec4f {
-    let given = given_at(texel, view);
+    return in_exposure(given_at(texel, view));
+}
+
+// A color and alpha as the renderer wrote them, with the color in this frame's exposure.
+fn in_exposure(given: vec4f) -> vec4f {
     if EXPOSED == 0u {
         return given;
     }

@@ -11,7 +11,7 @@
 fn pixel(px: vec2u, view: u32) -> vec4f {
     let mask_word = mask_at(px, view);
     if is_shaded(mask_word, px) {
-        return given_at(px, view);
+        return given_sample(px, view);
     }
     let around = around_pixel(px, view, mask_word);
     var sum = vec4f(0.0);
@@ -19,7 +19,7 @@ fn pixel(px: vec2u, view: u32) -> vec4f {
     for (var i = 0u; i < 4u; i++) {
         let sample = sample_tap(around, i, px, view);
         let at = min(sample.at, frame.size - 1u);
-        let given = color_at(at, view);
+        let given = sample_at(at, view);
         let sampled = color(given.xyz);
         if sample.is_there && sampled.usable {
             let x = f32(at.x) - f32(px.x);

@@ -12,6 +12,7 @@ use crate::kernel::antialias::mean_of;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::depth::distance_of;
 use crate::kernel::noise::{Noise, unpack_noise};
+use crate::kernel::quads::WHOLE;
 use crate::kernel::resample::{ROUNDS, Tap, TapsAround, sharp_sum, taps_of};
 use crate::kernel::stored_sample::unpack_stored;
 use crate::kernel::surface::unpack_surface;
@@ -111,10 +112,12 @@ fn note_sample(quads: &Quads, given: &Frame<'_>, view: usize, px: [u32; 2], note
     notes.note(stage, "shaded", quads.is_shaded(px), "");
     notes.note(stage, "distance of the even pattern's quads", (1 << quads.level_at(px)) as f32, "px");
     let Some(at) = quads.nearest_sample(px) else { return };
-    let texel = if given.half_color { at.map(|v| v / 2) } else { at };
     notes.note(stage, "nearest sample", [0, 1].map(|i| at[i] as f32 - px[i] as f32), "px from the pixel");
-    notes.note(stage, "its texel", texel.map(|v| v as f32), "px");
-    let color = given.color[view].at(texel[0] as usize, texel[1] as usize);
+    let half = given.half.filter(|_| quads.mask(at.map(|v| v / 2)) != WHOLE);
+    let color = match half {
+        Some(half) => half[view].at(at[0] as usize / 2, at[1] as usize / 2),
+        None => given.color[view].at(at[0] as usize, at[1] as usize),
+    };
     notes.note(stage, "its color", color, "linear light, as given");
 }
 

@@ -6,8 +6,9 @@ use crate::image::Image;
 
 /// Filled colors of all views; empty unless the frame is planned. `quads`: shaded quads, one a view.
 pub(super) fn filled(frame: &Frame<'_>, size_px: [u32; 2], quads: &[Quads]) -> Vec<Image<[f32; 3]>> {
-    let of = |(quads, color): (&Quads, &&Image<_>)| {
-        Image::from_fn_parallel(size_px, |px| quads.filled(color, frame.half_color, px, frame.exposure))
+    let of = |(view, quads): (usize, &Quads)| {
+        let colors = [Some(frame.color), frame.half].map(|colors| colors.map(|colors| colors[view]));
+        Image::from_fn_parallel(size_px, |px| quads.filled(colors, px, frame.exposure))
     };
-    quads.iter().zip(frame.color).map(of).collect()
+    quads.iter().enumerate().map(of).collect()
 }

@@ -43,8 +43,8 @@ pub(super) struct Inputs<'a> {
     pub uniforms: ViewUniforms,
     /// Factor on stored colors.
     pub exposure: f32,
-    /// Bits by which coordinates of pixels are shifted for those of texels of the color: 1 for one texel a quad.
-    color_shift: u32,
+    /// Colors of quads that are shaded in part, one a quad.
+    half: Option<&'a Image<[f32; 3]>>,
     /// Factor on given colors.
     pub color_exposure: f32,
     /// Its inverse, a factor on shown colors.
@@ -74,7 +74,7 @@ impl<'a> Inputs<'a> {
             size: desc.size_px,
             uniforms,
             exposure: state.stored_exposure(frame),
-            color_shift: u32::from(frame.half_color),
+            half: frame.half.map(|half| half[index]),
             color_exposure: frame.exposure.of_colors(),
             inverse_exposure: 1.0 / frame.exposure.of_colors(),
             reset: frame.reset != Reset::None || !has_history,
@@ -162,8 +162,15 @@ impl<'a> Inputs<'a> {
     /// Color of a texel of the color input, in this frame's exposure, not sanitized.
     #[inline(always)]
     pub fn color_at(&self, [x, y]: [u32; 2]) -> Vec3 {
-        Vec3::from(self.color.at((x >> self.color_shift) as usize, (y >> self.color_shift) as usize))
-            * self.color_exposure
+        Vec3::from(self.color.at(x as usize, y as usize)) * self.color_exposure
+    }
+
+    /// The same of a pixel of a quad that is shaded in part.
+    #[inline(always)]
+    pub fn partial_color_at(&self, px: [u32; 2]) -> Vec3 {
+        let Some(half) = self.half else { return self.color_at(px) };
+        let [x, y] = px.map(|v| v as usize / 2);
+        Vec3::from(half.at(x, y)) * self.color_exposure
     }
 
     /// A color in this frame's exposure, in the unit of the color input.

@@ -65,9 +65,9 @@ impl<'a> Frame<'a> {
     where
         'a: 'b,
     {
-        let Self { depth, motion, trust, reactive, lod, noise, mask, half_color, views, index, .. } = *self;
+        let Self { depth, motion, trust, reactive, lod, noise, mask, half, views, index, .. } = *self;
         let (reset, exposure) = (self.reset, self.exposure);
-        Frame { color, depth, motion, trust, reactive, lod, noise, mask, half_color, views, index, reset, exposure }
+        Frame { color, depth, motion, trust, reactive, lod, noise, mask, half, views, index, reset, exposure }
     }
 }
 
@@ -264,7 +264,7 @@ impl CpuAfterimage {
         let filled: Vec<_> = filled.iter().collect();
         let whole = match filled.is_empty() {
             true => *frame,
-            false => Frame { half_color: false, ..frame.with_color(&filled) },
+            false => Frame { half: None, ..frame.with_color(&filled) },
         };
         let (given, frame, history) = (frame, &whole, &mut self.history);
         if let Some(pixel) = &mut noted {
@@ -298,8 +298,9 @@ impl CpuAfterimage {
 /// Checks a frame without its outputs.
 fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
     frame.check(desc)?;
-    let of_colors = if frame.half_color { desc.size_px.map(|side| side.div_ceil(2)) } else { desc.size_px };
-    check_sizes_of(desc, "color", Some(frame.color.iter().map(|i| i.size())), of_colors)?;
+    check_sizes(desc, "color", Some(frame.color.iter().map(|i| i.size())))?;
+    let half = desc.size_px.map(|side| side.div_ceil(2));
+    check_sizes_of(desc, "half", frame.half.map(|h| h.iter().map(|i| i.size())), half)?;
     check_geometry(desc, frame)?;
     check_sizes(desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
     check_sizes(desc, "mask", frame.mask.map(|m| m.iter().map(|i| i.size())))?;

@@ -18,6 +18,8 @@ pub enum Binding {
     Noise,
     Mask,
     Reactive,
+    /// Colors of half the size.
+    Half,
     Output = 10,
     /// Debug view beside the output.
     Debug,
@@ -56,7 +58,7 @@ pub struct Input {
 }
 
 /// The inputs of a frame.
-pub const INPUTS: [Input; 8] = [
+pub const INPUTS: [Input; 9] = [
     Input { binding: Binding::Color, name: "color", channels: 3, is_geometry: false, has: None },
     Input { binding: Binding::Depth, name: "depth", channels: 1, is_geometry: true, has: Some("HAS_DEPTH") },
     Input { binding: Binding::Motion, name: "motion", channels: 2, is_geometry: true, has: Some("HAS_MOTION") },
@@ -65,6 +67,7 @@ pub const INPUTS: [Input; 8] = [
     Input { binding: Binding::Lod, name: "lod", channels: 1, is_geometry: false, has: Some("HAS_LOD") },
     Input { binding: Binding::Noise, name: "noise", channels: 2, is_geometry: false, has: None },
     Input { binding: Binding::Mask, name: "mask", channels: 1, is_geometry: true, has: None },
+    Input { binding: Binding::Half, name: "half", channels: 3, is_geometry: false, has: None },
 ];
 
 impl Binding {

@@ -35,7 +35,6 @@ impl Passes for Fill {
         for batch in job.batches() {
             job.dispatch(&self.shader, &batch, &own, job.desc.size_px);
         }
-        job.uniforms.color_shift = 0;
         job.textures[Binding::Color as usize] = Some(Textures::Layers(&self.color.texture));
     }
 }

@@ -32,6 +32,7 @@ impl<'a> Frame<'a> {
         all[Binding::Lod as usize] = self.lod;
         all[Binding::Noise as usize] = self.noise;
         all[Binding::Mask as usize] = self.mask;
+        all[Binding::Half as usize] = self.half;
         all
     }
 }

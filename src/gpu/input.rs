@@ -68,7 +68,7 @@ pub(super) fn check_geometry(desc: &ContextDesc, frame: &Frame<'_>) -> Result<()
 fn check_input(desc: &ContextDesc, frame: &Frame<'_>, input: &Input) -> Result<(), FrameError> {
     let Some(textures) = frame.textures()[input.binding as usize] else { return Ok(()) };
     let mut desc = *desc;
-    if frame.half_color && matches!(input.binding, Binding::Color) {
+    if input.binding == Binding::Half {
         desc.size_px = desc.size_px.map(|side| side.div_ceil(2));
     }
     check_textures(&desc, input.name, textures, Afterimage::INPUT_USAGE)?;

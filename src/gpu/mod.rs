@@ -43,7 +43,7 @@ pub use textures::{Region, Textures};
 
 use crate::context::ContextDesc;
 use crate::error::{CreateError, FrameError, FrameValue, SettingsError};
-use crate::foveation::{Filter, Foveation};
+use crate::foveation::Filter;
 use crate::frame::Reset;
 use crate::gaze::Gaze;
 use crate::geometry::ViewGeometry;
@@ -414,10 +414,10 @@ impl Afterimage {
         Ok(())
     }
 
-    /// Whether the last [`plan`](Self::plan) chose one pixel of each quad, because nothing was known: in the first frame
-    /// and after a reset. Draw it at half the width and height ([`ViewGeometry::half`]), and give it so
-    /// ([`half_color`](crate::FrameInputs::half_color)): rasterisers cannot shade single pixels of a quad, and would
-    /// shade all.
+    /// Whether the last [`plan`](Self::plan) chose one pixel of each quad outside the fovea, because nothing was known: in
+    /// the first frame and after a reset. Draw these pixels at half the width and height ([`ViewGeometry::half`]), and
+    /// give them so ([`half`](crate::FrameInputs::half)): rasterisers cannot shade single pixels of a quad, and would
+    /// shade all. The fovea is drawn as in other frames.
     pub fn is_quarter(&self) -> bool {
         self.quads.as_ref().and_then(|quads| quads.planned).is_some_and(|planned| planned.is_quarter)
     }
@@ -473,8 +473,8 @@ impl Afterimage {
 
     /// The pixels that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::Filter::Quads) chose: an
     /// `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bits 0 to 3 say which of its pixels are shaded,
-    /// row by row, and an array layer for each view; usages `TEXTURE_BINDING` and `COPY_SRC`. `None` with another filter. Changes of size
-    /// and settings replace it.
+    /// row by row, and an array layer for each view; usages `TEXTURE_BINDING` and `COPY_SRC`. `None` with another filter.
+    /// Changes of size and settings replace it.
     pub fn quad_mask(&self) -> Option<&Texture> {
         self.quads.as_ref().map(|quads| &quads.quads.mask.texture)
     }
@@ -599,7 +599,8 @@ impl Afterimage {
             after.push(state.with(view, frame.exposure));
             recorded.note_gaze(i, view, state.gaze_px);
         }
-        let foveation = if is_quarter { Foveation::quarter() } else { self.desc.settings.foveation };
+        let foveation = self.desc.settings.foveation;
+        let foveation = if is_quarter { foveation.after_cut() } else { foveation };
         let uniforms = FrameUniforms::new(&self.desc, frame, &after, self.history.past_frame(), &foveation);
         let largest_shown = output::largest(self.output_format);
         (FrameUniforms { largest_shown, ..uniforms }, after, recorded)

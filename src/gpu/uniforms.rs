@@ -73,8 +73,8 @@ pub struct FrameUniforms {
     pub single_pixels: u32,
     /// Whether quads may be shaded in part.
     pub has_single_pixels: u32,
-    /// Bits by which coordinates of pixels are shifted for those of texels of the color: 1 for one texel a quad.
-    pub color_shift: u32,
+    /// Whether quads that are shaded in part have their color in a texture of half the size.
+    pub has_half: u32,
     /// Whether quads are chosen by need.
     pub has_budget: u32,
     /// One entry a view.
@@ -129,7 +129,7 @@ impl FrameUniforms {
             pattern_px: foveation.pattern_px(frame.index),
             single_pixels: foveation.single_pixels.into(),
             has_single_pixels: (foveation.single_pixels || frame.mask.is_some()).into(),
-            color_shift: frame.half_color.into(),
+            has_half: frame.half.is_some().into(),
             has_budget: (foveation.budget > 0.0).into(),
             ..Self::default()
         };

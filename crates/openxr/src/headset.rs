@@ -526,26 +526,40 @@ impl<'a> HeadsetFrame<'a> {
         let views = self.described()?;
         let Headset { gpu, post, targets, index, .. } = &mut *self.headset;
         post.plan(&gpu.device, &mut self.encoder, &described_frame(targets, &views, *index, self.reset))?;
+        self.is_chosen = true;
+        self.prime()
+    }
+
+    /// After [`choose`](Self::choose): if one pixel of each quad was chosen around the fovea, because nothing is known (in
+    /// the first frame and after resets), leaves the fovea alone open, and returns the eyes to draw the other colors
+    /// with at half the width and height, into [`Targets::half_views`]. Textures need a bias of their level of detail of
+    /// -1. `None` in all other frames.
+    ///
+    /// Without this call the frame is drawn like all others, and shades every pixel: four times as many.
+    ///
+    /// # Errors
+    /// As for `choose`.
+    pub fn halve(&mut self) -> Result<Option<[Eye; 2]>, Error> {
+        self.is_half = self.headset.post.is_quarter();
+        if !self.is_half {
+            return Ok(None);
+        }
+        self.prime()?;
+        let place_px = Foveation::quarter_place_px(self.headset.index);
+        Ok(Some(self.eyes.map(|eye| eye.half(place_px))))
+    }
+
+    /// Closes [`Targets::primed`] where nothing is to be shaded.
+    fn prime(&mut self) -> Result<(), Error> {
+        let Headset { gpu, post, targets, .. } = &mut *self.headset;
         let (from, to) = (targets.depth.as_image_copy(), targets.primed.as_image_copy());
         self.encoder.copy_texture_to_texture(from, to, targets.depth.size());
         for (view, layers) in targets.views.iter().enumerate() {
-            let prime = Prime { target: &layers.primed, origin_px: [0, 0], near_depth: 1.0, stencil: None };
+            let (target, is_half) = (&layers.primed, self.is_half);
+            let prime = Prime { target, origin_px: [0, 0], near_depth: 1.0, stencil: None, is_half };
             post.prime(&gpu.device, &mut self.encoder, view, &prime)?;
         }
-        self.is_chosen = true;
         Ok(())
-    }
-
-    /// After [`choose`](Self::choose): if one pixel of each quad was chosen, because nothing is known (in the first
-    /// frame and after resets), makes it a frame of half the width and height, and returns the eyes to draw its colors
-    /// with, into [`Targets::half_views`]. Textures need a bias of their level of detail of -1. `None` in all other
-    /// frames.
-    ///
-    /// Without this call the frame is drawn like all others, and shades every pixel: four times as many.
-    pub fn halve(&mut self) -> Option<[Eye; 2]> {
-        self.is_half = self.headset.post.is_quarter();
-        let place_px = Foveation::quarter_place_px(self.headset.index);
-        self.is_half.then(|| self.eyes.map(|eye| eye.half(place_px)))
     }
 
     /// Both views, for the post-process.
@@ -574,7 +588,7 @@ impl<'a> HeadsetFrame<'a> {
         let Self { mut encoder, reset, headset, poses, views, time, is_half, .. } = self;
         let mut frame = described_frame(&headset.targets, &described, headset.index, reset);
         if is_half {
-            (frame.color, frame.half_color) = ((&headset.targets.half_color).into(), true);
+            frame.half = Some((&headset.targets.half_color).into());
         }
         headset.post.record(&headset.gpu.device, &mut encoder, &frame, &headset.output)?;
         let index = headset.index;

@@ -1,4 +1,4 @@
-//! Antialiasing of jittered frames, at full rate and sparse, against a supersampled reference.
+//! Antialiasing of jittered frames, at full rate and planned, against a supersampled reference.
 //!
 //! Reference: the mean of 32 jittered frames of the same instant. Each row says PSNR of the whole picture and within
 //! 3.5 degrees of the gaze in dB (sRGB), and the mean absolute change of the luma's error from frame to frame, times
@@ -99,15 +99,8 @@ impl Row {
 }
 
 fn rows() -> Result<Vec<Row>, Failure> {
-    let sparse = |rate_mid, rate_far, fovea_deg, mid_deg| Foveation {
-        filter: Filter::Sparse,
-        rate_mid,
-        rate_far,
-        fovea_deg,
-        mid_deg,
-        ..Foveation::default()
-    };
-    let (foveated, quarter, full) = (sparse(2, 4, 8.0, 20.0), sparse(2, 2, 0.0, 0.0), sparse(1, 1, 0.0, 0.0));
+    let planned = Settings::screen().foveation;
+    let (quarter, full) = (Foveation::quarter(), Foveation { fovea_deg: 180.0, mid_deg: 180.0, ..Foveation::quads() });
     let smr = |antialias| Some(Method::Smr(Smr { antialias, ..Smr::default() }));
     Ok(vec![
         Row::new("full rate, one sample a pixel, as it is", full, false, None)?,
@@ -116,11 +109,11 @@ fn rows() -> Result<Vec<Row>, Failure> {
         Row::new("full rate, jitter, smr", full, true, smr(true))?,
         Row::new("one pixel in 4, jitter, taau", quarter, true, Some(Method::Taau))?,
         Row::new("one pixel in 4, jitter, smr", quarter, true, smr(true))?,
-        Row::new("sparse 2/4, taau", foveated, false, Some(Method::Taau))?,
-        Row::new("sparse 2/4, jitter, taau", foveated, true, Some(Method::Taau))?,
-        Row::new("sparse 2/4, smr", foveated, false, smr(false))?,
-        Row::new("sparse 2/4, jitter, smr without antialias", foveated, true, smr(false))?,
-        Row::new("sparse 2/4, jitter, smr", foveated, true, smr(true))?,
+        Row::new("planned, taau", planned, false, Some(Method::Taau))?,
+        Row::new("planned, jitter, taau", planned, true, Some(Method::Taau))?,
+        Row::new("planned, smr", planned, false, smr(false))?,
+        Row::new("planned, jitter, smr without antialias", planned, true, smr(false))?,
+        Row::new("planned, jitter, smr", planned, true, smr(true))?,
     ])
 }
 
@@ -152,7 +145,6 @@ fn main() -> Result<(), Failure> {
                 let view = ViewFrame {
                     jitter_px: if row.jitters { jitter_px } else { [0.0; 2] },
                     previous_from_current: frame.previous_from_current,
-                    lattices: Some(row.foveation.lattices(&geometry, gaze_px, index)),
                     ..ViewFrame::new(geometry, Gaze::At { px: gaze_px })
                 };
                 let shown = row.show(frame, &view, index)?;

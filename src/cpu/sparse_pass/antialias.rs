@@ -99,7 +99,7 @@ impl View<'_> {
         for tap in 0..9 {
             let offset = [tap % 3, tap / 3];
             let at = [0, 1].map(|i| (px[i] + offset[i]).max(1).min(self.inputs.size[i]) - 1);
-            let (color, usable) = self.color_px(at);
+            let (color, usable) = self.color_px(quads, at);
             if usable && quads.is_shaded(at) {
                 near = add_near(near, color);
             }

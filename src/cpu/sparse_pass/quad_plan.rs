@@ -36,7 +36,7 @@ pub(in crate::cpu) fn is_quarter(desc: &ContextDesc, history: &History, frame: &
 /// Quads to shade, view by view.
 pub(in crate::cpu) fn plan_quads(desc: &ContextDesc, history: &History, frame: &Frame<'_>) -> Vec<Quads> {
     let is_quarter = is_quarter(desc, history, frame);
-    let foveation = if is_quarter { Foveation::quarter() } else { desc.settings.foveation };
+    let foveation = if is_quarter { desc.settings.foveation.after_cut() } else { desc.settings.foveation };
     let of_view = |i: usize| {
         let inputs = Inputs::new(desc, frame, i, &history.state_after(i, frame), history.is_filled());
         let has_memory = matches!(history.layout(), HistoryLayout::Sparse { .. });

@@ -152,9 +152,12 @@ impl Quads {
 
     /// Color of a pixel: its own if it is shaded, otherwise a mean of the shaded quads around it by the inverse squared
     /// distance, in the unit of the color input.
-    pub fn filled(&self, color: &Image<[f32; 3]>, is_half: bool, px: [u32; 2], exposure: Exposure) -> [f32; 3] {
-        let given_at =
-            |[x, y]: [u32; 2]| color.at((x >> u32::from(is_half)) as usize, (y >> u32::from(is_half)) as usize);
+    pub fn filled(&self, [color, half]: [Option<&Image<[f32; 3]>>; 2], px: [u32; 2], exposure: Exposure) -> [f32; 3] {
+        let given_at = |px: [u32; 2]| {
+            let [x, y] = px.map(|v| v as usize);
+            let half = half.filter(|_| self.mask(px.map(|v| v / 2)) != WHOLE).map(|half| half.at(x / 2, y / 2));
+            half.or(color.map(|color| color.at(x, y))).unwrap_or([f32::NAN; 3])
+        };
         if self.is_shaded(px) {
             return given_at(px);
         }

@@ -206,7 +206,7 @@ impl FrameSource for TracedSource {
             }
         });
         self.check()?;
-        Ok(Some(Shaded { color: ShadedColor::InMemory(film.color()), is_half: false, noise: None, took }))
+        Ok(Some(Shaded { color: ShadedColor::InMemory(film.color()), half: None, noise: None, took }))
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

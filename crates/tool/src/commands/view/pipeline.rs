@@ -203,19 +203,15 @@ impl ViewPipeline {
                 let full = self.inputs.full();
                 times.span(gpu, pass, |encoder| {
                     run.post_mut().plan(&gpu.device, encoder, &frame)?;
-                    let half_color = renderer.is_some() && run.post().is_quarter();
                     let color = match renderer.as_deref_mut() {
-                        Some(renderer) if half_color => {
-                            let place_px = Foveation::quarter_place_px(frame.index);
-                            renderer.record_half(encoder, self.position, jitter_px, place_px)
-                        }
                         Some(renderer) => {
+                            // After a cut all of them, though one pixel of each is read.
                             let list = run.post().quad_list(0).expect("the settings ask for a plan");
                             renderer.record_quads(encoder, self.position, jitter_px, list)
                         }
                         None => full.clone(),
                     };
-                    let frame = Frame { color: (&color).into(), half_color, ..frame };
+                    let frame = Frame { color: (&color).into(), ..frame };
                     if let Some(debug) = state.debug {
                         run.record_view(encoder, &frame, debug)?;
                     }
