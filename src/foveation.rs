@@ -231,7 +231,7 @@ impl Foveation {
 
     /// Number of the quads of a view of `quads` quads for which the budget pays.
     pub(crate) fn budget_quads(&self, quads: [u32; 2]) -> u32 {
-        let share = if self.single_pixels { (4.0 * self.budget).min(1.0) } else { self.budget };
+        let share = if self.single_pixels { 4.0 * self.budget } else { self.budget };
         budget_quads(share, quads)
     }
 

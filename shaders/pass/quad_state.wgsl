@@ -3,8 +3,9 @@
 // passes of a plan. src/gpu/quads.rs says where the arguments of dispatches lie.
 
 struct QuadState {
-    // Counts of the quads with a key above 0.
+    // Counts of the quads with a key above 0, and of the further paths of noisy frames.
     counts: array<atomic<u32>, KEYS>,
+    further: array<atomic<u32>, KEYS>,
     // Smallest key that is chosen.
     threshold: u32,
     // Number of quads of the fovea and of the even pattern.

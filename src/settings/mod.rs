@@ -5,7 +5,7 @@ mod wrs;
 pub use wrs::{Bias, Gate, GateMetric, GateScale, Sampler, Wrs};
 
 use crate::error::{SettingsError, check};
-use crate::foveation::{Filter, Foveation};
+use crate::foveation::Foveation;
 #[cfg(feature = "bevy-0-20")]
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
@@ -254,10 +254,6 @@ impl Settings {
     /// [`SettingsError`] for the first setting that is out of range.
     pub fn validate(&self) -> Result<(), SettingsError> {
         self.foveation.validate()?;
-        if self.noisy && self.foveation.filter == Filter::Quads {
-            let expected = "false: noisy frames have lattices (Filter::Sparse), not quads".into();
-            return Err(SettingsError { setting: "noisy", found: "true".into(), expected });
-        }
         match &self.method {
             Method::Smr(smr) => smr.validate()?,
             Method::Wrs(wrs) => wrs.validate()?,

@@ -61,6 +61,11 @@ impl View<'_> {
             }
             (Lights::Quads(_), None) => Candidate::NONE,
         };
+        let mut candidate = candidate;
+        candidate.noise.samples *= (candidate.lod * super::quad_plan::tune(9, 0.0)).exp2();
+        if self.is_noisy {
+            candidate.fit = candidate.fit.max(super::quad_plan::tune(11, 0.0));
+        }
         let surface = self.surface([x, y], level);
         candidate.note(notes);
         surface.note(notes);
@@ -106,7 +111,13 @@ impl View<'_> {
                     gain: candidate.gain,
                     fit: candidate.fit,
                     trust: previous.trust,
-                    accumulate: self.accumulate,
+                    accumulate: if self.is_noisy && !candidate.is_own {
+                        super::quad_plan::tune(8, self.accumulate)
+                    } else if self.is_noisy {
+                        super::quad_plan::tune(10, self.accumulate)
+                    } else {
+                        self.accumulate
+                    },
                 };
                 if N::ON {
                     let history = relit(inputs.history, inputs.gain, inputs.range);
