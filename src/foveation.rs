@@ -93,7 +93,8 @@ pub struct Foveation {
     pub filter: Filter,
     /// Diameter of the fovea, the full-rate region, in degrees: 0 to 180, at most `mid_deg`. Default 5.
     pub fovea_deg: f32,
-    /// Diameter of the middle region in degrees: 0 to 180. Default 15.
+    /// Diameter of the middle region in degrees: 0 to 180. Default 15. With [`Filter::Quads`] 180 is the whole view, even
+    /// if the gaze is far outside of it.
     pub mid_deg: f32,
     /// Width in degrees of the linear blend outside the radius of each region: 0 to 90. Default 1.
     pub blend_deg: f32,
@@ -247,7 +248,8 @@ impl Foveation {
     }
 
     pub(crate) fn mid_radius_deg(&self) -> f32 {
-        0.5 * self.mid_deg
+        // Pixels may be more than 90 degrees from a gaze outside the view; a quarter has them, too.
+        if self.filter == Filter::Quads && self.mid_deg >= 180.0 { 360.0 } else { 0.5 * self.mid_deg }
     }
 
     fn lod_mid(&self) -> f32 {

@@ -77,12 +77,9 @@ fn need_at(px: vec2u, view: u32) -> PixelNeed {
     return found;
 }
 
-// Number in its quad of the pixel that is shaded alone: of the even pattern, or the one that is tested.
-fn single_place(quad: vec2u, region_now: u32, even: bool) -> u32 {
-    if even {
-        return place_in_quad(select(frame.pattern_px.zw, frame.pattern_px.xy, region_now == IN_MIDDLE));
-    }
-    return place_in_quad(asked_px(quad.x, quad.y, frame.frame_low));
+// Number in its quad of the pixel of the even pattern, where single pixels are shaded.
+fn even_place(region_now: u32) -> u32 {
+    return place_in_quad(select(frame.pattern_px.zw, frame.pattern_px.xy, region_now == IN_MIDDLE));
 }
 
 // Whether the lens shows a pixel of a quad.
@@ -123,10 +120,10 @@ fn block(at: vec2u, view: u32) {
         var even = is_seen_quad(quad, view) && is_even(quad, region_now);
         var pixels = WHOLE;
         if frame.single_pixels != 0u && region_now != IN_FOVEA {
-            let place = single_place(quad, region_now, even);
-            let alone = 2u * quad + vec2u(place & 1u, place >> 1u);
-            pixels = 1u << place;
+            let alone = 2u * quad + vec2u(even_place(region_now) & 1u, even_place(region_now) >> 1u);
             even = even && all(alone < frame.size) && is_seen(alone, view);
+            let asked = place_in_quad(asked_px(quad.x, quad.y, frame.frame_low));
+            pixels = 1u << select(asked, even_place(region_now), even);
         }
         flags[i] = (region_now << 16u) | (u32(even) << 18u) | (pixels << 20u);
         let place = single_place(quad, region_now, even);

@@ -179,7 +179,8 @@ pub struct Settings {
     /// ([`FrameInputs::noise`](crate::FrameInputs::noise)), so that noise is not mistaken for a change. wrs weights a
     /// candidate by its number of samples; smr averages history in the fovea, too, compares means of 8x8 candidates,
     /// and stores 8 more bytes a pixel and a mip chain of the candidates. On sparse frames smr compares nine samples,
-    /// stores the 8 bytes but no mip chain, and does not relight history. Default false.
+    /// on planned ones those of nine quads; it stores the 8 bytes but no mip chain, and does not relight history.
+    /// Default false.
     pub noisy: bool,
     /// Seed of the random numbers. The same seed and the same frames give the same bytes. Default 0.
     pub seed: u64,
@@ -233,9 +234,9 @@ impl Settings {
         Self { method: Method::Smr(Smr::traced()), noisy: true, ..Self::default() }
     }
 
-    /// smr on antialiased frames shaded by quads ([`Filter::Quads`]), for screens about 40 degrees wide: a coarser even
-    /// pattern and twice the budget of [`Foveation::quads`], 11 % of the pixels. Frames must be jittered
-    /// ([`Foveation::jitter_px`]). `docs/quads.md` has the scores.
+    /// smr on antialiased frames shaded by quads ([`Filter::Quads`](crate::Filter::Quads)), for screens about 40 degrees
+    /// wide: a coarser even pattern and twice the budget of [`Foveation::quads`], 11 % of the pixels. Frames must be
+    /// jittered ([`Foveation::jitter_px`]). `docs/quads.md` has the scores.
     pub fn screen() -> Self {
         let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
         let foveation = Foveation { rate_mid: 8, budget: 0.05, ..Foveation::quads() };

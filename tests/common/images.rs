@@ -19,14 +19,18 @@ pub struct View {
     pub lod: Option<Image<f32>>,
     /// Standard errors and numbers of samples of noisy frames.
     pub noise: Option<Image<[f32; 2]>>,
+    /// Pixels that the renderer chose itself, of a planned frame.
+    pub mask: Option<Image<f32>>,
+    /// Whether the color has one texel for each quad.
+    pub half_color: bool,
 }
 
 impl View {
     /// Without optional inputs, under 70 degrees.
     pub fn still(color: Image<[f32; 3]>, gaze_px: [f32; 2]) -> Self {
         let facts = ViewFrame::new(ViewGeometry::flat(color.size(), 70.0).unwrap(), Gaze::At { px: gaze_px });
-        let (trust, reactive) = (None, None);
-        Self { facts, color, depth: None, motion: None, trust, reactive, lod: None, noise: None }
+        let (trust, reactive, mask, half_color) = (None, None, None, false);
+        Self { facts, color, depth: None, motion: None, trust, reactive, lod: None, noise: None, mask, half_color }
     }
 
     /// With other images or facts.
@@ -78,6 +82,19 @@ impl View {
         Self { color, ..self.clone() }.sparse(atlas)
     }
 
+    /// With the color of the pixels of a mask alone, one texel for each quad; NaN for quads without any.
+    pub fn at_half(self, mask: &Image<bool>) -> Self {
+        let size = self.color.size();
+        let half = Image::from_fn(size.map(|side| side.div_ceil(2)), |quad| {
+            let of_quad = pixels([2; 2]).map(|place| [0, 1].map(|i| 2 * quad[i] + place[i]));
+            let mut shaded = of_quad.filter(|px| px[0] < size[0] && px[1] < size[1] && pixel(mask, *px));
+            let color = shaded.next().map_or([f32::NAN; 3], |px| pixel(&self.color, px));
+            assert_eq!(shaded.next(), None, "two pixels of quad {quad:?}");
+            color
+        });
+        Self { color: half, half_color: true, ..self }
+    }
+
     /// In which everything moves by `speed_px` a frame.
     pub fn moving(self, speed_px: [f32; 2]) -> Self {
         self.with(|view| view.motion = Some(Image::filled(view.color.size(), speed_px.map(|v| -v))))
@@ -94,6 +111,8 @@ pub struct Images<'a> {
     reactive: Vec<&'a Image<f32>>,
     lod: Vec<&'a Image<f32>>,
     noise: Vec<&'a Image<[f32; 2]>>,
+    mask: Vec<&'a Image<f32>>,
+    half_color: bool,
 }
 
 impl<'a> Images<'a> {
@@ -108,6 +127,8 @@ impl<'a> Images<'a> {
             reactive: views.iter().filter_map(|v| v.reactive.as_ref()).collect(),
             lod: views.iter().filter_map(|v| v.lod.as_ref()).collect(),
             noise: views.iter().filter_map(|v| v.noise.as_ref()).collect(),
+            mask: views.iter().filter_map(|v| v.mask.as_ref()).collect(),
+            half_color: views.iter().any(|v| v.half_color),
         }
     }
 
@@ -119,6 +140,8 @@ impl<'a> Images<'a> {
             reactive: given(&self.reactive),
             lod: given(&self.lod),
             noise: given(&self.noise),
+            mask: given(&self.mask),
+            half_color: self.half_color,
             ..Frame::new(&self.color, &self.views, index)
         }
     }
@@ -128,9 +151,12 @@ fn given<T>(images: &[T]) -> Option<&[T]> {
     (!images.is_empty()).then_some(images)
 }
 
-/// Plans a frame that is shaded by quads: the masks.
+/// Plans a frame that is shaded by quads: the masks, or those that the frame has itself.
 pub fn planned(post: &mut CpuAfterimage, frame: &Frame<'_>) -> Vec<Image<bool>> {
     match post.desc().settings.foveation.filter {
+        Filter::Quads if frame.mask.is_some() => {
+            frame.mask.into_iter().flatten().map(|mask| mask.map(|chosen| chosen > 0.5)).collect()
+        }
         Filter::Quads => post.plan(frame).unwrap().to_vec(),
         _ => vec![],
     }

@@ -4,6 +4,7 @@
 mod depth;
 mod lifecycle;
 mod light;
+mod masks;
 mod means;
 mod nan;
 mod noted;

@@ -21,7 +21,7 @@ fn hides(v: u32, [x, y]: [u32; 2]) -> bool {
 
 /// Two views that glide through the lenses. Depth and motion of every fourth frame are those of its samples.
 fn views(index: u64, settings: &Settings) -> [View; 2] {
-    let by_quads = settings.foveation == Foveation::quads();
+    let by_quads = settings.foveation.filter == Filter::Quads;
     [0, 1].map(|v| {
         let mut view = gliding_view(index, v, settings);
         let jitters = matches!(settings.method, Method::Smr(Smr { antialias: true, .. }));
@@ -42,9 +42,13 @@ fn what_a_lens_hides_is_black_without_history_and_never_shaded() {
         Settings { method, noisy, foveation, ..Settings::default() }
     };
     let (lattices, quads) = (settings(MethodKind::Smr).foveation, Foveation::quads());
-    let all = [(false, false, lattices), (true, false, lattices), (false, true, lattices)]
-        .into_iter()
-        .chain([(false, false, quads), (true, false, quads)]);
+    let single = Foveation { single_pixels: true, rate_mid: 2, rate_far: 4, ..quads };
+    let all = [(false, false, lattices), (true, false, lattices), (false, true, lattices)].into_iter().chain([
+        (false, false, quads),
+        (true, false, quads),
+        (true, false, single),
+        (false, true, single),
+    ]);
     for (antialias, noisy, foveation) in all {
         let settings = smr(antialias, noisy, foveation);
         let Some(mut rig) = Rig::new(desc(), settings) else { return };
@@ -65,9 +69,11 @@ fn what_a_lens_hides_is_black_without_history_and_never_shaded() {
             }
             let columns = SIZE[0].div_ceil(2);
             let quads_a_view = (columns * SIZE[1].div_ceil(2)) as usize;
-            for (i, _) in made.quads.iter().enumerate().filter(|(_, chosen)| **chosen == 1) {
+            for (i, &mask) in made.quads.iter().enumerate().filter(|(_, mask)| **mask != 0) {
                 let (v, i) = ((i / quads_a_view) as u32, (i % quads_a_view) as u32);
-                let px = [0, 1, 2, 3].map(|k| [2 * (i % columns) + k % 2, 2 * (i / columns) + k / 2]);
+                // Some pixel of a whole quad is seen; so is one that is shaded alone.
+                let of_quad = (0..4).filter(|k| mask >> k & 1 == 1);
+                let px: Vec<_> = of_quad.map(|k| [2 * (i % columns) + k % 2, 2 * (i / columns) + k / 2]).collect();
                 assert!(px.iter().any(|px| !hides(v, *px)), "{px:?} is shaded");
                 shaded += 1;
             }

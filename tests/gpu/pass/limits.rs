@@ -16,7 +16,8 @@ fn all_settings() -> Vec<Settings> {
     let by_quads =
         kinds.map(|kind| Settings { method: kind.into(), foveation: Foveation::quads(), ..Settings::default() });
     let all = [kinds.map(surfaces_hard::settings), kinds.map(sparse::settings), by_quads];
-    all.concat().into_iter().chain([Settings::traced()]).collect()
+    let noisy = Settings { foveation: Foveation::quads(), ..Settings::traced() };
+    all.concat().into_iter().chain([Settings::traced(), noisy]).collect()
 }
 
 fn described(size: [u32; 2], settings: Settings) -> ContextDesc {

@@ -8,6 +8,7 @@ mod lens;
 mod lifecycle;
 mod light;
 mod limits;
+mod masks;
 mod motion;
 mod objects;
 mod planned_hard;

@@ -33,7 +33,7 @@ pub struct Rig {
     pub drops: bool,
     /// Debug view to draw beside the next frames, and what it showed.
     pub beside: Option<DebugView>,
-    textures: [Texture; 9],
+    textures: [Texture; 10],
     counters: Buffer,
     /// What the device has compiled; `None` once it is of no use to other tests.
     compiled: Option<Sources>,
@@ -68,17 +68,18 @@ pub fn device_of_five_outputs() -> Option<(Device, Queue)> {
     afterimage_testing::gpu::device_with(&wgpu::DeviceDescriptor { required_limits, ..Default::default() })
 }
 
-// Places of textures: color, depth, motion, trust and reactive masks, levels of detail and noise; output, debug view.
+// Places of textures: color, depth, motion, trust and reactive masks, levels of detail, noise and own mask; output,
+// debug view.
 const COLOR: usize = 0;
 const MOTION: usize = 2;
 const NOISE: usize = 6;
-const OUTPUT: usize = 7;
-const DEBUG: usize = 8;
+const OUTPUT: usize = 8;
+const DEBUG: usize = 9;
 
 const READ: TextureUsages =
     TextureUsages::TEXTURE_BINDING.union(TextureUsages::COPY_DST).union(TextureUsages::COPY_SRC);
 
-fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 9] {
+fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 10] {
     std::array::from_fn(|i| {
         let format = match i {
             COLOR | OUTPUT => TextureFormat::Rgba32Float,
@@ -104,12 +105,13 @@ fn texels(view: &View) -> [Option<Vec<f32>>; OUTPUT] {
         view.reactive.as_ref().map(one),
         view.lod.as_ref().map(one),
         view.noise.as_ref().map(two),
+        view.mask.as_ref().map(one),
     ]
 }
 
 /// The frame with those of the textures that the view has.
-fn given<'a>(view: &View, textures: [Textures<'a>; 9], frame: Frame<'a>) -> Frame<'a> {
-    let [_, depth, motion, trust, reactive, lod, noise, ..] = textures;
+fn given<'a>(view: &View, textures: [Textures<'a>; 10], frame: Frame<'a>) -> Frame<'a> {
+    let [_, depth, motion, trust, reactive, lod, noise, mask, ..] = textures;
     Frame {
         depth: view.depth.is_some().then_some(depth),
         motion: view.motion.is_some().then_some(motion),
@@ -117,6 +119,8 @@ fn given<'a>(view: &View, textures: [Textures<'a>; 9], frame: Frame<'a>) -> Fram
         reactive: view.reactive.is_some().then_some(reactive),
         lod: view.lod.is_some().then_some(lod),
         noise: view.noise.is_some().then_some(noise),
+        mask: view.mask.is_some().then_some(mask),
+        half_color: view.half_color,
         ..frame
     }
 }
@@ -126,7 +130,7 @@ fn given<'a>(view: &View, textures: [Textures<'a>; 9], frame: Frame<'a>) -> Fram
 pub struct Made {
     pub shown: Vec<[u32; 3]>,
     pub words: Vec<[u32; 3]>,
-    /// Chosen quads of a planned frame: 1, others 0.
+    /// Masks of the quads of a planned frame: a bit for each of their pixels inside the frame.
     pub quads: Vec<u32>,
     pub stats: FrameStats,
 }
@@ -368,7 +372,7 @@ impl Rig {
         let all = (0..).zip(&self.textures).filter(|_| self.scattered);
         let all: Vec<_> = all.map(|(i, texture)| Scattered::new(&self.device, &self.queue, texture, i)).collect();
         let regions: Vec<_> = all.iter().map(Scattered::regions).collect();
-        let textures: [_; 9] =
+        let textures: [_; 10] =
             std::array::from_fn(|i| regions.get(i).map_or((&self.textures[i]).into(), |r| Textures::Regions(r)));
         let [.., output, debug] = textures;
         let frame = Frame {
@@ -378,7 +382,7 @@ impl Rig {
         };
         let debug = self.beside.map(|view| DebugTarget { view, output: debug });
         let target = Target { debug, counters: count.then_some(&self.counters), ..Target::new(output) };
-        let is_planned = self.is_by_quads();
+        let is_planned = self.is_by_quads() && frame.mask.is_none();
         afterimage_testing::gpu::validated(&self.device, "record", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
             all.iter().take(OUTPUT).for_each(|input| input.copy(&mut encoder, true));
@@ -426,9 +430,15 @@ impl Rig {
         Made {
             shown: shown.chunks_exact(4).map(|c| [c[0], c[1], c[2]]).collect(),
             words: two.chunks_exact(2).zip(third).map(|(w, third)| [w[0], w[1], third]).collect(),
-            quads: mask.iter().map(|word| word & 1).collect(),
+            quads: mask.iter().zip(self.inside()).map(|(word, inside)| word & inside).collect(),
             stats: FrameStats::from_counters(&counters).unwrap(),
         }
+    }
+
+    /// Masks of the quads of all views with all pixels inside the frame.
+    fn inside(&self) -> Vec<u32> {
+        let whole = quads_of(&Image::filled(self.context.size_px, true));
+        vec![whole; self.context.view_count as usize].concat()
     }
 
     fn upload(&self, views: &[View]) {
@@ -490,10 +500,12 @@ pub fn all_caught_in<const N: usize>(
     });
 }
 
-/// The quads of a mask.
-fn quads_of(mask: &Image<bool>) -> Vec<u32> {
-    let quads = pixels(mask.size().map(|side| side.div_ceil(2)));
-    quads.map(|quad| u32::from(pixel(mask, quad.map(|v| 2 * v)))).collect()
+/// Masks of the quads of a mask of pixels.
+pub fn quads_of(mask: &Image<bool>) -> Vec<u32> {
+    let size = mask.size();
+    let bit_of = |[x, y]: [u32; 2]| u32::from(x < size[0] && y < size[1] && pixel(mask, [x, y]));
+    let of_quad = |[x, y]: [u32; 2]| (0..4).fold(0, |all, i| all | bit_of([2 * x + i % 2, 2 * y + i / 2]) << i);
+    pixels(size.map(|side| side.div_ceil(2))).map(of_quad).collect()
 }
 
 /// The views of a texture, as regions of larger textures that contain NaN elsewhere.
