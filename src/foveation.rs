@@ -104,7 +104,8 @@ pub struct Foveation {
     /// [`MAX_RATE`](Self::MAX_RATE). Default 16.
     pub rate_far: u32,
     /// With [`Filter::Quads`]: share of the pixels that smr shades by need in a frame, beside the fovea and the even
-    /// pattern, 0 to 1. Default 0.025.
+    /// pattern, 0 to 1. With [`noisy`](crate::Settings::noisy) frames it counts paths, of which a pixel may get several.
+    /// Default 0.025.
     pub budget: f32,
     /// With [`Filter::Quads`]: whether one pixel of a chosen quad is shaded, outside the fovea, in place of all four;
     /// each in turn. For path tracers and compute shaders, which can shade single pixels: four times as many places for

@@ -20,7 +20,7 @@ const ENOUGH_SAMPLES: f32 = 16.0;
 const HALF_DEG: f32 = 20.0;
 const CLUMPED: f32 = 0.0625;
 const MOST_PATHS: u32 = 16u;
-const MOST_KNOWN: f32 = 63.0;
+const MOST_KNOWN: f32 = 31.0;
 const HASH_BITS: u32 = 8u;
 const KEYS: u32 = 63u << HASH_BITS;
 const CODE_OF_ONE: i32 = 36;
@@ -121,8 +121,8 @@ fn path_key(key: u32, samples: u32, path: u32) -> u32 {
 
 fn paths(first: u32, further: u32, samples: u32, is_even: bool, threshold: u32) -> u32 {
     var count = u32(is_even || first >= threshold);
-    for (var path = 2u; path <= MOST_PATHS; path++) {
-        count += u32(path_key(further, samples, path) >= threshold);
+    for (var path = 2u; path <= MOST_PATHS && path_key(further, samples, path) >= threshold; path++) {
+        count++;
     }
     return count;
 }

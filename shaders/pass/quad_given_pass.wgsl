@@ -6,7 +6,7 @@
 // 4 reads and 1 write a quad; 1 atomic sum a workgroup.
 
 @group(0) @binding(7) var mask_in: texture_2d_array<f32>;
-@group(0) @binding(23) var keys_out: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(23) var keys_out: texture_storage_2d_array<r32uint, write>;
 
 const MASK_IN: u32 = 7u;
 
@@ -36,6 +36,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if even {
         atomicAdd(&state.even, 1u);
     }
-    let word = (IN_PERIPHERY << 16u) | (u32(even) << 18u) | (mask << 20u);
-    textureStore(keys_out, id.xy, view, vec4u(word, 1u << 16u, 0u, 0u));
+    textureStore(keys_out, id.xy, view, vec4u(key_word(0u, IN_PERIPHERY, even, mask), 0u, 0u, 0u));
 }

@@ -10,7 +10,7 @@
 // Whether the method has history to choose by.
 override HAS_SPARSE_HISTORY: u32 = 0u;
 
-@group(0) @binding(23) var keys_out: texture_storage_2d_array<rg32uint, write>;
+@group(0) @binding(23) var keys_out: texture_storage_2d_array<r32uint, write>;
 
 // Need of a pixel: of its first path, without the noise of history, negative without history; due to that noise; and
 // the samples of history.
@@ -107,7 +107,7 @@ fn block(at: vec2u, view: u32) {
     var needs = vec4f(0.0);
     var noise_needs = vec4f(0.0);
     var samples = vec4u(1u);
-    var flags = vec4u(0u);
+    var words = vec4u(0u);
     var even_count = 0u;
     let quads = (frame.size + 1u) / 2u;
     for (var i = 0u; i < 4u; i++) {
@@ -118,15 +118,18 @@ fn block(at: vec2u, view: u32) {
         let e_deg = region_angle_deg(ray_at(2u * quad, view), frame.views[view].gaze_ray);
         let region_now = region(e_deg, frame.fovea_radius_deg, frame.mid_radius_deg);
         var even = is_seen_quad(quad, view) && is_even(quad, region_now);
-        var pixels = WHOLE;
-        if frame.single_pixels != 0u && region_now != IN_FOVEA {
+        let is_single = frame.single_pixels != 0u && region_now != IN_FOVEA;
+        if is_single {
             let alone = 2u * quad + vec2u(even_place(region_now) & 1u, even_place(region_now) >> 1u);
             even = even && all(alone < frame.size) && is_seen(alone, view);
-            let asked = place_in_quad(asked_px(quad.x, quad.y, frame.frame_low));
-            pixels = 1u << select(asked, even_place(region_now), even);
         }
-        flags[i] = (region_now << 16u) | (u32(even) << 18u) | (pixels << 20u);
-        let place = single_place(quad, region_now, even);
+        let asked = place_in_quad(asked_px(quad.x, quad.y, frame.frame_low));
+        let place = select(asked, even_place(region_now), even);
+        var pixels = WHOLE;
+        if is_single {
+            pixels = 1u << place;
+        }
+        words[i] = key_word(0u, region_now, even, pixels);
         let px = 2u * quad + vec2u(place & 1u, place >> 1u);
         even_count += u32(even);
         let is_asked = region_now != IN_FOVEA && (!even || NOISY != 0u) && all(px < frame.size);
@@ -147,16 +150,16 @@ fn block(at: vec2u, view: u32) {
         if any(quad >= quads) {
             continue;
         }
-        let is_even = (flags[i] & 0x40000u) != 0u;
+        let is_even = (words[i] & 0x10000u) != 0u;
         let needed = needs[i] * share_in_block(needs, i) + noise_needs[i];
         let view_key = frame.views[view].key;
         let key = quad_key(select(needed, 0.0, is_even), quad.x, quad.y, frame.frame_low, view_key);
         if key > 0u {
             atomicAdd(&state.counts[key], 1u);
         }
-        var further = 0u;
+        var word = words[i] | key;
         if NOISY != 0u {
-            further = quad_key(noise_needs[i], quad.x, quad.y, frame.frame_low, view_key);
+            let further = quad_key(noise_needs[i], quad.x, quad.y, frame.frame_low, view_key);
             for (var path = 2u; path <= MOST_PATHS; path++) {
                 let key_of_path = path_key(further, samples[i], path);
                 if key_of_path == 0u {
@@ -164,8 +167,9 @@ fn block(at: vec2u, view: u32) {
                 }
                 atomicAdd(&state.further[key_of_path], 1u);
             }
+            word |= further_word(further, samples[i]);
         }
-        textureStore(keys_out, quad, view, vec4u(key | flags[i], further | (samples[i] << 16u), 0u, 0u));
+        textureStore(keys_out, quad, view, vec4u(word, 0u, 0u, 0u));
     }
 }
 

@@ -3,7 +3,7 @@
 // Shaded quads of a view: a mask, an unordered list, and a word for each run of 16 quads of a row. CPU twins:
 // `plan_quads` in src/cpu/sparse_pass/quad_plan.rs, `runs` in src/cpu/sparse_pass/quads.rs. One invocation a run.
 //
-// 2 reads and 1 write a quad: its keys, for its own run and for one beside it; 4.25 bytes written.
+// 2 reads and 1 write a quad: its key, for its own run and for one beside it; 4.25 bytes written.
 
 struct QuadSize {
     // Number of quads along x and y.
@@ -28,18 +28,16 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         // Wraps to a large number before the first column.
         let quad = vec2u(first.x + i - u32(REACH), first.y);
         if quad.x < quads.size.x {
-            let words = textureLoad(keys, quad, quads.view, 0).xy;
-            let word = words.x;
-            let is_even = (word & 0x40000u) != 0u;
-            let is_shaded = is_even || (word & 0xffffu) >= state.threshold;
+            let word = textureLoad(keys, quad, quads.view, 0).x;
+            let is_even = (word & 0x10000u) != 0u;
+            let is_shaded = is_even || (word & 0x3fffu) >= state.threshold;
             shaded |= u32(is_shaded) << i;
             if is_own(i) {
-                let pixels = select(0u, (word >> 20u) & 15u, is_shaded);
-                let region_now = (word >> 16u) & 3u;
-                var count = u32(is_shaded);
-                if (words.y & 0xffffu) != 0u {
-                    count = paths(word & 0xffffu, words.y & 0xffffu, words.y >> 16u, is_even, state.threshold);
-                }
+                let pixels = select(0u, (word >> 17u) & 15u, is_shaded);
+                let region_now = (word >> 14u) & 3u;
+                let code = (word >> 21u) & 63u;
+                let further = select(0u, (code << HASH_BITS) | (word & 255u), code > 0u);
+                let count = paths(word & 0x3fffu, further, word >> 27u, is_even, state.threshold);
                 textureStore(mask_out, quad, quads.view, vec4u(pixels | (region_now << 4u) | (count << 8u), 0u, 0u, 0u));
             }
         }

@@ -91,7 +91,7 @@ fn planes(desc: &ContextDesc) -> [PlaneDesc; 4] {
     let size = size_quads(desc);
     let plane = |format, size| PlaneDesc::new("afterimage quads", format, size, desc.view_count);
     [
-        plane(Rg32Uint, size),
+        plane(R32Uint, size),
         PlaneDesc { usage: TextureUsages::COPY_SRC, ..plane(R32Uint, size) },
         plane(R32Uint, [size[0].div_ceil(RUN_QUADS), size[1]]),
         plane(Rg32Uint, size),

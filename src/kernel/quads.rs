@@ -55,7 +55,7 @@ const CLUMPED: f32 = 0.0625;
 /// Largest number of paths of a pixel in a frame.
 pub const MOST_PATHS: u32 = 16;
 /// Largest number of samples of history that keys of further paths tell apart.
-const MOST_KNOWN: f32 = 63.0;
+const MOST_KNOWN: f32 = 31.0;
 
 /// Bits of the hash in a key. The unused part of the budget is less than the quads of one key.
 const HASH_BITS: u32 = 8;
@@ -189,7 +189,7 @@ pub fn quad_key(need: f32, x: u32, y: u32, frame: u32, key: u32) -> u32 {
     if need > 0.0 { (halves.clamp(1, 62) as u32) << HASH_BITS | hash } else { 0 }
 }
 
-/// Samples of a mean as a whole number, from 1 to 63, for [`path_key`].
+/// Samples of a mean as a whole number, from 1 to 31, for [`path_key`].
 #[inline]
 pub fn known_samples(samples: f32) -> u32 {
     samples.clamp(1.0, MOST_KNOWN) as u32
@@ -217,8 +217,11 @@ pub fn path_key(key: u32, samples: u32, path: u32) -> u32 {
 #[inline]
 pub fn paths(first: u32, further: u32, samples: u32, is_even: bool, threshold: u32) -> u32 {
     let mut count = u32::from(is_even || first >= threshold);
-    for path in 2..=MOST_PATHS {
-        count += u32::from(path_key(further, samples, path) >= threshold);
+    // Keys fall from path to path.
+    let mut path = 2;
+    while path <= MOST_PATHS && path_key(further, samples, path) >= threshold {
+        count += 1;
+        path += 1;
     }
     count
 }

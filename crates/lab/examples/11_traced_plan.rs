@@ -178,8 +178,11 @@ fn main() -> Result<(), Failure> {
     let mut last = None;
     for index in 0..frames {
         gaze_px = gaze.px(index).unwrap_or(gaze_px);
-        let cache = format!("/tmp/tr/{}-{camera}-{}x{}-{reference_samples}-{index}.bin", scene.replace(['/', ':'], "_"), size[0], size[1]);
-        let cached = std::fs::read(&cache).ok();
+        let cached = std::env::var("REFS").ok().map(|folder| {
+            let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+            files.sort();
+            image::open(&files[index as usize]).unwrap().to_rgb8()
+        });
         let request = FrameRequest {
             gaze_px,
             wanted: Wanted::Surfaces,
@@ -187,18 +190,12 @@ fn main() -> Result<(), Failure> {
             ..FrameRequest::full_rate(index)
         };
         let mut frame = source.render(&request)?;
-        match cached {
-            Some(bytes) => {
-                let floats: Vec<f32> = bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
-                frame.reference.color = Image::from_fn(size, |[x, y]| {
-                    let i = 3 * (y * size[0] + x) as usize;
-                    [floats[i], floats[i + 1], floats[i + 2]]
-                });
-            }
-            None => {
-                let bytes: Vec<u8> = frame.reference.color.pixels().iter().flatten().flat_map(|v| v.to_le_bytes()).collect();
-                std::fs::write(&cache, bytes)?;
-            }
+        if let Some(picture) = cached {
+            let linear = |v: u8| {
+                let v = f32::from(v) / 255.0;
+                if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+            };
+            frame.reference.color = Image::from_fn(size, |[x, y]| picture.get_pixel(x, y).0.map(linear));
         }
         let ecc_deg = geometry.eccentricity_map(gaze_px);
         let tracked = tracker.advance(&frame.reference, &geometry, &ecc_deg, &regions.lod_map(&geometry, gaze_px));

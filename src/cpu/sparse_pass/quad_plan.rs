@@ -35,9 +35,6 @@ pub(super) fn tune(i: usize, default: f32) -> f32 {
     all.get(i).copied().filter(|v| !v.is_nan()).unwrap_or(default)
 }
 
-/// Least first need of a pixel with noisy history: it always has a key.
-const LEAST_NEED: f32 = 1e-6;
-
 /// Whether a frame shades one pixel of each quad, because nothing is known of its predecessor.
 pub(in crate::cpu) fn is_quarter(desc: &ContextDesc, history: &History, frame: &Frame<'_>) -> bool {
     let starts = frame.reset != Reset::None || !history.is_filled();
@@ -120,16 +117,15 @@ impl View<'_> {
             let own = x & 1 | (y & 1) << 1;
             let Need { noise, samples, .. } = needs.at(x as usize, y as usize);
             let first = of_block[own as usize] * share_in_block(of_block, own);
-            let is_first = first > 0.0;
+            let is_even = even.at(x as usize, y as usize);
             let key = |need: f32| quad_key(need, x, y, self.frame_low, self.inputs.uniforms.key);
-            PathKeys { first: key(if is_first { first + noise } else { 0.0 }), further: key(noise), samples }
+            PathKeys { first: key(if is_even { 0.0 } else { first + noise }), further: key(noise), samples }
         });
         let mut counts = vec![0; KEYS as usize];
         for &PathKeys { first, further, samples } in keys.pixels() {
             counts[first as usize] += 1;
-            for path in 2..=MOST_PATHS {
-                counts[path_key(further, samples, path) as usize] += 1;
-            }
+            let of_paths = (2..=MOST_PATHS).map(|path| path_key(further, samples, path));
+            of_paths.take_while(|&key| key > 0).for_each(|key| counts[key as usize] += 1);
         }
         let least = threshold(&counts, foveation.budget_quads(size));
         let masks = Image::from_fn_parallel(size, |quad| {
@@ -239,7 +235,7 @@ impl View<'_> {
             let around = luma(expose(color, self.inputs.exposure)).max(tune(4, 0.0));
             let noise = noise_need(past, around).min(tune(5, 1e9)) * if around > tune(6, 1e9) { 0.0 } else { 1.0 };
             let first = tune(7, 1.0) * need(best.1, ENOUGH_SAMPLES, root_difference(low, high));
-            return Some(Need { first: first.max(LEAST_NEED), noise, samples: known_samples(own.samples) });
+            return Some(Need { first, noise, samples: known_samples(own.samples) });
         }
         let first = need(best.1, best.2, root_difference(low, high));
         Some(Need { first, noise: 0.0, samples: 1 })

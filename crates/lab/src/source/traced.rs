@@ -10,15 +10,13 @@ use crate::error::InputError;
 use crate::frame::{Content, RenderedFrame, Shaded, ShadedColor, ShadingRequest, SourceFrame};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
-use crate::trace::sampling::Sampling;
+use crate::trace::sampling::{Sampling, trace_requested};
 use crate::trace::settings::TraceSettings;
 use crate::trace::surfaces::Surfaces;
 use crate::trace::view::View;
 use crate::trace::work::Spans;
 use crate::trace::world::World;
 use glam::DMat4;
-use std::collections::BTreeSet;
-use std::ops::Range;
 
 /// Samples traced per call, which bounds the memory of their paths.
 const STEP: u32 = 1 << 20;
@@ -164,18 +162,6 @@ impl TracedSource {
     }
 }
 
-/// Requested pixels and numbers of their samples: those with at least so many paths get the samples up to it. `samples`:
-/// number of paths without a request.
-fn by_paths(request: &ShadingRequest, samples: u32) -> Vec<(Vec<[u32; 2]>, Range<u32>)> {
-    let pixels: Vec<_> = request.pixels().collect();
-    let Some(paths) = &request.paths else { return vec![(pixels, 0..samples)] };
-    let of = |[x, y]: [u32; 2]| u32::from(paths.at(x as usize, y as usize));
-    let numbers: BTreeSet<u32> = pixels.iter().map(|&px| of(px)).filter(|&paths| paths > 0).collect();
-    let from = [0].into_iter().chain(numbers.iter().copied());
-    let with = |least: u32| pixels.iter().copied().filter(|&px| of(px) >= least).collect();
-    from.zip(&numbers).map(|(from, &to)| (with(to), from..to)).collect()
-}
-
 impl FrameSource for TracedSource {
     fn info(&self) -> &SourceInfo {
         self.of.info()
@@ -211,16 +197,9 @@ impl FrameSource for TracedSource {
     /// full-rate frame.
     fn shade(&mut self, frame: &RenderedFrame, request: &ShadingRequest) -> Result<Option<Shaded>, InputError> {
         let [view, _] = self.of.views(frame.index).0;
-        let mut film = Film::new(self.of.info().size);
-        let samples = self.samples.samples.max(1);
-        let ((), took) = self.clock.time(|| {
-            for (pixels, samples) in by_paths(request, samples) {
-                for pixels in pixels.chunks((STEP / samples.len() as u32).max(1) as usize) {
-                    let spans = Spans::new(pixels.iter().copied(), samples.clone());
-                    self.tracer.trace(&self.world, &view, frame.index, &spans, &mut film);
-                }
-            }
-        });
+        let (tracer, samples) = (&self.tracer, self.samples.samples);
+        let trace = || trace_requested(tracer, &self.world, &view, frame.index, request, samples);
+        let (film, took) = self.clock.time(trace);
         self.check()?;
         let (color, noise) = (ShadedColor::InMemory(film.color()), Some(film.noise()));
         Ok(Some(Shaded { color, is_half: false, noise, took }))
