@@ -137,7 +137,8 @@ fn main() -> Result<(), Failure> {
     let geometry = ViewGeometry::flat(size, info.hfov_deg.unwrap_or(70.0))?;
     let path = read_csv(option("--gaze", "/work/shared/data/scanpaths/image_500hz.csv"))?;
     let map = GazeMap::default_for(path.screen());
-    let gaze = FrameGaze::new(&path, &geometry, map, option("--start", "1").parse()?, f64::from(info.fps.unwrap_or(60.0)))?;
+    let gaze =
+        FrameGaze::new(&path, &geometry, map, option("--start", "1").parse()?, f64::from(info.fps.unwrap_or(60.0)))?;
 
     let mut rows = vec![];
     for text in option("--rows", "").split(';').filter(|text| !text.is_empty()) {

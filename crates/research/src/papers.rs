@@ -195,8 +195,7 @@ fn layers_of(
     };
     let patterns = [pattern("forward", middle), pattern("corner", middle.map(|v| v - rim))];
     let papers = [0, 1].map(|i| [paper.map(|p| p[i]), None]);
-    let without_lens =
-        |pattern: &Pattern| Pattern { sampling: Sampling::Layers(Layers::default()), ..pattern.clone() };
+    let without_lens = |pattern: &Pattern| Pattern { sampling: Sampling::Layers(Layers::default()), ..pattern.clone() };
     scene_report(&subject, settings, backend, frames, &patterns, &papers, without_lens)
 }
 

@@ -2,9 +2,9 @@
 //! and time. Makes the last columns of `cargo research papers`.
 
 use afterimage::{Foveation, Image, Settings};
+use afterimage_lab::clock::Elapsed;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::Backend;
-use afterimage_lab::clock::Elapsed;
 use afterimage_lab::frame::{Shaded, ShadedColor, ShadingRequest};
 use afterimage_lab::measure::{Foveated, FrameTime, Pattern, TracedView};
 use afterimage_lab::metric::{Flip, encode, psnr_db};

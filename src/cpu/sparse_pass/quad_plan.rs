@@ -43,11 +43,7 @@ pub(in crate::cpu) fn is_quarter(desc: &ContextDesc, history: &History, frame: &
 }
 
 /// Quads to shade, and the number of paths of each pixel of a quad, view by view.
-pub(in crate::cpu) fn plan_quads(
-    desc: &ContextDesc,
-    history: &History,
-    frame: &Frame<'_>,
-) -> Vec<(Quads, Image<u8>)> {
+pub(in crate::cpu) fn plan_quads(desc: &ContextDesc, history: &History, frame: &Frame<'_>) -> Vec<(Quads, Image<u8>)> {
     let is_quarter = is_quarter(desc, history, frame);
     let foveation = if is_quarter { Foveation::quarter() } else { desc.settings.foveation };
     let of_view = |i: usize| {
@@ -113,7 +109,8 @@ impl View<'_> {
         let keys = Image::from_fn_parallel(size, |[x, y]| {
             let in_block = [0, 1, 2, 3].map(|i| [x & !1 | i & 1, y & !1 | i >> 1]);
             let is_inside = |[u, v]: [u32; 2]| u < size[0] && v < size[1];
-            let of_block = in_block.map(|q| if is_inside(q) { needs.at(q[0] as usize, q[1] as usize).first } else { 0.0 });
+            let of_block =
+                in_block.map(|q| if is_inside(q) { needs.at(q[0] as usize, q[1] as usize).first } else { 0.0 });
             let own = x & 1 | (y & 1) << 1;
             let Need { noise, samples, .. } = needs.at(x as usize, y as usize);
             let first = of_block[own as usize] * share_in_block(of_block, own);

@@ -266,7 +266,10 @@ fn noisy_pixels_have_paths_by_need_within_the_budget() {
                 assert!(*largest > 1, "some pixels have several paths");
                 let of_columns = |from: u32, to: u32| {
                     let in_columns = |paths: &Image<u8>| {
-                        pixels(SIZE).filter(|px| (from..to).contains(&px[0])).map(|px| usize::from(pixel(paths, px))).sum()
+                        pixels(SIZE)
+                            .filter(|px| (from..to).contains(&px[0]))
+                            .map(|px| usize::from(pixel(paths, px)))
+                            .sum::<usize>()
                     };
                     all.iter().map(in_columns).sum::<usize>()
                 };
@@ -278,5 +281,11 @@ fn noisy_pixels_have_paths_by_need_within_the_budget() {
             texts.push(format!("{needs:?} {most}"));
         }
     }
-    holds!("H107", Cpu, "most paths by need, of {}: {}", (BUDGET * (SIZE[0] * SIZE[1]) as f32) as u32, texts.join(", "));
+    holds!(
+        "H107",
+        Cpu,
+        "most paths by need, of {}: {}",
+        (BUDGET * (SIZE[0] * SIZE[1]) as f32) as u32,
+        texts.join(", ")
+    );
 }

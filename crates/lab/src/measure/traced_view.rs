@@ -151,10 +151,7 @@ impl TracedView {
     /// Depth and motion of a frame whose pixels a post-process chooses, without a reference.
     pub fn surfaces(&self, tracer: &Tracer, gaze_px: [f32; 2], index: u64) -> RenderedFrame {
         let reference = self.without_color(tracer, index);
-        RenderedFrame {
-            content: Content::Surfaces,
-            ..RenderedFrame::full_rate(index, gaze_px, reference)
-        }
+        RenderedFrame { content: Content::Surfaces, ..RenderedFrame::full_rate(index, gaze_px, reference) }
     }
 
     /// Traces the pixels of frame `index` that a post-process chose, with the paths that it asks for or with `samples`.
