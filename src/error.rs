@@ -227,8 +227,6 @@ pub enum FrameValue {
     VisibleBounds,
     /// [`ViewFrame::previous_from_current`](crate::ViewFrame::previous_from_current).
     CameraMotion,
-    /// [`ViewFrame::lattices`](crate::ViewFrame::lattices).
-    Lattices,
     /// [`FrameInputs::lod`](crate::FrameInputs::lod).
     Lod,
     /// [`FrameInputs::noise`](crate::FrameInputs::noise).
@@ -259,7 +257,6 @@ impl Display for FrameValue {
             Self::Jitter => "jitter_px",
             Self::VisibleBounds => "visible_px",
             Self::CameraMotion => "previous_from_current",
-            Self::Lattices => "lattices",
             Self::Lod => "lod",
             Self::Noise => "noise",
             Self::Reactive => "reactive",

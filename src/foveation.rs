@@ -4,7 +4,7 @@
 use crate::error::{SettingsError, check};
 use crate::geometry::ViewGeometry;
 use crate::kernel::foveate;
-use crate::kernel::lattice::offset_px;
+use crate::kernel::lattice::{self, offset_px};
 use crate::kernel::quads::{FIRST_STEP, budget_quads};
 #[cfg(feature = "bevy-0-20")]
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
@@ -26,10 +26,6 @@ pub enum Filter {
     Block,
     /// Full rate everywhere; no foveation.
     Off,
-    /// One point sample a block that moves from frame to frame, so that every pixel is sampled sooner or later
-    /// ([`Foveation::lattices`]): renderers that draw small, jittered views. Regions are rectangles, without blends.
-    /// Frames need [`ViewFrame::lattices`](crate::ViewFrame::lattices).
-    Sparse,
     /// Quads of 2x2 pixels of one full-rate view, which the post-process chooses before shading (`plan` of either
     /// executor): all in the fovea, one quad a block of an even pattern that moves from frame to frame, and a
     /// [`budget`](Foveation::budget) of quads where history lacks something. Depth and motion are given at every pixel.
@@ -38,7 +34,7 @@ pub enum Filter {
 
 impl Filter {
     /// All filters, in the order of the command-line tool.
-    pub const ALL: [Self; 6] = [Self::Mip, Self::Gauss, Self::Block, Self::Sparse, Self::Quads, Self::Off];
+    pub const ALL: [Self; 5] = [Self::Mip, Self::Gauss, Self::Block, Self::Quads, Self::Off];
 
     /// Short name in lower case, such as `mip`.
     pub fn name(self) -> &'static str {
@@ -55,7 +51,6 @@ impl Filter {
             Self::Mip => ("mip", "Box mip levels, trilinear"),
             Self::Gauss => ("gauss", "Gaussian blur that grows with eccentricity"),
             Self::Block => ("block", "One point sample per block"),
-            Self::Sparse => ("sparse", "One point sample per block that moves every frame, in regions without blends"),
             Self::Quads => ("quads", "Quads of 2x2 pixels of a full-rate view that the post-process chooses"),
             Self::Off => ("off", "Full rate everywhere"),
         }
@@ -163,8 +158,7 @@ impl Foveation {
         Self { fovea_deg: 0.0, mid_deg: 0.0, rate_mid: rate, rate_far: rate, budget, ..Self::quads() }
     }
 
-    /// One pixel of each quad, without a gaze: what a temporal upscaler from half the width and height is given, and
-    /// what `plan` takes by itself in the first frame after a cut.
+    /// One pixel of each quad, without a gaze: what a temporal upscaler from half the width and height is given.
     ///
     /// ```
     /// use afterimage::Foveation;
@@ -176,9 +170,25 @@ impl Foveation {
         Self { fovea_deg: 0.0, mid_deg: 180.0, blend_deg: 0.0, budget: 0.0, single_pixels: true, ..rates }
     }
 
-    /// Place in its quad of the pixel that frame `index` shades of each quad, if it shades one of each.
+    /// Place in its quad of the pixel that frame `index` shades alone, of each quad outside the fovea, if it shades one of
+    /// each.
     pub fn quarter_place_px(index: u64) -> [u32; 2] {
         offset_px(index, 2)
+    }
+
+    /// Jitter of the projection in a frame for [`Smr::antialias`](crate::Smr::antialias), in pixels, each in \[-0.5,
+    /// 0.5). It moves the samples within their pixels from frame to frame, so that a mean over time is a mean over the
+    /// pixel's area. This also holds where the even pattern visits a pixel only every 16 or 128 frames. A point at `p`
+    /// without jitter is drawn at `p + jitter_px`. `index`: frame counter.
+    ///
+    /// ```
+    /// use afterimage::Foveation;
+    ///
+    /// assert_eq!(Foveation::jitter_px(0), [-0.5, -0.5]);
+    /// assert!(Foveation::jitter_px(7).iter().all(|v| v.abs() <= 0.5));
+    /// ```
+    pub fn jitter_px(index: u64) -> [f32; 2] {
+        lattice::jitter_px(index)
     }
 
     /// Checks the range of every field.
@@ -222,6 +232,12 @@ impl Foveation {
         let [mid_x, mid_y] = offset_px(index, self.rate_mid);
         let [far_x, far_y] = offset_px(index / 2, self.rate_far);
         [mid_x, mid_y, far_x, far_y]
+    }
+
+    /// Foveation of a frame without history, if that shades a quarter of the pixels: the fovea, and one pixel of each
+    /// quad around it.
+    pub(crate) fn after_cut(&self) -> Self {
+        Self { fovea_deg: self.fovea_deg, ..Self::quarter() }
     }
 
     /// Whether a frame without history shades a quarter of the pixels, evenly: if other frames have about as few.
@@ -281,7 +297,7 @@ impl Foveation {
         match self.filter {
             Filter::Off => 0.0,
             Filter::Gauss => foveate::blur_lod(e_deg, fovea, mid, self.lod_mid(), self.lod_far()),
-            Filter::Mip | Filter::Block | Filter::Sparse | Filter::Quads => {
+            Filter::Mip | Filter::Block | Filter::Quads => {
                 foveate::region_lod(e_deg, fovea, mid, self.blend_deg, self.lod_mid(), self.lod_far())
             }
         }

@@ -16,7 +16,7 @@ override ANTIALIAS: u32 = 0u;
 
 fn observation_at(px: vec2u, view: u32) -> Observation {
     let words = textureLoad(observed, px, view, 0).xy;
-    let sampled = color(color_at(px, view).xyz).color;
+    let sampled = color(sample_at(px, view).xyz).color;
     let known = words.y >> 16u;
     return Observation(
         sampled,

@@ -24,7 +24,7 @@ fn observe(px: vec2u, view: u32) -> vec2u {
         source.previous.at -= frame.views[view].jitter_px;
     }
     // At a silhouette the difference does not say whether anything changed.
-    let comparable = color(color_at(px, view).xyz).usable && !surface.is_silhouette;
+    let comparable = color(sample_at(px, view).xyz).usable && !surface.is_silhouette;
     let needed = may_have_history(source.previous) && comparable;
     let found = sparse_history(source, view, needed);
     let history = found.found;

@@ -30,7 +30,7 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
     for (var tap = 0u; tap < taps; tap++) {
         let sample = sample_tap(around, tap, px, view);
         let at = min(sample.at, frame.size - 1u);
-        let given = color_at(at, view);
+        let given = sample_at(at, view);
         let sampled = color(given.xyz);
         if sample.is_there && sampled.usable {
             let words = textureLoad(lights, at >> vec2u(1u), view, 0);
@@ -85,7 +85,7 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
 
 // Candidate of a pixel in the fovea.
 fn full_rate_candidate(px: vec2u, view: u32, mask_word: u32) -> Candidate {
-    let given = color_at(px, view);
+    let given = sample_at(px, view);
     let own = color(given.xyz);
     let usable = own.usable && is_shaded(mask_word, px);
     var candidate = no_candidate();
@@ -103,7 +103,7 @@ fn samples_near(px: vec2u, view: u32, needed: bool) -> Near {
     let taps = select(0u, 9u, needed);
     for (var tap = 0u; tap < taps; tap++) {
         let at = clamp(px + vec2u(tap % 3u, tap / 3u), vec2u(1u), frame.size) - 1u;
-        let sampled = color(color_at(at, view).xyz);
+        let sampled = color(sample_at(at, view).xyz);
         if sampled.usable && is_shaded(mask_at(at, view), at) {
             near = add_near(near, sampled.color);
         }

@@ -3,13 +3,26 @@
 //#use sparse_smr
 // Shaded quads and their samples. CPU twin: src/cpu/sparse_pass/quad_samples.rs.
 
-// Bits 0 to 3: the pixels of a quad that are shaded; bits 4 and 5: its region; bits 8 to 12: paths
-// of each pixel.
+// Bits 0 to 3: the pixels of a quad that are shaded; bits 4 and 5: its region; bits 8 to 12: paths of each pixel.
+@group(0) @binding(9) var half_in: texture_2d_array<f32>;
 @group(0) @binding(27) var quad_mask: texture_2d_array<u32>;
 @group(0) @binding(28) var quad_around: texture_2d_array<u32>;
 
 fn mask_at(px: vec2u, view: u32) -> u32 {
     return textureLoad(quad_mask, px >> vec2u(1u), view, 0).x;
+}
+
+// Color and alpha of a shaded pixel, as the renderer wrote them.
+fn given_sample(px: vec2u, view: u32) -> vec4f {
+    if frame.has_half != 0u && (mask_at(px, view) & 15u) != WHOLE {
+        return textureLoad(half_in, texel_of(px >> vec2u(1u), view, HALF_IN), layer_of(view), 0);
+    }
+    return given_at(px, view);
+}
+
+// The same with the color in this frame's exposure.
+fn sample_at(px: vec2u, view: u32) -> vec4f {
+    return in_exposure(given_sample(px, view));
 }
 
 // Whether a pixel is shaded, by the word of its quad.

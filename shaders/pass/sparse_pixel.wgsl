@@ -3,7 +3,7 @@
 //#use output
 //#use rng
 //#use sparse_smr
-// Pixel of smr from stored samples of history and the candidate around it; shared by frames of lattices and of quads.
+// Pixel of smr from stored samples of history and the candidate around it.
 // CPU twin: `pixel` in src/cpu/sparse_pass/pixel.rs; docs/method.md has the equations.
 
 @group(0) @binding(18) var next_stored: texture_storage_2d_array<rg32uint, write>;

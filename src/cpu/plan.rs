@@ -78,10 +78,9 @@ impl CpuAfterimage {
         self.planned.as_ref().map_or(&[], |planned| &planned.paths)
     }
 
-    /// Whether the last [`plan`](Self::plan) chose one pixel of each quad, because nothing was known: in the first frame
-    /// and after a reset. It can be drawn at half the width and height
-    /// ([`ViewGeometry::half`](crate::ViewGeometry::half)), and given so
-    /// ([`half_color`](crate::FrameInputs::half_color)).
+    /// Whether the last [`plan`](Self::plan) chose one pixel of each quad outside the fovea, because nothing was known: in
+    /// the first frame and after a reset. These pixels can be drawn at half the width and height
+    /// ([`ViewGeometry::half`](crate::ViewGeometry::half)), and given so ([`half`](crate::FrameInputs::half)).
     pub fn is_quarter(&self) -> bool {
         self.planned.as_ref().is_some_and(|planned| planned.is_quarter)
     }

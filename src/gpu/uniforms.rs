@@ -5,9 +5,8 @@ use crate::context::ContextDesc;
 use crate::foveation::Foveation;
 use crate::frame::Reset;
 use crate::method::{HistoryLayout, inv_density_at_fovea, smr_params, wrs_params};
-pub use crate::uniforms::{CameraUniforms, LatticeUniforms, ViewLattices, ViewUniforms};
+pub use crate::uniforms::{CameraUniforms, ViewUniforms};
 use crate::uniforms::{MAX_VIEWS, ViewState};
-use crate::view::ViewFrame;
 use bytemuck::{Pod, Zeroable};
 
 /// `NO_FRAME` in `shaders/pass/inputs.wgsl`: the number of no frame.
@@ -55,8 +54,8 @@ pub struct FrameUniforms {
     pub smr_tolerance: f32,
     /// First view of the dispatch.
     pub first_view: u32,
-    /// Lattice whose samples the dispatch processes.
-    pub lattice: u32,
+    /// Bits of a NaN, which shaders cannot write themselves.
+    pub missing: u32,
     /// Levels of the mip chains of surfaces and of noisy candidates, above the full-rate one; 0 without.
     pub mip_levels: u32,
     /// Factor on given colors.
@@ -74,8 +73,8 @@ pub struct FrameUniforms {
     pub single_pixels: u32,
     /// Whether quads may be shaded in part.
     pub has_single_pixels: u32,
-    /// Bits by which coordinates of pixels are shifted for those of texels of the color: 1 for one texel a quad.
-    pub color_shift: u32,
+    /// Whether quads that are shaded in part have their color in a texture of half the size.
+    pub has_half: u32,
     /// Whether quads are chosen by need.
     pub has_budget: u32,
     /// One entry a view.
@@ -119,6 +118,7 @@ impl FrameUniforms {
             smr_accumulate: smr.accumulate,
             smr_accumulate_tolerance: smr.accumulate_tolerance,
             smr_tolerance: smr.tolerance,
+            missing: f32::NAN.to_bits(),
             mip_levels: match settings.history_layout() {
                 HistoryLayout::Surfaces { levels, .. } => levels,
                 _ => 0,
@@ -129,36 +129,13 @@ impl FrameUniforms {
             pattern_px: foveation.pattern_px(frame.index),
             single_pixels: foveation.single_pixels.into(),
             has_single_pixels: (foveation.single_pixels || frame.mask.is_some()).into(),
-            color_shift: frame.half_color.into(),
+            has_half: frame.half.is_some().into(),
             has_budget: (foveation.budget > 0.0).into(),
             ..Self::default()
         };
         for (i, (view, state)) in frame.views.iter().zip(state).enumerate() {
             uniforms.views[i] = ViewUniforms::new(desc, view, state, i, frame.index);
             uniforms.cameras[i] = CameraUniforms::new(desc, view, state);
-        }
-        uniforms
-    }
-}
-
-/// `SparseUniforms` in `shaders/pass/lattices.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct SparseUniforms {
-    /// Bits of a NaN, which shaders cannot write themselves.
-    pub missing: u32,
-    /// Padding to a multiple of 16 bytes.
-    pub unused: [u32; 3],
-    /// Lattices of each view.
-    pub views: [ViewLattices; MAX_VIEWS],
-}
-
-impl SparseUniforms {
-    /// Uniforms of a frame with views of `size_px`; without lattices every pixel is a sample.
-    pub(super) fn new(views: &[ViewFrame], size_px: [u32; 2]) -> Self {
-        let mut uniforms = Self { missing: f32::NAN.to_bits(), ..Self::default() };
-        for (to, view) in uniforms.views.iter_mut().zip(views) {
-            *to = LatticeUniforms::of_view_or_full(view.lattices.as_ref(), size_px);
         }
         uniforms
     }

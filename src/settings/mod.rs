@@ -28,7 +28,7 @@ pub enum Method {
     None,
     /// Temporal antialiasing, which ignores gaze: a baseline for comparison.
     Taa,
-    /// Temporal upsampling, which ignores gaze but uses the positions of a sparse frame's samples: a baseline for
+    /// Temporal upsampling, which ignores gaze but uses the positions of a planned frame's samples: a baseline for
     /// comparison.
     Taau,
     /// Scale-matched reservoirs: the sharpest sample of each surface point is shown as long as it explains the foveated
@@ -92,10 +92,10 @@ pub struct Smr {
     pub tolerance: f32,
     /// Whether history is scaled to follow changes of light, instead of being rejected. Default true.
     pub relight: bool,
-    /// Whether sparse frames are antialiased: their projection is jittered
+    /// Whether planned frames ([`Filter::Quads`](crate::Filter::Quads)) are antialiased: their projection is jittered
     /// ([`ViewFrame::jitter_px`](crate::ViewFrame::jitter_px), best [`Foveation::jitter_px`]), and history stores means
     /// of samples instead of single ones. Set it in place of other temporal antialiasing, and only for jittered frames.
-    /// It has no effect on noisy frames, which are averaged in any case, or on frames without lattices. Default false.
+    /// It has no effect on noisy frames, which are averaged in any case, or on other frames. Default false.
     pub antialias: bool,
 }
 
@@ -178,9 +178,8 @@ pub struct Settings {
     /// Whether frames are noisy, that is path-traced with few samples a pixel. Each frame must then have a noise input
     /// ([`FrameInputs::noise`](crate::FrameInputs::noise)), so that noise is not mistaken for a change. wrs weights a
     /// candidate by its number of samples; smr averages history in the fovea, too, compares means of 8x8 candidates,
-    /// and stores 8 more bytes a pixel and a mip chain of the candidates. On sparse frames smr compares nine samples,
-    /// on planned ones those of nine quads; it stores the 8 bytes but no mip chain, and does not relight history.
-    /// Default false.
+    /// and stores 8 more bytes a pixel and a mip chain of the candidates. On planned frames smr compares means of
+    /// samples, stores the 8 bytes but no mip chain, and does not relight history. Default false.
     pub noisy: bool,
     /// Seed of the random numbers. The same seed and the same frames give the same bytes. Default 0.
     pub seed: u64,

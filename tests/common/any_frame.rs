@@ -45,7 +45,7 @@ pub fn any_frame(draws: &mut Draws, wild: f32) -> View {
         trust: Some(Image::from_fn(SIZE, |_| number(d, wild, 0.5, 1.0))),
         reactive: None,
         mask: None,
-        half_color: false,
+        half: None,
         lod: Some(Image::from_fn(SIZE, |_| number(d, wild, 0.0, 4.0))),
         noise: Some(Image::from_fn(SIZE, |_| [number(d, wild, 0.0, 0.3), number(d, wild, 1.0, 16.0)])),
     }

@@ -110,7 +110,7 @@ impl<'a> Comparer<'a> {
                 samples = film.moments.pixels().iter().map(|moments| u64::from(moments.count)).sum();
                 let (color, noise) = (ShadedColor::InMemory(film.color()), Some(film.noise()));
                 let took = Elapsed { wall_ms: took.wall_ms, cpu_ms: Some(took.cpu_ms), device_ms: took.device_ms };
-                Ok(Some(Shaded { color, is_half: false, noise, took }))
+                Ok(Some(Shaded { color, half: None, noise, took }))
             };
             let step = pipeline.step_with(&frame, &mut shade)?;
             if index + TIMED_FRAMES >= CLIP_FRAMES {

@@ -45,11 +45,11 @@ pub(in crate::cpu) fn is_quarter(desc: &ContextDesc, history: &History, frame: &
 /// Quads to shade, and the number of paths of each pixel of a quad, view by view.
 pub(in crate::cpu) fn plan_quads(desc: &ContextDesc, history: &History, frame: &Frame<'_>) -> Vec<(Quads, Image<u8>)> {
     let is_quarter = is_quarter(desc, history, frame);
-    let foveation = if is_quarter { Foveation::quarter() } else { desc.settings.foveation };
+    let foveation = if is_quarter { desc.settings.foveation.after_cut() } else { desc.settings.foveation };
     let of_view = |i: usize| {
         let inputs = Inputs::new(desc, frame, i, &history.state_after(i, frame), history.is_filled());
         let has_memory = matches!(history.layout(), HistoryLayout::Sparse { .. });
-        let view = View::new(desc, frame, i, inputs, history.sparse(i), history.sparse_noise(i));
+        let view = View::new(desc, frame, inputs, history.sparse(i), history.sparse_noise(i));
         view.plan_quads(&foveation, frame.index, has_memory)
     };
     (0..frame.views.len()).map(of_view).collect()

@@ -7,11 +7,12 @@ use super::quads::{Quads, offset_px2};
 use super::view::{Samples, View};
 use crate::kernel::depth::INVALID_DISPARITY;
 use crate::kernel::noise::{NoiseSum, add_noise, mean_noise};
+use crate::kernel::quads::WHOLE;
 use crate::kernel::resample::has_code;
 use crate::kernel::sanitize;
 use crate::kernel::sparse_smr::{
-    LIGHT_RELATIVE, Observation, ObservedAround, QuadLit, RELIT_ERRORS, add_observation, agreement, fit, fit_around,
-    fit_by_votes, mean_fit, own_fit, pack_quad_lit, quad_code, quad_lit,
+    LIGHT_RELATIVE, Observation, ObservedAround, QuadLit, add_observation, agreement, fit, fit_around, fit_by_votes,
+    mean_fit, own_fit, pack_quad_lit, quad_code, quad_lit,
 };
 use crate::notes::Notes;
 use crate::parallel::collect;
@@ -30,8 +31,9 @@ impl View<'_> {
 
     /// Color of a pixel, and whether it is usable.
     #[inline(always)]
-    pub(super) fn color_px(&self, px: [u32; 2]) -> (Vec3, bool) {
-        sanitize::color(self.inputs.color_at(px))
+    pub(super) fn color_px(&self, quads: &Quads, px: [u32; 2]) -> (Vec3, bool) {
+        let is_whole = quads.mask(px.map(|v| v / 2)) == WHOLE;
+        sanitize::color(if is_whole { self.inputs.color_at(px) } else { self.inputs.partial_color_at(px) })
     }
 
     /// Comparisons of the pixels of shaded quads outside the fovea, pixel by pixel.
@@ -43,14 +45,14 @@ impl View<'_> {
             if level == 0 || !quads.is_shaded(px) {
                 return pack_observation(None);
             }
-            let (sampled, usable) = self.color_px(px);
+            let (sampled, usable) = self.color_px(quads, px);
             pack_observation(self.observe_px(px, level, sampled, usable))
         })
     }
 
     #[inline(always)]
-    fn observation_px(&self, px: [u32; 2], observed: &Samples) -> Option<Observation> {
-        unpack_observation(observed[(px[1] * self.inputs.size[0] + px[0]) as usize], || self.color_px(px).0)
+    fn observation_px(&self, quads: &Quads, px: [u32; 2], observed: &Samples) -> Option<Observation> {
+        unpack_observation(observed[(px[1] * self.inputs.size[0] + px[0]) as usize], || self.color_px(quads, px).0)
     }
 
     /// Gain and fit around each shaded quad. Quads of the fovea are not compared.
@@ -64,13 +66,14 @@ impl View<'_> {
 
     fn light_quad(&self, quads: &Quads, quad: [u32; 2], observed: &Samples) -> [u32; 4] {
         // The quad's own comparison is a mean of those of one surface: that of its first compared pixel.
-        let first = self.pixels_of(quad).find(|&px| self.observation_px(px, observed).is_some());
+        let first = self.pixels_of(quad).find(|&px| self.observation_px(quads, px, observed).is_some());
         let disparity_of = |[x, y]: [u32; 2]| self.inputs.disparity(x, y);
         let disparity = disparity_of(first.unwrap_or(quad.map(|v| 2 * v)));
         let alike = |px: [u32; 2]| self.alike(disparity, disparity_of(px), LIGHT_RELATIVE);
         let mut own: Option<Observation> = None;
         if first.is_some() {
-            let all = self.pixels_of(quad).filter(|&px| alike(px)).filter_map(|px| self.observation_px(px, observed));
+            let all =
+                self.pixels_of(quad).filter(|&px| alike(px)).filter_map(|px| self.observation_px(quads, px, observed));
             let mut sum = ObservedAround::default();
             let mut confidence = 0.0;
             for o in all {
@@ -95,7 +98,7 @@ impl View<'_> {
             others = near.len();
             let spatial = 1.0 / (1.0 + distance2(other) / least);
             for px in self.pixels_of(other) {
-                let Some(observation) = self.observation_px(px, observed) else { continue };
+                let Some(observation) = self.observation_px(quads, px, observed) else { continue };
                 if alike(px) {
                     let weight =
                         own.map_or(spatial * observation.confidence, |own| agreement(own, observation, spatial));
@@ -109,7 +112,7 @@ impl View<'_> {
         let fit_of_own = |o, gain| if self.is_noisy { 1.0 } else { own_fit(o, gain) };
         let (mut gain, mut fits) = (Vec3::ONE, 1.0);
         if around.weight >= 1e-6 {
-            let (relit, left) = self.relit_around(around, near, RELIT_ERRORS);
+            let (relit, left) = self.relit_around(around, near);
             gain = relit;
             fits = if self.is_noisy {
                 let confidence = (around.weight / around.spatial).min(1.0);
@@ -123,7 +126,7 @@ impl View<'_> {
         let mut disparities = [INVALID_DISPARITY; 4];
         for px in self.pixels_of(quad) {
             let i = (px[0] & 1 | (px[1] & 1) << 1) as usize;
-            own_fits[i] = self.observation_px(px, observed).map_or(1.0, |own| fit_of_own(own, gain));
+            own_fits[i] = self.observation_px(quads, px, observed).map_or(1.0, |own| fit_of_own(own, gain));
             disparities[i] = disparity_of(px);
         }
         pack_quad_lit(QuadLit { gain, fit: fits, own_fits, is_own: own.is_some(), disparities })
@@ -145,7 +148,7 @@ impl View<'_> {
             if !is_shaded {
                 return Candidate::NONE;
             }
-            let (color, usable) = self.color_px(px);
+            let (color, usable) = self.color_px(quads, px);
             return Candidate { color, usable, is_own: usable, ..Candidate::NONE };
         }
         let codes = sample_codes(disparity);
@@ -153,7 +156,7 @@ impl View<'_> {
         let columns = quads.size()[0];
         let mut noises = NoiseSum::default();
         let mut add = |at: [u32; 2]| {
-            let (color, usable) = self.color_px(at);
+            let (color, usable) = self.color_px(quads, at);
             if !usable {
                 return;
             }

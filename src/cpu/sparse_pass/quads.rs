@@ -117,6 +117,16 @@ impl Quads {
         found.into_iter().filter(|at| at[0] != u32::MAX)
     }
 
+    /// The sample nearest to a pixel, the first of equally near ones; `None` without any around it.
+    #[inline(always)]
+    pub fn nearest_sample(&self, px: [u32; 2]) -> Option<[u32; 2]> {
+        if self.is_shaded(px) {
+            return Some(px);
+        }
+        let px2 = |at: &[u32; 2]| offset_px2(at[0], px[0]) + offset_px2(at[1], px[1]);
+        self.samples_around(px).min_by(|a, b| px2(a).total_cmp(&px2(b)))
+    }
+
     /// Codes of the nearest sample of each quadrant around a pixel, and of its own sample, in a quad with some samples.
     #[inline(always)]
     fn codes_around(&self, px: [u32; 2], quad: [u32; 2], mask: u32) -> [u32; 5] {
@@ -142,9 +152,12 @@ impl Quads {
 
     /// Color of a pixel: its own if it is shaded, otherwise a mean of the shaded quads around it by the inverse squared
     /// distance, in the unit of the color input.
-    pub fn filled(&self, color: &Image<[f32; 3]>, is_half: bool, px: [u32; 2], exposure: Exposure) -> [f32; 3] {
-        let given_at =
-            |[x, y]: [u32; 2]| color.at((x >> u32::from(is_half)) as usize, (y >> u32::from(is_half)) as usize);
+    pub fn filled(&self, [color, half]: [Option<&Image<[f32; 3]>>; 2], px: [u32; 2], exposure: Exposure) -> [f32; 3] {
+        let given_at = |px: [u32; 2]| {
+            let [x, y] = px.map(|v| v as usize);
+            let half = half.filter(|_| self.mask(px.map(|v| v / 2)) != WHOLE).map(|half| half.at(x / 2, y / 2));
+            half.or(color.map(|color| color.at(x, y))).unwrap_or([f32::NAN; 3])
+        };
         if self.is_shaded(px) {
             return given_at(px);
         }

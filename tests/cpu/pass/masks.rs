@@ -102,6 +102,18 @@ fn single_pixels_have_their_turn_within_the_budget() {
     );
 }
 
+/// Wherever the gaze is, also where some of the view is more than 90 degrees away from it.
+#[test]
+fn a_quarter_has_a_pixel_of_every_quad() {
+    for gaze_px in [[30.0, 20.0], [-1e6, 1e5], [1e30, 0.0]] {
+        let view = wall(3, Needs::Settled).with(|view| view.facts.gaze = afterimage::Gaze::At { px: gaze_px });
+        let mut post = context(smr(Foveation::quads(), true));
+        let (mask, _) = show(&mut post, 3, &view);
+        let place = Foveation::quarter_place_px(3);
+        assert!(pixels(SIZE).all(|px| pixel(&mask, px) == (px.map(|v| v % 2) == place)), "{gaze_px:?}");
+    }
+}
+
 /// What the renderer leaves at pixels beside those that were asked for, in the same quads, too, is not read.
 #[test]
 fn h108_pixels_beside_single_ones_are_not_read() {
@@ -215,8 +227,8 @@ fn masks_of_frames_without_a_plan_are_refused() {
     // Of another size.
     let small = View { mask: Some(Image::filled([3, 3], 1.0)), ..view.clone() };
     assert!(refused(&mut post, &small).starts_with("mask"), "{}", refused(&mut post, &small));
-    let whole = View { half_color: true, ..view };
-    assert!(refused(&mut post, &whole).starts_with("color"), "{}", refused(&mut post, &whole));
+    let whole = View { half: Some(view.color.clone()), ..view };
+    assert!(refused(&mut post, &whole).starts_with("half"), "{}", refused(&mut post, &whole));
 }
 
 /// The wall with noise that grows to the right.

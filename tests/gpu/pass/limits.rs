@@ -73,9 +73,7 @@ fn every_method_runs_on_the_smallest_device() {
         let mut post = bare.context(FORMAT);
         for index in 0..3 {
             let [view] = bare.views;
-            let lattices = || settings.foveation.lattices(&view.geometry, [20.0, 20.0], index);
-            let lattices = (settings.foveation.filter == Filter::Sparse).then(lattices);
-            let views = [ViewFrame { lattices, ..view }; 2];
+            let views = [view; 2];
             let noise = settings.noisy.then_some((&noise_texture).into());
             let frame = Frame { noise, ..Frame::new(&color, &views, index) };
             if settings.foveation.filter == Filter::Quads {

@@ -98,7 +98,7 @@ fn begun<T>(is_kept: bool, value: T) -> wgpu::Operations<T> {
 }
 
 /// Which pixels of the target are drawn, and which should be.
-fn drawn(device: &Device, queue: &Queue, case: Case) -> [Vec<bool>; 2] {
+fn drawn(device: &Device, queue: &Queue, case: Case, is_half: bool) -> [Vec<bool>; 2] {
     let (format, samples, near_depth, stencil) = case;
     let mut planned = Planned::new(device);
     let attachment = TextureUsages::RENDER_ATTACHMENT;
@@ -130,7 +130,7 @@ fn drawn(device: &Device, queue: &Queue, case: Case) -> [Vec<bool>; 2] {
         }
         drop(pass);
         if !is_draw {
-            let prime = Prime { target: &depth_view, origin_px: ORIGIN_PX, near_depth, stencil };
+            let prime = Prime { target: &depth_view, origin_px: ORIGIN_PX, near_depth, stencil, is_half };
             planned.post.prime(device, &mut encoder, 0, &prime).unwrap();
         }
     }
@@ -167,7 +167,7 @@ fn targets_that_do_not_fit_are_refused() {
     let attachment = TextureUsages::RENDER_ATTACHMENT;
     let view = |size, format, usage| texture(&device, size, format, 1, usage).create_view(&Default::default());
     let target = view(TARGET, TextureFormat::Depth32Float, attachment);
-    let right = Prime { target: &target, origin_px: ORIGIN_PX, near_depth: 0.0, stencil: None };
+    let right = Prime { target: &target, origin_px: ORIGIN_PX, near_depth: 0.0, stencil: None, is_half: false };
     let mut message = |planned: &mut Planned, view, prime: &Prime<'_>| {
         let error: FrameError = planned.post.prime(&device, &mut encoder, view, prime).unwrap_err();
         error.to_string()

@@ -33,7 +33,7 @@ pub struct Rig {
     pub drops: bool,
     /// Debug view to draw beside the next frames, and what it showed.
     pub beside: Option<DebugView>,
-    textures: [Texture; 10],
+    textures: [Texture; 11],
     counters: Buffer,
     /// What the device has compiled; `None` once it is of no use to other tests.
     compiled: Option<Sources>,
@@ -68,27 +68,29 @@ pub fn device_of_five_outputs() -> Option<(Device, Queue)> {
     afterimage_testing::gpu::device_with(&wgpu::DeviceDescriptor { required_limits, ..Default::default() })
 }
 
-// Places of textures: color, depth, motion, trust and reactive masks, levels of detail, noise and own mask; output,
-// debug view.
+// Places of textures: color, depth, motion, trust and reactive masks, levels of detail, noise, own mask and colors of
+// half the size; output, debug view.
 const COLOR: usize = 0;
 const MOTION: usize = 2;
 const NOISE: usize = 6;
-const OUTPUT: usize = 8;
-const DEBUG: usize = 9;
+const HALF: usize = 8;
+const OUTPUT: usize = 9;
+const DEBUG: usize = 10;
 
 const READ: TextureUsages =
     TextureUsages::TEXTURE_BINDING.union(TextureUsages::COPY_DST).union(TextureUsages::COPY_SRC);
 
-fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 10] {
+fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 11] {
     std::array::from_fn(|i| {
         let format = match i {
-            COLOR | OUTPUT => TextureFormat::Rgba32Float,
+            COLOR | HALF | OUTPUT => TextureFormat::Rgba32Float,
             DEBUG => TextureFormat::Rgba16Float,
             MOTION | NOISE => TextureFormat::Rg32Float,
             _ => TextureFormat::R32Float,
         };
         let written = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC | TextureUsages::COPY_DST;
-        make_texture(device, context, format, if i < OUTPUT { READ } else { written })
+        let half = ContextDesc { size_px: context.size_px.map(|side| side.div_ceil(2)), ..*context };
+        make_texture(device, if i == HALF { &half } else { context }, format, if i < OUTPUT { READ } else { written })
     })
 }
 
@@ -106,12 +108,13 @@ fn texels(view: &View) -> [Option<Vec<f32>>; OUTPUT] {
         view.lod.as_ref().map(one),
         view.noise.as_ref().map(two),
         view.mask.as_ref().map(one),
+        view.half.as_ref().map(four),
     ]
 }
 
 /// The frame with those of the textures that the view has.
-fn given<'a>(view: &View, textures: [Textures<'a>; 10], frame: Frame<'a>) -> Frame<'a> {
-    let [_, depth, motion, trust, reactive, lod, noise, mask, ..] = textures;
+fn given<'a>(view: &View, textures: [Textures<'a>; 11], frame: Frame<'a>) -> Frame<'a> {
+    let [_, depth, motion, trust, reactive, lod, noise, mask, half, ..] = textures;
     Frame {
         depth: view.depth.is_some().then_some(depth),
         motion: view.motion.is_some().then_some(motion),
@@ -120,7 +123,7 @@ fn given<'a>(view: &View, textures: [Textures<'a>; 10], frame: Frame<'a>) -> Fra
         lod: view.lod.is_some().then_some(lod),
         noise: view.noise.is_some().then_some(noise),
         mask: view.mask.is_some().then_some(mask),
-        half_color: view.half_color,
+        half: view.half.is_some().then_some(half),
         ..frame
     }
 }
@@ -269,12 +272,6 @@ impl Rig {
         self.read_texture(&self.textures[DEBUG])
     }
 
-    /// Makes the color input an atlas of another size.
-    pub fn resize_color(&mut self, size_px: [u32; 2]) {
-        let atlas = ContextDesc { size_px, ..self.context };
-        self.textures[COLOR] = make_texture(&self.device, &atlas, TextureFormat::Rgba32Float, READ);
-    }
-
     /// Stores motion as halves on the device from now on.
     pub fn halve_motion(&mut self) {
         self.textures[MOTION] = make_texture(&self.device, &self.context, TextureFormat::Rg16Float, READ);
@@ -379,7 +376,7 @@ impl Rig {
         let all = (0..).zip(&self.textures).filter(|_| self.scattered);
         let all: Vec<_> = all.map(|(i, texture)| Scattered::new(&self.device, &self.queue, texture, i)).collect();
         let regions: Vec<_> = all.iter().map(Scattered::regions).collect();
-        let textures: [_; 10] =
+        let textures: [_; 11] =
             std::array::from_fn(|i| regions.get(i).map_or((&self.textures[i]).into(), |r| Textures::Regions(r)));
         let [.., output, debug] = textures;
         let frame = Frame {

@@ -9,8 +9,8 @@ use afterimage::Image;
 pub struct ShadingRequest {
     /// Whether a pixel is requested.
     pub mask: Image<bool>,
-    /// Place in its quad of 2x2 pixels of the only requested pixel of each quad, if one of each is requested. The
-    /// source may then answer with a color of half the width and height.
+    /// Place in its quad of 2x2 pixels of the only requested pixel of each quad, if each is requested whole or there. The
+    /// source may then answer with a color of half the width and height beside that of whole quads.
     pub half_place_px: Option<[u32; 2]>,
     /// Number of paths to trace at each requested pixel, for noisy methods; `None`: the source's own number.
     pub paths: Option<Image<u8>>,
@@ -41,12 +41,12 @@ impl ShadingRequest {
 
     /// Whether any pixel of each quad of 2x2 pixels is requested.
     pub fn quads(&self) -> Image<bool> {
-        let [width, height] = self.mask.size().map(|side| side as usize);
-        let is_chosen = |x: usize, y: usize| x < width && y < height && self.mask.at(x, y);
-        Image::from_fn(self.mask.size().map(|side| side.div_ceil(2)), |quad| {
-            let [x, y] = quad.map(|v| 2 * v as usize);
-            (0..4).any(|i| is_chosen(x + i % 2, y + i / 2))
-        })
+        quads_of(&self.mask, |chosen| chosen > 0)
+    }
+
+    /// Whether more than one pixel of each quad is requested.
+    pub fn whole_quads(&self) -> Image<bool> {
+        quads_of(&self.mask, |chosen| chosen > 1)
     }
 
     /// Share of the pixels of the frame.
@@ -55,23 +55,47 @@ impl ShadingRequest {
     }
 }
 
-/// Place in its quad of the only chosen pixel of each quad, if each quad has one there. Quads at the edge may have none.
-fn only_place_px(mask: &Image<bool>) -> Option<[u32; 2]> {
-    let chosen = |[x, y]: [u32; 2]| mask.at(x as usize, y as usize);
-    let [width, height] = mask.size();
-    let place =
-        [[0, 0], [1, 0], [0, 1], [1, 1]].into_iter().find(|&[x, y]| x < width && y < height && chosen([x, y]))?;
-    let mut pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
-    pixels.all(|px| chosen(px) == (0..2).all(|i| px[i] % 2 == place[i])).then_some(place)
+/// A property of each quad by the number of its chosen pixels.
+fn quads_of(mask: &Image<bool>, property: impl Fn(usize) -> bool) -> Image<bool> {
+    Image::from_fn(mask.size().map(|side| side.div_ceil(2)), |quad| property(chosen_of(mask, quad).count()))
 }
 
-/// The pixels of a [`ShadingRequest`], in an image of the frame's size, or of half of it. Other pixels are not defined.
+/// Places of the chosen pixels of a quad.
+fn chosen_of(mask: &Image<bool>, quad: [u32; 2]) -> impl Iterator<Item = [u32; 2]> + '_ {
+    let [width, height] = mask.size();
+    let places = [[0, 0], [1, 0], [0, 1], [1, 1]].into_iter();
+    places.filter(move |place| {
+        let [x, y] = [0, 1].map(|i| 2 * quad[i] + place[i]);
+        x < width && y < height && mask.at(x as usize, y as usize)
+    })
+}
+
+/// Place of the only chosen pixel of each quad that is not chosen whole, if it is the same in all of them, and if there
+/// are such quads. Quads at the edge may have none.
+fn only_place_px(mask: &Image<bool>) -> Option<[u32; 2]> {
+    let [columns, rows] = mask.size().map(|side| side.div_ceil(2));
+    let mut found = None;
+    for quad in (0..rows).flat_map(|y| (0..columns).map(move |x| [x, y])) {
+        let inside: u32 = [0, 1].map(|i| (mask.size()[i] - 2 * quad[i]).min(2)).iter().product();
+        let mut chosen = chosen_of(mask, quad);
+        match (chosen.next(), 1 + chosen.count() as u32) {
+            (Some(place), 1) if inside > 1 && *found.get_or_insert(place) != place => return None,
+            (Some(_), 1) => {}
+            (Some(_), count) if count == inside => {}
+            (None, _) if inside < 4 => {}
+            _ => return None,
+        }
+    }
+    found
+}
+
+/// The pixels of a [`ShadingRequest`], in an image of the frame's size. Other pixels are not defined.
 #[derive(Clone, Debug)]
 pub struct Shaded {
     /// Linear color.
     pub color: ShadedColor,
-    /// Whether the color has one texel for each quad of 2x2 pixels.
-    pub is_half: bool,
+    /// Color of the quads that are requested in part, one texel for each quad of 2x2 pixels; `None` if `color` has all.
+    pub half: Option<ShadedColor>,
     /// Noise of the color, as in [`FoveatedFrame::noise`](super::FoveatedFrame::noise), in an image of the frame's size;
     /// `None` without noise.
     pub noise: Option<Image<[f32; 2]>>,

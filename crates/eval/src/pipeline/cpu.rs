@@ -61,11 +61,15 @@ impl Executor for CpuExecutor {
             Some(Shaded { color: ShadedColor::InMemory(color), .. }) => Some(color),
             _ => planned.as_ref().filter(|_| is_simulated).map(|_| &full_rate.color),
         };
+        let half = match shaded.as_ref().and_then(|shaded| shaded.half.as_ref()) {
+            Some(ShadedColor::InMemory(half)) => Some(half),
+            _ => None,
+        };
         let noise = shaded.as_ref().and_then(|shaded| shaded.noise.as_ref());
         let frame = match planned {
             Some(_) => Frame {
                 color: pixels.as_ref().map(from_ref).ok_or_else(unshaded)?,
-                half_color: shaded.as_ref().is_some_and(|shaded| shaded.is_half),
+                half: half.as_ref().map(from_ref),
                 noise: noise.as_ref().map(from_ref).or(frame.noise),
                 ..frame
             },

@@ -143,7 +143,8 @@ impl Pipeline {
         let Foveator { foveation, geometry, .. } = &self.foveator;
         let wanted = match self.quad_views {
             Some(layout) => Wanted::QuadViews(layout.views(foveation, geometry, gaze_px)),
-            None if foveation.filter == Filter::Quads => Wanted::Surfaces,
+            // A fovea of the whole view is a full-rate frame.
+            None if foveation.filter == Filter::Quads && foveation.fovea_deg < 180.0 => Wanted::Surfaces,
             None => Wanted::FullRate,
         };
         FrameRequest {

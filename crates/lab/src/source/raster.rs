@@ -409,20 +409,22 @@ impl FrameSource for RasterSource {
 
     /// The colors are those of a full-rate frame with the same jitter and one sample a pixel.
     fn shade(&mut self, frame: &RenderedFrame, request: &ShadingRequest) -> Result<Option<Shaded>, InputError> {
+        let (index, jitter_px) = (frame.index, frame.jitter_px);
         let list = request.on_device.as_ref().and_then(|list| list.downcast_ref::<Buffer>()).cloned();
-        let shade = |source: &mut Self, encoder: &mut _| match request.half_place_px {
-            Some(place_px) => source.record_half(encoder, frame.index, frame.jitter_px, place_px),
-            None => {
-                let list = list.unwrap_or_else(|| quad_list(&source.device.device, &request.quads()));
-                source.record_quads(encoder, frame.index, frame.jitter_px, &list)
-            }
-        };
-        let (color, took) = self.submit_timed(shade)?;
-        let color = match request.on_device {
+        // Quads that are requested in part are drawn apart.
+        let list = list.filter(|_| request.half_place_px.is_none()).unwrap_or_else(|| {
+            let is_half = request.half_place_px.is_some();
+            quad_list(&self.device.device, &if is_half { request.whole_quads() } else { request.quads() })
+        });
+        let ((color, half), took) = self.submit_timed(|source, encoder| {
+            let color = source.record_quads(encoder, index, jitter_px, &list);
+            (color, request.half_place_px.map(|place_px| source.record_half(encoder, index, jitter_px, place_px)))
+        })?;
+        let answer = |color: Texture| match request.on_device {
             Some(_) => ShadedColor::OnDevice(Arc::new(color)),
             None => ShadedColor::InMemory(read_color(&self.device, &color)),
         };
-        Ok(Some(Shaded { color, is_half: request.half_place_px.is_some(), noise: None, took }))
+        Ok(Some(Shaded { color: answer(color), half: half.map(answer), noise: None, took }))
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

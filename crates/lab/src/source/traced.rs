@@ -202,7 +202,7 @@ impl FrameSource for TracedSource {
         let (film, took) = self.clock.time(trace);
         self.check()?;
         let (color, noise) = (ShadedColor::InMemory(film.color()), Some(film.noise()));
-        Ok(Some(Shaded { color, is_half: false, noise, took }))
+        Ok(Some(Shaded { color, half: None, noise, took }))
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

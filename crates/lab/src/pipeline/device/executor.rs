@@ -80,12 +80,16 @@ impl Executor for DeviceExecutor {
             Some(Shaded { color: ShadedColor::InMemory(color), .. }) => Some(self.inputs.upload_shaded(color)),
             None => planned.as_ref().filter(|_| is_simulated).map(|_| self.inputs.full()),
         };
+        let half = match shaded.as_ref().and_then(|shaded| shaded.half.as_ref()) {
+            Some(ShadedColor::OnDevice(half)) => half.downcast_ref::<Texture>(),
+            _ => None,
+        };
         let noise = shaded.as_ref().and_then(|shaded| shaded.noise.as_ref());
         let noise = noise.map(|noise| self.inputs.upload_noise(noise));
         let frame = match planned {
             Some(_) => Frame {
                 color: pixels.ok_or_else(unshaded)?.into(),
-                half_color: shaded.as_ref().is_some_and(|shaded| shaded.is_half),
+                half: half.map(Into::into),
                 noise: noise.map(Into::into).or(frame.noise),
                 ..frame
             },

@@ -29,7 +29,7 @@ fn color_of(shaded: &Shaded) -> &Image<[f32; 3]> {
 fn shade(source: &mut TracedSource, frame: &RenderedFrame, paths: Option<u8>) -> Shaded {
     let request = ShadingRequest::new(Image::filled(SIZE, true), None);
     let shaded = source.shade(frame, &request.with_paths(paths.map(|n| Image::filled(SIZE, n)))).unwrap().unwrap();
-    assert!(shaded.took.wall_ms > 0.0 && !shaded.is_half);
+    assert!(shaded.took.wall_ms > 0.0 && shaded.half.is_none());
     shaded
 }
 
