@@ -68,32 +68,27 @@ impl Row {
         let (depth, motion) = (seen.depth.as_ref().ok_or("no depth")?, seen.motion.as_ref().ok_or("no motion")?);
         let (depths, motions, views) = ([depth], [motion], [view]);
         let reset = if seen.cut { Reset::All } else { Reset::None };
-        let of = |colors| Frame {
-            depth: Some(&depths),
-            motion: Some(&motions),
-            reset,
-            ..Frame::new(colors, &views, frame.index)
-        };
+        let bare = Frame { depth: Some(&depths), motion: Some(&motions), reset, ..Frame::new(&[], &views, frame.index) };
         let mut shown = [Image::filled(size, [0.0; 3])];
         match &mut self.kind {
             Kind::Planned => {
-                let mask = self.post.plan(&of(&[]))?[0].clone();
+                let mask = self.post.plan(&bare)?[0].clone();
                 let paths = self.post.paths()[0].clone();
                 let sum = paths.pixels().iter().map(|&paths| u64::from(paths)).sum();
                 let request = ShadingRequest::new(mask.clone(), None).with_paths(Some(paths));
                 let shaded = source.shade(frame, &request)?.ok_or("not traced")?;
                 let ShadedColor::InMemory(color) = shaded.color else { Err("on a device")? };
                 let traced = Traced { mask, color, noise: shaded.noise.ok_or("no noise")?, paths: sum };
-                let input = Frame { noise: Some(&[&traced.noise]), ..of(&[&traced.color]) };
-                self.post.process(&input, &mut shown)?;
+                let (colors, noises) = ([&traced.color], [&traced.noise]);
+                self.post.process(&Frame { color: &colors, noise: Some(&noises), ..bare }, &mut shown)?;
                 self.paths += sum;
                 *last = Some(traced);
             }
             Kind::WithoutHistory => {
                 let traced = last.as_ref().ok_or("nothing was chosen")?;
                 let mask = traced.mask.map(|chosen| f32::from(u8::from(chosen)));
-                let (noises, masks) = ([&traced.noise], [&mask]);
-                let input = Frame { noise: Some(&noises), mask: Some(&masks), ..of(&[&traced.color]) };
+                let (colors, noises, masks) = ([&traced.color], [&traced.noise], [&mask]);
+                let input = Frame { color: &colors, noise: Some(&noises), mask: Some(&masks), ..bare };
                 self.post.process(&input, &mut shown)?;
                 self.paths += traced.paths;
             }
@@ -104,8 +99,9 @@ impl Row {
                     ..FrameRequest::full_rate(frame.index)
                 };
                 let Content::Foveated(filled) = source.render(&request)?.content else { Err("not foveated")? };
-                let (noise, lod) = (filled.noise.as_ref().ok_or("no noise")?, &filled.lod);
-                let input = Frame { noise: Some(&[noise]), lod: Some(&[lod]), ..of(&[&filled.color]) };
+                let noise = filled.noise.as_ref().ok_or("no noise")?;
+                let (colors, noises, lods) = ([&filled.color], [noise], [&filled.lod]);
+                let input = Frame { color: &colors, noise: Some(&noises), lod: Some(&lods), ..bare };
                 self.post.process(&input, &mut shown)?;
                 self.paths += filled.samples.iter().sum::<u64>();
             }
@@ -207,7 +203,7 @@ fn main() -> Result<(), Failure> {
             ..ViewFrame::new(geometry, Gaze::At { px: gaze_px })
         };
         for row in &mut rows {
-            let shown = row.show(&frame, view.clone(), &mut source, &mut last)?;
+            let shown = row.show(&frame, view, &mut source, &mut last)?;
             row.scorer.push(&reference, &encode(&shown, 0.0), &tracked, &ecc_deg);
         }
     }

@@ -121,7 +121,7 @@ impl View<'_> {
         let mut counts = vec![0; KEYS as usize];
         for &PathKeys { first, further, samples } in keys.pixels() {
             counts[first as usize] += 1;
-            let of_paths = (2..=MOST_PATHS).map(|path| path_key(further, samples, path));
+            let of_paths = (2..=MOST_PATHS.min(tune(12, 16.0) as u32)).map(|path| path_key(further, samples, path));
             of_paths.take_while(|&key| key > 0).for_each(|key| counts[key as usize] += 1);
         }
         let least = threshold(&counts, foveation.budget_quads(size));
@@ -140,7 +140,7 @@ impl View<'_> {
         });
         let of_quads = Image::from_fn_parallel(size, |[x, y]| {
             let PathKeys { first, further, samples } = keys.at(x as usize, y as usize);
-            paths(first, further, samples, even.at(x as usize, y as usize), least) as u8
+            paths(first, further, samples, even.at(x as usize, y as usize), least).min(tune(12, 16.0) as u32) as u8
         });
         (Quads::new(self.inputs.size, masks, regions, Quads::levels(foveation, self.is_noisy)), of_quads)
     }
