@@ -99,7 +99,8 @@ pub struct Foveation {
     /// [`MAX_RATE`](Self::MAX_RATE). Default 16.
     pub rate_far: u32,
     /// With [`Filter::Quads`]: share of the pixels that smr shades by need in a frame, beside the fovea and the even
-    /// pattern, 0 to 1. Default 0.025.
+    /// pattern, 0 to 1. With [`noisy`](crate::Settings::noisy) frames it counts paths, of which a pixel may get several.
+    /// Default 0.025.
     pub budget: f32,
     /// With [`Filter::Quads`]: whether one pixel of a chosen quad is shaded, outside the fovea, in place of all four;
     /// each in turn. For path tracers and compute shaders, which can shade single pixels: four times as many places for
@@ -248,7 +249,7 @@ impl Foveation {
 
     /// Number of the quads of a view of `quads` quads for which the budget pays.
     pub(crate) fn budget_quads(&self, quads: [u32; 2]) -> u32 {
-        let share = if self.single_pixels { (4.0 * self.budget).min(1.0) } else { self.budget };
+        let share = if self.single_pixels { 4.0 * self.budget } else { self.budget };
         budget_quads(share, quads)
     }
 

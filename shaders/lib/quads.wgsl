@@ -19,6 +19,8 @@ const FEW_ERROR: f32 = 0.4;
 const ENOUGH_SAMPLES: f32 = 16.0;
 const HALF_DEG: f32 = 20.0;
 const CLUMPED: f32 = 0.0625;
+const MOST_PATHS: u32 = 16u;
+const MOST_KNOWN: f32 = 31.0;
 const HASH_BITS: u32 = 8u;
 const KEYS: u32 = 63u << HASH_BITS;
 const CODE_OF_ONE: i32 = 36;
@@ -100,6 +102,29 @@ fn quad_key(needed: f32, x: u32, y: u32, frame_low: u32, key: u32) -> u32 {
     let hash = bits(x, y, frame_low, ~key) >> (32u - HASH_BITS);
     let halves = i32(bitcast<u32>(needed) >> 22u) - 254 + CODE_OF_ONE;
     return select(0u, (u32(clamp(halves, 1, 62)) << HASH_BITS) | hash, needed > 0.0);
+}
+
+fn known_samples(samples: f32) -> u32 {
+    return u32(clamp(samples, 1.0, MOST_KNOWN));
+}
+
+fn path_key(key: u32, samples: u32, path: u32) -> u32 {
+    let first = samples * (samples + 1u);
+    let own = (samples + path - 1u) * (samples + path);
+    let first2 = first * first;
+    let own2 = own * own;
+    let most = firstLeadingBit(own2) - firstLeadingBit(first2);
+    let halves = most - u32((first2 << most) > own2);
+    let fall = halves << HASH_BITS;
+    return select(0u, key - fall, key >= fall + (1u << HASH_BITS));
+}
+
+fn paths(first: u32, further: u32, samples: u32, is_even: bool, threshold: u32) -> u32 {
+    var count = u32(is_even || first >= threshold);
+    for (var path = 2u; path <= MOST_PATHS && path_key(further, samples, path) >= threshold; path++) {
+        count++;
+    }
+    return count;
 }
 
 fn neighbour(x: i32, y: i32) -> u32 {

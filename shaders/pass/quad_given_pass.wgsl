@@ -36,5 +36,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if even {
         atomicAdd(&state.even, 1u);
     }
-    textureStore(keys_out, id.xy, view, vec4u((IN_PERIPHERY << 16u) | (u32(even) << 18u) | (mask << 20u), 0u, 0u, 0u));
+    textureStore(keys_out, id.xy, view, vec4u(key_word(0u, IN_PERIPHERY, even, mask), 0u, 0u, 0u));
 }

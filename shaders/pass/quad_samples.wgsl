@@ -3,7 +3,7 @@
 //#use sparse_smr
 // Shaded quads and their samples. CPU twin: src/cpu/sparse_pass/quad_samples.rs.
 
-// Bits 0 to 3: the pixels of a quad that are shaded; bits 4 and 5: its region.
+// Bits 0 to 3: the pixels of a quad that are shaded; bits 4 and 5: its region; bits 8 to 12: paths of each pixel.
 @group(0) @binding(9) var half_in: texture_2d_array<f32>;
 @group(0) @binding(27) var quad_mask: texture_2d_array<u32>;
 @group(0) @binding(28) var quad_around: texture_2d_array<u32>;

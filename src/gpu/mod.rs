@@ -473,8 +473,9 @@ impl Afterimage {
 
     /// The pixels that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::Filter::Quads) chose: an
     /// `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bits 0 to 3 say which of its pixels are shaded,
-    /// row by row, and an array layer for each view; usages `TEXTURE_BINDING` and `COPY_SRC`. `None` with another filter.
-    /// Changes of size and settings replace it.
+    /// row by row, and bits 8 to 12 how many paths each of them gets, as in
+    /// [`CpuAfterimage::paths`](crate::cpu::CpuAfterimage::paths), with an array layer for each view; usages
+    /// `TEXTURE_BINDING` and `COPY_SRC`. `None` with another filter. Changes of size and settings replace it.
     pub fn quad_mask(&self) -> Option<&Texture> {
         self.quads.as_ref().map(|quads| &quads.quads.mask.texture)
     }

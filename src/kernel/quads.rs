@@ -52,6 +52,11 @@ const HALF_DEG: f32 = 20.0;
 /// Share of its need that counts for each quad with a larger need in its block of 2x2 quads.
 const CLUMPED: f32 = 0.0625;
 
+/// Largest number of paths of a pixel in a frame.
+pub const MOST_PATHS: u32 = 16;
+/// Largest number of samples of history that keys of further paths tell apart.
+const MOST_KNOWN: f32 = 31.0;
+
 /// Bits of the hash in a key. The unused part of the budget is less than the quads of one key.
 const HASH_BITS: u32 = 8;
 /// Number of keys; every key is below it.
@@ -184,7 +189,44 @@ pub fn quad_key(need: f32, x: u32, y: u32, frame: u32, key: u32) -> u32 {
     if need > 0.0 { (halves.clamp(1, 62) as u32) << HASH_BITS | hash } else { 0 }
 }
 
-/// Number of quads that `budget` pays for: a share, 0 to 1, of `columns` x `rows` quads.
+/// Samples of a mean as a whole number, from 1 to 31, for [`path_key`].
+#[inline]
+pub fn known_samples(samples: f32) -> u32 {
+    samples.clamp(1.0, MOST_KNOWN) as u32
+}
+
+/// Key of a pixel's path number `path` (from 1 on) in a frame, from that of its first path, `key`; 0 for none. The
+/// variance V of one sample makes an error V / n of the mean of n `samples` ([`known_samples`]), of which path k takes
+/// V / (n + k - 1) - V / (n + k) = V / ((n + k - 1)(n + k)). The key falls by the binary logarithm of that, in whole
+/// half steps.
+#[inline]
+pub fn path_key(key: u32, samples: u32, path: u32) -> u32 {
+    let first = samples * (samples + 1);
+    let own = (samples + path - 1) * (samples + path);
+    let (first2, own2) = (first * first, own * own);
+    // The largest `halves` with 2^halves <= own2 / first2.
+    let most = own2.ilog2() - first2.ilog2();
+    let halves = most - u32::from(first2 << most > own2);
+    let fall = halves << HASH_BITS;
+    if key >= fall + (1 << HASH_BITS) { key - fall } else { 0 }
+}
+
+/// Number of paths of a pixel whose first path has the key `first` and whose further paths have those of
+/// [`path_key`] of `further`: as many as there are keys from `threshold` on. `is_even`: it has its first path in any
+/// case.
+#[inline]
+pub fn paths(first: u32, further: u32, samples: u32, is_even: bool, threshold: u32) -> u32 {
+    let mut count = u32::from(is_even || first >= threshold);
+    // Keys fall from path to path.
+    let mut path = 2;
+    while path <= MOST_PATHS && path_key(further, samples, path) >= threshold {
+        count += 1;
+        path += 1;
+    }
+    count
+}
+
+/// Number of quads that `budget` pays for: a share of `columns` x `rows` quads.
 pub fn budget_quads(budget: f32, [columns, rows]: [u32; 2]) -> u32 {
     // In f64, so that the product is not rounded up.
     (f64::from(budget) * f64::from(columns) * f64::from(rows)) as u32

@@ -46,6 +46,11 @@ impl LitView<'_> {
         let disparity = inputs.disparity(x, y);
         let level = quads.level_at([x, y]);
         let candidate = view.quad_candidate(quads, [x, y], disparity, lights, notes);
+        let mut candidate = candidate;
+        candidate.noise.samples *= (candidate.lod * super::quad_plan::tune(9, 0.0)).exp2();
+        if view.is_noisy {
+            candidate.fit = candidate.fit.max(super::quad_plan::tune(11, 0.0));
+        }
         let surface = view.surface([x, y], level);
         candidate.note(notes);
         surface.note(notes);
@@ -91,7 +96,13 @@ impl LitView<'_> {
                     gain: candidate.gain,
                     fit: candidate.fit,
                     trust: previous.trust,
-                    accumulate: view.accumulate,
+                    accumulate: if view.is_noisy && !candidate.is_own {
+                        super::quad_plan::tune(8, view.accumulate)
+                    } else if view.is_noisy {
+                        super::quad_plan::tune(10, view.accumulate)
+                    } else {
+                        view.accumulate
+                    },
                 };
                 if N::ON {
                     let history = relit(inputs.history, inputs.gain, inputs.range);

@@ -12,10 +12,10 @@ use crate::frame::Reset;
 use crate::image::Image;
 use crate::kernel::antialias::mean_of;
 use crate::kernel::color::luma;
-use crate::kernel::noise::noise_need;
+use crate::kernel::noise::{Noise, NoiseSum, add_noise, mean_noise, noise_need};
 use crate::kernel::quads::{
-    ENOUGH_SAMPLES, IN_FOVEA, IN_MIDDLE, IN_PERIPHERY, KEYS, WHOLE, acuity, asked_px, in_pattern, in_turn, need,
-    no_history_need, place_in_quad, quad_key, region, share_in_block, threshold,
+    ENOUGH_SAMPLES, IN_FOVEA, IN_MIDDLE, IN_PERIPHERY, KEYS, MOST_PATHS, WHOLE, acuity, asked_px, in_pattern, in_turn,
+    known_samples, need, no_history_need, path_key, paths, place_in_quad, quad_key, region, share_in_block, threshold,
 };
 use crate::kernel::resample::{has_code, tap_codes};
 use crate::kernel::sanitize;
@@ -26,6 +26,15 @@ use crate::method::HistoryLayout;
 use crate::notes::NoNotes;
 use glam::Vec3;
 
+/// TUNE
+pub(super) fn tune(i: usize, default: f32) -> f32 {
+    static ALL: std::sync::OnceLock<Vec<f32>> = std::sync::OnceLock::new();
+    let all = ALL.get_or_init(|| {
+        std::env::var("TUNE").unwrap_or_default().split(',').map(|v| v.parse().unwrap_or(f32::NAN)).collect()
+    });
+    all.get(i).copied().filter(|v| !v.is_nan()).unwrap_or(default)
+}
+
 /// Whether a frame shades one pixel of each quad, because nothing is known of its predecessor.
 pub(in crate::cpu) fn is_quarter(desc: &ContextDesc, history: &History, frame: &Frame<'_>) -> bool {
     let starts = frame.reset != Reset::None || !history.is_filled();
@@ -33,8 +42,8 @@ pub(in crate::cpu) fn is_quarter(desc: &ContextDesc, history: &History, frame: &
     starts && has_memory && desc.settings.foveation.takes_quarter()
 }
 
-/// Quads to shade, view by view.
-pub(in crate::cpu) fn plan_quads(desc: &ContextDesc, history: &History, frame: &Frame<'_>) -> Vec<Quads> {
+/// Quads to shade, and the number of paths of each pixel of a quad, view by view.
+pub(in crate::cpu) fn plan_quads(desc: &ContextDesc, history: &History, frame: &Frame<'_>) -> Vec<(Quads, Image<u8>)> {
     let is_quarter = is_quarter(desc, history, frame);
     let foveation = if is_quarter { desc.settings.foveation.after_cut() } else { desc.settings.foveation };
     let of_view = |i: usize| {
@@ -69,8 +78,9 @@ pub(in crate::cpu) fn given_quads(desc: &ContextDesc, masks: &[&Image<f32>]) -> 
 }
 
 impl View<'_> {
-    /// Chooses the quads of a frame. `has_memory`: whether the method has history to choose by.
-    fn plan_quads(&self, foveation: &Foveation, index: u64, has_memory: bool) -> Quads {
+    /// Chooses the quads of a frame, and the number of paths of each of their pixels. `has_memory`: whether the method
+    /// has history to choose by.
+    fn plan_quads(&self, foveation: &Foveation, index: u64, has_memory: bool) -> (Quads, Image<u8>) {
         let size = self.inputs.size.map(|side| side.div_ceil(2));
         let radii = [foveation.fovea_radius_deg(), foveation.mid_radius_deg()];
         let regions = Image::from_fn_parallel(size, |[x, y]| {
@@ -84,27 +94,41 @@ impl View<'_> {
             self.is_visible_quad(quad, alone) && pattern.has(quad, region)
         });
         let first = Foveation::first_quad(index);
+        let has_budget = foveation.budget > 0.0;
         let needs = Image::from_fn_parallel(size, |quad| {
             let [x, y] = quad.map(|v| v as usize);
-            if !has_memory || even.at(x, y) || regions.at(x, y) == IN_FOVEA { 0.0 } else { self.need_of(quad, first) }
+            let is_even = even.at(x, y);
+            let is_asked = regions.at(x, y) != IN_FOVEA && (!is_even || self.is_noisy);
+            if !has_memory || !has_budget || !is_asked {
+                return Need::default();
+            }
+            let place = if is_even { pattern.place(regions.at(x, y)) } else { place_in_quad(self.asked(quad)) };
+            let need = self.need_of(quad, place, first);
+            Need { first: if is_even { 0.0 } else { need.first }, ..need }
         });
         let keys = Image::from_fn_parallel(size, |[x, y]| {
             let in_block = [0, 1, 2, 3].map(|i| [x & !1 | i & 1, y & !1 | i >> 1]);
             let is_inside = |[u, v]: [u32; 2]| u < size[0] && v < size[1];
-            let of_block = in_block.map(|q| if is_inside(q) { needs.at(q[0] as usize, q[1] as usize) } else { 0.0 });
+            let of_block =
+                in_block.map(|q| if is_inside(q) { needs.at(q[0] as usize, q[1] as usize).first } else { 0.0 });
             let own = x & 1 | (y & 1) << 1;
-            let need = of_block[own as usize] * share_in_block(of_block, own);
-            quad_key(need, x, y, self.frame_low, self.inputs.uniforms.key)
+            let Need { noise, samples, .. } = needs.at(x as usize, y as usize);
+            let first = of_block[own as usize] * share_in_block(of_block, own);
+            let is_even = even.at(x as usize, y as usize);
+            let key = |need: f32| quad_key(need, x, y, self.frame_low, self.inputs.uniforms.key);
+            PathKeys { first: key(if is_even { 0.0 } else { first + noise }), further: key(noise), samples }
         });
         let mut counts = vec![0; KEYS as usize];
-        for &key in keys.pixels() {
-            counts[key as usize] += 1;
+        for &PathKeys { first, further, samples } in keys.pixels() {
+            counts[first as usize] += 1;
+            let of_paths = (2..=MOST_PATHS.min(tune(12, 16.0) as u32)).map(|path| path_key(further, samples, path));
+            of_paths.take_while(|&key| key > 0).for_each(|key| counts[key as usize] += 1);
         }
         let least = threshold(&counts, foveation.budget_quads(size));
         let masks = Image::from_fn_parallel(size, |quad| {
             let [x, y] = quad.map(|v| v as usize);
             let region = regions.at(x, y);
-            if !(even.at(x, y) || keys.at(x, y) >= least) {
+            if !(even.at(x, y) || keys.at(x, y).first >= least) {
                 0
             } else if region == IN_FOVEA || !foveation.single_pixels {
                 WHOLE
@@ -114,7 +138,16 @@ impl View<'_> {
                 1 << place_in_quad(asked_px(quad[0], quad[1], self.frame_low))
             }
         });
-        Quads::new(self.inputs.size, masks, regions, Quads::levels(foveation, self.is_noisy))
+        let of_quads = Image::from_fn_parallel(size, |[x, y]| {
+            let PathKeys { first, further, samples } = keys.at(x as usize, y as usize);
+            paths(first, further, samples, even.at(x as usize, y as usize), least).min(tune(12, 16.0) as u32) as u8
+        });
+        (Quads::new(self.inputs.size, masks, regions, Quads::levels(foveation, self.is_noisy)), of_quads)
+    }
+
+    /// The pixel of a quad that is tested.
+    fn asked(&self, [x, y]: [u32; 2]) -> [u32; 2] {
+        asked_px(x, y, self.frame_low)
     }
 
     /// Whether the lens shows a pixel of a quad; with `place`, that pixel.
@@ -126,19 +159,27 @@ impl View<'_> {
             .any(|[x, y]| x < width && y < height && self.inputs.is_visible(x, y))
     }
 
-    /// Need of a quad outside the fovea. `first`: place in its block of the quad that comes first without history.
-    fn need_of(&self, [x, y]: [u32; 2], first: [u32; 2]) -> f32 {
+    /// Need of the pixel `place` of a quad outside the fovea. `first`: place in its block of the quad that comes first
+    /// without history.
+    fn need_of(&self, [x, y]: [u32; 2], place: u32, first: [u32; 2]) -> Need {
         let [width, height] = self.inputs.size;
-        let [u, v] = asked_px(x, y, self.frame_low);
+        let [u, v] = [2 * x + (place & 1), 2 * y + (place >> 1)];
         if u >= width || v >= height || !self.inputs.is_visible(u, v) {
-            return 0.0;
+            return Need::default();
         }
         let e_deg = self.inputs.region_angle_deg(self.inputs.ray(2 * x, 2 * y));
-        self.need_at([u, v]).map_or(no_history_need(x, y, first), |need| need * acuity(e_deg))
+        let counts = if self.is_noisy { acuity(e_deg).powf(tune(0, 1.0)) } else { acuity(e_deg) };
+        let of_history = |need: Need| Need { first: need.first * counts, noise: need.noise * counts, ..need };
+        let without = Need {
+            first: no_history_need(x, y, first) * if self.is_noisy { tune(1, 1.0) } else { 1.0 },
+            noise: if self.is_noisy { tune(2, 0.0) } else { 0.0 },
+            ..Need::default()
+        };
+        self.need_at([u, v]).map_or(without, of_history)
     }
 
     /// Need of a pixel, from the four stored samples around its previous position; `None` without history.
-    fn need_at(&self, [x, y]: [u32; 2]) -> Option<f32> {
+    fn need_at(&self, [x, y]: [u32; 2]) -> Option<Need> {
         let inputs = &self.inputs;
         if inputs.reset || self.words.is_empty() {
             return None;
@@ -153,6 +194,8 @@ impl View<'_> {
         let first = at.map(|v| v.floor());
         let mut best = (f32::MAX, -1.0, ENOUGH_SAMPLES);
         let mut nearest = ([0; 2], Vec3::ZERO);
+        let mut noises = NoiseSum::default();
+        let mut most_variance = 0.0f32;
         let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::ZERO);
         for tap in 0..4 {
             let [tx, ty] = [first[0] + (tap & 1) as f32, first[1] + (tap >> 1) as f32];
@@ -162,6 +205,11 @@ impl View<'_> {
             }
             let stored = unpack_full(words);
             (low, high) = (low.min(stored.color), high.max(stored.color));
+            if self.is_noisy {
+                let near = self.stored_noise([tx as i32, ty as i32]);
+                noises = add_noise(noises, near, 1.0);
+                most_variance = near.variance.max(most_variance);
+            }
             let px2 = (tx - at[0]) * (tx - at[0]) + (ty - at[1]) * (ty - at[1]);
             if px2 < best.0 {
                 nearest = ([tx as i32, ty as i32], stored.color);
@@ -174,11 +222,46 @@ impl View<'_> {
         }
         if self.is_noisy {
             let (texel, color) = nearest;
-            let error = noise_need(self.stored_noise(texel), luma(expose(color, self.inputs.exposure)));
-            return Some(need(best.1, ENOUGH_SAMPLES, root_difference(low, high)) + error);
+            let own = self.stored_noise(texel);
+            let variance = match tune(3, 1.0) as u32 {
+                0 => own.variance,
+                1 => mean_noise(noises).variance,
+                _ => most_variance,
+            };
+            let past = Noise { variance, ..own };
+            let around = luma(expose(color, self.inputs.exposure)).max(tune(4, 0.0));
+            let noise = noise_need(past, around).min(tune(5, 1e9)) * if around > tune(6, 1e9) { 0.0 } else { 1.0 };
+            let first = tune(7, 1.0) * need(best.1, ENOUGH_SAMPLES, root_difference(low, high));
+            return Some(Need { first, noise, samples: known_samples(own.samples) });
         }
-        Some(need(best.1, best.2, root_difference(low, high)))
+        let first = need(best.1, best.2, root_difference(low, high));
+        Some(Need { first, noise: 0.0, samples: 1 })
     }
+}
+
+/// Need of a pixel.
+#[derive(Clone, Copy, Debug)]
+struct Need {
+    /// Of a first path, without the noise of history.
+    first: f32,
+    /// Due to the noise of history, of a first path.
+    noise: f32,
+    /// Samples of history, from 1 on.
+    samples: u32,
+}
+
+impl Default for Need {
+    fn default() -> Self {
+        Self { first: 0.0, noise: 0.0, samples: 1 }
+    }
+}
+
+/// Keys of the paths of a quad's pixel: see [`paths`].
+#[derive(Clone, Copy, Debug, Default)]
+struct PathKeys {
+    first: u32,
+    further: u32,
+    samples: u32,
 }
 
 /// The even pattern of a frame.

@@ -230,3 +230,74 @@ fn masks_of_frames_without_a_plan_are_refused() {
     let whole = View { half: Some(view.color.clone()), ..view };
     assert!(refused(&mut post, &whole).starts_with("half"), "{}", refused(&mut post, &whole));
 }
+
+/// The wall with noise that grows to the right.
+fn noisy_wall(index: u64, needs: Needs) -> View {
+    wall(index, needs).with(|view| view.noise = Some(Image::from_fn(SIZE, |[x, _]| [0.002 * x as f32, 1.0])))
+}
+
+/// Paths of frames after the first, by pixel, of smr on noisy frames.
+fn paths_of(foveation: Foveation, needs: Needs, frames: u64) -> Vec<Image<u8>> {
+    let mut post = context(Settings { foveation, ..Settings::traced() });
+    let mut paths = |index| {
+        let view = noisy_wall(index, needs);
+        post.plan(&Images::of([&view]).frame(index)).unwrap();
+        let paths = post.paths()[0].clone();
+        show(&mut post, index, &view);
+        paths
+    };
+    (0..=frames).map(&mut paths).skip(1).collect()
+}
+
+fn sum(paths: &Image<u8>) -> usize {
+    paths.pixels().iter().map(|&paths| usize::from(paths)).sum()
+}
+
+#[test]
+fn noisy_pixels_have_paths_by_need_within_the_budget() {
+    let mut texts = vec![];
+    for single_pixels in [true, false] {
+        for needs in [Needs::Settled, Needs::Flickering, Needs::OneCorner, Needs::BadDepth, Needs::NoTrust] {
+            let of = |budget: f32| {
+                let foveation = Foveation { single_pixels, ..single([4, 8], budget) };
+                paths_of(foveation, needs, 24)
+            };
+            let budget = (BUDGET * (SIZE[0] * SIZE[1]) as f32) as usize;
+            let even = of(0.0);
+            assert!(even.iter().all(|paths| paths.pixels().iter().all(|&n| n <= 1)));
+            let spent = |budget: f32| {
+                let all = of(budget);
+                let most = all.iter().zip(&even).map(|(all, even)| sum(all) - sum(even)).max().unwrap();
+                (most, all)
+            };
+            let (most, all) = spent(BUDGET);
+            assert!(most <= budget && 2 * most > budget, "{needs:?}: {most} of {budget}");
+            let largest = all.iter().flat_map(Image::pixels).max().unwrap();
+            assert!(*largest <= 16);
+            if matches!(needs, Needs::Settled) && single_pixels {
+                assert!(*largest > 1, "some pixels have several paths");
+                let of_columns = |from: u32, to: u32| {
+                    let in_columns = |paths: &Image<u8>| {
+                        pixels(SIZE)
+                            .filter(|px| (from..to).contains(&px[0]))
+                            .map(|px| usize::from(pixel(paths, px)))
+                            .sum::<usize>()
+                    };
+                    all.iter().map(in_columns).sum::<usize>()
+                };
+                let quarter = SIZE[0] / 4;
+                let [calm, noisy] = [of_columns(0, quarter), of_columns(SIZE[0] - quarter, SIZE[0])];
+                assert!(noisy > calm, "{noisy} paths where noise is strong, {calm} where it is weak");
+            }
+            assert!(spent(2.5 * BUDGET).0 > budget, "the planted error");
+            texts.push(format!("{needs:?} {most}"));
+        }
+    }
+    holds!(
+        "H107",
+        Cpu,
+        "most paths by need, of {}: {}",
+        (BUDGET * (SIZE[0] * SIZE[1]) as f32) as u32,
+        texts.join(", ")
+    );
+}

@@ -240,7 +240,7 @@ fn wrong_masks_are_caught() {
         ("select(all_bits & inside_bits, WHOLE, all_bits == WHOLE)", "all_bits & inside_bits"),
         ("select(all_bits & inside_bits, WHOLE, all_bits == WHOLE)", "all_bits"),
         ("let at = texel_of(min(px, frame.size - 1u), view, MASK_IN);", "let at = min(px, frame.size - 1u);"),
-        ("(IN_PERIPHERY << 16u)", "(IN_MIDDLE << 16u)"),
+        ("key_word(0u, IN_PERIPHERY,", "key_word(0u, IN_MIDDLE,"),
     ];
     rig::all_caught_in(PASSES, desc(), settings, EACH * KINDS, &planted, |index, rig| {
         (reset_of(index, rig), with_own(index, &settings).to_vec())
@@ -254,10 +254,18 @@ fn wrong_noise_of_pixels_is_caught() {
         ("candidate.noise = noise_at(px, view);", ""),
         ("candidate.noise = mean_noise(noises);", ""),
         ("select(outside, NOISY, region_now == IN_FOVEA)", "select(outside, 0u, region_now == IN_FOVEA)"),
-        ("root_difference(lowest, highest)) + noise_needed", "root_difference(lowest, highest))"),
+        ("share_in_block(needs, i) + noise_needs[i]", "share_in_block(needs, i)"),
+        ("past.variance = mean_noise(noises).variance;", ""),
+        ("known_samples(past.samples)", "1u"),
+        ("(!even || NOISY != 0u)", "!even"),
+        ("atomicAdd(&state.further[key_of_path], 1u);", ""),
+        ("count += atomicLoad(&state.further[key]);", ""),
+        ("word >> 27u, is_even,", "1u, is_even,"),
         ("confidence = noisy_lod_confidence(", "confidence = 0.0 * noisy_lod_confidence("),
     ];
-    rig::all_caught_in(PASSES, desc(), settings, FRAMES, &planted, |index, rig| {
+    let passes = [&PASSES[..], &["quad_threshold_pass", "quad_mask_pass"]].concat();
+    let passes: [&str; 7] = passes.try_into().unwrap();
+    rig::all_caught_in(passes, desc(), settings, FRAMES, &planted, |index, rig| {
         (reset_of(index, rig), seen(index, &settings).to_vec())
     });
 }

@@ -153,7 +153,7 @@ fn a_wrong_pass_is_caught() {
         "quad_pass",
     ];
     let planted = [
-        ("needed * acuity(e_deg)", "needed"),
+        ("found.first * acuity(e_deg)", "found.first"),
         ("of_run[first - 1u] <= budget - chosen", "of_run[first - 1u] <= budget"),
         ("last_of(above, -8, -1, -rows)", "last_of(above, -7, -1, -rows)"),
         ("min(first_of(row, 0, limits.x, y), last_of(row, -limits.x, 0, y))", "first_of(row, 0, limits.x, y)"),

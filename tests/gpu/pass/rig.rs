@@ -135,6 +135,8 @@ pub struct Made {
     pub words: Vec<[u32; 3]>,
     /// Masks of the quads of a planned frame: a bit for each of their pixels inside the frame.
     pub quads: Vec<u32>,
+    /// Number of paths of each chosen pixel of those quads.
+    pub paths: Vec<u32>,
     pub stats: FrameStats,
 }
 
@@ -318,10 +320,15 @@ impl Rig {
     pub fn on_cpu(&mut self, index: u64, reset: Reset, views: &[View]) -> (Made, Vec<Image<PixelTrace>>) {
         let images = Images::of(views);
         let frame = afterimage::cpu::Frame { reset, exposure: self.exposure, ..images.frame(index) };
-        let quads = planned(&mut self.cpu, &frame).iter().flat_map(quads_of).collect();
+        let masks = planned(&mut self.cpu, &frame);
+        let quads = masks.iter().flat_map(quads_of).collect();
+        let paths = match frame.mask.is_some() || masks.is_empty() {
+            true => masks.iter().flat_map(quads_of).map(|mask| mask.min(1)).collect(),
+            false => self.cpu.paths().iter().flat_map(paths_of).collect(),
+        };
         let (output, trace, stats) = traced(&mut self.cpu, &frame);
         let shown = output.iter().flat_map(|o| o.pixels()).map(|c| c.map(f32::to_bits)).collect();
-        (Made { shown, words: held_words(&self.cpu), quads, stats }, trace)
+        (Made { shown, words: held_words(&self.cpu), quads, paths, stats }, trace)
     }
 
     /// Whether the executors differ on a frame: what a planted error must do.
@@ -424,10 +431,13 @@ impl Rig {
         // As it was planned last.
         let mask = self.gpu.quad_mask().map(|mask| self.read_texture(mask)).unwrap_or_default();
         let counters: Vec<u8> = afterimage_testing::gpu::read_buffer(&self.device, &self.queue, &self.counters);
+        let inside = self.inside();
+        let quads: Vec<u32> = mask.iter().zip(inside).map(|(word, inside)| word & inside).collect();
         Made {
             shown: shown.chunks_exact(4).map(|c| [c[0], c[1], c[2]]).collect(),
             words: two.chunks_exact(2).zip(third).map(|(w, third)| [w[0], w[1], third]).collect(),
-            quads: mask.iter().zip(self.inside()).map(|(word, inside)| word & inside).collect(),
+            paths: mask.iter().zip(&quads).map(|(word, quad)| word >> 8 & 31 * quad.min(&1)).collect(),
+            quads,
             stats: FrameStats::from_counters(&counters).unwrap(),
         }
     }
@@ -502,6 +512,14 @@ pub fn quads_of(mask: &Image<bool>) -> Vec<u32> {
     let size = mask.size();
     let bit_of = |[x, y]: [u32; 2]| u32::from(x < size[0] && y < size[1] && pixel(mask, [x, y]));
     let of_quad = |[x, y]: [u32; 2]| (0..4).fold(0, |all, i| all | bit_of([2 * x + i % 2, 2 * y + i / 2]) << i);
+    pixels(size.map(|side| side.div_ceil(2))).map(of_quad).collect()
+}
+
+/// Number of paths of each chosen pixel of each quad.
+fn paths_of(paths: &Image<u8>) -> Vec<u32> {
+    let size = paths.size();
+    let at = |[x, y]: [u32; 2]| if x < size[0] && y < size[1] { u32::from(pixel(paths, [x, y])) } else { 0 };
+    let of_quad = |[x, y]: [u32; 2]| (0..4).map(|i| at([2 * x + i % 2, 2 * y + i / 2])).max().unwrap();
     pixels(size.map(|side| side.div_ceil(2))).map(of_quad).collect()
 }
 

@@ -45,5 +45,15 @@ pub const PROBES: &[Probe] = &[
     probe!(quads::quadrant_of, |rows| rows.random(offset)),
     probe!(quads::sample_code, |rows| rows.random(offset)),
     probe!(quads::sample_offset, |rows| rows.random(|d, row| row.push(d.bits() % (1 << 22)))),
+    probe!(quads::known_samples, |rows| rows.each(&[F(0.0, 90.0)])),
+    probe!(quads::path_key, |rows| {
+        rows.random(|d, row| row.extend([d.bits() % quads::KEYS, 1 + d.bits() % 31, 1 + d.bits() % quads::MOST_PATHS]))
+    }),
+    probe!(quads::paths, |rows| {
+        rows.random(|d, row| {
+            let key = |d: &mut Draws| d.bits() % quads::KEYS;
+            row.extend([key(d), key(d), 1 + d.bits() % 31, d.bits() & 1, 1 + key(d)]);
+        })
+    }),
     probe!(quads::quad_key, |rows| rows.each(&[Scaled(-30, 20), Bits, Bits, Bits, Bits])),
 ];

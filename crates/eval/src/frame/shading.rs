@@ -12,6 +12,8 @@ pub struct ShadingRequest {
     /// Place in its quad of 2x2 pixels of the only requested pixel of each quad, if each is requested whole or there. The
     /// source may then answer with a color of half the width and height beside that of whole quads.
     pub half_place_px: Option<[u32; 2]>,
+    /// Number of paths to trace at each requested pixel, for noisy methods; `None`: the source's own number.
+    pub paths: Option<Image<u8>>,
     /// Quads with a requested pixel, as a list on the method's device, in the form of `gpu::Afterimage::quad_list`;
     /// `None` for methods on the CPU.
     pub on_device: Option<DeviceHandle>,
@@ -21,7 +23,13 @@ impl ShadingRequest {
     /// A request of the pixels of a mask.
     pub fn new(mask: Image<bool>, on_device: Option<DeviceHandle>) -> Self {
         let half_place_px = only_place_px(&mask);
-        Self { mask, half_place_px, on_device }
+        Self { mask, half_place_px, paths: None, on_device }
+    }
+
+    /// With a number of paths at each requested pixel.
+    #[must_use]
+    pub fn with_paths(self, paths: Option<Image<u8>>) -> Self {
+        Self { paths, ..self }
     }
 
     /// The pixels, ordered by row.

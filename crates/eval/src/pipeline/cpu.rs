@@ -125,6 +125,7 @@ impl Planned {
         let watch = Stopwatch::start();
         let mask = post.plan(frame)?[0].clone();
         let took = watch.elapsed();
-        Ok(Some(Self { request: ShadingRequest::new(mask, None), took }))
+        let paths = post.desc().settings.noisy.then(|| post.paths()[0].clone());
+        Ok(Some(Self { request: ShadingRequest::new(mask, None).with_paths(paths), took }))
     }
 }

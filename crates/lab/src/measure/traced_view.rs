@@ -3,11 +3,11 @@
 use crate::clock::Stopwatch;
 use crate::device::Backend;
 use crate::error::InputError;
-use crate::frame::{FoveatedFrame, RenderedFrame, SourceFrame};
+use crate::frame::{Content, FoveatedFrame, RenderedFrame, ShadingRequest, SourceFrame};
 use crate::source::{Light, SceneChoice, SceneOptions, ViewedScene};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
-use crate::trace::sampling::Sampling;
+use crate::trace::sampling::{Sampling, trace_requested};
 use crate::trace::settings::TraceSettings;
 use crate::trace::surfaces::Surfaces;
 use crate::trace::view::View;
@@ -148,11 +148,18 @@ impl TracedView {
         Foveated { samples: frame.samples.iter().sum(), frame, took }
     }
 
-    /// A foveated frame for a post-process, without a reference.
-    pub fn rendered(&self, tracer: &Tracer, pattern: &Pattern, index: u64) -> (RenderedFrame, FrameTime) {
-        let Foveated { frame, took, .. } = self.foveated(tracer, pattern, index);
+    /// Depth and motion of a frame whose pixels a post-process chooses, without a reference.
+    pub fn surfaces(&self, tracer: &Tracer, gaze_px: [f32; 2], index: u64) -> RenderedFrame {
         let reference = self.without_color(tracer, index);
-        (RenderedFrame::full_rate(index, pattern.gaze_px, reference).foveated(frame), took)
+        RenderedFrame { content: Content::Surfaces, ..RenderedFrame::full_rate(index, gaze_px, reference) }
+    }
+
+    /// Traces the pixels of frame `index` that a post-process chose, with the paths that it asks for or with `samples`.
+    pub fn shade(&self, tracer: &Tracer, request: &ShadingRequest, samples: u32, index: u64) -> (Film, FrameTime) {
+        let watch = Stopwatch::start();
+        let film = trace_requested(tracer, &self.world, &self.view(index), index, request, samples);
+        let took = FrameTime::by(&watch, None, film.rays);
+        (film, took)
     }
 
     /// Traces `samples` of every pixel. With `every` above 1, traces only every `every`-th band of rows and scales the

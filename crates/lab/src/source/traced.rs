@@ -10,7 +10,7 @@ use crate::error::InputError;
 use crate::frame::{Content, RenderedFrame, Shaded, ShadedColor, ShadingRequest, SourceFrame};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
-use crate::trace::sampling::Sampling;
+use crate::trace::sampling::{Sampling, trace_requested};
 use crate::trace::settings::TraceSettings;
 use crate::trace::surfaces::Surfaces;
 use crate::trace::view::View;
@@ -193,20 +193,16 @@ impl FrameSource for TracedSource {
         Ok(RenderedFrame { render: Some(took), ..request.answer(reference).foveated(frame) })
     }
 
-    /// Traces all samples of each chosen pixel, with draws that differ from those of the full-rate frame.
+    /// Traces the paths of each chosen pixel, or all samples of the source, with draws that differ from those of the
+    /// full-rate frame.
     fn shade(&mut self, frame: &RenderedFrame, request: &ShadingRequest) -> Result<Option<Shaded>, InputError> {
         let [view, _] = self.of.views(frame.index).0;
-        let mut film = Film::new(self.of.info().size);
-        let samples = self.samples.samples.max(1);
-        let ((), took) = self.clock.time(|| {
-            let pixels: Vec<_> = request.pixels().collect();
-            for pixels in pixels.chunks((STEP / samples).max(1) as usize) {
-                let spans = Spans::new(pixels.iter().copied(), 0..samples);
-                self.tracer.trace(&self.world, &view, frame.index, &spans, &mut film);
-            }
-        });
+        let (tracer, samples) = (&self.tracer, self.samples.samples);
+        let trace = || trace_requested(tracer, &self.world, &view, frame.index, request, samples);
+        let (film, took) = self.clock.time(trace);
         self.check()?;
-        Ok(Some(Shaded { color: ShadedColor::InMemory(film.color()), half: None, noise: None, took }))
+        let (color, noise) = (ShadedColor::InMemory(film.color()), Some(film.noise()));
+        Ok(Some(Shaded { color, half: None, noise, took }))
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

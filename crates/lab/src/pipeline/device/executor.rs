@@ -154,5 +154,8 @@ fn plan(
     let quads = gpu.read::<u32>(mask, 0);
     let is_chosen = |[x, y]: [u32; 2]| quads.at(x as usize / 2, y as usize / 2) >> place_in_quad([x, y]) & 1 == 1;
     let mask = Image::from_fn(post.desc().size_px, is_chosen);
-    Ok((ShadingRequest::new(mask, Some(Arc::new(list.clone()))), elapsed))
+    let paths_at =
+        |[x, y]: [u32; 2]| if is_chosen([x, y]) { quads.at(x as usize / 2, y as usize / 2) >> 8 & 31 } else { 0 };
+    let paths = post.desc().settings.noisy.then(|| Image::from_fn(mask.size(), |px| paths_at(px) as u8));
+    Ok((ShadingRequest::new(mask, Some(Arc::new(list.clone()))).with_paths(paths), elapsed))
 }

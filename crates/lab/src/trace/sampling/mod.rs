@@ -8,12 +8,14 @@ mod circle;
 mod fill;
 mod lattice;
 mod layers;
+mod planned;
 mod regions;
 mod rings;
 
 pub use acuity::Acuity;
 pub use lattice::Lattice;
 pub use layers::Layers;
+pub use planned::trace_requested;
 pub use regions::Regions;
 
 use super::Tracer;
