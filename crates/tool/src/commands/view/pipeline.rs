@@ -9,9 +9,7 @@ use crate::failure::Failure;
 use afterimage::doctor::Finding;
 use afterimage::gpu::Frame;
 use afterimage::wgpu::{CommandEncoder, Texture};
-use afterimage::{
-    ContextDesc, Filter, Foveation, Gaze, MethodKind, Reset, Settings, ViewFrame, ViewGeometry,
-};
+use afterimage::{ContextDesc, Filter, Foveation, Gaze, MethodKind, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::{Content, RenderedFrame};
 use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun};
