@@ -10,7 +10,7 @@
 
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::color::srgb_encode;
-use afterimage::{ContextDesc, Filter, Foveation, Gaze, Image, Method, Settings, Smr, ViewFrame};
+use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, Settings, Smr, ViewFrame};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::source::analytic::AnalyticSource;
 
@@ -28,7 +28,6 @@ type Failure = Box<dyn std::error::Error>;
 /// A method on one kind of frames, and its measurements.
 struct Row {
     name: &'static str,
-    foveation: Foveation,
     jitters: bool,
     post: Option<CpuAfterimage>,
     whole: Mean,
@@ -62,7 +61,7 @@ impl Row {
             CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) })
         };
         let [whole, near, change] = [(); 3].map(|()| Mean::default());
-        Ok(Self { name, foveation, jitters, post: method.map(make).transpose()?, whole, near, change, before: None })
+        Ok(Self { name, jitters, post: method.map(make).transpose()?, whole, near, change, before: None })
     }
 
     fn show(&mut self, frame: &SourceFrame, view: &ViewFrame, index: u64) -> Result<Color, Failure> {
@@ -71,6 +70,7 @@ impl Row {
         let (colors, depths, motions, views) = ([&frame.color], [depth], [motion], [*view]);
         let frame = Frame { depth: Some(&depths), motion: Some(&motions), ..Frame::new(&colors, &views, index) };
         let mut shown = [Image::filled(SIZE, [0.0; 3])];
+        post.plan(&frame)?;
         post.process(&frame, &mut shown)?;
         let [shown] = shown;
         Ok(shown)

@@ -12,7 +12,7 @@
 
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::{self, CommandEncoder, Texture, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Filter, Foveation, FrameError, Gaze, Method, MethodKind, Settings, Smr, ViewFrame};
+use afterimage::{ContextDesc, Foveation, FrameError, Gaze, Method, MethodKind, Settings, Smr, ViewFrame};
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::Headless;
 use afterimage_lab::source::FrameSource;

@@ -5,7 +5,7 @@ use super::camera::{self, HFOV_DEG};
 use super::options::Options;
 use super::scenes::SceneInput;
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::{ContextDesc, Filter, Foveation, Gaze, Image, Method, Reset, Settings, Smr, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, Reset, Settings, Smr, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::encode;

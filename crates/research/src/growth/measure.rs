@@ -236,7 +236,7 @@ fn rasterised(rig: &Rig, config: Config, frames: u64) -> Result<Point, Failure> 
             let (content, surfaces) =
                 rig.clock.time(|| submitted(&rig.gpu, |encoder| source.record(encoder, &request)));
             let Some(OnDevice::Surfaces(drawn)) = OnDevice::of(&content.content) else {
-                return Err("surfaces are on the device".into());
+                return Err(Failure::Input("surfaces are on the device".into()));
             };
             let (depth, motion) = (Some((&drawn.depth).into()), Some((&drawn.motion).into()));
             let frame = Frame { depth, motion, ..Frame::new(&drawn.color, &views, index) };

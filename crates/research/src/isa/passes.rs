@@ -5,9 +5,7 @@ use afterimage::gpu::{Afterimage, Variant};
 use afterimage::kernel::quads::RUN_QUADS;
 use afterimage::shader::{Composer, Module, SHADERS};
 use afterimage::wgpu::{Device, DeviceDescriptor, TextureFormat};
-use afterimage::{
-    ContextDesc, Filter, Foveation, Gaze, Method, MethodKind, Sampler, Settings, Smr, ViewFrame, ViewGeometry, Wrs,
-};
+use afterimage::{ContextDesc, Foveation, Method, MethodKind, Sampler, Settings, Smr, Wrs};
 
 /// Size of the frames of the roofline.
 pub const SIZE_PX: [u32; 2] = [3840, 2160];

@@ -38,9 +38,9 @@ fn both_show_the_same(
         let gaze_px = [60.0 + 10.0 * index as f32, 50.0];
         let request = pipelines[0].request(index, Some(gaze_px));
         let frame = source.render(&request).unwrap();
-        let [gpu, cpu] = pipelines
-            .each_mut()
-            .map(|pipeline| pipeline.step_with(&frame, &mut |request| Ok::<_, Failure>(source.shade(&frame, request)?)).unwrap());
+        let [gpu, cpu] = pipelines.each_mut().map(|pipeline| {
+            pipeline.step_with(&frame, &mut |request| Ok::<_, Failure>(source.shade(&frame, request)?)).unwrap()
+        });
         for ((gpu, cpu), method) in gpu.outputs.iter().zip(&cpu.outputs).zip(methods) {
             assert_eq!(gpu.image, cpu.image, "{geometry:?}, {layout:?}, frame {index}, {}", method.name());
         }
