@@ -124,7 +124,7 @@ fn alpha_is_filled_as_color_is() {
     // A constant, which is filled as it is, with an alpha that is not finite in the first pixel.
     let texel = |i: u32| [0.5, 0.5, 0.5, if i == 0 { f32::NAN } else { 0.25 }];
     let color = bare.filled(format, &(0..70 * 41).map(texel).collect::<Vec<_>>());
-    let mask = Image::from_fn(SIZE, |px| if px.map(|v| v % 8) == [0, 0] { 1.0 } else { 0.0 });
+    let mask = Image::from_fn(SIZE, |px| if px.map(|v| v % 8) == [0, 0] { 1.0_f32 } else { 0.0 });
     let mask = bare.filled(TextureFormat::R32Float, &mask.pixels().iter().map(|&v| [v]).collect::<Vec<_>>());
     let output = bare.output(format);
     let frame = Frame { mask: Some((&mask).into()), ..Frame::new(&color, &bare.views, 0) };
