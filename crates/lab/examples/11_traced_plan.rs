@@ -68,7 +68,8 @@ impl Row {
         let (depth, motion) = (seen.depth.as_ref().ok_or("no depth")?, seen.motion.as_ref().ok_or("no motion")?);
         let (depths, motions, views) = ([depth], [motion], [view]);
         let reset = if seen.cut { Reset::All } else { Reset::None };
-        let bare = Frame { depth: Some(&depths), motion: Some(&motions), reset, ..Frame::new(&[], &views, frame.index) };
+        let bare =
+            Frame { depth: Some(&depths), motion: Some(&motions), reset, ..Frame::new(&[], &views, frame.index) };
         let mut shown = [Image::filled(size, [0.0; 3])];
         match &mut self.kind {
             Kind::Planned => {
