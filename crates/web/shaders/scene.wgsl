@@ -23,7 +23,7 @@ struct Quads {
 @group(0) @binding(3) var color_out: texture_storage_2d<rgba32float, write>;
 @group(0) @binding(4) var<storage, read> quads: Quads;
 // Bits 0 to 3: pixels of a quad to shade.
-@group(0) @binding(5) var quad_mask: texture_2d_array<u32>;
+@group(0) @binding(5) var quad_mask: texture_2d<u32>;
 
 const NEAR: f32 = 0.1;
 const FAR: f32 = 1e4;
@@ -326,7 +326,7 @@ fn chosen(
         return;
     }
     let quad = vec2u(quads.places[i] & 0xffffu, quads.places[i] >> 16u);
-    let mask = textureLoad(quad_mask, quad, 0, 0).x;
+    let mask = textureLoad(quad_mask, quad, 0).x;
     for (var place = 0u; place < 4u; place++) {
         if ((mask >> place) & 1u) != 0u {
             shade(2u * quad + vec2u(place & 1u, place >> 1u));

@@ -110,11 +110,10 @@ impl Gpu {
         bound: &[(u32, BindingResource<'_>)],
         size: Dispatch<'_>,
     ) {
-        let entry = |(binding, resource): &(u32, BindingResource<'_>)| BindGroupEntry {
-            binding: *binding,
-            resource: resource.clone(),
-        };
-        let entries: Vec<_> = bound.iter().map(entry).collect();
+        let entries: Vec<_> = bound
+            .iter()
+            .map(|(binding, resource)| BindGroupEntry { binding: *binding, resource: resource.clone() })
+            .collect();
         let layout = &pipeline.get_bind_group_layout(0);
         let group = self.device.create_bind_group(&BindGroupDescriptor { label: None, layout, entries: &entries });
         let mut pass = encoder.begin_compute_pass(&Default::default());

@@ -23,7 +23,7 @@ pub struct Demo {
 }
 
 /// Share of the pixels that smr shades by need.
-const BUDGET: f32 = 0.05;
+const BUDGET: f32 = 0.065;
 
 type Result<T> = std::result::Result<T, JsError>;
 

@@ -107,7 +107,7 @@ fn single_pixels_have_their_turn_within_the_budget() {
 fn a_quarter_has_a_pixel_of_every_quad() {
     for gaze_px in [[30.0, 20.0], [-1e6, 1e5], [1e30, 0.0]] {
         let view = wall(3, Needs::Settled).with(|view| view.facts.gaze = afterimage::Gaze::At { px: gaze_px });
-        let mut post = context(smr(Foveation::quads(), true));
+        let mut post = context(smr(Foveation { fovea_deg: 0.0, ..Foveation::quads() }, true));
         let (mask, _) = show(&mut post, 3, &view);
         let place = Foveation::quarter_place_px(3);
         assert!(pixels(SIZE).all(|px| pixel(&mask, px) == (px.map(|v| v % 2) == place)), "{gaze_px:?}");

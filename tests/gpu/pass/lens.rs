@@ -88,7 +88,9 @@ fn what_a_lens_shows_is_as_without_it() {
         let method = Method::Smr(Smr { antialias, ..Smr::default() });
         let settings = Settings { method, noisy, ..settings(MethodKind::Smr) };
         let Some(mut rig) = Rig::new(desc(), settings) else { return };
-        let mut seen = views(0, &settings);
+        // Of the same samples: a plan leaves out what the lens hides.
+        let mask = Image::from_fn(SIZE, |[x, y]| if (x + y).is_multiple_of(3) { 1.0 } else { 0.0 });
+        let mut seen = views(0, &settings).map(|view| View { mask: Some(mask.clone()), ..view });
         let made = rig.on_gpu(0, Reset::All, &seen);
         seen.iter_mut().for_each(|view| view.facts.visible_px = None);
         let all = rig.on_gpu(0, Reset::All, &seen);

@@ -34,7 +34,7 @@ fn required_limits_suffice_and_none_may_be_lower() {
         ("max_storage_buffers_per_shader_stage", |limits| &mut limits.max_storage_buffers_per_shader_stage),
     ];
     for settings in all_settings() {
-        for size in [[1, 1], [5000, 2]] {
+        for size in [[2, 1], [5000, 2]] {
             let desc = described(size, settings);
             let needed = Afterimage::required_limits(&desc);
             assert!(needed.check_limits(&Limits { max_texture_dimension_2d: 8192, ..Limits::default() }));

@@ -8,14 +8,12 @@ use super::times::{Pass, PassTimes};
 use crate::failure::Failure;
 use afterimage::doctor::Finding;
 use afterimage::gpu::Frame;
-use afterimage::wgpu::{Buffer, CommandEncoder, Texture};
-use afterimage::{
-    ContextDesc, Filter, Foveation, FrameError, Gaze, MethodKind, Reset, Settings, ViewFrame, ViewGeometry,
-};
+use afterimage::wgpu::{CommandEncoder, Texture};
+use afterimage::{ContextDesc, Filter, Foveation, Gaze, MethodKind, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::{Content, RenderedFrame};
 use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun};
-use afterimage_lab::quad_views::QuadViewLayout;
+use afterimage_lab::quad_views::{Geometry, QuadViewLayout};
 use afterimage_lab::source::{FrameRequest, RasterSource, Wanted};
 use std::convert::Infallible;
 use std::sync::Arc;
