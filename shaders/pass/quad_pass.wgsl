@@ -26,9 +26,14 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
     var own_fits = 1.0;
     var noises = NoiseSum(0.0, 0.0, 0.0);
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
-    let taps = select(0u, around.count, coarsest > 0.0);
+    let taps = select(0u, select(around.count, 12u, NOISY != 0u), coarsest > 0.0);
     for (var tap = 0u; tap < taps; tap++) {
-        let sample = sample_tap(around, tap, px, view);
+        var sample: SampleTap;
+        if NOISY != 0u {
+            sample = noisy_tap(around, tap, px, view);
+        } else {
+            sample = sample_tap(around, tap, px, view);
+        }
         let at = min(sample.at, frame.size - 1u);
         let given = sample_at(at, view);
         let sampled = color(given.xyz);
@@ -41,7 +46,11 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
             let x = f32(at.x) - f32(px.x);
             let y = f32(at.y) - f32(px.y);
             let px2 = x * x + y * y;
-            let weight = select(1.0 / max(px2, 1.0), 1.0, is_own) * select(OTHER_SURFACE, 1.0, same);
+            var by_place = select(1.0 / max(px2, 1.0), 1.0, is_own);
+            if NOISY != 0u {
+                by_place = noisy_share(noise_at(at, view).samples, px2);
+            }
+            let weight = by_place * select(OTHER_SURFACE, 1.0, same);
             let known = weight * select(BY_NEIGHBOURS, 1.0, lit.is_own);
             let alpha = select(1.0, given.w, is_finite(given.w));
             sum += vec4f(sampled.color, alpha) * weight;
@@ -75,7 +84,9 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
     candidate.gains = gain_sum * known;
     candidate.fit = min(fit_sum * known, own_fits);
     if NOISY != 0u {
-        candidate.noise = mean_noise(noises);
+        candidate.mean = mean.xyz;
+        candidate.mean_noise = mean_noise(noises);
+        candidate.noise = candidate.mean_noise;
         if candidate.is_own {
             candidate.noise = noise_at(px, view);
         }

@@ -123,3 +123,17 @@ fn sample_tap(around: AroundPixel, tap: u32, px: vec2u, view: u32) -> SampleTap 
     let at = vec2u(vec2i(px) + sample_offset(code));
     return SampleTap(select(at, px, tap == 4u), tap == 4u || code != 0xffffffffu);
 }
+
+// Sample `tap` of 12 that stand for a noisy pixel; CPU twin: `all_samples_around` in src/cpu/sparse_pass/quads.rs.
+fn noisy_tap(around: AroundPixel, tap: u32, px: vec2u, view: u32) -> SampleTap {
+    let quad = px >> vec2u(1u);
+    if tap < 4u {
+        let at = px_of_quad(quad, tap);
+        return SampleTap(at, ((around.mask >> tap) & 1u) == 1u && all(at < frame.size));
+    }
+    let code = code_of(around.quads, tap - 4u);
+    if code == NOWHERE {
+        return SampleTap(px, false);
+    }
+    return SampleTap(nearest_of(vec2u(vec2i(quad) + neighbour_offset(code)), px, view), true);
+}

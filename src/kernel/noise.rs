@@ -19,6 +19,8 @@ const SIGMAS: f32 = 3.0;
 /// Noise confidence: standard error up to which it is 1, and width over which it falls to 0, in units of
 /// `root_difference`. Both are below the just noticeable difference.
 const CONFIDENCE_FALLOFF: [f32; 2] = [0.5, 1.0];
+/// Number of samples of history with which a pixel's own noisy sample and the mean around it count alike.
+const BORROWED_SAMPLES: f32 = 16.0;
 /// Limit on the samples of a coarser history, in frames.
 const COARSER_FRAMES: f32 = 4.0;
 /// Largest standard error, linear; larger ones are clamped to it. Its square fits into a half.
@@ -176,6 +178,29 @@ pub fn noise_need(history: Noise, luma: f32) -> f32 {
     let samples = history.samples.max(1.0);
     let slope = root_slope(luma);
     (slope * slope) * (history.variance / (samples * (samples + 1.0)))
+}
+
+/// Weight of a sample of `samples` paths at a squared distance in pixels, in a mean of samples around a pixel: that of
+/// its paths, less with distance.
+#[inline]
+pub fn noisy_share(samples: f32, px2: f32) -> f32 {
+    samples / px2.max(1.0).sqrt()
+}
+
+/// Share that the mean of the samples around a pixel has in its own noisy sample, if its history is a mean of `past`
+/// samples. Without history nearly all: error by blur is less than error by noise then.
+#[inline]
+pub fn borrowed(past: f32) -> f32 {
+    BORROWED_SAMPLES / (BORROWED_SAMPLES + past)
+}
+
+/// Noise between that of a pixel's own sample and that of the mean around it, which has a share.
+#[inline]
+pub fn towards(own: Noise, mean: Noise, share: f32) -> Noise {
+    Noise {
+        samples: own.samples + (mean.samples - own.samples) * share,
+        variance: own.variance + (mean.variance - own.variance) * share,
+    }
 }
 
 /// Running sums for the noise of a weighted mean of samples.

@@ -1,7 +1,7 @@
 //! Candidate of a pixel: the samples around it, and their light.
 
 use super::view::NO_NOISE;
-use crate::kernel::noise::Noise;
+use crate::kernel::noise::{Noise, borrowed, towards};
 use crate::kernel::resample::codes_between;
 use crate::kernel::sparse_smr::{BY_NEIGHBOURS, Lit, OTHER_SURFACE, Observation, SAMPLE_RELATIVE, candidate_level};
 use crate::notes::{NoteStage, Notes};
@@ -24,6 +24,8 @@ pub(super) struct Candidate {
     pub noise: Noise,
     /// Whether the candidate is this pixel's own sample.
     pub is_own: bool,
+    /// Mean of all samples around the pixel, its own included, and its noise.
+    pub mean: (Vec3, Noise),
 }
 
 impl Candidate {
@@ -36,7 +38,15 @@ impl Candidate {
         fit: 1.0,
         noise: NO_NOISE,
         is_own: false,
+        mean: (Vec3::ZERO, NO_NOISE),
     };
+
+    /// The noisy sample of a pixel whose history is a mean of `past` samples, with its share of the mean around it.
+    #[inline(always)]
+    pub fn borrowing(self, past: f32) -> Self {
+        let (share, (mean, noise)) = (borrowed(past), self.mean);
+        Self { color: self.color + (mean - self.color) * share, noise: towards(self.noise, noise, share), ..self }
+    }
 
     #[inline(always)]
     pub fn note(&self, notes: &mut impl Notes) {
@@ -124,7 +134,8 @@ impl Sums {
             return Candidate::NONE;
         }
         let coarsest = level as f32;
-        let (color, own_fit) = self.own.unwrap_or((self.color * (1.0 / self.weight), 1.0));
+        let mean = self.color * (1.0 / self.weight);
+        let (color, own_fit) = self.own.unwrap_or((mean, 1.0));
         Candidate {
             color,
             usable: true,
@@ -137,6 +148,7 @@ impl Sums {
             fit: (self.fit * (1.0 / self.valid)).min(own_fit),
             noise: NO_NOISE,
             is_own: self.own.is_some(),
+            mean: (mean, NO_NOISE),
         }
     }
 }

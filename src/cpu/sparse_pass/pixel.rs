@@ -45,12 +45,7 @@ impl LitView<'_> {
         }
         let disparity = inputs.disparity(x, y);
         let level = quads.level_at([x, y]);
-        let candidate = view.quad_candidate(quads, [x, y], disparity, lights, notes);
-        let mut candidate = candidate;
-        candidate.noise.samples *= (candidate.lod * super::quad_plan::tune(9, 0.0)).exp2();
-        if view.is_noisy {
-            candidate.fit = candidate.fit.max(super::quad_plan::tune(11, 0.0));
-        }
+        let mut candidate = view.quad_candidate(quads, [x, y], disparity, lights, notes);
         let surface = view.surface([x, y], level);
         candidate.note(notes);
         surface.note(notes);
@@ -64,6 +59,9 @@ impl LitView<'_> {
             Ok(_) => Verdict::Valid,
         };
         inputs.count(x, y, candidate.usable, disparity, verdict, stats);
+        if view.is_noisy && candidate.is_own {
+            candidate = candidate.borrowing(history.as_ref().map_or(0.0, |found| found.noise.samples));
+        }
 
         let mut output = candidate.color;
         let mut stored = StoredSample {
@@ -96,13 +94,7 @@ impl LitView<'_> {
                     gain: candidate.gain,
                     fit: candidate.fit,
                     trust: previous.trust,
-                    accumulate: if view.is_noisy && !candidate.is_own {
-                        super::quad_plan::tune(8, view.accumulate)
-                    } else if view.is_noisy {
-                        super::quad_plan::tune(10, view.accumulate)
-                    } else {
-                        view.accumulate
-                    },
+                    accumulate: view.accumulate,
                 };
                 if N::ON {
                     let history = relit(inputs.history, inputs.gain, inputs.range);

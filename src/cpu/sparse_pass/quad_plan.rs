@@ -26,15 +26,6 @@ use crate::method::HistoryLayout;
 use crate::notes::NoNotes;
 use glam::Vec3;
 
-/// TUNE
-pub(super) fn tune(i: usize, default: f32) -> f32 {
-    static ALL: std::sync::OnceLock<Vec<f32>> = std::sync::OnceLock::new();
-    let all = ALL.get_or_init(|| {
-        std::env::var("TUNE").unwrap_or_default().split(',').map(|v| v.parse().unwrap_or(f32::NAN)).collect()
-    });
-    all.get(i).copied().filter(|v| !v.is_nan()).unwrap_or(default)
-}
-
 /// Whether a frame shades one pixel of each quad, because nothing is known of its predecessor.
 pub(in crate::cpu) fn is_quarter(desc: &ContextDesc, history: &History, frame: &Frame<'_>) -> bool {
     let starts = frame.reset != Reset::None || !history.is_filled();
@@ -121,7 +112,7 @@ impl View<'_> {
         let mut counts = vec![0; KEYS as usize];
         for &PathKeys { first, further, samples } in keys.pixels() {
             counts[first as usize] += 1;
-            let of_paths = (2..=MOST_PATHS.min(tune(12, 16.0) as u32)).map(|path| path_key(further, samples, path));
+            let of_paths = (2..=MOST_PATHS).map(|path| path_key(further, samples, path));
             of_paths.take_while(|&key| key > 0).for_each(|key| counts[key as usize] += 1);
         }
         let least = threshold(&counts, foveation.budget_quads(size));
@@ -140,7 +131,7 @@ impl View<'_> {
         });
         let of_quads = Image::from_fn_parallel(size, |[x, y]| {
             let PathKeys { first, further, samples } = keys.at(x as usize, y as usize);
-            paths(first, further, samples, even.at(x as usize, y as usize), least).min(tune(12, 16.0) as u32) as u8
+            paths(first, further, samples, even.at(x as usize, y as usize), least) as u8
         });
         (Quads::new(self.inputs.size, masks, regions, Quads::levels(foveation, self.is_noisy)), of_quads)
     }
@@ -168,13 +159,9 @@ impl View<'_> {
             return Need::default();
         }
         let e_deg = self.inputs.region_angle_deg(self.inputs.ray(2 * x, 2 * y));
-        let counts = if self.is_noisy { acuity(e_deg).powf(tune(0, 1.0)) } else { acuity(e_deg) };
+        let counts = acuity(e_deg);
         let of_history = |need: Need| Need { first: need.first * counts, noise: need.noise * counts, ..need };
-        let without = Need {
-            first: no_history_need(x, y, first) * if self.is_noisy { tune(1, 1.0) } else { 1.0 },
-            noise: if self.is_noisy { tune(2, 0.0) } else { 0.0 },
-            ..Need::default()
-        };
+        let without = Need { first: no_history_need(x, y, first), ..Need::default() };
         self.need_at([u, v]).map_or(without, of_history)
     }
 
@@ -195,7 +182,6 @@ impl View<'_> {
         let mut best = (f32::MAX, -1.0, ENOUGH_SAMPLES);
         let mut nearest = ([0; 2], Vec3::ZERO);
         let mut noises = NoiseSum::default();
-        let mut most_variance = 0.0f32;
         let (mut low, mut high) = (Vec3::splat(f32::MAX), Vec3::ZERO);
         for tap in 0..4 {
             let [tx, ty] = [first[0] + (tap & 1) as f32, first[1] + (tap >> 1) as f32];
@@ -206,9 +192,7 @@ impl View<'_> {
             let stored = unpack_full(words);
             (low, high) = (low.min(stored.color), high.max(stored.color));
             if self.is_noisy {
-                let near = self.stored_noise([tx as i32, ty as i32]);
-                noises = add_noise(noises, near, 1.0);
-                most_variance = near.variance.max(most_variance);
+                noises = add_noise(noises, self.stored_noise([tx as i32, ty as i32]), 1.0);
             }
             let px2 = (tx - at[0]) * (tx - at[0]) + (ty - at[1]) * (ty - at[1]);
             if px2 < best.0 {
@@ -223,15 +207,10 @@ impl View<'_> {
         if self.is_noisy {
             let (texel, color) = nearest;
             let own = self.stored_noise(texel);
-            let variance = match tune(3, 1.0) as u32 {
-                0 => own.variance,
-                1 => mean_noise(noises).variance,
-                _ => most_variance,
-            };
-            let past = Noise { variance, ..own };
-            let around = luma(expose(color, self.inputs.exposure)).max(tune(4, 0.0));
-            let noise = noise_need(past, around).min(tune(5, 1e9)) * if around > tune(6, 1e9) { 0.0 } else { 1.0 };
-            let first = tune(7, 1.0) * need(best.1, ENOUGH_SAMPLES, root_difference(low, high));
+            // The variance of few samples is uncertain, therefore that of all four.
+            let past = Noise { variance: mean_noise(noises).variance, ..own };
+            let noise = noise_need(past, luma(expose(color, self.inputs.exposure)));
+            let first = need(best.1, ENOUGH_SAMPLES, root_difference(low, high));
             return Some(Need { first, noise, samples: known_samples(own.samples) });
         }
         let first = need(best.1, best.2, root_difference(low, high));

@@ -6,7 +6,7 @@ use super::observe::{pack_observation, unpack_observation};
 use super::quads::{Quads, offset_px2};
 use super::view::{Samples, View};
 use crate::kernel::depth::INVALID_DISPARITY;
-use crate::kernel::noise::{NoiseSum, add_noise, mean_noise};
+use crate::kernel::noise::{NoiseSum, add_noise, mean_noise, noisy_share};
 use crate::kernel::quads::WHOLE;
 use crate::kernel::resample::has_code;
 use crate::kernel::sanitize;
@@ -165,7 +165,11 @@ impl View<'_> {
             let lit = quad_lit(words, place);
             let alike = !self.inputs.tests_depth() || has_code(quad_code(words, place), codes);
             let px2 = offset_px2(at[0], px[0]) + offset_px2(at[1], px[1]);
-            let share = if at == px { 1.0 } else { 1.0 / px2 };
+            let share = match self.is_noisy {
+                true => noisy_share(self.sample_noise(at).samples, px2),
+                false if at == px => 1.0,
+                false => 1.0 / px2,
+            };
             let weight = sums.add(color, lit, share, px2, alike);
             if N::ON {
                 note_sample(notes, at, weight, color, lit, self.observe_px(at, level, color, usable));
@@ -177,10 +181,14 @@ impl View<'_> {
                 sums.own = Some((color, lit.own_fit));
             }
         };
-        quads.samples_around(px).for_each(&mut add);
+        match self.is_noisy {
+            true => quads.all_samples_around(px).for_each(&mut add),
+            false => quads.samples_around(px).for_each(&mut add),
+        }
         let mut candidate = sums.candidate(level);
         if self.is_noisy && candidate.usable {
-            candidate.noise = if candidate.is_own { self.sample_noise(px) } else { mean_noise(noises) };
+            candidate.mean.1 = mean_noise(noises);
+            candidate.noise = if candidate.is_own { self.sample_noise(px) } else { candidate.mean.1 };
         }
         Candidate { lod: if candidate.is_own { 0.0 } else { candidate.lod }, ..candidate }
     }

@@ -117,6 +117,18 @@ impl Quads {
         found.into_iter().filter(|at| at[0] != u32::MAX)
     }
 
+    /// Samples that stand for a noisy pixel, of which more are better: those of its quad, and the nearest one of each
+    /// quad around it.
+    #[inline(always)]
+    pub fn all_samples_around(&self, px: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
+        let quad = px.map(|v| v / 2);
+        let mask = self.mask(quad);
+        let own = (0..4).filter(move |place| mask >> place & 1 == 1);
+        let own = own.map(move |place| [2 * quad[0] + (place & 1), 2 * quad[1] + (place >> 1)]);
+        let own = own.filter(|at| (0..2).all(|i| at[i] < self.size_px[i]));
+        own.chain(self.around(quad).map(move |other| self.nearest_of(other, px)))
+    }
+
     /// The sample nearest to a pixel, the first of equally near ones; `None` without any around it.
     #[inline(always)]
     pub fn nearest_sample(&self, px: [u32; 2]) -> Option<[u32; 2]> {
