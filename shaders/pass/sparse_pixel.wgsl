@@ -40,7 +40,7 @@ fn no_candidate() -> Candidate {
 // The noisy sample of a pixel whose history is a mean of `past` samples, with its share of the mean around it.
 fn borrowing(own: Candidate, past: f32) -> Candidate {
     var all_around = own;
-    let share = borrowed(past);
+    let share = borrowed(past, own.noise, luma(own.color));
     all_around.color = own.color + (own.mean - own.color) * share;
     all_around.noise = towards(own.noise, own.mean_noise, share);
     return all_around;
