@@ -2,7 +2,7 @@
 
 use super::view::NO_NOISE;
 use crate::kernel::color::luma;
-use crate::kernel::noise::{Noise, borrowed, towards};
+use crate::kernel::noise::{Noise, borrowed};
 use crate::kernel::resample::codes_between;
 use crate::kernel::sparse_smr::{BY_NEIGHBOURS, Lit, OTHER_SURFACE, Observation, SAMPLE_RELATIVE, candidate_level};
 use crate::notes::{NoteStage, Notes};
@@ -25,8 +25,8 @@ pub(super) struct Candidate {
     pub noise: Noise,
     /// Whether the candidate is this pixel's own sample.
     pub is_own: bool,
-    /// Mean of all samples around the pixel, its own included, and its noise.
-    pub mean: (Vec3, Noise),
+    /// Of a noisy pixel with a sample: mean of all samples around it, its own included, and the mean variance of one.
+    pub around: (Vec3, f32),
 }
 
 impl Candidate {
@@ -39,15 +39,18 @@ impl Candidate {
         fit: 1.0,
         noise: NO_NOISE,
         is_own: false,
-        mean: (Vec3::ZERO, NO_NOISE),
+        around: (Vec3::ZERO, 0.0),
     };
 
-    /// The noisy sample of a pixel whose history is a mean of `past` samples, with its share of the mean around it.
+    /// The noisy sample of a pixel whose history is a mean of `past` samples, with its share of the mean around it. Its
+    /// variance takes its share, too: a pixel whose samples all missed a lamp would call its neighbours' light a change.
     #[inline(always)]
     pub fn borrowing(self, past: f32) -> Self {
-        let (mean, noise) = self.mean;
-        let share = borrowed(past, self.noise, luma(self.color));
-        Self { color: self.color + (mean - self.color) * share, noise: towards(self.noise, noise, share), ..self }
+        let (mean, variance) = self.around;
+        let share = borrowed(past, Noise { variance, ..self.noise }, luma(mean));
+        let variance = self.noise.variance + (variance - self.noise.variance) * share;
+        let noise = Noise { variance, ..self.noise };
+        Self { color: self.color + (mean - self.color) * share, noise, ..self }
     }
 
     #[inline(always)]
@@ -136,8 +139,7 @@ impl Sums {
             return Candidate::NONE;
         }
         let coarsest = level as f32;
-        let mean = self.color * (1.0 / self.weight);
-        let (color, own_fit) = self.own.unwrap_or((mean, 1.0));
+        let (color, own_fit) = self.own.unwrap_or((self.color * (1.0 / self.weight), 1.0));
         Candidate {
             color,
             usable: true,
@@ -150,7 +152,7 @@ impl Sums {
             fit: (self.fit * (1.0 / self.valid)).min(own_fit),
             noise: NO_NOISE,
             is_own: self.own.is_some(),
-            mean: (mean, NO_NOISE),
+            around: (Vec3::ZERO, 0.0),
         }
     }
 }
