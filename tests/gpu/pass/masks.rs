@@ -252,10 +252,12 @@ fn wrong_noise_of_pixels_is_caught() {
     let settings = noisy_of(Settings::traced().method, single(false, [2, 4], 0.1));
     let planted = [
         ("candidate.noise = noise_at(px, view);", ""),
-        ("candidate.noise = candidate.mean_noise;", ""),
+        ("candidate.noise = mean_noise(noises);", ""),
+        ("candidate.around = mean_around(around, px, view, codes);", ""),
         ("candidate = borrowing(candidate, past);", ""),
         ("past = stored_noise(found.texel, view).samples;", ""),
-        ("noisy_share(noise_at(at, view).samples, px2)", "noisy_share(1.0, px2)"),
+        ("noisy_share(noise.samples, x * x + y * y)", "noisy_share(1.0, x * x + y * y)"),
+        ("(own.around.w - own.noise.variance) * share", "0.0"),
         ("code_of(around.quads, tap - 4u)", "code_of(around.quads, (tap - 4u) & 3u)"),
         ("select(outside, NOISY, region_now == IN_FOVEA)", "select(outside, 0u, region_now == IN_FOVEA)"),
         ("share_in_block(needs, i) + noise_needs[i]", "share_in_block(needs, i)"),
