@@ -227,8 +227,6 @@ pub enum FrameValue {
     VisibleBounds,
     /// [`ViewFrame::previous_from_current`](crate::ViewFrame::previous_from_current).
     CameraMotion,
-    /// [`ViewFrame::lattices`](crate::ViewFrame::lattices).
-    Lattices,
     /// [`FrameInputs::lod`](crate::FrameInputs::lod).
     Lod,
     /// [`FrameInputs::noise`](crate::FrameInputs::noise).
@@ -239,6 +237,8 @@ pub enum FrameValue {
     Exposure,
     /// Plan of a frame that is shaded by quads: [`Filter::Quads`](crate::Filter::Quads).
     Plan,
+    /// Mask of such a frame whose pixels the renderer chose.
+    Mask,
     /// A rectangle of a texture that is larger than the view.
     Region {
         /// Name of the input or output.
@@ -257,12 +257,12 @@ impl Display for FrameValue {
             Self::Jitter => "jitter_px",
             Self::VisibleBounds => "visible_px",
             Self::CameraMotion => "previous_from_current",
-            Self::Lattices => "lattices",
             Self::Lod => "lod",
             Self::Noise => "noise",
             Self::Reactive => "reactive",
             Self::Exposure => "exposure",
             Self::Plan => "plan",
+            Self::Mask => "mask",
             Self::Region { input } => input,
             Self::DebugView => "debug view",
         })

@@ -4,8 +4,8 @@
 use crate::error::{SettingsError, check};
 use crate::geometry::ViewGeometry;
 use crate::kernel::foveate;
-use crate::kernel::lattice::offset_px;
-use crate::kernel::quads::FIRST_STEP;
+use crate::kernel::lattice::{self, offset_px};
+use crate::kernel::quads::{FIRST_STEP, budget_quads};
 #[cfg(feature = "bevy-0-20")]
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
@@ -26,10 +26,6 @@ pub enum Filter {
     Block,
     /// Full rate everywhere; no foveation.
     Off,
-    /// One point sample a block that moves from frame to frame, so that every pixel is sampled sooner or later
-    /// ([`Foveation::lattices`]): renderers that draw small, jittered views. Regions are rectangles, without blends.
-    /// Frames need [`ViewFrame::lattices`](crate::ViewFrame::lattices).
-    Sparse,
     /// Quads of 2x2 pixels of one full-rate view, which the post-process chooses before shading (`plan` of either
     /// executor): all in the fovea, one quad a block of an even pattern that moves from frame to frame, and a
     /// [`budget`](Foveation::budget) of quads where history lacks something. Depth and motion are given at every pixel.
@@ -38,7 +34,7 @@ pub enum Filter {
 
 impl Filter {
     /// All filters, in the order of the command-line tool.
-    pub const ALL: [Self; 6] = [Self::Mip, Self::Gauss, Self::Block, Self::Sparse, Self::Quads, Self::Off];
+    pub const ALL: [Self; 5] = [Self::Mip, Self::Gauss, Self::Block, Self::Quads, Self::Off];
 
     /// Short name in lower case, such as `mip`.
     pub fn name(self) -> &'static str {
@@ -55,7 +51,6 @@ impl Filter {
             Self::Mip => ("mip", "Box mip levels, trilinear"),
             Self::Gauss => ("gauss", "Gaussian blur that grows with eccentricity"),
             Self::Block => ("block", "One point sample per block"),
-            Self::Sparse => ("sparse", "One point sample per block that moves every frame, in regions without blends"),
             Self::Quads => ("quads", "Quads of 2x2 pixels of a full-rate view that the post-process chooses"),
             Self::Off => ("off", "Full rate everywhere"),
         }
@@ -93,7 +88,8 @@ pub struct Foveation {
     pub filter: Filter,
     /// Diameter of the fovea, the full-rate region, in degrees: 0 to 180, at most `mid_deg`. Default 5.
     pub fovea_deg: f32,
-    /// Diameter of the middle region in degrees: 0 to 180. Default 15.
+    /// Diameter of the middle region in degrees: 0 to 180. Default 15. With [`Filter::Quads`] 180 is the whole view, even
+    /// if the gaze is far outside of it.
     pub mid_deg: f32,
     /// Width in degrees of the linear blend outside the radius of each region: 0 to 90. Default 1.
     pub blend_deg: f32,
@@ -103,8 +99,13 @@ pub struct Foveation {
     /// [`MAX_RATE`](Self::MAX_RATE). Default 16.
     pub rate_far: u32,
     /// With [`Filter::Quads`]: share of the pixels that smr shades by need in a frame, beside the fovea and the even
-    /// pattern, 0 to 1. Default 0.025.
+    /// pattern, 0 to 1. With [`noisy`](crate::Settings::noisy) frames it counts paths, of which a pixel may get several.
+    /// Default 0.025.
     pub budget: f32,
+    /// With [`Filter::Quads`]: whether one pixel of a chosen quad is shaded, outside the fovea, in place of all four;
+    /// each in turn. For path tracers and compute shaders, which can shade single pixels: four times as many places for
+    /// the same pixels. Default false.
+    pub single_pixels: bool,
 }
 
 impl Default for Foveation {
@@ -117,6 +118,7 @@ impl Default for Foveation {
             rate_mid: 8,
             rate_far: 16,
             budget: 0.025,
+            single_pixels: false,
         }
     }
 }
@@ -156,18 +158,37 @@ impl Foveation {
         Self { fovea_deg: 0.0, mid_deg: 0.0, rate_mid: rate, rate_far: rate, budget, ..Self::quads() }
     }
 
-    /// One pixel in 4, evenly, without a gaze: a sparse frame ([`ViewFrame::lattices`](crate::ViewFrame::lattices)) to
-    /// render first after a cut, before frames shaded by quads. As many pixels in quads lie at a quarter of the places.
-    /// smr keeps its history when the settings change to quads.
+    /// One pixel of each quad, without a gaze: what a temporal upscaler from half the width and height is given.
     ///
     /// ```
-    /// use afterimage::{Filter, Foveation};
+    /// use afterimage::Foveation;
     ///
-    /// assert_eq!(Foveation::quarter().filter, Filter::Sparse);
+    /// assert!(Foveation::quarter().single_pixels);
     /// ```
     pub fn quarter() -> Self {
-        let filter = Filter::Sparse;
-        Self { filter, fovea_deg: 0.0, mid_deg: 0.0, blend_deg: 0.0, rate_mid: 2, rate_far: 2, ..Self::default() }
+        let rates = Self { rate_mid: 2, rate_far: 2, ..Self::quads() };
+        Self { fovea_deg: 0.0, mid_deg: 180.0, blend_deg: 0.0, budget: 0.0, single_pixels: true, ..rates }
+    }
+
+    /// Place in its quad of the pixel that frame `index` shades alone, of each quad outside the fovea, if it shades one of
+    /// each.
+    pub fn quarter_place_px(index: u64) -> [u32; 2] {
+        offset_px(index, 2)
+    }
+
+    /// Jitter of the projection in a frame for [`Smr::antialias`](crate::Smr::antialias), in pixels, each in \[-0.5,
+    /// 0.5). It moves the samples within their pixels from frame to frame, so that a mean over time is a mean over the
+    /// pixel's area. This also holds where the even pattern visits a pixel only every 16 or 128 frames. A point at `p`
+    /// without jitter is drawn at `p + jitter_px`. `index`: frame counter.
+    ///
+    /// ```
+    /// use afterimage::Foveation;
+    ///
+    /// assert_eq!(Foveation::jitter_px(0), [-0.5, -0.5]);
+    /// assert!(Foveation::jitter_px(7).iter().all(|v| v.abs() <= 0.5));
+    /// ```
+    pub fn jitter_px(index: u64) -> [f32; 2] {
+        lattice::jitter_px(index)
     }
 
     /// Checks the range of every field.
@@ -205,12 +226,31 @@ impl Foveation {
         self.rate_far.ilog2()
     }
 
-    /// Places in their blocks of the quads of the even pattern of frame `index`, in quads: x and y in the middle
-    /// region, x and y in the periphery. There a frame has every second block.
-    pub(crate) fn quad_offsets(&self, index: u64) -> [u32; 4] {
-        let [mid_x, mid_y] = offset_px(index, self.rate_mid / 2);
-        let [far_x, far_y] = offset_px(index / 2, self.rate_far / 2);
+    /// Places in their blocks of the pixels of the even pattern of frame `index`: x and y in the middle region, x and y
+    /// in the periphery. There a frame has every second block.
+    pub(crate) fn pattern_px(&self, index: u64) -> [u32; 4] {
+        let [mid_x, mid_y] = offset_px(index, self.rate_mid);
+        let [far_x, far_y] = offset_px(index / 2, self.rate_far);
         [mid_x, mid_y, far_x, far_y]
+    }
+
+    /// Foveation of a frame without history, if that shades a quarter of the pixels: the fovea, and one pixel of each
+    /// quad around it.
+    pub(crate) fn after_cut(&self) -> Self {
+        Self { fovea_deg: self.fovea_deg, ..Self::quarter() }
+    }
+
+    /// Whether a frame without history shades a quarter of the pixels, evenly: if other frames have about as few.
+    pub(crate) fn takes_quarter(&self) -> bool {
+        let pixels = if self.single_pixels { 1.0 } else { 4.0 };
+        let even = 0.5 * pixels / (self.rate_far * self.rate_far) as f32;
+        even + self.budget < 0.3
+    }
+
+    /// Number of the quads of a view of `quads` quads for which the budget pays.
+    pub(crate) fn budget_quads(&self, quads: [u32; 2]) -> u32 {
+        let share = if self.single_pixels { 4.0 * self.budget } else { self.budget };
+        budget_quads(share, quads)
     }
 
     /// Place in its block of [`FIRST_STEP`] quads of the quad that frame `index` chooses first without history,
@@ -225,7 +265,8 @@ impl Foveation {
     }
 
     pub(crate) fn mid_radius_deg(&self) -> f32 {
-        0.5 * self.mid_deg
+        // Pixels may be more than 90 degrees from a gaze outside the view; a quarter has them, too.
+        if self.filter == Filter::Quads && self.mid_deg >= 180.0 { 360.0 } else { 0.5 * self.mid_deg }
     }
 
     fn lod_mid(&self) -> f32 {
@@ -256,7 +297,7 @@ impl Foveation {
         match self.filter {
             Filter::Off => 0.0,
             Filter::Gauss => foveate::blur_lod(e_deg, fovea, mid, self.lod_mid(), self.lod_far()),
-            Filter::Mip | Filter::Block | Filter::Sparse | Filter::Quads => {
+            Filter::Mip | Filter::Block | Filter::Quads => {
                 foveate::region_lod(e_deg, fovea, mid, self.blend_deg, self.lod_mid(), self.lod_far())
             }
         }

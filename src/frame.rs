@@ -102,9 +102,9 @@ pub struct FrameInputs<'a, Colors, Scalars, Vectors> {
     /// infinite show their history, or black, and are counted. On a GPU any float format.
     ///
     /// Channels are 0 to 65504; larger ones are clamped, and smr, taa and taau store negative ones as 0. For smr the
-    /// unit is free on frames that are neither sparse nor noisy: colors times a constant give the picture times it.
+    /// unit is free on frames that are neither planned nor noisy: colors times a constant give the picture times it.
     /// This holds for channels from 2^-14 (6e-5) on; darker ones are stored with fewer digits, and light that changes
-    /// there leaves ghosts. wrs, sparse frames and noise ([`Self::noise`]) compare colors by constants for white at
+    /// there leaves ghosts. wrs, planned frames and noise ([`Self::noise`]) compare colors by constants for white at
     /// about 1. Of colors in other units say the exposure ([`Exposure::Scene`]): then the range and these constants are
     /// for colors times it.
     pub color: Colors,
@@ -122,14 +122,23 @@ pub struct FrameInputs<'a, Colors, Scalars, Vectors> {
     /// `None`: `trust` says it.
     pub reactive: Option<Scalars>,
     /// Level of detail of the foveated frame: log2 of the block edge in pixels. On a GPU any float format. `None`:
-    /// computed from gaze and [`Settings::foveation`]. Sparse frames have the levels of their lattices instead, and no
+    /// computed from gaze and [`Settings::foveation`]. Planned frames have the places of their samples instead, and no
     /// such input. `foveation.rate_far` must be the coarsest block edge even with this input, because history is not
     /// matched at coarser levels.
     pub lod: Option<Scalars>,
     /// Noise of the color: standard error of its luma (linear), and the number of samples that were averaged into the
     /// color, at its level of detail. On a GPU `Rg16Float`, `Rg32Float` or wider. Required if [`Settings::noisy`] is
-    /// set, otherwise `None`. In sparse frames it is read only at the pixels of samples.
+    /// set, otherwise `None`. In planned frames it is read only at the pixels of samples.
     pub noise: Option<Vectors>,
+    /// Mask of a [planned frame](crate::Filter::Quads) whose pixels the renderer chose itself, in place of `plan`: a
+    /// pixel is shaded where it is above 0.5; NaN counts as 0. For checkerboards, half resolution, or a tracer that
+    /// chooses its own pixels; any pattern does, if it visits every pixel in some frame. On a GPU any float or
+    /// normalised format. `None`: `plan` chose the pixels.
+    pub mask: Option<Scalars>,
+    /// Colors of the quads of 2x2 pixels of a [planned frame](crate::Filter::Quads) that are shaded in part: one texel a
+    /// quad, half the width and height, rounded up. At most one pixel of such a quad is shaded then, as after a cut
+    /// (`is_quarter` of either executor). `color` has the other quads. `None`: `color` has all pixels.
+    pub half: Option<Colors>,
     /// Descriptions of the views, one for each view of the context.
     pub views: &'a [ViewFrame],
     /// Frame counter, which seeds the random numbers: the same index and [`Settings::seed`] give the same bytes.
@@ -151,6 +160,8 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
             reactive: None,
             lod: None,
             noise: None,
+            mask: None,
+            half: None,
             views,
             index,
             reset: Reset::None,
@@ -178,33 +189,28 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
             let expected = "None, because trust is given, and is 1 minus this mask";
             return Err(FrameError::Value { value: FrameValue::Reactive, view: 0, found: "given".into(), expected });
         }
-        self.check_lattices(&desc.settings)?;
+        self.check_lod(&desc.settings)?;
+        self.check_mask(&desc.settings)?;
         self.exposure.check()
     }
 
-    /// Rejects views without lattices if the settings require lattices, and views with lattices if they do not.
-    fn check_lattices(&self, settings: &Settings) -> Result<(), FrameError> {
-        let is_sparse = settings.foveation.filter == Filter::Sparse;
-        for (view, facts) in self.views.iter().enumerate() {
-            let (found, expected) = match (is_sparse, facts.lattices.is_some()) {
-                (true, false) => ("None", "where the samples are, because the filter of the foveation is Sparse"),
-                (false, true) => ("given", "None; or set Filter::Sparse in Settings::foveation"),
-                _ => continue,
-            };
-            return Err(FrameError::Value { value: FrameValue::Lattices, view, found: found.into(), expected });
-        }
-        let at_samples = |view: &ViewFrame| view.lattices.is_some_and(|lattices| lattices.has_geometry_at_samples());
-        if let Some(view) = (1..self.views.len()).find(|&i| at_samples(&self.views[i]) != at_samples(&self.views[0])) {
-            let found = "given with depth and motion at samples for some views".into();
-            let expected = "depth and motion at samples for all views, or at every pixel for all";
-            return Err(FrameError::Value { value: FrameValue::Lattices, view, found, expected });
-        }
-        let is_sampled = is_sparse || settings.foveation.filter == Filter::Quads;
-        if is_sampled && self.lod.is_some() {
+    /// Rejects levels of detail of planned frames.
+    fn check_lod(&self, settings: &Settings) -> Result<(), FrameError> {
+        if settings.foveation.filter == Filter::Quads && self.lod.is_some() {
             let (found, expected) = ("given".into(), "None: the places of the samples say how coarse the frame is");
             return Err(FrameError::Value { value: FrameValue::Lod, view: 0, found, expected });
         }
         Ok(())
+    }
+
+    /// Rejects a mask, and colors of half the size, of frames that are not planned.
+    fn check_mask(&self, settings: &Settings) -> Result<(), FrameError> {
+        if settings.foveation.filter == Filter::Quads || !(self.mask.is_some() || self.half.is_some()) {
+            return Ok(());
+        }
+        let found = if self.mask.is_some() { "given" } else { "missing, with colors at half the size" };
+        let expected = "set Filter::Quads in Settings::foveation";
+        Err(FrameError::Value { value: FrameValue::Mask, view: 0, found: found.into(), expected })
     }
 
     /// Checks the values of a frame whose quads are to be planned.
@@ -213,14 +219,19 @@ impl<'a, Colors, Scalars, Vectors> FrameInputs<'a, Colors, Scalars, Vectors> {
             let (found, expected) = ("asked for".into(), "Filter::Quads in Settings::foveation");
             return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
         }
+        if self.mask.is_some() {
+            let (found, expected) = ("asked for".into(), "no plan, or no mask: a mask says which pixels are shaded");
+            return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
+        }
         self.check_facts(desc)
     }
 
     /// Rejects a frame shaded by quads that was not planned. `planned`: index of the frame that was planned.
     pub(crate) fn check_planned(&self, desc: &ContextDesc, planned: Option<u64>) -> Result<(), FrameError> {
-        if desc.settings.foveation.filter == Filter::Quads && planned != Some(self.index) {
+        let by_quads = desc.settings.foveation.filter == Filter::Quads;
+        if by_quads && self.mask.is_none() && planned != Some(self.index) {
             let found = planned.map_or("missing".into(), |index| format!("that of frame {index}"));
-            let expected = "the plan of this frame: call plan before the frame is shaded";
+            let expected = "the plan of this frame: call plan before the frame is shaded, or give a mask";
             return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
         }
         Ok(())

@@ -54,6 +54,24 @@ impl ViewGeometry {
         Self::off_axis(size_px, [-half_width, half_width], [-half_height, half_height])
     }
 
+    /// The view at half the width and height, rounded up, whose pixel (x, y) shows the point that pixel (2x, 2y) +
+    /// `place_px` of this view shows: for frames with one pixel of each quad
+    /// ([`Foveation::quarter_place_px`](crate::Foveation::quarter_place_px)). Its jitter is half of the frame's.
+    ///
+    /// ```
+    /// use afterimage::ViewGeometry;
+    ///
+    /// let view = ViewGeometry::flat([64, 36], 70.0)?;
+    /// let half = view.half([1, 0]);
+    /// assert_eq!(half.size_px(), [32, 18]);
+    /// assert_eq!(half.ray([3.0, 2.0]), view.ray([7.0, 4.0]));
+    /// # Ok::<(), afterimage::SettingsError>(())
+    /// ```
+    pub fn half(&self, place_px: [u32; 2]) -> Self {
+        let offset = self.offset + Vec2::from(place_px.map(|v| v as f32)) * self.scale;
+        Self { size_px: self.size_px.map(|side| side.div_ceil(2)), scale: 2.0 * self.scale, offset, ..*self }
+    }
+
     /// A view of `size_px` from the tangents of the angles at its edges: `tan_x` left and right, `tan_y` top and
     /// bottom. y is down, so that the top is usually negative.
     ///

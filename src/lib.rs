@@ -117,7 +117,6 @@ mod image;
 pub mod internal;
 #[doc(hidden)]
 pub mod kernel;
-mod lattice;
 mod method;
 mod notes;
 #[cfg(feature = "cpu")]
@@ -144,7 +143,6 @@ pub use geometry::ViewGeometry;
 pub use image::Image;
 pub use kernel::debug_view::DebugView;
 pub use kernel::reproject::Verdict;
-pub use lattice::{Lattice, Lattices};
 pub use settings::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, MethodKind, Sampler, Settings, Smr, Wrs};
 pub use stats::FrameStats;
 pub use view::ViewFrame;

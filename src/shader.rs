@@ -44,15 +44,14 @@ pub static MODULES: &[Module] = modules! {
         "noise", "pack", "quads", "reproject", "resample", "reservoir", "resize", "rng", "sanitize", "smr",
         "sparse_smr", "stored_sample", "surface", "taa", "taau", "wrs";
     "pass":
-        "candidate_lod", "candidate_pass", "doctor_pass", "doctor_roots_pass", "each_pixel", "fill_geometry_pass",
-        "fill_pass", "foveation_lod", "inputs", "lattices", "mip_chain_pass", "none_pass", "origin", "output",
-        "output_and_view", "past_frame", "previous", "quad_around_pass", "quad_fill_pass", "quad_key_pass",
-        "quad_light_pass", "quad_list", "quad_mask_pass", "quad_observe_pass", "quad_octants_pass", "quad_pass",
-        "quad_plan", "quad_prime_pass", "quad_runs", "quad_samples", "quad_state", "quad_threshold_pass",
-        "resize_reservoirs_pass", "resize_sparse_pass", "resize_surfaces_pass", "resize_uniforms", "settled_history",
-        "smr_pass", "sparse_history", "sparse_light_pass", "sparse_noise", "sparse_observe_pass", "sparse_pass",
-        "sparse_pixel", "sparse_samples", "surface_history", "taa_pass", "taau_pass", "view_uniforms", "wrs_pass",
-        "wrs_pixel", "wrs_sparse_pass";
+        "candidate_lod", "candidate_pass", "doctor_pass", "doctor_roots_pass", "each_pixel", "foveation_lod", "inputs",
+        "mip_chain_pass", "none_pass", "origin", "output", "output_and_view", "past_frame", "previous",
+        "quad_around_pass", "quad_fill_pass", "quad_given_pass", "quad_key_pass", "quad_light_pass", "quad_list",
+        "quad_mask_pass", "quad_observe_pass", "quad_octants_pass", "quad_pass", "quad_plan", "quad_prime_pass",
+        "quad_runs", "quad_samples", "quad_state", "quad_threshold_pass", "resize_reservoirs_pass",
+        "resize_sparse_pass", "resize_surfaces_pass", "resize_uniforms", "settled_history", "smr_pass",
+        "sparse_history", "sparse_noise", "sparse_pixel", "surface_history", "taa_pass", "taau_pass", "view_uniforms",
+        "wrs_pass", "wrs_pixel", "wrs_quad_pass";
 };
 
 /// This crate's shaders.

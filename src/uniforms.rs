@@ -1,18 +1,12 @@
 //! Constants of a view for the passes of both executors.
 
 use crate::context::ContextDesc;
-#[cfg(feature = "gpu")]
-use crate::foveation::Foveation;
 use crate::frame::{Exposure, FrameInputs, Reset};
 #[cfg(feature = "cpu")]
 use crate::kernel::acuity;
-use crate::kernel::foveate::level_len;
-#[cfg(feature = "cpu")]
-use crate::kernel::lattice::{Between, between};
 #[cfg(feature = "cpu")]
 use crate::kernel::reproject::ViewMotion;
 use crate::kernel::rng::{self, Purpose};
-use crate::lattice::{Lattice, Lattices};
 use crate::settings::Sampler;
 use crate::view::ViewFrame;
 use glam::DVec2;
@@ -204,113 +198,5 @@ impl ViewUniforms {
     pub(crate) fn region_angle_deg(&self, ray: Vec3) -> f32 {
         let [x, y, z, _] = self.gaze_ray;
         acuity::eccentricity_deg(ray, Vec3::new(x, y, z))
-    }
-}
-
-/// A lattice of a view. Twin of `LatticeUniforms` in `shaders/pass/lattices.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default)]
-#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
-pub struct LatticeUniforms {
-    /// First pixel of the covered rectangle.
-    pub low_px: [u32; 2],
-    /// Pixel after the last one of the covered rectangle, which may extend beyond the frame.
-    pub high_px: [u32; 2],
-    /// Pixel of the top-left sample.
-    pub first_px: [u32; 2],
-    /// Number of samples along x and y inside the frame; 0 if all lie beyond its edge.
-    pub points: [u32; 2],
-    /// Texel of the top-left sample in the view's color input.
-    pub texel: [u32; 2],
-    /// log2 of the distance of neighbouring samples in pixels.
-    pub level: u32,
-    /// The same in texels of the color input: 0 in an atlas, otherwise as in pixels.
-    pub texel_level: u32,
-    /// Texel of the top-left sample's results (`result_texel`).
-    pub results: [u32; 2],
-    /// Padding to a multiple of 16 bytes.
-    pub unused: [u32; 2],
-}
-
-/// First texel of the results for a lattice's samples, in an image of [`results_size`]. The lattice of step 2 lies at
-/// the top; the coarser ones lie side by side below it. Along an axis, no lattice of a view of `size_px` has more
-/// samples than pixels divided by its step.
-fn result_texel(level: u32, size_px: [u32; 2]) -> [u32; 2] {
-    match level {
-        0 | 1 => [0, 0],
-        _ => [(2..level).map(|l| level_len(size_px[0], l)).sum(), level_len(size_px[1], 1)],
-    }
-}
-
-/// Size of an image with a texel for every sample of every lattice of step 2 and more.
-#[cfg(feature = "gpu")]
-pub(crate) fn results_size(size_px: [u32; 2]) -> [u32; 2] {
-    let coarsest = Foveation::MAX_RATE.ilog2();
-    let [right, below] = result_texel(coarsest + 1, size_px);
-    [right.max(level_len(size_px[0], 1)), below + level_len(size_px[1], 2)]
-}
-
-/// Lattices of a view, finest first; the unused ones cover nothing.
-pub type ViewLattices = [LatticeUniforms; Lattices::MAX];
-
-impl LatticeUniforms {
-    /// A lattice of a view of `size_px`.
-    fn new(lattice: &Lattice, size_px: [u32; 2]) -> Self {
-        let Lattice { step, first_px, .. } = *lattice;
-        let [low_px, high_px] = lattice.covered_px();
-        let inside = |i: usize| size_px[i].saturating_sub(first_px[i]).div_ceil(step);
-        let points = [0, 1].map(|i| lattice.points[i].min(inside(i)));
-        let level = step.ilog2();
-        let (texel, texel_level) = lattice.atlas_texel.map_or((first_px, level), |texel| (texel, 0));
-        let results = result_texel(level, size_px);
-        Self { low_px, high_px, first_px, points, texel, level, texel_level, results, unused: [0; 2] }
-    }
-
-    /// All lattices of a view of `size_px`.
-    pub(crate) fn of_view(lattices: &Lattices, size_px: [u32; 2]) -> ViewLattices {
-        let mut all = ViewLattices::default();
-        for (to, lattice) in all.iter_mut().zip(lattices.as_slice()) {
-            *to = Self::new(lattice, size_px);
-        }
-        all
-    }
-
-    /// Lattices of a view of `size_px`; one full-rate lattice if `lattices` is `None`.
-    pub(crate) fn of_view_or_full(lattices: Option<&Lattices>, size_px: [u32; 2]) -> ViewLattices {
-        let full = Lattice::covering(1, [0, 0], size_px, [0, 0]);
-        lattices.map_or_else(
-            || [Self::new(&full, size_px), Self::default(), Self::default(), Self::default()],
-            |lattices| Self::of_view(lattices, size_px),
-        )
-    }
-
-    /// Index of the first of the `lattices` that covers a pixel.
-    #[cfg(feature = "cpu")]
-    #[inline(always)]
-    pub(crate) fn index_at(lattices: &ViewLattices, px: [u32; 2]) -> usize {
-        let covers = |l: &Self| (0..2).all(|i| px[i] >= l.low_px[i] && px[i] < l.high_px[i]);
-        lattices.iter().position(covers).unwrap_or(Lattices::MAX - 1)
-    }
-
-    /// Pixel of a sample.
-    #[cfg(feature = "cpu")]
-    #[inline(always)]
-    pub(crate) fn px_of(&self, point: [u32; 2]) -> [u32; 2] {
-        [0, 1].map(|i| self.first_px[i] + (point[i] << self.level))
-    }
-
-    /// Samples around a pixel along x and y; `None` without samples in the frame.
-    #[cfg(feature = "cpu")]
-    #[inline(always)]
-    pub(crate) fn around(&self, px: [u32; 2]) -> Option<[Between; 2]> {
-        let any = self.points.iter().all(|&n| n > 0);
-        any.then(|| [0, 1].map(|i| between(px[i], self.first_px[i], self.level, self.points[i])))
-    }
-
-    /// Texel of a sample in the view's color input.
-    #[cfg(feature = "cpu")]
-    #[inline(always)]
-    pub(crate) fn texel_of(&self, point: [u32; 2]) -> [u32; 2] {
-        [0, 1].map(|i| self.texel[i] + (point[i] << self.texel_level))
     }
 }

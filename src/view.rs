@@ -6,7 +6,6 @@ use crate::convention::DepthConvention;
 use crate::error::{FrameError, FrameValue, SettingsError};
 use crate::gaze::Gaze;
 use crate::geometry::ViewGeometry;
-use crate::lattice::Lattices;
 use std::fmt::Debug;
 
 /// Largest accepted jitter of a projection along an axis, in pixels.
@@ -53,29 +52,17 @@ pub struct ViewFrame {
     /// stays valid when the near plane changes, because distances are stored.
     pub depth: Option<DepthConvention>,
     /// The part of the view that a headset's lens shows: an octagon, given by the lowest and the highest x, y, x + y
-    /// and x - y of its pixels ([`ViewGeometry::visible_px`] computes it from a visibility mask). On sparse frames smr
-    /// does not process pixels outside it, and shows them black; other methods process every pixel. `None`: every pixel
+    /// and x - y of its pixels ([`ViewGeometry::visible_px`] computes it from a visibility mask). On [planned
+    /// frames](crate::Filter::Quads) smr does not process pixels outside it, and shows them black; other methods process
+    /// every pixel. `None`: every pixel
     /// is visible.
     pub visible_px: Option<[[f32; 4]; 2]>,
-    /// Where the samples of a sparse frame lie ([`Filter::Sparse`](crate::Filter::Sparse)): the lattices that the
-    /// renderer drew, for the gaze that it used. The color input has the context's size, and only its samples are read;
-    /// or it is an atlas ([`Lattice::atlas_texel`](crate::Lattice::atlas_texel)) of any size. Other inputs have the
-    /// context's size. `None`: every pixel of the color input is a sample.
-    pub lattices: Option<Lattices>,
 }
 
 impl ViewFrame {
     /// A view with unknown camera motion and without jitter.
     pub fn new(geometry: ViewGeometry, gaze: Gaze) -> Self {
-        Self {
-            geometry,
-            gaze,
-            previous_from_current: None,
-            jitter_px: [0.0; 2],
-            depth: None,
-            visible_px: None,
-            lattices: None,
-        }
+        Self { geometry, gaze, previous_from_current: None, jitter_px: [0.0; 2], depth: None, visible_px: None }
     }
 
     /// This view with the camera motion between two frames, from an engine's matrices: the projection
@@ -185,11 +172,6 @@ impl ViewFrame {
         self.depth.unwrap_or(desc.depth)
     }
 
-    /// Lattices whose samples lie in an atlas, if any.
-    pub(crate) fn atlas(&self) -> Option<&Lattices> {
-        self.lattices.as_ref().filter(|lattices| lattices.is_atlas())
-    }
-
     /// Checks all fields against the context's description.
     pub(crate) fn check(&self, view: usize, desc: &ContextDesc) -> Result<(), FrameError> {
         let found = self.geometry.size_px();
@@ -214,9 +196,6 @@ impl ViewFrame {
         {
             let expected = "finite bounds, the lowest first, or None if every pixel is seen";
             return refuse(FrameValue::VisibleBounds, format!("{lowest:?} to {highest:?}"), expected);
-        }
-        if let Some(lattices) = &self.lattices {
-            lattices.check(view, desc.size_px)?;
         }
         let Some(matrix) = self.previous_from_current else {
             return Ok(());

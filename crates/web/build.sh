@@ -42,10 +42,11 @@ remapped="--remap-path-prefix=$home/registry/src= --remap-path-prefix=$target= -
 bindgen=(env -u RUSTC -u LD_LIBRARY_PATH -u RUSTC_BOOTSTRAP CARGO_PROFILE_RELEASE_OPT_LEVEL=1 CARGO_PROFILE_RELEASE_LTO=off
     CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 cargo run --locked --release --package afterimage-web-bindgen --)
 
-# The page has no frames shaded by quads.
+# The page has no depth buffer to close, and asks no doctor.
 shopt -s extglob
 pass=../../shaders/pass
-shaders=(shaders/*.wgsl ../../shaders/{foveation,lib}/*.wgsl $pass/!(quad_*).wgsl --without $pass/quad_*.wgsl)
+shaders=(shaders/*.wgsl ../../shaders/{foveation,lib}/*.wgsl $pass/!(quad_prime_pass|doctor_pass).wgsl)
+shaders+=(--without $pass/{quad_prime_pass,doctor_pass}.wgsl)
 
 mkdir -p "$to"
 # library NAME OPTIONS...: a library and its bindings.

@@ -25,8 +25,6 @@ const CLIP_COST: f32 = 10.0;
 const NEARER_RELATIVE: f32 = 0.02;
 const ALONGSIDE_PX: f32 = 1.0;
 const TOGETHER_PX: f32 = 0.25;
-const DOUBTFUL: f32 = -2.0;
-
 // A negative `lod`: empty.
 struct Mean {
     lod: f32,
@@ -108,13 +106,6 @@ fn is_thin(own: f32, a: f32, b: f32) -> bool {
 
 fn is_silhouette(own: f32, a: f32, b: f32) -> bool {
     return min(a, b) < 0.0 || abs((a + b) - 2.0 * own) > own * NEARER_RELATIVE;
-}
-
-fn may_show(own: f32, neighbour: f32, place_px: vec2f, offset: vec2f) -> bool {
-    let nearer = neighbour > own * (1.0 + NEARER_RELATIVE);
-    let farther = neighbour >= 0.0 && neighbour < own * (1.0 - NEARER_RELATIVE);
-    let toward = place_px * offset;
-    return (nearer || farther) && (toward.x > 0.0 || offset.x == 0.0) && (toward.y > 0.0 || offset.y == 0.0);
 }
 
 struct Near {

@@ -30,13 +30,6 @@ fn disparity(stored: f32, map: DisparityMap) -> f32 {
     return 1.0 / v;
 }
 
-fn distance_of(disparity: f32) -> f32 {
-    if disparity < 0.0 {
-        return -1.0;
-    }
-    return 1.0 / max(disparity, 1e-31);
-}
-
 // z_previous = z * stretch + shift
 fn previous_disparity(disparity: f32, stretch: f32, shift: f32) -> f32 {
     if disparity < 0.0 {

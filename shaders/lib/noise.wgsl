@@ -7,6 +7,7 @@ const NOISY_LEVELS: f32 = 3.0;
 const COMPARED_CANDIDATES: f32 = 64.0;
 const SIGMAS: f32 = 3.0;
 const CONFIDENCE_FALLOFF: vec2f = vec2f(0.5, 1.0);
+const BORROWED_SAMPLES: f32 = 16.0;
 const COARSER_FRAMES: f32 = 4.0;
 const MAX_ERROR: f32 = 255.0;
 const MAX_SAMPLES: f32 = 32768.0;
@@ -104,6 +105,20 @@ fn sample_difference(candidate: Noise, around: f32) -> f32 {
 fn expected_noise(history: Noise, candidate: Noise, around: f32) -> f32 {
     let inverse_samples = 1.0 / candidate.samples + 1.0 / max(history.samples, 1.0);
     return root_slope(around) * sqrt(pooled_variance(history, candidate) * inverse_samples);
+}
+
+fn noise_need(history: Noise, around: f32) -> f32 {
+    let samples = max(history.samples, 1.0);
+    let slope = root_slope(around);
+    return (slope * slope) * (history.variance / (samples * (samples + 1.0)));
+}
+
+fn noisy_share(samples: f32, px2: f32) -> f32 {
+    return samples / sqrt(max(px2, 1.0));
+}
+
+fn borrowed(past: f32, own: Noise, around: f32) -> f32 {
+    return (BORROWED_SAMPLES / (BORROWED_SAMPLES + past)) * noise_visibility(own, around);
 }
 
 struct NoiseSum {

@@ -9,7 +9,6 @@ const LIGHT_RELATIVE: f32 = 0.1;
 const SAMPLE_RELATIVE: f32 = 0.05;
 const OTHER_SURFACE: f32 = 1e-3;
 const BY_NEIGHBOURS: f32 = 1e-3;
-const LEAST_SHARE: f32 = 1e-4;
 const STILL_ERROR: f32 = 0.3;
 const MOVED_ERROR: f32 = 0.6;
 const CONTRAST_ERROR: f32 = 0.375;
@@ -87,10 +86,6 @@ fn agreement(own: Observation, other: Observation, spatial: f32) -> f32 {
     return (spatial * other.confidence) / (1.0 + errors * errors);
 }
 
-fn neighbour_weight(offset: vec2i) -> f32 {
-    return f32((2 - abs(offset.x)) * (2 - abs(offset.y)));
-}
-
 struct ObservedAround {
     sampled: vec3f,
     history: vec3f,
@@ -155,14 +150,6 @@ fn own_fit(own: Observation, gains: vec3f) -> f32 {
     return fit(errors_left(own, gains), own.confidence);
 }
 
-fn capped_error(o: Observation, errors: f32, spatial: f32) -> f32 {
-    return min(errors, FIT_ERRORS.x + FIT_ERRORS.y) * (spatial * o.confidence);
-}
-
-fn fit_of_samples(a: ObservedAround, capped: f32) -> f32 {
-    return fit(capped / max(a.known, 1e-6), min(a.known / a.spatial, 1.0));
-}
-
 fn vote(o: Observation, errors: f32, spatial: f32) -> vec2f {
     let weight = spatial * o.confidence;
     return vec2f(smooth_step(FIT_ERRORS.x, FIT_ERRORS.y, errors) * weight, weight);
@@ -190,24 +177,6 @@ struct Lit {
     fit: f32,
     own_fit: f32,
     is_own: bool,
-    disparity: f32,
-}
-
-fn pack_lit(l: Lit) -> vec2u {
-    let fit_bits = u32(l.fit * 256.0 + 0.5);
-    let own_bits = u32(l.own_fit * 32.0 + 0.5) << 10u;
-    let disparity_bits = disparity_code(l.disparity) << 16u;
-    return vec2u(pack_color(l.gains), fit_bits | select(0u, 512u, l.is_own) | own_bits | disparity_bits);
-}
-
-fn unpack_lit(words: vec2u) -> Lit {
-    return Lit(
-        unpack_color(words.x),
-        f32(words.y & 511u) * (1.0f / 256.0),
-        f32((words.y >> 10u) & 63u) * (1.0f / 32.0),
-        (words.y & 512u) != 0u,
-        disparity_value(words.y >> 16u),
-    );
 }
 
 struct QuadLit {
@@ -232,7 +201,6 @@ fn quad_lit(words: vec4u, i: u32) -> Lit {
         f32(words.y & 511u) * (1.0f / 256.0),
         f32((words.y >> (10u + 5u * i)) & 31u) * (1.0f / 16.0),
         ((words.y >> 9u) & 1u) != 0u,
-        INVALID_DISPARITY,
     );
 }
 

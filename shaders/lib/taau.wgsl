@@ -25,11 +25,10 @@ fn narrowing(confidence: f32) -> f32 {
     return settled(confidence) * NARROWING + 1.0;
 }
 
-fn sample_weights(offset_px: vec2f, level: u32, interpolation: f32, narrowed: f32) -> vec2f {
+fn sample_weights(offset_px: vec2f, interpolation: f32, narrowed: f32) -> vec2f {
     let px2 = offset_px.x * offset_px.x + offset_px.y * offset_px.y;
-    let inverse_step = bitcast<f32>((127u - level) << 23u);
     let own = lobe(px2 * narrowed);
-    return vec2f(own, own + lobe(px2 * (inverse_step * inverse_step)) * interpolation);
+    return vec2f(own, own + lobe(px2) * interpolation);
 }
 
 struct SamplesAround {

@@ -7,7 +7,7 @@ const FILTER_MIP: u32 = 0u;
 const FILTER_GAUSS: u32 = 1u;
 const FILTER_BLOCK: u32 = 2u;
 const FILTER_OFF: u32 = 3u;
-const FILTER_SPARSE: u32 = 4u;
+const FILTER_QUADS: u32 = 4u;
 
 override FILTER: u32 = 0u;
 

@@ -57,13 +57,17 @@ struct FrameUniforms {
     smr_accumulate_tolerance: f32,
     smr_tolerance: f32,
     first_view: u32,
-    lattice: u32,
+    missing: u32,
     mip_levels: u32,
     color_exposure: f32,
     inverse_exposure: f32,
     largest_shown: f32,
     first_quad: u32,
-    quad_offsets: vec4u,
+    pattern_px: vec4u,
+    single_pixels: u32,
+    has_single_pixels: u32,
+    has_half: u32,
+    has_budget: u32,
     views: array<ViewUniforms, 4>,
     cameras: array<CameraUniforms, 4>,
 }
@@ -79,6 +83,7 @@ const TRUST_IN: u32 = 4u;
 const LOD_IN: u32 = 5u;
 const NOISE_IN: u32 = 6u;
 const REACTIVE_IN: u32 = 8u;
+const HALF_IN: u32 = 9u;
 const COLOR_OUT: u32 = 10u;
 const DEBUG_OUT: u32 = 11u;
 
@@ -125,7 +130,11 @@ fn given_at(texel: vec2u, view: u32) -> vec4f {
 
 // The same with the color in this frame's exposure.
 fn color_at(texel: vec2u, view: u32) -> vec4f {
-    let given = given_at(texel, view);
+    return in_exposure(given_at(texel, view));
+}
+
+// A color and alpha as the renderer wrote them, with the color in this frame's exposure.
+fn in_exposure(given: vec4f) -> vec4f {
     if EXPOSED == 0u {
         return given;
     }
@@ -168,14 +177,9 @@ fn ray_at(px: vec2u, view: u32) -> vec3f {
 // Motion vector of a pixel: previous minus current position in pixels, y down, without jitter, with the camera's
 // motion.
 fn motion_at(px: vec2u, view: u32) -> vec2f {
-    return motion_of(px, px, view);
-}
-
-// Motion vector of the pixel `px`, whose vector and depth lie at `texel`.
-fn motion_of(px: vec2u, texel: vec2u, view: u32) -> vec2f {
     var own = vec2f(0.0);
     if HAS_MOTION != 0u {
-        let given = textureLoad(motion_in, texel_of(texel, view, MOTION_IN), layer_of(view), 0).xy;
+        let given = textureLoad(motion_in, texel_of(px, view, MOTION_IN), layer_of(view), 0).xy;
         own = given * frame.motion_scale + frame.views[view].motion_offset;
         if (CAMERA_MOTION & 1u) != 0u {
             let is_missing = has_no_vector(given, frame.cameras[view].no_vector);
@@ -190,7 +194,7 @@ fn motion_of(px: vec2u, texel: vec2u, view: u32) -> vec2f {
     }
     // An object's own motion ends where the camera would have seen it without moving.
     let ray = (vec2f(px) + own) * frame.views[view].ray_scale + frame.views[view].ray_offset;
-    return own + camera_vector(ray, disparity_at(texel, view), frame.cameras[view].motion);
+    return own + camera_vector(ray, disparity_at(px, view), frame.cameras[view].motion);
 }
 
 // Noise of the candidate; valid only if NOISY is set.

@@ -6,29 +6,22 @@
 //
 // Up to 6 reads and 1 write a pixel: mask, neighbours and samples; 16 bytes written.
 
-@group(0) @binding(13) var<uniform> sparse: Missing;
 @group(0) @binding(23) var filled: texture_storage_2d_array<rgba32float, write>;
 
-// First word of `SparseUniforms` in src/gpu/uniforms.rs: bits of a NaN, which shaders cannot write themselves.
-struct Missing {
-    missing: vec4u,
-}
-
 fn pixel(px: vec2u, view: u32) -> vec4f {
-    if (mask_at(px, view) & 1u) != 0u {
-        return given_at(px, view);
+    let mask_word = mask_at(px, view);
+    if is_shaded(mask_word, px) {
+        return given_sample(px, view);
     }
-    let quad = px >> vec2u(1u);
-    let around = textureLoad(quad_around, quad, view, 0).xy;
+    let around = around_pixel(px, view, mask_word);
     var sum = vec4f(0.0);
     var weight = 0.0;
     for (var i = 0u; i < 4u; i++) {
-        let code = code_of(around, i);
-        let other = vec2u(vec2i(quad) + neighbour_offset(code));
-        let at = min(clamp(px, 2u * other, 2u * other + 1u), frame.size - 1u);
-        let given = color_at(at, view);
+        let sample = sample_tap(around, i, px, view);
+        let at = min(sample.at, frame.size - 1u);
+        let given = sample_at(at, view);
         let sampled = color(given.xyz);
-        if code != NOWHERE && sampled.usable {
+        if sample.is_there && sampled.usable {
             let x = f32(at.x) - f32(px.x);
             let y = f32(at.y) - f32(px.y);
             let w = 1.0 / max(x * x + y * y, 1.0);
@@ -38,7 +31,7 @@ fn pixel(px: vec2u, view: u32) -> vec4f {
         }
     }
     if weight == 0.0 {
-        return vec4f(bitcast<f32>(sparse.missing.x));
+        return vec4f(bitcast<f32>(frame.missing));
     }
     let mean = sum * (1.0 / weight);
     return vec4f(unexposed(mean.xyz), mean.w);

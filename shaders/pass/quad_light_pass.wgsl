@@ -16,7 +16,7 @@ override ANTIALIAS: u32 = 0u;
 
 fn observation_at(px: vec2u, view: u32) -> Observation {
     let words = textureLoad(observed, px, view, 0).xy;
-    let sampled = color(color_at(px, view).xyz).color;
+    let sampled = color(sample_at(px, view).xyz).color;
     let known = words.y >> 16u;
     return Observation(
         sampled,
@@ -150,12 +150,17 @@ fn light(quad: vec2u, view: u32) -> vec4u {
             fit_of_quad = own_fit(own.observation, vec3f(1.0));
         }
         lit.fit = fit_around(sum, with_gain, fit_by_votes(sum, votes, fit_of_quad));
+        if NOISY != 0u {
+            let confidence = min(sum.weight / sum.spatial, 1.0);
+            lit.fit = min(fit(with_gain / sum.weight, confidence), mean_fit(sum, confidence));
+        }
     }
     for (var i = 0u; i < 4u; i++) {
         let px = px_of_quad(quad, i);
         if all(px < frame.size) {
             lit.disparities[i] = disparity_at(px, view);
-            if is_compared(px, view) {
+            // A single noisy sample does not show whether history fits.
+            if NOISY == 0u && is_compared(px, view) {
                 lit.own_fits[i] = own_fit(observation_at(px, view), lit.gains);
             }
         }

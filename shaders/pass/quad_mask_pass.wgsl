@@ -29,11 +29,16 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let quad = vec2u(first.x + i - u32(REACH), first.y);
         if quad.x < quads.size.x {
             let word = textureLoad(keys, quad, quads.view, 0).x;
-            let is_shaded = (word & 0x40000u) != 0u || (word & 0xffffu) >= state.threshold;
+            let is_even = (word & 0x10000u) != 0u;
+            let is_shaded = is_even || (word & 0x3fffu) >= state.threshold;
             shaded |= u32(is_shaded) << i;
             if is_own(i) {
-                let region_now = (word >> 16u) & 3u;
-                textureStore(mask_out, quad, quads.view, vec4u(u32(is_shaded) | (region_now << 1u), 0u, 0u, 0u));
+                let pixels = select(0u, (word >> 17u) & 15u, is_shaded);
+                let region_now = (word >> 14u) & 3u;
+                let code = (word >> 21u) & 63u;
+                let further = select(0u, (code << HASH_BITS) | (word & 255u), code > 0u);
+                let count = paths(word & 0x3fffu, further, word >> 27u, is_even, state.threshold);
+                textureStore(mask_out, quad, quads.view, vec4u(pixels | (region_now << 4u) | (count << 8u), 0u, 0u, 0u));
             }
         }
     }

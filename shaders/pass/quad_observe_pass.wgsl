@@ -1,4 +1,5 @@
 //#use sparse_history
+//#use sparse_noise
 //#use quad_plan
 //#use quad_samples
 // Comparison of shaded quads with history. CPU twin: `observe_quads` in src/cpu/sparse_pass/quad_samples.rs. One
@@ -11,8 +12,9 @@
 
 fn observe(px: vec2u, view: u32) -> vec2u {
     let nothing = vec2u(0u, half_bits(-1.0));
-    let level = level_of(mask_at(px, view));
-    if level == 0u {
+    let mask_word = mask_at(px, view);
+    let level = level_of(mask_word);
+    if level == 0u || !is_shaded(mask_word, px) {
         return nothing;
     }
     let surface = surface_of(px, view, level);
@@ -22,7 +24,7 @@ fn observe(px: vec2u, view: u32) -> vec2u {
         source.previous.at -= frame.views[view].jitter_px;
     }
     // At a silhouette the difference does not say whether anything changed.
-    let comparable = color(color_at(px, view).xyz).usable && !surface.is_silhouette;
+    let comparable = color(sample_at(px, view).xyz).usable && !surface.is_silhouette;
     let needed = may_have_history(source.previous) && comparable;
     let found = sparse_history(source, view, needed);
     let history = found.found;
@@ -31,8 +33,15 @@ fn observe(px: vec2u, view: u32) -> vec2u {
     }
     let contrast = root_difference(history.lowest, history.highest);
     let compared = comparison(found, contrast, surface.motion);
-    let known = pack_known(lod_confidence(history.lod), compared.deviation);
-    return vec2u(pack_color(history.color), half_bits(compared.error) | (known << 16u));
+    var error = compared.error;
+    var confidence = lod_confidence(history.lod);
+    if NOISY != 0u {
+        let past = stored_noise(found.texel, view);
+        error += expected_noise(past, noise_at(px, view), luma(history.color));
+        confidence = noisy_lod_confidence(history.lod, past, luma(history.color));
+    }
+    let known = pack_known(confidence, compared.deviation);
+    return vec2u(pack_color(history.color), half_bits(error) | (known << 16u));
 }
 
 @compute @workgroup_size(64, 1)

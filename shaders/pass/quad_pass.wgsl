@@ -9,16 +9,37 @@
 // Squared distance in pixels that stands for a missing sample.
 const NO_PX2: f32 = 1e30;
 
-// Pixel of a quad that is nearest to another pixel.
-fn nearest_px(quad: vec2u, px: vec2u) -> vec2u {
-    return min(clamp(px, 2u * quad, 2u * quad + 1u), frame.size - 1u);
+// Mean of the samples around a noisy pixel with a sample, its own included, and the mean variance of one.
+fn mean_around(around: AroundPixel, px: vec2u, view: u32, codes: vec2u) -> vec4f {
+    var sum = vec3f(0.0);
+    var variance = 0.0;
+    var weights = 0.0;
+    // A variable count on purpose, as below.
+    let taps = select(0u, 12u, around.count > 0u);
+    for (var tap = 0u; tap < taps; tap++) {
+        let sample = noisy_tap(around, tap, px, view);
+        let at = min(sample.at, frame.size - 1u);
+        let sampled = color(sample_at(at, view).xyz);
+        let words = textureLoad(lights, at >> vec2u(1u), view, 0);
+        let place = (at.x & 1u) | ((at.y & 1u) << 1u);
+        let same = DEPTH_TEST == 0u || has_code(quad_code(words, place), codes);
+        if sample.is_there && sampled.usable && (same || all(at == px)) {
+            let x = f32(at.x) - f32(px.x);
+            let y = f32(at.y) - f32(px.y);
+            let noise = noise_at(at, view);
+            let share = noisy_share(noise.samples, x * x + y * y);
+            sum += sampled.color * share;
+            variance += noise.variance * share;
+            weights += share;
+        }
+    }
+    let inverse = 1.0 / weights;
+    return vec4f(sum * inverse, variance * inverse);
 }
 
-// Candidate from the pixels of a shaded quad, or from the nearest pixels of the quads around.
+// Candidate from the samples that stand for a pixel.
 fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Candidate {
-    let quad = px >> vec2u(1u);
-    let is_shaded = (mask_word & 1u) != 0u;
-    let around = textureLoad(quad_around, quad, view, 0).xy;
+    let around = around_pixel(px, view, mask_word);
     let coarsest = f32(level_of(mask_word));
     let codes = codes_between(disparity_now, 1.0f - SAMPLE_RELATIVE, 1.0f / (1.0f - SAMPLE_RELATIVE));
     var candidate = no_candidate();
@@ -31,17 +52,16 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
     var nearest_px2 = NO_PX2;
     var own = vec4f(0.0);
     var own_fits = 1.0;
+    var noises = NoiseSum(0.0, 0.0, 0.0);
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
-    let taps = select(0u, 4u, coarsest > 0.0);
+    let taps = select(0u, around.count, coarsest > 0.0);
     for (var tap = 0u; tap < taps; tap++) {
-        let code = code_of(around, tap);
-        let other = select(vec2u(vec2i(quad) + neighbour_offset(code)), quad, is_shaded);
-        let at = select(nearest_px(other, px), px_of_quad(quad, tap), is_shaded);
-        let is_there = select(code != NOWHERE, all(at < frame.size), is_shaded);
-        let given = color_at(min(at, frame.size - 1u), view);
+        let sample = sample_tap(around, tap, px, view);
+        let at = min(sample.at, frame.size - 1u);
+        let given = sample_at(at, view);
         let sampled = color(given.xyz);
-        if is_there && sampled.usable {
-            let words = textureLoad(lights, other, view, 0);
+        if sample.is_there && sampled.usable {
+            let words = textureLoad(lights, at >> vec2u(1u), view, 0);
             let place = (at.x & 1u) | ((at.y & 1u) << 1u);
             let lit = quad_lit(words, place);
             let same = DEPTH_TEST == 0u || has_code(quad_code(words, place), codes);
@@ -60,6 +80,9 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
             candidate.lowest = min(candidate.lowest, sampled.color);
             candidate.highest = max(candidate.highest, sampled.color);
             nearest_px2 = select(nearest_px2, min(nearest_px2, px2), same);
+            if NOISY != 0u {
+                noises = add_noise(noises, noise_at(at, view), weight);
+            }
             if is_own {
                 candidate.is_own = true;
                 own = vec4f(sampled.color, given.w);
@@ -79,14 +102,21 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
     candidate.lod = select(lod, 0.0, candidate.is_own);
     candidate.gains = gain_sum * known;
     candidate.fit = min(fit_sum * known, own_fits);
+    if NOISY != 0u {
+        candidate.noise = mean_noise(noises);
+        if candidate.is_own {
+            candidate.noise = noise_at(px, view);
+            candidate.around = mean_around(around, px, view, codes);
+        }
+    }
     return candidate;
 }
 
 // Candidate of a pixel in the fovea.
 fn full_rate_candidate(px: vec2u, view: u32, mask_word: u32) -> Candidate {
-    let given = color_at(px, view);
+    let given = sample_at(px, view);
     let own = color(given.xyz);
-    let usable = own.usable && (mask_word & 1u) != 0u;
+    let usable = own.usable && is_shaded(mask_word, px);
     var candidate = no_candidate();
     candidate.color = select(vec3f(0.0), own.color, usable);
     candidate.alpha = select(1.0, given.w, usable);
@@ -102,8 +132,8 @@ fn samples_near(px: vec2u, view: u32, needed: bool) -> Near {
     let taps = select(0u, 9u, needed);
     for (var tap = 0u; tap < taps; tap++) {
         let at = clamp(px + vec2u(tap % 3u, tap / 3u), vec2u(1u), frame.size) - 1u;
-        let sampled = color(color_at(at, view).xyz);
-        if sampled.usable && (mask_at(at, view) & 1u) != 0u {
+        let sampled = color(sample_at(at, view).xyz);
+        if sampled.usable && is_shaded(mask_at(at, view), at) {
             near = add_near(near, sampled.color);
         }
     }

@@ -10,6 +10,8 @@ struct PrimedView {
     origin: vec2u,
     size: vec2u,
     view: u32,
+    // Whether quads that are shaded in part are closed, too.
+    is_half: u32,
 }
 
 @group(0) @binding(0) var<uniform> primed: PrimedView;
@@ -25,7 +27,10 @@ fn corner(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
 fn close(@builtin(position) position: vec4f) {
     let at = vec2u(position.xy) - primed.origin;
     // Some devices do not clip single samples at the scissor's edges.
-    if any(at >= primed.size) || (textureLoad(mask, at >> vec2u(1u), primed.view, 0).x & 1u) != 0u {
+    let place = (at.x & 1u) | ((at.y & 1u) << 1u);
+    let pixels = textureLoad(mask, at >> vec2u(1u), primed.view, 0).x & 15u;
+    let is_open = ((pixels >> place) & 1u) != 0u && (primed.is_half == 0u || pixels == 15u);
+    if any(at >= primed.size) || is_open {
         discard;
     }
 }

@@ -7,10 +7,21 @@ const INVOCATIONS: u32 = 64u;
 // Number of keys that an invocation sums. The last invocation's keys have no quads.
 const RUN: u32 = 1u << HASH_BITS;
 
+// The budget, in quads or in paths, and whether there are further paths.
 @group(0) @binding(0) var<uniform> budget_quads: vec4u;
 
-// Number of quads of each invocation's keys.
+// Number of paths of each invocation's keys, and of quads.
 var<workgroup> of_run: array<u32, INVOCATIONS>;
+var<workgroup> quads_of_run: array<u32, INVOCATIONS>;
+
+// Number of paths with a key: a quad's first ones, and further ones.
+fn paths_at(key: u32) -> u32 {
+    var count = atomicLoad(&state.counts[key]);
+    if budget_quads.y != 0u {
+        count += atomicLoad(&state.further[key]);
+    }
+    return count;
+}
 
 // Arguments of a dispatch of at least `invocations` invocations.
 fn groups(invocations: u32) -> array<u32, 3> {
@@ -21,29 +32,35 @@ fn groups(invocations: u32) -> array<u32, 3> {
 @compute @workgroup_size(64, 1)
 fn main(@builtin(local_invocation_index) run: u32) {
     var sum = 0u;
+    var quads_sum = 0u;
     for (var key = run * RUN; key < min((run + 1u) * RUN, KEYS); key++) {
-        sum += atomicLoad(&state.counts[key]);
+        sum += paths_at(key);
+        quads_sum += atomicLoad(&state.counts[key]);
     }
     of_run[run] = sum;
+    quads_of_run[run] = quads_sum;
     workgroupBarrier();
     if run > 0u {
         return;
     }
     let budget = budget_quads.x;
     var chosen = 0u;
+    var by_need = 0u;
     var first = INVOCATIONS;
     while first > 0u && of_run[first - 1u] <= budget - chosen {
         first--;
         chosen += of_run[first];
+        by_need += quads_of_run[first];
     }
     // The budget ends within the keys of the run before `first`, unless `first` is 0. No quad is counted at key 0.
     var key = first * RUN;
-    while key > 1u && atomicLoad(&state.counts[key - 1u]) <= budget - chosen {
+    while key > 1u && paths_at(key - 1u) <= budget - chosen {
         key--;
-        chosen += atomicLoad(&state.counts[key]);
+        chosen += paths_at(key);
+        by_need += atomicLoad(&state.counts[key]);
     }
     state.threshold = max(key, 1u);
-    let quads = chosen + atomicLoad(&state.even);
+    let quads = by_need + atomicLoad(&state.even);
     atomicStore(&state.listed, 0u);
     state.pixel_groups = groups(4u * quads);
     state.quad_groups = groups(quads);

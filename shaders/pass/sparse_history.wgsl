@@ -7,8 +7,6 @@
 
 // Whether frames are jittered and history stores means of samples.
 override ANTIALIAS: u32 = 0u;
-// Whether depth is that of the samples, not of the pixels' centres.
-override SAMPLE_DEPTH: u32 = 0u;
 
 @group(0) @binding(15) var past_stored: texture_2d_array<u32>;
 
@@ -30,19 +28,17 @@ struct PixelSurface {
     farthest: f32,
     nearest: f32,
     mixes: bool,
-    // On quads: whether history is the mean of several surfaces, of which a sample shows one.
+    // Whether history is the mean of several surfaces, of which a sample shows one.
     is_silhouette: bool,
-    // Whether this frame's sample at the pixel may show another surface.
-    is_doubtful: bool,
 }
 
 // The surface whose history a pixel continues: with ANTIALIAS the nearest surface around it if `stands_before` is true,
-// otherwise its own. `level`: of its lattice.
+// otherwise its own. `level`: of its region.
 fn surface_of(px: vec2u, view: u32, level: u32) -> PixelSurface {
     let own = disparity_at(px, view);
     let own_motion = motion_at(px, view);
     if ANTIALIAS == 0u || DEPTH_TEST == 0u {
-        return PixelSurface(own, own_motion, own, own, own, false, false, false);
+        return PixelSurface(own, own_motion, own, own, own, false, false);
     }
     var nearest_disparity = own;
     var farthest_disparity = own;
@@ -50,8 +46,6 @@ fn surface_of(px: vec2u, view: u32, level: u32) -> PixelSurface {
     var farthest_at = px;
     var thin = false;
     var silhouette = false;
-    var doubtful = false;
-    let place_px = -frame.views[view].jitter_px;
     for (var pair = 0u; pair < 4u; pair++) {
         var disparities = vec2f(own);
         for (var side = 0u; side < 2u; side++) {
@@ -59,7 +53,6 @@ fn surface_of(px: vec2u, view: u32, level: u32) -> PixelSurface {
             let offset = vec2u(tap % 3u, tap / 3u);
             let texel = clamp(px + offset, vec2u(1u), frame.size) - 1u;
             let near = disparity_at(texel, view);
-            doubtful = doubtful || may_show(own, near, place_px, vec2f(offset) - 1.0);
             let is_farther = near >= 0.0 && near < farthest_disparity;
             nearest_at = select(nearest_at, texel, near > nearest_disparity);
             farthest_at = select(farthest_at, texel, is_farther);
@@ -71,19 +64,17 @@ fn surface_of(px: vec2u, view: u32, level: u32) -> PixelSurface {
         silhouette = silhouette || is_silhouette(own, disparities.x, disparities.y);
     }
     let motion = motion_at(nearest_at, view);
-    var surface = PixelSurface(own, own_motion, own, own, own, false, false, false);
+    var surface = PixelSurface(own, own_motion, own, own, own, false, false);
     if stands_before(own, nearest_disparity, own_motion, motion, level == 0u) {
-        surface = PixelSurface(nearest_disparity, motion, nearest_disparity, own, own, false, false, false);
+        surface = PixelSurface(nearest_disparity, motion, nearest_disparity, own, own, false, false);
     }
     if own >= 0.0 && move_together(own_motion, motion, motion_at(farthest_at, view)) {
         surface.stored_disparity = select(own, farthest_disparity, thin);
         surface.farthest = farthest_disparity;
         surface.nearest = nearest_disparity;
         surface.mixes = true;
-        surface.is_silhouette = SAMPLE_DEPTH != 0u && silhouette;
+        surface.is_silhouette = silhouette;
     }
-    // Where surfaces move together, a pixel is the mean of both, and samples of either surface belong to it.
-    surface.is_doubtful = SAMPLE_DEPTH == 0u && doubtful && own >= 0.0 && !surface.mixes;
     return surface;
 }
 

@@ -1,5 +1,5 @@
 //#use inputs
-// Noise of the stored samples of sparse frames. CPU twin: src/cpu/sparse_pass/sparse_history.rs.
+// Noise of the stored samples of planned frames. CPU twin: src/cpu/sparse_pass/sparse_history.rs.
 
 @group(0) @binding(16) var past_noise: texture_2d_array<u32>;
 

@@ -3,7 +3,7 @@
 //#use output
 //#use rng
 //#use sparse_smr
-// Pixel of smr from stored samples of history and the candidate around it; shared by frames of lattices and of quads.
+// Pixel of smr from stored samples of history and the candidate around it.
 // CPU twin: `pixel` in src/cpu/sparse_pass/pixel.rs; docs/method.md has the equations.
 
 @group(0) @binding(18) var next_stored: texture_storage_2d_array<rg32uint, write>;
@@ -22,6 +22,8 @@ struct Candidate {
     noise: Noise,
     // Whether the candidate is this pixel's own sample.
     is_own: bool,
+    // Of a noisy pixel with a sample: mean of all samples around it, its own included, and the mean variance of one.
+    around: vec4f,
 }
 
 // A candidate without samples; the other fields are 0.
@@ -32,6 +34,16 @@ fn no_candidate() -> Candidate {
     none.alpha = 1.0;
     none.noise = Noise(1.0, 0.0);
     return none;
+}
+
+// The noisy sample of a pixel whose history is a mean of `past` samples, with its share of the mean around it. Its
+// variance takes its share, too: a pixel whose samples all missed a lamp would call its neighbours' light a change.
+fn borrowing(own: Candidate, past: f32) -> Candidate {
+    var all_around = own;
+    let share = borrowed(past, Noise(own.noise.samples, own.around.w), luma(own.around.xyz));
+    all_around.color = own.color + (own.around.xyz - own.color) * share;
+    all_around.noise.variance = own.noise.variance + (own.around.w - own.noise.variance) * share;
+    return all_around;
 }
 
 // Result at a pixel that has history and a usable candidate, of jittered frames. `near`: sums over the nine samples
@@ -79,7 +91,8 @@ fn hidden_pixel(px: vec2u, view: u32) {
 
 // Processes a visible pixel. `level`: log2 of the distance of the samples around it; at level 0 it has a sample in
 // every frame. `near`: sums over the nine samples around a pixel of level 0, of jittered frames.
-fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, candidate: Candidate, near: Near) {
+fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candidate, near: Near) {
+    var candidate = given;
     let surface = surface_of(px, view, level);
     let motion = surface.motion;
     let source = sparse_source(px, view, surface);
@@ -90,6 +103,13 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, candidate: C
     let verdict = select(previous.verdict, VERDICT_VALID, history.lod >= 0.0);
     let valid = verdict == VERDICT_VALID;
     count_pixel(px, view, candidate.usable, disparity_now, verdict);
+    if NOISY != 0u && candidate.is_own {
+        var past = 0.0;
+        if history.lod >= 0.0 {
+            past = stored_noise(found.texel, view).samples;
+        }
+        candidate = borrowing(candidate, past);
+    }
 
     var shown = candidate.color;
     let candidate_lod = select(-1.0, candidate.lod, candidate.usable);

@@ -1,5 +1,4 @@
 //#use each_pixel
-//#use lattices
 //#use output
 //#use settled_history
 //#use surface_history
@@ -21,49 +20,35 @@ struct Samples {
     past_luma: f32,
 }
 
-fn is_shaded(point: vec2i, view: u32) -> bool {
-    let px = vec2u(clamp(point, vec2i(0), vec2i(frame.size) - 1));
-    return (textureLoad(quad_mask, px >> vec2u(1u), view, 0).x & 1u) != 0u;
+fn is_shaded(px: vec2u, view: u32) -> bool {
+    let place = (px.x & 1u) | ((px.y & 1u) << 1u);
+    return ((textureLoad(quad_mask, px >> vec2u(1u), view, 0).x >> place) & 1u) != 0u;
 }
 
-fn sample_near(point: vec2i, lattice: LatticeUniforms, view: u32) -> vec4f {
-    let last = vec2i(lattice.points) - 1;
-    return sample_at(vec2u(clamp(point, vec2i(0), last)), lattice, view);
-}
-
-// Nine samples around a pixel, of its lattice. At the lattice's border the last samples repeat at positions beyond it.
-// `kernel`: tail and narrowing. The loop has a variable count on purpose: Mesa would unroll a constant one and reorder
-// its sums of products.
+// Nine samples around a pixel. At the frame's border the last samples repeat at positions beyond it. `kernel`: tail and
+// narrowing. The loop has a variable count on purpose: Mesa would unroll a constant one and reorder its sums of
+// products.
 fn samples(px: vec2u, view: u32, kernel: vec2f, source: Source, compared: bool) -> Samples {
-    let lattice = lattice_at(px, view);
-    let first = lattice.first_px;
-    let level = lattice.level;
-    let middle = vec2i(nearest_point(px.x, first.x, level), nearest_point(px.y, first.y, level));
     var around = SamplesAround(vec3f(0.0), vec2f(0.0), vec3f(0.0), vec3f(0.0), 0.0);
     var past_luma = 0.0;
-    let has_samples = all(lattice.points > vec2u(0u));
-    var given = vec4f(bitcast<f32>(sparse.missing));
-    if has_samples {
-        given = sample_near(middle, lattice, view);
-    }
+    let given = color_at(px, view);
     let nearest = color(given.xyz);
-    let taps = select(0, 9, has_samples);
+    let taps = select(0, 9, all(px < frame.size));
     for (var tap = 0; tap < taps; tap++) {
-        let point = middle + vec2i(tap % 3, tap / 3) - 1;
-        let sampled = color(sample_near(point, lattice, view).xyz);
+        let offset_px = vec2i(tap % 3, tap / 3) - 1;
+        let at = vec2u(clamp(vec2i(px) + offset_px, vec2i(0), vec2i(frame.size) - 1));
+        let sampled = color(color_at(at, view).xyz);
         if sampled.usable {
             // A sample shows the point at its pixel minus the jitter.
-            let x = point_offset_px(px.x, first.x, level, point.x);
-            let y = point_offset_px(px.y, first.y, level, point.y);
-            let offset = vec2f(x, y) - frame.views[view].jitter_px;
-            var weights = sample_weights(offset, level, kernel.x, kernel.y);
+            let offset = vec2f(offset_px) - frame.views[view].jitter_px;
+            var weights = sample_weights(offset, kernel.x, kernel.y);
             // They still tell what is around.
-            if BY_QUADS != 0u && !is_shaded(point, view) {
+            if BY_QUADS != 0u && !is_shaded(at, view) {
                 weights = vec2f(0.0);
             }
             around = add_around(around, nearest.color, sampled.color, weights);
             if compared {
-                past_luma += luma_beside(source, vec2i(vec2f(x, y)), view);
+                past_luma += luma_beside(source, offset_px, view);
             }
         }
     }

@@ -116,10 +116,10 @@ struct Place {
     weight: f32,
 }
 
-// Code of the candidate's level of detail. `sampled`: whether the pixel has a sample of its own. On sparse frames such
-// a candidate is a full-rate one, and all others are interpolated.
-fn level_of(px: vec2u, view: u32, e_deg: f32, sampled: bool) -> u32 {
-    if FILTER == FILTER_SPARSE {
+// Code of the candidate's level of detail. `sampled`: whether the pixel has a sample of its own. On planned frames
+// such a candidate is a full-rate one, and all others are interpolated.
+fn level_code_of(px: vec2u, view: u32, e_deg: f32, sampled: bool) -> u32 {
+    if FILTER == FILTER_QUADS {
         return select(NO_LEVEL, 0u, sampled);
     }
     return level_code(candidate_lod(px, view, e_deg));
@@ -136,7 +136,7 @@ fn weighted_pixel(px: vec2u, view: u32, place: Place) {
     if candidate.usable {
         let acuity_w = candidate_weight(e_deg, frame.fovea_radius_deg, frame.inv_density_at_fovea);
         candidate_w = sharpen(acuity_w, WEIGHT_EXPONENT) * place.weight;
-        if RATE_EXPONENT != 0u && FILTER != FILTER_SPARSE {
+        if RATE_EXPONENT != 0u && FILTER != FILTER_QUADS {
             candidate_w = at_rate(candidate_w, candidate_lod(px, view, e_deg), RATE_EXPONENT);
         }
     }
@@ -151,7 +151,7 @@ fn weighted_pixel(px: vec2u, view: u32, place: Place) {
     let valid = history.verdict == VERDICT_VALID;
     let params = WrsParams(SAMPLER, BIAS, frame.exponential_survival, GATE, gate_offset, frame.inv_gate_divisor);
     let draw = unit_draw(bits(px.x, px.y, frame.frame_low, constants.key));
-    let level = level_of(px, view, e_deg, all(place.px == px));
+    let level = level_code_of(px, view, e_deg, all(place.px == px));
     var past = history.past;
     if HAS_REFERENCES != 0u {
         past.color = compared(candidate.color, level, history.reference);

@@ -11,14 +11,13 @@ use crate::frame::Reset;
 use crate::kernel::antialias::mean_of;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::depth::distance_of;
-use crate::kernel::lattice::{nearest_point, point_offset_px};
 use crate::kernel::noise::{Noise, unpack_noise};
+use crate::kernel::quads::WHOLE;
 use crate::kernel::resample::{ROUNDS, Tap, TapsAround, sharp_sum, taps_of};
 use crate::kernel::stored_sample::unpack_stored;
 use crate::kernel::surface::unpack_surface;
 use crate::notes::{Note, NoteStage, Notes, PixelNotes};
 use crate::stats::FrameStats;
-use crate::uniforms::LatticeUniforms;
 
 /// The pixel to explain, if it lies in view `view`.
 pub(super) fn of_view<'a>(noted: &'a mut Option<&mut PixelNotes>, view: usize) -> Option<&'a mut PixelNotes> {
@@ -35,8 +34,8 @@ pub(super) fn explain(pass: &impl ProcessPixel, stored: fn(&Pixel, &mut Vec<Note
     stored(&result, notes);
 }
 
-/// Notes what a frame gives for a pixel, unless it lies outside the frame. `given`: the frame before its colors and its
-/// geometry were filled between samples.
+/// Notes what a frame gives for a pixel, unless it lies outside the frame. `given`: the frame before its colors
+/// were filled between samples.
 pub(super) fn note_inputs(
     desc: &ContextDesc,
     given: &Frame<'_>,
@@ -66,18 +65,14 @@ pub(super) fn note_inputs(
     if frame.color[view].size() == desc.size_px {
         notes.note(stage, "color", frame.color[view].at(u, v), "linear light, as given");
     }
-    match (quads.get(view), &facts.lattices) {
-        (Some(quads), _) => {
-            notes.note(stage, "shaded", quads.is_shaded([x, y]), "");
-            notes.note(stage, "distance of the even pattern's quads", (1 << quads.level_at([x, y])) as f32, "px");
-        }
-        (None, Some(_)) => note_sample(given, view, &inputs, [x, y], notes),
-        (None, None) => {
+    match quads.get(view) {
+        Some(quads) => note_sample(quads, given, view, [x, y], notes),
+        None => {
             let lod = inputs.candidate_lod(&desc.settings.foveation, x, y, e_deg);
             notes.note(stage, "level of detail", lod, "log2 px");
         }
     }
-    note_geometry(desc, given, frame, &inputs, view, [x, y], notes);
+    note_geometry(desc, frame, &inputs, view, [x, y], notes);
     if let Some(noise) = inputs.noise(x, y) {
         notes.note(stage, "noise", [noise.samples, noise.variance], "samples, variance of one");
     }
@@ -89,7 +84,6 @@ pub(super) fn note_inputs(
 /// Depth and motion of a pixel, as given and in internal conventions.
 fn note_geometry(
     desc: &ContextDesc,
-    given: &Frame<'_>,
     frame: &Frame<'_>,
     inputs: &Inputs<'_>,
     view: usize,
@@ -97,19 +91,13 @@ fn note_geometry(
     notes: &mut Vec<Note>,
 ) {
     let (stage, at) = (NoteStage::Input, (x as usize, y as usize));
-    let is_filled = given.views[view].lattices.as_ref().is_some_and(|lattices| lattices.has_geometry_at_samples());
-    if is_filled {
-        notes.note(stage, "depth and motion", "filled between samples", "");
-    }
-    if let Some(depth) = given.depth.map(|d| d[view]).filter(|_| !is_filled) {
+    if let Some(depth) = frame.depth.map(|d| d[view]) {
         notes.note(stage, "depth as given", depth.at(at.0, at.1), "in the frame's convention");
-    }
-    if frame.depth.is_some() {
         let disparity = inputs.disparity(x, y);
         notes.note(stage, "distance", distance_of(disparity), "below 0: unknown");
         notes.note(stage, "disparity", disparity, "1/distance");
     }
-    if let Some(motion) = given.motion.map(|m| m[view]).filter(|_| !is_filled) {
+    if let Some(motion) = frame.motion.map(|m| m[view]) {
         notes.note(stage, "motion as given", motion.at(at.0, at.1), "in the frame's convention");
     }
     notes.note(stage, "motion", inputs.motion(x, y), "px, previous minus current position, y down");
@@ -118,21 +106,19 @@ fn note_geometry(
     }
 }
 
-/// The sample of a sparse frame that is nearest to a pixel.
-fn note_sample(given: &Frame<'_>, view: usize, inputs: &Inputs<'_>, px: [u32; 2], notes: &mut Vec<Note>) {
+/// Whether a pixel of a planned frame is shaded, and the sample that is nearest to it.
+fn note_sample(quads: &Quads, given: &Frame<'_>, view: usize, px: [u32; 2], notes: &mut Vec<Note>) {
     let stage = NoteStage::Input;
-    let lattice = &inputs.lattices[LatticeUniforms::index_at(&inputs.lattices, px)];
-    notes.note(stage, "distance of samples", (1 << lattice.level) as f32, "px");
-    if lattice.points.contains(&0) {
-        return;
-    }
-    let (first, level) = (lattice.first_px, lattice.level);
-    let point = [0, 1].map(|i| nearest_point(px[i], first[i], level).clamp(0, lattice.points[i] as i32 - 1));
-    let offset = [0, 1].map(|i| point_offset_px(px[i], first[i], level, point[i]));
-    let [u, v] = lattice.texel_of(point.map(|v| v as u32));
-    notes.note(stage, "nearest sample", offset, "px from the pixel");
-    notes.note(stage, "its texel", [u as f32, v as f32], "px");
-    notes.note(stage, "its color", given.color[view].at(u as usize, v as usize), "linear light, as given");
+    notes.note(stage, "shaded", quads.is_shaded(px), "");
+    notes.note(stage, "distance of the even pattern's quads", (1 << quads.level_at(px)) as f32, "px");
+    let Some(at) = quads.nearest_sample(px) else { return };
+    notes.note(stage, "nearest sample", [0, 1].map(|i| at[i] as f32 - px[i] as f32), "px from the pixel");
+    let half = given.half.filter(|_| quads.mask(at.map(|v| v / 2)) != WHOLE);
+    let color = match half {
+        Some(half) => half[view].at(at[0] as usize / 2, at[1] as usize / 2),
+        None => given.color[view].at(at[0] as usize, at[1] as usize),
+    };
+    notes.note(stage, "its color", color, "linear light, as given");
 }
 
 /// Notes the texels of history that are filtered.
@@ -176,7 +162,7 @@ pub(super) fn note_surface(pixel: &Pixel, notes: &mut Vec<Note>) {
     note_noise(pixel, notes);
 }
 
-/// Notes the stored sample of smr on sparse frames.
+/// Notes the stored sample of smr on planned frames.
 pub(super) fn note_stored(pixel: &Pixel, notes: &mut Vec<Note>) {
     let stored = unpack_stored(pixel.surface);
     notes.note(NoteStage::Stored, "color", stored.color, "linear light");

@@ -150,10 +150,16 @@ impl History {
         self.state[index].with(&frame.views[index], frame.exposure)
     }
 
-    /// Previous packed samples of `view`; empty except for smr on sparse frames, and without history.
+    /// Previous packed samples of `view`; empty except for smr on planned frames, and without history.
     pub(super) fn sparse(&self, view: usize) -> &[[u32; 2]] {
         let is_sparse = matches!(self.layout, HistoryLayout::Sparse { .. }) && self.filled;
         if is_sparse { &self.previous.surfaces[view * self.view_len..(view + 1) * self.view_len] } else { &[] }
+    }
+
+    /// Packed noise of these samples; empty unless candidates are noisy.
+    pub(super) fn sparse_noise(&self, view: usize) -> &[u32] {
+        let is_noisy = !self.previous.noise.is_empty() && self.filled;
+        if is_noisy { &self.previous.noise[view * self.view_len..(view + 1) * self.view_len] } else { &[] }
     }
 
     /// Previous reservoirs of `view`, and the current ones to write.

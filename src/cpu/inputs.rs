@@ -16,7 +16,7 @@ use crate::kernel::{lens, reproject, sanitize};
 use crate::notes::{NoteStage, Notes};
 use crate::settings::DepthTest;
 use crate::stats::FrameStats;
-use crate::uniforms::{CameraUniforms, LatticeUniforms, ViewLattices, ViewState, ViewUniforms};
+use crate::uniforms::{CameraUniforms, ViewState, ViewUniforms};
 use glam::{Vec2, Vec3};
 
 /// Previous position of a pixel's surface.
@@ -40,11 +40,11 @@ pub(super) struct Inputs<'a> {
     reactive: Option<&'a Image<f32>>,
     noise: Option<&'a Image<[f32; 2]>>,
     pub size: [u32; 2],
-    /// Lattices of the samples: those of a sparse frame, otherwise one of full rate.
-    pub lattices: ViewLattices,
     pub uniforms: ViewUniforms,
     /// Factor on stored colors.
     pub exposure: f32,
+    /// Colors of quads that are shaded in part, one a quad.
+    half: Option<&'a Image<[f32; 3]>>,
     /// Factor on given colors.
     pub color_exposure: f32,
     /// Its inverse, a factor on shown colors.
@@ -72,9 +72,9 @@ impl<'a> Inputs<'a> {
             reactive: frame.reactive.map(|r| r[index]),
             noise: frame.noise.map(|n| n[index]),
             size: desc.size_px,
-            lattices: LatticeUniforms::of_view_or_full(view.lattices.as_ref(), desc.size_px),
             uniforms,
             exposure: state.stored_exposure(frame),
+            half: frame.half.map(|half| half[index]),
             color_exposure: frame.exposure.of_colors(),
             inverse_exposure: 1.0 / frame.exposure.of_colors(),
             reset: frame.reset != Reset::None || !has_history,
@@ -165,6 +165,14 @@ impl<'a> Inputs<'a> {
         Vec3::from(self.color.at(x as usize, y as usize)) * self.color_exposure
     }
 
+    /// The same of a pixel of a quad that is shaded in part.
+    #[inline(always)]
+    pub fn partial_color_at(&self, px: [u32; 2]) -> Vec3 {
+        let Some(half) = self.half else { return self.color_at(px) };
+        let [x, y] = px.map(|v| v as usize / 2);
+        Vec3::from(half.at(x, y)) * self.color_exposure
+    }
+
     /// A color in this frame's exposure, in the unit of the color input.
     #[inline(always)]
     pub fn unexposed(&self, color: Vec3) -> Vec3 {
@@ -199,15 +207,9 @@ impl<'a> Inputs<'a> {
     /// motion.
     #[inline(always)]
     pub fn motion(&self, x: u32, y: u32) -> [f32; 2] {
-        self.motion_of([x, y], [x, y])
-    }
-
-    /// Motion vector of the pixel `px`, whose vector and depth lie at `texel`.
-    #[inline(always)]
-    pub fn motion_of(&self, px: [u32; 2], texel: [u32; 2]) -> [f32; 2] {
         let mut own = [0.0; 2];
         if let Some(motion) = self.motion {
-            let given = motion.at(texel[0] as usize, texel[1] as usize);
+            let given = motion.at(x as usize, y as usize);
             let [offset_x, offset_y] = self.uniforms.motion_offset;
             own = [given[0] * self.motion_scale[0] + offset_x, given[1] * self.motion_scale[1] + offset_y];
             if self.convention.no_vector.is_some() {
@@ -221,15 +223,15 @@ impl<'a> Inputs<'a> {
         if !self.convention.lacks_camera() {
             return own;
         }
-        self.with_camera(px, texel, own)
+        self.with_camera([x, y], own)
     }
 
     /// An object's `own` motion and the camera's. The object's ends where the camera would have seen it without moving.
-    fn with_camera(&self, px: [u32; 2], texel: [u32; 2], own: [f32; 2]) -> [f32; 2] {
+    fn with_camera(&self, px: [u32; 2], own: [f32; 2]) -> [f32; 2] {
         let own = Vec2::from(own);
         let at = Vec2::new(px[0] as f32, px[1] as f32) + own;
         let ray = at * Vec2::from(self.uniforms.ray_scale) + Vec2::from(self.uniforms.ray_offset);
-        let disparity = self.disparity(texel[0], texel[1]);
+        let disparity = self.disparity(px[0], px[1]);
         (own + camera_vector(ray, disparity, self.camera_uniforms.motion())).into()
     }
 

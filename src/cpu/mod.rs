@@ -7,7 +7,6 @@ mod doctor;
 mod doctor_pass;
 mod explain;
 mod fill;
-mod fill_geometry;
 pub(crate) mod history;
 mod inputs;
 mod mip_chain;
@@ -32,7 +31,6 @@ use crate::error::{FrameError, SettingsError};
 use crate::gaze::Gaze;
 use crate::geometry::ViewGeometry;
 use crate::image::Image;
-use crate::lattice::Lattices;
 use crate::method::{Algorithm, HistoryLayout, Stage};
 use crate::notes::PixelNotes;
 use crate::resize::Resize;
@@ -67,8 +65,9 @@ impl<'a> Frame<'a> {
     where
         'a: 'b,
     {
-        let Self { depth, motion, trust, reactive, lod, noise, views, index, reset, exposure, .. } = *self;
-        Frame { color, depth, motion, trust, reactive, lod, noise, views, index, reset, exposure }
+        let Self { depth, motion, trust, reactive, lod, noise, mask, half, views, index, .. } = *self;
+        let (reset, exposure) = (self.reset, self.exposure);
+        Frame { color, depth, motion, trust, reactive, lod, noise, mask, half, views, index, reset, exposure }
     }
 }
 
@@ -155,8 +154,8 @@ impl CpuAfterimage {
     }
 
     /// Gaze position in pixels that [`process`](Self::process) would use for view `view` of the next frame: `gaze` if
-    /// it is known, else the last known one, else the middle of the view. Renderers of sparse frames need it before
-    /// that call, to place the [lattices](crate::Foveation::lattices).
+    /// it is known, else the last known one, else the middle of the view. Renderers that foveate need it before that
+    /// call.
     pub fn gaze_px(&self, view: usize, geometry: &ViewGeometry, gaze: Gaze) -> [f32; 2] {
         gaze.resolve(self.history.held_gaze_px(view), geometry)
     }
@@ -166,8 +165,6 @@ impl CpuAfterimage {
     /// History survives, unless its layout changes: with another [`method`](Settings::method), with
     /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::Wrs::sampler) and the scale of its
     /// [`gate`](crate::Wrs::gate), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
-    /// From [`Filter::Sparse`](crate::Filter::Sparse) to [`Filter::Quads`](crate::Filter::Quads) and back, smr keeps
-    /// it.
     ///
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
@@ -198,7 +195,7 @@ impl CpuAfterimage {
     }
 
     /// Changes the size of the views and resamples history to it, for dynamic resolution. The view directions at the
-    /// edges should stay the same. Reservoirs of wrs, and stored samples of sparse frames with their places, are taken
+    /// edges should stay the same. Reservoirs of wrs, and stored samples of planned frames with their places, are taken
     /// from the nearest pixel. Surfaces of taa, taau and smr are filtered. Levels of detail follow the scale.
     ///
     /// # Errors
@@ -257,31 +254,32 @@ impl CpuAfterimage {
     ) -> Result<FrameStats, FrameError> {
         check_inputs(&self.desc, frame)?;
         frame.check_planned(&self.desc, self.planned.as_ref().map(|planned| planned.index))?;
-        let quads = self.planned.as_ref().map_or(&[][..], |planned| &planned.quads);
+        let given = frame.mask.map(|masks| sparse_pass::given_quads(&self.desc, masks));
+        let planned = self.planned.as_ref().map(|planned| &planned.quads);
+        let quads = given.as_ref().or(planned).map_or(&[][..], |quads| quads);
         check_sizes(&self.desc, "output", Some(output.iter().map(Image::size)))?;
         check_sizes(&self.desc, "traces", traces.as_deref().map(|t| t.iter().map(Image::size)))?;
         let fills = self.desc.settings.stages().contains(&Stage::Fill);
         let filled = if fills { fill::filled(frame, self.desc.size_px, quads) } else { vec![] };
         let filled: Vec<_> = filled.iter().collect();
-        let whole = frame.with_color(if filled.is_empty() { frame.color } else { &filled });
-        let geometry = fill_geometry::filled(&self.desc, frame, &self.history);
-        let (given, history) = (frame, &mut self.history);
-        let stats = fill_geometry::with_filled(geometry.as_deref(), &self.desc, &whole, |desc, frame| {
-            if let Some(pixel) = &mut noted {
-                pixel.notes.clear();
-                explain::note_inputs(desc, given, frame, history, quads, pixel);
-            }
-            let noted = noted.as_deref_mut();
-            let pass = Pass { desc, history, frame, quads, output, traces, noted };
-            match desc.settings.algorithm() {
-                Algorithm::None => none_pass::run(pass),
-                Algorithm::Taa => surface_pass::run(pass, &taa_pass::Taa),
-                Algorithm::Taau => surface_pass::run(pass, &taau_pass::Taau),
-                Algorithm::Smr => surface_pass::run(pass, &smr_pass::Smr::new(&desc.settings)),
-                Algorithm::SmrSparse => sparse_pass::run(pass),
-                Algorithm::Wrs => wrs_pass::run(pass),
-            }
-        });
+        let whole = match filled.is_empty() {
+            true => *frame,
+            false => Frame { half: None, ..frame.with_color(&filled) },
+        };
+        let (given, frame, history) = (frame, &whole, &mut self.history);
+        if let Some(pixel) = &mut noted {
+            pixel.notes.clear();
+            explain::note_inputs(&self.desc, given, frame, history, quads, pixel);
+        }
+        let pass = Pass { desc: &self.desc, history, frame, quads, output, traces, noted: noted.as_deref_mut() };
+        let stats = match self.desc.settings.algorithm() {
+            Algorithm::None => none_pass::run(pass),
+            Algorithm::Taa => surface_pass::run(pass, &taa_pass::Taa),
+            Algorithm::Taau => surface_pass::run(pass, &taau_pass::Taau),
+            Algorithm::Smr => surface_pass::run(pass, &smr_pass::Smr::new(&self.desc.settings)),
+            Algorithm::SmrSparse => sparse_pass::run(pass),
+            Algorithm::Wrs => wrs_pass::run(pass),
+        };
         if let Some(pixel) = noted {
             pixel.notes.sort_by_key(|note| note.stage);
         }
@@ -300,39 +298,21 @@ impl CpuAfterimage {
 /// Checks a frame without its outputs.
 fn check_inputs(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
     frame.check(desc)?;
-    check_samples(desc, "color", Some(frame.color.iter().map(|i| i.size())), frame.views, ViewFrame::atlas)?;
+    check_sizes(desc, "color", Some(frame.color.iter().map(|i| i.size())))?;
+    let half = desc.size_px.map(|side| side.div_ceil(2));
+    check_sizes_of(desc, "half", frame.half.map(|h| h.iter().map(|i| i.size())), half)?;
     check_geometry(desc, frame)?;
     check_sizes(desc, "lod", frame.lod.map(|l| l.iter().map(|i| i.size())))?;
+    check_sizes(desc, "mask", frame.mask.map(|m| m.iter().map(|i| i.size())))?;
     check_sizes(desc, "noise", frame.noise.map(|n| n.iter().map(|i| i.size())))
 }
 
 /// Checks the sizes of the inputs that are known before a frame is shaded.
 fn check_geometry(desc: &ContextDesc, frame: &Frame<'_>) -> Result<(), FrameError> {
-    let geometry = |view| ViewFrame::atlas(view).filter(|atlas| atlas.has_geometry_at_samples());
-    check_samples(desc, "depth", frame.depth.map(|d| d.iter().map(|i| i.size())), frame.views, geometry)?;
-    check_samples(desc, "motion", frame.motion.map(|m| m.iter().map(|i| i.size())), frame.views, geometry)?;
+    check_sizes(desc, "depth", frame.depth.map(|d| d.iter().map(|i| i.size())))?;
+    check_sizes(desc, "motion", frame.motion.map(|m| m.iter().map(|i| i.size())))?;
     check_sizes(desc, "trust", frame.trust.map(|t| t.iter().map(|i| i.size())))?;
     check_sizes(desc, "reactive", frame.reactive.map(|r| r.iter().map(|i| i.size())))
-}
-
-/// Checks the sizes of an input that may be an atlas of samples. `atlas`: the lattices of a view if its samples lie in
-/// an atlas.
-fn check_samples<'a>(
-    desc: &ContextDesc,
-    input: &'static str,
-    sizes: Option<impl Iterator<Item = [u32; 2]>>,
-    views: &'a [ViewFrame],
-    atlas: impl Fn(&'a ViewFrame) -> Option<&'a Lattices>,
-) -> Result<(), FrameError> {
-    let Some(sizes) = sizes else { return Ok(()) };
-    let mut sizes: Vec<_> = sizes.collect();
-    for (view, (facts, size)) in views.iter().zip(&mut sizes).enumerate() {
-        if let Some(atlas) = atlas(facts) {
-            atlas.check_atlas(input, view, [0, 0], *size)?;
-            *size = desc.size_px;
-        }
-    }
-    check_sizes(desc, input, Some(sizes.into_iter()))
 }
 
 /// Checks that an input, if given, has one image of the context's size for each view.
@@ -341,14 +321,24 @@ fn check_sizes(
     input: &'static str,
     sizes: Option<impl ExactSizeIterator<Item = [u32; 2]>>,
 ) -> Result<(), FrameError> {
+    check_sizes_of(desc, input, sizes, desc.size_px)
+}
+
+/// Checks that an input, if given, has one image of `expected` pixels for each view.
+fn check_sizes_of(
+    desc: &ContextDesc,
+    input: &'static str,
+    sizes: Option<impl ExactSizeIterator<Item = [u32; 2]>>,
+    expected_px: [u32; 2],
+) -> Result<(), FrameError> {
     let Some(sizes) = sizes else { return Ok(()) };
     let (found, expected) = (sizes.len(), desc.view_count as usize);
     if found != expected {
         return Err(FrameError::ViewCount { found, expected });
     }
     for (view, found) in sizes.enumerate() {
-        if found != desc.size_px {
-            return Err(FrameError::Size { input, view, found, expected: desc.size_px });
+        if found != expected_px {
+            return Err(FrameError::Size { input, view, found, expected: expected_px });
         }
     }
     Ok(())

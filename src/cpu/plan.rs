@@ -8,16 +8,20 @@ use crate::image::Image;
 #[derive(Clone, Debug)]
 pub(super) struct Planned {
     pub index: u64,
+    pub is_quarter: bool,
     /// One mask of pixels a view.
     masks: Vec<Image<bool>>,
+    /// Number of paths of each pixel, one image a view.
+    paths: Vec<Image<u8>>,
     /// One a view.
     pub quads: Vec<sparse_pass::Quads>,
 }
 
 impl CpuAfterimage {
-    /// Pixels to shade of a frame [shaded by quads](crate::Filter::Quads), one mask a view: whole quads of 2x2 pixels.
-    /// Give the frame to [`process`](Self::process) with a color of the context's size, in which these pixels are
-    /// shaded.
+    /// Pixels to shade of a [planned frame](crate::Filter::Quads), one mask a view: quads of 2x2 pixels, or
+    /// [single pixels](crate::Foveation::single_pixels). Give the frame to [`process`](Self::process) with a color of
+    /// the context's size, in which these pixels are shaded. Without history the plan is a quarter of the pixels
+    /// ([`is_quarter`](Self::is_quarter)), unless the foveation shades more.
     ///
     /// All quads of the fovea are chosen, an even pattern outside it that visits every quad in turn, and at most the
     /// share [`Foveation::budget`](crate::Foveation::budget) of a view's quads where history lacks most.
@@ -52,8 +56,32 @@ impl CpuAfterimage {
         let unshaded = Image::filled([1, 1], [0.0; 3]);
         let colors = vec![&unshaded; frame.views.len()];
         let frame = Frame { noise: None, ..frame.with_color(&colors) };
-        let quads = sparse_pass::plan_quads(&self.desc, &self.history, &frame);
-        let masks = quads.iter().map(sparse_pass::Quads::pixels).collect();
-        Ok(&self.planned.insert(Planned { index: frame.index, masks, quads }).masks)
+        let plans = sparse_pass::plan_quads(&self.desc, &self.history, &frame);
+        let (quads, of_quads): (Vec<_>, Vec<_>) = plans.into_iter().unzip();
+        let masks: Vec<_> = quads.iter().map(sparse_pass::Quads::pixels).collect();
+        let of_pixels = |(mask, paths): (&Image<bool>, &Image<u8>)| {
+            Image::from_fn(mask.size(), |[x, y]| {
+                if mask.at(x as usize, y as usize) { paths.at(x as usize / 2, y as usize / 2) } else { 0 }
+            })
+        };
+        let paths = masks.iter().zip(&of_quads).map(of_pixels).collect();
+        let is_quarter = sparse_pass::is_quarter(&self.desc, &self.history, &frame);
+        Ok(&self.planned.insert(Planned { index: frame.index, is_quarter, masks, paths, quads }).masks)
+    }
+
+    /// Number of paths to trace at each pixel of the last [`plan`](Self::plan), one image a view: 0 where no path is
+    /// traced, at most 16; empty without a plan. With [`noisy`](crate::Settings::noisy) a chosen pixel outside the fovea
+    /// has as many as take more off its squared error, history included, than others; the
+    /// [`budget`](crate::Foveation::budget) counts all of them but the even pattern's first. Otherwise each chosen pixel
+    /// has one.
+    pub fn paths(&self) -> &[Image<u8>] {
+        self.planned.as_ref().map_or(&[], |planned| &planned.paths)
+    }
+
+    /// Whether the last [`plan`](Self::plan) chose one pixel of each quad outside the fovea, because nothing was known: in
+    /// the first frame and after a reset. These pixels can be drawn at half the width and height
+    /// ([`ViewGeometry::half`](crate::ViewGeometry::half)), and given so ([`half`](crate::FrameInputs::half)).
+    pub fn is_quarter(&self) -> bool {
+        self.planned.as_ref().is_some_and(|planned| planned.is_quarter)
     }
 }

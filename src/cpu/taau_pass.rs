@@ -2,16 +2,14 @@
 //! Twin: `shaders/pass/taau_pass.wgsl`.
 //!
 //! Each pixel reads its motion and depth, nine samples and twelve stored surfaces (neighbours share most of these
-//! reads), and writes one surface and one color. Frames without lattices have a sample in every pixel. Frames shaded by
-//! quads have one in each shaded pixel: the others are filled before, and tell only what is around.
+//! reads), and writes one surface and one color. Whole frames have a sample in every pixel. Planned frames have one in
+//! each shaded pixel: the others are filled before, and tell only what is around.
 
 use super::pixel::Pixel;
 use super::surface_history::{Source, SurfaceHistory};
 use super::surface_pass::SurfaceMethod;
 use crate::kernel::debug_view::PixelTrace;
-use crate::kernel::lattice::{nearest_point, point_offset_px};
 use crate::kernel::reproject::Verdict;
-use crate::kernel::sanitize;
 use crate::kernel::sanitize::MAX_HALF;
 use crate::kernel::surface::{Surface, pack_surface};
 use crate::kernel::taa;
@@ -19,7 +17,6 @@ use crate::kernel::taau;
 use crate::kernel::taau::{Accumulated, SamplesAround};
 use crate::notes::{NoteStage, Notes};
 use crate::stats::FrameStats;
-use crate::uniforms::LatticeUniforms;
 use glam::{Vec2, Vec3};
 
 pub(super) struct Taau;
@@ -100,7 +97,7 @@ struct Samples {
     past_luma: f32,
 }
 
-/// Nine samples around a pixel, of its lattice. At the lattice's border the last samples repeat at positions beyond it.
+/// Nine samples around a pixel. At the frame's border the last samples repeat at positions beyond it.
 /// `past`: position of the history to compare with, if any.
 #[inline(always)]
 fn samples(
@@ -111,36 +108,26 @@ fn samples(
     notes: &mut impl Notes,
 ) -> Samples {
     let inputs = &view.inputs;
-    let lattice = &inputs.lattices[LatticeUniforms::index_at(&inputs.lattices, px)];
-    let (first, level) = (lattice.first_px, lattice.level);
-    let middle = [0, 1].map(|i| nearest_point(px[i], first[i], level));
-    let sample_at = |point: [i32; 2]| {
-        let inside = [0, 1].map(|i| point[i].clamp(0, lattice.points[i] as i32 - 1) as u32);
-        sanitize::color(inputs.color_at(lattice.texel_of(inside)))
-    };
-    let mut found = Samples { around: SamplesAround::default(), nearest: Vec3::ZERO, usable: false, past_luma: 0.0 };
-    if lattice.points.contains(&0) {
-        return found;
-    }
-    (found.nearest, found.usable) = sample_at(middle);
+    let inside = |at: [i32; 2]| [0, 1].map(|i| at[i].clamp(0, inputs.size[i] as i32 - 1) as u32);
+    let (nearest, usable) = inputs.candidate(px[0], px[1]);
+    let mut found = Samples { around: SamplesAround::default(), nearest, usable, past_luma: 0.0 };
     for tap in 0..9 {
-        let point = [middle[0] + tap % 3 - 1, middle[1] + tap / 3 - 1];
-        let (color, usable) = sample_at(point);
+        let offset_px = [tap % 3 - 1, tap / 3 - 1];
+        let at = inside([0, 1].map(|i| px[i] as i32 + offset_px[i]));
+        let (color, usable) = inputs.candidate(at[0], at[1]);
         if usable {
             // A sample shows the point at its pixel minus the jitter.
-            let at = [0, 1].map(|i| point_offset_px(px[i], first[i], level, point[i]));
-            let offset = Vec2::from(at) - Vec2::from(inputs.uniforms.jitter_px);
-            let mut weights = taau::sample_weights(offset, level, kernel.tail, kernel.narrowing);
+            let offset = Vec2::new(offset_px[0] as f32, offset_px[1] as f32) - Vec2::from(inputs.uniforms.jitter_px);
+            let mut weights = taau::sample_weights(offset, kernel.tail, kernel.narrowing);
             // What was filled between shaded quads is no sample. It still tells what is around.
-            let inside = [0, 1].map(|i| point[i].clamp(0, inputs.size[i] as i32 - 1) as u32);
-            if view.quads.is_some_and(|quads| !quads.is_shaded(inside)) {
+            if view.quads.is_some_and(|quads| !quads.is_shaded(at)) {
                 weights = Vec2::ZERO;
             }
             let values = [offset.x, offset.y, weights.x, weights.y, color.x, color.y, color.z];
             notes.note(NoteStage::Candidate, "sample", values, "x y px, two weights, linear light");
             found.around = taau::add_around(found.around, found.nearest, color, weights);
             if let Some(source) = past {
-                found.past_luma += view.luma_beside(source, at.map(|v| v as i32));
+                found.past_luma += view.luma_beside(source, offset_px);
             }
         }
     }

@@ -10,11 +10,12 @@ use super::Pass;
 use super::explain::{note_taps, note_trace, of_view};
 use super::history::{NextView, PastView};
 use super::inputs::Inputs;
-use crate::foveation::{Filter, Foveation};
+use super::sparse_pass::Quads;
+use crate::foveation::Foveation;
 use crate::kernel::acuity;
 use crate::kernel::color;
 use crate::kernel::debug_view::PixelTrace;
-use crate::kernel::lattice::{nearest_point, place_weight, point_offset_px};
+use crate::kernel::lattice::place_weight;
 use crate::kernel::noise::sample_difference;
 use crate::kernel::pack;
 use crate::kernel::pack::Stored;
@@ -28,8 +29,7 @@ use crate::method::{has_references, inv_density_at_fovea, wrs_params};
 use crate::notes::{NoNotes, Note, NoteStage, Notes, PixelNotes};
 use crate::parallel::{ProcessRow, process_rows};
 use crate::stats::FrameStats;
-use crate::uniforms::LatticeUniforms;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// Inputs, history and constants of one view of a frame.
 struct ViewPass<'a> {
@@ -43,8 +43,8 @@ struct ViewPass<'a> {
     foveation: Foveation,
     inv_density_at_fovea: f32,
     frame_low: u32,
-    /// Whether the weight of a candidate depends on the place of its sample, as in sparse frames.
-    weighs_places: bool,
+    /// Shaded quads, of a planned frame: the weight of a candidate depends on the place of its sample.
+    quads: Option<&'a Quads>,
 }
 
 #[derive(Clone, Copy)]
@@ -92,7 +92,7 @@ struct Row<'a> {
 }
 
 pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
-    let Pass { desc, history, frame, output, mut traces, mut noted, .. } = pass;
+    let Pass { desc, history, frame, quads, output, mut traces, mut noted } = pass;
     let settings = &desc.settings;
     let wrs = settings.method.wrs();
     let has_history = history.is_filled();
@@ -109,7 +109,7 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
             has_references: has_references(settings),
             inv_density_at_fovea: inv_density_at_fovea(settings),
             frame_low: frame.index as u32,
-            weighs_places: settings.foveation.filter == Filter::Sparse,
+            quads: quads.get(i),
             foveation: settings.foveation,
         };
         let trace = traces.as_mut().map(|t| t[i].pixels_mut());
@@ -177,10 +177,9 @@ impl ViewPass<'_> {
         let e_deg = inputs.region_angle_deg(ray);
         let mut weight = if usable { self.weight(e_deg) } else { 0.0 };
         let mut sample_px = [x, y];
-        if self.weighs_places {
-            let (px, place) = self.place([x, y]);
-            sample_px = px;
-            weight *= place;
+        if let Some(quads) = self.quads {
+            sample_px = quads.nearest_sample(sample_px).unwrap_or(sample_px);
+            weight *= place_weight(Vec2::new(sample_px[0] as f32 - x as f32, sample_px[1] as f32 - y as f32));
         } else if usable && self.rate_exponent != 0 {
             weight = wrs::at_rate(weight, inputs.candidate_lod(&self.foveation, x, y, e_deg), self.rate_exponent);
         }
@@ -243,30 +242,16 @@ impl ViewPass<'_> {
         wrs::sharpen(weight, self.weight_exponent)
     }
 
-    /// Code of the candidate's level of detail. `sampled`: whether the pixel has a sample of its own. On sparse frames
+    /// Code of the candidate's level of detail. `sampled`: whether the pixel has a sample of its own. On planned frames
     /// such a candidate is a full-rate one, and all others are interpolated.
     #[inline(always)]
     fn level(&self, x: u32, y: u32, e_deg: f32, sampled: bool) -> u32 {
-        match self.foveation.filter {
+        match self.quads {
             _ if !self.has_references => wrs::NO_LEVEL,
-            Filter::Sparse if sampled => 0,
-            Filter::Sparse => wrs::NO_LEVEL,
-            _ => wrs::level_code(self.inputs.candidate_lod(&self.foveation, x, y, e_deg)),
+            Some(_) if sampled => 0,
+            Some(_) => wrs::NO_LEVEL,
+            None => wrs::level_code(self.inputs.candidate_lod(&self.foveation, x, y, e_deg)),
         }
-    }
-
-    /// Pixel of the sample nearest to a pixel, and the weight of its place. Without samples in the frame: the pixel
-    /// itself, and 1.
-    #[inline(always)]
-    fn place(&self, px: [u32; 2]) -> ([u32; 2], f32) {
-        let lattice = &self.inputs.lattices[LatticeUniforms::index_at(&self.inputs.lattices, px)];
-        if lattice.points.contains(&0) {
-            return (px, 1.0);
-        }
-        let point = [0, 1]
-            .map(|i| nearest_point(px[i], lattice.first_px[i], lattice.level).clamp(0, lattice.points[i] as i32 - 1));
-        let offset_px = [0, 1].map(|i| point_offset_px(px[i], lattice.first_px[i], lattice.level, point[i]));
-        (lattice.px_of(point.map(|v| v as u32)), place_weight(offset_px.into()))
     }
 
     /// History of the pixel's surface, or the verdict that rejects it.

@@ -19,7 +19,6 @@ pub(crate) use observation::{Description, Observation, maps};
 
 use crate::context::ContextDesc;
 use crate::error::SettingsError;
-use crate::foveation::Filter;
 use crate::frame::{Exposure, FrameInputs, Reset};
 
 /// Number of frames that are kept; with more, the oldest ones are forgotten.
@@ -42,14 +41,8 @@ struct Past {
 }
 
 impl Chart {
-    /// No observations of view `view`; an error for lattices, which the rules do not cover yet, and for a view that the
-    /// context does not have.
+    /// No observations of view `view`; an error for a view that the context does not have.
     pub fn new(desc: &ContextDesc, view: usize) -> Result<Self, SettingsError> {
-        let filter = desc.settings.foveation.filter;
-        if filter == Filter::Sparse {
-            let expected = "another filter: the doctor does not know lattices yet".into();
-            return Err(SettingsError { setting: "foveation filter", found: filter.name().into(), expected });
-        }
         if view >= desc.view_count as usize {
             let expected = format!("the index of one of the context's {} views", desc.view_count);
             return Err(SettingsError { setting: "view", found: view.to_string(), expected });

@@ -16,14 +16,16 @@ pub enum Binding {
     Trust,
     Lod,
     Noise,
-    Reactive = 8,
+    Mask,
+    Reactive,
+    /// Colors of half the size.
+    Half,
     Output = 10,
     /// Debug view beside the output.
     Debug,
     Counters,
-    Lattices,
     /// Number of the frame that wrote the history.
-    PastFrame,
+    PastFrame = 14,
     /// First of three textures of the previous frame's history.
     Past,
     PastSecond,
@@ -56,7 +58,7 @@ pub struct Input {
 }
 
 /// The inputs of a frame.
-pub const INPUTS: [Input; 7] = [
+pub const INPUTS: [Input; 9] = [
     Input { binding: Binding::Color, name: "color", channels: 3, is_geometry: false, has: None },
     Input { binding: Binding::Depth, name: "depth", channels: 1, is_geometry: true, has: Some("HAS_DEPTH") },
     Input { binding: Binding::Motion, name: "motion", channels: 2, is_geometry: true, has: Some("HAS_MOTION") },
@@ -64,6 +66,8 @@ pub const INPUTS: [Input; 7] = [
     Input { binding: Binding::Reactive, name: "reactive", channels: 1, is_geometry: true, has: Some("HAS_REACTIVE") },
     Input { binding: Binding::Lod, name: "lod", channels: 1, is_geometry: false, has: Some("HAS_LOD") },
     Input { binding: Binding::Noise, name: "noise", channels: 2, is_geometry: false, has: None },
+    Input { binding: Binding::Mask, name: "mask", channels: 1, is_geometry: true, has: None },
+    Input { binding: Binding::Half, name: "half", channels: 3, is_geometry: false, has: None },
 ];
 
 impl Binding {
@@ -75,20 +79,11 @@ impl Binding {
 
 /// Bindings that a pass uses, of those that its text declares. `None`: all.
 pub fn used_by(pass: &str) -> Option<&'static [Binding]> {
-    use Binding::{
-        Color, Depth, Lattices, Motion, Noise, Past, PastFrame, PastSecond, Reactive, Read, Trust, Uniforms, Write,
-        WriteSecond,
-    };
-    Some(match pass {
-        "candidate_pass" => &[Uniforms, Color, Noise, Write],
-        "fill_pass" => &[Uniforms, Color, Lattices, Write],
-        "fill_geometry_pass" => &[Uniforms, Depth, Motion, Lattices, PastFrame, Past, Write, WriteSecond],
-        "sparse_observe_pass" => {
-            &[Uniforms, Color, Depth, Motion, Trust, Reactive, Noise, Lattices, PastFrame, Past, PastSecond, Write]
-        }
-        "sparse_light_pass" => &[Uniforms, Color, Depth, Lattices, PastFrame, Read, Write],
-        _ => return None,
-    })
+    use Binding::{Color, Noise, Uniforms, Write};
+    match pass {
+        "candidate_pass" => Some(&[Uniforms, Color, Noise, Write]),
+        _ => None,
+    }
 }
 
 const _: () = assert!((Binding::Debug as usize) < ORIGINS && (Binding::QuadAround as u32) < 32);

@@ -1,34 +1,23 @@
-//! Fills every pixel of a sparse frame, for methods that read whole frames. CPU twin: `src/cpu/fill.rs`.
+//! Fills every pixel of a planned frame, for methods that read whole frames. CPU twin: `src/cpu/fill.rs`.
 
 use super::Textures;
 use super::binding::Binding;
 use super::compute::{ComputeShader, Sources};
 use super::plane::{Plane, PlaneDesc};
-use super::stage::{Job, Passes, Specialization};
+use super::stage::{Job, Passes};
 use crate::context::ContextDesc;
-use crate::foveation::Filter;
 use wgpu::{Device, TextureFormat};
 
-/// Passes that fill frames of lattices and of quads, and the filled color of the current one.
+/// The pass, and the filled color of the current frame.
 #[derive(Debug)]
 pub(super) struct Fill {
-    lattices: ComputeShader,
-    quads: ComputeShader,
+    shader: ComputeShader,
     color: Plane,
 }
 
 impl Fill {
     pub fn new(device: &Device, desc: &ContextDesc, sources: &Sources) -> Self {
-        Self {
-            lattices: sources.shader(device, "fill_pass"),
-            quads: sources.shader(device, "quad_fill_pass"),
-            color: color(desc).create(device),
-        }
-    }
-
-    /// The pass of the frames that the settings describe.
-    fn shader(&self, desc: &ContextDesc) -> &ComputeShader {
-        if desc.settings.foveation.filter == Filter::Quads { &self.quads } else { &self.lattices }
+        Self { shader: sources.shader(device, "quad_fill_pass"), color: color(desc).create(device) }
     }
 }
 
@@ -37,18 +26,14 @@ impl Passes for Fill {
         self.color = color(desc).create(device);
     }
 
-    fn prewarm(&self, device: &Device, desc: &ContextDesc, special: &mut Specialization) {
-        special.pipeline(device, desc, self.shader(desc));
-    }
-
     fn shaders(&self) -> Vec<&ComputeShader> {
-        vec![&self.lattices, &self.quads]
+        vec![&self.shader]
     }
 
     fn record<'a>(&'a self, job: &mut Job<'a>) {
         let own = [(Binding::Write, (&self.color.whole).into())];
         for batch in job.batches() {
-            job.dispatch(self.shader(job.desc), &batch, &own, job.desc.size_px);
+            job.dispatch(&self.shader, &batch, &own, job.desc.size_px);
         }
         job.textures[Binding::Color as usize] = Some(Textures::Layers(&self.color.texture));
     }

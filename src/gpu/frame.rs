@@ -31,12 +31,9 @@ impl<'a> Frame<'a> {
         all[Binding::Reactive as usize] = self.reactive;
         all[Binding::Lod as usize] = self.lod;
         all[Binding::Noise as usize] = self.noise;
+        all[Binding::Mask as usize] = self.mask;
+        all[Binding::Half as usize] = self.half;
         all
-    }
-
-    /// Whether depth and motion are given at samples only.
-    pub(super) fn has_geometry_at_samples(&self) -> bool {
-        self.views.iter().any(|view| view.lattices.is_some_and(|lattices| lattices.has_geometry_at_samples()))
     }
 }
 
@@ -134,9 +131,6 @@ pub struct Variant {
     pub counters: bool,
     /// Whether an input or output consists of [`Regions`](Textures::Regions).
     pub regions: bool,
-    /// Whether depth and motion are given at samples only
-    /// ([`Lattices::with_geometry_at_samples`](crate::Lattices::with_geometry_at_samples)).
-    pub geometry_at_samples: bool,
     /// Whether colors are radiance ([`Exposure::Scene`](crate::Exposure::Scene)).
     pub exposure: bool,
     /// View of the [`DebugTarget`], if any.
@@ -144,7 +138,7 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// All combinations without reactive masks, regions, geometry at samples, exposures and debug views: 32.
+    /// All combinations without reactive masks, regions, exposures and debug views: 32.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..32_u32).map(|bits| {
             let bit = |i: u32| bits >> i & 1 == 1;
@@ -175,7 +169,6 @@ impl Variant {
             lod: frame.lod.is_some(),
             counters: target.counters.is_some(),
             regions: frame.textures().iter().flatten().any(Textures::is_regions) || target.has_regions(),
-            geometry_at_samples: frame.has_geometry_at_samples(),
             exposure: matches!(frame.exposure, Exposure::Scene { .. }),
             debug: target.debug.map(|d| d.view),
         }

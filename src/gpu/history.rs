@@ -8,7 +8,6 @@
 use super::binding::Binding;
 use super::groups::Resource;
 use super::plane::{Plane, PlaneDesc};
-use super::recorder::NUMBER;
 use super::uniforms::NO_FRAME;
 use crate::context::ContextDesc;
 use crate::kernel::foveate::level_len;
@@ -90,7 +89,7 @@ impl History {
     /// has its passes.
     pub fn finish(&mut self, encoder: &mut CommandEncoder, upload: &Buffer) {
         self.frame = self.next_number();
-        self.number_next(encoder, upload, NUMBER as u64);
+        self.number_next(encoder, upload);
         self.swap();
     }
 
@@ -98,12 +97,12 @@ impl History {
     /// previous frame itself never ran, its number in `old` is another, and so it is here.
     pub fn finish_resampled(&mut self, encoder: &mut CommandEncoder, old: &Self) {
         self.frame = old.frame;
-        self.number_next(encoder, &old.split().0.frame, 0);
+        self.number_next(encoder, &old.split().0.frame);
         self.swap();
     }
 
-    fn number_next(&self, encoder: &mut CommandEncoder, number: &Buffer, offset: u64) {
-        encoder.copy_buffer_to_buffer(number, offset, &self.split().1.frame, 0, NUMBER_BYTES);
+    fn number_next(&self, encoder: &mut CommandEncoder, number: &Buffer) {
+        encoder.copy_buffer_to_buffer(number, 0, &self.split().1.frame, 0, NUMBER_BYTES);
     }
 
     /// What passes bind by a number, if it is of this history.

@@ -6,7 +6,6 @@ use super::{Afterimage, Frame, Target, Textures};
 use crate::context::ContextDesc;
 use crate::error::{FrameError, FrameValue};
 use crate::stats::FrameStats;
-use crate::view::ViewFrame;
 use wgpu::{Buffer, BufferUsages, Device, Texture, TextureAspect, TextureFormat, TextureSampleType, TextureUsages};
 
 /// Checks a frame and its target against the device and the context's description.
@@ -68,13 +67,11 @@ pub(super) fn check_geometry(desc: &ContextDesc, frame: &Frame<'_>) -> Result<()
 /// Checks place, usage and format of an input.
 fn check_input(desc: &ContextDesc, frame: &Frame<'_>, input: &Input) -> Result<(), FrameError> {
     let Some(textures) = frame.textures()[input.binding as usize] else { return Ok(()) };
-    let of_samples = match input.binding {
-        Binding::Color => true,
-        Binding::Depth | Binding::Motion => frame.has_geometry_at_samples(),
-        _ => false,
-    };
-    let views = if of_samples { frame.views } else { &[] };
-    check_textures(desc, input.name, textures, Afterimage::INPUT_USAGE, views)?;
+    let mut desc = *desc;
+    if input.binding == Binding::Half {
+        desc.size_px = desc.size_px.map(|side| side.div_ceil(2));
+    }
+    check_textures(&desc, input.name, textures, Afterimage::INPUT_USAGE)?;
     textures.iter().try_for_each(|texture| check_readable(input.name, texture, input.channels))
 }
 
@@ -88,35 +85,22 @@ fn check_output(
     format: TextureFormat,
     expected: &'static str,
 ) -> Result<(), FrameError> {
-    check_textures(desc, name, textures, Afterimage::OUTPUT_USAGE, &[])?;
+    check_textures(desc, name, textures, Afterimage::OUTPUT_USAGE)?;
     match textures.iter().find(|t| t.format() != format) {
         Some(texture) => Err(refuse(name, texture, "not the right one".into(), expected)),
         None => Ok(()),
     }
 }
 
-/// Checks place, layers, samples and usage of an input's or output's textures. `views`: descriptions of the views whose
-/// samples may lie in an atlas of any size.
+/// Checks place, layers, samples and usage of an input's or output's textures.
 fn check_textures(
     desc: &ContextDesc,
     input: &'static str,
     textures: Textures<'_>,
     usage: TextureUsages,
-    views: &[ViewFrame],
 ) -> Result<(), FrameError> {
     let regions = match textures {
-        Textures::Layers(texture) => {
-            let size = [texture.width(), texture.height()];
-            for (view, facts) in views.iter().enumerate() {
-                facts.atlas().map_or(Ok(()), |atlas| atlas.check_atlas(input, view, [0, 0], size))?;
-            }
-            let is_atlas = !views.is_empty() && views.iter().all(|view| view.atlas().is_some());
-            return if is_atlas {
-                check_layers(desc, input, texture, usage)
-            } else {
-                check_texture(desc, input, texture, usage)
-            };
-        }
+        Textures::Layers(texture) => return check_texture(desc, input, texture, usage),
         Textures::Regions(regions) => regions,
     };
     let (found, expected) = (regions.len(), desc.view_count as usize);
@@ -128,9 +112,7 @@ fn check_textures(
         check_usage(input, texture, usage)?;
         let size = [texture.width(), texture.height()];
         let end = [0, 1].map(|i| u64::from(region.origin_px[i]) + u64::from(desc.size_px[i]));
-        if let Some(atlas) = views.get(view).and_then(ViewFrame::atlas) {
-            atlas.check_atlas(input, view, region.origin_px, size)?;
-        } else if end[0] > u64::from(size[0]) || end[1] > u64::from(size[1]) {
+        if end[0] > u64::from(size[0]) || end[1] > u64::from(size[1]) {
             let ([x, y], [width, height]) = (region.origin_px, desc.size_px);
             return Err(FrameError::Value {
                 value: FrameValue::Region { input },
@@ -158,16 +140,6 @@ pub(crate) fn check_texture(
     if found != desc.size_px {
         return Err(FrameError::Size { input, view: 0, found, expected: desc.size_px });
     }
-    check_layers(desc, input, texture, usage)
-}
-
-/// Checks layers, samples and usage of a texture with one layer a view.
-fn check_layers(
-    desc: &ContextDesc,
-    input: &'static str,
-    texture: &Texture,
-    usage: TextureUsages,
-) -> Result<(), FrameError> {
     let layers = texture.depth_or_array_layers();
     if layers != desc.view_count {
         let expected = "a 2D texture with one array layer for each view of the context, or Textures::Regions";

@@ -41,8 +41,8 @@ impl MethodPass {
 }
 
 impl Passes for MethodPass {
-    fn prewarm(&self, device: &Device, desc: &ContextDesc, special: &mut Specialization) {
-        special.pipeline(device, desc, self.shader(device, *special));
+    fn prewarm(&self, device: &Device, desc: &ContextDesc, special: Specialization) {
+        special.pipeline(device, desc, self.shader(device, special));
     }
 
     fn shaders(&self) -> Vec<&ComputeShader> {

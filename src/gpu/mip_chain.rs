@@ -72,7 +72,7 @@ impl Passes for MipChainPass {
         (self.size_px, self.sizes) = (desc.size_px, sizes(device, desc.size_px));
     }
 
-    fn prewarm(&self, device: &Device, _: &ContextDesc, _: &mut Specialization) {
+    fn prewarm(&self, device: &Device, _: &ContextDesc, _: Specialization) {
         self.shader.pipeline(device, &self.overrides);
     }
 
@@ -109,7 +109,7 @@ impl Passes for CandidatePass {
         self.rest.resize(device, desc);
     }
 
-    fn prewarm(&self, device: &Device, desc: &ContextDesc, special: &mut Specialization) {
+    fn prewarm(&self, device: &Device, desc: &ContextDesc, special: Specialization) {
         special.pipeline(device, desc, &self.first);
         self.rest.prewarm(device, desc, special);
     }

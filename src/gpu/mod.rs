@@ -12,7 +12,6 @@ pub(crate) mod buffer;
 pub(crate) mod compute;
 mod doctor;
 mod fill;
-mod fill_geometry;
 mod frame;
 mod groups;
 mod history;
@@ -28,7 +27,6 @@ mod quads;
 mod recorder;
 mod requirements;
 mod resize;
-mod sparse;
 mod stage;
 mod stages;
 mod textures;
@@ -46,6 +44,7 @@ pub use textures::{Region, Textures};
 use crate::context::ContextDesc;
 use crate::error::{CreateError, FrameError, FrameValue, SettingsError};
 use crate::foveation::Filter;
+use crate::frame::Reset;
 use crate::gaze::Gaze;
 use crate::geometry::ViewGeometry;
 use crate::kernel::debug_view::DebugView;
@@ -57,12 +56,12 @@ use crate::uniforms::ViewState;
 use binding::Binding;
 use compute::Sources;
 use history::History;
-use quad_plan::QuadPasses;
+use quad_plan::{Planned, QuadPasses};
 use recorder::Recorder;
 use resize::ResizePass;
 use stage::{Job, Specialization};
 use stages::Stages;
-use uniforms::{FrameUniforms, SparseUniforms};
+use uniforms::FrameUniforms;
 use wgpu::{Buffer, CommandEncoder, ComputePassDescriptor, Device, Limits, Texture, TextureFormat, TextureUsages};
 
 /// The post-process on a GPU: a context with its settings, history and pipelines.
@@ -126,7 +125,7 @@ impl Afterimage {
 
     /// History textures of the last recorded frame, for tests and the lab; usages `COPY_SRC`, `COPY_DST`.
     ///
-    /// For smr on sparse frames the packed samples ([`stored_sample`](crate::kernel::stored_sample), `Rg32Uint`).
+    /// For smr on planned frames the packed samples ([`stored_sample`](crate::kernel::stored_sample), `Rg32Uint`).
     ///
     /// For wrs the packed reservoirs ([`pack`](crate::kernel::pack)): words 0 and 1 (`Rg32Uint`), word 2 (`R32Uint`),
     /// and with A-ES the keys, or the gate's references (`R32Uint`). For taa and smr the packed surfaces
@@ -182,7 +181,6 @@ impl Afterimage {
     /// History survives, unless its layout changes: with another [`method`](Settings::method), with
     /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::Wrs::sampler) and the scale of its
     /// [`gate`](crate::Wrs::gate), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
-    /// From [`Filter::Sparse`] to [`Filter::Quads`] and back, smr keeps it.
     ///
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
@@ -215,7 +213,7 @@ impl Afterimage {
     }
 
     /// Changes the size of the views and resamples history to it, for dynamic resolution. The view directions at the
-    /// edges should stay the same. Reservoirs of wrs, and stored samples of sparse frames with their places, are taken
+    /// edges should stay the same. Reservoirs of wrs, and stored samples of planned frames with their places, are taken
     /// from the nearest pixel. Surfaces of taa, taau and smr are filtered. Levels of detail follow the scale.
     ///
     /// Records a pass into `encoder`. The first call compiles its pipeline. Without history it records nothing. If
@@ -240,7 +238,7 @@ impl Afterimage {
                 self.resize = ResizePass::new(device, layout, self.stages.sources());
             }
             let recorder = &mut self.recorder;
-            recorder.begin(&SparseUniforms::default(), 0);
+            recorder.begin(0);
             if let Some(pass) = &self.resize {
                 let planes = [self.history.split().0, history.split().1];
                 pass.record(device, recorder, &resize, self.desc.view_count, planes);
@@ -281,8 +279,7 @@ impl Afterimage {
     }
 
     /// Gaze position in pixels that [`record`](Self::record) would use for view `view` of the next frame: `gaze` if it
-    /// is known, else the last known one, else the middle of the view. Renderers of sparse frames need it before that
-    /// call, to place the [lattices](crate::Foveation::lattices).
+    /// is known, else the last known one, else the middle of the view. Renderers that foveate need it before that call.
     pub fn gaze_px(&self, view: usize, geometry: &ViewGeometry, gaze: Gaze) -> [f32; 2] {
         gaze.resolve(self.history.state.get(view).and_then(|state| state.gaze_px), geometry)
     }
@@ -305,11 +302,10 @@ impl Afterimage {
 
     /// Size in bytes of the textures that the context holds between frames.
     pub fn memory_bytes(&self) -> u64 {
-        Self::memory_bytes_of(&self.desc) + self.stages.added_bytes()
+        Self::memory_bytes_of(&self.desc)
     }
 
-    /// Size in bytes of the textures that a context of this description would hold between frames; 12 bytes a pixel
-    /// more after a frame with [geometry at samples](crate::Lattices::with_geometry_at_samples).
+    /// Size in bytes of the textures that a context of this description would hold between frames.
     ///
     /// ```
     /// use afterimage::ContextDesc;
@@ -386,15 +382,15 @@ impl Afterimage {
     pub fn plan(&mut self, device: &Device, encoder: &mut CommandEncoder, frame: &Frame<'_>) -> Result<(), FrameError> {
         frame.check_plan(&self.desc)?;
         input::check_geometry(&self.desc, frame)?;
-        let (uniforms, ..) = self.prepare(frame);
+        let is_quarter = self.starts_with_quarter(frame);
+        let (uniforms, ..) = self.prepare(frame, is_quarter);
         // The color is not read, but its regions decide how views are processed.
         let variant = Variant::of(frame, &Target::new(frame.color));
         let special = Specialization::new(variant, None, self.generation);
-        self.recorder.begin(&SparseUniforms::new(frame.views, self.desc.size_px), 0);
+        self.recorder.begin(0);
         let mut job = Job {
             device,
             desc: &self.desc,
-            views: frame.views,
             textures: frame.textures(),
             counters: None,
             special,
@@ -405,17 +401,34 @@ impl Afterimage {
             recorder: &mut self.recorder,
         };
         if let Some(quads) = &self.quads {
-            quads.record(&mut job);
+            quads.record(&mut job, false);
         }
         let upload = self.recorder.upload(device)?;
         if let Some(quads) = &mut self.quads {
             quads.clear(encoder);
-            quads.planned = Some(frame.index);
+            quads.planned = Some(Planned { index: frame.index, is_quarter });
         }
         self.recorder.copy(encoder, &upload);
         let label = Some("afterimage plan");
         self.recorder.record(&mut encoder.begin_compute_pass(&ComputePassDescriptor { label, ..Default::default() }));
         Ok(())
+    }
+
+    /// Whether the last [`plan`](Self::plan) chose one pixel of each quad outside the fovea, because nothing was known: in
+    /// the first frame and after a reset. Draw these pixels at half the width and height ([`ViewGeometry::half`]), and
+    /// give them so ([`half`](crate::FrameInputs::half)): rasterisers cannot shade single pixels of a quad, and would
+    /// shade all. The fovea is drawn as in other frames.
+    pub fn is_quarter(&self) -> bool {
+        self.quads.as_ref().and_then(|quads| quads.planned).is_some_and(|planned| planned.is_quarter)
+    }
+
+    /// Whether a frame shades one pixel of each quad, as far as is known before the device has processed its
+    /// predecessor.
+    fn starts_with_quarter(&self, frame: &Frame<'_>) -> bool {
+        let starts = frame.reset != Reset::None || !self.history.is_filled();
+        let settings = &self.desc.settings;
+        let has_memory = matches!(settings.history_layout(), HistoryLayout::Sparse { .. });
+        starts && has_memory && settings.foveation.takes_quarter()
     }
 
     /// Records a pass, after [`plan`](Self::plan), that closes the depth buffer of view `view` wherever no quad was
@@ -458,10 +471,11 @@ impl Afterimage {
         Ok(())
     }
 
-    /// The quads that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::Filter::Quads) chose: an
-    /// `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bit 0 says that the quad is shaded, and an
-    /// array layer for each view; usages `TEXTURE_BINDING` and `COPY_SRC`. `None` with another filter. Changes of size
-    /// and settings replace it.
+    /// The pixels that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::Filter::Quads) chose: an
+    /// `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bits 0 to 3 say which of its pixels are shaded,
+    /// row by row, and bits 8 to 12 how many paths each of them gets, as in
+    /// [`CpuAfterimage::paths`](crate::cpu::CpuAfterimage::paths), with an array layer for each view; usages
+    /// `TEXTURE_BINDING` and `COPY_SRC`. `None` with another filter. Changes of size and settings replace it.
     pub fn quad_mask(&self) -> Option<&Texture> {
         self.quads.as_ref().map(|quads| &quads.quads.mask.texture)
     }
@@ -474,16 +488,6 @@ impl Afterimage {
     /// replace it.
     pub fn quad_list(&self, view: usize) -> Option<&Buffer> {
         self.quads.as_ref().and_then(|quads| quads.quads.views.get(view)).map(|view| &view.list)
-    }
-
-    /// Distance of every pixel along the view axis, interpolated from the depth at the samples, for composition layers
-    /// with depth and for effects that follow: `R32Float`, an array layer for each view; usages `TEXTURE_BINDING` and
-    /// `COPY_SRC`. It is at least 1e30 where a pixel shows no surface, and -1 where depth was invalid. It belongs to
-    /// the last frame that was recorded or planned with [geometry at
-    /// samples](crate::Lattices::with_geometry_at_samples) and a depth input. `None` before the first such frame: other
-    /// frames have depth at every pixel. A change of size replaces it.
-    pub fn filled_depth(&self) -> Option<&Texture> {
-        self.stages.filled_depth()
     }
 
     /// Records a debug view of the decisions that [`record`](Self::record) of the same frame will make, as linear
@@ -535,15 +539,15 @@ impl Afterimage {
         target: &Target<'_>,
         view: Option<DebugView>,
     ) -> Result<(Recorded, Vec<ViewState>, Buffer), FrameError> {
-        let (uniforms, state, recorded) = self.prepare(frame);
+        let is_given = frame.mask.is_some();
+        let (uniforms, state, recorded) = self.prepare(frame, self.is_quarter() && !is_given);
         let mut textures = frame.textures();
         textures[Binding::Output as usize] = Some(target.output);
         textures[Binding::Debug as usize] = target.debug.map(|debug| debug.output);
-        self.recorder.begin(&SparseUniforms::new(frame.views, self.desc.size_px), self.history.next_number());
-        self.stages.record(&mut Job {
+        self.recorder.begin(self.history.next_number());
+        let mut job = Job {
             device,
             desc: &self.desc,
-            views: frame.views,
             textures,
             counters: target.counters,
             special: Specialization::new(Variant::of(frame, target), view, self.generation),
@@ -552,8 +556,16 @@ impl Afterimage {
             lights: None,
             quads: self.quads.as_ref().map(|quads| &quads.quads),
             recorder: &mut self.recorder,
-        });
+        };
+        let given = self.quads.as_ref().filter(|_| is_given);
+        if let Some(quads) = given {
+            quads.record(&mut job, true);
+        }
+        self.stages.record(&mut job);
         let upload = self.recorder.upload(device)?;
+        if let Some(quads) = given {
+            quads.clear(encoder);
+        }
         if let Some(counters) = target.counters {
             encoder.clear_buffer(counters, 0, Some(FrameStats::COUNTERS_BYTES));
         }
@@ -569,7 +581,8 @@ impl Afterimage {
 
     fn check(&self, device: &Device, frame: &Frame<'_>, target: &Target<'_>) -> Result<(), FrameError> {
         input::check(device, &self.desc, self.output_format, frame, target)?;
-        frame.check_planned(&self.desc, self.quads.as_ref().and_then(|quads| quads.planned))
+        frame
+            .check_planned(&self.desc, self.quads.as_ref().and_then(|quads| quads.planned).map(|planned| planned.index))
     }
 
     /// Discards the last plan.
@@ -580,14 +593,16 @@ impl Afterimage {
     }
 
     /// Uniforms of a frame, the state of the views after it, and its warnings.
-    fn prepare(&self, frame: &Frame<'_>) -> (FrameUniforms, Vec<ViewState>, Recorded) {
+    fn prepare(&self, frame: &Frame<'_>, is_quarter: bool) -> (FrameUniforms, Vec<ViewState>, Recorded) {
         let mut recorded = Recorded::default();
         let mut after = vec![];
         for (i, (view, state)) in frame.views.iter().zip(&self.history.state).enumerate() {
             after.push(state.with(view, frame.exposure));
             recorded.note_gaze(i, view, state.gaze_px);
         }
-        let uniforms = FrameUniforms::new(&self.desc, frame, &after, self.history.past_frame());
+        let foveation = self.desc.settings.foveation;
+        let foveation = if is_quarter { foveation.after_cut() } else { foveation };
+        let uniforms = FrameUniforms::new(&self.desc, frame, &after, self.history.past_frame(), &foveation);
         let largest_shown = output::largest(self.output_format);
         (FrameUniforms { largest_shown, ..uniforms }, after, recorded)
     }

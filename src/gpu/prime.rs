@@ -19,7 +19,7 @@ use wgpu::{
 ///
 /// /// A depth buffer of the view's size, 1 at the near plane.
 /// fn reversed(depth: &TextureView) -> Prime<'_> {
-///     Prime { target: depth, origin_px: [0, 0], near_depth: 1.0, stencil: None }
+///     Prime { target: depth, origin_px: [0, 0], near_depth: 1.0, stencil: None, is_half: false }
 /// }
 /// ```
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +35,10 @@ pub struct Prime<'a> {
     /// Writes this stencil value where nothing is to be shaded, 0 to 255, in place of depth, which stays as it is. For
     /// renderers whose pipelines test a stencil, and targets with one.
     pub stencil: Option<u8>,
+    /// Whether quads that are shaded in part are drawn at half the size
+    /// ([`Afterimage::is_quarter`](super::Afterimage::is_quarter)): then they are closed, too. Otherwise their shaded
+    /// pixels are open.
+    pub is_half: bool,
 }
 
 /// Format, number of samples, bits of the near plane's depth, and whether a stencil is written.
@@ -87,7 +91,7 @@ impl PrimePass {
         let format = prime.target.texture().format();
         let pipeline = self.pipeline(device, prime);
         let [x, y] = prime.origin_px;
-        let words = [x, y, size_px[0], size_px[1], view, 0, 0, 0];
+        let words = [x, y, size_px[0], size_px[1], view, u32::from(prime.is_half), 0, 0];
         let words = filled(device, "afterimage prime", bytemuck::bytes_of(&words), BufferUsages::UNIFORM);
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("afterimage prime"),

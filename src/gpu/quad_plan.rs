@@ -23,20 +23,30 @@ const MASK_WORKGROUP: [u32; 2] = [16, 4];
 #[derive(Debug)]
 pub(super) struct QuadPasses {
     key: ComputeShader,
+    given: ComputeShader,
     threshold: ComputeShader,
     mask: ComputeShader,
     around: ComputeShader,
     octants: ComputeShader,
     pub prime: PrimePass,
     pub quads: Quads,
-    /// Index of the last planned frame; `None` once it is recorded.
-    pub planned: Option<u64>,
+    /// The last planned frame; `None` once it is recorded.
+    pub planned: Option<Planned>,
+}
+
+/// What is known of a planned frame before it is shaded.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Planned {
+    pub index: u64,
+    /// Whether it has one pixel of each quad.
+    pub is_quarter: bool,
 }
 
 impl QuadPasses {
     pub fn new(device: &Device, desc: &ContextDesc, sources: &Sources) -> Self {
         Self {
             key: sources.shader(device, "quad_key_pass"),
+            given: sources.shader(device, "quad_given_pass"),
             threshold: sources.shader(device, "quad_threshold_pass"),
             mask: sources.shader(device, "quad_mask_pass"),
             around: sources.shader(device, "quad_around_pass"),
@@ -55,6 +65,7 @@ impl QuadPasses {
 
     pub fn prewarm(&self, device: &Device, desc: &ContextDesc, special: Specialization) {
         special.pipeline(device, desc, &self.key);
+        special.pipeline(device, desc, &self.given);
         special.pipeline(device, desc, &self.around);
         special.pipeline(device, desc, &self.octants);
         self.threshold.pipeline(device, &[]);
@@ -63,7 +74,7 @@ impl QuadPasses {
 
     /// Shader and override values of each compiled pipeline.
     pub fn pipelines(&self) -> impl Iterator<Item = (&'static str, Overrides)> + '_ {
-        let shaders = [&self.key, &self.threshold, &self.mask, &self.around, &self.octants];
+        let shaders = [&self.key, &self.given, &self.threshold, &self.mask, &self.around, &self.octants];
         shaders.into_iter().flat_map(ComputeShader::pipelines)
     }
 
@@ -72,14 +83,18 @@ impl QuadPasses {
         self.quads.views.iter().for_each(|view| encoder.clear_buffer(&view.state, 0, None));
     }
 
-    pub fn record(&self, job: &mut Job<'_>) {
+    /// Adds the passes of a frame. `is_given`: whether the renderer chose its pixels itself.
+    pub fn record(&self, job: &mut Job<'_>, is_given: bool) {
         let Quads { budget, keys, mask, runs, around, views } = &self.quads;
         let size = size_quads(job.desc);
         let [width, height] = MASK_WORKGROUP;
         let of_mask = [size[0].div_ceil(RUN_QUADS).div_ceil(width), size[1].div_ceil(height), 1];
         for (view, ViewQuads { uniforms, state, list }) in (0..).zip(views) {
             let own = [(Binding::Write, (&keys.whole).into()), (Binding::State, state.into())];
-            job.dispatch(&self.key, &job.batch_of(view), &own, size.map(|side| side.div_ceil(2)));
+            match is_given {
+                true => job.dispatch(&self.given, &job.batch_of(view), &own, size),
+                false => job.dispatch(&self.key, &job.batch_of(view), &own, size.map(|side| side.div_ceil(2))),
+            }
             for (shader, uniforms, workgroups) in [(&self.threshold, budget, [1; 3]), (&self.mask, uniforms, of_mask)] {
                 let own = [
                     (Binding::Uniforms, Resource::from(uniforms)),

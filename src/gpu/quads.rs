@@ -3,13 +3,13 @@
 use super::buffer::filled;
 use super::plane::{Plane, PlaneDesc};
 use crate::context::ContextDesc;
-use crate::kernel::quads::{KEYS, RUN_QUADS, budget_quads};
+use crate::kernel::quads::{KEYS, RUN_QUADS};
 use wgpu::{Buffer, BufferUsages, Device, TextureFormat, TextureUsages};
 
 /// Bytes of a list before its quads.
 const LIST_HEADER_BYTES: u64 = 32;
 /// Words of `QuadState` in `shaders/pass/quad_state.wgsl` before its arguments of dispatches.
-const ARGUMENTS: u64 = KEYS as u64 + 3;
+const ARGUMENTS: u64 = 2 * KEYS as u64 + 3;
 const STATE_BYTES: u64 = 4 * (ARGUMENTS + 6);
 /// Place in the state of the arguments of a dispatch with an invocation for each pixel of shaded quads.
 pub(super) const PIXEL_GROUPS: u64 = 4 * ARGUMENTS;
@@ -21,7 +21,7 @@ pub(super) const QUAD_GROUPS: u64 = PIXEL_GROUPS + 12;
 pub(super) struct Quads {
     pub budget: Buffer,
     pub keys: Plane,
-    /// Bit 0: whether a quad is shaded; bits 1 and 2: its region.
+    /// Bits 0 to 3: the pixels of a quad that are shaded; bits 4 and 5: its region; bits 8 to 12: paths of each pixel.
     pub mask: Plane,
     /// Shaded quads of the runs of each row.
     pub runs: Plane,
@@ -58,7 +58,7 @@ impl Quads {
         };
         let [keys, mask, runs, around] = planes(desc);
         Self {
-            budget: uniforms([budget_quads(desc.settings.foveation.budget, size), 0, 0, 0]),
+            budget: uniforms([desc.settings.foveation.budget_quads(size), desc.settings.noisy.into(), 0, 0]),
             keys: keys.create(device),
             mask: mask.create(device),
             runs: runs.create(device),

@@ -10,7 +10,7 @@ use super::buffer::filled_if_alive;
 use super::compute::ComputeShader;
 use super::groups::{Groups, Resource};
 use super::plane::{Plane, PlaneDesc};
-use super::uniforms::{FrameUniforms, SparseUniforms};
+use super::uniforms::FrameUniforms;
 use crate::context::ContextDesc;
 use crate::error::FrameError;
 use crate::stats::FrameStats;
@@ -25,14 +25,12 @@ pub const STORED: [TextureFormat; 3] = [TextureFormat::Rg32Uint, TextureFormat::
 
 /// Multiple of the offsets of uniforms: at most 256 on every device.
 const ALIGNMENT: usize = 256;
-/// First byte of the frame's number; the lattices lie before it.
-pub const NUMBER: usize = size_of::<SparseUniforms>();
-/// First byte of the uniforms of dispatches.
-const DISPATCHES: usize = (NUMBER + 4).next_multiple_of(ALIGNMENT);
+/// First byte of the uniforms of dispatches. The frame's number lies at byte 0.
+const DISPATCHES: usize = ALIGNMENT;
 /// Bytes from the uniforms of one dispatch to those of the next.
 const STRIDE: usize = size_of::<FrameUniforms>().next_multiple_of(ALIGNMENT);
-/// Different uniforms for each view: those of filled colors and geometry, and of samples of each lattice.
-const DISPATCHES_PER_VIEW: usize = 8;
+/// Different uniforms for each view: before and after colors are filled.
+const DISPATCHES_PER_VIEW: usize = 2;
 
 /// Size of a dispatch: numbers of workgroups, or the place of these numbers in a buffer.
 #[derive(Debug)]
@@ -116,12 +114,11 @@ impl Recorder {
         self.groups.clear();
     }
 
-    /// Begins a frame with these lattices and this number.
-    pub fn begin(&mut self, lattices: &SparseUniforms, number: u32) {
+    /// Begins a frame with this number.
+    pub fn begin(&mut self, number: u32) {
         self.groups.begin_frame();
         self.dispatches.clear();
         self.bytes.clear();
-        self.bytes.extend_from_slice(bytemuck::bytes_of(lattices));
         self.bytes.extend_from_slice(&number.to_ne_bytes());
         self.bytes.resize(DISPATCHES, 0);
     }
@@ -154,7 +151,6 @@ impl Recorder {
         let bytes = |bytes: usize| Some(Resource::Buffer(self.uniforms.clone(), 0, NonZeroU64::new(bytes as u64)));
         let bound = |&(number, ty): &(u32, BindingType)| {
             let given = match number {
-                _ if number == Binding::Lattices as u32 => bytes(size_of::<SparseUniforms>()),
                 _ if number == Binding::Uniforms as u32 && uniforms.is_some() => bytes(size_of::<FrameUniforms>()),
                 _ => resource(number),
             };

@@ -6,7 +6,7 @@ use super::{history, quads};
 use crate::context::{ContextDesc, check_size};
 use crate::error::{CreateError, FrameError, SettingsError};
 use crate::foveation::Filter;
-use crate::uniforms::{MAX_VIEWS, results_size};
+use crate::uniforms::MAX_VIEWS;
 use wgpu::{Device, Limits, TextureFormat};
 
 /// Checks a description and an output format against a device.
@@ -77,6 +77,6 @@ pub(super) fn required_limits(desc: &ContextDesc) -> Limits {
 
 /// Largest side of the textures of a context, in texels.
 fn largest_side(desc: &ContextDesc) -> u32 {
-    let sides = [desc.size_px, results_size(desc.size_px), history::largest_size(desc)];
+    let sides = [desc.size_px, history::largest_size(desc)];
     sides.into_iter().flatten().fold(1, u32::max)
 }

@@ -13,9 +13,8 @@ use crate::context::ContextDesc;
 use crate::kernel::debug_view::DebugView;
 use crate::method::{HistoryLayout, Overrides};
 use crate::uniforms::ORIGINS;
-use crate::view::ViewFrame;
 use std::fmt::Debug;
-use wgpu::{Buffer, Device, Texture, TextureView};
+use wgpu::{Buffer, Device, TextureView};
 
 /// Which inputs and outputs a frame has, and other properties that its pipelines are specialized to.
 #[derive(Clone, Copy, Debug)]
@@ -25,10 +24,6 @@ pub(super) struct Specialization {
     has_regions: bool,
     /// Whether colors are radiance.
     is_exposed: bool,
-    /// Whether depth and motion are filled, with the camera's motion.
-    is_filled: bool,
-    /// Whether depth and motion are given at samples only.
-    pub is_at_samples: bool,
     /// View to output in place of the frame, without storing anything.
     pub view: Option<DebugView>,
     pub debug: Option<DebugView>,
@@ -42,21 +37,10 @@ impl Specialization {
             present: variant.bindings(),
             has_regions: variant.regions,
             is_exposed: variant.exposure,
-            is_filled: false,
-            is_at_samples: variant.geometry_at_samples,
             view,
             debug: variant.debug,
             generation,
         }
-    }
-
-    /// Follows a stage that fills depth and motion; whether there is motion then.
-    pub fn fill(&mut self, desc: &ContextDesc) -> bool {
-        self.is_filled = true;
-        if desc.motion.lacks_camera() {
-            self.present |= Binding::Motion.bit();
-        }
-        self.has(Binding::Motion)
     }
 
     fn has(&self, binding: Binding) -> bool {
@@ -69,8 +53,7 @@ impl Specialization {
         let code = |view: Option<DebugView>| view.map_or(0, |view| view as u64);
         let bits = u64::from(self.present & bound)
             | u64::from(self.has_regions) << 32
-            | u64::from(self.is_filled) << 33
-            | u64::from(self.is_exposed) << 34
+            | u64::from(self.is_exposed) << 33
             | code(self.view) << 40
             | code(self.debug) << 48;
         let key = PipelineKey { bits, generation: self.generation };
@@ -89,8 +72,7 @@ impl Specialization {
             (Uniforms, "REGIONS", u32::from(self.has_regions)),
             (Color, "EXPOSED", u32::from(self.is_exposed)),
             (Depth, "DEPTH_TEST", u32::from(is_tested)),
-            // Filled vectors contain the camera's motion.
-            (Motion, "CAMERA_MOTION", if self.is_filled { 0 } else { desc.motion.camera_code() }),
+            (Motion, "CAMERA_MOTION", desc.motion.camera_code()),
             (Uniforms, "NOISY", u32::from(settings.noisy)),
             (Counters, "COUNT", has(Counters)),
             (Past, "HAS_SPARSE_HISTORY", u32::from(is_sparse)),
@@ -109,14 +91,13 @@ impl Specialization {
 pub(super) struct Job<'a> {
     pub device: &'a Device,
     pub desc: &'a ContextDesc,
-    pub views: &'a [ViewFrame],
     /// Inputs and outputs, by the numbers of their bindings.
     pub textures: [Option<Textures<'a>>; ORIGINS],
     pub counters: Option<&'a Buffer>,
     pub special: Specialization,
     pub uniforms: FrameUniforms,
     pub history: &'a History,
-    /// Gain and fit for each sample, for smr.
+    /// Gain and fit at each shaded quad, for smr.
     pub lights: Option<&'a TextureView>,
     /// Shaded quads, of a frame shaded by quads.
     pub quads: Option<&'a Quads>,
@@ -126,7 +107,7 @@ pub(super) struct Job<'a> {
 impl Job<'_> {
     /// Views that are processed in one dispatch.
     pub fn batches(&self) -> impl Iterator<Item = Batch> + use<> {
-        batches(self.views.len(), self.special.has_regions)
+        batches(self.desc.view_count as usize, self.special.has_regions)
     }
 
     /// The view `view` alone.
@@ -154,7 +135,7 @@ impl Job<'_> {
 
     fn add(&mut self, shader: &ComputeShader, batch: &Batch, own: &[(Binding, Resource)], workgroups: Workgroups) {
         let mut uniforms = FrameUniforms { first_view: batch.views.start, ..self.uniforms };
-        for (i, view) in uniforms.views.iter_mut().enumerate().take(self.views.len()) {
+        for (i, view) in uniforms.views.iter_mut().enumerate().take(self.desc.view_count as usize) {
             view.origins = self.textures.map(|textures| textures.map_or(0, |textures| textures.packed_origin(i)));
         }
         let pipeline = self.special.pipeline(self.device, self.desc, shader);
@@ -179,21 +160,10 @@ pub(super) trait Passes: Debug + wgpu::WasmNotSendSync {
     fn shaders(&self) -> Vec<&ComputeShader>;
 
     /// Compiles the pipelines of a variant.
-    fn prewarm(&self, device: &Device, desc: &ContextDesc, special: &mut Specialization) {
+    fn prewarm(&self, device: &Device, desc: &ContextDesc, special: Specialization) {
         for shader in self.shaders() {
             special.pipeline(device, desc, shader);
         }
-    }
-
-    /// Bytes of textures that were made at a frame, in addition to
-    /// [`memory_bytes_of`](super::Afterimage::memory_bytes_of).
-    fn added_bytes(&self) -> u64 {
-        0
-    }
-
-    /// Distance of every pixel, if the stage fills it.
-    fn filled_depth(&self) -> Option<&Texture> {
-        None
     }
 
     /// Adds the dispatches of a frame.

@@ -2,18 +2,16 @@
 
 use super::compute::{ComputeShader, Sources};
 use super::fill::Fill;
-use super::fill_geometry::GeometryFill;
 use super::history::History;
 use super::method_pass::MethodPass;
 use super::mip_chain::{CandidatePass, MipChainPass};
 use super::quad_samples::QuadSamplePasses;
 use super::recorder::Recorder;
-use super::sparse::SamplePasses;
 use super::stage::{Job, Passes, Specialization};
-use super::{fill, quad_samples, sparse};
+use super::{fill, quad_samples};
 use crate::context::ContextDesc;
 use crate::method::{Overrides, Stage};
-use wgpu::{Device, Texture, TextureFormat};
+use wgpu::{Device, TextureFormat};
 
 #[derive(Debug)]
 pub(super) struct Stages {
@@ -51,8 +49,6 @@ impl Stages {
         match stage {
             Stage::Candidates => Box::new(CandidatePass::new(device, desc, sources)),
             Stage::Fill => Box::new(Fill::new(device, desc, sources)),
-            Stage::Geometry => Box::new(GeometryFill::new(sources)),
-            Stage::Samples => Box::new(SamplePasses::new(device, desc, sources)),
             Stage::Quads => Box::new(QuadSamplePasses::new(device, desc, sources)),
             Stage::Method => Box::new(MethodPass::new(device, &desc.settings, self.output, sources)),
             Stage::MipChain => Box::new(MipChainPass::new(device, desc, sources, false)),
@@ -63,23 +59,13 @@ impl Stages {
         self.stages.iter_mut().for_each(|(_, passes)| passes.resize(device, desc));
     }
 
-    pub fn prewarm(&self, device: &Device, desc: &ContextDesc, mut special: Specialization) {
-        self.passes().for_each(|passes| passes.prewarm(device, desc, &mut special));
+    pub fn prewarm(&self, device: &Device, desc: &ContextDesc, special: Specialization) {
+        self.passes().for_each(|passes| passes.prewarm(device, desc, special));
     }
 
     /// Shader and override values of each compiled pipeline.
     pub fn pipelines(&self) -> impl Iterator<Item = (&'static str, Overrides)> + '_ {
         self.passes().flat_map(Passes::shaders).flat_map(ComputeShader::pipelines)
-    }
-
-    /// Bytes of textures that were made at a frame, in addition to [`memory_bytes_of`].
-    pub fn added_bytes(&self) -> u64 {
-        self.passes().map(Passes::added_bytes).sum()
-    }
-
-    /// Distance of every pixel of a frame that had it at its samples only.
-    pub fn filled_depth(&self) -> Option<&Texture> {
-        self.passes().find_map(Passes::filled_depth)
     }
 
     pub fn record<'a>(&'a self, job: &mut Job<'a>) {
@@ -100,9 +86,8 @@ impl Stages {
 pub(super) fn memory_bytes_of(desc: &ContextDesc) -> u64 {
     let bytes = |stage| match stage {
         Stage::Fill => fill::color(desc).bytes(),
-        Stage::Samples => 2 * sparse::results(desc).bytes(),
         Stage::Quads => quad_samples::lights(desc).bytes(),
-        Stage::Geometry | Stage::Candidates | Stage::Method | Stage::MipChain => 0,
+        Stage::Candidates | Stage::Method | Stage::MipChain => 0,
     };
     desc.settings.stages().into_iter().map(bytes).sum()
 }

@@ -5,9 +5,8 @@ use crate::context::ContextDesc;
 use crate::foveation::Foveation;
 use crate::frame::Reset;
 use crate::method::{HistoryLayout, inv_density_at_fovea, smr_params, wrs_params};
-pub use crate::uniforms::{CameraUniforms, LatticeUniforms, ViewLattices, ViewUniforms};
+pub use crate::uniforms::{CameraUniforms, ViewUniforms};
 use crate::uniforms::{MAX_VIEWS, ViewState};
-use crate::view::ViewFrame;
 use bytemuck::{Pod, Zeroable};
 
 /// `NO_FRAME` in `shaders/pass/inputs.wgsl`: the number of no frame.
@@ -55,8 +54,8 @@ pub struct FrameUniforms {
     pub smr_tolerance: f32,
     /// First view of the dispatch.
     pub first_view: u32,
-    /// Lattice whose samples the dispatch processes.
-    pub lattice: u32,
+    /// Bits of a NaN, which shaders cannot write themselves.
+    pub missing: u32,
     /// Levels of the mip chains of surfaces and of noisy candidates, above the full-rate one; 0 without.
     pub mip_levels: u32,
     /// Factor on given colors.
@@ -68,8 +67,16 @@ pub struct FrameUniforms {
     /// Place in its block of the quad that is chosen first without history, in quads: x in the low half, y in the high
     /// half.
     pub first_quad: u32,
-    /// Places in their blocks of the quads of the even pattern, in the middle region and in the periphery, in quads.
-    pub quad_offsets: [u32; 4],
+    /// Places in their blocks of the pixels of the even pattern, in the middle region and in the periphery.
+    pub pattern_px: [u32; 4],
+    /// Whether one pixel of a chosen quad is shaded outside the fovea.
+    pub single_pixels: u32,
+    /// Whether quads may be shaded in part.
+    pub has_single_pixels: u32,
+    /// Whether quads that are shaded in part have their color in a texture of half the size.
+    pub has_half: u32,
+    /// Whether quads are chosen by need.
+    pub has_budget: u32,
     /// One entry a view.
     pub views: [ViewUniforms; MAX_VIEWS],
     /// Camera motion of each view.
@@ -78,18 +85,24 @@ pub struct FrameUniforms {
 
 impl FrameUniforms {
     /// Uniforms of a frame, without the origins of its views and the largest shown color. `state`: state of the views
-    /// after this frame. `past_frame`: number of the previous frame, or [`NO_FRAME`].
-    pub(super) fn new(desc: &ContextDesc, frame: &Frame<'_>, state: &[ViewState], past_frame: u32) -> Self {
+    /// after this frame. `past_frame`: number of the previous frame, or [`NO_FRAME`]. `foveation`: of this frame.
+    pub(super) fn new(
+        desc: &ContextDesc,
+        frame: &Frame<'_>,
+        state: &[ViewState],
+        past_frame: u32,
+        foveation: &Foveation,
+    ) -> Self {
         let settings = &desc.settings;
         let (wrs, smr) = (wrs_params(settings), smr_params(settings));
-        let [lod_mid, lod_far] = settings.foveation.lods();
+        let [lod_mid, lod_far] = foveation.lods();
         let test = settings.depth_test.unwrap_or_default();
         let [first_x, first_y] = Foveation::first_quad(frame.index);
         let mut uniforms = Self {
             size: desc.size_px,
             past_frame: if frame.reset == Reset::None { past_frame } else { NO_FRAME },
             frame_low: frame.index as u32,
-            fovea_radius_deg: settings.foveation.fovea_radius_deg(),
+            fovea_radius_deg: foveation.fovea_radius_deg(),
             inv_density_at_fovea: inv_density_at_fovea(settings),
             exponential_survival: wrs.exponential_survival,
             gate_offset: wrs.gate_offset,
@@ -98,13 +111,14 @@ impl FrameUniforms {
             depth_slope_px: test.slope_px,
             motion_scale: desc.motion.to_internal(desc.size_px),
             exposure: state[0].stored_exposure(frame),
-            mid_radius_deg: settings.foveation.mid_radius_deg(),
-            blend_deg: settings.foveation.blend_deg,
+            mid_radius_deg: foveation.mid_radius_deg(),
+            blend_deg: foveation.blend_deg,
             lod_mid,
             lod_far,
             smr_accumulate: smr.accumulate,
             smr_accumulate_tolerance: smr.accumulate_tolerance,
             smr_tolerance: smr.tolerance,
+            missing: f32::NAN.to_bits(),
             mip_levels: match settings.history_layout() {
                 HistoryLayout::Surfaces { levels, .. } => levels,
                 _ => 0,
@@ -112,35 +126,16 @@ impl FrameUniforms {
             color_exposure: frame.exposure.of_colors(),
             inverse_exposure: 1.0 / frame.exposure.of_colors(),
             first_quad: first_x | first_y << 16,
-            quad_offsets: settings.foveation.quad_offsets(frame.index),
+            pattern_px: foveation.pattern_px(frame.index),
+            single_pixels: foveation.single_pixels.into(),
+            has_single_pixels: (foveation.single_pixels || frame.mask.is_some()).into(),
+            has_half: frame.half.is_some().into(),
+            has_budget: (foveation.budget > 0.0).into(),
             ..Self::default()
         };
         for (i, (view, state)) in frame.views.iter().zip(state).enumerate() {
             uniforms.views[i] = ViewUniforms::new(desc, view, state, i, frame.index);
             uniforms.cameras[i] = CameraUniforms::new(desc, view, state);
-        }
-        uniforms
-    }
-}
-
-/// `SparseUniforms` in `shaders/pass/lattices.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-pub struct SparseUniforms {
-    /// Bits of a NaN, which shaders cannot write themselves.
-    pub missing: u32,
-    /// Padding to a multiple of 16 bytes.
-    pub unused: [u32; 3],
-    /// Lattices of each view.
-    pub views: [ViewLattices; MAX_VIEWS],
-}
-
-impl SparseUniforms {
-    /// Uniforms of a frame with views of `size_px`; without lattices every pixel is a sample.
-    pub(super) fn new(views: &[ViewFrame], size_px: [u32; 2]) -> Self {
-        let mut uniforms = Self { missing: f32::NAN.to_bits(), ..Self::default() };
-        for (to, view) in uniforms.views.iter_mut().zip(views) {
-            *to = LatticeUniforms::of_view_or_full(view.lattices.as_ref(), size_px);
         }
         uniforms
     }

@@ -1,4 +1,4 @@
-//! Antialiasing of sparse frames whose projection is jittered: a stored texel is the mean of the samples that fell into
+//! Antialiasing of planned frames whose projection is jittered: a stored texel is the mean of the samples that fell into
 //! its pixel, with the mean of their places.
 //!
 //! A jittered sample shows one point of its pixel, but the pixel should show the mean over its area. Camera motion
@@ -55,7 +55,7 @@ const CLIP: f32 = 0.5;
 const CLIP_COST: f32 = 10.0;
 /// Least relative difference of disparity at which a neighbour counts as another, nearer surface.
 const NEARER_RELATIVE: f32 = 0.02;
-/// Largest difference of motion, in pixels along an axis, at which a pixel of a lattice of step 2 and more takes the
+/// Largest difference of motion, in pixels along an axis, at which a pixel outside the fovea takes the
 /// history of a nearer surface beside it.
 const ALONGSIDE_PX: f32 = 1.0;
 /// Largest difference of motion, in pixels along an axis, at which the surfaces around a pixel move together, so that
@@ -185,22 +185,6 @@ pub fn is_thin(own: f32, a: f32, b: f32) -> bool {
 #[inline]
 pub fn is_silhouette(own: f32, a: f32, b: f32) -> bool {
     a.min(b) < 0.0 || ((a + b) - 2.0 * own).abs() > own * NEARER_RELATIVE
-}
-
-/// Marks the observation of a sample that may show a surface other than the one at its pixel's depth. It is stored in
-/// place of the expected error.
-pub const DOUBTFUL: f32 = -2.0;
-
-/// Whether a pixel's sample at `place_px` may show the surface of a neighbouring pixel instead of its own. It may if
-/// the neighbour's disparity differs and the sample lies on the neighbour's side of the pixel's centre. `offset`: -1, 0
-/// or 1 along each axis. Depth is given at pixel centres, so it does not tell which surface a sample shows. A sample
-/// stored with the wrong depth would stay behind as a dot when the silhouette moves away.
-#[inline]
-pub fn may_show(own: f32, neighbour: f32, place_px: Vec2, offset: Vec2) -> bool {
-    let nearer = neighbour > own * (1.0 + NEARER_RELATIVE);
-    let farther = neighbour >= 0.0 && neighbour < own * (1.0 - NEARER_RELATIVE);
-    let toward = place_px * offset;
-    (nearer || farther) && (toward.x > 0.0 || offset.x == 0.0) && (toward.y > 0.0 || offset.y == 0.0)
 }
 
 /// Sums over the samples around a pixel of full rate.

@@ -19,6 +19,8 @@ const SIGMAS: f32 = 3.0;
 /// Noise confidence: standard error up to which it is 1, and width over which it falls to 0, in units of
 /// `root_difference`. Both are below the just noticeable difference.
 const CONFIDENCE_FALLOFF: [f32; 2] = [0.5, 1.0];
+/// Number of samples of history with which a pixel's own noisy sample and the mean around it count alike.
+const BORROWED_SAMPLES: f32 = 16.0;
 /// Limit on the samples of a coarser history, in frames.
 const COARSER_FRAMES: f32 = 4.0;
 /// Largest standard error, linear; larger ones are clamped to it. Its square fits into a half.
@@ -166,6 +168,32 @@ pub fn sample_difference(candidate: Noise, luma: f32) -> f32 {
 pub fn expected_noise(history: Noise, candidate: Noise, luma: f32) -> f32 {
     let inverse_samples = 1.0 / candidate.samples + 1.0 / history.samples.max(1.0);
     root_slope(luma) * (pooled_variance(history, candidate) * inverse_samples).sqrt()
+}
+
+/// Reduction of the squared error, due to noise, of history at a luma that one more sample is expected to bring: of its
+/// variance over n samples, less that over n + 1; in squared units of
+/// [`root_difference`](super::smr::root_difference).
+#[inline]
+pub fn noise_need(history: Noise, luma: f32) -> f32 {
+    let samples = history.samples.max(1.0);
+    let slope = root_slope(luma);
+    (slope * slope) * (history.variance / (samples * (samples + 1.0)))
+}
+
+/// Weight of a sample of `samples` paths at a squared distance in pixels, in a mean of samples around a pixel: that of
+/// its paths, less with distance.
+#[inline]
+pub fn noisy_share(samples: f32, px2: f32) -> f32 {
+    samples / px2.max(1.0).sqrt()
+}
+
+/// Share that the mean of the samples around a pixel has in its own noisy sample, if its history is a mean of `past`
+/// samples. Without history nearly all: error by blur is less than error by noise then. None where the noise is not
+/// visible. `own`: as many samples as the pixel's own, with the variance around it; `luma`: of the mean. A share by the
+/// pixel's own variance would favour pixels whose samples all missed a lamp.
+#[inline]
+pub fn borrowed(past: f32, own: Noise, luma: f32) -> f32 {
+    (BORROWED_SAMPLES / (BORROWED_SAMPLES + past)) * noise_visibility(own, luma)
 }
 
 /// Running sums for the noise of a weighted mean of samples.

@@ -1,4 +1,7 @@
-//! Frames shaded by quads: which quads of 2x2 pixels are shaded, and which shaded quads are around a pixel.
+//! Planned frames: which pixels of each quad of 2x2 pixels are shaded, and which shaded quads are around a pixel.
+//!
+//! The mask of a quad has a bit for each of its pixels. Rasterisers shade whole quads; tracers, and renderers at half
+//! the resolution, shade single pixels.
 //!
 //! Everything in the fovea is shaded. Outside it an even pattern moves from frame to frame and visits every quad. A
 //! budget of further quads goes where history lacks something: each quad has a *need*, the reduction of its squared
@@ -20,6 +23,9 @@ pub const RUN_QUADS: u32 = 16;
 pub const REACH: i32 = 8;
 /// Code of no neighbour.
 pub const NOWHERE: u32 = 0x88;
+
+/// Mask of a quad with all of its pixels.
+pub const WHOLE: u32 = 15;
 
 /// Need of a quad without history, if it comes first in its block in this frame; in squared units of
 /// [`root_difference`](super::smr::root_difference).
@@ -45,6 +51,11 @@ const HALF_DEG: f32 = 20.0;
 
 /// Share of its need that counts for each quad with a larger need in its block of 2x2 quads.
 const CLUMPED: f32 = 0.0625;
+
+/// Largest number of paths of a pixel in a frame.
+pub const MOST_PATHS: u32 = 16;
+/// Largest number of samples of history that keys of further paths tell apart.
+const MOST_KNOWN: f32 = 31.0;
 
 /// Bits of the hash in a key. The unused part of the budget is less than the quads of one key.
 const HASH_BITS: u32 = 8;
@@ -86,6 +97,44 @@ pub fn in_turn(x: u32, y: u32, step: u32, turn: u32) -> bool {
 #[inline]
 pub fn asked_px(x: u32, y: u32, frame: u32) -> [u32; 2] {
     [2 * x + ((frame ^ x ^ y) & 1), 2 * y + (frame >> 1 & 1)]
+}
+
+/// Number of a pixel in its quad, row by row; also its bit in the quad's mask.
+#[inline]
+pub fn place_in_quad(px: [u32; 2]) -> u32 {
+    (px[0] & 1) | (px[1] & 1) << 1
+}
+
+/// The shaded pixel of the quad at `quad` that is nearest to pixel `px`; the first of equally near ones. `mask`:
+/// the quad's mask, not 0.
+#[inline]
+pub fn nearest_px(mask: u32, quad: [u32; 2], px: [u32; 2]) -> [u32; 2] {
+    let mut best = u32::MAX;
+    for place in 0..4 {
+        let [dx, dy] = [(2 * quad[0] + (place & 1)).abs_diff(px[0]), (2 * quad[1] + (place >> 1)).abs_diff(px[1])];
+        let px2 = (dx * dx + dy * dy) << 2 | place;
+        best = best.min(if mask >> place & 1 == 1 { px2 } else { u32::MAX });
+    }
+    [2 * quad[0] + (best & 1), 2 * quad[1] + (best >> 1 & 1)]
+}
+
+/// Quadrant of an offset other than 0; the half-axis that begins a quadrant belongs to it.
+#[inline]
+pub fn quadrant_of(x: i32, y: i32) -> u32 {
+    let below = y > 0 || (y == 0 && x > 0);
+    if below { u32::from(x <= 0) } else { 2 + u32::from(x >= 0) }
+}
+
+/// Code of a sample at an offset in pixels, each from -32 to 31: the smallest of some codes is the nearest sample.
+#[inline]
+pub fn sample_code(x: i32, y: i32) -> u32 {
+    ((x * x + y * y) as u32) << 12 | (x + 32) as u32 | ((y + 32) as u32) << 6
+}
+
+/// Offset in pixels of the sample with a code.
+#[inline]
+pub fn sample_offset(code: u32) -> [i32; 2] {
+    [(code & 63) as i32 - 32, (code >> 6 & 63) as i32 - 32]
 }
 
 /// Need of quad (`x`, `y`) without history. It does not fall with eccentricity: without history every part of the view
@@ -140,7 +189,44 @@ pub fn quad_key(need: f32, x: u32, y: u32, frame: u32, key: u32) -> u32 {
     if need > 0.0 { (halves.clamp(1, 62) as u32) << HASH_BITS | hash } else { 0 }
 }
 
-/// Number of quads that `budget` pays for: a share, 0 to 1, of `columns` x `rows` quads.
+/// Samples of a mean as a whole number, from 1 to 31, for [`path_key`].
+#[inline]
+pub fn known_samples(samples: f32) -> u32 {
+    samples.clamp(1.0, MOST_KNOWN) as u32
+}
+
+/// Key of a pixel's path number `path` (from 1 on) in a frame, from that of its first path, `key`; 0 for none. The
+/// variance V of one sample makes an error V / n of the mean of n `samples` ([`known_samples`]), of which path k takes
+/// V / (n + k - 1) - V / (n + k) = V / ((n + k - 1)(n + k)). The key falls by the binary logarithm of that, in whole
+/// half steps.
+#[inline]
+pub fn path_key(key: u32, samples: u32, path: u32) -> u32 {
+    let first = samples * (samples + 1);
+    let own = (samples + path - 1) * (samples + path);
+    let (first2, own2) = (first * first, own * own);
+    // The largest `halves` with 2^halves <= own2 / first2.
+    let most = own2.ilog2() - first2.ilog2();
+    let halves = most - u32::from(first2 << most > own2);
+    let fall = halves << HASH_BITS;
+    if key >= fall + (1 << HASH_BITS) { key - fall } else { 0 }
+}
+
+/// Number of paths of a pixel whose first path has the key `first` and whose further paths have those of
+/// [`path_key`] of `further`: as many as there are keys from `threshold` on. `is_even`: it has its first path in any
+/// case.
+#[inline]
+pub fn paths(first: u32, further: u32, samples: u32, is_even: bool, threshold: u32) -> u32 {
+    let mut count = u32::from(is_even || first >= threshold);
+    // Keys fall from path to path.
+    let mut path = 2;
+    while path <= MOST_PATHS && path_key(further, samples, path) >= threshold {
+        count += 1;
+        path += 1;
+    }
+    count
+}
+
+/// Number of quads that `budget` pays for: a share of `columns` x `rows` quads.
 pub fn budget_quads(budget: f32, [columns, rows]: [u32; 2]) -> u32 {
     // In f64, so that the product is not rounded up.
     (f64::from(budget) * f64::from(columns) * f64::from(rows)) as u32

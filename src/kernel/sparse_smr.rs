@@ -1,16 +1,15 @@
-//! Reconstruction of sparse frames: comparison of each new sample with history, estimation of changes of light, and
+//! Reconstruction of planned frames: comparison of each new sample with history, estimation of changes of light, and
 //! colors of the pixels between samples.
 //!
 //! Three steps. At each sample, history is compared with the sample **at the sample's own pixel at full rate**
 //! ([`Observation`]): it needs no low-pass and no match of scales. Then the gain of a change of light, and the fit of
-//! history after it, are estimated from each sample and its eight neighbours ([`relight`]). Then each pixel
+//! history after it, are estimated from each shaded quad and the eight around it ([`relight`]). Then each pixel
 //! interpolates gain and fit, and blends its own history with the interpolated samples ([`reconstruct`]).
 
 use super::approx;
 use super::color::luma;
-use super::depth::INVALID_DISPARITY;
 use super::noise::{Noise, history_share, noise_after, noise_confidence, noise_visibility};
-use super::pack::{disparity_code, disparity_value};
+use super::pack::disparity_code;
 use super::smr::{COARSER_WIDTH, DARK, root_difference, smooth_step};
 use super::stored_sample::{StoredSample, pack_color, unpack_color};
 use glam::{Vec2, Vec3};
@@ -26,8 +25,6 @@ pub const OTHER_SURFACE: f32 = 1e-3;
 /// Factor on the weight of a sample's gain and fit if they come from its neighbours only, because the sample itself was
 /// not compared with history.
 pub const BY_NEIGHBOURS: f32 = 1e-3;
-/// Least weight of one of the four samples around a pixel.
-pub const LEAST_SHARE: f32 = 1e-4;
 /// Expected difference between a sample and history that has not moved. The precision of storage causes it. In units of
 /// [`root_difference`].
 const STILL_ERROR: f32 = 0.3;
@@ -80,7 +77,7 @@ const BLURRED_FRAMES: f32 = 8.0;
 /// Noisy samples: least share of history at which the mean is stored in the place of its nearest sample.
 const STAY_SHARE: f32 = 0.5;
 
-/// Level of detail of a candidate at distance `px` from the nearest sample of a lattice of level `coarsest`: 0 at the
+/// Level of detail of a candidate at distance `px` from the nearest sample of a pattern of level `coarsest`: 0 at the
 /// sample's own pixel.
 #[inline]
 pub fn candidate_level(px: f32, coarsest: f32) -> f32 {
@@ -161,12 +158,6 @@ pub fn agreement(own: Observation, other: Observation, spatial: f32) -> f32 {
     let difference = root_difference(other.sampled, ratios(own.sampled, own.history) * other.history);
     let errors = difference.min(1e6) / (AGREE_ERRORS * (own.error + other.error) + AGREE_ERROR);
     (spatial * other.confidence) / (1.0 + errors * errors)
-}
-
-/// Weight of the neighbour at an offset of -1, 0 or 1 samples along each axis: 4 for the sample itself, 1 for corners.
-#[inline]
-pub fn neighbour_weight(offset: [i32; 2]) -> f32 {
-    ((2 - offset[0].abs()) * (2 - offset[1].abs())) as f32
 }
 
 /// Sums of the observations at a sample and its neighbours.
@@ -265,18 +256,6 @@ pub fn fit(errors: f32, confidence: f32) -> f32 {
     1.0 - confidence * smooth_step(GATE[0], GATE[1], errors)
 }
 
-/// An error of [`errors_left`], weighted, for [`fit_of_samples`]: at most the error at which the fit is 0.
-#[inline]
-pub fn capped_error(o: Observation, errors: f32, spatial: f32) -> f32 {
-    errors.min(GATE[0] + GATE[1]) * (spatial * o.confidence)
-}
-
-/// Fit of history at all samples around, in \[0, 1\]. `capped`: sum of [`capped_error`] without a gain.
-#[inline]
-pub fn fit_of_samples(a: ObservedAround, capped: f32) -> f32 {
-    fit(capped / a.known.max(1e-6), (a.known / a.spatial).min(1.0))
-}
-
 /// Vote of another sample on whether history fits, for [`fit_by_votes`]: its weight if it contradicts history, and its
 /// weight. `errors`: of [`errors_left`] without a gain.
 #[inline]
@@ -304,7 +283,7 @@ pub fn fit_around(a: ObservedAround, left: f32, by_others: f32) -> f32 {
     by_own * share + by_others * (1.0 - share)
 }
 
-/// As [`fit`], for noisy samples, from the difference of the means of samples and of history. Nine samples together
+/// As [`fit`], for noisy samples, from the difference of the means of samples and of history. Samples together
 /// distinguish smaller changes from noise than a single sample.
 #[inline]
 pub fn mean_fit(a: ObservedAround, confidence: f32) -> f32 {
@@ -324,26 +303,6 @@ pub struct Lit {
     pub own_fit: f32,
     /// Whether the sample itself was compared with history; otherwise only its neighbours were.
     pub is_own: bool,
-    /// Disparity of the sample.
-    pub disparity: f32,
-}
-
-/// Two words: gain ([`pack_color`]); fit in 256ths in bits 0 to 8, `is_own` in bit 9, own fit in 32nds in bits 10 to
-/// 15, disparity ([`disparity_code`]) in bits 16 to 31. Fits of 0 and 1 are exact.
-pub fn pack_lit(l: Lit) -> [u32; 2] {
-    let (fit, own_fit) = ((l.fit * 256.0 + 0.5) as u32, (l.own_fit * 32.0 + 0.5) as u32);
-    [pack_color(l.gain), fit | u32::from(l.is_own) << 9 | own_fit << 10 | disparity_code(l.disparity) << 16]
-}
-
-/// Inverse of [`pack_lit`].
-pub fn unpack_lit(words: [u32; 2]) -> Lit {
-    Lit {
-        gain: unpack_color(words[0]),
-        fit: (words[1] & 511) as f32 * (1.0 / 256.0),
-        own_fit: (words[1] >> 10 & 63) as f32 * (1.0 / 32.0),
-        is_own: words[1] >> 9 & 1 != 0,
-        disparity: disparity_value(words[1] >> 16),
-    }
 }
 
 /// Estimate of light at a shaded quad of 2x2 pixels.
@@ -370,14 +329,13 @@ pub fn pack_quad_lit(l: QuadLit) -> [u32; 4] {
     [pack_color(l.gain), fits, codes(0), codes(2)]
 }
 
-/// Estimate at pixel `i` of a quad, without its disparity.
+/// Estimate at pixel `i` of a quad.
 pub fn quad_lit(words: [u32; 4], i: u32) -> Lit {
     Lit {
         gain: unpack_color(words[0]),
         fit: (words[1] & 511) as f32 * (1.0 / 256.0),
         own_fit: (words[1] >> (10 + 5 * i) & 31) as f32 * (1.0 / 16.0),
         is_own: words[1] >> 9 & 1 != 0,
-        disparity: INVALID_DISPARITY,
     }
 }
 
@@ -411,7 +369,7 @@ pub struct Reconstruction {
     pub fit: f32,
     /// Confidence in history, in \[0, 1\]: the frame's trust mask.
     pub trust: f32,
-    /// `Smr::accumulate`: share of equally fine history in the output of blurred frames. Sparse frames use half of this
+    /// `Smr::accumulate`: share of equally fine history in the output of blurred frames. Planned frames use half of this
     /// share.
     pub accumulate: f32,
 }

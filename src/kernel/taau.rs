@@ -1,4 +1,4 @@
-//! One pixel of temporal upsampling, the baseline on sparse frames: samples of this frame are weighted by their true
+//! One pixel of temporal upsampling, the baseline on planned frames: samples of this frame are weighted by their true
 //! distance from the pixel, history by the weight that it has accumulated, after a clip to the distribution of the
 //! samples around. The structure is that of FidelityFX Super Resolution 2 (AMD 2022, `ffx_fsr2_upsample.h`,
 //! `ffx_fsr2_accumulate.h`), without locks, reactive masks and dilated motion vectors.
@@ -58,13 +58,12 @@ pub fn narrowing(confidence: f32) -> f32 {
 }
 
 /// Two weights of a sample: its weight as one of the pixel's own samples, and the sum of this weight and its weight for
-/// interpolation on the lattice.
+/// interpolation.
 #[inline]
-pub fn sample_weights(offset_px: Vec2, level: u32, tail: f32, narrowing: f32) -> Vec2 {
+pub fn sample_weights(offset_px: Vec2, tail: f32, narrowing: f32) -> Vec2 {
     let px2 = offset_px.x * offset_px.x + offset_px.y * offset_px.y;
-    let inverse_step = f32::from_bits((127 - level) << 23);
     let own = lobe(px2 * narrowing);
-    Vec2::new(own, own + lobe(px2 * (inverse_step * inverse_step)) * tail)
+    Vec2::new(own, own + lobe(px2) * tail)
 }
 
 /// Sums over the nine samples around a pixel.

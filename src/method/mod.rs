@@ -109,12 +109,8 @@ pub(crate) enum Algorithm {
 pub(crate) enum Stage {
     /// Fills a mip chain of noisy candidates.
     Candidates,
-    /// Fills the colors of a sparse frame between its samples, for an algorithm that reads whole frames.
+    /// Fills the colors of a planned frame between its samples, for an algorithm that reads whole frames.
     Fill,
-    /// Fills depth and motion of a sparse frame that has them at its samples only.
-    Geometry,
-    /// Compares the samples of a sparse frame with history.
-    Samples,
     /// Compares the samples of shaded quads with history.
     Quads,
     /// The pass that writes the output and the history.
@@ -126,7 +122,6 @@ pub(crate) enum Stage {
 /// Stages of an algorithm that reads whole frames and keeps no mip chain.
 fn whole_frames(settings: &Settings) -> Vec<Stage> {
     match settings.foveation.filter {
-        Filter::Sparse => vec![Stage::Fill, Stage::Geometry, Stage::Method],
         Filter::Quads => vec![Stage::Fill, Stage::Method],
         _ => vec![Stage::Method],
     }
@@ -190,10 +185,10 @@ pub(crate) enum HistoryLayout {
 }
 
 impl Settings {
-    /// The entry of these settings. smr on sparse frames is an algorithm of its own.
+    /// The entry of these settings. smr on planned frames is an algorithm of its own.
     fn entry(&self) -> &'static Entry {
         match self.method {
-            Method::Smr(_) if matches!(self.foveation.filter, Filter::Sparse | Filter::Quads) => &smr_sparse::ENTRY,
+            Method::Smr(_) if self.foveation.filter == Filter::Quads => &smr_sparse::ENTRY,
             method => method.kind().entry(),
         }
     }
@@ -216,12 +211,9 @@ impl Settings {
         (self.entry().overrides)(self)
     }
 
-    /// Whether history of other settings is history of these. That of smr on sparse frames is the same for lattices and
-    /// for quads, though passes differ.
+    /// Whether history of other settings is history of these.
     pub(crate) fn keeps_history_of(&self, other: &Self) -> bool {
-        let layout = self.history_layout();
-        let has_same_pass = self.pass_shader() == other.pass_shader();
-        layout == other.history_layout() && (has_same_pass || matches!(layout, HistoryLayout::Sparse { .. }))
+        self.history_layout() == other.history_layout() && self.pass_shader() == other.pass_shader()
     }
 
     pub(crate) fn history_layout(&self) -> HistoryLayout {

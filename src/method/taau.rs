@@ -5,10 +5,9 @@ use crate::foveation::Filter;
 
 pub(super) static ENTRY: Entry = Entry {
     name: "taau",
-    summary: "temporal upsampling of sparse frames",
+    summary: "temporal upsampling of planned frames",
     algorithm: Algorithm::Taau,
     stages: |settings| match settings.foveation.filter {
-        Filter::Sparse => vec![Stage::Geometry, Stage::Method],
         Filter::Quads => vec![Stage::Fill, Stage::Method],
         _ => vec![Stage::Method],
     },

@@ -20,7 +20,7 @@ pub(super) static ENTRY: Entry = Entry {
         2 * reservoir + noise
     },
     shader: |settings| match settings.foveation.filter {
-        Filter::Sparse => PassShader { name: "wrs_sparse_pass", block_px: 1 },
+        Filter::Quads => PassShader { name: "wrs_quad_pass", block_px: 1 },
         _ => PassShader { name: "wrs_pass", block_px: 1 },
     },
     overrides: |settings| {

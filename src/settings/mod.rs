@@ -5,7 +5,7 @@ mod wrs;
 pub use wrs::{Bias, Gate, GateMetric, GateScale, Sampler, Wrs};
 
 use crate::error::{SettingsError, check};
-use crate::foveation::{Filter, Foveation};
+use crate::foveation::Foveation;
 #[cfg(feature = "bevy-0-20")]
 use bevy_reflect::{Reflect, std_traits::ReflectDefault};
 
@@ -28,7 +28,7 @@ pub enum Method {
     None,
     /// Temporal antialiasing, which ignores gaze: a baseline for comparison.
     Taa,
-    /// Temporal upsampling, which ignores gaze but uses the positions of a sparse frame's samples: a baseline for
+    /// Temporal upsampling, which ignores gaze but uses the positions of a planned frame's samples: a baseline for
     /// comparison.
     Taau,
     /// Scale-matched reservoirs: the sharpest sample of each surface point is shown as long as it explains the foveated
@@ -92,10 +92,10 @@ pub struct Smr {
     pub tolerance: f32,
     /// Whether history is scaled to follow changes of light, instead of being rejected. Default true.
     pub relight: bool,
-    /// Whether sparse frames are antialiased: their projection is jittered
+    /// Whether planned frames ([`Filter::Quads`](crate::Filter::Quads)) are antialiased: their projection is jittered
     /// ([`ViewFrame::jitter_px`](crate::ViewFrame::jitter_px), best [`Foveation::jitter_px`]), and history stores means
     /// of samples instead of single ones. Set it in place of other temporal antialiasing, and only for jittered frames.
-    /// It has no effect on noisy frames, which are averaged in any case, or on frames without lattices. Default false.
+    /// It has no effect on noisy frames, which are averaged in any case, or on other frames. Default false.
     pub antialias: bool,
 }
 
@@ -178,8 +178,8 @@ pub struct Settings {
     /// Whether frames are noisy, that is path-traced with few samples a pixel. Each frame must then have a noise input
     /// ([`FrameInputs::noise`](crate::FrameInputs::noise)), so that noise is not mistaken for a change. wrs weights a
     /// candidate by its number of samples; smr averages history in the fovea, too, compares means of 8x8 candidates,
-    /// and stores 8 more bytes a pixel and a mip chain of the candidates. On sparse frames smr compares nine samples,
-    /// stores the 8 bytes but no mip chain, and does not relight history. Default false.
+    /// and stores 8 more bytes a pixel and a mip chain of the candidates. On planned frames smr compares means of
+    /// samples, stores the 8 bytes but no mip chain, and does not relight history. Default false.
     pub noisy: bool,
     /// Seed of the random numbers. The same seed and the same frames give the same bytes. Default 0.
     pub seed: u64,
@@ -233,9 +233,9 @@ impl Settings {
         Self { method: Method::Smr(Smr::traced()), noisy: true, ..Self::default() }
     }
 
-    /// smr on antialiased frames shaded by quads ([`Filter::Quads`]), for screens about 40 degrees wide: a coarser even
-    /// pattern and twice the budget of [`Foveation::quads`], 11 % of the pixels. Frames must be jittered
-    /// ([`Foveation::jitter_px`]). `docs/quads.md` has the scores.
+    /// smr on antialiased frames shaded by quads ([`Filter::Quads`](crate::Filter::Quads)), for screens about 40 degrees
+    /// wide: a coarser even pattern and twice the budget of [`Foveation::quads`], 11 % of the pixels. Frames must be
+    /// jittered ([`Foveation::jitter_px`]). `docs/quads.md` has the scores.
     pub fn screen() -> Self {
         let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
         let foveation = Foveation { rate_mid: 8, budget: 0.05, ..Foveation::quads() };
@@ -254,10 +254,6 @@ impl Settings {
     /// [`SettingsError`] for the first setting that is out of range.
     pub fn validate(&self) -> Result<(), SettingsError> {
         self.foveation.validate()?;
-        if self.noisy && self.foveation.filter == Filter::Quads {
-            let expected = "false: noisy frames have lattices (Filter::Sparse), not quads".into();
-            return Err(SettingsError { setting: "noisy", found: "true".into(), expected });
-        }
         match &self.method {
             Method::Smr(smr) => smr.validate()?,
             Method::Wrs(wrs) => wrs.validate()?,

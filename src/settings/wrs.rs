@@ -68,7 +68,8 @@ pub enum GateScale {
     Sample,
     /// Compares the candidate with a reference that is stored beside the sample: the first candidate of the same level
     /// of detail since the sample was taken. The gate closes only where something changed. The level is that of the
-    /// frame's input `lod`, of [`Settings::foveation`](super::Settings::foveation) without that, or of the lattices.
+    /// frame's input `lod`, or of [`Settings::foveation`](super::Settings::foveation) without that; on planned frames
+    /// that of a sample at its own pixel.
     /// Needs 8 more bytes of memory and of memory traffic a pixel.
     Candidate,
 }
@@ -130,7 +131,7 @@ pub struct Wrs {
     pub weight_exponent: u32,
     /// Exponent of the number of samples a pixel in the candidate weights, 0 to 4: at level of detail `l`, weights are
     /// multiplied by `4^-kl`. A larger exponent replaces coarse samples sooner once the gaze arrives, even where
-    /// eccentricity hardly changed. No effect on sparse frames, where a candidate's weight depends on the place of its
+    /// eccentricity hardly changed. No effect on planned frames, where a candidate's weight depends on the place of its
     /// sample. Default 0, as published.
     pub rate_exponent: u32,
     /// Decay of history's weight. Default [`Bias::Bernoulli`].

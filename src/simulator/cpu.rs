@@ -24,8 +24,8 @@ impl Foveation {
     /// If the pyramid has too few levels.
     pub fn render(&self, pyramid: &Pyramid, lods: &Image<f32>) -> Image<[f32; 3]> {
         match self.filter {
-            // A sparse frame is the full-rate frame: the post-process reads only its samples.
-            Filter::Off | Filter::Sparse | Filter::Quads => pyramid.level(0).clone(),
+            // A planned frame is the full-rate frame: the post-process reads only its samples.
+            Filter::Off | Filter::Quads => pyramid.level(0).clone(),
             Filter::Mip => Image::from_fn_parallel(lods.size(), |[x, y]| {
                 pyramid.trilinear([x as f32, y as f32], lods.at(x as usize, y as usize))
             }),

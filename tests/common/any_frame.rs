@@ -44,6 +44,8 @@ pub fn any_frame(draws: &mut Draws, wild: f32) -> View {
         motion: Some(Image::from_fn(SIZE, |_| shift.map(|v| vector(d, v)))),
         trust: Some(Image::from_fn(SIZE, |_| number(d, wild, 0.5, 1.0))),
         reactive: None,
+        mask: None,
+        half: None,
         lod: Some(Image::from_fn(SIZE, |_| number(d, wild, 0.0, 4.0))),
         noise: Some(Image::from_fn(SIZE, |_| [number(d, wild, 0.0, 0.3), number(d, wild, 1.0, 16.0)])),
     }

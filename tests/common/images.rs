@@ -3,7 +3,7 @@
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::simulator::Pyramid;
-use afterimage::{Filter, Foveation, FrameStats, Gaze, Image, Lattices, ViewFrame, ViewGeometry};
+use afterimage::{Filter, Foveation, FrameStats, Gaze, Image, ViewFrame, ViewGeometry};
 use afterimage_testing::Draws;
 
 /// Images of one view of one frame.
@@ -19,31 +19,24 @@ pub struct View {
     pub lod: Option<Image<f32>>,
     /// Standard errors and numbers of samples of noisy frames.
     pub noise: Option<Image<[f32; 2]>>,
+    /// Pixels that the renderer chose itself, of a planned frame.
+    pub mask: Option<Image<f32>>,
+    /// Colors of quads that are shaded in part, one a quad.
+    pub half: Option<Image<[f32; 3]>>,
 }
 
 impl View {
     /// Without optional inputs, under 70 degrees.
     pub fn still(color: Image<[f32; 3]>, gaze_px: [f32; 2]) -> Self {
         let facts = ViewFrame::new(ViewGeometry::flat(color.size(), 70.0).unwrap(), Gaze::At { px: gaze_px });
-        let (trust, reactive) = (None, None);
-        Self { facts, color, depth: None, motion: None, trust, reactive, lod: None, noise: None }
+        let (trust, reactive, mask, half) = (None, None, None, None);
+        Self { facts, color, depth: None, motion: None, trust, reactive, lod: None, noise: None, mask, half }
     }
 
     /// With other images or facts.
     pub fn with(mut self, change: impl FnOnce(&mut Self)) -> Self {
         change(&mut self);
         self
-    }
-
-    /// A sparse frame with these lattices.
-    pub fn sparse(self, lattices: Lattices) -> Self {
-        self.with(|view| view.facts.lattices = Some(lattices))
-    }
-
-    /// A sparse frame of `foveation`.
-    pub fn foveated(self, foveation: &Foveation, gaze_px: [f32; 2], index: u64) -> Self {
-        let lattices = foveation.lattices(&self.facts.geometry, gaze_px, index);
-        self.sparse(lattices)
     }
 
     /// What a foveating renderer delivers of a picture.
@@ -53,29 +46,26 @@ impl View {
         Self::still(color, gaze_px)
     }
 
-    /// What the lattices read of an image, and `elsewhere` between.
-    pub fn read_of<T: Copy>(&self, image: &Image<T>, elsewhere: T) -> Image<T> {
-        let lattices = self.facts.lattices.unwrap();
-        let is_read = |px| lattices.as_slice().iter().any(|lattice| lattice.samples(px));
-        Image::from_fn(image.size(), |px| if is_read(px) { pixel(image, px) } else { elsewhere })
-    }
-
-    /// With the samples in an atlas of `size`, and NaN elsewhere.
-    pub fn in_atlas(&self, size: [u32; 2]) -> Self {
-        let (atlas, least) = self.facts.lattices.unwrap().in_atlas();
-        assert!(least[0] <= size[0] && least[1] <= size[1]);
-        let mut color = Image::filled(size, [f32::NAN; 3]);
-        for lattice in atlas.as_slice() {
-            let [left, top] = lattice.atlas_texel.unwrap();
-            for [i, j] in pixels(lattice.points) {
-                let px = [lattice.first_px[0] + i * lattice.step, lattice.first_px[1] + j * lattice.step];
-                if px[0] < self.color.size()[0] && px[1] < self.color.size()[1] {
-                    let at = ((top + j) * size[0] + left + i) as usize;
-                    color.pixels_mut()[at] = pixel(&self.color, px);
-                }
-            }
-        }
-        Self { color, ..self.clone() }.sparse(atlas)
+    /// With the colors of the pixels of a mask alone: of quads with one pixel in a color of half the size, of whole quads
+    /// in that of the frame; NaN elsewhere.
+    pub fn at_half(self, mask: &Image<bool>) -> Self {
+        let size = self.color.size();
+        let of_quad = |quad: [u32; 2]| {
+            let of_quad = pixels([2; 2]).map(move |place| [0, 1].map(|i| 2 * quad[i] + place[i]));
+            of_quad.filter(move |px| px[0] < size[0] && px[1] < size[1])
+        };
+        let is_whole = |quad: [u32; 2]| of_quad(quad).all(|px| pixel(mask, px));
+        let half = Image::from_fn(size.map(|side| side.div_ceil(2)), |quad| {
+            let mut shaded = of_quad(quad).filter(|px| pixel(mask, *px));
+            let first = shaded.next().filter(|_| !is_whole(quad));
+            assert!(first.is_none() || shaded.next().is_none(), "two pixels of quad {quad:?}");
+            first.map_or([f32::NAN; 3], |px| pixel(&self.color, px))
+        });
+        let color = Image::from_fn(size, |px| match is_whole(px.map(|v| v / 2)) {
+            true => pixel(&self.color, px),
+            false => [f32::NAN; 3],
+        });
+        Self { color, half: Some(half), ..self }
     }
 
     /// In which everything moves by `speed_px` a frame.
@@ -94,6 +84,8 @@ pub struct Images<'a> {
     reactive: Vec<&'a Image<f32>>,
     lod: Vec<&'a Image<f32>>,
     noise: Vec<&'a Image<[f32; 2]>>,
+    mask: Vec<&'a Image<f32>>,
+    half: Vec<&'a Image<[f32; 3]>>,
 }
 
 impl<'a> Images<'a> {
@@ -108,6 +100,8 @@ impl<'a> Images<'a> {
             reactive: views.iter().filter_map(|v| v.reactive.as_ref()).collect(),
             lod: views.iter().filter_map(|v| v.lod.as_ref()).collect(),
             noise: views.iter().filter_map(|v| v.noise.as_ref()).collect(),
+            mask: views.iter().filter_map(|v| v.mask.as_ref()).collect(),
+            half: views.iter().filter_map(|v| v.half.as_ref()).collect(),
         }
     }
 
@@ -119,6 +113,8 @@ impl<'a> Images<'a> {
             reactive: given(&self.reactive),
             lod: given(&self.lod),
             noise: given(&self.noise),
+            mask: given(&self.mask),
+            half: given(&self.half),
             ..Frame::new(&self.color, &self.views, index)
         }
     }
@@ -128,9 +124,12 @@ fn given<T>(images: &[T]) -> Option<&[T]> {
     (!images.is_empty()).then_some(images)
 }
 
-/// Plans a frame that is shaded by quads: the masks.
+/// Plans a frame that is shaded by quads: the masks, or those that the frame has itself.
 pub fn planned(post: &mut CpuAfterimage, frame: &Frame<'_>) -> Vec<Image<bool>> {
     match post.desc().settings.foveation.filter {
+        Filter::Quads if frame.mask.is_some() => {
+            frame.mask.into_iter().flatten().map(|mask| mask.map(|chosen| chosen > 0.5)).collect()
+        }
         Filter::Quads => post.plan(frame).unwrap().to_vec(),
         _ => vec![],
     }

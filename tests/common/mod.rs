@@ -10,6 +10,7 @@ pub mod laws;
 pub mod lifecycle_hard;
 pub mod light_hard;
 pub mod low_pass;
+pub mod mask_hard;
 pub mod motion_hard;
 #[allow(dead_code, reason = "the CPU's tests use all of it")]
 pub mod planned_hard;
@@ -18,5 +19,4 @@ pub mod scale_hard;
 pub mod settings;
 #[allow(dead_code, reason = "the CPU's tests use all of it")]
 pub mod simulator_hard;
-pub mod sparse_hard;
 pub mod surfaces_hard;

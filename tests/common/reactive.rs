@@ -1,12 +1,11 @@
 //! The law of reactive masks, which both executors hold.
 
 use crate::any_frame::number;
-use crate::sparse_hard::{Make, SIZE, Shot, foveation, smr, waves};
-use afterimage::{ContextDesc, Foveation, Image, Method, MethodKind, Settings};
+use crate::mask_hard::{Make, SIZE, Shot, foveation, smr, waves};
+use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, MethodKind, Settings};
 use afterimage_testing::Draws;
 
-/// Contexts whose passes read the mask in a way of their own: of whole frames, of sparse ones, of
-/// frames shaded by quads.
+/// Contexts whose passes read the mask in a way of their own: of whole frames, of single pixels, of quads.
 fn contexts() -> Vec<ContextDesc> {
     let of = |method: Method, foveation| ContextDesc {
         settings: Settings { method, foveation, ..Settings::default() },
@@ -28,10 +27,7 @@ pub fn reactive_is_the_inverse_of_trust(make: Make) -> Option<String> {
         for index in 0..4 {
             let speed_px = [0.4, -0.3];
             let full = waves(SIZE, speed_px.map(|v| v * index as f32));
-            let shot = Shot::foveated(full, &foveation, [30.0, 25.0], index).moving(speed_px);
-            let shot = shot.with(|view| {
-                view.facts.lattices = view.facts.lattices.filter(|_| foveation == self::foveation());
-            });
+            let shot = Shot::planned(full, Gaze::At { px: [30.0, 25.0] }).moving(speed_px);
             let mask = Image::from_fn(SIZE, |_| number(&mut draws, 0.1, -0.2, 1.2));
             let trust = mask.map(|r| 1.0 - r);
             let [masked, trusted] = [

@@ -37,7 +37,6 @@ fn delivered(settings: &Settings, full: &Color, gaze_px: [f32; 2], index: u64) -
     view.noise = settings.noisy.then(|| full.map(|c| [0.05 * c[1], 2.0]));
     let foveation = &settings.foveation;
     match foveation.filter {
-        Filter::Sparse => view.foveated(foveation, gaze_px, index),
         Filter::Quads => view,
         _ => View { color: View::delivered(foveation, full, gaze_px).color, ..view },
     }
@@ -131,26 +130,25 @@ pub fn times_a_constant(make: Make<'_>) -> Option<String> {
 /// Settings of all methods and kinds of frames, and whether they compare colors by constants.
 fn all_settings() -> Vec<(Settings, bool)> {
     let regions = Foveation { fovea_deg: 20.0, mid_deg: 40.0, rate_mid: 2, rate_far: 4, ..Foveation::default() };
-    let lattices = Foveation { filter: Filter::Sparse, ..regions };
     let quads = Foveation { fovea_deg: 20.0, mid_deg: 40.0, ..Foveation::quads() };
+    let single = Foveation { single_pixels: true, ..quads };
     let of = |method, foveation| Settings { method, foveation, ..Settings::default() };
     let smr = |antialias| Method::Smr(Smr { antialias, ..Smr::default() });
     let wrs = |sampler| Method::Wrs(Wrs { sampler, ..Wrs::default() });
     let absolute = [
-        of(smr(false), lattices),
-        of(smr(true), lattices),
+        of(smr(false), single),
+        of(smr(true), single),
         of(smr(false), quads),
         of(smr(true), quads),
         Settings { foveation: regions, ..Settings::traced() },
-        Settings { foveation: lattices, ..Settings::traced() },
+        Settings { foveation: single, ..Settings::traced() },
         of(wrs(Sampler::AChao), regions),
         of(wrs(Sampler::AEs), regions),
         Settings { foveation: regions, ..Settings::weighted() },
-        Settings { foveation: lattices, ..Settings::weighted() },
+        Settings { foveation: single, ..Settings::weighted() },
         Settings { foveation: regions, ..Settings::paper() },
     ];
-    let others =
-        [of(smr(false), regions), of(Method::Taa, quads), of(Method::Taau, lattices), of(Method::None, lattices)];
+    let others = [of(smr(false), regions), of(Method::Taa, quads), of(Method::Taau, single), of(Method::None, single)];
     absolute.map(|settings| (settings, true)).into_iter().chain(others.map(|settings| (settings, false))).collect()
 }
 
@@ -187,7 +185,7 @@ pub fn radiance(make: Make<'_>) -> Option<String> {
     }
     assert!(worst < 0.01, "{worst}");
     Some(format!(
-        "radiance with its exposure, {} settings of all methods, on whole frames, lattices and quads: at 2^-30 to \
+        "radiance with its exposure, {} settings of all methods, on whole frames, single pixels and quads: at 2^-30 to \
          2^24, and with exposures that change, pictures, decisions and history as of exposed colors, bit for bit; at \
          1/700 {:.3} % of the channels differ by 1 %",
         all.len(),
@@ -232,20 +230,20 @@ pub fn moving_shadow(make: Make<'_>) -> Option<String> {
     let gated = Settings { foveation: settings(Filter::Mip).foveation, ..Settings::weighted() };
     let weighted = left(gated, &[0, -2, -4])?;
     assert!(weighted[0] < 0.1 && weighted[1] < 0.1, "{weighted:?}");
-    let sparse = left(settings(Filter::Sparse), &[0, -6, -10])?;
-    assert!((sparse[0] - sparse[1]).abs() < 0.05, "{sparse:?}");
+    let planned = left(settings(Filter::Quads), &[0, -6, -10])?;
+    assert!((planned[0] - planned[1]).abs() < 0.05, "{planned:?}");
     let exposure = Exposure::Scene { exposure: 1024.0 };
     let exposed = |settings: Settings| light_left(make, settings, -10, exposure);
-    assert_eq!([exposed(gated)?, exposed(settings(Filter::Sparse))?], [weighted[0], sparse[0]]);
+    assert_eq!([exposed(gated)?, exposed(settings(Filter::Quads))?], [weighted[0], planned[0]]);
     // The planted error: no exposure.
-    assert!(weighted[2] > 0.5 && sparse[2] > sparse[0] + 0.2, "{weighted:?}, {sparse:?}");
+    assert!(weighted[2] > 0.5 && planned[2] > planned[0] + 0.2, "{weighted:?}, {planned:?}");
     let percent = |left: &[f64]| left.iter().map(|l| format!("{:.1}", 100.0 * l)).collect::<Vec<_>>().join(", ");
     Some(format!(
         "percent of the light left behind the edge: smr at 2^4 to 2^-10 of the light {:.1}, at 2^-20 {:.0}; weighted \
-         wrs at 1, 1/4, 1/16 {}; sparse smr at 1, 2^-6, 2^-10 {}; both at 2^-10 with its exposure as at 1",
+         wrs at 1, 1/4, 1/16 {}; smr on quads at 1, 2^-6, 2^-10 {}; both at 2^-10 with its exposure as at 1",
         100.0 * smr.iter().copied().fold(0.0, f64::max),
         100.0 * absolute,
         percent(&weighted),
-        percent(&sparse)
+        percent(&planned)
     ))
 }

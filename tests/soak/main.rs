@@ -129,8 +129,13 @@ fn a_short_stream_is_sound() {
 fn damage_is_noticed() {
     let view = View::still(Image::filled([4, 3], [0.5; 3]), [1.0, 1.0]);
     let view = View { lod: Some(Image::filled([4, 3], 0.0)), ..view };
-    let good =
-        Made { shown: vec![[0.5_f32.to_bits(); 3]; 12], words: vec![], quads: vec![], stats: Default::default() };
+    let good = Made {
+        shown: vec![[0.5_f32.to_bits(); 3]; 12],
+        words: vec![],
+        quads: vec![],
+        paths: vec![],
+        stats: Default::default(),
+    };
     let checked = |method, value: f32| {
         let (mut found, mut made) = (Found::default(), good.clone());
         made.shown[5][1] = value.to_bits();

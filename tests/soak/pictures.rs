@@ -15,6 +15,7 @@ pub const FOVEATION: Foveation = Foveation {
     rate_mid: 4,
     rate_far: 8,
     budget: 0.0,
+    single_pixels: false,
 };
 
 type Foveated = (Image<[f32; 3]>, Image<f32>);

@@ -155,7 +155,8 @@ impl Context {
         if let Some(kept) = &self.depth {
             encoder.copy_texture_to_texture(open.as_image_copy(), kept.as_image_copy(), open.size());
         }
-        let prime = Prime { target: tested, origin_px: drawn.origin_px, near_depth: 1.0, stencil: None };
+        let (target, origin_px) = (tested, drawn.origin_px);
+        let prime = Prime { target, origin_px, near_depth: 1.0, stencil: None, is_half: false };
         self.post.prime(device, encoder, 0, &prime).map_err(|error| error.to_string())?;
         self.is_planned = true;
         Ok(())

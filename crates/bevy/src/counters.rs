@@ -29,7 +29,7 @@ pub struct AfterimageStats {
     pub rejected: u64,
     /// Pixels whose color was NaN or infinite.
     pub nonfinite: u64,
-    /// Pixels that are shaded: four a quad.
+    /// Pixels that are shaded: four a quad, even where one of them is shown, as in the first frame and after a cut.
     pub shaded: u64,
     /// Time that the device works on a frame of all cameras, in microseconds. 0 if it has no timestamps.
     pub device_us: u64,

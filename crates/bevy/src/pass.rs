@@ -109,6 +109,9 @@ impl<'a> CameraItem<'a, '_> {
 }
 
 /// Chooses the quads that the camera shades, and closes its depth elsewhere. Where that fails, it shades every pixel.
+///
+/// After a cut one pixel of each quad is chosen (`is_quarter`). Bevy's main pass cannot change its size for one frame:
+/// devices then shade the whole quad of each pixel that is open, as many as at full rate.
 fn plan(view: ViewQuery<Camera>, mut contexts: ResMut<Contexts>, count: Res<FrameCount>, mut ctx: RenderContext) {
     let entity = view.entity();
     let camera = view.into_inner();

@@ -3,7 +3,7 @@
 //! and adds renderers and files as sources.
 //!
 //! - [`frame`]: what sources give and methods take. [`source`]: the trait of sources, and analytic scenes.
-//! - [`scanpath`]: recorded and synthetic gaze. [`lattices`], [`quad_views`]: how sources can foveate.
+//! - [`scanpath`]: recorded and synthetic gaze. [`quad_views`]: how sources can foveate.
 //! - [`pipeline`]: foveates frames and runs the methods on them. [`metric`]: image quality of the output.
 //! - [`clip`]: all of it over a clip.
 
@@ -12,7 +12,6 @@ pub mod clock;
 pub mod error;
 pub mod exposure;
 pub mod frame;
-pub mod lattices;
 pub mod method_report;
 pub mod metric;
 pub mod output;

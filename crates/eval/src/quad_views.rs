@@ -3,6 +3,16 @@
 
 use afterimage::{Foveation, ViewGeometry};
 
+/// Depth and motion of a frame of quad views. Default: [`Full`](Self::Full).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Geometry {
+    /// At every pixel: a visibility buffer, a prepass, or shading-rate hardware.
+    #[default]
+    Full,
+    /// Those of the nearest pixel of a view: small views.
+    Samples,
+}
+
 /// A view of a rectangle of the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuadView {

@@ -7,12 +7,11 @@
 //! - [`quad_views`]: foveation as headset runtimes draw it, for comparison.
 //! - [`pipeline`]: foveates frames and runs the methods on them. [`metric`]: image quality of the output.
 //! - [`measure`]: times of path-traced frames.
-//! - [`lattices`]: sparse frames, their order of samples and their geometry.
 //! - [`device`]: a graphics device without a window. [`error`]: errors of inputs.
 
 extern crate wgpu_30 as wgpu;
 
-pub use afterimage_eval::{clock, lattices, metric, picture, quad_views, scanpath, whole_file};
+pub use afterimage_eval::{clock, metric, picture, quad_views, scanpath, whole_file};
 
 pub mod device;
 pub mod error;

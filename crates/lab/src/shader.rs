@@ -11,7 +11,7 @@ static MODULES: &[Module] = modules! {
     "raster": "chunk_pass", "color_pass", "lighting_maps", "quads_pass", "raster_frame", "raster_material", "sky_pass",
         "sun_pass", "surface_pass", "tile_pass";
     "trace": "accept_all", "alpha_test", "count_pass", "effects", "expand_pass", "extend_pass", "frame",
-        "generate_pass", "geometry", "hit", "hits_pass", "lights", "place_pass", "plan", "records", "resolve_pass",
+        "generate_pass", "geometry", "hit", "hits_pass", "lights", "plan", "records", "resolve_pass",
         "scene_storage", "scene_texture", "shade_pass", "shadow_pass", "surface_point", "texture", "traverse";
 };
 

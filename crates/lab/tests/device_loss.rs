@@ -68,7 +68,7 @@ fn sources_say_that_their_device_was_lost() {
     assert!(said.starts_with("builtin:cubes: the graphics device was lost"), "{said}");
 
     let lost = device().unwrap();
-    let samples = TracedSamples { foveated: None, sparse: None, samples: 1, full_rate_samples: 1 };
+    let samples = TracedSamples { foveated: None, samples: 1, full_rate_samples: 1 };
     let (settings, backend) = (TraceSettings::default(), Backend::Gpu(lost.clone()));
     let traced = TracedSource::open("builtin:cubes", &limits, &OPTIONS, Some("orbit"), &backend, settings, samples);
     let said = error_of(traced.unwrap(), &lost);

@@ -1,7 +1,7 @@
 //! An eye in a frame: matrices and gaze.
 
 use afterimage::{Gaze, SettingsError, ViewFrame, ViewGeometry};
-use glam::{Mat4, Quat, Vec3, Vec4};
+use glam::{Mat4, Quat, Vec2, Vec3, Vec4};
 use openxr as xr;
 
 /// One eye in one frame. Matrices are stored by columns, for column vectors; the world has y up, in metres, and view
@@ -74,6 +74,31 @@ impl Eye {
         }
     }
 
+    /// The eye at half the width and height, whose pixel (x, y) shows what pixel (2x, 2y) + `place_px` of this eye
+    /// shows.
+    pub(crate) fn half(&self, place_px: [u32; 2]) -> Self {
+        let geometry = self.geometry.half(place_px);
+        let sides = |geometry: &ViewGeometry| Vec2::from(geometry.size_px().map(|side| side as f32));
+        let (whole, half) = (sides(&self.geometry), sides(&geometry));
+        let place = Vec2::from(place_px.map(|v| v as f32));
+        let scale = 0.5 * whole / half;
+        // Of the picture's middle, in clip space with y down.
+        let offset = (0.5 * whole + 0.5 - place) / half - 1.0;
+        let halved = Mat4::from_translation(Vec3::new(offset.x, -offset.y, 0.0)) * Mat4::from_scale(scale.extend(1.0));
+        let clip = |matrix: [[f32; 4]; 4]| (halved * Mat4::from_cols_array_2d(&matrix)).to_cols_array_2d();
+        Self {
+            geometry,
+            jittered_clip_from_view: clip(self.jittered_clip_from_view),
+            jittered_clip_from_world: clip(self.jittered_clip_from_world),
+            clip_from_view: clip(self.clip_from_view),
+            clip_from_world: clip(self.clip_from_world),
+            previous_clip_from_world: clip(self.previous_clip_from_world),
+            gaze_px: (0.5 * (Vec2::from(self.gaze_px) - place)).to_array(),
+            jitter_px: self.jitter_px.map(|v| 0.5 * v),
+            ..*self
+        }
+    }
+
     /// Description for the post-process. `before`: pose in the last recorded frame, if history is of use.
     pub(crate) fn view_frame(
         &self,
@@ -125,7 +150,7 @@ mod tests {
     use afterimage::Foveation;
 
     /// A point of the world lies, by either projection, at the pixel whose ray goes through it: moved by the jitter in
-    /// what is drawn, and where it is in motion vectors.
+    /// what is drawn, and where it is in motion vectors. The same at half the width and height.
     #[test]
     fn points_lie_at_their_pixels_with_and_without_jitter() {
         let fov = xr::Fovf { angle_left: -0.9, angle_right: 0.7, angle_up: 0.8, angle_down: -0.85 };
@@ -134,11 +159,14 @@ mod tests {
             position: xr::Vector3f { x: 0.3, y: 1.6, z: -0.2 },
         };
         let posed = Posed::new(&xr::View { pose, fov }, 0.05);
-        let geometry = ViewGeometry::from_angles([640, 720], angles(fov)).unwrap();
-        for index in 0..16 {
-            let jitter_px = Foveation::jitter_px(index);
-            let eye = Eye::new(0, geometry, [&posed, &posed], [250.0, 400.0], jitter_px);
-            for px in [[0.0, 719.0], [240.0, 390.0], [251.5, 402.25], [639.0, 0.0]] {
+        let geometry = ViewGeometry::from_angles([641, 720], angles(fov)).unwrap();
+        for index in 0..32 {
+            let whole = Eye::new(0, geometry, [&posed, &posed], [250.0, 400.0], Foveation::jitter_px(index / 2));
+            // Of an odd width, which is rounded up.
+            let eye = if index % 2 == 0 { whole } else { whole.half(Foveation::quarter_place_px(index / 2)) };
+            let (geometry, jitter_px) = (eye.geometry, eye.jitter_px);
+            let [width, height] = geometry.size_px().map(|side| side as f32);
+            for px in [[0.0, 719.0], [240.0, 390.0], [251.5, 402.25], [640.0, 0.0]] {
                 // y down and z forward there, the other way round here.
                 let [x, y, z] = geometry.ray(px).map(|v| 1.7 * v);
                 let view = Vec3::new(x, -y, -z);
@@ -154,7 +182,7 @@ mod tests {
                     assert!((clip.z / clip.w - 0.05 / 1.7).abs() < 1e-5);
                     // Pixels' centres are at halves.
                     let found =
-                        [640.0 * (0.5 + 0.5 * clip.x / clip.w) - 0.5, 720.0 * (0.5 - 0.5 * clip.y / clip.w) - 0.5];
+                        [width * (0.5 + 0.5 * clip.x / clip.w) - 0.5, height * (0.5 - 0.5 * clip.y / clip.w) - 0.5];
                     for i in 0..2 {
                         let expected = px[i] + jitter_px[i];
                         assert!((found[i] - expected).abs() < 2e-3, "{found:?} instead of {expected}");

@@ -103,8 +103,9 @@ pub struct Headset {
     gpu: Gpu,
 }
 
-/// A frame to draw and to submit: prepass, [`choose`](Self::choose), color pass, [`submit`](Self::submit). A frame that
-/// is dropped is not shown, and leaves history as it was.
+/// A frame to draw and to submit: prepass, [`choose`](Self::choose), color pass (after cuts at
+/// [half the size](Self::halve)), [`submit`](Self::submit). A frame that is dropped is not shown, and leaves history as
+/// it was.
 pub struct HeadsetFrame<'a> {
     /// Records the frame: the application's passes, then the post-process.
     pub encoder: CommandEncoder,
@@ -123,6 +124,7 @@ pub struct HeadsetFrame<'a> {
     views: Vec<xr::View>,
     time: xr::Time,
     is_chosen: bool,
+    is_half: bool,
 }
 
 /// What a submitted frame was made of: for pictures and measurements.
@@ -137,6 +139,8 @@ pub struct Shown<'a> {
     pub views: [ViewFrame; 2],
     /// Counter of submitted frames.
     pub index: u64,
+    /// Whether colors were drawn at [half the width and height](HeadsetFrame::halve).
+    pub is_half: bool,
 }
 
 impl Headset {
@@ -376,6 +380,7 @@ impl Headset {
             views,
             time,
             is_chosen: false,
+            is_half: false,
             headset: self,
         })
     }
@@ -521,13 +526,39 @@ impl<'a> HeadsetFrame<'a> {
         let views = self.described()?;
         let Headset { gpu, post, targets, index, .. } = &mut *self.headset;
         post.plan(&gpu.device, &mut self.encoder, &described_frame(targets, &views, *index, self.reset))?;
+        self.is_chosen = true;
+        self.prime()
+    }
+
+    /// After [`choose`](Self::choose): if one pixel of each quad was chosen around the fovea, because nothing is known (in
+    /// the first frame and after resets), leaves the fovea alone open, and returns the eyes to draw the other colors
+    /// with at half the width and height, into [`Targets::half_views`]. Textures need a bias of their level of detail of
+    /// -1. `None` in all other frames.
+    ///
+    /// Without this call the frame is drawn like all others, and shades every pixel: four times as many.
+    ///
+    /// # Errors
+    /// As for `choose`.
+    pub fn halve(&mut self) -> Result<Option<[Eye; 2]>, Error> {
+        self.is_half = self.headset.post.is_quarter();
+        if !self.is_half {
+            return Ok(None);
+        }
+        self.prime()?;
+        let place_px = Foveation::quarter_place_px(self.headset.index);
+        Ok(Some(self.eyes.map(|eye| eye.half(place_px))))
+    }
+
+    /// Closes [`Targets::primed`] where nothing is to be shaded.
+    fn prime(&mut self) -> Result<(), Error> {
+        let Headset { gpu, post, targets, .. } = &mut *self.headset;
         let (from, to) = (targets.depth.as_image_copy(), targets.primed.as_image_copy());
         self.encoder.copy_texture_to_texture(from, to, targets.depth.size());
         for (view, layers) in targets.views.iter().enumerate() {
-            let prime = Prime { target: &layers.primed, origin_px: [0, 0], near_depth: 1.0, stencil: None };
+            let (target, is_half) = (&layers.primed, self.is_half);
+            let prime = Prime { target, origin_px: [0, 0], near_depth: 1.0, stencil: None, is_half };
             post.prime(&gpu.device, &mut self.encoder, view, &prime)?;
         }
-        self.is_chosen = true;
         Ok(())
     }
 
@@ -554,8 +585,11 @@ impl<'a> HeadsetFrame<'a> {
             return Err(Error::NotChosen);
         }
         let described = self.described()?;
-        let Self { mut encoder, reset, headset, poses, views, time, .. } = self;
-        let frame = described_frame(&headset.targets, &described, headset.index, reset);
+        let Self { mut encoder, reset, headset, poses, views, time, is_half, .. } = self;
+        let mut frame = described_frame(&headset.targets, &described, headset.index, reset);
+        if is_half {
+            frame.half = Some((&headset.targets.half_color).into());
+        }
         headset.post.record(&headset.gpu.device, &mut encoder, &frame, &headset.output)?;
         let index = headset.index;
         headset.index += 1;
@@ -571,7 +605,8 @@ impl<'a> HeadsetFrame<'a> {
             Err(error) if is_lost(error) => {}
             Err(error) => return Err(error.into()),
         }
-        Ok(Shown { output: &headset.output, targets: &headset.targets, post: &headset.post, views: described, index })
+        let (output, targets, post) = (&headset.output, &headset.targets, &headset.post);
+        Ok(Shown { output, targets, post, views: described, index, is_half })
     }
 }
 

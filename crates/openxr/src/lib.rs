@@ -20,6 +20,7 @@
 //! while let Some(mut frame) = headset.next_frame()? {
 //!     renderer.draw_depth_and_motion(&mut frame);
 //!     frame.choose()?;
+//!     // At half the size where `frame.halve()` says so: after a cut.
 //!     renderer.draw_colors(&mut frame);
 //!     frame.submit()?;
 //! }
@@ -37,9 +38,12 @@
 //!    y down, from [`Eye::clip_from_world`] and [`Eye::previous_clip_from_world`]. First what the lens hides
 //!    ([`Headset::hidden_mesh`]), at the near plane.
 //! 2. [`HeadsetFrame::choose`], once for both eyes.
-//! 3. **The color pass**: `color`, cleared, on `primed`, loaded, with the depth test `GreaterEqual` and without writing
-//!    depth. Vertex positions must be those of the prepass, bit for bit (`@invariant` in WGSL), and surfaces with holes
-//!    discard in both passes. What is transparent follows on the same depth.
+//! 3. **The color pass**: `color`, cleared, on `primed`, loaded, with the depth test `GreaterEqual`. Vertex positions
+//!    must be those of the prepass, bit for bit (`@invariant` in WGSL), and surfaces with holes discard in both passes.
+//!    What is transparent follows on the same depth.
+//!
+//! In the first frame and after resets, one pixel of each quad is chosen, because nothing is known. Draw such a frame
+//! at half the width and height ([`HeadsetFrame::halve`]), or it shades every pixel.
 //!
 //! `examples/headset` is a whole program.
 
@@ -63,4 +67,4 @@ pub use gaze::Ray;
 pub use headset::{ActionsFn, GazeFn, Headset, HeadsetDesc, HeadsetFrame, Shown};
 pub use openxr;
 pub use session::HiddenMesh;
-pub use targets::{TargetViews, Targets};
+pub use targets::{HalfViews, TargetViews, Targets};

@@ -19,6 +19,20 @@ pub struct Targets {
     pub primed: Texture,
     /// Layers of the left and of the right eye.
     pub views: [TargetViews; 2],
+    /// Color of half the width and height, rounded up, of frames that are
+    /// [halved](crate::HeadsetFrame::halve): [`COLOR`](Self::COLOR).
+    pub half_color: Texture,
+    /// The same of each eye, with a depth buffer.
+    pub half_views: [HalfViews; 2],
+}
+
+/// Layers of an eye of half the width and height: attachments of a render pass.
+#[derive(Debug)]
+pub struct HalfViews {
+    /// Color.
+    pub color: TextureView,
+    /// Depth without a prepass: clear it to 0, and test and write with `GreaterEqual`.
+    pub depth: TextureView,
 }
 
 /// Layers of an eye in [`Targets`]: attachments of render passes.
@@ -56,7 +70,11 @@ impl Targets {
             motion: layer(&motion, eye),
             primed: layer(&primed, eye),
         });
-        Self { color, depth, motion, primed, views }
+        let half = size.map(|side| side.div_ceil(2));
+        let half_color = layers(device, "headset", half, Self::COLOR, input);
+        let half_depth = layers(device, "half depth", half, Self::DEPTH, TextureUsages::RENDER_ATTACHMENT);
+        let half_views = [0, 1].map(|eye| HalfViews { color: layer(&half_color, eye), depth: layer(&half_depth, eye) });
+        Self { color, depth, motion, primed, views, half_color, half_views }
     }
 }
 

@@ -6,10 +6,10 @@ use afterimage::{Foveation, MethodKind, Settings, ViewGeometry};
 use afterimage_eval::clip::run_report::{RunFacts, write_report};
 use afterimage_eval::clip::{Clip, ClipReport, REPORTS, foveation_words, title, write_png};
 use afterimage_eval::exposure::Exposure;
-use afterimage_eval::lattices::{SampleOrder, SparseGeometry};
 use afterimage_eval::method_report::MethodReport;
 use afterimage_eval::output::Output;
 use afterimage_eval::pipeline::{Cpu, RunKind};
+use afterimage_eval::quad_views::Geometry;
 use afterimage_eval::scanpath::{FrameGaze, GazeMap, Screen, SyntheticOptions, generate};
 use afterimage_eval::source::{AnalyticSource, FrameSource};
 use clap::Args;
@@ -46,7 +46,6 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         simulator: "mip",
         geometry: None,
         scale: None,
-        order: None,
         gaze: "synthetic:46",
         gaze_map: "angle",
         start_s: 0.0,
@@ -59,10 +58,8 @@ fn clip() -> Result<(AnalyticSource, Clip, RunFacts<'static>), Failure> {
         title: title(&source.info().name, SIZE, gaze.len(), FPS, &foveation_words(&foveation, facts.simulator)),
         geometry,
         foveation,
-        sparse_geometry: SparseGeometry::Full,
         quad_views: None,
-        quarter_first: false,
-        sample_order: SampleOrder::default(),
+        view_geometry: Geometry::Full,
         jitter: false,
         reference_samples: None,
         methods: vec![

@@ -1,4 +1,4 @@
-//! Antialiasing of jittered frames, at full rate and sparse, against a supersampled reference.
+//! Antialiasing of jittered frames, at full rate and planned, against a supersampled reference.
 //!
 //! Reference: the mean of 32 jittered frames of the same instant. Each row says PSNR of the whole picture and within
 //! 3.5 degrees of the gaze in dB (sRGB), and the mean absolute change of the luma's error from frame to frame, times
@@ -10,7 +10,7 @@
 
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::color::srgb_encode;
-use afterimage::{ContextDesc, Filter, Foveation, Gaze, Image, Method, Settings, Smr, ViewFrame};
+use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, Settings, Smr, ViewFrame};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::source::analytic::AnalyticSource;
 
@@ -28,7 +28,6 @@ type Failure = Box<dyn std::error::Error>;
 /// A method on one kind of frames, and its measurements.
 struct Row {
     name: &'static str,
-    foveation: Foveation,
     jitters: bool,
     post: Option<CpuAfterimage>,
     whole: Mean,
@@ -62,7 +61,7 @@ impl Row {
             CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) })
         };
         let [whole, near, change] = [(); 3].map(|()| Mean::default());
-        Ok(Self { name, foveation, jitters, post: method.map(make).transpose()?, whole, near, change, before: None })
+        Ok(Self { name, jitters, post: method.map(make).transpose()?, whole, near, change, before: None })
     }
 
     fn show(&mut self, frame: &SourceFrame, view: &ViewFrame, index: u64) -> Result<Color, Failure> {
@@ -71,6 +70,7 @@ impl Row {
         let (colors, depths, motions, views) = ([&frame.color], [depth], [motion], [*view]);
         let frame = Frame { depth: Some(&depths), motion: Some(&motions), ..Frame::new(&colors, &views, index) };
         let mut shown = [Image::filled(SIZE, [0.0; 3])];
+        post.plan(&frame)?;
         post.process(&frame, &mut shown)?;
         let [shown] = shown;
         Ok(shown)
@@ -99,15 +99,8 @@ impl Row {
 }
 
 fn rows() -> Result<Vec<Row>, Failure> {
-    let sparse = |rate_mid, rate_far, fovea_deg, mid_deg| Foveation {
-        filter: Filter::Sparse,
-        rate_mid,
-        rate_far,
-        fovea_deg,
-        mid_deg,
-        ..Foveation::default()
-    };
-    let (foveated, quarter, full) = (sparse(2, 4, 8.0, 20.0), sparse(2, 2, 0.0, 0.0), sparse(1, 1, 0.0, 0.0));
+    let planned = Settings::screen().foveation;
+    let (quarter, full) = (Foveation::quarter(), Foveation { fovea_deg: 180.0, mid_deg: 180.0, ..Foveation::quads() });
     let smr = |antialias| Some(Method::Smr(Smr { antialias, ..Smr::default() }));
     Ok(vec![
         Row::new("full rate, one sample a pixel, as it is", full, false, None)?,
@@ -116,11 +109,11 @@ fn rows() -> Result<Vec<Row>, Failure> {
         Row::new("full rate, jitter, smr", full, true, smr(true))?,
         Row::new("one pixel in 4, jitter, taau", quarter, true, Some(Method::Taau))?,
         Row::new("one pixel in 4, jitter, smr", quarter, true, smr(true))?,
-        Row::new("sparse 2/4, taau", foveated, false, Some(Method::Taau))?,
-        Row::new("sparse 2/4, jitter, taau", foveated, true, Some(Method::Taau))?,
-        Row::new("sparse 2/4, smr", foveated, false, smr(false))?,
-        Row::new("sparse 2/4, jitter, smr without antialias", foveated, true, smr(false))?,
-        Row::new("sparse 2/4, jitter, smr", foveated, true, smr(true))?,
+        Row::new("planned, taau", planned, false, Some(Method::Taau))?,
+        Row::new("planned, jitter, taau", planned, true, Some(Method::Taau))?,
+        Row::new("planned, smr", planned, false, smr(false))?,
+        Row::new("planned, jitter, smr without antialias", planned, true, smr(false))?,
+        Row::new("planned, jitter, smr", planned, true, smr(true))?,
     ])
 }
 
@@ -152,7 +145,6 @@ fn main() -> Result<(), Failure> {
                 let view = ViewFrame {
                     jitter_px: if row.jitters { jitter_px } else { [0.0; 2] },
                     previous_from_current: frame.previous_from_current,
-                    lattices: Some(row.foveation.lattices(&geometry, gaze_px, index)),
                     ..ViewFrame::new(geometry, Gaze::At { px: gaze_px })
                 };
                 let shown = row.show(frame, &view, index)?;

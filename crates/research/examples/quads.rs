@@ -1,4 +1,4 @@
-//! Frames shaded by quads that the post-process chooses, beside lattices with as many samples.
+//! Frames of which the post-process chooses the pixels, quads and single ones.
 //!
 //! Each row says the share of the pixels that are shaded in percent, JOD, PSNR in dB (sRGB), the flicker of the luma
 //! and FLIP, over the frames from `--warm` on; jittered frames against a supersampled reference.
@@ -9,7 +9,7 @@
 //! Makes the table of `docs/quads.md`; half a minute a clip of 320x180, ten minutes for Sponza.
 
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::{ContextDesc, Filter, Foveation, Gaze, Image, Method, Reset, Settings, Smr, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, Reset, Settings, Smr, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{Flip, References, Scorer, Tracker, encode};
@@ -29,9 +29,6 @@ const FRAMES_PER_GAZE: u64 = 16;
 
 struct Row {
     name: String,
-    foveation: Foveation,
-    /// Foveation of the first frame after a cut, if it is another.
-    after_cut: Option<Foveation>,
     post: CpuAfterimage,
     scorer: Scorer,
     /// Sum over frames of the share of the pixels that were shaded.
@@ -40,20 +37,14 @@ struct Row {
     mask: Option<Image<bool>>,
 }
 
-fn sparse(fovea_deg: f32, mid_deg: f32, rate_mid: u32, rate_far: u32) -> Foveation {
-    Foveation { filter: Filter::Sparse, fovea_deg, mid_deg, rate_mid, rate_far, ..Foveation::default() }
-}
-
 /// Rows of the table.
 fn rows(size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure> {
     let mut rows = vec![];
-    let mut add = |name: &str, foveation: Foveation, after_cut: Option<Foveation>| -> Result<(), Failure> {
+    let mut add = |name: &str, foveation: Foveation| -> Result<(), Failure> {
         let method = Method::Smr(Smr { antialias, ..Smr::default() });
         let settings = Settings { method, foveation, ..Settings::default() };
         rows.push(Row {
             name: name.into(),
-            foveation,
-            after_cut,
             post: CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(size) })?,
             scorer: Scorer::default(),
             shaded: 0.0,
@@ -63,11 +54,10 @@ fn rows(size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure> {
         Ok(())
     };
     let screen = Settings::screen().foveation;
-    add("lattices 1/2/4", sparse(5.0, 15.0, 2, 4), None)?;
-    add("quads, Settings::screen", screen, None)?;
-    add("the same, a quarter first", screen, Some(Foveation::quarter()))?;
-    add("one pixel in 4", Foveation::quarter(), None)?;
-    add("uniform 25 %", Foveation::uniform(0.25), None)?;
+    add("quads, Settings::screen", screen)?;
+    add("the same, single pixels", Foveation { single_pixels: true, ..screen })?;
+    add("one pixel in 4", Foveation::quarter())?;
+    add("uniform 25 %", Foveation::uniform(0.25))?;
     Ok(rows)
 }
 
@@ -76,24 +66,18 @@ impl Row {
     fn show(&mut self, frame: &SourceFrame, view: &ViewFrame, index: u64) -> Result<f64, Failure> {
         let size = frame.color.size();
         let (depth, motion) = (frame.depth.as_ref().ok_or("no depth")?, frame.motion.as_ref().ok_or("no motion")?);
-        let foveation = self.after_cut.filter(|_| frame.cut).unwrap_or(self.foveation);
-        self.post.set_settings(Settings { foveation, ..self.post.desc().settings })?;
-        let is_sparse = foveation.filter == Filter::Sparse;
-        let gaze_px = view.gaze.resolve(None, &view.geometry);
-        let lattices = is_sparse.then(|| foveation.lattices(&view.geometry, gaze_px, index));
         let (colors, depths, motions) = ([&frame.color], [depth], [motion]);
-        let views = [ViewFrame { lattices, ..*view }];
+        let views = [*view];
         let reset = if frame.cut { Reset::All } else { Reset::None };
         let input = Frame { depth: Some(&depths), motion: Some(&motions), reset, ..Frame::new(&colors, &views, index) };
-        let mask = if !is_sparse { Some(self.post.plan(&input)?[0].clone()) } else { None };
+        let mask = self.post.plan(&input)?[0].clone();
         let mut shown = [Image::filled(size, [0.0; 3])];
         self.post.process(&input, &mut shown)?;
         let [shown] = shown;
         self.shown = encode(&shown, 0.0);
-        let points = lattices.map_or(0, |l| l.as_slice().iter().map(|l| l.points[0] * l.points[1]).sum::<u32>());
-        let chosen = mask.as_ref().map_or(0, |mask| mask.pixels().iter().filter(|&&chosen| chosen).count());
-        self.mask = mask;
-        Ok((f64::from(points) + chosen as f64) / f64::from(size[0] * size[1]))
+        let chosen = mask.pixels().iter().filter(|&&chosen| chosen).count();
+        self.mask = Some(mask);
+        Ok(chosen as f64 / f64::from(size[0] * size[1]))
     }
 }
 

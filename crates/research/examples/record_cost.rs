@@ -16,11 +16,11 @@ const RECORDED: u64 = 1000;
 
 fn main() {
     let smr = Settings::default();
-    let sparse = Foveation { filter: Filter::Sparse, ..Foveation::default() };
-    let sparse = Settings { foveation: sparse, ..smr };
+    let planned = Settings { foveation: Foveation::quads(), ..smr };
     let noisy = Settings { noisy: true, ..smr };
     println!("{:12} {:>9} {:>16} {:>9}", "us", "record", "finish, submit", "new");
-    for (name, settings, has_all) in [("smr", smr, false), ("smr, sparse", sparse, false), ("all inputs", noisy, true)]
+    for (name, settings, has_all) in
+        [("smr", smr, false), ("smr, planned", planned, false), ("all inputs", noisy, true)]
     {
         let ([record, submit], [new, _]) = (record_us(settings, has_all, false), record_us(settings, has_all, true));
         println!("{name:12} {record:9.1} {submit:16.1} {new:9.1}");
@@ -57,7 +57,7 @@ fn record_us(settings: Settings, has_all: bool, is_new: bool) -> [f64; 2] {
     let mut textures = [(); 2].map(|()| frame_textures(&device));
     let geometry = ViewGeometry::flat(SIZE, 70.0).unwrap();
     let gaze_px = [160.0, 90.0];
-    let is_sparse = settings.foveation.filter == Filter::Sparse;
+    let is_planned = settings.foveation.filter == Filter::Quads;
     let mut times = [0.0; 2];
     for index in 0..WARM_UP + RECORDED {
         let set = &mut textures[(index % 2) as usize];
@@ -65,10 +65,7 @@ fn record_us(settings: Settings, has_all: bool, is_new: bool) -> [f64; 2] {
             *set = frame_textures(&device);
         }
         let [color, depth, motion, trust, lod, noise, output] = &*set;
-        let views = [ViewFrame {
-            lattices: is_sparse.then(|| settings.foveation.lattices(&geometry, gaze_px, index)),
-            ..ViewFrame::new(geometry, Gaze::At { px: gaze_px })
-        }];
+        let views = [ViewFrame::new(geometry, Gaze::At { px: gaze_px })];
         let usual =
             Frame { depth: Some(depth.into()), motion: Some(motion.into()), ..Frame::new(color, &views, index) };
         let frame = if has_all {
@@ -78,6 +75,9 @@ fn record_us(settings: Settings, has_all: bool, is_new: bool) -> [f64; 2] {
         };
         let mut encoder = device.create_command_encoder(&Default::default());
         let watch = Stopwatch::start();
+        if is_planned {
+            post.plan(&device, &mut encoder, &frame).unwrap();
+        }
         post.record(&device, &mut encoder, &frame, output).unwrap();
         let recorded_ms = watch.elapsed().cost_ms();
         queue.submit([encoder.finish()]);

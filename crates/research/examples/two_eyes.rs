@@ -2,7 +2,7 @@
 //! The right eye draws random numbers of its own (dithering of stored colors), which a context of its own has not;
 //! tests compare its bytes with those of two views whose left one shows something else.
 //!
-//! Sparse frames of two analytic clips, one for each eye, with gazes of their own; fovea 10 and middle 30 degrees,
+//! Planned frames of two analytic clips, one for each eye, with gazes of their own; fovea 10 and middle 30 degrees,
 //! steps 2 and 4, antialiased, 90 degrees. CPU time of the process on software Vulkan, otherwise wall time; medians of
 //! frames that alternate between both ways.
 //!
@@ -12,7 +12,7 @@
 
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::{self, CommandEncoder, Texture, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Filter, Foveation, FrameError, Gaze, Method, MethodKind, Settings, Smr, ViewFrame};
+use afterimage::{ContextDesc, Foveation, FrameError, Gaze, Method, MethodKind, Settings, Smr, ViewFrame};
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::Headless;
 use afterimage_lab::source::FrameSource;
@@ -45,9 +45,7 @@ fn main() -> Result<(), Failure> {
 }
 
 fn compare(gpu: &Headless, method: Method, size: [u32; 2]) -> Result<(), Failure> {
-    let (fovea_deg, mid_deg) = (10.0, 30.0);
-    let foveation =
-        Foveation { filter: Filter::Sparse, fovea_deg, mid_deg, rate_mid: 2, rate_far: 4, ..Foveation::default() };
+    let foveation = Settings::headset().foveation;
     let settings = Settings { method, foveation, ..Settings::default() };
     let context = |view_count| {
         let desc = ContextDesc { settings, view_count, ..ContextDesc::new(size) };
@@ -73,7 +71,6 @@ fn compare(gpu: &Headless, method: Method, size: [u32; 2]) -> Result<(), Failure
             }
             views.push(ViewFrame {
                 previous_from_current: full.previous_from_current,
-                lattices: Some(foveation.lattices(clip.view(), gaze_px, index)),
                 jitter_px: Foveation::jitter_px(index),
                 ..ViewFrame::new(*clip.view(), Gaze::At { px: gaze_px })
             });
@@ -132,6 +129,7 @@ fn record(
 ) -> Result<(), FrameError> {
     let (depth, motion) = (Some((&images.depth).into()), Some((&images.motion).into()));
     let frame = Frame { depth, motion, ..Frame::new(&images.color, views, index) };
+    post.plan(&gpu.device, encoder, &frame)?;
     post.record(&gpu.device, encoder, &frame, &images.output).map(|_| ())
 }
 

@@ -90,7 +90,7 @@ fn rows(source: &dyn FrameSource, input: &str, scanpaths: &str) -> Result<Vec<Ro
     let mut rows = vec![];
     for file in scanpaths.split(',') {
         let path = read_csv(file)?;
-        for filter in [Filter::Mip, Filter::Block, Filter::Sparse] {
+        for filter in [Filter::Mip, Filter::Block] {
             for [rate_mid, rate_far] in RATES {
                 let foveation = Foveation { filter, rate_mid, rate_far, ..Foveation::default() };
                 let fps = info.fps.unwrap_or(60.0);

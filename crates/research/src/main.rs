@@ -10,9 +10,9 @@ mod options;
 mod papers;
 mod parts;
 mod patterns;
+mod planned_smr;
 mod safeguards;
 mod saved_time;
-mod sparse_smr;
 mod wrs_readings;
 mod wrs_table;
 
@@ -39,7 +39,7 @@ enum Experiment {
     Growth(growth::GrowthArgs),
     Isa(isa::IsaArgs),
     /// Foveated and uniform path tracing, as measured in two papers: Markdown tables with their results, ours, and
-    /// those of sparse frames with smr
+    /// those of planned frames with smr
     Papers(TracedArgs),
     Patterns(Box<patterns::PatternsArgs>),
     Safeguards(safeguards::SafeguardsArgs),

@@ -3,7 +3,7 @@
 //! Makes the tables of `docs/performance.md`, "Foveated against uniform" and "Both papers' patterns beside sparse
 //! frames with smr"; the commands are there.
 
-use super::sparse_smr::{CLIP_FRAMES, Comparer, Comparison, Shown};
+use super::planned_smr::{CLIP_FRAMES, Comparer, Comparison, Shown};
 use crate::options::TracedArgs;
 use afterimage::ViewGeometry;
 use afterimage_eval::output::write_json;
@@ -46,8 +46,6 @@ const SCENES: [(&str, Option<[f64; 2]>); 5] = [
 ];
 const THESIS_DEPTH: u32 = 8;
 const THESIS_SAMPLES: u32 = 4;
-/// Steps of the layers' lattices in sparse frames, which allow neither 3 nor a lens.
-const LATTICE_STEPS: [u32; 4] = [1, 2, 4, 8];
 
 struct Triple {
     samples: [u32; 3],
@@ -94,7 +92,7 @@ struct Compared {
     paper_time_reduction: Option<f64>,
     /// The paper's time reduction divided by the ideal reduction on its display.
     paper_share_of_ideal: Option<f64>,
-    /// The pattern's frames beside sparse frames with smr. Layers: without a lens.
+    /// The pattern's frames beside planned frames with smr. Layers: without a lens.
     #[serde(flatten)]
     comparison: Comparison,
 }
@@ -167,8 +165,7 @@ fn regions_of_a_scene(
     let halved = uniform / with_its_radii(TRIPLES[0].samples, 0.5).ideal_samples(&display);
     let papers = TRIPLES.iter().map(|t| (t.time, UNIFORM_MILLIONS / t.millions)).chain([(HALVED_TIME, halved)]);
     let papers: Vec<_> = papers.map(|(time, ideal)| [Some(time), Some(time / ideal)]).collect();
-    let compared_as = |pattern: &Pattern| (pattern.clone(), pattern.sampling);
-    scene_report(&subject, settings, backend, frames, &patterns.collect::<Vec<_>>(), &papers, compared_as)
+    scene_report(&subject, settings, backend, frames, &patterns.collect::<Vec<_>>(), &papers, Pattern::clone)
 }
 
 /// Two rows of the second table.
@@ -195,19 +192,15 @@ fn layers_of(
         sampling: Sampling::Layers(Layers { lens_deg: Some(lens_deg), ..Layers::default() }),
         samples: THESIS_SAMPLES,
         gaze_px,
-        sparse: None,
     };
     let patterns = [pattern("forward", middle), pattern("corner", middle.map(|v| v - rim))];
     let papers = [0, 1].map(|i| [paper.map(|p| p[i]), None]);
-    let without_lens = |pattern: &Pattern| {
-        let filled = Pattern { sampling: Sampling::Layers(Layers::default()), ..pattern.clone() };
-        (filled, Sampling::Layers(Layers { steps: LATTICE_STEPS, ..Layers::default() }))
-    };
+    let without_lens = |pattern: &Pattern| Pattern { sampling: Sampling::Layers(Layers::default()), ..pattern.clone() };
     scene_report(&subject, settings, backend, frames, &patterns, &papers, without_lens)
 }
 
 /// Measures a scene. `papers`: the paper's time reduction with each pattern, and this divided by the ideal reduction;
-/// `compared_as`: pattern of the filled frame, and sampling of the sparse one, that are compared.
+/// `compared_as`: pattern of the filled frame that a planned one is compared with.
 fn scene_report(
     subject: &TracedView,
     settings: TraceSettings,
@@ -215,17 +208,16 @@ fn scene_report(
     frames: u64,
     patterns: &[Pattern],
     papers: &[[Option<f64>; 2]],
-    compared_as: impl Fn(&Pattern) -> (Pattern, Sampling),
+    compared_as: impl Fn(&Pattern) -> Pattern,
 ) -> Result<PapersSceneReport, Failure> {
     let (tracer, by_wall) = (subject.tracer(backend, settings)?, backend.is_real_gpu());
-    let measured = measure(subject, &tracer, patterns, frames, by_wall)?;
+    let measured = measure(subject, &tracer, patterns, frames, by_wall);
     let mut comparer = Comparer::new(subject, &tracer, backend, by_wall);
     let mut compared = vec![];
     for ((ours, pattern), &[paper_time_reduction, paper_share_of_ideal]) in
         measured.into_iter().zip(patterns).zip(papers)
     {
-        let (filled, sparse) = compared_as(pattern);
-        let comparison = comparer.compare(&filled, sparse)?;
+        let comparison = comparer.compare(&compared_as(pattern))?;
         compared.push(Compared { ours, paper_time_reduction, paper_share_of_ideal, comparison });
     }
     Ok(PapersSceneReport {
@@ -304,21 +296,21 @@ fn print_layers(scenes: &[PapersSceneReport]) {
             );
         }
     }
-    say!("\nThe last two columns are without the lens; sparse lattices have the steps {LATTICE_STEPS:?}.");
+    say!("\nThe last two columns are without the lens.");
 }
 
 /// Header of [`compared`].
-const COMPARED_HEAD: &str = "| filled: dB, FLIP, ms | sparse + smr: dB, FLIP, ms |";
+const COMPARED_HEAD: &str = "| filled: dB, FLIP, ms | planned + smr: dB, FLIP, ms |";
 
 /// The two last columns of both tables.
 fn compared(comparison: &Comparison) -> String {
-    let Comparison { filled, sparse_smr, .. } = comparison;
+    let Comparison { filled, planned_smr, .. } = comparison;
     let quality = |shown: &Shown| {
         let psnr_db = shown.psnr_db.map_or("-".into(), |db| format!("{db:.2}"));
         format!("{psnr_db}, {:.4}", shown.flip)
     };
-    let Shown { render_ms, post_ms, .. } = sparse_smr;
-    format!("| {}, {:.0} | {}, {render_ms:.0} + {post_ms:.0} |", quality(filled), filled.total_ms, quality(sparse_smr))
+    let Shown { render_ms, post_ms, .. } = planned_smr;
+    format!("| {}, {:.0} | {}, {render_ms:.0} + {post_ms:.0} |", quality(filled), filled.total_ms, quality(planned_smr))
 }
 
 fn factor(value: Option<f64>, digits: usize) -> String {

@@ -50,7 +50,7 @@ pub fn bench(args: &TracedArgs, size: [u32; 2], frames: u64) -> Result<(), Failu
         let mut tracers = vec![];
         for backend in &backends {
             let tracer = subject.tracer(backend, settings)?;
-            let patterns = measure(&subject, &tracer, &patterns, frames, backend.is_real_gpu())?;
+            let patterns = measure(&subject, &tracer, &patterns, frames, backend.is_real_gpu());
             tracers.push(SavedTimeTracerReport { backend: backend.info(), patterns });
         }
         scenes.push(SavedTimeSceneReport { scene: name.clone(), triangles: subject.world.geometry.len(), tracers });

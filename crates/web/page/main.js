@@ -30,6 +30,8 @@ const TRIED_FRAMES = 20;
 // Motion goes on by at most this from frame to frame: on a slow device it is slow, not jerky, and memory is of use.
 const LONGEST_STEP_S = 1 / 30;
 const COMPARED_FRAMES = 4;
+// Block edges of frames whose pixels the memory chooses.
+const PLANNED_RATES = [2, 8];
 
 let demo;
 let size = [0, 0];
@@ -89,17 +91,23 @@ async function show_scene(demo, size) {
     else demo.picture(await picture(size));
 }
 
+// The scene is drawn at its chosen pixels.
+const filter = () => (scene() === "space" ? "quads" : $("filter").value);
+
 function configure(demo) {
-    const filter = scene() === "space" ? "sparse" : $("filter").value;
-    demo.configure(chosen("method"), filter, number("fovea"), number("mid"), number("rate_mid"), number("rate_far"));
+    demo.configure(chosen("method"), filter(), number("fovea"), number("mid"), number("rate_mid"), number("rate_far"));
 }
 
 // Controls that follow from others, and words about them.
 function show_choices() {
     $("mid").value = Math.max(number("mid"), number("fovea"));
-    $("rate_far").value = Math.max(number("rate_far"), number("rate_mid"));
+    const [least, most] = filter() === "quads" ? PLANNED_RATES : [1, 16];
+    for (const option of document.querySelectorAll("#rate_mid option, #rate_far option")) {
+        option.disabled = Number(option.value) < least || Number(option.value) > most;
+    }
+    $("rate_mid").value = Math.max(number("rate_mid"), least);
+    $("rate_far").value = Math.min(Math.max(number("rate_far"), number("rate_mid")), most);
     for (const id of ["fovea", "mid"]) document.querySelector(`output[for=${id}]`).textContent = `${$(id).value}°`;
-    // The scene is drawn at its samples.
     $("filter").disabled = scene() === "space";
     $("own_label").classList.toggle("is-chosen", scene() === "own");
     $("words").textContent = METHOD_WORDS[chosen("method")];
@@ -125,8 +133,8 @@ async function apply({ is_sized, is_scene }) {
         demo.resize(...size);
     }
     if (is_sized || is_scene) await show_scene(demo, size);
-    configure(demo);
     show_choices();
+    configure(demo);
     await progress("Preparing …");
     draw();
     await demo.finished();
@@ -139,6 +147,7 @@ function change(what) {
 
 async function measure() {
     const [left, right] = await demo.quality();
+    $("shaded").textContent = `${(100 * (await demo.shaded())).toFixed(0)} %`;
     $("quality_left").textContent = `${left.toFixed(1)} dB`;
     $("quality_right").textContent = `${right.toFixed(1)} dB`;
     $("gain").textContent = `${Math.max(right - left, 0).toFixed(right - left < 9.95 ? 1 : 0)} dB`;
@@ -183,7 +192,6 @@ async function loop(number) {
             const took_ms = performance.now() - now;
             frame_ms += (took_ms - frame_ms) / Math.min(++tried, 10);
             $("time").textContent = `${frame_ms.toFixed(1)} ms`;
-            $("shaded").textContent = `${(100 * demo.shaded()).toFixed(0)} %`;
             if (tried % TRIED_FRAMES === 0) is_slow = follow_speed(frame_ms, is_slow);
             if (now > measure_at) {
                 await measure();

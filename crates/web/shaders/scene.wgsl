@@ -1,5 +1,5 @@
-// A colonnade by the sea in the evening, seen by a moving camera. A pixel is a mean of rays, so that edges are smooth;
-// nothing but the pixels of a lattice is traced.
+// A colonnade by the sea in the evening, seen by a moving camera. One ray a pixel finds depth and motion. The color of a
+// pixel is a mean of rays, so that edges are smooth, with shadows and reflections; only chosen pixels get one.
 
 struct Scene {
     // Eye and turn around the vertical axis, in radians, of this frame and of the previous one.
@@ -8,13 +8,22 @@ struct Scene {
     // Size of the full-rate frame, and half of its extent at distance 1.
     size_px: vec2f,
     tan: vec2f,
-    // Texel `atlas_texel + (i, j)` shows the full-rate frame's pixel `first_px + step * (i, j)`.
-    first_px: vec2f,
-    atlas_texel: vec2f,
-    step: f32,
+}
+
+// The quads that the post-process chose (`quad_list`).
+struct Quads {
+    arguments: array<u32, 7>,
+    count: u32,
+    places: array<u32>,
 }
 
 @group(0) @binding(0) var<uniform> scene: Scene;
+@group(0) @binding(1) var depth_out: texture_storage_2d<r32float, write>;
+@group(0) @binding(2) var motion_out: texture_storage_2d<rg32float, write>;
+@group(0) @binding(3) var color_out: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(4) var<storage, read> quads: Quads;
+// Bits 0 to 3: pixels of a quad to shade.
+@group(0) @binding(5) var quad_mask: texture_2d<u32>;
 
 const NEAR: f32 = 0.1;
 const FAR: f32 = 1e4;
@@ -47,17 +56,6 @@ struct Hit {
     t: f32,
     normal: vec3f,
     thing: u32,
-}
-
-struct Targets {
-    @builtin(frag_depth) depth: f32,
-    @location(0) color: vec4f,
-    @location(1) motion: vec2f,
-}
-
-@vertex
-fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 
 // Direction through a place of the frame, whose component along the view is 1.
@@ -280,24 +278,63 @@ fn seen(d: vec3f, width: f32) -> vec3f {
     return hazed(color.rgb, normalize(d), hit.t);
 }
 
-@fragment
-fn fragment(@builtin(position) position: vec4f) -> Targets {
-    let px = scene.first_px + scene.step * (position.xy - 0.5 - scene.atlas_texel);
-    let width = 2.0 * scene.tan.x / scene.size_px.x;
-    var sum = vec3f(0.0);
-    for (var i = 0u; i < RAYS; i++) {
-        // A grid of 2x2 that is turned, so that upright and level edges have four steps, too.
-        let grid = vec2f(f32(i & 1u), f32(i >> 1u)) - 0.5;
-        let color = seen(ray_through(px + vec2f(0.5 * grid.x + 0.25 * grid.y, 0.5 * grid.y - 0.25 * grid.x)), width);
-        // Tones before the mean, as the eye sees edges: a filmic curve.
-        sum += color * (2.51 * color + 0.03) / (color * (2.43 * color + 0.59) + 0.14);
+fn is_inside(px: vec2u) -> bool {
+    return all(vec2f(px) < scene.size_px);
+}
+
+@compute @workgroup_size(8, 8)
+fn surfaces(@builtin(global_invocation_id) id: vec3u) {
+    if !is_inside(id.xy) {
+        return;
     }
+    let px = vec2f(id.xy);
     let d = ray_through(px);
     let hit = nearest(scene.eye.xyz, d);
     var moved = d;
     if hit.thing != SKY {
         moved = scene.eye.xyz + hit.t * d - scene.eye_before.xyz;
     }
-    let depth = select(NEAR / hit.t, 0.0, hit.thing == SKY);
-    return Targets(depth, vec4f(sum / f32(RAYS), 1.0), previous_px(moved) - px);
+    textureStore(depth_out, id.xy, vec4f(select(NEAR / hit.t, 0.0, hit.thing == SKY)));
+    textureStore(motion_out, id.xy, vec4f(previous_px(moved) - px, 0.0, 0.0));
+}
+
+fn shade(px: vec2u) {
+    if !is_inside(px) {
+        return;
+    }
+    let width = 2.0 * scene.tan.x / scene.size_px.x;
+    var sum = vec3f(0.0);
+    for (var i = 0u; i < RAYS; i++) {
+        // A grid of 2x2 that is turned, so that upright and level edges have four steps, too.
+        let grid = vec2f(f32(i & 1u), f32(i >> 1u)) - 0.5;
+        let at = vec2f(px) + vec2f(0.5 * grid.x + 0.25 * grid.y, 0.5 * grid.y - 0.25 * grid.x);
+        let color = seen(ray_through(at), width);
+        // Tones before the mean, as the eye sees edges: a filmic curve.
+        sum += color * (2.51 * color + 0.03) / (color * (2.43 * color + 0.59) + 0.14);
+    }
+    textureStore(color_out, px, vec4f(sum / f32(RAYS), 1.0));
+}
+
+@compute @workgroup_size(64)
+fn chosen(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) invocation: u32,
+) {
+    let i = 64u * (group.y * groups.x + group.x) + invocation;
+    if i >= quads.count {
+        return;
+    }
+    let quad = vec2u(quads.places[i] & 0xffffu, quads.places[i] >> 16u);
+    let mask = textureLoad(quad_mask, quad, 0).x;
+    for (var place = 0u; place < 4u; place++) {
+        if ((mask >> place) & 1u) != 0u {
+            shade(2u * quad + vec2u(place & 1u, place >> 1u));
+        }
+    }
+}
+
+@compute @workgroup_size(8, 8)
+fn everything(@builtin(global_invocation_id) id: vec3u) {
+    shade(id.xy);
 }

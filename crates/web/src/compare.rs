@@ -3,15 +3,16 @@
 
 use crate::gpu::Gpu;
 use crate::{Demo, Result};
-use afterimage::Image;
 use afterimage::cpu::{CpuAfterimage, Frame};
+use afterimage::{ContextDesc, Image, Method, Settings};
 use wasm_bindgen::prelude::*;
 use wgpu::Texture;
 
 #[wasm_bindgen]
 impl Demo {
-    /// Makes `frames` frames on the device and on the CPU: numbers of values compared and of values that differ in any
-    /// bit, and milliseconds a frame of the CPU. The gaze wanders; history starts empty.
+    /// Makes `frames` frames, without memory and with it, on the device and on the CPU: numbers of values compared and
+    /// of values that differ in any bit, and milliseconds a frame with memory of the CPU. The gaze wanders; history
+    /// starts empty.
     ///
     /// # Errors
     /// On a lost device.
@@ -21,6 +22,8 @@ impl Demo {
         let desc = stage.desc();
         let [width, height] = desc.size_px.map(|s| s as f32);
         let mut cpu = CpuAfterimage::new(&desc)?;
+        let settings = Settings { method: Method::None, ..desc.settings };
+        let mut cpu_plain = CpuAfterimage::new(&ContextDesc { settings, ..desc })?;
         let (mut compared, mut different, mut ms) = (0_u32, 0_u32, 0.0);
         for index in 0..frames {
             let t = index as f32 / frames.max(2) as f32;
@@ -42,15 +45,23 @@ impl Demo {
                 motion: inputs.geometry.is_some().then_some(&motions[..]),
                 ..Frame::new(&colors, &inputs.views, index.into())
             };
-            let mut expected = [Image::filled(desc.size_px, [0.0_f32; 3])];
-            let start = js_sys::Date::now();
+            let black = || [Image::filled(desc.size_px, [0.0_f32; 3])];
+            let ([mut expected, mut expected_plain], start) = ([black(), black()], js_sys::Date::now());
+            let mask = match stage.is_planned() {
+                true => Some(cpu.plan(&frame)?[0].map(f32::from)),
+                false => None,
+            };
             cpu.process(&frame, &mut expected)?;
             ms += js_sys::Date::now() - start;
-            let [expected] = expected;
-            let shown = gpu.read(&stage.output).await?;
-            for (got, expected) in shown.chunks_exact(4).zip(expected.pixels()) {
-                different += (0..3).map(|i| u32::from(got[i].to_bits() != expected[i].to_bits())).sum::<u32>();
-                compared += 3;
+            let mask: Vec<_> = mask.iter().collect();
+            let plain = Frame { mask: stage.is_planned().then_some(&mask[..]), ..frame };
+            cpu_plain.process(&plain, &mut expected_plain)?;
+            for (texture, [expected]) in [(&stage.output, expected), (&stage.plain_output, expected_plain)] {
+                let shown = gpu.read(texture).await?;
+                for (got, expected) in shown.chunks_exact(4).zip(expected.pixels()) {
+                    different += (0..3).map(|i| u32::from(got[i].to_bits() != expected[i].to_bits())).sum::<u32>();
+                    compared += 3;
+                }
             }
         }
         Ok(vec![compared.into(), different.into(), ms / f64::from(frames.max(1))])

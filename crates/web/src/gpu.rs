@@ -5,8 +5,9 @@ use std::sync::{Arc, Mutex};
 use wasm_bindgen::{JsError, JsValue};
 use wasm_bindgen_futures::JsFuture;
 use wgpu::{
-    Adapter, Buffer, BufferDescriptor, BufferUsages, Device, Extent3d, Queue, Surface, Texture, TextureAspect,
-    TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
+    Adapter, BindGroupDescriptor, BindGroupEntry, BindingResource, Buffer, BufferDescriptor, BufferUsages,
+    CommandEncoder, ComputePipeline, ComputePipelineDescriptor, Device, Extent3d, Queue, ShaderModule, Surface,
+    Texture, TextureAspect, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
 };
 
 /// Device and queue.
@@ -19,6 +20,17 @@ pub struct Gpu {
     /// Mapped after the frames before it are done.
     fence: [Buffer; 2],
 }
+
+/// Size of a dispatch.
+pub enum Dispatch<'a> {
+    /// An invocation for each pixel, in workgroups of 8x8.
+    Pixels([u32; 2]),
+    /// One for each quad of a list of the post-process (`Afterimage::quad_list`), in workgroups of 64.
+    Quads(&'a Buffer),
+}
+
+/// Place of the arguments of a dispatch in such a list.
+const QUAD_GROUPS: u64 = 16;
 
 fn failed(error: impl std::fmt::Display) -> JsError {
     JsError::new(&error.to_string())
@@ -67,6 +79,50 @@ impl Gpu {
             usage,
             view_formats: &[],
         })
+    }
+
+    /// A texture that compute shaders write and read.
+    pub fn image(&self, size: [u32; 2], format: TextureFormat) -> Texture {
+        let usage = TextureUsages::TEXTURE_BINDING
+            | TextureUsages::STORAGE_BINDING
+            | TextureUsages::COPY_DST
+            | TextureUsages::COPY_SRC;
+        self.texture(size, format, usage)
+    }
+
+    /// The pipeline of a shader's entry point.
+    pub fn pipeline(&self, module: &ShaderModule, entry: &str) -> ComputePipeline {
+        self.device.create_compute_pipeline(&ComputePipelineDescriptor {
+            label: Some(entry),
+            layout: None,
+            module,
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            cache: None,
+        })
+    }
+
+    /// Records a dispatch with resources by number.
+    pub fn dispatch(
+        &self,
+        encoder: &mut CommandEncoder,
+        pipeline: &ComputePipeline,
+        bound: &[(u32, BindingResource<'_>)],
+        size: Dispatch<'_>,
+    ) {
+        let entries: Vec<_> = bound
+            .iter()
+            .map(|(binding, resource)| BindGroupEntry { binding: *binding, resource: resource.clone() })
+            .collect();
+        let layout = &pipeline.get_bind_group_layout(0);
+        let group = self.device.create_bind_group(&BindGroupDescriptor { label: None, layout, entries: &entries });
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &group, &[]);
+        match size {
+            Dispatch::Pixels([width, height]) => pass.dispatch_workgroups(width.div_ceil(8), height.div_ceil(8), 1),
+            Dispatch::Quads(list) => pass.dispatch_workgroups_indirect(list, QUAD_GROUPS),
+        }
     }
 
     /// Resolves when everything that was submitted is done.

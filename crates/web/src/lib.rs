@@ -22,6 +22,9 @@ pub struct Demo {
     stage: Stage,
 }
 
+/// Share of the pixels that smr shades by need.
+const BUDGET: f32 = 0.065;
+
 type Result<T> = std::result::Result<T, JsError>;
 
 #[wasm_bindgen]
@@ -70,7 +73,8 @@ impl Demo {
         Ok(())
     }
 
-    /// Sets the method and the foveation: diameters in degrees, block edges in pixels. History is discarded.
+    /// Sets the method and the foveation: diameters in degrees, block edges in pixels. With the filter `quads` single
+    /// pixels are planned; the rendered scene has no other. History is discarded.
     ///
     /// # Errors
     /// If a name is not known, or a value is out of range.
@@ -85,7 +89,8 @@ impl Demo {
     ) -> Result<()> {
         let method = MethodKind::from_name(method).ok_or_else(|| JsError::new(method))?;
         let filter = Filter::ALL.into_iter().find(|f| f.name() == filter).ok_or_else(|| JsError::new(filter))?;
-        let foveation = Foveation { filter, fovea_deg, mid_deg, rate_mid, rate_far, ..Foveation::default() };
+        let rates = Foveation { filter, fovea_deg, mid_deg, rate_mid, rate_far, ..Foveation::default() };
+        let foveation = Foveation { single_pixels: true, budget: BUDGET, ..rates };
         self.stage.configure(&self.gpu, Settings { method: method.into(), foveation, ..Settings::default() })
     }
 
@@ -115,8 +120,11 @@ impl Demo {
     }
 
     /// Share of the pixels that the last frame shaded.
-    pub fn shaded(&self) -> f32 {
-        self.stage.shaded
+    ///
+    /// # Errors
+    /// On a lost device.
+    pub async fn shaded(&self) -> Result<f32> {
+        self.stage.shaded(&self.gpu).await
     }
 
     /// PSNR in dB of sRGB values, against the frame at full rate: of what the renderer delivered, and of what is shown.

@@ -1,11 +1,14 @@
-//! A scene that is rendered foveated for real: each lattice is a small view in an atlas, and nothing else is shaded.
+//! A scene that is rendered foveated for real: depth and motion of every pixel, colors of the chosen ones alone.
 
 use crate::Result;
-use crate::gpu::Gpu;
-use afterimage::{DepthConvention, Gaze, Lattice, Lattices, ViewFrame, ViewGeometry};
+use crate::gpu::{Dispatch, Gpu};
+use afterimage::gpu::Afterimage;
+use afterimage::{DepthConvention, Gaze, ViewFrame, ViewGeometry};
 use glam::{Mat4, Vec4};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
-use wgpu::{BufferUsages, CommandEncoder, RenderPipeline, Texture, TextureFormat, TextureUsages};
+use wgpu::{
+    BindingResource, Buffer, BufferUsages, CommandEncoder, ComputePipeline, Texture, TextureFormat, TextureView,
+};
 
 const NEAR: f32 = 0.1;
 /// Half of the width of the view at distance 1: a horizontal field of view of 70 degrees.
@@ -14,30 +17,25 @@ const TAN_X: f32 = 0.7;
 /// Depth as the scene is drawn.
 pub const DEPTH: DepthConvention = DepthConvention::Reversed { near: NEAR, far: f32::INFINITY };
 
-/// Color, depth and motion of the samples.
-pub struct Atlas {
+/// Color, depth and motion of a frame.
+pub struct Images {
     pub color: Texture,
     pub depth: Texture,
     pub motion: Texture,
 }
 
-impl Atlas {
+impl Images {
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Self {
-        let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
+        let image = |format| gpu.image(size, format);
         Self {
-            color: gpu.texture(size, TextureFormat::Rgba32Float, usage),
-            depth: gpu.texture(size, TextureFormat::Depth32Float, usage),
-            motion: gpu.texture(size, TextureFormat::Rg32Float, usage),
+            color: image(TextureFormat::Rgba32Float),
+            depth: image(TextureFormat::R32Float),
+            motion: image(TextureFormat::Rg32Float),
         }
-    }
-
-    /// Whether lattices of this size fit.
-    pub fn holds(&self, [width, height]: [u32; 2]) -> bool {
-        width <= self.color.width() && height <= self.color.height()
     }
 }
 
-/// Uniforms of a lattice; `Scene` in `crates/web/shaders/scene.wgsl`.
+/// Uniforms of a frame; `Scene` in `crates/web/shaders/scene.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 struct Scene {
@@ -45,15 +43,13 @@ struct Scene {
     eye_before: [f32; 4],
     size_px: [f32; 2],
     tan: [f32; 2],
-    first_px: [f32; 2],
-    atlas_texel: [f32; 2],
-    step: f32,
-    unused: [f32; 3],
 }
 
-/// The pipeline, and the camera of the last frame.
+/// The pipelines, and the camera of the last frame.
 pub struct Space {
-    pipeline: RenderPipeline,
+    surfaces: ComputePipeline,
+    chosen: ComputePipeline,
+    everything: ComputePipeline,
     size_px: [u32; 2],
     before: Option<f32>,
 }
@@ -72,34 +68,9 @@ fn eye(seconds: f32) -> Vec4 {
 impl Space {
     pub fn new(gpu: &Gpu, size_px: [u32; 2]) -> Self {
         let module = gpu.device.create_shader_module(wgpu::include_wgsl!("../shaders/scene.wgsl"));
-        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("scene"),
-            layout: None,
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: None,
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: TextureFormat::Depth32Float,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(wgpu::CompareFunction::Always),
-                stencil: Default::default(),
-                bias: Default::default(),
-            }),
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: None,
-                compilation_options: Default::default(),
-                targets: &[Some(TextureFormat::Rgba32Float.into()), Some(TextureFormat::Rg32Float.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        Self { pipeline, size_px, before: None }
+        let [surfaces, chosen, everything] =
+            ["surfaces", "chosen", "everything"].map(|entry| gpu.pipeline(&module, entry));
+        Self { surfaces, chosen, everything, size_px, before: None }
     }
 
     fn tan(&self) -> [f32; 2] {
@@ -123,12 +94,11 @@ impl Space {
     }
 
     /// Description of the frame at a time, and the camera's motion since the last one.
-    pub fn view(&self, seconds: f32, gaze_px: [f32; 2], lattices: Lattices) -> Result<ViewFrame> {
+    pub fn view(&self, seconds: f32, gaze_px: [f32; 2]) -> Result<ViewFrame> {
         let matrices =
             [self.clip_from_view(), self.clip_from_world(seconds), self.clip_from_world(self.before(seconds))];
         let [view, now, before] = matrices.map(|m| m.to_cols_array_2d());
-        let moved = ViewFrame::new(self.geometry()?, Gaze::At { px: gaze_px }).moved(view, now, before)?;
-        Ok(ViewFrame { lattices: Some(lattices.with_geometry_at_samples()), ..moved })
+        Ok(ViewFrame::new(self.geometry()?, Gaze::At { px: gaze_px }).moved(view, now, before)?)
     }
 
     fn before(&self, seconds: f32) -> f32 {
@@ -140,60 +110,61 @@ impl Space {
         self.before = Some(seconds);
     }
 
-    /// Draws the samples of `lattices` at a time.
-    pub fn record(&self, gpu: &Gpu, encoder: &mut CommandEncoder, atlas: &Atlas, lattices: &Lattices, seconds: f32) {
-        let [color, depth, motion] =
-            [&atlas.color, &atlas.depth, &atlas.motion].map(|texture| texture.create_view(&Default::default()));
-        let target = |view| {
-            let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store };
-            Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
-        };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("scene"),
-            color_attachments: &[target(&color), target(&motion)],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &depth,
-                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
-                stencil_ops: None,
-            }),
-            ..Default::default()
-        });
-        pass.set_pipeline(&self.pipeline);
-        for lattice in lattices.as_slice() {
-            let scene = self.uniforms(lattice, seconds);
-            let uniforms = gpu.device.create_buffer_init(&BufferInitDescriptor {
-                label: Some("scene"),
-                contents: bytemuck::bytes_of(&scene),
-                usage: BufferUsages::UNIFORM,
-            });
-            let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("scene"),
-                layout: &self.pipeline.get_bind_group_layout(0),
-                entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniforms.as_entire_binding() }],
-            });
-            let ([x, y], [width, height]) = (lattice.atlas_texel.unwrap_or_default(), lattice.points);
-            pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
-            pass.set_scissor_rect(x, y, width, height);
-            pass.set_bind_group(0, &group, &[]);
-            pass.draw(0..3, 0..1);
-        }
+    /// Depth and motion of every pixel at a time.
+    pub fn record_surfaces(&self, gpu: &Gpu, encoder: &mut CommandEncoder, images: &Images, seconds: f32) {
+        let (scene, [_, depth, motion]) = (self.uniforms(gpu, seconds), views(images));
+        let bound = [
+            (0, scene.as_entire_binding()),
+            (1, BindingResource::TextureView(&depth)),
+            (2, BindingResource::TextureView(&motion)),
+        ];
+        gpu.dispatch(encoder, &self.surfaces, &bound, Dispatch::Pixels(self.size_px));
     }
 
-    fn uniforms(&self, lattice: &Lattice, seconds: f32) -> Scene {
-        Scene {
+    /// Colors of the pixels that `post` chose.
+    pub fn record_chosen(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut CommandEncoder,
+        images: &Images,
+        post: &Afterimage,
+        seconds: f32,
+    ) {
+        let (Some(list), Some(mask)) = (post.quad_list(0), post.quad_mask()) else { return };
+        let (scene, [color, ..]) = (self.uniforms(gpu, seconds), views(images));
+        let mask = mask.create_view(&Default::default());
+        let bound = [
+            (0, scene.as_entire_binding()),
+            (3, BindingResource::TextureView(&color)),
+            (4, list.as_entire_binding()),
+            (5, BindingResource::TextureView(&mask)),
+        ];
+        gpu.dispatch(encoder, &self.chosen, &bound, Dispatch::Quads(list));
+    }
+
+    /// Colors of all pixels.
+    pub fn record_everything(&self, gpu: &Gpu, encoder: &mut CommandEncoder, images: &Images, seconds: f32) {
+        let (scene, [color, ..]) = (self.uniforms(gpu, seconds), views(images));
+        let bound = [(0, scene.as_entire_binding()), (3, BindingResource::TextureView(&color))];
+        gpu.dispatch(encoder, &self.everything, &bound, Dispatch::Pixels(self.size_px));
+    }
+
+    fn uniforms(&self, gpu: &Gpu, seconds: f32) -> Buffer {
+        let scene = Scene {
             eye: eye(seconds).to_array(),
             eye_before: eye(self.before(seconds)).to_array(),
             size_px: self.size_px.map(|s| s as f32),
             tan: self.tan(),
-            first_px: lattice.first_px.map(|p| p as f32),
-            atlas_texel: lattice.atlas_texel.unwrap_or_default().map(|p| p as f32),
-            step: lattice.step as f32,
-            unused: [0.0; 3],
-        }
+        };
+        gpu.device.create_buffer_init(&BufferInitDescriptor {
+            label: Some("scene"),
+            contents: bytemuck::bytes_of(&scene),
+            usage: BufferUsages::UNIFORM,
+        })
     }
 }
 
-/// Every pixel as one lattice, in an atlas of the frame's size.
-pub fn whole(size_px: [u32; 2]) -> Result<Lattices> {
-    Ok(Lattices::new(&[Lattice::covering(1, [0, 0], size_px, [0, 0])])?.in_atlas().0)
+/// Color, depth and motion.
+fn views(images: &Images) -> [TextureView; 3] {
+    [&images.color, &images.depth, &images.motion].map(|texture| texture.create_view(&Default::default()))
 }

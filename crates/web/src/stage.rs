@@ -1,19 +1,21 @@
 //! What is shown: a picture that is foveated, or a scene that is rendered foveated, and the post-process after it.
 
 use crate::Result;
-use crate::gpu::Gpu;
-use crate::space::{self, Atlas, Space};
+use crate::gpu::{Dispatch, Gpu};
+use crate::space::{self, Images, Space};
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::kernel::color::{srgb_decode, srgb_encode};
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
-use afterimage::{ContextDesc, Filter, Gaze, Lattices, Method, Settings, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, Filter, Gaze, Method, Settings, ViewFrame, ViewGeometry};
 use wasm_bindgen::JsError;
-use wgpu::{CommandEncoder, Texture, TextureFormat, TextureUsages};
+use wgpu::{BindingResource, CommandEncoder, ComputePipeline, Texture, TextureFormat};
 
 const FORMAT: TextureFormat = TextureFormat::Rgba32Float;
 /// Field of view of a picture.
 const HFOV_DEG: f32 = 70.0;
 
+/// Pixels along each axis for one of which the share of shaded pixels is estimated.
+const SHARE_STEP: usize = 8;
 /// Pixels that a mean error is taken of, at least, if a frame has as many.
 const MEASURED_PIXELS: u32 = 640 * 360;
 
@@ -22,8 +24,8 @@ const MEASURED_PIXELS: u32 = 640 * 360;
 enum Source {
     /// A picture, at full rate and foveated.
     Picture { full: Texture, foveated: Texture, simulator: Option<GpuSimulator> },
-    /// A rendered scene, the samples of a frame, and the frame at full rate.
-    Space { space: Space, atlas: Atlas, full: Atlas },
+    /// A rendered scene, a frame with its chosen pixels, and the frame at full rate.
+    Space { space: Space, images: Images, full: Images },
 }
 
 /// Inputs of a frame.
@@ -42,20 +44,14 @@ pub struct Stage {
     post: Afterimage,
     /// Without a method: what the renderer delivers.
     plain: Afterimage,
+    /// The chosen pixels of a planned frame, for `plain`.
+    mask: Texture,
+    masking: ComputePipeline,
     pub output: Texture,
     pub plain_output: Texture,
-    /// Share of the pixels that the last frame shaded.
-    pub shaded: f32,
     index: u64,
+    gaze_px: [f32; 2],
     seconds: f32,
-}
-
-fn picture(gpu: &Gpu, size: [u32; 2]) -> Texture {
-    let usage = TextureUsages::TEXTURE_BINDING
-        | TextureUsages::STORAGE_BINDING
-        | TextureUsages::COPY_DST
-        | TextureUsages::COPY_SRC;
-    gpu.texture(size, FORMAT, usage)
 }
 
 fn context(gpu: &Gpu, desc: &ContextDesc, method: Method) -> Result<Afterimage> {
@@ -70,16 +66,23 @@ impl Stage {
             return Err(JsError::new("a side of the frame is 0"));
         }
         let desc = ContextDesc { settings, ..ContextDesc::new(size_px) };
+        let module = gpu.device.create_shader_module(wgpu::include_wgsl!("../shaders/mask.wgsl"));
         let mut stage = Self {
             size_px,
             desc,
-            source: Source::Picture { full: picture(gpu, size_px), foveated: picture(gpu, size_px), simulator: None },
+            source: Source::Picture {
+                full: gpu.image(size_px, FORMAT),
+                foveated: gpu.image(size_px, FORMAT),
+                simulator: None,
+            },
             post: context(gpu, &desc, settings.method)?,
             plain: context(gpu, &desc, Method::None)?,
-            output: picture(gpu, size_px),
-            plain_output: picture(gpu, size_px),
-            shaded: 1.0,
+            mask: gpu.image(size_px, TextureFormat::R32Float),
+            masking: gpu.pipeline(&module, "pixels"),
+            output: gpu.image(size_px, FORMAT),
+            plain_output: gpu.image(size_px, FORMAT),
             index: 0,
+            gaze_px: [0.0; 2],
             seconds: 0.0,
         };
         stage.restart(gpu)?;
@@ -102,14 +105,11 @@ impl Stage {
             Source::Picture { simulator, .. } => {
                 self.desc.depth = ContextDesc::new(self.size_px).depth;
                 *simulator = match self.desc.settings.foveation.filter {
-                    Filter::Sparse => None,
+                    Filter::Quads => None,
                     _ => Some(GpuSimulator::new(&gpu.device, &self.desc, FORMAT)?),
                 };
             }
-            Source::Space { .. } => {
-                self.desc.depth = space::DEPTH;
-                self.desc.settings.foveation.filter = Filter::Sparse;
-            }
+            Source::Space { .. } => self.desc.depth = space::DEPTH,
         }
         self.post = context(gpu, &self.desc, self.desc.settings.method)?;
         self.plain = context(gpu, &self.desc, Method::None)?;
@@ -133,7 +133,7 @@ impl Stage {
             .chunks_exact(4)
             .map(|c| [linear[c[0] as usize], linear[c[1] as usize], linear[c[2] as usize], 1.0])
             .collect();
-        let (full, foveated) = (picture(gpu, self.size_px), picture(gpu, self.size_px));
+        let (full, foveated) = (gpu.image(self.size_px, FORMAT), gpu.image(self.size_px, FORMAT));
         let layout =
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * width), rows_per_image: Some(height) };
         gpu.queue.write_texture(full.as_image_copy(), bytemuck::cast_slice(&texels), layout, full.size());
@@ -143,8 +143,8 @@ impl Stage {
 
     pub fn show_space(&mut self, gpu: &Gpu) -> Result<()> {
         let space = Space::new(gpu, self.size_px);
-        self.source =
-            Source::Space { space, atlas: Atlas::new(gpu, self.size_px), full: Atlas::new(gpu, self.size_px) };
+        let [images, full] = [(); 2].map(|()| Images::new(gpu, self.size_px));
+        self.source = Source::Space { space, images, full };
         self.restart(gpu)
     }
 
@@ -162,43 +162,27 @@ impl Stage {
         0.5 * self.size_px[0] as f32 * radius / half_width
     }
 
-    /// Records the frame as the renderer delivers it.
-    fn deliver(&mut self, gpu: &Gpu, encoder: &mut CommandEncoder, gaze_px: [f32; 2], seconds: f32) -> Result<Inputs> {
-        let geometry = self.geometry()?;
-        let foveation = self.desc.settings.foveation;
-        let lattices = foveation.lattices(&geometry, gaze_px, self.index);
-        let pixels = (self.size_px[0] * self.size_px[1]) as f32;
-        let samples = |lattices: &Lattices| {
-            let points = lattices.as_slice().iter().map(|l| l.points[0] * l.points[1]);
-            points.sum::<u32>() as f32 / pixels
-        };
-        let plain = ViewFrame::new(geometry, Gaze::At { px: gaze_px });
+    /// Records what the renderer knows of a frame before it is shaded, and pictures.
+    fn begin(&mut self, gpu: &Gpu, encoder: &mut CommandEncoder, gaze_px: [f32; 2], seconds: f32) -> Result<Inputs> {
+        let plain = ViewFrame::new(self.geometry()?, Gaze::At { px: gaze_px });
         match &mut self.source {
             Source::Picture { full, foveated, simulator: Some(simulator) } => {
                 let views = [plain];
                 simulator.record(&gpu.device, encoder, &SimulatorFrame::new(full, foveated, &views))?;
-                self.shaded = samples(&lattices);
                 Ok(Inputs { color: foveated.clone(), geometry: None, views })
             }
-            Source::Picture { full, .. } => {
-                self.shaded = samples(&lattices);
-                let views = [ViewFrame { lattices: Some(lattices), ..plain }];
-                Ok(Inputs { color: full.clone(), geometry: None, views })
-            }
-            Source::Space { space, atlas, .. } => {
-                let (lattices, size) = lattices.in_atlas();
-                if !atlas.holds(size) {
-                    let held = [atlas.color.width(), atlas.color.height()];
-                    *atlas = Atlas::new(gpu, [0, 1].map(|i| held[i].max(size[i].next_multiple_of(64))));
-                }
-                self.shaded = samples(&lattices);
-                space.record(gpu, encoder, atlas, &lattices, seconds);
-                let views = [space.view(seconds, gaze_px, lattices)?];
-                space.advance(seconds);
-                let geometry = Some([atlas.depth.clone(), atlas.motion.clone()]);
-                Ok(Inputs { color: atlas.color.clone(), geometry, views })
+            Source::Picture { full, .. } => Ok(Inputs { color: full.clone(), geometry: None, views: [plain] }),
+            Source::Space { space, images, .. } => {
+                space.record_surfaces(gpu, encoder, images, seconds);
+                let geometry = Some([images.depth.clone(), images.motion.clone()]);
+                Ok(Inputs { color: images.color.clone(), geometry, views: [space.view(seconds, gaze_px)?] })
             }
         }
+    }
+
+    /// Whether the post-process chooses the pixels.
+    pub fn is_planned(&self) -> bool {
+        self.desc.settings.foveation.filter == Filter::Quads
     }
 
     /// Records a frame; its inputs. `seconds`: time of the camera.
@@ -209,17 +193,56 @@ impl Stage {
         gaze_px: [f32; 2],
         seconds: f32,
     ) -> Result<Inputs> {
-        let inputs = self.deliver(gpu, encoder, gaze_px, seconds)?;
+        let inputs = self.begin(gpu, encoder, gaze_px, seconds)?;
         let (depth, motion) = match &inputs.geometry {
             Some([depth, motion]) => (Some(depth.into()), Some(motion.into())),
             None => (None, None),
         };
         let frame = Frame { depth, motion, ..Frame::new(&inputs.color, &inputs.views, self.index) };
-        self.plain.record(&gpu.device, encoder, &frame, &self.plain_output)?;
+        let mut plain = frame;
+        if self.is_planned() {
+            self.post.plan(&gpu.device, encoder, &frame)?;
+            if let Source::Space { space, images, .. } = &self.source {
+                space.record_chosen(gpu, encoder, images, &self.post, seconds);
+            }
+            self.record_mask(gpu, encoder);
+            plain.mask = Some((&self.mask).into());
+        }
+        if let Source::Space { space, .. } = &mut self.source {
+            space.advance(seconds);
+        }
+        self.plain.record(&gpu.device, encoder, &plain, &self.plain_output)?;
         self.post.record(&gpu.device, encoder, &frame, &self.output)?;
         self.index += 1;
-        self.seconds = seconds;
+        (self.gaze_px, self.seconds) = (gaze_px, seconds);
         Ok(inputs)
+    }
+
+    /// Records the mask of the pixels that the post-process chose: without memory the same ones are shown.
+    fn record_mask(&self, gpu: &Gpu, encoder: &mut CommandEncoder) {
+        let Some(quads) = self.post.quad_mask() else { return };
+        let [quads, mask] = [quads, &self.mask].map(|texture| texture.create_view(&Default::default()));
+        let bound = [(0, BindingResource::TextureView(&quads)), (1, BindingResource::TextureView(&mask))];
+        gpu.dispatch(encoder, &self.masking, &bound, Dispatch::Pixels(self.size_px));
+    }
+
+    /// Share of the pixels that the last frame shaded.
+    pub async fn shaded(&self, gpu: &Gpu) -> Result<f32> {
+        if self.is_planned() {
+            let chosen = gpu.read(&self.mask).await?;
+            return Ok(chosen.iter().sum::<f32>() / chosen.len() as f32);
+        }
+        let (geometry, foveation) = (self.geometry()?, self.desc.settings.foveation);
+        let [width, height] = self.size_px;
+        let (mut sum, mut places) = (0.0, 0.0);
+        for y in (0..height).step_by(SHARE_STEP) {
+            for x in (0..width).step_by(SHARE_STEP) {
+                let e_deg = geometry.eccentricity_deg([x as f32, y as f32], self.gaze_px);
+                sum += (-2.0 * foveation.lod(e_deg)).exp2();
+                places += 1.0;
+            }
+        }
+        Ok(sum / places)
     }
 
     /// PSNR in dB of what the renderer delivered and of what is shown, against the frame at full rate.
@@ -228,7 +251,7 @@ impl Stage {
             Source::Picture { full, .. } => full,
             Source::Space { space, full, .. } => {
                 let mut encoder = gpu.device.create_command_encoder(&Default::default());
-                space.record(gpu, &mut encoder, full, &space::whole(self.size_px)?, self.seconds);
+                space.record_everything(gpu, &mut encoder, full, self.seconds);
                 gpu.queue.submit([encoder.finish()]);
                 &full.color
             }

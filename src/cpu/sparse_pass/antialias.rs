@@ -1,10 +1,11 @@
 //! Antialiasing in the pass for jittered frames: history stores means of samples instead of single samples.
 
+use super::quads::Quads;
 use super::sparse_history::Surroundings;
 use super::view::View;
 use crate::kernel::antialias::{
     Averaged, MOST_DIFFERENCE, Mean, Near, add_near, average, byte_draws, clip, clipped, is_silhouette, is_thin,
-    kept_samples, may_show, move_together, stands_before, stored_lod,
+    kept_samples, move_together, stands_before, stored_lod,
 };
 use crate::kernel::rng;
 use crate::kernel::smr::root_difference;
@@ -21,33 +22,24 @@ impl View<'_> {
     }
 
     /// The surface whose history a pixel continues: the nearest surface around it if [`stands_before`] is true,
-    /// otherwise its own. `level`: of its lattice.
+    /// otherwise its own. `level`: of its region.
     #[inline(always)]
     pub(super) fn surface(&self, [x, y]: [u32; 2], level: u32) -> Surroundings {
         let own = self.inputs.disparity(x, y);
         let own_motion = self.inputs.motion(x, y);
-        let alone = Surroundings {
-            disparity: own,
-            motion: own_motion,
-            stored: own,
-            mixed: None,
-            is_silhouette: false,
-            is_doubtful: false,
-        };
+        let alone = Surroundings { disparity: own, motion: own_motion, stored: own, mixed: None, is_silhouette: false };
         if !self.antialiases || !self.inputs.tests_depth() {
             return alone;
         }
         let [width, height] = self.inputs.size;
         let (mut nearest, mut nearest_at) = (own, [x, y]);
         let (mut farthest, mut farthest_at) = (own, [x, y]);
-        let (mut thin, mut silhouette, mut doubtful) = (false, false, false);
+        let (mut thin, mut silhouette) = (false, false);
         for pair in 0..4 {
             let [a, b] = [pair, 8 - pair].map(|tap| {
                 let tx = (x + tap % 3).max(1).min(width) - 1;
                 let ty = (y + tap / 3).max(1).min(height) - 1;
                 let disparity = self.inputs.disparity(tx, ty);
-                let offset = Vec2::new((tap % 3) as f32, (tap / 3) as f32) - 1.0;
-                doubtful |= may_show(own, disparity, self.sample_place_px(), offset);
                 if disparity > nearest {
                     (nearest, nearest_at) = (disparity, [tx, ty]);
                 }
@@ -69,29 +61,25 @@ impl View<'_> {
         if own >= 0.0 && move_together(own_px, nearest_px, farthest_px) {
             let stored = if thin { farthest } else { own };
             let mixed = Some([farthest, nearest]);
-            let is_silhouette = silhouette && self.quads.is_some();
-            surface = Surroundings { stored, mixed, is_silhouette, ..surface };
+            surface = Surroundings { stored, mixed, is_silhouette: silhouette, ..surface };
         }
-        // Where surfaces move together, a pixel is the mean of both, and samples of either surface belong to it.
-        // Depth of quads is that of their samples.
-        surface.is_doubtful = doubtful && own >= 0.0 && surface.mixed.is_none() && self.quads.is_none();
         surface
     }
 
-    /// Mean of history and of the pixel's own sample. `error`: difference that is expected between them.
+    /// Mean of history and of the pixel's own sample. `near`: sums over the samples around a pixel of the fovea;
+    /// `error`: difference that is expected between history and sample.
     #[inline(always)]
     pub(super) fn averaged(
         &self,
-        px: [u32; 2],
-        level: u32,
+        near: Option<Near>,
         mut inputs: Reconstruction,
         past: Mean,
         error: f32,
         notes: &mut impl Notes,
     ) -> Averaged {
         let difference = root_difference(inputs.candidate, inputs.history).min(MOST_DIFFERENCE);
-        let kept = if level == 0 {
-            let clip = clip(self.near(px), inputs.history);
+        let kept = if let Some(near) = near {
+            let clip = clip(near, inputs.history);
             inputs.history = clipped(inputs.history, clip.change);
             inputs.nearest.color = clipped(inputs.nearest.color, clip.change);
             notes.note(NoteStage::Comparison, "history clipped to the samples around", inputs.history, "linear light");
@@ -104,25 +92,15 @@ impl View<'_> {
         average(&inputs, past, self.sample_place_px(), kept, difference)
     }
 
-    /// Sums over the nine samples around a pixel of full rate, whose own sample is usable; of a frame shaded by quads
-    /// over those that are shaded.
+    /// Sums over the nine pixels around a pixel of the fovea, as far as they are shaded; its own sample is usable.
     #[inline(always)]
-    fn near(&self, px: [u32; 2]) -> Near {
-        let lattice = &self.lattices[0];
-        let (first, size) = match self.quads {
-            Some(_) => ([0, 0], self.inputs.size),
-            None => (lattice.first_px, lattice.points),
-        };
+    pub(super) fn near(&self, quads: &Quads, px: [u32; 2]) -> Near {
         let mut near = Near::default();
         for tap in 0..9 {
             let offset = [tap % 3, tap / 3];
-            let at = [0, 1].map(|i| (px[i] - first[i] + offset[i]).max(1).min(size[i]) - 1);
-            let (color, usable) = match self.quads {
-                Some(quads) if quads.is_shaded(at) => self.color_px(at),
-                Some(_) => continue,
-                None => self.sampled(lattice, at),
-            };
-            if usable {
+            let at = [0, 1].map(|i| (px[i] + offset[i]).max(1).min(self.inputs.size[i]) - 1);
+            let (color, usable) = self.color_px(quads, at);
+            if usable && quads.is_shaded(at) {
                 near = add_near(near, color);
             }
         }

@@ -1,7 +1,8 @@
 //! Candidate of a pixel: the samples around it, and their light.
 
 use super::view::NO_NOISE;
-use crate::kernel::noise::Noise;
+use crate::kernel::color::luma;
+use crate::kernel::noise::{Noise, borrowed};
 use crate::kernel::resample::codes_between;
 use crate::kernel::sparse_smr::{BY_NEIGHBOURS, Lit, OTHER_SURFACE, Observation, SAMPLE_RELATIVE, candidate_level};
 use crate::notes::{NoteStage, Notes};
@@ -24,6 +25,8 @@ pub(super) struct Candidate {
     pub noise: Noise,
     /// Whether the candidate is this pixel's own sample.
     pub is_own: bool,
+    /// Of a noisy pixel with a sample: mean of all samples around it, its own included, and the mean variance of one.
+    pub around: (Vec3, f32),
 }
 
 impl Candidate {
@@ -36,7 +39,19 @@ impl Candidate {
         fit: 1.0,
         noise: NO_NOISE,
         is_own: false,
+        around: (Vec3::ZERO, 0.0),
     };
+
+    /// The noisy sample of a pixel whose history is a mean of `past` samples, with its share of the mean around it. Its
+    /// variance takes its share, too: a pixel whose samples all missed a lamp would call its neighbours' light a change.
+    #[inline(always)]
+    pub fn borrowing(self, past: f32) -> Self {
+        let (mean, variance) = self.around;
+        let share = borrowed(past, Noise { variance, ..self.noise }, luma(mean));
+        let variance = self.noise.variance + (variance - self.noise.variance) * share;
+        let noise = Noise { variance, ..self.noise };
+        Self { color: self.color + (mean - self.color) * share, noise, ..self }
+    }
 
     #[inline(always)]
     pub fn note(&self, notes: &mut impl Notes) {
@@ -137,6 +152,7 @@ impl Sums {
             fit: (self.fit * (1.0 / self.valid)).min(own_fit),
             noise: NO_NOISE,
             is_own: self.own.is_some(),
+            around: (Vec3::ZERO, 0.0),
         }
     }
 }

@@ -1,10 +1,10 @@
-//! Reconstruction of sparse frames from history that keeps samples in their places (smr). Its mathematics is in
+//! Reconstruction of planned frames from history that keeps samples in their places (smr). Its mathematics is in
 //! `src/kernel/{stored_sample,sparse_smr}.rs`.
 //!
-//! Three loops. The first compares each sample of a lattice of step 2 and more with history at its pixel. The second
-//! estimates gain and fit for each of these samples, from its own comparison and from the comparisons of its eight
-//! neighbours. The third interpolates gain, fit and samples for each pixel, reads the four stored samples around the
-//! pixel's previous position, and blends.
+//! Three loops. The first compares each sample outside the fovea with history at its pixel. The second estimates gain
+//! and fit for each shaded quad, from its own comparisons and from those of the eight quads around it. The third
+//! interpolates gain, fit and samples for each pixel, reads the stored samples around the pixel's previous position,
+//! and blends.
 
 mod antialias;
 mod candidate;
@@ -17,7 +17,7 @@ mod quads;
 mod sparse_history;
 mod view;
 
-pub(super) use quad_plan::plan_quads;
+pub(super) use quad_plan::{given_quads, is_quarter, plan_quads};
 pub(super) use quads::Quads;
 
 use super::Pass;
@@ -25,8 +25,7 @@ use super::explain::{explain, note_stored, note_stored_mean, of_view};
 use super::inputs::Inputs;
 use super::surface_pass::{Targets, for_pixels};
 use crate::stats::FrameStats;
-use observe::pack_observation;
-use pixel::{Lights, LitView};
+use pixel::LitView;
 use view::View;
 
 /// Runs the three loops for every view.
@@ -34,27 +33,15 @@ pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
     let Pass { desc, history, frame, quads, output, mut traces, mut noted } = pass;
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
-    for i in 0..frame.views.len() {
+    for (i, quads) in quads.iter().enumerate() {
         let state = history.advance(i, frame);
         let inputs = Inputs::new(desc, frame, i, &state, has_history);
         let (past, next, next_noise) = history.split_surfaces(i);
-        let mut view = View::new(desc, frame, i, inputs, past.words, past.noise);
-        view.quads = quads.get(i);
+        let view = View::new(desc, frame, inputs, past.words, past.noise);
         let traces = traces.as_mut().map(|t| &mut t[i]);
         let targets = Targets { surfaces: next, noise: next_noise, output: &mut output[i], traces };
-        let (quad_lights, lights);
-        let lights = match view.quads {
-            Some(quads) => {
-                quad_lights = view.light_quads(quads, &view.observe_quads(quads));
-                Lights::Quads(&quad_lights)
-            }
-            None => {
-                let observed = view.for_samples(|lattice, point| pack_observation(view.observe(lattice, point)));
-                lights = view.for_samples(|lattice, point| view.light(lattice, point, &observed));
-                Lights::Lattices(&lights)
-            }
-        };
-        let lit = LitView { view: &view, lights };
+        let lights = view.light_quads(quads, &view.observe_quads(quads));
+        let lit = LitView { view: &view, quads, lights: &lights };
         stats = stats.add(for_pixels(targets, &lit));
         if let Some(pixel) = of_view(&mut noted, i) {
             explain(&lit, if view.antialiases { note_stored_mean } else { note_stored }, pixel);

@@ -1,8 +1,8 @@
-//! Comparison of the samples of lattices with history at their pixels.
+//! Comparison of samples with history at their pixels.
 
 use super::sparse_history::{Found, has_moved};
-use super::view::{Samples, View};
-use crate::kernel::antialias::{DOUBTFUL, Mean, expected_mean_error};
+use super::view::View;
+use crate::kernel::antialias::{Mean, expected_mean_error};
 use crate::kernel::color::luma;
 use crate::kernel::noise::expected_noise;
 use crate::kernel::pack::{half_bits, half_value};
@@ -36,27 +36,10 @@ pub(super) fn unpack_observation(words: [u32; 2], sampled: impl FnOnce() -> Vec3
 }
 
 impl View<'_> {
-    /// Comparison of a sample with history at its pixel; `None` if either is missing, and at silhouettes.
-    #[inline(always)]
-    pub(super) fn observe(&self, lattice: usize, point: [u32; 2]) -> Option<Observation> {
-        let lattice = &self.lattices[lattice];
-        let (sampled, usable) = self.sampled(lattice, point);
-        self.observe_px(lattice.px_of(point), lattice.level, sampled, usable)
-    }
-
-    /// The same for the sample of a pixel.
+    /// Comparison of the sample of a pixel with history; `None` if either is missing, and at silhouettes.
     #[inline(always)]
     pub(super) fn observe_px(&self, px: [u32; 2], level: u32, sampled: Vec3, usable: bool) -> Option<Observation> {
         let surface = self.surface(px, level);
-        if surface.is_doubtful {
-            return Some(Observation {
-                sampled,
-                history: Vec3::ZERO,
-                error: DOUBTFUL,
-                confidence: 0.0,
-                deviation: 0.0,
-            });
-        }
         // At a silhouette the difference does not say whether anything changed.
         let comparable = usable && !surface.is_silhouette;
         let mut source = self.source(px, &surface, &mut NoNotes).ok().filter(|_| comparable)?;
@@ -79,25 +62,11 @@ impl View<'_> {
         let is_still_mean = self.antialiases && !has_moved(surface.motion, Vec2::ZERO);
         let deviation = if is_still_mean { mean.deviation } else { 0.0 };
         let mut confidence = lod_confidence(history.lod);
-        if self.is_noisy() {
+        if self.is_noisy {
             let around = luma(history.color);
             error += expected_noise(past, self.sample_noise(px), around);
             confidence = noisy_lod_confidence(history.lod, past, around);
         }
         Some(Observation { sampled, history: history.color, error, confidence, deviation })
-    }
-
-    #[inline(always)]
-    pub(super) fn observation(&self, lattice: usize, point: [u32; 2], observed: &[Samples]) -> Option<Observation> {
-        let own = &self.lattices[lattice];
-        let words = observed[lattice][(point[1] * own.points[0] + point[0]) as usize];
-        unpack_observation(words, || self.sampled(own, point).0)
-    }
-
-    /// Whether a sample may show a surface other than its pixel's.
-    #[inline(always)]
-    pub(super) fn is_doubtful(&self, lattice: usize, [x, y]: [u32; 2], observed: &[Samples]) -> bool {
-        let words = observed[lattice][(y * self.lattices[lattice].points[0] + x) as usize];
-        self.antialiases && half_value(words[1]) == DOUBTFUL
     }
 }

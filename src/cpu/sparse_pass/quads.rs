@@ -3,7 +3,10 @@
 use crate::foveation::Foveation;
 use crate::frame::Exposure;
 use crate::image::Image;
-use crate::kernel::quads::{NOWHERE, REACH, RUN_QUADS, first_of, last_of, neighbour_offset, octant_offsets, window};
+use crate::kernel::quads::{
+    NOWHERE, REACH, RUN_QUADS, WHOLE, first_of, last_of, nearest_px, neighbour_offset, octant_offsets, place_in_quad,
+    quadrant_of, sample_code, sample_offset, window,
+};
 use crate::kernel::sanitize;
 use crate::parallel::collect;
 use glam::Vec3;
@@ -18,7 +21,8 @@ pub(super) fn offset_px2(a: u32, b: u32) -> f32 {
 #[derive(Clone, Debug)]
 pub(in crate::cpu) struct Quads {
     size_px: [u32; 2],
-    shaded: Image<bool>,
+    /// Mask of each quad: the pixels that are shaded.
+    masks: Image<u32>,
     /// Region of each quad.
     regions: Image<u32>,
     /// log2 of the distance of the pattern's quads in pixels, by region.
@@ -28,15 +32,20 @@ pub(in crate::cpu) struct Quads {
 }
 
 impl Quads {
-    pub fn new(foveation: &Foveation, size_px: [u32; 2], shaded: Image<bool>, regions: Image<u32>) -> Self {
-        let runs = runs(&shaded);
-        let [columns, rows] = shaded.size();
+    /// `levels`: log2 of the distance of samples in pixels, by region.
+    pub fn new(size_px: [u32; 2], masks: Image<u32>, regions: Image<u32>, levels: [u32; 3]) -> Self {
+        let runs = runs(&masks);
+        let [columns, rows] = masks.size();
         let around = collect(columns * rows, |i| {
             let at = [i % columns, i / columns];
-            if shaded.at(at[0] as usize, at[1] as usize) { octants(&runs, at) } else { quadrants(&runs, at) }
+            if masks.at(at[0] as usize, at[1] as usize) != 0 { octants(&runs, at) } else { quadrants(&runs, at) }
         });
-        let levels = [0, foveation.rate_mid.ilog2(), foveation.rate_far.ilog2()];
-        Self { size_px, shaded, regions, levels, around }
+        Self { size_px, masks, regions, levels, around }
+    }
+
+    /// Levels of the regions of a frame with this foveation. Noisy samples are compared with history in the fovea, too.
+    pub fn levels(foveation: &Foveation, is_noisy: bool) -> [u32; 3] {
+        [u32::from(is_noisy), foveation.rate_mid.ilog2(), foveation.rate_far.ilog2()]
     }
 
     pub fn pixels(&self) -> Image<bool> {
@@ -45,7 +54,13 @@ impl Quads {
 
     #[inline(always)]
     pub fn is_shaded(&self, [x, y]: [u32; 2]) -> bool {
-        self.shaded.at(x as usize / 2, y as usize / 2)
+        self.mask([x / 2, y / 2]) >> place_in_quad([x, y]) & 1 == 1
+    }
+
+    /// Shaded pixels of a quad.
+    #[inline(always)]
+    pub fn mask(&self, [x, y]: [u32; 2]) -> u32 {
+        self.masks.at(x as usize, y as usize)
     }
 
     /// log2 of the distance of the pattern's quads in pixels, where a pixel lies; 0 in the fovea.
@@ -56,7 +71,7 @@ impl Quads {
 
     /// Number of quads along x and y.
     pub fn size(&self) -> [u32; 2] {
-        self.shaded.size()
+        self.masks.size()
     }
 
     #[inline(always)]
@@ -67,7 +82,7 @@ impl Quads {
     /// Nearest shaded quads around a quad, by sector; at most eight for shaded quads, four for others.
     #[inline(always)]
     pub fn around(&self, quad: [u32; 2]) -> impl Iterator<Item = [u32; 2]> + use<> {
-        let words = self.around[Self::index(quad, self.shaded.size()[0])];
+        let words = self.around[Self::index(quad, self.masks.size()[0])];
         (0..8).filter_map(move |i| {
             let code = words[i >> 2] >> (8 * (i & 3)) & 255;
             let [x, y] = neighbour_offset(code);
@@ -77,16 +92,90 @@ impl Quads {
 }
 
 impl Quads {
+    /// Samples that stand for a pixel. In a quad with all of its samples these are its pixels; in a quad without any,
+    /// the nearest sample of each quad around it; otherwise the pixel's own sample, and the nearest other one of each
+    /// quadrant.
+    #[inline(always)]
+    pub fn samples_around(&self, px: [u32; 2]) -> impl Iterator<Item = [u32; 2]> + use<> {
+        let quad = px.map(|v| v / 2);
+        let mask = self.mask(quad);
+        let mut found = [[u32::MAX; 2]; 5];
+        if mask == WHOLE {
+            for (place, at) in (0..).zip(&mut found[..4]) {
+                let px_of_quad = [2 * quad[0] + (place & 1), 2 * quad[1] + (place >> 1)];
+                *at = if (0..2).all(|i| px_of_quad[i] < self.size_px[i]) { px_of_quad } else { *at };
+            }
+        } else if mask == 0 {
+            self.around(quad).zip(&mut found).for_each(|(other, at)| *at = self.nearest_of(other, px));
+        } else {
+            let codes = self.codes_around(px, quad, mask);
+            for (at, code) in found.iter_mut().zip(codes).filter(|(_, code)| *code != u32::MAX) {
+                let [x, y] = sample_offset(code);
+                *at = [px[0].wrapping_add_signed(x), px[1].wrapping_add_signed(y)];
+            }
+        }
+        found.into_iter().filter(|at| at[0] != u32::MAX)
+    }
+
+    /// Samples that stand for a noisy pixel, of which more are better: those of its quad, and the nearest one of each
+    /// quad around it.
+    #[inline(always)]
+    pub fn all_samples_around(&self, px: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
+        let quad = px.map(|v| v / 2);
+        let mask = self.mask(quad);
+        let own = (0..4).filter(move |place| mask >> place & 1 == 1);
+        let own = own.map(move |place| [2 * quad[0] + (place & 1), 2 * quad[1] + (place >> 1)]);
+        let own = own.filter(|at| (0..2).all(|i| at[i] < self.size_px[i]));
+        own.chain(self.around(quad).map(move |other| self.nearest_of(other, px)))
+    }
+
+    /// The sample nearest to a pixel, the first of equally near ones; `None` without any around it.
+    #[inline(always)]
+    pub fn nearest_sample(&self, px: [u32; 2]) -> Option<[u32; 2]> {
+        if self.is_shaded(px) {
+            return Some(px);
+        }
+        let px2 = |at: &[u32; 2]| offset_px2(at[0], px[0]) + offset_px2(at[1], px[1]);
+        self.samples_around(px).min_by(|a, b| px2(a).total_cmp(&px2(b)))
+    }
+
+    /// Codes of the nearest sample of each quadrant around a pixel, and of its own sample, in a quad with some samples.
+    #[inline(always)]
+    fn codes_around(&self, px: [u32; 2], quad: [u32; 2], mask: u32) -> [u32; 5] {
+        let mut codes = [u32::MAX; 5];
+        let of_quad = (0..4).filter(|place| mask >> place & 1 == 1);
+        let of_quad = of_quad.map(|place| [2 * quad[0] + (place & 1), 2 * quad[1] + (place >> 1)]);
+        for at in of_quad.chain(self.around(quad).map(|other| self.nearest_of(other, px))) {
+            let [x, y] = [0, 1].map(|i| at[i].wrapping_sub(px[i]) as i32);
+            let code = &mut codes[if at == px { 4 } else { quadrant_of(x, y) as usize }];
+            *code = (*code).min(sample_code(x, y));
+        }
+        codes
+    }
+
+    /// The shaded pixel of a quad that is nearest to a pixel.
+    #[inline(always)]
+    fn nearest_of(&self, quad: [u32; 2], px: [u32; 2]) -> [u32; 2] {
+        match self.mask(quad) {
+            WHOLE => [0, 1].map(|i| px[i].clamp(2 * quad[i], 2 * quad[i] + 1).min(self.size_px[i] - 1)),
+            mask => nearest_px(mask, quad, px),
+        }
+    }
+
     /// Color of a pixel: its own if it is shaded, otherwise a mean of the shaded quads around it by the inverse squared
     /// distance, in the unit of the color input.
-    pub fn filled(&self, color: &Image<[f32; 3]>, px: [u32; 2], exposure: Exposure) -> [f32; 3] {
+    pub fn filled(&self, [color, half]: [Option<&Image<[f32; 3]>>; 2], px: [u32; 2], exposure: Exposure) -> [f32; 3] {
+        let given_at = |px: [u32; 2]| {
+            let [x, y] = px.map(|v| v as usize);
+            let half = half.filter(|_| self.mask(px.map(|v| v / 2)) != WHOLE).map(|half| half.at(x / 2, y / 2));
+            half.or(color.map(|color| color.at(x, y))).unwrap_or([f32::NAN; 3])
+        };
         if self.is_shaded(px) {
-            return color.at(px[0] as usize, px[1] as usize);
+            return given_at(px);
         }
         let (mut sum, mut weight) = (Vec3::ZERO, 0.0);
-        for quad in self.around(px.map(|v| v / 2)) {
-            let [x, y] = nearest_px(quad, px, self.size_px);
-            let given = Vec3::from(color.at(x as usize, y as usize));
+        for [x, y] in self.samples_around(px) {
+            let given = Vec3::from(given_at([x, y]));
             let (color, usable) = sanitize::color(given * exposure.of_colors());
             if usable {
                 let w = 1.0 / (offset_px2(x, px[0]) + offset_px2(y, px[1]));
@@ -101,19 +190,13 @@ impl Quads {
     }
 }
 
-/// Pixel of a quad that is nearest to another pixel.
-#[inline(always)]
-pub(super) fn nearest_px(quad: [u32; 2], px: [u32; 2], size_px: [u32; 2]) -> [u32; 2] {
-    [0, 1].map(|i| px[i].clamp(2 * quad[i], 2 * quad[i] + 1).min(size_px[i] - 1))
-}
-
 /// Shaded quads of each run and beside it, as bits.
-fn runs(shaded: &Image<bool>) -> Image<u32> {
-    let [columns, rows] = shaded.size();
+fn runs(masks: &Image<u32>) -> Image<u32> {
+    let [columns, rows] = masks.size();
     Image::from_fn_parallel([columns.div_ceil(RUN_QUADS), rows], |[run, y]| {
         (0..2 * RUN_QUADS).fold(0, |word, i| {
             let x = (run * RUN_QUADS + i).wrapping_sub(REACH as u32);
-            word | u32::from(x < columns && shaded.at(x as usize, y as usize)) << i
+            word | u32::from(x < columns && masks.at(x as usize, y as usize) != 0) << i
         })
     })
 }
@@ -188,11 +271,11 @@ mod tests {
     use crate::kernel::rng::bits;
 
     /// Codes of the nearest shaded quads by sector, from all quads within reach.
-    fn search(shaded: &Image<bool>, at: [u32; 2], sector: impl Fn(i32, i32) -> usize) -> [u32; 2] {
+    fn search(masks: &Image<u32>, at: [u32; 2], sector: impl Fn(i32, i32) -> usize) -> [u32; 2] {
         let mut best = [u32::MAX; 8];
         for (x, y) in (-REACH..REACH).flat_map(|y| (-REACH..REACH).map(move |x| (x, y))).filter(|o| *o != (0, 0)) {
             let [u, v] = [at[0].wrapping_add_signed(x), at[1].wrapping_add_signed(y)];
-            if u < shaded.size()[0] && v < shaded.size()[1] && shaded.at(u as usize, v as usize) {
+            if u < masks.size()[0] && v < masks.size()[1] && masks.at(u as usize, v as usize) != 0 {
                 let of_sector = &mut best[sector(x, y)];
                 *of_sector = (*of_sector).min(neighbour(x, y));
             }
@@ -219,11 +302,11 @@ mod tests {
     fn the_nearest_quads_of_each_sector_are_found() {
         for (seed, every) in [1, 2, 5, 17, 60, 400].into_iter().enumerate() {
             let size = [53, 38];
-            let shaded = Image::from_fn(size, |[x, y]| bits(x, y, seed as u32, 9).is_multiple_of(every));
-            let runs = runs(&shaded);
+            let masks = Image::from_fn(size, |[x, y]| u32::from(bits(x, y, seed as u32, 9).is_multiple_of(every)));
+            let runs = runs(&masks);
             for at in (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| [x, y])) {
-                assert_eq!(quadrants(&runs, at), search(&shaded, at, quadrant), "1 in {every}, {at:?}");
-                assert_eq!(octants(&runs, at), search(&shaded, at, octant), "1 in {every}, {at:?}");
+                assert_eq!(quadrants(&runs, at), search(&masks, at, quadrant), "1 in {every}, {at:?}");
+                assert_eq!(octants(&runs, at), search(&masks, at, octant), "1 in {every}, {at:?}");
             }
         }
     }

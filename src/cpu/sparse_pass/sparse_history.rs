@@ -23,10 +23,8 @@ pub(super) struct Surroundings {
     pub stored: f32,
     /// Disparities of the farthest and the nearest surface around the pixel, if history may show any of them.
     pub mixed: Option<[f32; 2]>,
-    /// On quads: whether history is the mean of several surfaces, of which a sample shows one.
+    /// Whether history is the mean of several surfaces, of which a sample shows one.
     pub is_silhouette: bool,
-    /// Whether this frame's sample at the pixel may show another surface.
-    pub is_doubtful: bool,
 }
 
 impl Surroundings {
@@ -35,7 +33,6 @@ impl Surroundings {
         notes.note(NoteStage::Reprojection, "motion of the surface that is continued", self.motion, "px");
         notes.note(NoteStage::Reprojection, "its disparity now", self.disparity, "1/distance");
         notes.note(NoteStage::Reprojection, "silhouette, history is a mean of surfaces", self.is_silhouette, "");
-        notes.note(NoteStage::Candidate, "may show another surface", self.is_doubtful, "");
     }
 }
 
@@ -67,7 +64,7 @@ impl View<'_> {
     /// Noise of a stored sample, in this frame's exposure.
     #[inline(always)]
     pub(super) fn stored_noise(&self, [x, y]: [i32; 2]) -> Noise {
-        if !self.is_noisy() {
+        if !self.is_noisy {
             return NO_NOISE;
         }
         let [width, height] = self.inputs.size.map(|s| s as i32);

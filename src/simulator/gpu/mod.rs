@@ -118,8 +118,8 @@ impl GpuSimulator {
         let steps = match foveation.filter {
             Filter::Mip => levels(foveation.max_level(), "mip_show"),
             Filter::Block => levels(block_sample_level(foveation.max_level()), "block_show"),
-            // Blocks of one pixel copy the full-rate frame: the post-process reads only the samples of a sparse frame.
-            Filter::Off | Filter::Sparse | Filter::Quads => levels(0, "block_show"),
+            // Blocks of one pixel copy the full-rate frame: the post-process reads only the samples of a planned frame.
+            Filter::Off | Filter::Quads => levels(0, "block_show"),
             Filter::Gauss => Steps::Axes {
                 across: writing("gauss_axis", "rgba32float"),
                 between: plane(TextureFormat::Rgba32Float, desc.size_px, desc.view_count),

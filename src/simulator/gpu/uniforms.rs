@@ -29,11 +29,7 @@ impl FoveationUniforms {
         let [lod_mid, lod_far] = foveation.lods();
         let mut uniforms = Self {
             size: desc.size_px,
-            coarsest: if matches!(foveation.filter, Filter::Off | Filter::Sparse | Filter::Quads) {
-                0
-            } else {
-                foveation.max_level()
-            },
+            coarsest: if matches!(foveation.filter, Filter::Off | Filter::Quads) { 0 } else { foveation.max_level() },
             fovea_radius_deg: foveation.fovea_radius_deg(),
             mid_radius_deg: foveation.mid_radius_deg(),
             blend_deg: foveation.blend_deg,

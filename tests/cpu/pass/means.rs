@@ -1,8 +1,9 @@
-//! Antialiasing of jittered sparse frames: laws of the means that history stores.
+//! Antialiasing of jittered planned frames: laws of the means that history stores.
 
 use super::*;
 use afterimage::kernel::antialias::MOST_SAMPLES;
-use afterimage::{Filter, Foveation, Lattice, Lattices, Smr};
+use afterimage::kernel::lattice::offset_px;
+use afterimage::{Foveation, Smr};
 
 const SMALL: [u32; 2] = [32, 24];
 
@@ -17,15 +18,17 @@ fn sampled<T: Copy>([jx, jy]: [f32; 2], value: impl Fn([f32; 2]) -> T) -> Image<
     Image::from_fn(SMALL, |[x, y]| value([x as f32 - jx, y as f32 - jy]))
 }
 
-/// Frame `index`, sampled by the lattice of `step`.
+/// Frame `index`, of which one pixel of each block of `step` pixels is shaded; of step 1 it is planned, all fovea.
 fn frame(index: u64, step: u32, jitter_px: [f32; 2], color: impl Fn([f32; 2]) -> [f32; 3]) -> View {
-    let offset = afterimage::kernel::lattice::offset_px(index, step);
-    let lattices = Lattices::new(&[Lattice::covering(step, [0, 0], SMALL, offset)]).unwrap();
-    let view = View::still(sampled(jitter_px, color), [10.0, 10.0]).sparse(lattices);
-    view.with(|view| view.facts.jitter_px = jitter_px)
+    let offset = offset_px(index, step);
+    let mask = Image::from_fn(SMALL, |px| if px.map(|v| v % step) == offset { 1.0 } else { 0.0 });
+    View::still(sampled(jitter_px, color), [10.0, 10.0]).with(|view| {
+        view.facts.jitter_px = jitter_px;
+        view.mask = (step > 1).then_some(mask);
+    })
 }
 
-/// Jitter of a frame if it changes once in a turn of the lattice.
+/// Jitter of a frame if it changes once in a turn of the pattern.
 fn jitter_of_turn(index: u64, step: u32) -> [f32; 2] {
     Foveation::jitter_px(index / u64::from(step * step))
 }
@@ -50,7 +53,7 @@ fn box_means() -> Vec<([f64; 3], f64)> {
 }
 
 fn antialiased() -> CpuAfterimage {
-    let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..Foveation::default() };
+    let foveation = Foveation { fovea_deg: 180.0, mid_deg: 180.0, rate_mid: 2, rate_far: 4, ..Foveation::quads() };
     let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
     let settings = Settings { method, foveation, ..Settings::default() };
     CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SMALL) }).unwrap()
@@ -238,32 +241,43 @@ fn bars_beside_an_edge_are_not_softer_than_elsewhere() {
     }
 }
 
-/// Depth is given at pixel centres. A sample beside a silhouette that shows the other surface would stay as a dot where
-/// the silhouette moves away.
-#[test]
-fn a_moving_silhouette_leaves_no_dots() {
-    for step in [2, 4] {
-        let mut post = antialiased();
-        let (mut dots, mut pixels) = (0, 0);
-        for index in 0..60 {
-            // The nearer surface, whose color is another, glides to the left.
-            let edge_px = 28.0 - 0.4 * index as f32;
-            let near = |[x, y]: [f32; 2]| x + 0.2 * y < edge_px;
-            let view = View {
-                depth: Some(sampled([0.0; 2], |at| if near(at) { 2.0 } else { 5.0 })),
-                motion: Some(sampled([0.0; 2], |at| [if near(at) { 0.4 } else { 0.0 }, 0.0])),
-                ..frame(index, step, Foveation::jitter_px(index + 1), |at| if near(at) { [0.8; 3] } else { [0.2; 3] })
-            };
-            let shown = one(&mut post, index, &view).0;
-            for (i, c) in shown.pixels().iter().enumerate().filter(|_| index >= 20) {
-                let [x, y] = [i % SMALL[0] as usize, i / SMALL[0] as usize].map(|v| v as f32);
-                if x + 0.2 * y > edge_px + 1.5 {
-                    pixels += 1;
-                    dots += usize::from((c[0] - 0.2).abs() > 0.02);
-                }
+/// Pixels beside a silhouette that glides, and those of them that do not show the farther surface. Depth and motion are
+/// those of the samples, or of the pixels' centres.
+fn dots(step: u32, is_of_samples: bool) -> [usize; 2] {
+    let mut post = antialiased();
+    let (mut dots, mut pixels) = (0, 0);
+    for index in 0..60 {
+        // The nearer surface, whose color is another, glides to the left.
+        let edge_px = 28.0 - 0.4 * index as f32;
+        let near = |[x, y]: [f32; 2]| x + 0.2 * y < edge_px;
+        let jitter_px = Foveation::jitter_px(index + 1);
+        let of_depth = if is_of_samples { jitter_px } else { [0.0; 2] };
+        let view = View {
+            depth: Some(sampled(of_depth, |at| if near(at) { 2.0 } else { 5.0 })),
+            motion: Some(sampled(of_depth, |at| [if near(at) { 0.4 } else { 0.0 }, 0.0])),
+            ..frame(index, step, jitter_px, |at| if near(at) { [0.8; 3] } else { [0.2; 3] })
+        };
+        let shown = one(&mut post, index, &view).0;
+        for (i, c) in shown.pixels().iter().enumerate().filter(|_| index >= 20) {
+            let [x, y] = [i % SMALL[0] as usize, i / SMALL[0] as usize].map(|v| v as f32);
+            if x + 0.2 * y > edge_px + 1.5 {
+                pixels += 1;
+                dots += usize::from((c[0] - 0.2).abs() > 0.02);
             }
         }
-        println!("step {step}: {dots} of {pixels} pixels beside the silhouette are not of the farther surface");
-        assert_eq!(dots, 0, "step {step}");
+    }
+    [dots, pixels]
+}
+
+/// A sample beside a silhouette that was stored with the depth of another surface stays as a dot where the silhouette
+/// moves away: the planted error. Where a sample is rare, some pixels beside it show the nearer surface in any case.
+#[test]
+fn a_moving_silhouette_leaves_few_dots() {
+    for (step, share, least) in [(2, 0.001, 4.0), (4, 0.02, 1.2)] {
+        let [[dots, pixels], [planted, _]] = [true, false].map(|is_of_samples| dots(step, is_of_samples));
+        println!("step {step}: {dots} of {pixels} pixels beside the silhouette are not of the farther surface,");
+        println!("{planted} with depth of other places than the samples'");
+        let [dots, pixels, planted] = [dots, pixels, planted].map(|count| count as f64);
+        assert!(dots <= share * pixels && planted > least * dots, "step {step}: {dots}, {planted} of {pixels}");
     }
 }

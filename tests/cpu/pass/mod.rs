@@ -2,8 +2,13 @@
 //! H63, H66, H77-H79, H107, H108.
 
 mod depth;
+mod filled;
 mod lifecycle;
 mod light;
+mod mask_hard;
+pub mod mask_noise;
+mod mask_planted;
+mod masks;
 mod means;
 mod nan;
 mod noted;
@@ -12,10 +17,6 @@ mod properties;
 mod quads;
 mod reprojection;
 mod reservoirs;
-mod sparse;
-mod sparse_hard;
-pub mod sparse_noise;
-mod sparse_planted;
 mod trust;
 mod upsampling;
 mod views;

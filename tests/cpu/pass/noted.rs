@@ -10,19 +10,18 @@ use std::collections::BTreeSet;
 /// Frames of a run.
 const FRAMES: u64 = 24;
 
-/// Every method on whole frames, on lattices and on quads.
+/// Every method on whole frames, on single pixels and on quads.
 fn all_kinds() -> Vec<Settings> {
-    let regions = Foveation { fovea_deg: 20.0, mid_deg: 40.0, rate_mid: 2, rate_far: 4, ..Foveation::default() };
-    let sparse = Foveation { filter: Filter::Sparse, ..regions };
     let quads = Foveation { fovea_deg: 20.0, mid_deg: 40.0, rate_mid: 4, ..Foveation::quads() };
+    let single = Foveation { single_pixels: true, rate_mid: 2, rate_far: 4, ..quads };
     let mut all = all_settings();
-    for foveation in [sparse, quads] {
+    for foveation in [single, quads] {
         let smr = [true, false].map(|antialias| Method::Smr(Smr { antialias, ..Smr::default() }));
         let methods = MethodKind::ALL.into_iter().map(Method::from).chain(smr);
         all.extend(methods.map(|method| Settings { method, foveation, ..Settings::default() }));
         all.push(Settings { foveation, ..Settings::weighted() });
     }
-    all.push(Settings { foveation: sparse, noisy: true, ..Settings::default() });
+    all.extend([single, quads].map(|foveation| Settings { foveation, noisy: true, ..Settings::default() }));
     all
 }
 
@@ -31,10 +30,6 @@ fn frame(draws: &mut Draws, settings: &Settings, index: u64) -> View {
     let view = any_frame(draws, 0.03).with(|view| view.noise = view.noise.take().filter(|_| settings.noisy));
     let whole = |view: View| view.with(|view| view.lod = None);
     match settings.foveation.filter {
-        Filter::Sparse => {
-            let jitter_px = Foveation::jitter_px(index + 1);
-            whole(view).foveated(&settings.foveation, [3.0, 2.0], index).with(|view| view.facts.jitter_px = jitter_px)
-        }
         Filter::Quads => whole(view).with(|view| view.facts.jitter_px = Foveation::jitter_px(index + 1)),
         _ => view,
     }

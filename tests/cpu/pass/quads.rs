@@ -3,13 +3,13 @@
 use super::*;
 use crate::any_frame::{self, any_frame};
 use afterimage::kernel::quads::threshold;
-use afterimage::{Filter, Foveation, Smr};
+use afterimage::{Foveation, Gaze, Smr};
 use afterimage_testing::holds;
 use std::collections::HashMap;
 
 /// Frames in which the even pattern visits every quad of the periphery: 4x4 quads a block, every second block a frame.
 const PERIOD: u64 = 32;
-const BUDGET: f32 = 0.03;
+pub const BUDGET: f32 = 0.03;
 
 type Mask = Image<bool>;
 
@@ -26,7 +26,7 @@ fn context(budget: f32, antialias: bool) -> CpuAfterimage {
 
 /// What a plan has to work with.
 #[derive(Clone, Copy, Debug)]
-enum Needs {
+pub enum Needs {
     Settled,
     Flickering,
     OneCorner,
@@ -35,7 +35,7 @@ enum Needs {
 }
 
 /// A wall with a smooth pattern, whose need is as it is named.
-fn wall(index: u64, needs: Needs) -> View {
+pub fn wall(index: u64, needs: Needs) -> View {
     let strobe = if matches!(needs, Needs::Flickering) && index % 2 == 1 { 4.0 } else { 1.0 };
     let color =
         |[x, y]: [u32; 2]| [(0.5 * x as f32).sin(), (0.4 * y as f32).cos(), 0.2].map(|v| strobe * (0.5 + 0.3 * v));
@@ -55,7 +55,7 @@ fn wall(index: u64, needs: Needs) -> View {
 }
 
 /// Mask and output of a frame, in which the renderer shades `color` of the planned pixels.
-fn show_shaded(
+pub fn show_shaded(
     post: &mut CpuAfterimage,
     index: u64,
     view: &View,
@@ -72,13 +72,17 @@ fn show_shaded(
 }
 
 /// Mask and output of a frame that is shaded as it was planned.
-fn show(post: &mut CpuAfterimage, index: u64, view: &View) -> (Mask, Color) {
+pub fn show(post: &mut CpuAfterimage, index: u64, view: &View) -> (Mask, Color) {
     show_shaded(post, index, view, |_, px| pixel(&view.color, px))
 }
 
-/// Whether each quad of a mask is shaded.
+/// Whether a pixel of each quad of a mask is shaded.
 fn quads(mask: &Mask) -> Image<bool> {
-    Image::from_fn(mask.size().map(|side| side.div_ceil(2)), |px| pixel(mask, px.map(|v| 2 * v)))
+    let [width, height] = mask.size();
+    Image::from_fn([width.div_ceil(2), height.div_ceil(2)], |[x, y]| {
+        let of_quad = pixels([2; 2]).map(|[u, v]| [2 * x + u, 2 * y + v]);
+        of_quad.filter(|px| px[0] < width && px[1] < height).any(|px| pixel(mask, px))
+    })
 }
 
 fn quads_of(mask: &Mask) -> usize {
@@ -100,7 +104,8 @@ fn h107_the_budget_is_never_exceeded_and_every_quad_has_its_turn() {
     let budget = (BUDGET * (size[0] * size[1]) as f32) as usize;
     let run = |budget: f32, needs: Needs| -> Vec<Mask> {
         let mut post = context(budget, false);
-        (0..3 * PERIOD).map(|index| show(&mut post, index, &wall(index, needs)).0).collect()
+        // The first frame is a quarter.
+        (0..=3 * PERIOD).map(|index| show(&mut post, index, &wall(index, needs)).0).skip(1).collect()
     };
     // The pattern alone visits every quad, whatever is chosen beside it.
     let even = run(0.0, Needs::Settled);
@@ -132,11 +137,15 @@ fn most_in_a_block(mask: &Mask, even: &Mask) -> usize {
     counts.into_values().max().unwrap()
 }
 
+/// A frame whose history is rejected everywhere. A first frame is a quarter.
 #[test]
 fn without_history_the_budget_is_spread_evenly_over_the_view() {
-    for index in 0..PERIOD {
-        let view = wall(index, Needs::Settled);
-        let plan = |budget: f32| show(&mut context(budget, true), index, &view).0;
+    for index in 1..=PERIOD {
+        let plan = |budget: f32| {
+            let mut post = context(budget, true);
+            show(&mut post, index - 1, &wall(index - 1, Needs::Settled));
+            show(&mut post, index, &wall(index, Needs::NoTrust)).0
+        };
         let even = plan(0.0);
         assert_eq!(most_in_a_block(&plan(BUDGET), &even), 1, "frame {index}");
         // A budget above one quad in 16 has to choose others, too.
@@ -144,28 +153,30 @@ fn without_history_the_budget_is_spread_evenly_over_the_view() {
     }
 }
 
-/// One frame of lattices, then quads: smr's history stays, and every pixel is nearer to the full-rate frame.
+/// A quarter first, which a plan takes by itself: smr's history stays, and every pixel is nearer to the full-rate frame
+/// than after a first frame of the quads that the budget pays for.
 #[test]
 fn a_first_frame_at_a_quarter_stays_in_history() {
     for antialias in [false, true] {
         let view = wall(0, Needs::Settled);
-        let quads = settings(BUDGET, antialias);
-        let error = |foveation: Foveation, reset: Reset| {
+        // What is chosen in frame `index` without history, if it is no quarter.
+        let by_need = |index: u64| {
             let mut post = context(BUDGET, antialias);
-            post.set_settings(Settings { foveation, ..quads }).unwrap();
-            let first = match foveation.filter {
-                Filter::Sparse => view.clone().foveated(&foveation, [30.0, 20.0], 0),
-                _ => view.clone(),
-            };
-            post.step(0, &first);
-            post.set_settings(quads).unwrap();
-            let shown = post.make(1, &view, Exposure::Same, reset).shown;
+            show(&mut post, 0, &view);
+            let mask = show(&mut post, index, &wall(index, Needs::NoTrust)).0;
+            Some(mask.map(|chosen| if chosen { 1.0 } else { 0.0 }))
+        };
+        let error = |mask: Option<Image<f32>>, reset: Reset| {
+            let mut post = context(BUDGET, antialias);
+            post.step(0, &View { mask, ..view.clone() });
+            let second = View { mask: by_need(1), ..view.clone() };
+            let shown = post.make(1, &second, Exposure::Same, reset).shown;
             let off = |(a, b): (&[f32; 3], &[f32; 3])| (0..3).map(|c| f64::from(a[c] - b[c]).powi(2)).sum::<f64>();
             shown.pixels().iter().zip(view.color.pixels()).map(off).sum::<f64>()
         };
-        let by_quads = error(quads.foveation, Reset::None);
-        let by_a_quarter = error(Foveation::quarter(), Reset::None);
-        let forgotten = error(Foveation::quarter(), Reset::All);
+        let by_quads = error(by_need(0), Reset::None);
+        let by_a_quarter = error(None, Reset::None);
+        let forgotten = error(None, Reset::All);
         println!(
             "squared error in the second frame: {by_quads:.2}, after a quarter {by_a_quarter:.2}, reset {forgotten:.2}"
         );
@@ -284,6 +295,12 @@ proptest! {
             CpuAfterimage::new(&desc).unwrap()
         };
         let (mut post, mut even) = (made(budget), made(0.0));
+        // Its frames are no quarter, which a first frame is.
+        let before = View::still(Image::filled(size, [0.0; 3]), [0.0; 2]).with(|view| view.facts.gaze = Gaze::Lost);
+        let mut out = vec![Image::filled(size, [f32::NAN; 3]); 2];
+        let before = [before.clone(), before];
+        even.plan(&Images::of(&before).frame(9)).unwrap();
+        even.process(&Images::of(&before).frame(9), &mut out).unwrap();
         for index in 0..4 {
             let views = [0; 2].map(|_| View { lod: None, noise: None, ..any_frame(&mut draws, wild) });
             let images = Images::of(&views);
@@ -293,12 +310,17 @@ proptest! {
             let masks = post.plan(&frame).unwrap().to_vec();
             prop_assert_eq!(post.plan(&Frame { color: &[], ..frame }).unwrap(), &masks);
             prop_assert!(post.history() == before.history());
-            for (mask, even) in masks.iter().zip(even.plan(&frame).unwrap()) {
+            let is_quarter = post.is_quarter();
+            prop_assert!(!is_quarter || index == 0 || reset == Reset::All);
+            for (mask, even) in masks.iter().zip(even.plan(&Frame { reset: Reset::None, ..frame }).unwrap()) {
+                if is_quarter {
+                    prop_assert!(4 * quads_of(mask) >= mask.pixels().len());
+                    continue;
+                }
                 let by_need = quads_of(mask) - quads_of(even);
                 let all = size.map(|side| f64::from(side.div_ceil(2))).iter().product::<f64>();
                 prop_assert!(by_need as f64 <= f64::from(budget) * all);
             }
-            let mut out = vec![Image::filled(size, [f32::NAN; 3]); 2];
             for post in [&mut post, &mut even] {
                 post.process(&frame, &mut out).unwrap();
                 prop_assert!(out.iter().flat_map(|o| o.pixels()).flatten().all(|v| v.is_finite()));

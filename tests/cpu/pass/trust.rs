@@ -67,5 +67,5 @@ fn h18_trust_that_is_no_number_counts_as_none_and_is_counted() {
 
 #[test]
 fn reactive_masks_are_the_inverse_of_trust() {
-    println!("{}", reactive_is_the_inverse_of_trust(&crate::sparse_hard::on_cpu).unwrap());
+    println!("{}", reactive_is_the_inverse_of_trust(&crate::mask_hard::on_cpu).unwrap());
 }

@@ -30,7 +30,6 @@ fn settings_are_checked_and_named() {
         (by_quads(|f| f.rate_far = 2), "rate_far"),
         (by_quads(|f| f.rate_mid = 1), "rate_mid"),
         (by_quads(|f| f.budget = 1.5), "budget"),
-        (Settings { noisy: true, ..by_quads(|_| ()) }, "noisy"),
         (wrs(Wrs { bias: Bias::Exponential { lambda: -0.1 }, ..Wrs::default() }), "bias.lambda"),
         (Settings { depth_test: Some(DepthTest { relative: 0.0, slope_px: 1.0 }), ..base }, "depth_test.relative"),
     ] {

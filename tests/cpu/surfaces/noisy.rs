@@ -2,7 +2,7 @@
 //! count as a change, nor a change as noise.
 
 use super::rig::{Draws, SIZE, Steps, View, context_of, settings, sharp};
-use crate::pass::sparse_noise::{self, moments, promised};
+use crate::pass::mask_noise::{self, moments, promised};
 use afterimage::cpu::CpuAfterimage;
 use afterimage::{Method, MethodKind, Settings, Smr};
 use afterimage_testing::{accept, p_of_z, reject};
@@ -19,7 +19,7 @@ fn post(settings: Settings) -> CpuAfterimage {
 
 /// Sharp pixels, each the mean of two draws of `sample`.
 fn sampled(draws: &mut Draws, sample: impl Fn(&mut Draws, [u32; 2]) -> f32) -> View {
-    let View { color, noise, .. } = sparse_noise::sampled(SIZE, |px| sample(draws, px));
+    let View { color, noise, .. } = mask_noise::sampled(SIZE, |px| sample(draws, px));
     View { noise, ..sharp(color) }
 }
 

@@ -16,7 +16,8 @@ fn all_settings() -> Vec<Settings> {
     let by_quads =
         kinds.map(|kind| Settings { method: kind.into(), foveation: Foveation::quads(), ..Settings::default() });
     let all = [kinds.map(surfaces_hard::settings), kinds.map(sparse::settings), by_quads];
-    all.concat().into_iter().chain([Settings::traced()]).collect()
+    let noisy = Settings { foveation: Foveation::quads(), ..Settings::traced() };
+    all.concat().into_iter().chain([Settings::traced(), noisy]).collect()
 }
 
 fn described(size: [u32; 2], settings: Settings) -> ContextDesc {
@@ -33,7 +34,7 @@ fn required_limits_suffice_and_none_may_be_lower() {
         ("max_storage_buffers_per_shader_stage", |limits| &mut limits.max_storage_buffers_per_shader_stage),
     ];
     for settings in all_settings() {
-        for size in [[1, 1], [5000, 2]] {
+        for size in [[2, 1], [5000, 2]] {
             let desc = described(size, settings);
             let needed = Afterimage::required_limits(&desc);
             assert!(needed.check_limits(&Limits { max_texture_dimension_2d: 8192, ..Limits::default() }));
@@ -72,9 +73,7 @@ fn every_method_runs_on_the_smallest_device() {
         let mut post = bare.context(FORMAT);
         for index in 0..3 {
             let [view] = bare.views;
-            let lattices = || settings.foveation.lattices(&view.geometry, [20.0, 20.0], index);
-            let lattices = (settings.foveation.filter == Filter::Sparse).then(lattices);
-            let views = [ViewFrame { lattices, ..view }; 2];
+            let views = [view; 2];
             let noise = settings.noisy.then_some((&noise_texture).into());
             let frame = Frame { noise, ..Frame::new(&color, &views, index) };
             if settings.foveation.filter == Filter::Quads {

@@ -8,6 +8,8 @@ mod lens;
 mod lifecycle;
 mod light;
 mod limits;
+mod mask_hard;
+mod masks;
 mod motion;
 mod objects;
 mod planned_hard;
@@ -19,7 +21,6 @@ mod reservoirs;
 #[allow(dead_code, reason = "the lab's tests on analytic scenes use all of it")]
 pub mod rig;
 mod sparse;
-mod sparse_hard;
 mod submission;
 mod surfaces;
 mod surfaces_hard;
@@ -32,8 +33,7 @@ use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, Device, Limits, Queue, Texture, TextureFormat, TextureUsages};
 use afterimage::{
     Bias, ContextDesc, CreateError, DebugView, DepthConvention, Exposure, Filter, Foveation, FrameError, Gaze, Image,
-    Lattice, Lattices, Method, MethodKind, MotionConvention, Reset, Sampler, Settings, Smr, ViewFrame, ViewGeometry,
-    Wrs,
+    Method, MethodKind, MotionConvention, Reset, Sampler, Settings, Smr, ViewFrame, ViewGeometry, Wrs,
 };
 use afterimage_testing::gpu::read_texture;
 use afterimage_testing::{Draws, agree, holds};

@@ -37,7 +37,7 @@ impl Written {
 fn made(settings: Settings, is_new: bool) -> [usize; 3] {
     let mut written = Written::new(settings);
     let mut sets = [(); 2].map(|()| written.textures());
-    let is_sparse = settings.foveation.filter == Filter::Sparse;
+    let is_planned = settings.foveation.filter == Filter::Quads;
     let count =
         |written: &Written| ["CreateBindGroup(", "CreateTextureView", "CreateBuffer("].map(|call| written.count(call));
     let mut before = [0; 3];
@@ -47,12 +47,13 @@ fn made(settings: Settings, is_new: bool) -> [usize; 3] {
             *set = written.textures();
         }
         let [color, depth, motion, output] = &*set;
-        let [view] = written.bare.views;
-        let lattices = is_sparse.then(|| settings.foveation.lattices(&view.geometry, [32.0, 24.0], index));
-        let views = [ViewFrame { lattices, ..view }];
+        let views = written.bare.views;
         let frame =
             Frame { depth: Some(depth.into()), motion: Some(motion.into()), ..Frame::new(color, &views, index) };
         before = count(&written);
+        if is_planned {
+            written.bare.plan(&mut written.post, &frame);
+        }
         written.bare.record(&mut written.post, &frame, output).unwrap();
         written.bare.device.poll(wgpu::PollType::Poll).unwrap();
     }
@@ -63,12 +64,12 @@ fn made(settings: Settings, is_new: bool) -> [usize; 3] {
 #[test]
 fn frames_of_known_textures_make_no_bind_groups_and_views() {
     let smr = Settings::default();
-    let sparse = Foveation { filter: Filter::Sparse, ..Foveation::default() };
-    for settings in [smr, Settings { foveation: sparse, ..smr }] {
+    let planned = Settings { foveation: Foveation::quads(), ..smr };
+    for (settings, uploads) in [(smr, 1), (planned, 2)] {
         let (known, new) = (made(settings, false), made(settings, true));
         println!("bind groups, views, buffers: {known:?}; new textures: {new:?}");
-        // One buffer uploads the frame's numbers.
-        assert_eq!(known, [0, 0, 1]);
+        // One buffer uploads the frame's numbers, and one those of its plan.
+        assert_eq!(known, [0, 0, uploads]);
         assert!(new[0] > 0 && new[1] > 0, "{new:?}");
     }
 }
@@ -79,7 +80,7 @@ fn pipelines_of_prime(is_prewarmed: bool) -> [usize; 2] {
     let [color, depth, motion, _] = written.textures();
     let target = written.bare.texture(TextureFormat::Depth32Float, TextureUsages::RENDER_ATTACHMENT);
     let target = target.create_view(&Default::default());
-    let prime = Prime { target: &target, origin_px: [0, 0], near_depth: 1.0, stencil: None };
+    let prime = Prime { target: &target, origin_px: [0, 0], near_depth: 1.0, stencil: None, is_half: false };
     let (device, views) = (written.bare.device.clone(), written.bare.views);
     if is_prewarmed {
         written.post.prewarm_prime(&device, &prime).unwrap();

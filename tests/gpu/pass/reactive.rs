@@ -1,9 +1,9 @@
-//! Reactive masks: the inverse of trust masks, in the passes of whole and of sparse frames.
+//! Reactive masks: the inverse of trust masks, in the passes of whole and of planned frames.
 
-use super::sparse_hard::run_law;
+use super::mask_hard::run_law;
 use super::*;
+use crate::mask_hard::SIZE;
 use crate::reactive::reactive_is_the_inverse_of_trust;
-use crate::sparse_hard::SIZE;
 
 #[test]
 fn reactive_masks_are_the_inverse_of_trust() {

@@ -33,7 +33,7 @@ pub struct Rig {
     pub drops: bool,
     /// Debug view to draw beside the next frames, and what it showed.
     pub beside: Option<DebugView>,
-    textures: [Texture; 9],
+    textures: [Texture; 11],
     counters: Buffer,
     /// What the device has compiled; `None` once it is of no use to other tests.
     compiled: Option<Sources>,
@@ -68,26 +68,29 @@ pub fn device_of_five_outputs() -> Option<(Device, Queue)> {
     afterimage_testing::gpu::device_with(&wgpu::DeviceDescriptor { required_limits, ..Default::default() })
 }
 
-// Places of textures: color, depth, motion, trust and reactive masks, levels of detail and noise; output, debug view.
+// Places of textures: color, depth, motion, trust and reactive masks, levels of detail, noise, own mask and colors of
+// half the size; output, debug view.
 const COLOR: usize = 0;
 const MOTION: usize = 2;
 const NOISE: usize = 6;
-const OUTPUT: usize = 7;
-const DEBUG: usize = 8;
+const HALF: usize = 8;
+const OUTPUT: usize = 9;
+const DEBUG: usize = 10;
 
 const READ: TextureUsages =
     TextureUsages::TEXTURE_BINDING.union(TextureUsages::COPY_DST).union(TextureUsages::COPY_SRC);
 
-fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 9] {
+fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 11] {
     std::array::from_fn(|i| {
         let format = match i {
-            COLOR | OUTPUT => TextureFormat::Rgba32Float,
+            COLOR | HALF | OUTPUT => TextureFormat::Rgba32Float,
             DEBUG => TextureFormat::Rgba16Float,
             MOTION | NOISE => TextureFormat::Rg32Float,
             _ => TextureFormat::R32Float,
         };
         let written = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC | TextureUsages::COPY_DST;
-        make_texture(device, context, format, if i < OUTPUT { READ } else { written })
+        let half = ContextDesc { size_px: context.size_px.map(|side| side.div_ceil(2)), ..*context };
+        make_texture(device, if i == HALF { &half } else { context }, format, if i < OUTPUT { READ } else { written })
     })
 }
 
@@ -104,12 +107,14 @@ fn texels(view: &View) -> [Option<Vec<f32>>; OUTPUT] {
         view.reactive.as_ref().map(one),
         view.lod.as_ref().map(one),
         view.noise.as_ref().map(two),
+        view.mask.as_ref().map(one),
+        view.half.as_ref().map(four),
     ]
 }
 
 /// The frame with those of the textures that the view has.
-fn given<'a>(view: &View, textures: [Textures<'a>; 9], frame: Frame<'a>) -> Frame<'a> {
-    let [_, depth, motion, trust, reactive, lod, noise, ..] = textures;
+fn given<'a>(view: &View, textures: [Textures<'a>; 11], frame: Frame<'a>) -> Frame<'a> {
+    let [_, depth, motion, trust, reactive, lod, noise, mask, half, ..] = textures;
     Frame {
         depth: view.depth.is_some().then_some(depth),
         motion: view.motion.is_some().then_some(motion),
@@ -117,6 +122,8 @@ fn given<'a>(view: &View, textures: [Textures<'a>; 9], frame: Frame<'a>) -> Fram
         reactive: view.reactive.is_some().then_some(reactive),
         lod: view.lod.is_some().then_some(lod),
         noise: view.noise.is_some().then_some(noise),
+        mask: view.mask.is_some().then_some(mask),
+        half: view.half.is_some().then_some(half),
         ..frame
     }
 }
@@ -126,8 +133,10 @@ fn given<'a>(view: &View, textures: [Textures<'a>; 9], frame: Frame<'a>) -> Fram
 pub struct Made {
     pub shown: Vec<[u32; 3]>,
     pub words: Vec<[u32; 3]>,
-    /// Chosen quads of a planned frame: 1, others 0.
+    /// Masks of the quads of a planned frame: a bit for each of their pixels inside the frame.
     pub quads: Vec<u32>,
+    /// Number of paths of each chosen pixel of those quads.
+    pub paths: Vec<u32>,
     pub stats: FrameStats,
 }
 
@@ -263,12 +272,6 @@ impl Rig {
         self.read_texture(&self.textures[DEBUG])
     }
 
-    /// Makes the color input an atlas of another size.
-    pub fn resize_color(&mut self, size_px: [u32; 2]) {
-        let atlas = ContextDesc { size_px, ..self.context };
-        self.textures[COLOR] = make_texture(&self.device, &atlas, TextureFormat::Rgba32Float, READ);
-    }
-
     /// Stores motion as halves on the device from now on.
     pub fn halve_motion(&mut self) {
         self.textures[MOTION] = make_texture(&self.device, &self.context, TextureFormat::Rg16Float, READ);
@@ -317,10 +320,15 @@ impl Rig {
     pub fn on_cpu(&mut self, index: u64, reset: Reset, views: &[View]) -> (Made, Vec<Image<PixelTrace>>) {
         let images = Images::of(views);
         let frame = afterimage::cpu::Frame { reset, exposure: self.exposure, ..images.frame(index) };
-        let quads = planned(&mut self.cpu, &frame).iter().flat_map(quads_of).collect();
+        let masks = planned(&mut self.cpu, &frame);
+        let quads = masks.iter().flat_map(quads_of).collect();
+        let paths = match frame.mask.is_some() || masks.is_empty() {
+            true => masks.iter().flat_map(quads_of).map(|mask| mask.min(1)).collect(),
+            false => self.cpu.paths().iter().flat_map(paths_of).collect(),
+        };
         let (output, trace, stats) = traced(&mut self.cpu, &frame);
         let shown = output.iter().flat_map(|o| o.pixels()).map(|c| c.map(f32::to_bits)).collect();
-        (Made { shown, words: held_words(&self.cpu), quads, stats }, trace)
+        (Made { shown, words: held_words(&self.cpu), quads, paths, stats }, trace)
     }
 
     /// Whether the executors differ on a frame: what a planted error must do.
@@ -368,7 +376,7 @@ impl Rig {
         let all = (0..).zip(&self.textures).filter(|_| self.scattered);
         let all: Vec<_> = all.map(|(i, texture)| Scattered::new(&self.device, &self.queue, texture, i)).collect();
         let regions: Vec<_> = all.iter().map(Scattered::regions).collect();
-        let textures: [_; 9] =
+        let textures: [_; 11] =
             std::array::from_fn(|i| regions.get(i).map_or((&self.textures[i]).into(), |r| Textures::Regions(r)));
         let [.., output, debug] = textures;
         let frame = Frame {
@@ -378,7 +386,7 @@ impl Rig {
         };
         let debug = self.beside.map(|view| DebugTarget { view, output: debug });
         let target = Target { debug, counters: count.then_some(&self.counters), ..Target::new(output) };
-        let is_planned = self.is_by_quads();
+        let is_planned = self.is_by_quads() && frame.mask.is_none();
         afterimage_testing::gpu::validated(&self.device, "record", || {
             let mut encoder = self.device.create_command_encoder(&Default::default());
             all.iter().take(OUTPUT).for_each(|input| input.copy(&mut encoder, true));
@@ -423,12 +431,21 @@ impl Rig {
         // As it was planned last.
         let mask = self.gpu.quad_mask().map(|mask| self.read_texture(mask)).unwrap_or_default();
         let counters: Vec<u8> = afterimage_testing::gpu::read_buffer(&self.device, &self.queue, &self.counters);
+        let inside = self.inside();
+        let quads: Vec<u32> = mask.iter().zip(inside).map(|(word, inside)| word & inside).collect();
         Made {
             shown: shown.chunks_exact(4).map(|c| [c[0], c[1], c[2]]).collect(),
             words: two.chunks_exact(2).zip(third).map(|(w, third)| [w[0], w[1], third]).collect(),
-            quads: mask.iter().map(|word| word & 1).collect(),
+            paths: mask.iter().zip(&quads).map(|(word, quad)| word >> 8 & 31 * quad.min(&1)).collect(),
+            quads,
             stats: FrameStats::from_counters(&counters).unwrap(),
         }
+    }
+
+    /// Masks of the quads of all views with all pixels inside the frame.
+    fn inside(&self) -> Vec<u32> {
+        let whole = quads_of(&Image::filled(self.context.size_px, true));
+        vec![whole; self.context.view_count as usize].concat()
     }
 
     fn upload(&self, views: &[View]) {
@@ -490,10 +507,20 @@ pub fn all_caught_in<const N: usize>(
     });
 }
 
-/// The quads of a mask.
-fn quads_of(mask: &Image<bool>) -> Vec<u32> {
-    let quads = pixels(mask.size().map(|side| side.div_ceil(2)));
-    quads.map(|quad| u32::from(pixel(mask, quad.map(|v| 2 * v)))).collect()
+/// Masks of the quads of a mask of pixels.
+pub fn quads_of(mask: &Image<bool>) -> Vec<u32> {
+    let size = mask.size();
+    let bit_of = |[x, y]: [u32; 2]| u32::from(x < size[0] && y < size[1] && pixel(mask, [x, y]));
+    let of_quad = |[x, y]: [u32; 2]| (0..4).fold(0, |all, i| all | bit_of([2 * x + i % 2, 2 * y + i / 2]) << i);
+    pixels(size.map(|side| side.div_ceil(2))).map(of_quad).collect()
+}
+
+/// Number of paths of each chosen pixel of each quad.
+fn paths_of(paths: &Image<u8>) -> Vec<u32> {
+    let size = paths.size();
+    let at = |[x, y]: [u32; 2]| if x < size[0] && y < size[1] { u32::from(pixel(paths, [x, y])) } else { 0 };
+    let of_quad = |[x, y]: [u32; 2]| (0..4).map(|i| at([2 * x + i % 2, 2 * y + i / 2])).max().unwrap();
+    pixels(size.map(|side| side.div_ceil(2))).map(of_quad).collect()
 }
 
 /// The views of a texture, as regions of larger textures that contain NaN elsewhere.

@@ -35,11 +35,6 @@ pub const PROBES: &[Probe] = &[
     probe!(antialias::kept_samples, |rows| rows.each(&[F(0.6, 40.0), F(0.0, 200.0)])),
     probe!(antialias::stands_before, |rows| rows.each(&[&[F(-1.0, 2.0); 2][..], &[F(-1.0, 1.0); 4], &[N(2)]].concat())),
     probe!(antialias::move_together, |rows| rows.each(&[F(-0.2, 0.2); 6])),
-    probe!(antialias::may_show, |rows| {
-        let disparities = floats(&DISPARITIES);
-        let [places, offsets] = [floats(&[-0.5, 0.0, 0.3]), floats(&[-1.0, 0.0, 1.0])];
-        rows.cross(&[&disparities, &disparities, &places, &places, &offsets, &offsets])
-    }),
     probe!(antialias::is_thin, |rows| {
         let disparities = floats(&DISPARITIES);
         rows.cross(&[&disparities, &disparities, &disparities])

@@ -14,7 +14,6 @@ fn number_of(variable: &str) -> Option<u32> {
         "color_out" => Binding::Output,
         "debug_out" => Binding::Debug,
         "counters" => Binding::Counters,
-        "sparse" => Binding::Lattices,
         "stored_frame" => Binding::PastFrame,
         "state" => Binding::State,
         "list" => Binding::List,
@@ -97,7 +96,7 @@ fn bindings_are_those_of_the_shaders() {
     let planted = [
         ("smr_pass", "@binding(3) var motion_in", "@binding(9) var motion_in"),
         ("smr_pass", "TRUST_IN: u32 = 4u", "TRUST_IN: u32 = 5u"),
-        ("fill_pass", "return textureLoad(color_in", "return textureLoad(trust_in"),
+        ("candidate_pass", "return textureLoad(color_in", "return textureLoad(trust_in"),
     ];
     for (pass, right, wrong) in planted {
         let source = SHADERS.compose(pass).source;

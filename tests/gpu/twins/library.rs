@@ -15,9 +15,10 @@ pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 pub const WGSL_ONLY: &[(&str, &str)] =
     &[("stored_sample", "nothing_around"), ("reservoir", "saturating_add"), ("rng", "pcg4d_mix")];
 
-/// (Rust file stem, function there) without a WGSL twin: two take a closure, in whose place the pass has a loop; the
-/// other one places the samples of a frame before a device sees it.
+/// (Rust file stem, function there) without a WGSL twin: some take a closure, in whose place the pass has a loop; others
+/// are of what is known before a device sees a frame, or of notes of a pixel.
 pub const RUST_ONLY: &[(&str, &str)] = &[
+    ("depth", "distance_of"),
     ("depth", "slope"),
     ("lattice", "jitter_px"),
     ("lattice", "offset_px"),

@@ -76,6 +76,12 @@ pub const PROBES: &[Probe] = &[
     probe!(noise::history_share, |rows| pair_rows(rows, &[&floats(&[0.0, 0.5, 0.9, 0.98])])),
     probe!(noise::noise_difference, |rows| pair_rows(rows, &[&channels(), &floats(&[0.01, 0.7, 1.0, 8192.0])])),
     probe!(noise::expected_noise, |rows| pair_rows(rows, &[&channels()])),
+    probe!(noise::noise_need, |rows| {
+        rows.cross(&[&counts(), &variances(), &channels()]).random(|d, row| {
+            push(row, &noise(d));
+            push(row, &[d.range(0.0, 2.0)]);
+        })
+    }),
     probe!(noise::add_noise, |rows| {
         rows.each(&[F(0.0, 4.0), F(0.0, 4.0), F(0.0, 9.0), Of(|d, row| push(row, &noise(d))), F(0.0, 1.0)])
     }),
@@ -89,6 +95,14 @@ pub const PROBES: &[Probe] = &[
         })
     }),
     probe!(noise::discount_coarser, |rows| pair_rows(rows, &[&floats(&[-3.0, -0.1, 0.0, 0.1, 0.25, 1.0, 8.0])])),
+    probe!(noise::noisy_share, |rows| rows.cross(&[&counts(), &floats(&[0.0, 1.0, 2.0, 13.0, 450.0])])),
+    probe!(noise::borrowed, |rows| {
+        rows.random(|d, row| {
+            push(row, &[d.range(0.0, 99.0)]);
+            push(row, &noise(d));
+            push(row, &[d.range(0.0, 2.0)]);
+        })
+    }),
     probe!(noise::sample_difference, |rows| rows.cross(&[&counts(), &variances(), &channels()])),
     probe!(noise::noise_after, |rows| {
         let share = floats(&[0.0, 0.5, 0.9, 0.98, 1.0]);

@@ -10,6 +10,12 @@ fn in_window(d: &mut Draws, row: &mut Vec<u32>) {
     row.extend([offset(d, -8, 29), offset(d, -20, 28), offset(d, -10, 20)]);
 }
 
+/// An offset in pixels other than 0.
+fn offset(d: &mut Draws, row: &mut Vec<u32>) {
+    let [x, y] = [0; 2].map(|_| (d.bits() % 35) as i32 - 17);
+    row.extend([if (x, y) == (0, 0) { 1 } else { x } as u32, y as u32]);
+}
+
 pub const PROBES: &[Probe] = &[
     probe!(quads::region, |rows| {
         rows.cross(&[&floats(&[0.0, 2.5, 7.0, 90.0]), &floats(&[0.0, 2.5]), &floats(&[0.0, 2.5, 7.5])])
@@ -34,5 +40,20 @@ pub const PROBES: &[Probe] = &[
     probe!(quads::last_of, |rows| rows.random(in_window)),
     probe!(quads::octant_offsets, |rows| rows.cross(&[&(0..=8).collect::<Vec<_>>()])),
     probe!(quads::neighbour_offset, |rows| rows.cross(&[&(0..256).collect::<Vec<_>>()])),
+    probe!(quads::place_in_quad, |rows| rows.each(&[N(9), N(9)])),
+    probe!(quads::nearest_px, |rows| rows.each(&[Of(|d, row| row.push(1 + d.bits() % 15)), N(9), N(9), N(32), N(32)])),
+    probe!(quads::quadrant_of, |rows| rows.random(offset)),
+    probe!(quads::sample_code, |rows| rows.random(offset)),
+    probe!(quads::sample_offset, |rows| rows.random(|d, row| row.push(d.bits() % (1 << 22)))),
+    probe!(quads::known_samples, |rows| rows.each(&[F(0.0, 90.0)])),
+    probe!(quads::path_key, |rows| {
+        rows.random(|d, row| row.extend([d.bits() % quads::KEYS, 1 + d.bits() % 31, 1 + d.bits() % quads::MOST_PATHS]))
+    }),
+    probe!(quads::paths, |rows| {
+        rows.random(|d, row| {
+            let key = |d: &mut Draws| d.bits() % quads::KEYS;
+            row.extend([key(d), key(d), 1 + d.bits() % 31, d.bits() & 1, 1 + key(d)]);
+        })
+    }),
     probe!(quads::quad_key, |rows| rows.each(&[Scaled(-30, 20), Bits, Bits, Bits, Bits])),
 ];

@@ -1,4 +1,4 @@
-//! Reconstruction of sparse frames: stored_sample, sparse_smr.
+//! Reconstruction of planned frames: stored_sample, sparse_smr.
 
 use super::*;
 use afterimage::kernel::noise::Noise;
@@ -31,7 +31,7 @@ shape!(sparse_smr::ObservedAround {
     spatial: f32,
     known: f32
 });
-shape!(sparse_smr::Lit { gain as "gains": Vec3, fit: f32, own_fit: f32, is_own: bool, disparity: f32 });
+shape!(sparse_smr::Lit { gain as "gains": Vec3, fit: f32, own_fit: f32, is_own: bool });
 shape!(sparse_smr::QuadLit {
     gain as "gains": Vec3,
     fit: f32,
@@ -189,7 +189,6 @@ pub const PROBES: &[Probe] = &[
     probe!(sparse_smr::known_deviation, |rows| rows.each(&[Bits])),
     probe!(sparse_smr::noisy_lod_confidence, |rows| rows.each(&[F(0.0, 3.0), F(1.0, 80.0), F(0.0, 0.01), F(0.0, 2.0)])),
     probe!(sparse_smr::agreement, |rows| rows.each(&[Of(push_observation), Of(push_observation), F(0.0, 4.0)])),
-    probe!(sparse_smr::neighbour_weight, |rows| rows.cross(&[&[!0, 0, 1], &[!0, 0, 1]])),
     probe!(sparse_smr::add_observation, |rows| {
         rows.each(&[Of(push_light), Of(push_observation), F(0.0, 4.0), F(0.0, 4.0)])
     }),
@@ -203,28 +202,13 @@ pub const PROBES: &[Probe] = &[
     probe!(sparse_smr::mean_error, |rows| rows.random(push_light)),
     probe!(sparse_smr::own_fit, |rows| rows.each(&[Of(push_observation), F(0.2, 5.0), F(0.2, 5.0), F(0.2, 5.0)])),
     probe!(sparse_smr::vote, |rows| rows.each(&[Of(push_observation), F(0.0, 12.0), F(0.0, 4.0)])),
-    probe!(sparse_smr::capped_error, |rows| rows.each(&[Of(push_observation), F(0.0, 12.0), F(0.0, 4.0)])),
-    probe!(sparse_smr::fit_of_samples, |rows| rows.each(&[Of(push_light), F(0.0, 120.0)])),
     probe!(sparse_smr::fit_by_votes, |rows| rows.each(&[Of(push_light), F(0.0, 12.0), F(0.0, 16.0), F(0.0, 1.0)])),
     probe!(sparse_smr::fit_around, |rows| rows.each(&[Of(push_light), F(0.0, 60.0), F(0.0, 1.0)])),
     probe!(sparse_smr::mean_fit, |rows| rows.each(&[Of(push_light), F(0.0, 1.0)])),
-    probe!(
-        sparse_smr::pack_lit,
-        |gain: Vec3, fit: f32, is_own: bool, disparity: f32, own_fit: f32| sparse_smr::pack_lit(sparse_smr::Lit {
-            gain,
-            fit,
-            own_fit,
-            is_own,
-            disparity
-        }),
-        "pack_lit(Lit($0, $1, $4, $2, $3))",
-        |rows| rows.each(&[F(0.2, 5.0), F(0.2, 5.0), F(0.2, 5.0), F(0.0, 1.0), N(2), Scaled(-20, 20), F(0.0, 1.0)])
-    ),
     probe!(sparse_smr::pack_quad_lit, |rows| rows
         .each(&[&[F(0.2, 5.0); 3][..], &[F(0.0, 1.0); 5], &[N(2)], &[Scaled(-20, 20); 4]].concat())),
     probe!(sparse_smr::quad_lit, |rows| rows.each(&[Bits, Bits, Bits, Bits, N(4)])),
     probe!(sparse_smr::quad_code, |rows| rows.each(&[Bits, Bits, Bits, Bits, N(4)])),
-    probe!(sparse_smr::unpack_lit, |rows| rows.each(&[Bits, Bits])),
     probe!(sparse_smr::reconstruct, |r: Reconstruction| sparse_smr::reconstruct(&r), |rows| rows
         .random(push_reconstruction)),
     probe!(

@@ -7,22 +7,20 @@ use afterimage::kernel::taa;
 use afterimage::kernel::taau;
 use afterimage::kernel::taau::SamplesAround;
 
-/// Sums over some of nine samples of any lattice, as the pass makes them, and the nearest one's color.
+/// Sums over some of nine samples, as the pass makes them, and the nearest one's color.
 fn push_samples(d: &mut Draws, row: &mut Vec<u32>) {
     let centre = Vec3::from(stored_color(d));
-    let (level, tail, flat) = (d.bits() % 5, taau::tail(d.range(0.0, 2.0)), d.bits().is_multiple_of(4));
+    let (tail, flat) = (taau::tail(d.range(0.0, 2.0)), d.bits().is_multiple_of(4));
     let narrowing = taau::narrowing(d.range(0.0, 6.0));
-    let step = (1 << level) as f32;
-    let (at, jitter) = ([0; 2].map(|_| (d.uniform() * step).floor()), [0; 2].map(|_| d.range(-0.5, 0.5)));
+    let jitter = [0; 2].map(|_| d.range(-0.5, 0.5));
     let mut around = SamplesAround::default();
     for tap in 0..9 {
         if d.bits() & 7 == 0 && tap != 4 {
             continue;
         }
         let color = if flat || tap == 4 { centre } else { Vec3::from(like(d, centre.to_array())) };
-        let offset = [0, 1].map(|i| ([tap % 3, tap / 3][i] as f32 - 1.0) * step - at[i] + 0.5 * step - jitter[i]);
-        around =
-            taau::add_around(around, centre, color, taau::sample_weights(Vec2::from(offset), level, tail, narrowing));
+        let offset = [0, 1].map(|i| [tap % 3, tap / 3][i] as f32 - 1.0 - jitter[i]);
+        around = taau::add_around(around, centre, color, taau::sample_weights(Vec2::from(offset), tail, narrowing));
     }
     let weights = around.weights.max(Vec2::splat(taau::LEAST_SAMPLE_WEIGHT));
     push(row, &around.difference.to_array());
@@ -97,13 +95,9 @@ pub const PROBES: &[Probe] = &[
     probe!(taau::narrowing, |rows| rows.cross(&[&around(&[2.0, 4.0])]).each(&[F(0.0, 17.0)])),
     probe!(taau::sample_weights, |rows| {
         let offsets = floats(&[0.0, 0.5, -0.5, 1.0, -2.0, 3.0, 511.5]);
-        let (levels, tails, narrowings) = ((0..=8).collect::<Vec<_>>(), floats(&[0.002, 0.02]), floats(&[1.0, 1.4]));
-        rows.cross(&[&offsets, &offsets, &levels, &tails, &narrowings]).random(|d, row| {
-            let level = d.bits() % 5;
-            let reach = 1.5 * (1 << level) as f32;
-            row.extend([range(d, -reach, reach), range(d, -reach, reach), level]);
-            row.extend([range(d, 0.002, 0.02), range(d, 1.0, 1.4)]);
-        })
+        let (tails, narrowings) = (floats(&[0.002, 0.02]), floats(&[1.0, 1.4]));
+        let random = [F(-1.5, 1.5), F(-1.5, 1.5), F(0.002, 0.02), F(1.0, 1.4)];
+        rows.cross(&[&offsets, &offsets, &tails, &narrowings]).each(&random)
     }),
     probe!(taau::add_around, |rows| {
         rows.random(|d, row| {

@@ -88,7 +88,6 @@ pub fn range(d: &mut Draws, low: f32, high: f32) -> u32 {
 pub enum Word {
     F(f32, f32),
     N(u32),
-    Share(u32),
     Scaled(i32, i32),
     Signed(i32, i32),
     Bits,
@@ -103,7 +102,6 @@ impl Rows {
                 match *word {
                     Word::F(low, high) => row.push(range(d, low, high)),
                     Word::N(count) => row.push(d.bits() % count),
-                    Word::Share(n) => row.push(((d.bits() % (n + 1)) as f32 / n as f32).to_bits()),
                     Word::Scaled(low, high) => row.push(scaled(d, low, high)),
                     Word::Signed(low, high) => row.push(signed(d, low, high)),
                     Word::Bits => row.push(d.bits()),

@@ -108,7 +108,8 @@ fn chosen_pixels_are_those_of_full_rate_and_no_others_are_shaded() {
         let clear = ClearColor::default().0.to_srgba().to_u8_array();
         for i in 0..SIZE.element_product() as usize {
             let at = UVec2::new(i as u32 % SIZE.x, i as u32 / SIZE.x);
-            let is_chosen = mask[4 * (at.y / 2 * given.mask.width() + at.x / 2) as usize] & 1 == 1;
+            let place = at.x % 2 + 2 * (at.y % 2);
+            let is_chosen = mask[4 * (at.y / 2 * given.mask.width() + at.x / 2) as usize] >> place & 1 == 1;
             if is_chosen {
                 chosen += 1;
                 worst = worst.max(difference(&color, &expected, i));

@@ -8,14 +8,13 @@ use crate::clock::Quartiles;
 use crate::error::InputError;
 use crate::exposure::{Chosen, Exposure};
 use crate::frame::RenderedFrame;
-use crate::lattices::{SampleOrder, SparseGeometry};
 use crate::method_report::{MethodAccumulator, MethodReport, Share};
 use crate::metric;
 use crate::metric::{Flip, Reference, References};
 use crate::output::{Output, Table, WriteError};
 use crate::picture::to_rgb8;
 use crate::pipeline::{Pipeline, Processor, ProcessorInfo, RunKind, Step};
-use crate::quad_views::QuadViewLayout;
+use crate::quad_views::{Geometry, QuadViewLayout};
 use crate::report::sheet::{Column, Sheet};
 use crate::source::FrameSource;
 use crate::times::{RenderTime, Times};
@@ -53,14 +52,10 @@ pub struct Clip {
     pub geometry: ViewGeometry,
     /// Regions of the foveation, and their coarseness.
     pub foveation: Foveation,
-    /// Depth and motion of sparse frames.
-    pub sparse_geometry: SparseGeometry,
-    /// Quad views that the source renders; `None`: a simulator or lattices foveate.
+    /// Quad views that the source renders; `None`: a simulator foveates, or methods choose pixels.
     pub quad_views: Option<QuadViewLayout>,
-    /// Whether the first frame has one pixel in 4 ([`Foveation::quarter`]).
-    pub quarter_first: bool,
-    /// Order in which the pixels of sparse frames are sampled.
-    pub sample_order: SampleOrder,
+    /// Depth and motion of quad views.
+    pub view_geometry: Geometry,
     /// Whether sources that can jitter the projection do so.
     pub jitter: bool,
     /// Samples a pixel of the reference; `None`: as many as the input has.
@@ -262,14 +257,10 @@ impl Clip {
         let debug: Vec<_> = self.debug.iter().map(|d| d.1).collect();
         let processor = self.processor.as_ref();
         let mut pipeline = Pipeline::new(self.geometry, self.foveation, &kinds, is_still, &debug, processor)?
-            .with_sparse(self.sparse_geometry, self.sample_order)
-            .with_quad_views(self.quad_views)
+            .with_quad_views(self.quad_views, self.view_geometry)
             .with_reference_samples(self.reference_samples);
         if self.jitter {
             pipeline = pipeline.with_jitter();
-        }
-        if self.quarter_first {
-            pipeline = pipeline.with_quarter_first()?;
         }
         if self.trust {
             pipeline = pipeline.with_trust();

@@ -24,8 +24,6 @@ pub struct RunFacts<'a> {
     pub geometry: Option<&'static str>,
     /// Side of the pixels of uniform frames, pixels of the full-rate frame.
     pub scale: Option<f32>,
-    /// Order in which the pixels of sparse frames are sampled.
-    pub order: Option<&'static str>,
     /// Gaze as the user gave it.
     pub gaze: &'a str,
     /// Map from screen to frame: `angle`, `fit`, or `none` for positions that are frame pixels already.
@@ -85,10 +83,8 @@ struct JodDisplay {
 #[derive(Serialize)]
 struct FoveationReport {
     simulator: &'static str,
-    /// Where depth and motion are known, full or samples; null unless frames are sparse or composed of quad views.
+    /// Where depth and motion are known, full or samples; null unless frames are composed of quad views.
     geometry: Option<&'static str>,
-    /// Order in which the pixels of a block are sampled; null unless frames are sparse.
-    order: Option<&'static str>,
     fovea_deg: f32,
     mid_deg: f32,
     blend_deg: f32,
@@ -127,7 +123,6 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
         foveation: FoveationReport {
             simulator: facts.simulator,
             geometry: facts.geometry,
-            order: facts.order,
             fovea_deg: foveation.fovea_deg,
             mid_deg: foveation.mid_deg,
             blend_deg: foveation.blend_deg,

@@ -1,12 +1,12 @@
 //! Frames that sources produce and methods process, in memory or on a device.
 
 mod rendered;
-mod shaded;
+mod shading;
 
 pub use rendered::{Content, DeviceContent, DeviceHandle, RenderedFrame};
-pub use shaded::{QuadRequest, Shaded, ShadedColor};
+pub use shading::{Shaded, ShadedColor, ShadingRequest};
 
-use afterimage::{Image, Lattices};
+use afterimage::Image;
 
 /// A full-rate frame with the auxiliary images of a temporal method.
 #[derive(Clone, Debug)]
@@ -38,8 +38,7 @@ impl SourceFrame {
     }
 }
 
-/// A foveated frame, sampled sparsely by a sampling plan. It is either reconstructed at every pixel, or given as
-/// samples with their places.
+/// A foveated frame, sampled sparsely by a sampling plan and reconstructed at every pixel.
 #[derive(Clone, Debug)]
 pub struct FoveatedFrame {
     /// Linear radiance.
@@ -49,9 +48,6 @@ pub struct FoveatedFrame {
     /// Noise of the color at its level of detail: standard error of its luma (linear), and number of samples averaged.
     /// `None`: the methods get no noise input.
     pub noise: Option<Image<[f32; 2]>>,
-    /// Where the samples lie, if the frame is not reconstructed between them. In such a frame only samples have a
-    /// color.
-    pub lattices: Option<Lattices>,
     /// Number of samples in each ring.
     pub samples: Vec<u64>,
     /// Number of rays of all kinds.

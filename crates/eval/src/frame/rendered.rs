@@ -2,8 +2,8 @@
 
 use super::{FoveatedFrame, SourceFrame};
 use crate::clock::Elapsed;
-use crate::lattices::SparseGeometry;
-use afterimage::{Image, Lattices};
+use crate::quad_views::Geometry;
+use afterimage::Image;
 use std::any::Any;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -27,9 +27,9 @@ pub struct RenderedFrame {
     /// Jitter of the content's projection in pixels, as in
     /// [`FrameRequest::jitter_px`](crate::source::FrameRequest::jitter_px); 0 without jitter.
     pub jitter_px: [f32; 2],
-    /// Where depth and motion are defined. Content on a device may define them at its samples only. The methods then
-    /// get them instead of the reference's depth and motion.
-    pub geometry: SparseGeometry,
+    /// Where depth and motion of quad views are defined. The methods get the views' own instead of the reference's if
+    /// they are defined there alone.
+    pub geometry: Geometry,
     /// Number of camera samples of the content; `None` if it is the full-rate frame.
     pub samples: Option<u64>,
     /// Time of rendering the content until it was complete on its device: posing the scene, recording and drawing or
@@ -58,15 +58,9 @@ pub enum Content {
 
 /// Interface of a pipeline to a foveated frame on a device. Reading waits for all submitted work.
 pub trait DeviceContent: Any + Debug + Send + Sync {
-    /// Where the samples lie, if the frame has no colors between them.
-    fn lattices(&self) -> Option<Lattices>;
-
-    /// Whether a path tracer foveated the frame.
-    fn is_traced(&self) -> bool;
-
-    /// Level of detail of every pixel of a frame of `size_px`. `None`: the pixels that methods choose are shaded later,
+    /// Level of detail of every pixel. `None`: the pixels that methods choose are shaded later,
     /// and depth and motion of every pixel are those of this content.
-    fn lods(&self, size_px: [u32; 2]) -> Option<Image<f32>>;
+    fn lods(&self) -> Option<Image<f32>>;
 
     /// Reads the color, which is empty before pixels are shaded; `None` if it stays on the device.
     fn read_color(&self) -> Option<Image<[f32; 3]>>;
@@ -76,22 +70,9 @@ pub trait DeviceContent: Any + Debug + Send + Sync {
 }
 
 impl Content {
-    /// Where the samples lie, if the source gave no colors between them.
-    pub fn lattices(&self) -> Option<Lattices> {
-        match self {
-            Self::FullRate | Self::Jittered(_) | Self::Surfaces => None,
-            Self::Foveated(frame) => frame.lattices,
-            Self::OnDevice(content) => content.lattices(),
-        }
-    }
-
     /// Whether a path tracer foveated the frame.
     pub fn is_traced(&self) -> bool {
-        match self {
-            Self::FullRate | Self::Jittered(_) | Self::Surfaces => false,
-            Self::Foveated(_) => true,
-            Self::OnDevice(content) => content.is_traced(),
-        }
+        matches!(self, Self::Foveated(_))
     }
 }
 
@@ -110,7 +91,7 @@ impl RenderedFrame {
             reference_on_device: None,
             content: Content::FullRate,
             jitter_px: [0.0; 2],
-            geometry: SparseGeometry::Full,
+            geometry: Geometry::Full,
             samples: None,
             render: None,
             full_rate: None,

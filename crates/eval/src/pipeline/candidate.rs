@@ -6,7 +6,7 @@ use std::borrow::Cow;
 
 /// A foveated frame.
 pub struct Candidate<'a> {
-    /// Geometry, gaze and lattices.
+    /// Geometry and gaze.
     pub view: ViewFrame,
     /// Level of detail of every pixel.
     pub lods: Image<f32>,

@@ -4,11 +4,11 @@ use super::candidate::Candidate;
 use super::executor::{Executor, RunInputs, Shade};
 use super::run::{Chosen, MethodOutput, RunKind, chooses, unshaded};
 use crate::clock::{Elapsed, Stopwatch};
-use crate::frame::{DeviceHandle, QuadRequest, RenderedFrame, Shaded, ShadedColor};
+use crate::frame::{DeviceHandle, RenderedFrame, Shaded, ShadedColor, ShadingRequest};
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
 use afterimage::internal::PixelNotes;
 use afterimage::kernel::debug_view::view_color;
-use afterimage::{ContextDesc, CreateError, Foveation, FrameError, Image, Settings};
+use afterimage::{ContextDesc, CreateError, FrameError, Image};
 use std::slice::from_ref;
 
 /// Methods on the CPU.
@@ -19,13 +19,6 @@ impl Executor for CpuExecutor {
     fn add(&mut self, kind: &RunKind, desc: &ContextDesc) -> Result<(), CreateError> {
         kind.check_on_cpu()?;
         self.0.push(CpuAfterimage::new(desc)?);
-        Ok(())
-    }
-
-    fn set_foveation(&mut self, foveation: Foveation) -> Result<(), CreateError> {
-        for post in &mut self.0 {
-            post.set_settings(Settings { foveation, ..post.desc().settings })?;
-        }
         Ok(())
     }
 
@@ -68,8 +61,19 @@ impl Executor for CpuExecutor {
             Some(Shaded { color: ShadedColor::InMemory(color), .. }) => Some(color),
             _ => planned.as_ref().filter(|_| is_simulated).map(|_| &full_rate.color),
         };
+        let half = match shaded.as_ref().and_then(|shaded| shaded.half.as_ref()) {
+            Some(ShadedColor::InMemory(half)) => Some(half),
+            _ => None,
+        };
+        let is_noisy = post.desc().settings.noisy;
+        let noise = shaded.as_ref().and_then(|shaded| shaded.noise.as_ref()).filter(|_| is_noisy);
         let frame = match planned {
-            Some(_) => Frame { color: pixels.as_ref().map(from_ref).ok_or_else(unshaded)?, ..frame },
+            Some(_) => Frame {
+                color: pixels.as_ref().map(from_ref).ok_or_else(unshaded)?,
+                half: half.as_ref().map(from_ref),
+                noise: noise.as_ref().map(from_ref).or(frame.noise),
+                ..frame
+            },
             None => frame,
         };
         let mut pixel = inputs.pixel.map(|px| PixelNotes::new(0, px));
@@ -89,7 +93,7 @@ impl Executor for CpuExecutor {
             image,
             elapsed: planned.as_ref().map_or(elapsed, |planned| elapsed.and(planned.took)),
             chosen: planned.map(|planned| Chosen {
-                share: planned.request.share(size),
+                share: planned.request.share(),
                 shading: shaded.as_ref().map(|shaded| shaded.took),
             }),
             stats,
@@ -106,24 +110,23 @@ impl Executor for CpuExecutor {
     }
 }
 
-/// The quads that a method chose.
+/// The pixels that a method chose.
 struct Planned {
-    request: QuadRequest,
+    request: ShadingRequest,
     /// Time of choosing them.
     took: Elapsed,
 }
 
 impl Planned {
-    /// Chooses the quads of a frame; `None` if the method chooses none.
+    /// Chooses the pixels of a frame; `None` if the method chooses none.
     fn new(post: &mut CpuAfterimage, frame: &Frame<'_>) -> Result<Option<Self>, FrameError> {
         if !chooses(&post.desc().settings) {
             return Ok(None);
         }
         let watch = Stopwatch::start();
-        let pixels = &post.plan(frame)?[0];
+        let mask = post.plan(frame)?[0].clone();
         let took = watch.elapsed();
-        let size = pixels.size().map(|side| side.div_ceil(2));
-        let quads = Image::from_fn(size, |[x, y]| pixels.at(2 * x as usize, 2 * y as usize));
-        Ok(Some(Self { request: QuadRequest { quads, on_device: None }, took }))
+        let paths = post.desc().settings.noisy.then(|| post.paths()[0].clone());
+        Ok(Some(Self { request: ShadingRequest::new(mask, None).with_paths(paths), took }))
     }
 }

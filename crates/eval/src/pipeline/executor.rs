@@ -2,8 +2,8 @@
 
 use super::candidate::Candidate;
 use super::run::{MethodOutput, RunKind};
-use crate::frame::{DeviceHandle, QuadRequest, RenderedFrame, Shaded};
-use afterimage::{ContextDesc, CreateError, DebugView, Foveation, FrameError, Reset};
+use crate::frame::{DeviceHandle, RenderedFrame, Shaded, ShadingRequest};
+use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Reset};
 
 /// Methods on the CPU or on a device, in the order in which they were added.
 pub trait Executor: Send {
@@ -12,12 +12,6 @@ pub trait Executor: Send {
     /// # Errors
     /// [`CreateError`] if a setting is out of range or the processor does not support it.
     fn add(&mut self, kind: &RunKind, desc: &ContextDesc) -> Result<(), CreateError>;
-
-    /// Changes the foveation of the methods. They keep their history where its layout stays.
-    ///
-    /// # Errors
-    /// As for [`add`](Self::add).
-    fn set_foveation(&mut self, foveation: Foveation) -> Result<(), CreateError>;
 
     /// Device that the methods run on; `None`: they get foveated frames in memory.
     fn device(&self) -> Option<DeviceHandle>;
@@ -39,7 +33,7 @@ pub trait Executor: Send {
 }
 
 /// Shades the pixels that a method chooses.
-pub type Shade<'a> = &'a mut dyn FnMut(&QuadRequest) -> Option<Shaded>;
+pub type Shade<'a> = &'a mut dyn FnMut(&ShadingRequest) -> Option<Shaded>;
 
 /// The current frame, and the options of its processing.
 pub struct RunInputs<'a> {

@@ -2,17 +2,17 @@
 
 use super::candidate::{Candidate, InMemory, needs_lod};
 use crate::frame::{Content, DeviceContent, RenderedFrame};
-use crate::lattices::{SampleOrder, SparseGeometry, levels};
+use crate::quad_views::Geometry;
 use afterimage::simulator::Pyramid;
-use afterimage::{Filter, Foveation, Gaze, Image, Lattices, ViewFrame, ViewGeometry};
+use afterimage::{Filter, Foveation, Gaze, Image, ViewFrame, ViewGeometry};
 use std::borrow::Cow;
 
 /// Foveation of a pipeline.
 pub(super) struct Foveator {
     pub geometry: ViewGeometry,
     pub foveation: Foveation,
-    pub sparse_geometry: SparseGeometry,
-    pub sample_order: SampleOrder,
+    /// Depth and motion of quad views.
+    pub view_geometry: Geometry,
     /// Whether all frames are equal.
     is_still: bool,
     /// Mip chain of a still.
@@ -20,25 +20,9 @@ pub(super) struct Foveator {
 }
 
 impl Foveator {
-    /// A simulator of a foveation, without samples that move.
+    /// A simulator of a foveation.
     pub fn new(geometry: ViewGeometry, foveation: Foveation, is_still: bool) -> Self {
-        Self {
-            geometry,
-            foveation,
-            sparse_geometry: SparseGeometry::default(),
-            sample_order: SampleOrder::default(),
-            is_still,
-            still: None,
-        }
-    }
-
-    /// Lattices of frame `index`, if frames are sparse.
-    pub fn lattices(&self, gaze_px: [f32; 2], index: u64) -> Option<Lattices> {
-        let is_sparse = self.foveation.filter == Filter::Sparse;
-        is_sparse.then(|| {
-            let lattices = self.sample_order.lattices(&self.foveation, &self.geometry, gaze_px, index);
-            self.sparse_geometry.of(lattices)
-        })
+        Self { geometry, foveation, view_geometry: Geometry::default(), is_still, still: None }
     }
 
     /// Keeps the mip chain of a still for the next frame.
@@ -53,9 +37,7 @@ impl Foveator {
             Content::FullRate | Content::Jittered(_) => self.simulated(frame, is_read),
             Content::Foveated(foveated) => {
                 let noise = foveated.noise.as_ref();
-                // The levels of detail of a sparse frame follow from its lattices.
-                let has_lod = foveated.lattices.is_none();
-                let color = InMemory { has_lod, noise, ..InMemory::new(Cow::Borrowed(&foveated.color)) };
+                let color = InMemory { has_lod: true, noise, ..InMemory::new(Cow::Borrowed(&foveated.color)) };
                 let view = self.view(frame);
                 Candidate { view, lods: foveated.lod.clone(), in_memory: Some(color), pyramid: None }
             }
@@ -69,18 +51,14 @@ impl Foveator {
     }
 
     fn simulated<'a>(&mut self, frame: &'a RenderedFrame, is_read: bool) -> Candidate<'a> {
-        let lattices = self.lattices(frame.gaze_px, frame.index);
-        let lods = match &lattices {
-            Some(lattices) => levels(lattices, self.geometry.size_px()),
-            None => self.foveation.lod_map(&self.geometry, frame.gaze_px),
-        };
+        let lods = self.foveation.lod_map(&self.geometry, frame.gaze_px);
         // Runs on a device use the GPU simulator, which equals this one bit for bit on software devices.
         let is_still = self.is_still && matches!(frame.content, Content::FullRate);
         let pyramid = is_read.then(|| match self.still.take().filter(|_| is_still) {
             Some(pyramid) => pyramid,
-            // Methods read only the samples of sparse frames, and the shaded quads of others.
+            // Methods read only the shaded pixels of planned frames.
             None => {
-                let is_sampled = lattices.is_some() || self.foveation.filter == Filter::Quads;
+                let is_sampled = self.foveation.filter == Filter::Quads;
                 let most = if is_sampled { 0 } else { self.foveation.max_level() };
                 Pyramid::new(frame.given().color.clone(), most)
             }
@@ -90,20 +68,18 @@ impl Foveator {
             let color = Cow::Owned(self.foveation.render(pyramid, &lods));
             InMemory { has_lod, ..InMemory::new(color) }
         });
-        Candidate { view: ViewFrame { lattices, ..self.view(frame) }, lods, in_memory, pyramid }
+        Candidate { view: self.view(frame), lods, in_memory, pyramid }
     }
 
     /// A frame that its source foveated on a device. It is read back only if a method runs elsewhere.
     fn on_device<'a>(&self, frame: &RenderedFrame, content: &dyn DeviceContent, is_read: bool) -> Candidate<'a> {
         let color = if is_read { content.read_color() } else { None };
-        let lods = content.lods(self.geometry.size_px());
+        let lods = content.lods();
         let is_shaded = lods.is_some();
         let in_memory = color.map(|color| {
-            let has_geometry = frame.geometry == SparseGeometry::Samples || !is_shaded;
+            let has_geometry = frame.geometry == Geometry::Samples || !is_shaded;
             let geometry = if has_geometry { content.read_geometry() } else { None };
-            // The levels of detail of a sparse frame follow from its lattices.
-            let has_lod = is_shaded && content.lattices().is_none();
-            InMemory { has_lod, geometry, ..InMemory::new(Cow::Owned(color)) }
+            InMemory { has_lod: is_shaded, geometry, ..InMemory::new(Cow::Owned(color)) }
         });
         let lods = lods.unwrap_or_else(|| self.foveation.lod_map(&self.geometry, frame.gaze_px));
         Candidate { view: self.view(frame), lods, in_memory, pyramid: None }
@@ -111,8 +87,7 @@ impl Foveator {
 
     fn view(&self, frame: &RenderedFrame) -> ViewFrame {
         let view = ViewFrame::new(self.geometry, Gaze::At { px: frame.gaze_px });
-        let lattices = frame.content.lattices().map(|lattices| frame.geometry.of(lattices));
         let previous_from_current = frame.reference.previous_from_current;
-        ViewFrame { previous_from_current, jitter_px: frame.jitter_px, lattices, ..view }
+        ViewFrame { previous_from_current, jitter_px: frame.jitter_px, ..view }
     }
 }

@@ -14,14 +14,13 @@ pub use processor::{Cpu, Processor, ProcessorInfo};
 pub use run::{Chosen, MethodOutput, RunKind, chooses, unshaded};
 
 use crate::clock::Stopwatch;
-use crate::frame::{QuadRequest, RenderedFrame, Shaded};
-use crate::lattices::{SampleOrder, SparseGeometry};
+use crate::frame::{RenderedFrame, Shaded, ShadingRequest};
 use crate::metric::{Tracked, Tracker};
-use crate::quad_views::QuadViewLayout;
+use crate::quad_views::{Geometry, QuadViewLayout};
 use crate::source::{FrameRequest, Wanted};
 use afterimage::{
-    ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, FrameValue, Gaze, Image, Lattices, Method,
-    Settings, SettingsError, ViewGeometry,
+    ContextDesc, CreateError, DebugView, Filter, Foveation, FrameError, FrameValue, Gaze, Image, Method, Settings,
+    SettingsError, ViewGeometry,
 };
 use foveator::Foveator;
 use oracle::Oracle;
@@ -63,8 +62,6 @@ pub struct Pipeline {
     use_trust: bool,
     pixel: Option<[u32; 2]>,
     quad_views: Option<QuadViewLayout>,
-    /// Foveation of the frames after the first, if that has another one.
-    later: Option<Foveation>,
     is_jittered: bool,
     reference_samples: Option<u32>,
 }
@@ -108,24 +105,8 @@ impl Pipeline {
             pixel: None,
             quad_views: None,
             is_jittered: false,
-            later: None,
             reference_samples: None,
         })
-    }
-
-    /// Renders the first frame with one pixel in 4 ([`Foveation::quarter`]), the others with the pipeline's foveation.
-    ///
-    /// # Errors
-    /// [`CreateError`] as for [`new`](Self::new).
-    pub fn with_quarter_first(mut self) -> Result<Self, CreateError> {
-        self.later = Some(self.foveator.foveation);
-        self.set_foveation(Foveation::quarter())?;
-        Ok(self)
-    }
-
-    fn set_foveation(&mut self, foveation: Foveation) -> Result<(), CreateError> {
-        self.foveator.foveation = foveation;
-        self.executor.set_foveation(foveation)
     }
 
     /// Passes the source's trust masks, if any, to the methods.
@@ -134,16 +115,10 @@ impl Pipeline {
         Self { use_trust: true, ..self }
     }
 
-    /// Depth and motion of sparse frames, and the order in which their samples move.
+    /// Frames are composed of quad views, which their source renders, with this depth and motion.
     #[must_use]
-    pub fn with_sparse(mut self, geometry: SparseGeometry, order: SampleOrder) -> Self {
-        (self.foveator.sparse_geometry, self.foveator.sample_order) = (geometry, order);
-        self
-    }
-
-    /// Frames are composed of quad views, which their source renders.
-    #[must_use]
-    pub fn with_quad_views(self, layout: Option<QuadViewLayout>) -> Self {
+    pub fn with_quad_views(mut self, layout: Option<QuadViewLayout>, geometry: Geometry) -> Self {
+        self.foveator.view_geometry = geometry;
         Self { quad_views: layout, ..self }
     }
 
@@ -165,13 +140,12 @@ impl Pipeline {
         let gaze = gaze.map_or(Gaze::Lost, |px| Gaze::At { px });
         let gaze_px = gaze.resolve(self.last_gaze_px, &self.foveator.geometry);
         self.last_gaze_px = Some(gaze_px);
-        let wanted = match (self.quad_views, self.foveator.lattices(gaze_px, index)) {
-            (_, Some(lattices)) => Wanted::Lattices(lattices),
-            (Some(layout), None) => {
-                Wanted::QuadViews(layout.views(&self.foveator.foveation, &self.foveator.geometry, gaze_px))
-            }
-            (None, None) if self.foveator.foveation.filter == Filter::Quads => Wanted::Surfaces,
-            (None, None) => Wanted::FullRate,
+        let Foveator { foveation, geometry, .. } = &self.foveator;
+        let wanted = match self.quad_views {
+            Some(layout) => Wanted::QuadViews(layout.views(foveation, geometry, gaze_px)),
+            // A fovea of the whole view is a full-rate frame.
+            None if foveation.filter == Filter::Quads && foveation.fovea_deg < 180.0 => Wanted::Surfaces,
+            None => Wanted::FullRate,
         };
         FrameRequest {
             gaze_px,
@@ -179,7 +153,7 @@ impl Pipeline {
             // The sequence starts with a corner of the pixel.
             jitter_px: self.is_jittered.then(|| Foveation::jitter_px(index + 1)),
             reference_samples: self.reference_samples,
-            geometry: self.foveator.sparse_geometry,
+            geometry: self.foveator.view_geometry,
             device: self.executor.device().filter(|_| !self.foveates_in_memory()),
             ..FrameRequest::full_rate(index)
         }
@@ -214,7 +188,7 @@ impl Pipeline {
     pub fn step_with<E: From<FrameError>>(
         &mut self,
         frame: &RenderedFrame,
-        shade: &mut dyn FnMut(&QuadRequest) -> Result<Option<Shaded>, E>,
+        shade: &mut dyn FnMut(&ShadingRequest) -> Result<Option<Shaded>, E>,
     ) -> Result<Step, E> {
         let has_reference = self.check(frame)?;
         let watch = Stopwatch::start();
@@ -229,18 +203,13 @@ impl Pipeline {
             false => Tracked::unknown(self.foveator.geometry.size_px()),
         };
         let mut failed = None;
-        let mut shade = |request: &QuadRequest| shade(request).unwrap_or_else(|error| (failed = Some(error), None).1);
+        let mut shade =
+            |request: &ShadingRequest| shade(request).unwrap_or_else(|error| (failed = Some(error), None).1);
         let outputs = self.run(frame, &candidate, &mut shade);
         failed.map_or(Ok(()), Err)?;
-        let mut outputs = outputs?;
-        let Candidate { lods, pyramid, view, .. } = candidate;
+        let outputs = outputs?;
+        let Candidate { lods, pyramid, .. } = candidate;
         self.foveator.keep(pyramid);
-        if let Some(later) = self.later.take() {
-            // The share of the pixels that were shaded is given in every frame.
-            let share = view.lattices.map_or(1.0, |lattices| share(&lattices, self.foveator.geometry.size_px()));
-            outputs.iter_mut().for_each(|output| output.chosen = Some(Chosen { share, shading: None }));
-            self.set_foveation(later).expect("the pipeline was made with this foveation");
-        }
         Ok(Step { gaze_px, ecc_deg, lods, tracked, outputs, foveation_ms })
     }
 
@@ -298,14 +267,8 @@ impl Pipeline {
     }
 }
 
-/// Share of the pixels that have a sample.
-fn share(lattices: &Lattices, [width, height]: [u32; 2]) -> f64 {
-    let samples: u32 = lattices.as_slice().iter().map(|lattice| lattice.points[0] * lattice.points[1]).sum();
-    f64::from(samples) / (f64::from(width) * f64::from(height))
-}
-
 fn check_oracle(foveation: &Foveation) -> Result<(), CreateError> {
-    if matches!(foveation.filter, Filter::Sparse | Filter::Quads) {
+    if foveation.filter == Filter::Quads {
         let expected = "another one: the oracle's best level of detail is not defined for moving samples".into();
         Err(SettingsError { setting: "foveation filter", found: foveation.filter.name().into(), expected })?;
     }

@@ -10,7 +10,7 @@ pub use reference::reference_offsets_px;
 pub use request::{FrameRequest, Wanted};
 
 use crate::error::InputError;
-use crate::frame::{QuadRequest, RenderedFrame, Shaded, SourceFrame};
+use crate::frame::{RenderedFrame, Shaded, ShadingRequest, SourceFrame};
 use glam::{DMat4, DVec3};
 
 /// Properties of a source that are known before its first frame is read.
@@ -81,7 +81,7 @@ pub trait FrameSource {
     ///
     /// # Errors
     /// As for `render`.
-    fn shade(&mut self, _frame: &RenderedFrame, _request: &QuadRequest) -> Result<Option<Shaded>, InputError> {
+    fn shade(&mut self, _frame: &RenderedFrame, _request: &ShadingRequest) -> Result<Option<Shaded>, InputError> {
         Ok(None)
     }
 

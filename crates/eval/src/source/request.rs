@@ -1,9 +1,7 @@
 //! Requests of callers to a source.
 
 use crate::frame::{DeviceHandle, RenderedFrame, SourceFrame};
-use crate::lattices::SparseGeometry;
-use crate::quad_views::QuadViews;
-use afterimage::Lattices;
+use crate::quad_views::{Geometry, QuadViews};
 
 /// A request of a frame. Sources without a renderer give the full-rate frame for every request.
 #[derive(Clone)]
@@ -14,11 +12,11 @@ pub struct FrameRequest {
     pub gaze_px: [f32; 2],
     /// Content to render. A source with its own sampling pattern uses that pattern instead.
     pub wanted: Wanted,
-    /// Jitter of the projection in pixels: a point at `p` without jitter is at `p + jitter_px`. Each pixel or point of
-    /// a lattice then has one sample. `None`: no jitter, and pixels at full rate as the source filters them.
+    /// Jitter of the projection in pixels: a point at `p` without jitter is at `p + jitter_px`. Each pixel then has one
+    /// sample. `None`: no jitter, and pixels at full rate as the source filters them.
     pub jitter_px: Option<[f32; 2]>,
     /// Where depth and motion of a foveated frame are needed.
-    pub geometry: SparseGeometry,
+    pub geometry: Geometry,
     /// Whether the full-rate frame is wanted in memory, as the reference of metrics.
     pub reference: bool,
     /// Samples a pixel of the reference: the mean of that many jittered full-rate frames. `None`: as the source filters
@@ -33,8 +31,6 @@ pub struct FrameRequest {
 pub enum Wanted {
     /// The full-rate frame, which a simulator foveates.
     FullRate,
-    /// The samples of these lattices.
-    Lattices(Lattices),
     /// These quad views, composed.
     QuadViews(QuadViews),
     /// Depth and motion of every pixel. The pixels that a method chooses are shaded then
@@ -50,7 +46,7 @@ impl FrameRequest {
             gaze_px: [0.0; 2],
             wanted: Wanted::FullRate,
             jitter_px: None,
-            geometry: SparseGeometry::Full,
+            geometry: Geometry::Full,
             reference: true,
             reference_samples: None,
             device: None,
@@ -67,7 +63,7 @@ impl FrameRequest {
     pub fn needs_full_rate(&self) -> bool {
         match self.wanted {
             Wanted::FullRate => true,
-            Wanted::Lattices(_) | Wanted::QuadViews(_) => self.geometry == SparseGeometry::Full,
+            Wanted::QuadViews(_) => self.geometry == Geometry::Full,
             Wanted::Surfaces => false,
         }
     }

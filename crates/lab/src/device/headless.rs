@@ -152,7 +152,7 @@ impl Headless {
     }
 
     /// Waits for submitted work and reads a layer of a texture whose texels have the memory layout of `T`.
-    pub(crate) fn read<T: bytemuck::Pod>(&self, texture: &Texture, layer: u32) -> Image<T> {
+    pub fn read<T: bytemuck::Pod>(&self, texture: &Texture, layer: u32) -> Image<T> {
         let [width, height] = [texture.width(), texture.height()];
         let padded = (width * size_of::<T>() as u32).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None };

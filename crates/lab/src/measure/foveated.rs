@@ -2,10 +2,8 @@
 
 use super::traced_view::{FrameTime, Pattern, TracedView};
 use crate::clock::Quartiles;
-use crate::lattices::SparseGeometry;
 use crate::trace::Tracer;
 use crate::trace::sampling::{Layers, Regions, Sampling};
-use afterimage::SettingsError;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -70,19 +68,17 @@ pub fn regions(of: [u32; 3], is_quartered: bool, radius_scale: f32, gaze_px: [f3
         sampling: Sampling::Regions(Regions { samples, radius_scale, ..Regions::default() }),
         samples: samples[0],
         gaze_px,
-        sparse: None,
     }
 }
 
-/// One path a point of the lattices of `run --foveation sparse --rate-mid 4 --rate-far 8`, against one a pixel.
+/// One path a block of 1, 4 or 8 pixels a side, against one a pixel.
 pub fn one_path(gaze_px: [f32; 2]) -> Pattern {
     let regions = Regions { samples: [1; 3], blocks: [4, 8], diameters_deg: [5.0, 15.0], ..Regions::default() };
     Pattern {
-        name: "lattices of steps 1, 4, 8, one path a point".into(),
+        name: "blocks of 1, 4, 8 pixels, one path each".into(),
         sampling: Sampling::Regions(regions),
         samples: 1,
         gaze_px,
-        sparse: Some(SparseGeometry::Full),
     }
 }
 
@@ -98,22 +94,18 @@ pub fn patterns(subject: &TracedView) -> Vec<Pattern> {
             sampling: Sampling::Layers(Layers::default()),
             samples: 4,
             gaze_px: middle,
-            sparse: None,
         },
     ]
 }
 
 /// Times every pattern and uniform frames, `rounds` times each.
-///
-/// # Errors
-/// If the samples of a sparse pattern cannot lie on lattices.
 pub fn measure(
     subject: &TracedView,
     tracer: &Tracer,
     patterns: &[Pattern],
     rounds: u64,
     by_wall: bool,
-) -> Result<Vec<PatternReport>, SettingsError> {
+) -> Vec<PatternReport> {
     let geometry = *subject.geometry();
     let size = geometry.size_px();
     let pixels = f64::from(size[0]) * f64::from(size[1]);
@@ -130,7 +122,7 @@ pub fn measure(
             took.push(subject.uniform(tracer, samples, every(samples), round));
         }
         for (i, p) in patterns.iter().enumerate() {
-            let frame = subject.foveated(tracer, p, round)?;
+            let frame = subject.foveated(tracer, p, round);
             traced[i] = frame.samples;
             took[i].push(frame.took);
         }
@@ -169,5 +161,5 @@ pub fn measure(
         report.share_of_reduction = report.time_reduction.map(|time| time / report.sample_reduction);
         report
     };
-    Ok(patterns.iter().enumerate().map(report).collect())
+    patterns.iter().enumerate().map(report).collect()
 }

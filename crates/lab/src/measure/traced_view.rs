@@ -3,19 +3,17 @@
 use crate::clock::Stopwatch;
 use crate::device::Backend;
 use crate::error::InputError;
-use crate::frame::{Content, DeviceSamples, FoveatedFrame, OnDevice, RenderedFrame, SourceFrame};
-use crate::lattices::{SampleOrder, SparseGeometry};
+use crate::frame::{Content, FoveatedFrame, RenderedFrame, ShadingRequest, SourceFrame};
 use crate::source::{Light, SceneChoice, SceneOptions, ViewedScene};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
-use crate::trace::sampling::Sampling;
+use crate::trace::sampling::{Sampling, trace_requested};
 use crate::trace::settings::TraceSettings;
 use crate::trace::surfaces::Surfaces;
 use crate::trace::view::View;
 use crate::trace::work::Spans;
 use crate::trace::world::World;
-use afterimage::{Image, SettingsError, ViewGeometry};
-use std::cell::OnceCell;
+use afterimage::{Image, ViewGeometry};
 use std::time::Duration;
 
 /// A sampling pattern and gaze.
@@ -29,8 +27,6 @@ pub struct Pattern {
     pub samples: u32,
     /// Gaze, pixels.
     pub gaze_px: [f32; 2],
-    /// Samples in their places, and what is known of depth and motion there; `None`: filled frames.
-    pub sparse: Option<SparseGeometry>,
 }
 
 /// Offset of the frame numbers that seed full-rate frames.
@@ -44,14 +40,12 @@ pub struct TracedView {
     pub world: World,
     of: ViewedScene,
     size: [u32; 2],
-    /// Where a tracer on a device leaves the samples of sparse frames.
-    on_device: OnceCell<DeviceSamples>,
 }
 
-/// A foveated frame, where its tracer leaves it.
+/// A foveated frame.
 pub struct Foveated {
-    /// Filled between the samples; or samples in their places.
-    pub content: Content,
+    /// Filled between the samples.
+    pub frame: FoveatedFrame,
     /// Number of samples.
     pub samples: u64,
     /// Time to trace it.
@@ -84,7 +78,7 @@ impl TracedView {
             options: SceneOptions { size: Some(size), hfov_deg, fps: None },
             ..SceneChoice::new(name)
         })?;
-        Ok(Self { name: name.to_owned(), world: World::new(&of.scene), of, size, on_device: OnceCell::new() })
+        Ok(Self { name: name.to_owned(), world: World::new(&of.scene), of, size })
     }
 
     /// Features of the scene file that are ignored or approximated.
@@ -125,17 +119,11 @@ impl TracedView {
     }
 
     /// What a post-process needs to know of a frame in memory besides its color.
-    fn without_color(&self, tracer: &Tracer, index: u64, content: &Content) -> SourceFrame {
+    fn without_color(&self, tracer: &Tracer, index: u64) -> SourceFrame {
         let ([view, before], _) = self.of.views(index);
         let frame = SourceFrame::without_images(Some(view.previous_from_current(&before)), index == 0);
-        match content {
-            // Depth and motion are with the samples.
-            Content::OnDevice(_) => frame,
-            _ => {
-                let seen = Surfaces::trace(&self.world, &view, &before, tracer.effects(&self.world));
-                SourceFrame { depth: Some(seen.depth), motion: Some(seen.motion), ..frame }
-            }
-        }
+        let seen = Surfaces::trace(&self.world, &view, &before, tracer.effects(&self.world));
+        SourceFrame { depth: Some(seen.depth), motion: Some(seen.motion), ..frame }
     }
 
     /// Traces a few samples, which is enough to run every kernel.
@@ -150,57 +138,28 @@ impl TracedView {
         self.size.map(|s| 0.5 * (s as f32 - 1.0))
     }
 
-    /// Traces a foveated frame. Its time includes planning and interpolation, and for samples on a device that ask for
-    /// them depth and motion.
-    ///
-    /// # Errors
-    /// If the samples of a sparse pattern cannot lie on lattices.
-    pub fn foveated(&self, tracer: &Tracer, pattern: &Pattern, index: u64) -> Result<Foveated, SettingsError> {
-        let &Pattern { sampling, samples, gaze_px, sparse, .. } = pattern;
+    /// Traces a foveated frame. Its time includes planning and interpolation.
+    pub fn foveated(&self, tracer: &Tracer, pattern: &Pattern, index: u64) -> Foveated {
+        let &Pattern { sampling, samples, gaze_px, .. } = pattern;
         let (world, geometry, view) = (&self.world, self.geometry(), self.view(index));
-        let on_device = |device| self.on_device.get_or_init(|| DeviceSamples::new(device, self.size)).clone();
-        let held = if let Tracer::Gpu(tracer) = tracer { Some(on_device(tracer.device())) } else { None };
         let watch = Stopwatch::start();
-        let in_memory = |frame: FoveatedFrame| {
-            let took = FrameTime::by(&watch, None, frame.rays);
-            Foveated { samples: frame.samples.iter().sum(), content: Content::Foveated(frame), took }
-        };
-        let Some(placed) = sparse else {
-            return Ok(in_memory(sampling.plan(geometry, gaze_px, samples, index).trace(tracer, world, &view, index)));
-        };
-        let plan = sampling.sparse_plan(geometry, gaze_px, samples, index, SampleOrder::default())?;
-        Ok(match (tracer, held) {
-            (Tracer::Gpu(tracer), Some(mut held)) => {
-                let before = self.view(index.saturating_sub(1));
-                plan.trace_in_place(tracer, world, [&view, &before], index, placed, &mut held);
-                tracer.device().wait();
-                let took = FrameTime::by(&watch, None, 0);
-                let samples = held.samples.iter().sum();
-                Foveated { content: OnDevice::Samples(held).into(), samples, took }
-            }
-            _ => in_memory(plan.trace(tracer, world, &view, index)),
-        })
+        let frame = sampling.plan(geometry, gaze_px, samples, index).trace(tracer, world, &view, index);
+        let took = FrameTime::by(&watch, None, frame.rays);
+        Foveated { samples: frame.samples.iter().sum(), frame, took }
     }
 
-    /// A foveated frame for a post-process, without a reference.
-    ///
-    /// # Errors
-    /// As for [`foveated`](Self::foveated).
-    pub fn rendered(
-        &self,
-        tracer: &Tracer,
-        pattern: &Pattern,
-        index: u64,
-    ) -> Result<(RenderedFrame, FrameTime), SettingsError> {
-        let Foveated { content, samples, took } = self.foveated(tracer, pattern, index)?;
-        let reference = self.without_color(tracer, index, &content);
-        let frame = RenderedFrame {
-            content,
-            geometry: pattern.sparse.unwrap_or_default(),
-            samples: Some(samples),
-            ..RenderedFrame::full_rate(index, pattern.gaze_px, reference)
-        };
-        Ok((frame, took))
+    /// Depth and motion of a frame whose pixels a post-process chooses, without a reference.
+    pub fn surfaces(&self, tracer: &Tracer, gaze_px: [f32; 2], index: u64) -> RenderedFrame {
+        let reference = self.without_color(tracer, index);
+        RenderedFrame { content: Content::Surfaces, ..RenderedFrame::full_rate(index, gaze_px, reference) }
+    }
+
+    /// Traces the pixels of frame `index` that a post-process chose, with the paths that it asks for or with `samples`.
+    pub fn shade(&self, tracer: &Tracer, request: &ShadingRequest, samples: u32, index: u64) -> (Film, FrameTime) {
+        let watch = Stopwatch::start();
+        let film = trace_requested(tracer, &self.world, &self.view(index), index, request, samples);
+        let took = FrameTime::by(&watch, None, film.rays);
+        (film, took)
     }
 
     /// Traces `samples` of every pixel. With `every` above 1, traces only every `every`-th band of rows and scales the

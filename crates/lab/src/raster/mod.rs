@@ -15,10 +15,11 @@
 //! [`MotionConvention`](afterimage::MotionConvention). Motion contains the motion of the camera and of the vertices
 //! (rigid, skinned, morphing). The sky moves by the camera's rotation.
 //!
-//! [`record_foveated`](Raster::record_foveated) draws the samples of a sparse frame alone, each lattice as a small view
-//! of its own in an atlas. [`record_quad_views`](Raster::record_quad_views) draws regions as views without moving
-//! samples, and a [`Composer`] enlarges them into a frame. Triangles outside a view are left out in groups, at full
-//! rate as well.
+//! A frame is drawn in one of three ways: at full rate; as a planned frame, depth and motion of every pixel first
+//! ([`record_surfaces`](Raster::record_surfaces)), then the color of chosen quads
+//! ([`record_quads`](Raster::record_quads)) or of one pixel of each quad ([`record_half`](Raster::record_half)); or as
+//! quad views ([`record_quad_views`](Raster::record_quad_views)), regions at lower resolutions that a [`Composer`]
+//! enlarges. Triangles outside a view are left out in groups, at full rate as well.
 //!
 //! - **Alpha.** MASK: alpha test against the cutoff; in the color pass, alpha to coverage smooths the edge. BLEND and
 //!   transmissive surfaces: drawn after the sky, back to front by material and by triangle within a material, without
@@ -51,7 +52,7 @@ pub use lighting::{DEFAULT_SKY, DEFAULT_SUN, DEFAULT_SUN_DIRECTION};
 pub use pipelines::{COLOR_FORMAT, DEPTH_FORMAT, MOTION_FORMAT};
 pub use targets::{FoveatedTargets, Targets};
 pub(crate) use targets::{read_color, read_distance};
-pub use window::{AtlasLayout, PixelSamples};
+pub use window::AtlasLayout;
 
 use crate::device::{bind_group, empty_buffer};
 use crate::error::{Bound, Exceeded, InputError};
@@ -90,7 +91,7 @@ impl Default for RasterSettings {
 pub struct Raster {
     layouts: Layouts,
     pipelines: Pipelines,
-    /// Pipelines of lattices with one sample per pixel; none before the first foveated frame.
+    /// Pipelines with one sample per pixel; none before the first planned frame.
     point_pipelines: OnceCell<ColorPipelines>,
     /// `None` before the first frame that draws to chosen quads.
     chunk_test: OnceCell<ChunkTest>,

@@ -6,11 +6,10 @@ use super::frame::FrameUniforms;
 use super::pipelines::ColorPipelines;
 use super::targets::{FoveatedTargets, Targets};
 use super::vertices::{AlphaKind, STRIDE};
-use super::window::{DrawCall, Frustum, PixelSamples, Window};
+use super::window::{DrawCall, Frustum, Window};
 use crate::device::bind_group;
 use crate::quad_views::QuadViews;
 use crate::trace::view::View;
-use afterimage::Lattices;
 use afterimage::internal::filled;
 use glam::DVec3;
 use std::ops::Range;
@@ -66,26 +65,36 @@ impl Raster {
         self.color_pass(encoder, target, depth, &self.pipelines.color, &sections, &blended);
     }
 
-    /// Records a foveated frame: each lattice of `lattices`, which lie in an atlas
-    /// ([`AtlasLayout::place`](super::AtlasLayout::place)), as a view of its own in `targets`. Sample (i, j) of a
-    /// lattice shows the full-rate frame's pixel `first_px + step * (i, j)`; motion is in pixels of the full-rate
-    /// frame. `view` and `previous` are those of the full-rate frame.
-    ///
-    /// Lattices of step 1 have `samples` a pixel. Other lattices have one sample at the pixel's centre.
-    ///
-    /// # Panics
-    /// If the atlas is larger than `targets`.
-    pub fn record_foveated(
+    /// Records a full-rate frame with one sample per pixel, at its centre, in `targets`.
+    pub fn record_points(
+        &mut self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        views: [&View; 2],
+        targets: &FoveatedTargets,
+    ) {
+        let window = Window::full(views[0].geometry().size_px()).with_points();
+        self.record_windows(device, encoder, views, std::iter::once(window), targets);
+    }
+
+    /// Records the color of one pixel of each quad of 2x2 pixels, with one sample, into the color of `targets` of half
+    /// the width and height. `place_px`: the pixel's place in its quad.
+    pub fn record_half(
         &mut self,
         device: &Device,
         encoder: &mut CommandEncoder,
         [view, previous]: [&View; 2],
-        (lattices, samples): (&Lattices, PixelSamples),
+        place_px: [u32; 2],
         targets: &FoveatedTargets,
     ) {
-        let size = view.geometry().size_px();
-        let windows = lattices.as_slice().iter().map(|lattice| Window::of_lattice(lattice, size, samples));
-        self.record_windows(device, encoder, [view, previous], windows, targets);
+        self.upload(device, encoder);
+        let section = self.section(device, [view, previous], Window::half(view.geometry().size_px(), place_px));
+        self.shadows(encoder, &section.group);
+        let blended = self.back_to_front(device, view);
+        let FoveatedTargets { atlas: Targets { views: [color, ..], .. }, point_depth } = targets;
+        let target = target(color, None, LoadOp::Clear(Color::BLACK));
+        let pipelines = self.point_pipelines(device);
+        self.color_pass(encoder, target, point_depth, pipelines, &[section], &blended);
     }
 
     /// Records quad views, which lie in an atlas ([`AtlasLayout::place_views`](super::AtlasLayout::place_views)), in

@@ -62,7 +62,7 @@ pub(crate) fn read_distance(device: &Headless, texture: &Texture, near: f32) -> 
 pub struct FoveatedTargets {
     /// Atlases of color, depth and motion. Motion is in pixels of the full-rate frame.
     pub atlas: Targets,
-    /// Depth of the color of lattices with one sample per pixel.
+    /// Depth of color with one sample per pixel.
     pub(super) point_depth: TextureView,
 }
 

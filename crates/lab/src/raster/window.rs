@@ -4,37 +4,24 @@ use super::pixels::Pixels;
 use super::vertices::AlphaKind;
 use crate::quad_views::{QuadView, QuadViews};
 use crate::trace::view::View;
-use afterimage::{Lattice, Lattices};
 use glam::DVec3;
 use std::ops::Range;
 
-/// Layout of the samples of foveated frames in their atlas.
+/// Layout of quad views in their atlas.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AtlasLayout {
-    /// Lattices lie below each other, in an atlas that is as small as possible. Depth and color of the full-rate
-    /// lattice differ from those of the full-rate frame by rounding: rasterizers interpolate relative to the target's
-    /// corner.
+    /// Views lie below each other, in an atlas that is as small as possible. Depth and color of the full-rate view
+    /// differ from those of the full-rate frame by rounding: rasterizers interpolate relative to the target's corner.
     #[default]
     Compact,
-    /// The full-rate lattice at its own pixels of an atlas as large as the frame, the others below that: the full-rate
+    /// The full-rate view at its own pixels of an atlas as large as the frame, the others below that: the full-rate
     /// frame's viewport and a scissor. Depth, motion and color are the full-rate frame's, bit for bit. Costs the memory
     /// of full-rate targets.
     InPlace,
 }
 
 impl AtlasLayout {
-    /// `lattices` in an atlas, finest first, and the atlas's size in texels. `size`: the full-rate frame's, in pixels.
-    pub fn place(self, lattices: &Lattices, size: [u32; 2]) -> (Lattices, [u32; 2]) {
-        let mut placed = lattices.as_slice().to_vec();
-        let mut used = self.start(size);
-        for lattice in &mut placed {
-            let full_rate = (lattice.step == 1).then_some(lattice.first_px);
-            lattice.atlas_texel = Some(self.next(&mut used, full_rate, lattice.points));
-        }
-        (Lattices::new(&placed).expect("only the texels are new"), used)
-    }
-
-    /// As [`place`](Self::place), for quad views.
+    /// `views` in an atlas, finest first, and the atlas's size in texels. `size`: the full-rate frame's, in pixels.
     pub fn place_views(self, views: &QuadViews, size: [u32; 2]) -> (QuadViews, [u32; 2]) {
         let mut placed = views.as_slice().to_vec();
         let mut used = self.start(size);
@@ -50,7 +37,7 @@ impl AtlasLayout {
         if self == Self::InPlace { size } else { [0; 2] }
     }
 
-    /// Corner of the next lattice or view. `full_rate`: its first pixel, if it is at full rate.
+    /// Corner of the next view. `full_rate`: its first pixel, if it is at full rate.
     fn next(self, used: &mut [u32; 2], full_rate: Option<[u32; 2]>, points: [u32; 2]) -> [u32; 2] {
         let corner = match (self, full_rate) {
             (Self::InPlace, Some(first)) => first,
@@ -61,16 +48,6 @@ impl AtlasLayout {
         *used = [0, 1].map(|i| used[i].max(corner[i] + points[i]));
         corner
     }
-}
-
-/// Samples of a pixel of lattices of step 1. Points of other lattices have one.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PixelSamples {
-    /// Four, resolved by averaging, as the full-rate frame has.
-    #[default]
-    Four,
-    /// One, at the pixel's centre, as in a jittered frame.
-    One,
 }
 
 /// Part of a target, and the pixels of the full-rate frame that it shows: `first_px + step * (i, j)`.
@@ -111,26 +88,20 @@ impl Window {
         Self { is_point: true, ..self }
     }
 
-    /// A lattice in an atlas, of frames of `size` pixels. A lattice of step 1 has the full-rate frame's viewport, moved
-    /// by whole pixels, so that its vertices get the full-rate frame's positions.
-    pub fn of_lattice(lattice: &Lattice, size: [u32; 2], samples: PixelSamples) -> Self {
-        let texel = lattice.atlas_texel.unwrap_or_default();
-        let (first, step) = (lattice.first_px, f64::from(lattice.step));
-        let scissor = [texel, lattice.points];
-        let low = first.map(|v| f64::from(v) - 0.5 * step);
-        let visible_px = [low, [0, 1].map(|i| low[i] + f64::from(lattice.points[i]) * step)];
-        let whole = Self { scissor, visible_px, ..Self::full(size) };
-        if lattice.step == 1 {
-            let is_point = samples == PixelSamples::One;
-            return Self { origin: [0, 1].map(|i| texel[i] as f32 - first[i] as f32), is_point, ..whole };
-        }
+    /// The frame of `size` pixels at half the width and height, rounded up, with one sample a pixel: its pixel (x, y)
+    /// shows pixel (2x, 2y) + `place_px`.
+    pub fn half(size: [u32; 2], place_px: [u32; 2]) -> Self {
+        let half = size.map(|side| side.div_ceil(2));
+        let first = place_px.map(|v| v as f32);
+        let low = first.map(|v| f64::from(v) - 1.0);
         Self {
-            origin: texel.map(|v| v as f32),
-            size: lattice.points,
-            first_px: first.map(|v| v as f32),
-            step: lattice.step as f32,
+            size: half,
+            scissor: [[0; 2], half],
+            first_px: first,
+            step: 2.0,
             is_point: true,
-            ..whole
+            visible_px: [low, [0, 1].map(|i| low[i] + 2.0 * f64::from(half[i]))],
+            ..Self::full(size)
         }
     }
 
@@ -138,8 +109,14 @@ impl Window {
     pub fn of_quad_view(view: &QuadView, size: [u32; 2]) -> Self {
         let &QuadView { step, first, points, atlas_texel, .. } = view;
         if step == 1.0 {
-            let lattice = Lattice { step: 1, first_px: first, points, atlas_texel: Some(atlas_texel) };
-            return Self::of_lattice(&lattice, size, PixelSamples::Four);
+            // The full-rate frame's viewport, moved by whole pixels, so that its vertices get that frame's positions.
+            let low = first.map(|v| f64::from(v) - 0.5);
+            return Self {
+                origin: [0, 1].map(|i| atlas_texel[i] as f32 - first[i] as f32),
+                scissor: [atlas_texel, points],
+                visible_px: [low, [0, 1].map(|i| low[i] + f64::from(points[i]))],
+                ..Self::full(size)
+            };
         }
         let low = first.map(|v| f64::from(v) * f64::from(step) - 0.5);
         Self {
@@ -202,17 +179,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn windows_show_the_pixels_of_their_lattices() {
-        let texel = |l: Lattice, at| Lattice { atlas_texel: Some(at), ..l };
-        let fovea = texel(Lattice::covering(1, [40, 30], [72, 62], [0, 0]), [0, 0]);
-        let far = texel(Lattice::covering(8, [0, 0], [100, 90], [3, 5]), [0, 32]);
-        for lattice in [fovea, far] {
-            let window = Window::of_lattice(&lattice, [100, 90], PixelSamples::Four);
-            for (point, i) in [([0, 0], 0), ([0, 0], 1), ([7, 3], 0), ([7, 3], 1)] {
-                let target = (lattice.atlas_texel.unwrap()[i] + point[i]) as f32;
-                let px = window.first_px[i] + (target - window.origin[i]) * window.step;
-                assert_eq!(px, (lattice.first_px[i] + lattice.step * point[i]) as f32);
-            }
+    fn half_the_frame_shows_one_pixel_of_each_quad() {
+        let window = Window::half([101, 90], [1, 0]);
+        assert_eq!(window.size, [51, 45]);
+        for (point, i) in [([0, 0], 0), ([0, 0], 1), ([7, 3], 0), ([7, 3], 1)] {
+            let px = window.first_px[i] + (point[i] as f32 - window.origin[i]) * window.step;
+            assert_eq!(px, ([1, 0][i] + 2 * point[i]) as f32);
         }
     }
 }

@@ -9,18 +9,16 @@ use crate::clock::{Elapsed, Stopwatch};
 use crate::device::{Headless, PassClock};
 use crate::error::InputError;
 use crate::frame::{
-    ComposedFrame, DeviceFrame, DeviceHandle, OnDevice, QuadRequest, RenderedFrame, Shaded, ShadedColor, SourceFrame,
-    SparseFrame,
+    ComposedFrame, DeviceFrame, DeviceHandle, OnDevice, RenderedFrame, Shaded, ShadedColor, ShadingRequest, SourceFrame,
 };
-use crate::lattices::SparseGeometry;
 use crate::quad_views::QuadViews;
 use crate::raster::{
-    AtlasLayout, Composer, FoveatedTargets, PixelSamples, Raster, RasterSettings, Targets, read_color, read_distance,
+    AtlasLayout, Composer, FoveatedTargets, Raster, RasterSettings, Targets, read_color, read_distance,
 };
 use crate::scene::Scene;
 use crate::trace::view::View;
+use afterimage::Image;
 use afterimage::internal::filled;
-use afterimage::{Image, Lattice, Lattices};
 use glam::DMat4;
 use std::sync::Arc;
 use wgpu::{Buffer, BufferUsages, CommandEncoder, Device, Texture};
@@ -47,6 +45,7 @@ impl ViewedScene {
             raster,
             foveated: [const { None }; 2],
             points: None,
+            half: None,
             supersampled: None,
             composer: None,
         })
@@ -58,15 +57,17 @@ impl ViewedScene {
 /// Each frame is a function of its index alone: the scene at `index / fps` seconds, with motion from
 /// `(index - 1) / fps`. Frame 0 is a cut without motion. Depth, motion and `previous_from_current` are always present.
 /// Depth and motion are sampled at pixel centres; color is the mean of four samples, or of as many as
-/// [`FrameRequest::reference_samples`] asks for. Jittered frames have one sample a pixel or point.
+/// [`FrameRequest::reference_samples`] asks for. Jittered frames have one sample a pixel.
 pub struct RasterSource {
     of: ViewedScene,
     device: Arc<Headless>,
     raster: Raster,
-    /// Targets of foveated frames, by layout of their atlases; none before the first such frame.
+    /// Targets of quad views, by layout of their atlases; none before the first such frame.
     foveated: [Option<FoveatedTargets>; 2],
     /// Targets of full-rate frames with one sample a pixel; none before the first such frame.
     points: Option<FoveatedTargets>,
+    /// Targets of half the width and height; none before the first such frame.
+    half: Option<FoveatedTargets>,
     /// Color of a scene that stands still, and its samples a pixel.
     supersampled: Option<(u32, Image<[f32; 3]>)>,
     /// None before the first frame of quad views.
@@ -155,18 +156,13 @@ impl RasterSource {
     ) -> RenderedFrame {
         let previous_from_current = views[0].previous_from_current(&views[1]);
         let frame = request.answer(SourceFrame::without_images(Some(previous_from_current), request.index == 0));
-        let (views, pixel_samples, jitter_px) = match request.jitter_px {
-            Some(jitter_px) => (views.map(|view| view.jittered(jitter_px)), PixelSamples::One, jitter_px),
-            None => (views, PixelSamples::Four, [0.0; 2]),
+        let (views, jitter_px) = match request.jitter_px {
+            Some(jitter_px) => (views.map(|view| view.jittered(jitter_px)), jitter_px),
+            None => (views, [0.0; 2]),
         };
         let views = [&views[0], &views[1]];
         let (content, samples) = match &request.wanted {
             Wanted::FullRate => return frame,
-            Wanted::Lattices(lattices) => {
-                let sparse = self.record_lattices(encoder, views, (lattices, pixel_samples), layout);
-                let points = lattices.as_slice().iter().map(|l| l.points.map(u64::from).iter().product::<u64>());
-                (OnDevice::Atlas(sparse), Some(points.sum()))
-            }
             Wanted::QuadViews(quads) => {
                 (OnDevice::Composed(self.record_quad_views(encoder, views, quads, layout)), Some(quads.pixels()))
             }
@@ -224,14 +220,11 @@ impl RasterSource {
         jitter_px: [f32; 2],
     ) -> Result<(DeviceFrame, [View; 2], Elapsed), InputError> {
         let size = self.of.info().size;
-        let whole = Lattice { atlas_texel: Some([0; 2]), ..Lattice::covering(1, [0; 2], size, [0; 2]) };
-        let whole = Lattices::new(&[whole]).expect("one lattice covers the frame");
         let (views, took) = self.submit_timed(|source, encoder| {
             let views = source.pose(request).map(|view| view.jittered(jitter_px));
             let device = &source.device.device;
             let targets = fitted(&mut source.points, device, size);
-            let points = (&whole, PixelSamples::One);
-            source.raster.record_foveated(device, encoder, [&views[0], &views[1]], points, targets);
+            source.raster.record_points(device, encoder, [&views[0], &views[1]], targets);
             views
         })?;
         let targets = &self.points.as_ref().expect("they were drawn to").atlas;
@@ -248,35 +241,6 @@ impl RasterSource {
         let (views, times) = self.of.views(request.index);
         self.raster.pose(&self.of.scene, times[0], times[1]);
         views
-    }
-
-    /// Renders the samples of `lattices` of frame `index`, without reading them back: [`Raster::record_foveated`].
-    /// Returns the targets, and the lattices with their places in the atlases.
-    pub fn draw_foveated(
-        &mut self,
-        index: u64,
-        lattices: &Lattices,
-        layout: AtlasLayout,
-    ) -> (&FoveatedTargets, Lattices) {
-        let frame = self.submit(|source, encoder| {
-            let [view, previous] = source.pose(&FrameRequest::full_rate(index));
-            source.record_lattices(encoder, [&view, &previous], (lattices, PixelSamples::Four), layout)
-        });
-        (self.foveated[layout as usize].as_ref().expect("they were drawn to"), frame.lattices)
-    }
-
-    fn record_lattices(
-        &mut self,
-        encoder: &mut CommandEncoder,
-        views: [&View; 2],
-        (lattices, samples): (&Lattices, PixelSamples),
-        layout: AtlasLayout,
-    ) -> SparseFrame {
-        let (lattices, size) = layout.place(lattices, self.of.info().size);
-        let device = &self.device.device;
-        let targets = fitted(&mut self.foveated[layout as usize], device, size);
-        self.raster.record_foveated(device, encoder, views, (&lattices, samples), targets);
-        SparseFrame { atlas: on_device(&self.device, &targets.atlas, self.raster.near()), lattices }
     }
 
     /// Depth and motion of every pixel, with one sample a pixel.
@@ -296,13 +260,33 @@ impl RasterSource {
         jitter_px: [f32; 2],
         list: &Buffer,
     ) -> Texture {
-        let (views, _) = self.of.views(index);
-        let is_jittered = jitter_px != [0.0; 2];
-        let [view, previous] = views.map(|view| if is_jittered { view.jittered(jitter_px) } else { view });
+        let [view, previous] = self.jittered_views(index, jitter_px);
         let device = &self.device.device;
         let targets = fitted(&mut self.points, device, self.of.info().size);
         self.raster.record_quads(device, encoder, [&view, &previous], list, targets);
         targets.atlas.color.clone()
+    }
+
+    /// Records the color of one pixel of each quad of frame `index`, whose depth and motion were rendered last.
+    /// `place_px`: the pixel's place in its quad. The texture is drawn to again with the next such frame.
+    pub fn record_half(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        index: u64,
+        jitter_px: [f32; 2],
+        place_px: [u32; 2],
+    ) -> Texture {
+        let [view, previous] = self.jittered_views(index, jitter_px);
+        let device = &self.device.device;
+        let targets = fitted(&mut self.half, device, self.of.info().size.map(|side| side.div_ceil(2)));
+        self.raster.record_half(device, encoder, [&view, &previous], place_px, targets);
+        targets.atlas.color.clone()
+    }
+
+    /// The view of frame `index` and the previous one, jittered.
+    fn jittered_views(&self, index: u64, jitter_px: [f32; 2]) -> [View; 2] {
+        let is_jittered = jitter_px != [0.0; 2];
+        self.of.views(index).0.map(|view| if is_jittered { view.jittered(jitter_px) } else { view })
     }
 
     fn record_quad_views(
@@ -402,8 +386,8 @@ impl FrameSource for RasterSource {
         self.of.info()
     }
 
-    /// If the full-rate frame is the reference, foveated frames have the atlas layout in place: their samples at full
-    /// rate are then exactly those of the reference.
+    /// If the full-rate frame is the reference, quad views have the atlas layout in place: their samples at full rate
+    /// are then exactly those of the reference.
     fn render(&mut self, request: &FrameRequest) -> Result<RenderedFrame, InputError> {
         let whole = request.reference.then(|| self.full_rate(request)).transpose()?;
         let Some(whole) = whole else {
@@ -416,30 +400,31 @@ impl FrameSource for RasterSource {
             return Ok(RenderedFrame { render: Some(took), ..whole.jittered(frame, jitter_px) });
         }
         let (frame, took) = self.submit_timed(|source, encoder| {
-            let [view, previous] = source.pose(request);
-            let frame = source.record_content(encoder, request, [view, previous], AtlasLayout::InPlace);
-            // If lattices need depth and motion at every pixel, these are drawn again, so that the time includes them.
-            if matches!(request.wanted, Wanted::Lattices(_)) && request.geometry == SparseGeometry::Full {
-                source.raster.record_surfaces(&source.device.device, encoder, [&view, &previous], None);
-            }
-            frame
+            let views = source.pose(request);
+            source.record_content(encoder, request, views, AtlasLayout::InPlace)
         })?;
         let RenderedFrame { content, jitter_px, samples, .. } = frame;
         Ok(RenderedFrame { content, jitter_px, samples, render: Some(took), ..whole })
     }
 
     /// The colors are those of a full-rate frame with the same jitter and one sample a pixel.
-    fn shade(&mut self, frame: &RenderedFrame, request: &QuadRequest) -> Result<Option<Shaded>, InputError> {
+    fn shade(&mut self, frame: &RenderedFrame, request: &ShadingRequest) -> Result<Option<Shaded>, InputError> {
+        let (index, jitter_px) = (frame.index, frame.jitter_px);
         let list = request.on_device.as_ref().and_then(|list| list.downcast_ref::<Buffer>()).cloned();
-        let list = list.unwrap_or_else(|| quad_list(&self.device.device, &request.quads));
-        let shade =
-            |source: &mut Self, encoder: &mut _| source.record_quads(encoder, frame.index, frame.jitter_px, &list);
-        let (color, took) = self.submit_timed(shade)?;
-        let color = match request.on_device {
+        // Quads that are requested in part are drawn apart.
+        let list = list.filter(|_| request.half_place_px.is_none()).unwrap_or_else(|| {
+            let is_half = request.half_place_px.is_some();
+            quad_list(&self.device.device, &if is_half { request.whole_quads() } else { request.quads() })
+        });
+        let ((color, half), took) = self.submit_timed(|source, encoder| {
+            let color = source.record_quads(encoder, index, jitter_px, &list);
+            (color, request.half_place_px.map(|place_px| source.record_half(encoder, index, jitter_px, place_px)))
+        })?;
+        let answer = |color: Texture| match request.on_device {
             Some(_) => ShadedColor::OnDevice(Arc::new(color)),
             None => ShadedColor::InMemory(read_color(&self.device, &color)),
         };
-        Ok(Some(Shaded { color, took }))
+        Ok(Some(Shaded { color: answer(color), half: half.map(answer), noise: None, took }))
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

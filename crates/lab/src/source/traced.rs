@@ -7,21 +7,16 @@ use super::{FrameRequest, FrameSource, ReadLimits, SceneOptions, SourceInfo, Wan
 use crate::clock::Elapsed;
 use crate::device::{Backend, SpanClock};
 use crate::error::InputError;
-use crate::frame::{
-    Content, DeviceSamples, FoveatedFrame, OnDevice, QuadRequest, RenderedFrame, Shaded, ShadedColor, SourceFrame,
-};
-use crate::lattices::{SampleOrder, SparseGeometry};
+use crate::frame::{Content, RenderedFrame, Shaded, ShadedColor, ShadingRequest, SourceFrame};
 use crate::trace::Tracer;
 use crate::trace::film::Film;
-use crate::trace::sampling::{Sampling, SparsePlan};
+use crate::trace::sampling::{Sampling, trace_requested};
 use crate::trace::settings::TraceSettings;
 use crate::trace::surfaces::Surfaces;
 use crate::trace::view::View;
 use crate::trace::work::Spans;
 use crate::trace::world::World;
-use afterimage::SettingsError;
 use glam::DMat4;
-use std::sync::Arc;
 
 /// Samples traced per call, which bounds the memory of their paths.
 const STEP: u32 = 1 << 20;
@@ -33,9 +28,6 @@ const FULL_RATE_FRAMES: u64 = 1 << 31;
 pub struct TracedSamples {
     /// Sampling pattern of the foveated frame; `None` leaves foveation to a simulator.
     pub foveated: Option<Sampling>,
-    /// Order in which the pattern's lattices move, for foveated frames that are given as samples
-    /// ([`Sampling::sparse_plan`]); `None`: frames that are reconstructed between the samples.
-    pub sparse: Option<SampleOrder>,
     /// Largest number of samples per pixel of the foveated frame, unless the pattern states its own.
     pub samples: u32,
     /// Samples per pixel of the full-rate frame.
@@ -55,8 +47,6 @@ pub struct TracedSource {
     /// Cached full-rate frame of a static scene, and its time.
     still: Option<(SourceFrame, Elapsed)>,
     clock: SpanClock,
-    /// Samples of the last sparse frame on the tracer's device.
-    on_device: Option<DeviceSamples>,
 }
 
 impl TracedSource {
@@ -93,7 +83,7 @@ impl TracedSource {
         let world = World::new(&of.scene);
         let tracer = Tracer::new(backend, &world, settings)
             .map_err(|e| InputError::device(&of.scene.name, e.to_string(), "trace it on the CPU"))?;
-        Ok(Self { of, world, tracer, samples, still: None, clock: SpanClock::new(backend), on_device: None })
+        Ok(Self { of, world, tracer, samples, still: None, clock: SpanClock::new(backend) })
     }
 
     /// Features of the scene file that are ignored or approximated.
@@ -113,16 +103,6 @@ impl TracedSource {
                 .map_err(|e| InputError::device(&self.of.info().name, e.to_string(), "trace it on the CPU"))?;
         }
         Ok(views)
-    }
-
-    /// Plan of a sparse frame; `None` if frames are filled between their samples, or not foveated.
-    fn sparse_plan(&self, view: &View, index: u64, gaze_px: [f32; 2]) -> Result<Option<SparsePlan>, InputError> {
-        let Some((sampling, order)) = self.samples.foveated.zip(self.samples.sparse) else { return Ok(None) };
-        let plan = sampling.sparse_plan(view.geometry(), gaze_px, self.samples.samples.max(1), index, order);
-        let refused = |e: SettingsError| {
-            InputError::request(&self.of.info().name, e.to_string(), "choose another sampling pattern")
-        };
-        plan.map(Some).map_err(refused)
     }
 
     /// An error if the device was lost, which makes the traced samples invalid.
@@ -180,35 +160,6 @@ impl TracedSource {
         let reference = SourceFrame { color: reference.map_or(seen.color, |frame| frame.color), ..seen };
         Ok(RenderedFrame { content: Content::Surfaces, render: Some(took), ..request.answer(reference) })
     }
-
-    /// The samples of a sparse frame, which stay on the tracer's device, and the time of tracing them. `None` unless
-    /// the frame is sparse and the methods run on that device.
-    fn samples_on_device(
-        &mut self,
-        request: &FrameRequest,
-        [view, previous]: &[View; 2],
-    ) -> Result<Option<(DeviceSamples, Elapsed)>, InputError> {
-        let Tracer::Gpu(tracer) = &self.tracer else { return Ok(None) };
-        let is_wanted =
-            request.device.as_ref().is_some_and(|device| Arc::as_ptr(device).cast() == Arc::as_ptr(tracer.device()));
-        if self.samples.sparse.is_none() || !is_wanted {
-            return Ok(None);
-        }
-        let held = self.on_device.take();
-        let mut held = held.unwrap_or_else(|| DeviceSamples::new(tracer.device(), self.of.info().size));
-        let (traced, took) = self.clock.time(|| {
-            let Some(plan) = self.sparse_plan(view, request.index, request.gaze_px)? else { return Ok(false) };
-            let views = [view, previous];
-            plan.trace_in_place(tracer, &self.world, views, request.index, request.geometry, &mut held);
-            Ok(true)
-        });
-        if !traced? {
-            return Ok(None);
-        }
-        self.check()?;
-        self.on_device = Some(held.clone());
-        Ok(Some((held, took)))
-    }
 }
 
 impl FrameSource for TracedSource {
@@ -232,44 +183,26 @@ impl FrameSource for TracedSource {
         let reference = if request.reference { Some(self.kept_full_rate(request)?.0) } else { None };
         let views = self.pose(request)?;
         let view = &views[0];
-        if let Some((samples, took)) = self.samples_on_device(request, &views)? {
-            let has_geometry = request.geometry == SparseGeometry::Samples;
-            let reference = reference.unwrap_or_else(|| self.without_color(index, &views, !has_geometry));
-            return Ok(RenderedFrame {
-                samples: Some(samples.samples.iter().sum()),
-                content: OnDevice::Samples(samples).into(),
-                render: Some(took),
-                ..request.answer(reference)
-            });
-        }
         let reference = reference.unwrap_or_else(|| self.without_color(index, &views, true));
         let samples = self.samples.samples.max(1);
         let (frame, took) = self.clock.time(|| {
-            if let Some(plan) = self.sparse_plan(view, index, gaze_px)? {
-                return Ok(plan.trace(&self.tracer, &self.world, view, index));
-            }
             let plan = sampling.plan(view.geometry(), gaze_px, samples, index);
-            Ok(plan.trace(&self.tracer, &self.world, view, index))
+            plan.trace(&self.tracer, &self.world, view, index)
         });
-        let frame: FoveatedFrame = frame?;
         self.check()?;
         Ok(RenderedFrame { render: Some(took), ..request.answer(reference).foveated(frame) })
     }
 
-    /// Traces all samples of each chosen pixel, with draws that differ from those of the full-rate frame.
-    fn shade(&mut self, frame: &RenderedFrame, request: &QuadRequest) -> Result<Option<Shaded>, InputError> {
+    /// Traces the paths of each chosen pixel, or all samples of the source, with draws that differ from those of the
+    /// full-rate frame.
+    fn shade(&mut self, frame: &RenderedFrame, request: &ShadingRequest) -> Result<Option<Shaded>, InputError> {
         let [view, _] = self.of.views(frame.index).0;
-        let mut film = Film::new(self.of.info().size);
-        let samples = self.samples.samples.max(1);
-        let ((), took) = self.clock.time(|| {
-            let pixels: Vec<_> = request.pixels(self.of.info().size).collect();
-            for pixels in pixels.chunks((STEP / samples).max(1) as usize) {
-                let spans = Spans::new(pixels.iter().copied(), 0..samples);
-                self.tracer.trace(&self.world, &view, frame.index, &spans, &mut film);
-            }
-        });
+        let (tracer, samples) = (&self.tracer, self.samples.samples);
+        let trace = || trace_requested(tracer, &self.world, &view, frame.index, request, samples);
+        let (film, took) = self.clock.time(trace);
         self.check()?;
-        Ok(Some(Shaded { color: ShadedColor::InMemory(film.color()), took }))
+        let (color, noise) = (ShadedColor::InMemory(film.color()), Some(film.noise()));
+        Ok(Some(Shaded { color, half: None, noise, took }))
     }
 
     fn camera_pose(&self, index: u64) -> Option<CameraPose> {

@@ -108,7 +108,7 @@ impl Film {
     }
 
     /// [`noise_at`](Self::noise_at) of every pixel of the window.
-    pub(super) fn noise(&self) -> Image<[f32; 2]> {
+    pub fn noise(&self) -> Image<[f32; 2]> {
         let [left, top] = self.first;
         Image::from_fn_parallel(self.moments.size(), |[x, y]| self.noise_at([left + x, top + y]))
     }

@@ -10,7 +10,6 @@ mod rig;
 mod controls;
 mod decisions;
 mod sequences;
-mod sparse;
 mod surfaces_lifecycle;
 mod surfaces_scenes;
 mod worst_crops;

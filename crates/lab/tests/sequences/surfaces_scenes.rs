@@ -19,6 +19,7 @@ const FOVEATION: Foveation = Foveation {
     rate_mid: 4,
     rate_far: 8,
     budget: 0.0,
+    single_pixels: false,
 };
 
 fn settings_of(method: MethodKind) -> Settings {

@@ -140,7 +140,11 @@ fn show(options: &Options, keys: &Receiver<String>, shown_frames: &mut u64) -> R
         if options.plant != Some(Plant::Choice) {
             frame.choose()?;
         }
+        let half = frame.halve()?;
         let (encoder, targets) = frame.encoder_and_targets();
+        for (eye, views) in half.iter().flatten().zip(&targets.half_views) {
+            room.half_colors(&queue, encoder, views, eye, moved);
+        }
         for (i, eye) in eyes.iter().enumerate() {
             let depth_of = options.plant.map_or(i, |plant| plant.depth_of(i));
             room.colors(encoder, eye, &targets.views[i].color, &targets.views[depth_of].primed);

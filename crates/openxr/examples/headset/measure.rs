@@ -42,8 +42,11 @@ impl Measure {
         hands: [Hands; 2],
     ) -> Result<Found, Box<dyn std::error::Error>> {
         let size = eyes[0].geometry.size_px();
-        let without_memory = self.without_memory(shown, eyes)?;
-        let images = [self.read(shown.output), self.read(&without_memory), self.full_rate(room, eyes, hands)];
+        let full = self.full_rate(room, eyes, hands);
+        // A frame at half the size lacks the pixels that one without memory has.
+        let color = if shown.is_half { &full } else { &shown.targets.color };
+        let without_memory = self.without_memory(shown, eyes, color)?;
+        let images = [self.read(shown.output), self.read(&without_memory), self.read(&full)];
         let mut sheet = image::RgbaImage::new(2 * size[0], 3 * size[1]);
         for (row, both) in (0..).zip(&images) {
             for (eye, pixels) in (0..).zip(both) {
@@ -53,20 +56,22 @@ impl Measure {
                 }
             }
         }
+        let pixels = if shown.is_half { 1 } else { 4 };
         Ok(Found {
             shown_db: self.psnr(&images[0], &images[2], shown, eyes),
             none_db: self.psnr(&images[1], &images[2], shown, eyes),
-            shaded_percent: 100.0 * 4.0 * f64::from(self.quads(shown)) / f64::from(2 * size[0] * size[1]),
+            shaded_percent: 100.0 * f64::from(pixels * self.quads(shown)) / f64::from(2 * size[0] * size[1]),
             sheet,
         })
     }
 
     /// The same frame without memory: interpolated between the fovea and the even pattern, which it has in common with
-    /// the frame that was shown.
+    /// the frame that was shown. `color`: with the pixels of both.
     fn without_memory(
         &mut self,
         shown: &Shown<'_>,
         eyes: &[Eye; 2],
+        color: &wgpu::Texture,
     ) -> Result<wgpu::Texture, Box<dyn std::error::Error>> {
         let size = eyes[0].geometry.size_px();
         let mut none = match self.none.take().filter(|none| none.desc().size_px == size) {
@@ -89,7 +94,7 @@ impl Measure {
             depth: Some((&shown.targets.depth).into()),
             motion: Some((&shown.targets.motion).into()),
             reset: Reset::All,
-            ..Frame::new(&shown.targets.color, &views, shown.index)
+            ..Frame::new(color, &views, shown.index)
         };
         let mut encoder = self.device.create_command_encoder(&Default::default());
         none.plan(&self.device, &mut encoder, &frame)?;
@@ -110,7 +115,7 @@ impl Measure {
         Afterimage::new(&self.device, &desc, TextureFormat::Rgba16Float)
     }
 
-    fn full_rate(&self, room: &Room, eyes: &[Eye; 2], hands: [Hands; 2]) -> [Pixels; 2] {
+    fn full_rate(&self, room: &Room, eyes: &[Eye; 2], hands: [Hands; 2]) -> wgpu::Texture {
         let targets = Targets::new(&self.device, eyes[0].geometry.size_px());
         let mut encoder = self.device.create_command_encoder(&Default::default());
         for (eye, views) in eyes.iter().zip(&targets.views) {
@@ -123,7 +128,7 @@ impl Measure {
             room.colors(&mut encoder, &eye, &views.color, &views.depth);
         }
         self.queue.submit([encoder.finish()]);
-        self.read(&targets.color)
+        targets.color
     }
 
     /// Number of quads that were shaded of both eyes.

@@ -2,11 +2,11 @@
 
 use afterimage_openxr::wgpu::util::{BufferInitDescriptor, DeviceExt};
 use afterimage_openxr::wgpu::{self, TextureFormat, TextureUsages};
-use afterimage_openxr::{Eye, HiddenMesh, TargetViews, Targets};
+use afterimage_openxr::{Eye, HalfViews, HiddenMesh, TargetViews, Targets};
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
 
-/// Distance of the constants of two eyes in bytes.
+/// Distance of the constants of two eyes in bytes. Those of eyes at half the size follow.
 const STRIDE: u64 = 1024;
 const SIDE: u32 = 1024;
 
@@ -95,7 +95,7 @@ impl Room {
                 primitive: Default::default(),
                 depth_stencil: Some(wgpu::DepthStencilState {
                     format: Targets::DEPTH,
-                    depth_write_enabled: Some(format == Targets::MOTION),
+                    depth_write_enabled: Some(true),
                     depth_compare: Some(wgpu::CompareFunction::GreaterEqual),
                     stencil: Default::default(),
                     bias: Default::default(),
@@ -122,7 +122,7 @@ impl Room {
         let vertices = device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
         let uniforms = device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
-            size: 2 * STRIDE,
+            size: 4 * STRIDE,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
@@ -180,18 +180,7 @@ impl Room {
         eye: &Eye,
         hands: [Hands; 2],
     ) {
-        let poses = |[left, right]: Hands| [Mat4::IDENTITY, left, right].map(|pose| pose.to_cols_array_2d());
-        let [width, height] = eye.geometry.size_px().map(|n| n as f32);
-        let uniforms = Uniforms {
-            clip_from_world: eye.jittered_clip_from_world,
-            clip_from_view: eye.jittered_clip_from_view,
-            now: eye.clip_from_world,
-            before: eye.previous_clip_from_world,
-            moved: poses(hands[0]),
-            moved_before: poses(hands[1]),
-            size: [width, height, 0.0, 0.0],
-        };
-        queue.write_buffer(&self.uniforms, u64::from(eye.layer) * STRIDE, bytemuck::bytes_of(&uniforms));
+        self.write(queue, eye.layer, eye, (hands, 0.0));
         // 0 is far away.
         let mut pass = self.pass(encoder, eye.layer, &views.motion, &views.depth, wgpu::LoadOp::Clear(0.0));
         if let Some((vertices, indices, count)) = &self.meshes[eye.layer as usize] {
@@ -219,11 +208,45 @@ impl Room {
         pass.draw(0..self.count, 0..1);
     }
 
-    /// A pass over `view`, cleared, with the constants of an eye.
+    /// Draws colors of an eye at half the width and height.
+    pub fn half_colors(
+        &self,
+        queue: &wgpu::Queue,
+        encoder: &mut wgpu::CommandEncoder,
+        views: &HalfViews,
+        eye: &Eye,
+        hands: [Hands; 2],
+    ) {
+        let slot = 2 + eye.layer;
+        // Its pixels stand for those of the whole view.
+        self.write(queue, slot, eye, (hands, -1.0));
+        let mut pass = self.pass(encoder, slot, &views.color, &views.depth, wgpu::LoadOp::Clear(0.0));
+        pass.set_pipeline(&self.color);
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.draw(0..self.count, 0..1);
+    }
+
+    /// Writes the constants of an eye. `hands`: now and in the last frame; then the bias of textures.
+    fn write(&self, queue: &wgpu::Queue, slot: u32, eye: &Eye, (hands, bias): ([Hands; 2], f32)) {
+        let poses = |[left, right]: Hands| [Mat4::IDENTITY, left, right].map(|pose| pose.to_cols_array_2d());
+        let [width, height] = eye.geometry.size_px().map(|n| n as f32);
+        let uniforms = Uniforms {
+            clip_from_world: eye.jittered_clip_from_world,
+            clip_from_view: eye.jittered_clip_from_view,
+            now: eye.clip_from_world,
+            before: eye.previous_clip_from_world,
+            moved: poses(hands[0]),
+            moved_before: poses(hands[1]),
+            size: [width, height, bias, 0.0],
+        };
+        queue.write_buffer(&self.uniforms, u64::from(slot) * STRIDE, bytemuck::bytes_of(&uniforms));
+    }
+
+    /// A pass over `view`, cleared, with the constants in a slot.
     fn pass<'a>(
         &self,
         encoder: &'a mut wgpu::CommandEncoder,
-        layer: u32,
+        slot: u32,
         view: &wgpu::TextureView,
         depth: &wgpu::TextureView,
         depth_load: wgpu::LoadOp<f32>,
@@ -240,7 +263,7 @@ impl Room {
             }),
             ..Default::default()
         });
-        pass.set_bind_group(0, &self.group, &[layer * STRIDE as u32]);
+        pass.set_bind_group(0, &self.group, &[slot * STRIDE as u32]);
         pass
     }
 }

@@ -8,7 +8,7 @@ struct Uniforms {
     // Poses of what moves: world, left hand, right hand.
     moved: array<mat4x4f, 3>,
     moved_before: array<mat4x4f, 3>,
-    // Size of the view in pixels.
+    // Size of the view in pixels; bias of textures' level of detail.
     size: vec4f,
 }
 @group(0) @binding(0) var<uniform> u: Uniforms;
@@ -44,7 +44,7 @@ struct Varying {
 }
 
 @fragment fn color(in: Varying) -> @location(0) vec4f {
-    return vec4f(textureSample(maps, map_sampler, in.uv, in.map).rgb * in.tint, 1.0);
+    return vec4f(textureSampleBias(maps, map_sampler, in.uv, in.map, u.size.z).rgb * in.tint, 1.0);
 }
 
 // What the lens hides, at the near plane: nothing behind it is shaded. Vertices are in view space.

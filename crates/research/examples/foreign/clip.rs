@@ -5,7 +5,7 @@ use super::camera::{self, HFOV_DEG};
 use super::options::Options;
 use super::scenes::SceneInput;
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::{ContextDesc, Filter, Foveation, Gaze, Image, Method, Reset, Settings, Smr, ViewFrame, ViewGeometry};
+use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, Reset, Settings, Smr, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::encode;
@@ -50,14 +50,7 @@ struct Run {
 
 /// Settings in the order of [`ROWS`].
 fn settings() -> [Settings; ROWS.len()] {
-    let every_pixel = Foveation {
-        filter: Filter::Sparse,
-        fovea_deg: 0.0,
-        mid_deg: 0.0,
-        rate_mid: 1,
-        rate_far: 1,
-        ..Foveation::default()
-    };
+    let every_pixel = Foveation { fovea_deg: 180.0, mid_deg: 180.0, ..Foveation::quads() };
     let smr = Method::Smr(Smr { antialias: true, ..Smr::default() });
     let of = |method, foveation| Settings { method, foveation, ..Settings::default() };
     [of(Method::Taa, every_pixel), of(Method::Taau, every_pixel), of(smr, Foveation::uniform(0.25)), Settings::screen()]
@@ -113,15 +106,11 @@ impl Run {
     /// Shows a frame, and keeps it if it is scored.
     fn show(&mut self, frame: &SourceFrame, view: &ViewFrame, index: u64, is_scored: bool) -> Result<(), Failure> {
         let (depth, motion) = (frame.depth.as_ref().ok_or("no depth")?, frame.motion.as_ref().ok_or("no motion")?);
-        let foveation = self.post.desc().settings.foveation;
-        let is_sparse = foveation.filter == Filter::Sparse;
-        let gaze_px = view.gaze.resolve(None, &view.geometry);
-        let lattices = is_sparse.then(|| foveation.lattices(&view.geometry, gaze_px, index));
         let (colors, depths, motions) = ([&frame.color], [depth], [motion]);
-        let views = [ViewFrame { lattices, ..*view }];
+        let views = [*view];
         let reset = if frame.cut { Reset::All } else { Reset::None };
         let input = Frame { depth: Some(&depths), motion: Some(&motions), reset, ..Frame::new(&colors, &views, index) };
-        let shaded = if is_sparse { 1.0 } else { share(&self.post.plan(&input)?[0]) };
+        let shaded = share(&self.post.plan(&input)?[0]);
         let mut shown = [Image::filled(frame.color.size(), [0.0; 3])];
         self.post.process(&input, &mut shown)?;
         if is_scored {

@@ -1,20 +1,21 @@
-//! Time of one foveated frame: its samples rendered alone, and smr.
+//! Time of one planned frame: its surfaces and chosen pixels, and smr.
 
 use afterimage::gpu::{Afterimage, Frame, Target};
-use afterimage::wgpu::{Texture, TextureFormat, TextureUsages};
-use afterimage::{
-    ContextDesc, DepthConvention, Filter, Foveation, Gaze, Lattice, Lattices, Settings, ViewFrame, ViewGeometry,
-};
+use afterimage::kernel::quads::place_in_quad;
+use afterimage::wgpu::{CommandEncoder, Texture, TextureFormat, TextureUsages};
+use afterimage::{ContextDesc, DepthConvention, Foveation, FrameError, Gaze, Image, Settings, ViewFrame};
 use afterimage_eval::times::Times;
 use afterimage_lab::clock::Elapsed;
 use afterimage_lab::device::{Backend, Headless, SpanClock};
-use afterimage_lab::raster::{AtlasLayout, RasterSettings};
+use afterimage_lab::frame::OnDevice;
+use afterimage_lab::raster::RasterSettings;
 use afterimage_lab::scene::builtin::courtyard_of;
-use afterimage_lab::source::{FrameSource, RasterSource, SceneCamera};
+use afterimage_lab::source::{FrameRequest, FrameSource, RasterSource, SceneCamera, Wanted};
 use afterimage_lab::trace::Tracer;
-use afterimage_lab::trace::sampling::SparsePlan;
+use afterimage_lab::trace::film::Film;
 use afterimage_lab::trace::settings::TraceSettings;
 use afterimage_lab::trace::surfaces::Surfaces;
+use afterimage_lab::trace::work::Spans;
 use afterimage_lab::trace::world::World;
 use afterimage_program::failure::Failure;
 use clap::ValueEnum;
@@ -36,10 +37,8 @@ pub enum Renderer {
 const WARM_UP: u64 = 2;
 /// Distance of the eyes in metres.
 const IPD_M: f64 = 0.063;
-/// Samples a point of traced frames, from the finest lattice on.
+/// Paths of a chosen pixel of traced frames.
 const TRACED_SAMPLES: u32 = 1;
-/// Diameter of the fovea in degrees; each lattice of twice the step reaches as much further.
-const FOVEA_DEG: f32 = 5.0;
 /// Bytes a pixel of what a frame needs, renderer, textures and history together, rounded up.
 const BYTES_PER_PIXEL: u64 = 160;
 
@@ -50,7 +49,6 @@ pub struct Config {
     pub size: [u32; 2],
     /// Triangles that the scene is built for.
     pub triangles: u32,
-    pub lattices: u32,
     pub eyes: u32,
 }
 
@@ -100,28 +98,6 @@ impl Config {
         let free = free_bytes().filter(|&free| gpu.is_software() && needed > free)?;
         Some(format!("needs about {} MiB, and {} are free", needed >> 20, free >> 20))
     }
-
-    /// Lattices of frame `index`, finest first: full rate, then the coarsest steps below that of the periphery.
-    fn lattices(&self, geometry: &ViewGeometry, gaze_px: [f32; 2], index: u64) -> Result<Lattices, Failure> {
-        let coarsest = Lattices::MAX as u32 - 1;
-        let steps = [0].into_iter().chain(coarsest + 2 - self.lattices..=coarsest);
-        let of_step = |log2: u32| -> Option<Lattice> {
-            let far = Foveation { fovea_deg: FOVEA_DEG, mid_deg: FOVEA_DEG, rate_far: 1 << coarsest, ..foveation() };
-            let region = if log2 == 0 || log2 == coarsest {
-                Foveation { rate_mid: 1 << coarsest, ..far }
-            } else {
-                Foveation { mid_deg: FOVEA_DEG * (1 + log2) as f32, rate_mid: 1 << log2, ..far }
-            };
-            let stack = region.lattices(geometry, gaze_px, index);
-            stack.as_slice().iter().find(|lattice| lattice.step == 1 << log2).copied()
-        };
-        let stack: Vec<Lattice> = steps.filter_map(of_step).collect();
-        Ok(Lattices::new(&stack)?.with_geometry_at_samples())
-    }
-}
-
-fn foveation() -> Foveation {
-    Foveation { filter: Filter::Sparse, rate_mid: 4, rate_far: 8, ..Foveation::default() }
 }
 
 /// Memory that is free, if the system tells.
@@ -145,17 +121,42 @@ impl Eye {
         Ok(Self { post, output: gpu.texture(size, 1, format, TextureUsages::STORAGE_BINDING) })
     }
 
-    fn process(&mut self, rig: &Rig, frame: &Frame<'_>) -> Result<Elapsed, Failure> {
-        let Rig { gpu, clock, .. } = rig;
+    /// Records a step of smr, and submits it.
+    fn step(
+        &mut self,
+        Rig { gpu, clock, .. }: &Rig,
+        record: impl FnOnce(&mut Self, &mut CommandEncoder) -> Result<(), FrameError>,
+    ) -> Result<Elapsed, Failure> {
         let (recorded, took) = clock.time(|| {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            let recorded = self.post.record(&gpu.device, &mut encoder, frame, Target::new(&self.output)).map(|_| ());
+            let recorded = record(self, &mut encoder);
             gpu.queue.submit([encoder.finish()]);
             recorded
         });
         recorded?;
         gpu.check()?;
         Ok(took)
+    }
+
+    /// Chooses the pixels of a frame.
+    fn plan(&mut self, rig: &Rig, frame: &Frame<'_>) -> Result<Elapsed, Failure> {
+        self.step(rig, |eye, encoder| eye.post.plan(&rig.gpu.device, encoder, frame))
+    }
+
+    /// Processes a frame.
+    fn process(&mut self, rig: &Rig, frame: &Frame<'_>) -> Result<Elapsed, Failure> {
+        self.step(rig, |eye, encoder| {
+            eye.post.record(&rig.gpu.device, encoder, frame, Target::new(&eye.output)).map(|_| ())
+        })
+    }
+
+    /// Pixels that were chosen.
+    fn chosen(&self, gpu: &Headless) -> Vec<[u32; 2]> {
+        let masks = gpu.read::<u32>(self.post.quad_mask().expect("the frame is planned"), 0);
+        let [width, height] = self.post.desc().size_px;
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+        let is_chosen = |px: &[u32; 2]| masks.at(px[0] as usize / 2, px[1] as usize / 2) >> place_in_quad(*px) & 1 == 1;
+        pixels.filter(is_chosen).collect()
     }
 }
 
@@ -219,31 +220,45 @@ fn rasterised(rig: &Rig, config: Config, frames: u64) -> Result<Point, Failure> 
     let head = source.camera_pose(0).map_or(DMat4::IDENTITY, |pose| pose.world_from_camera);
     let near = source.near();
     let depth = DepthConvention::Reversed { near, far: f32::INFINITY };
-    let settings = Settings { foveation: foveation(), ..Settings::steady() };
+    let settings = Settings { foveation: Foveation::quads(), ..Settings::steady() };
     let shifts_m = shifts_m(config.eyes);
     let mut eyes =
         shifts_m.iter().map(|_| Eye::new(&rig.gpu, config.size, settings, depth)).collect::<Result<Vec<_>, _>>()?;
+    let views = [ViewFrame::new(geometry, Gaze::At { px: gaze_px })];
     let mut sums = Sums::default();
     for index in 0..WARM_UP + frames {
-        let lattices = config.lattices(&geometry, gaze_px, index)?;
-        sums.samples = eyes.len() as u64 * samples(&lattices);
         let mut took = vec![];
+        sums.samples = 0;
         for (eye, &shift_m) in eyes.iter_mut().zip(shifts_m) {
             let pose = head * DMat4::from_translation(DVec3::X * shift_m);
             source.steer(index, Some([pose, pose]));
-            let (source, lattices) = (&mut source, &lattices);
-            let ((targets, placed), render) =
-                rig.clock.time(move || source.draw_foveated(index, lattices, AtlasLayout::Compact));
-            let lattices = Some(placed.with_geometry_at_samples());
-            let views = [ViewFrame { lattices, ..ViewFrame::new(geometry, Gaze::At { px: gaze_px }) }];
-            let atlas = &targets.atlas;
-            let (depth, motion) = (Some((&atlas.depth).into()), Some((&atlas.motion).into()));
-            let frame = Frame { depth, motion, ..Frame::new(&atlas.color, &views, index) };
-            took.push((render, eye.process(rig, &frame)?));
+            let request = FrameRequest { wanted: Wanted::Surfaces, reference: false, ..FrameRequest::full_rate(index) };
+            let (content, surfaces) =
+                rig.clock.time(|| submitted(&rig.gpu, |encoder| source.record(encoder, &request)));
+            let Some(OnDevice::Surfaces(drawn)) = OnDevice::of(&content.content) else {
+                return Err(Failure::Input("surfaces are on the device".into()));
+            };
+            let (depth, motion) = (Some((&drawn.depth).into()), Some((&drawn.motion).into()));
+            let frame = Frame { depth, motion, ..Frame::new(&drawn.color, &views, index) };
+            let planned = eye.plan(rig, &frame)?;
+            sums.samples += eye.chosen(&rig.gpu).len() as u64;
+            let list = eye.post.quad_list(0).expect("the frame is planned");
+            let (color, shaded) =
+                rig.clock.time(|| submitted(&rig.gpu, |encoder| source.record_quads(encoder, index, [0.0; 2], list)));
+            let processed = eye.process(rig, &Frame { color: (&color).into(), ..frame })?;
+            took.push((surfaces.and(shaded), planned.and(processed)));
         }
         sums.push(index, &took);
     }
     Ok(sums.point(config, triangles))
+}
+
+/// Records and submits work.
+fn submitted<T>(gpu: &Headless, record: impl FnOnce(&mut CommandEncoder) -> T) -> T {
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let recorded = record(&mut encoder);
+    gpu.queue.submit([encoder.finish()]);
+    recorded
 }
 
 fn traced(rig: &Rig, config: Config, frames: u64) -> Result<Point, Failure> {
@@ -255,37 +270,38 @@ fn traced(rig: &Rig, config: Config, frames: u64) -> Result<Point, Failure> {
     let tracer =
         Tracer::new(&rig.tracer, &world, TraceSettings::default()).map_err(|e| Failure::Input(e.to_string()))?;
     let head = camera.view(&scene, 0, 0.0);
-    let views = if config.eyes == 2 { head.stereo(IPD_M).to_vec() } else { vec![head] };
-    let settings = Settings { foveation: foveation(), ..Settings::traced() };
+    let eyes_of = if config.eyes == 2 { head.stereo(IPD_M).to_vec() } else { vec![head] };
+    let foveation = Foveation { single_pixels: true, ..Foveation::quads() };
+    let settings = Settings { foveation, ..Settings::traced() };
     let mut eyes = vec![];
-    for view in &views {
+    for view in &eyes_of {
         let eye = Eye::new(&rig.gpu, config.size, settings, DepthConvention::Linear)?;
         // Nothing moves, so that depth and motion are those of all frames.
         let seen = Surfaces::trace(&world, view, view, tracer.effects(&world));
         eyes.push((view, eye, TracedImages::new(&rig.gpu, &seen)));
     }
+    let views = [ViewFrame::new(geometry, Gaze::At { px: gaze_px })];
     let mut sums = Sums::default();
     for index in 0..WARM_UP + frames {
-        let lattices = config.lattices(&geometry, gaze_px, index)?;
         let mut took = vec![];
         sums.samples = 0;
         for (view, eye, images) in &mut eyes {
-            let (frame, render) = rig.trace_clock.time(|| {
-                let samples = vec![TRACED_SAMPLES; lattices.as_slice().len()];
-                SparsePlan::new(lattices, samples, config.size).trace(&tracer, &world, view, index)
-            });
-            sums.samples += frame.samples.iter().sum::<u64>();
-            rig.gpu.write_rgb(&images.color, 0, &frame.color);
-            rig.gpu.write(&images.noise, 0, frame.noise.as_ref().expect("traced frames are noisy"));
-            let lattices = Some(lattices);
-            let views = [ViewFrame { lattices, ..ViewFrame::new(geometry, Gaze::At { px: gaze_px }) }];
             let frame = Frame {
                 depth: Some((&images.depth).into()),
                 motion: Some((&images.motion).into()),
                 noise: Some((&images.noise).into()),
                 ..Frame::new(&images.color, &views, index)
             };
-            took.push((render, eye.process(rig, &frame)?));
+            let planned = eye.plan(rig, &frame)?;
+            let chosen = eye.chosen(&rig.gpu);
+            sums.samples += chosen.len() as u64 * u64::from(TRACED_SAMPLES);
+            let mut film = Film::new(config.size);
+            let ((), render) = rig.trace_clock.time(|| {
+                tracer.trace(&world, view, index, &Spans::new(chosen.iter().copied(), 0..TRACED_SAMPLES), &mut film);
+            });
+            rig.gpu.write_rgb(&images.color, 0, &film.color());
+            rig.gpu.write(&images.noise, 0, &Image::from_fn(config.size, |px| film.noise_at(px)));
+            took.push((render, planned.and(eye.process(rig, &frame)?)));
         }
         sums.push(index, &took);
     }
@@ -310,8 +326,4 @@ impl TracedImages {
         gpu.write(&motion, 0, &seen.motion);
         Self { color, noise, depth, motion }
     }
-}
-
-fn samples(lattices: &Lattices) -> u64 {
-    lattices.as_slice().iter().map(|l| l.points.map(u64::from).iter().product::<u64>()).sum()
 }

@@ -1,11 +1,10 @@
-//! `cargo research growth`: how the time of a whole foveated frame grows with pixels, triangles, lattices and eyes.
+//! `cargo research growth`: how the time of a whole foveated frame grows with pixels, triangles and eyes.
 //!
 //! Makes the tables of `docs/performance.md`, "Growth".
 
 mod fit;
 mod measure;
 
-use afterimage::Lattices;
 use afterimage_cli::args::parse_size;
 use afterimage_eval::output::write_json;
 use afterimage_lab::device::{Headless, NO_ADAPTER, PassClock};
@@ -22,28 +21,20 @@ const SIZES: [[u32; 2]; 7] =
     [[640, 360], [960, 540], [1280, 720], [1920, 1080], [2560, 1440], [3840, 2160], [7680, 4320]];
 /// Triangle counts of the axis of triangles. The lanterns add 800 to each.
 const TRIANGLES: [u32; 4] = [1_800, 25_200, 259_200, 2_600_000];
-/// Lattices of the other axes.
-const USUAL_LATTICES: u32 = 3;
 /// Pixels from which on a frame counts as large.
 const LARGE_PIXELS: f64 = 2e6;
 
-/// Measure how the time of a foveated frame, rendering and smr, grows with pixels, triangles, lattices and eyes
+/// Measure how the time of a foveated frame, rendering and smr, grows with pixels, triangles and eyes
 #[derive(Args, Clone, Debug)]
 #[command(
     after_help = "Example:\n  cargo research growth --of pixels,triangles --renderer raster --json growth.json\n\n\
-    The scene is the courtyard, built for a number of triangles, with the gaze in the middle; the samples of each frame\n\
-    are rendered alone, on lattices with steps up to 8 (trace: one sample a point), and smr makes the picture. Prints\n\
-    Markdown tables. Slopes are exponents: the time grows as pixels, triangles, lattices or eyes to this power."
+    The scene is the courtyard, built for a number of triangles, with the gaze in the middle; frames are planned\n\
+    (trace: one path a pixel), and smr makes the picture. Prints\n\
+    Markdown tables. Slopes are exponents: the time grows as pixels, triangles or eyes to this power."
 )]
 pub struct GrowthArgs {
     /// What grows, separated by commas
-    #[arg(
-        long,
-        value_enum,
-        value_delimiter = ',',
-        default_value = "pixels,triangles,lattices,eyes",
-        value_name = "LIST"
-    )]
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "pixels,triangles,eyes", value_name = "LIST")]
     of: Vec<Growing>,
     /// Renderers, separated by commas
     #[arg(long, value_enum, value_delimiter = ',', default_value = "raster,trace", value_name = "LIST")]
@@ -73,8 +64,6 @@ enum Growing {
     Pixels,
     /// 2.6 thousand to 2.6 million triangles
     Triangles,
-    /// Lattices: the finest, the coarsest, and those between
-    Lattices,
     /// One eye and two
     Eyes,
 }
@@ -119,20 +108,18 @@ impl Growing {
         match self {
             Self::Pixels => "pixels",
             Self::Triangles => "triangles",
-            Self::Lattices => "lattices",
             Self::Eyes => "eyes",
         }
     }
 
     fn configs(self, renderer: Renderer, args: &GrowthArgs) -> Vec<Config> {
-        let base = Config { renderer, size: args.size, triangles: args.triangles, lattices: USUAL_LATTICES, eyes: 1 };
+        let base = Config { renderer, size: args.size, triangles: args.triangles, eyes: 1 };
         match self {
             Self::Pixels => {
                 let fits = |config: &Config| config.pixels() as f64 <= args.max_megapixels * 1e6;
                 SIZES.iter().map(|&size| Config { size, ..base }).filter(fits).collect()
             }
             Self::Triangles => TRIANGLES.iter().map(|&triangles| Config { triangles, ..base }).collect(),
-            Self::Lattices => (2..=Lattices::MAX as u32).map(|lattices| Config { lattices, ..base }).collect(),
             Self::Eyes => [1, 2].map(|eyes| Config { eyes, ..base }).into(),
         }
     }
@@ -142,7 +129,6 @@ impl Growing {
         match self {
             Self::Pixels => point.config.pixels() as f64,
             Self::Triangles => point.scene_triangles as f64,
-            Self::Lattices => f64::from(point.config.lattices),
             Self::Eyes => f64::from(point.config.eyes),
         }
     }
@@ -218,13 +204,13 @@ impl Series {
             Renderer::Trace => "traced",
         };
         say!("Growth with {}, {renderer}:\n", self.of.name());
-        say!("| megapixels | triangles | lattices | eyes | samples | render ms | smr ms | total ms |");
+        say!("| megapixels | triangles | eyes | samples | render ms | smr ms | total ms |");
         say!("|---|---|---|---|---|---|---|---|");
         for p in &self.points {
-            let Config { lattices, eyes, .. } = p.config;
+            let eyes = p.config.eyes;
             let (mpx, triangles, samples) = (p.config.pixels() as f64 * 1e-6, p.scene_triangles, p.samples);
             let [render, post, total] = [p.render_ms, p.post_ms, p.total_ms];
-            say!("| {mpx:.2} | {triangles} | {lattices} | {eyes} | {samples} | {render:.1} | {post:.1} | {total:.1} |");
+            say!("| {mpx:.2} | {triangles} | {eyes} | {samples} | {render:.1} | {post:.1} | {total:.1} |");
         }
         let slope = |fit: Option<Fit>| match fit {
             Some(Fit { slope, standard_error: Some(error) }) => format!("{slope:.3} +- {error:.3}"),

@@ -5,9 +5,7 @@ use afterimage::gpu::{Afterimage, Variant};
 use afterimage::kernel::quads::RUN_QUADS;
 use afterimage::shader::{Composer, Module, SHADERS};
 use afterimage::wgpu::{Device, DeviceDescriptor, TextureFormat};
-use afterimage::{
-    ContextDesc, Filter, Foveation, Gaze, Method, MethodKind, Sampler, Settings, Smr, ViewFrame, ViewGeometry, Wrs,
-};
+use afterimage::{ContextDesc, Foveation, Method, MethodKind, Sampler, Settings, Smr, Wrs};
 
 /// Size of the frames of the roofline.
 pub const SIZE_PX: [u32; 2] = [3840, 2160];
@@ -49,14 +47,10 @@ pub struct Pass {
     pub loops: &'static [&'static str],
 }
 
-/// All methods, on full frames, on sparse ones and on frames shaded by quads, as by default.
+/// All methods, on full frames, and on planned ones, as by default.
 pub fn methods() -> Result<Vec<MethodPasses>> {
     let full = |method: MethodKind| Settings { method: method.into(), ..Settings::default() };
-    let sparse = |method: MethodKind| {
-        let foveation = Foveation { filter: Filter::Sparse, ..Foveation::default() };
-        Settings { method: method.into(), foveation, ..Settings::default() }
-    };
-    let quads = Settings { foveation: Foveation::quads(), ..full(MethodKind::Smr) };
+    let quads = |method: MethodKind| Settings { foveation: Foveation::quads(), ..full(method) };
     let noisy = |settings: Settings| Settings { noisy: true, ..settings };
     let antialias =
         |settings: Settings| Settings { method: Method::Smr(Smr { antialias: true, ..Smr::default() }), ..settings };
@@ -68,13 +62,11 @@ pub fn methods() -> Result<Vec<MethodPasses>> {
         ("wrs weighted", Settings::weighted()),
         ("smr", full(MethodKind::Smr)),
         ("smr noisy", noisy(full(MethodKind::Smr))),
-        ("sparse smr", sparse(MethodKind::Smr)),
-        ("sparse smr antialias", antialias(sparse(MethodKind::Smr))),
-        ("sparse smr noisy", noisy(sparse(MethodKind::Smr))),
-        ("sparse taau", sparse(MethodKind::Taau)),
-        ("sparse wrs", sparse(MethodKind::Wrs)),
-        ("quads smr", quads),
-        ("quads smr antialias", antialias(quads)),
+        ("quads smr", quads(MethodKind::Smr)),
+        ("quads smr antialias", antialias(quads(MethodKind::Smr))),
+        ("quads smr noisy", noisy(quads(MethodKind::Smr))),
+        ("quads taau", quads(MethodKind::Taau)),
+        ("quads wrs", quads(MethodKind::Wrs)),
     ]
     .into_iter()
     .map(|(name, settings)| method(name, &settings))
@@ -136,7 +128,6 @@ fn share(module: &str, settings: &Settings) -> Result<f64> {
         "candidate_pass" => 1.0 / 4.0,
         // Level 2 has a sixteenth of the pixels, the others a third of that.
         "mip_chain_pass" => 1.0 / 12.0,
-        "sparse_observe_pass" | "sparse_light_pass" => samples_share(settings)?,
         "quad_octants_pass" => shaded_shares(&settings.foveation).iter().sum(),
         // Quads of the fovea are not compared with history.
         "quad_observe_pass" | "quad_light_pass" => shaded_shares(&settings.foveation)[1],
@@ -161,19 +152,6 @@ fn shaded_shares(foveation: &Foveation) -> [f64; 2] {
     [fovea, pattern + f64::from(foveation.budget)]
 }
 
-/// Samples of the coarse lattices a pixel, with the gaze in the middle of a view.
-fn samples_share(settings: &Settings) -> Result<f64> {
-    let geometry = ViewGeometry::flat(SIZE_PX, FOV_DEG)?;
-    let gaze_px = SIZE_PX.map(|s| 0.5 * s as f32);
-    let view = ViewFrame::new(geometry, Gaze::At { px: gaze_px });
-    let lattices = settings.foveation.lattices(&view.geometry, gaze_px, 0);
-    let samples = lattices.as_slice().iter().filter(|l| l.step > 1).map(|l| {
-        let [low, high] = l.covered_px();
-        (0..2).map(|i| f64::from(high[i] - low[i]) / f64::from(l.step)).product::<f64>()
-    });
-    Ok(samples.sum::<f64>() / SIZE_PX.map(f64::from).iter().product::<f64>())
-}
-
 fn is_antialiased(settings: &Settings) -> bool {
     matches!(settings.method, Method::Smr(Smr { antialias: true, .. }))
 }
@@ -184,15 +162,7 @@ fn loops(module: &str, settings: &Settings) -> &'static [&'static str] {
             &["slope", "guard", "resample"]
         }
         "wrs_pass" => &["slope"],
-        "wrs_sparse_pass" => &["lattice", "slope"],
-        "fill_pass" => &["lattice", "four"],
-        "taau_pass" => &["slope", "guard", "resample", "lattice", "around"],
-        "sparse_observe_pass" if is_antialiased(settings) => &["slope", "around"],
-        "sparse_observe_pass" => &["slope", "four"],
-        "sparse_light_pass" if settings.noisy => &["around"],
-        "sparse_light_pass" => &["around", "around relit"],
-        "sparse_pass" if is_antialiased(settings) => &["lattice", "four", "slope", "around", "near"],
-        "sparse_pass" => &["lattice", "four", "slope", "four"],
+        "taau_pass" => &["slope", "guard", "resample", "around"],
         "quad_key_pass" => &["four", "four"],
         "quad_threshold_pass" => &["keys", "runs", "keys"],
         "quad_mask_pass" => &["run", "list"],

@@ -18,8 +18,6 @@ fn rounds(name: &str, path: &str) -> f64 {
         // Of four taps of Catmull-Rom's twelve.
         ("resample", "moving" | "relit") => 3.0,
         ("relight", "relit") => 1.0,
-        // Of sparse frames: most pixels belong to the third lattice, and are between four samples.
-        ("lattice", _) => 2.0,
         ("four", _) => 4.0,
         ("around relit", "relit") => 9.0,
         // Of plans: keys of an invocation, and sums of all invocations.

@@ -99,7 +99,7 @@ pub fn with_invalid_colors(
     let lod = foveation.lod_map(geometry, frame.gaze_px);
     let pyramid = Pyramid::new(frame.reference.color.clone(), foveation.max_level());
     let color = invalid_colors::among(foveation.render(&pyramid, &lod), share, frame.index as u32);
-    frame.foveated(FoveatedFrame { color, lod, noise: None, lattices: None, samples: vec![], rays: 0, nonfinite: 0 })
+    frame.foveated(FoveatedFrame { color, lod, noise: None, samples: vec![], rays: 0, nonfinite: 0 })
 }
 
 /// Makes the table.

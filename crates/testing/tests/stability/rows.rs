@@ -26,7 +26,7 @@ impl Row {
 }
 
 /// All rows, in order.
-pub const ROWS: [Row; 108] = [
+pub const ROWS: [Row; 107] = [
     // Reservoir arithmetic
     row("H01", "R1 empty, R2 w > 0, draw exactly 0", "R2 chosen", BOTH),
     row("H02", "R1 empty, R2 w = 0", "R2's color with w_sum 0; no NaN, not black", BOTH),
@@ -144,9 +144,9 @@ pub const ROWS: [Row; 108] = [
     // Quality
     row("H85", "analytic scenes; a box that turns into light", "smr: no 64x64 crop > 0.3 dB below foveated", CPU)
     .but("mip levels at 320x180; point-sampled blocks miss it by several dB (docs/method.md)."),
-    // Sparse frames. Steps 2 and 4, if not stated otherwise: every position is sampled once in 16 frames, a turn.
+    // Masks of planned frames. Steps 2 and 4, if not stated otherwise: every position is sampled once in 16 frames, a turn.
     row("H86", "gaze in step with offsets: positions never sampled", "there better than foveated; others exact after a turn", BOTH),
-    row("H87", "lattices beyond the view, of one pixel, without samples", "samples bit for bit; without any, history; no points: refused", BOTH),
+    row("H87", "masks of one pixel, of a corner, of all, of none", "samples bit for bit; without any, history", BOTH),
     row("H88", "reset within the order of offsets; order begun anew", "a fresh context, bit for bit; rebuilt after a turn", BOTH),
     row("H89", "borders between rates, moving gaze", "fovea and samples exact; no more error than in the periphery", BOTH),
     row("H90", "lines of 1 px in the periphery", "still: exact after a turn; gliding: no frame > 0.3 dB below foveated", BOTH),
@@ -156,9 +156,8 @@ pub const ROWS: [Row; 108] = [
     .but("with motion vectors; otherwise each frame is an unannounced cut (H93)."),
     row("H93", "cuts in each frame, announced or not; one after a turn", "announced: foveated frame; unannounced: close, no ghost", BOTH)
     .but("unannounced cuts without vectors and change of depth show a ghost: up to 3.7 dB below foveated if in each frame; after one, none."),
-    row("H94", "depth and motion at samples only, moving silhouettes", "better than foveated, near silhouettes too", BOTH),
-    row("H95", "NaN or infinity in a sample of a coarse lattice", "never shown; complete history unchanged, else two steps at most", BOTH),
-    row("H96", "lattices that stand still; offsets three times each", "no worse than foveated; rebuilt after three turns", BOTH),
+    row("H95", "NaN or infinity in a sample of a coarse mask", "never shown; complete history unchanged, else two steps at most", BOTH),
+    row("H96", "masks that stand still; places three times each", "no worse than foveated; rebuilt after three turns", BOTH),
     row("H97", "samples beside the claimed place, or one frame late", "at most 3.1 dB below foveated (still), 1 dB (gliding)", BOTH),
     row("H98", "exposure steps, trust 0, two views, lost gaze, new foveations", "detail within 1 %; views independent; never below foveated", BOTH),
     row("H103", "recorded frames that never run, or out of order", "as if only what ran were recorded, with a reset", GPU),

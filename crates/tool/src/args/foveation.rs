@@ -4,20 +4,19 @@ use super::number::{parse_percent, parse_scale};
 use super::{Named, by_name};
 use crate::failure::Failure;
 use afterimage::{Filter, Foveation, Method, Settings};
-use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
-use afterimage_lab::quad_views::QuadViewLayout;
-use afterimage_lab::trace::sampling::{Regions, Sampling};
-use clap::Args;
+use afterimage_lab::quad_views::{Geometry, QuadViewLayout};
+use clap::builder::TypedValueParser;
+use clap::error::ErrorKind;
+use clap::{Arg, Args, Command, Error};
+use std::ffi::OsStr;
 
 /// Foveation simulator, and the resolution by eccentricity.
 #[derive(Args, Clone, Debug)]
 pub struct FoveationArgs {
-    /// How frames are foveated. quads: one full-rate view, of which each method chooses the quads of 2x2 pixels that
-    /// are shaded; given frames simulate it. sparse: one moving sample a block, which scenes render alone; given frames
-    /// simulate it. mip, gauss and block simulate blur on full-rate frames; layers and uniform render views of
-    /// rasterised scenes. Default: quads for rasterised scenes (sparse with --order, --geometry or a rate above 8),
-    /// sparse for traced ones without --sampling, else mip
-    #[arg(long = "foveation", value_parser = by_name::<FilterName>())]
+    /// How frames are foveated. quads: one full-rate view, of which each method chooses the pixels that are shaded;
+    /// given frames simulate it. mip, gauss and block simulate blur on full-rate frames; layers and uniform render
+    /// views of rasterised scenes. Default: quads for scenes without --sampling, else mip
+    #[arg(long = "foveation", value_parser = FilterParser)]
     pub filter: Option<FilterName>,
     /// Diameter of the full-rate region, degrees
     #[arg(long, default_value_t = 5.0, value_name = "DEG")]
@@ -44,19 +43,20 @@ pub struct FoveationArgs {
     /// temporal upscaler, for example with 25. --fovea, --mid, the rates and --budget follow from it
     #[arg(long, value_parser = parse_percent, value_name = "PERCENT", conflicts_with_all = ["fovea", "mid", "rate_mid", "rate_far", "budget"])]
     pub share: Option<f32>,
+    /// With --foveation quads: shades one pixel of a chosen quad outside the fovea, not all four; traced frames always
+    /// do. One pixel in 4: with --fovea 0 --mid 180 --rate-mid 2 --rate-far 2 --budget 0
+    #[arg(long)]
+    pub single_pixels: bool,
     /// Side of the pixels of --foveation uniform, in pixels of the full-rate frame, 1 to 256; need not be whole;
     /// default: 2
     #[arg(long, value_parser = parse_scale, value_name = "S")]
     pub scale: Option<f32>,
-    /// With --foveation sparse, layers or uniform: depth and motion of every pixel, or of the nearest sample; those of
-    /// every pixel are without jitter; default: of the nearest sample in scenes, full in given frames
-    #[arg(long, value_parser = by_name::<SparseGeometry>())]
-    pub geometry: Option<SparseGeometry>,
-    /// With --foveation sparse: order in which the pixels of a block are sampled
-    #[arg(long, value_parser = by_name::<SampleOrder>(), default_value = "bayer")]
-    pub order: SampleOrder,
-    /// Jitter of the projection, in scenes and analytic clips: full-rate frames then have one sample a pixel, sparse
-    /// ones one a block, smr antialiases sparse frames, and --foveation off means sparse frames of blocks of one pixel
+    /// With --foveation layers or uniform: depth and motion of every pixel, or of the nearest pixel of a view; default:
+    /// samples
+    #[arg(long, value_parser = by_name::<Geometry>())]
+    pub geometry: Option<Geometry>,
+    /// Jitter of the projection, in scenes and analytic clips: frames then have one sample a pixel, which smr
+    /// antialiases; --foveation off means planned frames of which every pixel is shaded
     #[arg(long, value_parser = by_name::<Jitter>(), default_value = "off")]
     pub jitter: Jitter,
 }
@@ -80,28 +80,17 @@ impl Named for Jitter {
 }
 
 impl FoveationArgs {
-    /// Fills in defaults that depend on the input. `default`: how its frames are foveated by default. `is_rendered`:
-    /// whether samples are rendered, not taken from given frames.
+    /// Fills in defaults that depend on the input. `default`: how its frames are foveated by default. `is_traced`:
+    /// whether they are those of a path-traced scene.
     #[must_use]
-    pub fn with_defaults(self, default: Filter, is_rendered: bool) -> Self {
+    pub fn with_defaults(self, default: Filter, is_traced: bool) -> Self {
         if self.is_jittered() && self.filter() == FilterName::Of(Filter::Off) {
-            let filter = Some(FilterName::Of(Filter::Sparse));
-            let sparse = Self { filter, fovea: 0.0, mid: 0.0, rate_mid: Some(1), rate_far: Some(1), ..self };
-            return sparse.with_defaults(default, is_rendered);
+            let rates = Self { rate_mid: Some(2), rate_far: Some(2), ..self };
+            let filter = Some(FilterName::Of(Filter::Quads));
+            return Self { filter, fovea: 180.0, mid: 180.0, budget: Some(0.0), ..rates };
         }
-        let default = if default == Filter::Quads && self.needs_lattices() { Filter::Sparse } else { default };
         let named = Self { filter: Some(self.filter.unwrap_or(FilterName::Of(default))), ..self };
-        let geometry = match named.may_lack_geometry() && is_rendered {
-            true => SparseGeometry::Samples,
-            false => SparseGeometry::Full,
-        };
-        Self { geometry: Some(named.geometry.unwrap_or(geometry)), ..named }
-    }
-
-    /// Whether an option says how samples of lattices lie, or how coarse they are.
-    fn needs_lattices(&self) -> bool {
-        let is_coarse = [self.rate_mid, self.rate_far].into_iter().flatten().any(|rate| rate > 8);
-        is_coarse || self.geometry.is_some() || self.order != SampleOrder::Bayer
+        Self { single_pixels: named.single_pixels || (is_traced && named.is_quads()), ..named }
     }
 
     /// How frames are foveated.
@@ -117,27 +106,14 @@ impl FoveationArgs {
     /// The settings, with history that is antialiased where frames are jittered.
     pub fn antialiased(&self, mut settings: Settings) -> Settings {
         if let Method::Smr(smr) = &mut settings.method {
-            let has_samples = matches!(settings.foveation.filter, Filter::Sparse | Filter::Quads);
-            smr.antialias = self.is_jittered() && has_samples;
+            smr.antialias = self.is_jittered() && settings.foveation.filter == Filter::Quads;
         }
         settings
     }
 
-    /// Depth and motion of frames.
-    pub fn geometry(&self) -> SparseGeometry {
-        self.geometry.unwrap_or(SparseGeometry::Full)
-    }
-
-    /// The sampling pattern whose lattices are those of `--foveation sparse`, with `spp` paths a point.
-    pub fn regions(&self, spp: u32) -> Result<Sampling, Failure> {
-        let blocks = self.rates();
-        let regions =
-            Regions { samples: [spp; 3], blocks, diameters_deg: [self.fovea, self.mid], ..Regions::default() };
-        let sampling = Sampling::Regions(regions);
-        sampling.check_sparse().map_err(|e| {
-            Failure::Input(format!("--foveation sparse: {e}; choose --rate-mid above 1 and --rate-far from that on"))
-        })?;
-        Ok(sampling)
+    /// Depth and motion of quad views.
+    pub fn geometry(&self) -> Geometry {
+        self.geometry.unwrap_or(Geometry::Samples)
     }
 
     /// Converts the options to the library's settings.
@@ -149,7 +125,7 @@ impl FoveationArgs {
             return Foveation { rate_mid: rate, rate_far: rate, ..no_region };
         }
         if let Some(percent) = self.share.filter(|_| self.is_quads()) {
-            return Foveation::uniform(percent / 100.0);
+            return Foveation { single_pixels: self.single_pixels, ..Foveation::uniform(percent / 100.0) };
         }
         let [rate_mid, rate_far] = self.rates();
         Foveation {
@@ -164,6 +140,7 @@ impl FoveationArgs {
             rate_mid,
             rate_far,
             budget: self.budget.map_or(Foveation::default().budget, |percent| percent / 100.0),
+            single_pixels: self.single_pixels,
         }
     }
 
@@ -196,11 +173,6 @@ impl FoveationArgs {
         }
     }
 
-    /// Whether frames may have depth and motion at their samples alone.
-    pub fn may_lack_geometry(&self) -> bool {
-        self.filter() == FilterName::Of(Filter::Sparse) || self.filter().is_quad_views()
-    }
-
     /// Refuses options that do not apply to this foveation. `is_rasterised`: frames are those of a rasterised scene.
     /// `is_analytic`: those of an analytic one.
     pub fn check(&self, is_rasterised: bool, is_analytic: bool) -> Result<(), Failure> {
@@ -216,15 +188,13 @@ impl FoveationArgs {
             ));
         }
         let is_uniform = self.filter() == FilterName::Uniform;
-        let is_sparse = self.filter() == FilterName::Of(Filter::Sparse);
-        let has_samples = self.geometry == Some(SparseGeometry::Samples);
-        let order = format!("order {}", self.order.name());
+        let has_geometry = self.geometry.is_some() && !self.filter().is_quad_views();
         let misplaced = [
-            (self.budget.is_some() && !self.is_quads(), "budget", "frames shaded by quads", "quads"),
-            (self.share.is_some() && !self.is_quads(), "share", "frames shaded by quads", "quads"),
+            (self.budget.is_some() && !self.is_quads(), "budget", "frames of which methods choose pixels", "quads"),
+            (self.share.is_some() && !self.is_quads(), "share", "frames of which methods choose pixels", "quads"),
             (self.scale.is_some() && !is_uniform, "scale", "uniform frames", "uniform"),
-            (has_samples && !self.may_lack_geometry(), "geometry samples", "rendered samples", "sparse or layers"),
-            (self.order != SampleOrder::Bayer && !is_sparse, &order, "sparse frames", "sparse"),
+            (self.single_pixels && !self.is_quads(), "single-pixels", "frames of which methods choose pixels", "quads"),
+            (has_geometry, "geometry", "quad views", "layers or uniform"),
         ];
         match misplaced.iter().find(|row| row.0) {
             Some((_, option, frames, name)) => {
@@ -242,7 +212,7 @@ impl FoveationArgs {
              the samples of traced frames lie anywhere in their pixels already"
                 .into()
         } else if self.filter().is_quad_views() {
-            format!("--foveation {name} has four samples a pixel; use --foveation sparse")
+            format!("--foveation {name} has four samples a pixel; use --foveation quads")
         } else {
             return Ok(());
         };
@@ -271,6 +241,7 @@ impl FilterName {
 impl Named for FilterName {
     fn rows() -> Vec<(Self, &'static str, &'static str)> {
         let mut rows: Vec<_> = Filter::ALL.map(|filter| (Self::Of(filter), filter.name(), filter.summary())).into();
+        rows.retain(|row| row.1 != "sparse");
         let off = rows.pop();
         rows.extend([
             (
@@ -283,7 +254,7 @@ impl Named for FilterName {
                 Self::Uniform,
                 "uniform",
                 "The whole frame at a lower resolution without moving samples, enlarged bilinearly; see --scale. With \
-                 moving samples for taau: --foveation sparse --fovea 0 --mid 0 --rate-mid 2 --rate-far 2",
+                 moving samples for taau: --foveation quads with --single-pixels",
             ),
         ]);
         rows.extend(off);
@@ -291,17 +262,7 @@ impl Named for FilterName {
     }
 }
 
-impl Named for SampleOrder {
-    fn rows() -> Vec<(Self, &'static str, &'static str)> {
-        vec![
-            (Self::Bayer, "bayer", "Every prefix is spread evenly over the block"),
-            (Self::Scanline, "scanline", "Row by row"),
-            (Self::Sobol, "sobol", "Every power of two of frames is spread evenly over rows and columns"),
-        ]
-    }
-}
-
-impl Named for SparseGeometry {
+impl Named for Geometry {
     fn rows() -> Vec<(Self, &'static str, &'static str)> {
         vec![
             (Self::Full, "full", "At every pixel, as from a visibility buffer or a prepass"),
@@ -310,12 +271,24 @@ impl Named for SparseGeometry {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// Parser of `--foveation`, which says what replaces a value of earlier versions.
+#[derive(Clone)]
+struct FilterParser;
 
-    #[test]
-    fn every_order_has_a_name() {
-        assert_eq!(SampleOrder::rows().iter().map(|row| row.0).collect::<Vec<_>>(), SampleOrder::ALL);
+impl TypedValueParser for FilterParser {
+    type Value = FilterName;
+
+    fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<FilterName, Error> {
+        if value == "sparse" {
+            let text = "--foveation sparse: use --foveation quads, which shades better pixels; with --single-pixels one \
+                        pixel of a quad\n";
+            return Err(Error::raw(ErrorKind::InvalidValue, text).with_cmd(command));
+        }
+        by_name::<FilterName>().parse_ref(command, arg, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = clap::builder::PossibleValue> + '_>> {
+        let values = FilterName::rows().into_iter();
+        Some(Box::new(values.map(|(_, name, help)| clap::builder::PossibleValue::new(name).help(help))))
     }
 }

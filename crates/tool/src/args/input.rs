@@ -5,7 +5,6 @@ use crate::args::{parse_fps, parse_hfov, parse_samples, parse_size};
 use crate::failure::{Failure, warn};
 use afterimage::ViewGeometry;
 use afterimage_lab::device::{Backend, Headless, NO_ADAPTER};
-use afterimage_lab::lattices::SampleOrder;
 use afterimage_lab::scanpath::HeadPath;
 use afterimage_lab::source;
 use afterimage_lab::source::{
@@ -74,8 +73,6 @@ pub struct Rendering {
 pub struct FoveatedSampling {
     /// Their pattern.
     pub pattern: Sampling,
-    /// Order in which their lattices move, if they are given as samples, not filled in between.
-    pub sparse: Option<SampleOrder>,
     /// Samples per pixel of their full-rate references.
     pub reference_samples: u32,
 }
@@ -148,7 +145,6 @@ impl InputArgs {
         let foveated = rendering.foveated;
         let samples = TracedSamples {
             foveated: foveated.map(|f| f.pattern),
-            sparse: foveated.and_then(|f| f.sparse),
             samples: self.spp,
             full_rate_samples: foveated.map_or(self.spp, |f| f.reference_samples),
         };

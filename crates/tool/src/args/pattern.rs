@@ -113,18 +113,6 @@ impl SamplingArgs {
         })
     }
 
-    /// Checks that the samples of the pattern can be given as they are, without filling in between.
-    pub fn check_sparse(&self, sampling: &Sampling) -> Result<(), Failure> {
-        let Err(error) = sampling.check_sparse() else { return Ok(()) };
-        let advice = match self.sampling {
-            SamplingName::Regions => "use powers of two for --region-block, for example 2,4",
-            SamplingName::Layers if self.lens_deg.is_some() => "leave out --lens-deg",
-            SamplingName::Layers => "use powers of two for --layer-step, for example 1,2,4,8",
-            SamplingName::Uniform | SamplingName::Acuity => "use --sampling regions or layers",
-        };
-        Err(Failure::Input(format!("--foveation sparse: {error}; {advice}, or leave out --foveation sparse")))
-    }
-
     /// Samples per pixel where the pattern is densest.
     pub fn most_samples(&self, samples: u32) -> u32 {
         match self.sampling {

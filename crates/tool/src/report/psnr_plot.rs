@@ -29,7 +29,7 @@ const TITLE_CHARS: f64 = 1.35;
 pub struct PsnrPlot<'a> {
     /// Name of the input.
     pub input: &'a str,
-    /// What foveates the frames, such as `sparse 2 and 4`.
+    /// What foveates the frames, such as `quads 8 and 8`.
     pub foveation: &'a str,
     /// Frames a second.
     pub fps: f32,

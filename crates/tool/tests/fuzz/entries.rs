@@ -216,6 +216,7 @@ impl Bits<'_> {
             rate_mid: 1 << (pick >> 4 & 3),
             rate_far: 1 << (pick >> 6 & 7),
             budget: 0.025,
+            single_pixels: false,
         };
         let smr = Smr {
             accumulate: self.around(0.0, 0.98),

@@ -3,9 +3,11 @@
 use super::{DeviceFormats, DeviceInputs, DeviceRun};
 use crate::clock::{Elapsed, Stopwatch};
 use crate::device::{Headless, PassClock};
-use crate::frame::{Content, DeviceHandle, QuadRequest, RenderedFrame, Shaded, ShadedColor};
+use crate::frame::{Content, DeviceHandle, RenderedFrame, Shaded, ShadedColor, ShadingRequest};
+use afterimage::Image;
 use afterimage::gpu::Frame;
-use afterimage::{ContextDesc, CreateError, DebugView, Foveation, FrameError, Settings};
+use afterimage::kernel::quads::place_in_quad;
+use afterimage::{ContextDesc, CreateError, DebugView, FrameError};
 use afterimage_eval::pipeline::{
     Candidate, Chosen, Executor, MethodOutput, RunInputs, RunKind, Shade, chooses, unshaded,
 };
@@ -47,15 +49,6 @@ impl Executor for DeviceExecutor {
         Ok(())
     }
 
-    fn set_foveation(&mut self, foveation: Foveation) -> Result<(), CreateError> {
-        for run in &mut self.runs {
-            let settings = Settings { foveation, ..run.post().desc().settings };
-            run.post_mut().set_settings(&self.gpu.device, settings)?;
-        }
-        let desc = *self.inputs.desc();
-        self.inputs.set_foveation(&ContextDesc { settings: Settings { foveation, ..desc.settings }, ..desc })
-    }
-
     fn device(&self) -> Option<DeviceHandle> {
         Some(self.gpu.clone())
     }
@@ -87,8 +80,20 @@ impl Executor for DeviceExecutor {
             Some(Shaded { color: ShadedColor::InMemory(color), .. }) => Some(self.inputs.upload_shaded(color)),
             None => planned.as_ref().filter(|_| is_simulated).map(|_| self.inputs.full()),
         };
+        let half = match shaded.as_ref().and_then(|shaded| shaded.half.as_ref()) {
+            Some(ShadedColor::OnDevice(half)) => half.downcast_ref::<Texture>(),
+            _ => None,
+        };
+        let is_noisy = run.post().desc().settings.noisy;
+        let noise = shaded.as_ref().and_then(|shaded| shaded.noise.as_ref()).filter(|_| is_noisy);
+        let noise = noise.map(|noise| self.inputs.upload_noise(noise));
         let frame = match planned {
-            Some(_) => Frame { color: pixels.ok_or_else(unshaded)?.into(), ..frame },
+            Some(_) => Frame {
+                color: pixels.ok_or_else(unshaded)?.into(),
+                half: half.map(Into::into),
+                noise: noise.map(Into::into).or(frame.noise),
+                ..frame
+            },
             None => frame,
         };
         let encoder = || gpu.device.create_command_encoder(&Default::default());
@@ -114,7 +119,7 @@ impl Executor for DeviceExecutor {
             image: gpu.read_rgb(run.output(), 0),
             elapsed: planned.as_ref().map_or(elapsed, |(_, planning)| elapsed.and(*planning)),
             chosen: planned.map(|(request, _)| Chosen {
-                share: request.share(run.post().desc().size_px),
+                share: request.share(),
                 shading: shaded.as_ref().map(|shaded| shaded.took),
             }),
             stats: run.stats(),
@@ -130,13 +135,13 @@ impl Executor for DeviceExecutor {
     }
 }
 
-/// The quads that a method chooses, and the time of choosing them.
+/// The pixels that a method chooses, and the time of choosing them.
 fn plan(
     gpu: &Headless,
     clock: &PassClock,
     run: &mut DeviceRun,
     frame: &Frame<'_>,
-) -> Result<(QuadRequest, Elapsed), FrameError> {
+) -> Result<(ShadingRequest, Elapsed), FrameError> {
     gpu.wait();
     let watch = Stopwatch::start();
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -147,6 +152,11 @@ fn plan(
     let elapsed = clock.elapsed(gpu, &watch);
     let post = run.post();
     let (mask, list) = post.quad_mask().zip(post.quad_list(0)).expect("the settings ask for a plan");
-    let quads = gpu.read::<u32>(mask, 0).map(|chosen| chosen & 1 != 0);
-    Ok((QuadRequest { quads, on_device: Some(Arc::new(list.clone())) }, elapsed))
+    let quads = gpu.read::<u32>(mask, 0);
+    let is_chosen = |[x, y]: [u32; 2]| quads.at(x as usize / 2, y as usize / 2) >> place_in_quad([x, y]) & 1 == 1;
+    let mask = Image::from_fn(post.desc().size_px, is_chosen);
+    let paths_at =
+        |[x, y]: [u32; 2]| if is_chosen([x, y]) { quads.at(x as usize / 2, y as usize / 2) >> 8 & 31 } else { 0 };
+    let paths = post.desc().settings.noisy.then(|| Image::from_fn(mask.size(), |px| paths_at(px) as u8));
+    Ok((ShadingRequest::new(mask, Some(Arc::new(list.clone()))).with_paths(paths), elapsed))
 }

@@ -2,10 +2,8 @@
 
 use super::{DeviceFormats, WRITTEN};
 use crate::device::Headless;
-use crate::frame::{
-    ComposedFrame, Content, DeviceFrame, DeviceSamples, OnDevice, RenderedFrame, SourceFrame, SparseFrame,
-};
-use crate::lattices::SparseGeometry;
+use crate::frame::{ComposedFrame, Content, DeviceFrame, OnDevice, RenderedFrame, SourceFrame};
+use crate::quad_views::Geometry;
 use crate::shader::SHADERS;
 use afterimage::gpu::{Frame, Timestamps};
 use afterimage::internal::{ComputeShader, array_view, filled};
@@ -33,8 +31,8 @@ pub struct DeviceInputs {
     foveated: Texture,
     simulator: GpuSimulator,
     import: Option<ComputeShader>,
-    /// Color and distance of the last sparse frame in an atlas.
-    atlas: Option<[Texture; 2]>,
+    /// Color and distance of the last surfaces.
+    surfaces: Option<[Texture; 2]>,
     given: Given,
 }
 
@@ -75,7 +73,7 @@ impl DeviceInputs {
             noise: texture(TextureFormat::Rg32Float, read),
             simulator: GpuSimulator::new(&gpu.device, desc, formats.color)?,
             import: None,
-            atlas: None,
+            surfaces: None,
             given: Given::color(&foveated),
             foveated,
             gpu: gpu.clone(),
@@ -115,15 +113,13 @@ impl DeviceInputs {
             Content::Foveated(foveated) => {
                 self.given = self.upload_geometry(&frame.reference);
                 self.write_rgb(&self.foveated, &foveated.color);
-                // The levels of detail of a sparse frame follow from its lattices.
-                self.given.lod = foveated.lattices.is_none().then(|| self.uploaded(&self.lod, &foveated.lod));
+                self.given.lod = Some(self.uploaded(&self.lod, &foveated.lod));
                 self.given.noise = foveated.noise.as_ref().map(|noise| self.uploaded(&self.noise, noise));
             }
             Content::Surfaces => self.given = self.upload_geometry(&frame.reference),
             content @ Content::OnDevice(_) => {
                 let content = OnDevice::of(content).expect("this crate has no other frames on devices");
-                let has_geometry =
-                    frame.geometry == SparseGeometry::Samples || matches!(content, OnDevice::Surfaces(_));
+                let has_geometry = frame.geometry == Geometry::Samples || matches!(content, OnDevice::Surfaces(_));
                 let content = self.take(encoder, content);
                 self.given = if has_geometry {
                     content
@@ -155,13 +151,9 @@ impl DeviceInputs {
     fn take(&mut self, encoder: &mut CommandEncoder, content: &OnDevice) -> Given {
         match content {
             // The color of surfaces is replaced when pixels are shaded.
-            OnDevice::Atlas(SparseFrame { atlas, .. }) | OnDevice::Surfaces(atlas) => {
-                let [color, depth] = self.import_atlas(encoder, atlas);
-                Given { depth: Some(depth), motion: Some(atlas.motion.clone()), ..Given::color(&color) }
-            }
-            OnDevice::Samples(DeviceSamples { color, noise, depth, motion, .. }) => {
-                let (depth, motion) = (Some(depth.clone()), Some(motion.clone()));
-                Given { depth, motion, noise: Some(noise.clone()), ..Given::color(color) }
+            OnDevice::Surfaces(surfaces) => {
+                let [color, depth] = self.import_surfaces(encoder, surfaces);
+                Given { depth: Some(depth), motion: Some(surfaces.motion.clone()), ..Given::color(&color) }
             }
             OnDevice::Composed(ComposedFrame { color, distance, motion, lod, .. }) => {
                 let (depth, motion) = (Some(distance.clone()), Some(motion.clone()));
@@ -170,17 +162,17 @@ impl DeviceInputs {
         }
     }
 
-    /// Imports an atlas; its color and distance.
-    fn import_atlas(&mut self, encoder: &mut CommandEncoder, atlas: &DeviceFrame) -> [Texture; 2] {
-        let size = [atlas.color.width(), atlas.color.height()];
+    /// Imports surfaces; their color and distance.
+    fn import_surfaces(&mut self, encoder: &mut CommandEncoder, surfaces: &DeviceFrame) -> [Texture; 2] {
+        let size = [surfaces.color.width(), surfaces.color.height()];
         let fits = |[color, _]: &[Texture; 2]| [color.width(), color.height()] == size;
-        let held = self.atlas.take().filter(fits).unwrap_or_else(|| {
+        let held = self.surfaces.take().filter(fits).unwrap_or_else(|| {
             let texture = |format| self.gpu.texture(size, 1, format, WRITTEN | TextureUsages::COPY_DST);
             [self.formats.color, TextureFormat::R32Float].map(texture)
         });
         let [color, depth] = &held;
-        self.import(encoder, atlas, [color, depth]);
-        self.atlas.insert(held).clone()
+        self.import(encoder, surfaces, [color, depth]);
+        self.surfaces.insert(held).clone()
     }
 
     /// Records the conversion of a rasterized frame's color and depth.
@@ -228,10 +220,16 @@ impl DeviceInputs {
         }
     }
 
-    /// Uploads shaded pixels to the texture of the full-rate frame, which foveated frames do not use.
+    /// Uploads shaded pixels to the texture of the full-rate frame, which planned frames do not use.
     pub(super) fn upload_shaded(&self, color: &Image<[f32; 3]>) -> &Texture {
         self.write_rgb(&self.full, color);
         &self.full
+    }
+
+    /// Uploads the noise of shaded pixels.
+    pub(super) fn upload_noise(&self, noise: &Image<[f32; 2]>) -> &Texture {
+        self.gpu.write(&self.noise, 0, noise);
+        &self.noise
     }
 
     /// Records the simulator, which foveates the full-rate frame for the gaze of `views`.

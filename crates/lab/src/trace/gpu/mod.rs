@@ -6,7 +6,6 @@ mod compute;
 mod expand;
 mod passes;
 mod paths;
-mod place;
 pub mod ray_lists;
 pub mod scene_buffer;
 
@@ -18,20 +17,15 @@ use super::view::View;
 use super::work::Spans;
 use super::world::World;
 use crate::device::{DeviceClock, Headless};
-use crate::frame::DeviceSamples;
-use afterimage::internal::filled;
-use afterimage::{FrameError, Image, Lattice};
+use afterimage::{FrameError, Image};
 pub use expand::BATCH;
 use expand::{Expand, batches};
 use glam::Vec3;
 use passes::Passes;
 use paths::{FrameUniforms, Paths, Run};
-use place::Place;
-pub use place::SampledPoint;
 use scene_buffer::{GpuSceneBuffer, Storage, traversal_constants};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
-use wgpu::BufferUsages;
 
 /// Tracer of one scene on one device. The same seed on the same device gives the same image: appending to path lists is
 /// unordered, but no result depends on the order.
@@ -44,8 +38,6 @@ pub struct GpuTracer {
     on_device: GpuSceneBuffer,
     passes: Passes,
     expand: Expand,
-    /// Compiled at its first use.
-    place: OnceLock<Place>,
     paths: Paths,
     /// Time spent compiling kernels. It does not contain compilation that the driver defers to the first use.
     pub compile_time: Duration,
@@ -90,18 +82,7 @@ impl GpuTracer {
         let expand = Expand::new(&device.device);
         let compile_time = started.elapsed();
         let paths = Paths::new(&device.device, &passes, BATCH);
-        Ok(Self {
-            device,
-            settings,
-            effects,
-            scene_buffer,
-            on_device,
-            passes,
-            expand,
-            place: OnceLock::new(),
-            paths,
-            compile_time,
-        })
+        Ok(Self { device, settings, effects, scene_buffer, on_device, passes, expand, paths, compile_time })
     }
 
     /// Effects that are compiled in.
@@ -177,30 +158,6 @@ impl GpuTracer {
     /// Device that traces.
     pub fn device(&self) -> &Arc<Headless> {
         &self.device
-    }
-
-    /// Traces samples `work` of points of a lattice and leaves them on the device: writes `points` to their pixels in
-    /// `samples`; points without work become NaN. No result is read back. `view` is the view on the lattice.
-    pub fn trace_in_place(
-        &self,
-        world: &World,
-        view: &View,
-        frame: u64,
-        work: &Spans,
-        (lattice, points): (&Lattice, &[SampledPoint]),
-        samples: &DeviceSamples,
-    ) {
-        let place = self.place.get_or_init(|| Place::new(&self.device.device));
-        if work.is_empty() {
-            let film = filled(&self.device.device, "film", &[0; 32], BufferUsages::STORAGE);
-            place.submit(&self.device, lattice, points, &film, [[0; 2]; 2], samples);
-            return;
-        }
-        let (first, size) = work.window();
-        let film = vec![[0.0; 4]; 2 * size[0] as usize * size[1] as usize];
-        let base = Film::base_of(first, size);
-        let run = self.submit_batches(world, view, frame, work, (size[0], base, &film), None);
-        place.submit(&self.device, lattice, points, run.film(), [first, size], samples);
     }
 
     /// Traces `work` into a film on the device. The film is given by its width in pixels, its base, and its earlier

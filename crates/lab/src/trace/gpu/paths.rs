@@ -155,11 +155,6 @@ impl Run<'_> {
         pass.dispatch_workgroups(groups, 1, 1);
     }
 
-    /// The film.
-    pub fn film(&self) -> &wgpu::Buffer {
-        &self.film
-    }
-
     /// Waits for all batches, then reads the film and the counters.
     pub fn read(&self, device: &Headless) -> (Vec<[f32; 4]>, Counters) {
         let film = device.read_buffer(&self.film);

@@ -8,15 +8,15 @@ mod circle;
 mod fill;
 mod lattice;
 mod layers;
+mod planned;
 mod regions;
 mod rings;
-mod sparse;
 
 pub use acuity::Acuity;
 pub use lattice::Lattice;
 pub use layers::Layers;
+pub use planned::trace_requested;
 pub use regions::Regions;
-pub use sparse::SparsePlan;
 
 use super::Tracer;
 use super::film::Film;
@@ -168,7 +168,7 @@ impl Plan {
                 Blended { color: fill::pull_push(&film), lod: lod.clone(), noise: fill::noise_between(&film) }
             }
         };
-        FoveatedFrame { color, lod, noise: Some(noise), lattices: None, samples, rays, nonfinite }
+        FoveatedFrame { color, lod, noise: Some(noise), samples, rays, nonfinite }
     }
 }
 

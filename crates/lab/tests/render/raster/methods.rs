@@ -1,23 +1,25 @@
 //! One walk with all methods: on the device, where frames stay, and read back for methods on the CPU.
 
-use super::foveated::noise;
+use super::noise::noise;
+use super::quad_views;
 use super::rig::{FAST, psnr_db};
-use super::{foveated, quad_views};
 use crate::given::device;
-use afterimage::{Filter, Foveation, Image, MethodKind, Settings};
+use afterimage::{Foveation, Image, MethodKind, Settings};
 use afterimage_lab::device::Backend;
-use afterimage_lab::lattices::SparseGeometry;
 use afterimage_lab::metric::encode;
 use afterimage_lab::pipeline::{Pipeline, RunKind};
-use afterimage_lab::quad_views::QuadViewLayout;
+use afterimage_lab::quad_views::{Geometry, QuadViewLayout};
 use afterimage_lab::source::{FrameSource, RasterSource, SceneCamera, Wanted};
+
+/// What a step with a source fails with.
+type Failure = Box<dyn std::error::Error>;
 
 const SIZE: [u32; 2] = [158, 90];
 
-/// `layout`: of quad views; lattices without it.
+/// `layout`: of quad views; planned frames without it.
 fn both_show_the_same(
     foveation: Foveation,
-    geometry: SparseGeometry,
+    geometry: Geometry,
     layout: Option<QuadViewLayout>,
     methods: &[MethodKind],
 ) {
@@ -29,14 +31,16 @@ fn both_show_the_same(
     let kinds: Vec<_> = methods.iter().map(run).collect();
     let mut pipelines = [Backend::Gpu(device), Backend::Cpu].map(|backend| {
         let pipeline = Pipeline::new(view, foveation, &kinds, false, &[], &backend).unwrap();
-        pipeline.with_sparse(geometry, Default::default()).with_quad_views(layout)
+        pipeline.with_quad_views(layout, geometry)
     });
     let mut db = [0.0; 2];
     for index in 0..4 {
         let gaze_px = [60.0 + 10.0 * index as f32, 50.0];
         let request = pipelines[0].request(index, Some(gaze_px));
         let frame = source.render(&request).unwrap();
-        let [gpu, cpu] = pipelines.each_mut().map(|pipeline| pipeline.step(&frame).unwrap());
+        let [gpu, cpu] = pipelines.each_mut().map(|pipeline| {
+            pipeline.step_with(&frame, &mut |request| Ok::<_, Failure>(source.shade(&frame, request)?)).unwrap()
+        });
         for ((gpu, cpu), method) in gpu.outputs.iter().zip(&cpu.outputs).zip(methods) {
             assert_eq!(gpu.image, cpu.image, "{geometry:?}, {layout:?}, frame {index}, {}", method.name());
         }
@@ -44,7 +48,7 @@ fn both_show_the_same(
         let fovea = match (&request.wanted, layout) {
             (Wanted::QuadViews(quads), Some(QuadViewLayout::Regions)) => quads.as_slice()[0].opaque_px,
             (Wanted::QuadViews(_), Some(QuadViewLayout::Uniform { .. })) => [[0; 2]; 2],
-            (Wanted::Lattices(_), None) => frame.content.lattices().unwrap().as_slice()[0].covered_px(),
+            (Wanted::Surfaces, None) => [[0; 2]; 2],
             (wanted, _) => panic!("{layout:?}: {wanted:?}"),
         };
         let [[left, top], [right, bottom]] = fovea;
@@ -60,11 +64,11 @@ fn both_show_the_same(
 }
 
 #[test]
-fn methods_give_the_same_pictures_from_samples_on_the_device_and_in_memory() {
+fn methods_give_the_same_pictures_of_planned_frames_on_the_device_and_in_memory() {
     use MethodKind::{None, Smr, Taa, Taau, Wrs};
-    let foveation = Foveation { filter: Filter::Sparse, fovea_deg: 12.0, ..foveated::FOVEATION() };
-    for geometry in [SparseGeometry::Full, SparseGeometry::Samples] {
-        both_show_the_same(foveation, geometry, Option::None, &[None, Taa, Taau, Wrs, Smr]);
+    for single_pixels in [false, true] {
+        let foveation = Foveation { fovea_deg: 12.0, single_pixels, ..Foveation::quads() };
+        both_show_the_same(foveation, Geometry::Full, Option::None, &[None, Taa, Taau, Wrs, Smr]);
     }
 }
 
@@ -72,9 +76,9 @@ fn methods_give_the_same_pictures_from_samples_on_the_device_and_in_memory() {
 fn methods_give_the_same_pictures_of_composed_frames_on_the_device_and_in_memory() {
     use MethodKind::{None, Smr, Taa, Wrs};
     for (geometry, layout) in [
-        (SparseGeometry::Full, QuadViewLayout::Regions),
-        (SparseGeometry::Samples, QuadViewLayout::Regions),
-        (SparseGeometry::Samples, QuadViewLayout::Uniform { step: 1.5 }),
+        (Geometry::Full, QuadViewLayout::Regions),
+        (Geometry::Samples, QuadViewLayout::Regions),
+        (Geometry::Samples, QuadViewLayout::Uniform { step: 1.5 }),
     ] {
         both_show_the_same(quad_views::FOVEATION(), geometry, Some(layout), &[None, Taa, Wrs, Smr]);
     }

@@ -1,6 +1,6 @@
 //! Quad views against a camera of their resolution, and their composition against its formula.
 
-use super::foveated::{flat, noise, views};
+use super::noise::{flat, noise, views};
 use super::rig::{FAST, Frame, Rig};
 use crate::given::device;
 use afterimage::{Foveation, Image, ViewGeometry};

@@ -3,4 +3,3 @@
 mod acuity;
 mod fills;
 mod papers;
-mod sparse;

@@ -9,8 +9,7 @@ use afterimage::shader::{Composer, Module};
 use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::wgpu::{Texture, TextureUsages};
 use afterimage::{
-    ContextDesc, CreateError, Filter, Foveation, Gaze, Image, Method, MethodKind, Reset, Settings, Smr, ViewFrame,
-    ViewGeometry,
+    ContextDesc, CreateError, Filter, Foveation, Gaze, Image, MethodKind, Reset, Settings, ViewFrame, ViewGeometry,
 };
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::{Headless, NO_ADAPTER, PassClock};
@@ -67,16 +66,9 @@ struct PassSpec {
 enum PassKind {
     Copy,
     Post(Settings),
-    /// A method on sparse frames.
-    Sparse(Settings),
+    /// A method on planned frames, with their plan.
+    Planned(Settings),
     Foveate(Filter),
-}
-
-/// Settings of a method for sparse frames: steps 2 and 4, with more samples than any others.
-fn sparse_settings(method: MethodKind) -> Settings {
-    let paper = Settings::paper();
-    let foveation = Foveation { filter: Filter::Sparse, rate_mid: 2, rate_far: 4, ..paper.foveation };
-    Settings { method: method.into(), foveation, ..paper }
 }
 
 impl PassSpec {
@@ -85,19 +77,8 @@ impl PassSpec {
         Self { name, bytes_per_pixel, kind: PassKind::Post(settings) }
     }
 
-    fn sparse(name: &'static str, settings: Settings) -> Self {
-        Self { kind: PassKind::Sparse(settings), ..Self::new(name, settings) }
-    }
-
-    /// The views of frame `index`, with lattices if it is sparse.
-    fn views(&self, views: &[ViewFrame; 1], index: u64) -> [ViewFrame; 1] {
-        views.map(|mut view| {
-            let PassKind::Sparse(settings) = self.kind else { return view };
-            if let Gaze::At { px } = view.gaze {
-                view.lattices = Some(settings.foveation.lattices(&view.geometry, px, index));
-            }
-            view
-        })
+    fn planned(name: &'static str, settings: Settings) -> Self {
+        Self { kind: PassKind::Planned(settings), ..Self::new(name, settings) }
     }
 }
 
@@ -107,10 +88,10 @@ fn all_passes() -> Vec<PassSpec> {
     let plain = |kind: MethodKind| Settings { method: kind.into(), ..Settings::default() };
     passes.extend(MethodKind::ALL.map(|kind| PassSpec::new(kind.name(), plain(kind))));
     passes.push(PassSpec::new("wrs-weighted", Settings::weighted()));
-    let sparse = sparse_settings(MethodKind::Smr);
-    let antialiased = Settings { method: Method::Smr(Smr { antialias: true, ..Smr::default() }), ..sparse };
-    passes.push(PassSpec::sparse("smr-sparse", sparse));
-    passes.push(PassSpec::sparse("smr-antialias", antialiased));
+    let screen = Settings::screen();
+    passes.push(PassSpec::planned("smr-screen", screen));
+    let everywhere = Settings { foveation: Foveation::uniform(0.25), ..screen };
+    passes.push(PassSpec::planned("smr-everywhere", everywhere));
     passes.extend(Filter::ALL.into_iter().filter_map(|filter| {
         let bytes_per_pixel = simulator_traffic(filter)?;
         Some(PassSpec { name: filter.name(), bytes_per_pixel, kind: PassKind::Foveate(filter) })
@@ -143,7 +124,7 @@ impl CreatedPass {
                 let source = SHADERS.compose("copy_pass").source;
                 Self::Post(Box::new(DeviceRun::with_shader(gpu, &desc, DeviceFormats::ENGINE, &source)?))
             }
-            PassKind::Post(settings) | PassKind::Sparse(settings) => {
+            PassKind::Post(settings) | PassKind::Planned(settings) => {
                 desc.settings = settings;
                 Self::Post(Box::new(DeviceRun::new(gpu, &desc, DeviceFormats::ENGINE)?))
             }
@@ -180,7 +161,7 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
     for spec in &passes {
         let watch = Stopwatch::start();
         let mut pass = CreatedPass::new(&gpu, size, spec.kind)?;
-        time(&gpu, &clock, &inputs, &mut pass, &spec.views(&first, 0), 0)?;
+        time(&gpu, &clock, &inputs, &mut pass, &first, 0)?;
         if !matches!(spec.kind, PassKind::Foveate(_)) {
             cold_start_ms += watch.wall_ms();
         }
@@ -190,8 +171,8 @@ pub fn bench(args: &BenchArgs, size: [u32; 2], frames: u64) -> Result<(), Failur
     for index in 1..WARM_UP + frames {
         let views = views(size, index)?;
         foveate(&gpu, &mut inputs, &views)?;
-        for ((pass, spec), times) in created.iter_mut().zip(&passes).zip(&mut times) {
-            let ms = time(&gpu, &clock, &inputs, pass, &spec.views(&views, index), index)?;
+        for (pass, times) in created.iter_mut().zip(&mut times) {
+            let ms = time(&gpu, &clock, &inputs, pass, &views, index)?;
             if index >= WARM_UP {
                 times.push(ms);
             }
@@ -273,15 +254,22 @@ fn time(
     let watch = Stopwatch::start();
     match pass {
         CreatedPass::Post(run) => {
-            run.record(&mut encoder, &inputs.frame(views, index, Reset::None, false), clock.timestamps())?;
+            let frame = inputs.frame(views, index, Reset::None, false);
+            clock.begin(&mut encoder);
+            if run.post().desc().settings.foveation.filter == Filter::Quads {
+                // Its pixels are those of a frame that is there already.
+                run.post_mut().plan(&gpu.device, &mut encoder, &frame)?;
+            }
+            run.record(&mut encoder, &frame, None)?;
+            clock.end(&mut encoder);
         }
         CreatedPass::Foveate { simulator, output } => {
             let frame =
                 SimulatorFrame { timestamps: clock.timestamps(), ..SimulatorFrame::new(inputs.full(), output, views) };
             simulator.record(&gpu.device, &mut encoder, &frame)?;
+            clock.resolve(&mut encoder);
         }
     }
-    clock.resolve(&mut encoder);
     gpu.queue.submit([encoder.finish()]);
     gpu.wait();
     Ok(clock.read_ms(gpu, &watch))

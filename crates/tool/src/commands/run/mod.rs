@@ -61,10 +61,6 @@ pub struct RunArgs {
     /// --sampling, else what the input has
     #[arg(long, value_parser = parse_samples, value_name = "N")]
     pub reference_samples: Option<u32>,
-    /// With --foveation quads: the first frame has one pixel in 4, evenly, so that a view is sharp sooner after a cut.
-    /// Only smr keeps that frame in its history. Not for traced scenes
-    #[arg(long)]
-    pub quarter_first: bool,
     /// First frame that counts in scores; frames.csv and the pictures have all. Without history, the first frames of a
     /// clip are another question
     #[arg(long, default_value_t = 0, value_name = "N")]
@@ -142,11 +138,11 @@ impl RunArgs {
     pub fn with_defaults(self) -> Self {
         let is_scene = self.input.is_scene();
         let default = match is_scene && self.sampling.sampling == SamplingName::Uniform {
-            true if self.input.is_rasterised() => Filter::Quads,
-            true => Filter::Sparse,
+            true => Filter::Quads,
             false => Filter::Mip,
         };
-        Self { foveation: self.foveation.with_defaults(default, is_scene), ..self }
+        let is_traced = is_scene && !self.input.is_rasterised();
+        Self { foveation: self.foveation.with_defaults(default, is_traced), ..self }
     }
 
     /// The head that moves the camera, with `--camera head`.
@@ -158,11 +154,8 @@ impl RunArgs {
     pub fn rendering(&self, backend: &Backend, head: Option<&HeadPath>) -> Result<Rendering, Failure> {
         // Methods choose the pixels of quads; a pattern has none of its own.
         let pattern = self.sampling()?.or(self.foveation.is_quads().then_some(Sampling::Uniform));
-        let foveated = pattern.map(|pattern| FoveatedSampling {
-            pattern,
-            sparse: self.is_sparse().then_some(self.foveation.order),
-            reference_samples: self.reference_samples.unwrap_or(64),
-        });
+        let foveated = pattern
+            .map(|pattern| FoveatedSampling { pattern, reference_samples: self.reference_samples.unwrap_or(64) });
         Ok(Rendering { backend: backend.clone(), seed: self.seed, foveated, head: head.cloned() })
     }
 
@@ -170,9 +163,6 @@ impl RunArgs {
     pub fn sampling(&self) -> Result<Option<Sampling>, Failure> {
         let is_traced = self.input.source == Some(SourceName::Trace);
         if self.sampling.sampling == SamplingName::Uniform {
-            if is_traced && self.is_sparse() {
-                return self.foveation.regions(self.input.spp).map(Some);
-            }
             // Frames without foveation: their error is noise alone.
             return Ok(
                 (is_traced && self.foveation.filter() == FilterName::Of(Filter::Off)).then_some(Sampling::Uniform)
@@ -184,11 +174,7 @@ impl RunArgs {
                 self.sampling.sampling.name()
             )));
         }
-        let sampling = self.sampling.sampling()?;
-        if self.is_sparse() {
-            self.sampling.check_sparse(&sampling)?;
-        }
-        Ok(Some(sampling))
+        Ok(Some(self.sampling.sampling()?))
     }
 
     /// Samples a pixel of rasterised and analytic references; `None`: what the input has.
@@ -207,9 +193,9 @@ impl RunArgs {
         Ok(None)
     }
 
-    /// Whether frames are given as samples: of a simulator, or of a sampling pattern.
-    pub fn is_sparse(&self) -> bool {
-        self.foveation.filter() == FilterName::Of(Filter::Sparse)
+    /// Whether methods choose the pixels that a path tracer traces.
+    pub fn is_traced_by_plan(&self) -> bool {
+        self.input.source == Some(SourceName::Trace) && self.foveation.is_quads()
     }
 }
 
@@ -250,12 +236,11 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
         fps: plan.fps,
         seed: args.seed,
         simulator: plan::simulator(args),
-        geometry: args.foveation.may_lack_geometry().then(|| args.foveation.geometry().name()),
+        geometry: args.foveation.quad_views().map(|_| args.foveation.geometry().name()),
         scale: match args.foveation.quad_views() {
             Some(QuadViewLayout::Uniform { step }) => Some(step),
             _ => None,
         },
-        order: (plan.clip.foveation.filter == Filter::Sparse).then(|| args.foveation.order.name()),
         gaze: &args.gaze.gaze,
         gaze_map: plan.gaze_map,
         start_s: args.gaze.start,

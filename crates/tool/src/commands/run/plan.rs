@@ -40,13 +40,6 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
     if args.foveation.is_quads() {
         check_quads(args)?;
     }
-    let is_traced = args.input.is_scene() && !args.input.is_rasterised();
-    if args.quarter_first && (!args.foveation.is_quads() || is_traced) {
-        return refuse(
-            "--quarter-first: applies to frames shaded by quads that no path tracer makes; add --foveation quads"
-                .into(),
-        );
-    }
     let fps = args.input.fps(info);
     let geometry = args.input.geometry(info)?;
     let mut methods: Vec<(&'static str, RunKind)> = vec![];
@@ -76,10 +69,8 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
             title: title(&info.name, info.size, track.px.len(), fps, &words(args, &foveation)),
             geometry,
             foveation,
-            sparse_geometry: args.foveation.geometry(),
             quad_views: args.foveation.quad_views(),
-            quarter_first: args.quarter_first,
-            sample_order: args.foveation.order,
+            view_geometry: args.foveation.geometry(),
             jitter: args.foveation.is_jittered(),
             reference_samples: args.reference_samples()?,
             methods,
@@ -132,7 +123,6 @@ pub fn foveation(args: &RunArgs) -> Result<Foveation, Failure> {
     simulated.validate()?;
     let foveation = match args.sampling()? {
         None => simulated,
-        Some(pattern) if args.is_sparse() => Foveation { filter: simulated.filter, ..pattern.foveation() },
         Some(pattern) => pattern.foveation(),
     };
     foveation.validate()?;
@@ -157,8 +147,8 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
     let method = match method {
         MethodName::Post(MethodKind::Taau) if filter.is_quad_views() => {
             return refuse(&format!(
-                "needs moving samples, which --foveation {} has not; use --foveation sparse, for a uniform frame with \
-                 --fovea 0 --mid 0 and equal rates, or leave it out",
+                "needs moving samples, which --foveation {} has not; use --foveation quads, for one pixel in 4 with \
+                 --single-pixels --fovea 0 --mid 180 --rate-mid 2 --rate-far 2 --budget 0, or leave it out",
                 filter.name()
             ));
         }
@@ -167,7 +157,7 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
         }
         MethodName::Post(method) => method,
         MethodName::Oracle if sampling.is_some() => return refuse("needs simulated foveation; leave out --sampling"),
-        MethodName::Oracle if matches!(foveation.filter, Filter::Sparse | Filter::Quads) => {
+        MethodName::Oracle if foveation.filter == Filter::Quads => {
             return refuse("is not defined for moving samples; use another --foveation, or leave it out");
         }
         MethodName::Oracle if is_still => return Ok(RunKind::Oracle),
@@ -176,7 +166,8 @@ pub fn run_kind(args: &RunArgs, method: MethodName, is_still: bool) -> Result<Ru
             return refuse(&format!("{input} moves, and the oracle is only defined for stills; leave it out"));
         }
     };
-    let settings = Settings { foveation, ..args.method_settings.settings(method, args.seed, sampling.is_some()) };
+    let is_noisy = sampling.is_some() || args.is_traced_by_plan();
+    let settings = Settings { foveation, ..args.method_settings.settings(method, args.seed, is_noisy) };
     let settings = args.foveation.antialiased(settings);
     settings.validate()?;
     Ok(RunKind::PostProcess(settings))

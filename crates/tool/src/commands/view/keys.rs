@@ -111,7 +111,6 @@ fn on_off(is_on: bool) -> Option<String> {
 fn rendered(state: &State) -> Option<String> {
     let value = match state.filter {
         FilterName::Of(Filter::Quads) => "chosen quads",
-        FilterName::Of(Filter::Sparse) => "samples",
         filter if filter.is_quad_views() => "quad views",
         _ => "full rate",
     };

@@ -8,15 +8,12 @@ use super::times::{Pass, PassTimes};
 use crate::failure::Failure;
 use afterimage::doctor::Finding;
 use afterimage::gpu::Frame;
-use afterimage::wgpu::{Buffer, CommandEncoder, Texture};
-use afterimage::{
-    ContextDesc, Filter, Foveation, FrameError, Gaze, Lattices, MethodKind, Reset, Settings, ViewFrame, ViewGeometry,
-};
+use afterimage::wgpu::{CommandEncoder, Texture};
+use afterimage::{ContextDesc, Filter, Foveation, Gaze, MethodKind, Reset, Settings, ViewFrame, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::{Content, RenderedFrame};
-use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
 use afterimage_lab::pipeline::{DeviceFormats, DeviceInputs, DeviceRun};
-use afterimage_lab::quad_views::QuadViewLayout;
+use afterimage_lab::quad_views::{Geometry, QuadViewLayout};
 use afterimage_lab::source::{FrameRequest, RasterSource, Wanted};
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -40,9 +37,9 @@ pub struct ViewPipeline {
     /// While the inputs are checked.
     examiner: Option<Examiner>,
     desc: ContextDesc,
-    sparse_geometry: SparseGeometry,
-    sample_order: SampleOrder,
-    /// Whether sparse frames are jittered.
+    /// Depth and motion of quad views.
+    view_geometry: Geometry,
+    /// Whether planned frames are jittered.
     is_jittered: bool,
     /// Quad views of rendered frames.
     quad_views: Option<QuadViewLayout>,
@@ -67,7 +64,7 @@ impl ViewPipeline {
         gpu: &Arc<Headless>,
         geometry: ViewGeometry,
         state: &State,
-        (sparse_geometry, sample_order): (SparseGeometry, SampleOrder),
+        view_geometry: Geometry,
         setup: &Setup,
     ) -> Result<Self, Failure> {
         let desc = desc(&geometry, setup.settings(state, Shows::Post(MethodKind::None)));
@@ -76,8 +73,7 @@ impl ViewPipeline {
             runs: vec![],
             examiner: None,
             desc,
-            sparse_geometry,
-            sample_order,
+            view_geometry,
             is_jittered: setup.args.foveation.is_jittered(),
             quad_views: None,
             position: 0,
@@ -168,19 +164,15 @@ impl ViewPipeline {
         mut renderer: Option<&mut RasterSource>,
         times: &mut PassTimes,
     ) -> Result<(), Failure> {
-        let foveation = &self.desc.settings.foveation;
-        let [is_sparse, by_quads] = [Filter::Sparse, Filter::Quads].map(|filter| foveation.filter == filter);
-        let simulated = is_sparse.then(|| self.sample_order.lattices(foveation, &self.geometry, gaze_px, self.index));
+        let by_quads = self.desc.settings.foveation.filter == Filter::Quads;
         // Rendered frames are shown again only after a reset of the history, which needs no motion.
         let again = again && renderer.is_none();
-        let rendered = renderer.as_deref_mut().map(|renderer| self.render(renderer, gaze_px, simulated, state, times));
+        let rendered = renderer.as_deref_mut().map(|renderer| self.render(renderer, gaze_px, state, times));
         let is_simulated = rendered.as_ref().is_none_or(|(content, _)| matches!(content, Content::FullRate));
-        let (lattices, jitter_px) =
-            rendered.map_or((simulated, [0.0; 2]), |(content, jitter_px)| (content.lattices(), jitter_px));
+        let jitter_px = rendered.map_or([0.0; 2], |(_, jitter_px)| jitter_px);
         let views = [ViewFrame {
             previous_from_current: self.previous_from_current.filter(|_| !again),
             jitter_px,
-            lattices: lattices.map(|lattices| self.sparse_geometry.of(lattices)),
             ..ViewFrame::new(self.geometry, Gaze::At { px: gaze_px })
         }];
         let gpu = &self.gpu;
@@ -193,7 +185,7 @@ impl ViewPipeline {
         let frame = self.inputs.frame(&views, self.index, reset, false);
         let frame = if again { self.inputs.again(frame) } else { frame };
         // The doctor does not know frames with few samples.
-        if state.is_examined && !is_sparse && !by_quads {
+        if state.is_examined && !by_quads {
             let examiner = match &mut self.examiner {
                 Some(examiner) => examiner,
                 none => none.insert(Examiner::new(gpu, &self.desc)?),
@@ -205,14 +197,18 @@ impl ViewPipeline {
         for (side, pass) in self.runs.iter_mut().zip([Pass::Left, Pass::Right]) {
             let Some(run) = &mut side.run else { continue };
             if by_quads {
-                // Of a given frame, the quads are those of its full-rate picture.
+                // Of a given frame, the pixels are those of its full-rate picture.
                 let full = self.inputs.full();
-                let mut shade = |encoder: &mut CommandEncoder, list: &Buffer| match renderer.as_deref_mut() {
-                    Some(renderer) => renderer.record_quads(encoder, self.position, jitter_px, list),
-                    None => full.clone(),
-                };
                 times.span(gpu, pass, |encoder| {
-                    let color = plan(gpu, encoder, run, &frame, &mut shade)?;
+                    run.post_mut().plan(&gpu.device, encoder, &frame)?;
+                    let color = match renderer.as_deref_mut() {
+                        Some(renderer) => {
+                            // After a cut all of them, though one pixel of each is read.
+                            let list = run.post().quad_list(0).expect("the settings ask for a plan");
+                            renderer.record_quads(encoder, self.position, jitter_px, list)
+                        }
+                        None => full.clone(),
+                    };
                     let frame = Frame { color: (&color).into(), ..frame };
                     if let Some(debug) = state.debug {
                         run.record_view(encoder, &frame, debug)?;
@@ -238,7 +234,6 @@ impl ViewPipeline {
         &mut self,
         renderer: &mut RasterSource,
         gaze_px: [f32; 2],
-        lattices: Option<Lattices>,
         state: &State,
         times: &mut PassTimes,
     ) -> (Content, [f32; 2]) {
@@ -247,12 +242,11 @@ impl ViewPipeline {
             .map(|layout| Wanted::QuadViews(layout.views(&self.desc.settings.foveation, &self.geometry, gaze_px)));
         // As in run: the sequence starts with a corner of the pixel.
         let by_quads = self.desc.settings.foveation.filter == Filter::Quads;
-        let is_jittered = self.is_jittered && (lattices.is_some() || by_quads);
-        let jitter_px = is_jittered.then(|| Foveation::jitter_px(self.index + 1));
+        let jitter_px = (self.is_jittered && by_quads).then(|| Foveation::jitter_px(self.index + 1));
         let otherwise = if by_quads { Wanted::Surfaces } else { Wanted::FullRate };
-        let wanted = quad_views.or(lattices.map(Wanted::Lattices)).unwrap_or(otherwise);
+        let wanted = quad_views.unwrap_or(otherwise);
         let full_rate = FrameRequest { reference: false, ..FrameRequest::full_rate(self.position) };
-        let request = FrameRequest { gaze_px, wanted, jitter_px, geometry: self.sparse_geometry, ..full_rate.clone() };
+        let request = FrameRequest { gaze_px, wanted, jitter_px, geometry: self.view_geometry, ..full_rate.clone() };
         self.has_full = request.needs_full_rate();
         if !self.has_full && state.shows_reference() {
             self.record_now(|inputs, encoder| {
@@ -308,16 +302,4 @@ impl ViewPipeline {
             None => (self.picture(side), false),
         }
     }
-}
-
-/// Records the choice of a method's quads, and their shading; the shaded frame.
-fn plan(
-    gpu: &Headless,
-    encoder: &mut CommandEncoder,
-    run: &mut DeviceRun,
-    frame: &Frame<'_>,
-    shade: &mut dyn FnMut(&mut CommandEncoder, &Buffer) -> Texture,
-) -> Result<Texture, FrameError> {
-    run.post_mut().plan(&gpu.device, encoder, frame)?;
-    Ok(shade(encoder, run.post().quad_list(0).expect("the settings ask for a plan")))
 }

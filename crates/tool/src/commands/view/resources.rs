@@ -11,7 +11,6 @@ use super::state::{Side, State};
 use super::surface::Surface;
 use super::times::PassTimes;
 use crate::failure::Failure;
-use afterimage_lab::lattices::SparseGeometry;
 use afterimage_lab::source::{RasterSource, ViewedScene};
 use std::sync::Arc;
 use winit::window::Window;
@@ -48,11 +47,8 @@ impl DeviceResources {
         let gpu = &device.gpu;
         let foveation = &setup.args.foveation;
         let renderer = scene.map(|scene| scene.clone().with_geometry(geometry).on(gpu.clone())).transpose()?;
-        // Depth and motion of every pixel would take a full-rate pass.
-        let samples = if renderer.is_some() { SparseGeometry::Samples } else { SparseGeometry::Full };
-        let sparse = (foveation.geometry.unwrap_or(samples), foveation.order);
         Ok(Self {
-            pipeline: ViewPipeline::new(gpu, geometry, state, sparse, setup)?,
+            pipeline: ViewPipeline::new(gpu, geometry, state, foveation.geometry(), setup)?,
             renderer,
             times: PassTimes::new(gpu),
             quality: Quality::new(gpu, geometry.size_px()),

@@ -43,11 +43,10 @@ impl Setup {
             return refuse(format!("--internal-scale {scale}: expected above 0 and at most 1"));
         }
         args.foveation.check(args.input.is_rasterised(), args.input.is_analytic())?;
-        let has_samples = matches!(args.foveation.filter(), FilterName::Of(Filter::Sparse | Filter::Quads));
-        if args.foveation.is_jittered() && !(args.input.is_rasterised() && has_samples) {
+        if args.foveation.is_jittered() && !(args.input.is_rasterised() && args.foveation.is_quads()) {
             return refuse(
-                "--jitter halton: the viewer jitters single samples of scenes only; give a scene (.gltf, .glb, \
-                 builtin:NAME) and --foveation quads or sparse, or use run"
+                "--jitter halton: the viewer jitters planned frames of scenes only; give a scene (.gltf, .glb, \
+                 builtin:NAME) and --foveation quads, or use run"
                     .into(),
             );
         }

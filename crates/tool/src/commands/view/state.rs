@@ -49,7 +49,7 @@ pub enum Action {
     Next(Side),
     Split,
     Filter,
-    /// Switch between what is rendered of a scene: chosen quads, samples of lattices, quad views, full rate.
+    /// Switch between what is rendered of a scene: chosen quads, quad views, full rate.
     Render,
     /// Multiply the fovea's diameter.
     Fovea(f32),
@@ -151,8 +151,7 @@ impl State {
             Action::Render if !self.is_rasterised => return Effect::Nothing,
             Action::Render => {
                 self.filter = match self.filter {
-                    FilterName::Of(Filter::Quads) => FilterName::Of(Filter::Sparse),
-                    FilterName::Of(Filter::Sparse) => FilterName::Layers,
+                    FilterName::Of(Filter::Quads) => FilterName::Layers,
                     FilterName::Layers => FilterName::Of(Filter::Off),
                     _ => FilterName::Of(Filter::Quads),
                 };
@@ -271,21 +270,21 @@ pub(super) mod tests {
         let views: Vec<_> = (0..7).map(|_| (state.apply(Action::Debug), state.debug.map(DebugView::name)).1).collect();
         let expected = ["weight", "age", "survival", "flush", "gate", "motion"].map(Some);
         assert_eq!((&views[..6], views[6]), (&expected[..], None));
-        let filters: Vec<_> = (0..6).map(|_| (state.apply(Action::Filter), state.filter.name()).1).collect();
-        assert_eq!(filters, ["gauss", "block", "sparse", "quads", "off", "mip"]);
+        let filters: Vec<_> = (0..5).map(|_| (state.apply(Action::Filter), state.filter.name()).1).collect();
+        assert_eq!(filters, ["gauss", "block", "quads", "off", "mip"]);
     }
 
     #[test]
-    fn scenes_are_rendered_as_quads_as_samples_as_quad_views_or_at_full_rate() {
+    fn scenes_are_rendered_as_quads_as_quad_views_or_at_full_rate() {
         let mut state = state();
         assert_eq!(press(&mut state, KeyCode::KeyT, false), Effect::Nothing, "nothing is rendered");
         assert_eq!(state.filter, FilterName::Of(Filter::Mip));
         state.is_rasterised = true;
         let rendered: Vec<_> =
-            (0..5).map(|_| (press(&mut state, KeyCode::KeyT, false), state.filter.name()).1).collect();
-        assert_eq!(rendered, ["quads", "sparse", "layers", "off", "quads"]);
-        let filters: Vec<_> = (0..7).map(|_| (state.apply(Action::Filter), state.filter.name()).1).collect();
-        assert_eq!(filters, ["layers", "uniform", "off", "mip", "gauss", "block", "sparse"]);
+            (0..4).map(|_| (press(&mut state, KeyCode::KeyT, false), state.filter.name()).1).collect();
+        assert_eq!(rendered, ["quads", "layers", "off", "quads"]);
+        let filters: Vec<_> = (0..6).map(|_| (state.apply(Action::Filter), state.filter.name()).1).collect();
+        assert_eq!(filters, ["layers", "uniform", "off", "mip", "gauss", "block"]);
     }
 
     #[test]

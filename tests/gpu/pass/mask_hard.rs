@@ -1,8 +1,9 @@
-//! Hard cases of sparse frames on the GPU, H86 and up: each frame is equal on both executors, bit for bit, and the laws
+//! Hard cases of masks on the GPU, H86 and up: each frame is equal on both executors, bit for bit, and the laws
 //! are those of the CPU.
 
 use super::*;
-use crate::sparse_hard::*;
+use crate::images::{Images, planned};
+use crate::mask_hard::*;
 use std::cell::RefCell;
 use std::rc::Rc;
 
@@ -21,6 +22,12 @@ impl Shows for Both {
         let size = rig.context.size_px;
         let pixels = made.shown.chunks(made.shown.len() / shots.len());
         pixels.map(|p| Image::from_pixels(size, p.iter().map(|c| c.map(f32::from_bits)).collect()).unwrap()).collect()
+    }
+
+    fn plan(&self, index: u64, shot: &Shot) -> Mask {
+        let images = Images::of([&shot.view]);
+        let frame = afterimage::cpu::Frame { reset: shot.reset, ..images.frame(index) };
+        planned(&mut self.rig.as_ref().unwrap().cpu.clone(), &frame).remove(0)
     }
 
     fn set_settings(&mut self, settings: Settings) {
@@ -53,4 +60,4 @@ pub(super) fn run_law(law: fn(Make) -> Option<String>) -> Option<String> {
     })
 }
 
-sparse_laws!(Gpu, run_law);
+mask_laws!(Gpu, run_law);

@@ -1,55 +1,76 @@
-//! Hard cases of sparse frames, H86 and up: pictures, and laws that hold on either executor. A law returns what it
-//! measured, or `None` without an executor.
+//! Hard cases of masks of planned frames, H86 and up: pictures, and laws that hold on either executor. A law returns
+//! what it measured, or `None` without an executor.
 
 mod content;
 mod cuts;
 mod inputs;
-mod lattices;
 mod offsets;
+mod places;
 
-pub use content::{fast_motion, silhouettes, sparkles, thin_lines};
+pub use content::{fast_motion, sparkles, thin_lines};
 pub use cuts::{announced_and_unannounced_cuts, restarts_of_the_order};
 pub use inputs::{invalid_samples, light_trust_views_gaze_and_foveation};
-pub use lattices::{borders, degenerate_lattices, starved_positions};
 pub use offsets::{offsets_off_by_one, repeated_offsets};
+pub use places::{borders, degenerate_masks, starved_positions};
 
 pub use crate::images::{pixel, pixels};
 
 use crate::images::{Images, View, peak, planned, times};
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::{
-    ContextDesc, Exposure, Filter, Foveation, Gaze, Image, Lattices, Method, Reset, Settings, ViewFrame, ViewGeometry,
-};
+use afterimage::kernel::lattice::offset_px;
+use afterimage::{ContextDesc, Exposure, Foveation, Gaze, Image, Method, Reset, Settings};
 use afterimage_testing::Draws;
 use std::ops::{Deref, DerefMut};
 
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
-macro_rules! sparse_laws {
+macro_rules! mask_laws {
     ($side:ident, $run_law:ident) => {
         crate::laws::laws! { $side, $run_law,
             h86_positions_that_are_never_sampled_are_no_worse_than_foveated: "H86", starved_positions;
-            h87_degenerate_lattices_are_finite_and_show_their_samples: "H87", degenerate_lattices;
+            h87_degenerate_masks_are_finite_and_show_their_samples: "H87", degenerate_masks;
             h88_a_reset_in_the_middle_of_the_order_equals_a_fresh_context: "H88", restarts_of_the_order;
             h89_the_fovea_is_the_candidate_and_borders_have_no_seam: "H89", borders;
             h90_a_line_of_one_pixel_is_rebuilt: "H90", thin_lines;
             h91_a_sparkle_is_gone_after_a_turn: "H91", sparkles;
             h92_fast_motion_is_no_worse_than_foveated: "H92", fast_motion;
             h93_cuts_leave_no_ghost: "H93", announced_and_unannounced_cuts;
-            h94_geometry_at_samples_holds_at_silhouettes: "H94", silhouettes;
-            h95_an_invalid_sample_stays_in_its_block: "H95", invalid_samples;
+            h95_an_invalid_sample_stays_near_its_pixel: "H95", invalid_samples;
             h96_repeated_offsets_do_no_harm: "H96", repeated_offsets;
             h97_offsets_off_by_one_cost_little: "H97", offsets_off_by_one;
             h98_light_trust_views_gaze_and_foveation: "H98", light_trust_views_gaze_and_foveation;
         }
     };
 }
-pub(crate) use sparse_laws;
+pub(crate) use mask_laws;
 
 /// Neither side is a multiple of a step.
 pub const SIZE: [u32; 2] = [94, 70];
-/// Frames in which lattices of steps 2 and 4 visit every position.
+/// Frames in which patterns of steps 2 and 4 visit every position.
 pub const TURN: u64 = 16;
 pub type Color = Image<[f32; 3]>;
+pub type Mask = Image<bool>;
+
+/// Distance of the samples of a [`pattern`] in pixels: 1 within 7 px of the gaze, 2 within 21 px, 4 beyond.
+pub fn step_at(gaze_px: [f32; 2], px: [u32; 2]) -> u32 {
+    match (px[0] as f32 - gaze_px[0]).hypot(px[1] as f32 - gaze_px[1]) {
+        ..7.0 => 1,
+        7.0..21.0 => 2,
+        _ => 4,
+    }
+}
+
+/// One pixel of each block, whose place moves from frame to frame, so that every pixel has its turn.
+pub fn pattern(size: [u32; 2], gaze_px: [f32; 2], index: u64) -> Mask {
+    placed(size, gaze_px, |step| offset_px(index, step))
+}
+
+/// The same with other places, given by the step.
+pub fn placed(size: [u32; 2], gaze_px: [f32; 2], offset_px: impl Fn(u32) -> [u32; 2]) -> Mask {
+    Image::from_fn(size, |px| {
+        let step = step_at(gaze_px, px);
+        px.map(|v| v % step) == offset_px(step).map(|v| v % step)
+    })
+}
 
 /// One view of one frame, and the description of the frame.
 #[derive(Clone)]
@@ -74,10 +95,16 @@ impl DerefMut for Shot {
 }
 
 impl Shot {
-    /// Without optional inputs. The color is a full-rate frame, of which only the samples are read.
-    pub fn new(color: Color, lattices: Lattices) -> Self {
+    /// Without optional inputs. The color is a full-rate frame, of which only the pixels of the mask are read.
+    pub fn masked(color: Color, mask: &Mask) -> Self {
+        Self::planned(color, Gaze::Lost)
+            .with(|view| view.mask = Some(mask.map(|chosen| if chosen { 1.0 } else { 0.0 })))
+    }
+
+    /// Without a mask: the frame is planned.
+    pub fn planned(color: Color, gaze: Gaze) -> Self {
         let mut view = View::still(color, [0.0; 2]);
-        view.facts = ViewFrame { lattices: Some(lattices), gaze: Gaze::Lost, ..view.facts };
+        view.facts.gaze = gaze;
         Self { view, exposure: Exposure::Same, reset: Reset::None }
     }
 
@@ -87,10 +114,10 @@ impl Shot {
         self
     }
 
-    /// A frame of `foveation`.
-    pub fn foveated(color: Color, foveation: &Foveation, gaze_px: [f32; 2], index: u64) -> Self {
-        let lattices = foveation.lattices(&geometry(color.size()), gaze_px, index);
-        Self::new(color, lattices)
+    /// With the mask of a [`pattern`].
+    pub fn foveated(color: Color, gaze_px: [f32; 2], index: u64) -> Self {
+        let mask = pattern(color.size(), gaze_px, index);
+        Self::masked(color, &mask)
     }
 
     /// In which everything moves by `speed_px` a frame.
@@ -98,8 +125,9 @@ impl Shot {
         Self { view: self.view.moving(speed_px), ..self }
     }
 
-    pub fn lattices(&self) -> Lattices {
-        self.facts.lattices.unwrap()
+    /// Whether its mask has a pixel.
+    pub fn samples(&self, px: [u32; 2]) -> bool {
+        self.mask.as_ref().is_some_and(|mask| pixel(mask, px) > 0.5)
     }
 }
 
@@ -107,6 +135,9 @@ impl Shot {
 pub trait Shows {
     /// Outputs of a frame. Reset and exposure are those of the first view.
     fn show(&mut self, index: u64, shots: &[Shot]) -> Vec<Color>;
+
+    /// Pixels of a frame of one view that would be shaded if it were planned now.
+    fn plan(&self, index: u64, shot: &Shot) -> Mask;
 
     fn set_settings(&mut self, settings: Settings);
 
@@ -129,6 +160,11 @@ impl Shows for CpuAfterimage {
         out
     }
 
+    fn plan(&self, index: u64, shot: &Shot) -> Mask {
+        let images = Images::of([&shot.view]);
+        planned(&mut self.clone(), &Frame { reset: shot.reset, ..images.frame(index) }).remove(0)
+    }
+
     fn set_settings(&mut self, settings: Settings) {
         CpuAfterimage::set_settings(self, settings).unwrap();
     }
@@ -138,20 +174,10 @@ pub fn on_cpu(desc: ContextDesc) -> Option<Box<dyn Shows>> {
     Some(Box::new(CpuAfterimage::new(&desc).unwrap()))
 }
 
-pub fn geometry(size: [u32; 2]) -> ViewGeometry {
-    ViewGeometry::flat(size, 70.0).unwrap()
-}
-
-/// A fovea of 7 px and a middle region of 21 px around the gaze.
+/// A fovea of 7 px and a middle region of 21 px around the gaze, if a frame is planned.
 pub fn foveation() -> Foveation {
-    Foveation {
-        filter: Filter::Sparse,
-        fovea_deg: 10.0,
-        mid_deg: 30.0,
-        rate_mid: 2,
-        rate_far: 4,
-        ..Foveation::default()
-    }
+    let regions = Foveation { fovea_deg: 10.0, mid_deg: 30.0, budget: 0.0, ..Foveation::quads() };
+    Foveation { rate_mid: 2, rate_far: 4, single_pixels: true, ..regions }
 }
 
 /// A context of one view for `smr`.

@@ -1,20 +1,10 @@
 //! Offsets that repeat, and offsets that are not those of the samples.
 
 use super::*;
-use afterimage::Lattice;
-use afterimage::kernel::lattice::offset_px;
 
-/// The stack of frame `index`, with other offsets.
-fn with_offsets(index: u64, offset_px: impl Fn(&Lattice) -> [u32; 2]) -> Lattices {
-    let stack = foveation().lattices(&geometry(SIZE), [40.0, 30.0], index);
-    let moved = |lattice: &Lattice| {
-        let ([low, _], offset) = (lattice.covered_px(), offset_px(lattice));
-        Lattice { first_px: [0, 1].map(|i| low[i] + offset[i] % lattice.step), ..*lattice }
-    };
-    Lattices::new(&stack.as_slice().iter().map(moved).collect::<Vec<_>>()).unwrap()
-}
+const GAZE: [f32; 2] = [40.0, 30.0];
 
-/// Lattices that stand still, and lattices that show every offset three times.
+/// Masks that stand still, and masks that show every place three times.
 pub fn repeated_offsets(make: Make) -> Option<String> {
     let (mut least, mut mean) = ([f64::INFINITY; 3], [0.0; 3]);
     for (i, speed_px) in [[0.0; 2], [0.37, 0.21], [1.6, -0.7]].into_iter().enumerate() {
@@ -22,7 +12,7 @@ pub fn repeated_offsets(make: Make) -> Option<String> {
         let mut last = None;
         for index in 0..3 * TURN {
             let full = waves(SIZE, speed_px.map(|v| v * index as f32));
-            let shot = Shot::new(full.clone(), with_offsets(index, |_| [1, 0])).moving(speed_px);
+            let shot = Shot::masked(full.clone(), &placed(SIZE, GAZE, |_| [1, 0])).moving(speed_px);
             let shown = post.one(index, &shot);
             assert_finite(&shown, "standing");
             let [smr, none] = [&shown, &none(&shot)].map(|c| psnr(squared_error(c, &full, everywhere)));
@@ -40,7 +30,7 @@ pub fn repeated_offsets(make: Make) -> Option<String> {
     for frames in [1, 3] {
         let mut post = make(smr(SIZE))?;
         for index in 0..frames * TURN + frames {
-            let shown = post.one(index, &Shot::foveated(full.clone(), &foveation(), [40.0, 30.0], index / frames));
+            let shown = post.one(index, &Shot::foveated(full.clone(), GAZE, index / frames));
             let wrong = wrong(&shown, &full, everywhere);
             assert_eq!(wrong == 0, index >= frames * (TURN - 1), "{frames}, frame {index}: {wrong}");
         }
@@ -58,7 +48,7 @@ pub fn repeated_offsets(make: Make) -> Option<String> {
     ))
 }
 
-/// From the claimed place of a sample of a lattice of `step` to its true one, in pixels.
+/// From the claimed place of a sample of a pattern of `step` to its true one, in pixels.
 fn beside(claim: &str, index: u64, step: u32) -> [i32; 2] {
     let claimed = offset_px(index, step).map(u32::cast_signed);
     match claim {
@@ -83,13 +73,12 @@ pub fn offsets_off_by_one(make: Make) -> Option<String> {
             for index in 0..2 * TURN {
                 let shift = speed_px.map(|v| v * index as f32);
                 let full = waves(SIZE, shift);
-                let claimed = foveation().lattices(&geometry(SIZE), [40.0, 30.0], index);
                 let color = Image::from_fn(SIZE, |px| {
-                    let step = claimed.at(px).unwrap().step;
+                    let step = step_at(GAZE, px);
                     let error = if step == 1 { [0, 0] } else { beside(claim, index, step) };
                     wave([0, 1].map(|i| px[i] as f32 + error[i] as f32 - shift[i]))
                 });
-                let shot = Shot::new(color, claimed).moving(speed_px);
+                let shot = Shot::foveated(color, GAZE, index).moving(speed_px);
                 let shown = post.one(index, &shot);
                 assert_finite(&shown, claim);
                 let [smr, none] = [&shown, &none(&shot)].map(|c| psnr(squared_error(c, &full, everywhere)));

@@ -6,7 +6,7 @@ use super::*;
 fn shot(index: u64) -> Shot {
     let speed = [0.4, -0.3];
     let full = waves(SIZE, speed.map(|v| v * index as f32));
-    Shot::foveated(full, &foveation(), [40.0 + index as f32, 30.0], index).moving(speed)
+    Shot::foveated(full, [40.0 + index as f32, 30.0], index).moving(speed)
 }
 
 /// Resets in the middle of the order, and orders that begin anew without one.
@@ -30,7 +30,7 @@ pub fn restarts_of_the_order(make: Make) -> Option<String> {
     }
     // Without a reset: rebuilt after a turn from the new start at the latest, and never worse for it.
     let full = noise(SIZE, "restart");
-    let shot = |index| Shot::foveated(full.clone(), &foveation(), [40.0, 30.0], index);
+    let shot = |index| Shot::foveated(full.clone(), [40.0, 30.0], index);
     let mut post = make(smr(SIZE))?;
     let mut last = usize::MAX;
     for index in (0..7).chain(0..TURN) {
@@ -48,7 +48,7 @@ pub fn restarts_of_the_order(make: Make) -> Option<String> {
 /// Another picture in each frame.
 fn picture(index: u64, depth_m: f32) -> Shot {
     let shift = 17.0 * index as f32 + 0.3 * (index * index) as f32;
-    let shot = Shot::foveated(waves(SIZE, [shift, 1.7 * shift]), &foveation(), [40.0, 30.0], index);
+    let shot = Shot::foveated(waves(SIZE, [shift, 1.7 * shift]), [40.0, 30.0], index);
     shot.with(|view| view.depth = Some(Image::filled(SIZE, depth_m)))
 }
 

@@ -1,18 +1,17 @@
 //! Inputs beside the color: invalid ones, exposure, trust, several views, gaze, settings that change.
 
 use super::*;
-use afterimage::Lattice;
 
 /// NaN in one sample of the periphery, in one frame.
 pub fn invalid_samples(make: Make) -> Option<String> {
     let at = [70, 58];
     let full = waves(SIZE, [0.0; 2]);
-    let shot = |color: Color, index| Shot::foveated(color, &foveation(), [30.0, 25.0], index);
+    let shot = |color: Color, index| Shot::foveated(color, [30.0, 25.0], index);
     let holed = |value: f32| Image::from_fn(SIZE, |px| if px == at { [value; 3] } else { pixel(&full, px) });
     let mut reach = 0;
     let mut after = 0;
     for (from, value) in [(0, f32::NAN), (0, f32::NEG_INFINITY), (TURN, f32::NAN), (TURN, f32::INFINITY)] {
-        let bad = (from..).find(|&index| shot(full.clone(), index).lattices().at(at).unwrap().samples(at))?;
+        let bad = (from..).find(|&index| shot(full.clone(), index).samples(at))?;
         let (mut post, mut clean) = (make(smr(SIZE))?, make(smr(SIZE))?);
         for index in 0..bad + TURN + 4 {
             let color = if index == bad { holed(value) } else { full.clone() };
@@ -36,12 +35,12 @@ pub fn invalid_samples(make: Make) -> Option<String> {
     // Interpolation reaches a step, and estimates of light a step further.
     assert!(reach < 8 && after < 8, "pixels {reach} and {after} px away are changed by an invalid sample");
     // The only sample of a view.
-    let only = |index: u64| Lattices::new(&[Lattice::covering(128, [0, 0], SIZE, [40 + index as u32, 30])]).unwrap();
+    let only = |index: u64| Image::from_fn(SIZE, |px| px == [40 + index as u32, 30]);
     let mut post = make(smr(SIZE))?;
-    let mut last = post.one(0, &Shot::new(full.clone(), only(0)));
+    let mut last = post.one(0, &Shot::masked(full.clone(), &only(0)));
     for index in 1..4 {
         let color = if index == 2 { Image::filled(SIZE, [f32::NAN; 3]) } else { full.clone() };
-        let shown = post.one(index, &Shot::new(color, only(index)));
+        let shown = post.one(index, &Shot::masked(color, &only(index)));
         assert_finite(&shown, "the only sample");
         if index == 2 {
             // Where history had a share below 1, the stored color differs a little from the output.
@@ -50,14 +49,14 @@ pub fn invalid_samples(make: Make) -> Option<String> {
         last = shown;
     }
     Some(format!(
-        "NaN, +Inf, -Inf in one sample of step 4: never shown; with complete history nothing changes, without it pixels up to {reach} px away, then {after}, until it is sampled again; the only sample: the last frame again"
+        "NaN, +Inf, -Inf in one sample of sixteen pixels: never shown; with complete history nothing changes, without it pixels up to {reach} px away, then {after}, until it is sampled again; the only sample: the last frame again"
     ))
 }
 
 fn gliding(index: u64, gaze_px: [f32; 2], phase: f32) -> Shot {
     let speed = [0.4, -0.3];
     let full = waves(SIZE, speed.map(|v| v * index as f32 + phase));
-    Shot::foveated(full, &foveation(), gaze_px, index).moving(speed)
+    Shot::foveated(full, gaze_px, index).moving(speed)
 }
 
 /// Exposure, trust, two views, lost gaze, and a foveation that changes in every frame.
@@ -70,7 +69,7 @@ pub fn light_trust_views_gaze_and_foveation(make: Make) -> Option<String> {
     for ratio in [1.0; TURN as usize].into_iter().chain(exposures.into_iter().flat_map(|ratio| [ratio, 1.0, 1.0])) {
         exposure *= ratio;
         let color = times(&full, exposure);
-        let shot = Shot::foveated(color.clone(), &foveation(), [40.0, 30.0], index);
+        let shot = Shot::foveated(color.clone(), [40.0, 30.0], index);
         let shown = post.one(index, &Shot { exposure: Exposure::Changed { ratio }, ..shot });
         assert_finite(&shown, "exposure");
         if index >= TURN - 1 {
@@ -109,7 +108,7 @@ pub fn light_trust_views_gaze_and_foveation(make: Make) -> Option<String> {
         let alone = vec![left.one(index, &shots[0]), right.one(index, &shots[1])];
         assert_eq!(pair.show(index, &shots), alone, "frame {index}");
     }
-    // The lattices say where samples are; a gaze that is lost, off the view or NaN changes nothing.
+    // The masks say where samples are; a gaze that is lost, off the view or NaN changes nothing.
     let gazes =
         [Gaze::Lost, Gaze::At { px: [f32::NAN, 3.0] }, Gaze::At { px: [-1e9, 1e9] }, Gaze::Uv { uv: [0.1, 0.9] }];
     let (mut lost, mut known) = (make(smr(SIZE))?, make(smr(SIZE))?);
@@ -119,19 +118,20 @@ pub fn light_trust_views_gaze_and_foveation(make: Make) -> Option<String> {
         blind.facts.gaze = gazes[index as usize % gazes.len()];
         assert_eq!(lost.one(index, &blind), known.one(index, &shot), "frame {index}");
     }
-    // Another foveation in each frame, in settings and lattices.
+    // Another foveation in each frame, whose masks are planned.
     let mut post = make(smr(SIZE))?;
     let mut draws = Draws::new("another foveation in each frame");
     let (mut gain, mut mean) = (f64::INFINITY, 0.0);
     for index in 0..3 * TURN {
-        let [mid, far] = [[1, 2], [2, 4], [2, 8], [4, 8], [4, 4], [1, 16]][draws.bits() as usize % 6];
+        let [mid, far] = [[2, 2], [2, 4], [2, 8], [4, 8], [4, 4], [8, 8]][draws.bits() as usize % 6];
         let foveation = Foveation { rate_mid: mid, rate_far: far, mid_deg: draws.range(10.0, 60.0), ..foveation() };
         post.set_settings(Settings { foveation, ..smr(SIZE).settings });
-        let gaze = [draws.range(-20.0, 110.0), draws.range(-20.0, 90.0)];
-        let shot = Shot::foveated(full.clone(), &foveation, gaze, index);
+        let px = [draws.range(-20.0, 110.0), draws.range(-20.0, 90.0)];
+        let shot = Shot::planned(full.clone(), Gaze::At { px });
+        let foveated = none(&Shot::masked(full.clone(), &post.plan(index, &shot)));
         let shown = post.one(index, &shot);
         assert_finite(&shown, "foveation");
-        let errors = [&shown, &none(&shot)].map(|c| psnr(squared_error(c, &full, everywhere)));
+        let errors = [&shown, &foveated].map(|c| psnr(squared_error(c, &full, everywhere)));
         gain = gain.min(errors[0] - errors[1]);
         mean += (errors[0] - errors[1]) / (3 * TURN) as f64;
     }

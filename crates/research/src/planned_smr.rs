@@ -1,21 +1,20 @@
-//! Sparse frames with smr beside frames that are filled between the same number of samples: quality and time. Makes the
-//! last columns of `cargo research papers`.
+//! Frames whose pixels and numbers of paths smr chooses beside frames that are filled between as many samples: quality
+//! and time. Makes the last columns of `cargo research papers`.
 
-use afterimage::{Filter, Foveation, Image, Settings};
+use afterimage::{Foveation, Image, Settings};
+use afterimage_lab::clock::Elapsed;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::Backend;
-use afterimage_lab::frame::Content;
-use afterimage_lab::lattices::{SampleOrder, SparseGeometry};
+use afterimage_lab::frame::{Shaded, ShadedColor, ShadingRequest};
 use afterimage_lab::measure::{Foveated, FrameTime, Pattern, TracedView};
 use afterimage_lab::metric::{Flip, encode, psnr_db};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::trace::Tracer;
-use afterimage_lab::trace::sampling::Sampling;
 use afterimage_program::failure::Failure;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Frames of the clip that smr sees; the last one is scored. A lattice of step 4 has then sampled all pixels.
+/// Frames of the clip that smr sees; the last one is scored.
 pub const CLIP_FRAMES: u64 = 16;
 /// The last frames of the clip, which are timed.
 pub const TIMED_FRAMES: u64 = 3;
@@ -26,7 +25,7 @@ pub struct Comparison {
     /// Samples per pixel of the full-rate frame that both are compared with: as many as where the pattern is densest.
     reference_samples_per_pixel: u32,
     pub filled: Shown,
-    pub sparse_smr: Shown,
+    pub planned_smr: Shown,
 }
 
 /// Quality and time of frames as they are displayed.
@@ -37,10 +36,9 @@ pub struct Shown {
     pub flip: f64,
     /// Samples of the last frame.
     samples: u64,
-    /// Time of tracing, with interpolation where frames are filled, and with depth and motion at the samples where they
-    /// are sparse and on a device. On the CPU, depth and motion are given.
+    /// Time of tracing, with interpolation where frames are filled. Depth and motion are given.
     pub render_ms: f64,
-    /// Time of smr; 0 for filled frames.
+    /// Time of smr with its plan; 0 for filled frames.
     pub post_ms: f64,
     pub total_ms: f64,
 }
@@ -61,57 +59,68 @@ impl<'a> Comparer<'a> {
         Self { subject, tracer, backend, by_wall, references: BTreeMap::new() }
     }
 
-    /// Compares the frames of `filled` with sparse frames of `lattices`, a pattern whose samples can lie on lattices,
-    /// after smr.
+    /// Compares the frames of `filled` with frames of as many paths that smr plans.
     ///
     /// # Errors
-    /// If they cannot, or the device fails.
-    pub fn compare(&mut self, filled: &Pattern, lattices: Sampling) -> Result<Comparison, Failure> {
+    /// If the device fails.
+    pub fn compare(&mut self, filled: &Pattern) -> Result<Comparison, Failure> {
         let subject = self.subject;
         let reference = self
             .references
             .entry(filled.samples)
             .or_insert_with(|| encode(&subject.full_rate(self.tracer, filled.samples, CLIP_FRAMES - 1), 0.0));
         let reference = reference.clone();
-        let sparse = Pattern { sampling: lattices, sparse: Some(SparseGeometry::Samples), ..filled.clone() };
+        let shown = self.filled(filled, &reference);
         Ok(Comparison {
             reference_samples_per_pixel: filled.samples,
-            filled: self.filled(filled, &reference)?,
-            sparse_smr: self.sparse(&sparse, &reference)?,
+            planned_smr: self.planned(filled, shown.samples, &reference)?,
+            filled: shown,
         })
     }
 
-    fn filled(&self, pattern: &Pattern, reference: &Image<[f32; 3]>) -> Result<Shown, Failure> {
-        let (mut render_ms, mut last) = (vec![], None);
-        for index in CLIP_FRAMES - TIMED_FRAMES..CLIP_FRAMES {
-            let frame = self.subject.foveated(self.tracer, pattern, index)?;
-            render_ms.push(self.ms(&frame.took));
-            last = Some(frame);
-        }
-        let Some(Foveated { content: Content::Foveated(frame), samples, .. }) = last else {
-            unreachable!("filled frames are in memory")
-        };
-        Ok(self.shown(&frame.color, reference, samples, &render_ms, &[0.0]))
+    fn filled(&self, pattern: &Pattern, reference: &Image<[f32; 3]>) -> Shown {
+        let frames = (CLIP_FRAMES - TIMED_FRAMES..CLIP_FRAMES).map(|i| self.subject.foveated(self.tracer, pattern, i));
+        let frames: Vec<Foveated> = frames.collect();
+        let render_ms: Vec<_> = frames.iter().map(|frame| self.ms(&frame.took)).collect();
+        let last = &frames[frames.len() - 1];
+        self.shown(&last.frame.color, reference, last.samples, &render_ms, &[0.0])
     }
 
-    fn sparse(&self, pattern: &Pattern, reference: &Image<[f32; 3]>) -> Result<Shown, Failure> {
+    /// `paths`: number of paths of a frame.
+    fn planned(&self, pattern: &Pattern, paths: u64, reference: &Image<[f32; 3]>) -> Result<Shown, Failure> {
         let geometry = *self.subject.geometry();
-        let foveation = Foveation { filter: Filter::Sparse, ..pattern.sampling.foveation() };
+        let fovea_deg = pattern.sampling.foveation().fovea_deg;
+        let foveation = Foveation { fovea_deg, mid_deg: fovea_deg, single_pixels: true, ..Foveation::quads() };
+        // What the fovea and the even pattern leave, one pixel in two blocks.
+        let e_deg = geometry.eccentricity_map(pattern.gaze_px);
+        let all = e_deg.pixels().len() as f64;
+        let in_fovea = e_deg.pixels().iter().filter(|&&e| e < 0.5 * fovea_deg).count() as f64;
+        let even = in_fovea + (all - in_fovea) / f64::from(2 * foveation.rate_far * foveation.rate_far);
+        let budget = ((paths as f64 - even) / all).clamp(0.0, 1.0) as f32;
         let smr = [RunKind::PostProcess(Settings::traced())];
-        let mut pipeline = Pipeline::new(geometry, foveation, &smr, false, &[], self.backend)?
-            .with_sparse(SparseGeometry::Samples, SampleOrder::default());
+        let foveation = Foveation { budget, ..foveation };
+        let mut pipeline = Pipeline::new(geometry, foveation, &smr, false, &[], self.backend)?;
         let (mut render_ms, mut post_ms, mut last) = (vec![], vec![], None);
         for index in 0..CLIP_FRAMES {
-            let (frame, took) = self.subject.rendered(self.tracer, pattern, index)?;
-            let step = pipeline.step(&frame)?;
+            let frame = self.subject.surfaces(self.tracer, pattern.gaze_px, index);
+            let (mut traced, mut samples) = (0.0, 0);
+            let mut shade = |request: &ShadingRequest| -> Result<_, Failure> {
+                let (film, took) = self.subject.shade(self.tracer, request, 1, index);
+                traced = self.ms(&took);
+                samples = film.moments.pixels().iter().map(|moments| u64::from(moments.count)).sum();
+                let (color, noise) = (ShadedColor::InMemory(film.color()), Some(film.noise()));
+                let took = Elapsed { wall_ms: took.wall_ms, cpu_ms: Some(took.cpu_ms), device_ms: took.device_ms };
+                Ok(Some(Shaded { color, half: None, noise, took }))
+            };
+            let step = pipeline.step_with(&frame, &mut shade)?;
             if index + TIMED_FRAMES >= CLIP_FRAMES {
-                render_ms.push(self.ms(&took));
+                render_ms.push(traced);
                 post_ms.extend(step.outputs.iter().map(|output| output.elapsed.cost_ms()));
             }
-            last = step.outputs.into_iter().next().map(|output| (output.image, frame.samples));
+            last = step.outputs.into_iter().next().map(|output| (output.image, samples));
         }
         let (image, samples) = last.expect("a clip has frames");
-        Ok(self.shown(&image, reference, samples.unwrap_or(0), &render_ms, &post_ms))
+        Ok(self.shown(&image, reference, samples, &render_ms, &post_ms))
     }
 
     fn ms(&self, took: &FrameTime) -> f64 {

@@ -1,0 +1,213 @@
+//! Path-traced frames whose pixels and numbers of paths smr chooses, beside frames of fixed patterns.
+//!
+//! Each row says the paths of a frame; PSNR in dB (sRGB) of all pixels, and of fovea, middle and periphery; FLIP; and the
+//! PSNR of pixels that were sharp in an earlier frame. A row is `NAME:FOVEA_DEG,MID_DEG,RATE_MID,RATE_FAR,BUDGET`, with a
+//! second row without history if the name ends in `none`; `regions:PATHS` a point; or `acuity:LEAST`, two paths a point.
+//!
+//! `cargo run --release -p afterimage-research --example traced_plan -- SCENE [--camera NAME] [--size WxH] [--frames N]
+//! [--gaze FILE.csv] [--start S] [--reference-samples N] [--rows "ROW;ROW"]`
+//!
+//! Makes the table of "Samples in their places" in `docs/path-tracing.md`.
+
+use afterimage::cpu::{CpuAfterimage, Frame};
+use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, Reset, Settings, ViewFrame, ViewGeometry};
+use afterimage_lab::device::Backend;
+use afterimage_lab::frame::{Content, RenderedFrame, ShadedColor, ShadingRequest};
+use afterimage_lab::metric::{Flip, References, Scorer, Tracker, encode};
+use afterimage_lab::scanpath::{FrameGaze, GazeMap, read_csv};
+use afterimage_lab::source::{
+    FrameRequest, FrameSource, ReadLimits, SceneOptions, TracedSamples, TracedSource, Wanted,
+};
+use afterimage_lab::trace::sampling::{Acuity, Regions, Sampling};
+use afterimage_lab::trace::settings::TraceSettings;
+
+/// Rows of the table.
+const ROWS: &str = "plan:5.2,5.2,2,2,0.025;even:8.6,8.6,2,2,0;none:5.2,5.2,4,8,0.14;acuity:0.07;acuity:0.16;regions:2";
+
+type Failure = Box<dyn std::error::Error>;
+
+/// Frames that a row shows.
+enum Kind {
+    /// Chosen by smr.
+    Planned,
+    /// Those that the row before chose, without history.
+    WithoutHistory,
+    /// Traced in a pattern and filled between the samples.
+    Filled(Box<TracedSource>),
+}
+
+struct Row {
+    name: String,
+    kind: Kind,
+    post: CpuAfterimage,
+    scorer: Scorer,
+    paths: u64,
+}
+
+/// A chosen frame as it was traced.
+struct Traced {
+    mask: Image<bool>,
+    color: Image<[f32; 3]>,
+    noise: Image<[f32; 2]>,
+    paths: u64,
+}
+
+impl Row {
+    fn new(name: &str, kind: Kind, size: [u32; 2], settings: Settings) -> Result<Self, Failure> {
+        let post = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(size) })?;
+        Ok(Self { name: name.into(), kind, post, scorer: Scorer::default(), paths: 0 })
+    }
+
+    /// Shows a frame. `last`: the last one that was chosen.
+    fn show(
+        &mut self,
+        frame: &RenderedFrame,
+        view: ViewFrame,
+        source: &mut TracedSource,
+        last: &mut Option<Traced>,
+    ) -> Result<Image<[f32; 3]>, Failure> {
+        let size = self.post.desc().size_px;
+        let seen = &frame.reference;
+        let (depth, motion) = (seen.depth.as_ref().ok_or("no depth")?, seen.motion.as_ref().ok_or("no motion")?);
+        let (depths, motions, views) = ([depth], [motion], [view]);
+        let reset = if seen.cut { Reset::All } else { Reset::None };
+        let bare =
+            Frame { depth: Some(&depths), motion: Some(&motions), reset, ..Frame::new(&[], &views, frame.index) };
+        let mut shown = [Image::filled(size, [0.0; 3])];
+        match &mut self.kind {
+            Kind::Planned => {
+                let mask = self.post.plan(&bare)?[0].clone();
+                let paths = self.post.paths()[0].clone();
+                let sum = paths.pixels().iter().map(|&paths| u64::from(paths)).sum();
+                let request = ShadingRequest::new(mask.clone(), None).with_paths(Some(paths));
+                let shaded = source.shade(frame, &request)?.ok_or("not traced")?;
+                let ShadedColor::InMemory(color) = shaded.color else { Err("on a device")? };
+                let traced = Traced { mask, color, noise: shaded.noise.ok_or("no noise")?, paths: sum };
+                let (colors, noises) = ([&traced.color], [&traced.noise]);
+                self.post.process(&Frame { color: &colors, noise: Some(&noises), ..bare }, &mut shown)?;
+                self.paths += sum;
+                *last = Some(traced);
+            }
+            Kind::WithoutHistory => {
+                let traced = last.as_ref().ok_or("nothing was chosen")?;
+                let mask = traced.mask.map(|chosen| f32::from(u8::from(chosen)));
+                let (colors, noises, masks) = ([&traced.color], [&traced.noise], [&mask]);
+                let input = Frame { color: &colors, noise: Some(&noises), mask: Some(&masks), ..bare };
+                self.post.process(&input, &mut shown)?;
+                self.paths += traced.paths;
+            }
+            Kind::Filled(source) => {
+                let request = FrameRequest {
+                    gaze_px: view.gaze.resolve(None, &view.geometry),
+                    reference: false,
+                    ..FrameRequest::full_rate(frame.index)
+                };
+                let Content::Foveated(filled) = source.render(&request)?.content else { Err("not foveated")? };
+                let noise = filled.noise.as_ref().ok_or("no noise")?;
+                let (colors, noises, lods) = ([&filled.color], [noise], [&filled.lod]);
+                let input = Frame { color: &colors, noise: Some(&noises), lod: Some(&lods), ..bare };
+                self.post.process(&input, &mut shown)?;
+                self.paths += filled.samples.iter().sum::<u64>();
+            }
+        }
+        let [shown] = shown;
+        Ok(shown)
+    }
+}
+
+fn main() -> Result<(), Failure> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let option = |name: &str, default: &str| {
+        args.iter().position(|a| a == name).map_or(default.to_owned(), |i| args[i + 1].clone())
+    };
+    let scene = args.first().ok_or("which scene?")?.clone();
+    let frames: u64 = option("--frames", "24").parse()?;
+    let size: Vec<u32> = option("--size", "256x144").split('x').map(str::parse).collect::<Result<_, _>>()?;
+    let (size, camera) = ([size[0], size[1]], option("--camera", ""));
+    let reference_samples: u32 = option("--reference-samples", "32").parse()?;
+    let options = SceneOptions { size: Some(size), hfov_deg: None, fps: None };
+    let open = |foveated: Option<Sampling>| {
+        let samples = TracedSamples { foveated, samples: 2, full_rate_samples: reference_samples };
+        let camera = (!camera.is_empty()).then_some(camera.as_str());
+        let settings = TraceSettings::default();
+        TracedSource::open(&scene, &ReadLimits::from_megapixels(64), &options, camera, &Backend::Cpu, settings, samples)
+    };
+    let mut source = open(None)?;
+    let info = source.info().clone();
+    let geometry = ViewGeometry::flat(size, info.hfov_deg.unwrap_or(70.0))?;
+    let path = read_csv(option("--gaze", "image_500hz.csv"))?;
+    let map = GazeMap::default_for(path.screen());
+    let gaze =
+        FrameGaze::new(&path, &geometry, map, option("--start", "1").parse()?, f64::from(info.fps.unwrap_or(60.0)))?;
+
+    let mut rows = vec![];
+    for text in option("--rows", ROWS).split(';').filter(|text| !text.is_empty()) {
+        let (name, numbers) = text.split_once(':').ok_or("a row is NAME:NUMBERS")?;
+        let n: Vec<f32> = numbers.split(',').map(str::parse).collect::<Result<_, _>>()?;
+        let sampling = match name {
+            "regions" => Some(Sampling::Regions(Regions { samples: [n[0] as u32; 3], ..Regions::default() })),
+            "acuity" => Some(Sampling::Acuity(Acuity { least: n[0], ..Acuity::default() })),
+            _ => None,
+        };
+        if let Some(sampling) = sampling {
+            let settings = Settings { foveation: sampling.foveation(), ..Settings::traced() };
+            let kind = Kind::Filled(Box::new(open(Some(sampling))?));
+            rows.push(Row::new(text, kind, size, settings)?);
+            continue;
+        }
+        let foveation = Foveation {
+            fovea_deg: n[0],
+            mid_deg: n[1],
+            rate_mid: n[2] as u32,
+            rate_far: n[3] as u32,
+            budget: n[4],
+            single_pixels: true,
+            ..Foveation::quads()
+        };
+        let settings = Settings { foveation, ..Settings::traced() };
+        rows.push(Row::new(text, Kind::Planned, size, settings)?);
+        if name.ends_with("none") {
+            let settings = Settings { method: Method::None, ..settings };
+            rows.push(Row::new(&format!("{text} without history"), Kind::WithoutHistory, size, settings)?);
+        }
+    }
+
+    let mut references = References::with_flip(Flip::for_view(&geometry));
+    let mut tracker = Tracker::default();
+    let regions = Sampling::Regions(Regions::default()).foveation();
+    let mut gaze_px = size.map(|side| 0.5 * (side as f32 - 1.0));
+    let mut last = None;
+    for index in 0..frames {
+        gaze_px = gaze.px(index).unwrap_or(gaze_px);
+        let request = FrameRequest { gaze_px, wanted: Wanted::Surfaces, ..FrameRequest::full_rate(index) };
+        let frame = source.render(&request)?;
+        let ecc_deg = geometry.eccentricity_map(gaze_px);
+        let tracked = tracker.advance(&frame.reference, &geometry, &ecc_deg, &regions.lod_map(&geometry, gaze_px));
+        let full = encode(&frame.reference.color, 0.0);
+        let reference = references.next(&full, &tracked, &ecc_deg);
+        let view = ViewFrame {
+            previous_from_current: frame.reference.previous_from_current,
+            ..ViewFrame::new(geometry, Gaze::At { px: gaze_px })
+        };
+        for row in &mut rows {
+            let shown = row.show(&frame, view, &mut source, &mut last)?;
+            row.scorer.push(&reference, &encode(&shown, 0.0), &tracked, &ecc_deg);
+        }
+    }
+    for row in &rows {
+        let scores = row.scorer.scores();
+        let number = |v: Option<f64>| v.unwrap_or(f64::NAN);
+        println!(
+            "{:36} {:6.0} paths {:6.2}; {:5.2}, {:5.2}, {:5.2}; {:.4}; {:5.2}",
+            row.name,
+            row.paths as f64 / frames as f64,
+            number(scores.whole.psnr_db),
+            number(scores.bands[0].psnr_db),
+            number(scores.bands[1].psnr_db),
+            number(scores.bands[2].psnr_db),
+            number(scores.whole.flip),
+            number(scores.retained_psnr_db),
+        );
+    }
+    Ok(())
+}
