@@ -1,6 +1,7 @@
 //! Candidate of a pixel: the samples around it, and their light.
 
 use super::view::NO_NOISE;
+use crate::kernel::antialias::BESIDE_PX2;
 use crate::kernel::noise::{Noise, borrowed, towards};
 use crate::kernel::resample::codes_between;
 use crate::kernel::sparse_smr::{BY_NEIGHBOURS, Lit, OTHER_SURFACE, Observation, SAMPLE_RELATIVE, candidate_level};
@@ -24,6 +25,8 @@ pub(super) struct Candidate {
     pub noise: Noise,
     /// Whether the candidate is this pixel's own sample.
     pub is_own: bool,
+    /// Color of the sample of the pixel's surface beside it, if there is one.
+    pub beside: Option<Vec3>,
     /// Mean of all samples around the pixel, its own included, and its noise.
     pub mean: (Vec3, Noise),
 }
@@ -38,6 +41,7 @@ impl Candidate {
         fit: 1.0,
         noise: NO_NOISE,
         is_own: false,
+        beside: None,
         mean: (Vec3::ZERO, NO_NOISE),
     };
 
@@ -93,6 +97,8 @@ pub(super) struct Sums {
     range: [Vec3; 2],
     /// Squared distance in pixels of the nearest sample of the pixel's surface.
     nearest_px2: f32,
+    /// Color of this sample, the first of equally near ones.
+    nearest: Vec3,
     /// Color of the pixel's own sample, and the fit of history there.
     pub own: Option<(Vec3, f32)>,
 }
@@ -106,6 +112,7 @@ impl Sums {
         valid: 0.0,
         range: [Vec3::splat(f32::MAX), Vec3::ZERO],
         nearest_px2: f32::MAX,
+        nearest: Vec3::ZERO,
         own: None,
     };
 
@@ -121,8 +128,8 @@ impl Sums {
         self.fit += lit.fit * known;
         self.valid += known;
         self.range = [self.range[0].min(color), self.range[1].max(color)];
-        if alike {
-            self.nearest_px2 = self.nearest_px2.min(px2);
+        if alike && px2 < self.nearest_px2 {
+            (self.nearest_px2, self.nearest) = (px2, color);
         }
         weight
     }
@@ -148,6 +155,7 @@ impl Sums {
             fit: (self.fit * (1.0 / self.valid)).min(own_fit),
             noise: NO_NOISE,
             is_own: self.own.is_some(),
+            beside: (self.nearest_px2 <= BESIDE_PX2).then_some(self.nearest),
             mean: (mean, NO_NOISE),
         }
     }

@@ -232,6 +232,49 @@ fn thin_bars_become_means() {
     }
 }
 
+/// A flat surface before a flat wall, both moving by parallax, jittered: at the edge, which crosses most pixels
+/// obliquely, means follow the covered share of each pixel. The color of a sample of the same surface beside a pixel
+/// counts there, if depth shows the edge.
+#[test]
+fn an_edge_that_moves_by_parallax_becomes_a_mean() {
+    const COLORS: [f32; 2] = [0.6, 0.03];
+    const SPEEDS_PX: [f32; 2] = [0.8, 0.2];
+    const FRAMES: u64 = 64;
+    // Mean squared error of square roots within a pixel and a half of the edge, of the last half.
+    let error = |share: f32, has_depth: bool| {
+        let is_front = |px: [u32; 2], place: [f32; 2], index: u64| {
+            px[0] as f32 + place[0] < 2.0 + 0.3 * (px[1] as f32 + place[1]) + SPEEDS_PX[0] * index as f32
+        };
+        let settings = Settings { foveation: Foveation::uniform(share), ..settings(0.0, true) };
+        let mut post = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) }).unwrap();
+        let (mut sum, mut count) = (0.0, 0);
+        for index in 0..FRAMES {
+            let jitter_px = Foveation::jitter_px(index + 1);
+            let front = Image::from_fn(SIZE, |px| is_front(px, jitter_px.map(|jitter| 0.5 - jitter), index));
+            let view = View::still(front.map(|front| [COLORS[usize::from(front)]; 3]), [30.0, 20.0]).with(|view| {
+                view.facts.jitter_px = jitter_px;
+                view.depth = Some(front.map(|front| if front && has_depth { 3.0 } else { 9.0 }));
+                view.motion = Some(front.map(|front| [-SPEEDS_PX[usize::from(!front)], 0.0]));
+            });
+            let (_, shown) = show(&mut post, index, &view);
+            for px in pixels(SIZE).filter(|_| index >= FRAMES / 2) {
+                let inside = |i: u32| is_front(px, [i % 8, i / 8].map(|v| (v as f32 + 0.5) / 8.0), index);
+                let share = (0..64).filter(|&i| inside(i)).count() as f32 / 64.0;
+                if share > 0.0 && share < 1.0 {
+                    let mean = COLORS[0] + (COLORS[1] - COLORS[0]) * share;
+                    sum += f64::from(pixel(&shown, px)[0].sqrt() - mean.sqrt()).powi(2);
+                    count += 1;
+                }
+            }
+        }
+        10.0 * (f64::from(count) / sum).log10()
+    };
+    for share in [0.1, 0.25] {
+        let (edge, hidden) = (error(share, true), error(share, false));
+        println!("{share}: {edge:.2} dB, without depth of the edge {hidden:.2}");
+    }
+}
+
 #[test]
 fn h108_what_was_not_asked_for_is_not_read_and_what_is_missing_is_not_shown() {
     for antialias in [false, true] {
