@@ -117,8 +117,8 @@ fn noisy_share(samples: f32, px2: f32) -> f32 {
     return samples / sqrt(max(px2, 1.0));
 }
 
-fn borrowed(past: f32) -> f32 {
-    return BORROWED_SAMPLES / (BORROWED_SAMPLES + past);
+fn borrowed(past: f32, own: Noise, around: f32) -> f32 {
+    return (BORROWED_SAMPLES / (BORROWED_SAMPLES + past)) * noise_visibility(own, around);
 }
 
 fn towards(own: Noise, mean: Noise, share: f32) -> Noise {

@@ -43,7 +43,7 @@ fn no_candidate() -> Candidate {
 // The noisy sample of a pixel whose history is a mean of `past` samples, with its share of the mean around it.
 fn borrowing(own: Candidate, past: f32) -> Candidate {
     var all_around = own;
-    let share = borrowed(past);
+    let share = borrowed(past, own.noise, luma(own.color));
     all_around.color = own.color + (own.mean - own.color) * share;
     all_around.noise = towards(own.noise, own.mean_noise, share);
     return all_around;
@@ -52,7 +52,6 @@ fn borrowing(own: Candidate, past: f32) -> Candidate {
 // Result at a pixel that has history and a usable candidate, of jittered frames. `near`: sums over the nine samples
 // around a pixel of full rate; `at_edge`: whether the pixel is at an edge of a surface outside the fovea.
 fn antialiased(
-    px: vec2u,
     view: u32,
     level: u32,
     given: Reconstruction,
@@ -158,7 +157,7 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
             } else if ANTIALIAS != 0u {
                 let contrast = root_difference(history.lowest, history.highest);
                 let error = expected_mean_error(found.mean, contrast, moved);
-                let averaged = antialiased(px, view, level, inputs, found.mean, error, candidate, surface.is_edge, near);
+                let averaged = antialiased(view, level, inputs, found.mean, error, candidate, surface.is_edge, near);
                 result = averaged.result;
                 mean = averaged.mean;
             } else {

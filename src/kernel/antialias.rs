@@ -195,8 +195,8 @@ pub fn is_silhouette(own: f32, a: f32, b: f32) -> bool {
     a.min(b) < 0.0 || ((a + b) - 2.0 * own).abs() > own * NEARER_RELATIVE
 }
 
-/// Whether the edge of a surface crosses that line: as [`is_silhouette`], but for larger differences only, also relative
-/// to the nearest of the three.
+/// Whether the edge of a surface crosses that line: as [`is_silhouette`], but only for larger differences, which are
+/// relative to the nearest of the three.
 #[inline]
 pub fn is_edge(own: f32, a: f32, b: f32) -> bool {
     a.min(b) < 0.0 || ((a + b) - 2.0 * own).abs() > own.max(a).max(b) * EDGE_RELATIVE
@@ -343,10 +343,10 @@ pub fn average(r: &Reconstruction, past: Mean, place_px: Vec2, at_edge: bool, ke
     Averaged { result: added(r, place_px, share), mean }
 }
 
-/// At an edge, mean of history, which is a mean, and of the sample of the same surface beside the pixel, the candidate:
-/// as if it were the pixel's own at `place_px`, with a smaller weight. The surface that a pixel's jittered point shows
-/// changes from frame to frame, so that even a sample beside says how much of the pixel it covers; a mean that waits for
-/// the pixel's own samples follows a moving edge too late. It is not counted: its color is that of another place.
+/// At an edge, mean of history and of the candidate, a sample of the same surface beside the pixel: as if it were the
+/// pixel's own at `place_px`, with a smaller weight. Depth says in every frame which surface the pixel's jittered point
+/// shows. A mean that waits for the pixel's own samples follows a moving edge too late. The sample is not counted,
+/// because it shows another place. History must not be coarse.
 #[inline]
 pub fn average_beside(r: &Reconstruction, past: Mean, place_px: Vec2) -> Averaged {
     let acceptance = r.fit * r.trust;

@@ -2,6 +2,7 @@
 
 use super::view::NO_NOISE;
 use crate::kernel::antialias::BESIDE_PX2;
+use crate::kernel::color::luma;
 use crate::kernel::noise::{Noise, borrowed, towards};
 use crate::kernel::resample::codes_between;
 use crate::kernel::sparse_smr::{BY_NEIGHBOURS, Lit, OTHER_SURFACE, Observation, SAMPLE_RELATIVE, candidate_level};
@@ -48,7 +49,8 @@ impl Candidate {
     /// The noisy sample of a pixel whose history is a mean of `past` samples, with its share of the mean around it.
     #[inline(always)]
     pub fn borrowing(self, past: f32) -> Self {
-        let (share, (mean, noise)) = (borrowed(past), self.mean);
+        let (mean, noise) = self.mean;
+        let share = borrowed(past, self.noise, luma(self.color));
         Self { color: self.color + (mean - self.color) * share, noise: towards(self.noise, noise, share), ..self }
     }
 

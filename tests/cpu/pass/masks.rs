@@ -231,9 +231,12 @@ fn masks_of_frames_without_a_plan_are_refused() {
     assert!(refused(&mut post, &whole).starts_with("half"), "{}", refused(&mut post, &whole));
 }
 
-/// The wall with noise that grows to the right.
+/// A wall of one color with strong noise in its right quarter, and hardly any elsewhere.
 fn noisy_wall(index: u64, needs: Needs) -> View {
-    wall(index, needs).with(|view| view.noise = Some(Image::from_fn(SIZE, |[x, _]| [0.002 * x as f32, 1.0])))
+    wall(index, needs).with(|view| {
+        view.color = view.color.map(|[_, _, blue]| [blue, blue, blue]);
+        view.noise = Some(Image::from_fn(SIZE, |[x, _]| [if 4 * x >= 3 * SIZE[0] { 1.0 } else { 0.001 }, 1.0]));
+    })
 }
 
 /// Paths of frames after the first, by pixel, of smr on noisy frames.

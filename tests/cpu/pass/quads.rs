@@ -232,9 +232,8 @@ fn thin_bars_become_means() {
     }
 }
 
-/// A flat surface before a flat wall, both moving by parallax, jittered: at the edge, which crosses most pixels
-/// obliquely, means follow the covered share of each pixel. The color of a sample of the same surface beside a pixel
-/// counts there, if depth shows the edge.
+/// The oblique edge of a surface before a wall, jittered, both moving by parallax: its pixels become means of both. A
+/// sample of the same surface beside a pixel counts there, and an own sample does not contradict history.
 #[test]
 fn an_edge_that_moves_by_parallax_becomes_a_mean() {
     const COLORS: [f32; 2] = [0.6, 0.03];

@@ -96,7 +96,13 @@ pub const PROBES: &[Probe] = &[
     }),
     probe!(noise::discount_coarser, |rows| pair_rows(rows, &[&floats(&[-3.0, -0.1, 0.0, 0.1, 0.25, 1.0, 8.0])])),
     probe!(noise::noisy_share, |rows| rows.cross(&[&counts(), &floats(&[0.0, 1.0, 2.0, 13.0, 450.0])])),
-    probe!(noise::borrowed, |rows| rows.cross(&[&floats(&[0.0, 1.0, 16.0, 333.0, 32768.0])])),
+    probe!(noise::borrowed, |rows| {
+        rows.random(|d, row| {
+            push(row, &[d.range(0.0, 99.0)]);
+            push(row, &noise(d));
+            push(row, &[d.range(0.0, 2.0)]);
+        })
+    }),
     probe!(noise::towards, |rows| pair_rows(rows, &[&floats(&[0.0, 0.25, 0.5, 1.0])])),
     probe!(noise::sample_difference, |rows| rows.cross(&[&counts(), &variances(), &channels()])),
     probe!(noise::noise_after, |rows| {

@@ -15,13 +15,13 @@ fn bench_times_every_pass_against_the_copy() {
     succeeds(&args);
     let report = read_json(Path::new(&json));
     let passes = report["passes"].as_array().unwrap();
-    let expected = "copy none taa wrs smr taau wrs-weighted smr-sparse smr-antialias mip gauss block";
+    let expected = "copy none taa wrs smr taau wrs-weighted smr-screen smr-everywhere mip gauss block";
     assert_eq!(passes.iter().map(|p| p["name"].as_str().unwrap()).collect::<Vec<_>>(), words(expected));
     for pass in passes {
         assert!(pass["ms"]["median"].as_f64().unwrap() > 0.0);
         let most = match pass["name"].as_str().unwrap() {
             // Samples, and two loops over them before the pixels.
-            "smr-sparse" | "smr-antialias" => 64,
+            "smr-screen" | "smr-everywhere" => 64,
             // A reference beside each sample.
             "wrs-weighted" => 56,
             _ => 48,

@@ -18,8 +18,8 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     refuses(&run(still, &out, &["--frames", "0"]), &["--frames", "1 to"]);
     refuses(&run(still, &out, &["--fovea", "20"]), &["fovea", "15"]);
     refuses(&run(still, &out, &["--rate-mid", "5"]), &["power of two"]);
-    let sparse = ["--foveation", "sparse", "--method"];
-    refuses(&run(still, &out, &[&sparse[..], &["oracle"]].concat()), &["oracle", "moving samples"]);
+    refuses(&run(still, &out, &["--foveation", "quads", "--method", "oracle"]), &["oracle", "moving samples"]);
+    refuses(&run(still, &out, &["--foveation", "sparse"]), &["--foveation quads", "--single-pixels"]);
     refuses(&run(still, &out, &["--hfov", "180"]), &["180"]);
     refuses(&run(still, &out, &["--fps", "0"]), &["--fps", "above 0"]);
     refuses(&run(still, &out, &["--exposure", "65"]), &["--exposure", "64 stops"]);
@@ -30,7 +30,7 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     refuses(&run(frames, &out, &["--jitter", "halton"]), &["--jitter halton", "--source raster", "analytic:NAME"]);
     refuses(&run("builtin:cubes", &out, &["--jitter", "halton", "--source", "trace"]), &["--jitter halton", "raster"]);
     let layers = ["--jitter", "halton", "--foveation", "layers"];
-    refuses(&run("builtin:cubes", &out, &layers), &["--jitter halton", "--foveation sparse"]);
+    refuses(&run("builtin:cubes", &out, &layers), &["--jitter halton", "--foveation quads"]);
     refuses(&run(still, &out, &["--start=-1"]), &["start"]);
     refuses(&run(still, &out, &["--wrs-bias", "exponential:x"]), &["LAMBDA"]);
     refuses(&run(still, &out, &["--gate-divisor", "0"]), &["gate.divisor"]);
@@ -38,14 +38,6 @@ fn bad_usage_is_one_line_and_exit_code_2() {
     refuses(&run(still, &out, &["--gaze", "synthetic:x"]), &["SEED"]);
     refuses(&run(still, &out, &["--camera", "lateral"]), &["--camera", "scene"]);
     refuses(&run("analytic:still", &out, &["--source", "raster"]), &["--source", "scene"]);
-    let traced = |more: &[&'static str]| -> Vec<&'static str> {
-        [&["--source", "trace", "--foveation", "sparse", "--sampling"], more].concat()
-    };
-    let cubes = "builtin:cubes";
-    refuses(&run(cubes, &out, &traced(&["acuity"])), &["acuity", "use --sampling regions or layers"]);
-    refuses(&run(cubes, &out, &traced(&["layers"])), &["[1, 2, 3, 4]", "--layer-step", "1,2,4,8"]);
-    refuses(&run(cubes, &out, &traced(&["regions", "--region-block", "3,6"])), &["[1, 3, 6]", "--region-block"]);
-    refuses(&run(cubes, &out, &traced(&["layers", "--layer-step", "1,2,4,8", "--lens-deg", "40"])), &["--lens-deg"]);
     assert!(!folder.path("out").exists(), "nothing was written");
 }
 
@@ -65,7 +57,6 @@ fn quad_views_of_what_cannot_have_them_are_refused() {
     refused(cubes, &["--foveation", "uniform", "--source", "trace"], &["--foveation uniform", "--source raster"]);
     refused(cubes, &["--foveation", "uniform", "--method", "taau"], &["taau", "moving samples", "--fovea 0"]);
     refused(cubes, &["--foveation", "layers", "--method", "oracle"], &["oracle", "--foveation mip"]);
-    refused(cubes, &["--foveation", "layers", "--order", "sobol"], &["--order sobol", "--foveation sparse"]);
     refused(cubes, &["--foveation", "uniform", "--scale", "0.5"], &["--scale", "1 to 256 pixels"]);
     refused(cubes, &["--scale", "2"], &["--scale", "--foveation uniform"]);
     assert!(!folder.path("out").exists(), "nothing was written");

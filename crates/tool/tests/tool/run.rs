@@ -76,16 +76,14 @@ fn both_backends_write_the_same_bytes() {
         return;
     }
     let debug = format!("--size 160x90 --frames 4 --wrs-sampler a-es --no-jod --debug {DEBUG}");
-    let traced = "--source trace --sampling regions --region-spp 2,1,1 --foveation sparse --reference-samples 2 --no-jod \
-                  --method none,taa,taau,smr --frames 3 --size 64x36 --gaze 20,12";
-    for (input, line, simulator, geometry) in
-        [("analytic:occluder", &debug[..], "mip", None), ("builtin:cubes", traced, "regions", Some("samples"))]
-    {
+    let traced = "--source trace --spp 2 --reference-samples 2 --no-jod --method none,taa,taau,smr --frames 3 --size 64x36 \
+                  --gaze 20,12";
+    for (input, line, simulator) in [("analytic:occluder", &debug[..], "mip"), ("builtin:cubes", traced, "quads")] {
         let [cpu, gpu] = same_on_both_backends(input, line);
         assert_eq!((&cpu["backend"]["kind"], &gpu["backend"]["kind"]), (&"cpu".into(), &"gpu".into()));
         let foveation = &cpu["foveation"];
-        assert_eq!((&foveation["simulator"], foveation["geometry"].as_str()), (&simulator.into(), geometry), "{line}");
-        if simulator == "regions" {
+        assert_eq!(foveation["simulator"], simulator, "{line}");
+        if simulator == "quads" {
             // Stored samples and their noise, of two frames.
             assert_eq!(cpu["methods"]["smr"]["persistent_bytes_per_pixel"], 24.0);
             continue;
@@ -115,8 +113,7 @@ fn frames_before_the_first_that_counts_are_shown_and_not_scored() {
     refuses(&run("analytic:lateral", &Folder::new().text("out"), &words(&late)), &["--score-from 4", "4 frames"]);
 }
 
-/// Rasterised scenes are shaded by quads, traced ones have lattices, and given frames simulate blur, unless the command
-/// line says otherwise.
+/// Of scenes methods choose the pixels, and given frames simulate blur, unless the command line says otherwise.
 #[test]
 fn scenes_have_few_samples_by_default_and_given_frames_are_blurred() {
     if afterimage_testing::gpu::adapter().is_none() {
@@ -124,9 +121,8 @@ fn scenes_have_few_samples_by_default_and_given_frames_are_blurred() {
     }
     for (input, more, expected) in [
         ("builtin:cubes", "", ["quads", ""]),
-        ("builtin:cubes", "--rate-far 16", ["sparse", "samples"]),
-        ("builtin:cubes", "--source trace --spp 1 --reference-samples 1", ["sparse", "samples"]),
-        ("builtin:cubes", "--geometry full", ["sparse", "full"]),
+        ("builtin:cubes", "--source trace --spp 1 --reference-samples 1", ["quads", ""]),
+        ("builtin:cubes", "--foveation layers", ["layers", "samples"]),
         ("builtin:cubes", "--foveation mip", ["mip", ""]),
         ("analytic:still", "", ["mip", ""]),
     ] {
@@ -184,8 +180,8 @@ fn a_still_from_a_picture_file_works_without_depth_and_motion() {
 #[test]
 fn the_time_of_a_frame_is_that_of_the_renderer_and_the_post_process() {
     let kinds = [
-        ("sparse", "--source raster --foveation sparse --geometry samples"),
-        ("full", "--source raster --foveation sparse --geometry full"),
+        ("samples", "--source raster --foveation layers --rate-mid 4 --rate-far 8 --geometry samples"),
+        ("full", "--source raster --foveation layers --rate-mid 4 --rate-far 8 --geometry full"),
         ("mip", "--source raster --foveation mip"),
         ("traced", "--source trace --sampling regions --region-spp 1,1,1"),
     ];
@@ -227,9 +223,9 @@ fn the_time_of_a_frame_is_that_of_the_renderer_and_the_post_process() {
     }
     // Reading back, references and metrics are not part of the renderer's time, or foveated frames would take longer
     // than full-rate frames. A device's frame may be too short for that to show.
-    let [sparse, full, ..] = render_ms[..] else { panic!() };
-    println!("foveated and full rate, ms: {sparse:?}, with depth and motion everywhere {full:?}");
-    assert!(sparse.0 < sparse.1.unwrap() && full.0 < full.1.unwrap(), "{render_ms:?}");
+    let [samples, full, ..] = render_ms[..] else { panic!() };
+    println!("foveated and full rate, ms: {samples:?}, with depth and motion everywhere {full:?}");
+    assert!(samples.0 < samples.1.unwrap(), "{render_ms:?}");
 
     // Frames that are read have no renderer.
     let out = ran("analytic:lateral", &format!("{SMALL} --method smr --no-flip"));

@@ -15,7 +15,7 @@ pub enum PresetName {
     Full,
     /// Scenes: sampling patterns, samples, path depth
     Traced,
-    /// Rasterised scenes: foveation, sizes of the fovea, rates and lattices, against the time of the whole frame
+    /// Rasterised scenes: foveation, sizes of the fovea and rates, against the time of the whole frame
     Raster,
     /// Quads: fovea, middle region, steps and budget, antialiased: for the view of --set hfov and --size
     Quads,

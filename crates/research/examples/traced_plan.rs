@@ -1,11 +1,11 @@
-//! Path-traced frames whose pixels and numbers of paths smr chooses, beside frames of fixed patterns with as many paths.
+//! Path-traced frames whose pixels and numbers of paths smr chooses, beside frames of fixed patterns.
 //!
-//! Each row says the paths of a frame, PSNR in dB (sRGB) of all, fovea, middle and periphery, FLIP, and the PSNR of
-//! pixels that were sharp in an earlier frame.
+//! Each row says the paths of a frame; PSNR in dB (sRGB) of all pixels, and of fovea, middle and periphery; FLIP; and the
+//! PSNR of pixels that were sharp in an earlier frame. A row is `NAME:FOVEA_DEG,MID_DEG,RATE_MID,RATE_FAR,BUDGET`, with a
+//! second row without history if the name ends in `none`; `regions:PATHS` a point; or `acuity:LEAST`, two paths a point.
 //!
-//! `cargo run --release -p afterimage-lab --example 11_traced_plan -- SCENE [--camera NAME] [--size WxH] [--frames N]
-//! [--gaze FILE.csv] [--start S] [--reference-samples N]
-//! [--rows NAME:FOVEA_DEG,MID_DEG,RATE_MID,RATE_FAR,BUDGET;...]`
+//! `cargo run --release -p afterimage-research --example traced_plan -- SCENE [--camera NAME] [--size WxH] [--frames N]
+//! [--gaze FILE.csv] [--start S] [--reference-samples N] [--rows "ROW;ROW"]`
 //!
 //! Makes the table of "Samples in their places" in `docs/path-tracing.md`.
 
@@ -20,6 +20,9 @@ use afterimage_lab::source::{
 };
 use afterimage_lab::trace::sampling::{Acuity, Regions, Sampling};
 use afterimage_lab::trace::settings::TraceSettings;
+
+/// Rows of the table.
+const ROWS: &str = "plan:5.2,5.2,2,2,0.025;even:8.6,8.6,2,2,0;none:5.2,5.2,4,8,0.14;acuity:0.07;acuity:0.16;regions:2";
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -132,13 +135,13 @@ fn main() -> Result<(), Failure> {
     let mut source = open(None)?;
     let info = source.info().clone();
     let geometry = ViewGeometry::flat(size, info.hfov_deg.unwrap_or(70.0))?;
-    let path = read_csv(option("--gaze", "/work/shared/data/scanpaths/image_500hz.csv"))?;
+    let path = read_csv(option("--gaze", "image_500hz.csv"))?;
     let map = GazeMap::default_for(path.screen());
     let gaze =
         FrameGaze::new(&path, &geometry, map, option("--start", "1").parse()?, f64::from(info.fps.unwrap_or(60.0)))?;
 
     let mut rows = vec![];
-    for text in option("--rows", "").split(';').filter(|text| !text.is_empty()) {
+    for text in option("--rows", ROWS).split(';').filter(|text| !text.is_empty()) {
         let (name, numbers) = text.split_once(':').ok_or("a row is NAME:NUMBERS")?;
         let n: Vec<f32> = numbers.split(',').map(str::parse).collect::<Result<_, _>>()?;
         let sampling = match name {
@@ -176,25 +179,8 @@ fn main() -> Result<(), Failure> {
     let mut last = None;
     for index in 0..frames {
         gaze_px = gaze.px(index).unwrap_or(gaze_px);
-        let cached = std::env::var("REFS").ok().map(|folder| {
-            let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
-            files.sort();
-            image::open(&files[index as usize]).unwrap().to_rgb8()
-        });
-        let request = FrameRequest {
-            gaze_px,
-            wanted: Wanted::Surfaces,
-            reference: cached.is_none(),
-            ..FrameRequest::full_rate(index)
-        };
-        let mut frame = source.render(&request)?;
-        if let Some(picture) = cached {
-            let linear = |v: u8| {
-                let v = f32::from(v) / 255.0;
-                if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
-            };
-            frame.reference.color = Image::from_fn(size, |[x, y]| picture.get_pixel(x, y).0.map(linear));
-        }
+        let request = FrameRequest { gaze_px, wanted: Wanted::Surfaces, ..FrameRequest::full_rate(index) };
+        let frame = source.render(&request)?;
         let ecc_deg = geometry.eccentricity_map(gaze_px);
         let tracked = tracker.advance(&frame.reference, &geometry, &ecc_deg, &regions.lod_map(&geometry, gaze_px));
         let full = encode(&frame.reference.color, 0.0);
