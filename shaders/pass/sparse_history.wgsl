@@ -30,7 +30,7 @@ struct PixelSurface {
     mixes: bool,
     // Whether history is the mean of several surfaces, of which a sample shows one.
     is_silhouette: bool,
-    // Whether the pixel is at the edge of a surface, outside the fovea.
+    // Whether the pixel is at a moving edge of a surface, outside the fovea.
     is_edge: bool,
 }
 
@@ -68,7 +68,7 @@ fn surface_of(px: vec2u, view: u32, level: u32) -> PixelSurface {
         edge = edge || is_edge(own, disparities.x, disparities.y);
     }
     let motion = motion_at(nearest_at, view);
-    let at_edge = edge && level > 0u;
+    let at_edge = edge && level > 0u && has_moved(own_motion, motion);
     var surface = PixelSurface(own, own_motion, own, own, own, false, false, at_edge);
     if stands_before(own, nearest_disparity, own_motion, motion, level == 0u) {
         surface = PixelSurface(nearest_disparity, motion, nearest_disparity, own, own, false, false, at_edge);

@@ -50,7 +50,7 @@ fn borrowing(own: Candidate, past: f32) -> Candidate {
 }
 
 // Result at a pixel that has history and a usable candidate, of jittered frames. `near`: sums over the nine samples
-// around a pixel of full rate; `at_edge`: whether the pixel is at an edge of a surface outside the fovea.
+// around a pixel of full rate; `at_edge`: whether it is at a moving edge outside the fovea.
 fn antialiased(
     view: u32,
     level: u32,
@@ -78,7 +78,7 @@ fn antialiased(
         inputs.nearest.color = clipped(inputs.nearest.color, by.change);
         kept = by.kept;
     } else if !at_edge {
-        // At an edge one sample shows one surface, and history a mean of several.
+        // At a moving edge a sample shows one surface, and history a mean of several.
         let history = relit(given.history, given.gains, given.lowest, given.highest);
         kept = kept_samples(error, root_difference(given.candidate, history));
     }

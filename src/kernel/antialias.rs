@@ -20,7 +20,7 @@ pub const MOST_SAMPLES: f32 = 29.0;
 const MOST_PAST_MOVED: f32 = 3.0;
 /// Inverse of the distance in pixels from the pixel's centre at which that limit is reached.
 const MOVED_PER_PX: f32 = 4.0;
-/// The limit is at least this at edges of surfaces.
+/// The limit is at least this at moving edges of surfaces.
 const MOST_PAST_EDGE: f32 = 5.0;
 /// Weight of a sample beside a pixel in the pixel's mean, where its own sample has 1.
 const BESIDE_WEIGHT: f32 = 0.35;
@@ -329,8 +329,8 @@ fn added(r: &Reconstruction, place_px: Vec2, share: f32) -> Reconstructed {
 }
 
 /// Mean of history and of the pixel's own sample, whose place in the pixel is `place_px`. `past`: the texel of history
-/// to keep; `at_edge`: whether [`is_edge`] is true around the pixel, outside the fovea; `kept`: share of its samples
-/// that remains after a clip; `difference`: of sample and history.
+/// to keep; `at_edge`: whether the pixel is at a moving edge ([`is_edge`]) outside the fovea; `kept`: share of its
+/// samples that remains after a clip; `difference`: of sample and history.
 #[inline]
 pub fn average(r: &Reconstruction, past: Mean, place_px: Vec2, at_edge: bool, kept: f32, difference: f32) -> Averaged {
     let acceptance = (r.fit * r.trust) * kept;
@@ -343,10 +343,10 @@ pub fn average(r: &Reconstruction, past: Mean, place_px: Vec2, at_edge: bool, ke
     Averaged { result: added(r, place_px, share), mean }
 }
 
-/// At an edge, mean of history and of the candidate, a sample of the same surface beside the pixel: as if it were the
-/// pixel's own at `place_px`, with a smaller weight. Depth says in every frame which surface the pixel's jittered point
-/// shows. A mean that waits for the pixel's own samples follows a moving edge too late. The sample is not counted,
-/// because it shows another place. History must not be coarse.
+/// At a moving edge, mean of history and of the candidate, a sample of the same surface beside the pixel: as if it were
+/// the pixel's own at `place_px`, with a smaller weight. Depth says in every frame which surface the pixel's jittered
+/// point shows. A mean that waits for the pixel's own samples follows a moving edge too late. The sample is not
+/// counted, because it shows another place. History must not be coarse.
 #[inline]
 pub fn average_beside(r: &Reconstruction, past: Mean, place_px: Vec2) -> Averaged {
     let acceptance = r.fit * r.trust;

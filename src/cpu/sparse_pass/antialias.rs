@@ -1,7 +1,7 @@
 //! Antialiasing in the pass for jittered frames: history stores means of samples instead of single samples.
 
 use super::quads::Quads;
-use super::sparse_history::Surroundings;
+use super::sparse_history::{Surroundings, has_moved};
 use super::view::View;
 use crate::kernel::antialias::{
     Averaged, MOST_DIFFERENCE, Mean, Near, add_near, average, byte_draws, clip, clipped, is_edge, is_silhouette,
@@ -62,7 +62,9 @@ impl View<'_> {
         let motion = self.inputs.motion(nearest_at[0], nearest_at[1]);
         let farthest_motion = self.inputs.motion(farthest_at[0], farthest_at[1]);
         let [own_px, nearest_px, farthest_px] = [own_motion, motion, farthest_motion].map(Vec2::from);
-        let mut surface = Surroundings { is_edge: edge && level > 0, ..alone };
+        // Still edges have long means of their own samples. Others would make them worse.
+        let is_edge = edge && level > 0 && has_moved(own_motion, nearest_px);
+        let mut surface = Surroundings { is_edge, ..alone };
         if stands_before(own, nearest, own_px, nearest_px, level == 0) {
             surface = Surroundings { disparity: nearest, motion, stored: nearest, ..surface };
         }
@@ -75,8 +77,8 @@ impl View<'_> {
     }
 
     /// Mean of history and of the pixel's own sample. `near`: sums over the samples around a pixel of the fovea;
-    /// `at_edge`: whether the pixel is at an edge outside it; `error`: difference that is expected between history and
-    /// sample.
+    /// `at_edge`: whether the pixel is at a moving edge outside it; `error`: difference that is expected between
+    /// history and sample.
     #[inline(always)]
     pub(super) fn averaged(
         &self,
@@ -95,7 +97,7 @@ impl View<'_> {
             notes.note(NoteStage::Comparison, "history clipped to the samples around", inputs.history, "linear light");
             clip.kept
         } else if at_edge {
-            // One sample shows one surface, and history a mean of several.
+            // A sample shows one surface, and history a mean of several.
             1.0
         } else {
             let history = relit(inputs.history, inputs.gain, inputs.range);

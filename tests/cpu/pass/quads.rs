@@ -223,8 +223,9 @@ fn thin_bars_become_means() {
         }
         sums
     };
-    // If samples at silhouettes were compared, and thin surfaces stored as they are, it would be 4.4 and 3.0 dB.
-    for (speed_px, least_db) in [(0.0, 8.0), (0.8, 5.0)] {
+    // If samples at silhouettes were compared, and thin surfaces stored as they are, it would be 4.4 and 3.0 dB;
+    // without samples beside a pixel 5.6 dB if they move.
+    for (speed_px, least_db) in [(0.0, 8.0), (0.8, 6.2)] {
         let [samples, history] = errors(speed_px);
         let db = 10.0 * (samples / history).log10();
         println!("{speed_px} px a frame: {db:.1} dB better than samples");
@@ -239,12 +240,12 @@ fn an_edge_that_moves_by_parallax_becomes_a_mean() {
     const COLORS: [f32; 2] = [0.6, 0.03];
     const SPEEDS_PX: [f32; 2] = [0.8, 0.2];
     const FRAMES: u64 = 64;
-    // Mean squared error of square roots within a pixel and a half of the edge, of the last half.
-    let error = |share: f32, has_depth: bool| {
+    // PSNR of square roots in the pixels that show both, of the last half.
+    let quality_db = |has_depth: bool| {
         let is_front = |px: [u32; 2], place: [f32; 2], index: u64| {
             px[0] as f32 + place[0] < 2.0 + 0.3 * (px[1] as f32 + place[1]) + SPEEDS_PX[0] * index as f32
         };
-        let settings = Settings { foveation: Foveation::uniform(share), ..settings(0.0, true) };
+        let settings = Settings { foveation: Foveation::uniform(0.1), ..settings(0.0, true) };
         let mut post = CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(SIZE) }).unwrap();
         let (mut sum, mut count) = (0.0, 0);
         for index in 0..FRAMES {
@@ -268,10 +269,11 @@ fn an_edge_that_moves_by_parallax_becomes_a_mean() {
         }
         10.0 * (f64::from(count) / sum).log10()
     };
-    for share in [0.1, 0.25] {
-        let (edge, hidden) = (error(share, true), error(share, false));
-        println!("{share}: {edge:.2} dB, without depth of the edge {hidden:.2}");
-    }
+    // Without samples beside a pixel it would be 18.9 dB.
+    const LEAST_DB: f64 = 19.4;
+    let [edge, planted] = [true, false].map(quality_db);
+    println!("{edge:.1} dB, planted error of a depth without the edge {planted:.1}");
+    assert!(edge > LEAST_DB && planted < LEAST_DB);
 }
 
 #[test]
