@@ -121,13 +121,6 @@ fn borrowed(past: f32, own: Noise, around: f32) -> f32 {
     return (BORROWED_SAMPLES / (BORROWED_SAMPLES + past)) * noise_visibility(own, around);
 }
 
-fn towards(own: Noise, mean: Noise, share: f32) -> Noise {
-    return Noise(
-        own.samples + (mean.samples - own.samples) * share,
-        own.variance + (mean.variance - own.variance) * share,
-    );
-}
-
 struct NoiseSum {
     weight: f32,
     spread: f32,

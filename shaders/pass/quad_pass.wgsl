@@ -9,6 +9,34 @@
 // Squared distance in pixels that stands for a missing sample.
 const NO_PX2: f32 = 1e30;
 
+// Mean of the samples around a noisy pixel with a sample, its own included, and the mean variance of one.
+fn mean_around(around: AroundPixel, px: vec2u, view: u32, codes: vec2u) -> vec4f {
+    var sum = vec3f(0.0);
+    var variance = 0.0;
+    var weights = 0.0;
+    // A variable count on purpose, as below.
+    let taps = select(0u, 12u, around.count > 0u);
+    for (var tap = 0u; tap < taps; tap++) {
+        let sample = noisy_tap(around, tap, px, view);
+        let at = min(sample.at, frame.size - 1u);
+        let sampled = color(sample_at(at, view).xyz);
+        let words = textureLoad(lights, at >> vec2u(1u), view, 0);
+        let place = (at.x & 1u) | ((at.y & 1u) << 1u);
+        let same = DEPTH_TEST == 0u || has_code(quad_code(words, place), codes);
+        if sample.is_there && sampled.usable && (same || all(at == px)) {
+            let x = f32(at.x) - f32(px.x);
+            let y = f32(at.y) - f32(px.y);
+            let noise = noise_at(at, view);
+            let share = noisy_share(noise.samples, x * x + y * y);
+            sum += sampled.color * share;
+            variance += noise.variance * share;
+            weights += share;
+        }
+    }
+    let inverse = 1.0 / weights;
+    return vec4f(sum * inverse, variance * inverse);
+}
+
 // Candidate from the samples that stand for a pixel.
 fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Candidate {
     let around = around_pixel(px, view, mask_word);
@@ -26,14 +54,9 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
     var own_fits = 1.0;
     var noises = NoiseSum(0.0, 0.0, 0.0);
     // A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
-    let taps = select(0u, select(around.count, 12u, NOISY != 0u), coarsest > 0.0);
+    let taps = select(0u, around.count, coarsest > 0.0);
     for (var tap = 0u; tap < taps; tap++) {
-        var sample: SampleTap;
-        if NOISY != 0u {
-            sample = noisy_tap(around, tap, px, view);
-        } else {
-            sample = sample_tap(around, tap, px, view);
-        }
+        let sample = sample_tap(around, tap, px, view);
         let at = min(sample.at, frame.size - 1u);
         let given = sample_at(at, view);
         let sampled = color(given.xyz);
@@ -46,11 +69,7 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
             let x = f32(at.x) - f32(px.x);
             let y = f32(at.y) - f32(px.y);
             let px2 = x * x + y * y;
-            var by_place = select(1.0 / max(px2, 1.0), 1.0, is_own);
-            if NOISY != 0u {
-                by_place = noisy_share(noise_at(at, view).samples, px2);
-            }
-            let weight = by_place * select(OTHER_SURFACE, 1.0, same);
+            let weight = select(1.0 / max(px2, 1.0), 1.0, is_own) * select(OTHER_SURFACE, 1.0, same);
             let known = weight * select(BY_NEIGHBOURS, 1.0, lit.is_own);
             let alpha = select(1.0, given.w, is_finite(given.w));
             sum += vec4f(sampled.color, alpha) * weight;
@@ -87,11 +106,10 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
     candidate.gains = gain_sum * known;
     candidate.fit = min(fit_sum * known, own_fits);
     if NOISY != 0u {
-        candidate.mean = mean.xyz;
-        candidate.mean_noise = mean_noise(noises);
-        candidate.noise = candidate.mean_noise;
+        candidate.noise = mean_noise(noises);
         if candidate.is_own {
             candidate.noise = noise_at(px, view);
+            candidate.around = mean_around(around, px, view, codes);
         }
     }
     return candidate;

@@ -22,12 +22,17 @@ struct Candidate {
     noise: Noise,
     // Whether the candidate is this pixel's own sample.
     is_own: bool,
+<<<<<<< HEAD
     // Color of the sample of the pixel's surface beside it, and whether there is one.
     beside: vec3f,
     is_beside: bool,
     // Of noisy frames: mean of all samples around the pixel, its own included, and its noise.
     mean: vec3f,
     mean_noise: Noise,
+=======
+    // Of a noisy pixel with a sample: mean of all samples around it, its own included, and the mean variance of one.
+    around: vec4f,
+>>>>>>> mask
 }
 
 // A candidate without samples; the other fields are 0.
@@ -40,12 +45,13 @@ fn no_candidate() -> Candidate {
     return none;
 }
 
-// The noisy sample of a pixel whose history is a mean of `past` samples, with its share of the mean around it.
+// The noisy sample of a pixel whose history is a mean of `past` samples, with its share of the mean around it. Its
+// variance takes its share, too: a pixel whose samples all missed a lamp would call its neighbours' light a change.
 fn borrowing(own: Candidate, past: f32) -> Candidate {
     var all_around = own;
-    let share = borrowed(past, own.noise, luma(own.color));
-    all_around.color = own.color + (own.mean - own.color) * share;
-    all_around.noise = towards(own.noise, own.mean_noise, share);
+    let share = borrowed(past, Noise(own.noise.samples, own.around.w), luma(own.around.xyz));
+    all_around.color = own.color + (own.around.xyz - own.color) * share;
+    all_around.noise.variance = own.noise.variance + (own.around.w - own.noise.variance) * share;
     return all_around;
 }
 

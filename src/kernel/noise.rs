@@ -187,21 +187,13 @@ pub fn noisy_share(samples: f32, px2: f32) -> f32 {
     samples / px2.max(1.0).sqrt()
 }
 
-/// Share that the mean of the samples around a pixel has in its own noisy sample at a luma, if its history is a mean of
-/// `past` samples. Without history nearly all: error by blur is less than error by noise then. None where the noise is
-/// not visible.
+/// Share that the mean of the samples around a pixel has in its own noisy sample, if its history is a mean of `past`
+/// samples. Without history nearly all: error by blur is less than error by noise then. None where the noise is not
+/// visible. `own`: as many samples as the pixel's own, with the variance around it; `luma`: of the mean. A share by the
+/// pixel's own variance would favour pixels whose samples all missed a lamp.
 #[inline]
 pub fn borrowed(past: f32, own: Noise, luma: f32) -> f32 {
     (BORROWED_SAMPLES / (BORROWED_SAMPLES + past)) * noise_visibility(own, luma)
-}
-
-/// Noise between that of a pixel's own sample and that of the mean around it, which has a share.
-#[inline]
-pub fn towards(own: Noise, mean: Noise, share: f32) -> Noise {
-    Noise {
-        samples: own.samples + (mean.samples - own.samples) * share,
-        variance: own.variance + (mean.variance - own.variance) * share,
-    }
 }
 
 /// Running sums for the noise of a weighted mean of samples.

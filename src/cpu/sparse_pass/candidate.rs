@@ -3,7 +3,7 @@
 use super::view::NO_NOISE;
 use crate::kernel::antialias::BESIDE_PX2;
 use crate::kernel::color::luma;
-use crate::kernel::noise::{Noise, borrowed, towards};
+use crate::kernel::noise::{Noise, borrowed};
 use crate::kernel::resample::codes_between;
 use crate::kernel::sparse_smr::{BY_NEIGHBOURS, Lit, OTHER_SURFACE, Observation, SAMPLE_RELATIVE, candidate_level};
 use crate::notes::{NoteStage, Notes};
@@ -28,8 +28,8 @@ pub(super) struct Candidate {
     pub is_own: bool,
     /// Color of the sample of the pixel's surface beside it, if there is one.
     pub beside: Option<Vec3>,
-    /// Mean of all samples around the pixel, its own included, and its noise.
-    pub mean: (Vec3, Noise),
+    /// Of a noisy pixel with a sample: mean of all samples around it, its own included, and the mean variance of one.
+    pub around: (Vec3, f32),
 }
 
 impl Candidate {
@@ -43,15 +43,18 @@ impl Candidate {
         noise: NO_NOISE,
         is_own: false,
         beside: None,
-        mean: (Vec3::ZERO, NO_NOISE),
+        around: (Vec3::ZERO, 0.0),
     };
 
-    /// The noisy sample of a pixel whose history is a mean of `past` samples, with its share of the mean around it.
+    /// The noisy sample of a pixel whose history is a mean of `past` samples, with its share of the mean around it. Its
+    /// variance takes its share, too: a pixel whose samples all missed a lamp would call its neighbours' light a change.
     #[inline(always)]
     pub fn borrowing(self, past: f32) -> Self {
-        let (mean, noise) = self.mean;
-        let share = borrowed(past, self.noise, luma(self.color));
-        Self { color: self.color + (mean - self.color) * share, noise: towards(self.noise, noise, share), ..self }
+        let (mean, variance) = self.around;
+        let share = borrowed(past, Noise { variance, ..self.noise }, luma(mean));
+        let variance = self.noise.variance + (variance - self.noise.variance) * share;
+        let noise = Noise { variance, ..self.noise };
+        Self { color: self.color + (mean - self.color) * share, noise, ..self }
     }
 
     #[inline(always)]
@@ -143,8 +146,7 @@ impl Sums {
             return Candidate::NONE;
         }
         let coarsest = level as f32;
-        let mean = self.color * (1.0 / self.weight);
-        let (color, own_fit) = self.own.unwrap_or((mean, 1.0));
+        let (color, own_fit) = self.own.unwrap_or((self.color * (1.0 / self.weight), 1.0));
         Candidate {
             color,
             usable: true,
@@ -158,7 +160,7 @@ impl Sums {
             noise: NO_NOISE,
             is_own: self.own.is_some(),
             beside: (self.nearest_px2 <= BESIDE_PX2).then_some(self.nearest),
-            mean: (mean, NO_NOISE),
+            around: (Vec3::ZERO, 0.0),
         }
     }
 }

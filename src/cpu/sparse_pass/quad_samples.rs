@@ -165,11 +165,7 @@ impl View<'_> {
             let lit = quad_lit(words, place);
             let alike = !self.inputs.tests_depth() || has_code(quad_code(words, place), codes);
             let px2 = offset_px2(at[0], px[0]) + offset_px2(at[1], px[1]);
-            let share = match self.is_noisy {
-                true => noisy_share(self.sample_noise(at).samples, px2),
-                false if at == px => 1.0,
-                false => 1.0 / px2,
-            };
+            let share = if at == px { 1.0 } else { 1.0 / px2 };
             let weight = sums.add(color, lit, share, px2, alike);
             if N::ON {
                 note_sample(notes, at, weight, color, lit, self.observe_px(at, level, color, usable));
@@ -181,15 +177,36 @@ impl View<'_> {
                 sums.own = Some((color, lit.own_fit));
             }
         };
-        match self.is_noisy {
-            true => quads.all_samples_around(px).for_each(&mut add),
-            false => quads.samples_around(px).for_each(&mut add),
-        }
+        quads.samples_around(px).for_each(&mut add);
         let mut candidate = sums.candidate(level);
         if self.is_noisy && candidate.usable {
-            candidate.mean.1 = mean_noise(noises);
-            candidate.noise = if candidate.is_own { self.sample_noise(px) } else { candidate.mean.1 };
+            candidate.noise = if candidate.is_own { self.sample_noise(px) } else { mean_noise(noises) };
+        }
+        if self.is_noisy && candidate.is_own {
+            candidate.around = self.mean_around(quads, px, codes, lights);
         }
         Candidate { lod: if candidate.is_own { 0.0 } else { candidate.lod }, ..candidate }
+    }
+
+    /// Mean of the samples around a noisy pixel with a sample, its own included, and the mean variance of one.
+    #[inline(always)]
+    fn mean_around(&self, quads: &Quads, px: [u32; 2], codes: [u32; 2], lights: &QuadLights) -> (Vec3, f32) {
+        let (mut sum, mut variance, mut weight) = (Vec3::ZERO, 0.0, 0.0);
+        for at in quads.all_samples_around(px) {
+            let (color, usable) = self.color_px(quads, at);
+            let words = lights[Quads::index(at.map(|v| v / 2), quads.size()[0])];
+            let place = at[0] & 1 | (at[1] & 1) << 1;
+            let alike = !self.inputs.tests_depth() || has_code(quad_code(words, place), codes);
+            if usable && (alike || at == px) {
+                let px2 = offset_px2(at[0], px[0]) + offset_px2(at[1], px[1]);
+                let noise = self.sample_noise(at);
+                let share = noisy_share(noise.samples, px2);
+                sum += color * share;
+                variance += noise.variance * share;
+                weight += share;
+            }
+        }
+        let inverse = 1.0 / weight;
+        (sum * inverse, variance * inverse)
     }
 }

@@ -103,7 +103,6 @@ pub const PROBES: &[Probe] = &[
             push(row, &[d.range(0.0, 2.0)]);
         })
     }),
-    probe!(noise::towards, |rows| pair_rows(rows, &[&floats(&[0.0, 0.25, 0.5, 1.0])])),
     probe!(noise::sample_difference, |rows| rows.cross(&[&counts(), &variances(), &channels()])),
     probe!(noise::noise_after, |rows| {
         let share = floats(&[0.0, 0.5, 0.9, 0.98, 1.0]);

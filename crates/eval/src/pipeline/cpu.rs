@@ -65,7 +65,8 @@ impl Executor for CpuExecutor {
             Some(ShadedColor::InMemory(half)) => Some(half),
             _ => None,
         };
-        let noise = shaded.as_ref().and_then(|shaded| shaded.noise.as_ref());
+        let is_noisy = post.desc().settings.noisy;
+        let noise = shaded.as_ref().and_then(|shaded| shaded.noise.as_ref()).filter(|_| is_noisy);
         let frame = match planned {
             Some(_) => Frame {
                 color: pixels.as_ref().map(from_ref).ok_or_else(unshaded)?,

@@ -84,7 +84,8 @@ impl Executor for DeviceExecutor {
             Some(ShadedColor::OnDevice(half)) => half.downcast_ref::<Texture>(),
             _ => None,
         };
-        let noise = shaded.as_ref().and_then(|shaded| shaded.noise.as_ref());
+        let is_noisy = run.post().desc().settings.noisy;
+        let noise = shaded.as_ref().and_then(|shaded| shaded.noise.as_ref()).filter(|_| is_noisy);
         let noise = noise.map(|noise| self.inputs.upload_noise(noise));
         let frame = match planned {
             Some(_) => Frame {
