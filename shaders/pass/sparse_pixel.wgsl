@@ -22,17 +22,11 @@ struct Candidate {
     noise: Noise,
     // Whether the candidate is this pixel's own sample.
     is_own: bool,
-<<<<<<< HEAD
     // Color of the sample of the pixel's surface beside it, and whether there is one.
     beside: vec3f,
     is_beside: bool,
-    // Of noisy frames: mean of all samples around the pixel, its own included, and its noise.
-    mean: vec3f,
-    mean_noise: Noise,
-=======
     // Of a noisy pixel with a sample: mean of all samples around it, its own included, and the mean variance of one.
     around: vec4f,
->>>>>>> mask
 }
 
 // A candidate without samples; the other fields are 0.
