@@ -7,6 +7,9 @@
 const MOST_SAMPLES: f32 = 29.0;
 const MOST_PAST_MOVED: f32 = 3.0;
 const MOVED_PER_PX: f32 = 4.0;
+const MOST_PAST_EDGE: f32 = 5.0;
+const BESIDE_WEIGHT: f32 = 0.35;
+const BESIDE_PX2: f32 = 2.0;
 const CODES_PER_LOD: f32 = 7.0;
 const DEVIATIONS: f32 = 6.0;
 const ONE_SAMPLE_LOD: f32 = 6.0;
@@ -23,6 +26,7 @@ const CLIP_SIGMAS: f32 = 2.0;
 const CLIP: f32 = 0.5;
 const CLIP_COST: f32 = 10.0;
 const NEARER_RELATIVE: f32 = 0.02;
+const EDGE_RELATIVE: f32 = 0.05;
 const ALONGSIDE_PX: f32 = 1.0;
 const TOGETHER_PX: f32 = 0.25;
 // A negative `lod`: empty.
@@ -108,6 +112,10 @@ fn is_silhouette(own: f32, a: f32, b: f32) -> bool {
     return min(a, b) < 0.0 || abs((a + b) - 2.0 * own) > own * NEARER_RELATIVE;
 }
 
+fn is_edge(own: f32, a: f32, b: f32) -> bool {
+    return min(a, b) < 0.0 || abs((a + b) - 2.0 * own) > max(max(own, a), b) * EDGE_RELATIVE;
+}
+
 struct Near {
     sum: vec3f,
     squares: vec3f,
@@ -174,15 +182,16 @@ struct Averaged {
     mean: Mean,
 }
 
-fn average(r: Reconstruction, past: Mean, place_px: vec2f, kept: f32, difference: f32) -> Averaged {
-    let acceptance = (r.fit * r.trust) * kept;
-    let past_px = r.nearest.place_px;
-    let away = max(abs(past_px.x), abs(past_px.y));
+fn most_samples(place_px: vec2f, at_edge: bool) -> f32 {
+    let away = max(abs(place_px.x), abs(place_px.y));
     let most = MOST_SAMPLES + (MOST_PAST_MOVED - MOST_SAMPLES) * min(away * MOVED_PER_PX, 1.0);
-    let count = select(min(relit_samples(past.samples, r.gains), most) * acceptance, 0.0, r.nearest.lod > 0.0);
-    let share = count / (count + 1.0);
+    return select(most, max(most, MOST_PAST_EDGE), at_edge);
+}
+
+fn added(r: Reconstruction, place_px: vec2f, share: f32) -> Reconstructed {
+    let past_px = r.nearest.place_px;
     let history = relit(r.history, r.gains, r.lowest, r.highest);
-    let near = away <= FARTHEST_PX;
+    let near = max(abs(past_px.x), abs(past_px.y)) <= FARTHEST_PX;
     var old = history;
     if near {
         old = relit(r.nearest.color, r.gains, r.lowest, r.highest);
@@ -191,9 +200,32 @@ fn average(r: Reconstruction, past: Mean, place_px: vec2f, kept: f32, difference
     let shown = r.candidate + (history - r.candidate) * share;
     let next = r.candidate + (old - r.candidate) * share;
     let next_px = place_px + (old_px - place_px) * share;
+    return Reconstructed(shown, StoredSample(next, 0.0, r.nearest.disparity, next_px), share);
+}
+
+fn average(
+    r: Reconstruction,
+    past: Mean,
+    place_px: vec2f,
+    at_edge: bool,
+    kept: f32,
+    difference: f32,
+) -> Averaged {
+    let acceptance = (r.fit * r.trust) * kept;
+    let most = most_samples(r.nearest.place_px, at_edge);
+    let count = select(min(relit_samples(past.samples, r.gains), most) * acceptance, 0.0, r.nearest.lod > 0.0);
+    let share = count / (count + 1.0);
     let variance = (past.deviation * past.deviation + (difference * difference) * (1.0 - share)) * share;
-    let result = Reconstructed(shown, StoredSample(next, 0.0, r.nearest.disparity, next_px), share);
-    return Averaged(result, Mean(0.0, count + 1.0, sqrt(variance)));
+    return Averaged(added(r, place_px, share), Mean(0.0, count + 1.0, sqrt(variance)));
+}
+
+fn average_beside(r: Reconstruction, past: Mean, place_px: vec2f) -> Averaged {
+    let acceptance = r.fit * r.trust;
+    let samples = relit_samples(past.samples, r.gains);
+    let count = min(samples, most_samples(r.nearest.place_px, true)) * acceptance;
+    let share = count / (count + BESIDE_WEIGHT);
+    let mean = Mean(0.0, samples * acceptance + (1.0 - acceptance), past.deviation);
+    return Averaged(added(r, place_px, share), mean);
 }
 
 fn stored_mean(r: Reconstruction, result: Reconstructed, past: Mean) -> Averaged {

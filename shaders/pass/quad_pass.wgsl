@@ -79,7 +79,9 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
             valid_sum += known;
             candidate.lowest = min(candidate.lowest, sampled.color);
             candidate.highest = max(candidate.highest, sampled.color);
-            nearest_px2 = select(nearest_px2, min(nearest_px2, px2), same);
+            let is_nearer = same && px2 < nearest_px2;
+            nearest_px2 = select(nearest_px2, px2, is_nearer);
+            candidate.beside = select(candidate.beside, sampled.color, is_nearer);
             if NOISY != 0u {
                 noises = add_noise(noises, noise_at(at, view), weight);
             }
@@ -99,6 +101,7 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
     candidate.color = select(mean.xyz, own.xyz, candidate.is_own);
     candidate.alpha = select(mean.w, own.w, candidate.is_own);
     candidate.usable = true;
+    candidate.is_beside = nearest_px2 <= BESIDE_PX2;
     candidate.lod = select(lod, 0.0, candidate.is_own);
     candidate.gains = gain_sum * known;
     candidate.fit = min(fit_sum * known, own_fits);

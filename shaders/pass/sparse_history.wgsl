@@ -30,6 +30,8 @@ struct PixelSurface {
     mixes: bool,
     // Whether history is the mean of several surfaces, of which a sample shows one.
     is_silhouette: bool,
+    // Whether the pixel is at a moving edge of a surface, outside the fovea.
+    is_edge: bool,
 }
 
 // The surface whose history a pixel continues: with ANTIALIAS the nearest surface around it if `stands_before` is true,
@@ -38,7 +40,7 @@ fn surface_of(px: vec2u, view: u32, level: u32) -> PixelSurface {
     let own = disparity_at(px, view);
     let own_motion = motion_at(px, view);
     if ANTIALIAS == 0u || DEPTH_TEST == 0u {
-        return PixelSurface(own, own_motion, own, own, own, false, false);
+        return PixelSurface(own, own_motion, own, own, own, false, false, false);
     }
     var nearest_disparity = own;
     var farthest_disparity = own;
@@ -46,6 +48,7 @@ fn surface_of(px: vec2u, view: u32, level: u32) -> PixelSurface {
     var farthest_at = px;
     var thin = false;
     var silhouette = false;
+    var edge = false;
     for (var pair = 0u; pair < 4u; pair++) {
         var disparities = vec2f(own);
         for (var side = 0u; side < 2u; side++) {
@@ -62,11 +65,13 @@ fn surface_of(px: vec2u, view: u32, level: u32) -> PixelSurface {
         }
         thin = thin || is_thin(own, disparities.x, disparities.y);
         silhouette = silhouette || is_silhouette(own, disparities.x, disparities.y);
+        edge = edge || is_edge(own, disparities.x, disparities.y);
     }
     let motion = motion_at(nearest_at, view);
-    var surface = PixelSurface(own, own_motion, own, own, own, false, false);
+    let at_edge = edge && level > 0u && has_moved(own_motion, motion);
+    var surface = PixelSurface(own, own_motion, own, own, own, false, false, at_edge);
     if stands_before(own, nearest_disparity, own_motion, motion, level == 0u) {
-        surface = PixelSurface(nearest_disparity, motion, nearest_disparity, own, own, false, false);
+        surface = PixelSurface(nearest_disparity, motion, nearest_disparity, own, own, false, false, at_edge);
     }
     if own >= 0.0 && move_together(own_motion, motion, motion_at(farthest_at, view)) {
         surface.stored_disparity = select(own, farthest_disparity, thin);

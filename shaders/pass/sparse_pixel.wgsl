@@ -22,6 +22,9 @@ struct Candidate {
     noise: Noise,
     // Whether the candidate is this pixel's own sample.
     is_own: bool,
+    // Color of the sample of the pixel's surface beside it, and whether there is one.
+    beside: vec3f,
+    is_beside: bool,
     // Of a noisy pixel with a sample: mean of all samples around it, its own included, and the mean variance of one.
     around: vec4f,
 }
@@ -47,21 +50,26 @@ fn borrowing(own: Candidate, past: f32) -> Candidate {
 }
 
 // Result at a pixel that has history and a usable candidate, of jittered frames. `near`: sums over the nine samples
-// around a pixel of full rate.
+// around a pixel of full rate; `at_edge`: whether it is at a moving edge outside the fovea.
 fn antialiased(
-    px: vec2u,
     view: u32,
     level: u32,
     given: Reconstruction,
     past: Mean,
     error: f32,
-    is_own: bool,
+    candidate: Candidate,
+    at_edge: bool,
     near: Near,
 ) -> Averaged {
-    if !is_own {
+    let place_px = -frame.views[view].jitter_px;
+    var inputs = given;
+    if !candidate.is_own {
+        if at_edge && candidate.is_beside && given.nearest.lod <= 0.0 {
+            inputs.candidate = candidate.beside;
+            return average_beside(inputs, past, place_px);
+        }
         return stored_mean(given, reconstruct(given), past);
     }
-    var inputs = given;
     let difference = min(root_difference(given.candidate, given.history), MOST_DIFFERENCE);
     var kept = 1.0;
     if level == 0u {
@@ -69,11 +77,12 @@ fn antialiased(
         inputs.history = clipped(inputs.history, by.change);
         inputs.nearest.color = clipped(inputs.nearest.color, by.change);
         kept = by.kept;
-    } else {
+    } else if !at_edge {
+        // At a moving edge a sample shows one surface, and history a mean of several.
         let history = relit(given.history, given.gains, given.lowest, given.highest);
         kept = kept_samples(error, root_difference(given.candidate, history));
     }
-    return average(inputs, past, -frame.views[view].jitter_px, kept, difference);
+    return average(inputs, past, place_px, at_edge, kept, difference);
 }
 
 // Pixels outside the visible area: black, without stored history.
@@ -148,7 +157,7 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
             } else if ANTIALIAS != 0u {
                 let contrast = root_difference(history.lowest, history.highest);
                 let error = expected_mean_error(found.mean, contrast, moved);
-                let averaged = antialiased(px, view, level, inputs, found.mean, error, candidate.is_own, near);
+                let averaged = antialiased(view, level, inputs, found.mean, error, candidate, surface.is_edge, near);
                 result = averaged.result;
                 mean = averaged.mean;
             } else {

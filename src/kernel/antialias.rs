@@ -20,6 +20,12 @@ pub const MOST_SAMPLES: f32 = 29.0;
 const MOST_PAST_MOVED: f32 = 3.0;
 /// Inverse of the distance in pixels from the pixel's centre at which that limit is reached.
 const MOVED_PER_PX: f32 = 4.0;
+/// The limit is at least this at moving edges of surfaces.
+const MOST_PAST_EDGE: f32 = 5.0;
+/// Weight of a sample beside a pixel in the pixel's mean, where its own sample has 1.
+const BESIDE_WEIGHT: f32 = 0.35;
+/// Largest squared distance in pixels of such a sample: the eight pixels around.
+pub const BESIDE_PX2: f32 = 2.0;
 /// Steps of a stored level of detail. The first 48 codes are means: eight numbers of samples, and six deviations of
 /// each. The following ones are levels above 0.
 const CODES_PER_LOD: f32 = 7.0;
@@ -55,6 +61,8 @@ const CLIP: f32 = 0.5;
 const CLIP_COST: f32 = 10.0;
 /// Least relative difference of disparity at which a neighbour counts as another, nearer surface.
 const NEARER_RELATIVE: f32 = 0.02;
+/// Least second difference of disparity, relative to the nearest one, at the edge of a surface.
+const EDGE_RELATIVE: f32 = 0.05;
 /// Largest difference of motion, in pixels along an axis, at which a pixel outside the fovea takes the
 /// history of a nearer surface beside it.
 const ALONGSIDE_PX: f32 = 1.0;
@@ -187,6 +195,13 @@ pub fn is_silhouette(own: f32, a: f32, b: f32) -> bool {
     a.min(b) < 0.0 || ((a + b) - 2.0 * own).abs() > own * NEARER_RELATIVE
 }
 
+/// Whether the edge of a surface crosses that line: as [`is_silhouette`], but only for larger differences, which are
+/// relative to the nearest of the three.
+#[inline]
+pub fn is_edge(own: f32, a: f32, b: f32) -> bool {
+    a.min(b) < 0.0 || ((a + b) - 2.0 * own).abs() > own.max(a).max(b) * EDGE_RELATIVE
+}
+
 /// Sums over the samples around a pixel of full rate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Near {
@@ -278,7 +293,7 @@ pub fn kept_samples(error: f32, difference: f32) -> f32 {
     1.0 - smooth_step(CONTRADICTED[0], CONTRADICTED[1], difference / (error.min(MOST_DIFFERENCE) + SAMPLE_ERROR))
 }
 
-/// Result of [`average`] and [`stored_mean`].
+/// Result of [`average`], [`average_beside`] and [`stored_mean`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Averaged {
     /// Color to show, and texel to store.
@@ -287,31 +302,59 @@ pub struct Averaged {
     pub mean: Mean,
 }
 
-/// Mean of history and of the pixel's own sample, whose place in the pixel is `place_px`. `past`: the texel of history
-/// to keep; `kept`: share of its samples that remains after a clip; `difference`: of sample and history.
+/// Largest number of samples that a mean counts for when a sample is added to it. `place_px`: where history lies.
 #[inline]
-pub fn average(r: &Reconstruction, past: Mean, place_px: Vec2, kept: f32, difference: f32) -> Averaged {
-    let acceptance = (r.fit * r.trust) * kept;
-    let past_px = r.nearest.place_px;
-    let away = past_px.x.abs().max(past_px.y.abs());
+fn most_samples(place_px: Vec2, at_edge: bool) -> f32 {
+    let away = place_px.x.abs().max(place_px.y.abs());
     let most = MOST_SAMPLES + (MOST_PAST_MOVED - MOST_SAMPLES) * (away * MOVED_PER_PX).min(1.0);
-    let count = if r.nearest.lod > 0.0 { 0.0 } else { relit_samples(past.samples, r.gain).min(most) * acceptance };
-    let share = count / (count + 1.0);
+    if at_edge { most.max(MOST_PAST_EDGE) } else { most }
+}
+
+/// Mean of history, with the weight `share`, and of a sample at `place_px` in the pixel.
+#[inline]
+fn added(r: &Reconstruction, place_px: Vec2, share: f32) -> Reconstructed {
+    let past_px = r.nearest.place_px;
     let history = relit(r.history, r.gain, r.range);
-    let near = away <= FARTHEST_PX;
+    let near = past_px.x.abs().max(past_px.y.abs()) <= FARTHEST_PX;
     let old = if near { relit(r.nearest.color, r.gain, r.range) } else { history };
     let old_px = if near { past_px } else { Vec2::ZERO };
     let color = r.candidate + (history - r.candidate) * share;
-    let next = StoredSample {
+    let stored = StoredSample {
         color: r.candidate + (old - r.candidate) * share,
         lod: 0.0,
         place_px: place_px + (old_px - place_px) * share,
         ..r.nearest
     };
+    Reconstructed { color, stored, share }
+}
+
+/// Mean of history and of the pixel's own sample, whose place in the pixel is `place_px`. `past`: the texel of history
+/// to keep; `at_edge`: whether the pixel is at a moving edge ([`is_edge`]) outside the fovea; `kept`: share of its
+/// samples that remains after a clip; `difference`: of sample and history.
+#[inline]
+pub fn average(r: &Reconstruction, past: Mean, place_px: Vec2, at_edge: bool, kept: f32, difference: f32) -> Averaged {
+    let acceptance = (r.fit * r.trust) * kept;
+    let most = most_samples(r.nearest.place_px, at_edge);
+    let count = if r.nearest.lod > 0.0 { 0.0 } else { relit_samples(past.samples, r.gain).min(most) * acceptance };
+    let share = count / (count + 1.0);
     // Welford 1962: the variance after one more sample.
     let variance = (past.deviation * past.deviation + (difference * difference) * (1.0 - share)) * share;
-    let result = Reconstructed { color, stored: next, share };
-    Averaged { result, mean: Mean { lod: 0.0, samples: count + 1.0, deviation: variance.sqrt() } }
+    let mean = Mean { lod: 0.0, samples: count + 1.0, deviation: variance.sqrt() };
+    Averaged { result: added(r, place_px, share), mean }
+}
+
+/// At a moving edge, mean of history and of the candidate, a sample of the same surface beside the pixel: as if it were
+/// the pixel's own at `place_px`, with a smaller weight. Depth says in every frame which surface the pixel's jittered
+/// point shows. A mean that waits for the pixel's own samples follows a moving edge too late. The sample is not
+/// counted, because it shows another place. History must not be coarse.
+#[inline]
+pub fn average_beside(r: &Reconstruction, past: Mean, place_px: Vec2) -> Averaged {
+    let acceptance = r.fit * r.trust;
+    let samples = relit_samples(past.samples, r.gain);
+    let count = samples.min(most_samples(r.nearest.place_px, true)) * acceptance;
+    let share = count / (count + BESIDE_WEIGHT);
+    let mean = Mean { lod: 0.0, samples: samples * acceptance + (1.0 - acceptance), deviation: past.deviation };
+    Averaged { result: added(r, place_px, share), mean }
 }
 
 /// The texel that is stored for a pixel without a sample of its own: that of history, with fewer samples where history

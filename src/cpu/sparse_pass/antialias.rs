@@ -1,11 +1,11 @@
 //! Antialiasing in the pass for jittered frames: history stores means of samples instead of single samples.
 
 use super::quads::Quads;
-use super::sparse_history::Surroundings;
+use super::sparse_history::{Surroundings, has_moved};
 use super::view::View;
 use crate::kernel::antialias::{
-    Averaged, MOST_DIFFERENCE, Mean, Near, add_near, average, byte_draws, clip, clipped, is_silhouette, is_thin,
-    kept_samples, move_together, stands_before, stored_lod,
+    Averaged, MOST_DIFFERENCE, Mean, Near, add_near, average, byte_draws, clip, clipped, is_edge, is_silhouette,
+    is_thin, kept_samples, move_together, stands_before, stored_lod,
 };
 use crate::kernel::rng;
 use crate::kernel::smr::root_difference;
@@ -27,14 +27,21 @@ impl View<'_> {
     pub(super) fn surface(&self, [x, y]: [u32; 2], level: u32) -> Surroundings {
         let own = self.inputs.disparity(x, y);
         let own_motion = self.inputs.motion(x, y);
-        let alone = Surroundings { disparity: own, motion: own_motion, stored: own, mixed: None, is_silhouette: false };
+        let alone = Surroundings {
+            disparity: own,
+            motion: own_motion,
+            stored: own,
+            mixed: None,
+            is_silhouette: false,
+            is_edge: false,
+        };
         if !self.antialiases || !self.inputs.tests_depth() {
             return alone;
         }
         let [width, height] = self.inputs.size;
         let (mut nearest, mut nearest_at) = (own, [x, y]);
         let (mut farthest, mut farthest_at) = (own, [x, y]);
-        let (mut thin, mut silhouette) = (false, false);
+        let (mut thin, mut silhouette, mut edge) = (false, false, false);
         for pair in 0..4 {
             let [a, b] = [pair, 8 - pair].map(|tap| {
                 let tx = (x + tap % 3).max(1).min(width) - 1;
@@ -50,13 +57,16 @@ impl View<'_> {
             });
             thin |= is_thin(own, a, b);
             silhouette |= is_silhouette(own, a, b);
+            edge |= is_edge(own, a, b);
         }
         let motion = self.inputs.motion(nearest_at[0], nearest_at[1]);
         let farthest_motion = self.inputs.motion(farthest_at[0], farthest_at[1]);
         let [own_px, nearest_px, farthest_px] = [own_motion, motion, farthest_motion].map(Vec2::from);
-        let mut surface = alone;
+        // Still edges have long means of their own samples. Others would make them worse.
+        let is_edge = edge && level > 0 && has_moved(own_motion, nearest_px);
+        let mut surface = Surroundings { is_edge, ..alone };
         if stands_before(own, nearest, own_px, nearest_px, level == 0) {
-            surface = Surroundings { disparity: nearest, motion, stored: nearest, ..alone };
+            surface = Surroundings { disparity: nearest, motion, stored: nearest, ..surface };
         }
         if own >= 0.0 && move_together(own_px, nearest_px, farthest_px) {
             let stored = if thin { farthest } else { own };
@@ -67,11 +77,13 @@ impl View<'_> {
     }
 
     /// Mean of history and of the pixel's own sample. `near`: sums over the samples around a pixel of the fovea;
-    /// `error`: difference that is expected between history and sample.
+    /// `at_edge`: whether the pixel is at a moving edge outside it; `error`: difference that is expected between
+    /// history and sample.
     #[inline(always)]
     pub(super) fn averaged(
         &self,
         near: Option<Near>,
+        at_edge: bool,
         mut inputs: Reconstruction,
         past: Mean,
         error: f32,
@@ -84,12 +96,15 @@ impl View<'_> {
             inputs.nearest.color = clipped(inputs.nearest.color, clip.change);
             notes.note(NoteStage::Comparison, "history clipped to the samples around", inputs.history, "linear light");
             clip.kept
+        } else if at_edge {
+            // A sample shows one surface, and history a mean of several.
+            1.0
         } else {
             let history = relit(inputs.history, inputs.gain, inputs.range);
             kept_samples(error, root_difference(inputs.candidate, history))
         };
         notes.note(NoteStage::Comparison, "share of its samples that it keeps", kept, "");
-        average(&inputs, past, self.sample_place_px(), kept, difference)
+        average(&inputs, past, self.sample_place_px(), at_edge, kept, difference)
     }
 
     /// Sums over the nine pixels around a pixel of the fovea, as far as they are shaded; its own sample is usable.

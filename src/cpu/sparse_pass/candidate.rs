@@ -1,6 +1,7 @@
 //! Candidate of a pixel: the samples around it, and their light.
 
 use super::view::NO_NOISE;
+use crate::kernel::antialias::BESIDE_PX2;
 use crate::kernel::color::luma;
 use crate::kernel::noise::{Noise, borrowed};
 use crate::kernel::resample::codes_between;
@@ -25,6 +26,8 @@ pub(super) struct Candidate {
     pub noise: Noise,
     /// Whether the candidate is this pixel's own sample.
     pub is_own: bool,
+    /// Color of the sample of the pixel's surface beside it, if there is one.
+    pub beside: Option<Vec3>,
     /// Of a noisy pixel with a sample: mean of all samples around it, its own included, and the mean variance of one.
     pub around: (Vec3, f32),
 }
@@ -39,6 +42,7 @@ impl Candidate {
         fit: 1.0,
         noise: NO_NOISE,
         is_own: false,
+        beside: None,
         around: (Vec3::ZERO, 0.0),
     };
 
@@ -98,6 +102,8 @@ pub(super) struct Sums {
     range: [Vec3; 2],
     /// Squared distance in pixels of the nearest sample of the pixel's surface.
     nearest_px2: f32,
+    /// Color of this sample, the first of equally near ones.
+    nearest: Vec3,
     /// Color of the pixel's own sample, and the fit of history there.
     pub own: Option<(Vec3, f32)>,
 }
@@ -111,6 +117,7 @@ impl Sums {
         valid: 0.0,
         range: [Vec3::splat(f32::MAX), Vec3::ZERO],
         nearest_px2: f32::MAX,
+        nearest: Vec3::ZERO,
         own: None,
     };
 
@@ -126,8 +133,8 @@ impl Sums {
         self.fit += lit.fit * known;
         self.valid += known;
         self.range = [self.range[0].min(color), self.range[1].max(color)];
-        if alike {
-            self.nearest_px2 = self.nearest_px2.min(px2);
+        if alike && px2 < self.nearest_px2 {
+            (self.nearest_px2, self.nearest) = (px2, color);
         }
         weight
     }
@@ -152,6 +159,7 @@ impl Sums {
             fit: (self.fit * (1.0 / self.valid)).min(own_fit),
             noise: NO_NOISE,
             is_own: self.own.is_some(),
+            beside: (self.nearest_px2 <= BESIDE_PX2).then_some(self.nearest),
             around: (Vec3::ZERO, 0.0),
         }
     }

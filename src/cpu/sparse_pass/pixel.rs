@@ -5,7 +5,7 @@ use super::quads::Quads;
 use super::sparse_history::{Found, Source, has_moved};
 use super::view::{NO_NOISE, View};
 use crate::cpu::pixel::{Pixel, ProcessPixel};
-use crate::kernel::antialias::{Mean, expected_mean_error, stored_mean};
+use crate::kernel::antialias::{Mean, average_beside, expected_mean_error, stored_mean};
 use crate::kernel::approx;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::noise::pack_noise;
@@ -108,12 +108,16 @@ impl LitView<'_> {
                 } else if view.antialiases {
                     let contrast = root_difference(history.range[0], history.range[1]);
                     let error = expected_mean_error(past_mean, contrast, moved);
-                    let averaged = match candidate.is_own {
-                        true => {
-                            let near = (level == 0).then(|| view.near(quads, [x, y]));
-                            view.averaged(near, inputs, past_mean, error, notes)
-                        }
-                        false => stored_mean(&inputs, reconstruct(&inputs), past_mean),
+                    let beside = candidate.beside.filter(|_| surface.is_edge && inputs.nearest.lod <= 0.0);
+                    let averaged = if candidate.is_own {
+                        let near = (level == 0).then(|| view.near(quads, [x, y]));
+                        view.averaged(near, surface.is_edge, inputs, past_mean, error, notes)
+                    } else if let Some(beside) = beside {
+                        notes.note(NoteStage::Decision, "sample beside the pixel", beside, "linear light");
+                        let inputs = Reconstruction { candidate: beside, ..inputs };
+                        average_beside(&inputs, past_mean, view.sample_place_px())
+                    } else {
+                        stored_mean(&inputs, reconstruct(&inputs), past_mean)
                     };
                     mean = averaged.mean;
                     averaged.result

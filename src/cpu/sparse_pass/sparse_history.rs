@@ -25,6 +25,8 @@ pub(super) struct Surroundings {
     pub mixed: Option<[f32; 2]>,
     /// Whether history is the mean of several surfaces, of which a sample shows one.
     pub is_silhouette: bool,
+    /// Whether the pixel is at a moving edge of a surface, outside the fovea.
+    pub is_edge: bool,
 }
 
 impl Surroundings {
@@ -33,6 +35,7 @@ impl Surroundings {
         notes.note(NoteStage::Reprojection, "motion of the surface that is continued", self.motion, "px");
         notes.note(NoteStage::Reprojection, "its disparity now", self.disparity, "1/distance");
         notes.note(NoteStage::Reprojection, "silhouette, history is a mean of surfaces", self.is_silhouette, "");
+        notes.note(NoteStage::Reprojection, "moving edge of a surface", self.is_edge, "");
     }
 }
 

@@ -42,9 +42,12 @@ fn a_wrong_mean_is_caught() {
         ("columns = 3u;", "columns = 2u;"),
         ("stored.lod = mean_lod(lod);", ""),
         (
-            "return average(inputs, past, -frame.views[view].jitter_px, kept, difference);",
-            "return average(inputs, past, frame.views[view].jitter_px, kept, difference);",
+            "return average(inputs, past, place_px, at_edge, kept, difference);",
+            "return average(inputs, past, -place_px, at_edge, kept, difference);",
         ),
+        ("inputs.candidate = candidate.beside;", ""),
+        ("return average_beside(inputs, past, place_px);", ""),
+        ("level > 0u && has_moved(own_motion, motion)", "level > 0u"),
         ("pack_color_by(next.color, unit_draw(random))", "pack_color_by(next.color, 0.5)"),
     ];
     rig::all_caught_in(PASSES, desc(), settings, 12, &planted, |index, rig| {

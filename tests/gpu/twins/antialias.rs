@@ -43,6 +43,10 @@ pub const PROBES: &[Probe] = &[
         let disparities = floats(&DISPARITIES);
         rows.cross(&[&disparities, &disparities, &disparities]).each(&[F(0.9, 1.1); 3])
     }),
+    probe!(antialias::is_edge, |rows| {
+        let disparities = floats(&DISPARITIES);
+        rows.cross(&[&disparities, &disparities, &disparities]).each(&[F(0.9, 1.1); 3])
+    }),
     probe!(antialias::is_of_surfaces, |rows| {
         let disparities = floats(&[-1.0, 0.0, 0.48, 0.49, 0.5, 0.51, 1.0, 1.02, 1.03, 1e30]);
         rows.cross(&[&disparities, &disparities, &disparities]).each(&[F(0.9, 1.1); 3])
@@ -69,8 +73,8 @@ pub const PROBES: &[Probe] = &[
     probe!(antialias::scattered_error, |rows| rows.each(&[Of(push_light), F(0.0, 4000.0)])),
     probe!(
         antialias::average,
-        |r: Reconstruction, past: antialias::Mean, place_px: Vec2, kept: f32, difference: f32| {
-            antialias::average(&r, past, place_px, kept, difference)
+        |r: Reconstruction, past: antialias::Mean, place_px: Vec2, at_edge: bool, kept: f32, difference: f32| {
+            antialias::average(&r, past, place_px, at_edge, kept, difference)
         },
         |rows| {
             rows.random(|d, row| {
@@ -80,7 +84,20 @@ pub const PROBES: &[Probe] = &[
                 }
                 row.push(0);
                 push_samples(d, row);
-                row.extend([range(d, -0.5, 0.5), range(d, -0.5, 0.5), range(d, 0.0, 1.0), range(d, 0.0, 200.0)]);
+                row.extend([range(d, -0.5, 0.5), range(d, -0.5, 0.5), d.bits() % 2]);
+                row.extend([range(d, 0.0, 1.0), range(d, 0.0, 200.0)]);
+            })
+        }
+    ),
+    probe!(
+        antialias::average_beside,
+        |r: Reconstruction, past: antialias::Mean, place_px: Vec2| antialias::average_beside(&r, past, place_px),
+        |rows| {
+            rows.random(|d, row| {
+                push_reconstruction(d, row);
+                row.push(0);
+                push_samples(d, row);
+                row.extend([range(d, -0.5, 0.5), range(d, -0.5, 0.5)]);
             })
         }
     ),
