@@ -177,6 +177,9 @@ pub enum FrameError {
         /// Supported buffers.
         expected: &'static str,
     },
+    /// A matrix of the frame is not that of a camera.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
     /// The graphics device was lost. It executes no more work. `gpu::Afterimage::record` returns this, except in a
     /// browser, where only the application learns of the loss.
     #[error("the graphics device was lost: create a new device and a new context on it; history starts empty")]
@@ -219,6 +222,8 @@ pub enum FrameValue {
     Color,
     /// [`FrameInputs::depth`](crate::FrameInputs::depth).
     Depth,
+    /// [`FrameInputs::motion`](crate::FrameInputs::motion).
+    Motion,
     /// [`ViewFrame::depth`](crate::ViewFrame::depth).
     DepthConvention,
     /// [`ViewFrame::jitter_px`](crate::ViewFrame::jitter_px).
@@ -253,6 +258,7 @@ impl Display for FrameValue {
         f.write_str(match *self {
             Self::Color => "color",
             Self::Depth => "depth",
+            Self::Motion => "motion",
             Self::DepthConvention => "depth convention",
             Self::Jitter => "jitter_px",
             Self::VisibleBounds => "visible_px",

@@ -121,6 +121,8 @@ mod method;
 mod notes;
 #[cfg(feature = "cpu")]
 mod parallel;
+#[cfg(feature = "gpu")]
+mod planned;
 mod resize;
 mod settings;
 #[doc(hidden)]
@@ -143,6 +145,8 @@ pub use geometry::ViewGeometry;
 pub use image::Image;
 pub use kernel::debug_view::DebugView;
 pub use kernel::reproject::Verdict;
+#[cfg(feature = "gpu")]
+pub use planned::{Afterimage, Camera, Desc, Frame, Plan, Quarter, Shading};
 pub use settings::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, MethodKind, Sampler, Settings, Smr, Wrs};
 pub use stats::FrameStats;
 pub use view::ViewFrame;

@@ -186,6 +186,12 @@ impl Afterimage {
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
     pub fn set_settings(&mut self, device: &Device, settings: Settings) -> Result<(), SettingsError> {
         settings.validate()?;
+        if settings.differs_in_uniforms(&self.desc.settings) {
+            // Each frame uploads these. No object is made, and no pipeline compiled.
+            self.desc.settings = settings;
+            self.unplan();
+            return Ok(());
+        }
         let has_same_pass = settings.pass_shader() == self.pass_shader;
         let keeps_history = settings.keeps_history_of(&self.desc.settings);
         (self.desc.settings, self.pass_shader) = (settings, settings.pass_shader());
@@ -405,7 +411,7 @@ impl Afterimage {
         }
         let upload = self.recorder.upload(device)?;
         if let Some(quads) = &mut self.quads {
-            quads.clear(encoder);
+            quads.begin(encoder, &upload);
             quads.planned = Some(Planned { index: frame.index, is_quarter });
         }
         self.recorder.copy(encoder, &upload);
@@ -564,7 +570,7 @@ impl Afterimage {
         self.stages.record(&mut job);
         let upload = self.recorder.upload(device)?;
         if let Some(quads) = given {
-            quads.clear(encoder);
+            quads.begin(encoder, &upload);
         }
         if let Some(counters) = target.counters {
             encoder.clear_buffer(counters, 0, Some(FrameStats::COUNTERS_BYTES));

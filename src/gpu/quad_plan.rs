@@ -9,12 +9,13 @@ use super::binding::Binding;
 use super::compute::{ComputeShader, Sources};
 use super::groups::Resource;
 use super::prime::PrimePass;
-use super::quads::{QUAD_GROUPS, Quads, ViewQuads, size_quads};
+use super::quads::{QUAD_GROUPS, Quads, ViewQuads, budget, size_quads};
+use super::recorder::BUDGET;
 use super::stage::{Job, Specialization};
 use crate::context::ContextDesc;
 use crate::kernel::quads::RUN_QUADS;
 use crate::method::Overrides;
-use wgpu::{CommandEncoder, Device};
+use wgpu::{Buffer, CommandEncoder, Device};
 
 /// Invocations of a workgroup of `shaders/pass/quad_mask_pass.wgsl` along x and y.
 const MASK_WORKGROUP: [u32; 2] = [16, 4];
@@ -78,13 +79,16 @@ impl QuadPasses {
         shaders.into_iter().flat_map(ComputeShader::pipelines)
     }
 
-    /// Records the clearing of the counts, before the dispatches of a frame.
-    pub fn clear(&self, encoder: &mut CommandEncoder) {
+    /// Records the clearing of the counts and the copy of the budget in `upload`, before the dispatches of a frame.
+    pub fn begin(&self, encoder: &mut CommandEncoder, upload: &Buffer) {
         self.quads.views.iter().for_each(|view| encoder.clear_buffer(&view.state, 0, None));
+        let budget = &self.quads.budget;
+        encoder.copy_buffer_to_buffer(upload, BUDGET, budget, 0, budget.size());
     }
 
     /// Adds the passes of a frame. `is_given`: whether the renderer chose its pixels itself.
     pub fn record(&self, job: &mut Job<'_>, is_given: bool) {
+        job.recorder.budget(budget(job.desc));
         let Quads { budget, keys, mask, runs, around, views } = &self.quads;
         let size = size_quads(job.desc);
         let [width, height] = MASK_WORKGROUP;

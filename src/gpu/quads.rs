@@ -19,6 +19,7 @@ pub(super) const QUAD_GROUPS: u64 = PIXEL_GROUPS + 12;
 /// Textures and buffers for the quads of a frame of one size.
 #[derive(Debug)]
 pub(super) struct Quads {
+    /// [`budget`], which each plan uploads.
     pub budget: Buffer,
     pub keys: Plane,
     /// Bits 0 to 3: the pixels of a quad that are shaded; bits 4 and 5: its region; bits 8 to 12: paths of each pixel.
@@ -58,7 +59,12 @@ impl Quads {
         };
         let [keys, mask, runs, around] = planes(desc);
         Self {
-            budget: uniforms([desc.settings.foveation.budget_quads(size), desc.settings.noisy.into(), 0, 0]),
+            budget: filled(
+                device,
+                "afterimage budget",
+                bytemuck::bytes_of(&budget(desc)),
+                BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+            ),
             keys: keys.create(device),
             mask: mask.create(device),
             runs: runs.create(device),
@@ -66,6 +72,12 @@ impl Quads {
             views: (0..desc.view_count).map(view).collect(),
         }
     }
+}
+
+/// The budget in quads or in paths, and whether it is in paths; two words are unused.
+pub(super) fn budget(desc: &ContextDesc) -> [u32; 4] {
+    let settings = &desc.settings;
+    [settings.foveation.budget_quads(size_quads(desc)), settings.noisy.into(), 0, 0]
 }
 
 /// Number of quads of a view along x and y.

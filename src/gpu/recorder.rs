@@ -27,6 +27,8 @@ pub const STORED: [TextureFormat; 3] = [TextureFormat::Rg32Uint, TextureFormat::
 const ALIGNMENT: usize = 256;
 /// First byte of the uniforms of dispatches. The frame's number lies at byte 0.
 const DISPATCHES: usize = ALIGNMENT;
+/// Place in an [`upload`](Recorder::upload) of the words of a [`budget`](Recorder::budget).
+pub const BUDGET: u64 = 16;
 /// Bytes from the uniforms of one dispatch to those of the next.
 const STRIDE: usize = size_of::<FrameUniforms>().next_multiple_of(ALIGNMENT);
 /// Different uniforms for each view: before and after colors are filled.
@@ -121,6 +123,12 @@ impl Recorder {
         self.bytes.clear();
         self.bytes.extend_from_slice(&number.to_ne_bytes());
         self.bytes.resize(DISPATCHES, 0);
+    }
+
+    /// Adds the budget of a plan to the upload.
+    pub fn budget(&mut self, words: [u32; 4]) {
+        let at = BUDGET as usize;
+        self.bytes[at..at + size_of_val(&words)].copy_from_slice(bytemuck::bytes_of(&words));
     }
 
     /// Offset of uniforms of a dispatch.

@@ -216,6 +216,13 @@ impl Settings {
         self.history_layout() == other.history_layout() && self.pass_shader() == other.pass_shader()
     }
 
+    /// Whether planned frames of these settings differ from those of `other` at most in rates, regions and budget.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn differs_in_uniforms(&self, other: &Self) -> bool {
+        let is_planned = |settings: &Self| settings.foveation.filter == Filter::Quads;
+        is_planned(self) && is_planned(other) && Self { foveation: other.foveation, ..*self } == *other
+    }
+
     pub(crate) fn history_layout(&self) -> HistoryLayout {
         (self.entry().history)(self)
     }

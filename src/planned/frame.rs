@@ -1,0 +1,102 @@
+//! A planned frame: what is known before it is shaded, and which pixels are.
+
+use super::Camera;
+use crate::frame::{Exposure, Reset};
+use crate::gaze::Gaze;
+use crate::gpu;
+use crate::view::ViewFrame;
+use wgpu::{Buffer, Texture};
+
+/// What is known of a frame before its colors are drawn. Create it with [`new`](Self::new) and `..`.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    /// Depth of every pixel, as the depth buffer holds it: a depth format or `R32Float`, with the usage
+    /// `TEXTURE_BINDING`.
+    pub depth: &'a Texture,
+    /// Motion vectors of every pixel in the convention of [`Desc::motion`](super::Desc::motion): `Rg16Float`,
+    /// `Rg32Float` or wider. `None`: nothing moves, or only the camera.
+    pub motion: Option<&'a Texture>,
+    /// Camera, without jitter.
+    pub camera: Camera,
+    /// Where the eye looks, for [`Shading::Gaze`](super::Shading::Gaze). Default [`Gaze::Lost`]: where it last did.
+    pub gaze: Gaze,
+    /// Whether the frame shows another scene than its predecessor, as after a cut or a teleport. Default false.
+    pub is_cut: bool,
+    /// Reactive mask as FSR2 has it, 0 to 1: 1 where content changes without motion vectors, such as screens and
+    /// particles. Any float or normalised format.
+    pub reactive: Option<&'a Texture>,
+    /// Exposure of the colors. Default [`Exposure::Same`].
+    pub exposure: Exposure,
+}
+
+impl<'a> Frame<'a> {
+    /// A frame of a moving camera, which continues its predecessor.
+    pub fn new(depth: &'a Texture, camera: Camera) -> Self {
+        Self { depth, motion: None, camera, gaze: Gaze::Lost, is_cut: false, reactive: None, exposure: Exposure::Same }
+    }
+}
+
+/// Plan of a frame: the pixels to shade. [`Afterimage::plan`](super::Afterimage::plan) makes it, and
+/// [`show`](super::Afterimage::show) takes it.
+#[derive(Debug)]
+pub struct Plan {
+    pub(super) index: u64,
+    pub(super) view: ViewFrame,
+    pub(super) camera: Camera,
+    pub(super) depth: Texture,
+    pub(super) motion: Option<Texture>,
+    pub(super) reactive: Option<Texture>,
+    pub(super) is_cut: bool,
+    pub(super) exposure: Exposure,
+    pub(super) mask: Option<Texture>,
+    pub(super) list: Option<Buffer>,
+    pub(super) quarter: Option<Quarter>,
+}
+
+/// How the colors of a quarter frame are drawn, outside the fovea.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quarter {
+    /// Half the frame's width and height, rounded up.
+    pub size_px: [u32; 2],
+    /// Projection of the small view, with its jitter.
+    pub clip_from_view: [[f32; 4]; 4],
+}
+
+impl Plan {
+    /// The shaded pixels, for compute shaders: an `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bits
+    /// 0 to 3 say which of its pixels are shaded, row by row.
+    pub fn mask(&self) -> Option<&Texture> {
+        self.mask.as_ref()
+    }
+
+    /// The quads with shaded pixels as a list on the device, with arguments of indirect draws and dispatches:
+    /// [`gpu::Afterimage::quad_list`](crate::gpu::Afterimage::quad_list) describes it.
+    pub fn list(&self) -> Option<&Buffer> {
+        self.list.as_ref()
+    }
+
+    /// Whether nothing is known of the frame, after a cut, and how it is drawn then: the fovea as in other frames, and
+    /// everything at half the width and height, too. `None` in other frames, and without
+    /// [`Desc::draws_quarters`](super::Desc::draws_quarters).
+    pub fn quarter(&self) -> Option<Quarter> {
+        self.quarter
+    }
+
+    /// The frame as the passes take it.
+    pub(super) fn inputs<'a>(
+        &'a self,
+        color: &'a Texture,
+        half: Option<&'a Texture>,
+        views: &'a [ViewFrame],
+    ) -> gpu::Frame<'a> {
+        gpu::Frame {
+            depth: Some((&self.depth).into()),
+            motion: self.motion.as_ref().map(Into::into),
+            reactive: self.reactive.as_ref().map(Into::into),
+            half: half.map(Into::into),
+            reset: if self.is_cut { Reset::All } else { Reset::None },
+            exposure: self.exposure,
+            ..gpu::Frame::new(color, views, self.index)
+        }
+    }
+}

@@ -1,0 +1,287 @@
+//! Planned frames: the post-process chooses the pixels that the renderer shades, and shows a picture at full rate.
+
+mod camera;
+mod desc;
+mod frame;
+
+pub use camera::Camera;
+pub use desc::{Desc, Shading};
+pub use frame::{Frame, Plan, Quarter};
+
+use crate::error::{CreateError, FrameError, FrameValue, SettingsError};
+use crate::foveation::Foveation;
+use crate::gpu::{self, Prime, Recorded};
+use crate::settings::Settings;
+use crate::view::ViewFrame;
+use wgpu::{CommandEncoder, Device, Limits, Texture, TextureView};
+
+/// The post-process for planned frames, on a GPU: it chooses the pixels that are shaded in each frame, and its history
+/// gives the rest. Full rate's picture from a quarter of the pixels, or from a tenth of them around the gaze.
+///
+/// A renderer draws depth (and motion vectors) of the whole frame first, as for any depth prepass; then colors where
+/// [`plan`](Self::plan) says. The depth test keeps the other pixels from being shaded: see [`close`](Self::close).
+///
+/// ```no_run
+/// # use afterimage::wgpu::{self, Texture, TextureUsages};
+/// # fn prepass(_: [&Texture; 2], _: [[f32; 4]; 4]) {}
+/// # fn draw_colors(_: [&Texture; 2], _: [[f32; 4]; 4]) {}
+/// # fn example(
+/// #     device: &wgpu::Device, queue: &wgpu::Queue, [depth, motion, depth_copy, color, output]: [&Texture; 5],
+/// #     clip_from_view: [[f32; 4]; 4], world_from_view: [[f32; 4]; 4],
+/// # ) -> Result<(), Box<dyn std::error::Error>> {
+/// use afterimage::{Afterimage, Camera, Desc, Frame, MotionConvention, Shading};
+///
+/// // Once: a quarter of the pixels, for a renderer with Bevy's motion vectors.
+/// let mut post = Afterimage::new(device, &Desc {
+///     shading: Shading::Everywhere { share: 0.25 },
+///     motion: Some(MotionConvention::BEVY),
+///     ..Desc::new([1920, 1080], output.format())
+/// })?;
+///
+/// // Each frame. All of it is drawn with the jittered projection.
+/// let mut encoder = device.create_command_encoder(&Default::default());
+/// let jittered = post.jittered(clip_from_view);
+/// prepass([depth, motion], jittered);
+/// let frame = Frame { motion: Some(motion), ..Frame::new(depth, Camera::new(clip_from_view, world_from_view)) };
+/// let plan = post.plan(&mut encoder, &frame)?;
+/// encoder.copy_texture_to_texture(depth.as_image_copy(), depth_copy.as_image_copy(), depth.size());
+/// post.close(&mut encoder, &plan, &depth_copy.create_view(&Default::default()))?;
+/// draw_colors([color, depth_copy], jittered);
+/// post.show(&mut encoder, plan, color, output)?;
+/// queue.submit([encoder.finish()]);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// The context counts frames and keeps the previous frame's camera. A frame may be dropped with its encoder: the frame
+/// after it then starts without history, and is right.
+///
+/// [`gpu::Afterimage`](crate::gpu::Afterimage) below it has several views, counters, debug views, a renderer's own
+/// masks and noisy frames.
+#[derive(Debug)]
+pub struct Afterimage {
+    device: Device,
+    desc: Desc,
+    post: gpu::Afterimage,
+    /// Number of frames that were shown.
+    index: u64,
+    /// Camera of the last frame that was shown.
+    previous: Option<Camera>,
+}
+
+impl Afterimage {
+    /// A context without history on `device`, which it keeps a handle of.
+    ///
+    /// # Errors
+    /// [`CreateError`] if the description is out of range, the output format is not supported (compute shaders write
+    /// it: `Rgba16Float` and `Rgba8Unorm` are, on every device), a limit of the device is too low
+    /// ([`required_limits`](Self::required_limits)), or its backend cannot store history. Then nothing was made.
+    pub fn new(device: &Device, desc: &Desc) -> Result<Self, CreateError> {
+        desc.shading.validate()?;
+        let post = gpu::Afterimage::new(device, &desc.context(), desc.output)?;
+        Ok(Self { device: device.clone(), desc: *desc, post, index: 0, previous: None })
+    }
+
+    /// Limits that a device needs at least for a context of this description. Request them together with what the rest
+    /// of the program needs.
+    pub fn required_limits(desc: &Desc) -> Limits {
+        gpu::Afterimage::required_limits(&desc.context())
+    }
+
+    /// Description of the context, with its current size and shading.
+    pub fn desc(&self) -> &Desc {
+        &self.desc
+    }
+
+    /// Jitter of the next frame's projection in pixels, each in \[-0.5, 0.5): a point at `p` without jitter is drawn at
+    /// `p + jitter_px`; y down. (0, 0) without [`Desc::antialias`].
+    pub fn jitter_px(&self) -> [f32; 2] {
+        if self.desc.antialias { Foveation::jitter_px(self.index) } else { [0.0; 2] }
+    }
+
+    /// A perspective projection with the next frame's [jitter](Self::jitter_px), to draw all of that frame with.
+    /// `clip_from_view`: as in [`Camera`].
+    pub fn jittered(&self, clip_from_view: [[f32; 4]; 4]) -> [[f32; 4]; 4] {
+        camera::shifted(clip_from_view, self.jitter_px(), self.desc.size_px)
+    }
+
+    /// Changes how many pixels are shaded, from the next plan on; any frame may have another share. No GPU object is
+    /// made, and history stays.
+    ///
+    /// # Errors
+    /// [`SettingsError`] if a share or an angle is out of range; then nothing changes.
+    pub fn set_shading(&mut self, shading: Shading) -> Result<(), SettingsError> {
+        shading.validate()?;
+        let desc = Desc { shading, ..self.desc };
+        self.post.set_settings(&self.device, desc.settings())?;
+        self.desc = desc;
+        Ok(())
+    }
+
+    /// Changes the size of the frame, and discards history.
+    ///
+    /// # Errors
+    /// [`FrameError::Extent`] if a side is 0 or too large; then nothing changes.
+    pub fn resize(&mut self, size_px: [u32; 2]) -> Result<(), FrameError> {
+        self.post.resize(&self.device, size_px)?;
+        self.desc.size_px = size_px;
+        Ok(())
+    }
+
+    /// Discards history and the last known gaze: for another scene or another user.
+    pub fn forget(&mut self) {
+        self.post.forget();
+        self.previous = None;
+    }
+
+    /// Bytes of the textures and buffers that the context holds between frames.
+    pub fn memory_bytes(&self) -> u64 {
+        self.post.memory_bytes()
+    }
+
+    /// Records, into `encoder`, the choice of the pixels of a frame, after its depth and motion vectors have been
+    /// drawn. History is unchanged: a frame that is not shown can be planned again.
+    ///
+    /// # Errors
+    /// [`FrameError`] if a texture, a matrix or a value does not fit. Then nothing was recorded.
+    pub fn plan(&mut self, encoder: &mut CommandEncoder, frame: &Frame<'_>) -> Result<Plan, FrameError> {
+        if frame.motion.is_some() && self.desc.motion.is_none() {
+            let (found, expected) = ("given".into(), "None; or say in Desc::motion which convention they have");
+            return Err(FrameError::Value { value: FrameValue::Motion, view: 0, found, expected });
+        }
+        let view = self.view(frame)?;
+        let mut plan = Plan {
+            index: self.index,
+            view,
+            camera: frame.camera,
+            depth: frame.depth.clone(),
+            motion: frame.motion.cloned(),
+            reactive: frame.reactive.cloned(),
+            is_cut: frame.is_cut,
+            exposure: frame.exposure,
+            mask: None,
+            list: None,
+            quarter: None,
+        };
+        self.post.plan(&self.device, encoder, &plan.inputs(frame.depth, None, &[view]))?;
+        plan.mask = self.post.quad_mask().cloned();
+        plan.list = self.post.quad_list(0).cloned();
+        plan.quarter = (self.desc.draws_quarters && self.post.is_quarter()).then(|| self.quarter(&frame.camera));
+        Ok(plan)
+    }
+
+    /// Records a pass that closes a depth buffer for the pixels that are not shaded: it writes the near plane's depth
+    /// there, so that the depth test rejects what the renderer draws, before it is shaded. `depth`: a view of a copy of
+    /// the frame's depth, with the usage `RENDER_ATTACHMENT`. Then draw the colors with a depth test that passes what
+    /// is equal (`LessEqual`, or `GreaterEqual` where depth is reversed) and positions that are exactly those of the
+    /// prepass (`@invariant` in WGSL).
+    ///
+    /// # Errors
+    /// [`FrameError`] if the plan is not the last one, or if the target does not fit. Then nothing was recorded.
+    pub fn close(&mut self, encoder: &mut CommandEncoder, plan: &Plan, depth: &TextureView) -> Result<(), FrameError> {
+        self.check(plan)?;
+        let near_depth = if plan.camera.is_reversed() { 1.0 } else { 0.0 };
+        let is_half = plan.quarter.is_some();
+        let prime = Prime { target: depth, origin_px: [0, 0], near_depth, stencil: None, is_half };
+        self.post.prime(&self.device, encoder, 0, &prime)
+    }
+
+    /// Records, into `encoder`, the passes that show a planned frame: they read its colors and the history, and write
+    /// `output`, of the context's output format with the usage `STORAGE_BINDING`, and the history. `color`: linear
+    /// color before tone mapping, of the context's size, drawn where the plan says; other pixels are not read. In a
+    /// [quarter frame](Plan::quarter) give [`show_quarter`](Self::show_quarter) its small colors, too.
+    ///
+    /// # Errors
+    /// [`FrameError`] if the plan is not the last one, or if a texture does not fit. Then nothing was recorded.
+    pub fn show(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        plan: Plan,
+        color: &Texture,
+        output: &Texture,
+    ) -> Result<Recorded, FrameError> {
+        if plan.quarter.is_some() {
+            let (found, expected) = ("shown as a whole".into(), "show_quarter, because the plan has a quarter");
+            return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
+        }
+        self.record(encoder, plan, [color, output], None)
+    }
+
+    /// [`show`](Self::show) of a [quarter frame](Plan::quarter): `half` has the colors that were drawn at half the
+    /// width and height, `color` the fovea.
+    ///
+    /// # Errors
+    /// As for `show`; and if the plan is not of a quarter frame.
+    pub fn show_quarter(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        plan: Plan,
+        [color, half]: [&Texture; 2],
+        output: &Texture,
+    ) -> Result<Recorded, FrameError> {
+        if plan.quarter.is_none() {
+            let (found, expected) = ("shown as a quarter".into(), "show, because the plan has no quarter");
+            return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
+        }
+        self.record(encoder, plan, [color, output], Some(half))
+    }
+
+    fn record(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        plan: Plan,
+        [color, output]: [&Texture; 2],
+        half: Option<&Texture>,
+    ) -> Result<Recorded, FrameError> {
+        self.check(&plan)?;
+        let recorded = self.post.record(&self.device, encoder, &plan.inputs(color, half, &[plan.view]), output)?;
+        self.index += 1;
+        self.previous = Some(plan.camera);
+        Ok(recorded)
+    }
+
+    /// Rejects a plan of a frame that was shown.
+    fn check(&self, plan: &Plan) -> Result<(), FrameError> {
+        if plan.index == self.index {
+            return Ok(());
+        }
+        let found = format!("that of frame {}", plan.index);
+        Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected: "the last plan, once" })
+    }
+
+    /// Description of the frame's view.
+    fn view(&self, frame: &Frame<'_>) -> Result<ViewFrame, FrameError> {
+        let Frame { camera, gaze, .. } = *frame;
+        let geometry = camera.geometry(self.desc.size_px)?;
+        let depth = match self.desc.has_distances {
+            true => None,
+            false => Some(camera.depth_convention()?),
+        };
+        let view = ViewFrame { depth, jitter_px: self.jitter_px(), ..ViewFrame::new(geometry, gaze) };
+        // Without a previous frame it counts as still: no history is read.
+        Ok(camera.moved_from(&self.previous.unwrap_or(camera), view)?)
+    }
+
+    /// How the small view of a quarter frame is drawn.
+    fn quarter(&self, camera: &Camera) -> Quarter {
+        let place = Foveation::quarter_place_px(self.index).map(|v| v as f32);
+        let size_px = self.desc.size_px.map(|side| side.div_ceil(2));
+        // The small view's pixel (x, y) is the frame's pixel (2x, 2y) + place.
+        Quarter {
+            size_px,
+            clip_from_view: camera::halved(camera.clip_from_view(), self.jitter_px(), self.desc.size_px, place),
+        }
+    }
+}
+
+impl Desc {
+    /// Settings of the passes.
+    fn settings(&self) -> Settings {
+        let screen = Settings::screen();
+        let method = match screen.method {
+            crate::Method::Smr(smr) => crate::Method::Smr(crate::Smr { antialias: self.antialias, ..smr }),
+            other => other,
+        };
+        Settings { method, foveation: self.shading.foveation(), ..screen }
+    }
+}
