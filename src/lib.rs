@@ -1,11 +1,21 @@
-//! Temporal post-process for foveated rendering: keeps the detail that the renderer shaded at earlier gaze positions.
+//! Temporal post-process for foveated and sparse rendering: what was shaded at earlier gaze positions and in earlier
+//! frames is not thrown away.
 //!
-//! A foveating renderer shades at full rate only where the eye looks. `afterimage` runs after it, before tone mapping:
-//! it stores the sharpest sample of every surface point, reprojects it along the motion vectors, and shows it as long
-//! as it agrees with the foveated frame ([`Method::Smr`]). For comparison there are weighted reservoirs (Cantory et
-//! al., MIG 2025; [`Method::Wrs`]) and temporal antialiasing ([`Method::Taa`]).
+//! # Two doors
 //!
-//! # Example
+//! **Planned frames**: the post-process chooses the pixels whose colors are drawn, a quarter of them or a tenth around
+//! the gaze, and shows an antialiased picture at full rate.
+#![cfg_attr(
+    feature = "gpu",
+    doc = "[`Afterimage`] has the calls of a frame; `examples/01_planned.rs` is a whole renderer."
+)]
+#![cfg_attr(not(feature = "gpu"), doc = "`Afterimage` (feature `wgpu-30`) has the calls of a frame.")]
+//!
+//! **Frames that the renderer foveates itself**, shaded at full rate only where the eye looks: `gpu::Afterimage` runs
+//! after it, before tone mapping. It stores the sharpest sample of every surface point, reprojects it along the motion
+//! vectors, and shows it as long as it agrees with the foveated frame ([`Method::Smr`]). For comparison there are
+//! weighted reservoirs (Cantory et al., MIG 2025; [`Method::Wrs`]) and temporal antialiasing ([`Method::Taa`]). It has
+//! every option of planned frames, too: several views, a renderer's own masks, noisy frames, debug views.
 //!
 #![cfg_attr(feature = "gpu", doc = "```")]
 #![cfg_attr(not(feature = "gpu"), doc = "```ignore")]
@@ -53,7 +63,7 @@
 //!   a wrong picture (`07_doctor.rs`).
 //! - [`CreateError`], [`FrameError`], [`SettingsError`]: errors.
 //! - [`simulator`]: foveation of full-rate frames, for tests and for renderers that do not foveate.
-//! - `examples/`: numbered programs, from the smallest one (`01_smallest.rs`) to an engine's loop (`02_engine.rs`),
+//! - `examples/`: numbered programs, from the smallest renderer (`01_planned.rs`) to an engine's loop (`02_engine.rs`),
 //!   stereo (`03_stereo.rs`) and a window (`06_window.rs`).
 //!
 //! # Executors
@@ -146,7 +156,7 @@ pub use image::Image;
 pub use kernel::debug_view::DebugView;
 pub use kernel::reproject::Verdict;
 #[cfg(feature = "gpu")]
-pub use planned::{Afterimage, Camera, Desc, Frame, Plan, Quarter, Shading};
+pub use planned::{Afterimage, Camera, Desc, Frame, Plan, Quarter, Shading, ShareControl};
 pub use settings::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, MethodKind, Sampler, Settings, Smr, Wrs};
 pub use stats::FrameStats;
 pub use view::ViewFrame;

@@ -48,8 +48,8 @@ pub struct Plan {
     pub(super) reactive: Option<Texture>,
     pub(super) is_cut: bool,
     pub(super) exposure: Exposure,
-    pub(super) mask: Option<Texture>,
-    pub(super) list: Option<Buffer>,
+    pub(super) mask: Texture,
+    pub(super) list: Buffer,
     pub(super) quarter: Option<Quarter>,
 }
 
@@ -65,14 +65,14 @@ pub struct Quarter {
 impl Plan {
     /// The shaded pixels, for compute shaders: an `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bits
     /// 0 to 3 say which of its pixels are shaded, row by row.
-    pub fn mask(&self) -> Option<&Texture> {
-        self.mask.as_ref()
+    pub fn mask(&self) -> &Texture {
+        &self.mask
     }
 
     /// The quads with shaded pixels as a list on the device, with arguments of indirect draws and dispatches:
     /// [`gpu::Afterimage::quad_list`](crate::gpu::Afterimage::quad_list) describes it.
-    pub fn list(&self) -> Option<&Buffer> {
-        self.list.as_ref()
+    pub fn list(&self) -> &Buffer {
+        &self.list
     }
 
     /// Whether nothing is known of the frame, after a cut, and how it is drawn then: the fovea as in other frames, and

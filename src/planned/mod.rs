@@ -3,10 +3,12 @@
 mod camera;
 mod desc;
 mod frame;
+mod share_control;
 
 pub use camera::Camera;
 pub use desc::{Desc, Shading};
 pub use frame::{Frame, Plan, Quarter};
+pub use share_control::ShareControl;
 
 use crate::error::{CreateError, FrameError, FrameValue, SettingsError};
 use crate::foveation::Foveation;
@@ -150,6 +152,10 @@ impl Afterimage {
             return Err(FrameError::Value { value: FrameValue::Motion, view: 0, found, expected });
         }
         let view = self.view(frame)?;
+        let (Some(mask), Some(list)) = (self.post.quad_mask().cloned(), self.post.quad_list(0).cloned()) else {
+            let (found, expected) = ("missing".into(), "a context of planned frames");
+            return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
+        };
         let mut plan = Plan {
             index: self.index,
             view,
@@ -159,13 +165,11 @@ impl Afterimage {
             reactive: frame.reactive.cloned(),
             is_cut: frame.is_cut,
             exposure: frame.exposure,
-            mask: None,
-            list: None,
+            mask,
+            list,
             quarter: None,
         };
         self.post.plan(&self.device, encoder, &plan.inputs(frame.depth, None, &[view]))?;
-        plan.mask = self.post.quad_mask().cloned();
-        plan.list = self.post.quad_list(0).cloned();
         plan.quarter = (self.desc.draws_quarters && self.post.is_quarter()).then(|| self.quarter(&frame.camera));
         Ok(plan)
     }

@@ -12,6 +12,7 @@ mod mask_hard;
 mod masks;
 mod motion;
 mod objects;
+mod planned;
 mod planned_hard;
 mod prime;
 mod properties;

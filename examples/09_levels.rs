@@ -1,6 +1,6 @@
-//! The smallest program: two frames in, one image out, without a window.
+//! Frames that the renderer foveates itself: two frames in, one image out, without a window.
 //!
-//! `cargo run --example 01_smallest` (any adapter; software Vulkan: mesa-vulkan-drivers)
+//! `cargo run --example 09_levels` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
 mod headless;
 
