@@ -70,7 +70,8 @@ fn draw(
     [color, depth]: [Option<&Texture>; 2],
     clip_from_world: Mat4,
 ) {
-    let (contents, usage) = (bytemuck::bytes_of(&clip_from_world), BufferUsages::UNIFORM);
+    let columns = clip_from_world.to_cols_array();
+    let (contents, usage) = (bytemuck::bytes_of(&columns), BufferUsages::UNIFORM);
     let uniforms = gpu.device.create_buffer_init(&BufferInitDescriptor { label: None, contents, usage });
     let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
