@@ -91,7 +91,10 @@ fn around_pixel(px: vec2u, view: u32, mask_word: u32) -> AroundPixel {
             let offset = vec2i(at) - vec2i(px);
             if any(offset != vec2i(0)) {
                 let quadrant = quadrant_of(offset.x, offset.y);
-                codes[quadrant] = min(codes[quadrant], sample_code(offset.x, offset.y));
+                // Not `codes[quadrant] = ...`: FXC, which wgpu has on Windows without another compiler, cannot write
+                // vectors so.
+                let nearer = min(codes, vec4u(sample_code(offset.x, offset.y)));
+                codes = select(codes, nearer, vec4u(0u, 1u, 2u, 3u) == vec4u(quadrant));
             }
         }
     }

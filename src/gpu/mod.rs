@@ -183,9 +183,10 @@ impl Afterimage {
     /// [`gate`](crate::Wrs::gate), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
     ///
     /// # Errors
-    /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
+    /// [`SettingsError`] if a setting is out of range, or if a limit of the device is too low for the settings at the
+    /// context's size; then nothing changes.
     pub fn set_settings(&mut self, device: &Device, settings: Settings) -> Result<(), SettingsError> {
-        settings.validate()?;
+        requirements::check_settings(device, &self.desc, &settings)?;
         let has_same_pass = settings.pass_shader() == self.pass_shader;
         let keeps_history = settings.keeps_history_of(&self.desc.settings);
         (self.desc.settings, self.pass_shader) = (settings, settings.pass_shader());
@@ -203,8 +204,8 @@ impl Afterimage {
     /// [`resize_keeping_history`](Self::resize_keeping_history) keeps it.
     ///
     /// # Errors
-    /// [`FrameError::Extent`] if a side is 0 or above [`ContextDesc::MAX_SIDE`] or what the device allows; then nothing
-    /// changes.
+    /// [`FrameError::Extent`] if a side is 0 or above [`ContextDesc::MAX_SIDE`] or what the device allows,
+    /// [`FrameError::Limit`] if another limit of the device is too low for the size; then nothing changes.
     pub fn resize(&mut self, device: &Device, size_px: [u32; 2]) -> Result<(), FrameError> {
         requirements::check_resize(device, &self.desc, size_px)?;
         self.set_size(device, size_px);

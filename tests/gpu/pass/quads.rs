@@ -121,6 +121,17 @@ fn assert_lists_are_masks(rig: &Rig, mask: &[u32]) {
     }
 }
 
+/// A counter that starts again from 0, and renderers that have no counter and give the last index.
+#[test]
+fn frames_may_have_the_last_index() {
+    for settings in [settings(false), settings(true), super::sparse::settings(MethodKind::Smr)] {
+        let Some(mut rig) = Rig::new(desc(), settings) else { return };
+        for (i, index) in [u64::MAX - 1, u64::MAX, u64::MAX, 0].into_iter().enumerate() {
+            rig.both(index, Reset::None, &views(i as u64, &settings));
+        }
+    }
+}
+
 #[test]
 fn what_was_not_planned_is_refused() {
     let desc = ContextDesc { settings: settings(false), ..ContextDesc::new(SIZE) };
