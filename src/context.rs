@@ -2,6 +2,8 @@
 
 use crate::convention::{DepthConvention, MotionConvention};
 use crate::error::{FrameError, SettingsError, expected_size};
+#[cfg(feature = "gpu")]
+use crate::method::HistoryLayout;
 use crate::settings::Settings;
 
 /// Description of a context: size and number of views, conventions of its inputs, and settings. Size and settings can
@@ -49,6 +51,12 @@ impl ContextDesc {
             keep_alpha: true,
             settings: Settings::default(),
         }
+    }
+
+    /// Whether history has the alpha of its samples.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn has_alpha_history(&self) -> bool {
+        self.keep_alpha && matches!(self.settings.history_layout(), HistoryLayout::Sparse { .. })
     }
 
     /// Checks settings, size, number of views and planes.

@@ -192,7 +192,8 @@ fn average(r: Reconstruction, past: Mean, place_px: vec2f, kept: f32, difference
     let next = r.candidate + (old - r.candidate) * share;
     let next_px = place_px + (old_px - place_px) * share;
     let variance = (past.deviation * past.deviation + (difference * difference) * (1.0 - share)) * share;
-    let result = Reconstructed(shown, StoredSample(next, 0.0, r.nearest.disparity, next_px), share);
+    let stored = StoredSample(next, 0.0, r.nearest.disparity, next_px);
+    let result = Reconstructed(shown, stored, share, near, share);
     return Averaged(result, Mean(0.0, count + 1.0, sqrt(variance)));
 }
 

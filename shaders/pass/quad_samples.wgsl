@@ -20,6 +20,11 @@ fn given_sample(px: vec2u, view: u32) -> vec4f {
     return given_at(px, view);
 }
 
+// Alpha of a sample: 1 where the renderer wrote none.
+fn usable_alpha(given: f32) -> f32 {
+    return select(1.0, given, is_finite(given));
+}
+
 // The same with the color in this frame's exposure.
 fn sample_at(px: vec2u, view: u32) -> vec4f {
     return in_exposure(given_sample(px, view));

@@ -134,6 +134,12 @@ impl Afterimage {
     pub fn history_textures(&self) -> Vec<Texture> {
         self.history.split().0.planes.iter().map(|plane| plane.texture.clone()).collect()
     }
+
+    /// Alphas of the stored samples of the last recorded frame, as floats (`R32Uint`), if the context keeps alpha and
+    /// processes planned frames by smr; usages as for [`history_textures`](Self::history_textures).
+    pub fn alpha_texture(&self) -> Option<Texture> {
+        self.history.split().0.alpha.as_ref().map(|plane| plane.texture.clone())
+    }
 }
 
 impl Afterimage {
@@ -236,7 +242,7 @@ impl Afterimage {
         if self.history.is_filled() {
             let layout = history.layout();
             if self.resize.as_ref().is_none_or(|pass| pass.layout() != layout) {
-                self.resize = ResizePass::new(device, layout, self.stages.sources());
+                self.resize = ResizePass::new(device, layout, self.desc.has_alpha_history(), self.stages.sources());
             }
             let recorder = &mut self.recorder;
             recorder.begin(0);

@@ -310,7 +310,7 @@ pub fn average(r: &Reconstruction, past: Mean, place_px: Vec2, kept: f32, differ
     };
     // Welford 1962: the variance after one more sample.
     let variance = (past.deviation * past.deviation + (difference * difference) * (1.0 - share)) * share;
-    let result = Reconstructed { color, stored: next, share };
+    let result = Reconstructed { color, stored: next, share, keeps_nearest: near, stored_share: share };
     Averaged { result, mean: Mean { lod: 0.0, samples: count + 1.0, deviation: variance.sqrt() } }
 }
 

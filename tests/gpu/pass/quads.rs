@@ -73,10 +73,12 @@ fn frames_by_quads_are_bit_equal_on_both_executors() {
 fn plans_follow_size_and_settings() {
     let settings = settings(true);
     let Some(mut rig) = Rig::new(desc(), settings) else { return };
-    let desc = ContextDesc { settings, ..ContextDesc::new([1920, 1080]) };
-    let bytes = Afterimage::memory_bytes_of(&desc) as f64 / (1920.0 * 1080.0);
-    println!("{bytes:.2} bytes a pixel");
-    assert!(bytes < 25.2);
+    let [bytes, with_alpha] = [false, true].map(|keep_alpha| {
+        let desc = ContextDesc { settings, keep_alpha, ..ContextDesc::new([1920, 1080]) };
+        Afterimage::memory_bytes_of(&desc) as f64 / (1920.0 * 1080.0)
+    });
+    println!("{bytes:.2} bytes a pixel, with alpha {with_alpha:.2}");
+    assert!(bytes < 25.2 && with_alpha < 33.2);
     let size = |rig: &Rig| rig.gpu.quad_mask().map(|mask| [mask.width(), mask.height()]);
     assert_eq!(size(&rig), Some([35, 21]));
     rig.gpu.set_settings(&rig.device, Settings::default()).unwrap();
