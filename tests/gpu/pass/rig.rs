@@ -455,7 +455,7 @@ impl Rig {
         Made {
             shown: shown.chunks_exact(4).map(|c| [c[0], c[1], c[2]]).collect(),
             words: two.chunks_exact(2).zip(third).map(|(w, third)| [w[0], w[1], third]).collect(),
-            paths: mask.iter().zip(&quads).map(|(word, quad)| word >> 8 & 31 * quad.min(&1)).collect(),
+            paths: mask.iter().zip(&quads).map(|(word, quad)| (word >> 8) & (31 * quad.min(&1))).collect(),
             quads,
             alpha: shown.chunks_exact(4).filter(|_| self.alpha.is_some()).map(|c| c[3]).collect(),
             stats: FrameStats::from_counters(&counters).unwrap(),
