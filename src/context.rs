@@ -2,6 +2,8 @@
 
 use crate::convention::{DepthConvention, MotionConvention};
 use crate::error::{FrameError, SettingsError, expected_size};
+#[cfg(feature = "gpu")]
+use crate::method::HistoryLayout;
 use crate::settings::Settings;
 
 /// Description of a context: size and number of views, conventions of its inputs, and settings. Size and settings can
@@ -30,6 +32,13 @@ pub struct ContextDesc {
     pub depth: DepthConvention,
     /// Whether the output has the color input's alpha (1 where that is not finite) instead of 1. GPU only. Default
     /// true.
+    ///
+    /// On planned frames ([`Filter::Quads`](crate::Filter::Quads)) smr then stores the alpha of history's samples: 8
+    /// bytes a pixel and view, and 8 bytes a pixel of memory traffic. Set it to false if the output's alpha is not used.
+    /// Alpha has the history that color has, so that both converge alike. Where alpha changes and color does not, as
+    /// when something fades with color that is not premultiplied, history is not rejected, and alpha lags: give a trust
+    /// or reactive mask there. The other methods have this frame's alpha, between the samples of planned frames a mean
+    /// of those around.
     pub keep_alpha: bool,
     /// Method, foveation and tunables. Default: [`Settings::steady`].
     pub settings: Settings,
@@ -49,6 +58,12 @@ impl ContextDesc {
             keep_alpha: true,
             settings: Settings::default(),
         }
+    }
+
+    /// Whether history has the alpha of its samples.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn has_alpha_history(&self) -> bool {
+        self.keep_alpha && matches!(self.settings.history_layout(), HistoryLayout::Sparse { .. })
     }
 
     /// Checks settings, size, number of views and planes.

@@ -13,7 +13,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{setting} is {found}: expected {expected}")]
 pub struct SettingsError {
-    /// Name of the setting or argument.
+    /// Name of the setting or argument, or of the device's limit that the settings exceed.
     pub setting: &'static str,
     /// Rejected value.
     pub found: String,
@@ -154,6 +154,21 @@ pub enum FrameError {
         /// Largest side, in pixels: [`ContextDesc::MAX_SIDE`](crate::ContextDesc::MAX_SIDE), or what the device
         /// allows (`max_texture_dimension_2d`).
         max: u32,
+    },
+    /// A limit of the device is too low for a new size of a context.
+    #[error(
+        "the device's {limit} is {found}: expected at least {needed} for a size of {}x{}; request the device with Afterimage::required_limits()",
+        size[0], size[1]
+    )]
+    Limit {
+        /// Requested size, in pixels.
+        size: [u32; 2],
+        /// Name in `wgpu::Limits`.
+        limit: &'static str,
+        /// Limit of the device.
+        found: u64,
+        /// Limit that the context needs.
+        needed: u64,
     },
     /// A texture has the wrong dimension, number of layers or samples, format or usage.
     #[error("{input} is a texture of format {format}, {problem}: expected {expected}")]

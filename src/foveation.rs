@@ -257,7 +257,7 @@ impl Foveation {
     /// in quads.
     pub(crate) fn first_quad(index: u64) -> [u32; 2] {
         // Not of the frame itself, whose quad an even pattern of this step has already.
-        offset_px(index + 1, FIRST_STEP)
+        offset_px(index.wrapping_add(1), FIRST_STEP)
     }
 
     pub(crate) fn fovea_radius_deg(&self) -> f32 {

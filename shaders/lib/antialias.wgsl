@@ -200,7 +200,8 @@ fn added(r: Reconstruction, place_px: vec2f, share: f32) -> Reconstructed {
     let shown = r.candidate + (history - r.candidate) * share;
     let next = r.candidate + (old - r.candidate) * share;
     let next_px = place_px + (old_px - place_px) * share;
-    return Reconstructed(shown, StoredSample(next, 0.0, r.nearest.disparity, next_px), share);
+    let stored = StoredSample(next, 0.0, r.nearest.disparity, next_px);
+    return Reconstructed(shown, stored, share, near, share);
 }
 
 fn average(

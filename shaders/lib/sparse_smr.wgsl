@@ -228,6 +228,16 @@ struct Reconstructed {
     color: vec3f,
     stored: StoredSample,
     share: f32,
+    keeps_nearest: bool,
+    stored_share: f32,
+}
+
+fn result_alpha(r: Reconstructed, candidate: f32, history: f32, nearest: f32) -> vec2f {
+    let old = select(history, nearest, r.keeps_nearest);
+    // A share of 1 gives the alpha bit for bit.
+    let shown = candidate * (1.0 - r.share) + history * r.share;
+    let stored = candidate * (1.0 - r.stored_share) + old * r.stored_share;
+    return vec2f(shown, stored);
 }
 
 fn worn(moved: bool, means: bool) -> f32 {
@@ -260,10 +270,11 @@ fn reconstruct(r: Reconstruction) -> Reconstructed {
     if share >= KEEP_SHARE && near && kept_lod < r.lod {
         let kept_color = relit(r.nearest.color, r.gains, r.lowest, r.highest);
         let lod = kept_lod + (r.lod - kept_lod) * lost;
-        return Reconstructed(shown, StoredSample(kept_color, lod, r.nearest.disparity, r.nearest.place_px), share);
+        let kept = StoredSample(kept_color, lod, r.nearest.disparity, r.nearest.place_px);
+        return Reconstructed(shown, kept, share, true, 1.0);
     }
     let lod = select(r.lod, history_lod + (r.lod - history_lod) * lost, finer > 0.0);
-    return Reconstructed(shown, StoredSample(shown, lod, r.nearest.disparity, vec2f(0.0)), share);
+    return Reconstructed(shown, StoredSample(shown, lod, r.nearest.disparity, vec2f(0.0)), share, false, share);
 }
 
 struct Accumulated {
@@ -294,7 +305,8 @@ fn accumulate(r: Reconstruction, past: Noise, candidate: Noise) -> Accumulated {
     if near && share >= STAY_SHARE {
         let kept = r.candidate + (r.nearest.color - r.candidate) * share;
         let next = StoredSample(kept, lod, r.nearest.disparity, r.nearest.place_px);
-        return Accumulated(Reconstructed(shown, next, share), noise);
+        return Accumulated(Reconstructed(shown, next, share, true, share), noise);
     }
-    return Accumulated(Reconstructed(shown, StoredSample(shown, lod, r.nearest.disparity, vec2f(0.0)), share), noise);
+    let next = StoredSample(shown, lod, r.nearest.disparity, vec2f(0.0));
+    return Accumulated(Reconstructed(shown, next, share, false, share), noise);
 }

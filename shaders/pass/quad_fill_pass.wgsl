@@ -25,7 +25,7 @@ fn pixel(px: vec2u, view: u32) -> vec4f {
             let x = f32(at.x) - f32(px.x);
             let y = f32(at.y) - f32(px.y);
             let w = 1.0 / max(x * x + y * y, 1.0);
-            let alpha = select(1.0, given.w, is_finite(given.w));
+            let alpha = usable_alpha(given.w);
             sum += vec4f(sampled.color, alpha) * w;
             weight += w;
         }

@@ -129,7 +129,9 @@ fn block(at: vec2u, view: u32) {
         if is_single {
             pixels = 1u << place;
         }
-        words[i] = key_word(0u, region_now, even, pixels);
+        // Not `words[i] = ...`: FXC, which wgpu has on Windows without another compiler, cannot write vectors so.
+        let is_i = vec4u(0u, 1u, 2u, 3u) == vec4u(i);
+        words = select(words, vec4u(key_word(0u, region_now, even, pixels)), is_i);
         let px = 2u * quad + vec2u(place & 1u, place >> 1u);
         even_count += u32(even);
         let is_asked = region_now != IN_FOVEA && (!even || NOISY != 0u) && all(px < frame.size);
@@ -137,9 +139,10 @@ fn block(at: vec2u, view: u32) {
             let found = need_at(px, view);
             let first = vec2u(frame.first_quad & 0xffffu, frame.first_quad >> 16u);
             let no_history = no_history_need(quad.x, quad.y, first);
-            needs[i] = select(found.first * acuity(e_deg), no_history, found.first < 0.0) * f32(!even);
-            noise_needs[i] = found.noise * acuity(e_deg);
-            samples[i] = found.samples;
+            let needed = select(found.first * acuity(e_deg), no_history, found.first < 0.0) * f32(!even);
+            needs = select(needs, vec4f(needed), is_i);
+            noise_needs = select(noise_needs, vec4f(found.noise * acuity(e_deg)), is_i);
+            samples = select(samples, vec4u(found.samples), is_i);
         }
     }
     if even_count > 0u {

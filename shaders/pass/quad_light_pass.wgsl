@@ -158,10 +158,14 @@ fn light(quad: vec2u, view: u32) -> vec4u {
     for (var i = 0u; i < 4u; i++) {
         let px = px_of_quad(quad, i);
         if all(px < frame.size) {
-            lit.disparities[i] = disparity_at(px, view);
+            // Not `lit.disparities[i] = ...`: FXC, which wgpu has on Windows without another compiler, cannot write
+            // vectors so.
+            let is_i = vec4u(0u, 1u, 2u, 3u) == vec4u(i);
+            lit.disparities = select(lit.disparities, vec4f(disparity_at(px, view)), is_i);
             // A single noisy sample does not show whether history fits.
             if NOISY == 0u && is_compared(px, view) {
-                lit.own_fits[i] = own_fit(observation_at(px, view), lit.gains);
+                let fits = own_fit(observation_at(px, view), lit.gains);
+                lit.own_fits = select(lit.own_fits, vec4f(fits), is_i);
             }
         }
     }

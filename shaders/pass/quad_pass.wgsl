@@ -71,7 +71,7 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
             let px2 = x * x + y * y;
             let weight = select(1.0 / max(px2, 1.0), 1.0, is_own) * select(OTHER_SURFACE, 1.0, same);
             let known = weight * select(BY_NEIGHBOURS, 1.0, lit.is_own);
-            let alpha = select(1.0, given.w, is_finite(given.w));
+            let alpha = usable_alpha(given.w);
             sum += vec4f(sampled.color, alpha) * weight;
             weights += weight;
             gain_sum += lit.gains * known;
@@ -87,7 +87,7 @@ fn candidate_at(px: vec2u, view: u32, mask_word: u32, disparity_now: f32) -> Can
             }
             if is_own {
                 candidate.is_own = true;
-                own = vec4f(sampled.color, given.w);
+                own = vec4f(sampled.color, alpha);
                 own_fits = lit.own_fit;
             }
         }
@@ -122,7 +122,7 @@ fn full_rate_candidate(px: vec2u, view: u32, mask_word: u32) -> Candidate {
     let usable = own.usable && is_shaded(mask_word, px);
     var candidate = no_candidate();
     candidate.color = select(vec3f(0.0), own.color, usable);
-    candidate.alpha = select(1.0, given.w, usable);
+    candidate.alpha = select(1.0, usable_alpha(given.w), usable);
     candidate.usable = usable;
     candidate.is_own = usable;
     return candidate;

@@ -20,6 +20,11 @@ fn given_sample(px: vec2u, view: u32) -> vec4f {
     return given_at(px, view);
 }
 
+// Alpha of a sample: 1 where the renderer wrote none.
+fn usable_alpha(given: f32) -> f32 {
+    return select(1.0, given, is_finite(given));
+}
+
 // The same with the color in this frame's exposure.
 fn sample_at(px: vec2u, view: u32) -> vec4f {
     return in_exposure(given_sample(px, view));
@@ -91,7 +96,10 @@ fn around_pixel(px: vec2u, view: u32, mask_word: u32) -> AroundPixel {
             let offset = vec2i(at) - vec2i(px);
             if any(offset != vec2i(0)) {
                 let quadrant = quadrant_of(offset.x, offset.y);
-                codes[quadrant] = min(codes[quadrant], sample_code(offset.x, offset.y));
+                // Not `codes[quadrant] = ...`: FXC, which wgpu has on Windows without another compiler, cannot write
+                // vectors so.
+                let nearer = min(codes, vec4u(sample_code(offset.x, offset.y)));
+                codes = select(codes, nearer, vec4u(0u, 1u, 2u, 3u) == vec4u(quadrant));
             }
         }
     }

@@ -8,7 +8,16 @@
 // Whether frames are jittered and history stores means of samples.
 override ANTIALIAS: u32 = 0u;
 
+// Whether history has alpha.
+override HAS_ALPHA: u32 = 0u;
+
 @group(0) @binding(15) var past_stored: texture_2d_array<u32>;
+// Alphas of the stored samples, as floats.
+@group(0) @binding(17) var past_alpha: texture_2d_array<u32>;
+
+fn stored_alpha(texel: vec2i, view: u32) -> f32 {
+    return bitcast<f32>(textureLoad(past_alpha, clamp(texel, vec2i(0), vec2i(frame.size) - 1), view, 0).x);
+}
 
 fn stored_words(texel: vec2i, view: u32) -> vec2u {
     return textureLoad(past_stored, clamp(texel, vec2i(0), vec2i(frame.size) - 1), view, 0).xy;
@@ -116,6 +125,8 @@ struct SparseHistory {
     found: Interpolated,
     texel: vec2i,
     mean: Mean,
+    // Alpha at the position, and of the sample to keep.
+    alpha: vec2f,
 }
 
 // History at a previous position, in this frame's exposure. At a silhouette the nearest stored sample may belong to
@@ -124,6 +135,8 @@ struct SparseHistory {
 fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistory {
     let previous = source.previous;
     var around = nothing_around();
+    // The same samples with their alpha in place of their color.
+    var alphas = nothing_around();
     // The place of a mean may lie anywhere around its texel's centre, so that the eight texels around the nearest one
     // also count.
     var columns = 2u;
@@ -148,6 +161,10 @@ fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistor
             stored.lod = mean_lod(lod);
         }
         around = add_stored(around, stored, vec2f(texel) - previous.at, same, inverse_reach);
+        if HAS_ALPHA != 0u {
+            stored.color = vec3f(stored_alpha(texel, view));
+            alphas = add_stored(alphas, stored, vec2f(texel) - previous.at, same, inverse_reach);
+        }
         nearest_texel = select(nearest_texel, texel, around.cost < cost);
         kept_lod = select(kept_lod, lod, around.cost < cost);
     }
@@ -159,7 +176,13 @@ fn sparse_history(source: SparseSource, view: u32, needed: bool) -> SparseHistor
     found.lowest = expose(found.lowest, frame.exposure);
     found.highest = expose(found.highest, frame.exposure);
     found.nearest.color = expose(found.nearest.color, frame.exposure);
-    return SparseHistory(found, nearest_texel, mean_of(kept_lod));
+    var alpha = vec2f(1.0);
+    if HAS_ALPHA != 0u {
+        // A plane through samples may exceed them; an alpha may not.
+        let shown = interpolate(alphas);
+        alpha = vec2f(clamp(shown.color.x, shown.lowest.x, shown.highest.x), shown.nearest.color.x);
+    }
+    return SparseHistory(found, nearest_texel, mean_of(kept_lod), alpha);
 }
 
 // Whether history has moved since its samples were shaded, by more than the resolution of their stored places.

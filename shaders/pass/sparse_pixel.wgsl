@@ -8,6 +8,7 @@
 
 @group(0) @binding(18) var next_stored: texture_storage_2d_array<rg32uint, write>;
 @group(0) @binding(19) var next_noise: texture_storage_2d_array<r32uint, write>;
+@group(0) @binding(20) var next_alpha: texture_storage_2d_array<r32uint, write>;
 
 // Candidate of a pixel, and its gain and fit.
 struct Candidate {
@@ -95,6 +96,9 @@ fn hidden_pixel(px: vec2u, view: u32) {
         if NOISY != 0u {
             textureStore(next_noise, px, view, vec4u(pack_noise(Noise(1.0, 0.0)), 0u, 0u, 0u));
         }
+        if HAS_ALPHA != 0u {
+            textureStore(next_alpha, px, view, vec4u(bitcast<u32>(1.0f), 0u, 0u, 0u));
+        }
     }
 }
 
@@ -130,6 +134,8 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
     var share = 0.0;
     var fits = 1.0;
     var noise = candidate.noise;
+    // To show, and to store.
+    var alpha = vec2f(candidate.alpha);
     if history.lod >= 0.0 {
         if candidate.usable {
             var inputs: Reconstruction;
@@ -164,11 +170,13 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
                 result = reconstruct(inputs);
             }
             shown = result.color;
+            alpha = result_alpha(result, candidate.alpha, found.alpha.x, found.alpha.y);
             share = result.share;
             fits = candidate.fit;
             next = result.stored;
         } else {
             shown = history.color;
+            alpha = found.alpha;
             share = 1.0;
             next = history.nearest;
             mean = found.mean;
@@ -183,7 +191,10 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
     count_if(valid && share == 0.0, COUNT_REPLACED);
     let sharpness = exp2_approx(-max(next.lod, 0.0));
     let traced = PixelTrace(verdict, exp2_approx(-candidate.lod), sharpness, 0u, share, fits, share == 0.0, motion);
-    write_output(px, view, shown, candidate.alpha, traced);
+    if HAS_ALPHA == 0u {
+        alpha = vec2f(candidate.alpha);
+    }
+    write_output(px, view, shown, alpha.x, traced);
     if VIEW == 0u {
         var words = pack_stored(next);
         if ANTIALIAS != 0u {
@@ -196,6 +207,9 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
         textureStore(next_stored, px, view, vec4u(words, 0u, 0u));
         if NOISY != 0u {
             textureStore(next_noise, px, view, vec4u(pack_noise(noise), 0u, 0u, 0u));
+        }
+        if HAS_ALPHA != 0u {
+            textureStore(next_alpha, px, view, vec4u(bitcast<u32>(alpha.y), 0u, 0u, 0u));
         }
     }
 }

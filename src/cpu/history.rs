@@ -29,6 +29,8 @@ struct Plane {
     references: Vec<u32>,
     surfaces: Vec<[u32; 2]>,
     noise: Vec<u32>,
+    /// Of stored samples, once a frame has alpha.
+    alpha: Vec<f32>,
     mip_chains: Vec<MipChain>,
 }
 
@@ -47,6 +49,7 @@ impl Plane {
             references: vec![0; when(referenced)],
             surfaces: vec![[0; 2]; when(is_stored)],
             noise: vec![0; when(noisy)],
+            alpha: vec![],
             mip_chains: mip_chains(size_px, view_count, layout),
         }
     }
@@ -57,6 +60,7 @@ impl Plane {
             + size_of_val(&self.references[..])
             + size_of_val(&self.surfaces[..])
             + size_of_val(&self.noise[..])
+            + size_of_val(&self.alpha[..])
             + self.mip_chains.iter().map(MipChain::memory_bytes).sum::<usize>()
     }
 }
@@ -102,6 +106,8 @@ impl History {
         next.previous.log_keys = past.log_keys.chunks(len).flat_map(|v| resize.nearest(v)).collect();
         next.previous.references = past.references.chunks(len).flat_map(|v| resize.nearest(v)).collect();
         next.previous.noise = past.noise.chunks(len).flat_map(|v| resize.nearest(v)).collect();
+        next.previous.alpha = past.alpha.chunks(len).flat_map(|v| resize.nearest(v)).collect();
+        next.current.alpha = next.previous.alpha.clone();
         let is_sparse = matches!(self.layout, HistoryLayout::Sparse { .. });
         let means = matches!(self.layout, HistoryLayout::Sparse { means: true, .. });
         let surfaces = |v| if is_sparse { resize.sparse(v, means) } else { resize.surfaces(v) };
@@ -111,6 +117,13 @@ impl History {
             mip_chain.build(words);
         }
         next
+    }
+
+    /// Begins to keep the alpha of stored samples, which is 1 until then.
+    pub(super) fn keep_alpha(&mut self) {
+        let len = self.previous.surfaces.len();
+        self.previous.alpha.resize(len, 1.0);
+        self.current.alpha.resize(len, 1.0);
     }
 
     pub(super) fn layout(&self) -> HistoryLayout {
@@ -180,17 +193,24 @@ impl History {
         (past, next)
     }
 
-    /// Previous surfaces of `view`, and the current ones and their noise (empty without noise) to write.
-    pub(super) fn split_surfaces(&mut self, view: usize) -> (PastSurfaces<'_>, &mut [[u32; 2]], &mut [u32]) {
+    /// Previous surfaces of `view`, and the current ones to write.
+    pub(super) fn split_surfaces(&mut self, view: usize) -> (PastSurfaces<'_>, NextSurfaces<'_>) {
         let range = view * self.view_len..(view + 1) * self.view_len;
         let noise = if self.previous.noise.is_empty() { 0..0 } else { range.clone() };
+        let alpha = if self.previous.alpha.is_empty() { 0..0 } else { range.clone() };
         let past = PastSurfaces {
             words: &self.previous.surfaces[range.clone()],
             noise: &self.previous.noise[noise.clone()],
+            alpha: &self.previous.alpha[alpha.clone()],
             mip_chain: self.previous.mip_chains.get(view),
             candidates: self.candidates.get(view),
         };
-        (past, &mut self.current.surfaces[range], &mut self.current.noise[noise])
+        let next = NextSurfaces {
+            words: &mut self.current.surfaces[range],
+            noise: &mut self.current.noise[noise],
+            alpha: &mut self.current.alpha[alpha],
+        };
+        (past, next)
     }
 
     /// Fills the mip chain of the candidates of `view`, if there is one.
@@ -262,6 +282,15 @@ pub(super) struct NextView<'a> {
 pub(super) struct PastSurfaces<'a> {
     pub words: &'a [[u32; 2]],
     pub noise: &'a [u32],
+    /// Empty unless frames have alpha.
+    pub alpha: &'a [f32],
     pub mip_chain: Option<&'a MipChain>,
     pub candidates: Option<&'a MipChain>,
+}
+
+/// This frame's surfaces of one view, with their noise and alpha, which are empty where there is none.
+pub(super) struct NextSurfaces<'a> {
+    pub words: &'a mut [[u32; 2]],
+    pub noise: &'a mut [u32],
+    pub alpha: &'a mut [f32],
 }

@@ -100,14 +100,45 @@ struct Pass<'a, 'f> {
     /// Shaded quads, one a view; empty unless the frame is shaded by quads.
     quads: &'a [sparse_pass::Quads],
     output: &'a mut [Image<[f32; 3]>],
+    alpha: Option<Alpha<'a>>,
     traces: Option<&'a mut [Image<PixelTrace>]>,
     /// A pixel to explain.
     noted: Option<&'a mut PixelNotes>,
 }
 
+/// Alpha of a frame's colors, which the renderer wrote, and of the output; one image a view each.
+struct Alpha<'a> {
+    given: &'a [&'a Image<f32>],
+    output: &'a mut [Image<f32>],
+}
+
 // For tests and the lab.
 #[doc(hidden)]
 impl CpuAfterimage {
+    /// Processes a planned frame of smr as [`process_traced`](Self::process_traced) does, with alpha: the twin of what a
+    /// GPU does with [`ContextDesc::keep_alpha`]. `alpha` is that of the colors, `shown_alpha` that of the output; one
+    /// image of the context's size a view each.
+    ///
+    /// # Errors
+    /// As for [`process`](Self::process).
+    ///
+    /// # Panics
+    /// With another method or foveation.
+    pub fn process_alpha(
+        &mut self,
+        frame: &Frame<'_>,
+        alpha: &[&Image<f32>],
+        output: &mut [Image<[f32; 3]>],
+        shown_alpha: &mut [Image<f32>],
+        traces: Option<&mut [Image<PixelTrace>]>,
+    ) -> Result<FrameStats, FrameError> {
+        assert_eq!(self.desc.settings.algorithm(), Algorithm::SmrSparse);
+        check_sizes(&self.desc, "alpha", Some(alpha.iter().map(|i| i.size())))?;
+        check_sizes(&self.desc, "alpha", Some(shown_alpha.iter().map(Image::size)))?;
+        self.history.keep_alpha();
+        self.run(frame, output, Some(Alpha { given: alpha, output: shown_alpha }), traces, None)
+    }
+
     /// History.
     pub fn history(&self) -> &History {
         &self.history
@@ -133,7 +164,7 @@ impl CpuAfterimage {
         traces: Option<&mut [Image<PixelTrace>]>,
         pixel: &mut PixelNotes,
     ) -> Result<FrameStats, FrameError> {
-        self.run(frame, output, traces, Some(pixel))
+        self.run(frame, output, None, traces, Some(pixel))
     }
 }
 
@@ -228,7 +259,7 @@ impl CpuAfterimage {
     /// [`FrameError`] if a size, a number of images or a value does not fit the context; then nothing is written and
     /// history is unchanged.
     pub fn process(&mut self, frame: &Frame<'_>, output: &mut [Image<[f32; 3]>]) -> Result<FrameStats, FrameError> {
-        self.run(frame, output, None, None)
+        self.run(frame, output, None, None, None)
     }
 
     /// Processes one frame as [`process`](Self::process) does, and writes the decision at each pixel to `traces`, one
@@ -242,13 +273,14 @@ impl CpuAfterimage {
         output: &mut [Image<[f32; 3]>],
         traces: &mut [Image<PixelTrace>],
     ) -> Result<FrameStats, FrameError> {
-        self.run(frame, output, Some(traces), None)
+        self.run(frame, output, None, Some(traces), None)
     }
 
     fn run(
         &mut self,
         frame: &Frame<'_>,
         output: &mut [Image<[f32; 3]>],
+        alpha: Option<Alpha<'_>>,
         traces: Option<&mut [Image<PixelTrace>]>,
         mut noted: Option<&mut PixelNotes>,
     ) -> Result<FrameStats, FrameError> {
@@ -271,7 +303,7 @@ impl CpuAfterimage {
             pixel.notes.clear();
             explain::note_inputs(&self.desc, given, frame, history, quads, pixel);
         }
-        let pass = Pass { desc: &self.desc, history, frame, quads, output, traces, noted: noted.as_deref_mut() };
+        let pass = Pass { desc: &self.desc, history, frame, quads, output, alpha, traces, noted: noted.as_deref_mut() };
         let stats = match self.desc.settings.algorithm() {
             Algorithm::None => none_pass::run(pass),
             Algorithm::Taa => surface_pass::run(pass, &taa_pass::Taa),

@@ -10,6 +10,8 @@ pub(super) struct Pixel {
     pub surface: [u32; 2],
     /// Packed noise of the surface; stored only for noisy candidates.
     pub noise: u32,
+    /// Alpha to show, and alpha to store with the surface; of frames with alpha.
+    pub alpha: [f32; 2],
     pub trace: PixelTrace,
 }
 

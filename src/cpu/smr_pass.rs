@@ -93,6 +93,7 @@ impl SurfaceMethod for Smr {
             output: result.color,
             surface: pack_surface(Surface { color: result.color, lod: stored_lod, disparity }),
             noise: output_noise.map_or(0, pack_noise),
+            alpha: [1.0; 2],
             trace,
         }
     }

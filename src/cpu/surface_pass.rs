@@ -2,6 +2,7 @@
 
 use super::Pass;
 use super::explain::{explain, note_surface, of_view};
+use super::history::NextSurfaces;
 use super::inputs::Inputs;
 use super::pixel::{Pixel, ProcessPixel};
 use super::surface_history::SurfaceHistory;
@@ -17,13 +18,22 @@ pub(super) struct Targets<'a> {
     pub surfaces: &'a mut [[u32; 2]],
     pub noise: &'a mut [u32],
     pub output: &'a mut Image<[f32; 3]>,
+    pub alpha: Option<AlphaTargets<'a>>,
     pub traces: Option<&'a mut Image<PixelTrace>>,
+}
+
+/// Alpha of a view that a pass writes.
+pub(super) struct AlphaTargets<'a> {
+    pub stored: &'a mut [f32],
+    pub output: &'a mut Image<f32>,
 }
 
 struct Row<'a> {
     surfaces: &'a mut [[u32; 2]],
     noise: Option<&'a mut [u32]>,
     out: &'a mut [[f32; 3]],
+    /// To store, and to show.
+    alpha: Option<[&'a mut [f32]; 2]>,
     trace: Option<&'a mut [PixelTrace]>,
 }
 
@@ -48,7 +58,7 @@ impl<M: SurfaceMethod> ProcessPixel for InView<'_, M> {
 
 /// Runs a method for every pixel of every view.
 pub(super) fn run(pass: Pass<'_, '_>, method: &impl SurfaceMethod) -> FrameStats {
-    let Pass { desc, history, frame, quads, output, mut traces, mut noted } = pass;
+    let Pass { desc, history, frame, quads, output, mut traces, mut noted, .. } = pass;
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for i in 0..frame.views.len() {
@@ -58,10 +68,10 @@ pub(super) fn run(pass: Pass<'_, '_>, method: &impl SurfaceMethod) -> FrameStats
             let (color, usable) = inputs.candidate(x, y);
             candidate_texel(color, usable, inputs.noise(x, y).expect("the frame was checked to have noise"))
         });
-        let (past, surfaces, noise) = history.split_surfaces(i);
+        let (past, NextSurfaces { words: surfaces, noise, .. }) = history.split_surfaces(i);
         let in_view = InView { method, view: SurfaceHistory { inputs, quads: quads.get(i), past } };
         let traces = traces.as_mut().map(|t| &mut t[i]);
-        let targets = Targets { surfaces, noise, output: &mut output[i], traces };
+        let targets = Targets { surfaces, noise, output: &mut output[i], alpha: None, traces };
         stats = stats.add(for_pixels(targets, &in_view));
         if let Some(pixel) = of_view(&mut noted, i) {
             explain(&in_view, note_surface, pixel);
@@ -75,6 +85,9 @@ pub(super) fn run(pass: Pass<'_, '_>, method: &impl SurfaceMethod) -> FrameStats
 pub(super) fn for_pixels(targets: Targets<'_>, pass: &impl ProcessPixel) -> FrameStats {
     let width = targets.output.width();
     let mut noise = targets.noise.chunks_mut(width);
+    let mut alpha = targets
+        .alpha
+        .map(|AlphaTargets { stored, output }| stored.chunks_mut(width).zip(output.pixels_mut().chunks_mut(width)));
     let mut traces = targets.traces.map(|t| t.pixels_mut().chunks_mut(width));
     let mut rows: Vec<_> = targets
         .surfaces
@@ -84,6 +97,7 @@ pub(super) fn for_pixels(targets: Targets<'_>, pass: &impl ProcessPixel) -> Fram
             surfaces,
             noise: noise.next(),
             out,
+            alpha: alpha.as_mut().and_then(Iterator::next).map(|(stored, shown)| [stored, shown]),
             trace: traces.as_mut().and_then(Iterator::next),
         })
         .collect();
@@ -100,6 +114,9 @@ impl<P: ProcessPixel> ProcessRow<Row<'_>> for P {
             row.surfaces[x] = pixel.surface;
             if let Some(noise) = &mut row.noise {
                 noise[x] = pixel.noise;
+            }
+            if let Some([stored, shown]) = &mut row.alpha {
+                [shown[x], stored[x]] = pixel.alpha;
             }
             if let Some(trace) = &mut row.trace {
                 trace[x] = pixel.trace;

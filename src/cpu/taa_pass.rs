@@ -64,7 +64,7 @@ impl SurfaceMethod for Taa {
             ..PixelTrace::default()
         };
         let surface = pack_surface(Surface { color: output, lod: stored_lod, disparity });
-        Pixel { output, surface, noise: 0, trace }
+        Pixel { output, surface, noise: 0, alpha: [1.0; 2], trace }
     }
 }
 

@@ -77,7 +77,8 @@ impl SurfaceMethod for Taau {
             is_replaced: verdict != Verdict::Valid,
             motion,
         };
-        Pixel { output, surface: pack_surface(Surface { color: output, lod, disparity }), noise: 0, trace }
+        let surface = pack_surface(Surface { color: output, lod, disparity });
+        Pixel { output, surface, noise: 0, alpha: [1.0; 2], trace }
     }
 }
 

@@ -92,7 +92,7 @@ struct Row<'a> {
 }
 
 pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
-    let Pass { desc, history, frame, quads, output, mut traces, mut noted } = pass;
+    let Pass { desc, history, frame, quads, output, mut traces, mut noted, .. } = pass;
     let settings = &desc.settings;
     let wrs = settings.method.wrs();
     let has_history = history.is_filled();

@@ -134,6 +134,12 @@ impl Afterimage {
     pub fn history_textures(&self) -> Vec<Texture> {
         self.history.split().0.planes.iter().map(|plane| plane.texture.clone()).collect()
     }
+
+    /// Alphas of the stored samples of the last recorded frame, as floats (`R32Uint`), if the context keeps alpha and
+    /// processes planned frames by smr; usages as for [`history_textures`](Self::history_textures).
+    pub fn alpha_texture(&self) -> Option<Texture> {
+        self.history.split().0.alpha.as_ref().map(|plane| plane.texture.clone())
+    }
 }
 
 impl Afterimage {
@@ -183,9 +189,10 @@ impl Afterimage {
     /// [`gate`](crate::Wrs::gate), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
     ///
     /// # Errors
-    /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
+    /// [`SettingsError`] if a setting is out of range, or if a limit of the device is too low for the settings at the
+    /// context's size; then nothing changes.
     pub fn set_settings(&mut self, device: &Device, settings: Settings) -> Result<(), SettingsError> {
-        settings.validate()?;
+        requirements::check_settings(device, &self.desc, &settings)?;
         if settings.differs_in_uniforms(&self.desc.settings) {
             // Each frame uploads these. No object is made, and no pipeline compiled.
             self.desc.settings = settings;
@@ -209,8 +216,8 @@ impl Afterimage {
     /// [`resize_keeping_history`](Self::resize_keeping_history) keeps it.
     ///
     /// # Errors
-    /// [`FrameError::Extent`] if a side is 0 or above [`ContextDesc::MAX_SIDE`] or what the device allows; then nothing
-    /// changes.
+    /// [`FrameError::Extent`] if a side is 0 or above [`ContextDesc::MAX_SIDE`] or what the device allows,
+    /// [`FrameError::Limit`] if another limit of the device is too low for the size; then nothing changes.
     pub fn resize(&mut self, device: &Device, size_px: [u32; 2]) -> Result<(), FrameError> {
         requirements::check_resize(device, &self.desc, size_px)?;
         self.set_size(device, size_px);
@@ -241,7 +248,7 @@ impl Afterimage {
         if self.history.is_filled() {
             let layout = history.layout();
             if self.resize.as_ref().is_none_or(|pass| pass.layout() != layout) {
-                self.resize = ResizePass::new(device, layout, self.stages.sources());
+                self.resize = ResizePass::new(device, layout, self.desc.has_alpha_history(), self.stages.sources());
             }
             let recorder = &mut self.recorder;
             recorder.begin(0);

@@ -6,6 +6,7 @@ use super::{history, quads};
 use crate::context::{ContextDesc, check_size};
 use crate::error::{CreateError, FrameError, SettingsError};
 use crate::foveation::Filter;
+use crate::settings::Settings;
 use crate::uniforms::MAX_VIEWS;
 use wgpu::{Device, Limits, TextureFormat};
 
@@ -20,12 +21,25 @@ pub(crate) fn validate(device: &Device, desc: &ContextDesc, output: TextureForma
             expected: format!("at most {MAX_VIEWS} views"),
         }));
     }
-    let (limits, needed) = (device.limits(), required_limits(desc));
-    let checks = compared(&limits).into_iter().zip(compared(&needed));
-    match checks.map(|((limit, found), (_, needed))| (limit, found, needed)).find(|(_, found, needed)| found < needed) {
-        Some((limit, found, needed)) => Err(CreateError::Limit { limit, found, needed }),
+    match lacking(device, desc) {
+        Some(Lacking { limit, found, needed }) => Err(CreateError::Limit { limit, found, needed }),
         None => Ok(()),
     }
+}
+
+/// A limit of a device that is too low.
+struct Lacking {
+    limit: &'static str,
+    found: u64,
+    needed: u64,
+}
+
+/// The first limit of `device` that is too low for a context.
+fn lacking(device: &Device, desc: &ContextDesc) -> Option<Lacking> {
+    let (limits, needed) = (device.limits(), required_limits(desc));
+    let checks = compared(&limits).into_iter().zip(compared(&needed));
+    let mut checks = checks.map(|((limit, found), (_, needed))| Lacking { limit, found, needed });
+    checks.find(|check| check.found < check.needed)
 }
 
 /// Checks that `device` can have history in its storage textures. wgpu's GL backend cannot.
@@ -39,9 +53,30 @@ pub(super) fn check_history(device: &Device) -> Result<(), CreateError> {
 /// Checks a new size of a context's views against the device.
 pub(super) fn check_resize(device: &Device, desc: &ContextDesc, size_px: [u32; 2]) -> Result<(), FrameError> {
     check_size(size_px)?;
+    let desc = ContextDesc { size_px, ..*desc };
     let max = device.limits().max_texture_dimension_2d;
-    let is_within = largest_side(&ContextDesc { size_px, ..*desc }) <= max;
-    if is_within { Ok(()) } else { Err(FrameError::Extent { size: size_px, max }) }
+    if largest_side(&desc) > max {
+        return Err(FrameError::Extent { size: size_px, max });
+    }
+    match lacking(device, &desc) {
+        Some(Lacking { limit, found, needed }) => Err(FrameError::Limit { size: size_px, limit, found, needed }),
+        None => Ok(()),
+    }
+}
+
+/// Checks new settings of a context against the device.
+pub(super) fn check_settings(device: &Device, desc: &ContextDesc, settings: &Settings) -> Result<(), SettingsError> {
+    settings.validate()?;
+    match lacking(device, &ContextDesc { settings: *settings, ..*desc }) {
+        Some(Lacking { limit, found, needed }) => {
+            let [width, height] = desc.size_px;
+            let expected = format!(
+                "at least {needed} for these settings at {width}x{height}; request the device with Afterimage::required_limits()"
+            );
+            Err(SettingsError { setting: limit, found: found.to_string(), expected })
+        }
+        None => Ok(()),
+    }
 }
 
 /// The limits that a context can exceed, by name.

@@ -19,12 +19,13 @@ pub(super) struct ResizePass {
 }
 
 impl ResizePass {
-    /// The pass for a layout; `None` for a layout without history.
-    pub fn new(device: &Device, layout: HistoryLayout, sources: &Sources) -> Option<Self> {
+    /// The pass for a layout, with alpha if the context keeps it; `None` for a layout without history.
+    pub fn new(device: &Device, layout: HistoryLayout, has_alpha: bool, sources: &Sources) -> Option<Self> {
         let (name, block_px, overrides) = match layout {
             HistoryLayout::Nothing => return None,
             HistoryLayout::Sparse { noisy, means } => {
-                ("resize_sparse_pass", 1, vec![("NOISY", u32::from(noisy)), ("MEANS", u32::from(means))])
+                let overrides = [("NOISY", noisy), ("MEANS", means), ("HAS_ALPHA", has_alpha)];
+                ("resize_sparse_pass", 1, overrides.map(|(name, is_on)| (name, u32::from(is_on))).into())
             }
             HistoryLayout::Reservoirs { keys, references } => {
                 ("resize_reservoirs_pass", 1, vec![("HAS_EXTRAS", u32::from(keys || references))])

@@ -78,6 +78,7 @@ impl Specialization {
             (Past, "HAS_SPARSE_HISTORY", u32::from(is_sparse)),
             (Output, "VIEW", code(self.view)),
             (Output, "KEEP_ALPHA", u32::from(desc.keep_alpha)),
+            (Output, "HAS_ALPHA", u32::from(desc.has_alpha_history())),
             (Debug, "DEBUG_VIEW", code(self.debug)),
         ];
         let inputs = INPUTS.iter().filter_map(|input| Some((input.binding, input.has?, has(input.binding))));

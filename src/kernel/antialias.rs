@@ -325,7 +325,7 @@ fn added(r: &Reconstruction, place_px: Vec2, share: f32) -> Reconstructed {
         place_px: place_px + (old_px - place_px) * share,
         ..r.nearest
     };
-    Reconstructed { color, stored, share }
+    Reconstructed { color, stored, share, keeps_nearest: near, stored_share: share }
 }
 
 /// Mean of history and of the pixel's own sample, whose place in the pixel is `place_px`. `past`: the texel of history

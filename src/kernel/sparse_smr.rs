@@ -383,6 +383,21 @@ pub struct Reconstructed {
     pub stored: StoredSample,
     /// History's share in `color`.
     pub share: f32,
+    /// Whether the stored color is of history's nearest sample, or of history at the position.
+    pub keeps_nearest: bool,
+    /// That color's share in the stored one; the rest is the candidate's.
+    pub stored_share: f32,
+}
+
+/// Alpha to show and alpha to store beside a result: those of its color, without light. `history`: at the position;
+/// `nearest`: of its nearest sample.
+#[inline]
+pub fn result_alpha(r: Reconstructed, candidate: f32, history: f32, nearest: f32) -> Vec2 {
+    let old = if r.keeps_nearest { nearest } else { history };
+    // A share of 1 gives the alpha bit for bit.
+    let shown = candidate * (1.0 - r.share) + history * r.share;
+    let stored = candidate * (1.0 - r.stored_share) + old * r.stored_share;
+    Vec2::new(shown, stored)
 }
 
 /// Levels of detail that history loses when light doubles. `moved`: whether it was read between samples; `means`:
@@ -433,11 +448,11 @@ pub fn reconstruct(r: &Reconstruction) -> Reconstructed {
             lod: kept_lod + (r.lod - kept_lod) * lost,
             ..r.nearest
         };
-        return Reconstructed { color, stored, share };
+        return Reconstructed { color, stored, share, keeps_nearest: true, stored_share: 1.0 };
     }
     let lod = if finer > 0.0 { history_lod + (r.lod - history_lod) * lost } else { r.lod };
     let stored = StoredSample { color, lod, place_px: Vec2::ZERO, ..r.nearest };
-    Reconstructed { color, stored, share }
+    Reconstructed { color, stored, share, keeps_nearest: false, stored_share: share }
 }
 
 /// Result of [`accumulate`].
@@ -473,10 +488,11 @@ pub fn accumulate(r: &Reconstruction, past: Noise, now: Noise) -> Accumulated {
     let noise = noise_after(past, now, share, finer * acceptance);
     let place = r.nearest.place_px;
     let near = place.x.abs().max(place.y.abs()) <= super::stored_sample::FARTHEST_PX;
-    let stored = if near && share >= STAY_SHARE {
+    let keeps_nearest = near && share >= STAY_SHARE;
+    let stored = if keeps_nearest {
         StoredSample { color: r.candidate + (r.nearest.color - r.candidate) * share, lod, ..r.nearest }
     } else {
         StoredSample { color, lod, place_px: Vec2::ZERO, ..r.nearest }
     };
-    Accumulated { result: Reconstructed { color, stored, share }, noise }
+    Accumulated { result: Reconstructed { color, stored, share, keeps_nearest, stored_share: share }, noise }
 }

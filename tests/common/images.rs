@@ -138,6 +138,9 @@ pub fn planned(post: &mut CpuAfterimage, frame: &Frame<'_>) -> Vec<Image<bool>> 
 /// Outputs, decisions and counters of a frame.
 pub type Traced = (Vec<Image<[f32; 3]>>, Vec<Image<PixelTrace>>, FrameStats);
 
+/// The same with output alphas.
+pub type TracedAlpha = (Vec<Image<[f32; 3]>>, Vec<Image<PixelTrace>>, FrameStats, Vec<Image<f32>>);
+
 /// Processes a frame.
 pub fn traced(post: &mut CpuAfterimage, frame: &Frame<'_>) -> Traced {
     let size = post.desc().size_px;
@@ -145,6 +148,17 @@ pub fn traced(post: &mut CpuAfterimage, frame: &Frame<'_>) -> Traced {
     let mut trace = vec![Image::filled(size, PixelTrace::default()); frame.views.len()];
     let stats = post.process_traced(frame, &mut shown, &mut trace).unwrap();
     (shown, trace, stats)
+}
+
+/// Outputs, decisions, counters and output alphas of a planned frame of smr. `alpha`: of its colors, one image a view.
+pub fn traced_alpha(post: &mut CpuAfterimage, frame: &Frame<'_>, alpha: &[Image<f32>]) -> TracedAlpha {
+    let size = post.desc().size_px;
+    let mut shown = vec![Image::filled(size, [f32::NAN; 3]); frame.views.len()];
+    let mut trace = vec![Image::filled(size, PixelTrace::default()); frame.views.len()];
+    let mut shown_alpha = vec![Image::filled(size, f32::NAN); frame.views.len()];
+    let given: Vec<_> = alpha.iter().collect();
+    let stats = post.process_alpha(frame, &given, &mut shown, &mut shown_alpha, Some(&mut trace)).unwrap();
+    (shown, trace, stats, shown_alpha)
 }
 
 /// The value at a pixel.

@@ -79,7 +79,7 @@ fn paths_are_keys_from_the_threshold_on() {
     let mut seen = HashSet::new();
     for _ in 0..20_000 {
         let further = draws.bits() % KEYS;
-        let first = if draws.bits() % 4 == 0 { 0 } else { further + draws.bits() % (KEYS - further) };
+        let first = if draws.bits().is_multiple_of(4) { 0 } else { further + draws.bits() % (KEYS - further) };
         let (samples, threshold) = (1 + draws.bits() % 31, 1 + draws.bits() % KEYS);
         let keys = [first].into_iter().chain((2..=MOST_PATHS).map(|path| path_key(further, samples, path)));
         let count = keys.clone().filter(|&key| key >= threshold).count() as u32;

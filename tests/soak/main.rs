@@ -134,6 +134,7 @@ fn damage_is_noticed() {
         words: vec![],
         quads: vec![],
         paths: vec![],
+        alpha: vec![],
         stats: Default::default(),
     };
     let checked = |method, value: f32| {

@@ -24,6 +24,7 @@ pub(super) struct Candidate {
     pub gain: Vec3,
     pub fit: f32,
     pub noise: Noise,
+    pub alpha: f32,
     /// Whether the candidate is this pixel's own sample.
     pub is_own: bool,
     /// Color of the sample of the pixel's surface beside it, if there is one.
@@ -41,6 +42,7 @@ impl Candidate {
         gain: Vec3::ONE,
         fit: 1.0,
         noise: NO_NOISE,
+        alpha: 1.0,
         is_own: false,
         beside: None,
         around: (Vec3::ZERO, 0.0),
@@ -94,6 +96,7 @@ pub(super) fn note_sample(
 /// Sums over the samples around a pixel.
 pub(super) struct Sums {
     color: Vec3,
+    alpha: f32,
     weight: f32,
     gain: Vec3,
     fit: f32,
@@ -104,13 +107,14 @@ pub(super) struct Sums {
     nearest_px2: f32,
     /// Color of this sample, the first of equally near ones.
     nearest: Vec3,
-    /// Color of the pixel's own sample, and the fit of history there.
-    pub own: Option<(Vec3, f32)>,
+    /// Color and alpha of the pixel's own sample, and the fit of history there.
+    pub own: Option<(Vec3, f32, f32)>,
 }
 
 impl Sums {
     pub const NOTHING: Self = Self {
         color: Vec3::ZERO,
+        alpha: 0.0,
         weight: 0.0,
         gain: Vec3::ZERO,
         fit: 0.0,
@@ -124,10 +128,11 @@ impl Sums {
     /// Adds a sample with the weight `share` by its place, and returns its weight. `alike`: whether it shows the
     /// pixel's surface.
     #[inline(always)]
-    pub fn add(&mut self, color: Vec3, lit: Lit, share: f32, px2: f32, alike: bool) -> f32 {
+    pub fn add(&mut self, (color, alpha): (Vec3, f32), lit: Lit, share: f32, px2: f32, alike: bool) -> f32 {
         let weight = share * if alike { 1.0 } else { OTHER_SURFACE };
         let known = weight * if lit.is_own { 1.0 } else { BY_NEIGHBOURS };
         self.color += color * weight;
+        self.alpha += alpha * weight;
         self.weight += weight;
         self.gain += lit.gain * known;
         self.fit += lit.fit * known;
@@ -146,7 +151,8 @@ impl Sums {
             return Candidate::NONE;
         }
         let coarsest = level as f32;
-        let (color, own_fit) = self.own.unwrap_or((self.color * (1.0 / self.weight), 1.0));
+        let inverse = 1.0 / self.weight;
+        let (color, alpha, own_fit) = self.own.unwrap_or((self.color * inverse, self.alpha * inverse, 1.0));
         Candidate {
             color,
             usable: true,
@@ -158,6 +164,7 @@ impl Sums {
             gain: self.gain * (1.0 / self.valid),
             fit: (self.fit * (1.0 / self.valid)).min(own_fit),
             noise: NO_NOISE,
+            alpha,
             is_own: self.own.is_some(),
             beside: (self.nearest_px2 <= BESIDE_PX2).then_some(self.nearest),
             around: (Vec3::ZERO, 0.0),

@@ -22,24 +22,27 @@ pub(super) use quads::Quads;
 
 use super::Pass;
 use super::explain::{explain, note_stored, note_stored_mean, of_view};
+use super::history::NextSurfaces;
 use super::inputs::Inputs;
-use super::surface_pass::{Targets, for_pixels};
+use super::surface_pass::{AlphaTargets, Targets, for_pixels};
 use crate::stats::FrameStats;
 use pixel::LitView;
-use view::View;
+use view::{GivenAlpha, View};
 
 /// Runs the three loops for every view.
 pub(super) fn run(pass: Pass<'_, '_>) -> FrameStats {
-    let Pass { desc, history, frame, quads, output, mut traces, mut noted } = pass;
+    let Pass { desc, history, frame, quads, output, mut alpha, mut traces, mut noted } = pass;
     let has_history = history.is_filled();
     let mut stats = FrameStats::default();
     for (i, quads) in quads.iter().enumerate() {
         let state = history.advance(i, frame);
         let inputs = Inputs::new(desc, frame, i, &state, has_history);
-        let (past, next, next_noise) = history.split_surfaces(i);
-        let view = View::new(desc, frame, inputs, past.words, past.noise);
+        let (past, NextSurfaces { words: surfaces, noise, alpha: stored }) = history.split_surfaces(i);
+        let given = alpha.as_ref().map(|alpha| GivenAlpha { given: alpha.given[i], past: past.alpha });
+        let view = View { alpha: given, ..View::new(desc, frame, inputs, past.words, past.noise) };
         let traces = traces.as_mut().map(|t| &mut t[i]);
-        let targets = Targets { surfaces: next, noise: next_noise, output: &mut output[i], traces };
+        let alpha = alpha.as_mut().map(|alpha| AlphaTargets { stored, output: &mut alpha.output[i] });
+        let targets = Targets { surfaces, noise, output: &mut output[i], alpha, traces };
         let lights = view.light_quads(quads, &view.observe_quads(quads));
         let lit = LitView { view: &view, quads, lights: &lights };
         stats = stats.add(for_pixels(targets, &lit));

@@ -12,7 +12,7 @@ use crate::kernel::noise::pack_noise;
 use crate::kernel::reproject::Verdict;
 use crate::kernel::sanitize;
 use crate::kernel::smr::root_difference;
-use crate::kernel::sparse_smr::{Reconstruction, accumulate, reconstruct, relit, worn};
+use crate::kernel::sparse_smr::{Reconstruction, accumulate, reconstruct, relit, result_alpha, worn};
 use crate::kernel::stored_sample::{StoredSample, pack_stored};
 use crate::notes::{NoteStage, Notes};
 use crate::stats::FrameStats;
@@ -41,7 +41,7 @@ impl LitView<'_> {
         if !inputs.is_visible(x, y) {
             // Outside the visible area: black, without stored history.
             let (surface, noise) = (pack_stored(StoredSample::EMPTY), pack_noise(NO_NOISE));
-            return Pixel { output: Vec3::ZERO, surface, noise, trace: PixelTrace::default() };
+            return Pixel { output: Vec3::ZERO, surface, noise, alpha: [1.0; 2], trace: PixelTrace::default() };
         }
         let disparity = inputs.disparity(x, y);
         let level = quads.level_at([x, y]);
@@ -73,10 +73,12 @@ impl LitView<'_> {
         let mut mean = Mean::ONE;
         let (mut share, mut fits) = (0.0, 1.0);
         let mut noise = candidate.noise;
+        // To show, and to store.
+        let mut alpha = [candidate.alpha; 2];
         if let (Ok(Source { previous, .. }), Some(found)) = (source, history) {
-            let Found { history, noise: past, mean: past_mean } = found;
+            let Found { history, noise: past, mean: past_mean, alpha: past_alpha } = found;
             if !candidate.usable {
-                (output, share, noise, mean) = (history.color, 1.0, past, past_mean);
+                (output, share, noise, mean, alpha) = (history.color, 1.0, past, past_mean, past_alpha);
                 stored = StoredSample { disparity: surface.stored, ..history.nearest };
             } else {
                 let moved = match view.antialiases {
@@ -124,6 +126,7 @@ impl LitView<'_> {
                 } else {
                     reconstruct(&inputs)
                 };
+                alpha = result_alpha(result, candidate.alpha, past_alpha[0], past_alpha[1]).into();
                 (output, share, fits) = (result.color, result.share, candidate.fit);
                 stored = StoredSample { disparity: surface.stored, ..result.stored };
             }
@@ -142,6 +145,6 @@ impl LitView<'_> {
             motion: surface.motion,
         };
         let stored = if view.antialiases { view.packed_mean([x, y], stored, mean) } else { pack_stored(stored) };
-        Pixel { output, surface: stored, noise: pack_noise(noise), trace }
+        Pixel { output, surface: stored, noise: pack_noise(noise), alpha, trace }
     }
 }

@@ -149,7 +149,8 @@ impl View<'_> {
                 return Candidate::NONE;
             }
             let (color, usable) = self.color_px(quads, px);
-            return Candidate { color, usable, is_own: usable, ..Candidate::NONE };
+            let alpha = if usable { self.alpha_at(px) } else { 1.0 };
+            return Candidate { color, usable, alpha, is_own: usable, ..Candidate::NONE };
         }
         let codes = sample_codes(disparity);
         let mut sums = Sums::NOTHING;
@@ -166,7 +167,8 @@ impl View<'_> {
             let alike = !self.inputs.tests_depth() || has_code(quad_code(words, place), codes);
             let px2 = offset_px2(at[0], px[0]) + offset_px2(at[1], px[1]);
             let share = if at == px { 1.0 } else { 1.0 / px2 };
-            let weight = sums.add(color, lit, share, px2, alike);
+            let alpha = self.alpha_at(at);
+            let weight = sums.add((color, alpha), lit, share, px2, alike);
             if N::ON {
                 note_sample(notes, at, weight, color, lit, self.observe_px(at, level, color, usable));
             }
@@ -174,7 +176,7 @@ impl View<'_> {
                 noises = add_noise(noises, self.sample_noise(at), weight);
             }
             if at == px {
-                sums.own = Some((color, lit.own_fit));
+                sums.own = Some((color, alpha, lit.own_fit));
             }
         };
         quads.samples_around(px).for_each(&mut add);

@@ -55,6 +55,8 @@ pub(super) struct Found {
     pub noise: Noise,
     /// The texel to keep.
     pub mean: Mean,
+    /// Alpha at the position, and of the sample to keep.
+    pub alpha: [f32; 2],
 }
 
 impl View<'_> {
@@ -62,6 +64,14 @@ impl View<'_> {
     pub(super) fn stored_words(&self, x: i32, y: i32) -> [u32; 2] {
         let [width, height] = self.inputs.size.map(|s| s as i32);
         self.words[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize]
+    }
+
+    /// Alpha of a stored sample; `None` in frames without alpha.
+    #[inline(always)]
+    fn stored_alpha(&self, x: i32, y: i32) -> Option<f32> {
+        let [width, height] = self.inputs.size.map(|s| s as i32);
+        let at = (y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize;
+        self.alpha.as_ref().map(|alpha| alpha.past[at])
     }
 
     /// Noise of a stored sample, in this frame's exposure.
@@ -111,6 +121,8 @@ impl View<'_> {
         };
         let inverse_reach = if self.antialiases { INVERSE_MEAN_REACH } else { INVERSE_REACH };
         let mut around = Around::NOTHING;
+        // The same samples with their alpha in place of their color.
+        let mut alphas = Around::NOTHING;
         let mut nearest_texel = [x, y];
         let mut kept_lod = ONE_SAMPLE_LOD;
         for tap in 0..columns * columns {
@@ -132,6 +144,10 @@ impl View<'_> {
                 notes.note(NoteStage::History, "texel", values, unit);
             }
             around = add_stored(around, stored, texel_px, same, inverse_reach);
+            if let Some(alpha) = self.stored_alpha(tx, ty) {
+                let stored = StoredSample { color: Vec3::splat(alpha), ..stored };
+                alphas = add_stored(alphas, stored, texel_px, same, inverse_reach);
+            }
             if around.cost < cost {
                 (nearest_texel, kept_lod) = ([tx, ty], lod);
             }
@@ -148,7 +164,12 @@ impl View<'_> {
         let kept = mean_of(kept_lod);
         notes.note(NoteStage::History, "its number of samples", kept.samples, "");
         notes.note(NoteStage::History, "their standard deviation", kept.deviation, "100 from black to white");
-        Found { history, noise: self.stored_noise(nearest_texel), mean: kept }
+        let alpha = self.alpha.as_ref().map_or([1.0; 2], |_| {
+            // A plane through samples may exceed them; an alpha may not.
+            let Interpolated { color, range: [low, high], nearest, .. } = interpolate(alphas);
+            [color.x.max(low.x).min(high.x), nearest.color.x]
+        });
+        Found { history, noise: self.stored_noise(nearest_texel), mean: kept, alpha }
     }
 }
 

@@ -3,8 +3,10 @@
 use crate::context::ContextDesc;
 use crate::cpu::Frame;
 use crate::cpu::inputs::Inputs;
+use crate::image::Image;
 use crate::kernel::depth::same_surface;
 use crate::kernel::noise::Noise;
+use crate::kernel::sanitize::is_finite;
 
 /// Noise of candidates without a noise input.
 pub(super) const NO_NOISE: Noise = Noise { samples: 1.0, variance: 0.0 };
@@ -12,12 +14,20 @@ pub(super) const NO_NOISE: Noise = Noise { samples: 1.0, variance: 0.0 };
 /// Packed results for the samples of a view, at their pixels, row by row.
 pub(super) type Samples = Vec<[u32; 2]>;
 
+/// Alpha of a view's colors, and of its stored samples.
+pub(super) struct GivenAlpha<'a> {
+    pub given: &'a Image<f32>,
+    pub past: &'a [f32],
+}
+
 /// Inputs and history of one view of a frame.
 pub(super) struct View<'a> {
     pub inputs: Inputs<'a>,
     pub words: &'a [[u32; 2]],
     /// Packed noise of the stored samples; empty unless candidates are noisy.
     pub noise: &'a [u32],
+    /// `None` in frames without alpha, which is 1 then.
+    pub alpha: Option<GivenAlpha<'a>>,
     pub accumulate: f32,
     pub relights: bool,
     /// Whether candidates are noisy.
@@ -41,6 +51,7 @@ impl<'a> View<'a> {
             inputs,
             words,
             noise,
+            alpha: None,
             accumulate: desc.settings.method.smr().accumulate,
             relights: crate::method::smr_sparse_relights(&desc.settings),
             is_noisy: desc.settings.noisy,
@@ -54,6 +65,13 @@ impl View<'_> {
     #[inline(always)]
     pub fn sample_noise(&self, [x, y]: [u32; 2]) -> Noise {
         self.inputs.noise(x, y).filter(|_| self.is_noisy).unwrap_or(NO_NOISE)
+    }
+
+    /// Alpha of a pixel's color: 1 where the renderer wrote none.
+    #[inline(always)]
+    pub fn alpha_at(&self, [x, y]: [u32; 2]) -> f32 {
+        let given = self.alpha.as_ref().map(|alpha| alpha.given.at(x as usize, y as usize));
+        given.filter(|&alpha| is_finite(alpha)).unwrap_or(1.0)
     }
 
     /// Whether two disparities of this frame can belong to one surface.

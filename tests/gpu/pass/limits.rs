@@ -103,6 +103,45 @@ fn sizes_beyond_the_device_are_refused_and_change_nothing() {
     });
 }
 
+/// The list of the quads of a large view exceeds WebGPU's default for buffers that shaders bind, although its textures
+/// are allowed.
+#[test]
+fn lists_beyond_the_device_are_refused_and_change_nothing() {
+    let (device, _queue) = noop(Limits { max_texture_dimension_2d: 16384, ..Limits::default() });
+    let (small, large) = ([64, 64], [16384, 8194]);
+    let quads = Settings { foveation: Foveation::uniform(0.25), ..Settings::default() };
+    let context =
+        |size, settings| Afterimage::new(&device, &ContextDesc { settings, ..ContextDesc::new(size) }, FORMAT);
+    let needed = 32 + 4 * 8192 * 4097;
+    let (limit, found) = ("max_storage_buffer_binding_size", 128 << 20);
+    assert_eq!(context(large, quads).unwrap_err(), CreateError::Limit { limit, found, needed });
+    afterimage_testing::gpu::validated(&device, "resize and set_settings", || {
+        let mut post = context(small, quads).unwrap();
+        let mask = post.quad_mask().cloned();
+        let mut encoder = device.create_command_encoder(&Default::default());
+        let error = post.resize(&device, large).unwrap_err();
+        assert_eq!(error, FrameError::Limit { size: large, limit, found, needed });
+        let text = format!(
+            "the device's {limit} is {found}: expected at least {needed} for a size of 16384x8194; request the device with Afterimage::required_limits()"
+        );
+        assert_eq!(error.to_string(), text);
+        assert_eq!(post.resize_keeping_history(&device, &mut encoder, large), Err(error));
+        assert_eq!((post.desc().size_px, post.quad_mask()), (small, mask.as_ref()));
+        // Without quads the size is allowed; then with them the settings are not.
+        let whole = Settings { method: Method::None, ..Settings::default() };
+        post.set_settings(&device, whole).unwrap();
+        post.resize(&device, large).unwrap();
+        let error = post.set_settings(&device, quads).unwrap_err().to_string();
+        let text = format!(
+            "{limit} is {found}: expected at least {needed} for these settings at 16384x8194; request the device with Afterimage::required_limits()"
+        );
+        assert_eq!(error, text);
+        assert_eq!((post.desc().settings, post.quad_mask()), (whole, None));
+        post.resize(&device, small).unwrap();
+        post.set_settings(&device, quads).unwrap();
+    });
+}
+
 #[test]
 fn a_texture_that_is_read_is_no_output() {
     let Some(device) = rig::device_of_five_outputs() else { return };

@@ -73,10 +73,12 @@ fn frames_by_quads_are_bit_equal_on_both_executors() {
 fn plans_follow_size_and_settings() {
     let settings = settings(true);
     let Some(mut rig) = Rig::new(desc(), settings) else { return };
-    let desc = ContextDesc { settings, ..ContextDesc::new([1920, 1080]) };
-    let bytes = Afterimage::memory_bytes_of(&desc) as f64 / (1920.0 * 1080.0);
-    println!("{bytes:.2} bytes a pixel");
-    assert!(bytes < 25.2);
+    let [bytes, with_alpha] = [false, true].map(|keep_alpha| {
+        let desc = ContextDesc { settings, keep_alpha, ..ContextDesc::new([1920, 1080]) };
+        Afterimage::memory_bytes_of(&desc) as f64 / (1920.0 * 1080.0)
+    });
+    println!("{bytes:.2} bytes a pixel, with alpha {with_alpha:.2}");
+    assert!(bytes < 25.2 && with_alpha < 33.2);
     let size = |rig: &Rig| rig.gpu.quad_mask().map(|mask| [mask.width(), mask.height()]);
     assert_eq!(size(&rig), Some([35, 21]));
     rig.gpu.set_settings(&rig.device, Settings::default()).unwrap();
@@ -118,6 +120,17 @@ fn assert_lists_are_masks(rig: &Rig, mask: &[u32]) {
         let shaded =
             (0..).zip(mask).filter(|(_, pixels)| **pixels != 0).map(|(i, _)| (i % columns) | ((i / columns) << 16));
         assert_eq!(listed, shaded.collect::<Vec<_>>(), "view {view}");
+    }
+}
+
+/// A counter that starts again from 0, and renderers that have no counter and give the last index.
+#[test]
+fn frames_may_have_the_last_index() {
+    for settings in [settings(false), settings(true), super::sparse::settings(MethodKind::Smr)] {
+        let Some(mut rig) = Rig::new(desc(), settings) else { return };
+        for (i, index) in [u64::MAX - 1, u64::MAX, u64::MAX, 0].into_iter().enumerate() {
+            rig.both(index, Reset::None, &views(i as u64, &settings));
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Frames through both executors, and the device's results.
 
-use crate::images::{Images, held_words, pixel, pixels, planned, traced};
+use crate::images::{Images, held_words, pixel, pixels, planned, traced, traced_alpha};
 pub use crate::images::{View, noise};
 use afterimage::cpu::CpuAfterimage;
 use afterimage::gpu::{Afterimage, DebugTarget, Frame, Region, Target, Textures};
@@ -33,6 +33,8 @@ pub struct Rig {
     pub drops: bool,
     /// Debug view to draw beside the next frames, and what it showed.
     pub beside: Option<DebugView>,
+    /// Alpha of the colors of planned frames of smr to come, one image a view; 1, and not read back, without.
+    pub alpha: Option<Vec<Image<f32>>>,
     textures: [Texture; 11],
     counters: Buffer,
     /// What the device has compiled; `None` once it is of no use to other tests.
@@ -94,13 +96,17 @@ fn make_textures(device: &Device, context: &ContextDesc) -> [Texture; 11] {
     })
 }
 
-/// Texels of each input that a view has.
-fn texels(view: &View) -> [Option<Vec<f32>>; OUTPUT] {
+/// Texels of each input that a view has. `alpha`: of its color.
+fn texels(view: &View, alpha: Option<&Image<f32>>) -> [Option<Vec<f32>>; OUTPUT] {
     let one = |image: &Image<f32>| image.pixels().to_vec();
     let two = |image: &Image<[f32; 2]>| image.pixels().as_flattened().to_vec();
     let four = |image: &Image<[f32; 3]>| image.pixels().iter().flat_map(|c| [c[0], c[1], c[2], 1.0]).collect();
+    let mut color: Vec<f32> = four(&view.color);
+    for (texel, alpha) in color.chunks_exact_mut(4).zip(alpha.iter().flat_map(|alpha| alpha.pixels())) {
+        texel[3] = *alpha;
+    }
     [
-        Some(four(&view.color)),
+        Some(color),
         view.depth.as_ref().map(one),
         view.motion.as_ref().map(two),
         view.trust.as_ref().map(one),
@@ -137,6 +143,8 @@ pub struct Made {
     pub quads: Vec<u32>,
     /// Number of paths of each chosen pixel of those quads.
     pub paths: Vec<u32>,
+    /// Output alphas of frames with [alpha](Rig::alpha).
+    pub alpha: Vec<u32>,
     pub stats: FrameStats,
 }
 
@@ -148,7 +156,10 @@ impl Made {
     /// How it differs.
     pub fn agrees(&self, cpu: &Self) -> Result<(), String> {
         if afterimage_testing::gpu::rounds_as_the_cpu() {
-            let differs = |&i: &usize| self.words.get(i) != cpu.words.get(i) || self.shown[i] != cpu.shown[i];
+            let differs = |&i: &usize| {
+                let is_colored = self.words.get(i) != cpu.words.get(i) || self.shown[i] != cpu.shown[i];
+                is_colored || self.alpha.get(i) != cpu.alpha.get(i)
+            };
             let first = (0..cpu.shown.len()).find(differs);
             let quads = self.quads.iter().zip(&cpu.quads).filter(|(gpu, cpu)| gpu != cpu).count();
             return if self == cpu { Ok(()) } else { Err(format!("first at pixel {first:?}, {quads} quads")) };
@@ -207,6 +218,7 @@ impl Rig {
             scattered: false,
             drops: false,
             beside: None,
+            alpha: None,
             counters: make_counters(&device),
             exposure: Exposure::Same,
             compiled: Some(compiled),
@@ -326,9 +338,16 @@ impl Rig {
             true => masks.iter().flat_map(quads_of).map(|mask| mask.min(1)).collect(),
             false => self.cpu.paths().iter().flat_map(paths_of).collect(),
         };
-        let (output, trace, stats) = traced(&mut self.cpu, &frame);
+        let (output, trace, stats, alpha) = match &self.alpha {
+            Some(given) => traced_alpha(&mut self.cpu, &frame, given),
+            None => {
+                let (output, trace, stats) = traced(&mut self.cpu, &frame);
+                (output, trace, stats, vec![])
+            }
+        };
+        let alpha = alpha.iter().flat_map(|o| o.pixels()).map(|alpha| alpha.to_bits()).collect();
         let shown = output.iter().flat_map(|o| o.pixels()).map(|c| c.map(f32::to_bits)).collect();
-        (Made { shown, words: held_words(&self.cpu), quads, paths, stats }, trace)
+        (Made { shown, words: held_words(&self.cpu), quads, paths, alpha, stats }, trace)
     }
 
     /// Whether the executors differ on a frame: what a planted error must do.
@@ -404,7 +423,7 @@ impl Rig {
 
     /// Fills history, all its levels, with words that are NaN in any format.
     pub fn poison(&self) {
-        for texture in self.gpu.history_textures() {
+        for texture in self.gpu.history_textures().into_iter().chain(self.gpu.alpha_texture()) {
             for level in 0..texture.mip_level_count() {
                 afterimage_testing::gpu::fill_level(&self.queue, &texture, level, 0xff);
             }
@@ -436,8 +455,9 @@ impl Rig {
         Made {
             shown: shown.chunks_exact(4).map(|c| [c[0], c[1], c[2]]).collect(),
             words: two.chunks_exact(2).zip(third).map(|(w, third)| [w[0], w[1], third]).collect(),
-            paths: mask.iter().zip(&quads).map(|(word, quad)| word >> 8 & 31 * quad.min(&1)).collect(),
+            paths: mask.iter().zip(&quads).map(|(word, quad)| (word >> 8) & (31 * quad.min(&1))).collect(),
             quads,
+            alpha: shown.chunks_exact(4).filter(|_| self.alpha.is_some()).map(|c| c[3]).collect(),
             stats: FrameStats::from_counters(&counters).unwrap(),
         }
     }
@@ -450,7 +470,8 @@ impl Rig {
 
     fn upload(&self, views: &[View]) {
         for (layer, view) in views.iter().enumerate() {
-            for (texture, texels) in self.textures.iter().zip(texels(view)) {
+            let alpha = self.alpha.as_ref().map(|alpha| &alpha[layer]);
+            for (texture, texels) in self.textures.iter().zip(texels(view, alpha)) {
                 let Some(texels) = texels else { continue };
                 if texture.format() == TextureFormat::Rg16Float {
                     let halves: Vec<_> = texels.iter().map(|&v| pack::half_bits(v) as u16).collect();

@@ -52,7 +52,13 @@ shape!(Reconstruction {
     trust: f32,
     accumulate: f32
 });
-shape!(sparse_smr::Reconstructed { color: Vec3, stored: stored_sample::StoredSample, share: f32 });
+shape!(sparse_smr::Reconstructed {
+    color: Vec3,
+    stored: stored_sample::StoredSample,
+    share: f32,
+    keeps_nearest: bool,
+    stored_share: f32
+});
 shape!(sparse_smr::Accumulated { result: sparse_smr::Reconstructed, noise: Noise });
 
 pub(super) fn color(d: &mut Draws) -> [u32; 3] {
@@ -211,6 +217,13 @@ pub const PROBES: &[Probe] = &[
     probe!(sparse_smr::quad_code, |rows| rows.each(&[Bits, Bits, Bits, Bits, N(4)])),
     probe!(sparse_smr::reconstruct, |r: Reconstruction| sparse_smr::reconstruct(&r), |rows| rows
         .random(push_reconstruction)),
+    probe!(sparse_smr::result_alpha, |rows| rows.random(|d, row| {
+        row.extend(color(d));
+        push_stored(d, row);
+        let share = |d: &mut Draws| if d.bits().is_multiple_of(4) { 1.0_f32.to_bits() } else { range(d, 0.0, 1.0) };
+        row.extend([share(d), d.bits() % 2, share(d)]);
+        row.extend([range(d, 0.0, 1.0), range(d, 0.0, 1.0), range(d, -0.5, 3.0)]);
+    })),
     probe!(
         sparse_smr::accumulate,
         |r: Reconstruction, past: Noise, now: Noise| sparse_smr::accumulate(&r, past, now),
