@@ -65,7 +65,7 @@ impl Stage {
         if size_px.contains(&0) {
             return Err(JsError::new("a side of the frame is 0"));
         }
-        let desc = ContextDesc { settings, ..ContextDesc::new(size_px) };
+        let desc = ContextDesc { settings, keep_alpha: false, ..ContextDesc::new(size_px) };
         let module = gpu.device.create_shader_module(wgpu::include_wgsl!("../shaders/mask.wgsl"));
         let mut stage = Self {
             size_px,

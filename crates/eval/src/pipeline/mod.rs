@@ -83,7 +83,7 @@ impl Pipeline {
         foveation.validate()?;
         // Simulators read only the foveation of the settings.
         let settings = Settings { method: Method::None, foveation, ..Settings::default() };
-        let desc = ContextDesc { settings, ..ContextDesc::new(geometry.size_px()) };
+        let desc = ContextDesc { settings, keep_alpha: false, ..ContextDesc::new(geometry.size_px()) };
         let mut executor = processor.executor(&desc, is_still)?;
         let mut methods = 0..;
         let mut run = |kind: &RunKind| {

@@ -77,7 +77,7 @@ pub fn methods() -> Result<Vec<MethodPasses>> {
 fn method(name: &'static str, settings: &Settings) -> Result<MethodPasses> {
     // A device without hardware takes all shaders, and does nothing with them.
     let (device, _queue) = Device::noop(&DeviceDescriptor::default());
-    let desc = ContextDesc { settings: *settings, ..ContextDesc::new([64, 64]) };
+    let desc = ContextDesc { settings: *settings, keep_alpha: false, ..ContextDesc::new([64, 64]) };
     let post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float)?;
     post.prewarm(&device, [Variant { depth: true, motion: true, ..Variant::default() }]);
     let pass = |(module, overrides): (&'static str, Vec<_>)| -> Result<Pass> {

@@ -118,7 +118,7 @@ enum CreatedPass {
 
 impl CreatedPass {
     fn new(gpu: &Arc<Headless>, size: [u32; 2], kind: PassKind) -> Result<Self, CreateError> {
-        let mut desc = ContextDesc { settings: Settings::paper(), ..ContextDesc::new(size) };
+        let mut desc = ContextDesc { settings: Settings::paper(), keep_alpha: false, ..ContextDesc::new(size) };
         Ok(match kind {
             PassKind::Copy => {
                 let source = SHADERS.compose("copy_pass").source;
@@ -285,7 +285,7 @@ fn views(size: [u32; 2], index: u64) -> Result<[ViewFrame; 1], Failure> {
 /// White noise in stripes of two depths. Every other stripe has motion vectors of a few pixels that the color does not
 /// follow, so that half of the history is valid and half is rejected.
 fn inputs(gpu: &Arc<Headless>, size: [u32; 2]) -> Result<DeviceInputs, Failure> {
-    let desc = ContextDesc { settings: Settings::paper(), ..ContextDesc::new(size) };
+    let desc = ContextDesc { settings: Settings::paper(), keep_alpha: false, ..ContextDesc::new(size) };
     let mut inputs = DeviceInputs::new(gpu, &desc, DeviceFormats::ENGINE)?;
     let is_odd = |x: u32| x / 64 % 2 == 1;
     let frame = SourceFrame {

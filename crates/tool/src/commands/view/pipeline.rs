@@ -55,7 +55,7 @@ pub struct ViewPipeline {
 }
 
 fn desc(geometry: &ViewGeometry, settings: Settings) -> ContextDesc {
-    ContextDesc { settings, ..ContextDesc::new(geometry.size_px()) }
+    ContextDesc { settings, keep_alpha: false, ..ContextDesc::new(geometry.size_px()) }
 }
 
 impl ViewPipeline {
