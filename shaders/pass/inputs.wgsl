@@ -65,9 +65,9 @@ struct FrameUniforms {
     first_quad: u32,
     pattern_px: vec4u,
     single_pixels: u32,
-    has_single_pixels: u32,
     has_half: u32,
     has_budget: u32,
+    unused: u32,
     views: array<ViewUniforms, 4>,
     cameras: array<CameraUniforms, 4>,
 }

@@ -8,13 +8,16 @@
 @group(0) @binding(27) var quad_mask: texture_2d_array<u32>;
 @group(0) @binding(28) var quad_around: texture_2d_array<u32>;
 
+// Whether quads may be shaded in part: single pixels, own masks, and frames after a cut.
+override PARTIAL: u32 = 1u;
+
 fn mask_at(px: vec2u, view: u32) -> u32 {
     return textureLoad(quad_mask, px >> vec2u(1u), view, 0).x;
 }
 
 // Color and alpha of a shaded pixel, as the renderer wrote them.
 fn given_sample(px: vec2u, view: u32) -> vec4f {
-    if frame.has_half != 0u && (mask_at(px, view) & 15u) != WHOLE {
+    if PARTIAL != 0u && frame.has_half != 0u && (mask_at(px, view) & 15u) != WHOLE {
         return textureLoad(half_in, texel_of(px >> vec2u(1u), view, HALF_IN), layer_of(view), 0);
     }
     return given_at(px, view);
@@ -55,7 +58,7 @@ fn px_of_quad(quad: vec2u, i: u32) -> vec2u {
 
 // The shaded pixel that is nearest to a pixel, of a quad with shaded pixels.
 fn nearest_of(quad: vec2u, px: vec2u, view: u32) -> vec2u {
-    if frame.has_single_pixels != 0u {
+    if PARTIAL != 0u {
         let mask = textureLoad(quad_mask, quad, view, 0).x & 15u;
         if mask != WHOLE {
             return nearest_px(mask, quad, px);
@@ -82,7 +85,7 @@ fn around_pixel(px: vec2u, view: u32, mask_word: u32) -> AroundPixel {
     let mask = mask_word & 15u;
     let quads = textureLoad(quad_around, quad, view, 0).xy;
     var codes = vec4u(0xffffffffu);
-    let is_partial = mask != WHOLE && mask != 0u;
+    let is_partial = PARTIAL != 0u && mask != WHOLE && mask != 0u;
     // Its own quad's pixels, then the quads around.
     let taps = select(0u, 12u, is_partial);
     for (var tap = 0u; tap < taps; tap++) {
@@ -119,7 +122,7 @@ fn sample_tap(around: AroundPixel, tap: u32, px: vec2u, view: u32) -> SampleTap 
         let at = px_of_quad(quad, tap);
         return SampleTap(at, all(at < frame.size));
     }
-    if around.mask == 0u {
+    if around.mask == 0u || PARTIAL == 0u {
         let code = code_of(around.quads, tap);
         let other = vec2u(vec2i(quad) + neighbour_offset(code));
         if code == NOWHERE {

@@ -306,7 +306,14 @@ impl Afterimage {
     pub fn prewarm(&self, device: &Device, variants: impl IntoIterator<Item = Variant>) {
         for variant in variants {
             let special = Specialization::new(variant, None, self.generation);
-            self.stages.prewarm(device, &self.desc, special);
+            // Planned frames of whole quads, and those that begin with a quarter.
+            let is_planned = self.quads.is_some();
+            if !(is_planned && self.desc.settings.foveation.single_pixels) {
+                self.stages.prewarm(device, &self.desc, special);
+            }
+            if is_planned {
+                self.stages.prewarm(device, &self.desc, special.partial(true));
+            }
             if let Some(quads) = &self.quads {
                 quads.prewarm(device, &self.desc, special);
             }
@@ -553,6 +560,7 @@ impl Afterimage {
         view: Option<DebugView>,
     ) -> Result<(Recorded, Vec<ViewState>, Buffer), FrameError> {
         let is_given = frame.mask.is_some();
+        let is_partial = is_given || self.is_quarter() || self.desc.settings.foveation.single_pixels;
         let (uniforms, state, recorded) = self.prepare(frame, self.is_quarter() && !is_given);
         let mut textures = frame.textures();
         textures[Binding::Output as usize] = Some(target.output);
@@ -563,7 +571,7 @@ impl Afterimage {
             desc: &self.desc,
             textures,
             counters: target.counters,
-            special: Specialization::new(Variant::of(frame, target), view, self.generation),
+            special: Specialization::new(Variant::of(frame, target), view, self.generation).partial(is_partial),
             uniforms,
             history: &self.history,
             lights: None,

@@ -27,6 +27,8 @@ pub(super) struct Specialization {
     /// View to output in place of the frame, without storing anything.
     pub view: Option<DebugView>,
     pub debug: Option<DebugView>,
+    /// Whether quads may be shaded in part.
+    is_partial: bool,
     /// Number of the settings.
     generation: u64,
 }
@@ -39,8 +41,14 @@ impl Specialization {
             is_exposed: variant.exposure,
             view,
             debug: variant.debug,
+            is_partial: false,
             generation,
         }
+    }
+
+    /// The same for frames whose quads may be shaded in part, or not.
+    pub fn partial(self, is_partial: bool) -> Self {
+        Self { is_partial, ..self }
     }
 
     fn has(&self, binding: Binding) -> bool {
@@ -54,6 +62,7 @@ impl Specialization {
         let bits = u64::from(self.present & bound)
             | u64::from(self.has_regions) << 32
             | u64::from(self.is_exposed) << 33
+            | u64::from(self.is_partial && bound & Binding::QuadAround.bit() != 0) << 34
             | code(self.view) << 40
             | code(self.debug) << 48;
         let key = PipelineKey { bits, generation: self.generation };
@@ -62,7 +71,7 @@ impl Specialization {
 
     /// Override values of shaders that use the set `bound` of bindings.
     fn overrides(&self, desc: &ContextDesc, bound: u32) -> Overrides {
-        use Binding::{Color, Counters, Debug, Depth, Motion, Output, Past, Uniforms};
+        use Binding::{Color, Counters, Debug, Depth, Motion, Output, Past, QuadAround, Uniforms};
         let has = |binding| u32::from(self.has(binding));
         let settings = &desc.settings;
         let is_tested = self.has(Depth) && settings.depth_test.is_some();
@@ -80,6 +89,7 @@ impl Specialization {
             (Output, "KEEP_ALPHA", u32::from(desc.keep_alpha)),
             (Output, "HAS_ALPHA", u32::from(desc.has_alpha_history())),
             (Debug, "DEBUG_VIEW", code(self.debug)),
+            (QuadAround, "PARTIAL", self.is_partial.into()),
         ];
         let inputs = INPUTS.iter().filter_map(|input| Some((input.binding, input.has?, has(input.binding))));
         let list = inputs.chain(list).filter(|(binding, ..)| binding.bit() & bound != 0);

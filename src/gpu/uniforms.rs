@@ -71,12 +71,12 @@ pub struct FrameUniforms {
     pub pattern_px: [u32; 4],
     /// Whether one pixel of a chosen quad is shaded outside the fovea.
     pub single_pixels: u32,
-    /// Whether quads may be shaded in part.
-    pub has_single_pixels: u32,
     /// Whether quads that are shaded in part have their color in a texture of half the size.
     pub has_half: u32,
     /// Whether quads are chosen by need.
     pub has_budget: u32,
+    /// Padding to a multiple of 16 bytes.
+    pub unused: u32,
     /// One entry a view.
     pub views: [ViewUniforms; MAX_VIEWS],
     /// Camera motion of each view.
@@ -128,7 +128,6 @@ impl FrameUniforms {
             first_quad: first_x | first_y << 16,
             pattern_px: foveation.pattern_px(frame.index),
             single_pixels: foveation.single_pixels.into(),
-            has_single_pixels: (foveation.single_pixels || frame.mask.is_some()).into(),
             has_half: frame.half.is_some().into(),
             has_budget: (foveation.budget > 0.0).into(),
             ..Self::default()
