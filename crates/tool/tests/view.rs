@@ -324,7 +324,7 @@ fn a_window_shows_what_run_writes_whatever_happens_to_it() {
     }
 
     // Toggle methods, debug views, filters, split and panel, and back.
-    viewer.keys("1 2 5 shift+2 v v f f f f f f minus equal h h g g v v v v v Tab 4");
+    viewer.keys("1 2 5 shift+2 v v f f f f f minus equal h h g g v v v v v Tab 4");
     viewer.look_along(&[[0.7, 0.7], [0.2, 0.5]]);
     viewer.is_as_of_run("smr");
 

@@ -241,7 +241,6 @@ impl FilterName {
 impl Named for FilterName {
     fn rows() -> Vec<(Self, &'static str, &'static str)> {
         let mut rows: Vec<_> = Filter::ALL.map(|filter| (Self::Of(filter), filter.name(), filter.summary())).into();
-        rows.retain(|row| row.1 != "sparse");
         let off = rows.pop();
         rows.extend([
             (

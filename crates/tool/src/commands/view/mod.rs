@@ -108,9 +108,7 @@ pub struct ViewArgs {
 pub fn view(args: &ViewArgs) -> Result<(), Failure> {
     let is_rendered = args.input.is_rasterised();
     let default = if is_rendered { Filter::Quads } else { Filter::Mip };
-    let foveation = args.foveation.clone().with_defaults(default, is_rendered);
-    // A key switches to other foveations, whose geometry may have another default.
-    let foveation = FoveationArgs { geometry: args.foveation.geometry, ..foveation };
+    let foveation = args.foveation.clone().with_defaults(default, false);
     let args = &ViewArgs { foveation, ..args.clone() };
     let (setup, frames) = if args.input.is_rasterised() {
         let head = setup::head(args)?;
