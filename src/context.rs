@@ -34,11 +34,11 @@ pub struct ContextDesc {
     /// true.
     ///
     /// On planned frames ([`Filter::Quads`](crate::Filter::Quads)) smr then stores the alpha of history's samples: 8
-    /// bytes a pixel and view, and 8 bytes a pixel of memory traffic. Set it to false if the output's alpha is not used.
-    /// Alpha has the history that color has, so that both converge alike. Where alpha changes and color does not, as
-    /// when something fades with color that is not premultiplied, history is not rejected, and alpha lags: give a trust
-    /// or reactive mask there. The other methods have this frame's alpha, between the samples of planned frames a mean
-    /// of those around.
+    /// bytes a pixel and view, and 8 bytes a pixel of memory traffic. Set it to false if the output's alpha is not
+    /// used. Alpha has the history that color has, so that both converge alike. Where alpha changes and color does not,
+    /// as when something fades with color that is not premultiplied, history is not rejected, and alpha lags: give a
+    /// trust or reactive mask there. The other methods have this frame's alpha, between the samples of planned frames a
+    /// mean of those around.
     pub keep_alpha: bool,
     /// Method, foveation and tunables. Default: [`Settings::steady`].
     pub settings: Settings,

@@ -88,8 +88,8 @@ pub struct Foveation {
     pub filter: Filter,
     /// Diameter of the fovea, the full-rate region, in degrees: 0 to 180, at most `mid_deg`. Default 5.
     pub fovea_deg: f32,
-    /// Diameter of the middle region in degrees: 0 to 180. Default 15. With [`Filter::Quads`] 180 is the whole view, even
-    /// if the gaze is far outside of it.
+    /// Diameter of the middle region in degrees: 0 to 180. Default 15. With [`Filter::Quads`] 180 is the whole view,
+    /// even if the gaze is far outside of it.
     pub mid_deg: f32,
     /// Width in degrees of the linear blend outside the radius of each region: 0 to 90. Default 1.
     pub blend_deg: f32,
@@ -99,8 +99,8 @@ pub struct Foveation {
     /// [`MAX_RATE`](Self::MAX_RATE). Default 16.
     pub rate_far: u32,
     /// With [`Filter::Quads`]: share of the pixels that smr shades by need in a frame, beside the fovea and the even
-    /// pattern, 0 to 1. With [`noisy`](crate::Settings::noisy) frames it counts paths, of which a pixel may get several.
-    /// Default 0.025.
+    /// pattern, 0 to 1. With [`noisy`](crate::Settings::noisy) frames it counts paths, of which a pixel may get
+    /// several. Default 0.025.
     pub budget: f32,
     /// With [`Filter::Quads`]: whether one pixel of a chosen quad is shaded, outside the fovea, in place of all four;
     /// each in turn. For path tracers and compute shaders, which can shade single pixels: four times as many places for
@@ -170,8 +170,8 @@ impl Foveation {
         Self { fovea_deg: 0.0, mid_deg: 180.0, blend_deg: 0.0, budget: 0.0, single_pixels: true, ..rates }
     }
 
-    /// Place in its quad of the pixel that frame `index` shades alone, of each quad outside the fovea, if it shades one of
-    /// each.
+    /// Place in its quad of the pixel that frame `index` shades alone, of each quad outside the fovea, if it shades one
+    /// of each.
     pub fn quarter_place_px(index: u64) -> [u32; 2] {
         offset_px(index, 2)
     }

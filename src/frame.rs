@@ -135,8 +135,8 @@ pub struct FrameInputs<'a, Colors, Scalars, Vectors> {
     /// chooses its own pixels; any pattern does, if it visits every pixel in some frame. On a GPU any float or
     /// normalised format. `None`: `plan` chose the pixels.
     pub mask: Option<Scalars>,
-    /// Colors of the quads of 2x2 pixels of a [planned frame](crate::Filter::Quads) that are shaded in part: one texel a
-    /// quad, half the width and height, rounded up. At most one pixel of such a quad is shaded then, as after a cut
+    /// Colors of the quads of 2x2 pixels of a [planned frame](crate::Filter::Quads) that are shaded in part: one texel
+    /// a quad, half the width and height, rounded up. At most one pixel of such a quad is shaded then, as after a cut
     /// (`is_quarter` of either executor). `color` has the other quads. `None`: `color` has all pixels.
     pub half: Option<Colors>,
     /// Descriptions of the views, one for each view of the context.

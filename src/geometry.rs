@@ -64,7 +64,8 @@ impl ViewGeometry {
     /// let view = ViewGeometry::flat([64, 36], 70.0)?;
     /// let half = view.half([1, 0]);
     /// assert_eq!(half.size_px(), [32, 18]);
-    /// assert_eq!(half.ray([3.0, 2.0]), view.ray([7.0, 4.0]));
+    /// let [small, full] = [half.ray([3.0, 2.0]), view.ray([7.0, 4.0])];
+    /// assert!((small[0] - full[0]).abs() < 1e-6 && (small[1] - full[1]).abs() < 1e-6);
     /// # Ok::<(), afterimage::SettingsError>(())
     /// ```
     pub fn half(&self, place_px: [u32; 2]) -> Self {

@@ -53,9 +53,8 @@ pub struct ViewFrame {
     pub depth: Option<DepthConvention>,
     /// The part of the view that a headset's lens shows: an octagon, given by the lowest and the highest x, y, x + y
     /// and x - y of its pixels ([`ViewGeometry::visible_px`] computes it from a visibility mask). On [planned
-    /// frames](crate::Filter::Quads) smr does not process pixels outside it, and shows them black; other methods process
-    /// every pixel. `None`: every pixel
-    /// is visible.
+    /// frames](crate::Filter::Quads) smr does not process pixels outside it, and shows them black; other methods
+    /// process every pixel. `None`: every pixel is visible.
     pub visible_px: Option<[[f32; 4]; 2]>,
 }
 

@@ -19,9 +19,9 @@ struct QuadState {
 
 @group(0) @binding(25) var<storage, read_write> state: QuadState;
 
-// Word of a quad for the pass that chooses. Bits 0 to 13: key of its first path, or of the even pattern's pixels the hash
-// of the key of further paths; 14 and 15: region; 16: whether the even pattern has it; 17 to 20: its pixels; 21 to 26:
-// code of the key of further paths; 27 to 31: samples of history.
+// Word of a quad for the pass that chooses. Bits 0 to 13: key of its first path, or of the even pattern's pixels the
+// hash of the key of further paths; 14 and 15: region; 16: whether the even pattern has it; 17 to 20: its pixels; 21 to
+// 26: code of the key of further paths; 27 to 31: samples of history.
 fn key_word(key: u32, region_now: u32, even: bool, pixels: u32) -> u32 {
     return key | (region_now << 14u) | (u32(even) << 16u) | (pixels << 17u);
 }

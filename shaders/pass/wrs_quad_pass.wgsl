@@ -5,8 +5,8 @@
 // Weighted reservoirs over planned frames: candidates count by the place of their sample. CPU twin: `nearest_sample` in
 // src/cpu/sparse_pass/quads.rs.
 
-// Place of the sample nearest to a pixel, the first of equally near ones. Without samples around: the pixel itself, with
-// a weight of 1.
+// Place of the sample nearest to a pixel, the first of equally near ones. Without samples around: the pixel itself,
+// with a weight of 1.
 fn place_of(px: vec2u, view: u32) -> Place {
     let mask_word = mask_at(px, view);
     var place = Place(px, 1.0);

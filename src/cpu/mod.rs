@@ -115,9 +115,9 @@ struct Alpha<'a> {
 // For tests and the lab.
 #[doc(hidden)]
 impl CpuAfterimage {
-    /// Processes a planned frame of smr as [`process_traced`](Self::process_traced) does, with alpha: the twin of what a
-    /// GPU does with [`ContextDesc::keep_alpha`]. `alpha` is that of the colors, `shown_alpha` that of the output; one
-    /// image of the context's size a view each.
+    /// Processes a planned frame of smr as [`process_traced`](Self::process_traced) does, with alpha: the twin of what
+    /// a GPU does with [`ContextDesc::keep_alpha`]. `alpha` is that of the colors, `shown_alpha` that of the output;
+    /// one image of the context's size a view each.
     ///
     /// # Errors
     /// As for [`process`](Self::process).

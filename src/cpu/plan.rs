@@ -70,16 +70,16 @@ impl CpuAfterimage {
     }
 
     /// Number of paths to trace at each pixel of the last [`plan`](Self::plan), one image a view: 0 where no path is
-    /// traced, at most 16; empty without a plan. With [`noisy`](crate::Settings::noisy) a chosen pixel outside the fovea
-    /// has as many as take more off its squared error, history included, than others; the
-    /// [`budget`](crate::Foveation::budget) counts all of them but the even pattern's first. Otherwise each chosen pixel
-    /// has one.
+    /// traced, at most 16; empty without a plan. With [`noisy`](crate::Settings::noisy) a chosen pixel outside the
+    /// fovea has as many as take more off its squared error, history included, than others; the
+    /// [`budget`](crate::Foveation::budget) counts all of them but the even pattern's first. Otherwise each chosen
+    /// pixel has one.
     pub fn paths(&self) -> &[Image<u8>] {
         self.planned.as_ref().map_or(&[], |planned| &planned.paths)
     }
 
-    /// Whether the last [`plan`](Self::plan) chose one pixel of each quad outside the fovea, because nothing was known: in
-    /// the first frame and after a reset. These pixels can be drawn at half the width and height
+    /// Whether the last [`plan`](Self::plan) chose one pixel of each quad outside the fovea, because nothing was known:
+    /// in the first frame and after a reset. These pixels can be drawn at half the width and height
     /// ([`ViewGeometry::half`](crate::ViewGeometry::half)), and given so ([`half`](crate::FrameInputs::half)).
     pub fn is_quarter(&self) -> bool {
         self.planned.as_ref().is_some_and(|planned| planned.is_quarter)

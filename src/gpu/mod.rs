@@ -434,10 +434,10 @@ impl Afterimage {
         Ok(())
     }
 
-    /// Whether the last [`plan`](Self::plan) chose one pixel of each quad outside the fovea, because nothing was known: in
-    /// the first frame and after a reset. Draw these pixels at half the width and height ([`ViewGeometry::half`]), and
-    /// give them so ([`half`](crate::FrameInputs::half)): rasterisers cannot shade single pixels of a quad, and would
-    /// shade all. The fovea is drawn as in other frames.
+    /// Whether the last [`plan`](Self::plan) chose one pixel of each quad outside the fovea, because nothing was known:
+    /// in the first frame and after a reset. Draw these pixels at half the width and height ([`ViewGeometry::half`]),
+    /// and give them so ([`half`](crate::FrameInputs::half)): rasterisers cannot shade single pixels of a quad, and
+    /// would shade all. The fovea is drawn as in other frames.
     pub fn is_quarter(&self) -> bool {
         self.quads.as_ref().and_then(|quads| quads.planned).is_some_and(|planned| planned.is_quarter)
     }
@@ -492,8 +492,8 @@ impl Afterimage {
     }
 
     /// The pixels that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::Filter::Quads) chose: an
-    /// `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bits 0 to 3 say which of its pixels are shaded,
-    /// row by row, and bits 8 to 12 how many paths each of them gets, as in
+    /// `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bits 0 to 3 say which of its pixels are
+    /// shaded, row by row, and bits 8 to 12 how many paths each of them gets, as in
     /// [`CpuAfterimage::paths`](crate::cpu::CpuAfterimage::paths), with an array layer for each view; usages
     /// `TEXTURE_BINDING` and `COPY_SRC`. `None` with another filter. Changes of size and settings replace it.
     pub fn quad_mask(&self) -> Option<&Texture> {

@@ -1,5 +1,5 @@
-//! Antialiasing of planned frames whose projection is jittered: a stored texel is the mean of the samples that fell into
-//! its pixel, with the mean of their places.
+//! Antialiasing of planned frames whose projection is jittered: a stored texel is the mean of the samples that fell
+//! into its pixel, with the mean of their places.
 //!
 //! A jittered sample shows one point of its pixel, but the pixel should show the mean over its area. Camera motion
 //! moves the place of a mean, like that of a sample ([`stored_sample`](super::stored_sample)), and the mean is not

@@ -21,9 +21,9 @@ pub fn offset_px(index: u64, step: u32) -> [u32; 2] {
 }
 
 /// Jitter of the projection in frame `index`, in pixels, each in \[-0.5, 0.5): Halton's sequence of bases 3 and 5. A
-/// pixel of an even pattern is sampled every `step * step` frames, or half as often: a power of two. The sequence has low discrepancy over
-/// these frames, too, because its bases are odd. The common base 2 would place all of these samples in the same half of
-/// the pixel.
+/// pixel of an even pattern is sampled every `step * step` frames, or half as often: a power of two. The sequence has
+/// low discrepancy over these frames, too, because its bases are odd. The common base 2 would place all of these
+/// samples in the same half of the pixel.
 pub fn jitter_px(index: u64) -> [f32; 2] {
     [3, 5].map(|base| {
         let (mut rest, mut digit, mut value) = (index, 1.0, 0.0);

@@ -369,8 +369,8 @@ pub struct Reconstruction {
     pub fit: f32,
     /// Confidence in history, in \[0, 1\]: the frame's trust mask.
     pub trust: f32,
-    /// `Smr::accumulate`: share of equally fine history in the output of blurred frames. Planned frames use half of this
-    /// share.
+    /// `Smr::accumulate`: share of equally fine history in the output of blurred frames. Planned frames use half of
+    /// this share.
     pub accumulate: f32,
 }
 

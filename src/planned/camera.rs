@@ -87,8 +87,8 @@ pub(super) fn halved(
 ) -> [[f32; 4]; 4] {
     let w = clip_from_view[2][3];
     for (i, up) in [(0, 1.0), (1, -1.0)] {
-        // Position p of the full view has the clip coordinate 2 (p + 1/2) / full - 1, and is at (p + jitter - place) / 2
-        // in the small one.
+        // Position p of the full view has the clip coordinate 2 (p + 1/2) / full - 1, and is at (p + jitter - place) /
+        // 2 in the small one.
         let (full, half) = (size_px[i] as f32, size_px[i].div_ceil(2) as f32);
         let scale = full / (2.0 * half);
         let shift = scale - 1.0 + (0.5 + jitter_px[i] - place_px[i]) / half;

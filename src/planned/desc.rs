@@ -79,8 +79,8 @@ pub struct Desc {
     /// Whether the projection is jittered ([`Afterimage::jittered`](super::Afterimage::jittered)), and the picture is
     /// antialiased, in place of other temporal antialiasing. Default true.
     pub antialias: bool,
-    /// Whether the output has the alpha of the colors, with a history like theirs, instead of 1. It takes 8 more bytes a
-    /// pixel. Default false.
+    /// Whether the output has the alpha of the colors, with a history like theirs, instead of 1. It takes 8 more bytes
+    /// a pixel. Default false.
     pub keep_alpha: bool,
     /// Whether the renderer draws [quarter frames](super::Plan::quarter) at half the width and height. Otherwise the
     /// first frame, and those after cuts, are shaded at every pixel by rasterisers, and are right, too. Default false.

@@ -63,8 +63,8 @@ pub struct Quarter {
 }
 
 impl Plan {
-    /// The shaded pixels, for compute shaders: an `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bits
-    /// 0 to 3 say which of its pixels are shaded, row by row.
+    /// The shaded pixels, for compute shaders: an `R32Uint` texture with a texel for each quad of 2x2 pixels, whose
+    /// bits 0 to 3 say which of its pixels are shaded, row by row.
     pub fn mask(&self) -> &Texture {
         &self.mask
     }

@@ -233,9 +233,9 @@ impl Settings {
         Self { method: Method::Smr(Smr::traced()), noisy: true, ..Self::default() }
     }
 
-    /// smr on antialiased frames shaded by quads ([`Filter::Quads`](crate::Filter::Quads)), for screens about 40 degrees
-    /// wide: a coarser even pattern and twice the budget of [`Foveation::quads`], 11 % of the pixels. Frames must be
-    /// jittered ([`Foveation::jitter_px`]). `docs/quads.md` has the scores.
+    /// smr on antialiased frames shaded by quads ([`Filter::Quads`](crate::Filter::Quads)), for screens about 40
+    /// degrees wide: a coarser even pattern and twice the budget of [`Foveation::quads`], 11 % of the pixels. Frames
+    /// must be jittered ([`Foveation::jitter_px`]). `docs/quads.md` has the scores.
     pub fn screen() -> Self {
         let method = Method::Smr(Smr { antialias: true, ..Smr::default() });
         let foveation = Foveation { rate_mid: 8, budget: 0.05, ..Foveation::quads() };

@@ -46,8 +46,8 @@ impl View {
         Self::still(color, gaze_px)
     }
 
-    /// With the colors of the pixels of a mask alone: of quads with one pixel in a color of half the size, of whole quads
-    /// in that of the frame; NaN elsewhere.
+    /// With the colors of the pixels of a mask alone: of quads with one pixel in a color of half the size, of whole
+    /// quads in that of the frame; NaN elsewhere.
     pub fn at_half(self, mask: &Image<bool>) -> Self {
         let size = self.color.size();
         let of_quad = |quad: [u32; 2]| {

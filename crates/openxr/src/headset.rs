@@ -530,10 +530,10 @@ impl<'a> HeadsetFrame<'a> {
         self.prime()
     }
 
-    /// After [`choose`](Self::choose): if one pixel of each quad was chosen around the fovea, because nothing is known (in
-    /// the first frame and after resets), leaves the fovea alone open, and returns the eyes to draw the other colors
-    /// with at half the width and height, into [`Targets::half_views`]. Textures need a bias of their level of detail of
-    /// -1. `None` in all other frames.
+    /// After [`choose`](Self::choose): if one pixel of each quad was chosen around the fovea, because nothing is known
+    /// (in the first frame and after resets), leaves the fovea alone open, and returns the eyes to draw the other
+    /// colors with at half the width and height, into [`Targets::half_views`]. Textures need a bias of their level of
+    /// detail of -1. `None` in all other frames.
     ///
     /// Without this call the frame is drawn like all others, and shades every pixel: four times as many.
     ///

@@ -1,8 +1,9 @@
 //! Path-traced frames whose pixels and numbers of paths smr chooses, beside frames of fixed patterns.
 //!
-//! Each row says the paths of a frame; PSNR in dB (sRGB) of all pixels, and of fovea, middle and periphery; FLIP; and the
-//! PSNR of pixels that were sharp in an earlier frame. A row is `NAME:FOVEA_DEG,MID_DEG,RATE_MID,RATE_FAR,BUDGET`, with a
-//! second row without history if the name ends in `none`; `regions:PATHS` a point; or `acuity:LEAST`, two paths a point.
+//! Each row says the paths of a frame; PSNR in dB (sRGB) of all pixels, and of fovea, middle and periphery; FLIP; and
+//! the PSNR of pixels that were sharp in an earlier frame. A row is `NAME:FOVEA_DEG,MID_DEG,RATE_MID,RATE_FAR,BUDGET`,
+//! with a second row without history if the name ends in `none`; `regions:PATHS` a point; or `acuity:LEAST`, two paths
+//! a point.
 //!
 //! `cargo run --release -p afterimage-research --example traced_plan -- SCENE [--camera NAME] [--size WxH] [--frames N]
 //! [--gaze FILE.csv] [--start S] [--reference-samples N] [--rows "ROW;ROW"]`

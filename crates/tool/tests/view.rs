@@ -354,8 +354,8 @@ fn a_window_shows_what_run_writes_whatever_happens_to_it() {
     viewer.close(&["afterimage: the device is lost; opening another"]);
 }
 
-/// Scenes are rendered on the window's device, with their quad views below each other; `run` renders them in place, whose
-/// pixels differ by rounding.
+/// Scenes are rendered on the window's device, with their quad views below each other; `run` renders them in place,
+/// whose pixels differ by rounding.
 #[test]
 fn a_scene_is_rendered_foveated_for_the_gaze_and_nothing_is_read_back() {
     let Some(display) = Display::open() else { return };

@@ -1,5 +1,5 @@
-// A colonnade by the sea in the evening, seen by a moving camera. One ray a pixel finds depth and motion. The color of a
-// pixel is a mean of rays, so that edges are smooth, with shadows and reflections; only chosen pixels get one.
+// A colonnade by the sea in the evening, seen by a moving camera. One ray a pixel finds depth and motion. The color of
+// a pixel is a mean of rays, so that edges are smooth, with shadows and reflections; only chosen pixels get one.
 
 struct Scene {
     // Eye and turn around the vertical axis, in radians, of this frame and of the previous one.

@@ -49,7 +49,8 @@ impl Candidate {
     };
 
     /// The noisy sample of a pixel whose history is a mean of `past` samples, with its share of the mean around it. Its
-    /// variance takes its share, too: a pixel whose samples all missed a lamp would call its neighbours' light a change.
+    /// variance takes its share, too: a pixel whose samples all missed a lamp would call its neighbours' light a
+    /// change.
     #[inline(always)]
     pub fn borrowing(self, past: f32) -> Self {
         let (mean, variance) = self.around;

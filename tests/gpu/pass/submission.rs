@@ -16,8 +16,8 @@ fn all_settings() -> Vec<Settings> {
     let planned = [MethodKind::Smr, MethodKind::Taau].map(sparse::settings);
     let noisy = Settings { noisy: true, ..sparse::settings(MethodKind::Smr) };
     let planned = planned.into_iter().chain([noisy]).chain([false, true].map(super::quads::settings));
-    // Of so many pixels that no plan takes a quarter: after a dropped frame the host believes in history that the device
-    // does not have, and would plan another frame than a context without history.
+    // Of so many pixels that no plan takes a quarter: after a dropped frame the host believes in history that the
+    // device does not have, and would plan another frame than a context without history.
     let planned = planned.map(|settings| {
         let foveation = Foveation { budget: 0.3, ..settings.foveation };
         Settings { foveation, ..settings }

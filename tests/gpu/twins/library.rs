@@ -15,8 +15,8 @@ pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
 pub const WGSL_ONLY: &[(&str, &str)] =
     &[("stored_sample", "nothing_around"), ("reservoir", "saturating_add"), ("rng", "pcg4d_mix")];
 
-/// (Rust file stem, function there) without a WGSL twin: some take a closure, in whose place the pass has a loop; others
-/// are of what is known before a device sees a frame, or of notes of a pixel.
+/// (Rust file stem, function there) without a WGSL twin: some take a closure, in whose place the pass has a loop;
+/// others are of what is known before a device sees a frame, or of notes of a pixel.
 pub const RUST_ONLY: &[(&str, &str)] = &[
     ("depth", "distance_of"),
     ("depth", "slope"),

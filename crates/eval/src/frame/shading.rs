@@ -9,8 +9,8 @@ use afterimage::Image;
 pub struct ShadingRequest {
     /// Whether a pixel is requested.
     pub mask: Image<bool>,
-    /// Place in its quad of 2x2 pixels of the only requested pixel of each quad, if each is requested whole or there. The
-    /// source may then answer with a color of half the width and height beside that of whole quads.
+    /// Place in its quad of 2x2 pixels of the only requested pixel of each quad, if each is requested whole or there.
+    /// The source may then answer with a color of half the width and height beside that of whole quads.
     pub half_place_px: Option<[u32; 2]>,
     /// Number of paths to trace at each requested pixel, for noisy methods; `None`: the source's own number.
     pub paths: Option<Image<u8>>,
@@ -96,8 +96,8 @@ pub struct Shaded {
     pub color: ShadedColor,
     /// Color of the quads that are requested in part, one texel for each quad of 2x2 pixels; `None` if `color` has all.
     pub half: Option<ShadedColor>,
-    /// Noise of the color, as in [`FoveatedFrame::noise`](super::FoveatedFrame::noise), in an image of the frame's size;
-    /// `None` without noise.
+    /// Noise of the color, as in [`FoveatedFrame::noise`](super::FoveatedFrame::noise), in an image of the frame's
+    /// size; `None` without noise.
     pub noise: Option<Image<[f32; 2]>>,
     /// Time of shading.
     pub took: Elapsed,

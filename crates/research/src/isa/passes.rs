@@ -104,7 +104,9 @@ fn method(name: &'static str, settings: &Settings) -> Result<MethodPasses> {
             loops: loops(module, settings),
         })
     };
-    let mut passes: Vec<Pass> = post.pipelines().into_iter().map(pass).collect::<Result<_>>()?;
+    // Frames of which quads are shaded in part are few.
+    let usual = |(_, overrides): &(&str, Vec<(&str, u32)>)| !overrides.contains(&("PARTIAL", 1));
+    let mut passes: Vec<Pass> = post.pipelines().into_iter().filter(usual).map(pass).collect::<Result<_>>()?;
     // The table of compiled pipelines has no order of its own.
     passes.sort_by(|a, b| a.name.cmp(&b.name));
     Ok(MethodPasses { name, bytes: settings.traffic_bytes_per_pixel([true, true, false]), passes })

@@ -144,7 +144,8 @@ pub const ROWS: [Row; 107] = [
     // Quality
     row("H85", "analytic scenes; a box that turns into light", "smr: no 64x64 crop > 0.3 dB below foveated", CPU)
     .but("mip levels at 320x180; point-sampled blocks miss it by several dB (docs/method.md)."),
-    // Masks of planned frames. Steps 2 and 4, if not stated otherwise: every position is sampled once in 16 frames, a turn.
+    // Masks of planned frames. Steps 2 and 4, if not stated otherwise: every position is sampled once in 16 frames, a
+    // turn.
     row("H86", "gaze in step with offsets: positions never sampled", "there better than foveated; others exact after a turn", BOTH),
     row("H87", "masks of one pixel, of a corner, of all, of none", "samples bit for bit; without any, history", BOTH),
     row("H88", "reset within the order of offsets; order begun anew", "a fresh context, bit for bit; rebuilt after a turn", BOTH),

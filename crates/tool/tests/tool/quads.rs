@@ -22,8 +22,8 @@ fn report(budget: &str) -> (Value, [Vec<f64>; 3]) {
     (out.json("report.json"), METHODS.map(|method| by_frame(&out, method, "shaded_share")))
 }
 
-/// Whether each method's share is the mean of its frames, smr spends most of the budget, and no frame exceeds it but the
-/// first, which is a quarter.
+/// Whether each method's share is the mean of its frames, smr spends most of the budget, and no frame exceeds it but
+/// the first, which is a quarter.
 fn is_consistent(report: &Value, shares: &[Vec<f64>; 3], even: &[Vec<f64>; 3], budget: f64) -> bool {
     let is_mean = METHODS.iter().zip(shares).all(|(method, shares)| {
         let mean = shares.iter().sum::<f64>() / shares.len() as f64;
@@ -92,7 +92,8 @@ fn scenes_are_shaded_by_quads() {
     }
 }
 
-/// smr's first frame has the fovea and one pixel in 4, drawn at half the size on either backend; other methods' has not.
+/// smr's first frame has the fovea and one pixel in 4, drawn at half the size on either backend; other methods' has
+/// not.
 #[test]
 fn the_first_frame_is_a_quarter() {
     if afterimage_testing::gpu::adapter().is_none() {
