@@ -154,10 +154,15 @@ pub use geometry::ViewGeometry;
 #[cfg(feature = "cpu")]
 pub use image::Image;
 pub use kernel::debug_view::DebugView;
-pub use kernel::reproject::Verdict;
 #[cfg(feature = "gpu")]
 pub use planned::{Afterimage, Camera, Desc, Frame, Plan, Quarter, Shading, ShareControl};
-pub use settings::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, MethodKind, Sampler, Settings, Smr, Wrs};
+pub use settings::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, Sampler, Settings, Smr, Wrs};
 pub use stats::FrameStats;
 pub use view::ViewFrame;
 pub use warning::Warning;
+
+// For this workspace's other crates and for research; not part of the stable API.
+#[doc(hidden)]
+pub use kernel::reproject::Verdict;
+#[doc(hidden)]
+pub use settings::MethodKind;

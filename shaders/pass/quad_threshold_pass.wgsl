@@ -14,13 +14,14 @@ const RUN: u32 = 1u << HASH_BITS;
 var<workgroup> of_run: array<u32, INVOCATIONS>;
 var<workgroup> quads_of_run: array<u32, INVOCATIONS>;
 
-// Number of paths with a key: a quad's first ones, and further ones.
-fn paths_at(key: u32) -> u32 {
-    var count = atomicLoad(&state.counts[key]);
-    if budget_quads.y != 0u {
-        count += atomicLoad(&state.further[key]);
-    }
-    return count;
+// Number of quads with a key: each has one path.
+fn quads_at(key: u32) -> u32 {
+    return atomicLoad(&state.counts[key]);
+}
+
+// Number of further paths with a key.
+fn further_at(key: u32) -> u32 {
+    return select(0u, atomicLoad(&state.further[key]), budget_quads.y != 0u);
 }
 
 // Arguments of a dispatch of at least `invocations` invocations.
@@ -34,8 +35,9 @@ fn main(@builtin(local_invocation_index) run: u32) {
     var sum = 0u;
     var quads_sum = 0u;
     for (var key = run * RUN; key < min((run + 1u) * RUN, KEYS); key++) {
-        sum += paths_at(key);
-        quads_sum += atomicLoad(&state.counts[key]);
+        let quads = quads_at(key);
+        sum += quads + further_at(key);
+        quads_sum += quads;
     }
     of_run[run] = sum;
     quads_of_run[run] = quads_sum;
@@ -54,10 +56,10 @@ fn main(@builtin(local_invocation_index) run: u32) {
     }
     // The budget ends within the keys of the run before `first`, unless `first` is 0. No quad is counted at key 0.
     var key = first * RUN;
-    while key > 1u && paths_at(key - 1u) <= budget - chosen {
+    while key > 1u && quads_at(key - 1u) + further_at(key - 1u) <= budget - chosen {
         key--;
-        chosen += paths_at(key);
-        by_need += atomicLoad(&state.counts[key]);
+        chosen += quads_at(key) + further_at(key);
+        by_need += quads_at(key);
     }
     state.threshold = max(key, 1u);
     let quads = by_need + atomicLoad(&state.even);

@@ -22,6 +22,8 @@ mod taa_pass;
 mod taau_pass;
 mod wrs_pass;
 
+// For this workspace's other crates, as `CpuAfterimage::process_traced`.
+#[doc(hidden)]
 pub use crate::kernel::debug_view::PixelTrace;
 pub use doctor::Doctor;
 use history::History;
@@ -267,6 +269,7 @@ impl CpuAfterimage {
     ///
     /// # Errors
     /// As for `process`.
+    #[doc(hidden)]
     pub fn process_traced(
         &mut self,
         frame: &Frame<'_>,

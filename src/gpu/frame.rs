@@ -102,21 +102,9 @@ impl<'a> From<Textures<'a>> for Target<'a> {
     }
 }
 
-/// Which inputs and outputs a frame and its target have, for [`Afterimage::prewarm`](super::Afterimage::prewarm): each
-/// combination has its own pipelines. Default: color and output alone.
-///
-/// ```no_run
-/// # use afterimage::wgpu;
-/// # fn example(post: &afterimage::gpu::Afterimage, device: &wgpu::Device) {
-/// use afterimage::gpu::Variant;
-///
-/// // While loading. Depth and motion are missing in the first frame after a cut.
-/// let usual = Variant { depth: true, motion: true, ..Variant::default() };
-/// post.prewarm(device, [usual, Variant::default()]);
-/// # }
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Variant {
+/// Which inputs and outputs a frame and its target have: each combination has its own pipelines.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Variant {
     /// Whether there is a depth input.
     pub depth: bool,
     /// Whether there are motion vectors.
@@ -138,14 +126,6 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// All combinations without reactive masks, regions, exposures and debug views: 32.
-    pub fn all() -> impl Iterator<Item = Self> {
-        (0..32_u32).map(|bits| {
-            let bit = |i: u32| bits >> i & 1 == 1;
-            Self { depth: bit(0), motion: bit(1), trust: bit(2), lod: bit(3), counters: bit(4), ..Self::default() }
-        })
-    }
-
     /// Its optional inputs, and counters: a set of [bits](Binding::bit).
     pub(super) fn bindings(self) -> u32 {
         let list = [
@@ -172,6 +152,11 @@ impl Variant {
             exposure: matches!(frame.exposure, Exposure::Scene { .. }),
             debug: target.debug.map(|d| d.view),
         }
+    }
+
+    /// Variant of the plan of a frame: the color is not read, but its regions decide how views are processed.
+    pub fn of_plan(frame: &Frame<'_>) -> Self {
+        Self::of(frame, &Target::new(frame.color))
     }
 }
 

@@ -32,9 +32,9 @@ mod stages;
 mod textures;
 pub(crate) mod uniforms;
 
-pub use crate::uniforms::MAX_VIEWS;
 pub use doctor::Doctor;
-pub use frame::{DebugTarget, Frame, Recorded, Target, Timestamps, Variant};
+use frame::Variant;
+pub use frame::{DebugTarget, Frame, Recorded, Target, Timestamps};
 pub(crate) use input::{check_readable, check_texture};
 pub(crate) use output::texel;
 pub use prime::Prime;
@@ -72,7 +72,7 @@ use wgpu::{Buffer, CommandEncoder, ComputePassDescriptor, Device, Limits, Textur
 /// Several frames can be recorded into one encoder; they are processed in that order. Submit recorded frames once, in
 /// the order in which they were recorded. A frame may also be dropped with its encoder, if the surface is outdated, for
 /// example: the device knows which frame its history is of, and the frame after a dropped one starts without history,
-/// as after [`Reset::All`](crate::Reset::All).
+/// as after [`Reset::All`].
 #[derive(Debug)]
 pub struct Afterimage {
     desc: ContextDesc,
@@ -283,7 +283,7 @@ impl Afterimage {
     }
 
     /// Discards history and held gaze positions: the next frame is processed like the first one. For another scene or
-    /// another user; no frame need follow. [`Reset::All`](crate::Reset::All) does the same as part of a frame, but
+    /// another user; no frame need follow. [`Reset::All`] does the same as part of a frame, but
     /// keeps the gaze. What was discarded never comes back, even if the next recorded frame is never submitted.
     pub fn forget(&mut self) {
         self.unplan();
@@ -297,26 +297,33 @@ impl Afterimage {
         gaze.resolve(self.history.state.get(view).and_then(|state| state.gaze_px), geometry)
     }
 
-    /// Compiles the pipelines for `variants` of frames and targets, so that [`record`](Self::record) does not have to:
-    /// while loading, and again after [`set_settings`](Self::set_settings). [`Variant::all`] lists all variants without
-    /// regions and debug views; a list of only those that occur takes less time.
+    /// Compiles the pipelines for frames that have the same inputs and outputs as `frame` and `target`, so that
+    /// [`record`](Self::record) does not have to: while loading, and again after [`set_settings`](Self::set_settings).
+    /// Each combination of inputs has its own pipelines; the contents of the textures do not matter.
     ///
     /// Drivers may finish compilation at the first dispatch (software Vulkan does): record a frame while loading to
     /// force that, too.
-    pub fn prewarm(&self, device: &Device, variants: impl IntoIterator<Item = Variant>) {
-        for variant in variants {
-            let special = Specialization::new(variant, None, self.generation);
-            // Planned frames of whole quads, and those that begin with a quarter.
-            let is_planned = self.quads.is_some();
-            if !(is_planned && self.desc.settings.foveation.single_pixels) {
-                self.stages.prewarm(device, &self.desc, special);
-            }
-            if is_planned {
-                self.stages.prewarm(device, &self.desc, special.partial(true));
-            }
-            if let Some(quads) = &self.quads {
-                quads.prewarm(device, &self.desc, special);
-            }
+    ///
+    /// ```no_run
+    /// # use afterimage::wgpu::{self, Texture};
+    /// # use afterimage::gpu::{Afterimage, Frame};
+    /// # fn example(post: &Afterimage, device: &wgpu::Device, [depth, motion, output]: [&Texture; 3], frame: &Frame<'_>) {
+    /// // While loading. Depth and motion are missing in the first frame after a cut.
+    /// post.prewarm(device, frame, output);
+    /// post.prewarm(device, &Frame { depth: Some(depth.into()), motion: Some(motion.into()), ..*frame }, output);
+    /// # }
+    /// ```
+    pub fn prewarm<'t>(&self, device: &Device, frame: &Frame<'_>, target: impl Into<Target<'t>>) {
+        let special = Specialization::new(Variant::of(frame, &target.into()), None, self.generation);
+        // Planned frames of whole quads, and those that begin with a quarter.
+        let is_planned = self.quads.is_some();
+        if !(is_planned && self.desc.settings.foveation.single_pixels) {
+            self.stages.prewarm(device, &self.desc, special);
+        }
+        if let Some(quads) = &self.quads {
+            self.stages.prewarm(device, &self.desc, special.partial(true));
+            let plan = Specialization::new(Variant::of_plan(frame), None, self.generation);
+            quads.prewarm(device, &self.desc, plan);
         }
     }
 
@@ -404,9 +411,7 @@ impl Afterimage {
         input::check_geometry(&self.desc, frame)?;
         let is_quarter = self.starts_with_quarter(frame);
         let (uniforms, ..) = self.prepare(frame, is_quarter);
-        // The color is not read, but its regions decide how views are processed.
-        let variant = Variant::of(frame, &Target::new(frame.color));
-        let special = Specialization::new(variant, None, self.generation);
+        let special = Specialization::new(Variant::of_plan(frame), None, self.generation);
         self.recorder.begin(0);
         let mut job = Job {
             device,

@@ -106,7 +106,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(256) })]
+        #![proptest_config(afterimage_testing::property("share_control", 256))]
 
         #[test]
         fn a_constant_load_is_met_without_oscillation(fixed in 0.0_f32..15.0, slope in 0.1_f32..200.0, noise in 0.0_f32..0.04) {

@@ -105,6 +105,29 @@ fn a_view_beside_the_frame_needs_a_limit() {
     assert!(error.ends_with("expected a limit of 5; or Afterimage::record_view"), "{error}");
 }
 
+/// Inputs and outputs that a frame has.
+#[derive(Clone, Copy, Default)]
+struct Has {
+    depth: bool,
+    motion: bool,
+    trust: bool,
+    lod: bool,
+    counters: bool,
+    regions: bool,
+    exposure: bool,
+    debug: bool,
+}
+
+impl Has {
+    /// All combinations without regions, exposures and debug views.
+    fn all() -> impl Iterator<Item = Self> {
+        (0..32_u32).map(|bits| {
+            let bit = |i: u32| bits >> i & 1 == 1;
+            Self { depth: bit(0), motion: bit(1), trust: bit(2), lod: bit(3), counters: bit(4), ..Self::default() }
+        })
+    }
+}
+
 #[test]
 fn record_compiles_nothing_after_prewarm() {
     let Some(device) = rig::device_of_five_outputs() else { return };
@@ -115,44 +138,47 @@ fn record_compiles_nothing_after_prewarm() {
             .map(|format| bare.input(format));
         let counters = rig::make_counters(&bare.device);
         let mut post = bare.context(output.format());
-        let beside = Variant { depth: true, debug: Some(DebugView::Gate), regions: true, ..Variant::default() };
-        let usual = Variant { depth: true, motion: true, ..Variant::default() };
-        let rest = Variant { trust: true, lod: true, counters: true, ..usual };
-        let exposed = Variant { exposure: true, ..usual };
-        let mut variants = vec![Variant::default(), usual, rest, beside, exposed];
+        let beside = Has { depth: true, debug: true, regions: true, ..Has::default() };
+        let usual = Has { depth: true, motion: true, ..Has::default() };
+        let rest = Has { trust: true, lod: true, counters: true, ..usual };
+        let exposed = Has { exposure: true, ..usual };
+        let mut variants = vec![Has::default(), usual, rest, beside, exposed];
         if settings.method == Method::None {
             // All of them only for the method that compiles fastest.
-            variants.extend(Variant::all());
+            variants.extend(Has::all());
         }
         let region = [Region::new(&color, [0, 0])];
-        let record = |post: &mut Afterimage, index: usize, variant: Variant| {
-            let color = if variant.regions { Textures::Regions(&region) } else { (&color).into() };
+        let with = |index: usize, has: Has, then: &mut dyn FnMut(&Frame<'_>, Target<'_>)| {
+            let color = if has.regions { Textures::Regions(&region) } else { (&color).into() };
             let frame = Frame {
-                depth: variant.depth.then_some((&one).into()),
-                motion: variant.motion.then_some((&two).into()),
-                trust: variant.trust.then_some((&one).into()),
-                lod: variant.lod.then_some((&one).into()),
+                depth: has.depth.then_some((&one).into()),
+                motion: has.motion.then_some((&two).into()),
+                trust: has.trust.then_some((&one).into()),
+                lod: has.lod.then_some((&one).into()),
                 noise: settings.noisy.then_some((&two).into()),
                 exposure: match index {
-                    _ if variant.exposure => Exposure::Scene { exposure: 0.5 },
+                    _ if has.exposure => Exposure::Scene { exposure: 0.5 },
                     i if i.is_multiple_of(3) => Exposure::Changed { ratio: 2.0 },
                     _ => Exposure::Same,
                 },
                 reset: if index.is_multiple_of(5) { Reset::All } else { Reset::None },
                 ..Frame::new(color, &bare.views, index as u64)
             };
-            let debug = variant.debug.map(|view| DebugTarget { view, output: (&output).into() });
+            let debug = has.debug.then_some(DebugTarget { view: DebugView::Gate, output: (&output).into() });
             // The debug view and the frame are never the same texture.
             let shown = bare.output(TextureFormat::Rgba16Float);
-            let counters = variant.counters.then_some(&counters);
-            let target = Target { debug, counters, ..Target::new(&shown) };
-            assert_eq!(Variant::of(&frame, &target), variant);
-            bare.record(post, &frame, target).unwrap();
+            let counters = has.counters.then_some(&counters);
+            then(&frame, Target { debug, counters, ..Target::new(&shown) });
+        };
+        let record = |post: &mut Afterimage, index: usize, has: Has| {
+            with(index, has, &mut |frame, target| bare.record(post, frame, target).unwrap());
         };
         // The counter counts: without prewarming, a frame compiles.
         record(&mut post, 1, variants[2]);
         assert!(!post.pipelines().is_empty());
-        post.prewarm(&bare.device, variants.iter().copied());
+        for &variant in &variants {
+            with(0, variant, &mut |frame, target| post.prewarm(&bare.device, frame, target));
+        }
         let count = post.pipelines().len();
         for (index, variant) in variants.into_iter().enumerate() {
             record(&mut post, index, variant);

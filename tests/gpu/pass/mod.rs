@@ -28,7 +28,7 @@ mod surfaces;
 mod surfaces_hard;
 
 use crate::settings::{ungated, ungated_of, wrs};
-use afterimage::gpu::{Afterimage, DebugTarget, Frame, Prime, Region, Target, Textures, Variant};
+use afterimage::gpu::{Afterimage, DebugTarget, Frame, Prime, Region, Target, Textures};
 use afterimage::internal::{Sources, method_pass};
 use afterimage::kernel::pack;
 use afterimage::shader::SHADERS;

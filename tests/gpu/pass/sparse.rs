@@ -141,18 +141,17 @@ fn prewarmed_pipelines_suffice_for_planned_frames() {
     let settings = settings(MethodKind::None);
     let Some(bare) = Bare::new(ContextDesc { settings, ..ContextDesc::new(SIZE) }) else { return };
     let mut post = bare.context(TextureFormat::Rgba32Float);
-    let usual = Variant { counters: true, ..Default::default() };
-    // A plan counts nothing.
-    post.prewarm(&bare.device, [usual, Variant { regions: true, ..Default::default() }, Variant::default()]);
-    let prewarmed = post.pipelines().len();
     let [color, output] = [(); 2].map(|()| bare.texture(TextureFormat::Rgba32Float, super::limits::READ_AND_WRITE));
     let counters = rig::make_counters(&bare.device);
     let counted = Target { counters: Some(&counters), ..Target::new(&output) };
     let frame = Frame::new(&color, &bare.views, 0);
-    bare.plan(&mut post, &frame);
-    bare.record(&mut post, &frame, counted).unwrap();
     // A region for the output alone.
     let region = [Region::new(&output, [0, 0])];
+    post.prewarm(&bare.device, &frame, counted);
+    post.prewarm(&bare.device, &frame, Textures::Regions(&region));
+    let prewarmed = post.pipelines().len();
+    bare.plan(&mut post, &frame);
+    bare.record(&mut post, &frame, counted).unwrap();
     let frame = Frame { index: 1, ..frame };
     bare.plan(&mut post, &frame);
     bare.record(&mut post, &frame, Textures::Regions(&region)).unwrap();

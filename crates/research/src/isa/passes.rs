@@ -1,11 +1,13 @@
 //! The passes of the methods, as the drop-in compiles them.
 
 use super::failure::Result;
-use afterimage::gpu::{Afterimage, Variant};
+use afterimage::gpu::{Afterimage, Frame};
 use afterimage::kernel::quads::RUN_QUADS;
 use afterimage::shader::{Composer, Module, SHADERS};
-use afterimage::wgpu::{Device, DeviceDescriptor, TextureFormat};
-use afterimage::{ContextDesc, Foveation, Method, MethodKind, Sampler, Settings, Smr, Wrs};
+use afterimage::wgpu::{Device, DeviceDescriptor, Extent3d, TextureDescriptor, TextureDimension, TextureFormat};
+use afterimage::{
+    ContextDesc, Foveation, Gaze, Method, MethodKind, Sampler, Settings, Smr, ViewFrame, ViewGeometry, Wrs,
+};
 
 /// Size of the frames of the roofline.
 pub const SIZE_PX: [u32; 2] = [3840, 2160];
@@ -79,7 +81,11 @@ fn method(name: &'static str, settings: &Settings) -> Result<MethodPasses> {
     let (device, _queue) = Device::noop(&DeviceDescriptor::default());
     let desc = ContextDesc { settings: *settings, keep_alpha: false, ..ContextDesc::new([64, 64]) };
     let post = Afterimage::new(&device, &desc, TextureFormat::Rgba16Float)?;
-    post.prewarm(&device, [Variant { depth: true, motion: true, ..Variant::default() }]);
+    let [color, depth, motion] = [TextureFormat::Rgba16Float, TextureFormat::R32Float, TextureFormat::Rg32Float]
+        .map(|format| device.create_texture(&texture(desc.size_px, format)));
+    let views = [ViewFrame::new(ViewGeometry::flat(desc.size_px, FOV_DEG)?, Gaze::Lost)];
+    let (depth, motion) = (Some((&depth).into()), Some((&motion).into()));
+    post.prewarm(&device, &Frame { depth, motion, ..Frame::new(&color, &views, 0) }, &color);
     let pass = |(module, overrides): (&'static str, Vec<_>)| -> Result<Pass> {
         if name == "copy" {
             let text = WITH_COPY.compose("copy_pass").source;
@@ -110,6 +116,19 @@ fn method(name: &'static str, settings: &Settings) -> Result<MethodPasses> {
     // The table of compiled pipelines has no order of its own.
     passes.sort_by(|a, b| a.name.cmp(&b.name));
     Ok(MethodPasses { name, bytes: settings.traffic_bytes_per_pixel([true, true, false]), passes })
+}
+
+fn texture([width, height]: [u32; 2], format: TextureFormat) -> TextureDescriptor<'static> {
+    TextureDescriptor {
+        label: None,
+        size: Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: TextureDimension::D2,
+        format,
+        usage: Afterimage::INPUT_USAGE,
+        view_formats: &[],
+    }
 }
 
 /// Pixels, texels or samples that an invocation takes.
@@ -165,15 +184,21 @@ fn loops(module: &str, settings: &Settings) -> &'static [&'static str] {
         }
         "wrs_pass" => &["slope"],
         "taau_pass" => &["slope", "guard", "resample", "around"],
+        "quad_key_pass" if settings.noisy => &["four", "four", "four", "paths"],
+        "quad_key_pass" if !matches!(settings.method, Method::Smr(_)) => &["four"],
         "quad_key_pass" => &["four", "four"],
         "quad_threshold_pass" => &["keys", "runs", "keys"],
-        "quad_mask_pass" => &["run", "list"],
+        "quad_mask_pass" if settings.noisy => &["run", "paths", "list"],
+        "quad_mask_pass" => &["run", "no paths", "list"],
         "quad_around_pass" | "quad_octants_pass" => &["rows"],
         "quad_observe_pass" if is_antialiased(settings) => &["slope", "around"],
         "quad_observe_pass" => &["slope", "four"],
+        "quad_light_pass" if settings.noisy => &["four", "four", "quads"],
         "quad_light_pass" => &["four", "four", "quads", "quads relit"],
         "quad_pass" if is_antialiased(settings) => &["four", "near", "slope", "around"],
+        "quad_pass" if settings.noisy => &["four", "twelve", "slope", "four"],
         "quad_pass" => &["four", "slope", "four"],
+        "wrs_quad_pass" => &["four"],
         "taa_pass" => &["slope", "guard", "resample", "around"],
         "smr_pass" if settings.noisy => &["block", "slope", "guard", "resample"],
         "smr_pass" => &["block", "slope", "guard", "resample", "relight"],

@@ -19,6 +19,10 @@ fn rounds(name: &str, path: &str) -> f64 {
         ("resample", "moving" | "relit") => 3.0,
         ("relight", "relit") => 1.0,
         ("four", _) => 4.0,
+        // Samples around a noisy one, its own included.
+        ("twelve", _) => 12.0,
+        // Further paths of a noisy pixel, as a mean.
+        ("paths", _) => 2.0,
         ("around relit", "relit") => 9.0,
         // Of plans: keys of an invocation, and sums of all invocations.
         ("keys", _) => 256.0,
@@ -32,7 +36,7 @@ fn rounds(name: &str, path: &str) -> f64 {
         ("quads relit", "relit") => 36.0,
         ("guard", "moving" | "relit") => 1.0,
         // Few pixels need the slope of the depth test, and few are at full rate.
-        ("slope" | "near" | "resample" | "relight" | "around relit" | "quads relit" | "guard", _) => 0.0,
+        ("slope" | "near" | "resample" | "relight" | "around relit" | "quads relit" | "guard" | "no paths", _) => 0.0,
         _ => panic!("no loop {name}"),
     }
 }
