@@ -30,8 +30,7 @@ pub type ActionsFn = Box<dyn FnOnce(&xr::Instance) -> Result<Vec<xr::ActionSet>,
 
 /// Description of a headset. Create it with `..HeadsetDesc::default()`.
 pub struct HeadsetDesc {
-    /// Method and foveation, whose filter must be [`Filter::Quads`]. Default: smr, with the foveation of
-    /// [`Settings::headset`], which antialiases in addition.
+    /// Method and foveation, whose filter must be [`Filter::Quads`]. Default: [`Settings::headset`].
     pub settings: Settings,
     /// Distance of the near plane in metres, above 0. Default 0.05.
     pub near_m: f32,
@@ -49,7 +48,7 @@ pub struct HeadsetDesc {
 impl Default for HeadsetDesc {
     fn default() -> Self {
         Self {
-            settings: Settings { foveation: Settings::headset().foveation, ..Settings::default() },
+            settings: Settings::headset(),
             near_m: 0.05,
             size_px: None,
             gaze_distance_m: 2.0,

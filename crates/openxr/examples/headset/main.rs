@@ -23,7 +23,7 @@ type Failure = Box<dyn std::error::Error>;
 
 /// A room in a headset, shaded by quads around the gaze
 ///
-/// While it runs, a line on standard input chooses: 1 smr, 2 taau, 3 nothing, a antialiased smr, q the end. The trigger
+/// While it runs, a line on standard input chooses: 1 antialiased smr, 2 taau, 3 nothing, 4 smr, q the end. The trigger
 /// of a controller chooses the next of these.
 ///
 /// Example: headset --gaze fixtures/scanpath_viewing.csv --dump 100 eyes.png
@@ -35,8 +35,8 @@ struct Options {
     /// Seconds to run, then the end
     #[arg(long)]
     seconds: Option<u64>,
-    /// Method at the start: smr, taau, none, or antialias (smr with a jittered projection)
-    #[arg(long, default_value = "smr")]
+    /// Method at the start: antialias (smr with a jittered projection), smr, taau or none
+    #[arg(long, default_value = "antialias")]
     method: String,
     /// Gaze of a recorded scanpath (CSV) where the runtime has no eye tracker; default: straight ahead
     #[arg(long, value_name = "FILE.csv")]
@@ -204,18 +204,18 @@ fn method(name: &str) -> Result<Method, Failure> {
         "taau" => Ok(MethodKind::Taau.into()),
         "none" => Ok(MethodKind::None.into()),
         "antialias" => Ok(Method::Smr(Smr { antialias: true, ..Smr::default() })),
-        _ => Err(format!("--method {name}: expected smr, taau, none or antialias").into()),
+        _ => Err(format!("--method {name}: expected antialias, smr, taau or none").into()),
     }
 }
 
 /// Method of a key; the next one after `now` for the trigger.
 fn chosen_by(key: &str, now: Method) -> Result<Method, Failure> {
-    let names = ["smr", "taau", "none", "antialias"];
+    let names = ["antialias", "taau", "none", "smr"];
     let name = match key {
-        "1" => "smr",
+        "1" => "antialias",
         "2" => "taau",
         "3" => "none",
-        "a" => "antialias",
+        "4" => "smr",
         _ => {
             let is_now = |name: &&str| method(name).is_ok_and(|method| method == now);
             names[(names.iter().position(is_now).unwrap_or(0) + 1) % names.len()]
