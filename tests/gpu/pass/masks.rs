@@ -265,7 +265,7 @@ fn wrong_noise_of_pixels_is_caught() {
         ("known_samples(past.samples)", "1u"),
         ("(!even || NOISY != 0u)", "!even"),
         ("atomicAdd(&state.further[key_of_path], 1u);", ""),
-        ("count += atomicLoad(&state.further[key]);", ""),
+        ("atomicLoad(&state.further[key]), budget_quads.y != 0u)", "0u, budget_quads.y != 0u)"),
         ("word >> 27u, is_even,", "1u, is_even,"),
         ("confidence = noisy_lod_confidence(", "confidence = 0.0 * noisy_lod_confidence("),
     ];
