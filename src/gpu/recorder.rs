@@ -70,7 +70,9 @@ pub struct Recorder {
 struct Absent {
     float: Plane,
     uint: Plane,
-    stored: [Plane; 3],
+    /// Two of each format, for bindings of even and of odd numbers: WebGPU refuses passes that write one texture by two
+    /// bindings.
+    stored: [[Plane; 2]; STORED.len()],
     counters: Buffer,
 }
 
@@ -84,14 +86,14 @@ impl Absent {
             mapped_at_creation: false,
         });
         let (float, uint) = (plane(TextureFormat::R32Float), plane(TextureFormat::R32Uint));
-        Self { float, uint, stored: STORED.map(plane), counters }
+        Self { float, uint, stored: STORED.map(|format| [plane(format), plane(format)]), counters }
     }
 
-    fn of(&self, ty: BindingType) -> Resource {
+    fn of(&self, number: u32, ty: BindingType) -> Resource {
         match ty {
             BindingType::StorageTexture { format, .. } => {
                 let i = STORED.iter().position(|&stored| stored == format).unwrap_or(0);
-                (&self.stored[i].whole).into()
+                (&self.stored[i][number as usize % 2].whole).into()
             }
             BindingType::Texture { sample_type: TextureSampleType::Uint, .. } => (&self.uint.whole).into(),
             BindingType::Texture { .. } => (&self.float.whole).into(),
@@ -162,7 +164,7 @@ impl Recorder {
                 _ if number == Binding::Uniforms as u32 && uniforms.is_some() => bytes(size_of::<FrameUniforms>()),
                 _ => resource(number),
             };
-            given.unwrap_or_else(|| self.absent.of(ty))
+            given.unwrap_or_else(|| self.absent.of(number, ty))
         };
         let resources = shader.bindings().iter().map(bound).collect();
         let group = self.groups.get(device, shader, resources);
