@@ -120,11 +120,22 @@ struct Near {
     sum: vec3f,
     squares: vec3f,
     count: f32,
+    change: vec3f,
+    weight: f32,
 }
 
-fn add_near(n: Near, c: vec3f) -> Near {
+fn add_near(n: Near, c: vec3f, own: vec3f, away_px: vec2f) -> Near {
     let v = to_ycocg(c);
-    return Near(n.sum + v, n.squares + v * v, n.count + 1.0);
+    let weight = max(1.0 - abs(away_px.x), 0.0) * max(1.0 - abs(away_px.y), 0.0);
+    return Near(n.sum + v, n.squares + v * v, n.count + 1.0, n.change + (c - own) * weight, n.weight + weight);
+}
+
+fn surrounds_centre(place_px: vec2f) -> bool {
+    return max(abs(place_px.x), abs(place_px.y)) <= 0.5;
+}
+
+fn centred_change(near: Near) -> vec3f {
+    return near.change * (1.0 / near.weight);
 }
 
 struct Clip {
@@ -211,13 +222,32 @@ fn average(
     at_edge: bool,
     kept: f32,
     difference: f32,
+    change: vec3f,
+    is_centred: bool,
 ) -> Averaged {
     let acceptance = (r.fit * r.trust) * kept;
     let most = most_samples(r.nearest.place_px, at_edge);
     let count = select(min(relit_samples(past.samples, r.gains), most) * acceptance, 0.0, r.nearest.lod > 0.0);
     let share = count / (count + 1.0);
     let variance = (past.deviation * past.deviation + (difference * difference) * (1.0 - share)) * share;
-    return Averaged(added(r, place_px, share), Mean(0.0, count + 1.0, sqrt(variance)));
+    var sample = r;
+    var sample_px = place_px;
+    if is_centred {
+        let moved = centred(r.candidate, place_px, change, count + 1.0);
+        sample.candidate = moved.color;
+        sample_px = moved.place_px;
+    }
+    return Averaged(added(sample, sample_px, share), Mean(0.0, count + 1.0, sqrt(variance)));
+}
+
+struct Placed {
+    color: vec3f,
+    place_px: vec2f,
+}
+
+fn centred(c: vec3f, place_px: vec2f, change: vec3f, samples: f32) -> Placed {
+    let share = 1.0 / samples;
+    return Placed(c + change * share, place_px - place_px * share);
 }
 
 fn average_beside(r: Reconstruction, past: Mean, place_px: vec2f) -> Averaged {

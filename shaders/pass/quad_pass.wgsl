@@ -128,16 +128,18 @@ fn full_rate_candidate(px: vec2u, view: u32, mask_word: u32) -> Candidate {
     return candidate;
 }
 
-// Sums over the nine pixels around a pixel of the fovea, as far as they are shaded; without any unless `needed`. A
-// variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
-fn samples_near(px: vec2u, view: u32, needed: bool) -> Near {
-    var near = Near(vec3f(0.0), vec3f(0.0), 0.0);
+// Sums over the nine pixels around a pixel of the fovea with the sample `own`, as far as they are shaded; without any
+// unless `needed`. A variable count on purpose: Mesa would unroll a constant one and reorder its sums of products.
+fn samples_near(px: vec2u, view: u32, own: vec3f, needed: bool) -> Near {
+    let place_px = -frame.views[view].jitter_px;
+    var near = Near(vec3f(0.0), vec3f(0.0), 0.0, vec3f(0.0), 0.0);
     let taps = select(0u, 9u, needed);
     for (var tap = 0u; tap < taps; tap++) {
-        let at = clamp(px + vec2u(tap % 3u, tap / 3u), vec2u(1u), frame.size) - 1u;
+        let offset = vec2u(tap % 3u, tap / 3u);
+        let at = clamp(px + offset, vec2u(1u), frame.size) - 1u;
         let sampled = color(sample_at(at, view).xyz);
         if sampled.usable && is_shaded(mask_at(at, view), at) {
-            near = add_near(near, sampled.color);
+            near = add_near(near, sampled.color, own, (vec2f(offset) - 1.0) + place_px);
         }
     }
     return near;
@@ -155,6 +157,7 @@ fn pixel(px: vec2u, view: u32) {
     if level == 0u {
         candidate = full_rate_candidate(px, view, mask_word);
     }
-    let near = samples_near(px, view, ANTIALIAS != 0u && candidate.is_own && level == 0u);
+    let is_near = ANTIALIAS != 0u && candidate.is_own && level == 0u;
+    let near = samples_near(px, view, candidate.color, is_near);
     show_pixel(px, view, level, disparity_now, candidate, near);
 }

@@ -50,6 +50,11 @@ fn borrowing(own: Candidate, past: f32) -> Candidate {
     return all_around;
 }
 
+// Whether the samples around a pixel tell the color at its centre: in the fovea of jittered frames.
+fn is_centred_at(view: u32, level: u32, candidate: Candidate) -> bool {
+    return ANTIALIAS != 0u && candidate.is_own && level == 0u && surrounds_centre(frame.views[view].jitter_px);
+}
+
 // Result at a pixel that has history and a usable candidate, of jittered frames. `near`: sums over the nine samples
 // around a pixel of full rate; `at_edge`: whether it is at a moving edge outside the fovea.
 fn antialiased(
@@ -83,7 +88,12 @@ fn antialiased(
         let history = relit(given.history, given.gains, given.lowest, given.highest);
         kept = kept_samples(error, root_difference(given.candidate, history));
     }
-    return average(inputs, past, place_px, at_edge, kept, difference);
+    let is_centred = is_centred_at(view, level, candidate);
+    var change = vec3f(0.0);
+    if is_centred {
+        change = centred_change(near);
+    }
+    return average(inputs, past, place_px, at_edge, kept, difference, change, is_centred);
 }
 
 // Pixels outside the visible area: black, without stored history.
@@ -128,7 +138,11 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
     let candidate_lod = select(-1.0, candidate.lod, candidate.usable);
     var next = StoredSample(candidate.color, candidate_lod, surface.stored_disparity, vec2f(0.0));
     var mean = Mean(0.0, 1.0, 0.0);
-    if ANTIALIAS != 0u && candidate.is_own {
+    if is_centred_at(view, level, candidate) {
+        // Without history the samples around antialias alone.
+        shown = candidate.color + centred_change(near);
+        next.color = shown;
+    } else if ANTIALIAS != 0u && candidate.is_own {
         next.place_px = -frame.views[view].jitter_px;
     }
     var share = 0.0;

@@ -211,13 +211,38 @@ pub struct Near {
     pub squares: Vec3,
     /// Number of samples.
     pub count: f32,
+    /// Differences of the colors from the pixel's own sample, times their bilinear weights at the pixel's centre.
+    pub change: Vec3,
+    /// Sum of these weights.
+    pub weight: f32,
 }
 
-/// The sums after one more sample.
+/// The sums after one more sample. `own`: the pixel's sample; `away_px`: from the pixel's centre to the added one.
 #[inline]
-pub fn add_near(n: Near, color: Vec3) -> Near {
+pub fn add_near(n: Near, color: Vec3, own: Vec3, away_px: Vec2) -> Near {
     let v = to_ycocg(color);
-    Near { sum: n.sum + v, squares: n.squares + v * v, count: n.count + 1.0 }
+    let weight = (1.0 - away_px.x.abs()).max(0.0) * (1.0 - away_px.y.abs()).max(0.0);
+    Near {
+        sum: n.sum + v,
+        squares: n.squares + v * v,
+        count: n.count + 1.0,
+        change: n.change + (color - own) * weight,
+        weight: n.weight + weight,
+    }
+}
+
+/// Whether samples at a place in their pixels tell the color at the pixels' centres. Jitter that antialiases is at most
+/// half a pixel.
+#[inline]
+pub fn surrounds_centre(place_px: Vec2) -> bool {
+    place_px.x.abs().max(place_px.y.abs()) <= 0.5
+}
+
+/// Change from a pixel's own sample to the color at its centre, where [`surrounds_centre`] is true. Samples that equal
+/// the own one change nothing, bit for bit.
+#[inline]
+pub fn centred_change(near: Near) -> Vec3 {
+    near.change * (1.0 / near.weight)
 }
 
 /// Clip of history to the samples around a pixel.
@@ -330,9 +355,18 @@ fn added(r: &Reconstruction, place_px: Vec2, share: f32) -> Reconstructed {
 
 /// Mean of history and of the pixel's own sample, whose place in the pixel is `place_px`. `past`: the texel of history
 /// to keep; `at_edge`: whether the pixel is at a moving edge ([`is_edge`]) outside the fovea; `kept`: share of its
-/// samples that remains after a clip; `difference`: of sample and history.
+/// samples that remains after a clip; `difference`: of sample and history; `change`: [`centred_change`] of a pixel of
+/// the fovea.
 #[inline]
-pub fn average(r: &Reconstruction, past: Mean, place_px: Vec2, at_edge: bool, kept: f32, difference: f32) -> Averaged {
+pub fn average(
+    r: &Reconstruction,
+    past: Mean,
+    place_px: Vec2,
+    at_edge: bool,
+    kept: f32,
+    difference: f32,
+    change: Option<Vec3>,
+) -> Averaged {
     let acceptance = (r.fit * r.trust) * kept;
     let most = most_samples(r.nearest.place_px, at_edge);
     let count = if r.nearest.lod > 0.0 { 0.0 } else { relit_samples(past.samples, r.gain).min(most) * acceptance };
@@ -340,7 +374,28 @@ pub fn average(r: &Reconstruction, past: Mean, place_px: Vec2, at_edge: bool, ke
     // Welford 1962: the variance after one more sample.
     let variance = (past.deviation * past.deviation + (difference * difference) * (1.0 - share)) * share;
     let mean = Mean { lod: 0.0, samples: count + 1.0, deviation: variance.sqrt() };
-    Averaged { result: added(r, place_px, share), mean }
+    let Some(change) = change else { return Averaged { result: added(r, place_px, share), mean } };
+    let sample = centred(r.candidate, place_px, change, mean.samples);
+    let r = Reconstruction { candidate: sample.color, ..*r };
+    Averaged { result: added(&r, sample.place_px, share), mean }
+}
+
+/// A sample, and its place in its pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// Color, linear RGB.
+    pub color: Vec3,
+    /// Offset from the pixel's centre.
+    pub place_px: Vec2,
+}
+
+/// The sample of a pixel of the fovea to add to a mean, which has `samples` with it: moved by a share of 1/n towards the
+/// color at the pixel's centre. A jittered sample shows one point of its pixel; until a mean of several antialiases, the
+/// samples around do. A long mean is sharper without them. `change`: [`centred_change`].
+#[inline]
+pub fn centred(color: Vec3, place_px: Vec2, change: Vec3, samples: f32) -> Placed {
+    let share = 1.0 / samples;
+    Placed { color: color + change * share, place_px: place_px - place_px * share }
 }
 
 /// At a moving edge, mean of history and of the candidate, a sample of the same surface beside the pixel: as if it were

@@ -4,15 +4,15 @@ use super::quads::Quads;
 use super::sparse_history::{Surroundings, has_moved};
 use super::view::View;
 use crate::kernel::antialias::{
-    Averaged, MOST_DIFFERENCE, Mean, Near, add_near, average, byte_draws, clip, clipped, is_edge, is_silhouette,
-    is_thin, kept_samples, move_together, stands_before, stored_lod,
+    Averaged, MOST_DIFFERENCE, Mean, Near, add_near, average, byte_draws, centred_change, clip, clipped, is_edge,
+    is_silhouette, is_thin, kept_samples, move_together, stands_before, stored_lod, surrounds_centre,
 };
 use crate::kernel::rng;
 use crate::kernel::smr::root_difference;
 use crate::kernel::sparse_smr::{Reconstruction, relit};
 use crate::kernel::stored_sample::{StoredSample, pack_color_by, pack_stored};
 use crate::notes::{NoteStage, Notes};
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 impl View<'_> {
     /// Place of this frame's samples in their pixels: a pixel shows the point at its position minus the jitter.
@@ -104,22 +104,30 @@ impl View<'_> {
             kept_samples(error, root_difference(inputs.candidate, history))
         };
         notes.note(NoteStage::Comparison, "share of its samples that it keeps", kept, "");
-        average(&inputs, past, self.sample_place_px(), at_edge, kept, difference)
+        average(&inputs, past, self.sample_place_px(), at_edge, kept, difference, self.centred_change(near))
     }
 
-    /// Sums over the nine pixels around a pixel of the fovea, as far as they are shaded; its own sample is usable.
+    /// Sums over the nine pixels around a pixel of the fovea, as far as they are shaded; its own sample `own` is usable.
     #[inline(always)]
-    pub(super) fn near(&self, quads: &Quads, px: [u32; 2]) -> Near {
+    pub(super) fn near(&self, quads: &Quads, px: [u32; 2], own: Vec3) -> Near {
+        let place_px = self.sample_place_px();
         let mut near = Near::default();
         for tap in 0..9 {
             let offset = [tap % 3, tap / 3];
             let at = [0, 1].map(|i| (px[i] + offset[i]).max(1).min(self.inputs.size[i]) - 1);
             let (color, usable) = self.color_px(quads, at);
             if usable && quads.is_shaded(at) {
-                near = add_near(near, color);
+                let away_px = Vec2::new(offset[0] as f32 - 1.0, offset[1] as f32 - 1.0) + place_px;
+                near = add_near(near, color, own, away_px);
             }
         }
         near
+    }
+
+    /// Change from the sample of a pixel of the fovea to the color of the samples around at the pixel's centre.
+    #[inline(always)]
+    pub(super) fn centred_change(&self, near: Option<Near>) -> Option<Vec3> {
+        near.filter(|_| surrounds_centre(self.sample_place_px())).map(centred_change)
     }
 
     /// Packs a mean. Its color, number of samples and deviation are rounded stochastically.

@@ -63,12 +63,20 @@ impl LitView<'_> {
             candidate = candidate.borrowing(history.as_ref().map_or(0.0, |found| found.noise.samples));
         }
 
-        let mut output = candidate.color;
+        let is_near = view.antialiases && candidate.is_own && level == 0;
+        let near = is_near.then(|| view.near(quads, [x, y], candidate.color));
+        // Without history the samples around antialias alone.
+        let change = view.centred_change(near);
+        let mut output = candidate.color + change.unwrap_or(Vec3::ZERO);
+        if change.is_some() {
+            notes.note(NoteStage::Candidate, "samples around at the pixel's centre", output, "linear light");
+        }
+        let is_placed = view.antialiases && candidate.is_own && change.is_none();
         let mut stored = StoredSample {
-            color: candidate.color,
+            color: output,
             lod: if candidate.usable { candidate.lod } else { -1.0 },
             disparity: surface.stored,
-            place_px: if view.antialiases && candidate.is_own { view.sample_place_px() } else { Vec2::ZERO },
+            place_px: if is_placed { view.sample_place_px() } else { Vec2::ZERO },
         };
         let mut mean = Mean::ONE;
         let (mut share, mut fits) = (0.0, 1.0);
@@ -112,7 +120,6 @@ impl LitView<'_> {
                     let error = expected_mean_error(past_mean, contrast, moved);
                     let beside = candidate.beside.filter(|_| surface.is_edge && inputs.nearest.lod <= 0.0);
                     let averaged = if candidate.is_own {
-                        let near = (level == 0).then(|| view.near(quads, [x, y]));
                         view.averaged(near, surface.is_edge, inputs, past_mean, error, notes)
                     } else if let Some(beside) = beside {
                         notes.note(NoteStage::Decision, "sample beside the pixel", beside, "linear light");

@@ -71,6 +71,54 @@ fn mse(shown: &Color, means: &[([f64; 3], f64)], light: f64) -> f64 {
     shown.pixels().iter().zip(means).map(of).sum::<f64>() / means.len() as f64
 }
 
+/// Without history a pixel of the fovea shows the color of the samples around at its centre: that of a slope, and on
+/// detail below a pixel nearer to the mean over the pixel than its sample.
+#[test]
+fn a_first_frame_of_the_fovea_shows_the_samples_around_the_centres() {
+    let slope = |[x, y]: [f32; 2]| [0.2 + 0.01 * x, 0.8 - 0.02 * y, 0.3 + 0.005 * (x + y)];
+    let means = box_means();
+    let inner = || pixels(SMALL).filter(|&[x, y]| x > 0 && y > 0 && x + 1 < SMALL[0] && y + 1 < SMALL[1]);
+    let (mut samples, mut shown) = (0.0, 0.0);
+    for index in 1..=16 {
+        let jitter_px = Foveation::jitter_px(index);
+        // Largest distance from the slope's colors at the centres.
+        let off = |told_px: [f32; 2]| {
+            let view = frame(index, 1, jitter_px, slope).with(|view| view.facts.jitter_px = told_px);
+            let first = one(&mut antialiased(), index, &view).0;
+            let of_px = |px: [u32; 2]| {
+                let (shown, right) = (pixel(&first, px), slope(px.map(|v| v as f32)));
+                (0..3).map(|c| (shown[c] - right[c]).abs()).fold(0.0, f32::max)
+            };
+            inner().map(of_px).fold(0.0, f32::max)
+        };
+        // A planted error: jitter of the wrong sign.
+        let (right, planted) = (off(jitter_px), off(jitter_px.map(|px| -px)));
+        assert!(right < 1e-6 && planted > 1e-4, "frame {index}: {right:e}, planted error {planted:e}");
+        samples += mse(&sampled(jitter_px, picture), &means, 1.0);
+        shown += mse(&show(&mut antialiased(), index, 1, 1.0), &means, 1.0);
+    }
+    let db = 10.0 * (samples / shown).log10();
+    println!("{db:.2} dB better than the samples");
+    assert!(db > 2.0);
+}
+
+/// What is not there does not count around a pixel's centre: one color stays that color bit for bit, also beside
+/// pixels that are not finite, and with any jitter.
+#[test]
+fn one_color_stays_that_color_around_the_centres() {
+    const COLOR: [f32; 3] = [0.7, 0.1, 1.0 / 3.0];
+    let is_bad = |[x, y]: [u32; 2]| x % 4 == 1 && y % 3 == 1;
+    for (index, jitter_px) in [[0.0, 0.0], [0.5, -0.5], [-0.31, 0.17], [0.6, 0.0], [-9.0, 16.0]].into_iter().enumerate()
+    {
+        let view = frame(index as u64, 1, jitter_px, |_| COLOR).with(|view| {
+            view.color = Image::from_fn(SMALL, |px| if is_bad(px) { [f32::NAN, f32::INFINITY, 0.5] } else { COLOR });
+        });
+        let first = one(&mut antialiased(), index as u64, &view).0;
+        let changed = pixels(SMALL).filter(|&px| !is_bad(px) && pixel(&first, px) != COLOR).count();
+        assert_eq!(changed, 0, "jitter {jitter_px:?}");
+    }
+}
+
 /// The mean of N independent samples has 1/N of the variance of one sample. Samples of low discrepancy have a lower
 /// variance. With a step of 4, neighbours that judge a sample lie 4 pixels apart: this picture's detail makes some
 /// means start again, and the last number is a lower bound instead of 1/N.
@@ -231,12 +279,14 @@ fn shown_contrast(velocity_px: [f32; 2]) -> [[f64; 2]; 2] {
     sums.map(|sums| sums.map(|[n, x, y, xx, xy]| (n * xy - x * y) / (n * xx - x * x)))
 }
 
-/// At full rate, bars beside an edge show as much contrast as bars elsewhere, within a tenth.
+/// At full rate, bars beside an edge show as much contrast as bars elsewhere, within 15 %. It was a tenth while the samples
+/// around a pixel did not count: beside an edge means are shorter, so that they count more there, and soften.
 #[test]
 fn bars_beside_an_edge_are_not_softer_than_elsewhere() {
     for velocity_px in [[0.3, 0.1], [-0.3, 0.1]] {
         let [beside, elsewhere] = shown_contrast(velocity_px);
-        let is_sharp = (0..2).all(|k| beside[k] >= 0.9 * elsewhere[k]);
+        println!("{velocity_px:?}: {beside:?}, elsewhere {elsewhere:?}");
+        let is_sharp = (0..2).all(|k| beside[k] >= 0.85 * elsewhere[k]);
         assert!(is_sharp, "{velocity_px:?}: {beside:?}, elsewhere {elsewhere:?}");
     }
 }

@@ -12,11 +12,15 @@ fn antialiased() -> Settings {
 
 /// Two views that glide, with jitter. The surfaces meet in a silhouette that is not straight; in the second view some
 /// of it is where motion changes, too, and the nearer surface comes from where the other one was. The first view
-/// stands still for three frames. In the last frames every pixel is shaded.
+/// stands still for three frames. In one frame the second is jittered by more than a pixel. In the last frames every pixel is shaded.
 fn views(index: u64) -> [View; 2] {
     [0, 1].map(|v| {
         let mut view = gliding_view(index, v);
         view.facts.jitter_px = Foveation::jitter_px(index + u64::from(v));
+        if v == 1 && index == 4 {
+            // No jitter of an antialiased picture.
+            view.facts.jitter_px = view.facts.jitter_px.map(|px| 5.0 * px);
+        }
         if v == 1 {
             view.motion = view.motion.map(|motion| motion.map(|[x, y]| [x, -y]));
         }
@@ -42,9 +46,13 @@ fn a_wrong_mean_is_caught() {
         ("columns = 3u;", "columns = 2u;"),
         ("stored.lod = mean_lod(lod);", ""),
         (
-            "return average(inputs, past, place_px, at_edge, kept, difference);",
-            "return average(inputs, past, -place_px, at_edge, kept, difference);",
+            "return average(inputs, past, place_px, at_edge, kept,",
+            "return average(inputs, past, -place_px, at_edge, kept,",
         ),
+        ("kept, difference, change, is_centred);", "kept, difference, change, false);"),
+        ("shown = candidate.color + centred_change(near);", ""),
+        ("(vec2f(offset) - 1.0) + place_px", "(vec2f(offset) - 1.0) - place_px"),
+        ("level == 0u && surrounds_centre(frame.views[view].jitter_px)", "level == 0u"),
         ("inputs.candidate = candidate.beside;", ""),
         ("return average_beside(inputs, past, place_px);", ""),
         ("level > 0u && has_moved(own_motion, motion)", "level > 0u"),

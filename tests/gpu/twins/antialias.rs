@@ -6,7 +6,8 @@ use afterimage::kernel::sparse_smr::{Reconstructed, Reconstruction};
 use afterimage::kernel::{antialias, sparse_smr};
 
 shape!(antialias::Mean { lod: f32, samples: f32, deviation: f32 });
-shape!(antialias::Near { sum: Vec3, squares: Vec3, count: f32 });
+shape!(antialias::Near { sum: Vec3, squares: Vec3, count: f32, change: Vec3, weight: f32 });
+shape!(antialias::Placed { color: Vec3, place_px: Vec2 });
 shape!(antialias::Clip { change: Vec3, kept: f32 });
 shape!(antialias::Averaged { result: Reconstructed, mean: antialias::Mean });
 
@@ -51,8 +52,25 @@ pub const PROBES: &[Probe] = &[
         let disparities = floats(&[-1.0, 0.0, 0.48, 0.49, 0.5, 0.51, 1.0, 1.02, 1.03, 1e30]);
         rows.cross(&[&disparities, &disparities, &disparities]).each(&[F(0.9, 1.1); 3])
     }),
-    probe!(antialias::add_near, |rows| rows
-        .each(&[&[F(-2.0, 2.0); 6][..], &[F(0.0, 8.0)], &[Scaled(-14, 6); 3]].concat())),
+    probe!(antialias::add_near, |rows| rows.each(
+        &[
+            &[F(-2.0, 2.0); 6][..],
+            &[F(0.0, 8.0)],
+            &[F(-2.0, 2.0); 3],
+            &[F(0.0, 1.0)],
+            &[Scaled(-14, 6); 6],
+            &[F(-1.5, 1.5); 2]
+        ]
+        .concat()
+    )),
+    probe!(antialias::surrounds_centre, |rows| {
+        let places = floats(&[-0.6, -0.5, 0.0, 0.3, 0.5, 0.51]);
+        rows.cross(&[&places, &places])
+    }),
+    probe!(antialias::centred_change, |rows| rows
+        .each(&[&[F(-2.0, 2.0); 6][..], &[F(1.0, 9.0)], &[F(-2.0, 2.0); 3], &[F(0.25, 1.0)]].concat())),
+    probe!(antialias::centred, |rows| rows
+        .each(&[&[Scaled(-14, 6); 3][..], &[F(-0.5, 0.5); 2], &[F(-2.0, 2.0); 3], &[F(1.0, 30.0)]].concat())),
     probe!(antialias::clip, |rows| {
         rows.random(|d, row| {
             let count = 1.0 + (d.bits() % 9) as f32;
@@ -60,6 +78,7 @@ pub const PROBES: &[Probe] = &[
             row.extend(sum.map(f32::to_bits));
             row.extend(sum.map(|v| (v * v / count + d.range(0.0, 1.0)).to_bits()));
             row.push(count.to_bits());
+            row.extend([range(d, -1.0, 1.0), range(d, -1.0, 1.0), range(d, -1.0, 1.0), range(d, 0.25, 1.0)]);
             row.extend(color(d));
         })
     }),
@@ -73,8 +92,15 @@ pub const PROBES: &[Probe] = &[
     probe!(antialias::scattered_error, |rows| rows.each(&[Of(push_light), F(0.0, 4000.0)])),
     probe!(
         antialias::average,
-        |r: Reconstruction, past: antialias::Mean, place_px: Vec2, at_edge: bool, kept: f32, difference: f32| {
-            antialias::average(&r, past, place_px, at_edge, kept, difference)
+        |r: Reconstruction,
+         past: antialias::Mean,
+         place_px: Vec2,
+         at_edge: bool,
+         kept: f32,
+         difference: f32,
+         change: Vec3,
+         is_centred: bool| {
+            antialias::average(&r, past, place_px, at_edge, kept, difference, is_centred.then_some(change))
         },
         |rows| {
             rows.random(|d, row| {
@@ -86,6 +112,7 @@ pub const PROBES: &[Probe] = &[
                 push_samples(d, row);
                 row.extend([range(d, -0.5, 0.5), range(d, -0.5, 0.5), d.bits() % 2]);
                 row.extend([range(d, 0.0, 1.0), range(d, 0.0, 200.0)]);
+                row.extend([range(d, -1.0, 1.0), range(d, -1.0, 1.0), range(d, -1.0, 1.0), d.bits() % 2]);
             })
         }
     ),
