@@ -92,3 +92,21 @@ fn a_run_does_not_start_with_times_that_are_hardly_seconds() {
         assert_eq!(errors.contains("milliseconds?"), warned, "{errors}");
     }
 }
+
+#[test]
+fn units_that_nobody_states_are_found_or_doubted() {
+    let folder = Folder::new();
+    let rows: String = (0..120).map(|i| format!("{:.4},{},500\n", f64::from(i) / 60.0, 900 + i)).collect();
+    let log = folder.write("unity.csv", format!("Time,GazeX,GazeY\n{rows}").as_bytes());
+    let text = succeeds(&["info", &log, "--screen-px", "1920x1080"]);
+    assert!(text.contains("scanpath of 1.983 s") && !text.contains("a second"), "{text}");
+    // A name that says milliseconds is believed, and doubted.
+    let log = folder.write("ms.csv", format!("t_ms,x,y\n{rows}").as_bytes());
+    let text = succeeds(&["info", &log, "--screen-px", "1920x1080"]);
+    assert!(text.contains("120 samples in 0.002 s are 6") && text.contains("another unit"), "{text}");
+    let run = "run analytic:still --size 64x36 --frames 1 --method none --backend cpu --no-jod --no-flip";
+    for (gaze, is_share) in [("0.5,0.25", true), ("0,0", false), ("1,1", false), ("32.5,0.5", false)] {
+        let (_, errors) = both(&[&words(run)[..], &["--gaze", gaze, "--out", &folder.text("out")]].concat());
+        assert_eq!(errors.contains("for this share of the frame give 32,9"), is_share, "{gaze}: {errors}");
+    }
+}

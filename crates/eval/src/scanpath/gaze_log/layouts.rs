@@ -43,7 +43,7 @@ pub(super) enum Unit {
     /// As many ticks a second.
     PerSecond(f64),
     /// As the column's name ends (`_ms`, `_f_10000000`); without one, that in which a usual tracker has 5 to 5000
-    /// samples a second.
+    /// samples a second: loggers of one's own write `time` in any of them.
     Named,
 }
 
@@ -290,8 +290,13 @@ pub(super) const LAYOUTS: [Layout; 16] = [
     },
     Layout {
         vendor: Vendor::Webgazer,
-        writer: "a page with WebGazer",
-        time: &[("t|time|timestamp|elapsedtime|elapsed_time|t_ms|time_ms|timestamp_ms|elapsed_ms", MILLISECONDS)],
+        writer: "a page with WebGazer, or a plain table",
+        time: &[(
+            "t|time|timestamp|elapsedtime|elapsed_time|t_s|t_ms|t_us|t_ns|t_sec|time_s|time_ms|time_us|time_ns|time_sec|\
+             time_seconds|time_milliseconds|timestamp_s|timestamp_ms|timestamp_us|timestamp_ns|timestamp_sec|\
+             timestamp_seconds|timestamp_milliseconds|elapsed_s|elapsed_ms|elapsed_time_s|elapsed_time_ms",
+            Unit::Named,
+        )],
         both: place(&["x|x_px|gaze_x|gazex", "y|y_px|gaze_y|gazey"], &[]),
         ..EMPTY
     },

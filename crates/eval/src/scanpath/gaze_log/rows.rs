@@ -36,9 +36,15 @@ impl Layout {
 
 /// Ticks a second of a time column with this name.
 fn per_second(name: &str) -> Option<f64> {
-    const UNITS: [(&str, f64); 7] =
-        [("_100ns", 1e7), ("_ns", 1e9), ("_us", 1e6), ("_ms", 1e3), ("_s", 1.0), ("_sec", 1.0), ("_seconds", 1.0)];
-    let unit = UNITS.iter().find(|(end, _)| name.ends_with(end)).map(|(_, ticks)| *ticks);
+    const UNITS: [(&str, f64); 5] = [
+        ("100ns", 1e7),
+        ("ns|nsec|nanoseconds", 1e9),
+        ("us|usec|microseconds", 1e6),
+        ("ms|msec|millis|milliseconds", 1e3),
+        ("s|sec|secs|seconds", 1.0),
+    ];
+    let last = name.rsplit('_').next().unwrap_or(name);
+    let unit = UNITS.iter().find(|(words, _)| words.split('|').any(|word| word == last)).map(|(_, ticks)| *ticks);
     let frequency = || name.rsplit_once("_f_")?.1.parse().ok().filter(|ticks| *ticks >= 1.0);
     unit.or_else(frequency)
 }

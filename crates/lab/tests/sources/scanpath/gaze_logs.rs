@@ -166,6 +166,10 @@ fn exports() -> Vec<(Vendor, &'static str, String)> {
         },
     );
     let webgazer = table("x,y,t", |ms, px| format!("{},{:.1}", pair(px, "null"), ms as f64));
+    // A logger of one's own: the name of its time has no unit, or one of several spellings.
+    let plain = |names: &str, per_s: f64| {
+        table(names, |ms, px| format!("{},{}", 3e3 * per_s + ms as f64 * per_s / 1e3, pair(px, "nan")))
+    };
     vec![
         (Vendor::Tobii, "Pro Lab, us", pro_lab("\u{3bc}s", 1000)),
         (Vendor::Tobii, "Pro Lab, ms", pro_lab("ms", 1)),
@@ -187,6 +191,11 @@ fn exports() -> Vec<(Vendor, &'static str, String)> {
         (Vendor::Eyelink, "ASC", asc(false)),
         (Vendor::Eyelink, "ASC, binocular", asc(true)),
         (Vendor::Webgazer, "page", webgazer),
+        (Vendor::Webgazer, "seconds", plain("Time,GazeX,GazeY", 1.0)),
+        (Vendor::Webgazer, "microseconds", plain("timestamp,x,y", 1e6)),
+        (Vendor::Webgazer, "nanoseconds", plain("timestamp,gaze_x,gaze_y", 1e9)),
+        (Vendor::Webgazer, "seconds by name", plain("time [s],x,y", 1.0)),
+        (Vendor::Webgazer, "microseconds by name", plain("timestamp_us,x,y", 1e6)),
     ]
 }
 
@@ -270,6 +279,7 @@ fn an_export_in_other_axes_or_units_is_not_the_gaze() {
         // Another unit of time; ticks.
         export("Pro Lab, ms").replace("[ms]", "[\u{3bc}s]"),
         export("Analysis").replace("f=10000000", "f=1000000"),
+        export("seconds by name").replace("[s]", "[ms]"),
         // A blink, and an eye that is not valid, that nobody marks.
         export("Neon").replace(",3,", ",,"),
         export("SDK, tuples").replace(";(nan, nan);0", ";(0.5, 0.5);1"),
