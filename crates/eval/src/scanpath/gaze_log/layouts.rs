@@ -19,6 +19,8 @@ pub(super) enum Plane {
     ForwardLeft,
     /// Azimuth to the right and elevation upwards, degrees.
     Angles,
+    /// The same in radians.
+    Radians,
 }
 
 impl Plane {
@@ -33,7 +35,7 @@ impl Plane {
 
     /// Whether it gives visual angles, with no screen.
     pub fn is_angular(self) -> bool {
-        self.is_forward() || self == Self::Angles
+        self.is_forward() || matches!(self, Self::Angles | Self::Radians)
     }
 }
 
@@ -60,6 +62,8 @@ pub(super) enum Validity {
     Code,
     /// A number of at least this.
     AtLeast(f64),
+    /// A number above 0, a true word or `valid`; inverted, what is none of these.
+    Truth { is_inverted: bool },
     /// A true word, 1, or a mask with the bit 2 of the direction.
     Mask,
 }
