@@ -94,12 +94,15 @@ fn devices_pipes_and_links_are_written_and_stay() {
     symlink("/dev/stdout", folder.path("stdout")).unwrap();
     let stdout = folder.text("stdout");
     let to_stdout = [&words(command)[..], &[&stdout]].concat();
-    assert_eq!(succeeds(&to_stdout), expected);
+    let output = tool(&to_stdout);
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), expected);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("fixations"));
     let appended = folder.path("appended.csv");
     fs::write(&appended, "before\n").unwrap();
     let file = fs::OpenOptions::new().append(true).open(&appended).unwrap();
-    let status = Command::new(env!("CARGO_BIN_EXE_afterimage")).args(&to_stdout).stdout(file).stderr(Stdio::null());
-    assert!(status.status().unwrap().success() && folder.path("stdout").is_symlink());
+    let mut again = Command::new(env!("CARGO_BIN_EXE_afterimage"));
+    let status = again.args(&to_stdout).stdout(file).stderr(Stdio::null()).status().unwrap();
+    assert!(status.success() && folder.path("stdout").is_symlink());
     assert_eq!(fs::read_to_string(&appended).unwrap(), format!("before\n{expected}"));
 }
 
