@@ -40,7 +40,7 @@ pub fn other_kind(path: &Path) -> Option<(String, &'static str)> {
         let problem = format!("is a video (.{ending}), and moving frames need motion vectors, which a video lacks");
         Some((
             problem,
-            "render a folder of .exr frames with motion vectors, or give one picture (.exr, .png, .jpg) as a still",
+            "render .exr frames with motion vectors, or give one picture (.exr, .png, .jpg, .jpeg) as a still",
         ))
     } else if is(&PICTURES) {
         Some((format!("is a picture of a kind that is not read (.{ending})"), "convert it to .exr or .png"))

@@ -44,9 +44,9 @@ impl Setup {
         })?;
         let load_ms = clock.wall_ms();
         warn(of.warnings());
-        if args.frames > 1 && of.info().still {
+        if args.frames > 1 && args.camera.is_none() && of.info().still {
             let n = args.frames;
-            warn(&[format!("nothing moves in these {n} frames; --camera lateral moves the camera, as run does")]);
+            say!("warning: nothing moves in these {n} frames; --camera lateral moves the camera, as run does");
         }
         let backend = args.backend.open_for_scenes()?;
         let clock = Stopwatch::start();
