@@ -7,7 +7,8 @@ const MIDDLE_GREY: f64 = 0.18;
 /// Share of what is lit that may be brighter than `BRIGHT`: shadows beside a lamp do not decide alone.
 const BRIGHTER: f64 = 0.05;
 const BRIGHT: f64 = 0.8;
-/// Pixels darker than the brightest by this factor count as unlit, so that a black background is not exposed for.
+/// Pixels darker than the bright ones by this factor count as unlit, so that a black background is not exposed for. The
+/// brightest [`BRIGHTER`] of a frame are not asked: a sun or a firefly would make the whole scene unlit.
 const UNLIT: f64 = 1e-5;
 /// Encoded, it is 3 of 255.
 const BLACK: f64 = 0.001;
@@ -48,30 +49,28 @@ impl Exposure {
 /// Tones of a frame.
 struct Tones<'a> {
     pixels: &'a [[f32; 3]],
-    /// Luminance of the brightest pixel.
-    brightest: f64,
+    /// Luminance up to which a pixel is unlit.
+    unlit: f64,
 }
 
 impl<'a> Tones<'a> {
     fn of(frame: &'a Image<[f32; 3]>) -> Self {
         let pixels = frame.pixels();
-        Self { pixels, brightest: pixels.iter().map(luminance).fold(0.0, f64::max) }
+        let mut above_zero: Vec<f64> = pixels.iter().map(luminance).filter(|l| *l > 0.0).collect();
+        Self { pixels, unlit: UNLIT * bright_luminance(&mut above_zero).unwrap_or(0.0) }
     }
 
     /// Pixels that light reaches.
     fn lit(&self) -> impl Iterator<Item = &[f32; 3]> {
-        let unlit = self.brightest * UNLIT;
-        self.pixels.iter().filter(move |p| luminance(p) > unlit)
+        self.pixels.iter().filter(|p| luminance(p) > self.unlit)
     }
 
     /// Exposure that makes the logarithmic mean of what is lit middle grey, or less so that few of its pixels are
     /// brighter than [`BRIGHT`]; in tenths of a stop. `None` for a black frame.
     fn fitting_ev(&self) -> Option<f32> {
         let mut lit: Vec<f64> = self.lit().map(luminance).collect();
-        let last = lit.len().checked_sub(1)?;
+        let bright = bright_luminance(&mut lit)?;
         let mean = lit.iter().map(|l| l.log2()).sum::<f64>() / lit.len() as f64;
-        let place = (last as f64 * (1.0 - BRIGHTER)) as usize;
-        let (_, bright, _) = lit.select_nth_unstable_by(place, f64::total_cmp);
         let ev = (MIDDLE_GREY.log2() - mean).min(BRIGHT.log2() - bright.log2());
         Some(((ev * 10.0).round() / 10.0) as f32).map(|ev: f32| ev.clamp(-MOST_STOPS, MOST_STOPS))
     }
@@ -92,6 +91,13 @@ impl<'a> Tones<'a> {
         };
         Some(format!("{problem}; --exposure {fitting} fits, or --exposure auto"))
     }
+}
+
+/// The luminance that [`BRIGHTER`] of these exceed; `None` for none. Reorders them.
+fn bright_luminance(luminances: &mut [f64]) -> Option<f64> {
+    let last = luminances.len().checked_sub(1)?;
+    let place = (last as f64 * (1.0 - BRIGHTER)) as usize;
+    Some(*luminances.select_nth_unstable_by(place, f64::total_cmp).1)
 }
 
 fn luminance(p: &[f32; 3]) -> f64 {
@@ -118,6 +124,24 @@ mod tests {
         assert_eq!(Exposure::Auto.choose(&frame(0, [1.0; 3]), 1.0).ev, 0.0, "a black frame");
         assert_eq!(Exposure::Auto.choose(&frame(9, [f32::INFINITY; 3]), 1.0).ev, 0.0);
         assert_eq!(Exposure::Auto.choose(&frame(9, [1e-30; 3]), 1.0).ev, 64.0);
+    }
+
+    /// Pixels of a sun, or fireflies, do not make the rest unlit, however bright they are.
+    #[test]
+    fn a_sun_does_not_black_out_its_scene() {
+        let scene = |sun: f32, suns: usize| {
+            let pixels = (0..1000).map(|i| if i < suns { [sun; 3] } else { [0.1 * (1 + i % 7) as f32; 3] });
+            Image::from_pixels([100, 10], pixels.collect()).unwrap()
+        };
+        let without = Exposure::Auto.choose(&scene(0.4, 0), 1.0).ev;
+        assert!((-1.5..-0.5).contains(&without), "{without}");
+        for (sun, suns) in [(1e5, 1), (1e5, 30), (1e9, 1), (1e9, 10), (3e37, 2), (f32::INFINITY, 5)] {
+            let frame = scene(sun, suns);
+            let ev = Exposure::Auto.choose(&frame, 1.0).ev;
+            // Each sun counts with the logarithm of its luminance.
+            assert!((ev - without).abs() < 0.8, "{suns} of {sun}: {ev}, without {without}");
+            assert_eq!(Exposure::Stops(0.0).choose(&frame, 1.0).hint, None, "{suns} of {sun}");
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@ use afterimage::{CreateError, FrameError, SettingsError};
 use afterimage_eval::clip::ClipError;
 use afterimage_eval::error::{Bound, InputError};
 use afterimage_eval::output::WriteError;
+use clap::error::ErrorKind;
 use std::fmt::Display;
 use std::path::Path;
 use std::process::ExitCode;
@@ -45,6 +46,14 @@ impl Failure {
 
     /// A usage error of the command line, in one line.
     pub fn usage(error: &clap::Error) -> Self {
+        if error.kind() == ErrorKind::InvalidUtf8
+            && let Some(argument) = std::env::args_os().skip(1).find(|argument| argument.to_str().is_none())
+        {
+            // Debug text shows the bytes.
+            return Self::Input(format!(
+                "the argument {argument:?} is not UTF-8 text; rename the file, or make a link to it with such a name"
+            ));
+        }
         let text = error.render().to_string();
         let lines: Vec<&str> = text
             .lines()
@@ -101,7 +110,9 @@ fn with_option(error: &InputError) -> String {
             let megapixels = exceeded.needed_megapixels().map_or("N".to_owned(), |n| n.to_string());
             format!("{error} with --max-megapixels {megapixels}")
         }
-        InputError::Request(message) if message.remedy.contains('`') => with_gaze_options(&error.to_string()),
+        InputError::Request(message) | InputError::Invalid(message) if message.remedy.contains('`') => {
+            with_gaze_options(&error.to_string())
+        }
         // If a camera does not exist, the error's subject is "camera NAME".
         InputError::Request(message) if message.subject.starts_with("camera ") => format!("--{error}"),
         // These remedies end with the suggestion to use the CPU.
@@ -117,6 +128,7 @@ pub fn with_gaze_options(text: &str) -> String {
         ("`screen_mm`", "--screen-mm WxH"),
         ("`distance_mm`", "--distance-mm D"),
         ("`eye`", "--eye"),
+        ("`gaze_columns`", "--gaze-columns t=NAME,x=NAME,y=NAME"),
         ("the gaze map `fit`", "--gaze-map fit"),
     ];
     options.iter().fold(text.to_owned(), |text, (field, option)| text.replace(field, option))

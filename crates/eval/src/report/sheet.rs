@@ -67,10 +67,15 @@ impl Sheet<'_> {
         let count = self.columns.len() as u32;
         let zoom_center = self.place_left();
         let has_visible = self.columns.iter().any(|column| column.visible_jod.is_some());
-        let mut notes = vec![
-            "the last frame; yellow: gaze and fovea; blue: path of the gaze; green: area magnified below",
-            "error against the reference: black is zero, white is 25 % of full scale or more",
-        ];
+        let mut shown = "the last frame; yellow: gaze and fovea".to_owned();
+        if self.gaze_px.windows(2).any(|pair| pair[0] != pair[1]) {
+            shown += "; blue: path of the gaze";
+        }
+        if zoom_center.is_some() {
+            shown += "; green: area magnified below";
+        }
+        let mut notes =
+            vec![shown.as_str(), "error against the reference: black is zero, white is 25 % of full scale or more"];
         if has_visible {
             notes.push("what a person sees of it, with the gaze there: black is nothing, white loses 5 JOD or more");
         }

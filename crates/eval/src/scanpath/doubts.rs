@@ -5,6 +5,8 @@ use super::{Sample, Scanpath};
 
 /// Samples a second below which times are hardly seconds. Webcams give 15 and more.
 const LEAST_HZ: f64 = 10.0;
+/// Samples a second above which times are hardly what their unit says. The fastest trackers give 5000.
+const MOST_HZ: f64 = 10_000.0;
 /// Share of the valid samples within a pixel of a corner from which coordinates are hardly pixels. Not all: gaze from 0
 /// to 1 may lie a little off the screen.
 const CORNER_SHARE: f64 = 0.9;
@@ -13,9 +15,9 @@ const LEAST_SIDE_PX: u32 = 16;
 
 impl Scanpath {
     /// What looks wrong, one line each: all gaze within a pixel of a corner (coordinates from 0 to 1?), fewer than ten
-    /// samples a second (milliseconds?), more than half of the gaze lost.
+    /// samples a second (milliseconds?) or more than 10000 (seconds?), more than half of the gaze lost.
     pub fn warnings(&self) -> Vec<String> {
-        [self.corner(), self.doubt_of_times(), self.loss()]
+        [self.corner(), self.doubt_of_times(), self.too_fast(), self.loss()]
             .into_iter()
             .flatten()
             .map(|doubt| format!("{}: {doubt}", self.name()))
@@ -42,17 +44,25 @@ impl Scanpath {
 
     /// The warning of fewer than ten samples a second, without the name of the scanpath.
     pub fn doubt_of_times(&self) -> Option<String> {
-        let samples = self.samples();
-        // The median: a recording may have pauses.
-        let median = median_step(samples.iter().map(|sample| sample.t_s), |_| true)?;
-        (median * LEAST_HZ > 1.0).then(|| {
-            format!(
-                "{} samples in {:.3} s are {:.2} a second; are the times milliseconds? Divide them by 1000",
-                samples.len(),
-                self.duration_s(),
-                1.0 / median
-            )
-        })
+        let median = self.median_step_s()?;
+        (median * LEAST_HZ > 1.0)
+            .then(|| format!("{}; are the times milliseconds? Divide them by 1000", self.rate_of(median)))
+    }
+
+    fn too_fast(&self) -> Option<String> {
+        let median = self.median_step_s()?;
+        (median * MOST_HZ < 1.0)
+            .then(|| format!("{}; are the times another unit than the file says?", self.rate_of(median)))
+    }
+
+    /// The median, because a recording may have pauses.
+    fn median_step_s(&self) -> Option<f64> {
+        median_step(self.samples().iter().map(|sample| sample.t_s), |_| true)
+    }
+
+    fn rate_of(&self, step_s: f64) -> String {
+        let (samples, duration_s, rate_hz) = (self.samples().len(), self.duration_s(), 1.0 / step_s);
+        format!("{samples} samples in {duration_s:.3} s are {rate_hz:.2} a second")
     }
 
     fn loss(&self) -> Option<String> {

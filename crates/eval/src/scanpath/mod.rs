@@ -21,7 +21,8 @@ mod table;
 mod viewing;
 
 pub use frames::{FrameGaze, GazeMap};
-pub use gaze_log::{Eye, GazeLog, GazeLogOptions, Vendor, parse_gaze_log, read_gaze_log};
+pub use gaze_log::{Eye, GazeColumns, GazeLog, GazeLogOptions, GazeUnit, Vendor};
+pub use gaze_log::{parse_gaze_columns, parse_gaze_log, read_gaze_columns, read_gaze_log};
 pub use head::{DistanceOf, HeadOptions, HeadTurn, Regarded, SyntheticHead, generate_head, in_a_room};
 pub use head_path::HeadPath;
 pub use pose::HeadPose;

@@ -121,7 +121,7 @@ fn tuple(cell: &str) -> Option<impl Iterator<Item = &str>> {
 
 /// A column's name in lower case, in which a run of characters other than letters and digits is an underscore:
 /// `Gaze point X [DACS px]` is `gaze_point_x_dacs_px`. Greek mu is `u`.
-fn plain(name: &str) -> String {
+pub(super) fn plain(name: &str) -> String {
     let mut plain = String::new();
     for c in name.chars() {
         match c {
@@ -182,6 +182,13 @@ impl Columns {
         })
     }
 
+    /// Names for an error, as [`plain`] gives them, at most `most`.
+    pub fn names(&self, most: usize) -> String {
+        let names: Vec<&str> = self.names.iter().map(|(name, _)| name.as_str()).collect();
+        let more = if names.len() > most { ", ..." } else { "" };
+        format!("{}{more}", names[..names.len().min(most)].join(", "))
+    }
+
     /// Number of columns.
     pub fn count(&self) -> usize {
         self.count
@@ -201,6 +208,11 @@ impl<'a> Row<'a> {
     pub fn count(&self, columns: usize) -> usize {
         let beyond = self.0.iter().skip(columns).rposition(|cell| !cell.is_empty());
         beyond.map_or(self.0.len().min(columns), |last| columns + last + 1)
+    }
+
+    /// Whether the row has a cell in this column.
+    pub fn reaches(&self, column: Column) -> bool {
+        column.cell < self.0.len()
     }
 
     /// A cell; empty where the row ends before it.

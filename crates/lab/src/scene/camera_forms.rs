@@ -20,7 +20,7 @@ pub(super) struct FileForm {
 /// A camera, not checked.
 #[derive(Default)]
 pub(super) struct FrameForm {
-    pub frame: Option<u64>,
+    pub frame: Option<i64>,
     pub camera_to_world: Option<DMat4>,
     pub world_to_camera: Option<DMat4>,
 }
@@ -42,7 +42,7 @@ struct OwnForm {
 
 #[derive(Deserialize)]
 struct OwnFrame {
-    frame: Option<u64>,
+    frame: Option<i64>,
     camera_to_world: Option<Value>,
     world_to_camera: Option<Value>,
 }
@@ -103,7 +103,7 @@ struct PathFrame {
 /// A camera of 3D Gaussian splatting: axes x right, y down, z ahead, in the columns of `rotation`.
 #[derive(Deserialize)]
 struct SplatCamera {
-    id: Option<u64>,
+    id: Option<i64>,
     position: [f64; 3],
     rotation: [[f64; 3]; 3],
     width: Option<f64>,
@@ -130,7 +130,7 @@ pub(super) fn read(value: Value) -> Result<FileForm, String> {
 
 fn own(form: OwnForm) -> Result<FileForm, String> {
     let frame = |(i, frame): (usize, &OwnFrame)| {
-        let number = frame.frame.unwrap_or(i as u64);
+        let number = frame.frame.unwrap_or(i as i64);
         let load = |name: &str, value: &Option<Value>| {
             value.as_ref().map(|value| matrix(value).ok_or_else(|| no_matrix(name, number))).transpose()
         };
@@ -197,13 +197,13 @@ fn splat(cameras: Vec<SplatCamera>) -> FileForm {
 
 fn posed<'a>(name: &str, matrices: impl Iterator<Item = &'a Value>) -> Result<Vec<FrameForm>, String> {
     let frame = |(i, value): (usize, &Value)| {
-        let camera_to_world = Some(matrix(value).ok_or_else(|| no_matrix(name, i as u64))?);
+        let camera_to_world = Some(matrix(value).ok_or_else(|| no_matrix(name, i as i64))?);
         Ok(FrameForm { camera_to_world, ..FrameForm::default() })
     };
     matrices.enumerate().map(frame).collect()
 }
 
-fn no_matrix(name: &str, frame: u64) -> String {
+fn no_matrix(name: &str, frame: i64) -> String {
     format!("has a {name} of frame {frame} that is not 4 or 3 rows of 4 numbers")
 }
 

@@ -33,7 +33,7 @@ pub struct Cameras {
     pub(crate) kind: &'static str,
     subject: String,
     size: Option<[u32; 2]>,
-    numbers: Vec<Option<u64>>,
+    numbers: Vec<Option<i64>>,
     poses: Vec<Pose>,
 }
 
@@ -73,7 +73,7 @@ impl Cameras {
         };
         let mut poses = Vec::new();
         for (i, frame) in form.frames.iter().enumerate() {
-            let number = frame.frame.unwrap_or(i as u64);
+            let number = frame.frame.unwrap_or(i as i64);
             poses.extend(pose(subject, number, frame)?);
         }
         if !poses.is_empty() && poses.len() != form.frames.len() {
@@ -113,12 +113,12 @@ impl Cameras {
 
     /// Index of the pose of every frame: by the number in the frame's file name, or in order if a pose or a file has no
     /// number. `None` without matrices.
-    pub(crate) fn assign(&self, file_numbers: &[Option<u64>]) -> Result<Option<Vec<usize>>, InputError> {
+    pub(crate) fn assign(&self, file_numbers: &[Option<i64>]) -> Result<Option<Vec<usize>>, InputError> {
         if self.poses.is_empty() {
             return Ok(None);
         }
         if self.numbers.iter().chain(file_numbers).all(Option::is_some) {
-            let find = |n: &Option<u64>| {
+            let find = |n: &Option<i64>| {
                 self.numbers.iter().position(|m| m == n).ok_or_else(|| {
                     InputError::invalid(
                         &self.subject,
@@ -163,7 +163,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, InputError> {
     fs::read(path).map_err(|e| io_error(&subject, &e))
 }
 
-fn pose(subject: &str, number: u64, frame: &FrameForm) -> Result<Option<Pose>, InputError> {
+fn pose(subject: &str, number: i64, frame: &FrameForm) -> Result<Option<Pose>, InputError> {
     let (Some(pose), name) = (match (frame.camera_to_world, frame.world_to_camera) {
         (None, Some(m)) => (Some(m.inverse()), "world_to_camera"),
         (pose, _) => (pose, "camera_to_world"),

@@ -76,7 +76,8 @@ impl Scene {
         &self.still
     }
 
-    /// Animated triangles, lights and cameras `time_s` seconds into the scene's animation, which loops.
+    /// Animated triangles, lights and cameras `time_s` seconds into the scene's animation, which
+    /// starts at its first key and loops.
     pub fn pose(&self, time_s: f64) -> Pose {
         self.animated.as_ref().map_or_else(|| self.rest.clone(), |animated| animated.pose(time_s))
     }

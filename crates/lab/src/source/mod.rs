@@ -12,6 +12,7 @@ pub mod synthetic_head;
 pub mod traced;
 pub mod viewed_scene;
 
+pub use crate::file_kind::other_kind;
 pub use afterimage_eval::source::{
     AnalyticSource, CameraPose, FrameRequest, FrameSource, SourceInfo, Wanted, analytic, reference_offsets_px,
 };

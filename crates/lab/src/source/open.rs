@@ -3,7 +3,7 @@
 use super::analytic::{self, AnalyticSource};
 use super::{FrameSource, ReadLimits, SceneOptions, SequenceSource, StillSource};
 use crate::error::InputError;
-use crate::file_kind::kind;
+use crate::file_kind::{folder_of_pattern, kind, other_kind};
 use afterimage::FrameError;
 use std::path::Path;
 
@@ -47,11 +47,18 @@ pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Bo
     if path.is_dir() {
         return Ok(Box::new(SequenceSource::open(path, limits)?));
     }
-    let expected = "expected a folder of .exr frames, or a .exr, .png, .jpg or .jpeg file";
+    if let Some(folder) = folder_of_pattern(path) {
+        let remedy = format!("give the folder, {}; its frames are sorted by their numbers", folder.display());
+        return Err(InputError::request(input, "is a pattern of names", remedy));
+    }
+    let expected = "expected a folder of .exr frames, a .exr, .png, .jpg or .jpeg file, or a scene (.gltf, .glb)";
     match kind(path).as_str() {
         "exr" | "png" | "jpg" | "jpeg" => Ok(Box::new(StillSource::open(path, limits)?)),
         _ if !path.exists() => Err(InputError::io(input, "does not exist", expected)),
-        _ => Err(InputError::not_supported(input, "is a kind of file that is not supported", expected)),
+        _ => Err(match other_kind(path) {
+            Some((problem, remedy)) => InputError::not_supported(input, problem, remedy),
+            None => InputError::not_supported(input, "is a kind of file that is not supported", expected),
+        }),
     }
 }
 

@@ -64,7 +64,7 @@ impl SequenceSource {
             name,
             size: first.size(),
             frames: Some(files.len() as u64),
-            fps: cameras.as_ref().and_then(|c| c.fps),
+            fps: cameras.as_ref().and_then(|c| c.fps).or(first.fps()),
             hfov_deg: cameras.as_ref().and_then(|c| c.hfov_deg),
             still: false,
         };
@@ -164,13 +164,22 @@ fn playback(index: u64, n: u64) -> (usize, Step) {
 /// The `.exr` files of a folder, by name. Hidden files are skipped.
 fn exr_files(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
     let subject = folder.display().to_string();
-    let mut files = Vec::new();
+    let (mut files, mut pictures) = (Vec::new(), 0);
     for entry in fs::read_dir(folder).map_err(|e| io_error(&subject, &e))? {
         let path = entry.map_err(|e| io_error(&subject, &e))?.path();
         let hidden = path.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
         if !hidden && ending(&path) == "exr" && path.is_file() {
             files.push(path);
+        } else if !hidden && ["png", "jpg", "jpeg"].contains(&ending(&path).as_str()) {
+            pictures += 1;
         }
+    }
+    if files.is_empty() && pictures > 0 {
+        return Err(InputError::request(
+            subject,
+            format!("holds {pictures} pictures and no .exr file; a sequence needs motion vectors, which only EXR has"),
+            "render EXR frames with motion vectors, or give the path of one picture as a still",
+        ));
     }
     if files.is_empty() {
         return Err(InputError::request(
@@ -183,12 +192,26 @@ fn exr_files(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
     Ok(files)
 }
 
+/// Which hyphens before a number are its sign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sign {
+    /// Those behind neither a letter nor a digit: `f_-001`, `-001`, `shot--001`. Others separate: `shot-001`.
+    Apart,
+    /// All: `f-001` beside `f0000`.
+    All,
+}
+
 /// A file's name without its ending: the text around its numbers, in lower case, and the numbers.
-fn parts_of(file: &Path) -> (String, Vec<u64>) {
+fn parts_of(file: &Path, sign: Sign) -> (String, Vec<i64>) {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
     let (mut text, mut numbers, mut rest) = (String::new(), vec![], stem.as_str());
-    while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
-        let end = rest[start..].find(|c: char| !c.is_ascii_digit()).map_or(rest.len(), |n| start + n);
+    while let Some(first_digit) = rest.find(|c: char| c.is_ascii_digit()) {
+        let end = rest[first_digit..].find(|c: char| !c.is_ascii_digit()).map_or(rest.len(), |n| first_digit + n);
+        // Without text in between, the hyphen is behind the number before.
+        let is_apart = |before: &str| !before.chars().next_back().map_or(!text.is_empty(), char::is_alphanumeric);
+        let is_sign = |before: &str| sign == Sign::All || is_apart(before);
+        let before = rest[..first_digit].strip_suffix('-').filter(|before| is_sign(before));
+        let start = before.map_or(first_digit, str::len);
         text.push_str(&rest[..start]);
         match rest[start..end].parse() {
             Ok(number) => {
@@ -204,11 +227,24 @@ fn parts_of(file: &Path) -> (String, Vec<u64>) {
     (text, numbers)
 }
 
+/// Text and numbers of each file's name. If hyphens differ, they are signs, if that makes one sequence through frame 0.
+fn parts_of_all(files: &[PathBuf]) -> Vec<(String, Vec<i64>)> {
+    let all = |sign| files.iter().map(|file| parts_of(file, sign)).collect::<Vec<_>>();
+    let is_one = |parts: &[(String, Vec<i64>)]| parts.windows(2).all(|pair| pair[0].0 == pair[1].0);
+    let parts = all(Sign::Apart);
+    if is_one(&parts) {
+        return parts;
+    }
+    let signed = all(Sign::All);
+    let has_frame_0 = signed.iter().any(|(_, numbers)| numbers.contains(&0));
+    if is_one(&signed) && has_frame_0 { signed } else { parts }
+}
+
 /// Files in playback order, and their frame numbers: of the numbers in their names, the one that is another in every
 /// file. If several are, the last that has even steps, or else the last. Files without numbers are in order of their
 /// names.
-fn numbered_files(subject: &str, files: Vec<PathBuf>) -> Result<(Vec<PathBuf>, Vec<Option<u64>>), InputError> {
-    let parts: Vec<(String, Vec<u64>)> = files.iter().map(|file| parts_of(file)).collect();
+fn numbered_files(subject: &str, files: Vec<PathBuf>) -> Result<(Vec<PathBuf>, Vec<Option<i64>>), InputError> {
+    let parts = parts_of_all(&files);
     if files.len() < 2 || parts.iter().all(|(_, numbers)| numbers.is_empty()) {
         let numbers = vec![None; files.len()];
         return Ok((files, numbers));
@@ -223,7 +259,7 @@ fn numbered_files(subject: &str, files: Vec<PathBuf>) -> Result<(Vec<PathBuf>, V
     }
     let column = |place: usize| parts.iter().map(move |(_, numbers)| numbers[place]);
     let sorted = |place: usize| {
-        let mut numbers: Vec<u64> = column(place).collect();
+        let mut numbers: Vec<i64> = column(place).collect();
         numbers.sort_unstable();
         numbers
     };
@@ -231,7 +267,7 @@ fn numbered_files(subject: &str, files: Vec<PathBuf>) -> Result<(Vec<PathBuf>, V
     let varying: Vec<usize> = places.clone().filter(|&place| sorted(place).windows(2).all(|w| w[0] < w[1])).collect();
     let is_even = |&&place: &&usize| {
         let numbers = sorted(place);
-        numbers.windows(2).all(|w| w[1] - w[0] == numbers[1] - numbers[0])
+        numbers.windows(2).all(|w| w[1].abs_diff(w[0]) == numbers[1].abs_diff(numbers[0]))
     };
     let Some(&place) = varying.iter().rev().find(is_even).or(varying.last()) else {
         let distinct = |&place: &usize| {
@@ -240,24 +276,24 @@ fn numbered_files(subject: &str, files: Vec<PathBuf>) -> Result<(Vec<PathBuf>, V
             numbers.len()
         };
         let place = places.max_by_key(distinct).unwrap_or(0);
-        let numbers: Vec<u64> = column(place).collect();
+        let numbers: Vec<i64> = column(place).collect();
         let pairs = (0..numbers.len()).flat_map(|i| (0..i).map(move |j| [j, i]));
         let [a, b] = pairs.into_iter().find(|&[a, b]| numbers[a] == numbers[b]).unwrap_or([0, 1]);
         let number = numbers[a];
         return refuse(format!("has two frames of number {number}: {} and {}", file_name(a), file_name(b)));
     };
-    let numbers: Vec<u64> = column(place).collect();
+    let numbers: Vec<i64> = column(place).collect();
     let mut order: Vec<usize> = (0..files.len()).collect();
     order.sort_by_key(|&i| numbers[i]);
     Ok((order.iter().map(|&i| files[i].clone()).collect(), order.iter().map(|&i| Some(numbers[i])).collect()))
 }
 
 /// Refuses a sequence with a missing frame, because the motion vectors of the frame after it refer to the missing one.
-fn check_gaps(subject: &str, numbers: &[Option<u64>]) -> Result<(), InputError> {
-    let Some(numbers) = numbers.iter().copied().collect::<Option<Vec<u64>>>() else {
+fn check_gaps(subject: &str, numbers: &[Option<i64>]) -> Result<(), InputError> {
+    let Some(numbers) = numbers.iter().copied().collect::<Option<Vec<i64>>>() else {
         return Ok(());
     };
-    let steps: Vec<u64> = numbers.windows(2).map(|w| w[1] - w[0]).collect();
+    let steps: Vec<u64> = numbers.windows(2).map(|w| w[1].abs_diff(w[0])).collect();
     let smallest = steps.iter().copied().min().unwrap_or(0);
     match steps.iter().position(|&s| s != smallest) {
         Some(at) => Err(InputError::invalid(
@@ -329,7 +365,7 @@ mod tests {
     }
 
     /// Frame numbers of files in playback order, or the error.
-    fn numbered(names: &[&str]) -> Result<Vec<(String, Option<u64>)>, String> {
+    fn numbered(names: &[&str]) -> Result<Vec<(String, Option<i64>)>, String> {
         let files = names.iter().map(PathBuf::from).collect();
         let (files, numbers) = numbered_files("d", files).map_err(|e| e.to_string())?;
         Ok(files.iter().map(|file| file.display().to_string()).zip(numbers).collect())
@@ -350,6 +386,25 @@ mod tests {
     }
 
     #[test]
+    fn frames_before_zero_come_first() {
+        for names in [
+            ["f_-0002.exr", "f_-0001.exr", "f_0000.exr", "f_0001.exr"],
+            ["-0002.exr", "-0001.exr", "0000.exr", "0001.exr"],
+            ["f.-2.exr", "f.-1.exr", "f.0.exr", "f.1.exr"],
+            ["render-002.exr", "render-001.exr", "render0000.exr", "render0001.exr"],
+            ["shot--002.exr", "shot--001.exr", "shot-000.exr", "shot-001.exr"],
+        ] {
+            let in_order = |order: [usize; 4]| numbered(&order.map(|i| names[i]));
+            let expected: Vec<_> = names.iter().map(|name| (*name).to_owned()).zip([-2, -1, 0, 1].map(Some)).collect();
+            assert_eq!(in_order([3, 1, 2, 0]).unwrap(), expected);
+        }
+        assert_eq!(numbered(&["f_-3.exr", "f_-2.exr", "f_-1.exr"]).unwrap()[0].1, Some(-3));
+        // A hyphen behind a word separates.
+        assert_eq!(numbered(&["shot-001.exr", "shot-002.exr"]).unwrap()[0].1, Some(1));
+        assert_eq!(numbered(&["2024-01-05_1.exr", "2024-01-05_2.exr"]).unwrap()[1].1, Some(2));
+    }
+
+    #[test]
     fn two_sequences_in_a_folder_are_refused_by_name() {
         for (names, expected) in [
             (["a_1.exr", "b_1.exr"], "a_1.exr and b_1.exr"),
@@ -366,7 +421,7 @@ mod tests {
 
     #[test]
     fn a_missing_frame_is_noticed() {
-        let gap = |v: &[u64]| check_gaps("d", &v.iter().map(|&n| Some(n)).collect::<Vec<_>>());
+        let gap = |v: &[i64]| check_gaps("d", &v.iter().map(|&n| Some(n)).collect::<Vec<_>>());
         assert!(gap(&[3, 4, 5]).is_ok());
         assert!(gap(&[0, 10, 20]).is_ok());
         let e = gap(&[1, 2, 4]).unwrap_err().to_string();

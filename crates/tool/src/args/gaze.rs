@@ -65,6 +65,7 @@ impl GazeArgs {
         let default_frames = (DEFAULT_SECONDS * f64::from(fps)).ceil() as u64;
         if let Some(px) = fixed(&self.gaze)? {
             self.log.refuse_for(&format!("--gaze {}", self.gaze))?;
+            warn(&fractions(px, view.size_px()).into_iter().collect::<Vec<_>>());
             let count = frames.unwrap_or(default_frames) as usize;
             let px = vec![Some(px); count];
             return Ok(Track { late_px: is_late.then(|| px.clone()), px, map: "none" });
@@ -136,6 +137,19 @@ pub(super) fn fixed(text: &str) -> Result<Option<[f32; 2]>, Failure> {
             Err(Failure::Input(format!("--gaze {text}: expected X,Y in frame pixels, a CSV file, or synthetic[:SEED]")))
         }
     }
+}
+
+/// The warning for a fixed gaze that looks like shares of the frame: from 0 to 1, and no whole pixels.
+fn fractions(px: [f32; 2], size_px: [u32; 2]) -> Option<String> {
+    let is_share = px.iter().all(|v| (0.0..=1.0).contains(v)) && px.iter().any(|v| v.fract() != 0.0);
+    let [x, y] = [0, 1].map(|i| (px[i] * (size_px[i] - 1) as f32).round());
+    (is_share && size_px.iter().all(|side| *side > 2)).then(|| {
+        let [w, h] = size_px;
+        format!(
+            "--gaze {},{} is in the corner of {w}x{h} pixels; for this share of the frame give {x},{y}",
+            px[0], px[1]
+        )
+    })
 }
 
 pub(super) fn synthetic_seed(text: &str) -> Result<Option<u64>, Failure> {

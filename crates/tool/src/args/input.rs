@@ -6,6 +6,7 @@ use crate::failure::{Failure, warn};
 use afterimage::ViewGeometry;
 use afterimage_lab::device::{Backend, Headless, NO_ADAPTER};
 use afterimage_lab::scanpath::HeadPath;
+use afterimage_lab::scene::{PunctualKind, Scene};
 use afterimage_lab::source;
 use afterimage_lab::source::{
     FrameSource, Light, ReadLimits, SceneChoice, SceneOptions, SourceInfo, TracedSamples, TracedSource, ViewedScene,
@@ -44,6 +45,9 @@ pub struct InputArgs {
     /// which glides sideways if nothing in the scene moves
     #[arg(long, value_name = "NAME|FILE")]
     pub camera: Option<String>,
+    /// Animation of a scene, by name or number from 0; default: the first. It starts at its first key, and loops
+    #[arg(long, visible_alias = "clip", value_name = "NAME|N")]
+    pub animation: Option<String>,
     /// Limit on the size of input images, million pixels
     #[arg(long, default_value_t = 64, value_name = "N")]
     pub max_megapixels: u32,
@@ -106,6 +110,7 @@ impl InputArgs {
             (true, ..) => self.rasterised(rendering),
             (false, Some(_), _) => refuse("--source"),
             (false, _, Some(_)) => refuse("--camera"),
+            (false, None, None) if self.animation.is_some() => refuse("--animation"),
             (false, None, None) => self.read(),
         }
     }
@@ -129,12 +134,15 @@ impl InputArgs {
 
     /// Opens a scene for rasterization on any device.
     pub fn scene(&self, head: Option<HeadPath>) -> Result<ViewedScene, Failure> {
-        self.viewed(head, Light::Own)
+        let scene = self.viewed(head, Light::Own)?;
+        warn(&without_shadows(&scene.scene).into_iter().collect::<Vec<_>>());
+        Ok(scene)
     }
 
     fn viewed(&self, head: Option<HeadPath>, light: Light) -> Result<ViewedScene, Failure> {
-        let (camera, options, limits) = (self.camera.as_deref(), self.scene_options(), self.limits());
-        let choice = SceneChoice { camera, head, light, options, limits, ..SceneChoice::new(&self.name) };
+        let (clip, camera) = (self.animation.as_deref(), self.camera.as_deref());
+        let (options, limits) = (self.scene_options(), self.limits());
+        let choice = SceneChoice { clip, camera, head, light, options, limits, ..SceneChoice::new(&self.name) };
         let scene = ViewedScene::open(&choice)?;
         warn(scene.warnings());
         Ok(scene)
@@ -170,6 +178,18 @@ impl InputArgs {
     pub fn geometry(&self, info: &SourceInfo) -> Result<ViewGeometry, Failure> {
         Ok(ViewGeometry::flat(info.size, self.hfov.or(info.hfov_deg).unwrap_or(70.0))?)
     }
+}
+
+/// What to say of lights that cast no shadows when they are rasterized.
+fn without_shadows(scene: &Scene) -> Option<String> {
+    let lights = scene.pose(0.0).lights;
+    let count = lights.iter().filter(|light| light.kind != PunctualKind::Directional).count();
+    (count > 0).then(|| {
+        format!(
+            "{count} point or spot lights cast no shadows when rasterized, only the strongest directional light does; \
+             --source trace has all shadows"
+        )
+    })
 }
 
 /// Number of frames of a run; `None` for stills and endless scenes, which last as long as the gaze.

@@ -9,7 +9,9 @@ use afterimage_lab::scanpath::{
 };
 use afterimage_lab::whole_file::write_whole;
 use clap::Args;
-use std::path::PathBuf;
+#[cfg(unix)]
+use std::fs::{File, Metadata};
+use std::path::{Path, PathBuf};
 
 /// Write a synthetic scanpath, or convert a gaze log
 ///
@@ -96,17 +98,15 @@ pub fn scanpath(args: &ScanpathArgs) -> Result<(), Failure> {
     }
     args.log.refuse_for("a generated scanpath")?;
     let (path, events) = if args.head { with_head(args)? } else { on_screen(args)? };
-    write(args, &path)?;
     let count = |kind| events.iter().filter(|e| e.kind == kind).count();
-    say!(
-        "{}: {} s, {} fixations, {} saccades, {} microsaccades",
-        args.out.display(),
+    let summary = format!(
+        "{} s, {} fixations, {} saccades, {} microsaccades",
         args.seconds,
         count(EventKind::Fixation),
         count(EventKind::Saccade),
         count(EventKind::Microsaccade)
     );
-    Ok(())
+    write(args, &path, &summary)
 }
 
 /// Converts a gaze log.
@@ -117,25 +117,47 @@ fn converted(args: &ScanpathArgs, file: &str) -> Result<(), Failure> {
     };
     let log = args.log.read(file, from)?;
     warn(&log.warnings);
-    write(args, &log.scanpath)?;
-    say!(
-        "{}: {:.3} s, {} samples ({} lost), from {}",
-        args.out.display(),
+    let summary = format!(
+        "{:.3} s, {} samples ({} lost), from {}",
         log.scanpath.duration_s(),
         log.scanpath.samples().len(),
         log.scanpath.lost(),
         log.vendor.map_or("a scanpath", Vendor::name)
     );
+    write(args, &log.scanpath, &summary)
+}
+
+fn write(args: &ScanpathArgs, path: &Scanpath, summary: &str) -> Result<(), Failure> {
+    use std::io::ErrorKind;
+    let out = args.out.display();
+    write_whole(&args.out, |file| write_csv(path, file)).map_err(|e| match e.kind() {
+        ErrorKind::StorageFull | ErrorKind::BrokenPipe | ErrorKind::WriteZero => Failure::writing(&args.out, e),
+        _ => {
+            Failure::Input(format!("{out}: cannot be written ({e}); give --out a file in a folder that can be written"))
+        }
+    })?;
+    // Not between the rows of the scanpath.
+    if is_stdout(&args.out) {
+        eprintln!("{out}: {summary}")
+    } else {
+        say!("{out}: {summary}")
+    }
     Ok(())
 }
 
-fn write(args: &ScanpathArgs, path: &Scanpath) -> Result<(), Failure> {
-    write_whole(&args.out, |file| write_csv(path, file)).map_err(|e| {
-        Failure::Input(format!(
-            "{}: cannot be written ({e}); give --out a file in a folder that can be written",
-            args.out.display()
-        ))
-    })
+/// Whether a path names the file, pipe or terminal that this program's output goes to.
+#[cfg(unix)]
+fn is_stdout(path: &Path) -> bool {
+    use std::os::fd::AsFd;
+    use std::os::unix::fs::MetadataExt;
+    let stdout = std::io::stdout().as_fd().try_clone_to_owned().and_then(|fd| File::from(fd).metadata());
+    let same = |a: Metadata, b: Metadata| (a.dev(), a.ino()) == (b.dev(), b.ino());
+    stdout.and_then(|stdout| Ok(same(stdout, path.metadata()?))).unwrap_or(false)
+}
+
+#[cfg(not(unix))]
+fn is_stdout(_: &Path) -> bool {
+    false
 }
 
 fn on_screen(args: &ScanpathArgs) -> Result<(Scanpath, Vec<Event>), Failure> {

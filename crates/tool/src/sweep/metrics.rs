@@ -43,7 +43,7 @@ macro_rules! metric {
 
 /// All metrics, in the order of the tables. `docs/metrics.md` has their formulas.
 pub const METRICS: &[Metric] = &[
-    metric!("jod", "JOD", "JOD", true, 3, |s| s.whole.jod),
+    metric!("jod", "JOD", "", true, 3, |s| s.whole.jod),
     metric!("flip", "FLIP", "", false, 4, |s| s.whole.flip),
     metric!("psnr_db", "PSNR", "dB", true, 2, |s| s.whole.psnr_db),
     metric!("ssim", "SSIM", "", true, 4, |s| s.whole.ssim),
@@ -52,9 +52,9 @@ pub const METRICS: &[Metric] = &[
     metric!("fovea_psnr_db", "PSNR of the fovea", "dB", true, 2, |s| s.bands[0].psnr_db),
     metric!("mid_psnr_db", "PSNR from 2.5 to 7.5 degrees", "dB", true, 2, |s| s.bands[1].psnr_db),
     metric!("periphery_psnr_db", "PSNR beyond 7.5 degrees", "dB", true, 2, |s| s.bands[2].psnr_db),
-    metric!("fovea_jod", "JOD of the fovea", "JOD", true, 3, |s| s.bands[0].jod),
-    metric!("mid_jod", "JOD from 2.5 to 7.5 degrees", "JOD", true, 3, |s| s.bands[1].jod),
-    metric!("periphery_jod", "JOD beyond 7.5 degrees", "JOD", true, 3, |s| s.bands[2].jod),
+    metric!("fovea_jod", "JOD of the fovea", "", true, 3, |s| s.bands[0].jod),
+    metric!("mid_jod", "JOD from 2.5 to 7.5 degrees", "", true, 3, |s| s.bands[1].jod),
+    metric!("periphery_jod", "JOD beyond 7.5 degrees", "", true, 3, |s| s.bands[2].jod),
     metric!("fovea_flip", "FLIP of the fovea", "", false, 4, |s| s.bands[0].flip),
     metric!("mid_flip", "FLIP from 2.5 to 7.5 degrees", "", false, 4, |s| s.bands[1].flip),
     metric!("periphery_flip", "FLIP beyond 7.5 degrees", "", false, 4, |s| s.bands[2].flip),

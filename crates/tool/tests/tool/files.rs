@@ -59,3 +59,62 @@ fn an_exposure_that_fits_is_proposed_and_found() {
     }
     refuses(&run(input, &out, &["--exposure", "automatic"]), &["--exposure", "auto"]);
 }
+
+/// A rename would replace what is no regular file, and a link.
+#[cfg(unix)]
+#[test]
+fn devices_pipes_and_links_are_written_and_stay() {
+    use std::os::unix::fs::{FileTypeExt, symlink};
+    use std::process::{Command, Stdio};
+    let folder = Folder::new();
+    let command = "scanpath --seconds 1 --out";
+    let plain = folder.text("plain.csv");
+    succeeds(&[&words(command)[..], &[&plain]].concat());
+    let expected = fs::read_to_string(&plain).unwrap();
+    assert!(expected.starts_with("# task") && expected.lines().count() > 500);
+    // Links to a file, to one that does not exist yet, and to a link.
+    let [old, new] = ["old.csv", "new.csv"].map(|name| folder.path(name));
+    fs::write(&old, "old").unwrap();
+    for (link, target) in [("to_old", "old.csv"), ("to_new", "new.csv"), ("to_link", "to_old")] {
+        symlink(target, folder.path(link)).unwrap();
+        succeeds(&[&words(command)[..], &[&folder.text(link)]].concat());
+        assert!(folder.path(link).is_symlink());
+    }
+    assert!([old, new].iter().all(|file| fs::read_to_string(file).unwrap() == expected));
+    symlink("circle", folder.path("circle")).unwrap();
+    refuses(&[&words(command)[..], &[&folder.text("circle")]].concat(), &["too many links", "--out"]);
+    // A pipe with a reader.
+    let pipe = folder.text("pipe");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let reader = Command::new("cat").arg(&pipe).stdout(Stdio::piped()).spawn().unwrap();
+    succeeds(&[&words(command)[..], &[&pipe]].concat());
+    assert_eq!(String::from_utf8(reader.wait_with_output().unwrap().stdout).unwrap(), expected);
+    assert!(fs::symlink_metadata(&pipe).unwrap().file_type().is_fifo());
+    // The program's own output, by a link: rows alone, also in a file behind what is there.
+    symlink("/dev/stdout", folder.path("stdout")).unwrap();
+    let stdout = folder.text("stdout");
+    let to_stdout = [&words(command)[..], &[&stdout]].concat();
+    let output = tool(&to_stdout);
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), expected);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("fixations"));
+    let appended = folder.path("appended.csv");
+    fs::write(&appended, "before\n").unwrap();
+    let file = fs::OpenOptions::new().append(true).open(&appended).unwrap();
+    let mut again = Command::new(env!("CARGO_BIN_EXE_afterimage"));
+    let status = again.args(&to_stdout).stdout(file).stderr(Stdio::null()).status().unwrap();
+    assert!(status.success() && folder.path("stdout").is_symlink());
+    assert_eq!(fs::read_to_string(&appended).unwrap(), format!("before\n{expected}"));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_device_is_an_error_of_the_work() {
+    let folder = Folder::new();
+    std::os::unix::fs::symlink("/dev/full", folder.path("full")).unwrap();
+    let full = folder.text("full");
+    let output = tool(&["scanpath", "--seconds", "60", "--out", &full]);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{errors}");
+    assert!(errors.contains("No space left on device") && errors.lines().count() == 1, "{errors}");
+    assert!(folder.path("full").is_symlink());
+}

@@ -92,3 +92,47 @@ fn a_run_does_not_start_with_times_that_are_hardly_seconds() {
         assert_eq!(errors.contains("milliseconds?"), warned, "{errors}");
     }
 }
+
+#[test]
+fn units_that_nobody_states_are_found_or_doubted() {
+    let folder = Folder::new();
+    let rows: String = (0..120).map(|i| format!("{:.4},{},500\n", f64::from(i) / 60.0, 900 + i)).collect();
+    let log = folder.write("unity.csv", format!("Time,GazeX,GazeY\n{rows}").as_bytes());
+    let text = succeeds(&["info", &log, "--screen-px", "1920x1080"]);
+    assert!(text.contains("scanpath of 1.983 s") && !text.contains("a second"), "{text}");
+    // A name that says milliseconds is believed, and doubted.
+    let log = folder.write("ms.csv", format!("t_ms,x,y\n{rows}").as_bytes());
+    let text = succeeds(&["info", &log, "--screen-px", "1920x1080"]);
+    assert!(text.contains("120 samples in 0.002 s are 59") && text.contains("another unit"), "{text}");
+    let run = "run analytic:still --size 64x36 --frames 1 --method none --backend cpu --no-jod --no-flip";
+    for (gaze, is_share) in [("0.5,0.25", true), ("0,0", false), ("1,1", false), ("32.5,0.5", false)] {
+        let (_, errors) = both(&[&words(run)[..], &["--gaze", gaze, "--out", &folder.text("out")]].concat());
+        assert_eq!(errors.contains("for this share of the frame give 32,9"), is_share, "{gaze}: {errors}");
+    }
+}
+
+#[test]
+fn columns_are_named_on_the_command_line() {
+    let folder = Folder::new();
+    let rows: String = (0..60).map(|i| format!("{},-6.0,1.8,0\n", 8 * i)).collect();
+    let log = folder.write("gazebase.csv", format!("n,x,y,val\n{rows}").as_bytes());
+    refuses(&["info", &log], &["gazebase.csv", "name the columns with --gaze-columns t=NAME,x=NAME,y=NAME"]);
+    let columns = "--gaze-columns t=n,x=x,y=y,valid=!val --gaze-unit deg --time-unit ms";
+    let text = succeeds(&[&["info", &log][..], &words(columns)].concat());
+    assert!(text.contains("scanpath of 0.472 s") && text.contains("samples: 60 (0 lost)"), "{text}");
+    let out = folder.text("out.csv");
+    both(&[&["scanpath", &log, "--out", &out][..], &words(columns)].concat());
+    // The screen of angles has 2000 pixels for 100 degrees; y is up.
+    let px = fs::read_to_string(&out).unwrap().lines().last().unwrap().split(',').map(String::from).collect::<Vec<_>>();
+    let at = |degrees: f64, i: usize| {
+        1000.0 + 1000.0 * degrees.to_radians().tan() / 50f64.to_radians().tan() - px[i].parse::<f64>().unwrap()
+    };
+    assert!(at(-6.0, 1).abs() < 0.1 && at(-1.8, 2).abs() < 0.5, "{px:?}");
+    for bad in ["t=n,x=x", "t=n,x=x,y=y,w=z", "t=n,x=x,x=y", "t=n,x=,y=y"] {
+        refuses(&["info", &log, "--gaze-columns", bad], &["--gaze-columns", "expected t=NAME,x=NAME,y=NAME"]);
+    }
+    refuses(&["info", &log, "--gaze-columns", "t=n,x=u,y=y"], &["has no column \"u\"", "it has n, x, y, val"]);
+    refuses(&["info", &log, "--gaze-unit", "deg"], &["--gaze-columns"]);
+    let fixed = ["run", "analytic:still", "--gaze", "3,4", "--gaze-columns", "t=n,x=x,y=y", "--out", &out];
+    refuses(&fixed, &["--gaze-columns", "not a gaze log"]);
+}

@@ -6,6 +6,7 @@ mod files;
 mod gaze_logs;
 mod head;
 mod info;
+mod inputs;
 mod latency;
 mod pixel;
 mod quads;

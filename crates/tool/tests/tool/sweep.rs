@@ -1,6 +1,6 @@
 //! `afterimage sweep` as a process: files, resuming, errors.
 
-use super::rig::{Folder, files, kill_once, read_json, refuses, succeeds, words};
+use super::rig::{Folder, files, kill_once, read_json, refuses, succeeds, tool, words};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
@@ -278,4 +278,26 @@ fn a_full_disk_and_an_unwritable_folder_are_clear_errors() {
     assert_eq!(["out/points", "out/pictures"].map(|part| files(&folder.path(part))), [[""; 0]; 2]);
     run(&out, &one);
     assert_eq!(figures(&out).len(), 1);
+}
+
+#[test]
+fn points_are_compared_by_what_was_measured() {
+    let folder = Folder::new();
+    let out = folder.text("sweep");
+    let small = "sweep analytic:scroll --backend cpu --size 48x27 --frames 38 --axis method=none,smr --set no-flip=on";
+    let command = [&words(small)[..], &["--out", &out]].concat();
+    let said = succeeds(&command);
+    assert!(said.contains("FLIP was not measured; points are compared by JOD (--by jod)"), "{said}");
+    assert!(said.contains("best JOD for its cost") && said.contains("smr"), "{said}");
+    let plot = fs::read_to_string(folder.path("sweep/pareto.svg")).unwrap();
+    assert!(plot.contains("JOD; higher is better") && plot.matches("class=\"point\"").count() == 2, "{plot}");
+    let tables = fs::read_to_string(folder.path("sweep/sweep.md")).unwrap();
+    assert!(tables.contains("| JOD |") && !tables.contains("JOD JOD"), "{tables}");
+    let neither = folder.text("neither");
+    let neither = [&words(small)[..], &["--set", "no-jod=on", "--out", &neither]].concat();
+    assert!(succeeds(&neither).contains("compared by PSNR (--by psnr_db)"));
+    let target = tool(&[&command[..], &["--target", "0.1"]].concat());
+    let refused = String::from_utf8(target.stderr).unwrap();
+    assert!(target.status.code() == Some(2) && refused.contains("FLIP was not measured"), "{refused}");
+    assert!(refused.contains("--by jod"), "{refused}");
 }

@@ -39,7 +39,7 @@ struct State {
 /// [`Invalid`](InputError::Invalid) with the line if gaze is not in screen coordinates or a sample cannot be read;
 /// [`Request`](InputError::Request) for an eye that was not recorded.
 pub(super) fn samples(name: &str, text: &str, eye: Eye) -> Result<Samples, InputError> {
-    let mut samples = Samples::new(Vendor::Eyelink, "EyeLink's edf2asc", Plane::Pixels, Some(1e3));
+    let mut samples = Samples::new(Some(Vendor::Eyelink), "EyeLink's edf2asc", Plane::Pixels, Some(1e3));
     let mut state = State { eye, recorded: [false; 2], blinks: [false; 2], corner: [0.0; 2] };
     for (index, line) in text.lines().enumerate() {
         let words: Vec<&str> = line.split_whitespace().collect();

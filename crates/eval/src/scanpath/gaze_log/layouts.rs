@@ -19,6 +19,8 @@ pub(super) enum Plane {
     ForwardLeft,
     /// Azimuth to the right and elevation upwards, degrees.
     Angles,
+    /// The same in radians.
+    Radians,
 }
 
 impl Plane {
@@ -33,7 +35,7 @@ impl Plane {
 
     /// Whether it gives visual angles, with no screen.
     pub fn is_angular(self) -> bool {
-        self.is_forward() || self == Self::Angles
+        self.is_forward() || matches!(self, Self::Angles | Self::Radians)
     }
 }
 
@@ -43,7 +45,7 @@ pub(super) enum Unit {
     /// As many ticks a second.
     PerSecond(f64),
     /// As the column's name ends (`_ms`, `_f_10000000`); without one, that in which a usual tracker has 5 to 5000
-    /// samples a second.
+    /// samples a second: loggers of one's own write `time` in any of them.
     Named,
 }
 
@@ -60,6 +62,8 @@ pub(super) enum Validity {
     Code,
     /// A number of at least this.
     AtLeast(f64),
+    /// A number above 0, a true word or `valid`; inverted, what is none of these.
+    Truth { is_inverted: bool },
     /// A true word, 1, or a mask with the bit 2 of the direction.
     Mask,
 }
@@ -290,8 +294,13 @@ pub(super) const LAYOUTS: [Layout; 16] = [
     },
     Layout {
         vendor: Vendor::Webgazer,
-        writer: "a page with WebGazer",
-        time: &[("t|time|timestamp|elapsedtime|elapsed_time|t_ms|time_ms|timestamp_ms|elapsed_ms", MILLISECONDS)],
+        writer: "a page with WebGazer, or a plain table",
+        time: &[(
+            "t|time|timestamp|elapsedtime|elapsed_time|t_s|t_ms|t_us|t_ns|t_sec|time_s|time_ms|time_us|time_ns|time_sec|\
+             time_seconds|time_milliseconds|timestamp_s|timestamp_ms|timestamp_us|timestamp_ns|timestamp_sec|\
+             timestamp_seconds|timestamp_milliseconds|elapsed_s|elapsed_ms|elapsed_time_s|elapsed_time_ms",
+            Unit::Named,
+        )],
         both: place(&["x|x_px|gaze_x|gazex", "y|y_px|gaze_y|gazey"], &[]),
         ..EMPTY
     },

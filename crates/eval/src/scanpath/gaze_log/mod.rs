@@ -6,7 +6,9 @@
 //! ```
 
 mod asc;
+mod clock_time;
 mod layouts;
+mod named;
 mod options;
 mod rows;
 mod samples;
@@ -16,6 +18,7 @@ use super::table::{Columns, comment, decode, quote};
 use super::{Scanpath, Screen};
 use crate::error::InputError;
 use layouts::{LAYOUTS, Layout};
+pub use named::{GazeColumns, GazeUnit};
 pub use options::{Eye, GazeLogOptions, Vendor};
 use std::path::Path;
 
@@ -39,6 +42,44 @@ pub fn read_gaze_log(path: impl AsRef<Path>, options: &GazeLogOptions) -> Result
     parse_gaze_log(&name, &bytes, options)
 }
 
+/// Reads a table in the columns that are named, and not as the export of a vendor that it may be.
+///
+/// # Errors
+/// Those of [`read_csv`](super::read_csv); [`Request`](InputError::Request) if a column does not exist, or gaze is in
+/// pixels of a screen of unknown size; [`Invalid`](InputError::Invalid) for cells that cannot be read.
+pub fn read_gaze_columns(
+    path: impl AsRef<Path>,
+    columns: &GazeColumns,
+    options: &GazeLogOptions,
+) -> Result<GazeLog, InputError> {
+    let (name, bytes) = bytes_of(path.as_ref())?;
+    parse_gaze_columns(&name, &bytes, columns, options)
+}
+
+/// Parses the contents of a table as [`read_gaze_columns`] does; `name` is its name in errors.
+///
+/// # Errors
+/// Those of [`read_gaze_columns`] that are not of the file system.
+pub fn parse_gaze_columns(
+    name: &str,
+    bytes: &[u8],
+    columns: &GazeColumns,
+    options: &GazeLogOptions,
+) -> Result<GazeLog, InputError> {
+    let text = decode(name, bytes)?;
+    let samples = named::samples(name, &text, &columns_of(&text), columns)?;
+    let (scanpath, mut warnings) = samples.placed(name, options)?;
+    warnings.extend(scanpath.warnings());
+    Ok(GazeLog { scanpath, vendor: None, warnings })
+}
+
+/// The columns of a table, by its line of names.
+fn columns_of(text: &str) -> Columns {
+    let mut lines = text.lines().filter(|line| !line.trim().is_empty() && comment(line.trim()).is_none());
+    let heads = lines.next().unwrap_or_default();
+    Columns::new(heads, lines.next().unwrap_or_default())
+}
+
 /// Parses the contents of a gaze log; `name` is its name in errors. Times of an eye tracker begin at 0.
 ///
 /// # Errors
@@ -46,6 +87,10 @@ pub fn read_gaze_log(path: impl AsRef<Path>, options: &GazeLogOptions) -> Result
 /// [`Request`](InputError::Request) if the file lacks the gaze of the eye that is asked for, or gaze is in pixels of a
 /// screen of unknown size.
 pub fn parse_gaze_log(name: &str, bytes: &[u8], options: &GazeLogOptions) -> Result<GazeLog, InputError> {
+    if bytes.starts_with(b"SR_RESEARCH") {
+        let problem = "is an EyeLink recording (EDF), which only SR Research's programs read";
+        return Err(InputError::not_supported(name, problem, "convert it with edf2asc, and give the .asc file"));
+    }
     let text = decode(name, bytes)?;
     let is_asc = match options.from {
         None => asc::is_asc(&text),
@@ -58,7 +103,7 @@ pub fn parse_gaze_log(name: &str, bytes: &[u8], options: &GazeLogOptions) -> Res
             None => None,
         },
     };
-    let vendor = samples.as_ref().map(|samples| samples.vendor);
+    let vendor = samples.as_ref().and_then(|samples| samples.vendor);
     let (scanpath, mut warnings) = match samples {
         Some(samples) => samples.placed(name, options)?,
         None => parse_table(name, &text, &|screen| replaced(screen, options))?,
@@ -83,9 +128,9 @@ fn layout_of(
     options: &GazeLogOptions,
 ) -> Result<Option<(&'static Layout, Columns)>, InputError> {
     let from = options.from;
+    let columns = columns_of(text);
     let mut lines = text.lines().filter(|line| !line.trim().is_empty() && comment(line.trim()).is_none());
     let heads = lines.next().unwrap_or_default();
-    let columns = Columns::new(heads, lines.next().unwrap_or_default());
     let is_own = ["t_s", "x_px", "y_px"].iter().all(|column| columns.find(column).is_some());
     if from.is_none() && (is_own || heads.is_empty()) {
         return Ok(None);
@@ -111,7 +156,8 @@ fn layout_of(
                 name,
                 format!("{} instead of the column names of a scanpath or of an eye tracker's export", quote(heads)),
                 format!(
-                    "expected t_s,x_px,y_px,valid, or an export of {}, as docs/gaze-logs.md lists them",
+                    "expected t_s,x_px,y_px,valid, or an export of {}, as docs/gaze-logs.md lists them; of another \
+                     table, name the columns with `gaze_columns`",
                     vendors.join(", ")
                 ),
             ))

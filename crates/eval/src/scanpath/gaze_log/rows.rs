@@ -1,5 +1,6 @@
 //! Rows of a vendor's table as samples.
 
+use super::clock_time;
 use super::layouts::{Layout, Place, Plane, Unit, Validity};
 use super::options::Eye;
 use super::samples::{Clock, Raw, Samples};
@@ -35,26 +36,40 @@ impl Layout {
 }
 
 /// Ticks a second of a time column with this name.
-fn per_second(name: &str) -> Option<f64> {
-    const UNITS: [(&str, f64); 7] =
-        [("_100ns", 1e7), ("_ns", 1e9), ("_us", 1e6), ("_ms", 1e3), ("_s", 1.0), ("_sec", 1.0), ("_seconds", 1.0)];
-    let unit = UNITS.iter().find(|(end, _)| name.ends_with(end)).map(|(_, ticks)| *ticks);
+pub(super) fn per_second(name: &str) -> Option<f64> {
+    const UNITS: [(&str, f64); 5] = [
+        ("100ns", 1e7),
+        ("ns|nsec|nanoseconds", 1e9),
+        ("us|usec|microseconds", 1e6),
+        ("ms|msec|millis|milliseconds", 1e3),
+        ("s|sec|secs|seconds", 1.0),
+    ];
+    let last = name.rsplit('_').next().unwrap_or(name);
+    let unit = UNITS.iter().find(|(words, _)| words.split('|').any(|word| word == last)).map(|(_, ticks)| *ticks);
     let frequency = || name.rsplit_once("_f_")?.1.parse().ok().filter(|ticks| *ticks >= 1.0);
     unit.or_else(frequency)
 }
 
 /// Columns of a place that is in a table.
-struct Found<'a> {
-    rule: Validity,
-    at: Vec<(&'a str, Column)>,
-    valid: Vec<Column>,
+pub(super) struct Found<'a> {
+    pub rule: Validity,
+    pub at: Vec<(&'a str, Column)>,
+    /// Axes that point the other way.
+    pub is_turned: [bool; 3],
+    pub valid: Vec<Column>,
 }
 
 impl<'a> Found<'a> {
     fn new(rule: Validity, place: &Place, columns: &'a Columns) -> Option<Self> {
         let at: Vec<_> = place.at.iter().map_while(|names| columns.find(names)).collect();
         let valid = place.valid.iter().filter_map(|names| Some(columns.find(names)?.1)).collect();
-        (!at.is_empty() && at.len() == place.at.len()).then_some(Self { rule, at, valid })
+        (!at.is_empty() && at.len() == place.at.len()).then_some(Self { rule, at, is_turned: [false; 3], valid })
+    }
+
+    /// Whether a row has text where gaze would be, or ends before it.
+    fn is_text(&self, row: &Row) -> bool {
+        let is_text = |cell: &str| !is_missing(cell) && number::<f64>(cell).is_none();
+        self.at.iter().any(|(_, column)| is_text(row.cell(*column)) || !row.reaches(*column))
     }
 
     /// The gaze in a row; `None` where it is lost.
@@ -66,6 +81,9 @@ impl<'a> Found<'a> {
         let mut values = [0.0; 3];
         for (value, (name, column)) in values.iter_mut().zip(&self.at) {
             *value = coordinate(name, row.cell(*column))?;
+        }
+        for (value, _) in values.iter_mut().zip(self.is_turned).filter(|(_, is_turned)| *is_turned) {
+            *value = if plane == Plane::Fractions { 1.0 - *value } else { -*value };
         }
         let read = &values[..plane.axes()];
         Ok((is_valid && read.iter().all(|v| v.is_finite())).then(|| flat(plane, values)).flatten())
@@ -89,6 +107,11 @@ impl Validity {
                 "invalid" => false,
                 _ => return Err(refused("Valid or Invalid")),
             },
+            Self::Truth { is_inverted } => {
+                let is_word = cell.eq_ignore_ascii_case("valid");
+                let is_true = is_word || !cell.eq_ignore_ascii_case("invalid") && value("0 or 1, or a word")? > 0.0;
+                is_true != is_inverted
+            }
             Self::Code => value("0 to 4")? <= 1.0,
             Self::AtLeast(least) => value("a number")? >= least,
             Self::Mask => {
@@ -115,15 +138,15 @@ fn flat(plane: Plane, [x, y, z]: [f64; 3]) -> Option<[f64; 2]> {
         Plane::FractionsUp => Some([x, 1.0 - y]),
         Plane::Forward => (z > 0.0).then(|| [x / z, -y / z]),
         Plane::ForwardLeft => (z > 0.0).then(|| [-x / z, -y / z]),
-        Plane::Angles => {
-            let (azimuth, elevation) = (x.to_radians(), y.to_radians());
+        Plane::Angles | Plane::Radians => {
+            let (azimuth, elevation) = if plane == Plane::Angles { (x.to_radians(), y.to_radians()) } else { (x, y) };
             (azimuth.cos() > 0.0 && elevation.cos() > 0.0).then(|| [azimuth.tan(), -elevation.tan() / azimuth.cos()])
         }
     }
 }
 
 /// The columns of a table that samples need.
-struct Reader<'a> {
+pub(super) struct Reader<'a> {
     columns: &'a Columns,
     plane: Plane,
     time: Column,
@@ -132,6 +155,8 @@ struct Reader<'a> {
     only: Option<(Column, &'static str)>,
     blink: Option<Column>,
     screen_px: Option<[Column; 2]>,
+    /// Whether rows with text instead of gaze are events, and not errors.
+    pub skips_text: bool,
 }
 
 /// The samples of a table.
@@ -159,27 +184,43 @@ pub(super) fn samples(
         return Err(no_eye(name, eye));
     };
     let reader = Reader {
-        columns,
-        plane: layout.plane,
-        time,
-        places,
         only: layout.rows.and_then(|(names, word)| Some((columns.find(names)?.1, word))),
         blink: layout.blink.and_then(|names| Some(columns.find(names)?.1)),
         screen_px: layout.screen_px.and_then(|[w, h]| Some([columns.find(w)?.1, columns.find(h)?.1])),
+        ..Reader::new(columns, layout.plane, time, places)
     };
-    let mut samples = Samples::new(layout.vendor, layout.writer, layout.plane, per_second);
-    let is_row = |line: &str| !line.trim().is_empty() && comment(line.trim()).is_none();
-    for (index, line) in text.lines().enumerate().filter(|(_, line)| is_row(line)).skip(1) {
-        reader
-            .read(line, &mut samples)
-            .map_err(|(problem, remedy)| InputError::invalid(format!("{name}, line {}", index + 1), problem, remedy))?;
-    }
-    Ok(samples)
+    reader.samples(name, text, Samples::new(Some(layout.vendor), layout.writer, layout.plane, per_second))
 }
 
-impl Reader<'_> {
+impl<'a> Reader<'a> {
+    /// Every row is a sample.
+    pub fn new(columns: &'a Columns, plane: Plane, time: Column, places: Vec<Found<'a>>) -> Self {
+        Self { columns, plane, time, places, only: None, blink: None, screen_px: None, skips_text: false }
+    }
+
+    /// Adds the samples of all rows.
+    pub fn samples(&self, name: &str, text: &str, mut samples: Samples) -> Result<Samples, InputError> {
+        let is_row = |line: &str| !line.trim().is_empty() && comment(line.trim()).is_none();
+        let rows = || text.lines().enumerate().filter(|(_, line)| is_row(line)).skip(1);
+        // The first time tells whether all of them are clock times.
+        let times = rows().map(|(_, line)| self.columns.row(line).cell(self.time));
+        let first_time = times.into_iter().find(|cell| !is_missing(cell));
+        let is_clock_time =
+            first_time.is_some_and(|cell| Clock::parse(cell).is_none() && clock_time::parse(cell).is_some());
+        if is_clock_time {
+            samples.per_second = Some(clock_time::PER_SECOND);
+        }
+        for (index, line) in rows() {
+            let read = self.read(line, is_clock_time, &mut samples);
+            read.map_err(|(problem, remedy)| {
+                InputError::invalid(format!("{name}, line {}", index + 1), problem, remedy)
+            })?;
+        }
+        Ok(samples)
+    }
+
     /// Adds the sample of a row, if it is one.
-    fn read(&self, line: &str, samples: &mut Samples) -> Result<(), LineError> {
+    fn read(&self, line: &str, is_clock_time: bool, samples: &mut Samples) -> Result<(), LineError> {
         let (row, named) = (self.columns.row(line), self.columns.count());
         let count = row.count(named);
         if count > named {
@@ -195,7 +236,12 @@ impl Reader<'_> {
             let [w, h] = size.map(|column| number::<u32>(row.cell(column)).filter(|n| *n > 0));
             samples.screen_px = w.zip(h).map(|(w, h)| [w, h]);
         }
-        let Some(clock) = clock(row.cell(self.time))? else { return Ok(()) };
+        if self.skips_text && self.places.iter().any(|place| place.is_text(&row)) {
+            samples.skipped += 1;
+            return Ok(());
+        }
+        let parse = if is_clock_time { clock_time::parse } else { Clock::parse };
+        let Some(clock) = clock(row.cell(self.time), parse)? else { return Ok(()) };
         let is_blink = self.blink.is_some_and(|column| {
             let cell = row.cell(column);
             !is_missing(cell) && truth(cell) != Some(false)
@@ -216,12 +262,12 @@ pub(super) fn mean(seen: &[[f64; 2]]) -> Option<[f64; 2]> {
 }
 
 /// A time cell; `None` in rows without one, which hold events.
-fn clock(cell: &str) -> Result<Option<Clock>, LineError> {
+fn clock(cell: &str, parse: fn(&str) -> Option<Clock>) -> Result<Option<Clock>, LineError> {
     if is_missing(cell) {
         return Ok(None);
     }
-    let refused = || bad(format!("the time is {}", quote(cell)), "expected a number");
-    Clock::parse(cell).map(Some).ok_or_else(refused)
+    let expected = "expected a number of seconds, milliseconds or the like, or a time as 2021-04-05T12:00:00.25Z";
+    parse(cell).map(Some).ok_or_else(|| bad(format!("the time is {}", quote(cell)), expected))
 }
 
 /// The error for a log without the gaze that is asked for.

@@ -27,6 +27,11 @@ pub(super) struct Clock {
 }
 
 impl Clock {
+    /// A time of whole ticks.
+    pub fn of_whole(whole: i64) -> Self {
+        Self { whole, part: 0.0 }
+    }
+
     pub fn parse(cell: &str) -> Option<Self> {
         if let Ok(whole) = cell.parse() {
             return Some(Self { whole, part: 0.0 });
@@ -36,7 +41,7 @@ impl Clock {
     }
 
     /// Ticks since `start`.
-    fn since(self, start: Self) -> f64 {
+    pub fn since(self, start: Self) -> f64 {
         (i128::from(self.whole) - i128::from(start.whole)) as f64 + (self.part - start.part)
     }
 }
@@ -51,7 +56,8 @@ pub(super) struct Raw {
 
 /// What a log says.
 pub(super) struct Samples {
-    pub vendor: Vendor,
+    /// Whose export it is; `None`: its columns were named.
+    pub vendor: Option<Vendor>,
     pub writer: &'static str,
     pub plane: Plane,
     /// Ticks a second; `None`: not stated.
@@ -59,14 +65,16 @@ pub(super) struct Samples {
     pub screen_px: Option<[u32; 2]>,
     pub screen_mm: Option<[f32; 2]>,
     pub distance_mm: Option<f32>,
+    /// Rows of text that were left out.
+    pub skipped: usize,
     pub raw: Vec<Raw>,
 }
 
 impl Samples {
     /// No samples yet, of a screen that is not stated.
-    pub fn new(vendor: Vendor, writer: &'static str, plane: Plane, per_second: Option<f64>) -> Self {
+    pub fn new(vendor: Option<Vendor>, writer: &'static str, plane: Plane, per_second: Option<f64>) -> Self {
         let (screen_px, screen_mm, distance_mm) = (None, None, None);
-        Self { vendor, writer, plane, per_second, screen_px, screen_mm, distance_mm, raw: vec![] }
+        Self { vendor, writer, plane, per_second, screen_px, screen_mm, distance_mm, skipped: 0, raw: vec![] }
     }
 
     /// The scanpath, and what was assumed.
@@ -76,6 +84,12 @@ impl Samples {
     /// for several recordings in one, and those of [`Scanpath::new`].
     pub fn placed(self, name: &str, options: &GazeLogOptions) -> Result<(Scanpath, Vec<String>), InputError> {
         let mut warnings = vec![];
+        if self.skipped > 0 {
+            warnings.push(format!(
+                "{name} has {} rows without numbers in the columns of gaze; they were left out",
+                self.skipped
+            ));
+        }
         let (screen, note) = self.screen(name, options, &mut warnings)?;
         let times = self.times(name, &mut warnings)?;
         let size = screen.size_px.map(f64::from);
@@ -84,7 +98,9 @@ impl Samples {
             [0, 1].map(|i| match self.plane {
                 Plane::Pixels => at[i],
                 Plane::Fractions | Plane::FractionsUp => at[i] * size[i],
-                Plane::Forward | Plane::ForwardLeft | Plane::Angles => 0.5 * size[i] + at[i] / slope[i],
+                Plane::Forward | Plane::ForwardLeft | Plane::Angles | Plane::Radians => {
+                    0.5 * size[i] + at[i] / slope[i]
+                }
             } as f32)
         };
         let mut order: Vec<usize> = (0..times.len()).collect();

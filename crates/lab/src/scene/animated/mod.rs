@@ -21,7 +21,9 @@ pub(crate) struct Animated {
     /// Animated nodes and their descendants, parents first.
     pub moving_order: Vec<u32>,
     pub channels: Vec<Channel>,
-    /// Duration of the animation in seconds; 0 for a single pose.
+    /// Time of the first key in seconds, at which the animation starts: before it, nothing moves.
+    pub begin_s: f64,
+    /// Duration of the animation from there, in seconds; 0 for a single pose.
     pub duration_s: f64,
     pub skins: Vec<Skin>,
     pub meshes: Vec<Mesh>,
@@ -123,13 +125,14 @@ impl Animated {
         }
     }
 
-    /// Evaluates all curves at a time.
+    /// Evaluates all curves at a time, in seconds from the first key.
     pub fn evaluate(&self, time_s: f64) -> AnimationState {
-        let time_s = match time_s.rem_euclid(self.duration_s) {
-            t if t.is_finite() => t,
-            // The duration is 0, or the time is not finite.
-            _ => 0.0,
-        };
+        let time_s = self.begin_s
+            + match time_s.rem_euclid(self.duration_s) {
+                t if t.is_finite() => t,
+                // The duration is 0, or the time is not finite.
+                _ => 0.0,
+            };
         let mut locals = None;
         let mut weights = HashMap::new();
         for channel in &self.channels {

@@ -9,13 +9,16 @@ use super::placed::Placed;
 use super::warnings::Warnings;
 use super::{animation, extensions, materials, nodes, origin, placed, skins, viewpoints};
 use crate::error::InputError;
-use crate::scene::animated::{Animated, AnimationState, Mesh, Property, Skin};
+use crate::scene::animated::{Animated, AnimationState, Channel, Mesh, Property, Skin};
 use crate::scene::geometry::{Geometry, MAX_COORDINATE};
 use crate::scene::{Environment, Scene, Triangles};
 use glam::DVec3;
 use gltf::json::{self, Index};
 use std::collections::HashMap;
 use std::sync::Arc;
+
+/// Time of a first key, in seconds, from which people are told: they may expect the time before it.
+const LATE_S: f64 = 1.0;
 
 pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -> Result<Scene, InputError> {
     let mut warnings = file.warnings.clone();
@@ -27,13 +30,16 @@ pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -
     let channels = animation::channels(document, &accessors, clip, &mut warnings)?;
 
     let set = channels.iter().filter(|c| c.property != Property::Weights).map(|c| c.node);
-    let mut morphed = vec![false; shown.len()];
+    let mut morphed = vec![false; shown.in_scene.len()];
     for channel in channels.iter().filter(|c| c.property == Property::Weights) {
         morphed[channel.node as usize] = true;
     }
-    let duration_s = channels.iter().filter_map(|c| c.curve.times.last()).fold(0.0f64, |a, &t| a.max(t.into()));
-    let placed: Vec<Placed> = placed::placed(document, &accessors, &shown, &mut nodes)?;
-    nodes.origin = origin::origin(document, &nodes.worlds(), &placed, &shown);
+    let (begin_s, duration_s) = span(&channels);
+    if begin_s >= LATE_S {
+        warnings.add(format!("the first key of its animation is at {begin_s} s; the animation starts there"));
+    }
+    let placed: Vec<Placed> = placed::placed(document, &accessors, &shown.visible, &mut nodes)?;
+    nodes.origin = origin::origin(document, &nodes.worlds(), &placed, &shown.in_scene);
     let origin = nodes.origin;
     if origin != DVec3::ZERO {
         let [x, y, z] = origin.to_array();
@@ -46,6 +52,7 @@ pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -
         moving_order: nodes.order.iter().copied().filter(|&n| moving[n as usize]).collect(),
         nodes,
         channels,
+        begin_s,
         duration_s,
         skins,
         ..Animated::default()
@@ -76,12 +83,13 @@ pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -
     }
     let Stage { mut animated, still, .. } = stage;
 
-    for node in (0..shown.len()).filter(|&n| shown[n]) {
-        let (index, node) = (node as u32, &document.root.nodes[node]);
+    for place in (0..document.root.nodes.len()).filter(|&n| shown.in_scene[n]) {
+        let (index, node) = (place as u32, &document.root.nodes[place]);
         if let Some(camera) = node.camera {
             animated.cameras.extend(viewpoints::camera(document, index, camera, &mut warnings)?);
         }
-        if let Some(light) = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()) {
+        let light = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
+        if let Some(light) = light.filter(|_| shown.visible[place]) {
             animated.lights.extend(viewpoints::light(document, index, light.light, &mut warnings)?);
         }
     }
@@ -100,6 +108,13 @@ pub(super) fn scene(document: &Document, file: &Container, clip: Option<&str>) -
         origin,
         animated: moves.then(|| Arc::new(animated)),
     })
+}
+
+/// Time of the first key in seconds, and time from it to the last one.
+fn span(channels: &[Channel]) -> (f64, f64) {
+    let begin_s = channels.iter().filter_map(|c| c.curve.times.first()).fold(f64::INFINITY, |a, &t| a.min(t.into()));
+    let end_s = channels.iter().filter_map(|c| c.curve.times.last()).fold(0.0f64, |a, &t| a.max(t.into()));
+    if begin_s.is_finite() { (begin_s, end_s.max(begin_s) - begin_s) } else { (0.0, 0.0) }
 }
 
 /// Skins in use, and a map from the file's skin indices to theirs.

@@ -5,7 +5,7 @@ use super::warnings::Warnings;
 use crate::error::InputError;
 use std::collections::BTreeSet;
 
-const SUPPORTED: [&str; 14] = [
+const SUPPORTED: [&str; 17] = [
     "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
@@ -19,6 +19,10 @@ const SUPPORTED: [&str; 14] = [
     "KHR_materials_unlit",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
+    // Of an application that lets people touch things: nothing to draw.
+    "KHR_node_hoverability",
+    "KHR_node_selectability",
+    "KHR_node_visibility",
     "KHR_texture_transform",
 ];
 

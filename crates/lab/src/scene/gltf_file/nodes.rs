@@ -8,8 +8,16 @@ use crate::scene::animated::nodes::{Local, Nodes};
 use glam::{DAffine3, DQuat, DVec3, Mat4, Vec3};
 use gltf::json;
 
-/// All nodes of the file, and flags of those that belong to the loaded scene.
-pub(super) fn tree(document: &Document, warnings: &mut Warnings) -> Result<(Nodes, Vec<bool>), InputError> {
+/// Flags of nodes.
+pub(super) struct Shown {
+    /// Nodes of the loaded scene. Cameras of hidden ones can still be looked through.
+    pub in_scene: Vec<bool>,
+    /// Those of them whose meshes and lights are not hidden (KHR_node_visibility).
+    pub visible: Vec<bool>,
+}
+
+/// All nodes of the file, and which of them are shown.
+pub(super) fn tree(document: &Document, warnings: &mut Warnings) -> Result<(Nodes, Shown), InputError> {
     let nodes = &document.root.nodes;
     let mut parents = vec![None; nodes.len()];
     for (parent, node) in nodes.iter().enumerate() {
@@ -26,12 +34,24 @@ pub(super) fn tree(document: &Document, warnings: &mut Warnings) -> Result<(Node
     if order.len() < nodes.len() {
         return Err(document.damaged("its nodes form a cycle: they must form a tree"));
     }
-    let mut shown = vec![false; nodes.len()];
+    let mut in_scene = vec![false; nodes.len()];
     for node in below(nodes, scene_roots(document, roots, warnings)?) {
-        shown[node as usize] = true;
+        in_scene[node as usize] = true;
     }
+    let hidden = (0..nodes.len()).filter(|&node| is_hidden(&nodes[node])).map(|node| node as u32).collect();
+    let mut visible = in_scene.clone();
+    for node in below(nodes, hidden) {
+        visible[node as usize] = false;
+    }
+    let shown = Shown { in_scene, visible };
     let locals = nodes.iter().map(local).collect();
     Ok((Nodes { parents, locals, order, origin: DVec3::ZERO }, shown))
+}
+
+/// Whether a node hides itself and its descendants.
+fn is_hidden(node: &json::Node) -> bool {
+    let extension = node.extensions.as_ref().and_then(|e| e.others.get("KHR_node_visibility"));
+    extension.and_then(|e| e.get("visible")).is_some_and(|visible| visible == false)
 }
 
 /// Nodes and all their descendants, each once. Parents come before children if no given node is a descendant of

@@ -16,16 +16,16 @@ pub(super) struct Placed {
     pub skin: Option<usize>,
 }
 
-/// All mesh instances of the scene, sorted by mesh.
+/// All mesh instances of the nodes that are `visible`, sorted by mesh.
 pub(super) fn placed(
     document: &Document,
     accessors: &Accessors,
-    shown: &[bool],
+    visible: &[bool],
     nodes: &mut Nodes,
 ) -> Result<Vec<Placed>, InputError> {
     let root = document.root;
     let mut placed = Vec::new();
-    for (i, node) in root.nodes.iter().enumerate().filter(|(i, _)| shown[*i]) {
+    for (i, node) in root.nodes.iter().enumerate().filter(|(i, _)| visible[*i]) {
         let Some(mesh) = node.mesh else { continue };
         document.look_up(&root.meshes, mesh, "mesh")?;
         if let Some(skin) = node.skin {

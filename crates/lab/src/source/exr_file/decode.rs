@@ -22,7 +22,7 @@ const BATCH_BYTES: usize = 64 << 20;
 /// A decoded EXR frame.
 #[derive(Clone, Debug)]
 pub struct ExrFrame {
-    /// Linear color; pixels with a NaN or an infinity are black.
+    /// Linear color of Rec. 709 primaries; pixels with a NaN or an infinity are black.
     pub color: Image<[f32; 3]>,
     /// Depth along the view axis; NaN where the file has NaN, zero or less.
     pub depth: Option<Image<f32>>,
@@ -49,9 +49,7 @@ impl ExrHeader {
         for part in planes.parts() {
             self.read_part(&mut file, part, &mut planes)?;
         }
-        planes
-            .finish(self.size, self.window)
-            .map_err(|e| InputError::invalid(&self.subject, e.to_string(), "export it again"))
+        planes.finish(self).map_err(|e| InputError::invalid(&self.subject, e.to_string(), "export it again"))
     }
 
     fn read_part(&self, file: &mut File, part: usize, planes: &mut Planes) -> Result<(), InputError> {
@@ -258,14 +256,16 @@ impl Planes {
         }
     }
 
-    /// The frame, cut to its own window.
-    fn finish(mut self, size: [u32; 2], window: Window) -> Result<ExrFrame, FrameError> {
+    /// The frame, cut to its own window, in Rec. 709.
+    fn finish(mut self, header: &ExrHeader) -> Result<ExrFrame, FrameError> {
+        let (size, window) = (header.size, header.window);
         if !window.is_whole(size) {
             self.color = cut(&self.color, [0.0; 3], size, window);
             self.depth = self.depth.map(|depth| cut(&depth, f32::NAN, size, window));
             self.motion = self.motion.map(|motion| cut(&motion, [0.0; 2], size, window));
         }
         let nonfinite = blacken_nonfinite(&mut self.color);
+        header.color_space.convert(&mut self.color);
         for d in self.depth.iter_mut().flatten() {
             if d.is_nan() || *d <= 0.0 {
                 *d = f32::NAN;

@@ -1,6 +1,7 @@
 //! The header of an EXR file, and the checks that need no pixel: size, channels, and completeness of the file.
 
 use super::channels::{ChannelName, Roles};
+use super::color_space::ColorSpace;
 use super::{exr_error, guarded};
 use crate::error::{InputError, io_error};
 use crate::source::limits::{BLOCK_BYTES_PER_PIXEL, ReadLimits};
@@ -32,6 +33,7 @@ pub struct ExrHeader {
     pub(super) window: Window,
     pub(super) meta: MetaData,
     pub(super) roles: Roles,
+    pub(super) color_space: ColorSpace,
     /// File offsets of the full-resolution chunks of each part, row by row.
     pub(super) chunk_offsets: Vec<Vec<u64>>,
     /// y coordinate of each part's first scan line in the file.
@@ -75,14 +77,21 @@ impl ExrHeader {
         }
         let mut reader = Counting::new(BufReader::new(file));
         let invalid = |e| exr_error(subject, e);
-        let mut meta = MetaData::read_from_buffered(&mut reader, false).map_err(invalid)?;
+        let read = MetaData::read_from_buffered(&mut reader, false);
+        let mut meta = read.map_err(|e| unknown_compression(subject, path).unwrap_or_else(|| invalid(e)))?;
         let header_end = reader.position;
 
         let names = channel_names(&meta);
         let full_names: Vec<String> = names.iter().map(|n| n.full_name.clone()).collect();
         let roles = Roles::find(&names).ok_or_else(|| missing_color(subject, &full_names))?;
         let (size, window) = checked_size(subject, &meta, &roles, limits)?;
-        let warnings = roles.warnings.iter().cloned().chain(window.warning(size)).collect();
+        let color_space = match roles.color {
+            // Grey has no primaries.
+            [r, g, b] if r == g && g == b => ColorSpace::default(),
+            [(part, _), ..] => ColorSpace::of(&meta.headers[part]),
+        };
+        let further = [window.warning(size), color_space.warning.clone(), pixel_aspect_warning(&meta)];
+        let warnings = roles.warnings.iter().cloned().chain(further.into_iter().flatten()).collect();
         let contents = contents(&names, &roles);
         MetaData::validate(&meta.headers, false).map_err(invalid)?;
         let tables = read_tables(&mut reader, subject, &meta, header_end, file_bytes)?;
@@ -103,6 +112,7 @@ impl ExrHeader {
             first_lines,
             meta,
             roles,
+            color_space,
             file_bytes,
             channel_names: full_names,
         })
@@ -126,6 +136,13 @@ impl ExrHeader {
     /// Which channels are read, and which are left out, a line each.
     pub fn contents(&self) -> &[String] {
         &self.contents
+    }
+
+    /// Frames per second, if a part states them (`framesPerSecond`).
+    pub fn fps(&self) -> Option<f32> {
+        let stated = self.meta.headers.iter().find_map(|header| header.own_attributes.frames_per_second)?;
+        let fps = (f64::from(stated.0) / f64::from(stated.1)) as f32;
+        (0.1..=10_000.0).contains(&fps).then_some(fps)
     }
 
     /// Whether there is a depth channel.
@@ -157,6 +174,35 @@ fn channel_names(meta: &MetaData) -> Vec<ChannelName> {
         }
     }
     names
+}
+
+/// The error for a compression newer than the `exr` crate, which says only that a header is invalid.
+fn unknown_compression(subject: &str, path: &Path) -> Option<InputError> {
+    /// Bytes in which the header of the first part has it: attributes may be long, but are not all of it.
+    const LOOKED_AT: u64 = 1 << 20;
+    const ATTRIBUTE: &[u8] = b"compression\0compression\0\x01\0\0\0";
+    const KNOWN: u8 = 11;
+    let mut bytes = Vec::new();
+    File::open(path).ok()?.take(LOOKED_AT).read_to_end(&mut bytes).ok()?;
+    let at = bytes.windows(ATTRIBUTE.len()).position(|window| window == ATTRIBUTE)?;
+    let code = bytes.get(at + ATTRIBUTE.len()).filter(|code| **code > KNOWN)?;
+    Some(InputError::not_supported(
+        subject,
+        format!("uses a compression that is not supported (number {code}; ZSTD and others are newer than 11)"),
+        "write it with ZIP compression",
+    ))
+}
+
+/// What to say of pixels that are not square: motion and angles are computed as if they were.
+fn pixel_aspect_warning(meta: &MetaData) -> Option<String> {
+    const SQUARE: f32 = 0.005;
+    let aspect = meta.headers.first()?.shared_attributes.pixel_aspect;
+    ((aspect - 1.0).abs() > SQUARE).then(|| {
+        format!(
+            "its pixels are {aspect} times as wide as high (pixelAspectRatio), and are taken for square; scale the frames \
+             to square pixels, or render them so"
+        )
+    })
 }
 
 fn missing_color(subject: &str, names: &[String]) -> InputError {

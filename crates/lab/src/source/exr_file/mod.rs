@@ -16,9 +16,15 @@
 //! | motion, Blender's | `<layer>.Vector.X/Y/Z/W`: with y **up**, X/Y are previous minus current, Z/W are current minus next |
 //! | motion, plain | `motion.X/Y/Z/W`: with y **down**, X/Y are previous minus current, Z/W are **next minus current** |
 //!
+//! # Color
+//! Chromaticities other than those of Rec. 709, or a text attribute that names such a space (`colorInteropID`,
+//! `oiio:ColorSpace`: ACEScg, ACES2065-1, Rec. 2020, P3-D65), are converted to Rec. 709 with a warning. Pixels are taken
+//! for square; a warning says if the header has another `pixelAspectRatio`.
+//!
 //! All vectors are in pixels. Z/W are optional: only backward playback needs them.
 
 mod channels;
+mod color_space;
 mod decode;
 mod header;
 mod write;

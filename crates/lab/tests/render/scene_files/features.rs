@@ -271,3 +271,38 @@ fn instances_of_a_wrong_number_are_refused_and_none_are_none() {
     assert_eq!(file(json!({})).open().still().len(), 1, "no attributes");
     assert_eq!(file(json!({"_ID": 1})).open().still().len(), 1, "an attribute of an application");
 }
+
+/// Blender and Godot hide objects, and Godot requires the extension by default.
+#[test]
+fn hidden_nodes_hide_their_meshes_and_lights_and_those_below() {
+    let seen = |visible: [serde_json::Value; 2]| {
+        let mut file = Gltf::new();
+        let mesh = file.triangle();
+        let lit = json!({"mesh": mesh, "extensions": {"KHR_lights_punctual": {"light": 0}}});
+        let child = file.push("nodes", json!({"mesh": mesh, "camera": 0}));
+        let mut parent = file.node(lit);
+        for (node, visible) in [(parent, &visible[0]), (child, &visible[1])] {
+            if !visible.is_null() {
+                file.json["nodes"][node]["extensions"]["KHR_node_visibility"] = visible.clone();
+            }
+        }
+        file.json["nodes"][parent]["children"] = json!([child]);
+        parent = file.node(json!({"mesh": mesh}));
+        file.json["nodes"][parent]["translation"] = json!([0, 0, 5]);
+        file.json["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 1.0, "znear": 0.1}}]);
+        file.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [{"type": "point"}]}});
+        file.json["extensionsUsed"] = json!(["KHR_node_visibility", "KHR_lights_punctual"]);
+        file.json["extensionsRequired"] = json!(["KHR_node_visibility"]);
+        let scene = file.open();
+        assert_eq!(scene.warnings, [""; 0]);
+        let pose = scene.pose(0.0);
+        // A camera shows, and is not shown.
+        assert_eq!(pose.cameras.len(), 1);
+        (scene.still().len(), pose.lights.len())
+    };
+    let hidden = || json!({"visible": false});
+    assert_eq!(seen([json!(null), json!({"visible": true})]), (3, 1));
+    assert_eq!(seen([json!({}), json!(null)]), (3, 1));
+    assert_eq!(seen([json!(null), hidden()]), (2, 1));
+    assert_eq!(seen([hidden(), json!({"visible": true})]), (1, 0));
+}

@@ -21,11 +21,11 @@ fn every_interpolation_between_keys_and_beyond() {
     let times = [0.5f32, 1.0, 2.0];
     for interpolation in ["STEP", "LINEAR"] {
         let scene = Gltf::animated("translation", interpolation, &times, &keys).open();
-        assert_eq!((scene.still().len(), scene.pose(0.0).moving.len(), scene.duration_s()), (0, 1, 2.0));
+        assert_eq!((scene.still().len(), scene.pose(0.0).moving.len(), scene.duration_s()), (0, 1, 1.5));
         let halfway = if interpolation == "STEP" { keys[0] } else { [2.0, 1.0, 0.0] };
-        // The animation is 2 s long: at 2 s it loops, to before its first key.
+        // From its first key, the animation is 1.5 s long; then it loops.
         for (time_s, expected) in
-            [(0.0, keys[0]), (0.75, halfway), (1.0, keys[1]), (2.0, keys[0]), (2.75, halfway), (-1.0, keys[1])]
+            [(0.0, keys[0]), (0.25, halfway), (0.5, keys[1]), (1.5, keys[0]), (1.75, halfway), (-1.0, keys[1])]
         {
             assert_eq!(corner(&scene, time_s), Vec3::from_array(expected), "{interpolation} at {time_s}");
         }
@@ -92,6 +92,27 @@ fn a_clip_is_chosen_by_name_or_number() {
         let text = open(clip).unwrap_err().to_string();
         assert!(text.contains(clip) && text.contains("animation 1 (scale LINEAR)"), "{text}");
     }
+}
+
+/// Clips cut out of a longer timeline keep its times.
+#[test]
+fn an_animation_starts_at_its_first_key() {
+    let keys = [[1.0f32, 0.0, 0.0], [5.0, 0.0, 0.0]];
+    for (begin, is_said) in [(0.5f32, false), (10.0, true)] {
+        let scene = Gltf::animated("translation", "LINEAR", &[begin, begin + 2.0], &keys).open();
+        assert_eq!(scene.duration_s(), 2.0);
+        for (time_s, x) in [(0.0, 1.0), (1.0, 3.0), (1.5, 4.0), (2.0, 1.0)] {
+            assert_eq!(corner(&scene, time_s), Vec3::X * x, "{begin} {time_s}");
+        }
+        let said = scene.warnings.iter().any(|w| w.contains("first key of its animation is at 10 s"));
+        assert_eq!(said, is_said, "{:?}", scene.warnings);
+    }
+    // The clip starts with the earliest of its curves; the others wait for theirs.
+    let mut file = Gltf::animated("translation", "LINEAR", &[3.0, 4.0], &keys);
+    file.animate(0, "scale", "LINEAR", &[2.0, 4.0], &[[1.0; 3], [1.0; 3]]);
+    file.join_animations();
+    let scene = file.open();
+    assert_eq!((scene.duration_s(), corner(&scene, 0.9).x, corner(&scene, 1.5).x), (2.0, 1.0, 3.0));
 }
 
 /// A strip skinned to two joints; the second is a child of the first and rotates.

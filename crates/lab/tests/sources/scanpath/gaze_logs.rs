@@ -166,6 +166,10 @@ fn exports() -> Vec<(Vendor, &'static str, String)> {
         },
     );
     let webgazer = table("x,y,t", |ms, px| format!("{},{:.1}", pair(px, "null"), ms as f64));
+    // A logger of one's own: the name of its time has no unit, or one of several spellings.
+    let plain = |names: &str, per_s: f64| {
+        table(names, |ms, px| format!("{},{}", 3e3 * per_s + ms as f64 * per_s / 1e3, pair(px, "nan")))
+    };
     vec![
         (Vendor::Tobii, "Pro Lab, us", pro_lab("\u{3bc}s", 1000)),
         (Vendor::Tobii, "Pro Lab, ms", pro_lab("ms", 1)),
@@ -187,6 +191,11 @@ fn exports() -> Vec<(Vendor, &'static str, String)> {
         (Vendor::Eyelink, "ASC", asc(false)),
         (Vendor::Eyelink, "ASC, binocular", asc(true)),
         (Vendor::Webgazer, "page", webgazer),
+        (Vendor::Webgazer, "seconds", plain("Time,GazeX,GazeY", 1.0)),
+        (Vendor::Webgazer, "microseconds", plain("timestamp,x,y", 1e6)),
+        (Vendor::Webgazer, "nanoseconds", plain("timestamp,gaze_x,gaze_y", 1e9)),
+        (Vendor::Webgazer, "seconds by name", plain("time [s],x,y", 1.0)),
+        (Vendor::Webgazer, "microseconds by name", plain("timestamp_us,x,y", 1e6)),
     ]
 }
 
@@ -270,6 +279,7 @@ fn an_export_in_other_axes_or_units_is_not_the_gaze() {
         // Another unit of time; ticks.
         export("Pro Lab, ms").replace("[ms]", "[\u{3bc}s]"),
         export("Analysis").replace("f=10000000", "f=1000000"),
+        export("seconds by name").replace("[s]", "[ms]"),
         // A blink, and an eye that is not valid, that nobody marks.
         export("Neon").replace(",3,", ",,"),
         export("SDK, tuples").replace(";(nan, nan);0", ";(0.5, 0.5);1"),
@@ -363,4 +373,138 @@ fn damaged_and_foreign_logs_are_refused_in_one_line() {
     let times: Vec<f64> = log.scanpath.samples().iter().map(|s| s.t_s).collect();
     assert_eq!(times, [0.0, 0.001, 0.002]);
     assert!(log.warnings[0].contains("1 samples out of order"), "{:?}", log.warnings);
+}
+
+fn named(list: &str, unit: GazeUnit, per_second: Option<f64>) -> GazeColumns {
+    let of = |key: &str| list.split(',').find_map(|part| part.strip_prefix(key)).map(str::to_owned);
+    let at = ["x=", "y=", "z="].into_iter().filter_map(of).collect();
+    GazeColumns { time: of("t=").unwrap(), at, valid: of("valid="), unit, per_second }
+}
+
+#[test]
+fn columns_that_are_named_are_the_gaze_in_every_unit() {
+    let lost = |px: Option<[f64; 2]>| px.unwrap_or([5.0, 5.0]);
+    let angles = |px| {
+        let [x, y, z] = forward(lost(px));
+        [x.atan2(z), y.asin()]
+    };
+    let valid = |px: Option<[f64; 2]>| u8::from(px.is_some());
+    use GazeUnit::{Degrees, Pixels, Radians, Shares, Sphere};
+    let cases = [
+        (
+            "t=Clock,x=POR X [px],y=POR Y [px]",
+            Pixels,
+            Some(1e6),
+            // Events between the samples have text.
+            table("## Sample Rate: 60\nClock\tType\tPOR X [px]\tPOR Y [px]", |ms, px| {
+                let at = px.map_or("\t".into(), |[x, y]| format!("{x}\t{y}"));
+                format!("{0}\tSMP\t{at}\n{0}\tMSG\t# Message: UE-keypress\t\n{0}\tMSG", 7_000_000 + 1000 * ms)
+            }),
+        ),
+        (
+            "t=n,x=x,y=y,valid=!val",
+            Degrees,
+            Some(1e3),
+            table("n,x,y,val", |ms, px| {
+                let [x, y] = angles(px).map(f64::to_degrees);
+                format!("{ms},{x:.9},{y:.9},{}", 4 * (1 - valid(px)))
+            }),
+        ),
+        (
+            "t=tracking_timestamp_us,x=-yaw,y=pitch,valid=ok",
+            Radians,
+            None,
+            table("tracking_timestamp_us,yaw,pitch,ok", |ms, px| {
+                let [x, y] = angles(px);
+                format!("{},{:.12},{y:.12},{}", 50_000_000 + 1000 * ms, -x, if px.is_some() { "True" } else { "False" })
+            }),
+        ),
+        (
+            "t=time,x=longitude,y=latitude",
+            Sphere,
+            None,
+            table("time,longitude,latitude", |ms, px| {
+                let [x, y] = angles(px).map(|v| if px.is_some() { v.to_degrees().to_string() } else { String::new() });
+                format!("{},{x},{y}", ms as f64 / 1e3)
+            }),
+        ),
+        (
+            "t=t,x=u,y=-v,valid=conf",
+            Shares,
+            None,
+            table("t,u,v,conf", |ms, px| {
+                let [x, y] = share(lost(px));
+                format!("{ms},{x:.9},{:.9},{}", 1.0 - y, if px.is_some() { "0.7" } else { "0" })
+            }),
+        ),
+        (
+            "t=eyeDataTimestamp,x=gazeDirection_x,y=gazeDirection_y,z=gazeDirection_z,valid=gazeHasValue",
+            Pixels,
+            Some(1e3),
+            table("eyeDataTimestamp,gazeHasValue,gazeDirection_x,gazeDirection_y,gazeDirection_z", |ms, px| {
+                let [x, y, z] = forward(lost(px));
+                format!(
+                    "{},{},{x:.9},{y:.9},{z:.9}",
+                    1_600_000_000_000 + ms,
+                    if px.is_some() { "True" } else { "False" }
+                )
+            }),
+        ),
+    ];
+    for (list, unit, per_second, text) in cases {
+        let columns = named(list, unit, per_second);
+        let log = parse_gaze_columns("log", text.as_bytes(), &columns, &options(Eye::Both))
+            .unwrap_or_else(|e| panic!("{list}: {e}"));
+        assert!(is_the_gaze(&log.scanpath), "{list}: {:?}", log.scanpath.samples());
+        let rows_of_text = text.matches("MSG").count();
+        assert_eq!((log.vendor, log.warnings.len()), (None, usize::from(rows_of_text > 0)), "{:?}", log.warnings);
+        // Another unit, or another column, is another gaze.
+        let other = if unit == Degrees { Radians } else { Degrees };
+        let wrong = GazeColumns { unit: other, ..columns.clone() };
+        let wrong = parse_gaze_columns("log", text.as_bytes(), &wrong, &options(Eye::Both));
+        assert!(list.contains("z=") || unit == Sphere || !wrong.is_ok_and(|log| is_the_gaze(&log.scanpath)), "{list}");
+    }
+}
+
+#[test]
+fn columns_that_cannot_be_are_refused_in_one_line() {
+    let text = "t,u,v\n0,0.5,0.5\n10,half,x\n20,0.5,0.5\n";
+    let read = |list, unit| {
+        parse_gaze_columns("log", text.as_bytes(), &named(list, unit, None), &options(Eye::Both))
+            .map_err(|e| e.to_string())
+    };
+    let error = read("t=t,x=u,y=w", GazeUnit::Shares).unwrap_err();
+    assert!(error.contains("has no column \"w\"; it has t, u, v"), "{error}");
+    let error = read("t=t,x=u,y=-v", GazeUnit::Pixels).unwrap_err();
+    assert!(error.contains("pixels cannot be turned around"), "{error}");
+    let error = read("t=t,x=u", GazeUnit::Shares).unwrap_err();
+    assert!(error.contains("1 columns of gaze"), "{error}");
+    let log = read("t=t,x=u,y=v", GazeUnit::Shares).unwrap();
+    assert!(
+        log.scanpath.samples().len() == 2 && log.warnings[0].contains("1 rows without numbers"),
+        "{:?}",
+        log.warnings
+    );
+    let recording = parse_gaze_log("log", b"SR_RESEARCH_COMBINED_FILE\0\0\x01\xff", &options(Eye::Both)).unwrap_err();
+    assert!(recording.to_string().contains("convert it with edf2asc"), "{recording}");
+}
+
+/// Times of the clock on the wall, as loggers in Python and Unity write them.
+#[test]
+fn clock_times_are_read() {
+    let minutes = |ms: u64| format!("{:02}:{:02}.{:03}", 59 + ms / 1000, ms / 1000 % 60, ms % 1000);
+    for (names, before, after) in [
+        ("timestamp,x,y", "2021-04-05T12:", "Z"),
+        ("time,gaze_x,gaze_y", "2021-04-05 12:", "+02:00"),
+        ("timestamp;x;y", "23:", ""),
+    ] {
+        let text = table(&names.replace(';', ","), |ms, px| {
+            let at = px.map_or("nan,nan".into(), |[x, y]| format!("{x},{y}"));
+            format!("{before}{}{after},{at}", minutes(ms))
+        });
+        assert!(is_the_gaze(&read(&text, Eye::Both).scanpath), "{text}");
+    }
+    let error = parse_gaze_log("log", b"timestamp,x,y\n12:00:00,1,2\nsoon,1,2\n", &options(Eye::Both));
+    let error = error.unwrap_err().to_string();
+    assert!(error.contains("line 3: the time is \"soon\"") && error.contains("2021-04-05T12:00:00"), "{error}");
 }

@@ -4,6 +4,7 @@ use super::{ALL, Extras, folder_of, limits, picture, srgb, temporary, vectors};
 use afterimage::Image;
 use afterimage_lab::source::exr_file::{ColorFormat, ExrHeader, FrameToWrite, Vectors, write};
 use afterimage_lab::source::{FrameSource, SceneOptions, SequenceSource, StillSource, open};
+use exr::meta::attribute::Chromaticities;
 use exr::prelude::*;
 use image::{DynamicImage, ImageBuffer, Luma, LumaA, Rgb, Rgba};
 use std::path::Path;
@@ -230,4 +231,114 @@ fn one_frame_in_a_folder_is_a_still_and_depth_is_optional() {
     let file = folder.path().join("frame_0000.exr");
     let alone = StillSource::open(&file, &limits()).unwrap();
     assert_eq!(alone.info().hfov_deg, Some(50.5));
+}
+
+/// A still of one color, with these attributes.
+fn with_attributes(path: &Path, color: [f32; 3], change: impl FnOnce(&mut Header)) {
+    let channel = |(name, v): (&str, f32)| AnyChannel::new(name, FlatSamples::F32(vec![v; 8 * 4]));
+    let channels = ["B", "G", "R"].into_iter().zip([color[2], color[1], color[0]]).map(channel).collect();
+    let layer = Layer::new((8, 4), LayerAttributes::default(), Encoding::UNCOMPRESSED, AnyChannels { list: channels });
+    let mut image = exr::prelude::Image::from_layer(layer);
+    let mut header = Header::new("".into(), (8, 4), SmallVec::new());
+    change(&mut header);
+    image.attributes = ImageAttributes { display_window: image.attributes.display_window, ..header.shared_attributes };
+    image.layer_data.attributes = header.own_attributes;
+    image.write().to_file(path).unwrap();
+}
+
+type Header = exr::meta::header::Header;
+
+#[test]
+fn colors_of_other_primaries_become_those_of_rec_709() {
+    let (_folder, path) = temporary("a.exr");
+    let stated = |values: [[f32; 2]; 4]| {
+        let [red, green, blue, white] = values.map(|v| Vec2(v[0], v[1]));
+        Chromaticities { red, green, blue, white }
+    };
+    let ap1 = stated([[0.713, 0.293], [0.165, 0.83], [0.128, 0.044], [0.32168, 0.33767]]);
+    let rec_709 = stated([[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]]);
+    let read = |color, change: &dyn Fn(&mut Header)| {
+        with_attributes(&path, color, change);
+        let header = ExrHeader::open(&path, &limits()).unwrap();
+        (header.read(Vectors::Skip).unwrap().color.at(3, 2), header.warnings().join(" "))
+    };
+    let close = |a: [f32; 3], b: [f32; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 2e-3);
+    let color = [0.2, 0.5, 0.1];
+    // The matrix that the ACES project publishes for ACEScg to linear Rec. 709.
+    let converted = [
+        1.7051 * 0.2 - 0.6218 * 0.5 - 0.0833 * 0.1,
+        -0.1303 * 0.2 + 1.1408 * 0.5 - 0.0105 * 0.1,
+        -0.0240 * 0.2 - 0.1290 * 0.5 + 1.1530 * 0.1,
+    ];
+    let by_chromaticities = read(color, &|header| header.shared_attributes.chromaticities = Some(ap1));
+    let by_name = read(color, &|header| {
+        header.own_attributes.other.insert("colorInteropID".into(), AttributeValue::Text("lin_ap1_scene".into()));
+    });
+    for (found, warning) in [by_chromaticities, by_name] {
+        assert!(close(found, converted) && warning.contains("ACEScg") && warning.contains("Rec. 709"), "{found:?}");
+    }
+    for chromaticities in [Some(rec_709), None] {
+        let (found, warning) = read(color, &|header| header.shared_attributes.chromaticities = chromaticities);
+        assert_eq!((found, warning.as_str()), (color, ""));
+    }
+    // Out of Rec. 709's gamut, no color is negative; white is white.
+    let (green, _) = read([0.0, 1.0, 0.0], &|header| header.shared_attributes.chromaticities = Some(ap1));
+    assert!(green.iter().all(|v| *v >= 0.0) && green[1] > 1.0, "{green:?}");
+    let (white, _) = read([0.7; 3], &|header| header.shared_attributes.chromaticities = Some(ap1));
+    assert!(close(white, [0.7; 3]), "{white:?}");
+}
+
+#[test]
+fn pixel_aspect_is_doubted_and_a_sequence_has_its_frame_rate() {
+    let (folder, path) = temporary("f_0001.exr");
+    with_attributes(&path, [0.5; 3], |header| header.shared_attributes.pixel_aspect = 2.0);
+    let wide = StillSource::open(&path, &limits()).unwrap();
+    assert!(wide.warnings()[0].contains("2 times as wide") && wide.warnings().len() == 1, "{:?}", wide.warnings());
+    with_attributes(&path, [0.5; 3], |header| header.shared_attributes.pixel_aspect = 1.0);
+    assert_eq!(StillSource::open(&path, &limits()).unwrap().warnings(), [""; 0]);
+    let fps = |rate: Option<(i32, u32)>, cameras: &str| {
+        for i in 1..=2 {
+            let path = folder.path().join(format!("f_{i:04}.exr"));
+            let vectors = [("motion.X", 0.0), ("motion.Y", 0.0)].map(|(name, v)| (name, vec![v; 4]));
+            let colors = ["B", "G", "R"].map(|name| (name, vec![0.5f32; 4]));
+            let channel = |(name, values)| AnyChannel::new(name, FlatSamples::F32(values));
+            let list = colors.into_iter().chain(vectors).map(channel).collect();
+            let mut attributes = LayerAttributes::default();
+            attributes.frames_per_second = rate;
+            let layer = Layer::new((2, 2), attributes, Encoding::UNCOMPRESSED, AnyChannels { list });
+            exr::prelude::Image::from_layer(layer).write().to_file(path).unwrap();
+        }
+        let json = folder.path().join("cameras.json");
+        if cameras.is_empty() {
+            drop(std::fs::remove_file(json))
+        } else {
+            std::fs::write(json, cameras).unwrap()
+        }
+        SequenceSource::open(folder.path(), &limits()).unwrap().info().fps
+    };
+    assert_eq!(fps(Some((24000, 1001)), ""), Some((24000.0 / 1001.0) as f32));
+    // What no camera runs at is none.
+    assert_eq!([fps(None, ""), fps(Some((25, 0)), ""), fps(Some((-25, 1)), "")], [None; 3]);
+    assert_eq!(fps(Some((25, 1)), r#"{"fps": 48}"#), Some(48.0));
+}
+
+#[test]
+fn a_compression_newer_than_the_decoder_is_named() {
+    let (_folder, path) = temporary("a.exr");
+    write(&path, &FrameToWrite::color(&picture([8, 4]))).unwrap();
+    let mut bytes = std::fs::read(&path).unwrap();
+    let attribute = b"compression\0compression\0\x01\0\0\0";
+    let at = bytes.windows(attribute.len()).position(|window| window == attribute).unwrap() + attribute.len();
+    for (code, expected) in [(13, "not supported (number 13"), (12, "number 12")] {
+        bytes[at] = code;
+        std::fs::write(&path, &bytes).unwrap();
+        let error = ExrHeader::open(&path, &limits()).unwrap_err().to_string();
+        assert!(error.contains(expected) && error.contains("write it with ZIP"), "{error}");
+    }
+    // Other damage is no compression.
+    bytes[at] = 3;
+    bytes.truncate(at + 20);
+    std::fs::write(&path, &bytes).unwrap();
+    let error = ExrHeader::open(&path, &limits()).unwrap_err().to_string();
+    assert!(!error.contains("compression"), "{error}");
 }

@@ -3,6 +3,7 @@
 use crate::args::gaze_log::GazeLogArgs;
 use crate::failure::{Failure, with_gaze_options};
 use afterimage_lab::scanpath::GazeMap;
+use afterimage_lab::source::other_kind;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -19,6 +20,9 @@ pub fn is_log(input: &str) -> bool {
     let ending = Path::new(input).extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
     if ENDINGS.contains(&ending.as_str()) {
         return true;
+    }
+    if other_kind(Path::new(input)).is_some() {
+        return false;
     }
     let mut bytes = vec![];
     let mut is_read = || File::open(input).and_then(|file| file.take(LOOKED_AT).read_to_end(&mut bytes)).is_ok();

@@ -33,6 +33,9 @@ pub struct InfoArgs {
     /// software devices)
     #[arg(long)]
     pub self_test: bool,
+    /// Animation of a scene to describe, by name or number from 0; default: the first
+    #[arg(long, visible_alias = "clip", value_name = "NAME|N")]
+    pub animation: Option<String>,
     #[command(flatten)]
     pub log: GazeLogArgs,
 }
@@ -45,12 +48,16 @@ pub fn info(args: &InfoArgs) -> Result<(), Failure> {
     if args.self_test {
         return Err(Failure::Input(format!("--self-test: expected the word adapters, not {}", args.input)));
     }
+    if args.animation.is_some() && !source::is_scene(&args.input) {
+        let input = &args.input;
+        return Err(Failure::Input(format!("--animation: {input} is not a scene (.gltf, .glb); leave the option out")));
+    }
     if gaze::is_log(&args.input) && !camera::is_camera_file(&args.input) {
         return gaze::gaze_info(&args.input, &args.log);
     }
     args.log.refuse_for(&args.input)?;
     if source::is_scene(&args.input) {
-        return Ok(scene::scene_info(&args.input)?);
+        return Ok(scene::scene_info(&args.input, args.animation.as_deref())?);
     }
     if camera::is_camera_file(&args.input) {
         return Ok(camera::camera_info(&args.input)?);

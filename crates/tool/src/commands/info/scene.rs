@@ -7,8 +7,8 @@ use afterimage_lab::trace::effects::Effects;
 /// Limit on printed names per kind; a file may have thousands.
 const MAX_NAMES: usize = 20;
 
-pub fn scene_info(input: &str) -> Result<(), InputError> {
-    let scene = Scene::open(input, &SceneLimits::default())?;
+pub fn scene_info(input: &str, animation: Option<&str>) -> Result<(), InputError> {
+    let scene = Scene::open_clip(input, animation, &SceneLimits::default())?;
     let pose = scene.pose(0.0);
     say!("{}", scene.name);
     say!("triangles: {} ({} animated)", scene.still().len() + pose.moving.len(), pose.moving.len());
@@ -46,8 +46,12 @@ pub fn scene_info(input: &str) -> Result<(), InputError> {
     }
     say!("cameras: {}", named(pose.cameras.iter().map(|c| c.name.as_str())));
     say!("animations: {}", named(scene.animations.iter().map(String::as_str)));
+    if scene.animations.len() > 1 {
+        say!("choose an animation with --animation NAME, or by its number from 0");
+    }
     if scene.duration_s() > 0.0 {
-        say!("duration of the first animation, s: {:.3}", scene.duration_s());
+        let which = animation.map_or("the first animation".to_owned(), |name| format!("animation {name}"));
+        say!("duration of {which}, s: {:.3}", scene.duration_s());
     }
     let effects: Vec<_> = Effects::needed(&scene).iter().map(|e| e.name()).collect();
     say!("effects used: {}", if effects.is_empty() { "none".to_owned() } else { effects.join(", ") });

@@ -32,19 +32,47 @@ fn parse_metric(key: &str) -> Result<&'static Metric, String> {
         .ok_or_else(|| format!("expected one of {}", METRICS.iter().map(|m| m.key).collect::<Vec<_>>().join(", ")))
 }
 
+impl PickArgs {
+    /// The metric of --by or, if that was not measured, the first that was, and a line that says so.
+    pub fn measured(&self, table: &Table) -> (&'static Metric, Option<String>) {
+        let is_measured = |metric: &&Metric| table.rows.iter().any(|row| row.value(metric.key).is_some());
+        let by = self.by;
+        if is_measured(&by) {
+            return (by, None);
+        }
+        match METRICS.iter().find(is_measured) {
+            Some(other) => {
+                let key = other.key;
+                (
+                    other,
+                    Some(format!("{} was not measured; points are compared by {} (--by {key})", by.title, other.title)),
+                )
+            }
+            None => (by, None),
+        }
+    }
+}
+
 /// Prints recommended settings, if requested.
 pub fn print(args: &PickArgs, table: &Table) -> Result<(), Failure> {
     let target = args.target.or(args.target_flip);
     if args.budget_ms.is_none() && target.is_none() {
         return Ok(());
     }
+    let (by, is_other) = args.measured(table);
+    if let (Some(target), Some(_)) = (target, is_other) {
+        let (title, key) = (args.by.title, by.key);
+        return Err(Failure::Input(format!(
+            "--target {target}: {title} was not measured; measure it, or give the target in another metric, --by {key}"
+        )));
+    }
     let inputs: BTreeSet<&str> = table.rows.iter().map(|r| r.point.input.as_str()).collect();
     for input in inputs {
         for (shading, rows) in classes(table, input) {
             say!("\n{input}{shading}");
-            match pick(&rows, args.by, args.budget_ms, target) {
-                Some(row) => print_row(row, args.by),
-                None => print_nothing(&rows, args),
+            match pick(&rows, by, args.budget_ms, target) {
+                Some(row) => print_row(row, by),
+                None => print_nothing(&rows, args, by),
             }
         }
     }
@@ -84,16 +112,16 @@ fn print_row(row: &Row, by: &Metric) {
     say!("  let settings = {};", row.rust);
 }
 
-fn print_nothing(rows: &[&Row], args: &PickArgs) {
+fn print_nothing(rows: &[&Row], args: &PickArgs, by: &Metric) {
     let cheapest = rows.iter().min_by(|a, b| a.cost_ms.total_cmp(&b.cost_ms));
-    let best = pick(rows, args.by, None, None);
+    let best = pick(rows, by, None, None);
     match (args.budget_ms, cheapest, best) {
         (Some(ms), Some(row), _) => {
             say!("  nothing costs {ms} ms or less; the cheapest, {}, costs {:.2}", row.label, row.cost_ms)
         }
         (_, _, Some(row)) => {
             say!("  nothing is as good; the best is");
-            print_row(row, args.by);
+            print_row(row, by);
         }
         _ => say!("  nothing is measured"),
     }

@@ -12,6 +12,7 @@ use afterimage_lab::picture::write_png;
 /// Writes all files; returns the table.
 pub fn write(args: &SweepArgs, store: &Store, measurements: &[Measurement]) -> Result<Table, WriteError> {
     let table = Table::new(measurements, args.pick.renderer_ms, command_line());
+    let (by, _) = args.pick.measured(&table);
     let root = store.root();
     write_json(Some(&root.join("sweep.json")), &table)?;
     write_text(&root.join("sweep.csv"), &table.csv())?;
@@ -19,7 +20,7 @@ pub fn write(args: &SweepArgs, store: &Store, measurements: &[Measurement]) -> R
     for (i, input) in table.clips.keys().enumerate() {
         // The help promises this name for the first input.
         let name = if i == 0 { "pareto".to_owned() } else { format!("pareto-{}", i + 1) };
-        let svg = pareto::svg(&table, input, args.pick.by);
+        let svg = pareto::svg(&table, input, by);
         write_text(&root.join(format!("{name}.svg")), &svg)?;
         let path = root.join(format!("{name}.png"));
         write_png(&path, &plot::png(&svg)).map_err(|e| WriteError::new(&path, e))?;
@@ -31,7 +32,8 @@ pub fn write(args: &SweepArgs, store: &Store, measurements: &[Measurement]) -> R
 
 /// Prints the frontier and the path of the report.
 pub fn print_summary(args: &SweepArgs, table: &Table) {
-    let by = args.pick.by;
+    let (by, is_other) = args.pick.measured(table);
+    is_other.iter().for_each(|line| say!("{line}"));
     say!("{} points; best {} for its cost:", table.rows.len(), by.title);
     let is_whole = table.rows.iter().all(|r| r.total_ms.is_some());
     say!("ms: {}", if is_whole { "whole frame, render + post" } else { "the pass alone where nothing is rendered" });

@@ -63,9 +63,9 @@ pub struct TraceArgs {
     /// keyframes ...; docs/cameras.md), or another scene (.gltf, .glb) for its first camera; default: still
     #[arg(long, value_name = "NAME|FILE")]
     pub camera: Option<String>,
-    /// Animation of the scene to play, by name or number; default: the first
-    #[arg(long, value_name = "NAME")]
-    pub clip: Option<String>,
+    /// Animation of the scene, by name or number from 0; default: the first. It starts at its first key, and loops
+    #[arg(long, visible_alias = "clip", value_name = "NAME|N")]
+    pub animation: Option<String>,
     /// Samples per pixel; in the fovea with --sampling layers or acuity (for regions see --region-spp)
     #[arg(long, default_value_t = 32, value_parser = parse_samples, value_name = "N")]
     pub spp: u32,

@@ -35,7 +35,7 @@ impl Setup {
         let light = light(args)?;
         let clock = Stopwatch::start();
         let of = ViewedScene::open(&SceneChoice {
-            clip: args.clip.as_deref(),
+            clip: args.animation.as_deref(),
             camera: Some(args.camera.as_deref().unwrap_or("still")),
             head: head_path(args.camera.as_deref(), &args.pattern.gaze, &args.scene, args.fps, Some(args.frames))?,
             light,
@@ -44,6 +44,10 @@ impl Setup {
         })?;
         let load_ms = clock.wall_ms();
         warn(of.warnings());
+        if args.frames > 1 && args.camera.is_none() && of.info().still {
+            let n = args.frames;
+            say!("warning: nothing moves in these {n} frames; --camera lateral moves the camera, as run does");
+        }
         let backend = args.backend.open_for_scenes()?;
         let clock = Stopwatch::start();
         let world = World::new(&of.scene);
