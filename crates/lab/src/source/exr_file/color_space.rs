@@ -137,7 +137,7 @@ impl Primaries {
 /// A text attribute of a part.
 fn text_attribute(header: &Header, name: &str) -> Option<String> {
     let mut all = header.own_attributes.other.iter().chain(&header.shared_attributes.other);
-    match all.find(|(key, _)| key.to_string() == name)?.1 {
+    match all.find(|(key, _)| **key == *name)?.1 {
         AttributeValue::Text(text) => Some(text.to_string()),
         _ => None,
     }

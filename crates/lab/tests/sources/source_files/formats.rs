@@ -303,8 +303,7 @@ fn pixel_aspect_is_doubted_and_a_sequence_has_its_frame_rate() {
             let colors = ["B", "G", "R"].map(|name| (name, vec![0.5f32; 4]));
             let channel = |(name, values)| AnyChannel::new(name, FlatSamples::F32(values));
             let list = colors.into_iter().chain(vectors).map(channel).collect();
-            let mut attributes = LayerAttributes::default();
-            attributes.frames_per_second = rate;
+            let attributes = LayerAttributes { frames_per_second: rate, ..LayerAttributes::default() };
             let layer = Layer::new((2, 2), attributes, Encoding::UNCOMPRESSED, AnyChannels { list });
             exr::prelude::Image::from_layer(layer).write().to_file(path).unwrap();
         }
