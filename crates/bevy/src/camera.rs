@@ -1,8 +1,9 @@
 //! Components of a camera, and the components that these require.
 
+use crate::layers::{AddedStorage, Layers, LayersFound, ReplacedMsaa};
 use afterimage::{DebugView, DepthConvention, Filter, Foveation, Settings};
-use bevy::camera::{CameraMainTextureUsages, ClearColorConfig, Hdr, NormalizedRenderTarget, RenderTarget};
-use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass};
+use bevy::camera::{CameraMainTextureUsages, Hdr, RenderTarget};
+use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, NormalPrepass};
 use bevy::ecs::query::QueryData;
 use bevy::prelude::*;
 use bevy::render::render_resource::TextureUsages;
@@ -172,75 +173,73 @@ impl Plugin for CameraPlugin {
             PostUpdate,
             (replace_msaa, add_usages)
                 .run_if(resource_exists::<AfterimageSupported>)
+                .after(LayersFound)
                 .before(bevy::camera::CameraUpdateSystems),
         );
     }
 }
 
-/// MSAA of a camera before the plugin switched it off.
-#[derive(Component)]
-struct ReplacedMsaa(Msaa);
-
-/// What says whether a camera is foveated, or draws on what a foveated one has drawn: a head-up display. Bevy has both
-/// draw to one main texture only if that has the same samples and usages.
+/// What says whether MSAA of a camera is off.
 #[derive(QueryData)]
-struct Layer {
-    camera: &'static Camera,
+struct Sampled {
+    entity: Entity,
     target: &'static RenderTarget,
-    foveated: Option<&'static Foveated>,
-    has_afterimage: Has<Afterimage>,
-    is_hdr: Has<Hdr>,
+    afterimage: Option<(&'static Afterimage, &'static Foveated)>,
+    prepasses: (Has<DepthPrepass>, Has<NormalPrepass>, Has<MotionVectorPrepass>),
 }
 
-impl LayerItem<'_, '_> {
-    fn is_foveated(&self) -> bool {
-        self.has_afterimage && self.foveated.is_some_and(|foveated| foveated.kind != FoveationKind::Off)
+impl SampledItem<'_, '_> {
+    /// What draws on another camera's picture is not foveated.
+    fn foveated(&self, layers: &Layers) -> Option<&Afterimage> {
+        let (afterimage, foveated) = self.afterimage?;
+        (foveated.kind != FoveationKind::Off && layers.below(self.entity).is_none()).then_some(afterimage)
     }
 
-    /// Where cameras that do not clear draw, too. The primary window is `None`.
-    fn place(&self) -> (Option<NormalizedRenderTarget>, bool) {
-        (self.target.normalize(None), self.is_hdr)
-    }
-
-    fn is_on(&self, places: &[(Option<NormalizedRenderTarget>, bool)]) -> bool {
-        matches!(self.camera.clear_color, ClearColorConfig::None) && places.contains(&self.place())
+    fn has_prepass(&self) -> bool {
+        let (depth, normal, motion) = self.prepasses;
+        depth || normal || motion
     }
 }
 
-/// Switches MSAA off for cameras that are foveated, and back when they no longer are.
-fn replace_msaa(mut commands: Commands, mut cameras: Query<(Entity, &mut Msaa, Option<&ReplacedMsaa>, Layer)>) {
-    let foveated = cameras.iter().filter(|(.., layer)| layer.is_foveated());
-    let places: Vec<_> = foveated.map(|(.., layer)| layer.place()).collect();
-    for (entity, mut msaa, replaced, layer) in &mut cameras {
-        let is_off = layer.is_foveated() || layer.is_on(&places);
+/// Switches MSAA off for cameras that are foveated, and back when they no longer are. Other cameras of their targets
+/// with a prepass have none either: Bevy has prepasses of one target share textures.
+fn replace_msaa(
+    mut commands: Commands,
+    mut cameras: Query<(&mut Msaa, Option<&ReplacedMsaa>, Sampled)>,
+    layers: Res<Layers>,
+) {
+    let foveated = cameras.iter().filter(|(.., camera)| camera.foveated(&layers).is_some());
+    let targets: Vec<_> = foveated.map(|(.., camera)| camera.target.normalize(None)).collect();
+    for (mut msaa, replaced, camera) in &mut cameras {
+        let foveated = camera.foveated(&layers);
+        let is_off = foveated.is_some() || camera.has_prepass() && targets.contains(&camera.target.normalize(None));
         if is_off && *msaa != Msaa::Off {
-            // Bevy's default was hardly chosen.
-            if *msaa != Msaa::default() {
-                warn_once!("Afterimage sets Msaa::Off: most pixels of a foveated frame have no samples to average");
+            if foveated.is_some_and(|afterimage| afterimage.antialias) {
+                info_once!("Afterimage sets Msaa::Off, and antialiases in its place");
+            } else {
+                warn_once!(
+                    "Afterimage sets Msaa::Off: most pixels of a foveated frame have no samples to average. Set \
+                     Afterimage::antialias, or Msaa::Off"
+                );
             }
-            commands.entity(entity).insert(ReplacedMsaa(*msaa));
+            commands.entity(camera.entity).insert(ReplacedMsaa(*msaa));
             *msaa = Msaa::Off;
         } else if let Some(replaced) = replaced.filter(|_| !is_off) {
             *msaa = replaced.0;
-            commands.entity(entity).remove::<ReplacedMsaa>();
+            commands.entity(camera.entity).remove::<ReplacedMsaa>();
         }
     }
 }
 
-/// The plugin has added `STORAGE_BINDING` to the usages of a camera's main textures.
-#[derive(Component)]
-struct AddedStorage;
-
-type Used<'a> = (Entity, &'a mut CameraMainTextureUsages, Option<&'a mut Camera3d>, Has<AddedStorage>, Layer);
+type Used<'a> =
+    (Entity, &'a mut CameraMainTextureUsages, Option<&'a mut Camera3d>, Has<AddedStorage>, Has<Afterimage>, Has<Hdr>);
 
 /// Has the post-process write the main texture itself where compute shaders can: not sRGB-encoded formats, which
 /// cameras without `Hdr` have. Has the depth that it closes be restored.
-fn add_usages(mut commands: Commands, mut cameras: Query<Used<'_>>) {
+fn add_usages(mut commands: Commands, mut cameras: Query<Used<'_>>, layers: Res<Layers>) {
     let storage = TextureUsages::STORAGE_BINDING;
-    let written = cameras.iter().filter(|(.., layer)| layer.has_afterimage && layer.is_hdr);
-    let places: Vec<_> = written.map(|(.., layer)| layer.place()).collect();
-    for (entity, mut usages, camera, is_added, layer) in &mut cameras {
-        let needed = layer.is_hdr && (layer.has_afterimage || layer.is_on(&places));
+    for (entity, mut usages, camera, is_added, has_afterimage, is_hdr) in &mut cameras {
+        let needed = is_hdr && has_afterimage && layers.below(entity).is_none();
         if needed && !usages.0.contains(storage) {
             usages.0.insert(storage);
             commands.entity(entity).insert(AddedStorage);
@@ -248,7 +247,7 @@ fn add_usages(mut commands: Commands, mut cameras: Query<Used<'_>>) {
             usages.0.remove(storage);
             commands.entity(entity).remove::<AddedStorage>();
         }
-        if let Some(mut camera) = camera.filter(|_| layer.has_afterimage) {
+        if let Some(mut camera) = camera.filter(|_| has_afterimage) {
             let depth = TextureUsages::from(camera.depth_texture_usages);
             if !depth.contains(TextureUsages::COPY_DST) {
                 camera.depth_texture_usages = (depth | TextureUsages::COPY_DST).into();

@@ -5,6 +5,7 @@ use crate::camera::{
 };
 use crate::counters::AfterimageStats;
 use crate::gaze::{CameraGaze, Gaze};
+use crate::layers::Layers;
 use afterimage::{ContextDesc, DebugView, Foveation, Method, MotionConvention, ViewFrame, ViewGeometry};
 use bevy::camera::{ClearColorConfig, CompositingSpace, MainPassResolutionOverride};
 use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass, MotionVectorPrepass, PreviousViewData};
@@ -95,6 +96,7 @@ fn extract(
     let gaze = *world.resource::<Gaze>();
     let index = u64::from(world.resource::<FrameCount>().0);
     let is_supported = world.contains_resource::<AfterimageSupported>();
+    let layers = world.resource::<Layers>().clone();
     // Kept, because a new query looks at every archetype.
     let cameras = query.get_or_insert_with(|| world.query());
     for mut camera in cameras.iter_mut(&mut world) {
@@ -104,7 +106,14 @@ fn extract(
             entity.remove::<ExtractedAfterimage>();
             continue;
         };
-        let (mut desc, view) = match describe(&camera, size, gaze) {
+        let described = match layers.below(camera.main) {
+            Some(below) => Err(format!(
+                "it draws on the picture of camera {below}, and quads cannot. Give Afterimage to camera \
+                 {below} alone"
+            )),
+            None => describe(&camera, size, gaze),
+        };
+        let (mut desc, view) = match described {
             Ok(described) => described,
             Err(problem) => {
                 if said.get(&camera.main) != Some(&problem) {

@@ -31,6 +31,7 @@ mod counters;
 mod diagnostics;
 mod frame;
 mod gaze;
+mod layers;
 mod pass;
 mod scanpath;
 #[doc(hidden)]
@@ -62,6 +63,7 @@ impl Plugin for AfterimagePlugin {
         }
         app.init_resource::<AfterimageSupported>().add_plugins((
             camera::CameraPlugin,
+            layers::LayersPlugin,
             frame::FramePlugin,
             pass::PassPlugin,
             diagnostics::DiagnosticsPlugin,

@@ -1,0 +1,208 @@
+//! Several cameras on one target, of which some are foveated: what each of them shows at full rate.
+
+use crate::SIZE;
+use crate::common::headless::Headless;
+use crate::common::scene::TONEMAPPING;
+use bevy::camera::visibility::RenderLayers;
+use bevy::camera::{ClearColorConfig, Hdr, MsaaWriteback, RenderTarget, Viewport};
+use bevy::light::NotShadowCaster;
+use bevy::prelude::*;
+use bevy_afterimage::{Afterimage, Foveated, FoveationKind};
+
+/// Layer of what only upper cameras show.
+const ARM: RenderLayers = RenderLayers::layer(1);
+
+/// At full rate, and by quads without a gaze.
+fn kinds() -> [Foveated; 2] {
+    [Foveated { kind: FoveationKind::Off, ..default() }, Foveated::uniform(0.25)]
+}
+
+/// Where the camera is at a time.
+fn place(t_s: f32) -> Transform {
+    Transform::from_xyz(0.6 * t_s - 0.6, 1.0, 2.0).looking_at(Vec3::new(0.3 * t_s, 0.6, -3.0), Vec3::Y)
+}
+
+/// Cubes on a floor, an arm that only upper cameras show, and for each kind an image to which `spawn` adds cameras.
+fn room(spawn: impl Fn(&mut World, RenderTarget, Foveated)) -> (Headless, [Handle<Image>; 2]) {
+    let mut headless = Headless::new(SIZE, |_: &mut App| {});
+    let white = MeshMaterial3d(headless.asset(StandardMaterial::from(Color::WHITE)));
+    let teal = MeshMaterial3d(headless.asset(StandardMaterial::from(Color::srgb(0.0, 0.8, 0.7))));
+    let floor = Mesh3d(headless.asset(Plane3d::new(Vec3::Y, Vec2::splat(10.0)).into()));
+    let cube = Mesh3d(headless.asset(Cuboid::new(2.0, 0.5, 1.0).into()));
+    let arm = Mesh3d(headless.asset(Cuboid::new(0.1, 0.1, 0.5).into()));
+    let world = headless.app.world_mut();
+    world.spawn((floor, white.clone()));
+    world.spawn((cube.clone(), white.clone(), Transform::from_xyz(0.0, 0.25, -3.0)));
+    world.spawn((cube, white, Transform::from_xyz(0.75, 1.75, 0.0)));
+    world.spawn((arm, teal, place(1.0) * Transform::from_xyz(0.2, -0.1, -0.25), ARM, NotShadowCaster));
+    let light = PointLight { color: Color::srgb(1.0, 0.8, 0.8), shadow_maps_enabled: true, ..default() };
+    world.spawn((light, Transform::from_xyz(-2.0, 4.0, -0.75), RenderLayers::from_layers(&[0, 1])));
+    let targets = kinds().map(|kind| {
+        let image = headless.add_target(SIZE);
+        spawn(headless.app.world_mut(), RenderTarget::from(image.clone()), kind);
+        image
+    });
+    (headless, targets)
+}
+
+/// A camera of the world, which is foveated.
+fn world_camera(target: RenderTarget, kind: Foveated) -> impl Bundle {
+    (Camera3d::default(), target, TONEMAPPING, place(1.0), Afterimage { antialias: true, ..default() }, kind)
+}
+
+/// A camera on top of it that shows the arm.
+fn arm_camera(target: RenderTarget, clear_color: ClearColorConfig) -> impl Bundle {
+    (Camera3d::default(), Camera { order: 1, clear_color, ..default() }, target, TONEMAPPING, place(1.0), ARM)
+}
+
+/// Share of the pixels of which a channel differs by more than 8 of 255.
+fn differing(a: &[u8], b: &[u8]) -> f64 {
+    let pixels = a.chunks_exact(4).zip(b.chunks_exact(4));
+    let differ = |(a, b): &(&[u8], &[u8])| (0..3).any(|i| a[i].abs_diff(b[i]) > 8);
+    pixels.filter(differ).count() as f64 / (a.len() / 4) as f64
+}
+
+/// Pixels of the arm.
+fn arm_pixels(shot: &[u8]) -> usize {
+    let is_arm = |pixel: &&[u8]| pixel[1] > pixel[0].saturating_add(30) && pixel[2] > pixel[0].saturating_add(20);
+    shot.chunks_exact(4).filter(is_arm).count()
+}
+
+/// Difference of what both kinds show, without errors.
+fn compare(headless: &mut Headless, targets: &[Handle<Image>; 2], name: &str) -> [Vec<u8>; 2] {
+    headless.frames(40);
+    assert_eq!(headless.problems(), &[] as &[String], "{name}");
+    let shots = targets.each_ref().map(|target| headless.read_target(target));
+    let share = differing(&shots[0], &shots[1]);
+    println!("{name}: {:.2} % of the pixels differ, {} of the arm", 100.0 * share, arm_pixels(&shots[0]));
+    assert!(shots[0].chunks(4).filter(|pixel| pixel[0] > 120).count() > 1000, "{name}: the world is dark");
+    assert!(share < 0.01, "{name}: {:.2} % of the pixels differ", 100.0 * share);
+    shots
+}
+
+#[test]
+fn a_view_model_is_drawn_on_the_world() {
+    let (mut headless, targets) = room(|world, target, kind| {
+        world.spawn(world_camera(target.clone(), kind));
+        world.spawn(arm_camera(target, ClearColorConfig::Default));
+    });
+    // The camera moves, and stops.
+    let world = headless.app.world_mut();
+    let mut cameras = world.query_filtered::<&mut Transform, With<Camera3d>>();
+    for frame in 0..20 {
+        cameras.iter_mut(headless.app.world_mut()).for_each(|mut own| *own = place(0.05 * frame as f32));
+        headless.frames(1);
+    }
+    cameras.iter_mut(headless.app.world_mut()).for_each(|mut own| *own = place(1.0));
+    let shots = compare(&mut headless, &targets, "a view model");
+    assert!(shots.iter().all(|shot| arm_pixels(shot) > 500), "the arm is missing");
+}
+
+#[test]
+fn cameras_on_one_target_show_what_they_show_at_full_rate() {
+    type Spawn = fn(&mut World, RenderTarget, Foveated);
+    let setups: [(&str, bool, Spawn); 8] = [
+        ("hdr below hdr", true, |world, target, kind| {
+            world.spawn((world_camera(target.clone(), kind), Hdr));
+            world.spawn((arm_camera(target, ClearColorConfig::Default), Hdr));
+        }),
+        ("hdr below, without MSAA, not cleared", true, |world, target, kind| {
+            world.spawn((world_camera(target.clone(), kind), Hdr, Msaa::Off));
+            world.spawn((arm_camera(target, ClearColorConfig::None), Hdr, Msaa::Off));
+        }),
+        ("not cleared", true, |world, target, kind| {
+            world.spawn(world_camera(target.clone(), kind));
+            world.spawn(arm_camera(target, ClearColorConfig::None));
+        }),
+        ("both foveated", true, |world, target, kind| {
+            world.spawn(world_camera(target.clone(), kind));
+            world.spawn((arm_camera(target, ClearColorConfig::Default), Afterimage::default(), kind));
+        }),
+        ("a user interface on an arm", true, |world, target, kind| {
+            world.spawn(world_camera(target.clone(), kind));
+            world.spawn(arm_camera(target.clone(), ClearColorConfig::Default));
+            let camera = Camera { order: 2, clear_color: ClearColorConfig::None, ..default() };
+            let camera = world.spawn((Camera2d, camera, target, RenderLayers::layer(2))).id();
+            let bar = Node { width: Val::Px(60.0), height: Val::Px(20.0), ..default() };
+            world.spawn((bar, BackgroundColor(Color::srgb(1.0, 1.0, 0.0)), UiTargetCamera(camera)));
+        }),
+        ("split screen", false, |world, target, kind| {
+            for side in 0..2 {
+                let physical_position = UVec2::new(side * SIZE.x / 2, 0);
+                let physical_size = UVec2::new(SIZE.x / 2, SIZE.y);
+                let viewport = Some(Viewport { physical_position, physical_size, ..default() });
+                world.spawn((
+                    world_camera(target.clone(), kind),
+                    Camera { order: side as isize, viewport, ..default() },
+                ));
+            }
+        }),
+        ("a picture in the picture", true, |world, target, kind| {
+            world.spawn(world_camera(target.clone(), kind));
+            let viewport = Viewport { physical_size: SIZE / 4, ..default() };
+            world
+                .spawn(arm_camera(target, ClearColorConfig::Default))
+                .insert(Camera { order: 1, viewport: Some(viewport), ..default() })
+                .insert(Projection::from(PerspectiveProjection { fov: 1.5, ..default() }));
+        }),
+        ("below a camera that hides it", true, |world, target, kind| {
+            world.spawn((world_camera(target.clone(), kind), Msaa::Off));
+            // Its sides clear what lies below.
+            let camera = Camera { order: 1, msaa_writeback: MsaaWriteback::Off, ..default() };
+            world.spawn((arm_camera(target.clone(), ClearColorConfig::Default), Msaa::Off)).insert(camera);
+            let viewport = Some(Viewport { physical_size: UVec2::new(SIZE.x / 2, SIZE.y), ..default() });
+            world.spawn((world_camera(target, kind), Camera { order: 2, viewport, ..default() }, Msaa::Off));
+        }),
+    ];
+    for (name, has_arm, spawn) in setups {
+        let (mut headless, targets) = room(spawn);
+        let shots = compare(&mut headless, &targets, name);
+        let arms = shots.each_ref().map(|shot| arm_pixels(shot));
+        assert!(!has_arm || arms.iter().all(|&pixels| pixels > 20), "{name}: the arm is missing: {arms:?}");
+    }
+}
+
+#[test]
+fn cameras_on_a_foveated_one_come_and_go() {
+    let (mut headless, targets) = room(|world, target, kind| {
+        world.spawn(world_camera(target, kind));
+    });
+    let [alone, with] = [false, true].map(|has_arm| {
+        let uppers = targets.each_ref().map(|target| {
+            let target = RenderTarget::from(target.clone());
+            has_arm.then(|| headless.app.world_mut().spawn(arm_camera(target, ClearColorConfig::Default)).id())
+        });
+        // The world is there in the first frame, too.
+        headless.frames(1);
+        let shots = targets.each_ref().map(|target| headless.read_target(target));
+        if has_arm {
+            let share = differing(&shots[0], &shots[1]);
+            println!("the frame in which it comes: {:.2} %", 100.0 * share);
+            assert!(share < 0.02, "{share}");
+        }
+        let shots = compare(&mut headless, &targets, "with and without an arm");
+        for upper in uppers.into_iter().flatten() {
+            headless.app.world_mut().entity_mut(upper).despawn();
+        }
+        shots.map(|shot| arm_pixels(&shot))
+    });
+    assert!(alone.iter().all(|&pixels| pixels < 20) && with.iter().all(|&pixels| pixels > 500), "{alone:?} {with:?}");
+    headless.frames(1);
+    let shots = targets.each_ref().map(|target| headless.read_target(target));
+    assert!(shots.iter().all(|shot| arm_pixels(shot) < 20), "the arm stays");
+    // The lower camera no longer is foveated, and is again.
+    let mut cameras = headless.app.world_mut().query_filtered::<Entity, With<Afterimage>>();
+    let cameras: Vec<Entity> = cameras.iter(headless.app.world()).collect();
+    for target in &targets {
+        let target = RenderTarget::from(target.clone());
+        headless.app.world_mut().spawn((arm_camera(target, ClearColorConfig::Default), Hdr)).remove::<Hdr>();
+    }
+    for camera in &cameras {
+        headless.app.world_mut().entity_mut(*camera).remove::<Afterimage>();
+    }
+    compare(&mut headless, &targets, "without Afterimage");
+    for camera in cameras {
+        headless.app.world_mut().entity_mut(camera).insert(Afterimage { antialias: true, ..default() });
+    }
+    compare(&mut headless, &targets, "with it again");
+}
