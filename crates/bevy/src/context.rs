@@ -5,6 +5,7 @@ use crate::counters::Counters;
 use crate::frame::ExtractedAfterimage;
 use afterimage::gpu::{Afterimage, Frame, Prime, Region, Target, Textures};
 use afterimage::{Exposure, Reset, ViewFrame, wgpu};
+use std::sync::atomic::AtomicBool;
 use wgpu::{CommandEncoder, Device, Texture, TextureFormat, TextureUsages};
 
 /// Format in which the post-process works: Bevy's of cameras with `Hdr`.
@@ -40,6 +41,10 @@ pub(crate) struct Context {
     exposure: Option<f32>,
     /// Quads of this frame are chosen, and the depth of the main pass is closed elsewhere.
     pub is_planned: bool,
+    /// The frame is made, and the depth of the main pass is open again.
+    pub is_shown: bool,
+    /// The main pass has left items out that have no prepass.
+    pub has_late: AtomicBool,
 }
 
 /// Textures of a camera, of which its viewport is read.
@@ -90,12 +95,14 @@ impl Context {
     pub fn new(device: &Device, frame: &ExtractedAfterimage) -> Result<Self, String> {
         let post = Afterimage::new(device, &frame.desc, FORMAT).map_err(|error| error.to_string())?;
         let [depth, spare, spare_debug] = [None, None, None];
-        Ok(Self { post, depth, spare, spare_debug, counters: None, exposure: None, is_planned: false })
+        let (counters, exposure, has_late) = (None, None, AtomicBool::new(false));
+        Ok(Self { post, depth, spare, spare_debug, counters, exposure, is_planned: false, is_shown: false, has_late })
     }
 
     /// Makes settings those of the frame.
     pub fn prepare(&mut self, device: &Device, frame: &ExtractedAfterimage) -> Result<(), String> {
-        self.is_planned = false;
+        (self.is_planned, self.is_shown) = (false, false);
+        self.has_late = AtomicBool::new(false);
         if self.post.desc().settings != frame.desc.settings {
             self.post.set_settings(device, frame.desc.settings).map_err(|error| error.to_string())?;
         }
@@ -162,11 +169,12 @@ impl Context {
         Ok(())
     }
 
-    /// Opens the depth of the main pass again.
-    pub fn open(&self, encoder: &mut CommandEncoder, tested: &Texture) {
+    /// Opens the depth of the main pass again. That of the prepass is all of it: what has none is drawn later.
+    pub fn open(&mut self, encoder: &mut CommandEncoder, tested: &Texture) {
         if let Some(kept) = self.depth.as_ref().filter(|kept| kept.size() == tested.size()) {
             encoder.copy_texture_to_texture(kept.as_image_copy(), tested.as_image_copy(), tested.size());
         }
+        self.is_shown = true;
     }
 
     /// Records the post-process of a planned frame, and writes it to `output` and its view. After an error nothing is

@@ -22,7 +22,8 @@
 //! 2. The post-process chooses quads of 2x2 pixels, and closes the depth buffer elsewhere.
 //! 3. Bevy draws opaque and alpha-masked meshes and the sky as always; the depth test skips what is closed.
 //! 4. The post-process makes the frame, and opens the depth buffer again.
-//! 5. Bevy draws what transmits light, what is transparent, particles and gizmos at every pixel, and its effects.
+//! 5. Bevy draws what has no prepass, what transmits light, what is transparent, particles and gizmos at every pixel,
+//!    and its effects.
 
 mod blit;
 mod camera;
@@ -31,6 +32,7 @@ mod counters;
 mod diagnostics;
 mod frame;
 mod gaze;
+mod late;
 mod layers;
 mod pass;
 mod scanpath;
@@ -64,6 +66,7 @@ impl Plugin for AfterimagePlugin {
         app.init_resource::<AfterimageSupported>().add_plugins((
             camera::CameraPlugin,
             layers::LayersPlugin,
+            late::LatePlugin,
             frame::FramePlugin,
             pass::PassPlugin,
             diagnostics::DiagnosticsPlugin,

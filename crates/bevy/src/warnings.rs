@@ -2,16 +2,12 @@
 
 use crate::camera::{Afterimage, Foveated, FoveationKind};
 use crate::frame::ExtractedAfterimage;
-use bevy::asset::UntypedAssetId;
 use bevy::core_pipeline::core_3d::{AlphaMask3d, Opaque3d};
 use bevy::core_pipeline::schedule::Core3d;
 use bevy::ecs::schedule::Schedules;
-use bevy::material::{MaterialProperties, RenderPhaseType};
-use bevy::pbr::PreparedMaterial;
 use bevy::platform::collections::HashSet;
 use bevy::prelude::*;
 use bevy::render::camera::TemporalJitter;
-use bevy::render::erased_render_asset::ErasedRenderAssets;
 use bevy::render::render_phase::{BinnedPhaseItem, BinnedRenderPhase, ViewBinnedRenderPhases};
 use bevy::render::render_resource::{
     CachedRenderPipelineId, CompareFunction, PipelineCache, PipelineDescriptor, RenderPipelineDescriptor,
@@ -27,7 +23,7 @@ impl Plugin for WarningsPlugin {
         app.add_systems(PostUpdate, (warn_of_jitter, warn_of_unused));
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
             // In extraction, because the text of shaders is in the main world. Phases are those of the last frame.
-            render_app.add_systems(ExtractSchedule, (warn_of_pipelines, warn_of_materials, warn_of_passes));
+            render_app.add_systems(ExtractSchedule, (warn_of_pipelines, warn_of_passes));
         }
     }
 }
@@ -103,31 +99,6 @@ fn why_late(descriptor: &RenderPipelineDescriptor, shader: Option<&Shader>) -> O
         () if has("frag_depth") => Some("it writes frag_depth"),
         () if has("read_write") || has("textureStore") => Some("it writes to storage without @early_depth_test(force)"),
         () => None,
-    }
-}
-
-/// Materials that are in the main passes alone: depth and motion are those of what is behind them.
-fn warn_of_materials(
-    cameras: Query<Ref<ExtractedAfterimage>>,
-    materials: Option<Res<ErasedRenderAssets<PreparedMaterial>>>,
-    mut is_said: Local<bool>,
-) {
-    let Some(materials) = materials.filter(|_| !*is_said && !cameras.is_empty()) else { return };
-    if !materials.is_changed() && !cameras.iter().any(|camera| camera.is_added()) {
-        return;
-    }
-    let lacks = |properties: &MaterialProperties| {
-        let is_solid = matches!(properties.render_phase_type, RenderPhaseType::Opaque | RenderPhaseType::AlphaMask);
-        is_solid && !properties.prepass_enabled
-    };
-    let found: Option<UntypedAssetId> =
-        materials.iter().find(|(_, material)| lacks(&material.properties)).map(|(id, _)| id);
-    if let Some(material) = found {
-        *is_said = true;
-        warn!(
-            "material {material:?} has no prepass (Material::enable_prepass), by which Afterimage chooses quads: it \
-             tears and trails. Enable its prepass, or give it AlphaMode::Blend"
-        );
     }
 }
 

@@ -7,6 +7,7 @@ mod antialiasing;
 mod applications;
 mod conventions;
 mod events;
+mod late;
 mod layers;
 mod pixels;
 mod quads;
