@@ -8,9 +8,7 @@ mod common;
 use bevy::camera::{Exposure, Hdr, Viewport};
 use bevy::prelude::*;
 use bevy_afterimage::afterimage::{DebugView, MethodKind, Settings};
-use bevy_afterimage::{
-    Afterimage, AfterimageDebug, AfterimageStats, CameraGaze, Foveated, FoveationKind, Gaze, Preset,
-};
+use bevy_afterimage::{Afterimage, AfterimageDebug, AfterimageStats, CameraGaze, Foveated, FoveationKind, Gaze};
 use common::headless::Headless;
 use common::scene::{Mover, ScenePlugin, TONEMAPPING};
 use std::collections::BTreeMap;
@@ -145,11 +143,10 @@ fn event(headless: &mut Headless, random: &mut Random, size: &mut UVec2) -> &'st
             "foveation"
         }
         8 => {
-            let preset = random.of(&[Preset::Steady, Preset::Responsive, Preset::Weighted, Preset::Paper]);
             let method = random.of(&[MethodKind::None, MethodKind::Taa, MethodKind::Taau, MethodKind::Smr]);
             let settings = (random.below(2) == 0).then(|| Settings { method: method.into(), ..default() });
             let (antialias, reset) = (random.below(2) == 0, random.below(2) == 0);
-            entity.insert(Afterimage { preset, settings, antialias, reset });
+            entity.insert(Afterimage { settings, antialias, reset });
             "settings"
         }
         9 => {

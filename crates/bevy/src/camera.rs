@@ -1,7 +1,7 @@
 //! Components of a camera, and the components that these require.
 
 use crate::layers::{AddedStorage, Layers, LayersFound, ReplacedMsaa};
-use afterimage::{DebugView, DepthConvention, Filter, Foveation, Settings};
+use afterimage::{DebugView, DepthConvention, Filter, Foveation, Method, Settings};
 use bevy::camera::{CameraMainTextureUsages, Hdr, RenderTarget};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, NormalPrepass};
 use bevy::ecs::query::QueryData;
@@ -26,77 +26,74 @@ use bevy::render::render_resource::TextureUsages;
 /// *accumulate = 0.8;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 #[require(Foveated, DepthPrepass, MotionVectorPrepass)]
 pub struct Afterimage {
-    /// Settings by name.
-    pub preset: Preset,
-    /// Settings in full, instead of the preset. Their `foveation` and `Smr::antialias` are ignored:
-    /// [`Foveated`] and [`antialias`](Self::antialias) say them.
+    /// Method and tunables, where the default ones do not do. Their `foveation` and `Smr::antialias` are ignored:
+    /// [`Foveated`] and [`antialias`](Self::antialias) say them. Default `None`.
     pub settings: Option<Settings>,
     /// Antialiases with the method smr, in place of temporal antialiasing and MSAA: the camera's projection moves by a
     /// part of a pixel each frame, and history stores means of samples. Not for cameras with a `TemporalJitter` of
-    /// their own, which temporal antialiasing and upscaling add. Default false.
+    /// their own, which temporal antialiasing and upscaling add. Default true.
     pub antialias: bool,
     /// Discards history in the next frame, for camera cuts and teleports. Becomes false when that frame is drawn.
     pub reset: bool,
 }
 
-impl Afterimage {
-    pub(crate) fn settings(&self, foveated: &Foveated) -> Settings {
-        let settings = self.settings.unwrap_or_else(|| match self.preset {
-            Preset::Steady => Settings::steady(),
-            Preset::Responsive => Settings::responsive(),
-            Preset::Weighted => Settings::weighted(),
-            Preset::Paper => Settings::paper(),
-        });
-        Settings { foveation: foveated.foveation(), ..settings }
+impl Default for Afterimage {
+    fn default() -> Self {
+        Self { settings: None, antialias: true, reset: false }
     }
 }
 
-/// Settings by name: the presets of [`Settings`], where their figures are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
-#[reflect(Default)]
-pub enum Preset {
-    /// Sharp where the eye has been, calm elsewhere: [`Settings::steady`].
-    #[default]
-    Steady,
-    /// Less flicker of moving things, less detail outlives a moving camera: [`Settings::responsive`].
-    Responsive,
-    /// Weighted reservoirs: [`Settings::weighted`].
-    Weighted,
-    /// Weighted reservoirs as published: [`Settings::paper`].
-    Paper,
+impl Afterimage {
+    pub(crate) fn settings(&self, foveated: &Foveated) -> Settings {
+        let mut settings = Settings { foveation: foveated.foveation(), ..self.settings.unwrap_or_default() };
+        if let Method::Smr(smr) = &mut settings.method {
+            smr.antialias = self.antialias;
+        }
+        settings
+    }
 }
 
 /// Which quads of 2x2 pixels a camera with [`Afterimage`] shades in a frame; without that it does nothing. Angles are
-/// visual angles of the camera: its field of view is taken for the one that the screen fills.
+/// visual angles of the camera: its field of view is taken for the one that the screen fills. Default
+/// [`screen`](Self::screen).
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct Foveated {
     /// Whether pixels are left out. Default [`FoveationKind::Quads`].
     pub kind: FoveationKind,
-    /// Diameter of the full-rate region in degrees: 0 to 180, at most `mid_deg`. Default 10.
+    /// Diameter of the full-rate region in degrees: 0 to 180, at most `mid_deg`. Default 5.
     pub fovea_deg: f32,
     /// Diameter of the middle region in degrees: 0 to 180. Default 15.
     pub mid_deg: f32,
-    /// Edge in pixels of the blocks of which one quad is shaded in a frame, in the middle region: 2, 4 or 8. Default 4.
+    /// Edge in pixels of the blocks of which one quad is shaded in a frame, in the middle region: 2, 4 or 8. Default 8.
     pub rate_mid: u32,
     /// The same in the periphery: 2, 4 or 8, at least `rate_mid`. Every second block has a quad in a frame. Default 8.
     pub rate_far: u32,
-    /// Share of the pixels that are shaded because history lacks something there: 0 to 1. Default 0.025.
+    /// Share of the pixels that are shaded because history lacks something there: 0 to 1. Default 0.05.
     pub budget: f32,
 }
 
 impl Default for Foveated {
     fn default() -> Self {
-        let Foveation { mid_deg, rate_mid, rate_far, budget, .. } = Foveation::quads();
-        Self { kind: FoveationKind::Quads, fovea_deg: 10.0, mid_deg, rate_mid, rate_far, budget }
+        Self::screen()
     }
 }
 
 impl Foveated {
+    /// Around a gaze, for screens about 40 degrees wide: a tenth of the pixels. The foveation of [`Settings::screen`].
+    pub fn screen() -> Self {
+        Settings::screen().foveation.into()
+    }
+
+    /// Around a gaze, for headsets, about 100 degrees wide: a wider fovea. The foveation of [`Settings::headset`].
+    pub fn headset() -> Self {
+        Settings::headset().foveation.into()
+    }
+
     /// No fovea, and no gaze needed: `share` of the pixels, 0 to 1, everywhere alike. A temporal upscaler with depth
     /// and motion at full rate.
     ///
@@ -106,13 +103,19 @@ impl Foveated {
     /// assert_eq!(Foveated::uniform(0.25).fovea_deg, 0.0);
     /// ```
     pub fn uniform(share: f32) -> Self {
-        let Foveation { fovea_deg, mid_deg, rate_mid, rate_far, budget, .. } = Foveation::uniform(share);
-        Self { kind: FoveationKind::Quads, fovea_deg, mid_deg, rate_mid, rate_far, budget }
+        Foveation::uniform(share).into()
     }
 
     fn foveation(&self) -> Foveation {
         let Self { fovea_deg, mid_deg, rate_mid, rate_far, budget, .. } = *self;
         Foveation { filter: Filter::Quads, fovea_deg, mid_deg, rate_mid, rate_far, budget, ..Default::default() }
+    }
+}
+
+impl From<Foveation> for Foveated {
+    fn from(foveation: Foveation) -> Self {
+        let Foveation { fovea_deg, mid_deg, rate_mid, rate_far, budget, .. } = foveation;
+        Self { kind: FoveationKind::Quads, fovea_deg, mid_deg, rate_mid, rate_far, budget }
     }
 }
 
@@ -147,6 +150,13 @@ pub(crate) fn depth_convention(clip_from_view: Mat4) -> Result<DepthConvention, 
         return Err("its projection is orthographic, and regions of foveation are visual angles. Use a perspective \
                     projection, or remove Afterimage"
             .into());
+    }
+    if clip_from_view.x_axis.z != 0.0 || clip_from_view.y_axis.z != 0.0 {
+        return Err(
+            "its near plane is oblique (PerspectiveProjection::near_clip_plane), so that its depth is not that \
+                    of a distance. Mirrors and portals render every pixel: remove Afterimage from this camera"
+                .into(),
+        );
     }
     // depth = w.z / distance - z.z
     let (z, w) = (clip_from_view.z_axis.z, clip_from_view.w_axis.z);
@@ -216,10 +226,13 @@ fn replace_msaa(
         if is_off && *msaa != Msaa::Off {
             if foveated.is_some_and(|afterimage| afterimage.antialias) {
                 info_once!("Afterimage sets Msaa::Off, and antialiases in its place");
+            } else if *msaa == Msaa::default() {
+                // Bevy's default was hardly chosen.
+                info_once!("Afterimage sets Msaa::Off. Set Afterimage::antialias for what it did");
             } else {
                 warn_once!(
                     "Afterimage sets Msaa::Off: most pixels of a foveated frame have no samples to average. Set \
-                     Afterimage::antialias, or Msaa::Off"
+                     Afterimage::antialias for what it did"
                 );
             }
             commands.entity(camera.entity).insert(ReplacedMsaa(*msaa));
@@ -268,6 +281,18 @@ mod tests {
     }
 
     #[test]
+    fn presets_are_the_measured_ones() {
+        for (foveated, measured) in [
+            (Foveated::default(), Settings::screen()),
+            (Foveated::screen(), Settings::screen()),
+            (Foveated::headset(), Settings::headset()),
+            (Foveated::uniform(0.25), Settings { foveation: Foveation::uniform(0.25), ..Settings::screen() }),
+        ] {
+            assert_eq!(Afterimage::default().settings(&foveated), measured);
+        }
+    }
+
+    #[test]
     fn depth_is_that_of_bevys_projections() {
         let projection = PerspectiveProjection { near: 0.25, ..default() };
         let infinite = DepthConvention::Reversed { near: 0.25, far: f32::INFINITY };
@@ -278,6 +303,10 @@ mod tests {
         assert!((near - 0.25).abs() < 1e-4 && (far - 100.0).abs() < 0.1, "{near} {far}");
         let forward = perspective(0.25, 100.0);
         assert!(depth_convention(forward).is_err_and(|problem| problem.contains("reversed")));
+        // A mirror's.
+        let near_clip_plane = Vec4::new(0.3, 0.1, -0.9, 2.0);
+        let oblique = PerspectiveProjection { near_clip_plane, ..projection }.get_clip_from_view();
+        assert!(depth_convention(oblique).is_err_and(|problem| problem.contains("oblique")));
         let orthographic = OrthographicProjection::default_3d().get_clip_from_view();
         assert!(depth_convention(orthographic).is_err_and(|problem| problem.contains("orthographic")));
     }

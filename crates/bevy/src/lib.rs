@@ -41,7 +41,7 @@ pub mod testing;
 mod warnings;
 
 pub use afterimage;
-pub use camera::{Afterimage, AfterimageDebug, AfterimageSupported, Foveated, FoveationKind, Preset};
+pub use camera::{Afterimage, AfterimageDebug, AfterimageSupported, Foveated, FoveationKind};
 pub use counters::AfterimageStats;
 pub use gaze::{CameraGaze, CursorGazePlugin, Gaze};
 pub use pass::ShowQuads;

@@ -5,7 +5,7 @@ use crate::common::scene::{ScenePlugin, TONEMAPPING, stroll};
 use crate::{SIZE, compared, courtyard, courtyards, kind, psnr_db, wander};
 use bevy::prelude::*;
 use bevy_afterimage::afterimage::{DebugView, Method, Settings, Wrs};
-use bevy_afterimage::{Afterimage, AfterimageDebug, Foveated, FoveationKind, Gaze, Preset};
+use bevy_afterimage::{Afterimage, AfterimageDebug, Foveated, FoveationKind, Gaze};
 
 #[test]
 fn frames_of_another_size_are_good_again() {
@@ -70,8 +70,11 @@ fn settings_and_kinds_change_while_it_runs() {
         shot
     };
     change(&mut headless, &|_, _| {});
-    for preset in [Preset::Responsive, Preset::Weighted, Preset::Paper, Preset::Steady] {
-        change(&mut headless, &|afterimage, _| afterimage.preset = preset);
+    for settings in [Some(Settings::responsive()), Some(Settings::weighted()), None] {
+        change(&mut headless, &|afterimage, _| afterimage.settings = settings);
+    }
+    for foveated in [Foveated::headset(), Foveated::screen()] {
+        change(&mut headless, &|_, own| *own = foveated);
     }
     change(&mut headless, &|_, foveated| (foveated.rate_mid, foveated.rate_far) = (2, 4));
     change(&mut headless, &|_, foveated| (foveated.rate_mid, foveated.rate_far) = (8, 8));

@@ -156,7 +156,7 @@ fn build(
 /// Whether a pixel is one of the ball, or of the triangle. Neither has blue and green alike.
 fn is_late(pixel: &[u8]) -> [bool; 2] {
     let [r, g, b] = [pixel[0], pixel[1], pixel[2]];
-    [r > 150 && b < 30 && (g < 30 || g > 150), r > 150 && g < 30 && b > 150]
+    [r > 150 && b < 30 && !(30..=150).contains(&g), r > 150 && g < 30 && b > 150]
 }
 
 #[test]

@@ -47,7 +47,7 @@ fn room(spawn: impl Fn(&mut World, RenderTarget, Foveated)) -> (Headless, [Handl
 
 /// A camera of the world, which is foveated.
 fn world_camera(target: RenderTarget, kind: Foveated) -> impl Bundle {
-    (Camera3d::default(), target, TONEMAPPING, place(1.0), Afterimage { antialias: true, ..default() }, kind)
+    (Camera3d::default(), target, TONEMAPPING, place(1.0), Afterimage::default(), kind)
 }
 
 /// A camera on top of it that shows the arm.
@@ -202,7 +202,7 @@ fn cameras_on_a_foveated_one_come_and_go() {
     }
     compare(&mut headless, &targets, "without Afterimage");
     for camera in cameras {
-        headless.app.world_mut().entity_mut(camera).insert(Afterimage { antialias: true, ..default() });
+        headless.app.world_mut().entity_mut(camera).insert(Afterimage::default());
     }
     compare(&mut headless, &targets, "with it again");
 }

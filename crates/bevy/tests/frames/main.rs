@@ -73,12 +73,17 @@ fn read(headless: &Headless, texture: &wgpu::Texture) -> Vec<u8> {
     bytes.chunks(stride as usize).flat_map(|row| &row[..row_bytes as usize]).copied().collect()
 }
 
+/// Not antialiased, as frames at every pixel are not that they are compared with.
+fn aliased() -> Afterimage {
+    Afterimage { antialias: false, ..default() }
+}
+
 /// At every pixel, by quads without history, and by quads.
 fn compared() -> [(Afterimage, Foveated); 3] {
     let every = Foveated { kind: FoveationKind::Off, ..default() };
     let blind = Settings { method: Method::None, ..default() };
-    let blind = Afterimage { settings: Some(blind), ..default() };
-    [(Afterimage::default(), every), (blind, Foveated::default()), default()]
+    let blind = Afterimage { settings: Some(blind), ..aliased() };
+    [(aliased(), every), (blind, Foveated::default()), (aliased(), Foveated::default())]
 }
 
 /// Has the camera be shown otherwise from now on, without history.
@@ -89,7 +94,7 @@ fn change(headless: &mut Headless, (afterimage, foveated): (Afterimage, Foveated
 }
 
 fn kind(kind: FoveationKind) -> impl Bundle {
-    (Afterimage::default(), Foveated { kind, ..default() })
+    (aliased(), Foveated { kind, ..default() })
 }
 
 /// A gaze that wanders through the frame.

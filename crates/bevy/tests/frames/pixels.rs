@@ -2,7 +2,9 @@
 
 use crate::common::headless::{Headless, afterimage};
 use crate::common::scene::{Mover, ScenePlugin, TONEMAPPING, stroll};
-use crate::{SIZE, change, clip_psnr_db, clips, compared, courtyard, courtyards, kind, linear, psnr_db, read, wander};
+use crate::{
+    SIZE, aliased, change, clip_psnr_db, clips, compared, courtyard, courtyards, kind, linear, psnr_db, read, wander,
+};
 use afterimage::gpu::{Frame, Region, Textures};
 use afterimage::{ViewFrame, wgpu};
 use bevy::camera::{CameraProjection, RenderTarget, SubCameraView, Viewport};
@@ -63,7 +65,7 @@ fn without_a_gaze_a_still_view_becomes_that_of_full_rate_wherever_one_looks() {
     let [full, ..] = compared();
     let full = settled(&mut headless, full, 3, Vec2::splat(0.5));
     let [left, right] = [0.1, 0.9].map(|x| {
-        let uniform = (Afterimage::default(), Foveated::uniform(0.25));
+        let uniform = (aliased(), Foveated::uniform(0.25));
         settled(&mut headless, uniform, 20, Vec2::new(x, 0.5))
     });
     let psnr = psnr_db(&left, &full);

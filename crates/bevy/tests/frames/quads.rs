@@ -1,7 +1,7 @@
 //! Which pixels the camera shades, and what it draws on top of them.
 
 use crate::common::headless::Headless;
-use crate::{SIZE, change, kind, read, wander};
+use crate::{SIZE, aliased, change, kind, read, wander};
 use bevy::prelude::*;
 use bevy::reflect::TypePath;
 use bevy::render::RenderApp;
@@ -163,7 +163,7 @@ fn a_shader_with_derivatives_and_positions_is_drawn_as_at_full_rate() {
     headless.frames(12);
     let full = headless.read();
     let [gazed, uniform] = [Foveated::default(), Foveated::uniform(0.25)].map(|foveated| {
-        change(&mut headless, (Afterimage::default(), foveated));
+        change(&mut headless, (aliased(), foveated));
         headless.frames(40);
         crate::psnr_db(&headless.read(), &full)
     });

@@ -12,7 +12,7 @@ use bevy::render::RenderApp;
 use bevy::render::sync_world::RenderEntity;
 use bevy_afterimage::afterimage::{ContextDesc, DebugView, DepthTest, Method, Settings, Smr, Wrs};
 use bevy_afterimage::testing::recorded;
-use bevy_afterimage::{Afterimage, AfterimageDebug, AfterimagePlugin, AfterimageStats, Preset};
+use bevy_afterimage::{Afterimage, AfterimageDebug, AfterimagePlugin, AfterimageStats};
 
 /// A variant whose fields have their defaults, as an inspector makes one when it is chosen from a list.
 fn variant(registry: &TypeRegistry, choices: &EnumInfo, name: &str) -> DynamicEnum {
@@ -136,7 +136,6 @@ fn settings_change_through_reflection() {
         |camera| {
             camera.set("Foveated", "mid_deg", 20.0_f32);
             camera.set("Foveated", "fovea_deg", 20.0_f32);
-            camera.choose("Afterimage", "preset", "Responsive");
         },
         taa,
         wrs,
@@ -154,10 +153,8 @@ fn settings_change_through_reflection() {
         assert_eq!(changed.stats.disoccluded == 0, name == "no depth test", "{name}: {:?}", changed.stats);
     }
 
-    assert_eq!(wide.component, Afterimage { preset: Preset::Responsive, ..default() });
     assert_eq!(wide.desc.settings.foveation.fovea_deg, 20.0);
-    assert!(matches!(wide.desc.settings.method, Method::Smr(Smr { accumulate: 0.7, .. })));
-    println!("fovea of 10 and 20 degrees: {} and {} pixels", unchanged.stats.shaded, wide.stats.shaded);
+    println!("fovea of 5 and 20 degrees: {} and {} pixels", unchanged.stats.shaded, wide.stats.shaded);
     assert!(2 * wide.stats.shaded > 3 * unchanged.stats.shaded, "{:?}", wide.stats);
 }
 
@@ -181,7 +178,7 @@ fn an_inspector_can_choose_every_variant() {
         println!("{}: {:?}", choices.type_path(), choices.variant_names());
     }
     // Among them the methods and what they name, and the Options of what can be left out.
-    assert!(count > 38, "{count}");
+    assert!(count > 30, "{count}");
     drop(registry);
     let camera = app.world_mut().spawn(AfterimageDebug(DebugView::Age)).id();
     Inspector { world: app.world_mut(), camera }.choose("AfterimageDebug", ".0", "Motion");
