@@ -1,6 +1,7 @@
 //! Components of a camera, and the components that these require.
 
 use crate::layers::{AddedStorage, Layers, LayersFound, ReplacedMsaa};
+use crate::oblique::{NEAR, is_oblique};
 use afterimage::{DebugView, DepthConvention, Filter, Foveation, Method, Settings};
 use bevy::camera::{CameraMainTextureUsages, Hdr, RenderTarget};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, NormalPrepass};
@@ -151,12 +152,11 @@ pub(crate) fn depth_convention(clip_from_view: Mat4) -> Result<DepthConvention, 
                     projection, or remove Afterimage"
             .into());
     }
-    if clip_from_view.x_axis.z != 0.0 || clip_from_view.y_axis.z != 0.0 {
-        return Err(
-            "its near plane is oblique (PerspectiveProjection::near_clip_plane), so that its depth is not that \
-                    of a distance. Mirrors and portals render every pixel: remove Afterimage from this camera"
-                .into(),
-        );
+    if is_oblique(clip_from_view) {
+        if clip_from_view.w_axis.z <= 0.0 {
+            return Err("its near_clip_plane keeps what is before it. Turn the plane round".into());
+        }
+        return Ok(DepthConvention::Reversed { near: NEAR, far: f32::INFINITY });
     }
     // depth = w.z / distance - z.z
     let (z, w) = (clip_from_view.z_axis.z, clip_from_view.w_axis.z);
@@ -304,9 +304,12 @@ mod tests {
         let forward = perspective(0.25, 100.0);
         assert!(depth_convention(forward).is_err_and(|problem| problem.contains("reversed")));
         // A mirror's.
-        let near_clip_plane = Vec4::new(0.3, 0.1, -0.9, 2.0);
-        let oblique = PerspectiveProjection { near_clip_plane, ..projection }.get_clip_from_view();
-        assert!(depth_convention(oblique).is_err_and(|problem| problem.contains("oblique")));
+        let [mirror, turned] = [-2.0, 2.0].map(|offset| {
+            let near_clip_plane = Vec4::new(0.3, 0.1, -0.9, offset);
+            depth_convention(PerspectiveProjection { near_clip_plane, ..default() }.get_clip_from_view())
+        });
+        assert_eq!(mirror, Ok(DepthConvention::Reversed { near: NEAR, far: f32::INFINITY }));
+        assert!(turned.is_err_and(|problem| problem.contains("near_clip_plane")));
         let orthographic = OrthographicProjection::default_3d().get_clip_from_view();
         assert!(depth_convention(orthographic).is_err_and(|problem| problem.contains("orthographic")));
     }

@@ -3,6 +3,7 @@
 use crate::blit::BlitPass;
 use crate::counters::Counters;
 use crate::frame::ExtractedAfterimage;
+use crate::oblique::ObliquePass;
 use afterimage::gpu::{Afterimage, Frame, Prime, Region, Target, Textures};
 use afterimage::{Exposure, Reset, ViewFrame, wgpu};
 use std::sync::atomic::AtomicBool;
@@ -27,10 +28,18 @@ fn texture(device: &Device, size: wgpu::Extent3d, format: TextureFormat, usage: 
     })
 }
 
+/// Size of what a camera draws.
+fn extent(frame: &ExtractedAfterimage) -> wgpu::Extent3d {
+    let [width, height] = frame.desc.size_px;
+    wgpu::Extent3d { width, height, depth_or_array_layers: 1 }
+}
+
 /// State of a camera's post-process.
 #[derive(Debug)]
 pub(crate) struct Context {
     post: Afterimage,
+    /// Depth of a plain projection, in place of that of the prepass.
+    plain: Option<Texture>,
     /// Depth of the prepass, while that of the main pass is closed.
     depth: Option<Texture>,
     /// Frame, where it cannot be written to the main texture, or where a debug view is shown instead.
@@ -74,9 +83,10 @@ struct Inputs<'a> {
 }
 
 impl<'a> Inputs<'a> {
-    fn new(frame: &ExtractedAfterimage, facts: Facts, drawn: Drawn<'a>) -> Self {
+    fn new(frame: &ExtractedAfterimage, facts: Facts, drawn: Drawn<'a>, plain: Option<&'a Texture>) -> Self {
         let Drawn { color, depth, motion, origin_px } = drawn;
-        let regions = [color, depth, motion].map(|texture| [Region::new(texture, origin_px)]);
+        let depth = plain.map_or(Region::new(depth, origin_px), |plain| Region::new(plain, [0, 0]));
+        let regions = [[Region::new(color, origin_px)], [depth], [Region::new(motion, origin_px)]];
         Self { regions, views: [ViewFrame { jitter_px: facts.jitter_px, ..frame.view }] }
     }
 
@@ -94,9 +104,20 @@ impl<'a> Inputs<'a> {
 impl Context {
     pub fn new(device: &Device, frame: &ExtractedAfterimage) -> Result<Self, String> {
         let post = Afterimage::new(device, &frame.desc, FORMAT).map_err(|error| error.to_string())?;
-        let [depth, spare, spare_debug] = [None, None, None];
+        let [plain, depth, spare, spare_debug] = [None, None, None, None];
         let (counters, exposure, has_late) = (None, None, AtomicBool::new(false));
-        Ok(Self { post, depth, spare, spare_debug, counters, exposure, is_planned: false, is_shown: false, has_late })
+        Ok(Self {
+            post,
+            plain,
+            depth,
+            spare,
+            spare_debug,
+            counters,
+            exposure,
+            is_planned: false,
+            is_shown: false,
+            has_late,
+        })
     }
 
     /// Makes settings those of the frame.
@@ -149,9 +170,17 @@ impl Context {
         (frame, facts): (&ExtractedAfterimage, Facts),
         drawn: Drawn<'_>,
         tested: &wgpu::TextureView,
+        oblique: &mut Option<ObliquePass>,
     ) -> Result<(), String> {
         self.resize(device, encoder, frame)?;
-        let inputs = Inputs::new(frame, facts, drawn);
+        self.plain = frame.oblique.map(|projection| {
+            let plain = self.plain.take().filter(|plain| [plain.width(), plain.height()] == frame.desc.size_px);
+            let plain = plain.unwrap_or_else(|| texture(device, extent(frame), TextureFormat::R32Float, STORAGE));
+            let pass = oblique.get_or_insert_with(|| ObliquePass::new(device));
+            pass.record(device, encoder, (drawn.depth, drawn.origin_px), &plain, (projection, facts.jitter_px));
+            plain
+        });
+        let inputs = Inputs::new(frame, facts, drawn, self.plain.as_ref());
         self.post.plan(device, encoder, &inputs.frame(facts.index, frame.reset)).map_err(|error| error.to_string())?;
         let (open, format) = (tested.texture(), tested.texture().format());
         let fits = |kept: &Texture| kept.size() == open.size() && kept.format() == format;
@@ -188,7 +217,8 @@ impl Context {
         output: (&Texture, &wgpu::TextureView),
         blit: &mut Option<BlitPass>,
     ) -> Result<(), String> {
-        let inputs = Inputs::new(frame, facts, drawn);
+        let plain = self.plain.clone();
+        let inputs = Inputs::new(frame, facts, drawn, plain.as_ref());
         let ratio = self.exposure.map_or(1.0, |previous| facts.exposure / previous);
         let exposure = if ratio != 1.0 && ratio.is_finite() { Exposure::Changed { ratio } } else { Exposure::Same };
         let described = Frame { exposure, ..inputs.frame(facts.index, frame.reset) };
@@ -224,8 +254,7 @@ impl Context {
 
     /// Makes the textures that stand in for the main texture.
     fn reserve(&mut self, device: &Device, frame: &ExtractedAfterimage, is_direct: bool) {
-        let [width, height] = frame.desc.size_px;
-        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+        let size = extent(frame);
         for (spare, is_needed) in [
             (&mut self.spare, !is_direct || frame.debug.is_some()),
             (&mut self.spare_debug, !is_direct && frame.debug.is_some()),

@@ -6,6 +6,7 @@ use crate::camera::{
 use crate::counters::AfterimageStats;
 use crate::gaze::{CameraGaze, Gaze};
 use crate::layers::Layers;
+use crate::oblique::{is_oblique, plain};
 use afterimage::{ContextDesc, DebugView, Foveation, Method, MotionConvention, ViewFrame, ViewGeometry};
 use bevy::camera::{ClearColorConfig, CompositingSpace, MainPassResolutionOverride};
 use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass, MotionVectorPrepass, PreviousViewData};
@@ -25,6 +26,8 @@ pub(crate) struct ExtractedAfterimage {
     pub desc: ContextDesc,
     /// Without jitter, which temporal antialiasing sets later.
     pub view: ViewFrame,
+    /// The camera's projection, if its depth is not that of a distance.
+    pub oblique: Option<Mat4>,
     pub reset: bool,
     pub debug: Option<DebugView>,
     pub counts: bool,
@@ -113,7 +116,7 @@ fn extract(
             )),
             None => describe(&camera, size, gaze),
         };
-        let (mut desc, view) = match described {
+        let (mut desc, view, oblique) = match described {
             Ok(described) => described,
             Err(problem) => {
                 if said.get(&camera.main) != Some(&problem) {
@@ -144,6 +147,7 @@ fn extract(
         entity.insert(ExtractedAfterimage {
             desc,
             view,
+            oblique,
             reset: std::mem::take(&mut camera.afterimage.bypass_change_detection().reset),
             debug: camera.debug.map(|debug| debug.0),
             counts: camera.counts,
@@ -152,13 +156,19 @@ fn extract(
     }
 }
 
+/// Context, view and oblique projection.
+type Described = (ContextDesc, ViewFrame, Option<Mat4>);
+
 /// Description of a camera's frame, or why it renders every pixel.
-fn describe(camera: &MainCameraItem<'_, '_>, size: UVec2, gaze: Gaze) -> Result<(ContextDesc, ViewFrame), String> {
+fn describe(camera: &MainCameraItem<'_, '_>, size: UVec2, gaze: Gaze) -> Result<Described, String> {
     check(&camera.beside, camera.camera)?;
     let uv = camera.gaze.map_or(gaze.uv, |own| own.uv).filter(|uv| uv.is_finite());
     let gaze = uv.map_or(afterimage::Gaze::Lost, |uv| afterimage::Gaze::Uv { uv: uv.to_array() });
     let clip_from_view = camera.camera.clip_from_view();
+    let oblique = is_oblique(clip_from_view).then_some(clip_from_view);
     let depth = depth_convention(clip_from_view)?;
+    let plain = |clip_from| if oblique.is_some() { plain(clip_from) } else { clip_from };
+    let clip_from_view = plain(clip_from_view);
     let mut desc = ContextDesc::new(size.into());
     desc.settings = camera.afterimage.settings(camera.foveated);
     desc.settings.validate().map_err(|error| error.to_string())?;
@@ -172,11 +182,11 @@ fn describe(camera: &MainCameraItem<'_, '_>, size: UVec2, gaze: Gaze) -> Result<
     let mut view = ViewFrame { depth: Some(depth), ..ViewFrame::new(geometry, gaze) };
     if let Some(previous) = camera.previous {
         let clip_from_world = clip_from_view * camera.transform.to_matrix().inverse();
-        let [now, past] = [clip_from_world, previous.unjittered_clip_from_world].map(|m| m.to_cols_array_2d());
+        let [now, past] = [clip_from_world, plain(previous.unjittered_clip_from_world)].map(|m| m.to_cols_array_2d());
         // Matrices that cannot be inverted, as of a camera scaled to 0, have no motion.
         view = view.moved(projection, now, past).unwrap_or(view);
     }
-    Ok((desc, view))
+    Ok((desc, view, oblique))
 }
 
 /// Refuses cameras whose quads cannot be chosen, or cannot be shaded alone.

@@ -34,6 +34,7 @@ mod frame;
 mod gaze;
 mod late;
 mod layers;
+mod oblique;
 mod pass;
 mod scanpath;
 #[doc(hidden)]

@@ -3,6 +3,7 @@
 use crate::blit::BlitPass;
 use crate::context::{Context, Drawn, Facts};
 use crate::frame::ExtractedAfterimage;
+use crate::oblique::ObliquePass;
 use afterimage::wgpu;
 use bevy::core_pipeline::Core3dSystems;
 use bevy::core_pipeline::core_3d::{main_opaque_pass_3d, main_transparent_pass_3d};
@@ -58,6 +59,7 @@ pub(crate) struct Contexts(pub EntityHashMap<Context>);
 struct Passes {
     /// To the main textures that were written last: cameras without `Hdr` share a format.
     blit: Option<BlitPass>,
+    oblique: Option<ObliquePass>,
 }
 
 fn prepare(mut contexts: ResMut<Contexts>, device: Res<RenderDevice>, cameras: Query<(Entity, &ExtractedAfterimage)>) {
@@ -112,7 +114,13 @@ impl<'a> CameraItem<'a, '_> {
 ///
 /// After a cut one pixel of each quad is chosen (`is_quarter`). Bevy's main pass cannot change its size for one frame:
 /// devices then shade the whole quad of each pixel that is open, as many as at full rate.
-fn plan(view: ViewQuery<Camera>, mut contexts: ResMut<Contexts>, count: Res<FrameCount>, mut ctx: RenderContext) {
+fn plan(
+    view: ViewQuery<Camera>,
+    mut contexts: ResMut<Contexts>,
+    mut passes: ResMut<Passes>,
+    count: Res<FrameCount>,
+    mut ctx: RenderContext,
+) {
     let entity = view.entity();
     let camera = view.into_inner();
     let (Some(context), Some(drawn)) = (contexts.0.get_mut(&entity), camera.drawn()) else { return };
@@ -128,7 +136,8 @@ fn plan(view: ViewQuery<Camera>, mut contexts: ResMut<Contexts>, count: Res<Fram
     let diagnostics = diagnostics.as_deref();
     let encoder = ctx.command_encoder();
     let span = diagnostics.time_span(encoder, "afterimage_plan");
-    let planned = context.plan(device.wgpu_device(), encoder, (camera.frame, facts), drawn, tested);
+    let oblique = &mut passes.oblique;
+    let planned = context.plan(device.wgpu_device(), encoder, (camera.frame, facts), drawn, tested, oblique);
     span.end(encoder);
     if let Err(problem) = planned {
         error_once!("camera {entity} renders every pixel, without Afterimage: {problem}");

@@ -9,6 +9,7 @@ mod conventions;
 mod events;
 mod late;
 mod layers;
+mod mirrors;
 mod pixels;
 mod quads;
 mod reflection;

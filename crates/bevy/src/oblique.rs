@@ -1,0 +1,108 @@
+//! Depth of oblique projections, which mirrors and portals have: their near plane (`near_clip_plane`) is that of the
+//! mirror, and depth is not that of a distance. The post-process gets depth of a plain projection instead.
+
+use afterimage::wgpu;
+use bevy::math::{Mat4, UVec2, Vec2, Vec4};
+use wgpu::util::DeviceExt;
+use wgpu::{BindingResource, CommandEncoder, Device, Texture};
+
+/// Near plane of the plain projection, which is reversed and has no far plane.
+pub(crate) const NEAR: f32 = 0.1;
+
+/// Whether a projection's depth is not that of a distance.
+pub(crate) fn is_oblique(clip_from_view: Mat4) -> bool {
+    clip_from_view.x_axis.z != 0.0 || clip_from_view.y_axis.z != 0.0
+}
+
+/// A projection from view or world with plain depth.
+pub(crate) fn plain(clip_from: Mat4) -> Mat4 {
+    let mut rows = clip_from.transpose();
+    rows.z_axis = Vec4::W * NEAR;
+    rows.transpose()
+}
+
+/// Depth of what is infinitely far: a factor on pixels to the right, on pixels down, and a constant; and a factor on
+/// what lies above it.
+fn plane(clip_from_view: Mat4, size: UVec2, jitter_px: Vec2) -> Vec4 {
+    let [x, y, z, w] = [clip_from_view.x_axis, clip_from_view.y_axis, clip_from_view.z_axis, clip_from_view.w_axis];
+    let size = size.as_vec2();
+    // Rays through pixels, one away from the camera: u = (ndc + offset) / focal length.
+    let offset = Vec2::new(z.x, z.y) + Vec2::new(-2.0, 2.0) * jitter_px / size;
+    let by = Vec2::new(x.z / x.x, y.z / y.y);
+    let constant = by.dot(offset + Vec2::new(-1.0, 1.0)) - z.z;
+    Vec4::new(2.0 * by.x / size.x, -2.0 * by.y / size.y, constant, NEAR / w.z)
+}
+
+#[derive(Debug)]
+pub(crate) struct ObliquePass(wgpu::ComputePipeline);
+
+impl ObliquePass {
+    pub fn new(device: &Device) -> Self {
+        let source = wgpu::ShaderSource::Wgsl(include_str!("oblique.wgsl").into());
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("oblique"), source });
+        Self(device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("afterimage oblique"),
+            layout: None,
+            module: &module,
+            entry_point: None,
+            compilation_options: Default::default(),
+            cache: None,
+        }))
+    }
+
+    /// Writes the plain depth of a viewport, from the pixel `origin_px` on, to `plain`.
+    pub fn record(
+        &self,
+        device: &Device,
+        encoder: &mut CommandEncoder,
+        (depth, origin_px): (&Texture, [u32; 2]),
+        plain: &Texture,
+        (clip_from_view, jitter_px): (Mat4, [f32; 2]),
+    ) {
+        let size = UVec2::new(plain.width(), plain.height());
+        let plane = plane(clip_from_view, size, jitter_px.into()).to_array().map(f32::to_ne_bytes);
+        let origin = [origin_px[0], origin_px[1], 0, 0].map(u32::to_ne_bytes);
+        let uniforms = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("afterimage oblique"),
+            contents: &[plane, origin].concat().concat(),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let [depth, output] = [depth, plain].map(|texture| texture.create_view(&Default::default()));
+        let entries =
+            [BindingResource::TextureView(&depth), BindingResource::TextureView(&output), uniforms.as_entire_binding()];
+        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &self.0.get_bind_group_layout(0),
+            entries: &[0, 1, 2].map(|i| wgpu::BindGroupEntry { binding: i, resource: entries[i as usize].clone() }),
+        });
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(&self.0);
+        pass.set_bind_group(0, &group, &[]);
+        pass.dispatch_workgroups(size.x.div_ceil(8), size.y.div_ceil(8), 1);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::camera::{CameraProjection, PerspectiveProjection};
+
+    #[test]
+    fn plain_depth_is_that_of_the_distance() {
+        let near_clip_plane = Vec4::new(0.3, 0.1, -0.9, -2.0);
+        let clip_from_view = PerspectiveProjection { near_clip_plane, ..Default::default() }.get_clip_from_view();
+        assert!(is_oblique(clip_from_view) && !is_oblique(plain(clip_from_view)));
+        let size = UVec2::new(320, 180);
+        for jitter in [Vec2::ZERO, Vec2::new(0.3, -0.4)] {
+            let [by_x, by_y, constant, factor] = plane(clip_from_view, size, jitter).to_array();
+            for point in [Vec4::new(1.0, 0.5, -6.0, 1.0), Vec4::new(-4.0, 2.0, -40.0, 1.0)] {
+                let clip = clip_from_view * point;
+                let ndc = clip / clip.w;
+                let at = (Vec2::new(ndc.x, -ndc.y) + 1.0) * 0.5 * size.as_vec2() + jitter;
+                let depth = (ndc.z - (by_x * at.x + by_y * at.y + constant)) * factor;
+                let expected = NEAR / -point.z;
+                assert!((depth / expected - 1.0).abs() < 1e-3, "{depth} {expected}");
+            }
+        }
+    }
+}
