@@ -1,11 +1,12 @@
 //! Components of a camera, and the components that these require.
 
-use crate::layers::{AddedStorage, Layers, LayersFound, ReplacedMsaa};
+use crate::layers::{AddedStorage, Layers, LayersFound, ReplacedMsaa, chosen_msaa};
 use crate::oblique::{NEAR, is_oblique};
 use afterimage::{DebugView, DepthConvention, Filter, Foveation, Method, Settings};
 use bevy::camera::{CameraMainTextureUsages, Hdr, RenderTarget};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, NormalPrepass};
 use bevy::ecs::query::QueryData;
+use bevy::ecs::system::SystemChangeTick;
 use bevy::prelude::*;
 use bevy::render::render_resource::TextureUsages;
 
@@ -215,12 +216,14 @@ impl SampledItem<'_, '_> {
 /// with a prepass have none either: Bevy has prepasses of one target share textures.
 fn replace_msaa(
     mut commands: Commands,
-    mut cameras: Query<(&mut Msaa, Option<&ReplacedMsaa>, Sampled)>,
+    mut cameras: Query<(&mut Msaa, Option<Ref<ReplacedMsaa>>, Sampled)>,
     layers: Res<Layers>,
+    tick: SystemChangeTick,
 ) {
     let foveated = cameras.iter().filter(|(.., camera)| camera.foveated(&layers).is_some());
     let targets: Vec<_> = foveated.map(|(.., camera)| camera.target.normalize(None)).collect();
     for (mut msaa, replaced, camera) in &mut cameras {
+        let chosen = chosen_msaa(&msaa, replaced.as_ref(), tick.this_run());
         let foveated = camera.foveated(&layers);
         let is_off = foveated.is_some() || camera.has_prepass() && targets.contains(&camera.target.normalize(None));
         if is_off && *msaa != Msaa::Off {
@@ -237,8 +240,8 @@ fn replace_msaa(
             }
             commands.entity(camera.entity).insert(ReplacedMsaa(*msaa));
             *msaa = Msaa::Off;
-        } else if let Some(replaced) = replaced.filter(|_| !is_off) {
-            *msaa = replaced.0;
+        } else if replaced.is_some() && (!is_off || chosen == Msaa::Off) {
+            *msaa = chosen;
             commands.entity(camera.entity).remove::<ReplacedMsaa>();
         }
     }

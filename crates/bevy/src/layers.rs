@@ -13,8 +13,10 @@ use bevy::camera::{
 };
 use bevy::core_pipeline::schedule::Core3d;
 use bevy::core_pipeline::upscaling::upscaling;
+use bevy::ecs::change_detection::Tick;
 use bevy::ecs::entity::EntityHashMap;
 use bevy::ecs::query::QueryData;
+use bevy::ecs::system::SystemChangeTick;
 use bevy::light::Skybox;
 use bevy::prelude::*;
 use bevy::render::camera::ExtractedCamera;
@@ -23,6 +25,7 @@ use bevy::render::renderer::{RenderContext, ViewQuery};
 use bevy::render::sync_world::RenderEntity;
 use bevy::render::view::{ViewTarget, prepare_view_targets};
 use bevy::render::{Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderSystems};
+use std::ops::Deref;
 
 pub(crate) struct LayersPlugin;
 
@@ -62,6 +65,16 @@ impl Layers {
 #[derive(Component)]
 pub(crate) struct ReplacedMsaa(pub Msaa);
 
+/// MSAA that the application has chosen, which may have changed after it was replaced.
+pub(crate) fn chosen_msaa(
+    msaa: &(impl DetectChanges + Deref<Target = Msaa>),
+    replaced: Option<&Ref<ReplacedMsaa>>,
+    now: Tick,
+) -> Msaa {
+    let is_kept = |replaced: &&Ref<ReplacedMsaa>| !msaa.last_changed().is_newer_than(replaced.last_changed(), now);
+    replaced.filter(is_kept).map_or(**msaa, |replaced| replaced.0)
+}
+
 /// The plugin has added `STORAGE_BINDING` to the usages of a camera's main textures.
 #[derive(Component)]
 pub(crate) struct AddedStorage;
@@ -71,8 +84,8 @@ struct Sharing {
     entity: Entity,
     camera: &'static Camera,
     target: &'static RenderTarget,
-    msaa: &'static Msaa,
-    replaced: Option<&'static ReplacedMsaa>,
+    msaa: Ref<'static, Msaa>,
+    replaced: Option<Ref<'static, ReplacedMsaa>>,
     usages: &'static CameraMainTextureUsages,
     has_added_storage: Has<AddedStorage>,
     is_hdr: Has<Hdr>,
@@ -85,21 +98,17 @@ struct Sharing {
 type Texture = (Option<NormalizedRenderTarget>, bool, Option<CompositingSpace>, Msaa, TextureUsages);
 
 impl SharingItem<'_, '_> {
-    /// MSAA without the plugin.
-    fn msaa(&self) -> Msaa {
-        self.replaced.map_or(*self.msaa, |replaced| replaced.0)
-    }
-
     /// The texture without the plugin.
-    fn texture(&self) -> Texture {
+    fn texture(&self, now: Tick) -> Texture {
         let added = if self.has_added_storage { TextureUsages::STORAGE_BINDING } else { TextureUsages::empty() };
         let usages = self.usages.0.difference(added);
-        (self.target.normalize(None), self.is_hdr, self.space.copied(), self.msaa(), usages)
+        let msaa = chosen_msaa(&self.msaa, self.replaced.as_ref(), now);
+        (self.target.normalize(None), self.is_hdr, self.space.copied(), msaa, usages)
     }
 
     /// Whether it keeps what is in its texture without the plugin, where another camera has drawn to that.
-    fn keeps(&self) -> bool {
-        let is_written_back = self.msaa() != Msaa::Off
+    fn keeps(&self, now: Tick) -> bool {
+        let is_written_back = chosen_msaa(&self.msaa, self.replaced.as_ref(), now) != Msaa::Off
             && match self.camera.msaa_writeback {
                 MsaaWriteback::Off => false,
                 MsaaWriteback::Auto => self.camera.viewport.is_none(),
@@ -115,16 +124,17 @@ impl SharingItem<'_, '_> {
     }
 }
 
-fn find_layers(cameras: Query<Sharing>, mut layers: ResMut<Layers>) {
+fn find_layers(cameras: Query<Sharing>, mut layers: ResMut<Layers>, tick: SystemChangeTick) {
+    let now = tick.this_run();
     layers.0.clear();
     if !cameras.iter().any(|camera| camera.afterimage.is_some()) {
         return;
     }
     let mut drawn: Vec<_> = cameras.iter().filter(|camera| camera.camera.is_active).collect();
     drawn.sort_by_key(|camera| (camera.camera.order, camera.entity));
-    for (i, camera) in drawn.iter().enumerate().filter(|(_, camera)| camera.keeps() && !camera.covers()) {
-        let texture = camera.texture();
-        if let Some(below) = drawn[..i].iter().rev().find(|below| below.texture() == texture) {
+    for (i, camera) in drawn.iter().enumerate().filter(|(_, camera)| camera.keeps(now) && !camera.covers()) {
+        let texture = camera.texture(now);
+        if let Some(below) = drawn[..i].iter().rev().find(|below| below.texture(now) == texture) {
             layers.0.insert(camera.entity, below.entity);
         }
     }

@@ -73,6 +73,14 @@ fn msaa_comes_back() {
     headless.app.world_mut().entity_mut(camera).remove::<Afterimage>();
     headless.frames(2);
     assert_eq!(msaa(&headless, camera), Msaa::Sample4);
+    // What the application chooses meanwhile stays.
+    headless.app.world_mut().entity_mut(camera).insert(kind(FoveationKind::Quads));
+    headless.frames(2);
+    headless.app.world_mut().entity_mut(camera).insert(Msaa::Off);
+    headless.frames(2);
+    headless.app.world_mut().entity_mut(camera).remove::<Afterimage>();
+    headless.frames(2);
+    assert_eq!(msaa(&headless, camera), Msaa::Off);
     assert_eq!(headless.problems(), &[] as &[String]);
 }
 
