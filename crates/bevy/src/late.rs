@@ -7,9 +7,10 @@ use crate::pass::{Contexts, ShowQuads};
 use bevy::core_pipeline::core_3d::{AlphaMask3d, Opaque3d, main_transparent_pass_3d};
 use bevy::core_pipeline::prepass::{AlphaMask3dPrepass, Opaque3dPrepass};
 use bevy::core_pipeline::schedule::Core3d;
-use bevy::pbr::{SpecializedPrepassMaterialPipelineCache, main_transmissive_pass_3d};
+use bevy::pbr::{PreparedMaterial, RenderMaterialInstances, main_transmissive_pass_3d};
 use bevy::prelude::*;
 use bevy::render::camera::ExtractedCamera;
+use bevy::render::erased_render_asset::ErasedRenderAssets;
 use bevy::render::render_phase::{
     BinnedPhaseItem, BinnedRenderPhase, CachedRenderPipelinePhaseItem, Draw, DrawError, DrawFunctions, PhaseItem,
     TrackedRenderPass, ViewBinnedRenderPhases,
@@ -65,13 +66,17 @@ impl<P: CachedRenderPipelinePhaseItem> Draw<P> for Parted<P> {
     }
 }
 
-/// Whether an item is drawn in a prepass of a view, too: by Bevy's materials, or as an item that cannot be batched.
+/// Whether an item is drawn in a prepass of a view, too: its material says so, or it is there as one that cannot be
+/// batched.
 fn has_prepass(world: &World, view: Entity, item: MainEntity) -> bool {
+    let instance = world.get_resource::<RenderMaterialInstances>().and_then(|all| all.instances.get(&item));
+    let materials = world.get_resource::<ErasedRenderAssets<PreparedMaterial>>();
+    let material = materials.zip(instance).and_then(|(materials, instance)| materials.get(instance.asset_id));
+    if let Some(material) = material {
+        return material.properties.prepass_enabled;
+    }
     let Some(view) = world.get::<ExtractedView>(view).map(|view| view.retained_view_entity) else { return false };
-    let materials = world.get_resource::<SpecializedPrepassMaterialPipelineCache>();
-    materials.and_then(|views| views.get(&view)).is_some_and(|materials| materials.contains_key(&item))
-        || is_queued::<Opaque3dPrepass>(world, &view, item)
-        || is_queued::<AlphaMask3dPrepass>(world, &view, item)
+    is_queued::<Opaque3dPrepass>(world, &view, item) || is_queued::<AlphaMask3dPrepass>(world, &view, item)
 }
 
 fn is_queued<P: BinnedPhaseItem>(world: &World, view: &RetainedViewEntity, item: MainEntity) -> bool {
