@@ -1,6 +1,6 @@
 //! What an inspector does, which knows components by their reflection alone: it shows settings and changes them.
 
-use crate::{courtyards, psnr_db};
+use crate::{aliased, courtyards, psnr_db};
 use bevy::camera::RenderTarget;
 use bevy::ecs::reflect::ReflectComponent;
 use bevy::prelude::*;
@@ -78,7 +78,7 @@ type Change = fn(&mut Inspector<'_>);
 
 /// What cameras show that see the same, and that an inspector changes on their way.
 fn run<const N: usize>(changes: [Change; N]) -> [Run; N] {
-    let (mut headless, targets) = courtyards(changes.map(|_| (Afterimage::default(), AfterimageStats::default())));
+    let (mut headless, targets) = courtyards(changes.map(|_| (aliased(), AfterimageStats::default())));
     headless.frames(6);
     let world = headless.app.world_mut();
     let mut drawn = world.query_filtered::<(Entity, &RenderTarget), With<Afterimage>>();
@@ -144,7 +144,7 @@ fn settings_change_through_reflection() {
         tested,
     ]);
     for ((name, expected, _), changed) in changes.into_iter().zip(changed) {
-        assert_eq!(changed.component, Afterimage { settings: Some(expected), ..default() }, "{name}");
+        assert_eq!(changed.component, Afterimage { settings: Some(expected), ..aliased() }, "{name}");
         let drawn = changed.desc.settings;
         assert_eq!((drawn.method, drawn.depth_test), (expected.method, expected.depth_test), "{name}");
         let psnr = psnr_db(&changed.shot, &unchanged.shot);
