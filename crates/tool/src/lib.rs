@@ -38,7 +38,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Show the method at work on a built-in scene; needs no file and no GPU
+    /// Show the method at work on built-in scenes; needs no file and no GPU
     Demo(demo::DemoArgs),
     /// Foveate frames, run methods on them, score the results
     Run(Box<run::RunArgs>),
