@@ -389,9 +389,9 @@ pub struct Placed {
     pub place_px: Vec2,
 }
 
-/// The sample of a pixel of the fovea to add to a mean, which has `samples` with it: moved by a share of 1/n towards the
-/// color at the pixel's centre. A jittered sample shows one point of its pixel; until a mean of several antialiases, the
-/// samples around do. A long mean is sharper without them. `change`: [`centred_change`].
+/// The sample of a pixel of the fovea to add to a mean, which has `samples` with it: moved by a share of 1/n towards
+/// the color at the pixel's centre. A jittered sample shows one point of its pixel; until a mean of several
+/// antialiases, the samples around do. A long mean is sharper without them. `change`: [`centred_change`].
 #[inline]
 pub fn centred(color: Vec3, place_px: Vec2, change: Vec3, samples: f32) -> Placed {
     let share = 1.0 / samples;

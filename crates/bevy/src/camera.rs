@@ -1,141 +1,15 @@
-//! Components of a camera, and the components that these require.
+//! Cameras with the plugin's components: their depth, size, usages and MSAA.
 
+use crate::components::{Afterimage, Foveated, FoveationKind};
 use crate::layers::{AddedStorage, Layers, LayersFound, ReplacedMsaa, chosen_msaa};
 use crate::oblique::{NEAR, is_oblique};
-use afterimage::{DebugView, DepthConvention, Filter, Foveation, Method, Settings};
+use afterimage::DepthConvention;
 use bevy::camera::{CameraMainTextureUsages, Hdr, RenderTarget};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, NormalPrepass};
 use bevy::ecs::query::QueryData;
 use bevy::ecs::system::SystemChangeTick;
 use bevy::prelude::*;
 use bevy::render::render_resource::TextureUsages;
-
-/// Runs the post-process for this camera: a `Camera3d` with a perspective projection, symmetric or off-axis.
-///
-/// Requires `DepthPrepass` and `MotionVectorPrepass`, by which quads are chosen; they stay when this component is
-/// removed. Sets [`Msaa::Off`] while it runs, because most pixels have no samples to average.
-///
-/// All of it may change at any time, through reflection, too: an inspector such as `bevy-inspector-egui` shows
-/// [`settings`](field@Self::settings) down to each number, as it does the fields of [`Foveated`].
-///
-/// ```
-/// use bevy::prelude::*;
-/// use bevy_afterimage::Afterimage;
-/// use bevy_afterimage::afterimage::Settings;
-///
-/// let mut camera = Afterimage { settings: Some(Settings::steady()), ..default() };
-/// let accumulate: &mut f32 = camera.path_mut("settings.0.method.0.accumulate")?;
-/// *accumulate = 0.8;
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Component, Clone, Debug, PartialEq, Reflect)]
-#[reflect(Component, Default)]
-#[require(Foveated, DepthPrepass, MotionVectorPrepass)]
-pub struct Afterimage {
-    /// Method and tunables, where the default ones do not do. Their `foveation` and `Smr::antialias` are ignored:
-    /// [`Foveated`] and [`antialias`](Self::antialias) say them. Default `None`.
-    pub settings: Option<Settings>,
-    /// Antialiases with the method smr, in place of temporal antialiasing and MSAA: the camera's projection moves by a
-    /// part of a pixel each frame, and history stores means of samples. Not for cameras with a `TemporalJitter` of
-    /// their own, which temporal antialiasing and upscaling add. Default true.
-    pub antialias: bool,
-    /// Discards history in the next frame, for camera cuts and teleports. Becomes false when that frame is drawn.
-    pub reset: bool,
-}
-
-impl Default for Afterimage {
-    fn default() -> Self {
-        Self { settings: None, antialias: true, reset: false }
-    }
-}
-
-impl Afterimage {
-    pub(crate) fn settings(&self, foveated: &Foveated) -> Settings {
-        let mut settings = Settings { foveation: foveated.foveation(), ..self.settings.unwrap_or_default() };
-        if let Method::Smr(smr) = &mut settings.method {
-            smr.antialias = self.antialias;
-        }
-        settings
-    }
-}
-
-/// Which quads of 2x2 pixels a camera with [`Afterimage`] shades in a frame; without that it does nothing. Angles are
-/// visual angles of the camera: its field of view is taken for the one that the screen fills. Default
-/// [`screen`](Self::screen).
-#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
-#[reflect(Component, Default)]
-pub struct Foveated {
-    /// Whether pixels are left out. Default [`FoveationKind::Quads`].
-    pub kind: FoveationKind,
-    /// Diameter of the full-rate region in degrees: 0 to 180, at most `mid_deg`. Default 5.
-    pub fovea_deg: f32,
-    /// Diameter of the middle region in degrees: 0 to 180. Default 15.
-    pub mid_deg: f32,
-    /// Edge in pixels of the blocks of which one quad is shaded in a frame, in the middle region: 2, 4 or 8. Default 8.
-    pub rate_mid: u32,
-    /// The same in the periphery: 2, 4 or 8, at least `rate_mid`. Every second block has a quad in a frame. Default 8.
-    pub rate_far: u32,
-    /// Share of the pixels that are shaded because history lacks something there: 0 to 1. Default 0.05.
-    pub budget: f32,
-}
-
-impl Default for Foveated {
-    fn default() -> Self {
-        Self::screen()
-    }
-}
-
-impl Foveated {
-    /// Around a gaze, for screens about 40 degrees wide: a tenth of the pixels. The foveation of [`Settings::screen`].
-    pub fn screen() -> Self {
-        Settings::screen().foveation.into()
-    }
-
-    /// Around a gaze, for headsets, about 100 degrees wide: a wider fovea. The foveation of [`Settings::headset`].
-    pub fn headset() -> Self {
-        Settings::headset().foveation.into()
-    }
-
-    /// No fovea, and no gaze needed: `share` of the pixels, 0 to 1, everywhere alike. A temporal upscaler with depth
-    /// and motion at full rate.
-    ///
-    /// ```
-    /// use bevy_afterimage::Foveated;
-    ///
-    /// assert_eq!(Foveated::uniform(0.25).fovea_deg, 0.0);
-    /// ```
-    pub fn uniform(share: f32) -> Self {
-        Foveation::uniform(share).into()
-    }
-
-    fn foveation(&self) -> Foveation {
-        let Self { fovea_deg, mid_deg, rate_mid, rate_far, budget, .. } = *self;
-        Foveation { filter: Filter::Quads, fovea_deg, mid_deg, rate_mid, rate_far, budget, ..Default::default() }
-    }
-}
-
-impl From<Foveation> for Foveated {
-    fn from(foveation: Foveation) -> Self {
-        let Foveation { fovea_deg, mid_deg, rate_mid, rate_far, budget, .. } = foveation;
-        Self { kind: FoveationKind::Quads, fovea_deg, mid_deg, rate_mid, rate_far, budget }
-    }
-}
-
-/// Whether a camera with [`Foveated`] leaves pixels out.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
-#[reflect(Default)]
-pub enum FoveationKind {
-    /// The post-process chooses quads of 2x2 pixels before they are shaded, and fills the rest from history.
-    #[default]
-    Quads,
-    /// Every pixel, without post-process: for comparison.
-    Off,
-}
-
-/// Shows a view of the post-process's decisions instead of the frame.
-#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
-#[reflect(Component)]
-pub struct AfterimageDebug(pub DebugView);
 
 /// Size in pixels of what a camera draws: its viewport, which must lie inside its target. `None`: nothing is drawn, or
 /// an application has changed the target and not yet the viewport.
@@ -281,18 +155,6 @@ mod tests {
     fn perspective(near: f32, far: f32) -> Mat4 {
         let depth = far / (near - far);
         Mat4::from_cols(Vec4::X, Vec4::Y, Vec4::new(0.0, 0.0, depth, -1.0), Vec4::new(0.0, 0.0, depth * near, 0.0))
-    }
-
-    #[test]
-    fn presets_are_the_measured_ones() {
-        for (foveated, measured) in [
-            (Foveated::default(), Settings::screen()),
-            (Foveated::screen(), Settings::screen()),
-            (Foveated::headset(), Settings::headset()),
-            (Foveated::uniform(0.25), Settings { foveation: Foveation::uniform(0.25), ..Settings::screen() }),
-        ] {
-            assert_eq!(Afterimage::default().settings(&foveated), measured);
-        }
     }
 
     #[test]

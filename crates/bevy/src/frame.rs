@@ -1,8 +1,7 @@
 //! Description of a frame, from Bevy's camera.
 
-use crate::camera::{
-    Afterimage, AfterimageDebug, AfterimageSupported, Foveated, FoveationKind, depth_convention, drawn_size_px,
-};
+use crate::camera::{AfterimageSupported, depth_convention, drawn_size_px};
+use crate::components::{Afterimage, AfterimageDebug, Foveated, FoveationKind};
 use crate::counters::AfterimageStats;
 use crate::gaze::{CameraGaze, Gaze};
 use crate::layers::Layers;

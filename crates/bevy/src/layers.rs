@@ -6,7 +6,7 @@
 //! texture of the camera above it. That one stays as it is.
 
 use crate::blit::BlitPass;
-use crate::camera::{Afterimage, Foveated, FoveationKind};
+use crate::components::{Afterimage, Foveated, FoveationKind};
 use bevy::camera::{
     Camera, CameraMainTextureUsages, ClearColorConfig, CompositingSpace, Hdr, MsaaWriteback, NormalizedRenderTarget,
     RenderTarget,

@@ -27,6 +27,7 @@
 
 mod blit;
 mod camera;
+mod components;
 mod context;
 mod counters;
 mod diagnostics;
@@ -42,7 +43,8 @@ pub mod testing;
 mod warnings;
 
 pub use afterimage;
-pub use camera::{Afterimage, AfterimageDebug, AfterimageSupported, Foveated, FoveationKind};
+pub use camera::AfterimageSupported;
+pub use components::{Afterimage, AfterimageDebug, Foveated, FoveationKind};
 pub use counters::AfterimageStats;
 pub use gaze::{CameraGaze, CursorGazePlugin, Gaze};
 pub use pass::ShowQuads;

@@ -1,6 +1,6 @@
 //! What foveated frames render wrongly, or as dear as ever: one line in the log each.
 
-use crate::camera::{Afterimage, Foveated, FoveationKind};
+use crate::components::{Afterimage, Foveated, FoveationKind};
 use crate::frame::ExtractedAfterimage;
 use bevy::core_pipeline::core_3d::{AlphaMask3d, Opaque3d};
 use bevy::core_pipeline::schedule::Core3d;

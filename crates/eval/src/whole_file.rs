@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 const MOST_LINKS: usize = 40;
 
 /// Writes `path` with the contents that `fill` produces: into a temporary file in the same folder, which is then
-/// renamed. Readers never see a partial file, and an existing file stays intact if anything fails. A link stays, and the
-/// file that it names is written. Devices, pipes and open files (`/dev/stdout`) get the contents directly.
+/// renamed. Readers never see a partial file, and an existing file stays intact if anything fails. A link stays, and
+/// the file that it names is written. Devices, pipes and open files (`/dev/stdout`) get the contents directly.
 ///
 /// # Errors
 /// Errors of the file system and of `fill`; the temporary file is then removed.

@@ -237,7 +237,9 @@ pub fn demo(args: &DemoArgs) -> Result<(), Failure> {
     gaze.row("11 % of the pixels around the gaze, without memory", "none");
     gaze.row("11 % of the pixels around the gaze, with memory", "smr");
     say!("JOD: 10 is no difference to full rate that a person would see (docs/metrics.md).\n");
-    say!("2. Full-size frames, sharp only within 2.5 degrees of the gaze: 4-pixel blocks up to 7.5 degrees and 8-pixel");
+    say!(
+        "2. Full-size frames, sharp only within 2.5 degrees of the gaze: 4-pixel blocks up to 7.5 degrees and 8-pixel"
+    );
     say!("   blocks beyond, as foveating renderers without a plan draw them. All methods get the same frames.\n");
     let levels = parts[2].execute(&args.out)?;
     levels.row("none: the foveated frame alone", "none");

@@ -107,7 +107,8 @@ impl View<'_> {
         average(&inputs, past, self.sample_place_px(), at_edge, kept, difference, self.centred_change(near))
     }
 
-    /// Sums over the nine pixels around a pixel of the fovea, as far as they are shaded; its own sample `own` is usable.
+    /// Sums over the nine pixels around a pixel of the fovea, as far as they are shaded; its own sample `own` is
+    /// usable.
     #[inline(always)]
     pub(super) fn near(&self, quads: &Quads, px: [u32; 2], own: Vec3) -> Near {
         let place_px = self.sample_place_px();

@@ -279,8 +279,8 @@ fn shown_contrast(velocity_px: [f32; 2]) -> [[f64; 2]; 2] {
     sums.map(|sums| sums.map(|[n, x, y, xx, xy]| (n * xy - x * y) / (n * xx - x * x)))
 }
 
-/// At full rate, bars beside an edge show as much contrast as bars elsewhere, within 15 %. It was a tenth while the samples
-/// around a pixel did not count: beside an edge means are shorter, so that they count more there, and soften.
+/// At full rate, bars beside an edge show as much contrast as bars elsewhere, within 15 %. It was a tenth while the
+/// samples around a pixel did not count: beside an edge means are shorter, so that they count more there, and soften.
 #[test]
 fn bars_beside_an_edge_are_not_softer_than_elsewhere() {
     for velocity_px in [[0.3, 0.1], [-0.3, 0.1]] {

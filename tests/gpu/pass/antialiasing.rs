@@ -11,8 +11,9 @@ fn antialiased() -> Settings {
 }
 
 /// Two views that glide, with jitter. The surfaces meet in a silhouette that is not straight; in the second view some
-/// of it is where motion changes, too, and the nearer surface comes from where the other one was. The first view
-/// stands still for three frames. In one frame the second is jittered by more than a pixel. In the last frames every pixel is shaded.
+/// of it is where motion changes, too, and the nearer surface comes from where the other one was. The first view stands
+/// still for three frames. In one frame the second is jittered by more than a pixel. In the last frames every pixel is
+/// shaded.
 fn views(index: u64) -> [View; 2] {
     [0, 1].map(|v| {
         let mut view = gliding_view(index, v);

@@ -18,8 +18,8 @@
 //!
 //! # Color
 //! Chromaticities other than those of Rec. 709, or a text attribute that names such a space (`colorInteropID`,
-//! `oiio:ColorSpace`: ACEScg, ACES2065-1, Rec. 2020, P3-D65), are converted to Rec. 709 with a warning. Pixels are taken
-//! for square; a warning says if the header has another `pixelAspectRatio`.
+//! `oiio:ColorSpace`: ACEScg, ACES2065-1, Rec. 2020, P3-D65), are converted to Rec. 709 with a warning. Pixels are
+//! taken for square; a warning says if the header has another `pixelAspectRatio`.
 //!
 //! All vectors are in pixels. Z/W are optional: only backward playback needs them.
 
