@@ -36,7 +36,7 @@ impl Plugin for LatePlugin {
     }
 }
 
-/// Draws some items of a foveated view with the quads, and the others after the post-process.
+/// A draw function that draws items with a prepass together with the quads, and the others after the post-process.
 struct Parted<P: PhaseItem>(Box<dyn Draw<P>>);
 
 impl<P: CachedRenderPipelinePhaseItem> Draw<P> for Parted<P> {
@@ -102,7 +102,7 @@ fn warn_of<P: CachedRenderPipelinePhaseItem>(world: &World, item: &P) {
     );
 }
 
-/// Parts what draw functions draw that are new.
+/// Wraps the draw functions that were registered since the last frame.
 fn part<P: CachedRenderPipelinePhaseItem>(functions: Res<DrawFunctions<P>>, mut parted: Local<usize>) {
     let mut functions = functions.write();
     for function in functions.draw_functions.split_off(*parted) {

@@ -182,6 +182,13 @@ struct Shown {
 }
 
 impl Shown {
+    /// Share of the pixels that smr shaded, in words.
+    fn share(&self) -> String {
+        let smr = self.report.methods.iter().find(|found| found.0 == "smr");
+        let share = smr.and_then(|(_, report)| report.shaded_share).unwrap_or(1.0);
+        format!("{:.0} % of the pixels", 100.0 * share)
+    }
+
     /// The last frame of a method as a column of a sheet.
     fn column<'a>(&'a self, name: &'a str, method: &str) -> Column<'a> {
         let methods = &self.report.methods;
@@ -202,12 +209,11 @@ impl Shown {
 /// Writes the sheet of planned frames beside full rate.
 fn write_sheet(out: &Path, [everywhere, gaze]: [&Shown; 2]) -> Result<PathBuf, Failure> {
     let full_rate = Column { name: "full rate", shown: &everywhere.last[0], scores: None, visible_jod: None };
-    let columns = [
-        full_rate,
-        everywhere.column("25 % of the pixels, no memory", "none"),
-        everywhere.column("25 % of the pixels", "smr"),
-        gaze.column("11 %, around the gaze", "smr"),
-    ];
+    let without = format!("{}, no memory", everywhere.share());
+    let with = everywhere.share();
+    let around = format!("{}, around the gaze", gaze.share());
+    let columns =
+        [full_rate, everywhere.column(&without, "none"), everywhere.column(&with, "smr"), gaze.column(&around, "smr")];
     let sheet = Sheet {
         title: "Planned frames: the post-process chooses the pixels that are shaded, and remembers the others".into(),
         columns: &columns,
@@ -232,10 +238,10 @@ pub fn demo(args: &DemoArgs) -> Result<(), Failure> {
     let everywhere = parts[0].execute(&args.out)?;
     let gaze = parts[1].execute(&args.out)?;
     say!("  {:52} {:>9} {:>9} {:>12}", "", "quality", "all", "seen before");
-    everywhere.row("25 % of the pixels, without memory", "none");
-    everywhere.row("25 % of the pixels, with memory (smr)", "smr");
-    gaze.row("11 % of the pixels around the gaze, without memory", "none");
-    gaze.row("11 % of the pixels around the gaze, with memory", "smr");
+    for (part, place) in [(&everywhere, "everywhere"), (&gaze, "around the gaze")] {
+        part.row(&format!("{} {place}, without memory", part.share()), "none");
+        part.row(&format!("{} {place}, with memory (smr)", part.share()), "smr");
+    }
     say!("JOD: 10 is no difference to full rate that a person would see (docs/metrics.md).\n");
     say!(
         "2. Full-size frames, sharp only within 2.5 degrees of the gaze: 4-pixel blocks up to 7.5 degrees and 8-pixel"

@@ -2,8 +2,7 @@
 
 use crate::context::ContextDesc;
 use crate::foveation::Filter;
-use crate::uniforms::MAX_VIEWS;
-use crate::uniforms::{ViewState, ViewUniforms};
+use crate::uniforms::{MAX_VIEWS, ViewState, ViewUniforms};
 use crate::view::ViewFrame;
 use bytemuck::{Pod, Zeroable};
 
