@@ -1,141 +1,126 @@
-//! An engine's loop, and where each call goes in it: a window that is resized and minimised, a cut, a pause, a lost
-//! gaze, a change of exposure, and an output in a format that compute shaders can write.
+//! An engine's loop with planned frames: moving objects, a sky, glass, a window that is resized and minimised, a cut, a
+//! gaze that is lost, a change of exposure, and a share of shaded pixels that keeps the frame's time.
 //!
-//! `cargo run --example 02_engine` (any adapter; software Vulkan: mesa-vulkan-drivers)
+//! `cargo run --release --example 02_engine` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
 mod headless;
 
-use afterimage::gpu::{Afterimage, Frame, Target};
-use afterimage::wgpu::{self, Buffer, BufferUsages, Texture, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Exposure, FrameStats, Gaze, Reset, ViewFrame, ViewGeometry};
+use afterimage::wgpu::{PollType, Texture, TextureFormat, TextureUsages};
+use afterimage::{Afterimage, Camera, Desc, Exposure, Frame, Gaze, MotionConvention, Shading, ShareControl};
+use glam::{Mat4, Vec3, camera::rh::proj::directx::perspective_infinite_reverse};
 use headless::Headless;
+use headless::renderer::{DEPTH, MOTION, Renderer, View};
+use std::time::Instant;
 
-/// Event of the application before a frame.
-#[derive(Clone, Copy)]
-enum Event {
-    Nothing,
-    Resized([u32; 2]),
-    Cut,
-    ResumedAfter(f32),
-    GazeLost,
-    Brighter(f32),
-}
-
-struct Engine {
-    post: Afterimage,
-    color: Texture,
-    output: Texture,
-    counters: Buffer,
-    /// `None` while the window is minimised.
-    size: Option<[u32; 2]>,
-}
-
-/// Output format. Compute shaders can rarely write a swapchain's format: write this one, and draw it to the screen.
+/// Compute shaders can rarely write a swapchain's format: tone mapping reads this one, and draws to the screen.
 const OUTPUT: TextureFormat = TextureFormat::Rgba16Float;
 
-fn targets(gpu: &Headless, size: [u32; 2]) -> (Texture, Texture) {
-    let color = TextureUsages::TEXTURE_BINDING | TextureUsages::RENDER_ATTACHMENT;
-    let output = TextureUsages::STORAGE_BINDING | TextureUsages::TEXTURE_BINDING;
-    (gpu.texture(size, 1, TextureFormat::Rgba16Float, color), gpu.texture(size, 1, OUTPUT, output))
+struct Engine {
+    gpu: Headless,
+    renderer: Renderer,
+    post: Afterimage,
+    control: ShareControl,
+    /// Time of the last frame; an engine measures it with timestamps.
+    last_ms: f32,
+    /// Depth, a copy of it to close, motion vectors, colors, and the picture.
+    targets: [Texture; 5],
+}
+
+/// What the game says of a frame.
+struct Moment {
+    size: [u32; 2],
+    seconds: f32,
+    is_cut: bool,
+    gaze: Gaze,
+    exposure: f32,
+}
+
+fn targets(gpu: &Headless, size: [u32; 2]) -> [Texture; 5] {
+    let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+    let usages = [TextureUsages::COPY_SRC, TextureUsages::COPY_DST, usage, usage, TextureUsages::STORAGE_BINDING];
+    let formats = [DEPTH, DEPTH, MOTION, TextureFormat::Rgba16Float, OUTPUT];
+    std::array::from_fn(|i| gpu.texture(size, 1, formats[i], usage | usages[i]))
 }
 
 impl Engine {
-    fn new(gpu: &Headless, size: [u32; 2]) -> Result<Self, Box<dyn std::error::Error>> {
-        let (color, output) = targets(gpu, size);
-        let post = Afterimage::new(&gpu.device, &ContextDesc::new(size), OUTPUT)?;
-        let counted = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
-        Ok(Self { post, color, output, counters: gpu.buffer(FrameStats::COUNTERS_BYTES, counted), size: Some(size) })
+    fn new(size: [u32; 2]) -> Result<Self, Box<dyn std::error::Error>> {
+        let gpu = Headless::new()?;
+        let vectors = MotionConvention { without_camera: true, ..MotionConvention::BEVY };
+        let post = Afterimage::new(&gpu.device, &Desc { motion: Some(vectors), ..Desc::new(size, OUTPUT) })?;
+        let renderer = Renderer::new(&gpu, TextureFormat::Rgba16Float, OUTPUT);
+        let (control, targets) = (ShareControl::new(50.0, [0.05, 0.5])?, targets(&gpu, size));
+        Ok(Self { gpu, renderer, post, control, last_ms: f32::NAN, targets })
     }
 
-    fn resize(&mut self, gpu: &Headless, size: [u32; 2]) -> Result<(), Box<dyn std::error::Error>> {
-        // A minimised window is 0x0: skip its frames, and keep the context and its history.
-        if size.contains(&0) {
-            self.size = None;
-        } else if self.post.desc().size_px == size {
-            self.size = Some(size);
-        } else {
-            self.post.resize(&gpu.device, size)?;
-            (self.color, self.output) = targets(gpu, size);
-            self.size = Some(size);
+    fn frame(&mut self, moment: &Moment) -> Result<String, Box<dyn std::error::Error>> {
+        // A minimised window is 0x0: draw nothing, and keep the history.
+        if moment.size.contains(&0) {
+            return Ok("nothing to draw".into());
         }
-        Ok(())
-    }
+        if moment.size != self.post.desc().size_px {
+            self.post.resize(moment.size)?;
+            self.targets = targets(&self.gpu, moment.size);
+        }
+        let start = Instant::now();
+        let share = self.control.share_for(self.last_ms);
+        self.post.set_shading(Shading::Gaze { fovea_deg: 5.0, share })?;
 
-    /// Processes one frame. The event decides whether history is valid.
-    fn frame(&mut self, gpu: &Headless, index: u64, event: Event) -> Result<String, Box<dyn std::error::Error>> {
-        if let Event::Resized(size) = event {
-            self.resize(gpu, size)?;
-        }
-        let Some(size) = self.size else { return Ok("minimised: nothing to draw".into()) };
-        let mut encoder = gpu.encoder();
-        // Your renderer would draw the foveated frame into `color` here. This example clears it.
-        draw(&mut encoder, &self.color, if let Event::Brighter(ratio) = event { 0.2 * f64::from(ratio) } else { 0.2 });
-        let gaze = match event {
-            Event::GazeLost => Gaze::Lost,
-            _ => Gaze::At { px: [0.5 * size[0] as f32, 0.5 * size[1] as f32] },
-        };
-        let views = [ViewFrame::new(ViewGeometry::flat(size, 70.0)?, gaze)];
+        let [depth, closed, motion, color, output] = &self.targets;
+        let world_from_view = Mat4::from_translation(Vec3::new(moment.seconds, 1.5, 0.0));
+        let aspect = moment.size[0] as f32 / moment.size[1] as f32;
+        let clip_from_view = perspective_infinite_reverse(0.75, aspect, 0.1).to_cols_array_2d();
+        let seconds = [moment.seconds, moment.seconds - 1.0 / 60.0];
+        let jittered = Mat4::from_cols_array_2d(&self.post.jittered(clip_from_view));
+        let view = View { clip_from_world: jittered * world_from_view.inverse(), seconds };
         let frame = Frame {
-            reset: match event {
-                Event::Cut => Reset::All,
-                // After a pause anything may have moved.
-                Event::ResumedAfter(seconds) if seconds > 0.5 => Reset::All,
-                _ => Reset::None,
-            },
-            exposure: match event {
-                Event::Brighter(ratio) => Exposure::Changed { ratio },
-                _ => Exposure::Same,
-            },
-            ..Frame::new(&self.color, &views, index)
+            motion: Some(motion),
+            gaze: moment.gaze,
+            is_cut: moment.is_cut,
+            exposure: Exposure::Scene { exposure: moment.exposure },
+            ..Frame::new(depth, Camera::new(clip_from_view, world_from_view.to_cols_array_2d()))
         };
-        let target = Target { counters: Some(&self.counters), ..Target::new(&self.output) };
-        let recorded = self.post.record(&gpu.device, &mut encoder, &frame, target)?;
-        // Your tone mapping would draw `output` to the screen here.
-        gpu.submit(encoder);
-        let warnings: Vec<String> = recorded.warnings().map(|w| w.to_string()).collect();
-        // An engine would read the counters a few frames later, or not at all.
-        let stats = FrameStats::from_counters(&gpu.read_buffer(&self.counters)).ok_or("too few counters")?;
-        let kept = 100 * stats.valid() / stats.pixels;
-        Ok(format!("{}x{}, history for {kept:3} % {}", size[0], size[1], warnings.join("; ")))
+        let mut encoder = self.gpu.encoder();
+        self.renderer.prepass(&self.gpu, &mut encoder, [motion, depth], view);
+        let plan = self.post.plan(&mut encoder, &frame)?;
+        encoder.copy_texture_to_texture(depth.as_image_copy(), closed.as_image_copy(), depth.size());
+        self.post.close(&mut encoder, &plan, &closed.create_view(&Default::default()))?;
+        self.renderer.colors(&self.gpu, &mut encoder, [color, closed], view);
+        let warnings: Vec<_> = self.post.show(&mut encoder, plan, color, output)?.warnings().collect();
+        // After show: transparent things, without the jitter and with the depth that was not closed; then tone mapping.
+        let clip_from_world = Mat4::from_cols_array_2d(&clip_from_view) * world_from_view.inverse();
+        self.renderer.glass(&self.gpu, &mut encoder, [output, depth], View { clip_from_world, seconds });
+        self.gpu.submit(encoder);
+        self.gpu.device.poll(PollType::wait_indefinitely())?;
+        self.last_ms = start.elapsed().as_secs_f32() * 1000.0;
+        let [width, height] = moment.size;
+        Ok(format!("{width}x{height}, {:.0} % in {:.0} ms {warnings:?}", 100.0 * share, self.last_ms))
     }
-}
-
-fn draw(encoder: &mut wgpu::CommandEncoder, target: &Texture, light: f64) {
-    let view = target.create_view(&Default::default());
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color { r: light, g: light, b: light, a: 1.0 }),
-                store: wgpu::StoreOp::Store,
-            },
-        })],
-        ..Default::default()
-    });
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let gpu = Headless::new()?;
-    let mut engine = Engine::new(&gpu, [320, 180])?;
-    let story = [
-        ("start", Event::Nothing),
-        ("", Event::Nothing),
-        ("the window grows", Event::Resized([400, 225])),
-        ("", Event::Nothing),
-        ("minimised", Event::Resized([0, 0])),
-        ("", Event::Nothing),
-        ("restored", Event::Resized([400, 225])),
-        ("a blink", Event::GazeLost),
-        ("exposure doubles", Event::Brighter(2.0)),
-        ("a cut", Event::Cut),
-        ("", Event::Nothing),
-        ("ten seconds later", Event::ResumedAfter(10.0)),
-        ("", Event::Nothing),
-    ];
-    for (index, (what, event)) in (0..).zip(story) {
-        println!("frame {index:2} {what:18} {}", engine.frame(&gpu, index, event)?);
+    let mut engine = Engine::new([320, 180])?;
+    for index in 0..40 {
+        let (what, size) = match index {
+            0 => ("start", [320, 180]),
+            1..8 => ("", [320, 180]),
+            8 => ("the window grows", [400, 225]),
+            16 => ("minimised", [0, 0]),
+            20 => ("a cut", [400, 225]),
+            24 => ("the gaze is lost", [400, 225]),
+            28 => ("darker", [400, 225]),
+            _ => ("", [400, 225]),
+        };
+        let moment = Moment {
+            size,
+            seconds: index as f32 / 60.0,
+            is_cut: index == 20,
+            gaze: if index == 24 { Gaze::Lost } else { Gaze::At { px: [160.0, 90.0] } },
+            exposure: if index < 28 { 1.0 } else { 0.5 },
+        };
+        let done = engine.frame(&moment)?;
+        if !what.is_empty() || index % 8 == 7 {
+            println!("frame {index:2} {what:17} {done}");
+        }
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use crate::foveation::Filter;
 use crate::settings::Settings;
 use crate::view::ViewFrame;
 
-/// Reset of history by a frame. Default: [`None`](Self::None). `examples/02_engine.rs` uses it.
+/// Reset of history by a frame. Default: [`None`](Self::None).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Reset {

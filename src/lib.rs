@@ -7,7 +7,7 @@
 //! the gaze, and shows an antialiased picture at full rate.
 #![cfg_attr(
     feature = "gpu",
-    doc = "[`Afterimage`] has the calls of a frame; `examples/01_planned.rs` is a whole renderer."
+    doc = "[`Afterimage`] has the calls of a frame; `examples/01_planned.rs` adds them to a small renderer."
 )]
 #![cfg_attr(not(feature = "gpu"), doc = "`Afterimage` (feature `wgpu-30`) has the calls of a frame.")]
 //!

@@ -37,7 +37,7 @@ pub struct FrameStats {
 
 impl FrameStats {
     /// Size in bytes of the counters' buffer of the GPU executor (`gpu::Target::counters`): little-endian words of 32
-    /// bits, which [`from_counters`](Self::from_counters) reads. `examples/02_engine.rs` uses it.
+    /// bits, which [`from_counters`](Self::from_counters) reads.
     pub const COUNTERS_BYTES: u64 = 4 * (4 + Verdict::COUNT as u64);
 
     /// Counters from the bytes that a GPU wrote. Reads the first [`COUNTERS_BYTES`](Self::COUNTERS_BYTES) bytes; `None`

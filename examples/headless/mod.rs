@@ -1,6 +1,8 @@
 //! A device without a window, with uploads and downloads of textures, for the examples.
 #![allow(dead_code, reason = "no example uses all of it")]
 
+pub mod renderer;
+
 use afterimage::wgpu::util::DownloadBuffer;
 use afterimage::wgpu::{self, Buffer, BufferUsages, CommandEncoder, Texture, TextureFormat, TextureUsages};
 

@@ -66,8 +66,8 @@ use wgpu::{Buffer, CommandEncoder, ComputePassDescriptor, Device, Limits, Textur
 
 /// The post-process on a GPU: a context with its settings, history and pipelines.
 ///
-/// The [crate's first page](crate) has an example. `examples/02_engine.rs` is an engine's loop with resize, cuts,
-/// pauses, lost gaze and changes of exposure; `examples/03_stereo.rs` has two views.
+/// The [crate's first page](crate) has an example. `examples/09_levels.rs` is the smallest program;
+/// `examples/03_stereo.rs` has two views.
 ///
 /// Several frames can be recorded into one encoder; they are processed in that order. Submit recorded frames once, in
 /// the order in which they were recorded. A frame may also be dropped with its encoder, if the surface is outdated, for
