@@ -1,42 +1,48 @@
-//! A doctor looks at frames whose motion vectors have the wrong sign, says so, and says what mends it.
+//! A doctor looks at planned frames whose motion vectors are of objects alone, which the description does not say. It
+//! says so, and which line of code mends it.
 //!
 //! `cargo run --example 07_doctor` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
 mod headless;
 
-use afterimage::gpu::{Doctor, Frame};
 use afterimage::wgpu::{BufferUsages, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Filter, Gaze, ViewFrame, ViewGeometry};
+use afterimage::{Afterimage, Camera, Desc, Frame, MotionConvention};
+use glam::{Mat4, Vec3, camera::rh::proj::directx::perspective_infinite_reverse};
 use headless::Headless;
+use headless::renderer::{DEPTH, MOTION, Renderer, View};
 
-const SIZE: [u32; 2] = [256, 128];
-
-/// Brightness of a wall with a pattern on it.
-fn wall(x: f32, y: f32) -> f32 {
-    0.5 + 0.2 * (0.31 * x + 0.13 * y).sin() + 0.15 * (0.17 * x - 0.23 * y).sin() + 0.1 * (0.07 * x * y * 0.05).cos()
-}
+const SIZE: [u32; 2] = [320, 180];
+const COLOR: TextureFormat = TextureFormat::Rgba32Float;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Headless::new()?;
-    let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
-    let [color, motion] = [(); 2].map(|()| gpu.texture(SIZE, 1, TextureFormat::Rgba32Float, read));
+    let renderer = Renderer::new(&gpu, COLOR, TextureFormat::Rgba16Float);
+    let attachment = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+    let [depth, motion, color] = [DEPTH, MOTION, COLOR].map(|format| gpu.texture(SIZE, 1, format, attachment));
+    let output = gpu.texture(SIZE, 1, COLOR, TextureUsages::STORAGE_BINDING);
 
-    // As for the post-process. This renderer does not foveate, and means its vectors to be previous minus current.
-    let mut desc = ContextDesc::new(SIZE);
-    desc.settings.foveation.filter = Filter::Off;
-    let mut doctor = Doctor::new(&gpu.device, &desc, 0)?;
+    // The mistake: those of this renderer lack the camera's motion.
+    let desc = Desc { motion: Some(MotionConvention::BEVY), ..Desc::new(SIZE, COLOR) };
+    let mut post = Afterimage::new(&gpu.device, &desc)?;
+    let mut doctor = post.doctor()?;
     let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
     let words = gpu.buffer(doctor.words_bytes(), usage);
 
+    let clip_from_view = perspective_infinite_reverse(0.75, 320.0 / 180.0, 0.1).to_cols_array_2d();
     for index in 0..8 {
-        // The wall moves to the right by 3 pixels a frame, and down by 1. It was to the left before: (-3, -1) is right.
-        let moved = [3.0, 1.0].map(|px: f32| px * index as f32);
-        gpu.write(&color, 0, |x, y| [wall(x as f32 - moved[0], y as f32 - moved[1]); 3]);
-        gpu.write(&motion, 0, |_, _| [3.0, 1.0, 0.0]);
-        let views = [ViewFrame::new(ViewGeometry::flat(SIZE, 70.0)?, Gaze::At { px: [60.0, 40.0] })];
-        let frame = Frame { motion: Some((&motion).into()), ..Frame::new(&color, &views, index) };
+        let world_from_view = Mat4::from_translation(Vec3::new(0.1 * index as f32, 1.5, 0.0));
+        let jittered = Mat4::from_cols_array_2d(&post.jittered(clip_from_view));
+        let seconds = [index as f32 / 60.0, (index as f32 - 1.0) / 60.0];
+        let view = View { clip_from_world: jittered * world_from_view.inverse(), seconds };
+        let camera = Camera::new(clip_from_view, world_from_view.to_cols_array_2d());
+
         let mut encoder = gpu.encoder();
-        doctor.record(&gpu.device, &mut encoder, &frame, &words)?;
+        renderer.prepass(&gpu, &mut encoder, [&motion, &depth], view);
+        let plan = post.plan(&mut encoder, &Frame { motion: Some(&motion), ..Frame::new(&depth, camera) })?;
+        // The doctor wants every pixel: depth is not closed.
+        renderer.colors(&gpu, &mut encoder, [&color, &depth], view);
+        post.examine(&mut encoder, &mut doctor, &plan, &color, &words)?;
+        post.show(&mut encoder, plan, &color, &output)?;
         gpu.submit(encoder);
         // An engine would read the words a few frames later.
         doctor.read(&gpu.read_buffer(&words));

@@ -3,7 +3,7 @@
 use super::doctor_pass::{self, Examined};
 use super::{Frame, check_inputs};
 use crate::context::ContextDesc;
-use crate::doctor::{Chart, Finding, maps};
+use crate::doctor::{Chart, Door, Finding, maps};
 use crate::error::{FrameError, SettingsError};
 use crate::image::Image;
 
@@ -50,7 +50,7 @@ impl Doctor {
     /// # Errors
     /// [`SettingsError`] if the description is out of range, or has no such view.
     pub fn new(desc: &ContextDesc, view: usize) -> Result<Self, SettingsError> {
-        let chart = Chart::new(desc, view)?;
+        let chart = Chart::new(desc, view, Door::Context)?;
         desc.validate()?;
         Ok(Self { chart, past: None })
     }

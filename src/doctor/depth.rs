@@ -3,9 +3,11 @@
 //! Without such a camera, slanted planes tell distances from depth buffers, and implausible distances tell a reversed
 //! buffer from a forward one.
 
+use super::Door;
 use super::finding::{Check, Fault, Finding, Outcome};
 use super::motion::OPEN_Y_AXIS;
 use super::observation::Observation;
+use super::shape::Shape;
 use crate::context::ContextDesc;
 use crate::convention::DepthConvention;
 use crate::kernel::depth::disparity;
@@ -23,46 +25,6 @@ const FACTOR: f64 = 1.3;
 const PLANES: usize = 16;
 const MAJORITY: f64 = 0.85;
 
-/// Relation of stored values to disparities.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Shape {
-    Linear,
-    Forward,
-    Reversed,
-}
-
-impl Shape {
-    const ALL: [Self; 3] = [Self::Linear, Self::Forward, Self::Reversed];
-
-    fn of(convention: DepthConvention) -> Option<Self> {
-        match convention {
-            DepthConvention::Linear => Some(Self::Linear),
-            DepthConvention::Forward { .. } => Some(Self::Forward),
-            DepthConvention::Reversed { .. } => Some(Self::Reversed),
-            DepthConvention::Orthographic { .. } => None,
-        }
-    }
-
-    /// Disparity up to a factor, for an infinite far plane.
-    fn disparity(self, stored: f64) -> f64 {
-        match self {
-            Self::Linear => 1.0 / stored,
-            Self::Forward => 1.0 - stored,
-            Self::Reversed => stored,
-        }
-    }
-
-    /// Line of code that sets this shape. `scale`: disparity over [`Self::disparity`], if known.
-    fn line(self, scale: Option<f64>) -> String {
-        let near = scale.map_or("YOUR_NEAR_PLANE".to_owned(), |s| format!("{:.3}", 1.0 / s));
-        match self {
-            Self::Linear => "desc.depth = DepthConvention::Linear;".into(),
-            Self::Forward => format!("desc.depth = DepthConvention::Forward {{ near: {near}, far: f32::INFINITY }};"),
-            Self::Reversed => format!("desc.depth = DepthConvention::Reversed {{ near: {near}, far: f32::INFINITY }};"),
-        }
-    }
-}
-
 /// Stored depth of a tile, and the disparity that its motion shows.
 struct Parallax {
     stored: f64,
@@ -70,7 +32,7 @@ struct Parallax {
 }
 
 /// Finding on depth, after that on motion.
-pub(super) fn check(desc: &ContextDesc, observations: &[Observation], motion: &Finding) -> Finding {
+pub(super) fn check(desc: &ContextDesc, observations: &[Observation], motion: &Finding, door: Door) -> Finding {
     let cannot_tell = |why| Finding::cannot_tell(Check::Depth, why);
     if !observations.iter().any(|o| o.now.has_depth) {
         return cannot_tell("no depth");
@@ -78,25 +40,31 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation], motion: &F
     let Some(stated) = Shape::of(desc.depth) else {
         return cannot_tell("orthographic views show no parallax");
     };
-    by_range(observations, stated)
-        .or_else(|| by_parallax(desc, observations, stated, motion))
-        .or_else(|| by_planes(desc, observations, stated))
+    by_range(observations, stated, door)
+        .or_else(|| by_parallax(desc, observations, stated, motion, door))
+        .or_else(|| by_planes(desc, observations, stated, door))
         .unwrap_or_else(|| cannot_tell("the camera does not move sideways, and no slanted plane shows it"))
 }
 
 /// Depth buffers are in 0 to 1.
-fn by_range(observations: &[Observation], stated: Shape) -> Option<Finding> {
+fn by_range(observations: &[Observation], stated: Shape, door: Door) -> Option<Finding> {
     let depths = middles(observations);
     let beyond = depths.iter().filter(|d| **d > 1.001 || **d < -0.001).count() as f64 / depths.len().max(1) as f64;
     if stated == Shape::Linear || depths.len() < TILES || beyond < 0.2 {
         return None;
     }
     let evidence = vec![("share outside 0 to 1", beyond)];
-    let mend = Shape::Linear.line(None);
+    let mend = door.depth(Shape::Linear, None);
     Some(Finding::wrong(Check::Depth, Fault::DepthConvention, 0.95, evidence, mend))
 }
 
-fn by_parallax(desc: &ContextDesc, observations: &[Observation], stated: Shape, motion: &Finding) -> Option<Finding> {
+fn by_parallax(
+    desc: &ContextDesc,
+    observations: &[Observation],
+    stated: Shape,
+    motion: &Finding,
+    door: Door,
+) -> Option<Finding> {
     let tiles = parallax(desc, observations)?;
     let map = desc.depth.disparity_map();
     let of_stated = |p: &Parallax| f64::from(disparity(p.stored as f32, map));
@@ -118,7 +86,7 @@ fn by_parallax(desc: &ContextDesc, observations: &[Observation], stated: Shape, 
         return None;
     }
     if spread > SPREAD && spread > 3.0 * best_spread && best != stated {
-        let line = best.line(Some(best_scale));
+        let line = door.depth(best, Some(1.0 / best_scale));
         return Some(Finding::wrong(Check::Depth, Fault::DepthConvention, confidence, evidence, line));
     }
     if spread > SPREAD {
@@ -139,7 +107,7 @@ fn by_parallax(desc: &ContextDesc, observations: &[Observation], stated: Shape, 
     }
     let line = match desc.depth {
         DepthConvention::Forward { near, .. } | DepthConvention::Reversed { near, .. } => {
-            stated.line(Some(scale / f64::from(near)))
+            door.depth(stated, Some(f64::from(near) / scale))
         }
         _ => format!("depth *= {:.4}; // or another unit of previous_from_current", 1.0 / scale),
     };
@@ -147,7 +115,7 @@ fn by_parallax(desc: &ContextDesc, observations: &[Observation], stated: Shape, 
 }
 
 /// Whether stored values, or their inverses, are affine on slanted planes, and which distances are plausible.
-fn by_planes(desc: &ContextDesc, observations: &[Observation], stated: Shape) -> Option<Finding> {
+fn by_planes(desc: &ContextDesc, observations: &[Observation], stated: Shape, door: Door) -> Option<Finding> {
     let (mut linear, mut buffer) = (0_usize, 0_usize);
     for (_, evidence) in observations.iter().filter(|o| o.now.has_depth).flat_map(Observation::tiles) {
         let depths = evidence.depths().map(f64::from);
@@ -174,8 +142,14 @@ fn by_planes(desc: &ContextDesc, observations: &[Observation], stated: Shape) ->
     let evidence = vec![("slanted planes", votes as f64), ("share affine as stored", share)];
     let confidence = 0.9 * (1.0 - (-(votes as f64) / 30.0).exp());
     let is_decided = votes >= PLANES && (share >= MAJORITY || share <= 1.0 - MAJORITY);
-    let wrong = |shape: Shape, scale| {
-        Some(Finding::wrong(Check::Depth, Fault::DepthConvention, confidence, evidence.clone(), shape.line(scale)))
+    let wrong = |shape: Shape, near| {
+        Some(Finding::wrong(
+            Check::Depth,
+            Fault::DepthConvention,
+            confidence,
+            evidence.clone(),
+            door.depth(shape, near),
+        ))
     };
     if is_decided && share < 0.5 {
         return match stated {
@@ -199,11 +173,17 @@ fn by_planes(desc: &ContextDesc, observations: &[Observation], stated: Shape) ->
         return Some(Finding { evidence, ..Finding::cannot_tell(Check::Depth, why) });
     }
     let near = match desc.depth {
-        DepthConvention::Forward { near, .. } | DepthConvention::Reversed { near, .. } => Some(1.0 / f64::from(near)),
+        DepthConvention::Forward { near, .. } | DepthConvention::Reversed { near, .. } => Some(f64::from(near)),
         _ => None,
     };
     let confidence = 0.8 * confidence.max(0.5);
-    Some(Finding::wrong(Check::Depth, Fault::DepthConvention, confidence, evidence.clone(), plausible.line(near)))
+    Some(Finding::wrong(
+        Check::Depth,
+        Fault::DepthConvention,
+        confidence,
+        evidence.clone(),
+        door.depth(plausible, near),
+    ))
 }
 
 /// Whether three depths on a slanted plane are affine as stored (`true`), or their inverses are (`false`).

@@ -34,6 +34,10 @@ pub enum Fault {
     MotionScale,
     /// x and y of the motion vectors are swapped.
     MotionAxes,
+    /// The motion vectors contain the camera's motion, or lack it, contrary to
+    /// [`MotionConvention::without_camera`](crate::MotionConvention::without_camera); or there are none, and the camera
+    /// moves.
+    MotionCamera,
     /// The motion vectors contain the projection's jitter, or lack it, contrary to
     /// [`MotionConvention::jittered`](crate::MotionConvention::jittered).
     MotionJitter,
@@ -107,6 +111,7 @@ impl Fault {
             Self::MotionUnit => "motion-unit",
             Self::MotionScale => "motion-scale",
             Self::MotionAxes => "motion-axes",
+            Self::MotionCamera => "motion-camera",
             Self::MotionJitter => "motion-jitter",
             Self::DepthConvention => "depth-convention",
             Self::DepthPlanes => "depth-planes",

@@ -1,5 +1,6 @@
 //! Rule of jitter: vectors that contain the projection's jitter change with it from frame to frame.
 
+use super::Door;
 use super::finding::{Check, Fault, Finding, Outcome};
 use super::observation::Observation;
 use crate::context::ContextDesc;
@@ -12,10 +13,13 @@ const LENGTH_PX: f64 = 0.05;
 const UNEXPLAINED: f64 = 0.2;
 
 /// Finding on jitter, after that on motion.
-pub(super) fn check(desc: &ContextDesc, observations: &[Observation], motion: &Finding) -> Finding {
+pub(super) fn check(desc: &ContextDesc, observations: &[Observation], motion: &Finding, door: Door) -> Finding {
     let cannot_tell = |why| Finding::cannot_tell(Check::Jitter, why);
     if observations.iter().all(|o| o.now.view.jitter_px == [0.0; 2]) {
         return cannot_tell("ViewFrame::jitter_px is (0, 0)");
+    }
+    if !observations.iter().any(|o| o.now.has_motion) {
+        return cannot_tell("there are no motion vectors with the camera's motion");
     }
     let steps: Vec<_> = observations.iter().map(|o| step(desc, o)).collect();
     let (mut product, mut of_jitter, mut of_motion, mut count) = (0.0, 0.0, 0.0, 0);
@@ -50,8 +54,7 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation], motion: &F
     if contained == desc.motion.jittered {
         return Finding::fits(Check::Jitter, confidence, evidence);
     }
-    let mend = format!("desc.motion.jittered = {contained};");
-    Finding::wrong(Check::Jitter, Fault::MotionJitter, confidence, evidence, mend)
+    Finding::wrong(Check::Jitter, Fault::MotionJitter, confidence, evidence, door.jittered(contained))
 }
 
 /// Median motion of a frame, and the motion that jitter adds, in pixels.

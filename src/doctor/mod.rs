@@ -1,15 +1,19 @@
 //! Checks of a renderer's inputs: the findings, and the rules that lead to them. The executors gather the evidence
 //! (`cpu::Doctor`, `gpu::Doctor`); the rules are the same for both.
 
+mod camera;
 mod color;
 mod depth;
+mod door;
 mod finding;
 mod foveation;
 mod jitter;
 mod motion;
 mod observation;
+mod shape;
 mod sharpness;
 
+pub(crate) use door::Door;
 pub use finding::{Check, Fault, Finding, Outcome};
 #[cfg(feature = "cpu")]
 pub(crate) use observation::Tile;
@@ -29,6 +33,7 @@ const KEPT: usize = 16;
 pub(crate) struct Chart {
     pub desc: ContextDesc,
     pub view: usize,
+    door: Door,
     past: Option<Past>,
     observations: Vec<Observation>,
 }
@@ -42,12 +47,12 @@ struct Past {
 
 impl Chart {
     /// No observations of view `view`; an error for a view that the context does not have.
-    pub fn new(desc: &ContextDesc, view: usize) -> Result<Self, SettingsError> {
+    pub fn new(desc: &ContextDesc, view: usize, door: Door) -> Result<Self, SettingsError> {
         if view >= desc.view_count as usize {
             let expected = format!("the index of one of the context's {} views", desc.view_count);
             return Err(SettingsError { setting: "view", found: view.to_string(), expected });
         }
-        Ok(Self { desc: *desc, view, past: None, observations: vec![] })
+        Ok(Self { desc: *desc, view, door, past: None, observations: vec![] })
     }
 
     /// Observation of the next frame, without its words.
@@ -61,6 +66,7 @@ impl Chart {
         let past = self.past.filter(|past| continues && past.exposure == exposure);
         let now = Description {
             has_depth: frame.depth.is_some(),
+            has_vectors: frame.motion.is_some(),
             has_motion: frame.motion.is_some() && !self.desc.motion.lacks_camera(),
             has_lod: frame.lod.is_some(),
             ..Description::new(&self.desc, view, gaze_px, past.map(|p| p.gaze_px))
@@ -84,9 +90,9 @@ impl Chart {
     /// One finding a check.
     pub fn findings(&self) -> Vec<Finding> {
         let (desc, seen) = (&self.desc, &self.observations);
-        let motion = motion::check(desc, seen);
-        let jitter = jitter::check(desc, seen, &motion);
-        let depth = depth::check(desc, seen, &motion);
+        let motion = camera::check(desc, seen, self.door).unwrap_or_else(|| motion::check(desc, seen, self.door));
+        let jitter = jitter::check(desc, seen, &motion, self.door);
+        let depth = depth::check(desc, seen, &motion, self.door);
         let color = color::check(desc, seen);
         let [gaze, foveation] = foveation::check(desc, seen);
         // If a fault can look like another one, report only the fault that must be mended first.

@@ -1,5 +1,6 @@
 //! Rule of the motion vectors: the right convention predicts each frame best from the previous one.
 
+use super::Door;
 use super::finding::{Check, Fault, Finding};
 use super::observation::{Hypothesis, Observation, hypotheses};
 use crate::context::ContextDesc;
@@ -51,15 +52,15 @@ fn compare(tiles: &[[f64; HYPOTHESES as usize]], a: usize, b: usize) -> Comparis
     Comparison { significance: sum / f64::sqrt(squares), gain: sum / tiles.len() as f64 }
 }
 
-pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> Finding {
+pub(super) fn check(desc: &ContextDesc, observations: &[Observation], door: Door) -> Finding {
+    if !observations.iter().any(|o| o.now.has_vectors) {
+        return Finding::cannot_tell(Check::Motion, "no motion vectors");
+    }
     if desc.motion.lacks_camera() {
         return Finding::cannot_tell(
             Check::Motion,
             "some vectors lack the camera's motion (MotionConvention::without_camera, no_vector)",
         );
-    }
-    if !observations.iter().any(|o| o.now.has_motion) {
-        return Finding::cannot_tell(Check::Motion, "no motion vectors");
     }
     let tiles = tiles(observations);
     if tiles.is_empty() {
@@ -100,7 +101,7 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> Finding
     if over_stated.significance < WRONG || is_shorter && stated_gain > 0.3 * over_nothing.gain {
         return cannot_tell("several conventions explain the motion");
     }
-    let (fault, mend) = mend(desc.motion, right);
+    let (fault, mend) = mend(desc.motion, right, door);
     Finding::wrong(
         Check::Motion,
         fault,
@@ -111,7 +112,7 @@ pub(super) fn check(desc: &ContextDesc, observations: &[Observation]) -> Finding
 }
 
 /// The fault of the stated convention if `right` is the true one, and the line of code that mends it.
-fn mend(stated: MotionConvention, right: &Hypothesis) -> (Fault, String) {
+fn mend(stated: MotionConvention, right: &Hypothesis, door: Door) -> (Fault, String) {
     let [x, y] = right.factors.map(|f| f < 0.0);
     let mut fields = vec![];
     let mut fault = None;
@@ -127,7 +128,6 @@ fn mend(stated: MotionConvention, right: &Hypothesis) -> (Fault, String) {
         fault = fault.or(Some(Fault::MotionUnit));
         fields.push(format!("unit: MotionUnit::{unit:?}"));
     }
-    let convention = format!("desc.motion = MotionConvention {{ {}, ..desc.motion }};", fields.join(", "));
     if right.swapped {
         return (Fault::MotionAxes, format!("motion = motion.yx; // where your shader writes it{}", also(&fields)));
     }
@@ -136,7 +136,7 @@ fn mend(stated: MotionConvention, right: &Hypothesis) -> (Fault, String) {
         let line = format!("motion *= {factor}; // where your shader writes it{}", also(&fields));
         return (Fault::MotionScale, line);
     }
-    (fault.expect("a hypothesis differs from the stated one"), convention)
+    (fault.expect("a hypothesis differs from the stated one"), door.motion(&fields.join(", ")))
 }
 
 fn also(fields: &[String]) -> String {

@@ -28,6 +28,7 @@ pub(crate) struct Description {
     /// Whether the gaze is known in this frame.
     pub has_gaze: bool,
     pub has_depth: bool,
+    pub has_vectors: bool,
     /// Whether there are vectors, and all contain the camera's motion.
     pub has_motion: bool,
     pub has_lod: bool,
@@ -107,6 +108,7 @@ impl Description {
             gaze_px,
             has_gaze,
             has_depth: false,
+            has_vectors: false,
             has_motion: false,
             has_lod: false,
             has_past: past_gaze_px.is_some(),

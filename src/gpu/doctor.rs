@@ -6,7 +6,7 @@ use super::input::{check_buffer, check_inputs};
 use super::plane::{Plane, PlaneDesc, layer_view};
 use super::{Frame, Textures};
 use crate::context::ContextDesc;
-use crate::doctor::{Chart, Description, Finding, Observation, maps, tile_count};
+use crate::doctor::{Chart, Description, Door, Finding, Observation, maps, tile_count};
 use crate::error::{CreateError, FrameError};
 use crate::kernel::doctor::{HYPOTHESES, WORDS};
 use crate::kernel::foveate::level_len;
@@ -59,7 +59,12 @@ impl Doctor {
     /// # Errors
     /// [`CreateError`] if the description is out of range, or has no such view, or a limit of the device is too low.
     pub fn new(device: &Device, desc: &ContextDesc, view: usize) -> Result<Self, CreateError> {
-        Self::with_sources(device, desc, view, &Sources::default())
+        Self::with(device, desc, view, Door::Context, &Sources::default())
+    }
+
+    /// A doctor for planned frames with one view, whose findings name the types of that API.
+    pub(crate) fn of_planned(device: &Device, desc: &ContextDesc) -> Result<Self, CreateError> {
+        Self::with(device, desc, 0, Door::Planned, &Sources::default())
     }
 
     /// A doctor with other texts of its passes, for tests that plant errors.
@@ -70,8 +75,18 @@ impl Doctor {
         view: usize,
         sources: &Sources,
     ) -> Result<Self, CreateError> {
+        Self::with(device, desc, view, Door::Context, sources)
+    }
+
+    fn with(
+        device: &Device,
+        desc: &ContextDesc,
+        view: usize,
+        door: Door,
+        sources: &Sources,
+    ) -> Result<Self, CreateError> {
         super::validate(device, desc, TextureFormat::Rgba16Float)?;
-        let chart = Chart::new(desc, view)?;
+        let chart = Chart::new(desc, view, door)?;
         let roots = |size| PlaneDesc::new("afterimage doctor roots", TextureFormat::R32Float, size, 1).create(device);
         let half = desc.size_px.map(|s| level_len(s, 1));
         Ok(Self {

@@ -15,7 +15,7 @@ use crate::foveation::Foveation;
 use crate::gpu::{self, Prime, Recorded};
 use crate::settings::Settings;
 use crate::view::ViewFrame;
-use wgpu::{CommandEncoder, Device, Limits, Texture, TextureView};
+use wgpu::{Buffer, CommandEncoder, Device, Limits, Texture, TextureView};
 
 /// The post-process for planned frames, on a GPU: it chooses the pixels that are shaded in each frame, and its history
 /// gives the rest. Full rate's picture from a quarter of the pixels, or from a tenth of them around the gaze.
@@ -228,6 +228,33 @@ impl Afterimage {
             return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
         }
         self.record(encoder, plan, [color, output], Some(half))
+    }
+
+    /// A doctor that finds mistakes in the frames of this context, and the line of code that mends each.
+    ///
+    /// # Errors
+    /// [`CreateError`] if a limit of the device is too low.
+    pub fn doctor(&self) -> Result<gpu::Doctor, CreateError> {
+        gpu::Doctor::of_planned(&self.device, &self.desc.context())
+    }
+
+    /// Records the examination of a frame by a [doctor](Self::doctor) of this context, before the frame is shown.
+    /// `color` must be drawn at every pixel: leave [`close`](Self::close) out meanwhile. `words`: as for
+    /// [`gpu::Doctor::record`]; give their bytes to [`gpu::Doctor::read`] when the device has written them.
+    ///
+    /// # Errors
+    /// [`FrameError`] if the plan is not the last one, or if a texture or the buffer does not fit. Then nothing was
+    /// recorded.
+    pub fn examine(
+        &self,
+        encoder: &mut CommandEncoder,
+        doctor: &mut gpu::Doctor,
+        plan: &Plan,
+        color: &Texture,
+        words: &Buffer,
+    ) -> Result<(), FrameError> {
+        self.check(plan)?;
+        doctor.record(&self.device, encoder, &plan.inputs(color, None, &[plan.view]), words)
     }
 
     fn record(

@@ -4,7 +4,9 @@
 //! and FLIP, over the frames from `--warm` on; jittered frames against a supersampled reference.
 //!
 //! `cargo run --release -p afterimage-research --example quads -- SCENE [--size WxH] [--frames N] [--warm N]
-//! [--camera NAME] [--offset N] [--jitter off] [--gaze fixed] [--out FOLDER]`
+//! [--camera NAME] [--offset N] [--jitter off] [--gaze fixed] [--rows shares] [--out FOLDER]`
+//!
+//! `--rows shares` compares a share that changes in every frame with a constant one.
 //!
 //! Makes the table of `docs/quads.md`; half a minute a clip of 320x180, ten minutes for Sponza.
 
@@ -27,8 +29,13 @@ type Failure = Box<dyn std::error::Error>;
 const GAZES: [[f32; 2]; 4] = [[0.25, 0.33], [0.75, 0.33], [0.75, 0.72], [0.25, 0.72]];
 const FRAMES_PER_GAZE: u64 = 16;
 
+/// Shares of the pixels, one a frame, in turn: 5 to 50 %.
+const SHARES: [f32; 7] = [0.05, 0.4, 0.12, 0.5, 0.2, 0.08, 0.3];
+
 struct Row {
     name: String,
+    /// Shares that its frames have in turn; none if they have those of the settings.
+    shares: &'static [f32],
     post: CpuAfterimage,
     scorer: Scorer,
     /// Sum over frames of the share of the pixels that were shaded.
@@ -38,13 +45,14 @@ struct Row {
 }
 
 /// Rows of the table.
-fn rows(size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure> {
+fn rows(size: [u32; 2], antialias: bool, kind: &str) -> Result<Vec<Row>, Failure> {
     let mut rows = vec![];
-    let mut add = |name: &str, foveation: Foveation| -> Result<(), Failure> {
+    let mut add = |name: &str, foveation: Foveation, shares: &'static [f32]| -> Result<(), Failure> {
         let method = Method::Smr(Smr { antialias, ..Smr::default() });
         let settings = Settings { method, foveation, ..Settings::default() };
         rows.push(Row {
             name: name.into(),
+            shares,
             post: CpuAfterimage::new(&ContextDesc { settings, ..ContextDesc::new(size) })?,
             scorer: Scorer::default(),
             shaded: 0.0,
@@ -53,11 +61,18 @@ fn rows(size: [u32; 2], antialias: bool) -> Result<Vec<Row>, Failure> {
         });
         Ok(())
     };
+    if kind == "shares" {
+        add("uniform, 5 to 50 %", Foveation::uniform(SHARES[0]), &SHARES)?;
+        for (name, percent) in [("uniform 20 %", 20.0), ("uniform 22 %", 22.0), ("uniform 24 %", 24.0)] {
+            add(name, Foveation::uniform(0.01 * percent), &[])?;
+        }
+        return Ok(rows);
+    }
     let screen = Settings::screen().foveation;
-    add("quads, Settings::screen", screen)?;
-    add("the same, single pixels", Foveation { single_pixels: true, ..screen })?;
-    add("one pixel in 4", Foveation::quarter())?;
-    add("uniform 25 %", Foveation::uniform(0.25))?;
+    add("quads, Settings::screen", screen, &[])?;
+    add("the same, single pixels", Foveation { single_pixels: true, ..screen }, &[])?;
+    add("one pixel in 4", Foveation::quarter(), &[])?;
+    add("uniform 25 %", Foveation::uniform(0.25), &[])?;
     Ok(rows)
 }
 
@@ -65,6 +80,10 @@ impl Row {
     /// Shows a frame; the share of the pixels that are shaded.
     fn show(&mut self, frame: &SourceFrame, view: &ViewFrame, index: u64) -> Result<f64, Failure> {
         let size = frame.color.size();
+        if !self.shares.is_empty() {
+            let foveation = Foveation::uniform(self.shares[index as usize % self.shares.len()]);
+            self.post.set_settings(Settings { foveation, ..self.post.desc().settings })?;
+        }
         let (depth, motion) = (frame.depth.as_ref().ok_or("no depth")?, frame.motion.as_ref().ok_or("no motion")?);
         let (colors, depths, motions) = ([&frame.color], [depth], [motion]);
         let views = [*view];
@@ -107,7 +126,7 @@ fn main() -> Result<(), Failure> {
     let is_jittered = option("--jitter", "halton") == "halton" && !is_folder;
     let moves = option("--gaze", "moving") == "moving";
     let geometry = ViewGeometry::flat(size, info.hfov_deg.unwrap_or(70.0))?;
-    let mut rows = rows(size, is_jittered)?;
+    let mut rows = rows(size, is_jittered, &option("--rows", "kinds"))?;
     let viewing = Viewing { geometry, display: Display::default(), fps: info.fps.unwrap_or(60.0) };
     let mut references = References::with_flip(Flip::for_view(&geometry)).with_jod(viewing);
     let mut tracker = Tracker::default();

@@ -74,6 +74,42 @@ fn frames_of_known_textures_make_no_bind_groups_and_views() {
     }
 }
 
+/// What the last 12 of 20 planned frames made, frames of `shares` in turn.
+fn made_of_shares(shares: &[f32]) -> Vec<(&'static str, usize)> {
+    use afterimage::{Camera, Desc, Shading};
+    let written = Written::new(Settings::default());
+    let [color, depth, _, output] = written.textures();
+    let device = &written.bare.device;
+    let mut post = afterimage::Afterimage::new(device, &Desc::new(SIZE, output.format())).unwrap();
+    let clip_from_view = glam::camera::rh::proj::directx::perspective_infinite_reverse(0.9, 1.3, 0.1);
+    let camera = Camera::new(clip_from_view.to_cols_array_2d(), glam::Mat4::IDENTITY.to_cols_array_2d());
+    let calls = ["CreateBindGroup(", "CreateTextureView", "CreateTexture(", "CreateComputePipeline", "CreateBuffer("];
+    let count = || calls.map(|call| written.count(call));
+    let mut before = [0; 5];
+    for index in 0..20 {
+        if index == 8 {
+            before = count();
+        }
+        post.set_shading(Shading::Everywhere { share: shares[index % shares.len()] }).unwrap();
+        let mut encoder = device.create_command_encoder(&Default::default());
+        let plan = post.plan(&mut encoder, &afterimage::Frame::new(&depth, camera)).unwrap();
+        post.show(&mut encoder, plan, &color, &output).unwrap();
+        written.bare.queue.submit([encoder.finish()]);
+        device.poll(wgpu::PollType::Poll).unwrap();
+    }
+    let after = count();
+    (0..5).map(|i| (calls[i], after[i] - before[i])).collect()
+}
+
+#[test]
+fn a_share_that_changes_in_every_frame_makes_no_objects() {
+    let [constant, changing] = [&[0.25][..], &[0.05, 0.4, 0.12, 0.5, 0.2, 0.08, 0.3]].map(made_of_shares);
+    println!("{changing:?}");
+    assert_eq!(changing, constant);
+    // Two buffers a frame upload numbers.
+    assert_eq!(changing.iter().map(|(_, made)| made).collect::<Vec<_>>(), [&0, &0, &0, &0, &24]);
+}
+
 /// Render pipelines of `prime` that exist before its first frame, and after it.
 fn pipelines_of_prime(is_prewarmed: bool) -> [usize; 2] {
     let mut written = Written::new(Settings { foveation: Foveation::quads(), ..Settings::default() });

@@ -24,7 +24,7 @@ impl Planted {
     /// The check that is to find it.
     pub fn check(&self) -> Check {
         match self.fault {
-            MotionDirection | MotionYAxis | MotionUnit | MotionScale | MotionAxes => Check::Motion,
+            MotionDirection | MotionYAxis | MotionUnit | MotionScale | MotionAxes | MotionCamera => Check::Motion,
             MotionJitter => Check::Jitter,
             DepthConvention | DepthPlanes => Check::Depth,
             ColorEncoded => Check::Color,
@@ -120,6 +120,15 @@ fn state_jitter(delivery: &mut Delivery) {
     delivery.frames.iter_mut().enumerate().for_each(|(i, f)| f.view.jitter_px = jitter(i));
 }
 
+/// A clip without the camera's motion says that it stands still.
+fn state_objects_alone(delivery: &mut Delivery) {
+    delivery.desc.motion.without_camera = true;
+    let still = std::array::from_fn(|i| std::array::from_fn(|j| f32::from(u8::from(i == j))));
+    for frame in &mut delivery.frames {
+        frame.view.previous_from_current = frame.view.previous_from_current.or(Some(still));
+    }
+}
+
 fn encode(delivery: &mut Delivery) {
     delivery.frames.iter_mut().for_each(|f| f.color = f.color.map(|c| c.map(srgb_encode)));
 }
@@ -130,7 +139,7 @@ fn show_full_rate(clip: &Clip, delivery: &mut Delivery) {
     }
 }
 
-pub const PLANTED: [Planted; 20] = [
+pub const PLANTED: [Planted; 23] = [
     planted("vectors: current minus previous", MotionDirection, OPPOSITE, |_, d| vectors(d, |[x, y]| [-x, -y])),
     planted("vectors: y up", MotionYAxis, "{ y_axis: YAxis::Up, ..", |_, d| vectors(d, |[x, y]| [x, -y])),
     planted("vectors: UV, stated pixels", MotionUnit, "{ unit: MotionUnit::Uv, ..", |_, d| convention(d, UV, PIXELS)),
@@ -139,6 +148,15 @@ pub const PLANTED: [Planted; 20] = [
     }),
     planted("vectors: twice too long", MotionScale, "motion *= 0.5;", |_, d| vectors(d, |v| v.map(|v| 2.0 * v))),
     planted("vectors: x and y swapped", MotionAxes, "motion = motion.yx;", |_, d| vectors(d, |[x, y]| [y, x])),
+    planted("vectors: of objects alone, stated complete", MotionCamera, "{ without_camera: true, ..", |_, d| {
+        vectors(d, |_| [0.0; 2])
+    }),
+    planted("vectors: none, stated complete", MotionCamera, "{ without_camera: true, ..", |_, d| {
+        d.frames.iter_mut().for_each(|f| f.motion = None)
+    }),
+    planted("vectors: complete, stated of objects alone", MotionCamera, "{ without_camera: false, ..", |_, d| {
+        state_objects_alone(d)
+    }),
     planted("vectors: with jitter", MotionJitter, "desc.motion.jittered = true;", |_, d| contain_jitter(d)),
     planted("vectors: without jitter, stated with it", MotionJitter, "desc.motion.jittered = false;", |_, d| {
         state_jitter(d)
