@@ -182,9 +182,9 @@ fn parts_of_all(files: &[PathBuf]) -> Vec<(String, Vec<i64>)> {
     if is_one(&signed) && has_frame_0 { signed } else { parts }
 }
 
-/// Files of one pass in playback order, and their frame numbers: of the numbers in their names, the one that is another in every
-/// file. If several are, the last that has even steps, or else the last. Files without numbers are in order of their
-/// names.
+/// Files of one pass in playback order, and their frame numbers: of the numbers in their names, the one that is another
+/// in every file. If several are, the last that has even steps, or else the last. Files without numbers are in order of
+/// their names.
 fn numbered_files(subject: &str, files: Vec<PathBuf>) -> Result<(Vec<PathBuf>, Vec<Option<i64>>), InputError> {
     let parts = parts_of_all(&files);
     if files.len() < 2 || parts.iter().all(|(_, numbers)| numbers.is_empty()) {

@@ -13,8 +13,8 @@ use std::path::Path;
 /// A folder of `.exr` frames, sorted by the number in their names that varies, with an optional `cameras.json`.
 /// Opening checks every header; pixels are decoded on request and not cached.
 ///
-/// Passes in files of their own, in one folder (`beauty_0001.exr`, `depth_0001.exr`) or each in a folder of its own, are
-/// merged by their numbers. A folder with a single frame is a still.
+/// Passes in files of their own, in one folder (`beauty_0001.exr`, `depth_0001.exr`) or each in a folder of its own,
+/// are merged by their numbers. A folder with a single frame is a still.
 #[derive(Debug)]
 pub struct SequenceSource {
     info: SourceInfo,

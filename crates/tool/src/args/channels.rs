@@ -20,11 +20,10 @@ pub struct ChannelArgs {
     /// Layer of the motion vectors, or two channels: a.x,a.y
     #[arg(long, value_name = "NAME", help_heading = HEADING)]
     pub motion: Option<String>,
-    /// blender, unreal, unity, arnold, karma, vray, nuke, or px|uv|ndc,to-previous|from-previous,up|down[,centered]
-    /// [,scale=N]; info finds it
+    /// blender|unreal|unity|arnold|karma|vray|nuke, or px|uv|ndc,to-previous|from-previous,up|down; info finds it
     #[arg(long, value_name = "NAME|LIST", help_heading = HEADING)]
     pub motion_convention: Option<MotionReading>,
-    /// unreal, nuke, or view|inverse|forward|reversed|orthographic[,near=D][,far=D][,scale=N]
+    /// unreal|nuke, or view|inverse|forward|reversed|orthographic[,near=D][,far=D][,scale=N]
     #[arg(long, value_name = "NAME|LIST", help_heading = HEADING)]
     pub depth_convention: Option<DepthReading>,
 }

@@ -24,8 +24,8 @@ pub enum Vectors {
     ToNext,
 }
 
-/// The checked headers of a frame's EXR files: the frame can be decoded unless its compressed data is damaged. Passes in
-/// files of their own are one frame.
+/// The checked headers of a frame's EXR files: the frame can be decoded unless its compressed data is damaged. Passes
+/// in files of their own are one frame.
 #[derive(Debug)]
 pub struct ExrHeader {
     pub(super) subject: String,
@@ -74,7 +74,8 @@ pub(super) struct Window {
 }
 
 impl ExrHeader {
-    /// Reads and checks the header of `path`, whose channels are recognised by their names: [`open_passes`] of one file.
+    /// Reads and checks the header of `path`, whose channels are recognised by their names: [`open_passes`] of one
+    /// file.
     ///
     /// # Errors
     /// As of [`open_passes`].
