@@ -272,10 +272,8 @@ fn depth_role(
 /// A channel, or the first of z, v, r, x, y of a layer.
 fn named_depth<'a>(channels: &'a [ChannelName], name: &str) -> Option<(&'a ChannelName, DepthReading)> {
     let of_layer = |leaf: &&str| channels.iter().find(|c| c.leaf == **leaf && c.is_in(name));
-    let channel = channels
-        .iter()
-        .find(|c| c.is_called(name))
-        .or_else(|| ["z", "v", "r", "x", "y"].iter().find_map(|leaf| of_layer(&leaf)))?;
+    let channel =
+        channels.iter().find(|c| c.is_called(name)).or_else(|| ["z", "v", "r", "x", "y"].iter().find_map(of_layer))?;
     let known = DEPTH.iter().find(|(layer, leaf, _)| channel.leaf == *leaf && channel.in_layer(|own| layer.fits(own)));
     Some((channel, known.map_or_else(DepthReading::default, |(_, _, reading)| *reading)))
 }
