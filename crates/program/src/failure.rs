@@ -95,10 +95,10 @@ impl From<ClipError> for Failure {
     }
 }
 
-/// Prints warnings, those of gaze logs with options.
+/// Prints warnings, those of gaze logs and channels with options.
 pub fn warn(warnings: &[String]) {
     for warning in warnings {
-        eprintln!("afterimage: warning: {}", with_gaze_options(warning));
+        eprintln!("afterimage: warning: {}", with_options(warning));
     }
 }
 
@@ -111,7 +111,7 @@ fn with_option(error: &InputError) -> String {
             format!("{error} with --max-megapixels {megapixels}")
         }
         InputError::Request(message) | InputError::Invalid(message) if message.remedy.contains('`') => {
-            with_gaze_options(&error.to_string())
+            with_options(&error.to_string())
         }
         // If a camera does not exist, the error's subject is "camera NAME".
         InputError::Request(message) if message.subject.starts_with("camera ") => format!("--{error}"),
@@ -121,8 +121,8 @@ fn with_option(error: &InputError) -> String {
     }
 }
 
-/// `text` with the options of gaze logs instead of the names of their fields.
-pub fn with_gaze_options(text: &str) -> String {
+/// `text` with the options of gaze logs and of channels instead of the names of their fields.
+pub fn with_options(text: &str) -> String {
     let options = [
         ("`screen_px`", "--screen-px WxH"),
         ("`screen_mm`", "--screen-mm WxH"),
@@ -130,6 +130,13 @@ pub fn with_gaze_options(text: &str) -> String {
         ("`eye`", "--eye"),
         ("`gaze_columns`", "--gaze-columns t=NAME,x=NAME,y=NAME"),
         ("the gaze map `fit`", "--gaze-map fit"),
+        ("`info`", "afterimage info"),
+        ("`color`", "--color"),
+        ("`depth`", "--depth"),
+        ("`motion`=", "--motion "),
+        ("`motion`", "--motion"),
+        ("`motion_convention`=", "--motion-convention "),
+        ("`depth_convention`=", "--depth-convention "),
     ];
     options.iter().fold(text.to_owned(), |text, (field, option)| text.replace(field, option))
 }

@@ -1,6 +1,7 @@
 //! Frame sources: stills, EXR sequences, analytic scenes and rendered scenes, behind one trait ([`FrameSource`]).
 
 pub mod exr_file;
+mod frame_files;
 pub mod limits;
 pub mod motion_check;
 mod open;
@@ -16,8 +17,9 @@ pub use crate::file_kind::other_kind;
 pub use afterimage_eval::source::{
     AnalyticSource, CameraPose, FrameRequest, FrameSource, SourceInfo, Wanted, analytic, reference_offsets_px,
 };
+pub use exr_file::ChannelNames;
 pub use limits::ReadLimits;
-pub use open::{is_scene, open};
+pub use open::{is_scene, open, open_named};
 pub use raster::RasterSource;
 pub use scene_camera::SceneCamera;
 pub use sequence::SequenceSource;

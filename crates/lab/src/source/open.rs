@@ -1,6 +1,7 @@
 //! Opens a source from the name that a user gives.
 
 use super::analytic::{self, AnalyticSource};
+use super::exr_file::ChannelNames;
 use super::{FrameSource, ReadLimits, SceneOptions, SequenceSource, StillSource};
 use crate::error::InputError;
 use crate::file_kind::{folder_of_pattern, kind, other_kind};
@@ -10,6 +11,14 @@ use std::path::Path;
 /// Whether `input` names a scene, which needs a renderer (`RasterSource`, `TracedSource`), and not a file of frames.
 pub fn is_scene(input: &str) -> bool {
     input.starts_with("builtin:") || matches!(kind(Path::new(input)).as_str(), "gltf" | "glb")
+}
+
+/// Opens an input, whose channels are recognised by their names: [`open_named`].
+///
+/// # Errors
+/// As of [`open_named`].
+pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Box<dyn FrameSource + Send>, InputError> {
+    open_named(input, limits, scene, &ChannelNames::default())
 }
 
 /// Opens a folder of EXR frames, a still (`.exr`, `.png`, `.jpg`, `.jpeg`; with another ending, by its first bytes), or
@@ -23,7 +32,12 @@ pub fn is_scene(input: &str) -> bool {
 /// - [`Limit`](InputError::Limit): a frame has more pixels than `limits` allows.
 /// - [`Request`](InputError::Request): `scene` gives a size for a file, there is no analytic scene of that name,
 ///   `input` is a scene that needs a renderer, or the folder holds no frames.
-pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Box<dyn FrameSource + Send>, InputError> {
+pub fn open_named(
+    input: &str,
+    limits: &ReadLimits,
+    scene: &SceneOptions,
+    names: &ChannelNames,
+) -> Result<Box<dyn FrameSource + Send>, InputError> {
     // Schemes first, so that a file of the same name cannot hide them.
     match input.split_once(':') {
         Some(("analytic", name)) => return Ok(Box::new(open_analytic(name, limits, scene)?)),
@@ -45,7 +59,7 @@ pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Bo
     }
     let path = Path::new(input);
     if path.is_dir() {
-        return Ok(Box::new(SequenceSource::open(path, limits)?));
+        return Ok(Box::new(SequenceSource::open_named(path, limits, names)?));
     }
     if let Some(folder) = folder_of_pattern(path) {
         let remedy = format!("give the folder, {}; its frames are sorted by their numbers", folder.display());
@@ -53,7 +67,7 @@ pub fn open(input: &str, limits: &ReadLimits, scene: &SceneOptions) -> Result<Bo
     }
     let expected = "expected a folder of .exr frames, a .exr, .png, .jpg or .jpeg file, or a scene (.gltf, .glb)";
     match kind(path).as_str() {
-        "exr" | "png" | "jpg" | "jpeg" => Ok(Box::new(StillSource::open(path, limits)?)),
+        "exr" | "png" | "jpg" | "jpeg" => Ok(Box::new(StillSource::open_named(path, limits, names)?)),
         _ if !path.exists() => Err(InputError::io(input, "does not exist", expected)),
         _ => Err(match other_kind(path) {
             Some((problem, remedy)) => InputError::not_supported(input, problem, remedy),

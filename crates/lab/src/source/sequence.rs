@@ -1,60 +1,97 @@
 //! A folder of EXR frames, played forwards and backwards.
 
-use super::exr_file::{ExrFrame, ExrHeader, Vectors};
+use super::exr_file::{ChannelNames, ExrFrame, ExrHeader, MotionReading, PassFile, Vectors};
+use super::frame_files::{PassFiles, check_gaps, check_same_frames, passes};
 use super::limits::ReadLimits;
 use super::still::StillSource;
 use super::{FrameRequest, FrameSource, SourceInfo};
-use crate::error::{InputError, io_error};
-use crate::file_kind::ending;
+use crate::error::InputError;
 use crate::frame::{RenderedFrame, SourceFrame};
 use crate::scene::cameras::Cameras;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A folder of `.exr` frames, sorted by the number in their names that varies, with an optional `cameras.json`.
 /// Opening checks every header; pixels are decoded on request and not cached.
 ///
-/// A folder with a single frame is a still.
+/// Passes in files of their own, in one folder (`beauty_0001.exr`, `depth_0001.exr`) or each in a folder of its own,
+/// are merged by their numbers. A folder with a single frame is a still.
 #[derive(Debug)]
 pub struct SequenceSource {
     info: SourceInfo,
-    limits: ReadLimits,
-    files: Vec<PathBuf>,
+    frames: Frames,
     has_depth: bool,
+    motion: Option<MotionReading>,
     cameras: Option<(Cameras, Vec<usize>)>,
     still: Option<StillSource>,
     warnings: Vec<String>,
     contents: Vec<String>,
 }
 
+/// The files of all frames, and how they are read.
+#[derive(Debug)]
+struct Frames {
+    passes: Vec<PassFiles>,
+    limits: ReadLimits,
+    names: ChannelNames,
+}
+
+impl Frames {
+    fn count(&self) -> usize {
+        self.passes.first().map_or(0, |pass| pass.files.len())
+    }
+
+    /// The headers of a frame's files.
+    fn header(&self, frame: usize) -> Result<ExrHeader, InputError> {
+        let files = self.passes.iter().map(|pass| PassFile { pass: &pass.pass, path: &pass.files[frame] });
+        ExrHeader::open_passes(&files.collect::<Vec<_>>(), &self.limits, &self.names)
+    }
+}
+
 impl SequenceSource {
+    /// Opens `folder`, whose channels are recognised by their names, and checks all headers: [`open_named`].
+    ///
+    /// # Errors
+    /// As of [`open_named`].
+    ///
+    /// [`open_named`]: Self::open_named
+    pub fn open(folder: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
+        Self::open_named(folder, limits, &ChannelNames::default())
+    }
+
     /// Opens `folder` and checks all headers. No pixel is decoded, except for a single frame.
     ///
     /// # Errors
     /// - [`Io`](InputError::Io): the folder or a file cannot be read.
     /// - [`Request`](InputError::Request): the folder has no `.exr`, or frames of several sequences.
-    /// - [`Limit`](InputError::Limit) and [`NotSupported`](InputError::NotSupported): as of [`ExrHeader::open`].
-    /// - [`Invalid`](InputError::Invalid): a frame is damaged, truncated or without color; differs from the first in
-    ///   size, or in whether it has depth or motion; a frame number is missing; several frames have no motion vectors;
-    ///   or `cameras.json` is invalid or belongs to other frames.
-    pub fn open(folder: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
+    /// - [`Limit`](InputError::Limit) and [`NotSupported`](InputError::NotSupported): as of
+    ///   [`ExrHeader::open_passes`].
+    /// - [`Invalid`](InputError::Invalid): a frame is damaged, truncated or without color or a channel of `names`;
+    ///   differs from the first in size, or in whether it has depth or motion; a frame number is missing, or missing in
+    ///   a pass; several frames have no motion vectors of a known convention; or `cameras.json` is invalid or belongs
+    ///   to other frames.
+    pub fn open_named(folder: &Path, limits: &ReadLimits, names: &ChannelNames) -> Result<Self, InputError> {
         let name = folder.display().to_string();
-        let (files, numbers) = numbered_files(&name, exr_files(folder)?)?;
-        if let [file] = files.as_slice() {
-            let still = StillSource::open(file, limits)?.named(name);
+        let mut frames = Frames { passes: passes(folder)?, limits: *limits, names: names.clone() };
+        if frames.passes.len() > 1 {
+            frames.passes = used_passes(&name, frames.passes, limits, names)?;
+            check_same_frames(&name, &frames.passes)?;
+        }
+        let numbers = frames.passes.first().map_or(vec![], |pass| pass.numbers.clone());
+        if frames.count() == 1 {
+            let still = StillSource::from_header(&frames.header(0)?, folder)?.named(name);
             return Ok(Self {
                 info: still.info().clone(),
-                limits: *limits,
+                frames,
                 has_depth: false,
+                motion: None,
                 cameras: None,
                 warnings: still.warnings().to_vec(),
                 contents: still.contents().to_vec(),
                 still: Some(still),
-                files,
             });
         }
         check_gaps(&name, &numbers)?;
-        let first = check_headers(&files, limits)?;
+        let first = check_headers(&frames, &name)?;
         let cameras = Cameras::beside(folder)?;
         if let Some(c) = &cameras {
             c.check_size(first.size())?;
@@ -63,7 +100,7 @@ impl SequenceSource {
         let info = SourceInfo {
             name,
             size: first.size(),
-            frames: Some(files.len() as u64),
+            frames: Some(frames.count() as u64),
             fps: cameras.as_ref().and_then(|c| c.fps).or(first.fps()),
             hfov_deg: cameras.as_ref().and_then(|c| c.hfov_deg),
             still: false,
@@ -72,22 +109,45 @@ impl SequenceSource {
             Some(c) => c.assign(&numbers)?.map(|poses| (c, poses)),
             None => None,
         };
-        Ok(Self {
-            info,
-            limits: *limits,
-            has_depth: first.has_depth(),
-            cameras,
-            still: None,
-            files,
-            warnings,
-            contents,
-        })
+        let (has_depth, motion) = (first.has_depth(), first.motion_reading());
+        Ok(Self { info, frames, has_depth, motion, cameras, still: None, warnings, contents })
     }
 
-    /// Paths of the frames in playback order.
-    pub fn files(&self) -> &[PathBuf] {
-        &self.files
+    /// How the motion vectors are stored; `None` for a still.
+    pub fn motion_reading(&self) -> Option<MotionReading> {
+        self.motion
     }
+}
+
+/// The passes from which channels are read, by the first files of all.
+fn used_passes(
+    folder: &str,
+    passes: Vec<PassFiles>,
+    limits: &ReadLimits,
+    names: &ChannelNames,
+) -> Result<Vec<PassFiles>, InputError> {
+    let first: Vec<PassFile> = passes.iter().map(|pass| PassFile { pass: &pass.pass, path: &pass.files[0] }).collect();
+    let is_whole = |file: &&PassFile| {
+        let header = ExrHeader::open_passes(&[**file], limits, &ChannelNames::default());
+        header.is_ok_and(|header| header.has(Vectors::ToPrevious))
+    };
+    let whole: Vec<&PassFile> = first.iter().filter(is_whole).collect();
+    let [has_same_name, is_alone] = [(1..passes.len()).any(|i| passes[i].pass == passes[0].pass), whole.len() < 2];
+    if has_same_name || !is_alone {
+        let file_name = |file: &PassFile| file.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let [a, b] = if is_alone { [&first[0], &first[1]] } else { [whole[0], whole[1]] }.map(file_name);
+        return Err(InputError::request(
+            folder,
+            format!("holds two sequences: {a} and {b} differ in more than numbers, and are no passes of one frame"),
+            "expected the frames of one sequence; keep one sequence in a folder",
+        ));
+    }
+    let header = ExrHeader::open_passes(&first, limits, names)?;
+    if passes[0].files.len() > 1 && !header.has(Vectors::ToPrevious) {
+        return Err(header.without_motion(folder));
+    }
+    let used = header.used_files();
+    Ok(passes.into_iter().enumerate().filter(|(i, _)| used.contains(i)).map(|(_, pass)| pass).collect())
 }
 
 impl FrameSource for SequenceSource {
@@ -108,11 +168,11 @@ impl FrameSource for SequenceSource {
         if let Some(still) = &mut self.still {
             return still.render(request);
         }
-        let (file, step) = playback(index, self.files.len() as u64);
-        let header = ExrHeader::open(&self.files[file], &self.limits)?;
+        let (file, step) = playback(index, self.frames.count() as u64);
+        let header = self.frames.header(file)?;
         if header.size() != self.info.size || header.has_depth() != self.has_depth {
             return Err(InputError::invalid(
-                self.files[file].display().to_string(),
+                header.subject(),
                 "has changed since the sequence was opened",
                 "leave the frames alone while they are read",
             ));
@@ -161,159 +221,13 @@ fn playback(index: u64, n: u64) -> (usize, Step) {
     (file as usize, step)
 }
 
-/// The `.exr` files of a folder, by name. Hidden files are skipped.
-fn exr_files(folder: &Path) -> Result<Vec<PathBuf>, InputError> {
-    let subject = folder.display().to_string();
-    let (mut files, mut pictures) = (Vec::new(), 0);
-    for entry in fs::read_dir(folder).map_err(|e| io_error(&subject, &e))? {
-        let path = entry.map_err(|e| io_error(&subject, &e))?.path();
-        let hidden = path.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
-        if !hidden && ending(&path) == "exr" && path.is_file() {
-            files.push(path);
-        } else if !hidden && ["png", "jpg", "jpeg"].contains(&ending(&path).as_str()) {
-            pictures += 1;
-        }
-    }
-    if files.is_empty() && pictures > 0 {
-        return Err(InputError::request(
-            subject,
-            format!("holds {pictures} pictures and no .exr file; a sequence needs motion vectors, which only EXR has"),
-            "render EXR frames with motion vectors, or give the path of one picture as a still",
-        ));
-    }
-    if files.is_empty() {
-        return Err(InputError::request(
-            subject,
-            "holds no .exr file",
-            "expected a folder of EXR frames, or the path of one image",
-        ));
-    }
-    files.sort();
-    Ok(files)
-}
-
-/// Which hyphens before a number are its sign.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Sign {
-    /// Those behind neither a letter nor a digit: `f_-001`, `-001`, `shot--001`. Others separate: `shot-001`.
-    Apart,
-    /// All: `f-001` beside `f0000`.
-    All,
-}
-
-/// A file's name without its ending: the text around its numbers, in lower case, and the numbers.
-fn parts_of(file: &Path, sign: Sign) -> (String, Vec<i64>) {
-    let stem = file.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
-    let (mut text, mut numbers, mut rest) = (String::new(), vec![], stem.as_str());
-    while let Some(first_digit) = rest.find(|c: char| c.is_ascii_digit()) {
-        let end = rest[first_digit..].find(|c: char| !c.is_ascii_digit()).map_or(rest.len(), |n| first_digit + n);
-        // Without text in between, the hyphen is behind the number before.
-        let is_apart = |before: &str| !before.chars().next_back().map_or(!text.is_empty(), char::is_alphanumeric);
-        let is_sign = |before: &str| sign == Sign::All || is_apart(before);
-        let before = rest[..first_digit].strip_suffix('-').filter(|before| is_sign(before));
-        let start = before.map_or(first_digit, str::len);
-        text.push_str(&rest[..start]);
-        match rest[start..end].parse() {
-            Ok(number) => {
-                text.push('#');
-                numbers.push(number);
-            }
-            // Longer than any frame number.
-            Err(_) => text.push_str(&rest[start..end]),
-        }
-        rest = &rest[end..];
-    }
-    text.push_str(rest);
-    (text, numbers)
-}
-
-/// Text and numbers of each file's name. If hyphens differ, they are signs, if that makes one sequence through frame 0.
-fn parts_of_all(files: &[PathBuf]) -> Vec<(String, Vec<i64>)> {
-    let all = |sign| files.iter().map(|file| parts_of(file, sign)).collect::<Vec<_>>();
-    let is_one = |parts: &[(String, Vec<i64>)]| parts.windows(2).all(|pair| pair[0].0 == pair[1].0);
-    let parts = all(Sign::Apart);
-    if is_one(&parts) {
-        return parts;
-    }
-    let signed = all(Sign::All);
-    let has_frame_0 = signed.iter().any(|(_, numbers)| numbers.contains(&0));
-    if is_one(&signed) && has_frame_0 { signed } else { parts }
-}
-
-/// Files in playback order, and their frame numbers: of the numbers in their names, the one that is another in every
-/// file. If several are, the last that has even steps, or else the last. Files without numbers are in order of their
-/// names.
-fn numbered_files(subject: &str, files: Vec<PathBuf>) -> Result<(Vec<PathBuf>, Vec<Option<i64>>), InputError> {
-    let parts = parts_of_all(&files);
-    if files.len() < 2 || parts.iter().all(|(_, numbers)| numbers.is_empty()) {
-        let numbers = vec![None; files.len()];
-        return Ok((files, numbers));
-    }
-    let file_name = |i: usize| files[i].file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let refuse = |problem: String| {
-        Err(InputError::request(subject, problem, "expected the frames of one sequence; keep one sequence in a folder"))
-    };
-    if let Some(other) = (1..files.len()).find(|&i| parts[i].0 != parts[0].0) {
-        let (a, b) = (file_name(0), file_name(other));
-        return refuse(format!("holds two sequences: {a} and {b} differ in more than numbers"));
-    }
-    let column = |place: usize| parts.iter().map(move |(_, numbers)| numbers[place]);
-    let sorted = |place: usize| {
-        let mut numbers: Vec<i64> = column(place).collect();
-        numbers.sort_unstable();
-        numbers
-    };
-    let places = 0..parts[0].1.len();
-    let varying: Vec<usize> = places.clone().filter(|&place| sorted(place).windows(2).all(|w| w[0] < w[1])).collect();
-    let is_even = |&&place: &&usize| {
-        let numbers = sorted(place);
-        numbers.windows(2).all(|w| w[1].abs_diff(w[0]) == numbers[1].abs_diff(numbers[0]))
-    };
-    let Some(&place) = varying.iter().rev().find(is_even).or(varying.last()) else {
-        let distinct = |&place: &usize| {
-            let mut numbers = sorted(place);
-            numbers.dedup();
-            numbers.len()
-        };
-        let place = places.max_by_key(distinct).unwrap_or(0);
-        let numbers: Vec<i64> = column(place).collect();
-        let pairs = (0..numbers.len()).flat_map(|i| (0..i).map(move |j| [j, i]));
-        let [a, b] = pairs.into_iter().find(|&[a, b]| numbers[a] == numbers[b]).unwrap_or([0, 1]);
-        let number = numbers[a];
-        return refuse(format!("has two frames of number {number}: {} and {}", file_name(a), file_name(b)));
-    };
-    let numbers: Vec<i64> = column(place).collect();
-    let mut order: Vec<usize> = (0..files.len()).collect();
-    order.sort_by_key(|&i| numbers[i]);
-    Ok((order.iter().map(|&i| files[i].clone()).collect(), order.iter().map(|&i| Some(numbers[i])).collect()))
-}
-
-/// Refuses a sequence with a missing frame, because the motion vectors of the frame after it refer to the missing one.
-fn check_gaps(subject: &str, numbers: &[Option<i64>]) -> Result<(), InputError> {
-    let Some(numbers) = numbers.iter().copied().collect::<Option<Vec<i64>>>() else {
-        return Ok(());
-    };
-    let steps: Vec<u64> = numbers.windows(2).map(|w| w[1].abs_diff(w[0])).collect();
-    let smallest = steps.iter().copied().min().unwrap_or(0);
-    match steps.iter().position(|&s| s != smallest) {
-        Some(at) => Err(InputError::invalid(
-            subject,
-            format!("its frame numbers jump from {} to {}", numbers[at], numbers[at + 1]),
-            format!(
-                "expected steps of {smallest}; add the missing frames, or put each unbroken run into a folder of its own"
-            ),
-        )),
-        None => Ok(()),
-    }
-}
-
 /// Checks every header against the first, and returns the first.
-fn check_headers(files: &[PathBuf], limits: &ReadLimits) -> Result<ExrHeader, InputError> {
-    let first = ExrHeader::open(&files[0], limits)?;
-    let first_name = files[0].display();
-    for file in files {
-        let header = ExrHeader::open(file, limits)?;
-        let subject = file.display().to_string();
+fn check_headers(frames: &Frames, input: &str) -> Result<ExrHeader, InputError> {
+    let first = frames.header(0)?;
+    let first_name = first.subject();
+    for frame in 0..frames.count() {
+        let header = frames.header(frame)?;
+        let subject = header.subject();
         if header.size() != first.size() {
             let ([w, h], [w0, h0]) = (header.size(), first.size());
             return Err(InputError::invalid(
@@ -340,15 +254,7 @@ fn check_headers(files: &[PathBuf], limits: &ReadLimits) -> Result<ExrHeader, In
             }
         }
     }
-    if first.has(Vectors::ToPrevious) {
-        Ok(first)
-    } else {
-        Err(InputError::invalid(
-            first_name.to_string(),
-            "has no motion vectors, which reprojection of a sequence needs",
-            "expected <layer>.Vector.X/Y (Blender: enable the Vector pass) or motion.X/Y; or give one frame as a still",
-        ))
-    }
+    if first.has(Vectors::ToPrevious) { Ok(first) } else { Err(first.without_motion(input)) }
 }
 
 #[cfg(test)]
@@ -362,69 +268,5 @@ mod tests {
         assert_eq!(order(4, 9), [(0, First), (1, F), (2, F), (3, F), (2, B), (1, B), (0, B), (1, F), (2, F)]);
         assert_eq!(order(2, 4), [(0, First), (1, F), (0, B), (1, F)]);
         assert_eq!(playback(u64::MAX, 2).0, 1);
-    }
-
-    /// Frame numbers of files in playback order, or the error.
-    fn numbered(names: &[&str]) -> Result<Vec<(String, Option<i64>)>, String> {
-        let files = names.iter().map(PathBuf::from).collect();
-        let (files, numbers) = numbered_files("d", files).map_err(|e| e.to_string())?;
-        Ok(files.iter().map(|file| file.display().to_string()).zip(numbers).collect())
-    }
-
-    #[test]
-    fn the_number_that_varies_counts() {
-        let numbers = |names: &[&str]| numbered(names).unwrap().into_iter().map(|(_, n)| n).collect::<Vec<_>>();
-        assert_eq!(numbers(&["t2_0041.exr", "t2_0043.exr", "t2_0042.exr"]), [Some(41), Some(42), Some(43)]);
-        assert_eq!(numbers(&["f0008_v2.exr", "f0010_v2.exr", "f0009_v2.exr"]), [Some(8), Some(9), Some(10)]);
-        // A time stamp beside the number, in the same order.
-        assert_eq!(numbers(&["1700000100_1.exr", "1700000233_2.exr", "1700000310_3.exr"]), [Some(1), Some(2), Some(3)]);
-        assert_eq!(numbers(&["1_1700000100.exr", "2_1700000233.exr", "3_1700000310.exr"]), [Some(1), Some(2), Some(3)]);
-        assert_eq!(numbers(&["9.exr", "10.exr", "11.exr"]), [Some(9), Some(10), Some(11)]);
-        assert_eq!(numbers(&["\u{fc}n\u{ef}12.exr", "\u{fc}n\u{ef}13.EXR"]), [Some(12), Some(13)]);
-        assert_eq!(numbers(&["b.exr", "a.exr"]), [None, None]);
-        assert_eq!(numbers(&["beauty.exr"]), [None]);
-    }
-
-    #[test]
-    fn frames_before_zero_come_first() {
-        for names in [
-            ["f_-0002.exr", "f_-0001.exr", "f_0000.exr", "f_0001.exr"],
-            ["-0002.exr", "-0001.exr", "0000.exr", "0001.exr"],
-            ["f.-2.exr", "f.-1.exr", "f.0.exr", "f.1.exr"],
-            ["render-002.exr", "render-001.exr", "render0000.exr", "render0001.exr"],
-            ["shot--002.exr", "shot--001.exr", "shot-000.exr", "shot-001.exr"],
-        ] {
-            let in_order = |order: [usize; 4]| numbered(&order.map(|i| names[i]));
-            let expected: Vec<_> = names.iter().map(|name| (*name).to_owned()).zip([-2, -1, 0, 1].map(Some)).collect();
-            assert_eq!(in_order([3, 1, 2, 0]).unwrap(), expected);
-        }
-        assert_eq!(numbered(&["f_-3.exr", "f_-2.exr", "f_-1.exr"]).unwrap()[0].1, Some(-3));
-        // A hyphen behind a word separates.
-        assert_eq!(numbered(&["shot-001.exr", "shot-002.exr"]).unwrap()[0].1, Some(1));
-        assert_eq!(numbered(&["2024-01-05_1.exr", "2024-01-05_2.exr"]).unwrap()[1].1, Some(2));
-    }
-
-    #[test]
-    fn two_sequences_in_a_folder_are_refused_by_name() {
-        for (names, expected) in [
-            (["a_1.exr", "b_1.exr"], "a_1.exr and b_1.exr"),
-            (["frame_1.L.exr", "frame_1.R.exr"], "frame_1.l.exr"),
-            (["f1.exr", "f01.exr"], "number 1: f1.exr and f01.exr"),
-            (["f-1.exr", "f1.exr"], "f-1.exr and f1.exr"),
-        ] {
-            let error = numbered(&names).unwrap_err();
-            assert!(error.to_lowercase().contains(expected), "{names:?}: {error}");
-        }
-        let error = numbered(&["shot1_1.exr", "shot1_2.exr", "shot2_1.exr", "shot2_2.exr"]).unwrap_err();
-        assert!(error.contains("two frames of number"), "{error}");
-    }
-
-    #[test]
-    fn a_missing_frame_is_noticed() {
-        let gap = |v: &[i64]| check_gaps("d", &v.iter().map(|&n| Some(n)).collect::<Vec<_>>());
-        assert!(gap(&[3, 4, 5]).is_ok());
-        assert!(gap(&[0, 10, 20]).is_ok());
-        let e = gap(&[1, 2, 4]).unwrap_err().to_string();
-        assert!(e.contains("from 2 to 4"), "{e}");
     }
 }

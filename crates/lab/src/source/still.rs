@@ -1,6 +1,6 @@
 //! Still images: a source with a single frame.
 
-use super::exr_file::{ExrFrame, ExrHeader, Vectors, guarded};
+use super::exr_file::{ChannelNames, ExrFrame, ExrHeader, PassFile, Vectors, guarded};
 use super::limits::{ReadLimits, SMALLER};
 use super::{FrameRequest, FrameSource, SourceInfo};
 use crate::error::{InputError, io_error, one_line};
@@ -28,23 +28,35 @@ pub struct StillSource {
 }
 
 impl StillSource {
+    /// Opens and decodes `path`, whose channels are recognised by their names: [`open_named`](Self::open_named).
+    ///
+    /// # Errors
+    /// As of [`open_named`](Self::open_named).
+    pub fn open(path: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
+        Self::open_named(path, limits, &ChannelNames::default())
+    }
+
     /// Opens and decodes `path`, by its ending: `.png`, `.jpg`, `.jpeg` (8 or 16 bit) or `.exr`; with another
     /// ending, by its first bytes.
     ///
     /// # Errors
     /// - [`Io`](InputError::Io): the file is missing or cannot be read.
-    /// - [`Invalid`](InputError::Invalid): it is damaged, or an EXR without color; or its `cameras.json` is.
+    /// - [`Invalid`](InputError::Invalid): it is damaged, or an EXR without color or a channel of `names`;
+    ///   or its `cameras.json` is.
     /// - [`NotSupported`](InputError::NotSupported): another extension, or a feature of the format that is not
     ///   implemented.
     /// - [`Limit`](InputError::Limit): it is larger than `limits` allows.
     /// - [`Request`](InputError::Request): it is a folder.
-    pub fn open(path: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
+    pub fn open_named(path: &Path, limits: &ReadLimits, names: &ChannelNames) -> Result<Self, InputError> {
         let subject = path.display().to_string();
         if path.is_dir() {
             return Err(InputError::request(subject, "is a folder", "expected an image file"));
         }
         match kind(path).as_str() {
-            "exr" => Self::open_exr(path, subject, limits),
+            "exr" => {
+                let header = ExrHeader::open_passes(&[PassFile { pass: "", path }], limits, names)?;
+                Self::from_header(&header, path.parent().unwrap_or(Path::new(".")))
+            }
             "png" | "jpg" | "jpeg" => {
                 let (color, warnings) = guarded(&subject, || decode_8_or_16_bit(path, &subject, limits))?;
                 let frame = SourceFrame { color, ..SourceFrame::without_images(None, false) };
@@ -58,9 +70,9 @@ impl StillSource {
         }
     }
 
-    fn open_exr(path: &Path, name: String, limits: &ReadLimits) -> Result<Self, InputError> {
-        let header = ExrHeader::open(path, limits)?;
-        let folder = path.parent().unwrap_or(Path::new("."));
+    /// Decodes a frame in `folder`.
+    pub(super) fn from_header(header: &ExrHeader, folder: &Path) -> Result<Self, InputError> {
+        let name = header.subject().to_owned();
         let cameras = Cameras::beside(folder)?;
         if let Some(c) = &cameras {
             c.check_size(header.size())?;

@@ -1,5 +1,6 @@
 //! Options of the input that `run`, `sweep` and `view` share, and opening it.
 
+use crate::args::channels::ChannelArgs;
 use crate::args::paths::PathArgs;
 use crate::args::{parse_fps, parse_hfov, parse_samples, parse_size};
 use crate::failure::{Failure, warn};
@@ -51,6 +52,8 @@ pub struct InputArgs {
     /// Limit on the size of input images, million pixels
     #[arg(long, default_value_t = 64, value_name = "N")]
     pub max_megapixels: u32,
+    #[command(flatten)]
+    pub channels: ChannelArgs,
 }
 
 /// Values of `--source`.
@@ -105,6 +108,9 @@ impl InputArgs {
                 self.name
             )))
         };
+        if self.is_scene() || self.is_analytic() {
+            self.channels.refuse_for(&self.name)?;
+        }
         match (source::is_scene(&self.name), self.source, &self.camera) {
             (true, Some(SourceName::Trace), _) => self.traced(rendering),
             (true, ..) => self.rasterised(rendering),
@@ -117,7 +123,7 @@ impl InputArgs {
 
     /// Opens an input that needs no renderer.
     pub fn read(&self) -> Result<Box<dyn FrameSource + Send>, Failure> {
-        let source = source::open(&self.name, &self.limits(), &self.scene_options())?;
+        let source = source::open_named(&self.name, &self.limits(), &self.scene_options(), &self.channels.names())?;
         warn(source.warnings());
         Ok(source)
     }

@@ -1,6 +1,7 @@
 //! Options that several subcommands share, and parsers of their values.
 
 pub mod backend;
+pub mod channels;
 mod foveation;
 pub mod gaze;
 pub mod gaze_log;

@@ -1,7 +1,8 @@
 //! Decodes the chunks of a checked EXR file into a frame.
 
-use super::channels::{ChannelId, VectorForm};
-use super::header::{ExrHeader, Vectors, Window, chunk_header_bytes, full_resolution_chunks};
+use super::channels::ChannelId;
+use super::header::{ExrFile, ExrHeader, Vectors, Window, chunk_header_bytes, full_resolution_chunks};
+use super::reading::DepthReading;
 use super::{exr_error, guarded};
 use crate::error::{InputError, io_error};
 use afterimage::{FrameError, Image};
@@ -45,13 +46,24 @@ impl ExrHeader {
 
     fn read_unguarded(&self, vectors: Vectors) -> Result<ExrFrame, InputError> {
         let mut planes = Planes::new(self, vectors)?;
-        let mut file = File::open(&self.path).map_err(|e| io_error(&self.subject, &e))?;
-        for part in planes.parts() {
-            self.read_part(&mut file, part, &mut planes)?;
+        let parts = planes.parts();
+        for file in &self.files {
+            let own = |part: &&usize| (file.first_part..file.first_part + file.meta.headers.len()).contains(part);
+            let mut own = parts.iter().filter(own).peekable();
+            if own.peek().is_none() {
+                continue;
+            }
+            let mut open = File::open(&file.path).map_err(|e| io_error(&file.subject, &e))?;
+            for part in own {
+                file.read_part(&mut open, part - file.first_part, &mut planes)?;
+            }
         }
         planes.finish(self).map_err(|e| InputError::invalid(&self.subject, e.to_string(), "export it again"))
     }
+}
 
+impl ExrFile {
+    /// Reads a part, by its number in this file.
     fn read_part(&self, file: &mut File, part: usize, planes: &mut Planes) -> Result<(), InputError> {
         let header = &self.meta.headers[part];
         let (columns, rows) = full_resolution_chunks(header);
@@ -70,7 +82,7 @@ impl ExrHeader {
                 .collect::<Result<Vec<_>, _>>()
                 .map_err(|e| exr_error(&self.subject, e))?;
             for block in &blocks {
-                planes.scatter(part, block, &header.channels, self.window.stored_px[0] as usize);
+                planes.scatter(self.first_part + part, block, &header.channels, header.layer_size.0);
             }
         }
         Ok(())
@@ -162,12 +174,12 @@ fn dwa_counters_are_sane(header: &Header, tile: Vec2<usize>, data: &[u8]) -> boo
     counters.all(|b| u64::from_le_bytes(b.try_into().unwrap_or_default()) <= most)
 }
 
-/// Destination of a channel's samples: an image, a component, and for motion a sign.
+/// Destination of a channel's samples: an image, a component, and for motion a factor and an offset.
 #[derive(Clone, Copy)]
 enum Slot {
     Color(usize),
     Depth,
-    Motion(usize, f32),
+    Motion(usize, (f32, f32)),
 }
 
 /// Images of a frame under construction.
@@ -182,21 +194,14 @@ impl Planes {
     fn new(header: &ExrHeader, vectors: Vectors) -> Result<Self, InputError> {
         let roles = &header.roles;
         let mut slots: Vec<_> = (0..3).map(|i| (roles.color[i], Slot::Color(i))).collect();
-        slots.extend(roles.depth.map(|id| (id, Slot::Depth)));
+        slots.extend(roles.depth.map(|(id, _)| (id, Slot::Depth)));
         if vectors != Vectors::Skip {
             let missing = || missing_vectors(header, vectors);
             let motion = roles.motion.ok_or_else(missing)?;
-            let (ids, signs) = match (vectors, motion.form) {
-                (Vectors::ToNext, form) => {
-                    let ids = motion.to_next.ok_or_else(missing)?;
-                    // Blender stores current minus next with y up: next minus current with y down negates x alone.
-                    let signs = if form == VectorForm::Blender { [-1.0, 1.0] } else { [1.0, 1.0] };
-                    (ids, signs)
-                }
-                (_, VectorForm::Blender) => (motion.to_previous, [1.0, -1.0]),
-                (_, VectorForm::Plain) => (motion.to_previous, [1.0, 1.0]),
-            };
-            slots.extend((0..2).map(|i| (ids[i], Slot::Motion(i, signs[i]))));
+            let read = if vectors == Vectors::ToNext { motion.to_next } else { Some(motion.to_previous) };
+            let read = read.ok_or_else(missing)?;
+            let to_px = read.reading.to_px(header.size);
+            slots.extend((0..2).map(|i| (read.channels[i], Slot::Motion(i, to_px[i]))));
         }
         let pixels = header.window.stored_px.iter().map(|&side| side as usize).product();
         Ok(Self {
@@ -240,17 +245,17 @@ impl Planes {
         match slot {
             Slot::Color(i) => {
                 let out = self.color[pixels].iter_mut().map(|p| &mut p[i]);
-                convert(samples, kind, 1.0, out);
+                convert(samples, kind, (1.0, 0.0), out);
             }
             Slot::Depth => {
                 if let Some(depth) = &mut self.depth {
-                    convert(samples, kind, 1.0, depth[pixels].iter_mut());
+                    convert(samples, kind, (1.0, 0.0), depth[pixels].iter_mut());
                 }
             }
-            Slot::Motion(i, sign) => {
+            Slot::Motion(i, to_px) => {
                 if let Some(motion) = &mut self.motion {
                     let out = motion[pixels].iter_mut().map(|m| &mut m[i]);
-                    convert(samples, kind, sign, out);
+                    convert(samples, kind, to_px, out);
                 }
             }
         }
@@ -266,10 +271,9 @@ impl Planes {
         }
         let nonfinite = blacken_nonfinite(&mut self.color);
         header.color_space.convert(&mut self.color);
+        let reading = header.roles.depth.map_or_else(DepthReading::default, |(_, reading)| reading);
         for d in self.depth.iter_mut().flatten() {
-            if d.is_nan() || *d <= 0.0 {
-                *d = f32::NAN;
-            }
+            *d = reading.distance(*d);
         }
         Ok(ExrFrame {
             color: Image::from_pixels(size, self.color)?,
@@ -298,22 +302,23 @@ fn blacken_nonfinite(color: &mut [[f32; 3]]) -> u64 {
     count
 }
 
-fn convert<'a>(samples: &[u8], kind: SampleType, sign: f32, out: impl Iterator<Item = &'a mut f32>) {
+/// Samples by a factor, plus an offset.
+fn convert<'a>(samples: &[u8], kind: SampleType, (factor, offset): (f32, f32), out: impl Iterator<Item = &'a mut f32>) {
     let quad = |b: &[u8]| <[u8; 4]>::try_from(b).unwrap_or_default();
     match kind {
         SampleType::F16 => {
             for (b, o) in samples.chunks_exact(2).zip(out) {
-                *o = sign * f16::from_ne_bytes([b[0], b[1]]).to_f32();
+                *o = offset + factor * f16::from_ne_bytes([b[0], b[1]]).to_f32();
             }
         }
         SampleType::F32 => {
             for (b, o) in samples.chunks_exact(4).zip(out) {
-                *o = sign * f32::from_ne_bytes(quad(b));
+                *o = offset + factor * f32::from_ne_bytes(quad(b));
             }
         }
         SampleType::U32 => {
             for (b, o) in samples.chunks_exact(4).zip(out) {
-                *o = sign * u32::from_ne_bytes(quad(b)) as f32;
+                *o = offset + factor * u32::from_ne_bytes(quad(b)) as f32;
             }
         }
     }
@@ -323,7 +328,7 @@ fn missing_vectors(header: &ExrHeader, vectors: Vectors) -> InputError {
     let (which, needed) = match vectors {
         Vectors::ToNext => (
             "to the next frame, which playing backwards needs",
-            "<layer>.Vector.Z/W or motion.Z/W; add them, or ask for no more frames than there are",
+            "<layer>.Vector.Z/W, motion.Z/W or forward.u/v; add them, or ask for no more frames than there are",
         ),
         _ => ("to the previous frame", "<layer>.Vector.X/Y or motion.X/Y; add them, or process one frame as a still"),
     };

@@ -1,7 +1,8 @@
 //! The header of an EXR file, and the checks that need no pixel: size, channels, and completeness of the file.
 
-use super::channels::{ChannelName, Roles};
+use super::channels::{ChannelName, ChannelNames, NoRoles, Roles, below};
 use super::color_space::ColorSpace;
+use super::reading::{DepthReading, MotionReading};
 use super::{exr_error, guarded};
 use crate::error::{InputError, io_error};
 use crate::source::limits::{BLOCK_BYTES_PER_PIXEL, ReadLimits};
@@ -23,25 +24,44 @@ pub enum Vectors {
     ToNext,
 }
 
-/// A checked EXR header: the frame can be decoded unless its compressed data is damaged.
+/// The checked headers of a frame's EXR files: the frame can be decoded unless its compressed data is damaged. Passes
+/// in files of their own are one frame.
 #[derive(Debug)]
 pub struct ExrHeader {
-    pub(super) path: PathBuf,
     pub(super) subject: String,
     pub(super) size: [u32; 2],
     /// Where the frame lies in what is stored.
     pub(super) window: Window,
-    pub(super) meta: MetaData,
+    pub(super) files: Vec<ExrFile>,
     pub(super) roles: Roles,
     pub(super) color_space: ColorSpace,
-    /// File offsets of the full-resolution chunks of each part, row by row.
-    pub(super) chunk_offsets: Vec<Vec<u64>>,
-    /// y coordinate of each part's first scan line in the file.
-    pub(super) first_lines: Vec<i32>,
-    pub(super) file_bytes: u64,
     channel_names: Vec<String>,
     warnings: Vec<String>,
     contents: Vec<String>,
+}
+
+/// One file of a frame.
+#[derive(Debug)]
+pub(super) struct ExrFile {
+    pub path: PathBuf,
+    pub subject: String,
+    pub meta: MetaData,
+    /// Number of the file's first part among those of all files.
+    pub first_part: usize,
+    /// File offsets of the full-resolution chunks of each part, row by row; empty for a file of which nothing is read.
+    pub chunk_offsets: Vec<Vec<u64>>,
+    /// y coordinate of each part's first scan line in the file.
+    pub first_lines: Vec<i32>,
+    pub file_bytes: u64,
+}
+
+/// A file of a frame: the name of its pass, which stands in front of its channels' names, and its path.
+#[derive(Clone, Copy, Debug)]
+pub struct PassFile<'a> {
+    /// Name of the pass; empty where one file has the whole frame.
+    pub pass: &'a str,
+    /// Path.
+    pub path: &'a Path,
 }
 
 /// The stored pixels (data window) beside those of the frame (display window).
@@ -54,68 +74,78 @@ pub(super) struct Window {
 }
 
 impl ExrHeader {
-    /// Reads and checks the header of `path`. Memory is proportional to the header's actual bytes, regardless of the
-    /// sizes that it claims.
+    /// Reads and checks the header of `path`, whose channels are recognised by their names: [`open_passes`] of one
+    /// file.
     ///
     /// # Errors
-    /// - [`Io`](InputError::Io): the file is missing or cannot be read.
-    /// - [`Invalid`](InputError::Invalid): it is not EXR, truncated, or without color.
-    /// - [`NotSupported`](InputError::NotSupported): it is subsampled, deep, has parts of different sizes, or nothing
-    ///   of its display window.
-    /// - [`Limit`](InputError::Limit): the image, or one block of it, is larger than `limits` allows.
+    /// As of [`open_passes`].
+    ///
+    /// [`open_passes`]: Self::open_passes
     pub fn open(path: &Path, limits: &ReadLimits) -> Result<Self, InputError> {
-        let subject = path.display().to_string();
-        guarded(&subject, || Self::open_unguarded(path, &subject, limits))
+        Self::open_passes(&[PassFile { pass: "", path }], limits, &ChannelNames::default())
     }
 
-    fn open_unguarded(path: &Path, subject: &str, limits: &ReadLimits) -> Result<Self, InputError> {
-        let io = |e: std::io::Error| io_error(subject, &e);
-        let file = File::open(path).map_err(io)?;
-        let file_bytes = file.metadata().map_err(io)?.len();
-        if file_bytes == 0 {
-            return Err(InputError::invalid(subject, "is empty", "copy or export it again"));
-        }
-        let mut reader = Counting::new(BufReader::new(file));
-        let invalid = |e| exr_error(subject, e);
-        let read = MetaData::read_from_buffered(&mut reader, false);
-        let mut meta = read.map_err(|e| unknown_compression(subject, path).unwrap_or_else(|| invalid(e)))?;
-        let header_end = reader.position;
+    /// Reads and checks the headers of a frame's files. Memory is proportional to the headers' actual bytes, regardless
+    /// of the sizes that they claim.
+    ///
+    /// # Errors
+    /// - [`Io`](InputError::Io): a file is missing or cannot be read.
+    /// - [`Invalid`](InputError::Invalid): one is not EXR, or truncated; there is no color, or no channel that `names`
+    ///   names.
+    /// - [`NotSupported`](InputError::NotSupported): one is subsampled, deep, has parts of different sizes, or nothing
+    ///   of its display window.
+    /// - [`Limit`](InputError::Limit): the image, or one block of it, is larger than `limits` allows.
+    pub fn open_passes(passes: &[PassFile], limits: &ReadLimits, names: &ChannelNames) -> Result<Self, InputError> {
+        let subject = passes.first().map_or(String::new(), |pass| pass.path.display().to_string());
+        guarded(&subject, || Self::open_unguarded(passes, &subject, limits, names))
+    }
 
-        let names = channel_names(&meta);
-        let full_names: Vec<String> = names.iter().map(|n| n.full_name.clone()).collect();
-        let roles = Roles::find(&names).ok_or_else(|| missing_color(subject, &full_names))?;
-        let (size, window) = checked_size(subject, &meta, &roles, limits)?;
+    fn open_unguarded(
+        passes: &[PassFile],
+        subject: &str,
+        limits: &ReadLimits,
+        names: &ChannelNames,
+    ) -> Result<Self, InputError> {
+        let (mut opened, mut channels, mut first_part) = (vec![], vec![], 0);
+        for pass in passes {
+            let file = OpenedFile::open(pass.path, first_part)?;
+            channels.extend(channel_names(&file.file.meta, pass.pass, first_part));
+            first_part += file.file.meta.headers.len();
+            opened.push(file);
+        }
+        let full_names: Vec<String> = channels.iter().map(|n| n.full_name.clone()).collect();
+        let roles = Roles::find(&channels, names).map_err(|missing| match missing {
+            NoRoles::Color => missing_color(subject, &full_names),
+            NoRoles::Named { role, name } => missing_channel(subject, role, &name, &full_names),
+        })?;
+        let headers: Vec<(&str, &Header)> = opened.iter().flat_map(|f| f.file.headers()).collect();
+        let (size, window) = checked_size(subject, &headers, &roles, limits)?;
         let color_space = match roles.color {
             // Grey has no primaries.
             [r, g, b] if r == g && g == b => ColorSpace::default(),
-            [(part, _), ..] => ColorSpace::of(&meta.headers[part]),
+            [(part, _), ..] => ColorSpace::of(headers[part].1),
         };
-        let further = [window.warning(size), color_space.warning.clone(), pixel_aspect_warning(&meta)];
+        let aspect = pixel_aspect_warning(headers[roles.color[0].0].1);
+        let further = [window.warning(size), color_space.warning.clone(), aspect];
         let warnings = roles.warnings.iter().cloned().chain(further.into_iter().flatten()).collect();
-        let contents = contents(&names, &roles);
-        MetaData::validate(&meta.headers, false).map_err(invalid)?;
-        let tables = read_tables(&mut reader, subject, &meta, header_end, file_bytes)?;
-        let windows = meta.headers.iter();
-        let first_lines = windows.map(|h| h.own_attributes.layer_position.1).collect();
-        for header in &mut meta.headers {
-            // Block coordinates are then relative to the corner of the data window.
-            header.own_attributes.layer_position = Vec2(0, 0);
-        }
+        let used = used_parts(&roles);
+        let files = opened.into_iter().map(|file| file.checked(&used)).collect::<Result<_, _>>()?;
         Ok(Self {
-            path: path.to_owned(),
             subject: subject.to_owned(),
             size,
             window,
+            files,
+            contents: contents(&channels, &roles),
             warnings,
-            contents,
-            chunk_offsets: tables,
-            first_lines,
-            meta,
             roles,
             color_space,
-            file_bytes,
             channel_names: full_names,
         })
+    }
+
+    /// Path of the frame's first file, for messages.
+    pub(crate) fn subject(&self) -> &str {
+        &self.subject
     }
 
     /// Width and height in pixels.
@@ -140,7 +170,8 @@ impl ExrHeader {
 
     /// Frames per second, if a part states them (`framesPerSecond`).
     pub fn fps(&self) -> Option<f32> {
-        let stated = self.meta.headers.iter().find_map(|header| header.own_attributes.frames_per_second)?;
+        let mut headers = self.files.iter().flat_map(|file| &file.meta.headers);
+        let stated = headers.find_map(|header| header.own_attributes.frames_per_second)?;
         let fps = (f64::from(stated.0) / f64::from(stated.1)) as f32;
         (0.1..=10_000.0).contains(&fps).then_some(fps)
     }
@@ -148,6 +179,48 @@ impl ExrHeader {
     /// Whether there is a depth channel.
     pub fn has_depth(&self) -> bool {
         self.roles.depth.is_some()
+    }
+
+    /// The files from which channels are read, by their place among the given ones.
+    pub(crate) fn used_files(&self) -> Vec<usize> {
+        (0..self.files.len()).filter(|&file| !self.files[file].chunk_offsets.is_empty()).collect()
+    }
+
+    /// How motion vectors are stored, if there are any.
+    pub fn motion_reading(&self) -> Option<MotionReading> {
+        self.roles.motion.map(|motion| motion.to_previous.reading)
+    }
+
+    /// How depth is stored, if there is any.
+    pub fn depth_reading(&self) -> Option<DepthReading> {
+        self.roles.depth.map(|(_, reading)| reading)
+    }
+
+    /// The error of a sequence without motion vectors, which says what the file has and how to read it. `input` is what
+    /// the user gave.
+    pub(crate) fn without_motion(&self, input: &str) -> InputError {
+        if let Some(unknown) = &self.roles.unknown_motion {
+            let layer = crate::error::one_line(&unknown.layer);
+            let quoted = if layer.contains(' ') { format!("'{layer}'") } else { layer.clone() };
+            let convention = unknown.preset.unwrap_or("UNIT,DIRECTION,YAXIS");
+            return InputError::invalid(
+                &self.subject,
+                format!("its channels {layer} may be motion vectors, of a convention that their name does not tell"),
+                format!(
+                    "find it with `info` {input} `motion`={quoted}, and name it: `motion`={quoted} \
+                     `motion_convention`={convention}"
+                ),
+            );
+        }
+        InputError::invalid(
+            &self.subject,
+            format!(
+                "has no motion vectors, which reprojection of a sequence needs; it has {}",
+                listed(&self.channel_names)
+            ),
+            "expected <layer>.Vector.X/Y (Blender: enable the Vector pass), motion.X/Y or another renderer's \
+             (docs/renderers.md); name them with `motion`, or give one frame as a still",
+        )
     }
 
     /// Whether the file has these vectors.
@@ -161,16 +234,70 @@ impl ExrHeader {
     }
 }
 
-fn channel_names(meta: &MetaData) -> Vec<ChannelName> {
+impl ExrFile {
+    /// The parts, with the file's name for messages.
+    fn headers(&self) -> impl Iterator<Item = (&str, &Header)> {
+        self.meta.headers.iter().map(|header| (self.subject.as_str(), header))
+    }
+}
+
+/// A file whose header is read and not yet checked.
+struct OpenedFile {
+    file: ExrFile,
+    reader: Counting<BufReader<File>>,
+    header_end: u64,
+}
+
+impl OpenedFile {
+    fn open(path: &Path, first_part: usize) -> Result<Self, InputError> {
+        let subject = path.display().to_string();
+        let io = |e: std::io::Error| io_error(&subject, &e);
+        let file = File::open(path).map_err(io)?;
+        let file_bytes = file.metadata().map_err(io)?.len();
+        if file_bytes == 0 {
+            return Err(InputError::invalid(subject, "is empty", "copy or export it again"));
+        }
+        let mut reader = Counting::new(BufReader::new(file));
+        let read = MetaData::read_from_buffered(&mut reader, false);
+        let meta = read.map_err(|e| unknown_compression(&subject, path).unwrap_or_else(|| exr_error(&subject, e)))?;
+        let header_end = reader.position;
+        let (chunk_offsets, first_lines) = (vec![], vec![]);
+        let path = path.to_owned();
+        let file = ExrFile { path, subject, meta, first_part, chunk_offsets, first_lines, file_bytes };
+        Ok(Self { file, reader, header_end })
+    }
+
+    /// The file with its tables, if some of the parts `used` are its.
+    fn checked(mut self, used: &[usize]) -> Result<ExrFile, InputError> {
+        let ExrFile { subject, meta, first_part, file_bytes, .. } = &self.file;
+        if !used.iter().any(|part| (*first_part..first_part + meta.headers.len()).contains(part)) {
+            return Ok(self.file);
+        }
+        MetaData::validate(&meta.headers, false).map_err(|e| exr_error(subject, e))?;
+        let tables = read_tables(&mut self.reader, subject, meta, self.header_end, *file_bytes)?;
+        let mut file = self.file;
+        file.chunk_offsets = tables;
+        file.first_lines = file.meta.headers.iter().map(|h| h.own_attributes.layer_position.1).collect();
+        for header in &mut file.meta.headers {
+            // Block coordinates are then relative to the corner of the data window.
+            header.own_attributes.layer_position = Vec2(0, 0);
+        }
+        Ok(file)
+    }
+}
+
+/// Names of a file's channels, below the name of its pass.
+fn channel_names(meta: &MetaData, pass: &str, first_part: usize) -> Vec<ChannelName> {
     let mut names = Vec::new();
     for (part, header) in meta.headers.iter().enumerate() {
         // The name of a single part carries no meaning: some writers put the file's name there.
         let several = meta.headers.len() > 1;
         let part_name = header.own_attributes.layer_name.as_ref();
-        let part_name = part_name.filter(|_| several).map(|n| n.to_string());
+        let part_name = part_name.filter(|_| several).map_or(String::new(), |n| n.to_string());
+        let part_name = if part_name.is_empty() { pass.to_owned() } else { below(pass, &part_name) };
         for (index, channel) in header.channels.list.iter().enumerate() {
             let name = channel.name.to_string();
-            names.push(ChannelName::new(part, part_name.as_deref(), index, &name));
+            names.push(ChannelName::new(first_part + part, Some(&part_name), index, &name));
         }
     }
     names
@@ -194,9 +321,9 @@ fn unknown_compression(subject: &str, path: &Path) -> Option<InputError> {
 }
 
 /// What to say of pixels that are not square: motion and angles are computed as if they were.
-fn pixel_aspect_warning(meta: &MetaData) -> Option<String> {
+fn pixel_aspect_warning(header: &Header) -> Option<String> {
     const SQUARE: f32 = 0.005;
-    let aspect = meta.headers.first()?.shared_attributes.pixel_aspect;
+    let aspect = header.shared_attributes.pixel_aspect;
     ((aspect - 1.0).abs() > SQUARE).then(|| {
         format!(
             "its pixels are {aspect} times as wide as high (pixelAspectRatio), and are taken for square; scale the frames \
@@ -205,29 +332,46 @@ fn pixel_aspect_warning(meta: &MetaData) -> Option<String> {
     })
 }
 
-fn missing_color(subject: &str, names: &[String]) -> InputError {
+/// The channels of a frame, for messages.
+fn listed(names: &[String]) -> String {
     const LISTED: usize = 40;
     let mut list = names.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
     if names.len() > LISTED {
         list += &format!(" and {} more", names.len() - LISTED);
     }
+    crate::error::one_line(&list)
+}
+
+fn missing_color(subject: &str, names: &[String]) -> InputError {
     InputError::invalid(
         subject,
-        format!("has no color channels; it has {}", crate::error::one_line(&list)),
-        "expected <layer>.Combined.R/G/B, R/G/B, <layer>.R/G/B or Y",
+        format!("has no color channels; it has {}", listed(names)),
+        "expected <layer>.Combined.R/G/B, R/G/B, <layer>.R/G/B or Y; name another layer or channel with `color`",
     )
 }
 
-/// Checks every part in use, and returns the frame's size, and where it lies in what all of them store.
+fn missing_channel(subject: &str, role: &str, name: &str, names: &[String]) -> InputError {
+    let name = crate::error::one_line(name);
+    let expected = match role {
+        "motion" => "a layer with X/Y, U/V or R/G, or two channels as a.x,a.y",
+        "color" => "a layer with R/G/B, or one channel",
+        _ => "a channel or a layer",
+    };
+    let problem = format!("has no {name} for the {role}; it has {}", listed(names));
+    InputError::invalid(subject, problem, format!("expected {expected} for `{role}`"))
+}
+
+/// Checks every part in use, and returns the frame's size, and where it lies in what all of them store. `headers` are
+/// the parts of all files, with their files' names.
 fn checked_size(
     subject: &str,
-    meta: &MetaData,
+    headers: &[(&str, &Header)],
     roles: &Roles,
     limits: &ReadLimits,
 ) -> Result<([u32; 2], Window), InputError> {
     let mut found = None;
     for part in used_parts(roles) {
-        let header = &meta.headers[part];
+        let (subject, header) = headers[part];
         let Vec2(w, h) = header.layer_size;
         let stored_px = limits.check(subject, w as u64, h as u64)?;
         let this = frame_window(subject, header, stored_px, limits)?;
@@ -245,8 +389,7 @@ fn checked_size(
 
 /// Parts with an assigned channel, in file order.
 pub(super) fn used_parts(roles: &Roles) -> Vec<usize> {
-    let mut parts: Vec<usize> = roles.color.iter().chain(&roles.depth).map(|c| c.0).collect();
-    parts.extend(roles.motion.iter().map(|m| m.to_previous[0].0));
+    let mut parts: Vec<usize> = roles.channels().into_iter().map(|id| id.0).collect();
     parts.sort_unstable();
     parts.dedup();
     parts

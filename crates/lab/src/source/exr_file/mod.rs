@@ -7,30 +7,36 @@
 //! nor motion. Subsampled channels and deep data are not supported either.
 //!
 //! # Channel names
-//! Names are looked up over all parts; a part's name counts as a prefix of its channel names. Case is ignored.
+//! Names are looked up over all parts of a frame's files; the name of a part or of a pass counts as a prefix of its
+//! channel names. Case is ignored. [`ChannelNames`] names others; `docs/renderers.md` has the layouts of renderers.
 //!
 //! | meaning | channels, first match wins |
 //! |---|---|
 //! | color, linear | `<layer>.Combined.R/G/B` (Blender); `R`, `G`, `B`; `<layer>.R/G/B`, fewest name parts first; grey `Y` |
-//! | depth, distance along the view axis | `<layer>.Depth.Z` or `.V`; `Z`; `depth` |
+//! | depth, distance along the view axis | `<layer>.Depth.Z` or `.V`; Unreal's; `Z`; `depth` |
 //! | motion, Blender's | `<layer>.Vector.X/Y/Z/W`: with y **up**, X/Y are previous minus current, Z/W are current minus next |
 //! | motion, plain | `motion.X/Y/Z/W`: with y **down**, X/Y are previous minus current, Z/W are **next minus current** |
+//! | motion, others | Unreal's Movie Render Queue, Arnold's `motionvector.R/G`, Nuke's `backward.u/v` and `forward.u/v` |
 //!
 //! # Color
 //! Chromaticities other than those of Rec. 709, or a text attribute that names such a space (`colorInteropID`,
 //! `oiio:ColorSpace`: ACEScg, ACES2065-1, Rec. 2020, P3-D65), are converted to Rec. 709 with a warning. Pixels are
 //! taken for square; a warning says if the header has another `pixelAspectRatio`.
 //!
-//! All vectors are in pixels. Z/W are optional: only backward playback needs them.
+//! Vectors are converted to pixels. Z/W are optional: only backward playback needs them.
 
 mod channels;
 mod color_space;
 mod decode;
 mod header;
+mod layout;
+mod reading;
 mod write;
 
+pub use channels::ChannelNames;
 pub use decode::ExrFrame;
-pub use header::{ExrHeader, Vectors};
+pub use header::{ExrHeader, PassFile, Vectors};
+pub use reading::{DepthKind, DepthReading, MotionReading};
 pub use write::{ColorFormat, FrameToWrite, write, write_channels};
 
 use crate::error::{InputError, io_error, one_line};

@@ -1,7 +1,7 @@
 //! `afterimage info` of a gaze log: a scanpath, or an eye tracker's export.
 
 use crate::args::gaze_log::GazeLogArgs;
-use crate::failure::{Failure, with_gaze_options};
+use crate::failure::{Failure, with_options};
 use afterimage_lab::scanpath::GazeMap;
 use afterimage_lab::source::other_kind;
 use std::fs::File;
@@ -63,7 +63,7 @@ pub fn gaze_info(path: &str, args: &GazeLogArgs) -> Result<(), Failure> {
         say!("{key}: {value}");
     }
     for warning in &log.warnings {
-        say!("warning: {}", with_gaze_options(warning));
+        say!("warning: {}", with_options(warning));
     }
     Ok(())
 }

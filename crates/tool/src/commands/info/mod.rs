@@ -3,18 +3,21 @@
 mod adapters;
 mod camera;
 mod gaze;
+mod motion;
 mod scene;
 
+use crate::args::channels::ChannelArgs;
 use crate::args::gaze_log::GazeLogArgs;
-use crate::failure::Failure;
+use crate::failure::{Failure, with_options};
 use afterimage::{ContextDesc, Filter, Gaze, Reset, ViewFrame, ViewGeometry, cpu};
 use afterimage_eval::exposure::Exposure;
 use afterimage_lab::error::InputError;
 use afterimage_lab::source;
-use afterimage_lab::source::motion_check;
-use afterimage_lab::source::motion_check::Verdict;
-use afterimage_lab::source::{FrameSource, ReadLimits, SceneOptions};
+use afterimage_lab::source::exr_file::MotionReading;
+use afterimage_lab::source::{ChannelNames, FrameSource, ReadLimits, SceneOptions, SequenceSource};
 use clap::Args;
+use motion::{Reader, motion_info, with_option};
+use std::path::Path;
 
 /// Describe an input, or list the adapters
 #[derive(Args, Clone, Debug)]
@@ -37,11 +40,16 @@ pub struct InfoArgs {
     #[arg(long, visible_alias = "clip", value_name = "NAME|N")]
     pub animation: Option<String>,
     #[command(flatten)]
+    pub channels: ChannelArgs,
+    #[command(flatten)]
     pub log: GazeLogArgs,
 }
 
 /// The subcommand.
 pub fn info(args: &InfoArgs) -> Result<(), Failure> {
+    if !has_channels(&args.input) {
+        args.channels.refuse_for(&args.input)?;
+    }
     if args.input == "adapters" {
         return adapters::adapters_info(args.self_test);
     }
@@ -63,12 +71,31 @@ pub fn info(args: &InfoArgs) -> Result<(), Failure> {
         return Ok(camera::camera_info(&args.input)?);
     }
     let limits = ReadLimits::from_megapixels(args.max_megapixels);
-    let mut source = source::open(&args.input, &limits, &SceneOptions::default())?;
-    frames_info(source.as_mut())?;
-    inputs_look(source.as_mut())
+    let names = ChannelNames { assume_own_convention: true, ..args.channels.names() };
+    let path = Path::new(&args.input);
+    if path.is_dir() {
+        let mut source = SequenceSource::open_named(path, &limits, &names)?;
+        let reading = source.motion_reading();
+        return described(&mut source, args, reading);
+    }
+    let mut source = source::open_named(&args.input, &limits, &SceneOptions::default(), &names)?;
+    described(source.as_mut(), args, None)
 }
 
-fn frames_info(source: &mut dyn FrameSource) -> Result<(), InputError> {
+/// Whether an input may be EXR frames.
+fn has_channels(input: &str) -> bool {
+    let is_exr = || Path::new(input).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
+    Path::new(input).is_dir() || is_exr()
+}
+
+fn described(source: &mut dyn FrameSource, args: &InfoArgs, reading: Option<MotionReading>) -> Result<(), Failure> {
+    let reader = Reader { input: &args.input, channels: &args.channels, reading };
+    let found = frames_info(source, &reader)?;
+    inputs_look(source, &reader, found)
+}
+
+/// Prints what the first frames have. Returns the convention of motion vectors that fits, if it is another.
+fn frames_info(source: &mut dyn FrameSource, reader: &Reader) -> Result<Option<MotionReading>, InputError> {
     let info = source.info().clone();
     let known = |v: Option<f32>| v.map_or("not stated".to_owned(), |v| v.to_string());
     say!("{}", info.name);
@@ -79,7 +106,7 @@ fn frames_info(source: &mut dyn FrameSource) -> Result<(), InputError> {
     }
     say!("still: {}", if info.still { "yes" } else { "no" });
     source.contents().iter().for_each(|line| say!("{line}"));
-    source.warnings().iter().for_each(|line| say!("warning: {line}"));
+    source.warnings().iter().for_each(|line| say!("warning: {}", with_options(line)));
     say!("frames per second: {}", known(info.fps));
     say!("horizontal field of view, degrees: {}", known(info.hfov_deg));
     let first = source.frame(0)?;
@@ -99,37 +126,23 @@ fn frames_info(source: &mut dyn FrameSource) -> Result<(), InputError> {
     }
     if info.still || info.frames == Some(1) {
         say!("motion: none, it is a still");
-        return Ok(());
+        return Ok(None);
     }
     let second = source.frame(1)?;
     let Some(motion) = &second.motion else {
         say!("motion: none");
-        return Ok(());
+        return Ok(None);
     };
     let largest = motion.pixels().iter().map(|m| m[0].hypot(m[1])).fold(0.0_f32, f32::max);
     say!("motion in frame 1: up to {largest:.2} px");
-    let check = motion_check::detect(&first.color, &second.color, motion)?;
-    let explains = |db: f64| format!("frame 0 warped by it matches frame 1 at {db:.1} dB");
-    let best = check.psnr_db.first().map_or(f64::NAN, |p| p.1);
-    match check.verdict {
-        Verdict::Undecidable => say!("motion convention: not known, too little motion"),
-        _ if check.best == Default::default() => {
-            say!("motion convention: as read ({})", explains(best));
-        }
-        verdict => say!(
-            "motion convention: WRONG? Read as {:?}, {} ({verdict:?}); check the channels",
-            check.best,
-            explains(best)
-        ),
-    }
-    Ok(())
+    motion_info(reader, [&first.color, &second.color], motion)
 }
 
 /// Frames that the doctor looks at.
 const EXAMINED: u64 = 8;
 
 /// Prints what the doctor says of the first frames, which are at full rate.
-fn inputs_look(source: &mut dyn FrameSource) -> Result<(), Failure> {
+fn inputs_look(source: &mut dyn FrameSource, reader: &Reader, found: Option<MotionReading>) -> Result<(), Failure> {
     let info = source.info().clone();
     if info.still || info.frames == Some(1) {
         return Ok(());
@@ -154,7 +167,7 @@ fn inputs_look(source: &mut dyn FrameSource) -> Result<(), Failure> {
     }
     say!("inputs look:");
     for finding in doctor.findings() {
-        say!("  {finding}");
+        say!("  {}", with_option(&finding, reader, found));
     }
     Ok(())
 }
