@@ -1,5 +1,6 @@
 //! Frame sources: stills, EXR sequences, analytic scenes and rendered scenes, behind one trait ([`FrameSource`]).
 
+pub mod color_frames;
 pub mod exr_file;
 pub mod limits;
 pub mod motion_check;
@@ -16,6 +17,7 @@ pub use crate::file_kind::other_kind;
 pub use afterimage_eval::source::{
     AnalyticSource, CameraPose, FrameRequest, FrameSource, SourceInfo, Wanted, analytic, reference_offsets_px,
 };
+pub use color_frames::ColorFrames;
 pub use limits::ReadLimits;
 pub use open::{is_scene, open};
 pub use raster::RasterSource;

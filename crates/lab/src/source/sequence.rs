@@ -243,7 +243,10 @@ fn parts_of_all(files: &[PathBuf]) -> Vec<(String, Vec<i64>)> {
 /// Files in playback order, and their frame numbers: of the numbers in their names, the one that is another in every
 /// file. If several are, the last that has even steps, or else the last. Files without numbers are in order of their
 /// names.
-fn numbered_files(subject: &str, files: Vec<PathBuf>) -> Result<(Vec<PathBuf>, Vec<Option<i64>>), InputError> {
+pub(super) fn numbered_files(
+    subject: &str,
+    files: Vec<PathBuf>,
+) -> Result<(Vec<PathBuf>, Vec<Option<i64>>), InputError> {
     let parts = parts_of_all(&files);
     if files.len() < 2 || parts.iter().all(|(_, numbers)| numbers.is_empty()) {
         let numbers = vec![None; files.len()];
@@ -289,7 +292,7 @@ fn numbered_files(subject: &str, files: Vec<PathBuf>) -> Result<(Vec<PathBuf>, V
 }
 
 /// Refuses a sequence with a missing frame, because the motion vectors of the frame after it refer to the missing one.
-fn check_gaps(subject: &str, numbers: &[Option<i64>]) -> Result<(), InputError> {
+pub(super) fn check_gaps(subject: &str, numbers: &[Option<i64>]) -> Result<(), InputError> {
     let Some(numbers) = numbers.iter().copied().collect::<Option<Vec<i64>>>() else {
         return Ok(());
     };

@@ -1,8 +1,10 @@
 //! Options that several subcommands share, and parsers of their values.
 
 pub mod backend;
+pub mod display;
 mod foveation;
 pub mod gaze;
+mod gaze_frames;
 pub mod gaze_log;
 pub mod head;
 pub mod input;
@@ -17,7 +19,8 @@ pub use foveation::{FilterName, FoveationArgs};
 pub use method::{MethodArgs, MethodName};
 pub use named::{Named, by_name};
 pub use number::{
-    parse_distance_mm, parse_exposure, parse_fps, parse_frame_range, parse_frames, parse_hfov, parse_latency,
-    parse_percent, parse_pixel, parse_samples, parse_size, parse_size_mm, parse_stops, print_exposure,
+    parse_contrast, parse_distance_mm, parse_exposure, parse_fps, parse_frame_range, parse_frames, parse_hfov,
+    parse_latency, parse_lux, parse_nits, parse_percent, parse_pixel, parse_samples, parse_size, parse_size_mm,
+    parse_stops, print_exposure,
 };
 pub use picture::FormatName;

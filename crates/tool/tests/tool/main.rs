@@ -2,6 +2,7 @@
 
 mod bench;
 mod cameras;
+mod compare;
 mod files;
 mod gaze_logs;
 mod head;
