@@ -189,7 +189,8 @@ fn caption(column: &Column<'_>) -> String {
         (None, Some(flip)) => format!("FLIP {flip:.3}"),
         (retained, _) => format!("retained {}", number(retained, 1)),
     };
-    let [psnr, ssim] = [number(scores.whole.psnr_db, 1), number(scores.whole.ssim, 3)];
+    let ssim = number(scores.whole.ssim, 3);
+    let psnr = if scores.whole.mse == Some(0.0) { "exact".into() } else { number(scores.whole.psnr_db, 1) };
     // A panel holds 48 characters.
     match scores.whole.jod {
         Some(jod) => format!("JOD {jod:.2}  PSNR {psnr}  SSIM {ssim}  {last}"),

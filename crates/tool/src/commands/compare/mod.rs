@@ -44,8 +44,8 @@ pub struct CompareArgs {
     /// Output folder
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Where the eye looks: scanpath or export of an eye tracker (FILE; docs/gaze-logs.md), gaze.csv of a run, one fixed
-    /// frame pixel (X,Y), or synthetic[:SEED]; default: the middle of the frame
+    /// Where the eye looks: scanpath or export of an eye tracker (FILE; docs/gaze-logs.md), gaze.csv of a run, one
+    /// fixed frame pixel (X,Y), or synthetic[:SEED]; default: the middle of the frame
     #[arg(long, value_name = "GAZE", allow_hyphen_values = true)]
     pub gaze: Option<String>,
     /// Map from screen to frame: keep visual angles, or stretch; default: angle if the file states the screen's
