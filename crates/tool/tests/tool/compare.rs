@@ -193,9 +193,10 @@ fn a_blur_far_from_the_gaze_scores_higher() {
     let moving = folder.write("gaze.csv", b"frame,x_px,y_px\n0,30,48\n1,30,48\n2,130,48\n3,130,48\n");
     let log = "# screen_px: 160x96\nt_s,x_px,y_px,valid\n0,30,48,1\n0.02,30,48,1\n0.04,130,48,1\n0.06,130,48,1\n";
     let log = folder.write("log.csv", log.as_bytes());
-    for gaze in [moving, log] {
+    // Positions of a log count from the corner of the top left pixel, those of a run from its middle.
+    for (gaze, last) in [(moving, "3,130.000,48.000"), (log, "3,129.500,47.500")] {
         let out = compared(&[&full, &left, &right], &format!("--hfov 90 --fps 50 --no-flip --gaze {gaze}"));
-        assert_eq!(out.text("gaze.csv").lines().nth(4), Some("3,130.000,48.000"));
+        assert_eq!(out.text("gaze.csv").lines().nth(4), Some(last));
         let [left, right] = ["left", "right"].map(|test| out.column(test, "jod"));
         assert!(left[1] < right[1] && left[3] > right[3], "{left:?} {right:?}");
     }
