@@ -29,6 +29,11 @@ const VIDEOS: [&str; 9] = ["mp4", "mkv", "mov", "avi", "webm", "y4m", "m4v", "mp
 /// Endings of pictures that are not read.
 const PICTURES: [&str; 9] = ["tif", "tiff", "hdr", "webp", "bmp", "tga", "dpx", "heic", "avif"];
 
+/// Whether a file is a video, by its ending.
+pub(crate) fn is_video(path: &Path) -> bool {
+    VIDEOS.contains(&ending(path).as_str())
+}
+
 /// What to do with a file of a kind that people have and that is not read: problem and remedy.
 pub fn other_kind(path: &Path) -> Option<(String, &'static str)> {
     let ending = ending(path);

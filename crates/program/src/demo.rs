@@ -6,7 +6,7 @@ use afterimage::{Foveation, Image, Method, MethodKind, Settings, ViewGeometry};
 use afterimage_eval::clip::run_report::{RunFacts, write_report};
 use afterimage_eval::clip::{Clip, ClipReport, REPORTS, foveation_words, title, write_png};
 use afterimage_eval::exposure::Exposure;
-use afterimage_eval::metric;
+use afterimage_eval::metric::{self, Display};
 use afterimage_eval::output::{Output, WriteError};
 use afterimage_eval::picture::write_png as write_picture;
 use afterimage_eval::pipeline::{Cpu, RunKind};
@@ -129,6 +129,7 @@ impl Part {
             trust: false,
             flip: false,
             jod: self.is_planned,
+            display: Display::default(),
             fps: FPS,
             processor: Box::new(Cpu),
             backend_note: "",

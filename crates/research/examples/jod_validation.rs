@@ -90,7 +90,7 @@ fn score(folder: &Path, pair: &BTreeMap<String, String>) -> Result<f64, String> 
     let tangent_per_px = 2.0 * (0.5 / number("ppd")?).to_radians().tan();
     let hfov_deg = 2.0 * (0.5 * tangent_per_px * size[0] as f32).atan().to_degrees();
     let geometry = ViewGeometry::flat(size, hfov_deg).map_err(|e| e.to_string())?;
-    let display = Display { peak_nits: number("peak_nits")?, contrast: number("contrast")? };
+    let display = Display { peak_nits: number("peak_nits")?, contrast: number("contrast")?, ..Display::default() };
     let mut references = ReferenceVideo::new(Viewing { geometry, display, fps: number("fps")? });
     let mut video = TestVideo::default();
     for (i, (reference, test)) in reference.iter().zip(&test).enumerate() {

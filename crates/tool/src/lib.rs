@@ -24,7 +24,7 @@ use afterimage_program::{demo, failure, progress};
 use clap::{Parser, Subcommand};
 #[cfg(feature = "view")]
 use commands::view;
-use commands::{bench, info, run, scanpath, sweep as sweep_command, trace};
+use commands::{bench, compare, info, run, scanpath, sweep as sweep_command, trace};
 use failure::Failure;
 use std::process::ExitCode;
 
@@ -42,6 +42,8 @@ enum Command {
     Demo(demo::DemoArgs),
     /// Foveate frames, run methods on them, score the results
     Run(Box<run::RunArgs>),
+    /// Score frames of any renderer against its full-rate frames
+    Compare(Box<compare::CompareArgs>),
     /// Render a scene by path tracing
     Trace(Box<trace::TraceArgs>),
     /// Time the passes, or the path tracer
@@ -66,6 +68,7 @@ pub fn main() -> ExitCode {
     Failure::exit_code(match cli.command {
         Command::Demo(args) => demo::demo(&args),
         Command::Run(args) => run::run(&args),
+        Command::Compare(args) => compare::compare(&args),
         Command::Trace(args) => trace::trace(&args),
         Command::Bench(args) => bench::bench(&args),
         Command::Sweep(args) => sweep_command::sweep(&args),

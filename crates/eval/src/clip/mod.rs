@@ -85,6 +85,8 @@ pub struct Clip {
     pub flip: bool,
     /// Whether JOD is measured.
     pub jod: bool,
+    /// Display on which JOD shows the frames.
+    pub display: Display,
     /// Frames per second.
     pub fps: f32,
     /// Processor that runs the methods.
@@ -291,7 +293,7 @@ impl Clip {
 
     /// How the clip is seen, for JOD, if it is measured.
     pub fn viewing(&self) -> Option<Viewing> {
-        self.jod.then_some(Viewing { geometry: self.geometry, display: Display::default(), fps: self.fps })
+        self.jod.then_some(Viewing { geometry: self.geometry, display: self.display, fps: self.fps })
     }
 
     /// References for the metrics that are measured.

@@ -72,12 +72,22 @@ struct RunReport<'a> {
     methods: Methods<'a>,
 }
 
+/// The display of JOD, in a report.
 #[derive(Serialize)]
-struct JodDisplay {
+pub struct JodDisplay {
     /// Luminance of white in cd/m2.
     peak_nits: f32,
     /// Luminance of white over that of black.
     contrast: f32,
+    /// Illuminance of the screen by the room in lux.
+    ambient_lux: f32,
+}
+
+impl From<Display> for JodDisplay {
+    fn from(display: Display) -> Self {
+        let Display { peak_nits, contrast, ambient_lux } = display;
+        Self { peak_nits, contrast, ambient_lux }
+    }
 }
 
 #[derive(Serialize)]
@@ -142,10 +152,7 @@ pub fn write_report(facts: &RunFacts<'_>, clip: &Clip, report: &ClipReport, out:
         gaze_latency_ms: facts.gaze_latency_ms,
         fixed_fovea: facts.fixed_fovea,
         flip_pixels_per_degree: clip.flip().map(|flip| flip.pixels_per_degree()),
-        jod_display: clip.viewing().map(|viewing| {
-            let Display { peak_nits, contrast } = viewing.display;
-            JodDisplay { peak_nits, contrast }
-        }),
+        jod_display: clip.viewing().map(|viewing| viewing.display.into()),
         full_rate: report.full_rate,
         methods: Methods(&report.methods),
     };

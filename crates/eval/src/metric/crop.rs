@@ -55,14 +55,11 @@ impl Crops {
         if frame < CROP_FROM_FRAME {
             return;
         }
-        let [columns, rows] = size.map(|len| (0..len).step_by(CROP_PX as usize).map(move |at| inwards(at, len)));
-        for y_px in rows {
-            for x_px in columns.clone() {
-                let shown_db = |image| visible_db(crop_mse(reference, image, [x_px, y_px]));
-                let delta_db = shown_db(output) - shown_db(foveated);
-                if self.worst.is_none_or(|worst| delta_db < worst.delta_db) {
-                    self.worst = Some(WorstCrop { delta_db, frame, x_px, y_px });
-                }
+        for [x_px, y_px] in corners(size) {
+            let shown_db = |image| visible_db(crop_mse(reference, image, [x_px, y_px]));
+            let delta_db = shown_db(output) - shown_db(foveated);
+            if self.worst.is_none_or(|worst| delta_db < worst.delta_db) {
+                self.worst = Some(WorstCrop { delta_db, frame, x_px, y_px });
             }
         }
     }
@@ -76,6 +73,36 @@ impl Crops {
     pub fn worst(&self) -> Option<WorstCrop> {
         self.worst
     }
+}
+
+/// The crop of a frame with the largest mean squared error, by its top left corner, and this error; the first of equal
+/// ones. Both images are sRGB-encoded. `None` if they are equal.
+///
+/// # Panics
+/// If the sizes differ.
+pub fn worst_crop(reference: &Image<[f32; 3]>, output: &Image<[f32; 3]>) -> Option<([u32; 2], f64)> {
+    assert!(output.size() == reference.size());
+    let errors = corners(reference.size()).map(|px| (px, crop_mse(reference, output, px)));
+    errors.filter(|(_, mse)| *mse > 0.0).reduce(|worst, next| if next.1 > worst.1 { next } else { worst })
+}
+
+/// Mean of the values that a map has in the crop with this corner. `margin_px`: width of the frame's border that the
+/// map does not cover. `None` if it covers none of the crop.
+pub fn crop_mean(map: &Image<f32>, corner_px: [u32; 2], margin_px: u32) -> Option<f64> {
+    let range = |from: u32, len: usize| {
+        let [from, to] = [from, from + CROP_PX].map(|at| (at.saturating_sub(margin_px) as usize).min(len));
+        from..to
+    };
+    let columns = range(corner_px[0], map.width());
+    let mut mean = Mean::default();
+    range(corner_px[1], map.height()).for_each(|y| mean.add_all(&map.row(y)[columns.clone()]));
+    mean.value()
+}
+
+/// Corners of the crops of a frame, row by row.
+fn corners(size: [u32; 2]) -> impl Iterator<Item = [u32; 2]> {
+    let [columns, rows] = size.map(|len| (0..len).step_by(CROP_PX as usize).map(move |at| inwards(at, len)));
+    rows.flat_map(move |y_px| columns.clone().map(move |x_px| [x_px, y_px]))
 }
 
 /// Position of a crop along `len` pixels, moved inwards if it would cross the border.

@@ -11,7 +11,7 @@ mod reference;
 mod score;
 mod track;
 
-pub use crop::{CROP_FROM_FRAME, CROP_INVISIBLE_DB, CROP_PX, Crops, WorstCrop};
+pub use crop::{CROP_FROM_FRAME, CROP_INVISIBLE_DB, CROP_PX, Crops, WorstCrop, crop_mean, worst_crop};
 pub use ghost::{GHOST_FRAMES, Ghost};
 pub use reference::{Reference, References};
 pub use score::{BandScores, FrameErrors, Scorer, Scores};
@@ -19,7 +19,7 @@ pub use track::{NO_PAST, Tracked, Tracker};
 
 use afterimage::Image;
 use afterimage::kernel::{acuity, color};
-pub use afterimage_metric::{Band, Flip, flip, psnr_db, ssim_map};
+pub use afterimage_metric::{Band, Display, Flip, flip, psnr_db, ssim_map};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 

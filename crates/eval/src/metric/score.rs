@@ -132,6 +132,10 @@ pub struct FrameErrors {
     pub retained_mse: Option<f64>,
     /// JOD of the frame; `None` if the reference has none.
     pub jod: Option<f64>,
+    /// Mean SSIM; `None` if it is not measured, or if the frame is smaller than its window.
+    pub ssim: Option<f64>,
+    /// Mean FLIP error, 0 to 1; `None` if the references have no FLIP.
+    pub flip: Option<f64>,
 }
 
 impl Scorer {
@@ -179,21 +183,25 @@ impl Scorer {
             frame.merge(part);
         }
         self.sums.merge(&frame);
+        let mut ssim = [Mean::default(); 3];
         if !self.skip_ssim
             && let Some(map) = ssim_map(reference.encoded, output)
         {
             let margin = (ecc_deg.width() - map.width()) / 2;
             for y in 0..map.height() {
                 let ecc_deg = &ecc_deg.row(y + margin)[margin..margin + map.width()];
-                add_by_band(&mut self.ssim, map.row(y), ecc_deg);
+                add_by_band(&mut ssim, map.row(y), ecc_deg);
             }
         }
+        self.ssim.iter_mut().zip(ssim).for_each(|(sum, part)| sum.merge(part));
         let jod = reference.video.as_ref().map(|video| self.video.push(video, output).jod);
         FrameErrors {
             jod,
             mse: Mean::total(frame.squared).value().unwrap_or(0.0),
             band_mse: frame.squared.map(Mean::value),
             retained_mse: frame.retained.value(),
+            ssim: Mean::total(ssim).value(),
+            flip: Mean::total(frame.flip).value(),
         }
     }
 

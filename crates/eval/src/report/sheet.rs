@@ -183,22 +183,18 @@ fn caption(column: &Column<'_>) -> String {
     let Some(scores) = column.scores else {
         return "all pixels at full rate".into();
     };
-    let [psnr, retained] = [scores.whole.psnr_db, scores.retained_psnr_db];
     let number = |v: Option<f64>, digits: usize| v.map_or("-".into(), |v| format!("{v:.digits$}"));
+    // Frames without motion have no retained pixels.
+    let last = match (scores.retained_psnr_db, scores.whole.flip) {
+        (None, Some(flip)) => format!("FLIP {flip:.3}"),
+        (retained, _) => format!("retained {}", number(retained, 1)),
+    };
+    let ssim = number(scores.whole.ssim, 3);
+    let psnr = if scores.whole.mse == Some(0.0) { "exact".into() } else { number(scores.whole.psnr_db, 1) };
     // A panel holds 48 characters.
     match scores.whole.jod {
-        Some(jod) => format!(
-            "JOD {jod:.2}  PSNR {}  SSIM {}  retained {}",
-            number(psnr, 1),
-            number(scores.whole.ssim, 3),
-            number(retained, 1)
-        ),
-        None => format!(
-            "PSNR {} dB  SSIM {}  retained {} dB",
-            number(psnr, 2),
-            number(scores.whole.ssim, 4),
-            number(retained, 2)
-        ),
+        Some(jod) => format!("JOD {jod:.2}  PSNR {psnr}  SSIM {ssim}  {last}"),
+        None => format!("PSNR {psnr} dB  SSIM {ssim}  {last}"),
     }
 }
 

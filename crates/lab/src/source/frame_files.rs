@@ -72,6 +72,22 @@ fn passes_of(subject: &str, files: Vec<PathBuf>) -> Result<Vec<PassFiles>, Input
     numbered.collect()
 }
 
+/// Files of one sequence of frames.
+pub(super) fn one_sequence(subject: &str, files: Vec<PathBuf>) -> Result<PassFiles, InputError> {
+    let mut passes = passes_of(subject, files)?;
+    let first = passes.swap_remove(0);
+    if let Some(other) = passes.first() {
+        let [a, b] = [&first, other].map(|pass| pass.files[0].file_name().unwrap_or_default().to_string_lossy());
+        let problem = format!("holds two sequences: {a} and {b} differ in more than numbers");
+        return Err(InputError::request(
+            subject,
+            problem,
+            "expected the frames of one sequence; keep one sequence in a folder",
+        ));
+    }
+    Ok(first)
+}
+
 /// The words of each text without those that all have in front and behind.
 fn pass_names(texts: &[&str]) -> Vec<String> {
     let is_between = |c: char| "#._- ".contains(c);

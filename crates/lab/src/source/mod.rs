@@ -1,5 +1,6 @@
 //! Frame sources: stills, EXR sequences, analytic scenes and rendered scenes, behind one trait ([`FrameSource`]).
 
+pub mod color_frames;
 pub mod exr_file;
 mod frame_files;
 pub mod limits;
@@ -17,6 +18,7 @@ pub use crate::file_kind::other_kind;
 pub use afterimage_eval::source::{
     AnalyticSource, CameraPose, FrameRequest, FrameSource, SourceInfo, Wanted, analytic, reference_offsets_px,
 };
+pub use color_frames::ColorFrames;
 pub use exr_file::ChannelNames;
 pub use limits::ReadLimits;
 pub use open::{is_scene, open, open_named};

@@ -1,7 +1,7 @@
 //! `--gaze`, `--gaze-map`, `--start`: resolved to one position per frame.
 
 use super::gaze_log::GazeLogArgs;
-use super::{Named, by_name};
+use super::{Named, by_name, gaze_frames};
 use crate::failure::{Failure, warn};
 use afterimage::ViewGeometry;
 use afterimage_lab::scanpath::{FrameGaze, GazeMap, HeadPath, Scanpath, Screen, SyntheticOptions, generate};
@@ -16,7 +16,8 @@ const MOST_FRAMES_IN_DOUBT: u64 = 3600;
 /// Gaze of a clip.
 #[derive(Args, Clone, Debug)]
 pub struct GazeArgs {
-    /// Scanpath or export of an eye tracker (FILE; docs/gaze-logs.md), one fixed frame pixel (X,Y), or synthetic[:SEED]
+    /// Scanpath or export of an eye tracker (FILE; docs/gaze-logs.md), gaze.csv of a run, one fixed frame pixel (X,Y),
+    /// or synthetic[:SEED]
     #[arg(long, default_value = "synthetic:0", value_name = "GAZE", allow_hyphen_values = true)]
     pub gaze: String,
     /// Map from screen to frame: keep visual angles, or stretch; default: angle if the file states the screen's
@@ -45,6 +46,8 @@ pub struct Track {
     pub px: Vec<Option<[f32; 2]>>,
     /// What a late tracker says of each frame; `None` without latency.
     pub late_px: Option<Vec<Option<[f32; 2]>>>,
+    /// Frames that a recording covers, after which its last position is held; `None` if it has no end.
+    pub recorded: Option<u64>,
     /// Map from screen to frame: `angle`, `fit`, or `none` for positions that are frame pixels already.
     pub map: &'static str,
 }
@@ -68,7 +71,11 @@ impl GazeArgs {
             warn(&fractions(px, view.size_px()).into_iter().collect::<Vec<_>>());
             let count = frames.unwrap_or(default_frames) as usize;
             let px = vec![Some(px); count];
-            return Ok(Track { late_px: is_late.then(|| px.clone()), px, map: "none" });
+            return Ok(Track { late_px: is_late.then(|| px.clone()), px, recorded: None, map: "none" });
+        }
+        if let Some(rows) = gaze_frames::read(&self.gaze)? {
+            self.log.refuse_for(&format!("--gaze {}", self.gaze))?;
+            return self.of_frames(&rows, fps, frames, latency_ms);
         }
         let synthetic = synthetic_seed(&self.gaze)?;
         if synthetic.is_some() {
@@ -107,7 +114,23 @@ impl GazeArgs {
             )));
         }
         let late_px = is_late.then(|| (0..count).map(|i| gaze.late_px(i, 1e-3 * latency_ms)).collect());
-        Ok(Track { px, late_px, map: map.name() })
+        let recorded = synthetic.is_none().then(|| gaze.frames());
+        Ok(Track { px, late_px, recorded, map: map.name() })
+    }
+
+    /// The gaze that another clip had in each frame.
+    fn of_frames(&self, rows: &[[f32; 2]], fps: f32, frames: Option<u64>, latency_ms: f64) -> Result<Track, Failure> {
+        let first = (self.start * f64::from(fps)).round() as usize;
+        let Some(rows) = rows.get(first..).filter(|rows| !rows.is_empty()) else {
+            let (gaze, count) = (&self.gaze, rows.len());
+            return Err(Failure::Input(format!("--start {}: {gaze} ends before, after {count} frames", self.start)));
+        };
+        let count = frames.unwrap_or(rows.len() as u64) as usize;
+        let delay = (1e-3 * latency_ms * f64::from(fps)).ceil() as usize;
+        let delayed =
+            |delay: usize| (0..count).map(|i| Some(rows[i.saturating_sub(delay).min(rows.len() - 1)])).collect();
+        let late_px = (delay > 0).then(|| delayed(delay));
+        Ok(Track { px: delayed(0), late_px, recorded: Some(rows.len() as u64), map: "none" })
     }
 
     pub(super) fn check_start(&self) -> Result<(), Failure> {

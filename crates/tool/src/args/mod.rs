@@ -2,8 +2,10 @@
 
 pub mod backend;
 pub mod channels;
+pub mod display;
 mod foveation;
 pub mod gaze;
+mod gaze_frames;
 pub mod gaze_log;
 pub mod head;
 pub mod input;
@@ -18,7 +20,8 @@ pub use foveation::{FilterName, FoveationArgs};
 pub use method::{MethodArgs, MethodName};
 pub use named::{Named, by_name};
 pub use number::{
-    parse_distance_mm, parse_exposure, parse_fps, parse_frame_range, parse_frames, parse_hfov, parse_latency,
-    parse_percent, parse_pixel, parse_samples, parse_size, parse_size_mm, parse_stops, print_exposure,
+    parse_contrast, parse_distance_mm, parse_exposure, parse_fps, parse_frame_range, parse_frames, parse_hfov,
+    parse_latency, parse_lux, parse_nits, parse_percent, parse_pixel, parse_samples, parse_size, parse_size_mm,
+    parse_stops, print_exposure,
 };
 pub use picture::FormatName;

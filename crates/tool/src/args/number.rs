@@ -74,6 +74,21 @@ pub fn parse_latency(text: &str) -> Result<f64, String> {
     within(text, "0 to 1000 milliseconds", |v| (0.0..=1000.0).contains(v))
 }
 
+/// Luminance of white in cd/m2.
+pub fn parse_nits(text: &str) -> Result<f32, String> {
+    within(text, "1 to 10000 cd/m2", |v| (1.0..=10_000.0).contains(v))
+}
+
+/// Luminance of white over that of black.
+pub fn parse_contrast(text: &str) -> Result<f32, String> {
+    within(text, "2 to 10000000", |v| (2.0..=1e7).contains(v))
+}
+
+/// Illuminance in lux.
+pub fn parse_lux(text: &str) -> Result<f32, String> {
+    within(text, "0 to 100000 lux", |v| (0.0..=1e5).contains(v))
+}
+
 /// Exposure in stops, or `auto`.
 pub fn parse_exposure(text: &str) -> Result<Exposure, String> {
     if text == "auto" {

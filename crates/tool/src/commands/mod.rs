@@ -1,6 +1,7 @@
 //! Subcommands, one file or folder each.
 
 pub mod bench;
+pub mod compare;
 pub mod info;
 pub mod run;
 pub mod scanpath;

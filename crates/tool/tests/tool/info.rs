@@ -69,7 +69,7 @@ fn info_says_what_a_scene_holds() {
 /// `INSTA_UPDATE=always` writes the reviewed texts anew (`snapshots/`).
 #[test]
 fn help_is_what_was_reviewed() {
-    let commands = ["demo", "run", "trace", "bench", "sweep", "scanpath", "info"];
+    let commands = ["demo", "run", "trace", "bench", "sweep", "compare", "scanpath", "info"];
     for command in commands {
         let text = succeeds(&[command, "--help"]);
         assert!(text.contains("Example") && text.contains(&format!("afterimage {command}")), "{command}");

@@ -3,6 +3,7 @@
 mod bench;
 mod cameras;
 mod channels;
+mod compare;
 mod files;
 mod gaze_logs;
 mod head;

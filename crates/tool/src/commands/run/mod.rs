@@ -4,6 +4,7 @@ pub mod plan;
 mod plot;
 
 use crate::args::backend::BackendName;
+use crate::args::display::DisplayArgs;
 use crate::args::gaze::GazeArgs;
 use crate::args::head::head_path;
 use crate::args::input::{FoveatedSampling, InputArgs, Rendering, SourceName};
@@ -108,6 +109,8 @@ pub struct RunArgs {
     /// Skip JOD, the foveated video metric
     #[arg(long)]
     pub no_jod: bool,
+    #[command(flatten)]
+    pub display: DisplayArgs,
     /// Debug views to write as images, separated by commas
     #[arg(long, value_parser = by_name::<DebugView>(), value_delimiter = ',', value_name = "LIST")]
     pub debug: Vec<DebugView>,

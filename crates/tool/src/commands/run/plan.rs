@@ -85,6 +85,7 @@ pub fn plan(args: &RunArgs, info: &SourceInfo, backend: Backend, head: Option<&H
             trust: args.trust,
             flip: !args.no_flip,
             jod: !args.no_jod,
+            display: args.display.display(),
             fps,
             backend_note: match (args.backend, &backend) {
                 _ if args.pixel.is_some() => "; --pixel",

@@ -3,8 +3,8 @@
 use super::plan::Plan;
 use crate::clip::ClipReport;
 use crate::output::{Output, WriteError};
+use crate::report::frame_plot::{FramePlot, Quantity, Series};
 use crate::report::plot::png;
-use crate::report::psnr_plot::PsnrPlot;
 use afterimage::Filter;
 use afterimage_lab::quad_views::QuadViewLayout;
 use std::path::Path;
@@ -17,17 +17,19 @@ pub fn write(plan: &Plan, simulator: &str, report: &ClipReport, out: &Output) ->
         _ if let Some(QuadViewLayout::Uniform { step }) = plan.clip.quad_views => format!("uniform 1/{step}"),
         _ => format!("{simulator} {} and {}", foveation.rate_mid, foveation.rate_far),
     };
-    let methods: Vec<(&str, &[f64])> =
-        plan.clip.methods.iter().zip(&report.frame_mse).map(|((name, _), mse)| (*name, mse.as_slice())).collect();
+    let methods = plan.clip.methods.iter().zip(&report.frame_mse);
+    let series: Vec<Series<'_>> = methods.map(|((name, _), mse)| Series { name, mark: name, values: mse }).collect();
     let moved = |pair: &[[f32; 2]]| plan.clip.geometry.eccentricity_deg(pair[1], pair[0]);
     let moves_deg: Vec<f32> = [0.0].into_iter().chain(report.gaze_px.windows(2).map(moved)).collect();
     let file = Path::new(&plan.input).file_name().and_then(|name| name.to_str());
-    let plot = PsnrPlot {
+    let plot = FramePlot {
+        quantity: Quantity::Psnr,
         input: file.unwrap_or(&plan.input),
-        foveation: &foveation,
+        what: &foveation,
+        note: "the error of each shown frame alone, against the full-rate frame; at frame 0 the history is empty",
         fps: plan.fps,
         moves_deg: &moves_deg,
-        methods: &methods,
+        series: &series,
     };
     let svg = plot.svg();
     out.text("psnr.svg", &svg)?;

@@ -86,6 +86,15 @@ pub struct SweepArgs {
     /// Device that runs the methods: auto, cpu or gpu
     #[arg(long, value_name = "NAME")]
     pub backend: Option<String>,
+    /// Luminance of the display's white for JOD, cd/m2, as for run
+    #[arg(long, value_name = "CD_M2")]
+    pub display_peak: Option<String>,
+    /// Contrast of the display for JOD, as for run
+    #[arg(long, value_name = "RATIO")]
+    pub display_contrast: Option<String>,
+    /// Light of the room on the display for JOD, lux, as for run
+    #[arg(long, value_name = "LUX")]
+    pub display_ambient: Option<String>,
     /// Repetitions of randomized methods, each with another seed; default: the plan's, else 1
     #[arg(long, value_name = "N")]
     pub seeds: Option<u64>,
@@ -115,6 +124,9 @@ impl SweepArgs {
             ("source", self.source.clone()),
             ("camera", self.camera.clone()),
             ("backend", self.backend.clone()),
+            ("display-peak", self.display_peak.clone()),
+            ("display-contrast", self.display_contrast.clone()),
+            ("display-ambient", self.display_ambient.clone()),
         ];
         for (name, value) in given {
             common.extend(value.map(|value| (name.to_owned(), value)));

@@ -48,7 +48,9 @@ pub fn svg(table: &Table, input: &str, metric: &Metric) -> String {
     let title = format!("{}: {} and cost of {} points", visible(input), metric.title, spots.len());
     let methods = in_order(spots.iter().map(|s| s.row.point.method.as_str()));
     let [along, up] = names(metric, renders_known);
-    let mut plot = Group::new().add(legend(methods.iter().map(String::as_str))).add(axes(&x, &y, &along, &up));
+    let mut plot = Group::new()
+        .add(legend(methods.iter().map(|method| (method.as_str(), method.as_str()))))
+        .add(axes(&x, &y, &along, &up));
     plot = plot.add(roofline(&floors, &x)).add(steps(&best, metric));
     // Draw the frontier on top.
     for spot in spots.iter().filter(|s| !s.is_best).chain(best.iter().copied()) {

@@ -31,12 +31,12 @@ pub fn document(class: &str, title: &str, height: f64, content: Group) -> String
         .to_string()
 }
 
-/// Legend: the methods in a line above the plot.
-pub fn legend<'a>(methods: impl IntoIterator<Item = &'a str>) -> Group {
+/// Legend: the methods in a line above the plot, each with the method whose mark it has.
+pub fn legend<'a>(methods: impl IntoIterator<Item = (&'a str, &'a str)>) -> Group {
     let mut left = LOW_PX[0];
-    methods.into_iter().fold(Group::new().set("class", "legend"), |legend, method| {
+    methods.into_iter().fold(Group::new().set("class", "legend"), |legend, (method, of)| {
         let method = shortened(&visible(method), chars_from(left + 22.0));
-        let mark = mark(&method, [left + 8.0, 52.0], true);
+        let mark = mark(of, [left + 8.0, 52.0], true);
         let name = text(&method, [left + 22.0, 57.0], "start").set("class", "ink");
         left += 48.0 + 8.0 * method.chars().count() as f64;
         legend.add(mark).add(name)

@@ -1,13 +1,19 @@
 //! The plot of PSNR by frame: points where the axes say, gaps, labels, saccades.
 
 use super::drawn::{assert_ends_before_the_border, has_text, mark_at, number, points, with_class};
-use afterimage_cli::report::psnr_plot::PsnrPlot;
+use afterimage_cli::report::frame_plot::{FramePlot, Quantity, Series};
 use resvg::usvg::roxmltree::{Document, Node};
 
 const FPS: f32 = 50.0;
 
 fn svg(methods: &[(&str, &[f64])], moves_deg: &[f32]) -> String {
-    PsnrPlot { input: "sponza", foveation: "sparse 2 and 4", fps: FPS, moves_deg, methods }.svg()
+    plot("sponza", "sparse 2 and 4", methods, moves_deg)
+}
+
+fn plot(input: &str, what: &str, methods: &[(&str, &[f64])], moves_deg: &[f32]) -> String {
+    let series: Vec<_> = methods.iter().map(|&(name, values)| Series { name, mark: name, values }).collect();
+    let quantity = Quantity::Psnr;
+    FramePlot { quantity, input, what, note: "errors", fps: FPS, moves_deg, series: &series }.svg()
 }
 
 /// Mean squared error of a PSNR.
@@ -131,14 +137,7 @@ fn names_are_text_and_fit() {
     let errors = rising(22.0, 5);
     let long = "a\u{1}<b>&\"'\u{fffe}".to_owned() + &"/folder".repeat(40);
     let method = "<i>&".to_owned() + &"x".repeat(300);
-    let plot = PsnrPlot {
-        input: &long,
-        foveation: "gauss 8 and 16",
-        fps: 23.976,
-        moves_deg: &[0.0; 5],
-        methods: &[(&method, &errors), ("smr", &errors)],
-    };
-    let svg = plot.svg();
+    let svg = plot(&long, "gauss 8 and 16", &[(&method, &errors), ("smr", &errors)], &[0.0; 5]);
     let document = Document::parse(&svg).unwrap();
     assert!(has_text(&document, "<b>&\"'") && has_text(&document, "<i>&"), "names are text");
     assert!(has_text(&document, "…: PSNR by frame, gauss 8 and 16"), "the end of the title stays");

@@ -1,4 +1,4 @@
-//! Plot of PSNR by frame since the cut, one line a method, as SVG.
+//! Plot of a quality by frame, one line a method, as SVG.
 
 use super::plot::{
     FAINT, HIGH_PX, INK, LOW_PX, Mark, Scale, axes, chars_from, document, legend, line, mark, px, reading, shortened,
@@ -25,23 +25,88 @@ const LABEL_PX: f64 = HIGH_PX[0] + 14.0;
 /// Width of a title's character in characters of notes, whose font is smaller.
 const TITLE_CHARS: f64 = 1.35;
 
-/// A run, frame by frame.
-pub struct PsnrPlot<'a> {
+/// What a plot shows of each frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// PSNR, of values that are mean squared errors.
+    Psnr,
+    /// JOD, of values that are JOD.
+    Jod,
+}
+
+impl Quantity {
+    /// Name in titles.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Psnr => "PSNR",
+            Self::Jod => "JOD",
+        }
+    }
+
+    /// Name of the axis.
+    fn axis(self) -> &'static str {
+        match self {
+            Self::Psnr => "PSNR, dB; higher is better",
+            Self::Jod => "JOD; higher is better, 10 is no visible difference",
+        }
+    }
+
+    /// CSS class of the plot.
+    fn class(self) -> &'static str {
+        match self {
+            Self::Psnr => "psnr",
+            Self::Jod => "jod",
+        }
+    }
+
+    /// What a value is on the scale, if it has a place there.
+    fn shown(self, value: f64) -> Option<f64> {
+        match self {
+            Self::Psnr => psnr_db(value),
+            Self::Jod => Some(value),
+        }
+        .filter(|v| v.is_finite())
+    }
+
+    /// Whether a value has its place in the row of exact frames.
+    fn is_exact(self, value: f64) -> bool {
+        self == Self::Psnr && value == 0.0
+    }
+}
+
+/// The values of a method.
+#[derive(Clone, Copy, Debug)]
+pub struct Series<'a> {
+    /// Name in the legend.
+    pub name: &'a str,
+    /// Method whose mark it has.
+    pub mark: &'a str,
+    /// Value of each frame.
+    pub values: &'a [f64],
+}
+
+/// A clip, frame by frame.
+pub struct FramePlot<'a> {
+    /// What is shown.
+    pub quantity: Quantity,
     /// Name of the input.
     pub input: &'a str,
-    /// What foveates the frames, such as `quads 8 and 8`.
-    pub foveation: &'a str,
+    /// What the frames are, such as `quads 8 and 8`.
+    pub what: &'a str,
+    /// The first line of the notes.
+    pub note: &'a str,
     /// Frames a second.
     pub fps: f32,
     /// Angle between the gaze of each frame and of the one before, degrees; 0 for the first.
     pub moves_deg: &'a [f32],
-    /// Name of each method, and the mean squared error of each frame.
-    pub methods: &'a [(&'a str, &'a [f64])],
+    /// The methods.
+    pub series: &'a [Series<'a>],
 }
 
 /// A method's values: a point a frame, in a scale or in the row of exact frames.
 struct Curve<'a> {
     method: &'a str,
+    mark: &'a str,
     /// Height of each frame's point; `None` where the frame is exact or its error is not a number.
     heights: Vec<Option<f64>>,
     /// Whether each frame is exact.
@@ -50,15 +115,17 @@ struct Curve<'a> {
     row: f64,
 }
 
-impl PsnrPlot<'_> {
+impl FramePlot<'_> {
     /// The plot. The first frame is a cut.
     pub fn svg(&self) -> String {
-        let count = self.methods.iter().map(|(_, mse)| mse.len()).max().unwrap_or(0);
+        let count = self.series.iter().map(|series| series.values.len()).max().unwrap_or(0);
         let x = Scale::counting(count, LOW_PX[0] + INSET_PX, HIGH_PX[0] - INSET_PX);
-        let rows = self.methods.iter().filter(|(_, mse)| mse.contains(&0.0)).count();
+        let quantity = self.quantity;
+        let has_exact = |series: &&Series<'_>| series.values.iter().any(|v| quantity.is_exact(*v));
+        let rows = self.series.iter().filter(has_exact).count();
         let top = LOW_PX[1] + ROW_PX * rows as f64 + if rows > 0 { 8.0 } else { 0.0 };
         let y = Scale::new(
-            self.methods.iter().flat_map(|(_, mse)| mse.iter().filter_map(|e| db(*e))),
+            self.series.iter().flat_map(|series| series.values.iter().filter_map(|v| quantity.shown(*v))),
             false,
             HIGH_PX[1],
             top,
@@ -67,9 +134,9 @@ impl PsnrPlot<'_> {
         let jumps: Vec<usize> = (0..count).filter(|&i| self.moves_deg.get(i).is_some_and(|d| *d > JUMP_DEG)).collect();
         let stride = (MARKS_PX / (x.px(1.0) - x.px(0.0)).max(f64::MIN_POSITIVE)).ceil().max(1.0) as usize;
 
-        let along = format!("frames since the cut; above: seconds at {} frames a second", self.fps);
-        let mut plot = Group::new().add(legend(self.methods.iter().map(|(name, _)| *name)));
-        plot = plot.add(axes(&x, &y, &along, "PSNR, dB; higher is better")).add(seconds(&x, self.fps));
+        let along = format!("frames; above: seconds at {} frames a second", self.fps);
+        let mut plot = Group::new().add(legend(self.series.iter().map(|series| (series.name, series.mark))));
+        plot = plot.add(axes(&x, &y, &along, quantity.axis())).add(seconds(&x, self.fps));
         if rows > 0 {
             let at = [LOW_PX[0] - 8.0, 0.5 * (LOW_PX[1] + top) + 0.5];
             plot = plot.add(text("exact", at, "end").set("class", "ink"));
@@ -80,11 +147,11 @@ impl PsnrPlot<'_> {
         }
         plot = plot.add(labels(&curves, &x));
         let (notes, height) = reading(&self.notes(&curves, jumps.len(), stride), HIGH_PX[1] + 68.0);
-        document("psnr", &self.title(), height, plot.add(notes))
+        document(quantity.class(), &self.title(), height, plot.add(notes))
     }
 
     fn title(&self) -> String {
-        let what = format!(": PSNR by frame, {}", visible(self.foveation));
+        let what = format!(": {} by frame, {}", self.quantity.name(), visible(self.what));
         let room = (chars_from(LOW_PX[0]) as f64 / TITLE_CHARS) as usize;
         shortened(&visible(self.input), room.saturating_sub(what.chars().count()).max(8)) + &what
     }
@@ -92,19 +159,19 @@ impl PsnrPlot<'_> {
     fn curves(&self, y: &Scale) -> Vec<Curve<'_>> {
         let mut next_row = LOW_PX[1] + 0.5 * ROW_PX + 2.0;
         let mut curves = vec![];
-        for &(method, mse) in self.methods {
-            let heights = mse.iter().map(|&e| db(e).map(|v| px(y.px(v)))).collect();
-            let exact: Vec<bool> = mse.iter().map(|&e| e == 0.0).collect();
+        for &Series { name: method, mark, values } in self.series {
+            let heights = values.iter().map(|&v| self.quantity.shown(v).map(|v| px(y.px(v)))).collect();
+            let exact: Vec<bool> = values.iter().map(|&v| self.quantity.is_exact(v)).collect();
             let row = next_row;
             next_row += if exact.contains(&true) { ROW_PX } else { 0.0 };
-            curves.push(Curve { method, heights, exact, row });
+            curves.push(Curve { method, mark, heights, exact, row });
         }
         curves
     }
 
     fn notes(&self, curves: &[Curve<'_>], jumps: usize, stride: usize) -> Vec<String> {
         let mut notes = vec![
-            "the error of each shown frame alone, against the full-rate frame; at frame 0 the history is empty".into(),
+            self.note.to_owned(),
             match stride {
                 1 => "marks: the methods, as in the legend".into(),
                 _ => format!("marks: the methods, as in the legend; each at one frame in {stride}"),
@@ -128,15 +195,10 @@ impl PsnrPlot<'_> {
     }
 }
 
-/// PSNR that has a place on the scale.
-fn db(mse: f64) -> Option<f64> {
-    psnr_db(mse).filter(|v| v.is_finite())
-}
-
 impl Curve<'_> {
     /// The line, with marks at every `stride`th frame from `first` on, and at points without a line.
     fn draw(&self, x: &Scale, stride: usize, first: usize) -> Group {
-        let Mark { color, class, .. } = Mark::of(self.method);
+        let Mark { color, class, .. } = Mark::of(self.mark);
         let known = |i: Option<usize>| i.and_then(|i| self.heights.get(i).copied().flatten());
         let at = |i: usize| px(x.px(i as f64));
         let mut group = Group::new().set("class", "curve").set("data-method", visible(self.method));
@@ -166,7 +228,7 @@ impl Curve<'_> {
             let bar = line([at(from), self.row], [at(to), self.row], color).set("stroke-width", 1.8);
             group = group.add(bar.set("class", format!("line {class} exact")));
         }
-        marks.into_iter().fold(group, |group, at| group.add(mark(self.method, at, true)))
+        marks.into_iter().fold(group, |group, at| group.add(mark(self.mark, at, true)))
     }
 
     /// The last point that is drawn: its frame and height.
@@ -188,16 +250,16 @@ fn runs(of: &[bool]) -> Vec<(usize, usize)> {
 
 /// A label for each method, beside the end of its line.
 fn labels(curves: &[Curve<'_>], x: &Scale) -> Group {
-    let ends: Vec<(&str, (usize, f64))> = curves.iter().filter_map(|c| Some((c.method, c.end()?))).collect();
+    let ends: Vec<(&Curve<'_>, (usize, f64))> = curves.iter().filter_map(|c| Some((c, c.end()?))).collect();
     let heights: Vec<f64> = ends.iter().map(|(_, (_, y))| *y).collect();
     let places = spread(&heights, LOW_PX[1] + 6.0, HIGH_PX[1] - 6.0);
     let mut labels = Group::new().set("class", "labels");
-    for ((method, (frame, from)), y) in ends.into_iter().zip(places) {
-        let (color, y) = (Mark::of(method).color, px(y));
+    for ((curve, (frame, from)), y) in ends.into_iter().zip(places) {
+        let (color, y) = (Mark::of(curve.mark).color, px(y));
         let leader = line([px(x.px(frame as f64)), from], [LABEL_PX, y], color).set("stroke-dasharray", "2 2");
         let name_at = LABEL_PX + 11.0;
-        let name = text(&shortened(&visible(method), chars_from(name_at)), [name_at, y + 4.5], "start");
-        labels = labels.add(leader).add(mark(method, [LABEL_PX, y], true)).add(name.set("class", "ink"));
+        let name = text(&shortened(&visible(curve.method), chars_from(name_at)), [name_at, y + 4.5], "start");
+        labels = labels.add(leader).add(mark(curve.mark, [LABEL_PX, y], true)).add(name.set("class", "ink"));
     }
     labels
 }
