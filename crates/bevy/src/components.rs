@@ -4,7 +4,8 @@ use afterimage::{DebugView, Filter, Foveation, Method, Settings};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass};
 use bevy::prelude::*;
 
-/// Runs the post-process for this camera: a `Camera3d` with a perspective projection, symmetric or off-axis.
+/// Runs the post-process for this camera: a `Camera3d` with a perspective projection, symmetric or off-axis,
+/// or an orthographic one.
 ///
 /// Requires `DepthPrepass` and `MotionVectorPrepass`, by which quads are chosen; they stay when this component is
 /// removed. Sets [`Msaa::Off`] while it runs, because most pixels have no samples to average.
@@ -54,8 +55,8 @@ impl Afterimage {
 }
 
 /// Which quads of 2x2 pixels a camera with [`Afterimage`] shades in a frame; without that it does nothing. Angles are
-/// visual angles of the camera: its field of view is taken for the one that the screen fills. Default
-/// [`screen`](Self::screen).
+/// visual angles of the camera: its field of view is taken for the one that the screen fills, 40
+/// degrees wide if it is orthographic. Default [`screen`](Self::screen).
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct Foveated {

@@ -36,6 +36,7 @@ mod gaze;
 mod late;
 mod layers;
 mod oblique;
+mod orthographic;
 mod pass;
 mod scanpath;
 #[doc(hidden)]

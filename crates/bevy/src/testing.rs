@@ -45,7 +45,8 @@ pub fn recorded(render_world: &mut World) -> Vec<Recorded> {
         .filter_map(|(camera, frame, target, prepass, jitter)| {
             let context = contexts.get(&camera)?;
             let mask = context.mask()?.clone();
-            let jitter_px = jitter.map_or([0.0, 0.0], |jitter| (-jitter.offset).to_array());
+            let bevys = jitter.map_or([0.0, 0.0], |jitter| (-jitter.offset).to_array());
+            let jitter_px = frame.jitter_px.unwrap_or(bevys);
             let view = ViewFrame { jitter_px, ..frame.view };
             // Without effects after the post-process the camera's textures were swapped once.
             let color = (**target.main_texture_other()).clone();

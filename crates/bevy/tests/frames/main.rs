@@ -10,6 +10,7 @@ mod events;
 mod late;
 mod layers;
 mod mirrors;
+mod orthographic;
 mod pixels;
 mod quads;
 mod reflection;
