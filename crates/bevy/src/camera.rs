@@ -76,7 +76,9 @@ impl SampledItem<'_, '_> {
     /// What draws on another camera's picture is not foveated.
     fn foveated(&self, layers: &Layers) -> Option<&Afterimage> {
         let (afterimage, foveated) = self.afterimage?;
-        (foveated.kind != FoveationKind::Off && layers.below(self.entity).is_none()).then_some(afterimage)
+        // Where foveation comes and goes by itself, MSAA stays off: other pipelines would have to be compiled.
+        let is_foveated = foveated.kind != FoveationKind::Off || foveated.target_fps.is_some();
+        (is_foveated && layers.below(self.entity).is_none()).then_some(afterimage)
     }
 
     fn has_prepass(&self) -> bool {

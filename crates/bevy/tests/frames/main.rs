@@ -5,6 +5,7 @@ mod common;
 
 mod antialiasing;
 mod applications;
+mod auto;
 mod conventions;
 mod events;
 mod late;

@@ -25,7 +25,9 @@ fn a_moving_cameras_depths_are_foretold() {
     panned.translation += Vec3::new(0.4, 0.0, -0.7);
     let mut turned = place;
     turned.rotate_around(Vec3::ZERO, Quat::from_rotation_y(0.02));
-    for past in [place, panned, turned] {
+    let mut tilted = place;
+    tilted.rotate_local_x(0.01);
+    for past in [place, panned, turned, tilted] {
         let [now, past] = [place, past].map(|place| clip_from_view * place.to_matrix().inverse());
         let view = view(SIZE, Gaze::Lost, now, Some(past)).expect("a view");
         let row = view.previous_from_current.expect("motion")[2];
