@@ -54,6 +54,17 @@ impl ShareControl {
         Ok(Self { target_ms, least, most, share: most, last_ms: [f32::NAN; 3], wait: LATENCY })
     }
 
+    /// The share at present.
+    pub fn share(&self) -> f32 {
+        self.share
+    }
+
+    /// Goes on from another share, within the range, as after frames without this controller.
+    pub fn set_share(&mut self, share: f32) {
+        let share = share.max(self.least).min(self.most);
+        (self.share, self.wait, self.last_ms) = (share, LATENCY, [f32::NAN; 3]);
+    }
+
     /// The share for the next frame. `measured_ms`: time of the last finished frame; one that is not above 0 and finite
     /// counts as missing.
     pub fn share_for(&mut self, measured_ms: f32) -> f32 {
@@ -147,6 +158,17 @@ mod tests {
             let over = made[100..].iter().filter(|[_, time]| *time > 48.0).count();
             assert!(over * 20 < made.len(), "period {period}: {over} frames of more than three times the target");
         }
+    }
+
+    #[test]
+    fn another_share_stays_within_the_range_and_grows_from_there() {
+        let mut control = ShareControl::new(16.0, [0.1, 0.5]).unwrap();
+        for (asked, set) in [(0.2, 0.2), (0.0, 0.1), (7.0, 0.5), (f32::NAN, 0.1)] {
+            control.set_share(asked);
+            // A measurement of a frame before it does not count.
+            assert_eq!(control.share_for(1.0), set);
+        }
+        assert!((0..20).map(|_| control.share_for(1.0)).last().unwrap() > 0.15);
     }
 
     #[test]

@@ -138,6 +138,7 @@ fn event(headless: &mut Headless, random: &mut Random, size: &mut UVec2) -> &'st
                 rate_mid: random.of(&[1, 2, 4]),
                 rate_far: random.of(&[2, 4, 8, 16, 5]),
                 budget: random.of(&[0.0, 0.025, 1.0, 2.0]),
+                target_fps: random.of(&[None, None, Some(1e-3), Some(20.0), Some(0.0), Some(f32::NAN)]),
             };
             entity.insert(random.of(&[uniform, gazed, gazed, Foveated::default()]));
             "foveation"

@@ -3,6 +3,7 @@
 use crate::components::{Afterimage, Foveated, FoveationKind};
 use crate::layers::{AddedStorage, Layers, LayersFound, ReplacedMsaa, chosen_msaa};
 use crate::oblique::{NEAR, is_oblique};
+use crate::orthographic::{self, is_orthographic};
 use afterimage::DepthConvention;
 use bevy::camera::{CameraMainTextureUsages, Hdr, RenderTarget};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, NormalPrepass};
@@ -20,12 +21,10 @@ pub(crate) fn drawn_size_px(camera: &Camera) -> Option<UVec2> {
     (camera.is_active && size.min_element() > 0 && is_inside).then_some(size)
 }
 
-/// Convention of Bevy's depth: reversed, with a far plane that is infinite or not.
+/// Convention of the depth that the post-process gets: Bevy's, reversed, with a far plane that is infinite or not.
 pub(crate) fn depth_convention(clip_from_view: Mat4) -> Result<DepthConvention, String> {
-    if clip_from_view.z_axis.w == 0.0 {
-        return Err("its projection is orthographic, and regions of foveation are visual angles. Use a perspective \
-                    projection, or remove Afterimage"
-            .into());
+    if is_orthographic(clip_from_view) {
+        return orthographic::depth_convention(clip_from_view);
     }
     if is_oblique(clip_from_view) {
         if clip_from_view.w_axis.z <= 0.0 {
@@ -77,7 +76,9 @@ impl SampledItem<'_, '_> {
     /// What draws on another camera's picture is not foveated.
     fn foveated(&self, layers: &Layers) -> Option<&Afterimage> {
         let (afterimage, foveated) = self.afterimage?;
-        (foveated.kind != FoveationKind::Off && layers.below(self.entity).is_none()).then_some(afterimage)
+        // Where foveation comes and goes by itself, MSAA stays off: other pipelines would have to be compiled.
+        let is_foveated = foveated.kind != FoveationKind::Off || foveated.target_fps.is_some();
+        (is_foveated && layers.below(self.entity).is_none()).then_some(afterimage)
     }
 
     fn has_prepass(&self) -> bool {
@@ -147,35 +148,5 @@ fn add_usages(mut commands: Commands, mut cameras: Query<Used<'_>>, layers: Res<
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use bevy::camera::CameraProjection;
-
-    /// A projection whose depth is 0 at `near` and 1 at `far`.
-    fn perspective(near: f32, far: f32) -> Mat4 {
-        let depth = far / (near - far);
-        Mat4::from_cols(Vec4::X, Vec4::Y, Vec4::new(0.0, 0.0, depth, -1.0), Vec4::new(0.0, 0.0, depth * near, 0.0))
-    }
-
-    #[test]
-    fn depth_is_that_of_bevys_projections() {
-        let projection = PerspectiveProjection { near: 0.25, ..default() };
-        let infinite = DepthConvention::Reversed { near: 0.25, far: f32::INFINITY };
-        assert_eq!(depth_convention(projection.get_clip_from_view()), Ok(infinite));
-        // Reversed, with a far plane: the planes are swapped.
-        let finite = perspective(100.0, 0.25);
-        let Ok(DepthConvention::Reversed { near, far }) = depth_convention(finite) else { panic!("not reversed") };
-        assert!((near - 0.25).abs() < 1e-4 && (far - 100.0).abs() < 0.1, "{near} {far}");
-        let forward = perspective(0.25, 100.0);
-        assert!(depth_convention(forward).is_err_and(|problem| problem.contains("reversed")));
-        // A mirror's.
-        let [mirror, turned] = [-2.0, 2.0].map(|offset| {
-            let near_clip_plane = Vec4::new(0.3, 0.1, -0.9, offset);
-            depth_convention(PerspectiveProjection { near_clip_plane, ..default() }.get_clip_from_view())
-        });
-        assert_eq!(mirror, Ok(DepthConvention::Reversed { near: NEAR, far: f32::INFINITY }));
-        assert!(turned.is_err_and(|problem| problem.contains("near_clip_plane")));
-        let orthographic = OrthographicProjection::default_3d().get_clip_from_view();
-        assert!(depth_convention(orthographic).is_err_and(|problem| problem.contains("orthographic")));
-    }
-}
+#[path = "../tests/unit/camera.rs"]
+mod tests;

@@ -4,7 +4,8 @@ use afterimage::{DebugView, Filter, Foveation, Method, Settings};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass};
 use bevy::prelude::*;
 
-/// Runs the post-process for this camera: a `Camera3d` with a perspective projection, symmetric or off-axis.
+/// Runs the post-process for this camera: a `Camera3d` with a perspective projection, symmetric or off-axis,
+/// or an orthographic one.
 ///
 /// Requires `DepthPrepass` and `MotionVectorPrepass`, by which quads are chosen; they stay when this component is
 /// removed. Sets [`Msaa::Off`] while it runs, because most pixels have no samples to average.
@@ -54,8 +55,8 @@ impl Afterimage {
 }
 
 /// Which quads of 2x2 pixels a camera with [`Afterimage`] shades in a frame; without that it does nothing. Angles are
-/// visual angles of the camera: its field of view is taken for the one that the screen fills. Default
-/// [`screen`](Self::screen).
+/// visual angles of the camera: its field of view is taken for the one that the screen fills, 40
+/// degrees wide if it is orthographic. Default [`screen`](Self::screen).
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default)]
 pub struct Foveated {
@@ -71,6 +72,8 @@ pub struct Foveated {
     pub rate_far: u32,
     /// Share of the pixels that are shaded because history lacks something there: 0 to 1. Default 0.05.
     pub budget: f32,
+    /// Frames a second that the plugin keeps by changing the other fields: [`auto`](Self::auto). Default `None`.
+    pub target_fps: Option<f32>,
 }
 
 impl Default for Foveated {
@@ -102,6 +105,23 @@ impl Foveated {
         Foveation::uniform(share).into()
     }
 
+    /// As many pixels, everywhere alike, as make `target_fps` frames a second: from a tenth to all that history lacks,
+    /// by the time of the device, if the application has Bevy's `RenderDiagnosticsPlugin` and the device has
+    /// timestamps, and by that of the whole frame else. With vertical synchronization the latter does not show spare
+    /// time, and the share does not grow again.
+    ///
+    /// Where the target is missed and foveation does not pay, it is [`FoveationKind::Off`] until the load changes. Such
+    /// frames are not antialiased, which one sees.
+    ///
+    /// ```
+    /// use bevy_afterimage::Foveated;
+    ///
+    /// assert_eq!(Foveated::auto(60.0).target_fps, Some(60.0));
+    /// ```
+    pub fn auto(target_fps: f32) -> Self {
+        Self { target_fps: Some(target_fps), ..Self::uniform(1.0) }
+    }
+
     fn foveation(&self) -> Foveation {
         let Self { fovea_deg, mid_deg, rate_mid, rate_far, budget, .. } = *self;
         Foveation { filter: Filter::Quads, fovea_deg, mid_deg, rate_mid, rate_far, budget, ..Default::default() }
@@ -111,7 +131,8 @@ impl Foveated {
 impl From<Foveation> for Foveated {
     fn from(foveation: Foveation) -> Self {
         let Foveation { fovea_deg, mid_deg, rate_mid, rate_far, budget, .. } = foveation;
-        Self { kind: FoveationKind::Quads, fovea_deg, mid_deg, rate_mid, rate_far, budget }
+        let kind = FoveationKind::Quads;
+        Self { kind, fovea_deg, mid_deg, rate_mid, rate_far, budget, target_fps: None }
     }
 }
 

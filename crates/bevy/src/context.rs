@@ -39,9 +39,9 @@ fn extent(frame: &ExtractedAfterimage) -> wgpu::Extent3d {
 pub(crate) struct Context {
     post: Afterimage,
     /// Depth of a plain projection, in place of that of the prepass.
-    plain: Option<Texture>,
+    pub plain: Option<Texture>,
     /// Depth of the prepass, while that of the main pass is closed.
-    depth: Option<Texture>,
+    pub depth: Option<Texture>,
     /// Frame, where it cannot be written to the main texture, or where a debug view is shown instead.
     spare: Option<Texture>,
     /// Debug view, where it cannot be written to the main texture.
@@ -175,7 +175,9 @@ impl Context {
         self.resize(device, encoder, frame)?;
         self.plain = frame.oblique.map(|projection| {
             let plain = self.plain.take().filter(|plain| [plain.width(), plain.height()] == frame.desc.size_px);
-            let plain = plain.unwrap_or_else(|| texture(device, extent(frame), TextureFormat::R32Float, STORAGE));
+            let plain = plain.unwrap_or_else(|| {
+                texture(device, extent(frame), TextureFormat::R32Float, STORAGE | TextureUsages::COPY_SRC)
+            });
             let pass = oblique.get_or_insert_with(|| ObliquePass::new(device));
             pass.record(device, encoder, (drawn.depth, drawn.origin_px), &plain, (projection, facts.jitter_px));
             plain

@@ -6,6 +6,7 @@ use crate::counters::AfterimageStats;
 use crate::gaze::{CameraGaze, Gaze};
 use crate::layers::Layers;
 use crate::oblique::{is_oblique, plain};
+use crate::orthographic::{self, is_orthographic};
 use afterimage::{ContextDesc, DebugView, Foveation, Method, MotionConvention, ViewFrame, ViewGeometry};
 use bevy::camera::{ClearColorConfig, CompositingSpace, MainPassResolutionOverride};
 use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass, MotionVectorPrepass, PreviousViewData};
@@ -27,6 +28,8 @@ pub(crate) struct ExtractedAfterimage {
     pub view: ViewFrame,
     /// The camera's projection, if its depth is not that of a distance.
     pub oblique: Option<Mat4>,
+    /// Jitter of an orthographic camera, which Bevy's does not fit.
+    pub jitter_px: Option<[f32; 2]>,
     pub reset: bool,
     pub debug: Option<DebugView>,
     pub counts: bool,
@@ -127,11 +130,15 @@ fn extract(
             }
         };
         said.remove(&camera.main);
+        let mut jitter_px = None;
         let planted = camera.planted.copied().unwrap_or_default();
         desc.motion = planted.motion.unwrap_or(desc.motion);
         if let Method::Smr(smr) = &mut desc.settings.method {
             smr.antialias = camera.afterimage.antialias && !camera.beside.jitters;
-            if smr.antialias {
+            let is_flat = oblique.is_some_and(is_orthographic);
+            if smr.antialias && is_flat {
+                jitter_px = Some(Foveation::jitter_px(index));
+            } else if smr.antialias {
                 // Bevy's offset moves the camera; content moves the other way.
                 let offset = -Vec2::from(Foveation::jitter_px(index));
                 entity.insert(TemporalJitter { offset });
@@ -147,6 +154,7 @@ fn extract(
             desc,
             view,
             oblique,
+            jitter_px,
             reset: std::mem::take(&mut camera.afterimage.bypass_change_detection().reset),
             debug: camera.debug.map(|debug| debug.0),
             counts: camera.counts,
@@ -155,7 +163,7 @@ fn extract(
     }
 }
 
-/// Context, view and oblique projection.
+/// Context, view, and projection whose depth is not that of a distance.
 type Described = (ContextDesc, ViewFrame, Option<Mat4>);
 
 /// Description of a camera's frame, or why it renders every pixel.
@@ -164,10 +172,7 @@ fn describe(camera: &MainCameraItem<'_, '_>, size: UVec2, gaze: Gaze) -> Result<
     let uv = camera.gaze.map_or(gaze.uv, |own| own.uv).filter(|uv| uv.is_finite());
     let gaze = uv.map_or(afterimage::Gaze::Lost, |uv| afterimage::Gaze::Uv { uv: uv.to_array() });
     let clip_from_view = camera.camera.clip_from_view();
-    let oblique = is_oblique(clip_from_view).then_some(clip_from_view);
     let depth = depth_convention(clip_from_view)?;
-    let plain = |clip_from| if oblique.is_some() { plain(clip_from) } else { clip_from };
-    let clip_from_view = plain(clip_from_view);
     let mut desc = ContextDesc::new(size.into());
     desc.settings = camera.afterimage.settings(camera.foveated);
     desc.settings.validate().map_err(|error| error.to_string())?;
@@ -176,16 +181,31 @@ fn describe(camera: &MainCameraItem<'_, '_>, size: UVec2, gaze: Gaze) -> Result<
     }
     desc.motion = MotionConvention::BEVY;
     desc.depth = depth;
-    let projection = clip_from_view.to_cols_array_2d();
+    let now = clip_from_view * camera.transform.to_matrix().inverse();
+    let past = camera.previous.map(|previous| previous.unjittered_clip_from_world);
+    let is_flat = is_orthographic(clip_from_view);
+    let view = match is_flat {
+        true => orthographic::view(size, gaze, now, past),
+        false => perspective(size, gaze, clip_from_view, now, past),
+    };
+    let is_mapped = is_flat || is_oblique(clip_from_view);
+    Ok((desc, ViewFrame { depth: Some(depth), ..view? }, is_mapped.then_some(clip_from_view)))
+}
+
+/// The view of a perspective camera with its motion.
+fn perspective(
+    size: UVec2,
+    gaze: afterimage::Gaze,
+    clip_from_view: Mat4,
+    now: Mat4,
+    past: Option<Mat4>,
+) -> Result<ViewFrame, String> {
+    let has_plain = |m: Mat4| if is_oblique(clip_from_view) { plain(m) } else { m }.to_cols_array_2d();
+    let projection = has_plain(clip_from_view);
     let geometry = ViewGeometry::from_projection(size.into(), projection).map_err(|error| error.to_string())?;
-    let mut view = ViewFrame { depth: Some(depth), ..ViewFrame::new(geometry, gaze) };
-    if let Some(previous) = camera.previous {
-        let clip_from_world = clip_from_view * camera.transform.to_matrix().inverse();
-        let [now, past] = [clip_from_world, plain(previous.unjittered_clip_from_world)].map(|m| m.to_cols_array_2d());
-        // Matrices that cannot be inverted, as of a camera scaled to 0, have no motion.
-        view = view.moved(projection, now, past).unwrap_or(view);
-    }
-    Ok((desc, view, oblique))
+    let view = ViewFrame::new(geometry, gaze);
+    // Matrices that cannot be inverted, as of a camera scaled to 0, have no motion.
+    Ok(past.and_then(|past| view.moved(projection, has_plain(now), has_plain(past)).ok()).unwrap_or(view))
 }
 
 /// Refuses cameras whose quads cannot be chosen, or cannot be shaded alone.

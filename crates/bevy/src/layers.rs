@@ -188,3 +188,7 @@ fn hand_up(
         pass.record(device, ctx.command_encoder(), lower, upper.main_texture_view(), [0, 0]);
     }
 }
+
+#[cfg(test)]
+#[path = "../tests/unit/layers.rs"]
+mod tests;

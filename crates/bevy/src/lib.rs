@@ -25,6 +25,7 @@
 //! 5. Bevy draws what has no prepass, what transmits light, what is transparent, particles and gizmos at every pixel,
 //!    and its effects.
 
+mod auto;
 mod blit;
 mod camera;
 mod components;
@@ -36,6 +37,7 @@ mod gaze;
 mod late;
 mod layers;
 mod oblique;
+mod orthographic;
 mod pass;
 mod scanpath;
 #[doc(hidden)]
@@ -67,6 +69,7 @@ impl Plugin for AfterimagePlugin {
             return;
         }
         app.init_resource::<AfterimageSupported>().add_plugins((
+            auto::AutoPlugin,
             camera::CameraPlugin,
             layers::LayersPlugin,
             late::LatePlugin,

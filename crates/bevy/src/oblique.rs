@@ -1,6 +1,8 @@
-//! Depth of oblique projections, which mirrors and portals have: their near plane (`near_clip_plane`) is that of the
-//! mirror, and depth is not that of a distance. The post-process gets depth of a plain projection instead.
+//! Depth that is not that of a distance. Mirrors and portals have oblique projections: their near plane
+//! (`near_clip_plane`) is that of the mirror. The post-process gets depth of a plain projection instead; of
+//! orthographic ones, too.
 
+use crate::orthographic::is_orthographic;
 use afterimage::wgpu;
 use bevy::math::{Mat4, UVec2, Vec2, Vec4};
 use wgpu::util::DeviceExt;
@@ -61,7 +63,8 @@ impl ObliquePass {
     ) {
         let size = UVec2::new(plain.width(), plain.height());
         let plane = plane(clip_from_view, size, jitter_px.into()).to_array().map(f32::to_ne_bytes);
-        let origin = [origin_px[0], origin_px[1], 0, 0].map(u32::to_ne_bytes);
+        let is_flat = is_orthographic(clip_from_view).into();
+        let origin = [origin_px[0], origin_px[1], is_flat, 0].map(u32::to_ne_bytes);
         let uniforms = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("afterimage oblique"),
             contents: &[plane, origin].concat().concat(),
@@ -83,26 +86,5 @@ impl ObliquePass {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use bevy::camera::{CameraProjection, PerspectiveProjection};
-
-    #[test]
-    fn plain_depth_is_that_of_the_distance() {
-        let near_clip_plane = Vec4::new(0.3, 0.1, -0.9, -2.0);
-        let clip_from_view = PerspectiveProjection { near_clip_plane, ..Default::default() }.get_clip_from_view();
-        assert!(is_oblique(clip_from_view) && !is_oblique(plain(clip_from_view)));
-        let size = UVec2::new(320, 180);
-        for jitter in [Vec2::ZERO, Vec2::new(0.3, -0.4)] {
-            let [by_x, by_y, constant, factor] = plane(clip_from_view, size, jitter).to_array();
-            for point in [Vec4::new(1.0, 0.5, -6.0, 1.0), Vec4::new(-4.0, 2.0, -40.0, 1.0)] {
-                let clip = clip_from_view * point;
-                let ndc = clip / clip.w;
-                let at = (Vec2::new(ndc.x, -ndc.y) + 1.0) * 0.5 * size.as_vec2() + jitter;
-                let depth = (ndc.z - (by_x * at.x + by_y * at.y + constant)) * factor;
-                let expected = NEAR / -point.z;
-                assert!((depth / expected - 1.0).abs() < 1e-3, "{depth} {expected}");
-            }
-        }
-    }
-}
+#[path = "../tests/unit/oblique.rs"]
+mod tests;

@@ -4,6 +4,7 @@ use crate::blit::BlitPass;
 use crate::context::{Context, Drawn, Facts};
 use crate::frame::ExtractedAfterimage;
 use crate::oblique::ObliquePass;
+use crate::orthographic::jittered;
 use afterimage::wgpu;
 use bevy::core_pipeline::Core3dSystems;
 use bevy::core_pipeline::core_3d::{main_opaque_pass_3d, main_transparent_pass_3d};
@@ -45,7 +46,11 @@ impl Plugin for PassPlugin {
             )
             .add_systems(
                 Core3d,
-                (plan.after(Core3dSystems::Prepass).before(Core3dSystems::MainPass), show.in_set(ShowQuads)),
+                (
+                    jitter.before(Core3dSystems::Prepass),
+                    plan.after(Core3dSystems::Prepass).before(Core3dSystems::MainPass),
+                    show.in_set(ShowQuads),
+                ),
             );
     }
 }
@@ -104,9 +109,20 @@ impl<'a> CameraItem<'a, '_> {
 
     fn facts(&self, count: &FrameCount) -> Facts {
         // Bevy's offset moves the camera; content moves the other way.
-        let sign = if self.frame.has_planted_jitter { 1.0 } else { -1.0 };
-        let jitter_px = self.jitter.map_or([0.0, 0.0], |jitter| (sign * jitter.offset).to_array());
+        let sign = if self.frame.has_planted_jitter { -1.0 } else { 1.0 };
+        let bevys = self.jitter.map_or(Vec2::ZERO, |jitter| -jitter.offset);
+        let jitter_px = (sign * self.frame.jitter_px.map_or(bevys, Vec2::from)).to_array();
         Facts { index: count.0.into(), exposure: self.camera.exposure, jitter_px }
+    }
+}
+
+/// Moves the projection of an orthographic camera that antialiases.
+fn jitter(view: ViewQuery<Camera>, contexts: Res<Contexts>, uniforms: Res<ViewUniforms>, mut ctx: RenderContext) {
+    let is_known = contexts.0.contains_key(&view.entity());
+    let camera = view.into_inner();
+    if let (Some(px), Some(buffer), true) = (camera.frame.jitter_px, uniforms.uniforms.buffer(), is_known) {
+        let device = ctx.render_device().clone();
+        set_jitter(device.wgpu_device(), ctx.command_encoder(), buffer, &camera, px);
     }
 }
 
@@ -177,27 +193,30 @@ fn show(
             error_once!("Afterimage of camera {entity} shows the quads alone: {problem}");
         }
     }
-    if camera.jitter.is_some()
+    // What is drawn from here on is averaged by no history.
+    if (camera.jitter.is_some() || camera.frame.jitter_px.is_some())
         && let Some(buffer) = uniforms.uniforms.buffer()
     {
-        stop_jitter(device, encoder, buffer, &camera);
+        set_jitter(device, encoder, buffer, &camera, [0.0, 0.0]);
     }
 }
 
-/// Takes the jitter from the projection of what is drawn from here on, which no history averages: the first matrix of
-/// the view's uniforms is `clip_from_world`.
-fn stop_jitter(
+/// Sets the jitter of an orthographic projection, or takes that of any, for what is drawn from here on: the first
+/// matrix of the view's uniforms is `clip_from_world`.
+fn set_jitter(
     device: &wgpu::Device,
     encoder: &mut wgpu::CommandEncoder,
     uniforms: &wgpu::Buffer,
     camera: &CameraItem<'_, '_>,
+    jitter_px: [f32; 2],
 ) {
-    let clip_from_world = camera.view.clip_from_view * camera.view.world_from_view.to_matrix().inverse();
+    let clip_from_view = jittered(camera.view.clip_from_view, camera.frame.desc.size_px.into(), jitter_px.into());
+    let clip_from_world = clip_from_view * camera.view.world_from_view.to_matrix().inverse();
     let contents: Vec<u8> = clip_from_world.to_cols_array().iter().flat_map(|value| value.to_ne_bytes()).collect();
-    let still = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+    let set = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some("afterimage view"),
         contents: &contents,
         usage: wgpu::BufferUsages::COPY_SRC,
     });
-    encoder.copy_buffer_to_buffer(&still, 0, uniforms, camera.uniforms.offset.into(), still.size());
+    encoder.copy_buffer_to_buffer(&set, 0, uniforms, camera.uniforms.offset.into(), set.size());
 }

@@ -1,5 +1,6 @@
 //! Errors to plant, and what a frame was made of: for this crate's tests, not part of the stable API.
 
+pub use crate::auto::Auto;
 use crate::frame::ExtractedAfterimage;
 pub use crate::frame::Planted;
 use crate::pass::Contexts;
@@ -27,6 +28,10 @@ pub struct Recorded {
     pub mask: wgpu::Texture,
     /// Depth input, of which the camera's viewport is read.
     pub depth: wgpu::Texture,
+    /// Copy of it that can be read.
+    pub open: Option<wgpu::Texture>,
+    /// What is given in its place where it is not that of a distance, of the viewport alone.
+    pub plain: Option<wgpu::Texture>,
     /// Motion vectors, likewise.
     pub motion: wgpu::Texture,
     /// The camera's main texture.
@@ -45,14 +50,16 @@ pub fn recorded(render_world: &mut World) -> Vec<Recorded> {
         .filter_map(|(camera, frame, target, prepass, jitter)| {
             let context = contexts.get(&camera)?;
             let mask = context.mask()?.clone();
-            let jitter_px = jitter.map_or([0.0, 0.0], |jitter| (-jitter.offset).to_array());
+            let bevys = jitter.map_or([0.0, 0.0], |jitter| (-jitter.offset).to_array());
+            let jitter_px = frame.jitter_px.unwrap_or(bevys);
             let view = ViewFrame { jitter_px, ..frame.view };
             // Without effects after the post-process the camera's textures were swapped once.
             let color = (**target.main_texture_other()).clone();
             let depth = (*prepass.depth.as_ref()?.texture.texture).clone();
             let motion = (*prepass.motion_vectors.as_ref()?.texture.texture).clone();
+            let (open, plain) = (context.depth.clone(), context.plain.clone());
             let output = (**target.main_texture()).clone();
-            Some(Recorded { camera, desc: frame.desc, view, index, color, mask, depth, motion, output })
+            Some(Recorded { camera, desc: frame.desc, view, index, color, mask, depth, open, plain, motion, output })
         })
         .collect()
 }

@@ -2,6 +2,7 @@
 
 use crate::common::headless::{Headless, psnr_db};
 use crate::common::scene::{ScenePlugin, TONEMAPPING, stroll};
+use crate::orthographic::{above, flat};
 use crate::{change, compared};
 use bevy::prelude::*;
 use bevy_afterimage::testing::Planted;
@@ -13,10 +14,14 @@ const SIZE: UVec2 = UVec2::new(240, 136);
 const SAMPLES: u32 = 4;
 
 /// A still camera. The courtyard is without thin bars, whose errors would hide those of a wrong jitter.
-fn still(size: UVec2, components: (Afterimage, Foveated)) -> Headless {
+fn still(size: UVec2, is_flat: bool, components: (Afterimage, Foveated)) -> Headless {
     let mut headless = Headless::new(size, ScenePlugin { lamps: 4, moves: false });
     let target = headless.render_target();
-    let camera = (Camera3d::default(), Msaa::Off, target, TONEMAPPING, stroll(1.0), components);
+    let (projection, place) = match is_flat {
+        true => (Projection::from(flat(9.0)), above()),
+        false => (Projection::default(), stroll(1.0)),
+    };
+    let camera = (Camera3d::default(), projection, Msaa::Off, target, TONEMAPPING, place, components);
     headless.app.world_mut().spawn(camera);
     headless
 }
@@ -45,9 +50,18 @@ fn averaged(rgba: &[u8]) -> Vec<u8> {
 
 #[test]
 fn a_still_view_becomes_that_of_many_samples_a_pixel() {
+    becomes_that_of_many_samples(false);
+}
+
+#[test]
+fn so_does_an_orthographic_one() {
+    becomes_that_of_many_samples(true);
+}
+
+fn becomes_that_of_many_samples(is_flat: bool) {
     let [full, ..] = compared();
-    let reference = averaged(&shot(&mut still(SIZE * SAMPLES, full.clone()), 3));
-    let mut headless = still(SIZE, full);
+    let reference = averaged(&shot(&mut still(SIZE * SAMPLES, is_flat, full.clone()), 3));
+    let mut headless = still(SIZE, is_flat, full);
     let one = psnr_db(&shot(&mut headless, 3), &reference);
     let [with, wrong] = [false, true].map(|jitter| {
         let camera = change(&mut headless, (Afterimage { antialias: true, ..default() }, Foveated::uniform(0.25)));

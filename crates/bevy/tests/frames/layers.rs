@@ -3,10 +3,16 @@
 use crate::SIZE;
 use crate::common::headless::Headless;
 use crate::common::scene::TONEMAPPING;
+use bevy::asset::RenderAssetUsages;
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{ClearColorConfig, Hdr, MsaaWriteback, RenderTarget, Viewport};
-use bevy::light::NotShadowCaster;
+use bevy::light::{NotShadowCaster, Skybox};
 use bevy::prelude::*;
+use bevy::render::RenderApp;
+use bevy::render::render_resource::{
+    Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension,
+};
+use bevy_afterimage::testing::recorded;
 use bevy_afterimage::{Afterimage, Foveated, FoveationKind};
 
 /// Layer of what only upper cameras show.
@@ -55,6 +61,17 @@ fn arm_camera(target: RenderTarget, clear_color: ClearColorConfig) -> impl Bundl
     (Camera3d::default(), Camera { order: 1, clear_color, ..default() }, target, TONEMAPPING, place(1.0), ARM)
 }
 
+/// A grey sky.
+fn sky() -> Image {
+    let size = Extent3d { width: 1, height: 1, depth_or_array_layers: 6 };
+    let usage = RenderAssetUsages::default();
+    let grey = [128, 128, 128, 255];
+    let mut image = Image::new_fill(size, TextureDimension::D2, &grey, TextureFormat::Rgba8UnormSrgb, usage);
+    image.texture_view_descriptor =
+        Some(TextureViewDescriptor { dimension: Some(TextureViewDimension::Cube), ..default() });
+    image
+}
+
 /// Share of the pixels of which a channel differs by more than 8 of 255.
 fn differing(a: &[u8], b: &[u8]) -> f64 {
     let pixels = a.chunks_exact(4).zip(b.chunks_exact(4));
@@ -101,24 +118,25 @@ fn a_view_model_is_drawn_on_the_world() {
 #[test]
 fn cameras_on_one_target_show_what_they_show_at_full_rate() {
     type Spawn = fn(&mut World, RenderTarget, Foveated);
-    let setups: [(&str, bool, Spawn); 8] = [
-        ("hdr below hdr", true, |world, target, kind| {
+    // With an arm or without, and how many cameras are foveated.
+    let setups: [(&str, bool, usize, Spawn); 11] = [
+        ("hdr below hdr", true, 1, |world, target, kind| {
             world.spawn((world_camera(target.clone(), kind), Hdr));
             world.spawn((arm_camera(target, ClearColorConfig::Default), Hdr));
         }),
-        ("hdr below, without MSAA, not cleared", true, |world, target, kind| {
+        ("hdr below, without MSAA, not cleared", true, 1, |world, target, kind| {
             world.spawn((world_camera(target.clone(), kind), Hdr, Msaa::Off));
             world.spawn((arm_camera(target, ClearColorConfig::None), Hdr, Msaa::Off));
         }),
-        ("not cleared", true, |world, target, kind| {
+        ("not cleared", true, 1, |world, target, kind| {
             world.spawn(world_camera(target.clone(), kind));
             world.spawn(arm_camera(target, ClearColorConfig::None));
         }),
-        ("both foveated", true, |world, target, kind| {
+        ("both foveated", true, 1, |world, target, kind| {
             world.spawn(world_camera(target.clone(), kind));
             world.spawn((arm_camera(target, ClearColorConfig::Default), Afterimage::default(), kind));
         }),
-        ("a user interface on an arm", true, |world, target, kind| {
+        ("a user interface on an arm", true, 1, |world, target, kind| {
             world.spawn(world_camera(target.clone(), kind));
             world.spawn(arm_camera(target.clone(), ClearColorConfig::Default));
             let camera = Camera { order: 2, clear_color: ClearColorConfig::None, ..default() };
@@ -126,7 +144,7 @@ fn cameras_on_one_target_show_what_they_show_at_full_rate() {
             let bar = Node { width: Val::Px(60.0), height: Val::Px(20.0), ..default() };
             world.spawn((bar, BackgroundColor(Color::srgb(1.0, 1.0, 0.0)), UiTargetCamera(camera)));
         }),
-        ("split screen", false, |world, target, kind| {
+        ("split screen", false, 2, |world, target, kind| {
             for side in 0..2 {
                 let physical_position = UVec2::new(side * SIZE.x / 2, 0);
                 let physical_size = UVec2::new(SIZE.x / 2, SIZE.y);
@@ -137,7 +155,7 @@ fn cameras_on_one_target_show_what_they_show_at_full_rate() {
                 ));
             }
         }),
-        ("a picture in the picture", true, |world, target, kind| {
+        ("a picture in the picture", true, 1, |world, target, kind| {
             world.spawn(world_camera(target.clone(), kind));
             let viewport = Viewport { physical_size: SIZE / 4, ..default() };
             world
@@ -145,7 +163,7 @@ fn cameras_on_one_target_show_what_they_show_at_full_rate() {
                 .insert(Camera { order: 1, viewport: Some(viewport), ..default() })
                 .insert(Projection::from(PerspectiveProjection { fov: 1.5, ..default() }));
         }),
-        ("below a camera that hides it", true, |world, target, kind| {
+        ("below a camera that hides it", true, 2, |world, target, kind| {
             world.spawn((world_camera(target.clone(), kind), Msaa::Off));
             // Its sides clear what lies below.
             let camera = Camera { order: 1, msaa_writeback: MsaaWriteback::Off, ..default() };
@@ -153,10 +171,28 @@ fn cameras_on_one_target_show_what_they_show_at_full_rate() {
             let viewport = Some(Viewport { physical_size: UVec2::new(SIZE.x / 2, SIZE.y), ..default() });
             world.spawn((world_camera(target, kind), Camera { order: 2, viewport, ..default() }, Msaa::Off));
         }),
+        ("the upper one is older", true, 1, |world, target, kind| {
+            world.spawn(arm_camera(target.clone(), ClearColorConfig::Default));
+            world.spawn(world_camera(target, kind));
+        }),
+        ("a camera between them is not active", true, 1, |world, target, kind| {
+            world.spawn(world_camera(target.clone(), kind));
+            let idle = Camera { order: 1, is_active: false, ..default() };
+            world.spawn((Camera3d::default(), idle, target.clone()));
+            world.spawn(arm_camera(target, ClearColorConfig::Default)).insert(Camera { order: 2, ..default() });
+        }),
+        ("above one that its sky hides", false, 1, |world, target, kind| {
+            world.spawn(arm_camera(target.clone(), ClearColorConfig::Default)).insert(Camera::default());
+            let image = world.resource_mut::<Assets<Image>>().add(sky());
+            let camera = Camera { order: 1, clear_color: ClearColorConfig::None, ..default() };
+            world.spawn(world_camera(target, kind)).insert((camera, Skybox { image: Some(image), ..default() }));
+        }),
     ];
-    for (name, has_arm, spawn) in setups {
+    for (name, has_arm, foveated, spawn) in setups {
         let (mut headless, targets) = room(spawn);
         let shots = compare(&mut headless, &targets, name);
+        let found = recorded(headless.app.sub_app_mut(RenderApp).world_mut()).len();
+        assert_eq!(found, foveated, "{name}: foveated cameras");
         let arms = shots.each_ref().map(|shot| arm_pixels(shot));
         assert!(!has_arm || arms.iter().all(|&pixels| pixels > 20), "{name}: the arm is missing: {arms:?}");
     }

@@ -5,11 +5,13 @@ mod common;
 
 mod antialiasing;
 mod applications;
+mod auto;
 mod conventions;
 mod events;
 mod late;
 mod layers;
 mod mirrors;
+mod orthographic;
 mod pixels;
 mod quads;
 mod reflection;
