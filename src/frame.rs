@@ -34,8 +34,7 @@ pub enum Exposure {
     /// 1 for [`Same`](Self::Same) and [`Changed`](Self::Changed), and follows its changes.
     Scene {
         /// Factor by which colors have white at about 1: 2^-40 to 2^40. Noise ([`FrameInputs::noise`]) has the unit of
-        /// the colors, and is multiplied, too. On a GPU, frames with it have pipelines of their own
-        /// (`gpu::Variant::exposure`).
+        /// the colors, and is multiplied, too. On a GPU, frames with it have pipelines of their own.
         exposure: f32,
     },
 }
@@ -141,7 +140,8 @@ pub struct FrameInputs<'a, Colors, Scalars, Vectors> {
     pub half: Option<Colors>,
     /// Descriptions of the views, one for each view of the context.
     pub views: &'a [ViewFrame],
-    /// Frame counter, which seeds the random numbers: the same index and [`Settings::seed`] give the same bytes.
+    /// Frame counter. It seeds the random numbers, so that the same index and [`Settings::seed`] give the same bytes, and
+    /// moves the even pattern of planned frames. Count recorded frames; other numbers are right, too.
     pub index: u64,
     /// Reset of history.
     pub reset: Reset,
