@@ -10,7 +10,8 @@
 //! MODE: full; prepass (full rate with depth and motion prepasses); msaa (full rate, Bevy's MSAA of 4); taa:SCALE
 //! (Bevy's temporal antialiasing at SCALE of both sides, enlarged bilinearly); quads (foveated, the default);
 //! quads:FOVEA_DEG:RATE_MID:RATE_FAR:BUDGET; uniform:SHARE (without a gaze); one of these with +aa (antialiased);
-//! reference (full rate with four samples a pixel).
+//! reference (full rate with four samples a pixel); deferred:MODE (one of these with a deferred camera, whose materials
+//! are deferred).
 //!
 //! Prints medians of the frames: time from a frame's start until the device has finished it; CPU time of the process;
 //! and on Linux CPU time of all but the software renderer's threads and the submission to it: what the application
@@ -24,8 +25,9 @@
 mod common;
 
 use bevy::anti_alias::taa::TemporalAntiAliasing;
-use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass};
+use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass, MotionVectorPrepass};
 use bevy::ecs::schedule::{Schedules, SingleThreadedExecutor};
+use bevy::pbr::DefaultOpaqueRendererMethod;
 use bevy::prelude::*;
 use bevy::render::RenderApp;
 use bevy::render::renderer::{RenderGraph, RenderGraphSystems};
@@ -41,6 +43,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 const LAMPS: usize = 12;
+/// Before the mode of a deferred camera.
+const DEFERRED: &str = "deferred:";
 /// Start in the scanpath, in seconds.
 const START_S: f64 = 1.0;
 /// Radius of the fovea in heights of the view: 5 degrees of 45.
@@ -166,15 +170,22 @@ fn measure(
     frames: usize,
     folder: Option<&Path>,
 ) -> Result<(), Box<dyn Error>> {
-    let scale: f32 = match mode.strip_prefix("taa:") {
+    let kind = mode.strip_prefix(DEFERRED).unwrap_or(mode);
+    let scale: f32 = match kind.strip_prefix("taa:") {
         Some(scale) => scale.parse()?,
-        None if mode == "reference" => 2.0,
+        None if kind == "reference" => 2.0,
         None => 1.0,
     };
     let shown = scene.size;
     let size = (shown.as_vec2() * scale).round().as_uvec2();
     let lamps = if matches!(scene.name, "cheap" | "worst") { 0 } else { LAMPS };
     let courtyard = ScenePlugin { lamps, moves: scene.name != "still" };
+    let is_deferred = kind != mode;
+    let courtyard = (courtyard, move |app: &mut App| {
+        if is_deferred {
+            app.insert_resource(DefaultOpaqueRendererMethod::deferred());
+        }
+    });
     let mut headless = match scene.extra {
         Extra::Nothing => Headless::new(size, courtyard),
         Extra::Grille => Headless::new(size, (courtyard, GrillePlugin)),
@@ -187,7 +198,7 @@ fn measure(
     let mut gazes = "frame,x_px,y_px\n".to_owned();
     let mut cameras = headless.app.world_mut().query::<&mut Camera>();
     for frame in 0..frames + scene.warm_up {
-        if mode == "reference" {
+        if kind == "reference" {
             // It needs no warm-up, which would take long.
             cameras.single_mut(headless.app.world_mut())?.is_active = frame + 1 >= scene.warm_up;
         }
@@ -238,7 +249,11 @@ fn spawn_camera(headless: &mut Headless, mover: Mover, mode: &str) -> Result<(),
     let target = headless.render_target();
     let mut camera =
         headless.app.world_mut().spawn((Camera3d::default(), Msaa::Off, TONEMAPPING, target, stroll(0.0), mover));
-    let (name, antialias) = mode.strip_suffix("+aa").map_or((mode, false), |name| (name, true));
+    if mode.starts_with(DEFERRED) {
+        camera.insert((DeferredPrepass, DepthPrepass));
+    }
+    let name = mode.strip_prefix(DEFERRED).unwrap_or(mode);
+    let (name, antialias) = name.strip_suffix("+aa").map_or((name, false), |name| (name, true));
     let foveated = |foveated| (Afterimage { antialias, ..default() }, foveated);
     match name {
         "full" | "reference" => &mut camera,
@@ -260,7 +275,7 @@ fn spawn_camera(headless: &mut Headless, mover: Mover, mode: &str) -> Result<(),
                     return Err(format!(
                         "mode is {mode}: expected full, prepass, msaa, taa:SCALE, quads, \
                          quads:FOVEA_DEG:RATE_MID:RATE_FAR:BUDGET, uniform:SHARE, reference, or one that chooses \
-                         quads with +aa"
+                         quads with +aa; each also as deferred:MODE"
                     )
                     .into());
                 }

@@ -12,6 +12,10 @@ use wgpu::{CommandEncoder, Device, Texture, TextureFormat, TextureUsages};
 /// Format in which the post-process works: Bevy's of cameras with `Hdr`.
 const FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
+/// Depth of lighting passes where no quad is chosen. Bevy writes the whole numbers from 0 to 255, divided by 255, of
+/// which each pass tests one for equality: this is none of them.
+const NO_PASS: f32 = 0.5 / 255.0;
+
 /// Usages of textures that the post-process writes.
 const STORAGE: TextureUsages = TextureUsages::STORAGE_BINDING.union(TextureUsages::TEXTURE_BINDING);
 
@@ -65,6 +69,15 @@ pub(crate) struct Drawn<'a> {
     pub motion: &'a Texture,
     /// First pixel of the viewport.
     pub origin_px: [u32; 2],
+}
+
+/// Depths that are tested before pixels are shaded.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tested<'a> {
+    /// That of the main pass.
+    pub main: &'a wgpu::TextureView,
+    /// That of a deferred camera's lighting passes, of the same size.
+    pub lighting: Option<&'a wgpu::TextureView>,
 }
 
 /// What a frame has beside its description.
@@ -161,15 +174,14 @@ impl Context {
         resized.map_err(|error| error.to_string())
     }
 
-    /// Chooses the quads of a frame, and closes `tested`, the depth of the main pass, elsewhere. After an error every
-    /// pixel is shaded.
+    /// Chooses the quads of a frame, and closes the tested depths elsewhere. After an error every pixel is shaded.
     pub fn plan(
         &mut self,
         device: &Device,
         encoder: &mut CommandEncoder,
         (frame, facts): (&ExtractedAfterimage, Facts),
         drawn: Drawn<'_>,
-        tested: &wgpu::TextureView,
+        tested: Tested<'_>,
         oblique: &mut Option<ObliquePass>,
     ) -> Result<(), String> {
         self.resize(device, encoder, frame)?;
@@ -184,7 +196,7 @@ impl Context {
         });
         let inputs = Inputs::new(frame, facts, drawn, self.plain.as_ref());
         self.post.plan(device, encoder, &inputs.frame(facts.index, frame.reset)).map_err(|error| error.to_string())?;
-        let (open, format) = (tested.texture(), tested.texture().format());
+        let (open, format) = (tested.main.texture(), tested.main.texture().format());
         let fits = |kept: &Texture| kept.size() == open.size() && kept.format() == format;
         if !self.depth.as_ref().is_some_and(fits) {
             let usage = TextureUsages::COPY_DST | TextureUsages::COPY_SRC;
@@ -193,9 +205,13 @@ impl Context {
         if let Some(kept) = &self.depth {
             encoder.copy_texture_to_texture(open.as_image_copy(), kept.as_image_copy(), open.size());
         }
-        let (target, origin_px) = (tested, drawn.origin_px);
-        let prime = Prime { target, origin_px, near_depth: 1.0, stencil: None, is_half: false };
-        self.post.prime(device, encoder, 0, &prime).map_err(|error| error.to_string())?;
+        let origin_px = drawn.origin_px;
+        let main = Prime { target: tested.main, origin_px, near_depth: 1.0, stencil: None, is_half: false };
+        let lighting = tested.lighting.map(|target| Prime { target, near_depth: NO_PASS, ..main });
+        // Of one size: if the second does not fit, the first does not, and nothing is closed.
+        for prime in [Some(main), lighting].into_iter().flatten() {
+            self.post.prime(device, encoder, 0, &prime).map_err(|error| error.to_string())?;
+        }
         self.is_planned = true;
         Ok(())
     }

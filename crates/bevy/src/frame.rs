@@ -9,11 +9,12 @@ use crate::oblique::{is_oblique, plain};
 use crate::orthographic::{self, is_orthographic};
 use afterimage::{ContextDesc, DebugView, Foveation, Method, MotionConvention, ViewFrame, ViewGeometry};
 use bevy::camera::{ClearColorConfig, CompositingSpace, MainPassResolutionOverride};
-use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass, MotionVectorPrepass, PreviousViewData};
+use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, PreviousViewData};
 use bevy::diagnostic::FrameCount;
 use bevy::ecs::entity::EntityHashMap;
 use bevy::ecs::query::{QueryData, QueryState};
 use bevy::light::Skybox;
+use bevy::pbr::ScreenSpaceReflections;
 use bevy::prelude::*;
 use bevy::render::camera::{TemporalJitter, extract_cameras};
 use bevy::render::sync_component::{SyncComponent, SyncComponentPlugin};
@@ -86,7 +87,7 @@ struct Beside {
     space: Option<&'static CompositingSpace>,
     sky: Option<&'static Skybox>,
     jitters: Has<TemporalJitter>,
-    is_deferred: Has<DeferredPrepass>,
+    reflects: Has<ScreenSpaceReflections>,
     is_scaled: Has<MainPassResolutionOverride>,
     depth: Has<DepthPrepass>,
     motion: Has<MotionVectorPrepass>,
@@ -214,7 +215,9 @@ fn check(beside: &BesideItem<'_, '_>, camera: &Camera) -> Result<(), String> {
         () if beside.space.is_some_and(|space| *space != CompositingSpace::Linear) => {
             "its CompositingSpace is not linear"
         }
-        () if beside.is_deferred => "it has DeferredPrepass, and quads are shaded by forward rendering alone",
+        () if beside.reflects => {
+            "it has ScreenSpaceReflections, which read the lit frame before history fills it. Remove them"
+        }
         () if beside.is_scaled => "it has MainPassResolutionOverride. Change its viewport instead",
         () if matches!(camera.clear_color, ClearColorConfig::None)
             && beside.sky.is_none_or(|sky| sky.image.is_none()) =>

@@ -18,9 +18,10 @@
 //!
 //! # How a frame is made
 //!
-//! 1. Bevy draws depth and motion vectors of every pixel, in its prepasses.
+//! 1. Bevy draws depth and motion vectors of every pixel, in its prepasses, and what is deferred.
 //! 2. The post-process chooses quads of 2x2 pixels, and closes the depth buffer elsewhere.
-//! 3. Bevy draws opaque and alpha-masked meshes and the sky as always; the depth test skips what is closed.
+//! 3. Bevy lights what is deferred, and draws opaque and alpha-masked meshes and the sky as always; the depth test
+//!    skips what is closed.
 //! 4. The post-process makes the frame, and opens the depth buffer again.
 //! 5. Bevy draws what has no prepass, what transmits light, what is transparent, particles and gizmos at every pixel,
 //!    and its effects.

@@ -1,13 +1,14 @@
 //! Systems that run the post-process in Bevy's render graph.
 
 use crate::blit::BlitPass;
-use crate::context::{Context, Drawn, Facts};
+use crate::context::{Context, Drawn, Facts, Tested};
 use crate::frame::ExtractedAfterimage;
 use crate::oblique::ObliquePass;
 use crate::orthographic::jittered;
 use afterimage::wgpu;
 use bevy::core_pipeline::Core3dSystems;
 use bevy::core_pipeline::core_3d::{main_opaque_pass_3d, main_transparent_pass_3d};
+use bevy::core_pipeline::deferred::copy_lighting_id::{DeferredLightingIdDepthTexture, copy_deferred_lighting_id};
 use bevy::core_pipeline::prepass::ViewPrepassTextures;
 use bevy::core_pipeline::schedule::Core3d;
 use bevy::diagnostic::FrameCount;
@@ -48,7 +49,7 @@ impl Plugin for PassPlugin {
                 Core3d,
                 (
                     jitter.before(Core3dSystems::Prepass),
-                    plan.after(Core3dSystems::Prepass).before(Core3dSystems::MainPass),
+                    plan.after(Core3dSystems::Prepass).after(copy_deferred_lighting_id).before(Core3dSystems::MainPass),
                     show.in_set(ShowQuads),
                 ),
             );
@@ -94,6 +95,7 @@ struct Camera {
     target: &'static ViewTarget,
     depth: &'static ViewDepthStencilTexture,
     prepass: &'static ViewPrepassTextures,
+    lighting: Option<&'static DeferredLightingIdDepthTexture>,
     jitter: Option<&'static TemporalJitter>,
 }
 
@@ -105,6 +107,17 @@ impl<'a> CameraItem<'a, '_> {
             motion: &self.prepass.motion_vectors.as_ref()?.texture.texture,
             origin_px: self.camera.viewport.as_ref().map_or([0, 0], |viewport| viewport.physical_position.into()),
         })
+    }
+
+    fn tested(&self) -> Tested<'a> {
+        let main = self.depth.attachment.depth_stencil_views().attachment_view();
+        // Bevy leaves the texture where a camera is no longer deferred.
+        let lighting = self.prepass.deferred_lighting_pass_id.as_ref().and(self.lighting);
+        Tested { main, lighting: lighting.map(|lighting| &*lighting.texture.default_view) }
+    }
+
+    fn clip_from_view(&self, jitter_px: [f32; 2]) -> Mat4 {
+        jittered(self.view.clip_from_view, self.frame.desc.size_px.into(), jitter_px.into())
     }
 
     fn facts(&self, count: &FrameCount) -> Facts {
@@ -122,11 +135,15 @@ fn jitter(view: ViewQuery<Camera>, contexts: Res<Contexts>, uniforms: Res<ViewUn
     let camera = view.into_inner();
     if let (Some(px), Some(buffer), true) = (camera.frame.jitter_px, uniforms.uniforms.buffer(), is_known) {
         let device = ctx.render_device().clone();
-        set_jitter(device.wgpu_device(), ctx.command_encoder(), buffer, &camera, px);
+        let (device, encoder) = (device.wgpu_device(), ctx.command_encoder());
+        set_jitter(device, encoder, buffer, &camera, px);
+        // By the third matrix deferred lighting and effects place what depth shows. Depth keeps its jitter to the end.
+        let world_from_clip = camera.view.world_from_view.to_matrix() * camera.clip_from_view(px).inverse();
+        set_matrix(device, encoder, (buffer, camera.uniforms.offset + 2 * size_of::<Mat4>() as u32), world_from_clip);
     }
 }
 
-/// Chooses the quads that the camera shades, and closes its depth elsewhere. Where that fails, it shades every pixel.
+/// Chooses the quads that the camera shades, and closes its depths elsewhere. Where that fails, it shades every pixel.
 ///
 /// After a cut one pixel of each quad is chosen (`is_quarter`). Bevy's main pass cannot change its size for one frame:
 /// devices then shade the whole quad of each pixel that is open, as many as at full rate.
@@ -140,10 +157,12 @@ fn plan(
     let entity = view.entity();
     let camera = view.into_inner();
     let (Some(context), Some(drawn)) = (contexts.0.get_mut(&entity), camera.drawn()) else { return };
-    let tested = camera.depth.attachment.depth_stencil_views().attachment_view();
+    let tested = camera.tested();
+    let main = tested.main.texture();
     let copies = wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
+    let is_other = |lighting: &wgpu::TextureView| lighting.texture().size() != main.size();
     // In the frame in which `Afterimage` comes, Bevy's textures may be those of the camera without it.
-    if tested.texture().sample_count() > 1 || !tested.texture().usage().contains(copies) {
+    if main.sample_count() > 1 || !main.usage().contains(copies) || tested.lighting.is_some_and(is_other) {
         return;
     }
     let facts = camera.facts(&count);
@@ -201,8 +220,8 @@ fn show(
     }
 }
 
-/// Sets the jitter of an orthographic projection, or takes that of any, for what is drawn from here on: the first
-/// matrix of the view's uniforms is `clip_from_world`.
+/// Sets the jitter of a projection, for what is drawn from here on: the first matrix of the view's uniforms is
+/// `clip_from_world`.
 fn set_jitter(
     device: &wgpu::Device,
     encoder: &mut wgpu::CommandEncoder,
@@ -210,13 +229,23 @@ fn set_jitter(
     camera: &CameraItem<'_, '_>,
     jitter_px: [f32; 2],
 ) {
-    let clip_from_view = jittered(camera.view.clip_from_view, camera.frame.desc.size_px.into(), jitter_px.into());
+    let clip_from_view = camera.clip_from_view(jitter_px);
     let clip_from_world = clip_from_view * camera.view.world_from_view.to_matrix().inverse();
-    let contents: Vec<u8> = clip_from_world.to_cols_array().iter().flat_map(|value| value.to_ne_bytes()).collect();
+    set_matrix(device, encoder, (uniforms, camera.uniforms.offset), clip_from_world);
+}
+
+/// Writes a matrix to a place in the uniforms.
+fn set_matrix(
+    device: &wgpu::Device,
+    encoder: &mut wgpu::CommandEncoder,
+    (uniforms, offset): (&wgpu::Buffer, u32),
+    matrix: Mat4,
+) {
+    let contents: Vec<u8> = matrix.to_cols_array().iter().flat_map(|value| value.to_ne_bytes()).collect();
     let set = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some("afterimage view"),
         contents: &contents,
         usage: wgpu::BufferUsages::COPY_SRC,
     });
-    encoder.copy_buffer_to_buffer(&set, 0, uniforms, camera.uniforms.offset.into(), set.size());
+    encoder.copy_buffer_to_buffer(&set, 0, uniforms, offset.into(), set.size());
 }

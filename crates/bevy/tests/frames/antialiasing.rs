@@ -2,8 +2,10 @@
 
 use crate::common::headless::{Headless, psnr_db};
 use crate::common::scene::{ScenePlugin, TONEMAPPING, stroll};
+use crate::deferred::deferred;
 use crate::orthographic::{above, flat};
 use crate::{change, compared};
+use bevy::pbr::DefaultOpaqueRendererMethod;
 use bevy::prelude::*;
 use bevy_afterimage::testing::Planted;
 use bevy_afterimage::{Afterimage, Foveated};
@@ -14,15 +16,25 @@ const SIZE: UVec2 = UVec2::new(240, 136);
 const SAMPLES: u32 = 4;
 
 /// A still camera. The courtyard is without thin bars, whose errors would hide those of a wrong jitter.
-fn still(size: UVec2, is_flat: bool, components: (Afterimage, Foveated)) -> Headless {
-    let mut headless = Headless::new(size, ScenePlugin { lamps: 4, moves: false });
+fn still(size: UVec2, (is_flat, is_deferred): (bool, bool), components: (Afterimage, Foveated)) -> Headless {
+    let mut headless = Headless::new(
+        size,
+        (ScenePlugin { lamps: 4, moves: false }, move |app: &mut App| {
+            if is_deferred {
+                app.insert_resource(DefaultOpaqueRendererMethod::deferred());
+            }
+        }),
+    );
     let target = headless.render_target();
     let (projection, place) = match is_flat {
         true => (Projection::from(flat(9.0)), above()),
         false => (Projection::default(), stroll(1.0)),
     };
     let camera = (Camera3d::default(), projection, Msaa::Off, target, TONEMAPPING, place, components);
-    headless.app.world_mut().spawn(camera);
+    let mut camera = headless.app.world_mut().spawn(camera);
+    if is_deferred {
+        camera.insert(deferred());
+    }
     headless
 }
 
@@ -50,18 +62,23 @@ fn averaged(rgba: &[u8]) -> Vec<u8> {
 
 #[test]
 fn a_still_view_becomes_that_of_many_samples_a_pixel() {
-    becomes_that_of_many_samples(false);
+    becomes_that_of_many_samples((false, false));
 }
 
 #[test]
 fn so_does_an_orthographic_one() {
-    becomes_that_of_many_samples(true);
+    becomes_that_of_many_samples((true, false));
 }
 
-fn becomes_that_of_many_samples(is_flat: bool) {
+#[test]
+fn so_do_deferred_ones() {
+    [false, true].into_iter().for_each(|is_flat| becomes_that_of_many_samples((is_flat, true)));
+}
+
+fn becomes_that_of_many_samples(kind: (bool, bool)) {
     let [full, ..] = compared();
-    let reference = averaged(&shot(&mut still(SIZE * SAMPLES, is_flat, full.clone()), 3));
-    let mut headless = still(SIZE, is_flat, full);
+    let reference = averaged(&shot(&mut still(SIZE * SAMPLES, kind, full.clone()), 3));
+    let mut headless = still(SIZE, kind, full);
     let one = psnr_db(&shot(&mut headless, 3), &reference);
     let [with, wrong] = [false, true].map(|jitter| {
         let camera = change(&mut headless, (Afterimage { antialias: true, ..default() }, Foveated::uniform(0.25)));

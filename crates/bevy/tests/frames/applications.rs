@@ -4,8 +4,9 @@ use crate::common::headless::Headless;
 use crate::common::scene::{ScenePlugin, TONEMAPPING, stroll};
 use crate::{SIZE, kind, psnr_db};
 use bevy::camera::ClearColorConfig;
-use bevy::core_pipeline::prepass::{DeferredPrepass, DepthPrepass, MotionVectorPrepass};
+use bevy::core_pipeline::prepass::MotionVectorPrepass;
 use bevy::light::{EnvironmentMapLight, Skybox};
+use bevy::pbr::ScreenSpaceReflections;
 use bevy::prelude::*;
 use bevy_afterimage::{Afterimage, AfterimageStats, Foveated, FoveationKind};
 
@@ -34,7 +35,8 @@ fn shows_every_pixel(components: impl Bundle) -> bool {
 #[test]
 fn what_cannot_be_shaded_by_quads_is_drawn_at_full_rate() {
     let clear_color = ClearColorConfig::None;
-    assert!(shows_every_pixel((DeferredPrepass, DepthPrepass, MotionVectorPrepass)), "deferred");
+    let reflecting = (ScreenSpaceReflections::default(), MotionVectorPrepass);
+    assert!(shows_every_pixel(reflecting), "reflections in screen space");
     assert!(shows_every_pixel(Camera { clear_color, ..default() }), "a frame that is not cleared");
     assert!(!shows_every_pixel(()));
 }

@@ -7,6 +7,7 @@ mod antialiasing;
 mod applications;
 mod auto;
 mod conventions;
+mod deferred;
 mod events;
 mod late;
 mod layers;

@@ -91,6 +91,35 @@ fn difference(a: &[u8], b: &[u8], i: usize) -> u8 {
     (4 * i..4 * i + 3).map(|at| a[at].abs_diff(b[at])).max().unwrap_or(0)
 }
 
+/// Pixels that the foveated camera of an application shades.
+pub struct Shaded {
+    pub chosen: usize,
+    /// Largest difference of a chosen pixel to that of full rate.
+    pub worst: u8,
+    /// Pixels that are not chosen, and shaded nevertheless.
+    pub beside: usize,
+}
+
+/// Compares what was shaded in the last frame with full rate.
+pub fn shaded(headless: &mut Headless, expected: &[u8]) -> Shaded {
+    let given = recorded(headless.app.sub_app_mut(RenderApp).world_mut()).pop().expect("a camera");
+    let [color, mask] = [&given.color, &given.mask].map(|texture| read(headless, texture));
+    let mut found = Shaded { chosen: 0, worst: 0, beside: 0 };
+    let clear = ClearColor::default().0.to_srgba().to_u8_array();
+    for i in 0..SIZE.element_product() as usize {
+        let at = UVec2::new(i as u32 % SIZE.x, i as u32 / SIZE.x);
+        let place = at.x % 2 + 2 * (at.y % 2);
+        let is_chosen = mask[4 * (at.y / 2 * given.mask.width() + at.x / 2) as usize] >> place & 1 == 1;
+        if is_chosen {
+            found.chosen += 1;
+            found.worst = found.worst.max(difference(&color, expected, i));
+        } else if color[4 * i..4 * i + 3].iter().zip(clear).any(|(found, clear)| found.abs_diff(clear) > 1) {
+            found.beside += 1;
+        }
+    }
+    found
+}
+
 #[test]
 fn chosen_pixels_are_those_of_full_rate_and_no_others_are_shaded() {
     let mut full = scene(kind(FoveationKind::Off), false);
@@ -102,25 +131,11 @@ fn chosen_pixels_are_those_of_full_rate_and_no_others_are_shaded() {
         wander(&mut quads, frame);
         let expected = full.shot();
         quads.frames(1);
-        let given = recorded(quads.app.sub_app_mut(RenderApp).world_mut()).pop().expect("a camera");
-        let [color, mask] = [&given.color, &given.mask].map(|texture| read(&quads, texture));
-        let (mut chosen, mut shaded_beside, mut worst) = (0, 0, 0);
-        let clear = ClearColor::default().0.to_srgba().to_u8_array();
-        for i in 0..SIZE.element_product() as usize {
-            let at = UVec2::new(i as u32 % SIZE.x, i as u32 / SIZE.x);
-            let place = at.x % 2 + 2 * (at.y % 2);
-            let is_chosen = mask[4 * (at.y / 2 * given.mask.width() + at.x / 2) as usize] >> place & 1 == 1;
-            if is_chosen {
-                chosen += 1;
-                worst = worst.max(difference(&color, &expected, i));
-            } else if color[4 * i..4 * i + 3].iter().zip(clear).any(|(found, clear)| found.abs_diff(clear) > 1) {
-                shaded_beside += 1;
-            }
-        }
-        println!("frame {frame}: {chosen} pixels chosen, worst difference {worst}/255, {shaded_beside} beside");
+        let Shaded { chosen, worst, beside } = shaded(&mut quads, &expected);
+        println!("frame {frame}: {chosen} pixels chosen, worst difference {worst}/255, {beside} beside");
         assert!(chosen > 1000 && chosen < SIZE.element_product() as usize / 2, "{chosen}");
         assert!(worst <= 1, "{worst}/255");
-        assert_eq!(shaded_beside, 0);
+        assert_eq!(beside, 0);
     }
     assert_eq!(quads.problems(), &[] as &[String]);
 }
