@@ -217,6 +217,7 @@ fn deferred_rendering_comes_and_goes_and_targets_change_their_size() {
         let [full, quads] = targets.each_ref().map(|target| headless.read_target(target));
         let psnr = psnr_db(&quads, &full);
         println!("deferred {is_deferred}, {size}: {psnr:.2} dB");
-        assert!(psnr > 38.0, "{psnr:.2} dB");
+        // Equal pictures would be those of a camera that renders every pixel.
+        assert!(psnr > 38.0 && psnr < 90.0, "{psnr:.2} dB");
     }
 }
