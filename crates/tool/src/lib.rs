@@ -14,6 +14,7 @@ pub mod args;
 mod commands;
 pub mod report;
 pub mod sweep;
+mod video;
 
 pub use afterimage_eval::method_report;
 #[doc(hidden)]
