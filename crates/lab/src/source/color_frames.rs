@@ -34,7 +34,7 @@ pub struct ColorFrames {
 enum Stored {
     /// A file each.
     Files(Vec<PathBuf>),
-    Video(Video),
+    Video(Box<Video>),
 }
 
 impl ColorFrames {
@@ -47,6 +47,7 @@ impl ColorFrames {
     /// - [`Invalid`](InputError::Invalid): a frame number is missing, a frame is damaged or of another size, or
     ///   `cameras.json` is invalid.
     /// - [`NotSupported`](InputError::NotSupported) and [`Limit`](InputError::Limit): as of [`StillSource::open`].
+    ///
     /// Videos other than `.y4m` need an installed `ffmpeg` ([`NotSupported`](InputError::NotSupported)).
     pub fn open(input: &str, limits: &ReadLimits, most: Option<u64>) -> Result<Self, InputError> {
         let path = Path::new(input);
@@ -104,7 +105,7 @@ impl ColorFrames {
             fps: video.fps(),
             hfov_deg: None,
             warnings: video.warnings(),
-            stored: Stored::Video(video),
+            stored: Stored::Video(Box::new(video)),
         }
     }
 
