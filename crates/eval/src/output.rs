@@ -17,16 +17,23 @@ const UNFINISHED: &str = ".afterimage.unfinished";
 
 /// A file that could not be written during the work.
 #[derive(Debug, Error)]
-#[error("{}: cannot be written ({problem}); free space or choose another --out", path.display())]
+#[error("{}: cannot be written ({problem}); {remedy}", path.display())]
 pub struct WriteError {
     path: PathBuf,
     problem: String,
+    remedy: &'static str,
 }
 
 impl WriteError {
     /// `path`, and why it could not be written.
     pub fn new(path: &Path, problem: impl Display) -> Self {
-        Self { path: path.to_owned(), problem: problem.to_string() }
+        Self { path: path.to_owned(), problem: problem.to_string(), remedy: "free space or choose another --out" }
+    }
+
+    /// With what to do about it.
+    #[must_use]
+    pub fn with_remedy(self, remedy: &'static str) -> Self {
+        Self { remedy, ..self }
     }
 }
 

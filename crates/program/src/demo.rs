@@ -166,6 +166,7 @@ impl Part {
                 last.push(result.reference.encoded().clone());
                 last.extend(result.step.outputs.iter().map(|output| encode(&output.image)));
             }
+            Ok(())
         })?;
         bar.finish_and_clear();
         write_report(&facts, &clip, &report, &out)?;

@@ -13,7 +13,9 @@ extern crate afterimage_program;
 pub mod args;
 mod commands;
 pub mod report;
+mod short_help;
 pub mod sweep;
+mod video;
 
 pub use afterimage_eval::method_report;
 #[doc(hidden)]
@@ -21,7 +23,7 @@ pub use commands::sweep::sweep_table;
 
 use afterimage_eval::{clip, output};
 use afterimage_program::{demo, failure, progress};
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 #[cfg(feature = "view")]
 use commands::view;
 use commands::{bench, compare, info, run, scanpath, sweep as sweep_command, trace};
@@ -61,7 +63,8 @@ enum Command {
 
 /// Entry point: parses the arguments, runs the subcommand, and returns the exit code.
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    let command = short_help::with_short_help(Cli::command());
+    let cli = match command.try_get_matches().and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => return Failure::usage_exit_code(&error),
     };

@@ -175,7 +175,11 @@ impl Playback<'_> {
     }
 
     /// Runs the clip and writes everything but `report.json`. Calls `after_frame` when a frame is written.
-    pub fn write(self, out: &Output, after_frame: &mut dyn FnMut(&FrameResult<'_>)) -> Result<ClipReport, ClipError> {
+    pub fn write(
+        self,
+        out: &Output,
+        after_frame: &mut dyn FnMut(&FrameResult<'_>) -> Result<(), ClipError>,
+    ) -> Result<ClipReport, ClipError> {
         let clip = self.clip;
         let mut accumulators: Vec<MethodAccumulator> =
             clip.methods.iter().map(|_| MethodAccumulator::default()).collect();
@@ -209,8 +213,7 @@ impl Playback<'_> {
             if result.index + 1 == clip.gaze.len() {
                 clip.write_sheet(result.reference.encoded(), &encoded, &accumulators, &report.gaze_px, out)?;
             }
-            after_frame(result);
-            Ok(())
+            after_frame(result)
         })?;
         table.finish()?;
         pixel_table.map_or(Ok(()), Table::finish)?;

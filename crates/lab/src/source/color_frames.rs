@@ -1,9 +1,10 @@
-//! Frames of color alone, of any renderer: a folder of numbered frames, or one picture.
+//! Frames of color alone, of any renderer: a folder of numbered frames, one picture, or a video.
 
 use super::exr_file::ExrHeader;
 use super::frame_files::{PassFiles, check_gaps, one_sequence};
 use super::limits::ReadLimits;
 use super::still::StillSource;
+use super::video::Video;
 use super::{FrameSource, is_scene};
 use crate::error::{InputError, io_error};
 use crate::file_kind::{ending, folder_of_pattern, is_video, kind, other_kind};
@@ -13,13 +14,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Frames of which color alone is read: the `.exr` files of a folder, or its `.png` and `.jpg` files if it has no
-/// `.exr`, by the number in their names that varies; or one picture. Opening decodes the first frame and checks all
-/// headers; the other frames are decoded on request and not cached.
-#[derive(Clone, Debug)]
+/// `.exr`, by the number in their names that varies; or one picture; or a video. Opening decodes the first frame and
+/// checks all headers, or counts the frames of a video; the other frames are decoded on request and not cached.
+#[derive(Debug)]
 pub struct ColorFrames {
     name: String,
     limits: ReadLimits,
-    files: Vec<PathBuf>,
+    stored: Stored,
     first_number: Option<i64>,
     size: [u32; 2],
     is_linear: bool,
@@ -28,8 +29,16 @@ pub struct ColorFrames {
     warnings: Vec<String>,
 }
 
+/// How frames are stored.
+#[derive(Debug)]
+enum Stored {
+    /// A file each.
+    Files(Vec<PathBuf>),
+    Video(Box<Video>),
+}
+
 impl ColorFrames {
-    /// Opens a folder or a picture.
+    /// Opens a folder, a picture or a video, of which the first `most` frames are wanted, or all.
     ///
     /// # Errors
     /// - [`Io`](InputError::Io): it does not exist or cannot be read.
@@ -38,10 +47,15 @@ impl ColorFrames {
     /// - [`Invalid`](InputError::Invalid): a frame number is missing, a frame is damaged or of another size, or
     ///   `cameras.json` is invalid.
     /// - [`NotSupported`](InputError::NotSupported) and [`Limit`](InputError::Limit): as of [`StillSource::open`].
-    pub fn open(input: &str, limits: &ReadLimits) -> Result<Self, InputError> {
+    ///
+    /// Videos other than `.y4m` need an installed `ffmpeg` ([`NotSupported`](InputError::NotSupported)).
+    pub fn open(input: &str, limits: &ReadLimits, most: Option<u64>) -> Result<Self, InputError> {
         let path = Path::new(input);
         if !path.is_dir() {
             check_picture(input, path)?;
+            if is_video(path) {
+                return Ok(Self::of_video(input, Video::open(path, limits, most)?, limits));
+            }
             return Self::of(input, vec![path.to_owned()], None, path.parent().unwrap_or(path), limits);
         }
         let (files, left_out) = frames_of(path)?;
@@ -75,10 +89,24 @@ impl ColorFrames {
             fps: cameras.as_ref().and_then(|c| c.fps).or(header_fps),
             hfov_deg: cameras.as_ref().and_then(|c| c.hfov_deg),
             warnings: first.warnings().to_vec(),
-            files,
+            stored: Stored::Files(files),
         };
         frames.check_sizes()?;
         Ok(frames)
+    }
+
+    fn of_video(input: &str, video: Video, limits: &ReadLimits) -> Self {
+        Self {
+            name: input.to_owned(),
+            limits: *limits,
+            first_number: None,
+            size: video.size(),
+            is_linear: false,
+            fps: video.fps(),
+            hfov_deg: None,
+            warnings: video.warnings(),
+            stored: Stored::Video(Box::new(video)),
+        }
     }
 
     /// Name as the user gave it.
@@ -89,7 +117,10 @@ impl ColorFrames {
     /// Number of frames.
     #[expect(clippy::len_without_is_empty, reason = "there is a first frame")]
     pub fn len(&self) -> usize {
-        self.files.len()
+        match &self.stored {
+            Stored::Files(files) => files.len(),
+            Stored::Video(video) => video.len(),
+        }
     }
 
     /// Frame number of the first frame, if the names have numbers.
@@ -107,7 +138,7 @@ impl ColorFrames {
         self.is_linear
     }
 
-    /// Frames per second, if a `cameras.json` or the files state them.
+    /// Frames per second, if a `cameras.json`, the files or the video state them.
     pub fn fps(&self) -> Option<f32> {
         self.fps
     }
@@ -124,7 +155,10 @@ impl ColorFrames {
 
     /// File of a frame.
     pub fn file(&self, index: usize) -> &Path {
-        &self.files[index]
+        match &self.stored {
+            Stored::Files(files) => &files[index],
+            Stored::Video(video) => video.path(),
+        }
     }
 
     /// Decodes a frame: linear color, and the number of pixels that were NaN or infinite and are black.
@@ -132,14 +166,19 @@ impl ColorFrames {
     /// # Errors
     /// As for [`Self::open`].
     pub fn read(&self, index: usize) -> Result<SourceFrame, InputError> {
-        let frame = StillSource::open(&self.files[index], &self.limits)?.frame(0)?;
-        self.check_size(&self.files[index], frame.color.size())?;
+        let files = match &self.stored {
+            Stored::Files(files) => files,
+            Stored::Video(video) => return video.read(index),
+        };
+        let frame = StillSource::open(&files[index], &self.limits)?.frame(0)?;
+        self.check_size(&files[index], frame.color.size())?;
         Ok(frame)
     }
 
     /// Checks the sizes in the headers of all files.
     fn check_sizes(&self) -> Result<(), InputError> {
-        for file in &self.files {
+        let Stored::Files(files) = &self.stored else { return Ok(()) };
+        for file in files {
             if self.is_linear {
                 self.check_size(file, ExrHeader::open(file, &self.limits)?.size())?;
             } else if let Ok((w, h)) = image::image_dimensions(file)
@@ -159,17 +198,17 @@ impl ColorFrames {
         }
         Err(InputError::invalid(
             file.display().to_string(),
-            format!("has {w}x{h} pixels but {} has {w0}x{h0}", self.files[0].display()),
+            format!("has {w}x{h} pixels but {} has {w0}x{h0}", self.file(0).display()),
             "expected frames of one size; keep one sequence in a folder",
         ))
     }
 }
 
-/// Refuses what is no picture.
+/// Refuses what is neither a picture nor a video.
 fn check_picture(input: &str, path: &Path) -> Result<(), InputError> {
-    let expected = "expected a folder of .exr or .png frames, or one picture (.exr, .png, .jpg)";
+    let expected = "expected a folder of .exr or .png frames, one picture (.exr, .png, .jpg), or a video (.y4m, .mp4)";
     if is_scene(input) || input.starts_with("analytic:") {
-        let remedy = "give its frames; run --reference writes them";
+        let remedy = "give its full-rate frames, which a run writes on request";
         return Err(InputError::request(input, "is a scene and no frames", remedy));
     }
     if let Some(folder) = folder_of_pattern(path) {
@@ -181,11 +220,7 @@ fn check_picture(input: &str, path: &Path) -> Result<(), InputError> {
     }
     match (kind(path).as_str(), other_kind(path)) {
         ("exr" | "png" | "jpg" | "jpeg", _) => Ok(()),
-        _ if is_video(path) => Err(InputError::not_supported(
-            input,
-            "is a video",
-            "write its frames as .png: ffmpeg -i VIDEO FOLDER/%06d.png",
-        )),
+        _ if is_video(path) => Ok(()),
         (_, Some((problem, remedy))) => Err(InputError::not_supported(input, problem, remedy)),
         _ => Err(InputError::not_supported(input, "is a kind of file that is not supported", expected)),
     }

@@ -2,6 +2,7 @@
 
 pub mod color_frames;
 pub mod exr_file;
+pub mod ffmpeg;
 mod frame_files;
 pub mod limits;
 pub mod motion_check;
@@ -12,7 +13,10 @@ pub mod sequence;
 pub mod still;
 pub mod synthetic_head;
 pub mod traced;
+mod video;
 pub mod viewed_scene;
+pub mod y4m;
+pub mod yuv;
 
 pub use crate::file_kind::other_kind;
 pub use afterimage_eval::source::{

@@ -249,7 +249,7 @@ fn over_black<T: Copy + Into<u32>>(encoded: &[T], max: u32, gamma: Option<f64>) 
 }
 
 /// IEC 61966-2-1, for values from 0 to 1.
-fn srgb_to_linear(v: f64) -> f64 {
+pub(super) fn srgb_to_linear(v: f64) -> f64 {
     if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 

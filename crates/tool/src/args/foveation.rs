@@ -10,54 +10,57 @@ use clap::error::ErrorKind;
 use clap::{Arg, Args, Command, Error};
 use std::ffi::OsStr;
 
+/// Heading of these options in the help.
+const HEADING: &str = "Foveation";
+
 /// Foveation simulator, and the resolution by eccentricity.
 #[derive(Args, Clone, Debug)]
 pub struct FoveationArgs {
     /// How frames are foveated. quads: one full-rate view, of which each method chooses the pixels that are shaded;
     /// given frames simulate it. mip, gauss and block simulate blur on full-rate frames; layers and uniform render
     /// views of rasterised scenes. Default: quads for scenes without --sampling, else mip
-    #[arg(long = "foveation", value_parser = FilterParser)]
+    #[arg(long = "foveation", value_parser = FilterParser, help_heading = HEADING)]
     pub filter: Option<FilterName>,
     /// Diameter of the full-rate region, degrees
-    #[arg(long, default_value_t = 5.0, value_name = "DEG")]
+    #[arg(long, default_value_t = 5.0, value_name = "DEG", help_heading = HEADING)]
     pub fovea: f32,
     /// Diameter of the middle region, degrees
-    #[arg(long, default_value_t = 15.0, value_name = "DEG")]
+    #[arg(long, default_value_t = 15.0, value_name = "DEG", help_heading = HEADING)]
     pub mid: f32,
     /// Width of the linear blend outside each radius, degrees
-    #[arg(long, default_value_t = 1.0, value_name = "DEG")]
+    #[arg(long, default_value_t = 1.0, value_name = "DEG", help_heading = HEADING)]
     pub blend: f32,
     /// Block edge in the middle region, pixels, a power of two; quads: 2 to 8; default: 8, for quads 4, at
     /// most --rate-far
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", help_heading = HEADING)]
     pub rate_mid: Option<u32>,
     /// Block edge beyond the middle region, pixels, a power of two; quads: 2 to 8; default: 16, for quads 8, at least
     /// --rate-mid
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", help_heading = HEADING)]
     pub rate_far: Option<u32>,
     /// With --foveation quads: pixels a frame that smr shades by need, beside the even pattern, percent, 0 to 100;
     /// default: 2.5
-    #[arg(long, value_parser = parse_percent, value_name = "PERCENT")]
+    #[arg(long, value_parser = parse_percent, value_name = "PERCENT", help_heading = HEADING)]
     pub budget: Option<f32>,
     /// With --foveation quads: shades this share of the pixels everywhere alike, without a gaze, percent, 0 to 100; a
     /// temporal upscaler, for example with 25. --fovea, --mid, the rates and --budget follow from it
-    #[arg(long, value_parser = parse_percent, value_name = "PERCENT", conflicts_with_all = ["fovea", "mid", "rate_mid", "rate_far", "budget"])]
+    #[arg(long, value_parser = parse_percent, value_name = "PERCENT", conflicts_with_all = ["fovea", "mid", "rate_mid", "rate_far", "budget"], help_heading = HEADING)]
     pub share: Option<f32>,
     /// With --foveation quads: shades one pixel of a chosen quad outside the fovea, not all four; traced frames always
     /// do. One pixel in 4: with --fovea 0 --mid 180 --rate-mid 2 --rate-far 2 --budget 0
-    #[arg(long)]
+    #[arg(long, help_heading = HEADING)]
     pub single_pixels: bool,
     /// Side of the pixels of --foveation uniform, in pixels of the full-rate frame, 1 to 256; need not be whole;
     /// default: 2
-    #[arg(long, value_parser = parse_scale, value_name = "S")]
+    #[arg(long, value_parser = parse_scale, value_name = "S", help_heading = HEADING)]
     pub scale: Option<f32>,
     /// With --foveation layers or uniform: depth and motion of every pixel, or of the nearest pixel of a view; default:
     /// samples
-    #[arg(long, value_parser = by_name::<Geometry>())]
+    #[arg(long, value_parser = by_name::<Geometry>(), help_heading = HEADING)]
     pub geometry: Option<Geometry>,
     /// Jitter of the projection, in scenes and analytic clips: frames then have one sample a pixel, which smr
     /// antialiases; --foveation off means planned frames of which every pixel is shaded
-    #[arg(long, value_parser = by_name::<Jitter>(), default_value = "off")]
+    #[arg(long, value_parser = by_name::<Jitter>(), default_value = "off", help_heading = HEADING)]
     pub jitter: Jitter,
 }
 

@@ -13,19 +13,22 @@ pub(super) const DEFAULT_SECONDS: f64 = 5.0;
 /// Frames up to which a recording counts whose times are hardly seconds: a minute of 60 frames a second.
 const MOST_FRAMES_IN_DOUBT: u64 = 3600;
 
+/// Heading of these options in the help.
+const HEADING: &str = "Gaze";
+
 /// Gaze of a clip.
 #[derive(Args, Clone, Debug)]
 pub struct GazeArgs {
     /// Scanpath or export of an eye tracker (FILE; docs/gaze-logs.md), gaze.csv of a run, one fixed frame pixel (X,Y),
     /// or synthetic[:SEED]
-    #[arg(long, default_value = "synthetic:0", value_name = "GAZE", allow_hyphen_values = true)]
+    #[arg(long, default_value = "synthetic:0", value_name = "GAZE", allow_hyphen_values = true, help_heading = HEADING)]
     pub gaze: String,
     /// Map from screen to frame: keep visual angles, or stretch; default: angle if the file states the screen's
     /// geometry
-    #[arg(long, value_parser = by_name::<GazeMap>())]
+    #[arg(long, value_parser = by_name::<GazeMap>(), help_heading = HEADING)]
     pub gaze_map: Option<GazeMap>,
     /// Start time in the scanpath, seconds
-    #[arg(long, default_value_t = 0.0, value_name = "S")]
+    #[arg(long, default_value_t = 0.0, value_name = "S", help_heading = HEADING)]
     pub start: f64,
     #[command(flatten)]
     pub log: GazeLogArgs,

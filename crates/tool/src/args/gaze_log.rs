@@ -1,119 +1,79 @@
 //! Options of gaze logs: what a file does not say of its screen, and which eye counts.
 
-use super::{Named, by_name, parse_distance_mm, parse_size, parse_size_mm};
+use super::gaze_columns::{NamedColumns, TimeUnit, parse_columns};
+use super::gaze_layout::{GazeLayout, parse_layout};
+use super::{by_name, parse_distance_mm, parse_size, parse_size_mm};
 use crate::failure::Failure;
 use afterimage_lab::scanpath::{Eye, GazeColumns, GazeLog, GazeLogOptions, GazeUnit, Vendor};
 use afterimage_lab::scanpath::{read_gaze_columns, read_gaze_log};
 use clap::Args;
-use std::collections::BTreeMap;
 use std::path::Path;
+
+/// Heading of these options in the help.
+const HEADING: &str = "Gaze logs";
 
 /// Screen of a gaze log.
 #[derive(Args, Clone, Debug, Default)]
 pub struct GazeLogArgs {
     /// Screen of a gaze log, pixels; default: the file's. For gaze in pixels of a picture: the picture's size
-    #[arg(long, value_parser = parse_size, value_name = "WxH")]
+    #[arg(long, value_parser = parse_size, value_name = "WxH", help_heading = HEADING)]
     pub screen_px: Option<[u32; 2]>,
     /// Screen of a gaze log, millimeters; default: the file's
-    #[arg(long, value_parser = parse_size_mm, value_name = "WxH")]
+    #[arg(long, value_parser = parse_size_mm, value_name = "WxH", help_heading = HEADING)]
     pub screen_mm: Option<[f32; 2]>,
     /// Distance of the screen of a gaze log, millimeters; default: the file's
-    #[arg(long, value_parser = parse_distance_mm, value_name = "D")]
+    #[arg(long, value_parser = parse_distance_mm, value_name = "D", help_heading = HEADING)]
     pub distance_mm: Option<f32>,
     /// Gaze of a log with both eyes; default: both
-    #[arg(long, value_parser = by_name::<Eye>())]
+    #[arg(long, value_parser = by_name::<Eye>(), help_heading = HEADING)]
     pub eye: Option<Eye>,
     /// Columns of a gaze log that is no known export: t=NAME,x=NAME,y=NAME[,z=NAME][,valid=NAME]; with z, a direction;
     /// -NAME turns an axis around, valid=!NAME inverts
-    #[arg(long, value_name = "LIST", value_parser = parse_columns)]
+    #[arg(long, value_name = "LIST", value_parser = parse_columns, help_heading = HEADING)]
     pub gaze_columns: Option<NamedColumns>,
     /// With --gaze-columns: unit of x and y; default: px
-    #[arg(long, value_name = "UNIT", value_parser = by_name::<GazeUnit>(), requires = "gaze_columns")]
+    #[arg(long, value_name = "UNIT", value_parser = by_name::<GazeUnit>(), requires = "gaze_columns", help_heading = HEADING)]
     pub gaze_unit: Option<GazeUnit>,
     /// With --gaze-columns: unit of t; default: auto, as its name says, else that with 5 to 5000 samples a second
-    #[arg(long, value_name = "UNIT", value_parser = by_name::<TimeUnit>(), requires = "gaze_columns")]
+    #[arg(long, value_name = "UNIT", value_parser = by_name::<TimeUnit>(), requires = "gaze_columns", help_heading = HEADING)]
     pub time_unit: Option<TimeUnit>,
-}
-
-/// Values of `--gaze-columns`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamedColumns {
-    time: String,
-    at: Vec<String>,
-    valid: Option<String>,
-}
-
-fn parse_columns(text: &str) -> Result<NamedColumns, String> {
-    const EXPECTED: &str = "expected t=NAME,x=NAME,y=NAME, and z=NAME and valid=NAME where there are";
-    let mut given = BTreeMap::new();
-    for part in text.split(',') {
-        let (key, name) = part.split_once('=').ok_or(EXPECTED)?;
-        let is_known = ["t", "x", "y", "z", "valid"].contains(&key.trim());
-        if !is_known || name.trim().is_empty() || given.insert(key.trim(), name.trim().to_owned()).is_some() {
-            return Err(EXPECTED.into());
-        }
-    }
-    let mut take = |key: &str| given.remove(key);
-    let (Some(time), Some(x), Some(y)) = (take("t"), take("x"), take("y")) else { return Err(EXPECTED.into()) };
-    Ok(NamedColumns { time, at: [Some(x), Some(y), take("z")].into_iter().flatten().collect(), valid: take("valid") })
-}
-
-impl Named for GazeUnit {
-    fn rows() -> Vec<(Self, &'static str, &'static str)> {
-        vec![
-            (Self::Pixels, "px", "Screen pixels from the top left corner, y down"),
-            (Self::Shares, "norm", "0 to 1 of the screen, y down"),
-            (Self::Degrees, "deg", "Visual angles, degrees, y up"),
-            (Self::Radians, "rad", "Visual angles, radians, y up"),
-            (Self::Sphere, "lonlat", "Longitude and latitude, degrees, y up; the middle of the view is 0,0"),
-        ]
-    }
-}
-
-/// Values of `--time-unit`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum TimeUnit {
-    Auto,
-    PerSecond(f64),
-}
-
-impl Named for TimeUnit {
-    fn rows() -> Vec<(Self, &'static str, &'static str)> {
-        vec![
-            (Self::Auto, "auto", "As the name says, else by the step"),
-            (Self::PerSecond(1.0), "s", "Seconds"),
-            (Self::PerSecond(1e3), "ms", "Milliseconds"),
-            (Self::PerSecond(1e6), "us", "Microseconds"),
-            (Self::PerSecond(1e9), "ns", "Nanoseconds"),
-        ]
-    }
-}
-
-impl Named for Eye {
-    fn rows() -> Vec<(Self, &'static str, &'static str)> {
-        vec![
-            (Self::Both, "both", "The tracker's gaze of both eyes, else the mean of the valid ones"),
-            (Self::Left, "left", "The left eye's"),
-            (Self::Right, "right", "The right eye's"),
-        ]
-    }
+    /// The options from --screen-px to --time-unit of a data set, as JSON (docs/gaze-logs.md); options replace what it
+    /// says of the screen and the eye
+    #[arg(long, value_name = "FILE.json", value_parser = parse_layout, conflicts_with = "gaze_columns", help_heading = HEADING)]
+    pub gaze_layout: Option<GazeLayout>,
 }
 
 impl GazeLogArgs {
     /// Reads a log, of a given vendor or found out.
     pub fn read(&self, file: &str, from: Option<Vendor>) -> Result<GazeLog, Failure> {
-        let &Self { screen_px, screen_mm, distance_mm, eye, .. } = self;
+        let given = self.with_layout();
+        let Self { screen_px, screen_mm, distance_mm, eye, .. } = given;
         let options = GazeLogOptions { from, eye: eye.unwrap_or_default(), screen_px, screen_mm, distance_mm };
-        let Some(named) = &self.gaze_columns else {
+        let Some(named) = given.gaze_columns else {
             return Ok(read_gaze_log(Path::new(file), &options)?);
         };
-        let NamedColumns { time, at, valid } = named.clone();
-        let per_second = match self.time_unit {
+        let NamedColumns { time, at, valid } = named;
+        let per_second = match given.time_unit {
             Some(TimeUnit::PerSecond(ticks)) => Some(ticks),
             Some(TimeUnit::Auto) | None => None,
         };
-        let columns = GazeColumns { time, at, valid, unit: self.gaze_unit.unwrap_or_default(), per_second };
+        let columns = GazeColumns { time, at, valid, unit: given.gaze_unit.unwrap_or_default(), per_second };
         Ok(read_gaze_columns(Path::new(file), &columns, &options)?)
+    }
+
+    /// The options that were given, and those of the layout where there are none.
+    fn with_layout(&self) -> Self {
+        let Some(of) = self.gaze_layout.clone() else { return self.clone() };
+        Self {
+            screen_px: self.screen_px.or(of.screen_px),
+            screen_mm: self.screen_mm.or(of.screen_mm),
+            distance_mm: self.distance_mm.or(of.distance_mm),
+            eye: self.eye.or(of.eye),
+            gaze_columns: of.columns,
+            gaze_unit: of.unit,
+            time_unit: of.time_unit,
+            gaze_layout: None,
+        }
     }
 
     /// Refuses the options for a `subject` that is no gaze log.
@@ -124,6 +84,7 @@ impl GazeLogArgs {
             (self.distance_mm.is_some(), "--distance-mm"),
             (self.eye.is_some(), "--eye"),
             (self.gaze_columns.is_some(), "--gaze-columns"),
+            (self.gaze_layout.is_some(), "--gaze-layout"),
         ];
         match given.iter().find(|(is_given, _)| *is_given) {
             Some((_, option)) => Err(Failure::Input(format!(

@@ -15,6 +15,9 @@ use afterimage_lab::source::{
 use afterimage_lab::trace::sampling::Sampling;
 use clap::{Args, ValueEnum};
 
+/// Heading of these options in the help.
+const HEADING: &str = "Input";
+
 /// Input: frames or a scene.
 #[derive(Args, Clone, Debug)]
 pub struct InputArgs {
@@ -23,19 +26,19 @@ pub struct InputArgs {
     #[arg(value_name = "INPUT")]
     pub name: String,
     /// Frames per second, for view an upper limit; default: the input's, else 60
-    #[arg(long, value_parser = parse_fps, value_name = "F")]
+    #[arg(long, value_parser = parse_fps, value_name = "F", help_heading = HEADING)]
     pub fps: Option<f32>,
     /// Horizontal field of view of the flat view, degrees; default: the input's, else 70
-    #[arg(long, value_parser = parse_hfov, value_name = "DEG")]
+    #[arg(long, value_parser = parse_hfov, value_name = "DEG", help_heading = HEADING)]
     pub hfov: Option<f32>,
     /// Size of scenes, pixels; default 640x360
-    #[arg(long, value_parser = parse_size, value_name = "WxH")]
+    #[arg(long, value_parser = parse_size, value_name = "WxH", help_heading = HEADING)]
     pub size: Option<[u32; 2]>,
     /// Renderer of a scene; default: raster
-    #[arg(long, value_enum, value_name = "NAME")]
+    #[arg(long, value_enum, value_name = "NAME", help_heading = HEADING)]
     pub source: Option<SourceName>,
     /// Samples per pixel of --source trace: of full-rate frames, or of the fovea with --sampling
-    #[arg(long, default_value_t = 32, value_parser = parse_samples, value_name = "N")]
+    #[arg(long, default_value_t = 32, value_parser = parse_samples, value_name = "N", help_heading = HEADING)]
     pub spp: u32,
     #[command(flatten)]
     pub paths: PathArgs,
@@ -44,13 +47,13 @@ pub struct InputArgs {
     /// head of a walking person), framing, head (the poses of the head in --gaze FILE.csv, or somebody who looks around
     /// with head and eye with --gaze synthetic:SEED), head-walk (the same, walking); default: the scene's first camera,
     /// which glides sideways if nothing in the scene moves
-    #[arg(long, value_name = "NAME|FILE")]
+    #[arg(long, value_name = "NAME|FILE", help_heading = HEADING)]
     pub camera: Option<String>,
     /// Animation of a scene, by name or number from 0; default: the first. It starts at its first key, and loops
-    #[arg(long, visible_alias = "clip", value_name = "NAME|N")]
+    #[arg(long, visible_alias = "clip", value_name = "NAME|N", help_heading = HEADING)]
     pub animation: Option<String>,
     /// Limit on the size of input images, million pixels
-    #[arg(long, default_value_t = 64, value_name = "N")]
+    #[arg(long, default_value_t = 64, value_name = "N", help_heading = HEADING)]
     pub max_megapixels: u32,
     #[command(flatten)]
     pub channels: ChannelArgs,

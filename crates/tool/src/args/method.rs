@@ -21,60 +21,63 @@ impl Named for MethodName {
     }
 }
 
+/// Heading of these options in the help.
+const HEADING: &str = "Settings of methods";
+
 /// Settings and ablations of the methods.
 #[derive(Args, Clone, Debug)]
 pub struct MethodArgs {
     /// wrs: the paper literally, or with a gate at the candidate's scale, sharper weights and means; the options below
     /// replace its parts
-    #[arg(long, value_enum, default_value = "paper")]
+    #[arg(long, value_enum, default_value = "paper", help_heading = HEADING)]
     pub wrs_preset: WrsPresetName,
     /// Sampling algorithm of the reservoir; default: a-chao, for --wrs-preset weighted a-chao-mean
-    #[arg(long, value_parser = by_name::<Sampler>())]
+    #[arg(long, value_parser = by_name::<Sampler>(), help_heading = HEADING)]
     pub wrs_sampler: Option<Sampler>,
     /// Exponent of the density in candidate weights, 1 to 8; default: 1, for --wrs-preset weighted 8
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", help_heading = HEADING)]
     pub wrs_exponent: Option<u32>,
     /// Exponent of the samples a pixel in candidate weights, 0 to 4; default: 0, for --wrs-preset weighted 3
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", help_heading = HEADING)]
     pub wrs_rate_exponent: Option<u32>,
     /// Decay of the history's weight: bernoulli, exponential:LAMBDA (per frame), or none
-    #[arg(long, default_value = "bernoulli", value_parser = parse_bias, value_name = "BIAS")]
+    #[arg(long, default_value = "bernoulli", value_parser = parse_bias, value_name = "BIAS", help_heading = HEADING)]
     pub wrs_bias: Bias,
     /// What the color gate compares with the candidate: the stored sample, or the first candidate of the same level of
     /// detail since; default: sample, for --wrs-preset weighted candidate
-    #[arg(long, value_parser = by_name::<GateScale>())]
+    #[arg(long, value_parser = by_name::<GateScale>(), help_heading = HEADING)]
     pub gate_scale: Option<GateScale>,
     /// Color difference above the offset at which the gate closes, Delta E 94; default: 100, for --wrs-preset weighted
     /// 10
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", help_heading = HEADING)]
     pub gate_divisor: Option<f32>,
     /// Color difference that the gate ignores, Delta E 94; default: 0, for --wrs-preset weighted 3
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", help_heading = HEADING)]
     pub gate_offset: Option<f32>,
     /// Color difference of the gate: of the whole color, or of lightness alone
-    #[arg(long, value_parser = by_name::<GateMetric>(), default_value = "delta-e94")]
+    #[arg(long, value_parser = by_name::<GateMetric>(), default_value = "delta-e94", help_heading = HEADING)]
     pub gate_metric: GateMetric,
     /// Turn the color gate off
-    #[arg(long)]
+    #[arg(long, help_heading = HEADING)]
     pub no_gate: bool,
     /// smr: largest weight of history at the same level of detail, 0 to 0.98; default: 0.9, for frames traced with
     /// --sampling 0.95
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", help_heading = HEADING)]
     pub smr_accumulate: Option<f32>,
     /// smr: factor on the tolerated difference from history, 0.1 to 10
-    #[arg(long, default_value_t = Smr::default().tolerance, value_name = "X")]
+    #[arg(long, default_value_t = Smr::default().tolerance, value_name = "X", help_heading = HEADING)]
     pub smr_tolerance: f32,
     /// smr: do not adapt history to changes of light
-    #[arg(long)]
+    #[arg(long, help_heading = HEADING)]
     pub no_relight: bool,
     /// Depth test: relative depth difference within one surface, above 0 and below 1
-    #[arg(long, default_value_t = DepthTest::default().relative, value_name = "X")]
+    #[arg(long, default_value_t = DepthTest::default().relative, value_name = "X", help_heading = HEADING)]
     pub depth_relative: f32,
     /// Depth test: tolerated depth change along the surface's slope, in pixels of offset, 0 to 64; 0: ignore the slope
-    #[arg(long, default_value_t = DepthTest::default().slope_px, value_name = "PX")]
+    #[arg(long, default_value_t = DepthTest::default().slope_px, value_name = "PX", help_heading = HEADING)]
     pub depth_slope: f32,
     /// Turn the depth test off: history is never rejected as disoccluded
-    #[arg(long, visible_alias = "no-flush")]
+    #[arg(long, visible_alias = "no-flush", help_heading = HEADING)]
     pub no_depth_test: bool,
 }
 

@@ -6,20 +6,23 @@ use afterimage_lab::trace::effects::{Effect, Effects};
 use afterimage_lab::trace::settings::{Bsdf, Integrator, MAX_DEPTH, TraceSettings};
 use clap::Args;
 
+/// Heading of these options in the help.
+const HEADING: &str = "Path tracing";
+
 /// Settings of the path tracer.
 #[derive(Args, Clone, Debug)]
 pub struct PathArgs {
     /// Largest number of scattering events after the camera ray, 0 to 64
-    #[arg(long, default_value_t = 3, value_name = "N")]
+    #[arg(long, default_value_t = 3, value_name = "N", help_heading = HEADING)]
     pub max_depth: u32,
     /// Integrator: multiple importance sampling, next-event estimation, or BSDF sampling alone (as in the thesis)
-    #[arg(long, value_parser = by_name::<Integrator>(), default_value = "mis")]
+    #[arg(long, value_parser = by_name::<Integrator>(), default_value = "mis", help_heading = HEADING)]
     pub integrator: Integrator,
     /// Scattering model of surfaces: principled, or Lambert and Phong as in the thesis
-    #[arg(long, value_parser = by_name::<Bsdf>(), default_value = "auto")]
+    #[arg(long, value_parser = by_name::<Bsdf>(), default_value = "auto", help_heading = HEADING)]
     pub bsdf: Bsdf,
     /// Effects compiled into the kernels: those that the scene needs, all, or a list of names (trace -v prints them)
-    #[arg(long, default_value = "auto", value_name = "auto|all|LIST")]
+    #[arg(long, default_value = "auto", value_name = "auto|all|LIST", help_heading = HEADING)]
     effects: String,
 }
 

@@ -16,30 +16,33 @@ pub struct PatternArgs {
     pub gaze: GazeArgs,
 }
 
+/// Heading of these options in the help.
+const HEADING: &str = "Sampling of traced frames";
+
 /// Sampling pattern of traced frames.
 #[derive(Args, Clone, Debug)]
 pub struct SamplingArgs {
     /// Sampling pattern. With run, uniform frames are foveated by a simulator, or not at all with --foveation off
-    #[arg(long, value_enum, default_value = "uniform")]
+    #[arg(long, value_enum, default_value = "uniform", help_heading = HEADING)]
     pub sampling: SamplingName,
     /// regions: samples per pixel in the fovea, per block in the middle region, per block outside
-    #[arg(long, value_delimiter = ',', default_value = "32,16,8", value_name = "A,B,C")]
+    #[arg(long, value_delimiter = ',', default_value = "32,16,8", value_name = "A,B,C", help_heading = HEADING)]
     pub region_spp: Vec<u32>,
     /// regions: block edges in the middle region and outside, pixels
-    #[arg(long, value_delimiter = ',', default_value = "2,4", value_name = "N,M")]
+    #[arg(long, value_delimiter = ',', default_value = "2,4", value_name = "N,M", help_heading = HEADING)]
     pub region_block: Vec<u32>,
     /// regions: diameters of the two inner regions, degrees
-    #[arg(long, value_delimiter = ',', default_value = "5.2,17", value_name = "E1,E2")]
+    #[arg(long, value_delimiter = ',', default_value = "5.2,17", value_name = "E1,E2", help_heading = HEADING)]
     pub region_deg: Vec<f32>,
     /// layers: radii of the three inner layers, degrees
-    #[arg(long, value_delimiter = ',', default_value = "6,10,20", value_name = "A,B,C")]
+    #[arg(long, value_delimiter = ',', default_value = "6,10,20", value_name = "A,B,C", help_heading = HEADING)]
     pub layer_deg: Vec<f32>,
     /// layers: spacing of traced pixels in the four layers, pixels
-    #[arg(long, value_delimiter = ',', default_value = "1,2,3,4", value_name = "A,B,C,D")]
+    #[arg(long, value_delimiter = ',', default_value = "1,2,3,4", value_name = "A,B,C,D", help_heading = HEADING)]
     pub layer_step: Vec<u32>,
     /// layers: radius of the area that a headset's lens shows, degrees from the view's axis; nothing is traced outside;
     /// default: the whole frame
-    #[arg(long, value_name = "DEG")]
+    #[arg(long, value_name = "DEG", help_heading = HEADING)]
     pub lens_deg: Option<f32>,
 }
 

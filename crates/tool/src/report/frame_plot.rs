@@ -1,8 +1,8 @@
 //! Plot of a quality by frame, one line a method, as SVG.
 
 use super::plot::{
-    FAINT, HIGH_PX, INK, LOW_PX, Mark, Scale, axes, chars_from, document, legend, line, mark, px, reading, shortened,
-    spread, text, visible,
+    FAINT, HIGH_PX, INK, LOW_PX, Mark, OF_JOD, OF_PSNR, Scale, axes, chars_from, document, legend, line, mark, px,
+    reading, shortened, spread, text, visible,
 };
 use afterimage_lab::metric::psnr_db;
 use svg::node::element::{Group, Path};
@@ -48,6 +48,14 @@ impl Quantity {
         match self {
             Self::Psnr => "PSNR, dB; higher is better",
             Self::Jod => "JOD; higher is better, 10 is no visible difference",
+        }
+    }
+
+    /// Least length and end of the axis.
+    fn least(self) -> [f64; 2] {
+        match self {
+            Self::Psnr => OF_PSNR,
+            Self::Jod => OF_JOD,
         }
     }
 
@@ -129,7 +137,8 @@ impl FramePlot<'_> {
             false,
             HIGH_PX[1],
             top,
-        );
+        )
+        .of_at_least(quantity.least());
         let curves = self.curves(&y);
         let jumps: Vec<usize> = (0..count).filter(|&i| self.moves_deg.get(i).is_some_and(|d| *d > JUMP_DEG)).collect();
         let stride = (MARKS_PX / (x.px(1.0) - x.px(0.0)).max(f64::MIN_POSITIVE)).ceil().max(1.0) as usize;

@@ -307,8 +307,7 @@ fn what_does_not_fit_together_is_one_line() {
     refused(&full, &folder.text("empty"), "", &["empty", "no .exr, .png or .jpg"]);
     refused(&folder.text("empty"), &full, "", &["empty", "no .exr, .png or .jpg"]);
     refused(&full, "no/such", "", &["no/such", "does not exist"]);
-    refused(&full, "builtin:cubes", "", &["builtin:cubes", "is a scene", "run --reference"]);
-    refused(&full, &folder.write("clip.mp4", b""), "", &["clip.mp4", "video", "ffmpeg"]);
+    refused(&full, "builtin:cubes", "", &["builtin:cubes", "is a scene", "full-rate frames, which a run writes"]);
     refused(&full, &folder.write("notes.txt", b"notes"), "", &["notes.txt", "not supported"]);
     refused(&full, &format!("{full}/f.%04d.png"), "", &["is a pattern", "give the folder"]);
     refused(&full, &full, "--exposure 1", &["--exposure", ".exr", "encoded already"]);

@@ -2,6 +2,8 @@
 
 use super::rig::{Folder, refuses, succeeds, tool, words};
 use std::fs;
+#[cfg(unix)]
+use std::{path::Path, process::Command};
 
 const SDK: &[u8] = b"device_time_stamp,left_gaze_point_on_display_area_x,left_gaze_point_on_display_area_y,\
     left_gaze_point_validity\n1000000,0.5,0.25,1\n1010000,0.25,0.75,1\n1020000,nan,nan,0\n";
@@ -135,4 +137,89 @@ fn columns_are_named_on_the_command_line() {
     refuses(&["info", &log, "--gaze-unit", "deg"], &["--gaze-columns"]);
     let fixed = ["run", "analytic:still", "--gaze", "3,4", "--gaze-columns", "t=n,x=x,y=y", "--out", &out];
     refuses(&fixed, &["--gaze-columns", "not a gaze log"]);
+}
+
+/// The recipe of docs/gaze-logs.md, run as it is written.
+#[cfg(unix)]
+#[test]
+fn a_layout_reads_a_whole_data_set() {
+    let docs = fs::read_to_string(afterimage_testing::workspace().join("docs/gaze-logs.md")).unwrap();
+    let block = |name: &str| {
+        let (_, after) = docs.split_once(&format!("<!-- {name} -->\n\n")).unwrap();
+        after
+            .lines()
+            .take_while(|line| line.starts_with("    "))
+            .map(|line| format!("{}\n", &line[4..]))
+            .collect::<String>()
+    };
+    let folder = Folder::new();
+    fs::create_dir(folder.path("recordings")).unwrap();
+    for subject in 1..=3 {
+        let rows: String = (0..60).map(|i| format!("{},-6.0,1.8,{}\n", 8 * i, i32::from(i == 7))).collect();
+        folder.write(&format!("recordings/S_{subject} a.csv"), format!("n,x,y,val\n{rows}").as_bytes());
+    }
+    let layout = folder.write("gazebase.json", block("layout").as_bytes());
+    let bin = Path::new(super::rig::TOOL.0).parent().unwrap();
+    let path = format!("{}:{}", bin.display(), std::env::var("PATH").unwrap());
+    let mut shell = Command::new("sh");
+    shell.args(["-ec", &block("recipe")]).current_dir(folder.path("")).env("PATH", path).env("NODEVICE_SELECT", "1");
+    let ran = shell.output().unwrap();
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    assert_eq!(super::rig::files(&folder.path("scanpaths")), ["S_1 a.csv", "S_2 a.csv", "S_3 a.csv"]);
+    // The same as with the options.
+    let log = folder.text("recordings/S_1 a.csv");
+    let columns = "--gaze-columns t=n,x=x,y=y,valid=!val --gaze-unit deg --time-unit ms --screen-px 1680x1050 \
+                   --screen-mm 474x297 --distance-mm 550";
+    let out = folder.text("out.csv");
+    both(&[&["scanpath", &log, "--out", &out][..], &words(columns)].concat());
+    let layout_says = fs::read_to_string(folder.path("scanpaths/S_1 a.csv")).unwrap();
+    assert_eq!(layout_says, fs::read_to_string(&out).unwrap());
+    assert!(layout_says.contains("1680x1050"), "{layout_says}");
+    // An option replaces what the file says.
+    let scanpath = ["scanpath", &log, "--gaze-layout", &layout, "--out", &out];
+    both(&[&scanpath[..], &["--screen-px", "840x525"]].concat());
+    assert!(fs::read_to_string(&out).unwrap().contains("840x525"));
+    refuses(&[&scanpath[..], &["--gaze-columns", "t=n,x=x,y=y"]].concat(), &["--gaze-layout", "cannot be used with"]);
+    let fixed = ["run", "analytic:still", "--gaze", "3,4", "--gaze-layout", &layout, "--out", &out];
+    refuses(&fixed, &["--gaze-layout", "not a gaze log"]);
+}
+
+#[test]
+fn layouts_name_the_field_that_is_wrong() {
+    let folder = Folder::new();
+    let log = folder.write("log.csv", b"n,x,y\n0,1,2\n8,1,2\n");
+    let columns = r#""columns": {"t": "n", "x": "x", "y": "y"}"#;
+    for (json, words) in [
+        (r#"{"columns": {"t": "n", "x": "x"}}"#.to_owned(), "`columns.y` is missing"),
+        (r#"{"columns": {"t": "n", "x": 4, "y": "y"}}"#.to_owned(), "`columns.x` is 4; expected the name of a column"),
+        (
+            r#"{"columns": {"t": "n", "x": "x", "y": "y", "w": "y"}}"#.to_owned(),
+            "`columns.w` is no field; expected t, x, y",
+        ),
+        (r#"{"columns": "t=n"}"#.to_owned(), "`columns` is \"t=n\"; expected an object"),
+        (format!(r#"{{{columns}, "unit": "pixels"}}"#), "`unit` is \"pixels\"; expected \"px\", \"norm\", \"deg\""),
+        (format!(r#"{{{columns}, "time_unit": 1000}}"#), "`time_unit` is 1000; expected \"auto\", \"s\", \"ms\""),
+        (
+            format!(r#"{{{columns}, "screen_px": "1920x1080"}}"#),
+            "`screen_px` is \"1920x1080\"; expected [WIDTH, HEIGHT]",
+        ),
+        (format!(r#"{{{columns}, "screen_px": [0, 5]}}"#), "`screen_px` is [0,5]"),
+        (format!(r#"{{{columns}, "screen_mm": [5.5]}}"#), "`screen_mm` is [5.5]"),
+        (
+            format!(r#"{{{columns}, "distance_mm": -1}}"#),
+            "`distance_mm` is -1; expected a number of millimeters above 0",
+        ),
+        (format!(r#"{{{columns}, "eye": "middle"}}"#), "`eye` is \"middle\"; expected \"both\", \"left\", \"right\""),
+        (format!(r#"{{{columns}, "columns2": 1}}"#), "`columns2` is no field; expected columns, unit"),
+        (r#"{"unit": "deg"}"#.to_owned(), "`unit` is that of `columns`, which is missing"),
+        ("[1]".to_owned(), "holds no JSON object"),
+        ("{".to_owned(), "is no JSON"),
+    ] {
+        let layout = folder.write("layout.json", json.as_bytes());
+        refuses(&["info", &log, "--gaze-layout", &layout], &["--gaze-layout", "layout.json", words]);
+    }
+    refuses(&["info", &log, "--gaze-layout", "no/such.json"], &["--gaze-layout", "no/such.json", "cannot be read"]);
+    let layout = folder
+        .write("layout.json", format!("{{{columns}, \"time_unit\": \"ms\", \"screen_px\": [640, 480]}}").as_bytes());
+    assert!(succeeds(&["info", &log, "--gaze-layout", &layout]).contains("640x480"));
 }

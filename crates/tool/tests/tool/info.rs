@@ -77,5 +77,28 @@ fn help_is_what_was_reviewed() {
     }
     #[cfg(feature = "view")]
     insta::assert_snapshot!("help_view", succeeds(&["view", "--help"]));
+    for command in ["run", "trace"] {
+        insta::assert_snapshot!(format!("short_help_{command}"), succeeds(&[command, "-h"]));
+    }
     assert!(succeeds(&["--version"]).starts_with("afterimage 0."));
+}
+
+/// `-h` fits on two screens and says where the rest is.
+#[test]
+fn short_help_is_short() {
+    let view = cfg!(feature = "view").then_some("view");
+    let commands = ["demo", "run", "trace", "bench", "sweep", "compare", "scanpath", "info"].into_iter().chain(view);
+    for command in commands {
+        let [short, long] = ["-h", "--help"].map(|help| succeeds(&[command, help]));
+        let (lines, widest) = (short.lines().count(), short.lines().map(|line| line.chars().count()).max());
+        println!("{command}: {lines} lines of -h, {} of --help", long.lines().count());
+        assert!(lines <= 120 && widest <= Some(100), "{command}: {lines} lines, {widest:?} columns");
+        assert!(command == "demo" || short.lines().last().unwrap().contains("--help"), "{command}");
+        let options = |text: &str| text.lines().filter(|line| line.trim_start().starts_with("--")).count();
+        assert!(options(&short) <= options(&long), "{command}");
+        if ["run", "trace", "view"].contains(&command) {
+            assert!((8..=11).contains(&options(&short)) && options(&long) > 20, "{command}: {}", options(&short));
+            assert!(short.contains("Example") && lines <= 60, "{command}: {lines}");
+        }
+    }
 }

@@ -17,3 +17,5 @@ mod rig;
 mod run;
 mod sweep;
 mod trace;
+#[cfg(unix)]
+mod video;

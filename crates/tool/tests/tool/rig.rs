@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-const TOOL: Program = Program(env!("CARGO_BIN_EXE_afterimage"));
+pub const TOOL: Program = Program(env!("CARGO_BIN_EXE_afterimage"));
 
 pub fn tool(args: &[&str]) -> Output {
     TOOL.output(args)

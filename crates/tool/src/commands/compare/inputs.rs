@@ -31,11 +31,12 @@ pub struct Encoded {
 }
 
 impl Inputs {
-    /// Opens the inputs, which must have one size.
-    pub fn open(reference: &str, tests: &[String], limits: &ReadLimits) -> Result<Self, Failure> {
+    /// Opens the inputs, which must have one size, for `most` frames or all.
+    pub fn open(reference: &str, tests: &[String], limits: &ReadLimits, most: Option<u64>) -> Result<Self, Failure> {
         let names = names(tests)?;
-        let reference = ColorFrames::open(reference, limits)?;
-        let tests = tests.iter().map(|test| ColorFrames::open(test, limits)).collect::<Result<Vec<_>, _>>()?;
+        let open = |input: &String| ColorFrames::open(input, limits, most);
+        let reference = ColorFrames::open(reference, limits, most)?;
+        let tests = tests.iter().map(open).collect::<Result<Vec<_>, _>>()?;
         for test in &tests {
             check_size(&reference, test)?;
             warn_of_numbers(&reference, test);

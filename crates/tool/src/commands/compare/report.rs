@@ -1,7 +1,7 @@
 //! What a comparison writes and prints.
 
+use super::plan::{CompareArgs, Plan};
 use super::score::{LowestCrop, Results, TestResult};
-use super::{CompareArgs, Plan};
 use crate::clip::run_report::JodDisplay;
 use crate::clip::title;
 use crate::output::{Output, WriteError};

@@ -1,9 +1,10 @@
 //! Scores the frames of all tests, one frame at a time.
 
-use super::Plan;
 use super::inputs::Encoded;
+use super::plan::Plan;
 use crate::failure::Failure;
 use crate::output::{Output, csv_cell};
+use crate::video::SideBySide;
 use afterimage::Image;
 use afterimage_eval::metric::{
     FrameErrors, Reference, References, Scorer, Scores, Tracked, crop_mean, psnr_db, ssim_map, worst_crop,
@@ -64,8 +65,14 @@ struct Accumulator {
     frames: Vec<FrameErrors>,
 }
 
-/// Scores all frames, and writes `frames.csv`.
-pub fn score(plan: &Plan, as_black: bool, out: &Output, bar: &ProgressBar) -> Result<Results, Failure> {
+/// Scores all frames, and writes `frames.csv` and the frames of a video.
+pub fn score(
+    plan: &Plan,
+    as_black: bool,
+    out: &Output,
+    mut video: Option<&mut SideBySide>,
+    bar: &ProgressBar,
+) -> Result<Results, Failure> {
     let mut references = plan.flip.clone().map_or_else(References::default, References::with_flip);
     if let Some(viewing) = plan.viewing {
         references = references.with_jod(viewing);
@@ -84,6 +91,9 @@ pub fn score(plan: &Plan, as_black: bool, out: &Output, bar: &ProgressBar) -> Re
         });
         for ((name, _), accumulator) in plan.inputs.tests.iter().zip(&accumulators) {
             table.row(&accumulator.row(index, name))?;
+        }
+        if let Some(video) = &mut video {
+            video.push(frames.iter().map(|frame| &frame.image), gaze_px)?;
         }
         last = frames;
         bar.inc(1);

@@ -20,8 +20,10 @@ use crate::failure::Failure;
 use crate::output::{Output, WriteError};
 use crate::progress;
 use crate::report::cameras::cameras_json;
+use crate::video::SideBySide;
 use afterimage::{DebugView, Filter};
 use afterimage_eval::exposure::Exposure;
+use afterimage_eval::metric;
 use afterimage_lab::device::Backend;
 use afterimage_lab::quad_views::QuadViewLayout;
 use afterimage_lab::scanpath::HeadPath;
@@ -47,7 +49,7 @@ use std::path::PathBuf;
 )]
 pub struct RunArgs {
     /// Output folder
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: PathBuf,
     #[command(flatten)]
     pub gaze: GazeArgs,
@@ -60,19 +62,19 @@ pub struct RunArgs {
     /// Samples per pixel of the full-rate frames that are the reference for scores, in scenes and analytic clips, and
     /// which simulators foveate without --jitter. Default: 16 in rasterised scenes and jittered analytic clips, 64 with
     /// --sampling, else what the input has
-    #[arg(long, value_parser = parse_samples, value_name = "N")]
+    #[arg(long, value_parser = parse_samples, value_name = "N", help_heading = "Scores")]
     pub reference_samples: Option<u32>,
     /// First frame that counts in scores; frames.csv and the pictures have all. Without history, the first frames of a
     /// clip are another question
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    #[arg(long, default_value_t = 0, value_name = "N", help_heading = "Scores")]
     pub score_from: usize,
     /// Latency of the eye tracker, milliseconds: the renderer and the methods see the gaze of so long ago, scores and
     /// gaze.csv have the true one; at most 1000
-    #[arg(long, default_value_t = 0.0, value_parser = parse_latency, value_name = "MS")]
+    #[arg(long, default_value_t = 0.0, value_parser = parse_latency, value_name = "MS", help_heading = "Gaze")]
     pub gaze_latency: f64,
     /// Keep the fovea in the middle of the frame, as without an eye tracker: the renderer and the methods see that
     /// gaze, scores and gaze.csv have the true one
-    #[arg(long, conflicts_with = "gaze_latency")]
+    #[arg(long, conflicts_with = "gaze_latency", help_heading = "Gaze")]
     pub fixed_fovea: bool,
     #[command(flatten)]
     pub sampling: SamplingArgs,
@@ -95,32 +97,35 @@ pub struct RunArgs {
     #[arg(long, default_value_t = 0, value_name = "N")]
     pub seed: u64,
     /// File format of frames: 8-bit sRGB PNG, or linear half-float EXR
-    #[arg(long, value_enum, default_value = "png")]
+    #[arg(long, value_enum, default_value = "png", help_heading = "Output")]
     pub format: FormatName,
     /// Exposure before sRGB encoding, stops, or auto: what makes the mean of the first frame middle grey
-    #[arg(long, default_value = "0", value_parser = parse_exposure, value_name = "EV|auto", allow_negative_numbers = true)]
+    #[arg(long, default_value = "0", value_parser = parse_exposure, value_name = "EV|auto", allow_negative_numbers = true, help_heading = "Output")]
     pub exposure: Exposure,
     /// Also write the full-rate frames
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     pub reference: bool,
+    /// Also write a video of reference and methods side by side: .y4m, or .mp4, which needs an installed ffmpeg
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub video: Option<PathBuf>,
     /// Skip FLIP, which takes a third of a second per megapixel on one core
-    #[arg(long)]
+    #[arg(long, help_heading = "Scores")]
     pub no_flip: bool,
     /// Skip JOD, the foveated video metric
-    #[arg(long)]
+    #[arg(long, help_heading = "Scores")]
     pub no_jod: bool,
     #[command(flatten)]
     pub display: DisplayArgs,
     /// Debug views to write as images, separated by commas
-    #[arg(long, value_parser = by_name::<DebugView>(), value_delimiter = ',', value_name = "LIST")]
+    #[arg(long, value_parser = by_name::<DebugView>(), value_delimiter = ',', value_name = "LIST", help_heading = "Output")]
     pub debug: Vec<DebugView>,
     /// Print how each method computes this pixel, value by value: inputs, texels of history, verdict, comparison,
     /// gains, shares, what is shown and stored; also into OUT/pixel.csv. (0,0) is the top-left pixel, y down. Methods
     /// run on the CPU
-    #[arg(long, value_parser = parse_pixel, value_name = "X,Y", allow_hyphen_values = true)]
+    #[arg(long, value_parser = parse_pixel, value_name = "X,Y", allow_hyphen_values = true, help_heading = "Output")]
     pub pixel: Option<[u32; 2]>,
     /// Frames in which --pixel is printed, from A to B, both included; default: the last one
-    #[arg(long, value_parser = parse_frame_range, requires = "pixel", value_name = "A..B")]
+    #[arg(long, value_parser = parse_frame_range, requires = "pixel", value_name = "A..B", help_heading = "Output")]
     pub pixel_frames: Option<[usize; 2]>,
 }
 
@@ -219,6 +224,7 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     // The input can be read, or nothing is written.
     let playback = plan.clip.start(source.as_mut())?;
     print_exposure(playback.exposure());
+    let mut video = start_video(args, &plan)?;
     let cameras: Vec<String> = folders(args).iter().map(|folder| format!("{folder}/cameras.json")).collect();
     let reports: Vec<&str> = REPORTS.into_iter().chain(OF_HEAD).chain(cameras.iter().map(String::as_str)).collect();
     let out = Output::create(&args.out, &folders(args), &reports)?;
@@ -228,8 +234,10 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
             bar.suspend(|| say_pixel(pixel, result, &plan.clip));
         }
         bar.inc(1);
+        video.as_mut().map_or(Ok(()), |video| Ok(show(video, result)?))
     })?;
     bar.finish_and_clear();
+    video.map_or(Ok(()), SideBySide::finish)?;
     if let Some(head) = &head {
         write_head(args, head, source.as_ref(), &plan, &out)?;
     }
@@ -253,6 +261,20 @@ fn execute(args: &RunArgs) -> Result<ClipReport, Failure> {
     write_report(&facts, &plan.clip, &report, &out)?;
     out.finish()?;
     Ok(report)
+}
+
+/// Starts the video of `--video`.
+fn start_video(args: &RunArgs, plan: &plan::Plan) -> Result<Option<SideBySide>, Failure> {
+    let Some(path) = &args.video else { return Ok(None) };
+    let names = plan.clip.methods.iter().map(|method| method.0);
+    SideBySide::create(path, ["reference"].into_iter().chain(names), plan.clip.geometry.size_px(), plan.fps).map(Some)
+}
+
+/// Adds a frame to the video.
+fn show(video: &mut SideBySide, result: &FrameResult<'_>) -> Result<(), WriteError> {
+    let encode = |image| metric::encode(image, result.exposure_ev);
+    let shown: Vec<_> = result.step.outputs.iter().map(|output| encode(&output.image)).collect();
+    video.push([result.reference.encoded()].into_iter().chain(&shown), result.step.gaze_px)
 }
 
 /// Prints all that is known of a pixel of a frame, in the frames in which it is explained.

@@ -2,8 +2,8 @@
 
 use super::tags;
 use crate::report::plot::{
-    FAINT, HIGH_PX, INK, LINE_PX, LOW_PX, Mark, Scale, axes, chars_from, document, legend, line, mark, on_ground, px,
-    reading, shortened, spread, text, visible,
+    FAINT, HIGH_PX, INK, LINE_PX, LOW_PX, Mark, OF_JOD, OF_PSNR, Scale, axes, chars_from, document, legend, line, mark,
+    on_ground, px, reading, shortened, spread, text, visible,
 };
 use crate::sweep::equal::{class, in_order};
 use crate::sweep::rust_source::name_of;
@@ -24,6 +24,15 @@ struct Spot<'a> {
     is_best: bool,
 }
 
+/// Least length and end of a metric's axis.
+fn least(metric: &Metric) -> [f64; 2] {
+    match metric.unit {
+        "dB" => OF_PSNR,
+        _ if metric.key.ends_with("jod") => OF_JOD,
+        _ => [0.0, f64::INFINITY],
+    }
+}
+
 /// Plot of an input's points by cost and a metric. Rows without the metric are counted in a note.
 pub fn svg(table: &Table, input: &str, metric: &Metric) -> String {
     let of_input = || table.rows.iter().filter(|r| r.point.input == input && r.cost_ms.is_finite());
@@ -34,7 +43,7 @@ pub fn svg(table: &Table, input: &str, metric: &Metric) -> String {
     let renders_known = known.iter().all(|(r, _)| r.render_ms.is_some());
     let costs = known.iter().filter(|(r, _)| !is_bound(r)).map(|(r, _)| r.cost_ms).chain(floors.values().copied());
     let x = Scale::new(costs, true, LOW_PX[0], HIGH_PX[0]);
-    let y = Scale::new(known.iter().map(|(_, v)| *v), false, HIGH_PX[1], LOW_PX[1]);
+    let y = Scale::new(known.iter().map(|(_, v)| *v), false, HIGH_PX[1], LOW_PX[1]).of_at_least(least(metric));
     let spots: Vec<Spot<'_>> = known
         .iter()
         .map(|&(row, value)| {

@@ -14,4 +14,4 @@ pub use labels::{chars_from, shortened, spread, visible};
 pub use marks::Mark;
 pub use page::{HIGH_PX, LINE_PX, LOW_PX, document, legend, reading};
 pub use picture::png;
-pub use scale::Scale;
+pub use scale::{OF_JOD, OF_PSNR, Scale};

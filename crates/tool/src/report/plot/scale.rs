@@ -6,6 +6,12 @@ const LOG_FROM: f64 = 10.0;
 /// Limit on the ticks of an axis.
 const MAX_TICKS: usize = 9;
 
+/// Least length and end of an axis of PSNR, dB: smaller differences are hardly seen, and do not fill a plot.
+pub const OF_PSNR: [f64; 2] = [1.0, f64::INFINITY];
+
+/// Least length and end of an axis of JOD.
+pub const OF_JOD: [f64; 2] = [0.5, 10.0];
+
 /// One axis.
 pub struct Scale {
     low: f64,
@@ -33,6 +39,17 @@ impl Scale {
         // The axis of nonnegative values does not extend below zero.
         let floor = if low >= 0.0 { 0.0 } else { f64::NEG_INFINITY };
         Self { low: (low - room).max(floor), high: high + room, is_log, least_step, from_px, to_px }
+    }
+
+    /// The same axis, no shorter than `least`: what differs by less does not fill it. It grows to both sides, but not
+    /// above `highest`, the largest possible value.
+    pub fn of_at_least(self, [least, highest]: [f64; 2]) -> Self {
+        let lacks = least - (self.high - self.low);
+        if lacks <= 0.0 || self.is_log {
+            return self;
+        }
+        let high = (self.high + 0.5 * lacks).min(highest.max(self.high));
+        Self { low: high - least, high, ..self }
     }
 
     /// A scale for the whole numbers below `count`, without margins; a single one is in the middle.

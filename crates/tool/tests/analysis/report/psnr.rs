@@ -11,8 +11,11 @@ fn svg(methods: &[(&str, &[f64])], moves_deg: &[f32]) -> String {
 }
 
 fn plot(input: &str, what: &str, methods: &[(&str, &[f64])], moves_deg: &[f32]) -> String {
+    plot_of(Quantity::Psnr, input, what, methods, moves_deg)
+}
+
+fn plot_of(quantity: Quantity, input: &str, what: &str, methods: &[(&str, &[f64])], moves_deg: &[f32]) -> String {
     let series: Vec<_> = methods.iter().map(|&(name, values)| Series { name, mark: name, values }).collect();
-    let quantity = Quantity::Psnr;
     FramePlot { quantity, input, what, note: "errors", fps: FPS, moves_deg, series: &series }.svg()
 }
 
@@ -86,6 +89,29 @@ fn points_are_where_the_axes_say() {
         let found: Vec<_> = seconds.descendants().filter(Node::is_element).filter_map(second).collect();
         assert!(found.len() >= 2);
         assert!(found.iter().all(|(s, at)| (place(&x, s * f64::from(FPS)) - at).abs() < 0.5), "{found:?} {x:?}");
+    }
+}
+
+/// Lines that differ by a fifth of the least range are no farther apart, wherever they are.
+#[test]
+fn small_differences_do_not_fill_the_plot() {
+    for (quantity, value, least) in [(Quantity::Psnr, mse as fn(f64) -> f64, 1.0), (Quantity::Jod, |jod| jod, 0.5)] {
+        for high in [9.99, 5.0, 0.1] {
+            let low = [value(high - 0.2 * least * 0.5), value(high - 0.2 * least)];
+            let methods: [(&str, &[f64]); 2] = [("none", &low), ("smr", &[value(high), value(high)])];
+            let svg = plot_of(quantity, "sponza", "quads 4 and 8", &methods, &[0.0; 2]);
+            let document = Document::parse(&svg).unwrap();
+            let y = ticks(&document, "y");
+            let apart = line(&document, "none")[1][1] - line(&document, "smr")[1][1];
+            let unit = (place(&y, 1.0) - place(&y, 0.0)).abs();
+            let axis = with_class(&document, "axis").last().unwrap();
+            let height = (number(&axis, "y2") - number(&axis, "y1")).abs();
+            println!("{quantity:?} {high}: {apart} of {height} px, {unit} px a unit");
+            assert!((apart - 0.2 * least * unit).abs() < 1.0, "the axis says how much it is");
+            assert!((0.1..0.21).contains(&(apart / height)), "{quantity:?} {high}: {apart} of {height}");
+            let last = y.iter().map(|tick| tick.0).fold(f64::NEG_INFINITY, f64::max);
+            assert!(quantity == Quantity::Psnr || last <= 10.0, "there is no JOD of {last}");
+        }
     }
 }
 
