@@ -195,6 +195,8 @@ fn other_videos_are_read_through_ffmpeg() {
     ] {
         refused(&compare(&ffmpeg(&folder, script)), 2, &["clip.mp4: is not decoded", words, "export it again"]);
     }
+    let fails = format!("{plays}; echo 'error while decoding' >&2; exit 1");
+    refused(&compare(&ffmpeg(&folder, &fails)), 2, &["clip.mp4: is not decoded", "error while decoding"]);
     let dies = format!("{ARGUMENTS}; head -c 30000 \"$in\"; kill -9 $$");
     refused(&compare(&ffmpeg(&folder, &dies)), 2, &["clip.mp4: is not decoded", "signal: 9"]);
     // It says much, which nobody reads, and closes its pipe without an end.
