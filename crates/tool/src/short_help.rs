@@ -25,10 +25,11 @@ fn shortened(command: Command) -> Command {
     }
     let first = FIRST.iter().find(|(name, _)| *name == command.get_name()).map(|(_, first)| *first);
     let long = command.get_after_help().map(ToString::to_string).unwrap_or_default();
-    // The examples come first, and an empty line ends them.
-    let examples = long.split("\n\n").next().unwrap_or_default();
+    // An empty line ends the examples; what is written follows.
+    let end = long.find("Example").and_then(|at| Some(at + long[at..].find("\n\n")?)).unwrap_or(long.len());
+    let examples = &long[..end];
     let more = match first {
-        Some(_) => "These are the options that people need first. --help has all, and the files that are written.",
+        Some(_) => "These are the options that people need first. --help has all, and says more.",
         None => "See --help for more of each option and its values.",
     };
     let short = format!("{examples}\n\n{more}");
