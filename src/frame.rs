@@ -140,8 +140,8 @@ pub struct FrameInputs<'a, Colors, Scalars, Vectors> {
     pub half: Option<Colors>,
     /// Descriptions of the views, one for each view of the context.
     pub views: &'a [ViewFrame],
-    /// Frame counter. It seeds the random numbers, so that the same index and [`Settings::seed`] give the same bytes, and
-    /// moves the even pattern of planned frames. Count recorded frames; other numbers are right, too.
+    /// Frame counter. It seeds the random numbers, so that the same index and [`Settings::seed`] give the same bytes,
+    /// and moves the even pattern of planned frames. Count recorded frames; other numbers are right, too.
     pub index: u64,
     /// Reset of history.
     pub reset: Reset,

@@ -1,8 +1,8 @@
 //! A courtyard in a window, with what foveation finds hard: a walking figure, a flashlight, sparks, glass, and a view
 //! model on top. The title tells the time of a frame for each mode that was chosen.
 //!
-//! Keys: 1 full rate with MSAA; 2 full rate with TAA; 3 one pixel in 4 everywhere; 4 as many as make 60 frames a second;
-//! 5 around the mouse, which is the gaze; A antialiasing; D debug views; S stats; R resets history.
+//! Keys: 1 full rate with MSAA; 2 full rate with TAA; 3 one pixel in 4 everywhere; 4 as many as make 60 frames a
+//! second; 5 around the mouse, which is the gaze; A antialiasing; D debug views; S stats; R resets history.
 //!
 //! `cargo run --release --features window --example window`
 
