@@ -82,7 +82,7 @@ fn worst(scores: &[SceneScores]) -> String {
         most.map_or("-".into(), |(jod, name)| format!("{} ({name})", number(Some(jod))))
     };
     let line = |(&row, bar): (&usize, f64)| {
-        format!("- Worst, {}: {} JOD, by FovVideoVDP {}; the bar is {bar:.2}.\n", ROWS[row], most(row, 0), most(row, 1))
+        format!("- Worst, {}: {} JOD, FovVideoVDP {}; bar {bar:.2}.\n", ROWS[row], most(row, 0), most(row, 1))
     };
     QUADS.iter().zip(BARS_JOD).map(line).collect()
 }
