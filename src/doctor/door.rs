@@ -3,10 +3,9 @@
 use super::shape::Shape;
 
 /// Types by which the caller describes frames, and which a line of code must name.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Door {
     /// [`ContextDesc`](crate::ContextDesc).
-    #[default]
     Context,
     /// `afterimage::Desc` and `afterimage::Camera`.
     #[cfg(feature = "gpu")]

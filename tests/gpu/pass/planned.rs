@@ -5,8 +5,9 @@ use super::rig::{make_texture, noise};
 use super::*;
 use crate::images::planned;
 use afterimage::cpu::CpuAfterimage;
+use afterimage::doctor::Fault;
 use afterimage::{Camera, Desc, Shading};
-use afterimage_testing::gpu::{device, write_layer};
+use afterimage_testing::gpu::{device, read_buffer, write_layer};
 use glam::{Mat4, Quat, Vec3};
 
 const SIZE: [u32; 2] = [48, 34];
@@ -150,4 +151,50 @@ fn wrong_calls_are_refused_in_one_line() {
     let error = post.set_shading(Shading::Everywhere { share: f32::NAN }).unwrap_err().to_string();
     assert!(error.contains("share is NaN"), "{error}");
     assert_eq!(post.desc().shading, Shading::default());
+}
+
+#[test]
+fn the_doctor_finds_vectors_without_the_camera_and_names_the_line_of_planned_frames() {
+    let Some((device, queue)) = device() else { return };
+    const WIDE: [u32; 2] = [160, 96];
+    let context = ContextDesc::new(WIDE);
+    let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING | TextureUsages::COPY_DST;
+    let texture = |format| make_texture(&device, &context, format, usage);
+    let [depth, color, motion] =
+        [TextureFormat::R32Float, TextureFormat::Rgba32Float, TextureFormat::Rg32Float].map(texture);
+    write_layer(&queue, &depth, 0, bytemuck::cast_slice(&[0.02_f32; 160 * 96]));
+    write_layer(&queue, &motion, 0, bytemuck::cast_slice(&[[0.0_f32; 2]; 160 * 96]));
+    let found = |without_camera: bool| {
+        let convention = MotionConvention { without_camera, ..MotionConvention::BEVY };
+        let desc = Desc { motion: Some(convention), ..Desc::new(WIDE, TextureFormat::Rgba32Float) };
+        let mut post = afterimage::Afterimage::new(&device, &desc).unwrap();
+        let mut doctor = post.doctor().unwrap();
+        let words = device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: doctor.words_bytes(),
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
+        for index in 0..4 {
+            let [clip_from_view, _] = camera(0);
+            let pose = Mat4::from_translation(Vec3::new(0.2 * index as f32, 0.0, 0.0)).to_cols_array_2d();
+            let frame = afterimage::Frame {
+                motion: Some(&motion),
+                ..afterimage::Frame::new(&depth, Camera::new(clip_from_view, pose))
+            };
+            let mut encoder = device.create_command_encoder(&Default::default());
+            let plan = post.plan(&mut encoder, &frame).unwrap();
+            post.examine(&mut encoder, &mut doctor, &plan, &color, &words).unwrap();
+            let output = texture(TextureFormat::Rgba32Float);
+            post.show(&mut encoder, plan, &color, &output).unwrap();
+            queue.submit([encoder.finish()]);
+            assert!(doctor.read(&read_buffer::<u8>(&device, &queue, &words)));
+        }
+        doctor.findings().remove(0)
+    };
+    let finding = found(false);
+    assert_eq!(finding.fault(), Some(Fault::MotionCamera), "{finding}");
+    assert!(finding.mend.unwrap().starts_with("desc.motion = Some(MotionConvention { without_camera: true, .."));
+    let right = found(true);
+    assert_eq!(right.fault(), None, "{right}");
 }

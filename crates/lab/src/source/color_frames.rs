@@ -1,6 +1,6 @@
 //! Frames of color alone, of any renderer: a folder of numbered frames, one picture, or a video.
 
-use super::exr_file::ExrHeader;
+use super::exr_file::{ChannelNames, ExrHeader, PassFile};
 use super::frame_files::{PassFiles, check_gaps, one_sequence};
 use super::limits::ReadLimits;
 use super::still::StillSource;
@@ -20,6 +20,7 @@ use std::path::{Path, PathBuf};
 pub struct ColorFrames {
     name: String,
     limits: ReadLimits,
+    names: ChannelNames,
     stored: Stored,
     first_number: Option<i64>,
     size: [u32; 2],
@@ -50,18 +51,32 @@ impl ColorFrames {
     ///
     /// Videos other than `.y4m` need an installed `ffmpeg` ([`NotSupported`](InputError::NotSupported)).
     pub fn open(input: &str, limits: &ReadLimits, most: Option<u64>) -> Result<Self, InputError> {
+        Self::open_named(input, limits, most, None)
+    }
+
+    /// As [`open`](Self::open), with `color` as the name of the layer that has the color of EXR frames.
+    ///
+    /// # Errors
+    /// As of `open`; and [`Invalid`](InputError::Invalid) if there is no such layer.
+    pub fn open_named(
+        input: &str,
+        limits: &ReadLimits,
+        most: Option<u64>,
+        color: Option<&str>,
+    ) -> Result<Self, InputError> {
+        let names = ChannelNames { color: color.map(str::to_owned), ..ChannelNames::default() };
         let path = Path::new(input);
         if !path.is_dir() {
             check_picture(input, path)?;
             if is_video(path) {
                 return Ok(Self::of_video(input, Video::open(path, limits, most)?, limits));
             }
-            return Self::of(input, vec![path.to_owned()], None, path.parent().unwrap_or(path), limits);
+            return Self::of(input, vec![path.to_owned()], None, path.parent().unwrap_or(path), limits, names);
         }
         let (files, left_out) = frames_of(path)?;
         let PassFiles { files, numbers, .. } = one_sequence(input, files)?;
         check_gaps(input, &numbers)?;
-        let mut frames = Self::of(input, files, numbers[0], path, limits)?;
+        let mut frames = Self::of(input, files, numbers[0], path, limits, names)?;
         if left_out > 0 {
             frames.warnings.push(format!("{input}: its .exr frames are read, {left_out} other pictures are left out"));
         }
@@ -74,15 +89,17 @@ impl ColorFrames {
         first_number: Option<i64>,
         folder: &Path,
         limits: &ReadLimits,
+        names: ChannelNames,
     ) -> Result<Self, InputError> {
-        let first = StillSource::open(&files[0], limits)?;
+        let first = StillSource::open_named(&files[0], limits, &names)?;
         let cameras = Cameras::beside(folder)?;
         let is_linear = kind(&files[0]) == "exr";
         let size = first.info().size;
-        let header_fps = if is_linear { ExrHeader::open(&files[0], limits)?.fps() } else { None };
+        let header_fps = if is_linear { header(&files[0], limits, &names)?.fps() } else { None };
         let frames = Self {
             name: input.to_owned(),
             limits: *limits,
+            names,
             first_number,
             size,
             is_linear,
@@ -99,6 +116,7 @@ impl ColorFrames {
         Self {
             name: input.to_owned(),
             limits: *limits,
+            names: ChannelNames::default(),
             first_number: None,
             size: video.size(),
             is_linear: false,
@@ -170,7 +188,7 @@ impl ColorFrames {
             Stored::Files(files) => files,
             Stored::Video(video) => return video.read(index),
         };
-        let frame = StillSource::open(&files[index], &self.limits)?.frame(0)?;
+        let frame = StillSource::open_named(&files[index], &self.limits, &self.names)?.frame(0)?;
         self.check_size(&files[index], frame.color.size())?;
         Ok(frame)
     }
@@ -180,7 +198,7 @@ impl ColorFrames {
         let Stored::Files(files) = &self.stored else { return Ok(()) };
         for file in files {
             if self.is_linear {
-                self.check_size(file, ExrHeader::open(file, &self.limits)?.size())?;
+                self.check_size(file, header(file, &self.limits, &self.names)?.size())?;
             } else if let Ok((w, h)) = image::image_dimensions(file)
                 && [h, w] != self.size
             {
@@ -202,6 +220,10 @@ impl ColorFrames {
             "expected frames of one size; keep one sequence in a folder",
         ))
     }
+}
+
+fn header(file: &Path, limits: &ReadLimits, names: &ChannelNames) -> Result<ExrHeader, InputError> {
+    ExrHeader::open_passes(&[PassFile { pass: "", path: file }], limits, names)
 }
 
 /// Refuses what is neither a picture nor a video.

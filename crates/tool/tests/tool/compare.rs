@@ -374,3 +374,28 @@ fn frames_of_other_numbers_are_compared_in_order() {
     let warned = String::from_utf8(said.stderr).unwrap();
     assert!(warned.contains("covers 1 of 2 frames") && warned.contains("is held"), "{warned}");
 }
+
+#[test]
+fn the_color_of_exr_frames_is_named() {
+    let folder = Folder::new();
+    let layers = |name: &str, second: &Frame| {
+        let of = |frame: &Frame, i: usize| frame.map(|c| c[i]);
+        let (first, parts) = (scene(0), ["R", "G", "B"]);
+        let planes: Vec<(String, Image<f32>)> = [("beauty", &first), ("denoised", second)]
+            .into_iter()
+            .flat_map(|(layer, frame)| (0..3).map(move |i| (format!("{layer}.{}", parts[i]), of(frame, i))))
+            .collect();
+        let channels: Vec<(&str, &Image<f32>)> = planes.iter().map(|(name, plane)| (name.as_str(), plane)).collect();
+        write_channels(&folder.path(name), &channels).unwrap();
+        folder.text(name)
+    };
+    let inputs = [layers("a.exr", &scene(0)), layers("b.exr", &blurred(&scene(0), [0, 160]))];
+    let inputs = inputs.each_ref().map(String::as_str);
+    let psnr_db = |options: &str| report(&inputs, options)["methods"]["b.exr"]["psnr_db"].clone();
+    assert!(psnr_db("--no-flip --no-jod --color beauty").is_null(), "equal frames have no error");
+    assert!(number(&psnr_db("--no-flip --no-jod --color denoised")) < 60.0);
+    let out = folder.text("out");
+    refuses(&["compare", inputs[0], inputs[1], "--color", "diffuse", "--out", &out], &["diffuse", "beauty.R"]);
+    let png = png(&folder, "encoded", 1, scene);
+    refuses(&["compare", &png, &png, "--color", "beauty", "--out", &out], &["--color", "there are none"]);
+}

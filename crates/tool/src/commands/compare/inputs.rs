@@ -31,12 +31,22 @@ pub struct Encoded {
 }
 
 impl Inputs {
-    /// Opens the inputs, which must have one size, for `most` frames or all.
-    pub fn open(reference: &str, tests: &[String], limits: &ReadLimits, most: Option<u64>) -> Result<Self, Failure> {
+    /// Opens the inputs, which must have one size, for `most` frames or all. `color`: layer of EXR frames.
+    pub fn open(
+        reference: &str,
+        tests: &[String],
+        limits: &ReadLimits,
+        most: Option<u64>,
+        color: Option<&str>,
+    ) -> Result<Self, Failure> {
         let names = names(tests)?;
-        let open = |input: &String| ColorFrames::open(input, limits, most);
-        let reference = ColorFrames::open(reference, limits, most)?;
-        let tests = tests.iter().map(open).collect::<Result<Vec<_>, _>>()?;
+        let open = |input: &str| ColorFrames::open_named(input, limits, most, color);
+        let reference = open(reference)?;
+        let tests = tests.iter().map(|input| open(input)).collect::<Result<Vec<_>, _>>()?;
+        if color.is_some() && ![&reference].into_iter().chain(&tests).any(ColorFrames::is_linear) {
+            let problem = "--color: names a layer of .exr frames, and there are none; leave it out";
+            return Err(Failure::Input(problem.into()));
+        }
         for test in &tests {
             check_size(&reference, test)?;
             warn_of_numbers(&reference, test);

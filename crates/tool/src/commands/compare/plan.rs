@@ -40,6 +40,9 @@ pub struct CompareArgs {
     /// Output folder
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+    /// Layer that has the color of .exr frames; default: by its name (docs/renderers.md)
+    #[arg(long, value_name = "NAME")]
+    pub color: Option<String>,
     /// Where the eye looks: scanpath or export of an eye tracker (FILE; docs/gaze-logs.md), gaze.csv of a run, one
     /// fixed frame pixel (X,Y), or synthetic[:SEED]; default: the middle of the frame
     #[arg(long, value_name = "GAZE", allow_hyphen_values = true)]
@@ -103,8 +106,8 @@ pub struct Plan {
 
 /// Opens the inputs and checks the options.
 pub fn plan(args: &CompareArgs) -> Result<Plan, Failure> {
-    let inputs =
-        Inputs::open(&args.reference, &args.tests, &ReadLimits::from_megapixels(args.max_megapixels), args.frames)?;
+    let limits = ReadLimits::from_megapixels(args.max_megapixels);
+    let inputs = Inputs::open(&args.reference, &args.tests, &limits, args.frames, args.color.as_deref())?;
     let frames = inputs.frames(args.frames)?;
     let stated = inputs.stated();
     let fps = args.fps.or(stated.fps).unwrap_or(60.0);
