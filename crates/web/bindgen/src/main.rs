@@ -60,10 +60,14 @@ fn compact(text: &[u8]) -> Vec<u8> {
         let code = if line[comment..].starts_with(b"//#use ") { line } else { &line[..comment] };
         let code = code.trim_ascii();
         let is_read = [&b"//"[..], b"@", b"override"].iter().any(|start| code.starts_with(start));
-        // Not beside operators: `a - -b` and `array<f32, 4> =` need theirs.
+        // Between two operators they stay, as in `a - -b` and `array<f32, 4> =`; so they do beside `<` and `>`, which
+        // are read as brackets.
         let is_spare = |at: usize| {
             let beside = [code[at - 1], *code.get(at + 1).unwrap_or(&b' ')];
-            code[at] == b' ' && !is_read && beside.iter().any(|byte| b" ,;:(){}".contains(byte))
+            let is_beside = |bytes: &[u8]| beside.iter().any(|byte| bytes.contains(byte));
+            let is_operand = |byte: &u8| byte.is_ascii_alphanumeric() || b"_.]".contains(byte);
+            let is_at_operand = is_beside(b"+-*/=&|") && beside.iter().any(is_operand);
+            code[at] == b' ' && !is_read && (is_beside(b" ,;:(){}") || is_at_operand)
         };
         if !code.is_empty() {
             short.extend((0..code.len()).filter(|&at| at == 0 || !is_spare(at)).map(|at| code[at]));
