@@ -5,7 +5,7 @@ use crate::counters::Counters;
 use crate::frame::ExtractedAfterimage;
 use crate::oblique::ObliquePass;
 use afterimage::gpu::{Afterimage, Frame, Prime, Region, Target, Textures};
-use afterimage::{Exposure, Reset, ViewFrame, wgpu};
+use afterimage::{Exposure, FrameError, Reset, ViewFrame, wgpu};
 use std::sync::atomic::AtomicBool;
 use wgpu::{CommandEncoder, Device, Texture, TextureFormat, TextureUsages};
 
@@ -117,19 +117,17 @@ impl<'a> Inputs<'a> {
 impl Context {
     pub fn new(device: &Device, frame: &ExtractedAfterimage) -> Result<Self, String> {
         let post = Afterimage::new(device, &frame.desc, FORMAT).map_err(|error| error.to_string())?;
-        let [plain, depth, spare, spare_debug] = [None, None, None, None];
-        let (counters, exposure, has_late) = (None, None, AtomicBool::new(false));
         Ok(Self {
             post,
-            plain,
-            depth,
-            spare,
-            spare_debug,
-            counters,
-            exposure,
+            plain: None,
+            depth: None,
+            spare: None,
+            spare_debug: None,
+            counters: None,
+            exposure: None,
             is_planned: false,
             is_shown: false,
-            has_late,
+            has_late: AtomicBool::new(false),
         })
     }
 
@@ -159,7 +157,7 @@ impl Context {
         device: &Device,
         encoder: &mut CommandEncoder,
         frame: &ExtractedAfterimage,
-    ) -> Result<(), String> {
+    ) -> Result<(), FrameError> {
         let (has, needs) = (self.post.desc().size_px, frame.desc.size_px);
         if has == needs {
             return Ok(());
@@ -167,11 +165,10 @@ impl Context {
         // Sides are rounded to whole pixels.
         let [a, b] = [[has[0], needs[1]], [needs[0], has[1]]].map(|[x, y]| f64::from(x) * f64::from(y));
         let is_same_shape = (a - b).abs() <= f64::from(has.into_iter().chain(needs).max().unwrap_or(0));
-        let resized = match is_same_shape {
+        match is_same_shape {
             true => self.post.resize_keeping_history(device, encoder, needs),
             false => self.post.resize(device, needs),
-        };
-        resized.map_err(|error| error.to_string())
+        }
     }
 
     /// Chooses the quads of a frame, and closes the tested depths elsewhere. After an error every pixel is shaded.
@@ -182,20 +179,19 @@ impl Context {
         (frame, facts): (&ExtractedAfterimage, Facts),
         drawn: Drawn<'_>,
         tested: Tested<'_>,
-        oblique: &mut Option<ObliquePass>,
-    ) -> Result<(), String> {
+        oblique: &mut ObliquePass,
+    ) -> Result<(), FrameError> {
         self.resize(device, encoder, frame)?;
         self.plain = frame.oblique.map(|projection| {
             let plain = self.plain.take().filter(|plain| [plain.width(), plain.height()] == frame.desc.size_px);
             let plain = plain.unwrap_or_else(|| {
                 texture(device, extent(frame), TextureFormat::R32Float, STORAGE | TextureUsages::COPY_SRC)
             });
-            let pass = oblique.get_or_insert_with(|| ObliquePass::new(device));
-            pass.record(device, encoder, (drawn.depth, drawn.origin_px), &plain, (projection, facts.jitter_px));
+            oblique.record(device, encoder, (drawn.depth, drawn.origin_px), &plain, (projection, facts.jitter_px));
             plain
         });
         let inputs = Inputs::new(frame, facts, drawn, self.plain.as_ref());
-        self.post.plan(device, encoder, &inputs.frame(facts.index, frame.reset)).map_err(|error| error.to_string())?;
+        self.post.plan(device, encoder, &inputs.frame(facts.index, frame.reset))?;
         let (open, format) = (tested.main.texture(), tested.main.texture().format());
         let fits = |kept: &Texture| kept.size() == open.size() && kept.format() == format;
         if !self.depth.as_ref().is_some_and(fits) {
@@ -210,7 +206,7 @@ impl Context {
         let lighting = tested.lighting.map(|target| Prime { target, near_depth: NO_PASS, ..main });
         // Of one size: if the second does not fit, the first does not, and nothing is closed.
         for prime in [Some(main), lighting].into_iter().flatten() {
-            self.post.prime(device, encoder, 0, &prime).map_err(|error| error.to_string())?;
+            self.post.prime(device, encoder, 0, &prime)?;
         }
         self.is_planned = true;
         Ok(())
@@ -224,48 +220,42 @@ impl Context {
         self.is_shown = true;
     }
 
-    /// Records the post-process of a planned frame, and writes it to `output` and its view. After an error nothing is
-    /// written.
+    /// Records the post-process of a planned frame, and writes it to `output`. After an error nothing is written.
     pub fn record(
         &mut self,
         device: &Device,
         encoder: &mut CommandEncoder,
         (frame, facts): (&ExtractedAfterimage, Facts),
         drawn: Drawn<'_>,
-        output: (&Texture, &wgpu::TextureView),
-        blit: &mut Option<BlitPass>,
-    ) -> Result<(), String> {
+        output: &wgpu::TextureView,
+        blit: &mut BlitPass,
+    ) -> Result<(), FrameError> {
         let plain = self.plain.clone();
         let inputs = Inputs::new(frame, facts, drawn, plain.as_ref());
         let ratio = self.exposure.map_or(1.0, |previous| facts.exposure / previous);
         let exposure = if ratio != 1.0 && ratio.is_finite() { Exposure::Changed { ratio } } else { Exposure::Same };
         let described = Frame { exposure, ..inputs.frame(facts.index, frame.reset) };
-        let is_direct = output.0.format() == FORMAT && output.0.usage().contains(TextureUsages::STORAGE_BINDING);
+        let shown = output.texture();
+        let is_direct = shown.format() == FORMAT && shown.usage().contains(TextureUsages::STORAGE_BINDING);
         self.reserve(device, frame, is_direct);
-        let region = [Region::new(output.0, drawn.origin_px)];
+        let region = [Region::new(shown, drawn.origin_px)];
         let direct = Textures::Regions(&region);
         let (spare, spare_debug) = (self.spare.clone(), self.spare_debug.clone());
         if let Some(view) = frame.debug {
             let target = spare_debug.as_ref().map_or(direct, Textures::from);
-            self.post.record_view(device, encoder, &described, target, view).map_err(|error| error.to_string())?;
+            self.post.record_view(device, encoder, &described, target, view)?;
         }
         let target = Target {
             counters: self.counters.as_ref().map(|counters| &counters.buffer),
             ..Target::new(spare.as_ref().map_or(direct, Textures::from))
         };
-        self.post.record(device, encoder, &described, target).map_err(|error| error.to_string())?;
+        self.post.record(device, encoder, &described, target)?;
         self.exposure = Some(facts.exposure);
         if let (Some(counters), Some(quads)) = (&mut self.counters, self.post.quad_list(0)) {
             counters.record(encoder, quads);
         }
         if !is_direct && let Some(frame) = spare_debug.or(spare) {
-            let format = output.0.format();
-            if blit.as_ref().is_none_or(|blit| blit.format() != format) {
-                *blit = Some(BlitPass::new(device, format));
-            }
-            if let Some(blit) = blit {
-                blit.record(device, encoder, &frame, output.1, drawn.origin_px);
-            }
+            blit.record(device, encoder, &frame, output, drawn.origin_px);
         }
         Ok(())
     }

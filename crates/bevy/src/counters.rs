@@ -38,25 +38,20 @@ pub struct AfterimageStats {
 }
 
 impl AfterimageStats {
-    /// Copies the device's counts.
-    pub(crate) fn count(&mut self, Counts { stats, quads, device_us }: Counts) {
-        self.pixels = stats.pixels;
-        self.kept = stats.valid().saturating_sub(stats.replaced);
-        self.replaced = stats.replaced;
-        self.disoccluded = stats.verdicts[Verdict::Disoccluded as usize];
-        self.rejected = stats.rejected();
-        self.nonfinite = stats.nonfinite;
-        self.shaded = 4 * quads;
-        self.device_us = device_us;
+    /// Of what the device has counted.
+    fn new(stats: &FrameStats, quads: u32, device_us: u64) -> Self {
+        Self {
+            pixels: stats.pixels,
+            kept: stats.valid().saturating_sub(stats.replaced),
+            replaced: stats.replaced,
+            disoccluded: stats.verdicts[Verdict::Disoccluded as usize],
+            rejected: stats.rejected(),
+            nonfinite: stats.nonfinite,
+            shaded: 4 * u64::from(quads),
+            device_us,
+            frame_us: 0,
+        }
     }
-}
-
-/// What is counted of a frame.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Counts {
-    stats: FrameStats,
-    quads: u64,
-    device_us: u64,
 }
 
 /// Place of the number of quads in their list, and its size.
@@ -137,7 +132,7 @@ impl Counters {
     }
 
     /// After submission: requests the copy, or returns it if it has arrived. A unit of timestamps is `tick_ns` long.
-    pub fn poll(&mut self, tick_ns: f32) -> Option<Counts> {
+    pub fn poll(&mut self, tick_ns: f32) -> Option<AfterimageStats> {
         match self.state.load(Ordering::Acquire) {
             RECORDED => {
                 self.state.store(REQUESTED, Ordering::Release);
@@ -153,8 +148,9 @@ impl Counters {
                 let (rest, start) = rest.split_last_chunk()?;
                 let ticks = u64::from_le_bytes(*end).saturating_sub(u64::from_le_bytes(*start));
                 let device_us = (1e-3 * f64::from(tick_ns) * ticks as f64) as u64;
-                let quads = u32::from_le_bytes(*rest.last_chunk()?).into();
-                let counts = FrameStats::from_counters(rest).map(|stats| Counts { stats, quads, device_us });
+                let quads = u32::from_le_bytes(*rest.last_chunk()?);
+                let counts =
+                    FrameStats::from_counters(rest).map(|stats| AfterimageStats::new(&stats, quads, device_us));
                 drop(bytes);
                 self.copy.unmap();
                 self.state.store(FREE, Ordering::Release);

@@ -1,6 +1,6 @@
 //! Counters of the post-process, read back and shown among Bevy's diagnostics.
 
-use crate::counters::{AfterimageStats, Counts};
+use crate::counters::AfterimageStats;
 use crate::pass::Contexts;
 use afterimage::wgpu;
 use bevy::diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnostic};
@@ -18,7 +18,7 @@ const KEPT: DiagnosticPath = DiagnosticPath::const_new("afterimage/kept");
 const DISOCCLUDED: DiagnosticPath = DiagnosticPath::const_new("afterimage/disoccluded");
 
 /// Counts that arrived, by main-world camera.
-type Arrived = (Entity, Counts);
+type Arrived = (Entity, AfterimageStats);
 
 #[derive(Resource)]
 struct Arrivals(Mutex<Receiver<Arrived>>);
@@ -71,8 +71,7 @@ fn receive(
     let Ok(arrivals) = arrivals.0.lock() else { return };
     for (camera, counts) in arrivals.try_iter() {
         let Ok(mut shown) = cameras.get_mut(camera) else { continue };
-        shown.count(counts);
-        shown.frame_us = frame_us;
+        *shown = AfterimageStats { frame_us, ..counts };
         let percent = |pixels: u64| 100.0 * pixels as f64 / shown.pixels.max(1) as f64;
         diagnostics.add_measurement(&KEPT, || percent(shown.kept));
         diagnostics.add_measurement(&DISOCCLUDED, || percent(shown.disoccluded));

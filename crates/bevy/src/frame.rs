@@ -78,12 +78,7 @@ struct MainCamera {
     debug: Option<&'static AfterimageDebug>,
     planted: Option<&'static Planted>,
     counts: Has<AfterimageStats>,
-    beside: Beside,
-}
-
-/// Other components of a camera that limit its foveation.
-#[derive(QueryData)]
-struct Beside {
+    // What limits its foveation.
     space: Option<&'static CompositingSpace>,
     sky: Option<&'static Skybox>,
     jitters: Has<TemporalJitter>,
@@ -122,9 +117,8 @@ fn extract(
         let (mut desc, view, oblique) = match described {
             Ok(described) => described,
             Err(problem) => {
-                if said.get(&camera.main) != Some(&problem) {
+                if said.insert(camera.main, problem.clone()).as_ref() != Some(&problem) {
                     error!("camera {} renders every pixel, without Afterimage: {problem}", camera.main);
-                    said.insert(camera.main, problem);
                 }
                 entity.remove::<ExtractedAfterimage>();
                 continue;
@@ -135,7 +129,7 @@ fn extract(
         let planted = camera.planted.copied().unwrap_or_default();
         desc.motion = planted.motion.unwrap_or(desc.motion);
         if let Method::Smr(smr) = &mut desc.settings.method {
-            smr.antialias = camera.afterimage.antialias && !camera.beside.jitters;
+            smr.antialias = camera.afterimage.antialias && !camera.jitters;
             let is_flat = oblique.is_some_and(is_orthographic);
             if smr.antialias && is_flat {
                 jitter_px = Some(Foveation::jitter_px(index));
@@ -169,7 +163,7 @@ type Described = (ContextDesc, ViewFrame, Option<Mat4>);
 
 /// Description of a camera's frame, or why it renders every pixel.
 fn describe(camera: &MainCameraItem<'_, '_>, size: UVec2, gaze: Gaze) -> Result<Described, String> {
-    check(&camera.beside, camera.camera)?;
+    check(camera)?;
     let uv = camera.gaze.map_or(gaze.uv, |own| own.uv).filter(|uv| uv.is_finite());
     let gaze = uv.map_or(afterimage::Gaze::Lost, |uv| afterimage::Gaze::Uv { uv: uv.to_array() });
     let clip_from_view = camera.camera.clip_from_view();
@@ -210,22 +204,22 @@ fn perspective(
 }
 
 /// Refuses cameras whose quads cannot be chosen, or cannot be shaded alone.
-fn check(beside: &BesideItem<'_, '_>, camera: &Camera) -> Result<(), String> {
+fn check(camera: &MainCameraItem<'_, '_>) -> Result<(), String> {
     let problem = match () {
-        () if beside.space.is_some_and(|space| *space != CompositingSpace::Linear) => {
+        () if camera.space.is_some_and(|space| *space != CompositingSpace::Linear) => {
             "its CompositingSpace is not linear"
         }
-        () if beside.reflects => {
+        () if camera.reflects => {
             "it has ScreenSpaceReflections, which read the lit frame before history fills it. Remove them"
         }
-        () if beside.is_scaled => "it has MainPassResolutionOverride. Change its viewport instead",
-        () if matches!(camera.clear_color, ClearColorConfig::None)
-            && beside.sky.is_none_or(|sky| sky.image.is_none()) =>
+        () if camera.is_scaled => "it has MainPassResolutionOverride. Change its viewport instead",
+        () if matches!(camera.camera.clear_color, ClearColorConfig::None)
+            && camera.sky.is_none_or(|sky| sky.image.is_none()) =>
         {
             "its ClearColorConfig::None keeps what the target shows, and a frame of quads cannot. Choose a clear \
              color, or add a Skybox"
         }
-        () if !(beside.depth && beside.motion) => {
+        () if !(camera.depth && camera.motion) => {
             "it lacks DepthPrepass or MotionVectorPrepass, by which quads are chosen. Insert both"
         }
         () => return Ok(()),

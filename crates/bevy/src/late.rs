@@ -3,11 +3,11 @@
 //! Quads know neither their depth nor their motion. They are not drawn with the quads, but at every pixel, when the
 //! post-process has made the frame and depth is open again.
 
-use crate::pass::{Contexts, ShowQuads};
-use bevy::core_pipeline::core_3d::{AlphaMask3d, Opaque3d, main_transparent_pass_3d};
+use crate::pass::{Contexts, ShowQuads, show};
+use bevy::core_pipeline::core_3d::{AlphaMask3d, Opaque3d};
 use bevy::core_pipeline::prepass::{AlphaMask3dPrepass, Opaque3dPrepass};
 use bevy::core_pipeline::schedule::Core3d;
-use bevy::pbr::{PreparedMaterial, RenderMaterialInstances, main_transmissive_pass_3d};
+use bevy::pbr::{PreparedMaterial, RenderMaterialInstances};
 use bevy::prelude::*;
 use bevy::render::camera::ExtractedCamera;
 use bevy::render::erased_render_asset::ErasedRenderAssets;
@@ -29,10 +29,7 @@ impl Plugin for LatePlugin {
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
         render_app
             .add_systems(Render, (part::<Opaque3d>, part::<AlphaMask3d>).in_set(RenderSystems::Prepare))
-            .add_systems(
-                Core3d,
-                draw_late.after(ShowQuads).before(main_transmissive_pass_3d).before(main_transparent_pass_3d),
-            );
+            .add_systems(Core3d, draw_late.after(show).in_set(ShowQuads));
     }
 }
 
@@ -130,9 +127,7 @@ fn draw_late(
         label: Some("afterimage late"),
         color_attachments: &color_attachments,
         depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
-        timestamp_writes: None,
-        occlusion_query_set: None,
-        multiview_mask: None,
+        ..default()
     });
     if let Some(viewport) = &camera.viewport {
         pass.set_camera_viewport(viewport);

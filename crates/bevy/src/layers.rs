@@ -24,7 +24,7 @@ use bevy::render::render_resource::TextureUsages;
 use bevy::render::renderer::{RenderContext, ViewQuery};
 use bevy::render::sync_world::RenderEntity;
 use bevy::render::view::{ViewTarget, prepare_view_targets};
-use bevy::render::{Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderSystems};
+use bevy::render::{Extract, ExtractSchedule, Render, RenderApp, RenderSystems};
 use std::ops::Deref;
 
 pub(crate) struct LayersPlugin;
@@ -35,7 +35,6 @@ impl Plugin for LayersPlugin {
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
             render_app
                 .init_resource::<Uppers>()
-                .init_gpu_resource::<HandUpPass>()
                 .add_systems(ExtractSchedule, extract)
                 .add_systems(
                     Render,
@@ -161,16 +160,12 @@ fn keep_what_lies_below(uppers: Res<Uppers>, mut cameras: Query<(&mut ExtractedC
     }
 }
 
-/// To the texture that was written last.
-#[derive(Resource, Default)]
-struct HandUpPass(Option<BlitPass>);
-
 /// Copies what a camera has drawn to the texture of the camera on top of it, if that is another one.
 fn hand_up(
     view: ViewQuery<&ViewTarget>,
     targets: Query<&ViewTarget>,
     uppers: Res<Uppers>,
-    mut pass: ResMut<HandUpPass>,
+    mut blit: ResMut<BlitPass>,
     mut ctx: RenderContext,
 ) {
     let Some(upper) = uppers.0.get(&view.entity()).and_then(|&upper| targets.get(upper).ok()) else { return };
@@ -180,13 +175,7 @@ fn hand_up(
         return;
     }
     let device = ctx.render_device().clone();
-    let device = device.wgpu_device();
-    if pass.0.as_ref().is_none_or(|pass| pass.format() != output.format()) {
-        pass.0 = Some(BlitPass::new(device, output.format()));
-    }
-    if let Some(pass) = &pass.0 {
-        pass.record(device, ctx.command_encoder(), lower, upper.main_texture_view(), [0, 0]);
-    }
+    blit.record(device.wgpu_device(), ctx.command_encoder(), lower, upper.main_texture_view(), [0, 0]);
 }
 
 #[cfg(test)]

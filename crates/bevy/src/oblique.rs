@@ -5,6 +5,7 @@
 use crate::orthographic::is_orthographic;
 use afterimage::wgpu;
 use bevy::math::{Mat4, UVec2, Vec2, Vec4};
+use bevy::prelude::Resource;
 use wgpu::util::DeviceExt;
 use wgpu::{BindingResource, CommandEncoder, Device, Texture};
 
@@ -35,32 +36,34 @@ fn plane(clip_from_view: Mat4, size: UVec2, jitter_px: Vec2) -> Vec4 {
     Vec4::new(2.0 * by.x / size.x, -2.0 * by.y / size.y, constant, NEAR / w.z)
 }
 
-#[derive(Debug)]
-pub(crate) struct ObliquePass(wgpu::ComputePipeline);
+/// Compiled for the first camera that needs it.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct ObliquePass(Option<wgpu::ComputePipeline>);
+
+fn pipeline(device: &Device) -> wgpu::ComputePipeline {
+    let source = wgpu::ShaderSource::Wgsl(include_str!("oblique.wgsl").into());
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("oblique"), source });
+    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("afterimage oblique"),
+        layout: None,
+        module: &module,
+        entry_point: None,
+        compilation_options: Default::default(),
+        cache: None,
+    })
+}
 
 impl ObliquePass {
-    pub fn new(device: &Device) -> Self {
-        let source = wgpu::ShaderSource::Wgsl(include_str!("oblique.wgsl").into());
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some("oblique"), source });
-        Self(device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("afterimage oblique"),
-            layout: None,
-            module: &module,
-            entry_point: None,
-            compilation_options: Default::default(),
-            cache: None,
-        }))
-    }
-
     /// Writes the plain depth of a viewport, from the pixel `origin_px` on, to `plain`.
     pub fn record(
-        &self,
+        &mut self,
         device: &Device,
         encoder: &mut CommandEncoder,
         (depth, origin_px): (&Texture, [u32; 2]),
         plain: &Texture,
         (clip_from_view, jitter_px): (Mat4, [f32; 2]),
     ) {
+        let pipeline = self.0.get_or_insert_with(|| pipeline(device));
         let size = UVec2::new(plain.width(), plain.height());
         let plane = plane(clip_from_view, size, jitter_px.into()).to_array().map(f32::to_ne_bytes);
         let is_flat = is_orthographic(clip_from_view).into();
@@ -75,11 +78,11 @@ impl ObliquePass {
             [BindingResource::TextureView(&depth), BindingResource::TextureView(&output), uniforms.as_entire_binding()];
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
-            layout: &self.0.get_bind_group_layout(0),
+            layout: &pipeline.get_bind_group_layout(0),
             entries: &[0, 1, 2].map(|i| wgpu::BindGroupEntry { binding: i, resource: entries[i as usize].clone() }),
         });
         let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&self.0);
+        pass.set_pipeline(pipeline);
         pass.set_bind_group(0, &group, &[]);
         pass.dispatch_workgroups(size.x.div_ceil(8), size.y.div_ceil(8), 1);
     }

@@ -35,7 +35,8 @@ impl Plugin for PassPlugin {
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
         render_app
             .init_gpu_resource::<Contexts>()
-            .init_gpu_resource::<Passes>()
+            .init_gpu_resource::<BlitPass>()
+            .init_gpu_resource::<ObliquePass>()
             .add_systems(Render, prepare.in_set(RenderSystems::PrepareResources))
             .configure_sets(
                 Core3d,
@@ -60,14 +61,6 @@ impl Plugin for PassPlugin {
 #[derive(Resource, Default)]
 pub(crate) struct Contexts(pub EntityHashMap<Context>);
 
-/// Passes that cameras share.
-#[derive(Resource, Default)]
-struct Passes {
-    /// To the main textures that were written last: cameras without `Hdr` share a format.
-    blit: Option<BlitPass>,
-    oblique: Option<ObliquePass>,
-}
-
 fn prepare(mut contexts: ResMut<Contexts>, device: Res<RenderDevice>, cameras: Query<(Entity, &ExtractedAfterimage)>) {
     let device = device.wgpu_device();
     let contexts = &mut contexts.0;
@@ -87,7 +80,7 @@ fn prepare(mut contexts: ResMut<Contexts>, device: Res<RenderDevice>, cameras: Q
 }
 
 #[derive(QueryData)]
-struct Camera {
+pub(crate) struct Camera {
     frame: &'static ExtractedAfterimage,
     camera: &'static ExtractedCamera,
     view: &'static ExtractedView,
@@ -150,7 +143,7 @@ fn jitter(view: ViewQuery<Camera>, contexts: Res<Contexts>, uniforms: Res<ViewUn
 fn plan(
     view: ViewQuery<Camera>,
     mut contexts: ResMut<Contexts>,
-    mut passes: ResMut<Passes>,
+    mut oblique: ResMut<ObliquePass>,
     count: Res<FrameCount>,
     mut ctx: RenderContext,
 ) {
@@ -171,8 +164,7 @@ fn plan(
     let diagnostics = diagnostics.as_deref();
     let encoder = ctx.command_encoder();
     let span = diagnostics.time_span(encoder, "afterimage_plan");
-    let oblique = &mut passes.oblique;
-    let planned = context.plan(device.wgpu_device(), encoder, (camera.frame, facts), drawn, tested, oblique);
+    let planned = context.plan(device.wgpu_device(), encoder, (camera.frame, facts), drawn, tested, &mut oblique);
     span.end(encoder);
     if let Err(problem) = planned {
         error_once!("camera {entity} renders every pixel, without Afterimage: {problem}");
@@ -180,10 +172,10 @@ fn plan(
 }
 
 /// Shows the frame that the quads and history make, and opens depth again, for what is drawn at every pixel.
-fn show(
+pub(crate) fn show(
     view: ViewQuery<Camera>,
     mut contexts: ResMut<Contexts>,
-    mut passes: ResMut<Passes>,
+    mut blit: ResMut<BlitPass>,
     count: Res<FrameCount>,
     uniforms: Res<ViewUniforms>,
     mut ctx: RenderContext,
@@ -195,14 +187,14 @@ fn show(
         return;
     }
     let (facts, target) = (camera.facts(&count), camera.target);
-    let output: (&wgpu::Texture, &wgpu::TextureView) = (target.main_texture_other(), target.main_texture_other_view());
+    let output = target.main_texture_other_view();
     let device = ctx.render_device().clone();
     let device = device.wgpu_device();
     let diagnostics = ctx.diagnostic_recorder();
     let diagnostics = diagnostics.as_deref();
     let encoder = ctx.command_encoder();
     let span = diagnostics.time_span(encoder, "afterimage");
-    let recorded = context.record(device, encoder, (camera.frame, facts), drawn, output, &mut passes.blit);
+    let recorded = context.record(device, encoder, (camera.frame, facts), drawn, output, &mut blit);
     context.open(encoder, camera.depth.texture());
     span.end(encoder);
     match recorded {
