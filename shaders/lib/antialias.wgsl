@@ -11,9 +11,10 @@ const MOST_PAST_EDGE: f32 = 5.0;
 const BESIDE_WEIGHT: f32 = 0.35;
 const BESIDE_PX2: f32 = 2.0;
 const CODES_PER_LOD: f32 = 7.0;
+const CODES_PER_RUN: f32 = 48.0;
 const DEVIATIONS: f32 = 6.0;
-const ONE_SAMPLE_LOD: f32 = 6.0;
-const COARSE_CODE: f32 = 47.0;
+const ONE_SAMPLE_LOD: f32 = (2.0 * CODES_PER_RUN + 42.0) * (1.0f / CODES_PER_LOD);
+const COARSE_CODE: f32 = 239.0;
 const CODES_PER_COARSE_LOD: f32 = 2.5;
 const COARSE_LOD: f32 = 0.2;
 const DEVIATION_STEP: f32 = 1.25;
@@ -22,6 +23,11 @@ const RELIT_SAMPLES: f32 = 3.0;
 const RELIT_PER_GAIN: f32 = 10.0;
 const MOST_DIFFERENCE: f32 = 200.0;
 const CONTRADICTED: vec2f = vec2f(3.0, 2.0);
+const LONGEST_RUN: f32 = 2.0;
+const RUN_ERRORS: f32 = 0.55;
+const RUN_DEVIATION: f32 = 2.5;
+const RUN_KEPT: f32 = 0.5;
+const RUN_SAMPLES: f32 = 2.0;
 const CLIP_SIGMAS: f32 = 2.0;
 const CLIP: f32 = 0.5;
 const CLIP_COST: f32 = 10.0;
@@ -34,6 +40,7 @@ struct Mean {
     lod: f32,
     samples: f32,
     deviation: f32,
+    run: f32,
 }
 
 fn mean_lod(stored: f32) -> f32 {
@@ -44,12 +51,14 @@ fn mean_lod(stored: f32) -> f32 {
 fn mean_of(stored: f32) -> Mean {
     let lod = mean_lod(stored);
     if lod != 0.0 {
-        return Mean(lod, 1.0, 0.0);
+        return Mean(lod, 1.0, 0.0, 0.0);
     }
-    let code = floor(stored * CODES_PER_LOD + 0.5);
-    // 0.125 keeps the quotient away from integers.
+    let all = floor(stored * CODES_PER_LOD + 0.5);
+    // 0.125 keeps quotients away from integers.
+    let run = floor((all + 0.125) * (1.0f / CODES_PER_RUN));
+    let code = all - run * CODES_PER_RUN;
     let number = floor((code + 0.125) * (1.0f / DEVIATIONS));
-    return Mean(0.0, samples_of(7.0 - number), deviation_of(code - number * DEVIATIONS));
+    return Mean(0.0, samples_of(7.0 - number), deviation_of(code - number * DEVIATIONS), run - LONGEST_RUN);
 }
 
 fn byte_draws(word: u32) -> vec2f {
@@ -85,7 +94,7 @@ fn stored_lod(m: Mean, draws: vec2f) -> f32 {
     let high = deviation_of(steps + 1.0);
     let is_higher = deviation * deviation - low * low > (high * high - low * low) * draws.y;
     let code = (7.0 - select(number, number + 1.0, is_more)) * DEVIATIONS + select(steps, steps + 1.0, is_higher);
-    return code * (1.0f / CODES_PER_LOD);
+    return ((m.run + LONGEST_RUN) * CODES_PER_RUN + code) * (1.0f / CODES_PER_LOD);
 }
 
 fn stands_before(own: f32, neighbour: f32, own_motion: vec2f, motion: vec2f, full_rate: bool) -> bool {
@@ -177,6 +186,18 @@ fn expected_mean_error(past: Mean, contrast: f32, moved: bool) -> f32 {
     return (MOVED_ERROR + sqrt(select(max(variance, own), variance, moved))) + prior * clamp(past.lod, 0.0, 1.0);
 }
 
+fn next_run(past: Mean, is_brighter: bool, difference: f32) -> f32 {
+    let side = select(-1.0, 1.0, is_brighter);
+    let is_near = past.deviation < RUN_DEVIATION || difference < past.deviation * RUN_ERRORS;
+    let longer = clamp(past.run + side, -LONGEST_RUN, LONGEST_RUN);
+    return select(select(side, longer, past.run * side > 0.0), 0.0, is_near);
+}
+
+fn count_in_run(count: f32, past: Mean, next: f32) -> f32 {
+    let goes_on = abs(past.run) == LONGEST_RUN && past.run == next;
+    return select(count, min(count, max(count * RUN_KEPT, RUN_SAMPLES)), goes_on);
+}
+
 fn relit_samples(samples: f32, gains: vec3f) -> f32 {
     let by = abs(gains - 1.0);
     let changed = min(max(max(by.x, by.y), by.z) * RELIT_PER_GAIN, 1.0);
@@ -227,7 +248,9 @@ fn average(
 ) -> Averaged {
     let acceptance = (r.fit * r.trust) * kept;
     let most = most_samples(r.nearest.place_px, at_edge);
-    let count = select(min(relit_samples(past.samples, r.gains), most) * acceptance, 0.0, r.nearest.lod > 0.0);
+    let all = select(min(relit_samples(past.samples, r.gains), most) * acceptance, 0.0, r.nearest.lod > 0.0);
+    let run = next_run(past, luma(r.candidate) > luma(r.history), difference);
+    let count = count_in_run(all, past, run);
     let share = count / (count + 1.0);
     let variance = (past.deviation * past.deviation + (difference * difference) * (1.0 - share)) * share;
     var sample = r;
@@ -237,7 +260,7 @@ fn average(
         sample.candidate = moved.color;
         sample_px = moved.place_px;
     }
-    return Averaged(added(sample, sample_px, share), Mean(0.0, count + 1.0, sqrt(variance)));
+    return Averaged(added(sample, sample_px, share), Mean(0.0, count + 1.0, sqrt(variance), run));
 }
 
 struct Placed {
@@ -255,7 +278,7 @@ fn average_beside(r: Reconstruction, past: Mean, place_px: vec2f) -> Averaged {
     let samples = relit_samples(past.samples, r.gains);
     let count = min(samples, most_samples(r.nearest.place_px, true)) * acceptance;
     let share = count / (count + BESIDE_WEIGHT);
-    let mean = Mean(0.0, samples * acceptance + (1.0 - acceptance), past.deviation);
+    let mean = Mean(0.0, samples * acceptance + (1.0 - acceptance), past.deviation, past.run);
     return Averaged(added(r, place_px, share), mean);
 }
 
@@ -264,7 +287,7 @@ fn stored_mean(r: Reconstruction, result: Reconstructed, past: Mean) -> Averaged
     let share = r.fit * r.trust;
     let left = relit_samples(past.samples, r.gains) * share + (1.0 - share);
     if !is_kept {
-        return Averaged(result, Mean(0.0, 1.0, 0.0));
+        return Averaged(result, Mean(0.0, 1.0, 0.0, 0.0));
     }
-    return Averaged(result, Mean(past.lod, left, past.deviation));
+    return Averaged(result, Mean(past.lod, left, past.deviation, past.run));
 }

@@ -13,6 +13,7 @@ const INVERSE_MEAN_REACH: f32 = 1.0f / MEAN_REACH_PX2;
 const SOFTEN_PX2: f32 = 0.03;
 const STIFF_PX2: f32 = 0.01;
 const LOD_PX2: f32 = 0.3;
+const MOST_STEPS: f32 = 254.0;
 
 // A negative `lod` marks an empty texel.
 struct StoredSample {
@@ -59,14 +60,14 @@ fn unpack_place(bits: u32) -> f32 {
 fn pack_stored(s: StoredSample) -> vec2u {
     var lod = EMPTY_LOD;
     if s.lod >= 0.0 {
-        lod = u32(min(s.lod, MAX_LOD) * LOD_STEPS + 1.5);
+        lod = u32(min(s.lod * LOD_STEPS, MOST_STEPS) + 1.5);
     }
     let code = disparity_code(s.disparity);
     // The last code stands for an unknown disparity.
-    let disparity = select(min((code + 2u) >> 2u, 0x3ffeu), 0x3fffu, code == 0xffffu);
+    let disparity = select(min((code + 8u) >> 4u, 0xffeu), 0xfffu, code == 0xffffu);
     return vec2u(
         pack_color(s.color),
-        lod | (disparity << 6u) | (pack_place(s.place_px.x) << 20u) | (pack_place(s.place_px.y) << 26u),
+        lod | (disparity << 8u) | (pack_place(s.place_px.x) << 20u) | (pack_place(s.place_px.y) << 26u),
     );
 }
 
@@ -78,20 +79,20 @@ fn unpack_stored(words: vec2u) -> StoredSample {
 }
 
 fn is_empty(words: vec2u) -> bool {
-    return (words.y & 63u) == EMPTY_LOD;
+    return (words.y & 255u) == EMPTY_LOD;
 }
 
 fn code_word(words: vec2u) -> u32 {
-    return (words.y << 12u) & 0xfffc0000u;
+    return (words.y << 12u) & 0xfff00000u;
 }
 
 fn unpack_full(words: vec2u) -> StoredSample {
-    let code = (words.y >> 6u) & 0x3fffu;
+    let code = (words.y >> 8u) & 0xfffu;
     return StoredSample(
         unpack_color(words.x),
         // The limit keeps compilers from merging this factor with later ones.
-        min(lod_value(words.y & 63u), MAX_LOD),
-        select(disparity_value(code << 2u), -1.0, code == 0x3fffu),
+        min(lod_value(words.y & 255u), MOST_STEPS),
+        select(disparity_value(code << 4u), -1.0, code == 0xfffu),
         vec2f(unpack_place(words.y >> 20u), unpack_place(words.y >> 26u)),
     );
 }

@@ -202,6 +202,6 @@ fn comparison(history: SparseHistory, contrast: f32, motion: vec2f) -> Compariso
         return Comparison(expected_error(found.lod, contrast, has_moved(motion, found.nearest.place_px)), 0.0);
     }
     let moved = has_moved(motion, vec2f(0.0));
-    let mean = Mean(found.lod, history.mean.samples, history.mean.deviation);
+    let mean = Mean(found.lod, history.mean.samples, history.mean.deviation, history.mean.run);
     return Comparison(expected_mean_error(mean, contrast, moved), select(history.mean.deviation, 0.0, moved));
 }

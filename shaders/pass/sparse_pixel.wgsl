@@ -137,7 +137,7 @@ fn show_pixel(px: vec2u, view: u32, level: u32, disparity_now: f32, given: Candi
     var shown = candidate.color;
     let candidate_lod = select(-1.0, candidate.lod, candidate.usable);
     var next = StoredSample(candidate.color, candidate_lod, surface.stored_disparity, vec2f(0.0));
-    var mean = Mean(0.0, 1.0, 0.0);
+    var mean = Mean(0.0, 1.0, 0.0, 0.0);
     if is_centred_at(view, level, candidate) {
         // Without history the samples around antialias alone.
         shown = candidate.color + centred_change(near);

@@ -179,8 +179,8 @@ pub(super) fn note_stored_mean(pixel: &Pixel, notes: &mut Vec<Note>) {
     notes.note(
         NoteStage::Stored,
         "mean",
-        [mean.lod, mean.samples, mean.deviation],
-        "level of detail in log2 px, samples, their deviation",
+        [mean.lod, mean.samples, mean.deviation, mean.run],
+        "level of detail in log2 px, samples, their deviation, samples in a row on one side",
     );
 }
 

@@ -6,6 +6,7 @@
 //! resampled. Means of moving history contain few samples: the pixel's area lies elsewhere on the surface in each
 //! frame, so that a long mean would blur.
 
+use super::color::luma;
 use super::smr::{root_difference, roots, smooth_step};
 use super::sparse_smr::{CONTRAST_ERROR, MOVED_ERROR, ObservedAround, Reconstructed, Reconstruction, relit};
 use super::stored_sample::{FARTHEST_PX, StoredSample};
@@ -26,15 +27,17 @@ const MOST_PAST_EDGE: f32 = 5.0;
 const BESIDE_WEIGHT: f32 = 0.35;
 /// Largest squared distance in pixels of such a sample: the eight pixels around.
 pub const BESIDE_PX2: f32 = 2.0;
-/// Steps of a stored level of detail. The first 48 codes are means: eight numbers of samples, and six deviations of
-/// each. The following ones are levels above 0.
+/// Steps of a stored level of detail. The first 240 codes are means: five runs of eight numbers of samples, and six
+/// deviations of each. The following ones are levels above 0.
 const CODES_PER_LOD: f32 = 7.0;
+/// Codes of a run.
+const CODES_PER_RUN: f32 = 48.0;
 /// Codes of a number of samples.
 const DEVIATIONS: f32 = 6.0;
 /// Stored level of detail of a mean of one sample.
-pub const ONE_SAMPLE_LOD: f32 = 6.0;
+pub const ONE_SAMPLE_LOD: f32 = (2.0 * CODES_PER_RUN + 42.0) * (1.0 / CODES_PER_LOD);
 /// Code of a level of 0 if there were one.
-const COARSE_CODE: f32 = 47.0;
+const COARSE_CODE: f32 = 239.0;
 /// Codes a level above 0.
 const CODES_PER_COARSE_LOD: f32 = 2.5;
 /// A texel of this level or more is coarse.
@@ -52,6 +55,17 @@ pub const MOST_DIFFERENCE: f32 = 200.0;
 /// Differences between a sample and history, in expected ones, at which history starts to be contradicted, and width
 /// over which it loses all its samples.
 const CONTRADICTED: [f32; 2] = [3.0, 2.0];
+/// Longest run of samples on one side of a mean that is stored. The jitter covers the pixel in thirds, so that three
+/// samples on one side of an edge that stays are rare.
+const LONGEST_RUN: f32 = 2.0;
+/// Least difference of a sample in a run from the mean, in deviations of the mean.
+const RUN_ERRORS: f32 = 0.55;
+/// Least deviation of a mean with a run, in units of [`root_difference`].
+const RUN_DEVIATION: f32 = 2.5;
+/// Share of its samples that a mean keeps when a run goes on beyond the longest.
+const RUN_KEPT: f32 = 0.5;
+/// Least number of samples that it keeps.
+const RUN_SAMPLES: f32 = 2.0;
 /// Half width of the box of nine samples to which history is clipped at full rate, in standard deviations.
 const BOX_SIGMAS: f32 = 2.0;
 /// Share of the clip that is applied, so that a thin feature is not lost at once if a frame misses it.
@@ -79,11 +93,13 @@ pub struct Mean {
     pub samples: f32,
     /// Standard deviation of the samples, in units of [`root_difference`]; 0 for coarse texels.
     pub deviation: f32,
+    /// Run of samples on one side of the mean: -2 to 2, below 0 if they were darker.
+    pub run: f32,
 }
 
 impl Mean {
     /// A mean of one sample.
-    pub const ONE: Self = Self { lod: 0.0, samples: 1.0, deviation: 0.0 };
+    pub const ONE: Self = Self { lod: 0.0, samples: 1.0, deviation: 0.0, run: 0.0 };
 }
 
 /// Level of detail of a stored one.
@@ -93,7 +109,7 @@ pub fn mean_lod(stored_lod: f32) -> f32 {
     if stored_lod < 0.0 { -1.0 } else { (code - COARSE_CODE).max(0.0) * (1.0 / CODES_PER_COARSE_LOD) }
 }
 
-/// Level, number of samples and deviation of a stored level of detail, which is a multiple of 1/7.
+/// Level, number of samples, deviation and run of a stored level of detail, which is a multiple of 1/7.
 #[inline]
 pub fn mean_of(stored_lod: f32) -> Mean {
     let lod = mean_lod(stored_lod);
@@ -101,10 +117,12 @@ pub fn mean_of(stored_lod: f32) -> Mean {
         return Mean { lod, ..Mean::ONE };
     }
     let code = (stored_lod * CODES_PER_LOD + 0.5).floor();
-    // 0.125 keeps the quotient away from integers.
+    // 0.125 keeps quotients away from integers.
+    let run = ((code + 0.125) * (1.0 / CODES_PER_RUN)).floor();
+    let code = code - run * CODES_PER_RUN;
     let number = ((code + 0.125) * (1.0 / DEVIATIONS)).floor();
     let step = code - number * DEVIATIONS;
-    Mean { lod: 0.0, samples: samples_of(7.0 - number), deviation: deviation_of(step) }
+    Mean { lod: 0.0, samples: samples_of(7.0 - number), deviation: deviation_of(step), run: run - LONGEST_RUN }
 }
 
 /// Two draws in \[0, 1) from the low bytes of random bits.
@@ -150,7 +168,7 @@ pub fn stored_lod(m: Mean, draws: [f32; 2]) -> f32 {
     let [low, high] = [deviation_of(step), deviation_of(step + 1.0)];
     let is_higher = deviation * deviation - low * low > (high * high - low * low) * draws[1];
     let step = if is_higher { step + 1.0 } else { step };
-    ((7.0 - number) * DEVIATIONS + step) * (1.0 / CODES_PER_LOD)
+    ((m.run + LONGEST_RUN) * CODES_PER_RUN + ((7.0 - number) * DEVIATIONS + step)) * (1.0 / CODES_PER_LOD)
 }
 
 /// Whether a pixel takes the history of a neighbour's nearer surface, so that silhouettes are means of both surfaces
@@ -302,6 +320,29 @@ pub fn expected_mean_error(past: Mean, contrast: f32, moved: bool) -> f32 {
     (MOVED_ERROR + variance.sqrt()) + prior * past.lod.clamp(0.0, 1.0)
 }
 
+/// Run of samples on one side of a mean, with one more; one near the mean ends it. `difference`: between sample and
+/// history.
+#[inline]
+pub fn next_run(past: Mean, is_brighter: bool, difference: f32) -> f32 {
+    let side = if is_brighter { 1.0 } else { -1.0 };
+    if past.deviation < RUN_DEVIATION || difference < past.deviation * RUN_ERRORS {
+        0.0
+    } else if past.run * side > 0.0 {
+        (past.run + side).clamp(-LONGEST_RUN, LONGEST_RUN)
+    } else {
+        side
+    }
+}
+
+/// Number of samples that a mean of `count` keeps. At an edge that passes slowly, as that of a turning shadow, a mean
+/// gets samples of both sides, and its deviation then tolerates either side. A run of samples on one side says that the
+/// edge has passed. `next`: of [`next_run`].
+#[inline]
+pub fn count_in_run(count: f32, past: Mean, next: f32) -> f32 {
+    let goes_on = past.run.abs() == LONGEST_RUN && past.run == next;
+    if goes_on { count.min((count * RUN_KEPT).max(RUN_SAMPLES)) } else { count }
+}
+
 /// Number of samples that a mean counts for after a gain: an estimate, which the next samples must correct.
 #[inline]
 pub fn relit_samples(samples: f32, gain: Vec3) -> f32 {
@@ -370,10 +411,12 @@ pub fn average(
     let acceptance = (r.fit * r.trust) * kept;
     let most = most_samples(r.nearest.place_px, at_edge);
     let count = if r.nearest.lod > 0.0 { 0.0 } else { relit_samples(past.samples, r.gain).min(most) * acceptance };
+    let run = next_run(past, luma(r.candidate) > luma(r.history), difference);
+    let count = count_in_run(count, past, run);
     let share = count / (count + 1.0);
     // Welford 1962: the variance after one more sample.
     let variance = (past.deviation * past.deviation + (difference * difference) * (1.0 - share)) * share;
-    let mean = Mean { lod: 0.0, samples: count + 1.0, deviation: variance.sqrt() };
+    let mean = Mean { lod: 0.0, samples: count + 1.0, deviation: variance.sqrt(), run };
     let Some(change) = change else { return Averaged { result: added(r, place_px, share), mean } };
     let sample = centred(r.candidate, place_px, change, mean.samples);
     let r = Reconstruction { candidate: sample.color, ..*r };
@@ -408,7 +451,7 @@ pub fn average_beside(r: &Reconstruction, past: Mean, place_px: Vec2) -> Average
     let samples = relit_samples(past.samples, r.gain);
     let count = samples.min(most_samples(r.nearest.place_px, true)) * acceptance;
     let share = count / (count + BESIDE_WEIGHT);
-    let mean = Mean { lod: 0.0, samples: samples * acceptance + (1.0 - acceptance), deviation: past.deviation };
+    let mean = Mean { lod: 0.0, samples: samples * acceptance + (1.0 - acceptance), ..past };
     Averaged { result: added(r, place_px, share), mean }
 }
 

@@ -8,15 +8,15 @@
 //! |---|---|---|
 //! | 0 | 0-26 | red, green, blue: 9 bits each, multiples of 2^(exponent - 24) |
 //! | 0 | 27-31 | exponent that the three share |
-//! | 1 | 0-5 | code of the level of detail, as in [`surface`](super::surface) |
-//! | 1 | 6-19 | disparity: [`disparity_code`] without its last two bits |
+//! | 1 | 0-7 | code of the level of detail, in steps as in [`surface`](super::surface); 0: empty |
+//! | 1 | 8-19 | disparity: [`disparity_code`] without its last four bits |
 //! | 1 | 20-25 | x of the place, in 1/24 pixel, plus 32 |
 //! | 1 | 26-31 | y of the place |
 //!
 //! Packing an unpacked sample gives the same words. All zeros are an empty texel.
 
 use super::pack::{disparity_code, disparity_value};
-use super::surface::{EMPTY_LOD, LOD_STEPS, MAX_LOD, lod_value};
+use super::surface::{EMPTY_LOD, LOD_STEPS, lod_value};
 use glam::{Vec2, Vec3};
 
 /// Largest stored color: 511/512 of 2^16.
@@ -24,6 +24,8 @@ pub const MAX_COLOR: f32 = 65408.0;
 
 /// Smallest exponent of the largest channel; a smaller channel is stored with fewer bits.
 const SMALLEST_EXPONENT: u32 = 111;
+/// Largest level of detail in stored steps.
+const MOST_STEPS: f32 = 254.0;
 /// Stored steps a pixel of a sample's place.
 const PLACE_STEPS: f32 = 24.0;
 
@@ -115,11 +117,11 @@ pub fn unpack_place(bits: u32) -> f32 {
 /// Packs a sample. The color must not be NaN.
 #[inline]
 pub fn pack_stored(s: StoredSample) -> [u32; 2] {
-    let lod = if s.lod < 0.0 { EMPTY_LOD } else { (s.lod.min(MAX_LOD) * LOD_STEPS + 1.5) as u32 };
+    let lod = if s.lod < 0.0 { EMPTY_LOD } else { ((s.lod * LOD_STEPS).min(MOST_STEPS) + 1.5) as u32 };
     let disparity = disparity_code(s.disparity);
     // The last code stands for an unknown disparity.
-    let disparity = if disparity == 0xffff { 0x3fff } else { ((disparity + 2) >> 2).min(0x3ffe) };
-    [pack_color(s.color), lod | disparity << 6 | pack_place(s.place_px.x) << 20 | pack_place(s.place_px.y) << 26]
+    let disparity = if disparity == 0xffff { 0xfff } else { ((disparity + 8) >> 4).min(0xffe) };
+    [pack_color(s.color), lod | disparity << 8 | pack_place(s.place_px.x) << 20 | pack_place(s.place_px.y) << 26]
 }
 
 /// Unpacks a sample. The result is finite for any words.
@@ -131,24 +133,24 @@ pub fn unpack_stored(words: [u32; 2]) -> StoredSample {
 /// Whether a texel is empty.
 #[inline]
 pub fn is_empty(words: [u32; 2]) -> bool {
-    words[1] & 63 == EMPTY_LOD
+    words[1] & 255 == EMPTY_LOD
 }
 
 /// Word for [`has_code`](super::resample::has_code), with the code of a sample's disparity in its high half.
 #[inline]
 pub fn code_word(words: [u32; 2]) -> u32 {
-    (words[1] << 12) & 0xfffc_0000
+    (words[1] << 12) & 0xfff0_0000
 }
 
 /// Unpacks the sample of a texel that is not empty. The result is finite for any words.
 #[inline]
 pub fn unpack_full(words: [u32; 2]) -> StoredSample {
-    let disparity = (words[1] >> 6) & 0x3fff;
+    let disparity = (words[1] >> 8) & 0xfff;
     StoredSample {
         color: unpack_color(words[0]),
         // The limit keeps compilers from merging this factor with later ones.
-        lod: lod_value(words[1] & 63).min(MAX_LOD),
-        disparity: if disparity == 0x3fff { -1.0 } else { disparity_value(disparity << 2) },
+        lod: lod_value(words[1] & 255).min(MOST_STEPS),
+        disparity: if disparity == 0xfff { -1.0 } else { disparity_value(disparity << 4) },
         place_px: Vec2::new(unpack_place(words[1] >> 20), unpack_place(words[1] >> 26)),
     }
 }

@@ -5,7 +5,7 @@ use super::*;
 use afterimage::kernel::sparse_smr::{Reconstructed, Reconstruction};
 use afterimage::kernel::{antialias, sparse_smr};
 
-shape!(antialias::Mean { lod: f32, samples: f32, deviation: f32 });
+shape!(antialias::Mean { lod: f32, samples: f32, deviation: f32, run: f32 });
 shape!(antialias::Near { sum: Vec3, squares: Vec3, count: f32, change: Vec3, weight: f32 });
 shape!(antialias::Placed { color: Vec3, place_px: Vec2 });
 shape!(antialias::Clip { change: Vec3, kept: f32 });
@@ -15,22 +15,32 @@ const DISPARITIES: [f32; 8] = [-1.0, 0.0, 0.48, 0.49, 0.5, 0.51, 1.0, 1.02];
 
 pub const PROBES: &[Probe] = &[
     probe!(antialias::mean_of, |rows| {
-        let stored: Vec<u32> = (0..63).map(|code| (code as f32 * (1.0 / 7.0)).to_bits()).collect();
+        let stored: Vec<u32> = (0..255).map(|code| (code as f32 * (1.0 / 7.0)).to_bits()).collect();
         rows.cross(&[&stored]).cross(&[&floats(&[-1.0])])
     }),
-    probe!(antialias::mean_lod, |rows| rows.each(&[F(-1.0, 9.0)])),
+    probe!(antialias::mean_lod, |rows| rows.each(&[F(-1.0, 36.0)])),
     probe!(antialias::stored_lod, |rows| {
         let lods = floats(&[-1.0, 0.0, 0.1, 0.2, 0.21, 1.0, 2.5, 6.0, 8.0]);
         let (samples, deviations) = (floats(&[1.0, 1.4, 2.0, 16.0, 29.0, 40.0]), floats(&[0.0, 1.0, 7.5, 37.5, 90.0]));
-        let draws = floats(&[0.001, 0.5, 0.999]);
-        let random = [F(-1.0, 1.0), F(0.0, 31.0), F(0.0, 40.0), F(0.0, 1.0), F(0.0, 1.0)];
-        rows.cross(&[&lods, &samples, &deviations, &draws, &draws]).each(&random)
+        let (runs, draws) = (floats(&[-2.0, -1.0, 0.0, 1.0, 2.0]), floats(&[0.001, 0.5, 0.999]));
+        let random = [F(-1.0, 1.0), F(0.0, 31.0), F(0.0, 40.0), Of(push_run), F(0.0, 1.0), F(0.0, 1.0)];
+        rows.cross(&[&lods, &samples, &deviations, &runs, &draws, &draws]).each(&random)
     }),
     probe!(antialias::byte_draws, |rows| rows.each(&[Bits])),
     probe!(antialias::expected_mean_error, |rows| rows.random(|d, row| {
         row.push(range(d, -1.0, 3.0));
         push_samples(d, row);
         row.extend([range(d, 0.0, 100.0), d.bits() % 2]);
+    })),
+    probe!(antialias::next_run, |rows| rows.random(|d, row| {
+        row.push(0);
+        push_samples(d, row);
+        row.extend([d.bits() % 2, range(d, 0.0, 40.0)]);
+    })),
+    probe!(antialias::count_in_run, |rows| rows.random(|d, row| {
+        row.extend([range(d, 0.0, 29.0), 0]);
+        push_samples(d, row);
+        push_run(d, row);
     })),
     probe!(antialias::relit_samples, |rows| rows.each(&[F(1.0, 29.0), F(0.2, 5.0), F(0.9, 1.1), F(0.9, 1.1)])),
     probe!(antialias::kept_samples, |rows| rows.each(&[F(0.6, 40.0), F(0.0, 200.0)])),
@@ -148,7 +158,12 @@ pub const PROBES: &[Probe] = &[
     ),
 ];
 
-/// Number and deviation of the samples in a mean.
+/// Number, deviation and run of the samples in a mean.
 fn push_samples(d: &mut Draws, row: &mut Vec<u32>) {
     row.extend([range(d, 1.0, 29.0), range(d, 0.0, 40.0)]);
+    push_run(d, row);
+}
+
+fn push_run(d: &mut Draws, row: &mut Vec<u32>) {
+    row.push(((d.bits() % 5) as f32 - 2.0).to_bits());
 }
