@@ -4,7 +4,8 @@
 //! # Two doors
 //!
 //! **Planned frames**: the post-process chooses the pixels whose colors are drawn, a quarter of them or a tenth around
-//! the gaze, and shows an antialiased picture at full rate.
+//! the gaze, and shows an antialiased picture at full rate. For one view or several, noisy frames, and renderers that
+//! choose the pixels themselves.
 #![cfg_attr(
     feature = "gpu",
     doc = "[`Afterimage`] has the calls of a frame; `examples/01_planned.rs` adds them to a small renderer."
@@ -14,8 +15,7 @@
 //! **Frames that the renderer foveates itself**, shaded at full rate only where the eye looks: `gpu::Afterimage` runs
 //! after it, before tone mapping. It stores the sharpest sample of every surface point, reprojects it along the motion
 //! vectors, and shows it as long as it agrees with the foveated frame ([`Method::Smr`]). For comparison there are
-//! weighted reservoirs (Cantory et al., MIG 2025; [`Method::Wrs`]) and temporal antialiasing ([`Method::Taa`]). It has
-//! every option of planned frames, too: several views, a renderer's own masks, noisy frames, debug views.
+//! weighted reservoirs (Cantory et al., MIG 2025; [`Method::Wrs`]) and temporal antialiasing ([`Method::Taa`]).
 //!
 #![cfg_attr(feature = "gpu", doc = "```")]
 #![cfg_attr(not(feature = "gpu"), doc = "```ignore")]

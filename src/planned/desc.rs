@@ -64,8 +64,10 @@ impl Shading {
 /// Description of an [`Afterimage`](super::Afterimage). Create it with [`new`](Self::new) and `..`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Desc {
-    /// Size of the frame in pixels, each side 1 to 16384.
+    /// Size of each view in pixels, each side 1 to 16384.
     pub size_px: [u32; 2],
+    /// Number of views: 1 for a screen, 2 for stereo; at most 4. Textures have an array layer for each. Default 1.
+    pub view_count: u32,
     /// Format of the output texture.
     pub output: TextureFormat,
     /// Pixels that are shaded. Default: a quarter.
@@ -82,9 +84,12 @@ pub struct Desc {
     /// Whether the output has the alpha of the colors, with a history like theirs, instead of 1. It takes 8 more bytes
     /// a pixel. Default false.
     pub keep_alpha: bool,
-    /// Whether the renderer draws [quarter frames](super::Plan::quarter) at half the width and height. Otherwise the
+    /// Whether the renderer draws [quarter frames](super::Plan::quarters) at half the width and height. Otherwise the
     /// first frame, and those after cuts, are shaded at every pixel by rasterisers, and are right, too. Default false.
     pub draws_quarters: bool,
+    /// Whether frames are path-traced with few samples a pixel, and have a [noise input](super::Frame::noise). It takes
+    /// 8 more bytes a pixel. Default false.
+    pub is_noisy: bool,
 }
 
 impl Desc {
@@ -92,6 +97,7 @@ impl Desc {
     pub fn new(size_px: [u32; 2], output: TextureFormat) -> Self {
         Self {
             size_px,
+            view_count: 1,
             output,
             shading: Shading::default(),
             motion: None,
@@ -99,12 +105,14 @@ impl Desc {
             antialias: true,
             keep_alpha: false,
             draws_quarters: false,
+            is_noisy: false,
         }
     }
 
     pub(super) fn context(&self) -> ContextDesc {
         let still = MotionConvention { without_camera: true, ..MotionConvention::default() };
         ContextDesc {
+            view_count: self.view_count,
             motion: self.motion.unwrap_or(still),
             depth: DepthConvention::Linear,
             keep_alpha: self.keep_alpha,
