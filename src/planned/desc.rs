@@ -50,12 +50,19 @@ impl Shading {
     }
 
     /// The even pattern takes a part of the share, and what history lacks gets the rest.
-    pub(super) fn foveation(self) -> Foveation {
+    pub(super) fn foveation(self, single_pixels: bool) -> Foveation {
+        let outside = |share: f32| {
+            let quads = Foveation::uniform(share);
+            let even = share - quads.budget;
+            // One pixel of each quad of the pattern.
+            let budget = if single_pixels { share - 0.25 * even } else { quads.budget };
+            Foveation { budget, single_pixels, ..quads }
+        };
         match self {
-            Self::Everywhere { share } => Foveation::uniform(share),
+            Self::Everywhere { share } => outside(share),
             Self::Gaze { fovea_deg, share } => {
                 let mid_deg = fovea_deg.max(15.0);
-                Foveation { fovea_deg, mid_deg, blend_deg: 1.0, ..Foveation::uniform(share) }
+                Foveation { fovea_deg, mid_deg, blend_deg: 1.0, ..outside(share) }
             }
         }
     }
@@ -87,6 +94,9 @@ pub struct Desc {
     /// Whether the renderer draws [quarter frames](super::Plan::quarters) at half the width and height. Otherwise the
     /// first frame, and those after cuts, are shaded at every pixel by rasterisers, and are right, too. Default false.
     pub draws_quarters: bool,
+    /// Whether the renderer can shade single pixels of a quad, as path tracers and compute shaders can: outside the
+    /// fovea the mask then has one pixel of a quad, four times as many places for the same pixels. Default false.
+    pub single_pixels: bool,
     /// Whether frames are path-traced with few samples a pixel, and have a [noise input](super::Frame::noise). It takes
     /// 8 more bytes a pixel. Default false.
     pub is_noisy: bool,
@@ -105,6 +115,7 @@ impl Desc {
             antialias: true,
             keep_alpha: false,
             draws_quarters: false,
+            single_pixels: false,
             is_noisy: false,
         }
     }

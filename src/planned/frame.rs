@@ -85,8 +85,10 @@ impl Plan {
         &self.mask
     }
 
-    /// The quads with shaded pixels, a list on the device for each view, with arguments of indirect draws and
-    /// dispatches: [`gpu::Afterimage::quad_list`](crate::gpu::Afterimage::quad_list) describes it.
+    /// The quads with shaded pixels, a list on the device for each view; usages `STORAGE`, `INDIRECT` and `COPY_SRC`.
+    /// 32-bit words: at byte 0 the arguments of `draw_indirect` with 6 vertices and an instance for each quad, at byte
+    /// 16 those of `dispatch_workgroups_indirect` with 64 invocations a workgroup and one for each quad, at byte 28 the
+    /// number of quads, from byte 32 on the quads, x + 65536 y in quads, in no particular order.
     pub fn lists(&self) -> &[Buffer] {
         &self.lists
     }

@@ -130,6 +130,37 @@ impl Afterimage {
         Ok(())
     }
 
+    /// Changes the size of the frame, and resamples history to it: records a pass into `encoder`. If that is dropped,
+    /// the next frame has no history. The view directions at the edges should stay the same.
+    ///
+    /// # Errors
+    /// As for [`resize`](Self::resize).
+    pub fn resize_keeping_history(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        size_px: [u32; 2],
+    ) -> Result<(), FrameError> {
+        self.post.resize_keeping_history(&self.device, encoder, size_px)?;
+        self.desc.size_px = size_px;
+        Ok(())
+    }
+
+    /// Compiles, while loading, the pipelines for frames with the same inputs and outputs, so that the first
+    /// [`plan`](Self::plan) and [`show`](Self::show) do not have to. The contents of the textures do not matter.
+    ///
+    /// # Errors
+    /// [`FrameError`] if a matrix or a value of the frame does not fit.
+    pub fn prewarm<'a>(
+        &self,
+        frame: &Frame<'_>,
+        color: &Texture,
+        output: impl Into<Target<'a>>,
+    ) -> Result<(), FrameError> {
+        let plan = self.described(frame)?;
+        self.post.prewarm(&self.device, &plan.inputs(color, None), output);
+        Ok(())
+    }
+
     /// Discards history and the last known gaze: for another scene or another user.
     pub fn forget(&mut self) {
         self.post.forget();
@@ -353,6 +384,7 @@ impl Desc {
     fn settings(&self) -> Settings {
         let smr = if self.is_noisy { Smr::traced() } else { Smr::default() };
         let method = Method::Smr(Smr { antialias: self.antialias, ..smr });
-        Settings { method, foveation: self.shading.foveation(), noisy: self.is_noisy, ..Settings::default() }
+        let foveation = self.shading.foveation(self.single_pixels);
+        Settings { method, foveation, noisy: self.is_noisy, ..Settings::default() }
     }
 }

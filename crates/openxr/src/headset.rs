@@ -8,13 +8,11 @@ use crate::session::{HiddenMesh, Session, VIEWS};
 use crate::targets::{Targets, layers};
 use crate::vulkan::Gpu;
 use afterimage::gpu::{Afterimage, Frame, Prime};
-use afterimage::{
-    ContextDesc, DepthConvention, Filter, Foveation, Gaze, Method, Reset, Settings, SettingsError, Smr, ViewFrame,
-    ViewGeometry,
-};
+use afterimage::levels::{ContextDesc, Filter, Foveation, Method, Reset, Settings, Smr, ViewFrame};
+use afterimage::{DepthConvention, Gaze, SettingsError, ViewGeometry};
 use openxr as xr;
 use std::time::{Duration, Instant};
-use wgpu_30::{CommandEncoder, Device, Limits, PollType, Queue, Texture, TextureFormat, TextureUsages};
+use wgpu_30::{Buffer, CommandEncoder, Device, Limits, PollType, Queue, Texture, TextureFormat, TextureUsages};
 use xr::sys;
 
 /// Time in which nothing was to be shown after which history is discarded.
@@ -132,8 +130,8 @@ pub struct Shown<'a> {
     pub output: &'a Texture,
     /// What was drawn.
     pub targets: &'a Targets,
-    /// The post-process, whose `quad_mask` and `quad_list` say what was shaded.
-    pub post: &'a Afterimage,
+    /// What was shaded of each eye, in the form of [`Plan::lists`](afterimage::Plan::lists).
+    pub lists: Vec<&'a Buffer>,
     /// Descriptions of both views.
     pub views: [ViewFrame; 2],
     /// Counter of submitted frames.
@@ -487,10 +485,16 @@ impl<'a> HeadsetFrame<'a> {
         (&mut self.encoder, &self.headset.targets)
     }
 
-    /// The post-process, whose `quad_mask` and `quad_list` say, after [`choose`](Self::choose), what to shade: for
-    /// renderers that dispatch or draw over a list.
-    pub fn post(&self) -> &Afterimage {
-        &self.headset.post
+    /// What to shade, after [`choose`](Self::choose): a texture with a layer for each eye, in the form of
+    /// [`Plan::mask`](afterimage::Plan::mask).
+    pub fn mask(&self) -> Option<&Texture> {
+        self.headset.post.quad_mask()
+    }
+
+    /// The same of an eye (0 left, 1 right) as a list in the form of [`Plan::lists`](afterimage::Plan::lists): for
+    /// renderers that dispatch or draw over it.
+    pub fn list(&self, eye: usize) -> Option<&Buffer> {
+        self.headset.post.quad_list(eye)
     }
 
     /// The session of the frame, for the state of the application's actions. Objects that are made in it must not be
@@ -604,8 +608,9 @@ impl<'a> HeadsetFrame<'a> {
             Err(error) if is_lost(error) => {}
             Err(error) => return Err(error.into()),
         }
-        let (output, targets, post) = (&headset.output, &headset.targets, &headset.post);
-        Ok(Shown { output, targets, post, views: described, index, is_half })
+        let (output, targets) = (&headset.output, &headset.targets);
+        let lists = (0..2).filter_map(|eye| headset.post.quad_list(eye)).collect();
+        Ok(Shown { output, targets, lists, views: described, index, is_half })
     }
 }
 

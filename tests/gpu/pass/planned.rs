@@ -136,15 +136,21 @@ fn eyes(index: u64) -> [Camera; 2] {
 /// Results of frames: pictures, debug views and counters.
 type Shown = Vec<[Vec<u32>; 3]>;
 
-/// Two views through the context for planned frames, and through the full one. `plant` changes what the former is told.
-fn stereo(is_noisy: bool, plant: fn(&mut [Camera; 2])) -> Option<[Shown; 2]> {
+/// Two views through the context for planned frames, and through the full one. `is_traced`: noisy frames of single
+/// pixels. `plant` changes what the former is told.
+fn stereo(is_traced: bool, plant: fn(&mut [Camera; 2])) -> Option<[Shown; 2]> {
     let (device, queue) = rig::device_of_five_outputs()?;
     let motion = MotionConvention { without_camera: true, ..MotionConvention::default() };
     let shading = Shading::Gaze { fovea_deg: 12.0, share: 0.11 };
-    let door = Desc { view_count: 2, shading, is_noisy, ..Desc::new(SIZE, TextureFormat::Rgba32Float) };
+    let (is_noisy, single_pixels) = (is_traced, is_traced);
+    let door = Desc { view_count: 2, shading, is_noisy, single_pixels, ..Desc::new(SIZE, TextureFormat::Rgba32Float) };
     let smr = if is_noisy { Smr::traced() } else { Smr::default() };
     let method = Method::Smr(Smr { antialias: true, ..smr });
-    let settings = Settings { method, foveation: foveation(13), noisy: is_noisy, ..Settings::default() };
+    let quads = foveation(13);
+    // The even pattern has one pixel of a quad.
+    let budget = if single_pixels { 0.11 - 0.25 / 32.0 } else { quads.budget };
+    let foveation = Foveation { budget, single_pixels, ..quads };
+    let settings = Settings { method, foveation, noisy: is_noisy, ..Settings::default() };
     let desc = ContextDesc { view_count: 2, motion, keep_alpha: false, settings, ..ContextDesc::new(SIZE) };
     let mut full = Afterimage::new(&device, &desc, door.output).unwrap();
     let mut post = afterimage::Afterimage::new(&device, &door).unwrap();
@@ -234,9 +240,9 @@ fn stereo(is_noisy: bool, plant: fn(&mut [Camera; 2])) -> Option<[Shown; 2]> {
 
 #[test]
 fn two_views_are_those_of_the_full_context() {
-    for is_noisy in [false, true] {
-        let Some([expected, found]) = stereo(is_noisy, |_| {}) else { return };
-        assert!(expected.iter().zip(&found).all(|(a, b)| a == b), "noisy: {is_noisy}");
+    for is_traced in [false, true] {
+        let Some([expected, found]) = stereo(is_traced, |_| {}) else { return };
+        assert!(expected.iter().zip(&found).all(|(a, b)| a == b), "traced: {is_traced}");
         // No part of a result is always the same.
         assert!((0..3).all(|part| expected.windows(2).any(|pair| pair[0][part] != pair[1][part])));
     }
@@ -285,6 +291,40 @@ fn close_leaves_open_what_each_eye_shades() {
     }
     assert!(differing[0] > 100 && differing[1] > 100, "{differing:?}");
     assert!(masks[..masks.len() / 2] != masks[masks.len() / 2..]);
+}
+
+/// Share of the pixels that the tenth frame shades.
+fn share_of(single_pixels: bool, share: f32) -> Option<f32> {
+    let (device, queue) = device()?;
+    let desc = ContextDesc::new(SIZE);
+    let texture = |format, usage| make_texture(&device, &desc, format, usage);
+    let depth = texture(TextureFormat::R32Float, TextureUsages::TEXTURE_BINDING);
+    let color = texture(TextureFormat::Rgba32Float, TextureUsages::TEXTURE_BINDING);
+    let output = texture(TextureFormat::Rgba32Float, TextureUsages::STORAGE_BINDING);
+    let door = Desc { shading: Shading::Everywhere { share }, single_pixels, ..Desc::new(SIZE, output.format()) };
+    let mut post = afterimage::Afterimage::new(&device, &door).unwrap();
+    let [clip_from_view, pose] = camera(0);
+    let frame = afterimage::Frame::new(&depth, Camera::new(clip_from_view, pose));
+    let mut mask = vec![];
+    for _ in 0..10 {
+        let mut encoder = device.create_command_encoder(&Default::default());
+        let plan = post.plan(&mut encoder, &frame).unwrap();
+        let texture = plan.mask().clone();
+        post.show(&mut encoder, plan, &color, &output).unwrap();
+        queue.submit([encoder.finish()]);
+        mask = read_texture(&device, &queue, &texture);
+    }
+    let shaded: u32 = mask.iter().map(|quad| (quad & 15).count_ones()).sum();
+    assert!(!single_pixels || mask.iter().all(|quad| (quad & 15).count_ones() <= 1));
+    Some(shaded as f32 / (SIZE[0] * SIZE[1]) as f32)
+}
+
+#[test]
+fn quads_and_single_pixels_have_the_same_share() {
+    for (single_pixels, share) in [(false, 0.25), (true, 0.25), (false, 0.1), (true, 0.1)] {
+        let Some(found) = share_of(single_pixels, share) else { return };
+        assert!((found - share).abs() < 0.02, "{found} of {share}, single pixels: {single_pixels}");
+    }
 }
 
 #[test]
