@@ -19,6 +19,7 @@
 //!
 //! - `Desc`, `Frame`, `Plan`: descriptions of a context of planned frames and of a frame, and the chosen pixels.
 //!   `Camera`, [`Gaze`]: description of a view.
+//! - [`levels`]: the same of frames with levels of detail, their methods and all tunables.
 //! - [`DepthConvention`], [`MotionConvention`]: what a renderer's depth and motion vectors mean.
 //! - [`FrameStats`], [`Warning`], [`DebugView`]: counters, messages and images of a frame's decisions.
 //! - `gpu::Doctor`, `cpu::Doctor`, [`doctor::Finding`]: checks whether frames match their description, to diagnose
@@ -31,11 +32,10 @@
 //!
 //! Two executors run the same passes; their results are equal bit for bit on software Vulkan, native and in a browser.
 //!
-//! - The contexts of both doors
-//!   record compute passes into your wgpu command encoder: of wgpu 30 (feature `wgpu-30`, on by default) or wgpu 29
-//!   (feature `wgpu-29`), exported as `afterimage::wgpu`. The application chooses wgpu's backends. On a lost
-//!   device nothing panics, with one exception: wgpu 29 reports views of textures that are created after the loss, as
-//!   in `resize`, to the device's handler of uncaptured errors, and the default handler panics.
+//! - The contexts of both doors record compute passes into your wgpu command encoder: of wgpu 30 (feature `wgpu-30`, on
+//!   by default) or wgpu 29 (feature `wgpu-29`), exported as `afterimage::wgpu`. The application chooses wgpu's
+//!   backends. On a lost device nothing panics, with one exception: wgpu 29 reports views of textures that are created
+//!   after the loss, as in `resize`, to the device's handler of uncaptured errors, and the default handler panics.
 #![cfg_attr(feature = "cpu", doc = "- [`cpu::CpuAfterimage`]")]
 #![cfg_attr(not(feature = "cpu"), doc = "- `cpu::CpuAfterimage`")]
 //!   (feature `cpu`) processes images in memory: for machines without a GPU, and for tests.

@@ -293,6 +293,48 @@ fn close_leaves_open_what_each_eye_shades() {
     assert!(masks[..masks.len() / 2] != masks[masks.len() / 2..]);
 }
 
+/// Quarter frames come where nothing is known: at first, and after a change of size that keeps nothing.
+#[test]
+fn both_eyes_have_quarters_until_history_is_there() {
+    let Some((device, queue)) = device() else { return };
+    let door = Desc { view_count: 2, draws_quarters: true, ..Desc::new(SIZE, TextureFormat::Rgba32Float) };
+    let mut post = afterimage::Afterimage::new(&device, &door).unwrap();
+    for (size_px, keeps, begins) in
+        [(SIZE, false, true), (SIZE, true, false), ([61, 40], true, false), (SIZE, false, true)]
+    {
+        let mut encoder = device.create_command_encoder(&Default::default());
+        match keeps {
+            true => post.resize_keeping_history(&mut encoder, size_px).unwrap(),
+            false => post.resize(size_px).unwrap(),
+        }
+        assert_eq!(post.desc().size_px, size_px);
+        let whole = ContextDesc { view_count: 2, ..ContextDesc::new(size_px) };
+        let small = ContextDesc { size_px: size_px.map(|side| side.div_ceil(2)), ..whole };
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::STORAGE_BINDING;
+        let color = |desc| make_texture(&device, desc, TextureFormat::Rgba32Float, usage);
+        let depth = make_texture(&device, &whole, TextureFormat::R32Float, usage);
+        let [left, right] = eyes(0).map(|eye| Camera { visible_px: None, ..eye });
+        // The right eye's projection is off its axis.
+        let mut clip_from_view = right.clip_from_view;
+        clip_from_view[2][0] = 0.2;
+        let right = Camera { clip_from_view, ..right };
+        let frame = afterimage::Frame { others: &[right], ..afterimage::Frame::new(&depth, left) };
+        let plan = post.plan(&mut encoder, &frame).unwrap();
+        let quarters = plan.quarters().to_vec();
+        assert_eq!(quarters.len(), if begins { 2 } else { 0 }, "{size_px:?}, keeps: {keeps}");
+        if let [left, right] = quarters[..] {
+            assert_eq!([left.size_px, right.size_px], [small.size_px; 2]);
+            let moved = right.clip_from_view[2][0] - left.clip_from_view[2][0];
+            let scale = right.clip_from_view[0][0] / clip_from_view[0][0] as f32;
+            assert!((moved - 0.2 * scale).abs() < 1e-5, "{moved}");
+            post.show_quarter(&mut encoder, plan, [&color(&whole), &color(&small)], &color(&whole)).unwrap();
+        } else {
+            post.show(&mut encoder, plan, &color(&whole), &color(&whole)).unwrap();
+        }
+        queue.submit([encoder.finish()]);
+    }
+}
+
 /// Share of the pixels that the tenth frame shades.
 fn share_of(single_pixels: bool, share: f32) -> Option<f32> {
     let (device, queue) = device()?;
