@@ -120,7 +120,17 @@ impl Desc {
         }
     }
 
-    pub(super) fn context(&self) -> ContextDesc {
+    /// Description of the passes, for this workspace's other crates.
+    ///
+    /// # Errors
+    /// [`SettingsError`] if a share or an angle is out of range.
+    #[doc(hidden)]
+    pub fn context(&self) -> Result<ContextDesc, SettingsError> {
+        self.shading.validate()?;
+        Ok(self.unchecked())
+    }
+
+    pub(super) fn unchecked(&self) -> ContextDesc {
         let still = MotionConvention { without_camera: true, ..MotionConvention::default() };
         ContextDesc {
             view_count: self.view_count,

@@ -79,15 +79,14 @@ impl Afterimage {
     /// it: `Rgba16Float` and `Rgba8Unorm` are, on every device), a limit of the device is too low
     /// ([`required_limits`](Self::required_limits)), or its backend cannot store history. Then nothing was made.
     pub fn new(device: &Device, desc: &Desc) -> Result<Self, CreateError> {
-        desc.shading.validate()?;
-        let post = gpu::Afterimage::new(device, &desc.context(), desc.output)?;
+        let post = gpu::Afterimage::new(device, &desc.context()?, desc.output)?;
         Ok(Self { device: device.clone(), desc: *desc, post, index: 0, previous: vec![] })
     }
 
     /// Limits that a device needs at least for a context of this description. Request them together with what the rest
     /// of the program needs.
     pub fn required_limits(desc: &Desc) -> Limits {
-        gpu::Afterimage::required_limits(&desc.context())
+        gpu::Afterimage::required_limits(&desc.unchecked())
     }
 
     /// Description of the context, with its current size and shading.
@@ -113,9 +112,8 @@ impl Afterimage {
     /// # Errors
     /// [`SettingsError`] if a share or an angle is out of range; then nothing changes.
     pub fn set_shading(&mut self, shading: Shading) -> Result<(), SettingsError> {
-        shading.validate()?;
         let desc = Desc { shading, ..self.desc };
-        self.post.set_settings(&self.device, desc.settings())?;
+        self.post.set_settings(&self.device, desc.context()?.settings)?;
         self.desc = desc;
         Ok(())
     }
@@ -309,7 +307,7 @@ impl Afterimage {
     /// # Errors
     /// [`CreateError`] if a limit of the device is too low.
     pub fn doctor(&self) -> Result<gpu::Doctor, CreateError> {
-        gpu::Doctor::of_planned(&self.device, &self.desc.context())
+        gpu::Doctor::of_planned(&self.device, &self.desc.unchecked())
     }
 
     /// Records the examination of a frame by a [doctor](Self::doctor) of this context, before the frame is shown.

@@ -9,7 +9,7 @@ use crate::targets::{Targets, layers};
 use crate::vulkan::Gpu;
 use afterimage::gpu::{Afterimage, Frame, Prime};
 use afterimage::levels::{ContextDesc, Filter, Foveation, Method, Reset, Settings, Smr, ViewFrame};
-use afterimage::{DepthConvention, Gaze, SettingsError, ViewGeometry};
+use afterimage::{DepthConvention, Desc, Gaze, SettingsError, Shading, ViewGeometry};
 use openxr as xr;
 use std::time::{Duration, Instant};
 use wgpu_30::{Buffer, CommandEncoder, Device, Limits, PollType, Queue, Texture, TextureFormat, TextureUsages};
@@ -28,8 +28,10 @@ pub type ActionsFn = Box<dyn FnOnce(&xr::Instance) -> Result<Vec<xr::ActionSet>,
 
 /// Description of a headset. Create it with `..HeadsetDesc::default()`.
 pub struct HeadsetDesc {
-    /// Method and foveation, whose filter must be [`Filter::Quads`]. Default: [`Settings::headset`].
-    pub settings: Settings,
+    /// Pixels that are shaded. Default: all within 10 degrees around the gaze, and 8 % of the others.
+    pub shading: Shading,
+    /// Whether the projection is jittered and the picture is antialiased, in place of other antialiasing. Default true.
+    pub antialias: bool,
     /// Distance of the near plane in metres, above 0. Default 0.05.
     pub near_m: f32,
     /// Size of a view in pixels. Default: what the runtime recommends.
@@ -46,7 +48,8 @@ pub struct HeadsetDesc {
 impl Default for HeadsetDesc {
     fn default() -> Self {
         Self {
-            settings: Settings::headset(),
+            shading: Shading::Gaze { fovea_deg: 10.0, share: 0.08125 },
+            antialias: true,
             near_m: 0.05,
             size_px: None,
             gaze_distance_m: 2.0,
@@ -146,7 +149,8 @@ impl Headset {
     /// # Errors
     /// [`Error`] without a loader, a runtime or a headset, or if the settings are out of range.
     pub fn new(name: &str, desc: HeadsetDesc) -> Result<Self, Error> {
-        check_filter(&desc.settings)?;
+        // Said before a runtime is asked.
+        let settings = settings(desc.shading, desc.antialias)?;
         let entry = load()?;
         let available = entry.enumerate_extensions()?;
         if !available.khr_vulkan_enable2 {
@@ -177,7 +181,7 @@ impl Headset {
         let context = ContextDesc {
             view_count: 2,
             depth: DepthConvention::Reversed { near: desc.near_m, far: f32::INFINITY },
-            settings: desc.settings,
+            settings,
             ..ContextDesc::new(size)
         };
         let limits = Afterimage::required_limits(&context).or_better_values_from(&Limits::default());
@@ -253,10 +257,20 @@ impl Headset {
         self.gaze_distance_m = distance_m;
     }
 
-    /// Changes method and foveation from the next frame on.
+    /// Changes how many pixels are shaded, from the next frame on.
     ///
     /// # Errors
-    /// [`Error::Settings`] if a setting is out of range, or the filter is not [`Filter::Quads`]; then nothing changes.
+    /// [`Error::Settings`] if a share or an angle is out of range; then nothing changes.
+    pub fn set_shading(&mut self, shading: Shading) -> Result<(), Error> {
+        let foveation = settings(shading, true)?.foveation;
+        self.set_settings(Settings { foveation, ..self.post.desc().settings })
+    }
+
+    /// Changes method and foveation, whose filter must be [`Filter::Quads`], from the next frame on: for comparisons.
+    ///
+    /// # Errors
+    /// [`Error::Settings`] if a setting is out of range, or the filter is another one; then nothing changes.
+    #[doc(hidden)]
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), Error> {
         check_filter(&settings)?;
         Ok(self.post.set_settings(&self.gpu.device, settings)?)
@@ -624,6 +638,12 @@ fn described_frame<'a>(targets: &'a Targets, views: &'a [ViewFrame; 2], index: u
     }
 }
 
+/// Settings of planned frames.
+fn settings(shading: Shading, antialias: bool) -> Result<Settings, SettingsError> {
+    let desc = Desc { shading, antialias, ..Desc::new([1, 1], TextureFormat::Rgba16Float) };
+    Ok(desc.context()?.settings)
+}
+
 /// Refuses what a headset's frames are not.
 fn check_filter(settings: &Settings) -> Result<(), SettingsError> {
     match settings.foveation.filter {
@@ -670,15 +690,30 @@ fn load() -> Result<xr::Entry, Error> {
 mod tests {
     use super::*;
 
-    /// Said before a runtime is asked, so without one.
     #[test]
     fn filters_without_quads_are_refused() {
         for filter in Filter::ALL {
             let foveation = Foveation { filter, ..Foveation::quads() };
-            let settings = Settings { foveation, ..Settings::default() };
-            let found = Headset::new("test", HeadsetDesc { settings, ..HeadsetDesc::default() }).err();
-            let is_refused = matches!(&found, Some(Error::Settings(error)) if error.setting == "filter");
+            let found = check_filter(&Settings { foveation, ..Settings::default() }).err();
+            let is_refused = matches!(&found, Some(error) if error.setting == "filter");
             assert_eq!(is_refused, filter != Filter::Quads, "{filter:?}: {found:?}");
         }
+    }
+
+    /// Said before a runtime is asked, so without one.
+    #[test]
+    fn shares_out_of_range_are_refused() {
+        let shading = Shading::Everywhere { share: 1.5 };
+        let found = Headset::new("test", HeadsetDesc { shading, ..HeadsetDesc::default() }).err();
+        assert!(matches!(&found, Some(Error::Settings(error)) if error.setting == "share"), "{found:?}");
+    }
+
+    #[test]
+    fn the_default_is_the_one_that_was_measured() {
+        let HeadsetDesc { shading, antialias, .. } = HeadsetDesc::default();
+        let (found, measured) = (settings(shading, antialias).unwrap(), Settings::headset());
+        assert!((found.foveation.budget - measured.foveation.budget).abs() < 1e-6, "{found:?}");
+        let foveation = Foveation { budget: measured.foveation.budget, ..found.foveation };
+        assert_eq!(Settings { foveation, ..found }, measured);
     }
 }
