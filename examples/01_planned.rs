@@ -35,21 +35,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         // Each frame, all of which is drawn with the jittered projection.
         let mut encoder = gpu.encoder();
         let jittered = Mat4::from_cols_array_2d(&post.jittered(clip_from_view.to_cols_array_2d()));
-        let view = View { clip_from_world: jittered * world_from_view.inverse(), seconds };
+        let view = View { clip_from_world: jittered * world_from_view.inverse(), seconds, layer: 0 };
         renderer.prepass(&gpu, &mut encoder, [&motion, &depth], view);
         let camera = Camera::new(clip_from_view.to_cols_array_2d(), world_from_view.to_cols_array_2d());
         let plan = post.plan(&mut encoder, &Frame { motion: Some(&motion), ..Frame::new(&depth, camera) })?;
         // The post-process reads depth, too: a copy of it is closed.
         encoder.copy_texture_to_texture(depth.as_image_copy(), closed.as_image_copy(), depth.size());
-        post.close(&mut encoder, &plan, &closed.create_view(&Default::default()))?;
+        post.close(&mut encoder, &plan, &closed)?;
         renderer.colors(&gpu, &mut encoder, [&color, &closed], view);
-        let list = plan.list().clone();
+        let list = plan.lists()[0].clone();
         post.show(&mut encoder, plan, &color, &output)?;
         gpu.submit(encoder);
 
         if index == 0 || index % 16 == 15 {
             let mut encoder = gpu.encoder();
-            let view = View { clip_from_world: clip_from_view * world_from_view.inverse(), seconds };
+            let view = View { clip_from_world: clip_from_view * world_from_view.inverse(), seconds, layer: 0 };
             renderer.prepass(&gpu, &mut encoder, [&motion, &closed], view);
             renderer.colors(&gpu, &mut encoder, [&full, &closed], view);
             gpu.submit(encoder);

@@ -71,24 +71,25 @@ impl Engine {
         let clip_from_view = perspective_infinite_reverse(0.75, aspect, 0.1).to_cols_array_2d();
         let seconds = [moment.seconds, moment.seconds - 1.0 / 60.0];
         let jittered = Mat4::from_cols_array_2d(&self.post.jittered(clip_from_view));
-        let view = View { clip_from_world: jittered * world_from_view.inverse(), seconds };
+        let view = View { clip_from_world: jittered * world_from_view.inverse(), seconds, layer: 0 };
+        let pose = world_from_view.to_cols_array_2d();
+        let camera = Camera { gaze: moment.gaze, ..Camera::new(clip_from_view, pose) };
         let frame = Frame {
             motion: Some(motion),
-            gaze: moment.gaze,
             is_cut: moment.is_cut,
             exposure: Exposure::Scene { exposure: moment.exposure },
-            ..Frame::new(depth, Camera::new(clip_from_view, world_from_view.to_cols_array_2d()))
+            ..Frame::new(depth, camera)
         };
         let mut encoder = self.gpu.encoder();
         self.renderer.prepass(&self.gpu, &mut encoder, [motion, depth], view);
         let plan = self.post.plan(&mut encoder, &frame)?;
         encoder.copy_texture_to_texture(depth.as_image_copy(), closed.as_image_copy(), depth.size());
-        self.post.close(&mut encoder, &plan, &closed.create_view(&Default::default()))?;
+        self.post.close(&mut encoder, &plan, closed)?;
         self.renderer.colors(&self.gpu, &mut encoder, [color, closed], view);
         let warnings: Vec<_> = self.post.show(&mut encoder, plan, color, output)?.warnings().collect();
         // After show: transparent things, without the jitter and with the depth that was not closed; then tone mapping.
         let clip_from_world = Mat4::from_cols_array_2d(&clip_from_view) * world_from_view.inverse();
-        self.renderer.glass(&self.gpu, &mut encoder, [output, depth], View { clip_from_world, seconds });
+        self.renderer.glass(&self.gpu, &mut encoder, [output, depth], View { clip_from_world, seconds, layer: 0 });
         self.gpu.submit(encoder);
         self.gpu.device.poll(PollType::wait_indefinitely())?;
         self.last_ms = start.elapsed().as_secs_f32() * 1000.0;

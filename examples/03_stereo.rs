@@ -1,62 +1,101 @@
-//! Stereo: two views in one context, with array textures, one gaze for each view, and one dispatch.
+//! Stereo: two views in one context. Textures have an array layer for each eye, `plan` and `show` are one call for
+//! both, and each eye has a camera with a gaze of its own.
 //!
-//! `cargo run --example 03_stereo` (any adapter; software Vulkan: mesa-vulkan-drivers)
+//! `cargo run --release --example 03_stereo` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
 mod headless;
 
-use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::{TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Gaze, ViewFrame, ViewGeometry};
+use afterimage::{Afterimage, Camera, Desc, Frame, Gaze, MotionConvention, Shading, ViewGeometry};
+use glam::{Mat4, Vec3, Vec4};
 use headless::Headless;
+use headless::renderer::{DEPTH, MOTION, Renderer, View};
+
+const SIZE: [u32; 2] = [384, 384];
+const COLOR: TextureFormat = TextureFormat::Rgba32Float;
+/// Left, right, up and down edges of each eye's view in radians: wider on its outer side.
+const ANGLES_RAD: [[f32; 4]; 2] = [[-0.876, 0.733, 0.83, -0.83], [-0.733, 0.876, 0.83, -0.83]];
+
+/// Projection of an eye, with reversed depth and an infinite far plane.
+fn projection(angles_rad: [f32; 4]) -> Mat4 {
+    let [left, right, up, down] = angles_rad.map(f32::tan);
+    let (width, height) = (right - left, up - down);
+    Mat4::from_cols(
+        Vec4::new(2.0 / width, 0.0, 0.0, 0.0),
+        Vec4::new(0.0, 2.0 / height, 0.0, 0.0),
+        Vec4::new((right + left) / width, (up + down) / height, 0.0, -1.0),
+        Vec4::new(0.0, 0.0, 0.1, 0.0),
+    )
+}
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gpu = Headless::new()?;
-    let size = [256, 256];
-    let desc = ContextDesc { view_count: 2, ..ContextDesc::new(size) };
-    let mut post = Afterimage::new(&gpu.device, &desc, TextureFormat::Rgba32Float)?;
+    let renderer = Renderer::new(&gpu, COLOR, TextureFormat::Rgba16Float);
+    let attachment = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
+    let [depth, closed, motion, color, full] = [DEPTH, DEPTH, MOTION, COLOR, COLOR]
+        .map(|format| gpu.texture(SIZE, 2, format, attachment | TextureUsages::COPY_DST));
+    let output = gpu.texture(SIZE, 2, COLOR, TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC);
 
-    // Two array layers: left eye, right eye.
-    let read = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST;
-    let write = TextureUsages::STORAGE_BINDING | TextureUsages::COPY_SRC;
-    let color = gpu.texture(size, 2, TextureFormat::Rgba32Float, read);
-    let output = gpu.texture(size, 2, TextureFormat::Rgba32Float, write);
+    // Once: all pixels within 10 degrees around the gaze of each eye, and 8 % of the others.
+    let vectors = MotionConvention { without_camera: true, ..MotionConvention::BEVY };
+    let shading = Shading::Gaze { fovea_deg: 10.0, share: 0.08 };
+    let desc = Desc { view_count: 2, shading, motion: Some(vectors), ..Desc::new(SIZE, COLOR) };
+    let mut post = Afterimage::new(&gpu.device, &desc)?;
 
-    // Each eye of a headset has a wider field of view on its outer side (left, right, up, down). Both look at one
-    // point, first on the left, then on the right.
-    let eyes = [([-0.876, 0.733, 0.83, -0.83], -0.032), ([-0.733, 0.876, 0.83, -0.83], 0.032)];
-    let stripes = |eye: u32, sharp: bool, x: u32| {
-        let light = if sharp { (x % 2) as f32 } else { 0.5 };
-        if eye == 0 { [light, 0.25, 0.25] } else { [0.25, 0.25, light] }
-    };
-    for index in 0..2 {
-        let mut views = vec![];
-        // The ray of an eye tracker that sits between the eyes, and how far along it they look.
-        let ray = [if index == 0 { -0.2 } else { 0.3 }, 0.0, -0.6];
-        for (eye, (angles_rad, x_m)) in (0..).zip(eyes) {
-            let geometry = ViewGeometry::from_angles(size, angles_rad)?;
-            let pose = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [x_m, 0.0, 0.0, 1.0]];
-            views.push(ViewFrame::new(geometry, Gaze::on_ray([0.0; 3], ray, 0.65, pose)));
-            gpu.write(&color, eye, |x, _| stripes(eye, index == 0, x));
-        }
+    for index in 0..32 {
+        let seconds = [index as f32 / 60.0, (index as f32 - 1.0) / 60.0];
+        let head = Vec3::new(0.01 * index as f32, 1.5, 0.0);
+        let poses = [-0.032, 0.032].map(|x_m| Mat4::from_translation(head + Vec3::new(x_m, 0.0, 0.0)));
+        let projections = ANGLES_RAD.map(projection);
+        // An eye tracker between the eyes reports a ray; they look at a point 4 m ahead, each from its place.
+        let ray = [0.1, -0.2, -1.0];
+        let [left, right] = [0, 1].map(|eye| {
+            let pose = poses[eye].to_cols_array_2d();
+            let gaze = Gaze::on_ray(head.into(), ray, 4.0, pose);
+            Camera { gaze, ..Camera::new(projections[eye].to_cols_array_2d(), pose) }
+        });
+        let view = |eye: usize, clip_from_view: Mat4| View {
+            clip_from_world: clip_from_view * poses[eye].inverse(),
+            seconds,
+            layer: eye as u32,
+        };
+        let jittered = [0, 1].map(|eye| {
+            let clip_from_view = post.jittered(projections[eye].to_cols_array_2d());
+            view(eye, Mat4::from_cols_array_2d(&clip_from_view))
+        });
+
         let mut encoder = gpu.encoder();
-        let recorded = post.record(&gpu.device, &mut encoder, &Frame::new(&color, &views, index), &output)?;
-        gpu.submit(encoder);
-        for warning in recorded.warnings() {
-            println!("frame {index}: {warning}");
+        for view in jittered {
+            renderer.prepass(&gpu, &mut encoder, [&motion, &depth], view);
         }
-        let column = |eye: usize| post.gaze_px(eye, &views[eye].geometry, views[eye].gaze)[0];
-        println!("frame {index}: left eye looks at column {:.0}, right eye at {:.0}", column(0), column(1));
-    }
-    for (eye, name) in [(0, "left"), (1, "right")] {
-        let shown = gpu.read(&output, eye);
-        let sharp = |c: &&[f32; 4]| c[0].max(c[2]) == 1.0 || c[0].min(c[2]) == 0.0;
-        let other = |c: &&[f32; 4]| if eye == 0 { c[2] != 0.25 } else { c[0] != 0.25 };
-        println!(
-            "{name} eye: {} of {} pixels still sharp, {} from the other eye",
-            shown.iter().filter(sharp).count(),
-            shown.len(),
-            shown.iter().filter(other).count()
-        );
+        let frame = Frame { motion: Some(&motion), others: &[right], ..Frame::new(&depth, left) };
+        let plan = post.plan(&mut encoder, &frame)?;
+        encoder.copy_texture_to_texture(depth.as_image_copy(), closed.as_image_copy(), depth.size());
+        post.close(&mut encoder, &plan, &closed)?;
+        for view in jittered {
+            renderer.colors(&gpu, &mut encoder, [&color, &closed], view);
+        }
+        let lists = plan.lists().to_vec();
+        post.show(&mut encoder, plan, &color, &output)?;
+        gpu.submit(encoder);
+
+        for (eye, camera) in [left, right].iter().enumerate().filter(|_| index % 16 == 15) {
+            let mut encoder = gpu.encoder();
+            renderer.prepass(&gpu, &mut encoder, [&motion, &closed], view(eye, projections[eye]));
+            renderer.colors(&gpu, &mut encoder, [&full, &closed], view(eye, projections[eye]));
+            gpu.submit(encoder);
+            let (shown, expected) = (gpu.read(&output, eye as u32), gpu.read(&full, eye as u32));
+            let squares: f32 = shown.iter().zip(&expected).map(|(a, b)| (a[0] - b[0]).powi(2)).sum();
+            let psnr_db = -10.0 * (squares / shown.len() as f32).log10();
+            let words: Vec<u32> = bytemuck::pod_collect_to_vec(&gpu.read_buffer(&lists[eye])[28..32]);
+            let share = 400.0 * words[0] as f32 / (SIZE[0] * SIZE[1]) as f32;
+            let geometry = ViewGeometry::from_angles(SIZE, ANGLES_RAD[eye])?;
+            let [x, y] = camera.gaze.resolve(None, &geometry);
+            println!(
+                "frame {index}, {} eye at ({x:.0}, {y:.0}): {share:.0} % shaded; PSNR {psnr_db:.1} dB to full rate",
+                ["left", "right"][eye]
+            );
+        }
     }
     println!("{} KiB of history for both", post.memory_bytes() / 1024);
     Ok(())

@@ -3,7 +3,8 @@
 //! `cargo run --features cpu --example 05_cpu_stereo`
 
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::{ContextDesc, Gaze, Image, ViewFrame, ViewGeometry};
+use afterimage::levels::{ContextDesc, ViewFrame};
+use afterimage::{Gaze, Image, ViewGeometry};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let size = [256, 256];

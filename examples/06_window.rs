@@ -6,10 +6,9 @@
 //!
 //! `cargo run --example 06_window` (closes by itself after AFTERIMAGE_FRAMES frames, if that is set)
 
-use afterimage::gpu::{Afterimage, Frame};
-use afterimage::simulator::{GpuSimulator, SimulatorFrame};
+use afterimage::levels::{Afterimage, ContextDesc, Frame, GpuSimulator, SimulatorFrame, ViewFrame};
 use afterimage::wgpu::{self, CurrentSurfaceTexture, TextureFormat, TextureUsages, util::TextureBlitter};
-use afterimage::{ContextDesc, Gaze, ViewFrame, ViewGeometry};
+use afterimage::{Gaze, ViewGeometry};
 use std::{error::Error, sync::Arc};
 use winit::application::ApplicationHandler;
 use winit::event::WindowEvent;
@@ -105,7 +104,7 @@ impl App {
             self.renderer = Renderer::new(&self.device, &self.queue, size)?;
             self.output = texture(&self.device, size, FORMAT);
             // (2) Discards history.
-            self.post.resize(&self.device, size)?;
+            self.post.resize(size)?;
         }
         Ok(())
     }
@@ -128,7 +127,7 @@ impl App {
         foveation.record(&self.device, &mut encoder, &SimulatorFrame::new(pattern, color, &views))?;
         // (3) The post-process.
         let frame = Frame::new(&*color, &views, self.index);
-        self.post.record(&self.device, &mut encoder, &frame, &self.output)?;
+        self.post.record(&mut encoder, &frame, &self.output)?;
         // Your tone mapping would come here.
         let [output, screen] = [&self.output, &target.texture].map(|t| t.create_view(&Default::default()));
         self.blitter.copy(&self.device, &mut encoder, &output, &screen);

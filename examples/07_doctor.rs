@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let world_from_view = Mat4::from_translation(Vec3::new(0.1 * index as f32, 1.5, 0.0));
         let jittered = Mat4::from_cols_array_2d(&post.jittered(clip_from_view));
         let seconds = [index as f32 / 60.0, (index as f32 - 1.0) / 60.0];
-        let view = View { clip_from_world: jittered * world_from_view.inverse(), seconds };
+        let view = View { clip_from_world: jittered * world_from_view.inverse(), seconds, layer: 0 };
         let camera = Camera::new(clip_from_view, world_from_view.to_cols_array_2d());
 
         let mut encoder = gpu.encoder();

@@ -1,33 +1,31 @@
 //! A renderer that chooses its pixels itself: it shades everything around the gaze and a checkerboard beyond, and says
-//! which pixels these are. There is no call of `plan`.
+//! which pixels these are: `given` in place of `plan`.
 //!
-//! What a renderer adds to depth and motion of every pixel: a mask. Any pattern does that visits every pixel in some
-//! frame. Of quads of 2x2 with one pixel, color may have half the width and height (`half`).
+//! What a renderer adds to depth of every pixel: a mask. Any pattern does that visits every pixel in some frame. Of
+//! quads of 2x2 with one pixel, color may have half the width and height (`show_quarter`).
 //!
 //! `cargo run --release --example 08_own_mask` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
 mod headless;
 
-use afterimage::gpu::{Afterimage, Frame};
 use afterimage::wgpu::util::{BufferInitDescriptor, DeviceExt};
 use afterimage::wgpu::{self, BindGroupEntry, BindingResource, ComputePipeline, Texture, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, DepthConvention, Foveation, Gaze, Settings, ViewFrame, ViewGeometry};
+use afterimage::{Afterimage, Camera, Desc, Frame, Shading};
+use glam::{Mat4, Vec3, camera::rh::proj::directx::perspective_infinite_reverse};
 use headless::Headless;
 
 const SIZE: [u32; 2] = [640, 360];
 const NEAR: f32 = 0.1;
-/// Color, depth, motion and mask.
-const FORMATS: [TextureFormat; 4] =
-    [TextureFormat::Rgba32Float, TextureFormat::R32Float, TextureFormat::Rg32Float, TextureFormat::R32Float];
+/// Color, depth and mask.
+const FORMATS: [TextureFormat; 3] = [TextureFormat::Rgba32Float, TextureFormat::R32Float, TextureFormat::R32Float];
 
 /// A floor of tiles, seen by a camera that moves to the right.
 const SHADER: &str = "
 struct Camera { gaze: vec2f, radius: f32, time: u32 }
 @group(0) @binding(0) var color_out: texture_storage_2d<rgba32float, write>;
 @group(0) @binding(1) var depth_out: texture_storage_2d<r32float, write>;
-@group(0) @binding(2) var motion_out: texture_storage_2d<rg32float, write>;
-@group(0) @binding(3) var mask_out: texture_storage_2d<r32float, write>;
-@group(0) @binding(4) var<uniform> camera: Camera;
+@group(0) @binding(2) var mask_out: texture_storage_2d<r32float, write>;
+@group(0) @binding(3) var<uniform> camera: Camera;
 
 fn shade(at: vec2f, width: vec2f) -> vec4f {
     let wave = sin(at * 12.0) * (1.0 - smoothstep(vec2f(0.1), vec2f(0.25), width));
@@ -39,10 +37,9 @@ fn shade(at: vec2f, width: vec2f) -> vec4f {
     let px_tan = 1.4 / size.x;
     let ray = px_tan * (vec2f(id.xy) + 0.5 - 0.5 * size);
     let is_floor = ray.y > 0.0;
-    // Depth and motion are given at every pixel.
+    // Depth is given at every pixel.
     let z = 1.5 / ray.y;
     textureStore(depth_out, id.xy, vec4f(select(0.0, 0.1 / z, is_floor)));
-    textureStore(motion_out, id.xy, vec4f(select(0.0, 0.03 / (z * px_tan), is_floor), vec3f(0.0)));
     // Color, which costs most, only where this renderer wants it.
     let in_checkerboard = ((id.x + id.y + camera.time) & 1u) == 0u;
     let is_shaded = in_checkerboard || distance(vec2f(id.xy), camera.gaze) < camera.radius;
@@ -58,7 +55,7 @@ fn shade(at: vec2f, width: vec2f) -> vec4f {
 fn render(
     gpu: &Headless,
     pipeline: &ComputePipeline,
-    images: &[Texture; 4],
+    images: &[Texture; 3],
     (gaze_px, radius_px): ([f32; 2], f32),
     index: u64,
 ) {
@@ -96,29 +93,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let images = || FORMATS.map(|format| gpu.texture(SIZE, 1, format, usage));
     let (given, full) = (images(), images());
 
-    // Beside the filter, of use here is only `rate_far`: about how far apart the shaded pixels are.
-    let foveation = Foveation::quarter();
-    let desc = ContextDesc {
-        settings: Settings { foveation, ..Settings::default() },
-        depth: DepthConvention::Reversed { near: NEAR, far: f32::INFINITY },
-        ..ContextDesc::new(SIZE)
-    };
     let output = gpu.texture(SIZE, 1, FORMATS[0], usage);
-    let mut post = Afterimage::new(&gpu.device, &desc, output.format())?;
-    let geometry = ViewGeometry::flat(SIZE, 2.0 * 0.7_f32.atan().to_degrees())?;
+    // Half of the pixels and more, not jittered; motion vectors are not needed where only the camera moves.
+    let desc =
+        Desc { shading: Shading::Everywhere { share: 0.5 }, antialias: false, ..Desc::new(SIZE, output.format()) };
+    let mut post = Afterimage::new(&gpu.device, &desc)?;
+    let aspect = SIZE[0] as f32 / SIZE[1] as f32;
+    let clip_from_view = perspective_infinite_reverse(2.0 * (0.7 / aspect).atan(), aspect, NEAR).to_cols_array_2d();
     for index in 0..48 {
         let gaze_px = [150.0 + 7.0 * index as f32, 250.0];
         render(&gpu, &pipeline, &given, (gaze_px, 40.0), index);
-        let [color, depth, motion, mask] = &given;
-        let views = [ViewFrame::new(geometry, Gaze::At { px: gaze_px })];
-        let frame = Frame {
-            depth: Some(depth.into()),
-            motion: Some(motion.into()),
-            mask: Some(mask.into()),
-            ..Frame::new(color, &views, index)
-        };
+        let [color, depth, mask] = &given;
+        let world_from_view = Mat4::from_translation(Vec3::new(0.03 * index as f32, 0.0, 0.0)).to_cols_array_2d();
+        let plan = post.given(&Frame::new(depth, Camera::new(clip_from_view, world_from_view)), mask)?;
         let mut encoder = gpu.encoder();
-        post.record(&gpu.device, &mut encoder, &frame, &output)?;
+        post.show(&mut encoder, plan, color, &output)?;
         gpu.submit(encoder);
         if index % 16 == 15 {
             render(&gpu, &pipeline, &full, (gaze_px, f32::INFINITY), index);

@@ -4,9 +4,9 @@
 
 mod headless;
 
-use afterimage::gpu::{Afterimage, Frame};
+use afterimage::levels::{Afterimage, ContextDesc, Frame, ViewFrame};
 use afterimage::wgpu::{TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Gaze, ViewFrame, ViewGeometry};
+use afterimage::{Gaze, ViewGeometry};
 use headless::Headless;
 
 const SIZE: [u32; 2] = [256, 64];
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         gpu.write(&color, 0, |x, _| [if sharp { (x % 2) as f32 } else { 0.5 }; 3]);
         let views = [ViewFrame::new(ViewGeometry::flat(SIZE, 70.0)?, Gaze::At { px: [gaze_x, 32.0] })];
         let mut encoder = gpu.encoder();
-        post.record(&gpu.device, &mut encoder, &Frame::new(&color, &views, index), &output)?;
+        post.record(&mut encoder, &Frame::new(&color, &views, index), &output)?;
         gpu.submit(encoder);
     }
 

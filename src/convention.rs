@@ -49,7 +49,8 @@ pub enum YAxis {
 /// A wrong convention shows as history that is rejected or smeared in motion, while a still view looks right.
 ///
 /// ```
-/// use afterimage::{ContextDesc, MotionConvention, MotionUnit};
+/// use afterimage::levels::ContextDesc;
+/// use afterimage::{MotionConvention, MotionUnit};
 ///
 /// let mut desc = ContextDesc::new([1920, 1080]);
 /// desc.motion = MotionConvention::BEVY;
@@ -68,16 +69,17 @@ pub struct MotionConvention {
     /// Vertical axis. Default: down.
     pub y_axis: YAxis,
     /// Whether vectors contain the jitter of the projection: differences of jittered positions. The jitter of each
-    /// frame is [`ViewFrame::jitter_px`](crate::ViewFrame::jitter_px). Default: false, as in all engines named here.
+    /// frame is [`ViewFrame::jitter_px`](crate::levels::ViewFrame::jitter_px). Default: false, as in all engines named
+    /// here.
     pub jittered: bool,
     /// Whether no vector contains the camera's motion: each is the object's own motion, as this frame's camera would
     /// see it, and 0 for what stands still. Without a motion input, everything stands still in the world. Default:
     /// false.
     ///
     /// Where the camera's motion is missing, here or because of [`no_vector`](Self::no_vector), it is added from
-    /// [`depth`](crate::FrameInputs::depth) and
-    /// [`ViewFrame::previous_from_current`](crate::ViewFrame::previous_from_current), which are then required. What
-    /// lies at the far plane or at infinity, as the sky, follows the camera's turns alone.
+    /// [`depth`](crate::levels::FrameInputs::depth) and
+    /// [`ViewFrame::previous_from_current`](crate::levels::ViewFrame::previous_from_current), which are then required.
+    /// What lies at the far plane or at infinity, as the sky, follows the camera's turns alone.
     pub without_camera: bool,
     /// The vector of pixels that have none, as the texture holds it, such as its clear value; a vector that is not
     /// finite then means none, too. Such a pixel belongs to a surface that stands still in the world. Without a motion
@@ -168,10 +170,11 @@ impl MotionConvention {
 /// Convention of depth values. Default: [`Linear`](Self::Linear).
 ///
 /// Distances are along the view axis. Any unit will do, as long as
-/// [`ViewFrame::previous_from_current`](crate::ViewFrame) uses the same one.
+/// [`ViewFrame::previous_from_current`](crate::levels::ViewFrame) uses the same one.
 ///
 /// ```
-/// use afterimage::{ContextDesc, DepthConvention};
+/// use afterimage::levels::ContextDesc;
+/// use afterimage::DepthConvention;
 ///
 /// // A reversed-z depth buffer with an infinite far plane.
 /// let mut desc = ContextDesc::new([1920, 1080]);

@@ -43,17 +43,14 @@ pub(crate) fn check(
 /// A context that cannot be created.
 ///
 /// ```
-/// use afterimage::ContextDesc;
-///
 /// # #[cfg(feature = "gpu")]
 /// # {
-/// use afterimage::gpu::Afterimage;
-/// use afterimage::{CreateError, wgpu};
+/// use afterimage::{Afterimage, CreateError, Desc, wgpu};
 ///
 /// # let (device, _queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
-/// let desc = ContextDesc::new([640, 360]);
 /// // A swapchain's format is rarely one that a compute shader may write.
-/// let error = Afterimage::new(&device, &desc, wgpu::TextureFormat::Bgra8UnormSrgb).unwrap_err();
+/// let desc = Desc::new([640, 360], wgpu::TextureFormat::Bgra8UnormSrgb);
+/// let error = Afterimage::new(&device, &desc).unwrap_err();
 /// assert!(matches!(error, CreateError::OutputFormat { .. }));
 /// # }
 /// ```
@@ -104,12 +101,11 @@ pub enum CreateError {
 ///
 /// # #[cfg(feature = "gpu")]
 /// # {
-/// # use afterimage::wgpu;
+/// # use afterimage::{Afterimage, Desc, wgpu};
 /// # let (device, _queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor::default());
-/// # let desc = afterimage::ContextDesc::new([640, 360]);
-/// # let mut post = afterimage::gpu::Afterimage::new(&device, &desc, wgpu::TextureFormat::Rgba16Float).unwrap();
+/// # let mut post = Afterimage::new(&device, &Desc::new([640, 360], wgpu::TextureFormat::Rgba16Float)).unwrap();
 /// // A minimised window.
-/// assert!(matches!(post.resize(&device, [0, 0]), Err(FrameError::Extent { .. })));
+/// assert!(matches!(post.resize([0, 0]), Err(FrameError::Extent { .. })));
 /// assert_eq!(post.desc().size_px, [640, 360]);
 /// # }
 /// ```
@@ -151,7 +147,7 @@ pub enum FrameError {
     Extent {
         /// Requested size, in pixels.
         size: [u32; 2],
-        /// Largest side, in pixels: [`ContextDesc::MAX_SIDE`](crate::ContextDesc::MAX_SIDE), or what the device
+        /// Largest side, in pixels: [`ContextDesc::MAX_SIDE`](crate::levels::ContextDesc::MAX_SIDE), or what the device
         /// allows (`max_texture_dimension_2d`).
         max: u32,
     },
@@ -195,7 +191,7 @@ pub enum FrameError {
     /// A matrix of the frame is not that of a camera.
     #[error(transparent)]
     Settings(#[from] SettingsError),
-    /// The graphics device was lost. It executes no more work. `gpu::Afterimage::record` returns this, except in a
+    /// The graphics device was lost. It executes no more work. Recording a frame returns this, except in a
     /// browser, where only the application learns of the loss.
     #[error("the graphics device was lost: create a new device and a new context on it; history starts empty")]
     DeviceLost,
@@ -235,27 +231,27 @@ pub(crate) fn expected_size(size: [u32; 2], max: u32) -> String {
 pub enum FrameValue {
     /// Color input of a foveation that the receiver does not process.
     Color,
-    /// [`FrameInputs::depth`](crate::FrameInputs::depth).
+    /// [`FrameInputs::depth`](crate::levels::FrameInputs::depth).
     Depth,
-    /// [`FrameInputs::motion`](crate::FrameInputs::motion).
+    /// [`FrameInputs::motion`](crate::levels::FrameInputs::motion).
     Motion,
-    /// [`ViewFrame::depth`](crate::ViewFrame::depth).
+    /// [`ViewFrame::depth`](crate::levels::ViewFrame::depth).
     DepthConvention,
-    /// [`ViewFrame::jitter_px`](crate::ViewFrame::jitter_px).
+    /// [`ViewFrame::jitter_px`](crate::levels::ViewFrame::jitter_px).
     Jitter,
-    /// [`ViewFrame::visible_px`](crate::ViewFrame::visible_px).
+    /// [`ViewFrame::visible_px`](crate::levels::ViewFrame::visible_px).
     VisibleBounds,
-    /// [`ViewFrame::previous_from_current`](crate::ViewFrame::previous_from_current).
+    /// [`ViewFrame::previous_from_current`](crate::levels::ViewFrame::previous_from_current).
     CameraMotion,
-    /// [`FrameInputs::lod`](crate::FrameInputs::lod).
+    /// [`FrameInputs::lod`](crate::levels::FrameInputs::lod).
     Lod,
-    /// [`FrameInputs::noise`](crate::FrameInputs::noise).
+    /// [`FrameInputs::noise`](crate::levels::FrameInputs::noise).
     Noise,
-    /// [`FrameInputs::reactive`](crate::FrameInputs::reactive).
+    /// [`FrameInputs::reactive`](crate::levels::FrameInputs::reactive).
     Reactive,
-    /// [`FrameInputs::exposure`](crate::FrameInputs::exposure).
+    /// [`FrameInputs::exposure`](crate::levels::FrameInputs::exposure).
     Exposure,
-    /// Plan of a frame that is shaded by quads: [`Filter::Quads`](crate::Filter::Quads).
+    /// Plan of a frame that is shaded by quads: [`Filter::Quads`](crate::levels::Filter::Quads).
     Plan,
     /// Mask of such a frame whose pixels the renderer chose.
     Mask,

@@ -5,7 +5,8 @@ use crate::geometry::ViewGeometry;
 use glam::DVec3;
 use std::fmt::Debug;
 
-/// Gaze: where the eye looks in a view. Default: [`Lost`](Self::Lost). Example: [`ViewFrame`](crate::ViewFrame).
+/// Gaze: where the eye looks in a view. Default: [`Lost`](Self::Lost). Example:
+/// [`ViewFrame`](crate::levels::ViewFrame).
 ///
 /// A gaze that is not finite counts as lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -56,7 +56,8 @@ impl ViewGeometry {
 
     /// The view at half the width and height, rounded up, whose pixel (x, y) shows the point that pixel (2x, 2y) +
     /// `place_px` of this view shows: for frames with one pixel of each quad
-    /// ([`Foveation::quarter_place_px`](crate::Foveation::quarter_place_px)). Its jitter is half of the frame's.
+    /// ([`Foveation::quarter_place_px`](crate::levels::Foveation::quarter_place_px)). Its jitter is half of the
+    /// frame's.
     ///
     /// ```
     /// use afterimage::ViewGeometry;
@@ -168,9 +169,9 @@ impl ViewGeometry {
     }
 
     /// Octagon around the area that a headset's lens shows, for
-    /// [`ViewFrame::visible_px`](crate::ViewFrame::visible_px). `outline`: points whose convex hull is the visible
-    /// area, such as the vertices of OpenXR's visibility mask: x and y in the plane one unit ahead, y up. One pixel is
-    /// added on every side. `None` without points, or if a point is not finite.
+    /// [`ViewFrame::visible_px`](crate::levels::ViewFrame::visible_px). `outline`: points whose convex hull is the
+    /// visible area, such as the vertices of OpenXR's visibility mask: x and y in the plane one unit ahead, y up. One
+    /// pixel is added on every side. `None` without points, or if a point is not finite.
     ///
     /// ```
     /// use afterimage::ViewGeometry;

@@ -16,7 +16,8 @@ const MAX_JITTER_PX: f32 = 16.0;
 /// Create it with [`new`](Self::new) and `..`, so that later versions can add fields:
 ///
 /// ```
-/// # use afterimage::{Gaze, ViewFrame, ViewGeometry};
+/// # use afterimage::levels::ViewFrame;
+/// # use afterimage::{Gaze, ViewGeometry};
 /// # let camera_motion = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.02], [0.0, 0.0, 0.0, 1.0]];
 /// let geometry = ViewGeometry::flat([1920, 1080], 70.0)?;
 /// let gaze = Gaze::At { px: [1200.0, 500.0] };
@@ -38,7 +39,7 @@ pub struct ViewFrame {
     /// is refused. If vectors lack the camera's motion
     /// ([`MotionConvention::without_camera`](crate::MotionConvention::without_camera),
     /// [`no_vector`](crate::MotionConvention::no_vector)), it is required, except in frames with
-    /// [`Reset::All`](crate::Reset::All).
+    /// [`Reset::All`](crate::levels::Reset::All).
     pub previous_from_current: Option<[[f32; 4]; 4]>,
     /// Jitter of the projection in pixels, for renderers that jitter it for antialiasing: a point that the projection
     /// without jitter puts at `p` is drawn at `p + jitter_px`; y down. (0, 0) without jitter.
@@ -53,8 +54,8 @@ pub struct ViewFrame {
     pub depth: Option<DepthConvention>,
     /// The part of the view that a headset's lens shows: an octagon, given by the lowest and the highest x, y, x + y
     /// and x - y of its pixels ([`ViewGeometry::visible_px`] computes it from a visibility mask). On [planned
-    /// frames](crate::Filter::Quads) smr does not process pixels outside it, and shows them black; other methods
-    /// process every pixel. `None`: every pixel is visible.
+    /// frames](crate::levels::Filter::Quads) smr does not process pixels outside it, and shows them black; other
+    /// methods process every pixel. `None`: every pixel is visible.
     pub visible_px: Option<[[f32; 4]; 2]>,
 }
 
@@ -77,7 +78,8 @@ impl ViewFrame {
     /// both.
     ///
     /// ```
-    /// # use afterimage::{Gaze, ViewFrame, ViewGeometry};
+    /// # use afterimage::levels::ViewFrame;
+    /// # use afterimage::{Gaze, ViewGeometry};
     /// # let clip_from_view = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.8, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], [0.0, 0.0, 0.1, 0.0]];
     /// # let (clip_from_world, previous_clip_from_world) = (clip_from_view, clip_from_view);
     /// let geometry = ViewGeometry::from_projection([1920, 1080], clip_from_view)?;
@@ -106,7 +108,8 @@ impl ViewFrame {
     /// the world's origin give `f64`, or poses relative to a point near the camera, the same point for both.
     ///
     /// ```
-    /// # use afterimage::{Gaze, ViewFrame, ViewGeometry};
+    /// # use afterimage::levels::ViewFrame;
+    /// # use afterimage::{Gaze, ViewGeometry};
     /// # let at = |z| [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 1.6, z, 1.0]];
     /// # let (pose, previous) = (at(0.0), at(0.1));
     /// let geometry = ViewGeometry::from_angles([1440, 1600], [-0.87, 0.75, 0.80, -0.84])?;
@@ -131,7 +134,8 @@ impl ViewFrame {
     /// the frame was drawn with. The matrix is as in [`ViewGeometry::from_projection`]. Jitter is exact to 1e-3 pixels.
     ///
     /// ```
-    /// # use afterimage::{Gaze, ViewFrame, ViewGeometry};
+    /// # use afterimage::levels::ViewFrame;
+    /// # use afterimage::{Gaze, ViewGeometry};
     /// # let clip_from_view = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.8, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], [0.0, 0.0, 0.1, 0.0]];
     /// let geometry = ViewGeometry::from_projection([1920, 1080], clip_from_view)?;
     /// // FSR2's recipe: a translation of clip space by (2 x / width, -2 y / height), here by (0.25, -0.375) pixels.

@@ -1,8 +1,9 @@
 //! Ten thousand frames with resizes leak no memory. A file of its own, for a process of its own.
 
 use afterimage::gpu::{Afterimage, Frame};
+use afterimage::levels::{ContextDesc, ViewFrame};
 use afterimage::wgpu::{self, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Gaze, ViewFrame, ViewGeometry};
+use afterimage::{Gaze, ViewGeometry};
 
 #[test]
 fn ten_thousand_frames_with_resizes_leak_nothing() {

@@ -1,6 +1,7 @@
 //! Settings and conventions in configuration files.
 
-use afterimage::{Bias, ContextDesc, DepthConvention, Filter, Method, MethodKind, MotionConvention, Settings, Wrs};
+use afterimage::levels::{Bias, ContextDesc, Filter, Method, MethodKind, Settings, Wrs};
+use afterimage::{DepthConvention, MotionConvention};
 
 fn round_trip<T: serde::Serialize + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug>(value: T) -> String {
     let text = serde_json::to_string(&value).unwrap();

@@ -64,11 +64,13 @@ fn world_at(object: u32, i: u32, seconds: f32) -> vec3f {
     return vec4f(0.05, 0.1, 0.07, 0.25);
 }";
 
-/// What a pass is drawn with: a projection times a pose, depth reversed, and the time now and in the last frame.
+/// What a pass is drawn with: a projection times a pose, depth reversed; the time now and in the last frame; and the
+/// array layer of the targets.
 #[derive(Clone, Copy)]
 pub struct View {
     pub clip_from_world: Mat4,
     pub seconds: [f32; 2],
+    pub layer: u32,
 }
 
 /// An object of the shader, and its number of corners in a triangle strip.
@@ -160,7 +162,14 @@ fn draw(
         layout: &pipeline.get_bind_group_layout(0),
         entries: &[wgpu::BindGroupEntry { binding: 0, resource: uniforms.as_entire_binding() }],
     });
-    let [color, depth] = targets.map(|texture| texture.create_view(&Default::default()));
+    let [color, depth] = targets.map(|texture| {
+        texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2),
+            base_array_layer: view.layer,
+            array_layer_count: Some(1),
+            ..Default::default()
+        })
+    });
     let store = wgpu::StoreOp::Store;
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {

@@ -8,14 +8,15 @@ use crate::error::{FrameError, SettingsError};
 use crate::image::Image;
 
 /// Checks whether a renderer's frames match a [`ContextDesc`]: motion vectors, depth, colors, gaze and foveation of one
-/// view. Give it some consecutive frames in which the camera moves and the eye looks around.
-/// With [`Filter::Quads`](crate::Filter::Quads), shade them at full rate, without the plan; motion, jitter, depth and
-/// color are checked.
+/// view. Give it some consecutive frames in which the camera moves and the eye looks around. With
+/// [`Filter::Quads`](crate::levels::Filter::Quads), shade them at full rate, without the plan; motion, jitter, depth
+/// and color are checked.
 ///
 /// ```
 /// use afterimage::cpu::{Doctor, Frame};
 /// use afterimage::doctor::Fault;
-/// use afterimage::{ContextDesc, Filter, Gaze, Image, ViewFrame, ViewGeometry};
+/// use afterimage::levels::{ContextDesc, Filter, ViewFrame};
+/// use afterimage::{Gaze, Image, ViewGeometry};
 ///
 /// // A pattern moves to the right by 2 pixels a frame. It was to the left before, but the vectors point to the right.
 /// let size = [160, 96];

@@ -30,6 +30,7 @@ use history::History;
 
 use crate::context::{ContextDesc, check_size};
 use crate::error::{FrameError, SettingsError};
+use crate::frame::FrameInputs;
 use crate::gaze::Gaze;
 use crate::geometry::ViewGeometry;
 use crate::image::Image;
@@ -41,10 +42,11 @@ use crate::stats::FrameStats;
 use crate::view::ViewFrame;
 use plan::Planned;
 
-/// A frame whose inputs are slices with one image a view; fields are at [`FrameInputs`](crate::FrameInputs).
+/// A frame whose inputs are slices with one image a view; fields are at [`FrameInputs`].
 ///
 /// ```
-/// # use afterimage::{Image, ViewFrame};
+/// # use afterimage::levels::ViewFrame;
+/// # use afterimage::Image;
 /// # fn example(left: &Image<[f32; 3]>, right: &Image<[f32; 3]>, views: &[ViewFrame], index: u64) {
 /// use afterimage::cpu::Frame;
 ///
@@ -53,7 +55,7 @@ use plan::Planned;
 /// # let _ = frame;
 /// # }
 /// ```
-pub type Frame<'a> = crate::FrameInputs<'a, &'a [&'a Image<[f32; 3]>], &'a [&'a Image<f32>], &'a [&'a Image<[f32; 2]>]>;
+pub type Frame<'a> = FrameInputs<'a, &'a [&'a Image<[f32; 3]>], &'a [&'a Image<f32>], &'a [&'a Image<[f32; 2]>]>;
 
 impl<'a> Frame<'a> {
     /// A frame without optional inputs, which continues the previous frame: no reset, unchanged exposure. `color`: one
@@ -77,7 +79,8 @@ impl<'a> Frame<'a> {
 ///
 /// ```
 /// use afterimage::cpu::{CpuAfterimage, Frame};
-/// use afterimage::{ContextDesc, Gaze, Image, ViewFrame, ViewGeometry};
+/// use afterimage::levels::{ContextDesc, ViewFrame};
+/// use afterimage::{Gaze, Image, ViewGeometry};
 ///
 /// let size = [64, 36];
 /// let mut post = CpuAfterimage::new(&ContextDesc::new(size))?;
@@ -196,8 +199,9 @@ impl CpuAfterimage {
     /// Changes the settings from the next frame on.
     ///
     /// History survives, unless its layout changes: with another [`method`](Settings::method), with
-    /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::Wrs::sampler) and the scale of its
-    /// [`gate`](crate::Wrs::gate), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
+    /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::levels::Wrs::sampler) and the scale of its
+    /// [`gate`](crate::levels::Wrs::gate), and for smr with `rate_far` and `filter` of the
+    /// [`foveation`](Settings::foveation).
     ///
     /// # Errors
     /// [`SettingsError`] if a setting is out of range; then the settings are unchanged.
@@ -243,7 +247,7 @@ impl CpuAfterimage {
     }
 
     /// Discards history and held gaze positions: the next frame is processed like the first one.
-    /// [`Reset::All`](crate::Reset::All) does the same as part of a frame, but keeps the gaze.
+    /// [`Reset::All`](crate::levels::Reset::All) does the same as part of a frame, but keeps the gaze.
     pub fn forget(&mut self) {
         self.planned = None;
         self.history.forget();

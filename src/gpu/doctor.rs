@@ -39,8 +39,8 @@ struct DoctorUniforms {
 /// view.
 ///
 /// Give it some consecutive frames in which the camera moves and the eye looks around; with
-/// [`Filter::Quads`](crate::Filter::Quads) shade them at full rate, without `prime`. `record` never submits, maps or
-/// waits: the caller reads its buffer back at any later time, and gives the bytes to [`read`](Self::read).
+/// [`Filter::Quads`](crate::levels::Filter::Quads) shade them at full rate, without `prime`. `record` never submits,
+/// maps or waits: the caller reads its buffer back at any later time, and gives the bytes to [`read`](Self::read).
 /// `examples/07_doctor.rs` is a whole program; `cpu::Doctor` has a smaller example.
 #[derive(Debug)]
 pub struct Doctor {

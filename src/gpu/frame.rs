@@ -2,18 +2,18 @@
 
 use super::Textures;
 use super::binding::Binding;
-use crate::frame::Exposure;
+use crate::frame::{Exposure, FrameInputs};
 use crate::kernel::debug_view::DebugView;
 use crate::uniforms::{MAX_VIEWS, ORIGINS};
 use crate::view::ViewFrame;
 use crate::warning::Warning;
 use wgpu::{Buffer, QuerySet, Texture};
 
-/// A frame whose inputs are textures; fields and an example are at [`FrameInputs`](crate::FrameInputs).
+/// A frame whose inputs are textures; fields and an example are at [`FrameInputs`].
 ///
 /// Textures have one sample a pixel and the usage `TEXTURE_BINDING`. [`Textures`] describes where the views lie in
 /// them.
-pub type Frame<'a> = crate::FrameInputs<'a, Textures<'a>, Textures<'a>, Textures<'a>>;
+pub type Frame<'a> = FrameInputs<'a, Textures<'a>, Textures<'a>, Textures<'a>>;
 
 impl<'a> Frame<'a> {
     /// A frame without optional inputs, which continues the previous frame: no reset, unchanged exposure.
@@ -37,8 +37,8 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Outputs of [`record`](super::Afterimage::record): the frame, and optionally a debug view, counters and timestamps.
-/// `record` also accepts a texture alone.
+/// Outputs of a frame, for `show` or `record` of either door: the picture, and optionally a debug view, counters and
+/// timestamps. Both also accept a texture alone.
 ///
 /// ```
 /// # use afterimage::wgpu;
@@ -54,7 +54,7 @@ impl<'a> Frame<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Target<'a> {
     /// Output frame, of the context's output format, with the usage `STORAGE_BINDING`. Its color is linear, like the
-    /// input's. Its alpha is the input's, or 1 ([`ContextDesc::keep_alpha`](crate::ContextDesc::keep_alpha)).
+    /// input's. Its alpha is the input's, or 1 ([`ContextDesc::keep_alpha`](crate::levels::ContextDesc::keep_alpha)).
     pub output: Textures<'a>,
     /// Debug view of the frame's decisions, drawn by the same pass. `None`: no view, at no cost.
     pub debug: Option<DebugTarget<'a>>,
@@ -69,7 +69,7 @@ pub struct Target<'a> {
 /// Debug view beside the output frame. Example: [`Target`].
 ///
 /// The device needs the limit `max_storage_textures_per_shader_stage` of 5.
-/// [`Afterimage::record_view`](super::Afterimage::record_view) needs 4.
+/// [`levels::Afterimage::record_view`](crate::levels::Afterimage::record_view) needs 4.
 #[derive(Clone, Copy, Debug)]
 pub struct DebugTarget<'a> {
     /// View to draw.
@@ -194,7 +194,7 @@ impl<'a> Timestamps<'a> {
 
 /// Result of recording a frame: warnings about its description, which may be ignored. Warnings about pixels are in
 /// [`FrameStats::warnings`](crate::FrameStats::warnings). Example:
-/// [`Afterimage::record_view`](super::Afterimage::record_view).
+/// [`levels::Afterimage::record_view`](crate::levels::Afterimage::record_view).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Recorded {
     gaze: [Option<Warning>; MAX_VIEWS],

@@ -1,18 +1,19 @@
-//! GPU executor: the post-process as compute passes in the caller's wgpu command encoder.
+//! GPU executor: the post-process as compute passes in the caller's wgpu command encoder. Inputs and outputs of both
+//! doors, [`Afterimage`](crate::Afterimage) and [`levels::Afterimage`](crate::levels::Afterimage), and the doctor.
 //!
-//! The caller owns device, queue, encoder, submission, and every input and output texture. [`Afterimage`] owns its
-//! history and pipelines. [`Afterimage::record`] never submits, polls, maps or waits.
+//! The caller owns device, queue, encoder, submission, and every input and output texture. A context owns its history
+//! and pipelines. It never submits, polls, maps or waits.
 //!
 //! No device features are needed, and no limits beyond WebGPU's defaults except for frames larger than 8192 pixels;
-//! [`Afterimage::required_limits`] says what a context needs at least. Any number of contexts can share a device.
-//! wgpu's GL backend cannot store history, and is refused.
+//! `required_limits` says what a context needs at least. Any number of contexts can share a device. wgpu's GL backend
+//! cannot store history, and is refused.
 
 pub(crate) mod binding;
 pub(crate) mod buffer;
 pub(crate) mod compute;
 mod doctor;
 mod fill;
-mod frame;
+pub(crate) mod frame;
 mod groups;
 mod history;
 mod input;
@@ -33,10 +34,13 @@ mod textures;
 pub(crate) mod uniforms;
 
 pub use doctor::Doctor;
+#[doc(hidden)]
+pub use frame::Frame;
 use frame::Variant;
-pub use frame::{DebugTarget, Frame, Recorded, Target, Timestamps};
+pub use frame::{DebugTarget, Recorded, Target, Timestamps};
 pub(crate) use input::{check_readable, check_texture};
 pub(crate) use output::texel;
+#[doc(hidden)]
 pub use prime::Prime;
 pub(crate) use requirements::validate;
 pub use textures::{Region, Textures};
@@ -64,15 +68,14 @@ use stages::Stages;
 use uniforms::FrameUniforms;
 use wgpu::{Buffer, CommandEncoder, ComputePassDescriptor, Device, Limits, Texture, TextureFormat, TextureUsages};
 
-/// The post-process on a GPU: a context with its settings, history and pipelines.
-///
-/// The [crate's first page](crate) has an example. `examples/09_levels.rs` is the smallest program;
-/// `examples/03_stereo.rs` has two views.
+/// The post-process on a GPU, with every combination of options: a context with its settings, history and pipelines.
+/// Both doors stand on it, and this workspace's other crates use it.
 ///
 /// Several frames can be recorded into one encoder; they are processed in that order. Submit recorded frames once, in
 /// the order in which they were recorded. A frame may also be dropped with its encoder, if the surface is outdated, for
 /// example: the device knows which frame its history is of, and the frame after a dropped one starts without history,
 /// as after [`Reset::All`].
+#[doc(hidden)]
 #[derive(Debug)]
 pub struct Afterimage {
     desc: ContextDesc,
@@ -163,16 +166,6 @@ impl Afterimage {
     /// Limits that a device needs at least for a context of this size: those of small devices
     /// (`Limits::downlevel_defaults`), with textures as large as the context's. Request them together with what the
     /// rest of the program needs, such as WebGPU's defaults, and with those of the largest size if the size changes.
-    ///
-    /// ```
-    /// use afterimage::gpu::Afterimage;
-    /// use afterimage::{ContextDesc, wgpu};
-    ///
-    /// let least = Afterimage::required_limits(&ContextDesc::new([1920, 1080]));
-    /// assert_eq!(least.max_texture_dimension_2d, 1920);
-    /// let both = least.or_better_values_from(&wgpu::Limits::default());
-    /// assert_eq!(both, wgpu::Limits::default());
-    /// ```
     pub fn required_limits(desc: &ContextDesc) -> Limits {
         requirements::required_limits(desc)
     }
@@ -185,8 +178,9 @@ impl Afterimage {
     /// Changes the settings from the next frame on.
     ///
     /// History survives, unless its layout changes: with another [`method`](Settings::method), with
-    /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::Wrs::sampler) and the scale of its
-    /// [`gate`](crate::Wrs::gate), and for smr with `rate_far` and `filter` of the [`foveation`](Settings::foveation).
+    /// [`noisy`](Settings::noisy), for wrs with its [`sampler`](crate::levels::Wrs::sampler) and the scale of its
+    /// [`gate`](crate::levels::Wrs::gate), and for smr with `rate_far` and `filter` of the
+    /// [`foveation`](Settings::foveation).
     ///
     /// # Errors
     /// [`SettingsError`] if a setting is out of range, or if a limit of the device is too low for the settings at the
@@ -303,16 +297,6 @@ impl Afterimage {
     ///
     /// Drivers may finish compilation at the first dispatch (software Vulkan does): record a frame while loading to
     /// force that, too.
-    ///
-    /// ```no_run
-    /// # use afterimage::wgpu::{self, Texture};
-    /// # use afterimage::gpu::{Afterimage, Frame};
-    /// # fn example(post: &Afterimage, device: &wgpu::Device, [depth, motion, output]: [&Texture; 3], frame: &Frame<'_>) {
-    /// // While loading. Depth and motion are missing in the first frame after a cut.
-    /// post.prewarm(device, frame, output);
-    /// post.prewarm(device, &Frame { depth: Some(depth.into()), motion: Some(motion.into()), ..*frame }, output);
-    /// # }
-    /// ```
     pub fn prewarm<'t>(&self, device: &Device, frame: &Frame<'_>, target: impl Into<Target<'t>>) {
         let special = Specialization::new(Variant::of(frame, &target.into()), None, self.generation);
         // Planned frames of whole quads, and those that begin with a quarter.
@@ -333,14 +317,6 @@ impl Afterimage {
     }
 
     /// Size in bytes of the textures that a context of this description would hold between frames.
-    ///
-    /// ```
-    /// use afterimage::ContextDesc;
-    /// use afterimage::gpu::Afterimage;
-    ///
-    /// let bytes = Afterimage::memory_bytes_of(&ContextDesc::new([1920, 1080]));
-    /// assert_eq!(bytes / (1920 * 1080), 21);
-    /// ```
     pub fn memory_bytes_of(desc: &ContextDesc) -> u64 {
         let by_quads = desc.settings.foveation.filter == Filter::Quads;
         let quads = if by_quads { quads::memory_bytes(desc) } else { 0 };
@@ -376,19 +352,20 @@ impl Afterimage {
     }
 
     /// Records, into `encoder`, the choice of the quads of 2x2 pixels to shade of a frame [shaded by
-    /// quads](crate::Filter::Quads). The renderer reads it from [`quad_mask`](Self::quad_mask) or
+    /// quads](crate::levels::Filter::Quads). The renderer reads it from [`quad_mask`](Self::quad_mask) or
     /// [`quad_list`](Self::quad_list), shades these quads at full rate, and gives a color of the context's size with
     /// them to [`record`](Self::record) of the same frame.
     ///
     /// All quads of the fovea are chosen, an even pattern outside it that visits every quad in turn, and at most the
-    /// share [`Foveation::budget`](crate::Foveation::budget) of a view's quads where history lacks most.
+    /// share [`Foveation::budget`](crate::levels::Foveation::budget) of a view's quads where history lacks most.
     ///
     /// Give it the frame that will be recorded, with the parts that are known before shading: views, depth, motion,
     /// trust or reactive mask, index and reset. Its colors and noise are not read. History is unchanged. If its encoder
     /// is never submitted, plan again before `record`.
     ///
     /// ```no_run
-    /// # use afterimage::{wgpu, ViewFrame};
+    /// # use afterimage::levels::ViewFrame;
+    /// # use afterimage::wgpu;
     /// # fn example(
     /// #     post: &mut afterimage::gpu::Afterimage, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder,
     /// #     [color, depth, motion, output]: [&wgpu::Texture; 4], views: &[ViewFrame], index: u64,
@@ -404,8 +381,8 @@ impl Afterimage {
     /// ```
     ///
     /// # Errors
-    /// [`FrameError`] if the foveation is not [`Quads`](crate::Filter::Quads), and as for `record`; then nothing was
-    /// recorded.
+    /// [`FrameError`] if the foveation is not [`Quads`](crate::levels::Filter::Quads), and as for `record`; then
+    /// nothing was recorded.
     pub fn plan(&mut self, device: &Device, encoder: &mut CommandEncoder, frame: &Frame<'_>) -> Result<(), FrameError> {
         frame.check_plan(&self.desc)?;
         input::check_geometry(&self.desc, frame)?;
@@ -441,8 +418,8 @@ impl Afterimage {
 
     /// Whether the last [`plan`](Self::plan) chose one pixel of each quad outside the fovea, because nothing was known:
     /// in the first frame and after a reset. Draw these pixels at half the width and height ([`ViewGeometry::half`]),
-    /// and give them so ([`half`](crate::FrameInputs::half)): rasterisers cannot shade single pixels of a quad, and
-    /// would shade all. The fovea is drawn as in other frames.
+    /// and give them so ([`half`](crate::levels::FrameInputs::half)): rasterisers cannot shade single pixels of a quad,
+    /// and would shade all. The fovea is drawn as in other frames.
     pub fn is_quarter(&self) -> bool {
         self.quads.as_ref().and_then(|quads| quads.planned).is_some_and(|planned| planned.is_quarter)
     }
@@ -496,8 +473,8 @@ impl Afterimage {
         Ok(())
     }
 
-    /// The pixels that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::Filter::Quads) chose: an
-    /// `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bits 0 to 3 say which of its pixels are
+    /// The pixels that the last [`plan`](Self::plan) of a frame [shaded by quads](crate::levels::Filter::Quads) chose:
+    /// an `R32Uint` texture with a texel for each quad of 2x2 pixels, whose bits 0 to 3 say which of its pixels are
     /// shaded, row by row, and bits 8 to 12 how many paths each of them gets, as in
     /// [`CpuAfterimage::paths`](crate::cpu::CpuAfterimage::paths), with an array layer for each view; usages
     /// `TEXTURE_BINDING` and `COPY_SRC`. `None` with another filter. Changes of size and settings replace it.
@@ -509,8 +486,8 @@ impl Afterimage {
     /// `INDIRECT` and `COPY_SRC`. 32-bit words: at byte 0 the arguments of `draw_indirect` with 6 vertices and an
     /// instance for each quad, at byte 16 those of `dispatch_workgroups_indirect` with 64 invocations a workgroup and
     /// one for each quad, at byte 28 the number of quads, from byte 32 on the quads, x + 65536 y in quads, in no
-    /// particular order. `None` with another filter than [`Quads`](crate::Filter::Quads). Changes of size and settings
-    /// replace it.
+    /// particular order. `None` with another filter than [`Quads`](crate::levels::Filter::Quads). Changes of size and
+    /// settings replace it.
     pub fn quad_list(&self, view: usize) -> Option<&Buffer> {
         self.quads.as_ref().and_then(|quads| quads.quads.views.get(view)).map(|view| &view.list)
     }
@@ -519,24 +496,6 @@ impl Afterimage {
     /// color, into the target's output. Counters, if any, are those of `record`. History is unchanged: call it before
     /// `record`, with another output, for any number of views. A [`DebugTarget`] is faster: it needs no pass of its
     /// own.
-    ///
-    /// ```no_run
-    /// # use afterimage::wgpu;
-    /// # fn example(
-    /// #     post: &mut afterimage::gpu::Afterimage, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder,
-    /// #     frame: &afterimage::gpu::Frame<'_>, views: &[wgpu::Texture; 2], output: &wgpu::Texture,
-    /// # ) -> Result<(), afterimage::FrameError> {
-    /// use afterimage::DebugView;
-    ///
-    /// post.record_view(device, encoder, frame, &views[0], DebugView::Rejection)?;
-    /// post.record_view(device, encoder, frame, &views[1], DebugView::Motion)?;
-    /// let recorded = post.record(device, encoder, frame, output)?;
-    /// for warning in recorded.warnings() {
-    ///     eprintln!("{warning}");
-    /// }
-    /// # Ok(())
-    /// # }
-    /// ```
     ///
     /// # Errors
     /// As for `record`.

@@ -8,8 +8,8 @@ use super::sanitize::is_finite;
 use bevy_reflect::Reflect;
 use glam::Vec3;
 
-/// Debug view: an image of one quantity of the decision at each pixel. `gpu::Afterimage::record_view` draws it and has
-/// an example.
+/// Debug view: an image of one quantity of the decision at each pixel. `levels::Afterimage::record_view` draws it and
+/// has an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "bevy-0-20", derive(Reflect))]
 #[repr(u32)]
@@ -47,7 +47,8 @@ impl DebugView {
 /// # #[cfg(feature = "cpu")]
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
-/// use afterimage::{ContextDesc, Gaze, Image, Verdict, ViewFrame, ViewGeometry};
+/// use afterimage::levels::{ContextDesc, ViewFrame};
+/// use afterimage::{Gaze, Image, Verdict, ViewGeometry};
 ///
 /// let size = [8, 8];
 /// let mut post = CpuAfterimage::new(&ContextDesc::new(size))?;

@@ -1,34 +1,51 @@
-//! An engine's camera: a projection and a pose.
+//! An engine's camera: a projection, a pose, and where the eye looks.
 
 use crate::camera::Projection;
 use crate::convention::DepthConvention;
 use crate::error::SettingsError;
+use crate::gaze::Gaze;
 use crate::geometry::ViewGeometry;
 use crate::view::ViewFrame;
 
-/// Camera of a frame, without jitter: its projection and its pose, right-handed with y up and -z forward, stored by
-/// columns (`to_cols_array_2d` of glam).
+/// Camera of a view, without jitter, and where the eye looks in it. Matrices are right-handed with y up and -z forward,
+/// stored by columns (`to_cols_array_2d` of glam). Create it with [`new`](Self::new) and `..`:
+///
+/// ```
+/// # let clip_from_view = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.8, 0.0, 0.0], [0.0, 0.0, 0.0, -1.0], [0.0, 0.0, 0.1, 0.0]];
+/// # let world_from_view = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 1.6, 0.0, 1.0]];
+/// use afterimage::{Camera, Gaze};
+///
+/// let camera = Camera { gaze: Gaze::Uv { uv: [0.6, 0.5] }, ..Camera::new(clip_from_view, world_from_view) };
+/// # let _ = camera;
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    clip_from_view: [[f64; 4]; 4],
-    world_from_view: [[f64; 4]; 4],
+    /// A perspective projection; depth from 0 to 1, reversed or not, the far plane at infinity or not.
+    pub clip_from_view: [[f64; 4]; 4],
+    /// Pose: a rotation and a translation.
+    pub world_from_view: [[f64; 4]; 4],
+    /// Where the eye looks, for [`Shading::Gaze`](super::Shading::Gaze). Default [`Gaze::Lost`]: where it last did.
+    pub gaze: Gaze,
+    /// The part that a headset's lens shows, as in [`ViewFrame::visible_px`]. Pixels outside it are black. `None`, the
+    /// default: every pixel is visible.
+    pub visible_px: Option<[[f32; 4]; 2]>,
 }
 
 impl Camera {
-    /// A camera of `f32` or `f64`. `clip_from_view`: a perspective projection; depth from 0 to 1, reversed or not, the
-    /// far plane at infinity or not. `world_from_view`: a rotation and a translation. A float has steps of 0.06 at 1e6:
-    /// far from the world's origin give `f64`.
+    /// A camera of `f32` or `f64`, without a gaze. A float has steps of 0.06 at 1e6: far from the world's origin give
+    /// `f64`.
     pub fn new<T: Copy + Into<f64>>(clip_from_view: [[T; 4]; 4], world_from_view: [[T; 4]; 4]) -> Self {
         let doubles = |columns: [[T; 4]; 4]| columns.map(|column| column.map(Into::into));
-        Self { clip_from_view: doubles(clip_from_view), world_from_view: doubles(world_from_view) }
+        let (clip_from_view, world_from_view) = (doubles(clip_from_view), doubles(world_from_view));
+        Self { clip_from_view, world_from_view, gaze: Gaze::Lost, visible_px: None }
     }
 
-    pub(super) fn clip_from_view(&self) -> [[f32; 4]; 4] {
+    pub(super) fn projection(&self) -> [[f32; 4]; 4] {
         self.clip_from_view.map(|column| column.map(|v| v as f32))
     }
 
     pub(super) fn geometry(&self, size_px: [u32; 2]) -> Result<ViewGeometry, SettingsError> {
-        ViewGeometry::from_projection(size_px, self.clip_from_view())
+        ViewGeometry::from_projection(size_px, self.projection())
     }
 
     /// Whether the near plane's depth is 1: depth falls with distance.

@@ -50,12 +50,19 @@ impl Shading {
     }
 
     /// The even pattern takes a part of the share, and what history lacks gets the rest.
-    pub(super) fn foveation(self) -> Foveation {
+    pub(super) fn foveation(self, single_pixels: bool) -> Foveation {
+        let outside = |share: f32| {
+            let quads = Foveation::uniform(share);
+            let even = share - quads.budget;
+            // One pixel of each quad of the pattern.
+            let budget = if single_pixels { share - 0.25 * even } else { quads.budget };
+            Foveation { budget, single_pixels, ..quads }
+        };
         match self {
-            Self::Everywhere { share } => Foveation::uniform(share),
+            Self::Everywhere { share } => outside(share),
             Self::Gaze { fovea_deg, share } => {
                 let mid_deg = fovea_deg.max(15.0);
-                Foveation { fovea_deg, mid_deg, blend_deg: 1.0, ..Foveation::uniform(share) }
+                Foveation { fovea_deg, mid_deg, blend_deg: 1.0, ..outside(share) }
             }
         }
     }
@@ -64,8 +71,10 @@ impl Shading {
 /// Description of an [`Afterimage`](super::Afterimage). Create it with [`new`](Self::new) and `..`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Desc {
-    /// Size of the frame in pixels, each side 1 to 16384.
+    /// Size of each view in pixels, each side 1 to 16384.
     pub size_px: [u32; 2],
+    /// Number of views: 1 for a screen, 2 for stereo; at most 4. Textures have an array layer for each. Default 1.
+    pub view_count: u32,
     /// Format of the output texture.
     pub output: TextureFormat,
     /// Pixels that are shaded. Default: a quarter.
@@ -82,9 +91,15 @@ pub struct Desc {
     /// Whether the output has the alpha of the colors, with a history like theirs, instead of 1. It takes 8 more bytes
     /// a pixel. Default false.
     pub keep_alpha: bool,
-    /// Whether the renderer draws [quarter frames](super::Plan::quarter) at half the width and height. Otherwise the
+    /// Whether the renderer draws [quarter frames](super::Plan::quarters) at half the width and height. Otherwise the
     /// first frame, and those after cuts, are shaded at every pixel by rasterisers, and are right, too. Default false.
     pub draws_quarters: bool,
+    /// Whether the renderer can shade single pixels of a quad, as path tracers and compute shaders can: outside the
+    /// fovea the mask then has one pixel of a quad, four times as many places for the same pixels. Default false.
+    pub single_pixels: bool,
+    /// Whether frames are path-traced with few samples a pixel, and have a [noise input](super::Frame::noise). It takes
+    /// 8 more bytes a pixel. Default false.
+    pub is_noisy: bool,
 }
 
 impl Desc {
@@ -92,6 +107,7 @@ impl Desc {
     pub fn new(size_px: [u32; 2], output: TextureFormat) -> Self {
         Self {
             size_px,
+            view_count: 1,
             output,
             shading: Shading::default(),
             motion: None,
@@ -99,12 +115,25 @@ impl Desc {
             antialias: true,
             keep_alpha: false,
             draws_quarters: false,
+            single_pixels: false,
+            is_noisy: false,
         }
     }
 
-    pub(super) fn context(&self) -> ContextDesc {
+    /// Description of the passes, for this workspace's other crates.
+    ///
+    /// # Errors
+    /// [`SettingsError`] if a share or an angle is out of range.
+    #[doc(hidden)]
+    pub fn context(&self) -> Result<ContextDesc, SettingsError> {
+        self.shading.validate()?;
+        Ok(self.unchecked())
+    }
+
+    pub(super) fn unchecked(&self) -> ContextDesc {
         let still = MotionConvention { without_camera: true, ..MotionConvention::default() };
         ContextDesc {
+            view_count: self.view_count,
             motion: self.motion.unwrap_or(still),
             depth: DepthConvention::Linear,
             keep_alpha: self.keep_alpha,

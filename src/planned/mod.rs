@@ -12,10 +12,10 @@ pub use share_control::ShareControl;
 
 use crate::error::{CreateError, FrameError, FrameValue, SettingsError};
 use crate::foveation::Foveation;
-use crate::gpu::{self, Prime, Recorded};
-use crate::settings::Settings;
+use crate::gpu::{self, Prime, Recorded, Target};
+use crate::settings::{Method, Settings, Smr};
 use crate::view::ViewFrame;
-use wgpu::{Buffer, CommandEncoder, Device, Limits, Texture, TextureView};
+use wgpu::{Buffer, CommandEncoder, Device, Limits, Texture, TextureViewDescriptor, TextureViewDimension};
 
 /// The post-process for planned frames, on a GPU: it chooses the pixels that are shaded in each frame, and its history
 /// gives the rest. Full rate's picture from a quarter of the pixels, or from a tenth of them around the gaze.
@@ -47,7 +47,7 @@ use wgpu::{Buffer, CommandEncoder, Device, Limits, Texture, TextureView};
 /// let frame = Frame { motion: Some(motion), ..Frame::new(depth, Camera::new(clip_from_view, world_from_view)) };
 /// let plan = post.plan(&mut encoder, &frame)?;
 /// encoder.copy_texture_to_texture(depth.as_image_copy(), depth_copy.as_image_copy(), depth.size());
-/// post.close(&mut encoder, &plan, &depth_copy.create_view(&Default::default()))?;
+/// post.close(&mut encoder, &plan, depth_copy)?;
 /// draw_colors([color, depth_copy], jittered);
 /// post.show(&mut encoder, plan, color, output)?;
 /// queue.submit([encoder.finish()]);
@@ -58,8 +58,8 @@ use wgpu::{Buffer, CommandEncoder, Device, Limits, Texture, TextureView};
 /// The context counts frames and keeps the previous frame's camera. A frame may be dropped with its encoder: the frame
 /// after it then starts without history, and is right.
 ///
-/// [`gpu::Afterimage`](crate::gpu::Afterimage) below it has several views, counters, debug views, a renderer's own
-/// masks and noisy frames.
+/// A headset has two views ([`Desc::view_count`], [`Frame::others`]); a renderer may choose the pixels itself
+/// ([`given`](Self::given)); counters and debug views are a [`Target`] of [`show`](Self::show).
 #[derive(Debug)]
 pub struct Afterimage {
     device: Device,
@@ -67,8 +67,8 @@ pub struct Afterimage {
     post: gpu::Afterimage,
     /// Number of frames that were shown.
     index: u64,
-    /// Camera of the last frame that was shown.
-    previous: Option<Camera>,
+    /// Cameras of the last frame that was shown; none without history.
+    previous: Vec<Camera>,
 }
 
 impl Afterimage {
@@ -79,15 +79,14 @@ impl Afterimage {
     /// it: `Rgba16Float` and `Rgba8Unorm` are, on every device), a limit of the device is too low
     /// ([`required_limits`](Self::required_limits)), or its backend cannot store history. Then nothing was made.
     pub fn new(device: &Device, desc: &Desc) -> Result<Self, CreateError> {
-        desc.shading.validate()?;
-        let post = gpu::Afterimage::new(device, &desc.context(), desc.output)?;
-        Ok(Self { device: device.clone(), desc: *desc, post, index: 0, previous: None })
+        let post = gpu::Afterimage::new(device, &desc.context()?, desc.output)?;
+        Ok(Self { device: device.clone(), desc: *desc, post, index: 0, previous: vec![] })
     }
 
     /// Limits that a device needs at least for a context of this description. Request them together with what the rest
     /// of the program needs.
     pub fn required_limits(desc: &Desc) -> Limits {
-        gpu::Afterimage::required_limits(&desc.context())
+        gpu::Afterimage::required_limits(&desc.unchecked())
     }
 
     /// Description of the context, with its current size and shading.
@@ -113,9 +112,8 @@ impl Afterimage {
     /// # Errors
     /// [`SettingsError`] if a share or an angle is out of range; then nothing changes.
     pub fn set_shading(&mut self, shading: Shading) -> Result<(), SettingsError> {
-        shading.validate()?;
         let desc = Desc { shading, ..self.desc };
-        self.post.set_settings(&self.device, desc.settings())?;
+        self.post.set_settings(&self.device, desc.context()?.settings)?;
         self.desc = desc;
         Ok(())
     }
@@ -130,10 +128,41 @@ impl Afterimage {
         Ok(())
     }
 
+    /// Changes the size of the frame, and resamples history to it: records a pass into `encoder`. If that is dropped,
+    /// the next frame has no history. The view directions at the edges should stay the same.
+    ///
+    /// # Errors
+    /// As for [`resize`](Self::resize).
+    pub fn resize_keeping_history(
+        &mut self,
+        encoder: &mut CommandEncoder,
+        size_px: [u32; 2],
+    ) -> Result<(), FrameError> {
+        self.post.resize_keeping_history(&self.device, encoder, size_px)?;
+        self.desc.size_px = size_px;
+        Ok(())
+    }
+
+    /// Compiles, while loading, the pipelines for frames with the same inputs and outputs, so that the first
+    /// [`plan`](Self::plan) and [`show`](Self::show) do not have to. The contents of the textures do not matter.
+    ///
+    /// # Errors
+    /// [`FrameError`] if a matrix or a value of the frame does not fit.
+    pub fn prewarm<'a>(
+        &self,
+        frame: &Frame<'_>,
+        color: &Texture,
+        output: impl Into<Target<'a>>,
+    ) -> Result<(), FrameError> {
+        let plan = self.described(frame)?;
+        self.post.prewarm(&self.device, &plan.inputs(color, None), output);
+        Ok(())
+    }
+
     /// Discards history and the last known gaze: for another scene or another user.
     pub fn forget(&mut self) {
         self.post.forget();
-        self.previous = None;
+        self.previous.clear();
     }
 
     /// Bytes of the textures and buffers that the context holds between frames.
@@ -147,87 +176,130 @@ impl Afterimage {
     /// # Errors
     /// [`FrameError`] if a texture, a matrix or a value does not fit. Then nothing was recorded.
     pub fn plan(&mut self, encoder: &mut CommandEncoder, frame: &Frame<'_>) -> Result<Plan, FrameError> {
+        let mut plan = self.described(frame)?;
+        self.post.plan(&self.device, encoder, &plan.inputs(frame.depth, None))?;
+        if self.desc.draws_quarters && self.post.is_quarter() {
+            plan.quarters = plan.cameras.iter().map(|camera| self.quarter(camera)).collect();
+        }
+        Ok(plan)
+    }
+
+    /// The plan of a renderer that chooses the pixels itself, in place of [`plan`](Self::plan): for checkerboards, or a
+    /// tracer with a sampler of its own. `mask`: a pixel is shaded where it is above 0.5; NaN counts as 0. Any float or
+    /// normalised format. Any pattern does, if it visits every pixel in some frame.
+    ///
+    /// # Errors
+    /// [`FrameError`] if a matrix or a value of the frame does not fit.
+    pub fn given(&self, frame: &Frame<'_>, mask: &Texture) -> Result<Plan, FrameError> {
+        Ok(Plan { given: Some(mask.clone()), ..self.described(frame)? })
+    }
+
+    /// A frame without its quarters.
+    fn described(&self, frame: &Frame<'_>) -> Result<Plan, FrameError> {
         if frame.motion.is_some() && self.desc.motion.is_none() {
             let (found, expected) = ("given".into(), "None; or say in Desc::motion which convention they have");
             return Err(FrameError::Value { value: FrameValue::Motion, view: 0, found, expected });
         }
-        let view = self.view(frame)?;
-        let (Some(mask), Some(list)) = (self.post.quad_mask().cloned(), self.post.quad_list(0).cloned()) else {
+        let cameras = [&[frame.camera], frame.others].concat();
+        let (found, expected) = (cameras.len(), self.desc.view_count as usize);
+        if found != expected {
+            return Err(FrameError::ViewCount { found, expected });
+        }
+        let views = (0..).zip(&cameras).map(|(i, camera)| self.view(i, camera)).collect::<Result<_, _>>()?;
+        let lists: Vec<_> = (0..expected).filter_map(|view| self.post.quad_list(view).cloned()).collect();
+        let Some(mask) = self.post.quad_mask().cloned() else {
             let (found, expected) = ("missing".into(), "a context of planned frames");
             return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
         };
-        let mut plan = Plan {
+        Ok(Plan {
             index: self.index,
-            view,
-            camera: frame.camera,
+            views,
+            cameras,
             depth: frame.depth.clone(),
             motion: frame.motion.cloned(),
             reactive: frame.reactive.cloned(),
+            noise: frame.noise.cloned(),
+            given: None,
             is_cut: frame.is_cut,
             exposure: frame.exposure,
             mask,
-            list,
-            quarter: None,
-        };
-        self.post.plan(&self.device, encoder, &plan.inputs(frame.depth, None, &[view]))?;
-        plan.quarter = (self.desc.draws_quarters && self.post.is_quarter()).then(|| self.quarter(&frame.camera));
-        Ok(plan)
+            lists,
+            quarters: vec![],
+        })
     }
 
     /// Records a pass that closes a depth buffer for the pixels that are not shaded: it writes the near plane's depth
-    /// there, so that the depth test rejects what the renderer draws, before it is shaded. `depth`: a view of a copy of
-    /// the frame's depth, with the usage `RENDER_ATTACHMENT`. Then draw the colors with a depth test that passes what
-    /// is equal (`LessEqual`, or `GreaterEqual` where depth is reversed) and positions that are exactly those of the
-    /// prepass (`@invariant` in WGSL).
+    /// there, so that the depth test rejects what the renderer draws, before it is shaded. `depth`: a copy of the
+    /// frame's depth, with any number of samples, with the usage `RENDER_ATTACHMENT`. Then draw the colors with a depth
+    /// test that passes what is equal (`LessEqual`, or `GreaterEqual` where depth is reversed) and positions that are
+    /// exactly those of the prepass (`@invariant` in WGSL).
     ///
     /// # Errors
     /// [`FrameError`] if the plan is not the last one, or if the target does not fit. Then nothing was recorded.
-    pub fn close(&mut self, encoder: &mut CommandEncoder, plan: &Plan, depth: &TextureView) -> Result<(), FrameError> {
+    pub fn close(&mut self, encoder: &mut CommandEncoder, plan: &Plan, depth: &Texture) -> Result<(), FrameError> {
         self.check(plan)?;
-        let near_depth = if plan.camera.is_reversed() { 1.0 } else { 0.0 };
-        let is_half = plan.quarter.is_some();
-        let prime = Prime { target: depth, origin_px: [0, 0], near_depth, stencil: None, is_half };
-        self.post.prime(&self.device, encoder, 0, &prime)
+        let (found, expected) = (depth.depth_or_array_layers() as usize, plan.cameras.len());
+        if found != expected {
+            return Err(FrameError::ViewCount { found, expected });
+        }
+        for (view, camera) in plan.cameras.iter().enumerate() {
+            let target = &depth.create_view(&TextureViewDescriptor {
+                dimension: Some(TextureViewDimension::D2),
+                mip_level_count: Some(1),
+                base_array_layer: view as u32,
+                array_layer_count: Some(1),
+                ..Default::default()
+            });
+            let near_depth = if camera.is_reversed() { 1.0 } else { 0.0 };
+            let is_half = !plan.quarters.is_empty();
+            let prime = Prime { target, origin_px: [0, 0], near_depth, stencil: None, is_half };
+            self.post.prime(&self.device, encoder, view, &prime)?;
+        }
+        Ok(())
     }
 
     /// Records, into `encoder`, the passes that show a planned frame: they read its colors and the history, and write
-    /// `output`, of the context's output format with the usage `STORAGE_BINDING`, and the history. `color`: linear
-    /// color before tone mapping, of the context's size, drawn where the plan says; other pixels are not read. In a
-    /// [quarter frame](Plan::quarter) give [`show_quarter`](Self::show_quarter) its small colors, too.
+    /// `output`, a texture of the context's output format with the usage `STORAGE_BINDING`, and the history. `color`:
+    /// linear color before tone mapping, of the context's size, drawn where the plan says; other pixels are not read.
+    /// In a [quarter frame](Plan::quarters) give [`show_quarter`](Self::show_quarter) its small colors, too.
+    ///
+    /// In place of a texture, `output` may be a [`Target`], with counters of pixels
+    /// ([`FrameStats`](crate::FrameStats)), a [debug view](crate::DebugView) or timestamps.
     ///
     /// # Errors
     /// [`FrameError`] if the plan is not the last one, or if a texture does not fit. Then nothing was recorded.
-    pub fn show(
+    pub fn show<'a>(
         &mut self,
         encoder: &mut CommandEncoder,
         plan: Plan,
         color: &Texture,
-        output: &Texture,
+        output: impl Into<Target<'a>>,
     ) -> Result<Recorded, FrameError> {
-        if plan.quarter.is_some() {
+        if !plan.quarters.is_empty() {
             let (found, expected) = ("shown as a whole".into(), "show_quarter, because the plan has a quarter");
             return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
         }
-        self.record(encoder, plan, [color, output], None)
+        self.record(encoder, plan, (color, None), &output.into())
     }
 
-    /// [`show`](Self::show) of a [quarter frame](Plan::quarter): `half` has the colors that were drawn at half the
-    /// width and height, `color` the fovea.
+    /// [`show`](Self::show) of a [quarter frame](Plan::quarters): `half` has the colors that were drawn at half the
+    /// width and height, `color` the fovea. With a [given](Self::given) mask `half` has a texel for each quad of 2x2
+    /// pixels of which one is shaded, and `color` the other quads.
     ///
     /// # Errors
     /// As for `show`; and if the plan is not of a quarter frame.
-    pub fn show_quarter(
+    pub fn show_quarter<'a>(
         &mut self,
         encoder: &mut CommandEncoder,
         plan: Plan,
         [color, half]: [&Texture; 2],
-        output: &Texture,
+        output: impl Into<Target<'a>>,
     ) -> Result<Recorded, FrameError> {
-        if plan.quarter.is_none() {
+        if plan.quarters.is_empty() && plan.given.is_none() {
             let (found, expected) = ("shown as a quarter".into(), "show, because the plan has no quarter");
             return Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected });
         }
-        self.record(encoder, plan, [color, output], Some(half))
+        self.record(encoder, plan, (color, Some(half)), &output.into())
     }
 
     /// A doctor that finds mistakes in the frames of this context, and the line of code that mends each.
@@ -235,7 +307,7 @@ impl Afterimage {
     /// # Errors
     /// [`CreateError`] if a limit of the device is too low.
     pub fn doctor(&self) -> Result<gpu::Doctor, CreateError> {
-        gpu::Doctor::of_planned(&self.device, &self.desc.context())
+        gpu::Doctor::of_planned(&self.device, &self.desc.unchecked())
     }
 
     /// Records the examination of a frame by a [doctor](Self::doctor) of this context, before the frame is shown.
@@ -254,20 +326,20 @@ impl Afterimage {
         words: &Buffer,
     ) -> Result<(), FrameError> {
         self.check(plan)?;
-        doctor.record(&self.device, encoder, &plan.inputs(color, None, &[plan.view]), words)
+        doctor.record(&self.device, encoder, &plan.inputs(color, None), words)
     }
 
     fn record(
         &mut self,
         encoder: &mut CommandEncoder,
         plan: Plan,
-        [color, output]: [&Texture; 2],
-        half: Option<&Texture>,
+        (color, half): (&Texture, Option<&Texture>),
+        target: &Target<'_>,
     ) -> Result<Recorded, FrameError> {
         self.check(&plan)?;
-        let recorded = self.post.record(&self.device, encoder, &plan.inputs(color, half, &[plan.view]), output)?;
+        let recorded = self.post.record(&self.device, encoder, &plan.inputs(color, half), *target)?;
         self.index += 1;
-        self.previous = Some(plan.camera);
+        self.previous = plan.cameras;
         Ok(recorded)
     }
 
@@ -280,17 +352,17 @@ impl Afterimage {
         Err(FrameError::Value { value: FrameValue::Plan, view: 0, found, expected: "the last plan, once" })
     }
 
-    /// Description of the frame's view.
-    fn view(&self, frame: &Frame<'_>) -> Result<ViewFrame, FrameError> {
-        let Frame { camera, gaze, .. } = *frame;
-        let geometry = camera.geometry(self.desc.size_px)?;
+    /// Description of a view.
+    fn view(&self, index: usize, camera: &Camera) -> Result<ViewFrame, FrameError> {
+        let Camera { gaze, visible_px, .. } = *camera;
         let depth = match self.desc.has_distances {
             true => None,
             false => Some(camera.depth_convention()?),
         };
-        let view = ViewFrame { depth, jitter_px: self.jitter_px(), ..ViewFrame::new(geometry, gaze) };
+        let geometry = camera.geometry(self.desc.size_px)?;
+        let view = ViewFrame { depth, visible_px, jitter_px: self.jitter_px(), ..ViewFrame::new(geometry, gaze) };
         // Without a previous frame it counts as still: no history is read.
-        Ok(camera.moved_from(&self.previous.unwrap_or(camera), view)?)
+        Ok(camera.moved_from(self.previous.get(index).unwrap_or(camera), view)?)
     }
 
     /// How the small view of a quarter frame is drawn.
@@ -300,7 +372,7 @@ impl Afterimage {
         // The small view's pixel (x, y) is the frame's pixel (2x, 2y) + place.
         Quarter {
             size_px,
-            clip_from_view: camera::halved(camera.clip_from_view(), self.jitter_px(), self.desc.size_px, place),
+            clip_from_view: camera::halved(camera.projection(), self.jitter_px(), self.desc.size_px, place),
         }
     }
 }
@@ -308,11 +380,9 @@ impl Afterimage {
 impl Desc {
     /// Settings of the passes.
     fn settings(&self) -> Settings {
-        let screen = Settings::screen();
-        let method = match screen.method {
-            crate::Method::Smr(smr) => crate::Method::Smr(crate::Smr { antialias: self.antialias, ..smr }),
-            other => other,
-        };
-        Settings { method, foveation: self.shading.foveation(), ..screen }
+        let smr = if self.is_noisy { Smr::traced() } else { Smr::default() };
+        let method = Method::Smr(Smr { antialias: self.antialias, ..smr });
+        let foveation = self.shading.foveation(self.single_pixels);
+        Settings { method, foveation, noisy: self.is_noisy, ..Settings::default() }
     }
 }

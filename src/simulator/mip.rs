@@ -11,8 +11,8 @@ use glam::Vec3;
 /// beyond the frame's edge.
 ///
 /// ```
-/// use afterimage::simulator::Pyramid;
-/// use afterimage::{Foveation, Image, ViewGeometry};
+/// use afterimage::levels::{Foveation, Pyramid};
+/// use afterimage::{Image, ViewGeometry};
 ///
 /// let (size, gaze_px) = ([64, 36], [32.0, 18.0]);
 /// let geometry = ViewGeometry::flat(size, 70.0)?;

@@ -1,9 +1,8 @@
 //! Small frames of arbitrary bit patterns, for properties of whole passes on either executor.
 
 use crate::images::View;
-use afterimage::{
-    Bias, Filter, Foveation, Gaze, Image, Method, MethodKind, Sampler, Settings, ViewFrame, ViewGeometry, Wrs,
-};
+use afterimage::levels::{Bias, Filter, Foveation, Method, MethodKind, Sampler, Settings, ViewFrame, Wrs};
+use afterimage::{Gaze, Image, ViewGeometry};
 use afterimage_testing::Draws;
 
 pub const SIZE: [u32; 2] = [8, 6];

@@ -7,9 +7,8 @@ use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::debug_view::PixelTrace;
 use afterimage::kernel::pack;
 use afterimage::kernel::surface::{Surface, unpack_surface};
-use afterimage::{
-    ContextDesc, DepthConvention, DepthTest, Exposure, FrameStats, Image, MethodKind, Reset, Settings, Verdict,
-};
+use afterimage::levels::{ContextDesc, DepthTest, MethodKind, Reset, Settings};
+use afterimage::{DepthConvention, Exposure, FrameStats, Image, Verdict};
 use afterimage_testing::Draws;
 
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.

@@ -2,8 +2,8 @@
 
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::simulator::Pyramid;
-use afterimage::{Filter, Foveation, FrameStats, Gaze, Image, ViewFrame, ViewGeometry};
+use afterimage::levels::{Filter, Foveation, Pyramid, ViewFrame};
+use afterimage::{FrameStats, Gaze, Image, ViewGeometry};
 use afterimage_testing::Draws;
 
 /// Images of one view of one frame.

@@ -2,7 +2,8 @@
 
 use crate::depth_hard::{METHODS, Made, Make, SIZE, of, still};
 use crate::images::{View, noise, pixel, pixels};
-use afterimage::{DepthConvention, Image, MethodKind, MotionConvention, Verdict, ViewFrame, ViewGeometry};
+use afterimage::levels::{MethodKind, ViewFrame};
+use afterimage::{DepthConvention, Image, MotionConvention, Verdict, ViewGeometry};
 use glam::{DMat4, DVec2, DVec3};
 
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.

@@ -2,7 +2,8 @@
 
 use crate::any_frame::number;
 use crate::mask_hard::{Make, SIZE, Shot, foveation, smr, waves};
-use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, MethodKind, Settings};
+use afterimage::levels::{ContextDesc, Foveation, Method, MethodKind, Settings};
+use afterimage::{Gaze, Image};
 use afterimage_testing::Draws;
 
 /// Contexts whose passes read the mask in a way of their own: of whole frames, of single pixels, of quads.

@@ -3,9 +3,8 @@
 use crate::depth_hard::{Color, Made, Make, Steps};
 use crate::images::{View, pixel, times};
 use afterimage::kernel::debug_view::PixelTrace;
-use afterimage::{
-    ContextDesc, Exposure, Filter, Foveation, Image, Method, MethodKind, Reset, Sampler, Settings, Smr, Wrs,
-};
+use afterimage::levels::{ContextDesc, Filter, Foveation, Method, MethodKind, Reset, Sampler, Settings, Smr, Wrs};
+use afterimage::{Exposure, Image};
 use afterimage_testing::Draws;
 
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.

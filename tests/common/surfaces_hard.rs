@@ -4,7 +4,8 @@
 use crate::depth_hard::{Color, Make};
 use crate::images::{View, noise, off, peak, pixel, pixels, times};
 use crate::low_pass::LowPass;
-use afterimage::{ContextDesc, Exposure, Foveation, Gaze, Image, Method, MethodKind, Reset, Settings, Smr, Verdict};
+use afterimage::levels::{ContextDesc, Foveation, Method, MethodKind, Reset, Settings, Smr};
+use afterimage::{Exposure, Gaze, Image, Verdict};
 use afterimage_testing::Draws;
 
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.

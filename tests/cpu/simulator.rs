@@ -3,8 +3,8 @@
 use crate::images::{noise, pixel, pixels};
 use crate::simulator_hard::*;
 use afterimage::kernel::foveate;
-use afterimage::simulator::Pyramid;
-use afterimage::{Filter, Foveation, Image, ViewGeometry};
+use afterimage::levels::{Filter, Foveation, Pyramid};
+use afterimage::{Image, ViewGeometry};
 use afterimage_testing::holds;
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;

@@ -1,7 +1,8 @@
 //! Jitter from a jittered projection, and the signs that engines' own numbers have.
 
 use super::geometry::off_axis;
-use afterimage::{Gaze, ViewFrame, ViewGeometry};
+use afterimage::levels::ViewFrame;
+use afterimage::{Gaze, ViewGeometry};
 use afterimage_testing::Draws;
 use glam::{Mat4, Vec3};
 

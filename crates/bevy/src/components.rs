@@ -1,6 +1,7 @@
 //! Components of a camera, and the components that these require.
 
-use afterimage::{DebugView, Filter, Foveation, Method, Settings};
+use afterimage::DebugView;
+use afterimage::levels::{Filter, Foveation, Method, Settings};
 use bevy::core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass};
 use bevy::prelude::*;
 
@@ -16,7 +17,7 @@ use bevy::prelude::*;
 /// ```
 /// use bevy::prelude::*;
 /// use bevy_afterimage::Afterimage;
-/// use bevy_afterimage::afterimage::Settings;
+/// use bevy_afterimage::afterimage::levels::Settings;
 ///
 /// let mut camera = Afterimage { settings: Some(Settings::steady()), ..default() };
 /// let accumulate: &mut f32 = camera.path_mut("settings.0.method.0.accumulate")?;

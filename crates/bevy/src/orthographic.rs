@@ -4,7 +4,8 @@
 //! gets an exponential of their depth instead. One step of depth is then the same ratio everywhere, and a camera that
 //! moves along its view axis, or turns a little, is a factor.
 
-use afterimage::{DepthConvention, Gaze, ViewFrame, ViewGeometry};
+use afterimage::levels::ViewFrame;
+use afterimage::{DepthConvention, Gaze, ViewGeometry};
 use bevy::math::{Mat4, UVec2, Vec2};
 
 /// Exponents from the far plane to the near one, `SPAN` of the shader: of what history holds, 2^-32 to 2^32. The depth

@@ -1,7 +1,8 @@
 //! Quad views: foveation as headset runtimes draw it. Each region of the frame is a view of its own at a lower
 //! resolution, enlarged and laid over the coarser ones. Pixels do not move from frame to frame.
 
-use afterimage::{Foveation, ViewGeometry};
+use afterimage::ViewGeometry;
+use afterimage::levels::Foveation;
 
 /// Depth and motion of a frame of quad views. Default: [`Full`](Self::Full).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

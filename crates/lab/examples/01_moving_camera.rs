@@ -3,7 +3,8 @@
 //! `cargo run -p afterimage-lab --example 01_moving_camera`
 
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::{ContextDesc, DepthConvention, Gaze, Image, MotionConvention, Reset, Verdict, ViewFrame};
+use afterimage::levels::{ContextDesc, Reset, ViewFrame};
+use afterimage::{DepthConvention, Gaze, Image, MotionConvention, Verdict};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -3,8 +3,9 @@
 //! `cargo run -p afterimage-lab --example 02_gpu_moving_camera` (any adapter; software Vulkan: mesa-vulkan-drivers)
 
 use afterimage::gpu::{Afterimage, Frame, Target};
+use afterimage::levels::{ContextDesc, ViewFrame};
 use afterimage::wgpu::{TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, DepthConvention, Gaze, MotionConvention, MotionDirection, Verdict, ViewFrame};
+use afterimage::{DepthConvention, Gaze, MotionConvention, MotionDirection, Verdict};
 use afterimage_lab::device::Headless;
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 

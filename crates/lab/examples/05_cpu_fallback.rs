@@ -4,9 +4,9 @@
 
 use afterimage::cpu::{self, CpuAfterimage};
 use afterimage::gpu::{self, Afterimage};
-use afterimage::simulator::Pyramid;
+use afterimage::levels::{ContextDesc, Foveation, Pyramid, Settings, ViewFrame};
 use afterimage::wgpu::{Texture, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Foveation, FrameError, Gaze, Image, Settings, ViewFrame, ViewGeometry};
+use afterimage::{FrameError, Gaze, Image, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::metric::encode;
 use afterimage_lab::picture::{to_rgb8, write_png};

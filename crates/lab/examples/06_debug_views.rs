@@ -3,9 +3,9 @@
 //! `cargo run -p afterimage-lab --example 06_debug_views`; writes `out/06_debug_views.png`
 
 use afterimage::gpu::{Afterimage, Frame};
-use afterimage::simulator::Pyramid;
+use afterimage::levels::{ContextDesc, Foveation, Pyramid, ViewFrame};
 use afterimage::wgpu::{TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, DebugView, Foveation, Gaze, Image, ViewFrame};
+use afterimage::{DebugView, Gaze, Image};
 use afterimage_lab::device::Headless;
 use afterimage_lab::metric::encode;
 use afterimage_lab::picture::{to_rgb8, write_png};

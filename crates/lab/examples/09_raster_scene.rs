@@ -4,7 +4,8 @@
 //! .glb file, or builtin:NAME (default builtin:cubes). Needs an adapter; a software one is enough.
 
 use afterimage::kernel::color::srgb_encode;
-use afterimage::{Foveation, Image, Method, Settings, ViewGeometry};
+use afterimage::levels::{Foveation, Method, Settings};
+use afterimage::{Image, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::picture::{to_rgb8, write_png};

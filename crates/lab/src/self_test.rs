@@ -12,7 +12,8 @@ use crate::pipeline::{Pipeline, RunKind};
 use crate::source::{AnalyticSource, FrameSource};
 use afterimage::internal::{ComputeShader, filled};
 use afterimage::kernel::pack::{half_bits, half_value};
-use afterimage::{CreateError, Filter, Foveation, Image, MethodKind, Settings};
+use afterimage::levels::{Filter, Foveation, MethodKind, Settings};
+use afterimage::{CreateError, Image};
 use std::sync::Arc;
 use wgpu::{Buffer, BufferUsages, TextureFormat, TextureUsages};
 

@@ -1,8 +1,9 @@
 //! A device that is lost in mid-stream: an error that says so, from every part of the tool that computes on one, and no
 //! panic; a new device goes on. The drop-in itself is in `tests/gpu/pass/lifecycle.rs`. Hard case H77.
 
+use afterimage::FrameError;
+use afterimage::levels::{Foveation, Settings};
 use afterimage::wgpu;
-use afterimage::{Foveation, FrameError, Settings};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::pipeline::{Pipeline, RunKind};
 use afterimage_lab::source::{

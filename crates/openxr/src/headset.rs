@@ -8,13 +8,11 @@ use crate::session::{HiddenMesh, Session, VIEWS};
 use crate::targets::{Targets, layers};
 use crate::vulkan::Gpu;
 use afterimage::gpu::{Afterimage, Frame, Prime};
-use afterimage::{
-    ContextDesc, DepthConvention, Filter, Foveation, Gaze, Method, Reset, Settings, SettingsError, Smr, ViewFrame,
-    ViewGeometry,
-};
+use afterimage::levels::{ContextDesc, Filter, Foveation, Method, Reset, Settings, Smr, ViewFrame};
+use afterimage::{DepthConvention, Desc, Gaze, SettingsError, Shading, ViewGeometry};
 use openxr as xr;
 use std::time::{Duration, Instant};
-use wgpu_30::{CommandEncoder, Device, Limits, PollType, Queue, Texture, TextureFormat, TextureUsages};
+use wgpu_30::{Buffer, CommandEncoder, Device, Limits, PollType, Queue, Texture, TextureFormat, TextureUsages};
 use xr::sys;
 
 /// Time in which nothing was to be shown after which history is discarded.
@@ -30,8 +28,10 @@ pub type ActionsFn = Box<dyn FnOnce(&xr::Instance) -> Result<Vec<xr::ActionSet>,
 
 /// Description of a headset. Create it with `..HeadsetDesc::default()`.
 pub struct HeadsetDesc {
-    /// Method and foveation, whose filter must be [`Filter::Quads`]. Default: [`Settings::headset`].
-    pub settings: Settings,
+    /// Pixels that are shaded. Default: all within 10 degrees around the gaze, and 8 % of the others.
+    pub shading: Shading,
+    /// Whether the projection is jittered and the picture is antialiased, in place of other antialiasing. Default true.
+    pub antialias: bool,
     /// Distance of the near plane in metres, above 0. Default 0.05.
     pub near_m: f32,
     /// Size of a view in pixels. Default: what the runtime recommends.
@@ -48,7 +48,8 @@ pub struct HeadsetDesc {
 impl Default for HeadsetDesc {
     fn default() -> Self {
         Self {
-            settings: Settings::headset(),
+            shading: Shading::Gaze { fovea_deg: 10.0, share: 0.08125 },
+            antialias: true,
             near_m: 0.05,
             size_px: None,
             gaze_distance_m: 2.0,
@@ -132,8 +133,8 @@ pub struct Shown<'a> {
     pub output: &'a Texture,
     /// What was drawn.
     pub targets: &'a Targets,
-    /// The post-process, whose `quad_mask` and `quad_list` say what was shaded.
-    pub post: &'a Afterimage,
+    /// What was shaded of each eye, in the form of [`Plan::lists`](afterimage::Plan::lists).
+    pub lists: Vec<&'a Buffer>,
     /// Descriptions of both views.
     pub views: [ViewFrame; 2],
     /// Counter of submitted frames.
@@ -148,7 +149,8 @@ impl Headset {
     /// # Errors
     /// [`Error`] without a loader, a runtime or a headset, or if the settings are out of range.
     pub fn new(name: &str, desc: HeadsetDesc) -> Result<Self, Error> {
-        check_filter(&desc.settings)?;
+        // Said before a runtime is asked.
+        let settings = settings(desc.shading, desc.antialias)?;
         let entry = load()?;
         let available = entry.enumerate_extensions()?;
         if !available.khr_vulkan_enable2 {
@@ -179,7 +181,7 @@ impl Headset {
         let context = ContextDesc {
             view_count: 2,
             depth: DepthConvention::Reversed { near: desc.near_m, far: f32::INFINITY },
-            settings: desc.settings,
+            settings,
             ..ContextDesc::new(size)
         };
         let limits = Afterimage::required_limits(&context).or_better_values_from(&Limits::default());
@@ -255,10 +257,20 @@ impl Headset {
         self.gaze_distance_m = distance_m;
     }
 
-    /// Changes method and foveation from the next frame on.
+    /// Changes how many pixels are shaded, from the next frame on.
     ///
     /// # Errors
-    /// [`Error::Settings`] if a setting is out of range, or the filter is not [`Filter::Quads`]; then nothing changes.
+    /// [`Error::Settings`] if a share or an angle is out of range; then nothing changes.
+    pub fn set_shading(&mut self, shading: Shading) -> Result<(), Error> {
+        let foveation = settings(shading, true)?.foveation;
+        self.set_settings(Settings { foveation, ..self.post.desc().settings })
+    }
+
+    /// Changes method and foveation, whose filter must be [`Filter::Quads`], from the next frame on: for comparisons.
+    ///
+    /// # Errors
+    /// [`Error::Settings`] if a setting is out of range, or the filter is another one; then nothing changes.
+    #[doc(hidden)]
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), Error> {
         check_filter(&settings)?;
         Ok(self.post.set_settings(&self.gpu.device, settings)?)
@@ -487,10 +499,16 @@ impl<'a> HeadsetFrame<'a> {
         (&mut self.encoder, &self.headset.targets)
     }
 
-    /// The post-process, whose `quad_mask` and `quad_list` say, after [`choose`](Self::choose), what to shade: for
-    /// renderers that dispatch or draw over a list.
-    pub fn post(&self) -> &Afterimage {
-        &self.headset.post
+    /// What to shade, after [`choose`](Self::choose): a texture with a layer for each eye, in the form of
+    /// [`Plan::mask`](afterimage::Plan::mask).
+    pub fn mask(&self) -> Option<&Texture> {
+        self.headset.post.quad_mask()
+    }
+
+    /// The same of an eye (0 left, 1 right) as a list in the form of [`Plan::lists`](afterimage::Plan::lists): for
+    /// renderers that dispatch or draw over it.
+    pub fn list(&self, eye: usize) -> Option<&Buffer> {
+        self.headset.post.quad_list(eye)
     }
 
     /// The session of the frame, for the state of the application's actions. Objects that are made in it must not be
@@ -604,8 +622,9 @@ impl<'a> HeadsetFrame<'a> {
             Err(error) if is_lost(error) => {}
             Err(error) => return Err(error.into()),
         }
-        let (output, targets, post) = (&headset.output, &headset.targets, &headset.post);
-        Ok(Shown { output, targets, post, views: described, index, is_half })
+        let (output, targets) = (&headset.output, &headset.targets);
+        let lists = (0..2).filter_map(|eye| headset.post.quad_list(eye)).collect();
+        Ok(Shown { output, targets, lists, views: described, index, is_half })
     }
 }
 
@@ -617,6 +636,12 @@ fn described_frame<'a>(targets: &'a Targets, views: &'a [ViewFrame; 2], index: u
         reset,
         ..Frame::new(&targets.color, views, index)
     }
+}
+
+/// Settings of planned frames.
+fn settings(shading: Shading, antialias: bool) -> Result<Settings, SettingsError> {
+    let desc = Desc { shading, antialias, ..Desc::new([1, 1], TextureFormat::Rgba16Float) };
+    Ok(desc.context()?.settings)
 }
 
 /// Refuses what a headset's frames are not.
@@ -665,15 +690,30 @@ fn load() -> Result<xr::Entry, Error> {
 mod tests {
     use super::*;
 
-    /// Said before a runtime is asked, so without one.
     #[test]
     fn filters_without_quads_are_refused() {
         for filter in Filter::ALL {
             let foveation = Foveation { filter, ..Foveation::quads() };
-            let settings = Settings { foveation, ..Settings::default() };
-            let found = Headset::new("test", HeadsetDesc { settings, ..HeadsetDesc::default() }).err();
-            let is_refused = matches!(&found, Some(Error::Settings(error)) if error.setting == "filter");
+            let found = check_filter(&Settings { foveation, ..Settings::default() }).err();
+            let is_refused = matches!(&found, Some(error) if error.setting == "filter");
             assert_eq!(is_refused, filter != Filter::Quads, "{filter:?}: {found:?}");
         }
+    }
+
+    /// Said before a runtime is asked, so without one.
+    #[test]
+    fn shares_out_of_range_are_refused() {
+        let shading = Shading::Everywhere { share: 1.5 };
+        let found = Headset::new("test", HeadsetDesc { shading, ..HeadsetDesc::default() }).err();
+        assert!(matches!(&found, Some(Error::Settings(error)) if error.setting == "share"), "{found:?}");
+    }
+
+    #[test]
+    fn the_default_is_the_one_that_was_measured() {
+        let HeadsetDesc { shading, antialias, .. } = HeadsetDesc::default();
+        let (found, measured) = (settings(shading, antialias).unwrap(), Settings::headset());
+        assert!((found.foveation.budget - measured.foveation.budget).abs() < 1e-6, "{found:?}");
+        let foveation = Foveation { budget: measured.foveation.budget, ..found.foveation };
+        assert_eq!(Settings { foveation, ..found }, measured);
     }
 }

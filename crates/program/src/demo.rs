@@ -2,7 +2,8 @@
 
 use crate::failure::Failure;
 use crate::progress;
-use afterimage::{Foveation, Image, Method, MethodKind, Settings, ViewGeometry};
+use afterimage::levels::{Foveation, Method, MethodKind, Settings};
+use afterimage::{Image, ViewGeometry};
 use afterimage_eval::clip::run_report::{RunFacts, write_report};
 use afterimage_eval::clip::{Clip, ClipReport, REPORTS, foveation_words, title, write_png};
 use afterimage_eval::exposure::Exposure;

@@ -10,7 +10,8 @@
 
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::color::srgb_encode;
-use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, Settings, Smr, ViewFrame};
+use afterimage::levels::{ContextDesc, Foveation, Method, Settings, Smr, ViewFrame};
+use afterimage::{Gaze, Image};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::source::analytic::AnalyticSource;
 

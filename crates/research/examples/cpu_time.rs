@@ -5,7 +5,8 @@
 //! Makes the table "CPU executor and metrics" of `docs/performance.md`.
 
 use afterimage::kernel::color::srgb_decode;
-use afterimage::{Foveation, Image, MethodKind, Settings, ViewGeometry};
+use afterimage::levels::{Foveation, MethodKind, Settings};
+use afterimage::{Image, ViewGeometry};
 use afterimage_lab::clock::Stopwatch;
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::{RenderedFrame, SourceFrame};

@@ -5,7 +5,8 @@
 //!
 //! Makes figures of `docs/method.md`, with the clips that it names.
 
-use afterimage::{Filter, Foveation, Method, Settings, ViewGeometry};
+use afterimage::ViewGeometry;
+use afterimage::levels::{Filter, Foveation, Method, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::metric::{References, Scorer, encode};
 use afterimage_lab::pipeline::{Pipeline, RunKind};

@@ -7,9 +7,10 @@
 //!
 //! Makes figures of `docs/quads.md`; a minute.
 
+use afterimage::Gaze;
 use afterimage::gpu::{Afterimage, Frame};
+use afterimage::levels::{ContextDesc, Foveation, Method, Settings, Smr, ViewFrame};
 use afterimage::wgpu::{CommandEncoder, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Foveation, Gaze, Method, Settings, Smr, ViewFrame};
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::Headless;
 use afterimage_lab::source::FrameSource;

@@ -11,7 +11,8 @@
 //! Makes the table of `docs/quads.md`; half a minute a clip of 320x180, ten minutes for Sponza.
 
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, Reset, Settings, Smr, ViewFrame, ViewGeometry};
+use afterimage::levels::{ContextDesc, Foveation, Method, Reset, Settings, Smr, ViewFrame};
+use afterimage::{Gaze, Image, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{Flip, References, Scorer, Tracker, encode};

@@ -5,8 +5,9 @@
 //! Makes the table "Recording a frame" of `docs/performance.md`; ten seconds.
 
 use afterimage::gpu::{Afterimage, Frame};
+use afterimage::levels::{ContextDesc, Filter, Foveation, Settings, ViewFrame};
 use afterimage::wgpu::{self, Device, Texture, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Filter, Foveation, Gaze, Settings, ViewFrame, ViewGeometry};
+use afterimage::{Gaze, ViewGeometry};
 use afterimage_lab::clock::Stopwatch;
 
 const SIZE: [u32; 2] = [320, 180];

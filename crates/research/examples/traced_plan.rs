@@ -11,7 +11,8 @@
 //! Makes the table of "Samples in their places" in `docs/path-tracing.md`.
 
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, Reset, Settings, ViewFrame, ViewGeometry};
+use afterimage::levels::{ContextDesc, Foveation, Method, Reset, Settings, ViewFrame};
+use afterimage::{Gaze, Image, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::{Content, RenderedFrame, ShadedColor, ShadingRequest};
 use afterimage_lab::metric::{Flip, References, Scorer, Tracker, encode};

@@ -11,8 +11,9 @@
 //! Makes figures of `docs/equal-time.md`, "Headset"; minutes.
 
 use afterimage::gpu::{Afterimage, Frame};
+use afterimage::levels::{ContextDesc, Foveation, Method, MethodKind, Settings, Smr, ViewFrame};
 use afterimage::wgpu::{self, CommandEncoder, Texture, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Foveation, FrameError, Gaze, Method, MethodKind, Settings, Smr, ViewFrame};
+use afterimage::{FrameError, Gaze};
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::Headless;
 use afterimage_lab::source::FrameSource;

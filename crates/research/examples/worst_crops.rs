@@ -7,7 +7,8 @@
 //!
 //! Makes tables of `docs/method.md` and `docs/metrics.md`.
 
-use afterimage::{Filter, Foveation, FrameError, MethodKind, Settings, ViewGeometry};
+use afterimage::levels::{Filter, Foveation, MethodKind, Settings};
+use afterimage::{FrameError, ViewGeometry};
 use afterimage_lab::device::{Backend, Headless};
 use afterimage_lab::frame::RenderedFrame;
 use afterimage_lab::metric::{Crops, encode};

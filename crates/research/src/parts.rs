@@ -1,7 +1,7 @@
 //! Passes without one of their parts, to measure the part's cost and its benefit. For measurements only: without a
 //! part, images may contain errors that the part prevents.
 
-use afterimage::MethodKind;
+use afterimage::levels::MethodKind;
 use afterimage::shader::SHADERS;
 
 const HISTORIES: &[MethodKind] = &[MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau];
@@ -109,8 +109,9 @@ pub fn shader_without(part: &Part, method: MethodKind) -> String {
 mod tests {
     use super::{PARTS, Part, STORED_BIAS, shader_without};
     use crate::safeguards::with_invalid_colors;
+    use afterimage::levels::{Foveation, MethodKind, Settings};
     use afterimage::wgpu::naga;
-    use afterimage::{Foveation, Image, MethodKind, Settings, ViewGeometry};
+    use afterimage::{Image, ViewGeometry};
     use afterimage_lab::device::{Backend, Headless};
     use afterimage_lab::pipeline::{Pipeline, RunKind};
     use afterimage_lab::source::{AnalyticSource, FrameSource};

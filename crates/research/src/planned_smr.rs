@@ -1,7 +1,8 @@
 //! Frames whose pixels and numbers of paths smr chooses beside frames that are filled between as many samples: quality
 //! and time. Makes the last columns of `cargo research papers`.
 
-use afterimage::{Foveation, Image, Settings};
+use afterimage::Image;
+use afterimage::levels::{Foveation, Settings};
 use afterimage_lab::clock::Elapsed;
 use afterimage_lab::clock::Quartiles;
 use afterimage_lab::device::Backend;

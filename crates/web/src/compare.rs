@@ -3,8 +3,9 @@
 
 use crate::gpu::Gpu;
 use crate::{Demo, Result};
+use afterimage::Image;
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::{ContextDesc, Image, Method, Settings};
+use afterimage::levels::{ContextDesc, Method, Settings};
 use wasm_bindgen::prelude::*;
 use wgpu::Texture;
 

@@ -8,7 +8,7 @@ mod show;
 mod space;
 mod stage;
 
-use afterimage::{Filter, Foveation, MethodKind, Settings};
+use afterimage::levels::{Filter, Foveation, MethodKind, Settings};
 use gpu::Gpu;
 use show::{Marks, Show};
 use stage::Stage;

@@ -5,8 +5,8 @@ use crate::gpu::{Dispatch, Gpu};
 use crate::space::{self, Images, Space};
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::kernel::color::{srgb_decode, srgb_encode};
-use afterimage::simulator::{GpuSimulator, SimulatorFrame};
-use afterimage::{ContextDesc, Filter, Gaze, Method, Settings, ViewFrame, ViewGeometry};
+use afterimage::levels::{ContextDesc, Filter, GpuSimulator, Method, Settings, SimulatorFrame, ViewFrame};
+use afterimage::{Gaze, ViewGeometry};
 use wasm_bindgen::JsError;
 use wgpu::{BindingResource, CommandEncoder, ComputePipeline, Texture, TextureFormat};
 

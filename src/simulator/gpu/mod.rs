@@ -33,7 +33,7 @@ pub struct SimulatorFrame<'a> {
     /// bit for bit if `full` has the same format.
     pub output: &'a Texture,
     /// Output: level of detail of each pixel (log2 of the block edge in pixels), for
-    /// [`FrameInputs::lod`](crate::FrameInputs::lod). `R32Float`, usage `STORAGE_BINDING`. `None`: not written.
+    /// [`FrameInputs::lod`](crate::levels::FrameInputs::lod). `R32Float`, usage `STORAGE_BINDING`. `None`: not written.
     pub lod: Option<&'a Texture>,
     /// Descriptions of the views, one for each view of the context; only geometry and gaze are used.
     pub views: &'a [ViewFrame],
@@ -52,15 +52,14 @@ impl<'a> SimulatorFrame<'a> {
 /// delivered.
 ///
 /// The caller owns device, queue, encoder, submission, and every input and output texture, as with
-/// [`Afterimage`](crate::gpu::Afterimage). The simulator holds mip levels, 5.4 bytes a pixel for [`Filter::Mip`] and 5
-/// for [`Filter::Block`], or an intermediate texture, 16 bytes a pixel for [`Filter::Gauss`].
+/// [`Afterimage`](crate::levels::Afterimage). The simulator holds mip levels, 5.4 bytes a pixel for [`Filter::Mip`] and
+/// 5 for [`Filter::Block`], or an intermediate texture, 16 bytes a pixel for [`Filter::Gauss`].
 ///
 /// ```no_run
 /// # use afterimage::wgpu;
 /// # fn example(device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, full: &wgpu::Texture, foveated: &wgpu::Texture,
-/// #     views: &[afterimage::ViewFrame]) -> Result<(), Box<dyn std::error::Error>> {
-/// use afterimage::ContextDesc;
-/// use afterimage::simulator::{GpuSimulator, SimulatorFrame};
+/// #     views: &[afterimage::levels::ViewFrame]) -> Result<(), Box<dyn std::error::Error>> {
+/// use afterimage::levels::{ContextDesc, GpuSimulator, SimulatorFrame};
 ///
 /// let desc = ContextDesc::new([full.width(), full.height()]);
 /// let mut simulator = GpuSimulator::new(device, &desc, foveated.format())?;
@@ -87,8 +86,8 @@ enum Steps {
 
 impl GpuSimulator {
     /// A simulator of the foveation `desc.settings.foveation`, for frames of the size and number of views of `desc`,
-    /// and outputs of `output_format`, as for [`Afterimage::new`](crate::gpu::Afterimage::new). Creates shader modules;
-    /// pipelines are compiled at the first frame that needs them.
+    /// and outputs of `output_format`, as for [`Afterimage::new`](crate::levels::Afterimage::new). Creates shader
+    /// modules; pipelines are compiled at the first frame that needs them.
     ///
     /// # Errors
     /// [`CreateError`] if the description is out of range, the output format is not supported, or a limit of the device

@@ -18,7 +18,8 @@ pub use crate::images::{pixel, pixels};
 use crate::images::{Images, View, peak, planned, times};
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::lattice::offset_px;
-use afterimage::{ContextDesc, Exposure, Foveation, Gaze, Image, Method, Reset, Settings};
+use afterimage::levels::{ContextDesc, Foveation, Method, Reset, Settings};
+use afterimage::{Exposure, Gaze, Image};
 use afterimage_testing::Draws;
 use std::ops::{Deref, DerefMut};
 

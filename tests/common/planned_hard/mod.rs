@@ -6,7 +6,8 @@ pub mod still;
 
 use crate::depth_hard::{Make, Steps};
 use crate::images::View;
-use afterimage::{ContextDesc, Foveation, Gaze, Image, Method, Settings, Smr};
+use afterimage::levels::{ContextDesc, Foveation, Method, Settings, Smr};
+use afterimage::{Gaze, Image};
 
 /// The laws as tests of an executor. `$run_law` runs one, and returns what it measured.
 macro_rules! planned_laws {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::mask_hard::Mask;
-use afterimage::Foveation;
+use afterimage::levels::Foveation;
 
 const METHODS: [MethodKind; 5] =
     [MethodKind::None, MethodKind::Taa, MethodKind::Wrs, MethodKind::Smr, MethodKind::Taau];

@@ -5,7 +5,7 @@ use super::*;
 use crate::mask_hard::Mask;
 use afterimage::kernel::lattice::offset_px;
 use afterimage::kernel::noise::unpack_noise;
-use afterimage::{Foveation, Method, Smr};
+use afterimage::levels::{Foveation, Method, Smr};
 use afterimage_testing::{accept, p_of_z, reject};
 
 const PIXELS: f64 = (SIZE[0] * SIZE[1]) as f64;

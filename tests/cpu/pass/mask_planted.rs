@@ -2,7 +2,8 @@
 
 use crate::mask_hard::*;
 use crate::reactive::reactive_is_the_inverse_of_trust;
-use afterimage::{ContextDesc, Exposure, Image, Method, Reset, Settings};
+use afterimage::levels::{ContextDesc, Method, Reset, Settings};
+use afterimage::{Exposure, Image};
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::sync::Once;

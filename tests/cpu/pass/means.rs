@@ -3,7 +3,7 @@
 use super::*;
 use afterimage::kernel::antialias::MOST_SAMPLES;
 use afterimage::kernel::lattice::offset_px;
-use afterimage::{Foveation, Smr};
+use afterimage::levels::{Foveation, Smr};
 
 const SMALL: [u32; 2] = [32, 24];
 

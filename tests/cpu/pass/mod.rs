@@ -30,10 +30,10 @@ use crate::images::{Images, View, noise, pixel, pixels};
 use crate::settings::{ungated, wrs};
 use afterimage::cpu::{CpuAfterimage, Frame};
 use afterimage::kernel::debug_view::PixelTrace;
+use afterimage::levels::{Bias, ContextDesc, DepthTest, Method, MethodKind, Reset, Sampler, Settings, Wrs};
 use afterimage::{
-    Bias, ContextDesc, DepthConvention, DepthTest, Exposure, FrameError, FrameStats, Image, Method, MethodKind,
-    MotionConvention, MotionDirection, MotionUnit, Reset, Sampler, Settings, Verdict, ViewGeometry, Warning, Wrs,
-    YAxis,
+    DepthConvention, Exposure, FrameError, FrameStats, Image, MotionConvention, MotionDirection, MotionUnit, Verdict,
+    ViewGeometry, Warning, YAxis,
 };
 use afterimage_testing::Draws;
 use proptest::prelude::*;

@@ -2,8 +2,9 @@
 
 use super::*;
 use crate::any_frame::{self, any_frame};
+use afterimage::Gaze;
 use afterimage::kernel::quads::threshold;
-use afterimage::{Foveation, Gaze, Smr};
+use afterimage::levels::{Foveation, Smr};
 use afterimage_testing::holds;
 use std::collections::HashMap;
 

@@ -3,7 +3,7 @@
 use super::*;
 use crate::mask_hard::{Mask, pattern};
 use afterimage::kernel::lattice::offset_px;
-use afterimage::{Foveation, Method};
+use afterimage::levels::{Foveation, Method};
 
 const GAZE: [f32; 2] = [20.0, 20.0];
 

@@ -1,7 +1,8 @@
 //! Resets, sizes, views, trust.
 
 use super::rig::*;
-use afterimage::{Method, Smr, Verdict};
+use afterimage::Verdict;
+use afterimage::levels::{Method, Smr};
 
 /// Frames of a fading picture, half of it coarse, so that all output depends on earlier frames.
 fn frame(index: u64) -> View {

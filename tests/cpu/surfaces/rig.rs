@@ -6,7 +6,8 @@ pub use crate::low_pass::LowPass;
 pub use crate::surfaces_hard::{METHODS, SIZE, at_lod, settings, sharp};
 pub use afterimage::cpu::CpuAfterimage;
 pub use afterimage::kernel::surface::{Surface, unpack_surface};
-pub use afterimage::{ContextDesc, Exposure, Image, MethodKind, Reset, Settings, ViewGeometry};
+pub use afterimage::levels::{ContextDesc, MethodKind, Reset, Settings};
+pub use afterimage::{Exposure, Image, ViewGeometry};
 pub use afterimage_testing::Draws;
 
 pub fn context(method: MethodKind) -> CpuAfterimage {

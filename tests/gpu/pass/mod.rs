@@ -6,6 +6,7 @@ mod bare;
 mod engines;
 mod gaze;
 mod lens;
+mod levels;
 mod lifecycle;
 mod light;
 mod limits;
@@ -31,11 +32,13 @@ use crate::settings::{ungated, ungated_of, wrs};
 use afterimage::gpu::{Afterimage, DebugTarget, Frame, Prime, Region, Target, Textures};
 use afterimage::internal::{Sources, method_pass};
 use afterimage::kernel::pack;
+use afterimage::levels::{
+    Bias, ContextDesc, Filter, Foveation, Method, MethodKind, Reset, Sampler, Settings, Smr, ViewFrame, Wrs,
+};
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, Device, Limits, Queue, Texture, TextureFormat, TextureUsages};
 use afterimage::{
-    Bias, ContextDesc, CreateError, DebugView, DepthConvention, Exposure, Filter, Foveation, FrameError, Gaze, Image,
-    Method, MethodKind, MotionConvention, Reset, Sampler, Settings, Smr, ViewFrame, ViewGeometry, Wrs,
+    CreateError, DebugView, DepthConvention, Exposure, FrameError, Gaze, Image, MotionConvention, ViewGeometry,
 };
 use afterimage_testing::gpu::read_texture;
 use afterimage_testing::{Draws, agree, holds};

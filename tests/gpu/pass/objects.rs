@@ -110,6 +110,35 @@ fn a_share_that_changes_in_every_frame_makes_no_objects() {
     assert_eq!(changing.iter().map(|(_, made)| made).collect::<Vec<_>>(), [&0, &0, &0, &0, &24]);
 }
 
+/// Compute pipelines that the first two planned frames compiled.
+fn compiled_by_planned_frames(is_prewarmed: bool) -> usize {
+    use afterimage::{Camera, Desc};
+    let written = Written::new(Settings::default());
+    let [color, depth, _, output] = written.textures();
+    let device = &written.bare.device;
+    let mut post = afterimage::Afterimage::new(device, &Desc::new(SIZE, output.format())).unwrap();
+    let clip_from_view = glam::camera::rh::proj::directx::perspective_infinite_reverse(0.9, 1.3, 0.1);
+    let camera = Camera::new(clip_from_view.to_cols_array_2d(), glam::Mat4::IDENTITY.to_cols_array_2d());
+    let frame = afterimage::Frame::new(&depth, camera);
+    if is_prewarmed {
+        post.prewarm(&frame, &color, &output).unwrap();
+    }
+    let before = written.count("CreateComputePipeline");
+    for _ in 0..2 {
+        let mut encoder = device.create_command_encoder(&Default::default());
+        let plan = post.plan(&mut encoder, &frame).unwrap();
+        post.show(&mut encoder, plan, &color, &output).unwrap();
+        written.bare.queue.submit([encoder.finish()]);
+    }
+    written.count("CreateComputePipeline") - before
+}
+
+#[test]
+fn prewarmed_planned_frames_compile_nothing() {
+    assert!(compiled_by_planned_frames(false) > 0);
+    assert_eq!(compiled_by_planned_frames(true), 0);
+}
+
 /// Render pipelines of `prime` that exist before its first frame, and after it.
 fn pipelines_of_prime(is_prewarmed: bool) -> [usize; 2] {
     let mut written = Written::new(Settings { foveation: Foveation::quads(), ..Settings::default() });

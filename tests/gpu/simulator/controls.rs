@@ -3,8 +3,8 @@
 
 use super::rig::*;
 use afterimage::internal::Sources;
+use afterimage::levels::{Filter, Foveation};
 use afterimage::shader::SHADERS;
-use afterimage::{Filter, Foveation};
 use afterimage_testing::planted::all_caught;
 
 /// Every pass of the simulators.

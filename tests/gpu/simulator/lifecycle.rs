@@ -1,9 +1,9 @@
 //! Several frames in one submission, lost gazes, formats, errors.
 
 use super::rig::*;
-use afterimage::simulator::{GpuSimulator, SimulatorFrame};
+use afterimage::levels::{Filter, Foveation, GpuSimulator, SimulatorFrame};
 use afterimage::wgpu::{self, TextureFormat, TextureUsages};
-use afterimage::{CreateError, Filter, Foveation, FrameError, Gaze, ViewGeometry};
+use afterimage::{CreateError, FrameError, Gaze, ViewGeometry};
 use afterimage_testing::agree;
 
 const SIZE: [u32; 2] = [97, 61];

@@ -2,10 +2,9 @@
 
 pub use crate::pass::rig::make_texture as texture;
 use afterimage::internal::Sources;
-use afterimage::simulator::Pyramid;
-use afterimage::simulator::{GpuSimulator, SimulatorFrame};
+use afterimage::levels::{ContextDesc, Filter, Foveation, GpuSimulator, Pyramid, Settings, SimulatorFrame, ViewFrame};
 use afterimage::wgpu::{Device, Queue, Texture, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, Filter, Foveation, Gaze, Image, Settings, ViewFrame, ViewGeometry};
+use afterimage::{Gaze, Image, ViewGeometry};
 use afterimage_testing::{Draws, agree};
 
 /// Full-rate frames and gazes, one a view.

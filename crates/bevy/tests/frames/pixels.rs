@@ -6,7 +6,8 @@ use crate::{
     SIZE, aliased, change, clip_psnr_db, clips, compared, courtyard, courtyards, kind, linear, psnr_db, read, wander,
 };
 use afterimage::gpu::{Frame, Region, Textures};
-use afterimage::{ViewFrame, wgpu};
+use afterimage::levels::ViewFrame;
+use afterimage::wgpu;
 use bevy::camera::{CameraProjection, RenderTarget, SubCameraView, Viewport};
 use bevy::math::Vec3A;
 use bevy::prelude::*;

@@ -3,7 +3,8 @@
 
 use crate::frame::SourceFrame;
 use afterimage::kernel::{depth, reproject};
-use afterimage::{DepthConvention, DepthTest, Image, ViewGeometry};
+use afterimage::levels::DepthTest;
+use afterimage::{DepthConvention, Image, ViewGeometry};
 
 /// Level of detail below which a pixel counts as sampled at full rate.
 const SHARP_LOD: f32 = 0.25;

@@ -8,7 +8,8 @@ use crate::frame::{DeviceHandle, RenderedFrame, Shaded, ShadedColor, ShadingRequ
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
 use afterimage::internal::PixelNotes;
 use afterimage::kernel::debug_view::view_color;
-use afterimage::{ContextDesc, CreateError, FrameError, Image};
+use afterimage::levels::ContextDesc;
+use afterimage::{CreateError, FrameError, Image};
 use std::slice::from_ref;
 
 /// Methods on the CPU.

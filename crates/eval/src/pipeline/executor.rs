@@ -3,7 +3,8 @@
 use super::candidate::Candidate;
 use super::run::{MethodOutput, RunKind};
 use crate::frame::{DeviceHandle, RenderedFrame, Shaded, ShadingRequest};
-use afterimage::{ContextDesc, CreateError, DebugView, FrameError, Reset};
+use afterimage::levels::{ContextDesc, Reset};
+use afterimage::{CreateError, DebugView, FrameError};
 
 /// Methods on the CPU or on a device, in the order in which they were added.
 pub trait Executor: Send {

@@ -3,8 +3,8 @@
 use super::candidate::{Candidate, InMemory, needs_lod};
 use crate::frame::{Content, DeviceContent, RenderedFrame};
 use crate::quad_views::Geometry;
-use afterimage::simulator::Pyramid;
-use afterimage::{Filter, Foveation, Gaze, Image, ViewFrame, ViewGeometry};
+use afterimage::levels::{Filter, Foveation, Pyramid, ViewFrame};
+use afterimage::{Gaze, Image, ViewGeometry};
 use std::borrow::Cow;
 
 /// Foveation of a pipeline.

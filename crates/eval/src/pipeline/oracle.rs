@@ -2,8 +2,8 @@
 
 use super::run::MethodOutput;
 use crate::clock::Stopwatch;
-use afterimage::simulator::Pyramid;
-use afterimage::{Foveation, FrameError, FrameStats, FrameValue, Image};
+use afterimage::levels::{Foveation, Pyramid};
+use afterimage::{FrameError, FrameStats, FrameValue, Image};
 
 /// Every pixel at its finest level of detail so far.
 #[derive(Default)]

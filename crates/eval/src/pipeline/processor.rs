@@ -2,7 +2,8 @@
 
 use super::cpu::CpuExecutor;
 use super::executor::Executor;
-use afterimage::{ContextDesc, CreateError};
+use afterimage::CreateError;
+use afterimage::levels::ContextDesc;
 use serde::Serialize;
 use std::fmt::Debug;
 

@@ -2,7 +2,8 @@
 
 use crate::clock::Elapsed;
 use afterimage::internal::Note;
-use afterimage::{Filter, FrameError, FrameStats, FrameValue, Image, Settings, SettingsError};
+use afterimage::levels::{Filter, Settings};
+use afterimage::{FrameError, FrameStats, FrameValue, Image, SettingsError};
 use std::sync::Arc;
 
 /// Kind of a run: how it processes the foveated frames.

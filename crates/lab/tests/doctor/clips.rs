@@ -2,10 +2,8 @@
 
 use afterimage::cpu;
 use afterimage::doctor::Finding;
-use afterimage::simulator::Pyramid;
-use afterimage::{
-    ContextDesc, DepthConvention, Filter, Foveation, Gaze, Image, MotionConvention, Reset, ViewFrame, ViewGeometry,
-};
+use afterimage::levels::{ContextDesc, Filter, Foveation, Pyramid, Reset, ViewFrame};
+use afterimage::{DepthConvention, Gaze, Image, MotionConvention, ViewGeometry};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::source::{self, ReadLimits, SceneOptions};
 

@@ -5,7 +5,8 @@ use afterimage::MotionUnit::Uv;
 use afterimage::doctor::Fault::*;
 use afterimage::doctor::{Check, Fault};
 use afterimage::kernel::color::srgb_encode;
-use afterimage::{DepthConvention as Convention, Filter, Foveation, Gaze, MotionConvention};
+use afterimage::levels::{Filter, Foveation};
+use afterimage::{DepthConvention as Convention, Gaze, MotionConvention};
 
 /// A planted error.
 pub struct Planted {

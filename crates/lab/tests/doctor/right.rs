@@ -2,7 +2,8 @@
 
 use super::clips::{Clip, Delivered, Delivery, foveations};
 use super::planted::{contain_jitter, jitter};
-use afterimage::{Filter, Foveation, Gaze, Image};
+use afterimage::levels::{Filter, Foveation};
+use afterimage::{Gaze, Image};
 use afterimage_testing::Draws;
 
 /// Fails if a finding accuses; prints what is found.

@@ -2,9 +2,10 @@
 
 use super::clips::{Clip, Delivered, Delivery, eye, foveations};
 use afterimage::internal::Sources;
+use afterimage::levels::Reset;
 use afterimage::shader::SHADERS;
 use afterimage::wgpu::{self, BufferUsages, TextureFormat, TextureUsages};
-use afterimage::{Exposure, Image, Reset, cpu, gpu};
+use afterimage::{Exposure, Image, cpu, gpu};
 use afterimage_lab::device::Headless;
 use afterimage_testing::Draws;
 

@@ -3,10 +3,9 @@
 
 use super::rig::{Rig, View};
 use super::sequences::{SIZE, foveated, noisy, trust};
+use afterimage::levels::{ContextDesc, Filter, Foveation, Method, MethodKind, Reset, Sampler, Settings, Wrs};
 use afterimage::shader::SHADERS;
-use afterimage::{
-    ContextDesc, Exposure, Filter, Foveation, Gaze, Image, Method, MethodKind, Reset, Sampler, Settings, Wrs,
-};
+use afterimage::{Exposure, Gaze, Image};
 use afterimage_lab::source::AnalyticSource;
 use afterimage_testing::planted;
 

@@ -5,11 +5,9 @@ use super::rig::{Rig, View, make_texture, same_counts};
 use super::sequences::{SIZE, reset, surfaces, trust, view};
 use afterimage::gpu::{Frame, Recorded};
 use afterimage::kernel::debug_view::view_color;
+use afterimage::levels::{ContextDesc, Method, Reset, Sampler, Settings, ViewFrame, Wrs};
 use afterimage::wgpu::{TextureFormat, TextureUsages};
-use afterimage::{
-    ContextDesc, DebugView, Exposure, FrameStats, Gaze, Method, Reset, Sampler, Settings, Verdict, ViewFrame, Warning,
-    Wrs,
-};
+use afterimage::{DebugView, Exposure, FrameStats, Gaze, Verdict, Warning};
 use afterimage_lab::source::AnalyticSource;
 use afterimage_testing::agree;
 

@@ -2,11 +2,11 @@
 //! throughout.
 
 use super::rig::{Rig, View, noise_view};
-use afterimage::simulator::Pyramid;
-use afterimage::{
-    Bias, ContextDesc, Exposure, Filter, Foveation, Gate, GateMetric, Gaze, Image, Method, MethodKind, Reset, Sampler,
-    Settings, Smr, ViewFrame, Wrs,
+use afterimage::levels::{
+    Bias, ContextDesc, Filter, Foveation, Gate, GateMetric, Method, MethodKind, Pyramid, Reset, Sampler, Settings, Smr,
+    ViewFrame, Wrs,
 };
+use afterimage::{Exposure, Gaze, Image};
 use afterimage_lab::source::{AnalyticSource, FrameSource};
 use afterimage_testing::Draws;
 

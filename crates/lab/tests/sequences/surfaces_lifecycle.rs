@@ -2,8 +2,8 @@
 
 use super::sequences::{SIZE, settings};
 use afterimage::gpu::Afterimage;
+use afterimage::levels::{ContextDesc, Filter, Foveation, MethodKind, Settings};
 use afterimage::wgpu::{self, TextureFormat};
-use afterimage::{ContextDesc, Filter, Foveation, MethodKind, Settings};
 
 #[test]
 fn memory_bytes_is_what_is_made() {

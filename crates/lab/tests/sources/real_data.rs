@@ -2,7 +2,8 @@
 //! message if `../shared/data` is absent.
 
 use crate::shared_data::shared_data;
-use afterimage::{Foveation, MethodKind, Settings, ViewGeometry};
+use afterimage::ViewGeometry;
+use afterimage::levels::{Foveation, MethodKind, Settings};
 use afterimage_lab::device::Backend;
 use afterimage_lab::error::InputError;
 use afterimage_lab::frame::RenderedFrame;

@@ -7,7 +7,7 @@ mod plant;
 mod room;
 
 use afterimage_eval::scanpath::{Scanpath, read_csv};
-use afterimage_openxr::afterimage::{Method, MethodKind, Smr};
+use afterimage_openxr::afterimage::levels::{Method, MethodKind, Settings, Smr};
 use afterimage_openxr::{Error, Headset, HeadsetDesc, HeadsetFrame, openxr as xr};
 use clap::Parser;
 use glam::{Mat4, Quat, Vec3};
@@ -91,9 +91,8 @@ fn main() -> ExitCode {
 fn show(options: &Options, keys: &Receiver<String>, shown_frames: &mut u64) -> Result<(), Failure> {
     let page = image::load_from_memory(include_bytes!("../../../../fixtures/text_page.png"))?.into_luma8();
     let (created, controls) = channel();
-    let mut settings = HeadsetDesc::default().settings;
-    settings.method = method(&options.method)?;
-    let mut desc = HeadsetDesc { settings, size_px: options.side.map(|side| [side; 2]), ..HeadsetDesc::default() };
+    let mut settings = Settings { method: method(&options.method)?, ..Settings::headset() };
+    let mut desc = HeadsetDesc { size_px: options.side.map(|side| [side; 2]), ..HeadsetDesc::default() };
     if let Some(path) = &options.gaze {
         let path = read_csv(path)?;
         desc.gaze = Some(Box::new(move |seconds| direction(&path, seconds)));
@@ -104,6 +103,8 @@ fn show(options: &Options, keys: &Receiver<String>, shown_frames: &mut u64) -> R
         Ok(vec![set])
     }));
     let mut headset = Headset::new("headset", desc)?;
+    // Other methods than smr are there for comparison.
+    headset.set_settings(settings)?;
     let controls = controls.recv()?;
     println!("runtime: {}", headset.instance().properties()?.runtime_name);
     println!("eye tracker: {}", if headset.has_eye_tracker() { "yes" } else { "no" });

@@ -2,9 +2,8 @@
 
 use crate::room::{Hands, Room, encoded};
 use afterimage_openxr::afterimage::gpu::{Afterimage, Frame};
-use afterimage_openxr::afterimage::{
-    ContextDesc, CreateError, DepthConvention, Foveation, Gaze, MethodKind, Reset, Settings, ViewFrame,
-};
+use afterimage_openxr::afterimage::levels::{ContextDesc, Foveation, MethodKind, Reset, Settings, ViewFrame};
+use afterimage_openxr::afterimage::{CreateError, DepthConvention, Gaze};
 use afterimage_openxr::wgpu::{self, TextureFormat, TextureUsages};
 use afterimage_openxr::{Eye, Shown, Targets};
 
@@ -133,8 +132,7 @@ impl Measure {
 
     /// Number of quads that were shaded of both eyes.
     fn quads(&self, shown: &Shown<'_>) -> u32 {
-        let of_eye = |eye| {
-            let list = shown.post.quad_list(eye).expect("the filter is Quads");
+        let of_eye = |list: &wgpu::Buffer| {
             let mut encoder = self.device.create_command_encoder(&Default::default());
             let buffer = self.buffer(4);
             // Their number is at byte 28.
@@ -143,7 +141,7 @@ impl Measure {
             let bytes = self.bytes(&buffer);
             u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])
         };
-        of_eye(0) + of_eye(1)
+        shown.lists.iter().map(|list| of_eye(list)).sum()
     }
 
     /// A buffer to read back.

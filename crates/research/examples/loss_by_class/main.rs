@@ -18,7 +18,8 @@ mod edges;
 mod rows;
 
 use afterimage::kernel::depth::disparity;
-use afterimage::{DepthConvention, Filter, Foveation, Gaze, Image, Method, Settings, Smr, ViewFrame, ViewGeometry};
+use afterimage::levels::{Filter, Foveation, Method, Settings, Smr, ViewFrame};
+use afterimage::{DepthConvention, Gaze, Image, ViewGeometry};
 use afterimage_lab::device::Headless;
 use afterimage_lab::metric::{References, Tracker, encode};
 use afterimage_lab::picture::to_rgb8;

@@ -3,9 +3,10 @@
 use crate::Failure;
 use crate::classes::{Decided, NAMES, Seen, means, near};
 use crate::edges::{Edges, Pictures};
+use afterimage::Image;
 use afterimage::cpu::{CpuAfterimage, Frame, PixelTrace};
 use afterimage::internal::PixelNotes;
-use afterimage::{ContextDesc, Filter, Foveation, Image, Method, Reset, Settings, ViewFrame};
+use afterimage::levels::{ContextDesc, Filter, Foveation, Method, Reset, Settings, ViewFrame};
 use afterimage_eval::clip::pixel::ExplainedPixel;
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{Reference, Scorer, Tracked, encode};

@@ -2,8 +2,9 @@
 
 use afterimage::gpu::{Afterimage, Frame, Target};
 use afterimage::kernel::quads::place_in_quad;
+use afterimage::levels::{ContextDesc, Foveation, Settings, ViewFrame};
 use afterimage::wgpu::{CommandEncoder, Texture, TextureFormat, TextureUsages};
-use afterimage::{ContextDesc, DepthConvention, Foveation, FrameError, Gaze, Image, Settings, ViewFrame};
+use afterimage::{DepthConvention, FrameError, Gaze, Image};
 use afterimage_eval::times::Times;
 use afterimage_lab::clock::Elapsed;
 use afterimage_lab::device::{Backend, Headless, SpanClock};

@@ -3,11 +3,10 @@
 use super::failure::Result;
 use afterimage::gpu::{Afterimage, Frame};
 use afterimage::kernel::quads::RUN_QUADS;
+use afterimage::levels::{ContextDesc, Foveation, Method, MethodKind, Sampler, Settings, Smr, ViewFrame, Wrs};
 use afterimage::shader::{Composer, Module, SHADERS};
 use afterimage::wgpu::{Device, DeviceDescriptor, Extent3d, TextureDescriptor, TextureDimension, TextureFormat};
-use afterimage::{
-    ContextDesc, Foveation, Gaze, Method, MethodKind, Sampler, Settings, Smr, ViewFrame, ViewGeometry, Wrs,
-};
+use afterimage::{Gaze, ViewGeometry};
 
 /// Size of the frames of the roofline.
 pub const SIZE_PX: [u32; 2] = [3840, 2160];

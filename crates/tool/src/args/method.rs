@@ -1,7 +1,9 @@
 //! Methods and their settings.
 
 use super::{Named, by_name};
-use afterimage::{Bias, DepthTest, Gate, GateMetric, GateScale, Method, MethodKind, Sampler, Settings, Smr, Wrs};
+use afterimage::levels::{
+    Bias, DepthTest, Gate, GateMetric, GateScale, Method, MethodKind, Sampler, Settings, Smr, Wrs,
+};
 use clap::{Args, ValueEnum};
 
 /// Values of `--method`: the library's methods, and the upper bound of any reuse.

@@ -5,10 +5,11 @@
 mod sound_scene;
 
 use afterimage::cpu::{CpuAfterimage, Frame};
-use afterimage::{
-    Bias, ContextDesc, DepthConvention, DepthTest, Exposure, Filter, Foveation, Gate, GateMetric, GateScale, Gaze,
-    Image, Method, Reset, Sampler, Settings, Smr, ViewFrame, ViewGeometry, Wrs,
+use afterimage::levels::{
+    Bias, ContextDesc, DepthTest, Filter, Foveation, Gate, GateMetric, GateScale, Method, Reset, Sampler, Settings,
+    Smr, ViewFrame, Wrs,
 };
+use afterimage::{DepthConvention, Exposure, Gaze, Image, ViewGeometry};
 use afterimage_cli::sweep::Plan;
 use afterimage_lab::error::InputError;
 use afterimage_lab::scanpath::{FrameGaze, GazeLogOptions, GazeMap, parse_csv, parse_gaze_log, write_csv};

@@ -2,7 +2,8 @@
 
 use super::executor::DeviceExecutor;
 use crate::device::Backend;
-use afterimage::{ContextDesc, CreateError};
+use afterimage::CreateError;
+use afterimage::levels::ContextDesc;
 use afterimage_eval::pipeline::{Cpu, Executor, Processor, ProcessorInfo};
 
 impl Processor for Backend {

@@ -7,7 +7,8 @@ use crate::frame::{Content, DeviceHandle, RenderedFrame, Shaded, ShadedColor, Sh
 use afterimage::Image;
 use afterimage::gpu::Frame;
 use afterimage::kernel::quads::place_in_quad;
-use afterimage::{ContextDesc, CreateError, DebugView, FrameError};
+use afterimage::levels::ContextDesc;
+use afterimage::{CreateError, DebugView, FrameError};
 use afterimage_eval::pipeline::{
     Candidate, Chosen, Executor, MethodOutput, RunInputs, RunKind, Shade, chooses, unshaded,
 };

@@ -1,7 +1,8 @@
 //! Pixels that methods choose, path-traced after their choice, with numbers of paths of their own.
 
 use crate::given::backends;
-use afterimage::{Foveation, Image, MethodKind, Settings, ViewGeometry};
+use afterimage::levels::{Foveation, MethodKind, Settings};
+use afterimage::{Image, ViewGeometry};
 use afterimage_lab::device::Backend;
 use afterimage_lab::frame::{Content, RenderedFrame, Shaded, ShadedColor, ShadingRequest};
 use afterimage_lab::pipeline::{Pipeline, RunKind};

@@ -4,8 +4,8 @@ mod crop;
 mod flip;
 mod weighted;
 
-use afterimage::simulator::Pyramid;
-use afterimage::{Foveation, Image, ViewGeometry};
+use afterimage::levels::{Foveation, Pyramid};
+use afterimage::{Image, ViewGeometry};
 use afterimage_lab::frame::SourceFrame;
 use afterimage_lab::metric::{self, Band, Flip, NO_PAST, References, Scorer, Scores, Tracker};
 use afterimage_testing::{Draws, holds};

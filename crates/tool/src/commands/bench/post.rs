@@ -4,13 +4,13 @@ use super::BenchArgs;
 use crate::failure::Failure;
 use crate::output::write_json;
 use afterimage::kernel::rng;
+use afterimage::levels::{
+    ContextDesc, Filter, Foveation, GpuSimulator, MethodKind, Reset, Settings, SimulatorFrame, ViewFrame,
+};
 use afterimage::module;
 use afterimage::shader::{Composer, Module};
-use afterimage::simulator::{GpuSimulator, SimulatorFrame};
 use afterimage::wgpu::{Texture, TextureUsages};
-use afterimage::{
-    ContextDesc, CreateError, Filter, Foveation, Gaze, Image, MethodKind, Reset, Settings, ViewFrame, ViewGeometry,
-};
+use afterimage::{CreateError, Gaze, Image, ViewGeometry};
 use afterimage_lab::clock::{Quartiles, Stopwatch};
 use afterimage_lab::device::{Headless, NO_ADAPTER, PassClock};
 use afterimage_lab::frame::{RenderedFrame, SourceFrame};

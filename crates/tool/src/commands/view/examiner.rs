@@ -5,8 +5,8 @@ use super::device;
 use crate::failure::Failure;
 use afterimage::doctor::Finding;
 use afterimage::gpu::{Doctor, Frame};
+use afterimage::levels::{ContextDesc, Reset};
 use afterimage::wgpu::{self, Buffer, BufferUsages};
-use afterimage::{ContextDesc, Reset};
 use afterimage_lab::device::{Headless, mapped};
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -82,7 +82,8 @@ impl Examiner {
 mod tests {
     use super::*;
     use afterimage::doctor::Fault;
-    use afterimage::{Filter, Gaze, Image, ViewFrame, ViewGeometry};
+    use afterimage::levels::{Filter, ViewFrame};
+    use afterimage::{Gaze, Image, ViewGeometry};
     use wgpu::{TextureFormat, TextureUsages};
 
     const SIZE: [u32; 2] = [160, 96];

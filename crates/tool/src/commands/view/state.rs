@@ -1,7 +1,8 @@
 //! User-controlled state of the viewer, and how actions change it. Needs no window and no device.
 
 use crate::args::{FilterName, Named};
-use afterimage::{DebugView, Filter, MethodKind};
+use afterimage::DebugView;
+use afterimage::levels::{Filter, MethodKind};
 
 /// What a side of the picture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
