@@ -24,10 +24,11 @@ const RELIT_PER_GAIN: f32 = 10.0;
 const MOST_DIFFERENCE: f32 = 200.0;
 const CONTRADICTED: vec2f = vec2f(3.0, 2.0);
 const LONGEST_RUN: f32 = 2.0;
-const RUN_ERRORS: f32 = 0.55;
+const MOST_REGULAR_LEVEL: u32 = 2u;
+const RUN_ERRORS: f32 = 0.7;
 const RUN_DEVIATION: f32 = 2.5;
 const RUN_KEPT: f32 = 0.5;
-const RUN_SAMPLES: f32 = 2.0;
+const RUN_SAMPLES: f32 = 3.0;
 const CLIP_SIGMAS: f32 = 2.0;
 const CLIP: f32 = 0.5;
 const CLIP_COST: f32 = 10.0;
@@ -184,6 +185,10 @@ fn expected_mean_error(past: Mean, contrast: f32, moved: bool) -> f32 {
     let own = past.deviation * past.deviation;
     let variance = (own * (past.samples - 1.0) + prior * prior) / past.samples;
     return (MOVED_ERROR + sqrt(select(max(variance, own), variance, moved))) + prior * clamp(past.lod, 0.0, 1.0);
+}
+
+fn with_regular_run(past: Mean, level: u32) -> Mean {
+    return Mean(past.lod, past.samples, past.deviation, select(past.run, 0.0, level > MOST_REGULAR_LEVEL));
 }
 
 fn next_run(past: Mean, is_brighter: bool, difference: f32) -> f32 {

@@ -93,7 +93,8 @@ fn antialiased(
     if is_centred {
         change = centred_change(near);
     }
-    return average(inputs, past, place_px, at_edge, kept, difference, change, is_centred);
+    let regular = with_regular_run(past, level);
+    return average(inputs, regular, place_px, at_edge, kept, difference, change, is_centred);
 }
 
 // Pixels outside the visible area: black, without stored history.

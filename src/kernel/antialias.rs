@@ -58,14 +58,16 @@ const CONTRADICTED: [f32; 2] = [3.0, 2.0];
 /// Longest run of samples on one side of a mean that is stored. The jitter covers the pixel in thirds, so that three
 /// samples on one side of an edge that stays are rare.
 const LONGEST_RUN: f32 = 2.0;
+/// Largest level of detail of a region with runs: an even pattern visits its pixels every 8 frames.
+const MOST_REGULAR_LEVEL: u32 = 2;
 /// Least difference of a sample in a run from the mean, in deviations of the mean.
-const RUN_ERRORS: f32 = 0.55;
+const RUN_ERRORS: f32 = 0.7;
 /// Least deviation of a mean with a run, in units of [`root_difference`].
 const RUN_DEVIATION: f32 = 2.5;
 /// Share of its samples that a mean keeps when a run goes on beyond the longest.
 const RUN_KEPT: f32 = 0.5;
 /// Least number of samples that it keeps.
-const RUN_SAMPLES: f32 = 2.0;
+const RUN_SAMPLES: f32 = 3.0;
 /// Half width of the box of nine samples to which history is clipped at full rate, in standard deviations.
 const BOX_SIGMAS: f32 = 2.0;
 /// Share of the clip that is applied, so that a thin feature is not lost at once if a frame misses it.
@@ -318,6 +320,13 @@ pub fn expected_mean_error(past: Mean, contrast: f32, moved: bool) -> f32 {
     let variance = (own * others + prior * prior) / past.samples;
     let variance = if moved { variance } else { variance.max(own) };
     (MOVED_ERROR + variance.sqrt()) + prior * past.lod.clamp(0.0, 1.0)
+}
+
+/// A mean whose run counts only where an even pattern visits the pixel. Elsewhere samples are added when history lacks
+/// something, at places in the pixel that may be on one side by chance. `level`: log2 of the pattern's block edge.
+#[inline]
+pub fn with_regular_run(past: Mean, level: u32) -> Mean {
+    Mean { run: if level > MOST_REGULAR_LEVEL { 0.0 } else { past.run }, ..past }
 }
 
 /// Run of samples on one side of a mean, with one more; one near the mean ends it. `difference`: between sample and

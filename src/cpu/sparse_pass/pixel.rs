@@ -5,7 +5,7 @@ use super::quads::Quads;
 use super::sparse_history::{Found, Source, has_moved};
 use super::view::{NO_NOISE, View};
 use crate::cpu::pixel::{Pixel, ProcessPixel};
-use crate::kernel::antialias::{Mean, average_beside, expected_mean_error, stored_mean};
+use crate::kernel::antialias::{Mean, average_beside, expected_mean_error, stored_mean, with_regular_run};
 use crate::kernel::approx;
 use crate::kernel::debug_view::PixelTrace;
 use crate::kernel::noise::pack_noise;
@@ -120,7 +120,8 @@ impl LitView<'_> {
                     let error = expected_mean_error(past_mean, contrast, moved);
                     let beside = candidate.beside.filter(|_| surface.is_edge && inputs.nearest.lod <= 0.0);
                     let averaged = if candidate.is_own {
-                        view.averaged(near, surface.is_edge, inputs, past_mean, error, notes)
+                        let past = with_regular_run(past_mean, level);
+                        view.averaged(near, surface.is_edge, inputs, past, error, notes)
                     } else if let Some(beside) = beside {
                         notes.note(NoteStage::Decision, "sample beside the pixel", beside, "linear light");
                         let inputs = Reconstruction { candidate: beside, ..inputs };

@@ -47,9 +47,10 @@ fn a_wrong_mean_is_caught() {
         ("columns = 3u;", "columns = 2u;"),
         ("stored.lod = mean_lod(lod);", ""),
         (
-            "return average(inputs, past, place_px, at_edge, kept,",
-            "return average(inputs, past, -place_px, at_edge, kept,",
+            "return average(inputs, regular, place_px, at_edge, kept,",
+            "return average(inputs, regular, -place_px, at_edge, kept,",
         ),
+        ("let regular = with_regular_run(past, level);", "let regular = past;"),
         ("kept, difference, change, is_centred);", "kept, difference, change, false);"),
         ("shown = candidate.color + centred_change(near);", ""),
         ("(vec2f(offset) - 1.0) + place_px", "(vec2f(offset) - 1.0) - place_px"),

@@ -32,6 +32,11 @@ pub const PROBES: &[Probe] = &[
         push_samples(d, row);
         row.extend([range(d, 0.0, 100.0), d.bits() % 2]);
     })),
+    probe!(antialias::with_regular_run, |rows| rows.random(|d, row| {
+        row.push(0);
+        push_samples(d, row);
+        row.push(d.bits() % 5);
+    })),
     probe!(antialias::next_run, |rows| rows.random(|d, row| {
         row.push(0);
         push_samples(d, row);

@@ -48,7 +48,7 @@ const PLANTED: &[(&str, &str, &str)] = &[
     ("taau::sample_weights", "lobe(px2) * interpolation", "lobe(px2 * narrowed) * interpolation"),
     ("taau::accumulate", "vec2f(1.5, 5.0)", "vec2f(1.52, 5.0)"),
     ("stored_sample::pack_stored", "min((code + 8u) >> 4u, 0xffeu)", "min(code >> 4u, 0xffeu)"),
-    ("antialias::next_run", "past.run * side > 0.0", "past.run * side >= 0.0"),
+    ("antialias::next_run", "past.run + side", "past.run - side"),
     ("antialias::count_in_run", "past.run == next", "past.run != next"),
     ("stored_sample::interpolate", "a.square.y * a.weight - a.place.x", "a.square.y * a.weight - a.place.y"),
     (
