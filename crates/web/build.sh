@@ -42,11 +42,11 @@ remapped="--remap-path-prefix=$home/registry/src= --remap-path-prefix=$target= -
 bindgen=(env -u RUSTC -u LD_LIBRARY_PATH -u RUSTC_BOOTSTRAP CARGO_PROFILE_RELEASE_OPT_LEVEL=1 CARGO_PROFILE_RELEASE_LTO=off
     CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 cargo run --locked --release --package afterimage-web-bindgen --)
 
-# The page has no depth buffer to close, asks no doctor, and opens new contexts instead of resizing them.
+# The page closes no depth buffer, asks no doctor, offers no taau, and opens new contexts instead of resizing them.
 shopt -s extglob
 pass=../../shaders/pass
 lib=../../shaders/lib
-unused='@(quad_prime_pass|doctor*|resize_*|resize).wgsl'
+unused='@(quad_prime_pass|doctor*|resize*|taau*).wgsl'
 shaders=(shaders/*.wgsl ../../shaders/foveation/*.wgsl $lib/!($unused) $pass/!($unused))
 shaders+=(--without $lib/$unused $pass/$unused)
 
