@@ -54,10 +54,10 @@ fn mean_of(stored: f32) -> Mean {
     if lod != 0.0 {
         return Mean(lod, 1.0, 0.0, 0.0);
     }
-    let all = floor(stored * CODES_PER_LOD + 0.5);
+    let whole = floor(stored * CODES_PER_LOD + 0.5);
     // 0.125 keeps quotients away from integers.
-    let run = floor((all + 0.125) * (1.0f / CODES_PER_RUN));
-    let code = all - run * CODES_PER_RUN;
+    let run = floor((whole + 0.125) * (1.0f / CODES_PER_RUN));
+    let code = whole - run * CODES_PER_RUN;
     let number = floor((code + 0.125) * (1.0f / DEVIATIONS));
     return Mean(0.0, samples_of(7.0 - number), deviation_of(code - number * DEVIATIONS), run - LONGEST_RUN);
 }
@@ -253,9 +253,9 @@ fn average(
 ) -> Averaged {
     let acceptance = (r.fit * r.trust) * kept;
     let most = most_samples(r.nearest.place_px, at_edge);
-    let all = select(min(relit_samples(past.samples, r.gains), most) * acceptance, 0.0, r.nearest.lod > 0.0);
+    let accepted = select(min(relit_samples(past.samples, r.gains), most) * acceptance, 0.0, r.nearest.lod > 0.0);
     let run = next_run(past, luma(r.candidate) > luma(r.history), difference);
-    let count = count_in_run(all, past, run);
+    let count = count_in_run(accepted, past, run);
     let share = count / (count + 1.0);
     let variance = (past.deviation * past.deviation + (difference * difference) * (1.0 - share)) * share;
     var sample = r;
