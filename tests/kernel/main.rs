@@ -12,6 +12,7 @@ mod kernel_hard;
 mod lattice;
 #[path = "../common/laws.rs"]
 mod laws;
+mod means;
 mod quads;
 mod reprojection;
 mod reservoir;
